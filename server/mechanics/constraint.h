@@ -1,0 +1,30 @@
+// The family of constraints: conditions on positions that hold at the end of every step.
+#ifndef PHRENIC_SERVER_MECHANICS_CONSTRAINT_H_
+#define PHRENIC_SERVER_MECHANICS_CONSTRAINT_H_
+
+#include <string>
+
+#include "server/mechanics/instant.h"
+
+namespace phrenic {
+
+// Immutable; any number of threads may call.
+class Constraint {
+ public:
+  virtual ~Constraint() = default;
+  const std::string& name() const { return name_; }
+  // Moves `state` onto the constraint. `before` are the positions at the start of the step, `dt` its length [s].
+  virtual void Project(const v1::Parameters& parameters, const ConstPoints& before, double dt, State& state) const = 0;
+  // Largest violation [m].
+  virtual double Residual(const State& state) const = 0;
+
+ protected:
+  explicit Constraint(std::string name) : name_(std::move(name)) {}
+
+ private:
+  std::string name_;
+};
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_SERVER_MECHANICS_CONSTRAINT_H_

@@ -1,0 +1,41 @@
+// The family of forces. To add one: a file in forces/, a message in scene.proto, its case in catalogue.cc, its line in
+// tests/contract.
+#ifndef PHRENIC_SERVER_MECHANICS_FORCE_H_
+#define PHRENIC_SERVER_MECHANICS_FORCE_H_
+
+#include <string>
+
+#include "server/mechanics/instant.h"
+
+namespace phrenic {
+
+// A batch of like force elements: all springs of a body, one action line. Any number of batches act on the same
+// vertices: that is how one body mixes springs, finite elements and muscle (thesis 4.1.3). Immutable; any number of
+// threads may call. No call allocates.
+class Force {
+ public:
+  virtual ~Force() = default;
+  // "springs:diaphragm", in timings and errors.
+  const std::string& name() const { return name_; }
+
+  // f += force [N], 3 x n; never clears.
+  virtual void AddForce(const Instant& at, MutablePoints f) const = 0;
+  // df += (df/dx) dx [N], the derivative with positive semi-definite stiffness (a compressed spring's negative
+  // transverse term left out). Nothing where the force does not depend on positions.
+  virtual void AddStiffnessTimes(const Instant&, const ConstPoints& /*dx*/, MutablePoints /*df*/) const {}
+  // The largest damping rate, force per velocity over mass, that it puts on a vertex [1/s].
+  virtual double DampingRate() const { return 0; }
+  // [J]; force = -dE/dx where it has one, and whether it has.
+  virtual double Energy(const Instant&) const { return 0; }
+  virtual bool conservative() const { return false; }
+
+ protected:
+  explicit Force(std::string name) : name_(std::move(name)) {}
+
+ private:
+  std::string name_;
+};
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_SERVER_MECHANICS_FORCE_H_

@@ -1,0 +1,28 @@
+// The family of motions: what moves by a law of its own (bones with the breath, driven vertices).
+#ifndef PHRENIC_SERVER_MECHANICS_MOTION_H_
+#define PHRENIC_SERVER_MECHANICS_MOTION_H_
+
+#include <string>
+
+#include "server/mechanics/instant.h"
+
+namespace phrenic {
+
+// Immutable; any number of threads may call. Motions run in the scene's order, so that one may follow another.
+class Motion {
+ public:
+  virtual ~Motion() = default;
+  const std::string& name() const { return name_; }
+  // Sets the poses, or the positions and velocities of the vertices, that it drives, for the time of `at`.
+  virtual void Drive(const Instant& at, State& state) const = 0;
+
+ protected:
+  explicit Motion(std::string name) : name_(std::move(name)) {}
+
+ private:
+  std::string name_;
+};
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_SERVER_MECHANICS_MOTION_H_

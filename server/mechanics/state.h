@@ -1,0 +1,40 @@
+// All that changes while a session runs. A copy is a snapshot; equal states give equal futures, bit for bit.
+#ifndef PHRENIC_SERVER_MECHANICS_STATE_H_
+#define PHRENIC_SERVER_MECHANICS_STATE_H_
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <vector>
+
+#include "server/mesh/mesh.h"
+
+namespace phrenic {
+
+// Where a rigid part is and how it moves: x = rotation x_rest + translation.
+struct Pose {
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero();       // [m]
+  Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  // [rad/s]
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();          // of the point that rests at the origin [m/s]
+
+  Eigen::Vector3d At(const Eigen::Vector3d& rest) const { return rotation * rest + translation; }
+  Eigen::Vector3d VelocityAt(const Eigen::Vector3d& rest) const {
+    return velocity + angular_velocity.cross(rotation * rest);
+  }
+};
+
+struct State {
+  double time = 0;         // [s]
+  std::int64_t tick = 0;   // steps taken
+  double phase = 0;        // breaths since the start; its rate is 1/breath_length, so that the signal never jumps
+  Points x;                // positions of the simulated vertices [m]
+  Points v;                // their velocities [m/s]
+  std::vector<Pose> poses;  // of the driven bodies
+};
+
+// FNV-1a over the bits of time, phase, positions and velocities: equal states, equal hashes.
+std::uint64_t StateHash(const State& state);
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_SERVER_MECHANICS_STATE_H_

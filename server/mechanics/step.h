@@ -1,0 +1,22 @@
+// One step of a run, and what can go wrong in it.
+#ifndef PHRENIC_SERVER_MECHANICS_STEP_H_
+#define PHRENIC_SERVER_MECHANICS_STEP_H_
+
+#include "absl/status/status.h"
+#include "phrenic/v1/session.pb.h"
+#include "server/mechanics/model.h"
+
+namespace phrenic {
+
+// Motions to t + dt, then the integrator, then constraints: state becomes the state at t + dt. OUT_OF_RANGE when the
+// step diverged (a position that is not finite, or further from rest than ten times the scene's size); `state` is then
+// not to be shown to anyone, and Diagnose says why. Allocates nothing.
+absl::Status Step(const Model& model, const v1::Parameters& parameters, double dt, State& state, Workspace& work);
+
+// Names the vertex that went furthest in a diverged state, the force with the largest pull on it before, and a remedy.
+v1::Divergence Diagnose(const Model& model, const v1::Parameters& parameters, const State& before,
+                        const State& diverged);
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_SERVER_MECHANICS_STEP_H_

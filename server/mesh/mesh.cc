@@ -1,0 +1,36 @@
+#include "server/mesh/mesh.h"
+
+#include "absl/strings/str_cat.h"
+
+namespace phrenic {
+namespace {
+
+template <typename Indices>
+absl::Status CheckIndices(const Indices& indices, int vertices, const char* what) {
+  for (Eigen::Index column = 0; column < indices.cols(); ++column) {
+    for (Eigen::Index row = 0; row < indices.rows(); ++row) {
+      const int index = indices(row, column);
+      if (index < 0 || index >= vertices) {
+        return absl::InvalidArgumentError(absl::StrCat(what, " ", column, " names vertex ", index, " but there are ",
+                                                       vertices, " vertices (0 to ", vertices - 1, ")"));
+      }
+    }
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::Status Validate(const Mesh& mesh) {
+  const int vertices = static_cast<int>(mesh.vertices.cols());
+  if (vertices == 0) return absl::InvalidArgumentError("the mesh has no vertices");
+  for (int i = 0; i < vertices; ++i) {
+    if (!mesh.vertices.col(i).allFinite()) {
+      return absl::InvalidArgumentError(absl::StrCat("vertex ", i, " has a coordinate that is not a finite number"));
+    }
+  }
+  if (absl::Status status = CheckIndices(mesh.triangles, vertices, "triangle"); !status.ok()) return status;
+  return CheckIndices(mesh.edges, vertices, "edge");
+}
+
+}  // namespace phrenic

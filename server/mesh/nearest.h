@@ -1,0 +1,37 @@
+// Nearest-vertex search over a point set (a k-d tree by nanoflann).
+#ifndef PHRENIC_SERVER_MESH_NEAREST_H_
+#define PHRENIC_SERVER_MESH_NEAREST_H_
+
+#include <memory>
+#include <vector>
+
+#include "server/mesh/mesh.h"
+
+namespace phrenic {
+
+struct Neighbour {
+  int vertex = -1;
+  double distance = 0;  // [m]
+};
+
+// Immutable once built; any number of threads may ask. Keeps its own copy of the points.
+class NearestSearch {
+ public:
+  explicit NearestSearch(Points points);  // at least one point
+  ~NearestSearch();
+  NearestSearch(const NearestSearch&) = delete;
+  NearestSearch& operator=(const NearestSearch&) = delete;
+
+  // Equal distances are settled by the lower index, so that results do not depend on the tree.
+  Neighbour Nearest(const Eigen::Vector3d& point) const;
+  // Every vertex within `radius` [m], nearest first.
+  std::vector<Neighbour> Within(const Eigen::Vector3d& point, double radius) const;
+
+ private:
+  struct Tree;
+  std::unique_ptr<Tree> tree_;
+};
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_SERVER_MESH_NEAREST_H_
