@@ -11,12 +11,12 @@ namespace phrenic {
 
 // References into the state of the caller: valid during the call only.
 struct Instant {
-  double time;                    // [s]
-  double breath;                  // the waveform's signal, -1 to 1; 0 at rest
-  double breath_rate;             // its time derivative [1/s]
+  double time;                       // [s]
+  double breath;                     // the waveform's signal, -1 to 1; 0 at rest
+  double breath_rate;                // its time derivative [1/s]
   const v1::Parameters& parameters;  // every field set
-  const ConstPoints x;            // [m]
-  const ConstPoints v;            // [m/s]
+  const ConstPoints x;               // [m]
+  const ConstPoints v;               // [m/s]
   const std::vector<Pose>& poses;
 };
 

@@ -1,4 +1,6 @@
-// Seen bodies that ride on carriers: x = x_rest + sum_c w_c u_c, u_c the displacement of carrier c's nearest point.
+// Points that carriers carry along: u = sum_c w_c u_c, u_c the displacement that carrier c gives the point. A carrier
+// is a pose (it moves the point as part of the rigid body) or a simulated vertex (it lends its own displacement); what
+// is missing to a sum of 1 stands still.
 #ifndef PHRENIC_SERVER_MECHANICS_RIDE_H_
 #define PHRENIC_SERVER_MECHANICS_RIDE_H_
 
@@ -10,12 +12,13 @@ namespace phrenic {
 
 // One vertex's share of one carrier.
 struct RideShare {
-  int vertex = 0;            // of the riding body
-  int pose = -1;             // the carrier: a pose, or ...
+  int vertex = 0;             // of the riding body
+  int pose = -1;              // the carrier: a pose, or ...
   int simulated_vertex = -1;  // ... a simulated vertex
-  double weight = 0;         // shares of a vertex sum to 1
+  double weight = 0;          // between 0 and 1
 };
 
+// A body that is only seen and rides on others.
 struct Ride {
   int body = 0;
   std::vector<RideShare> shares;  // sorted by vertex

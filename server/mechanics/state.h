@@ -24,15 +24,15 @@ struct Pose {
 };
 
 struct State {
-  double time = 0;         // [s]
-  std::int64_t tick = 0;   // steps taken
-  double phase = 0;        // breaths since the start; its rate is 1/breath_length, so that the signal never jumps
-  Points x;                // positions of the simulated vertices [m]
-  Points v;                // their velocities [m/s]
+  double time = 0;          // [s]
+  std::int64_t tick = 0;    // steps taken
+  double phase = 0;         // breaths since the start; its rate is 1/breath_length, so that the signal never jumps
+  Points x;                 // positions of the simulated vertices [m]
+  Points v;                 // their velocities [m/s]
   std::vector<Pose> poses;  // of the driven bodies
 };
 
-// FNV-1a over the bits of time, phase, positions and velocities: equal states, equal hashes.
+// A word-wise FNV-1a over the bits of time, phase, positions and velocities: equal states, equal hashes.
 std::uint64_t StateHash(const State& state);
 
 }  // namespace phrenic

@@ -1,0 +1,77 @@
+#include "server/mechanics/carriers.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace phrenic {
+namespace {
+
+constexpr double kNear = 5e-3;           // distances below this count alike [m]
+constexpr double kSmallestShare = 0.01;  // smaller shares are dropped and the rest scaled to 1
+
+std::vector<RideShare> OfVertex(const Ride& ride, int vertex) {
+  const auto before = [](const RideShare& share, int v) { return share.vertex < v; };
+  auto first = std::lower_bound(ride.shares.begin(), ride.shares.end(), vertex, before);
+  auto last = std::lower_bound(first, ride.shares.end(), vertex + 1, before);
+  return {first, last};
+}
+
+// Leaves out what is too small to see and brings the rest back to the same sum.
+void Prune(std::vector<double>& weights) {
+  double sum = 0, kept = 0;
+  for (const double weight : weights) sum += weight;
+  for (double& weight : weights) {
+    if (weight < kSmallestShare * sum) weight = 0;
+    kept += weight;
+  }
+  for (double& weight : weights) weight /= kept;
+}
+
+}  // namespace
+
+Carriers::Carriers(const Draft& draft, const std::vector<int>& bodies) : draft_(draft), bodies_(bodies) {
+  for (const int b : bodies) {
+    searches_.push_back(std::make_unique<NearestSearch>(draft.model.bodies[b].mesh.vertices));
+  }
+}
+
+Carriers::Contact Carriers::Nearest(const Eigen::Vector3d& point) const {
+  Contact nearest{.distance = std::numeric_limits<double>::infinity()};
+  for (int c = 0; c < static_cast<int>(searches_.size()); ++c) {
+    const Neighbour found = searches_[c]->Nearest(point);
+    if (found.distance < nearest.distance) nearest = {c, found.vertex, found.distance};
+  }
+  return nearest;
+}
+
+std::vector<RideShare> Carriers::Shares(const Contact& contact, int for_vertex) const {
+  const BodyModel& body = draft_.model.bodies[bodies_[contact.carrier]];
+  if (body.pose >= 0) return {{for_vertex, body.pose, -1, 1.0}};
+  if (body.first_vertex >= 0) return {{for_vertex, -1, body.first_vertex + contact.vertex, 1.0}};
+  if (body.ride < 0) return {};
+  std::vector<RideShare> shares = OfVertex(draft_.model.rides[body.ride], contact.vertex);
+  for (RideShare& share : shares) share.vertex = for_vertex;
+  return shares;
+}
+
+std::vector<RideShare> Carriers::Blend(const Eigen::Vector3d& point, int for_vertex) const {
+  std::vector<Contact> contacts;
+  std::vector<double> weights;
+  for (int c = 0; c < static_cast<int>(searches_.size()); ++c) {
+    const Neighbour found = searches_[c]->Nearest(point);
+    contacts.push_back({c, found.vertex, found.distance});
+    weights.push_back(std::pow(found.distance * found.distance + kNear * kNear, -2));
+  }
+  Prune(weights);
+  std::vector<RideShare> blended;
+  for (size_t c = 0; c < contacts.size(); ++c) {
+    if (weights[c] == 0) continue;
+    for (RideShare share : Shares(contacts[c], for_vertex)) {
+      share.weight *= weights[c];
+      blended.push_back(share);
+    }
+  }
+  return blended;
+}
+
+}  // namespace phrenic

@@ -1,0 +1,85 @@
+#include "server/mechanics/catalogue.h"
+
+#include "absl/strings/str_cat.h"
+#include "server/mechanics/constraints/rigid_links.h"
+#include "server/mechanics/forces/action_line.h"
+#include "server/mechanics/forces/attachment.h"
+#include "server/mechanics/forces/friction.h"
+#include "server/mechanics/forces/gravity.h"
+#include "server/mechanics/forces/springs.h"
+#include "server/mechanics/integrators/semi_implicit_euler.h"
+#include "server/mechanics/motions/oscillation.h"
+#include "server/mechanics/motions/ribs.h"
+#include "server/mechanics/motions/riding.h"
+#include "server/mechanics/motions/sternum.h"
+
+namespace phrenic {
+namespace {
+
+std::string In(std::string_view path, const char* field) { return absl::StrCat(std::string(path), ".", field); }
+
+absl::Status NoKind(std::string_view path) { return FieldError(path, "says no kind: set one of its kinds"); }
+
+absl::Status Add(absl::StatusOr<std::unique_ptr<Motion>> motion, Draft& draft) {
+  if (!motion.ok()) return motion.status();
+  if (*motion != nullptr) draft.model.motions.push_back(*std::move(motion));
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<Force>> MakeForce(const v1::Force& scene, std::string_view path, Draft& draft) {
+  switch (scene.kind_case()) {
+    case v1::Force::kSprings:
+      return Springs::Make(scene.springs(), scene.name(), In(path, "springs"), draft);
+    case v1::Force::kFriction:
+      return Friction::Make(scene.friction(), scene.name(), In(path, "friction"), draft);
+    case v1::Force::kActionLine:
+      return ActionLine::Make(scene.action_line(), scene.name(), In(path, "action_line"), draft);
+    case v1::Force::kAttachment:
+      return Attachment::Make(scene.attachment(), scene.name(), In(path, "attachment"), draft);
+    case v1::Force::kGravity:
+      return Gravity::Make(scene.gravity(), scene.name(), In(path, "gravity"), draft);
+    case v1::Force::KIND_NOT_SET:
+      break;
+  }
+  return NoKind(path);
+}
+
+absl::StatusOr<std::unique_ptr<Constraint>> MakeConstraint(const v1::Constraint& scene, std::string_view path,
+                                                           Draft& draft) {
+  switch (scene.kind_case()) {
+    case v1::Constraint::kRigidLinks:
+      return RigidLinks::Make(scene.rigid_links(), scene.name(), In(path, "rigid_links"), draft);
+    case v1::Constraint::KIND_NOT_SET:
+      break;
+  }
+  return NoKind(path);
+}
+
+absl::StatusOr<std::unique_ptr<Integrator>> MakeIntegrator(const v1::Integrator& scene) {
+  switch (scene.kind_case()) {
+    case v1::Integrator::kSemiImplicitEuler:
+    case v1::Integrator::KIND_NOT_SET:
+      break;
+  }
+  return std::make_unique<SemiImplicitEuler>();
+}
+
+absl::Status AddMotion(const v1::Motion& scene, std::string_view path, Draft& draft) {
+  switch (scene.kind_case()) {
+    case v1::Motion::kRibs:
+      return Add(Ribs::Make(scene.ribs(), scene.name(), In(path, "ribs"), draft), draft);
+    case v1::Motion::kSternum:
+      return Add(Sternum::Make(scene.sternum(), scene.name(), In(path, "sternum"), draft), draft);
+    case v1::Motion::kOscillation:
+      return Add(Oscillation::Make(scene.oscillation(), scene.name(), In(path, "oscillation"), draft), draft);
+    case v1::Motion::kRide:
+      return AddRides(scene.ride(), scene.name(), In(path, "ride"), draft);
+    case v1::Motion::KIND_NOT_SET:
+      break;
+  }
+  return NoKind(path);
+}
+
+}  // namespace phrenic

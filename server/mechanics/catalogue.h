@@ -1,0 +1,21 @@
+// The catalogues of the families: which message makes which element. A kind without its case does not compile.
+#ifndef PHRENIC_SERVER_MECHANICS_CATALOGUE_H_
+#define PHRENIC_SERVER_MECHANICS_CATALOGUE_H_
+
+#include <string_view>
+
+#include "server/mechanics/draft.h"
+
+namespace phrenic {
+
+// Null where the element has nothing to do; it has said so in the report then.
+absl::StatusOr<std::unique_ptr<Force>> MakeForce(const v1::Force& scene, std::string_view path, Draft& draft);
+absl::StatusOr<std::unique_ptr<Constraint>> MakeConstraint(const v1::Constraint& scene, std::string_view path,
+                                                           Draft& draft);
+absl::StatusOr<std::unique_ptr<Integrator>> MakeIntegrator(const v1::Integrator& scene);
+// Adds a motion to the draft, or a ride.
+absl::Status AddMotion(const v1::Motion& scene, std::string_view path, Draft& draft);
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_SERVER_MECHANICS_CATALOGUE_H_

@@ -1,0 +1,143 @@
+#include "server/mechanics/compile.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "server/mechanics/bodies.h"
+#include "server/mechanics/catalogue.h"
+#include "server/mechanics/scene_hash.h"
+#include "server/mechanics/spectrum.h"
+#include "server/schema/schema.h"
+
+namespace phrenic {
+namespace {
+
+constexpr double kSafety = 0.95;           // of the Lanczos estimate
+constexpr double kChosen = 0.9;            // of the largest stable step
+constexpr double kLongestStep = 1.0 / 60;  // [s]; one step a frame at most
+
+absl::Status AddElements(Draft& draft) {
+  const v1::Scene& scene = draft.model.scene;
+  for (int i = 0; i < scene.motions_size(); ++i) {
+    if (absl::Status s = AddMotion(scene.motions(i), absl::StrCat("motions[", i, "]"), draft); !s.ok()) return s;
+  }
+  for (int i = 0; i < scene.forces_size(); ++i) {
+    auto force = MakeForce(scene.forces(i), absl::StrCat("forces[", i, "]"), draft);
+    if (!force.ok()) return force.status();
+    if (*force != nullptr) draft.model.forces.push_back(*std::move(force));
+  }
+  for (int i = 0; i < scene.constraints_size(); ++i) {
+    auto constraint = MakeConstraint(scene.constraints(i), absl::StrCat("constraints[", i, "]"), draft);
+    if (!constraint.ok()) return constraint.status();
+    if (*constraint != nullptr) draft.model.constraints.push_back(*std::move(constraint));
+  }
+  auto integrator = MakeIntegrator(scene.integrator());
+  if (!integrator.ok()) return integrator.status();
+  draft.model.integrator = *std::move(integrator);
+  draft.ReportElement("integrator", draft.model.integrator->name(), draft.model.rest.cols(), "vertices",
+                      absl::StrFormat("order %d", draft.model.integrator->order()));
+  return absl::OkStatus();
+}
+
+// What the scene has no need of, beside what the elements themselves said.
+void ReportUnused(Draft& draft) {
+  const Model& model = draft.model;
+  if (model.rest.cols() == 0) draft.ReportLeftOut("integration", "no body is deformable");
+  if (model.constraints.empty()) draft.ReportLeftOut("constraints", "the scene has no rigid links");
+  if (model.motions.empty()) draft.ReportLeftOut("motions", "nothing in the scene moves by a law of its own");
+  std::int64_t still = 0, vertices = 0;
+  for (const BodyModel& body : model.bodies) {
+    if (body.first_vertex >= 0 || body.pose >= 0 || body.ride >= 0) continue;
+    ++still;
+    vertices += body.mesh.vertices.cols();
+  }
+  if (still > 0) {
+    draft.ReportLeftOut(absl::StrCat("motion of ", still, " bodies at rest"),
+                        absl::StrCat(vertices, " vertices never move: they are sent once"));
+  }
+}
+
+std::string StiffestElementAt(const Model& model, const Instant& at, int vertex) {
+  Points dx = Points::Zero(3, model.rest.cols()), df = dx;
+  std::string name = "nothing";
+  double largest = 0;
+  dx.col(vertex).setOnes();
+  for (const auto& force : model.forces) {
+    df.setZero();
+    force->AddStiffnessTimes(at, dx, df);
+    if (df.col(vertex).norm() <= largest) continue;
+    largest = df.col(vertex).norm();
+    name = force->name();
+  }
+  return name;
+}
+
+void ResolveParameters(Model& model) {
+  model.parameters = model.scene.parameters();
+  schema::FillDefaults(&model.parameters);
+  if (!model.parameters.has_time_step()) model.parameters.set_time_step(kLongestStep);  // until the limit is known
+}
+
+// Two significant digits, downwards: people read and type it.
+double RoundDown(double value) {
+  const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
+  return std::floor(value / unit * (1 + 1e-12)) * unit;
+}
+
+void ChooseStep(Model& model) {
+  v1::StableStep stable = LargestStableStep(model, model.parameters);
+  if (!model.scene.parameters().has_time_step()) {
+    model.parameters.set_time_step(std::min(RoundDown(kChosen * stable.seconds()), kLongestStep));
+  }
+  stable.set_chosen_seconds(model.parameters.time_step());
+  *model.report.mutable_stable_step() = stable;
+}
+
+}  // namespace
+
+absl::StatusOr<std::shared_ptr<const Model>> Compile(const v1::Scene& scene, const MeshSource& source) {
+  const auto start = std::chrono::steady_clock::now();
+  if (absl::Status status = schema::Validate(scene); !status.ok()) return status;
+  Draft draft;
+  Model& model = draft.model;
+  model.scene = scene;
+  schema::FillDefaults(&model.scene);
+  model.scene.mutable_parameters()->CopyFrom(scene.parameters());
+  ResolveParameters(model);
+  if (absl::Status status = AddBodies(source, draft); !status.ok()) return status;
+  if (absl::Status status = AddElements(draft); !status.ok()) return status;
+  if (absl::Status status = AddProbes(draft); !status.ok()) return status;
+  ReportUnused(draft);
+  model.report.set_scene(scene.name());
+  model.report.set_scene_hash(SceneHash(model));
+  ChooseStep(model);
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+  model.report.set_compile_seconds(taken.count());
+  return std::make_shared<const Model>(std::move(model));
+}
+
+v1::StableStep LargestStableStep(const Model& model, const v1::Parameters& parameters) {
+  v1::StableStep report;
+  const State state = model.InitialState();
+  const FastestMode fastest = FindFastestMode(model, parameters, state);
+  const double limit = kSafety * model.integrator->MaxStep(fastest.spectrum);
+  report.set_omega_max(fastest.spectrum.omega_max);
+  const double largest_step =
+      v1::Parameters::descriptor()->FindFieldByName("time_step")->options().GetExtension(v1::quantity).maximum();
+  report.set_seconds(std::min(limit, largest_step));
+  if (fastest.vertex < 0) {
+    report.set_reason("nothing in the scene vibrates: any step is stable");
+    return report;
+  }
+  const BodyModel& body = model.BodyOf(fastest.vertex);
+  report.set_reason(absl::StrFormat("fastest vibration %.3g rad/s at vertex %d of %s, by %s; damping %.3g 1/s",
+                                    fastest.spectrum.omega_max, fastest.vertex - body.first_vertex, body.name,
+                                    StiffestElementAt(model, MakeInstant(model, parameters, state), fastest.vertex),
+                                    fastest.spectrum.damping_rate));
+  return report;
+}
+
+}  // namespace phrenic

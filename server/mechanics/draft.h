@@ -1,0 +1,45 @@
+// What an element's Make sees of the scene while it is being compiled, and how it reports.
+#ifndef PHRENIC_SERVER_MECHANICS_DRAFT_H_
+#define PHRENIC_SERVER_MECHANICS_DRAFT_H_
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "google/protobuf/repeated_ptr_field.h"
+#include "server/mechanics/model.h"
+
+namespace phrenic {
+
+using Names = google::protobuf::RepeatedPtrField<std::string>;
+
+// The model in the making: bodies, rest positions and masses are there before the first element is made.
+struct Draft {
+  Model model;
+
+  // Bodies by the names of bodies or layers; INVALID_ARGUMENT with the field's path and the names there are.
+  absl::StatusOr<std::vector<int>> Bodies(const Names& names, std::string_view path) const;
+  absl::StatusOr<int> Body(const std::string& name, std::string_view path) const;
+  // The same, and each must be deformable.
+  absl::StatusOr<std::vector<int>> DeformableBodies(const Names& names, std::string_view path) const;
+  // Vertices of a region of a body, as a mask; every vertex where `region` is empty.
+  absl::StatusOr<std::vector<bool>> Region(int body, const std::string& region, std::string_view path) const;
+  absl::Status CheckVertex(int body, int vertex, std::string_view path) const;
+
+  void ReportElement(std::string_view family, std::string_view name, std::int64_t count, std::string_view counted,
+                     std::string_view detail);
+  void ReportLeftOut(std::string_view what, std::string_view why);
+};
+
+// Bodies' names joined for an element that has no name of its own: "springs:diaphragm".
+std::string ElementName(const std::string& given, std::string_view kind, const Names& names);
+
+Eigen::Vector3d ToEigen(const v1::Vector& vector);
+
+// INVALID_ARGUMENT "path: what".
+absl::Status FieldError(std::string_view path, std::string_view what);
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_SERVER_MECHANICS_DRAFT_H_

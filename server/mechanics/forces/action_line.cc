@@ -1,0 +1,67 @@
+#include "server/mechanics/forces/action_line.h"
+
+#include <algorithm>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+
+namespace phrenic {
+namespace {
+
+double FallOff(const v1::ActionLine& line, const Eigen::Vector3d& direction, const Eigen::Vector3d& point) {
+  const Eigen::Vector3d offset = point - ToEigen(line.origin());
+  const double height = offset.dot(direction);
+  if (line.fall_off() == v1::FALL_OFF_VERTICAL) return std::max(0.0, height / line.radius());
+  return std::max(0.0, 1 - (offset - height * direction).norm() / line.radius());
+}
+
+double Signal(const Instant& at) {
+  return at.parameters.apply_muscles() ? at.parameters.breath_force() * at.breath : 0.0;
+}
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<Force>> ActionLine::Make(const v1::ActionLine& scene, const std::string& given,
+                                                        std::string_view path, Draft& draft) {
+  const std::string name = ElementName(given, "action-line", scene.bodies());
+  auto bodies = draft.DeformableBodies(scene.bodies(), absl::StrCat(std::string(path), ".bodies"));
+  if (!bodies.ok()) return bodies.status();
+  const Eigen::Vector3d along = ToEigen(scene.direction());
+  if (along.norm() == 0) return FieldError(absl::StrCat(std::string(path), ".direction"), "must not be zero");
+  const Eigen::Vector3d direction = along.normalized();
+  std::unique_ptr<ActionLine> force(new ActionLine(name));
+  double total = 0;
+  for (const int b : *bodies) {
+    const BodyModel& body = draft.model.bodies[b];
+    for (int i = 0; i < body.mesh.vertices.cols(); ++i) {
+      const int vertex = body.first_vertex + i;
+      const double weight = FallOff(scene, direction, body.mesh.vertices.col(i)) * draft.model.mass[vertex];
+      if (weight == 0 || draft.model.inverse_mass[vertex] == 0) continue;
+      force->pulls_.push_back({vertex, weight * direction});
+      total += weight;
+    }
+  }
+  if (force->pulls_.empty() || scene.force() == 0) {
+    draft.ReportLeftOut(name, force->pulls_.empty() ? "no free vertex is within its reach" : "its force is 0");
+    return nullptr;
+  }
+  for (Pull& pull : force->pulls_) pull.force *= scene.force() / total;
+  draft.model.action_lines.push_back({name, bodies->front(), ToEigen(scene.origin()), direction, scene.radius()});
+  draft.ReportElement("force", name, static_cast<std::int64_t>(force->pulls_.size()), "vertices",
+                      absl::StrFormat("%g N at the peak of a quiet breath", scene.force()));
+  return force;
+}
+
+void ActionLine::AddForce(const Instant& at, MutablePoints f) const {
+  const double signal = Signal(at);
+  if (signal == 0) return;
+  for (const Pull& pull : pulls_) f.col(pull.vertex) += signal * pull.force;
+}
+
+double ActionLine::Energy(const Instant& at) const {
+  double work = 0;
+  for (const Pull& pull : pulls_) work += pull.force.dot(at.x.col(pull.vertex));
+  return -Signal(at) * work;
+}
+
+}  // namespace phrenic

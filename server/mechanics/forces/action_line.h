@@ -1,0 +1,35 @@
+// A muscle as a line (thesis section 3.4, listing A.1.2): f_i = F breath_force signal(t) w_i / sum w, along the line.
+// w_i = fall-off times mass at rest, so that the sum over the vertices is F whatever the mesh. Cylinder: 1 - d/radius,
+// d the perpendicular distance; vertical: height above the origin over the radius, where positive.
+#ifndef PHRENIC_SERVER_MECHANICS_FORCES_ACTION_LINE_H_
+#define PHRENIC_SERVER_MECHANICS_FORCES_ACTION_LINE_H_
+
+#include <vector>
+
+#include "server/mechanics/draft.h"
+
+namespace phrenic {
+
+class ActionLine final : public Force {
+ public:
+  // Null where no vertex is within reach or the force is 0.
+  static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::ActionLine& scene, const std::string& name,
+                                                     std::string_view path, Draft& draft);
+
+  void AddForce(const Instant& at, MutablePoints f) const override;
+  double Energy(const Instant& at) const override;
+  bool conservative() const override { return true; }
+
+ private:
+  struct Pull {
+    int vertex;
+    Eigen::Vector3d force;  // at signal 1 and breath force 1 [N]
+  };
+  explicit ActionLine(std::string name) : Force(std::move(name)) {}
+
+  std::vector<Pull> pulls_;
+};
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_SERVER_MECHANICS_FORCES_ACTION_LINE_H_

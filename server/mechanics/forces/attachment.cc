@@ -1,0 +1,93 @@
+#include "server/mechanics/forces/attachment.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "server/mechanics/carriers.h"
+
+namespace phrenic {
+namespace {
+
+bool CarriedByTissue(const Model& model, const BodyModel& body) {
+  if (body.first_vertex >= 0) return true;
+  if (body.ride < 0) return false;
+  const std::vector<RideShare>& shares = model.rides[body.ride].shares;
+  return std::any_of(shares.begin(), shares.end(), [](const RideShare& share) { return share.pose < 0; });
+}
+
+absl::StatusOr<std::vector<int>> CarrierBodies(const v1::Attachment& scene, std::string_view path, const Draft& draft) {
+  const std::string field = absl::StrCat(std::string(path), ".carriers");
+  auto carriers = draft.Bodies(scene.carriers(), field);
+  if (!carriers.ok()) return carriers;
+  for (const int c : *carriers) {
+    if (CarriedByTissue(draft.model, draft.model.bodies[c])) {
+      return FieldError(field,
+                        absl::StrCat("body \"", draft.model.bodies[c].name,
+                                     "\" is deformable, or rides on what is, and cannot carry; name driven bodies or "
+                                     "ones at rest"));
+    }
+  }
+  return carriers;
+}
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<Force>> Attachment::Make(const v1::Attachment& scene, const std::string& given,
+                                                        std::string_view path, Draft& draft) {
+  const std::string name = ElementName(given, "attachment", scene.bodies());
+  auto bodies = draft.DeformableBodies(scene.bodies(), absl::StrCat(std::string(path), ".bodies"));
+  if (!bodies.ok()) return bodies.status();
+  auto carriers = CarrierBodies(scene, path, draft);
+  if (!carriers.ok()) return carriers.status();
+  std::unique_ptr<Attachment> force(new Attachment(name));
+  for (const int b : *bodies) force->AddHolds(scene, *carriers, b, draft);
+  if (force->holds_.empty()) {
+    draft.ReportLeftOut(name, absl::StrFormat("no vertex is within %g m of a carrier", scene.radius()));
+    return nullptr;
+  }
+  const auto count = static_cast<std::int64_t>(force->holds_.size());
+  draft.model.report.set_attachments(draft.model.report.attachments() + count);
+  draft.ReportElement("force", name, count, "vertices",
+                      absl::StrFormat("within %g mm, k = %g N/m", 1e3 * scene.radius(), scene.stiffness()));
+  return force;
+}
+
+void Attachment::AddHolds(const v1::Attachment& scene, const std::vector<int>& carriers, int b, Draft& draft) {
+  const BodyModel& body = draft.model.bodies[b];
+  const Carriers search(draft, carriers);
+  for (int i = 0; i < body.mesh.vertices.cols(); ++i) {
+    const int vertex = body.first_vertex + i;
+    const Carriers::Contact contact = search.Nearest(body.mesh.vertices.col(i));
+    if (contact.distance >= scene.radius() || draft.model.inverse_mass[vertex] == 0) continue;
+    const double stiffness = (1 - contact.distance / scene.radius()) * scene.stiffness();
+    const double damping = 2 * scene.damping_ratio() * std::sqrt(stiffness * draft.model.mass[vertex]);
+    const std::vector<RideShare> shares = search.Shares(contact, vertex);
+    holds_.push_back({vertex, stiffness, damping, body.mesh.vertices.col(i), static_cast<int>(shares_.size()),
+                      static_cast<int>(shares.size())});
+    shares_.insert(shares_.end(), shares.begin(), shares.end());
+    damping_rate_ = std::max(damping_rate_, damping * draft.model.inverse_mass[vertex]);
+    draft.model.attached_vertices.push_back(vertex);
+  }
+}
+
+void Attachment::AddForce(const Instant& at, MutablePoints f) const {
+  for (const Hold& hold : holds_) {
+    Eigen::Vector3d carried = hold.rest;
+    Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
+    for (int s = hold.first_share; s < hold.first_share + hold.shares; ++s) {
+      const Pose& pose = at.poses[shares_[s].pose];
+      carried += shares_[s].weight * (pose.At(hold.rest) - hold.rest);
+      velocity += shares_[s].weight * pose.VelocityAt(hold.rest);
+    }
+    f.col(hold.vertex) +=
+        hold.stiffness * (carried - at.x.col(hold.vertex)) + hold.damping * (velocity - at.v.col(hold.vertex));
+  }
+}
+
+void Attachment::AddStiffnessTimes(const Instant&, const ConstPoints& dx, MutablePoints df) const {
+  for (const Hold& hold : holds_) df.col(hold.vertex) -= hold.stiffness * dx.col(hold.vertex);
+}
+
+}  // namespace phrenic

@@ -1,0 +1,40 @@
+// Fixed points (thesis section 3.3, figures 3.6-3.8) as a spring and damper to the carried point, which does not depend
+// on the time step: f = w k (c - x) + 2 zeta sqrt(w k m) (c' - v), w = 1 - d/radius, d the distance to the nearest
+// vertex of a carrier at rest, c the vertex's own rest position carried along by that carrier [N].
+#ifndef PHRENIC_SERVER_MECHANICS_FORCES_ATTACHMENT_H_
+#define PHRENIC_SERVER_MECHANICS_FORCES_ATTACHMENT_H_
+
+#include <vector>
+
+#include "server/mechanics/draft.h"
+
+namespace phrenic {
+
+class Attachment final : public Force {
+ public:
+  // Null where no vertex is within the radius. Carriers are driven, at rest, or riding on such bodies.
+  static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::Attachment& scene, const std::string& name,
+                                                     std::string_view path, Draft& draft);
+
+  void AddForce(const Instant& at, MutablePoints f) const override;
+  void AddStiffnessTimes(const Instant& at, const ConstPoints& dx, MutablePoints df) const override;
+  double DampingRate() const override { return damping_rate_; }
+
+ private:
+  struct Hold {
+    int vertex;
+    double stiffness, damping;  // [N/m], [N s/m]
+    Eigen::Vector3d rest;       // [m]
+    int first_share, shares;    // in shares_
+  };
+  explicit Attachment(std::string name) : Force(std::move(name)) {}
+  void AddHolds(const v1::Attachment& scene, const std::vector<int>& carriers, int body, Draft& draft);
+
+  std::vector<Hold> holds_;
+  std::vector<RideShare> shares_;
+  double damping_rate_ = 0;  // [1/s]
+};
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_SERVER_MECHANICS_FORCES_ATTACHMENT_H_

@@ -1,0 +1,35 @@
+#include "server/mechanics/forces/friction.h"
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+
+namespace phrenic {
+
+absl::StatusOr<std::unique_ptr<Force>> Friction::Make(const v1::Friction& scene, const std::string& given,
+                                                      std::string_view path, Draft& draft) {
+  const std::string name = ElementName(given, "friction", scene.bodies());
+  auto bodies = draft.DeformableBodies(scene.bodies(), absl::StrCat(std::string(path), ".bodies"));
+  if (!bodies.ok()) return bodies.status();
+  if (scene.rate() == 0) {
+    draft.ReportLeftOut(name, "its rate is 0");
+    return nullptr;
+  }
+  std::unique_ptr<Friction> force(new Friction(name, scene.rate()));
+  force->coefficient_ = Eigen::VectorXd::Zero(draft.model.rest.cols());
+  std::int64_t count = 0;
+  for (const int b : *bodies) {
+    const BodyModel& body = draft.model.bodies[b];
+    const auto vertices = body.mesh.vertices.cols();
+    force->coefficient_.segment(body.first_vertex, vertices) =
+        scene.rate() * draft.model.mass.segment(body.first_vertex, vertices);
+    count += vertices;
+  }
+  draft.ReportElement("force", name, count, "vertices", absl::StrFormat("rate %g 1/s", scene.rate()));
+  return force;
+}
+
+void Friction::AddForce(const Instant& at, MutablePoints f) const {
+  for (Eigen::Index i = 0; i < coefficient_.size(); ++i) f.col(i) -= coefficient_[i] * at.v.col(i);
+}
+
+}  // namespace phrenic

@@ -1,0 +1,27 @@
+// Friction on the velocity (thesis equation 2.1, its g given per mass): f = -rate m v [N].
+#ifndef PHRENIC_SERVER_MECHANICS_FORCES_FRICTION_H_
+#define PHRENIC_SERVER_MECHANICS_FORCES_FRICTION_H_
+
+#include "server/mechanics/draft.h"
+
+namespace phrenic {
+
+class Friction final : public Force {
+ public:
+  // Null where the rate is 0.
+  static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::Friction& scene, const std::string& name,
+                                                     std::string_view path, Draft& draft);
+
+  void AddForce(const Instant& at, MutablePoints f) const override;
+  double DampingRate() const override { return rate_; }
+
+ private:
+  Friction(std::string name, double rate) : Force(std::move(name)), rate_(rate) {}
+
+  double rate_;                  // [1/s]
+  Eigen::VectorXd coefficient_;  // g of each simulated vertex [N s/m]
+};
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_SERVER_MECHANICS_FORCES_FRICTION_H_

@@ -1,0 +1,39 @@
+// Springs over edges (thesis equation 2.1): f_a = k (l - l0) d, d the unit vector from a to b, f_b = -f_a.
+// k [N/m] is scaled by the live parameter elasticity. A spring of length 0 has no direction and pulls with no force.
+// With `balanced_at_rest` the constant load -f(rest) acts too, so that the mesh as it stands is in balance.
+#ifndef PHRENIC_SERVER_MECHANICS_FORCES_SPRINGS_H_
+#define PHRENIC_SERVER_MECHANICS_FORCES_SPRINGS_H_
+
+#include <vector>
+
+#include "server/mechanics/draft.h"
+
+namespace phrenic {
+
+class Springs final : public Force {
+ public:
+  // Null where no edge lies in the region.
+  static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::Springs& scene, const std::string& name,
+                                                     std::string_view path, Draft& draft);
+
+  void AddForce(const Instant& at, MutablePoints f) const override;
+  void AddStiffnessTimes(const Instant& at, const ConstPoints& dx, MutablePoints df) const override;
+  double Energy(const Instant& at) const override;
+  bool conservative() const override { return true; }
+
+ private:
+  struct Spring {
+    int a, b;
+    double stiffness;    // [N/m]
+    double rest_length;  // [m]
+  };
+  explicit Springs(std::string name) : Force(std::move(name)) {}
+  void AddTension(double scale, const ConstPoints& x, MutablePoints f) const;
+
+  std::vector<Spring> springs_;
+  Points rest_load_;  // 3 x n [N] at elasticity 1; no columns where the rest is not balanced
+};
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_SERVER_MECHANICS_FORCES_SPRINGS_H_

@@ -1,0 +1,21 @@
+// Semi-implicit Euler (thesis equations 2.6-2.7): v += dt f/m, then x += dt v. Order 1, symplectic. With friction rate
+// c it is stable for omega^2 dt^2 + 2 c dt < 4 (from the characteristic polynomial of x'' = -omega^2 x - c x').
+#ifndef PHRENIC_SERVER_MECHANICS_INTEGRATORS_SEMI_IMPLICIT_EULER_H_
+#define PHRENIC_SERVER_MECHANICS_INTEGRATORS_SEMI_IMPLICIT_EULER_H_
+
+#include "server/mechanics/integrator.h"
+
+namespace phrenic {
+
+class SemiImplicitEuler final : public Integrator {
+ public:
+  std::string_view name() const override { return "semi-implicit Euler"; }
+  int order() const override { return 1; }
+  double MaxStep(const Spectrum& spectrum) const override;
+  void Advance(const Model& model, const v1::Parameters& parameters, double dt, State& state,
+               Workspace& work) const override;
+};
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_SERVER_MECHANICS_INTEGRATORS_SEMI_IMPLICIT_EULER_H_

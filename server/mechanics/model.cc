@@ -1,0 +1,86 @@
+#include "server/mechanics/model.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace phrenic {
+
+State Model::InitialState() const {
+  State state;
+  state.x = rest;
+  state.v = Points::Zero(3, rest.cols());
+  int poses = 0;
+  for (const BodyModel& body : bodies) poses += body.pose >= 0 ? 1 : 0;
+  state.poses.resize(poses);
+  const Instant start = MakeInstant(*this, parameters, state);
+  for (const auto& motion : motions) motion->Drive(start, state);
+  return state;
+}
+
+Workspace Model::MakeWorkspace() const {
+  return {.force = Points::Zero(3, rest.cols()), .before = Points::Zero(3, rest.cols())};
+}
+
+const BodyModel& Model::BodyOf(int simulated_vertex) const {
+  const BodyModel* found = &bodies.front();
+  for (const BodyModel& body : bodies) {
+    if (body.first_vertex >= 0 && body.first_vertex <= simulated_vertex) found = &body;
+  }
+  return *found;
+}
+
+double BreathSignal(v1::Waveform waveform, double phase) {
+  const double angle = 2 * std::numbers::pi * phase;
+  if (waveform == v1::WAVEFORM_RAISED_COSINE) return (1 - std::cos(angle)) / 2;
+  return std::sin(angle);
+}
+
+double BreathSlope(v1::Waveform waveform, double phase) {
+  const double angle = 2 * std::numbers::pi * phase;
+  if (waveform == v1::WAVEFORM_RAISED_COSINE) return std::numbers::pi * std::sin(angle);
+  return 2 * std::numbers::pi * std::cos(angle);
+}
+
+Instant MakeInstant(const Model& model, const v1::Parameters& parameters, const State& state) {
+  const v1::Waveform waveform = model.scene.breath().waveform();
+  return {.time = state.time,
+          .breath = BreathSignal(waveform, state.phase),
+          .breath_rate = BreathSlope(waveform, state.phase) / parameters.breath_length(),
+          .parameters = parameters,
+          .x = state.x,
+          .v = state.v,
+          .poses = state.poses};
+}
+
+namespace {
+
+void PlaceRide(const Model& model, const State& state, const BodyModel& body, MutablePoints out) {
+  out = body.mesh.vertices;
+  for (const RideShare& share : model.rides[body.ride].shares) {
+    const auto rest = body.mesh.vertices.col(share.vertex);
+    if (share.pose >= 0) {
+      out.col(share.vertex) += share.weight * (state.poses[share.pose].At(rest) - rest);
+    } else {
+      const int carrier = share.simulated_vertex;
+      out.col(share.vertex) += share.weight * (state.x.col(carrier) - model.rest.col(carrier));
+    }
+  }
+}
+
+}  // namespace
+
+void PlaceBody(const Model& model, const State& state, int body_index, MutablePoints out) {
+  const BodyModel& body = model.bodies[body_index];
+  if (body.first_vertex >= 0) {
+    out = state.x.middleCols(body.first_vertex, body.mesh.vertices.cols());
+  } else if (body.pose >= 0) {
+    const Pose& pose = state.poses[body.pose];
+    out = (pose.rotation.toRotationMatrix() * body.mesh.vertices).colwise() + pose.translation;
+  } else if (body.ride >= 0) {
+    PlaceRide(model, state, body, out);
+  } else {
+    out = body.mesh.vertices;
+  }
+}
+
+}  // namespace phrenic

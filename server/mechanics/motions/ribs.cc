@@ -1,0 +1,89 @@
+#include "server/mechanics/motions/ribs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+
+namespace phrenic {
+namespace {
+
+constexpr double kHeadSize = 6e-3;  // [m]
+
+Eigen::Vector3d Head(const Points& vertices) {
+  int medial = 0;
+  for (int i = 1; i < vertices.cols(); ++i) {
+    if (std::abs(vertices(0, i)) < std::abs(vertices(0, medial))) medial = i;
+  }
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  int count = 0;
+  for (int i = 0; i < vertices.cols(); ++i) {
+    if ((vertices.col(i) - vertices.col(medial)).norm() > kHeadSize) continue;
+    sum += vertices.col(i);
+    ++count;
+  }
+  return sum / count;
+}
+
+const v1::RibEndState* EndState(const v1::Ribs& scene, int number) {
+  const auto found = std::find_if(scene.end_states().begin(), scene.end_states().end(),
+                                  [number](const v1::RibEndState& end) { return end.number() == number; });
+  return found == scene.end_states().end() ? nullptr : &*found;
+}
+
+absl::Status CheckRib(const BodyModel& body, const v1::Ribs& scene, std::string_view path) {
+  const bool is_rib = body.anatomy.structure() == v1::STRUCTURE_RIB && body.anatomy.side() != v1::SIDE_UNSPECIFIED;
+  if (body.pose < 0 || !is_rib) {
+    return FieldError(path, absl::StrCat("body \"", body.name,
+                                         "\" cannot turn as a rib: it must have ROLE_DRIVEN and anatomy { structure: "
+                                         "STRUCTURE_RIB number: ... side: ... }"));
+  }
+  if (EndState(scene, body.anatomy.number()) == nullptr) {
+    return FieldError(path, absl::StrCat("there is no end state for rib ", body.anatomy.number(), " (body \"",
+                                         body.name, "\"): add it to end_states"));
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<Motion>> Ribs::Make(const v1::Ribs& scene, const std::string& given,
+                                                   std::string_view path, Draft& draft) {
+  const std::string name = ElementName(given, "ribs", scene.bodies());
+  const std::string field = absl::StrCat(std::string(path), ".bodies");
+  auto bodies = draft.Bodies(scene.bodies(), field);
+  if (!bodies.ok()) return bodies.status();
+  std::unique_ptr<Ribs> motion(new Ribs(name, scene.quiet_state()));
+  for (const int b : *bodies) {
+    const BodyModel& body = draft.model.bodies[b];
+    if (absl::Status status = CheckRib(body, scene, field); !status.ok()) return status;
+    const v1::RibEndState& end = *EndState(scene, body.anatomy.number());
+    const double mirror = body.anatomy.side() == v1::SIDE_RIGHT ? 1 : -1;
+    const Eigen::Vector3d degrees(-end.pump_degrees(), mirror * end.bucket_degrees(), 0);
+    const Eigen::Vector3d t = ToEigen(end.translation());
+    motion->ribs_.push_back({body.pose, Head(body.mesh.vertices), degrees * (std::numbers::pi / 180),
+                             Eigen::Vector3d(mirror * t.x(), t.y(), t.z())});
+  }
+  draft.ReportElement("motion", name, static_cast<std::int64_t>(motion->ribs_.size()), "bodies",
+                      absl::StrFormat("k = %g at the peak of a quiet breath", scene.quiet_state()));
+  return motion;
+}
+
+void Ribs::Drive(const Instant& at, State& state) const {
+  const double scale = quiet_state_ * at.parameters.rib_motion();
+  const double k = scale * at.breath, k_rate = scale * at.breath_rate;
+  for (const Rib& rib : ribs_) {
+    Pose& pose = state.poses[rib.pose];
+    const double angle = rib.rotation.norm();
+    const Eigen::Vector3d axis = angle > 0 ? Eigen::Vector3d(rib.rotation / angle) : Eigen::Vector3d::UnitX();
+    pose.rotation = Eigen::AngleAxisd(k * angle, axis);
+    const Eigen::Vector3d turned_head = pose.rotation * rib.head;
+    pose.translation = rib.head - turned_head + k * rib.translation;
+    pose.angular_velocity = k_rate * rib.rotation;
+    pose.velocity = k_rate * rib.translation - pose.angular_velocity.cross(turned_head);
+  }
+}
+
+}  // namespace phrenic

@@ -1,0 +1,36 @@
+// Ribs turn about axes through their heads (thesis equations 3.1-3.3): t_i = k T_i, a_i = k A_i, k the breathing state:
+// 0 at functional residual capacity, 1 at total lung capacity. Right rib: A = (-pump, +bucket, 0); left rib its mirror
+// image, (-pump, -bucket, 0) (Wilson et al., J Appl Physiol 1987;62:1872). The head is the mean of the vertices within
+// 6 mm of the medial-most one.
+#ifndef PHRENIC_SERVER_MECHANICS_MOTIONS_RIBS_H_
+#define PHRENIC_SERVER_MECHANICS_MOTIONS_RIBS_H_
+
+#include <vector>
+
+#include "server/mechanics/draft.h"
+
+namespace phrenic {
+
+class Ribs final : public Motion {
+ public:
+  static absl::StatusOr<std::unique_ptr<Motion>> Make(const v1::Ribs& scene, const std::string& name,
+                                                      std::string_view path, Draft& draft);
+
+  void Drive(const Instant& at, State& state) const override;
+
+ private:
+  struct Rib {
+    int pose;
+    Eigen::Vector3d head;         // [m]
+    Eigen::Vector3d rotation;     // at k = 1, axis times angle [rad]
+    Eigen::Vector3d translation;  // at k = 1 [m]
+  };
+  Ribs(std::string name, double quiet_state) : Motion(std::move(name)), quiet_state_(quiet_state) {}
+
+  double quiet_state_;
+  std::vector<Rib> ribs_;
+};
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_SERVER_MECHANICS_MOTIONS_RIBS_H_

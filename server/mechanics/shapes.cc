@@ -1,0 +1,74 @@
+#include "server/mechanics/shapes.h"
+
+#include "absl/strings/str_cat.h"
+#include "server/mechanics/draft.h"
+
+namespace phrenic {
+namespace {
+
+Mesh FromPolyhedron(const v1::Polyhedron& shape) {
+  Mesh mesh;
+  mesh.vertices.resize(3, shape.vertices_size());
+  for (int i = 0; i < shape.vertices_size(); ++i) mesh.vertices.col(i) = ToEigen(shape.vertices(i));
+  mesh.edges.resize(2, shape.edges_size());
+  for (int i = 0; i < shape.edges_size(); ++i)
+    mesh.edges.col(i) = Eigen::Vector2i(shape.edges(i).a(), shape.edges(i).b());
+  mesh.triangles.resize(3, shape.triangles_size());
+  for (int i = 0; i < shape.triangles_size(); ++i) {
+    const v1::IndexTriple& t = shape.triangles(i);
+    mesh.triangles.col(i) = Eigen::Vector3i(t.a(), t.b(), t.c());
+  }
+  return mesh;
+}
+
+// Cells are split along alternating diagonals, so that the sheet prefers no direction.
+Mesh FromGrid(const v1::Grid& shape) {
+  const int columns = shape.columns(), rows = shape.rows();
+  const Eigen::Vector3d origin = ToEigen(shape.origin()), u = ToEigen(shape.u()), v = ToEigen(shape.v());
+  Mesh mesh;
+  mesh.vertices.resize(3, static_cast<Eigen::Index>(columns) * rows);
+  mesh.triangles.resize(3, 2 * static_cast<Eigen::Index>(columns - 1) * (rows - 1));
+  Eigen::Index triangle = 0;
+  for (int r = 0; r < rows; ++r) {
+    for (int c = 0; c < columns; ++c) {
+      const int i = r * columns + c;
+      mesh.vertices.col(i) = origin + c * u + r * v;
+      if (r + 1 == rows || c + 1 == columns) continue;
+      const int right = i + 1, up = i + columns, across = up + 1;
+      const bool odd = (r + c) % 2 == 1;
+      mesh.triangles.col(triangle++) = Eigen::Vector3i(i, right, odd ? up : across);
+      mesh.triangles.col(triangle++) = odd ? Eigen::Vector3i(right, across, up) : Eigen::Vector3i(i, across, up);
+    }
+  }
+  return mesh;
+}
+
+absl::StatusOr<Mesh> UncheckedShape(const v1::Body& body, const MeshSource& source) {
+  switch (body.shape_case()) {
+    case v1::Body::kPolyhedron:
+      return FromPolyhedron(body.polyhedron());
+    case v1::Body::kGrid:
+      return FromGrid(body.grid());
+    case v1::Body::kFile:
+    case v1::Body::kGenerated:
+      return source(body);
+    case v1::Body::SHAPE_NOT_SET:
+      break;
+  }
+  return absl::InvalidArgumentError("has no shape: set file, generated, polyhedron or grid");
+}
+
+absl::Status InBody(const v1::Body& body, const absl::Status& status) {
+  return {status.code(), absl::StrCat("body \"", body.name(), "\": ", status.message())};
+}
+
+}  // namespace
+
+absl::StatusOr<Mesh> MakeShape(const v1::Body& body, const MeshSource& source) {
+  absl::StatusOr<Mesh> mesh = UncheckedShape(body, source);
+  if (!mesh.ok()) return InBody(body, mesh.status());
+  if (absl::Status status = Validate(*mesh); !status.ok()) return InBody(body, status);
+  return mesh;
+}
+
+}  // namespace phrenic

@@ -1,0 +1,100 @@
+#include "server/mechanics/spectrum.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+namespace phrenic {
+namespace {
+
+constexpr int kProducts = 20;
+
+// y = M^-1/2 K M^-1/2 x.
+class ScaledStiffness {
+ public:
+  ScaledStiffness(const Model& model, const Instant& at)
+      : model_(model), at_(at), scale_(model.inverse_mass.cwiseSqrt()) {}
+
+  Eigen::VectorXd operator*(const Eigen::VectorXd& x) const {
+    const Eigen::Index n = scale_.size();
+    const Points scaled = Eigen::Map<const Points>(x.data(), 3, n) * scale_.asDiagonal();
+    Points df = Points::Zero(3, n);
+    for (const auto& force : model_.forces) force->AddStiffnessTimes(at_, scaled, df);
+    df = -df * scale_.asDiagonal();
+    return Eigen::Map<const Eigen::VectorXd>(df.data(), df.size());
+  }
+
+  // Deterministic and without a pattern that a mesh could share.
+  Eigen::VectorXd Start() const {
+    Eigen::VectorXd x(3 * scale_.size());
+    std::uint64_t bits = 0x9e3779b97f4a7c15;
+    for (Eigen::Index i = 0; i < x.size(); ++i) {
+      bits ^= bits << 13, bits ^= bits >> 7, bits ^= bits << 17;
+      x[i] = scale_[i / 3] > 0 ? static_cast<double>(bits >> 11) * 0x1p-53 - 0.5 : 0;
+    }
+    return x;
+  }
+
+ private:
+  const Model& model_;
+  const Instant& at_;
+  Eigen::VectorXd scale_;
+};
+
+struct Krylov {
+  std::vector<Eigen::VectorXd> basis;
+  std::vector<double> diagonal, off_diagonal;  // of the tridiagonal matrix; one more off_diagonal than needed
+};
+
+Krylov Lanczos(const ScaledStiffness& matrix) {
+  Krylov krylov;
+  Eigen::VectorXd q = matrix.Start();
+  double norm = q.norm();
+  const double first_norm = norm;
+  while (static_cast<int>(krylov.basis.size()) < kProducts && norm > 1e-12 * first_norm) {
+    krylov.basis.push_back(q / norm);
+    q = matrix * krylov.basis.back();
+    krylov.diagonal.push_back(q.dot(krylov.basis.back()));
+    for (int pass = 0; pass < 2; ++pass) {
+      for (const Eigen::VectorXd& b : krylov.basis) q -= q.dot(b) * b;
+    }
+    norm = q.norm();
+    krylov.off_diagonal.push_back(norm);
+  }
+  return krylov;
+}
+
+int LargestVertex(const Krylov& krylov, const Eigen::VectorXd& combination) {
+  Eigen::VectorXd mode = Eigen::VectorXd::Zero(krylov.basis.front().size());
+  for (size_t k = 0; k < krylov.basis.size(); ++k) mode += combination[static_cast<Eigen::Index>(k)] * krylov.basis[k];
+  Eigen::Index largest = 0;
+  Eigen::Map<const Points>(mode.data(), 3, mode.size() / 3).colwise().squaredNorm().maxCoeff(&largest);
+  return static_cast<int>(largest);
+}
+
+}  // namespace
+
+FastestMode FindFastestMode(const Model& model, const v1::Parameters& parameters, const State& state) {
+  FastestMode fastest;
+  for (const auto& force : model.forces) fastest.spectrum.damping_rate += force->DampingRate();
+  if (model.rest.cols() == 0 || model.inverse_mass.maxCoeff() == 0) return fastest;
+  const Instant at = MakeInstant(model, parameters, state);
+  const Krylov krylov = Lanczos(ScaledStiffness(model, at));
+  const auto size = static_cast<Eigen::Index>(krylov.diagonal.size());
+  if (size == 0) return fastest;
+  const Eigen::Map<const Eigen::VectorXd> diagonal(krylov.diagonal.data(), size);
+  const Eigen::Map<const Eigen::VectorXd> off(krylov.off_diagonal.data(), size - 1);
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
+  solver.computeFromTridiagonal(diagonal, off);
+  const Eigen::VectorXd combination = solver.eigenvectors().col(size - 1);
+  const double residual = krylov.off_diagonal.back() * std::abs(combination[size - 1]);
+  const double eigenvalue = std::max(0.0, solver.eigenvalues()[size - 1] + residual);
+  if (eigenvalue <= 0) return fastest;
+  fastest.spectrum.omega_max = std::sqrt(eigenvalue);
+  fastest.vertex = LargestVertex(krylov, combination);
+  return fastest;
+}
+
+}  // namespace phrenic

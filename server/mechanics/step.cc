@@ -1,0 +1,111 @@
+#include "server/mechanics/step.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "absl/strings/str_format.h"
+#include "server/mechanics/compile.h"
+
+namespace phrenic {
+namespace {
+
+// A session has diverged when a vertex is further from rest than this many times the scene's size.
+constexpr double kFurthest = 10;
+
+void DriveMotions(const Model& model, const v1::Parameters& parameters, double dt, State& state) {
+  if (model.motions.empty()) return;
+  const double phase = state.phase;
+  state.phase += dt / parameters.breath_length();
+  Instant ahead = MakeInstant(model, parameters, state);
+  ahead.time += dt;
+  state.phase = phase;
+  for (const auto& motion : model.motions) motion->Drive(ahead, state);
+}
+
+// Squared distance from rest; infinity where it is not a number.
+double DistanceFromRest(const Model& model, const State& state, int vertex) {
+  const double squared = (state.x.col(vertex) - model.rest.col(vertex)).squaredNorm();
+  return std::isfinite(squared) ? squared : std::numeric_limits<double>::infinity();
+}
+
+bool WithinBounds(const Model& model, const State& state) {
+  const double limit = std::pow(kFurthest * model.size, 2);
+  for (Eigen::Index i = 0; i < state.x.cols(); ++i) {
+    if (!((state.x.col(i) - model.rest.col(i)).squaredNorm() <= limit)) return false;
+  }
+  return true;
+}
+
+int FurthestVertex(const Model& model, const State& state) {
+  int furthest = 0;
+  double largest = -1;
+  for (int i = 0; i < state.x.cols(); ++i) {
+    const double distance = DistanceFromRest(model, state, i);
+    if (distance > largest) {
+      largest = distance;
+      furthest = i;
+    }
+  }
+  return furthest;
+}
+
+std::string LargestForceOn(const Model& model, const v1::Parameters& parameters, const State& state, int vertex) {
+  const Instant at = MakeInstant(model, parameters, state);
+  Points force(3, state.x.cols());
+  std::string name = "no force";
+  double largest = -1;
+  for (const auto& element : model.forces) {
+    force.setZero();
+    element->AddForce(at, force);
+    const double size = force.col(vertex).norm();
+    if (size > largest) {
+      largest = size;
+      name = element->name();
+    }
+  }
+  return name;
+}
+
+std::string Remedy(const Model& model, const v1::Parameters& parameters) {
+  const double stable = LargestStableStep(model, parameters).seconds();
+  if (parameters.time_step() > stable) {
+    return absl::StrFormat(
+        "the time step %.3g s is above the largest stable step %.3g s: set time_step to %.2g or less, or lower "
+        "elasticity, then reset",
+        parameters.time_step(), stable, 0.9 * stable);
+  }
+  return absl::StrFormat(
+      "the time step is below the stable limit at rest (%.3g s), so the load is too large for the tissue: lower "
+      "breath_force or raise elasticity, then reset",
+      stable);
+}
+
+}  // namespace
+
+absl::Status Step(const Model& model, const v1::Parameters& parameters, double dt, State& state, Workspace& work) {
+  work.before = state.x;
+  DriveMotions(model, parameters, dt, state);
+  model.integrator->Advance(model, parameters, dt, state, work);
+  for (const auto& constraint : model.constraints) constraint->Project(parameters, work.before, dt, state);
+  state.time += dt;
+  state.phase += dt / parameters.breath_length();
+  ++state.tick;
+  if (!WithinBounds(model, state)) return absl::OutOfRangeError("the step diverged");
+  return absl::OkStatus();
+}
+
+v1::Divergence Diagnose(const Model& model, const v1::Parameters& parameters, const State& before,
+                        const State& diverged) {
+  v1::Divergence divergence;
+  const int vertex = FurthestVertex(model, diverged);
+  const BodyModel& body = model.BodyOf(vertex);
+  divergence.set_time(diverged.time);
+  divergence.set_tick(diverged.tick);
+  divergence.set_body(body.name);
+  divergence.set_vertex(vertex - body.first_vertex);
+  divergence.set_force(LargestForceOn(model, parameters, before, vertex));
+  divergence.set_remedy(Remedy(model, parameters));
+  return divergence;
+}
+
+}  // namespace phrenic
