@@ -1,0 +1,39 @@
+// Models from scenes written in tests.
+#ifndef PHRENIC_TESTS_COMPILE_TEXT_H_
+#define PHRENIC_TESTS_COMPILE_TEXT_H_
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+
+#include "server/mechanics/compile.h"
+#include "server/mechanics/step.h"
+#include "server/schema/schema.h"
+
+namespace phrenic {
+
+inline absl::StatusOr<std::shared_ptr<const Model>> TryCompileText(const std::string& text) {
+  absl::StatusOr<v1::Scene> scene = schema::ParseScene("test", text);
+  if (!scene.ok()) return scene.status();
+  return Compile(*scene, [](const v1::Body&) { return absl::NotFoundError("tests read no files"); });
+}
+
+inline std::shared_ptr<const Model> CompileText(const std::string& text) {
+  auto model = TryCompileText(text);
+  EXPECT_TRUE(model.ok()) << model.status();
+  return model.ok() ? *model : nullptr;
+}
+
+// Takes steps of `dt` until `time`; the state then.
+inline State RunTo(const Model& model, double time, double dt) {
+  State state = model.InitialState();
+  Workspace work = model.MakeWorkspace();
+  const long steps = std::lround(time / dt);
+  for (long i = 0; i < steps; ++i) EXPECT_TRUE(Step(model, model.parameters, dt, state, work).ok()) << "step " << i;
+  return state;
+}
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_TESTS_COMPILE_TEXT_H_

@@ -1,0 +1,136 @@
+// The laws that every force keeps. A new force joins with one line in kForces.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "tests/compile_text.h"
+
+namespace phrenic {
+namespace {
+
+struct ForceCase {
+  const char* name;
+  const char* text;  // one force of the scene
+  bool internal;     // its forces and torques sum to zero, and a rigid motion changes nothing
+};
+
+const ForceCase kForces[] = {
+    {"springs", "springs { bodies: 'sheet' stiffness: 30 rest_length_ratio: 0.9 }", true},
+    {"springs_balanced", "springs { bodies: 'sheet' rest_length_ratio: 0.8 balanced_at_rest: true }", false},
+    {"friction", "friction { bodies: 'sheet' rate: 2 }", false},
+    {"gravity", "gravity { bodies: 'sheet' acceleration { z: -9.81 } }", false},
+    {"action_line_cylinder",
+     "action_line { bodies: 'sheet' origin { x: 1 y: 1 } direction { z: -1 } radius: 1.5 force: 3 "
+     "fall_off: FALL_OFF_CYLINDER }",
+     false},
+    {"action_line_vertical",
+     "action_line { bodies: 'sheet' direction { x: 1 } radius: 2 force: 3 fall_off: FALL_OFF_VERTICAL }", false},
+    {"attachment", "attachment { bodies: 'sheet' carriers: 'bone' radius: 1.5 stiffness: 40 }", false},
+};
+
+class ForceContract : public testing::TestWithParam<ForceCase> {
+ protected:
+  void SetUp() override {
+    const std::string text = std::string(
+        "name: 'contract' bodies { name: 'sheet' role: ROLE_DEFORMABLE mass: 2 "
+        "grid { columns: 4 rows: 3 u { x: 1 } v { y: 1 z: 0.2 } } } "
+        "bodies { name: 'bone' role: ROLE_AT_REST polyhedron { vertices { x: 0 y: -0.5 } vertices { x: 1 y: -0.5 } } } "
+        "breath { waveform: WAVEFORM_SINE } forces { ");
+    model_ = CompileText(text + GetParam().text + " }");
+    ASSERT_NE(model_, nullptr);
+    ASSERT_EQ(model_->forces.size(), 1u) << "the force was left out";
+    state_ = model_->InitialState();
+    state_.phase = 0.2;
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> shift(-0.3, 0.3);
+    for (double& value : state_.x.reshaped()) value += shift(random);
+    for (double& value : state_.v.reshaped()) value = shift(random);
+  }
+
+  Instant At(const State& state) const { return MakeInstant(*model_, model_->parameters, state); }
+  const Force& force() const { return *model_->forces.front(); }
+  Points ForceAt(const State& state) const {
+    Points f = Points::Zero(3, state.x.cols());
+    force().AddForce(At(state), f);
+    return f;
+  }
+  double EnergyAt(const State& state) const { return force().Energy(At(state)); }
+
+  std::shared_ptr<const Model> model_;
+  State state_;
+};
+
+TEST_P(ForceContract, AddsAndNeverClears) {
+  Points f = Points::Constant(3, state_.x.cols(), 5);
+  force().AddForce(At(state_), f);
+  EXPECT_LT((f.array() - 5 - ForceAt(state_).array()).abs().maxCoeff(), 1e-12);
+}
+
+TEST_P(ForceContract, IsMinusEnergyGradient) {
+  if (!force().conservative()) GTEST_SKIP() << "has no energy";
+  const Points f = ForceAt(state_);
+  for (Eigen::Index i = 0; i < state_.x.size(); ++i) {
+    constexpr double kStep = 1e-6;
+    State low = state_, high = state_;
+    low.x.data()[i] -= kStep, high.x.data()[i] += kStep;
+    EXPECT_NEAR(f.data()[i], -(EnergyAt(high) - EnergyAt(low)) / (2 * kStep), 1e-6);
+  }
+}
+
+// At the mesh as it stands tension is not negative in any of the cases, so that nothing is left out of the derivative.
+TEST_P(ForceContract, StiffnessIsForceDerivative) {
+  const State rest = model_->InitialState();
+  State low = rest, high = rest;
+  constexpr double kStep = 1e-6;
+  const Points dx = state_.x - rest.x;
+  low.x -= kStep * dx, high.x += kStep * dx;
+  Points df = Points::Zero(3, dx.cols());
+  force().AddStiffnessTimes(At(rest), dx, df);
+  const Points difference = (ForceAt(high) - ForceAt(low)) / (2 * kStep);
+  EXPECT_LT((df - difference).cwiseAbs().maxCoeff(), 1e-6 * (1 + difference.cwiseAbs().maxCoeff()));
+}
+
+TEST_P(ForceContract, StiffnessIsSymmetricAndNeverPushesAlong) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> value(-1, 1);
+  const auto vector = [&] { return Points(Points::NullaryExpr(3, state_.x.cols(), [&] { return value(random); })); };
+  const Points a = vector(), b = vector();
+  Points ka = Points::Zero(3, a.cols()), kb = ka;
+  force().AddStiffnessTimes(At(state_), a, ka);
+  force().AddStiffnessTimes(At(state_), b, kb);
+  EXPECT_NEAR(ka.cwiseProduct(b).sum(), kb.cwiseProduct(a).sum(), 1e-9);
+  EXPECT_LE(ka.cwiseProduct(a).sum(), 1e-12);
+}
+
+TEST_P(ForceContract, InternalForcesAndTorquesSumToZero) {
+  if (!GetParam().internal) GTEST_SKIP() << "acts from outside";
+  const Points f = ForceAt(state_);
+  Eigen::Vector3d torque = Eigen::Vector3d::Zero();
+  for (Eigen::Index i = 0; i < f.cols(); ++i)
+    torque += Eigen::Vector3d(state_.x.col(i)).cross(Eigen::Vector3d(f.col(i)));
+  EXPECT_LT(f.rowwise().sum().norm(), 1e-12);
+  EXPECT_LT(torque.norm(), 1e-12);
+}
+
+TEST_P(ForceContract, RigidMotionChangesNothing) {
+  if (!GetParam().internal) GTEST_SKIP() << "acts from outside";
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+  State moved = state_;
+  moved.x = (turn * state_.x).colwise() + Eigen::Vector3d(4, -5, 6);
+  EXPECT_LT((ForceAt(moved) - turn * ForceAt(state_)).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_NEAR(EnergyAt(moved), EnergyAt(state_), 1e-12);
+}
+
+TEST_P(ForceContract, IsFiniteWhereVerticesCoincide) {
+  state_.x.setZero();
+  EXPECT_TRUE(ForceAt(state_).allFinite());
+  Points df = Points::Zero(3, state_.x.cols());
+  force().AddStiffnessTimes(At(state_), model_->rest, df);
+  EXPECT_TRUE(df.allFinite());
+}
+
+INSTANTIATE_TEST_SUITE_P(Forces, ForceContract, testing::ValuesIn(kForces),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+}  // namespace
+}  // namespace phrenic

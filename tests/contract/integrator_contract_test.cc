@@ -1,0 +1,83 @@
+// The laws that every integrator keeps. A new one joins with one line in kIntegrators.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "server/mechanics/spectrum.h"
+#include "tests/compile_text.h"
+
+namespace phrenic {
+namespace {
+
+struct IntegratorCase {
+  const char* name;
+  const char* text;
+};
+
+const IntegratorCase kIntegrators[] = {
+    {"semi_implicit_euler", "semi_implicit_euler {}"},
+};
+
+// A free mass of 1 kg on a spring from a fixed one; x(0) is 0.1 m beyond the rest length 1 m.
+std::string Oscillator(const std::string& integrator, double stiffness, double friction) {
+  return "name: 'oscillator' bodies { name: 'pair' role: ROLE_DEFORMABLE mass: 2 fixed_vertices: 0 polyhedron { "
+         "vertices {} vertices { x: 1.1 } edges { a: 0 b: 1 } } } "
+         "forces { springs { bodies: 'pair' stiffness: " +
+         std::to_string(stiffness) + " rest_length_ratio: " + std::to_string(1 / 1.1) +
+         " } } forces { friction { bodies: 'pair' rate: " + std::to_string(friction) + " } } integrator { " +
+         integrator + " }";
+}
+
+class IntegratorContract : public testing::TestWithParam<IntegratorCase> {};
+
+TEST_P(IntegratorContract, ConvergesAtItsOrder) {
+  const auto model = CompileText(Oscillator(GetParam().text, 40, 0.8));
+  const double rest = std::stod(std::to_string(1 / 1.1)) * 1.1;
+  const double c = 0.8, omega = std::sqrt(40 - c * c / 4), t = 1.0;
+  const double exact =
+      rest + (1.1 - rest) * std::exp(-c * t / 2) * (std::cos(omega * t) + c / (2 * omega) * std::sin(omega * t));
+  const auto error = [&](double dt) { return std::abs(RunTo(*model, t, dt).x(0, 1) - exact); };
+  const double measured = std::log2(error(1e-3) / error(5e-4));
+  EXPECT_NEAR(measured, model->integrator->order(), 0.1);
+}
+
+// One step below the predicted limit stays for ever, one above it does not.
+TEST_P(IntegratorContract, StatesItsStabilityLimit) {
+  for (const double friction : {0.0, 5.0}) {
+    const auto model = CompileText(Oscillator(GetParam().text, 100, friction));
+    const FastestMode mode = FindFastestMode(*model, model->parameters, model->InitialState());
+    const double limit = model->integrator->MaxStep(mode.spectrum);
+    const auto ends_well = [&](double dt) {
+      State state = model->InitialState();
+      Workspace work = model->MakeWorkspace();
+      for (int i = 0; i < 20'000; ++i) {
+        if (!Step(*model, model->parameters, dt, state, work).ok()) return false;
+      }
+      return true;
+    };
+    EXPECT_TRUE(ends_well(0.98 * limit)) << "friction " << friction;
+    EXPECT_FALSE(ends_well(1.05 * limit)) << "friction " << friction;
+  }
+}
+
+TEST_P(IntegratorContract, RepeatsBitForBitAlsoAfterASnapshot) {
+  const auto model = CompileText(Oscillator(GetParam().text, 40, 0.1));
+  const State whole = RunTo(*model, 2, 1e-3);
+  State state = RunTo(*model, 1, 1e-3);
+  const State snapshot = state;
+  Workspace work = model->MakeWorkspace();
+  State resumed = snapshot;
+  for (int i = 0; i < 1000; ++i) ASSERT_TRUE(Step(*model, model->parameters, 1e-3, resumed, work).ok());
+  EXPECT_EQ(StateHash(resumed), StateHash(whole));
+}
+
+TEST_P(IntegratorContract, FixedVerticesStay) {
+  const auto model = CompileText(Oscillator(GetParam().text, 40, 0.1));
+  EXPECT_EQ(RunTo(*model, 2, 1e-3).x.col(0), model->rest.col(0));
+}
+
+INSTANTIATE_TEST_SUITE_P(Integrators, IntegratorContract, testing::ValuesIn(kIntegrators),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+}  // namespace
+}  // namespace phrenic

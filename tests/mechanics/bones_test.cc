@@ -1,0 +1,118 @@
+// Ribs, sternum and what rides on them, on bones made of a few vertices.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "tests/compile_text.h"
+
+namespace phrenic {
+namespace {
+
+// Seven rib pairs as rods from the head (20 mm from the midplane) outwards and forwards, and a sternum in front.
+std::string Thorax() {
+  std::string text = "name: 'bones' breath { waveform: WAVEFORM_RAISED_COSINE } ";
+  std::string ends;
+  for (int n = 1; n <= 7; ++n) {
+    const std::string z = std::to_string(-0.02 * n), low = std::to_string(-0.02 * n - 0.06);
+    for (const int side : {-1, 1}) {
+      const auto x = [&](double value) { return std::to_string(side * value); };
+      text += "bodies { name: 'rib-" + std::to_string(n) + (side < 0 ? "-r" : "-l") +
+              "' layer: 'ribs' role: ROLE_DRIVEN anatomy { structure: STRUCTURE_RIB number: " + std::to_string(n) +
+              (side < 0 ? " side: SIDE_RIGHT" : " side: SIDE_LEFT") + " } polyhedron { vertices { x: " + x(0.02) +
+              " z: " + z + " } vertices { x: " + x(0.12) + " y: -0.1 z: " + z + " } vertices { x: " + x(0.06) +
+              " y: -0.18 z: " + low + " } } } ";
+    }
+    ends += "end_states { number: " + std::to_string(n) + " pump_degrees: 10 bucket_degrees: 12 } ";
+  }
+  return text +
+         "bodies { name: 'sternum' role: ROLE_DRIVEN polyhedron { vertices { y: -0.18 z: -0.1 } vertices { x: 0.01 y: "
+         "-0.18 z: -0.15 } } } bodies { name: 'cartilage' role: ROLE_SEEN polyhedron { vertices { x: -0.06 y: -0.18 z: "
+         "-0.08 } vertices { x: -0.03 y: -0.18 z: -0.09 } vertices { y: -0.18 z: -0.1 } } } "
+         "motions { ribs { bodies: 'ribs' quiet_state: 1 " +
+         ends +
+         "} } motions { sternum { bodies: 'sternum' ribs: 'ribs' } } "
+         "motions { ride { bodies: 'cartilage' carriers: ['rib-1-r', 'sternum'] } } ";
+}
+
+State AtPeak(const Model& model) { return RunTo(model, 2.0, 1e-3); }  // half of the 4 s breath
+
+Points Placed(const Model& model, const State& state, const std::string& name) {
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
+    if (model.bodies[b].name != name) continue;
+    Points out(3, model.bodies[b].mesh.vertices.cols());
+    PlaceBody(model, state, b, out);
+    return out;
+  }
+  ADD_FAILURE() << "no body " << name;
+  return {};
+}
+
+TEST(Ribs, TurnByTheirEndStateAboutTheirHeads) {
+  const auto model = CompileText(Thorax());
+  const State state = AtPeak(*model);
+  const Points right = Placed(*model, state, "rib-3-r");
+  EXPECT_LT((right.col(0) - Eigen::Vector3d(-0.02, 0, -0.06)).norm(), 1e-9) << "the head stays";
+  const Eigen::Vector3d turn = Eigen::Vector3d(-10, 12, 0) * std::numbers::pi / 180;
+  const Eigen::Vector3d arm(-0.1, -0.1, 0);
+  const Eigen::Vector3d exact =
+      Eigen::Vector3d(-0.02, 0, -0.06) + Eigen::AngleAxisd(turn.norm(), turn.normalized()) * arm;
+  EXPECT_LT((right.col(1) - exact).norm(), 1e-6);
+}
+
+TEST(Ribs, LeftIsTheMirrorImageOfRight) {
+  const auto model = CompileText(Thorax());
+  const State state = AtPeak(*model);
+  Points left = Placed(*model, state, "rib-5-l");
+  left.row(0) *= -1;
+  EXPECT_LT((left - Placed(*model, state, "rib-5-r")).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+TEST(Ribs, RiseForwardAndOutward) {
+  const auto model = CompileText(Thorax());
+  const Points moved = Placed(*model, AtPeak(*model), "rib-4-r"), rest = model->bodies[6].mesh.vertices;
+  ASSERT_EQ(model->bodies[6].name, "rib-4-r");
+  EXPECT_GT(moved(2, 2), rest(2, 2)) << "up";
+  EXPECT_LT(moved(1, 2), rest(1, 2)) << "forward";
+  EXPECT_LT(moved(0, 2), rest(0, 2)) << "outward";
+}
+
+TEST(Ribs, VelocityIsTheRateOfThePosition) {
+  const auto model = CompileText(Thorax());
+  const State early = RunTo(*model, 0.999, 1e-3), middle = RunTo(*model, 1.0, 1e-3), late = RunTo(*model, 1.001, 1e-3);
+  for (size_t p = 0; p < middle.poses.size(); ++p) {
+    const Eigen::Vector3d point(-0.06, -0.18, -0.1);
+    const Eigen::Vector3d rate = (late.poses[p].At(point) - early.poses[p].At(point)) / 2e-3;
+    EXPECT_LT((middle.poses[p].VelocityAt(point) - rate).norm(), 2e-3 * rate.norm() + 1e-6) << "pose " << p;
+  }
+}
+
+TEST(Sternum, FollowsTheRibsWithoutSidewaysDrift) {
+  const auto model = CompileText(Thorax());
+  const Points moved = Placed(*model, AtPeak(*model), "sternum");
+  EXPECT_NEAR(moved(0, 0), 0, 1e-12);
+  EXPECT_NEAR(moved(0, 1), 0.01, 1e-12);
+  EXPECT_GT(moved(2, 0), -0.1);
+  EXPECT_LT(moved(1, 0), -0.18);
+}
+
+TEST(Ride, JoinsItsCarriersAtItsEnds) {
+  const auto model = CompileText(Thorax());
+  const State state = AtPeak(*model);
+  const Points cartilage = Placed(*model, state, "cartilage");
+  EXPECT_LT((cartilage.col(0) - Placed(*model, state, "rib-1-r").col(2)).norm(), 1e-3);
+  EXPECT_LT((cartilage.col(2) - Placed(*model, state, "sternum").col(0)).norm(), 1e-3);
+}
+
+TEST(Breath, SignalIsContinuousWhenItsLengthChanges) {
+  const auto model = CompileText(Thorax());
+  State state = RunTo(*model, 1.3, 1e-3);
+  Workspace work = model->MakeWorkspace();
+  v1::Parameters slower = model->parameters;
+  slower.set_breath_length(9);
+  const double before = MakeInstant(*model, model->parameters, state).breath;
+  ASSERT_TRUE(Step(*model, slower, 1e-3, state, work).ok());
+  EXPECT_NEAR(MakeInstant(*model, slower, state).breath, before, 1e-3);
+}
+
+}  // namespace
+}  // namespace phrenic

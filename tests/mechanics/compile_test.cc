@@ -1,0 +1,103 @@
+#include "server/mechanics/compile.h"
+
+#include <gmock/gmock.h>
+
+#include "tests/compile_text.h"
+
+namespace phrenic {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+const char kBody[] =
+    "name: 'scene' bodies { name: 'sheet' layer: 'tissue' role: ROLE_DEFORMABLE mass: 1 grid { columns: 3 rows: 3 u { "
+    "x: "
+    "1 } v { y: 1 } } } ";
+
+std::string ErrorOf(const std::string& rest, const std::string& body = kBody) {
+  const auto model = TryCompileText(body + rest);
+  if (model.ok()) return "it compiled";
+  EXPECT_EQ(model.status().code(), absl::StatusCode::kInvalidArgument) << model.status();
+  return std::string(model.status().message());
+}
+
+TEST(Compile, ErrorsNameTheFieldAndTheRemedy) {
+  EXPECT_THAT(ErrorOf("forces { springs { bodies: 'lnug' } }"),
+              AllOf(HasSubstr("forces[0].springs.bodies[0]"), HasSubstr("lnug"), HasSubstr("tissue")));
+  EXPECT_THAT(ErrorOf("forces { springs { bodies: 'sheet' stiffness: -5 } }"),
+              AllOf(HasSubstr("forces[0].springs.stiffness"), HasSubstr("-5"), HasSubstr("N/m")));
+  EXPECT_THAT(ErrorOf("forces { springs { bodies: 'sheet' region: 'tendon' } }"), HasSubstr("no region \"tendon\""));
+  EXPECT_THAT(ErrorOf("forces {}"), HasSubstr("forces[0]: says no kind"));
+  EXPECT_THAT(ErrorOf("probes { name: 'p' body: 'sheet' vertex: 9 }"),
+              AllOf(HasSubstr("probes[0].vertex"), HasSubstr("0 to 8")));
+  EXPECT_THAT(ErrorOf("constraints { rigid_links { body: 'sheet' list { links { a: 0 b: 9 } } } }"),
+              AllOf(HasSubstr("constraints[0].rigid_links.list.links[0]"), HasSubstr("0 to 8")));
+  EXPECT_THAT(ErrorOf("constraints { rigid_links { body: 'sheet' list { links { a: 4 b: 4 } } } }"),
+              HasSubstr("to itself"));
+  EXPECT_THAT(ErrorOf("motions { ribs { bodies: 'sheet' end_states { number: 1 } } }"), HasSubstr("ROLE_DRIVEN"));
+}
+
+TEST(Compile, RefusesImpossibleBodies) {
+  EXPECT_THAT(ErrorOf("",
+                      "name: 's' bodies { name: 'b' role: ROLE_DEFORMABLE mass: -1 grid { columns: 2 rows: 2 u { x: "
+                      "1 } v { y: 1 } } }"),
+              AllOf(HasSubstr("bodies[0].mass"), HasSubstr("kg")));
+  EXPECT_THAT(ErrorOf("", "name: 's' bodies { name: 'b' role: ROLE_DEFORMABLE }"), HasSubstr("no shape"));
+  EXPECT_THAT(ErrorOf("", "name: 's' bodies { name: 'b' role: ROLE_SEEN polyhedron {} }"), HasSubstr("vertices"));
+  EXPECT_THAT(ErrorOf("",
+                      "name: 's' bodies { name: 'b' role: ROLE_SEEN polyhedron { vertices {} triangles { a: 0 b: 1 "
+                      "c: 2 } } }"),
+              AllOf(HasSubstr("body \"b\""), HasSubstr("triangle 0 names vertex 1")));
+  EXPECT_THAT(ErrorOf("bodies { name: 'sheet' role: ROLE_SEEN polyhedron { vertices {} } }"), HasSubstr("two bodies"));
+}
+
+TEST(Compile, LeavesOutWhatTheSceneDoesNotNeedAndSaysSo) {
+  const auto model = CompileText(
+      std::string(kBody) + "forces { springs { bodies: 'sheet' } } forces { friction { bodies: 'sheet' rate: 0 } }");
+  EXPECT_EQ(model->forces.size(), 1u);
+  EXPECT_TRUE(model->constraints.empty());
+  EXPECT_TRUE(model->motions.empty());
+  EXPECT_THAT(model->report.DebugString(), AllOf(HasSubstr("its rate is 0"), HasSubstr("no rigid links")));
+  EXPECT_EQ(model->report.springs(), 16);
+  EXPECT_EQ(model->report.simulated_vertices(), 9);
+}
+
+TEST(Compile, ChoosesAStepBelowTheLargestStableOne) {
+  const auto model = CompileText(std::string(kBody) + "forces { springs { bodies: 'sheet' stiffness: 1e5 } }");
+  const v1::StableStep& step = model->report.stable_step();
+  EXPECT_GT(step.omega_max(), 0);
+  EXPECT_LE(step.chosen_seconds(), 0.9 * step.seconds());
+  EXPECT_GE(step.chosen_seconds(), 0.8 * step.seconds());
+  EXPECT_THAT(step.reason(), AllOf(HasSubstr("springs:sheet"), HasSubstr("rad/s")));
+}
+
+TEST(Compile, SameSceneSameHashOtherSceneOther) {
+  const std::string springs = "forces { springs { bodies: 'sheet' stiffness: ";
+  const auto hash = [&](const char* k) { return CompileText(kBody + springs + k + " } }")->report.scene_hash(); };
+  EXPECT_EQ(hash("5"), hash("5.0"));
+  EXPECT_NE(hash("5"), hash("6"));
+}
+
+TEST(Step, DivergenceNamesVertexForceAndRemedy) {
+  const auto model =
+      CompileText(std::string(kBody) + "forces { springs { bodies: 'sheet' stiffness: 100 rest_length_ratio: 0.9 } }");
+  State state = model->InitialState(), before = state;
+  Workspace work = model->MakeWorkspace();
+  v1::Parameters parameters = model->parameters;
+  parameters.set_time_step(10 * model->report.stable_step().seconds());
+  absl::Status status;
+  for (int i = 0; i < 10'000 && status.ok(); ++i) {
+    before = state;
+    status = Step(*model, parameters, parameters.time_step(), state, work);
+  }
+  ASSERT_FALSE(status.ok());
+  const v1::Divergence why = Diagnose(*model, parameters, before, state);
+  EXPECT_EQ(why.body(), "sheet");
+  EXPECT_EQ(why.force(), "springs:sheet");
+  EXPECT_GT(why.time(), 0);
+  EXPECT_THAT(why.remedy(), AllOf(HasSubstr("time_step"), HasSubstr("reset")));
+}
+
+}  // namespace
+}  // namespace phrenic
