@@ -1,0 +1,23 @@
+import { type Client, ConnectError, createClient, type Transport } from "@connectrpc/connect";
+import { FrameService } from "./gen/phrenic/v1/frames_pb";
+import { SceneService, SessionService } from "./gen/phrenic/v1/session_pb";
+
+/** The server's services over one transport: gRPC-web in the page, a router in tests. */
+export interface Api {
+  scenes: Client<typeof SceneService>;
+  sessions: Client<typeof SessionService>;
+  frames: Client<typeof FrameService>;
+}
+
+export function createApi(transport: Transport): Api {
+  return {
+    scenes: createClient(SceneService, transport),
+    sessions: createClient(SessionService, transport),
+    frames: createClient(FrameService, transport),
+  };
+}
+
+/** An error in the server's own words, without the status code before them. */
+export function errorText(error: unknown): string {
+  return ConnectError.from(error).rawMessage || "The server gave no reason.";
+}

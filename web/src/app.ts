@@ -1,0 +1,142 @@
+import type { Api } from "./api";
+import type { Clock } from "./clock";
+import type { Body, FrameArrays } from "./codec";
+import { Connection, type Link, type Sink } from "./connection";
+import { Controller } from "./controller";
+import { Frames } from "./frames";
+import type { CompileReport } from "./gen/phrenic/v1/report_pb";
+import { Looks } from "./looks";
+import { appearancePanel, layersPanel } from "./panels/appearance";
+import { banners } from "./panels/banner";
+import type { Chooser } from "./panels/chooser";
+import { make, place } from "./panels/dom";
+import { Margins } from "./panels/margins";
+import { parametersPanel } from "./panels/parameters";
+import { playbackPanel } from "./panels/playback";
+import { reportPanel } from "./panels/report";
+import { LinkPill, ProbeTable, Readout } from "./panels/status";
+import { viewBar } from "./panels/view_bar";
+import { Signal } from "./signal";
+import { testHook } from "./test_hook";
+import { Viewer } from "./viewer/viewer";
+
+/** How often words and numbers follow the picture [ms]. */
+const statusInterval = 200;
+
+/** One session on one page: ties the connection, the picture and the panels together. */
+export class App {
+  private readonly frames = new Frames();
+  private readonly looks = new Looks();
+  private readonly report = new Signal<CompileReport | undefined>(undefined);
+  private readonly link = new Signal<Link>({ kind: "connecting" });
+  private readonly controller: Controller;
+  private readonly connection: Connection;
+  private readonly viewer: Viewer;
+  private readonly margins = new Margins();
+  private readonly pill: LinkPill;
+  private readonly readout = new Readout();
+  private readonly probes = new ProbeTable();
+  private bodies: Body[] = [];
+
+  constructor(
+    api: Api,
+    sessionId: string,
+    private readonly chooser: Chooser,
+    private readonly clock: Clock,
+  ) {
+    this.controller = new Controller(api, sessionId, clock);
+    this.connection = new Connection(api, sessionId, this.sink(), clock);
+    this.pill = new LinkPill(() => this.connection.retryNow());
+    const reduced = matchMedia("(prefers-reduced-motion: reduce)");
+    this.viewer = new Viewer(
+      place("view") as HTMLCanvasElement,
+      () => this.arrays(),
+      (compass) => this.margins.show(compass),
+      () => reduced.matches,
+    );
+    window.phrenic = testHook(() => this.bodies, this.frames, this.viewer);
+  }
+
+  start(): void {
+    this.furnish();
+    this.looks.all.subscribe((looks) => {
+      for (const { layer, opacity, visible } of looks) this.viewer.setLayerOpacity(layer, visible ? opacity : 0);
+    });
+    setInterval(() => this.tell(), statusInterval);
+    void this.connection.run();
+  }
+
+  private furnish(): void {
+    const { controller, looks, viewer } = this;
+    place("panel").append(
+      parametersPanel(controller),
+      appearancePanel(looks, (kind, on) => viewer.setOverlay(kind, on)),
+      layersPanel(looks),
+      this.probes.element,
+      reportPanel(this.report),
+    );
+    place("playback-place").append(playbackPanel(controller));
+    place("readout-place").append(this.readout.element);
+    place("link-place").append(this.pill.element);
+    place("session-place").append(this.sessionButton());
+    place("margins").append(...this.margins.elements);
+    place("views").append(...viewBar(viewer, place("view")));
+    place("banners").append(...banners(controller, this.link, () => void this.chooser.show()));
+    foldPanel(place("panel-toggle") as HTMLButtonElement);
+  }
+
+  private sessionButton(): HTMLElement {
+    const title = make("b");
+    const id = make("span");
+    this.controller.session.subscribe((session) => {
+      title.textContent = session?.sceneTitle || session?.scene || "";
+      id.textContent = session?.id ?? "";
+    });
+    const open = () => void this.chooser.show();
+    return make("button", { type: "button", id: "session", title: "Sessions and scenes", onclick: open }, title, id);
+  }
+
+  /** What the connection brings. */
+  private sink(): Sink {
+    return {
+      link: (link) => this.link.set(link),
+      session: (session, fresh) => this.controller.receive(session, fresh),
+      frame: (frame) => {
+        this.frames.receive(frame, this.clock.now());
+        this.viewer.refresh();
+      },
+      scene: (bodies, report) => {
+        this.bodies = bodies;
+        this.frames.clear();
+        this.report.set(report);
+        this.viewer.show(bodies);
+        this.looks.start(bodies, report);
+        place("loading").hidden = true;
+      },
+    };
+  }
+
+  private arrays(): FrameArrays | undefined {
+    return this.frames.arrays;
+  }
+
+  private tell(): void {
+    if (document.hidden) return;
+    const now = this.clock.now();
+    const session = this.controller.session.value;
+    const status = { link: this.link.value, session, frame: this.frames.frame, rate: this.frames.rate(now), now };
+    this.pill.show(status);
+    this.readout.show(status);
+    this.probes.show(status.frame);
+  }
+}
+
+/** The panel folds away; on a narrow screen it starts folded. */
+function foldPanel(toggle: HTMLButtonElement): void {
+  const fold = (open: boolean) => {
+    document.body.classList.toggle("panel-open", open);
+    toggle.setAttribute("aria-expanded", String(open));
+  };
+  toggle.onclick = () => fold(!document.body.classList.contains("panel-open"));
+  fold(!matchMedia("(max-width: 760px)").matches);
+}

@@ -1,0 +1,129 @@
+import { Code, ConnectError } from "@connectrpc/connect";
+import { type Api, errorText } from "./api";
+import { Backoff } from "./backoff";
+import type { Clock } from "./clock";
+import { type Body, decodeBody } from "./codec";
+import type { Frame } from "./gen/phrenic/v1/frames_pb";
+import type { CompileReport } from "./gen/phrenic/v1/report_pb";
+import type { Session } from "./gen/phrenic/v1/session_pb";
+
+/** The state of the connection, as people see it. */
+export type Link =
+  { kind: "connecting" } | { kind: "live" } | { kind: "lost"; reason: string; missing: boolean; retryAt: number };
+
+/** Who wants to know what comes from the server. */
+export interface Sink {
+  link(link: Link): void;
+  /** Another scene than before: what stands in it, and what the compile step made of it. */
+  scene(bodies: Body[], report: CompileReport): void;
+  /** `fresh` is the first word of a connection: a restarted server counts revisions from the start again. */
+  session(session: Session, fresh: boolean): void;
+  frame(frame: Frame): void;
+}
+
+/** Time to wait for an answer to a question [ms], and between two questions whether the server is still there. */
+const patience = 8000;
+const heartbeat = 2000;
+
+/**
+ * Follows one session for as long as the page lives: fetches the scene, watches its frames, and when the connection
+ * breaks or goes silent says so, waits, and comes back by itself.
+ */
+export class Connection {
+  private readonly stopped = new AbortController();
+  private wake = new AbortController();
+  private sceneHash: string | undefined;
+
+  constructor(
+    private readonly api: Api,
+    readonly sessionId: string,
+    private readonly sink: Sink,
+    private readonly clock: Clock,
+    private readonly backoff = new Backoff(),
+  ) {}
+
+  /** Resolves after `stop`. */
+  async run(): Promise<void> {
+    this.sink.link({ kind: "connecting" });
+    while (!this.stopped.signal.aborted) {
+      const error = await this.follow().catch((reason: unknown) => reason);
+      if (!this.stopped.signal.aborted) await this.rest(error);
+    }
+  }
+
+  stop(): void {
+    this.stopped.abort();
+    this.wake.abort();
+  }
+
+  /** Ends the wait before the next attempt. */
+  retryNow(): void {
+    this.wake.abort();
+  }
+
+  private async rest(error: unknown): Promise<void> {
+    const wait = this.backoff.next();
+    const missing = ConnectError.from(error).code === Code.NotFound;
+    this.sink.link({ kind: "lost", reason: errorText(error), missing, retryAt: this.clock.now() + wait });
+    this.wake = new AbortController();
+    await this.clock.sleep(wait, this.wake.signal);
+  }
+
+  /** One connection, from the first question to the error that ends it. */
+  private async follow(): Promise<never> {
+    const attempt = new AbortController();
+    const signal = AbortSignal.any([attempt.signal, this.stopped.signal]);
+    const beats = this.beat(attempt, signal);
+    try {
+      await this.loadScene(signal);
+      await this.watch(signal);
+      throw new ConnectError("The server closed the connection.", Code.Unavailable);
+    } catch (error) {
+      throw attempt.signal.aborted ? attempt.signal.reason : error;
+    } finally {
+      attempt.abort();
+      await beats;
+    }
+  }
+
+  private async loadScene(signal: AbortSignal): Promise<void> {
+    const { session, report } = await this.ask(signal);
+    const hash = report?.sceneHash;
+    if (report !== undefined && (hash === "" || hash !== this.sceneHash)) {
+      const bodies: Body[] = [];
+      for await (const message of this.api.frames.getGeometry({ sessionId: this.sessionId }, { signal })) {
+        bodies[message.bodyIndex] = decodeBody(message);
+      }
+      this.sink.scene(bodies, report);
+      this.sceneHash = hash;
+    }
+    if (session !== undefined) this.sink.session(session, true);
+  }
+
+  private async watch(signal: AbortSignal): Promise<void> {
+    for await (const { event } of this.api.frames.watchFrames({ sessionId: this.sessionId }, { signal })) {
+      this.backoff.reset();
+      this.sink.link({ kind: "live" });
+      if (event.case === "session") this.sink.session(event.value, false);
+      if (event.case === "frame") this.sink.frame(event.value);
+    }
+  }
+
+  /** A paused session sends no frames, so that only an answer tells a quiet server from one that is gone. */
+  private async beat(attempt: AbortController, signal: AbortSignal): Promise<void> {
+    for (;;) {
+      await this.clock.sleep(heartbeat, signal);
+      if (signal.aborted) return;
+      try {
+        const { session } = await this.ask(signal);
+        if (session !== undefined) this.sink.session(session, false);
+      } catch (error) {
+        attempt.abort(error);
+      }
+    }
+  }
+
+  private ask(signal: AbortSignal) {
+    return this.api.sessions.getSession({ sessionId: this.sessionId }, { signal, timeoutMs: patience });
+  }
+}

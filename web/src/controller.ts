@@ -1,0 +1,93 @@
+import type { MessageInitShape } from "@bufbuild/protobuf";
+import { type Api, errorText } from "./api";
+import type { Clock } from "./clock";
+import type { ParametersSchema } from "./gen/phrenic/v1/parameters_pb";
+import type { Session } from "./gen/phrenic/v1/session_pb";
+import { NewestWins } from "./newest";
+import type { ParameterName } from "./schema";
+import { Signal } from "./signal";
+
+type ParameterValues = Omit<MessageInitShape<typeof ParametersSchema>, "$typeName">;
+
+/** How fast to play: simulated seconds a second, or as fast as the machine can. */
+export type Speed = number | "fastest";
+
+/** What a viewer asks of one session; each answer is shown at once, each refusal in the server's words. */
+export class Controller {
+  readonly session = new Signal<Session | undefined>(undefined);
+  /** What the server last had to say against or about what was asked; empty when all is well. */
+  readonly notice = new Signal("");
+  private readonly updates: NewestWins<ParameterValues>;
+
+  constructor(
+    private readonly api: Api,
+    private readonly sessionId: string,
+    clock: Clock,
+  ) {
+    this.updates = new NewestWins<ParameterValues>((change) => this.send(change), clock);
+  }
+
+  /** Takes in the state of the session, unless it is older than what is known and `fresh` is not said. */
+  receive(session: Session | undefined, fresh = false): void {
+    const known = this.session.value;
+    if (session === undefined) return;
+    if (fresh || known === undefined || session.revision >= known.revision) this.session.set(session);
+  }
+
+  play(speed: Speed): Promise<void> {
+    const pace = speed === "fastest" ? { asFastAsPossible: true } : { speed };
+    return this.ask(() => this.api.sessions.playSession({ sessionId: this.sessionId, ...pace }));
+  }
+
+  pause(): Promise<void> {
+    return this.ask(() => this.api.sessions.pauseSession({ sessionId: this.sessionId }));
+  }
+
+  step(ticks: number): Promise<void> {
+    return this.ask(() => this.api.sessions.stepSession({ sessionId: this.sessionId, ticks: BigInt(ticks) }));
+  }
+
+  reset(): Promise<void> {
+    return this.ask(() => this.api.sessions.resetSession({ sessionId: this.sessionId }));
+  }
+
+  set(name: ParameterName, value: number | boolean): void {
+    this.updates.push({ [name]: value });
+  }
+
+  /** Whether this viewer's own change of `name` is still on its way. */
+  pending(name: ParameterName): boolean {
+    return this.updates.pending(name);
+  }
+
+  /** The values that a session of this scene starts with. */
+  async startValues(): Promise<ParameterValues | undefined> {
+    const name = this.session.value?.scene ?? "";
+    try {
+      const answer = await this.api.scenes.describeScene({ source: { source: { case: "name", value: name } } });
+      return answer.parameters;
+    } catch (error) {
+      this.notice.set(errorText(error));
+      return undefined;
+    }
+  }
+
+  private send(parameters: ParameterValues): Promise<void> {
+    return this.ask(async () => {
+      const answer = await this.api.sessions.updateParameters({ sessionId: this.sessionId, parameters });
+      return { session: answer.session, notice: answer.warnings.join(" ") };
+    });
+  }
+
+  private async ask(call: () => Promise<{ session?: Session; notice?: string }>): Promise<void> {
+    try {
+      const { session, notice } = await call();
+      this.receive(session);
+      this.notice.set(notice ?? "");
+    } catch (error) {
+      this.notice.set(errorText(error));
+      // Whatever was refused, the controls go back to what holds.
+      this.session.set(this.session.value);
+    }
+  }
+}

@@ -1,0 +1,31 @@
+import { createGrpcWebTransport } from "@connectrpc/connect-web";
+import { createApi, errorText } from "./api";
+import { App } from "./app";
+import { chooseSession } from "./choose_session";
+import { systemClock } from "./clock";
+import { Chooser } from "./panels/chooser";
+import { make, place } from "./panels/dom";
+
+// The page and the services come from one address.
+const api = createApi(createGrpcWebTransport({ baseUrl: location.origin }));
+
+function address(sessionId: string): string {
+  return `?${new URLSearchParams({ session: sessionId })}`;
+}
+
+const chooser = new Chooser(api, (sessionId) => location.assign(address(sessionId)));
+document.body.append(chooser.element);
+
+const loading = place("loading");
+const sessionId = await chooseSession(new URL(location.href), api, systemClock, (error) => {
+  loading.textContent = `No answer from the server (${errorText(error)}). Trying again…`;
+});
+
+if (sessionId === undefined) {
+  const choose = make("button", { type: "button", onclick: () => void chooser.show() }, "Start one");
+  loading.replaceChildren("The server has no session. ", choose);
+  await chooser.show();
+} else {
+  history.replaceState(null, "", address(sessionId));
+  new App(api, sessionId, chooser, systemClock).start();
+}

@@ -1,0 +1,54 @@
+import type { Link } from "../connection";
+import type { Controller } from "../controller";
+import type { Session } from "../gen/phrenic/v1/session_pb";
+import { formatNumber } from "../schema";
+import type { Signal } from "../signal";
+import { make } from "./dom";
+
+/** Words over the picture when something is wrong: diverged, lost, refused; with the remedy where there is one. */
+export function banners(controller: Controller, link: Signal<Link>, chooseSession: () => void): HTMLElement[] {
+  const diverged = banner("alert", "diverged");
+  controller.session.subscribe((session) => {
+    diverged.hidden = session?.divergence === undefined;
+    if (session?.divergence !== undefined) diverged.replaceChildren(...divergence(session, controller));
+  });
+  const lost = banner("status", "lost");
+  link.subscribe((value) => {
+    lost.hidden = value.kind !== "lost";
+    if (value.kind === "lost") lost.replaceChildren(...loss(value.reason, value.missing, chooseSession));
+  });
+  const notice = banner("status", "notice");
+  controller.notice.subscribe((text) => {
+    notice.hidden = text === "";
+    const dismiss = make("button", { type: "button", onclick: () => controller.notice.set("") }, "Dismiss");
+    notice.replaceChildren(make("p", {}, text), dismiss);
+  });
+  return [diverged, lost, notice];
+}
+
+function banner(role: string, name: string): HTMLElement {
+  const element = make("div", { className: `banner ${name}`, id: `banner-${name}`, hidden: true });
+  element.setAttribute("role", role);
+  return element;
+}
+
+function divergence({ divergence, largestStableStep }: Session, controller: Controller): HTMLElement[] {
+  if (divergence === undefined) return [];
+  const { time, body, vertex, force, remedy } = divergence;
+  const where = `The simulation diverged at ${formatNumber(time)} s, at vertex ${vertex} of ${body} (${force}).`;
+  const restart = make("button", { type: "button", className: "primary" }, "Use a stable step and start again");
+  restart.onclick = () => void restartStable(controller, largestStableStep);
+  return [make("p", {}, make("b", {}, where), " ", remedy), restart];
+}
+
+async function restartStable(controller: Controller, largest: number): Promise<void> {
+  await controller.reset();
+  const now = controller.session.value?.parameters?.timeStep ?? 0;
+  if (largest > 0 && now > 0.9 * largest) controller.set("timeStep", 0.9 * largest);
+}
+
+function loss(reason: string, missing: boolean, chooseSession: () => void): HTMLElement[] {
+  const words = missing ? reason : `The connection to the server is lost (${reason}). It comes back by itself.`;
+  const choose = make("button", { type: "button", onclick: chooseSession }, "Choose a session");
+  return [make("p", {}, words), ...(missing ? [choose] : [])];
+}

@@ -1,0 +1,118 @@
+import type { Link } from "../connection";
+import type { FrameRate } from "../frames";
+import type { Frame } from "../gen/phrenic/v1/frames_pb";
+import { type Session, SessionState } from "../gen/phrenic/v1/session_pb";
+import { make, section } from "./dom";
+
+/** Everything that the status shows, gathered a few times a second. */
+export interface Status {
+  link: Link;
+  session: Session | undefined;
+  frame: Frame | undefined;
+  rate: FrameRate;
+  now: number;
+}
+
+/** The state of the connection in a pill: connecting, live with frames a second and delay, or lost and retrying. */
+export class LinkPill {
+  readonly element = make("button", { type: "button", id: "link", className: "pill" });
+  private readonly words = make("span");
+
+  constructor(retry: () => void) {
+    this.element.append(make("span", { className: "dot" }), this.words);
+    this.element.onclick = retry;
+  }
+
+  show(status: Status): void {
+    const { text, title } = linkWords(status);
+    this.element.dataset.link = status.link.kind;
+    this.element.title = title;
+    if (this.words.textContent !== text) this.words.textContent = text;
+  }
+}
+
+export function linkWords({ link, session, rate, now }: Status): { text: string; title: string } {
+  if (link.kind === "connecting") return { text: "Connecting", title: "Waiting for the server." };
+  if (link.kind === "lost") {
+    const seconds = Math.max(0, Math.ceil((link.retryAt - now) / 1000));
+    return {
+      text: `Lost, retrying${seconds > 0 ? ` in ${seconds} s` : ""}`,
+      title: `${link.reason} Click to retry now.`,
+    };
+  }
+  const paused = session?.state !== SessionState.PLAYING;
+  const fast = `${rate.framesPerSecond} fps, ${Math.max(0, Math.round(rate.delay))} ms`;
+  return { text: `Live · ${paused ? "paused" : fast}`, title: "Frames received a second, and how late they come." };
+}
+
+/** Time, tick, breath, pace and viewers. */
+export class Readout {
+  readonly element = make("div", { className: "readout", id: "readout" });
+  private readonly values = new Map<string, HTMLElement>();
+  private readonly bar = make("span", { className: "breath-bar" });
+
+  constructor() {
+    for (const [name, title] of fields) {
+      const value = make("b", { id: `status-${name}` });
+      this.values.set(name, value);
+      this.element.append(make("span", { className: "reading", title }, make("i", {}, name), value));
+    }
+    this.values.get("breath")?.before(make("span", { className: "breath-track", ariaHidden: "true" }, this.bar));
+  }
+
+  show({ session, frame }: Status): void {
+    this.write("time", `${(frame?.time ?? session?.time ?? 0).toFixed(2)} s`);
+    this.write("tick", String(frame?.tick ?? session?.tick ?? 0));
+    const breath = frame?.breath ?? 0;
+    this.write("breath", `${breath < 0 ? "−" : "+"}${Math.abs(breath).toFixed(2)}`);
+    this.bar.style.transform = `translateX(${50 * breath}%)`;
+    const pace = session?.state === SessionState.PLAYING ? (session.pace?.timesRealTime ?? 0) : 0;
+    this.write("pace", `${pace.toFixed(2)}×`);
+    this.write("viewers", String(session?.viewers ?? 0));
+  }
+
+  private write(name: string, text: string): void {
+    const element = this.values.get(name);
+    if (element !== undefined && element.textContent !== text) element.textContent = text;
+  }
+}
+
+const fields: [string, string][] = [
+  ["time", "Simulated time"],
+  ["tick", "Steps since the start"],
+  ["breath", "The breath signal, -1 to 1"],
+  ["pace", "Simulated seconds a second"],
+  ["viewers", "How many watch this session"],
+];
+
+/** Probes: displacement from rest in the patient's directions [mm]. */
+export class ProbeTable {
+  readonly element: HTMLElement;
+  private readonly rows = make("tbody");
+
+  constructor() {
+    const heads = ["Probe", "Left", "Back", "Up"].map((text) => make("th", { scope: "col" }, text));
+    const table = make("table", { className: "probes" }, make("thead", {}, make("tr", {}, ...heads)), this.rows);
+    const unit = make("p", { className: "faint" }, "Displacement from rest, mm");
+    this.element = section("Probes", true, table, unit);
+    this.element.hidden = true;
+  }
+
+  show(frame: Frame | undefined): void {
+    const probes = frame?.probes ?? [];
+    this.element.hidden = probes.length === 0;
+    while (this.rows.rows.length > probes.length) this.rows.deleteRow(-1);
+    probes.forEach(({ name, dx, dy, dz }, i) => {
+      const row = this.rows.rows[i] ?? this.addRow();
+      [name, ...[dx, dy, dz].map((metres) => (1000 * metres).toFixed(1))].forEach((text, k) => {
+        if (row.cells[k].textContent !== text) row.cells[k].textContent = text;
+      });
+    });
+  }
+
+  private addRow(): HTMLTableRowElement {
+    const row = this.rows.insertRow();
+    row.append(make("th", { scope: "row" }), make("td"), make("td"), make("td"));
+    return row;
+  }
+}

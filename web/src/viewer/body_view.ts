@@ -1,0 +1,125 @@
+import * as THREE from "three";
+import { type Body, floatsPerPose, type FrameArrays, positionsOf } from "../codec";
+import { Placement } from "../gen/phrenic/v1/frames_pb";
+import { edgesOf } from "./edges";
+import { pointMaterial, setOpacity, surfaceMaterial } from "./materials";
+import { computeNormals } from "./normals";
+import { addOverlays, type Overlay } from "./overlays";
+import { tendonWeights } from "./tendon";
+import { ThickLines } from "./thick_lines";
+
+/** What can be drawn over a body. */
+export type OverlayKind = "wireframe" | "links" | "lines" | "attachments";
+
+/**
+ * One body on the screen. Everything that lies on its vertices shares one position buffer, so that a frame is one copy
+ * and one upload however many overlays are on.
+ */
+export class BodyView {
+  readonly group = new THREE.Group();
+  readonly positions: THREE.BufferAttribute;
+  readonly edges: Uint32Array<ArrayBuffer>;
+  private readonly normals: THREE.BufferAttribute | undefined;
+  private readonly surface: THREE.MeshStandardMaterial | undefined;
+  private readonly overlays: Overlay[];
+  private readonly thick: ThickLines[] = [];
+
+  constructor(readonly body: Body) {
+    this.group.name = body.name;
+    this.positions = new THREE.BufferAttribute(body.rest.slice(), 3);
+    const streamed = body.placement === Placement.STREAMED;
+    if (streamed) this.positions.setUsage(THREE.DynamicDrawUsage);
+    const solid = body.triangles.length > 0;
+    this.edges = solid ? edgesOf(body.triangles, body.rest.length / 3) : body.edges;
+    if (solid) {
+      this.normals = new THREE.BufferAttribute(new Float32Array(body.rest.length), 3);
+      this.surface = this.addSurface(this.normals);
+    } else {
+      this.addNetwork();
+    }
+    this.overlays = addOverlays(this);
+  }
+
+  /** Lines of some width, redrawn with every frame: only for few. */
+  addThick(lines: ThickLines): void {
+    this.thick.push(lines);
+    this.group.add(lines.object);
+  }
+
+  /** Geometry over this body's vertices; `index` picks some of them. */
+  geometry(index?: Uint32Array<ArrayBuffer>): THREE.BufferGeometry {
+    const geometry = new THREE.BufferGeometry().setAttribute("position", this.positions);
+    if (index !== undefined) geometry.setIndex(new THREE.BufferAttribute(index, 1));
+    return geometry;
+  }
+
+  private addSurface(normals: THREE.BufferAttribute): THREE.MeshStandardMaterial {
+    const { body } = this;
+    computeNormals(body.rest, body.triangles, normals.array as Float32Array);
+    const geometry = this.geometry(body.triangles).setAttribute("normal", normals);
+    const material = surfaceMaterial(body.color, body.opacity);
+    if (body.rigidLinks.length > 0) {
+      geometry.setAttribute("color", this.tendonColors());
+      material.vertexColors = true;
+      material.color.set("white");
+    }
+    const mesh = new THREE.Mesh(geometry, material);
+    mesh.frustumCulled = false;
+    this.group.add(mesh);
+    return material;
+  }
+
+  private tendonColors(): THREE.BufferAttribute {
+    const { body } = this;
+    const muscle = new THREE.Color(body.color);
+    const tendon = muscle.clone().lerp(new THREE.Color("#f6e3d2"), 0.62);
+    const weights = tendonWeights(body.rigidLinks, this.edges, body.rest.length / 3);
+    const colors = new Float32Array(body.rest.length);
+    const color = new THREE.Color();
+    weights.forEach((weight, i) => color.lerpColors(muscle, tendon, weight).toArray(colors, 3 * i));
+    return new THREE.BufferAttribute(colors, 3);
+  }
+
+  private addNetwork(): void {
+    this.addThick(new ThickLines(this.body.edges, this.positions, this.body.color, 3));
+    const points = new THREE.Points(this.geometry(), pointMaterial(this.body.color, 9));
+    points.frustumCulled = false;
+    this.group.add(points);
+  }
+
+  update(frame: FrameArrays): void {
+    if (this.body.placement === Placement.RIGID) this.pose(frame);
+    if (this.body.placement !== Placement.STREAMED) return;
+    const now = positionsOf(this.body, frame);
+    this.positions.copyArray(now);
+    this.positions.needsUpdate = true;
+    for (const lines of this.thick) lines.update();
+    if (this.normals === undefined) return;
+    computeNormals(now, this.body.triangles, this.normals.array as Float32Array);
+    this.normals.needsUpdate = true;
+  }
+
+  private pose(frame: FrameArrays): void {
+    const at = floatsPerPose * this.body.pose;
+    this.group.quaternion.fromArray(frame.poses, at);
+    this.group.position.fromArray(frame.poses, at + 4);
+  }
+
+  setOpacity(opacity: number): void {
+    this.group.visible = opacity > 0;
+    if (this.surface !== undefined) setOpacity(this.surface, opacity);
+  }
+
+  setOverlay(kind: OverlayKind, on: boolean): void {
+    for (const overlay of this.overlays) if (overlay.kind === kind) overlay.show(on);
+  }
+
+  dispose(): void {
+    this.group.traverse((object) => {
+      if (object instanceof THREE.Mesh || object instanceof THREE.Line || object instanceof THREE.Points) {
+        object.geometry.dispose();
+        object.material.dispose();
+      }
+    });
+  }
+}

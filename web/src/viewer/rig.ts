@@ -1,0 +1,106 @@
+import * as THREE from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { letterOf, standpoint, type ViewName } from "./views";
+
+/** What the margins of the picture say about it. */
+export interface Compass {
+  left: string;
+  right: string;
+  top: string;
+  bottom: string;
+  /** CSS pixels a metre at the centre of the scene. */
+  pixelsPerMetre: number;
+}
+
+const glide = 350;
+
+/** The camera and its controls: orbit, zoom, pan, and gliding to named views. */
+export class Rig {
+  readonly camera = new THREE.PerspectiveCamera(26, 1, 0.01, 100);
+  private readonly controls: OrbitControls;
+  private box = new THREE.Box3(new THREE.Vector3(-1, -1, -1), new THREE.Vector3(1, 1, 1));
+  private flight: { from: THREE.Vector3; to: THREE.Vector3; start: number } | undefined;
+
+  constructor(
+    private readonly canvas: HTMLCanvasElement,
+    private readonly changed: () => void,
+    private readonly calm: () => boolean,
+  ) {
+    this.camera.up.set(0, 0, 1);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.enableDamping = !calm();
+    this.controls.dampingFactor = 0.12;
+    this.controls.addEventListener("change", changed);
+    this.controls.addEventListener("start", () => (this.flight = undefined));
+  }
+
+  /** Fits the camera to a new scene. */
+  frame(box: THREE.Box3): void {
+    this.box = box;
+    const size = box.getSize(new THREE.Vector3()).length();
+    this.camera.near = size / 100;
+    this.camera.far = size * 20;
+    this.controls.minDistance = size / 20;
+    this.controls.maxDistance = size * 8;
+    this.go("home", true);
+  }
+
+  go(view: ViewName, atOnce = this.calm()): void {
+    this.controls.target.copy(this.box.getCenter(new THREE.Vector3()));
+    const to = standpoint(view, this.box, this.camera);
+    if (atOnce) this.camera.position.copy(to);
+    else this.flight = { from: this.camera.position.clone(), to, start: performance.now() };
+    this.changed();
+  }
+
+  resize(): void {
+    this.camera.aspect = Math.max(this.canvas.clientWidth, 1) / Math.max(this.canvas.clientHeight, 1);
+    this.camera.updateProjectionMatrix();
+  }
+
+  /** Moves what moves by itself. */
+  update(now: number): void {
+    if (this.flight !== undefined) this.fly(this.flight, now);
+    this.controls.update();
+  }
+
+  private fly({ from, to, start }: { from: THREE.Vector3; to: THREE.Vector3; start: number }, now: number): void {
+    const { target } = this.controls;
+    const part = THREE.MathUtils.smootherstep((now - start) / glide, 0, 1);
+    // Along the sphere, not through the patient.
+    const distance = THREE.MathUtils.lerp(from.distanceTo(target), to.distanceTo(target), part);
+    const away = from.clone().sub(target).lerp(to.clone().sub(target), part);
+    if (away.lengthSq() < 1e-12) away.copy(to).sub(target);
+    this.camera.position.copy(target).addScaledVector(away.normalize(), distance);
+    if (part >= 1) this.flight = undefined;
+    this.changed();
+  }
+
+  /** Orbits by so many radians, and comes nearer by the factor `zoom`: for the keyboard. */
+  nudge(azimuth: number, polar: number, zoom: number): void {
+    const { target } = this.controls;
+    const away = this.camera.position.clone().sub(target);
+    const radius = away.length() / zoom;
+    const phi = Math.acos(THREE.MathUtils.clamp(away.z / away.length(), -1, 1)) + polar;
+    const theta = Math.atan2(away.y, away.x) + azimuth;
+    const level = THREE.MathUtils.clamp(phi, 0.01, Math.PI - 0.01);
+    const ring = Math.sin(level);
+    away.set(ring * Math.cos(theta), ring * Math.sin(theta), Math.cos(level)).multiplyScalar(radius);
+    this.camera.position.copy(target).add(away);
+    this.changed();
+  }
+
+  compass(): Compass {
+    const axis = (i: number) => new THREE.Vector3().setFromMatrixColumn(this.camera.matrixWorld, i);
+    const [right, up] = [axis(0), axis(1)];
+    const distance = this.camera.position.distanceTo(this.controls.target);
+    const slope = Math.tan(THREE.MathUtils.degToRad(this.camera.fov / 2));
+    return {
+      right: letterOf(right),
+      left: letterOf(right.clone().negate()),
+      top: letterOf(up),
+      bottom: letterOf(up.clone().negate()),
+      pixelsPerMetre: this.canvas.clientHeight / (2 * slope * distance),
+    };
+  }
+}

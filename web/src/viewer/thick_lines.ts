@@ -1,0 +1,37 @@
+import type * as THREE from "three";
+import { LineMaterial } from "three/addons/lines/LineMaterial.js";
+import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
+import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
+
+/** Lines some pixels wide between pairs of vertices (WebGL's own are one pixel wide everywhere). */
+export class ThickLines {
+  readonly object: LineSegments2;
+  private readonly ends: Float32Array;
+
+  constructor(
+    private readonly pairs: Uint32Array,
+    private readonly positions: THREE.BufferAttribute,
+    color: string,
+    width: number,
+  ) {
+    this.ends = new Float32Array(3 * pairs.length);
+    this.object = new LineSegments2(new LineSegmentsGeometry(), new LineMaterial({ color, linewidth: width }));
+    this.object.frustumCulled = false;
+    this.gather();
+    this.object.geometry.setPositions(this.ends);
+  }
+
+  update(): void {
+    this.gather();
+    const start = this.object.geometry.getAttribute("instanceStart") as THREE.InterleavedBufferAttribute;
+    start.data.set(this.ends);
+    start.data.needsUpdate = true;
+  }
+
+  private gather(): void {
+    const source = this.positions.array;
+    this.pairs.forEach((vertex, i) => {
+      for (let k = 0; k < 3; k++) this.ends[3 * i + k] = source[3 * vertex + k];
+    });
+  }
+}

@@ -1,0 +1,112 @@
+import * as THREE from "three";
+import type { Body, FrameArrays } from "../codec";
+import { BodyView, type OverlayKind } from "./body_view";
+import { addLights } from "./lights";
+import { type Compass, Rig } from "./rig";
+import type { ViewName } from "./views";
+
+/**
+ * The picture. It draws only when something changed, on the browser's own beat, so a hidden tab draws nothing and any
+ * number of frames between two beats cost one drawing.
+ */
+export class Viewer {
+  readonly rig: Rig;
+  private readonly scene = new THREE.Scene();
+  private readonly renderer: THREE.WebGLRenderer;
+  private views: BodyView[] = [];
+  private readonly overlays = new Set<OverlayKind>();
+  private stale = true;
+  private drawings = 0;
+  private shown: FrameArrays | undefined;
+
+  /** `source` gives the newest frame when a picture is due; `drawn` hears of every picture. */
+  constructor(
+    private readonly canvas: HTMLCanvasElement,
+    private readonly source: () => FrameArrays | undefined,
+    private readonly drawn: (compass: Compass) => void,
+    calm: () => boolean,
+  ) {
+    this.renderer = new THREE.WebGLRenderer({
+      canvas,
+      antialias: true,
+      alpha: true,
+      powerPreference: "high-performance",
+    });
+    this.renderer.toneMapping = THREE.NeutralToneMapping;
+    this.renderer.toneMappingExposure = 1.05;
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.rig = new Rig(canvas, () => this.refresh(), calm);
+    addLights(this.scene, this.rig.camera);
+    new ResizeObserver(() => this.resize()).observe(canvas);
+    this.renderer.setAnimationLoop((now) => this.beat(now));
+  }
+
+  /** Pictures drawn so far. */
+  get count(): number {
+    return this.drawings;
+  }
+
+  show(bodies: Body[]): void {
+    for (const view of this.views) {
+      this.scene.remove(view.group);
+      view.dispose();
+    }
+    this.shown = undefined;
+    this.views = bodies.map((body) => new BodyView(body));
+    for (const view of this.views) this.scene.add(view.group);
+    for (const kind of this.overlays) this.setOverlay(kind, true);
+    this.resize();
+    this.rig.frame(boundsOf(bodies));
+    this.refresh();
+  }
+
+  /** Draws at the next beat. */
+  refresh(): void {
+    this.stale = true;
+  }
+
+  setLayerOpacity(layer: string, opacity: number): void {
+    for (const view of this.views) if (view.body.layer === layer) view.setOpacity(opacity);
+    this.refresh();
+  }
+
+  setOverlay(kind: OverlayKind, on: boolean): void {
+    if (on) this.overlays.add(kind);
+    else this.overlays.delete(kind);
+    for (const view of this.views) view.setOverlay(kind, on);
+    this.refresh();
+  }
+
+  go(view: ViewName): void {
+    this.rig.go(view);
+  }
+
+  private resize(): void {
+    const { clientWidth, clientHeight } = this.canvas;
+    if (clientWidth === 0 || clientHeight === 0) return;
+    this.renderer.setSize(clientWidth, clientHeight, false);
+    this.rig.resize();
+    this.refresh();
+  }
+
+  private beat(now: number): void {
+    this.rig.update(now);
+    if (!this.stale) return;
+    this.stale = false;
+    const frame = this.source();
+    if (frame !== undefined && frame !== this.shown) for (const view of this.views) view.update(frame);
+    this.shown = frame;
+    this.renderer.render(this.scene, this.rig.camera);
+    this.drawings++;
+    this.drawn(this.rig.compass());
+  }
+}
+
+/** The room the bodies take at rest. */
+function boundsOf(bodies: Body[]): THREE.Box3 {
+  const box = new THREE.Box3();
+  for (const { rest } of bodies) box.union(new THREE.Box3().setFromArray(rest as unknown as number[]));
+  const size = box.getSize(new THREE.Vector3()).length() || 1;
+  // A flat sheet has a thickness too, or there would be nothing to look at from its edge.
+  return box.expandByScalar(size * 0.005);
+}

@@ -1,0 +1,29 @@
+import { defineConfig, type Plugin } from "vite";
+
+const policy = [
+  "default-src 'none'",
+  "script-src 'self'",
+  "style-src 'self'",
+  "img-src 'self' data: blob:",
+  "connect-src 'self'",
+  "base-uri 'none'",
+  "form-action 'none'",
+].join("; ");
+
+// The built page carries its own content security policy; the development server needs inline styles.
+function contentSecurityPolicy(): Plugin {
+  return {
+    name: "content-security-policy",
+    apply: "build",
+    transformIndexHtml: () => [
+      { tag: "meta", attrs: { "http-equiv": "Content-Security-Policy", content: policy }, injectTo: "head-prepend" },
+    ],
+  };
+}
+
+export default defineConfig({
+  plugins: [contentSecurityPolicy()],
+  build: { target: "es2022", modulePreload: { polyfill: false }, assetsInlineLimit: 0 },
+  // `npx vite` serves the sources and passes calls on to a phrenicd that listens here.
+  server: { proxy: { "^/(phrenic|grpc)\\.": process.env.PHRENIC_WEB ?? "http://127.0.0.1:8080" } },
+});
