@@ -1,0 +1,110 @@
+#include "server/mesh/topology.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <vector>
+
+namespace phrenic {
+namespace {
+
+constexpr double kSmallestArea = 1e-14;  // [m^2]
+
+struct HalfEdge {
+  int low, high;
+  bool forward;  // runs from low to high in its triangle
+  auto operator<=>(const HalfEdge&) const = default;
+};
+
+std::vector<HalfEdge> SortedHalfEdges(const Triangles& triangles) {
+  std::vector<HalfEdge> edges;
+  edges.reserve(static_cast<size_t>(3 * triangles.cols()));
+  for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      const int a = triangles(k, t), b = triangles((k + 1) % 3, t);
+      edges.push_back({std::min(a, b), std::max(a, b), a < b});
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  return edges;
+}
+
+int Root(std::vector<int>& parent, int i) {
+  while (parent[i] != i) i = parent[i] = parent[parent[i]];
+  return i;
+}
+
+// Components over used vertices, and their number.
+void CountComponents(const Mesh& mesh, SurfaceTopology& topology) {
+  std::vector<int> parent(static_cast<size_t>(mesh.vertices.cols()));
+  std::iota(parent.begin(), parent.end(), 0);
+  std::vector<bool> used(parent.size(), false);
+  for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      used[static_cast<size_t>(mesh.triangles(k, t))] = true;
+      parent[Root(parent, mesh.triangles(k, t))] = Root(parent, mesh.triangles(0, t));
+    }
+  }
+  for (int i = 0; i < static_cast<int>(parent.size()); ++i) {
+    if (!used[i]) continue;
+    ++topology.vertices;
+    if (Root(parent, i) == i) ++topology.components;
+  }
+}
+
+bool Degenerate(const Mesh& mesh, Eigen::Index t) {
+  const Eigen::Vector3i corner = mesh.triangles.col(t);
+  if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) return true;
+  const Eigen::Vector3d a = mesh.vertices.col(corner[0]);
+  const Eigen::Vector3d b = mesh.vertices.col(corner[1]), c = mesh.vertices.col(corner[2]);
+  return (b - a).cross(c - a).norm() / 2 < kSmallestArea;
+}
+
+}  // namespace
+
+Edges TriangleEdges(const Triangles& triangles) {
+  std::vector<HalfEdge> edges = SortedHalfEdges(triangles);
+  const auto same = [](const HalfEdge& a, const HalfEdge& b) { return a.low == b.low && a.high == b.high; };
+  edges.erase(std::unique(edges.begin(), edges.end(), same), edges.end());
+  Edges unique(2, static_cast<Eigen::Index>(edges.size()));
+  for (Eigen::Index i = 0; i < unique.cols(); ++i) {
+    unique.col(i) = Eigen::Vector2i(edges[static_cast<size_t>(i)].low, edges[static_cast<size_t>(i)].high);
+  }
+  return unique;
+}
+
+Edges SpringEdges(const Mesh& mesh) { return mesh.edges.cols() > 0 ? mesh.edges : TriangleEdges(mesh.triangles); }
+
+SurfaceTopology AnalyseTopology(const Mesh& mesh) {
+  SurfaceTopology topology;
+  topology.triangles = static_cast<int>(mesh.triangles.cols());
+  CountComponents(mesh, topology);
+  const std::vector<HalfEdge> edges = SortedHalfEdges(mesh.triangles);
+  for (size_t i = 0; i < edges.size();) {
+    size_t end = i;
+    int forward = 0;
+    for (; end < edges.size() && edges[end].low == edges[i].low && edges[end].high == edges[i].high; ++end) {
+      forward += edges[end].forward ? 1 : 0;
+    }
+    ++topology.edges;
+    topology.boundary_edges += end - i == 1 ? 1 : 0;
+    topology.non_manifold_edges += end - i > 2 ? 1 : 0;
+    topology.misoriented_edges += end - i == 2 && forward != 1 ? 1 : 0;
+    i = end;
+  }
+  for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) topology.degenerate_triangles += Degenerate(mesh, t) ? 1 : 0;
+  return topology;
+}
+
+double SignedVolume(const ConstPoints& vertices, const Triangles& triangles) {
+  double six = 0;
+  for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
+    const Eigen::Vector3d a = vertices.col(triangles(0, t));
+    const Eigen::Vector3d b = vertices.col(triangles(1, t)), c = vertices.col(triangles(2, t));
+    six += a.dot(b.cross(c));
+  }
+  return six / 6;
+}
+
+}  // namespace phrenic
