@@ -11,14 +11,14 @@
 
 namespace phrenic {
 
-using Points = Eigen::Matrix3Xd;         // 3 x n, one column per vertex
-using Triangles = Eigen::Matrix3Xi;      // 3 x n, vertex indices, anticlockwise seen from outside
-using Edges = Eigen::Matrix2Xi;          // 2 x n, vertex indices
+using Points = Eigen::Matrix3Xd;     // 3 x n, one column per vertex
+using Triangles = Eigen::Matrix3Xi;  // 3 x n, vertex indices, anticlockwise seen from outside
+using Edges = Eigen::Matrix2Xi;      // 2 x n, vertex indices
 using ConstPoints = Eigen::Ref<const Points>;
 using MutablePoints = Eigen::Ref<Points>;
 
 struct Mesh {
-  Points vertices;                                  // [m]
+  Points vertices;  // [m]
   Triangles triangles;
   Edges edges;                                      // only where they are not the triangles' own edges
   std::map<std::string, std::vector<int>> regions;  // named vertex sets: "tendon", "muscle", "rim", "crus-right"

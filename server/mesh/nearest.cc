@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nanoflann.hpp>
+#include <utility>
 
 namespace phrenic {
 namespace {
@@ -19,40 +21,71 @@ struct Cloud {
   }
 };
 
-using KdTree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 3, size_t>;
+using KdTree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 3, int>;
+
+// The tree offers only points nearer than a result's worst distance, and its cell bounds carry rounding; asking a
+// little farther keeps every tie, and the result itself then compares exactly.
+double LittleFarther(double squared) { return squared * (1 + 1e-9) + std::numeric_limits<double>::min(); }
+
+// The nearest vertex; of equally near ones the lowest index.
+class NearestResult {
+ public:
+  bool addPoint(double squared, int vertex) {
+    if (squared < squared_ || (squared == squared_ && vertex < vertex_)) {
+      squared_ = squared;
+      vertex_ = vertex;
+    }
+    return true;
+  }
+  double worstDist() const { return LittleFarther(squared_); }
+  bool full() const { return vertex_ >= 0; }
+  Neighbour neighbour() const { return {vertex_, std::sqrt(squared_)}; }
+
+ private:
+  double squared_ = std::numeric_limits<double>::infinity();
+  int vertex_ = -1;
+};
+
+// Every vertex whose squared distance is at most a limit.
+class WithinResult {
+ public:
+  explicit WithinResult(double squared_limit) : limit_(squared_limit) {}
+  bool addPoint(double squared, int vertex) {
+    if (squared <= limit_) neighbours_.push_back({vertex, std::sqrt(squared)});
+    return true;
+  }
+  double worstDist() const { return LittleFarther(limit_); }
+  bool full() const { return true; }
+  std::vector<Neighbour>& neighbours() { return neighbours_; }
+
+ private:
+  double limit_;
+  std::vector<Neighbour> neighbours_;
+};
 
 }  // namespace
 
 struct NearestSearch::Tree {
   explicit Tree(Points points)
-      : cloud{std::move(points)}, index(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(12)) {
-    index.buildIndex();
-  }
+      : cloud{std::move(points)}, index(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(12)) {}
   Cloud cloud;
-  KdTree index;
+  KdTree index;  // builds itself over the cloud
 };
 
 NearestSearch::NearestSearch(Points points) : tree_(std::make_unique<Tree>(std::move(points))) {}
 NearestSearch::~NearestSearch() = default;
 
 Neighbour NearestSearch::Nearest(const Eigen::Vector3d& point) const {
-  constexpr size_t kTies = 4;  // equal distances among the first few are settled by the lower index
-  size_t indices[kTies] = {};
-  double squared[kTies] = {};
-  const size_t found = tree_->index.knnSearch(point.data(), kTies, indices, squared);
-  size_t best = 0;
-  for (size_t i = 1; i < found; ++i) {
-    if (squared[i] == squared[0] && indices[i] < indices[best]) best = i;
-  }
-  return {static_cast<int>(indices[best]), std::sqrt(squared[best])};
+  NearestResult result;
+  tree_->index.findNeighbors(result, point.data(), nanoflann::SearchParams());
+  return result.neighbour();
 }
 
 std::vector<Neighbour> NearestSearch::Within(const Eigen::Vector3d& point, double radius) const {
-  std::vector<std::pair<size_t, double>> matches;
-  tree_->index.radiusSearch(point.data(), radius * radius, matches, nanoflann::SearchParams());
-  std::vector<Neighbour> neighbours;
-  neighbours.reserve(matches.size());
-  for (const auto& [index, squared] : matches) neighbours.push_back({static_cast<int>(index), std::sqrt(squared)});
+  if (!(radius >= 0)) return {};
+  WithinResult result(radius * radius);
+  tree_->index.findNeighbors(result, point.data(), nanoflann::SearchParams());
+  std::vector<Neighbour>& neighbours = result.neighbours();
   std::sort(neighbours.begin(), neighbours.end(), [](const Neighbour& a, const Neighbour& b) {
     return a.distance != b.distance ? a.distance < b.distance : a.vertex < b.vertex;
   });

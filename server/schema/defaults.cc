@@ -1,6 +1,4 @@
-#include <google/protobuf/descriptor.h>
-
-#include "phrenic/v1/options.pb.h"
+#include "server/schema/fields.h"
 #include "server/schema/schema.h"
 
 namespace phrenic::schema {
@@ -8,26 +6,40 @@ namespace {
 
 using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
+using google::protobuf::Reflection;
 
-void FillNumber(const FieldDescriptor& field, Message* message) {
-  const v1::Quantity& quantity = field.options().GetExtension(v1::quantity);
-  if (quantity.automatic()) return;
-  const google::protobuf::Reflection& reflection = *message->GetReflection();
-  const double value = quantity.default_value();
+void SetNumber(Message* message, const FieldDescriptor& field, double value) {
+  const Reflection& reflection = *message->GetReflection();
   switch (field.cpp_type()) {
     case FieldDescriptor::CPPTYPE_DOUBLE:
       return reflection.SetDouble(message, &field, value);
+    case FieldDescriptor::CPPTYPE_FLOAT:
+      return reflection.SetFloat(message, &field, static_cast<float>(value));
     case FieldDescriptor::CPPTYPE_INT32:
-      return reflection.SetInt32(message, &field, static_cast<int>(value));
+      return reflection.SetInt32(message, &field, static_cast<int32_t>(value));
     case FieldDescriptor::CPPTYPE_INT64:
-      return reflection.SetInt64(message, &field, static_cast<std::int64_t>(value));
+      return reflection.SetInt64(message, &field, static_cast<int64_t>(value));
+    case FieldDescriptor::CPPTYPE_UINT32:
+      return reflection.SetUInt32(message, &field, static_cast<uint32_t>(value));
+    case FieldDescriptor::CPPTYPE_UINT64:
+      return reflection.SetUInt64(message, &field, static_cast<uint64_t>(value));
     default:
-      return;
+      return;  // a Quantity stands on numbers alone; tests/schema holds that
   }
 }
 
-void FillNested(const FieldDescriptor& field, Message* message) {
-  const google::protobuf::Reflection& reflection = *message->GetReflection();
+// Only fields that know whether they are set: a 0 elsewhere may be what the person wrote.
+void FillField(Message* message, const FieldDescriptor& field) {
+  if (field.is_repeated() || !field.has_presence() || message->GetReflection()->HasField(*message, &field)) return;
+  const v1::Quantity* quantity = QuantityOf(field);
+  if (quantity != nullptr && !quantity->automatic()) SetNumber(message, field, quantity->default_value());
+  if (const v1::Toggle* toggle = ToggleOf(field)) {
+    message->GetReflection()->SetBool(message, &field, toggle->default_value());
+  }
+}
+
+void FillNested(Message* message, const FieldDescriptor& field) {
+  const Reflection& reflection = *message->GetReflection();
   if (!field.is_repeated()) {
     if (reflection.HasField(*message, &field)) FillDefaults(reflection.MutableMessage(message, &field));
     return;
@@ -40,18 +52,12 @@ void FillNested(const FieldDescriptor& field, Message* message) {
 }  // namespace
 
 void FillDefaults(Message* message) {
-  const google::protobuf::Descriptor& type = *message->GetDescriptor();
-  const google::protobuf::Reflection& reflection = *message->GetReflection();
-  for (int f = 0; f < type.field_count(); ++f) {
-    const FieldDescriptor& field = *type.field(f);
+  for (int i = 0; i < message->GetDescriptor()->field_count(); ++i) {
+    const FieldDescriptor& field = *message->GetDescriptor()->field(i);
     if (field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE) {
-      FillNested(field, message);
-      continue;
-    }
-    if (field.is_repeated() || !field.has_presence() || reflection.HasField(*message, &field)) continue;
-    if (field.options().HasExtension(v1::quantity)) FillNumber(field, message);
-    if (field.options().HasExtension(v1::toggle)) {
-      reflection.SetBool(message, &field, field.options().GetExtension(v1::toggle).default_value());
+      FillNested(message, field);
+    } else if (field.real_containing_oneof() == nullptr) {
+      FillField(message, field);
     }
   }
 }

@@ -1,68 +1,74 @@
-#include <google/protobuf/descriptor.h>
-
 #include <algorithm>
+#include <numeric>
 #include <vector>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
-#include "server/schema/describe.h"
+#include "server/schema/fields.h"
 #include "server/schema/schema.h"
 
 namespace phrenic::schema {
 namespace {
 
+using google::protobuf::Descriptor;
 using google::protobuf::FieldDescriptor;
 
-// Levenshtein distance: single-letter insertions, deletions and changes.
+// Levenshtein's distance: the fewest insertions, deletions and replacements that make `b` of `a`.
 size_t EditDistance(std::string_view a, std::string_view b) {
   std::vector<size_t> row(b.size() + 1);
-  for (size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  std::iota(row.begin(), row.end(), size_t{0});
   for (size_t i = 1; i <= a.size(); ++i) {
     size_t diagonal = row[0];
     row[0] = i;
     for (size_t j = 1; j <= b.size(); ++j) {
-      const size_t change = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      const size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
       diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, change});
+      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
     }
   }
-  return row[b.size()];
+  return row.back();
 }
 
-absl::Status UnknownParameter(std::string_view name) {
-  const google::protobuf::Descriptor& type = *v1::Parameters::descriptor();
+absl::Status NoSuchParameter(std::string_view name) {
+  constexpr size_t kLongestGuess = 64;  // a longer name is no slip of the fingers
+  const Descriptor& type = *v1::Parameters::descriptor();
   std::vector<std::string> names;
-  for (int f = 0; f < type.field_count(); ++f) names.emplace_back(type.field(f)->name());
-  const auto nearest = std::min_element(names.begin(), names.end(), [name](const auto& a, const auto& b) {
-    return EditDistance(name, a) < EditDistance(name, b);
-  });
-  return absl::InvalidArgumentError(absl::StrCat("there is no parameter \"", std::string(name), "\"; did you mean ",
-                                                 *nearest, "? There are ", absl::StrJoin(names, ", ")));
+  for (int i = 0; i < type.field_count(); ++i) names.push_back(type.field(i)->name());
+  const std::string shown(name.substr(0, kLongestGuess));
+  const auto farther = [&](const std::string& a, const std::string& b) {
+    return EditDistance(shown, a) < EditDistance(shown, b);
+  };
+  const std::string nearest = *std::min_element(names.begin(), names.end(), farther);
+  const std::string guess =
+      EditDistance(shown, nearest) <= nearest.size() / 2 ? absl::StrCat("; did you mean ", nearest, "?") : ";";
+  return absl::InvalidArgumentError(
+      absl::StrCat("there is no parameter \"", shown, "\"", guess, " The parameters are ", absl::StrJoin(names, ", ")));
 }
 
-absl::Status SetNumber(const FieldDescriptor& field, std::string_view text, v1::Parameters* parameters) {
-  const v1::Quantity& quantity = field.options().GetExtension(v1::quantity);
-  double value = 0;
-  const bool number = absl::SimpleAtod(absl::string_view(text.data(), text.size()), &value);
-  if (!number || !(value >= quantity.minimum() && value <= quantity.maximum())) {
-    return absl::InvalidArgumentError(absl::StrCat(std::string(field.name()), ": \"", std::string(text), "\" ",
-                                                   number ? "is outside " : "is not a number in ", Range(quantity)));
+absl::Status SetToggle(const FieldDescriptor& field, const std::string& value, v1::Parameters* parameters) {
+  const std::string text = absl::AsciiStrToLower(value);
+  const bool on = text == "on" || text == "true" || text == "yes" || text == "1";
+  const bool off = text == "off" || text == "false" || text == "no" || text == "0";
+  if (!on && !off) {
+    return absl::InvalidArgumentError(absl::StrCat(field.name(), ": \"", value, "\" is neither on nor off"));
   }
-  parameters->GetReflection()->SetDouble(parameters, &field, value);
+  parameters->GetReflection()->SetBool(parameters, &field, on);
   return absl::OkStatus();
 }
 
-absl::Status SetSwitch(const FieldDescriptor& field, std::string_view text, v1::Parameters* parameters) {
-  const std::string word = absl::AsciiStrToLower(absl::string_view(text.data(), text.size()));
-  const bool on = word == "on" || word == "true" || word == "yes" || word == "1";
-  const bool off = word == "off" || word == "false" || word == "no" || word == "0";
-  if (!on && !off) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(std::string(field.name()), ": \"", std::string(text), "\" is neither on nor off"));
+absl::Status SetNumber(const FieldDescriptor& field, const std::string& text, v1::Parameters* parameters) {
+  const v1::Quantity* quantity = QuantityOf(field);
+  double value = 0;
+  if (!absl::SimpleAtod(text, &value)) {
+    return absl::InvalidArgumentError(absl::StrCat(field.name(), ": \"", text, "\" is not a number; allowed is ",
+                                                   FormatRange(quantity == nullptr ? v1::Quantity() : *quantity)));
   }
-  parameters->GetReflection()->SetBool(parameters, &field, on);
+  if (const auto problem = NumberProblem(value, quantity)) {
+    return absl::InvalidArgumentError(absl::StrCat(field.name(), ": ", *problem));
+  }
+  parameters->GetReflection()->SetDouble(parameters, &field, value);
   return absl::OkStatus();
 }
 
@@ -70,9 +76,12 @@ absl::Status SetSwitch(const FieldDescriptor& field, std::string_view text, v1::
 
 absl::Status SetParameter(std::string_view name, std::string_view value, v1::Parameters* parameters) {
   const FieldDescriptor* field = v1::Parameters::descriptor()->FindFieldByName(std::string(name));
-  if (field == nullptr) return UnknownParameter(name);
-  if (field->cpp_type() == FieldDescriptor::CPPTYPE_BOOL) return SetSwitch(*field, value, parameters);
-  return SetNumber(*field, value, parameters);
+  if (field == nullptr) return NoSuchParameter(name);
+  std::string text(value);
+  absl::StripAsciiWhitespace(&text);
+  // Parameters are switches and real numbers; tests/schema holds that.
+  return field->cpp_type() == FieldDescriptor::CPPTYPE_BOOL ? SetToggle(*field, text, parameters)
+                                                            : SetNumber(*field, text, parameters);
 }
 
 }  // namespace phrenic::schema

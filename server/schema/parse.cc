@@ -2,40 +2,66 @@
 #include <google/protobuf/text_format.h>
 
 #include "absl/strings/str_cat.h"
+#include "server/schema/problem.h"
 #include "server/schema/schema.h"
 
 namespace phrenic::schema {
 namespace {
 
+using google::protobuf::TextFormat;
+
 constexpr int kDeepestNesting = 32;  // of messages; a scene needs five
 
-// Keeps the first error.
+std::string Place(const std::string& name, int line, int column) {
+  return absl::StrCat(name, ":", line + 1, ":", column + 1, ": ");
+}
+
+// Keeps the first error of a parse; the ones after it mostly follow from it.
 class FirstError : public google::protobuf::io::ErrorCollector {
  public:
-  void AddError(int line, google::protobuf::io::ColumnNumber column, const std::string& message) override {
-    if (text_.empty()) text_ = absl::StrCat(line + 1, ":", column + 1, ": ", message);
+  explicit FirstError(std::string name) : name_(std::move(name)) {}
+  void AddError(int line, int column, const std::string& message) override {
+    if (text_.empty()) text_ = absl::StrCat(Place(name_, line, column), message);
   }
+  void AddWarning(int, int, const std::string&) override {}
   const std::string& text() const { return text_; }
 
  private:
+  std::string name_;
   std::string text_;
 };
+
+// Where the text set the problem's field; a field that it did not set is placed at the message that lacks it.
+std::string PlaceOf(const Problem& problem, const std::string& name, TextFormat::ParseInfoTree* tree) {
+  TextFormat::ParseLocation found;
+  for (const PathStep& step : problem.path) {
+    if (tree == nullptr) break;
+    const TextFormat::ParseLocation here = tree->GetLocation(step.field, step.index);
+    if (here.line < 0) break;
+    found = here;
+    tree = tree->GetTreeForNested(step.field, step.index);
+  }
+  return found.line < 0 ? absl::StrCat(name, ": ") : Place(name, found.line, found.column);
+}
 
 }  // namespace
 
 absl::StatusOr<v1::Scene> ParseScene(std::string_view name, const std::string& text) {
   const std::string file(name);
-  v1::Scene scene;
-  FirstError error;
-  google::protobuf::TextFormat::Parser parser;
+  FirstError error(file);
+  TextFormat::ParseInfoTree tree;
+  TextFormat::Parser parser;
   parser.RecordErrorsTo(&error);
+  parser.WriteLocationsTo(&tree);
   parser.SetRecursionLimit(kDeepestNesting);
+  v1::Scene scene;
   if (!parser.ParseFromString(text, &scene)) {
     return absl::InvalidArgumentError(
-        absl::StrCat(file, ":", error.text(), " (the scene language is proto/phrenic/v1/scene.proto)"));
+        absl::StrCat(error.text(), " (the scene language is proto/phrenic/v1/scene.proto)"));
   }
-  if (absl::Status status = Validate(scene); !status.ok()) {
-    return absl::InvalidArgumentError(absl::StrCat(file, ": ", status.message()));
+  if (const std::optional<Problem> problem = FindProblem(scene)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(PlaceOf(*problem, file, &tree), FormatPath(problem->path), ": ", problem->what));
   }
   return scene;
 }

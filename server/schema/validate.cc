@@ -1,109 +1,171 @@
-#include <google/protobuf/descriptor.h>
-
-#include <cmath>
+#include <boost/locale/utf.hpp>
+#include <cstdint>
 
 #include "absl/strings/str_cat.h"
-#include "server/schema/describe.h"
+#include "absl/strings/str_join.h"
+#include "server/schema/fields.h"
+#include "server/schema/problem.h"
 #include "server/schema/schema.h"
 
 namespace phrenic::schema {
 namespace {
 
+using google::protobuf::EnumDescriptor;
 using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 using google::protobuf::Reflection;
 
-absl::Status Invalid(const std::string& path, const std::string& what) {
-  return absl::InvalidArgumentError(absl::StrCat(path, ": ", what));
-}
-
-double Number(const Message& message, const Reflection& reflection, const FieldDescriptor& field, int index) {
-  const bool repeated = field.is_repeated();
-  switch (field.cpp_type()) {
-    case FieldDescriptor::CPPTYPE_DOUBLE:
-      return repeated ? reflection.GetRepeatedDouble(message, &field, index) : reflection.GetDouble(message, &field);
-    case FieldDescriptor::CPPTYPE_INT32:
-      return repeated ? reflection.GetRepeatedInt32(message, &field, index) : reflection.GetInt32(message, &field);
-    case FieldDescriptor::CPPTYPE_INT64:
-      return static_cast<double>(repeated ? reflection.GetRepeatedInt64(message, &field, index)
-                                          : reflection.GetInt64(message, &field));
-    default:
-      return 0;
+std::string NamesOf(const EnumDescriptor& type) {
+  std::vector<std::string> names;
+  for (int i = 0; i < type.value_count(); ++i) {
+    if (type.value(i)->number() != 0) names.push_back(type.value(i)->name());
   }
+  return absl::StrJoin(names, ", ");
 }
 
-absl::Status CheckNumber(double value, const FieldDescriptor& field, const std::string& path) {
-  if (!std::isfinite(value)) return Invalid(path, "is not a finite number");
-  if (!field.options().HasExtension(v1::quantity)) return absl::OkStatus();
-  const v1::Quantity& quantity = field.options().GetExtension(v1::quantity);
-  if (value >= quantity.minimum() && value <= quantity.maximum()) return absl::OkStatus();
-  return Invalid(path, absl::StrCat(value, " is outside ", Range(quantity)));
+bool IsUtf8(const std::string& text) {
+  using Utf8 = boost::locale::utf::utf_traits<char>;
+  for (auto next = text.begin(); next != text.end();) {
+    if (!boost::locale::utf::is_valid_codepoint(Utf8::decode(next, text.end()))) return false;
+  }
+  return true;
 }
 
-absl::Status CheckEnum(const FieldDescriptor& field, int value, const std::string& path) {
-  if (field.enum_type()->FindValueByNumber(value) != nullptr) return absl::OkStatus();
-  return Invalid(path, absl::StrCat(value, " is no value of ", std::string(field.enum_type()->name())));
-}
+// A value of the field: the one at `index` of a repeated field, or the field's own where `index` is -1.
+class Value {
+ public:
+  Value(const Message& message, const FieldDescriptor& field, int index)
+      : message_(message), reflection_(*message.GetReflection()), field_(field), index_(index) {}
 
-absl::Status Check(const Message& message, const std::string& prefix);
+  std::optional<std::string> Problem() const {
+    switch (field_.cpp_type()) {
+      case FieldDescriptor::CPPTYPE_DOUBLE:
+        return Number(Get(&Reflection::GetDouble, &Reflection::GetRepeatedDouble));
+      case FieldDescriptor::CPPTYPE_FLOAT:
+        return Number(Get(&Reflection::GetFloat, &Reflection::GetRepeatedFloat));
+      case FieldDescriptor::CPPTYPE_INT32:
+        return Number(Get(&Reflection::GetInt32, &Reflection::GetRepeatedInt32));
+      case FieldDescriptor::CPPTYPE_INT64:
+        return Number(Get(&Reflection::GetInt64, &Reflection::GetRepeatedInt64));
+      case FieldDescriptor::CPPTYPE_UINT32:
+        return Number(Get(&Reflection::GetUInt32, &Reflection::GetRepeatedUInt32));
+      case FieldDescriptor::CPPTYPE_UINT64:
+        return Number(Get(&Reflection::GetUInt64, &Reflection::GetRepeatedUInt64));
+      case FieldDescriptor::CPPTYPE_ENUM:
+        return Enum(Get(&Reflection::GetEnumValue, &Reflection::GetRepeatedEnumValue));
+      case FieldDescriptor::CPPTYPE_STRING:
+        return Text(Get(&Reflection::GetString, &Reflection::GetRepeatedString));
+      case FieldDescriptor::CPPTYPE_BOOL:
+      case FieldDescriptor::CPPTYPE_MESSAGE:
+        return std::nullopt;
+    }
+    return std::nullopt;
+  }
 
-absl::Status CheckValue(const Message& message, const FieldDescriptor& field, int index, const std::string& path) {
+ private:
+  template <typename T>
+  T Get(T (Reflection::*one)(const Message&, const FieldDescriptor*) const,
+        T (Reflection::*of_many)(const Message&, const FieldDescriptor*, int) const) const {
+    return index_ < 0 ? (reflection_.*one)(message_, &field_) : (reflection_.*of_many)(message_, &field_, index_);
+  }
+
+  template <typename T>
+  std::optional<std::string> Number(T value) const {
+    return NumberProblem(static_cast<double>(value), QuantityOf(field_));
+  }
+
+  std::optional<std::string> Enum(int value) const {
+    if (field_.enum_type()->FindValueByNumber(value) != nullptr) return std::nullopt;
+    return absl::StrCat(value, " is none of ", NamesOf(*field_.enum_type()));
+  }
+
+  std::optional<std::string> Text(const std::string& value) const {
+    if (field_.type() == FieldDescriptor::TYPE_BYTES || IsUtf8(value)) return std::nullopt;
+    return "the text is not UTF-8; save the file in that encoding";
+  }
+
+  const Message& message_;
+  const Reflection& reflection_;
+  const FieldDescriptor& field_;
+  int index_;
+};
+
+bool IsEmpty(const Message& message, const FieldDescriptor& field) {
   const Reflection& reflection = *message.GetReflection();
-  const bool repeated = field.is_repeated();
-  switch (field.cpp_type()) {
-    case FieldDescriptor::CPPTYPE_MESSAGE:
-      return Check(
-          repeated ? reflection.GetRepeatedMessage(message, &field, index) : reflection.GetMessage(message, &field),
-          path + ".");
-    case FieldDescriptor::CPPTYPE_ENUM:
-      return CheckEnum(
-          field,
-          repeated ? reflection.GetRepeatedEnumValue(message, &field, index) : reflection.GetEnumValue(message, &field),
-          path);
-    case FieldDescriptor::CPPTYPE_DOUBLE:
-    case FieldDescriptor::CPPTYPE_INT32:
-    case FieldDescriptor::CPPTYPE_INT64:
-      return CheckNumber(Number(message, reflection, field, index), field, path);
-    default:
-      return absl::OkStatus();
-  }
+  if (field.is_repeated()) return reflection.FieldSize(message, &field) == 0;
+  if (!reflection.HasField(message, &field)) return true;
+  return field.cpp_type() == FieldDescriptor::CPPTYPE_STRING && reflection.GetString(message, &field).empty();
 }
 
-bool Missing(const Message& message, const FieldDescriptor& field) {
-  const Reflection& reflection = *message.GetReflection();
-  return field.is_repeated() ? reflection.FieldSize(message, &field) == 0 : !reflection.HasField(message, &field);
+std::string MissingProblem(const FieldDescriptor& field) {
+  const std::string owner = field.containing_type()->name();
+  if (field.cpp_type() == FieldDescriptor::CPPTYPE_ENUM) {
+    return absl::StrCat("must be set: every ", owner, " needs one of ", NamesOf(*field.enum_type()));
+  }
+  if (field.is_repeated()) return absl::StrCat("must not be empty: every ", owner, " needs at least one");
+  return absl::StrCat("must be set: every ", owner, " needs it");
 }
 
-// A number without presence whose range leaves out 0 was forgotten: the check sees the 0.
-bool ToBeChecked(const Message& message, const FieldDescriptor& field) {
-  const bool number = field.cpp_type() != FieldDescriptor::CPPTYPE_MESSAGE;
-  return !Missing(message, field) || (number && !field.has_presence() && !field.is_repeated());
+std::optional<Problem> FindIn(const Message& message, std::vector<PathStep>& path);
+
+std::optional<Problem> FindInValue(const Message& message, const FieldDescriptor& field, int index,
+                                   std::vector<PathStep>& path) {
+  path.push_back({&field, index});
+  std::optional<Problem> problem;
+  if (field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE) {
+    const Reflection& reflection = *message.GetReflection();
+    problem = FindIn(
+        index < 0 ? reflection.GetMessage(message, &field) : reflection.GetRepeatedMessage(message, &field, index),
+        path);
+  } else if (std::optional<std::string> what = Value(message, field, index).Problem()) {
+    problem = Problem{path, *what};
+  }
+  path.pop_back();
+  return problem;
 }
 
-absl::Status CheckField(const Message& message, const FieldDescriptor& field, const std::string& path) {
-  if (Missing(message, field) && field.options().GetExtension(v1::required)) {
-    return Invalid(path, "is missing; it must be set");
+std::optional<Problem> FindInField(const Message& message, const FieldDescriptor& field, std::vector<PathStep>& path) {
+  if (IsRequired(field) && IsEmpty(message, field)) {
+    path.push_back({&field, -1});
+    return Problem{path, MissingProblem(field)};
   }
-  if (!ToBeChecked(message, field)) return absl::OkStatus();
-  if (!field.is_repeated()) return CheckValue(message, field, 0, path);
-  for (int i = 0; i < message.GetReflection()->FieldSize(message, &field); ++i) {
-    absl::Status status = CheckValue(message, field, i, absl::StrCat(path, "[", i, "]"));
-    if (!status.ok()) return status;
+  if (!field.is_repeated()) {
+    // A number without presence always counts: where it is not written it is 0, which may be outside its range.
+    const bool counts = !field.has_presence() || message.GetReflection()->HasField(message, &field);
+    return counts ? FindInValue(message, field, -1, path) : std::nullopt;
   }
-  return absl::OkStatus();
+  const int size = message.GetReflection()->FieldSize(message, &field);
+  for (int index = 0; index < size; ++index) {
+    if (auto problem = FindInValue(message, field, index, path)) return problem;
+  }
+  return std::nullopt;
 }
 
-absl::Status Check(const Message& message, const std::string& prefix) {
-  const google::protobuf::Descriptor& type = *message.GetDescriptor();
-  for (int f = 0; f < type.field_count(); ++f) {
-    absl::Status status = CheckField(message, *type.field(f), prefix + std::string(type.field(f)->name()));
-    if (!status.ok()) return status;
+std::optional<Problem> FindIn(const Message& message, std::vector<PathStep>& path) {
+  for (int i = 0; i < message.GetDescriptor()->field_count(); ++i) {
+    if (auto problem = FindInField(message, *message.GetDescriptor()->field(i), path)) return problem;
   }
-  return absl::OkStatus();
+  return std::nullopt;
 }
 
 }  // namespace
 
-absl::Status Validate(const Message& message) { return Check(message, ""); }
+std::optional<Problem> FindProblem(const Message& message) {
+  std::vector<PathStep> path;
+  return FindIn(message, path);
+}
+
+std::string FormatPath(const std::vector<PathStep>& path) {
+  return absl::StrJoin(path, ".", [](std::string* out, const PathStep& step) {
+    absl::StrAppend(out, step.field->name());
+    if (step.index >= 0) absl::StrAppend(out, "[", step.index, "]");
+  });
+}
+
+absl::Status Validate(const Message& message) {
+  const std::optional<Problem> problem = FindProblem(message);
+  if (!problem) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat(FormatPath(problem->path), ": ", problem->what));
+}
 
 }  // namespace phrenic::schema
