@@ -52,6 +52,7 @@ export class App {
       place("view") as HTMLCanvasElement,
       () => this.arrays(),
       (compass) => this.margins.show(compass),
+      () => ({ top: 48, bottom: place("stage").clientHeight - place("dock").offsetTop }),
       () => reduced.matches,
     );
     window.phrenic = testHook(() => this.bodies, this.frames, this.viewer);

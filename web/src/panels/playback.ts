@@ -17,7 +17,7 @@ const strides = [1, 10, 100, 1000];
 export function playbackPanel(controller: Controller): HTMLElement {
   const speed = speedSelect(controller);
   const stride = make("select", { id: "stride", ariaLabel: "Ticks a step", title: "Ticks a step" });
-  stride.append(...strides.map((ticks) => new Option(ticks === 1 ? "1 tick" : `${ticks} ticks`, String(ticks))));
+  stride.append(...strides.map((ticks) => option(ticks === 1 ? "1 tick" : `${ticks} ticks`, String(ticks))));
   stride.value = "10";
   const toggle = button("Play", () => void togglePlay(controller, chosenSpeed(speed)), icon("play"));
   toggle.id = "play";
@@ -41,9 +41,13 @@ function togglePlay(controller: Controller, speed: Speed): Promise<void> {
   return controller.session.value?.state === SessionState.PLAYING ? controller.pause() : controller.play(speed);
 }
 
+function option(label: string, value: string): HTMLOptionElement {
+  return make("option", { value }, label);
+}
+
 function speedSelect(controller: Controller): HTMLSelectElement {
   const select = make("select", { id: "speed", ariaLabel: "Speed", title: "Simulated seconds a second" });
-  select.append(...speeds.map(([label, value]) => new Option(label, String(value))));
+  select.append(...speeds.map(([label, value]) => option(label, String(value))));
   select.onchange = () => {
     if (controller.session.value?.state === SessionState.PLAYING) void controller.play(chosenSpeed(select));
   };
@@ -59,7 +63,7 @@ function speedSelect(controller: Controller): HTMLSelectElement {
 /** A speed that another client chose may not be in the list yet. */
 function show(select: HTMLSelectElement, speed: Speed): void {
   const value = String(speed);
-  if (![...select.options].some((option) => option.value === value)) select.append(new Option(`${value}×`, value));
+  if (![...select.options].some((option) => option.value === value)) select.append(option(`${value}×`, value));
   select.value = value;
 }
 

@@ -1,6 +1,6 @@
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import { letterOf, standpoint, type ViewName } from "./views";
+import { letterOf, openingView, standpoint, type ViewName } from "./views";
 
 /** What the margins of the picture say about it. */
 export interface Compass {
@@ -19,6 +19,8 @@ export class Rig {
   readonly camera = new THREE.PerspectiveCamera(26, 1, 0.01, 100);
   private readonly controls: OrbitControls;
   private box = new THREE.Box3(new THREE.Vector3(-1, -1, -1), new THREE.Vector3(1, 1, 1));
+  private opening: ViewName = "home";
+  private free = 1;
   private flight: { from: THREE.Vector3; to: THREE.Vector3; start: number } | undefined;
 
   constructor(
@@ -42,19 +44,25 @@ export class Rig {
     this.camera.far = size * 20;
     this.controls.minDistance = size / 20;
     this.controls.maxDistance = size * 8;
+    this.opening = openingView(box);
     this.go("home", true);
   }
 
   go(view: ViewName, atOnce = this.calm()): void {
     this.controls.target.copy(this.box.getCenter(new THREE.Vector3()));
-    const to = standpoint(view, this.box, this.camera);
+    const to = standpoint(view === "home" ? this.opening : view, this.box, this.camera, this.free);
     if (atOnce) this.camera.position.copy(to);
     else this.flight = { from: this.camera.position.clone(), to, start: performance.now() };
     this.changed();
   }
 
-  resize(): void {
-    this.camera.aspect = Math.max(this.canvas.clientWidth, 1) / Math.max(this.canvas.clientHeight, 1);
+  /** `top` and `bottom` are CSS pixels of the picture that panels cover: the scene keeps to the middle of the rest. */
+  resize(top: number, bottom: number): void {
+    const width = Math.max(this.canvas.clientWidth, 1);
+    const height = Math.max(this.canvas.clientHeight, 1);
+    this.free = Math.max(0.3, 1 - (top + bottom) / height);
+    this.camera.aspect = width / height;
+    this.camera.setViewOffset(width, height, 0, (bottom - top) / 2, width, height);
     this.camera.updateProjectionMatrix();
   }
 

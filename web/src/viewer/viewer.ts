@@ -19,11 +19,14 @@ export class Viewer {
   private drawings = 0;
   private shown: FrameArrays | undefined;
 
-  /** `source` gives the newest frame when a picture is due; `drawn` hears of every picture. */
+  /**
+   * `source` gives the newest frame when a picture is due; `drawn` hears of every picture; `covered` is how much
+   * of the canvas panels hide at its edges [CSS pixels]. */
   constructor(
     private readonly canvas: HTMLCanvasElement,
     private readonly source: () => FrameArrays | undefined,
     private readonly drawn: (compass: Compass) => void,
+    private readonly covered: () => { top: number; bottom: number },
     calm: () => boolean,
   ) {
     this.renderer = new THREE.WebGLRenderer({
@@ -85,7 +88,8 @@ export class Viewer {
     const { clientWidth, clientHeight } = this.canvas;
     if (clientWidth === 0 || clientHeight === 0) return;
     this.renderer.setSize(clientWidth, clientHeight, false);
-    this.rig.resize();
+    const { top, bottom } = this.covered();
+    this.rig.resize(top, bottom);
     this.refresh();
   }
 

@@ -11,17 +11,38 @@ const directions: Record<ViewName, [number, number, number]> = {
   top: [0, -0.001, 1],
 };
 
-/** Where the camera stands to see the whole of `box` from the view's side. */
-export function standpoint(view: ViewName, box: THREE.Box3, camera: THREE.PerspectiveCamera): THREE.Vector3 {
+/** The view that a scene opens with: a flat one is seen face on, everything else from the front, a little aside. */
+export function openingView(box: THREE.Box3): ViewName {
+  const size = box.getSize(new THREE.Vector3());
+  const thin = 0.02 * Math.max(size.x, size.y, size.z);
+  if (size.z < thin) return "top";
+  if (size.y < thin) return "front";
+  return size.x < thin ? "left" : "home";
+}
+
+/**
+ * Where the camera stands to see the whole of `box` from the view's side, with `free` (0 to 1) of the picture's height
+ * to fill.
+ */
+export function standpoint(view: ViewName, box: THREE.Box3, camera: THREE.PerspectiveCamera, free = 1): THREE.Vector3 {
   const away = new THREE.Vector3(...directions[view]).normalize();
   const right = new THREE.Vector3(-away.y, away.x, 0).normalize();
   const up = new THREE.Vector3().crossVectors(away, right);
-  const size = box.getSize(new THREE.Vector3());
-  const extent = (axis: THREE.Vector3) =>
-    (Math.abs(axis.x) * size.x + Math.abs(axis.y) * size.y + Math.abs(axis.z) * size.z) / 2;
   const slope = Math.tan(THREE.MathUtils.degToRad(camera.fov / 2));
-  const distance = Math.max(extent(up) / slope, extent(right) / (slope * camera.aspect)) * 1.06 + extent(away) * 0.8;
-  return box.getCenter(new THREE.Vector3()).addScaledVector(away, distance);
+  const center = box.getCenter(new THREE.Vector3());
+  const distances = cornersOf(box).map((corner) => {
+    corner.sub(center);
+    const across = Math.abs(corner.dot(right)) / (slope * camera.aspect);
+    return corner.dot(away) + Math.max(across, Math.abs(corner.dot(up)) / (slope * free));
+  });
+  return center.addScaledVector(away, margin * Math.max(...distances));
+}
+
+const margin = 1.03;
+
+function cornersOf({ min, max }: THREE.Box3): THREE.Vector3[] {
+  const corner = (i: number) => new THREE.Vector3(i & 1 ? max.x : min.x, i & 2 ? max.y : min.y, i & 4 ? max.z : min.z);
+  return Array.from({ length: 8 }, (_, i) => corner(i));
 }
 
 const letters = { x: ["R", "L"], y: ["A", "P"], z: ["I", "S"] };

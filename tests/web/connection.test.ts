@@ -1,0 +1,142 @@
+import { afterEach, beforeEach, expect, test } from "vitest";
+import { Backoff } from "../../web/src/backoff";
+import { Connection, type Link, type Sink } from "../../web/src/connection";
+import { FakeClock, settle } from "./fake_clock";
+import { FakeServer } from "./fake_server";
+
+let server: FakeServer;
+let clock: FakeClock;
+let links: Link[];
+let ticks: bigint[];
+let freshSessions: number;
+let connection: Connection;
+
+const sink: Sink = {
+  link: (link) =>
+    links.at(-1)?.kind === link.kind && link.kind === "live"
+      ? undefined
+      : links.push(link),
+  scene: () => {},
+  session: (_session, fresh) => (freshSessions += fresh ? 1 : 0),
+  frame: (frame) => ticks.push(frame.tick),
+};
+
+const kinds = () => links.map((link) => link.kind);
+const frame = (tick: bigint) => ({ case: "frame" as const, value: { tick } });
+
+beforeEach(() => {
+  [server, clock, links, ticks, freshSessions] = [
+    new FakeServer(),
+    new FakeClock(),
+    [],
+    [],
+    0,
+  ];
+  connection = new Connection(
+    server.api,
+    "thorax",
+    sink,
+    clock,
+    new Backoff(500, 10_000, () => 0),
+  );
+  void connection.run();
+});
+
+afterEach(() => connection.stop());
+
+test("ItIsLiveOnceTheServerSpeaks", async () => {
+  expect(kinds()).toEqual(["connecting"]);
+  await settle();
+  expect(kinds()).toEqual(["connecting", "live"]);
+});
+
+test("FramesArriveInOrder", async () => {
+  await settle();
+  for (const tick of [1n, 2n, 3n]) {
+    server.send(frame(tick));
+    await settle();
+  }
+  expect(ticks).toEqual([1n, 2n, 3n]);
+});
+
+test("ALostServerIsSaidAndRetriedLaterAndLater", async () => {
+  await settle();
+  server.kill();
+  await settle();
+  expect(links.at(-1)).toMatchObject({
+    kind: "lost",
+    reason: "connection reset",
+    missing: false,
+    retryAt: 500,
+  });
+  await clock.advance(500);
+  expect(links.at(-1)).toMatchObject({
+    kind: "lost",
+    reason: "connection refused",
+    retryAt: 500 + 1000,
+  });
+  await clock.advance(1000);
+  expect(links.at(-1)).toMatchObject({ kind: "lost", retryAt: 1500 + 2000 });
+});
+
+test("ItComesBackByItselfAndForgetsTheLongWait", async () => {
+  await settle();
+  server.kill();
+  await clock.advance(500);
+  server.down = false;
+  await clock.advance(1000);
+  expect(links.at(-1)).toEqual({ kind: "live" });
+  expect(freshSessions).toBe(2);
+  server.kill();
+  await settle();
+  expect(links.at(-1)).toMatchObject({
+    kind: "lost",
+    retryAt: clock.now() + 500,
+  });
+});
+
+test("TheSameSceneIsFetchedOnce", async () => {
+  await settle();
+  server.kill();
+  server.down = false;
+  await clock.advance(500);
+  expect(links.at(-1)).toEqual({ kind: "live" });
+  expect(server.geometryCalls).toBe(1);
+});
+
+test("AnotherSceneUnderTheSameIdIsFetchedAgain", async () => {
+  await settle();
+  server.kill();
+  [server.down, server.sceneHash] = [false, "other"];
+  await clock.advance(500);
+  expect(server.geometryCalls).toBe(2);
+});
+
+test("AServerThatGoesSilentIsFoundOut", async () => {
+  await settle();
+  // The stream stays open, but questions are answered no more.
+  server.down = true;
+  await clock.advance(2000);
+  expect(links.at(-1)).toMatchObject({
+    kind: "lost",
+    reason: "connection refused",
+  });
+});
+
+test("RetryNowEndsTheWait", async () => {
+  await settle();
+  server.kill();
+  await settle();
+  server.down = false;
+  connection.retryNow();
+  await settle();
+  expect(links.at(-1)).toEqual({ kind: "live" });
+});
+
+test("NothingIsAskedAfterStop", async () => {
+  await settle();
+  connection.stop();
+  const before = links.length;
+  await clock.advance(60_000);
+  expect(links.length).toBe(before);
+});

@@ -1,0 +1,121 @@
+import { create, type MessageInitShape } from "@bufbuild/protobuf";
+import { Code, ConnectError, createRouterTransport } from "@connectrpc/connect";
+import { createApi } from "../../web/src/api";
+import {
+  FrameService,
+  GetGeometryResponseSchema,
+  Placement,
+  type WatchFramesResponseSchema,
+} from "../../web/src/gen/phrenic/v1/frames_pb";
+import {
+  SessionSchema,
+  SessionService,
+  SessionState,
+} from "../../web/src/gen/phrenic/v1/session_pb";
+
+type Event = MessageInitShape<typeof WatchFramesResponseSchema>["event"];
+
+export function bytesOf(
+  numbers: Float32Array | Uint32Array,
+): Uint8Array<ArrayBuffer> {
+  return new Uint8Array(numbers.buffer.slice(0) as ArrayBuffer);
+}
+
+/** One triangle with corners at 0, x and y. */
+export function triangleBody(
+  fields: MessageInitShape<typeof GetGeometryResponseSchema>,
+) {
+  return create(GetGeometryResponseSchema, {
+    bodyCount: 1,
+    name: "triangle",
+    placement: Placement.STREAMED,
+    restPositions: bytesOf(new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0])),
+    triangles: bytesOf(new Uint32Array([0, 1, 2])),
+    ...fields,
+  });
+}
+
+/** A server of one session in this very process. Tests break it, mend it and look at what it was asked. */
+export class FakeServer {
+  session = create(SessionSchema, {
+    id: "thorax",
+    scene: "thorax",
+    state: SessionState.PLAYING,
+    revision: 1n,
+  });
+  sceneHash = "abc";
+  down = false;
+  geometryCalls = 0;
+  readonly updates: object[] = [];
+  private emitters = new Set<(event: Event | "end") => void>();
+
+  readonly api = createApi(
+    createRouterTransport(({ service }) => {
+      service(SessionService, {
+        getSession: () =>
+          this.answer({
+            session: this.session,
+            report: { sceneHash: this.sceneHash },
+          }),
+        playSession: () => this.answer({ session: this.session }),
+        updateParameters: ({ parameters }) => {
+          this.updates.push(parameters!);
+          return this.answer({ session: this.session });
+        },
+      });
+      service(FrameService, this.streams());
+    }),
+  );
+
+  /** Sends an event to every watcher. */
+  send(event: Event): void {
+    for (const emit of this.emitters) emit(event);
+  }
+
+  /** As a server that is killed: streams end, and nothing is answered until `down` is false again. */
+  kill(): void {
+    this.down = true;
+    for (const emit of this.emitters) emit("end");
+  }
+
+  private streams() {
+    const server = this;
+    return {
+      async *getGeometry() {
+        server.geometryCalls++;
+        yield server.answer(triangleBody({}));
+      },
+      async *watchFrames(
+        _request: unknown,
+        { signal }: { signal: AbortSignal },
+      ) {
+        yield server.answer({
+          event: { case: "session" as const, value: server.session },
+        });
+        for (;;) {
+          const event = await server.next(signal);
+          if (event === "end")
+            throw new ConnectError("connection reset", Code.Unavailable);
+          yield { event };
+        }
+      },
+    };
+  }
+
+  private next(signal: AbortSignal): Promise<Event | "end"> {
+    return new Promise((resolve) => {
+      const emit = (event: Event | "end") => {
+        this.emitters.delete(emit);
+        resolve(event);
+      };
+      this.emitters.add(emit);
+      signal.addEventListener("abort", () => emit("end"));
+    });
+  }
+
+  private answer<T>(value: T): T {
+    if (this.down)
+      throw new ConnectError("connection refused", Code.Unavailable);
+    return value;
+  }
+}

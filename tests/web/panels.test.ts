@@ -1,0 +1,111 @@
+import { create } from "@bufbuild/protobuf";
+import { beforeEach, describe, expect, test } from "vitest";
+import { Controller } from "../../web/src/controller";
+import { ParametersSchema } from "../../web/src/gen/phrenic/v1/parameters_pb";
+import {
+  type Session,
+  SessionSchema,
+  SessionState,
+} from "../../web/src/gen/phrenic/v1/session_pb";
+import { parametersPanel } from "../../web/src/panels/parameters";
+import { playbackPanel } from "../../web/src/panels/playback";
+import { linkWords } from "../../web/src/panels/status";
+import { FakeClock, settle } from "./fake_clock";
+import { FakeServer } from "./fake_server";
+
+let server: FakeServer;
+let controller: Controller;
+let panel: HTMLElement;
+
+const session = (
+  breathForce: number,
+  revision: bigint,
+  state = SessionState.PLAYING,
+): Session =>
+  create(SessionSchema, {
+    revision,
+    state,
+    speed: 1,
+    parameters: create(ParametersSchema, {
+      breathForce,
+      timeStep: 0.001,
+      applyMuscles: true,
+    }),
+  });
+const input = (id: string) => panel.querySelector<HTMLInputElement>(`#${id}`)!;
+
+beforeEach(() => {
+  server = new FakeServer();
+  controller = new Controller(server.api, "thorax", new FakeClock());
+  panel = parametersPanel(controller);
+  document.body.replaceChildren(panel);
+  controller.receive(session(1, 1n));
+});
+
+describe("the control panel", () => {
+  test("HasALabelForEveryInput", () => {
+    for (const each of panel.querySelectorAll("input")) {
+      expect(Boolean(each.ariaLabel || each.labels?.length), each.id).toBe(
+        true,
+      );
+    }
+  });
+
+  test("ShowsWhatAnotherViewerSet", () => {
+    controller.receive(session(2.5, 2n));
+    expect(input("parameter-breathForce").value).toBe("2.5");
+    expect(input("parameter-breathForce-entry").value).toBe("2.5");
+  });
+
+  test("LeavesASliderAloneThatIsBeingDragged", () => {
+    const slider = input("parameter-breathForce");
+    slider.onpointerdown?.(new Event("pointerdown") as PointerEvent);
+    slider.value = "7";
+    controller.receive(session(2.5, 2n));
+    expect(slider.value).toBe("7");
+  });
+
+  test("SendsATypedNumber", async () => {
+    const entry = input("parameter-breathForce-entry");
+    entry.value = "1.5";
+    entry.onchange?.(new Event("change"));
+    await settle();
+    expect(server.updates).toMatchObject([{ breathForce: 1.5 }]);
+  });
+
+  test("RefusesANumberOutOfRangeInWordsAndSendsNothing", async () => {
+    const entry = input("parameter-breathForce-entry");
+    entry.value = "21";
+    entry.onchange?.(new Event("change"));
+    await settle();
+    expect(server.updates).toEqual([]);
+    expect(panel.textContent).toContain("Breath force goes from 0 to 20.");
+    expect(entry.getAttribute("aria-invalid")).toBe("true");
+  });
+});
+
+test("ThePlayButtonSaysWhatItDoes", () => {
+  const play = playbackPanel(controller).querySelector("#play")!;
+  expect(play.ariaLabel).toBe("Pause");
+  controller.receive(session(1, 2n, SessionState.PAUSED));
+  expect(play.ariaLabel).toBe("Play");
+  controller.receive(session(1, 3n, SessionState.DIVERGED));
+  expect((play as HTMLButtonElement).disabled).toBe(true);
+});
+
+test("TheLinkIsPutInWords", () => {
+  const rate = { framesPerSecond: 30, delay: 4.4 };
+  const status = { session: session(1, 1n), frame: undefined, rate, now: 1000 };
+  expect(linkWords({ ...status, link: { kind: "live" } }).text).toBe(
+    "Live · 30 fps, 4 ms",
+  );
+  const lost = {
+    kind: "lost" as const,
+    reason: "refused",
+    missing: false,
+    retryAt: 3500,
+  };
+  expect(linkWords({ ...status, link: lost }).text).toBe(
+    "Lost, retrying in 3 s",
+  );
+});
