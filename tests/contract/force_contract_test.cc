@@ -24,9 +24,12 @@ const ForceCase kForces[] = {
      "fall_off: FALL_OFF_CYLINDER }",
      false},
     {"action_line_vertical",
-     "action_line { bodies: 'sheet' direction { x: 1 } radius: 2 force: 3 fall_off: FALL_OFF_VERTICAL }", false},
+     "action_line { bodies: 'sheet' origin {} direction { x: 1 } radius: 2 force: 3 fall_off: FALL_OFF_VERTICAL }",
+     false},
     {"attachment", "attachment { bodies: 'sheet' carriers: 'bone' radius: 1.5 stiffness: 40 }", false},
 };
+
+void PrintTo(const ForceCase& force, std::ostream* out) { *out << force.name; }
 
 class ForceContract : public testing::TestWithParam<ForceCase> {
  protected:
@@ -130,7 +133,7 @@ TEST_P(ForceContract, IsFiniteWhereVerticesCoincide) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Forces, ForceContract, testing::ValuesIn(kForces),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace
 }  // namespace phrenic

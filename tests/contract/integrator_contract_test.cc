@@ -28,6 +28,8 @@ std::string Oscillator(const std::string& integrator, double stiffness, double f
          integrator + " }";
 }
 
+void PrintTo(const IntegratorCase& integrator, std::ostream* out) { *out << integrator.name; }
+
 class IntegratorContract : public testing::TestWithParam<IntegratorCase> {};
 
 TEST_P(IntegratorContract, ConvergesAtItsOrder) {
@@ -50,8 +52,9 @@ TEST_P(IntegratorContract, StatesItsStabilityLimit) {
     const auto ends_well = [&](double dt) {
       State state = model->InitialState();
       Workspace work = model->MakeWorkspace();
-      for (int i = 0; i < 20'000; ++i) {
+      for (int i = 0; i < 2'000; ++i) {
         if (!Step(*model, model->parameters, dt, state, work).ok()) return false;
+        if ((state.x - model->rest).cwiseAbs().maxCoeff() > 0.5) return false;  // it started with 0.1 m
       }
       return true;
     };
@@ -77,7 +80,7 @@ TEST_P(IntegratorContract, FixedVerticesStay) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Integrators, IntegratorContract, testing::ValuesIn(kIntegrators),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace
 }  // namespace phrenic

@@ -64,7 +64,7 @@ TEST(Compile, LeavesOutWhatTheSceneDoesNotNeedAndSaysSo) {
 }
 
 TEST(Compile, ChoosesAStepBelowTheLargestStableOne) {
-  const auto model = CompileText(std::string(kBody) + "forces { springs { bodies: 'sheet' stiffness: 1e5 } }");
+  const auto model = CompileText(std::string(kBody) + "forces { springs { bodies: 'sheet' stiffness: 1e7 } }");
   const v1::StableStep& step = model->report.stable_step();
   EXPECT_GT(step.omega_max(), 0);
   EXPECT_LE(step.chosen_seconds(), 0.9 * step.seconds());

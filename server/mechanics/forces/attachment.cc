@@ -42,7 +42,12 @@ absl::StatusOr<std::unique_ptr<Force>> Attachment::Make(const v1::Attachment& sc
   auto carriers = CarrierBodies(scene, path, draft);
   if (!carriers.ok()) return carriers.status();
   std::unique_ptr<Attachment> force(new Attachment(name));
-  for (const int b : *bodies) force->AddHolds(scene, *carriers, b, draft);
+  for (const int b : *bodies) {
+    auto region = draft.Region(b, scene.region(), absl::StrCat(std::string(path), ".region"));
+    if (!region.ok()) return region.status();
+    force->AddHolds(scene, *carriers, *region, b, draft);
+  }
+  force->SortByCarrier();
   if (force->holds_.empty()) {
     draft.ReportLeftOut(name, absl::StrFormat("no vertex is within %g m of a carrier", scene.radius()));
     return nullptr;
@@ -54,11 +59,19 @@ absl::StatusOr<std::unique_ptr<Force>> Attachment::Make(const v1::Attachment& sc
   return force;
 }
 
-void Attachment::AddHolds(const v1::Attachment& scene, const std::vector<int>& carriers, int b, Draft& draft) {
+void Attachment::SortByCarrier() {
+  const auto carrier = [this](const Hold& hold) { return hold.shares > 0 ? shares_[hold.first_share].pose : -1; };
+  std::stable_sort(holds_.begin(), holds_.end(),
+                   [&carrier](const Hold& a, const Hold& b) { return carrier(a) < carrier(b); });
+}
+
+void Attachment::AddHolds(const v1::Attachment& scene, const std::vector<int>& carriers,
+                          const std::vector<bool>& region, int b, Draft& draft) {
   const BodyModel& body = draft.model.bodies[b];
   const Carriers search(draft, carriers);
   for (int i = 0; i < body.mesh.vertices.cols(); ++i) {
     const int vertex = body.first_vertex + i;
+    if (!region[i]) continue;
     const Carriers::Contact contact = search.Nearest(body.mesh.vertices.col(i));
     if (contact.distance >= scene.radius() || draft.model.inverse_mass[vertex] == 0) continue;
     const double stiffness = (1 - contact.distance / scene.radius()) * scene.stiffness();
@@ -73,13 +86,19 @@ void Attachment::AddHolds(const v1::Attachment& scene, const std::vector<int>& c
 }
 
 void Attachment::AddForce(const Instant& at, MutablePoints f) const {
+  // Holds are sorted by carrier, so that a pose becomes a matrix once and not once a vertex.
+  int current = -1;
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   for (const Hold& hold : holds_) {
     Eigen::Vector3d carried = hold.rest;
     Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
     for (int s = hold.first_share; s < hold.first_share + hold.shares; ++s) {
       const Pose& pose = at.poses[shares_[s].pose];
-      carried += shares_[s].weight * (pose.At(hold.rest) - hold.rest);
-      velocity += shares_[s].weight * pose.VelocityAt(hold.rest);
+      if (shares_[s].pose != current) rotation = pose.rotation.toRotationMatrix();
+      current = shares_[s].pose;
+      const Eigen::Vector3d turned = rotation * hold.rest;
+      carried += shares_[s].weight * (turned + pose.translation - hold.rest);
+      velocity += shares_[s].weight * (pose.velocity + pose.angular_velocity.cross(turned));
     }
     f.col(hold.vertex) +=
         hold.stiffness * (carried - at.x.col(hold.vertex)) + hold.damping * (velocity - at.v.col(hold.vertex));

@@ -28,7 +28,9 @@ class Attachment final : public Force {
     int first_share, shares;    // in shares_
   };
   explicit Attachment(std::string name) : Force(std::move(name)) {}
-  void AddHolds(const v1::Attachment& scene, const std::vector<int>& carriers, int body, Draft& draft);
+  void AddHolds(const v1::Attachment& scene, const std::vector<int>& carriers, const std::vector<bool>& region,
+                int body, Draft& draft);
+  void SortByCarrier();
 
   std::vector<Hold> holds_;
   std::vector<RideShare> shares_;
