@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 namespace phrenic {
 namespace {
 
 constexpr double kNear = 5e-3;           // distances below this count alike [m]
 constexpr double kSmallestShare = 0.01;  // smaller shares are dropped and the rest scaled to 1
+
+double Weight(double distance) { return std::pow(distance * distance + kNear * kNear, -2); }
 
 std::vector<RideShare> OfVertex(const Ride& ride, int vertex) {
   const auto before = [](const RideShare& share, int v) { return share.vertex < v; };
@@ -31,13 +35,25 @@ void Prune(std::vector<double>& weights) {
 
 Carriers::Carriers(const Draft& draft, const std::vector<int>& bodies) : draft_(draft), bodies_(bodies) {
   for (const int b : bodies) {
-    searches_.push_back(std::make_unique<NearestSearch>(draft.model.bodies[b].mesh.vertices));
+    const Points& vertices = draft.model.bodies[b].mesh.vertices;
+    searches_.push_back(std::make_unique<NearestSearch>(vertices));
+    boxes_.emplace_back(vertices.rowwise().minCoeff(), vertices.rowwise().maxCoeff());
   }
+}
+
+std::vector<int> Carriers::NearestBoxFirst(const Eigen::Vector3d& point) const {
+  std::vector<int> order(boxes_.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::vector<double> distance(boxes_.size());
+  for (size_t c = 0; c < boxes_.size(); ++c) distance[c] = boxes_[c].squaredExteriorDistance(point);
+  std::stable_sort(order.begin(), order.end(), [&distance](int a, int b) { return distance[a] < distance[b]; });
+  return order;
 }
 
 Carriers::Contact Carriers::Nearest(const Eigen::Vector3d& point) const {
   Contact nearest{.distance = std::numeric_limits<double>::infinity()};
-  for (int c = 0; c < static_cast<int>(searches_.size()); ++c) {
+  for (const int c : NearestBoxFirst(point)) {
+    if (boxes_[c].exteriorDistance(point) >= nearest.distance) break;
     const Neighbour found = searches_[c]->Nearest(point);
     if (found.distance < nearest.distance) nearest = {c, found.vertex, found.distance};
   }
@@ -57,10 +73,13 @@ std::vector<RideShare> Carriers::Shares(const Contact& contact, int for_vertex) 
 std::vector<RideShare> Carriers::Blend(const Eigen::Vector3d& point, int for_vertex) const {
   std::vector<Contact> contacts;
   std::vector<double> weights;
-  for (int c = 0; c < static_cast<int>(searches_.size()); ++c) {
+  double largest = 0;
+  for (const int c : NearestBoxFirst(point)) {
+    if (Weight(boxes_[c].exteriorDistance(point)) < kSmallestShare * largest) break;  // it and the rest are too far
     const Neighbour found = searches_[c]->Nearest(point);
     contacts.push_back({c, found.vertex, found.distance});
-    weights.push_back(std::pow(found.distance * found.distance + kNear * kNear, -2));
+    weights.push_back(Weight(found.distance));
+    largest = std::max(largest, weights.back());
   }
   Prune(weights);
   std::vector<RideShare> blended;

@@ -2,6 +2,7 @@
 #ifndef PHRENIC_SERVER_MECHANICS_CARRIERS_H_
 #define PHRENIC_SERVER_MECHANICS_CARRIERS_H_
 
+#include <Eigen/Geometry>
 #include <memory>
 #include <vector>
 
@@ -27,9 +28,12 @@ class Carriers {
   std::vector<RideShare> Blend(const Eigen::Vector3d& point, int for_vertex) const;
 
  private:
+  std::vector<int> NearestBoxFirst(const Eigen::Vector3d& point) const;
+
   const Draft& draft_;
   std::vector<int> bodies_;
   std::vector<std::unique_ptr<NearestSearch>> searches_;
+  std::vector<Eigen::AlignedBox3d> boxes_;  // what is outside reach is not searched
 };
 
 }  // namespace phrenic

@@ -35,7 +35,7 @@ class FirstError : public google::protobuf::io::ErrorCollector {
 std::string PlaceOf(const Problem& problem, const std::string& name, TextFormat::ParseInfoTree* tree) {
   TextFormat::ParseLocation found;
   for (const PathStep& step : problem.path) {
-    if (tree == nullptr) break;
+    if (tree == nullptr || (step.field->is_repeated() && step.index < 0)) break;
     const TextFormat::ParseLocation here = tree->GetLocation(step.field, step.index);
     if (here.line < 0) break;
     found = here;

@@ -47,6 +47,18 @@ bool AnyShared(const Edges& links, Eigen::Index vertices) {
   return false;
 }
 
+// What to take off `between` along `direction` for its squared length to lose `excess`: the smaller root c of
+// |between - c direction|^2 = |between|^2 - excess. Along `between` itself where the link has turned too far in one
+// step for `direction` to reach; nothing where both ends are in one point.
+Eigen::Vector3d Correction(const Eigen::Vector3d& between, const Eigen::Vector3d& direction, double excess) {
+  const double along = between.dot(direction);
+  const double discriminant = along * along - direction.squaredNorm() * excess;
+  if (along > 0 && discriminant >= 0) return excess / (along + std::sqrt(discriminant)) * direction;
+  const double squared = between.squaredNorm();
+  if (squared == 0) return Eigen::Vector3d::Zero();
+  return (1 - std::sqrt((squared - excess) / squared)) * between;
+}
+
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<Constraint>> RigidLinks::Make(const v1::RigidLinks& scene, const std::string& given,
@@ -83,31 +95,18 @@ absl::StatusOr<std::unique_ptr<Constraint>> RigidLinks::Make(const v1::RigidLink
   return constraint;
 }
 
-double RigidLinks::CorrectPositions(Points& x) const {
+double RigidLinks::Sweep(const ConstPoints& before, double dt, State& state) const {
   double worst = 0;
   for (const Link& link : links_) {
-    const Eigen::Vector3d between = x.col(link.b) - x.col(link.a);
-    const double length = between.norm();
-    if (length == 0) continue;
-    const double error = length - link.length;
-    worst = std::max(worst, std::abs(error) / link.length);
-    const Eigen::Vector3d correction = (error / length) * between;
-    x.col(link.a) += link.share_a * correction;
-    x.col(link.b) -= link.share_b * correction;
-  }
-  return worst;
-}
-
-double RigidLinks::CorrectVelocities(const Points& x, Points& v) const {
-  double worst = 0;
-  for (const Link& link : links_) {
-    const Eigen::Vector3d between = x.col(link.b) - x.col(link.a);
-    const double squared = between.squaredNorm();
-    if (squared == 0) continue;
-    const double rate = between.dot(v.col(link.b) - v.col(link.a)) / squared;
-    worst = std::max(worst, std::abs(rate));
-    v.col(link.a) += link.share_a * rate * between;
-    v.col(link.b) -= link.share_b * rate * between;
+    const Eigen::Vector3d between = state.x.col(link.b) - state.x.col(link.a);
+    const double excess = between.squaredNorm() - link.length * link.length;
+    worst = std::max(worst, std::abs(excess) / (2 * link.length * link.length));
+    const Eigen::Vector3d direction = before.col(link.b) - before.col(link.a);
+    const Eigen::Vector3d correction = Correction(between, direction, excess);
+    state.x.col(link.a) += link.share_a * correction;
+    state.x.col(link.b) -= link.share_b * correction;
+    state.v.col(link.a) += link.share_a / dt * correction;
+    state.v.col(link.b) -= link.share_b / dt * correction;
   }
   return worst;
 }
@@ -134,10 +133,7 @@ void RigidLinks::Project(const v1::Parameters& parameters, const ConstPoints& be
   }
   const int sweeps = shared_vertices_ ? kSweeps : 1;
   for (int sweep = 0; sweep < sweeps; ++sweep) {
-    if (CorrectPositions(state.x) < kTolerance) break;
-  }
-  for (int sweep = 0; sweep < sweeps; ++sweep) {
-    if (CorrectVelocities(state.x, state.v) * dt < kTolerance) break;
+    if (Sweep(before, dt, state) < kTolerance) break;
   }
 }
 

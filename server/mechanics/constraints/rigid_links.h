@@ -1,11 +1,12 @@
 // Links of constant length L, its length at rest (tensegrity, thesis sections 2.4 and 3.2).
 //
-// EXACT: with u the unit vector from A to B, e = |B - A| - L and w = 1/m, A += w_A/(w_A + w_B) e u and
-// B -= w_B/(w_A + w_B) e u (SHAKE); then the velocities lose their relative part along the link in the same shares
-// (RATTLE). Linear and angular momentum are kept. Any number of links a vertex: swept until no length is off by more
-// than 1e-10 of itself, at most 200 times.
-// THESIS: equations 2.10-2.11, split by the distance that each end has moved in this step, velocities untouched. Kept
-// to reproduce the thesis: it does not converge with the step and does not keep momentum. A fixed end does not move.
+// EXACT: SHAKE. The link pulls along its direction r at the start of the step, so that momentum and angular momentum
+// are kept: with w = 1/m, A += w_A/(w_A + w_B) c r and B -= w_B/(w_A + w_B) c r, c such that |B - A| = L, and the
+// velocities change by the same over dt. Any number of links a vertex: swept until no length is off by more than 1e-10
+// of itself, at most 200 times. (Ryckaert, Ciccotti, Berendsen, J Comput Phys 1977;23:327; symplectic with
+// semi-implicit Euler.) THESIS: equations 2.10-2.11, split by the distance that each end has moved in this step,
+// velocities untouched. Kept to reproduce the thesis: it does not converge with the step and does not keep momentum. A
+// fixed end does not move.
 #ifndef PHRENIC_SERVER_MECHANICS_CONSTRAINTS_RIGID_LINKS_H_
 #define PHRENIC_SERVER_MECHANICS_CONSTRAINTS_RIGID_LINKS_H_
 
@@ -31,8 +32,7 @@ class RigidLinks final : public Constraint {
     double share_a, share_b;  // of the correction; both 0 where neither end is free
   };
   explicit RigidLinks(std::string name) : Constraint(std::move(name)) {}
-  double CorrectPositions(Points& x) const;  // one sweep; the largest relative error before it
-  double CorrectVelocities(const Points& x, Points& v) const;
+  double Sweep(const ConstPoints& before, double dt, State& state) const;  // the largest relative error before it
   void ProjectThesis(const ConstPoints& before, Points& x) const;
 
   v1::Projection projection_ = v1::PROJECTION_EXACT;
