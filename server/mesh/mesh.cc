@@ -5,15 +5,18 @@
 namespace phrenic {
 namespace {
 
+absl::Status OutOfRange(const std::string& what, int index, int vertices) {
+  return absl::InvalidArgumentError(
+      absl::StrCat(what, " names vertex ", index, " but there are ", vertices, " vertices (0 to ", vertices - 1, ")"));
+}
+
 template <typename Indices>
 absl::Status CheckIndices(const Indices& indices, int vertices, const char* what) {
   for (Eigen::Index column = 0; column < indices.cols(); ++column) {
     for (Eigen::Index row = 0; row < indices.rows(); ++row) {
       const int index = indices(row, column);
-      if (index < 0 || index >= vertices) {
-        return absl::InvalidArgumentError(absl::StrCat(what, " ", column, " names vertex ", index, " but there are ",
-                                                       vertices, " vertices (0 to ", vertices - 1, ")"));
-      }
+      if (index >= 0 && index < vertices) continue;
+      return OutOfRange(absl::StrCat(what, " ", column), index, vertices);
     }
   }
   return absl::OkStatus();
@@ -30,7 +33,14 @@ absl::Status Validate(const Mesh& mesh) {
     }
   }
   if (absl::Status status = CheckIndices(mesh.triangles, vertices, "triangle"); !status.ok()) return status;
-  return CheckIndices(mesh.edges, vertices, "edge");
+  if (absl::Status status = CheckIndices(mesh.edges, vertices, "edge"); !status.ok()) return status;
+  for (const auto& [name, region] : mesh.regions) {
+    for (const int index : region) {
+      if (index >= 0 && index < vertices) continue;
+      return OutOfRange(absl::StrCat("region \"", name, "\""), index, vertices);
+    }
+  }
+  return absl::OkStatus();
 }
 
 }  // namespace phrenic

@@ -56,7 +56,7 @@ class WithinResult {
   }
   double worstDist() const { return LittleFarther(limit_); }
   bool full() const { return true; }
-  std::vector<Neighbour>& neighbours() { return neighbours_; }
+  std::vector<Neighbour> Take() { return std::move(neighbours_); }
 
  private:
   double limit_;
@@ -85,7 +85,7 @@ std::vector<Neighbour> NearestSearch::Within(const Eigen::Vector3d& point, doubl
   if (!(radius >= 0)) return {};
   WithinResult result(radius * radius);
   tree_->index.findNeighbors(result, point.data(), nanoflann::SearchParams());
-  std::vector<Neighbour>& neighbours = result.neighbours();
+  std::vector<Neighbour> neighbours = result.Take();
   std::sort(neighbours.begin(), neighbours.end(), [](const Neighbour& a, const Neighbour& b) {
     return a.distance != b.distance ? a.distance < b.distance : a.vertex < b.vertex;
   });
