@@ -46,7 +46,9 @@ export class Chooser {
   }
 
   private sceneRow({ name, title, description }: SceneSummary): HTMLElement {
-    return this.row(title || name, description, "Start", () => this.start(name));
+    const row = this.row(title || name, description, "Start", () => this.start(name));
+    row.dataset.scene = name;
+    return row;
   }
 
   private row(title: string, detail: string, verb: string, act: () => Promise<void>): HTMLElement {

@@ -5,10 +5,10 @@ import * as THREE from "three";
  * the surfaces, a fill, and a cool rim from behind that lifts outlines off the background.
  */
 export function addLights(scene: THREE.Scene, camera: THREE.Camera): void {
-  scene.add(new THREE.HemisphereLight("#f2f5ff", "#6b5a52", 1.25));
+  scene.add(new THREE.HemisphereLight("#f4f6ff", "#9c8a80", 1.5));
   camera.add(
     beam("#fff1e2", 2.1, [-0.9, 1.1, 0.9]),
-    beam("#dfe9ff", 0.55, [1.2, -0.2, 0.8]),
+    beam("#ffeee6", 0.8, [1.2, -0.5, 0.8]),
     beam("#bcd4ff", 1.5, [0.7, 0.8, -1.4]),
   );
   scene.add(camera);

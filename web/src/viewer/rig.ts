@@ -18,7 +18,8 @@ const glide = 350;
 export class Rig {
   readonly camera = new THREE.PerspectiveCamera(26, 1, 0.01, 100);
   private readonly controls: OrbitControls;
-  private box = new THREE.Box3(new THREE.Vector3(-1, -1, -1), new THREE.Vector3(1, 1, 1));
+  private points: THREE.Vector3[] = [];
+  private center = new THREE.Vector3();
   private opening: ViewName = "home";
   private free = 1;
   private flight: { from: THREE.Vector3; to: THREE.Vector3; start: number } | undefined;
@@ -36,9 +37,11 @@ export class Rig {
     this.controls.addEventListener("start", () => (this.flight = undefined));
   }
 
-  /** Fits the camera to a new scene. */
-  frame(box: THREE.Box3): void {
-    this.box = box;
+  /** Fits the camera to a new scene, of which `points` are a fair sample. */
+  frame(points: THREE.Vector3[]): void {
+    const box = new THREE.Box3().setFromPoints(points);
+    this.points = points;
+    this.center = box.getCenter(new THREE.Vector3());
     const size = box.getSize(new THREE.Vector3()).length();
     this.camera.near = size / 100;
     this.camera.far = size * 20;
@@ -49,8 +52,9 @@ export class Rig {
   }
 
   go(view: ViewName, atOnce = this.calm()): void {
-    this.controls.target.copy(this.box.getCenter(new THREE.Vector3()));
-    const to = standpoint(view === "home" ? this.opening : view, this.box, this.camera, this.free);
+    this.controls.target.copy(this.center);
+    const side = view === "home" ? this.opening : view;
+    const to = standpoint(side, this.points, this.center, this.camera, this.free);
     if (atOnce) this.camera.position.copy(to);
     else this.flight = { from: this.camera.position.clone(), to, start: performance.now() };
     this.changed();

@@ -3,6 +3,7 @@ import type { Body, FrameArrays } from "../codec";
 import { BodyView, type OverlayKind } from "./body_view";
 import { addLights } from "./lights";
 import { type Compass, Rig } from "./rig";
+import { Sharpness } from "./sharpness";
 import type { ViewName } from "./views";
 
 /**
@@ -15,6 +16,7 @@ export class Viewer {
   private readonly renderer: THREE.WebGLRenderer;
   private views: BodyView[] = [];
   private readonly overlays = new Set<OverlayKind>();
+  private readonly sharpness = new Sharpness(Math.min(devicePixelRatio, 2));
   private stale = true;
   private drawings = 0;
   private shown: FrameArrays | undefined;
@@ -37,7 +39,7 @@ export class Viewer {
     });
     this.renderer.toneMapping = THREE.NeutralToneMapping;
     this.renderer.toneMappingExposure = 1.05;
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.renderer.setPixelRatio(this.sharpness.ratio);
     this.rig = new Rig(canvas, () => this.refresh(), calm);
     addLights(this.scene, this.rig.camera);
     new ResizeObserver(() => this.resize()).observe(canvas);
@@ -59,7 +61,7 @@ export class Viewer {
     for (const view of this.views) this.scene.add(view.group);
     for (const kind of this.overlays) this.setOverlay(kind, true);
     this.resize();
-    this.rig.frame(boundsOf(bodies));
+    this.rig.frame(sampleOf(bodies));
     this.refresh();
   }
 
@@ -95,6 +97,10 @@ export class Viewer {
 
   private beat(now: number): void {
     this.rig.update(now);
+    if (this.sharpness.beat(now, this.stale)) {
+      this.renderer.setPixelRatio(this.sharpness.ratio);
+      this.stale = true;
+    }
     if (!this.stale) return;
     this.stale = false;
     const frame = this.source();
@@ -106,11 +112,13 @@ export class Viewer {
   }
 }
 
-/** The room the bodies take at rest. */
-function boundsOf(bodies: Body[]): THREE.Box3 {
-  const box = new THREE.Box3();
-  for (const { rest } of bodies) box.union(new THREE.Box3().setFromArray(rest as unknown as number[]));
-  const size = box.getSize(new THREE.Vector3()).length() || 1;
-  // A flat sheet has a thickness too, or there would be nothing to look at from its edge.
-  return box.expandByScalar(size * 0.005);
+/** Some thousands of vertices at rest, a fair sample of where the bodies are. */
+function sampleOf(bodies: Body[]): THREE.Vector3[] {
+  const all = bodies.reduce((sum, { rest }) => sum + rest.length / 3, 0);
+  const stride = Math.max(1, Math.floor(all / 4000));
+  return bodies.flatMap(({ rest }) => {
+    const points: THREE.Vector3[] = [];
+    for (let i = 0; i < rest.length; i += 3 * stride) points.push(new THREE.Vector3(rest[i], rest[i + 1], rest[i + 2]));
+    return points;
+  });
 }

@@ -21,29 +21,32 @@ export function openingView(box: THREE.Box3): ViewName {
 }
 
 /**
- * Where the camera stands to see the whole of `box` from the view's side, with `free` (0 to 1) of the picture's height
- * to fill.
+ * Where the camera stands to see all of `points`, looking at `center` from the view's side, with `free` (0 to 1) of the
+ * picture's height to fill.
  */
-export function standpoint(view: ViewName, box: THREE.Box3, camera: THREE.PerspectiveCamera, free = 1): THREE.Vector3 {
+export function standpoint(
+  view: ViewName,
+  points: THREE.Vector3[],
+  center: THREE.Vector3,
+  camera: THREE.PerspectiveCamera,
+  free = 1,
+): THREE.Vector3 {
   const away = new THREE.Vector3(...directions[view]).normalize();
   const right = new THREE.Vector3(-away.y, away.x, 0).normalize();
   const up = new THREE.Vector3().crossVectors(away, right);
   const slope = Math.tan(THREE.MathUtils.degToRad(camera.fov / 2));
-  const center = box.getCenter(new THREE.Vector3());
-  const distances = cornersOf(box).map((corner) => {
-    corner.sub(center);
-    const across = Math.abs(corner.dot(right)) / (slope * camera.aspect);
-    return corner.dot(away) + Math.max(across, Math.abs(corner.dot(up)) / (slope * free));
-  });
-  return center.addScaledVector(away, margin * Math.max(...distances));
+  const offset = new THREE.Vector3();
+  let distance = 0;
+  for (const point of points) {
+    offset.subVectors(point, center);
+    const across = Math.abs(offset.dot(right)) / (slope * camera.aspect);
+    const along = Math.abs(offset.dot(up)) / (slope * free);
+    distance = Math.max(distance, offset.dot(away) + Math.max(across, along));
+  }
+  return center.clone().addScaledVector(away, margin * distance);
 }
 
-const margin = 1.03;
-
-function cornersOf({ min, max }: THREE.Box3): THREE.Vector3[] {
-  const corner = (i: number) => new THREE.Vector3(i & 1 ? max.x : min.x, i & 2 ? max.y : min.y, i & 4 ? max.z : min.z);
-  return Array.from({ length: 8 }, (_, i) => corner(i));
-}
+const margin = 1.04;
 
 const letters = { x: ["R", "L"], y: ["A", "P"], z: ["I", "S"] };
 

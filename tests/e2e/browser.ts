@@ -1,0 +1,114 @@
+import { existsSync, mkdirSync } from "node:fs";
+import { join } from "node:path";
+import { type Browser, chromium, type Page } from "playwright-core";
+import type { TestHook } from "../../web/src/test_hook";
+import { outFolder } from "./server";
+
+declare global {
+  interface Window {
+    phrenic?: TestHook;
+  }
+}
+
+const places = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
+
+/** Headless Chromium with a profile of its own, WebGL by software. */
+export async function launchBrowser(): Promise<Browser> {
+  const executablePath = [process.env.PHRENIC_CHROMIUM ?? "", ...places].find(
+    (path) => path !== "" && existsSync(path),
+  );
+  if (executablePath === undefined) {
+    throw new Error("There is no Chromium: install Debian's package chromium, or set PHRENIC_CHROMIUM to a browser.");
+  }
+  return chromium.launch({
+    executablePath,
+    headless: true,
+    args: [
+      "--no-sandbox",
+      "--disable-quic",
+      "--no-first-run",
+      "--disable-background-networking",
+      "--disable-component-update",
+      "--disable-sync",
+      "--use-gl=angle",
+      "--use-angle=swiftshader",
+      "--enable-unsafe-swiftshader",
+    ],
+  });
+}
+
+/** A viewer as a person has it, and what it complained about. */
+export class ViewerPage {
+  readonly complaints: string[] = [];
+  readonly origins = new Set<string>();
+
+  private constructor(readonly page: Page) {
+    page.on("console", (message) => {
+      if (["error", "warning"].includes(message.type())) this.complaints.push(message.text());
+    });
+    page.on("pageerror", (error) => this.complaints.push(String(error)));
+    page.on("request", (request) => this.origins.add(new URL(request.url()).origin));
+  }
+
+  /** Opens the viewer in a new browser context and waits for the picture. */
+  static async open(browser: Browser, url: string, size = { width: 900, height: 620 }): Promise<ViewerPage> {
+    const context = await browser.newContext({ viewport: size });
+    const viewer = new ViewerPage(await context.newPage());
+    await viewer.page.goto(url);
+    await viewer.waitForPicture();
+    return viewer;
+  }
+
+  async waitForPicture(): Promise<void> {
+    const drawn = () => (window.phrenic?.tick() ?? -1) >= 0 && (window.phrenic?.pictures() ?? 0) > 1;
+    await this.page.waitForFunction(drawn, null, { timeout: 60_000 });
+  }
+
+  tick(): Promise<number> {
+    return this.page.evaluate(() => window.phrenic!.tick());
+  }
+
+  /** Every `stride`-th vertex of a body now [m], and the tick they belong to. */
+  sample(body: string, stride = 200): Promise<{ tick: number; points: [number, number, number][] }> {
+    return this.page.evaluate(
+      ([name, step]) => {
+        const hook = window.phrenic!;
+        const points: [number, number, number][] = [];
+        for (let i = 0; i < hook.vertices(name); i += step) points.push(hook.vertex(name, i));
+        return { tick: hook.tick(), points };
+      },
+      [body, stride] as const,
+    );
+  }
+
+  /** Waits until the link is in this state. */
+  async waitForLink(kind: string): Promise<void> {
+    await this.page.waitForSelector(`#link[data-link="${kind}"]`, { timeout: 60_000 });
+  }
+
+  async waitForTick(above: number): Promise<void> {
+    await this.page.waitForFunction((least) => window.phrenic!.tick() > least, above, { timeout: 30_000 });
+  }
+
+  /** Types a number into a parameter's entry. */
+  async type(parameter: string, value: number): Promise<void> {
+    const entry = this.page.locator(`#parameter-${parameter}-entry`);
+    await entry.fill(String(value));
+    await entry.press("Enter");
+    await entry.blur();
+  }
+
+  value(parameter: string): Promise<string> {
+    return this.page.inputValue(`#parameter-${parameter}-entry`);
+  }
+
+  /** Leaves a picture of the page in tests/e2e/out. */
+  async leave(name: string): Promise<void> {
+    mkdirSync(outFolder, { recursive: true });
+    await this.page.screenshot({ path: join(outFolder, `${name}.png`) });
+  }
+
+  close(): Promise<void> {
+    return this.page.context().close();
+  }
+}

@@ -1,0 +1,73 @@
+import type { Browser } from "playwright-core";
+import { afterAll, beforeAll, describe, expect, test } from "vitest";
+import { launchBrowser, ViewerPage } from "./browser";
+import { Server } from "./server";
+
+let server: Server;
+let browser: Browser;
+
+beforeAll(async () => {
+  browser = await launchBrowser();
+  server = await Server.start();
+});
+
+afterAll(async () => {
+  await browser?.close();
+  await server?.kill();
+});
+
+describe("a session made in the browser", () => {
+  for (const [scene, body] of [
+    ["cube-springs", "cube"],
+    ["cube-tensegrity", "cube"],
+    ["sheet-2d", "sheet"],
+  ]) {
+    test(`Of${scene}Moves`, async () => {
+      const viewer = await ViewerPage.open(browser, server.url);
+      await viewer.page.click("#session");
+      const title = await titleOf(viewer, scene);
+      await viewer.page.click(`button[aria-label="Start ${title}"]`);
+      await viewer.page.waitForURL((url) => !url.search.endsWith("=thorax"));
+      await viewer.waitForPicture();
+      const before = await viewer.sample(body, 1);
+      await viewer.waitForTick(before.tick + 20);
+      await viewer.page.waitForTimeout(1000);
+      expect((await viewer.sample(body, 1)).points).not.toEqual(before.points);
+      await viewer.page.check("#show-links");
+      await viewer.leave(scene);
+      expect(viewer.complaints).toEqual([]);
+      await viewer.close();
+    });
+  }
+
+  /** What the dialog calls a scene: the n-th row is the n-th that the server lists. */
+  async function titleOf(viewer: ViewerPage, scene: string): Promise<string> {
+    const row = viewer.page.locator(`.chooser li[data-scene="${scene}"] b`);
+    await row.waitFor();
+    return (await row.textContent()) ?? "";
+  }
+});
+
+test("AMissingSessionIsSaidAndOthersAreOffered", async () => {
+  const context = await browser.newContext();
+  const page = await context.newPage();
+  await page.goto(`${server.url}?session=nobody`);
+  await page.waitForSelector('#link[data-link="lost"]');
+  expect(await page.textContent("#banner-lost")).toContain("nobody");
+  await page.click('button:has-text("Choose a session")');
+  await page.click('.chooser button:has-text("Open")');
+  await page.waitForSelector('#link[data-link="live"]');
+  await context.close();
+});
+
+test("APhoneGetsThePictureFirst", async () => {
+  const viewer = await ViewerPage.open(browser, server.url, { width: 390, height: 780 });
+  expect(await viewer.page.isVisible("#panel")).toBe(false);
+  await viewer.leave("phone");
+  await viewer.page.click("#panel-toggle");
+  expect(await viewer.page.isVisible("#parameter-breathForce")).toBe(true);
+  await viewer.leave("phone-panel");
+  const wider = await viewer.page.evaluate(() => document.documentElement.scrollWidth > innerWidth);
+  expect(wider).toBe(false);
+  await viewer.close();
+});

@@ -1,0 +1,79 @@
+import { type ChildProcess, spawn } from "node:child_process";
+import { createWriteStream, existsSync, mkdirSync } from "node:fs";
+import { createServer } from "node:net";
+import { join, resolve } from "node:path";
+import { setTimeout as sleep } from "node:timers/promises";
+
+const here = import.meta.dirname;
+export const outFolder = join(here, "out");
+
+/** A phrenicd of the test's own, on ports that were free, with its log in tests/e2e/out. */
+export class Server {
+  private process: ChildProcess | undefined;
+
+  private constructor(
+    private readonly listen: number,
+    private readonly web: number,
+  ) {}
+
+  static async start(): Promise<Server> {
+    const server = new Server(await freePort(), await freePort());
+    await server.restart();
+    return server;
+  }
+
+  get url(): string {
+    return `http://127.0.0.1:${this.web}/`;
+  }
+
+  /** Starts the program again on the same ports; resolves when it serves the page. */
+  async restart(): Promise<void> {
+    mkdirSync(outFolder, { recursive: true });
+    const log = createWriteStream(join(outFolder, "phrenicd.log"), { flags: "a" });
+    const flags = ["--listen", `127.0.0.1:${this.listen}`, "--web", `127.0.0.1:${this.web}`];
+    const child = spawn(program(), flags, { stdio: ["ignore", "pipe", "pipe"] });
+    child.stdout.pipe(log, { end: false });
+    child.stderr.pipe(log, { end: false });
+    this.process = child;
+    for (const deadline = Date.now() + 60_000; Date.now() < deadline; await sleep(100)) {
+      if (child.exitCode !== null)
+        throw new Error(`phrenicd ended with ${child.exitCode}: see ${outFolder}/phrenicd.log.`);
+      if (await answers(this.url)) return;
+    }
+    throw new Error(`phrenicd did not serve ${this.url} within a minute: see ${outFolder}/phrenicd.log.`);
+  }
+
+  /** Ends it at once, as a crash would. */
+  async kill(): Promise<void> {
+    const child = this.process;
+    if (child === undefined || child.exitCode !== null || child.signalCode !== null) return;
+    const ended = new Promise((done) => child.once("exit", done));
+    child.kill("SIGKILL");
+    await ended;
+  }
+}
+
+function program(): string {
+  const path = resolve(process.env.PHRENIC_BINARY_DIR ?? join(here, "../../build"), "phrenicd");
+  if (existsSync(path)) return path;
+  throw new Error(`There is no ${path}: build it, or set PHRENIC_BINARY_DIR to the folder that has it.`);
+}
+
+async function answers(url: string): Promise<boolean> {
+  try {
+    return (await fetch(url)).ok;
+  } catch {
+    return false;
+  }
+}
+
+function freePort(): Promise<number> {
+  return new Promise((done, fail) => {
+    const server = createServer();
+    server.once("error", fail);
+    server.listen(0, "127.0.0.1", () => {
+      const address = server.address();
+      server.close(() => (typeof address === "object" && address !== null ? done(address.port) : fail(address)));
+    });
+  });
+}

@@ -1,0 +1,69 @@
+import type { Browser } from "playwright-core";
+import { afterAll, beforeAll, expect, test } from "vitest";
+import { launchBrowser, ViewerPage } from "./browser";
+import { Server } from "./server";
+
+let server: Server;
+let browsers: Browser[];
+let here: ViewerPage;
+let there: ViewerPage;
+
+beforeAll(async () => {
+  server = await Server.start();
+  browsers = [await launchBrowser(), await launchBrowser()];
+  here = await ViewerPage.open(browsers[0], server.url);
+  there = await ViewerPage.open(browsers[1], here.page.url());
+});
+
+afterAll(async () => {
+  for (const browser of browsers ?? []) await browser.close();
+  await server?.kill();
+});
+
+test("TwoBrowsersPlayTogether", async () => {
+  const [a, b] = await Promise.all([here.tick(), there.tick()]);
+  await Promise.all([here.waitForTick(a), there.waitForTick(b)]);
+  await here.page.waitForFunction(() => Number(document.querySelector("#status-viewers")?.textContent) === 2);
+});
+
+test("TwoBrowsersSeeTheSameVerticesAtTheSameTick", async () => {
+  await here.page.click('#play[aria-label="Pause"]');
+  await there.page.waitForSelector('#play[aria-label="Play"]');
+  await here.page.waitForTimeout(500);
+  const [a, b] = await Promise.all([here.sample("diaphragm", 50), there.sample("diaphragm", 50)]);
+  expect(b.tick).toBe(a.tick);
+  expect(b.points).toEqual(a.points);
+});
+
+test("ASliderMovedHereMovesThere", async () => {
+  await here.page.focus("#parameter-breathLength");
+  for (let i = 0; i < 5; i++) await here.page.keyboard.press("ArrowRight");
+  const set = await here.value("breathLength");
+  expect(Number(set)).toBeCloseTo(4.5, 6);
+  await there.page.waitForFunction(
+    (value) => document.querySelector<HTMLInputElement>("#parameter-breathLength")?.value === value,
+    set,
+  );
+  await there.page.uncheck("#parameter-applyMuscles");
+  await here.page.waitForFunction(() => !document.querySelector<HTMLInputElement>("#parameter-applyMuscles")?.checked);
+  await there.page.check("#parameter-applyMuscles");
+});
+
+test("ALostServerIsShownAndComesBack", async () => {
+  await here.page.click("#play");
+  await server.kill();
+  await here.waitForLink("lost");
+  expect(await here.page.textContent("#link")).toContain("retrying");
+  expect(await here.page.isVisible("#banner-lost")).toBe(true);
+  await here.leave("lost");
+  await server.restart();
+  await here.waitForLink("live");
+  await there.waitForLink("live");
+  expect(await here.page.isVisible("#banner-lost")).toBe(false);
+  await here.waitForTick(await here.tick());
+});
+
+test("OnlyTheLossWasWorthAComplaint", () => {
+  const expected = /net::ERR_/;
+  expect([...here.complaints, ...there.complaints].filter((text) => !expected.test(text))).toEqual([]);
+});

@@ -1,0 +1,179 @@
+import type { Browser } from "playwright-core";
+import { afterAll, beforeAll, beforeEach, describe, expect, test } from "vitest";
+import { launchBrowser, ViewerPage } from "./browser";
+import { canvasPicture, shareOfChangedPixels } from "./pixels";
+import { Server } from "./server";
+
+let server: Server;
+let browser: Browser;
+let viewer: ViewerPage;
+
+beforeAll(async () => {
+  browser = await launchBrowser();
+  server = await Server.start();
+  viewer = await ViewerPage.open(browser, server.url);
+});
+
+afterAll(async () => {
+  await browser?.close();
+  await server?.kill();
+});
+
+const play = () => viewer.page.locator('#play[aria-label="Play"]');
+const pause = () => viewer.page.locator('#play[aria-label="Pause"]');
+
+/** Height that the vertex next to the highest rest of the diaphragm goes through in one breath [m]. */
+async function domeTravel(seconds = 4.2): Promise<number> {
+  return viewer.page.evaluate(async (length) => {
+    const hook = window.phrenic!;
+    const count = hook.vertices("diaphragm");
+    let dome = 0;
+    for (let i = 0; i < count; i++) if (hook.vertex("diaphragm", i)[2] > hook.vertex("diaphragm", dome)[2]) dome = i;
+    let [low, high] = [Infinity, -Infinity];
+    for (const start = hook.time(); hook.time() < start + length;) {
+      const z = hook.vertex("diaphragm", dome)[2];
+      [low, high] = [Math.min(low, z), Math.max(high, z)];
+      await new Promise((resolve) => setTimeout(resolve, 30));
+    }
+    return high - low;
+  }, seconds);
+}
+
+/** Greatest way between two samples [m]. */
+function greatestMove(a: [number, number, number][], b: [number, number, number][]): number {
+  return Math.max(...a.map((p, i) => Math.hypot(p[0] - b[i][0], p[1] - b[i][1], p[2] - b[i][2])));
+}
+
+describe("the thorax in the browser", () => {
+  test("IsThereAndLive", async () => {
+    await viewer.waitForLink("live");
+    const bodies = await viewer.page.evaluate(() => window.phrenic!.bodies());
+    expect(bodies).toContain("diaphragm");
+    expect(bodies.length).toBeGreaterThan(30);
+    expect(await viewer.page.textContent("#disclaimer")).toBe("Research and teaching; not for clinical use");
+  });
+
+  test("ItsDiaphragmsVerticesMove", async () => {
+    const before = await viewer.sample("diaphragm");
+    await viewer.waitForTick(before.tick);
+    let greatest = 0;
+    for (let i = 0; i < 8; i++) {
+      await viewer.page.waitForTimeout(250);
+      greatest = Math.max(greatest, greatestMove(before.points, (await viewer.sample("diaphragm")).points));
+    }
+    expect(greatest).toBeGreaterThan(0.002);
+  });
+
+  test("ItsDiaphragmsPixelsMove", async () => {
+    const boxes = viewer.page.locator('.layer-name input[type="checkbox"]');
+    const others = viewer.page.locator(".layer-name", { hasNotText: "Diaphragm" }).locator("input");
+    expect(await boxes.count()).toBeGreaterThan(3);
+    for (const box of await others.all()) await box.uncheck();
+    await viewer.page.waitForTimeout(1000);
+    const first = await canvasPicture(viewer);
+    const from = await viewer.tick();
+    let greatest = 0;
+    for (let i = 0; i < 5; i++) {
+      await viewer.page.waitForTimeout(500);
+      greatest = Math.max(greatest, await shareOfChangedPixels(browser, first, await canvasPicture(viewer)));
+    }
+    await viewer.leave("diaphragm");
+    for (const box of await others.all()) await box.check();
+    expect(await viewer.tick()).toBeGreaterThan(from);
+    expect(greatest).toBeGreaterThan(0.005);
+  });
+
+  test("BreathForceChangesTheMotion", async () => {
+    const quiet = await domeTravel();
+    await viewer.type("breathForce", 2);
+    // One breath to grow into the new force.
+    await viewer.page.waitForTimeout(4000);
+    const strong = await domeTravel();
+    await viewer.page.click('[aria-label="Reset breath force"]');
+    await viewer.page.waitForFunction(
+      () => document.querySelector<HTMLInputElement>("#parameter-breathForce-entry")?.value === "1",
+    );
+    expect(quiet).toBeGreaterThan(0.003);
+    expect(strong).toBeGreaterThan(1.3 * quiet);
+  });
+});
+
+describe("the buttons", () => {
+  beforeEach(async () => {
+    if (await play().isVisible()) await play().click();
+    await pause().waitFor();
+  });
+
+  test("PauseHoldsTheTickAndPlayGoesOn", async () => {
+    await pause().click();
+    await play().waitFor();
+    await viewer.page.waitForTimeout(500);
+    const held = await viewer.tick();
+    await viewer.page.waitForTimeout(700);
+    expect(await viewer.tick()).toBe(held);
+    await play().click();
+    await viewer.waitForTick(held);
+  });
+
+  test("StepTakesTheChosenTicks", async () => {
+    await pause().click();
+    await play().waitFor();
+    await viewer.page.waitForTimeout(500);
+    const held = await viewer.tick();
+    await viewer.page.selectOption("#stride", "10");
+    await viewer.page.click("#step");
+    await viewer.waitForTick(held);
+    expect(await viewer.tick()).toBe(held + 10);
+  });
+
+  test("ResetGoesBackToTheStart", async () => {
+    await pause().click();
+    await play().waitFor();
+    await viewer.page.click("#reset");
+    await viewer.page.waitForFunction(() => window.phrenic!.tick() === 0);
+    expect(await viewer.page.evaluate(() => window.phrenic!.time())).toBe(0);
+  });
+
+  test("SpeedChangesThePace", async () => {
+    await viewer.page.selectOption("#speed", "0.1");
+    await viewer.page.waitForTimeout(300);
+    const start = await viewer.page.evaluate(() => window.phrenic!.time());
+    await viewer.page.waitForTimeout(3000);
+    const passed = (await viewer.page.evaluate(() => window.phrenic!.time())) - start;
+    await viewer.page.selectOption("#speed", "1");
+    expect(passed).toBeGreaterThan(0.15);
+    expect(passed).toBeLessThan(0.6);
+  });
+
+  test("OverlaysAreDrawn", async () => {
+    await pause().click();
+    await play().waitFor();
+    await viewer.page.locator("#transparency").fill("70");
+    await viewer.page.waitForTimeout(1500);
+    const plain = await canvasPicture(viewer);
+    for (const kind of ["wireframe", "links", "lines", "attachments"]) {
+      await viewer.page.check(`#show-${kind}`);
+      await viewer.page.waitForTimeout(1500);
+      expect(await shareOfChangedPixels(browser, plain, await canvasPicture(viewer)), kind).toBeGreaterThan(0.0005);
+      await viewer.leave(`overlay-${kind}`);
+      await viewer.page.uncheck(`#show-${kind}`);
+    }
+    await viewer.page.locator("#transparency").fill("0");
+  });
+});
+
+describe("the report", () => {
+  test("SaysWhatRunsAndHowLargeAStepMayBe", async () => {
+    await viewer.page.click('summary:has-text("What runs")');
+    const text = await viewer.page.textContent(".report");
+    expect(text).toContain("rigid links");
+    expect(text).toMatch(/Largest stable step [0-9.]+ ms/);
+    await viewer.leave("report");
+    await viewer.page.click('summary:has-text("What runs")');
+  });
+});
+
+test("ThePageKeepsToItsOwnServerAndHasNothingToComplainAbout", () => {
+  expect([...viewer.origins]).toEqual([new URL(server.url).origin]);
+  expect(viewer.complaints).toEqual([]);
+});
