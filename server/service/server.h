@@ -1,0 +1,53 @@
+// The server as a whole: sessions, gRPC services over a socket and in process, and the web gateway.
+#ifndef PHRENIC_SERVER_SERVICE_SERVER_H_
+#define PHRENIC_SERVER_SERVICE_SERVER_H_
+
+#include <grpcpp/channel.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "server/session/limits.h"
+
+namespace phrenic::service {
+
+struct ServerOptions {
+  std::string listen;                         // "127.0.0.1:50051", port 0 chooses one; empty: in process only
+  std::string web;                            // "127.0.0.1:8080", port 0 chooses one; empty: no web gateway
+  std::string data_dir;                       // surface files of scenes, and DATA/scenes; empty: none
+  std::string scenes_dir = PHRENIC_SCENES_DIR;
+  std::string web_root = PHRENIC_WEB_DIR;
+  std::vector<std::string> allowed_origins;   // "https://host:port" beside the gateway's own and loopback ones
+  session::Limits limits;
+  int max_message_bytes = 16 << 20;           // of a request
+  int max_web_connections = 256;
+};
+
+// Any thread may call. Its own threads: gRPC's, the gateway's, and two a session.
+class Server {
+ public:
+  // UNAVAILABLE names the address that could not be listened on; NOT_FOUND the folder that is missing.
+  static absl::StatusOr<std::unique_ptr<Server>> Start(const ServerOptions& options);
+  ~Server();
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  // The same services without a socket; ends with the server.
+  std::shared_ptr<grpc::Channel> InProcessChannel();
+  // The ports that are listened on; 0 where there is none.
+  int port() const;
+  int web_port() const;
+  // Ends calls and sessions, within about two seconds; a second call does nothing.
+  void Shutdown();
+
+ private:
+  struct Parts;
+  explicit Server(std::unique_ptr<Parts> parts);
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace phrenic::service
+
+#endif  // PHRENIC_SERVER_SERVICE_SERVER_H_
