@@ -1,0 +1,108 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include "server/schema/schema.h"
+
+namespace phrenic::schema {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+constexpr char kSound[] = R"(# Comments are allowed.
+name: "sheet"
+bodies {
+  name: "sheet"
+  role: ROLE_DEFORMABLE
+  grid { columns: 2 rows: 2 u { x: 1 } v { y: 1 } }
+}
+forces { springs { bodies: "sheet" stiffness: 5 } }
+)";
+
+// The sound scene with `from` replaced by `to`.
+std::string With(const std::string& from, const std::string& to) {
+  std::string text = kSound;
+  return text.replace(text.find(from), from.size(), to);
+}
+
+std::string Refusal(const std::string& text) {
+  const auto scene = ParseScene("lung.textproto", text);
+  EXPECT_EQ(scene.status().code(), absl::StatusCode::kInvalidArgument);
+  return std::string(scene.status().message());
+}
+
+TEST(ParseScene, ReadsASoundScene) {
+  const auto scene = ParseScene("lung.textproto", kSound);
+  ASSERT_TRUE(scene.ok()) << scene.status();
+  EXPECT_EQ(scene->name(), "sheet");
+  EXPECT_EQ(scene->forces(0).springs().stiffness(), 5);
+}
+
+TEST(ParseScene, FillsNoDefaults) {
+  const auto scene = ParseScene("lung.textproto", kSound);
+  ASSERT_TRUE(scene.ok()) << scene.status();
+  EXPECT_FALSE(scene->bodies(0).has_mass());
+}
+
+TEST(ParseScene, PlacesSyntaxErrors) {
+  EXPECT_THAT(Refusal(With("role: ROLE_DEFORMABLE", "role = 1")), StartsWith("lung.textproto:5:8: "));
+  EXPECT_THAT(Refusal(With("grid {", "grid ")), StartsWith("lung.textproto:6:"));
+}
+
+TEST(ParseScene, PlacesUnknownFieldsAndNamesThem) {
+  const std::string refusal = Refusal(With("stiffness", "stifness"));
+  EXPECT_THAT(refusal, StartsWith("lung.textproto:8:"));
+  EXPECT_THAT(refusal, HasSubstr("stifness"));
+}
+
+TEST(ParseScene, PlacesUnknownEnumNames) {
+  const std::string refusal = Refusal(With("ROLE_DEFORMABLE", "ROLE_SOFT"));
+  EXPECT_THAT(refusal, StartsWith("lung.textproto:6:3: "));  // the parser has read on to the next word
+  EXPECT_THAT(refusal, HasSubstr("ROLE_SOFT"));
+  EXPECT_THAT(refusal, HasSubstr("role"));
+}
+
+TEST(ParseScene, PlacesNumbersOutsideTheirRange) {
+  EXPECT_EQ(Refusal(With("stiffness: 5", "stiffness: -5")),
+            "lung.textproto:8:36: forces[0].springs.stiffness: -5 is outside 0 to 1e+09 N/m");
+}
+
+TEST(ParseScene, PlacesWhatIsMissingAtTheMessageThatLacksIt) {
+  EXPECT_EQ(Refusal(With("u { x: 1 }", "")), "lung.textproto:6:3: bodies[0].grid.u: must be set: every Grid needs it");
+  EXPECT_THAT(Refusal(With("name: \"sheet\"\nbodies", "bodies")), StartsWith("lung.textproto: name: must be set"));
+}
+
+TEST(ParseScene, RefusesNaN) {
+  EXPECT_THAT(Refusal(With("stiffness: 5", "stiffness: nan")), HasSubstr("nan is not a finite number"));
+}
+
+TEST(ParseScene, RefusesNestingWithoutEnd) {
+  std::string text = kSound;
+  for (int i = 0; i < 100000; ++i) text += "bodies { ";
+  EXPECT_THAT(Refusal(text), StartsWith("lung.textproto:9:"));
+}
+
+TEST(ParseScene, RefusesAnEmptyFile) { EXPECT_THAT(Refusal(""), HasSubstr("name: must be set")); }
+
+TEST(ParseScene, EveryShippedSceneIsSound) {
+  int scenes = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(PHRENIC_SOURCE_DIR "/server/scenes")) {
+    if (entry.path().extension() != ".textproto") continue;
+    std::stringstream text;
+    text << std::ifstream(entry.path()).rdbuf();
+    const auto scene = ParseScene(entry.path().filename().string(), text.str());
+    EXPECT_TRUE(scene.ok()) << scene.status();
+    if (!scene.ok()) continue;
+    EXPECT_EQ(scene->name(), entry.path().stem().string());
+    ++scenes;
+  }
+  EXPECT_GE(scenes, 3);
+}
+
+}  // namespace
+}  // namespace phrenic::schema

@@ -1,0 +1,98 @@
+// Laws over the schema itself, whatever fields it has.
+#include "server/schema/schema.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <set>
+
+#include "phrenic/v1/export.pb.h"
+#include "phrenic/v1/frames.pb.h"
+#include "phrenic/v1/session.pb.h"
+#include "server/schema/fields.h"
+
+namespace phrenic::schema {
+namespace {
+
+using google::protobuf::Descriptor;
+using google::protobuf::FieldDescriptor;
+
+// Visits every field that a request can hold.
+void ForEachField(const std::function<void(const FieldDescriptor&)>& visit) {
+  std::set<const Descriptor*> seen;
+  const std::function<void(const Descriptor*)> walk = [&](const Descriptor* type) {
+    if (!seen.insert(type).second) return;
+    for (int i = 0; i < type->field_count(); ++i) {
+      visit(*type->field(i));
+      if (type->field(i)->message_type() != nullptr) walk(type->field(i)->message_type());
+    }
+  };
+  for (const auto* file : {v1::SceneSource::descriptor()->file(), v1::ExportMotionRequest::descriptor()->file(),
+                           v1::WatchFramesRequest::descriptor()->file()}) {
+    for (int i = 0; i < file->message_type_count(); ++i) walk(file->message_type(i));
+  }
+}
+
+bool IsNumber(const FieldDescriptor& field) {
+  switch (field.cpp_type()) {
+    case FieldDescriptor::CPPTYPE_DOUBLE:
+    case FieldDescriptor::CPPTYPE_INT32:
+    case FieldDescriptor::CPPTYPE_INT64:
+      return true;
+    default:
+      return false;
+  }
+}
+
+TEST(Schema, QuantitiesStandOnNumbersWithUnitAndRange) {
+  int quantities = 0;
+  ForEachField([&](const FieldDescriptor& field) {
+    const v1::Quantity* quantity = QuantityOf(field);
+    if (quantity == nullptr) return;
+    ++quantities;
+    EXPECT_TRUE(IsNumber(field)) << field.full_name();
+    EXPECT_FALSE(quantity->unit().empty()) << field.full_name() << " has no unit; a pure number's is \"1\"";
+    EXPECT_LT(quantity->minimum(), quantity->maximum()) << field.full_name();
+  });
+  EXPECT_GT(quantities, 20);
+}
+
+TEST(Schema, DefaultsLieInTheirRanges) {
+  ForEachField([](const FieldDescriptor& field) {
+    const v1::Quantity* quantity = QuantityOf(field);
+    if (quantity == nullptr || quantity->automatic() || !field.has_presence()) return;
+    EXPECT_EQ(NumberProblem(quantity->default_value(), quantity), std::nullopt) << field.full_name();
+  });
+}
+
+TEST(Schema, TogglesStandOnSwitchesThatKnowWhetherTheyAreSet) {
+  ForEachField([](const FieldDescriptor& field) {
+    if (ToggleOf(field) == nullptr) return;
+    EXPECT_EQ(field.cpp_type(), FieldDescriptor::CPPTYPE_BOOL) << field.full_name();
+    EXPECT_TRUE(field.has_presence()) << field.full_name() << " must be optional";
+  });
+}
+
+TEST(Schema, ParametersAreOptionalRealsAndSwitchesWithLabelAndHelp) {
+  const Descriptor& type = *v1::Parameters::descriptor();
+  for (int i = 0; i < type.field_count(); ++i) {
+    const FieldDescriptor& field = *type.field(i);
+    EXPECT_TRUE(field.has_presence()) << field.name();
+    const v1::Quantity* quantity = QuantityOf(field);
+    const v1::Toggle* toggle = ToggleOf(field);
+    ASSERT_NE(quantity == nullptr, toggle == nullptr) << field.name() << " needs a quantity or a toggle";
+    EXPECT_EQ(field.cpp_type(), quantity ? FieldDescriptor::CPPTYPE_DOUBLE : FieldDescriptor::CPPTYPE_BOOL);
+    EXPECT_FALSE((quantity ? quantity->label() : toggle->label()).empty()) << field.name();
+    EXPECT_FALSE((quantity ? quantity->help() : toggle->help()).empty()) << field.name();
+  }
+}
+
+TEST(Schema, NumbersAreWrittenAsShortAsTheyReadBack) {
+  EXPECT_EQ(FormatNumber(0.1), "0.1");
+  EXPECT_EQ(FormatNumber(1e9), "1e+09");
+  EXPECT_EQ(FormatNumber(-2.5), "-2.5");
+  EXPECT_EQ(std::stod(FormatNumber(1.0 / 3)), 1.0 / 3);
+}
+
+}  // namespace
+}  // namespace phrenic::schema
