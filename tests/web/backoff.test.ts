@@ -3,9 +3,7 @@ import { Backoff } from "../../web/src/backoff";
 
 test("WaitsDoubleUpToTheLongest", () => {
   const backoff = new Backoff(500, 3000, () => 0);
-  expect([1, 2, 3, 4, 5].map(() => backoff.next())).toEqual([
-    500, 1000, 2000, 3000, 3000,
-  ]);
+  expect([1, 2, 3, 4, 5].map(() => backoff.next())).toEqual([500, 1000, 2000, 3000, 3000]);
 });
 
 test("JitterTakesAtMostHalf", () => {

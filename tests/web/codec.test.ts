@@ -1,25 +1,12 @@
 import { create } from "@bufbuild/protobuf";
 import { describe, expect, test } from "vitest";
-import {
-  decodeBody,
-  decodeFrame,
-  floats,
-  indices,
-  positionsOf,
-  vertexAt,
-} from "../../web/src/codec";
-import {
-  FrameSchema,
-  GetGeometryResponseSchema,
-  Placement,
-} from "../../web/src/gen/phrenic/v1/frames_pb";
+import { decodeBody, decodeFrame, floats, indices, positionsOf, vertexAt } from "../../web/src/codec";
+import { FrameSchema, GetGeometryResponseSchema, Placement } from "../../web/src/gen/phrenic/v1/frames_pb";
 import { bytesOf, triangleBody } from "./fake_server";
 
 describe("numbers on the wire", () => {
   test("FloatsAreLittleEndian", () => {
-    expect([
-      ...floats(new Uint8Array([0, 0, 128, 63, 0, 0, 0, 192]), 1, "x"),
-    ]).toEqual([1, -2]);
+    expect([...floats(new Uint8Array([0, 0, 128, 63, 0, 0, 0, 192]), 1, "x")]).toEqual([1, -2]);
   });
 
   test("BytesNeedNotBeAligned", () => {
@@ -28,9 +15,7 @@ describe("numbers on the wire", () => {
   });
 
   test("AnIncompleteGroupIsRefusedByName", () => {
-    expect(() => floats(new Uint8Array(16), 3, "positions")).toThrow(
-      "positions: 16 bytes are no multiple of 12",
-    );
+    expect(() => floats(new Uint8Array(16), 3, "positions")).toThrow("positions: 16 bytes are no multiple of 12");
   });
 
   test("AnIndexPastTheEndIsRefusedByName", () => {
@@ -45,28 +30,18 @@ describe("a vertex in a frame", () => {
   const frame = (fields: object) => decodeFrame(create(FrameSchema, fields));
 
   test("OfAStreamedBodyComesFromItsPartOfThePositions", () => {
-    const body = decodeBody(
-      triangleBody({ placement: Placement.STREAMED, firstVertex: 1 }),
-    );
-    const positions = bytesOf(
-      new Float32Array([9, 9, 9, 1, 2, 3, 4, 5, 6, 7, 8, 9]),
-    );
+    const body = decodeBody(triangleBody({ placement: Placement.STREAMED, firstVertex: 1 }));
+    const positions = bytesOf(new Float32Array([9, 9, 9, 1, 2, 3, 4, 5, 6, 7, 8, 9]));
     expect(vertexAt(body, frame({ positions }), 1)).toEqual([4, 5, 6]);
   });
 
   test("OfARigidBodyIsItsRestTurnedAndMoved", () => {
-    const body = decodeBody(
-      triangleBody({ placement: Placement.RIGID, pose: 1 }),
-    );
+    const body = decodeBody(triangleBody({ placement: Placement.RIGID, pose: 1 }));
     const half = Math.SQRT1_2;
     // A quarter turn about +z, then 10 m along +x: (1, 0, 0) goes to (10, 1, 0).
-    const poses = bytesOf(
-      new Float32Array([0, 0, 0, 1, 0, 0, 0, 0, 0, half, half, 10, 0, 0]),
-    );
+    const poses = bytesOf(new Float32Array([0, 0, 0, 1, 0, 0, 0, 0, 0, half, half, 10, 0, 0]));
     const [x, y, z] = vertexAt(body, frame({ poses }), 1);
-    expect([x, y, z].map((value) => Math.round(1e6 * value) / 1e6)).toEqual([
-      10, 1, 0,
-    ]);
+    expect([x, y, z].map((value) => Math.round(1e6 * value) / 1e6)).toEqual([10, 1, 0]);
   });
 
   test("OfAStillBodyIsItsRest", () => {
@@ -76,17 +51,15 @@ describe("a vertex in a frame", () => {
 
   test("IsRefusedWhereTheFrameIsTooShort", () => {
     const body = decodeBody(triangleBody({ placement: Placement.STREAMED }));
-    expect(() =>
-      positionsOf(body, frame({ positions: new Uint8Array(12) })),
-    ).toThrow("before the vertices of triangle");
+    expect(() => positionsOf(body, frame({ positions: new Uint8Array(12) }))).toThrow(
+      "before the vertices of triangle",
+    );
   });
 });
 
 describe("a body", () => {
   test("WithNoLayerMakesItsOwn", () => {
-    const body = decodeBody(
-      create(GetGeometryResponseSchema, { name: "sheet" }),
-    );
+    const body = decodeBody(create(GetGeometryResponseSchema, { name: "sheet" }));
     expect([body.layer, body.layerTitle]).toEqual(["sheet", "sheet"]);
   });
 
@@ -94,8 +67,6 @@ describe("a body", () => {
     const message = triangleBody({
       actionLines: [{ name: "a", origin: [0, 0, 0], direction: [] }],
     });
-    expect(() => decodeBody(message)).toThrow(
-      "action_lines.direction: 0 numbers instead of 3",
-    );
+    expect(() => decodeBody(message)).toThrow("action_lines.direction: 0 numbers instead of 3");
   });
 });

@@ -12,10 +12,7 @@ let freshSessions: number;
 let connection: Connection;
 
 const sink: Sink = {
-  link: (link) =>
-    links.at(-1)?.kind === link.kind && link.kind === "live"
-      ? undefined
-      : links.push(link),
+  link: (link) => (links.at(-1)?.kind === link.kind && link.kind === "live" ? undefined : links.push(link)),
   scene: () => {},
   session: (_session, fresh) => (freshSessions += fresh ? 1 : 0),
   frame: (frame) => ticks.push(frame.tick),
@@ -25,20 +22,8 @@ const kinds = () => links.map((link) => link.kind);
 const frame = (tick: bigint) => ({ case: "frame" as const, value: { tick } });
 
 beforeEach(() => {
-  [server, clock, links, ticks, freshSessions] = [
-    new FakeServer(),
-    new FakeClock(),
-    [],
-    [],
-    0,
-  ];
-  connection = new Connection(
-    server.api,
-    "thorax",
-    sink,
-    clock,
-    new Backoff(500, 10_000, () => 0),
-  );
+  [server, clock, links, ticks, freshSessions] = [new FakeServer(), new FakeClock(), [], [], 0];
+  connection = new Connection(server.api, "thorax", sink, clock, new Backoff(500, 10_000, () => 0));
   void connection.run();
 });
 
@@ -131,6 +116,17 @@ test("RetryNowEndsTheWait", async () => {
   connection.retryNow();
   await settle();
   expect(links.at(-1)).toEqual({ kind: "live" });
+});
+
+test("AnotherRateIsAskedForWithoutALoss", async () => {
+  await settle();
+  connection.setMaxFps(10);
+  await settle();
+  expect(server.rates).toEqual([0, 10]);
+  expect(kinds()).toEqual(["connecting", "live"]);
+  server.send(frame(7n));
+  await settle();
+  expect(ticks).toEqual([7n]);
 });
 
 test("NothingIsAskedAfterStop", async () => {

@@ -9,8 +9,7 @@ import { FakeServer } from "./fake_server";
 let server: FakeServer;
 let controller: Controller;
 
-const at = (revision: bigint) =>
-  create(SessionSchema, { id: "thorax", revision });
+const at = (revision: bigint) => create(SessionSchema, { id: "thorax", revision });
 
 beforeEach(() => {
   server = new FakeServer();
@@ -38,9 +37,7 @@ test("OnlyTheChangedParameterIsSent", async () => {
 
 test("ARefusalIsShownInTheServersWords", async () => {
   server.api.sessions.playSession = () =>
-    Promise.reject(
-      new ConnectError("speed: 1000 is above 100", Code.InvalidArgument),
-    );
+    Promise.reject(new ConnectError("speed: 1000 is above 100", Code.InvalidArgument));
   await controller.play(1000);
   expect(controller.notice.value).toBe("speed: 1000 is above 100");
 });

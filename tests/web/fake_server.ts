@@ -7,24 +7,16 @@ import {
   Placement,
   type WatchFramesResponseSchema,
 } from "../../web/src/gen/phrenic/v1/frames_pb";
-import {
-  SessionSchema,
-  SessionService,
-  SessionState,
-} from "../../web/src/gen/phrenic/v1/session_pb";
+import { SessionSchema, SessionService, SessionState } from "../../web/src/gen/phrenic/v1/session_pb";
 
 type Event = MessageInitShape<typeof WatchFramesResponseSchema>["event"];
 
-export function bytesOf(
-  numbers: Float32Array | Uint32Array,
-): Uint8Array<ArrayBuffer> {
+export function bytesOf(numbers: Float32Array | Uint32Array): Uint8Array<ArrayBuffer> {
   return new Uint8Array(numbers.buffer.slice(0) as ArrayBuffer);
 }
 
 /** One triangle with corners at 0, x and y. */
-export function triangleBody(
-  fields: MessageInitShape<typeof GetGeometryResponseSchema>,
-) {
+export function triangleBody(fields: MessageInitShape<typeof GetGeometryResponseSchema>) {
   return create(GetGeometryResponseSchema, {
     bodyCount: 1,
     name: "triangle",
@@ -46,6 +38,8 @@ export class FakeServer {
   sceneHash = "abc";
   down = false;
   geometryCalls = 0;
+  /** The frame rates that watchers asked for. */
+  readonly rates: number[] = [];
   readonly updates: object[] = [];
   private emitters = new Set<(event: Event | "end") => void>();
 
@@ -85,17 +79,13 @@ export class FakeServer {
         server.geometryCalls++;
         yield server.answer(triangleBody({}));
       },
-      async *watchFrames(
-        _request: unknown,
-        { signal }: { signal: AbortSignal },
-      ) {
+      async *watchFrames({ maxFps }: { maxFps: number }, { signal }: { signal: AbortSignal }) {
         yield server.answer({
           event: { case: "session" as const, value: server.session },
         });
         for (;;) {
           const event = await server.next(signal);
-          if (event === "end")
-            throw new ConnectError("connection reset", Code.Unavailable);
+          if (event === "end") throw new ConnectError("connection reset", Code.Unavailable);
           yield { event };
         }
       },
@@ -114,8 +104,7 @@ export class FakeServer {
   }
 
   private answer<T>(value: T): T {
-    if (this.down)
-      throw new ConnectError("connection refused", Code.Unavailable);
+    if (this.down) throw new ConnectError("connection refused", Code.Unavailable);
     return value;
   }
 }

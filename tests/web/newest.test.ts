@@ -47,9 +47,7 @@ test("ChangesOfDifferentValuesTravelTogether", async () => {
 
 test("OneCallAtATime", async () => {
   let release = () => {};
-  const { sent, clock, queue } = sender(
-    () => new Promise((resolve) => (release = resolve)),
-  );
+  const { sent, clock, queue } = sender(() => new Promise((resolve) => (release = resolve)));
   queue.push({ force: 1 });
   queue.push({ force: 2 });
   await clock.advance(1000);
@@ -62,10 +60,7 @@ test("OneCallAtATime", async () => {
 test("AValueIsPendingUntilItIsAnswered", async () => {
   const { clock, queue } = sender();
   queue.push({ force: 1 });
-  expect([queue.pending("force"), queue.pending("length")]).toEqual([
-    true,
-    false,
-  ]);
+  expect([queue.pending("force"), queue.pending("length")]).toEqual([true, false]);
   await clock.advance(100);
   expect(queue.pending("force")).toBe(false);
 });

@@ -10,22 +10,16 @@ import {
 } from "../../web/src/schema";
 
 const controls = parameterControls();
-const numbers = controls.filter(
-  (control): control is NumberControl => control.kind === "number",
-);
-const find = (field: string) =>
-  numbers.find((control) => control.field === field)!;
+const numbers = controls.filter((control): control is NumberControl => control.kind === "number");
+const find = (field: string) => numbers.find((control) => control.field === field)!;
 
 describe("controls from the schema", () => {
   test("EveryLiveParameterHasOneInTheSchemasOrder", () => {
-    expect(controls.map((control) => control.field)).toEqual(
-      ParametersSchema.fields.map((field) => field.localName),
-    );
+    expect(controls.map((control) => control.field)).toEqual(ParametersSchema.fields.map((field) => field.localName));
   });
 
   test("EachIsLabelledAndExplained", () => {
-    for (const { label, help } of controls)
-      expect([label.length > 0, help.length > 0]).toEqual([true, true]);
+    for (const { label, help } of controls) expect([label.length > 0, help.length > 0]).toEqual([true, true]);
   });
 
   test("RangesUnitsAndDefaultsAreTheFieldOptions", () => {
@@ -37,55 +31,40 @@ describe("controls from the schema", () => {
       step: 0.1,
     });
     expect(find("breathForce").unit).toBe("");
-    expect(
-      controls.find((control) => control.field === "applyMuscles"),
-    ).toMatchObject({
+    expect(controls.find((control) => control.field === "applyMuscles")).toMatchObject({
       kind: "switch",
       defaultValue: true,
     });
   });
 
   test("RangesOverThreeDecadesAreLogarithmic", () => {
-    expect(
-      numbers
-        .filter((control) => control.logarithmic)
-        .map((control) => control.field),
-    ).toEqual(["timeStep", "elasticity"]);
+    expect(numbers.filter((control) => control.logarithmic).map((control) => control.field)).toEqual([
+      "timeStep",
+      "elasticity",
+    ]);
   });
 });
 
 describe("a slider", () => {
   test("KeepsTheValueThatItShows", () => {
     for (const control of numbers) {
-      for (const value of [
-        control.minimum,
-        control.maximum,
-        control.defaultValue || control.minimum,
-      ]) {
-        expect(valueAt(control, positionOf(control, value))).toBeCloseTo(
-          value,
-          9,
-        );
+      for (const value of [control.minimum, control.maximum, control.defaultValue || control.minimum]) {
+        expect(valueAt(control, positionOf(control, value))).toBeCloseTo(value, 9);
       }
     }
   });
 
   test("NeverLeavesTheRange", () => {
     for (const control of numbers) {
-      for (const position of [-1e3, 1e3])
-        expect(faultOf(control, valueAt(control, position))).toBeUndefined();
+      for (const position of [-1e3, 1e3]) expect(faultOf(control, valueAt(control, position))).toBeUndefined();
     }
   });
 });
 
 describe("a typed number", () => {
   test("PastTheRangeIsRefusedWithTheRange", () => {
-    expect(faultOf(find("breathLength"), 31)).toBe(
-      "Breath length goes from 0.5 to 30 s.",
-    );
-    expect(faultOf(find("breathForce"), -0.1)).toBe(
-      "Breath force goes from 0 to 20.",
-    );
+    expect(faultOf(find("breathLength"), 31)).toBe("Breath length goes from 0.5 to 30 s.");
+    expect(faultOf(find("breathForce"), -0.1)).toBe("Breath force goes from 0 to 20.");
   });
 
   test("ThatIsNoneIsRefused", () => {
@@ -93,10 +72,6 @@ describe("a typed number", () => {
   });
 
   test("IsShownWithFourDigits", () => {
-    expect([0.1 + 0.2, 1234.56, 1.5e-5].map(formatNumber)).toEqual([
-      "0.3",
-      "1235",
-      "0.000015",
-    ]);
+    expect([0.1 + 0.2, 1234.56, 1.5e-5].map(formatNumber)).toEqual(["0.3", "1235", "0.000015"]);
   });
 });

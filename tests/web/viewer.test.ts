@@ -4,27 +4,20 @@ import { describe, expect, test } from "vitest";
 import { edgesOf } from "../../web/src/viewer/edges";
 import { computeNormals } from "../../web/src/viewer/normals";
 import { tendonWeights } from "../../web/src/viewer/tendon";
-import { letterOf, standpoint } from "../../web/src/viewer/views";
+import { Sharpness } from "../../web/src/viewer/sharpness";
+import { letterOf, openingView, standpoint, type ViewName } from "../../web/src/viewer/views";
 
-const loose = new THREE.IcosahedronGeometry(1, 4)
-  .deleteAttribute("normal")
-  .deleteAttribute("uv");
+const loose = new THREE.IcosahedronGeometry(1, 4).deleteAttribute("normal").deleteAttribute("uv");
 const sphere = mergeVertices(loose);
 
 test("NormalsOfASpherePointOutward", () => {
   const positions = sphere.getAttribute("position").array as Float32Array;
-  const triangles = Uint32Array.from(
-    { length: positions.length / 3 },
-    (_, i) => i,
-  );
+  const triangles = Uint32Array.from(sphere.getIndex()!.array);
   const normals = new Float32Array(positions.length);
   computeNormals(positions, triangles, normals);
   for (let i = 0; i < positions.length; i += 3) {
-    const cosine = [0, 1, 2].reduce(
-      (sum, k) => sum + normals[i + k] * positions[i + k],
-      0,
-    );
-    expect(cosine).toBeGreaterThan(0.99);
+    const cosine = [0, 1, 2].reduce((sum, k) => sum + normals[i + k] * positions[i + k], 0);
+    expect(cosine).toBeGreaterThan(0.999);
   }
 });
 
@@ -35,10 +28,7 @@ test("AVertexWithoutATriangleHasNoNormalButIsFinite", () => {
 });
 
 test("EachEdgeOfATetrahedronComesOnce", () => {
-  const edges = edgesOf(
-    new Uint32Array([0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2]),
-    4,
-  );
+  const edges = edgesOf(new Uint32Array([0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2]), 4);
   expect([...edges]).toEqual([0, 1, 0, 2, 0, 3, 1, 2, 1, 3, 2, 3]);
 });
 
@@ -52,40 +42,65 @@ test("TendonFadesFromItsLinksOutward", () => {
 
 describe("views", () => {
   const camera = new THREE.PerspectiveCamera(26, 1.5);
-  const box = new THREE.Box3(
-    new THREE.Vector3(-0.15, -0.1, 1),
-    new THREE.Vector3(0.15, 0.1, 1.4),
+  const center = new THREE.Vector3(0, 0, 1.2);
+  const corners = Array.from(
+    { length: 8 },
+    (_, i) => new THREE.Vector3(i & 1 ? 0.15 : -0.15, i & 2 ? 0.1 : -0.1, i & 4 ? 1.4 : 1),
   );
+  const look = (view: ViewName, free = 1) => {
+    camera.up.set(0, 0, 1);
+    camera.position.copy(standpoint(view, corners, center, camera, free));
+    camera.lookAt(center);
+    camera.updateMatrixWorld();
+  };
 
   test("FromTheFrontThePatientsLeftIsOnTheRight", () => {
-    camera.up.set(0, 0, 1);
-    camera.position.copy(standpoint("front", box, camera));
-    camera.lookAt(box.getCenter(new THREE.Vector3()));
-    camera.updateMatrixWorld();
-    expect(
-      letterOf(new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, 0)),
-    ).toBe("L");
-    expect(
-      letterOf(new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, 1)),
-    ).toBe("S");
+    look("front");
+    expect(letterOf(new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, 0))).toBe("L");
+    expect(letterOf(new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, 1))).toBe("S");
   });
 
-  test("EachShowsTheWholeBox", () => {
+  test("EachShowsTheWholeInTheFreePartOfThePicture", () => {
     for (const view of ["home", "front", "left", "top"] as const) {
-      camera.position.copy(standpoint(view, box, camera));
-      camera.lookAt(box.getCenter(new THREE.Vector3()));
-      camera.updateMatrixWorld();
-      for (let corner = 0; corner < 8; corner++) {
-        const point = new THREE.Vector3(
-          corner & 1 ? box.max.x : box.min.x,
-          corner & 2 ? box.max.y : box.min.y,
-          corner & 4 ? box.max.z : box.min.z,
-        ).project(camera);
-        expect(
-          Math.max(Math.abs(point.x), Math.abs(point.y)),
-          view,
-        ).toBeLessThanOrEqual(1);
+      look(view, 0.8);
+      for (const corner of corners) {
+        const { x, y } = corner.clone().project(camera);
+        expect(Math.abs(x), view).toBeLessThanOrEqual(1);
+        expect(Math.abs(y), view).toBeLessThanOrEqual(0.8);
       }
     }
+  });
+
+  test("AFlatSceneOpensFaceOn", () => {
+    const flat = (size: [number, number, number]) =>
+      openingView(new THREE.Box3(new THREE.Vector3(), new THREE.Vector3(...size)));
+    expect([flat([1, 1, 0]), flat([1, 0, 1]), flat([0, 1, 1]), flat([1, 1, 1])]).toEqual([
+      "top",
+      "front",
+      "left",
+      "home",
+    ]);
+  });
+});
+
+describe("sharpness", () => {
+  /** Beats every `interval` ms for `time` ms, all of them drawing. */
+  const run = (sharpness: Sharpness, start: number, interval: number, time: number, drawing = true) => {
+    for (let now = start; now < start + time; now += interval) sharpness.beat(now, drawing);
+    return start + time;
+  };
+
+  test("StaysFullOnAQuickMachine", () => {
+    const sharpness = new Sharpness(2);
+    run(sharpness, 0, 16, 10_000);
+    expect(sharpness.ratio).toBe(2);
+  });
+
+  test("GivesWayInMotionOnASlowMachineAndComesBackAtRest", () => {
+    const sharpness = new Sharpness(2);
+    const now = run(sharpness, 0, 200, 10_000);
+    expect(sharpness.ratio).toBeLessThan(1);
+    run(sharpness, now, 16, 1000, false);
+    expect(sharpness.ratio).toBe(2);
   });
 });

@@ -3,6 +3,7 @@ import type { Clock } from "./clock";
 import type { Body, FrameArrays } from "./codec";
 import { Connection, type Link, type Sink } from "./connection";
 import { Controller } from "./controller";
+import { Demand } from "./demand";
 import { Frames } from "./frames";
 import type { CompileReport } from "./gen/phrenic/v1/report_pb";
 import { Looks } from "./looks";
@@ -14,7 +15,7 @@ import { Margins } from "./panels/margins";
 import { parametersPanel } from "./panels/parameters";
 import { playbackPanel } from "./panels/playback";
 import { reportPanel } from "./panels/report";
-import { LinkPill, ProbeTable, Readout } from "./panels/status";
+import { LinkPill, ProbeTable, Readout, ViewerCount } from "./panels/status";
 import { viewBar } from "./panels/view_bar";
 import { Signal } from "./signal";
 import { testHook } from "./test_hook";
@@ -34,8 +35,10 @@ export class App {
   private readonly viewer: Viewer;
   private readonly margins = new Margins();
   private readonly pill: LinkPill;
+  private readonly viewers = new ViewerCount();
   private readonly readout = new Readout();
   private readonly probes = new ProbeTable();
+  private readonly demand = new Demand();
   private bodies: Body[] = [];
 
   constructor(
@@ -78,7 +81,7 @@ export class App {
     );
     place("playback-place").append(playbackPanel(controller));
     place("readout-place").append(this.readout.element);
-    place("link-place").append(this.pill.element);
+    place("link-place").append(this.viewers.element, this.pill.element);
     place("session-place").append(this.sessionButton());
     place("margins").append(...this.margins.elements);
     place("views").append(...viewBar(viewer, place("view")));
@@ -125,8 +128,12 @@ export class App {
     if (document.hidden) return;
     const now = this.clock.now();
     const session = this.controller.session.value;
-    const status = { link: this.link.value, session, frame: this.frames.frame, rate: this.frames.rate(now), now };
+    const rate = this.frames.rate(now);
+    if (this.demand.judge(now, rate.delay, rate.framesPerSecond))
+      this.connection.setMaxFps(this.demand.framesPerSecond);
+    const status = { link: this.link.value, session, frame: this.frames.frame, rate, now };
     this.pill.show(status);
+    this.viewers.show(status);
     this.readout.show(status);
     this.probes.show(status.frame);
   }

@@ -32,7 +32,9 @@ const heartbeat = 2000;
 export class Connection {
   private readonly stopped = new AbortController();
   private wake = new AbortController();
+  private rewatch = new AbortController();
   private sceneHash: string | undefined;
+  private maxFps = 0;
 
   constructor(
     private readonly api: Api,
@@ -61,6 +63,12 @@ export class Connection {
     this.wake.abort();
   }
 
+  /** Asks for at most so many frames a second from now on; 0 is the server's own rate. */
+  setMaxFps(framesPerSecond: number): void {
+    this.maxFps = framesPerSecond;
+    this.rewatch.abort();
+  }
+
   private async rest(error: unknown): Promise<void> {
     const wait = this.backoff.next();
     const missing = ConnectError.from(error).code === Code.NotFound;
@@ -76,8 +84,7 @@ export class Connection {
     const beats = this.beat(attempt, signal);
     try {
       await this.loadScene(signal);
-      await this.watch(signal);
-      throw new ConnectError("The server closed the connection.", Code.Unavailable);
+      return await this.watch(signal);
     } catch (error) {
       throw attempt.signal.aborted ? attempt.signal.reason : error;
     } finally {
@@ -100,8 +107,22 @@ export class Connection {
     if (session !== undefined) this.sink.session(session, true);
   }
 
-  private async watch(signal: AbortSignal): Promise<void> {
-    for await (const { event } of this.api.frames.watchFrames({ sessionId: this.sessionId }, { signal })) {
+  private async watch(signal: AbortSignal): Promise<never> {
+    for (;;) {
+      this.rewatch = new AbortController();
+      const again = this.rewatch.signal;
+      try {
+        await this.listen(AbortSignal.any([signal, again]));
+        throw new ConnectError("The server closed the connection.", Code.Unavailable);
+      } catch (error) {
+        if (signal.aborted || !again.aborted) throw error;
+      }
+    }
+  }
+
+  private async listen(signal: AbortSignal): Promise<void> {
+    const request = { sessionId: this.sessionId, maxFps: this.maxFps };
+    for await (const { event } of this.api.frames.watchFrames(request, { signal })) {
       this.backoff.reset();
       this.sink.link({ kind: "live" });
       if (event.case === "session") this.sink.session(event.value, false);

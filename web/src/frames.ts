@@ -44,7 +44,8 @@ export class Frames {
   rate(now: number): FrameRate {
     this.forget(now);
     const last = this.arrivals.at(-1);
-    return { framesPerSecond: this.arrivals.length, delay: last === undefined ? 0 : last.transit - this.quickest };
+    const delay = last === undefined ? 0 : last.transit - this.quickest;
+    return { framesPerSecond: this.arrivals.length, delay };
   }
 
   private forget(now: number): void {

@@ -8,9 +8,14 @@ import { make } from "./dom";
 /** Words over the picture when something is wrong: diverged, lost, refused; with the remedy where there is one. */
 export function banners(controller: Controller, link: Signal<Link>, chooseSession: () => void): HTMLElement[] {
   const diverged = banner("alert", "diverged");
+  let told: bigint | undefined;
   controller.session.subscribe((session) => {
-    diverged.hidden = session?.divergence === undefined;
-    if (session?.divergence !== undefined) diverged.replaceChildren(...divergence(session, controller));
+    // An alert is read aloud when it changes: once for each divergence, not with every word from the server.
+    const tick = session?.divergence?.tick;
+    if (tick === told) return;
+    told = tick;
+    diverged.hidden = tick === undefined;
+    if (session !== undefined) diverged.replaceChildren(...divergence(session, controller));
   });
   const lost = banner("status", "lost");
   link.subscribe((value) => {

@@ -17,35 +17,54 @@ export interface Status {
 export class LinkPill {
   readonly element = make("button", { type: "button", id: "link", className: "pill" });
   private readonly words = make("span");
+  private readonly detail = make("span", { className: "detail" });
 
   constructor(retry: () => void) {
-    this.element.append(make("span", { className: "dot" }), this.words);
+    this.element.append(make("span", { className: "dot" }), this.words, this.detail);
     this.element.onclick = retry;
   }
 
   show(status: Status): void {
-    const { text, title } = linkWords(status);
+    const { text, detail, title } = linkWords(status);
     this.element.dataset.link = status.link.kind;
     this.element.title = title;
     if (this.words.textContent !== text) this.words.textContent = text;
+    if (this.detail.textContent !== detail) this.detail.textContent = detail;
   }
 }
 
-export function linkWords({ link, session, rate, now }: Status): { text: string; title: string } {
-  if (link.kind === "connecting") return { text: "Connecting", title: "Waiting for the server." };
+export function linkWords({ link, session, rate, now }: Status): { text: string; detail: string; title: string } {
+  if (link.kind === "connecting") return { text: "Connecting", detail: "", title: "Waiting for the server." };
   if (link.kind === "lost") {
     const seconds = Math.max(0, Math.ceil((link.retryAt - now) / 1000));
-    return {
-      text: `Lost, retrying${seconds > 0 ? ` in ${seconds} s` : ""}`,
-      title: `${link.reason} Click to retry now.`,
-    };
+    const detail = seconds > 0 ? `retrying in ${seconds} s` : "retrying";
+    return { text: "Lost", detail, title: `${link.reason} Click to retry now.` };
   }
-  const paused = session?.state !== SessionState.PLAYING;
-  const fast = `${rate.framesPerSecond} fps, ${Math.max(0, Math.round(rate.delay))} ms`;
-  return { text: `Live · ${paused ? "paused" : fast}`, title: "Frames received a second, and how late they come." };
+  const playing = session?.state === SessionState.PLAYING;
+  const detail = playing ? `${rate.framesPerSecond} fps, ${Math.max(0, Math.round(rate.delay))} ms` : "paused";
+  return { text: "Live", detail, title: "Frames received a second, and how late they come." };
 }
 
-/** Time, tick, breath, pace and viewers. */
+/** How many watch the session. */
+export class ViewerCount {
+  private readonly count = make("b", { id: "status-viewers" });
+  private readonly noun = make("span");
+  readonly element = make(
+    "span",
+    { className: "viewer-count", title: "How many watch this session" },
+    this.count,
+    this.noun,
+  );
+
+  show({ session }: Status): void {
+    const viewers = String(session?.viewers ?? 0);
+    if (this.count.textContent === viewers) return;
+    this.count.textContent = viewers;
+    this.noun.textContent = viewers === "1" ? " viewer" : " viewers";
+  }
+}
+
+/** Time, tick, breath and pace. */
 export class Readout {
   readonly element = make("div", { className: "readout", id: "readout" });
   private readonly values = new Map<string, HTMLElement>();
@@ -55,7 +74,7 @@ export class Readout {
     for (const [name, title] of fields) {
       const value = make("b", { id: `status-${name}` });
       this.values.set(name, value);
-      this.element.append(make("span", { className: "reading", title }, make("i", {}, name), value));
+      this.element.append(make("span", { className: `reading ${name}`, title }, make("i", {}, name), value));
     }
     this.values.get("breath")?.before(make("span", { className: "breath-track", ariaHidden: "true" }, this.bar));
   }
@@ -68,7 +87,6 @@ export class Readout {
     this.bar.style.transform = `translateX(${50 * breath}%)`;
     const pace = session?.state === SessionState.PLAYING ? (session.pace?.timesRealTime ?? 0) : 0;
     this.write("pace", `${pace.toFixed(2)}×`);
-    this.write("viewers", String(session?.viewers ?? 0));
   }
 
   private write(name: string, text: string): void {
@@ -82,7 +100,6 @@ const fields: [string, string][] = [
   ["tick", "Steps since the start"],
   ["breath", "The breath signal, -1 to 1"],
   ["pace", "Simulated seconds a second"],
-  ["viewers", "How many watch this session"],
 ];
 
 /** Probes: displacement from rest in the patient's directions [mm]. */

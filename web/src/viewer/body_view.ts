@@ -24,7 +24,11 @@ export class BodyView {
   private readonly overlays: Overlay[];
   private readonly thick: ThickLines[] = [];
 
-  constructor(readonly body: Body) {
+  /** `diagram` is for scenes of few vertices: every vertex and edge is drawn as well. */
+  constructor(
+    readonly body: Body,
+    diagram: boolean,
+  ) {
     this.group.name = body.name;
     this.positions = new THREE.BufferAttribute(body.rest.slice(), 3);
     const streamed = body.placement === Placement.STREAMED;
@@ -34,9 +38,8 @@ export class BodyView {
     if (solid) {
       this.normals = new THREE.BufferAttribute(new Float32Array(body.rest.length), 3);
       this.surface = this.addSurface(this.normals);
-    } else {
-      this.addNetwork();
     }
+    if (!solid || diagram) this.addNetwork(solid ? lighter(body.color) : body.color);
     this.overlays = addOverlays(this);
   }
 
@@ -80,9 +83,10 @@ export class BodyView {
     return new THREE.BufferAttribute(colors, 3);
   }
 
-  private addNetwork(): void {
-    this.addThick(new ThickLines(this.body.edges, this.positions, this.body.color, 3));
-    const points = new THREE.Points(this.geometry(), pointMaterial(this.body.color, 9));
+  private addNetwork(color: string): void {
+    const many = this.edges.length > 2000;
+    this.addThick(new ThickLines(this.edges, this.positions, color, many ? 1.5 : 3));
+    const points = new THREE.Points(this.geometry(), pointMaterial(color, many ? 4 : 10));
     points.frustumCulled = false;
     this.group.add(points);
   }
@@ -122,4 +126,8 @@ export class BodyView {
       }
     });
   }
+}
+
+function lighter(color: string): string {
+  return `#${new THREE.Color(color).lerp(new THREE.Color("white"), 0.35).getHexString()}`;
 }

@@ -22,7 +22,7 @@ export function addOverlays(view: BodyView): Overlay[] {
   const overlays: Overlay[] = [];
   const add = (kind: OverlayKind, make: () => THREE.Object3D) => overlays.push(new Lazy(kind, view.group, make));
   if (body.triangles.length > 0)
-    add("wireframe", () => segments(view, view.edges, lineMaterial("#ffffff", 0.3, false)));
+    add("wireframe", () => segments(view, view.edges, lineMaterial("#ffffff", 0.2, false)));
   if (body.rigidLinks.length > 0) add("links", () => links(view));
   if (body.actionLines.length > 0) add("lines", () => arrows(body.actionLines));
   if (body.attached.length > 0) add("attachments", () => points(view, body.attached, attachedColor));
@@ -58,7 +58,7 @@ function links(view: BodyView): THREE.Object3D {
   const pairs = view.body.rigidLinks;
   if (pairs.length / 2 > mostThickLines) return segments(view, pairs, lineMaterial(linkColor, 0.75, true));
   const lines = new ThickLines(pairs, view.positions, linkColor, 2.5);
-  lines.object.material.depthTest = false;
+  Object.assign(lines.object.material, { depthTest: false, transparent: true, opacity: 0.8 });
   lines.object.renderOrder = 1;
   view.addThick(lines);
   return lines.object;

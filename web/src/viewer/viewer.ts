@@ -6,6 +6,9 @@ import { type Compass, Rig } from "./rig";
 import { Sharpness } from "./sharpness";
 import type { ViewName } from "./views";
 
+/** Scenes of at most so many vertices are diagrams rather than anatomy. */
+const mostOfADiagram = 2000;
+
 /**
  * The picture. It draws only when something changed, on the browser's own beat, so a hidden tab draws nothing and any
  * number of frames between two beats cost one drawing.
@@ -57,7 +60,8 @@ export class Viewer {
       view.dispose();
     }
     this.shown = undefined;
-    this.views = bodies.map((body) => new BodyView(body));
+    const diagram = verticesOf(bodies) <= mostOfADiagram;
+    this.views = bodies.map((body) => new BodyView(body, diagram));
     for (const view of this.views) this.scene.add(view.group);
     for (const kind of this.overlays) this.setOverlay(kind, true);
     this.resize();
@@ -112,10 +116,13 @@ export class Viewer {
   }
 }
 
+function verticesOf(bodies: Body[]): number {
+  return bodies.reduce((sum, { rest }) => sum + rest.length / 3, 0);
+}
+
 /** Some thousands of vertices at rest, a fair sample of where the bodies are. */
 function sampleOf(bodies: Body[]): THREE.Vector3[] {
-  const all = bodies.reduce((sum, { rest }) => sum + rest.length / 3, 0);
-  const stride = Math.max(1, Math.floor(all / 4000));
+  const stride = Math.max(1, Math.floor(verticesOf(bodies) / 4000));
   return bodies.flatMap(({ rest }) => {
     const points: THREE.Vector3[] = [];
     for (let i = 0; i < rest.length; i += 3 * stride) points.push(new THREE.Vector3(rest[i], rest[i + 1], rest[i + 2]));
