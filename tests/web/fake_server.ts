@@ -80,6 +80,7 @@ export class FakeServer {
         yield server.answer(triangleBody({}));
       },
       async *watchFrames({ maxFps }: { maxFps: number }, { signal }: { signal: AbortSignal }) {
+        server.rates.push(maxFps);
         yield server.answer({
           event: { case: "session" as const, value: server.session },
         });
