@@ -23,13 +23,14 @@ std::string RoleName(v1::Role role) {
   }
 }
 
-// A twentieth of an equal share at least, so that no vertex of a sliver is so light that it sets the time step.
+// Half an equal share at least: the vertices of small triangles would else be so light that they set the time step for
+// all (on a real diaphragm, half the step).
 Eigen::VectorXd Masses(const Mesh& mesh, double total) {
   const Eigen::Index n = mesh.vertices.cols();
   Eigen::VectorXd share = VertexAreas(mesh.vertices, mesh.triangles);
   const double area = share.sum();
   if (area <= 0) return Eigen::VectorXd::Constant(n, total / static_cast<double>(n));
-  share = share.cwiseMax(0.05 * area / static_cast<double>(n));
+  share = share.cwiseMax(0.5 * area / static_cast<double>(n));
   return share * (total / share.sum());
 }
 
