@@ -33,5 +33,5 @@ export class FakeClock implements Clock {
 
 /** Lets promises and streams that need no time run until they wait. */
 export async function settle(): Promise<void> {
-  for (let i = 0; i < 20; i++) await new Promise((resolve) => setTimeout(resolve, 0));
+  for (let i = 0; i < 20; i++) await new Promise((resolve) => setImmediate(resolve));
 }

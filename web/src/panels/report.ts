@@ -39,7 +39,7 @@ function step({ stableStep }: CompileReport): HTMLElement {
 function list(title: string, items: [string, string][]): HTMLElement {
   if (items.length === 0) return make("div");
   const rows = items.flatMap(([term, detail]) => [make("dt", {}, term), make("dd", {}, detail)]);
-  return make("div", {}, make("h3", {}, title), make("dl", {}, ...rows));
+  return make("div", {}, ...(title === "" ? [] : [make("h2", {}, title)]), make("dl", {}, ...rows));
 }
 
 function runs({ elements }: CompileReport): HTMLElement {

@@ -22,6 +22,7 @@ export class Rig {
   private center = new THREE.Vector3();
   private opening: ViewName = "home";
   private free = 1;
+  private extent = 1;
   private flight: { from: THREE.Vector3; to: THREE.Vector3; start: number } | undefined;
 
   constructor(
@@ -42,7 +43,8 @@ export class Rig {
     const box = new THREE.Box3().setFromPoints(points);
     this.points = points;
     this.center = box.getCenter(new THREE.Vector3());
-    const size = box.getSize(new THREE.Vector3()).length();
+    const size = box.getSize(new THREE.Vector3()).length() || 1;
+    this.extent = size;
     this.camera.near = size / 100;
     this.camera.far = size * 20;
     this.controls.minDistance = size / 20;
@@ -68,6 +70,11 @@ export class Rig {
     this.camera.aspect = width / height;
     this.camera.setViewOffset(width, height, 0, (bottom - top) / 2, width, height);
     this.camera.updateProjectionMatrix();
+  }
+
+  /** From the camera to what it looks at, and the extent of the scene [m]. */
+  get depth(): { distance: number; extent: number } {
+    return { distance: this.camera.position.distanceTo(this.controls.target), extent: this.extent };
   }
 
   /** Moves what moves by itself. */
@@ -105,7 +112,7 @@ export class Rig {
   compass(): Compass {
     const axis = (i: number) => new THREE.Vector3().setFromMatrixColumn(this.camera.matrixWorld, i);
     const [right, up] = [axis(0), axis(1)];
-    const distance = this.camera.position.distanceTo(this.controls.target);
+    const { distance } = this.depth;
     const slope = Math.tan(THREE.MathUtils.degToRad(this.camera.fov / 2));
     return {
       right: letterOf(right),

@@ -16,6 +16,8 @@ const mostOfADiagram = 2000;
 export class Viewer {
   readonly rig: Rig;
   private readonly scene = new THREE.Scene();
+  /** Depth by haze: what lies behind fades a little into the background. */
+  private readonly haze = new THREE.Fog("#1f262d");
   private readonly renderer: THREE.WebGLRenderer;
   private views: BodyView[] = [];
   private readonly overlays = new Set<OverlayKind>();
@@ -44,6 +46,7 @@ export class Viewer {
     this.renderer.toneMappingExposure = 1.05;
     this.renderer.setPixelRatio(this.sharpness.ratio);
     this.rig = new Rig(canvas, () => this.refresh(), calm);
+    this.scene.fog = this.haze;
     addLights(this.scene, this.rig.camera);
     new ResizeObserver(() => this.resize()).observe(canvas);
     this.renderer.setAnimationLoop((now) => this.beat(now));
@@ -110,6 +113,8 @@ export class Viewer {
     const frame = this.source();
     if (frame !== undefined && frame !== this.shown) for (const view of this.views) view.update(frame);
     this.shown = frame;
+    const { distance, extent } = this.rig.depth;
+    [this.haze.near, this.haze.far] = [distance - 0.1 * extent, distance + 0.75 * extent];
     this.renderer.render(this.scene, this.rig.camera);
     this.drawings++;
     this.drawn(this.rig.compass());

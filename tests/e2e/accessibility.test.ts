@@ -1,0 +1,56 @@
+import axe from "axe-core";
+import type { Browser } from "playwright-core";
+import { afterAll, beforeAll, expect, test } from "vitest";
+import { launchBrowser, ViewerPage } from "./browser";
+import { Server } from "./server";
+
+let server: Server;
+let browser: Browser;
+let viewer: ViewerPage;
+
+beforeAll(async () => {
+  browser = await launchBrowser();
+  server = await Server.start();
+  viewer = await ViewerPage.open(browser, server.url);
+  await viewer.page.evaluate(axe.source);
+});
+
+afterAll(async () => {
+  await browser?.close();
+  await server?.kill();
+});
+
+/** What axe finds against the page as it stands, in words. */
+function violations(): Promise<string[]> {
+  return viewer.page.evaluate(async () => {
+    const { violations } = await (window as unknown as { axe: typeof axe }).axe.run();
+    return violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.target).join(", ")}`);
+  });
+}
+
+test("AxeFindsNothingAgainstThePage", async () => {
+  await viewer.page.click('summary:has-text("What runs")');
+  expect(await violations()).toEqual([]);
+});
+
+test("AxeFindsNothingAgainstTheChooser", async () => {
+  await viewer.page.click("#session");
+  await viewer.page.waitForSelector(".chooser li");
+  expect(await violations()).toEqual([]);
+  await viewer.page.keyboard.press("Escape");
+});
+
+test("TheKeyboardAlonePlaysStepsTurnsAndSlides", async () => {
+  await viewer.page.focus("#view");
+  await viewer.page.keyboard.press("Space");
+  await viewer.page.waitForSelector('#play[aria-label="Play"]');
+  const held = await viewer.tick();
+  await viewer.page.keyboard.press(".");
+  await viewer.waitForTick(held);
+  const pictures = await viewer.page.evaluate(() => window.phrenic!.pictures());
+  await viewer.page.keyboard.press("ArrowLeft");
+  await viewer.page.waitForFunction((before) => window.phrenic!.pictures() > before, pictures);
+  await viewer.page.focus("#parameter-ribMotion");
+  await viewer.page.keyboard.press("ArrowRight");
+  expect(Number(await viewer.value("ribMotion"))).toBeCloseTo(1.05, 6);
+});
