@@ -48,6 +48,24 @@ describe("a session made in the browser", () => {
   }
 });
 
+test("ADivergedSessionSaysSoAndItsRemedyHelps", async () => {
+  const viewer = await ViewerPage.open(browser, server.url);
+  await viewer.page.click("#session");
+  await viewer.page.click('.chooser li[data-scene="cube-springs"] button');
+  await viewer.page.waitForURL((url) => !url.search.endsWith("=thorax"));
+  await viewer.waitForPicture();
+  await viewer.type("elasticity", 100);
+  await viewer.type("timeStep", 0.1);
+  await viewer.page.waitForSelector("#banner-diverged:not([hidden])", { timeout: 60_000 });
+  expect(await viewer.page.textContent("#banner-diverged")).toMatch(/diverged at .* s, at vertex \d+ of cube/);
+  await viewer.leave("diverged");
+  await viewer.page.click('button:has-text("Use a stable step and start again")');
+  await viewer.page.waitForSelector("#banner-diverged", { state: "hidden" });
+  await viewer.waitForTick(10);
+  expect(await viewer.page.isHidden("#banner-diverged")).toBe(true);
+  await viewer.close();
+});
+
 test("AMissingSessionIsSaidAndOthersAreOffered", async () => {
   const context = await browser.newContext();
   const page = await context.newPage();

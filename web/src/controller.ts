@@ -55,6 +55,11 @@ export class Controller {
     this.updates.push({ [name]: value });
   }
 
+  /** Sets at once and resolves when it holds: for what must come before something else. */
+  apply(parameters: ParameterValues): Promise<void> {
+    return this.send(parameters);
+  }
+
   /** Whether this viewer's own change of `name` is still on its way. */
   pending(name: ParameterName): boolean {
     return this.updates.pending(name);

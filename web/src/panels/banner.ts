@@ -46,10 +46,14 @@ function divergence({ divergence, largestStableStep }: Session, controller: Cont
   return [make("p", {}, make("b", {}, where), " ", remedy), restart];
 }
 
+/** The chosen part of the largest stable step, as the server itself chooses where a scene names no step. */
+const stablePart = 0.9;
+
 async function restartStable(controller: Controller, largest: number): Promise<void> {
   await controller.reset();
   const now = controller.session.value?.parameters?.timeStep ?? 0;
-  if (largest > 0 && now > 0.9 * largest) controller.set("timeStep", 0.9 * largest);
+  if (largest > 0 && now > stablePart * largest) await controller.apply({ timeStep: stablePart * largest });
+  await controller.play(controller.session.value?.speed || "fastest");
 }
 
 function loss(reason: string, missing: boolean, chooseSession: () => void): HTMLElement[] {

@@ -18,7 +18,7 @@ export type OverlayKind = "wireframe" | "links" | "lines" | "attachments";
 export class BodyView {
   readonly group = new THREE.Group();
   readonly positions: THREE.BufferAttribute;
-  readonly edges: Uint32Array<ArrayBuffer>;
+  private knownEdges: Uint32Array<ArrayBuffer> | undefined;
   private readonly normals: THREE.BufferAttribute | undefined;
   private readonly surface: THREE.MeshStandardMaterial | undefined;
   private readonly overlays: Overlay[];
@@ -34,13 +34,19 @@ export class BodyView {
     const streamed = body.placement === Placement.STREAMED;
     if (streamed) this.positions.setUsage(THREE.DynamicDrawUsage);
     const solid = body.triangles.length > 0;
-    this.edges = solid ? edgesOf(body.triangles, body.rest.length / 3) : body.edges;
     if (solid) {
       this.normals = new THREE.BufferAttribute(new Float32Array(body.rest.length), 3);
       this.surface = this.addSurface(this.normals);
     }
     if (!solid || diagram) this.addNetwork(solid ? lighter(body.color) : body.color);
     this.overlays = addOverlays(this);
+  }
+
+  /** Pairs of vertex indices; found when somebody first asks, since few bodies show their edges. */
+  get edges(): Uint32Array<ArrayBuffer> {
+    const { triangles, edges, rest } = this.body;
+    this.knownEdges ??= triangles.length > 0 ? edgesOf(triangles, rest.length / 3) : edges;
+    return this.knownEdges;
   }
 
   /** Lines of some width, redrawn with every frame: only for few. */
