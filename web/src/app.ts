@@ -14,8 +14,9 @@ import { make, place } from "./panels/dom";
 import { Margins } from "./panels/margins";
 import { parametersPanel } from "./panels/parameters";
 import { playbackPanel } from "./panels/playback";
+import { Probes } from "./panels/probes";
 import { reportPanel } from "./panels/report";
-import { LinkPill, ProbeTable, Readout, ViewerCount } from "./panels/status";
+import { LinkPill, Readout, ViewerCount } from "./panels/status";
 import { viewBar } from "./panels/view_bar";
 import { Signal } from "./signal";
 import { testHook } from "./test_hook";
@@ -37,7 +38,7 @@ export class App {
   private readonly pill: LinkPill;
   private readonly viewers = new ViewerCount();
   private readonly readout = new Readout();
-  private readonly probes = new ProbeTable();
+  private readonly probes = new Probes();
   private readonly demand = new Demand();
   private bodies: Body[] = [];
 
@@ -107,6 +108,7 @@ export class App {
       session: (session, fresh) => this.controller.receive(session, fresh),
       frame: (frame) => {
         this.frames.receive(frame, this.clock.now());
+        this.probes.receive(frame);
         this.viewer.refresh();
       },
       scene: (bodies, report) => {

@@ -2,7 +2,7 @@ import type { Link } from "../connection";
 import type { FrameRate } from "../frames";
 import type { Frame } from "../gen/phrenic/v1/frames_pb";
 import { type Session, SessionState } from "../gen/phrenic/v1/session_pb";
-import { make, section } from "./dom";
+import { make } from "./dom";
 
 /** Everything that the status shows, gathered a few times a second. */
 export interface Status {
@@ -101,35 +101,3 @@ const fields: [string, string][] = [
   ["breath", "The breath signal, -1 to 1"],
   ["pace", "Simulated seconds a second"],
 ];
-
-/** Probes: displacement from rest in the patient's directions [mm]. */
-export class ProbeTable {
-  readonly element: HTMLElement;
-  private readonly rows = make("tbody");
-
-  constructor() {
-    const heads = ["Probe", "Left", "Back", "Up"].map((text) => make("th", { scope: "col" }, text));
-    const table = make("table", { className: "probes" }, make("thead", {}, make("tr", {}, ...heads)), this.rows);
-    const unit = make("p", { className: "faint" }, "Displacement from rest, mm");
-    this.element = section("Probes", true, table, unit);
-    this.element.hidden = true;
-  }
-
-  show(frame: Frame | undefined): void {
-    const probes = frame?.probes ?? [];
-    this.element.hidden = probes.length === 0;
-    while (this.rows.rows.length > probes.length) this.rows.deleteRow(-1);
-    probes.forEach(({ name, dx, dy, dz }, i) => {
-      const row = this.rows.rows[i] ?? this.addRow();
-      [name, ...[dx, dy, dz].map((metres) => (1000 * metres).toFixed(1))].forEach((text, k) => {
-        if (row.cells[k].textContent !== text) row.cells[k].textContent = text;
-      });
-    });
-  }
-
-  private addRow(): HTMLTableRowElement {
-    const row = this.rows.insertRow();
-    row.append(make("th", { scope: "row" }), make("td"), make("td"), make("td"));
-    return row;
-  }
-}
