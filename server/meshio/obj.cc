@@ -1,0 +1,120 @@
+// Wavefront OBJ, the polygonal part of the format (Wavefront, "Object Files", appendix B1).
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+#include "absl/strings/str_cat.h"
+#include "server/meshio/formats.h"
+#include "server/meshio/text.h"
+
+namespace phrenic::meshio {
+namespace {
+
+// Statements that say nothing about the shape.
+constexpr std::array<std::string_view, 17> kPassedOver = {
+    "vt", "vn",    "vp",       "g",        "o",   "s",      "mg",     "usemtl",    "mtllib",
+    "p",  "bevel", "c_interp", "d_interp", "lod", "usemap", "maplib", "shadow_obj"};
+
+class ObjParser {
+ public:
+  ObjParser(std::string_view name, std::string_view bytes) : reader_(name, bytes) {}
+
+  absl::StatusOr<Mesh> Parse() {
+    while (reader_.NextLine()) {
+      reader_.JoinContinuedLine();
+      if (absl::Status status = ReadStatement(reader_.Word()); !status.ok()) return status;
+    }
+    if (absl::Status status = CheckWhole(); !status.ok()) return status;
+    return found_.ToMesh();
+  }
+
+ private:
+  absl::Status ReadStatement(std::string_view keyword) {
+    if (keyword.empty() || keyword[0] == '#') return absl::OkStatus();
+    if (keyword == "v") return ReadVertex();
+    if (keyword == "f") return ReadFace();
+    if (keyword == "l") return ReadLine();
+    if (std::find(kPassedOver.begin(), kPassedOver.end(), keyword) != kPassedOver.end()) return absl::OkStatus();
+    return reader_.Error(absl::StrCat("there is no OBJ statement ", Quoted(keyword),
+                                      " for surfaces (v, f and l are read); is this an OBJ file?"));
+  }
+
+  absl::Status ReadVertex() {
+    double coordinate = 0;
+    for (const char* axis : {"x", "y", "z"}) {
+      if (!reader_.Number(coordinate)) {
+        return reader_.Error(
+            absl::StrCat("the vertex's ", axis, " is missing or not a finite number; write \"v x y z\""));
+      }
+      found_.coordinates.push_back(coordinate);
+    }
+    return absl::OkStatus();
+  }
+
+  absl::Status ReadFace() {
+    if (absl::Status status = ReadCorners(); !status.ok()) return status;
+    if (corners_.size() < 3) {
+      return reader_.Error(absl::StrCat("a face needs at least 3 vertices, this one has ", corners_.size()));
+    }
+    for (std::size_t i = 2; i < corners_.size(); ++i) {
+      found_.triangles.insert(found_.triangles.end(), {corners_[0], corners_[i - 1], corners_[i]});
+    }
+    return absl::OkStatus();
+  }
+
+  absl::Status ReadLine() {
+    if (absl::Status status = ReadCorners(); !status.ok()) return status;
+    if (corners_.size() < 2) return reader_.Error("a line needs at least 2 vertices");
+    for (std::size_t i = 1; i < corners_.size(); ++i) {
+      found_.lines.insert(found_.lines.end(), {corners_[i - 1], corners_[i]});
+    }
+    return absl::OkStatus();
+  }
+
+  // The vertex indices of the statement, from 0: "7", "7/1", "7//2", "7/1/2" or "-1", the newest vertex.
+  absl::Status ReadCorners() {
+    corners_.clear();
+    for (std::string_view word = reader_.Word(); !word.empty() && word[0] != '#'; word = reader_.Word()) {
+      std::int64_t index = 0;
+      if (!ParseInteger(word.substr(0, word.find('/')), index) || index == 0 || index > INT32_MAX) {
+        return reader_.Error(absl::StrCat(Quoted(word), " names no vertex; indices start at 1, or at -1 for the last"));
+      }
+      if (index < 0 && -index > found_.vertices()) {
+        return reader_.Error(absl::StrCat("index ", index, " goes back past the first vertex; there are ",
+                                          found_.vertices(), " so far"));
+      }
+      corners_.push_back(static_cast<int>(index < 0 ? found_.vertices() + index : index - 1));
+      if (corners_.back() > largest_index_) {
+        largest_index_ = corners_.back();
+        line_of_largest_ = reader_.line();
+      }
+    }
+    return absl::OkStatus();
+  }
+
+  absl::Status CheckWhole() const {
+    if (found_.coordinates.empty()) return reader_.Error("the file has no vertices (\"v x y z\")");
+    if (found_.triangles.empty() && found_.lines.empty()) {
+      return reader_.Error(absl::StrCat("the file has ", found_.vertices(), " vertices but no faces (\"f 1 2 3\")"));
+    }
+    if (largest_index_ >= found_.vertices()) {
+      return reader_.ErrorAt(line_of_largest_,
+                             absl::StrCat("index ", std::int64_t{largest_index_} + 1,
+                                          " is past the last vertex; the file has ", found_.vertices()));
+    }
+    return absl::OkStatus();
+  }
+
+  TextReader reader_;
+  Collected found_;
+  std::vector<int> corners_;
+  // A face may stand before its vertices, so that the indices are checked at the end.
+  int largest_index_ = -1;
+  int line_of_largest_ = 0;
+};
+
+}  // namespace
+
+absl::StatusOr<Mesh> ParseObj(std::string_view name, std::string_view bytes) { return ObjParser(name, bytes).Parse(); }
+
+}  // namespace phrenic::meshio
