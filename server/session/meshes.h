@@ -1,0 +1,21 @@
+// Where the compile step gets its meshes: the generated thorax, and surface files below the data folder.
+#ifndef PHRENIC_SERVER_SESSION_MESHES_H_
+#define PHRENIC_SERVER_SESSION_MESHES_H_
+
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "server/mechanics/compile.h"
+
+namespace phrenic::session {
+
+// The place of `path` below `data_dir`, both made canonical. INVALID_ARGUMENT for an absolute path or one that leaves
+// the folder (by ".." or a symbolic link), NOT_FOUND where there is no such file or no data folder.
+absl::StatusOr<std::string> ResolveBelow(const std::string& data_dir, const std::string& path);
+
+// Any thread may call it.
+MeshSource MakeMeshSource(std::string data_dir);
+
+}  // namespace phrenic::session
+
+#endif  // PHRENIC_SERVER_SESSION_MESHES_H_

@@ -1,0 +1,102 @@
+#include "server/session/models.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "google/protobuf/io/coded_stream.h"
+#include "google/protobuf/io/zero_copy_stream_impl_lite.h"
+#include "server/schema/schema.h"
+#include "server/session/meshes.h"
+
+namespace phrenic::session {
+namespace {
+
+constexpr std::int64_t kMostVertices = 4'000'000;
+
+std::string SerializedAlike(const v1::Scene& scene) {
+  std::string bytes;
+  google::protobuf::io::StringOutputStream out(&bytes);
+  google::protobuf::io::CodedOutputStream coded(&out);
+  coded.SetSerializationDeterministic(true);
+  scene.SerializeToCodedStream(&coded);
+  coded.Trim();
+  return bytes;
+}
+
+// Refuses a scene whose shapes would not fit before they are made.
+absl::Status CheckSize(const v1::Scene& scene) {
+  std::int64_t vertices = 0;
+  for (int i = 0; i < scene.bodies_size(); ++i) {
+    const v1::Body& body = scene.bodies(i);
+    if (body.has_grid()) vertices += std::int64_t{body.grid().columns()} * body.grid().rows();
+    if (vertices > kMostVertices) {
+      return absl::ResourceExhaustedError(absl::StrCat("bodies[", i, "].grid: with it the scene has ", vertices,
+                                                       " vertices, and no more than ", kMostVertices, " are allowed"));
+    }
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+Models::Models(SceneCatalogue catalogue, std::string data_dir, int capacity)
+    : catalogue_(std::move(catalogue)),
+      data_dir_(data_dir),
+      meshes_(MakeMeshSource(std::move(data_dir))),
+      capacity_(std::max(1, capacity)) {}
+
+absl::StatusOr<v1::Scene> Models::Resolve(const v1::SceneSource& source) const {
+  v1::Scene scene;
+  if (source.has_scene()) {
+    scene = source.scene();
+  } else if (!source.name().empty()) {
+    absl::StatusOr<v1::Scene> found = catalogue_.Find(source.name());
+    if (!found.ok()) return found.status();
+    scene = *std::move(found);
+  } else {
+    return absl::InvalidArgumentError("source: neither a scene's name nor a scene is given");
+  }
+  if (source.has_resolution_mm()) {
+    for (v1::Body& body : *scene.mutable_bodies()) {
+      if (body.has_generated()) body.mutable_generated()->set_resolution_mm(source.resolution_mm());
+    }
+  }
+  return scene;
+}
+
+// The scene, and size and time of change of each file that it names.
+std::string Models::Key(const v1::Scene& scene) const {
+  std::string key = SerializedAlike(scene);
+  for (const v1::Body& body : scene.bodies()) {
+    if (!body.has_file()) continue;
+    const absl::StatusOr<std::string> path = ResolveBelow(data_dir_, body.file().path());
+    if (!path.ok()) continue;
+    std::error_code ignored;
+    absl::StrAppend(&key, "|", std::filesystem::file_size(*path, ignored), "|",
+                    std::filesystem::last_write_time(*path, ignored).time_since_epoch().count());
+  }
+  return key;
+}
+
+absl::StatusOr<std::shared_ptr<const Model>> Models::Get(const v1::SceneSource& source) {
+  const absl::StatusOr<v1::Scene> scene = Resolve(source);
+  if (!scene.ok()) return scene.status();
+  if (absl::Status status = CheckSize(*scene); !status.ok()) return status;
+  std::string key = Key(*scene);
+  absl::MutexLock lock(&mutex_);
+  const auto found =
+      std::find_if(entries_.begin(), entries_.end(), [&](const Entry& entry) { return entry.key == key; });
+  if (found != entries_.end()) {
+    entries_.splice(entries_.begin(), entries_, found);
+    return entries_.front().model;
+  }
+  absl::StatusOr<std::shared_ptr<const Model>> model = Compile(*scene, meshes_);
+  if (!model.ok()) return model.status();
+  entries_.push_front({std::move(key), *model});
+  if (entries_.size() > capacity_) entries_.pop_back();
+  return model;
+}
+
+}  // namespace phrenic::session

@@ -1,0 +1,48 @@
+// Scenes compiled, and kept for the next session of the same scene.
+#ifndef PHRENIC_SERVER_SESSION_MODELS_H_
+#define PHRENIC_SERVER_SESSION_MODELS_H_
+
+#include <list>
+#include <memory>
+#include <string>
+
+#include "absl/base/thread_annotations.h"
+#include "absl/status/statusor.h"
+#include "absl/synchronization/mutex.h"
+#include "phrenic/v1/session.pb.h"
+#include "server/mechanics/compile.h"
+#include "server/session/scene_catalogue.h"
+
+namespace phrenic::session {
+
+// Any thread may call; scenes are compiled one at a time, so that memory and cores are for one.
+class Models {
+ public:
+  // Keeps the `capacity` models that were asked for last.
+  Models(SceneCatalogue catalogue, std::string data_dir, int capacity);
+
+  const SceneCatalogue& catalogue() const { return catalogue_; }
+  // The scene that `source` names or holds, with its resolution; INVALID_ARGUMENT "source: ..." where it is empty.
+  absl::StatusOr<v1::Scene> Resolve(const v1::SceneSource& source) const;
+  // The same scene gives the same model as long as its surface files stay as they are. A model with no more than
+  // 4,000,000 vertices in all, else RESOURCE_EXHAUSTED.
+  absl::StatusOr<std::shared_ptr<const Model>> Get(const v1::SceneSource& source) ABSL_LOCKS_EXCLUDED(mutex_);
+
+ private:
+  struct Entry {
+    std::string key;
+    std::shared_ptr<const Model> model;
+  };
+  std::string Key(const v1::Scene& scene) const;
+
+  const SceneCatalogue catalogue_;
+  const std::string data_dir_;
+  const MeshSource meshes_;
+  const std::size_t capacity_;
+  absl::Mutex mutex_;
+  std::list<Entry> entries_ ABSL_GUARDED_BY(mutex_);  // the last one asked for first
+};
+
+}  // namespace phrenic::session
+
+#endif  // PHRENIC_SERVER_SESSION_MODELS_H_

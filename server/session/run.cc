@@ -1,0 +1,52 @@
+#include "server/session/run.h"
+
+#include <cmath>
+#include <utility>
+
+#include "absl/strings/str_format.h"
+#include "server/mechanics/step.h"
+
+namespace phrenic::session {
+
+Run::Run(std::shared_ptr<const Model> model, v1::Parameters parameters)
+    : model_(std::move(model)),
+      parameters_(std::move(parameters)),
+      state_(model_->InitialState()),
+      work_(model_->MakeWorkspace()) {}
+
+Run::Run(std::shared_ptr<const Model> model, v1::Parameters parameters, State state)
+    : model_(std::move(model)),
+      parameters_(std::move(parameters)),
+      state_(std::move(state)),
+      work_(model_->MakeWorkspace()) {}
+
+absl::Status Run::Step() {
+  if (divergence_.has_value()) return absl::FailedPreconditionError(Describe(*divergence_));
+  const double dt = parameters_.time_step();
+  if (phrenic::Step(*model_, parameters_, dt, state_, work_).ok()) return absl::OkStatus();
+  // The workspace still has the positions from which the step set out.
+  State before = state_;
+  before.x = work_.before;
+  before.v = before.v.unaryExpr([](double v) { return std::isfinite(v) ? v : 0.0; });
+  before.time -= dt;
+  before.phase -= dt / parameters_.breath_length();
+  --before.tick;
+  divergence_ = Diagnose(*model_, parameters_, before, state_);
+  state_ = std::move(before);
+  return absl::OutOfRangeError(Describe(*divergence_));
+}
+
+void Run::Reset() {
+  state_ = model_->InitialState();
+  divergence_.reset();
+}
+
+std::string Describe(const v1::Divergence& divergence) {
+  return absl::StrFormat("the session diverged at t = %.6g s (tick %d) at vertex %d of %s, pulled most by %s: %s",
+                         divergence.time(), divergence.tick(), divergence.vertex(), divergence.body(),
+                         divergence.force(), divergence.remedy());
+}
+
+std::string HashText(const State& state) { return absl::StrFormat("%016x", StateHash(state)); }
+
+}  // namespace phrenic::session

@@ -1,0 +1,185 @@
+#include "server/session/session.h"
+
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "google/protobuf/util/time_util.h"
+#include "server/mechanics/compile.h"
+
+namespace phrenic::session {
+namespace {
+
+// How long a waiting call goes on before it looks again whether its caller is still there.
+constexpr absl::Duration kLook = absl::Milliseconds(50);
+
+absl::Status StaleRevision(std::int64_t expected, std::int64_t present) {
+  return absl::AbortedError(absl::StrCat("expected_revision: ", expected, " is stale, the session is at revision ",
+                                         present, "; read it again and repeat the change"));
+}
+
+std::vector<std::string> Warnings(const v1::Parameters& parameters, double stable_step) {
+  if (parameters.time_step() <= stable_step) return {};
+  return {
+      absl::StrFormat("time_step: %.3g s is above %.3g s, the largest stable step at the present stiffness, and "
+                      "the session will probably diverge; set it to %.2g s or less",
+                      parameters.time_step(), stable_step, 0.9 * stable_step)};
+}
+
+}  // namespace
+
+Session::Session(std::string id, std::shared_ptr<const Model> model, const v1::Parameters& parameters,
+                 double stable_step, const stream::Clock& clock, int max_viewers)
+    : id_(std::move(id)),
+      model_(std::move(model)),
+      clock_(clock),
+      publisher_(model_, clock, max_viewers),
+      run_(model_, parameters),
+      stable_step_(stable_step) {
+  {
+    absl::MutexLock lock(&mutex_);
+    status_.set_id(id_);
+    status_.set_scene(model_->scene.name());
+    status_.set_scene_title(model_->scene.title());
+    *status_.mutable_create_time() =
+        google::protobuf::util::TimeUtil::NanosecondsToTimestamp(absl::ToUnixNanos(clock.Now()));
+  }
+  pacer_.Start(clock.Now(), 0, speed_);
+  Tell();
+  OfferFrame(clock.Now());
+  thread_ = std::thread([this] { Loop(); });
+}
+
+Session::~Session() {
+  Stop(absl::UnavailableError(absl::StrCat("session ", id_, " has ended")));
+  thread_.join();
+}
+
+v1::Session Session::status() const {
+  v1::Session status;
+  {
+    absl::MutexLock lock(&mutex_);
+    status = status_;
+  }
+  status.set_viewers(publisher_.viewers());
+  return status;
+}
+
+absl::Status Session::Ask(absl::FunctionRef<void()> act) {
+  bool ran = false;
+  auto done = std::make_shared<absl::Notification>();
+  {
+    absl::MutexLock lock(&mutex_);
+    if (stopped_.has_value()) return *stopped_;
+    commands_.push_back({.act =
+                             [&] {
+                               act();
+                               ran = true;
+                             },
+                         .done = done});
+    called_ = true;
+  }
+  done->WaitForNotification();
+  if (ran) return absl::OkStatus();
+  absl::MutexLock lock(&mutex_);
+  return stopped_.value_or(absl::InternalError("the stepping thread refused a call"));
+}
+
+absl::StatusOr<v1::Session> Session::Play(std::optional<double> speed, bool as_fast_as_possible, double until) {
+  absl::Status played;
+  if (auto asked = Ask([&] { played = StartPlaying(speed, as_fast_as_possible, until); }); !asked.ok()) return asked;
+  if (!played.ok()) return played;
+  return status();
+}
+
+absl::StatusOr<v1::Session> Session::Pause() {
+  auto asked = Ask([&] {
+    EndJob(absl::AbortedError("the session was paused while it was being stepped"));
+    if (state_ == v1::SESSION_STATE_PLAYING) Halt(v1::SESSION_STATE_PAUSED);
+  });
+  if (!asked.ok()) return asked;
+  return status();
+}
+
+absl::StatusOr<Session::Stepped> Session::Step(std::int64_t ticks, std::optional<std::int64_t> expected_tick,
+                                               absl::FunctionRef<bool()> cancelled) {
+  auto job = std::make_shared<StepJob>();
+  job->left = ticks;
+  absl::Status started;
+  if (auto asked = Ask([&] { started = StartJob(job, expected_tick); }); !asked.ok()) return asked;
+  if (!started.ok()) return started;
+  while (!job->done.WaitForNotificationWithTimeout(kLook)) {
+    if (!cancelled()) continue;
+    auto asked = Ask([&] {
+      if (job_ == job) EndJob(absl::CancelledError("the caller went away while the session was being stepped"));
+    });
+    if (!asked.ok()) return asked;
+  }
+  if (!job->status.ok()) return job->status;
+  return std::move(job->result);
+}
+
+absl::StatusOr<v1::Session> Session::Reset() {
+  auto asked = Ask([&] {
+    EndJob(absl::AbortedError("the session was reset while it was being stepped"));
+    run_.Reset();
+    framed_tick_ = -1;
+    state_ = v1::SESSION_STATE_PAUSED;
+    ++revision_;
+    Halt(v1::SESSION_STATE_PAUSED);
+  });
+  if (!asked.ok()) return asked;
+  return status();
+}
+
+absl::StatusOr<Session::Updated> Session::Update(const v1::Parameters& changes,
+                                                 std::optional<std::int64_t> expected_revision) {
+  absl::MutexLock one_at_a_time(&update_mutex_);
+  const v1::Session before = status();
+  if (expected_revision.has_value() && *expected_revision != before.revision()) {
+    return StaleRevision(*expected_revision, before.revision());
+  }
+  v1::Parameters parameters = before.parameters();
+  parameters.MergeFrom(changes);
+  double stable_step = before.largest_stable_step();
+  if (parameters.elasticity() != before.parameters().elasticity()) {
+    stable_step = LargestStableStep(*model_, parameters).seconds();  // not on the stepping thread: it takes a while
+  }
+  absl::Status merged;
+  auto asked = Ask([&] {
+    if (expected_revision.has_value() && *expected_revision != revision_) {
+      merged = StaleRevision(*expected_revision, revision_);
+    } else {
+      Merge(changes, stable_step);
+    }
+  });
+  if (!asked.ok()) return asked;
+  if (!merged.ok()) return merged;
+  return Updated{status(), Warnings(parameters, stable_step)};
+}
+
+absl::StatusOr<Session::Fork> Session::MakeFork() {
+  absl::StatusOr<Fork> fork = absl::UnknownError("");
+  auto asked = Ask([&] {
+    const absl::Status good = CheckNotDiverged();
+    if (good.ok()) {
+      fork = Fork{run_.parameters(), run_.state()};
+    } else {
+      fork = good;
+    }
+  });
+  if (!asked.ok()) return asked;
+  return fork;
+}
+
+void Session::Stop(const absl::Status& reason) {
+  {
+    absl::MutexLock lock(&mutex_);
+    if (stopped_.has_value()) return;
+    stopped_ = reason;
+    called_ = true;
+  }
+  publisher_.Close(reason);
+}
+
+}  // namespace phrenic::session

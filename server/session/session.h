@@ -1,0 +1,141 @@
+// One running simulation: a Run, the thread that steps it, and its viewers.
+#ifndef PHRENIC_SERVER_SESSION_SESSION_H_
+#define PHRENIC_SERVER_SESSION_SESSION_H_
+
+#include <atomic>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "absl/base/thread_annotations.h"
+#include "absl/functional/function_ref.h"
+#include "absl/status/statusor.h"
+#include "absl/synchronization/mutex.h"
+#include "absl/synchronization/notification.h"
+#include "phrenic/v1/session.pb.h"
+#include "server/session/pace_meter.h"
+#include "server/session/pacer.h"
+#include "server/session/run.h"
+#include "server/stream/publisher.h"
+
+namespace phrenic::session {
+
+// Any thread may call. Calls that change something are carried out by the stepping thread between two steps, so that
+// they take effect at once and never in the middle of one; they return when that is done.
+class Session {
+ public:
+  struct Fork {
+    v1::Parameters parameters;
+    State state;
+  };
+  struct Stepped {
+    v1::Session session;
+    std::string state_hash;
+  };
+  struct Updated {
+    v1::Session session;
+    std::vector<std::string> warnings;
+  };
+
+  // Paused at t = 0. Every field of `parameters` is set and in range; `stable_step` is the largest one for them [s].
+  Session(std::string id, std::shared_ptr<const Model> model, const v1::Parameters& parameters, double stable_step,
+          const stream::Clock& clock, int max_viewers);
+  ~Session();
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  const std::string& id() const { return id_; }
+  const Model& model() const { return *model_; }
+  std::shared_ptr<const Model> shared_model() const { return model_; }
+  v1::Session status() const ABSL_LOCKS_EXCLUDED(mutex_);
+  stream::Publisher& publisher() { return publisher_; }
+
+  // `speed` not set keeps the present one, `until` 0 never pauses. FAILED_PRECONDITION when the session has diverged,
+  // INVALID_ARGUMENT when `until` lies behind.
+  absl::StatusOr<v1::Session> Play(std::optional<double> speed, bool as_fast_as_possible, double until);
+  absl::StatusOr<v1::Session> Pause();
+  // Pauses, takes `ticks` steps and pauses again. ABORTED when the session is at another tick than expected, when
+  // somebody else steps it, or when it is played, paused or reset meanwhile; CANCELLED as soon as `cancelled` says so.
+  absl::StatusOr<Stepped> Step(std::int64_t ticks, std::optional<std::int64_t> expected_tick,
+                               absl::FunctionRef<bool()> cancelled);
+  absl::StatusOr<v1::Session> Reset();
+  // Fields that are set change; they are in range. ABORTED when the session's revision is another than expected.
+  absl::StatusOr<Updated> Update(const v1::Parameters& changes, std::optional<std::int64_t> expected_revision)
+      ABSL_LOCKS_EXCLUDED(update_mutex_);
+  // A copy of the present state, from which another run may go on. FAILED_PRECONDITION when the session has diverged.
+  absl::StatusOr<Fork> MakeFork();
+  // Ends the stepping thread at once and all viewers with `reason`; later calls return it.
+  void Stop(const absl::Status& reason) ABSL_LOCKS_EXCLUDED(mutex_);
+
+ private:
+  // A call of Step under way.
+  struct StepJob {
+    std::int64_t left = 0;
+    absl::Status status;
+    Stepped result;
+    absl::Notification done;
+  };
+  struct Command {
+    std::function<void()> act;  // null: refused
+    std::shared_ptr<absl::Notification> done;
+  };
+
+  // Has the stepping thread run `act` between two steps and waits for it; the reason of Stop when it did not.
+  absl::Status Ask(absl::FunctionRef<void()> act) ABSL_LOCKS_EXCLUDED(mutex_);
+
+  // Of the stepping thread.
+  void Loop() ABSL_LOCKS_EXCLUDED(mutex_);
+  bool ServeCommands() ABSL_LOCKS_EXCLUDED(mutex_);
+  bool Called() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) { return !commands_.empty() || stopped_.has_value(); }
+  absl::Time NextBurst() const;
+  void Burst();
+  bool StepOnce();
+  bool Finished() const;
+  absl::Status StartPlaying(std::optional<double> speed, bool as_fast_as_possible, double until);
+  absl::Status StartJob(std::shared_ptr<StepJob> job, std::optional<std::int64_t> expected_tick);
+  void Merge(const v1::Parameters& changes, double stable_step);
+  void Halt(v1::SessionState state);
+  void EndJob(absl::Status status);
+  void OfferFrame(absl::Time now);
+  void Changed() ABSL_LOCKS_EXCLUDED(mutex_);
+  void Tell() ABSL_LOCKS_EXCLUDED(mutex_);
+  void NoteProgress() ABSL_LOCKS_EXCLUDED(mutex_);
+  absl::Status CheckNotDiverged() const;
+
+  const std::string id_;
+  const std::shared_ptr<const Model> model_;
+  const stream::Clock& clock_;
+  stream::Publisher publisher_;
+
+  absl::Mutex update_mutex_;  // one update at a time; taken before mutex_
+  mutable absl::Mutex mutex_;
+  v1::Session status_ ABSL_GUARDED_BY(mutex_);
+  std::deque<Command> commands_ ABSL_GUARDED_BY(mutex_);  // as many as there are callers waiting
+  std::optional<absl::Status> stopped_ ABSL_GUARDED_BY(mutex_);
+  std::atomic<bool> called_ = false;  // a hint to end a burst early
+
+  // Of the stepping thread alone.
+  Run run_;
+  Pacer pacer_;
+  PaceMeter meter_;
+  v1::SessionState state_ = v1::SESSION_STATE_PAUSED;
+  double speed_ = 1;  // simulated seconds per second
+  bool as_fast_as_possible_ = false;
+  double until_ = 0;        // [s]; 0 never pauses
+  double stable_step_ = 0;  // [s]
+  std::int64_t revision_ = 1;
+  std::int64_t frames_ = 0;
+  std::int64_t framed_tick_ = -1;  // of the newest frame
+  std::shared_ptr<StepJob> job_;
+
+  std::thread thread_;
+};
+
+}  // namespace phrenic::session
+
+#endif  // PHRENIC_SERVER_SESSION_SESSION_H_

@@ -1,0 +1,206 @@
+// The stepping thread of a session: commands between steps, steps in bursts of one frame.
+#include <limits>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "server/session/session.h"
+
+namespace phrenic::session {
+namespace {
+
+// Simulated time that counts as reached: rounding of a long sum of steps [s].
+constexpr double kTimeTolerance = 1e-9;
+
+}  // namespace
+
+void Session::Loop() {
+  while (ServeCommands()) {
+    if (job_ != nullptr || state_ == v1::SESSION_STATE_PLAYING) Burst();
+  }
+}
+
+bool Session::ServeCommands() {
+  std::deque<Command> commands;
+  bool stopped = false;
+  {
+    absl::MutexLock lock(&mutex_);
+    const absl::Time next = NextBurst();
+    if (!Called() && next > clock_.Now()) clock_.Await(mutex_, absl::Condition(this, &Session::Called), next);
+    commands.swap(commands_);
+    stopped = stopped_.has_value();
+    called_ = false;
+  }
+  for (const Command& command : commands) {
+    if (!stopped) command.act();
+    command.done->Notify();
+  }
+  if (stopped) EndJob(absl::CancelledError("the session ended while it was being stepped"));
+  return !stopped;
+}
+
+absl::Time Session::NextBurst() const {
+  if (job_ != nullptr) return absl::InfinitePast();
+  if (state_ != v1::SESSION_STATE_PLAYING) return absl::InfiniteFuture();
+  return as_fast_as_possible_ ? absl::InfinitePast() : pacer_.next_frame();
+}
+
+// Steps until the time of the next frame is reached, in the simulation or on the wall, or somebody calls.
+void Session::Burst() {
+  const bool hurry = job_ != nullptr || as_fast_as_possible_;
+  const absl::Time start = clock_.Now();
+  const absl::Time end = start + absl::Seconds(1 / kFramesPerSecond);
+  const double target = hurry ? std::numeric_limits<double>::infinity() : pacer_.Target(start, run_.state().time);
+  bool stepping = true;
+  while (stepping && !called_) {
+    if (run_.state().time + run_.parameters().time_step() > target + kTimeTolerance) break;
+    stepping = StepOnce() && !Finished() && clock_.Now() < end;
+  }
+  const absl::Time now = clock_.Now();
+  if (run_.divergence().has_value()) {
+    EndJob(absl::OutOfRangeError(Describe(*run_.divergence())));
+    Halt(v1::SESSION_STATE_DIVERGED);
+  } else if (job_ != nullptr && job_->left == 0) {
+    Halt(v1::SESSION_STATE_PAUSED);
+    EndJob(absl::OkStatus());
+  } else if (Finished()) {
+    Halt(v1::SESSION_STATE_PAUSED);
+  } else {
+    NoteProgress();
+    if (pacer_.FrameDue(now)) OfferFrame(now);
+  }
+}
+
+bool Session::StepOnce() {
+  if (!run_.Step().ok()) return false;
+  if (job_ != nullptr) --job_->left;
+  return true;
+}
+
+// Whether the steps that were asked for have been taken.
+bool Session::Finished() const {
+  if (job_ != nullptr) return job_->left == 0;
+  return until_ > 0 && run_.state().time >= until_ - kTimeTolerance;
+}
+
+absl::Status Session::StartPlaying(std::optional<double> speed, bool as_fast_as_possible, double until) {
+  if (absl::Status good = CheckNotDiverged(); !good.ok()) return good;
+  const double time = run_.state().time;
+  if (until > 0 && until <= time + kTimeTolerance) {
+    return absl::InvalidArgumentError(absl::StrCat("until_time: ", until, " s is not after the session's time, ", time,
+                                                   " s; ask for a later time, or reset the session first"));
+  }
+  EndJob(absl::AbortedError("the session was played while it was being stepped"));
+  speed_ = speed.value_or(speed_);
+  as_fast_as_possible_ = as_fast_as_possible;
+  until_ = until;
+  state_ = v1::SESSION_STATE_PLAYING;
+  pacer_.Start(clock_.Now(), time, speed_);
+  meter_.Start(clock_.Now(), run_.state().tick, time);
+  Changed();
+  return absl::OkStatus();
+}
+
+absl::Status Session::StartJob(std::shared_ptr<StepJob> job, std::optional<std::int64_t> expected_tick) {
+  if (absl::Status good = CheckNotDiverged(); !good.ok()) return good;
+  if (job_ != nullptr) return absl::AbortedError("somebody else is stepping the session; try again when it is done");
+  if (state_ == v1::SESSION_STATE_PLAYING) Halt(v1::SESSION_STATE_PAUSED);
+  const std::int64_t tick = run_.state().tick;
+  if (expected_tick.has_value() && *expected_tick != tick) {
+    return absl::AbortedError(
+        absl::StrCat("expected_tick: ", *expected_tick, " is stale, the session is at tick ", tick, "; read it again"));
+  }
+  job_ = std::move(job);
+  meter_.Start(clock_.Now(), tick, run_.state().time);
+  return absl::OkStatus();
+}
+
+void Session::Merge(const v1::Parameters& changes, double stable_step) {
+  v1::Parameters parameters = run_.parameters();
+  parameters.MergeFrom(changes);
+  run_.set_parameters(parameters);
+  stable_step_ = stable_step;
+  Changed();
+}
+
+// Stops stepping; the frame of the last good state is shown.
+void Session::Halt(v1::SessionState state) {
+  if (state_ == v1::SESSION_STATE_PLAYING || job_ != nullptr) {
+    meter_.Update(clock_.Now(), run_.state().tick, run_.state().time, true);
+  }
+  if (state_ != state) ++revision_;
+  state_ = state;
+  until_ = 0;
+  Tell();
+  OfferFrame(clock_.Now());
+}
+
+void Session::EndJob(absl::Status status) {
+  if (job_ == nullptr) return;
+  job_->status = std::move(status);
+  job_->result.session = this->status();
+  job_->result.state_hash = HashText(run_.state());
+  const auto job = std::exchange(job_, nullptr);
+  job->done.Notify();
+}
+
+void Session::OfferFrame(absl::Time now) {
+  pacer_.FrameMade(now);
+  if (run_.state().tick == framed_tick_) return;
+  framed_tick_ = run_.state().tick;
+  auto snapshot = std::make_shared<stream::Snapshot>();
+  snapshot->sequence = ++frames_;
+  snapshot->state = run_.state();
+  snapshot->parameters = run_.parameters();
+  snapshot->made = now;
+  publisher_.Offer(std::move(snapshot));
+}
+
+// State or parameters are others than before.
+void Session::Changed() {
+  ++revision_;
+  Tell();
+}
+
+void Session::Tell() {
+  v1::Session status;
+  {
+    absl::MutexLock lock(&mutex_);
+    status_.set_state(state_);
+    status_.set_time(run_.state().time);
+    status_.set_tick(run_.state().tick);
+    *status_.mutable_parameters() = run_.parameters();
+    status_.set_revision(revision_);
+    status_.set_speed(as_fast_as_possible_ ? 0 : speed_);
+    status_.set_largest_stable_step(stable_step_);
+    *status_.mutable_pace() = meter_.pace();
+    if (run_.divergence().has_value()) {
+      *status_.mutable_divergence() = *run_.divergence();
+    } else {
+      status_.clear_divergence();
+    }
+    status = status_;
+  }
+  publisher_.Announce(status);
+}
+
+// Time goes on; viewers hear of it about once a second.
+void Session::NoteProgress() {
+  const bool measured = meter_.Update(clock_.Now(), run_.state().tick, run_.state().time);
+  v1::Session status;
+  {
+    absl::MutexLock lock(&mutex_);
+    status_.set_time(run_.state().time);
+    status_.set_tick(run_.state().tick);
+    if (!measured) return;
+    *status_.mutable_pace() = meter_.pace();
+    status = status_;
+  }
+  publisher_.Announce(status);
+}
+
+absl::Status Session::CheckNotDiverged() const {
+  if (!run_.divergence().has_value()) return absl::OkStatus();
+  return absl::FailedPreconditionError(Describe(*run_.divergence()));
+}
+
+}  // namespace phrenic::session

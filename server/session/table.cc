@@ -1,0 +1,160 @@
+#include "server/session/table.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "server/mechanics/compile.h"
+#include "server/schema/schema.h"
+
+namespace phrenic::session {
+namespace {
+
+constexpr std::size_t kLongestId = 64;
+constexpr int kUsualPage = 100;
+constexpr int kLargestPage = 1000;
+
+bool MayBeInId(char c) { return absl::ascii_islower(c) || absl::ascii_isdigit(c) || c == '-'; }
+
+absl::Status CheckId(const std::string& id) {
+  if (id.size() <= kLongestId && std::all_of(id.begin(), id.end(), MayBeInId)) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrCat("session_id: \"", id.substr(0, kLongestId), "\" is not 1 to 64 characters of a-z, 0-9 and \"-\""));
+}
+
+// What the scene is called, as far as an id may hold it.
+std::string Stem(const std::string& scene) {
+  std::string stem = absl::AsciiStrToLower(scene).substr(0, kLongestId - 8);
+  for (char& c : stem) {
+    if (!MayBeInId(c)) c = '-';
+  }
+  return stem.empty() ? "session" : stem;
+}
+
+// The step that suits the parameters where neither the scene nor the request sets one: never above the compiled one.
+void ChooseStep(const Model& model, const v1::Parameters& changes, double stable_step, v1::Parameters& parameters) {
+  if (changes.has_time_step() || model.scene.parameters().has_time_step()) return;
+  parameters.set_time_step(std::min(parameters.time_step(), 0.9 * stable_step));
+}
+
+}  // namespace
+
+Table::Table(Models& models, const stream::Clock& clock, const Limits& limits)
+    : models_(models), clock_(clock), limits_(limits) {}
+
+Table::~Table() { Close(absl::UnavailableError("the server is shutting down")); }
+
+std::string Table::FreeId(const std::string& scene) const {
+  const std::string stem = Stem(scene);
+  if (!sessions_.contains(stem)) return stem;
+  int number = 2;
+  while (sessions_.contains(absl::StrCat(stem, "-", number))) ++number;
+  return absl::StrCat(stem, "-", number);
+}
+
+absl::StatusOr<std::string> Table::Reserve(const std::string& wanted, const std::string& scene) {
+  if (absl::Status status = CheckId(wanted); !status.ok()) return status;
+  absl::MutexLock lock(&mutex_);
+  if (closed_.has_value()) return *closed_;
+  if (sessions_.contains(wanted)) {
+    return absl::AlreadyExistsError(absl::StrCat("session_id: there is a session \"", wanted, "\" already"));
+  }
+  if (static_cast<int>(sessions_.size()) >= limits_.sessions) {
+    return absl::ResourceExhaustedError(absl::StrCat("there are ", sessions_.size(),
+                                                     " sessions, and no more are allowed; delete one first, or "
+                                                     "start the server with a larger --max-sessions"));
+  }
+  const std::string id = wanted.empty() ? FreeId(scene) : wanted;
+  sessions_.emplace(id, nullptr);
+  return id;
+}
+
+absl::StatusOr<std::shared_ptr<Session>> Table::Make(const std::string& id, const v1::CreateSessionRequest& request) {
+  const auto compiled = models_.Get(request.source());
+  if (!compiled.ok()) return compiled.status();
+  const std::shared_ptr<const Model>& model = *compiled;
+  v1::Parameters parameters = model->parameters;
+  parameters.MergeFrom(request.parameters());
+  double stable_step = model->report.stable_step().seconds();
+  if (parameters.elasticity() != model->parameters.elasticity()) {
+    stable_step = LargestStableStep(*model, parameters).seconds();
+    ChooseStep(*model, request.parameters(), stable_step, parameters);
+  }
+  if (absl::Status status = schema::Validate(parameters); !status.ok()) return status;
+  return std::make_shared<Session>(id, model, parameters, stable_step, clock_, limits_.viewers);
+}
+
+absl::StatusOr<std::shared_ptr<Session>> Table::Create(const v1::CreateSessionRequest& request) {
+  const std::string scene = request.source().has_scene() ? request.source().scene().name() : request.source().name();
+  const absl::StatusOr<std::string> id = Reserve(request.session_id(), scene);
+  if (!id.ok()) return id.status();
+  absl::StatusOr<std::shared_ptr<Session>> session = Make(*id, request);
+  absl::MutexLock lock(&mutex_);
+  if (closed_.has_value()) return *closed_;
+  if (session.ok()) {
+    sessions_[*id] = *session;
+  } else {
+    sessions_.erase(*id);
+  }
+  return session;
+}
+
+absl::Status Table::NoSession(const std::string& id) const {
+  std::vector<std::string> ids;
+  for (const auto& [other, session] : sessions_) {
+    if (session != nullptr) ids.push_back(other);
+  }
+  return absl::NotFoundError(absl::StrCat("session_id: there is no session \"", id.substr(0, kLongestId),
+                                          "\"; there are ", ids.empty() ? "none" : absl::StrJoin(ids, ", ")));
+}
+
+absl::StatusOr<std::shared_ptr<Session>> Table::Find(const std::string& id) const {
+  absl::MutexLock lock(&mutex_);
+  const auto found = sessions_.find(id);
+  if (found == sessions_.end() || found->second == nullptr) return NoSession(id);
+  return found->second;
+}
+
+Table::Page Table::List(int page_size, const std::string& token) const {
+  const int limit = page_size <= 0 ? kUsualPage : std::min(page_size, kLargestPage);
+  Page page;
+  absl::MutexLock lock(&mutex_);
+  for (auto place = sessions_.upper_bound(token); place != sessions_.end(); ++place) {
+    if (place->second == nullptr) continue;
+    if (static_cast<int>(page.sessions.size()) == limit) {
+      page.next_token = page.sessions.back()->id();
+      break;
+    }
+    page.sessions.push_back(place->second);
+  }
+  return page;
+}
+
+absl::Status Table::Delete(const std::string& id) {
+  std::shared_ptr<Session> session;
+  {
+    absl::MutexLock lock(&mutex_);
+    const auto found = sessions_.find(id);
+    if (found == sessions_.end() || found->second == nullptr) return NoSession(id);
+    session = std::move(found->second);
+    sessions_.erase(found);
+  }
+  session->Stop(absl::NotFoundError(absl::StrCat("session ", id, " was deleted")));
+  return absl::OkStatus();
+}
+
+void Table::Close(const absl::Status& reason) {
+  std::map<std::string, std::shared_ptr<Session>> sessions;
+  {
+    absl::MutexLock lock(&mutex_);
+    if (!closed_.has_value()) closed_ = reason;
+    sessions.swap(sessions_);
+  }
+  for (const auto& [id, session] : sessions) {
+    if (session != nullptr) session->Stop(reason);
+  }
+}
+
+}  // namespace phrenic::session

@@ -1,0 +1,60 @@
+// The sessions of a server, by their ids.
+#ifndef PHRENIC_SERVER_SESSION_TABLE_H_
+#define PHRENIC_SERVER_SESSION_TABLE_H_
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/base/thread_annotations.h"
+#include "absl/status/statusor.h"
+#include "absl/synchronization/mutex.h"
+#include "server/session/limits.h"
+#include "server/session/models.h"
+#include "server/session/session.h"
+
+namespace phrenic::session {
+
+// Any thread may call.
+class Table {
+ public:
+  struct Page {
+    std::vector<std::shared_ptr<Session>> sessions;
+    std::string next_token;
+  };
+
+  Table(Models& models, const stream::Clock& clock, const Limits& limits);
+  ~Table();
+
+  // Compiles the scene and makes a paused session. An empty id lets the table choose one from the scene's name.
+  // INVALID_ARGUMENT, ALREADY_EXISTS or RESOURCE_EXHAUSTED tell why there is none.
+  absl::StatusOr<std::shared_ptr<Session>> Create(const v1::CreateSessionRequest& request) ABSL_LOCKS_EXCLUDED(mutex_);
+  // NOT_FOUND lists the ids there are.
+  absl::StatusOr<std::shared_ptr<Session>> Find(const std::string& id) const ABSL_LOCKS_EXCLUDED(mutex_);
+  // Sessions in the order of their ids, after the one that `token` names.
+  Page List(int page_size, const std::string& token) const ABSL_LOCKS_EXCLUDED(mutex_);
+  // Stops the session and ends its viewers with NOT_FOUND.
+  absl::Status Delete(const std::string& id) ABSL_LOCKS_EXCLUDED(mutex_);
+  // Stops every session; none can be made afterwards.
+  void Close(const absl::Status& reason) ABSL_LOCKS_EXCLUDED(mutex_);
+
+ private:
+  // A place taken while its session is being made: null.
+  absl::StatusOr<std::string> Reserve(const std::string& wanted, const std::string& scene) ABSL_LOCKS_EXCLUDED(mutex_);
+  absl::StatusOr<std::shared_ptr<Session>> Make(const std::string& id, const v1::CreateSessionRequest& request);
+  std::string FreeId(const std::string& scene) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  absl::Status NoSession(const std::string& id) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+
+  Models& models_;
+  const stream::Clock& clock_;
+  const Limits limits_;
+  mutable absl::Mutex mutex_;
+  std::map<std::string, std::shared_ptr<Session>> sessions_ ABSL_GUARDED_BY(mutex_);
+  std::optional<absl::Status> closed_ ABSL_GUARDED_BY(mutex_);
+};
+
+}  // namespace phrenic::session
+
+#endif  // PHRENIC_SERVER_SESSION_TABLE_H_

@@ -1,0 +1,87 @@
+#include "server/stream/frame.h"
+
+#include <cmath>
+
+#include "absl/strings/str_cat.h"
+#include "server/stream/wire.h"
+
+namespace phrenic::stream {
+namespace {
+
+absl::Status NotFinite(const std::string& what, const State& state) {
+  return absl::InternalError(absl::StrCat(what, " is not finite at tick ", state.tick, ": the frame is not sent"));
+}
+
+absl::Status AddPositions(const Model& model, const Layout& layout, const State& state, v1::Frame& frame) {
+  std::string& bytes = *frame.mutable_positions();
+  bytes.reserve(sizeof(float) * 3 * layout.vertices());
+  Points placed;
+  Eigen::MatrixXf floats;
+  for (int i = 0; i < static_cast<int>(model.bodies.size()); ++i) {
+    if (layout.placement(i) != v1::PLACEMENT_STREAMED) continue;
+    placed.resize(3, model.bodies[i].mesh.vertices.cols());
+    PlaceBody(model, state, i, placed);
+    floats = placed.cast<float>();
+    if (!floats.allFinite()) return NotFinite(absl::StrCat("a vertex of ", model.bodies[i].name), state);
+    AppendFloats(floats, bytes);
+  }
+  return absl::OkStatus();
+}
+
+absl::Status AddPoses(const State& state, v1::Frame& frame) {
+  Eigen::MatrixXf floats(7, state.poses.size());
+  for (int i = 0; i < static_cast<int>(state.poses.size()); ++i) {
+    const Pose& pose = state.poses[i];
+    floats.col(i) << pose.rotation.coeffs().cast<float>(), pose.translation.cast<float>();
+  }
+  if (!floats.allFinite()) return NotFinite("a pose", state);
+  AppendFloats(floats, *frame.mutable_poses());
+  return absl::OkStatus();
+}
+
+absl::Status AddProbe(const Model& model, const State& state, const Probe& probe, v1::Frame& frame) {
+  const BodyModel& body = model.bodies[probe.body];
+  const Eigen::Vector3d rest = body.mesh.vertices.col(probe.vertex);
+  Eigen::Vector3d x = rest;
+  if (body.first_vertex >= 0) {
+    x = state.x.col(body.first_vertex + probe.vertex);
+  } else if (body.pose >= 0) {
+    x = state.poses[body.pose].At(rest);
+  } else if (body.ride >= 0) {
+    Points placed(3, body.mesh.vertices.cols());
+    PlaceBody(model, state, probe.body, placed);
+    x = placed.col(probe.vertex);
+  }
+  if (!x.allFinite()) return NotFinite(absl::StrCat("probe ", probe.name), state);
+  const Eigen::Vector3d moved = x - rest;
+  v1::ProbeReading& reading = *frame.add_probes();
+  reading.set_name(probe.name);
+  reading.set_x(x.x());
+  reading.set_y(x.y());
+  reading.set_z(x.z());
+  reading.set_dx(moved.x());
+  reading.set_dy(moved.y());
+  reading.set_dz(moved.z());
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::StatusOr<v1::Frame> MakeFrame(const Model& model, const Layout& layout, const Snapshot& snapshot) {
+  const State& state = snapshot.state;
+  v1::Frame frame;
+  frame.set_sequence(snapshot.sequence);
+  frame.set_tick(state.tick);
+  frame.set_time(state.time);
+  frame.set_breath(MakeInstant(model, snapshot.parameters, state).breath);
+  frame.set_unix_nanos(absl::ToUnixNanos(snapshot.made));
+  if (!std::isfinite(frame.time()) || !std::isfinite(frame.breath())) return NotFinite("the time", state);
+  if (absl::Status status = AddPositions(model, layout, state, frame); !status.ok()) return status;
+  if (absl::Status status = AddPoses(state, frame); !status.ok()) return status;
+  for (const Probe& probe : model.probes) {
+    if (absl::Status status = AddProbe(model, state, probe, frame); !status.ok()) return status;
+  }
+  return frame;
+}
+
+}  // namespace phrenic::stream

@@ -1,0 +1,34 @@
+// Where the vertices of each body come from in a frame: the same for every frame of a session.
+#ifndef PHRENIC_SERVER_STREAM_LAYOUT_H_
+#define PHRENIC_SERVER_STREAM_LAYOUT_H_
+
+#include <vector>
+
+#include "phrenic/v1/frames.pb.h"
+#include "server/mechanics/model.h"
+
+namespace phrenic::stream {
+
+// Immutable; any number of threads may call.
+class Layout {
+ public:
+  explicit Layout(const Model& model);
+
+  v1::Placement placement(int body) const { return placements_[body].placement; }
+  // The place of the body's first vertex among the streamed vertices; 0 for a body that is not streamed.
+  int first_vertex(int body) const { return placements_[body].first_vertex; }
+  // Of all streamed bodies.
+  int vertices() const { return vertices_; }
+
+ private:
+  struct Place {
+    v1::Placement placement = v1::PLACEMENT_STILL;
+    int first_vertex = 0;
+  };
+  std::vector<Place> placements_;
+  int vertices_ = 0;
+};
+
+}  // namespace phrenic::stream
+
+#endif  // PHRENIC_SERVER_STREAM_LAYOUT_H_

@@ -1,0 +1,147 @@
+#include "server/stream/publisher.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+
+namespace phrenic::stream {
+namespace {
+
+// A frame may come this much before its time, so that a viewer that asks for 60 a second gets 60.
+constexpr absl::Duration kEarly = absl::Milliseconds(2);
+
+}  // namespace
+
+Publisher::Publisher(std::shared_ptr<const Model> model, const Clock& clock, int max_viewers)
+    : model_(std::move(model)),
+      layout_(*model_),
+      clock_(clock),
+      max_viewers_(max_viewers),
+      encoder_(model_, layout_),
+      thread_([this] { Run(); }) {}
+
+Publisher::~Publisher() {
+  Close(absl::UnavailableError("the session has ended"));
+  thread_.join();
+}
+
+void Publisher::Offer(std::shared_ptr<const Snapshot> snapshot) {
+  absl::MutexLock lock(&mutex_);
+  newest_ = std::move(snapshot);
+  stirred_ = true;
+}
+
+void Publisher::Announce(const v1::Session& session) {
+  absl::MutexLock lock(&mutex_);
+  session_ = session;
+  SessionChanged();
+}
+
+void Publisher::SessionChanged() {
+  session_.set_viewers(static_cast<int>(seats_.size()));
+  ++session_number_;
+  stirred_ = true;
+}
+
+absl::StatusOr<std::shared_ptr<Viewer>> Publisher::Join(const ViewerOptions& options, std::function<void()> wake) {
+  absl::MutexLock lock(&mutex_);
+  if (closed_.has_value()) return *closed_;
+  if (static_cast<int>(seats_.size()) >= max_viewers_) {
+    return absl::ResourceExhaustedError(
+        absl::StrCat("the session has ", seats_.size(), " viewers, and no more are allowed; try again later"));
+  }
+  auto viewer = std::make_shared<Viewer>(options, std::move(wake));
+  seats_.emplace_back().viewer = viewer;
+  SessionChanged();
+  return viewer;
+}
+
+void Publisher::Leave(const std::shared_ptr<Viewer>& viewer) {
+  absl::MutexLock lock(&mutex_);
+  const auto left = std::erase_if(seats_, [&](const Seat& seat) { return seat.viewer == viewer; });
+  if (left > 0) SessionChanged();
+}
+
+void Publisher::Close(const absl::Status& reason) {
+  std::vector<std::shared_ptr<Viewer>> viewers;
+  {
+    absl::MutexLock lock(&mutex_);
+    if (closed_.has_value()) return;
+    closed_ = reason;
+    for (const Seat& seat : seats_) viewers.push_back(seat.viewer);
+  }
+  for (const auto& viewer : viewers) viewer->End(reason);
+}
+
+int Publisher::viewers() const {
+  absl::MutexLock lock(&mutex_);
+  return static_cast<int>(seats_.size());
+}
+
+std::int64_t Publisher::encodings() const {
+  absl::MutexLock lock(&mutex_);
+  return encodings_;
+}
+
+absl::Time Publisher::NextDue() const {
+  absl::Time next = absl::InfiniteFuture();
+  if (newest_ == nullptr) return next;
+  for (const Seat& seat : seats_) {
+    if (seat.sequence < newest_->sequence) next = std::min(next, seat.due);
+  }
+  return next;
+}
+
+Publisher::Round Publisher::TakeRound(absl::Time now) {
+  Round round;
+  round.snapshot = newest_;
+  if (session_number_ > 0) round.session = EncodeSession(session_);
+  for (Seat& seat : seats_) {
+    if (seat.news < session_number_) {
+      seat.news = session_number_;
+      round.for_session.push_back(seat.viewer);
+    }
+    if (newest_ == nullptr || seat.sequence >= newest_->sequence || now < seat.due) continue;
+    seat.sequence = newest_->sequence;
+    const ViewerOptions& options = seat.viewer->options();
+    if (options.max_fps > 0) seat.due = now + absl::Seconds(1 / options.max_fps) - kEarly;
+    (options.numbers_only ? round.for_numbers : round.for_frame).push_back(seat.viewer);
+  }
+  return round;
+}
+
+void Publisher::Deliver(const Round& round) {
+  for (const auto& viewer : round.for_session) viewer->PutSession(round.session);
+  if (!round.for_frame.empty()) {
+    const Bytes frame = encoder_.Full(*round.snapshot);
+    {
+      absl::MutexLock lock(&mutex_);
+      encodings_ = encoder_.encodings();
+    }
+    for (const auto& viewer : round.for_frame) {
+      if (frame != nullptr) viewer->PutFrame(frame);
+    }
+  }
+  if (round.for_numbers.empty()) return;
+  const Bytes numbers = encoder_.Numbers(*round.snapshot);
+  for (const auto& viewer : round.for_numbers) {
+    if (numbers != nullptr) viewer->PutFrame(numbers);
+  }
+}
+
+void Publisher::Run() {
+  for (;;) {
+    Round round;
+    {
+      absl::MutexLock lock(&mutex_);
+      clock_.Await(mutex_, absl::Condition(this, &Publisher::Stirred), NextDue());
+      if (closed_.has_value()) return;
+      stirred_ = false;
+      round = TakeRound(clock_.Now());
+    }
+    Deliver(round);
+  }
+}
+
+}  // namespace phrenic::stream

@@ -1,0 +1,90 @@
+// Encodes the frames of one session, each once however many watch, and puts them into the viewers' mailboxes.
+#ifndef PHRENIC_SERVER_STREAM_PUBLISHER_H_
+#define PHRENIC_SERVER_STREAM_PUBLISHER_H_
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "absl/base/thread_annotations.h"
+#include "absl/status/statusor.h"
+#include "absl/synchronization/mutex.h"
+#include "phrenic/v1/session.pb.h"
+#include "server/stream/clock.h"
+#include "server/stream/encoder.h"
+#include "server/stream/frame.h"
+#include "server/stream/viewer.h"
+
+namespace phrenic::stream {
+
+// Any thread may call; its own thread encodes and delivers, so that the stepping thread does neither. A frame that
+// nobody watches is not encoded.
+class Publisher {
+ public:
+  Publisher(std::shared_ptr<const Model> model, const Clock& clock, int max_viewers);
+  ~Publisher();
+  Publisher(const Publisher&) = delete;
+  Publisher& operator=(const Publisher&) = delete;
+
+  // The newest moment; replaces one that was not encoded yet.
+  void Offer(std::shared_ptr<const Snapshot> snapshot) ABSL_LOCKS_EXCLUDED(mutex_);
+  // The newest state of the session; `viewers` of it is filled in here.
+  void Announce(const v1::Session& session) ABSL_LOCKS_EXCLUDED(mutex_);
+
+  // The viewer gets the session's state at once, then the newest frame, then what comes. RESOURCE_EXHAUSTED when there
+  // are too many already, and the reason of Close after it.
+  absl::StatusOr<std::shared_ptr<Viewer>> Join(const ViewerOptions& options, std::function<void()> wake)
+      ABSL_LOCKS_EXCLUDED(mutex_);
+  void Leave(const std::shared_ptr<Viewer>& viewer) ABSL_LOCKS_EXCLUDED(mutex_);
+  // Ends every viewer with `reason` and the thread; nothing is delivered afterwards.
+  void Close(const absl::Status& reason) ABSL_LOCKS_EXCLUDED(mutex_);
+
+  int viewers() const ABSL_LOCKS_EXCLUDED(mutex_);
+  // How often a frame with positions was encoded.
+  std::int64_t encodings() const ABSL_LOCKS_EXCLUDED(mutex_);
+  const Layout& layout() const { return layout_; }
+
+ private:
+  // What one viewer has had.
+  struct Seat {
+    std::shared_ptr<Viewer> viewer;
+    std::int64_t sequence = 0;              // of the newest frame
+    std::int64_t news = 0;                  // number of the newest state of the session
+    absl::Time due = absl::InfinitePast();  // no frame before this
+  };
+  // What is to be put into whose mailbox.
+  struct Round {
+    std::shared_ptr<const Snapshot> snapshot;
+    Bytes session;
+    std::vector<std::shared_ptr<Viewer>> for_session, for_frame, for_numbers;
+  };
+
+  void Run() ABSL_LOCKS_EXCLUDED(mutex_);
+  bool Stirred() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) { return stirred_ || closed_.has_value(); }
+  absl::Time NextDue() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  Round TakeRound(absl::Time now) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void Deliver(const Round& round) ABSL_LOCKS_EXCLUDED(mutex_);
+  void SessionChanged() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+
+  const std::shared_ptr<const Model> model_;
+  const Layout layout_;
+  const Clock& clock_;
+  const int max_viewers_;
+  mutable absl::Mutex mutex_;
+  std::shared_ptr<const Snapshot> newest_ ABSL_GUARDED_BY(mutex_);
+  v1::Session session_ ABSL_GUARDED_BY(mutex_);
+  std::int64_t session_number_ ABSL_GUARDED_BY(mutex_) = 0;
+  std::vector<Seat> seats_ ABSL_GUARDED_BY(mutex_);
+  bool stirred_ ABSL_GUARDED_BY(mutex_) = false;  // something came since the last round
+  std::optional<absl::Status> closed_ ABSL_GUARDED_BY(mutex_);
+  std::int64_t encodings_ ABSL_GUARDED_BY(mutex_) = 0;
+  Encoder encoder_;  // of the publisher's thread only
+  std::thread thread_;
+};
+
+}  // namespace phrenic::stream
+
+#endif  // PHRENIC_SERVER_STREAM_PUBLISHER_H_

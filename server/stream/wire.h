@@ -1,0 +1,36 @@
+// Numbers as they travel: little-endian, 4 bytes each (proto/README.md).
+#ifndef PHRENIC_SERVER_STREAM_WIRE_H_
+#define PHRENIC_SERVER_STREAM_WIRE_H_
+
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "server/mesh/mesh.h"
+
+namespace phrenic::stream {
+
+// Numbers are copied as the machine has them, so the machine must have them as the wire does.
+static_assert(std::endian::native == std::endian::little, "the wire is little-endian: swap the bytes here");
+
+// float32 x y z a column.
+inline void AppendFloats(const Eigen::Ref<const Eigen::MatrixXf>& values, std::string& bytes) {
+  bytes.append(reinterpret_cast<const char*>(values.data()), sizeof(float) * values.size());
+}
+
+// uint32 an index, column after column.
+inline void AppendIndices(const Eigen::Ref<const Eigen::MatrixXi>& indices, std::string& bytes) {
+  static_assert(sizeof(int) == sizeof(std::uint32_t));
+  bytes.append(reinterpret_cast<const char*>(indices.data()), sizeof(int) * indices.size());
+}
+
+inline void AppendIndex(int index, std::string& bytes) {
+  const auto value = static_cast<std::uint32_t>(index);
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+}  // namespace phrenic::stream
+
+#endif  // PHRENIC_SERVER_STREAM_WIRE_H_
