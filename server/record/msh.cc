@@ -1,0 +1,86 @@
+#include "server/record/msh.h"
+
+#include "server/record/text_block.h"
+
+namespace phrenic::record {
+namespace {
+
+constexpr double kMillimetres = 1e3;
+constexpr int kGmshLine = 1, kGmshTriangle = 2;
+
+Eigen::Index Shapes(const Mesh& mesh) { return mesh.triangles.cols() > 0 ? mesh.triangles.cols() : mesh.edges.cols(); }
+
+class MshRecorder final : public Recorder {
+ public:
+  explicit MshRecorder(Sink sink) : text_(std::move(sink)) {}
+
+  absl::Status Begin(const std::vector<RecordedBody>& bodies) override {
+    text_.Append("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n%d\n", bodies.size());
+    for (size_t b = 0; b < bodies.size(); ++b) text_.Append("2 %d \"%s\"\n", b + 1, bodies[b].name);
+    text_.Append("$EndPhysicalNames\n");
+    WriteNodes(bodies);
+    WriteElements(bodies);
+    return text_.Flush();
+  }
+
+  absl::Status AddFrame(double time, const ConstPoints& positions) override {
+    if (frames_ == 0) first_ = positions;
+    if (positions.cols() != first_.cols()) return absl::InternalError("a frame has another number of vertices");
+    text_.Append("$NodeData\n1\n\"displacement\"\n1\n%.9g\n3\n%d\n3\n%d\n", time, frames_, positions.cols());
+    for (Eigen::Index i = 0; i < positions.cols(); ++i) {
+      const Eigen::Vector3d u = kMillimetres * (positions.col(i) - first_.col(i));
+      text_.Append("%d %.6g %.6g %.6g\n", i + 1, u.x(), u.y(), u.z());
+    }
+    text_.Append("$EndNodeData\n");
+    ++frames_;
+    return text_.Flush();
+  }
+
+  absl::Status End() override { return text_.Flush(); }
+
+ private:
+  void WriteNodes(const std::vector<RecordedBody>& bodies) {
+    Eigen::Index nodes = 0;
+    for (const RecordedBody& body : bodies) nodes += body.mesh.vertices.cols();
+    text_.Append("$Nodes\n%d\n", nodes);
+    Eigen::Index number = 0;
+    for (const RecordedBody& body : bodies) {
+      for (Eigen::Index i = 0; i < body.mesh.vertices.cols(); ++i) {
+        const Eigen::Vector3d x = kMillimetres * body.mesh.vertices.col(i);
+        text_.Append("%d %.9g %.9g %.9g\n", ++number, x.x(), x.y(), x.z());
+      }
+    }
+    text_.Append("$EndNodes\n");
+  }
+
+  void WriteElements(const std::vector<RecordedBody>& bodies) {
+    Eigen::Index elements = 0;
+    for (const RecordedBody& body : bodies) elements += Shapes(body.mesh);
+    text_.Append("$Elements\n%d\n", elements);
+    Eigen::Index number = 0, first = 1;
+    for (size_t b = 0; b < bodies.size(); ++b) {
+      const Mesh& mesh = bodies[b].mesh;
+      for (Eigen::Index i = 0; i < Shapes(mesh); ++i) {
+        if (mesh.triangles.cols() > 0) {
+          text_.Append("%d %d 2 %d %d %d %d %d\n", ++number, kGmshTriangle, b + 1, b + 1, first + mesh.triangles(0, i),
+                       first + mesh.triangles(1, i), first + mesh.triangles(2, i));
+        } else {
+          text_.Append("%d %d 2 %d %d %d %d\n", ++number, kGmshLine, b + 1, b + 1, first + mesh.edges(0, i),
+                       first + mesh.edges(1, i));
+        }
+      }
+      first += mesh.vertices.cols();
+    }
+    text_.Append("$EndElements\n");
+  }
+
+  TextBlock text_;
+  Points first_;
+  int frames_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Recorder> MakeMshRecorder(Sink sink) { return std::make_unique<MshRecorder>(std::move(sink)); }
+
+}  // namespace phrenic::record
