@@ -1,0 +1,138 @@
+// Round trips of motion files by small independent readers, and Gmsh itself.
+#include <gmock/gmock.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+#include "server/record/recorder.h"
+
+namespace phrenic::record {
+namespace {
+
+constexpr int kFrames = 5;
+
+std::vector<RecordedBody> TwoBodies() {
+  Mesh sheet;
+  sheet.vertices.resize(3, 4);
+  sheet.vertices << 0, 1, 1, 0, 0, 0, 1, 1, 0.1, 0.1, 0.1, 0.1;
+  sheet.triangles.resize(3, 2);
+  sheet.triangles << 0, 0, 1, 2, 2, 3;
+  Mesh wire;
+  wire.vertices.resize(3, 2);
+  wire.vertices << 2, 3, 0, 0, 0, 0.5;
+  wire.edges.resize(2, 1);
+  wire.edges << 0, 1;
+  return {{"sheet", sheet}, {"wire", wire}};
+}
+
+Points PositionsAt(int frame) {
+  const std::vector<RecordedBody> bodies = TwoBodies();
+  Points all(3, 6);
+  all << bodies[0].mesh.vertices, bodies[1].mesh.vertices;
+  if (frame > 0) all.array() += 1e-3 * frame * frame / 3.0;
+  return all;
+}
+
+std::string Record(const std::string& format) {
+  std::string file;
+  auto recorder = MakeRecorder(format, [&file](std::string_view bytes) {
+    file.append(bytes);
+    return absl::OkStatus();
+  });
+  EXPECT_TRUE(recorder.ok());
+  EXPECT_TRUE((*recorder)->Begin(TwoBodies()).ok());
+  for (int f = 0; f < kFrames; ++f) EXPECT_TRUE((*recorder)->AddFrame(0.25 * f, PositionsAt(f)).ok());
+  EXPECT_TRUE((*recorder)->End().ok());
+  return file;
+}
+
+TEST(Formats, UnknownNamesListWhatThereIs) {
+  const auto recorder = MakeRecorder("avi", [](std::string_view) { return absl::OkStatus(); });
+  ASSERT_FALSE(recorder.ok());
+  EXPECT_THAT(std::string(recorder.status().message()),
+              testing::AllOf(testing::HasSubstr("avi"), testing::HasSubstr("msh, depl")));
+}
+
+TEST(Formats, ASinkThatFailsEndsTheRecording) {
+  for (const Format& format : Formats()) {
+    auto recorder = format.make([](std::string_view) { return absl::ResourceExhaustedError("disk full"); });
+    absl::Status status = recorder->Begin(TwoBodies());
+    if (status.ok()) status = recorder->AddFrame(0, PositionsAt(0));
+    if (status.ok()) status = recorder->End();
+    EXPECT_EQ(status.code(), absl::StatusCode::kResourceExhausted) << format.name;
+  }
+}
+
+TEST(Depl, RunningSumIsThePositionToItsLastDecimal) {
+  std::istringstream file(Record("depl"));
+  std::string kind;
+  int vertices = 0, shapes = 0, rows = 0;
+  file >> kind >> vertices >> shapes >> rows;
+  EXPECT_EQ(kind, "TRIANGLES");
+  EXPECT_EQ(vertices, 6);
+  EXPECT_EQ(shapes, 2);
+  ASSERT_EQ(rows, kFrames);
+  for (int i = 0; i < vertices; ++i) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (int f = 0; f < rows; ++f) {
+      Eigen::Vector3d change;
+      file >> change.x() >> change.y() >> change.z();
+      sum += change;
+      const Eigen::Vector3d exact = 1e3 * PositionsAt(f).col(i);
+      EXPECT_LT((sum - exact).cwiseAbs().maxCoeff(), 0.5000001e-6) << "vertex " << i << " frame " << f;
+    }
+  }
+  EXPECT_TRUE(static_cast<bool>(file));
+  file >> kind;
+  EXPECT_TRUE(file.eof()) << "nothing follows the last row";
+}
+
+TEST(Msh, NodeDataIsTheDisplacementFromTheFirstFrame) {
+  std::istringstream file(Record("msh"));
+  std::string line;
+  int frame = 0;
+  while (std::getline(file, line)) {
+    if (line != "$NodeData") continue;
+    std::string name;
+    int count = 0, step = 0, components = 0, nodes = 0;
+    double time = 0;
+    file >> count >> name >> count >> time >> count >> step >> components >> nodes;
+    EXPECT_EQ(name, "\"displacement\"");
+    EXPECT_EQ(step, frame);
+    EXPECT_DOUBLE_EQ(time, 0.25 * frame);
+    ASSERT_EQ(nodes, 6);
+    for (int i = 0; i < nodes; ++i) {
+      int number = 0;
+      Eigen::Vector3d u;
+      file >> number >> u.x() >> u.y() >> u.z();
+      EXPECT_EQ(number, i + 1);
+      EXPECT_LT((u - 1e3 * (PositionsAt(frame) - PositionsAt(0)).col(i)).norm(), 1e-5);
+    }
+    ++frame;
+  }
+  EXPECT_EQ(frame, kFrames);
+}
+
+TEST(Msh, OpensInGmshWithAllItsStepsAndTimes) {
+  if (std::system("command -v gmsh >/dev/null 2>&1") != 0) GTEST_SKIP() << "gmsh is not installed";
+  const std::string base = testing::TempDir() + "phrenic_record";
+  std::ofstream(base + ".msh") << Record("msh");
+  std::ofstream(base + ".geo") << "Merge \"" << base << ".msh\";\n"
+                               << "Printf(\"views %g\", PostProcessing.NbViews);\n"
+                               << "Printf(\"steps %g\", View[0].NbTimeStep);\n"
+                               << "Printf(\"nodes %g\", Mesh.NbNodes);\n"
+                               << "Printf(\"triangles %g\", Mesh.NbTriangles);\n";
+  const std::string log = base + ".log";
+  ASSERT_EQ(std::system(("gmsh -parse_and_exit " + base + ".geo >" + log + " 2>&1").c_str()), 0);
+  std::ifstream file(log);
+  const std::string said((std::istreambuf_iterator<char>(file)), {});
+  EXPECT_THAT(said, testing::HasSubstr("views 1"));
+  EXPECT_THAT(said, testing::HasSubstr("steps 5"));
+  EXPECT_THAT(said, testing::HasSubstr("nodes 6"));
+  EXPECT_THAT(said, testing::HasSubstr("triangles 2"));
+  EXPECT_THAT(said, testing::Not(testing::HasSubstr("Error")));
+}
+
+}  // namespace
+}  // namespace phrenic::record
