@@ -1,6 +1,6 @@
 #include "server/mechanics/state.h"
 
-#include <cstring>
+#include <bit>
 
 namespace phrenic {
 namespace {
@@ -8,9 +8,7 @@ namespace {
 void Mix(const double* values, Eigen::Index count, std::uint64_t& hash) {
   constexpr std::uint64_t kPrime = 0x100000001b3;
   for (Eigen::Index i = 0; i < count; ++i) {
-    std::uint64_t bits;
-    std::memcpy(&bits, values + i, sizeof bits);
-    hash = (hash ^ bits) * kPrime;
+    hash = (hash ^ std::bit_cast<std::uint64_t>(values[i])) * kPrime;
     hash ^= hash >> 29;  // word-wise FNV-1a leaves the low bits blind to the high ones without it
   }
 }

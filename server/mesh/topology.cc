@@ -13,8 +13,8 @@ constexpr double kSmallestArea = 1e-14;  // [m^2]
 
 struct HalfEdge {
   int low, high;
-  bool forward;  // runs from low to high in its triangle
-  auto operator<=>(const HalfEdge&) const = default;
+  bool forward;                                       // runs from low to high in its triangle
+  auto operator<=>(const HalfEdge&) const = default;  // NOLINT(modernize-use-nullptr): a false alarm of clang-tidy 14
 };
 
 std::vector<HalfEdge> SortedHalfEdges(const Triangles& triangles) {

@@ -35,6 +35,7 @@ absl::Status NoSuchParameter(std::string_view name) {
   constexpr size_t kLongestGuess = 64;  // a longer name is no slip of the fingers
   const Descriptor& type = *v1::Parameters::descriptor();
   std::vector<std::string> names;
+  names.reserve(type.field_count());
   for (int i = 0; i < type.field_count(); ++i) names.push_back(type.field(i)->name());
   const std::string shown(name.substr(0, kLongestGuess));
   const auto farther = [&](const std::string& a, const std::string& b) {
