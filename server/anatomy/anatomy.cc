@@ -1,0 +1,109 @@
+#include "server/anatomy/anatomy.h"
+
+#include <cmath>
+
+#include "absl/strings/str_cat.h"
+#include "server/anatomy/cartilage.h"
+#include "server/anatomy/diaphragm_mesh.h"
+#include "server/anatomy/dimensions.h"
+#include "server/anatomy/lung.h"
+#include "server/anatomy/rib.h"
+#include "server/anatomy/sternum.h"
+#include "server/anatomy/vertebra.h"
+
+namespace phrenic::anatomy {
+namespace {
+
+constexpr int kCartilages = 10;
+constexpr double kMetresAMillimetre = 1e-3;
+constexpr double kFinest = 0.5, kCoarsest = 50;  // [mm], as the scene's resolution_mm
+
+// The part's own edge length [mm].
+double DefaultResolution(v1::Structure structure) {
+  switch (structure) {
+    case v1::STRUCTURE_DIAPHRAGM:
+      return 3.2;
+    case v1::STRUCTURE_LUNG:
+      return 6;
+    case v1::STRUCTURE_VERTEBRA:
+      return 4.5;
+    default:
+      return 4.5;
+  }
+}
+
+absl::Status NeedsSide(const v1::Anatomy& part) {
+  if (part.side() == v1::SIDE_LEFT || part.side() == v1::SIDE_RIGHT) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat("anatomy.side: ", v1::Structure_Name(part.structure()),
+                                                 " is on one side; set SIDE_RIGHT or SIDE_LEFT"));
+}
+
+absl::Status NeedsNumber(const v1::Anatomy& part, int last) {
+  if (part.number() >= 1 && part.number() <= last) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat("anatomy.number: there is no ", v1::Structure_Name(part.structure()),
+                                                 " ", part.number(), " in the generated thorax; use 1 to ", last));
+}
+
+absl::Status CheckPart(const v1::Anatomy& part) {
+  switch (part.structure()) {
+    case v1::STRUCTURE_DIAPHRAGM:
+    case v1::STRUCTURE_MANUBRIUM:
+    case v1::STRUCTURE_STERNUM_BODY:
+    case v1::STRUCTURE_XIPHOID:
+      return absl::OkStatus();
+    case v1::STRUCTURE_VERTEBRA:
+      return NeedsNumber(part, kVertebrae);
+    case v1::STRUCTURE_LUNG:
+      return NeedsSide(part);
+    case v1::STRUCTURE_RIB:
+      if (absl::Status status = NeedsNumber(part, kRibs); !status.ok()) return status;
+      return NeedsSide(part);
+    case v1::STRUCTURE_COSTAL_CARTILAGE:
+      if (absl::Status status = NeedsNumber(part, kCartilages); !status.ok()) return status;
+      return NeedsSide(part);
+    default:
+      return absl::InvalidArgumentError("anatomy.structure: name the part to generate, for example STRUCTURE_RIB");
+  }
+}
+
+Mesh OnSide(const v1::Anatomy& part, Mesh left) {
+  return part.side() == v1::SIDE_RIGHT ? Mirrored(std::move(left)) : std::move(left);
+}
+
+Mesh InMillimetres(const v1::Anatomy& part, double edge_length) {
+  switch (part.structure()) {
+    case v1::STRUCTURE_DIAPHRAGM:
+      return DiaphragmMesh(edge_length);
+    case v1::STRUCTURE_RIB:
+      return OnSide(part, LeftRib(part.number(), edge_length));
+    case v1::STRUCTURE_COSTAL_CARTILAGE:
+      return OnSide(part, LeftCartilage(part.number(), edge_length));
+    case v1::STRUCTURE_MANUBRIUM:
+      return Manubrium(edge_length);
+    case v1::STRUCTURE_STERNUM_BODY:
+      return SternumBody(edge_length);
+    case v1::STRUCTURE_XIPHOID:
+      return Xiphoid(edge_length);
+    case v1::STRUCTURE_VERTEBRA:
+      return Vertebra(part.number(), edge_length);
+    case v1::STRUCTURE_LUNG:
+      return part.side() == v1::SIDE_RIGHT ? RightLung(edge_length) : LeftLung(edge_length);
+    default:
+      return {};
+  }
+}
+
+}  // namespace
+
+absl::StatusOr<Mesh> Generate(const v1::Anatomy& part, double resolution_mm) {
+  if (absl::Status status = CheckPart(part); !status.ok()) return status;
+  if (resolution_mm != 0 && !(resolution_mm >= kFinest && resolution_mm <= kCoarsest)) {
+    return absl::InvalidArgumentError(absl::StrCat("generated.resolution_mm: ", resolution_mm, " is outside ", kFinest,
+                                                   " to ", kCoarsest, " mm; 0 takes the part's own"));
+  }
+  Mesh mesh = InMillimetres(part, resolution_mm == 0 ? DefaultResolution(part.structure()) : resolution_mm);
+  mesh.vertices *= kMetresAMillimetre;
+  return mesh;
+}
+
+}  // namespace phrenic::anatomy

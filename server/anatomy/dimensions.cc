@@ -1,0 +1,81 @@
+#include "server/anatomy/dimensions.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace phrenic::anatomy {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+// Half the width of the cage: widest at the eighth rib, closing over the lungs' tops like an ellipse.
+double HalfWidth(double z) {
+  constexpr double kWidest = 185, kLargest = 131, kAbove = 216, kBelow = 270;
+  const double away = z > kWidest ? (z - kWidest) / kAbove : (kWidest - z) / kBelow;
+  return kLargest * std::sqrt(std::max(0.015, 1 - away * away));
+}
+
+// The back of the cage beside the spine: furthest back at the sixth and seventh ribs.
+double Back(double z) {
+  const double away = z > 235 ? (z - 235) / 150 : (235 - z) / 150;
+  return 107 - (z > 235 ? 50 : 20) * away * away;
+}
+
+// Behind the sternum, and straight down below it, with a soft bend at the xiphoid.
+double Front(double z) {
+  constexpr double kSoft = 12;
+  const double bend = kSoft * std::log1p(std::exp((z - 205) / kSoft));
+  return -98 + 0.5 * bend;
+}
+
+}  // namespace
+
+double SpineFront(double z) { return 20 + 25 * std::cos(kPi * (z - 290) / 290); }
+
+double SpineSlope(double z) { return -25 * kPi / 290 * std::sin(kPi * (z - 290) / 290); }
+
+VertebralBody BodyOfVertebra(int number) {
+  VertebralBody body{};
+  double z = 0;
+  for (int n = kVertebrae; n >= number; --n) {
+    const double up = static_cast<double>(kVertebrae - n) / (kVertebrae - 1);  // 0 at L3, 1 at T1
+    const double height = 28 - 11 * up;
+    body.bottom = z;
+    body.top = z + height;
+    body.width = 46 - 17 * std::sqrt(up) + 3 * std::max(0.0, up - 0.75) * 4;
+    body.depth = 34 - 17 * up;
+    z = body.top + 3 + 6 * (1 - up) * (1 - up);
+  }
+  return body;
+}
+
+CageSection::CageSection(double z, double inset)
+    : half_width_(HalfWidth(z) - inset),
+      half_depth_((Back(z) - Front(z)) / 2 - inset),
+      centre_((Back(z) + Front(z)) / 2),
+      column_(centre_ + half_depth_ - (SpineFront(z) - inset / 2)) {}
+
+namespace {
+
+constexpr double kSquareness = 0.3;      // 0 is an ellipse
+constexpr double kColumnHalfWidth = 34;  // of the vertebral column with the muscles beside it [mm]
+
+double Pressed(double x) { return std::exp(-x * x / (kColumnHalfWidth * kColumnHalfWidth)); }
+
+}  // namespace
+
+Eigen::Vector2d CageSection::Point(const Eigen::Vector2d& q) const {
+  const double x = half_width_ * q.x();
+  const double y = centre_ + half_depth_ * q.y() * (1 + kSquareness * q.x() * q.x());
+  return {x, y - column_ * Pressed(x) * (1 + q.y()) / 2};
+}
+
+Eigen::Vector2d CageSection::DiscCoordinates(const Eigen::Vector2d& point) const {
+  const double across = point.x() / half_width_, pressed = column_ * Pressed(point.x()) / 2;
+  const double slope = half_depth_ * (1 + kSquareness * across * across) - pressed;
+  return {across, (point.y() - centre_ + pressed) / slope};
+}
+
+double SternumLine(double z) { return -100 + 0.5 * (z - 212); }
+
+}  // namespace phrenic::anatomy

@@ -1,0 +1,143 @@
+#include "server/anatomy/edge_collapse.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <tuple>
+
+namespace phrenic::anatomy {
+namespace {
+
+class Collapser {
+ public:
+  Collapser(double longest, std::vector<Eigen::Vector3d>& points, Triangles& triangles)
+      : longest_(longest),
+        points_(points),
+        triangles_(triangles),
+        fans_(points.size()),
+        alive_(triangles.cols(), true) {
+    for (int t = 0; t < static_cast<int>(triangles.cols()); ++t) {
+      for (int k = 0; k < 3; ++k) fans_[triangles(k, t)].push_back(t);
+    }
+  }
+
+  // One sweep over the edges as they are now; false when nothing could be merged.
+  bool Sweep(double shortest) {
+    std::vector<std::tuple<double, int, int>> edges;
+    for (int t = 0; t < static_cast<int>(triangles_.cols()); ++t) {
+      if (!alive_[t]) continue;
+      for (int k = 0; k < 3; ++k) {
+        const int a = triangles_(k, t), b = triangles_((k + 1) % 3, t);
+        const double length = (points_[a] - points_[b]).norm();
+        if (a < b && length < shortest) edges.emplace_back(length, a, b);
+      }
+    }
+    std::sort(edges.begin(), edges.end());
+    bool merged = false;
+    std::vector<bool> touched(points_.size(), false);
+    for (const auto& [length, a, b] : edges) {
+      if (touched[a] || touched[b] || !MayMerge(a, b)) continue;
+      for (const int n : Around(a)) touched[n] = true;
+      for (const int n : Around(b)) touched[n] = true;
+      Merge(a, b);
+      merged = true;
+    }
+    return merged;
+  }
+
+  void Compact() {
+    std::vector<int> renumbered(points_.size(), -1);
+    std::vector<Eigen::Vector3d> kept;
+    for (size_t i = 0; i < points_.size(); ++i) {
+      if (fans_[i].empty()) continue;
+      renumbered[i] = static_cast<int>(kept.size());
+      kept.push_back(points_[i]);
+    }
+    Eigen::Index count = 0;
+    for (Eigen::Index t = 0; t < triangles_.cols(); ++t) {
+      if (!alive_[t]) continue;
+      const Eigen::Vector3i v = triangles_.col(t);
+      triangles_.col(count++) << renumbered[v[0]], renumbered[v[1]], renumbered[v[2]];
+    }
+    triangles_.conservativeResize(3, count);
+    points_ = kept;
+  }
+
+ private:
+  std::vector<int> Around(int vertex) const {
+    std::vector<int> around;
+    for (const int t : fans_[vertex]) {
+      for (int k = 0; k < 3; ++k) {
+        if (triangles_(k, t) != vertex) around.push_back(triangles_(k, t));
+      }
+    }
+    std::sort(around.begin(), around.end());
+    around.erase(std::unique(around.begin(), around.end()), around.end());
+    return around;
+  }
+
+  bool Has(int t, int vertex) const { return (triangles_.col(t).array() == vertex).any(); }
+
+  bool MayMerge(int a, int b) const {
+    const std::vector<int> around_a = Around(a), around_b = Around(b);
+    if (!std::binary_search(around_a.begin(), around_a.end(), b)) return false;
+    std::vector<int> shared;
+    std::set_intersection(around_a.begin(), around_a.end(), around_b.begin(), around_b.end(),
+                          std::back_inserter(shared));
+    if (shared.size() != 2 || fans_[shared[0]].size() <= 3 || fans_[shared[1]].size() <= 3) return false;
+    const Eigen::Vector3d middle = (points_[a] + points_[b]) / 2;
+    const auto too_far = [&](int n) { return (points_[n] - middle).norm() > longest_; };
+    if (std::any_of(around_a.begin(), around_a.end(), too_far)) return false;
+    if (std::any_of(around_b.begin(), around_b.end(), too_far)) return false;
+    return KeepsFacing(a, b, middle) && KeepsFacing(b, a, middle);
+  }
+
+  // The triangles at `moved` that stay keep facing about the same way.
+  bool KeepsFacing(int moved, int other, const Eigen::Vector3d& to) const {
+    for (const int t : fans_[moved]) {
+      if (Has(t, other)) continue;
+      std::array<Eigen::Vector3d, 3> before, after;
+      for (int k = 0; k < 3; ++k) {
+        before[k] = points_[triangles_(k, t)];
+        after[k] = triangles_(k, t) == moved ? to : before[k];
+      }
+      const Eigen::Vector3d n = (before[1] - before[0]).cross(before[2] - before[0]);
+      const Eigen::Vector3d m = (after[1] - after[0]).cross(after[2] - after[0]);
+      if (n.dot(m) < 0.5 * n.norm() * m.norm() || m.norm() < 1e-9) return false;
+    }
+    return true;
+  }
+
+  void Merge(int a, int b) {
+    points_[a] = (points_[a] + points_[b]) / 2;
+    for (const int t : std::vector<int>(fans_[b])) {
+      if (Has(t, a)) {
+        alive_[t] = false;
+        for (int k = 0; k < 3; ++k) std::erase(fans_[triangles_(k, t)], t);
+        continue;
+      }
+      for (int k = 0; k < 3; ++k) {
+        if (triangles_(k, t) == b) triangles_(k, t) = a;
+      }
+      fans_[a].push_back(t);
+    }
+    fans_[b].clear();
+  }
+
+  double longest_;
+  std::vector<Eigen::Vector3d>& points_;
+  Triangles& triangles_;
+  std::vector<std::vector<int>> fans_;
+  std::vector<bool> alive_;
+};
+
+}  // namespace
+
+void CollapseShortEdges(double shortest, double longest, std::vector<Eigen::Vector3d>& points, Triangles& triangles) {
+  Collapser collapser(longest, points, triangles);
+  while (collapser.Sweep(shortest)) {
+  }
+  collapser.Compact();
+}
+
+}  // namespace phrenic::anatomy

@@ -1,0 +1,132 @@
+#include "server/anatomy/implicit_surface.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "server/anatomy/remesh.h"
+
+namespace phrenic::anatomy {
+namespace {
+
+class Marcher {
+ public:
+  Marcher(const Field& field, const Box& box, double cell) : low_(box.low), cell_(cell) {
+    size_ = ((box.high - box.low) / cell).array().ceil().cast<int>() + 2;
+    values_.resize(static_cast<size_t>(size_.prod()));
+    for (int k = 0; k < size_.z(); ++k) {
+      for (int j = 0; j < size_.y(); ++j) {
+        for (int i = 0; i < size_.x(); ++i) {
+          const int node = Node({i, j, k});
+          const bool border = ((Eigen::Array3i(i, j, k) == 0) || (Eigen::Array3i(i, j, k) == size_.array() - 1)).any();
+          const double value = field(Place(node));
+          values_[node] = border ? std::max(value, 0.1 * cell) : value;  // closed whatever the field does there
+        }
+      }
+    }
+  }
+
+  Mesh March() {
+    for (int k = 0; k + 1 < size_.z(); ++k) {
+      for (int j = 0; j + 1 < size_.y(); ++j) {
+        for (int i = 0; i + 1 < size_.x(); ++i) Cube({i, j, k});
+      }
+    }
+    Mesh mesh;
+    mesh.vertices.resize(3, static_cast<Eigen::Index>(points_.size()));
+    for (size_t i = 0; i < points_.size(); ++i) mesh.vertices.col(static_cast<Eigen::Index>(i)) = points_[i];
+    mesh.triangles.resize(3, static_cast<Eigen::Index>(triangles_.size()));
+    for (size_t t = 0; t < triangles_.size(); ++t) mesh.triangles.col(static_cast<Eigen::Index>(t)) = triangles_[t];
+    return mesh;
+  }
+
+ private:
+  int Node(const Eigen::Vector3i& at) const { return (at.z() * size_.y() + at.y()) * size_.x() + at.x(); }
+
+  Eigen::Vector3d Place(int node) const {
+    const int i = node % size_.x(), j = node / size_.x() % size_.y(), k = node / (size_.x() * size_.y());
+    return low_ + cell_ * (Eigen::Vector3d(i, j, k) - Eigen::Vector3d::Constant(0.5));
+  }
+
+  bool In(int node) const { return values_[node] < 0; }
+
+  void Cube(const Eigen::Vector3i& at) {
+    constexpr int kOrders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
+    std::array<int, 8> corners{};
+    int inside = 0;
+    for (int c = 0; c < 8; ++c) {
+      corners[c] = Node(at + Eigen::Vector3i(c & 1, c >> 1 & 1, c >> 2));
+      inside += In(corners[c]) ? 1 : 0;
+    }
+    if (inside == 0 || inside == 8) return;
+    for (const auto& order : kOrders) {
+      const int a = 1 << order[0], b = a | 1 << order[1];
+      Tetrahedron({corners[0], corners[a], corners[b], corners[7]});
+    }
+  }
+
+  void Tetrahedron(const std::array<int, 4>& nodes) {
+    std::vector<int> in, out;
+    for (const int node : nodes) (In(node) ? in : out).push_back(node);
+    if (in.empty() || out.empty()) return;
+    if (in.size() == 1) {
+      Triangle(in[0], out[0], Cut(in[0], out[0]), Cut(in[0], out[1]), Cut(in[0], out[2]));
+    } else if (out.size() == 1) {
+      Triangle(in[0], out[0], Cut(in[0], out[0]), Cut(in[1], out[0]), Cut(in[2], out[0]));
+    } else {
+      const int p = Cut(in[0], out[0]), q = Cut(in[0], out[1]), r = Cut(in[1], out[1]), s = Cut(in[1], out[0]);
+      Triangle(in[0], out[0], p, q, r);
+      Triangle(in[0], out[0], p, r, s);
+    }
+  }
+
+  // Turned so that it faces from the inner node to the outer one, which lie on either side of it.
+  void Triangle(int in, int out, int a, int b, int c) {
+    const Eigen::Vector3d normal = (points_[b] - points_[a]).cross(points_[c] - points_[a]);
+    const double side = normal.dot(Place(out) - points_[a]) - normal.dot(Place(in) - points_[a]);
+    triangles_.emplace_back(side > 0 ? Eigen::Vector3i(a, b, c) : Eigen::Vector3i(a, c, b));
+  }
+
+  int Cut(int a, int b) {
+    const int64_t key = static_cast<int64_t>(std::min(a, b)) * size_.prod() + std::max(a, b);
+    const auto [found, added] = cuts_.try_emplace(key, static_cast<int>(points_.size()));
+    if (added) {
+      const int low = std::min(a, b), high = std::max(a, b);
+      const double t = std::clamp(values_[low] / (values_[low] - values_[high]), 0.08, 0.92);
+      points_.emplace_back((1 - t) * Place(low) + t * Place(high));
+    }
+    return found->second;
+  }
+
+  Eigen::Vector3d low_;
+  double cell_;
+  Eigen::Vector3i size_;
+  std::vector<double> values_;
+  std::unordered_map<int64_t, int> cuts_;
+  std::vector<Eigen::Vector3d> points_;
+  std::vector<Eigen::Vector3i> triangles_;
+};
+
+}  // namespace
+
+Mesh Polygonise(const Field& field, const Box& box, double cell) { return Marcher(field, box, cell).March(); }
+
+Mesh ImplicitSurface(const Field& field, const Box& box, double edge_length) {
+  return Remesh(field, Polygonise(field, box, 0.6 * edge_length), edge_length);
+}
+
+double SmoothMin(double a, double b, double k) {
+  const double h = std::max(k - std::abs(a - b), 0.0) / k;
+  return std::min(a, b) - h * h * k / 4;
+}
+
+double Capsule(const Eigen::Vector3d& x, const Eigen::Vector3d& a, const Eigen::Vector3d& b, double ra, double rb) {
+  const double t = std::clamp((x - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
+  return (x - a - t * (b - a)).norm() - (ra + t * (rb - ra));
+}
+
+}  // namespace phrenic::anatomy

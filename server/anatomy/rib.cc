@@ -1,0 +1,101 @@
+#include "server/anatomy/rib.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "server/anatomy/dimensions.h"
+
+namespace phrenic::anatomy {
+namespace {
+
+constexpr double kRadian = 3.14159265358979323846 / 180;
+
+double SagittalSlope(int number) { return std::tan((37 - 1.9 * (number - 1)) * kRadian); }
+
+double FrontalSlope(int number) { return std::tan(std::min(50.0, 9 + 0.37 * (number - 1) * (number - 1)) * kRadian); }
+
+// Azimuth of the anterior end from the front [degrees].
+double EndAzimuth(int number) { return number == 1 ? 40 : 26 + 0.98 * (number - 2) * (number - 2); }
+
+double Smooth(double t) {
+  t = std::clamp(t, 0.0, 1.0);
+  return t * t * (3 - 2 * t);
+}
+
+struct Neck {
+  Eigen::Vector3d head, tubercle;
+};
+
+Neck NeckOf(int number) {
+  const VertebralBody body = BodyOfVertebra(number);
+  const bool own_level = number == 1 || number >= 11;
+  const double z = own_level ? body.Middle() + 3 : body.top - 1;
+  const double x = body.width / 2 + 2;
+  const Eigen::Vector3d head(x, SpineFront(z) + 0.85 * body.depth, z);
+  const double drop = 2 - 13 * Smooth((number - 5) / 5.0);
+  return {head, head + Eigen::Vector3d(number == 1 ? 22 : 17, number == 12 ? 9 : 15, drop)};
+}
+
+// Where the rib's plane cuts the cage at that azimuth.
+Eigen::Vector3d OnCage(int number, const Eigen::Vector3d& tubercle, double degrees) {
+  constexpr int kRounds = 40;
+  Eigen::Vector3d point = tubercle;
+  for (int i = 0; i < kRounds; ++i) {
+    const Eigen::Vector2d xy =
+        CageSection(point.z(), 0).Point({std::sin(degrees * kRadian), -std::cos(degrees * kRadian)});
+    const double z =
+        tubercle.z() + SagittalSlope(number) * (xy.y() - tubercle.y()) - FrontalSlope(number) * (xy.x() - tubercle.x());
+    point = {xy.x(), xy.y(), (point.z() + z) / 2};
+  }
+  return point;
+}
+
+// The azimuth at which the rib reaches the cage, a little beyond its tubercle.
+double AngleAzimuth(int number, const Eigen::Vector3d& tubercle) {
+  double degrees = 165;
+  while (degrees > EndAzimuth(number) + 20 && OnCage(number, tubercle, degrees).x() < tubercle.x() + 17) --degrees;
+  return degrees;
+}
+
+TubeSection Section(int number, double s, const Eigen::Vector3d& centre) {
+  const double head = 1 - Smooth(s / 0.06);      // the head is thicker, the neck round
+  const double body = Smooth((s - 0.1) / 0.15);  // the shaft flat
+  const double tip = Smooth((s - 0.8) / 0.2);    // ribs 11 and 12 end in a point, the others a little broader
+  const bool floating = number >= 11;
+  const double size = number == 1 ? 1.0 : number == 12 ? 0.8 : 1.0;
+  const double broad = (4.2 + 1.3 * head + 1.9 * body + (floating ? -3 : 0.8) * tip) * size;
+  const double thin = (3.8 + 1.0 * head - 0.3 * body + (floating ? -0.8 : 0.3) * tip) * size;
+  // The upper ribs lie flat, their thin axis upwards.
+  const double flat = std::max(0.0, 80 - 32.0 * (number - 1)) * kRadian;
+  const Eigen::Vector3d out = OutOfCage(centre);
+  return {broad, thin, std::cos(flat) * out + std::sin(flat) * Eigen::Vector3d::UnitZ()};
+}
+
+}  // namespace
+
+Eigen::Vector3d OutOfCage(const Eigen::Vector3d& point) {
+  const CageSection section(point.z(), 0);
+  Eigen::Vector2d q = section.DiscCoordinates(point.head<2>());
+  q = q.norm() > 1e-6 ? Eigen::Vector2d(q.normalized()) : Eigen::Vector2d(0, -1);
+  constexpr double kStep = 1e-3;
+  const Eigen::Vector2d turned(-q.y(), q.x());
+  const Eigen::Vector2d along = section.Point((q + kStep * turned).normalized()) - section.Point(q);
+  return Eigen::Vector3d(along.y(), -along.x(), 0).normalized();
+}
+
+Curve LeftRibPath(int number) {
+  const Neck neck = NeckOf(number);
+  Curve path = {neck.head, (neck.head + neck.tubercle) / 2, neck.tubercle};
+  const double from = AngleAzimuth(number, neck.tubercle), to = EndAzimuth(number);
+  const int steps = std::max(3, static_cast<int>(std::lround((from - to) / 9)));
+  for (int i = 0; i <= steps; ++i) path.push_back(OnCage(number, neck.tubercle, from + (to - from) * i / steps));
+  return path;
+}
+
+Mesh LeftRib(int number, double edge_length) {
+  const auto section = [number](double s, const Eigen::Vector3d& centre) { return Section(number, s, centre); };
+  return Tube(LeftRibPath(number), section, edge_length);
+}
+
+}  // namespace phrenic::anatomy

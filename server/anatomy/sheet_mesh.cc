@@ -1,0 +1,144 @@
+#include "server/anatomy/sheet_mesh.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "server/anatomy/edge_flips.h"
+#include "server/anatomy/plane_delaunay.h"
+#include "server/anatomy/plane_region.h"
+#include "server/anatomy/spaced_points.h"
+
+namespace phrenic::anatomy {
+namespace {
+
+using Plane = std::vector<Eigen::Vector2d>;
+
+// Points along a closed loop so that each step is the same share of the aimed edge lengths.
+Plane EvenlyAlong(const SheetDomain& domain, const Plane& loop) {
+  std::vector<double> passed = {0};
+  for (size_t i = 0; i < loop.size(); ++i) {
+    const Eigen::Vector3d a = domain.map(loop[i]), b = domain.map(loop[(i + 1) % loop.size()]);
+    passed.push_back(passed.back() + (b - a).norm() / domain.edge_length((a + b) / 2));
+  }
+  const int count = std::max(8, static_cast<int>(std::lround(passed.back())));
+  Plane even;
+  size_t side = 0;
+  for (int i = 0; i < count; ++i) {
+    const double aim = passed.back() * i / count;
+    while (passed[side + 1] <= aim) ++side;
+    const double t = (aim - passed[side]) / (passed[side + 1] - passed[side]);
+    even.push_back((1 - t) * loop[side] + t * loop[(side + 1) % loop.size()]);
+  }
+  return even;
+}
+
+// Fills the inside with points that keep their distance from each other and from the border.
+void Fill(const SheetDomain& domain, const PlaneRegion& region, Sheet& sheet) {
+  constexpr double kApart = 0.8;     // of the edge length: a hexagonal lattice of the same density has about 1
+  constexpr int kTriesASquare = 40;  // candidates per square edge length of surface
+  double smallest = domain.edge_length(sheet.points[0]);
+  for (const Eigen::Vector3d& x : sheet.points) smallest = std::min(smallest, domain.edge_length(x));
+  SpacedPoints spaced(domain.edge_length(Eigen::Vector3d::Zero()), kApart, smallest);
+  for (const Eigen::Vector3d& x : sheet.points) spaced.Add(x, domain.edge_length(x));
+  const Eigen::Vector2d extent = region.high() - region.low();
+  constexpr double kMillimetresAUnit = 90;
+  const double squares = extent.prod() * kMillimetresAUnit * kMillimetresAUnit / (smallest * smallest);
+  const auto tries = static_cast<int64_t>(kTriesASquare * squares);
+  for (int64_t i = 1; i <= tries; ++i) {
+    const Eigen::Vector2d p = region.low() + extent.cwiseProduct(QuasiRandom(i));
+    if (!region.Contains(p)) continue;
+    const Eigen::Vector3d x = domain.map(p);
+    if (!spaced.TryAdd(x, domain.edge_length(x))) continue;
+    sheet.plane.push_back(p);
+    sheet.points.push_back(x);
+  }
+}
+
+Triangles Inside(const PlaneRegion& region, const Plane& plane, const Triangles& all) {
+  Triangles kept(3, all.cols());
+  Eigen::Index count = 0;
+  for (Eigen::Index t = 0; t < all.cols(); ++t) {
+    const Eigen::Vector2d centre = (plane[all(0, t)] + plane[all(1, t)] + plane[all(2, t)]) / 3;
+    if (region.Contains(centre)) kept.col(count++) = all.col(t);
+  }
+  kept.conservativeResize(3, count);
+  return kept;
+}
+
+double Cross(const Eigen::Vector2d& u, const Eigen::Vector2d& v) { return u.x() * v.y() - u.y() * v.x(); }
+
+// The triangles round each vertex.
+std::vector<std::vector<int>> Fans(size_t vertices, const Triangles& triangles) {
+  std::vector<std::vector<int>> fans(vertices);
+  for (int t = 0; t < static_cast<int>(triangles.cols()); ++t) {
+    for (int k = 0; k < 3; ++k) fans[triangles(k, t)].push_back(t);
+  }
+  return fans;
+}
+
+// Mean of the centroids of the triangles round the vertex, each weighted by its area in aimed square edge lengths.
+Eigen::Vector2d Centroid(const SheetDomain& domain, const Sheet& sheet, const std::vector<int>& fan) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  double weights = 0;
+  for (const int t : fan) {
+    const Eigen::Vector3i v = sheet.triangles.col(t);
+    const Eigen::Vector3d &a = sheet.points[v[0]], &b = sheet.points[v[1]], &c = sheet.points[v[2]];
+    const double aimed = domain.edge_length(a);
+    const double weight = (b - a).cross(c - a).norm() / (aimed * aimed);
+    sum += weight / 3 * (sheet.plane[v[0]] + sheet.plane[v[1]] + sheet.plane[v[2]]);
+    weights += weight;
+  }
+  return sum / weights;
+}
+
+bool StaysAnticlockwise(const Sheet& sheet, const std::vector<int>& fan, int vertex, const Eigen::Vector2d& moved) {
+  for (const int t : fan) {
+    std::array<Eigen::Vector2d, 3> p;
+    for (int k = 0; k < 3; ++k) p[k] = sheet.triangles(k, t) == vertex ? moved : sheet.plane[sheet.triangles(k, t)];
+    const double now = Cross(p[1] - p[0], p[2] - p[0]);
+    if (now <= 1e-9) return false;
+  }
+  return true;
+}
+
+void Relax(const SheetDomain& domain, int first_free, Sheet& sheet) {
+  const std::vector<std::vector<int>> fans = Fans(sheet.plane.size(), sheet.triangles);
+  for (int i = first_free; i < static_cast<int>(sheet.plane.size()); ++i) {
+    const Eigen::Vector2d moved = Centroid(domain, sheet, fans[i]);
+    if (!StaysAnticlockwise(sheet, fans[i], i, moved)) continue;
+    sheet.plane[i] = moved;
+    sheet.points[i] = domain.map(moved);
+  }
+}
+
+}  // namespace
+
+Sheet MeshSheet(const SheetDomain& domain) {
+  constexpr int kRounds = 30;
+  Sheet sheet;
+  std::vector<Plane> border;
+  for (const Plane& loop : domain.loops) {
+    border.push_back(EvenlyAlong(domain, loop));
+    sheet.loops.emplace_back();
+    for (const Eigen::Vector2d& p : border.back()) {
+      sheet.loops.back().push_back(static_cast<int>(sheet.plane.size()));
+      sheet.plane.push_back(p);
+      sheet.points.push_back(domain.map(p));
+    }
+  }
+  const auto first_free = static_cast<int>(sheet.plane.size());
+  const PlaneRegion region(border);
+  Fill(domain, region, sheet);
+  sheet.triangles = Inside(region, sheet.plane, PlaneDelaunay(sheet.plane));
+  for (int round = 0; round < kRounds; ++round) {
+    FlipToDelaunay(sheet.plane, sheet.points, sheet.triangles);
+    Relax(domain, first_free, sheet);
+  }
+  FlipToDelaunay(sheet.plane, sheet.points, sheet.triangles);
+  return sheet;
+}
+
+}  // namespace phrenic::anatomy

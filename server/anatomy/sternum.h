@@ -1,0 +1,22 @@
+// Manubrium, body of the sternum and xiphoid process: flat plates along the tilted line of the sternum.
+#ifndef PHRENIC_SERVER_ANATOMY_STERNUM_H_
+#define PHRENIC_SERVER_ANATOMY_STERNUM_H_
+
+#include "server/mesh/mesh.h"
+
+namespace phrenic::anatomy {
+
+// Adult means, rounded: manubrium 45 mm high and 56 mm wide, body 100 mm high and up to 38 mm wide, xiphoid 30 mm.
+Mesh Manubrium(double edge_length);
+Mesh SternumBody(double edge_length);
+Mesh Xiphoid(double edge_length);
+
+// Half the sternum's width at height z [mm], from the manubrium down to the xiphoid.
+double SternumHalfWidth(double z);
+
+// Height of the notch for costal cartilage 1 to 7.
+double SternalNotch(int number);
+
+}  // namespace phrenic::anatomy
+
+#endif  // PHRENIC_SERVER_ANATOMY_STERNUM_H_
