@@ -1,0 +1,165 @@
+#include "client/commands.h"
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <map>
+
+#include "client/scene_argument.h"
+
+namespace phrenic::client {
+namespace {
+
+// Every command's options live here while the command line is parsed and run.
+struct AllOptions {
+  SceneOptions describe;
+  RunOptions run;
+  CreateOptions create;
+  SessionOptions session;
+  WatchOptions watch;
+  SetOptions set;
+  PlayOptions play;
+  StepOptions step;
+  ExportOptions export_motion;
+};
+
+class CommandLine {
+ public:
+  explicit CommandLine(Context& context) : context_(context) {
+    app_.description(
+        "Phrenic: the breathing diaphragm, simulated. Research and teaching; not for clinical use.\n\n"
+        "  phrenic run thorax --seconds 8 --set breath_force=1.5 --export out.msh   # no server needed\n"
+        "  phrenic scenes                                                           # what a server offers\n"
+        "  phrenic create thorax --play && phrenic watch thorax                     # a session, watched\n");
+    app_.require_subcommand(1);
+    app_.fallthrough();
+    app_.add_option("--server", context_.server, "HOST:PORT of the server")
+        ->envname("PHRENIC_SERVER")
+        ->capture_default_str();
+    app_.add_option("-o,--output", context_.output, "table, for people, or json, for programs")
+        ->transform(
+            CLI::CheckedTransformer(std::map<std::string, Output>{{"table", Output::kTable}, {"json", Output::kJson}}));
+    AddSceneCommands();
+    AddSessionCommands();
+    AddControlCommands();
+    AddExport();
+  }
+
+  int ParseAndRun(int argc, char** argv) {
+    try {
+      app_.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+      return app_.exit(error) == 0 ? kOk : kUsage;
+    }
+    return code_;
+  }
+
+ private:
+  template <typename Function, typename Options>
+  CLI::App* Add(const char* name, const char* help, Function function, Options& options) {
+    CLI::App* command = app_.add_subcommand(name, help);
+    command->callback([this, function, &options] { code_ = function(context_, options); });
+    return command;
+  }
+
+  CLI::App* Add(const char* name, const char* help, int (*function)(const Context&)) {
+    CLI::App* command = app_.add_subcommand(name, help);
+    command->callback([this, function] { code_ = function(context_); });
+    return command;
+  }
+
+  static void AddScene(CLI::App* command, SceneOptions& options) {
+    command->add_option("SCENE", options.scene, "name of a scene, or a .textproto file")->required();
+    command->add_option("--resolution", options.resolution_mm, "edge length of generated bodies [mm]")
+        ->check(CLI::Range(0.5, 50.0));
+  }
+
+  static void AddSettings(CLI::App* command, std::vector<std::string>& settings) {
+    command->add_option("--set", settings, "name=value of a live parameter; may be repeated")->allow_extra_args(false);
+    command->footer("\n" + ParameterHelp());
+  }
+
+  void AddSceneCommands() {
+    Add("scenes", "List the scenes that the server knows", &Scenes);
+    AddScene(Add("describe", "Show what a scene is made of, what runs, what was left out and why", &Describe,
+                 options_.describe),
+             options_.describe);
+    RunOptions& run = options_.run;
+    CLI::App* command = Add("run", "Run a scene here, with no server, and say how fast it was", &Run, run);
+    AddScene(command, run.scene);
+    AddSettings(command, run.settings);
+    command->add_option("--seconds", run.seconds, "simulated time [s]")
+        ->check(CLI::Range(1e-6, 3600.0))
+        ->capture_default_str();
+    command->add_option("--export", run.file, "write the motion to this file (.msh, .depl)");
+    command->add_option("--fps", run.frames_per_second, "frames a second in the file")->capture_default_str();
+    command->add_option("--body", run.bodies, "body or layer to export; may be repeated (all deformable ones)");
+    command->add_option("--data", run.data_dir, "folder of surface files and of scenes/*.textproto");
+  }
+
+  void AddSessionCommands() {
+    CreateOptions& create = options_.create;
+    CLI::App* command = Add("create", "Create a session", &Create, create);
+    AddScene(command, create.scene);
+    AddSettings(command, create.settings);
+    command->add_option("--id", create.id, "its name: 1 to 64 of a-z, 0-9 and -");
+    command->add_flag("--play", create.play, "let it play at once");
+    Add("sessions", "List the sessions", &Sessions);
+    WatchOptions& watch = options_.watch;
+    command = Add("watch", "Print a session's numbers as they come", &Watch, watch);
+    command->add_option("SESSION", watch.id)->required();
+    command->add_option("--seconds", watch.seconds, "stop after this time [s]");
+    command->add_option("--count", watch.count, "stop after this many lines");
+    command->add_option("--fps", watch.frames_per_second, "lines a second at most")->capture_default_str();
+    SetOptions& set = options_.set;
+    command = Add("set", "Change live parameters of a session", &Set, set);
+    command->add_option("SESSION", set.id)->required();
+    command->add_option("SETTING", set.settings, "name=value")->required();
+    command->footer("\n" + ParameterHelp());
+  }
+
+  void AddControlCommands() {
+    PlayOptions& play = options_.play;
+    CLI::App* command = Add("play", "Let a session play", &Play, play);
+    command->add_option("SESSION", play.id)->required();
+    command->add_option("--speed", play.speed, "simulated seconds a second")->check(CLI::Range(0.01, 100.0));
+    command->add_flag("--fast", play.fast, "as fast as the machine can");
+    command->add_option("--until", play.until, "pause at this simulated time [s]");
+    StepOptions& step = options_.step;
+    command = Add("step", "Pause a session and take steps", &TakeSteps, step);
+    command->add_option("SESSION", step.id)->required();
+    command->add_option("TICKS", step.ticks, "number of steps")->capture_default_str();
+    command->add_option("--expected-tick", step.expected_tick, "refuse when the session is at another tick");
+    AddOnSession("pause", "Pause a session", &Pause);
+    AddOnSession("reset", "Take a session back to t = 0", &Reset);
+    AddOnSession("delete", "Delete a session", &Delete);
+  }
+
+  void AddOnSession(const char* name, const char* help, int (*function)(const Context&, const SessionOptions&)) {
+    Add(name, help, function, options_.session)->add_option("SESSION", options_.session.id)->required();
+  }
+
+  void AddExport() {
+    ExportOptions& options = options_.export_motion;
+    CLI::App* command = Add("export", "Run a copy of a session on and write its motion to a file", &Export, options);
+    command->add_option("SESSION", options.id)->required();
+    command->add_option("FILE", options.file, ".msh (Gmsh, NodeData) or .depl (the thesis' format)")->required();
+    command->add_option("--seconds", options.seconds, "simulated time [s]")->capture_default_str();
+    command->add_option("--fps", options.frames_per_second, "frames a second in the file")->capture_default_str();
+    command->add_option("--body", options.bodies, "body or layer; may be repeated (all deformable ones)");
+  }
+
+  Context& context_;
+  AllOptions options_;
+  CLI::App app_{"", "phrenic"};
+  int code_ = kOk;
+};
+
+}  // namespace
+
+int RunCommandLine(int argc, char** argv, Interruption& interruption) {
+  Context context;
+  context.interruption = &interruption;
+  return CommandLine(context).ParseAndRun(argc, argv);
+}
+
+}  // namespace phrenic::client

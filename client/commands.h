@@ -1,0 +1,83 @@
+// The commands: what the words after `phrenic` mean. Harnesses script these names; they are a contract.
+#ifndef PHRENIC_CLIENT_COMMANDS_H_
+#define PHRENIC_CLIENT_COMMANDS_H_
+
+#include <string>
+#include <vector>
+
+#include "client/connection.h"
+
+namespace phrenic::client {
+
+struct SceneOptions {
+  std::string scene;
+  double resolution_mm = 0;  // 0: the scene's own
+};
+struct RunOptions {
+  SceneOptions scene;
+  double seconds = 8;
+  std::vector<std::string> settings;
+  std::string file;  // empty: none
+  std::vector<std::string> bodies;
+  double frames_per_second = 10;
+  std::string data_dir;
+};
+struct CreateOptions {
+  SceneOptions scene;
+  std::string id;
+  std::vector<std::string> settings;
+  bool play = false;
+};
+struct SessionOptions {
+  std::string id;
+};
+struct WatchOptions {
+  std::string id;
+  double seconds = 0;  // 0: until interrupted
+  int count = 0;       // 0: any number
+  double frames_per_second = 5;
+};
+struct SetOptions {
+  std::string id;
+  std::vector<std::string> settings;
+};
+struct PlayOptions {
+  std::string id;
+  double speed = 0;  // 0: as it was
+  bool fast = false;
+  double until = 0;  // 0: for ever
+};
+struct StepOptions {
+  std::string id;
+  long ticks = 1;
+  long expected_tick = -1;  // -1: any
+};
+struct ExportOptions {
+  std::string id;
+  std::string file;
+  double seconds = 8;
+  double frames_per_second = 10;
+  std::vector<std::string> bodies;
+};
+
+// One command a file in commands/. Each gives the exit code.
+int Scenes(const Context& context);
+int Describe(const Context& context, const SceneOptions& options);
+int Run(const Context& context, const RunOptions& options);
+int Create(const Context& context, const CreateOptions& options);
+int Sessions(const Context& context);
+int Watch(const Context& context, const WatchOptions& options);
+int Set(const Context& context, const SetOptions& options);
+int Play(const Context& context, const PlayOptions& options);
+int Pause(const Context& context, const SessionOptions& options);
+int TakeSteps(const Context& context, const StepOptions& options);
+int Reset(const Context& context, const SessionOptions& options);
+int Delete(const Context& context, const SessionOptions& options);
+int Export(const Context& context, const ExportOptions& options);
+
+// Parses the command line and runs the command on it.
+int RunCommandLine(int argc, char** argv, Interruption& interruption);
+
+}  // namespace phrenic::client
+
+#endif  // PHRENIC_CLIENT_COMMANDS_H_

@@ -1,0 +1,109 @@
+// The commands that change a session and show it as it is then.
+#include <iostream>
+
+#include "client/commands.h"
+#include "client/print_session.h"
+#include "client/scene_argument.h"
+#include "phrenic/v1/session.grpc.pb.h"
+
+namespace phrenic::client {
+namespace {
+
+using Stub = v1::SessionService::Stub;
+
+template <typename Response>
+int Show(const Context& context, const grpc::Status& status, const Response& response) {
+  if (!status.ok()) return Fail(context, status);
+  if (context.json()) {
+    std::cout << Json(response) << "\n";
+  } else {
+    PrintSession(response.session(), std::cout);
+  }
+  return response.session().state() == v1::SESSION_STATE_DIVERGED ? kFailed : kOk;
+}
+
+template <typename Response, typename Method, typename Request>
+int CallAndShow(const Context& context, Method method, const Request& request) {
+  const auto stub = v1::SessionService::NewStub(Connect(context));
+  Response response;
+  return Show(context, Call(context, *stub, method, request, &response), response);
+}
+
+}  // namespace
+
+int Create(const Context& context, const CreateOptions& options) {
+  v1::CreateSessionRequest request;
+  request.set_session_id(options.id);
+  absl::StatusOr<v1::SceneSource> source = ReadSceneArgument(options.scene.scene, options.scene.resolution_mm);
+  if (!source.ok()) return Fail(source.status());
+  *request.mutable_source() = *std::move(source);
+  absl::StatusOr<v1::Parameters> parameters = ReadSettings(options.settings);
+  if (!parameters.ok()) return Fail(parameters.status());
+  *request.mutable_parameters() = *std::move(parameters);
+  const auto stub = v1::SessionService::NewStub(Connect(context));
+  v1::CreateSessionResponse response;
+  grpc::Status status = Call(context, *stub, &Stub::CreateSession, request, &response);
+  if (status.ok() && options.play) {
+    v1::PlaySessionRequest play;
+    play.set_session_id(response.session().id());
+    v1::PlaySessionResponse playing;
+    status = Call(context, *stub, &Stub::PlaySession, play, &playing);
+    *response.mutable_session() = playing.session();
+  }
+  return Show(context, status, response);
+}
+
+int Set(const Context& context, const SetOptions& options) {
+  v1::UpdateParametersRequest request;
+  request.set_session_id(options.id);
+  absl::StatusOr<v1::Parameters> parameters = ReadSettings(options.settings);
+  if (!parameters.ok()) return Fail(parameters.status());
+  *request.mutable_parameters() = *std::move(parameters);
+  const auto stub = v1::SessionService::NewStub(Connect(context));
+  v1::UpdateParametersResponse response;
+  const grpc::Status status = Call(context, *stub, &Stub::UpdateParameters, request, &response);
+  for (const std::string& warning : response.warnings()) std::cerr << "phrenic: warning: " << warning << "\n";
+  return Show(context, status, response);
+}
+
+int Play(const Context& context, const PlayOptions& options) {
+  v1::PlaySessionRequest request;
+  request.set_session_id(options.id);
+  if (options.speed > 0) request.set_speed(options.speed);
+  request.set_as_fast_as_possible(options.fast);
+  request.set_until_time(options.until);
+  return CallAndShow<v1::PlaySessionResponse>(context, &Stub::PlaySession, request);
+}
+
+int Pause(const Context& context, const SessionOptions& options) {
+  v1::PauseSessionRequest request;
+  request.set_session_id(options.id);
+  return CallAndShow<v1::PauseSessionResponse>(context, &Stub::PauseSession, request);
+}
+
+int TakeSteps(const Context& context, const StepOptions& options) {
+  v1::StepSessionRequest request;
+  request.set_session_id(options.id);
+  request.set_ticks(options.ticks);
+  if (options.expected_tick >= 0) request.set_expected_tick(options.expected_tick);
+  return CallAndShow<v1::StepSessionResponse>(context, &Stub::StepSession, request);
+}
+
+int Reset(const Context& context, const SessionOptions& options) {
+  v1::ResetSessionRequest request;
+  request.set_session_id(options.id);
+  return CallAndShow<v1::ResetSessionResponse>(context, &Stub::ResetSession, request);
+}
+
+int Delete(const Context& context, const SessionOptions& options) {
+  v1::DeleteSessionRequest request;
+  request.set_session_id(options.id);
+  const auto stub = v1::SessionService::NewStub(Connect(context));
+  v1::DeleteSessionResponse response;
+  const grpc::Status status = Call(context, *stub, &Stub::DeleteSession, request, &response);
+  if (!status.ok()) return Fail(context, status);
+  if (context.json()) std::cout << Json(response) << "\n";
+  return kOk;
+}
+
+}  // namespace phrenic::client

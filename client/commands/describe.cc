@@ -1,0 +1,71 @@
+#include <iostream>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "client/commands.h"
+#include "client/print_session.h"
+#include "client/scene_argument.h"
+#include "client/table.h"
+#include "phrenic/v1/session.grpc.pb.h"
+
+namespace phrenic::client {
+namespace {
+
+void PrintBodies(const v1::CompileReport& report) {
+  Table table({"body", "layer", "role", "vertices", "edges", "triangles", "simulated"});
+  for (const v1::BodyReport& body : report.bodies()) {
+    table.Add({body.name(), body.layer(), body.role(), absl::StrCat(body.vertices()), absl::StrCat(body.edges()),
+               absl::StrCat(body.triangles()), absl::StrCat(body.simulated_vertices())});
+  }
+  table.Print(std::cout);
+}
+
+void PrintElements(const v1::CompileReport& report) {
+  std::cout << "\nWhat runs\n";
+  Table runs({"family", "element", "number", "of", "detail"});
+  for (const v1::ElementReport& element : report.elements()) {
+    runs.Add({element.family(), element.name(), absl::StrCat(element.count()), element.counted(), element.detail()});
+  }
+  runs.Print(std::cout);
+  std::cout << "\nWhat was left out\n";
+  Table left_out({"what", "why"});
+  for (const v1::LeftOut& row : report.left_out()) left_out.Add({row.what(), row.why()});
+  if (left_out.empty()) left_out.Add({"nothing", ""});
+  left_out.Print(std::cout);
+}
+
+void PrintReport(const v1::DescribeSceneResponse& response) {
+  const v1::CompileReport& report = response.report();
+  std::cout << response.scene().title() << " (" << response.scene().name() << ")\n"
+            << response.scene().description() << "\n\n";
+  PrintBodies(report);
+  PrintElements(report);
+  const v1::StableStep& step = report.stable_step();
+  std::cout << absl::StrFormat(
+      "\n%d simulated vertices, %d springs, %d rigid links, %d attachments\n"
+      "Largest stable step %.4g s: %s\nStep it starts with %.4g s\nCompiled in %.2f s; scene hash %s\n",
+      report.simulated_vertices(), report.springs(), report.rigid_links(), report.attachments(), step.seconds(),
+      step.reason(), step.chosen_seconds(), report.compile_seconds(), report.scene_hash());
+  std::cout << "\nParameters\n" << ParametersLine(response.parameters()) << "\n" << ParameterHelp();
+}
+
+}  // namespace
+
+int Describe(const Context& context, const SceneOptions& options) {
+  const absl::StatusOr<v1::SceneSource> source = ReadSceneArgument(options.scene, options.resolution_mm);
+  if (!source.ok()) return Fail(source.status());
+  v1::DescribeSceneRequest request;
+  *request.mutable_source() = *source;
+  const auto stub = v1::SceneService::NewStub(Connect(context));
+  v1::DescribeSceneResponse response;
+  const grpc::Status status = Call(context, *stub, &v1::SceneService::Stub::DescribeScene, request, &response);
+  if (!status.ok()) return Fail(context, status);
+  if (context.json()) {
+    std::cout << Json(response) << "\n";
+  } else {
+    PrintReport(response);
+  }
+  return kOk;
+}
+
+}  // namespace phrenic::client

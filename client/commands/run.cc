@@ -1,0 +1,165 @@
+// `phrenic run`: the server's own services in this process, over an in-process channel; one way to run a session.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "absl/strings/str_format.h"
+#include "client/commands.h"
+#include "client/motion_file.h"
+#include "client/print_session.h"
+#include "client/progress.h"
+#include "client/scene_argument.h"
+#include "client/table.h"
+#include "client/thesis_figures.h"
+#include "phrenic/v1/session.grpc.pb.h"
+#include "server/service/server.h"
+
+namespace phrenic::client {
+namespace {
+
+using Stub = v1::SessionService::Stub;
+
+// What a run took.
+struct Cost {
+  std::int64_t steps = 0;
+  double simulated = 0, wall = 0, cpu = 0;  // [s]; of the stepping
+  std::string state_hash;
+};
+
+double ProcessCpuSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+grpc::Status CreateHere(const Context& context, const RunOptions& options, const v1::SceneSource& source,
+                        const v1::Parameters& parameters, Stub& stub, v1::GetSessionResponse* session) {
+  v1::CreateSessionRequest request;
+  *request.mutable_source() = source;
+  *request.mutable_parameters() = parameters;
+  request.set_session_id("run");
+  v1::CreateSessionResponse created;
+  const Progress compiling("compiling " + options.scene.scene, 1);
+  grpc::Status status = Call(context, stub, &Stub::CreateSession, request, &created);
+  if (!status.ok()) return status;
+  v1::GetSessionRequest get;
+  get.set_session_id("run");
+  return Call(context, stub, &Stub::GetSession, get, session);
+}
+
+// Steps in portions of about a fortieth of the run, for the bar's sake.
+grpc::Status StepThrough(const Context& context, const RunOptions& options, Stub& stub, v1::Session* session,
+                         Cost* cost) {
+  const auto total = static_cast<std::int64_t>(std::ceil(options.seconds / session->parameters().time_step() - 1e-9));
+  const std::int64_t portion = std::min<std::int64_t>(1'000'000, std::max<std::int64_t>(1, total / 40));
+  Progress progress("stepping", static_cast<double>(total));
+  const auto start = std::chrono::steady_clock::now();
+  const double cpu = ProcessCpuSeconds();
+  while (session->tick() < total && session->state() != v1::SESSION_STATE_DIVERGED) {
+    v1::StepSessionRequest request;
+    request.set_session_id("run");
+    request.set_ticks(std::min(portion, total - session->tick()));
+    v1::StepSessionResponse response;
+    const grpc::Status status = Call(context, stub, &Stub::StepSession, request, &response, 3600);
+    if (!status.ok()) return status;
+    *session = response.session();
+    cost->state_hash = response.state_hash();
+    progress.Update(static_cast<double>(session->tick()));
+  }
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+  cost->steps = session->tick(), cost->simulated = session->time();
+  cost->wall = wall.count(), cost->cpu = ProcessCpuSeconds() - cpu;
+  return grpc::Status::OK;
+}
+
+int ExportHere(const Context& context, const RunOptions& options, service::Server& server, Cost* cost) {
+  v1::ExportMotionRequest request;
+  request.set_session_id("run");
+  request.set_format(FormatOf(options.file));
+  request.set_seconds(options.seconds);
+  request.set_frames_per_second(options.frames_per_second);
+  for (const std::string& body : options.bodies) request.add_bodies(body);
+  v1::ExportSummary summary;
+  const int code = DownloadMotion(context, server.InProcessChannel(), request, options.file, &summary);
+  *cost = {summary.steps(), summary.simulated_seconds(), summary.step_wall_seconds(), summary.step_cpu_seconds(),
+           summary.state_hash()};
+  return code;
+}
+
+void PrintCost(const RunOptions& options, const v1::CompileReport& report, const Cost& cost) {
+  const double rate = static_cast<double>(cost.steps) / cost.wall;
+  const ThesisFigure thesis = NearestThesisFigure(report);
+  std::cout << absl::StrFormat("%s: %d vertices, %d springs, %d rigid links, %d attachments\n", report.scene(),
+                               report.simulated_vertices(), report.springs(), report.rigid_links(),
+                               report.attachments());
+  std::cout << absl::StrFormat("%.3f s simulated in %d steps: %.3f s wall, %.3f s CPU\n", cost.simulated, cost.steps,
+                               cost.wall, cost.cpu);
+  Table table({"", "steps/s", "x real time", "us CPU a step", "ns CPU a spring and step"});
+  const double step_cpu = cost.cpu / static_cast<double>(cost.steps);
+  table.Add(
+      {"Phrenic", absl::StrFormat("%.0f", rate), absl::StrFormat("%.2f", cost.simulated / cost.wall),
+       absl::StrFormat("%.1f", 1e6 * step_cpu),
+       report.springs() > 0 ? absl::StrFormat("%.2f", 1e9 * step_cpu / static_cast<double>(report.springs())) : "-"});
+  table.Add({"thesis (" + thesis.what + ")", absl::StrFormat("%.2f", thesis.steps_per_second), "-", "-", "-"});
+  table.Print(std::cout);
+  std::cout << absl::StrFormat("%.0f times the thesis' steps a second (another machine, 2008)\nstate hash %s\n",
+                               rate / thesis.steps_per_second, cost.state_hash);
+  if (!options.file.empty()) std::cout << "wrote " << options.file << "\n";
+}
+
+void PrintCostJson(const RunOptions& options, const v1::GetSessionResponse& session, const Cost& cost) {
+  const ThesisFigure thesis = NearestThesisFigure(session.report());
+  nlohmann::json json = {
+      {"simulated_seconds", cost.simulated},
+      {"steps", cost.steps},
+      {"wall_seconds", cost.wall},
+      {"cpu_seconds", cost.cpu},
+      {"steps_per_second", static_cast<double>(cost.steps) / cost.wall},
+      {"times_real_time", cost.simulated / cost.wall},
+      {"thesis", {{"figure", thesis.what}, {"steps_per_second", thesis.steps_per_second}}},
+      {"state_hash", cost.state_hash},
+      {"file", options.file},
+      {"report", nlohmann::json::parse(Json(session.report()))},
+      {"session", nlohmann::json::parse(Json(session.session()))},
+  };
+  std::cout << json.dump(1) << "\n";
+}
+
+int RunOn(const Context& context, const RunOptions& options, const v1::SceneSource& source,
+          const v1::Parameters& parameters, service::Server& server) {
+  const auto stub = v1::SessionService::NewStub(server.InProcessChannel());
+  v1::GetSessionResponse session;
+  grpc::Status status = CreateHere(context, options, source, parameters, *stub, &session);
+  if (!status.ok()) return Fail(context, status);
+  Cost cost;
+  if (!options.file.empty()) {
+    const int code = ExportHere(context, options, server, &cost);
+    if (code != kOk) return code;
+  } else {
+    status = StepThrough(context, options, *stub, session.mutable_session(), &cost);
+    if (!status.ok()) return Fail(context, status);
+  }
+  if (context.json()) {
+    PrintCostJson(options, session, cost);
+  } else {
+    PrintCost(options, session.report(), cost);
+  }
+  if (session.session().state() != v1::SESSION_STATE_DIVERGED) return kOk;
+  PrintSession(session.session(), std::cerr);
+  return kFailed;
+}
+
+}  // namespace
+
+int Run(const Context& context, const RunOptions& options) {
+  const absl::StatusOr<v1::SceneSource> source = ReadSceneArgument(options.scene.scene, options.scene.resolution_mm);
+  if (!source.ok()) return Fail(source.status());
+  const absl::StatusOr<v1::Parameters> parameters = ReadSettings(options.settings);
+  if (!parameters.ok()) return Fail(parameters.status());
+  service::ServerOptions server_options;
+  server_options.data_dir = options.data_dir;
+  auto server = service::Server::Start(server_options);
+  if (!server.ok()) return Fail(server.status());
+  return RunOn(context, options, *source, *parameters, **server);
+}
+
+}  // namespace phrenic::client

@@ -1,0 +1,25 @@
+#include <iostream>
+
+#include "client/commands.h"
+#include "client/table.h"
+#include "phrenic/v1/session.grpc.pb.h"
+
+namespace phrenic::client {
+
+int Scenes(const Context& context) {
+  const auto stub = v1::SceneService::NewStub(Connect(context));
+  v1::ListScenesResponse response;
+  const grpc::Status status =
+      Call(context, *stub, &v1::SceneService::Stub::ListScenes, v1::ListScenesRequest(), &response);
+  if (!status.ok()) return Fail(context, status);
+  if (context.json()) {
+    std::cout << Json(response) << "\n";
+    return kOk;
+  }
+  Table table({"scene", "title", "description"});
+  for (const v1::SceneSummary& scene : response.scenes()) table.Add({scene.name(), scene.title(), scene.description()});
+  table.Print(std::cout);
+  return kOk;
+}
+
+}  // namespace phrenic::client

@@ -1,0 +1,37 @@
+#include <iostream>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "client/commands.h"
+#include "client/print_session.h"
+#include "client/table.h"
+#include "phrenic/v1/session.grpc.pb.h"
+
+namespace phrenic::client {
+
+int Sessions(const Context& context) {
+  const auto stub = v1::SessionService::NewStub(Connect(context));
+  v1::ListSessionsResponse all;
+  v1::ListSessionsRequest request;
+  do {
+    v1::ListSessionsResponse page;
+    const grpc::Status status = Call(context, *stub, &v1::SessionService::Stub::ListSessions, request, &page);
+    if (!status.ok()) return Fail(context, status);
+    request.set_page_token(page.next_page_token());
+    all.mutable_sessions()->MergeFrom(page.sessions());
+  } while (!request.page_token().empty());
+  if (context.json()) {
+    std::cout << Json(all) << "\n";
+    return kOk;
+  }
+  Table table({"session", "scene", "state", "t [s]", "tick", "viewers", "x real time"});
+  for (const v1::Session& session : all.sessions()) {
+    table.Add({session.id(), session.scene(), StateName(session.state()), absl::StrFormat("%.2f", session.time()),
+               absl::StrCat(session.tick()), absl::StrCat(session.viewers()),
+               absl::StrFormat("%.2f", session.pace().times_real_time())});
+  }
+  table.Print(std::cout);
+  return kOk;
+}
+
+}  // namespace phrenic::client

@@ -1,0 +1,7 @@
+// The command line client.
+#include "client/commands.h"
+
+int main(int argc, char** argv) {
+  phrenic::client::Interruption interruption;
+  return phrenic::client::RunCommandLine(argc, argv, interruption);
+}

@@ -1,0 +1,53 @@
+#include "client/print_session.h"
+
+#include <google/protobuf/descriptor.h>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+
+namespace phrenic::client {
+
+std::string StateName(v1::SessionState state) {
+  switch (state) {
+    case v1::SESSION_STATE_PAUSED:
+      return "paused";
+    case v1::SESSION_STATE_PLAYING:
+      return "playing";
+    case v1::SESSION_STATE_DIVERGED:
+      return "diverged";
+    default:
+      return "unknown";
+  }
+}
+
+std::string ParametersLine(const v1::Parameters& parameters) {
+  std::string line;
+  const google::protobuf::Reflection& reflection = *parameters.GetReflection();
+  for (int f = 0; f < v1::Parameters::descriptor()->field_count(); ++f) {
+    const google::protobuf::FieldDescriptor* field = v1::Parameters::descriptor()->field(f);
+    if (!reflection.HasField(parameters, field)) continue;
+    const bool toggle = field->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_BOOL;
+    const std::string value = toggle ? (reflection.GetBool(parameters, field) ? "on" : "off")
+                                     : absl::StrFormat("%g", reflection.GetDouble(parameters, field));
+    absl::StrAppend(&line, line.empty() ? "" : " ", std::string(field->name()), "=", value);
+  }
+  return line;
+}
+
+void PrintSession(const v1::Session& session, std::ostream& out) {
+  out << absl::StrFormat("%s: %s, %s, t = %.3f s, tick %d, revision %d, %d viewers\n", session.id(), session.scene(),
+                         StateName(session.state()), session.time(), session.tick(), session.revision(),
+                         session.viewers());
+  if (session.pace().steps_per_second() > 0) {
+    out << absl::StrFormat("  %.0f steps/s, %.2f times real time, %.3f CPU s per simulated s\n",
+                           session.pace().steps_per_second(), session.pace().times_real_time(),
+                           session.pace().cpu_per_simulated_second());
+  }
+  out << "  " << ParametersLine(session.parameters()) << "\n";
+  if (!session.has_divergence()) return;
+  const v1::Divergence& why = session.divergence();
+  out << absl::StrFormat("  diverged at t = %.4g s (tick %d): vertex %d of %s, by %s; %s\n", why.time(), why.tick(),
+                         why.vertex(), why.body(), why.force(), why.remedy());
+}
+
+}  // namespace phrenic::client

@@ -1,0 +1,23 @@
+// A session as people read it.
+#ifndef PHRENIC_CLIENT_PRINT_SESSION_H_
+#define PHRENIC_CLIENT_PRINT_SESSION_H_
+
+#include <ostream>
+#include <string>
+
+#include "phrenic/v1/session.pb.h"
+
+namespace phrenic::client {
+
+// "paused", "playing", "diverged".
+std::string StateName(v1::SessionState state);
+
+// "breath_force=1.5 breath_length=4 ...".
+std::string ParametersLine(const v1::Parameters& parameters);
+
+// A few lines: state, time, pace, parameters, and why it diverged where it has.
+void PrintSession(const v1::Session& session, std::ostream& out);
+
+}  // namespace phrenic::client
+
+#endif  // PHRENIC_CLIENT_PRINT_SESSION_H_
