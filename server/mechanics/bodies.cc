@@ -10,6 +10,8 @@
 namespace phrenic {
 namespace {
 
+constexpr double kFurthest = 10;  // sizes of the scene
+
 std::string RoleName(v1::Role role) {
   switch (role) {
     case v1::ROLE_DEFORMABLE:
@@ -75,6 +77,7 @@ void Measure(Model& model) {
     high = high.cwiseMax(body.mesh.vertices.rowwise().maxCoeff());
   }
   model.size = (high - low).norm();
+  model.bound = low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff() + kFurthest * model.size;
 }
 
 int HighestOn(v1::Side side, const Points& vertices) {

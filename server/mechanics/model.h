@@ -55,7 +55,8 @@ struct Model {
   std::unique_ptr<Integrator> integrator;
   std::vector<Ride> rides;  // seen bodies; worked out with frames, not with steps
   std::vector<Probe> probes;
-  double size = 0;  // diagonal of the bounding box at rest [m]
+  double size = 0;   // diagonal of the bounding box at rest [m]
+  double bound = 0;  // a coordinate beyond it means that the run has diverged: ten sizes outside the box at rest [m]
 
   // For viewers: pairs of simulated vertices, simulated vertices, lines.
   Edges rigid_links;

@@ -9,7 +9,7 @@
 namespace phrenic {
 
 // Motions to t + dt, then the integrator, then constraints: state becomes the state at t + dt. OUT_OF_RANGE when the
-// step diverged (a position that is not finite, or further from rest than ten times the scene's size); `state` is then
+// step diverged (a position that is not finite, or ten times the scene's size outside its box at rest); `state` is then
 // not to be shown to anyone, and Diagnose says why. Allocates nothing.
 absl::Status Step(const Model& model, const v1::Parameters& parameters, double dt, State& state, Workspace& work);
 
