@@ -1,0 +1,170 @@
+# The stages of deploy/test, and their sum. Sourced, not run.
+# shellcheck shell=bash
+
+passed=0
+failed=0
+declare -a summary=() broken=()
+results=${root:?}/build/test-results
+
+# Adds to the sum: count PASSED FAILED.
+count() {
+  passed=$((passed + $1))
+  failed=$((failed + $2))
+}
+
+# A stage that is one check: it passes or it does not.
+check() {
+  if "$@"; then count 1 0; else count 0 1; fi
+}
+
+# run_stage NAME runs stage_NAME, times it, and remembers whether anything in it failed.
+run_stage() {
+  local name=$1 before=$failed start=$SECONDS outcome=passed
+  say "Stage $name"
+  mkdir -p "$results"
+  "stage_$name"
+  if [[ $failed -gt $before ]]; then
+    outcome=FAILED
+    broken+=("$name")
+  fi
+  summary+=("$(printf '%-8s %-7s %5d s' "$name" "$outcome" $((SECONDS - start)))")
+}
+
+# The end of deploy/test, however it comes to it: a run that did not reach its last stage has failed.
+finish() {
+  local status=$?
+  trap - EXIT
+  if [[ $status -ne 0 ]]; then count 0 1; fi
+  report
+}
+
+report() {
+  printf '\n'
+  if [[ ${#summary[@]} -gt 0 ]]; then printf '%s\n' "${summary[@]}"; fi
+  if [[ ${#broken[@]} -gt 0 ]]; then
+    printf 'phrenic: repair what the stages name above; "deploy/test %s" runs them alone.\n' "${broken[*]}"
+  fi
+  printf '%d passed, %d failed\n' "$passed" "$failed"
+  [[ $failed -eq 0 ]]
+}
+
+# The files that people write: those that git knows, or all but what is made where there is no git.
+sources() {
+  (cd "$root" && { git ls-files -z --cached --others --exclude-standard "$@" 2>/dev/null ||
+    find server client tests -regextype posix-extended -regex '.*\.(cc|h)' -not -path '*/node_modules/*' -print0; })
+}
+
+# --- form ---
+check_clang_format() {
+  (cd "$root" && sources 'server/*.cc' 'server/*.h' 'client/*.cc' 'client/*.h' 'tests/*.cc' 'tests/*.h' |
+    xargs -0 -r clang-format --dry-run -Werror)
+}
+
+check_prettier() {
+  (cd "$root/web" && npm run --silent lint)
+}
+
+stage_format() {
+  check check_clang_format
+  check check_prettier
+}
+
+check_shellcheck() {
+  (cd "$root" && shellcheck -x deploy/run deploy/test deploy/*.sh .ci/run tests/deploy/*.sh)
+}
+
+stage_scripts() {
+  check check_shellcheck
+  check "$root/tests/deploy/deploy_test.sh"
+}
+
+check_buf() {
+  (cd "$root" && web/node_modules/.bin/buf lint proto --config '{"version":"v2","lint":{"use":["STANDARD"]}}')
+}
+
+stage_proto() {
+  check check_buf
+}
+
+# --- the web ---
+# vitest NAME SCRIPT runs the npm script and counts its tests; a run that breaks without a failed test counts as one.
+vitest() {
+  local json=$results/$1.json status=0 good=0 bad=0
+  rm -f "$json"
+  (cd "$root/web" && npm run --silent "$2" -- --reporter=default --reporter=json --outputFile.json="$json") || status=$?
+  if [[ -f $json ]]; then
+    read -r good bad < <(node -e 'const r = require(process.argv[1]); console.log(r.numPassedTests, r.numFailedTests)' "$json")
+  fi
+  if [[ $status -ne 0 && $bad -eq 0 ]]; then bad=1; fi
+  count "$good" "$bad"
+}
+
+stage_web() {
+  vitest web test
+  check build_web
+}
+
+stage_e2e() {
+  vitest e2e e2e
+}
+
+# --- C++ ---
+check_build() {
+  configure "$root/build" -DCMAKE_BUILD_TYPE=Release && build "$root/build"
+}
+
+stage_build() {
+  check check_build
+}
+
+# ctests FOLDER [OPTION...] runs the tests built there and counts them; a run that breaks counts as one failed.
+ctests() {
+  local folder=$1 log status=0 bad all
+  shift
+  log=$results/$(basename "$folder").log
+  ctest --test-dir "$folder" -j "$(nproc)" --no-tests=error --output-on-failure --progress "$@" >"$log" 2>&1 || status=$?
+  tr '\r' '\n' <"$log" | grep -vE '^ *[0-9]+/[0-9]+ Test|^\[ *[0-9]' || true
+  read -r bad all < <(sed -nE 's/.* ([0-9]+) tests? failed out of ([0-9]+)$/\1 \2/p' "$log") || true
+  if [[ -z ${all:-} ]]; then
+    count 0 1
+  else
+    count $((all - bad)) $((bad == 0 && status != 0 ? 1 : bad))
+  fi
+}
+
+stage_tests() {
+  ctests "$root/build"
+}
+
+# sanitized FOLDER SANITIZERS TARGET... builds the targets with the sanitizers.
+sanitized() {
+  local folder=$1 sanitizers=$2
+  shift 2
+  mkdir -p "$folder"
+  configure "$folder" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_FLAGS_RELWITHDEBINFO='-O1 -g1' \
+    -DPHRENIC_SANITIZE="$sanitizers" && build "$folder" "$@"
+}
+
+stage_asan() {
+  local folder=$root/build/asan
+  check sanitized "$folder" address,undefined tests
+  ASAN_OPTIONS=detect_leaks=1:strict_string_checks=1 UBSAN_OPTIONS=print_stacktrace=1 ctests "$folder"
+}
+
+# gRPC's library is not built for ThreadSanitizer, so only tests of folders below service/ run under it.
+stage_tsan() {
+  local folder=$root/build/tsan
+  check sanitized "$folder" thread stream_test session_test
+  TSAN_OPTIONS=ignore_noninstrumented_modules=1:halt_on_error=1 ctests "$folder" -R '^(stream|session)/'
+}
+
+check_tidy() {
+  run-clang-tidy -p "$root/build" -quiet -j "$(nproc)" "^$root/(server|client)/.*\.cc\$" >"$results/tidy.log" 2>&1 && return
+  grep -E -A3 '(error|warning):' "$results/tidy.log" || cat "$results/tidy.log"
+  return 1
+}
+
+stage_tidy() {
+  check check_build
+  check check_tidy
+}

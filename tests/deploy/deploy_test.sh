@@ -1,0 +1,94 @@
+#!/bin/bash
+# Laws of deploy/: each failure is a sentence that says what to do, and nothing is done twice. Touches no system state:
+# the programs that would are replaced by doubles in a folder of the test's own.
+# shellcheck disable=SC2016  # what stands in single quotes is for the doubles' own shells
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+failures=0
+
+# double NAME BODY puts a program in the way of the system's.
+double() {
+  mkdir -p "$scratch/bin"
+  printf '#!/bin/bash\n%s\n' "$2" >"$scratch/bin/$1"
+  chmod +x "$scratch/bin/$1"
+}
+
+# in_lib COMMAND... runs functions of lib.sh with the doubles first on the PATH; its output and status.
+in_lib() {
+  PATH=$scratch/bin:$PATH PHRENIC_NODE_DIR=$scratch/node bash -c 'set -euo pipefail; source "$0/deploy/lib.sh"; "$@"' \
+    "$root" "$@" 2>&1 || echo "status $?"
+}
+
+# expect LAW OUTPUT PART... fails where a part is missing.
+expect() {
+  local law=$1 output=$2 part
+  shift 2
+  for part in "$@"; do
+    if [[ $output != *"$part"* ]]; then
+      printf 'FAILED %s: "%s" is not in:\n%s\n' "$law" "$part" "$output"
+      failures=$((failures + 1))
+      return
+    fi
+  done
+  printf 'ok %s\n' "$law"
+}
+
+expect_equal() {
+  if [[ $2 == "$3" ]]; then
+    printf 'ok %s\n' "$1"
+  else
+    printf 'FAILED %s: got "%s", not "%s"\n' "$1" "$2" "$3"
+    failures=$((failures + 1))
+  fi
+}
+
+packages() {
+  expect SectionsHoldTheirPackages "$(in_lib packages_of build node)" cmake libgrpc++-dev nodejs npm
+  expect_equal SectionsKeepApart "$(in_lib packages_of build | grep -c chromium || true)" 0
+  double dpkg-query 'echo "installed cmake"; echo "config-files ninja-build"'
+  expect_equal InstalledPackagesAreNotMissing "$(in_lib missing_packages cmake)" ""
+  expect_equal RemovedPackagesAreMissing "$(in_lib missing_packages cmake ninja-build)" ninja-build
+  double apt-get 'echo "apt-get $*"'
+  double sudo '"$@"'
+  expect_equal NothingMissingAsksNoApt "$(in_lib install_packages cmake)" ""
+  expect MissingPackagesAreInstalled "$(in_lib install_packages cmake ninja-build)" \
+    "==> Installing Debian packages: ninja-build" "apt-get update" "install -y -q --no-install-recommends ninja-build"
+  double apt-get 'exit 100'
+  expect NoNetworkIsSaid "$(in_lib install_packages ninja-build)" "apt-get update failed" "check the network" "status 1"
+  double apt-get 'if test "$*" = "update -q"; then exit 0; else exit 100; fi'
+  expect FailedInstallIsSaid "$(in_lib install_packages ninja-build)" "could not install ninja-build" "status 1"
+  rm -r "${scratch:?}/bin"
+}
+
+node() {
+  double npm 'exit 1'
+  double node 'echo v20.19.0'
+  expect_equal ANewNodeIsTaken "$(in_lib ensure_node)" ""
+  double node 'echo v18.20.4'
+  expect FailedFetchIsSaid "$(in_lib ensure_node)" "could not fetch Node.js" "registry.npmjs.org" "status 1"
+  double uname 'echo mips'
+  expect UnknownMachineIsSaid "$(in_lib ensure_node)" "no ready-made Node.js for mips" "install Node.js 20.19"
+  rm -r "${scratch:?}/bin"
+}
+
+run_flags() {
+  expect HelpIsGiven "$("$root/deploy/run" --help)" --listen --web --data "Ctrl-C"
+  expect BadAddressIsSaid "$("$root/deploy/run" --web nonsense 2>&1 || echo "status $?")" \
+    "--web nonsense is no HOST:PORT" "127.0.0.1:8080" "status 1"
+  expect MissingValueIsSaid "$("$root/deploy/run" --data 2>&1 || echo "status $?")" "--data needs a value" "status 1"
+  expect MissingDataIsSaid "$("$root/deploy/run" --data /nowhere 2>&1 || echo "status $?")" \
+    "there is no folder /nowhere" "status 1"
+}
+
+stages() {
+  expect UnknownStageIsSaid "$("$root/deploy/test" nonsense 2>&1 || echo "status $?")" \
+    "there is no stage nonsense" "format scripts" "status 1"
+}
+
+packages
+node
+run_flags
+stages
+[[ $failures -eq 0 ]]
