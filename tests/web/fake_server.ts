@@ -35,6 +35,7 @@ export class FakeServer {
     state: SessionState.PLAYING,
     revision: 1n,
   });
+  sessions = [this.session];
   sceneHash = "abc";
   down = false;
   geometryCalls = 0;
@@ -51,6 +52,7 @@ export class FakeServer {
             session: this.session,
             report: { sceneHash: this.sceneHash },
           }),
+        listSessions: () => this.answer({ sessions: this.sessions }),
         playSession: () => this.answer({ session: this.session }),
         updateParameters: ({ parameters }) => {
           this.updates.push(parameters!);

@@ -17,15 +17,14 @@ const chooser = new Chooser(api, (sessionId) => location.assign(address(sessionI
 document.body.append(chooser.element);
 
 const loading = place("loading");
-const sessionId = await chooseSession(new URL(location.href), api, systemClock, (error) => {
-  loading.textContent = `No answer from the server (${errorText(error)}). Trying again…`;
-});
+const start = make("button", { type: "button", onclick: () => void chooser.show() }, "Start one");
 
-if (sessionId === undefined) {
-  const choose = make("button", { type: "button", onclick: () => void chooser.show() }, "Start one");
-  loading.replaceChildren("The server has no session. ", choose);
-  await chooser.show();
-} else {
-  history.replaceState(null, "", address(sessionId));
-  new App(api, sessionId, chooser, systemClock).start();
+function say(error?: unknown): void {
+  if (error === undefined) loading.replaceChildren("The server has no session yet. ", start);
+  else loading.replaceChildren(`No answer from the server (${errorText(error)}). Trying again…`);
 }
+
+const sessionId = await chooseSession(new URL(location.href), api, systemClock, say);
+loading.replaceChildren("Loading the scene…");
+history.replaceState(null, "", address(sessionId));
+new App(api, sessionId, chooser, systemClock).start();
