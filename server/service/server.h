@@ -14,14 +14,14 @@
 namespace phrenic::service {
 
 struct ServerOptions {
-  std::string listen;                         // "127.0.0.1:50051", port 0 chooses one; empty: in process only
-  std::string web;                            // "127.0.0.1:8080", port 0 chooses one; empty: no web gateway
-  std::string data_dir;                       // surface files of scenes, and DATA/scenes; empty: none
+  std::string listen;    // "127.0.0.1:50051", port 0 chooses one; empty: in process only
+  std::string web;       // "127.0.0.1:8080", port 0 chooses one; empty: no web gateway
+  std::string data_dir;  // surface files of scenes, and DATA/scenes; empty: none
   std::string scenes_dir = PHRENIC_SCENES_DIR;
   std::string web_root = PHRENIC_WEB_DIR;
-  std::vector<std::string> allowed_origins;   // "https://host:port" beside the gateway's own and loopback ones
+  std::vector<std::string> allowed_origins;  // "https://host:port" beside the gateway's own and loopback ones
   session::Limits limits;
-  int max_message_bytes = 16 << 20;           // of a request
+  int max_message_bytes = 16 << 20;  // of a request
   int max_web_connections = 256;
 };
 

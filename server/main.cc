@@ -1,0 +1,129 @@
+// phrenicd: flags -> options -> serve until a signal comes.
+#include <signal.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <string>
+
+#include "absl/strings/str_cat.h"
+#include "phrenic/v1/session.grpc.pb.h"
+#include "server/service/address.h"
+#include "server/service/server.h"
+
+namespace phrenic {
+namespace {
+
+constexpr int kOk = 0, kFailed = 1, kUsage = 2;
+
+struct Flags {
+  service::ServerOptions options;
+  std::string start = "thorax";
+};
+
+void AddFlags(CLI::App& app, Flags& flags) {
+  service::ServerOptions& options = flags.options;
+  options.listen = "127.0.0.1:50051";
+  options.web = "127.0.0.1:8080";
+  app.add_option("--listen", options.listen, "HOST:PORT of gRPC")->capture_default_str();
+  app.add_option("--web", options.web, "HOST:PORT of the viewer and gRPC-web")->capture_default_str();
+  app.add_option("--data", options.data_dir, "Folder of surface files; scenes of your own in its folder scenes/");
+  app.add_option("--scenes", options.scenes_dir, "Folder of the shipped scenes")->capture_default_str();
+  app.add_option("--web-root", options.web_root, "Folder of the built viewer")->capture_default_str();
+  app.add_option("--start", flags.start, "Scene to start and play, or none")->capture_default_str();
+  app.add_option("--allow-origin", options.allowed_origins, "Web pages that may call, as https://example.org");
+  app.add_option("--max-sessions", options.limits.sessions, "Sessions at once")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  app.add_option("--max-viewers", options.limits.viewers, "Viewers of one session")
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
+}
+
+void WarnIfReachable(const std::string& address) {
+  const auto parts = service::ParseAddress(address);
+  if (!parts.ok() || service::IsLoopback(*parts)) return;
+  spdlog::warn(
+      "{} can be reached from other machines, and nothing is encrypted or asked for a password: use it in "
+      "networks that you trust",
+      address);
+}
+
+// "http://127.0.0.1:8080/", with the port that was chosen.
+std::string ViewerUrl(const std::string& address, int port) {
+  std::string host = service::ParseAddress(address)->host;
+  if (host == "0.0.0.0" || host == "::") host = "127.0.0.1";
+  if (host.find(':') != std::string::npos) host = absl::StrCat("[", host, "]");
+  return absl::StrCat("http://", host, ":", port, "/");
+}
+
+// A session of the scene, with the scene's name, playing.
+grpc::Status StartScene(service::Server& server, const std::string& scene) {
+  const auto stub = v1::SessionService::NewStub(server.InProcessChannel());
+  v1::CreateSessionRequest request;
+  request.set_session_id(scene);
+  request.mutable_source()->set_name(scene);
+  v1::CreateSessionResponse created;
+  grpc::ClientContext creating, playing;
+  if (grpc::Status status = stub->CreateSession(&creating, request, &created); !status.ok()) return status;
+  v1::PlaySessionRequest play;
+  play.set_session_id(scene);
+  v1::PlaySessionResponse played;
+  return stub->PlaySession(&playing, play, &played);
+}
+
+// Signals that end the server, held back from every thread that is started after this.
+sigset_t HoldSignals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  signal(SIGPIPE, SIG_IGN);
+  return signals;
+}
+
+int Serve(const Flags& flags) {
+  const sigset_t signals = HoldSignals();
+  auto server = service::Server::Start(flags.options);
+  if (!server.ok()) {
+    spdlog::error("{}", std::string(server.status().message()));
+    return kFailed;
+  }
+  WarnIfReachable(flags.options.listen);
+  WarnIfReachable(flags.options.web);
+  if (flags.start != "none") {
+    spdlog::info("building the scene {}", flags.start);
+    if (grpc::Status status = StartScene(**server, flags.start); !status.ok()) {
+      spdlog::error("--start {}: {}", flags.start, status.error_message());
+      return kFailed;
+    }
+  }
+  std::printf("gRPC:   %s (port %d)\n", flags.options.listen.c_str(), (*server)->port());
+  std::printf("Viewer: %s\n", ViewerUrl(flags.options.web, (*server)->web_port()).c_str());
+  std::fflush(stdout);
+  int signal_number = 0;
+  sigwait(&signals, &signal_number);
+  spdlog::info("stopping");
+  (*server)->Shutdown();
+  return kOk;
+}
+
+int Main(int argc, char** argv) {
+  spdlog::set_default_logger(spdlog::stderr_color_mt("phrenicd"));
+  CLI::App app("phrenicd: simulates the breathing diaphragm and serves it to viewers and programs.");
+  Flags flags;
+  AddFlags(app, flags);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kOk : kUsage;
+  }
+  return Serve(flags);
+}
+
+}  // namespace
+}  // namespace phrenic
+
+int main(int argc, char** argv) { return phrenic::Main(argc, argv); }

@@ -1,0 +1,26 @@
+// Scenes: what there is, and what the compile step makes of one.
+#ifndef PHRENIC_SERVER_SERVICE_SCENE_SERVICE_H_
+#define PHRENIC_SERVER_SERVICE_SCENE_SERVICE_H_
+
+#include "phrenic/v1/session.grpc.pb.h"
+#include "server/session/models.h"
+
+namespace phrenic::service {
+
+// gRPC's threads call, any number at a time.
+class SceneService final : public v1::SceneService::Service {
+ public:
+  explicit SceneService(session::Models& models) : models_(models) {}
+
+  grpc::Status ListScenes(grpc::ServerContext* context, const v1::ListScenesRequest* request,
+                          v1::ListScenesResponse* response) override;
+  grpc::Status DescribeScene(grpc::ServerContext* context, const v1::DescribeSceneRequest* request,
+                             v1::DescribeSceneResponse* response) override;
+
+ private:
+  session::Models& models_;
+};
+
+}  // namespace phrenic::service
+
+#endif  // PHRENIC_SERVER_SERVICE_SCENE_SERVICE_H_

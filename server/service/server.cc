@@ -1,0 +1,145 @@
+#include "server/service/server.h"
+
+#include <grpcpp/ext/proto_server_reflection_plugin.h>
+#include <grpcpp/health_check_service_interface.h>
+#include <grpcpp/resource_quota.h>
+#include <grpcpp/server.h>
+#include <grpcpp/server_builder.h>
+
+#include <filesystem>
+
+#include "absl/strings/str_cat.h"
+#include "server/service/address.h"
+#include "server/service/export_service.h"
+#include "server/service/frame_service.h"
+#include "server/service/scene_service.h"
+#include "server/service/session_service.h"
+#include "server/service/web_gateway.h"
+#include "server/session/table.h"
+
+namespace phrenic::service {
+namespace {
+
+constexpr int kMostThreads = 128;   // of unary calls and exports; viewers need none of their own
+constexpr int kMostStreams = 1000;  // of one connection
+constexpr std::chrono::milliseconds kGrace(500);
+
+absl::Status CheckFolder(const std::string& folder, const char* option) {
+  std::error_code error;
+  if (folder.empty() || std::filesystem::is_directory(folder, error)) return absl::OkStatus();
+  return absl::NotFoundError(absl::StrCat(option, ": there is no folder ", folder));
+}
+
+std::vector<std::string> SceneFolders(const ServerOptions& options) {
+  std::vector<std::string> folders = {options.scenes_dir};
+  if (!options.data_dir.empty()) folders.push_back(options.data_dir + "/scenes");
+  return folders;
+}
+
+// A dead peer is noticed within 15 s, and two servers never share a port.
+void Configure(const ServerOptions& options, grpc::ServerBuilder& builder) {
+  builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, 10'000);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, 3'000);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
+  builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, 5'000);
+  builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, kMostStreams);
+  builder.SetMaxReceiveMessageSize(options.max_message_bytes);
+  builder.SetMaxSendMessageSize(-1);  // ours: bounded by the scenes that are taken on
+  grpc::ResourceQuota quota("phrenicd");
+  quota.SetMaxThreads(kMostThreads);
+  builder.SetResourceQuota(quota);
+}
+
+}  // namespace
+
+// In the order in which they depend on each other.
+struct Server::Parts {
+  explicit Parts(const ServerOptions& options)
+      : models(session::SceneCatalogue(SceneFolders(options)), options.data_dir, options.limits.models),
+        table(models, clock, options.limits),
+        scene_service(models),
+        session_service(table),
+        frame_service(table),
+        export_service(table, options.limits.exports) {}
+
+  absl::Status Serve(const ServerOptions& options);
+  absl::Status ServeWeb(const ServerOptions& options);
+
+  stream::SystemClock clock;
+  session::Models models;
+  session::Table table;
+  SceneService scene_service;
+  SessionService session_service;
+  FrameService frame_service;
+  ExportService export_service;
+  std::unique_ptr<grpc::Server> grpc;
+  std::unique_ptr<WebGateway> web;
+  int port = 0;
+};
+
+absl::Status Server::Parts::Serve(const ServerOptions& options) {
+  grpc::EnableDefaultHealthCheckService(true);
+  grpc::reflection::InitProtoReflectionServerBuilderPlugin();
+  grpc::ServerBuilder builder;
+  Configure(options, builder);
+  if (!options.listen.empty()) {
+    if (auto address = ParseAddress(options.listen); !address.ok()) return address.status();
+    builder.AddListeningPort(options.listen, grpc::InsecureServerCredentials(), &port);
+  }
+  builder.RegisterService(&scene_service);
+  builder.RegisterService(&session_service);
+  builder.RegisterService(&frame_service);
+  builder.RegisterService(&export_service);
+  grpc = builder.BuildAndStart();
+  if (grpc == nullptr) return CannotListen(options.listen, "the port is in use, or the address is not this machine's");
+  return absl::OkStatus();
+}
+
+absl::Status Server::Parts::ServeWeb(const ServerOptions& options) {
+  if (options.web.empty()) return absl::OkStatus();
+  constexpr std::size_t kBase64 = 2;  // a text call's body is a third longer than its message
+  const WebGateway::Options web_options = {
+      .address = options.web,
+      .settings = {.root = options.web_root,
+                   .allowed_origins = options.allowed_origins,
+                   .max_body_bytes = kBase64 * static_cast<std::size_t>(options.max_message_bytes)},
+      .max_connections = static_cast<std::size_t>(options.max_web_connections)};
+  grpc::ChannelArguments arguments;
+  arguments.SetMaxReceiveMessageSize(-1);
+  auto gateway = WebGateway::Start(web_options, grpc->InProcessChannel(arguments));
+  if (!gateway.ok()) return gateway.status();
+  web = *std::move(gateway);
+  return absl::OkStatus();
+}
+
+Server::Server(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+
+absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& options) {
+  if (absl::Status status = CheckFolder(options.data_dir, "--data"); !status.ok()) return status;
+  if (absl::Status status = CheckFolder(options.scenes_dir, "--scenes"); !status.ok()) return status;
+  std::unique_ptr<Server> server(new Server(std::make_unique<Parts>(options)));
+  if (absl::Status status = server->parts_->Serve(options); !status.ok()) return status;
+  if (absl::Status status = server->parts_->ServeWeb(options); !status.ok()) return status;
+  return server;
+}
+
+Server::~Server() { Shutdown(); }
+
+std::shared_ptr<grpc::Channel> Server::InProcessChannel() {
+  grpc::ChannelArguments arguments;
+  arguments.SetMaxReceiveMessageSize(-1);
+  return parts_->grpc->InProcessChannel(arguments);
+}
+
+int Server::port() const { return parts_->port; }
+
+int Server::web_port() const { return parts_->web == nullptr ? 0 : parts_->web->port(); }
+
+void Server::Shutdown() {
+  parts_->table.Close(absl::UnavailableError("the server is shutting down"));
+  if (parts_->web != nullptr) parts_->web->Shutdown();
+  if (parts_->grpc != nullptr) parts_->grpc->Shutdown(std::chrono::system_clock::now() + kGrace);
+}
+
+}  // namespace phrenic::service

@@ -1,0 +1,108 @@
+#include "server/service/watch_reactor.h"
+
+#include <grpcpp/support/slice.h>
+
+#include <utility>
+
+#include "server/service/status.h"
+
+namespace phrenic::service {
+namespace {
+
+// A buffer that shares the bytes.
+grpc::ByteBuffer Share(const stream::Bytes& bytes) {
+  auto* hold = new stream::Bytes(bytes);
+  const grpc::Slice slice(
+      const_cast<char*>(bytes->data()), bytes->size(), [](void* held) { delete static_cast<stream::Bytes*>(held); },
+      hold);
+  return grpc::ByteBuffer(&slice, 1);
+}
+
+}  // namespace
+
+std::shared_ptr<WatchReactor> WatchReactor::Make() {
+  std::shared_ptr<WatchReactor> reactor(new WatchReactor);
+  absl::MutexLock lock(&reactor->mutex_);
+  reactor->self_ = reactor;
+  return reactor;
+}
+
+void WatchReactor::Watch(std::shared_ptr<session::Session> session, const stream::ViewerOptions& options) {
+  auto viewer = session->publisher().Join(options, [weak = weak_from_this()] {
+    if (const auto reactor = weak.lock()) reactor->Pump();
+  });
+  if (!viewer.ok()) return Refuse(viewer.status());
+  {
+    absl::MutexLock lock(&mutex_);
+    session_ = std::move(session);
+    viewer_ = *std::move(viewer);
+  }
+  Pump();
+}
+
+void WatchReactor::Refuse(const absl::Status& status) {
+  {
+    absl::MutexLock lock(&mutex_);
+    finished_ = true;
+  }
+  Finish(ToGrpc(status));
+}
+
+WatchReactor::Next WatchReactor::TakeNext() {
+  absl::MutexLock lock(&mutex_);
+  if (viewer_ == nullptr || writing_ || finished_) return {};
+  const std::optional<absl::Status> ended = cancelled_ ? absl::CancelledError() : viewer_->ended();
+  if (ended.has_value()) {
+    finished_ = true;
+    return {.finish = ToGrpc(*ended)};
+  }
+  Next next;
+  next.write = viewer_->Take();
+  writing_ = next.write != nullptr;
+  return next;
+}
+
+// Neither StartWrite nor Finish is called with the lock held: they may react at once. Whoever was given something by
+// TakeNext, and nobody else, has the right to call them.
+void WatchReactor::Pump() {
+  const Next next = TakeNext();
+  if (next.finish.has_value()) {
+    Finish(*next.finish);
+  } else if (next.write != nullptr) {
+    buffer_ = Share(next.write);
+    StartWrite(&buffer_);
+  }
+}
+
+void WatchReactor::OnWriteDone(bool ok) {
+  {
+    absl::MutexLock lock(&mutex_);
+    writing_ = false;
+    if (!ok) cancelled_ = true;
+  }
+  Pump();
+}
+
+void WatchReactor::OnCancel() {
+  {
+    absl::MutexLock lock(&mutex_);
+    cancelled_ = true;
+  }
+  Pump();
+}
+
+void WatchReactor::OnDone() {
+  // The last hold on a session may not be let go by its own publisher, which may be about to wake us.
+  std::shared_ptr<WatchReactor> self;
+  std::shared_ptr<session::Session> session;
+  std::shared_ptr<stream::Viewer> viewer;
+  {
+    absl::MutexLock lock(&mutex_);
+    self = std::move(self_);
+    session = std::move(session_);
+    viewer = std::move(viewer_);
+  }
+  if (session != nullptr) session->publisher().Leave(viewer);
+}
+
+}  // namespace phrenic::service

@@ -1,0 +1,85 @@
+// One browser's connection: HTTP/1.1, requests one after the other, each answered by a file or by a gRPC call.
+#ifndef PHRENIC_SERVER_SERVICE_WEB_CONNECTION_H_
+#define PHRENIC_SERVER_SERVICE_WEB_CONNECTION_H_
+
+#include <utility>
+// Boost 1.74's Asio needs <utility> before it with C++20.
+#include <grpcpp/generic/generic_stub.h>
+
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "server/service/web_call.h"
+
+namespace phrenic::service {
+
+// What all connections share; outlives them.
+struct WebSettings {
+  std::string root;
+  std::vector<std::string> allowed_origins;
+  std::size_t max_body_bytes = 0;
+};
+
+// Its functions run on its own strand; only Run and Close may be called from elsewhere.
+class WebConnection final : public std::enable_shared_from_this<WebConnection> {
+ public:
+  WebConnection(boost::asio::ip::tcp::socket socket, const WebSettings& settings, grpc::GenericStub& stub);
+
+  void Run();
+  // Breaks the connection off, and its call.
+  void Close();
+
+ private:
+  using Request = boost::beast::http::request<boost::beast::http::string_body>;
+  using Parser = boost::beast::http::request_parser<boost::beast::http::string_body>;
+
+  void ReadRequest();
+  void OnRequest(boost::beast::error_code error);
+  void RefuseUnreadable(boost::beast::error_code error);
+  void Handle(const Request& request);
+  void ServeFile(const Request& request);
+  void Preflight(const Request& request);
+  void RefuseWith(boost::beast::http::status status, const std::string& text);
+  template <class Body>
+  void Send(boost::beast::http::response<Body> response);
+  void Hang();
+
+  void StartCall(Request request);
+  void SendMessage(const grpc::ByteBuffer& message);
+  void SendTrailers(const grpc::Status& status, const std::multimap<std::string, std::string>& trailers);
+  void SendChunk(const std::string& frame, bool last);
+  void OnChunk(boost::beast::error_code error, bool last);
+  // Notices while a call is under way that the browser has gone.
+  void Listen();
+  void OnHeard(boost::beast::error_code error, std::size_t bytes);
+  void NextRequest();
+
+  boost::beast::tcp_stream stream_;
+  boost::beast::flat_buffer buffer_;
+  const WebSettings& settings_;
+  grpc::GenericStub& stub_;
+  std::optional<Parser> parser_;
+
+  // Of the present request.
+  std::string origin_;  // a page's that may call; empty where there is none
+  bool keep_alive_ = false;
+  // Of the present call.
+  std::shared_ptr<WebCall> call_;
+  std::string head_;                 // of the response; sent with its first chunk
+  bool text_ = false;                // frames in base64
+  std::string lead_, tail_;          // of the chunk being written, before and after ...
+  std::vector<grpc::Slice> slices_;  // ... the message's bytes
+  bool listening_ = false;
+  bool answered_ = false;
+};
+
+}  // namespace phrenic::service
+
+#endif  // PHRENIC_SERVER_SERVICE_WEB_CONNECTION_H_

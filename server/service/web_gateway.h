@@ -1,0 +1,63 @@
+// The viewer's files and gRPC-web over HTTP/1.1, inside the server: no second process, no proxy.
+#ifndef PHRENIC_SERVER_SERVICE_WEB_GATEWAY_H_
+#define PHRENIC_SERVER_SERVICE_WEB_GATEWAY_H_
+
+#include <utility>
+// Boost 1.74's Asio needs <utility> before it with C++20.
+#include <grpcpp/channel.h>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <list>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "absl/base/thread_annotations.h"
+#include "absl/status/statusor.h"
+#include "absl/synchronization/mutex.h"
+#include "server/service/web_connection.h"
+
+namespace phrenic::service {
+
+// Any thread may call. Two threads of its own serve all connections.
+class WebGateway {
+ public:
+  struct Options {
+    std::string address;  // "127.0.0.1:8080", "[::1]:8080"; port 0 chooses one
+    WebSettings settings;
+    std::size_t max_connections = 0;
+  };
+
+  // UNAVAILABLE names the address that could not be listened on, INVALID_ARGUMENT one that is none.
+  static absl::StatusOr<std::unique_ptr<WebGateway>> Start(const Options& options,
+                                                           std::shared_ptr<grpc::Channel> channel);
+  ~WebGateway();
+
+  int port() const { return port_; }
+  // Ends every connection and every call of theirs; a second call does nothing.
+  void Shutdown() ABSL_LOCKS_EXCLUDED(mutex_);
+
+ private:
+  WebGateway(const Options& options, std::shared_ptr<grpc::Channel> channel);
+  absl::Status Listen();
+  void Accept();
+  void OnAccept(boost::system::error_code error, boost::asio::ip::tcp::socket socket);
+  // False when there are too many connections already.
+  bool Admit(const std::shared_ptr<WebConnection>& connection) ABSL_LOCKS_EXCLUDED(mutex_);
+
+  const Options options_;
+  grpc::GenericStub stub_;
+  boost::asio::io_context context_;
+  boost::asio::ip::tcp::acceptor acceptor_;
+  int port_ = 0;
+  absl::Mutex mutex_;
+  std::list<std::weak_ptr<WebConnection>> connections_ ABSL_GUARDED_BY(mutex_);
+  bool closed_ ABSL_GUARDED_BY(mutex_) = false;
+  std::vector<std::thread> threads_;
+};
+
+}  // namespace phrenic::service
+
+#endif  // PHRENIC_SERVER_SERVICE_WEB_GATEWAY_H_
