@@ -16,20 +16,33 @@ namespace {
 
 constexpr int kCartilages = 10;
 constexpr double kMetresAMillimetre = 1e-3;
-constexpr double kFinest = 0.5, kCoarsest = 50;  // [mm], as the scene's resolution_mm
+constexpr double kCoarsest = 50;  // [mm]
 
 // The part's own edge length [mm].
 double DefaultResolution(v1::Structure structure) {
   switch (structure) {
     case v1::STRUCTURE_DIAPHRAGM:
-      return 3.2;
+      return 3.16;
     case v1::STRUCTURE_LUNG:
-      return 6;
+      return 5;
     case v1::STRUCTURE_VERTEBRA:
-      return 4.5;
+      return 3.4;
     default:
-      return 4.5;
+      return 4.1;
   }
+}
+
+// The finest edge length [mm]: it bounds time and memory (seconds, some hundred megabytes).
+double FinestResolution(v1::Structure structure) {
+  return structure == v1::STRUCTURE_LUNG || structure == v1::STRUCTURE_VERTEBRA ? 2 : 1;
+}
+
+absl::Status CheckResolution(const v1::Anatomy& part, double resolution_mm) {
+  const double finest = FinestResolution(part.structure());
+  if (resolution_mm == 0 || (resolution_mm >= finest && resolution_mm <= kCoarsest)) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat("generated.resolution_mm: ", resolution_mm, " is outside ", finest,
+                                                 " to ", kCoarsest, " mm for ", v1::Structure_Name(part.structure()),
+                                                 "; 0 takes the part's own"));
 }
 
 absl::Status NeedsSide(const v1::Anatomy& part) {
@@ -97,10 +110,7 @@ Mesh InMillimetres(const v1::Anatomy& part, double edge_length) {
 
 absl::StatusOr<Mesh> Generate(const v1::Anatomy& part, double resolution_mm) {
   if (absl::Status status = CheckPart(part); !status.ok()) return status;
-  if (resolution_mm != 0 && !(resolution_mm >= kFinest && resolution_mm <= kCoarsest)) {
-    return absl::InvalidArgumentError(absl::StrCat("generated.resolution_mm: ", resolution_mm, " is outside ", kFinest,
-                                                   " to ", kCoarsest, " mm; 0 takes the part's own"));
-  }
+  if (absl::Status status = CheckResolution(part, resolution_mm); !status.ok()) return status;
   Mesh mesh = InMillimetres(part, resolution_mm == 0 ? DefaultResolution(part.structure()) : resolution_mm);
   mesh.vertices *= kMetresAMillimetre;
   return mesh;

@@ -23,7 +23,7 @@ Eigen::Vector3d SternalEnd(int number) {
 Eigen::Vector3d EndOnCartilageAbove(int number) {
   constexpr int kSamples = 101;
   const Curve above = SmoothCurve(LeftCartilagePath(number - 1), kSamples);
-  const size_t at = number == kTrueRibs + 1 ? 42 : 48;
+  const size_t at = number == kTrueRibs + 1 ? 40 : 36;
   return above[at] - Eigen::Vector3d(0, 0, 7);
 }
 
@@ -38,13 +38,15 @@ Curve LeftCartilagePath(int number) {
   const Eigen::Vector3d from = LeftRibPath(number).back();
   const Eigen::Vector3d to = number <= kTrueRibs ? SternalEnd(number) : EndOnCartilageAbove(number);
   const double from_azimuth = AzimuthOf(from), to_azimuth = AzimuthOf(to);
-  const double dip = number >= 5 && number <= 8 ? 5.0 * (number - 4) : 0;  // goes on downwards before it turns up
+  const double dip = number >= 5 && number <= 8 ? 2.5 * (number - 4) : 0;       // goes on downwards before it turns up
+  const double late = number >= 5 && number <= 7 ? 1 + 0.2 * (number - 4) : 1;  // and rises late
   const int steps = number <= 4 ? 3 : 7;
   Curve path = {from};
   for (int i = 1; i < steps; ++i) {
     const double t = static_cast<double>(i) / steps;
     const double azimuth = from_azimuth + (to_azimuth - from_azimuth) * t;
-    const double z = from.z() + (to.z() - from.z()) * t - dip * 4 * t * (1 - t) * (1 - t);
+    const double rise = std::pow(t, late);
+    const double z = from.z() + (to.z() - from.z()) * rise - dip * 4 * t * (1 - t) * (1 - t);
     const Eigen::Vector2d on_cage = CageSection(z, 0).Point({std::sin(azimuth), -std::cos(azimuth)});
     const Eigen::Vector3d straight = from + (to - from) * t;
     const double blend = t * t;  // leaves the cage for the end that it must meet

@@ -11,7 +11,8 @@ namespace phrenic::anatomy {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kFoldAt = 1.3;  // d of the fold between dome and wall
+constexpr double kFoldAt = 1.3;      // d of the fold between dome and wall
+constexpr double kSquareness = 2.6;  // m: 1 is a cone's section, 2 a superellipse of degree four
 
 double Bump(const Eigen::Vector2d& q, double x, double y, double wide, double deep) {
   const double u = (q.x() - x) / wide, v = (q.y() - y) / deep;
@@ -20,15 +21,15 @@ double Bump(const Eigen::Vector2d& q, double x, double y, double wide, double de
 
 // The height of the domes before the margin bends down.
 double Top(const Eigen::Vector2d& q) {
-  return 196 + 32 * Bump(q, -0.5, 0.05, 0.42, 0.6) + 17 * Bump(q, 0.55, 0.2, 0.36, 0.5) +
-         13 * Bump(q, 0.0, -0.5, 0.55, 0.45);
+  return 194 + 30 * Bump(q, -0.5, 0.05, 0.48, 0.65) + 13.5 * Bump(q, 0.55, 0.15, 0.42, 0.55) +
+         10 * Bump(q, 0.05, -0.4, 0.6, 0.5);
 }
 
 // The height at which the sheet leaves the chest wall, by azimuth; lower on the left, as its dome is.
 double Fold(const Eigen::Vector2d& azimuth) {
   const double c = -azimuth.y(), s = azimuth.x();
   const double c2 = 2 * c * c - 1, c3 = c * (4 * c * c - 3);
-  return 137 + 19.5 * c + 25 * c2 - 7 * c3 - 4 * s;
+  return 135 + 19.5 * c + 29 * c2 - 4 * c3 - 4 * s;
 }
 
 Eigen::Vector2d Azimuth(const Eigen::Vector2d& p) {
@@ -46,9 +47,9 @@ struct Meridian {
 Meridian OnMeridian(const Eigen::Vector2d& p) {
   const Eigen::Vector2d azimuth = Azimuth(p);
   const double rho = Rho(p.norm()), fold = Fold(azimuth);
-  if (rho >= 1) return {azimuth, fold - kPi * (Top(azimuth) - fold) * (rho - 1)};
-  const double phi = kPi / 2 * rho * rho;
-  const Eigen::Vector2d q = std::sqrt(std::sin(phi)) * azimuth;
+  if (rho >= 1) return {azimuth, fold - kSquareness * kPi / 2 * (Top(azimuth) - fold) * (rho - 1)};
+  const double phi = kPi / 2 * std::pow(rho, kSquareness);
+  const Eigen::Vector2d q = std::pow(std::sin(phi), 1 / kSquareness) * azimuth;
   return {q, fold + (Top(q) - fold) * std::cos(phi)};
 }
 
@@ -68,15 +69,15 @@ struct RimKnot {
 };
 
 // The costal and lumbar border of one side, from the xiphoid back to the medial arcuate ligament.
-constexpr RimKnot kBorder[] = {{5, 189},  {12, 183}, {21, 163}, {30, 134}, {39, 106}, {48, 82},
-                               {58, 63},  {70, 51},  {85, 46},  {100, 44}, {115, 43}, {128, 44},
+constexpr RimKnot kBorder[] = {{5, 189},  {12, 183}, {21, 164}, {30, 140}, {39, 118}, {48, 103},
+                               {58, 88},  {70, 69},  {85, 52},  {100, 45}, {115, 43}, {128, 44},
                                {138, 54}, {147, 72}, {154, 86}, {160, 91}, {165, 88}};
 
 // The pillars, from the lateral edge round the tip to the medial edge.
-constexpr RimKnot kRightCrus[] = {{167, 76},   {168.5, 58}, {170, 40}, {171.5, 24}, {173, 9},
-                                  {174.5, 11}, {175.5, 28}, {176, 60}, {176.2, 90}, {177.5, 116}};
-constexpr RimKnot kLeftCrus[] = {{167, 78},   {168.5, 68}, {170, 58}, {171.5, 49}, {173, 38},
-                                 {174.5, 40}, {175.5, 52}, {176, 72}, {176.2, 94}, {177.5, 116}};
+constexpr RimKnot kRightCrus[] = {{167, 76},   {168.5, 58}, {170, 40}, {171.5, 31}, {173, 16},
+                                  {174.5, 18}, {175.5, 33}, {176, 60}, {176.2, 90}, {177.5, 116}};
+constexpr RimKnot kLeftCrus[] = {{167, 78},   {168.5, 68}, {170, 58}, {171.5, 53}, {173, 43},
+                                 {174.5, 45}, {175.5, 57}, {176, 72}, {176.2, 94}, {177.5, 116}};
 
 Eigen::Vector2d Spline(const std::vector<Eigen::Vector2d>& knots, size_t span, double t) {
   const size_t n = knots.size();
@@ -147,7 +148,7 @@ Eigen::Vector3d DiaphragmNormal(const Eigen::Vector2d& p) {
 
 double DomeHeight(const Eigen::Vector2d& q) {
   const double r = std::min(1.0, q.norm()), fold = Fold(Azimuth(q));
-  return fold + (Top(q) - fold) * std::sqrt(1 - r * r * r * r);
+  return fold + (Top(q) - fold) * std::sqrt(1 - std::pow(r, 2 * kSquareness));
 }
 
 PlaneLoop DiaphragmRim() {
@@ -168,17 +169,17 @@ PlaneLoop DiaphragmRim() {
   return rim;
 }
 
-PlaneLoop CavalOpening() { return Opening({-0.22, 0.22}, 13, 12); }
+PlaneLoop CavalOpening() { return Opening({-0.24, 0.12}, 13, 12); }
 
 PlaneLoop OesophagealOpening() { return Opening({0.09, 1.06}, 8, 11); }
 
 bool InTendon(const Eigen::Vector2d& p) {
   const Eigen::Vector2d q = OnMeridian(p).q;
   if (p.norm() > kFoldAt) return false;
-  const Eigen::Vector2d front(0.02, -0.42), middle(-0.02, -0.12), right(-0.5, 0.2), left(0.52, 0.24);
+  const Eigen::Vector2d front(0.02, -0.4), middle(-0.02, -0.1), right(-0.52, 0.2), left(0.56, 0.24);
   const double leaf =
-      std::min({ToSegment(q, middle, front) - 0.24, ToSegment(q, Eigen::Vector2d(-0.15, 0), right) - 0.2,
-                ToSegment(q, Eigen::Vector2d(0.12, -0.05), left) - 0.15});
+      std::min({ToSegment(q, middle, front) - 0.4, ToSegment(q, Eigen::Vector2d(-0.15, 0), right) - 0.36,
+                ToSegment(q, Eigen::Vector2d(0.12, -0.05), left) - 0.31});
   return leaf < 0;
 }
 

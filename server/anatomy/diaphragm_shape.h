@@ -1,9 +1,9 @@
 // The middle surface of the diaphragm as one smooth map from a plane, its border, its openings and its tendon.
 //
 // The plane point p = d (cos, sin) lies on the meridian of that azimuth (+x left, +y back). With rho(d) = d - 0.1365
-// d^3 below d = 1.3, phi = pi rho^2 / 2 (up to pi / 2), q = sqrt(sin phi) times the azimuth's unit vector:
-//   z = fold + (top(q) - fold) cos phi on the domes, z = fold - pi (top - fold)(rho - 1) on the wall below the fold,
-//   (x, y) = the cage's cross-section at that z, at q.
+// d^3 below d = 1.3, phi = pi rho^m / 2 (up to pi / 2), q = (sin phi)^(1/m) times the azimuth's unit vector, m = 2.6:
+//   z = fold + (top(q) - fold) cos phi on the domes, z = fold - m pi / 2 (top - fold)(rho - 1) on the wall below the
+//   fold, (x, y) = the cage's cross-section at that z, at q.
 // So each meridian is a superellipse that goes over into the vertical zone of apposition with a continuous tangent.
 //
 // Sources: domes, saddle, rim and opening levels after the project's physiology notes (right dome at T8, left 15-25 mm

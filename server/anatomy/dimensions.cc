@@ -39,12 +39,12 @@ VertebralBody BodyOfVertebra(int number) {
   double z = 0;
   for (int n = kVertebrae; n >= number; --n) {
     const double up = static_cast<double>(kVertebrae - n) / (kVertebrae - 1);  // 0 at L3, 1 at T1
-    const double height = 28 - 11 * up;
+    const double height = 28 - 12 * up;
     body.bottom = z;
     body.top = z + height;
     body.width = 46 - 17 * std::sqrt(up) + 3 * std::max(0.0, up - 0.75) * 4;
-    body.depth = 34 - 17 * up;
-    z = body.top + 3 + 6 * (1 - up) * (1 - up);
+    body.depth = 34 - 15 * up;
+    z = body.top + 3 + 5 * (1 - up) * (1 - up);
   }
   return body;
 }
@@ -58,9 +58,9 @@ CageSection::CageSection(double z, double inset)
 namespace {
 
 constexpr double kSquareness = 0.3;      // 0 is an ellipse
-constexpr double kColumnHalfWidth = 34;  // of the vertebral column with the muscles beside it [mm]
+constexpr double kColumnHalfWidth = 33;  // of the vertebral column with the muscles beside it [mm]
 
-double Pressed(double x) { return std::exp(-x * x / (kColumnHalfWidth * kColumnHalfWidth)); }
+double Pressed(double x) { return 1 / (1 + std::pow(x / kColumnHalfWidth, 4)); }
 
 }  // namespace
 
@@ -76,6 +76,9 @@ Eigen::Vector2d CageSection::DiscCoordinates(const Eigen::Vector2d& point) const
   return {across, (point.y() - centre_ + pressed) / slope};
 }
 
-double SternumLine(double z) { return -100 + 0.5 * (z - 212); }
+double SternumLine(double z) {
+  constexpr double kSoft = 5;  // the xiphoid bends backwards
+  return -99 + 0.62 * kSoft * std::log1p(std::exp((z - 210) / kSoft)) - 0.12 * (z - 210);
+}
 
 }  // namespace phrenic::anatomy

@@ -30,7 +30,7 @@ struct VertebralBody {
   double Middle() const { return (bottom + top) / 2; }
 };
 
-// Number 1 (T1) to 15 (L3), stacked upwards from z = 0 with discs of 9 mm (lumbar) to 3 mm (upper thoracic).
+// Number 1 (T1) to 15 (L3), stacked upwards from z = 0 with discs of 8 mm (lumbar) to 3 mm (upper thoracic).
 VertebralBody BodyOfVertebra(int number);
 
 // The horizontal cross-section of the cage that carries the ribs' centrelines, moved inwards by `inset` [mm]: a rounded

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <unordered_map>
 #include <vector>
 
@@ -111,12 +112,47 @@ class Marcher {
   std::vector<Eigen::Vector3i> triangles_;
 };
 
+int Root(std::vector<int>& parent, int i) {
+  while (parent[i] != i) i = parent[i] = parent[parent[i]];
+  return i;
+}
+
+// Only the component with the most triangles: no crumbs where the field is thinner than a cell.
+Mesh LargestComponent(const Mesh& mesh) {
+  std::vector<int> parent(static_cast<size_t>(mesh.vertices.cols()));
+  std::iota(parent.begin(), parent.end(), 0);
+  for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
+    for (int k = 1; k < 3; ++k) parent[Root(parent, mesh.triangles(k, t))] = Root(parent, mesh.triangles(0, t));
+  }
+  std::vector<int> size(parent.size(), 0);
+  for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) ++size[Root(parent, mesh.triangles(0, t))];
+  const auto largest = static_cast<int>(std::max_element(size.begin(), size.end()) - size.begin());
+  std::vector<int> renumbered(parent.size(), -1);
+  Mesh kept{Points(3, mesh.vertices.cols()), Triangles(3, mesh.triangles.cols()), {}, {}};
+  int vertices = 0, triangles = 0;
+  for (int i = 0; i < static_cast<int>(parent.size()); ++i) {
+    if (Root(parent, i) != largest) continue;
+    kept.vertices.col(vertices) = mesh.vertices.col(i);
+    renumbered[i] = vertices++;
+  }
+  for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
+    const Eigen::Vector3i v = mesh.triangles.col(t);
+    if (renumbered[v[0]] < 0) continue;
+    kept.triangles.col(triangles++) << renumbered[v[0]], renumbered[v[1]], renumbered[v[2]];
+  }
+  kept.vertices.conservativeResize(3, vertices);
+  kept.triangles.conservativeResize(3, triangles);
+  return kept;
+}
+
 }  // namespace
 
-Mesh Polygonise(const Field& field, const Box& box, double cell) { return Marcher(field, box, cell).March(); }
+Mesh Polygonise(const Field& field, const Box& box, double cell) {
+  return LargestComponent(Marcher(field, box, cell).March());
+}
 
-Mesh ImplicitSurface(const Field& field, const Box& box, double edge_length) {
-  return Remesh(field, Polygonise(field, box, 0.6 * edge_length), edge_length);
+Mesh ImplicitSurface(const Field& field, const Box& box, double edge_length, double detail) {
+  return Remesh(field, Polygonise(field, box, std::min(0.6 * edge_length, detail)), edge_length);
 }
 
 double SmoothMin(double a, double b, double k) {

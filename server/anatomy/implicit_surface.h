@@ -16,12 +16,13 @@ struct Box {
 };
 
 // Marching tetrahedra on cubes of side `cell` cut into six (Payne and Toga, IEEE CG&A 1990;10(5):33), which has no
-// ambiguous case: the result is a closed manifold, outward, with cut points kept off the grid's corners. Triangles are
-// of any shape; Remesh makes them even.
+// ambiguous case: the result is a closed manifold, outward, with cut points kept off the grid's corners; its largest
+// component only. Triangles are of any shape; Remesh makes them even.
 Mesh Polygonise(const Field& field, const Box& box, double cell);
 
-// Polygonise at 0.6 edge lengths, then remeshed to near-uniform triangles of that edge length.
-Mesh ImplicitSurface(const Field& field, const Box& box, double edge_length);
+// Polygonised at 0.6 edge lengths, or at `detail` where that is finer, so that no part of the shape is lost; then
+// remeshed to near-uniform triangles of the edge length.
+Mesh ImplicitSurface(const Field& field, const Box& box, double edge_length, double detail);
 
 // Polynomial smooth minimum of two distances, rounded over the width k (Quilez).
 double SmoothMin(double a, double b, double k);

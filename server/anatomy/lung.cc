@@ -11,60 +11,60 @@
 namespace phrenic::anatomy {
 namespace {
 
-constexpr double kPleura = 9;     // from the ribs' centrelines to the lung
-constexpr double kAboveDome = 7;  // from the sheet's middle to the lung's base
-constexpr double kTop = 396;      // of the cupola
+constexpr double kPleura = 5;       // from the ribs' centrelines to the lung
+constexpr double kAboveDome = 3.5;  // from the sheet's middle to the lung's base, square to it
+constexpr double kTop = 393;        // of the apex
 
 double SmoothMax(double a, double b, double k) { return -SmoothMin(-a, -b, k); }
 
-// The chest wall and the cupola of the pleura.
+// The chest wall, which narrows to the cupola of the pleura.
 double InsideCage(const Eigen::Vector3d& x) {
-  const double z = std::min(x.z(), 380.0);
-  const Eigen::Vector2d q = CageSection(z, kPleura).DiscCoordinates(x.head<2>());
-  return (q.norm() - 1) * 62;
+  const Eigen::Vector2d q = CageSection(std::min(x.z(), kTop + 2), kPleura).DiscCoordinates(x.head<2>());
+  const double narrowing = std::clamp((kTop - x.z()) / 120, 0.3, 1.0);
+  return SmoothMax((q.norm() - 1) * 80 * narrowing, x.z() - kTop, 14);
 }
 
-double BelowCupola(const Eigen::Vector3d& x) {
-  const Eigen::Vector3d centre(0, 22, kTop - 70);
-  const Eigen::Vector3d u = (x - centre).cwiseQuotient(Eigen::Vector3d(72, 66, 70));
-  return x.z() < centre.z() ? (std::hypot(u.x(), u.y()) - 1.3) * 60 : (u.norm() - 1) * 66;
-}
-
+// Height over the dome, made a distance by the dome's slope.
 double AboveDiaphragm(const Eigen::Vector3d& x) {
+  constexpr double kStep = 0.01, kRadius = 105, kRecess = 0.93;
+  if (x.z() > 260) return 230 - x.z();
   const double z = std::clamp(x.z(), 100.0, 230.0);
   const Eigen::Vector2d q = CageSection(z, kDiaphragmInset).DiscCoordinates(x.head<2>());
-  const double over = DomeHeight(q) + kAboveDome - x.z();
-  const double slope = 1 + 1.2 * std::pow(std::min(1.0, q.norm()), 4);  // the dome steepens towards the wall
-  return over / slope;
+  const double r = std::clamp(q.norm(), kStep, 1 - 2 * kStep);
+  const Eigen::Vector2d unit = q / std::max(q.norm(), 1e-9);
+  const double slope = (DomeHeight((r - kStep) * unit) - DomeHeight((r + kStep) * unit)) / (2 * kStep * kRadius);
+  const double above = kAboveDome + (DomeHeight(q) - x.z()) / std::hypot(1.0, slope);
+  return SmoothMax(above, DomeHeight(kRecess * unit) - x.z(), 6);  // the recess below stays empty
 }
 
-// Heart, great vessels and spine; `side` is +1 on the left.
-double OutsideMediastinum(const Eigen::Vector3d& x, double side) {
-  const double across = side * x.x();
-  const double in_front = std::clamp((20 - x.y()) / 60, 0.0, 1.0);
-  const double wall = 19 - 9 * in_front - across;
-  const Eigen::Vector3d heart(18, -42, 248);
-  const Eigen::Vector3d reach(side > 0 ? 52 : 62, 44, 62);
-  const double beside_heart = (1 - (x - heart).cwiseQuotient(reach).norm()) * 46;
-  const double spine_front = SpineFront(x.z());
-  const double spine = 24 - std::hypot(x.x(), x.y() - spine_front - 16);
-  return SmoothMax(SmoothMax(wall, beside_heart, 14), spine, 10);
+// What the heart takes: it reaches the chest wall on the left, where the lung leaves the cardiac notch.
+double BesideHeart(const Eigen::Vector3d& x, bool left) {
+  const Eigen::Vector3d centre = left ? Eigen::Vector3d(20, -42, 238) : Eigen::Vector3d(8, -26, 248);
+  const Eigen::Vector3d reach = left ? Eigen::Vector3d(46, 50, 56) : Eigen::Vector3d(40, 28, 54);
+  return (1 - (x - centre).cwiseQuotient(reach).norm()) * 46;
 }
 
-Mesh Lung(double side, double edge_length) {
-  const Field field = [side](const Eigen::Vector3d& x) {
-    const double chest = SmoothMax(InsideCage(x), BelowCupola(x), 10);
-    const double seated = SmoothMax(chest, AboveDiaphragm(x), 9);
-    return SmoothMax(seated, OutsideMediastinum(x, side), 10);
+// Heart, great vessels and spine.
+double OutsideMediastinum(const Eigen::Vector3d& x, bool left) {
+  const double in_front = std::clamp((10 - x.y()) / 60, 0.0, 1.0);
+  const double wall = 19 - 11 * in_front - (left ? x.x() : -x.x());
+  const double spine = 25 - std::hypot(x.x(), x.y() - SpineFront(x.z()) - 16);
+  return SmoothMax(SmoothMax(wall, BesideHeart(x, left), 14), spine, 10);
+}
+
+Mesh Lung(bool left, double edge_length) {
+  const Field field = [left](const Eigen::Vector3d& x) {
+    return SmoothMax(SmoothMax(InsideCage(x), AboveDiaphragm(x), 8), OutsideMediastinum(x, left), 16);
   };
-  const Box box{{side > 0 ? 0.0 : -135.0, -105, 95}, {side > 0 ? 135.0 : 0.0, 110, 405}};
-  return ImplicitSurface(field, box, edge_length);
+  constexpr double kDetail = 5;
+  const Box box{{left ? 0.0 : -135.0, -105, 95}, {left ? 135.0 : 0.0, 110, 405}};
+  return ImplicitSurface(field, box, edge_length, kDetail);
 }
 
 }  // namespace
 
-Mesh LeftLung(double edge_length) { return Lung(1, edge_length); }
+Mesh LeftLung(double edge_length) { return Lung(true, edge_length); }
 
-Mesh RightLung(double edge_length) { return Lung(-1, edge_length); }
+Mesh RightLung(double edge_length) { return Lung(false, edge_length); }
 
 }  // namespace phrenic::anatomy

@@ -11,9 +11,9 @@ namespace {
 
 constexpr double kRadian = 3.14159265358979323846 / 180;
 
-double SagittalSlope(int number) { return std::tan((37 - 1.9 * (number - 1)) * kRadian); }
+double SagittalSlope(int number) { return std::tan((31 - 0.8 * (number - 1)) * kRadian); }
 
-double FrontalSlope(int number) { return std::tan(std::min(50.0, 9 + 0.37 * (number - 1) * (number - 1)) * kRadian); }
+double FrontalSlope(int number) { return std::tan(std::min(50.0, 7 + 0.46 * (number - 1) * (number - 1)) * kRadian); }
 
 // Azimuth of the anterior end from the front [degrees].
 double EndAzimuth(int number) { return number == 1 ? 40 : 26 + 0.98 * (number - 2) * (number - 2); }
@@ -30,11 +30,12 @@ struct Neck {
 Neck NeckOf(int number) {
   const VertebralBody body = BodyOfVertebra(number);
   const bool own_level = number == 1 || number >= 11;
-  const double z = own_level ? body.Middle() + 3 : body.top - 1;
-  const double x = body.width / 2 + 2;
-  const Eigen::Vector3d head(x, SpineFront(z) + 0.85 * body.depth, z);
+  const double z = own_level ? body.Middle() + 3 : body.top - 4;
+  const double lower = Smooth((number - 9) / 3.0);  // the last heads sit further back, at the pedicles
+  const double x = body.width / 2 + 2 + 5 * lower;
+  const Eigen::Vector3d head(x, SpineFront(z) + 1.02 * body.depth + 15 * lower, z);
   const double drop = 2 - 13 * Smooth((number - 5) / 5.0);
-  return {head, head + Eigen::Vector3d(number == 1 ? 22 : 17, number == 12 ? 9 : 15, drop)};
+  return {head, head + Eigen::Vector3d(number == 1 ? 22 : 17, number >= 11 ? 11 : 13, drop)};
 }
 
 // Where the rib's plane cuts the cage at that azimuth.
@@ -59,13 +60,13 @@ double AngleAzimuth(int number, const Eigen::Vector3d& tubercle) {
 }
 
 TubeSection Section(int number, double s, const Eigen::Vector3d& centre) {
-  const double head = 1 - Smooth(s / 0.06);      // the head is thicker, the neck round
-  const double body = Smooth((s - 0.1) / 0.15);  // the shaft flat
-  const double tip = Smooth((s - 0.8) / 0.2);    // ribs 11 and 12 end in a point, the others a little broader
+  const double head = 1 - Smooth(s / 0.06);       // the head is thicker, the neck round
+  const double shaft = Smooth((s - 0.08) / 0.2);  // the shaft flat and high
+  const double tip = Smooth((s - 0.75) / 0.25);   // ribs 11 and 12 end in a point, the others a little broader
   const bool floating = number >= 11;
-  const double size = number == 1 ? 1.0 : number == 12 ? 0.8 : 1.0;
-  const double broad = (4.2 + 1.3 * head + 1.9 * body + (floating ? -3 : 0.8) * tip) * size;
-  const double thin = (3.8 + 1.0 * head - 0.3 * body + (floating ? -0.8 : 0.3) * tip) * size;
+  const double height = number == 1 ? 8.0 : number == 12 ? 5.0 : 6.6;  // half, of the shaft
+  const double broad = 4.4 + 1.4 * head + (height - 4.4) * shaft + (floating ? -2.5 : 0.6) * tip;
+  const double thin = 3.9 + 1.2 * head - (number == 1 ? 0.9 : 0.3) * shaft + (floating ? -0.9 : 0.3) * tip;
   // The upper ribs lie flat, their thin axis upwards.
   const double flat = std::max(0.0, 80 - 32.0 * (number - 1)) * kRadian;
   const Eigen::Vector3d out = OutOfCage(centre);

@@ -8,8 +8,8 @@ namespace phrenic::anatomy {
 
 // Control points of the left rib's centreline (number 1 to 12) from head to anterior end [mm]. Beyond the angle the rib
 // lies where the plane z = z_t + tan(sagittal slope) (y - y_t) - tan(frontal slope) (|x| - x_t) through its tubercle
-// cuts the cage; the slopes and the end's azimuth are smooth laws of the rib's number (sagittal 38 to 15 degrees,
-// frontal 9 to 50 degrees from the first to the last).
+// cuts the cage; the slopes and the end's azimuth are smooth laws of the rib's number (sagittal 31 to 22 degrees,
+// frontal 7 to 50 degrees from the first to the last).
 Curve LeftRibPath(int number);
 
 // The left rib [mm]; the right one is its mirror image. The head is the end nearest to the midplane.

@@ -14,6 +14,11 @@ constexpr double kBodyEnd = 214;  // where the xiphoid begins
 constexpr double kNotch = 358;    // jugular notch
 constexpr double kXiphoidTip = 186;
 
+double Smooth(double t) {
+  t = std::clamp(t, 0.0, 1.0);
+  return t * t * (3 - 2 * t);
+}
+
 Mesh Plate(double bottom, double top, double thickness, double edge_length) {
   Curve line;
   constexpr int kPoints = 9;
@@ -32,11 +37,11 @@ Mesh Plate(double bottom, double top, double thickness, double edge_length) {
 double SternumHalfWidth(double z) {
   if (z > kAngle) {  // manubrium: from 14 mm at the angle to 28 mm below the clavicular notches, narrower at the top
     const double up = std::min(1.0, (z - kAngle) / (kNotch - kAngle));
-    return 14 + 22 * std::sin(2.1 * up) * up - 3 * up * up * up;
+    return 13 + 17 * Smooth(up / 0.75) - 8 * Smooth((up - 0.78) / 0.22);
   }
   if (z > kBodyEnd) {  // body: widest a third from its lower end
     const double up = (z - kBodyEnd) / (kAngle - kBodyEnd);
-    return 12.5 + 15 * up * (1 - up) * (1 - up) * 2.2 + 1.5 * up;
+    return 10 + 3 * Smooth(up / 0.1) + 40 * up * (1 - up) * (1 - up) + 0.5 * up;
   }
   const double down = std::min(1.0, (kBodyEnd - z) / (kBodyEnd - kXiphoidTip));
   return 9.5 - 4 * down;

@@ -51,7 +51,7 @@ Ring RingAt(const Curve& path, size_t i, const TubeSection& section) {
 
 // The rings of the path, and at each end two that round it off.
 std::vector<Ring> Rings(const Curve& path, const SectionAt& section) {
-  constexpr double kAngles[] = {72, 42};  // degrees of the quarter circle that rounds an end
+  constexpr double kAngles[] = {62, 34};  // degrees of the quarter circle that rounds an end
   std::vector<Ring> rings;
   const double last = static_cast<double>(path.size()) - 1;
   for (size_t i = 0; i < path.size(); ++i) {

@@ -17,16 +17,21 @@ struct Shape {
   double canal;                 // half width of the vertebral canal
 };
 
+double Smooth(double t) {
+  t = std::clamp(t, 0.0, 1.0);
+  return t * t * (3 - 2 * t);
+}
+
 Shape ShapeOf(int number) {
   const VertebralBody body = BodyOfVertebra(number);
   const bool lumbar = number > 12;
   const double middle = std::exp(-(number - 6.5) * (number - 6.5) / 10.0);  // 1 at T6 and T7, 0 at T1 and T12
-  const double transverse = lumbar ? 36 + (number - 13) * 2.0 : 35 - 0.11 * (number - 1) * (number - 1);
+  const double transverse = lumbar ? 36 + (number - 13) * 2.0 : 36 - 13 * Smooth((number - 8.5) / 4);
   return {body.width,
           body.depth,
           body.top - body.bottom,
           transverse,
-          lumbar ? 4.0 : 12.0,
+          lumbar ? 4.0 : 14.0,
           lumbar ? 26.0 : 27 + 7 * middle,
           lumbar ? 0.12 : 0.35 + 0.75 * middle,
           lumbar ? 11.0 : 9.0};
@@ -42,32 +47,37 @@ double BodyDistance(const Shape& s, const Eigen::Vector3d& x) {
 }
 
 double SpinousProcess(const Shape& s, const Eigen::Vector3d& x) {
-  const double root = s.depth + 17;
+  const double root = s.depth + 20;
   const Eigen::Vector3d from(0, root, -1);
   const Eigen::Vector3d to = from + s.spine * Eigen::Vector3d(0, std::cos(s.slope), -std::sin(s.slope));
   const bool lumbar = s.canal > 10;
   Eigen::Vector3d flat = x;
   flat.x() *= 1.35;  // higher than wide
-  return Capsule(flat, from, to, lumbar ? 7.5 : 5.6, lumbar ? 7.0 : 4.4) / 1.15;
+  return Capsule(flat, from, to, lumbar ? 8.5 : 6.2, lumbar ? 8.0 : 4.8) / 1.15;
 }
 
-// Local frame: y backwards from the body's front, z along the spine, x mirrored.
+// The parts of the arch, in the local frame of Distance, on the left half.
+double Arch(const Shape& s, const Eigen::Vector3d& x) {
+  const double side = s.canal + 4.5, back = s.depth + 10, high = s.height / 2;
+  const bool lumbar = s.canal > 10;
+  const double stout = lumbar ? 1.25 : 1.0;
+  const double pedicle =
+      Capsule(x, {side - 1, s.depth - 5, high * 0.4}, {side, back, high * 0.3}, 4.6 * stout, 4.8 * stout);
+  Eigen::Vector3d plate = x;  // the laminae are plates, higher than thick
+  plate.z() /= 2;
+  const double lamina = 1.2 * Capsule(plate, {side, back + 1, 0}, {0, s.depth + 22, -3}, 4.8, 5.2);
+  const Eigen::Vector3d root(side, back + 1, high * 0.25);
+  const Eigen::Vector3d end(s.transverse - 4, back + s.backward, high * 0.25 + (lumbar ? 1.0 : 6.0));
+  const double transverse = Capsule(x, root, end, 5.4, lumbar ? 3.8 : 5.2);
+  const double facets =
+      Capsule(x, {side, back + 1, high + 6}, {side - 1, back + 5, -high - 7}, 4.6 * stout, 4.4 * stout);
+  return SmoothMin(SmoothMin(pedicle, lamina, 4), SmoothMin(transverse, facets, 4), 4);
+}
+
+// Local frame: y backwards from the body's front, z along the spine; left and right are alike.
 double Distance(const Shape& s, Eigen::Vector3d x) {
   x.x() = std::abs(x.x());
-  const double side = s.canal + 3, back = s.depth + 11, high = s.height / 2;
-  const bool lumbar = s.canal > 10;
-  const double pedicle =
-      Capsule(x, {side - 1, s.depth - 5, high * 0.35}, {side, back, high * 0.3}, lumbar ? 6 : 4.6, lumbar ? 6 : 4.6);
-  const double lamina = Capsule(x, {side, back, 1}, {0, s.depth + 18, -3}, 5.0, 4.8);
-  const double transverse =
-      Capsule(x, {side, back, high * 0.25}, {s.transverse - 3, back + s.backward, high * 0.25 + 2}, lumbar ? 5.0 : 5.4,
-              lumbar ? 3.8 : 4.6);
-  const double facets = Capsule(x, {side, back + 2, high + 4}, {side, back + 5, -high - 4}, 4.2, 4.2);
-  double distance = SmoothMin(BodyDistance(s, x), pedicle, 4);
-  distance = SmoothMin(distance, lamina, 4);
-  distance = SmoothMin(distance, transverse, 4);
-  distance = SmoothMin(distance, facets, 3);
-  return SmoothMin(distance, SpinousProcess(s, x), 5);
+  return SmoothMin(SmoothMin(BodyDistance(s, x), Arch(s, x), 4), SpinousProcess(s, x), 6);
 }
 
 }  // namespace
@@ -76,9 +86,10 @@ Mesh Vertebra(int number, double edge_length) {
   const Shape shape = ShapeOf(number);
   const VertebralBody body = BodyOfVertebra(number);
   const Field field = [&](const Eigen::Vector3d& x) { return Distance(shape, x); };
-  const double half = shape.transverse + 12, below = shape.height / 2 + 14 + shape.spine * std::sin(shape.slope);
-  const Box box{{-half, -8, -below}, {half, shape.depth + 32 + shape.spine, shape.height / 2 + 14}};
-  Mesh mesh = ImplicitSurface(field, box, edge_length);
+  const double half = shape.transverse + 12, below = shape.height / 2 + 18 + shape.spine * std::sin(shape.slope);
+  constexpr double kDetail = 3;  // the arch is about 9 mm thick
+  const Box box{{-half, -8, -below}, {half, shape.depth + 32 + shape.spine, shape.height / 2 + 18}};
+  Mesh mesh = ImplicitSurface(field, box, edge_length, kDetail);
   const double tilt = std::atan(SpineSlope(body.Middle()));
   const Eigen::AngleAxisd turn(-tilt, Eigen::Vector3d::UnitX());
   const Eigen::Vector3d front(0, SpineFront(body.Middle()), body.Middle());
