@@ -21,7 +21,8 @@ class ObjParser {
 
   absl::StatusOr<Mesh> Parse() {
     while (reader_.NextLine()) {
-      reader_.JoinContinuedLine();
+      // A comment may end in a path's "\\" without going on.
+      if (reader_.Rest().substr(0, 1) != "#") reader_.JoinContinuedLine();
       if (absl::Status status = ReadStatement(reader_.Word()); !status.ok()) return status;
     }
     if (absl::Status status = CheckWhole(); !status.ok()) return status;
