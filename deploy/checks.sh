@@ -154,8 +154,8 @@ stage_asan() {
 # gRPC's library is not built for ThreadSanitizer, so only tests of folders below service/ run under it.
 stage_tsan() {
   local folder=$root/build/tsan
-  check sanitized "$folder" thread stream_test session_test
-  TSAN_OPTIONS=ignore_noninstrumented_modules=1:halt_on_error=1 ctests "$folder" -R '^(stream|session)/'
+  check sanitized "$folder" thread tsan_test stream_test session_test
+  TSAN_OPTIONS=ignore_noninstrumented_modules=1:halt_on_error=1 ctests "$folder" -R '^(tsan|stream|session)/'
 }
 
 check_tidy() {
