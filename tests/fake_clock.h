@@ -1,0 +1,43 @@
+// Time that only the test moves.
+#ifndef PHRENIC_TESTS_FAKE_CLOCK_H_
+#define PHRENIC_TESTS_FAKE_CLOCK_H_
+
+#include "absl/base/thread_annotations.h"
+#include "server/stream/clock.h"
+
+namespace phrenic {
+
+// Any thread may call.
+class FakeClock final : public stream::Clock {
+ public:
+  absl::Time Now() const override {
+    absl::MutexLock lock(&mutex_);
+    return now_;
+  }
+  void Await(absl::Mutex& mutex, const absl::Condition& condition, absl::Time deadline) const override {
+    while (!condition.Eval() && Now() < deadline) mutex.AwaitWithTimeout(condition, absl::Milliseconds(1));
+  }
+  void Advance(absl::Duration duration) {
+    absl::MutexLock lock(&mutex_);
+    now_ += duration;
+  }
+
+ private:
+  mutable absl::Mutex mutex_;
+  absl::Time now_ ABSL_GUARDED_BY(mutex_) = absl::FromUnixSeconds(1'700'000'000);
+};
+
+// Whether `condition` came to hold within ten seconds of the real clock.
+template <class Condition>
+bool Eventually(const Condition& condition) {
+  const absl::Time last = absl::Now() + absl::Seconds(10);
+  while (!condition()) {
+    if (absl::Now() > last) return false;
+    absl::SleepFor(absl::Milliseconds(1));
+  }
+  return true;
+}
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_TESTS_FAKE_CLOCK_H_

@@ -1,0 +1,155 @@
+#include "server/stream/publisher.h"
+
+#include <atomic>
+
+#include "tests/compile_text.h"
+#include "tests/fake_clock.h"
+#include "tests/small_scenes.h"
+
+namespace phrenic::stream {
+namespace {
+
+v1::WatchFramesResponse Parse(const Bytes& bytes) {
+  v1::WatchFramesResponse response;
+  EXPECT_TRUE(response.ParseFromString(*bytes));
+  return response;
+}
+
+class PublisherTest : public testing::Test {
+ protected:
+  void Offer(std::int64_t sequence) {
+    auto snapshot = std::make_shared<Snapshot>();
+    snapshot->sequence = sequence;
+    snapshot->state = model_->InitialState();
+    snapshot->parameters = model_->parameters;
+    snapshot->made = clock_.Now();
+    publisher_.Offer(std::move(snapshot));
+  }
+
+  std::shared_ptr<Viewer> Join(const ViewerOptions& options = {}) {
+    auto viewer = publisher_.Join(options, [] {});
+    EXPECT_TRUE(viewer.ok()) << viewer.status();
+    return *viewer;
+  }
+
+  // The next frame in the mailbox, past what is said of the session.
+  Bytes NextFrame(Viewer& viewer) {
+    Bytes frame;
+    const bool came = Eventually([&] {
+      const Bytes bytes = viewer.Take();
+      if (bytes != nullptr && Parse(bytes).has_frame()) frame = bytes;
+      return frame != nullptr;
+    });
+    EXPECT_TRUE(came) << "no frame came";
+    return frame;
+  }
+
+  std::shared_ptr<const Model> model_ = CompileText(kTriangle);
+  FakeClock clock_;
+  Publisher publisher_{model_, clock_, 4};
+};
+
+TEST(Viewer, NewestFrameReplacesTheOlder) {
+  int woken = 0;
+  Viewer viewer({}, [&] { ++woken; });
+  const auto first = std::make_shared<const std::string>("first"),
+             second = std::make_shared<const std::string>("second");
+  viewer.PutFrame(first);
+  viewer.PutFrame(second);
+  EXPECT_EQ(viewer.Take(), second);
+  EXPECT_EQ(viewer.Take(), nullptr);
+  EXPECT_EQ(viewer.missed(), 1);
+  EXPECT_EQ(woken, 2);
+}
+
+TEST(Viewer, StateOfTheSessionComesBeforeAFrame) {
+  Viewer viewer({}, [] {});
+  const auto frame = std::make_shared<const std::string>("frame"), session = std::make_shared<const std::string>("s");
+  viewer.PutFrame(frame);
+  viewer.PutSession(session);
+  viewer.End(absl::NotFoundError("deleted"));
+  EXPECT_FALSE(viewer.ended().has_value()) << "what was put before the end is lost";
+  EXPECT_EQ(viewer.Take(), session);
+  EXPECT_EQ(viewer.Take(), frame);
+  ASSERT_TRUE(viewer.ended().has_value());
+  EXPECT_TRUE(absl::IsNotFound(*viewer.ended()));
+}
+
+TEST_F(PublisherTest, AFrameIsEncodedOnceHoweverManyWatch) {
+  const auto a = Join(), b = Join(), c = Join();
+  for (int sequence = 1; sequence <= 5; ++sequence) {
+    Offer(sequence);
+    const Bytes frame = NextFrame(*a);
+    EXPECT_EQ(NextFrame(*b), frame) << "the bytes are not shared";
+    EXPECT_EQ(NextFrame(*c), frame);
+    EXPECT_EQ(Parse(frame).frame().sequence(), sequence);
+  }
+  EXPECT_EQ(publisher_.encodings(), 5);
+}
+
+TEST_F(PublisherTest, NothingIsEncodedForNobody) {
+  for (int sequence = 1; sequence <= 3; ++sequence) Offer(sequence);
+  const auto late = Join();
+  EXPECT_EQ(Parse(NextFrame(*late)).frame().sequence(), 3) << "a late viewer has to wait for the next frame";
+  EXPECT_EQ(publisher_.encodings(), 1);
+}
+
+TEST_F(PublisherTest, ASlowViewerMissesFramesAndGetsTheNewest) {
+  const auto slow = Join(), quick = Join();
+  for (int sequence = 1; sequence <= 10; ++sequence) {
+    Offer(sequence);
+    NextFrame(*quick);
+  }
+  // The slow one's mailbox is filled just before the quick one's.
+  EXPECT_EQ(Parse(NextFrame(*slow)).frame().sequence(), 10);
+  EXPECT_EQ(slow->missed(), 9);
+  EXPECT_EQ(quick->missed(), 0);
+}
+
+TEST_F(PublisherTest, MaxFpsHoldsFramesBackUntilTheyAreDue) {
+  const auto viewer = Join({.max_fps = 10});
+  Offer(1);
+  NextFrame(*viewer);
+  const auto unlimited = Join();
+  Offer(2);
+  Offer(3);
+  while (Parse(NextFrame(*unlimited)).frame().sequence() < 3) continue;
+  for (Bytes bytes = viewer->Take(); bytes != nullptr; bytes = viewer->Take()) {
+    EXPECT_FALSE(Parse(bytes).has_frame()) << "a frame came before its time";
+  }
+  clock_.Advance(absl::Milliseconds(101));
+  EXPECT_EQ(Parse(NextFrame(*viewer)).frame().sequence(), 3);
+}
+
+TEST_F(PublisherTest, StateOfTheSessionIsTheFirstThingAViewerGets) {
+  v1::Session session;
+  session.set_revision(7);
+  publisher_.Announce(session);
+  Offer(1);
+  const auto viewer = Join();
+  Bytes first;
+  ASSERT_TRUE(Eventually([&] { return (first = viewer->Take()) != nullptr; }));
+  EXPECT_EQ(Parse(first).session().revision(), 7);
+  EXPECT_EQ(Parse(first).session().viewers(), 1);
+}
+
+TEST_F(PublisherTest, MoreViewersThanAllowedAreRefused) {
+  std::vector<std::shared_ptr<Viewer>> viewers;
+  for (int i = 0; i < 4; ++i) viewers.push_back(Join());
+  EXPECT_TRUE(absl::IsResourceExhausted(publisher_.Join({}, [] {}).status()));
+  publisher_.Leave(viewers[0]);
+  EXPECT_EQ(publisher_.viewers(), 3);
+  Join();
+}
+
+TEST_F(PublisherTest, CloseEndsEveryViewerWithItsReason) {
+  const auto viewer = Join();
+  publisher_.Close(absl::NotFoundError("session x was deleted"));
+  while (viewer->Take() != nullptr) continue;
+  ASSERT_TRUE(viewer->ended().has_value());
+  EXPECT_EQ(viewer->ended()->message(), "session x was deleted");
+  EXPECT_TRUE(absl::IsNotFound(publisher_.Join({}, [] {}).status()));
+}
+
+}  // namespace
+}  // namespace phrenic::stream
