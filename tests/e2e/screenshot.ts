@@ -8,10 +8,12 @@ test("Screenshot", async () => {
   const browser = await launchBrowser();
   const server = await Server.start();
   try {
-    const viewer = await ViewerPage.open(browser, server.url, { width: 1440, height: 810 });
+    const viewer = await ViewerPage.open(browser, server.url, { width: 1280, height: 760 });
     await viewer.waitForLink("live");
     await viewer.page.waitForFunction(() => window.phrenic!.time() > 1, null, { timeout: 60_000 });
-    await viewer.page.waitForTimeout(2500);
+    // At rest the picture is drawn in full.
+    await viewer.page.click('#play[aria-label="Pause"]');
+    await viewer.page.waitForTimeout(4000);
     await viewer.page.screenshot({ path: join(import.meta.dirname, "../../web/screenshot.png") });
   } finally {
     await browser.close();

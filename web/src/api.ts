@@ -17,7 +17,13 @@ export function createApi(transport: Transport): Api {
   };
 }
 
+/** Whether a call failed on its way, before any server could answer: browsers then raise a TypeError. */
+export function unreachable(error: unknown): boolean {
+  return error instanceof ConnectError && error.cause instanceof TypeError;
+}
+
 /** An error in the server's own words, without the status code before them. */
 export function errorText(error: unknown): string {
-  return ConnectError.from(error).rawMessage || "The server gave no reason.";
+  if (unreachable(error)) return "the server cannot be reached";
+  return ConnectError.from(error).rawMessage || "the server gave no reason";
 }

@@ -56,7 +56,7 @@ export class App {
       place("view") as HTMLCanvasElement,
       () => this.arrays(),
       (compass) => this.margins.show(compass),
-      () => ({ top: 48, bottom: place("stage").clientHeight - place("dock").offsetTop }),
+      covered,
       () => reduced.matches,
     );
     window.phrenic = testHook(() => this.bodies, this.frames, this.viewer);
@@ -139,6 +139,14 @@ export class App {
     this.readout.show(status);
     this.probes.show(status.frame);
   }
+}
+
+/** How much of the picture lies under the view buttons and the dock [CSS pixels]; the style sheet hears of it too. */
+function covered(): { top: number; bottom: number } {
+  const stage = place("stage");
+  const bottom = stage.clientHeight - place("dock").offsetTop;
+  stage.style.setProperty("--covered", `${bottom}px`);
+  return { top: 48, bottom };
 }
 
 /** The panel folds away; on a narrow screen it starts folded. */

@@ -1,5 +1,5 @@
 import type { MessageInitShape } from "@bufbuild/protobuf";
-import { type Api, errorText } from "./api";
+import { type Api, errorText, unreachable } from "./api";
 import type { Clock } from "./clock";
 import type { ParametersSchema } from "./gen/phrenic/v1/parameters_pb";
 import type { Session } from "./gen/phrenic/v1/session_pb";
@@ -31,6 +31,7 @@ export class Controller {
   receive(session: Session | undefined, fresh = false): void {
     const known = this.session.value;
     if (session === undefined) return;
+    if (fresh) this.notice.set("");
     if (fresh || known === undefined || session.revision >= known.revision) this.session.set(session);
   }
 
@@ -90,7 +91,8 @@ export class Controller {
       this.receive(session);
       this.notice.set(notice ?? "");
     } catch (error) {
-      this.notice.set(errorText(error));
+      // That the server is gone is said by the connection.
+      if (!unreachable(error)) this.notice.set(errorText(error));
       // Whatever was refused, the controls go back to what holds.
       this.session.set(this.session.value);
     }

@@ -26,7 +26,7 @@ export function banners(controller: Controller, link: Signal<Link>, chooseSessio
   controller.notice.subscribe((text) => {
     notice.hidden = text === "";
     const dismiss = make("button", { type: "button", onclick: () => controller.notice.set("") }, "Dismiss");
-    notice.replaceChildren(make("p", {}, text), dismiss);
+    notice.replaceChildren(make("p", {}, sentence(text)), dismiss);
   });
   return [diverged, lost, notice];
 }
@@ -43,7 +43,13 @@ function divergence({ divergence, largestStableStep }: Session, controller: Cont
   const where = `The simulation diverged at ${formatNumber(time)} s, at vertex ${vertex} of ${body} (${force}).`;
   const restart = make("button", { type: "button", className: "primary" }, "Use a stable step and start again");
   restart.onclick = () => void restartStable(controller, largestStableStep);
-  return [make("p", {}, make("b", {}, where), " ", remedy), restart];
+  return [make("p", {}, make("b", {}, where), " ", sentence(remedy)), restart];
+}
+
+/** The server's words as a sentence; words with an underscore are names and stay as they are. */
+function sentence(words: string): string {
+  const named = /^\w*_/.test(words);
+  return (named ? words : words.slice(0, 1).toUpperCase() + words.slice(1)).replace(/([^.!?])$/, "$1.");
 }
 
 /** The chosen part of the largest stable step, as the server itself chooses where a scene names no step. */
@@ -57,7 +63,7 @@ async function restartStable(controller: Controller, largest: number): Promise<v
 }
 
 function loss(reason: string, missing: boolean, chooseSession: () => void): HTMLElement[] {
-  const words = missing ? reason : `The connection to the server is lost (${reason}). It comes back by itself.`;
+  const words = missing ? sentence(reason) : `The connection is lost: ${sentence(reason)} It comes back by itself.`;
   const choose = make("button", { type: "button", onclick: chooseSession }, "Choose a session");
   return [make("p", {}, words), ...(missing ? [choose] : [])];
 }

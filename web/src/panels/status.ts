@@ -40,8 +40,9 @@ export function linkWords({ link, session, rate, now }: Status): { text: string;
     const detail = seconds > 0 ? `retrying in ${seconds} s` : "retrying";
     return { text: "Lost", detail, title: `${link.reason} Click to retry now.` };
   }
-  const playing = session?.state === SessionState.PLAYING;
-  const detail = playing ? `${rate.framesPerSecond} fps, ${Math.max(0, Math.round(rate.delay))} ms` : "paused";
+  const fast = `${rate.framesPerSecond} fps, ${Math.max(0, Math.round(rate.delay))} ms`;
+  const stopped = session?.state === SessionState.DIVERGED ? "diverged" : "paused";
+  const detail = session?.state === SessionState.PLAYING ? fast : stopped;
   return { text: "Live", detail, title: "Frames received a second, and how late they come." };
 }
 
