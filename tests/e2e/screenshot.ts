@@ -3,18 +3,26 @@ import { test } from "vitest";
 import { launchBrowser, ViewerPage } from "./browser";
 import { Server } from "./server";
 
-// Not a test: `npm run screenshot` makes the picture that the README shows, from the front at a quarter of a breath.
+// Not a test: `npm run screenshot` makes the picture that the README shows, breathed in.
 test("Screenshot", async () => {
   const browser = await launchBrowser();
   const server = await Server.start();
   try {
-    const viewer = await ViewerPage.open(browser, server.url, { width: 1280, height: 760 });
-    await viewer.waitForLink("live");
-    await viewer.page.waitForFunction(() => window.phrenic!.time() > 1, null, { timeout: 60_000 });
+    const viewer = await ViewerPage.open(browser, server.url, { width: 1200, height: 720 });
+    const { page } = viewer;
+    await page.click('#play[aria-label="Pause"]');
+    await page.click("#reset");
+    await page.waitForFunction(() => window.phrenic!.tick() === 0);
+    await page.selectOption("#stride", "1000");
+    while ((await page.evaluate(() => window.phrenic!.time())) < 0.9) {
+      const before = await viewer.tick();
+      await page.click("#step");
+      await viewer.waitForTick(before);
+    }
     // At rest the picture is drawn in full.
-    await viewer.page.click('#play[aria-label="Pause"]');
-    await viewer.page.waitForTimeout(4000);
-    await viewer.page.screenshot({ path: join(import.meta.dirname, "../../web/screenshot.png") });
+    await page.mouse.move(0, 0);
+    await page.waitForTimeout(4000);
+    await page.screenshot({ path: join(import.meta.dirname, "../../web/screenshot.png") });
   } finally {
     await browser.close();
     await server.kill();

@@ -5,9 +5,9 @@ import * as THREE from "three";
  * the surfaces, a fill, and a cool rim from behind that lifts outlines off the background.
  */
 export function addLights(scene: THREE.Scene, camera: THREE.Camera): void {
-  scene.add(new THREE.HemisphereLight("#f4f6ff", "#9c8a80", 1.5));
+  scene.add(new THREE.HemisphereLight("#f4f6ff", "#8f827c", 1.3));
   camera.add(
-    beam("#fff1e2", 2.1, [-0.9, 1.1, 0.9]),
+    beam("#fff6ec", 2.35, [-0.9, 1.1, 0.9]),
     beam("#ffeee6", 0.8, [1.2, -0.5, 0.8]),
     beam("#bcd4ff", 1.5, [0.7, 0.8, -1.4]),
   );

@@ -4,7 +4,7 @@ import * as THREE from "three";
 export function surfaceMaterial(color: string, opacity: number): THREE.MeshStandardMaterial {
   const material = new THREE.MeshStandardMaterial({
     color,
-    roughness: 0.58,
+    roughness: 0.5,
     metalness: 0,
     side: THREE.DoubleSide,
     polygonOffset: true,

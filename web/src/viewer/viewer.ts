@@ -42,8 +42,8 @@ export class Viewer {
       alpha: true,
       powerPreference: "high-performance",
     });
-    this.renderer.toneMapping = THREE.NeutralToneMapping;
-    this.renderer.toneMappingExposure = 1.05;
+    // No tone mapping: a layer has the colour that its swatch shows.
+    this.renderer.toneMapping = THREE.NoToneMapping;
     this.renderer.setPixelRatio(this.sharpness.ratio);
     this.rig = new Rig(canvas, () => this.refresh(), calm);
     this.scene.fog = this.haze;
