@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -110,8 +109,7 @@ TEST(Golden, BytesOfAFrameAreThoseInTheFile) {
 TEST(Golden, BytesInTheFileAreTheFrameInTheFile) {
   v1::WatchFramesResponse response;
   std::string digits = Golden("frame.hex");
-  absl::RemoveExtraAsciiWhitespace(&digits);
-  digits.erase(std::remove(digits.begin(), digits.end(), ' '), digits.end());
+  std::erase_if(digits, absl::ascii_isspace);
   ASSERT_TRUE(response.ParseFromString(absl::HexStringToBytes(digits)));
   EXPECT_EQ(Decode(response.frame()), Json::parse(Golden("frame.json"))) << Decode(response.frame()).dump(2);
 }
