@@ -44,13 +44,13 @@ Points Displacements(const Model& model, const State& state, const std::string& 
   return 1e3 * (placed - model.bodies[body].mesh.vertices);
 }
 
-// What a radiologist measures: how much lower the highest point of a side's dome is [mm].
+// What a radiologist measures: how much lower the highest point of a dome is, more than 35 mm from the midline [mm].
 double DomeDescent(const Model& model, const State& state, double side) {
   const BodyModel& diaphragm = model.bodies[BodyNamed(model, "diaphragm")];
   const auto top = [&](const ConstPoints& x) {
     double highest = -1e9;
     for (Eigen::Index i = 0; i < x.cols(); ++i) {
-      if (side * diaphragm.mesh.vertices(0, i) > 0.02) highest = std::max(highest, x(2, i));
+      if (side * diaphragm.mesh.vertices(0, i) > 0.035) highest = std::max(highest, x(2, i));
     }
     return highest;
   };
