@@ -50,12 +50,12 @@ void WarnIfReachable(const std::string& address) {
       address);
 }
 
-// "http://127.0.0.1:8080/", with the port that was chosen.
-std::string ViewerUrl(const std::string& address, int port) {
+// The address as it can be called from this machine: with the port that was chosen.
+std::string Reachable(const std::string& address, int port) {
   std::string host = service::ParseAddress(address)->host;
   if (host == "0.0.0.0" || host == "::") host = "127.0.0.1";
   if (host.find(':') != std::string::npos) host = absl::StrCat("[", host, "]");
-  return absl::StrCat("http://", host, ":", port, "/");
+  return absl::StrCat(host, ":", port);
 }
 
 // A session of the scene, with the scene's name, playing.
@@ -100,8 +100,9 @@ int Serve(const Flags& flags) {
       return kFailed;
     }
   }
-  std::printf("gRPC:   %s (port %d)\n", flags.options.listen.c_str(), (*server)->port());
-  std::printf("Viewer: %s\n", ViewerUrl(flags.options.web, (*server)->web_port()).c_str());
+  const service::ServerOptions& options = flags.options;
+  if (!options.listen.empty()) std::printf("gRPC:   %s\n", Reachable(options.listen, (*server)->port()).c_str());
+  if (!options.web.empty()) std::printf("Viewer: http://%s/\n", Reachable(options.web, (*server)->web_port()).c_str());
   std::fflush(stdout);
   int signal_number = 0;
   sigwait(&signals, &signal_number);

@@ -29,8 +29,15 @@ inline const char kTriangle[] = R"(
   parameters { time_step: 0.01 }
 )";
 
-// The same, named and changed by `more`.
+// The same with `more` in it.
 inline std::string Triangle(const std::string& more) { return std::string(kTriangle) + more; }
+
+// The same with other live parameters.
+inline std::string Retimed(const std::string& parameters) {
+  std::string text = kTriangle;
+  const std::string old = "time_step: 0.01";
+  return text.replace(text.find(old), old.size(), parameters);
+}
 
 }  // namespace phrenic
 

@@ -35,6 +35,12 @@ void WebConnection::Run() {
   net::dispatch(stream_.get_executor(), [self = shared_from_this()] { self->ReadRequest(); });
 }
 
+void WebConnection::Refuse() {
+  net::dispatch(stream_.get_executor(), [self = shared_from_this()] {
+    self->RefuseWith(http::status::service_unavailable, "there are too many connections; try again later");
+  });
+}
+
 void WebConnection::Close() {
   net::dispatch(stream_.get_executor(), [self = shared_from_this()] { self->Hang(); });
 }

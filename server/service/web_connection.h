@@ -27,12 +27,14 @@ struct WebSettings {
   std::size_t max_body_bytes = 0;
 };
 
-// Its functions run on its own strand; only Run and Close may be called from elsewhere.
+// Its functions run on its own strand; only Run, Refuse and Close may be called from elsewhere.
 class WebConnection final : public std::enable_shared_from_this<WebConnection> {
  public:
   WebConnection(boost::asio::ip::tcp::socket socket, const WebSettings& settings, grpc::GenericStub& stub);
 
   void Run();
+  // Instead of Run: answers that there are too many connections.
+  void Refuse();
   // Breaks the connection off, and its call.
   void Close();
 

@@ -29,13 +29,13 @@ absl::StatusOr<tcp::endpoint> Resolve(net::io_context& context, const std::strin
 }  // namespace
 
 WebGateway::WebGateway(const Options& options, std::shared_ptr<grpc::Channel> channel)
-    : options_(options), stub_(std::move(channel)), context_(kThreads), acceptor_(context_) {}
+    : options_(options), stub_(std::move(channel)), context_(kThreads), acceptor_(context_), pause_(context_) {}
 
 absl::StatusOr<std::unique_ptr<WebGateway>> WebGateway::Start(const Options& options,
                                                               std::shared_ptr<grpc::Channel> channel) {
   std::unique_ptr<WebGateway> gateway(new WebGateway(options, std::move(channel)));
   if (absl::Status status = gateway->Listen(); !status.ok()) return status;
-  gateway->Accept();
+  gateway->AcceptNext();
   for (int i = 0; i < kThreads; ++i) {
     gateway->threads_.emplace_back([context = &gateway->context_] { context->run(); });
   }
@@ -69,8 +69,19 @@ void WebGateway::OnAccept(boost::system::error_code error, tcp::socket socket) {
     boost::system::error_code ignored;
     socket.set_option(tcp::no_delay(true), ignored);
     const auto connection = std::make_shared<WebConnection>(std::move(socket), options_.settings, stub_);
-    if (Admit(connection)) connection->Run();
+    if (Admit(connection)) {
+      connection->Run();
+    } else {
+      connection->Refuse();
+    }
+    return AcceptNext();
   }
+  // Out of file descriptors, say: it will not be better at once.
+  pause_.expires_after(std::chrono::milliseconds(100));
+  pause_.async_wait([this](boost::system::error_code) { AcceptNext(); });
+}
+
+void WebGateway::AcceptNext() {
   absl::MutexLock lock(&mutex_);
   if (!closed_) Accept();
 }
@@ -89,11 +100,9 @@ void WebGateway::Shutdown() {
     absl::MutexLock lock(&mutex_);
     closed_ = true;
     connections.swap(connections_);
-  }
-  net::post(context_, [this] {
     boost::system::error_code ignored;
     acceptor_.close(ignored);
-  });
+  }
   for (const auto& weak : connections) {
     if (const auto connection = weak.lock()) connection->Close();
   }

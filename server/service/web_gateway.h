@@ -8,6 +8,7 @@
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <list>
 #include <memory>
 #include <string>
@@ -42,7 +43,8 @@ class WebGateway {
  private:
   WebGateway(const Options& options, std::shared_ptr<grpc::Channel> channel);
   absl::Status Listen();
-  void Accept();
+  void Accept() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void AcceptNext() ABSL_LOCKS_EXCLUDED(mutex_);
   void OnAccept(boost::system::error_code error, boost::asio::ip::tcp::socket socket);
   // False when there are too many connections already.
   bool Admit(const std::shared_ptr<WebConnection>& connection) ABSL_LOCKS_EXCLUDED(mutex_);
@@ -50,7 +52,8 @@ class WebGateway {
   const Options options_;
   grpc::GenericStub stub_;
   boost::asio::io_context context_;
-  boost::asio::ip::tcp::acceptor acceptor_;
+  boost::asio::ip::tcp::acceptor acceptor_;  // used by one thread at a time, or with mutex_ held
+  boost::asio::steady_timer pause_;
   int port_ = 0;
   absl::Mutex mutex_;
   std::list<std::weak_ptr<WebConnection>> connections_ ABSL_GUARDED_BY(mutex_);

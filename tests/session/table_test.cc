@@ -1,0 +1,200 @@
+#include "server/session/table.h"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "server/session/meshes.h"
+#include "tests/compile_text.h"
+#include "tests/fake_clock.h"
+#include "tests/small_scenes.h"
+
+namespace phrenic::session {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+std::string Message(const absl::Status& status) { return std::string(status.message()); }
+
+// A folder of its own for each test, with scenes and surface files.
+class FolderTest : public testing::Test {
+ protected:
+  FolderTest() {
+    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::path(testing::TempDir()) / (std::string("phrenic-") + test->test_suite_name() + test->name());
+    fs::remove_all(folder_);
+    fs::create_directories(folder_ / "scenes");
+    Write("scenes/triangle.textproto", kTriangle);
+  }
+  ~FolderTest() override { fs::remove_all(folder_); }
+
+  void Write(const std::string& path, const std::string& text) { std::ofstream(folder_ / path) << text; }
+  SceneCatalogue Catalogue() const { return SceneCatalogue({(folder_ / "scenes").string()}); }
+
+  fs::path folder_;
+};
+
+using CatalogueTest = FolderTest;
+using MeshesTest = FolderTest;
+using ModelsTest = FolderTest;
+
+TEST_F(CatalogueTest, TheFolderIsTheCatalogue) {
+  Write("scenes/again.textproto", kTriangle);
+  Write("scenes/notes.txt", "not a scene");
+  EXPECT_EQ(Catalogue().Names(), (std::vector<std::string>{"again", "triangle"}));
+  const auto scenes = Catalogue().List();
+  ASSERT_EQ(scenes.size(), 2u);
+  EXPECT_EQ(scenes[1].title(), "Triangle");
+}
+
+TEST_F(CatalogueTest, AnUnknownSceneIsNotFoundAndTheOthersAreNamed) {
+  for (const char* name : {"thorux", "../scenes/triangle", "/etc/passwd", ""}) {
+    const auto missing = Catalogue().Find(name);
+    EXPECT_TRUE(absl::IsNotFound(missing.status())) << name;
+    EXPECT_THAT(Message(missing.status()), HasSubstr("there are triangle"));
+  }
+}
+
+TEST_F(CatalogueTest, AMalformedSceneIsListedWithItsErrorAndRefusedByLine) {
+  Write("scenes/broken.textproto", "name: \"broken\"\nbodise { }\n");
+  const auto broken = Catalogue().Find("broken");
+  EXPECT_TRUE(absl::IsInvalidArgument(broken.status()));
+  EXPECT_THAT(Message(broken.status()), HasSubstr("broken.textproto:2"));
+  EXPECT_THAT(Catalogue().List()[0].description(), HasSubstr("bodise"));
+}
+
+TEST_F(MeshesTest, PathsStayBelowTheDataFolder) {
+  Write("sheet.obj", "v 0 0 0\n");
+  const std::string data = (folder_ / "scenes").string();
+  Write("scenes/inside.obj", "v 0 0 0\n");
+  EXPECT_TRUE(ResolveBelow(data, "inside.obj").ok());
+  EXPECT_TRUE(absl::IsInvalidArgument(ResolveBelow(data, "../sheet.obj").status()));
+  EXPECT_TRUE(absl::IsInvalidArgument(ResolveBelow(data, "x/../../sheet.obj").status()));
+  EXPECT_TRUE(absl::IsInvalidArgument(ResolveBelow(data, (folder_ / "sheet.obj").string()).status()));
+  fs::create_symlink(folder_ / "sheet.obj", folder_ / "scenes" / "link.obj");
+  EXPECT_TRUE(absl::IsInvalidArgument(ResolveBelow(data, "link.obj").status()));
+  EXPECT_TRUE(absl::IsNotFound(ResolveBelow(data, "missing.obj").status()));
+  EXPECT_THAT(Message(ResolveBelow("", "inside.obj").status()), HasSubstr("--data"));
+}
+
+v1::SceneSource Named(const std::string& name) {
+  v1::SceneSource source;
+  source.set_name(name);
+  return source;
+}
+
+TEST_F(ModelsTest, TheSameSceneIsCompiledOnce) {
+  Models models(Catalogue(), "", 2);
+  const auto first = models.Get(Named("triangle")), second = models.Get(Named("triangle"));
+  ASSERT_TRUE(first.ok()) << first.status();
+  EXPECT_EQ(*first, *second);
+  Write("scenes/triangle.textproto", Retimed("time_step: 0.02"));
+  const auto edited = models.Get(Named("triangle"));
+  ASSERT_TRUE(edited.ok());
+  EXPECT_EQ((*edited)->parameters.time_step(), 0.02) << "an edited scene is not seen";
+}
+
+TEST_F(ModelsTest, ASceneThatIsTooLargeIsRefusedBeforeItIsMade) {
+  Models models(Catalogue(), "", 2);
+  v1::SceneSource source;
+  source.mutable_scene()->set_name("large");
+  for (int i = 0; i < 3; ++i) {
+    v1::Body& body = *source.mutable_scene()->add_bodies();
+    body.set_name(std::string(1, static_cast<char>('a' + i)));
+    body.set_role(v1::ROLE_DEFORMABLE);
+    body.mutable_grid()->set_columns(2000);
+    body.mutable_grid()->set_rows(2000);
+  }
+  const auto model = models.Get(source);
+  EXPECT_TRUE(absl::IsResourceExhausted(model.status())) << model.status();
+  EXPECT_THAT(Message(model.status()), HasSubstr("bodies[1].grid"));
+}
+
+class TableTest : public FolderTest {
+ protected:
+  absl::StatusOr<std::shared_ptr<Session>> Create(const std::string& id, const std::string& scene = "triangle") {
+    v1::CreateSessionRequest request;
+    request.set_session_id(id);
+    *request.mutable_source() = Named(scene);
+    return table_.Create(request);
+  }
+
+  FakeClock clock_;
+  Models models_{Catalogue(), "", 2};
+  Table table_{models_, clock_, {.sessions = 4}};
+};
+
+TEST_F(TableTest, IdsAreTheClientsOrComeFromTheScene) {
+  EXPECT_EQ((*Create("mine"))->id(), "mine");
+  EXPECT_EQ((*Create(""))->id(), "triangle");
+  EXPECT_EQ((*Create(""))->id(), "triangle-2");
+  EXPECT_TRUE(absl::IsAlreadyExists(Create("mine").status()));
+  for (const std::string bad : {"Mine", "a b", "a/b", "\xff"}) {
+    EXPECT_TRUE(absl::IsInvalidArgument(Create(bad).status())) << bad;
+  }
+  EXPECT_TRUE(absl::IsInvalidArgument(Create(std::string(65, 'a')).status()));
+}
+
+TEST_F(TableTest, MoreSessionsThanAllowedAreRefused) {
+  for (int i = 0; i < 4; ++i) ASSERT_TRUE(Create("").ok());
+  EXPECT_TRUE(absl::IsResourceExhausted(Create("").status()));
+  ASSERT_TRUE(table_.Delete("triangle-3").ok());
+  EXPECT_EQ((*Create(""))->id(), "triangle-3");
+}
+
+TEST_F(TableTest, ASessionThatCannotBeMadeTakesNoPlace) {
+  for (int i = 0; i < 10; ++i) EXPECT_TRUE(absl::IsNotFound(Create("x", "thorux").status()));
+  EXPECT_TRUE(Create("x").ok());
+}
+
+TEST_F(TableTest, AnUnknownSessionIsNotFoundAndTheOthersAreNamed) {
+  ASSERT_TRUE(Create("mine").ok());
+  const auto missing = table_.Find("yours");
+  EXPECT_TRUE(absl::IsNotFound(missing.status()));
+  EXPECT_THAT(Message(missing.status()), HasSubstr("there are mine"));
+  EXPECT_TRUE(absl::IsNotFound(table_.Delete("yours")));
+}
+
+TEST_F(TableTest, PagesHaveEverySessionOnce) {
+  for (const char* id : {"c", "a", "d", "b"}) ASSERT_TRUE(Create(id).ok());
+  std::string seen, token;
+  do {
+    const Table::Page page = table_.List(3, token);
+    for (const auto& session : page.sessions) seen += session->id();
+    token = page.next_token;
+  } while (!token.empty());
+  EXPECT_EQ(seen, "abcd");
+}
+
+TEST_F(TableTest, ParametersOfTheRequestGoOverThoseOfTheScene) {
+  v1::CreateSessionRequest request;
+  *request.mutable_source() = Named("triangle");
+  request.mutable_parameters()->set_breath_force(2);
+  const auto session = table_.Create(request);
+  ASSERT_TRUE(session.ok()) << session.status();
+  EXPECT_EQ((*session)->status().parameters().breath_force(), 2);
+  EXPECT_EQ((*session)->status().parameters().time_step(), 0.01);
+}
+
+TEST_F(TableTest, DeleteEndsTheViewers) {
+  const auto session = Create("mine");
+  ASSERT_TRUE(session.ok());
+  const auto viewer = (*session)->publisher().Join({}, [] {});
+  ASSERT_TRUE(viewer.ok());
+  ASSERT_TRUE(table_.Delete("mine").ok());
+  while ((*viewer)->Take() != nullptr) continue;
+  ASSERT_TRUE((*viewer)->ended().has_value());
+  EXPECT_TRUE(absl::IsNotFound(*(*viewer)->ended()));
+}
+
+TEST_F(TableTest, NothingIsMadeAfterClose) {
+  ASSERT_TRUE(Create("mine").ok());
+  table_.Close(absl::UnavailableError("the server is shutting down"));
+  EXPECT_TRUE(absl::IsUnavailable(Create("yours").status()));
+  EXPECT_TRUE(absl::IsNotFound(table_.Find("mine").status()));
+}
+
+}  // namespace
+}  // namespace phrenic::session
