@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <utility>
 #include <vector>
@@ -59,10 +60,19 @@ std::vector<std::pair<int, int>> BorderEdges(const Sheet& sheet) {
   return border;
 }
 
-bool NearLoop(const Sheet& sheet, const std::vector<int>& loop, int vertex, double distance) {
-  return std::any_of(loop.begin(), loop.end(), [&](int other) {
-    return (sheet.points[other] - sheet.points[vertex]).squaredNorm() < distance * distance;
-  });
+double Distance(const Sheet& sheet, const std::vector<int>& loop, int vertex) {
+  double square = std::numeric_limits<double>::infinity();
+  for (const int other : loop) square = std::min(square, (sheet.points[other] - sheet.points[vertex]).squaredNorm());
+  return std::sqrt(square);
+}
+
+// The gap narrows to the border within 8 mm.
+double Gap(const Sheet& sheet, int vertex) {
+  constexpr double kTaper = 8;
+  double nearest = kTaper;
+  for (const std::vector<int>& loop : sheet.loops) nearest = std::min(nearest, Distance(sheet, loop, vertex));
+  const double t = nearest / kTaper;
+  return kBorderGap + (kDiaphragmGap - kBorderGap) * t * t * (3 - 2 * t);
 }
 
 // The layers and the band that joins them along every loop.
@@ -70,7 +80,7 @@ void AddLayers(const Sheet& sheet, Mesh& mesh) {
   const auto n = static_cast<int>(sheet.points.size());
   mesh.vertices.resize(3, 2 * n);
   for (int i = 0; i < n; ++i) {
-    const Eigen::Vector3d half = kDiaphragmGap / 2 * DiaphragmNormal(sheet.plane[i]);
+    const Eigen::Vector3d half = Gap(sheet, i) / 2 * DiaphragmNormal(sheet.plane[i]);
     mesh.vertices.col(i) = sheet.points[i] + half;
     mesh.vertices.col(n + i) = sheet.points[i] - half;
   }
@@ -90,7 +100,7 @@ void AddLayers(const Sheet& sheet, Mesh& mesh) {
 
 void AddRegions(const Sheet& sheet, double edge_length, Mesh& mesh) {
   const auto n = static_cast<int>(sheet.points.size());
-  const double band = std::max(10.0, 1.2 * edge_length);
+  const double band = std::max(8.0, 1.2 * edge_length);
   for (int i = 0; i < n; ++i) {
     const auto add = [&](const char* name) {
       mesh.regions[name].push_back(i);
@@ -102,7 +112,7 @@ void AddRegions(const Sheet& sheet, double edge_length, Mesh& mesh) {
       add("crus-right");
     } else if (InLeftCrus(p)) {
       add("crus-left");
-    } else if (!InTendon(p) && NearLoop(sheet, sheet.loops[0], i, band)) {
+    } else if (!InTendon(p) && Distance(sheet, sheet.loops[0], i) < band) {
       add("rim");
     }
   }

@@ -19,7 +19,8 @@ double SmoothMax(double a, double b, double k) { return -SmoothMin(-a, -b, k); }
 
 // The chest wall, which narrows to the cupola of the pleura.
 double InsideCage(const Eigen::Vector3d& x) {
-  const Eigen::Vector2d q = CageSection(std::min(x.z(), kTop + 2), kPleura).DiscCoordinates(x.head<2>());
+  const double pleura = kPleura + 4 * std::clamp((x.z() - 315) / 40, 0.0, 1.0);  // the first ribs lie flat
+  const Eigen::Vector2d q = CageSection(std::min(x.z(), kTop + 2), pleura).DiscCoordinates(x.head<2>());
   const double narrowing = std::clamp((kTop - x.z()) / 120, 0.3, 1.0);
   return SmoothMax((q.norm() - 1) * 80 * narrowing, x.z() - kTop, 14);
 }

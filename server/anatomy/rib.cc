@@ -35,7 +35,7 @@ Neck NeckOf(int number) {
   const double x = body.width / 2 + 2 + 5 * lower;
   const Eigen::Vector3d head(x, SpineFront(z) + 1.02 * body.depth + 15 * lower, z);
   const double drop = 2 - 13 * Smooth((number - 5) / 5.0);
-  return {head, head + Eigen::Vector3d(number == 1 ? 22 : 17, number >= 11 ? 11 : 13, drop)};
+  return {head, head + Eigen::Vector3d(number == 1 ? 22 : 17, number == 12 ? 11 : 13, drop)};
 }
 
 // Where the rib's plane cuts the cage at that azimuth.
@@ -55,14 +55,14 @@ Eigen::Vector3d OnCage(int number, const Eigen::Vector3d& tubercle, double degre
 // The azimuth at which the rib reaches the cage, a little beyond its tubercle.
 double AngleAzimuth(int number, const Eigen::Vector3d& tubercle) {
   double degrees = 165;
-  while (degrees > EndAzimuth(number) + 20 && OnCage(number, tubercle, degrees).x() < tubercle.x() + 17) --degrees;
+  while (degrees > EndAzimuth(number) + 20 && OnCage(number, tubercle, degrees).x() < tubercle.x() + 13) --degrees;
   return degrees;
 }
 
 TubeSection Section(int number, double s, const Eigen::Vector3d& centre) {
-  const double head = 1 - Smooth(s / 0.06);       // the head is thicker, the neck round
-  const double shaft = Smooth((s - 0.08) / 0.2);  // the shaft flat and high
-  const double tip = Smooth((s - 0.75) / 0.25);   // ribs 11 and 12 end in a point, the others a little broader
+  const double head = 1 - Smooth(s / 0.06);  // the head is thicker, the neck round
+  const double shaft = number == 1 ? Smooth((s - 0.3) / 0.25) : Smooth((s - 0.08) / 0.2);  // the shaft flat and high
+  const double tip = Smooth((s - 0.75) / 0.25);  // ribs 11 and 12 end in a point, the others a little broader
   const bool floating = number >= 11;
   const double height = number == 1 ? 8.0 : number == 12 ? 5.0 : 6.6;  // half, of the shaft
   const double broad = 4.4 + 1.4 * head + (height - 4.4) * shaft + (floating ? -2.5 : 0.6) * tip;

@@ -35,18 +35,33 @@ Plane EvenlyAlong(const SheetDomain& domain, const Plane& loop) {
   return even;
 }
 
+// The most square edge lengths of surface over a unit of the plane.
+double MostSquaresAUnit(const SheetDomain& domain, const PlaneRegion& region) {
+  constexpr int kSamples = 2000;
+  constexpr double kShare = 1e-4;  // of the extent: a small step
+  const Eigen::Vector2d extent = region.high() - region.low();
+  const Eigen::Vector2d across(kShare * extent.x(), 0), along(0, kShare * extent.y());
+  double most = 0;
+  for (int i = 1; i <= kSamples; ++i) {
+    const Eigen::Vector2d p = region.low() + extent.cwiseProduct(QuasiRandom(i));
+    if (!region.Contains(p)) continue;
+    const Eigen::Vector3d x = domain.map(p), u = domain.map(p + across) - x, v = domain.map(p + along) - x;
+    const double area = u.cross(v).norm() / (across.x() * along.y()), length = domain.edge_length(x);
+    most = std::max(most, area / (length * length));
+  }
+  return most;
+}
+
 // Fills the inside with points that keep their distance from each other and from the border.
 void Fill(const SheetDomain& domain, const PlaneRegion& region, Sheet& sheet) {
   constexpr double kApart = 0.8;     // of the edge length: a hexagonal lattice of the same density has about 1
-  constexpr int kTriesASquare = 40;  // candidates per square edge length of surface
+  constexpr int kTriesASquare = 24;  // candidates per square edge length of surface
   double smallest = domain.edge_length(sheet.points[0]);
   for (const Eigen::Vector3d& x : sheet.points) smallest = std::min(smallest, domain.edge_length(x));
   SpacedPoints spaced(domain.edge_length(Eigen::Vector3d::Zero()), kApart, smallest);
   for (const Eigen::Vector3d& x : sheet.points) spaced.Add(x, domain.edge_length(x));
   const Eigen::Vector2d extent = region.high() - region.low();
-  constexpr double kMillimetresAUnit = 90;
-  const double squares = extent.prod() * kMillimetresAUnit * kMillimetresAUnit / (smallest * smallest);
-  const auto tries = static_cast<int64_t>(kTriesASquare * squares);
+  const auto tries = static_cast<int64_t>(kTriesASquare * extent.prod() * MostSquaresAUnit(domain, region));
   for (int64_t i = 1; i <= tries; ++i) {
     const Eigen::Vector2d p = region.low() + extent.cwiseProduct(QuasiRandom(i));
     if (!region.Contains(p)) continue;

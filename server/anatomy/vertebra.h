@@ -7,8 +7,9 @@
 
 namespace phrenic::anatomy {
 
-// Number 1 (T1) to 15 (L3), in place [mm]: the zero set of a smooth union of distances. One closed surface of genus 1,
-// the vertebral canal going through. Spinous processes slope most at T5 to T8; lumbar transverse processes are longest.
+// Number 1 (T1) to 15 (L3), in place [mm], with edges of at most 8 mm: the zero set of a smooth union of distances. One
+// closed surface of genus 1, the vertebral canal going through. Spinous processes slope most at T5 to T8; the thoracic
+// transverse processes point backwards, the lumbar ones sideways.
 Mesh Vertebra(int number, double edge_length);
 
 }  // namespace phrenic::anatomy

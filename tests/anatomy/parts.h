@@ -1,0 +1,74 @@
+// The parts of the generated thorax, by name, for the tests.
+#ifndef PHRENIC_TESTS_ANATOMY_PARTS_H_
+#define PHRENIC_TESTS_ANATOMY_PARTS_H_
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "server/anatomy/anatomy.h"
+
+namespace phrenic::anatomy {
+
+inline v1::Anatomy Part(v1::Structure structure, int number = 0, v1::Side side = v1::SIDE_UNSPECIFIED) {
+  v1::Anatomy part;
+  part.set_structure(structure);
+  part.set_number(number);
+  part.set_side(side);
+  return part;
+}
+
+inline Mesh Made(const v1::Anatomy& part, double resolution_mm = 0) {
+  auto mesh = Generate(part, resolution_mm);
+  return mesh.ok() ? *std::move(mesh) : Mesh();
+}
+
+inline Mesh Diaphragm(double resolution_mm = 0) { return Made(Part(v1::STRUCTURE_DIAPHRAGM), resolution_mm); }
+
+inline std::vector<v1::Anatomy> Bones() {
+  std::vector<v1::Anatomy> parts = {Part(v1::STRUCTURE_MANUBRIUM), Part(v1::STRUCTURE_STERNUM_BODY),
+                                    Part(v1::STRUCTURE_XIPHOID)};
+  for (const v1::Side side : {v1::SIDE_RIGHT, v1::SIDE_LEFT}) {
+    for (int i = 1; i <= 12; ++i) parts.push_back(Part(v1::STRUCTURE_RIB, i, side));
+    for (int i = 1; i <= 10; ++i) parts.push_back(Part(v1::STRUCTURE_COSTAL_CARTILAGE, i, side));
+  }
+  for (int i = 1; i <= 15; ++i) parts.push_back(Part(v1::STRUCTURE_VERTEBRA, i));
+  return parts;
+}
+
+inline std::vector<v1::Anatomy> EveryPart() {
+  std::vector<v1::Anatomy> parts = Bones();
+  parts.push_back(Part(v1::STRUCTURE_DIAPHRAGM));
+  parts.push_back(Part(v1::STRUCTURE_LUNG, 0, v1::SIDE_RIGHT));
+  parts.push_back(Part(v1::STRUCTURE_LUNG, 0, v1::SIDE_LEFT));
+  return parts;
+}
+
+inline Eigen::Vector3d Corner(const Mesh& mesh, Eigen::Index t, int k) {
+  return mesh.vertices.col(mesh.triangles(k % 3, t));
+}
+
+// The smallest angle of all triangles [degrees].
+inline double SmallestAngle(const Mesh& mesh) {
+  double smallest = 180;
+  for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      const Eigen::Vector3d u = Corner(mesh, t, k + 1) - Corner(mesh, t, k);
+      const Eigen::Vector3d v = Corner(mesh, t, k + 2) - Corner(mesh, t, k);
+      smallest = std::min(smallest, std::atan2(u.cross(v).norm(), u.dot(v)) * 180 / M_PI);
+    }
+  }
+  return smallest;
+}
+
+inline double Area(const Mesh& mesh, Eigen::Index t) {
+  return (Corner(mesh, t, 1) - Corner(mesh, t, 0)).cross(Corner(mesh, t, 2) - Corner(mesh, t, 0)).norm() / 2;
+}
+
+inline Eigen::Vector3d Low(const Mesh& mesh) { return mesh.vertices.rowwise().minCoeff(); }
+inline Eigen::Vector3d High(const Mesh& mesh) { return mesh.vertices.rowwise().maxCoeff(); }
+
+}  // namespace phrenic::anatomy
+
+#endif  // PHRENIC_TESTS_ANATOMY_PARTS_H_

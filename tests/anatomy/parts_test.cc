@@ -1,0 +1,102 @@
+#include "tests/anatomy/parts.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "server/mesh/topology.h"
+
+namespace phrenic::anatomy {
+namespace {
+
+int Genus(v1::Structure structure) {
+  if (structure == v1::STRUCTURE_DIAPHRAGM) return 2;  // caval and oesophageal opening
+  return structure == v1::STRUCTURE_VERTEBRA ? 1 : 0;  // the vertebral canal
+}
+
+void ExpectSound(const v1::Anatomy& part, double resolution_mm) {
+  SCOPED_TRACE(part.ShortDebugString() + " at " + std::to_string(resolution_mm) + " mm");
+  const auto mesh = Generate(part, resolution_mm);
+  ASSERT_TRUE(mesh.ok()) << mesh.status();
+  EXPECT_TRUE(Validate(*mesh).ok());
+  const SurfaceTopology topology = AnalyseTopology(*mesh);
+  EXPECT_TRUE(topology.watertight());
+  EXPECT_EQ(topology.vertices, mesh->vertices.cols()) << "every vertex is used";
+  EXPECT_EQ(topology.components, 1);
+  EXPECT_EQ(topology.genus(), Genus(part.structure()));
+  EXPECT_EQ(topology.degenerate_triangles, 0);
+  EXPECT_GT(SignedVolume(mesh->vertices, mesh->triangles), 1e-7) << "faces outwards";
+  EXPECT_GT(SmallestAngle(*mesh), 4);
+}
+
+TEST(Parts, EverySurfaceIsClosedOutwardAndInOnePiece) {
+  for (const v1::Anatomy& part : EveryPart()) ExpectSound(part, 0);
+}
+
+TEST(Parts, StayClosedAtCoarseResolutions) {
+  for (const double resolution_mm : {7.0, 12.0, 20.0}) {
+    for (const v1::Anatomy& part : EveryPart()) ExpectSound(part, resolution_mm);
+  }
+}
+
+TEST(Parts, DiaphragmAndRibsStayClosedAtFineResolutions) {
+  ExpectSound(Part(v1::STRUCTURE_DIAPHRAGM), 2);
+  ExpectSound(Part(v1::STRUCTURE_RIB, 1, v1::SIDE_LEFT), 1);
+  ExpectSound(Part(v1::STRUCTURE_RIB, 7, v1::SIDE_RIGHT), 1);
+  ExpectSound(Part(v1::STRUCTURE_VERTEBRA, 5), 2);
+}
+
+TEST(Parts, DefaultsSuitStreaming) {
+  Eigen::Index bones = 0;
+  for (const v1::Anatomy& part : Bones()) bones += Made(part).vertices.cols();
+  EXPECT_LT(bones, 60000);
+  for (const v1::Side side : {v1::SIDE_LEFT, v1::SIDE_RIGHT}) {
+    const Eigen::Index lung = Made(Part(v1::STRUCTURE_LUNG, 0, side)).vertices.cols();
+    EXPECT_GT(lung, 3000);
+    EXPECT_LT(lung, 5000);
+  }
+}
+
+TEST(Parts, FinerResolutionMeansMoreVertices) {
+  for (const v1::Anatomy& part : {Part(v1::STRUCTURE_RIB, 5, v1::SIDE_LEFT), Part(v1::STRUCTURE_VERTEBRA, 12),
+                                  Part(v1::STRUCTURE_DIAPHRAGM), Part(v1::STRUCTURE_MANUBRIUM)}) {
+    EXPECT_GT(Made(part, 3).vertices.cols(), 1.5 * static_cast<double>(Made(part, 5).vertices.cols()));
+  }
+}
+
+TEST(Parts, SameArgumentsGiveTheSameBits) {
+  for (const v1::Anatomy& part : {Part(v1::STRUCTURE_DIAPHRAGM), Part(v1::STRUCTURE_RIB, 3, v1::SIDE_LEFT),
+                                  Part(v1::STRUCTURE_VERTEBRA, 9), Part(v1::STRUCTURE_LUNG, 0, v1::SIDE_LEFT)}) {
+    const Mesh first = Made(part, 6), second = Made(part, 6);
+    EXPECT_EQ(first.vertices, second.vertices);
+    EXPECT_EQ(first.triangles, second.triangles);
+    EXPECT_EQ(first.regions, second.regions);
+  }
+}
+
+void ExpectRefused(const v1::Anatomy& part, double resolution_mm, const std::string& field) {
+  const auto mesh = Generate(part, resolution_mm);
+  ASSERT_FALSE(mesh.ok()) << part.ShortDebugString();
+  EXPECT_EQ(mesh.status().code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_THAT(std::string(mesh.status().message()), testing::HasSubstr(field));
+}
+
+TEST(Parts, NoSuchPartIsRefusedByField) {
+  ExpectRefused(Part(v1::STRUCTURE_UNSPECIFIED), 0, "anatomy.structure");
+  ExpectRefused(Part(v1::STRUCTURE_RIB, 13, v1::SIDE_LEFT), 0, "anatomy.number");
+  ExpectRefused(Part(v1::STRUCTURE_RIB, 0, v1::SIDE_LEFT), 0, "anatomy.number");
+  ExpectRefused(Part(v1::STRUCTURE_RIB, 4), 0, "anatomy.side");
+  ExpectRefused(Part(v1::STRUCTURE_COSTAL_CARTILAGE, 11, v1::SIDE_RIGHT), 0, "anatomy.number");
+  ExpectRefused(Part(v1::STRUCTURE_COSTAL_CARTILAGE, 2), 0, "anatomy.side");
+  ExpectRefused(Part(v1::STRUCTURE_VERTEBRA, 16), 0, "anatomy.number");
+  ExpectRefused(Part(v1::STRUCTURE_LUNG), 0, "anatomy.side");
+}
+
+TEST(Parts, ResolutionOutOfRangeIsRefused) {
+  for (const double resolution_mm : {-1.0, 0.1, 51.0, std::nan("")}) {
+    ExpectRefused(Part(v1::STRUCTURE_DIAPHRAGM), resolution_mm, "generated.resolution_mm");
+  }
+  ExpectRefused(Part(v1::STRUCTURE_LUNG, 0, v1::SIDE_LEFT), 1, "generated.resolution_mm");
+}
+
+}  // namespace
+}  // namespace phrenic::anatomy
