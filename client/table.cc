@@ -1,19 +1,17 @@
 #include "client/table.h"
 
 #include <algorithm>
-#include <cctype>
 
 namespace phrenic::client {
 namespace {
 
-bool StartsLikeANumber(const std::string& cell) {
-  const size_t first = !cell.empty() && cell[0] == '-' ? 1 : 0;
-  return cell.size() > first && std::isdigit(static_cast<unsigned char>(cell[first])) != 0;
+bool IsNumber(const std::string& cell) {
+  return !cell.empty() && cell.find_first_not_of("0123456789.+-e") == std::string::npos && cell != "-" && cell != "e";
 }
 
 std::string Padded(const std::string& cell, size_t width) {
   const std::string space(width - cell.size(), ' ');
-  return StartsLikeANumber(cell) ? space + cell : cell + space;
+  return IsNumber(cell) ? space + cell : cell + space;
 }
 
 void PrintRow(const std::vector<std::string>& row, const std::vector<size_t>& widths, std::ostream& out) {

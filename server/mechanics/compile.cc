@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <string>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
@@ -81,10 +82,10 @@ void ResolveParameters(Model& model) {
   if (!model.parameters.has_time_step()) model.parameters.set_time_step(kLongestStep);  // until the limit is known
 }
 
-// Two significant digits, downwards: people read and type it.
+// Two significant digits, downwards, and just what those digits read as: people see and type it.
 double RoundDown(double value) {
   const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
-  return std::floor(value / unit * (1 + 1e-12)) * unit;
+  return std::stod(absl::StrFormat("%.1e", std::floor(value / unit * (1 + 1e-12)) * unit));
 }
 
 void ChooseStep(Model& model) {
