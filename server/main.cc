@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <cstdlib>
 #include <string>
 
 #include "absl/strings/str_cat.h"
@@ -95,7 +96,10 @@ int Serve(const Flags& flags) {
   WarnIfReachable(flags.options.web);
   if (flags.start != "none") {
     spdlog::info("building the scene {}", flags.start);
-    if (grpc::Status status = StartScene(**server, flags.start); !status.ok()) {
+    pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);  // nothing to lose yet: a signal ends the program at once
+    const grpc::Status status = StartScene(**server, flags.start);
+    pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+    if (!status.ok()) {
       spdlog::error("--start {}: {}", flags.start, status.error_message());
       return kFailed;
     }
@@ -112,6 +116,7 @@ int Serve(const Flags& flags) {
 }
 
 int Main(int argc, char** argv) {
+  setenv("GRPC_VERBOSITY", "NONE", 0);  // what matters of it comes as a status
   spdlog::set_default_logger(spdlog::stderr_color_mt("phrenicd"));
   CLI::App app("phrenicd: simulates the breathing diaphragm and serves it to viewers and programs.");
   Flags flags;
