@@ -55,7 +55,7 @@ double MostSquaresAUnit(const SheetDomain& domain, const PlaneRegion& region) {
 // Fills the inside with points that keep their distance from each other and from the border.
 void Fill(const SheetDomain& domain, const PlaneRegion& region, Sheet& sheet) {
   constexpr double kApart = 0.8;     // of the edge length: a hexagonal lattice of the same density has about 1
-  constexpr int kTriesASquare = 24;  // candidates per square edge length of surface
+  constexpr int kTriesASquare = 12;  // candidates per square edge length of surface
   double smallest = domain.edge_length(sheet.points[0]);
   for (const Eigen::Vector3d& x : sheet.points) smallest = std::min(smallest, domain.edge_length(x));
   SpacedPoints spaced(domain.edge_length(Eigen::Vector3d::Zero()), kApart, smallest);
