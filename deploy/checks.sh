@@ -140,7 +140,6 @@ stage_tests() {
 sanitized() {
   local folder=$1 sanitizers=$2
   shift 2
-  mkdir -p "$folder"
   configure "$folder" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_FLAGS_RELWITHDEBINFO='-O1 -g1' \
     -DPHRENIC_SANITIZE="$sanitizers" && build "$folder" "$@"
 }

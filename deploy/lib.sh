@@ -133,8 +133,9 @@ configure() {
   local folder=$1
   shift
   [[ -f $folder/build.ninja ]] && return
-  cmake -S "$root" -B "$folder" -G Ninja "$@" >"$folder.log" 2>&1 || {
-    cat "$folder.log" >&2
+  mkdir -p "$folder"
+  cmake -S "$root" -B "$folder" -G Ninja "$@" >"$folder/configure.log" 2>&1 || {
+    cat "$folder/configure.log" >&2
     fail "CMake could not configure $folder (above): delete that folder and run this again."
   }
 }
