@@ -22,8 +22,14 @@ afterAll(async () => {
 const play = () => viewer.page.locator('#play[aria-label="Play"]');
 const pause = () => viewer.page.locator('#play[aria-label="Pause"]');
 
-/** Height that the vertex next to the highest rest of the diaphragm goes through in one breath [m]. */
-async function domeTravel(seconds = 4.2): Promise<number> {
+/** Waits for so much simulated time [s]. */
+async function pass(seconds: number): Promise<void> {
+  const until = seconds + (await viewer.page.evaluate(() => window.phrenic!.time()));
+  await viewer.page.waitForFunction((time) => window.phrenic!.time() >= time, until, { timeout: 60_000 });
+}
+
+/** Height that the highest vertex of the diaphragm goes through in `seconds` of simulated time [m]. */
+async function domeTravel(seconds: number): Promise<number> {
   return viewer.page.evaluate(async (length) => {
     const hook = window.phrenic!;
     const count = hook.vertices("diaphragm");
@@ -84,18 +90,24 @@ describe("the thorax in the browser", () => {
   });
 
   test("BreathForceChangesTheMotion", async () => {
-    const quiet = await domeTravel();
+    // Short breaths, since a loaded machine may simulate slower than real time.
+    await viewer.type("breathLength", 2);
+    await pass(1);
+    const quiet = await domeTravel(2.1);
     await viewer.type("breathForce", 2);
     // One breath to grow into the new force.
-    await viewer.page.waitForTimeout(4000);
-    const strong = await domeTravel();
+    await pass(2);
+    const strong = await domeTravel(2.1);
     await viewer.page.click('[aria-label="Reset breath force"]');
+    await viewer.page.click('[aria-label="Reset breath length"]');
     await viewer.page.waitForFunction(
-      () => document.querySelector<HTMLInputElement>("#parameter-breathForce-entry")?.value === "1",
+      () =>
+        document.querySelector<HTMLInputElement>("#parameter-breathForce-entry")?.value === "1" &&
+        document.querySelector<HTMLInputElement>("#parameter-breathLength-entry")?.value === "4",
     );
     expect(quiet).toBeGreaterThan(0.003);
     expect(strong).toBeGreaterThan(1.3 * quiet);
-  });
+  }, 240_000);
 });
 
 describe("the buttons", () => {
