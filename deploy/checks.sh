@@ -79,7 +79,7 @@ stage_scripts() {
 }
 
 check_buf() {
-  (cd "$root" && web/node_modules/.bin/buf lint proto --config '{"version":"v2","lint":{"use":["STANDARD"]}}')
+  (cd "$root/proto" && ../web/node_modules/.bin/buf lint --config '{"version":"v2","lint":{"use":["STANDARD"]}}')
 }
 
 stage_proto() {

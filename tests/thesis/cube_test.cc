@@ -1,5 +1,5 @@
-// The thesis' finding of figure 5.3 as an ordering: the cube of springs collapses where the cube of tensegrity keeps its
-// height.
+// The thesis' finding of figure 5.3 as an ordering: the cube of springs collapses where the cube of tensegrity keeps
+// its height.
 #include <gtest/gtest.h>
 
 #include <algorithm>
