@@ -35,7 +35,7 @@ Neck NeckOf(int number) {
   const double x = body.width / 2 + 2 + 5 * lower;
   const Eigen::Vector3d head(x, SpineFront(z) + 1.02 * body.depth + 15 * lower, z);
   const double drop = 2 - 13 * Smooth((number - 5) / 5.0);
-  return {head, head + Eigen::Vector3d(number == 1 ? 22 : 17, number == 12 ? 11 : 13, drop)};
+  return {head, head + Eigen::Vector3d(number == 1 ? 22 : 17, number == 1 ? 6 : number == 12 ? 11 : 13, drop)};
 }
 
 // Where the rib's plane cuts the cage at that azimuth.
