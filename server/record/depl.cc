@@ -8,16 +8,14 @@
 namespace phrenic::record {
 namespace {
 
-using Rounded =
-    Eigen::Matrix<std::int64_t, 3, Eigen::Dynamic>;  // positions in nanometres: six decimals of a millimetre
+// Positions in nanometres: six decimals of a millimetre.
+using Rounded = Eigen::Matrix<std::int64_t, 3, Eigen::Dynamic>;
 
 constexpr double kNanometres = 1e9;
 constexpr double kPerMillimetre = 1e6;
-constexpr std::size_t kLargest = std::size_t{1} << 30;  // [bytes]
-
 class DeplRecorder final : public Recorder {
  public:
-  explicit DeplRecorder(Sink sink) : text_(std::move(sink)) {}
+  DeplRecorder(Sink sink, std::size_t max_bytes) : max_bytes_(max_bytes), text_(std::move(sink)) {}
 
   absl::Status Begin(const std::vector<RecordedBody>& bodies) override {
     for (const RecordedBody& body : bodies) {
@@ -29,11 +27,11 @@ class DeplRecorder final : public Recorder {
 
   absl::Status AddFrame(double, const ConstPoints& positions) override {
     const std::size_t bytes = sizeof(std::int64_t) * static_cast<std::size_t>(positions.size());
-    if ((frames_.size() + 1) * bytes > kLargest) {
+    if ((frames_.size() + 1) * bytes > max_bytes_) {
       return absl::ResourceExhaustedError(absl::StrFormat(
-          "a .depl recording holds all its frames in memory, 1 GiB at most, and frame %d is beyond that: record fewer "
+          "a .depl recording holds all its frames in memory, %d MiB at most, and frame %d is beyond that: record fewer "
           "frames a second, or a shorter time, or as .msh",
-          frames_.size() + 1));
+          max_bytes_ >> 20, frames_.size() + 1));
     }
     frames_.push_back((kNanometres * positions).array().round().cast<std::int64_t>());
     return absl::OkStatus();
@@ -55,6 +53,7 @@ class DeplRecorder final : public Recorder {
   }
 
  private:
+  const std::size_t max_bytes_;
   TextBlock text_;
   std::vector<Rounded> frames_;
   Eigen::Index triangles_ = 0, edges_ = 0;
@@ -62,6 +61,12 @@ class DeplRecorder final : public Recorder {
 
 }  // namespace
 
-std::unique_ptr<Recorder> MakeDeplRecorder(Sink sink) { return std::make_unique<DeplRecorder>(std::move(sink)); }
+std::unique_ptr<Recorder> MakeDeplRecorder(Sink sink) {
+  return MakeBoundedDeplRecorder(std::move(sink), std::size_t{1} << 30);
+}
+
+std::unique_ptr<Recorder> MakeBoundedDeplRecorder(Sink sink, std::size_t max_bytes) {
+  return std::make_unique<DeplRecorder>(std::move(sink), max_bytes);
+}
 
 }  // namespace phrenic::record

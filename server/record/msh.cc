@@ -7,8 +7,17 @@ namespace {
 
 constexpr double kMillimetres = 1e3;
 constexpr int kGmshLine = 1, kGmshTriangle = 2;
+constexpr int kCurve = 1, kSurface = 2;  // dimensions of physical groups
 
 Eigen::Index Shapes(const Mesh& mesh) { return mesh.triangles.cols() > 0 ? mesh.triangles.cols() : mesh.edges.cols(); }
+
+// The name as it may stand between double quotes on one line.
+std::string Quotable(std::string name) {
+  for (char& c : name) {
+    if (c == '"' || static_cast<unsigned char>(c) < ' ') c = '_';
+  }
+  return name;
+}
 
 class MshRecorder final : public Recorder {
  public:
@@ -16,7 +25,10 @@ class MshRecorder final : public Recorder {
 
   absl::Status Begin(const std::vector<RecordedBody>& bodies) override {
     text_.Append("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n%d\n", bodies.size());
-    for (size_t b = 0; b < bodies.size(); ++b) text_.Append("2 %d \"%s\"\n", b + 1, bodies[b].name);
+    for (size_t b = 0; b < bodies.size(); ++b) {
+      text_.Append("%d %d \"%s\"\n", bodies[b].mesh.triangles.cols() > 0 ? kSurface : kCurve, b + 1,
+                   Quotable(bodies[b].name));
+    }
     text_.Append("$EndPhysicalNames\n");
     WriteNodes(bodies);
     WriteElements(bodies);

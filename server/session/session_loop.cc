@@ -1,4 +1,6 @@
 // The stepping thread of a session: commands between steps, steps in bursts of one frame.
+#include <pthread.h>
+
 #include <limits>
 #include <utility>
 
@@ -14,6 +16,7 @@ constexpr double kTimeTolerance = 1e-9;
 }  // namespace
 
 void Session::Loop() {
+  pthread_setname_np(pthread_self(), "stepping");
   while (ServeCommands()) {
     if (job_ != nullptr || state_ == v1::SESSION_STATE_PLAYING) Burst();
   }
@@ -57,8 +60,8 @@ void Session::Burst() {
   }
   const absl::Time now = clock_.Now();
   if (run_.divergence().has_value()) {
-    EndJob(absl::OutOfRangeError(Describe(*run_.divergence())));
     Halt(v1::SESSION_STATE_DIVERGED);
+    EndJob(absl::OutOfRangeError(Describe(*run_.divergence())));
   } else if (job_ != nullptr && job_->left == 0) {
     Halt(v1::SESSION_STATE_PAUSED);
     EndJob(absl::OkStatus());

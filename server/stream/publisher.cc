@@ -1,5 +1,7 @@
 #include "server/stream/publisher.h"
 
+#include <pthread.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -131,6 +133,7 @@ void Publisher::Deliver(const Round& round) {
 }
 
 void Publisher::Run() {
+  pthread_setname_np(pthread_self(), "publishing");
   for (;;) {
     Round round;
     {

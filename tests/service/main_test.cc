@@ -17,7 +17,7 @@ struct Outcome {
 };
 
 // Runs phrenicd for at most three seconds, then asks it to stop.
-Outcome Run(const std::string& arguments) {
+Outcome RunPhrenicd(const std::string& arguments) {
   Outcome outcome;
   const std::string command =
       "timeout --preserve-status -k 10 3 " PHRENIC_BINARY_DIR "/phrenicd " + arguments + " 2>&1";
@@ -29,7 +29,7 @@ Outcome Run(const std::string& arguments) {
 }
 
 TEST(Phrenicd, SaysWhatItServesAndStopsWhenAsked) {
-  const Outcome outcome = Run("--listen 127.0.0.1:0 --web 127.0.0.1:0 --start cube-springs");
+  const Outcome outcome = RunPhrenicd("--listen 127.0.0.1:0 --web 127.0.0.1:0 --start cube-springs");
   EXPECT_EQ(outcome.code, 0) << outcome.words;
   EXPECT_THAT(outcome.words, HasSubstr("Viewer: http://127.0.0.1:"));
   EXPECT_THAT(outcome.words, HasSubstr("gRPC:   127.0.0.1:"));
@@ -38,37 +38,38 @@ TEST(Phrenicd, SaysWhatItServesAndStopsWhenAsked) {
 
 TEST(Phrenicd, WrongUsageIsTwo) {
   for (const char* arguments : {"--nonsense", "--max-sessions 0", "--max-viewers many"}) {
-    EXPECT_EQ(Run(arguments).code, 2) << arguments;
+    EXPECT_EQ(RunPhrenicd(arguments).code, 2) << arguments;
   }
-  EXPECT_EQ(Run("--help").code, 0);
+  EXPECT_EQ(RunPhrenicd("--help").code, 0);
 }
 
 TEST(Phrenicd, WhatCannotBeServedIsOneAndSaysWhy) {
   const std::string free_ports = "--listen 127.0.0.1:0 --web 127.0.0.1:0 ";
-  const Outcome scene = Run(free_ports + "--start thorux");
+  const Outcome scene = RunPhrenicd(free_ports + "--start thorux");
   EXPECT_EQ(scene.code, 1);
   EXPECT_THAT(scene.words, HasSubstr("there is no scene \"thorux\"; there are"));
-  const Outcome data = Run(free_ports + "--data /nowhere");
+  const Outcome data = RunPhrenicd(free_ports + "--data /nowhere");
   EXPECT_EQ(data.code, 1);
   EXPECT_THAT(data.words, HasSubstr("--data: there is no folder /nowhere"));
-  EXPECT_EQ(Run("--listen here --start none").code, 1);
+  EXPECT_EQ(RunPhrenicd("--listen here --start none").code, 1);
 }
 
 class PhrenicdBesideAnother : public ServerFixture {};
 
 TEST_F(PhrenicdBesideAnother, APortInUseIsOneAndNamed) {
   const std::string grpc = absl::StrCat("127.0.0.1:", server_->port());
-  const Outcome first = Run(absl::StrCat("--start none --web 127.0.0.1:0 --listen ", grpc));
+  const Outcome first = RunPhrenicd(absl::StrCat("--start none --web 127.0.0.1:0 --listen ", grpc));
   EXPECT_EQ(first.code, 1);
   EXPECT_THAT(first.words, HasSubstr("cannot listen on " + grpc));
   const std::string web = absl::StrCat("127.0.0.1:", server_->web_port());
-  const Outcome second = Run(absl::StrCat("--start none --listen 127.0.0.1:0 --web ", web));
+  const Outcome second = RunPhrenicd(absl::StrCat("--start none --listen 127.0.0.1:0 --web ", web));
   EXPECT_EQ(second.code, 1);
   EXPECT_THAT(second.words, HasSubstr("cannot listen on " + web));
 }
 
 TEST(Phrenicd, WarnsOfAddressesThatOthersCanReach) {
-  EXPECT_THAT(Run("--start none --listen 127.0.0.1:0 --web 0.0.0.0:0").words, HasSubstr("can be reached from other"));
+  EXPECT_THAT(RunPhrenicd("--start none --listen 127.0.0.1:0 --web 0.0.0.0:0").words,
+              HasSubstr("can be reached from other"));
 }
 
 }  // namespace

@@ -84,7 +84,9 @@ TEST_F(ServerTest, HealthIsServing) {
   grpc::CompletionQueue queue;
   grpc::ByteBuffer response;
   grpc::Status status;
-  const auto call = stub.PrepareUnaryCall(&context, "/grpc.health.v1.Health/Check", grpc::ByteBuffer(), &queue);
+  const grpc::Slice empty;
+  const grpc::ByteBuffer request(&empty, 1);
+  const auto call = stub.PrepareUnaryCall(&context, "/grpc.health.v1.Health/Check", request, &queue);
   call->StartCall();
   call->Finish(&response, &status, this);
   void* tag = nullptr;
