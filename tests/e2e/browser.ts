@@ -90,6 +90,15 @@ export class ViewerPage {
     await this.page.waitForFunction((least) => window.phrenic!.tick() > least, above, { timeout: 30_000 });
   }
 
+  /** The tick at which a paused session stands, once no frame has come for a while. */
+  async restingTick(): Promise<number> {
+    for (let last = -1; ; await this.page.waitForTimeout(800)) {
+      const tick = await this.tick();
+      if (tick === last) return tick;
+      last = tick;
+    }
+  }
+
   /** Types a number into a parameter's entry. */
   async type(parameter: string, value: number): Promise<void> {
     const entry = this.page.locator(`#parameter-${parameter}-entry`);

@@ -3,7 +3,7 @@ import { test } from "vitest";
 import { launchBrowser, ViewerPage } from "./browser";
 import { Server } from "./server";
 
-// Not a test: `npm run screenshot` makes the picture that the README shows, breathed in.
+// Not a test: `npm run screenshot` makes the picture that the README shows, breathing in.
 test("Screenshot", async () => {
   const browser = await launchBrowser();
   const server = await Server.start();
@@ -14,7 +14,7 @@ test("Screenshot", async () => {
     await page.click("#reset");
     await page.waitForFunction(() => window.phrenic!.tick() === 0);
     await page.selectOption("#stride", "1000");
-    while ((await page.evaluate(() => window.phrenic!.time())) < 0.9) {
+    while ((await page.evaluate(() => window.phrenic!.time())) < 0.5) {
       const before = await viewer.tick();
       await page.click("#step");
       await viewer.waitForTick(before);

@@ -29,7 +29,7 @@ test("TwoBrowsersPlayTogether", async () => {
 test("TwoBrowsersSeeTheSameVerticesAtTheSameTick", async () => {
   await here.page.click('#play[aria-label="Pause"]');
   await there.page.waitForSelector('#play[aria-label="Play"]');
-  await here.page.waitForTimeout(500);
+  await Promise.all([here.restingTick(), there.restingTick()]);
   const [a, b] = await Promise.all([here.sample("diaphragm", 50), there.sample("diaphragm", 50)]);
   expect(b.tick).toBe(a.tick);
   expect(b.points).toEqual(a.points);

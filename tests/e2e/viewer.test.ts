@@ -119,8 +119,7 @@ describe("the buttons", () => {
   test("PauseHoldsTheTickAndPlayGoesOn", async () => {
     await pause().click();
     await play().waitFor();
-    await viewer.page.waitForTimeout(500);
-    const held = await viewer.tick();
+    const held = await viewer.restingTick();
     await viewer.page.waitForTimeout(700);
     expect(await viewer.tick()).toBe(held);
     await play().click();
@@ -130,8 +129,7 @@ describe("the buttons", () => {
   test("StepTakesTheChosenTicks", async () => {
     await pause().click();
     await play().waitFor();
-    await viewer.page.waitForTimeout(500);
-    const held = await viewer.tick();
+    const held = await viewer.restingTick();
     await viewer.page.selectOption("#stride", "10");
     await viewer.page.click("#step");
     await viewer.waitForTick(held);

@@ -22,6 +22,8 @@ export class Rig {
   private center = new THREE.Vector3();
   private opening: ViewName = "home";
   private free = 1;
+  /** The named view that the camera stands at or glides to, until a person moves it. */
+  private held: ViewName | undefined;
   private extent = 1;
   private flight: { from: THREE.Vector3; to: THREE.Vector3; start: number } | undefined;
 
@@ -35,7 +37,7 @@ export class Rig {
     this.controls.enableDamping = !calm();
     this.controls.dampingFactor = 0.12;
     this.controls.addEventListener("change", changed);
-    this.controls.addEventListener("start", () => (this.flight = undefined));
+    this.controls.addEventListener("start", () => (this.flight = this.held = undefined));
   }
 
   /** Fits the camera to a new scene, of which `points` are a fair sample. */
@@ -54,9 +56,11 @@ export class Rig {
   }
 
   go(view: ViewName, atOnce = this.calm()): void {
+    this.held = view;
     this.controls.target.copy(this.center);
     const side = view === "home" ? this.opening : view;
     const to = standpoint(side, this.points, this.center, this.camera, this.free);
+    this.flight = undefined;
     if (atOnce) this.camera.position.copy(to);
     else this.flight = { from: this.camera.position.clone(), to, start: performance.now() };
     this.changed();
@@ -70,6 +74,7 @@ export class Rig {
     this.camera.aspect = width / height;
     this.camera.setViewOffset(width, height, 0, (bottom - top) / 2, width, height);
     this.camera.updateProjectionMatrix();
+    if (this.held !== undefined) this.go(this.held, true);
   }
 
   /** From the camera to what it looks at, and the extent of the scene [m]. */
@@ -97,6 +102,7 @@ export class Rig {
 
   /** Orbits by so many radians, and comes nearer by the factor `zoom`: for the keyboard. */
   nudge(azimuth: number, polar: number, zoom: number): void {
+    this.flight = this.held = undefined;
     const { target } = this.controls;
     const away = this.camera.position.clone().sub(target);
     const radius = away.length() / zoom;
