@@ -5,6 +5,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "server/record/depl.h"
 #include "server/record/recorder.h"
 
 namespace phrenic::record {
@@ -112,6 +113,34 @@ TEST(Msh, NodeDataIsTheDisplacementFromTheFirstFrame) {
     ++frame;
   }
   EXPECT_EQ(frame, kFrames);
+}
+
+TEST(Msh, EveryBodyIsAPhysicalGroupOfItsOwnDimension) {
+  EXPECT_THAT(Record("msh"), testing::HasSubstr("$PhysicalNames\n2\n2 1 \"sheet\"\n1 2 \"wire\"\n$EndPhysicalNames\n"));
+}
+
+TEST(Msh, NamesCannotBreakTheFile) {
+  std::string file;
+  auto recorder = MakeRecorder("msh", [&file](std::string_view bytes) {
+    file.append(bytes);
+    return absl::OkStatus();
+  });
+  ASSERT_TRUE(recorder.ok());
+  std::vector<RecordedBody> bodies = TwoBodies();
+  bodies[0].name = "a\"b\n$Nodes";
+  ASSERT_TRUE((*recorder)->Begin(bodies).ok());
+  EXPECT_THAT(file, testing::HasSubstr("2 1 \"a_b_$Nodes\"\n"));
+}
+
+TEST(Depl, PastItsBoundTheErrorNamesTheRemedy) {
+  // 24 bytes a vertex: the bound holds four frames of six vertices and no fifth.
+  auto recorder = MakeBoundedDeplRecorder([](std::string_view) { return absl::OkStatus(); }, 4 * 6 * 24);
+  ASSERT_TRUE(recorder->Begin(TwoBodies()).ok());
+  for (int f = 0; f < 4; ++f) ASSERT_TRUE(recorder->AddFrame(f, PositionsAt(f)).ok());
+  const absl::Status status = recorder->AddFrame(4, PositionsAt(4));
+  EXPECT_EQ(status.code(), absl::StatusCode::kResourceExhausted);
+  EXPECT_THAT(std::string(status.message()),
+              testing::AllOf(testing::HasSubstr("frame 5"), testing::HasSubstr("fewer frames a second")));
 }
 
 TEST(Msh, OpensInGmshWithAllItsStepsAndTimes) {

@@ -1,0 +1,113 @@
+// Runs the built programs as a user would: `phrenic` to its end, `phrenicd` beside a test.
+#ifndef PHRENIC_TESTS_CLIENT_PROGRAMS_H_
+#define PHRENIC_TESTS_CLIENT_PROGRAMS_H_
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace phrenic::client {
+
+struct Outcome {
+  int code = -1;  // exit code
+  std::string out, err;
+  nlohmann::json json() const { return nlohmann::json::parse(out, nullptr, false); }
+};
+
+inline std::string ReadAll(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::stringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+// A path in the tests' own folder, one a process.
+inline std::string Scratch(const std::string& name) {
+  return testing::TempDir() + "phrenic_client_" + std::to_string(getpid()) + "_" + name;
+}
+
+inline std::string WriteScratch(const std::string& name, const std::string& text) {
+  std::ofstream(Scratch(name)) << text;
+  return Scratch(name);
+}
+
+// Starts a program of the build with standard output and error in files; it ends with the test.
+inline pid_t Start(const std::string& program, const std::vector<std::string>& arguments, const std::string& out,
+                   const std::string& err) {
+  const pid_t pid = fork();
+  if (pid != 0) return pid;
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  const int to_out = open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  const int to_err = open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  dup2(to_out, STDOUT_FILENO);
+  dup2(to_err, STDERR_FILENO);
+  const std::string path = std::string(PHRENIC_BINARY_DIR) + "/" + program;
+  std::vector<char*> argv = {const_cast<char*>(path.c_str())};
+  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+  argv.push_back(nullptr);
+  execv(path.c_str(), argv.data());
+  _exit(127);
+}
+
+inline int WaitFor(pid_t pid) {
+  int status = 0;
+  if (waitpid(pid, &status, 0) != pid) return -1;
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+inline Outcome Phrenic(const std::vector<std::string>& arguments) {
+  const std::string out = Scratch("out"), err = Scratch("err");
+  Outcome outcome;
+  outcome.code = WaitFor(Start("phrenic", arguments, out, err));
+  outcome.out = ReadAll(out);
+  outcome.err = ReadAll(err);
+  return outcome;
+}
+
+// phrenicd on a free port, with no session; stopped by the destructor.
+class RunningServer {
+ public:
+  RunningServer() {
+    const std::string out = Scratch("server_out");
+    pid_ = Start("phrenicd",
+                 {"--listen", "127.0.0.1:0", "--web", "127.0.0.1:0", "--web-root",
+                  std::string(PHRENIC_SOURCE_DIR) + "/web", "--start", "none"},
+                 out, Scratch("server_err"));
+    // It says its port when it listens; there is nothing else to wait on.
+    for (int tries = 0; tries < 600 && port_ == 0; ++tries) {
+      usleep(50'000);
+      const std::string said = ReadAll(out);
+      const std::size_t at = said.find("(port ");
+      if (at != std::string::npos && said.find(')', at) != std::string::npos) port_ = std::stoi(said.substr(at + 6));
+      if (waitpid(pid_, nullptr, WNOHANG) != 0) break;
+    }
+  }
+  ~RunningServer() {
+    kill(pid_, SIGTERM);
+    WaitFor(pid_);
+  }
+  RunningServer(const RunningServer&) = delete;
+  RunningServer& operator=(const RunningServer&) = delete;
+
+  int port() const { return port_; }
+  std::string address() const { return "127.0.0.1:" + std::to_string(port_); }
+  std::string said() const { return ReadAll(Scratch("server_err")); }
+
+ private:
+  pid_t pid_ = -1;
+  int port_ = 0;
+};
+
+}  // namespace phrenic::client
+
+#endif  // PHRENIC_TESTS_CLIENT_PROGRAMS_H_

@@ -1,0 +1,213 @@
+// `phrenic run`: the whole job with no server, and every kind of bad input.
+#include <gmock/gmock.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <iterator>
+
+#include "tests/client/programs.h"
+
+namespace phrenic::client {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+// A scene whose parts a test may spoil.
+std::string Scene(const std::string& from = "", const std::string& to = "") {
+  std::string text = R"(
+    name: "sheet"
+    bodies {
+      name: "sheet" role: ROLE_DEFORMABLE mass: 3 fixed_vertices: [0]
+      polyhedron { vertices { } vertices { x: 1 } vertices { y: 1 } triangles { a: 0 b: 1 c: 2 } }
+    }
+    forces { springs { bodies: "sheet" stiffness: 20 } }
+    forces { gravity { bodies: "sheet" acceleration { z: -1 } } }
+    integrator { semi_implicit_euler {} }
+    probes { name: "corner" body: "sheet" vertex: 2 }
+    parameters { time_step: 0.01 }
+  )";
+  if (!from.empty()) text.replace(text.find(from), from.size(), to);
+  return text;
+}
+
+TEST(Run, SaysTheCostBesideTheThesisFigure) {
+  const Outcome run = Phrenic({"run", "cube-tensegrity", "--seconds", "1"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("8 vertices, 12 springs, 4 rigid links"));
+  EXPECT_THAT(run.out, HasSubstr("1.000 s simulated in 200 steps"));
+  EXPECT_THAT(run.out, HasSubstr("x real time"));
+  EXPECT_THAT(run.out, HasSubstr("fig. 5.10, cube, 8 vertices, with rigid links"));
+  EXPECT_THAT(run.err, IsEmpty()) << "nothing to say where standard error is no terminal";
+}
+
+TEST(Run, JsonHasTheNumbersAndTheReport) {
+  const Outcome run = Phrenic({"run", "cube-springs", "--seconds", "0.5", "-o", "json"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  const auto json = run.json();
+  ASSERT_FALSE(json.is_discarded()) << run.out;
+  EXPECT_EQ(json["steps"], 100);
+  EXPECT_NEAR(json["simulated_seconds"].get<double>(), 0.5, 1e-9);
+  EXPECT_GT(json["steps_per_second"].get<double>(), 0);
+  EXPECT_GT(json["thesis"]["steps_per_second"].get<double>(), 0);
+  EXPECT_EQ(json["report"]["scene"], "cube-springs");
+}
+
+TEST(Run, SameSettingsSameHashOtherSettingsOtherHash) {
+  const auto hash = [](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"run", "cube-tensegrity", "--seconds", "1", "--output", "json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome run = Phrenic(arguments);
+    EXPECT_EQ(run.code, 0) << run.err;
+    return run.json()["state_hash"].get<std::string>();
+  };
+  const std::string plain = hash({});
+  EXPECT_EQ(plain.size(), 16U);
+  EXPECT_EQ(hash({}), plain);
+  EXPECT_EQ(hash({"--export", Scratch("same.msh")}), plain) << "recording does not change the motion";
+  EXPECT_NE(hash({"--set", "breath_force=2"}), plain);
+  EXPECT_NE(hash({"--set", "apply_links=off"}), plain);
+}
+
+TEST(Run, ExportedMshOpensInGmshWithEveryFrame) {
+  const std::string file = Scratch("motion.msh");
+  const Outcome run = Phrenic({"run", "cube-tensegrity", "--seconds", "2", "--fps", "5", "--export", file});
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("wrote " + file));
+  EXPECT_FALSE(std::filesystem::exists(file + ".part"));
+  if (std::system("command -v gmsh >/dev/null 2>&1") != 0) GTEST_SKIP() << "gmsh is not installed";
+  const std::string geo = WriteScratch("motion.geo", "Merge \"" + file +
+                                                         "\";\nPrintf(\"steps %g\", View[0].NbTimeStep);\n"
+                                                         "Printf(\"nodes %g\", Mesh.NbNodes);\n"
+                                                         "Printf(\"largest %g\", View[0].Max);\n");
+  const std::string log = Scratch("gmsh.log");
+  ASSERT_EQ(std::system(("gmsh -parse_and_exit " + geo + " >" + log + " 2>&1").c_str()), 0);
+  EXPECT_THAT(ReadAll(log), HasSubstr("steps 11"));
+  EXPECT_THAT(ReadAll(log), HasSubstr("nodes 8"));
+  EXPECT_THAT(ReadAll(log), Not(HasSubstr("largest 0\n"))) << "the cube moves";
+}
+
+TEST(Run, ExportedDeplHasARowAVertexAndFrame) {
+  const std::string file = Scratch("motion.depl");
+  const Outcome run = Phrenic({"run", "cube-springs", "--seconds", "1", "--fps", "4", "--export", file});
+  ASSERT_EQ(run.code, 0) << run.err;
+  std::ifstream depl(file);
+  std::string kind;
+  int vertices = 0, shapes = 0, rows = 0;
+  depl >> kind >> vertices >> shapes >> rows;
+  EXPECT_EQ(kind, "TRIANGLES");
+  EXPECT_EQ(vertices, 8);
+  EXPECT_EQ(rows, 5);
+  const std::vector<double> numbers((std::istream_iterator<double>(depl)), {});
+  EXPECT_EQ(numbers.size(), 8U * 5 * 3);
+}
+
+TEST(Run, ASceneFileOfOnesOwnRuns) {
+  const Outcome run = Phrenic({"run", WriteScratch("own.textproto", Scene()), "--seconds", "0.1", "-o", "json"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(run.json()["steps"], 10);
+}
+
+TEST(Run, ADivergedRunFailsAndLeavesNoFile) {
+  const std::string scene = WriteScratch("diverges.textproto", Scene("time_step: 0.01", "time_step: 0.1"));
+  const std::string file = Scratch("diverged.msh");
+  for (const std::vector<std::string>& more : {std::vector<std::string>{}, {"--export", file}}) {
+    std::vector<std::string> arguments = {"run", scene, "--seconds", "60", "--set", "elasticity=100"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome run = Phrenic(arguments);
+    EXPECT_EQ(run.code, 1);
+    EXPECT_THAT(run.err, HasSubstr("diverged"));
+    EXPECT_THAT(run.err, HasSubstr("time_step")) << "the remedy is named";
+  }
+  EXPECT_FALSE(std::filesystem::exists(file));
+  EXPECT_FALSE(std::filesystem::exists(file + ".part"));
+}
+
+struct BadScene {
+  const char* what;
+  const char* from;
+  const char* to;
+  const char* words;
+};
+
+TEST(Run, BadScenesAreRefusedWithTheirFieldOrPlace) {
+  const BadScene scenes[] = {
+      {"malformed", "bodies {", "bodies [", "bad.textproto:4:"},
+      {"unknown field", "mass: 3", "maas: 3", "maas"},
+      {"negative mass", "mass: 3", "mass: -3", "bodies[0].mass: -3 is outside"},
+      {"index past the end", "fixed_vertices: [0]", "fixed_vertices: [7]", "7"},
+      {"triangle past the end", "c: 2 }", "c: 9 }", "9"},
+      {"empty body", "vertices { } vertices { x: 1 } vertices { y: 1 } triangles { a: 0 b: 1 c: 2 }", "", "vertices"},
+      {"unknown body", "springs { bodies: \"sheet\"", "springs { bodies: \"shoot\"", "shoot"},
+      {"parameter out of range", "time_step: 0.01", "breath_force: 99", "breath_force: 99 is outside 0 to 20"},
+      {"missing mesh file",
+       "polyhedron { vertices { } vertices { x: 1 } vertices { y: 1 } triangles { a: 0 b: 1 c: 2 } }",
+       "file { path: \"nowhere/lung.obj\" }", "lung.obj"},
+  };
+  for (const BadScene& scene : scenes) {
+    const std::string file = WriteScratch("bad.textproto", Scene(scene.from, scene.to));
+    const Outcome run = Phrenic({"run", file, "--seconds", "0.1", "--data", testing::TempDir()});
+    EXPECT_EQ(run.code, 1) << scene.what;
+    EXPECT_THAT(run.err, HasSubstr(scene.words)) << scene.what;
+    EXPECT_THAT(run.out, IsEmpty()) << scene.what;
+  }
+}
+
+struct BadWords {
+  std::vector<std::string> arguments;
+  int code;
+  const char* words;
+};
+
+TEST(Run, BadWordsAreRefusedWithTheRightCode) {
+  const BadWords lines[] = {
+      {{"run", "no-such-scene"}, 1, "cube-springs"},
+      {{"run", "/nowhere/scene.textproto"}, 1, "/nowhere/scene.textproto"},
+      {{"run", "cube-springs", "--set", "breath_force=99"}, 1, "breath_force: 99 is outside 0 to 20"},
+      {{"run", "cube-springs", "--set", "breath_farce=1"}, 1, "breath_force"},
+      {{"run", "cube-springs", "--set", "breath_force"}, 1, "name=value"},
+      {{"run", "cube-springs", "--export", Scratch("motion.avi")}, 1, "msh, depl"},
+      {{"run", "cube-springs", "--export", "/nowhere/motion.msh"}, 1, "/nowhere/motion.msh"},
+      {{"run", "cube-springs", "--seconds", "-1"}, 2, "--seconds"},
+      {{"run", "cube-springs", "--resolution", "0.01"}, 2, "--resolution"},
+      {{"run", "cube-springs", "-o", "yaml"}, 2, "--output"},
+      {{"run"}, 2, "SCENE"},
+      {{"dance"}, 2, ""},
+      {{}, 2, "subcommand"},
+  };
+  for (const BadWords& line : lines) {
+    const Outcome run = Phrenic(line.arguments);
+    EXPECT_EQ(run.code, line.code) << testing::PrintToString(line.arguments);
+    EXPECT_THAT(run.err, HasSubstr(line.words)) << testing::PrintToString(line.arguments);
+  }
+}
+
+TEST(Help, IsMadeFromTheSchema) {
+  const Outcome help = Phrenic({"run", "--help"});
+  EXPECT_EQ(help.code, 0);
+  for (const char* words : {"breath_force", "0 to 20", "time_step", "automatic", "Switches every action line"}) {
+    EXPECT_THAT(help.out, HasSubstr(words));
+  }
+  const Outcome all = Phrenic({"--help"});
+  EXPECT_EQ(all.code, 0);
+  for (const char* command : {"scenes", "describe", "run", "create", "sessions", "watch", "set", "play", "pause",
+                              "step", "reset", "delete", "export"}) {
+    EXPECT_THAT(all.out, HasSubstr(command));
+  }
+}
+
+TEST(Run, InterruptedLeavesNoPartialFile) {
+  const std::string file = Scratch("interrupted.msh");
+  const pid_t pid = Start("phrenic", {"run", "cube-springs", "--seconds", "3600", "--fps", "1000", "--export", file},
+                          Scratch("out"), Scratch("err"));
+  for (int tries = 0; tries < 600 && !std::filesystem::exists(file + ".part"); ++tries) usleep(20'000);
+  ASSERT_TRUE(std::filesystem::exists(file + ".part"));
+  kill(pid, SIGINT);
+  EXPECT_EQ(WaitFor(pid), 130);
+  EXPECT_FALSE(std::filesystem::exists(file));
+  EXPECT_FALSE(std::filesystem::exists(file + ".part"));
+}
+
+}  // namespace
+}  // namespace phrenic::client

@@ -1,0 +1,153 @@
+// The commands that talk to a running server.
+#include <gmock/gmock.h>
+
+#include <filesystem>
+
+#include "tests/client/programs.h"
+
+namespace phrenic::client {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+class Sessions : public ::testing::Test {
+ protected:
+  void SetUp() override { ASSERT_NE(server_.port(), 0) << server_.said(); }
+
+  Outcome Ask(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"--server", server_.address()});
+    return Phrenic(arguments);
+  }
+  // The answer as JSON; the command must succeed.
+  nlohmann::json Json(std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), {"-o", "json"});
+    const Outcome outcome = Ask(arguments);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_FALSE(outcome.json().is_discarded()) << outcome.out;
+    return outcome.json();
+  }
+
+  RunningServer server_;
+};
+
+TEST_F(Sessions, ScenesAreListed) {
+  const Outcome table = Ask({"scenes"});
+  EXPECT_EQ(table.code, 0) << table.err;
+  for (const char* scene : {"cube-springs", "cube-tensegrity", "sheet-2d", "thorax"}) {
+    EXPECT_THAT(table.out, HasSubstr(scene));
+  }
+  EXPECT_GE(Json({"scenes"})["scenes"].size(), 5U);
+}
+
+TEST_F(Sessions, DescribeTellsWhatRunsAndTheLargestStableStep) {
+  const Outcome table = Ask({"describe", "cube-tensegrity"});
+  ASSERT_EQ(table.code, 0) << table.err;
+  for (const char* words : {"What runs", "What was left out", "12 springs", "Largest stable step", "breath_force"}) {
+    EXPECT_THAT(table.out, HasSubstr(words));
+  }
+  const auto json = Json({"describe", "cube-tensegrity"});
+  EXPECT_EQ(json["report"]["springs"], "12");
+  EXPECT_GT(json["report"]["stable_step"]["seconds"].get<double>(), 0);
+}
+
+TEST_F(Sessions, ASessionLivesFromCreateToDelete) {
+  EXPECT_EQ(Json({"create", "cube-springs", "--id", "one", "--set", "breath_force=2"})["session"]["id"], "one");
+  EXPECT_EQ(Json({"sessions"})["sessions"].size(), 1U);
+  EXPECT_THAT(Ask({"sessions"}).out, HasSubstr("paused"));
+
+  const auto stepped = Json({"step", "one", "10", "--expected-tick", "0"});
+  EXPECT_EQ(stepped["session"]["tick"], "10");
+  EXPECT_EQ(stepped["state_hash"].get<std::string>().size(), 16U);
+  EXPECT_EQ(Ask({"step", "one", "1", "--expected-tick", "0"}).code, 1) << "it is at tick 10 by now";
+
+  const auto set = Json({"set", "one", "breath_force=1.5", "apply_links=off"});
+  EXPECT_EQ(set["session"]["parameters"]["breath_force"], 1.5);
+  EXPECT_EQ(set["session"]["parameters"]["apply_links"], false);
+
+  EXPECT_EQ(Json({"play", "one", "--fast"})["session"]["state"], "SESSION_STATE_PLAYING");
+  EXPECT_EQ(Json({"pause", "one"})["session"]["state"], "SESSION_STATE_PAUSED");
+  EXPECT_EQ(Json({"reset", "one"})["session"]["tick"], "0");
+  EXPECT_EQ(Json({"step", "one", "10"})["session"]["tick"], "10");
+
+  EXPECT_EQ(Ask({"delete", "one"}).code, 0);
+  EXPECT_EQ(Ask({"delete", "one"}).code, 1);
+}
+
+TEST_F(Sessions, WatchPrintsNumbersALineAndEndsByCount) {
+  ASSERT_EQ(Ask({"create", "cube-springs", "--id", "seen", "--play"}).code, 0);
+  const Outcome watched = Ask({"watch", "seen", "--count", "3", "--fps", "50"});
+  ASSERT_EQ(watched.code, 0) << watched.err;
+  EXPECT_THAT(watched.out, HasSubstr("breath"));
+  EXPECT_THAT(watched.out, HasSubstr("p "));
+  EXPECT_THAT(watched.out, HasSubstr(" mm"));
+  EXPECT_THAT(watched.out, Not(HasSubstr("\x1b"))) << "no control sequences where it is no terminal";
+
+  const Outcome json = Ask({"watch", "seen", "--count", "2", "-o", "json"});
+  std::istringstream lines(json.out);
+  int frames = 0;
+  for (std::string line; std::getline(lines, line);) {
+    const auto event = nlohmann::json::parse(line, nullptr, false);
+    ASSERT_FALSE(event.is_discarded()) << line;
+    frames += event.contains("frame") ? 1 : 0;
+  }
+  EXPECT_EQ(frames, 2);
+  EXPECT_EQ(Ask({"watch", "seen", "--seconds", "0.3"}).code, 0);
+}
+
+TEST_F(Sessions, ExportLeavesTheSessionAsItIs) {
+  ASSERT_EQ(Ask({"create", "cube-tensegrity", "--id", "kept"}).code, 0);
+  const std::string file = Scratch("kept.depl");
+  const auto summary = Json({"export", "kept", file, "--seconds", "1", "--fps", "10"});
+  EXPECT_EQ(summary["frames"], "11");
+  EXPECT_EQ(summary["bytes"], std::to_string(std::filesystem::file_size(file)));
+  EXPECT_EQ(Json({"step", "kept", "1"})["session"]["tick"], "1");
+}
+
+TEST_F(Sessions, ErrorsNameTheRemedyOnStandardError) {
+  ASSERT_EQ(Ask({"create", "cube-springs", "--id", "taken"}).code, 0);
+  const struct {
+    std::vector<std::string> arguments;
+    const char* words;
+  } lines[] = {
+      {{"watch", "nobody"}, "taken"},
+      {{"play", "nobody"}, "nobody"},
+      {{"export", "nobody", Scratch("x.msh")}, "nobody"},
+      {{"create", "cube-springs", "--id", "taken"}, "taken"},
+      {{"create", "cube-springs", "--id", "Not An Id"}, "session_id"},
+      {{"set", "taken", "breath_length=0"}, "breath_length: 0 is outside 0.5 to 30"},
+      {{"set", "taken", "apply_links=maybe"}, "apply_links"},
+      {{"step", "taken", "0"}, "ticks"},
+      {{"export", "taken", Scratch("x.avi")}, "msh, depl"},
+      {{"describe", "no-such-scene"}, "cube-springs"},
+  };
+  for (const auto& line : lines) {
+    const Outcome outcome = Ask(line.arguments);
+    EXPECT_EQ(outcome.code, 1) << testing::PrintToString(line.arguments);
+    EXPECT_THAT(outcome.err, HasSubstr(line.words));
+    EXPECT_THAT(outcome.out, IsEmpty());
+  }
+}
+
+TEST(Unreachable, IsACodeOfItsOwnAndNamesTheRemedy) {
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"sessions"}, {"watch", "one"}, {"export", "one", Scratch("u.msh")}}) {
+    std::vector<std::string> arguments = {"--server", "127.0.0.1:1"};
+    arguments.insert(arguments.end(), command.begin(), command.end());
+    const Outcome outcome = Phrenic(arguments);
+    EXPECT_EQ(outcome.code, 3) << command[0];
+    EXPECT_THAT(outcome.err, HasSubstr("no server at 127.0.0.1:1"));
+    EXPECT_THAT(outcome.err, HasSubstr("deploy/run"));
+  }
+}
+
+TEST(Unreachable, TheEnvironmentNamesTheServer) {
+  setenv("PHRENIC_SERVER", "127.0.0.1:2", 1);
+  const Outcome outcome = Phrenic({"sessions"});
+  unsetenv("PHRENIC_SERVER");
+  EXPECT_THAT(outcome.err, HasSubstr("no server at 127.0.0.1:2"));
+}
+
+}  // namespace
+}  // namespace phrenic::client
