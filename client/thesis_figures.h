@@ -5,6 +5,7 @@
 #include <string>
 
 #include "phrenic/v1/report.pb.h"
+#include "phrenic/v1/scene.pb.h"
 
 namespace phrenic::client {
 
@@ -13,8 +14,9 @@ struct ThesisFigure {
   double steps_per_second;
 };
 
-// The figure whose model comes nearest to the scene in vertices, with or without rigid links as the scene has them.
-ThesisFigure NearestThesisFigure(const v1::CompileReport& report);
+// The figure whose model comes nearest to the scene in vertices, with or without rigid links as the scene has them: of
+// the thesis' patient where the scene's soft bodies come from surface files, else of its cube and "perfect" models.
+ThesisFigure NearestThesisFigure(const v1::Scene& scene, const v1::CompileReport& report);
 
 }  // namespace phrenic::client
 

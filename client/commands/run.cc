@@ -85,9 +85,9 @@ int ExportHere(const Context& context, const RunOptions& options, service::Serve
   return code;
 }
 
-void PrintCost(const RunOptions& options, const v1::CompileReport& report, const Cost& cost) {
+void PrintCost(const RunOptions& options, const v1::CompileReport& report, const Cost& cost,
+               const ThesisFigure& thesis) {
   const double rate = static_cast<double>(cost.steps) / cost.wall;
-  const ThesisFigure thesis = NearestThesisFigure(report);
   std::cout << absl::StrFormat("%s: %d vertices, %d springs, %d rigid links, %d attachments\n", report.scene(),
                                report.simulated_vertices(), report.springs(), report.rigid_links(),
                                report.attachments());
@@ -106,8 +106,8 @@ void PrintCost(const RunOptions& options, const v1::CompileReport& report, const
   if (!options.file.empty()) std::cout << "wrote " << options.file << "\n";
 }
 
-void PrintCostJson(const RunOptions& options, const v1::GetSessionResponse& session, const Cost& cost) {
-  const ThesisFigure thesis = NearestThesisFigure(session.report());
+void PrintCostJson(const RunOptions& options, const v1::GetSessionResponse& session, const Cost& cost,
+                   const ThesisFigure& thesis) {
   nlohmann::json json = {
       {"simulated_seconds", cost.simulated},
       {"steps", cost.steps},
@@ -138,10 +138,18 @@ int RunOn(const Context& context, const RunOptions& options, const v1::SceneSour
     status = StepThrough(context, options, *stub, session.mutable_session(), &cost);
     if (!status.ok()) return Fail(context, status);
   }
+  // The scene as the server has it; its model is kept, so that this compiles nothing anew.
+  v1::DescribeSceneRequest describe;
+  *describe.mutable_source() = source;
+  v1::DescribeSceneResponse described;
+  const auto scenes = v1::SceneService::NewStub(server.InProcessChannel());
+  status = Call(context, *scenes, &v1::SceneService::Stub::DescribeScene, describe, &described);
+  if (!status.ok()) return Fail(context, status);
+  const ThesisFigure thesis = NearestThesisFigure(described.scene(), session.report());
   if (context.json()) {
-    PrintCostJson(options, session, cost);
+    PrintCostJson(options, session, cost, thesis);
   } else {
-    PrintCost(options, session.report(), cost);
+    PrintCost(options, session.report(), cost, thesis);
   }
   if (session.session().state() != v1::SESSION_STATE_DIVERGED) return kOk;
   PrintSession(session.session(), std::cerr);

@@ -86,9 +86,10 @@ class RunningServer {
     // It says its port when it listens; there is nothing else to wait on.
     for (int tries = 0; tries < 600 && port_ == 0; ++tries) {
       usleep(50'000);
-      const std::string said = ReadAll(out);
-      const std::size_t at = said.find("(port ");
-      if (at != std::string::npos && said.find(')', at) != std::string::npos) port_ = std::stoi(said.substr(at + 6));
+      const std::string said = ReadAll(out);  // "gRPC:   127.0.0.1:50051"
+      const std::size_t at = said.find("gRPC:");
+      const std::size_t end = said.find('\n', at);
+      if (at != std::string::npos && end != std::string::npos) port_ = std::stoi(said.substr(said.rfind(':', end) + 1));
       if (waitpid(pid_, nullptr, WNOHANG) != 0) break;
     }
   }
