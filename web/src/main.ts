@@ -27,4 +27,11 @@ function say(error?: unknown): void {
 const sessionId = await chooseSession(new URL(location.href), api, systemClock, say);
 loading.replaceChildren("Loading the scene…");
 history.replaceState(null, "", address(sessionId));
-new App(api, sessionId, chooser, systemClock).start();
+try {
+  new App(api, sessionId, chooser, systemClock).start();
+} catch (error) {
+  loading.replaceChildren(
+    "This browser cannot draw: Phrenic needs WebGL 2. Switch hardware acceleration on, or update it.",
+  );
+  throw error;
+}

@@ -24,14 +24,21 @@ export class Trace {
     const pen = this.element.getContext("2d");
     if (pen === null || width === 0) return;
     const ratio = Math.min(devicePixelRatio, 2);
-    [this.element.width, this.element.height] = [width * ratio, height * ratio];
-    pen.scale(ratio, ratio);
+    this.fit(Math.round(width * ratio), Math.round(height * ratio));
+    pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+    pen.clearRect(0, 0, width, height);
     const [low, high] = this.history.range();
     const y = (value: number) => margin + ((high - value) / (high - low || 1)) * (height - 2 * margin);
     this.drawZero(pen, width, y(0));
     const end = this.history.times.at(-1) ?? 0;
     const x = (time: number) => width - ((end - time) / this.history.span) * width;
     [...this.history.series.values()].forEach((values, i) => this.drawSeries(pen, values, i, x, y));
+  }
+
+  /** Setting a canvas' size allocates it anew, even where the size stays. */
+  private fit(width: number, height: number): void {
+    if (this.element.width !== width) this.element.width = width;
+    if (this.element.height !== height) this.element.height = height;
   }
 
   private drawZero(pen: CanvasRenderingContext2D, width: number, y: number): void {
