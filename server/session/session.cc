@@ -115,7 +115,7 @@ absl::StatusOr<Session::Stepped> Session::Step(std::int64_t ticks, std::optional
     });
     if (!asked.ok()) return asked;
   }
-  if (!job->status.ok()) return job->status;
+  if (!job->status.ok()) return std::move(job->status);
   return std::move(job->result);
 }
 
