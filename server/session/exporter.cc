@@ -157,7 +157,7 @@ class Export {
 }  // namespace
 
 absl::StatusOr<v1::ExportSummary> ExportMotion(const v1::ExportMotionRequest& request,
-                                               std::shared_ptr<const Model> model, Session::Fork fork,
+                                               const std::shared_ptr<const Model>& model, Session::Fork fork,
                                                const ExportSink& sink) {
   Chunks chunks(sink.chunk);
   auto recorder = record::MakeRecorder(request.format(), [&](std::string_view bytes) { return chunks.Add(bytes); });

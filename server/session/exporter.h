@@ -24,7 +24,7 @@ struct ExportSink {
 // first step that reaches its time. The request is in range. INVALID_ARGUMENT names the field where there is no such
 // format or body, OUT_OF_RANGE tells where the motion diverged. Runs on the caller's thread.
 absl::StatusOr<v1::ExportSummary> ExportMotion(const v1::ExportMotionRequest& request,
-                                               std::shared_ptr<const Model> model, Session::Fork fork,
+                                               const std::shared_ptr<const Model>& model, Session::Fork fork,
                                                const ExportSink& sink);
 
 }  // namespace phrenic::session

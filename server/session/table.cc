@@ -47,7 +47,7 @@ Table::Table(Models& models, const stream::Clock& clock, const Limits& limits)
 Table::~Table() { Close(absl::UnavailableError("the server is shutting down")); }
 
 std::string Table::FreeId(const std::string& scene) const {
-  const std::string stem = Stem(scene);
+  std::string stem = Stem(scene);
   if (!sessions_.contains(stem)) return stem;
   int number = 2;
   while (sessions_.contains(absl::StrCat(stem, "-", number))) ++number;
