@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <fstream>
 #include <string>
@@ -138,7 +139,7 @@ TEST(X, Y) {}
 class Tree : public testing::Test {
  protected:
   void SetUp() override {
-    root_ = std::filesystem::path(testing::TempDir()) / "phrenic_architecture";
+    root_ = std::filesystem::path(testing::TempDir()) / ("phrenic_architecture_" + std::to_string(getpid()));
     std::filesystem::remove_all(root_);
     Write("CMakeLists.txt", "");
     Write("server/mesh/mesh.cc", "#include \"server/mesh/mesh.h\"\n");

@@ -1,5 +1,6 @@
 // Round trips of motion files by small independent readers, and Gmsh itself.
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 #include <cstdlib>
 #include <fstream>
@@ -145,7 +146,7 @@ TEST(Depl, PastItsBoundTheErrorNamesTheRemedy) {
 
 TEST(Msh, OpensInGmshWithAllItsStepsAndTimes) {
   if (std::system("command -v gmsh >/dev/null 2>&1") != 0) GTEST_SKIP() << "gmsh is not installed";
-  const std::string base = testing::TempDir() + "phrenic_record";
+  const std::string base = testing::TempDir() + "phrenic_record_" + std::to_string(getpid());
   std::ofstream(base + ".msh") << Record("msh");
   std::ofstream(base + ".geo") << "Merge \"" << base << ".msh\";\n"
                                << "Printf(\"views %g\", PostProcessing.NbViews);\n"
