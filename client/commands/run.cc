@@ -59,7 +59,7 @@ grpc::Status StepThrough(const Context& context, const RunOptions& options, Stub
     request.set_session_id("run");
     request.set_ticks(std::min(portion, total - session->tick()));
     v1::StepSessionResponse response;
-    const grpc::Status status = Call(context, stub, &Stub::StepSession, request, &response, 3600);
+    grpc::Status status = Call(context, stub, &Stub::StepSession, request, &response, 3600);
     if (!status.ok()) return status;
     *session = response.session();
     cost->state_hash = response.state_hash();

@@ -55,15 +55,15 @@ void WebCall::Abandon() {
 }
 
 void WebCall::OnReadDone(bool ok) {
-  boost::asio::post(strand_, [self = shared_from_this(), ok, message = std::move(incoming_)]() mutable {
-    self->ReadDone(ok, std::move(message));
+  boost::asio::post(strand_, [self = shared_from_this(), ok, message = incoming_] {
+    self->ReadDone(ok, message);
   });
 }
 
-void WebCall::ReadDone(bool ok, grpc::ByteBuffer message) {
+void WebCall::ReadDone(bool ok, const grpc::ByteBuffer& message) {
   reading_ = false;
   if (!ok || abandoned_) return LetGo();
-  handlers_.message(std::move(message));
+  handlers_.message(message);
 }
 
 void WebCall::LetGo() {

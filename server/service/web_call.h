@@ -31,7 +31,7 @@ class WebCall final : public grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::Byt
     std::optional<std::chrono::nanoseconds> timeout;
   };
   struct Handlers {
-    std::function<void(grpc::ByteBuffer message)> message;
+    std::function<void(const grpc::ByteBuffer& message)> message;
     std::function<void(const grpc::Status& status, const std::multimap<std::string, std::string>& trailers)> done;
   };
 
@@ -49,7 +49,7 @@ class WebCall final : public grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::Byt
 
  private:
   WebCall(Request request, const boost::asio::any_io_executor& strand, Handlers handlers);
-  void ReadDone(bool ok, grpc::ByteBuffer message);
+  void ReadDone(bool ok, const grpc::ByteBuffer& message);
   // Lets the call end once no read is to come.
   void LetGo();
 
