@@ -55,9 +55,7 @@ void WebCall::Abandon() {
 }
 
 void WebCall::OnReadDone(bool ok) {
-  boost::asio::post(strand_, [self = shared_from_this(), ok, message = incoming_] {
-    self->ReadDone(ok, message);
-  });
+  boost::asio::post(strand_, [self = shared_from_this(), ok, message = incoming_] { self->ReadDone(ok, message); });
 }
 
 void WebCall::ReadDone(bool ok, const grpc::ByteBuffer& message) {
