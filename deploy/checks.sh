@@ -3,13 +3,20 @@
 
 passed=0
 failed=0
-declare -a summary=() broken=()
+declare -a summary=() broken=() failures=()
 results=${root:?}/build/test-results
 
 # Adds to the sum: count PASSED FAILED.
 count() {
   passed=$((passed + $1))
   failed=$((failed + $2))
+}
+
+# Remembers the failed tests that a stage names, one a line of the input: what the last lines of a long log must say.
+remember() {
+  local -a named
+  mapfile -t named
+  failures+=("${named[@]}")
 }
 
 # A stage that is one check: it passes or it does not.
@@ -41,6 +48,7 @@ finish() {
 report() {
   printf '\n'
   if [[ ${#summary[@]} -gt 0 ]]; then printf '%s\n' "${summary[@]}"; fi
+  if [[ ${#failures[@]} -gt 0 ]]; then printf 'failed: %s\n' "${failures[@]}"; fi
   if [[ ${#broken[@]} -gt 0 ]]; then
     printf 'phrenic: repair what the stages name above; "deploy/test %s" runs them alone.\n' "${broken[*]}"
   fi
@@ -94,9 +102,19 @@ vitest() {
   (cd "$root/web" && npm run --silent "$2" -- --reporter=default --reporter=json --outputFile.json="$json") || status=$?
   if [[ -f $json ]]; then
     read -r good bad < <(node -e 'const r = require(process.argv[1]); console.log(r.numPassedTests, r.numFailedTests)' "$json")
+    remember < <(failed_of "$json")
   fi
   if [[ $status -ne 0 && $bad -eq 0 ]]; then bad=1; fi
   count "$good" "$bad"
+}
+
+# The failed tests of vitest's JSON, each with the first line of its message.
+failed_of() {
+  # shellcheck disable=SC2016  # the template is JavaScript's own
+  node -e '
+    for (const { assertionResults } of require(process.argv[1]).testResults)
+      for (const { status, fullName, failureMessages } of assertionResults)
+        if (status === "failed") console.log(`${fullName}: ${(failureMessages[0] ?? "").split("\n")[0]}`);' "$1"
 }
 
 stage_web() {
@@ -125,6 +143,7 @@ ctests() {
   ctest --test-dir "$folder" -j "$(nproc)" --no-tests=error --output-on-failure --progress "$@" >"$log" 2>&1 || status=$?
   tr '\r' '\n' <"$log" | grep -vE '^ *[0-9]+/[0-9]+ Test|^\[ *[0-9]' || true
   read -r bad all < <(sed -nE 's/.* ([0-9]+) tests? failed out of ([0-9]+)$/\1 \2/p' "$log") || true
+  remember < <(sed -nE 's/^\t +[0-9]+ - (.*) \((.*)\).*$/\1: \2/p' "$log")
   if [[ -z ${all:-} ]]; then
     count 0 1
   else

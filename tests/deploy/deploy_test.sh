@@ -87,8 +87,22 @@ stages() {
     "there is no stage nonsense" "format scripts" "status 1"
 }
 
+# in_checks COMMAND... runs functions of checks.sh as deploy/test does.
+in_checks() {
+  bash -c 'set -euo pipefail; source "$0/deploy/lib.sh"; source "$0/deploy/checks.sh"; "$@"' "$root" "$@" 2>&1 ||
+    echo "status $?"
+}
+
+failed_tests_are_named() {
+  local json=$scratch/vitest.json
+  printf '%s' '{"testResults": [{"assertionResults": [{"status": "passed", "fullName": "Holds"},' \
+    '{"status": "failed", "fullName": "Breaks", "failureMessages": ["expected 1 to be 2\n at line 3"]}]}]}' >"$json"
+  expect_equal FailedBrowserTestsAreNamed "$(in_checks failed_of "$json")" "Breaks: expected 1 to be 2"
+}
+
 packages
 node
 run_flags
 stages
+failed_tests_are_named
 [[ $failures -eq 0 ]]

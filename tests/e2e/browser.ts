@@ -90,13 +90,9 @@ export class ViewerPage {
     await this.page.waitForFunction((least) => window.phrenic!.tick() > least, above, { timeout: 30_000 });
   }
 
-  /** The tick at which a paused session stands, once no frame has come for a while. */
-  async restingTick(): Promise<number> {
-    for (let last = -1; ; await this.page.waitForTimeout(800)) {
-      const tick = await this.tick();
-      if (tick === last) return tick;
-      last = tick;
-    }
+  /** Waits until the newest frame is that of this tick. */
+  async atTick(tick: number): Promise<void> {
+    await this.page.waitForFunction((wanted) => window.phrenic!.tick() === wanted, tick, { timeout: 30_000 });
   }
 
   /** Types a number into a parameter's entry. */

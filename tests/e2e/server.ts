@@ -1,8 +1,9 @@
-import { type ChildProcess, spawn } from "node:child_process";
+import { type ChildProcess, execFile, spawn } from "node:child_process";
 import { createWriteStream, existsSync, mkdirSync } from "node:fs";
 import { createServer } from "node:net";
 import { join, resolve } from "node:path";
 import { setTimeout as sleep } from "node:timers/promises";
+import { promisify } from "node:util";
 
 const here = import.meta.dirname;
 export const outFolder = join(here, "out");
@@ -31,7 +32,7 @@ export class Server {
     mkdirSync(outFolder, { recursive: true });
     const log = createWriteStream(join(outFolder, "phrenicd.log"), { flags: "a" });
     const flags = ["--listen", `127.0.0.1:${this.listen}`, "--web", `127.0.0.1:${this.web}`];
-    const child = spawn(program(), flags, { stdio: ["ignore", "pipe", "pipe"] });
+    const child = spawn(program("phrenicd"), flags, { stdio: ["ignore", "pipe", "pipe"] });
     child.stdout.pipe(log, { end: false });
     child.stderr.pipe(log, { end: false });
     this.process = child;
@@ -41,6 +42,17 @@ export class Server {
       if (await answers(this.url)) return;
     }
     throw new Error(`phrenicd did not serve ${this.url} within a minute: see ${outFolder}/phrenicd.log.`);
+  }
+
+  /** The tick at which a session stands once it is paused, by the command line: a second client. */
+  async restingTick(session = "thorax"): Promise<number> {
+    const flags = ["--server", `127.0.0.1:${this.listen}`, "sessions", "-o", "json"];
+    for (const deadline = Date.now() + 30_000; Date.now() < deadline; await sleep(100)) {
+      const { sessions } = JSON.parse((await promisify(execFile)(program("phrenic"), flags)).stdout);
+      const { state, tick } = sessions.find(({ id }: { id: string }) => id === session) ?? {};
+      if (state === "SESSION_STATE_PAUSED") return Number(tick);
+    }
+    throw new Error(`Session ${session} did not come to rest within 30 s.`);
   }
 
   /** Ends it at once, as a crash would. */
@@ -53,8 +65,8 @@ export class Server {
   }
 }
 
-function program(): string {
-  const path = resolve(process.env.PHRENIC_BINARY_DIR ?? join(here, "../../build"), "phrenicd");
+function program(name: string): string {
+  const path = resolve(process.env.PHRENIC_BINARY_DIR ?? join(here, "../../build"), name);
   if (existsSync(path)) return path;
   throw new Error(`There is no ${path}: build it, or set PHRENIC_BINARY_DIR to the folder that has it.`);
 }

@@ -29,9 +29,10 @@ test("TwoBrowsersPlayTogether", async () => {
 test("TwoBrowsersSeeTheSameVerticesAtTheSameTick", async () => {
   await here.page.click('#play[aria-label="Pause"]');
   await there.page.waitForSelector('#play[aria-label="Play"]');
-  await Promise.all([here.restingTick(), there.restingTick()]);
+  const held = await server.restingTick();
+  await Promise.all([here.atTick(held), there.atTick(held)]);
   const [a, b] = await Promise.all([here.sample("diaphragm", 50), there.sample("diaphragm", 50)]);
-  expect(b.tick).toBe(a.tick);
+  expect([a.tick, b.tick]).toEqual([held, held]);
   expect(b.points).toEqual(a.points);
 });
 

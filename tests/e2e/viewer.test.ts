@@ -61,10 +61,10 @@ describe("the thorax in the browser", () => {
 
   test("ItsDiaphragmsVerticesMove", async () => {
     const before = await viewer.sample("diaphragm");
-    await viewer.waitForTick(before.tick);
     let greatest = 0;
-    for (let i = 0; i < 8; i++) {
-      await viewer.page.waitForTimeout(250);
+    // After a quarter and after half of a breath: at one of them the dome is elsewhere, wherever it began.
+    for (let quarter = 1; quarter <= 2; quarter++) {
+      await pass(1);
       greatest = Math.max(greatest, greatestMove(before.points, (await viewer.sample("diaphragm")).points));
     }
     expect(greatest).toBeGreaterThan(0.002);
@@ -75,17 +75,14 @@ describe("the thorax in the browser", () => {
     const others = viewer.page.locator(".layer-name", { hasNotText: "Diaphragm" }).locator("input");
     expect(await boxes.count()).toBeGreaterThan(3);
     for (const box of await others.all()) await box.uncheck();
-    await viewer.page.waitForTimeout(1000);
     const first = await canvasPicture(viewer);
-    const from = await viewer.tick();
     let greatest = 0;
-    for (let i = 0; i < 5; i++) {
-      await viewer.page.waitForTimeout(500);
+    for (let quarter = 1; quarter <= 2; quarter++) {
+      await pass(1);
       greatest = Math.max(greatest, await shareOfChangedPixels(browser, first, await canvasPicture(viewer)));
     }
     await viewer.leave("diaphragm");
     for (const box of await others.all()) await box.check();
-    expect(await viewer.tick()).toBeGreaterThan(from);
     expect(greatest).toBeGreaterThan(0.005);
   });
 
@@ -119,7 +116,8 @@ describe("the buttons", () => {
   test("PauseHoldsTheTickAndPlayGoesOn", async () => {
     await pause().click();
     await play().waitFor();
-    const held = await viewer.restingTick();
+    const held = await server.restingTick();
+    await viewer.atTick(held);
     await viewer.page.waitForTimeout(700);
     expect(await viewer.tick()).toBe(held);
     await play().click();
@@ -129,30 +127,32 @@ describe("the buttons", () => {
   test("StepTakesTheChosenTicks", async () => {
     await pause().click();
     await play().waitFor();
-    const held = await viewer.restingTick();
+    const held = await server.restingTick();
     await viewer.page.selectOption("#stride", "10");
     await viewer.page.click("#step");
-    await viewer.waitForTick(held);
-    expect(await viewer.tick()).toBe(held + 10);
+    await viewer.atTick(held + 10);
+    expect(await server.restingTick()).toBe(held + 10);
   });
 
   test("ResetGoesBackToTheStart", async () => {
     await pause().click();
     await play().waitFor();
     await viewer.page.click("#reset");
-    await viewer.page.waitForFunction(() => window.phrenic!.tick() === 0);
+    await viewer.atTick(0);
     expect(await viewer.page.evaluate(() => window.phrenic!.time())).toBe(0);
   });
 
   test("SpeedChangesThePace", async () => {
     await viewer.page.selectOption("#speed", "0.1");
-    await viewer.page.waitForTimeout(300);
-    const start = await viewer.page.evaluate(() => window.phrenic!.time());
-    await viewer.page.waitForTimeout(3000);
-    const passed = (await viewer.page.evaluate(() => window.phrenic!.time())) - start;
+    await viewer.page.waitForTimeout(1000);
+    const pace = await viewer.page.evaluate(async () => {
+      const [time, wall] = [window.phrenic!.time(), performance.now()];
+      await new Promise((resolve) => setTimeout(resolve, 3000));
+      return (window.phrenic!.time() - time) / ((performance.now() - wall) / 1000);
+    });
     await viewer.page.selectOption("#speed", "1");
-    expect(passed).toBeGreaterThan(0.15);
-    expect(passed).toBeLessThan(0.6);
+    expect(pace).toBeGreaterThan(0.03);
+    expect(pace).toBeLessThan(0.2);
   });
 
   test("OverlaysAreDrawn", async () => {
