@@ -4,6 +4,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "server/schema/fields.h"
 
 namespace phrenic::client {
 
@@ -20,16 +21,25 @@ std::string StateName(v1::SessionState state) {
   }
 }
 
+std::string ParameterValue(const v1::Parameters& parameters, const google::protobuf::FieldDescriptor& field) {
+  const google::protobuf::Reflection& reflection = *parameters.GetReflection();
+  switch (field.cpp_type()) {
+    case google::protobuf::FieldDescriptor::CPPTYPE_BOOL:
+      return reflection.GetBool(parameters, &field) ? "on" : "off";
+    case google::protobuf::FieldDescriptor::CPPTYPE_ENUM:
+      return schema::ChoiceName(*reflection.GetEnum(parameters, &field));
+    default:
+      return absl::StrFormat("%g", reflection.GetDouble(parameters, &field));
+  }
+}
+
 std::string ParametersLine(const v1::Parameters& parameters) {
   std::string line;
-  const google::protobuf::Reflection& reflection = *parameters.GetReflection();
   for (int f = 0; f < v1::Parameters::descriptor()->field_count(); ++f) {
     const google::protobuf::FieldDescriptor* field = v1::Parameters::descriptor()->field(f);
-    if (!reflection.HasField(parameters, field)) continue;
-    const bool toggle = field->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_BOOL;
-    const std::string value = toggle ? (reflection.GetBool(parameters, field) ? "on" : "off")
-                                     : absl::StrFormat("%g", reflection.GetDouble(parameters, field));
-    absl::StrAppend(&line, line.empty() ? "" : " ", std::string(field->name()), "=", value);
+    if (!parameters.GetReflection()->HasField(parameters, field)) continue;
+    absl::StrAppend(&line, line.empty() ? "" : " ", std::string(field->name()), "=",
+                    ParameterValue(parameters, *field));
   }
   return line;
 }

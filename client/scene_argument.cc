@@ -9,6 +9,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "client/table.h"
+#include "server/schema/fields.h"
 #include "server/schema/schema.h"
 
 namespace phrenic::client {
@@ -52,6 +53,12 @@ std::string ParameterHelp() {
     if (field.options().HasExtension(v1::toggle)) {
       const v1::Toggle& toggle = field.options().GetExtension(v1::toggle);
       table.Add({field.name(), "", "on, off", toggle.default_value() ? "on" : "off", toggle.help()});
+      continue;
+    }
+    if (field.options().HasExtension(v1::choice)) {
+      const v1::Choice& choice = field.options().GetExtension(v1::choice);
+      table.Add({field.name(), "", schema::ChoiceNames(*field.enum_type()),
+                 schema::ChoiceName(*field.enum_type()->FindValueByNumber(choice.default_value())), choice.help()});
       continue;
     }
     const v1::Quantity& quantity = field.options().GetExtension(v1::quantity);

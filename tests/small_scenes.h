@@ -24,7 +24,6 @@ inline const char kTriangle[] = R"(
   forces { name: "weave" springs { bodies: "sheet" stiffness: 20 } }
   forces { friction { bodies: "sheet" rate: 0.5 } }
   forces { gravity { bodies: "sheet" acceleration { z: -1 } } }
-  integrator { semi_implicit_euler {} }
   probes { name: "corner" body: "sheet" vertex: 2 }
   parameters { time_step: 0.01 }
 )";

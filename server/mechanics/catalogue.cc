@@ -57,13 +57,16 @@ absl::StatusOr<std::unique_ptr<Constraint>> MakeConstraint(const v1::Constraint&
   return NoKind(path);
 }
 
-absl::StatusOr<std::unique_ptr<Integrator>> MakeIntegrator(const v1::Integrator& scene) {
-  switch (scene.kind_case()) {
-    case v1::Integrator::kSemiImplicitEuler:
-    case v1::Integrator::KIND_NOT_SET:
+const Integrator& FindIntegrator(v1::Integrator kind) {
+  static const SemiImplicitEuler semi_implicit_euler;
+  switch (kind) {
+    case v1::INTEGRATOR_SEMI_IMPLICIT_EULER:
+    case v1::INTEGRATOR_UNSPECIFIED:
+    case v1::Integrator_INT_MIN_SENTINEL_DO_NOT_USE_:
+    case v1::Integrator_INT_MAX_SENTINEL_DO_NOT_USE_:
       break;
   }
-  return std::make_unique<SemiImplicitEuler>();
+  return semi_implicit_euler;
 }
 
 absl::Status AddMotion(const v1::Motion& scene, std::string_view path, Draft& draft) {

@@ -12,7 +12,8 @@ namespace phrenic {
 absl::StatusOr<std::unique_ptr<Force>> MakeForce(const v1::Force& scene, std::string_view path, Draft& draft);
 absl::StatusOr<std::unique_ptr<Constraint>> MakeConstraint(const v1::Constraint& scene, std::string_view path,
                                                            Draft& draft);
-absl::StatusOr<std::unique_ptr<Integrator>> MakeIntegrator(const v1::Integrator& scene);
+// The one integrator of this kind; the default where it is unspecified.
+const Integrator& FindIntegrator(v1::Integrator kind);
 // Adds a motion to the draft, or a ride.
 absl::Status AddMotion(const v1::Motion& scene, std::string_view path, Draft& draft);
 

@@ -35,11 +35,9 @@ absl::Status AddElements(Draft& draft) {
     if (!constraint.ok()) return constraint.status();
     if (*constraint != nullptr) draft.model.constraints.push_back(*std::move(constraint));
   }
-  auto integrator = MakeIntegrator(scene.integrator());
-  if (!integrator.ok()) return integrator.status();
-  draft.model.integrator = *std::move(integrator);
-  draft.ReportElement("integrator", draft.model.integrator->name(), draft.model.rest.cols(), "vertices",
-                      absl::StrFormat("order %d", draft.model.integrator->order()));
+  const Integrator& integrator = FindIntegrator(draft.model.parameters.integrator());
+  draft.ReportElement("integrator", integrator.name(), draft.model.rest.cols(), "vertices",
+                      absl::StrFormat("order %d", integrator.order()));
   return absl::OkStatus();
 }
 
@@ -61,16 +59,29 @@ void ReportUnused(Draft& draft) {
   }
 }
 
+// The stiffness that forces put on one vertex.
+class VertexStiffness final : public StiffnessSink {
+ public:
+  explicit VertexStiffness(int vertex) : vertex_(vertex) {}
+  void Add(int i, int j, const Eigen::Matrix3d& block) override {
+    if (i == vertex_ && j == vertex_) sum_ += block;
+  }
+  void AddOuter(double scale, const Points& g) override { sum_ += scale * g.col(vertex_) * g.col(vertex_).transpose(); }
+  double Size() const { return sum_.norm(); }
+
+ private:
+  const int vertex_;
+  Eigen::Matrix3d sum_ = Eigen::Matrix3d::Zero();
+};
+
 std::string StiffestElementAt(const Model& model, const Instant& at, int vertex) {
-  Points dx = Points::Zero(3, model.rest.cols()), df = dx;
   std::string name = "nothing";
   double largest = 0;
-  dx.col(vertex).setOnes();
   for (const auto& force : model.forces) {
-    df.setZero();
-    force->AddStiffnessTimes(at, dx, df);
-    if (df.col(vertex).norm() <= largest) continue;
-    largest = df.col(vertex).norm();
+    VertexStiffness stiffness(vertex);
+    force->AddStiffness(at, stiffness);
+    if (stiffness.Size() <= largest) continue;
+    largest = stiffness.Size();
     name = force->name();
   }
   return name;
@@ -124,7 +135,7 @@ v1::StableStep LargestStableStep(const Model& model, const v1::Parameters& param
   v1::StableStep report;
   const State state = model.InitialState();
   const FastestMode fastest = FindFastestMode(model, parameters, state);
-  const double limit = kSafety * model.integrator->MaxStep(fastest.spectrum);
+  const double limit = kSafety * FindIntegrator(parameters.integrator()).MaxStep(fastest.spectrum);
   report.set_omega_max(fastest.spectrum.omega_max);
   const double largest_step =
       v1::Parameters::descriptor()->FindFieldByName("time_step")->options().GetExtension(v1::quantity).maximum();

@@ -13,8 +13,11 @@ class Constraint {
  public:
   virtual ~Constraint() = default;
   const std::string& name() const { return name_; }
-  // Moves `state` onto the constraint. `before` are the positions at the start of the step, `dt` its length [s].
+  // Moves the positions of `state` onto the constraint, and its velocities by the same over `dt`. `before` are the
+  // positions at the start of the step, `dt` its length [s].
   virtual void Project(const v1::Parameters& parameters, const ConstPoints& before, double dt, State& state) const = 0;
+  // Takes from the velocities what would lead off the constraint (the second half of RATTLE). Positions lie on it.
+  virtual void ProjectVelocities(const v1::Parameters&, State&) const {}
   // Largest violation [m].
   virtual double Residual(const State& state) const = 0;
 

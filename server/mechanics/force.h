@@ -6,6 +6,7 @@
 #include <string>
 
 #include "server/mechanics/instant.h"
+#include "server/mechanics/stiffness.h"
 
 namespace phrenic {
 
@@ -20,11 +21,10 @@ class Force {
 
   // f += force [N], 3 x n; never clears.
   virtual void AddForce(const Instant& at, MutablePoints f) const = 0;
-  // df += (df/dx) dx [N], the derivative with positive semi-definite stiffness (a compressed spring's negative
-  // transverse term left out). Nothing where the force does not depend on positions.
-  virtual void AddStiffnessTimes(const Instant&, const ConstPoints& /*dx*/, MutablePoints /*df*/) const {}
-  // The largest damping rate, force per velocity over mass, that it puts on a vertex [1/s].
-  virtual double DampingRate() const { return 0; }
+  // Hands over K = -df/dx, positive semi-definite. Nothing where the force does not depend on positions.
+  virtual void AddStiffness(const Instant&, StiffnessSink&) const {}
+  // c_i += the coefficient [N s/m] of the part -c_i v_i of the force on vertex i.
+  virtual void AddDamping(const Instant&, Eigen::VectorXd& /*c*/) const {}
   // [J]; force = -dE/dx where it has one, and whether it has.
   virtual double Energy(const Instant&) const { return 0; }
   virtual bool conservative() const { return false; }

@@ -1,9 +1,12 @@
-// The family of integrators: how free vertices get from t to t + dt.
+// The family of integrators: how a state gets from t to t + dt. To add one: a file in integrators/, a value of
+// v1::Integrator, its case in catalogue.cc, its line in tests/contract.
 #ifndef PHRENIC_SERVER_MECHANICS_INTEGRATOR_H_
 #define PHRENIC_SERVER_MECHANICS_INTEGRATOR_H_
 
 #include <string_view>
+#include <vector>
 
+#include "absl/status/status.h"
 #include "phrenic/v1/parameters.pb.h"
 #include "server/mechanics/state.h"
 
@@ -11,10 +14,13 @@ namespace phrenic {
 
 struct Model;
 
-// Memory that a step needs; made once per session, so that no step allocates. Holds nothing between steps.
+// Memory that a step needs; made once per session, so that no step allocates (the first one after a change of
+// integrator may). Holds nothing between steps but what can be worked out again.
 struct Workspace {
-  Points force;   // [N]
-  Points before;  // positions at the start of the step [m]
+  Points before, velocity_before;  // at the start of the step [m], [m/s]
+  Points force;                    // [N]
+  Eigen::VectorXd damping;         // [N s/m] a vertex
+  std::vector<Points> stages;      // of the integrators that have stages
 };
 
 // What limits an explicit step.
@@ -29,13 +35,15 @@ class Integrator {
  public:
   virtual ~Integrator() = default;
   virtual std::string_view name() const = 0;
+  // How the error at a given time falls with the step: as its power. Without rigid links.
   virtual int order() const = 0;
   // The largest stable step [s]; infinity where nothing limits it.
   virtual double MaxStep(const Spectrum& spectrum) const = 0;
-  // Carries free vertices from t to t + dt. Motions have set driven ones and poses for t + dt already; state.time is
-  // still t.
-  virtual void Advance(const Model& model, const v1::Parameters& parameters, double dt, State& state,
-                       Workspace& work) const = 0;
+  // Carries positions, velocities and poses from state.time to state.time + dt; motions drive the bones, forces the
+  // tissue, and constraints have the last word. Leaves state.time, phase and tick as they are. An error where it finds
+  // no next state.
+  virtual absl::Status Advance(const Model& model, const v1::Parameters& parameters, double dt, State& state,
+                               Workspace& work) const = 0;
 };
 
 }  // namespace phrenic

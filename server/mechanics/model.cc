@@ -18,7 +18,10 @@ State Model::InitialState() const {
 }
 
 Workspace Model::MakeWorkspace() const {
-  return {.force = Points::Zero(3, rest.cols()), .before = Points::Zero(3, rest.cols())};
+  Workspace work;
+  work.before = work.velocity_before = work.force = Points::Zero(3, rest.cols());
+  work.damping = Eigen::VectorXd::Zero(rest.cols());
+  return work;
 }
 
 const BodyModel& Model::BodyOf(int simulated_vertex) const {
@@ -42,10 +45,15 @@ double BreathSlope(v1::Waveform waveform, double phase) {
 }
 
 Instant MakeInstant(const Model& model, const v1::Parameters& parameters, const State& state) {
+  return MakeInstant(model, parameters, state, state.time, state.phase);
+}
+
+Instant MakeInstant(const Model& model, const v1::Parameters& parameters, const State& state, double time,
+                    double phase) {
   const v1::Waveform waveform = model.scene.breath().waveform();
-  return {.time = state.time,
-          .breath = BreathSignal(waveform, state.phase),
-          .breath_rate = BreathSlope(waveform, state.phase) / parameters.breath_length(),
+  return {.time = time,
+          .breath = BreathSignal(waveform, phase),
+          .breath_rate = BreathSlope(waveform, phase) / parameters.breath_length(),
           .parameters = parameters,
           .x = state.x,
           .v = state.v,

@@ -52,7 +52,6 @@ struct Model {
   std::vector<std::unique_ptr<Force>> forces;
   std::vector<std::unique_ptr<Motion>> motions;
   std::vector<std::unique_ptr<Constraint>> constraints;
-  std::unique_ptr<Integrator> integrator;
   std::vector<Ride> rides;  // seen bodies; worked out with frames, not with steps
   std::vector<Probe> probes;
   double size = 0;   // diagonal of the bounding box at rest [m]
@@ -74,6 +73,9 @@ struct Model {
 double BreathSignal(v1::Waveform waveform, double phase);
 double BreathSlope(v1::Waveform waveform, double phase);
 Instant MakeInstant(const Model& model, const v1::Parameters& parameters, const State& state);
+// The same positions at another time [s] and breath's phase [breaths].
+Instant MakeInstant(const Model& model, const v1::Parameters& parameters, const State& state, double time,
+                    double phase);
 
 // Positions of all vertices of a body in a state [m]: simulated, carried by a pose, riding or still. `out` is 3 x
 // vertices of the body.

@@ -6,6 +6,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "server/mechanics/advance.h"
+#include "server/mechanics/block_matrix.h"
+
 namespace phrenic {
 namespace {
 
@@ -14,16 +17,17 @@ constexpr int kProducts = 20;
 // y = M^-1/2 K M^-1/2 x.
 class ScaledStiffness {
  public:
-  ScaledStiffness(const Model& model, const Instant& at)
-      : model_(model), at_(at), scale_(model.inverse_mass.cwiseSqrt()) {}
+  ScaledStiffness(const Model& model, const Instant& at) : stiffness_(model), scale_(model.inverse_mass.cwiseSqrt()) {
+    stiffness_.Assemble(model, at);
+  }
 
   Eigen::VectorXd operator*(const Eigen::VectorXd& x) const {
     const Eigen::Index n = scale_.size();
     const Points scaled = Eigen::Map<const Points>(x.data(), 3, n) * scale_.asDiagonal();
-    Points df = Points::Zero(3, n);
-    for (const auto& force : model_.forces) force->AddStiffnessTimes(at_, scaled, df);
-    df = -df * scale_.asDiagonal();
-    return Eigen::Map<const Eigen::VectorXd>(df.data(), df.size());
+    Points product(3, n);
+    stiffness_.Times(scaled, product);
+    product = product * scale_.asDiagonal();
+    return Eigen::Map<const Eigen::VectorXd>(product.data(), product.size());
   }
 
   // Deterministic and without a pattern that a mesh could share.
@@ -38,10 +42,15 @@ class ScaledStiffness {
   }
 
  private:
-  const Model& model_;
-  const Instant& at_;
+  BlockMatrix stiffness_;
   Eigen::VectorXd scale_;
 };
+
+double LargestDampingRate(const Model& model, const Instant& at) {
+  Eigen::VectorXd c(model.rest.cols());
+  SumDamping(model, at, c);
+  return c.cwiseProduct(model.inverse_mass).maxCoeff();
+}
 
 struct Krylov {
   std::vector<Eigen::VectorXd> basis;
@@ -78,9 +87,9 @@ int LargestVertex(const Krylov& krylov, const Eigen::VectorXd& combination) {
 
 FastestMode FindFastestMode(const Model& model, const v1::Parameters& parameters, const State& state) {
   FastestMode fastest;
-  for (const auto& force : model.forces) fastest.spectrum.damping_rate += force->DampingRate();
   if (model.rest.cols() == 0 || model.inverse_mass.maxCoeff() == 0) return fastest;
   const Instant at = MakeInstant(model, parameters, state);
+  fastest.spectrum.damping_rate = LargestDampingRate(model, at);
   const Krylov krylov = Lanczos(ScaledStiffness(model, at));
   const auto size = static_cast<Eigen::Index>(krylov.diagonal.size());
   if (size == 0) return fastest;

@@ -23,6 +23,16 @@ struct Pose {
   }
 };
 
+// What an integrator remembers of the step before, for one that does; only its own, and only if no other step came
+// between.
+struct History {
+  int integrator = 0;      // whose it is (v1::Integrator); 0: nobody's
+  std::int64_t tick = -1;  // the state it belongs to
+  double dt = 0;           // length of that step, or of its last part [s]
+  Points x, v;             // at the start of it [m], [m/s]
+  Points force;            // at the end of it [N]
+};
+
 struct State {
   double time = 0;          // [s]
   std::int64_t tick = 0;    // steps taken
@@ -30,6 +40,7 @@ struct State {
   Points x;                 // positions of the simulated vertices [m]
   Points v;                 // their velocities [m/s]
   std::vector<Pose> poses;  // of the driven bodies
+  History history;
 };
 
 // A word-wise FNV-1a over the bits of time, phase, positions and velocities: equal states, equal hashes.

@@ -4,20 +4,12 @@
 #include <cmath>
 
 #include "absl/strings/str_format.h"
+#include "server/mechanics/advance.h"
+#include "server/mechanics/catalogue.h"
 #include "server/mechanics/compile.h"
 
 namespace phrenic {
 namespace {
-
-void DriveMotions(const Model& model, const v1::Parameters& parameters, double dt, State& state) {
-  if (model.motions.empty()) return;
-  const double phase = state.phase;
-  state.phase += dt / parameters.breath_length();
-  Instant ahead = MakeInstant(model, parameters, state);
-  ahead.time += dt;
-  state.phase = phase;
-  for (const auto& motion : model.motions) motion->Drive(ahead, state);
-}
 
 // Squared distance from rest; infinity where it is not a number.
 double DistanceFromRest(const Model& model, const State& state, int vertex) {
@@ -77,15 +69,25 @@ std::string Remedy(const Model& model, const v1::Parameters& parameters) {
 }  // namespace
 
 absl::Status Step(const Model& model, const v1::Parameters& parameters, double dt, State& state, Workspace& work) {
-  if (!model.constraints.empty()) work.before = state.x;
-  DriveMotions(model, parameters, dt, state);
-  model.integrator->Advance(model, parameters, dt, state, work);
-  for (const auto& constraint : model.constraints) constraint->Project(parameters, work.before, dt, state);
+  work.before = state.x;
+  work.velocity_before = state.v;
+  absl::Status advanced = FindIntegrator(parameters.integrator()).Advance(model, parameters, dt, state, work);
   state.time += dt;
   state.phase += dt / parameters.breath_length();
   ++state.tick;
+  if (!advanced.ok()) return advanced;
   if (!WithinBounds(model, state)) return absl::OutOfRangeError("the step diverged");
   return absl::OkStatus();
+}
+
+void TakeBack(const Model& model, const v1::Parameters& parameters, double dt, const Workspace& work, State& state) {
+  state.x = work.before;
+  state.v = work.velocity_before;
+  state.time -= dt;
+  state.phase -= dt / parameters.breath_length();
+  --state.tick;
+  state.history = {};
+  DriveMotions(model, parameters, 0, state);
 }
 
 v1::Divergence Diagnose(const Model& model, const v1::Parameters& parameters, const State& before,

@@ -1,4 +1,5 @@
-// A triangle surface, or a network of edges, in metres and the patient frame (LPS: +x left, +y posterior, +z superior).
+// A triangle surface, a solid of tetrahedra, or a network of edges, in metres and the patient frame (LPS: +x left, +y
+// posterior, +z superior).
 #ifndef PHRENIC_SERVER_MESH_MESH_H_
 #define PHRENIC_SERVER_MESH_MESH_H_
 
@@ -11,15 +12,17 @@
 
 namespace phrenic {
 
-using Points = Eigen::Matrix3Xd;     // 3 x n, one column per vertex
-using Triangles = Eigen::Matrix3Xi;  // 3 x n, vertex indices, anticlockwise seen from outside
-using Edges = Eigen::Matrix2Xi;      // 2 x n, vertex indices
+using Points = Eigen::Matrix3Xd;      // 3 x n, one column per vertex
+using Triangles = Eigen::Matrix3Xi;   // 3 x n, vertex indices, anticlockwise seen from outside
+using Tetrahedra = Eigen::Matrix4Xi;  // 4 x n, vertex indices, det(b - a, c - a, d - a) > 0
+using Edges = Eigen::Matrix2Xi;       // 2 x n, vertex indices
 using ConstPoints = Eigen::Ref<const Points>;
 using MutablePoints = Eigen::Ref<Points>;
 
 struct Mesh {
   Points vertices;  // [m]
   Triangles triangles;
+  Tetrahedra tetrahedra;                            // of a solid; its surface is in triangles
   Edges edges;                                      // only where they are not the triangles' own edges
   std::map<std::string, std::vector<int>> regions;  // named vertex sets: "tendon", "muscle", "rim", "crus-right"
 };

@@ -36,6 +36,9 @@ void FillField(Message* message, const FieldDescriptor& field) {
   if (const v1::Toggle* toggle = ToggleOf(field)) {
     message->GetReflection()->SetBool(message, &field, toggle->default_value());
   }
+  if (const v1::Choice* choice = ChoiceOf(field)) {
+    message->GetReflection()->SetEnumValue(message, &field, choice->default_value());
+  }
 }
 
 void FillNested(Message* message, const FieldDescriptor& field) {

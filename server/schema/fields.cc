@@ -1,13 +1,17 @@
 #include "server/schema/fields.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 
+#include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 
 namespace phrenic::schema {
 
+using google::protobuf::EnumDescriptor;
+using google::protobuf::EnumValueDescriptor;
 using google::protobuf::FieldDescriptor;
 
 const v1::Quantity* QuantityOf(const FieldDescriptor& field) {
@@ -16,6 +20,33 @@ const v1::Quantity* QuantityOf(const FieldDescriptor& field) {
 
 const v1::Toggle* ToggleOf(const FieldDescriptor& field) {
   return field.options().HasExtension(v1::toggle) ? &field.options().GetExtension(v1::toggle) : nullptr;
+}
+
+const v1::Choice* ChoiceOf(const FieldDescriptor& field) {
+  return field.options().HasExtension(v1::choice) ? &field.options().GetExtension(v1::choice) : nullptr;
+}
+
+std::string ChoiceName(const EnumValueDescriptor& value) {
+  // Values are prefixed with the first value's name up to "UNSPECIFIED" (buf's ENUM_VALUE_PREFIX).
+  const size_t prefix = value.type()->value(0)->name().size() - std::string_view("UNSPECIFIED").size();
+  return absl::AsciiStrToLower(value.name().substr(prefix));
+}
+
+std::string ChoiceNames(const EnumDescriptor& type) {
+  std::string names;
+  for (int i = 1; i < type.value_count(); ++i) {
+    absl::StrAppend(&names, i > 1 ? ", " : "", ChoiceName(*type.value(i)));
+  }
+  return names;
+}
+
+const EnumValueDescriptor* FindChoice(const EnumDescriptor& type, std::string_view name) {
+  std::string wanted = absl::AsciiStrToLower(std::string(name));
+  std::replace(wanted.begin(), wanted.end(), '-', '_');
+  for (int i = 1; i < type.value_count(); ++i) {
+    if (ChoiceName(*type.value(i)) == wanted) return type.value(i);
+  }
+  return nullptr;
 }
 
 bool IsRequired(const FieldDescriptor& field) { return field.options().GetExtension(v1::required); }

@@ -6,15 +6,25 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "phrenic/v1/options.pb.h"
 
 namespace phrenic::schema {
 
-// The field's Quantity or Toggle; null where it has none. Lives as long as the field's descriptor.
+// The field's Quantity, Toggle or Choice; null where it has none. Lives as long as the field's descriptor.
 const v1::Quantity* QuantityOf(const google::protobuf::FieldDescriptor& field);
 const v1::Toggle* ToggleOf(const google::protobuf::FieldDescriptor& field);
+const v1::Choice* ChoiceOf(const google::protobuf::FieldDescriptor& field);
 bool IsRequired(const google::protobuf::FieldDescriptor& field);
+
+// What a person calls a value of an enum: "velocity_verlet" for INTEGRATOR_VELOCITY_VERLET of enum Integrator.
+std::string ChoiceName(const google::protobuf::EnumValueDescriptor& value);
+// The names of all values but the unspecified one: "semi_implicit_euler, velocity_verlet".
+std::string ChoiceNames(const google::protobuf::EnumDescriptor& type);
+// The value of that name, whatever the case; null where there is none.
+const google::protobuf::EnumValueDescriptor* FindChoice(const google::protobuf::EnumDescriptor& type,
+                                                        std::string_view name);
 
 // The shortest decimal that reads back as the same number: "0.1", "1e+09".
 std::string FormatNumber(double value);

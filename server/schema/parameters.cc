@@ -59,6 +59,19 @@ absl::Status SetToggle(const FieldDescriptor& field, const std::string& value, v
   return absl::OkStatus();
 }
 
+absl::Status SetChoice(const FieldDescriptor& field, const std::string& text, v1::Parameters* parameters) {
+  const google::protobuf::EnumValueDescriptor* value = FindChoice(*field.enum_type(), text);
+  if (value == nullptr) {
+    return absl::InvalidArgumentError(absl::StrCat(field.name(),
+                                                   ": there is no "
+                                                   ", text, "
+                                                   "; there are ",
+                                                   ChoiceNames(*field.enum_type())));
+  }
+  parameters->GetReflection()->SetEnum(parameters, &field, value);
+  return absl::OkStatus();
+}
+
 absl::Status SetNumber(const FieldDescriptor& field, const std::string& text, v1::Parameters* parameters) {
   const v1::Quantity* quantity = QuantityOf(field);
   double value = 0;
@@ -80,9 +93,15 @@ absl::Status SetParameter(std::string_view name, std::string_view value, v1::Par
   if (field == nullptr) return NoSuchParameter(name);
   std::string text(value);
   absl::StripAsciiWhitespace(&text);
-  // Parameters are switches and real numbers; tests/schema holds that.
-  return field->cpp_type() == FieldDescriptor::CPPTYPE_BOOL ? SetToggle(*field, text, parameters)
-                                                            : SetNumber(*field, text, parameters);
+  // Parameters are switches, choices and real numbers; tests/schema holds that.
+  switch (field->cpp_type()) {
+    case FieldDescriptor::CPPTYPE_BOOL:
+      return SetToggle(*field, text, parameters);
+    case FieldDescriptor::CPPTYPE_ENUM:
+      return SetChoice(*field, text, parameters);
+    default:
+      return SetNumber(*field, text, parameters);
+  }
 }
 
 }  // namespace phrenic::schema

@@ -1,6 +1,5 @@
 #include "server/session/run.h"
 
-#include <cmath>
 #include <utility>
 
 #include "absl/strings/str_format.h"
@@ -24,13 +23,8 @@ absl::Status Run::Step() {
   if (divergence_.has_value()) return absl::FailedPreconditionError(Describe(*divergence_));
   const double dt = parameters_.time_step();
   if (phrenic::Step(*model_, parameters_, dt, state_, work_).ok()) return absl::OkStatus();
-  // The workspace still has the positions from which the step set out.
   State before = state_;
-  before.x = work_.before;
-  before.v = before.v.unaryExpr([](double v) { return std::isfinite(v) ? v : 0.0; });
-  before.time -= dt;
-  before.phase -= dt / parameters_.breath_length();
-  --before.tick;
+  TakeBack(*model_, parameters_, dt, work_, before);
   divergence_ = Diagnose(*model_, parameters_, before, state_);
   state_ = std::move(before);
   return absl::OutOfRangeError(Describe(*divergence_));

@@ -24,7 +24,6 @@ std::string Scene(const std::string& from = "", const std::string& to = "") {
     }
     forces { springs { bodies: "sheet" stiffness: 20 } }
     forces { gravity { bodies: "sheet" acceleration { z: -1 } } }
-    integrator { semi_implicit_euler {} }
     probes { name: "corner" body: "sheet" vertex: 2 }
     parameters { time_step: 0.01 }
   )";

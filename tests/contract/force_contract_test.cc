@@ -3,6 +3,7 @@
 
 #include <random>
 
+#include "server/mechanics/block_matrix.h"
 #include "tests/compile_text.h"
 
 namespace phrenic {
@@ -57,6 +58,13 @@ class ForceContract : public testing::TestWithParam<ForceCase> {
     force().AddForce(At(state), f);
     return f;
   }
+  Points StiffnessTimes(const State& state, const Points& dx) const {
+    BlockMatrix stiffness(*model_);
+    stiffness.Assemble(*model_, At(state));
+    Points product(3, dx.cols());
+    stiffness.Times(dx, product);
+    return product;
+  }
   double EnergyAt(const State& state) const { return force().Energy(At(state)); }
 
   std::shared_ptr<const Model> model_;
@@ -87,8 +95,7 @@ TEST_P(ForceContract, StiffnessIsForceDerivative) {
   constexpr double kStep = 1e-6;
   const Points dx = state_.x - rest.x;
   low.x -= kStep * dx, high.x += kStep * dx;
-  Points df = Points::Zero(3, dx.cols());
-  force().AddStiffnessTimes(At(rest), dx, df);
+  const Points df = -StiffnessTimes(rest, dx);
   const Points difference = (ForceAt(high) - ForceAt(low)) / (2 * kStep);
   EXPECT_LT((df - difference).cwiseAbs().maxCoeff(), 1e-6 * (1 + difference.cwiseAbs().maxCoeff()));
 }
@@ -98,11 +105,19 @@ TEST_P(ForceContract, StiffnessIsSymmetricAndNeverPushesAlong) {
   std::uniform_real_distribution<double> value(-1, 1);
   const auto vector = [&] { return Points(Points::NullaryExpr(3, state_.x.cols(), [&] { return value(random); })); };
   const Points a = vector(), b = vector();
-  Points ka = Points::Zero(3, a.cols()), kb = ka;
-  force().AddStiffnessTimes(At(state_), a, ka);
-  force().AddStiffnessTimes(At(state_), b, kb);
+  const Points ka = StiffnessTimes(state_, a), kb = StiffnessTimes(state_, b);
   EXPECT_NEAR(ka.cwiseProduct(b).sum(), kb.cwiseProduct(a).sum(), 1e-9);
-  EXPECT_LE(ka.cwiseProduct(a).sum(), 1e-12);
+  EXPECT_GE(ka.cwiseProduct(a).sum(), -1e-12);
+}
+
+// What the velocities change of the force is -c v, vertex by vertex.
+TEST_P(ForceContract, DampingIsTheForcesPartInVelocity) {
+  State still = state_;
+  still.v.setZero();
+  Eigen::VectorXd c = Eigen::VectorXd::Zero(state_.x.cols());
+  force().AddDamping(At(state_), c);
+  EXPECT_GE(c.minCoeff(), 0);
+  EXPECT_LT((ForceAt(state_) - ForceAt(still) + state_.v * c.asDiagonal()).cwiseAbs().maxCoeff(), 1e-12);
 }
 
 TEST_P(ForceContract, InternalForcesAndTorquesSumToZero) {
@@ -127,9 +142,7 @@ TEST_P(ForceContract, RigidMotionChangesNothing) {
 TEST_P(ForceContract, IsFiniteWhereVerticesCoincide) {
   state_.x.setZero();
   EXPECT_TRUE(ForceAt(state_).allFinite());
-  Points df = Points::Zero(3, state_.x.cols());
-  force().AddStiffnessTimes(At(state_), model_->rest, df);
-  EXPECT_TRUE(df.allFinite());
+  EXPECT_TRUE(StiffnessTimes(state_, model_->rest).allFinite());
 }
 
 INSTANTIATE_TEST_SUITE_P(Forces, ForceContract, testing::ValuesIn(kForces),

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "absl/strings/str_format.h"
+#include "server/mechanics/catalogue.h"
 #include "server/mechanics/spectrum.h"
 #include "tests/compile_text.h"
 
@@ -16,7 +17,7 @@ struct IntegratorCase {
 };
 
 const IntegratorCase kIntegrators[] = {
-    {"semi_implicit_euler", "semi_implicit_euler {}"},
+    {"semi_implicit_euler", "INTEGRATOR_SEMI_IMPLICIT_EULER"},
 };
 
 // A free mass of 1 kg on a spring of rest length 1 m from a fixed one; x(0) is `stretch` beyond it.
@@ -26,8 +27,8 @@ std::string Oscillator(const std::string& integrator, double stiffness, double f
          "vertices {} vertices { x: " +
          absl::StrFormat("%.17g", length) + " } edges { a: 0 b: 1 } } } forces { springs { bodies: 'pair' stiffness: " +
          absl::StrFormat("%.17g rest_length_ratio: %.17g", stiffness, 1 / length) +
-         " } } forces { friction { bodies: 'pair' rate: " + absl::StrFormat("%.17g", friction) + " } } integrator { " +
-         integrator + " }";
+         " } } forces { friction { bodies: 'pair' rate: " + absl::StrFormat("%.17g", friction) +
+         " } } parameters { integrator: " + integrator + " }";
 }
 
 void PrintTo(const IntegratorCase& integrator, std::ostream* out) { *out << integrator.name; }
@@ -40,7 +41,7 @@ TEST_P(IntegratorContract, ConvergesAtItsOrder) {
   const double exact = 1 + 0.125 * std::exp(-c * t / 2) * (std::cos(omega * t) + c / (2 * omega) * std::sin(omega * t));
   const auto error = [&](double dt) { return std::abs(RunTo(*model, t, dt).x(0, 1) - exact); };
   const double measured = std::log2(error(1e-3) / error(5e-4));
-  EXPECT_NEAR(measured, model->integrator->order(), 0.1);
+  EXPECT_NEAR(measured, FindIntegrator(model->parameters.integrator()).order(), 0.1);
 }
 
 // One step below the predicted limit stays for ever, one above it does not.
@@ -48,7 +49,7 @@ TEST_P(IntegratorContract, StatesItsStabilityLimit) {
   for (const double friction : {0.0, 5.0}) {
     const auto model = CompileText(Oscillator(GetParam().text, 100, friction, 0.01));
     const FastestMode mode = FindFastestMode(*model, model->parameters, model->InitialState());
-    const double limit = model->integrator->MaxStep(mode.spectrum);
+    const double limit = FindIntegrator(model->parameters.integrator()).MaxStep(mode.spectrum);
     const auto ends_well = [&](double dt) {
       State state = model->InitialState();
       Workspace work = model->MakeWorkspace();

@@ -46,7 +46,7 @@ TEST(Defaults, MakeNoMessagesOfTheirOwn) {
   scene.add_bodies();
   FillDefaults(&scene);
   EXPECT_FALSE(scene.has_parameters());
-  EXPECT_FALSE(scene.has_integrator());
+  EXPECT_FALSE(scene.has_breath());
   EXPECT_EQ(scene.bodies(0).shape_case(), v1::Body::SHAPE_NOT_SET);
 }
 

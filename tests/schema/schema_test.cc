@@ -73,17 +73,41 @@ TEST(Schema, TogglesStandOnSwitchesThatKnowWhetherTheyAreSet) {
   });
 }
 
-TEST(Schema, ParametersAreOptionalRealsAndSwitchesWithLabelAndHelp) {
+TEST(Schema, ChoicesStandOnEnumsAndHaveADefaultAmongTheirValues) {
+  ForEachField([](const FieldDescriptor& field) {
+    const v1::Choice* choice = ChoiceOf(field);
+    if (choice == nullptr) return;
+    ASSERT_EQ(field.cpp_type(), FieldDescriptor::CPPTYPE_ENUM) << field.full_name();
+    EXPECT_TRUE(field.has_presence()) << field.full_name() << " must be optional";
+    EXPECT_NE(field.enum_type()->FindValueByNumber(choice->default_value()), nullptr) << field.full_name();
+    EXPECT_GT(choice->default_value(), 0) << field.full_name();
+  });
+}
+
+TEST(Schema, ChoicesAreCalledByWhatIsParticularInTheirNames) {
+  const google::protobuf::EnumDescriptor& type = *v1::Integrator_descriptor();
+  EXPECT_EQ(ChoiceName(*type.FindValueByNumber(v1::INTEGRATOR_SEMI_IMPLICIT_EULER)), "semi_implicit_euler");
+  for (int i = 1; i < type.value_count(); ++i) EXPECT_EQ(FindChoice(type, ChoiceName(*type.value(i))), type.value(i));
+  EXPECT_EQ(FindChoice(type, "Semi-Implicit-Euler"), type.FindValueByNumber(v1::INTEGRATOR_SEMI_IMPLICIT_EULER));
+  EXPECT_EQ(FindChoice(type, "unspecified"), nullptr);
+}
+
+TEST(Schema, ParametersAreOptionalRealsSwitchesAndChoicesWithLabelAndHelp) {
   const Descriptor& type = *v1::Parameters::descriptor();
   for (int i = 0; i < type.field_count(); ++i) {
     const FieldDescriptor& field = *type.field(i);
     EXPECT_TRUE(field.has_presence()) << field.name();
-    const v1::Quantity* quantity = QuantityOf(field);
-    const v1::Toggle* toggle = ToggleOf(field);
-    ASSERT_NE(quantity == nullptr, toggle == nullptr) << field.name() << " needs a quantity or a toggle";
-    EXPECT_EQ(field.cpp_type(), quantity ? FieldDescriptor::CPPTYPE_DOUBLE : FieldDescriptor::CPPTYPE_BOOL);
-    EXPECT_FALSE((quantity ? quantity->label() : toggle->label()).empty()) << field.name();
-    EXPECT_FALSE((quantity ? quantity->help() : toggle->help()).empty()) << field.name();
+    std::string label, help;
+    if (const v1::Quantity* quantity = QuantityOf(field)) {
+      EXPECT_EQ(field.cpp_type(), FieldDescriptor::CPPTYPE_DOUBLE);
+      label = quantity->label(), help = quantity->help();
+    } else if (const v1::Toggle* toggle = ToggleOf(field)) {
+      label = toggle->label(), help = toggle->help();
+    } else if (const v1::Choice* choice = ChoiceOf(field)) {
+      label = choice->label(), help = choice->help();
+    }
+    EXPECT_FALSE(label.empty()) << field.name() << " needs a quantity, a toggle or a choice, with a label";
+    EXPECT_FALSE(help.empty()) << field.name();
   }
 }
 

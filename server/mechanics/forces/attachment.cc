@@ -80,7 +80,6 @@ void Attachment::AddHolds(const v1::Attachment& scene, const std::vector<int>& c
     holds_.push_back({vertex, stiffness, damping, body.mesh.vertices.col(i), static_cast<int>(shares_.size()),
                       static_cast<int>(shares.size())});
     shares_.insert(shares_.end(), shares.begin(), shares.end());
-    damping_rate_ = std::max(damping_rate_, damping * draft.model.inverse_mass[vertex]);
     draft.model.attached_vertices.push_back(vertex);
   }
 }
@@ -105,8 +104,12 @@ void Attachment::AddForce(const Instant& at, MutablePoints f) const {
   }
 }
 
-void Attachment::AddStiffnessTimes(const Instant&, const ConstPoints& dx, MutablePoints df) const {
-  for (const Hold& hold : holds_) df.col(hold.vertex) -= hold.stiffness * dx.col(hold.vertex);
+void Attachment::AddStiffness(const Instant&, StiffnessSink& sink) const {
+  for (const Hold& hold : holds_) sink.Add(hold.vertex, hold.vertex, hold.stiffness * Eigen::Matrix3d::Identity());
+}
+
+void Attachment::AddDamping(const Instant&, Eigen::VectorXd& c) const {
+  for (const Hold& hold : holds_) c[hold.vertex] += hold.damping;
 }
 
 }  // namespace phrenic

@@ -17,8 +17,8 @@ class Attachment final : public Force {
                                                      std::string_view path, Draft& draft);
 
   void AddForce(const Instant& at, MutablePoints f) const override;
-  void AddStiffnessTimes(const Instant& at, const ConstPoints& dx, MutablePoints df) const override;
-  double DampingRate() const override { return damping_rate_; }
+  void AddStiffness(const Instant& at, StiffnessSink& sink) const override;
+  void AddDamping(const Instant& at, Eigen::VectorXd& c) const override;
 
  private:
   struct Hold {
@@ -34,7 +34,6 @@ class Attachment final : public Force {
 
   std::vector<Hold> holds_;
   std::vector<RideShare> shares_;
-  double damping_rate_ = 0;  // [1/s]
 };
 
 }  // namespace phrenic

@@ -14,7 +14,7 @@ absl::StatusOr<std::unique_ptr<Force>> Friction::Make(const v1::Friction& scene,
     draft.ReportLeftOut(name, "its rate is 0");
     return nullptr;
   }
-  std::unique_ptr<Friction> force(new Friction(name, scene.rate()));
+  std::unique_ptr<Friction> force(new Friction(name));
   force->coefficient_ = Eigen::VectorXd::Zero(draft.model.rest.cols());
   std::int64_t count = 0;
   for (const int b : *bodies) {

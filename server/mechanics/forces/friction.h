@@ -13,12 +13,11 @@ class Friction final : public Force {
                                                      std::string_view path, Draft& draft);
 
   void AddForce(const Instant& at, MutablePoints f) const override;
-  double DampingRate() const override { return rate_; }
+  void AddDamping(const Instant&, Eigen::VectorXd& c) const override { c += coefficient_; }
 
  private:
-  Friction(std::string name, double rate) : Force(std::move(name)), rate_(rate) {}
+  explicit Friction(std::string name) : Force(std::move(name)) {}
 
-  double rate_;                  // [1/s]
   Eigen::VectorXd coefficient_;  // g of each simulated vertex [N s/m]
 };
 

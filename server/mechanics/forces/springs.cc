@@ -63,19 +63,16 @@ void Springs::AddForce(const Instant& at, MutablePoints f) const {
   if (rest_load_.cols() > 0) f += at.parameters.elasticity() * rest_load_;
 }
 
-void Springs::AddStiffnessTimes(const Instant& at, const ConstPoints& dx, MutablePoints df) const {
+void Springs::AddStiffness(const Instant& at, StiffnessSink& sink) const {
   const double elasticity = at.parameters.elasticity();
   for (const Spring& spring : springs_) {
     const Eigen::Vector3d edge = at.x.col(spring.b) - at.x.col(spring.a);
     const double length = edge.norm();
     if (length == 0) continue;
-    const Eigen::Vector3d d = edge / length;
-    const Eigen::Vector3d relative = dx.col(spring.b) - dx.col(spring.a);
-    const double along = d.dot(relative);
+    const Eigen::Matrix3d along = edge / length * (edge / length).transpose();
     const double transverse = std::max(0.0, 1 - spring.rest_length / length);
-    const Eigen::Vector3d change = elasticity * spring.stiffness * (along * d + transverse * (relative - along * d));
-    df.col(spring.a) += change;
-    df.col(spring.b) -= change;
+    sink.AddBetween(spring.a, spring.b,
+                    elasticity * spring.stiffness * (along + transverse * (Eigen::Matrix3d::Identity() - along)));
   }
 }
 

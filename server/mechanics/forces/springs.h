@@ -17,7 +17,7 @@ class Springs final : public Force {
                                                      std::string_view path, Draft& draft);
 
   void AddForce(const Instant& at, MutablePoints f) const override;
-  void AddStiffnessTimes(const Instant& at, const ConstPoints& dx, MutablePoints df) const override;
+  void AddStiffness(const Instant& at, StiffnessSink& sink) const override;
   double Energy(const Instant& at) const override;
   bool conservative() const override { return true; }
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "server/mechanics/model.h"
+#include "server/mechanics/advance.h"
 
 namespace phrenic {
 
@@ -13,16 +13,17 @@ double SemiImplicitEuler::MaxStep(const Spectrum& spectrum) const {
   return 4 / (c + std::sqrt(c * c + 4 * omega2));
 }
 
-void SemiImplicitEuler::Advance(const Model& model, const v1::Parameters& parameters, double dt, State& state,
-                                Workspace& work) const {
-  work.force.setZero();
-  const Instant now = MakeInstant(model, parameters, state);
-  for (const auto& force : model.forces) force->AddForce(now, work.force);
+absl::Status SemiImplicitEuler::Advance(const Model& model, const v1::Parameters& parameters, double dt, State& state,
+                                        Workspace& work) const {
+  DriveMotions(model, parameters, dt, state);
+  SumForces(model, MakeInstant(model, parameters, state), work.force);
   for (Eigen::Index i = 0; i < state.x.cols(); ++i) {
     if (model.inverse_mass[i] == 0) continue;  // fixed, or set by a motion
     state.v.col(i) += dt * model.inverse_mass[i] * work.force.col(i);
     state.x.col(i) += dt * state.v.col(i);
   }
+  ProjectPositions(model, parameters, work.before, dt, state);
+  return absl::OkStatus();
 }
 
 }  // namespace phrenic

@@ -12,8 +12,8 @@ class SemiImplicitEuler final : public Integrator {
   std::string_view name() const override { return "semi-implicit Euler"; }
   int order() const override { return 1; }
   double MaxStep(const Spectrum& spectrum) const override;
-  void Advance(const Model& model, const v1::Parameters& parameters, double dt, State& state,
-               Workspace& work) const override;
+  absl::Status Advance(const Model& model, const v1::Parameters& parameters, double dt, State& state,
+                       Workspace& work) const override;
 };
 
 }  // namespace phrenic

@@ -1,0 +1,31 @@
+// What integrators are made of.
+#ifndef PHRENIC_SERVER_MECHANICS_ADVANCE_H_
+#define PHRENIC_SERVER_MECHANICS_ADVANCE_H_
+
+#include "server/mechanics/model.h"
+
+namespace phrenic {
+
+// The moment `ahead` [s] of the state's own time, seen with its present positions, velocities and poses.
+Instant InstantAhead(const Model& model, const v1::Parameters& parameters, double ahead, const State& state);
+
+// Sets driven vertices and poses to where the motions have them `ahead` [s] of the state's own time.
+void DriveMotions(const Model& model, const v1::Parameters& parameters, double ahead, State& state);
+
+// f = the sum of all forces [N].
+void SumForces(const Model& model, const Instant& at, Points& f);
+
+// c = the sum of all damping coefficients [N s/m].
+void SumDamping(const Model& model, const Instant& at, Eigen::VectorXd& c);
+
+// x += shift, but for fixed and driven vertices; shift 3 x n.
+void AddToFree(const Model& model, double scale, const Points& shift, Points& x);
+
+// Constraints in the scene's order: positions (and velocities with them), or velocities alone.
+void ProjectPositions(const Model& model, const v1::Parameters& parameters, const ConstPoints& before, double dt,
+                      State& state);
+void ProjectVelocities(const Model& model, const v1::Parameters& parameters, State& state);
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_SERVER_MECHANICS_ADVANCE_H_

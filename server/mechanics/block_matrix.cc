@@ -1,0 +1,90 @@
+#include "server/mechanics/block_matrix.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace phrenic {
+namespace {
+
+// Notes which blocks the forces fill.
+class Pattern final : public StiffnessSink {
+ public:
+  void Add(int i, int j, const Eigen::Matrix3d&) override { places.emplace_back(i, j); }
+  void AddOuter(double, const Points&) override {}
+
+  std::vector<std::pair<int, int>> places;
+};
+
+}  // namespace
+
+BlockMatrix::BlockMatrix(const Model& model) {
+  Pattern pattern;
+  const int n = static_cast<int>(model.rest.cols());
+  for (int i = 0; i < n; ++i) pattern.places.emplace_back(i, i);
+  const State rest = model.InitialState();
+  const Instant at = MakeInstant(model, model.parameters, rest);
+  for (const auto& force : model.forces) force->AddStiffness(at, pattern);
+  std::sort(pattern.places.begin(), pattern.places.end());
+  pattern.places.erase(std::unique(pattern.places.begin(), pattern.places.end()), pattern.places.end());
+  first_.assign(static_cast<size_t>(n) + 1, 0);
+  diagonal_.resize(n);
+  for (const auto& [i, j] : pattern.places) {
+    if (i == j) diagonal_[i] = static_cast<int>(columns_.size());
+    columns_.push_back(j);
+    first_[i + 1] = static_cast<int>(columns_.size());
+  }
+  blocks_.assign(columns_.size(), Eigen::Matrix3d::Zero());
+}
+
+void BlockMatrix::Assemble(const Model& model, const Instant& at) {
+  std::fill(blocks_.begin(), blocks_.end(), Eigen::Matrix3d::Zero());
+  extra_.clear();
+  outers_ = 0;
+  for (const auto& force : model.forces) force->AddStiffness(at, *this);
+}
+
+void BlockMatrix::Add(int i, int j, const Eigen::Matrix3d& block) {
+  const auto begin = columns_.begin() + first_[i], end = columns_.begin() + first_[i + 1];
+  const auto place = i == j ? columns_.begin() + diagonal_[i] : std::lower_bound(begin, end, j);
+  if (place != end && *place == j) {
+    blocks_[place - columns_.begin()] += block;
+  } else {
+    extra_.push_back({i, j, block});
+  }
+}
+
+void BlockMatrix::AddOuter(double scale, const Points& g) {
+  if (outers_ == outer_.size()) outer_.emplace_back();
+  outer_[outers_].scale = scale;
+  outer_[outers_].g = g;
+  ++outers_;
+}
+
+void BlockMatrix::Times(const ConstPoints& x, MutablePoints y) const {
+  for (int i = 0; i < vertices(); ++i) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (int k = first_[i]; k < first_[i + 1]; ++k) sum += blocks_[k] * x.col(columns_[k]);
+    y.col(i) = sum;
+  }
+  for (const Extra& extra : extra_) y.col(extra.i) += extra.block * x.col(extra.j);
+  for (size_t k = 0; k < outers_; ++k) y += outer_[k].scale * outer_[k].g.cwiseProduct(x).sum() * outer_[k].g;
+}
+
+Eigen::SparseMatrix<double> BlockMatrix::ToSparse() const {
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(9 * (blocks_.size() + extra_.size()));
+  const auto add = [&entries](int i, int j, const Eigen::Matrix3d& block) {
+    for (int r = 0; r < 3; ++r) {
+      for (int c = 0; c < 3; ++c) entries.emplace_back(3 * i + r, 3 * j + c, block(r, c));
+    }
+  };
+  for (int i = 0; i < vertices(); ++i) {
+    for (int k = first_[i]; k < first_[i + 1]; ++k) add(i, columns_[k], blocks_[k]);
+  }
+  for (const Extra& extra : extra_) add(extra.i, extra.j, extra.block);
+  Eigen::SparseMatrix<double> sparse(3L * vertices(), 3L * vertices());
+  sparse.setFromTriplets(entries.begin(), entries.end());
+  return sparse;
+}
+
+}  // namespace phrenic

@@ -1,0 +1,54 @@
+// The stiffness of a whole model as a sparse matrix of 3 x 3 blocks: assembled once, multiplied many times.
+#ifndef PHRENIC_SERVER_MECHANICS_BLOCK_MATRIX_H_
+#define PHRENIC_SERVER_MECHANICS_BLOCK_MATRIX_H_
+
+#include <Eigen/SparseCore>
+#include <vector>
+
+#include "server/mechanics/model.h"
+
+namespace phrenic {
+
+// K, 3n x 3n, symmetric. Not thread-safe. Where a block lies is found once, from the model at rest; a block that turns
+// up later (a contact) is kept beside, more slowly.
+class BlockMatrix final : public StiffnessSink {
+ public:
+  // The pattern of every force of the model at rest; values zero.
+  explicit BlockMatrix(const Model& model);
+
+  // K = the stiffness of the model's forces at this instant. Allocates only for blocks that are new to the pattern.
+  void Assemble(const Model& model, const Instant& at);
+
+  void Add(int i, int j, const Eigen::Matrix3d& block) override;
+  void AddOuter(double scale, const Points& g) override;
+
+  // y = K x, both 3 x n.
+  void Times(const ConstPoints& x, MutablePoints y) const;
+  // The block on the diagonal of vertex i, outer products left out.
+  Eigen::Matrix3d Diagonal(int i) const { return blocks_[diagonal_[i]]; }
+  // K as scalars, for factorisations; outer products left out.
+  Eigen::SparseMatrix<double> ToSparse() const;
+  int vertices() const { return static_cast<int>(first_.size()) - 1; }
+
+ private:
+  struct Extra {
+    int i, j;
+    Eigen::Matrix3d block;
+  };
+  struct Outer {
+    double scale;
+    Points g;
+  };
+
+  std::vector<int> first_;     // of row i in columns_ and blocks_; n + 1 of them
+  std::vector<int> columns_;   // ascending in each row
+  std::vector<int> diagonal_;  // place of block (i, i)
+  std::vector<Eigen::Matrix3d> blocks_;
+  std::vector<Extra> extra_;
+  std::vector<Outer> outer_;
+  size_t outers_ = 0;  // of outer_ in use
+};
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_SERVER_MECHANICS_BLOCK_MATRIX_H_
