@@ -128,7 +128,9 @@ Mesh LargestComponent(const Mesh& mesh) {
   for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) ++size[Root(parent, mesh.triangles(0, t))];
   const auto largest = static_cast<int>(std::max_element(size.begin(), size.end()) - size.begin());
   std::vector<int> renumbered(parent.size(), -1);
-  Mesh kept{Points(3, mesh.vertices.cols()), Triangles(3, mesh.triangles.cols()), {}, {}};
+  Mesh kept;
+  kept.vertices.resize(3, mesh.vertices.cols());
+  kept.triangles.resize(3, mesh.triangles.cols());
   int vertices = 0, triangles = 0;
   for (int i = 0; i < static_cast<int>(parent.size()); ++i) {
     if (Root(parent, i) != largest) continue;
