@@ -7,7 +7,14 @@
 #include "server/mechanics/forces/friction.h"
 #include "server/mechanics/forces/gravity.h"
 #include "server/mechanics/forces/springs.h"
+#include "server/mechanics/integrators/bdf2.h"
+#include "server/mechanics/integrators/explicit_euler.h"
+#include "server/mechanics/integrators/linear_implicit_euler.h"
+#include "server/mechanics/integrators/rk4.h"
 #include "server/mechanics/integrators/semi_implicit_euler.h"
+#include "server/mechanics/integrators/thesis_euler.h"
+#include "server/mechanics/integrators/tr_bdf2.h"
+#include "server/mechanics/integrators/velocity_verlet.h"
 #include "server/mechanics/motions/oscillation.h"
 #include "server/mechanics/motions/ribs.h"
 #include "server/mechanics/motions/riding.h"
@@ -57,16 +64,39 @@ absl::StatusOr<std::unique_ptr<Constraint>> MakeConstraint(const v1::Constraint&
   return NoKind(path);
 }
 
+namespace {
+
+template <typename Kind>
+const Integrator& Only() {
+  static const Kind only;
+  return only;
+}
+
+}  // namespace
+
 const Integrator& FindIntegrator(v1::Integrator kind) {
-  static const SemiImplicitEuler semi_implicit_euler;
   switch (kind) {
+    case v1::INTEGRATOR_THESIS:
+      return Only<ThesisEuler>();
+    case v1::INTEGRATOR_EXPLICIT_EULER:
+      return Only<ExplicitEuler>();
+    case v1::INTEGRATOR_VELOCITY_VERLET:
+      return Only<VelocityVerlet>();
+    case v1::INTEGRATOR_RUNGE_KUTTA_4:
+      return Only<Rk4>();
+    case v1::INTEGRATOR_LINEAR_IMPLICIT_EULER:
+      return Only<LinearImplicitEuler>();
+    case v1::INTEGRATOR_BDF2:
+      return Only<Bdf2>();
+    case v1::INTEGRATOR_TR_BDF2:
+      return Only<TrBdf2>();
     case v1::INTEGRATOR_SEMI_IMPLICIT_EULER:
     case v1::INTEGRATOR_UNSPECIFIED:
     case v1::Integrator_INT_MIN_SENTINEL_DO_NOT_USE_:
     case v1::Integrator_INT_MAX_SENTINEL_DO_NOT_USE_:
       break;
   }
-  return semi_implicit_euler;
+  return Only<SemiImplicitEuler>();
 }
 
 absl::Status AddMotion(const v1::Motion& scene, std::string_view path, Draft& draft) {

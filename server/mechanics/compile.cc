@@ -87,6 +87,12 @@ std::string StiffestElementAt(const Model& model, const Instant& at, int vertex)
   return name;
 }
 
+std::string Verdict(const Integrator& integrator, double limit) {
+  if (limit == 0) return absl::StrCat("; ", std::string(integrator.name()), " is stable at no step here");
+  if (std::isinf(limit)) return absl::StrCat("; ", std::string(integrator.name()), " is stable at any step");
+  return "";
+}
+
 void ResolveParameters(Model& model) {
   model.parameters = model.scene.parameters();
   schema::FillDefaults(&model.parameters);
@@ -102,7 +108,9 @@ double RoundDown(double value) {
 void ChooseStep(Model& model) {
   v1::StableStep stable = LargestStableStep(model, model.parameters);
   if (!model.scene.parameters().has_time_step()) {
-    model.parameters.set_time_step(std::min(RoundDown(kChosen * stable.seconds()), kLongestStep));
+    // Where no step is stable: a small one, so that it can be watched going wrong.
+    const double limit = stable.seconds() > 0 ? stable.seconds() : 0.1 / stable.omega_max();
+    model.parameters.set_time_step(std::min(RoundDown(kChosen * limit), kLongestStep));
   }
   stable.set_chosen_seconds(model.parameters.time_step());
   *model.report.mutable_stable_step() = stable;
@@ -135,7 +143,8 @@ v1::StableStep LargestStableStep(const Model& model, const v1::Parameters& param
   v1::StableStep report;
   const State state = model.InitialState();
   const FastestMode fastest = FindFastestMode(model, parameters, state);
-  const double limit = kSafety * FindIntegrator(parameters.integrator()).MaxStep(fastest.spectrum);
+  const Integrator& integrator = FindIntegrator(parameters.integrator());
+  const double limit = kSafety * integrator.MaxStep(fastest.spectrum);
   report.set_omega_max(fastest.spectrum.omega_max);
   const double largest_step =
       v1::Parameters::descriptor()->FindFieldByName("time_step")->options().GetExtension(v1::quantity).maximum();
@@ -145,10 +154,10 @@ v1::StableStep LargestStableStep(const Model& model, const v1::Parameters& param
     return report;
   }
   const BodyModel& body = model.BodyOf(fastest.vertex);
-  report.set_reason(absl::StrFormat("fastest vibration %.3g rad/s at vertex %d of %s, by %s; damping %.3g 1/s",
-                                    fastest.spectrum.omega_max, fastest.vertex - body.first_vertex, body.name,
-                                    StiffestElementAt(model, MakeInstant(model, parameters, state), fastest.vertex),
-                                    fastest.spectrum.damping_rate));
+  const std::string stiffest = StiffestElementAt(model, MakeInstant(model, parameters, state), fastest.vertex);
+  report.set_reason(absl::StrFormat("fastest vibration %.3g rad/s at vertex %d of %s, by %s; damping %.3g 1/s%s",
+                                    fastest.spectrum.omega_max, fastest.vertex - body.first_vertex, body.name, stiffest,
+                                    fastest.spectrum.damping_rate, Verdict(integrator, limit)));
   return report;
 }
 

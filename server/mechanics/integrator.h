@@ -3,6 +3,7 @@
 #ifndef PHRENIC_SERVER_MECHANICS_INTEGRATOR_H_
 #define PHRENIC_SERVER_MECHANICS_INTEGRATOR_H_
 
+#include <memory>
 #include <string_view>
 #include <vector>
 
@@ -13,20 +14,29 @@
 namespace phrenic {
 
 struct Model;
+class ImplicitSystem;
 
 // Memory that a step needs; made once per session, so that no step allocates (the first one after a change of
 // integrator may). Holds nothing between steps but what can be worked out again.
 struct Workspace {
-  Points before, velocity_before;  // at the start of the step [m], [m/s]
-  Points force;                    // [N]
-  Eigen::VectorXd damping;         // [N s/m] a vertex
-  std::vector<Points> stages;      // of the integrators that have stages
+  Workspace();
+  Workspace(Workspace&&) noexcept;
+  Workspace& operator=(Workspace&&) noexcept;
+  ~Workspace();
+
+  Points before, velocity_before;          // at the start of the step [m], [m/s]
+  Points force;                            // [N]
+  Eigen::VectorXd damping;                 // [N s/m] a vertex
+  std::vector<Points> stages;              // of the integrators that have stages; made when first needed
+  std::vector<State> trials;               // of adaptive steps; made when first needed
+  std::unique_ptr<ImplicitSystem> system;  // of the implicit integrators; made when first needed
 };
 
 // What limits an explicit step.
 struct Spectrum {
-  double omega_max = 0;     // largest eigenfrequency [rad/s]
-  double damping_rate = 0;  // largest damping rate [1/s]
+  double omega_max = 0;           // largest eigenfrequency [rad/s]
+  double damping_rate = 0;        // largest damping rate [1/s]
+  double least_damping_rate = 0;  // smallest damping rate [1/s]
 };
 
 // Immutable; keeps nothing between calls except through State, so that a run is a function of model, parameters and
@@ -35,9 +45,9 @@ class Integrator {
  public:
   virtual ~Integrator() = default;
   virtual std::string_view name() const = 0;
-  // How the error at a given time falls with the step: as its power. Without rigid links.
+  // The error at a given time falls with this power of the step, without rigid links; 0 where it does not fall.
   virtual int order() const = 0;
-  // The largest stable step [s]; infinity where nothing limits it.
+  // The largest stable step [s]; infinity where nothing limits it, 0 where no step is stable.
   virtual double MaxStep(const Spectrum& spectrum) const = 0;
   // Carries positions, velocities and poses from state.time to state.time + dt; motions drive the bones, forces the
   // tissue, and constraints have the last word. Leaves state.time, phase and tick as they are. An error where it finds

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "server/mechanics/advance.h"
@@ -46,10 +47,16 @@ class ScaledStiffness {
   Eigen::VectorXd scale_;
 };
 
-double LargestDampingRate(const Model& model, const Instant& at) {
+// Of the free vertices.
+void FindDampingRates(const Model& model, const Instant& at, Spectrum& spectrum) {
   Eigen::VectorXd c(model.rest.cols());
   SumDamping(model, at, c);
-  return c.cwiseProduct(model.inverse_mass).maxCoeff();
+  spectrum.least_damping_rate = std::numeric_limits<double>::infinity();
+  for (Eigen::Index i = 0; i < c.size(); ++i) {
+    if (model.inverse_mass[i] == 0) continue;
+    spectrum.damping_rate = std::max(spectrum.damping_rate, c[i] * model.inverse_mass[i]);
+    spectrum.least_damping_rate = std::min(spectrum.least_damping_rate, c[i] * model.inverse_mass[i]);
+  }
 }
 
 struct Krylov {
@@ -89,7 +96,7 @@ FastestMode FindFastestMode(const Model& model, const v1::Parameters& parameters
   FastestMode fastest;
   if (model.rest.cols() == 0 || model.inverse_mass.maxCoeff() == 0) return fastest;
   const Instant at = MakeInstant(model, parameters, state);
-  fastest.spectrum.damping_rate = LargestDampingRate(model, at);
+  FindDampingRates(model, at, fastest.spectrum);
   const Krylov krylov = Lanczos(ScaledStiffness(model, at));
   const auto size = static_cast<Eigen::Index>(krylov.diagonal.size());
   if (size == 0) return fastest;

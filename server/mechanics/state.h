@@ -41,6 +41,7 @@ struct State {
   Points v;                 // their velocities [m/s]
   std::vector<Pose> poses;  // of the driven bodies
   History history;
+  int halvings = 0;  // of an adaptive step, the last time
 };
 
 // A word-wise FNV-1a over the bits of time, phase, positions and velocities: equal states, equal hashes.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "absl/strings/str_format.h"
+#include "server/mechanics/adaptive.h"
 #include "server/mechanics/advance.h"
 #include "server/mechanics/catalogue.h"
 #include "server/mechanics/compile.h"
@@ -71,7 +72,10 @@ std::string Remedy(const Model& model, const v1::Parameters& parameters) {
 absl::Status Step(const Model& model, const v1::Parameters& parameters, double dt, State& state, Workspace& work) {
   work.before = state.x;
   work.velocity_before = state.v;
-  absl::Status advanced = FindIntegrator(parameters.integrator()).Advance(model, parameters, dt, state, work);
+  const Integrator& integrator = FindIntegrator(parameters.integrator());
+  const bool adaptive = parameters.step_tolerance() > 0 && integrator.order() > 0;
+  absl::Status advanced = adaptive ? AdvanceAdaptively(model, parameters, integrator, dt, state, work)
+                                   : integrator.Advance(model, parameters, dt, state, work);
   state.time += dt;
   state.phase += dt / parameters.breath_length();
   ++state.tick;

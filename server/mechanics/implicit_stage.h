@@ -1,0 +1,27 @@
+// One implicit stage: what backward Euler, BDF2 and TR-BDF2 have in common.
+#ifndef PHRENIC_SERVER_MECHANICS_IMPLICIT_STAGE_H_
+#define PHRENIC_SERVER_MECHANICS_IMPLICIT_STAGE_H_
+
+#include "absl/status/status.h"
+#include "server/mechanics/model.h"
+
+namespace phrenic {
+
+// v' = velocity + g f(x', v', t + ahead)/m, x' = position + g v'.
+struct ImplicitStage {
+  double ahead;            // [s] of the state's own time
+  double g;                // [s]
+  const Points& position;  // [m]
+  const Points& velocity;  // [m/s]
+  int newton_steps;        // at most; 1 makes the method linearly implicit
+};
+
+// Solves the stage by Newton's method from the velocities that `state` has, and leaves x' and v' there, driven vertices
+// and poses where the motions have them. OUT_OF_RANGE where Newton's method does not settle within its steps (a single
+// one is not asked to). Does not allocate once `work` has its system.
+absl::Status SolveStage(const Model& model, const v1::Parameters& parameters, const ImplicitStage& stage, State& state,
+                        Workspace& work);
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_SERVER_MECHANICS_IMPLICIT_STAGE_H_

@@ -1,0 +1,12 @@
+#include "server/mechanics/integrator.h"
+
+#include "server/mechanics/implicit_system.h"
+
+namespace phrenic {
+
+Workspace::Workspace() = default;
+Workspace::Workspace(Workspace&&) noexcept = default;
+Workspace& Workspace::operator=(Workspace&&) noexcept = default;
+Workspace::~Workspace() = default;
+
+}  // namespace phrenic

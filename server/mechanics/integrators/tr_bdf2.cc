@@ -1,0 +1,43 @@
+#include "server/mechanics/integrators/tr_bdf2.h"
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+
+#include "server/mechanics/advance.h"
+#include "server/mechanics/implicit_stage.h"
+
+namespace phrenic {
+namespace {
+
+constexpr int kNewtonSteps = 12;
+constexpr double kGamma = 2 - std::numbers::sqrt2;
+constexpr double kWeight = kGamma / 2;  // of dt in g, the same in both stages
+// The second stage's own weights of the middle and of the start.
+constexpr double kMiddle = 1 / (kGamma * (2 - kGamma));
+constexpr double kStart = 1 - kMiddle;
+
+}  // namespace
+
+double TrBdf2::MaxStep(const Spectrum&) const { return std::numeric_limits<double>::infinity(); }
+
+absl::Status TrBdf2::Advance(const Model& model, const v1::Parameters& parameters, double dt, State& state,
+                             Workspace& work) const {
+  work.stages.resize(std::max<size_t>(work.stages.size(), 3));
+  Points &position = work.stages[1], &velocity = work.stages[2];
+  const double g = kWeight * dt;
+  SumForces(model, MakeInstant(model, parameters, state), work.force);
+  position = work.before + g * work.velocity_before;
+  velocity = work.velocity_before + g * work.force * model.inverse_mass.asDiagonal();
+  const ImplicitStage trapezoid{kGamma * dt, g, position, velocity, kNewtonSteps};
+  if (absl::Status solved = SolveStage(model, parameters, trapezoid, state, work); !solved.ok()) return solved;
+  position = kMiddle * state.x + kStart * work.before;
+  velocity = kMiddle * state.v + kStart * work.velocity_before;
+  const ImplicitStage bdf2{dt, g, position, velocity, kNewtonSteps};
+  if (absl::Status solved = SolveStage(model, parameters, bdf2, state, work); !solved.ok()) return solved;
+  ProjectPositions(model, parameters, work.before, dt, state);
+  ProjectVelocities(model, parameters, state);
+  return absl::OkStatus();
+}
+
+}  // namespace phrenic

@@ -1,0 +1,57 @@
+#include "server/mechanics/integrators/velocity_verlet.h"
+
+#include <limits>
+
+#include "server/mechanics/advance.h"
+
+namespace phrenic {
+namespace {
+
+// The force at the start of the step: that of the end of the last one, or worked out anew.
+void RecallForce(const Model& model, const v1::Parameters& parameters, const State& state, Points& force) {
+  const History& history = state.history;
+  if (history.integrator == v1::INTEGRATOR_VELOCITY_VERLET && history.tick == state.tick) {
+    force = history.force;
+  } else {
+    SumForces(model, MakeInstant(model, parameters, state), force);
+  }
+}
+
+// v' = v + dt/2 f(x', v')/m, where f has been worked out with v and holds -c v: linear in v', so solved at once.
+void KickImplicitly(const Model& model, double dt, const Eigen::VectorXd& damping, const Points& force, Points& v) {
+  for (Eigen::Index i = 0; i < v.cols(); ++i) {
+    const double w = model.inverse_mass[i];
+    if (w > 0) v.col(i) += dt / 2 * w / (1 + dt / 2 * w * damping[i]) * force.col(i);
+  }
+}
+
+}  // namespace
+
+double VelocityVerlet::MaxStep(const Spectrum& spectrum) const {
+  return spectrum.omega_max > 0 ? 2 / spectrum.omega_max : std::numeric_limits<double>::infinity();
+}
+
+absl::Status VelocityVerlet::Advance(const Model& model, const v1::Parameters& parameters, double dt, State& state,
+                                     Workspace& work) const {
+  RecallForce(model, parameters, state, work.force);
+  for (Eigen::Index i = 0; i < state.x.cols(); ++i) {
+    if (model.inverse_mass[i] == 0) continue;  // fixed, or set by a motion
+    state.v.col(i) += dt / 2 * model.inverse_mass[i] * work.force.col(i);
+    state.x.col(i) += dt * state.v.col(i);
+  }
+  DriveMotions(model, parameters, dt, state);
+  ProjectPositions(model, parameters, work.before, dt, state);
+  const Instant end = InstantAhead(model, parameters, dt, state);
+  SumForces(model, end, work.force);
+  SumDamping(model, end, work.damping);
+  Points& half = state.history.v;
+  half = state.v;
+  KickImplicitly(model, dt, work.damping, work.force, state.v);
+  ProjectVelocities(model, parameters, state);
+  state.history.force = work.force - (state.v - half) * work.damping.asDiagonal();
+  state.history.integrator = v1::INTEGRATOR_VELOCITY_VERLET;
+  state.history.tick = state.tick + 1;
+  return absl::OkStatus();
+}
+
+}  // namespace phrenic

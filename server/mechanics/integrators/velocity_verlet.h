@@ -1,0 +1,23 @@
+// Velocity Verlet: v += dt/2 a, x += dt v, then v += dt/2 a at the new positions; with rigid links RATTLE (Andersen
+// 1983): positions are projected after the drift and velocities after the second kick. Order 2, symplectic, stable for
+// dt < 2/omega_max whatever the friction: friction is taken half at the start and half, implicitly, at the end. One
+// evaluation of the forces a step: that at the end is kept for the next one in State::history.
+#ifndef PHRENIC_SERVER_MECHANICS_INTEGRATORS_VELOCITY_VERLET_H_
+#define PHRENIC_SERVER_MECHANICS_INTEGRATORS_VELOCITY_VERLET_H_
+
+#include "server/mechanics/integrator.h"
+
+namespace phrenic {
+
+class VelocityVerlet final : public Integrator {
+ public:
+  std::string_view name() const override { return "velocity Verlet"; }
+  int order() const override { return 2; }
+  double MaxStep(const Spectrum& spectrum) const override;
+  absl::Status Advance(const Model& model, const v1::Parameters& parameters, double dt, State& state,
+                       Workspace& work) const override;
+};
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_SERVER_MECHANICS_INTEGRATORS_VELOCITY_VERLET_H_
