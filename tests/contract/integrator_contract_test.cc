@@ -22,7 +22,7 @@ const IntegratorCase kIntegrators[] = {
     {"THESIS", 1e-5},
     {"EXPLICIT_EULER", 1e-4},
     {"VELOCITY_VERLET", 1e-2},
-    {"RUNGE_KUTTA_4", 1e-2},
+    {"RUNGE_KUTTA_4", 5e-3},
     {"LINEAR_IMPLICIT_EULER", 1e-4},
     {"BDF2", 2e-3},
     {"TR_BDF2", 1e-2},
