@@ -51,7 +51,7 @@ absl::Status AdvanceAdaptively(const Model& model, const v1::Parameters& paramet
     } else if (halvings == kMostHalvings) {
       work.before = state.x;
       work.velocity_before = state.v;
-      return absl::OutOfRangeError("no part of the step is small enough for the step tolerance");
+      return absl::AbortedError("no part of the step is small enough for step_tolerance: raise it, or lower time_step");
     } else {
       ++halvings;
       done *= 2;

@@ -12,6 +12,7 @@
 #include "server/mechanics/integrators/linear_implicit_euler.h"
 #include "server/mechanics/integrators/rk4.h"
 #include "server/mechanics/integrators/semi_implicit_euler.h"
+#include "server/mechanics/integrators/static_equilibrium.h"
 #include "server/mechanics/integrators/thesis_euler.h"
 #include "server/mechanics/integrators/tr_bdf2.h"
 #include "server/mechanics/integrators/velocity_verlet.h"
@@ -90,6 +91,8 @@ const Integrator& FindIntegrator(v1::Integrator kind) {
       return Only<Bdf2>();
     case v1::INTEGRATOR_TR_BDF2:
       return Only<TrBdf2>();
+    case v1::INTEGRATOR_STATIC:
+      return Only<StaticEquilibrium>();
     case v1::INTEGRATOR_SEMI_IMPLICIT_EULER:
     case v1::INTEGRATOR_UNSPECIFIED:
     case v1::Integrator_INT_MIN_SENTINEL_DO_NOT_USE_:

@@ -107,11 +107,7 @@ double RoundDown(double value) {
 
 void ChooseStep(Model& model) {
   v1::StableStep stable = LargestStableStep(model, model.parameters);
-  if (!model.scene.parameters().has_time_step()) {
-    // Where no step is stable: a small one, so that it can be watched going wrong.
-    const double limit = stable.seconds() > 0 ? stable.seconds() : 0.1 / stable.omega_max();
-    model.parameters.set_time_step(std::min(RoundDown(kChosen * limit), kLongestStep));
-  }
+  if (!model.scene.parameters().has_time_step()) model.parameters.set_time_step(ChosenStep(stable));
   stable.set_chosen_seconds(model.parameters.time_step());
   *model.report.mutable_stable_step() = stable;
 }
@@ -137,6 +133,12 @@ absl::StatusOr<std::shared_ptr<const Model>> Compile(const v1::Scene& scene, con
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
   model.report.set_compile_seconds(taken.count());
   return std::make_shared<const Model>(std::move(model));
+}
+
+double ChosenStep(const v1::StableStep& stable) {
+  // Where no step is stable: a small one, so that it can be watched going wrong.
+  const double limit = stable.seconds() > 0 ? stable.seconds() : 0.1 / stable.omega_max();
+  return std::min(RoundDown(kChosen * limit), kLongestStep);
 }
 
 v1::StableStep LargestStableStep(const Model& model, const v1::Parameters& parameters) {

@@ -19,6 +19,10 @@ absl::StatusOr<std::shared_ptr<const Model>> Compile(const v1::Scene& scene, con
 // The largest stable step of the model under these parameters (Lanczos, with a safety factor), and its reason.
 v1::StableStep LargestStableStep(const Model& model, const v1::Parameters& parameters);
 
+// The step to start with where nobody has named one: 0.9 of the largest stable one in two digits, a 60th of a second at
+// most [s].
+double ChosenStep(const v1::StableStep& stable);
+
 }  // namespace phrenic
 
 #endif  // PHRENIC_SERVER_MECHANICS_COMPILE_H_

@@ -6,8 +6,9 @@
 namespace phrenic {
 namespace {
 
-constexpr double kSettled = 1e-10;  // of the scene's size: the last Newton step's way
-constexpr double kUsable = 1e-6;    // of the scene's size: what may be left after the last Newton step
+constexpr double kSettled = 1e-7;  // of the scene's size: the last Newton step's way
+constexpr double kUsable = 1e-5;   // of the scene's size: what may be left after the last Newton step
+constexpr double kLinear = 1e-3;   // relative residual of the linear system: Newton's method mends the rest
 
 // x = position + g v for free vertices; driven ones where they are at that time.
 void Place(const Model& model, const v1::Parameters& parameters, const ImplicitStage& stage, State& state) {
@@ -38,14 +39,14 @@ absl::Status SolveStage(const Model& model, const v1::Parameters& parameters, co
     const Instant at = InstantAhead(model, parameters, stage.ahead, state);
     Residual(model, stage, at, work.force);
     work.system->Assemble(model, at, stage.g);
-    if (absl::Status solved = work.system->Solve(model, work.force, change); !solved.ok()) return solved;
+    if (absl::Status solved = work.system->Solve(model, work.force, kLinear, change); !solved.ok()) return solved;
     AddToFree(model, 1, change, state.v);
     moved = stage.g * change.cwiseAbs().maxCoeff();
     if (!(moved > kSettled * model.size)) break;
   }
   Place(model, parameters, stage, state);
   if (stage.newton_steps > 1 && !(moved <= kUsable * model.size)) {
-    return absl::OutOfRangeError("Newton's method found no end of the step");
+    return absl::AbortedError("Newton's method found no end of the step: lower time_step, or set a step_tolerance");
   }
   return absl::OkStatus();
 }

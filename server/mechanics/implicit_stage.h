@@ -17,7 +17,7 @@ struct ImplicitStage {
 };
 
 // Solves the stage by Newton's method from the velocities that `state` has, and leaves x' and v' there, driven vertices
-// and poses where the motions have them. OUT_OF_RANGE where Newton's method does not settle within its steps (a single
+// and poses where the motions have them. ABORTED where Newton's method does not settle within its steps (a single
 // one is not asked to). Does not allocate once `work` has its system.
 absl::Status SolveStage(const Model& model, const v1::Parameters& parameters, const ImplicitStage& stage, State& state,
                         Workspace& work);

@@ -8,7 +8,6 @@
 namespace phrenic {
 namespace {
 
-constexpr double kTolerance = 1e-7;
 constexpr int kIterations = 400;
 
 }  // namespace
@@ -54,13 +53,13 @@ void ImplicitSystem::Precondition(const Points& r, Points& z) const {
   }
 }
 
-absl::Status ImplicitSystem::Solve(const Model& model, const Points& b, Points& y) {
-  if (!b.allFinite()) return absl::OutOfRangeError("the force is not finite");
-  if (!factorised_ && ConjugateGradients(model, b, y)) return absl::OkStatus();
+absl::Status ImplicitSystem::Solve(const Model& model, const Points& b, double tolerance, Points& y) {
+  if (!b.allFinite()) return absl::AbortedError("a force is not finite: lower time_step");
+  if (!factorised_ && ConjugateGradients(model, b, tolerance, y)) return absl::OkStatus();
   return Factorise(model, b, y);
 }
 
-bool ImplicitSystem::ConjugateGradients(const Model& model, const Points& b, Points& y) {
+bool ImplicitSystem::ConjugateGradients(const Model& model, const Points& b, double tolerance, Points& y) {
   y.setZero();
   residual_ = b;
   for (Eigen::Index i = 0; i < b.cols(); ++i) {
@@ -69,7 +68,7 @@ bool ImplicitSystem::ConjugateGradients(const Model& model, const Points& b, Poi
   Precondition(residual_, scaled_);
   direction_ = scaled_;
   double rho = residual_.cwiseProduct(scaled_).sum();
-  const double enough = kTolerance * kTolerance * rho;  // in the preconditioner's norm
+  const double enough = tolerance * tolerance * rho;  // in the preconditioner's norm
   for (iterations_ = 0; iterations_ < kIterations; ++iterations_) {
     if (rho <= enough) return true;
     Times(model, direction_, product_);
@@ -98,7 +97,8 @@ absl::Status ImplicitSystem::Factorise(const Model& model, const Points& b, Poin
     matrix *= g_ * g_;
     matrix.diagonal() += mass;
     factor_.compute(matrix);
-    if (factor_.info() != Eigen::Success) return absl::OutOfRangeError("the implicit step's matrix is singular");
+    if (factor_.info() != Eigen::Success)
+      return absl::AbortedError("the implicit step's matrix is singular: lower time_step");
     factorised_ = true;
   }
   const Eigen::VectorXd right = free.cwiseProduct(Eigen::Map<const Eigen::VectorXd>(b.data(), 3 * n));

@@ -20,16 +20,16 @@ class ImplicitSystem {
 
   // Takes M, C and K from the model at this instant.
   void Assemble(const Model& model, const Instant& at, double g);
-  // y = A^-1 b, to a relative residual of 1e-7; 0 for fixed and driven vertices. OUT_OF_RANGE where b is not finite or
+  // y = A^-1 b, to this relative residual; 0 for fixed and driven vertices. ABORTED where b is not finite or
   // the matrix cannot be factorised.
-  absl::Status Solve(const Model& model, const Points& b, Points& y);
+  absl::Status Solve(const Model& model, const Points& b, double tolerance, Points& y);
   // Of the last Solve; 0 where it factorised.
   int iterations() const { return iterations_; }
 
  private:
   void Times(const Model& model, const Points& x, Points& y) const;
   void Precondition(const Points& r, Points& z) const;
-  bool ConjugateGradients(const Model& model, const Points& b, Points& y);
+  bool ConjugateGradients(const Model& model, const Points& b, double tolerance, Points& y);
   absl::Status Factorise(const Model& model, const Points& b, Points& y);
 
   BlockMatrix stiffness_;

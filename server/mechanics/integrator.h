@@ -50,8 +50,8 @@ class Integrator {
   // The largest stable step [s]; infinity where nothing limits it, 0 where no step is stable.
   virtual double MaxStep(const Spectrum& spectrum) const = 0;
   // Carries positions, velocities and poses from state.time to state.time + dt; motions drive the bones, forces the
-  // tissue, and constraints have the last word. Leaves state.time, phase and tick as they are. An error where it finds
-  // no next state.
+  // tissue, and constraints have the last word. Leaves state.time, phase and tick as they are. ABORTED
+  // with the remedy where it finds no next state.
   virtual absl::Status Advance(const Model& model, const v1::Parameters& parameters, double dt, State& state,
                                Workspace& work) const = 0;
 };

@@ -94,8 +94,8 @@ void TakeBack(const Model& model, const v1::Parameters& parameters, double dt, c
   DriveMotions(model, parameters, 0, state);
 }
 
-v1::Divergence Diagnose(const Model& model, const v1::Parameters& parameters, const State& before,
-                        const State& diverged) {
+v1::Divergence Diagnose(const Model& model, const v1::Parameters& parameters, const absl::Status& why,
+                        const State& before, const State& diverged) {
   v1::Divergence divergence;
   const int vertex = FurthestVertex(model, diverged);
   const BodyModel& body = model.BodyOf(vertex);
@@ -104,7 +104,7 @@ v1::Divergence Diagnose(const Model& model, const v1::Parameters& parameters, co
   divergence.set_body(body.name);
   divergence.set_vertex(vertex - body.first_vertex);
   divergence.set_force(LargestForceOn(model, parameters, before, vertex));
-  divergence.set_remedy(Remedy(model, parameters));
+  divergence.set_remedy(absl::IsAborted(why) ? std::string(why.message()) : Remedy(model, parameters));
   return divergence;
 }
 

@@ -142,7 +142,8 @@ absl::StatusOr<Session::Updated> Session::Update(const v1::Parameters& changes,
   v1::Parameters parameters = before.parameters();
   parameters.MergeFrom(changes);
   double stable_step = before.largest_stable_step();
-  if (parameters.elasticity() != before.parameters().elasticity()) {
+  if (parameters.elasticity() != before.parameters().elasticity() ||
+      parameters.integrator() != before.parameters().integrator()) {
     stable_step = LargestStableStep(*model_, parameters).seconds();  // not on the stepping thread: it takes a while
   }
   absl::Status merged;

@@ -33,12 +33,6 @@ std::string Stem(const std::string& scene) {
   return stem.empty() ? "session" : stem;
 }
 
-// The step that suits the parameters where neither the scene nor the request sets one: never above the compiled one.
-void ChooseStep(const Model& model, const v1::Parameters& changes, double stable_step, v1::Parameters& parameters) {
-  if (changes.has_time_step() || model.scene.parameters().has_time_step()) return;
-  parameters.set_time_step(std::min(parameters.time_step(), 0.9 * stable_step));
-}
-
 }  // namespace
 
 Table::Table(Models& models, const stream::Clock& clock, const Limits& limits)
@@ -78,9 +72,12 @@ absl::StatusOr<std::shared_ptr<Session>> Table::Make(const std::string& id, cons
   v1::Parameters parameters = model->parameters;
   parameters.MergeFrom(request.parameters());
   double stable_step = model->report.stable_step().seconds();
-  if (parameters.elasticity() != model->parameters.elasticity()) {
-    stable_step = LargestStableStep(*model, parameters).seconds();
-    ChooseStep(*model, request.parameters(), stable_step, parameters);
+  if (parameters.elasticity() != model->parameters.elasticity() ||
+      parameters.integrator() != model->parameters.integrator()) {
+    const v1::StableStep stable = LargestStableStep(*model, parameters);
+    stable_step = stable.seconds();
+    const bool named = request.parameters().has_time_step() || model->scene.parameters().has_time_step();
+    if (!named) parameters.set_time_step(ChosenStep(stable));
   }
   if (absl::Status status = schema::Validate(parameters); !status.ok()) return status;
   return std::make_shared<Session>(id, model, parameters, stable_step, clock_, limits_.viewers);

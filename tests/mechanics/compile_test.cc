@@ -92,7 +92,7 @@ TEST(Step, DivergenceNamesVertexForceAndRemedy) {
     status = Step(*model, parameters, parameters.time_step(), state, work);
   }
   ASSERT_FALSE(status.ok());
-  const v1::Divergence why = Diagnose(*model, parameters, before, state);
+  const v1::Divergence why = Diagnose(*model, parameters, absl::OutOfRangeError("diverged"), before, state);
   EXPECT_EQ(why.body(), "sheet");
   EXPECT_EQ(why.force(), "springs:sheet");
   EXPECT_GT(why.time(), 0);

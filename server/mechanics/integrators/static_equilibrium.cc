@@ -1,0 +1,60 @@
+#include "server/mechanics/integrators/static_equilibrium.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "absl/status/statusor.h"
+#include "server/mechanics/advance.h"
+#include "server/mechanics/implicit_system.h"
+
+namespace phrenic {
+namespace {
+
+constexpr int kNewtonSteps = 300;
+constexpr double kSettled = 1e-9;                 // of the scene's size: the last step's way
+constexpr double kFar = 0.05;                     // of the scene's size: a step is to be no longer
+constexpr double kFirst = 1.0 / 60, kLast = 100;  // of the pseudo-time step h [s]
+constexpr double kGrowth = 4;
+constexpr double kLinear = 1e-4;  // relative residual of the linear system
+
+// One step of pseudo-time h from work.stages[1]; how far the vertex that went furthest has gone [m].
+absl::StatusOr<double> Relax(const Model& model, const v1::Parameters& parameters, double dt, double h, State& state,
+                             Workspace& work) {
+  Points &change = work.stages[0], &start = work.stages[1];
+  start = state.x;
+  const Instant at = InstantAhead(model, parameters, dt, state);
+  SumForces(model, at, work.force);
+  work.system->Assemble(model, at, h);
+  if (absl::Status solved = work.system->Solve(model, h * work.force, kLinear, change); !solved.ok()) return solved;
+  AddToFree(model, h, change, state.x);
+  ProjectPositions(model, parameters, start, h, state);
+  state.v.setZero();
+  return (state.x - start).cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
+}
+
+}  // namespace
+
+double StaticEquilibrium::MaxStep(const Spectrum&) const { return std::numeric_limits<double>::infinity(); }
+
+absl::Status StaticEquilibrium::Advance(const Model& model, const v1::Parameters& parameters, double dt, State& state,
+                                        Workspace& work) const {
+  state.v.setZero();
+  DriveMotions(model, parameters, dt, state);
+  if (state.x.cols() == 0) return absl::OkStatus();
+  if (work.system == nullptr) work.system = std::make_unique<ImplicitSystem>(model);
+  work.stages.resize(std::max<size_t>(work.stages.size(), 2));
+  work.stages[0].resize(3, state.x.cols());
+  double h = kFirst;
+  for (int step = 0; step < kNewtonSteps; ++step) {
+    const absl::StatusOr<double> moved = Relax(model, parameters, dt, h, state, work);
+    if (!moved.ok()) return moved.status();
+    if (*moved <= kSettled * model.size && h >= kLast) return absl::OkStatus();
+    const bool near = *moved <= kFar * model.size;
+    if (!near) state.x = work.stages[1];
+    h = near ? std::min(kLast, kGrowth * h) : h / kGrowth;
+  }
+  return absl::AbortedError(
+      "no equilibrium was found: hold some vertices, raise elasticity, or use an integrator that moves");
+}
+
+}  // namespace phrenic
