@@ -5,6 +5,7 @@
 
 #include "server/mechanics/block_matrix.h"
 #include "tests/compile_text.h"
+#include "tests/contract/allocations.h"
 
 namespace phrenic {
 namespace {
@@ -118,6 +119,17 @@ TEST_P(ForceContract, DampingIsTheForcesPartInVelocity) {
   force().AddDamping(At(state_), c);
   EXPECT_GE(c.minCoeff(), 0);
   EXPECT_LT((ForceAt(state_) - ForceAt(still) + state_.v * c.asDiagonal()).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+TEST_P(ForceContract, AllocatesNothing) {
+  Points f = Points::Zero(3, state_.x.cols());
+  Eigen::VectorXd c = Eigen::VectorXd::Zero(state_.x.cols());
+  const Instant at = At(state_);
+  force().AddForce(at, f);
+  const std::int64_t before = Allocations();
+  force().AddForce(at, f);
+  force().AddDamping(at, c);
+  EXPECT_EQ(Allocations(), before);
 }
 
 TEST_P(ForceContract, InternalForcesAndTorquesSumToZero) {

@@ -8,6 +8,7 @@
 #include "server/mechanics/catalogue.h"
 #include "server/mechanics/spectrum.h"
 #include "tests/compile_text.h"
+#include "tests/contract/allocations.h"
 
 namespace phrenic {
 namespace {
@@ -126,6 +127,16 @@ TEST_P(IntegratorContract, AdaptsToItsTolerance) {
   };
   EXPECT_LT(error(tight), 0.25 * error(loose));
   EXPECT_LT(error(tight), 1e-3);
+}
+
+TEST_P(IntegratorContract, AllocatesNothingInAStep) {
+  const auto model = CompileText(Oscillator(GetParam(), 40, 0.1));
+  State state = model->InitialState();
+  Workspace work = model->MakeWorkspace();
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(Step(*model, model->parameters, 1e-3, state, work).ok());
+  const std::int64_t before = Allocations();
+  for (int i = 0; i < 10; ++i) ASSERT_TRUE(Step(*model, model->parameters, 1e-3, state, work).ok());
+  EXPECT_EQ(Allocations(), before);
 }
 
 TEST_P(IntegratorContract, FixedVerticesStay) {

@@ -24,8 +24,9 @@ absl::StatusOr<double> Relax(const Model& model, const v1::Parameters& parameter
   start = state.x;
   const Instant at = InstantAhead(model, parameters, dt, state);
   SumForces(model, at, work.force);
+  work.force *= h;
   work.system->Assemble(model, at, h);
-  if (absl::Status solved = work.system->Solve(model, h * work.force, kLinear, change); !solved.ok()) return solved;
+  if (absl::Status solved = work.system->Solve(model, work.force, kLinear, change); !solved.ok()) return solved;
   AddToFree(model, h, change, state.x);
   ProjectPositions(model, parameters, start, h, state);
   state.v.setZero();
