@@ -13,6 +13,7 @@ namespace {
 struct AllOptions {
   SceneOptions describe;
   RunOptions run;
+  PhysiologyOptions physiology;
   CreateOptions create;
   SessionOptions session;
   WatchOptions watch;
@@ -78,6 +79,10 @@ class CommandLine {
     command->footer("\n" + ParameterHelp());
   }
 
+  static void AddPreset(CLI::App* command, std::string& preset) {
+    command->add_option("--preset", preset, "one of the scene's ways to breathe, as `phrenic describe` lists them");
+  }
+
   void AddSceneCommands() {
     Add("scenes", "List the scenes that the server knows", &Scenes);
     AddScene(Add("describe", "Show what a scene is made of, what runs, what was left out and why", &Describe,
@@ -86,6 +91,7 @@ class CommandLine {
     RunOptions& run = options_.run;
     CLI::App* command = Add("run", "Run a scene here, with no server, and say how fast it was", &Run, run);
     AddScene(command, run.scene);
+    AddPreset(command, run.preset);
     AddSettings(command, run.settings);
     command->add_option("--seconds", run.seconds, "simulated time [s]")
         ->check(CLI::Range(1e-6, 3600.0))
@@ -94,12 +100,18 @@ class CommandLine {
     command->add_option("--fps", run.frames_per_second, "frames a second in the file")->capture_default_str();
     command->add_option("--body", run.bodies, "body or layer to export; may be repeated (all deformable ones)");
     command->add_option("--data", run.data_dir, "folder of surface files and of scenes/*.textproto");
+    PhysiologyOptions& physiology = options_.physiology;
+    command =
+        Add("physiology", "Let a thorax breathe here, and hold it against published ranges", &Physiology, physiology);
+    AddScene(command, physiology.scene);
+    command->add_option("--data", physiology.data_dir, "folder of surface files and of scenes/*.textproto");
   }
 
   void AddSessionCommands() {
     CreateOptions& create = options_.create;
     CLI::App* command = Add("create", "Create a session", &Create, create);
     AddScene(command, create.scene);
+    AddPreset(command, create.preset);
     AddSettings(command, create.settings);
     command->add_option("--id", create.id, "its name: 1 to 64 of a-z, 0-9 and -");
     command->add_flag("--play", create.play, "let it play at once");
@@ -113,7 +125,8 @@ class CommandLine {
     SetOptions& set = options_.set;
     command = Add("set", "Change live parameters of a session", &Set, set);
     command->add_option("SESSION", set.id)->required();
-    command->add_option("SETTING", set.settings, "name=value")->required();
+    command->add_option("SETTING", set.settings, "name=value");
+    AddPreset(command, set.preset);
     command->footer("\n" + ParameterHelp());
   }
 

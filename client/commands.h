@@ -16,15 +16,21 @@ struct SceneOptions {
 struct RunOptions {
   SceneOptions scene;
   double seconds = 8;
+  std::string preset;
   std::vector<std::string> settings;
   std::string file;  // empty: none
   std::vector<std::string> bodies;
   double frames_per_second = 10;
   std::string data_dir;
 };
+struct PhysiologyOptions {
+  SceneOptions scene;
+  std::string data_dir;
+};
 struct CreateOptions {
   SceneOptions scene;
   std::string id;
+  std::string preset;
   std::vector<std::string> settings;
   bool play = false;
 };
@@ -39,6 +45,7 @@ struct WatchOptions {
 };
 struct SetOptions {
   std::string id;
+  std::string preset;
   std::vector<std::string> settings;
 };
 struct PlayOptions {
@@ -64,6 +71,7 @@ struct ExportOptions {
 int Scenes(const Context& context);
 int Describe(const Context& context, const SceneOptions& options);
 int Run(const Context& context, const RunOptions& options);
+int Physiology(const Context& context, const PhysiologyOptions& options);
 int Create(const Context& context, const CreateOptions& options);
 int Sessions(const Context& context);
 int Watch(const Context& context, const WatchOptions& options);

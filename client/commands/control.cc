@@ -33,6 +33,7 @@ int CallAndShow(const Context& context, Method method, const Request& request) {
 
 int Create(const Context& context, const CreateOptions& options) {
   v1::CreateSessionRequest request;
+  request.set_preset(options.preset);
   request.set_session_id(options.id);
   absl::StatusOr<v1::SceneSource> source = ReadSceneArgument(options.scene.scene, options.scene.resolution_mm);
   if (!source.ok()) return Fail(source.status());
@@ -59,6 +60,7 @@ int Set(const Context& context, const SetOptions& options) {
   absl::StatusOr<v1::Parameters> parameters = ReadSettings(options.settings);
   if (!parameters.ok()) return Fail(parameters.status());
   *request.mutable_parameters() = *std::move(parameters);
+  request.set_preset(options.preset);
   const auto stub = v1::SessionService::NewStub(Connect(context));
   v1::UpdateParametersResponse response;
   const grpc::Status status = Call(context, *stub, &Stub::UpdateParameters, request, &response);

@@ -46,6 +46,10 @@ void PrintReport(const v1::DescribeSceneResponse& response) {
       "Largest stable step %.4g s: %s\nStep it starts with %.4g s\nCompiled in %.2f s; scene hash %s\n",
       report.simulated_vertices(), report.springs(), report.rigid_links(), report.attachments(), step.seconds(),
       step.reason(), step.chosen_seconds(), report.compile_seconds(), report.scene_hash());
+  if (response.scene().presets_size() > 0) std::cout << "\nPresets\n";
+  for (const v1::Preset& preset : response.scene().presets()) {
+    std::cout << absl::StrFormat("%s (%s): %s\n", preset.name(), preset.title(), ParametersLine(preset.parameters()));
+  }
   std::cout << "\nParameters\n" << ParametersLine(response.parameters()) << "\n" << ParameterHelp();
 }
 

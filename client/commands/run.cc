@@ -37,6 +37,7 @@ grpc::Status CreateHere(const Context& context, const RunOptions& options, const
   *request.mutable_source() = source;
   *request.mutable_parameters() = parameters;
   request.set_session_id("run");
+  request.set_preset(options.preset);
   v1::CreateSessionResponse created;
   const Progress compiling("compiling " + options.scene.scene, 1);
   grpc::Status status = Call(context, stub, &Stub::CreateSession, request, &created);

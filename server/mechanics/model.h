@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "absl/status/statusor.h"
 #include "phrenic/v1/report.pb.h"
 #include "phrenic/v1/scene.pb.h"
 #include "server/mechanics/constraint.h"
@@ -68,6 +69,9 @@ struct Model {
   // The body that a simulated vertex belongs to.
   const BodyModel& BodyOf(int simulated_vertex) const;
 };
+
+// The parameters of one of the scene's presets, none where the name is empty. INVALID_ARGUMENT with the names there are.
+absl::StatusOr<v1::Parameters> FindPreset(const v1::Scene& scene, const std::string& name);
 
 // The breath's signal at a phase [breaths] and its derivative by the phase.
 double BreathSignal(v1::Waveform waveform, double phase);

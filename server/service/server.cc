@@ -14,6 +14,7 @@
 #include "server/service/frame_service.h"
 #include "server/service/scene_service.h"
 #include "server/service/session_service.h"
+#include "server/service/study_service.h"
 #include "server/service/web_gateway.h"
 #include "server/session/table.h"
 
@@ -61,7 +62,8 @@ struct Server::Parts {
         scene_service(models),
         session_service(table),
         frame_service(table),
-        export_service(table, options.limits.exports) {}
+        export_service(table, options.limits.exports),
+        study_service(models) {}
 
   absl::Status Serve(const ServerOptions& options);
   absl::Status ServeWeb(const ServerOptions& options);
@@ -73,6 +75,7 @@ struct Server::Parts {
   SessionService session_service;
   FrameService frame_service;
   ExportService export_service;
+  StudyService study_service;
   std::unique_ptr<grpc::Server> grpc;
   std::unique_ptr<WebGateway> web;
   int port = 0;
@@ -91,6 +94,7 @@ absl::Status Server::Parts::Serve(const ServerOptions& options) {
   builder.RegisterService(&session_service);
   builder.RegisterService(&frame_service);
   builder.RegisterService(&export_service);
+  builder.RegisterService(&study_service);
   grpc = builder.BuildAndStart();
   if (grpc == nullptr) return CannotListen(options.listen, "the port is in use, or the address is not this machine's");
   return absl::OkStatus();

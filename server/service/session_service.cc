@@ -99,7 +99,10 @@ grpc::Status SessionService::UpdateParameters(grpc::ServerContext* /*context*/,
   if (!session.ok()) return ToGrpc(session.status());
   const auto revision =
       request->has_expected_revision() ? std::optional<std::int64_t>(request->expected_revision()) : std::nullopt;
-  auto updated = (*session)->Update(request->parameters(), revision);
+  auto changes = FindPreset((*session)->model().scene, request->preset());
+  if (!changes.ok()) return ToGrpc(changes.status());
+  changes->MergeFrom(request->parameters());
+  auto updated = (*session)->Update(*changes, revision);
   if (!updated.ok()) return ToGrpc(updated.status());
   for (std::string& warning : updated->warnings) response->add_warnings(std::move(warning));
   return Answer(std::move(updated->session), response);

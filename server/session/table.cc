@@ -70,6 +70,9 @@ absl::StatusOr<std::shared_ptr<Session>> Table::Make(const std::string& id, cons
   if (!compiled.ok()) return compiled.status();
   const std::shared_ptr<const Model>& model = *compiled;
   v1::Parameters parameters = model->parameters;
+  const absl::StatusOr<v1::Parameters> preset = FindPreset(model->scene, request.preset());
+  if (!preset.ok()) return preset.status();
+  parameters.MergeFrom(*preset);
   parameters.MergeFrom(request.parameters());
   double stable_step = model->report.stable_step().seconds();
   if (parameters.elasticity() != model->parameters.elasticity() ||

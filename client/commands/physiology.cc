@@ -1,0 +1,70 @@
+// `phrenic physiology`: a scene's breath held against published ranges, by the server's own study in this process.
+#include <iostream>
+
+#include "absl/strings/str_format.h"
+#include "client/commands.h"
+#include "client/progress.h"
+#include "client/scene_argument.h"
+#include "client/table.h"
+#include "phrenic/v1/study.grpc.pb.h"
+#include "server/service/server.h"
+
+namespace phrenic::client {
+namespace {
+
+const char* Word(v1::Verdict verdict) {
+  switch (verdict) {
+    case v1::VERDICT_INSIDE:
+      return "inside";
+    case v1::VERDICT_OUTSIDE:
+      return "OUTSIDE";
+    default:
+      return "not modelled";
+  }
+}
+
+void Print(const v1::PhysiologyTable& result) {
+  Table table({"breath", "what", "value", "accepted", "unit", "verdict"});
+  int inside = 0, judged = 0;
+  for (const v1::PhysiologyRow& row : result.rows()) {
+    const bool modelled = row.verdict() != v1::VERDICT_NOT_MODELLED;
+    judged += modelled ? 1 : 0;
+    inside += row.verdict() == v1::VERDICT_INSIDE ? 1 : 0;
+    table.Add({row.breath(), row.what(), modelled ? absl::StrFormat("%.2f", row.value()) : "-",
+               absl::StrFormat("%g to %g", row.low(), row.high()), row.unit() == "1" ? "" : row.unit(),
+               Word(row.verdict())});
+  }
+  table.Print(std::cout);
+  std::cout << absl::StrFormat("%s: %d of %d inside the published ranges\n", result.scene(), inside, judged);
+}
+
+}  // namespace
+
+int Physiology(const Context& context, const PhysiologyOptions& options) {
+  const absl::StatusOr<v1::SceneSource> source = ReadSceneArgument(options.scene.scene, options.scene.resolution_mm);
+  if (!source.ok()) return Fail(source.status());
+  service::ServerOptions server_options;
+  server_options.data_dir = options.data_dir;
+  auto server = service::Server::Start(server_options);
+  if (!server.ok()) return Fail(server.status());
+  v1::CheckPhysiologyRequest request;
+  *request.mutable_source() = *source;
+  grpc::ClientContext call;
+  const Interruption::Scope scope(*context.interruption, call);
+  const auto stub = v1::StudyService::NewStub((*server)->InProcessChannel());
+  const auto reader = stub->CheckPhysiology(&call, request);
+  v1::CheckPhysiologyResponse response;
+  {
+    Progress progress("breathing", 1);
+    while (reader->Read(&response) && !response.has_table()) progress.Update(response.progress());
+  }
+  if (const grpc::Status status = reader->Finish(); !status.ok()) return Fail(context, status);
+  if (context.json()) {
+    std::cout << Json(response.table()) << "\n";
+  } else {
+    Print(response.table());
+  }
+  return kOk;
+}
+
+}  // namespace phrenic::client
