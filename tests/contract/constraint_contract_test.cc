@@ -30,6 +30,9 @@ const ConstraintCase kConstraints[] = {
     {"rigid_links_chain", "rigid_links { body: 'truss' " CHAIN " }", true},
     {"rigid_links_truss", "rigid_links { body: 'truss' " TRUSS " }", true},
     {"rigid_links_thesis", "rigid_links { body: 'truss' " PAIRS " projection: PROJECTION_THESIS }", false},
+    {"limits_at_most", "limits { body: 'truss' " CHAIN " at_most_ratio: 1 }", true},
+    {"limits_at_least", "limits { body: 'truss' " CHAIN " at_least_ratio: 1 }", true},
+    {"limits_both", "limits { body: 'truss' " CHAIN " at_most_ratio: 1.01 at_least_ratio: 0.99 }", true},
 };
 
 void PrintTo(const ConstraintCase& constraint, std::ostream* out) { *out << constraint.name; }

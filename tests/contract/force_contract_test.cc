@@ -28,6 +28,11 @@ const ForceCase kForces[] = {
      "action_line { bodies: 'sheet' origin {} direction { x: 1 } radius: 2 force: 3 fall_off: FALL_OFF_VERTICAL }",
      false},
     {"attachment", "attachment { bodies: 'sheet' carriers: 'bone' radius: 1.5 stiffness: 40 }", false},
+    {"attachment_thesis",
+     "attachment { bodies: 'sheet' carriers: 'bone' radius: 1.5 stiffness: 40 mode: ATTACHMENT_MODE_THESIS }", false},
+    {"cables", "cables { body: 'sheet' stiffness: 30 rest_length_ratio: 0.9 }", true},
+    {"cables_listed",
+     "cables { body: 'sheet' list { links { a: 0 b: 7 } links { a: 11 b: 1 } } rest_length_ratio: 0.9 }", true},
 };
 
 void PrintTo(const ForceCase& force, std::ostream* out) { *out << force.name; }

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "absl/strings/str_cat.h"
+#include "server/mesh/topology.h"
 
 namespace phrenic {
 namespace {
@@ -39,6 +40,28 @@ absl::StatusOr<std::vector<Link>> ListedLinks(const v1::LinkList& list, int body
     return FieldError(where, absl::StrCat("vertices ", a, " and ", b, " are in one point: move one of them"));
   }
   return links;
+}
+
+absl::StatusOr<std::vector<Link>> ListedOrEdges(bool listed, const v1::LinkList& list, const std::string& region,
+                                                int body, std::string_view path, const Draft& draft) {
+  if (listed) return ListedLinks(list, body, absl::StrCat(std::string(path), ".list"), draft);
+  auto inside = draft.Region(body, region, absl::StrCat(std::string(path), ".region"));
+  if (!inside.ok()) return inside.status();
+  const BodyModel& model = draft.model.bodies[body];
+  std::vector<Link> links;
+  const Edges edges = SpringEdges(model.mesh);
+  for (const auto edge : edges.colwise()) {
+    if (!(*inside)[edge[0]] || !(*inside)[edge[1]]) continue;
+    const Link link = MakeLink(draft.model, model.first_vertex + edge[0], model.first_vertex + edge[1]);
+    if (link.length > 0) links.push_back(link);
+  }
+  return links;
+}
+
+absl::StatusOr<int> DeformableBody(const std::string& name, std::string_view path, const Draft& draft) {
+  auto body = draft.Body(name, path);
+  if (!body.ok() || draft.model.bodies[*body].first_vertex >= 0) return body;
+  return FieldError(path, absl::StrCat("body \"", name, "\" must be ROLE_DEFORMABLE"));
 }
 
 void Pull(const Link& link, const Eigen::Vector3d& impulse, double dt, State& state) {

@@ -55,11 +55,8 @@ absl::StatusOr<std::unique_ptr<Constraint>> RigidLinks::Make(const v1::RigidLink
                                                              std::string_view path, Draft& draft) {
   const std::string name = given.empty() ? absl::StrCat("rigid-links:", scene.body()) : given;
   const std::string field(path);
-  auto b = draft.Body(scene.body(), absl::StrCat(field, ".body"));
+  auto b = DeformableBody(scene.body(), absl::StrCat(field, ".body"), draft);
   if (!b.ok()) return b.status();
-  if (draft.model.bodies[*b].first_vertex < 0) {
-    return FieldError(absl::StrCat(field, ".body"), "the body is not ROLE_DEFORMABLE");
-  }
   auto links = FindLinks(scene, *b, field, draft);
   if (!links.ok()) return links.status();
   if (links->empty()) {
