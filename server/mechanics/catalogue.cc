@@ -6,6 +6,7 @@
 #include "server/mechanics/forces/action_line.h"
 #include "server/mechanics/forces/attachment.h"
 #include "server/mechanics/forces/cables.h"
+#include "server/mechanics/forces/contact.h"
 #include "server/mechanics/forces/friction.h"
 #include "server/mechanics/forces/gravity.h"
 #include "server/mechanics/forces/springs.h"
@@ -42,6 +43,8 @@ absl::StatusOr<std::unique_ptr<Force>> MakeForce(const v1::Force& scene, std::st
       return Attachment::Make(scene.attachment(), scene.name(), In(path, "attachment"), draft);
     case v1::Force::kGravity:
       return Gravity::Make(scene.gravity(), scene.name(), In(path, "gravity"), draft);
+    case v1::Force::kContact:
+      return Contact::Make(scene.contact(), scene.name(), In(path, "contact"), draft);
     case v1::Force::kCables:
       return Cables::Make(scene.cables(), scene.name(), In(path, "cables"), draft);
     case v1::Force::KIND_NOT_SET:

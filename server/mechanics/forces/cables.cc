@@ -52,6 +52,14 @@ void Cables::AddStiffness(const Instant& at, StiffnessSink& sink) const {
   }
 }
 
+void Cables::AddLatentStiffness(const Instant& at, StiffnessSink& sink) const {
+  const double stiffness = at.parameters.elasticity() * stiffness_;
+  for (const Cable& cable : cables_) {
+    if ((at.x.col(cable.b) - at.x.col(cable.a)).norm() > cable.rest_length) continue;
+    sink.AddBetween(cable.a, cable.b, stiffness * Eigen::Matrix3d::Identity());
+  }
+}
+
 double Cables::Energy(const Instant& at) const {
   double energy = 0;
   for (const Cable& cable : cables_) {

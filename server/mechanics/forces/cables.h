@@ -18,6 +18,7 @@ class Cables final : public Force {
 
   void AddForce(const Instant& at, MutablePoints f) const override;
   void AddStiffness(const Instant& at, StiffnessSink& sink) const override;
+  void AddLatentStiffness(const Instant& at, StiffnessSink& sink) const override;
   double Energy(const Instant& at) const override;
   bool conservative() const override { return true; }
 
