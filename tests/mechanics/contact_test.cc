@@ -177,6 +177,30 @@ TEST(Contact, NothingTouchesInFrontBesideOrBeyondTenDepths) {
   EXPECT_EQ(largest({0, 0, -1.2}), 0) << "it has got through";
 }
 
+// A floor carried by a pose pushes as the same floor at rest does, turned with it.
+TEST(Contact, ADrivenSurfacePushesWhereItsPoseHasIt) {
+  const auto model = CompileText(
+      "name: 'driven' " + Ball(0.0995) + Sliding("") +
+      "bodies { name: 'floor' role: ROLE_DRIVEN anatomy { structure: STRUCTURE_RIB number: 7 side: SIDE_LEFT } "
+      "polyhedron { vertices { x: -9 y: -9 } vertices { x: 20 y: -9 } vertices { y: 20 } triangles { a: 0 b: 1 c: 2 } "
+      "} } "
+      "motions { ribs { bodies: 'floor' end_states { number: 7 pump_degrees: 10 } } } ");
+  State state = model->InitialState();
+  const auto force = [&] {
+    Points f = Points::Zero(3, 6);
+    ContactOf(*model).AddForce(MakeInstant(*model, model->parameters, state), f);
+    return f;
+  };
+  state.poses.front() = Pose{};
+  const Points at_rest = force();
+  EXPECT_GT(at_rest(2, 5), 1);
+  Pose& pose = state.poses.front();
+  pose.rotation = Eigen::AngleAxisd(0.8, Eigen::Vector3d(1, 2, -1).normalized());
+  pose.translation = Eigen::Vector3d(0.3, -0.2, 5);
+  for (auto x : state.x.colwise()) x = pose.At(x);
+  EXPECT_LT((force() - pose.rotation.toRotationMatrix() * at_rest).cwiseAbs().maxCoeff(), 1e-9);
+}
+
 TEST(Contact, RefusesWhatCannotBeASurface) {
   const std::string scene = "name: 'wrong' " + Ball(1) +
                             "bodies { name: 'floor' role: ROLE_AT_REST polyhedron { "
