@@ -136,5 +136,19 @@ TEST_P(ConstraintContract, ProjectedVelocitiesStayOnIt) {
 INSTANTIATE_TEST_SUITE_P(Constraints, ConstraintContract, testing::ValuesIn(kConstraints),
                          [](const auto& test) { return std::string(test.param.name); });
 
+// Two elements that share vertices hold as one that has the links of both.
+TEST(SeveralConstraints, HoldTogetherWhereTheyShareVertices) {
+  const auto split = CompileText(
+      Scene("rigid_links { body: 'truss' list { links { a: 0 b: 1 } links { a: 2 b: 5 } } }",
+            "constraints { rigid_links { body: 'truss' list { links { a: 1 b: 2 } links { a: 5 b: 6 } } } }"));
+  const auto one = CompileText(Scene("rigid_links { body: 'truss' " CHAIN " }"));
+  State state = Thrown(*split, 2), other = Thrown(*one, 2);
+  EXPECT_LT((state.v - other.v).cwiseAbs().maxCoeff(), 1e-9);
+  Fly(*split, 1e-3, 500, state);
+  Fly(*one, 1e-3, 500, other);
+  EXPECT_LT(LargestResidual(*split, state).metres, 1e-9);
+  EXPECT_LT((state.x - other.x).cwiseAbs().maxCoeff(), 1e-7);
+}
+
 }  // namespace
 }  // namespace phrenic
