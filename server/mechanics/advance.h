@@ -21,7 +21,8 @@ void SumDamping(const Model& model, const Instant& at, Eigen::VectorXd& c);
 // x += shift, but for fixed and driven vertices; shift 3 x n.
 void AddToFree(const Model& model, double scale, const Points& shift, Points& x);
 
-// Constraints in the scene's order: positions (and velocities with them), or velocities alone.
+// Constraints in the scene's order: positions (and velocities with them), or velocities alone. Where there are several,
+// again and again until all hold or no more is gained, 50 times at most. A thread's first call may allocate.
 void ProjectPositions(const Model& model, const v1::Parameters& parameters, const ConstPoints& before, double dt,
                       State& state);
 void ProjectVelocities(const Model& model, const v1::Parameters& parameters, State& state);

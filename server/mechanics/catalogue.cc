@@ -1,9 +1,12 @@
 #include "server/mechanics/catalogue.h"
 
 #include "absl/strings/str_cat.h"
+#include "server/mechanics/constraints/limits.h"
 #include "server/mechanics/constraints/rigid_links.h"
 #include "server/mechanics/forces/action_line.h"
 #include "server/mechanics/forces/attachment.h"
+#include "server/mechanics/forces/cables.h"
+#include "server/mechanics/forces/contact.h"
 #include "server/mechanics/forces/friction.h"
 #include "server/mechanics/forces/gravity.h"
 #include "server/mechanics/forces/springs.h"
@@ -48,6 +51,10 @@ absl::StatusOr<std::unique_ptr<Force>> MakeForce(const v1::Force& scene, std::st
       return Attachment::Make(scene.attachment(), scene.name(), In(path, "attachment"), draft);
     case v1::Force::kGravity:
       return Gravity::Make(scene.gravity(), scene.name(), In(path, "gravity"), draft);
+    case v1::Force::kContact:
+      return Contact::Make(scene.contact(), scene.name(), In(path, "contact"), draft);
+    case v1::Force::kCables:
+      return Cables::Make(scene.cables(), scene.name(), In(path, "cables"), draft);
     case v1::Force::KIND_NOT_SET:
       break;
   }
@@ -59,6 +66,8 @@ absl::StatusOr<std::unique_ptr<Constraint>> MakeConstraint(const v1::Constraint&
   switch (scene.kind_case()) {
     case v1::Constraint::kRigidLinks:
       return RigidLinks::Make(scene.rigid_links(), scene.name(), In(path, "rigid_links"), draft);
+    case v1::Constraint::kLimits:
+      return Limits::Make(scene.limits(), scene.name(), In(path, "limits"), draft);
     case v1::Constraint::KIND_NOT_SET:
       break;
   }

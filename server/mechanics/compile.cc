@@ -80,6 +80,7 @@ std::string StiffestElementAt(const Model& model, const Instant& at, int vertex)
   for (const auto& force : model.forces) {
     VertexStiffness stiffness(vertex);
     force->AddStiffness(at, stiffness);
+    force->AddLatentStiffness(at, stiffness);
     if (stiffness.Size() <= largest) continue;
     largest = stiffness.Size();
     name = force->name();

@@ -20,6 +20,7 @@ class ScaledStiffness {
  public:
   ScaledStiffness(const Model& model, const Instant& at) : stiffness_(model), scale_(model.inverse_mass.cwiseSqrt()) {
     stiffness_.Assemble(model, at);
+    for (const auto& force : model.forces) force->AddLatentStiffness(at, stiffness_);
   }
 
   Eigen::VectorXd operator*(const Eigen::VectorXd& x) const {

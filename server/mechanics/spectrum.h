@@ -11,9 +11,9 @@ struct FastestMode {
   int vertex = -1;  // where the mode is largest; -1 where nothing vibrates
 };
 
-// Lanczos with full reorthogonalisation on M^-1/2 K M^-1/2 in the state, K positive semi-definite: 20 products, plus
-// the residual of the largest Ritz value, which makes it an upper bound of the eigenvalue it found (estimates over true
-// omega: 0.985-1.008). Deterministic.
+// Lanczos with full reorthogonalisation on M^-1/2 K M^-1/2 in the state, K positive semi-definite, with what may yet
+// wake (latent stiffness): 20 products, plus the residual of the largest Ritz value, which makes it an upper bound of
+// the eigenvalue it found (estimates over true omega: 0.985-1.008). Deterministic.
 FastestMode FindFastestMode(const Model& model, const v1::Parameters& parameters, const State& state);
 
 }  // namespace phrenic

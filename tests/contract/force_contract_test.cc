@@ -29,6 +29,12 @@ const ForceCase kForces[] = {
      "action_line { bodies: 'sheet' origin {} direction { x: 1 } radius: 2 force: 3 fall_off: FALL_OFF_VERTICAL }",
      false},
     {"attachment", "attachment { bodies: 'sheet' carriers: 'bone' radius: 1.5 stiffness: 40 }", false},
+    {"attachment_thesis",
+     "attachment { bodies: 'sheet' carriers: 'bone' radius: 1.5 stiffness: 40 mode: ATTACHMENT_MODE_THESIS }", false},
+    {"contact", "contact { bodies: 'sheet' surfaces: 'floor' depth: 0.1 load: 4 }", false},
+    {"cables", "cables { body: 'sheet' stiffness: 30 rest_length_ratio: 0.9 }", true},
+    {"cables_listed",
+     "cables { body: 'sheet' list { links { a: 0 b: 7 } links { a: 11 b: 1 } } rest_length_ratio: 0.9 }", true},
 };
 
 void PrintTo(const ForceCase& force, std::ostream* out) { *out << force.name; }
@@ -40,6 +46,8 @@ class ForceContract : public testing::TestWithParam<ForceCase> {
         "name: 'contract' bodies { name: 'sheet' role: ROLE_DEFORMABLE mass: 2 "
         "grid { columns: 4 rows: 3 u { x: 1 } v { y: 1 z: 0.2 } } } "
         "bodies { name: 'bone' role: ROLE_AT_REST polyhedron { vertices { x: 0 y: -0.5 } vertices { x: 1 y: -0.5 } } } "
+        "bodies { name: 'floor' role: ROLE_AT_REST polyhedron { vertices { x: -9 y: -9 z: 0.1 } vertices { x: 20 y: -9 "
+        "z: 0.1 } vertices { y: 20 z: 0.1 } triangles { a: 0 b: 1 c: 2 } } } "
         "breath { waveform: WAVEFORM_SINE } forces { ");
     model_ = CompileText(text + GetParam().text + " }");
     ASSERT_NE(model_, nullptr);

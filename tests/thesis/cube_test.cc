@@ -3,20 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <fstream>
-#include <sstream>
 
 #include "tests/compile_text.h"
+#include "tests/thesis/shipped.h"
 
 namespace phrenic {
 namespace {
-
-std::string ShippedScene(const std::string& name) {
-  std::ifstream file(std::string(PHRENIC_SOURCE_DIR) + "/server/scenes/" + name + ".textproto");
-  std::stringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
 
 // Lowest height of mass p over three periods of the drive [m].
 double LowestHeightOfP(const std::string& scene) {

@@ -1,18 +1,18 @@
 // Links of constant length L, its length at rest (tensegrity, thesis sections 2.4 and 3.2).
 //
-// EXACT: SHAKE. The link pulls along its direction r at the start of the step, so that momentum and angular momentum
-// are kept: with w = 1/m, A += w_A/(w_A + w_B) c r and B -= w_B/(w_A + w_B) c r, c such that |B - A| = L, and the
-// velocities change by the same over dt. Any number of links a vertex: swept until no length is off by more than 1e-10
-// of itself, at most 200 times. (Ryckaert, Ciccotti, Berendsen, J Comput Phys 1977;23:327; symplectic with
-// semi-implicit Euler.) THESIS: equations 2.10-2.11, split by the distance that each end has moved in this step,
-// velocities untouched. Kept to reproduce the thesis: it does not converge with the step and does not keep momentum. A
-// fixed end does not move.
+// EXACT: SHAKE and RATTLE. The link pulls along its direction r at the start of the step, so that momentum and angular
+// momentum are kept: with w = 1/m, A += w_A/(w_A + w_B) c r and B -= w_B/(w_A + w_B) c r, c such that |B - A| = L, and
+// the velocities change by the same over dt; then, for integrators that ask, velocities lose what would stretch it. Any
+// number of links a vertex: those that share one are solved together (LinkNetwork), whatever their order. (Ryckaert,
+// Ciccotti, Berendsen, J Comput Phys 1977;23:327; symplectic with semi-implicit Euler.) THESIS: equations 2.10-2.11,
+// split by the distance that each end has moved in this step, velocities untouched. Kept to reproduce the thesis: it
+// does not converge with the step and does not keep momentum. A fixed end does not move.
 #ifndef PHRENIC_SERVER_MECHANICS_CONSTRAINTS_RIGID_LINKS_H_
 #define PHRENIC_SERVER_MECHANICS_CONSTRAINTS_RIGID_LINKS_H_
 
 #include <vector>
 
-#include "server/mechanics/draft.h"
+#include "server/mechanics/constraints/link_network.h"
 
 namespace phrenic {
 
@@ -23,21 +23,17 @@ class RigidLinks final : public Constraint {
                                                           std::string_view path, Draft& draft);
 
   void Project(const v1::Parameters& parameters, const ConstPoints& before, double dt, State& state) const override;
+  void ProjectVelocities(const v1::Parameters& parameters, State& state) const override;
   double Residual(const State& state) const override;
 
  private:
-  struct Link {
-    int a, b;
-    double length;            // [m]
-    double share_a, share_b;  // of the correction; both 0 where neither end is free
-  };
   explicit RigidLinks(std::string name) : Constraint(std::move(name)) {}
-  double Sweep(const ConstPoints& before, double dt, State& state) const;  // the largest relative error before it
+  void Sort(const std::vector<Link>& links, const Model& model);
   void ProjectThesis(const ConstPoints& before, Points& x) const;
 
-  v1::Projection projection_ = v1::PROJECTION_EXACT;
-  bool shared_vertices_ = false;  // some vertex has two links or more: one sweep is not enough
-  std::vector<Link> links_;
+  bool thesis_ = false;
+  std::vector<Link> alone_;  // no vertex that moves has another link (or the projection asks for no more)
+  LinkNetwork network_;      // the others
 };
 
 }  // namespace phrenic

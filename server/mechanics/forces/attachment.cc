@@ -42,6 +42,7 @@ absl::StatusOr<std::unique_ptr<Force>> Attachment::Make(const v1::Attachment& sc
   auto carriers = CarrierBodies(scene, path, draft);
   if (!carriers.ok()) return carriers.status();
   std::unique_ptr<Attachment> force(new Attachment(name));
+  force->thesis_ = scene.mode() == v1::ATTACHMENT_MODE_THESIS;
   for (const int b : *bodies) {
     auto region = draft.Region(b, scene.region(), absl::StrCat(std::string(path), ".region"));
     if (!region.ok()) return region.status();
@@ -55,7 +56,8 @@ absl::StatusOr<std::unique_ptr<Force>> Attachment::Make(const v1::Attachment& sc
   const auto count = static_cast<std::int64_t>(force->holds_.size());
   draft.model.report.set_attachments(draft.model.report.attachments() + count);
   draft.ReportElement("force", name, count, "vertices",
-                      absl::StrFormat("within %g mm, k = %g N/m", 1e3 * scene.radius(), scene.stiffness()));
+                      absl::StrFormat("within %g mm, k = %g N/m%s", 1e3 * scene.radius(), scene.stiffness(),
+                                      force->thesis_ ? " of the carrier's step (thesis)" : ""));
   return force;
 }
 
@@ -99,16 +101,22 @@ void Attachment::AddForce(const Instant& at, MutablePoints f) const {
       carried += shares_[s].weight * (turned + pose.translation - hold.rest);
       velocity += shares_[s].weight * (pose.velocity + pose.angular_velocity.cross(turned));
     }
+    if (thesis_) {
+      f.col(hold.vertex) += hold.stiffness * at.parameters.time_step() * velocity;
+      continue;
+    }
     f.col(hold.vertex) +=
         hold.stiffness * (carried - at.x.col(hold.vertex)) + hold.damping * (velocity - at.v.col(hold.vertex));
   }
 }
 
 void Attachment::AddStiffness(const Instant&, StiffnessSink& sink) const {
+  if (thesis_) return;
   for (const Hold& hold : holds_) sink.Add(hold.vertex, hold.vertex, hold.stiffness * Eigen::Matrix3d::Identity());
 }
 
 void Attachment::AddDamping(const Instant&, Eigen::VectorXd& c) const {
+  if (thesis_) return;
   for (const Hold& hold : holds_) c[hold.vertex] += hold.damping;
 }
 

@@ -1,6 +1,8 @@
 // Fixed points (thesis section 3.3, figures 3.6-3.8) as a spring and damper to the carried point, which does not depend
 // on the time step: f = w k (c - x) + 2 zeta sqrt(w k m) (c' - v), w = 1 - d/radius, d the distance to the nearest
-// vertex of a carrier at rest, c the vertex's own rest position carried along by that carrier [N].
+// vertex of a carrier at rest, c the vertex's own rest position carried along by that carrier [N]. THESIS: as the
+// thesis has it (stickTo), f = w k c' dt, the carrier's displacement in this time step dt [s] times a scale: what a
+// vertex travels is proportional to the time step, and nothing brings it back. Kept to reproduce the thesis.
 #ifndef PHRENIC_SERVER_MECHANICS_FORCES_ATTACHMENT_H_
 #define PHRENIC_SERVER_MECHANICS_FORCES_ATTACHMENT_H_
 
@@ -32,6 +34,7 @@ class Attachment final : public Force {
                 int body, Draft& draft);
   void SortByCarrier();
 
+  bool thesis_ = false;
   std::vector<Hold> holds_;
   std::vector<RideShare> shares_;
 };

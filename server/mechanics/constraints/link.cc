@@ -1,0 +1,92 @@
+#include "server/mechanics/constraints/link.h"
+
+#include <cmath>
+
+#include "absl/strings/str_cat.h"
+#include "server/mesh/topology.h"
+
+namespace phrenic {
+namespace {
+
+// What to take off `between` along `direction` for its squared length to lose `excess`: the smaller root c of
+// |between - c direction|^2 = |between|^2 - excess. Along `between` itself where that has no root ahead.
+Eigen::Vector3d Correction(const Eigen::Vector3d& between, const Eigen::Vector3d& direction, double excess) {
+  const double along = between.dot(direction);
+  const double discriminant = along * along - direction.squaredNorm() * excess;
+  if (along > 0 && discriminant >= 0) return excess / (along + std::sqrt(discriminant)) * direction;
+  const double squared = between.squaredNorm();
+  if (squared == 0) return Eigen::Vector3d::Zero();
+  return (1 - std::sqrt((squared - excess) / squared)) * between;
+}
+
+}  // namespace
+
+Link MakeLink(const Model& model, int a, int b) {
+  return {a, b, (model.rest.col(a) - model.rest.col(b)).norm(), model.inverse_mass[a], model.inverse_mass[b]};
+}
+
+absl::StatusOr<std::vector<Link>> ListedLinks(const v1::LinkList& list, int body, std::string_view path,
+                                              const Draft& draft) {
+  std::vector<Link> links;
+  const int first = draft.model.bodies[body].first_vertex;
+  for (int i = 0; i < list.links_size(); ++i) {
+    const std::string where = absl::StrCat(std::string(path), ".links[", i, "]");
+    const int a = list.links(i).a(), b = list.links(i).b();
+    if (absl::Status status = draft.CheckVertex(body, a, where); !status.ok()) return status;
+    if (absl::Status status = draft.CheckVertex(body, b, where); !status.ok()) return status;
+    if (a == b) return FieldError(where, absl::StrCat("joins vertex ", a, " to itself"));
+    links.push_back(MakeLink(draft.model, first + a, first + b));
+    if (links.back().length > 0) continue;
+    return FieldError(where, absl::StrCat("vertices ", a, " and ", b, " are in one point: move one of them"));
+  }
+  return links;
+}
+
+absl::StatusOr<std::vector<Link>> ListedOrEdges(bool listed, const v1::LinkList& list, const std::string& region,
+                                                int body, std::string_view path, const Draft& draft) {
+  if (listed) return ListedLinks(list, body, absl::StrCat(std::string(path), ".list"), draft);
+  auto inside = draft.Region(body, region, absl::StrCat(std::string(path), ".region"));
+  if (!inside.ok()) return inside.status();
+  const BodyModel& model = draft.model.bodies[body];
+  std::vector<Link> links;
+  const Edges edges = SpringEdges(model.mesh);
+  for (const auto edge : edges.colwise()) {
+    if (!(*inside)[edge[0]] || !(*inside)[edge[1]]) continue;
+    const Link link = MakeLink(draft.model, model.first_vertex + edge[0], model.first_vertex + edge[1]);
+    if (link.length > 0) links.push_back(link);
+  }
+  return links;
+}
+
+absl::StatusOr<int> DeformableBody(const std::string& name, std::string_view path, const Draft& draft) {
+  auto body = draft.Body(name, path);
+  if (!body.ok() || draft.model.bodies[*body].first_vertex >= 0) return body;
+  return FieldError(path, absl::StrCat("body \"", name, "\" must be ROLE_DEFORMABLE"));
+}
+
+void Pull(const Link& link, const Eigen::Vector3d& impulse, double dt, State& state) {
+  state.x.col(link.a) += link.inverse_a * impulse;
+  state.x.col(link.b) -= link.inverse_b * impulse;
+  state.v.col(link.a) += link.inverse_a / dt * impulse;
+  state.v.col(link.b) -= link.inverse_b / dt * impulse;
+}
+
+void Restore(const Link& link, const ConstPoints& before, double dt, State& state) {
+  if (!link.Movable()) return;
+  const Eigen::Vector3d between = state.x.col(link.b) - state.x.col(link.a);
+  const double excess = between.squaredNorm() - link.length * link.length;
+  const Eigen::Vector3d correction = Correction(between, before.col(link.b) - before.col(link.a), excess);
+  Pull(link, correction / (link.inverse_a + link.inverse_b), dt, state);
+}
+
+void StopStretching(const Link& link, State& state) {
+  const Eigen::Vector3d between = state.x.col(link.b) - state.x.col(link.a);
+  const double squared = between.squaredNorm();
+  if (!link.Movable() || squared == 0) return;
+  const double rate = between.dot(state.v.col(link.b) - state.v.col(link.a)) / squared;
+  const Eigen::Vector3d impulse = rate / (link.inverse_a + link.inverse_b) * between;
+  state.v.col(link.a) += link.inverse_a * impulse;
+  state.v.col(link.b) -= link.inverse_b * impulse;
+}
+
+}  // namespace phrenic

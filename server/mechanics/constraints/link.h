@@ -1,0 +1,49 @@
+// One link between two vertices, and how an error of its length is taken back.
+#ifndef PHRENIC_SERVER_MECHANICS_CONSTRAINTS_LINK_H_
+#define PHRENIC_SERVER_MECHANICS_CONSTRAINTS_LINK_H_
+
+#include "server/mechanics/draft.h"
+
+namespace phrenic {
+
+struct Link {
+  int a, b;              // simulated vertices
+  double length;         // to be kept [m]
+  double inverse_a = 0;  // 1/m of its ends [1/kg]; 0 for what does not move by forces
+  double inverse_b = 0;
+
+  bool Movable() const { return inverse_a + inverse_b > 0; }
+  // |x_b - x_a| - length [m].
+  double Stretch(const ConstPoints& x) const { return (x.col(b) - x.col(a)).norm() - length; }
+  // (|x_b - x_a|^2 / length^2 - 1) / 2: the relative error of the length, where it is small.
+  double RelativeError(const ConstPoints& x) const {
+    return 0.5 * ((x.col(b) - x.col(a)).squaredNorm() / (length * length) - 1);
+  }
+};
+
+// The vertices of a list, as links of the body as long as they are at rest. Errors name the entry: a vertex that is
+// not there, one joined to itself, two in one point.
+absl::StatusOr<std::vector<Link>> ListedLinks(const v1::LinkList& list, int body, std::string_view path,
+                                              const Draft& draft);
+// The listed ones, or, where nothing is listed, the edges of the body with both vertices in the region (all where it is
+// empty) and some length.
+absl::StatusOr<std::vector<Link>> ListedOrEdges(bool listed, const v1::LinkList& list, const std::string& region,
+                                                int body, std::string_view path, const Draft& draft);
+// The body of this name, which must be deformable.
+absl::StatusOr<int> DeformableBody(const std::string& name, std::string_view path, const Draft& draft);
+Link MakeLink(const Model& model, int a, int b);
+
+// Moves both ends by `impulse` [kg m] along the link, against its stretch, and the velocities by the same over dt.
+void Pull(const Link& link, const Eigen::Vector3d& impulse, double dt, State& state);
+
+// Brings the length back in one go (SHAKE): a pull along the direction that the link had `before`, which keeps angular
+// momentum; along itself where it has turned too far in one step for that to reach. Nothing where both ends are in one
+// point.
+void Restore(const Link& link, const ConstPoints& before, double dt, State& state);
+
+// Takes the relative velocity along the link from both ends, by their masses.
+void StopStretching(const Link& link, State& state);
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_SERVER_MECHANICS_CONSTRAINTS_LINK_H_

@@ -1,0 +1,57 @@
+// Links that share vertices (chains, trusses, grids), solved together. The pulls lambda [kg m] along the links' unit
+// directions r at the start of the step solve J M^-1 J^T lambda = errors, J the links' directions: sparse, one row a
+// link, factorised once a step and used again until every length is within 1e-10 of its own (a chord Newton method,
+// whose error falls to about the turn of the links in one step [rad] of itself each time). Velocities have the same
+// system with the directions of the moment. Where that stops gaining (links that turn far in one step, links that
+// cannot all hold) link after link is restored instead, 200 times at most: what then is left over is the residual.
+// Redundant links are left to the others. (Hess et al., LINCS, J Comput Chem 1997;18:1463; Andersen, RATTLE, J Comput
+// Phys 1983;52:24.)
+#ifndef PHRENIC_SERVER_MECHANICS_CONSTRAINTS_LINK_NETWORK_H_
+#define PHRENIC_SERVER_MECHANICS_CONSTRAINTS_LINK_NETWORK_H_
+
+#include <vector>
+
+#include "server/mechanics/constraints/link.h"
+#include "server/mechanics/constraints/sparse_ldlt.h"
+
+namespace phrenic {
+
+// Immutable; any number of threads may call. Working memory is the thread's own: a thread's first call on a larger
+// network than any before allocates.
+class LinkNetwork {
+ public:
+  LinkNetwork() = default;
+  explicit LinkNetwork(const std::vector<Link>& links);
+
+  // Positions of `state` get onto the links, velocities change by the same over dt.
+  void Project(const ConstPoints& before, double dt, State& state) const;
+  // Velocities keep nothing that would stretch a link.
+  void ProjectVelocities(State& state) const;
+  const std::vector<Link>& links() const { return links_; }
+
+ private:
+  // Two links with an end in one vertex.
+  struct Coupling {
+    int at;         // place in the matrix's values
+    int i, j;       // links
+    double factor;  // 1/m of the vertex [1/kg]; negative where one link starts and the other ends there
+  };
+  struct Scratch;
+  static Scratch& ThreadScratch();
+
+  void FindCouplings();
+  void Factorise(const ConstPoints& x, Scratch& scratch) const;
+  // The largest relative error; sets scratch.errors.
+  double Errors(const State& state, Scratch& scratch) const;
+  double LargestMove(const Scratch& scratch) const;
+  void PullAll(double sign, double dt, const Scratch& scratch, State& state) const;
+
+  std::vector<Link> links_;
+  std::vector<Coupling> couplings_;
+  SparseLdlt matrix_;
+  size_t values_ = 0;  // below the matrix's diagonal
+};
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_SERVER_MECHANICS_CONSTRAINTS_LINK_NETWORK_H_

@@ -1,0 +1,38 @@
+// Cables: springs that cannot push. f_a = k max(0, l - l0) d, d the unit vector from a to b, f_b = -f_a [N]; energy
+// k max(0, l - l0)^2 / 2; slack, they have neither force, nor energy, nor stiffness. k [N/m] is scaled by the live
+// parameter elasticity. With struts (rigid links) they make a tensegrity (thesis section 2.4).
+#ifndef PHRENIC_SERVER_MECHANICS_FORCES_CABLES_H_
+#define PHRENIC_SERVER_MECHANICS_FORCES_CABLES_H_
+
+#include <vector>
+
+#include "server/mechanics/draft.h"
+
+namespace phrenic {
+
+class Cables final : public Force {
+ public:
+  // Null where no edge lies in the region.
+  static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::Cables& scene, const std::string& name,
+                                                     std::string_view path, Draft& draft);
+
+  void AddForce(const Instant& at, MutablePoints f) const override;
+  void AddStiffness(const Instant& at, StiffnessSink& sink) const override;
+  void AddLatentStiffness(const Instant& at, StiffnessSink& sink) const override;
+  double Energy(const Instant& at) const override;
+  bool conservative() const override { return true; }
+
+ private:
+  struct Cable {
+    int a, b;
+    double rest_length;  // [m]
+  };
+  explicit Cables(std::string name) : Force(std::move(name)) {}
+
+  std::vector<Cable> cables_;
+  double stiffness_ = 0;  // [N/m]
+};
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_SERVER_MECHANICS_FORCES_CABLES_H_

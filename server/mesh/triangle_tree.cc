@@ -1,0 +1,155 @@
+#include "server/mesh/triangle_tree.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <utility>
+
+namespace phrenic {
+namespace {
+
+constexpr int kLeaf = 4;        // triangles
+constexpr double kTie = 1e-10;  // of the squared distance: nearer together than this counts as equally near
+constexpr int kDeepest = 64;    // nodes that wait; a tree split in halves needs one a level
+
+double Ratio(double part, double whole) { return whole > 0 ? part / whole : 0; }
+
+// Weights of the point of a triangle nearest to p; a weight that is 0 is exactly so. (C. Ericson, Real-Time Collision
+// Detection, 2005, section 5.1.5.)
+Eigen::Vector3d NearestWeights(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+                               const Eigen::Vector3d& p) {
+  const Eigen::Vector3d ab = b - a, ac = c - a;
+  const double ab_a = ab.dot(p - a), ac_a = ac.dot(p - a);
+  if (ab_a <= 0 && ac_a <= 0) return {1, 0, 0};
+  const double ab_b = ab.dot(p - b), ac_b = ac.dot(p - b);
+  if (ab_b >= 0 && ac_b <= ab_b) return {0, 1, 0};
+  const double at_c = ab_a * ac_b - ab_b * ac_a;
+  if (at_c <= 0 && ab_a >= 0 && ab_b <= 0) {
+    const double t = Ratio(ab_a, ab_a - ab_b);
+    return {1 - t, t, 0};
+  }
+  const double ab_c = ab.dot(p - c), ac_c = ac.dot(p - c);
+  if (ac_c >= 0 && ab_c <= ac_c) return {0, 0, 1};
+  const double at_b = ab_c * ac_a - ab_a * ac_c;
+  if (at_b <= 0 && ac_a >= 0 && ac_c <= 0) {
+    const double t = Ratio(ac_a, ac_a - ac_c);
+    return {1 - t, 0, t};
+  }
+  const double at_a = ab_b * ac_c - ab_c * ac_b;
+  if (at_a <= 0 && ac_b >= ab_b && ab_c >= ac_c) {
+    const double t = Ratio(ac_b - ab_b, (ac_b - ab_b) + (ab_c - ac_c));
+    return {0, 1 - t, t};
+  }
+  const double sum = at_a + at_b + at_c;
+  return {1 - Ratio(at_b, sum) - Ratio(at_c, sum), Ratio(at_b, sum), Ratio(at_c, sum)};
+}
+
+}  // namespace
+
+TriangleTree::TriangleTree(const ConstPoints& x, const Triangles& triangles) : triangles_(3, triangles.cols()) {
+  Points middles(3, triangles.cols());
+  for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
+    middles.col(t) = (x.col(triangles(0, t)) + x.col(triangles(1, t)) + x.col(triangles(2, t))) / 3;
+  }
+  std::vector<int> order(static_cast<size_t>(triangles.cols()));
+  std::iota(order.begin(), order.end(), 0);
+  nodes_.push_back({0, static_cast<int>(triangles.cols())});
+  for (int node = 0; node < static_cast<int>(nodes_.size()); ++node) Split(node, middles, order);
+  for (Eigen::Index t = 0; t < triangles.cols(); ++t) triangles_.col(t) = triangles.col(order[static_cast<size_t>(t)]);
+  open_vertex_.assign(static_cast<size_t>(x.cols()), false);
+  FindRims();
+}
+
+// Halves a node's triangles across the longest side of the box of their middles.
+void TriangleTree::Split(int node, const Points& middles, std::vector<int>& order) {
+  const auto [first, count, left] = nodes_[node];
+  if (count <= kLeaf) return;
+  Eigen::AlignedBox3d box;
+  for (int i = first; i < first + count; ++i) box.extend(middles.col(order[i]));
+  int axis = 0;
+  box.sizes().maxCoeff(&axis);
+  const auto begin = order.begin() + first, half = begin + count / 2;
+  std::nth_element(begin, half, begin + count,
+                   [&](int a, int b) { return std::pair(middles(axis, a), a) < std::pair(middles(axis, b), b); });
+  nodes_[node].left = static_cast<int>(nodes_.size());
+  nodes_.push_back({first, count / 2});
+  nodes_.push_back({first + count / 2, count - count / 2});
+}
+
+void TriangleTree::FindRims() {
+  std::map<std::pair<int, int>, int> triangles_at;
+  const auto edge = [this](Eigen::Index t, int opposite) {
+    return std::minmax({triangles_((opposite + 1) % 3, t), triangles_((opposite + 2) % 3, t)});
+  };
+  for (Eigen::Index t = 0; t < triangles_.cols(); ++t) {
+    for (int i = 0; i < 3; ++i) ++triangles_at[edge(t, i)];
+  }
+  for (Eigen::Index t = 0; t < triangles_.cols(); ++t) {
+    Eigen::Vector3i open = Eigen::Vector3i::Zero();
+    for (int i = 0; i < 3; ++i) {
+      const auto [a, b] = edge(t, i);
+      open[i] = triangles_at[{a, b}] == 1;
+      if (open[i] != 0) open_vertex_[a] = open_vertex_[b] = true;
+    }
+    open_edge_.push_back(open);
+  }
+}
+
+void TriangleTree::Fit(const ConstPoints& x, Boxes& boxes) const {
+  if (boxes.size() < nodes_.size()) boxes.resize(nodes_.size());
+  for (int n = static_cast<int>(nodes_.size()) - 1; n >= 0; --n) {
+    const Node& node = nodes_[n];
+    boxes[n].setEmpty();
+    if (node.left >= 0) {
+      boxes[n].extend(boxes[node.left]).extend(boxes[node.left + 1]);
+      continue;
+    }
+    for (int t = node.first; t < node.first + node.count; ++t) {
+      for (int i = 0; i < 3; ++i) boxes[n].extend(x.col(triangles_(i, t)));
+    }
+  }
+}
+
+void TriangleTree::Try(const ConstPoints& x, const Eigen::Vector3d& point, int t, SurfacePoint& best) const {
+  const Eigen::Vector3i vertices = triangles_.col(t);
+  const Eigen::Vector3d a = x.col(vertices[0]), b = x.col(vertices[1]), c = x.col(vertices[2]);
+  const Eigen::Vector3d weights = NearestWeights(a, b, c, point);
+  const Eigen::Vector3d offset = weights[0] * a + weights[1] * b + weights[2] * c - point;
+  const double squared = offset.squaredNorm();
+  if (!(squared <= best.squared * (1 + kTie))) return;
+  const Eigen::Vector3d normal = (b - a).cross(c - a);
+  const double facing = Ratio(normal.dot(offset), normal.norm() * offset.norm());
+  if (squared >= best.squared * (1 - kTie) && std::abs(facing) <= std::abs(best.facing)) return;
+  best = {t, weights, offset, squared, facing, false};
+  for (int i = 0; i < 3; ++i) {
+    if (weights[i] == 1) best.on_rim = open_vertex_[vertices[i]];
+    if (weights[i] == 0 && open_edge_[t][i] != 0) best.on_rim = true;
+  }
+}
+
+SurfacePoint TriangleTree::Nearest(const ConstPoints& x, const Boxes& boxes, const Eigen::Vector3d& point,
+                                   double reach) const {
+  SurfacePoint best;
+  best.squared = reach * reach;
+  std::array<int, kDeepest> waiting;
+  int waits = 0;
+  waiting[waits++] = 0;
+  while (waits > 0) {
+    const int n = waiting[--waits];
+    if (boxes[n].squaredExteriorDistance(point) > best.squared * (1 + kTie)) continue;
+    const Node& node = nodes_[n];
+    if (node.left < 0) {
+      for (int t = node.first; t < node.first + node.count; ++t) Try(x, point, t, best);
+      continue;
+    }
+    const double left = boxes[node.left].squaredExteriorDistance(point);
+    const double right = boxes[node.left + 1].squaredExteriorDistance(point);
+    waiting[waits++] = left <= right ? node.left + 1 : node.left;
+    waiting[waits++] = left <= right ? node.left : node.left + 1;
+  }
+  return best;
+}
+
+}  // namespace phrenic

@@ -1,0 +1,120 @@
+// Rigid links that share vertices: chains, grids, what cannot hold.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <vector>
+
+#include "absl/strings/str_format.h"
+#include "server/mechanics/constraints/sparse_ldlt.h"
+#include "server/mechanics/residual.h"
+#include "tests/compile_text.h"
+
+namespace phrenic {
+namespace {
+
+struct Pair {
+  int a, b;
+};
+
+std::string List(const std::vector<Pair>& pairs) {
+  std::string text = "list {";
+  for (const auto& [a, b] : pairs) text += absl::StrFormat(" links { a: %d b: %d }", a, b);
+  return text + " }";
+}
+
+// A hanging net of columns x rows vertices, its upper corners fixed, links along all its edges.
+std::string Net(int columns, int rows, const std::vector<Pair>& pairs, double friction = 0.5) {
+  return absl::StrFormat(
+             "name: 'net' bodies { name: 'net' role: ROLE_DEFORMABLE mass: %d fixed_vertices: [0, %d] "
+             "grid { columns: %d rows: %d u { x: 0.1 } v { y: 0.1 } } } "
+             "forces { gravity { bodies: 'net' acceleration { z: -9.81 } } } "
+             "forces { friction { bodies: 'net' rate: %g } } constraints { rigid_links { body: 'net' ",
+             columns * rows, columns - 1, columns, rows, friction) +
+         List(pairs) + " } }";
+}
+
+std::vector<Pair> GridPairs(int columns, int rows) {
+  std::vector<Pair> pairs;
+  for (int r = 0; r < rows; ++r) {
+    for (int c = 0; c < columns; ++c) {
+      // The upper row is fixed at both ends: it could not sag if it were linked to its full width.
+      if (c + 1 < columns && r > 0) pairs.push_back({r * columns + c, r * columns + c + 1});
+      if (r + 1 < rows) pairs.push_back({r * columns + c, r * columns + c + columns});
+    }
+  }
+  return pairs;
+}
+
+TEST(LinkedNet, HoldsAllItsLengthsWhileItFalls) {
+  const auto model = CompileText(Net(12, 8, GridPairs(12, 8)));
+  State state = model->InitialState();
+  Workspace work = model->MakeWorkspace();
+  double worst = 0;
+  for (int i = 0; i < 2000; ++i) {
+    ASSERT_TRUE(Step(*model, model->parameters, 1e-3, state, work).ok());
+    worst = std::max(worst, LargestResidual(*model, state).metres);
+  }
+  EXPECT_LT(worst, 1e-9 * 0.1);
+}
+
+TEST(LinkedNet, DoesNotDependOnTheOrderOfItsLinks) {
+  std::vector<Pair> pairs = GridPairs(5, 4);
+  const auto listed = CompileText(Net(5, 4, pairs));
+  std::shuffle(pairs.begin(), pairs.end(), std::mt19937(3));
+  for (size_t i = 0; i < pairs.size(); i += 2) std::swap(pairs[i].a, pairs[i].b);
+  const auto shuffled = CompileText(Net(5, 4, pairs));
+  EXPECT_LT((RunTo(*listed, 0.3, 1e-3).x - RunTo(*shuffled, 0.3, 1e-3).x).cwiseAbs().maxCoeff(), 1e-8);
+}
+
+// Two masses a metre apart at rest, the outer ones of four in a row, are driven to three metres: two links of a metre
+// and one between them cannot span it at the end.
+TEST(ConflictingLinks, EndWithAFiniteStateAndSayWhatIsLeft) {
+  const auto model = CompileText(
+      "name: 'torn' bodies { name: 'row' role: ROLE_DEFORMABLE mass: 4 polyhedron { vertices {} vertices { x: 1 } "
+      "vertices { x: 2 } vertices { x: 3 } } } "
+      "motions { oscillation { body: 'row' vertices: 0 amplitude { x: -1 z: 0.2 } period: 1 } } "
+      "motions { oscillation { body: 'row' vertices: 3 amplitude { x: 1 } period: 1 } } "
+      "constraints { rigid_links { body: 'row' list { links { a: 0 b: 1 } links { a: 1 b: 2 } links { a: 2 b: 3 } } } "
+      "}");
+  State state = model->InitialState();
+  Workspace work = model->MakeWorkspace();
+  for (int i = 0; i < 250; ++i) ASSERT_TRUE(Step(*model, model->parameters, 1e-3, state, work).ok());
+  EXPECT_TRUE(state.x.allFinite());
+  EXPECT_TRUE(state.v.allFinite());
+  const double span = (state.x.col(3) - state.x.col(0)).norm();
+  EXPECT_GE(LargestResidual(*model, state).metres, (span - 3) / 3 - 1e-9) << "no way to share it out is better";
+  EXPECT_LE(LargestResidual(*model, state).metres, span - 3 + 1e-9) << "one link at most bears it all";
+}
+
+TEST(SparseLdlt, SolvesWhatADenseSolverDoesAndLeavesRedundantRowsOut) {
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> value(-1, 1);
+  const int n = 30;
+  Eigen::MatrixXd factor = Eigen::MatrixXd::Zero(n, n);
+  for (int i = 0; i < n; ++i) {
+    for (int k = 0; k < 3; ++k) factor(i, (7 * i + 5 * k) % n) = 1 + value(random);
+  }
+  factor.row(n - 1) = factor.row(3) - 2 * factor.row(8);  // redundant
+  const Eigen::MatrixXd matrix = factor * factor.transpose();
+  std::vector<std::pair<int, int>> below;
+  std::vector<double> values;
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < i; ++j) {
+      if (matrix(i, j) == 0) continue;
+      below.emplace_back(i, j);
+      values.push_back(matrix(i, j));
+    }
+  }
+  const SparseLdlt ldlt(n, below);
+  SparseLdlt::Factors factors;
+  ldlt.Factorise(matrix.diagonal(), values, factors);
+  const Eigen::VectorXd right = matrix * Eigen::VectorXd::NullaryExpr(n, [&] { return value(random); });
+  Eigen::VectorXd x = right;
+  ldlt.Solve(factors, x);
+  EXPECT_LT((matrix * x - right).norm(), 1e-8 * right.norm());
+  EXPECT_EQ(x[n - 1], 0);
+}
+
+}  // namespace
+}  // namespace phrenic
