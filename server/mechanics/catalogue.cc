@@ -6,6 +6,7 @@
 #include "server/mechanics/forces/attachment.h"
 #include "server/mechanics/forces/friction.h"
 #include "server/mechanics/forces/gravity.h"
+#include "server/mechanics/forces/membrane.h"
 #include "server/mechanics/forces/springs.h"
 #include "server/mechanics/integrators/semi_implicit_euler.h"
 #include "server/mechanics/motions/oscillation.h"
@@ -40,6 +41,8 @@ absl::StatusOr<std::unique_ptr<Force>> MakeForce(const v1::Force& scene, std::st
       return Attachment::Make(scene.attachment(), scene.name(), In(path, "attachment"), draft);
     case v1::Force::kGravity:
       return Gravity::Make(scene.gravity(), scene.name(), In(path, "gravity"), draft);
+    case v1::Force::kMembrane:
+      return MakeMembrane(scene.membrane(), scene.name(), In(path, "membrane"), draft);
     case v1::Force::KIND_NOT_SET:
       break;
   }

@@ -2,6 +2,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/mechanics/draft.h"
+#include "server/mesh/ellipsoid.h"
 
 namespace phrenic {
 namespace {
@@ -43,19 +44,25 @@ Mesh FromGrid(const v1::Grid& shape) {
   return mesh;
 }
 
+Mesh FromEllipsoid(const v1::Ellipsoid& shape) {
+  return EllipsoidSurface(ToEigen(shape.centre()), ToEigen(shape.radii()), shape.divisions(), shape.upper_half());
+}
+
 absl::StatusOr<Mesh> UncheckedShape(const v1::Body& body, const MeshSource& source) {
   switch (body.shape_case()) {
     case v1::Body::kPolyhedron:
       return FromPolyhedron(body.polyhedron());
     case v1::Body::kGrid:
       return FromGrid(body.grid());
+    case v1::Body::kEllipsoid:
+      return FromEllipsoid(body.ellipsoid());
     case v1::Body::kFile:
     case v1::Body::kGenerated:
       return source(body);
     case v1::Body::SHAPE_NOT_SET:
       break;
   }
-  return absl::InvalidArgumentError("has no shape: set file, generated, polyhedron or grid");
+  return absl::InvalidArgumentError("has no shape: set file, generated, polyhedron, grid or ellipsoid");
 }
 
 absl::Status InBody(const v1::Body& body, const absl::Status& status) {

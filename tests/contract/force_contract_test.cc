@@ -18,6 +18,11 @@ struct ForceCase {
 const ForceCase kForces[] = {
     {"springs", "springs { bodies: 'sheet' stiffness: 30 rest_length_ratio: 0.9 }", true},
     {"springs_balanced", "springs { bodies: 'sheet' rest_length_ratio: 0.8 balanced_at_rest: true }", false},
+    {"springs_material",
+     "springs { bodies: 'sheet' rest_length_ratio: 0.95 material { youngs_modulus: 1000 thickness: 0.02 } }", true},
+    {"membrane", "membrane { bodies: 'sheet' youngs_modulus: 900 poissons_ratio: 0.4 thickness: 0.02 }", true},
+    {"membrane_linear", "membrane { bodies: 'sheet' youngs_modulus: 900 thickness: 0.02 strain: STRAIN_LINEAR }",
+     false},
     {"friction", "friction { bodies: 'sheet' rate: 2 }", false},
     {"gravity", "gravity { bodies: 'sheet' acceleration { z: -9.81 } }", false},
     {"action_line_cylinder",
