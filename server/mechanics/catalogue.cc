@@ -4,9 +4,11 @@
 #include "server/mechanics/constraints/rigid_links.h"
 #include "server/mechanics/forces/action_line.h"
 #include "server/mechanics/forces/attachment.h"
+#include "server/mechanics/forces/cross_layer.h"
 #include "server/mechanics/forces/friction.h"
 #include "server/mechanics/forces/gravity.h"
 #include "server/mechanics/forces/membrane.h"
+#include "server/mechanics/forces/solid.h"
 #include "server/mechanics/forces/springs.h"
 #include "server/mechanics/integrators/semi_implicit_euler.h"
 #include "server/mechanics/motions/oscillation.h"
@@ -43,6 +45,10 @@ absl::StatusOr<std::unique_ptr<Force>> MakeForce(const v1::Force& scene, std::st
       return Gravity::Make(scene.gravity(), scene.name(), In(path, "gravity"), draft);
     case v1::Force::kMembrane:
       return MakeMembrane(scene.membrane(), scene.name(), In(path, "membrane"), draft);
+    case v1::Force::kSolid:
+      return MakeSolid(scene.solid(), scene.name(), In(path, "solid"), draft);
+    case v1::Force::kCrossLayer:
+      return MakeCrossLayer(scene.cross_layer(), scene.name(), In(path, "cross_layer"), draft);
     case v1::Force::KIND_NOT_SET:
       break;
   }

@@ -23,6 +23,10 @@ const ForceCase kForces[] = {
     {"membrane", "membrane { bodies: 'sheet' youngs_modulus: 900 poissons_ratio: 0.4 thickness: 0.02 }", true},
     {"membrane_linear", "membrane { bodies: 'sheet' youngs_modulus: 900 thickness: 0.02 strain: STRAIN_LINEAR }",
      false},
+    {"solid", "solid { bodies: 'block' youngs_modulus: 20 poissons_ratio: 0.4 }", true},
+    {"solid_linear", "solid { bodies: 'block' youngs_modulus: 20 strain: STRAIN_LINEAR }", false},
+    {"cross_layer", "cross_layer { bodies: 'block' distance: 1.5 stiffness: 20 }", true},
+    {"cross_layer_bodies", "cross_layer { bodies: 'sheet' other_bodies: 'block' distance: 4 stiffness: 20 }", true},
     {"friction", "friction { bodies: 'sheet' rate: 2 }", false},
     {"gravity", "gravity { bodies: 'sheet' acceleration { z: -9.81 } }", false},
     {"action_line_cylinder",
@@ -43,6 +47,8 @@ class ForceContract : public testing::TestWithParam<ForceCase> {
     const std::string text = std::string(
         "name: 'contract' bodies { name: 'sheet' role: ROLE_DEFORMABLE mass: 2 "
         "grid { columns: 4 rows: 3 u { x: 1 } v { y: 1 z: 0.2 } } } "
+        "bodies { name: 'block' role: ROLE_DEFORMABLE mass: 2 "
+        "block { origin { z: 2 } size { x: 2 y: 1 z: 1 } columns: 2 rows: 1 layers: 1 } } "
         "bodies { name: 'bone' role: ROLE_AT_REST polyhedron { vertices { x: 0 y: -0.5 } vertices { x: 1 y: -0.5 } } } "
         "breath { waveform: WAVEFORM_SINE } forces { ");
     model_ = CompileText(text + GetParam().text + " }");

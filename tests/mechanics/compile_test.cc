@@ -79,7 +79,7 @@ TEST(Compile, MassFollowsFromTheSubstance) {
   EXPECT_NEAR(model->mass.sum(), 500 * 0.02 * 0.2 * 0.4, 1e-12);
   EXPECT_THAT(
       ErrorOf("", "name: 's' bodies { name: 'b' role: ROLE_DEFORMABLE polyhedron { vertices {} } substance {} }"),
-      AllOf(HasSubstr("bodies[0].substance"), HasSubstr("no area")));
+      AllOf(HasSubstr("bodies[0].substance"), HasSubstr("neither area nor volume")));
 }
 
 TEST(Compile, LeavesOutWhatTheSceneDoesNotNeedAndSaysSo) {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -43,6 +44,21 @@ Modes<2> TurningModes(const Gradient<2>& r, const Eigen::Matrix2d& s, const Lame
   return modes;
 }
 
+// About each principal axis.
+Modes<3> TurningModes(const Gradient<3>& r, const Eigen::Matrix3d& s, const Lame& lame, bool turns) {
+  Modes<3> modes;
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(s);
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Vector3d axis = principal.eigenvectors().col(i);
+    const double across = s.trace() - principal.eigenvalues()[i];  // the two other stretches
+    for (int k = 0; k < 3; ++k) modes.q[i].col(k) = std::sqrt(0.5) * r * axis.cross(Eigen::Vector3d::Unit(k));
+    const double tension = 2 * lame.mu * (across - 2) + 2 * lame.lambda * (s.trace() - 3);
+    modes.softening[i] = 2 * lame.mu - Geometric(tension, across);
+  }
+  if (!turns) modes.softening.fill(2 * lame.mu);
+  return modes;
+}
+
 template <int N>
 Eigen::Matrix3d Block(const FiniteElement<N>& element, int a, int b, const Gradient<N>& r, const Modes<N>& modes,
                       const Lame& lame) {
@@ -66,6 +82,11 @@ Lame PlaneStress(double youngs_modulus, double poissons_ratio) {
           youngs_modulus * poissons_ratio / (1 - poissons_ratio * poissons_ratio)};
 }
 
+Lame OfSolid(double youngs_modulus, double poissons_ratio) {
+  return {youngs_modulus / (2 * (1 + poissons_ratio)),
+          youngs_modulus * poissons_ratio / ((1 + poissons_ratio) * (1 - 2 * poissons_ratio))};
+}
+
 FiniteElement<2> MakeTriangle(const ConstPoints& rest, const Eigen::Vector3i& vertices, double thickness) {
   FiniteElement<2> element{vertices, {}, {}, 0};
   const Eigen::Vector3d b = rest.col(vertices[1]) - rest.col(vertices[0]);
@@ -76,9 +97,20 @@ FiniteElement<2> MakeTriangle(const ConstPoints& rest, const Eigen::Vector3i& ve
   element.axes.col(1) = b.cross(c).normalized().cross(element.axes.col(0));
   Eigen::Matrix2d sides;
   sides << element.axes.transpose() * b, element.axes.transpose() * c;
-  element.gradient.template rightCols<2>() = sides.inverse().transpose();
+  element.gradient.rightCols<2>() = sides.inverse().transpose();
   element.gradient.col(0) = -element.gradient.col(1) - element.gradient.col(2);
   element.volume = area * thickness;
+  return element;
+}
+
+FiniteElement<3> MakeTetrahedron(const ConstPoints& rest, const Eigen::Vector4i& vertices) {
+  FiniteElement<3> element{vertices, {}, Eigen::Matrix3d::Identity(), 0};
+  Eigen::Matrix3d sides;
+  for (int a = 1; a < 4; ++a) sides.col(a - 1) = rest.col(vertices[a]) - rest.col(vertices[0]);
+  element.volume = std::abs(sides.determinant()) / 6;
+  if (element.volume <= 0) return element;
+  element.gradient.rightCols<3>() = sides.inverse().transpose();
+  element.gradient.col(0) = -element.gradient.rightCols<3>().rowwise().sum();
   return element;
 }
 
@@ -122,5 +154,6 @@ double Corotated<N>::Energy(const Instant& at) const {
 }
 
 template class Corotated<2>;
+template class Corotated<3>;
 
 }  // namespace phrenic

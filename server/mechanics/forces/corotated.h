@@ -21,6 +21,7 @@ struct Lame {
 };
 // Of a membrane in plane stress, of a solid.
 Lame PlaneStress(double youngs_modulus, double poissons_ratio);
+Lame OfSolid(double youngs_modulus, double poissons_ratio);
 
 template <int N>
 struct FiniteElement {
@@ -32,6 +33,9 @@ struct FiniteElement {
 
 // The element over these vertices at rest; its volume is area x thickness, or 0 where it is degenerate.
 FiniteElement<2> MakeTriangle(const ConstPoints& rest, const Eigen::Vector3i& vertices, double thickness);
+
+// The same; its volume does not depend on the order of the vertices.
+FiniteElement<3> MakeTetrahedron(const ConstPoints& rest, const Eigen::Vector4i& vertices);
 
 // F = sum of x_a g_a^T.
 template <int N>
@@ -71,6 +75,7 @@ class Corotated final : public Force {
 };
 
 extern template class Corotated<2>;
+extern template class Corotated<3>;
 
 }  // namespace phrenic
 

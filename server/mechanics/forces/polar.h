@@ -11,8 +11,10 @@ template <int N>
 using Gradient = Eigen::Matrix<double, 3, N>;
 
 // The R nearest to F, R^T R = I, to rounding. Where F is so degenerate that there are several, one of them. Of a
-// triangle: R = (F + cofactor(F)) / tr S, exact.
+// triangle: R = (F + cofactor(F)) / tr S, exact. Of a tetrahedron: det R = 1 even where it is turned inside out;
+// Newton's iteration (Higham 1986), the singular value decomposition where F is nearly flat or inverted.
 Gradient<2> NearestRotation(const Gradient<2>& f);
+Gradient<3> NearestRotation(const Gradient<3>& f);
 
 }  // namespace phrenic
 

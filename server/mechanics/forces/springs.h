@@ -18,17 +18,19 @@ class Springs final : public Force {
   static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::Springs& scene, const std::string& name,
                                                      std::string_view path, Draft& draft);
 
+  struct Spring {
+    int a, b;            // simulated vertices
+    double stiffness;    // [N/m]
+    double rest_length;  // [m]
+  };
+  Springs(std::string name, std::vector<Spring> springs) : Force(std::move(name)), springs_(std::move(springs)) {}
+
   void AddForce(const Instant& at, MutablePoints f) const override;
   void AddStiffness(const Instant& at, StiffnessSink& sink) const override;
   double Energy(const Instant& at) const override;
   bool conservative() const override { return true; }
 
  private:
-  struct Spring {
-    int a, b;
-    double stiffness;    // [N/m]
-    double rest_length;  // [m]
-  };
   explicit Springs(std::string name) : Force(std::move(name)) {}
   void AddBody(const v1::Springs& scene, const BodyModel& body, const Selection& selection);
   void AddTension(double scale, const ConstPoints& x, MutablePoints f) const;
