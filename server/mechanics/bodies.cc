@@ -3,14 +3,15 @@
 #include <set>
 
 #include "absl/strings/str_cat.h"
+#include "server/mechanics/masses.h"
 #include "server/mechanics/shapes.h"
 #include "server/mesh/nearest.h"
-#include "server/mesh/normals.h"
 
 namespace phrenic {
 namespace {
 
-constexpr double kFurthest = 10;  // sizes of the scene
+constexpr double kFurthest = 10;    // sizes of the scene
+constexpr double kRounding = 1e-9;  // [m]; a box includes the vertices on its faces
 
 std::string RoleName(v1::Role role) {
   switch (role) {
@@ -25,24 +26,52 @@ std::string RoleName(v1::Role role) {
   }
 }
 
-// Half an equal share at least: the vertices of small triangles would else be so light that they set the time step for
-// all (on a real diaphragm, half the step).
-Eigen::VectorXd Masses(const Mesh& mesh, double total) {
-  const Eigen::Index n = mesh.vertices.cols();
-  Eigen::VectorXd share = VertexAreas(mesh.vertices, mesh.triangles);
-  const double area = share.sum();
-  if (area <= 0) return Eigen::VectorXd::Constant(n, total / static_cast<double>(n));
-  share = share.cwiseMax(0.5 * area / static_cast<double>(n));
-  return share * (total / share.sum());
+// Named sets of vertices that the scene adds to the mesh's own.
+absl::Status AddRegions(const v1::Body& scene, std::string_view path, Mesh& mesh) {
+  for (int r = 0; r < scene.regions_size(); ++r) {
+    const v1::Region& region = scene.regions(r);
+    const Eigen::Array3d low = ToEigen(region.low()), high = ToEigen(region.high());
+    std::vector<int> vertices;
+    for (int i = 0; i < mesh.vertices.cols(); ++i) {
+      const Eigen::Array3d x = mesh.vertices.col(i);
+      if ((x >= low - kRounding).all() && (x <= high + kRounding).all()) vertices.push_back(i);
+    }
+    const std::string field = absl::StrCat(std::string(path), ".regions[", r, "]");
+    if (vertices.empty()) return FieldError(field, "no vertex of the body lies in it at rest");
+    if (!mesh.regions.emplace(region.name(), std::move(vertices)).second) {
+      return FieldError(field, absl::StrCat("there are two regions named \"", region.name(), "\""));
+    }
+  }
+  return absl::OkStatus();
+}
+
+void Fix(int vertex, Model& model) {
+  if (model.inverse_mass[vertex] == 0) return;
+  model.inverse_mass[vertex] = 0;
+  model.fixed_vertices.push_back(vertex);
+}
+
+absl::Status FixRegions(const v1::Body& scene, std::string_view path, const BodyModel& body, Model& model) {
+  for (int r = 0; r < scene.fixed_regions_size(); ++r) {
+    const auto found = body.mesh.regions.find(scene.fixed_regions(r));
+    if (found == body.mesh.regions.end()) {
+      return FieldError(absl::StrCat(std::string(path), ".fixed_regions[", r, "]"),
+                        absl::StrCat("the body has no region \"", scene.fixed_regions(r), "\""));
+    }
+    for (const int vertex : found->second) Fix(body.first_vertex + vertex, model);
+  }
+  return absl::OkStatus();
 }
 
 absl::Status AddSimulated(const v1::Body& scene, std::string_view path, BodyModel& body, Model& model) {
   const Eigen::Index first = model.rest.cols(), n = body.mesh.vertices.cols();
+  const auto masses = VertexMasses(scene, body.mesh, path);
+  if (!masses.ok()) return masses.status();
   body.first_vertex = static_cast<int>(first);
   model.rest.conservativeResize(3, first + n);
   model.rest.rightCols(n) = body.mesh.vertices;
   model.mass.conservativeResize(first + n);
-  model.mass.tail(n) = Masses(body.mesh, scene.mass());
+  model.mass.tail(n) = *masses;
   model.inverse_mass.conservativeResize(first + n);
   model.inverse_mass.tail(n) = model.mass.tail(n).cwiseInverse();
   for (int i = 0; i < scene.fixed_vertices_size(); ++i) {
@@ -51,10 +80,9 @@ absl::Status AddSimulated(const v1::Body& scene, std::string_view path, BodyMode
       return FieldError(absl::StrCat(std::string(path), ".fixed_vertices[", i, "]"),
                         absl::StrCat("there is no vertex ", vertex, ": the body's vertices are 0 to ", n - 1));
     }
-    model.inverse_mass[first + vertex] = 0;
-    model.fixed_vertices.push_back(static_cast<int>(first) + vertex);
+    Fix(static_cast<int>(first) + vertex, model);
   }
-  return absl::OkStatus();
+  return FixRegions(scene, path, body, model);
 }
 
 void Report(const BodyModel& body, const v1::Body& scene, v1::CompileReport& report) {
@@ -125,6 +153,7 @@ absl::Status AddBodies(const MeshSource& source, Draft& draft) {
     }
     absl::StatusOr<Mesh> mesh = MakeShape(scene, source);
     if (!mesh.ok()) return mesh.status();
+    if (absl::Status status = AddRegions(scene, path, *mesh); !status.ok()) return status;
     BodyModel body{.name = scene.name(),
                    .layer = scene.layer(),
                    .role = scene.role(),

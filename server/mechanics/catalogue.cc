@@ -7,8 +7,11 @@
 #include "server/mechanics/forces/attachment.h"
 #include "server/mechanics/forces/cables.h"
 #include "server/mechanics/forces/contact.h"
+#include "server/mechanics/forces/cross_layer.h"
 #include "server/mechanics/forces/friction.h"
 #include "server/mechanics/forces/gravity.h"
+#include "server/mechanics/forces/membrane.h"
+#include "server/mechanics/forces/solid.h"
 #include "server/mechanics/forces/springs.h"
 #include "server/mechanics/integrators/bdf2.h"
 #include "server/mechanics/integrators/explicit_euler.h"
@@ -55,6 +58,12 @@ absl::StatusOr<std::unique_ptr<Force>> MakeForce(const v1::Force& scene, std::st
       return Contact::Make(scene.contact(), scene.name(), In(path, "contact"), draft);
     case v1::Force::kCables:
       return Cables::Make(scene.cables(), scene.name(), In(path, "cables"), draft);
+    case v1::Force::kMembrane:
+      return MakeMembrane(scene.membrane(), scene.name(), In(path, "membrane"), draft);
+    case v1::Force::kSolid:
+      return MakeSolid(scene.solid(), scene.name(), In(path, "solid"), draft);
+    case v1::Force::kCrossLayer:
+      return MakeCrossLayer(scene.cross_layer(), scene.name(), In(path, "cross_layer"), draft);
     case v1::Force::KIND_NOT_SET:
       break;
   }

@@ -75,6 +75,16 @@ absl::StatusOr<std::vector<bool>> Draft::Region(int body, const std::string& reg
   return mask;
 }
 
+absl::StatusOr<Selection> Draft::Select(int body, const std::string& region, const std::string& exclude_region,
+                                        std::string_view path) const {
+  auto inside = Region(body, region, absl::StrCat(std::string(path), ".region"));
+  if (!inside.ok()) return inside.status();
+  if (exclude_region.empty()) return Selection{*inside, std::vector<bool>(inside->size(), false)};
+  auto excluded = Region(body, exclude_region, absl::StrCat(std::string(path), ".exclude_region"));
+  if (!excluded.ok()) return excluded.status();
+  return Selection{*std::move(inside), *std::move(excluded)};
+}
+
 absl::Status Draft::CheckVertex(int body, int vertex, std::string_view path) const {
   const auto vertices = model.bodies[body].mesh.vertices.cols();
   if (vertex >= 0 && vertex < vertices) return absl::OkStatus();

@@ -14,6 +14,22 @@ namespace phrenic {
 
 using Names = google::protobuf::RepeatedPtrField<std::string>;
 
+// Which elements of a body take part: those with all their vertices inside, but for those with all of them excluded.
+// Two elements of which one names a region and the other excludes it share out a mesh with no gap and no overlap.
+struct Selection {
+  std::vector<bool> inside, excluded;  // a vertex
+
+  template <typename Vertices>
+  bool Takes(const Vertices& vertices) const {
+    bool all_inside = true, all_excluded = true;
+    for (const int vertex : vertices) {
+      all_inside = all_inside && inside[vertex];
+      all_excluded = all_excluded && excluded[vertex];
+    }
+    return all_inside && !all_excluded;
+  }
+};
+
 // The model in the making: bodies, rest positions and masses are there before the first element is made.
 struct Draft {
   Model model;
@@ -25,6 +41,9 @@ struct Draft {
   absl::StatusOr<std::vector<int>> DeformableBodies(const Names& names, std::string_view path) const;
   // Vertices of a region of a body, as a mask; every vertex where `region` is empty.
   absl::StatusOr<std::vector<bool>> Region(int body, const std::string& region, std::string_view path) const;
+  // By fields `region` and `exclude_region` of the element at `path`; everything where both are empty.
+  absl::StatusOr<Selection> Select(int body, const std::string& region, const std::string& exclude_region,
+                                   std::string_view path) const;
   absl::Status CheckVertex(int body, int vertex, std::string_view path) const;
 
   void ReportElement(std::string_view family, std::string_view name, std::int64_t count, std::string_view counted,

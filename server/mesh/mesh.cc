@@ -33,6 +33,7 @@ absl::Status Validate(const Mesh& mesh) {
     }
   }
   if (absl::Status status = CheckIndices(mesh.triangles, vertices, "triangle"); !status.ok()) return status;
+  if (absl::Status status = CheckIndices(mesh.tetrahedra, vertices, "tetrahedron"); !status.ok()) return status;
   if (absl::Status status = CheckIndices(mesh.edges, vertices, "edge"); !status.ok()) return status;
   for (const auto& [name, region] : mesh.regions) {
     for (const int index : region) {

@@ -19,6 +19,15 @@ struct ForceCase {
 const ForceCase kForces[] = {
     {"springs", "springs { bodies: 'sheet' stiffness: 30 rest_length_ratio: 0.9 }", true},
     {"springs_balanced", "springs { bodies: 'sheet' rest_length_ratio: 0.8 balanced_at_rest: true }", false},
+    {"springs_material",
+     "springs { bodies: 'sheet' rest_length_ratio: 0.95 material { youngs_modulus: 1000 thickness: 0.02 } }", true},
+    {"membrane", "membrane { bodies: 'sheet' youngs_modulus: 900 poissons_ratio: 0.4 thickness: 0.02 }", true},
+    {"membrane_linear", "membrane { bodies: 'sheet' youngs_modulus: 900 thickness: 0.02 strain: STRAIN_LINEAR }",
+     false},
+    {"solid", "solid { bodies: 'block' youngs_modulus: 20 poissons_ratio: 0.4 }", true},
+    {"solid_linear", "solid { bodies: 'block' youngs_modulus: 20 strain: STRAIN_LINEAR }", false},
+    {"cross_layer", "cross_layer { bodies: 'block' distance: 1.5 stiffness: 20 }", true},
+    {"cross_layer_bodies", "cross_layer { bodies: 'sheet' other_bodies: 'block' distance: 4 stiffness: 20 }", true},
     {"friction", "friction { bodies: 'sheet' rate: 2 }", false},
     {"gravity", "gravity { bodies: 'sheet' acceleration { z: -9.81 } }", false},
     {"action_line_cylinder",
@@ -45,6 +54,8 @@ class ForceContract : public testing::TestWithParam<ForceCase> {
     const std::string text = std::string(
         "name: 'contract' bodies { name: 'sheet' role: ROLE_DEFORMABLE mass: 2 "
         "grid { columns: 4 rows: 3 u { x: 1 } v { y: 1 z: 0.2 } } } "
+        "bodies { name: 'block' role: ROLE_DEFORMABLE mass: 2 "
+        "block { origin { z: 2 } size { x: 2 y: 1 z: 1 } columns: 2 rows: 1 layers: 1 } } "
         "bodies { name: 'bone' role: ROLE_AT_REST polyhedron { vertices { x: 0 y: -0.5 } vertices { x: 1 y: -0.5 } } } "
         "bodies { name: 'floor' role: ROLE_AT_REST polyhedron { vertices { x: -9 y: -9 z: 0.1 } vertices { x: 20 y: -9 "
         "z: 0.1 } vertices { y: 20 z: 0.1 } triangles { a: 0 b: 1 c: 2 } } } "

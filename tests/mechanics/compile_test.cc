@@ -52,6 +52,36 @@ TEST(Compile, RefusesImpossibleBodies) {
   EXPECT_THAT(ErrorOf("bodies { name: 'sheet' role: ROLE_SEEN polyhedron { vertices {} } }"), HasSubstr("two bodies"));
 }
 
+TEST(Compile, RegionsAreBoxesOfTheBodyAtRest) {
+  const std::string body =
+      "name: 'scene' bodies { name: 'sheet' role: ROLE_DEFORMABLE grid { columns: 3 rows: 3 u { x: 1 } v { y: 1 } } ";
+  const auto model = CompileText(body +
+                                 "regions { name: 'low' low {} high { x: 2 y: 1 } } regions { name: 'edge' low {} high "
+                                 "{ y: 2 } } fixed_regions: 'edge' fixed_vertices: 3 } forces { membrane { bodies: "
+                                 "'sheet' region: 'low' } } forces { membrane { bodies: 'sheet' exclude_region: 'low' "
+                                 "} } forces { membrane { bodies: 'sheet' region: 'edge' } }");
+  EXPECT_EQ(model->bodies[0].mesh.regions.at("low").size(), 6u);
+  EXPECT_EQ(model->fixed_vertices.size(), 3u);
+  ASSERT_EQ(model->forces.size(), 2u);
+  EXPECT_THAT(model->report.DebugString(), HasSubstr("no triangle with area has all its vertices in the region"));
+  EXPECT_THAT(ErrorOf("", body + "regions { name: 'far' low { x: 3 } high { x: 4 } } }"),
+              AllOf(HasSubstr("bodies[0].regions[0]"), HasSubstr("no vertex")));
+  EXPECT_THAT(ErrorOf("", body + "fixed_regions: 'rim' }"),
+              AllOf(HasSubstr("bodies[0].fixed_regions[0]"), HasSubstr("no region \"rim\"")));
+  EXPECT_THAT(ErrorOf("forces { membrane { bodies: 'sheet' exclude_region: 'rim' } }"),
+              HasSubstr("forces[0].membrane.exclude_region"));
+}
+
+TEST(Compile, MassFollowsFromTheSubstance) {
+  const auto model = CompileText(
+      "name: 's' bodies { name: 'b' role: ROLE_DEFORMABLE grid { columns: 3 rows: 5 u { x: 0.1 } v { y: 0.1 } } "
+      "substance { density: 500 thickness: 0.02 } }");
+  EXPECT_NEAR(model->mass.sum(), 500 * 0.02 * 0.2 * 0.4, 1e-12);
+  EXPECT_THAT(
+      ErrorOf("", "name: 's' bodies { name: 'b' role: ROLE_DEFORMABLE polyhedron { vertices {} } substance {} }"),
+      AllOf(HasSubstr("bodies[0].substance"), HasSubstr("neither area nor volume")));
+}
+
 TEST(Compile, LeavesOutWhatTheSceneDoesNotNeedAndSaysSo) {
   const auto model = CompileText(
       std::string(kBody) + "forces { springs { bodies: 'sheet' } } forces { friction { bodies: 'sheet' rate: 0 } }");

@@ -2,12 +2,44 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "server/mesh/topology.h"
 
 namespace phrenic {
+
+namespace {
+
+// The sum over the triangles that take part of 3 area / (sum of edges squared), for each of the edges.
+Eigen::VectorXd StiffnessShares(const Mesh& mesh, const Edges& edges, const Selection& selection) {
+  std::map<std::pair<int, int>, Eigen::Index> place;
+  for (Eigen::Index e = 0; e < edges.cols(); ++e) place[std::minmax(edges(0, e), edges(1, e))] = e;
+  Eigen::VectorXd shares = Eigen::VectorXd::Zero(edges.cols());
+  for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
+    const Eigen::Vector3i corner = mesh.triangles.col(t);
+    if (!selection.Takes(corner)) continue;
+    const Eigen::Vector3d a = mesh.vertices.col(corner[0]);
+    const Eigen::Vector3d b = mesh.vertices.col(corner[1]), c = mesh.vertices.col(corner[2]);
+    const double squares = (b - a).squaredNorm() + (c - b).squaredNorm() + (a - c).squaredNorm();
+    if (squares == 0) continue;
+    for (int k = 0; k < 3; ++k) {
+      const auto found = place.find(std::minmax(corner[k], corner[(k + 1) % 3]));
+      if (found != place.end()) shares[found->second] += 1.5 * (b - a).cross(c - a).norm() / squares;
+    }
+  }
+  return shares;
+}
+
+std::string Detail(const v1::Springs& scene) {
+  if (!scene.has_material()) return absl::StrFormat("k = %g N/m", scene.stiffness());
+  return absl::StrFormat("k of E = %g Pa, %g mm thick", scene.material().youngs_modulus(),
+                         1e3 * scene.material().thickness());
+}
+
+}  // namespace
 
 absl::StatusOr<std::unique_ptr<Force>> Springs::Make(const v1::Springs& scene, const std::string& given,
                                                      std::string_view path, Draft& draft) {
@@ -16,17 +48,9 @@ absl::StatusOr<std::unique_ptr<Force>> Springs::Make(const v1::Springs& scene, c
   if (!bodies.ok()) return bodies.status();
   std::unique_ptr<Springs> force(new Springs(name));
   for (const int b : *bodies) {
-    const BodyModel& body = draft.model.bodies[b];
-    auto region = draft.Region(b, scene.region(), absl::StrCat(std::string(path), ".region"));
-    if (!region.ok()) return region.status();
-    const Edges edges = SpringEdges(body.mesh);
-    for (Eigen::Index e = 0; e < edges.cols(); ++e) {
-      const int a = edges(0, e), c = edges(1, e);
-      if (!(*region)[a] || !(*region)[c]) continue;
-      const double length = (body.mesh.vertices.col(a) - body.mesh.vertices.col(c)).norm();
-      force->springs_.push_back(
-          {body.first_vertex + a, body.first_vertex + c, scene.stiffness(), length * scene.rest_length_ratio()});
-    }
+    const auto selection = draft.Select(b, scene.region(), scene.exclude_region(), path);
+    if (!selection.ok()) return selection.status();
+    force->AddBody(scene, draft.model.bodies[b], *selection);
   }
   if (force->springs_.empty()) {
     draft.ReportLeftOut(name, "no edge has both its vertices in the region");
@@ -38,8 +62,24 @@ absl::StatusOr<std::unique_ptr<Force>> Springs::Make(const v1::Springs& scene, c
   }
   const auto count = static_cast<std::int64_t>(force->springs_.size());
   draft.model.report.set_springs(draft.model.report.springs() + count);
-  draft.ReportElement("force", name, count, "springs", absl::StrFormat("k = %g N/m", scene.stiffness()));
+  draft.ReportElement("force", name, count, "springs", Detail(scene));
   return force;
+}
+
+void Springs::AddBody(const v1::Springs& scene, const BodyModel& body, const Selection& selection) {
+  const Edges edges = scene.has_material() ? TriangleEdges(body.mesh.triangles) : SpringEdges(body.mesh);
+  Eigen::VectorXd stiffness = Eigen::VectorXd::Constant(edges.cols(), scene.stiffness());
+  if (scene.has_material()) {
+    stiffness =
+        scene.material().youngs_modulus() * scene.material().thickness() * StiffnessShares(body.mesh, edges, selection);
+  }
+  for (Eigen::Index e = 0; e < edges.cols(); ++e) {
+    const Eigen::Vector2i ends = edges.col(e);
+    if (scene.has_material() ? stiffness[e] == 0 : !selection.Takes(ends)) continue;
+    const double length = (body.mesh.vertices.col(ends[0]) - body.mesh.vertices.col(ends[1])).norm();
+    springs_.push_back(
+        {body.first_vertex + ends[0], body.first_vertex + ends[1], stiffness[e], length * scene.rest_length_ratio()});
+  }
 }
 
 void Springs::AddTension(double scale, const ConstPoints& x, MutablePoints f) const {

@@ -1,5 +1,7 @@
 // Springs over edges (thesis equation 2.1): f_a = k (l - l0) d, d the unit vector from a to b, f_b = -f_a.
-// k [N/m] is scaled by the live parameter elasticity. A spring of length 0 has no direction and pulls with no force.
+// k [N/m] is given, or follows from a tissue's Young's modulus E and thickness h: k = E h sum over the edge's triangles
+// of 3 area / (sum of the triangle's edges squared), which puts the right mean stiffness into every triangle. It is
+// scaled by the live parameter elasticity. A spring of length 0 has no direction and pulls with no force.
 // With `balanced_at_rest` the constant load -f(rest) acts too, so that the mesh as it stands is in balance.
 #ifndef PHRENIC_SERVER_MECHANICS_FORCES_SPRINGS_H_
 #define PHRENIC_SERVER_MECHANICS_FORCES_SPRINGS_H_
@@ -16,18 +18,21 @@ class Springs final : public Force {
   static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::Springs& scene, const std::string& name,
                                                      std::string_view path, Draft& draft);
 
+  struct Spring {
+    int a, b;            // simulated vertices
+    double stiffness;    // [N/m]
+    double rest_length;  // [m]
+  };
+  Springs(std::string name, std::vector<Spring> springs) : Force(std::move(name)), springs_(std::move(springs)) {}
+
   void AddForce(const Instant& at, MutablePoints f) const override;
   void AddStiffness(const Instant& at, StiffnessSink& sink) const override;
   double Energy(const Instant& at) const override;
   bool conservative() const override { return true; }
 
  private:
-  struct Spring {
-    int a, b;
-    double stiffness;    // [N/m]
-    double rest_length;  // [m]
-  };
   explicit Springs(std::string name) : Force(std::move(name)) {}
+  void AddBody(const v1::Springs& scene, const BodyModel& body, const Selection& selection);
   void AddTension(double scale, const ConstPoints& x, MutablePoints f) const;
 
   std::vector<Spring> springs_;

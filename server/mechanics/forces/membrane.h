@@ -1,0 +1,15 @@
+// Finite elements over the triangles of bodies, in plane stress; the law is in corotated.h.
+#ifndef PHRENIC_SERVER_MECHANICS_FORCES_MEMBRANE_H_
+#define PHRENIC_SERVER_MECHANICS_FORCES_MEMBRANE_H_
+
+#include "server/mechanics/draft.h"
+
+namespace phrenic {
+
+// Null where no triangle takes part; triangles without area are left out.
+absl::StatusOr<std::unique_ptr<Force>> MakeMembrane(const v1::Membrane& scene, const std::string& name,
+                                                    std::string_view path, Draft& draft);
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_SERVER_MECHANICS_FORCES_MEMBRANE_H_

@@ -1,0 +1,52 @@
+// Equilibria by Newton's method: what a law of elasticity says, without any integrator.
+#ifndef PHRENIC_TESTS_STATIC_SOLVE_H_
+#define PHRENIC_TESTS_STATIC_SOLVE_H_
+
+#include <gtest/gtest.h>
+
+#include <Eigen/SparseCholesky>
+#include <functional>
+#include <vector>
+
+#include "server/mechanics/block_matrix.h"
+#include "server/mechanics/model.h"
+
+namespace phrenic {
+
+// Whether a coordinate (0 to 2) of a vertex stays where `start` has it.
+using Held = std::function<bool(int vertex, int axis)>;
+
+inline Points ForceOn(const Model& model, const State& state) {
+  Points f = Points::Zero(3, state.x.cols());
+  for (const auto& force : model.forces) force->AddForce(MakeInstant(model, model.parameters, state), f);
+  return f;
+}
+
+// Positions where the model's forces and `load` [N], 3 x n, balance on what is not held.
+inline Points SolveStatic(const Model& model, const Points& start, const Points& load, const Held& held) {
+  State state = model.InitialState();
+  state.x = start;
+  std::vector<int> free;
+  for (int i = 0; i < 3 * start.cols(); ++i) {
+    if (!held(i / 3, i % 3)) free.push_back(i);
+  }
+  Eigen::SparseMatrix<double> pick(static_cast<Eigen::Index>(free.size()), start.size());
+  for (size_t i = 0; i < free.size(); ++i) pick.insert(static_cast<Eigen::Index>(i), free[i]) = 1;
+  BlockMatrix stiffness(model);
+  for (int iteration = 0; iteration < 100; ++iteration) {
+    const Points f = ForceOn(model, state) + load;
+    stiffness.Assemble(model, MakeInstant(model, model.parameters, state));
+    const Eigen::SparseMatrix<double> k = pick * stiffness.ToSparse() * pick.transpose();
+    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(k);
+    if (solver.info() != Eigen::Success) break;
+    const Eigen::VectorXd step = pick.transpose() * solver.solve(pick * f.reshaped());
+    state.x.reshaped() += step;
+    if (step.cwiseAbs().maxCoeff() < 1e-13 * model.size) return state.x;
+  }
+  ADD_FAILURE() << "found no equilibrium";
+  return state.x;
+}
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_TESTS_STATIC_SOLVE_H_
