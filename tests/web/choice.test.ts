@@ -1,4 +1,5 @@
 import { create } from "@bufbuild/protobuf";
+import { Code, ConnectError } from "@connectrpc/connect";
 import { beforeEach, describe, expect, test } from "vitest";
 import { Controller } from "../../web/src/controller";
 import { Integrator, ParametersSchema } from "../../web/src/gen/phrenic/v1/parameters_pb";
@@ -9,6 +10,7 @@ import { FakeClock, settle } from "./fake_clock";
 import { FakeServer } from "./fake_server";
 
 let server: FakeServer;
+let clock: FakeClock;
 let controller: Controller;
 let panel: HTMLElement;
 
@@ -18,7 +20,8 @@ const using = (integrator: number): Session =>
 
 beforeEach(() => {
   server = new FakeServer();
-  controller = new Controller(server.api, "thorax", new FakeClock());
+  clock = new FakeClock();
+  controller = new Controller(server.api, "thorax", clock);
   panel = make("div", {}, ...parameterSections(controller));
   document.body.replaceChildren(panel);
   controller.receive(using(Integrator.SEMI_IMPLICIT_EULER));
@@ -61,5 +64,14 @@ describe("a choice in the control panel", () => {
     panel.querySelector<HTMLButtonElement>('[title="Reset integrator"]')!.click();
     await settle();
     expect(server.updates).toMatchObject([{ integrator: 99 }]);
+  });
+
+  test("ThatIsRefusedGoesBackToWhatHolds", async () => {
+    server.api.sessions.updateParameters = () => Promise.reject(new ConnectError("no", Code.InvalidArgument));
+    list().append(make("option", { value: "99" }, "Another"));
+    list().value = "99";
+    list().dispatchEvent(new Event("change"));
+    await clock.advance(100);
+    expect(list().value).toBe(String(Integrator.SEMI_IMPLICIT_EULER));
   });
 });
