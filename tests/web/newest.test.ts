@@ -10,11 +10,13 @@ interface Values {
 function sender(answer: () => Promise<void> = async () => {}) {
   const sent: Partial<Values>[] = [];
   const clock = new FakeClock();
-  const queue = new NewestWins<Values>(async (change) => {
+  const settled: boolean[] = [];
+  const send = async (change: Partial<Values>) => {
     sent.push(change);
     await answer();
-  }, clock);
-  return { sent, clock, queue };
+  };
+  const queue: NewestWins<Values> = new NewestWins(send, clock, () => settled.push(!queue.pending("force")));
+  return { sent, clock, queue, settled };
 }
 
 test("TheFirstChangeGoesAtOnce", async () => {
@@ -63,4 +65,13 @@ test("AValueIsPendingUntilItIsAnswered", async () => {
   expect([queue.pending("force"), queue.pending("length")]).toEqual([true, false]);
   await clock.advance(100);
   expect(queue.pending("force")).toBe(false);
+});
+
+test("ItIsToldWhenNothingIsPendingAnyMore", async () => {
+  const { clock, queue, settled } = sender();
+  queue.push({ force: 1 });
+  await settle();
+  expect(settled).toEqual([]);
+  await clock.advance(100);
+  expect(settled).toEqual([true]);
 });

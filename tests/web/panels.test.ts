@@ -3,7 +3,8 @@ import { beforeEach, describe, expect, test } from "vitest";
 import { Controller } from "../../web/src/controller";
 import { ParametersSchema } from "../../web/src/gen/phrenic/v1/parameters_pb";
 import { type Session, SessionSchema, SessionState } from "../../web/src/gen/phrenic/v1/session_pb";
-import { parametersPanel } from "../../web/src/panels/parameters";
+import { make } from "../../web/src/panels/dom";
+import { parameterSections } from "../../web/src/panels/parameters";
 import { playbackPanel } from "../../web/src/panels/playback";
 import { linkWords } from "../../web/src/panels/status";
 import { FakeClock, settle } from "./fake_clock";
@@ -29,14 +30,14 @@ const input = (id: string) => panel.querySelector<HTMLInputElement>(`#${id}`)!;
 beforeEach(() => {
   server = new FakeServer();
   controller = new Controller(server.api, "thorax", new FakeClock());
-  panel = parametersPanel(controller);
+  panel = make("div", {}, ...parameterSections(controller));
   document.body.replaceChildren(panel);
   controller.receive(session(1, 1n));
 });
 
 describe("the control panel", () => {
   test("HasALabelForEveryInput", () => {
-    for (const each of panel.querySelectorAll("input")) {
+    for (const each of panel.querySelectorAll<HTMLInputElement | HTMLSelectElement>("input, select")) {
       expect(Boolean(each.ariaLabel || each.labels?.length), each.id).toBe(true);
     }
   });

@@ -1,6 +1,8 @@
 import { describe, expect, test } from "vitest";
 import { ParametersSchema } from "../../web/src/gen/phrenic/v1/parameters_pb";
 import {
+  type ChoiceControl,
+  choiceLabel,
   faultOf,
   formatNumber,
   type NumberControl,
@@ -42,6 +44,31 @@ describe("controls from the schema", () => {
       "timeStep",
       "elasticity",
     ]);
+  });
+});
+
+describe("a choice", () => {
+  const choices = controls.filter((control): control is ChoiceControl => control.kind === "choice");
+
+  test("HasEveryValueOfTheEnumButTheUnspecifiedOne", () => {
+    for (const { field, options } of choices) {
+      const { values } = ParametersSchema.field[field as "integrator"].enum!;
+      expect(options.map(({ value }) => value)).toEqual(values.map(({ number }) => number).filter(Boolean));
+    }
+    expect(choices.map(({ field }) => field)).toContain("integrator");
+  });
+
+  test("StartsAtOneOfItsValues", () => {
+    for (const { options, defaultValue } of choices) expect(options.map(({ value }) => value)).toContain(defaultValue);
+  });
+
+  test("IsCalledByWhatIsParticularInTheValuesName", () => {
+    expect(choices.find(({ field }) => field === "integrator")!.options[0]).toEqual({
+      value: 1,
+      label: "Semi Implicit Euler",
+    });
+    const names = ["VELOCITY_VERLET", "RUNGE_KUTTA_4", "TR_BDF2"];
+    expect(names.map(choiceLabel)).toEqual(["Velocity Verlet", "Runge Kutta 4", "TR BDF2"]);
   });
 });
 

@@ -12,7 +12,7 @@ import { banners } from "./panels/banner";
 import type { Chooser } from "./panels/chooser";
 import { make, place } from "./panels/dom";
 import { Margins } from "./panels/margins";
-import { parametersPanel } from "./panels/parameters";
+import { parameterSections } from "./panels/parameters";
 import { playbackPanel } from "./panels/playback";
 import { Probes } from "./panels/probes";
 import { reportPanel } from "./panels/report";
@@ -74,7 +74,7 @@ export class App {
   private furnish(): void {
     const { controller, looks, viewer } = this;
     place("panel").append(
-      parametersPanel(controller),
+      ...parameterSections(controller),
       appearancePanel(looks, (kind, on) => viewer.setOverlay(kind, on)),
       layersPanel(looks),
       this.probes.element,

@@ -24,7 +24,9 @@ export class Controller {
     private readonly sessionId: string,
     clock: Clock,
   ) {
-    this.updates = new NewestWins<ParameterValues>((change) => this.send(change), clock);
+    // Whatever became of a change, the controls show what holds.
+    const showAll = () => this.session.set(this.session.value);
+    this.updates = new NewestWins<ParameterValues>((change) => this.send(change), clock, showAll);
   }
 
   /** Takes in the state of the session, unless it is older than what is known and `fresh` is not said. */
@@ -93,8 +95,6 @@ export class Controller {
     } catch (error) {
       // That the server is gone is said by the connection.
       if (!unreachable(error)) this.notice.set(errorText(error));
-      // Whatever was refused, the controls go back to what holds.
-      this.session.set(this.session.value);
     }
   }
 }

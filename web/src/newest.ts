@@ -9,10 +9,11 @@ export class NewestWins<T extends object> {
   private underway: Partial<T> = {};
   private running = false;
 
-  /** `send` handles its own errors. */
+  /** `send` handles its own errors; `settled` hears when what was sent is no longer pending. */
   constructor(
     private readonly send: (change: Partial<T>) => Promise<void>,
     private readonly clock: Clock,
+    private readonly settled: () => void,
     private readonly interval = 100,
   ) {}
 
@@ -33,6 +34,7 @@ export class NewestWins<T extends object> {
       this.waiting = {};
       await Promise.all([this.send(this.underway), this.clock.sleep(this.interval)]);
       this.underway = {};
+      this.settled();
     }
     this.running = false;
   }

@@ -1,5 +1,5 @@
-import { type DescMessage, getOption, hasOption } from "@bufbuild/protobuf";
-import { quantity, type Quantity, toggle } from "./gen/phrenic/v1/options_pb";
+import { type DescEnum, type DescField, type DescMessage, getOption, hasOption } from "@bufbuild/protobuf";
+import { choice, quantity, type Quantity, toggle } from "./gen/phrenic/v1/options_pb";
 import { type Parameters, ParametersSchema } from "./gen/phrenic/v1/parameters_pb";
 
 /** A number of a message as a person sets it; everything in it comes from the field's options. */
@@ -28,19 +28,48 @@ export interface SwitchControl {
   defaultValue: boolean;
 }
 
-export type Control = NumberControl | SwitchControl;
+/** One of an enum's values as a person chooses it. */
+export interface ChoiceControl {
+  kind: "choice";
+  field: string;
+  label: string;
+  help: string;
+  defaultValue: number;
+  options: { value: number; label: string }[];
+}
+
+export type Control = NumberControl | SwitchControl | ChoiceControl;
 
 /** Names of the live parameters as they stand in the message. */
 export type ParameterName = Exclude<keyof Parameters, "$typeName" | "$unknown">;
 
-/** One control for each field of `message` that carries a quantity or a toggle, in the schema's order. */
+/** One control for each field of `message` that carries a quantity, a toggle or a choice, in the schema's order. */
 export function controlsOf(message: DescMessage): Control[] {
-  return message.fields.flatMap((field): Control[] => {
-    if (hasOption(field, quantity)) return [numberControl(field.localName, getOption(field, quantity))];
-    if (!hasOption(field, toggle)) return [];
-    const { label, help, defaultValue } = getOption(field, toggle);
-    return [{ kind: "switch", field: field.localName, label: label || field.localName, help, defaultValue }];
-  });
+  return message.fields.flatMap((field) => controlOf(field) ?? []);
+}
+
+function controlOf(field: DescField): Control | undefined {
+  if (hasOption(field, quantity)) return numberControl(field.localName, getOption(field, quantity));
+  if (hasOption(field, toggle)) return { kind: "switch", ...inWords(field, getOption(field, toggle)) };
+  if (field.fieldKind !== "enum" || !hasOption(field, choice)) return undefined;
+  return { kind: "choice", ...inWords(field, getOption(field, choice)), options: optionsOf(field.enum) };
+}
+
+function inWords<T>(field: DescField, { label, help, defaultValue }: { label: string; help: string; defaultValue: T }) {
+  return { field: field.localName, label: label || field.localName, help, defaultValue };
+}
+
+/** What there is to choose from: every value but the unspecified one. */
+function optionsOf(type: DescEnum): ChoiceControl["options"] {
+  return type.values
+    .filter(({ number }) => number !== 0)
+    .map(({ number, localName }) => ({ value: number, label: choiceLabel(localName) }));
+}
+
+/** "VELOCITY_VERLET" is "Velocity Verlet"; words without a vowel are abbreviations: "TR_BDF2" is "TR BDF2". */
+export function choiceLabel(name: string): string {
+  const spelled = (word: string) => (/[AEIOUY]/.test(word) ? word[0] + word.slice(1).toLowerCase() : word);
+  return name.split("_").map(spelled).join(" ");
 }
 
 export function parameterControls(): Control[] {

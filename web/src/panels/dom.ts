@@ -42,6 +42,13 @@ export function button(label: string, onclick: () => void, ...children: (Node | 
   return make("button", { type: "button", ariaLabel: label, title: label, onclick }, ...children);
 }
 
+/** The button beside a control called `label` that takes it back to where it started. */
+export function resetButton(label: string, onclick: () => void): HTMLButtonElement {
+  const reset = button(`Reset ${label.toLowerCase()}`, onclick, icon("undo"));
+  reset.className = "quiet";
+  return reset;
+}
+
 /** A section of the panel that folds away. */
 export function section(title: string, open: boolean, ...children: (Node | string)[]): HTMLDetailsElement {
   return make("details", { open, className: "section" }, make("summary", {}, title), ...children);

@@ -1,5 +1,5 @@
 import { faultOf, formatNumber, type NumberControl, positionOf, valueAt } from "../schema";
-import { button, icon, make } from "./dom";
+import { make, resetButton } from "./dom";
 
 /** What a row tells its owner. */
 export interface RowEvents {
@@ -27,15 +27,13 @@ export class NumberRow {
     this.entry.onchange = () => this.typed();
     this.fault = make("p", { className: "fault", id: `${id}-fault` });
     this.fault.setAttribute("role", "alert");
-    const reset = button(`Reset ${control.label.toLowerCase()}`, () => events.reset(), icon("undo"));
-    reset.className = "quiet";
     this.element = make(
       "div",
       { className: "number-row" },
       make("label", { htmlFor: id, title: control.help }, control.label),
       make("span", { className: "entry" }, this.entry, make("span", { className: "unit" }, control.unit)),
       this.slider,
-      reset,
+      resetButton(control.label, () => events.reset()),
       this.fault,
     );
   }

@@ -1,16 +1,22 @@
 import type { Controller } from "../controller";
-import { type Control, parameterControls, type ParameterName } from "../schema";
+import { type Control, parameterControls, type ParameterName, type SwitchControl } from "../schema";
+import { ChoiceRow } from "./choice_row";
 import { section, switchRow } from "./dom";
 import { NumberRow } from "./number_row";
 
+/** What a parameter of the solver has in its name; all others are the breath's. */
+const ofTheSolver = /integrator|step/i;
+
 /** The live parameters, one row for each field of the schema. Another viewer's changes move the rows. */
-export function parametersPanel(controller: Controller): HTMLElement {
+export function parameterSections(controller: Controller): HTMLElement[] {
   const rows = parameterControls().map((control) => parameterRow(control, controller));
   controller.session.subscribe((session) => {
     if (session?.parameters === undefined) return;
     for (const { name, show } of rows) if (!controller.pending(name)) show(session.parameters[name]);
   });
-  return section("Breathing", true, ...rows.map((row) => row.element));
+  const elements = (solver: boolean) =>
+    rows.filter(({ name }) => ofTheSolver.test(name) === solver).map(({ element }) => element);
+  return [section("Breathing", true, ...elements(false)), section("Solver", true, ...elements(true))];
 }
 
 interface Row {
@@ -21,20 +27,23 @@ interface Row {
 
 function parameterRow(control: Control, controller: Controller): Row {
   const name = control.field as ParameterName;
-  if (control.kind === "switch") {
-    const { row, input } = switchRow(control.label, control.help, (on) => controller.set(name, on));
-    input.id = `parameter-${name}`;
-    return {
-      name,
-      element: row,
-      show: (value) => (input.checked = value === undefined ? input.checked : value === true),
-    };
-  }
-  const row = new NumberRow(control, {
-    set: (value) => controller.set(name, value),
+  if (control.kind === "switch") return parameterSwitch(control, name, controller);
+  const events = {
+    set: (value: number) => controller.set(name, value),
     reset: () => void reset(controller, name),
-  });
+  };
+  const row = control.kind === "choice" ? new ChoiceRow(control, events) : new NumberRow(control, events);
   return { name, element: row.element, show: (value) => typeof value === "number" && row.show(value) };
+}
+
+function parameterSwitch(control: SwitchControl, name: ParameterName, controller: Controller): Row {
+  const { row, input } = switchRow(control.label, control.help, (on) => controller.set(name, on));
+  input.id = `parameter-${name}`;
+  return {
+    name,
+    element: row,
+    show: (value) => (input.checked = value === undefined ? input.checked : value === true),
+  };
 }
 
 /** Back to what a session of this scene starts with. */
