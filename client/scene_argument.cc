@@ -13,6 +13,32 @@
 #include "server/schema/schema.h"
 
 namespace phrenic::client {
+namespace {
+
+using google::protobuf::FieldDescriptor;
+
+// The names stand in the last column: there are too many of them for any other.
+std::vector<std::string> ChoiceRow(const FieldDescriptor& field, const v1::Choice& choice) {
+  const google::protobuf::EnumDescriptor& type = *field.enum_type();
+  return {field.name(), "", "a name", schema::ChoiceName(*type.FindValueByNumber(choice.default_value())),
+          absl::StrCat(choice.help(), " One of ", schema::ChoiceNames(type), ".")};
+}
+
+std::vector<std::string> QuantityRow(const FieldDescriptor& field, const v1::Quantity& quantity) {
+  return {field.name(), quantity.unit() == "1" ? "" : quantity.unit(),
+          absl::StrFormat("%g to %g", quantity.minimum(), quantity.maximum()),
+          quantity.automatic() ? "automatic" : absl::StrFormat("%g", quantity.default_value()), quantity.help()};
+}
+
+std::vector<std::string> ParameterRow(const FieldDescriptor& field) {
+  if (const v1::Toggle* toggle = schema::ToggleOf(field)) {
+    return {field.name(), "", "on, off", toggle->default_value() ? "on" : "off", toggle->help()};
+  }
+  if (const v1::Choice* choice = schema::ChoiceOf(field)) return ChoiceRow(field, *choice);
+  return QuantityRow(field, field.options().GetExtension(v1::quantity));
+}
+
+}  // namespace
 
 absl::StatusOr<v1::SceneSource> ReadSceneArgument(const std::string& scene, double resolution_mm) {
   v1::SceneSource source;
@@ -48,24 +74,7 @@ absl::StatusOr<v1::Parameters> ReadSettings(const std::vector<std::string>& sett
 std::string ParameterHelp() {
   Table table({"parameter", "unit", "range", "default", "meaning"});
   const google::protobuf::Descriptor& type = *v1::Parameters::descriptor();
-  for (int f = 0; f < type.field_count(); ++f) {
-    const google::protobuf::FieldDescriptor& field = *type.field(f);
-    if (field.options().HasExtension(v1::toggle)) {
-      const v1::Toggle& toggle = field.options().GetExtension(v1::toggle);
-      table.Add({field.name(), "", "on, off", toggle.default_value() ? "on" : "off", toggle.help()});
-      continue;
-    }
-    if (field.options().HasExtension(v1::choice)) {
-      const v1::Choice& choice = field.options().GetExtension(v1::choice);
-      table.Add({field.name(), "", schema::ChoiceNames(*field.enum_type()),
-                 schema::ChoiceName(*field.enum_type()->FindValueByNumber(choice.default_value())), choice.help()});
-      continue;
-    }
-    const v1::Quantity& quantity = field.options().GetExtension(v1::quantity);
-    table.Add({field.name(), quantity.unit() == "1" ? "" : quantity.unit(),
-               absl::StrFormat("%g to %g", quantity.minimum(), quantity.maximum()),
-               quantity.automatic() ? "automatic" : absl::StrFormat("%g", quantity.default_value()), quantity.help()});
-  }
+  for (int f = 0; f < type.field_count(); ++f) table.Add(ParameterRow(*type.field(f)));
   std::ostringstream text;
   table.Print(text);
   return text.str();

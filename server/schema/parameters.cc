@@ -62,11 +62,8 @@ absl::Status SetToggle(const FieldDescriptor& field, const std::string& value, v
 absl::Status SetChoice(const FieldDescriptor& field, const std::string& text, v1::Parameters* parameters) {
   const google::protobuf::EnumValueDescriptor* value = FindChoice(*field.enum_type(), text);
   if (value == nullptr) {
-    return absl::InvalidArgumentError(absl::StrCat(field.name(),
-                                                   ": there is no "
-                                                   ", text, "
-                                                   "; there are ",
-                                                   ChoiceNames(*field.enum_type())));
+    return absl::InvalidArgumentError(
+        absl::StrCat(field.name(), ": there is no \"", text, "\"; there are ", ChoiceNames(*field.enum_type())));
   }
   parameters->GetReflection()->SetEnum(parameters, &field, value);
   return absl::OkStatus();

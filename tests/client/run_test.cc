@@ -166,6 +166,7 @@ TEST(Run, BadWordsAreRefusedWithTheRightCode) {
       {{"run", "cube-springs", "--set", "breath_force=99"}, 1, "breath_force: 99 is outside 0 to 20"},
       {{"run", "cube-springs", "--set", "breath_farce=1"}, 1, "breath_force"},
       {{"run", "cube-springs", "--set", "breath_force"}, 1, "name=value"},
+      {{"run", "cube-springs", "--set", "integrator=magic"}, 1, "there are semi_implicit_euler"},
       {{"run", "cube-springs", "--export", Scratch("motion.avi")}, 1, "msh, depl"},
       {{"run", "cube-springs", "--export", "/nowhere/motion.msh"}, 1, "/nowhere/motion.msh"},
       {{"run", "cube-springs", "--seconds", "-1"}, 2, "--seconds"},
@@ -185,7 +186,8 @@ TEST(Run, BadWordsAreRefusedWithTheRightCode) {
 TEST(Help, IsMadeFromTheSchema) {
   const Outcome help = Phrenic({"run", "--help"});
   EXPECT_EQ(help.code, 0);
-  for (const char* words : {"breath_force", "0 to 20", "time_step", "automatic", "Switches every action line"}) {
+  for (const char* words : {"breath_force", "0 to 20", "time_step", "automatic", "Switches every action line",
+                            "integrator", "One of semi_implicit_euler"}) {
     EXPECT_THAT(help.out, HasSubstr(words));
   }
   const Outcome all = Phrenic({"--help"});

@@ -75,6 +75,20 @@ TEST_F(Sessions, ASessionLivesFromCreateToDelete) {
   EXPECT_EQ(Ask({"delete", "one"}).code, 1);
 }
 
+TEST_F(Sessions, AChoiceIsSetAndShownByItsName) {
+  ASSERT_EQ(Ask({"create", "cube-springs", "--id", "class"}).code, 0);
+  const Outcome set = Ask({"set", "class", "integrator=semi_implicit_euler"});
+  ASSERT_EQ(set.code, 0) << set.err;
+  EXPECT_THAT(set.out, HasSubstr("integrator=semi_implicit_euler"));
+  const auto session = Json({"set", "class", "integrator=Semi-Implicit-Euler"})["session"];
+  EXPECT_EQ(session["parameters"]["integrator"], "INTEGRATOR_SEMI_IMPLICIT_EULER");
+
+  const Outcome refused = Ask({"set", "class", "breath_force=2", "integrator=magic"});
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("integrator: there is no \"magic\"; there are semi_implicit_euler"));
+  EXPECT_EQ(Json({"sessions"})["sessions"][0]["parameters"]["breath_force"], 1) << "all of it is refused";
+}
+
 TEST_F(Sessions, WatchPrintsNumbersALineAndEndsByCount) {
   ASSERT_EQ(Ask({"create", "cube-springs", "--id", "seen", "--play"}).code, 0);
   const Outcome watched = Ask({"watch", "seen", "--count", "3", "--fps", "50"});

@@ -42,6 +42,23 @@ TEST(SetParameter, SetsSwitchesInTheWordsPeopleUse) {
   }
 }
 
+TEST(SetParameter, SetsChoicesByWhatIsParticularInTheirNames) {
+  for (const char* word :
+       {"semi_implicit_euler", "semi-implicit-euler", "SEMI_IMPLICIT_EULER", " semi_implicit_euler "}) {
+    v1::Parameters parameters;
+    ASSERT_EQ(SetParameter("integrator", word, &parameters), absl::OkStatus()) << word;
+    EXPECT_EQ(parameters.integrator(), v1::INTEGRATOR_SEMI_IMPLICIT_EULER) << word;
+  }
+}
+
+TEST(SetParameter, RefusesWhatIsNoChoiceWithThoseThereAre) {
+  EXPECT_THAT(Refusal("integrator", "magic"),
+              StartsWith("integrator: there is no \"magic\"; there are semi_implicit_euler"));
+  for (const char* word : {"unspecified", "INTEGRATOR_SEMI_IMPLICIT_EULER", "1", ""}) {
+    EXPECT_THAT(Refusal("integrator", word), HasSubstr("there are semi_implicit_euler")) << word;
+  }
+}
+
 TEST(SetParameter, NamesTheRange) {
   EXPECT_EQ(Refusal("breath_force", "21"), "breath_force: 21 is outside 0 to 20");
   EXPECT_EQ(Refusal("time_step", "0"), "time_step: 0 is outside 1e-07 to 0.1 s");

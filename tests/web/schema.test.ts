@@ -1,15 +1,7 @@
 import { describe, expect, test } from "vitest";
 import { ParametersSchema } from "../../web/src/gen/phrenic/v1/parameters_pb";
-import {
-  type ChoiceControl,
-  choiceLabel,
-  faultOf,
-  formatNumber,
-  type NumberControl,
-  parameterControls,
-  positionOf,
-  valueAt,
-} from "../../web/src/schema";
+import { faultOf, formatNumber, positionOf, valueAt } from "../../web/src/numbers";
+import { type ChoiceControl, choiceLabel, type NumberControl, parameterControls } from "../../web/src/schema";
 
 const controls = parameterControls();
 const numbers = controls.filter((control): control is NumberControl => control.kind === "number");

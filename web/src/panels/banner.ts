@@ -1,7 +1,7 @@
 import type { Link } from "../connection";
 import type { Controller } from "../controller";
 import type { Session } from "../gen/phrenic/v1/session_pb";
-import { formatNumber } from "../schema";
+import { formatNumber } from "../numbers";
 import type { Signal } from "../signal";
 import { make } from "./dom";
 

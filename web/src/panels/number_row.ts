@@ -1,4 +1,5 @@
-import { faultOf, formatNumber, type NumberControl, positionOf, valueAt } from "../schema";
+import { faultOf, formatNumber, positionOf, valueAt } from "../numbers";
+import type { NumberControl } from "../schema";
 import { make, resetButton } from "./dom";
 
 /** What a row tells its owner. */

@@ -1,5 +1,5 @@
 import type { CompileReport } from "../gen/phrenic/v1/report_pb";
-import { formatNumber } from "../schema";
+import { formatNumber } from "../numbers";
 import type { Signal } from "../signal";
 import { make, section } from "./dom";
 
