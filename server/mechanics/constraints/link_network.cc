@@ -9,7 +9,9 @@ namespace phrenic {
 namespace {
 
 constexpr double kTolerance = 1e-10;  // of the length
-constexpr double kGain = 0.9;         // an iteration that leaves more of the error than this is the last
+constexpr double kGain = 0.5;         // an iteration that leaves more of the error than this is the last
+constexpr int kFactorisations = 20;   // along the directions of the moment, where those before do not get there
+constexpr double kLargestMove = 0.5;  // of a link's length in one go
 constexpr int kSweeps = 200;
 constexpr int kSwitches = 30;      // rounds of limits that take hold or let go
 constexpr double kAtRest = 1e-12;  // of the fastest rate: a limit that is left slower needs no stopping
@@ -161,20 +163,32 @@ void LinkNetwork::PushAll(Scratch& scratch, State& state) const {
   }
 }
 
+// One step along the directions that are factorised, `error` the one before it. False where it made things worse, and
+// was taken back.
+bool LinkNetwork::Correct(double dt, Scratch& scratch, State& state, double& error) const {
+  matrix_.Solve(scratch.factors, scratch.pulls);
+  const double part = std::min(1.0, kLargestMove / LargestMove(scratch));
+  scratch.taken = scratch.pulls;
+  PullAll(part, dt, scratch, state);
+  const double before = error;
+  error = Errors(state, scratch);
+  if (error < before) return true;
+  scratch.pulls = scratch.taken;
+  PullAll(-part, dt, scratch, state);
+  error = Errors(state, scratch);
+  return false;
+}
+
 void LinkNetwork::Newton(const ConstPoints& before, double dt, Scratch& scratch, State& state) const {
   Factorise(before, scratch);
   double error = Errors(state, scratch), last = std::numeric_limits<double>::infinity();
   while (error > kTolerance && error <= kGain * last) {
-    matrix_.Solve(scratch.factors, scratch.pulls);
-    if (LargestMove(scratch) > 1) return;
-    scratch.taken = scratch.pulls;
-    PullAll(1, dt, scratch, state);
     last = error;
-    error = Errors(state, scratch);
-    if (error <= last) continue;
-    scratch.pulls = scratch.taken;  // it made things worse
-    PullAll(-1, dt, scratch, state);
-    return;
+    if (!Correct(dt, scratch, state, error)) break;
+  }
+  for (int i = 0; i < kFactorisations && error > kTolerance; ++i) {
+    Factorise(state.x, scratch);
+    if (!Correct(dt, scratch, state, error)) break;
   }
 }
 
