@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "server/mechanics/residual.h"
 #include "tests/compile_text.h"
@@ -25,6 +26,18 @@ TEST(Cable, IsNothingWhenSlackAndASpringWhenTaut) {
   EXPECT_EQ(pull(0.5), 0);
   EXPECT_EQ(model->forces.front()->Energy(MakeInstant(*model, model->parameters, state)), 0);
   EXPECT_NEAR(pull(1.25), 2.5, 1e-15);
+}
+
+// A cable that is slack at rest may get taut: the largest stable step is that of the taut one.
+TEST(Cable, CountsForTheStableStepAlsoWhenSlack) {
+  const auto with = [](const char* ratio) {
+    return CompileText(std::string(kPair) + "forces { cables { body: 'pair' stiffness: 10 rest_length_ratio: " + ratio +
+                       " } }");
+  };
+  const double slack = with("1.5")->report.stable_step().omega_max(),
+               taut = with("0.5")->report.stable_step().omega_max();
+  EXPECT_NEAR(slack, std::sqrt(10), 1e-6);
+  EXPECT_NEAR(slack, taut, 1e-6);
 }
 
 // Thrown outwards slack, the mass flies freely until the cable is taut and then falls back or stays: an inelastic jerk.
