@@ -23,8 +23,8 @@ class Force {
   virtual void AddForce(const Instant& at, MutablePoints f) const = 0;
   // Hands over K = -df/dx, positive semi-definite. Nothing where the force does not depend on positions.
   virtual void AddStiffness(const Instant&, StiffnessSink&) const {}
-  // Hands over what AddStiffness may come to where nothing acts now (surfaces that do not touch, cables that are slack):
-  // the largest stable step counts on it.
+  // Hands over what AddStiffness may come to where nothing acts now (surfaces that do not touch, cables that are
+  // slack): the largest stable step counts on it.
   virtual void AddLatentStiffness(const Instant&, StiffnessSink&) const {}
   // c_i += the coefficient [N s/m] of the part -c_i v_i of the force on vertex i.
   virtual void AddDamping(const Instant&, Eigen::VectorXd& /*c*/) const {}

@@ -1,13 +1,11 @@
 // Lengths within limits, l_min <= |x_b - x_a| <= l_max: cables that do not stretch, struts that do not shorten. What is
 // violated is brought back to its limit as a rigid link is (mass-weighted, velocities by the same over dt, momentum and
-// angular momentum kept), link after link until none is off by more than 1e-10 of its limit, 200 sweeps at most; the
-// residual is what is left. Velocities that would lead beyond a limit that is reached are stopped (an inelastic jerk).
+// angular momentum kept; LinkNetwork), and let go where it would have to push a cable or pull a strut; the residual is
+// what is left. Velocities that would lead beyond a limit that is reached are stopped (an inelastic jerk).
 #ifndef PHRENIC_SERVER_MECHANICS_CONSTRAINTS_LIMITS_H_
 #define PHRENIC_SERVER_MECHANICS_CONSTRAINTS_LIMITS_H_
 
-#include <vector>
-
-#include "server/mechanics/constraints/link.h"
+#include "server/mechanics/constraints/link_network.h"
 
 namespace phrenic {
 
@@ -22,16 +20,9 @@ class Limits final : public Constraint {
   double Residual(const State& state) const override;
 
  private:
-  // A link whose length is the limit: `sign` is 1 where it must not be longer, -1 where it must not be shorter.
-  struct Limit {
-    Link link;
-    double sign;
-  };
   explicit Limits(std::string name) : Constraint(std::move(name)) {}
-  double Sweep(const ConstPoints& before, double dt, State& state) const;  // the largest relative error before it
-  double SweepVelocities(State& state) const;                              // the largest rate [m/s] before it
 
-  std::vector<Limit> limits_;
+  LinkNetwork network_;
 };
 
 }  // namespace phrenic

@@ -79,14 +79,17 @@ void Restore(const Link& link, const ConstPoints& before, double dt, State& stat
   Pull(link, correction / (link.inverse_a + link.inverse_b), dt, state);
 }
 
+void Push(const Link& link, const Eigen::Vector3d& impulse, State& state) {
+  state.v.col(link.a) += link.inverse_a * impulse;
+  state.v.col(link.b) -= link.inverse_b * impulse;
+}
+
 void StopStretching(const Link& link, State& state) {
   const Eigen::Vector3d between = state.x.col(link.b) - state.x.col(link.a);
   const double squared = between.squaredNorm();
   if (!link.Movable() || squared == 0) return;
   const double rate = between.dot(state.v.col(link.b) - state.v.col(link.a)) / squared;
-  const Eigen::Vector3d impulse = rate / (link.inverse_a + link.inverse_b) * between;
-  state.v.col(link.a) += link.inverse_a * impulse;
-  state.v.col(link.b) -= link.inverse_b * impulse;
+  Push(link, rate / (link.inverse_a + link.inverse_b) * between, state);
 }
 
 }  // namespace phrenic

@@ -1,6 +1,9 @@
-// One link between two vertices, and how an error of its length is taken back.
+// One link between two vertices, or a limit of their distance, and how an error of its length is taken back.
 #ifndef PHRENIC_SERVER_MECHANICS_CONSTRAINTS_LINK_H_
 #define PHRENIC_SERVER_MECHANICS_CONSTRAINTS_LINK_H_
+
+#include <algorithm>
+#include <cmath>
 
 #include "server/mechanics/draft.h"
 
@@ -8,9 +11,10 @@ namespace phrenic {
 
 struct Link {
   int a, b;              // simulated vertices
-  double length;         // to be kept [m]
+  double length;         // to be kept, or the limit [m]
   double inverse_a = 0;  // 1/m of its ends [1/kg]; 0 for what does not move by forces
   double inverse_b = 0;
+  int sign = 0;  // 0: keeps its length; 1: must not be longer; -1: must not be shorter
 
   bool Movable() const { return inverse_a + inverse_b > 0; }
   // |x_b - x_a| - length [m].
@@ -18,6 +22,17 @@ struct Link {
   // (|x_b - x_a|^2 / length^2 - 1) / 2: the relative error of the length, where it is small.
   double RelativeError(const ConstPoints& x) const {
     return 0.5 * ((x.col(b) - x.col(a)).squaredNorm() / (length * length) - 1);
+  }
+  // The part of an error that is none of a limit's business left out.
+  double Violation(double error) const { return sign == 0 ? std::abs(error) : std::max(0.0, sign * error); }
+  double Violation(const ConstPoints& x) const { return Violation(RelativeError(x)); }
+  // At its limit, or beyond.
+  bool Reached(const ConstPoints& x) const { return sign * RelativeError(x) > -1e-8; }
+  // How fast it gets longer [m/s].
+  double Rate(const State& state) const {
+    const Eigen::Vector3d between = state.x.col(b) - state.x.col(a);
+    const double now = between.norm();
+    return now > 0 ? between.dot(state.v.col(b) - state.v.col(a)) / now : 0;
   }
 };
 
@@ -35,6 +50,9 @@ Link MakeLink(const Model& model, int a, int b);
 
 // Moves both ends by `impulse` [kg m] along the link, against its stretch, and the velocities by the same over dt.
 void Pull(const Link& link, const Eigen::Vector3d& impulse, double dt, State& state);
+
+// The same to the velocities alone, by an impulse in kg m/s.
+void Push(const Link& link, const Eigen::Vector3d& impulse, State& state);
 
 // Brings the length back in one go (SHAKE): a pull along the direction that the link had `before`, which keeps angular
 // momentum; along itself where it has turned too far in one step for that to reach. Nothing where both ends are in one

@@ -9,9 +9,13 @@ namespace phrenic {
 namespace {
 
 constexpr double kTolerance = 1e-10;  // of the length
-constexpr double kGain = 0.9;         // an iteration that leaves more of the error than this is the last
+constexpr double kGain = 0.5;         // an iteration that leaves more of the error than this is the last
+constexpr int kFactorisations = 20;   // along the directions of the moment, where those before do not get there
+constexpr double kLargestMove = 0.5;  // of a link's length in one go
 constexpr int kSweeps = 200;
-constexpr int kRefinements = 3;  // of velocities; each gains about ten digits where no link is nearly redundant
+constexpr int kSwitches = 30;      // rounds of limits that take hold or let go
+constexpr double kAtRest = 1e-12;  // of the fastest rate: a limit that is left slower needs no stopping
+constexpr int kRefinements = 3;    // of velocities; each gains about ten digits where no link is nearly redundant
 
 using Place = std::pair<int, int>;
 
@@ -44,23 +48,29 @@ std::vector<Place> PlacesBelow(const std::vector<Link>& links) {
 }  // namespace
 
 struct LinkNetwork::Scratch {
-  Points directions;                        // unit
-  Eigen::VectorXd diagonal, errors, pulls;  // [1/kg], [m], [kg m] (of velocities: [kg m/s])
-  std::vector<double> values;
+  Points directions;                     // unit; 0 of what is not active
+  Eigen::VectorXd diagonal;              // [1/kg]
+  Eigen::VectorXd pulls, taken, totals;  // [kg m], of velocities [kg m/s]; errors [m] and rates [m/s] before the solve
+  std::vector<double> values;            // [1/kg]
+  std::vector<bool> active;
   SparseLdlt::Factors factors;
 
-  void Fit(Eigen::Index links, size_t below) {
-    if (values.size() < below) values.resize(below);
-    if (pulls.size() >= links) return;
-    directions.resize(3, links);
-    diagonal.resize(links);
-    errors.resize(links);
-    pulls.resize(links);
+  bool AnyActive(size_t links) const {
+    const auto end = active.begin() + static_cast<std::ptrdiff_t>(links);
+    return std::find(active.begin(), end, true) != end;
   }
 };
 
-LinkNetwork::Scratch& LinkNetwork::ThreadScratch() {
+LinkNetwork::Scratch& LinkNetwork::Fitted() const {
   thread_local Scratch scratch;
+  const auto links = static_cast<Eigen::Index>(links_.size());
+  if (scratch.values.size() < values_) scratch.values.resize(values_);
+  if (scratch.pulls.size() >= links) return scratch;
+  scratch.directions.resize(3, links);
+  for (Eigen::VectorXd* vector : {&scratch.diagonal, &scratch.pulls, &scratch.taken, &scratch.totals}) {
+    vector->resize(links);
+  }
+  scratch.active.resize(links_.size());
   return scratch;
 }
 
@@ -90,12 +100,12 @@ void LinkNetwork::FindCouplings() {
   matrix_ = SparseLdlt(static_cast<int>(links_.size()), places);
 }
 
+// Links that are not active have no direction and so no part in the matrix.
 void LinkNetwork::Factorise(const ConstPoints& x, Scratch& scratch) const {
-  scratch.Fit(static_cast<Eigen::Index>(links_.size()), values_);
   for (size_t i = 0; i < links_.size(); ++i) {
     const auto column = static_cast<Eigen::Index>(i);
     const Eigen::Vector3d between = x.col(links_[i].b) - x.col(links_[i].a);
-    const double length = between.norm();
+    const double length = scratch.active[i] ? between.norm() : 0;
     scratch.directions.col(column) = length > 0 ? Eigen::Vector3d(between / length) : Eigen::Vector3d::Zero();
     scratch.diagonal[column] = length > 0 ? links_[i].inverse_a + links_[i].inverse_b : 0;
   }
@@ -109,9 +119,20 @@ void LinkNetwork::Factorise(const ConstPoints& x, Scratch& scratch) const {
 double LinkNetwork::Errors(const State& state, Scratch& scratch) const {
   double worst = 0;
   for (size_t i = 0; i < links_.size(); ++i) {
-    const double error = links_[i].RelativeError(state.x);
-    scratch.errors[static_cast<Eigen::Index>(i)] = error * links_[i].length;
+    const double error = scratch.active[i] ? links_[i].RelativeError(state.x) : 0;
+    scratch.pulls[static_cast<Eigen::Index>(i)] = error * links_[i].length;
     worst = std::max(worst, std::abs(error));
+  }
+  return worst;
+}
+
+double LinkNetwork::Rates(const State& state, Scratch& scratch) const {
+  double worst = 0;
+  for (size_t i = 0; i < links_.size(); ++i) {
+    const auto column = static_cast<Eigen::Index>(i);
+    const Eigen::Vector3d relative = state.v.col(links_[i].b) - state.v.col(links_[i].a);
+    scratch.pulls[column] = scratch.directions.col(column).dot(relative);
+    worst = std::max(worst, std::abs(scratch.pulls[column]));
   }
   return worst;
 }
@@ -126,51 +147,132 @@ double LinkNetwork::LargestMove(const Scratch& scratch) const {
   return largest;
 }
 
-void LinkNetwork::PullAll(double sign, double dt, const Scratch& scratch, State& state) const {
+void LinkNetwork::PullAll(double sign, double dt, Scratch& scratch, State& state) const {
   for (size_t i = 0; i < links_.size(); ++i) {
     const auto column = static_cast<Eigen::Index>(i);
     Pull(links_[i], sign * scratch.pulls[column] * scratch.directions.col(column), dt, state);
+    scratch.totals[column] += sign * scratch.pulls[column];
   }
 }
 
-void LinkNetwork::Project(const ConstPoints& before, double dt, State& state) const {
-  if (links_.empty()) return;
-  Scratch& scratch = ThreadScratch();
+void LinkNetwork::PushAll(Scratch& scratch, State& state) const {
+  for (size_t i = 0; i < links_.size(); ++i) {
+    const auto column = static_cast<Eigen::Index>(i);
+    Push(links_[i], scratch.pulls[column] * scratch.directions.col(column), state);
+    scratch.totals[column] += scratch.pulls[column];
+  }
+}
+
+// One step along the directions that are factorised, `error` the one before it. False where it made things worse, and
+// was taken back.
+bool LinkNetwork::Correct(double dt, Scratch& scratch, State& state, double& error) const {
+  matrix_.Solve(scratch.factors, scratch.pulls);
+  const double part = std::min(1.0, kLargestMove / LargestMove(scratch));
+  scratch.taken = scratch.pulls;
+  PullAll(part, dt, scratch, state);
+  const double before = error;
+  error = Errors(state, scratch);
+  if (error < before) return true;
+  scratch.pulls = scratch.taken;
+  PullAll(-part, dt, scratch, state);
+  error = Errors(state, scratch);
+  return false;
+}
+
+void LinkNetwork::Newton(const ConstPoints& before, double dt, Scratch& scratch, State& state) const {
   Factorise(before, scratch);
   double error = Errors(state, scratch), last = std::numeric_limits<double>::infinity();
   while (error > kTolerance && error <= kGain * last) {
-    scratch.pulls = scratch.errors;
-    matrix_.Solve(scratch.factors, scratch.pulls);
-    if (LargestMove(scratch) > 1) break;
-    PullAll(1, dt, scratch, state);
     last = error;
-    error = Errors(state, scratch);
-    if (error <= last) continue;
-    PullAll(-1, dt, scratch, state);  // it made things worse
-    break;
+    if (!Correct(dt, scratch, state, error)) break;
   }
-  for (int sweep = 0; sweep < kSweeps && error > kTolerance; ++sweep) {
-    for (const Link& link : links_) Restore(link, before, dt, state);
-    error = Errors(state, scratch);
+  for (int i = 0; i < kFactorisations && error > kTolerance; ++i) {
+    Factorise(state.x, scratch);
+    if (!Correct(dt, scratch, state, error)) break;
   }
 }
 
+// Limits that would push a cable, or pull a strut, are let go with what they did; those that are violated join.
+bool LinkNetwork::Switch(double dt, Scratch& scratch, State& state) const {
+  bool changed = false;
+  for (size_t i = 0; i < links_.size(); ++i) {
+    const Link& link = links_[i];
+    double& total = scratch.totals[static_cast<Eigen::Index>(i)];
+    if (link.sign == 0) continue;
+    if (scratch.active[i] && link.sign * total * (link.inverse_a + link.inverse_b) < -kTolerance * link.length) {
+      Pull(link, -total * scratch.directions.col(static_cast<Eigen::Index>(i)), dt, state);
+      total = 0;
+      scratch.active[i] = false;
+      changed = true;
+    } else if (!scratch.active[i] && link.Violation(state.x) > kTolerance) {
+      scratch.active[i] = true;
+      changed = true;
+    }
+  }
+  return changed;
+}
+
+void LinkNetwork::Project(const ConstPoints& before, double dt, State& state) const {
+  Scratch& scratch = Fitted();
+  for (size_t i = 0; i < links_.size(); ++i) {
+    scratch.active[i] = links_[i].sign == 0 || links_[i].Violation(state.x) > kTolerance;
+  }
+  if (!scratch.AnyActive(links_.size())) return;
+  scratch.totals.setZero();
+  for (int round = 0; round < kSwitches; ++round) {
+    Newton(before, dt, scratch, state);
+    if (!Switch(dt, scratch, state)) break;
+  }
+  for (int sweep = 0; sweep < kSweeps && LargestViolation(state) > kTolerance; ++sweep) {
+    for (const Link& link : links_) {
+      if (link.Violation(state.x) > 0) Restore(link, before, dt, state);
+    }
+  }
+}
+
+double LinkNetwork::LargestViolation(const State& state) const {
+  double worst = 0;
+  for (const Link& link : links_) worst = std::max(worst, link.Violation(state.x));
+  return worst;
+}
+
+bool LinkNetwork::SwitchVelocities(double slow, Scratch& scratch, State& state) const {
+  bool changed = false;
+  for (size_t i = 0; i < links_.size(); ++i) {
+    const Link& link = links_[i];
+    double& total = scratch.totals[static_cast<Eigen::Index>(i)];
+    if (link.sign == 0) continue;
+    if (scratch.active[i] && link.sign * total * (link.inverse_a + link.inverse_b) < -slow) {
+      Push(link, -total * scratch.directions.col(static_cast<Eigen::Index>(i)), state);
+      total = 0;
+      scratch.active[i] = false;
+      changed = true;
+    } else if (!scratch.active[i] && link.Reached(state.x) && link.sign * link.Rate(state) > slow) {
+      scratch.active[i] = true;
+      changed = true;
+    }
+  }
+  return changed;
+}
+
 void LinkNetwork::ProjectVelocities(State& state) const {
-  if (links_.empty()) return;
-  Scratch& scratch = ThreadScratch();
-  Factorise(state.x, scratch);
-  for (int pass = 0; pass < kRefinements; ++pass) {
-    for (size_t i = 0; i < links_.size(); ++i) {
-      const auto column = static_cast<Eigen::Index>(i);
-      scratch.pulls[column] = scratch.directions.col(column).dot(state.v.col(links_[i].b) - state.v.col(links_[i].a));
+  Scratch& scratch = Fitted();
+  double fastest = 0;
+  for (size_t i = 0; i < links_.size(); ++i) {
+    const Link& link = links_[i];
+    const double rate = link.sign == 0 ? std::abs(link.Rate(state)) : link.sign * link.Rate(state);
+    scratch.active[i] = link.sign == 0 || (rate > 0 && link.Reached(state.x));
+    if (scratch.active[i]) fastest = std::max(fastest, rate);
+  }
+  if (fastest == 0) return;
+  scratch.totals.setZero();
+  for (int round = 0; round < kSwitches; ++round) {
+    Factorise(state.x, scratch);
+    for (int pass = 0; pass < kRefinements && Rates(state, scratch) > 0; ++pass) {
+      matrix_.Solve(scratch.factors, scratch.pulls);
+      PushAll(scratch, state);
     }
-    matrix_.Solve(scratch.factors, scratch.pulls);
-    for (size_t i = 0; i < links_.size(); ++i) {
-      const auto column = static_cast<Eigen::Index>(i);
-      const Eigen::Vector3d impulse = scratch.pulls[column] * scratch.directions.col(column);
-      state.v.col(links_[i].a) += links_[i].inverse_a * impulse;
-      state.v.col(links_[i].b) -= links_[i].inverse_b * impulse;
-    }
+    if (!SwitchVelocities(kAtRest * fastest, scratch, state)) return;
   }
 }
 

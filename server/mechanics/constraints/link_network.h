@@ -2,10 +2,12 @@
 // directions r at the start of the step solve J M^-1 J^T lambda = errors, J the links' directions: sparse, one row a
 // link, factorised once a step and used again until every length is within 1e-10 of its own (a chord Newton method,
 // whose error falls to about the turn of the links in one step [rad] of itself each time). Velocities have the same
-// system with the directions of the moment. Where that stops gaining (links that turn far in one step, links that
-// cannot all hold) link after link is restored instead, 200 times at most: what then is left over is the residual.
-// Redundant links are left to the others. (Hess et al., LINCS, J Comput Chem 1997;18:1463; Andersen, RATTLE, J Comput
-// Phys 1983;52:24.)
+// system with the directions of the moment. Where that stops halving the error (links that turn far in one step) the
+// directions of the moment take over, factorised anew each time, 20 times at most; and where that fails too (links that
+// cannot all hold) link after link is restored, 200 times at most: what then is left over is the residual. Redundant
+// links are left to the others. Limits (links that must not be longer, or not shorter) take part while they hold
+// something: those that are violated join, those that would have to push a cable or pull a strut are let go, 30 rounds
+// at most. (Hess et al., LINCS, J Comput Chem 1997;18:1463; Andersen, RATTLE, J Comput Phys 1983;52:24.)
 #ifndef PHRENIC_SERVER_MECHANICS_CONSTRAINTS_LINK_NETWORK_H_
 #define PHRENIC_SERVER_MECHANICS_CONSTRAINTS_LINK_NETWORK_H_
 
@@ -37,14 +39,20 @@ class LinkNetwork {
     double factor;  // 1/m of the vertex [1/kg]; negative where one link starts and the other ends there
   };
   struct Scratch;
-  static Scratch& ThreadScratch();
+  Scratch& Fitted() const;  // the thread's, large enough
 
   void FindCouplings();
   void Factorise(const ConstPoints& x, Scratch& scratch) const;
-  // The largest relative error; sets scratch.errors.
-  double Errors(const State& state, Scratch& scratch) const;
+  double Errors(const State& state, Scratch& scratch) const;  // the largest, relative; all of them to scratch.pulls
+  double Rates(const State& state, Scratch& scratch) const;   // the same of the velocities [m/s]
   double LargestMove(const Scratch& scratch) const;
-  void PullAll(double sign, double dt, const Scratch& scratch, State& state) const;
+  void PullAll(double sign, double dt, Scratch& scratch, State& state) const;
+  void PushAll(Scratch& scratch, State& state) const;  // velocities alone
+  bool Correct(double dt, Scratch& scratch, State& state, double& error) const;
+  void Newton(const ConstPoints& before, double dt, Scratch& scratch, State& state) const;
+  bool Switch(double dt, Scratch& scratch, State& state) const;  // true where any limit took hold or let go
+  bool SwitchVelocities(double slow, Scratch& scratch, State& state) const;
+  double LargestViolation(const State& state) const;
 
   std::vector<Link> links_;
   std::vector<Coupling> couplings_;
