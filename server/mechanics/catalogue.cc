@@ -5,9 +5,11 @@
 #include "server/mechanics/constraints/rigid_links.h"
 #include "server/mechanics/forces/action_line.h"
 #include "server/mechanics/forces/attachment.h"
+#include "server/mechanics/forces/bending.h"
 #include "server/mechanics/forces/cables.h"
 #include "server/mechanics/forces/contact.h"
 #include "server/mechanics/forces/cross_layer.h"
+#include "server/mechanics/forces/fibres.h"
 #include "server/mechanics/forces/friction.h"
 #include "server/mechanics/forces/gravity.h"
 #include "server/mechanics/forces/membrane.h"
@@ -62,6 +64,10 @@ absl::StatusOr<std::unique_ptr<Force>> MakeForce(const v1::Force& scene, std::st
       return MakeMembrane(scene.membrane(), scene.name(), In(path, "membrane"), draft);
     case v1::Force::kSolid:
       return MakeSolid(scene.solid(), scene.name(), In(path, "solid"), draft);
+    case v1::Force::kFibres:
+      return Fibres::Make(scene.fibres(), scene.name(), In(path, "fibres"), draft);
+    case v1::Force::kBending:
+      return Bending::Make(scene.bending(), scene.name(), In(path, "bending"), draft);
     case v1::Force::kCrossLayer:
       return MakeCrossLayer(scene.cross_layer(), scene.name(), In(path, "cross_layer"), draft);
     case v1::Force::KIND_NOT_SET:

@@ -79,7 +79,7 @@ absl::StatusOr<Mesh> SurfaceToFill(const v1::Body& body, const MeshSource& sourc
 }
 
 absl::StatusOr<Mesh> FromFilling(const v1::Body& body, const MeshSource& source) {
-  const absl::StatusOr<Mesh> surface = SurfaceToFill(body, source);
+  absl::StatusOr<Mesh> surface = SurfaceToFill(body, source);
   if (!surface.ok()) return surface;
   if (absl::Status status = Validate(*surface); !status.ok()) return status;
   const double cell = body.filling().cell();

@@ -28,6 +28,12 @@ const ForceCase kForces[] = {
     {"solid_linear", "solid { bodies: 'block' youngs_modulus: 20 strain: STRAIN_LINEAR }", false},
     {"cross_layer", "cross_layer { bodies: 'block' distance: 1.5 stiffness: 20 }", true},
     {"cross_layer_bodies", "cross_layer { bodies: 'sheet' other_bodies: 'block' distance: 4 stiffness: 20 }", true},
+    {"bending", "bending { bodies: 'sheet' youngs_modulus: 100 thickness: 0.3 }", true},
+    {"fibres",
+     "fibres { bodies: 'sheet' from_region: 'left' to_region: 'right' modulus_along: 900 modulus_across: 200 "
+     "thickness: "
+     "0.02 active_stress: 300 }",
+     true},
     {"friction", "friction { bodies: 'sheet' rate: 2 }", false},
     {"gravity", "gravity { bodies: 'sheet' acceleration { z: -9.81 } }", false},
     {"action_line_cylinder",
@@ -53,7 +59,8 @@ class ForceContract : public testing::TestWithParam<ForceCase> {
   void SetUp() override {
     const std::string text = std::string(
         "name: 'contract' bodies { name: 'sheet' role: ROLE_DEFORMABLE mass: 2 "
-        "grid { columns: 4 rows: 3 u { x: 1 } v { y: 1 z: 0.2 } } } "
+        "grid { columns: 4 rows: 3 u { x: 1 } v { y: 1 z: 0.2 } } regions { name: 'left' low {} high { y: 2 z: 1 } } "
+        "regions { name: 'right' low { x: 3 } high { x: 3 y: 2 z: 1 } } } "
         "bodies { name: 'block' role: ROLE_DEFORMABLE mass: 2 "
         "block { origin { z: 2 } size { x: 2 y: 1 z: 1 } columns: 2 rows: 1 layers: 1 } } "
         "bodies { name: 'bone' role: ROLE_AT_REST polyhedron { vertices { x: 0 y: -0.5 } vertices { x: 1 y: -0.5 } } } "

@@ -82,6 +82,19 @@ TEST(Compile, MassFollowsFromTheSubstance) {
       AllOf(HasSubstr("bodies[0].substance"), HasSubstr("neither area nor volume")));
 }
 
+TEST(Compile, FillsClosedSurfacesWithCellsThatFit) {
+  const auto body = [](const std::string& filling) {
+    return "name: 's' bodies { name: 'b' role: ROLE_DEFORMABLE filling { " + filling + " } }";
+  };
+  const std::string ball = "ellipsoid { radii { x: 1 y: 1 z: 1 } } ";
+  const auto model = CompileText(body(ball + "cell: 0.2"));
+  EXPECT_GT(model->bodies[0].mesh.tetrahedra.cols(), 1000);
+  EXPECT_THAT(ErrorOf("", body("")), HasSubstr("fills no surface"));
+  EXPECT_THAT(ErrorOf("", body(ball + "cell: 1e-4")), HasSubstr("make them larger"));
+  EXPECT_THAT(ErrorOf("", body("ellipsoid { radii { x: 1 y: 1 z: 1 } upper_half: true }")),
+              AllOf(HasSubstr("body \"b\""), HasSubstr("must be closed")));
+}
+
 TEST(Compile, LeavesOutWhatTheSceneDoesNotNeedAndSaysSo) {
   const auto model = CompileText(
       std::string(kBody) + "forces { springs { bodies: 'sheet' } } forces { friction { bodies: 'sheet' rate: 0 } }");

@@ -16,29 +16,34 @@ namespace {
 
 using Pairs = std::set<std::pair<int, int>>;  // of simulated vertices
 
-// The nearest vertex of the opposite layer for each vertex that takes part.
-void PairLayers(const BodyModel& body, const Selection& selection, double distance, Pairs& pairs) {
+// The nearest vertices of the opposite layer for each vertex that takes part.
+void PairLayers(const BodyModel& body, const Selection& selection, const v1::CrossLayer& scene, Pairs& pairs) {
   const Points normals = VertexNormals(body.mesh.vertices, body.mesh.triangles);
   const NearestSearch search(body.mesh.vertices);
   for (int i = 0; i < body.mesh.vertices.cols(); ++i) {
-    for (const Neighbour& other : search.Within(body.mesh.vertices.col(i), distance)) {
+    int wanted = scene.neighbours();
+    for (const Neighbour& other : search.Within(body.mesh.vertices.col(i), scene.distance())) {
       const int j = other.vertex;
       if (other.distance == 0 || normals.col(i).dot(normals.col(j)) >= 0) continue;
       if (!selection.Takes(std::array{i, j})) continue;
       pairs.insert(std::minmax(body.first_vertex + i, body.first_vertex + j));
-      break;
+      if (--wanted == 0) break;
     }
   }
 }
 
-// The nearest vertex of another body for each vertex that takes part.
-void PairBodies(const BodyModel& body, const BodyModel& other, const Selection& selection, double distance,
+// The nearest vertices of another body for each vertex that takes part.
+void PairBodies(const BodyModel& body, const BodyModel& other, const Selection& selection, const v1::CrossLayer& scene,
                 Pairs& pairs) {
   const NearestSearch search(other.mesh.vertices);
   for (int i = 0; i < body.mesh.vertices.cols(); ++i) {
-    const Neighbour nearest = search.Nearest(body.mesh.vertices.col(i));
-    if (nearest.distance == 0 || nearest.distance > distance || !selection.Takes(std::array{i})) continue;
-    pairs.insert(std::minmax(body.first_vertex + i, other.first_vertex + nearest.vertex));
+    if (!selection.Takes(std::array{i})) continue;
+    int wanted = scene.neighbours();
+    for (const Neighbour& near : search.Within(body.mesh.vertices.col(i), scene.distance())) {
+      if (near.distance == 0) continue;
+      pairs.insert(std::minmax(body.first_vertex + i, other.first_vertex + near.vertex));
+      if (--wanted == 0) break;
+    }
   }
 }
 
@@ -68,9 +73,9 @@ absl::StatusOr<std::unique_ptr<Force>> MakeCrossLayer(const v1::CrossLayer& scen
     const auto selection = draft.Select(b, scene.region(), scene.exclude_region(), path);
     if (!selection.ok()) return selection.status();
     const BodyModel& body = draft.model.bodies[b];
-    if (others->empty()) PairLayers(body, *selection, scene.distance(), pairs);
+    if (others->empty()) PairLayers(body, *selection, scene, pairs);
     for (const int other : *others) {
-      if (other != b) PairBodies(body, draft.model.bodies[other], *selection, scene.distance(), pairs);
+      if (other != b) PairBodies(body, draft.model.bodies[other], *selection, scene, pairs);
     }
   }
   if (!pairs.empty()) return Join(pairs, name, scene.stiffness(), draft);

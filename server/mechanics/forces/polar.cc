@@ -21,7 +21,7 @@ Eigen::Vector3d UnitNormal(const Gradient<2>& f, const Eigen::Vector3d& cross, d
 
 Gradient<3> RotationBySingularValues(const Gradient<3>& f) {
   const Eigen::JacobiSVD<Gradient<3>> svd(f, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Gradient<3> r = svd.matrixU() * svd.matrixV().transpose();
+  Gradient<3> r = svd.matrixU() * svd.matrixV().transpose();
   if (r.determinant() > 0) return r;
   Gradient<3> u = svd.matrixU();
   u.col(2) = -u.col(2);  // the flattest direction is the one that was turned inside out

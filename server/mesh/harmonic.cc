@@ -1,0 +1,54 @@
+#include "server/mesh/harmonic.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/SparseCholesky>
+
+namespace phrenic {
+namespace {
+
+constexpr double kAnchor = 1e-12;  // weight by which a vertex is held that nothing else holds
+
+using Entries = std::vector<Eigen::Triplet<double>>;
+
+// Each edge has half the cotangent of the angle opposite it, from each of its triangles.
+void AddTriangle(const Mesh& mesh, const Eigen::Vector3i& corner, Entries& entries) {
+  for (int k = 0; k < 3; ++k) {
+    const int a = corner[k], b = corner[(k + 1) % 3], opposite = corner[(k + 2) % 3];
+    const Eigen::Vector3d to_a = mesh.vertices.col(a) - mesh.vertices.col(opposite);
+    const Eigen::Vector3d to_b = mesh.vertices.col(b) - mesh.vertices.col(opposite);
+    const double twice_area = to_a.cross(to_b).norm();
+    if (twice_area == 0) return;
+    const double weight = 0.5 * to_a.dot(to_b) / twice_area;
+    entries.emplace_back(a, a, weight), entries.emplace_back(b, b, weight);
+    entries.emplace_back(a, b, -weight), entries.emplace_back(b, a, -weight);
+  }
+}
+
+}  // namespace
+
+absl::StatusOr<Eigen::VectorXd> HarmonicBetween(const Mesh& mesh, const std::vector<bool>& zero,
+                                                const std::vector<bool>& one) {
+  const Eigen::Index n = mesh.vertices.cols();
+  Entries entries;
+  for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) AddTriangle(mesh, mesh.triangles.col(t), entries);
+  Eigen::VectorXd value = Eigen::VectorXd::Zero(n), load = Eigen::VectorXd::Zero(n);
+  for (Eigen::Index i = 0; i < n; ++i) value[i] = one[i] ? 1 : 0;
+  Entries free;
+  const auto held = [&](Eigen::Index i) { return zero[i] || one[i]; };
+  for (Eigen::Index i = 0; i < n; ++i) free.emplace_back(i, i, held(i) ? 1 : kAnchor);
+  for (const auto& entry : entries) {
+    if (held(entry.row())) continue;
+    if (held(entry.col())) load[entry.row()] -= entry.value() * value[entry.col()];
+    if (!held(entry.col())) free.push_back(entry);
+  }
+  Eigen::SparseMatrix<double> laplacian(n, n);
+  laplacian.setFromTriplets(free.begin(), free.end());
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(laplacian);
+  if (solver.info() != Eigen::Success) return absl::InvalidArgumentError("the surface has no harmonic function");
+  for (Eigen::Index i = 0; i < n; ++i) load[i] = held(i) ? value[i] : load[i];
+  value = solver.solve(load);
+  if (!value.allFinite()) return absl::InvalidArgumentError("the surface has no harmonic function");
+  return value;
+}
+
+}  // namespace phrenic

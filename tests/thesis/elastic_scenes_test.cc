@@ -1,0 +1,64 @@
+// What the shipped scenes of elastic tissue are there to show.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "tests/compile_text.h"
+
+namespace phrenic {
+namespace {
+
+std::shared_ptr<const Model> ShippedScene(const std::string& name) {
+  std::ifstream file(std::string(PHRENIC_SOURCE_DIR) + "/server/scenes/" + name + ".textproto");
+  std::stringstream text;
+  text << file.rdbuf();
+  return CompileText(text.str());
+}
+
+State After(const Model& model, double time) { return RunTo(model, time, model.parameters.time_step()); }
+
+// How far a probe has come down [m].
+double Descent(const Model& model, const State& state, size_t probe) {
+  const Probe& at = model.probes[probe];
+  const int vertex = model.bodies[at.body].first_vertex + at.vertex;
+  return model.rest(2, vertex) - state.x(2, vertex);
+}
+
+TEST(HangingSheets, OfSpringsAndOfElementsComeDownAlike) {
+  const auto model = ShippedScene("hanging-sheet");
+  const State state = After(*model, 20);  // five breaths of wind: it is still then
+  const double springs = Descent(*model, state, 0), membrane = Descent(*model, state, 1);
+  EXPECT_GT(membrane, 0.01);
+  EXPECT_NEAR(springs, membrane, 0.1 * membrane);
+}
+
+TEST(MixedMethods, TendonKeepsItsSizeWhereMuscleStretches) {
+  const auto model = ShippedScene("mixed-methods");
+  const State state = After(*model, 2);
+  EXPECT_GT(Descent(*model, state, 0), 0.05);
+  const auto length = [&](int a, int b) {
+    return (state.x.col(a) - state.x.col(b)).norm() / (model->rest.col(a) - model->rest.col(b)).norm();
+  };
+  EXPECT_NEAR(length(90, 198), 1, 1e-6);  // across the tendon
+  EXPECT_GT(length(136, 141), 1.2);       // from the edge to the tendon
+}
+
+TEST(Fibres, FlattenTheDomeAndLetItRiseAgain) {
+  const auto model = ShippedScene("fibres");
+  const double height = 0.09;
+  EXPECT_GT(Descent(*model, After(*model, 2), 0), 0.2 * height);
+  EXPECT_LT(std::abs(Descent(*model, After(*model, 4), 0)), 0.02 * height);
+}
+
+TEST(LiverAndDiaphragm, MoveTogether) {
+  const auto model = ShippedScene("fem-liver-diaphragm");
+  const State deep = After(*model, 2), end = After(*model, 4);
+  EXPECT_GT(Descent(*model, deep, 0), 0.015);
+  EXPECT_GT(Descent(*model, deep, 1), 0.005);
+  EXPECT_LT(std::abs(Descent(*model, end, 0)), 0.003);
+}
+
+}  // namespace
+}  // namespace phrenic
