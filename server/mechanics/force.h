@@ -1,4 +1,4 @@
-// The family of forces. To add one: a file in forces/, a message in scene.proto, its case in catalogue.cc, its line in
+// The family of forces. To add one: a file in forces/, a message in forces.proto, its case in catalogue.cc, its line in
 // tests/contract.
 #ifndef PHRENIC_SERVER_MECHANICS_FORCE_H_
 #define PHRENIC_SERVER_MECHANICS_FORCE_H_

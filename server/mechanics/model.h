@@ -70,7 +70,8 @@ struct Model {
   const BodyModel& BodyOf(int simulated_vertex) const;
 };
 
-// The parameters of one of the scene's presets, none where the name is empty. INVALID_ARGUMENT with the names there are.
+// The parameters of one of the scene's presets, none where the name is empty. INVALID_ARGUMENT with the names there
+// are.
 absl::StatusOr<v1::Parameters> FindPreset(const v1::Scene& scene, const std::string& name);
 
 // The breath's signal at a phase [breaths] and its derivative by the phase.
