@@ -44,15 +44,20 @@ export class Server {
     throw new Error(`phrenicd did not serve ${this.url} within a minute: see ${outFolder}/phrenicd.log.`);
   }
 
-  /** The tick at which a session stands once it is paused, by the command line: a second client. */
-  async restingTick(session = "thorax"): Promise<number> {
+  /** The thorax' session as the command line, a second client, has it in JSON. */
+  async session() {
     const flags = ["--server", `127.0.0.1:${this.listen}`, "sessions", "-o", "json"];
+    const { sessions } = JSON.parse((await promisify(execFile)(program("phrenic"), flags)).stdout);
+    return sessions.find(({ id }: { id: string }) => id === "thorax");
+  }
+
+  /** The tick at which the session stands once it is paused. */
+  async restingTick(): Promise<number> {
     for (const deadline = Date.now() + 30_000; Date.now() < deadline; await sleep(100)) {
-      const { sessions } = JSON.parse((await promisify(execFile)(program("phrenic"), flags)).stdout);
-      const { state, tick } = sessions.find(({ id }: { id: string }) => id === session) ?? {};
+      const { state, tick } = await this.session();
       if (state === "SESSION_STATE_PAUSED") return Number(tick);
     }
-    throw new Error(`Session ${session} did not come to rest within 30 s.`);
+    throw new Error("The session did not come to rest within 30 s.");
   }
 
   /** Ends it at once, as a crash would. */

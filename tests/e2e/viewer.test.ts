@@ -155,6 +155,18 @@ describe("the buttons", () => {
     expect(pace).toBeLessThan(0.2);
   });
 
+  test("AnotherIntegratorIsTakenWhileItPlays", async () => {
+    await viewer.page.selectOption("#parameter-integrator", { label: "Velocity Verlet" });
+    await expect
+      .poll(async () => (await server.session()).parameters.integrator, { timeout: 10_000 })
+      .toBe("INTEGRATOR_VELOCITY_VERLET");
+    await viewer.waitForTick(await viewer.tick());
+    await viewer.page.click('[aria-label="Reset integrator"]');
+    await viewer.page.waitForFunction(
+      () => document.querySelector<HTMLSelectElement>("#parameter-integrator")?.value === "1",
+    );
+  });
+
   test("OverlaysAreDrawn", async () => {
     await pause().click();
     await play().waitFor();

@@ -58,6 +58,22 @@ TEST(Pendulum, OnAnExactLinkHasTheEllipticPeriodInTheLimit) {
   EXPECT_LT(fine, 0.2 * coarse);
 }
 
+// By RATTLE the same pendulum converges with the square of the step, and keeps its energy for a hundred swings.
+TEST(Pendulum, OnAnExactLinkIsOfSecondOrderByVerlet) {
+  const auto model = CompileText(
+      "name: 'pendulum' bodies { name: 'rod' role: ROLE_DEFORMABLE mass: 2 fixed_vertices: 0 polyhedron { vertices {} "
+      "vertices { x: 1 } edges { a: 0 b: 1 } } } forces { gravity { bodies: 'rod' acceleration { z: -9.81 } } } "
+      "constraints { rigid_links { body: 'rod' list { links { a: 0 b: 1 } } } } "
+      "parameters { integrator: INTEGRATOR_VELOCITY_VERLET }");
+  const double exact = 2.367841948 / 4;
+  const double coarse = std::abs(QuarterPeriod(*model, 1e-2) - exact);
+  EXPECT_LT(coarse, 1e-3);
+  EXPECT_LT(std::abs(QuarterPeriod(*model, 1e-3) - exact), 0.05 * coarse);
+  const State late = RunTo(*model, 236.7841948, 1e-2);
+  const double energy = 0.5 * late.v.col(1).squaredNorm() + 9.81 * late.x(2, 1);  // of 1 kg; 0 at the start
+  EXPECT_LT(std::abs(energy), 1e-2 * 9.81);
+}
+
 // Hanging elastic chain of N equal springs: spring j carries the masses below it, so each stretches by its load over k.
 TEST(HangingChain, SettlesToTheClosedForm) {
   constexpr int kMasses = 6;
