@@ -22,7 +22,7 @@ Run::Run(std::shared_ptr<const Model> model, v1::Parameters parameters, State st
 absl::Status Run::Step() {
   if (divergence_.has_value()) return absl::FailedPreconditionError(Describe(*divergence_));
   const double dt = parameters_.time_step();
-  const absl::Status stepped = phrenic::Step(*model_, parameters_, dt, state_, work_);
+  absl::Status stepped = phrenic::Step(*model_, parameters_, dt, state_, work_);
   if (stepped.ok()) return stepped;
   State before = state_;
   TakeBack(*model_, parameters_, dt, work_, before);

@@ -13,6 +13,7 @@ constexpr double kVanishes = 1e-11;  // of the diagonal: a smaller pivot is that
 
 std::vector<int> SparseLdlt::Order(int size, const std::vector<std::pair<int, int>>& below) {
   std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(static_cast<size_t>(size) + 2 * below.size());
   for (int i = 0; i < size; ++i) entries.emplace_back(i, i, 1);
   for (const auto& [i, j] : below) {
     entries.emplace_back(i, j, 1);
