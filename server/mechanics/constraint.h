@@ -18,6 +18,8 @@ class Constraint {
   virtual void Project(const v1::Parameters& parameters, const ConstPoints& before, double dt, State& state) const = 0;
   // Takes from the velocities what would lead off the constraint (the second half of RATTLE). Positions lie on it.
   virtual void ProjectVelocities(const v1::Parameters&, State&) const {}
+  // Whether an equation that always holds describes it, as ProjectVelocities keeps it: not for what jerks.
+  virtual bool smooth() const { return true; }
   // Largest violation [m].
   virtual double Residual(const State& state) const = 0;
 

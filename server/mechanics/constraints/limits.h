@@ -17,6 +17,7 @@ class Limits final : public Constraint {
 
   void Project(const v1::Parameters& parameters, const ConstPoints& before, double dt, State& state) const override;
   void ProjectVelocities(const v1::Parameters& parameters, State& state) const override;
+  bool smooth() const override { return false; }
   double Residual(const State& state) const override;
 
  private:

@@ -1,0 +1,85 @@
+#include "server/study/acceleration.h"
+
+#include <algorithm>
+
+#include "absl/strings/str_cat.h"
+#include "server/mechanics/advance.h"
+
+namespace phrenic::study {
+namespace {
+
+constexpr double kTurn = 2e-6;  // of the central difference: the part of the scene that a vertex crosses in it
+
+}  // namespace
+
+Acceleration::Acceleration(const Subject& subject) : subject_(subject), state_(subject.model->InitialState()) {
+  const Model& model = *subject_.model;
+  for (int i = 0; i < model.rest.cols(); ++i) {
+    if (model.inverse_mass[i] > 0) free_.push_back(i);
+  }
+  force_ = later_ = earlier_ = Points::Zero(3, model.rest.cols());
+  ahead_ = state_;
+}
+
+absl::StatusOr<Acceleration> Acceleration::Make(const Subject& subject) {
+  for (const auto& constraint : subject.model->constraints) {
+    if (!constraint->smooth()) {
+      return absl::UnimplementedError(
+          absl::StrCat("constraint ", constraint->name(),
+                       " jerks (limits, or the thesis' projection of links): no smooth equation of motion describes "
+                       "it, so there is no reference; take it out of the scene, or project exactly"));
+    }
+  }
+  return Acceleration(subject);
+}
+
+const State& Acceleration::Place(double time, const ConstPoints& x, const ConstPoints& v) {
+  const Model& model = *subject_.model;
+  state_.time = time;
+  state_.phase = time / subject_.parameters.breath_length();
+  for (size_t i = 0; i < free_.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    state_.x.col(free_[i]) = model.rest.col(free_[i]) + x.col(k);
+    state_.v.col(free_[i]) = v.col(k);
+  }
+  DriveMotions(model, subject_.parameters, 0, state_);
+  return state_;
+}
+
+void Acceleration::Unconstrained(MutablePoints a) {
+  const Model& model = *subject_.model;
+  SumForces(model, MakeInstant(model, subject_.parameters, state_), force_);
+  for (size_t i = 0; i < free_.size(); ++i) {
+    a.col(static_cast<Eigen::Index>(i)) = model.inverse_mass[free_[i]] * force_.col(free_[i]);
+  }
+}
+
+void Acceleration::VelocitiesAhead(double ahead, const ConstPoints& a, Points& v) {
+  const Model& model = *subject_.model;
+  ahead_.time = state_.time;
+  ahead_.phase = state_.phase;
+  ahead_.x = state_.x;
+  ahead_.v = state_.v;
+  ahead_.poses = state_.poses;
+  DriveMotions(model, subject_.parameters, ahead, ahead_);
+  for (size_t i = 0; i < free_.size(); ++i) {
+    ahead_.x.col(free_[i]) += ahead * state_.v.col(free_[i]);
+    ahead_.v.col(free_[i]) += ahead * a.col(static_cast<Eigen::Index>(i));
+  }
+  ProjectVelocities(model, subject_.parameters, ahead_);
+  v = ahead_.v;
+}
+
+void Acceleration::Evaluate(MutablePoints a) {
+  Unconstrained(a);
+  if (subject_.model->constraints.empty()) return;
+  const double fastest = std::max(1.0, state_.v.cwiseAbs().maxCoeff() / subject_.model->size);
+  const double ahead = kTurn / fastest;
+  VelocitiesAhead(ahead, a, later_);
+  VelocitiesAhead(-ahead, a, earlier_);
+  for (size_t i = 0; i < free_.size(); ++i) {
+    a.col(static_cast<Eigen::Index>(i)) = (later_.col(free_[i]) - earlier_.col(free_[i])) / (2 * ahead);
+  }
+}
+
+}  // namespace phrenic::study
