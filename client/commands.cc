@@ -5,6 +5,7 @@
 #include <map>
 
 #include "client/scene_argument.h"
+#include "client/schema_options.h"
 
 namespace phrenic::client {
 namespace {
@@ -14,6 +15,7 @@ struct AllOptions {
   SceneOptions describe;
   RunOptions run;
   PhysiologyOptions physiology;
+  StudyOptions error, stability, cost, study;
   CreateOptions create;
   SessionOptions session;
   WatchOptions watch;
@@ -36,10 +38,11 @@ class CommandLine {
     app_.add_option("--server", context_.server, "HOST:PORT of the server")
         ->envname("PHRENIC_SERVER")
         ->capture_default_str();
-    app_.add_option("-o,--output", context_.output, "table, for people, or json, for programs")
+    app_.add_option("-o,--output", context_.output, "table, for people, json, for programs, or csv (studies)")
         ->transform(
-            CLI::CheckedTransformer(std::map<std::string, Output>{{"table", Output::kTable}, {"json", Output::kJson}}));
+            CLI::CheckedTransformer(std::map<std::string, Output>{{"table", Output::kTable}, {"json", Output::kJson}, {"csv", Output::kCsv}}));
     AddSceneCommands();
+    AddStudies();
     AddSessionCommands();
     AddControlCommands();
     AddExport();
@@ -56,14 +59,14 @@ class CommandLine {
 
  private:
   template <typename Function, typename Options>
-  CLI::App* Add(const char* name, const char* help, Function function, Options& options) {
-    CLI::App* command = app_.add_subcommand(name, help);
+  CLI::App* Add(const char* name, const char* help, Function function, Options& options, CLI::App* to = nullptr) {
+    CLI::App* command = (to == nullptr ? &app_ : to)->add_subcommand(name, help);
     command->callback([this, function, &options] { code_ = function(context_, options); });
     return command;
   }
 
-  CLI::App* Add(const char* name, const char* help, int (*function)(const Context&)) {
-    CLI::App* command = app_.add_subcommand(name, help);
+  CLI::App* Add(const char* name, const char* help, int (*function)(const Context&), CLI::App* to = nullptr) {
+    CLI::App* command = (to == nullptr ? &app_ : to)->add_subcommand(name, help);
     command->callback([this, function] { code_ = function(context_); });
     return command;
   }
@@ -105,6 +108,43 @@ class CommandLine {
         Add("physiology", "Let a thorax breathe here, and hold it against published ranges", &Physiology, physiology);
     AddScene(command, physiology.scene);
     command->add_option("--data", physiology.data_dir, "folder of surface files and of scenes/*.textproto");
+  }
+
+  void AddStudies() {
+    CLI::App* study = app_.add_subcommand("study", "Error against run time, stability and cost of a scene");
+    study->require_subcommand(1);
+    AddStudy(study, "error", "Every integrator over a ladder of time steps, against an independent reference",
+             options_.error, options_.error.request.mutable_error());
+    AddStudy(study, "stability", "A map over stiffness and time step, and a suite of extreme cases", options_.stability,
+             options_.stability.request.mutable_stability());
+    AddStudy(study, "cost", "What each part of a scene costs, and what leaving it out saves", options_.cost,
+             options_.cost.request.mutable_cost());
+    StudyOptions& options = options_.study;
+    Add("list", "List the studies of the server", &ListStudies, study);
+    CLI::App* watch = Add("watch", "Wait for a study of the server, and print it", &WatchStudy, options, study);
+    watch->add_option("STUDY", options.id)->required();
+    AddFindings(watch, options);
+    CLI::App* remove = Add("delete", "Cancel and forget a study of the server", &DeleteStudy, options, study);
+    remove->add_option("STUDY", options.id)->required();
+  }
+
+  void AddStudy(CLI::App* to, const char* name, const char* help, StudyOptions& options,
+                google::protobuf::Message* kind) {
+    CLI::App* command = Add(name, help, &Study, options, to);
+    AddScene(command, options.scene);
+    AddPreset(command, *options.request.mutable_preset());
+    AddSettings(command, options.settings);
+    AddSchemaOptions(command, kind);
+    AddFindings(command, options);
+    command->add_option("--data", options.data_dir, "folder of surface files and of scenes/*.textproto");
+    command->add_option("--id", *options.request.mutable_study_id(), "its name: 1 to 64 of a-z, 0-9 and -");
+    command->add_flag("--on-server", options.on_server, "run it on the server; it goes on when this ends");
+    command->add_flag("--detach", options.detach, "run it on the server, and do not wait");
+  }
+
+  static void AddFindings(CLI::App* command, StudyOptions& options) {
+    command->add_option("--page", options.page, "write tables and plots to this .html file");
+    command->add_option("--check", options.limits, "limits (.textproto, StudyLimits): 4 is the exit code past one");
   }
 
   void AddSessionCommands() {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "client/connection.h"
+#include "phrenic/v1/study.pb.h"
 
 namespace phrenic::client {
 
@@ -26,6 +27,15 @@ struct RunOptions {
 struct PhysiologyOptions {
   SceneOptions scene;
   std::string data_dir;
+};
+struct StudyOptions {
+  SceneOptions scene;
+  std::vector<std::string> settings;
+  v1::CreateStudyRequest request;  // the kind and its options; the rest is filled in from the above
+  std::string id;
+  std::string page, limits;  // files; empty: none
+  std::string data_dir;
+  bool on_server = false, detach = false;
 };
 struct CreateOptions {
   SceneOptions scene;
@@ -72,6 +82,10 @@ int Scenes(const Context& context);
 int Describe(const Context& context, const SceneOptions& options);
 int Run(const Context& context, const RunOptions& options);
 int Physiology(const Context& context, const PhysiologyOptions& options);
+int Study(const Context& context, const StudyOptions& options);
+int ListStudies(const Context& context);
+int WatchStudy(const Context& context, const StudyOptions& options);
+int DeleteStudy(const Context& context, const StudyOptions& options);
 int Create(const Context& context, const CreateOptions& options);
 int Sessions(const Context& context);
 int Watch(const Context& context, const WatchOptions& options);

@@ -15,12 +15,14 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
+  // What is being done now, behind the bar.
+  void Say(std::string doing) { doing_ = std::move(doing); }
   // Draws at most ten times a second, with the time left.
   void Update(double done);
 
  private:
   using Clock = std::chrono::steady_clock;
-  std::string what_;
+  std::string what_, doing_;
   double total_;
   bool terminal_;
   Clock::time_point start_ = Clock::now(), drawn_ = start_;

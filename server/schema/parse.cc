@@ -46,7 +46,7 @@ std::string PlaceOf(const Problem& problem, const std::string& name, TextFormat:
 
 }  // namespace
 
-absl::StatusOr<v1::Scene> ParseScene(std::string_view name, const std::string& text) {
+absl::Status ParseText(std::string_view name, const std::string& text, google::protobuf::Message* message) {
   const std::string file(name);
   FirstError error(file);
   TextFormat::ParseInfoTree tree;
@@ -54,15 +54,20 @@ absl::StatusOr<v1::Scene> ParseScene(std::string_view name, const std::string& t
   parser.RecordErrorsTo(&error);
   parser.WriteLocationsTo(&tree);
   parser.SetRecursionLimit(kDeepestNesting);
-  v1::Scene scene;
-  if (!parser.ParseFromString(text, &scene)) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(error.text(), " (the scene language is proto/phrenic/v1/scene.proto)"));
+  if (!parser.ParseFromString(text, message)) {
+    return absl::InvalidArgumentError(absl::StrCat(error.text(), " (the language is message ",
+                                                   message->GetDescriptor()->name(), " of proto/phrenic/v1)"));
   }
-  if (const std::optional<Problem> problem = FindProblem(scene)) {
+  if (const std::optional<Problem> problem = FindProblem(*message)) {
     return absl::InvalidArgumentError(
         absl::StrCat(PlaceOf(*problem, file, &tree), FormatPath(problem->path), ": ", problem->what));
   }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<v1::Scene> ParseScene(std::string_view name, const std::string& text) {
+  v1::Scene scene;
+  if (absl::Status status = ParseText(name, text, &scene); !status.ok()) return status;
   return scene;
 }
 

@@ -27,6 +27,9 @@ void FillDefaults(google::protobuf::Message* message);
 // names the field, the allowed range, and the names there are when there is no such one.
 absl::Status SetParameter(std::string_view name, std::string_view value, v1::Parameters* parameters);
 
+// Parses text-format `text` into `message` and validates it. `name` is for errors: "name:line:column: ...".
+absl::Status ParseText(std::string_view name, const std::string& text, google::protobuf::Message* message);
+
 // Parses a text-format scene, fills no defaults, validates. `name` is for errors: "name:line:column: ...".
 absl::StatusOr<v1::Scene> ParseScene(std::string_view name, const std::string& text);
 

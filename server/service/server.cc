@@ -63,7 +63,7 @@ struct Server::Parts {
         session_service(table),
         frame_service(table),
         export_service(table, options.limits.exports),
-        study_service(models) {}
+        study_service(models, options.web_root) {}
 
   absl::Status Serve(const ServerOptions& options);
   absl::Status ServeWeb(const ServerOptions& options);

@@ -2,21 +2,44 @@
 #ifndef PHRENIC_SERVER_SERVICE_STUDY_SERVICE_H_
 #define PHRENIC_SERVER_SERVICE_STUDY_SERVICE_H_
 
+#include <atomic>
+#include <string>
+#include <utility>
+
 #include "phrenic/v1/study.grpc.pb.h"
 #include "server/session/models.h"
+#include "server/study/jobs.h"
 
 namespace phrenic::service {
 
 // gRPC's threads call, any number at a time.
 class StudyService final : public v1::StudyService::Service {
  public:
-  explicit StudyService(session::Models& models) : models_(models) {}
+  // `web_root` has report.html, the page without a study.
+  StudyService(session::Models& models, std::string web_root) : models_(models), web_root_(std::move(web_root)) {}
 
+  grpc::Status CreateStudy(grpc::ServerContext* context, const v1::CreateStudyRequest* request,
+                           v1::CreateStudyResponse* response) override;
+  // At most 16 watch at a time: RESOURCE_EXHAUSTED for one more.
+  grpc::Status WatchStudy(grpc::ServerContext* context, const v1::WatchStudyRequest* request,
+                          grpc::ServerWriter<v1::WatchStudyResponse>* writer) override;
+  grpc::Status ListStudies(grpc::ServerContext* context, const v1::ListStudiesRequest* request,
+                           v1::ListStudiesResponse* response) override;
+  grpc::Status DeleteStudy(grpc::ServerContext* context, const v1::DeleteStudyRequest* request,
+                           v1::DeleteStudyResponse* response) override;
+  grpc::Status GetStudyPage(grpc::ServerContext* context, const v1::GetStudyPageRequest* request,
+                            v1::GetStudyPageResponse* response) override;
   grpc::Status CheckPhysiology(grpc::ServerContext* context, const v1::CheckPhysiologyRequest* request,
                                grpc::ServerWriter<v1::CheckPhysiologyResponse>* writer) override;
 
  private:
+  absl::Status Watch(const std::string& id, grpc::ServerContext& context,
+                     grpc::ServerWriter<v1::WatchStudyResponse>& writer) const;
+
   session::Models& models_;
+  const std::string web_root_;
+  study::Jobs jobs_{16};
+  std::atomic<int> watchers_ = 0;
 };
 
 }  // namespace phrenic::service

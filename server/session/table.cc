@@ -3,35 +3,17 @@
 #include <algorithm>
 #include <utility>
 
-#include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "server/mechanics/compile.h"
+#include "server/schema/id.h"
 #include "server/schema/schema.h"
 
 namespace phrenic::session {
 namespace {
 
-constexpr std::size_t kLongestId = 64;
 constexpr int kUsualPage = 100;
 constexpr int kLargestPage = 1000;
-
-bool MayBeInId(char c) { return absl::ascii_islower(c) || absl::ascii_isdigit(c) || c == '-'; }
-
-absl::Status CheckId(const std::string& id) {
-  if (id.size() <= kLongestId && std::all_of(id.begin(), id.end(), MayBeInId)) return absl::OkStatus();
-  return absl::InvalidArgumentError(
-      absl::StrCat("session_id: \"", id.substr(0, kLongestId), "\" is not 1 to 64 characters of a-z, 0-9 and \"-\""));
-}
-
-// What the scene is called, as far as an id may hold it.
-std::string Stem(const std::string& scene) {
-  std::string stem = absl::AsciiStrToLower(scene).substr(0, kLongestId - 8);
-  for (char& c : stem) {
-    if (!MayBeInId(c)) c = '-';
-  }
-  return stem.empty() ? "session" : stem;
-}
 
 }  // namespace
 
@@ -41,15 +23,14 @@ Table::Table(Models& models, const stream::Clock& clock, const Limits& limits)
 Table::~Table() { Close(absl::UnavailableError("the server is shutting down")); }
 
 std::string Table::FreeId(const std::string& scene) const {
-  std::string stem = Stem(scene);
-  if (!sessions_.contains(stem)) return stem;
-  int number = 2;
-  while (sessions_.contains(absl::StrCat(stem, "-", number))) ++number;
-  return absl::StrCat(stem, "-", number);
+  return schema::FreeId(scene, "session", [this](const std::string& id) {
+    mutex_.AssertHeld();
+    return sessions_.contains(id);
+  });
 }
 
 absl::StatusOr<std::string> Table::Reserve(const std::string& wanted, const std::string& scene) {
-  if (absl::Status status = CheckId(wanted); !status.ok()) return status;
+  if (absl::Status status = schema::CheckId("session_id", wanted); !status.ok()) return status;
   absl::MutexLock lock(&mutex_);
   if (closed_.has_value()) return *closed_;
   if (sessions_.contains(wanted)) {
@@ -106,7 +87,7 @@ absl::Status Table::NoSession(const std::string& id) const {
   for (const auto& [other, session] : sessions_) {
     if (session != nullptr) ids.push_back(other);
   }
-  return absl::NotFoundError(absl::StrCat("session_id: there is no session \"", id.substr(0, kLongestId),
+  return absl::NotFoundError(absl::StrCat("session_id: there is no session \"", schema::ShortId(id),
                                           "\"; there are ", ids.empty() ? "none" : absl::StrJoin(ids, ", ")));
 }
 

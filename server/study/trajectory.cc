@@ -101,6 +101,14 @@ Distance Between(const Subject& subject, const Trajectory& a, const Trajectory& 
   return distance;
 }
 
+double RmsApart(const Model& model, const Points& a, const Points& b) {
+  Distance distance;
+  double squares = 0;
+  long count = 0;
+  Add(a, b, model, distance, squares, count);
+  return count > 0 ? std::sqrt(squares / static_cast<double>(count)) : 0;
+}
+
 double Energy(const Subject& subject, const State& state) {
   const Model& model = *subject.model;
   double energy = 0;

@@ -37,6 +37,9 @@ struct Distance {
 // Over the moments that both have, and the vertices that forces move; equal models.
 Distance Between(const Subject& subject, const Trajectory& a, const Trajectory& b);
 
+// RMS distance of the vertices that forces move [m]; positions 3 x n.
+double RmsApart(const Model& model, const Points& a, const Points& b);
+
 // Kinetic energy and that of every force that has one [J].
 double Energy(const Subject& subject, const State& state);
 

@@ -58,7 +58,7 @@ const char kPendulum[] = R"(
     polyhedron { vertices { } vertices { x: 1 } edges { a: 0 b: 1 } }
   }
   forces { gravity { bodies: "b" acceleration { z: -9.81 } } }
-  constraints { rigid_links { body: "b" list { pairs { a: 0 b: 1 } } } }
+  constraints { rigid_links { body: "b" list { links { a: 0 b: 1 } } } }
   parameters { time_step: 0.001 }
 )";
 

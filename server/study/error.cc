@@ -1,0 +1,154 @@
+#include "server/study/error.h"
+
+#include <algorithm>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "server/mechanics/residual.h"
+#include "server/study/error_rows.h"
+#include "server/study/reference.h"
+#include "server/study/subject.h"
+
+namespace phrenic::study {
+namespace {
+
+// Shares of the whole study's progress.
+constexpr double kReferenceEnds = 0.3, kLaddersEnd = 0.85, kResidualsEnd = 0.9;
+
+bool HasLinks(const v1::Scene& scene) {
+  return std::any_of(scene.constraints().begin(), scene.constraints().end(),
+                     [](const v1::Constraint& constraint) { return constraint.has_rigid_links(); });
+}
+
+// The subject's scene with every rigid link projected in this way.
+absl::StatusOr<Subject> Projected(const v1::CreateStudyRequest& request, const Subject& subject,
+                                  v1::Projection projection, const Compiler& compile) {
+  v1::SceneSource source = request.source();
+  *source.mutable_scene() = subject.model->scene;
+  for (v1::Constraint& constraint : *source.mutable_scene()->mutable_constraints()) {
+    if (constraint.has_rigid_links()) constraint.mutable_rigid_links()->set_projection(projection);
+  }
+  const auto model = compile(source);
+  if (!model.ok()) return model.status();
+  return Subject{.model = *model, .parameters = subject.parameters};
+}
+
+absl::StatusOr<Yardstick> MakeYardstick(const v1::CreateStudyRequest& request, const Subject& subject,
+                                        const Compiler& compile, const Progress& progress, v1::ErrorTable& table) {
+  const v1::ErrorStudy& study = request.error();
+  absl::StatusOr<Subject> exact = subject;
+  if (HasLinks(subject.model->scene)) exact = Projected(request, subject, v1::PROJECTION_EXACT, compile);
+  if (!exact.ok()) return exact.status();
+  Yardstick yardstick;
+  yardstick.moments = Moments(study.seconds(), study.moments());
+  v1::Reference& report = *table.mutable_reference();
+  auto reference = ConfirmedReference(*exact, yardstick.moments, study.tolerance(), progress, report);
+  if (!reference.ok()) return reference.status();
+  yardstick.reference = *std::move(reference);
+  yardstick.reference_rms = 1e-3 * report.error_rms_mm();
+  yardstick.reference_max = 1e-3 * report.error_max_mm();
+  return yardstick;
+}
+
+absl::Status AddLadders(const v1::ErrorStudy& study, const Subject& subject, const Yardstick& yardstick,
+                        const Progress& progress, v1::ErrorTable& table) {
+  const std::vector<v1::Integrator> integrators = IntegratorsFor(study.integrators());
+  const double share = (kLaddersEnd - kReferenceEnds) / static_cast<double>(integrators.size());
+  double from = kReferenceEnds;
+  for (const v1::Integrator integrator : integrators) {
+    const Progress part = Part(progress, from, from + share);
+    absl::Status added = AddLadder(With(subject, integrator), study, yardstick, part, table);
+    if (!added.ok()) return added;
+    from += share;
+  }
+  return absl::OkStatus();
+}
+
+absl::Status AddResiduals(const v1::CreateStudyRequest& request, const Subject& subject, const Yardstick& yardstick,
+                          const Compiler& compile, const Progress& progress, v1::ErrorTable& table) {
+  if (!HasLinks(subject.model->scene)) return absl::OkStatus();
+  for (const v1::Projection projection : {v1::PROJECTION_EXACT, v1::PROJECTION_THESIS}) {
+    const auto projected = Projected(request, subject, projection, compile);
+    if (!projected.ok()) return projected.status();
+    const auto run = Simulate(*projected, yardstick.moments, subject.parameters.time_step(),
+                              request.error().most_seconds_a_run(), progress);
+    if (!run.ok()) return run.status();
+    for (size_t i = 0; i < run->states.size(); ++i) {
+      v1::ResidualRow& row = *table.add_residuals();
+      row.set_projection(projection == v1::PROJECTION_EXACT ? "exact" : "thesis");
+      row.set_time_s(yardstick.moments[i]);
+      row.set_residual_mm(1e3 * LargestResidual(*projected->model, run->states[i]).metres);
+      row.set_error_rms_mm(1e3 * RmsApart(*projected->model, run->states[i].x, yardstick.reference.states[i].x));
+    }
+  }
+  return absl::OkStatus();
+}
+
+// Where a probe is, relative to rest, at each moment.
+std::vector<Eigen::Vector3d> ProbeWays(const Model& model, const Trajectory& run) {
+  std::vector<Eigen::Vector3d> ways;
+  for (const State& state : run.states) {
+    for (const Probe& probe : model.probes) {
+      const BodyModel& body = model.bodies[static_cast<size_t>(probe.body)];
+      if (body.first_vertex < 0) continue;
+      const int vertex = body.first_vertex + probe.vertex;
+      ways.emplace_back(state.x.col(vertex) - model.rest.col(vertex));
+    }
+  }
+  return ways;
+}
+
+void SetApart(const std::vector<Eigen::Vector3d>& ways, const std::vector<Eigen::Vector3d>& finest,
+              v1::ResolutionRow& row) {
+  if (ways.size() != finest.size() || ways.empty()) return;
+  double largest = 0;
+  for (size_t i = 0; i < ways.size(); ++i) largest = std::max(largest, (ways[i] - finest[i]).norm());
+  row.set_error_probe_mm(1e3 * largest);
+}
+
+absl::Status AddResolutions(const v1::CreateStudyRequest& request, const Yardstick& yardstick, const Compiler& compile,
+                            const Progress& progress, v1::ErrorTable& table) {
+  const v1::ErrorStudy& study = request.error();
+  std::vector<double> sizes(study.resolutions_mm().begin(), study.resolutions_mm().end());
+  std::sort(sizes.begin(), sizes.end());  // the finest first: the others are held against it
+  std::vector<Eigen::Vector3d> finest;
+  for (const double size : sizes) {
+    v1::SceneSource source = request.source();
+    source.set_resolution_mm(size);
+    v1::ResolutionRow& row = *table.add_resolutions();
+    row.set_resolution_mm(size);
+    const auto subject = MakeSubject(source, request.preset(), request.parameters(), compile);
+    if (!subject.ok()) return subject.status();
+    const double step = std::min(0.9 * PredictedStep(*subject), subject->parameters.time_step());
+    const auto run = Simulate(*subject, yardstick.moments, step, study.most_seconds_a_run(), progress);
+    if (!run.ok()) return run.status();
+    row.set_vertices(subject->model->rest.cols());
+    row.set_cpu_per_second(run->cpu_s / run->simulated_s);
+    row.set_verdict(run->problem.empty() ? "ok" : run->problem);
+    const std::vector<Eigen::Vector3d> ways = ProbeWays(*subject->model, *run);
+    if (size == sizes.front()) finest = ways;
+    SetApart(ways, finest, row);
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::StatusOr<v1::ErrorTable> StudyError(const v1::CreateStudyRequest& request, const Subject& subject,
+                                          const Compiler& compile, const Progress& progress) {
+  v1::ErrorTable table;
+  table.set_seconds(request.error().seconds());
+  const auto yardstick = MakeYardstick(request, subject, compile, Part(progress, 0, kReferenceEnds), table);
+  if (!yardstick.ok()) return yardstick.status();
+  absl::Status status = AddLadders(request.error(), subject, *yardstick, progress, table);
+  if (!status.ok()) return status;
+  status = AddResiduals(request, subject, *yardstick, compile, Part(progress, kLaddersEnd, kResidualsEnd), table);
+  if (!status.ok()) return status;
+  status = AddResolutions(request, *yardstick, compile, Part(progress, kResidualsEnd, 1), table);
+  if (!status.ok()) return status;
+  MarkPareto(table);
+  table.set_advice(Advice(table, request.error().target()));
+  return table;
+}
+
+}  // namespace phrenic::study

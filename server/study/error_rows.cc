@@ -1,0 +1,117 @@
+#include "server/study/error_rows.h"
+
+#include <cmath>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "server/study/subject.h"
+
+namespace phrenic::study {
+namespace {
+
+constexpr double kLongest = 1.0 / 30;   // the ladder's first step where stability limits none [s]
+constexpr double kBlur = 3;             // of the reference's own error: an error below it says nothing
+constexpr const char* kOk = "ok";
+
+double FirstStep(const Subject& subject) { return std::min(0.95 * PredictedStep(subject), kLongest); }
+
+void Judge(const Subject& subject, const Yardstick& yardstick, const Trajectory& run, v1::ErrorRow& row) {
+  if (run.simulated_s > 0) row.set_cpu_per_second(run.cpu_s / run.simulated_s);
+  if (!run.problem.empty()) {
+    row.set_verdict(run.problem);
+    return;
+  }
+  row.set_real_time(row.cpu_per_second() < 1);
+  const Distance distance = Between(subject, run, yardstick.reference);
+  if (distance.rms < kBlur * yardstick.reference_rms || distance.largest < kBlur * yardstick.reference_max) {
+    row.set_verdict("below the reference's error");
+    return;
+  }
+  row.set_error_max_mm(1e3 * distance.largest);
+  row.set_error_rms_mm(1e3 * distance.rms);
+  if (!subject.model->probes.empty()) row.set_error_probe_mm(1e3 * distance.probes);
+  row.set_error_energy_j(distance.energy);
+  row.set_verdict(kOk);
+}
+
+// log2 of each row's error over that of the row after it, which has half the step.
+void SetOrders(int first, v1::ErrorTable& table) {
+  for (int i = first; i + 1 < table.rows_size(); ++i) {
+    v1::ErrorRow& row = *table.mutable_rows(i);
+    const v1::ErrorRow& finer = table.rows(i + 1);
+    if (!row.has_error_rms_mm() || !finer.has_error_rms_mm()) continue;
+    row.set_order(std::log(row.error_rms_mm() / finer.error_rms_mm()) /
+                  std::log(row.time_step_s() / finer.time_step_s()));
+  }
+}
+
+bool Beats(const v1::ErrorRow& a, const v1::ErrorRow& b) {
+  return a.verdict() == kOk && a.error_rms_mm() <= b.error_rms_mm() && a.cpu_per_second() <= b.cpu_per_second() &&
+         (a.error_rms_mm() < b.error_rms_mm() || a.cpu_per_second() < b.cpu_per_second());
+}
+
+std::string Pace(double cpu_per_second) {
+  return cpu_per_second < 1 ? absl::StrFormat("%.3g times faster than real time", 1 / cpu_per_second)
+                            : absl::StrFormat("%.3g times slower than real time", cpu_per_second);
+}
+
+}  // namespace
+
+absl::Status AddLadder(const Subject& subject, const v1::ErrorStudy& study, const Yardstick& yardstick,
+                       const Progress& progress, v1::ErrorTable& table) {
+  const std::string name = NameOf(subject.parameters.integrator());
+  const int first = table.rows_size();
+  double dt = FirstStep(subject);
+  if (!(dt > 0)) {
+    v1::ErrorRow& row = *table.add_rows();
+    row.set_integrator(name);
+    row.set_verdict("no step is stable here: it adds energy");
+    return absl::OkStatus();
+  }
+  // Level n costs 2^n.
+  const double all = std::exp2(study.levels()) - 1;
+  for (int level = 0; level < study.levels(); ++level, dt /= 2) {
+    const Progress part = Part(progress, (std::exp2(level) - 1) / all, (std::exp2(level + 1) - 1) / all);
+    const auto labelled = [&](double done, std::string_view) {
+      return part(done, absl::StrFormat("%s at %.3g ms", name, 1e3 * dt));
+    };
+    const auto run = Simulate(subject, yardstick.moments, dt, study.most_seconds_a_run(), labelled);
+    if (!run.ok()) return run.status();
+    v1::ErrorRow& row = *table.add_rows();
+    row.set_integrator(name);
+    row.set_time_step_s(DividingStep(yardstick.moments, dt));
+    Judge(subject, yardstick, *run, row);
+  }
+  SetOrders(first, table);
+  return absl::OkStatus();
+}
+
+void MarkPareto(v1::ErrorTable& table) {
+  for (v1::ErrorRow& row : *table.mutable_rows()) {
+    bool beaten = row.verdict() != kOk;
+    for (const v1::ErrorRow& other : table.rows()) beaten = beaten || Beats(other, row);
+    row.set_pareto(!beaten);
+  }
+}
+
+std::string Advice(const v1::ErrorTable& table, double target) {
+  const v1::ErrorRow* best = nullptr;
+  const v1::ErrorRow* nearest = nullptr;
+  for (const v1::ErrorRow& row : table.rows()) {
+    if (row.verdict() != kOk) continue;
+    if (nearest == nullptr || row.error_max_mm() < nearest->error_max_mm()) nearest = &row;
+    if (row.error_max_mm() > 1e3 * target) continue;
+    if (best == nullptr || row.cpu_per_second() < best->cpu_per_second()) best = &row;
+  }
+  if (best != nullptr) {
+    return absl::StrFormat("For an error of %g mm at any vertex use %s at %.3g ms: it errs by %.2g mm and is %s.",
+                           1e3 * target, best->integrator(), 1e3 * best->time_step_s(), best->error_max_mm(),
+                           Pace(best->cpu_per_second()));
+  }
+  const std::string missed = absl::StrFormat("No run errs by %g mm or less: raise levels, or the target.", 1e3 * target);
+  if (nearest == nullptr) return missed;
+  return absl::StrFormat("%s The nearest is %s at %.3g ms with %.2g mm.", missed, nearest->integrator(),
+                         1e3 * nearest->time_step_s(), nearest->error_max_mm());
+}
+
+}  // namespace phrenic::study

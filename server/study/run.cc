@@ -1,0 +1,55 @@
+#include "server/study/run.h"
+
+#include <chrono>
+#include <utility>
+
+#include "server/schema/schema.h"
+#include "server/study/error.h"
+#include "server/study/subject.h"
+
+namespace phrenic::study {
+namespace {
+
+// Not the parameters and the scene: what they leave out is the compile step's.
+void FillStudy(v1::CreateStudyRequest& request) {
+  if (request.has_error()) schema::FillDefaults(request.mutable_error());
+  if (request.has_stability()) schema::FillDefaults(request.mutable_stability());
+  if (request.has_cost()) schema::FillDefaults(request.mutable_cost());
+}
+
+absl::Status Fill(const v1::CreateStudyRequest& request, const Subject& subject, const Compiler& compile,
+                  const Progress& progress, v1::StudyResult& result) {
+  switch (request.what_case()) {
+    case v1::CreateStudyRequest::kError: {
+      auto table = StudyError(request, subject, compile, progress);
+      if (table.ok()) *result.mutable_error() = *std::move(table);
+      return table.status();
+    }
+    case v1::CreateStudyRequest::kStability:
+    case v1::CreateStudyRequest::kCost:
+      return absl::UnimplementedError("this study is not made yet");
+    case v1::CreateStudyRequest::WHAT_NOT_SET:
+      break;
+  }
+  return absl::InvalidArgumentError("what: must be set: error, stability or cost");
+}
+
+}  // namespace
+
+absl::StatusOr<v1::StudyResult> Run(v1::CreateStudyRequest request, const Compiler& compile, const Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  FillStudy(request);
+  if (!progress(0, "compiling the scene")) return Cancelled();
+  const auto subject = MakeSubject(request.source(), request.preset(), request.parameters(), compile);
+  if (!subject.ok()) return subject.status();
+  v1::StudyResult result;
+  if (absl::Status status = Fill(request, *subject, compile, progress, result); !status.ok()) return status;
+  result.set_scene(subject->model->scene.name());
+  result.set_scene_hash(subject->model->report.scene_hash());
+  *result.mutable_parameters() = subject->parameters;
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  result.set_took_s(took.count());
+  return result;
+}
+
+}  // namespace phrenic::study
