@@ -122,7 +122,9 @@ void RigidLinks::ProjectVelocities(const v1::Parameters& parameters, State& stat
 
 double RigidLinks::Residual(const State& state) const {
   double worst = 0;
-  for (const Link& link : alone_) worst = std::max(worst, std::abs(link.Stretch(state.x)));
+  for (const Link& link : alone_) {
+    if (link.Movable()) worst = std::max(worst, std::abs(link.Stretch(state.x)));
+  }
   for (const Link& link : network_.links()) worst = std::max(worst, std::abs(link.Stretch(state.x)));
   return worst;
 }

@@ -1,0 +1,145 @@
+// Error against run time: orders come out as published, the thesis' scheme as it is, and refusals are honest.
+#include "server/study/error.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "server/schema/fields.h"
+#include "server/study/run.h"
+#include "tests/compile_text.h"
+
+namespace phrenic::study {
+namespace {
+
+using testing::HasSubstr;
+
+// A swinging, stretching sheet corner: nonlinear, with friction, no rigid links.
+const char kSwing[] = R"(
+  name: "swing" title: "Swing"
+  bodies {
+    name: "b" role: ROLE_DEFORMABLE mass: 3 fixed_vertices: [0]
+    polyhedron {
+      vertices { } vertices { x: 1 } vertices { x: 1 y: 1 }
+      edges { a: 0 b: 1 } edges { a: 1 b: 2 } edges { a: 0 b: 2 }
+    }
+  }
+  forces { springs { bodies: "b" stiffness: 100 } }
+  forces { friction { bodies: "b" rate: 0.2 } }
+  forces { gravity { bodies: "b" acceleration { z: -2 } } }
+  probes { name: "corner" body: "b" vertex: 2 }
+)";
+
+const char kLinks[] = R"(
+  constraints { rigid_links { body: "b" list { links { a: 0 b: 1 } } } }
+)";
+
+absl::StatusOr<v1::StudyResult> RunOn(const std::string& text, v1::CreateStudyRequest request) {
+  request.mutable_source()->mutable_scene()->CopyFrom(*schema::ParseScene("test", text));
+  const Compiler compile = [](const v1::SceneSource& source) {
+    return Compile(source.scene(), [](const v1::Body&) { return absl::NotFoundError("no files"); });
+  };
+  return Run(request, compile, [](double, std::string_view) { return true; });
+}
+
+v1::CreateStudyRequest ErrorRequest(double seconds, int levels) {
+  v1::CreateStudyRequest request;
+  request.mutable_error()->set_seconds(seconds);
+  request.mutable_error()->set_moments(2);
+  request.mutable_error()->set_levels(levels);
+  request.mutable_error()->set_tolerance(1e-11);
+  return request;
+}
+
+// The order between the two finest steps, by integrator.
+std::map<std::string, double> Orders(const v1::ErrorTable& table) {
+  std::map<std::string, double> orders;
+  for (const v1::ErrorRow& row : table.rows()) {
+    if (row.has_order()) orders[row.integrator()] = row.order();
+  }
+  return orders;
+}
+
+TEST(ErrorStudy, FindsThePublishedOrders) {
+  const auto result = RunOn(kSwing, ErrorRequest(1, 6));
+  ASSERT_TRUE(result.ok()) << result.status();
+  const std::map<std::string, double> orders = Orders(result->error());
+  const std::map<std::string, double> published = {
+      {"semi_implicit_euler", 1}, {"explicit_euler", 1},        {"velocity_verlet", 2}, {"runge_kutta_4", 4},
+      {"tr_bdf2", 2},             {"linear_implicit_euler", 1}, {"bdf2", 2}};
+  for (const auto& [name, order] : published) {
+    ASSERT_TRUE(orders.contains(name)) << name;
+    EXPECT_NEAR(orders.at(name), order, 0.15 * order) << name;
+  }
+  EXPECT_LT(orders.at("thesis"), 0.5);
+  EXPECT_LT(result->error().reference().error_max_mm(), 1e-5);
+}
+
+TEST(ErrorStudy, SaysWhatToUse) {
+  v1::CreateStudyRequest request = ErrorRequest(1, 6);
+  request.mutable_error()->set_target(1e-5);
+  const auto result = RunOn(kSwing, request);
+  ASSERT_TRUE(result.ok()) << result.status();
+  EXPECT_THAT(result->error().advice(), HasSubstr("For an error of 0.01 mm"));
+  int pareto = 0;
+  for (const v1::ErrorRow& row : result->error().rows()) {
+    pareto += row.pareto();
+    EXPECT_FALSE(row.pareto() && row.integrator() == "thesis");
+  }
+  EXPECT_GT(pareto, 0);
+}
+
+TEST(ErrorStudy, RefusesErrorsBelowTheReferences) {
+  v1::CreateStudyRequest request = ErrorRequest(1, 4);
+  request.mutable_error()->set_tolerance(1e-4);
+  request.mutable_error()->add_integrators(v1::INTEGRATOR_RUNGE_KUTTA_4);
+  const auto result = RunOn(kSwing, request);
+  ASSERT_TRUE(result.ok()) << result.status();
+  const v1::ErrorRow& last = result->error().rows(result->error().rows_size() - 1);
+  EXPECT_EQ(last.verdict(), "below the reference's error");
+  EXPECT_FALSE(last.has_error_rms_mm());
+  EXPECT_FALSE(last.pareto());
+}
+
+TEST(ErrorStudy, ShowsWhatTheThesisProjectionCosts) {
+  v1::CreateStudyRequest request = ErrorRequest(1, 3);
+  request.mutable_error()->add_integrators(v1::INTEGRATOR_VELOCITY_VERLET);
+  const std::string scene = std::string(kSwing) + kLinks;
+  const auto result = RunOn(scene, request);
+  ASSERT_TRUE(result.ok()) << result.status();
+  std::map<std::string, v1::ResidualRow> last;
+  for (const v1::ResidualRow& row : result->error().residuals()) last[row.projection()] = row;
+  ASSERT_EQ(last.size(), 2);
+  EXPECT_LT(last["exact"].residual_mm(), 1e-6);
+  EXPECT_GT(last["thesis"].error_rms_mm(), 10 * last["exact"].error_rms_mm());
+}
+
+TEST(ErrorStudy, GivesTheSameNumbersTwice) {
+  v1::CreateStudyRequest request = ErrorRequest(0.5, 3);
+  const auto a = RunOn(kSwing, request), b = RunOn(kSwing, request);
+  ASSERT_TRUE(a.ok() && b.ok());
+  ASSERT_EQ(a->error().rows_size(), b->error().rows_size());
+  for (int i = 0; i < a->error().rows_size(); ++i) {
+    EXPECT_EQ(a->error().rows(i).error_max_mm(), b->error().rows(i).error_max_mm());
+    EXPECT_EQ(a->error().rows(i).error_energy_j(), b->error().rows(i).error_energy_j());
+  }
+}
+
+TEST(ErrorStudy, SaysWhereARunDiverged) {
+  std::string stiff = kSwing;
+  v1::CreateStudyRequest request = ErrorRequest(1, 1);
+  request.mutable_error()->add_integrators(v1::INTEGRATOR_VELOCITY_VERLET);
+  request.mutable_error()->set_most_seconds_a_run(0.001);
+  request.mutable_error()->set_levels(16);
+  const auto result = RunOn(stiff, request);
+  ASSERT_TRUE(result.ok()) << result.status();
+  EXPECT_THAT(result->error().rows(15).verdict(), HasSubstr("out of time at"));
+}
+
+TEST(Study, WithoutAKindIsRefused) {
+  EXPECT_EQ(RunOn(kSwing, {}).status().code(), absl::StatusCode::kInvalidArgument);
+}
+
+}  // namespace
+}  // namespace phrenic::study
