@@ -39,8 +39,8 @@ class CommandLine {
         ->envname("PHRENIC_SERVER")
         ->capture_default_str();
     app_.add_option("-o,--output", context_.output, "table, for people, json, for programs, or csv (studies)")
-        ->transform(
-            CLI::CheckedTransformer(std::map<std::string, Output>{{"table", Output::kTable}, {"json", Output::kJson}, {"csv", Output::kCsv}}));
+        ->transform(CLI::CheckedTransformer(
+            std::map<std::string, Output>{{"table", Output::kTable}, {"json", Output::kJson}, {"csv", Output::kCsv}}));
     AddSceneCommands();
     AddStudies();
     AddSessionCommands();

@@ -26,7 +26,8 @@ void Progress::Update(double done) {
   const int filled = static_cast<int>(share * kWidth);
   const std::string bar = std::string(filled, '#') + std::string(kWidth - filled, '.');
   const double left = share > 0 ? spent.count() * (1 - share) / share : 0;
-  std::cerr << absl::StrFormat("\r%s [%s] %3.0f %%, %.0f s left  %s\x1b[K", what_, bar, 100 * share, left, doing_) << std::flush;
+  std::cerr << absl::StrFormat("\r%s [%s] %3.0f %%, %.0f s left  %s\x1b[K", what_, bar, 100 * share, left, doing_)
+            << std::flush;
 }
 
 }  // namespace phrenic::client

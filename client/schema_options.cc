@@ -33,8 +33,8 @@ void SetNumber(Message* message, const FieldDescriptor* field, double value) {
 void AddChoice(Message* message, const FieldDescriptor* field, const std::string& name) {
   const auto* value = schema::FindChoice(*field->enum_type(), name);
   if (value == nullptr) {
-    throw CLI::ValidationError(
-        field->name(), absl::StrCat("there is no \"", name, "\"; there are ", schema::ChoiceNames(*field->enum_type())));
+    throw CLI::ValidationError(field->name(), absl::StrCat("there is no \"", name, "\"; there are ",
+                                                           schema::ChoiceNames(*field->enum_type())));
   }
   message->GetReflection()->AddEnum(message, field, value);
 }
@@ -66,7 +66,8 @@ void AddOption(CLI::App* command, const std::string& name, const FieldDescriptor
     };
     command->add_option_function<std::vector<double>>(name, set, meaning)->delimiter(',');
   } else {
-    command->add_option_function<double>(name, [=](double value) { SetNumber(message, field, value); }, meaning);
+    command->add_option_function<double>(
+        name, [=](double value) { SetNumber(message, field, value); }, meaning);
   }
 }
 

@@ -145,7 +145,8 @@ int Study(const Context& context, const StudyOptions& options) {
   if (!options.limits.empty()) {
     if (const auto limits = ReadLimits(options.limits); !limits.ok()) return Fail(limits.status());
   }
-  if (options.on_server || options.detach) return Create(context, options, *v1::StudyService::NewStub(Connect(context)));
+  if (options.on_server || options.detach)
+    return Create(context, options, *v1::StudyService::NewStub(Connect(context)));
   service::ServerOptions server_options;
   server_options.data_dir = options.data_dir;
   auto server = service::Server::Start(server_options);

@@ -9,7 +9,7 @@
 namespace phrenic::service {
 namespace {
 
-constexpr int kMostWatchers = 16;  // each has a thread of its own
+constexpr int kMostWatchers = 16;                          // each has a thread of its own
 constexpr absl::Duration kLook = absl::Milliseconds(200);  // between two looks at whether the watcher is still there
 
 const char* KindOf(const v1::CreateStudyRequest& request) {
@@ -38,7 +38,8 @@ grpc::Status StudyService::CreateStudy(grpc::ServerContext*, const v1::CreateStu
   const auto preset = FindPreset(*scene, request->preset());
   if (!preset.ok()) return ToGrpc(preset.status());
   const auto work = [this, copy = *request](const study::Progress& progress) {
-    return study::Run(copy, [this](const v1::SceneSource& source) { return models_.Get(source); }, progress);
+    return study::Run(
+        copy, [this](const v1::SceneSource& source) { return models_.Get(source); }, progress);
   };
   auto study = jobs_.Add(request->study_id(), kind, scene->name(), work);
   if (!study.ok()) return ToGrpc(study.status());

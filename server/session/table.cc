@@ -87,8 +87,8 @@ absl::Status Table::NoSession(const std::string& id) const {
   for (const auto& [other, session] : sessions_) {
     if (session != nullptr) ids.push_back(other);
   }
-  return absl::NotFoundError(absl::StrCat("session_id: there is no session \"", schema::ShortId(id),
-                                          "\"; there are ", ids.empty() ? "none" : absl::StrJoin(ids, ", ")));
+  return absl::NotFoundError(absl::StrCat("session_id: there is no session \"", schema::ShortId(id), "\"; there are ",
+                                          ids.empty() ? "none" : absl::StrJoin(ids, ", ")));
 }
 
 absl::StatusOr<std::shared_ptr<Session>> Table::Find(const std::string& id) const {

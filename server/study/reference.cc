@@ -65,12 +65,12 @@ class Solver {
     }
     cvode_ = CVodeCreate(CV_ADAMS, context_);
     iteration_ = SUNNonlinSol_FixedPoint(y_, 0, context_);
-    ok_ = CVodeInit(cvode_, &Evaluate, 0, y_) == CV_SUCCESS &&
-          CVodeSVtolerances(cvode_, each, scale_) == CV_SUCCESS &&
+    ok_ = CVodeInit(cvode_, &Evaluate, 0, y_) == CV_SUCCESS && CVodeSVtolerances(cvode_, each, scale_) == CV_SUCCESS &&
           CVodeSetUserData(cvode_, &problem_) == CV_SUCCESS &&
           CVodeSetNonlinearSolver(cvode_, iteration_) == CV_SUCCESS &&
           CVodeSetMaxNumSteps(cvode_, 1'000'000'000) == CV_SUCCESS &&
-          CVodeSetErrHandlerFn(cvode_, [](int, const char*, const char*, char*, void*) {}, nullptr) == CV_SUCCESS;
+          CVodeSetErrHandlerFn(
+              cvode_, [](int, const char*, const char*, char*, void*) {}, nullptr) == CV_SUCCESS;
   }
   Solver(const Solver&) = delete;
   Solver& operator=(const Solver&) = delete;
@@ -90,8 +90,8 @@ class Solver {
     if (problem_.cancelled) return Cancelled();
     if (outcome < 0) {
       return absl::AbortedError(absl::StrFormat(
-          "the reference found no next step at %.4g s (CVODE: %s): shorten the study, or raise the tolerance",
-          reached, CVodeGetReturnFlagName(outcome)));
+          "the reference found no next step at %.4g s (CVODE: %s): shorten the study, or raise the tolerance", reached,
+          CVodeGetReturnFlagName(outcome)));
     }
     return problem_.acceleration.Place(time, Half(y_, 0), Half(y_, 1));
   }

@@ -65,9 +65,13 @@ TEST(ErrorStudy, FindsThePublishedOrders) {
   const auto result = RunOn(kSwing, ErrorRequest(1, 6));
   ASSERT_TRUE(result.ok()) << result.status();
   const std::map<std::string, double> orders = Orders(result->error());
-  const std::map<std::string, double> published = {
-      {"semi_implicit_euler", 1}, {"explicit_euler", 1},        {"velocity_verlet", 2}, {"runge_kutta_4", 4},
-      {"tr_bdf2", 2},             {"linear_implicit_euler", 1}, {"bdf2", 2}};
+  const std::map<std::string, double> published = {{"semi_implicit_euler", 1},
+                                                   {"explicit_euler", 1},
+                                                   {"velocity_verlet", 2},
+                                                   {"runge_kutta_4", 4},
+                                                   {"tr_bdf2", 2},
+                                                   {"linear_implicit_euler", 1},
+                                                   {"bdf2", 2}};
   for (const auto& [name, order] : published) {
     ASSERT_TRUE(orders.contains(name)) << name;
     EXPECT_NEAR(orders.at(name), order, 0.15 * order) << name;
@@ -142,9 +146,7 @@ TEST(ErrorStudy, SaysWhereARunDiverged) {
   EXPECT_THAT(result->error().rows(15).verdict(), HasSubstr("out of time at"));
 }
 
-TEST(Study, WithoutAKindIsRefused) {
-  EXPECT_EQ(RunOn(kSwing, {}).status().code(), absl::StatusCode::kInvalidArgument);
-}
+TEST(Study, WithoutAKindIsRefused) { EXPECT_EQ(RunOn(kSwing, {}).status().code(), absl::StatusCode::kInvalidArgument); }
 
 }  // namespace
 }  // namespace phrenic::study

@@ -1,0 +1,94 @@
+// Studies over a real socket.
+#include "phrenic/v1/study.grpc.pb.h"
+#include "tests/service/server_fixture.h"
+
+namespace phrenic::service {
+namespace {
+
+using testing::HasSubstr;
+
+class Studies : public ServerFixture {
+ protected:
+  void SetUp() override {
+    ServerFixture::SetUp();
+    stub_ = v1::StudyService::NewStub(channel_);
+  }
+
+  grpc::Status Create(const std::string& text, v1::CreateStudyResponse* response) {
+    return Call(*stub_, &v1::StudyService::Stub::CreateStudy, text, response);
+  }
+
+  // The last answer of WatchStudy.
+  v1::Study WatchToTheEnd(const std::string& id, grpc::Status* status) {
+    v1::WatchStudyRequest request;
+    request.set_study_id(id);
+    grpc::ClientContext context;
+    context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(60));
+    const auto reader = stub_->WatchStudy(&context, request);
+    v1::WatchStudyResponse response;
+    double progress = 0;
+    while (reader->Read(&response)) {
+      EXPECT_GE(response.study().progress(), progress);
+      progress = response.study().progress();
+    }
+    *status = reader->Finish();
+    return response.study();
+  }
+
+  std::unique_ptr<v1::StudyService::Stub> stub_;
+};
+
+const char kQuick[] = R"(
+  study_id: "quick" source { name: "cube-springs" }
+  error { seconds: 0.2 levels: 2 integrators: INTEGRATOR_VELOCITY_VERLET }
+)";
+
+TEST_F(Studies, RunToTheirResult) {
+  v1::CreateStudyResponse created;
+  ASSERT_TRUE(Create(kQuick, &created).ok());
+  EXPECT_EQ(created.study().id(), "quick");
+  grpc::Status status;
+  const v1::Study study = WatchToTheEnd("quick", &status);
+  EXPECT_TRUE(status.ok()) << status.error_message();
+  EXPECT_EQ(study.state(), v1::STUDY_STATE_DONE) << study.problem();
+  EXPECT_EQ(study.result().error().rows_size(), 2);
+}
+
+TEST_F(Studies, AreCancelledWhenDeleted) {
+  v1::CreateStudyResponse created;
+  ASSERT_TRUE(
+      Create(R"(study_id: "long" source { name: "sheet-2d" } error { seconds: 120 levels: 16 })", &created).ok());
+  v1::DeleteStudyResponse deleted;
+  ASSERT_TRUE(Call(*stub_, &v1::StudyService::Stub::DeleteStudy, R"(study_id: "long")", &deleted).ok());
+  ASSERT_TRUE(Create(kQuick, &created).ok());
+  grpc::Status status;
+  EXPECT_EQ(WatchToTheEnd("quick", &status).state(), v1::STUDY_STATE_DONE);
+  v1::ListStudiesResponse list;
+  ASSERT_TRUE(Call(*stub_, &v1::StudyService::Stub::ListStudies, "", &list).ok());
+  EXPECT_EQ(list.studies_size(), 1);
+}
+
+TEST_F(Studies, ThatCannotBeAreRefusedAtOnce) {
+  v1::CreateStudyResponse created;
+  EXPECT_THAT(Create(R"(source { name: "cube-springs" })", &created).error_message(), HasSubstr("what: must be set"));
+  EXPECT_THAT(Create(R"(error { })", &created).error_message(), HasSubstr("source: must be set"));
+  EXPECT_EQ(Create(R"(source { name: "no-such" } error { })", &created).error_code(), grpc::StatusCode::NOT_FOUND);
+  EXPECT_THAT(Create(R"(source { name: "cube-springs" } error { levels: 99 })", &created).error_message(),
+              HasSubstr("error.levels: 99 is outside 1 to 16"));
+  EXPECT_THAT(Create(R"(source { name: "cube-springs" } preset: "snore" error { })", &created).error_message(),
+              HasSubstr("snore"));
+}
+
+TEST_F(Studies, HaveNoPageBeforeTheyAreDone) {
+  v1::CreateStudyResponse created;
+  ASSERT_TRUE(
+      Create(R"(study_id: "long" source { name: "sheet-2d" } error { seconds: 120 levels: 16 })", &created).ok());
+  v1::GetStudyPageResponse page;
+  EXPECT_EQ(Call(*stub_, &v1::StudyService::Stub::GetStudyPage, R"(study_id: "long")", &page).error_code(),
+            grpc::StatusCode::FAILED_PRECONDITION);
+  EXPECT_EQ(Call(*stub_, &v1::StudyService::Stub::GetStudyPage, R"(study_id: "none")", &page).error_code(),
+            grpc::StatusCode::NOT_FOUND);
+}
+
+}  // namespace
+}  // namespace phrenic::service
