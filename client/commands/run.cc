@@ -56,9 +56,10 @@ grpc::Status StepThrough(const Context& context, const RunOptions& options, bool
                          v1::Session* session, Cost* cost) {
   const auto total = static_cast<std::int64_t>(std::ceil(options.seconds / session->parameters().time_step() - 1e-9));
   std::int64_t portion = std::min<std::int64_t>(1'000'000, std::max<std::int64_t>(1, total / 40));
-  if (measured)
-    portion = std::min(
-        portion, std::max<std::int64_t>(1, std::lround(1 / (kReadingsASecond * session->parameters().time_step()))));
+  if (measured) {
+    const double ticks = 1 / (kReadingsASecond * session->parameters().time_step());
+    portion = std::min(portion, std::max<std::int64_t>(1, std::lround(ticks)));
+  }
   Progress progress("stepping", static_cast<double>(total));
   const auto start = std::chrono::steady_clock::now();
   const double cpu = ProcessCpuSeconds();
