@@ -11,6 +11,7 @@
 #include "client/motion_file.h"
 #include "client/print_session.h"
 #include "client/progress.h"
+#include "client/readings.h"
 #include "client/scene_argument.h"
 #include "client/table.h"
 #include "client/thesis_figures.h"
@@ -22,11 +23,14 @@ namespace {
 
 using Stub = v1::SessionService::Stub;
 
+constexpr double kReadingsASecond = 60;  // of simulated time
+
 // What a run took.
 struct Cost {
   std::int64_t steps = 0;
   double simulated = 0, wall = 0, cpu = 0;  // [s]; of the stepping
   std::string state_hash;
+  Readings readings;
 };
 
 double ProcessCpuSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
@@ -47,11 +51,15 @@ grpc::Status CreateHere(const Context& context, const RunOptions& options, const
   return Call(context, stub, &Stub::GetSession, get, session);
 }
 
-// Steps in portions of about a fortieth of the run, for the bar's sake.
-grpc::Status StepThrough(const Context& context, const RunOptions& options, Stub& stub, v1::Session* session,
-                         Cost* cost) {
+// Steps in portions of about a fortieth of the run, for the bar's sake, and of a frame where the scene has measures.
+grpc::Status StepThrough(const Context& context, const RunOptions& options, bool measured, Stub& stub,
+                         v1::Session* session, Cost* cost) {
   const auto total = static_cast<std::int64_t>(std::ceil(options.seconds / session->parameters().time_step() - 1e-9));
-  const std::int64_t portion = std::min<std::int64_t>(1'000'000, std::max<std::int64_t>(1, total / 40));
+  std::int64_t portion = std::min<std::int64_t>(1'000'000, std::max<std::int64_t>(1, total / 40));
+  if (measured) {
+    const double ticks = 1 / (kReadingsASecond * session->parameters().time_step());
+    portion = std::min(portion, std::max<std::int64_t>(1, std::lround(ticks)));
+  }
   Progress progress("stepping", static_cast<double>(total));
   const auto start = std::chrono::steady_clock::now();
   const double cpu = ProcessCpuSeconds();
@@ -64,6 +72,7 @@ grpc::Status StepThrough(const Context& context, const RunOptions& options, Stub
     if (!status.ok()) return status;
     *session = response.session();
     cost->state_hash = response.state_hash();
+    cost->readings.Add(response.measures());
     progress.Update(static_cast<double>(session->tick()));
   }
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
@@ -81,8 +90,12 @@ int ExportHere(const Context& context, const RunOptions& options, service::Serve
   for (const std::string& body : options.bodies) request.add_bodies(body);
   v1::ExportSummary summary;
   const int code = DownloadMotion(context, server.InProcessChannel(), request, options.file, &summary);
-  *cost = {summary.steps(), summary.simulated_seconds(), summary.step_wall_seconds(), summary.step_cpu_seconds(),
-           summary.state_hash()};
+  *cost = {summary.steps(),
+           summary.simulated_seconds(),
+           summary.step_wall_seconds(),
+           summary.step_cpu_seconds(),
+           summary.state_hash(),
+           {}};
   return code;
 }
 
@@ -104,6 +117,7 @@ void PrintCost(const RunOptions& options, const v1::CompileReport& report, const
   table.Print(std::cout);
   std::cout << absl::StrFormat("%.0f times the thesis' steps a second (another machine, 2008)\nstate hash %s\n",
                                rate / thesis.steps_per_second, cost.state_hash);
+  cost.readings.Print(std::cout);
   if (!options.file.empty()) std::cout << "wrote " << options.file << "\n";
 }
 
@@ -118,6 +132,7 @@ void PrintCostJson(const RunOptions& options, const v1::GetSessionResponse& sess
       {"times_real_time", cost.simulated / cost.wall},
       {"thesis", {{"figure", thesis.what}, {"steps_per_second", thesis.steps_per_second}}},
       {"state_hash", cost.state_hash},
+      {"measures", cost.readings.ToJson()},
       {"file", options.file},
       {"report", nlohmann::json::parse(Json(session.report()))},
       {"session", nlohmann::json::parse(Json(session.session()))},
@@ -131,14 +146,6 @@ int RunOn(const Context& context, const RunOptions& options, const v1::SceneSour
   v1::GetSessionResponse session;
   grpc::Status status = CreateHere(context, options, source, parameters, *stub, &session);
   if (!status.ok()) return Fail(context, status);
-  Cost cost;
-  if (!options.file.empty()) {
-    const int code = ExportHere(context, options, server, &cost);
-    if (code != kOk) return code;
-  } else {
-    status = StepThrough(context, options, *stub, session.mutable_session(), &cost);
-    if (!status.ok()) return Fail(context, status);
-  }
   // The scene as the server has it; its model is kept, so that this compiles nothing anew.
   v1::DescribeSceneRequest describe;
   *describe.mutable_source() = source;
@@ -146,6 +153,15 @@ int RunOn(const Context& context, const RunOptions& options, const v1::SceneSour
   const auto scenes = v1::SceneService::NewStub(server.InProcessChannel());
   status = Call(context, *scenes, &v1::SceneService::Stub::DescribeScene, describe, &described);
   if (!status.ok()) return Fail(context, status);
+  Cost cost;
+  if (!options.file.empty()) {
+    const int code = ExportHere(context, options, server, &cost);
+    if (code != kOk) return code;
+  } else {
+    status =
+        StepThrough(context, options, described.scene().measures_size() > 0, *stub, session.mutable_session(), &cost);
+    if (!status.ok()) return Fail(context, status);
+  }
   const ThesisFigure thesis = NearestThesisFigure(described.scene(), session.report());
   if (context.json()) {
     PrintCostJson(options, session, cost, thesis);

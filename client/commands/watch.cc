@@ -6,17 +6,21 @@
 #include "absl/strings/str_format.h"
 #include "client/commands.h"
 #include "client/print_session.h"
+#include "client/readings.h"
 #include "phrenic/v1/frames.grpc.pb.h"
 
 namespace phrenic::client {
 namespace {
 
-// "t 1.250 s  tick 2500  breath 0.500  right dome -0.1 -0.4 -9.2 mm".
+// "t 1.250 s  tick 2500  breath 0.500  right dome -0.1 -0.4 -9.2 mm  lung volume 2.513 l".
 std::string Line(const v1::Frame& frame) {
   std::string line = absl::StrFormat("t %.3f s  tick %d  breath %.3f", frame.time(), frame.tick(), frame.breath());
   for (const v1::ProbeReading& probe : frame.probes()) {
     absl::StrAppendFormat(&line, "  %s %.1f %.1f %.1f mm", probe.name(), 1e3 * probe.dx(), 1e3 * probe.dy(),
                           1e3 * probe.dz());
+  }
+  for (const v1::MeasureReading& reading : frame.measures()) {
+    absl::StrAppendFormat(&line, "  %s %s", reading.name(), ReadingText(reading.value(), reading.unit()));
   }
   return line;
 }

@@ -35,6 +35,11 @@ void SumDamping(const Model& model, const Instant& at, Eigen::VectorXd& c) {
   for (const auto& force : model.forces) force->AddDamping(at, c);
 }
 
+void SumSharedDamping(const Model& model, const Instant& at, OuterProducts& shared) {
+  shared.Clear();
+  for (const auto& force : model.forces) force->AddSharedDamping(at, shared);
+}
+
 void AddToFree(const Model& model, double scale, const Points& shift, Points& x) {
   for (Eigen::Index i = 0; i < x.cols(); ++i) {
     if (model.inverse_mass[i] > 0) x.col(i) += scale * shift.col(i);

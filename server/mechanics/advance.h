@@ -17,6 +17,7 @@ void SumForces(const Model& model, const Instant& at, Points& f);
 
 // c = the sum of all damping coefficients [N s/m].
 void SumDamping(const Model& model, const Instant& at, Eigen::VectorXd& c);
+void SumSharedDamping(const Model& model, const Instant& at, OuterProducts& shared);
 
 // x += shift, but for fixed and driven vertices; shift 3 x n.
 void AddToFree(const Model& model, double scale, const Points& shift, Points& x);

@@ -39,7 +39,7 @@ BlockMatrix::BlockMatrix(const Model& model) {
 void BlockMatrix::Assemble(const Model& model, const Instant& at) {
   std::fill(blocks_.begin(), blocks_.end(), Eigen::Matrix3d::Zero());
   extra_.clear();
-  outers_ = 0;
+  outer_.Clear();
   for (const auto& force : model.forces) force->AddStiffness(at, *this);
 }
 
@@ -53,13 +53,6 @@ void BlockMatrix::Add(int i, int j, const Eigen::Matrix3d& block) {
   }
 }
 
-void BlockMatrix::AddOuter(double scale, const Points& g) {
-  if (outers_ == outer_.size()) outer_.emplace_back();
-  outer_[outers_].scale = scale;
-  outer_[outers_].g = g;
-  ++outers_;
-}
-
 void BlockMatrix::Times(const ConstPoints& x, MutablePoints y) const {
   for (int i = 0; i < vertices(); ++i) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -67,7 +60,7 @@ void BlockMatrix::Times(const ConstPoints& x, MutablePoints y) const {
     y.col(i) = sum;
   }
   for (const Extra& extra : extra_) y.col(extra.i) += extra.block * x.col(extra.j);
-  for (size_t k = 0; k < outers_; ++k) y += outer_[k].scale * outer_[k].g.cwiseProduct(x).sum() * outer_[k].g;
+  outer_.AddTimes(1, x, y);
 }
 
 Eigen::SparseMatrix<double> BlockMatrix::ToSparse() const {

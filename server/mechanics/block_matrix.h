@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "server/mechanics/model.h"
+#include "server/mechanics/outer_products.h"
 
 namespace phrenic {
 
@@ -20,7 +21,7 @@ class BlockMatrix final : public StiffnessSink {
   void Assemble(const Model& model, const Instant& at);
 
   void Add(int i, int j, const Eigen::Matrix3d& block) override;
-  void AddOuter(double scale, const Points& g) override;
+  void AddOuter(double scale, const Points& g) override { outer_.Add(scale, g); }
 
   // y = K x, both 3 x n.
   void Times(const ConstPoints& x, MutablePoints y) const;
@@ -28,6 +29,7 @@ class BlockMatrix final : public StiffnessSink {
   Eigen::Matrix3d Diagonal(int i) const { return blocks_[diagonal_[i]]; }
   // K as scalars, for factorisations; outer products left out.
   Eigen::SparseMatrix<double> ToSparse() const;
+  OuterProducts& outer() { return outer_; }
   int vertices() const { return static_cast<int>(first_.size()) - 1; }
 
  private:
@@ -35,18 +37,13 @@ class BlockMatrix final : public StiffnessSink {
     int i, j;
     Eigen::Matrix3d block;
   };
-  struct Outer {
-    double scale;
-    Points g;
-  };
 
   std::vector<int> first_;     // of row i in columns_ and blocks_; n + 1 of them
   std::vector<int> columns_;   // ascending in each row
   std::vector<int> diagonal_;  // place of block (i, i)
   std::vector<Eigen::Matrix3d> blocks_;
   std::vector<Extra> extra_;
-  std::vector<Outer> outer_;
-  size_t outers_ = 0;  // of outer_ in use
+  OuterProducts outer_;
 };
 
 }  // namespace phrenic

@@ -98,7 +98,7 @@ void Report(const BodyModel& body, const v1::Body& scene, v1::CompileReport& rep
   row->set_simulated_vertices(body.first_vertex >= 0 ? mesh.vertices.cols() : 0);
 }
 
-void Measure(Model& model) {
+void SetSize(Model& model) {
   Eigen::Vector3d low = model.bodies.front().mesh.vertices.col(0), high = low;
   for (const BodyModel& body : model.bodies) {
     low = low.cwiseMin(body.mesh.vertices.rowwise().minCoeff());
@@ -167,7 +167,7 @@ absl::Status AddBodies(const MeshSource& source, Draft& draft) {
     model.bodies.push_back(std::move(body));
   }
   model.report.set_simulated_vertices(model.rest.cols());
-  Measure(model);
+  SetSize(model);
   return absl::OkStatus();
 }
 

@@ -12,7 +12,9 @@
 #include "server/mechanics/forces/fibres.h"
 #include "server/mechanics/forces/friction.h"
 #include "server/mechanics/forces/gravity.h"
+#include "server/mechanics/forces/lungs.h"
 #include "server/mechanics/forces/membrane.h"
+#include "server/mechanics/forces/pressure.h"
 #include "server/mechanics/forces/solid.h"
 #include "server/mechanics/forces/springs.h"
 #include "server/mechanics/integrators/bdf2.h"
@@ -24,6 +26,10 @@
 #include "server/mechanics/integrators/thesis_euler.h"
 #include "server/mechanics/integrators/tr_bdf2.h"
 #include "server/mechanics/integrators/velocity_verlet.h"
+#include "server/mechanics/measures/energy.h"
+#include "server/mechanics/measures/force_output.h"
+#include "server/mechanics/measures/highest.h"
+#include "server/mechanics/measures/volume.h"
 #include "server/mechanics/motions/oscillation.h"
 #include "server/mechanics/motions/ribs.h"
 #include "server/mechanics/motions/riding.h"
@@ -70,6 +76,10 @@ absl::StatusOr<std::unique_ptr<Force>> MakeForce(const v1::Force& scene, std::st
       return Bending::Make(scene.bending(), scene.name(), In(path, "bending"), draft);
     case v1::Force::kCrossLayer:
       return MakeCrossLayer(scene.cross_layer(), scene.name(), In(path, "cross_layer"), draft);
+    case v1::Force::kPressure:
+      return Pressure::Make(scene.pressure(), scene.name(), In(path, "pressure"), draft);
+    case v1::Force::kLungs:
+      return Lungs::Make(scene.lungs(), scene.name(), In(path, "lungs"), draft);
     case v1::Force::KIND_NOT_SET:
       break;
   }
@@ -137,6 +147,26 @@ absl::Status AddMotion(const v1::Motion& scene, std::string_view path, Draft& dr
     case v1::Motion::kRide:
       return AddRides(scene.ride(), scene.name(), In(path, "ride"), draft);
     case v1::Motion::KIND_NOT_SET:
+      break;
+  }
+  return NoKind(path);
+}
+
+absl::StatusOr<std::unique_ptr<Measure>> MakeMeasure(const v1::Measure& scene, std::string_view path, Draft& draft) {
+  switch (scene.kind_case()) {
+    case v1::Measure::kVolume:
+      return MakeVolume(scene.volume(), scene.name(), In(path, "volume"), draft);
+    case v1::Measure::kFlow:
+      return MakeFlow(scene.flow(), scene.name(), In(path, "flow"), draft);
+    case v1::Measure::kKineticEnergy:
+      return MakeKineticEnergy(scene.kinetic_energy(), scene.name(), In(path, "kinetic_energy"), draft);
+    case v1::Measure::kElasticEnergy:
+      return MakeElasticEnergy(scene.elastic_energy(), scene.name(), In(path, "elastic_energy"), draft);
+    case v1::Measure::kHighest:
+      return MakeHighest(scene.highest(), scene.name(), In(path, "highest"), draft);
+    case v1::Measure::kForceOutput:
+      return MakeForceOutput(scene.force_output(), scene.name(), In(path, "force_output"), draft);
+    case v1::Measure::KIND_NOT_SET:
       break;
   }
   return NoKind(path);

@@ -16,6 +16,7 @@ absl::StatusOr<std::unique_ptr<Constraint>> MakeConstraint(const v1::Constraint&
 const Integrator& FindIntegrator(v1::Integrator kind);
 // Adds a motion to the draft, or a ride.
 absl::Status AddMotion(const v1::Motion& scene, std::string_view path, Draft& draft);
+absl::StatusOr<std::unique_ptr<Measure>> MakeMeasure(const v1::Measure& scene, std::string_view path, Draft& draft);
 
 }  // namespace phrenic
 

@@ -127,6 +127,7 @@ absl::StatusOr<std::shared_ptr<const Model>> Compile(const v1::Scene& scene, con
   if (absl::Status status = AddBodies(source, draft); !status.ok()) return status;
   if (absl::Status status = AddElements(draft); !status.ok()) return status;
   if (absl::Status status = AddProbes(draft); !status.ok()) return status;
+  if (absl::Status status = AddMeasures(draft); !status.ok()) return status;
   ReportUnused(draft);
   model.report.set_scene(scene.name());
   model.report.set_scene_hash(SceneHash(model));

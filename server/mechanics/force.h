@@ -3,9 +3,11 @@
 #ifndef PHRENIC_SERVER_MECHANICS_FORCE_H_
 #define PHRENIC_SERVER_MECHANICS_FORCE_H_
 
+#include <span>
 #include <string>
 
 #include "server/mechanics/instant.h"
+#include "server/mechanics/outer_products.h"
 #include "server/mechanics/stiffness.h"
 
 namespace phrenic {
@@ -28,9 +30,20 @@ class Force {
   virtual void AddLatentStiffness(const Instant&, StiffnessSink&) const {}
   // c_i += the coefficient [N s/m] of the part -c_i v_i of the force on vertex i.
   virtual void AddDamping(const Instant&, Eigen::VectorXd& /*c*/) const {}
+  // Hands over the rest of -df/dv, scale g g^T [N s/m], where the velocity of one vertex acts on others.
+  virtual void AddSharedDamping(const Instant&, OuterProducts&) const {}
   // [J]; force = -dE/dx where it has one, and whether it has.
   virtual double Energy(const Instant&) const { return 0; }
   virtual bool conservative() const { return false; }
+
+  // What it can say about itself beside its pull: measures read it (measure.h).
+  struct Output {
+    const char* name;  // "flow"
+    const char* unit;  // "m^3/s"
+  };
+  virtual std::span<const Output> outputs() const { return {}; }
+  // In the order of `outputs`.
+  virtual double Read(size_t /*output*/, const Instant&) const { return 0; }
 
  protected:
   explicit Force(std::string name) : name_(std::move(name)) {}

@@ -24,6 +24,7 @@ void ImplicitSystem::Assemble(const Model& model, const Instant& at, double g) {
   factorised_ = false;
   stiffness_.Assemble(model, at);
   SumDamping(model, at, diagonal_);
+  SumSharedDamping(model, at, shared_damping_);
   for (Eigen::Index i = 0; i < diagonal_.size(); ++i) {
     diagonal_[i] = model.inverse_mass[i] > 0 ? model.mass[i] + g * diagonal_[i] : 0;
     if (diagonal_[i] == 0) continue;
@@ -34,6 +35,7 @@ void ImplicitSystem::Assemble(const Model& model, const Instant& at, double g) {
 
 void ImplicitSystem::Times(const Model& model, const Points& x, Points& y) const {
   stiffness_.Times(x, y);
+  shared_damping_.AddTimes(1 / g_, x, y);
   for (Eigen::Index i = 0; i < x.cols(); ++i) {
     if (model.inverse_mass[i] > 0) {
       y.col(i) = diagonal_[i] * x.col(i) + g_ * g_ * y.col(i);
@@ -101,9 +103,24 @@ absl::Status ImplicitSystem::Factorise(const Model& model, const Points& b, Poin
       return absl::AbortedError("the implicit step's matrix is singular: lower time_step");
     factorised_ = true;
   }
-  const Eigen::VectorXd right = free.cwiseProduct(Eigen::Map<const Eigen::VectorXd>(b.data(), 3 * n));
-  Eigen::Map<Eigen::VectorXd>(y.data(), 3 * n) = factor_.solve(right);
+  SolveFactored(model, b, y);
+  const auto inverse = [&](const Points& right, Points& left) { SolveFactored(model, right, left); };
+  stiffness_.outer().Correct(g_ * g_, inverse, y);
+  // What damps comes on top of what the stiffness' products have made of the matrix.
+  const auto stiffened = [&](const Points& right, Points& left) {
+    SolveFactored(model, right, left);
+    stiffness_.outer().Correct(g_ * g_, inverse, left);
+  };
+  shared_damping_.Correct(g_, stiffened, y);
   return absl::OkStatus();
+}
+
+void ImplicitSystem::SolveFactored(const Model& model, const Points& b, Points& y) const {
+  Eigen::VectorXd right = b.reshaped();
+  for (Eigen::Index i = 0; i < b.cols(); ++i) {
+    if (model.inverse_mass[i] == 0) right.segment<3>(3 * i).setZero();
+  }
+  y = factor_.solve(right).reshaped(3, b.cols());
 }
 
 }  // namespace phrenic

@@ -27,12 +27,14 @@ class ImplicitSystem {
   int iterations() const { return iterations_; }
 
  private:
+  void SolveFactored(const Model& model, const Points& b, Points& y) const;
   void Times(const Model& model, const Points& x, Points& y) const;
   void Precondition(const Points& r, Points& z) const;
   bool ConjugateGradients(const Model& model, const Points& b, double tolerance, Points& y);
   absl::Status Factorise(const Model& model, const Points& b, Points& y);
 
   BlockMatrix stiffness_;
+  OuterProducts shared_damping_;
   double g_ = 0;
   Eigen::VectorXd diagonal_;               // m + g c; 0 for fixed and driven vertices
   std::vector<Eigen::Matrix3d> inverses_;  // of the diagonal blocks

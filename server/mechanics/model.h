@@ -12,6 +12,7 @@
 #include "server/mechanics/constraint.h"
 #include "server/mechanics/force.h"
 #include "server/mechanics/integrator.h"
+#include "server/mechanics/measure.h"
 #include "server/mechanics/motion.h"
 #include "server/mechanics/ride.h"
 
@@ -55,7 +56,8 @@ struct Model {
   std::vector<std::unique_ptr<Constraint>> constraints;
   std::vector<Ride> rides;  // seen bodies; worked out with frames, not with steps
   std::vector<Probe> probes;
-  double size = 0;   // diagonal of the bounding box at rest [m]
+  std::vector<std::unique_ptr<Measure>> measures;  // worked out with frames, not with steps
+  double size = 0;                                 // diagonal of the bounding box at rest [m]
   double bound = 0;  // a coordinate beyond it means that the run has diverged: ten sizes outside the box at rest [m]
 
   // For viewers: pairs of simulated vertices, simulated vertices, lines.

@@ -58,6 +58,9 @@ void FindDampingRates(const Model& model, const Instant& at, Spectrum& spectrum)
     spectrum.damping_rate = std::max(spectrum.damping_rate, c[i] * model.inverse_mass[i]);
     spectrum.least_damping_rate = std::min(spectrum.least_damping_rate, c[i] * model.inverse_mass[i]);
   }
+  OuterProducts shared;
+  SumSharedDamping(model, at, shared);
+  spectrum.damping_rate += shared.Bound(model.inverse_mass);
 }
 
 struct Krylov {

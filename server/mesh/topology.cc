@@ -76,6 +76,20 @@ Edges TriangleEdges(const Triangles& triangles) {
 
 Edges SpringEdges(const Mesh& mesh) { return mesh.edges.cols() > 0 ? mesh.edges : TriangleEdges(mesh.triangles); }
 
+std::vector<int> BorderVertices(const Triangles& triangles) {
+  const std::vector<HalfEdge> edges = SortedHalfEdges(triangles);
+  const auto same = [&](size_t i, size_t j) { return edges[i].low == edges[j].low && edges[i].high == edges[j].high; };
+  std::vector<int> border;
+  for (size_t i = 0; i < edges.size(); ++i) {
+    if ((i > 0 && same(i - 1, i)) || (i + 1 < edges.size() && same(i, i + 1))) continue;
+    border.push_back(edges[i].low);
+    border.push_back(edges[i].high);
+  }
+  std::sort(border.begin(), border.end());
+  border.erase(std::unique(border.begin(), border.end()), border.end());
+  return border;
+}
+
 SurfaceTopology AnalyseTopology(const Mesh& mesh) {
   SurfaceTopology topology;
   topology.triangles = static_cast<int>(mesh.triangles.cols());

@@ -2,6 +2,8 @@
 #ifndef PHRENIC_SERVER_MESH_TOPOLOGY_H_
 #define PHRENIC_SERVER_MESH_TOPOLOGY_H_
 
+#include <vector>
+
 #include "server/mesh/mesh.h"
 
 namespace phrenic {
@@ -11,6 +13,9 @@ Edges TriangleEdges(const Triangles& triangles);
 
 // The mesh's own edges where it has any, else its triangles' edges.
 Edges SpringEdges(const Mesh& mesh);
+
+// The vertices on edges that one triangle alone has, ascending; none for a closed surface.
+std::vector<int> BorderVertices(const Triangles& triangles);
 
 struct SurfaceTopology {
   int vertices = 0;

@@ -82,6 +82,7 @@ grpc::Status SessionService::StepSession(grpc::ServerContext* context, const v1:
   auto stepped = (*session)->Step(request->ticks(), tick, [&] { return context->IsCancelled(); });
   if (!stepped.ok()) return ToGrpc(stepped.status());
   response->set_state_hash(std::move(stepped->state_hash));
+  *response->mutable_measures() = std::move(stepped->measures);
   return Answer(std::move(stepped->session), response);
 }
 

@@ -36,6 +36,7 @@ class Session {
   struct Stepped {
     v1::Session session;
     std::string state_hash;
+    MeasureReadings measures;
   };
   struct Updated {
     v1::Session session;

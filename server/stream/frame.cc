@@ -81,6 +81,10 @@ absl::StatusOr<v1::Frame> MakeFrame(const Model& model, const Layout& layout, co
   for (const Probe& probe : model.probes) {
     if (absl::Status status = AddProbe(model, state, probe, frame); !status.ok()) return status;
   }
+  *frame.mutable_measures() = ReadMeasures(model, MakeInstant(model, snapshot.parameters, state));
+  for (const v1::MeasureReading& reading : frame.measures()) {
+    if (!std::isfinite(reading.value())) return NotFinite(absl::StrCat("measure ", reading.name()), state);
+  }
   return frame;
 }
 

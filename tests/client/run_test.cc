@@ -53,6 +53,24 @@ TEST(Run, JsonHasTheNumbersAndTheReport) {
   EXPECT_EQ(json["report"]["scene"], "cube-springs");
 }
 
+TEST(Run, SaysWhatTheSceneMeasures) {
+  const std::string measured = "measures { name: 'height' highest { body: 'sheet' } } parameters";
+  const std::string file = WriteScratch("measured.textproto", Scene("parameters", measured));
+  const Outcome run = Phrenic({"run", file, "--seconds", "0.5"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("measure"));
+  EXPECT_THAT(run.out, HasSubstr("height"));
+  EXPECT_THAT(run.out, HasSubstr("mm"));
+  const auto json = Phrenic({"run", file, "--seconds", "0.5", "-o", "json"}).json();
+  ASSERT_EQ(json["measures"].size(), 1U);
+  const auto& height = json["measures"][0];
+  EXPECT_EQ(height["name"], "height");
+  EXPECT_EQ(height["unit"], "m");
+  EXPECT_LE(height["minimum"].get<double>(), height["last"].get<double>());
+  EXPECT_LE(height["last"].get<double>(), height["maximum"].get<double>());
+  EXPECT_EQ(height["maximum"].get<double>(), 0) << "one corner is fixed and the others fall";
+}
+
 TEST(Run, SameSettingsSameHashOtherSettingsOtherHash) {
   const auto hash = [](const std::vector<std::string>& more) {
     std::vector<std::string> arguments = {"run", "cube-tensegrity", "--seconds", "1", "--output", "json"};

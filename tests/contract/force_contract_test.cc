@@ -12,8 +12,9 @@ namespace {
 
 struct ForceCase {
   const char* name;
-  const char* text;  // one force of the scene
-  bool internal;     // its forces and torques sum to zero, and a rigid motion changes nothing
+  const char* text;    // one force of the scene
+  bool internal;       // its forces and torques sum to zero, and a rigid motion changes nothing
+  bool turns = false;  // follows normals as they turn, which is indefinite and left out of its stiffness
 };
 
 const ForceCase kForces[] = {
@@ -50,6 +51,12 @@ const ForceCase kForces[] = {
     {"cables", "cables { body: 'sheet' stiffness: 30 rest_length_ratio: 0.9 }", true},
     {"cables_listed",
      "cables { body: 'sheet' list { links { a: 0 b: 7 } links { a: 11 b: 1 } } rest_length_ratio: 0.9 }", true},
+    {"pressure", "pressure { surface { bodies: 'ball' } pressure: 4 breath_pressure: 3 }", true, true},
+    {"pressure_of_a_gas", "pressure { surface { bodies: ['ball', 'block'] } compliance: 0.3 }", true},
+    {"pressure_on_an_open_surface", "pressure { surface { bodies: 'sheet' } pressure: 4 compliance: 2 }", false, true},
+    {"lungs", "lungs { walls { bodies: 'ball' } compliance: 0.3 resistance: 2 }", true},
+    {"lungs_over_a_floor", "lungs { floor { bodies: 'ball' facing { z: 1 } } walls { bodies: 'sheet' } compliance: 2 }",
+     false, true},
 };
 
 void PrintTo(const ForceCase& force, std::ostream* out) { *out << force.name; }
@@ -63,6 +70,8 @@ class ForceContract : public testing::TestWithParam<ForceCase> {
         "regions { name: 'right' low { x: 3 } high { x: 3 y: 2 z: 1 } } } "
         "bodies { name: 'block' role: ROLE_DEFORMABLE mass: 2 "
         "block { origin { z: 2 } size { x: 2 y: 1 z: 1 } columns: 2 rows: 1 layers: 1 } } "
+        "bodies { name: 'ball' role: ROLE_DEFORMABLE mass: 2 ellipsoid { centre { z: 6 } radii { x: 1 y: 1 z: 1 } "
+        "divisions: 2 } } "
         "bodies { name: 'bone' role: ROLE_AT_REST polyhedron { vertices { x: 0 y: -0.5 } vertices { x: 1 y: -0.5 } } } "
         "bodies { name: 'floor' role: ROLE_AT_REST polyhedron { vertices { x: -9 y: -9 z: 0.1 } vertices { x: 20 y: -9 "
         "z: 0.1 } vertices { y: 20 z: 0.1 } triangles { a: 0 b: 1 c: 2 } } } "
@@ -117,6 +126,7 @@ TEST_P(ForceContract, IsMinusEnergyGradient) {
 
 // At the mesh as it stands tension is not negative in any of the cases, so that nothing is left out of the derivative.
 TEST_P(ForceContract, StiffnessIsForceDerivative) {
+  if (GetParam().turns) GTEST_SKIP() << "what follows from the normals' turning is left out";
   const State rest = model_->InitialState();
   State low = rest, high = rest;
   constexpr double kStep = 1e-6;
@@ -137,14 +147,19 @@ TEST_P(ForceContract, StiffnessIsSymmetricAndNeverPushesAlong) {
   EXPECT_GE(ka.cwiseProduct(a).sum(), -1e-12);
 }
 
-// What the velocities change of the force is -c v, vertex by vertex.
+// What the velocities change of the force is -c v, vertex by vertex, and what they share.
 TEST_P(ForceContract, DampingIsTheForcesPartInVelocity) {
   State still = state_;
   still.v.setZero();
   Eigen::VectorXd c = Eigen::VectorXd::Zero(state_.x.cols());
   force().AddDamping(At(state_), c);
   EXPECT_GE(c.minCoeff(), 0);
-  EXPECT_LT((ForceAt(state_) - ForceAt(still) + state_.v * c.asDiagonal()).cwiseAbs().maxCoeff(), 1e-12);
+  Points damped = state_.v * c.asDiagonal();
+  OuterProducts shared;
+  force().AddSharedDamping(At(state_), shared);
+  if (!GetParam().turns) shared.AddTimes(1, state_.v, damped);
+  if (GetParam().turns && !shared.empty()) GTEST_SKIP() << "on a free border flow is not only the surface's own";
+  EXPECT_LT((ForceAt(state_) - ForceAt(still) + damped).cwiseAbs().maxCoeff(), 1e-12);
 }
 
 TEST_P(ForceContract, AllocatesNothing) {
@@ -173,6 +188,7 @@ TEST_P(ForceContract, RigidMotionChangesNothing) {
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
   State moved = state_;
   moved.x = (turn * state_.x).colwise() + Eigen::Vector3d(4, -5, 6);
+  moved.v = turn * state_.v;
   EXPECT_LT((ForceAt(moved) - turn * ForceAt(state_)).cwiseAbs().maxCoeff(), 1e-12);
   EXPECT_NEAR(EnergyAt(moved), EnergyAt(state_), 1e-12);
 }

@@ -68,7 +68,8 @@ Json Decode(const v1::Frame& frame) {
                {"unixNanos", std::to_string(frame.unix_nanos())},
                {"positions", Numbers<float>(frame.positions())},
                {"poses", Numbers<float>(frame.poses())},
-               {"probes", Json::array()}};
+               {"probes", Json::array()},
+               {"measures", Json::array()}};
   for (const v1::ProbeReading& probe : frame.probes()) {
     json["probes"].push_back({{"name", probe.name()},
                               {"x", probe.x()},
@@ -77,6 +78,9 @@ Json Decode(const v1::Frame& frame) {
                               {"dx", probe.dx()},
                               {"dy", probe.dy()},
                               {"dz", probe.dz()}});
+  }
+  for (const v1::MeasureReading& reading : frame.measures()) {
+    json["measures"].push_back({{"name", reading.name()}, {"value", reading.value()}, {"unit", reading.unit()}});
   }
   return json;
 }
@@ -98,7 +102,7 @@ Json Decode(const v1::GetGeometryResponse& body) {
 }
 
 TEST(Golden, BytesOfAFrameAreThoseInTheFile) {
-  const auto model = CompileText(kTriangle);
+  const auto model = CompileText(Triangle("measures { name: 'height' highest { body: 'sheet' } }"));
   const Layout layout(*model);
   Encoder encoder(model, layout);
   const Bytes bytes = encoder.Full(MakeSnapshot(*model));

@@ -25,6 +25,14 @@ TEST(Topology, TorusHasGenusOne) {
   EXPECT_EQ(topology.genus(), 1);
 }
 
+TEST(Topology, OnlyAnOpenSurfaceHasABorder) {
+  EXPECT_TRUE(BorderVertices(Tetrahedron().triangles).empty());
+  EXPECT_EQ(BorderVertices(Tetrahedron().triangles.rightCols(3)).size(), 3u);  // one face away
+  Triangles fan(3, 4);
+  fan << 0, 0, 0, 0, 1, 2, 3, 4, 2, 3, 4, 1;
+  EXPECT_EQ(BorderVertices(fan), (std::vector<int>{1, 2, 3, 4}));
+}
+
 TEST(Topology, GenusAddsOverComponents) {
   const SurfaceTopology topology = AnalyseTopology(Together(Torus(2, 0.5, 16, 8), Torus(3, 0.5, 9, 5)));
   EXPECT_EQ(topology.components, 2);

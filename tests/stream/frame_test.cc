@@ -52,6 +52,21 @@ TEST(Frame, ProbesReadPositionAndDisplacementFromRest) {
   EXPECT_EQ(frame->probes(0).dz(), snapshot.state.x(2, 2));
 }
 
+TEST(Frame, MeasuresAreReadAtItsState) {
+  const auto model = CompileText(
+      Triangle("measures { name: 'work' kinetic_energy { bodies: 'sheet' } } measures { name: 'height' highest { body: "
+               "'sheet' direction { z: -1 } } }"));
+  Snapshot snapshot = At(*model, 0.5);
+  const auto frame = MakeFrame(*model, Layout(*model), snapshot);
+  ASSERT_TRUE(frame.ok()) << frame.status();
+  ASSERT_EQ(frame->measures_size(), 2);
+  EXPECT_EQ(frame->measures(0).unit(), "J");
+  EXPECT_NEAR(frame->measures(0).value(), 0.5 * model->mass.dot(snapshot.state.v.colwise().squaredNorm()), 1e-15);
+  EXPECT_EQ(frame->measures(1).value(), -snapshot.state.x.row(2).minCoeff());
+  snapshot.state.v(0, 1) = 1e200;
+  EXPECT_FALSE(MakeFrame(*model, Layout(*model), snapshot).ok()) << "an energy that is not finite goes out";
+}
+
 TEST(Frame, PosesAreRotationThenTranslation) {
   const auto model = CompileText(kTriangle);
   Snapshot snapshot = At(*model, 0);

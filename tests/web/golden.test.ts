@@ -33,6 +33,7 @@ test("BytesInTheFileAreTheFrameInTheFile", () => {
     positions: [...positions],
     poses: [...poses],
     probes: frame.probes.map(({ name, x, y, z, dx, dy, dz }) => ({ name, x, y, z, dx, dy, dz })),
+    measures: frame.measures.map(({ name, value, unit }) => ({ name, value, unit })),
   }).toEqual(json("frame.json"));
 });
 

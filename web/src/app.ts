@@ -12,6 +12,7 @@ import { banners } from "./panels/banner";
 import type { Chooser } from "./panels/chooser";
 import { make, place } from "./panels/dom";
 import { Margins } from "./panels/margins";
+import { Measures } from "./panels/measures";
 import { parameterSections } from "./panels/parameters";
 import { playbackPanel } from "./panels/playback";
 import { Probes } from "./panels/probes";
@@ -39,6 +40,7 @@ export class App {
   private readonly viewers = new ViewerCount();
   private readonly readout = new Readout();
   private readonly probes = new Probes();
+  private readonly measures = new Measures();
   private readonly demand = new Demand();
   private bodies: Body[] = [];
 
@@ -78,6 +80,7 @@ export class App {
       appearancePanel(looks, (kind, on) => viewer.setOverlay(kind, on)),
       layersPanel(looks),
       this.probes.element,
+      this.measures.element,
       reportPanel(this.report),
     );
     place("playback-place").append(playbackPanel(controller));
@@ -138,6 +141,7 @@ export class App {
     this.viewers.show(status);
     this.readout.show(status);
     this.probes.show(status.frame);
+    this.measures.show(status.frame);
   }
 }
 

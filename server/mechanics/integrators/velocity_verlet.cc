@@ -18,11 +18,19 @@ void RecallForce(const Model& model, const v1::Parameters& parameters, const Sta
 }
 
 // v' = v + dt/2 f(x', v')/m, where f has been worked out with v and holds -c v: linear in v', so solved at once.
-void KickImplicitly(const Model& model, double dt, const Eigen::VectorXd& damping, const Points& force, Points& v) {
-  for (Eigen::Index i = 0; i < v.cols(); ++i) {
-    const double w = model.inverse_mass[i];
-    if (w > 0) v.col(i) += dt / 2 * w / (1 + dt / 2 * w * damping[i]) * force.col(i);
-  }
+void KickImplicitly(const Model& model, double dt, const Eigen::VectorXd& damping, OuterProducts& shared,
+                    const Points& force, Points& v) {
+  const auto inverse = [&](const Points& right, Points& left) {
+    left.resize(3, right.cols());
+    for (Eigen::Index i = 0; i < right.cols(); ++i) {
+      const double w = model.inverse_mass[i];
+      left.col(i) = dt / 2 * w / (1 + dt / 2 * w * damping[i]) * right.col(i);
+    }
+  };
+  thread_local Points change;
+  inverse(force, change);
+  shared.Correct(1, inverse, change);
+  AddToFree(model, 1, change, v);
 }
 
 }  // namespace
@@ -46,9 +54,12 @@ absl::Status VelocityVerlet::Advance(const Model& model, const v1::Parameters& p
   SumDamping(model, end, work.damping);
   Points& half = state.history.v;
   half = state.v;
-  KickImplicitly(model, dt, work.damping, work.force, state.v);
+  thread_local OuterProducts shared;
+  SumSharedDamping(model, end, shared);
+  KickImplicitly(model, dt, work.damping, shared, work.force, state.v);
   ProjectVelocities(model, parameters, state);
   state.history.force = work.force - (state.v - half) * work.damping.asDiagonal();
+  if (!shared.empty()) shared.AddTimes(-1, state.v - half, state.history.force);
   state.history.integrator = v1::INTEGRATOR_VELOCITY_VERLET;
   state.history.tick = state.tick + 1;
   return absl::OkStatus();

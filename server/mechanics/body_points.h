@@ -1,0 +1,43 @@
+// Where the vertices of any body are and how they move: simulated, carried by a pose, riding or still.
+#ifndef PHRENIC_SERVER_MECHANICS_BODY_POINTS_H_
+#define PHRENIC_SERVER_MECHANICS_BODY_POINTS_H_
+
+#include <vector>
+
+#include "server/mechanics/model.h"
+
+namespace phrenic {
+
+// Of one body, by the instant alone, for elements, which do not see the model while they act. Immutable; any number of
+// threads may call.
+class BodyPoints {
+ public:
+  BodyPoints(const Model& model, int body);
+
+  // 3 x vertices of the body, x [m] and v [m/s].
+  struct Moving {
+    ConstPoints x, v;
+  };
+  // Valid while the instant is, and until this thread locates another body. Allocates only while the largest body that
+  // this thread has located grows.
+  Moving Locate(const Instant& at) const;
+
+  const Points& rest() const { return rest_; }  // [m]
+  // Place of its first vertex among the simulated ones; -1 where it is not simulated.
+  int first_vertex() const { return first_vertex_; }
+
+ private:
+  using Buffer = Eigen::Map<Points>;
+  void Carry(const Pose& pose, Buffer& x, Buffer& v) const;
+  void Ride(const Instant& at, Buffer& x, Buffer& v) const;
+
+  Points rest_;
+  int first_vertex_ = -1;
+  int pose_ = -1;
+  std::vector<RideShare> shares_;
+  Points carriers_;  // simulated carriers at rest, one a share [m]
+};
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_SERVER_MECHANICS_BODY_POINTS_H_

@@ -1,0 +1,84 @@
+#include "server/mechanics/forces/lungs.h"
+
+#include <array>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+
+namespace phrenic {
+namespace {
+
+constexpr std::array<Force::Output, 4> kOutputs = {
+    {{"volume", "m^3"}, {"flow", "m^3/s"}, {"alveolar_pressure", "Pa"}, {"pleural_pressure", "Pa"}}};
+
+absl::Status AddSurfaces(const v1::Lungs& scene, const std::string& path, const Draft& draft, Chamber& chamber) {
+  if (!scene.has_floor() && !scene.has_walls()) return FieldError(path, "bounds no thorax: set floor, walls or both");
+  if (scene.has_floor()) {
+    if (absl::Status s = chamber.Add(scene.floor(), -1, path + ".floor", draft); !s.ok()) return s;
+  }
+  if (scene.has_walls()) {
+    if (absl::Status s = chamber.Add(scene.walls(), 1, path + ".walls", draft); !s.ok()) return s;
+  }
+  return chamber.SetPlane(nullptr, path);
+}
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<Force>> Lungs::Make(const v1::Lungs& scene, const std::string& given,
+                                                   std::string_view path, Draft& draft) {
+  Names bodies = scene.floor().bodies();
+  bodies.MergeFrom(scene.walls().bodies());
+  const std::string name = ElementName(given, "lungs", bodies);
+  std::unique_ptr<Lungs> force(new Lungs(name));
+  if (absl::Status s = AddSurfaces(scene, std::string(path), draft, force->chamber_); !s.ok()) return s;
+  force->pushes_ = force->chamber_.pushes();
+  force->compliance_ = scene.compliance();
+  force->resistance_ = scene.resistance();
+  force->rest_pressure_ = scene.rest_pressure();
+  force->rest_volume_ = scene.rest_volume();
+  draft.ReportElement("force", name, force->chamber_.triangles(), "triangles",
+                      absl::StrFormat("%g m^3/Pa, %g Pa s/m^3%s", scene.compliance(), scene.resistance(),
+                                      force->pushes_ ? "" : ", driven: pulls at nothing"));
+  return force;
+}
+
+void Lungs::AddForce(const Instant& at, MutablePoints f) const {
+  if (pushes_) chamber_.AddAreas(at, PressureChange(at), f);
+}
+
+const Points& Lungs::Areas(const Instant& at) const {
+  thread_local Points areas;
+  areas.setZero(3, at.x.cols());
+  chamber_.AddAreas(at, 1, areas);
+  return areas;
+}
+
+void Lungs::AddStiffness(const Instant& at, StiffnessSink& sink) const {
+  if (pushes_) sink.AddOuter(1 / compliance_, Areas(at));
+}
+
+void Lungs::AddSharedDamping(const Instant& at, OuterProducts& shared) const {
+  if (pushes_ && resistance_ > 0) shared.Add(resistance_, Areas(at));
+}
+
+double Lungs::Energy(const Instant& at) const {
+  const double change = Change(at);
+  return change * change / (2 * compliance_);
+}
+
+std::span<const Force::Output> Lungs::outputs() const { return kOutputs; }
+
+double Lungs::Read(size_t output, const Instant& at) const {
+  switch (output) {
+    case 0:
+      return rest_volume_ + Change(at);
+    case 1:
+      return chamber_.Flow(at);
+    case 2:
+      return AlveolarPressure(at);
+    default:
+      return rest_pressure_ + PressureChange(at);
+  }
+}
+
+}  // namespace phrenic

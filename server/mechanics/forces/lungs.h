@@ -1,0 +1,45 @@
+// Lungs that fill a thorax: one compartment of constant compliance C [m^3/Pa] and airway resistance R [Pa s/m^3] (the
+// equation of motion of Otis, Fenn and Rahn, J Appl Physiol 1950;2:592), against the mouth's pressure:
+//   p_alveolar = -R V',  p_pleural = p_alveolar + p_rest - (V - V_rest)/C  [Pa].
+// Assumed: gas and pleural fluid keep their volume, so that the lungs' volume changes by that of the thorax, and V' is
+// the flow through the airway; at 1 kPa a lung of 2.5 litres gives way by 25 ml. So all is a function of the state.
+// V comes from `floor` and `walls` (chamber.h); on what of them is deformable the pressure's change since rest acts,
+//   f_i = (p_pleural - p_rest) a_i [N],
+// for what balances p_rest at rest (abdomen, chest wall) is not part of this force. E = (V - V_rest)^2/(2 C), which the
+// resistance spends; K = a a^T/C without what follows from the normals' turning; -df/dv = R a a^T.
+#ifndef PHRENIC_SERVER_MECHANICS_FORCES_LUNGS_H_
+#define PHRENIC_SERVER_MECHANICS_FORCES_LUNGS_H_
+
+#include "server/mechanics/chamber.h"
+
+namespace phrenic {
+
+class Lungs final : public Force {
+ public:
+  static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::Lungs& scene, const std::string& name,
+                                                     std::string_view path, Draft& draft);
+
+  void AddForce(const Instant& at, MutablePoints f) const override;
+  void AddStiffness(const Instant& at, StiffnessSink& sink) const override;
+  void AddSharedDamping(const Instant& at, OuterProducts& shared) const override;
+  double Energy(const Instant& at) const override;
+  // Volume, flow (inwards positive), alveolar and pleural pressure.
+  std::span<const Output> outputs() const override;
+  double Read(size_t output, const Instant& at) const override;
+
+ private:
+  explicit Lungs(std::string name) : Force(std::move(name)) {}
+  double Change(const Instant& at) const { return chamber_.Volume(at) - chamber_.rest_volume(); }  // [m^3]
+  double AlveolarPressure(const Instant& at) const { return -resistance_ * chamber_.Flow(at); }
+  double PressureChange(const Instant& at) const { return AlveolarPressure(at) - Change(at) / compliance_; }
+  const Points& Areas(const Instant& at) const;
+
+  Chamber chamber_;
+  bool pushes_ = false;
+  double compliance_ = 1, resistance_ = 0;
+  double rest_pressure_ = 0, rest_volume_ = 0;
+};
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_SERVER_MECHANICS_FORCES_LUNGS_H_

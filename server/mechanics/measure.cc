@@ -1,0 +1,36 @@
+#include "server/mechanics/measure.h"
+
+#include <set>
+
+#include "absl/strings/str_cat.h"
+#include "server/mechanics/catalogue.h"
+
+namespace phrenic {
+
+absl::Status AddMeasures(Draft& draft) {
+  std::set<std::string> names;
+  for (int i = 0; i < draft.model.scene.measures_size(); ++i) {
+    const v1::Measure& scene = draft.model.scene.measures(i);
+    const std::string path = absl::StrCat("measures[", i, "]");
+    if (!names.insert(scene.name()).second) {
+      return FieldError(path + ".name", absl::StrCat("there are two measures named \"", scene.name(), "\""));
+    }
+    auto measure = MakeMeasure(scene, path, draft);
+    if (!measure.ok()) return measure.status();
+    draft.model.measures.push_back(*std::move(measure));
+  }
+  return absl::OkStatus();
+}
+
+MeasureReadings ReadMeasures(const Model& model, const Instant& at) {
+  MeasureReadings readings;
+  for (const auto& measure : model.measures) {
+    v1::MeasureReading& reading = *readings.Add();
+    reading.set_name(measure->name());
+    reading.set_value(measure->Value(at));
+    reading.set_unit(measure->unit());
+  }
+  return readings;
+}
+
+}  // namespace phrenic

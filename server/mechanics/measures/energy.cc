@@ -1,0 +1,89 @@
+#include "server/mechanics/measures/energy.h"
+
+#include "absl/strings/str_cat.h"
+#include "server/mechanics/measures/force_output.h"
+
+namespace phrenic {
+namespace {
+
+class KineticMeasure final : public Measure {
+ public:
+  // Of simulated vertices first ... first + masses.size() - 1.
+  struct Part {
+    int first;
+    Eigen::VectorXd masses;  // [kg]
+  };
+  KineticMeasure(std::string name, std::vector<Part> parts) : Measure(std::move(name), "J"), parts_(std::move(parts)) {}
+
+  double Value(const Instant& at) const override {
+    double twice = 0;
+    for (const Part& part : parts_) {
+      for (Eigen::Index i = 0; i < part.masses.size(); ++i) {
+        twice += part.masses[i] * at.v.col(part.first + i).squaredNorm();
+      }
+    }
+    return twice / 2;
+  }
+
+ private:
+  std::vector<Part> parts_;
+};
+
+class ElasticMeasure final : public Measure {
+ public:
+  ElasticMeasure(std::string name, std::vector<const Force*> forces)
+      : Measure(std::move(name), "J"), forces_(std::move(forces)) {}
+
+  double Value(const Instant& at) const override {
+    double sum = 0;
+    for (const Force* force : forces_) sum += force->Energy(at);
+    return sum;
+  }
+
+ private:
+  std::vector<const Force*> forces_;  // of the same model
+};
+
+absl::StatusOr<std::vector<const Force*>> ForcesWithEnergy(const v1::ElasticEnergy& scene, std::string_view path,
+                                                           const Draft& draft) {
+  std::vector<const Force*> forces;
+  for (int i = 0; i < scene.forces_size(); ++i) {
+    const std::string field = absl::StrCat(std::string(path), ".forces[", i, "]");
+    const auto force = FindForce(scene.forces(i), field, draft);
+    if (!force.ok()) return force.status();
+    if (!(*force)->conservative()) return FieldError(field, absl::StrCat("\"", scene.forces(i), "\" has no energy"));
+    forces.push_back(*force);
+  }
+  if (scene.forces_size() > 0) return forces;
+  for (const auto& force : draft.model.forces) {
+    if (force->conservative()) forces.push_back(force.get());
+  }
+  return forces;
+}
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<Measure>> MakeKineticEnergy(const v1::KineticEnergy& scene, const std::string& name,
+                                                           std::string_view path, Draft& draft) {
+  const auto bodies = draft.DeformableBodies(scene.bodies(), absl::StrCat(std::string(path), ".bodies"));
+  if (!bodies.ok()) return bodies.status();
+  std::vector<KineticMeasure::Part> parts;
+  std::int64_t vertices = 0;
+  for (const int b : *bodies) {
+    const BodyModel& body = draft.model.bodies[b];
+    parts.push_back({body.first_vertex, draft.model.mass.segment(body.first_vertex, body.mesh.vertices.cols())});
+    vertices += body.mesh.vertices.cols();
+  }
+  draft.ReportElement("measure", name, vertices, "vertices", "kinetic energy");
+  return std::make_unique<KineticMeasure>(name, std::move(parts));
+}
+
+absl::StatusOr<std::unique_ptr<Measure>> MakeElasticEnergy(const v1::ElasticEnergy& scene, const std::string& name,
+                                                           std::string_view path, Draft& draft) {
+  auto forces = ForcesWithEnergy(scene, path, draft);
+  if (!forces.ok()) return forces.status();
+  draft.ReportElement("measure", name, static_cast<std::int64_t>(forces->size()), "forces", "energy of forces");
+  return std::make_unique<ElasticMeasure>(name, *std::move(forces));
+}
+
+}  // namespace phrenic

@@ -1,0 +1,52 @@
+#include "server/mechanics/measures/force_output.h"
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+
+namespace phrenic {
+namespace {
+
+class OutputMeasure final : public Measure {
+ public:
+  OutputMeasure(std::string name, const Force& force, size_t output)
+      : Measure(std::move(name), force.outputs()[output].unit), force_(force), output_(output) {}
+  double Value(const Instant& at) const override { return force_.Read(output_, at); }
+
+ private:
+  const Force& force_;  // of the same model
+  size_t output_;
+};
+
+std::string NamesOf(std::span<const Force::Output> outputs) {
+  return absl::StrJoin(outputs, ", ",
+                       [](std::string* out, const Force::Output& output) { absl::StrAppend(out, output.name); });
+}
+
+}  // namespace
+
+absl::StatusOr<const Force*> FindForce(const std::string& name, std::string_view path, const Draft& draft) {
+  std::vector<std::string> names;
+  for (const auto& force : draft.model.forces) {
+    if (force->name() == name) return force.get();
+    names.push_back(force->name());
+  }
+  return FieldError(path, absl::StrCat("there is no force \"", name, "\"",
+                                       names.empty() ? "; there is none" : "; there are ", absl::StrJoin(names, ", ")));
+}
+
+absl::StatusOr<std::unique_ptr<Measure>> MakeForceOutput(const v1::ForceOutput& scene, const std::string& name,
+                                                         std::string_view path, Draft& draft) {
+  const auto force = FindForce(scene.force(), absl::StrCat(std::string(path), ".force"), draft);
+  if (!force.ok()) return force.status();
+  const std::span<const Force::Output> outputs = (*force)->outputs();
+  for (size_t i = 0; i < outputs.size(); ++i) {
+    if (scene.output() != outputs[i].name) continue;
+    draft.ReportElement("measure", name, 1, "force", absl::StrCat(outputs[i].name, " of ", (*force)->name()));
+    return std::make_unique<OutputMeasure>(name, **force, i);
+  }
+  return FieldError(absl::StrCat(std::string(path), ".output"),
+                    absl::StrCat("force \"", scene.force(), "\" has no output \"", scene.output(), "\"",
+                                 outputs.empty() ? "; it has none" : "; it has ", NamesOf(outputs)));
+}
+
+}  // namespace phrenic

@@ -1,0 +1,15 @@
+// How far the furthest vertex of a body lies along a direction, max of (x_i - point).direction [m]: another vertex may
+// be it a moment later, where a probe stays with its own.
+#ifndef PHRENIC_SERVER_MECHANICS_MEASURES_HIGHEST_H_
+#define PHRENIC_SERVER_MECHANICS_MEASURES_HIGHEST_H_
+
+#include "server/mechanics/draft.h"
+
+namespace phrenic {
+
+absl::StatusOr<std::unique_ptr<Measure>> MakeHighest(const v1::Highest& scene, const std::string& name,
+                                                     std::string_view path, Draft& draft);
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_SERVER_MECHANICS_MEASURES_HIGHEST_H_

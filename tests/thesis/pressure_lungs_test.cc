@@ -1,0 +1,55 @@
+// What the shipped scene of pressures and lungs is there to show.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+#include "tests/compile_text.h"
+#include "tests/thesis/shipped.h"
+
+namespace phrenic {
+namespace {
+
+using Values = std::map<std::string, double>;
+
+Values Read(const Model& model, const State& state) {
+  Values values;
+  for (const auto& measure : model.measures) {
+    values[measure->name()] = measure->Value(MakeInstant(model, model.parameters, state));
+  }
+  return values;
+}
+
+TEST(PressureLungs, BreatheAsAPersonDoes) {
+  const auto model = CompileText(ShippedScene("pressure-lungs"));
+  State state = model->InitialState();
+  Workspace work = model->MakeWorkspace();
+  const double dt = model->parameters.time_step(), length = model->parameters.breath_length();
+  const auto advance = [&](double until) {
+    while (state.time < until - dt / 2) ASSERT_TRUE(Step(*model, model->parameters, dt, state, work).ok());
+  };
+  const Values rest = Read(*model, state);
+  EXPECT_NEAR(rest.at("lung volume"), 0.0025, 1e-12);
+  EXPECT_NEAR(rest.at("pleural pressure"), -500, 1e-9);
+  advance(length / 4);
+  const Values inwards = Read(*model, state);
+  EXPECT_GT(inwards.at("flow"), 1e-4) << "air comes in";
+  EXPECT_LT(inwards.at("alveolar pressure"), 0);
+  advance(length / 2);
+  const Values full = Read(*model, state);
+  const double tidal = full.at("lung volume") - rest.at("lung volume");
+  EXPECT_GT(tidal, 3e-4);
+  EXPECT_LT(tidal, 8e-4);
+  EXPECT_NEAR(full.at("pleural pressure"), -500 + full.at("alveolar pressure") - tidal / 2e-6, 1e-6);
+  EXPECT_NEAR(full.at("abdominal pressure"), tidal / 2e-6, 1e-6) << "what the lungs gain the abdomen loses";
+  EXPECT_LT(full.at("dome height"), rest.at("dome height") - 0.01);
+  EXPECT_NEAR(full.at("ventilator pressure"), 400, 4);
+  EXPECT_GT(full.at("ventilated volume"), 1e-4);
+  advance(3 * length / 4);
+  EXPECT_LT(Read(*model, state).at("flow"), -1e-4) << "and goes out";
+  advance(length);
+  EXPECT_NEAR(Read(*model, state).at("lung volume"), rest.at("lung volume"), 0.15 * tidal);
+}
+
+}  // namespace
+}  // namespace phrenic
