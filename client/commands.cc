@@ -4,7 +4,10 @@
 #include <iostream>
 #include <map>
 
+#include "client/comparison.h"
 #include "client/scene_argument.h"
+#include "phrenic/v1/compare.pb.h"
+#include "server/schema/fields.h"
 
 namespace phrenic::client {
 namespace {
@@ -14,6 +17,7 @@ struct AllOptions {
   SceneOptions describe;
   RunOptions run;
   PhysiologyOptions physiology;
+  CompareOptions compare;
   CreateOptions create;
   SessionOptions session;
   WatchOptions watch;
@@ -35,11 +39,13 @@ class CommandLine {
     app_.fallthrough();
     app_.add_option("--server", context_.server, "HOST:PORT of the server")
         ->envname("PHRENIC_SERVER")
+        ->each([this](const std::string&) { context_.server_given = true; })
         ->capture_default_str();
     app_.add_option("-o,--output", context_.output, "table, for people, or json, for programs")
         ->transform(
             CLI::CheckedTransformer(std::map<std::string, Output>{{"table", Output::kTable}, {"json", Output::kJson}}));
     AddSceneCommands();
+    AddCompare();
     AddSessionCommands();
     AddControlCommands();
     AddExport();
@@ -105,6 +111,38 @@ class CommandLine {
         Add("physiology", "Let a thorax breathe here, and hold it against published ranges", &Physiology, physiology);
     AddScene(command, physiology.scene);
     command->add_option("--data", physiology.data_dir, "folder of surface files and of scenes/*.textproto");
+  }
+
+  // A number of a message of the schema, with the schema's help and range.
+  static void AddNumber(CLI::App* command, const char* flag, double& value, const google::protobuf::Descriptor& message,
+                        const char* field) {
+    const v1::Quantity& quantity = *schema::QuantityOf(*message.FindFieldByName(field));
+    command->add_option(flag, value, FieldHelp(message, field))
+        ->check(CLI::Range(quantity.minimum(), quantity.maximum()));
+  }
+
+  void AddCompare() {
+    CompareOptions& compare = options_.compare;
+    CLI::App* command = Add("compare", "Say how far two surfaces, or two motions, are apart", &Compare, compare);
+    command->add_option("A", compare.a, "surface (.obj, .msh), or motion as `phrenic run --export` writes it (.msh)")
+        ->required();
+    command->add_option("B", compare.b, "the same; its times are interpolated to A's")->required();
+    AddNumber(command, "--tolerance", compare.tolerance_mm, *v1::CompareRequest::descriptor(), "tolerance_mm");
+    AddNumber(command, "--spacing", compare.spacing_mm, *v1::CompareRequest::descriptor(), "spacing_mm");
+    AddNumber(command, "--unit-a", compare.unit_a_mm, *v1::ComparedFile::descriptor(), "unit_mm");
+    AddNumber(command, "--unit-b", compare.unit_b_mm, *v1::ComparedFile::descriptor(), "unit_mm");
+    command->add_flag("--regions", compare.by_region, "each named region (body) against that of the same name, too");
+    command->add_flag("--phases", compare.match_phases, "stretch B's times to begin and end with A's");
+    command->add_option("--map", compare.map_file,
+                        "write A coloured by its distance to B (.msh: Gmsh; .vtp: ParaView)");
+    command
+        ->add_option("--check", compare.checks, "measure=limit,...: exit code 4 where one is missed")
+
+        ->delimiter(',')
+        ->allow_extra_args(false);
+    command->add_option("-o,--output", compare.output, "table, json or csv")
+        ->check(CLI::IsMember({"table", "json", "csv"}));
+    command->footer("\n" + MeasureHelp());
   }
 
   void AddSessionCommands() {

@@ -27,6 +27,17 @@ struct PhysiologyOptions {
   SceneOptions scene;
   std::string data_dir;
 };
+struct CompareOptions {
+  std::string a, b;                     // files
+  double unit_a_mm = 0, unit_b_mm = 0;  // 0: the schema's own, here and below
+  double tolerance_mm = 0;
+  double spacing_mm = 0;
+  bool by_region = false;
+  bool match_phases = false;
+  std::string map_file;  // empty: none
+  std::vector<std::string> checks;
+  std::string output;  // "table", "json", "csv"; empty: as for every command
+};
 struct CreateOptions {
   SceneOptions scene;
   std::string id;
@@ -72,6 +83,7 @@ int Scenes(const Context& context);
 int Describe(const Context& context, const SceneOptions& options);
 int Run(const Context& context, const RunOptions& options);
 int Physiology(const Context& context, const PhysiologyOptions& options);
+int Compare(const Context& context, const CompareOptions& options);
 int Create(const Context& context, const CreateOptions& options);
 int Sessions(const Context& context);
 int Watch(const Context& context, const WatchOptions& options);

@@ -19,7 +19,7 @@ namespace {
 constexpr double kMetres = 1e-3;   // of a millimetre
 constexpr double kFarthest = 1e6;  // [m]; squares and sums of what is nearer keep their digits
 
-absl::StatusOr<meshio::Motion> Read(const v1::SurfaceFile& file) {
+absl::StatusOr<meshio::Motion> Read(const v1::ComparedFile& file) {
   const double unit = kMetres * (file.has_unit_mm() ? file.unit_mm() : 1);
   auto motion = meshio::ParseMotion(file.name(), file.content(), unit);
   if (!motion.ok()) return motion;

@@ -1,0 +1,115 @@
+// `phrenic compare`: how far two surfaces or motions are apart, by the server's own study.
+#include <climits>
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <sstream>
+
+#include "absl/strings/str_cat.h"
+#include "client/commands.h"
+#include "client/comparison.h"
+#include "client/motion_file.h"
+#include "client/progress.h"
+#include "phrenic/v1/compare.grpc.pb.h"
+#include "server/service/server.h"
+
+namespace phrenic::client {
+namespace {
+
+absl::Status ReadSurface(const std::string& path, double unit_mm, v1::ComparedFile& file) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream bytes;
+  if (!in || (!(bytes << in.rdbuf()) && in.peek() != std::ifstream::traits_type::eof())) {
+    return absl::NotFoundError(absl::StrCat("cannot read \"", path, "\": is there such a file, and may it be read?"));
+  }
+  file.set_name(path);
+  file.set_content(std::move(bytes).str());
+  if (unit_mm > 0) file.set_unit_mm(unit_mm);
+  return absl::OkStatus();
+}
+
+absl::StatusOr<v1::CompareRequest> MakeRequest(const CompareOptions& options) {
+  v1::CompareRequest request;
+  if (absl::Status status = ReadSurface(options.a, options.unit_a_mm, *request.mutable_a()); !status.ok()) {
+    return status;
+  }
+  if (absl::Status status = ReadSurface(options.b, options.unit_b_mm, *request.mutable_b()); !status.ok()) {
+    return status;
+  }
+  if (options.tolerance_mm > 0) request.set_tolerance_mm(options.tolerance_mm);
+  if (options.spacing_mm > 0) request.set_spacing_mm(options.spacing_mm);
+  request.set_by_region(options.by_region);
+  request.set_match_phases(options.match_phases);
+  if (options.map_file.empty()) return request;
+  request.set_map_format(FormatOf(options.map_file));
+  if (!request.map_format().empty()) return request;
+  return absl::InvalidArgumentError(
+      absl::StrCat("--map ", options.map_file, ": the name's ending tells the format; name it .msh or .vtp"));
+}
+
+absl::Status WriteWhole(const std::string& file, const std::string& bytes) {
+  const std::string part = file + ".part";
+  {
+    std::ofstream out(part, std::ios::binary);
+    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    out.close();
+    if (out && std::rename(part.c_str(), file.c_str()) == 0) return absl::OkStatus();
+  }
+  std::remove(part.c_str());
+  return absl::DataLossError(absl::StrCat("cannot write ", file, ": is the folder there, and the disk not full?"));
+}
+
+void Print(const Context& context, const CompareOptions& options, const v1::ComparisonTable& table) {
+  if (options.output == "json" || (options.output.empty() && context.json())) {
+    std::cout << Json(table) << "\n";
+  } else if (options.output == "csv") {
+    PrintComparisonCsv(table, std::cout);
+  } else {
+    PrintComparison(table, std::cout);
+  }
+}
+
+int CompareOn(const Context& context, const CompareOptions& options, const v1::CompareRequest& request,
+              const std::vector<Limit>& limits, const std::shared_ptr<grpc::Channel>& channel) {
+  grpc::ClientContext call;
+  const Interruption::Scope scope(*context.interruption, call);
+  const auto stub = v1::CompareService::NewStub(channel);
+  const auto reader = stub->Compare(&call, request);
+  v1::CompareResponse response;
+  std::string map;
+  {
+    Progress progress("comparing", 1);
+    while (reader->Read(&response) && !response.has_table()) {
+      if (response.has_map_chunk()) map += response.map_chunk();
+      if (response.has_progress()) progress.Update(response.progress());
+    }
+  }
+  if (const grpc::Status status = reader->Finish(); !status.ok()) return Fail(context, status);
+  if (!options.map_file.empty()) {
+    if (const absl::Status status = WriteWhole(options.map_file, map); !status.ok()) return Fail(status);
+  }
+  Print(context, options, response.table());
+  const std::vector<std::string> missed = MissedLimits(response.table(), limits);
+  for (const std::string& sentence : missed) std::cerr << "phrenic: " << sentence << "\n";
+  return missed.empty() ? kOk : kMissed;
+}
+
+}  // namespace
+
+int Compare(const Context& context, const CompareOptions& options) {
+  const auto limits = ReadLimits(options.checks);
+  if (!limits.ok()) {
+    Fail(limits.status());
+    return kUsage;
+  }
+  const auto request = MakeRequest(options);
+  if (!request.ok()) return Fail(request.status());
+  if (context.server_given) return CompareOn(context, options, *request, *limits, Connect(context));
+  service::ServerOptions server_options;
+  server_options.max_message_bytes = INT_MAX;
+  auto server = service::Server::Start(server_options);
+  if (!server.ok()) return Fail(server.status());
+  return CompareOn(context, options, *request, *limits, (*server)->InProcessChannel());
+}
+
+}  // namespace phrenic::client
