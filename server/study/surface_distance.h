@@ -29,7 +29,7 @@ struct DistanceOptions {
 // 2024.) Integrals are sums over samples (surface_samples.h); the maxima are FindFarthest's. All distances are NaN
 // where a surface has no triangle, the means also where neither has area. `at_vertices`, where it is not null, gets
 // d(vertex of a, B) [m], NaN for vertices that are in no triangle. INVALID_ARGUMENT where the spacing asks for too many
-// samples.
+// samples. Works in two threads.
 absl::StatusOr<v1::SurfaceDistance> MeasureDistance(const MeasuredSurface& a, const MeasuredSurface& b,
                                                     const DistanceOptions& options,
                                                     Eigen::VectorXd* at_vertices = nullptr);

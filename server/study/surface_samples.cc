@@ -40,7 +40,7 @@ double AutomaticSpacing(const ConstPoints& x, const Triangles& triangles) {
   double area = 0;
   for (Eigen::Index t = 0; t < triangles.cols(); ++t) area += Corners(x, triangles, t).Area();
   if (!(area > 0)) return std::numeric_limits<double>::infinity();
-  constexpr double kTooMany = 4;
+  constexpr double kTooMany = 2;
   const double enough = kTooMany * std::max(kWanted, static_cast<double>(triangles.cols()));
   double spacing = std::sqrt(4 / std::numbers::sqrt3 * area / kWanted);
   while (CountSamples(x, triangles, spacing) > enough) spacing *= std::numbers::sqrt2;
