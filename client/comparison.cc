@@ -124,8 +124,9 @@ std::vector<std::string> MissedLimits(const v1::ComparisonTable& table, const st
     const double value = table.rows().empty() ? NAN : Number(table.rows(0).distance(), *limit.measure);
     const bool least = MoreIsBetter(*limit.measure);
     if (least ? value >= limit.value : value <= limit.value) continue;
-    missed.push_back(absl::StrFormat("%s is %.4g %s, and %g is the %s that was asked for", limit.measure->name(), value,
-                                     Unit(*limit.measure), limit.value, least ? "least" : "most"));
+    missed.push_back(absl::StrFormat("%s is %.4g%s, and %g is the %s that was asked for", limit.measure->name(), value,
+                                     Unit(*limit.measure).empty() ? "" : " " + Unit(*limit.measure), limit.value,
+                                     least ? "least" : "most"));
   }
   return missed;
 }

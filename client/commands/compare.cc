@@ -1,6 +1,8 @@
 // `phrenic compare`: how far two surfaces or motions are apart, by the server's own study.
 #include <climits>
+#include <cstdint>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <sstream>
@@ -16,10 +18,18 @@
 namespace phrenic::client {
 namespace {
 
+constexpr std::uintmax_t kMostBytes = std::uintmax_t{1000} << 20;  // two such files fit one message
+
 absl::Status ReadSurface(const std::string& path, double unit_mm, v1::ComparedFile& file) {
+  std::error_code error;
+  if (std::filesystem::is_regular_file(path, error) && std::filesystem::file_size(path, error) > kMostBytes) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(path, ":1: larger than 1000 MiB, the most that is compared; record fewer frames a second"));
+  }
   std::ifstream in(path, std::ios::binary);
   std::ostringstream bytes;
-  if (!in || (!(bytes << in.rdbuf()) && in.peek() != std::ifstream::traits_type::eof())) {
+  if (!std::filesystem::is_regular_file(path, error) || !in ||
+      (!(bytes << in.rdbuf()) && in.peek() != std::ifstream::traits_type::eof())) {
     return absl::NotFoundError(absl::StrCat("cannot read \"", path, "\": is there such a file, and may it be read?"));
   }
   file.set_name(path);
@@ -84,7 +94,13 @@ int CompareOn(const Context& context, const CompareOptions& options, const v1::C
       if (response.has_progress()) progress.Update(response.progress());
     }
   }
-  if (const grpc::Status status = reader->Finish(); !status.ok()) return Fail(context, status);
+  if (const grpc::Status status = reader->Finish(); !status.ok()) {
+    const int code = Fail(context, status);
+    if (context.server_given && status.error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED) {
+      std::cerr << "phrenic: without --server the comparison is made here, of files of up to 1000 MiB\n";
+    }
+    return code;
+  }
   if (!options.map_file.empty()) {
     if (const absl::Status status = WriteWhole(options.map_file, map); !status.ok()) return Fail(status);
   }
