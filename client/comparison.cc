@@ -46,7 +46,8 @@ std::string Unit(const FieldDescriptor& field) {
 std::string Cell(const v1::SurfaceDistance& distance, const FieldDescriptor& field) {
   const double number = Number(distance, field);
   if (std::isnan(number)) return "NaN";
-  return absl::StrFormat(field.cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE ? "%.4f" : "%.0f", number);
+  if (field.cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE) return absl::StrFormat("%.4f", number);
+  return absl::StrFormat("%.0f", number);
 }
 
 // The measures down, the surfaces across; beside each the baseline where there is one.

@@ -194,6 +194,7 @@ v1::SurfaceDistance OverTimes(const std::vector<v1::SurfaceDistance>& distances)
     const auto* field = v1::SurfaceDistance::descriptor()->field(i);
     if (field->cpp_type() != google::protobuf::FieldDescriptor::CPPTYPE_DOUBLE) continue;
     std::vector<double> values;
+    values.reserve(distances.size());
     for (const v1::SurfaceDistance& distance : distances) {
       values.push_back(distance.GetReflection()->GetDouble(distance, field));
     }
