@@ -13,6 +13,7 @@ MeasuredSurface::MeasuredSurface(const ConstPoints& x, Triangles triangles)
   std::sort(used_.begin(), used_.end());
   used_.erase(std::unique(used_.begin(), used_.end()), used_.end());
   tree_.Fit(x_, boxes_);
+  for (Eigen::Index t = 0; t < triangles_.cols(); ++t) triangles_.col(t) = tree_.triangle(static_cast<int>(t));
 }
 
 void MeasuredSurface::MoveTo(const ConstPoints& x) {

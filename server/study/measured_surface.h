@@ -19,6 +19,7 @@ class MeasuredSurface {
 
   bool empty() const { return triangles_.cols() == 0; }
   const Points& vertices() const { return x_; }
+  // In an order in which neighbours are near each other.
   const Triangles& triangles() const { return triangles_; }
   // The vertices that a triangle has, each once, in order: others are no part of the surface.
   const std::vector<int>& used() const { return used_; }

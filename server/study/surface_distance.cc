@@ -29,29 +29,47 @@ struct Directed {
   Farthest farthest;
 };
 
+// Asks for one point after the other. Distances change no faster than points move, and the triangle that was nearest to
+// the point before is no farther than it is: both tell how far the search need reach.
+class Walk {
+ public:
+  explicit Walk(const MeasuredSurface& to) : to_(to) {}
+
+  double DistanceAt(const Eigen::Vector3d& point) {
+    double reach = distance_ + (point - before_).norm();
+    if (triangle_ >= 0) reach = std::min(reach, to_.DistanceTo(triangle_, point));
+    const SurfacePoint nearest = to_.Nearest(point, reach);
+    before_ = point;
+    triangle_ = nearest.triangle;
+    distance_ = std::sqrt(nearest.squared);
+    return distance_;
+  }
+
+ private:
+  const MeasuredSurface& to_;
+  Eigen::Vector3d before_ = Eigen::Vector3d::Zero();
+  int triangle_ = -1;
+  double distance_ = std::numeric_limits<double>::infinity();  // of the point before [m]
+};
+
 Eigen::VectorXd VertexDistances(const MeasuredSurface& from, const MeasuredSurface& to) {
   Eigen::VectorXd distances = Eigen::VectorXd::Constant(from.vertices().cols(), kNan);
-  double last = std::numeric_limits<double>::infinity();
-  Eigen::Vector3d before = Eigen::Vector3d::Zero();
-  for (const int vertex : from.used()) {
-    const Eigen::Vector3d point = from.vertices().col(vertex);
-    last = distances[vertex] = std::sqrt(to.Nearest(point, last + (point - before).norm()).squared);
-    before = point;
+  Walk walk(to);
+  for (const auto triangle : from.triangles().colwise()) {
+    for (const int vertex : triangle) {
+      if (std::isnan(distances[vertex])) distances[vertex] = walk.DistanceAt(from.vertices().col(vertex));
+    }
   }
   return distances;
 }
 
-// Distances change no faster than points move: the sample before tells how far the search need reach.
 std::vector<Weighted> SampleDistances(const MeasuredSurface& from, const MeasuredSurface& to,
                                       const Sampling& sampling) {
   std::vector<Weighted> samples;
   samples.reserve(static_cast<std::size_t>(sampling.samples));
-  double last = std::numeric_limits<double>::infinity();
-  Eigen::Vector3d before = Eigen::Vector3d::Zero();
+  Walk walk(to);
   ForEachSample(from.vertices(), from.triangles(), sampling, [&](const Eigen::Vector3d& point, double area) {
-    last = std::sqrt(to.Nearest(point, last + (point - before).norm()).squared);
-    samples.push_back({last, area});
-    before = point;
+    samples.push_back({walk.DistanceAt(point), area});
   });
   std::sort(samples.begin(), samples.end());
   return samples;
