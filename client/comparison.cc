@@ -17,8 +17,9 @@ namespace {
 using google::protobuf::FieldDescriptor;
 
 std::vector<const FieldDescriptor*> Fields() {
-  std::vector<const FieldDescriptor*> fields;
   const auto* type = v1::SurfaceDistance::descriptor();
+  std::vector<const FieldDescriptor*> fields;
+  fields.reserve(static_cast<size_t>(type->field_count()));
   for (int i = 0; i < type->field_count(); ++i) fields.push_back(type->field(i));
   return fields;
 }
