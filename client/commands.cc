@@ -4,8 +4,11 @@
 #include <iostream>
 #include <map>
 
+#include "client/comparison.h"
 #include "client/scene_argument.h"
 #include "client/schema_options.h"
+#include "phrenic/v1/compare.pb.h"
+#include "server/schema/fields.h"
 
 namespace phrenic::client {
 namespace {
@@ -16,6 +19,7 @@ struct AllOptions {
   RunOptions run;
   PhysiologyOptions physiology;
   StudyOptions error, stability, cost, study;
+  CompareOptions compare;
   CreateOptions create;
   SessionOptions session;
   WatchOptions watch;
@@ -37,12 +41,14 @@ class CommandLine {
     app_.fallthrough();
     app_.add_option("--server", context_.server, "HOST:PORT of the server")
         ->envname("PHRENIC_SERVER")
+        ->each([this](const std::string&) { context_.server_given = true; })
         ->capture_default_str();
-    app_.add_option("-o,--output", context_.output, "table, for people, json, for programs, or csv (studies)")
+    app_.add_option("-o,--output", context_.output, "table, for people, json, for programs, or csv (studies, compare)")
         ->transform(CLI::CheckedTransformer(
             std::map<std::string, Output>{{"table", Output::kTable}, {"json", Output::kJson}, {"csv", Output::kCsv}}));
     AddSceneCommands();
     AddStudies();
+    AddCompare();
     AddSessionCommands();
     AddControlCommands();
     AddExport();
@@ -138,13 +144,41 @@ class CommandLine {
     AddFindings(command, options);
     command->add_option("--data", options.data_dir, "folder of surface files and of scenes/*.textproto");
     command->add_option("--id", *options.request.mutable_study_id(), "its name: 1 to 64 of a-z, 0-9 and -");
-    command->add_flag("--on-server", options.on_server, "run it on the server; it goes on when this ends");
-    command->add_flag("--detach", options.detach, "run it on the server, and do not wait");
+    command->add_flag("--detach", options.detach,
+                      "run it on the server, and do not wait (with --server alone: and wait)");
   }
 
   static void AddFindings(CLI::App* command, StudyOptions& options) {
     command->add_option("--page", options.page, "write tables and plots to this .html file");
     command->add_option("--check", options.limits, "limits (.textproto, StudyLimits): 4 is the exit code past one");
+  }
+
+  // A number of a message of the schema, with the schema's help and range.
+  static void AddNumber(CLI::App* command, const char* flag, double& value, const google::protobuf::Descriptor& message,
+                        const char* field) {
+    const v1::Quantity& quantity = *schema::QuantityOf(*message.FindFieldByName(field));
+    command->add_option(flag, value, FieldHelp(message, field))
+        ->check(CLI::Range(quantity.minimum(), quantity.maximum()));
+  }
+
+  void AddCompare() {
+    CompareOptions& compare = options_.compare;
+    CLI::App* command = Add("compare", "Say how far two surfaces, or two motions, are apart", &Compare, compare);
+    command->add_option("A", compare.a, "surface (.obj, .msh), or motion as `phrenic run --export` writes it (.msh)")
+        ->required();
+    command->add_option("B", compare.b, "the same; its times are interpolated to A's")->required();
+    AddNumber(command, "--tolerance", compare.tolerance_mm, *v1::CompareRequest::descriptor(), "tolerance_mm");
+    AddNumber(command, "--spacing", compare.spacing_mm, *v1::CompareRequest::descriptor(), "spacing_mm");
+    AddNumber(command, "--unit-a", compare.unit_a_mm, *v1::ComparedFile::descriptor(), "unit_mm");
+    AddNumber(command, "--unit-b", compare.unit_b_mm, *v1::ComparedFile::descriptor(), "unit_mm");
+    command->add_flag("--regions", compare.by_region, "each named region (body) against that of the same name, too");
+    command->add_flag("--phases", compare.match_phases, "stretch B's times to begin and end with A's");
+    command->add_option("--map", compare.map_file,
+                        "write A coloured by its distance to B (.msh: Gmsh; .vtp: ParaView)");
+    command->add_option("--check", compare.checks, "measure=limit,...: exit code 4 where one is missed")
+        ->delimiter(',')
+        ->allow_extra_args(false);
+    command->footer("\n" + MeasureHelp());
   }
 
   void AddSessionCommands() {

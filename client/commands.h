@@ -35,7 +35,17 @@ struct StudyOptions {
   std::string id;
   std::string page, limits;  // files; empty: none
   std::string data_dir;
-  bool on_server = false, detach = false;
+  bool detach = false;  // on the server, without waiting
+};
+struct CompareOptions {
+  std::string a, b;                     // files
+  double unit_a_mm = 0, unit_b_mm = 0;  // 0: the schema's own, here and below
+  double tolerance_mm = 0;
+  double spacing_mm = 0;
+  bool by_region = false;
+  bool match_phases = false;
+  std::string map_file;  // empty: none
+  std::vector<std::string> checks;
 };
 struct CreateOptions {
   SceneOptions scene;
@@ -86,6 +96,7 @@ int Study(const Context& context, const StudyOptions& options);
 int ListStudies(const Context& context);
 int WatchStudy(const Context& context, const StudyOptions& options);
 int DeleteStudy(const Context& context, const StudyOptions& options);
+int Compare(const Context& context, const CompareOptions& options);
 int Create(const Context& context, const CreateOptions& options);
 int Sessions(const Context& context);
 int Watch(const Context& context, const WatchOptions& options);

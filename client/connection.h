@@ -16,12 +16,13 @@
 namespace phrenic::client {
 
 // Exit codes, as scripts may rely on them.
-inline constexpr int kOk = 0, kFailed = 1, kUsage = 2, kUnreachable = 3, kLimitPassed = 4, kInterrupted = 130;
+inline constexpr int kOk = 0, kFailed = 1, kUsage = 2, kUnreachable = 3, kMissed = 4, kInterrupted = 130;
 
 enum class Output { kTable, kJson, kCsv };
 
 struct Context {
   std::string server = "127.0.0.1:50051";
+  bool server_given = false;  // by a flag or the environment
   Output output = Output::kTable;
   Interruption* interruption = nullptr;  // outlives every command
 

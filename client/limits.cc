@@ -83,7 +83,7 @@ absl::Status Check(const v1::StudyLimit& limit, const Message& tables, std::vect
 
 }  // namespace
 
-absl::StatusOr<v1::StudyLimits> ReadLimits(const std::string& file) {
+absl::StatusOr<v1::StudyLimits> ReadStudyLimits(const std::string& file) {
   std::ifstream stream(file);
   if (!stream) return absl::NotFoundError(absl::StrCat("cannot read the limits ", file, ": is the path right?"));
   std::stringstream text;

@@ -11,7 +11,7 @@
 namespace phrenic::client {
 
 // Reads and parses the file; errors name it and the line.
-absl::StatusOr<v1::StudyLimits> ReadLimits(const std::string& file);
+absl::StatusOr<v1::StudyLimits> ReadStudyLimits(const std::string& file);
 
 // One sentence for each limit that is passed, or that no row has to do with; none where all is well. INVALID_ARGUMENT
 // for a limit that names a table or a field that the result does not have.

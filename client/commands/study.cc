@@ -1,8 +1,6 @@
 // `phrenic study`: error, stability and cost of a scene, here or on the server; the studies of a server.
-#include <fstream>
 #include <iostream>
 
-#include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "client/commands.h"
 #include "client/limits.h"
@@ -10,6 +8,7 @@
 #include "client/rows.h"
 #include "client/scene_argument.h"
 #include "client/table.h"
+#include "client/whole_file.h"
 #include "phrenic/v1/study.grpc.pb.h"
 #include "server/service/server.h"
 
@@ -85,22 +84,20 @@ int WritePage(const Context& context, Stub& stub, const std::string& id, const s
   v1::GetStudyPageResponse response;
   const grpc::Status status = Call(context, stub, &Stub::GetStudyPage, request, &response);
   if (!status.ok()) return Fail(context, status);
-  std::ofstream out(file, std::ios::binary);
-  out << response.html();
-  if (!out.flush()) return Fail(absl::UnavailableError(absl::StrCat("cannot write ", file)));
+  if (const absl::Status written = WriteWhole(file, response.html()); !written.ok()) return Fail(written);
   std::cerr << "wrote " << file << "\n";
   return kOk;
 }
 
 int Check(const std::string& file, const v1::StudyResult& result) {
-  const auto limits = ReadLimits(file);
+  const auto limits = ReadStudyLimits(file);
   if (!limits.ok()) return Fail(limits.status());
   const auto passed = PassedLimits(*limits, TablesOf(result));
   if (!passed.ok()) return Fail(passed.status());
   for (const std::string& sentence : *passed) std::cerr << "phrenic: limit passed: " << sentence << "\n";
   std::cerr << absl::StrFormat("%d of %d limits kept\n", limits->limits_size() - static_cast<int>(passed->size()),
                                limits->limits_size());
-  return passed->empty() ? kOk : kLimitPassed;
+  return passed->empty() ? kOk : kMissed;
 }
 
 int Finish(const Context& context, const StudyOptions& options, Stub& stub, const std::string& id) {
@@ -143,9 +140,9 @@ int Create(const Context& context, const StudyOptions& options, Stub& stub) {
 
 int Study(const Context& context, const StudyOptions& options) {
   if (!options.limits.empty()) {
-    if (const auto limits = ReadLimits(options.limits); !limits.ok()) return Fail(limits.status());
+    if (const auto limits = ReadStudyLimits(options.limits); !limits.ok()) return Fail(limits.status());
   }
-  if (options.on_server || options.detach)
+  if (context.server_given || options.detach)
     return Create(context, options, *v1::StudyService::NewStub(Connect(context)));
   service::ServerOptions server_options;
   server_options.data_dir = options.data_dir;

@@ -16,8 +16,8 @@ constexpr int kDeepest = 64;    // nodes that wait; a tree split in halves needs
 
 double Ratio(double part, double whole) { return whole > 0 ? part / whole : 0; }
 
-// Weights of the point of a triangle nearest to p; a weight that is 0 is exactly so. (C. Ericson, Real-Time Collision
-// Detection, 2005, section 5.1.5.)
+}  // namespace
+
 Eigen::Vector3d NearestWeights(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
                                const Eigen::Vector3d& p) {
   const Eigen::Vector3d ab = b - a, ac = c - a;
@@ -45,8 +45,6 @@ Eigen::Vector3d NearestWeights(const Eigen::Vector3d& a, const Eigen::Vector3d& 
   const double sum = at_a + at_b + at_c;
   return {1 - Ratio(at_b, sum) - Ratio(at_c, sum), Ratio(at_b, sum), Ratio(at_c, sum)};
 }
-
-}  // namespace
 
 TriangleTree::TriangleTree(const ConstPoints& x, const Triangles& triangles) : triangles_(3, triangles.cols()) {
   Points middles(3, triangles.cols());

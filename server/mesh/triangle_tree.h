@@ -11,6 +11,11 @@
 
 namespace phrenic {
 
+// Weights of a, b and c that give the point of their triangle nearest to p; one that is 0 is exactly so. (C. Ericson,
+// Real-Time Collision Detection, 2005, section 5.1.5.)
+Eigen::Vector3d NearestWeights(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+                               const Eigen::Vector3d& p);
+
 // The point of a surface that is nearest to another point.
 struct SurfacePoint {
   int triangle = -1;                                         // -1: none within reach

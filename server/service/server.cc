@@ -10,6 +10,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/service/address.h"
+#include "server/service/compare_service.h"
 #include "server/service/export_service.h"
 #include "server/service/frame_service.h"
 #include "server/service/scene_service.h"
@@ -63,7 +64,8 @@ struct Server::Parts {
         session_service(table),
         frame_service(table),
         export_service(table, options.limits.exports),
-        study_service(models, options.web_root) {}
+        study_service(models, options.web_root),
+        compare_service(options.limits.exports) {}
 
   absl::Status Serve(const ServerOptions& options);
   absl::Status ServeWeb(const ServerOptions& options);
@@ -76,6 +78,7 @@ struct Server::Parts {
   FrameService frame_service;
   ExportService export_service;
   StudyService study_service;
+  CompareService compare_service;
   std::unique_ptr<grpc::Server> grpc;
   std::unique_ptr<WebGateway> web;
   int port = 0;
@@ -95,6 +98,7 @@ absl::Status Server::Parts::Serve(const ServerOptions& options) {
   builder.RegisterService(&frame_service);
   builder.RegisterService(&export_service);
   builder.RegisterService(&study_service);
+  builder.RegisterService(&compare_service);
   grpc = builder.BuildAndStart();
   if (grpc == nullptr) return CannotListen(options.listen, "the port is in use, or the address is not this machine's");
   return absl::OkStatus();

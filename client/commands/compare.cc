@@ -1,0 +1,119 @@
+// `phrenic compare`: how far two surfaces or motions are apart, by the server's own study.
+#include <climits>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <sstream>
+
+#include "absl/strings/str_cat.h"
+#include "client/commands.h"
+#include "client/comparison.h"
+#include "client/motion_file.h"
+#include "client/progress.h"
+#include "client/whole_file.h"
+#include "phrenic/v1/compare.grpc.pb.h"
+#include "server/service/server.h"
+
+namespace phrenic::client {
+namespace {
+
+constexpr std::uintmax_t kMostBytes = std::uintmax_t{1000} << 20;  // two such files fit one message
+
+absl::Status ReadSurface(const std::string& path, double unit_mm, v1::ComparedFile& file) {
+  std::error_code error;
+  if (std::filesystem::is_regular_file(path, error) && std::filesystem::file_size(path, error) > kMostBytes) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(path, ":1: larger than 1000 MiB, the most that is compared; record fewer frames a second"));
+  }
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream bytes;
+  if (!std::filesystem::is_regular_file(path, error) || !in ||
+      (!(bytes << in.rdbuf()) && in.peek() != std::ifstream::traits_type::eof())) {
+    return absl::NotFoundError(absl::StrCat("cannot read \"", path, "\": is there such a file, and may it be read?"));
+  }
+  file.set_name(path);
+  file.set_content(std::move(bytes).str());
+  if (unit_mm > 0) file.set_unit_mm(unit_mm);
+  return absl::OkStatus();
+}
+
+absl::StatusOr<v1::CompareRequest> MakeRequest(const CompareOptions& options) {
+  v1::CompareRequest request;
+  if (absl::Status status = ReadSurface(options.a, options.unit_a_mm, *request.mutable_a()); !status.ok()) {
+    return status;
+  }
+  if (absl::Status status = ReadSurface(options.b, options.unit_b_mm, *request.mutable_b()); !status.ok()) {
+    return status;
+  }
+  if (options.tolerance_mm > 0) request.set_tolerance_mm(options.tolerance_mm);
+  if (options.spacing_mm > 0) request.set_spacing_mm(options.spacing_mm);
+  request.set_by_region(options.by_region);
+  request.set_match_phases(options.match_phases);
+  if (options.map_file.empty()) return request;
+  request.set_map_format(FormatOf(options.map_file));
+  if (!request.map_format().empty()) return request;
+  return absl::InvalidArgumentError(
+      absl::StrCat("--map ", options.map_file, ": the name's ending tells the format; name it .msh or .vtp"));
+}
+
+void Print(const Context& context, const v1::ComparisonTable& table) {
+  if (context.json()) {
+    std::cout << Json(table) << "\n";
+  } else if (context.output == Output::kCsv) {
+    PrintComparisonCsv(table, std::cout);
+  } else {
+    PrintComparison(table, std::cout);
+  }
+}
+
+int CompareOn(const Context& context, const CompareOptions& options, const v1::CompareRequest& request,
+              const std::vector<Limit>& limits, const std::shared_ptr<grpc::Channel>& channel) {
+  grpc::ClientContext call;
+  const Interruption::Scope scope(*context.interruption, call);
+  const auto stub = v1::CompareService::NewStub(channel);
+  const auto reader = stub->Compare(&call, request);
+  v1::CompareResponse response;
+  std::string map;
+  {
+    Progress progress("comparing", 1);
+    while (reader->Read(&response) && !response.has_table()) {
+      if (response.has_map_chunk()) map += response.map_chunk();
+      if (response.has_progress()) progress.Update(response.progress());
+    }
+  }
+  if (const grpc::Status status = reader->Finish(); !status.ok()) {
+    const int code = Fail(context, status);
+    if (context.server_given && status.error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED) {
+      std::cerr << "phrenic: without --server the comparison is made here, of files of up to 1000 MiB\n";
+    }
+    return code;
+  }
+  if (!options.map_file.empty()) {
+    if (const absl::Status status = WriteWhole(options.map_file, map); !status.ok()) return Fail(status);
+  }
+  Print(context, response.table());
+  const std::vector<std::string> missed = MissedLimits(response.table(), limits);
+  for (const std::string& sentence : missed) std::cerr << "phrenic: " << sentence << "\n";
+  return missed.empty() ? kOk : kMissed;
+}
+
+}  // namespace
+
+int Compare(const Context& context, const CompareOptions& options) {
+  const auto limits = ReadLimits(options.checks);
+  if (!limits.ok()) {
+    Fail(limits.status());
+    return kUsage;
+  }
+  const auto request = MakeRequest(options);
+  if (!request.ok()) return Fail(request.status());
+  if (context.server_given) return CompareOn(context, options, *request, *limits, Connect(context));
+  service::ServerOptions server_options;
+  server_options.max_message_bytes = INT_MAX;
+  auto server = service::Server::Start(server_options);
+  if (!server.ok()) return Fail(server.status());
+  return CompareOn(context, options, *request, *limits, (*server)->InProcessChannel());
+}
+
+}  // namespace phrenic::client

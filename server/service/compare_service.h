@@ -1,0 +1,27 @@
+// Comparisons of surfaces and motions over gRPC.
+#ifndef PHRENIC_SERVER_SERVICE_COMPARE_SERVICE_H_
+#define PHRENIC_SERVER_SERVICE_COMPARE_SERVICE_H_
+
+#include <atomic>
+
+#include "phrenic/v1/compare.grpc.pb.h"
+
+namespace phrenic::service {
+
+// gRPC's threads call, any number at a time; each comparison has one of them until it is done, and ends when its caller
+// goes away.
+class CompareService final : public v1::CompareService::Service {
+ public:
+  explicit CompareService(int max_comparisons) : max_comparisons_(max_comparisons) {}
+
+  grpc::Status Compare(grpc::ServerContext* context, const v1::CompareRequest* request,
+                       grpc::ServerWriter<v1::CompareResponse>* writer) override;
+
+ private:
+  const int max_comparisons_;
+  std::atomic<int> comparisons_ = 0;
+};
+
+}  // namespace phrenic::service
+
+#endif  // PHRENIC_SERVER_SERVICE_COMPARE_SERVICE_H_

@@ -1,0 +1,172 @@
+#include "server/study/comparison.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "server/record/msh.h"
+#include "tests/study/surfaces.h"
+
+namespace phrenic::study {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+constexpr char kObj[] = "v 0 0 0\nv 100 0 0\nv 0 100 0\nf 1 2 3\n";
+
+// A square that rises by `speed` [m/s], and beside it one that stands still, as `phrenic run --export` writes them.
+std::string MotionText(double speed, const std::vector<double>& times, const std::string& second = "still") {
+  std::string text;
+  const auto recorder = record::MakeMshRecorder([&text](std::string_view bytes) {
+    text += bytes;
+    return absl::OkStatus();
+  });
+  const Mesh rising = Square(0.1, 2), still = Moved(Square(0.1, 2), {1, 0, 0});
+  EXPECT_TRUE(recorder->Begin({{"rising", rising}, {second, still}}).ok());
+  for (const double time : times) {
+    Points x(3, rising.vertices.cols() + still.vertices.cols());
+    x << rising.vertices, still.vertices;
+    x.row(2).head(rising.vertices.cols()).array() += speed * (time - times.front());
+    EXPECT_TRUE(recorder->AddFrame(time, x).ok());
+  }
+  EXPECT_TRUE(recorder->End().ok());
+  return text;
+}
+
+v1::CompareRequest Request(const std::string& name_a, const std::string& a, const std::string& name_b,
+                           const std::string& b) {
+  v1::CompareRequest request;
+  request.mutable_a()->set_name(name_a);
+  request.mutable_a()->set_content(a);
+  request.mutable_b()->set_name(name_b);
+  request.mutable_b()->set_content(b);
+  return request;
+}
+
+absl::StatusOr<v1::ComparisonTable> Compared(const v1::CompareRequest& request, std::string* map = nullptr) {
+  return Compare(
+      request, [](double) { return true; },
+      [map](std::string_view bytes) {
+        if (map != nullptr) map->append(bytes);
+        return absl::OkStatus();
+      });
+}
+
+TEST(Comparison, OfSurfacesHasOneRowWithoutATime) {
+  auto request = Request("a.obj", kObj, "b.obj", kObj);
+  request.mutable_b()->set_unit_mm(1.1);
+  const auto table = Compared(request);
+  ASSERT_TRUE(table.ok()) << table.status();
+  ASSERT_EQ(table->rows_size(), 1);
+  EXPECT_FALSE(table->rows(0).has_time());
+  EXPECT_FALSE(table->rows(0).has_baseline());
+  EXPECT_NEAR(table->rows(0).distance().area_b() / table->rows(0).distance().area_a(), 1.21, 1e-9);
+  EXPECT_FALSE(table->definition().empty());
+  EXPECT_EQ(table->tolerance_mm(), 1);
+}
+
+// A rises by 10 mm/s, B by 8 mm/s: 2 mm/s t apart, and 8 mm/s t where A stands still.
+TEST(Comparison, OfMotionsHasARowATimeWithTheBaselineBesideIt) {
+  auto request =
+      Request("a.msh", MotionText(0.010, {0, 0.25, 0.5, 0.75, 1, 1.25}), "b.msh", MotionText(0.008, {0, 0.4, 1}));
+  request.set_by_region(true);
+  const auto table = Compared(request);
+  ASSERT_TRUE(table.ok()) << table.status();
+  EXPECT_EQ(table->times_left_out(), 1) << "B ends before 1.25 s";
+  ASSERT_EQ(table->rows_size(), 3 + 5 * 3) << "whole, rising and still: over all times, and at five";
+  for (const v1::ComparisonRow& row : table->rows()) {
+    if (!row.has_time()) continue;
+    const double share = row.region() == "still" ? 0 : row.region().empty() ? 0.5 : 1;
+    EXPECT_NEAR(row.distance().assd(), share * 2 * row.time(), 1e-4) << row.region() << row.time();
+    EXPECT_NEAR(row.baseline().assd(), share * 8 * row.time(), 1e-4) << row.region() << row.time();
+  }
+  const v1::ComparisonRow& rising = table->rows(1);
+  ASSERT_EQ(rising.region(), "rising");
+  EXPECT_NEAR(rising.distance().assd(), 1, 1e-4) << "the mean over 0 to 1 s";
+  EXPECT_NEAR(rising.distance().hd_max(), 2, 1e-3) << "the worst time's";
+  EXPECT_NEAR(rising.distance().rms_a_to_b(), 2 * std::sqrt(0.375), 1e-4) << "the root of the mean of (2 t)^2";
+  EXPECT_NEAR(rising.baseline().hd_max(), 8, 2e-3);
+}
+
+TEST(Comparison, PhasesAreMatchedWhereTimesAreNot) {
+  auto request = Request("a.msh", MotionText(0.01, {0, 0.5, 1}), "b.msh", MotionText(0.005, {10, 11, 12}));
+  const auto apart = Compared(request);
+  ASSERT_FALSE(apart.ok());
+  EXPECT_EQ(apart.status().code(), absl::StatusCode::kFailedPrecondition);
+  EXPECT_THAT(std::string(apart.status().message()), HasSubstr("A has 0 to 1 s, B 10 to 12 s"));
+  request.set_match_phases(true);
+  const auto table = Compared(request);
+  ASSERT_TRUE(table.ok()) << table.status();
+  EXPECT_LT(table->rows(0).distance().hd_max(), 1e-3) << "the same way in another time";
+  EXPECT_EQ(table->times_left_out(), 0);
+}
+
+TEST(Comparison, OfAMotionWithASurfaceHasARowATime) {
+  const std::string still = MotionText(0, {0}), motion = MotionText(0.01, {0, 1});
+  for (const bool swapped : {false, true}) {
+    const auto table =
+        Compared(swapped ? Request("a.msh", motion, "b.msh", still) : Request("a.msh", still, "b.msh", motion));
+    ASSERT_TRUE(table.ok()) << table.status();
+    ASSERT_EQ(table->rows_size(), 3);
+    EXPECT_EQ(table->rows(2).time(), 1);
+    EXPECT_NEAR(table->rows(2).distance().hd_max(), 10, 0.002);
+    EXPECT_EQ(table->rows(0).has_baseline(), swapped) << "A standing still is the comparison itself";
+  }
+}
+
+TEST(Comparison, ARegionOfOneFileAloneIsNotANumber) {
+  auto request = Request("a.msh", MotionText(0, {0}, "left"), "b.msh", MotionText(0, {0}, "right"));
+  request.set_by_region(true);
+  const auto table = Compared(request);
+  ASSERT_TRUE(table.ok()) << table.status();
+  std::vector<std::string> regions;
+  for (const auto& row : table->rows()) {
+    regions.push_back(row.region());
+    const bool common = row.region().empty() || row.region() == "rising";
+    EXPECT_EQ(std::isnan(row.distance().hd_max()), !common) << row.region();
+  }
+  EXPECT_THAT(regions, ElementsAre("", "left", "right", "rising"));
+}
+
+TEST(Comparison, BadInputIsRefusedByName) {
+  const auto message = [](const v1::CompareRequest& request) {
+    const auto table = Compared(request);
+    EXPECT_FALSE(table.ok());
+    return std::string(table.status().message());
+  };
+  EXPECT_THAT(message(Request("a.stl", "", "b.obj", kObj)), HasSubstr("a.stl:1: the name's ending"));
+  EXPECT_THAT(message(Request("a.obj", kObj, "b.obj", "v 1 2\n")), HasSubstr("b.obj:1:"));
+  auto huge = Request("a.obj", kObj, "b.obj", "v 1e300 0 0\nv 0 1 0\nv 1 0 0\nf 1 2 3\n");
+  EXPECT_THAT(message(huge), HasSubstr("b.obj:1: has a coordinate of"));
+  auto format = Request("a.obj", kObj, "b.obj", kObj);
+  format.set_map_format("png");
+  EXPECT_THAT(message(format), HasSubstr("map_format: there is no format \"png\"; there are msh, vtp"));
+  auto wire = Request("a.obj", kObj, "wire.obj", "v 0 0 0\nv 1 0 0\nl 1 2\n");
+  wire.set_map_format("vtp");
+  EXPECT_THAT(message(wire), HasSubstr("wire.obj:1: has no triangles"));
+}
+
+TEST(Comparison, EndsWhereNobodyListens) {
+  const auto table = Compare(
+      Request("a.obj", kObj, "b.obj", kObj), [](double) { return false; },
+      [](std::string_view) { return absl::OkStatus(); });
+  EXPECT_EQ(table.status().code(), absl::StatusCode::kCancelled);
+}
+
+TEST(Comparison, TheMapHasEachVertexOfTheSurfaceAndItsDistance) {
+  auto request = Request("a.obj", "v 9 9 9\nv 0 0 5\nv 100 0 2\nv 0 100 3\nf 2 3 4\n", "b.obj", kObj);
+  std::string map;
+  request.set_map_format("msh");
+  ASSERT_TRUE(Compared(request, &map).ok());
+  EXPECT_THAT(map, HasSubstr("$Nodes\n3\n")) << "the first vertex is in no triangle";
+  EXPECT_THAT(map, HasSubstr("\"distance [mm]\"\n1\n0\n3\n0\n1\n3\n1 5\n2 2\n3 3\n$EndNodeData\n"));
+  map.clear();
+  request.set_map_format("vtp");
+  ASSERT_TRUE(Compared(request, &map).ok());
+  EXPECT_THAT(map, HasSubstr("format=\"ascii\">\n5\n2\n3\n</DataArray>"));
+}
+
+}  // namespace
+}  // namespace phrenic::study
