@@ -70,7 +70,8 @@ Instant MakeInstant(const Model& model, const v1::Parameters& parameters, const 
           .parameters = parameters,
           .x = state.x,
           .v = state.v,
-          .poses = state.poses};
+          .poses = state.poses,
+          .pulls = state.pulls};
 }
 
 namespace {

@@ -1,9 +1,10 @@
-// Loads and drags with a known answer.
+// Loads, drags and pulls with a known answer.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
+#include "server/mechanics/pulls.h"
 #include "tests/compile_text.h"
 
 namespace phrenic {
@@ -60,6 +61,19 @@ TEST(PointLoad, WithTheBreathIsTheSignalsDoubleIntegral) {
   const double exact = 3 * 2 / (2 * 1.5) * (t * t / 2 + (std::cos(omega * t) - 1) / (omega * omega));
   EXPECT_NEAR(RunTo(*model, t, 1e-3).x(2, 1), exact, 1e-5);
   EXPECT_EQ(RunTo(*model, t, 1e-3).x(2, 0), 0);
+}
+
+TEST(Pull, StretchesASpringByForceOverStiffness) {
+  const auto model = CompileText(
+      "name: 'spring' bodies { name: 'spring' role: ROLE_DEFORMABLE fixed_vertices: 0 polyhedron { vertices {} "
+      "vertices "
+      "{ x: 1 } edges { a: 0 b: 1 } } } forces { springs { bodies: 'spring' stiffness: 40 } } parameters { integrator: "
+      "INTEGRATOR_STATIC }");
+  State state = model->InitialState();
+  Workspace work = model->MakeWorkspace();
+  state.pulls = {{1, {3, 0, 0}}};
+  ASSERT_TRUE(Step(*model, model->parameters, 0.1, state, work).ok());
+  EXPECT_NEAR(state.x(0, 1), 1 + 3.0 / 40, 1e-9);
 }
 
 }  // namespace
