@@ -6,7 +6,7 @@ import { type Session, SessionSchema, SessionState } from "../../web/src/gen/phr
 import { make } from "../../web/src/panels/dom";
 import { parameterSections } from "../../web/src/panels/parameters";
 import { playbackPanel } from "../../web/src/panels/playback";
-import { linkWords } from "../../web/src/panels/status";
+import { linkWords, Readout, residualWords } from "../../web/src/panels/status";
 import { FakeClock, settle } from "./fake_clock";
 import { FakeServer } from "./fake_server";
 
@@ -82,6 +82,21 @@ test("ThePlayButtonSaysWhatItDoes", () => {
   expect(play.ariaLabel).toBe("Play");
   controller.receive(session(1, 3n, SessionState.DIVERGED));
   expect((play as HTMLButtonElement).disabled).toBe(true);
+});
+
+test("HowWellConstraintsAreKeptIsPutInWords", () => {
+  expect([undefined, 3e-12, 4.2e-4].map(residualWords)).toEqual(["", "kept", "0.42 mm off"]);
+});
+
+test("TheReadoutSpeaksOfConstraintsWhereThereAreAny", () => {
+  const readout = new Readout();
+  const shown = () => !readout.element.querySelector<HTMLElement>(".links")!.hidden;
+  const rate = { framesPerSecond: 30, delay: 4 };
+  const status = { frame: undefined, rate, now: 0, link: { kind: "live" as const } };
+  readout.show({ ...status, session: session(1, 1n) });
+  expect(shown()).toBe(false);
+  readout.show({ ...status, session: create(SessionSchema, { constraintResidual: 0 }) });
+  expect(shown()).toBe(true);
 });
 
 test("TheLinkIsPutInWords", () => {

@@ -41,6 +41,8 @@ export class App {
   private readonly probes = new Probes();
   private readonly demand = new Demand();
   private bodies: Body[] = [];
+  /** Names of the bodies that have mass and move by forces. */
+  private deformable: ReadonlySet<string> = new Set();
 
   constructor(
     api: Api,
@@ -80,6 +82,10 @@ export class App {
       this.probes.element,
       reportPanel(this.report),
     );
+    viewer.letPull(
+      () => this.deformable,
+      (body, vertex, force) => controller.pull(body, vertex, force),
+    );
     place("playback-place").append(playbackPanel(controller));
     place("readout-place").append(this.readout.element);
     place("link-place").append(this.viewers.element, this.pill.element);
@@ -115,6 +121,7 @@ export class App {
         this.bodies = bodies;
         this.frames.clear();
         this.report.set(report);
+        this.deformable = new Set(report?.bodies.filter(({ role }) => role === "deformable").map(({ name }) => name));
         this.viewer.show(bodies);
         this.looks.start(bodies, report);
         place("loading").hidden = true;

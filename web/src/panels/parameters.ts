@@ -3,6 +3,8 @@ import { type Control, parameterControls, type ParameterName, type SwitchControl
 import { ChoiceRow } from "./choice_row";
 import { section, switchRow } from "./dom";
 import { NumberRow } from "./number_row";
+import { PresetRow } from "./presets";
+import { pullRow } from "./pulls";
 
 /** What a parameter of the solver has in its name; all others are the breath's. */
 const ofTheSolver = /integrator|step/i;
@@ -16,7 +18,11 @@ export function parameterSections(controller: Controller): HTMLElement[] {
   });
   const elements = (solver: boolean) =>
     rows.filter(({ name }) => ofTheSolver.test(name) === solver).map(({ element }) => element);
-  return [section("Breathing", true, ...elements(false)), section("Solver", true, ...elements(true))];
+  const presets = new PresetRow(controller);
+  return [
+    section("Breathing", true, presets.element, pullRow(controller), ...elements(false)),
+    section("Solver", true, ...elements(true)),
+  ];
 }
 
 interface Row {
