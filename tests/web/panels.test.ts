@@ -2,11 +2,13 @@ import { create } from "@bufbuild/protobuf";
 import { beforeEach, describe, expect, test } from "vitest";
 import { Controller } from "../../web/src/controller";
 import { ParametersSchema } from "../../web/src/gen/phrenic/v1/parameters_pb";
+import { type CompileReport, CompileReportSchema } from "../../web/src/gen/phrenic/v1/report_pb";
 import { type Session, SessionSchema, SessionState } from "../../web/src/gen/phrenic/v1/session_pb";
 import { make } from "../../web/src/panels/dom";
 import { parameterSections } from "../../web/src/panels/parameters";
 import { playbackPanel } from "../../web/src/panels/playback";
 import { linkWords, Readout, residualWords } from "../../web/src/panels/status";
+import { Signal } from "../../web/src/signal";
 import { FakeClock, settle } from "./fake_clock";
 import { FakeServer } from "./fake_server";
 
@@ -73,6 +75,17 @@ describe("the control panel", () => {
     expect(panel.textContent).toContain("Breath force goes from 0 to 20.");
     expect(entry.getAttribute("aria-invalid")).toBe("true");
   });
+});
+
+test("AParameterThatNothingAnswersToIsHidden", () => {
+  const report = new Signal<CompileReport | undefined>(undefined);
+  document.body.replaceChildren(...parameterSections(controller, report));
+  const hidden = (id: string) => document.querySelector(`#parameter-${id}`)!.closest("[hidden]") !== null;
+  expect(hidden("pumpHandle")).toBe(false);
+  report.set(create(CompileReportSchema, { idleParameters: ["pump_handle"] }));
+  expect([hidden("pumpHandle"), hidden("bucketHandle")]).toEqual([true, false]);
+  report.set(create(CompileReportSchema, {}));
+  expect(hidden("pumpHandle")).toBe(false);
 });
 
 test("ThePlayButtonSaysWhatItDoes", () => {

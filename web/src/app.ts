@@ -76,7 +76,7 @@ export class App {
   private furnish(): void {
     const { controller, looks, viewer } = this;
     place("panel").append(
-      ...parameterSections(controller),
+      ...parameterSections(controller, this.report),
       appearancePanel(looks, (kind, on) => viewer.setOverlay(kind, on)),
       layersPanel(looks),
       this.probes.element,

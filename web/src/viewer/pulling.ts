@@ -22,6 +22,12 @@ export class Pulling {
     private readonly changed: () => void,
   ) {
     this.arrow.visible = false;
+    // Over everything: the tissue may lie behind bone.
+    for (const part of [this.arrow.line, this.arrow.cone]) {
+      part.renderOrder = 1;
+      (part.material as THREE.Material).depthTest = false;
+      (part.material as THREE.Material).transparent = true;
+    }
     scene.add(this.arrow);
     // Before the camera's own controls hear of it.
     canvas.addEventListener("pointerdown", (event) => this.start(event), { capture: true });
