@@ -24,6 +24,7 @@ struct AllOptions {
   SessionOptions session;
   WatchOptions watch;
   SetOptions set;
+  PullOptions pull;
   PlayOptions play;
   StepOptions step;
   ExportOptions export_motion;
@@ -88,6 +89,11 @@ class CommandLine {
     command->footer("\n" + ParameterHelp());
   }
 
+  static void AddPulls(CLI::App* command, std::vector<std::string>& pulls) {
+    command->add_option("--pull", pulls, "force [N] on a vertex, BODY:VERTEX:X,Y,Z; may be repeated")
+        ->allow_extra_args(false);
+  }
+
   static void AddPreset(CLI::App* command, std::string& preset) {
     command->add_option("--preset", preset, "one of the scene's ways to breathe, as `phrenic describe` lists them");
   }
@@ -102,6 +108,7 @@ class CommandLine {
     AddScene(command, run.scene);
     AddPreset(command, run.preset);
     AddSettings(command, run.settings);
+    AddPulls(command, run.pulls);
     command->add_option("--seconds", run.seconds, "simulated time [s]")
         ->check(CLI::Range(1e-6, 3600.0))
         ->capture_default_str();
@@ -187,6 +194,7 @@ class CommandLine {
     AddScene(command, create.scene);
     AddPreset(command, create.preset);
     AddSettings(command, create.settings);
+    AddPulls(command, create.pulls);
     command->add_option("--id", create.id, "its name: 1 to 64 of a-z, 0-9 and -");
     command->add_flag("--play", create.play, "let it play at once");
     Add("sessions", "List the sessions", &Sessions);
@@ -204,7 +212,21 @@ class CommandLine {
     command->footer("\n" + ParameterHelp());
   }
 
+  void AddPull() {
+    PullOptions& pull = options_.pull;
+    CLI::App* command = Add("pull", "Pull a vertex of a session by a force, until it is let go", &PullVertex, pull);
+    command->add_option("SESSION", pull.id)->required();
+    CLI::Option* body = command->add_option("--body", pull.body, "a deformable body");
+    command->add_option("--vertex", pull.vertex, "one of its vertices, from 0")->needs(body);
+    command->add_option("--force", pull.force, "X,Y,Z [N]; lets go where it is zero or not given")
+        ->delimiter(',')
+        ->expected(3)
+        ->needs(body);
+    command->add_flag("--release", pull.release, "let go of all others");
+  }
+
   void AddControlCommands() {
+    AddPull();
     PlayOptions& play = options_.play;
     CLI::App* command = Add("play", "Let a session play", &Play, play);
     command->add_option("SESSION", play.id)->required();

@@ -19,7 +19,8 @@ struct RunOptions {
   double seconds = 8;
   std::string preset;
   std::vector<std::string> settings;
-  std::string file;  // empty: none
+  std::vector<std::string> pulls;  // "diaphragm:812:0,0,1"
+  std::string file;                // empty: none
   std::vector<std::string> bodies;
   double frames_per_second = 10;
   std::string data_dir;
@@ -52,6 +53,7 @@ struct CreateOptions {
   std::string id;
   std::string preset;
   std::vector<std::string> settings;
+  std::vector<std::string> pulls;
   bool play = false;
 };
 struct SessionOptions {
@@ -67,6 +69,13 @@ struct SetOptions {
   std::string id;
   std::string preset;
   std::vector<std::string> settings;
+};
+struct PullOptions {
+  std::string id;
+  std::string body;  // empty: none
+  int vertex = 0;
+  std::vector<double> force = {0, 0, 0};  // [N]; zero lets go
+  bool release = false;
 };
 struct PlayOptions {
   std::string id;
@@ -101,6 +110,7 @@ int Create(const Context& context, const CreateOptions& options);
 int Sessions(const Context& context);
 int Watch(const Context& context, const WatchOptions& options);
 int Set(const Context& context, const SetOptions& options);
+int PullVertex(const Context& context, const PullOptions& options);
 int Play(const Context& context, const PlayOptions& options);
 int Pause(const Context& context, const SessionOptions& options);
 int TakeSteps(const Context& context, const StepOptions& options);

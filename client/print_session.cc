@@ -44,6 +44,13 @@ std::string ParametersLine(const v1::Parameters& parameters) {
   return line;
 }
 
+std::string ResidualText(const v1::Session& session, const char* before, const char* after) {
+  if (!session.has_constraint_residual()) return "";
+  const std::string whose =
+      session.residual_constraint().empty() ? "" : absl::StrCat(" (", session.residual_constraint(), ")");
+  return absl::StrFormat("%s%.2g mm%s%s", before, 1e3 * session.constraint_residual(), whose, after);
+}
+
 void PrintSession(const v1::Session& session, std::ostream& out) {
   out << absl::StrFormat("%s: %s, %s, t = %.3f s, tick %d, revision %d, %d viewers\n", session.id(), session.scene(),
                          StateName(session.state()), session.time(), session.tick(), session.revision(),
@@ -54,6 +61,11 @@ void PrintSession(const v1::Session& session, std::ostream& out) {
                            session.pace().cpu_per_simulated_second());
   }
   out << "  " << ParametersLine(session.parameters()) << "\n";
+  out << ResidualText(session, "  constraints kept within ", "\n");
+  for (const v1::Pull& pull : session.pulls()) {
+    out << absl::StrFormat("  pulled by (%g, %g, %g) N at vertex %d of %s\n", pull.force().x(), pull.force().y(),
+                           pull.force().z(), pull.vertex(), pull.body());
+  }
   if (!session.has_divergence()) return;
   const v1::Divergence& why = session.divergence();
   out << absl::StrFormat("  diverged at t = %.4g s (tick %d): vertex %d of %s, by %s; %s\n", why.time(), why.tick(),

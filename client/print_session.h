@@ -15,7 +15,10 @@ std::string StateName(v1::SessionState state);
 // "breath_force=1.5 breath_length=4 ...".
 std::string ParametersLine(const v1::Parameters& parameters);
 
-// A few lines: state, time, pace, parameters, and why it diverged where it has.
+// How well the session keeps its constraints, "1.2e-07 mm (rigid-links:cube)" between two words; "" where it has none.
+std::string ResidualText(const v1::Session& session, const char* before, const char* after);
+
+// A few lines: state, time, pace, parameters, constraints, pulls, and why it diverged where it has.
 void PrintSession(const v1::Session& session, std::ostream& out);
 
 }  // namespace phrenic::client

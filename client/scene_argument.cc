@@ -6,8 +6,10 @@
 #include <sstream>
 
 #include "absl/strings/match.h"
+#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/str_split.h"
 #include "client/table.h"
 #include "server/schema/fields.h"
 #include "server/schema/schema.h"
@@ -38,6 +40,30 @@ std::vector<std::string> ParameterRow(const FieldDescriptor& field) {
   return QuantityRow(field, field.options().GetExtension(v1::quantity));
 }
 
+// A body's name may hold colons: the last two count.
+absl::StatusOr<v1::Pull> ReadPull(const std::string& text) {
+  const absl::Status fault = absl::InvalidArgumentError(
+      absl::StrCat("\"", text, "\" is not of the form BODY:VERTEX:X,Y,Z, as in diaphragm:812:0,0,1"));
+  const size_t second = text.rfind(':');
+  if (second == std::string::npos || second == 0) return fault;
+  const size_t first = text.rfind(':', second - 1);
+  if (first == std::string::npos) return fault;
+  const std::vector<std::string> force = absl::StrSplit(text.substr(second + 1), ',');
+  int vertex = 0;
+  double x = 0, y = 0, z = 0;
+  if (!absl::SimpleAtoi(text.substr(first + 1, second - first - 1), &vertex) || force.size() != 3 ||
+      !absl::SimpleAtod(force[0], &x) || !absl::SimpleAtod(force[1], &y) || !absl::SimpleAtod(force[2], &z)) {
+    return fault;
+  }
+  v1::Pull pull;
+  pull.set_body(text.substr(0, first));
+  pull.set_vertex(vertex);
+  pull.mutable_force()->set_x(x);
+  pull.mutable_force()->set_y(y);
+  pull.mutable_force()->set_z(z);
+  return pull;
+}
+
 }  // namespace
 
 absl::StatusOr<v1::SceneSource> ReadSceneArgument(const std::string& scene, double resolution_mm) {
@@ -55,6 +81,16 @@ absl::StatusOr<v1::SceneSource> ReadSceneArgument(const std::string& scene, doub
   if (!parsed.ok()) return parsed.status();
   *source.mutable_scene() = *std::move(parsed);
   return source;
+}
+
+absl::StatusOr<google::protobuf::RepeatedPtrField<v1::Pull>> ReadPulls(const std::vector<std::string>& pulls) {
+  google::protobuf::RepeatedPtrField<v1::Pull> list;
+  for (const std::string& text : pulls) {
+    const absl::StatusOr<v1::Pull> pull = ReadPull(text);
+    if (!pull.ok()) return pull.status();
+    *list.Add() = *pull;
+  }
+  return list;
 }
 
 absl::StatusOr<v1::Parameters> ReadSettings(const std::vector<std::string>& settings) {

@@ -14,6 +14,9 @@ namespace phrenic::client {
 // `resolution_mm` 0 leaves the scene's own.
 absl::StatusOr<v1::SceneSource> ReadSceneArgument(const std::string& scene, double resolution_mm);
 
+// Pulls from "BODY:VERTEX:X,Y,Z", the force in newtons; INVALID_ARGUMENT says what is wrong with which.
+absl::StatusOr<google::protobuf::RepeatedPtrField<v1::Pull>> ReadPulls(const std::vector<std::string>& pulls);
+
 // Parameters from "name=value" words; INVALID_ARGUMENT names the word.
 absl::StatusOr<v1::Parameters> ReadSettings(const std::vector<std::string>& settings);
 

@@ -41,6 +41,9 @@ int Create(const Context& context, const CreateOptions& options) {
   absl::StatusOr<v1::Parameters> parameters = ReadSettings(options.settings);
   if (!parameters.ok()) return Fail(parameters.status());
   *request.mutable_parameters() = *std::move(parameters);
+  const auto pulls = ReadPulls(options.pulls);
+  if (!pulls.ok()) return Fail(pulls.status());
+  *request.mutable_pulls() = *pulls;
   const auto stub = v1::SessionService::NewStub(Connect(context));
   v1::CreateSessionResponse response;
   grpc::Status status = Call(context, *stub, &Stub::CreateSession, request, &response);
@@ -66,6 +69,21 @@ int Set(const Context& context, const SetOptions& options) {
   const grpc::Status status = Call(context, *stub, &Stub::UpdateParameters, request, &response);
   for (const std::string& warning : response.warnings()) std::cerr << "phrenic: warning: " << warning << "\n";
   return Show(context, status, response);
+}
+
+int PullVertex(const Context& context, const PullOptions& options) {
+  v1::PullSessionRequest request;
+  request.set_session_id(options.id);
+  request.set_release_others(options.release);
+  if (!options.body.empty()) {
+    v1::Pull& pull = *request.add_pulls();
+    pull.set_body(options.body);
+    pull.set_vertex(options.vertex);
+    pull.mutable_force()->set_x(options.force[0]);
+    pull.mutable_force()->set_y(options.force[1]);
+    pull.mutable_force()->set_z(options.force[2]);
+  }
+  return CallAndShow<v1::PullSessionResponse>(context, &Stub::PullSession, request);
 }
 
 int Play(const Context& context, const PlayOptions& options) {

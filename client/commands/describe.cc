@@ -2,6 +2,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
 #include "client/commands.h"
 #include "client/print_session.h"
 #include "client/scene_argument.h"
@@ -50,7 +51,11 @@ void PrintReport(const v1::DescribeSceneResponse& response) {
   for (const v1::Preset& preset : response.scene().presets()) {
     std::cout << absl::StrFormat("%s (%s): %s\n", preset.name(), preset.title(), ParametersLine(preset.parameters()));
   }
-  std::cout << "\nParameters\n" << ParametersLine(response.parameters()) << "\n" << ParameterHelp();
+  std::cout << "\nParameters\n" << ParametersLine(response.parameters()) << "\n";
+  if (report.idle_parameters_size() > 0) {
+    std::cout << "Without effect here: " << absl::StrJoin(report.idle_parameters(), ", ") << "\n";
+  }
+  std::cout << ParameterHelp();
 }
 
 }  // namespace

@@ -22,6 +22,7 @@ namespace phrenic::client {
 namespace {
 
 using Stub = v1::SessionService::Stub;
+using Pulls = google::protobuf::RepeatedPtrField<v1::Pull>;
 
 constexpr double kReadingsASecond = 60;  // of simulated time
 
@@ -36,12 +37,14 @@ struct Cost {
 double ProcessCpuSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 grpc::Status CreateHere(const Context& context, const RunOptions& options, const v1::SceneSource& source,
-                        const v1::Parameters& parameters, Stub& stub, v1::GetSessionResponse* session) {
+                        const v1::Parameters& parameters, const Pulls& pulls, Stub& stub,
+                        v1::GetSessionResponse* session) {
   v1::CreateSessionRequest request;
   *request.mutable_source() = source;
   *request.mutable_parameters() = parameters;
   request.set_session_id("run");
   request.set_preset(options.preset);
+  for (const v1::Pull& pull : pulls) *request.add_pulls() = pull;
   v1::CreateSessionResponse created;
   const Progress compiling("compiling " + options.scene.scene, 1);
   grpc::Status status = Call(context, stub, &Stub::CreateSession, request, &created);
@@ -141,10 +144,10 @@ void PrintCostJson(const RunOptions& options, const v1::GetSessionResponse& sess
 }
 
 int RunOn(const Context& context, const RunOptions& options, const v1::SceneSource& source,
-          const v1::Parameters& parameters, service::Server& server) {
+          const v1::Parameters& parameters, const Pulls& pulls, service::Server& server) {
   const auto stub = v1::SessionService::NewStub(server.InProcessChannel());
   v1::GetSessionResponse session;
-  grpc::Status status = CreateHere(context, options, source, parameters, *stub, &session);
+  grpc::Status status = CreateHere(context, options, source, parameters, pulls, *stub, &session);
   if (!status.ok()) return Fail(context, status);
   // The scene as the server has it; its model is kept, so that this compiles nothing anew.
   v1::DescribeSceneRequest describe;
@@ -167,6 +170,8 @@ int RunOn(const Context& context, const RunOptions& options, const v1::SceneSour
     PrintCostJson(options, session, cost, thesis);
   } else {
     PrintCost(options, session.report(), cost, thesis);
+    // An export steps a copy of the session: what this one keeps is not its end.
+    if (options.file.empty()) std::cout << ResidualText(session.session(), "constraints kept within ", "\n");
   }
   if (session.session().state() != v1::SESSION_STATE_DIVERGED) return kOk;
   PrintSession(session.session(), std::cerr);
@@ -180,11 +185,13 @@ int Run(const Context& context, const RunOptions& options) {
   if (!source.ok()) return Fail(source.status());
   const absl::StatusOr<v1::Parameters> parameters = ReadSettings(options.settings);
   if (!parameters.ok()) return Fail(parameters.status());
+  const auto pulls = ReadPulls(options.pulls);
+  if (!pulls.ok()) return Fail(pulls.status());
   service::ServerOptions server_options;
   server_options.data_dir = options.data_dir;
   auto server = service::Server::Start(server_options);
   if (!server.ok()) return Fail(server.status());
-  return RunOn(context, options, *source, *parameters, **server);
+  return RunOn(context, options, *source, *parameters, *pulls, **server);
 }
 
 }  // namespace phrenic::client

@@ -39,17 +39,24 @@ class Printer {
     if (json_) {
       std::cout << Json(event) << std::endl;
     } else if (event.has_frame()) {
-      std::cout << (live_ ? "\r\x1b[K" : "") << Line(event.frame()) << (live_ ? "" : "\n") << std::flush;
-    } else if (event.session().revision() != revision_) {
-      revision_ = event.session().revision();
-      if (live_) std::cout << "\r\x1b[K";
-      PrintSession(event.session(), std::cout);
+      std::cout << (live_ ? "\r\x1b[K" : "") << Line(event.frame()) << residual_ << (live_ ? "" : "\n") << std::flush;
+    } else {
+      PrintState(event.session());
     }
   }
 
  private:
+  void PrintState(const v1::Session& session) {
+    residual_ = ResidualText(session, "  constraints within ", "");
+    if (session.revision() == revision_) return;
+    revision_ = session.revision();
+    if (live_) std::cout << "\r\x1b[K";
+    PrintSession(session, std::cout);
+  }
+
   bool json_, live_;
   std::int64_t revision_ = -1;
+  std::string residual_;  // about a second old at most
 };
 
 }  // namespace

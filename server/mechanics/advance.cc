@@ -28,6 +28,7 @@ void DriveMotions(const Model& model, const v1::Parameters& parameters, double a
 void SumForces(const Model& model, const Instant& at, Points& f) {
   f.setZero();
   for (const auto& force : model.forces) force->AddForce(at, f);
+  for (const VertexPull& pull : at.pulls) f.col(pull.vertex) += pull.force;
 }
 
 void SumDamping(const Model& model, const Instant& at, Eigen::VectorXd& c) {

@@ -12,7 +12,7 @@ Instant InstantAhead(const Model& model, const v1::Parameters& parameters, doubl
 // Sets driven vertices and poses to where the motions have them `ahead` [s] of the state's own time.
 void DriveMotions(const Model& model, const v1::Parameters& parameters, double ahead, State& state);
 
-// f = the sum of all forces [N].
+// f = the sum of all forces and pulls [N].
 void SumForces(const Model& model, const Instant& at, Points& f);
 
 // c = the sum of all damping coefficients [N s/m].

@@ -14,6 +14,12 @@ constexpr double kSmallestShare = 0.01;  // smaller shares are dropped and the r
 double Weight(double distance) { return std::pow(distance * distance + kNear * kNear, -2); }
 
 std::vector<RideShare> OfVertex(const Ride& ride, int vertex) {
+  if (!ride.triangles.empty()) {
+    const TriangleShare& place = ride.triangles[vertex];
+    std::vector<RideShare> shares;
+    for (int i = 0; i < 3; ++i) shares.push_back({vertex, -1, place.corners[i], place.weights[i]});
+    return shares;
+  }
   const auto before = [](const RideShare& share, int v) { return share.vertex < v; };
   auto first = std::lower_bound(ride.shares.begin(), ride.shares.end(), vertex, before);
   auto last = std::lower_bound(first, ride.shares.end(), vertex + 1, before);

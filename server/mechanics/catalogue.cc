@@ -9,11 +9,13 @@
 #include "server/mechanics/forces/cables.h"
 #include "server/mechanics/forces/contact.h"
 #include "server/mechanics/forces/cross_layer.h"
+#include "server/mechanics/forces/drag.h"
 #include "server/mechanics/forces/fibres.h"
 #include "server/mechanics/forces/friction.h"
 #include "server/mechanics/forces/gravity.h"
 #include "server/mechanics/forces/lungs.h"
 #include "server/mechanics/forces/membrane.h"
+#include "server/mechanics/forces/point_load.h"
 #include "server/mechanics/forces/pressure.h"
 #include "server/mechanics/forces/solid.h"
 #include "server/mechanics/forces/springs.h"
@@ -76,6 +78,10 @@ absl::StatusOr<std::unique_ptr<Force>> MakeForce(const v1::Force& scene, std::st
       return Bending::Make(scene.bending(), scene.name(), In(path, "bending"), draft);
     case v1::Force::kCrossLayer:
       return MakeCrossLayer(scene.cross_layer(), scene.name(), In(path, "cross_layer"), draft);
+    case v1::Force::kDrag:
+      return Drag::Make(scene.drag(), scene.name(), In(path, "drag"), draft);
+    case v1::Force::kPointLoad:
+      return PointLoad::Make(scene.point_load(), scene.name(), In(path, "point_load"), draft);
     case v1::Force::kPressure:
       return Pressure::Make(scene.pressure(), scene.name(), In(path, "pressure"), draft);
     case v1::Force::kLungs:

@@ -59,6 +59,20 @@ void ReportUnused(Draft& draft) {
   }
 }
 
+// Live parameters that have nothing to act on; viewers hide them.
+void ReportIdleParameters(const v1::Scene& scene, v1::CompileReport& report) {
+  const bool ribs = std::any_of(scene.motions().begin(), scene.motions().end(),
+                                [](const v1::Motion& motion) { return motion.has_ribs(); });
+  const bool muscles = std::any_of(scene.forces().begin(), scene.forces().end(), [](const v1::Force& force) {
+    return force.has_action_line() || force.has_fibres();
+  });
+  if (!ribs) {
+    for (const char* name : {"rib_motion", "pump_handle", "bucket_handle"}) report.add_idle_parameters(name);
+  }
+  if (!muscles) report.add_idle_parameters("apply_muscles");
+  if (scene.constraints().empty()) report.add_idle_parameters("apply_links");
+}
+
 // The stiffness that forces put on one vertex.
 class VertexStiffness final : public StiffnessSink {
  public:
@@ -129,6 +143,7 @@ absl::StatusOr<std::shared_ptr<const Model>> Compile(const v1::Scene& scene, con
   if (absl::Status status = AddProbes(draft); !status.ok()) return status;
   if (absl::Status status = AddMeasures(draft); !status.ok()) return status;
   ReportUnused(draft);
+  ReportIdleParameters(model.scene, model.report);
   model.report.set_scene(scene.name());
   model.report.set_scene_hash(SceneHash(model));
   ChooseStep(model);

@@ -85,6 +85,24 @@ absl::StatusOr<Selection> Draft::Select(int body, const std::string& region, con
   return Selection{*std::move(inside), *std::move(excluded)};
 }
 
+absl::StatusOr<std::vector<int>> Draft::FreeVertices(int body, const std::string& region, const Indices& vertices,
+                                                     std::string_view path) const {
+  auto mask = Region(body, region, absl::StrCat(std::string(path), ".region"));
+  if (!mask.ok()) return mask.status();
+  std::vector<bool> listed(mask->size(), vertices.empty());
+  for (int i = 0; i < vertices.size(); ++i) {
+    const std::string field = absl::StrCat(std::string(path), ".vertices[", i, "]");
+    if (absl::Status status = CheckVertex(body, vertices[i], field); !status.ok()) return status;
+    listed[vertices[i]] = true;
+  }
+  std::vector<int> free;
+  for (int i = 0; i < static_cast<int>(mask->size()); ++i) {
+    const int vertex = model.bodies[body].first_vertex + i;
+    if ((*mask)[i] && listed[i] && model.inverse_mass[vertex] > 0) free.push_back(vertex);
+  }
+  return free;
+}
+
 absl::Status Draft::CheckVertex(int body, int vertex, std::string_view path) const {
   const auto vertices = model.bodies[body].mesh.vertices.cols();
   if (vertex >= 0 && vertex < vertices) return absl::OkStatus();

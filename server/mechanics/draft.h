@@ -7,12 +7,14 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "google/protobuf/repeated_field.h"
 #include "google/protobuf/repeated_ptr_field.h"
 #include "server/mechanics/model.h"
 
 namespace phrenic {
 
 using Names = google::protobuf::RepeatedPtrField<std::string>;
+using Indices = google::protobuf::RepeatedField<std::int32_t>;
 
 // Which elements of a body take part: those with all their vertices inside, but for those with all of them excluded.
 // Two elements of which one names a region and the other excludes it share out a mesh with no gap and no overlap.
@@ -44,6 +46,10 @@ struct Draft {
   // By fields `region` and `exclude_region` of the element at `path`; everything where both are empty.
   absl::StatusOr<Selection> Select(int body, const std::string& region, const std::string& exclude_region,
                                    std::string_view path) const;
+  // The free ones of a deformable body's vertices, as simulated vertices: those listed, or where none are those of the
+  // region. By fields `region` and `vertices` of the element at `path`.
+  absl::StatusOr<std::vector<int>> FreeVertices(int body, const std::string& region, const Indices& vertices,
+                                                std::string_view path) const;
   absl::Status CheckVertex(int body, int vertex, std::string_view path) const;
 
   void ReportElement(std::string_view family, std::string_view name, std::int64_t count, std::string_view counted,

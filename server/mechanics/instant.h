@@ -18,6 +18,7 @@ struct Instant {
   const ConstPoints x;               // [m]
   const ConstPoints v;               // [m/s]
   const std::vector<Pose>& poses;
+  const std::vector<VertexPull>& pulls;
 };
 
 }  // namespace phrenic

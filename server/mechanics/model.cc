@@ -70,12 +70,26 @@ Instant MakeInstant(const Model& model, const v1::Parameters& parameters, const 
           .parameters = parameters,
           .x = state.x,
           .v = state.v,
-          .poses = state.poses};
+          .poses = state.poses,
+          .pulls = state.pulls};
 }
 
 namespace {
 
+void PlaceOnTriangles(const std::vector<TriangleShare>& shares, const Points& x, MutablePoints out) {
+  for (size_t i = 0; i < shares.size(); ++i) {
+    const TriangleShare& share = shares[i];
+    const Eigen::Vector3d a = x.col(share.corners[0]), b = x.col(share.corners[1]), c = x.col(share.corners[2]);
+    const Eigen::Vector3d normal = (b - a).cross(c - a).stableNormalized();
+    out.col(static_cast<Eigen::Index>(i)) =
+        share.weights[0] * a + share.weights[1] * b + share.weights[2] * c + share.height * normal;
+  }
+}
+
 void PlaceRide(const Model& model, const State& state, const BodyModel& body, MutablePoints out) {
+  if (!model.rides[body.ride].triangles.empty()) {
+    return PlaceOnTriangles(model.rides[body.ride].triangles, state.x, out);
+  }
   out = body.mesh.vertices;
   for (const RideShare& share : model.rides[body.ride].shares) {
     const auto rest = body.mesh.vertices.col(share.vertex);

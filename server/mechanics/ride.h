@@ -1,6 +1,6 @@
 // Points that carriers carry along: u = sum_c w_c u_c, u_c the displacement that carrier c gives the point. A carrier
 // is a pose (it moves the point as part of the rigid body) or a simulated vertex (it lends its own displacement); what
-// is missing to a sum of 1 stands still.
+// is missing to a sum of 1 stands still. Or points that keep their place in a triangle (motions/mapping.h).
 #ifndef PHRENIC_SERVER_MECHANICS_RIDE_H_
 #define PHRENIC_SERVER_MECHANICS_RIDE_H_
 
@@ -18,10 +18,18 @@ struct RideShare {
   double weight = 0;          // between 0 and 1
 };
 
+// A vertex's place in a triangle of simulated vertices: x = sum_i weights_i x_i + height n, n the unit normal.
+struct TriangleShare {
+  Eigen::Vector3i corners = Eigen::Vector3i::Zero();
+  Eigen::Vector3d weights = Eigen::Vector3d::Zero();  // barycentric: their sum is 1
+  double height = 0;                                  // [m]
+};
+
 // A body that is only seen and rides on others.
 struct Ride {
   int body = 0;
-  std::vector<RideShare> shares;  // sorted by vertex
+  std::vector<RideShare> shares;         // sorted by vertex; or ...
+  std::vector<TriangleShare> triangles;  // ... one a vertex of the body
 };
 
 }  // namespace phrenic

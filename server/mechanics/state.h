@@ -33,6 +33,12 @@ struct History {
   Points force;            // at the end of it [N]
 };
 
+// A force by which somebody pulls a vertex while the session runs (pulls.h).
+struct VertexPull {
+  int vertex = 0;                                   // simulated
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  // [N]
+};
+
 struct State {
   double time = 0;          // [s]
   std::int64_t tick = 0;    // steps taken
@@ -40,6 +46,7 @@ struct State {
   Points x;                 // positions of the simulated vertices [m]
   Points v;                 // their velocities [m/s]
   std::vector<Pose> poses;  // of the driven bodies
+  std::vector<VertexPull> pulls;  // one a vertex
   History history;
   int halvings = 0;  // of an adaptive step, the last time
 };

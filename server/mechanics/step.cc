@@ -50,6 +50,9 @@ std::string LargestForceOn(const Model& model, const v1::Parameters& parameters,
       name = element->name();
     }
   }
+  for (const VertexPull& pull : state.pulls) {
+    if (pull.vertex == vertex && pull.force.norm() > largest) name = "pull";
+  }
   return name;
 }
 

@@ -109,4 +109,14 @@ grpc::Status SessionService::UpdateParameters(grpc::ServerContext* /*context*/,
   return Answer(std::move(updated->session), response);
 }
 
+grpc::Status SessionService::PullSession(grpc::ServerContext* /*context*/, const v1::PullSessionRequest* request,
+                                         v1::PullSessionResponse* response) {
+  const auto session = Find(table_, *request);
+  if (!session.ok()) return ToGrpc(session.status());
+  if (request->pulls().empty() && !request->release_others()) {
+    return ToGrpc(absl::InvalidArgumentError("pulls: there is none; name one, or set release_others to let go of all"));
+  }
+  return Answer((*session)->Pull(request->pulls(), request->release_others()), response);
+}
+
 }  // namespace phrenic::service

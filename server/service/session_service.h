@@ -30,6 +30,8 @@ class SessionService final : public v1::SessionService::Service {
                             v1::ResetSessionResponse* response) override;
   grpc::Status UpdateParameters(grpc::ServerContext* context, const v1::UpdateParametersRequest* request,
                                 v1::UpdateParametersResponse* response) override;
+  grpc::Status PullSession(grpc::ServerContext* context, const v1::PullSessionRequest* request,
+                           v1::PullSessionResponse* response) override;
 
  private:
   session::Table& table_;

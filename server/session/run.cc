@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "absl/strings/str_format.h"
+#include "server/mechanics/pulls.h"
 #include "server/mechanics/step.h"
 
 namespace phrenic::session {
@@ -32,8 +33,14 @@ absl::Status Run::Step() {
 }
 
 void Run::Reset() {
+  std::vector<VertexPull> pulls = std::move(state_.pulls);
   state_ = model_->InitialState();
+  state_.pulls = std::move(pulls);
   divergence_.reset();
+}
+
+absl::Status Run::ChangePulls(const std::vector<VertexPull>& changes, bool alone) {
+  return phrenic::ChangePulls(changes, alone, state_.pulls);
 }
 
 std::string Describe(const v1::Divergence& divergence) {

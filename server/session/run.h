@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "absl/status/status.h"
 #include "phrenic/v1/session.pb.h"
@@ -21,7 +22,7 @@ class Run {
   // One step of parameters.time_step. OUT_OF_RANGE when it diverged: divergence() tells where and why then, the state
   // stays the last good one, and every later step is refused with FAILED_PRECONDITION until Reset.
   absl::Status Step();
-  // Back to t = 0; parameters stay.
+  // Back to t = 0; parameters and pulls stay.
   void Reset();
 
   const Model& model() const { return *model_; }
@@ -29,6 +30,8 @@ class Run {
   const v1::Parameters& parameters() const { return parameters_; }
   // Every field must be set.
   void set_parameters(const v1::Parameters& parameters) { parameters_ = parameters; }
+  // As phrenic::ChangePulls: RESOURCE_EXHAUSTED where they become too many.
+  absl::Status ChangePulls(const std::vector<VertexPull>& changes, bool alone);
   const std::optional<v1::Divergence>& divergence() const { return divergence_; }
 
  private:

@@ -29,13 +29,14 @@ std::vector<std::string> Warnings(const v1::Parameters& parameters, double stabl
 }  // namespace
 
 Session::Session(std::string id, std::shared_ptr<const Model> model, const v1::Parameters& parameters,
-                 double stable_step, const stream::Clock& clock, int max_viewers)
+                 double stable_step, const stream::Clock& clock, int max_viewers, const std::vector<VertexPull>& pulls)
     : id_(std::move(id)),
       model_(std::move(model)),
       clock_(clock),
       publisher_(model_, clock, max_viewers),
       run_(model_, parameters),
       stable_step_(stable_step) {
+  run_.ChangePulls(pulls, true).IgnoreError();  // they are not too many
   {
     absl::MutexLock lock(&mutex_);
     status_.set_id(id_);
@@ -157,6 +158,19 @@ absl::StatusOr<Session::Updated> Session::Update(const v1::Parameters& changes,
   if (!asked.ok()) return asked;
   if (!merged.ok()) return merged;
   return Updated{status(), Warnings(parameters, stable_step)};
+}
+
+absl::StatusOr<v1::Session> Session::Pull(const PullList& pulls, bool release_others) {
+  const auto changes = FindPulls(*model_, pulls, "pulls");
+  if (!changes.ok()) return changes.status();
+  absl::Status changed;
+  auto asked = Ask([&] {
+    changed = run_.ChangePulls(*changes, release_others);
+    if (changed.ok()) Changed();
+  });
+  if (!asked.ok()) return asked;
+  if (!changed.ok()) return changed;
+  return status();
 }
 
 absl::StatusOr<Session::Fork> Session::MakeFork() {

@@ -18,6 +18,7 @@
 #include "absl/synchronization/mutex.h"
 #include "absl/synchronization/notification.h"
 #include "phrenic/v1/session.pb.h"
+#include "server/mechanics/pulls.h"
 #include "server/session/pace_meter.h"
 #include "server/session/pacer.h"
 #include "server/session/run.h"
@@ -44,8 +45,9 @@ class Session {
   };
 
   // Paused at t = 0. Every field of `parameters` is set and in range; `stable_step` is the largest one for them [s].
+  // `pulls` are not more than kMostPulls.
   Session(std::string id, std::shared_ptr<const Model> model, const v1::Parameters& parameters, double stable_step,
-          const stream::Clock& clock, int max_viewers);
+          const stream::Clock& clock, int max_viewers, const std::vector<VertexPull>& pulls = {});
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -68,6 +70,8 @@ class Session {
   // Fields that are set change; they are in range. ABORTED when the session's revision is another than expected.
   absl::StatusOr<Updated> Update(const v1::Parameters& changes, std::optional<std::int64_t> expected_revision)
       ABSL_LOCKS_EXCLUDED(update_mutex_);
+  // Pulls vertices, or lets go of them (phrenic::ChangePulls). INVALID_ARGUMENT names what cannot be pulled.
+  absl::StatusOr<v1::Session> Pull(const PullList& pulls, bool release_others);
   // A copy of the present state, from which another run may go on. FAILED_PRECONDITION when the session has diverged.
   absl::StatusOr<Fork> MakeFork();
   // Ends the stepping thread at once and all viewers with `reason`; later calls return it.
@@ -105,6 +109,7 @@ class Session {
   void OfferFrame(absl::Time now);
   void Changed() ABSL_LOCKS_EXCLUDED(mutex_);
   void Tell() ABSL_LOCKS_EXCLUDED(mutex_);
+  void WriteResidual(v1::Session& status) const;
   void NoteProgress() ABSL_LOCKS_EXCLUDED(mutex_);
   absl::Status CheckNotDiverged() const;
 

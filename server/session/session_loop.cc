@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "server/mechanics/residual.h"
 #include "server/session/session.h"
 
 namespace phrenic::session {
@@ -177,6 +178,8 @@ void Session::Tell() {
     status_.set_speed(as_fast_as_possible_ ? 0 : speed_);
     status_.set_largest_stable_step(stable_step_);
     *status_.mutable_pace() = meter_.pace();
+    *status_.mutable_pulls() = DescribePulls(*model_, run_.state().pulls);
+    WriteResidual(status_);
     if (run_.divergence().has_value()) {
       *status_.mutable_divergence() = *run_.divergence();
     } else {
@@ -187,6 +190,14 @@ void Session::Tell() {
   publisher_.Announce(status);
 }
 
+// How well the present state keeps the constraints, where there are any.
+void Session::WriteResidual(v1::Session& status) const {
+  if (model_->constraints.empty()) return;
+  const ConstraintResidual residual = LargestResidual(*model_, run_.state());
+  status.set_constraint_residual(residual.metres);
+  status.set_residual_constraint(std::string(residual.constraint));
+}
+
 // Time goes on; viewers hear of it about once a second.
 void Session::NoteProgress() {
   const bool measured = meter_.Update(clock_.Now(), run_.state().tick, run_.state().time);
@@ -195,6 +206,7 @@ void Session::NoteProgress() {
     absl::MutexLock lock(&mutex_);
     status_.set_time(run_.state().time);
     status_.set_tick(run_.state().tick);
+    WriteResidual(status_);
     if (!measured) return;
     *status_.mutable_pace() = meter_.pace();
     status = status_;

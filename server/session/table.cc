@@ -6,6 +6,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "server/mechanics/compile.h"
+#include "server/mechanics/pulls.h"
 #include "server/schema/id.h"
 #include "server/schema/schema.h"
 
@@ -64,7 +65,11 @@ absl::StatusOr<std::shared_ptr<Session>> Table::Make(const std::string& id, cons
     if (!named) parameters.set_time_step(ChosenStep(stable));
   }
   if (absl::Status status = schema::Validate(parameters); !status.ok()) return status;
-  return std::make_shared<Session>(id, model, parameters, stable_step, clock_, limits_.viewers);
+  const auto changes = FindPulls(*model, request.pulls(), "pulls");
+  if (!changes.ok()) return changes.status();
+  std::vector<VertexPull> pulls;
+  if (absl::Status status = ChangePulls(*changes, true, pulls); !status.ok()) return status;
+  return std::make_shared<Session>(id, model, parameters, stable_step, clock_, limits_.viewers, pulls);
 }
 
 absl::StatusOr<std::shared_ptr<Session>> Table::Create(const v1::CreateSessionRequest& request) {

@@ -89,6 +89,27 @@ TEST_F(Sessions, AChoiceIsSetAndShownByItsName) {
   EXPECT_EQ(Json({"sessions"})["sessions"][0]["parameters"]["breath_force"], 1) << "all of it is refused";
 }
 
+TEST_F(Sessions, AVertexIsPulledAndLetGo) {
+  ASSERT_EQ(Ask({"create", "cube-springs", "--id", "class"}).code, 0);
+  const Outcome pulled = Ask({"pull", "class", "--body", "cube", "--vertex", "6", "--force", "-1,0,0.5"});
+  ASSERT_EQ(pulled.code, 0) << pulled.err;
+  EXPECT_THAT(pulled.out, HasSubstr("pulled by (-1, 0, 0.5) N at vertex 6 of cube"));
+  EXPECT_EQ(Json({"sessions"})["sessions"][0]["pulls"][0]["vertex"], 6);
+  EXPECT_THAT(Ask({"pull", "class", "--release"}).out, Not(HasSubstr("pulled by")));
+  EXPECT_EQ(Ask({"pull", "class", "--vertex", "6"}).code, 2) << "of which body?";
+  EXPECT_EQ(Ask({"pull", "class"}).code, 1);
+  EXPECT_THAT(Ask({"create", "cube-springs", "--pull", "cube:6:1,0"}).err, HasSubstr("BODY:VERTEX:X,Y,Z"));
+  EXPECT_THAT(Ask({"create", "cube-springs", "--pull", "cube:6:1,0,2"}).out, HasSubstr("pulled by (1, 0, 2) N"));
+}
+
+TEST_F(Sessions, ConstraintsAreSpokenOfWhereThereAreAny) {
+  ASSERT_EQ(Ask({"create", "cube-tensegrity", "--id", "links", "--play"}).code, 0);
+  EXPECT_THAT(Ask({"watch", "links", "--count", "2", "--fps", "50"}).out, HasSubstr("constraints within"));
+  EXPECT_TRUE(Json({"sessions"})["sessions"][0].contains("constraint_residual"));
+  EXPECT_THAT(Ask({"create", "cube-springs"}).out, Not(HasSubstr("constraints")));
+  EXPECT_THAT(Ask({"run", "cube-tensegrity", "--seconds", "0.2"}).out, HasSubstr("constraints kept within"));
+}
+
 TEST_F(Sessions, WatchPrintsNumbersALineAndEndsByCount) {
   ASSERT_EQ(Ask({"create", "cube-springs", "--id", "seen", "--play"}).code, 0);
   const Outcome watched = Ask({"watch", "seen", "--count", "3", "--fps", "50"});

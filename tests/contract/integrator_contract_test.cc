@@ -132,6 +132,7 @@ TEST_P(IntegratorContract, AdaptsToItsTolerance) {
 TEST_P(IntegratorContract, AllocatesNothingInAStep) {
   const auto model = CompileText(Oscillator(GetParam(), 40, 0.1));
   State state = model->InitialState();
+  state.pulls = {{1, {1, 0, 0}}};
   Workspace work = model->MakeWorkspace();
   for (int i = 0; i < 3; ++i) ASSERT_TRUE(Step(*model, model->parameters, 1e-3, state, work).ok());
   const std::int64_t before = Allocations();

@@ -155,6 +155,39 @@ describe("the buttons", () => {
     expect(pace).toBeLessThan(0.2);
   });
 
+  test("APresetIsTakenAndShownAsPressed", async () => {
+    const preset = (name: string) => viewer.page.locator(`#presets button:text-is("${name}")`);
+    expect(await viewer.page.locator("#presets button").allTextContents()).toEqual([
+      "Quiet",
+      "Deep",
+      "Diaphragmatic",
+      "Chest",
+    ]);
+    await preset("Chest").click();
+    await expect.poll(async () => (await server.session()).parameters.rib_motion, { timeout: 10_000 }).toBe(2.5);
+    await viewer.page.waitForSelector('#presets button[aria-pressed="true"]:text-is("Chest")');
+    await viewer.leave("presets");
+    await preset("Quiet").click();
+    await viewer.page.waitForSelector('#presets button[aria-pressed="true"]:text-is("Quiet")');
+    expect(await viewer.value("breathForce")).toBe("1");
+  });
+
+  test("ShiftDragPullsTheTissueUntilItIsLetGo", async () => {
+    const box = (await viewer.page.locator("#view").boundingBox())!;
+    const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+    const pulls = async () => ((await server.session()).pulls ?? []) as { body: string }[];
+    await viewer.page.keyboard.down("Shift");
+    await viewer.page.mouse.move(x, y);
+    await viewer.page.mouse.down();
+    await viewer.page.mouse.move(x + 40, y - 20, { steps: 4 });
+    await expect.poll(async () => (await pulls()).map(({ body }) => body), { timeout: 10_000 }).toEqual(["diaphragm"]);
+    await viewer.page.waitForSelector("#pulls:not([hidden])");
+    await viewer.leave("pull");
+    await viewer.page.mouse.up();
+    await viewer.page.keyboard.up("Shift");
+    await expect.poll(async () => (await pulls()).length, { timeout: 10_000 }).toBe(0);
+  });
+
   test("AnotherIntegratorIsTakenWhileItPlays", async () => {
     await viewer.page.selectOption("#parameter-integrator", { label: "Velocity Verlet" });
     await expect

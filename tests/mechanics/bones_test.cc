@@ -86,6 +86,56 @@ TEST(Ribs, VelocityIsTheRateOfThePosition) {
   }
 }
 
+TEST(Ribs, WholeHandlesChangeNoBit) {
+  const auto model = CompileText(Thorax() + "parameters { pump_handle: 1 bucket_handle: 1 }");
+  const State state = RunTo(*model, 1.3, 1e-3);
+  const double k = MakeInstant(*model, model->parameters, state).breath;
+  const Eigen::Vector3d turn = Eigen::Vector3d(-10, 12, 0) * (std::numbers::pi / 180);
+  const Eigen::Quaterniond whole(Eigen::AngleAxisd(k * turn.norm(), Eigen::Vector3d(turn / turn.norm())));
+  ASSERT_EQ(model->bodies[4].name, "rib-3-r");
+  EXPECT_EQ(state.poses[model->bodies[4].pose].rotation.coeffs(), whole.coeffs());
+}
+
+TEST(Ribs, WithoutHandlesRest) {
+  const auto model = CompileText(Thorax() + "parameters { pump_handle: 0 bucket_handle: 0 }");
+  const State state = AtPeak(*model);
+  for (const char* name : {"rib-1-r", "rib-7-l", "sternum", "cartilage"}) {
+    const Points moved = Placed(*model, state, name);
+    const Points rest = Placed(*model, model->InitialState(), name);
+    EXPECT_LT((moved - rest).cwiseAbs().maxCoeff(), 1e-15) << name;
+  }
+  for (const Pose& pose : state.poses) EXPECT_EQ(pose.angular_velocity.norm() + pose.velocity.norm(), 0);
+}
+
+// A handle alone turns the rib about its own axis, by twice as much where it is doubled.
+TEST(Ribs, EachHandleTurnsAboutItsOwnAxis) {
+  const Eigen::Vector3d head(-0.02, 0, -0.06);
+  const auto end = [&head](double pump, double bucket) {
+    const auto model = CompileText(Thorax() + "parameters { pump_handle: " + std::to_string(pump) +
+                                   " bucket_handle: " + std::to_string(bucket) + " }");
+    return Eigen::Vector3d(Placed(*model, AtPeak(*model), "rib-3-r").col(1) - head);
+  };
+  const auto turned = [](double degrees, const Eigen::Vector3d& axis) {
+    return Eigen::Vector3d(Eigen::AngleAxisd(degrees * std::numbers::pi / 180, axis) * Eigen::Vector3d(-0.1, -0.1, 0));
+  };
+  EXPECT_LT((end(1, 0) - turned(-10, Eigen::Vector3d::UnitX())).norm(), 1e-6);
+  EXPECT_LT((end(0, 1) - turned(12, Eigen::Vector3d::UnitY())).norm(), 1e-6);
+  EXPECT_LT((end(2, 0) - turned(-20, Eigen::Vector3d::UnitX())).norm(), 1e-6);
+}
+
+TEST(Sternum, FollowsEachHandleWithoutSidewaysDrift) {
+  for (const char* handles : {"pump_handle: 2 bucket_handle: 0", "pump_handle: 0 bucket_handle: 2"}) {
+    const auto model = CompileText(Thorax() + "parameters { " + handles + " }");
+    const State state = AtPeak(*model);
+    const Points sternum = Placed(*model, state, "sternum"), cartilage = Placed(*model, state, "cartilage");
+    EXPECT_NEAR(sternum(0, 0), 0, 1e-12) << handles;
+    EXPECT_NEAR(sternum(0, 1), 0.01, 1e-12) << handles;
+    EXPECT_GT(sternum(2, 0), -0.1 + 1e-3) << handles << ": the ribs' ends rise";
+    EXPECT_LT((cartilage.col(0) - Placed(*model, state, "rib-1-r").col(2)).norm(), 1e-3) << handles;
+    EXPECT_LT((cartilage.col(2) - sternum.col(0)).norm(), 1e-3) << handles;
+  }
+}
+
 TEST(Sternum, FollowsTheRibsWithoutSidewaysDrift) {
   const auto model = CompileText(Thorax());
   const Points moved = Placed(*model, AtPeak(*model), "sternum");

@@ -65,6 +65,37 @@ TEST_F(SessionServiceTest, AParameterOutOfRangeIsRefusedWithItsFieldAndRange) {
               grpc::INVALID_ARGUMENT, "parameters.breath_length");
 }
 
+TEST_F(SessionServiceTest, PullsAreSetReplacedAndLetGo) {
+  CreateCube("cube");
+  v1::PullSessionResponse pulled;
+  ASSERT_TRUE(Call(*sessions_, &Sessions::PullSession,
+                   "session_id: 'cube' pulls { body: 'cube' vertex: 6 force { x: 2 } }", &pulled)
+                  .ok());
+  EXPECT_EQ(pulled.session().pulls_size(), 1);
+  ASSERT_TRUE(Call(*sessions_, &Sessions::PullSession, "session_id: 'cube' release_others: true", &pulled).ok());
+  EXPECT_EQ(pulled.session().pulls_size(), 0);
+  v1::CreateSessionResponse created;
+  ASSERT_TRUE(Call(*sessions_, &Sessions::CreateSession,
+                   "source { name: 'cube-springs' } pulls { body: 'cube' vertex: 6 force { x: 2 } }", &created)
+                  .ok());
+  EXPECT_EQ(created.session().pulls(0).force().x(), 2);
+}
+
+TEST_F(SessionServiceTest, APullThatFitsNothingIsRefused) {
+  CreateCube("cube");
+  ExpectError(Session(&Sessions::PullSession, "session_id: 'x' release_others: true"), grpc::NOT_FOUND, "no session");
+  ExpectError(Session(&Sessions::PullSession, "session_id: 'cube'"), grpc::INVALID_ARGUMENT, "release_others");
+  ExpectError(Session(&Sessions::PullSession, "session_id: 'cube' pulls { body: 'cube' vertex: -1 }"),
+              grpc::INVALID_ARGUMENT, "pulls[0].vertex: -1 is outside");
+  ExpectError(Session(&Sessions::PullSession, "session_id: 'cube' pulls { body: 'cub' force { x: 1 } }"),
+              grpc::INVALID_ARGUMENT, "pulls[0].body: there is no deformable body \"cub\"; there are cube");
+  ExpectError(Session(&Sessions::PullSession, "session_id: 'cube' pulls { body: 'cube' force { x: nan } }"),
+              grpc::INVALID_ARGUMENT, "pulls[0].force.x");
+  ExpectError(Session(&Sessions::CreateSession,
+                      "source { name: 'cube-springs' } pulls { body: 'cube' vertex: 6 force { x: 2e6 } }"),
+              grpc::INVALID_ARGUMENT, "pulls[0].force");
+}
+
 TEST_F(SessionServiceTest, AnUnknownSceneIsNotFoundAndTheOthersAreNamed) {
   ExpectError(Session(&Sessions::CreateSession, "source { name: 'thorux' }"), grpc::NOT_FOUND, "cube-springs");
   ExpectError(Session(&Sessions::CreateSession, "source { }"), grpc::INVALID_ARGUMENT, "source");

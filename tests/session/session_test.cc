@@ -265,6 +265,66 @@ TEST_F(SessionTest, ResetGoesBackToTheStartAndKeepsParameters) {
   EXPECT_EQ(HashAfter(*session, 20), first);
 }
 
+PullList PullOn(const std::string& body, int vertex, double z) {
+  PullList list;
+  v1::Pull& pull = *list.Add();
+  pull.set_body(body);
+  pull.set_vertex(vertex);
+  pull.mutable_force()->set_z(z);
+  return list;
+}
+
+TEST_F(SessionTest, APullChangesTheMotionUntilItIsLetGo) {
+  const auto session = Make(), other = Make();
+  const auto pulled = session->Pull(PullOn("sheet", 2, 1), false);
+  ASSERT_TRUE(pulled.ok()) << pulled.status();
+  ASSERT_EQ(pulled->pulls_size(), 1);
+  EXPECT_EQ(pulled->pulls(0).vertex(), 2);
+  EXPECT_EQ(pulled->revision(), 2);
+  EXPECT_NE(HashAfter(*session, 10), HashAfter(*other, 10));
+  const auto let_go = session->Pull(PullOn("sheet", 2, 0), false);
+  ASSERT_TRUE(let_go.ok());
+  EXPECT_EQ(let_go->pulls_size(), 0);
+}
+
+// A session that is reset, forked or made anew with the same pulls moves the same, bit for bit.
+TEST_F(SessionTest, PullsAreReproduced) {
+  const auto session = Make(), again = Make();
+  ASSERT_TRUE(session->Pull(PullOn("sheet", 2, 1), false).ok());
+  ASSERT_TRUE(again->Pull(session->status().pulls(), true).ok());
+  const std::string first = HashAfter(*session, 20);
+  EXPECT_EQ(HashAfter(*again, 20), first);
+  ASSERT_TRUE(session->Reset().ok());
+  EXPECT_EQ(session->status().pulls_size(), 1);
+  HashAfter(*session, 15);
+  auto fork = session->MakeFork();
+  ASSERT_TRUE(fork.ok());
+  phrenic::session::Run run(session->shared_model(), fork->parameters, std::move(fork->state));
+  for (int i = 0; i < 5; ++i) ASSERT_TRUE(run.Step().ok());
+  EXPECT_EQ(HashText(run.state()), first);
+}
+
+TEST_F(SessionTest, APullOnNothingIsRefusedAndChangesNothing) {
+  const auto session = Make();
+  EXPECT_EQ(session->Pull(PullOn("post", 0, 1), false).status().code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_EQ(session->status().revision(), 1);
+}
+
+TEST_F(SessionTest, TellsHowWellConstraintsAreKeptWhereThereAreAny) {
+  EXPECT_FALSE(Make()->status().has_constraint_residual());
+  const auto session = Make(Triangle("constraints { rigid_links { body: 'sheet' list { links { a: 1 b: 2 } } } }"));
+  EXPECT_TRUE(session->status().has_constraint_residual());
+  HashAfter(*session, 50);
+  EXPECT_LT(session->status().constraint_residual(), 1e-9);
+  v1::Parameters off;
+  off.set_apply_links(false);
+  ASSERT_TRUE(session->Update(off, std::nullopt).ok());
+  ASSERT_TRUE(session->Pull(PullOn("sheet", 2, 5), false).ok());
+  HashAfter(*session, 50);
+  EXPECT_GT(session->status().constraint_residual(), 1e-3);
+  EXPECT_EQ(session->status().residual_constraint(), "rigid-links:sheet");
+}
+
 TEST_F(SessionTest, AForkIsACopyAndTheSessionGoesOnUndisturbed) {
   const auto session = Make(), other = Make();
   HashAfter(*session, 10);

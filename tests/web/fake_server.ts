@@ -7,7 +7,14 @@ import {
   Placement,
   type WatchFramesResponseSchema,
 } from "../../web/src/gen/phrenic/v1/frames_pb";
-import { SessionSchema, SessionService, SessionState } from "../../web/src/gen/phrenic/v1/session_pb";
+import type { PresetSchema } from "../../web/src/gen/phrenic/v1/scene_pb";
+import {
+  type Pull,
+  SceneService,
+  SessionSchema,
+  SessionService,
+  SessionState,
+} from "../../web/src/gen/phrenic/v1/session_pb";
 
 type Event = MessageInitShape<typeof WatchFramesResponseSchema>["event"];
 
@@ -42,6 +49,9 @@ export class FakeServer {
   /** The frame rates that watchers asked for. */
   readonly rates: number[] = [];
   readonly updates: object[] = [];
+  readonly pulls: Pull[] = [];
+  /** Of the scene. */
+  presets: MessageInitShape<typeof PresetSchema>[] = [];
   private emitters = new Set<(event: Event | "end") => void>();
 
   readonly api = createApi(
@@ -54,10 +64,17 @@ export class FakeServer {
           }),
         listSessions: () => this.answer({ sessions: this.sessions }),
         playSession: () => this.answer({ session: this.session }),
-        updateParameters: ({ parameters }) => {
-          this.updates.push(parameters!);
+        updateParameters: ({ parameters, preset }) => {
+          this.updates.push(preset === "" ? parameters! : { preset });
           return this.answer({ session: this.session });
         },
+        pullSession: ({ pulls }) => {
+          this.pulls.push(...pulls);
+          return this.answer({ session: this.session });
+        },
+      });
+      service(SceneService, {
+        describeScene: () => this.answer({ scene: { name: "thorax", presets: this.presets } }),
       });
       service(FrameService, this.streams());
     }),

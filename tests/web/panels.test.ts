@@ -2,11 +2,13 @@ import { create } from "@bufbuild/protobuf";
 import { beforeEach, describe, expect, test } from "vitest";
 import { Controller } from "../../web/src/controller";
 import { ParametersSchema } from "../../web/src/gen/phrenic/v1/parameters_pb";
+import { type CompileReport, CompileReportSchema } from "../../web/src/gen/phrenic/v1/report_pb";
 import { type Session, SessionSchema, SessionState } from "../../web/src/gen/phrenic/v1/session_pb";
 import { make } from "../../web/src/panels/dom";
 import { parameterSections } from "../../web/src/panels/parameters";
 import { playbackPanel } from "../../web/src/panels/playback";
-import { linkWords } from "../../web/src/panels/status";
+import { linkWords, Readout, residualWords } from "../../web/src/panels/status";
+import { Signal } from "../../web/src/signal";
 import { FakeClock, settle } from "./fake_clock";
 import { FakeServer } from "./fake_server";
 
@@ -75,6 +77,17 @@ describe("the control panel", () => {
   });
 });
 
+test("AParameterThatNothingAnswersToIsHidden", () => {
+  const report = new Signal<CompileReport | undefined>(undefined);
+  document.body.replaceChildren(...parameterSections(controller, report));
+  const hidden = (id: string) => document.querySelector(`#parameter-${id}`)!.closest("[hidden]") !== null;
+  expect(hidden("pumpHandle")).toBe(false);
+  report.set(create(CompileReportSchema, { idleParameters: ["pump_handle"] }));
+  expect([hidden("pumpHandle"), hidden("bucketHandle")]).toEqual([true, false]);
+  report.set(create(CompileReportSchema, {}));
+  expect(hidden("pumpHandle")).toBe(false);
+});
+
 test("ThePlayButtonSaysWhatItDoes", () => {
   const play = playbackPanel(controller).querySelector("#play")!;
   expect(play.ariaLabel).toBe("Pause");
@@ -82,6 +95,21 @@ test("ThePlayButtonSaysWhatItDoes", () => {
   expect(play.ariaLabel).toBe("Play");
   controller.receive(session(1, 3n, SessionState.DIVERGED));
   expect((play as HTMLButtonElement).disabled).toBe(true);
+});
+
+test("HowWellConstraintsAreKeptIsPutInWords", () => {
+  expect([undefined, 3e-12, 4.2e-4].map(residualWords)).toEqual(["", "kept", "0.42 mm off"]);
+});
+
+test("TheReadoutSpeaksOfConstraintsWhereThereAreAny", () => {
+  const readout = new Readout();
+  const shown = () => !readout.element.querySelector<HTMLElement>(".links")!.hidden;
+  const rate = { framesPerSecond: 30, delay: 4 };
+  const status = { frame: undefined, rate, now: 0, link: { kind: "live" as const } };
+  readout.show({ ...status, session: session(1, 1n) });
+  expect(shown()).toBe(false);
+  readout.show({ ...status, session: create(SessionSchema, { constraintResidual: 0 }) });
+  expect(shown()).toBe(true);
 });
 
 test("TheLinkIsPutInWords", () => {

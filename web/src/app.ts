@@ -43,6 +43,8 @@ export class App {
   private readonly measures = new Measures();
   private readonly demand = new Demand();
   private bodies: Body[] = [];
+  /** Names of the bodies that have mass and move by forces. */
+  private deformable: ReadonlySet<string> = new Set();
 
   constructor(
     api: Api,
@@ -76,12 +78,16 @@ export class App {
   private furnish(): void {
     const { controller, looks, viewer } = this;
     place("panel").append(
-      ...parameterSections(controller),
+      ...parameterSections(controller, this.report),
       appearancePanel(looks, (kind, on) => viewer.setOverlay(kind, on)),
       layersPanel(looks),
       this.probes.element,
       this.measures.element,
       reportPanel(this.report),
+    );
+    viewer.letPull(
+      () => this.deformable,
+      (body, vertex, force) => controller.pull(body, vertex, force),
     );
     place("playback-place").append(playbackPanel(controller));
     place("readout-place").append(this.readout.element);
@@ -118,6 +124,7 @@ export class App {
         this.bodies = bodies;
         this.frames.clear();
         this.report.set(report);
+        this.deformable = new Set(report?.bodies.filter(({ role }) => role === "deformable").map(({ name }) => name));
         this.viewer.show(bodies);
         this.looks.start(bodies, report);
         place("loading").hidden = true;

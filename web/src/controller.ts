@@ -2,11 +2,13 @@ import type { MessageInitShape } from "@bufbuild/protobuf";
 import { type Api, errorText, unreachable } from "./api";
 import type { Clock } from "./clock";
 import type { ParametersSchema } from "./gen/phrenic/v1/parameters_pb";
-import type { Session } from "./gen/phrenic/v1/session_pb";
+import type { Preset } from "./gen/phrenic/v1/scene_pb";
+import type { PullSchema, Session } from "./gen/phrenic/v1/session_pb";
 import { NewestWins } from "./newest";
 import type { ParameterName } from "./schema";
 import { Signal } from "./signal";
 
+type PullValues = MessageInitShape<typeof PullSchema>;
 type ParameterValues = Omit<MessageInitShape<typeof ParametersSchema>, "$typeName">;
 
 /** How fast to play: simulated seconds a second, or as fast as the machine can. */
@@ -18,6 +20,7 @@ export class Controller {
   /** What the server last had to say against or about what was asked; empty when all is well. */
   readonly notice = new Signal("");
   private readonly updates: NewestWins<ParameterValues>;
+  private readonly pulls: NewestWins<Record<string, PullValues>>;
 
   constructor(
     private readonly api: Api,
@@ -27,6 +30,11 @@ export class Controller {
     // Whatever became of a change, the controls show what holds.
     const showAll = () => this.session.set(this.session.value);
     this.updates = new NewestWins<ParameterValues>((change) => this.send(change), clock, showAll);
+    this.pulls = new NewestWins(
+      (change) => this.sendPulls(Object.values(change).filter((pull) => pull !== undefined)),
+      clock,
+      () => undefined,
+    );
   }
 
   /** Takes in the state of the session, unless it is older than what is known and `fresh` is not said. */
@@ -58,6 +66,16 @@ export class Controller {
     this.updates.push({ [name]: value });
   }
 
+  /** Pulls a vertex by a force [N] from now on; zero lets go of it. */
+  pull(body: string, vertex: number, [x, y, z]: [number, number, number]): void {
+    this.pulls.push({ [`${body}:${vertex}`]: { body, vertex, force: { x, y, z } } });
+  }
+
+  /** Lets go of every vertex, whoever pulls it. */
+  letGo(): Promise<void> {
+    return this.ask(() => this.api.sessions.pullSession({ sessionId: this.sessionId, releaseOthers: true }));
+  }
+
   /** Sets at once and resolves when it holds: for what must come before something else. */
   apply(parameters: ParameterValues): Promise<void> {
     return this.send(parameters);
@@ -68,23 +86,44 @@ export class Controller {
     return this.updates.pending(name);
   }
 
+  /** Sets what belongs to one of the scene's presets. */
+  usePreset(preset: string): Promise<void> {
+    return this.send({}, preset);
+  }
+
   /** The values that a session of this scene starts with. */
   async startValues(): Promise<ParameterValues | undefined> {
-    const name = this.session.value?.scene ?? "";
     try {
-      const answer = await this.api.scenes.describeScene({ source: { source: { case: "name", value: name } } });
-      return answer.parameters;
+      return (await this.describe()).parameters;
     } catch (error) {
       this.notice.set(errorText(error));
       return undefined;
     }
   }
 
-  private send(parameters: ParameterValues): Promise<void> {
+  /** The scene's ways to breathe; none for a scene that is not in the server's catalogue. */
+  async presets(): Promise<Preset[]> {
+    try {
+      return (await this.describe()).scene?.presets ?? [];
+    } catch {
+      return [];
+    }
+  }
+
+  private describe() {
+    const name = this.session.value?.scene ?? "";
+    return this.api.scenes.describeScene({ source: { source: { case: "name", value: name } } });
+  }
+
+  private send(parameters: ParameterValues, preset = ""): Promise<void> {
     return this.ask(async () => {
-      const answer = await this.api.sessions.updateParameters({ sessionId: this.sessionId, parameters });
+      const answer = await this.api.sessions.updateParameters({ sessionId: this.sessionId, parameters, preset });
       return { session: answer.session, notice: answer.warnings.join(" ") };
     });
+  }
+
+  private sendPulls(pulls: PullValues[]): Promise<void> {
+    return this.ask(() => this.api.sessions.pullSession({ sessionId: this.sessionId, pulls }));
   }
 
   private async ask(call: () => Promise<{ session?: Session; notice?: string }>): Promise<void> {

@@ -13,6 +13,7 @@ namespace {
 bool CarriedByTissue(const Model& model, const BodyModel& body) {
   if (body.first_vertex >= 0) return true;
   if (body.ride < 0) return false;
+  if (!model.rides[body.ride].triangles.empty()) return true;
   const std::vector<RideShare>& shares = model.rides[body.ride].shares;
   return std::any_of(shares.begin(), shares.end(), [](const RideShare& share) { return share.pose < 0; });
 }

@@ -74,14 +74,16 @@ absl::StatusOr<std::unique_ptr<Motion>> Ribs::Make(const v1::Ribs& scene, const 
 void Ribs::Drive(const Instant& at, State& state) const {
   const double scale = quiet_state_ * at.parameters.rib_motion();
   const double k = scale * at.breath, k_rate = scale * at.breath_rate;
+  const Eigen::Vector3d shares(at.parameters.pump_handle(), at.parameters.bucket_handle(), 1);
   for (const Rib& rib : ribs_) {
     Pose& pose = state.poses[rib.pose];
-    const double angle = rib.rotation.norm();
-    const Eigen::Vector3d axis = angle > 0 ? Eigen::Vector3d(rib.rotation / angle) : Eigen::Vector3d::UnitX();
+    const Eigen::Vector3d whole = shares.cwiseProduct(rib.rotation);
+    const double angle = whole.norm();
+    const Eigen::Vector3d axis = angle > 0 ? Eigen::Vector3d(whole / angle) : Eigen::Vector3d::UnitX();
     pose.rotation = Eigen::AngleAxisd(k * angle, axis);
     const Eigen::Vector3d turned_head = pose.rotation * rib.head;
     pose.translation = rib.head - turned_head + k * rib.translation;
-    pose.angular_velocity = k_rate * rib.rotation;
+    pose.angular_velocity = k_rate * whole;
     pose.velocity = k_rate * rib.translation - pose.angular_velocity.cross(turned_head);
   }
 }

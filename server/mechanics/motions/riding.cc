@@ -1,7 +1,11 @@
 #include "server/mechanics/motions/riding.h"
 
+#include <utility>
+
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "server/mechanics/carriers.h"
+#include "server/mechanics/motions/mapping.h"
 
 namespace phrenic {
 namespace {
@@ -14,30 +18,62 @@ absl::Status CheckRider(const BodyModel& body, std::string_view path) {
   return absl::OkStatus();
 }
 
+Ride RideOnVertices(const Carriers& search, const BodyModel& body, int b) {
+  Ride ride{.body = b, .shares = {}, .triangles = {}};
+  for (int i = 0; i < body.mesh.vertices.cols(); ++i) {
+    const std::vector<RideShare> shares = search.Blend(body.mesh.vertices.col(i), i);
+    ride.shares.insert(ride.shares.end(), shares.begin(), shares.end());
+  }
+  return ride;
+}
+
+void Seat(Ride ride, Draft& draft) {
+  draft.model.bodies[ride.body].ride = static_cast<int>(draft.model.rides.size());
+  draft.model.rides.push_back(std::move(ride));
+}
+
+void RideAllOnVertices(const std::vector<int>& bodies, const std::vector<int>& carriers, const std::string& name,
+                       Draft& draft) {
+  const Carriers search(draft, carriers);
+  std::int64_t vertices = 0;
+  for (const int b : bodies) {
+    Seat(RideOnVertices(search, draft.model.bodies[b], b), draft);
+    vertices += draft.model.bodies[b].mesh.vertices.cols();
+  }
+  draft.ReportElement("seen", name, vertices, "vertices", "worked out with each frame, not with each step");
+}
+
+absl::Status RideAllOnTriangles(const std::vector<int>& bodies, const std::vector<int>& carriers,
+                                const std::string& name, const std::string& path, Draft& draft) {
+  const auto mapping = Mapping::Make(draft, carriers, path);
+  if (!mapping.ok()) return mapping.status();
+  for (const int b : bodies) {
+    v1::MappingReport& report = *draft.model.report.add_mappings();
+    Seat(mapping->Carry(b, report), draft);
+    draft.ReportElement(
+        "seen", name, draft.model.bodies[b].mesh.vertices.cols(), "vertices",
+        absl::StrFormat("mapped onto triangles with each frame: %.2g mm off them at rest, %.2g mm at most; an even "
+                        "stretch of 1 %% is carried within %.2g mm",
+                        report.mean_distance_mm(), report.largest_distance_mm(), report.largest_strain_error_mm()));
+  }
+  return absl::OkStatus();
+}
+
 }  // namespace
 
 absl::Status AddRides(const v1::Ride& scene, const std::string& given, std::string_view path, Draft& draft) {
   const std::string name = ElementName(given, "ride", scene.bodies());
   const std::string field = absl::StrCat(std::string(path), ".bodies");
+  const std::string carried = absl::StrCat(std::string(path), ".carriers");
   auto bodies = draft.Bodies(scene.bodies(), field);
   if (!bodies.ok()) return bodies.status();
-  auto carriers = draft.Bodies(scene.carriers(), absl::StrCat(std::string(path), ".carriers"));
+  auto carriers = draft.Bodies(scene.carriers(), carried);
   if (!carriers.ok()) return carriers.status();
-  const Carriers search(draft, *carriers);
-  std::int64_t vertices = 0;
   for (const int b : *bodies) {
-    BodyModel& body = draft.model.bodies[b];
-    if (absl::Status status = CheckRider(body, field); !status.ok()) return status;
-    Ride ride{.body = b, .shares = {}};
-    for (int i = 0; i < body.mesh.vertices.cols(); ++i) {
-      const std::vector<RideShare> shares = search.Blend(body.mesh.vertices.col(i), i);
-      ride.shares.insert(ride.shares.end(), shares.begin(), shares.end());
-    }
-    body.ride = static_cast<int>(draft.model.rides.size());
-    draft.model.rides.push_back(std::move(ride));
-    vertices += body.mesh.vertices.cols();
+    if (absl::Status status = CheckRider(draft.model.bodies[b], field); !status.ok()) return status;
   }
-  draft.ReportElement("seen", name, vertices, "vertices", "worked out with each frame, not with each step");
+  if (scene.mode() == v1::RIDE_MODE_TRIANGLES) return RideAllOnTriangles(*bodies, *carriers, name, carried, draft);
+  RideAllOnVertices(*bodies, *carriers, name, draft);
   return absl::OkStatus();
 }
 

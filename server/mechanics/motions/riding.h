@@ -1,5 +1,6 @@
 // Makes the rides of bodies that are only seen: cartilages between ribs and sternum, lungs between ribs and diaphragm.
-// Each vertex moves by its carriers' displacements, weighted by inverse distance at rest. Costs frames, not steps.
+// Each vertex moves by its carriers' displacements, weighted by inverse distance at rest, or keeps its place in its
+// nearest triangle (mapping.h). Costs frames, not steps.
 #ifndef PHRENIC_SERVER_MECHANICS_MOTIONS_RIDING_H_
 #define PHRENIC_SERVER_MECHANICS_MOTIONS_RIDING_H_
 

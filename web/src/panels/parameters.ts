@@ -1,22 +1,42 @@
 import type { Controller } from "../controller";
+import { ParametersSchema } from "../gen/phrenic/v1/parameters_pb";
+import type { CompileReport } from "../gen/phrenic/v1/report_pb";
 import { type Control, parameterControls, type ParameterName, type SwitchControl } from "../schema";
+import type { Signal } from "../signal";
 import { ChoiceRow } from "./choice_row";
 import { section, switchRow } from "./dom";
 import { NumberRow } from "./number_row";
+import { PresetRow } from "./presets";
+import { pullRow } from "./pulls";
 
 /** What a parameter of the solver has in its name; all others are the breath's. */
 const ofTheSolver = /integrator|step/i;
 
-/** The live parameters, one row for each field of the schema. Another viewer's changes move the rows. */
-export function parameterSections(controller: Controller): HTMLElement[] {
+/**
+ * The live parameters, one row for each field of the schema, but for those that nothing in the scene answers to. Another
+ * viewer's changes move the rows.
+ */
+export function parameterSections(controller: Controller, report?: Signal<CompileReport | undefined>): HTMLElement[] {
   const rows = parameterControls().map((control) => parameterRow(control, controller));
   controller.session.subscribe((session) => {
     if (session?.parameters === undefined) return;
     for (const { name, show } of rows) if (!controller.pending(name)) show(session.parameters[name]);
   });
+  report?.subscribe((value) => {
+    const idle = new Set(value?.idleParameters.map((name) => localNameOf(name)));
+    for (const { name, element } of rows) element.hidden = idle.has(name);
+  });
   const elements = (solver: boolean) =>
     rows.filter(({ name }) => ofTheSolver.test(name) === solver).map(({ element }) => element);
-  return [section("Breathing", true, ...elements(false)), section("Solver", true, ...elements(true))];
+  const presets = new PresetRow(controller);
+  return [
+    section("Breathing", true, presets.element, pullRow(controller), ...elements(false)),
+    section("Solver", true, ...elements(true)),
+  ];
+}
+
+function localNameOf(name: string): string | undefined {
+  return ParametersSchema.fields.find((field) => field.name === name)?.localName;
 }
 
 interface Row {

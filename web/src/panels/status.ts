@@ -88,6 +88,8 @@ export class Readout {
     this.bar.style.transform = `translateX(${50 * breath}%)`;
     const pace = session?.state === SessionState.PLAYING ? (session.pace?.timesRealTime ?? 0) : 0;
     this.write("pace", `${pace.toFixed(2)}×`);
+    this.write("links", residualWords(session?.constraintResidual));
+    this.element.querySelector<HTMLElement>(".links")!.hidden = session?.constraintResidual === undefined;
   }
 
   private write(name: string, text: string): void {
@@ -96,9 +98,16 @@ export class Readout {
   }
 }
 
+/** The largest violation of a constraint [m] in words; below a micrometre it is as good as kept. */
+export function residualWords(metres: number | undefined): string {
+  if (metres === undefined) return "";
+  return metres < 1e-6 ? "kept" : `${(1000 * metres).toPrecision(2)} mm off`;
+}
+
 const fields: [string, string][] = [
   ["time", "Simulated time"],
   ["tick", "Steps since the start"],
   ["breath", "The breath signal, -1 to 1"],
   ["pace", "Simulated seconds a second"],
+  ["links", "By how much the worst rigid link or limit is off; kept: less than a micrometre"],
 ];

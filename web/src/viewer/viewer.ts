@@ -2,6 +2,7 @@ import * as THREE from "three";
 import type { Body, FrameArrays } from "../codec";
 import { BodyView, type OverlayKind } from "./body_view";
 import { addLights } from "./lights";
+import { type Pull, Pulling } from "./pulling";
 import { type Compass, Rig } from "./rig";
 import { Sharpness } from "./sharpness";
 import type { ViewName } from "./views";
@@ -87,6 +88,12 @@ export class Viewer {
     else this.overlays.delete(kind);
     for (const view of this.views) view.setOverlay(kind, on);
     this.refresh();
+  }
+
+  /** Dragging with the shift key pulls at the visible ones among the bodies of these names from now on. */
+  letPull(names: () => ReadonlySet<string>, pull: Pull): void {
+    const views = () => this.views.filter(({ body, group }) => group.visible && names().has(body.name));
+    new Pulling(this.canvas, this.rig.camera, this.scene, views, pull, () => this.refresh());
   }
 
   go(view: ViewName): void {

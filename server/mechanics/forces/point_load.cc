@@ -1,0 +1,61 @@
+#include "server/mechanics/forces/point_load.h"
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+
+namespace phrenic {
+namespace {
+
+absl::Status CheckPlace(const v1::PointLoad& scene, std::string_view path) {
+  if (scene.region().empty() && scene.vertices().empty()) {
+    return FieldError(path, "says no place: set vertices, or a region");
+  }
+  if (!scene.region().empty() && !scene.vertices().empty()) {
+    return FieldError(absl::StrCat(std::string(path), ".region"), "vertices are named as well: set one of the two");
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<Force>> PointLoad::Make(const v1::PointLoad& scene, const std::string& given,
+                                                       std::string_view path, Draft& draft) {
+  const std::string name = given.empty() ? absl::StrCat("point-load:", scene.body()) : given;
+  Names body;
+  *body.Add() = scene.body();
+  auto bodies = draft.DeformableBodies(body, absl::StrCat(std::string(path), ".body"));
+  if (!bodies.ok()) return bodies.status();
+  if (bodies->size() != 1) return FieldError(absl::StrCat(std::string(path), ".body"), "names several bodies");
+  if (absl::Status status = CheckPlace(scene, path); !status.ok()) return status;
+  auto vertices = draft.FreeVertices(bodies->front(), scene.region(), scene.vertices(), path);
+  if (!vertices.ok()) return vertices.status();
+  std::unique_ptr<PointLoad> force(new PointLoad(name));
+  force->vertices_ = *std::move(vertices);
+  force->breathes_ = scene.scaled_by_breath();
+  const Eigen::Vector3d whole = ToEigen(scene.force());
+  if (force->vertices_.empty() || whole.isZero(0)) {
+    draft.ReportLeftOut(name, force->vertices_.empty() ? "none of its vertices is free" : "its force is 0");
+    return nullptr;
+  }
+  force->load_ = whole / static_cast<double>(force->vertices_.size());
+  draft.ReportElement("force", name, static_cast<std::int64_t>(force->vertices_.size()), "vertices",
+                      absl::StrFormat("%g N in all%s", whole.norm(), force->breathes_ ? ", with the breath" : ""));
+  return force;
+}
+
+Eigen::Vector3d PointLoad::LoadAt(const Instant& at) const {
+  return (breathes_ ? at.parameters.breath_force() * at.breath : 1.0) * load_;
+}
+
+void PointLoad::AddForce(const Instant& at, MutablePoints f) const {
+  const Eigen::Vector3d load = LoadAt(at);
+  for (const int vertex : vertices_) f.col(vertex) += load;
+}
+
+double PointLoad::Energy(const Instant& at) const {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const int vertex : vertices_) sum += at.x.col(vertex);
+  return -LoadAt(at).dot(sum);
+}
+
+}  // namespace phrenic

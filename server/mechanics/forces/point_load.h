@@ -1,0 +1,33 @@
+// A load on chosen vertices: f_i = F s / n on each of the n that are free, F the whole force [N], s = 1 or
+// breath_force signal(t) where the scene says so. Energy -sum f_i.x_i.
+#ifndef PHRENIC_SERVER_MECHANICS_FORCES_POINT_LOAD_H_
+#define PHRENIC_SERVER_MECHANICS_FORCES_POINT_LOAD_H_
+
+#include <vector>
+
+#include "server/mechanics/draft.h"
+
+namespace phrenic {
+
+class PointLoad final : public Force {
+ public:
+  // Null where no vertex is free or the force is 0.
+  static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::PointLoad& scene, const std::string& name,
+                                                     std::string_view path, Draft& draft);
+
+  void AddForce(const Instant& at, MutablePoints f) const override;
+  double Energy(const Instant& at) const override;
+  bool conservative() const override { return true; }
+
+ private:
+  explicit PointLoad(std::string name) : Force(std::move(name)) {}
+  Eigen::Vector3d LoadAt(const Instant& at) const;
+
+  std::vector<int> vertices_;
+  Eigen::Vector3d load_;  // on each vertex [N]
+  bool breathes_ = false;
+};
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_SERVER_MECHANICS_FORCES_POINT_LOAD_H_

@@ -1,0 +1,69 @@
+// What drags and point loads say of scenes that they cannot follow.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/compile_text.h"
+#include "tests/small_scenes.h"
+
+namespace phrenic {
+namespace {
+
+using testing::HasSubstr;
+
+std::string Refusal(const std::string& force) {
+  const auto made = TryCompileText(Triangle("forces { " + force + " }"));
+  EXPECT_EQ(made.status().code(), absl::StatusCode::kInvalidArgument) << force;
+  return std::string(made.status().message());
+}
+
+// Why the force that comes after the triangle's own is left out; empty where it runs.
+std::string WhyLeftOut(const std::string& force) {
+  const auto model = CompileText(Triangle("forces { name: 'new' " + force + " }"));
+  for (const v1::LeftOut& row : model->report.left_out()) {
+    if (row.what() == "new") return row.why();
+  }
+  return "";
+}
+
+TEST(Drag, SaysWhatIsWrongWithIt) {
+  EXPECT_EQ(Refusal("drag { bodies: 'sheet' }"), "forces[3].drag: says no target: set displacement, point or surface");
+  EXPECT_THAT(Refusal("drag { bodies: 'sheet' vertices: 7 point {} }"), HasSubstr("forces[3].drag.vertices[0]: there"));
+  EXPECT_THAT(Refusal("drag { bodies: 'sheet' region: 'rim' point {} }"), HasSubstr("forces[3].drag.region"));
+  EXPECT_THAT(Refusal("drag { bodies: 'post' point {} }"), HasSubstr("must be ROLE_DEFORMABLE"));
+  EXPECT_THAT(Refusal("drag { bodies: 'sheet' surface: 'post' }"), HasSubstr("has no triangles to draw to"));
+  EXPECT_THAT(Refusal("drag { bodies: 'sheet' surface: 'sheet' }"), HasSubstr("name a body that is driven or at rest"));
+  EXPECT_THAT(Refusal("drag { bodies: 'sheet' point {} stiffness: -1 }"), HasSubstr("-1 is outside 0 to 1e+09 N/m"));
+}
+
+TEST(PointLoad, SaysWhatIsWrongWithIt) {
+  EXPECT_EQ(Refusal("point_load { body: 'sheet' force { z: 1 } }"),
+            "forces[3].point_load: says no place: set vertices, or a region");
+  EXPECT_THAT(Refusal("point_load { body: 'sheet' vertices: 1 region: 'rim' force { z: 1 } }"),
+              HasSubstr("set one of the two"));
+  EXPECT_THAT(Refusal("point_load { body: 'sheet' vertices: -1 force { z: 1 } }"), HasSubstr("vertices[0]"));
+  EXPECT_THAT(Refusal("point_load { body: 'sheet' vertices: 1 }"), HasSubstr("force: must be set"));
+}
+
+TEST(Loads, OnWhatCannotMoveAreLeftOut) {
+  EXPECT_EQ(WhyLeftOut("point_load { body: 'sheet' vertices: 0 force { z: 1 } }"), "none of its vertices is free");
+  EXPECT_EQ(WhyLeftOut("point_load { body: 'sheet' vertices: 1 force {} }"), "its force is 0");
+  EXPECT_EQ(WhyLeftOut("drag { bodies: 'sheet' vertices: 0 point {} }"), "none of its vertices is free");
+  EXPECT_EQ(WhyLeftOut("drag { bodies: 'sheet' stiffness: 0 point {} }"), "its stiffness is 0");
+  EXPECT_EQ(WhyLeftOut("drag { bodies: 'sheet' point {} }"), "");
+}
+
+TEST(Parameters, ThatNothingAnswersToAreReported) {
+  const auto idle = [](const std::string& more) {
+    const auto model = CompileText(Triangle(more));
+    return std::vector<std::string>(model->report.idle_parameters().begin(), model->report.idle_parameters().end());
+  };
+  EXPECT_THAT(idle(""),
+              testing::ElementsAre("rib_motion", "pump_handle", "bucket_handle", "apply_muscles", "apply_links"));
+  EXPECT_THAT(idle("constraints { limits { body: 'sheet' at_most_ratio: 2 } }"),
+              testing::Not(testing::Contains("apply_links")));
+  EXPECT_THAT(idle("forces { action_line { bodies: 'sheet' origin {} direction { z: 1 } radius: 3 force: 1 } }"),
+              testing::Not(testing::Contains("apply_muscles")));
+}
+
+}  // namespace
+}  // namespace phrenic

@@ -1,0 +1,52 @@
+import type { Controller } from "../controller";
+import { type Parameters, ParametersSchema } from "../gen/phrenic/v1/parameters_pb";
+import type { Preset } from "../gen/phrenic/v1/scene_pb";
+import type { ParameterName } from "../schema";
+import { make } from "./dom";
+
+/** The scene's ways to breathe, a button each; hidden where it has none. The one that holds is pressed. */
+export class PresetRow {
+  readonly element = make("div", { className: "presets", id: "presets", role: "group", hidden: true });
+  private scene = "";
+  private buttons: { preset: Preset; element: HTMLButtonElement }[] = [];
+
+  constructor(private readonly controller: Controller) {
+    this.element.ariaLabel = "Ways to breathe";
+    controller.session.subscribe((session) => {
+      if (session === undefined) return;
+      if (session.scene !== this.scene) void this.fill(session.scene);
+      this.press(session.parameters);
+    });
+  }
+
+  private async fill(scene: string): Promise<void> {
+    this.scene = scene;
+    const presets = await this.controller.presets();
+    if (scene !== this.scene) return;
+    this.buttons = presets.map((preset) => ({ preset, element: this.button(preset) }));
+    this.element.replaceChildren(...this.buttons.map(({ element }) => element));
+    this.element.hidden = presets.length === 0;
+    this.press(this.controller.session.value?.parameters);
+  }
+
+  private button({ name, title }: Preset): HTMLButtonElement {
+    const onclick = () => void this.controller.usePreset(name);
+    const words = name.charAt(0).toUpperCase() + name.slice(1);
+    return make("button", { type: "button", title: title || words, onclick }, words);
+  }
+
+  private press(parameters: Parameters | undefined): void {
+    for (const { preset, element } of this.buttons) {
+      element.ariaPressed = String(parameters !== undefined && holds(preset, parameters));
+    }
+  }
+}
+
+/** Whether all that the preset sets is as it says. */
+export function holds(preset: Preset, parameters: Parameters): boolean {
+  return ParametersSchema.fields.every((field) => {
+    const name = field.localName as ParameterName;
+    const wanted = preset.parameters?.[name];
+    return wanted === undefined || wanted === parameters[name];
+  });
+}

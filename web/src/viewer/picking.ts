@@ -1,0 +1,72 @@
+import * as THREE from "three";
+
+/** A surface or a network as it stands: x y z a vertex and three vertices a triangle. */
+export interface Pickable {
+  positions: ArrayLike<number>;
+  triangles: ArrayLike<number>;
+}
+
+/** A vertex of the n-th of several bodies. */
+export interface Picked {
+  body: number;
+  vertex: number;
+  place: THREE.Vector3;
+}
+
+/** Beside a body, a vertex so near to the pointer still counts, in parts of the picture's height. */
+const slack = 0.03;
+
+/**
+ * The vertex under the pointer (-1 to 1 from left to right and from bottom to top): of the triangle that is seen there
+ * the corner nearest to the ray; where there is none, the nearest vertex within reach.
+ */
+export function pickVertex(pointer: THREE.Vector2, camera: THREE.Camera, bodies: Pickable[]): Picked | undefined {
+  const caster = new THREE.Raycaster();
+  caster.setFromCamera(pointer, camera);
+  return onSurface(caster.ray, bodies) ?? beside(pointer, camera, bodies);
+}
+
+function onSurface(ray: THREE.Ray, bodies: Pickable[]): Picked | undefined {
+  const corners = [new THREE.Vector3(), new THREE.Vector3(), new THREE.Vector3()] as const;
+  const hit = new THREE.Vector3();
+  let nearest = Infinity;
+  let found: Picked | undefined;
+  bodies.forEach(({ positions, triangles }, body) => {
+    for (let t = 0; t < triangles.length; t += 3) {
+      corners.forEach((corner, i) => corner.fromArray(positions, 3 * triangles[t + i]));
+      if (ray.intersectTriangle(...corners, false, hit) === null) continue;
+      const distance = hit.distanceTo(ray.origin);
+      if (distance >= nearest) continue;
+      nearest = distance;
+      const away = corners.map((corner) => corner.distanceTo(hit));
+      const i = away.indexOf(Math.min(...away));
+      found = { body, vertex: triangles[t + i], place: corners[i].clone() };
+    }
+  });
+  return found;
+}
+
+function beside(pointer: THREE.Vector2, camera: THREE.Camera, bodies: Pickable[]): Picked | undefined {
+  const aspect = camera instanceof THREE.PerspectiveCamera ? camera.aspect : 1;
+  const place = new THREE.Vector3();
+  let nearest = 2 * slack;
+  let found: Picked | undefined;
+  bodies.forEach(({ positions }, body) => {
+    for (let i = 0; i < positions.length; i += 3) {
+      place.fromArray(positions, i).project(camera);
+      const distance = Math.hypot(aspect * (place.x - pointer.x), place.y - pointer.y);
+      if (distance >= nearest) continue;
+      nearest = distance;
+      found = { body, vertex: i / 3, place: new THREE.Vector3().fromArray(positions, i) };
+    }
+  });
+  return found;
+}
+
+/** Where the ray through the pointer meets the plane through `place` that faces the camera. */
+export function acrossFrom(pointer: THREE.Vector2, camera: THREE.Camera, place: THREE.Vector3): THREE.Vector3 {
+  const caster = new THREE.Raycaster();
+  caster.setFromCamera(pointer, camera);
+  const plane = new THREE.Plane().setFromNormalAndCoplanarPoint(camera.getWorldDirection(new THREE.Vector3()), place);
+  return caster.ray.intersectPlane(plane, new THREE.Vector3()) ?? place.clone();
+}

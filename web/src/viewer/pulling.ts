@@ -1,0 +1,86 @@
+import * as THREE from "three";
+import type { BodyView } from "./body_view";
+import { acrossFrom, pickVertex } from "./picking";
+
+/** A force on a vertex of a body [N]; zero lets go. */
+export type Pull = (body: string, vertex: number, force: [number, number, number]) => void;
+
+/** How hard a drag pulls [N/m]. */
+const strength = 40;
+
+/** Dragging with the shift key pulls the tissue under the pointer; beside it shift moves the camera as it always does. */
+export class Pulling {
+  private readonly arrow = new THREE.ArrowHelper(new THREE.Vector3(0, 0, 1), new THREE.Vector3(), 1, "#ffd166");
+  private held: { view: BodyView; vertex: number } | undefined;
+
+  constructor(
+    private readonly canvas: HTMLCanvasElement,
+    private readonly camera: THREE.Camera,
+    scene: THREE.Scene,
+    private readonly views: () => BodyView[],
+    private readonly pull: Pull,
+    private readonly changed: () => void,
+  ) {
+    this.arrow.visible = false;
+    // Over everything: the tissue may lie behind bone.
+    for (const part of [this.arrow.line, this.arrow.cone]) {
+      part.renderOrder = 1;
+      (part.material as THREE.Material).depthTest = false;
+      (part.material as THREE.Material).transparent = true;
+    }
+    scene.add(this.arrow);
+    // Before the camera's own controls hear of it.
+    canvas.addEventListener("pointerdown", (event) => this.start(event), { capture: true });
+    canvas.addEventListener("pointermove", (event) => this.move(event));
+    for (const kind of ["pointerup", "pointercancel", "lostpointercapture"] as const) {
+      canvas.addEventListener(kind, () => this.release());
+    }
+  }
+
+  private start(event: PointerEvent): void {
+    if (!event.shiftKey || event.button !== 0) return;
+    const views = this.views();
+    const bodies = views.map((view) => ({ positions: view.positions.array, triangles: view.body.triangles }));
+    const picked = pickVertex(this.pointer(event), this.camera, bodies);
+    if (picked === undefined) return;
+    event.stopImmediatePropagation();
+    event.preventDefault();
+    this.canvas.setPointerCapture(event.pointerId);
+    this.held = { view: views[picked.body], vertex: picked.vertex };
+    this.move(event);
+  }
+
+  private move(event: PointerEvent): void {
+    if (this.held === undefined) return;
+    const { view, vertex } = this.held;
+    const place = new THREE.Vector3().fromBufferAttribute(view.positions, vertex);
+    const way = acrossFrom(this.pointer(event), this.camera, place).sub(place);
+    this.point(place, way);
+    const force = way.multiplyScalar(strength);
+    this.pull(view.body.name, vertex, [force.x, force.y, force.z]);
+  }
+
+  private point(from: THREE.Vector3, way: THREE.Vector3): void {
+    const length = way.length();
+    this.arrow.visible = length > 0;
+    if (length === 0) return;
+    this.arrow.position.copy(from);
+    this.arrow.setDirection(way.clone().normalize());
+    this.arrow.setLength(length, 0.2 * length, 0.1 * length);
+    this.changed();
+  }
+
+  private release(): void {
+    if (this.held === undefined) return;
+    const { view, vertex } = this.held;
+    this.held = undefined;
+    this.arrow.visible = false;
+    this.changed();
+    this.pull(view.body.name, vertex, [0, 0, 0]);
+  }
+
+  private pointer({ offsetX, offsetY }: PointerEvent): THREE.Vector2 {
+    const { clientWidth, clientHeight } = this.canvas;
+    return new THREE.Vector2((2 * offsetX) / clientWidth - 1, 1 - (2 * offsetY) / clientHeight);
+  }
+}
