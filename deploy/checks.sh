@@ -78,7 +78,7 @@ stage_format() {
 }
 
 check_shellcheck() {
-  (cd "$root" && shellcheck -x deploy/run deploy/test deploy/*.sh .ci/run tests/deploy/*.sh)
+  (cd "$root" && shellcheck -x deploy/run deploy/test deploy/report deploy/*.sh client/examples/*.sh .ci/run tests/deploy/*.sh)
 }
 
 stage_scripts() {
@@ -173,8 +173,9 @@ stage_asan() {
 # gRPC's library is not built for ThreadSanitizer, so only tests of folders below service/ run under it.
 stage_tsan() {
   local folder=$root/build/tsan
-  check sanitized "$folder" thread tsan_test stream_test session_test
-  TSAN_OPTIONS=ignore_noninstrumented_modules=1:halt_on_error=1 ctests "$folder" -R '^(tsan|stream|session)/'
+  check sanitized "$folder" thread tsan_test stream_test session_test study_test
+  TSAN_OPTIONS=ignore_noninstrumented_modules=1:halt_on_error=1 ctests "$folder" \
+    -R '^(tsan|stream|session)/|^study/Jobs' -E ShippedScene
 }
 
 check_tidy() {
