@@ -1,5 +1,5 @@
 import { plot, type PlotOptions, type ScaleOptions } from "@observablehq/plot";
-import { formatTick } from "./format";
+import { formatTicks } from "./format";
 
 export const ink = "#1b1f24";
 export const faint = "#59626d";
@@ -26,12 +26,12 @@ export function isNear(value: number, values: number[], decades: number): boolea
   return Math.max(low - at, at - high) <= Math.max(high - low, decades);
 }
 
-/** 1, 2 and 5 of each decade where few are shown, decades where many are. */
+/** More of each decade where few are shown, decades alone where many are. */
 export function logTicks([low, high]: [number, number]): number[] {
   const first = Math.floor(Math.log10(low));
   const last = Math.ceil(Math.log10(high));
   const span = Math.log10(high / low);
-  const factors = span <= 2.2 ? [1, 2, 5] : [1];
+  const factors = span < 0.9 ? [1, 2, 3, 4, 5, 6, 8] : span <= 2.2 ? [1, 2, 5] : [1];
   const stride = Math.max(1, Math.ceil(span / 9));
   const ticks: number[] = [];
   for (let exponent = first; exponent <= last; ++exponent) {
@@ -42,7 +42,8 @@ export function logTicks([low, high]: [number, number]): number[] {
 }
 
 export function logScale(label: string, domain: [number, number]): ScaleOptions {
-  return { type: "log", domain, ticks: logTicks(domain), tickFormat: formatTick, label, grid: true };
+  const ticks = logTicks(domain);
+  return { type: "log", domain, ticks, tickFormat: formatTicks(ticks), label, grid: true };
 }
 
 /** A plot as all of them look; `label` says in words what it shows. */
@@ -52,7 +53,7 @@ export function draw(label: string, { x, y, ...options }: PlotOptions): SVGSVGEl
     height: 560,
     marginLeft: 78,
     marginRight: 28,
-    marginTop: 44,
+    marginTop: 32,
     marginBottom: 58,
     className: "plot",
     style: { fontFamily: "inherit", fontSize: "15px", color: ink, background: "white" },
@@ -60,6 +61,8 @@ export function draw(label: string, { x, y, ...options }: PlotOptions): SVGSVGEl
     y: { labelArrow: "none", labelOffset: 70, ...y },
     ...options,
   });
+  // One picture with one name: the names of its parts would only be in the way.
+  for (const part of drawn.querySelectorAll("[aria-label]")) part.removeAttribute("aria-label");
   drawn.setAttribute("role", "img");
   drawn.setAttribute("aria-label", label);
   return drawn;

@@ -67,10 +67,10 @@ function guideMarks({ order, points }: Guide): Markish[] {
   ];
 }
 
-/** "Measured at the smallest steps: BDF2 1.4, Velocity Verlet 2." */
+/** "Orders measured at the smallest steps: BDF2: 1.4; Velocity Verlet: 2." */
 function ordersInWords(runs: Run[]): string {
   const last = new Map(runs.flatMap(({ id, row }) => (row.order === undefined ? [] : [[id, row.order]])));
   if (last.size === 0) return "";
-  const words = [...last].map(([id, order]) => `${nameOf(id)} ${formatDigits(order, 2)}`);
-  return `Orders measured at the smallest steps: ${words.join(", ")}.`;
+  const words = [...last].map(([id, order]) => `${nameOf(id)}: ${formatDigits(order, 2)}`);
+  return `Orders measured at the smallest steps: ${words.join("; ")}.`;
 }

@@ -85,7 +85,7 @@ function drawBars(title: string, label: string, bars: Bar[]): HTMLElement | SVGS
     height: 80 + 36 * bars.length,
     marginTop: 12,
     marginLeft,
-    x: { label, domain: [0, most * room], grid: true, ticks: 6 },
+    x: { label, domain: [0, most * room], grid: true, ticks: 6, tickFormat: (value: number) => formatDigits(value) },
     y: {
       type: "band",
       domain: places.map(({ at }) => at),

@@ -95,7 +95,7 @@ function along(points: Point[]): Point[] {
 }
 
 function around({ x, y }: Point, width: number): Box[] {
-  const lefts = [x + 10, x - width - 10, x - width / 2];
+  const lefts = [x + 13, x - width - 13, x - width / 2];
   const tops = [y - line / 2, y - line - 9, y + 9, y - line - 22, y + 22];
   return lefts
     .flatMap((left) => tops.map((top) => ({ left, top, right: left + width, bottom: top + line })))

@@ -26,10 +26,15 @@ function grouped(value: number): string {
   return `${value < 0 ? "−" : ""}${apart}${part === undefined ? "" : `.${part}`}`;
 }
 
-/** A tick of a logarithmic axis: plain where that is short, "10⁻⁵" elsewhere. */
-export function formatTick(value: number): string {
+/** Ticks of a logarithmic axis: plain where that is short for all of them, "10⁻⁵" elsewhere. */
+export function formatTicks(ticks: number[]): (value: number) => string {
+  const plain = ticks.every((tick) => tick > 0.999e-3 && tick < 1.001e5);
+  return (value) => formatTick(value, plain ? [-3, 5] : [-1, 1]);
+}
+
+function formatTick(value: number, [least, most]: [number, number]): string {
   const exponent = Math.floor(Math.log10(value) + 1e-9);
-  if (exponent >= -3 && exponent <= 4) return formatDigits(value, 3);
+  if (exponent >= least && exponent <= most) return formatDigits(value, 3);
   const factor = Math.round(value / 10 ** exponent);
   return factor === 1 ? powerOfTen(exponent) : `${factor}·${powerOfTen(exponent)}`;
 }

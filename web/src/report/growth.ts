@@ -19,7 +19,7 @@ export function growth({ growth: rows, growthExponent }: CostTable): HTMLElement
   );
   if (points.length === 0) return undefined;
   const x = logDomain(points.map((point) => point.x));
-  const fit = growthExponent === undefined ? [] : fitted(points, x, growthExponent);
+  const fit = growthExponent === undefined ? [] : fitted(points, growthExponent);
   const ids = [...new Set(points.map(({ id }) => id))];
   const title = "CPU time of a step against the number of vertices.";
   const sentence =
@@ -39,7 +39,7 @@ export function growth({ growth: rows, growthExponent }: CostTable): HTMLElement
     ),
     marks: [
       frame({ stroke: "#8b949e" }),
-      line(fit, { x: "x", y: "y", stroke: faint, strokeWidth: 1.5, strokeDasharray: "6 4", clip: true }),
+      line(fit, { x: "x", y: "y", z: "id", stroke: faint, strokeWidth: 1.5, strokeDasharray: "6 4", clip: true }),
       line(points, { x: "x", y: "y", z: "id", stroke: "id", strokeWidth: 2.5 }),
       dot(points, { x: "x", y: "y", fill: "id", symbol: "id", r: 6, stroke: "white" }),
       directLabels(
@@ -62,9 +62,13 @@ export function growth({ growth: rows, growthExponent }: CostTable): HTMLElement
 const inWords = ({ id, x, y }: Point) => `${nameOf(id)}
 ${formatDigits(x, 9)} vertices: ${formatDigits(y, 3)} µs per step`;
 
-/** The power through the middle of all points. */
-function fitted(points: Point[], [low, high]: [number, number], exponent: number): { x: number; y: number }[] {
+/** For each series the power through its middle, a little longer than the series. */
+function fitted(points: Point[], exponent: number): Point[] {
   const mean = (values: number[]) => Math.exp(values.reduce((sum, each) => sum + Math.log(each), 0) / values.length);
-  const [x, y] = [mean(points.map((point) => point.x)), mean(points.map((point) => point.y))];
-  return [low, high].map((at) => ({ x: at, y: y * (at / x) ** exponent }));
+  return [...new Set(points.map(({ id }) => id))].flatMap((id) => {
+    const own = points.filter((point) => point.id === id);
+    const xs = own.map((point) => point.x);
+    const [x, y] = [mean(xs), mean(own.map((point) => point.y))];
+    return [Math.min(...xs) / 1.5, Math.max(...xs) * 1.5].map((at) => ({ id, x: at, y: y * (at / x) ** exponent }));
+  });
 }

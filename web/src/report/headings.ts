@@ -3,9 +3,9 @@ import { inWords } from "./names";
 const units: Record<string, string> = { mm: "mm", m: "m", s: "s", ms: "ms", us: "µs", ns: "ns", j: "J" };
 const words: Record<string, string> = { cpu: "CPU", rms: "RMS" };
 const whole: Record<string, string> = {
-  cpu_per_second: "CPU [s per simulated s]",
+  cpu_per_second: "CPU [s per s]",
   real_time: "Faster than real time",
-  pareto: "On the front",
+  pareto: "On front",
   order: "Measured order",
   case: "Case",
 };

@@ -1,16 +1,27 @@
-import type { SymbolType } from "@observablehq/plot";
+import type { SymbolImplementation, SymbolType } from "@observablehq/plot";
 
 /** How one series looks in every plot: never by colour alone. */
 export interface Look {
   name: string;
   color: string;
-  symbol: SymbolType;
+  symbol: SymbolType | SymbolImplementation;
 }
 
+// A triangle on its tip.
+const down: SymbolImplementation = {
+  draw(context: CanvasPath, size: number) {
+    const r = Math.sqrt(size) * 0.88;
+    context.moveTo(0, r);
+    context.lineTo(r * 0.87, -r / 2);
+    context.lineTo(-r * 0.87, -r / 2);
+    context.closePath();
+  },
+};
+
 // Dark enough to be read as text on white (WCAG AA), and apart for people who see fewer colours.
-const looks: [string, string, string, SymbolType][] = [
+const looks: [string, string, string, Look["symbol"]][] = [
   ["semi_implicit_euler", "Semi-implicit Euler", "#00609f", "circle"],
-  ["thesis", "Thesis", "#b23a12", "wye"],
+  ["thesis", "Thesis", "#b23a12", down],
   ["explicit_euler", "Explicit Euler", "#7d5600", "triangle"],
   ["velocity_verlet", "Velocity Verlet", "#00704c", "square"],
   ["runge_kutta_4", "Runge-Kutta 4", "#6f3fa0", "diamond"],

@@ -39,8 +39,8 @@ export function positionErrors(table: ErrorTable): HTMLElement | undefined {
   if (points.length === 0) return undefined;
   const ids = [...new Set(points.map(({ id }) => id))];
   const last = ids.map((id) => ({ id, y: points.findLast((point) => point.id === id)!.y }));
-  const words = last.map(({ id, y }) => `${formatDigits(y, 2)} mm by ${id}`).join(", ");
-  const sentence = `Links kept equally well need not move the same way: at the end the RMS error is ${words}.`;
+  const words = last.map(({ id, y }) => `${formatDigits(y, 2)} mm (${id})`).join(", ");
+  const sentence = `How links are kept shows in the motion: at the end the RMS error is ${words}.`;
   return overTime("Error by projection.", "RMS error of positions [mm]", sentence, points);
 }
 
@@ -54,7 +54,7 @@ function overTime(title: string, label: string, sentence: string, points: Point[
     width: half,
     height: 400,
     marginLeft: 74,
-    x: { label: "Time [s]", nice: true, ticks: 6, grid: true },
+    x: { label: "Time [s]", domain: [0, 1.04 * Math.max(...points.map(({ x }) => x))], ticks: 6, grid: true },
     y: logScale(label, logDomain(values, 0.15)),
     marks: [
       frame({ stroke: "#8b949e" }),

@@ -52,36 +52,47 @@ export function mapsOf({ map, limits }: StabilityTable): StabilityMapData[] {
   });
 }
 
-export function stabilityMap(data: StabilityMapData): HTMLElement | SVGSVGElement {
+export function stabilityMap(data: StabilityMapData): HTMLElement {
   const { integrator, relative, cells } = data;
   const x: [number, number] = [Math.min(...cells.map(({ x1 }) => x1)), Math.max(...cells.map(({ x2 }) => x2))];
   const y: [number, number] = [Math.min(...cells.map(({ y1 }) => y1)), Math.max(...cells.map(({ y2 }) => y2))];
   const stable = cells.filter(({ row }) => row.verdict === "stable" || row.verdict === "damped").length;
   const rows = new Set(cells.map(({ row }) => row.stiffness)).size;
   const label = `${nameOf(integrator)}: ${stable} of ${cells.length} runs stay stable, over stiffness and time step.`;
-  return draw(label, {
+  const drawn = draw(label, {
     width: half,
-    height: 118 + 34 * Math.max(3, rows),
-    marginTop: 60,
+    height: 90 + 34 * Math.max(3, rows),
     marginLeft: 64,
     x: { ...logScale(relative ? "Time step over predicted limit" : "Time step [ms]", x), grid: false },
     y: { ...logScale("Stiffness, times the scene's", y), grid: false, labelOffset: 58 },
     marks: mapMarks(data, y),
   });
+  return make("div", {}, make("h3", {}, nameOf(integrator)), drawn);
 }
 
-function mapMarks({ integrator, cells, predicted, measured }: StabilityMapData, y: [number, number]): Markish[] {
+function mapMarks({ cells, predicted, measured }: StabilityMapData, y: [number, number]): Markish[] {
   const sides = { x1: "x1", x2: "x2", y1: "y1", y2: "y2" };
   const limit = limitLine(predicted, y);
   return [
     rect(cells, { ...sides, fill: ({ row }: Cell) => verdictOf(row.verdict).color, stroke: "white", inset: 0.5 }),
-    text(cells, { x: "x", y: "y", text: ({ row }: Cell) => verdictOf(row.verdict).letter, fill: ink, fontSize: 14 }),
+    text(cells, {
+      x: (cell: Cell) => letterOf(cell, [...predicted, ...measured]),
+      y: "y",
+      text: ({ row }: Cell) => verdictOf(row.verdict).letter,
+      fill: ink,
+      fontSize: 14,
+    }),
     frame({ stroke: "#8b949e" }),
     line(limit, { x: "x", y: "y", stroke: ink, strokeWidth: 3, strokeDasharray: "8 5", clip: true }),
     dot(measured, { x: "x", y: "y", r: 6, fill: ink, stroke: "white", strokeWidth: 1.5, clip: true }),
     tip(cells, pointer({ x: "x", y: "y", title: ({ row }: Cell) => inWords(row), fontSize: 14 })),
-    text([nameOf(integrator)], { frameAnchor: "top-left", dy: -48, dx: -62, fontSize: 17, fontWeight: 700, fill: ink }),
   ];
+}
+
+/** Where a cell's letter stands: in the middle, or beside it where a limit is drawn. */
+function letterOf({ x1, x2, y1, y2, x }: Cell, limits: { x: number; y: number }[]): number {
+  const over = limits.some((limit) => limit.x > x1 && limit.x < x2 && limit.y > y1 && limit.y < y2);
+  return over ? x1 ** 0.55 * x ** 0.45 : Math.sqrt(x1 * x2);
 }
 
 /** The predicted limit through all rows of the map, to its lower and upper edge. */

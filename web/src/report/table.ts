@@ -53,10 +53,16 @@ function cell(row: Message, field: DescField): HTMLElement {
   if (value === undefined || value === "") return make("td", { className: isNumber(field) ? "number" : "" }, "–");
   if (typeof value === "boolean") return make("td", {}, value ? "✔ yes" : "no");
   if (typeof value === "bigint") return make("td", { className: "number" }, formatDigits(Number(value), 12));
-  if (typeof value === "number") return make("td", { className: "number" }, formatDigits(value));
+  if (typeof value === "number") return make("td", { className: "number" }, shortDigits(value));
   const text = String(value);
   if (field.name === "verdict") return verdictCell(text);
-  return make("td", {}, field.name === "integrator" ? nameOf(text) : text);
+  return make("td", { className: text.length > 30 ? "words" : "" }, field.name === "integrator" ? nameOf(text) : text);
+}
+
+/** Four digits, three where a power takes the room of one. */
+function shortDigits(value: number): string {
+  const size = Math.abs(value);
+  return formatDigits(value, size !== 0 && (size < 1e-3 || size >= 1e6) ? 3 : 4);
 }
 
 function verdictCell(text: string): HTMLElement {

@@ -62,13 +62,14 @@ export function workPrecision(table: ErrorTable, measure: Measure): HTMLElement 
   const front = measure === "errorRmsMm" ? runs.filter(({ row }) => row.pareto).sort((a, b) => a.x - b.x) : [];
   const drawn = draw(`${title} ${bestInWords(runs)}`, {
     ...seriesScales(looksOf(table.rows.map(({ integrator }) => integrator))),
-    height: 640,
+    height: 648,
+    marginTop: 44,
     x: logScale("CPU time per simulated second [s]", x),
     y: logScale(`${what} [mm]`, y),
     marks: [
       frame({ stroke: "#8b949e" }),
-      ...(paceShown ? realTime(x) : []),
-      ...(ownShown ? referenceRule(own) : []),
+      ...(paceShown ? realTime() : []),
+      ...(ownShown ? referenceRule(own, paceShown && isLeft(1, x)) : []),
       line(front, { x: "x", y: "y", stroke: ink, strokeOpacity: 0.13, strokeWidth: 16, strokeLinecap: "round" }),
       ...seriesMarks(runs),
       dot(front, { x: "x", y: "y", r: 10, stroke: ink, strokeWidth: 1.8 }),
@@ -85,24 +86,19 @@ export function workPrecision(table: ErrorTable, measure: Measure): HTMLElement 
   return figure(title, sentences.filter(Boolean).join(" "), drawn);
 }
 
-function realTime([low, high]: [number, number]): Markish[] {
-  const right = Math.log10(1 / low) > Math.log10(high / low) / 2;
-  const label = {
-    x: [1],
-    frameAnchor: "top",
-    dy: 12,
-    dx: right ? -8 : 8,
-    textAnchor: right ? "end" : "start",
-  } as const;
+const isLeft = (value: number, [low, high]: [number, number]) => value / low < Math.sqrt(high / low);
+
+function realTime(): Markish[] {
   return [
     ruleX([1], { stroke: ink, strokeWidth: 1.5, strokeDasharray: "7 4" }),
-    text(["real time"], { ...label, fill: ink, fontSize: 14, stroke: "white", strokeWidth: 4 }),
+    text(["real time"], { x: [1], frameAnchor: "top", dy: -11, fill: ink, fontSize: 14 }),
   ];
 }
 
-function referenceRule(own: number): Markish[] {
+function referenceRule(own: number, onTheRight: boolean): Markish[] {
   const words = `the reference's own error, ${formatDigits(own, 2)} mm`;
-  const label = { y: [own], frameAnchor: "left", dx: 10, dy: -11, textAnchor: "start" } as const;
+  const side = onTheRight ? ({ frameAnchor: "right", dx: -10 } as const) : ({ frameAnchor: "left", dx: 10 } as const);
+  const label = { ...side, y: [own], dy: -11, textAnchor: onTheRight ? "end" : "start" } as const;
   return [
     ruleY([own], { stroke: faint, strokeWidth: 1.5, strokeDasharray: "2 4" }),
     text([words], { ...label, fill: ink, fontSize: 14, stroke: "white", strokeWidth: 4 }),
