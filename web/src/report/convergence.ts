@@ -45,7 +45,7 @@ export function convergence(table: ErrorTable): HTMLElement | undefined {
 /** Lines of slope 1, 2 and 4 from one point, as far as the frame goes. */
 export function guidesIn(from: number, to: number, [low, high]: [number, number]): Guide[] {
   const bottom = low * (high / low) ** 0.06;
-  const rise = high / bottom;
+  const rise = (high / low) ** 0.88;
   return [1, 2, 4].map((order) => {
     const x = Math.min(to, from * rise ** (1 / order));
     return {

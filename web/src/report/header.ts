@@ -21,8 +21,12 @@ export function header(study: Study): HTMLElement {
   return make(
     "header",
     {},
-    make("p", { className: "over" }, `Phrenic study${study.id === "" ? "" : ` ${study.id}`}`),
-    make("p", { className: "disclaimer" }, "Research and teaching; not for clinical use"),
+    make(
+      "div",
+      { className: "over-row" },
+      make("p", { className: "over" }, `Phrenic study${study.id === "" ? "" : ` ${study.id}`}`),
+      make("p", { className: "disclaimer" }, "Research and teaching; not for clinical use"),
+    ),
     make("h1", {}, `${title}: `, make("span", { className: "scene" }, scene)),
     ...(list.length === 0 ? [] : [make("dl", {}, ...list)]),
   );

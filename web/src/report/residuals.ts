@@ -58,8 +58,11 @@ function overTime(title: string, label: string, sentence: string, points: Point[
     y: logScale(label, logDomain(values, 0.15)),
     marks: [
       frame({ stroke: "#8b949e" }),
-      line(points, { x: "x", y: "y", z: "id", stroke: "id", strokeWidth: 2.5 }),
-      dot(points, { x: "x", y: "y", fill: "id", symbol: "id", r: 5, stroke: "white" }),
+      // Thinner one over another: series that agree are both seen.
+      ...lines.flatMap(({ id, points: own }, i) => [
+        line(own, { x: "x", y: "y", stroke: looks.get(id)!.color, strokeWidth: Math.max(2, 5 - 3 * i) }),
+        dot(own, { x: "x", y: "y", fill: () => id, symbol: () => id, r: Math.max(3, 7 - 3 * i), stroke: "white" }),
+      ]),
       tip(points, pointer({ x: "x", y: "y", title: inWordsAt, fontSize: 14 })),
       directLabels(lines),
     ],
