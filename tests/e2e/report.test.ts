@@ -1,0 +1,107 @@
+import axe from "axe-core";
+import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { pathToFileURL } from "node:url";
+import type { Browser, Page } from "playwright-core";
+import { afterAll, beforeAll, describe, expect, test } from "vitest";
+import { costStudy, errorStudy, pageOf, stabilityStudy } from "../web/study_samples";
+import { launchBrowser } from "./browser";
+import { outFolder } from "./server";
+
+const empty = readFileSync(join(import.meta.dirname, "../../web/dist/report.html"), "utf8");
+const studies = { error: errorStudy, stability: stabilityStudy, cost: costStudy };
+let browser: Browser;
+
+beforeAll(async () => {
+  browser = await launchBrowser();
+  mkdirSync(outFolder, { recursive: true });
+});
+
+afterAll(() => browser?.close());
+
+/** The page of a study, opened as the file that a reviewer gets. */
+async function open(name: string, study: object) {
+  const path = join(outFolder, `report-${name}.html`);
+  writeFileSync(path, pageOf(empty, study));
+  const page = await browser.newPage({ viewport: { width: 1280, height: 900 } });
+  const complaints: string[] = [];
+  const requests: string[] = [];
+  page.on("console", (message) => complaints.push(message.text()));
+  page.on("pageerror", (error) => complaints.push(String(error)));
+  page.on("request", (request) => requests.push(request.url()));
+  const url = pathToFileURL(path).href;
+  await page.goto(url);
+  await page.waitForSelector("#page footer");
+  return { page, complaints, others: () => requests.filter((each) => each !== url && !each.startsWith("data:")) };
+}
+
+/** Texts of the plots that stick out of them or cover another. */
+function spoiltTexts(page: Page): Promise<string[]> {
+  return page.evaluate(() =>
+    [...document.querySelectorAll("svg.plot")].flatMap((svg) => {
+      const frame = svg.getBoundingClientRect();
+      const texts = [...svg.querySelectorAll("text")].filter((each) => each.textContent !== "");
+      const boxes = texts.map((each) => ({ box: each.getBoundingClientRect(), words: each.textContent }));
+      const out = boxes.filter(
+        ({ box }) =>
+          box.left < frame.left - 1 ||
+          box.right > frame.right + 1 ||
+          box.top < frame.top - 1 ||
+          box.bottom > frame.bottom + 1,
+      );
+      const covered = boxes.filter(({ box }, i) =>
+        boxes.some(
+          ({ box: other }, j) =>
+            j < i &&
+            Math.min(box.right, other.right) - Math.max(box.left, other.left) > 2 &&
+            Math.min(box.bottom, other.bottom) - Math.max(box.top, other.top) > 3,
+        ),
+      );
+      return [...out.map(({ words }) => `${words} sticks out`), ...covered.map(({ words }) => `${words} covers`)];
+    }),
+  );
+}
+
+describe.each(Object.entries(studies))("the page of the %s study", (name, study) => {
+  test("DrawsWithoutComplaintsAndAsksForNothing", async () => {
+    const { page, complaints, others } = await open(name, study);
+    await page.screenshot({ path: join(outFolder, `report-${name}.png`), fullPage: true });
+    expect(complaints).toEqual([]);
+    expect(others()).toEqual([]);
+    expect(await page.locator("figure svg[role=img][aria-label]").count()).toBeGreaterThan(2);
+    expect(await page.locator("tbody tr").count()).toBeGreaterThan(5);
+    expect(await spoiltTexts(page)).toEqual([]);
+    await page.close();
+  });
+
+  test("AxeFindsNothingAgainstIt", async () => {
+    const { page } = await open(name, study);
+    await page.evaluate(axe.source);
+    const found = await page.evaluate(async () => {
+      const { violations } = await (window as unknown as { axe: typeof axe }).axe.run();
+      return violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.target).join(", ")}`);
+    });
+    expect(found).toEqual([]);
+    await page.close();
+  });
+});
+
+test("ThePolicyStopsScriptsThatAreNotThePages", async () => {
+  const { page } = await open("error", errorStudy);
+  const ran = await page.evaluate(async () => {
+    const script = document.createElement("script");
+    script.textContent = "window.intruder = true";
+    document.body.append(script);
+    return "intruder" in window;
+  });
+  expect(ran).toBe(false);
+  await page.close();
+});
+
+test("TheLargestErrorIsShownOnDemand", async () => {
+  const { page, complaints } = await open("error", errorStudy);
+  await page.getByLabel("Largest error").check();
+  await page.waitForSelector('figure svg[aria-label^="Largest error"]');
+  expect(complaints).toEqual([]);
+  await page.close();
+});

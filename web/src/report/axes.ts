@@ -1,0 +1,79 @@
+import { plot, type PlotOptions, type ScaleOptions } from "@observablehq/plot";
+import { formatTicks } from "./format";
+
+export const ink = "#1b1f24";
+export const faint = "#59626d";
+export const wide = 1080;
+export const half = 530;
+
+export const isPositive = (value: number | undefined): value is number =>
+  value !== undefined && Number.isFinite(value) && value > 0;
+
+/** From the smallest to the largest value with some air, in powers; a decade where there is but one. */
+export function logDomain(values: number[], air = 0.06): [number, number] {
+  const known = values.filter(isPositive);
+  if (known.length === 0) return [0.1, 10];
+  const low = Math.log10(Math.min(...known));
+  const high = Math.log10(Math.max(...known));
+  const more = Math.max(air * (high - low), (0.5 - (high - low)) / 2, 0.06);
+  return [10 ** (low - more), 10 ** (high + more)];
+}
+
+/** Whether `value` is near enough to what is drawn to be drawn with it: within its span, or `decades`. */
+export function isNear(value: number, values: number[], decades: number): boolean {
+  if (!isPositive(value) || values.length === 0) return false;
+  const [low, high, at] = [Math.min(...values), Math.max(...values), value].map(Math.log10);
+  return Math.max(low - at, at - high) <= Math.max(high - low, decades);
+}
+
+/** More of each decade where few are shown, decades alone where many are. */
+export function logTicks([low, high]: [number, number]): number[] {
+  const first = Math.floor(Math.log10(low));
+  const last = Math.ceil(Math.log10(high));
+  const span = Math.log10(high / low);
+  const factors = span < 0.9 ? [1, 2, 3, 4, 5, 6, 8] : span <= 2.2 ? [1, 2, 5] : [1];
+  const stride = Math.max(1, Math.ceil(span / 9));
+  const ticks: number[] = [];
+  for (let exponent = first; exponent <= last; ++exponent) {
+    if (exponent % stride !== 0) continue;
+    for (const factor of factors) ticks.push(Number(`${factor}e${exponent}`));
+  }
+  return ticks.filter((tick) => tick >= low * 0.999 && tick <= high * 1.001);
+}
+
+export function logScale(label: string, domain: [number, number]): ScaleOptions {
+  const ticks = logTicks(domain);
+  return { type: "log", domain, ticks, tickFormat: formatTicks(ticks), label, grid: true };
+}
+
+/** A plot as all of them look; `label` says in words what it shows. */
+export function draw(label: string, { x, y, ...options }: PlotOptions): SVGSVGElement | HTMLElement {
+  const drawn = plot({
+    width: wide,
+    height: 560,
+    marginLeft: 78,
+    marginRight: 28,
+    marginTop: 32,
+    marginBottom: 58,
+    className: "plot",
+    style: { fontFamily: "inherit", fontSize: "15px", color: ink, background: "white" },
+    x: { labelAnchor: "center", labelArrow: "none", labelOffset: 50, ...x },
+    y: { labelArrow: "none", labelOffset: 70, ...y },
+    ...options,
+  });
+  // One picture with one name: the names of its parts would only be in the way.
+  for (const part of drawn.querySelectorAll("[aria-label]")) part.removeAttribute("aria-label");
+  drawn.setAttribute("role", "img");
+  drawn.setAttribute("aria-label", label);
+  return drawn;
+}
+
+/** The wanted scale for series: their colours and symbols. */
+export function seriesScales(looks: Map<string, { color: string; symbol: unknown }>): PlotOptions {
+  const domain = [...looks.keys()];
+  const all = [...looks.values()];
+  return {
+    color: { type: "categorical", domain, range: all.map(({ color }) => color) },
+    symbol: { domain, range: all.map(({ symbol }) => symbol) } as ScaleOptions,
+  };
+}

@@ -1,0 +1,76 @@
+import { frame, line, type Markish, text } from "@observablehq/plot";
+import type { ErrorTable } from "../gen/phrenic/v1/study_results_pb";
+import { draw, faint, logDomain, logScale, seriesScales } from "./axes";
+import { directLabels } from "./direct_labels";
+import { figure } from "./figure";
+import { formatDigits } from "./format";
+import { looksOf, nameOf } from "./names";
+import { leftOut, linesOf, type Run, runsOf, seriesMarks } from "./work_precision";
+
+interface Guide {
+  order: number;
+  points: { x: number; y: number }[];
+}
+
+/** Error against time step: the slope is the order. */
+export function convergence(table: ErrorTable): HTMLElement | undefined {
+  const runs = runsOf(table.rows, ({ timeStepS }) => 1e3 * timeStepS, "errorRmsMm");
+  if (runs.length === 0) return undefined;
+  const xs = runs.map(({ x }) => x);
+  const y = logDomain(runs.map((run) => run.y));
+  const [low, high] = logDomain(xs);
+  // Guides have a strip of their own, to the right of all runs.
+  const end = high * 10 ** Math.max(0.3, 0.18 * Math.log10(high / low));
+  const guides = guidesIn(high, end, y);
+  const title = "RMS error against time step.";
+  const drawn = draw(`${title} ${ordersInWords(runs)}`, {
+    ...seriesScales(looksOf(table.rows.map(({ integrator }) => integrator))),
+    height: 560,
+    marginRight: 84,
+    x: logScale("Time step [ms]", [low, end]),
+    y: logScale("RMS error [mm]", y),
+    marks: [
+      frame({ stroke: "#8b949e" }),
+      ...guides.flatMap(guideMarks),
+      ...seriesMarks(runs),
+      directLabels(linesOf(runs)),
+    ],
+  });
+  const sentence =
+    `Half the step, and the error of order p falls to 1/2^p: dashed guides have the slopes 1, 2 and 4. ` +
+    [ordersInWords(runs), leftOut(table.rows, runs)].filter(Boolean).join(" ");
+  return figure(title, sentence.replace("1/2^p", "1/2ᵖ"), drawn);
+}
+
+/** Lines of slope 1, 2 and 4 from one point, as far as the frame goes. */
+export function guidesIn(from: number, to: number, [low, high]: [number, number]): Guide[] {
+  const bottom = low * (high / low) ** 0.06;
+  const rise = (high / low) ** 0.88;
+  return [1, 2, 4].map((order) => {
+    const x = Math.min(to, from * rise ** (1 / order));
+    return {
+      order,
+      points: [
+        { x: from, y: bottom },
+        { x, y: bottom * (x / from) ** order },
+      ],
+    };
+  });
+}
+
+function guideMarks({ order, points }: Guide): Markish[] {
+  const [, end] = points;
+  const label = { x: [end.x], y: [end.y], dx: 8, textAnchor: "start", fill: faint, fontSize: 14 } as const;
+  return [
+    line(points, { x: "x", y: "y", stroke: faint, strokeWidth: 1.5, strokeDasharray: "5 4" }),
+    text([`order ${order}`], label),
+  ];
+}
+
+/** "Orders measured at the smallest steps: BDF2: 1.4; Velocity Verlet: 2." */
+function ordersInWords(runs: Run[]): string {
+  const last = new Map(runs.flatMap(({ id, row }) => (row.order === undefined ? [] : [[id, row.order]])));
+  if (last.size === 0) return "";
+  const words = [...last].map(([id, order]) => `${nameOf(id)}: ${formatDigits(order, 2)}`);
+  return `Orders measured at the smallest steps: ${words.join("; ")}.`;
+}

@@ -1,0 +1,61 @@
+import type { Study } from "../gen/phrenic/v1/study_pb";
+import type { Parameters } from "../gen/phrenic/v1/parameters_pb";
+import type { StudyResult } from "../gen/phrenic/v1/study_results_pb";
+import { make } from "../panels/dom";
+import { type Control, parameterControls } from "../schema";
+import { formatDigits } from "./format";
+import { nameOf } from "./names";
+
+const kinds = { error: "Error against run time", stability: "Stability", cost: "Cost" };
+
+/** What was studied, of which scene, with which parameters. */
+export function header(study: Study): HTMLElement {
+  const { result } = study;
+  const kind = result?.result.case;
+  const scene = result?.scene || study.scene || "unnamed scene";
+  const title = kind === undefined ? "Study" : kinds[kind];
+  document.title = `${title}: ${scene} – Phrenic`;
+  const facts: [string, string][] = [];
+  if (result !== undefined) facts.push(...factsOf(result));
+  const list = facts.flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)]);
+  return make(
+    "header",
+    {},
+    make(
+      "div",
+      { className: "over-row" },
+      make("p", { className: "over" }, `Phrenic study${study.id === "" ? "" : ` ${study.id}`}`),
+      make("p", { className: "disclaimer" }, "Research and teaching; not for clinical use"),
+    ),
+    make("h1", {}, `${title}: `, make("span", { className: "scene" }, scene)),
+    ...(list.length === 0 ? [] : [make("dl", {}, ...list)]),
+  );
+}
+
+function factsOf({ sceneHash, parameters, tookS, result }: StudyResult): [string, string][] {
+  const facts: [string, string][] = [];
+  if (parameters !== undefined) facts.push(["Parameters", parametersInWords(parameters)]);
+  const simulated = result.case === "error" ? result.value.seconds : 0;
+  const took = `the study took ${formatDigits(tookS, 3)} s`;
+  facts.push(["Duration", simulated > 0 ? `${formatDigits(simulated)} s simulated; ${took}` : took]);
+  if (sceneHash !== "") facts.push(["Scene's hash", sceneHash]);
+  return facts;
+}
+
+/** "Time step 0.005 s · Breath force 1 · ..." */
+export function parametersInWords(parameters: Parameters): string {
+  const values = parameters as unknown as Record<string, unknown>;
+  return parameterControls()
+    .filter(({ field }) => values[field] !== undefined)
+    .map((control) => `${control.label.toLowerCase()} ${valueInWords(control, values[control.field])}`)
+    .join(" · ");
+}
+
+function valueInWords(control: Control, value: unknown): string {
+  if (control.kind === "switch") return value === true ? "on" : "off";
+  if (control.kind === "choice") {
+    const label = control.options.find((each) => each.value === value)?.label ?? String(value);
+    return nameOf(label.toLowerCase().replaceAll(" ", "_"));
+  }
+  return `${formatDigits(Number(value))}${control.unit === "" ? "" : ` ${control.unit}`}`;
+}

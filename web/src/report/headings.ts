@@ -1,0 +1,26 @@
+import { inWords } from "./names";
+
+const units: Record<string, string> = { mm: "mm", m: "m", s: "s", ms: "ms", us: "µs", ns: "ns", j: "J" };
+const words: Record<string, string> = { cpu: "CPU", rms: "RMS" };
+const whole: Record<string, string> = {
+  cpu_per_second: "CPU [s per s]",
+  real_time: "Faster than real time",
+  pareto: "On front",
+  order: "Measured order",
+  case: "Case",
+};
+
+/** What stands over a column: the words of the field's name, and the unit at its end: "Error RMS [mm]". */
+export function headingOf(field: string): string {
+  const known = whole[field];
+  if (known !== undefined) return known;
+  const parts = field.split("_");
+  const at = parts.findIndex((part, i) => part in units && (i + 1 === parts.length || parts[i + 1] === "per"));
+  if (at < 0 || parts[at - 1] === "per") return inWords(spell(parts));
+  const name = inWords(spell(parts.slice(0, at))) || "Time";
+  return `${name} [${[units[parts[at]], ...parts.slice(at + 1)].join(" ")}]`;
+}
+
+function spell(parts: string[]): string {
+  return parts.map((part) => words[part] ?? part).join("_");
+}

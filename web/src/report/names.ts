@@ -1,0 +1,60 @@
+import type { SymbolImplementation, SymbolType } from "@observablehq/plot";
+
+/** How one series looks in every plot: never by colour alone. */
+export interface Look {
+  name: string;
+  color: string;
+  symbol: SymbolType | SymbolImplementation;
+}
+
+// A triangle on its tip.
+const down: SymbolImplementation = {
+  draw(context: CanvasPath, size: number) {
+    const r = Math.sqrt(size) * 0.88;
+    context.moveTo(0, r);
+    context.lineTo(r * 0.87, -r / 2);
+    context.lineTo(-r * 0.87, -r / 2);
+    context.closePath();
+  },
+};
+
+// Dark enough to be read as text on white (WCAG AA), and apart for people who see fewer colours.
+const looks: [string, string, string, Look["symbol"]][] = [
+  ["semi_implicit_euler", "Semi-implicit Euler", "#00609f", "circle"],
+  ["thesis", "Thesis", "#b23a12", down],
+  ["explicit_euler", "Explicit Euler", "#7d5600", "triangle"],
+  ["velocity_verlet", "Velocity Verlet", "#00704c", "square"],
+  ["runge_kutta_4", "Runge-Kutta 4", "#6f3fa0", "diamond"],
+  ["linear_implicit_euler", "Linear-implicit Euler", "#a8216b", "hexagon"],
+  ["bdf2", "BDF2", "#3d4650", "star"],
+  ["tr_bdf2", "TR-BDF2", "#0b6f7d", "cross"],
+];
+
+const known = new Map(looks.map(([id, name, color, symbol]) => [id, { name, color, symbol }]));
+
+/** How the series are drawn that a table calls `ids`; a name that is not known gets what no other has. */
+export function looksOf(ids: Iterable<string>): Map<string, Look> {
+  const all = [...new Set(ids)];
+  const free = looks.filter(([id]) => !all.includes(id)).map(([, , color, symbol]) => ({ color, symbol }));
+  return new Map(
+    all.map((id): [string, Look] => {
+      const next = known.has(id) ? undefined : (free.shift() ?? { color: "#222222", symbol: "plus" as const });
+      return [id, known.get(id) ?? { name: inWords(id), ...next! }];
+    }),
+  );
+}
+
+export function nameOf(id: string): string {
+  return known.get(id)?.name ?? inWords(id);
+}
+
+/** The names of known series inside a sentence as people write them. */
+export function spelled(sentence: string): string {
+  return sentence.replace(/\b[a-z]+(?:_[a-z0-9]+)+\b/g, (word) => known.get(word)?.name ?? word);
+}
+
+/** "velocity_verlet" is "Velocity verlet" */
+export function inWords(id: string): string {
+  const words = id.replaceAll("_", " ").trim();
+  return words.charAt(0).toUpperCase() + words.slice(1);
+}

@@ -1,0 +1,37 @@
+import { fromJsonString } from "@bufbuild/protobuf";
+import { type Study, StudySchema } from "../gen/phrenic/v1/study_pb";
+import type { StudyResult } from "../gen/phrenic/v1/study_results_pb";
+import { make } from "../panels/dom";
+import { costParts } from "./cost_page";
+import { errorParts } from "./error_page";
+import { header } from "./header";
+import { stabilityParts } from "./stability_page";
+
+/** Fills the page with the study that `json` (proto3 JSON of phrenic.v1.Study) holds. */
+export function showStudy(page: HTMLElement, json: string): void {
+  let study: Study;
+  try {
+    study = fromJsonString(StudySchema, json, { ignoreUnknownFields: true });
+  } catch {
+    page.replaceChildren(make("h1", {}, "Phrenic study"), make("p", { className: "none" }, "This page has no study."));
+    return;
+  }
+  const { result } = study;
+  const parts = result?.result.case === undefined ? [nothing(study)] : partsOf(result);
+  page.replaceChildren(header(study), ...parts, disclaimer());
+}
+
+/** The kind's plots and tables, each of which may be missing. */
+function partsOf({ result }: StudyResult): HTMLElement[] {
+  if (result.case === "error") return errorParts(result.value);
+  if (result.case === "stability") return stabilityParts(result.value);
+  return result.case === "cost" ? costParts(result.value) : [];
+}
+
+function nothing({ problem }: Study): HTMLElement {
+  return make("p", { className: "none" }, problem === "" ? "This study has no result." : `No result: ${problem}`);
+}
+
+function disclaimer(): HTMLElement {
+  return make("footer", {}, "Phrenic. Research and teaching; not for clinical use.");
+}

@@ -1,0 +1,134 @@
+import { dot, frame, line, type Markish, pointer, rect, text, tip } from "@observablehq/plot";
+import type { StabilityRow, StabilityTable } from "../gen/phrenic/v1/study_results_pb";
+import { make } from "../panels/dom";
+import { draw, half, ink, isPositive, logScale } from "./axes";
+import { type Cell, cellsOf, edgesOf } from "./cells";
+import { formatDigits } from "./format";
+import { nameOf } from "./names";
+
+/** What one integrator's map is drawn from. */
+export interface StabilityMapData {
+  integrator: string;
+  /** Steps are drawn over the predicted limit, or in milliseconds where there is none. */
+  relative: boolean;
+  cells: Cell[];
+  predicted: { x: number; y: number }[];
+  measured: { x: number; y: number }[];
+}
+
+const verdicts: Record<string, { color: string; letter: string }> = {
+  stable: { color: "#a9d5f5", letter: "S" },
+  damped: { color: "#d8ecd0", letter: "d" },
+  diverged: { color: "#f4a27c", letter: "×" },
+  "out of time": { color: "#e3e5e8", letter: "t" },
+  stopped: { color: "#f6e08a", letter: "■" },
+};
+const unknown = { color: "#ffffff", letter: "?" };
+const verdictOf = (verdict: string) => verdicts[verdict] ?? unknown;
+
+/** One map for each integrator that the table has points of. */
+export function mapsOf({ map, limits }: StabilityTable): StabilityMapData[] {
+  return [...new Set(map.map(({ integrator }) => integrator))].flatMap((integrator) => {
+    const own = limits.filter((limit) => limit.integrator === integrator);
+    const rows = map.filter((row) => row.integrator === integrator && isPositive(row.stiffness));
+    const unit = new Map(
+      own.flatMap((limit) => (isPositive(limit.predictedS) ? [[limit.stiffness, limit.predictedS]] : [])),
+    );
+    const relative = rows.every(({ stiffness }) => unit.has(stiffness));
+    const scaled = (seconds: number, stiffness: number) => (relative ? seconds / unit.get(stiffness)! : 1e3 * seconds);
+    const points = rows.flatMap((row) =>
+      isPositive(row.timeStepS) ? [{ x: scaled(row.timeStepS, row.stiffness), y: row.stiffness, row }] : [],
+    );
+    const at = (value: number | undefined, stiffness: number) =>
+      isPositive(value) && (!relative || unit.has(stiffness)) ? [{ x: scaled(value, stiffness), y: stiffness }] : [];
+    if (points.length === 0) return [];
+    return {
+      integrator,
+      relative,
+      cells: cellsOf(points),
+      predicted: own.flatMap(({ predictedS, stiffness }) => at(predictedS, stiffness)),
+      measured: own.flatMap(({ measuredS, stiffness }) => at(measuredS, stiffness)),
+    };
+  });
+}
+
+export function stabilityMap(data: StabilityMapData): HTMLElement {
+  const { integrator, relative, cells } = data;
+  const x: [number, number] = [Math.min(...cells.map(({ x1 }) => x1)), Math.max(...cells.map(({ x2 }) => x2))];
+  const y: [number, number] = [Math.min(...cells.map(({ y1 }) => y1)), Math.max(...cells.map(({ y2 }) => y2))];
+  const stable = cells.filter(({ row }) => row.verdict === "stable" || row.verdict === "damped").length;
+  const rows = new Set(cells.map(({ row }) => row.stiffness)).size;
+  const label = `${nameOf(integrator)}: ${stable} of ${cells.length} runs stay stable, over stiffness and time step.`;
+  const drawn = draw(label, {
+    width: half,
+    height: 90 + 34 * Math.max(3, rows),
+    marginLeft: 64,
+    x: { ...logScale(relative ? "Time step over predicted limit" : "Time step [ms]", x), grid: false },
+    y: { ...logScale("Stiffness, times the scene's", y), grid: false, labelOffset: 58 },
+    marks: mapMarks(data, y),
+  });
+  return make("div", {}, make("h3", {}, nameOf(integrator)), drawn);
+}
+
+function mapMarks({ cells, predicted, measured }: StabilityMapData, y: [number, number]): Markish[] {
+  const sides = { x1: "x1", x2: "x2", y1: "y1", y2: "y2" };
+  const limit = limitLine(predicted, y);
+  return [
+    rect(cells, { ...sides, fill: ({ row }: Cell) => verdictOf(row.verdict).color, stroke: "white", inset: 0.5 }),
+    text(cells, {
+      x: (cell: Cell) => letterOf(cell, [...predicted, ...measured]),
+      y: "y",
+      text: ({ row }: Cell) => verdictOf(row.verdict).letter,
+      fill: ink,
+      fontSize: 14,
+    }),
+    frame({ stroke: "#8b949e" }),
+    line(limit, { x: "x", y: "y", stroke: ink, strokeWidth: 3, strokeDasharray: "8 5", clip: true }),
+    dot(measured, { x: "x", y: "y", r: 6, fill: ink, stroke: "white", strokeWidth: 1.5, clip: true }),
+    tip(cells, pointer({ x: "x", y: "y", title: ({ row }: Cell) => inWords(row), fontSize: 14 })),
+  ];
+}
+
+/** Where a cell's letter stands: in the middle, or beside it where a limit is drawn. */
+function letterOf({ x1, x2, y1, y2, x }: Cell, limits: { x: number; y: number }[]): number {
+  const over = limits.some((limit) => limit.x > x1 && limit.x < x2 && limit.y > y1 && limit.y < y2);
+  return over ? x1 ** 0.55 * x ** 0.45 : Math.sqrt(x1 * x2);
+}
+
+/** The predicted limit through all rows of the map, to its lower and upper edge. */
+function limitLine(points: { x: number; y: number }[], [low, high]: [number, number]): { x: number; y: number }[] {
+  if (points.length === 0) return [];
+  const sorted = [...points].sort((a, b) => a.y - b.y);
+  const ys = edgesOf(sorted.map(({ y }) => y));
+  const xs = sorted.map(({ x }) => x);
+  const steep = xs.length > 1 ? Math.sqrt(xs[1] / xs[0]) : 1;
+  const last = xs.length > 1 ? Math.sqrt(xs[xs.length - 1] / xs[xs.length - 2]) : 1;
+  const start = { x: xs[0] / steep, y: Math.max(low, ys[0]) };
+  return [start, ...sorted, { x: xs[xs.length - 1] * last, y: Math.min(high, ys[ys.length - 1]) }];
+}
+
+function inWords(row: StabilityRow): string {
+  const lines = [
+    `${nameOf(row.integrator)}, ${formatDigits(row.stiffness)} times as stiff, ${formatDigits(1e3 * row.timeStepS, 3)} ms`,
+    row.divergedAtS === undefined ? row.verdict : `${row.verdict} at ${formatDigits(row.divergedAtS, 3)} s`,
+    row.where,
+    row.energyRatio === undefined ? "" : `largest energy ${formatDigits(row.energyRatio, 3)} times the expected`,
+  ];
+  return lines.filter(Boolean).join("\n");
+}
+
+/** What colours, letters and lines mean: of verdicts, those that occur. */
+export function verdictKey({ map, limits }: StabilityTable): HTMLElement {
+  const items = [...new Set(map.map(({ verdict }) => verdict))].map((verdict) => {
+    const swatch = make("span", { className: "swatch" }, verdictOf(verdict).letter);
+    swatch.style.backgroundColor = verdictOf(verdict).color;
+    return make("li", {}, swatch, verdict || "no verdict");
+  });
+  if (limits.some(({ predictedS }) => predictedS !== undefined)) {
+    items.push(make("li", {}, make("span", { className: "stroke" }), "predicted limit"));
+  }
+  if (limits.some(({ measuredS }) => measuredS !== undefined)) {
+    items.push(make("li", {}, make("span", { className: "dots" }, "●"), "measured limit"));
+  }
+  return make("ul", { className: "cells" }, ...items);
+}
