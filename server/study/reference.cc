@@ -67,7 +67,8 @@ class Solver {
           CVodeSetUserData(cvode_, &problem_) == CV_SUCCESS &&
           CVodeSetNonlinearSolver(cvode_, iteration_) == CV_SUCCESS &&
           CVodeSetMaxNumSteps(cvode_, 1'000'000'000) == CV_SUCCESS &&
-          CVodeSetErrHandlerFn(cvode_, [](int, const char*, const char*, char*, void*) {}, nullptr) == CV_SUCCESS;
+          CVodeSetErrHandlerFn(
+              cvode_, [](int, const char*, const char*, char*, void*) {}, nullptr) == CV_SUCCESS;
   }
   Solver(const Solver&) = delete;
   Solver& operator=(const Solver&) = delete;
@@ -87,8 +88,8 @@ class Solver {
     if (problem_.cancelled) return Cancelled();
     if (outcome < 0) {
       return absl::AbortedError(absl::StrFormat(
-          "the reference found no next step at %.4g s (CVODE: %s): shorten the study, or raise the tolerance",
-          reached, CVodeGetReturnFlagName(outcome)));
+          "the reference found no next step at %.4g s (CVODE: %s): shorten the study, or raise the tolerance", reached,
+          CVodeGetReturnFlagName(outcome)));
     }
     return problem_.acceleration.Place(time, Half(y_, 0), Half(y_, 1));
   }
