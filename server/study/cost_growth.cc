@@ -29,7 +29,7 @@ std::vector<int> SheetSizes(int largest) {
 Timing MakeTiming(const Subject& subject, int steps) {
   const auto vertices = static_cast<double>(std::max<int64_t>(1, subject.model->report.simulated_vertices()));
   const int most = std::max(kFewest, static_cast<int>(kTurn / vertices));
-  return {.subject = subject, .steps = std::min(steps, most), .step_s = {}, .problem = ""};
+  return {.subject = subject, .steps = std::min(steps, most), .step_s = {}, .part_s = {}, .problem = ""};
 }
 
 absl::StatusOr<std::vector<Timing>> Sheets(const v1::CreateStudyRequest& request, const Subject& subject,

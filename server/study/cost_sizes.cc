@@ -122,8 +122,8 @@ absl::Status AddSizes(const v1::CreateStudyRequest& request, const Subject& subj
     const auto without = Recompile(request, sized->subject, Without(sized->subject.model->scene, "links"), compile);
     if (!without.ok()) return without.status();
     const int steps = sizes[i].vertices == kCubeVertices ? kCubeSteps : request.cost().steps();
-    timings.push_back({.subject = sized->subject, .steps = steps, .step_s = {}, .problem = ""});
-    timings.push_back({.subject = *without, .steps = steps, .step_s = {}, .problem = ""});
+    timings.push_back({.subject = sized->subject, .steps = steps, .step_s = {}, .part_s = {}, .problem = ""});
+    timings.push_back({.subject = *without, .steps = steps, .step_s = {}, .part_s = {}, .problem = ""});
     made.push_back(*std::move(sized));
   }
   absl::Status status = TimeInTurn(timings, request.cost().trials(), Part(progress, kCompiled, 1));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 #include <utility>
 
@@ -11,16 +12,19 @@
 namespace phrenic::study {
 namespace {
 
-constexpr int kLook = 512;             // steps between two looks at the clock and the caller
-constexpr int kWarm = 8;               // steps before the clock starts
+constexpr int kWarm = 8;               // steps before the first trial
 constexpr double kWorthTiming = 5e-3;  // of a trial, at least [s]
 constexpr int kMostTurns = 1000;       // of a trial
+constexpr double kPart = 1e-3;         // of a turn, at least [s]: so short that drift hits all alike ...
+constexpr double kStepsOfAPart = 16;   // ... and at least so many steps
 
-// Where a subject begins, and what its integrator needs.
+// Where a subject begins, where it is, and what its integrator needs.
 struct Stand {
-  State start;
+  State start, state;
   Workspace work;
-  double clock = 0;  // what the clock itself takes [s]
+  double clock = 0;     // what the clock itself takes [s]
+  double spent = 0;     // in this trial [s]
+  double of_steps = 0;  // steps that it was spent on
 };
 
 // What two readings of the clock show with nothing between them [s].
@@ -34,72 +38,89 @@ double ClockCost() {
 }
 
 // Takes steps, from the start again after one that failed; the CPU time of the steps [s].
-double TakeSteps(Timing& timing, int steps, Stand& stand, State& state) {
+double TakeSteps(Timing& timing, int steps, Stand& stand) {
   const Subject& subject = timing.subject;
   const double dt = subject.parameters.time_step();
   const double begin = ThreadCpuSeconds();
   for (int i = 0; i < steps; ++i) {
-    const absl::Status stepped = Step(*subject.model, subject.parameters, dt, state, stand.work);
+    const absl::Status stepped = Step(*subject.model, subject.parameters, dt, stand.state, stand.work);
     if (stepped.ok()) continue;
-    timing.problem =
-        absl::StrFormat("starts again: %s at %.3g s", absl::IsAborted(stepped) ? "stopped" : "diverged", state.time);
-    state = stand.start;
+    timing.problem = absl::StrFormat("starts again: %s at %.3g s", absl::IsAborted(stepped) ? "stopped" : "diverged",
+                                     stand.state.time);
+    stand.state = stand.start;
   }
   return std::max(0.0, ThreadCpuSeconds() - begin - stand.clock);
 }
 
-// One turn from rest [s].
-absl::StatusOr<double> TakeTurn(Timing& timing, Stand& stand, State& state, const std::function<bool()>& go_on) {
-  state = stand.start;
-  TakeSteps(timing, std::min(kWarm, timing.steps), stand, state);
-  state = stand.start;
-  double spent = 0;
-  for (int done = 0; done < timing.steps; done += kLook) {
-    if (!go_on()) return Cancelled();
-    spent += TakeSteps(timing, std::min(kLook, timing.steps - done), stand, state);
+// One part of `parts` of a turn. Its first step is to warm up, where there are more.
+void TakePart(Timing& timing, int part, int parts, Stand& stand) {
+  if (part == 0) stand.state = stand.start;
+  const auto at = [&](int edge) { return static_cast<int>(static_cast<std::int64_t>(timing.steps) * edge / parts); };
+  int steps = at(part + 1) - at(part);
+  if (steps > 1) {
+    TakeSteps(timing, 1, stand);
+    --steps;
   }
-  return spent;
+  const double spent = TakeSteps(timing, steps, stand);
+  timing.part_s.push_back(steps > 0 ? spent / steps : 0);
+  stand.spent += spent;
+  stand.of_steps += steps;
 }
 
-// Turns of a trial.
-int TurnsFor(double quickest) {
-  if (!(quickest > 0)) return kMostTurns;
-  return std::clamp(static_cast<int>(std::ceil(kWorthTiming / quickest)), 1, kMostTurns);
+// How a trial is cut up.
+struct Plan {
+  int turns = 1;  // each of all steps, from rest
+  int parts = 1;  // of a turn
+};
+
+Plan PlanFor(const std::vector<Timing>& timings, const std::vector<double>& step_s) {
+  double quickest = HUGE_VAL, fewest = HUGE_VAL;
+  for (size_t i = 0; i < timings.size(); ++i) {
+    quickest = std::min(quickest, step_s[i] * timings[i].steps);
+    fewest = std::min<double>(fewest, timings[i].steps);
+  }
+  const double turns = std::ceil(kWorthTiming / std::max(quickest, kWorthTiming / kMostTurns));
+  const double parts = std::min(quickest / kPart, fewest / kStepsOfAPart);
+  return {.turns = static_cast<int>(turns), .parts = std::max(1, static_cast<int>(parts))};
+}
+
+// From rest, with what each takes for a step [s].
+absl::StatusOr<std::vector<Stand>> WarmUp(std::vector<Timing>& timings, const Progress& progress,
+                                          std::vector<double>& step_s) {
+  std::vector<Stand> stands;
+  const double clock = ClockCost();
+  for (Timing& timing : timings) {
+    if (!progress(0, "warming up")) return Cancelled();
+    const State start = timing.subject.model->InitialState();
+    stands.push_back({start, start, timing.subject.model->MakeWorkspace(), clock});
+    TakeSteps(timing, 1, stands.back());
+    step_s.push_back(TakeSteps(timing, kWarm, stands.back()) / kWarm);
+  }
+  return stands;
 }
 
 }  // namespace
 
 absl::Status TimeInTurn(std::vector<Timing>& timings, int trials, const Progress& progress) {
-  std::vector<Stand> stands;
-  const double clock = ClockCost();
-  for (const Timing& timing : timings) {
-    stands.push_back({timing.subject.model->InitialState(), timing.subject.model->MakeWorkspace(), clock});
-  }
-  State state;  // one for all: those of one size step in the same memory, and differ by their models alone
-  double done = 0;
-  // The first round is to warm up, and says how many turns a trial takes.
-  const auto round = [&](double to, std::vector<double>& spent) {
-    const double from = done;
+  if (timings.empty()) return absl::OkStatus();
+  std::vector<double> warm;
+  auto stands = WarmUp(timings, progress, warm);
+  if (!stands.ok()) return stands.status();
+  const Plan plan = PlanFor(timings, warm);
+  const int rounds = plan.turns * plan.parts;
+  for (int trial = 0; trial < trials; ++trial) {
+    for (int round = 0; round < rounds; ++round) {
+      const double done = (trial + static_cast<double>(round) / rounds) / trials;
+      for (size_t i = 0; i < timings.size(); ++i) {
+        if (!progress(done, "timing steps in turn")) return Cancelled();
+        TakePart(timings[i], round % plan.parts, plan.parts, (*stands)[i]);
+      }
+    }
     for (size_t i = 0; i < timings.size(); ++i) {
-      done = from + (to - from) * static_cast<double>(i) / static_cast<double>(timings.size());
-      const auto turn = TakeTurn(timings[i], stands[i], state, [&] { return progress(done, "timing steps in turn"); });
-      if (!turn.ok()) return turn.status();
-      spent[i] += *turn;
+      Stand& stand = (*stands)[i];
+      timings[i].step_s.push_back(stand.spent / stand.of_steps);
+      stand.spent = stand.of_steps = 0;
     }
-    done = to;
-    return absl::OkStatus();
-  };
-  std::vector<double> warm(timings.size());
-  const double share = 1.0 / (trials + 1);
-  if (absl::Status status = round(share, warm); !status.ok()) return status;
-  const int turns = warm.empty() ? 0 : TurnsFor(*std::min_element(warm.begin(), warm.end()));
-  for (int trial = 1; trial <= trials; ++trial) {
-    std::vector<double> spent(timings.size());
-    for (int turn = 1; turn <= turns; ++turn) {
-      const double to = share * (trial + static_cast<double>(turn) / turns);
-      if (absl::Status status = round(to, spent); !status.ok()) return status;
-    }
-    for (size_t i = 0; i < timings.size(); ++i) timings[i].step_s.push_back(spent[i] / turns / timings[i].steps);
   }
   return absl::OkStatus();
 }
@@ -128,8 +149,8 @@ double Spread(const std::vector<double>& values) {
 
 double MedianRatio(const Timing& a, const Timing& b) {
   std::vector<double> ratios;
-  for (size_t i = 0; i < std::min(a.step_s.size(), b.step_s.size()); ++i) {
-    if (b.step_s[i] > 0) ratios.push_back(a.step_s[i] / b.step_s[i]);
+  for (size_t i = 0; i < std::min(a.part_s.size(), b.part_s.size()); ++i) {
+    if (b.part_s[i] > 0) ratios.push_back(a.part_s[i] / b.part_s[i]);
   }
   return Median(std::move(ratios));
 }

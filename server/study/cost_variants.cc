@@ -30,7 +30,7 @@ struct Variants {
   size_t Add(Variant variant, const Subject& subject, int steps) {
     const size_t place = variants.size();
     variants.push_back(std::move(variant));
-    timings.push_back({.subject = subject, .steps = steps, .step_s = {}, .problem = ""});
+    timings.push_back({.subject = subject, .steps = steps, .step_s = {}, .part_s = {}, .problem = ""});
     return place;
   }
 };
