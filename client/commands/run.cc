@@ -14,9 +14,9 @@
 #include "client/readings.h"
 #include "client/scene_argument.h"
 #include "client/table.h"
-#include "client/thesis_figures.h"
 #include "phrenic/v1/session.grpc.pb.h"
 #include "server/service/server.h"
+#include "server/study/thesis_tables.h"
 
 namespace phrenic::client {
 namespace {
@@ -103,7 +103,7 @@ int ExportHere(const Context& context, const RunOptions& options, service::Serve
 }
 
 void PrintCost(const RunOptions& options, const v1::CompileReport& report, const Cost& cost,
-               const ThesisFigure& thesis) {
+               const study::ThesisFigure& thesis) {
   const double rate = static_cast<double>(cost.steps) / cost.wall;
   std::cout << absl::StrFormat("%s: %d vertices, %d springs, %d rigid links, %d attachments\n", report.scene(),
                                report.simulated_vertices(), report.springs(), report.rigid_links(),
@@ -125,7 +125,7 @@ void PrintCost(const RunOptions& options, const v1::CompileReport& report, const
 }
 
 void PrintCostJson(const RunOptions& options, const v1::GetSessionResponse& session, const Cost& cost,
-                   const ThesisFigure& thesis) {
+                   const study::ThesisFigure& thesis) {
   nlohmann::json json = {
       {"simulated_seconds", cost.simulated},
       {"steps", cost.steps},
@@ -165,7 +165,7 @@ int RunOn(const Context& context, const RunOptions& options, const v1::SceneSour
         StepThrough(context, options, described.scene().measures_size() > 0, *stub, session.mutable_session(), &cost);
     if (!status.ok()) return Fail(context, status);
   }
-  const ThesisFigure thesis = NearestThesisFigure(described.scene(), session.report());
+  const study::ThesisFigure thesis = study::NearestThesisFigure(described.scene(), session.report());
   if (context.json()) {
     PrintCostJson(options, session, cost, thesis);
   } else {

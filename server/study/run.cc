@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "server/schema/schema.h"
+#include "server/study/cost.h"
 #include "server/study/error.h"
 #include "server/study/subject.h"
 
@@ -25,8 +26,12 @@ absl::Status Fill(const v1::CreateStudyRequest& request, const Subject& subject,
       if (table.ok()) *result.mutable_error() = *std::move(table);
       return table.status();
     }
+    case v1::CreateStudyRequest::kCost: {
+      auto table = StudyCost(request, subject, compile, progress);
+      if (table.ok()) *result.mutable_cost() = *std::move(table);
+      return table.status();
+    }
     case v1::CreateStudyRequest::kStability:
-    case v1::CreateStudyRequest::kCost:
       return absl::UnimplementedError("this study is not made yet");
     case v1::CreateStudyRequest::WHAT_NOT_SET:
       break;

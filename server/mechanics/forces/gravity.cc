@@ -9,6 +9,10 @@ absl::StatusOr<std::unique_ptr<Force>> Gravity::Make(const v1::Gravity& scene, c
   const std::string name = ElementName(given, "gravity", scene.bodies());
   auto bodies = draft.DeformableBodies(scene.bodies(), absl::StrCat(std::string(path), ".bodies"));
   if (!bodies.ok()) return bodies.status();
+  if (ToEigen(scene.acceleration()).isZero(0)) {
+    draft.ReportLeftOut(name, "its acceleration is 0");
+    return nullptr;
+  }
   std::unique_ptr<Gravity> force(new Gravity(name));
   force->weight_ = Points::Zero(3, draft.model.rest.cols());
   std::int64_t count = 0;

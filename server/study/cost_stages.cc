@@ -1,0 +1,100 @@
+#include "server/study/cost_stages.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "server/mechanics/step.h"
+#include "server/study/cost_trials.h"
+#include "server/study/timed_model.h"
+
+namespace phrenic::study {
+namespace {
+
+constexpr int kBlock = 16;         // steps with clocks inside, then as many without, so that caches are warm
+constexpr int kMostSteps = 20000;  // whose times are kept
+
+// One run, step by step.
+struct Watched {
+  const Model& model;
+  State state;
+  Workspace work;
+
+  explicit Watched(const Model& of, const State& start) : model(of), state(start), work(of.MakeWorkspace()) {}
+
+  // Wall time of the next step [s]; from `start` again where it failed.
+  double Take(const v1::Parameters& parameters, const State& start) {
+    const auto begin = std::chrono::steady_clock::now();
+    const absl::Status status = Step(model, parameters, parameters.time_step(), state, work);
+    const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    if (!status.ok()) state = start;
+    return took;
+  }
+};
+
+// Times of the stages, a list of steps each.
+struct Times {
+  std::vector<std::vector<double>> stages;
+  std::vector<double> whole;
+  std::vector<long> calls;
+};
+
+void Collect(double clock, Stages& stages, Times& times) {
+  for (size_t i = 0; i < stages.size(); ++i) {
+    times.stages[i].push_back(stages[i].seconds - stages[i].calls * clock);
+    times.calls[i] += stages[i].calls;
+    stages[i].seconds = 0;
+    stages[i].calls = 0;
+  }
+}
+
+// The same run twice, some steps of the one and some of the other in turn: with clocks inside and without.
+absl::StatusOr<Times> Watch(const Subject& subject, int steps, const Progress& progress, Stages& stages) {
+  const Model timed_model = Timed(*subject.model, stages);
+  const State start = subject.model->InitialState();
+  Watched plain(*subject.model, start), timed(timed_model, start);
+  const double clock = ClockCost();
+  Times times;
+  times.stages.resize(stages.size());
+  times.calls.resize(stages.size());
+  for (int done = 0; done < steps; done += kBlock) {
+    if (!progress(static_cast<double>(done) / steps, "timing the stages of a step")) return Cancelled();
+    const int block = std::min(kBlock, steps - done);
+    for (int i = 0; i < block; ++i) times.whole.push_back(plain.Take(subject.parameters, start) - clock);
+    for (int i = 0; i < block; ++i) {
+      timed.Take(subject.parameters, start);
+      Collect(clock, stages, times);
+    }
+  }
+  return times;
+}
+
+void AddRow(const Stage& stage, double seconds, double whole, double calls, v1::CostTable& table) {
+  v1::StageRow& row = *table.add_stages();
+  row.set_stage(stage.stage);
+  row.set_element(stage.element);
+  row.set_us_per_step(1e6 * seconds);
+  row.set_share(whole > 0 ? seconds / whole : 0);
+  row.set_calls_per_step(calls);
+}
+
+}  // namespace
+
+absl::Status AddStages(const Subject& subject, int steps, const Progress& progress, v1::CostTable& table) {
+  Stages stages;
+  steps = std::min(steps, kMostSteps);
+  const auto times = Watch(subject, steps, progress, stages);
+  if (!times.ok()) return times.status();
+  const double whole = MiddleMean(times->whole);
+  double sum = 0;
+  for (size_t i = 0; i < stages.size(); ++i) {
+    if (times->calls[i] == 0) continue;
+    const double seconds = std::max(0.0, MiddleMean(times->stages[i]));
+    sum += seconds;
+    AddRow(stages[i], seconds, whole, static_cast<double>(times->calls[i]) / steps, table);
+  }
+  AddRow({.stage = "integrator", .element = "what remains", .seconds = 0, .calls = 0}, whole - sum, whole, 1, table);
+  AddRow({.stage = "step", .element = "whole", .seconds = 0, .calls = 0}, whole, whole, 1, table);
+  return absl::OkStatus();
+}
+
+}  // namespace phrenic::study

@@ -1,0 +1,138 @@
+#include "server/study/timed_model.h"
+
+#include <chrono>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "server/study/cost_trials.h"
+
+namespace phrenic::study {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double Since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+// Adds the time until its end.
+class Span {
+ public:
+  explicit Span(Stage& stage) : stage_(stage), start_(Clock::now()) {}
+  Span(const Span&) = delete;
+  Span& operator=(const Span&) = delete;
+  ~Span() {
+    stage_.seconds += Since(start_);
+    ++stage_.calls;
+  }
+
+ private:
+  Stage& stage_;
+  const Clock::time_point start_;
+};
+
+Stage& NewStage(const char* what, const std::string& element, Stages& stages) {
+  return stages.emplace_back(Stage{.stage = what, .element = element, .seconds = 0, .calls = 0});
+}
+
+class TimedForce final : public Force {
+ public:
+  TimedForce(const Force& force, Stages& stages)
+      : Force(force.name()),
+        force_(force),
+        adding_(NewStage("force", force.name(), stages)),
+        stiffening_(NewStage("stiffness", force.name(), stages)),
+        damping_(NewStage("damping", force.name(), stages)) {}
+  void AddForce(const Instant& at, MutablePoints f) const override {
+    const Span span(adding_);
+    force_.AddForce(at, f);
+  }
+  void AddStiffness(const Instant& at, StiffnessSink& sink) const override {
+    const Span span(stiffening_);
+    force_.AddStiffness(at, sink);
+  }
+  void AddLatentStiffness(const Instant& at, StiffnessSink& sink) const override {
+    const Span span(stiffening_);
+    force_.AddLatentStiffness(at, sink);
+  }
+  void AddDamping(const Instant& at, Eigen::VectorXd& c) const override {
+    const Span span(damping_);
+    force_.AddDamping(at, c);
+  }
+  double Energy(const Instant& at) const override { return force_.Energy(at); }
+  bool conservative() const override { return force_.conservative(); }
+
+ private:
+  const Force& force_;
+  Stage &adding_, &stiffening_, &damping_;
+};
+
+class TimedMotion final : public Motion {
+ public:
+  TimedMotion(const Motion& motion, Stages& stages)
+      : Motion(motion.name()), motion_(motion), driving_(NewStage("motion", motion.name(), stages)) {}
+  void Drive(const Instant& at, State& state) const override {
+    const Span span(driving_);
+    motion_.Drive(at, state);
+  }
+
+ private:
+  const Motion& motion_;
+  Stage& driving_;
+};
+
+class TimedConstraint final : public Constraint {
+ public:
+  TimedConstraint(const Constraint& constraint, Stages& stages)
+      : Constraint(constraint.name()),
+        constraint_(constraint),
+        positions_(NewStage("constraint", constraint.name(), stages)),
+        velocities_(NewStage("velocities", constraint.name(), stages)) {}
+  void Project(const v1::Parameters& parameters, const ConstPoints& before, double dt, State& state) const override {
+    const Span span(positions_);
+    constraint_.Project(parameters, before, dt, state);
+  }
+  void ProjectVelocities(const v1::Parameters& parameters, State& state) const override {
+    const Span span(velocities_);
+    constraint_.ProjectVelocities(parameters, state);
+  }
+  bool smooth() const override { return constraint_.smooth(); }
+  double Residual(const State& state) const override {
+    const Span span(positions_);
+    return constraint_.Residual(state);
+  }
+
+ private:
+  const Constraint& constraint_;
+  Stage &positions_, &velocities_;
+};
+
+}  // namespace
+
+Model Timed(const Model& model, Stages& stages) {
+  Model timed;
+  timed.scene = model.scene;
+  timed.parameters = model.parameters;
+  timed.rest = model.rest;
+  timed.mass = model.mass;
+  timed.inverse_mass = model.inverse_mass;
+  timed.size = model.size;
+  timed.bound = model.bound;
+  for (const auto& motion : model.motions) timed.motions.push_back(std::make_unique<TimedMotion>(*motion, stages));
+  for (const auto& force : model.forces) timed.forces.push_back(std::make_unique<TimedForce>(*force, stages));
+  for (const auto& constraint : model.constraints) {
+    timed.constraints.push_back(std::make_unique<TimedConstraint>(*constraint, stages));
+  }
+  return timed;
+}
+
+double ClockCost() {
+  std::vector<double> seen(1000);
+  for (double& seconds : seen) {
+    Stage stage;
+    { const Span span(stage); }
+    seconds = stage.seconds;
+  }
+  return MiddleMean(std::move(seen));
+}
+
+}  // namespace phrenic::study
