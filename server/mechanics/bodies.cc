@@ -10,8 +10,9 @@
 namespace phrenic {
 namespace {
 
-constexpr double kFurthest = 10;    // sizes of the scene
-constexpr double kRounding = 1e-9;  // [m]; a box includes the vertices on its faces
+constexpr double kFurthest = 10;     // sizes of the scene
+constexpr double kSizeOfAPoint = 1;  // [m], so that it may fall
+constexpr double kRounding = 1e-9;   // [m]; a box includes the vertices on its faces
 
 std::string RoleName(v1::Role role) {
   switch (role) {
@@ -105,6 +106,7 @@ void SetSize(Model& model) {
     high = high.cwiseMax(body.mesh.vertices.rowwise().maxCoeff());
   }
   model.size = (high - low).norm();
+  if (model.size == 0) model.size = kSizeOfAPoint;
   model.bound = low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff() + kFurthest * model.size;
 }
 

@@ -86,12 +86,18 @@ Krylov Lanczos(const ScaledStiffness& matrix) {
   return krylov;
 }
 
-int LargestVertex(const Krylov& krylov, const Eigen::VectorXd& combination) {
-  Eigen::VectorXd mode = Eigen::VectorXd::Zero(krylov.basis.front().size());
-  for (size_t k = 0; k < krylov.basis.size(); ++k) mode += combination[static_cast<Eigen::Index>(k)] * krylov.basis[k];
+// The combination of the basis as displacements, of which the largest is of length 1.
+void FindMode(const Model& model, const Krylov& krylov, const Eigen::VectorXd& combination, FastestMode& fastest) {
+  Eigen::VectorXd scaled = Eigen::VectorXd::Zero(krylov.basis.front().size());
+  for (size_t k = 0; k < krylov.basis.size(); ++k) {
+    scaled += combination[static_cast<Eigen::Index>(k)] * krylov.basis[k];
+  }
+  const Eigen::Map<const Points> mode(scaled.data(), 3, scaled.size() / 3);
   Eigen::Index largest = 0;
-  Eigen::Map<const Points>(mode.data(), 3, mode.size() / 3).colwise().squaredNorm().maxCoeff(&largest);
-  return static_cast<int>(largest);
+  mode.colwise().squaredNorm().maxCoeff(&largest);
+  fastest.vertex = static_cast<int>(largest);
+  fastest.mode = mode * model.inverse_mass.cwiseSqrt().asDiagonal();
+  fastest.mode /= fastest.mode.colwise().norm().maxCoeff();
 }
 
 }  // namespace
@@ -113,7 +119,7 @@ FastestMode FindFastestMode(const Model& model, const v1::Parameters& parameters
   const double eigenvalue = std::max(0.0, solver.eigenvalues()[size - 1] + residual);
   if (eigenvalue <= 0) return fastest;
   fastest.spectrum.omega_max = std::sqrt(eigenvalue);
-  fastest.vertex = LargestVertex(krylov, combination);
+  FindMode(model, krylov, combination, fastest);
   return fastest;
 }
 

@@ -9,6 +9,7 @@ namespace phrenic {
 struct FastestMode {
   Spectrum spectrum;
   int vertex = -1;  // where the mode is largest; -1 where nothing vibrates
+  Points mode;      // its displacements, 3 x n, the largest of length 1; no columns where nothing vibrates
 };
 
 // Lanczos with full reorthogonalisation on M^-1/2 K M^-1/2 in the state, K positive semi-definite, with what may yet

@@ -18,9 +18,13 @@ double DistanceFromRest(const Model& model, const State& state, int vertex) {
   return std::isfinite(squared) ? squared : std::numeric_limits<double>::infinity();
 }
 
-// One pass over the positions alone: true where every coordinate is a number within the bound.
-bool WithinBounds(const Model& model, const State& state) {
-  return state.x.cols() == 0 || state.x.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= model.bound;
+// True where every coordinate is a number within the bound, and the root mean square of the velocities one that takes
+// no longer than `dt` across it: constraints may hold positions back while velocities run away.
+bool WithinBounds(const Model& model, double dt, const State& state) {
+  if (state.x.cols() == 0) return true;
+  const double fastest = 2 * model.bound / dt;
+  return state.x.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= model.bound &&
+         state.v.squaredNorm() <= static_cast<double>(state.v.cols()) * fastest * fastest;
 }
 
 int FurthestVertex(const Model& model, const State& state) {
@@ -83,7 +87,7 @@ absl::Status Step(const Model& model, const v1::Parameters& parameters, double d
   state.phase += dt / parameters.breath_length();
   ++state.tick;
   if (!advanced.ok()) return advanced;
-  if (!WithinBounds(model, state)) return absl::OutOfRangeError("the step diverged");
+  if (!WithinBounds(model, dt, state)) return absl::OutOfRangeError("the step diverged");
   return absl::OkStatus();
 }
 

@@ -9,7 +9,8 @@
 namespace phrenic {
 
 // The state becomes the state at t + dt, by the integrator that the parameters name. OUT_OF_RANGE when the
-// step diverged (a position that is not finite, or ten times the scene's size outside its box at rest); `state` is then
+// step diverged (a position that is not finite, or ten times the scene's size outside its box at rest; velocities that
+// are not finite, or that would cross all that in one step); `state` is then
 // not to be shown to anyone, and Diagnose says why. ABORTED when the integrator found no next state. Allocates nothing.
 absl::Status Step(const Model& model, const v1::Parameters& parameters, double dt, State& state, Workspace& work);
 

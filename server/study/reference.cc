@@ -50,18 +50,19 @@ int Evaluate(realtype t, N_Vector y, N_Vector derivative, void* user) {
 // CVODE's parts, freed in the opposite order.
 class Solver {
  public:
-  Solver(const Model& model, Problem& problem, double tolerance, double omega) : problem_(problem) {
+  Solver(const Model& model, const State& start, Problem& problem, double tolerance, double omega) : problem_(problem) {
     SUNContext_Create(nullptr, &context_);
     const auto n = static_cast<Eigen::Index>(problem.acceleration.free().size());
     y_ = N_VNew_Serial(6 * n, context_);
     scale_ = N_VNew_Serial(6 * n, context_);
-    N_VConst(0, y_);
     // CVODE holds the root mean square of all errors: with 1/sqrt(n) none of them is above the tolerance.
     const double each = tolerance / std::sqrt(6.0 * static_cast<double>(n));
     Half(scale_, 0).setConstant(each);
     Half(scale_, 1).setConstant(each * std::max(1.0, omega));
     for (Eigen::Index i = 0; i < n; ++i) {
-      Half(y_, 1).col(i) = model.InitialState().v.col(problem.acceleration.free()[static_cast<size_t>(i)]);
+      const int vertex = problem.acceleration.free()[static_cast<size_t>(i)];
+      Half(y_, 0).col(i) = start.x.col(vertex) - model.rest.col(vertex);
+      Half(y_, 1).col(i) = start.v.col(vertex);
     }
     cvode_ = CVodeCreate(CV_ADAMS, context_);
     iteration_ = SUNNonlinSol_FixedPoint(y_, 0, context_);
@@ -117,13 +118,19 @@ double LargestWay(const Model& model, const Trajectory& trajectory) {
 
 absl::StatusOr<Trajectory> SolveReference(const Subject& subject, const std::vector<double>& moments, double tolerance,
                                           const Progress& progress, v1::Reference& report) {
-  const double start = ThreadCpuSeconds();
+  return SolveReferenceFrom(subject, subject.model->InitialState(), moments, tolerance, progress, report);
+}
+
+absl::StatusOr<Trajectory> SolveReferenceFrom(const Subject& subject, const State& start,
+                                              const std::vector<double>& moments, double tolerance,
+                                              const Progress& progress, v1::Reference& report) {
+  const double began = ThreadCpuSeconds();
   auto acceleration = Acceleration::Make(subject);
   if (!acceleration.ok()) return acceleration.status();
   if (acceleration->free().empty()) return absl::FailedPreconditionError("no vertex of the scene moves by forces");
   const double omega = LargestStableStep(*subject.model, subject.parameters).omega_max();
   Problem problem{.acceleration = *std::move(acceleration), .progress = progress, .seconds = moments.back()};
-  Solver solver(*subject.model, problem, tolerance, omega);
+  Solver solver(*subject.model, start, problem, tolerance, omega);
   Trajectory trajectory;
   for (const double moment : moments) {
     auto state = solver.Reach(moment);
@@ -131,7 +138,7 @@ absl::StatusOr<Trajectory> SolveReference(const Subject& subject, const std::vec
     trajectory.states.push_back(*std::move(state));
   }
   trajectory.simulated_s = moments.back();
-  trajectory.cpu_s = ThreadCpuSeconds() - start;
+  trajectory.cpu_s = ThreadCpuSeconds() - began;
   report.set_method("CVODE, Adams-Moulton of variable order");
   report.set_tolerance_m(tolerance);
   report.set_evaluations(problem.evaluations);

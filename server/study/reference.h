@@ -17,6 +17,11 @@ namespace phrenic::study {
 absl::StatusOr<Trajectory> SolveReference(const Subject& subject, const std::vector<double>& moments, double tolerance,
                                           const Progress& progress, v1::Reference& report);
 
+// The same from another start than rest, at its time 0.
+absl::StatusOr<Trajectory> SolveReferenceFrom(const Subject& subject, const State& start,
+                                              const std::vector<double>& moments, double tolerance,
+                                              const Progress& progress, v1::Reference& report);
+
 // The same twice, the second time at a tenth of the tolerance: the better one, and in `report` how far they are apart,
 // which is what the reference errs by.
 absl::StatusOr<Trajectory> ConfirmedReference(const Subject& subject, const std::vector<double>& moments,

@@ -6,6 +6,7 @@
 #include "server/schema/schema.h"
 #include "server/study/cost.h"
 #include "server/study/error.h"
+#include "server/study/stability.h"
 #include "server/study/subject.h"
 
 namespace phrenic::study {
@@ -31,8 +32,11 @@ absl::Status Fill(const v1::CreateStudyRequest& request, const Subject& subject,
       if (table.ok()) *result.mutable_cost() = *std::move(table);
       return table.status();
     }
-    case v1::CreateStudyRequest::kStability:
-      return absl::UnimplementedError("this study is not made yet");
+    case v1::CreateStudyRequest::kStability: {
+      auto table = StudyStability(request, subject, progress);
+      if (table.ok()) *result.mutable_stability() = *std::move(table);
+      return table.status();
+    }
     case v1::CreateStudyRequest::WHAT_NOT_SET:
       break;
   }

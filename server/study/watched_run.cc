@@ -1,0 +1,67 @@
+#include "server/study/watched_run.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "absl/strings/str_format.h"
+#include "server/mechanics/step.h"
+#include "server/study/trajectory.h"
+
+namespace phrenic::study {
+namespace {
+
+constexpr long kLook = 16;  // steps between two looks at the clock and the caller
+
+v1::Divergence Explain(const Subject& subject, const absl::Status& why, double dt, const Workspace& work,
+                       const State& diverged) {
+  State before = diverged;
+  TakeBack(*subject.model, subject.parameters, dt, work, before);
+  return Diagnose(*subject.model, subject.parameters, why, before, diverged);
+}
+
+}  // namespace
+
+double KineticEnergy(const Model& model, const Points& v) {
+  double energy = 0;
+  for (Eigen::Index i = 0; i < v.cols(); ++i) {
+    if (model.inverse_mass[i] > 0) energy += 0.5 * model.mass[i] * v.col(i).squaredNorm();
+  }
+  return energy;
+}
+
+std::string Where(const v1::Divergence& divergence) {
+  return absl::StrFormat("vertex %d of %s, by %s", divergence.vertex(), divergence.body(), divergence.force());
+}
+
+absl::StatusOr<WatchedRun> Watch(const Subject& subject, const State& start, double seconds, double dt,
+                                 double most_cpu_s, const Progress& progress, const EachState& each) {
+  Subject stepped = subject;
+  stepped.parameters.set_time_step(dt);
+  WatchedRun run;
+  State& state = run.last;
+  state = start;
+  Workspace work = subject.model->MakeWorkspace();
+  const long all = std::max(1L, std::lround(std::ceil(seconds / dt * (1 - 1e-9))));
+  const double began = ThreadCpuSeconds();
+  if (each) each(state);
+  for (long done = 0; done < all; ++done) {
+    if (done % kLook == 0) {
+      if (!progress(static_cast<double>(done) / static_cast<double>(all), "stepping")) return Cancelled();
+      run.cut = ThreadCpuSeconds() - began > most_cpu_s;
+      if (run.cut) return run;
+    }
+    run.status = Step(*subject.model, stepped.parameters, dt, state, work);
+    if (!run.status.ok()) {
+      run.divergence = Explain(stepped, run.status, dt, work, state);
+      return run;
+    }
+    run.simulated_s = state.time;
+    const double kinetic = KineticEnergy(*subject.model, state.v);
+    run.largest_kinetic = std::max(run.largest_kinetic, kinetic);
+    if (2 * done >= all) run.late_kinetic = std::max(run.late_kinetic, kinetic);
+    if (each) each(state);
+  }
+  return run;
+}
+
+}  // namespace phrenic::study
