@@ -37,6 +37,14 @@ std::string PartOf(const v1::Force& force) {
       return "bending";
     case v1::Force::kCrossLayer:
       return "cross-layer springs";
+    case v1::Force::kPressure:
+      return "pressure";
+    case v1::Force::kLungs:
+      return "lungs";
+    case v1::Force::kDrag:
+      return "drag";
+    case v1::Force::kPointLoad:
+      return "point loads";
     case v1::Force::KIND_NOT_SET:
       break;
   }
@@ -136,6 +144,10 @@ bool Void(v1::Force& force) {
       force.mutable_cross_layer()->set_distance(1e-9);
       return true;
     case v1::Force::kContact:
+    case v1::Force::kPressure:
+    case v1::Force::kLungs:
+    case v1::Force::kDrag:
+    case v1::Force::kPointLoad:
     case v1::Force::KIND_NOT_SET:
       break;
   }
@@ -167,6 +179,7 @@ std::vector<std::string> PartsOf(const v1::Scene& scene) {
 }
 
 v1::Scene Without(v1::Scene scene, const std::string& part) {
+  scene.clear_measures();  // they may name what is dropped, and no step takes them
   Drop(part, *scene.mutable_forces());
   Drop(part, *scene.mutable_motions());
   Drop(part, *scene.mutable_constraints());
