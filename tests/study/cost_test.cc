@@ -254,11 +254,11 @@ TEST(CostStudy, HoldsTheCubesAgainstFigure510) {
 
 TEST(CostParts, AreThoseThatTheSceneNames) {
   const v1::Scene thorax = SceneFile("thorax");
-  EXPECT_THAT(PartsOf(thorax), ElementsAre("ribs", "springs", "friction", "attachments", "muscles", "links"));
+  EXPECT_THAT(PartsOf(thorax), ElementsAre("ribs", "springs", "friction", "attachments", "muscles", "lungs", "links"));
   EXPECT_TRUE(PartsOf({}).empty());
   for (const std::string& part : PartsOf(thorax)) {
     EXPECT_THAT(PartsOf(Without(thorax, part)), Not(Contains(part)));
-    EXPECT_EQ(PartsOf(Without(thorax, part)).size(), 5);
+    EXPECT_EQ(PartsOf(Without(thorax, part)).size(), 6);
   }
 }
 
