@@ -17,6 +17,7 @@ std::vector<RideShare> OfVertex(const Ride& ride, int vertex) {
   if (!ride.triangles.empty()) {
     const TriangleShare& place = ride.triangles[vertex];
     std::vector<RideShare> shares;
+    shares.reserve(3);
     for (int i = 0; i < 3; ++i) shares.push_back({vertex, -1, place.corners[i], place.weights[i]});
     return shares;
   }

@@ -23,7 +23,7 @@ absl::StatusOr<Trajectory> Timed(const Subject& subject, const std::vector<doubl
   if (!run.ok() || !run->problem.empty()) return run;
   std::vector<double> times = {run->cpu_s};
   for (double spent = run->cpu_s; spent < kWorthTiming && times.size() < kMostRuns; spent += times.back()) {
-    const auto again = Simulate(subject, moments, dt, most_cpu_s, progress);
+    auto again = Simulate(subject, moments, dt, most_cpu_s, progress);
     if (!again.ok()) return again;
     times.push_back(again->cpu_s);
   }
@@ -127,8 +127,7 @@ std::string Advice(const v1::ErrorTable& table, double target) {
                            1e3 * target, best->integrator(), 1e3 * best->time_step_s(), best->error_max_mm(),
                            Pace(best->cpu_per_second()));
   }
-  const std::string missed =
-      absl::StrFormat("No run errs by %g mm or less: raise levels, or the target.", 1e3 * target);
+  std::string missed = absl::StrFormat("No run errs by %g mm or less: raise levels, or the target.", 1e3 * target);
   if (nearest == nullptr) return missed;
   return absl::StrFormat("%s The nearest is %s at %.3g ms with %.2g mm.", missed, nearest->integrator(),
                          1e3 * nearest->time_step_s(), nearest->error_max_mm());
