@@ -10,9 +10,9 @@
 namespace phrenic::study {
 namespace {
 
-constexpr double kLongest = 1.0 / 30;   // the ladder's first step where stability limits none [s]
-constexpr double kBlur = 3;             // of the reference's own error: an error below it says nothing
-constexpr double kWorthTiming = 0.02;   // runs shorter than this in all are timed again [s]
+constexpr double kLongest = 1.0 / 30;  // the ladder's first step where stability limits none [s]
+constexpr double kBlur = 3;            // of the reference's own error: an error below it says nothing
+constexpr double kWorthTiming = 0.02;  // runs shorter than this in all are timed again [s]
 constexpr size_t kMostRuns = 9;
 constexpr const char* kOk = "ok";
 
@@ -127,7 +127,8 @@ std::string Advice(const v1::ErrorTable& table, double target) {
                            1e3 * target, best->integrator(), 1e3 * best->time_step_s(), best->error_max_mm(),
                            Pace(best->cpu_per_second()));
   }
-  const std::string missed = absl::StrFormat("No run errs by %g mm or less: raise levels, or the target.", 1e3 * target);
+  const std::string missed =
+      absl::StrFormat("No run errs by %g mm or less: raise levels, or the target.", 1e3 * target);
   if (nearest == nullptr) return missed;
   return absl::StrFormat("%s The nearest is %s at %.3g ms with %.2g mm.", missed, nearest->integrator(),
                          1e3 * nearest->time_step_s(), nearest->error_max_mm());

@@ -93,8 +93,7 @@ Distance Between(const Subject& subject, const Trajectory& a, const Trajectory& 
   for (size_t i = 0; i < std::min(a.states.size(), b.states.size()); ++i) {
     Add(a.states[i].x, b.states[i].x, model, distance, squares, count);
     distance.probes = std::max(distance.probes, ProbesApart(model, a.states[i], b.states[i]));
-    distance.energy =
-        std::max(distance.energy, std::abs(Energy(subject, a.states[i]) - Energy(subject, b.states[i])));
+    distance.energy = std::max(distance.energy, std::abs(Energy(subject, a.states[i]) - Energy(subject, b.states[i])));
   }
   distance.largest = std::sqrt(distance.largest);
   distance.rms = count > 0 ? std::sqrt(squares / static_cast<double>(count)) : 0;
