@@ -8,9 +8,12 @@
 #include "server/mechanics/advance.h"
 #include "server/mechanics/catalogue.h"
 #include "server/mechanics/compile.h"
+#include "server/mechanics/residual.h"
 
 namespace phrenic {
 namespace {
+
+constexpr double kNotKept = 1e-3;  // of the scene's size: a constraint that is off by more contradicts others
 
 // Squared distance from rest; infinity where it is not a number.
 double DistanceFromRest(const Model& model, const State& state, int vertex) {
@@ -60,7 +63,16 @@ std::string LargestForceOn(const Model& model, const v1::Parameters& parameters,
   return name;
 }
 
-std::string Remedy(const Model& model, const v1::Parameters& parameters) {
+std::string Remedy(const Model& model, const v1::Parameters& parameters, const State& before) {
+  if (!before.x.allFinite() || !before.v.allFinite()) {
+    return "a position or velocity was no number even before the step: reset";
+  }
+  const ConstraintResidual residual = LargestResidual(model, before);
+  if (residual.metres > kNotKept * model.size) {
+    return absl::StrFormat(
+        "%s cannot hold, it is off by %.3g m: take out links that contradict each other or move less",
+        std::string(residual.constraint), residual.metres);
+  }
   const double stable = LargestStableStep(model, parameters).seconds();
   if (parameters.time_step() > stable) {
     return absl::StrFormat(
@@ -111,7 +123,7 @@ v1::Divergence Diagnose(const Model& model, const v1::Parameters& parameters, co
   divergence.set_body(body.name);
   divergence.set_vertex(vertex - body.first_vertex);
   divergence.set_force(LargestForceOn(model, parameters, before, vertex));
-  divergence.set_remedy(absl::IsAborted(why) ? std::string(why.message()) : Remedy(model, parameters));
+  divergence.set_remedy(absl::IsAborted(why) ? std::string(why.message()) : Remedy(model, parameters, before));
   return divergence;
 }
 

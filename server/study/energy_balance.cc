@@ -1,17 +1,22 @@
 #include "server/study/energy_balance.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "server/study/watched_run.h"
 
 namespace phrenic::study {
 
-double EnergyBalance::Potential(const Instant& at) const {
-  double energy = 0;
-  for (const auto& force : subject_.model->forces) {
-    if (force->conservative()) energy += force->Energy(at);
+void EnergyBalance::AddReleased(const Instant& at) {
+  const auto& forces = subject_.model->forces;
+  potential_at_start_.resize(forces.size());
+  released_.resize(forces.size());
+  for (size_t i = 0; i < forces.size(); ++i) {
+    if (!forces[i]->conservative()) continue;
+    const double potential = forces[i]->Energy(at);
+    if (!started_) potential_at_start_[i] = potential;
+    released_[i] = std::max(released_[i], potential_at_start_[i] - potential);
   }
-  return energy;
 }
 
 // The trapezoidal rule along the way from the last state.
@@ -34,16 +39,16 @@ void EnergyBalance::AddWork(const Instant& at, const State& state) {
 void EnergyBalance::Add(const State& state) {
   const Instant at = MakeInstant(*subject_.model, subject_.parameters, state);
   AddWork(at, state);
-  const double kinetic = KineticEnergy(*subject_.model, state.v), potential = Potential(at);
-  if (!started_) {
-    kinetic_at_start_ = kinetic;
-    potential_at_start_ = potential;
-    started_ = true;
-  }
+  AddReleased(at);
+  const double kinetic = KineticEnergy(*subject_.model, state.v);
+  if (!started_) kinetic_at_start_ = kinetic;
+  started_ = true;
   largest_ = std::max(largest_, kinetic);
-  released_ = std::max(released_, potential_at_start_ - potential);
 }
 
-double EnergyBalance::ratio() const { return largest_ > 0 ? largest_ / (kinetic_at_start_ + released_ + done_) : 0; }
+double EnergyBalance::ratio() const {
+  const double released = std::accumulate(released_.begin(), released_.end(), 0.0);
+  return largest_ > 0 ? largest_ / (kinetic_at_start_ + released + done_) : 0;
+}
 
 }  // namespace phrenic::study

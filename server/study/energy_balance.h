@@ -2,13 +2,15 @@
 #ifndef PHRENIC_SERVER_STUDY_ENERGY_BALANCE_H_
 #define PHRENIC_SERVER_STUDY_ENERGY_BALANCE_H_
 
+#include <vector>
+
 #include "server/study/context.h"
 
 namespace phrenic::study {
 
-// Kinetic energy comes from three sources: that of the start, what forces with a potential V release, and the work of
-// the others: T(t) <= T(0) + max(V(0) - V) + sum max(0, F dx). Friction and steps that lose energy only lower T. The
-// work of driven vertices is not counted. Not thread-safe.
+// Kinetic energy comes from three sources: that of the start, what each force with a potential V releases, and the work
+// of the others: T(t) <= T(0) + sum max(V(0) - V) + sum max(0, F dx). Friction and steps that lose energy only lower T.
+// The work of driven vertices is not counted. Not thread-safe.
 class EnergyBalance {
  public:
   explicit EnergyBalance(const Subject& subject) : subject_(subject) {}
@@ -18,13 +20,13 @@ class EnergyBalance {
   double ratio() const;
 
  private:
-  double Potential(const Instant& at) const;
+  void AddReleased(const Instant& at);
   void AddWork(const Instant& at, const State& state);
 
   const Subject& subject_;
   bool started_ = false;
-  double kinetic_at_start_ = 0, potential_at_start_ = 0;
-  double largest_ = 0, released_ = 0, done_ = 0;  // [J]
+  double kinetic_at_start_ = 0, largest_ = 0, done_ = 0;  // [J]
+  std::vector<double> potential_at_start_, released_;     // of each force [J]
   Points force_, last_force_, last_x_;
 };
 

@@ -103,12 +103,11 @@ TEST(Limits, OfImplicitIntegratorsAreNoneHoweverStiff) {
   }
 }
 
-TEST(Limits, OfTheThesisDampingNeedMass) {
+// Its damping of 0.02 kg a step turns the velocity of a lighter vertex round: the prediction knows nothing of that.
+TEST(Limits, OfTheThesisDampingFailLightVertices) {
   std::string light = kChain;
-  light.replace(light.find("mass: 8"), 7, "mass: 0.12");  // 0.015 kg a vertex: damping of 1.33 a step
-  const v1::LimitRow row = Limit(light, v1::INTEGRATOR_THESIS);
-  EXPECT_FALSE(row.has_predicted_s());
-  EXPECT_THAT(row.note(), HasSubstr("unstable"));
+  light.replace(light.find("mass: 8"), 7, "mass: 0.12");
+  EXPECT_THAT(Limit(light, v1::INTEGRATOR_THESIS).note(), HasSubstr("still unstable"));
 }
 
 v1::CreateStudyRequest MapRequest() {
