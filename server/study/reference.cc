@@ -17,6 +17,7 @@
 namespace phrenic::study {
 namespace {
 
+constexpr double kFastest = 10;  // velocities may err by as much as this lets positions err in a second [1/s]
 constexpr long kLook = 16;  // evaluations between two looks at the caller
 constexpr int kStop = -1;   // CVODE: an error that nothing recovers from
 constexpr int kRetry = 1;   // CVODE: try a smaller step
@@ -58,7 +59,7 @@ class Solver {
     // CVODE holds the root mean square of all errors: with 1/sqrt(n) none of them is above the tolerance.
     const double each = tolerance / std::sqrt(6.0 * static_cast<double>(n));
     Half(scale_, 0).setConstant(each);
-    Half(scale_, 1).setConstant(each * std::max(1.0, omega));
+    Half(scale_, 1).setConstant(each * std::clamp(omega, 1.0, kFastest));
     for (Eigen::Index i = 0; i < n; ++i) {
       const int vertex = problem.acceleration.free()[static_cast<size_t>(i)];
       Half(y_, 0).col(i) = start.x.col(vertex) - model.rest.col(vertex);

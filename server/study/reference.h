@@ -10,8 +10,9 @@
 namespace phrenic::study {
 
 // Solves x' = v, v' = Acceleration by SUNDIALS' CVODE (Adams-Moulton of variable order and step, fixed-point iteration:
-// Hindmarsh et al., ACM TOMS 31:363, 2005), with the local error of every single coordinate below `tolerance`
-// [m], of every velocity below `tolerance` times the fastest eigenfrequency or 1/s. None of Phrenic's integrators takes
+// Hindmarsh et al., ACM TOMS 31:363, 2005), with the local error of every single coordinate below `tolerance` [m], of
+// every velocity below `tolerance` times the fastest eigenfrequency, but at least 1/s and at most 10/s: the slow
+// vertices of a scene with fast ones are held to theirs. None of Phrenic's integrators takes
 // part. Where tissue is very stiff, its steps are as short as theirs. UNIMPLEMENTED where no smooth equation describes
 // the model, ABORTED where CVODE finds no next step, CANCELLED as soon as `progress` says so.
 absl::StatusOr<Trajectory> SolveReference(const Subject& subject, const std::vector<double>& moments, double tolerance,
