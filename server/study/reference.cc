@@ -18,9 +18,9 @@ namespace phrenic::study {
 namespace {
 
 constexpr double kFastest = 10;  // velocities may err by as much as this lets positions err in a second [1/s]
-constexpr long kLook = 16;  // evaluations between two looks at the caller
-constexpr int kStop = -1;   // CVODE: an error that nothing recovers from
-constexpr int kRetry = 1;   // CVODE: try a smaller step
+constexpr long kLook = 16;       // evaluations between two looks at the caller
+constexpr int kStop = -1;        // CVODE: an error that nothing recovers from
+constexpr int kRetry = 1;        // CVODE: try a smaller step
 
 // What a problem's evaluations share with the one who solves it.
 struct Problem {
