@@ -14,6 +14,7 @@ namespace phrenic {
 namespace {
 
 constexpr int kProducts = 20;
+constexpr double kExhausted = 1e-11;  // a product that leaves less than this that is new leaves round-off
 
 // y = M^-1/2 K M^-1/2 x.
 class ScaledStiffness {
@@ -72,10 +73,11 @@ Krylov Lanczos(const ScaledStiffness& matrix) {
   Krylov krylov;
   Eigen::VectorXd q = matrix.Start();
   double norm = q.norm();
-  const double first_norm = norm;
-  while (static_cast<int>(krylov.basis.size()) < kProducts && norm > 1e-12 * first_norm) {
+  double largest = 0;  // product: what is left of one is measured by it, whatever the unit of stiffness
+  while (static_cast<int>(krylov.basis.size()) < kProducts && norm > kExhausted * largest) {
     krylov.basis.push_back(q / norm);
     q = matrix * krylov.basis.back();
+    largest = std::max(largest, q.norm());
     krylov.diagonal.push_back(q.dot(krylov.basis.back()));
     for (int pass = 0; pass < 2; ++pass) {
       for (const Eigen::VectorXd& b : krylov.basis) q -= q.dot(b) * b;
