@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <memory>
+#include <string>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -46,6 +48,12 @@ int Evaluate(realtype t, N_Vector y, N_Vector derivative, void* user) {
   Half(derivative, 0) = Half(y, 1);
   problem.acceleration.Evaluate(Half(derivative, 1));
   return Half(derivative, 1).allFinite() ? 0 : kRetry;
+}
+
+// What CVODE calls an outcome; the name is ours to free.
+std::string OutcomeName(int outcome) {
+  const std::unique_ptr<char, decltype(&std::free)> name(CVodeGetReturnFlagName(outcome), &std::free);
+  return name == nullptr ? "unknown" : name.get();
 }
 
 // CVODE's parts, freed in the opposite order.
@@ -93,7 +101,7 @@ class Solver {
     if (outcome < 0) {
       return absl::AbortedError(absl::StrFormat(
           "the reference found no next step at %.4g s (CVODE: %s): shorten the study, or raise the tolerance", reached,
-          CVodeGetReturnFlagName(outcome)));
+          OutcomeName(outcome)));
     }
     return problem_.acceleration.Place(time, Half(y_, 0), Half(y_, 1));
   }
