@@ -24,18 +24,21 @@ absl::Status Fill(const v1::CreateStudyRequest& request, const Subject& subject,
   switch (request.what_case()) {
     case v1::CreateStudyRequest::kError: {
       auto table = StudyError(request, subject, compile, progress);
-      if (table.ok()) *result.mutable_error() = *std::move(table);
-      return table.status();
+      if (!table.ok()) return table.status();
+      *result.mutable_error() = *std::move(table);
+      return absl::OkStatus();
     }
     case v1::CreateStudyRequest::kCost: {
       auto table = StudyCost(request, subject, compile, progress);
-      if (table.ok()) *result.mutable_cost() = *std::move(table);
-      return table.status();
+      if (!table.ok()) return table.status();
+      *result.mutable_cost() = *std::move(table);
+      return absl::OkStatus();
     }
     case v1::CreateStudyRequest::kStability: {
       auto table = StudyStability(request, subject, progress);
-      if (table.ok()) *result.mutable_stability() = *std::move(table);
-      return table.status();
+      if (!table.ok()) return table.status();
+      *result.mutable_stability() = *std::move(table);
+      return absl::OkStatus();
     }
     case v1::CreateStudyRequest::WHAT_NOT_SET:
       break;
