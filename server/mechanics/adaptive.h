@@ -7,9 +7,10 @@
 
 namespace phrenic {
 
-// Carries `state` over dt by `integrator`, each part taken once whole and once in halves: where the two positions
-// differ by more than `tolerance` (2^order - 1) [m] at some vertex, the part is halved, down to dt/4096; the halves are
-// kept. The size of parts is remembered in State::halvings. ABORTED where the smallest part still errs more.
+// Carries `state` over dt by `integrator`, each part taken once whole and once in halves: where the two differ
+// by more than `tolerance` (2^order - 1) [m] at some vertex, in position or in velocity times the part, the part is
+// halved, down to dt/4096; the halves are kept. The size of parts is remembered in State::halvings. ABORTED where the
+// smallest part still errs more.
 absl::Status AdvanceAdaptively(const Model& model, const v1::Parameters& parameters, const Integrator& integrator,
                                double dt, State& state, Workspace& work);
 

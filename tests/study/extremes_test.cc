@@ -8,11 +8,15 @@
 #include <cctype>
 #include <limits>
 #include <map>
+#include <ostream>
 
 #include "server/study/energy_balance.h"
 #include "tests/compile_text.h"
 
 namespace phrenic::study {
+
+void PrintTo(const ExtremeCase& extreme, std::ostream* out) { *out << extreme.name; }
+
 namespace {
 
 using testing::HasSubstr;
@@ -29,8 +33,7 @@ v1::StabilityTable Judge(const ExtremeCase& extreme) {
 }
 
 // The first letter of each verdict, of semi-implicit Euler, velocity Verlet, Runge-Kutta 4, linear-implicit Euler and
-// BDF2, each unguarded and guarded. What is known to fail: step_tolerance bounds what positions err by in a step; where
-// something vibrates a thousand times as fast as the rest, explicit steps may still feed that vibration.
+// BDF2, each unguarded and guarded. Nothing FAILs.
 const std::map<std::string, std::string> kVerdicts = {
     {"baseline", "pppppppppp"},
     {"zero rest length", "pppppppppp"},
@@ -38,7 +41,7 @@ const std::map<std::string, std::string> kVerdicts = {
     {"all vertices in one point", "pppppppppp"},
     {"nothing acts", "pppppppppp"},
     {"no stiffness", "pppppppppp"},
-    {"slivers", "spspsFpppp"},
+    {"slivers", "spspsppppp"},
     {"a triangle without area", "pppppppppp"},
     {"inverted tetrahedra", "ppppppppsp"},
     {"NaN in a position of the scene", "s"},
@@ -47,8 +50,8 @@ const std::map<std::string, std::string> kVerdicts = {
     {"infinite force in a run", "ssssssssss"},
     {"zero mass", "s"},
     {"mass ratio 1e6", "spspsppppp"},
-    {"stiffness 1e9 on every fifth spring", "spsssppppp"},
-    {"fibre ratio 1e6", "spspsFpppp"},
+    {"stiffness 1e9 on every fifth spring", "spspsppppp"},
+    {"fibre ratio 1e6", "spspsppppp"},
     {"time step x 10", "spspsppppp"},
     {"friction rate 1e6", "spppsppppp"},
     {"force x 10", "pppppppppp"},
