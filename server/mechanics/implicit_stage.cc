@@ -1,5 +1,7 @@
 #include "server/mechanics/implicit_stage.h"
 
+#include <algorithm>
+
 #include "server/mechanics/advance.h"
 #include "server/mechanics/implicit_system.h"
 
@@ -9,6 +11,9 @@ namespace {
 constexpr double kSettled = 1e-7;  // of the scene's size: the last Newton step's way
 constexpr double kUsable = 1e-5;   // of the scene's size: what may be left after the last Newton step
 constexpr double kLinear = 1e-3;   // relative residual of the linear system: Newton's method mends the rest
+constexpr double kOvershot = 0.9;  // of the residual along a step, with the other sign at its end: it went too far
+constexpr double kShortest = 0.1;
+constexpr int kShortenings = 6;
 
 // x = position + g v for free vertices; driven ones where they are at that time.
 void Place(const Model& model, const v1::Parameters& parameters, const ImplicitStage& stage, State& state) {
@@ -24,6 +29,31 @@ void Residual(const Model& model, const ImplicitStage& stage, const Instant& at,
   residual = stage.g * residual - (at.v - stage.velocity) * model.mass.asDiagonal();
 }
 
+// A step of Newton's method, [m/s] at each vertex. The stiffness leaves out what is negative in it, so that a step goes
+// downhill; where it goes far beyond the bottom it is shortened, by the secant of the residual along it.
+struct NewtonStep {
+  Points& change;
+  double along = 0;  // the residual along it where it began
+  int shortened = 0;
+
+  double Along(const Points& residual) const { return residual.cwiseProduct(change).sum(); }
+  void Begin(const Points& residual) {
+    along = Along(residual);
+    shortened = 0;
+  }
+  bool Overshot(const Points& residual) const {
+    return shortened < kShortenings && Along(residual) < -kOvershot * along;
+  }
+  // Makes it the part of itself that it returns.
+  double Shorten(const Points& residual) {
+    const double part = std::max(kShortest, along / (along - Along(residual)));
+    change *= part;
+    along *= part;
+    ++shortened;
+    return part;
+  }
+};
+
 }  // namespace
 
 absl::Status SolveStage(const Model& model, const v1::Parameters& parameters, const ImplicitStage& stage, State& state,
@@ -31,21 +61,26 @@ absl::Status SolveStage(const Model& model, const v1::Parameters& parameters, co
   if (state.x.cols() == 0) return absl::OkStatus();
   if (work.system == nullptr) work.system = std::make_unique<ImplicitSystem>(model);
   work.stages.resize(std::max<size_t>(work.stages.size(), 1));
-  Points& change = work.stages[0];
-  change.resize(3, state.x.cols());
-  double moved = 0;
+  NewtonStep last{.change = work.stages[0]};
+  last.change.setZero(3, state.x.cols());
+  const auto moved = [&] { return stage.g * last.change.cwiseAbs().maxCoeff(); };
   for (int step = 0; step < stage.newton_steps; ++step) {
     Place(model, parameters, stage, state);
     const Instant at = InstantAhead(model, parameters, stage.ahead, state);
     Residual(model, stage, at, work.force);
+    if (last.Overshot(work.force)) {
+      const double part = last.Shorten(work.force);
+      AddToFree(model, 1 - 1 / part, last.change, state.v);
+      continue;
+    }
     work.system->Assemble(model, at, stage.g);
-    if (absl::Status solved = work.system->Solve(model, work.force, kLinear, change); !solved.ok()) return solved;
-    AddToFree(model, 1, change, state.v);
-    moved = stage.g * change.cwiseAbs().maxCoeff();
-    if (!(moved > kSettled * model.size)) break;
+    if (absl::Status solved = work.system->Solve(model, work.force, kLinear, last.change); !solved.ok()) return solved;
+    last.Begin(work.force);
+    AddToFree(model, 1, last.change, state.v);
+    if (!(moved() > kSettled * model.size)) break;
   }
   Place(model, parameters, stage, state);
-  if (stage.newton_steps > 1 && !(moved <= kUsable * model.size)) {
+  if (stage.newton_steps > 1 && !(moved() <= kUsable * model.size)) {
     return absl::AbortedError("Newton's method found no end of the step: lower time_step, or set a step_tolerance");
   }
   return absl::OkStatus();

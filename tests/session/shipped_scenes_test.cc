@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <tuple>
 
 #include "server/mechanics/step.h"
 #include "server/session/models.h"
@@ -51,6 +52,33 @@ INSTANTIATE_TEST_SUITE_P(All, ShippedScene, testing::ValuesIn(SceneNames()), [](
   std::replace(name.begin(), name.end(), '-', '_');
   return name;
 });
+
+class MixedScene : public testing::TestWithParam<std::tuple<v1::Integrator, double>> {};
+
+// Its tendon is pushed together as it is pulled down: Newton's steps, by a stiffness without what is negative in it,
+// come to an end none the less.
+TEST_P(MixedScene, LongStiffStepsFindTheirEnd) {
+  Models models(SceneCatalogue({kScenes}), "", 1);
+  v1::SceneSource source;
+  source.set_name("mixed-methods");
+  const auto model = models.Get(source);
+  ASSERT_TRUE(model.ok()) << model.status();
+  v1::Parameters parameters = (*model)->parameters;
+  parameters.set_integrator(std::get<0>(GetParam()));
+  parameters.set_elasticity(std::get<1>(GetParam()));
+  for (const double dt : {0.025, 0.1}) {
+    State state = (*model)->InitialState();
+    Workspace work = (*model)->MakeWorkspace();
+    while (state.time < 0.3) {
+      const absl::Status stepped = Step(**model, parameters, dt, state, work);
+      ASSERT_TRUE(stepped.ok()) << stepped << " at " << state.time << " s by " << dt << " s";
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, MixedScene,
+                         testing::Combine(testing::Values(v1::INTEGRATOR_BDF2, v1::INTEGRATOR_TR_BDF2),
+                                          testing::Values(1, 100)));
 
 }  // namespace
 }  // namespace phrenic::session

@@ -43,7 +43,7 @@ const std::map<std::string, std::string> kVerdicts = {
     {"no stiffness", "pppppppppp"},
     {"slivers", "spspsppppp"},
     {"a triangle without area", "pppppppppp"},
-    {"inverted tetrahedra", "ppppppppsp"},
+    {"inverted tetrahedra", "pppppppppp"},
     {"NaN in a position of the scene", "s"},
     {"NaN in a position of a run", "ssssssssss"},
     {"infinite force in the scene", "s"},

@@ -10,7 +10,7 @@
 namespace phrenic {
 namespace {
 
-constexpr int kNewtonSteps = 12;
+constexpr int kNewtonSteps = 40;
 
 bool HasStepBefore(const State& state, double dt) {
   const History& history = state.history;

@@ -44,8 +44,10 @@ export function looksOf(ids: Iterable<string>): Map<string, Look> {
   );
 }
 
+/** Of a series, and of what stands after a comma behind it: "Velocity Verlet, guarded". */
 export function nameOf(id: string): string {
-  return known.get(id)?.name ?? inWords(id);
+  const [series, ...rest] = id.split(", ");
+  return [known.get(series)?.name ?? inWords(series), ...rest].join(", ");
 }
 
 /** The names of known series inside a sentence as people write them. */

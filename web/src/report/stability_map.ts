@@ -19,9 +19,10 @@ export interface StabilityMapData {
 const verdicts: Record<string, { color: string; letter: string }> = {
   stable: { color: "#a9d5f5", letter: "S" },
   damped: { color: "#d8ecd0", letter: "d" },
+  grown: { color: "#f9cfa0", letter: "g" },
   diverged: { color: "#f4a27c", letter: "×" },
-  "out of time": { color: "#e3e5e8", letter: "t" },
   stopped: { color: "#f6e08a", letter: "■" },
+  "out of time": { color: "#e3e5e8", letter: "t" },
 };
 const unknown = { color: "#ffffff", letter: "?" };
 const verdictOf = (verdict: string) => verdicts[verdict] ?? unknown;
@@ -119,7 +120,9 @@ function inWords(row: StabilityRow): string {
 
 /** What colours, letters and lines mean: of verdicts, those that occur. */
 export function verdictKey({ map, limits }: StabilityTable): HTMLElement {
-  const items = [...new Set(map.map(({ verdict }) => verdict))].map((verdict) => {
+  const present = new Set(map.map(({ verdict }) => verdict));
+  const order = [...new Set([...Object.keys(verdicts), ...present])].filter((verdict) => present.has(verdict));
+  const items = order.map((verdict) => {
     const swatch = make("span", { className: "swatch" }, verdictOf(verdict).letter);
     swatch.style.backgroundColor = verdictOf(verdict).color;
     return make("li", {}, swatch, verdict || "no verdict");
