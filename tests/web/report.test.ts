@@ -260,6 +260,21 @@ describe("the cost study", () => {
     expect(captions()[2]).toContain("to the power of 1.04");
   });
 
+  test("SaysWhatAStepTakesAndWhetherLeavingOutIsFree", () => {
+    show(costStudy);
+    expect(advice()[0]).toBe("A step takes 812 µs, 3 times the thesis' pace.");
+    expect(advice()[1]).toBe("Most of it goes to springs.");
+    const rows = [0.99, 1.02].map((overNeverHad) => ({
+      variant: "links left out",
+      cpuUsPerStep: 9,
+      overNeverHad,
+    }));
+    show(withTable(costStudy as never, "cost", { rows }));
+    expect(advice()).toEqual([
+      "What a scene leaves out: 0.99 to 1.02 of the time of a scene that never had it.",
+    ]);
+  });
+
   test("StandsVariantsWithoutStagesAndGrowth", () => {
     const rows = [
       { variant: "full", cpuUsPerStep: 12 },

@@ -62,7 +62,8 @@ export function stageBars(rows: StageRow[]): HTMLElement | undefined {
       return { name, value: usPerStep, words, color: pale };
     });
   const title = "Time of a step, by stage.";
-  const sentence = `Measured from inside; most goes to ${bars[0].name}: ${bars[0].words}.`;
+  const most = bars.find(({ name }) => !name.startsWith("step"));
+  const sentence = `Measured from inside${most === undefined ? "" : `; most goes to ${most.name}: ${most.words}`}.`;
   return figure(title, sentence, drawBars(title, "Time [µs per step]", bars));
 }
 

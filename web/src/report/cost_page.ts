@@ -1,11 +1,20 @@
-import { CostRowSchema, type CostTable, GrowthRowSchema, StageRowSchema } from "../gen/phrenic/v1/study_results_pb";
+import {
+  type CostRow,
+  CostRowSchema,
+  type CostTable,
+  GrowthRowSchema,
+  SizeRowSchema,
+  StageRowSchema,
+} from "../gen/phrenic/v1/study_results_pb";
 import { make } from "../panels/dom";
 import { stageBars, variantBars } from "./cost_bars";
+import { formatDigits } from "./format";
 import { growth } from "./growth";
 import { tableOf } from "./table";
 
 export function costParts(table: CostTable): HTMLElement[] {
   const parts: (HTMLElement | undefined)[] = [
+    make("div", { className: "advice" }, ...adviceOf(table).map((sentence) => make("p", {}, sentence))),
     make("h2", {}, "What a step costs"),
     variantBars(table.rows),
     stageBars(table.stages),
@@ -14,6 +23,32 @@ export function costParts(table: CostTable): HTMLElement[] {
     tableOf("Variants", CostRowSchema, table.rows),
     table.stages.length === 0 ? undefined : tableOf("Time by stage", StageRowSchema, table.stages),
     table.growth.length === 0 ? undefined : tableOf("Growth", GrowthRowSchema, table.growth),
+    table.sizes.length === 0
+      ? undefined
+      : tableOf("Mesh sizes, with rigid links and without", SizeRowSchema, table.sizes),
   ];
   return parts.filter((part) => part !== undefined);
+}
+
+/** What a reader takes away: what a step takes, where it goes, and whether leaving out is free. */
+function adviceOf({ rows, stages }: CostTable): string[] {
+  const full = rows.find(({ variant }) => variant === "full");
+  const parts = stages.filter(({ stage }) => stage !== "step").sort((a, b) => b.usPerStep - a.usPerStep);
+  return [full && paceOf(full), parts[0] && `Most of it goes to ${parts[0].element}.`, leavingOut(rows)].filter(
+    (sentence) => sentence !== undefined,
+  );
+}
+
+function paceOf({ cpuUsPerStep, timesThesis }: CostRow): string {
+  const beside = timesThesis === undefined ? "" : `, ${formatDigits(timesThesis, 3)} times the thesis' pace`;
+  return `A step takes ${formatDigits(cpuUsPerStep, 3)} µs${beside}.`;
+}
+
+function leavingOut(rows: CostRow[]): string | undefined {
+  const ratios = rows.flatMap(({ variant, overNeverHad }) =>
+    variant.endsWith("left out") && overNeverHad !== undefined ? [overNeverHad] : [],
+  );
+  if (ratios.length === 0) return undefined;
+  const [least, most] = [Math.min(...ratios), Math.max(...ratios)].map((ratio) => formatDigits(ratio, 3));
+  return `What a scene leaves out: ${least} to ${most} of the time of a scene that never had it.`;
 }
