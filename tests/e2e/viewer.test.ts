@@ -232,3 +232,17 @@ test("ThePageKeepsToItsOwnServerAndHasNothingToComplainAbout", () => {
   expect([...viewer.origins]).toEqual([new URL(server.url).origin]);
   expect(viewer.complaints).toEqual([]);
 });
+
+// The last: there is no page after it.
+test("APageThatGoesInMidPullLetsGo", async () => {
+  const pulls = async () => ((await server.session()).pulls ?? []) as { body: string }[];
+  const box = (await viewer.page.locator("#view").boundingBox())!;
+  const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+  await viewer.page.keyboard.down("Shift");
+  await viewer.page.mouse.move(x, y);
+  await viewer.page.mouse.down();
+  await viewer.page.mouse.move(x + 40, y - 20, { steps: 4 });
+  await expect.poll(async () => (await pulls()).length, { timeout: 10_000 }).toBe(1);
+  await viewer.page.goto("about:blank");
+  await expect.poll(async () => (await pulls()).length, { timeout: 10_000 }).toBe(0);
+});

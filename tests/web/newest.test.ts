@@ -59,6 +59,16 @@ test("OneCallAtATime", async () => {
   expect(sent).toEqual([{ force: 1 }, { force: 2 }]);
 });
 
+test("FlushSendsWhatWaitsBesideWhatIsUnderway", async () => {
+  const { sent, clock, queue } = sender(() => new Promise(() => {}));
+  queue.push({ force: 1 });
+  queue.push({ force: 2 });
+  queue.flush();
+  queue.flush();
+  await clock.advance(1000);
+  expect(sent).toEqual([{ force: 1 }, { force: 2 }]);
+});
+
 test("AValueIsPendingUntilItIsAnswered", async () => {
   const { clock, queue } = sender();
   queue.push({ force: 1 });

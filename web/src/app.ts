@@ -89,6 +89,7 @@ export class App {
       () => this.deformable,
       (body, vertex, force) => controller.pull(body, vertex, force),
     );
+    window.addEventListener("pagehide", () => controller.leave());
     place("playback-place").append(playbackPanel(controller));
     place("readout-place").append(this.readout.element);
     place("link-place").append(this.viewers.element, this.pill.element);

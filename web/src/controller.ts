@@ -71,6 +71,12 @@ export class Controller {
     this.pulls.push({ [`${body}:${vertex}`]: { body, vertex, force: { x, y, z } } });
   }
 
+  /** The page goes: what waits to be sent goes now. */
+  leave(): void {
+    this.updates.flush();
+    this.pulls.flush();
+  }
+
   /** Lets go of every vertex, whoever pulls it. */
   letGo(): Promise<void> {
     return this.ask(() => this.api.sessions.pullSession({ sessionId: this.sessionId, releaseOthers: true }));

@@ -6,8 +6,14 @@ import { systemClock } from "./clock";
 import { Chooser } from "./panels/chooser";
 import { make, place } from "./panels/dom";
 
+// What is sent while the page goes outlives it: a vertex that is let go of.
+let leaving = false;
+window.addEventListener("pagehide", () => (leaving = true), { capture: true });
+window.addEventListener("pageshow", () => (leaving = false));
+const carry: typeof fetch = (input, init) => fetch(input, { ...init, keepalive: leaving });
+
 // The page and the services come from one address.
-const api = createApi(createGrpcWebTransport({ baseUrl: location.origin }));
+const api = createApi(createGrpcWebTransport({ baseUrl: location.origin, fetch: carry }));
 
 function address(sessionId: string): string {
   return `?${new URLSearchParams({ session: sessionId })}`;

@@ -22,6 +22,13 @@ export class NewestWins<T extends object> {
     if (!this.running) void this.run();
   }
 
+  /** Sends at once what waits, also beside what is underway: there is no later. */
+  flush(): void {
+    const last = this.waiting;
+    this.waiting = {};
+    if (Object.keys(last).length > 0) void this.send(last);
+  }
+
   /** Whether a change of `name` has not been answered yet. */
   pending(name: keyof T): boolean {
     return name in this.waiting || name in this.underway;

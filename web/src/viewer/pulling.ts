@@ -35,6 +35,7 @@ export class Pulling {
     for (const kind of ["pointerup", "pointercancel", "lostpointercapture"] as const) {
       canvas.addEventListener(kind, () => this.release());
     }
+    window.addEventListener("pagehide", () => this.release());
   }
 
   private start(event: PointerEvent): void {
