@@ -161,7 +161,8 @@ class CommandLine {
   }
 
   // A number of a message of the schema, with the schema's help and range.
-  static void AddNumber(CLI::App* command, const char* flag, double& value, const google::protobuf::Descriptor& message,
+  template <typename Value>
+  static void AddNumber(CLI::App* command, const char* flag, Value& value, const google::protobuf::Descriptor& message,
                         const char* field) {
     const v1::Quantity& quantity = *schema::QuantityOf(*message.FindFieldByName(field));
     command->add_option(flag, value, FieldHelp(message, field))
@@ -171,13 +172,18 @@ class CommandLine {
   void AddCompare() {
     CompareOptions& compare = options_.compare;
     CLI::App* command = Add("compare", "Say how far two surfaces, or two motions, are apart", &Compare, compare);
-    command->add_option("A", compare.a, "surface (.obj, .msh), or motion as `phrenic run --export` writes it (.msh)")
+    command
+        ->add_option("A", compare.a,
+                     "surface (.obj, .msh), motion as `phrenic run --export` writes it (.msh), or a session's body as "
+                     "it is now: session:ID or session:ID/BODY")
         ->required();
     command->add_option("B", compare.b, "the same; its times are interpolated to A's")->required();
     AddNumber(command, "--tolerance", compare.tolerance_mm, *v1::CompareRequest::descriptor(), "tolerance_mm");
     AddNumber(command, "--spacing", compare.spacing_mm, *v1::CompareRequest::descriptor(), "spacing_mm");
-    AddNumber(command, "--unit-a", compare.unit_a_mm, *v1::ComparedFile::descriptor(), "unit_mm");
-    AddNumber(command, "--unit-b", compare.unit_b_mm, *v1::ComparedFile::descriptor(), "unit_mm");
+    AddNumber(command, "--unit-a", compare.unit_a_mm, *v1::ComparedSurface::descriptor(), "unit_mm");
+    AddNumber(command, "--unit-b", compare.unit_b_mm, *v1::ComparedSurface::descriptor(), "unit_mm");
+    AddNumber(command, "--time-a", compare.time_a, *v1::ComparedSurface::descriptor(), "time");
+    AddNumber(command, "--time-b", compare.time_b, *v1::ComparedSurface::descriptor(), "time");
     command->add_flag("--regions", compare.by_region, "each named region (body) against that of the same name, too");
     command->add_flag("--phases", compare.match_phases, "stretch B's times to begin and end with A's");
     command->add_option("--map", compare.map_file,

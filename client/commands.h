@@ -2,6 +2,7 @@
 #ifndef PHRENIC_CLIENT_COMMANDS_H_
 #define PHRENIC_CLIENT_COMMANDS_H_
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,8 +40,9 @@ struct StudyOptions {
   bool detach = false;  // on the server, without waiting
 };
 struct CompareOptions {
-  std::string a, b;                     // files
-  double unit_a_mm = 0, unit_b_mm = 0;  // 0: the schema's own, here and below
+  std::string a, b;                      // files, or "session:ID/BODY"
+  std::optional<double> time_a, time_b;  // [s]
+  double unit_a_mm = 0, unit_b_mm = 0;   // 0: the schema's own, here and below
   double tolerance_mm = 0;
   double spacing_mm = 0;
   bool by_region = false;

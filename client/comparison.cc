@@ -91,6 +91,11 @@ void PrintTimes(const v1::ComparisonTable& comparison, std::ostream& out) {
   table.Print(out);
 }
 
+void PrintState(const char* which, const v1::ComparedState& state, std::ostream& out) {
+  out << absl::StrFormat("%s is %s of session %s at %.9g s, tick %d\n", which, state.body(), state.session_id(),
+                         state.time(), state.tick());
+}
+
 std::string CsvText(const std::string& text) {
   if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
   return "\"" + absl::StrReplaceAll(text, {{"\"", "\"\""}}) + "\"";
@@ -136,6 +141,8 @@ std::vector<std::string> MissedLimits(const v1::ComparisonTable& table, const st
 void PrintComparison(const v1::ComparisonTable& table, std::ostream& out) {
   out << table.a() << " (A) and " << table.b() << " (B), " << table.definition()
       << absl::StrFormat(", tolerance %g mm\n", table.tolerance_mm());
+  if (table.has_state_a()) PrintState("A", table.state_a(), out);
+  if (table.has_state_b()) PrintState("B", table.state_b(), out);
   PrintMeasures(table, out);
   PrintTimes(table, out);
   if (table.times_left_out() > 0) {

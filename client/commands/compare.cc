@@ -6,7 +6,10 @@
 #include <iostream>
 #include <sstream>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
+#include "absl/strings/strip.h"
 #include "client/commands.h"
 #include "client/comparison.h"
 #include "client/motion_file.h"
@@ -18,9 +21,19 @@
 namespace phrenic::client {
 namespace {
 
+constexpr absl::string_view kSession = "session:";
 constexpr std::uintmax_t kMostBytes = std::uintmax_t{1000} << 20;  // two such files fit one message
 
-absl::Status ReadSurface(const std::string& path, double unit_mm, v1::ComparedFile& file) {
+// "session:ID", "session:ID/BODY".
+bool IsSession(const std::string& words) { return absl::StartsWith(words, kSession); }
+
+void NameBody(const std::string& words, v1::SessionBody& body) {
+  const std::vector<std::string> parts = absl::StrSplit(absl::StripPrefix(words, kSession), absl::MaxSplits('/', 1));
+  body.set_session_id(parts[0]);
+  if (parts.size() > 1) body.set_body(parts[1]);
+}
+
+absl::Status ReadSurface(const std::string& path, v1::ComparedSurface& file) {
   std::error_code error;
   if (std::filesystem::is_regular_file(path, error) && std::filesystem::file_size(path, error) > kMostBytes) {
     return absl::InvalidArgumentError(
@@ -34,18 +47,24 @@ absl::Status ReadSurface(const std::string& path, double unit_mm, v1::ComparedFi
   }
   file.set_name(path);
   file.set_content(std::move(bytes).str());
-  if (unit_mm > 0) file.set_unit_mm(unit_mm);
+  return absl::OkStatus();
+}
+
+absl::Status NameSurface(const std::string& words, double unit_mm, std::optional<double> time,
+                         v1::ComparedSurface& surface) {
+  if (unit_mm > 0) surface.set_unit_mm(unit_mm);
+  if (time) surface.set_time(*time);
+  if (!IsSession(words)) return ReadSurface(words, surface);
+  NameBody(words, *surface.mutable_body());
   return absl::OkStatus();
 }
 
 absl::StatusOr<v1::CompareRequest> MakeRequest(const CompareOptions& options) {
   v1::CompareRequest request;
-  if (absl::Status status = ReadSurface(options.a, options.unit_a_mm, *request.mutable_a()); !status.ok()) {
-    return status;
-  }
-  if (absl::Status status = ReadSurface(options.b, options.unit_b_mm, *request.mutable_b()); !status.ok()) {
-    return status;
-  }
+  absl::Status status_a = NameSurface(options.a, options.unit_a_mm, options.time_a, *request.mutable_a());
+  if (!status_a.ok()) return status_a;
+  absl::Status status_b = NameSurface(options.b, options.unit_b_mm, options.time_b, *request.mutable_b());
+  if (!status_b.ok()) return status_b;
   if (options.tolerance_mm > 0) request.set_tolerance_mm(options.tolerance_mm);
   if (options.spacing_mm > 0) request.set_spacing_mm(options.spacing_mm);
   request.set_by_region(options.by_region);
@@ -84,7 +103,8 @@ int CompareOn(const Context& context, const CompareOptions& options, const v1::C
   }
   if (const grpc::Status status = reader->Finish(); !status.ok()) {
     const int code = Fail(context, status);
-    if (context.server_given && status.error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED) {
+    const bool of_files = !IsSession(options.a) && !IsSession(options.b);
+    if (context.server_given && of_files && status.error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED) {
       std::cerr << "phrenic: without --server the comparison is made here, of files of up to 1000 MiB\n";
     }
     return code;
@@ -108,7 +128,9 @@ int Compare(const Context& context, const CompareOptions& options) {
   }
   const auto request = MakeRequest(options);
   if (!request.ok()) return Fail(request.status());
-  if (context.server_given) return CompareOn(context, options, *request, *limits, Connect(context));
+  if (context.server_given || IsSession(options.a) || IsSession(options.b)) {
+    return CompareOn(context, options, *request, *limits, Connect(context));
+  }
   service::ServerOptions server_options;
   server_options.max_message_bytes = INT_MAX;
   auto server = service::Server::Start(server_options);

@@ -7,9 +7,40 @@
 #include "absl/strings/str_cat.h"
 #include "server/schema/schema.h"
 #include "server/service/status.h"
+#include "server/session/present_body.h"
 #include "server/study/comparison.h"
 
 namespace phrenic::service {
+namespace {
+
+using Writer = grpc::ServerWriter<v1::CompareResponse>;
+
+absl::Status Send(Writer& writer, const v1::CompareResponse& response) {
+  return writer.Write(response) ? absl::OkStatus() : absl::CancelledError("the receiver of the comparison went away");
+}
+
+study::ComparisonSink MakeSink(grpc::ServerContext& context, Writer& writer) {
+  return {.progress =
+              [&](double done) {
+                v1::CompareResponse response;
+                response.set_progress(done);
+                return !context.IsCancelled() && writer.Write(response);
+              },
+          .vertices =
+              [&](const v1::VertexDistances& vertices) {
+                v1::CompareResponse response;
+                *response.mutable_vertices() = vertices;
+                return Send(writer, response);
+              },
+          .map =
+              [&](std::string_view bytes) {
+                v1::CompareResponse response;
+                response.set_map_chunk(std::string(bytes));
+                return Send(writer, response);
+              }};
+}
+
+}  // namespace
 
 grpc::Status CompareService::Compare(grpc::ServerContext* context, const v1::CompareRequest* request,
                                      grpc::ServerWriter<v1::CompareResponse>* writer) {
@@ -19,18 +50,12 @@ grpc::Status CompareService::Compare(grpc::ServerContext* context, const v1::Com
     return ToGrpc(absl::ResourceExhaustedError(absl::StrCat(
         max_comparisons_, " comparisons are under way, and no more are allowed; try again when one is done")));
   }
-  v1::CompareResponse response;
-  const auto table = study::Compare(
-      *request,
-      [&](double done) {
-        response.set_progress(done);
-        return !context->IsCancelled() && writer->Write(response);
-      },
-      [&](std::string_view bytes) {
-        response.set_map_chunk(std::string(bytes));
-        return writer->Write(response) ? absl::OkStatus() : absl::CancelledError("the receiver of the map went away");
-      });
+  const auto bodies = [this](const v1::SessionBody& body, v1::ComparedState& state) {
+    return session::FindPresentBody(table_, body, state);
+  };
+  const auto table = study::Compare(*request, bodies, MakeSink(*context, *writer));
   if (!table.ok()) return ToGrpc(table.status());
+  v1::CompareResponse response;
   *response.mutable_table() = *table;
   writer->Write(response);
   return grpc::Status::OK;

@@ -5,6 +5,7 @@
 #include <atomic>
 
 #include "phrenic/v1/compare.grpc.pb.h"
+#include "server/session/table.h"
 
 namespace phrenic::service {
 
@@ -12,12 +13,13 @@ namespace phrenic::service {
 // goes away.
 class CompareService final : public v1::CompareService::Service {
  public:
-  explicit CompareService(int max_comparisons) : max_comparisons_(max_comparisons) {}
+  CompareService(const session::Table& table, int max_comparisons) : table_(table), max_comparisons_(max_comparisons) {}
 
   grpc::Status Compare(grpc::ServerContext* context, const v1::CompareRequest* request,
                        grpc::ServerWriter<v1::CompareResponse>* writer) override;
 
  private:
+  const session::Table& table_;
   const int max_comparisons_;
   std::atomic<int> comparisons_ = 0;
 };

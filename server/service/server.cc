@@ -65,7 +65,7 @@ struct Server::Parts {
         frame_service(table),
         export_service(table, options.limits.exports),
         study_service(models, options.web_root),
-        compare_service(options.limits.exports) {}
+        compare_service(table, options.limits.exports) {}
 
   absl::Status Serve(const ServerOptions& options);
   absl::Status ServeWeb(const ServerOptions& options);

@@ -8,7 +8,6 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
-#include "server/meshio/motion.h"
 #include "server/record/distance_map.h"
 #include "server/study/moments.h"
 #include "server/study/surface_distance.h"
@@ -16,21 +15,7 @@
 namespace phrenic::study {
 namespace {
 
-constexpr double kMetres = 1e-3;   // of a millimetre
-constexpr double kFarthest = 1e6;  // [m]; squares and sums of what is nearer keep their digits
-
-absl::StatusOr<meshio::Motion> Read(const v1::ComparedFile& file) {
-  const double unit = kMetres * (file.has_unit_mm() ? file.unit_mm() : 1);
-  auto motion = meshio::ParseMotion(file.name(), file.content(), unit);
-  if (!motion.ok()) return motion;
-  double largest = motion->mesh.vertices.cwiseAbs().maxCoeff();
-  for (const Points& displacement : motion->displacements) {
-    largest = std::max(largest, displacement.cwiseAbs().maxCoeff());
-  }
-  if (largest <= kFarthest) return motion;
-  return absl::InvalidArgumentError(
-      absl::StrCat(file.name(), ":1: has a coordinate of ", largest, " m; is unit_mm right?"));
-}
+constexpr double kMetres = 1e-3;  // of a millimetre
 
 Triangles TrianglesOf(const Mesh& mesh, const std::string& region) {
   const auto found = mesh.regions.find(region);
@@ -47,6 +32,10 @@ Triangles TrianglesOf(const Mesh& mesh, const std::string& region) {
   return triangles;
 }
 
+bool AsksForVertices(const v1::CompareRequest& request) {
+  return request.vertex_distances() || !request.map_format().empty();
+}
+
 // The whole surfaces, or one region of them, with what was measured of them.
 struct Part {
   std::string region;
@@ -56,8 +45,8 @@ struct Part {
 
 class Comparer {
  public:
-  Comparer(const v1::CompareRequest& request, meshio::Motion a, meshio::Motion b, Moments moments)
-      : request_(request), a_(std::move(a)), b_(std::move(b)), moments_(std::move(moments)) {
+  Comparer(const v1::CompareRequest& request, ComparedPair pair, Moments moments, const ComparisonSink& sink)
+      : request_(request), compared_(std::move(pair)), moments_(std::move(moments)), sink_(sink) {
     options_.tolerance = kMetres * (request.has_tolerance_mm() ? request.tolerance_mm() : 1);
     if (request.has_spacing_mm()) options_.spacing = kMetres * request.spacing_mm();
     AddPart("", a_.mesh.triangles, b_.mesh.triangles);
@@ -68,16 +57,16 @@ class Comparer {
     for (const std::string& name : names) AddPart(name, TrianglesOf(a_.mesh, name), TrianglesOf(b_.mesh, name));
   }
 
-  absl::Status Measure(absl::FunctionRef<bool(double)> progress) {
+  absl::Status Measure() {
     const auto total = static_cast<double>(moments_.pairs.size() * parts_.size());
     double done = 0;
     for (const Moment& moment : moments_.pairs) {
       const Points a = PositionsAt(a_, moment.a), b = PositionsAt(b_, moment.b);
       for (Part& part : parts_) {
-        if (!progress(done++ / total)) return absl::CancelledError("the comparison was cancelled");
+        if (!sink_.progress(done++ / total)) return absl::CancelledError("the comparison was cancelled");
         part.a.MoveTo(a);
         part.b.MoveTo(b);
-        if (absl::Status status = MeasurePart(part); !status.ok()) return status;
+        if (absl::Status status = MeasurePart(part, moment); !status.ok()) return status;
       }
     }
     return absl::OkStatus();
@@ -86,8 +75,10 @@ class Comparer {
   v1::ComparisonTable Table() const {
     v1::ComparisonTable table;
     table.set_definition(kDefinition);
-    table.set_a(request_.a().name());
-    table.set_b(request_.b().name());
+    table.set_a(compared_.a.name);
+    table.set_b(compared_.b.name);
+    if (compared_.a.state) *table.mutable_state_a() = *compared_.a.state;
+    if (compared_.b.state) *table.mutable_state_b() = *compared_.b.state;
     table.set_tolerance_mm(options_.tolerance / kMetres);
     table.set_times_left_out(moments_.left_out);
     for (const Part& part : parts_) AddRow(part.region, OverTimes(part.distances), part.baselines, table);
@@ -123,18 +114,30 @@ class Comparer {
     parts_.push_back({name, MeasuredSurface(a, of_a), MeasuredSurface(b, of_b), MeasuredSurface(a, of_a), {}, {}});
   }
 
-  absl::Status MeasurePart(Part& part) {
-    const bool mapped = part.region.empty() && !request_.map_format().empty();
+  absl::Status MeasurePart(Part& part, const Moment& moment) {
+    const bool of_vertices = part.region.empty() && AsksForVertices(request_);
     Eigen::VectorXd at_vertices;
-    auto distance = MeasureDistance(part.a, part.b, options_, mapped ? &at_vertices : nullptr);
+    auto distance = MeasureDistance(part.a, part.b, options_, of_vertices ? &at_vertices : nullptr);
     if (!distance.ok()) return distance.status();
     part.distances.push_back(*std::move(distance));
-    if (mapped) at_vertices_.push_back(std::move(at_vertices));
+    if (of_vertices) {
+      if (absl::Status status = Tell(at_vertices, moment); !status.ok()) return status;
+      if (!request_.map_format().empty()) at_vertices_.push_back(std::move(at_vertices));
+    }
     if (!a_.moves()) return absl::OkStatus();
     auto baseline = MeasureDistance(part.rest, part.b, options_);
     if (!baseline.ok()) return baseline.status();
     part.baselines.push_back(*std::move(baseline));
     return absl::OkStatus();
+  }
+
+  absl::Status Tell(const Eigen::VectorXd& at_vertices, const Moment& moment) const {
+    if (!request_.vertex_distances()) return absl::OkStatus();
+    v1::VertexDistances vertices;
+    if (moment.time) vertices.set_time(*moment.time);
+    vertices.mutable_distances()->Reserve(static_cast<int>(at_vertices.size()));
+    for (const double distance : at_vertices) vertices.add_distances(static_cast<float>(distance / kMetres));
+    return sink_.vertices(vertices);
   }
 
   static void AddRow(const std::string& region, const v1::SurfaceDistance& distance,
@@ -146,20 +149,25 @@ class Comparer {
   }
 
   const v1::CompareRequest& request_;
-  const meshio::Motion a_, b_;
+  const ComparedPair compared_;
+  const meshio::Motion &a_ = compared_.a.motion, &b_ = compared_.b.motion;
   const Moments moments_;
+  const ComparisonSink& sink_;
   DistanceOptions options_;
   std::vector<Part> parts_;                   // the whole first
   std::vector<Eigen::VectorXd> at_vertices_;  // of the whole, one a moment, where there is a map
 };
 
-absl::Status CheckMap(const v1::CompareRequest& request, const Mesh& a, const Mesh& b) {
-  if (request.map_format().empty()) return absl::OkStatus();
-  if (const auto format = record::FindMapFormat(request.map_format()); !format.ok()) return format.status();
-  for (const auto& [file, mesh] : {std::pair(&request.a(), &a), std::pair(&request.b(), &b)}) {
-    if (mesh->triangles.cols() > 0) continue;
+absl::Status CheckVertices(const v1::CompareRequest& request, const ComparedPair& pair) {
+  if (!AsksForVertices(request)) return absl::OkStatus();
+  if (const auto format = record::FindMapFormat(request.map_format()); !request.map_format().empty() && !format.ok()) {
+    return format.status();
+  }
+  for (const Compared* compared : {&pair.a, &pair.b}) {
+    if (compared->motion.mesh.triangles.cols() > 0) continue;
     return absl::InvalidArgumentError(
-        absl::StrCat(file->name(), ":1: has no triangles, so that there is no map; leave map_format empty"));
+        absl::StrCat(compared->name, ":1: has no triangles, so that vertices have no distances; leave map_format and ",
+                     "vertex_distances out"));
   }
   return absl::OkStatus();
 }
@@ -203,20 +211,18 @@ v1::SurfaceDistance OverTimes(const std::vector<v1::SurfaceDistance>& distances)
   return over;
 }
 
-absl::StatusOr<v1::ComparisonTable> Compare(const v1::CompareRequest& request, absl::FunctionRef<bool(double)> progress,
-                                            const record::Sink& map) {
-  auto a = Read(request.a());
-  if (!a.ok()) return a.status();
-  auto b = Read(request.b());
-  if (!b.ok()) return b.status();
-  if (absl::Status status = CheckMap(request, a->mesh, b->mesh); !status.ok()) return status;
-  auto moments = MatchTimes(*a, *b, request.match_phases());
+absl::StatusOr<v1::ComparisonTable> Compare(const v1::CompareRequest& request, BodySource bodies,
+                                            const ComparisonSink& sink) {
+  auto pair = ReadPair(request, bodies);
+  if (!pair.ok()) return pair.status();
+  if (absl::Status status = CheckVertices(request, *pair); !status.ok()) return status;
+  auto moments = MatchTimes(pair->a.motion, pair->b.motion, request.match_phases());
   if (!moments.ok()) return moments.status();
-  Comparer comparer(request, *std::move(a), *std::move(b), *std::move(moments));
-  if (absl::Status status = comparer.Measure(progress); !status.ok()) return status;
+  Comparer comparer(request, *std::move(pair), *std::move(moments), sink);
+  if (absl::Status status = comparer.Measure(); !status.ok()) return status;
   if (!request.map_format().empty()) {
     const auto format = record::FindMapFormat(request.map_format());
-    if (absl::Status status = format->write(comparer.Map(), map); !status.ok()) return status;
+    if (absl::Status status = format->write(comparer.Map(), sink.map); !status.ok()) return status;
   }
   return comparer.Table();
 }

@@ -2,21 +2,27 @@
 #ifndef PHRENIC_SERVER_STUDY_COMPARISON_H_
 #define PHRENIC_SERVER_STUDY_COMPARISON_H_
 
+#include <functional>
 #include <vector>
 
-#include "absl/functional/function_ref.h"
 #include "absl/status/statusor.h"
 #include "phrenic/v1/compare.pb.h"
 #include "server/record/recorder.h"
+#include "server/study/compared.h"
 
 namespace phrenic::study {
 
+// Where a comparison goes as it is made. An error of a call ends it and becomes its own.
+struct ComparisonSink {
+  std::function<bool(double)> progress;  // how much is done, 0 to 1; false: CANCELLED
+  std::function<absl::Status(const v1::VertexDistances&)> vertices;
+  record::Sink map;  // the next bytes of the map's file
+};
+
 // Compares as compare.proto says; `request` has been validated. A triangle belongs to a region when its three vertices
-// do. `progress` is told how much is done, 0 to 1; CANCELLED as soon as it returns false. Where a map is asked for its
-// file goes to `map`. INVALID_ARGUMENT "name:line: ..." for a file that cannot be read, or naming the field;
-// FAILED_PRECONDITION for motions that share no time.
-absl::StatusOr<v1::ComparisonTable> Compare(const v1::CompareRequest& request, absl::FunctionRef<bool(double)> progress,
-                                            const record::Sink& map);
+// do. Errors are ReadPair's; INVALID_ARGUMENT too for a surface without triangles whose vertices are asked for.
+absl::StatusOr<v1::ComparisonTable> Compare(const v1::CompareRequest& request, BodySource bodies,
+                                            const ComparisonSink& sink);
 
 // One distance for several times: of rms_* the root of the mean square, of hd*, p95* and spacing_* the largest, of the
 // other measures the mean; samples are added up. NaN where one of them is NaN.

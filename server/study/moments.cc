@@ -11,14 +11,6 @@ namespace {
 // Files write nine digits of a time.
 double Slack(double time) { return 1e-8 * std::max(1.0, std::abs(time)); }
 
-std::optional<Between> Find(const std::vector<double>& times, double time) {
-  if (time < times.front() - Slack(time) || time > times.back() + Slack(time)) return std::nullopt;
-  const auto later = std::upper_bound(times.begin(), times.end(), time);
-  const auto step = std::clamp<std::ptrdiff_t>(later - times.begin() - 1, 0, std::ssize(times) - 2);
-  const double first = times[static_cast<std::size_t>(step)], second = times[static_cast<std::size_t>(step) + 1];
-  return Between{static_cast<int>(step), std::clamp((time - first) / (second - first), 0.0, 1.0)};
-}
-
 std::vector<double> Stretched(std::vector<double> times, const std::vector<double>& onto) {
   const double first = times.front(), length = times.back() - first;
   for (double& time : times) time = onto.front() + (time - first) / length * (onto.back() - onto.front());
@@ -26,6 +18,14 @@ std::vector<double> Stretched(std::vector<double> times, const std::vector<doubl
 }
 
 }  // namespace
+
+std::optional<Between> FindTime(const std::vector<double>& times, double time) {
+  if (time < times.front() - Slack(time) || time > times.back() + Slack(time)) return std::nullopt;
+  const auto later = std::upper_bound(times.begin(), times.end(), time);
+  const auto step = std::clamp<std::ptrdiff_t>(later - times.begin() - 1, 0, std::ssize(times) - 2);
+  const double first = times[static_cast<std::size_t>(step)], second = times[static_cast<std::size_t>(step) + 1];
+  return Between{static_cast<int>(step), std::clamp((time - first) / (second - first), 0.0, 1.0)};
+}
 
 absl::StatusOr<Moments> MatchTimes(const meshio::Motion& a, const meshio::Motion& b, bool match_phases) {
   Moments moments;
@@ -38,7 +38,7 @@ absl::StatusOr<Moments> MatchTimes(const meshio::Motion& a, const meshio::Motion
   const std::vector<double> others = both && match_phases ? Stretched(b.times, a.times) : b.times;
   for (int step = 0; step < static_cast<int>(times.size()); ++step) {
     const double time = times[static_cast<std::size_t>(step)];
-    const auto in_b = both ? Find(others, time) : std::optional(Between{a.moves() ? 0 : step, 0});
+    const auto in_b = both ? FindTime(others, time) : std::optional(Between{a.moves() ? 0 : step, 0});
     if (!in_b) {
       ++moments.left_out;
       continue;

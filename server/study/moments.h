@@ -16,6 +16,9 @@ struct Between {
   double weight = 0;
 };
 
+// The state at a time; none where the motion, which has at least two, has no such time.
+std::optional<Between> FindTime(const std::vector<double>& times, double time);
+
 // One pair of states.
 struct Moment {
   std::optional<double> time;  // of A, or of B where A stands still [s]; none where neither moves

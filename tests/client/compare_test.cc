@@ -119,6 +119,30 @@ TEST(Compare, AServerThatIsNamedDoesTheWork) {
   EXPECT_EQ(Phrenic({"compare", a, b, "--server", "127.0.0.1:1"}).code, 3);
 }
 
+TEST(Compare, ASessionsBodyIsComparedAsItIsNow) {
+  const RunningServer server;
+  ASSERT_GT(server.port(), 0);
+  const std::vector<std::string> at = {"--server", server.address()};
+  const auto there = [&](std::vector<std::string> words) {
+    words.insert(words.end(), at.begin(), at.end());
+    return Phrenic(words);
+  };
+  ASSERT_EQ(there({"create", "cube-tensegrity", "--id", "cube"}).code, 0);
+  const std::string cube = Scratch("cube.msh");
+  ASSERT_EQ(there({"export", "cube", cube, "--seconds", "1", "--fps", "2"}).code, 0);
+  const Outcome same = there({"compare", "session:cube/cube", cube, "-o", "json", "--check", "hd_max=1e-3"});
+  ASSERT_EQ(same.code, 0) << same.err;
+  EXPECT_EQ(same.json()["a"], "session:cube/cube");
+  EXPECT_EQ(same.json()["state_a"]["tick"], "0");
+  const Outcome later = there({"compare", "session:cube", cube, "--time-b", "1", "--check", "hd_max=1e-3"});
+  EXPECT_EQ(later.code, 4) << "the cube moves in that second";
+  EXPECT_THAT(later.out, HasSubstr("A is cube of session cube at 0 s, tick 0"));
+  const Outcome nobody = there({"compare", "session:nobody", cube});
+  EXPECT_EQ(nobody.code, 1);
+  EXPECT_THAT(nobody.err, HasSubstr("there is no session \"nobody\""));
+  EXPECT_EQ(Phrenic({"compare", "session:cube", cube, "--server", "127.0.0.1:1"}).code, 3);
+}
+
 struct BadWords {
   std::vector<std::string> arguments;
   int code;

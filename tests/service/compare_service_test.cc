@@ -55,6 +55,48 @@ TEST_F(CompareServiceTest, BadRequestsNameTheFieldOrTheFile) {
   EXPECT_THAT(Compare(Request(kObj, "")).error_message(), HasSubstr("b.obj:"));
 }
 
+// A triangle 1 m above the origin: every vertex of the cube at rest is as far from it as geometry says.
+TEST_F(CompareServiceTest, ABodyOfASessionIsComparedAsItIsNow) {
+  CreateCube("cube");
+  v1::CompareRequest request = Request("", kObj);
+  request.mutable_a()->clear_name();
+  request.mutable_a()->mutable_body()->set_session_id("cube");
+  request.set_vertex_distances(true);
+  std::vector<v1::CompareResponse> responses;
+  const grpc::Status status = Compare(request, &responses);
+  ASSERT_TRUE(status.ok()) << status.error_message();
+  ASSERT_EQ(responses.size(), 3U);
+  ASSERT_TRUE(responses[1].has_vertices());
+  const v1::ComparisonTable& table = responses[2].table();
+  EXPECT_EQ(table.state_a().session_id(), "cube");
+  EXPECT_EQ(table.state_a().body(), "cube");
+  EXPECT_EQ(table.state_a().tick(), 0);
+  double farthest = 0;
+  for (const float distance : responses[1].vertices().distances()) farthest = std::max<double>(farthest, distance);
+  EXPECT_NEAR(farthest, table.rows(0).distance().hd_a_to_b(), 1e-3) << "a flat face is farthest at a corner";
+
+  v1::StepSessionResponse stepped;
+  ASSERT_TRUE(Call(*sessions_, &v1::SessionService::Stub::StepSession, "session_id: 'cube' ticks: 40", &stepped).ok());
+  ASSERT_TRUE(Compare(request, &responses).ok());
+  EXPECT_EQ(responses.back().table().state_a().tick(), 40);
+  EXPECT_EQ(responses.back().table().state_a().time(), stepped.session().time());
+}
+
+TEST_F(CompareServiceTest, ABodyThatIsNotThereIsNamed) {
+  CreateCube("cube");
+  v1::CompareRequest request = Request("", kObj);
+  request.mutable_a()->clear_name();
+  v1::SessionBody& body = *request.mutable_a()->mutable_body();
+  EXPECT_THAT(Compare(request).error_message(), HasSubstr("a.body.session_id: must be set"));
+  body.set_session_id("nobody");
+  EXPECT_EQ(Compare(request).error_code(), grpc::StatusCode::NOT_FOUND);
+  body.set_session_id("cube");
+  body.set_body("ball");
+  const grpc::Status status = Compare(request);
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+  EXPECT_THAT(status.error_message(), HasSubstr("body: there is no body \"ball\" with a surface; there are cube"));
+}
+
 TEST_F(CompareServiceTest, MoreThanSixteenMebibytesAreRefused) {
   const grpc::Status status = Compare(Request(kObj, std::string(std::size_t{17} << 20, '\n')));
   EXPECT_EQ(status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);

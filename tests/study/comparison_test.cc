@@ -11,8 +11,12 @@
 namespace phrenic::study {
 namespace {
 
+using ::testing::Each;
 using ::testing::ElementsAre;
+using ::testing::FloatNear;
 using ::testing::HasSubstr;
+using ::testing::IsNan;
+using ::testing::SizeIs;
 
 constexpr char kObj[] = "v 0 0 0\nv 100 0 0\nv 0 100 0\nf 1 2 3\n";
 
@@ -45,13 +49,43 @@ v1::CompareRequest Request(const std::string& name_a, const std::string& a, cons
   return request;
 }
 
-absl::StatusOr<v1::ComparisonTable> Compared(const v1::CompareRequest& request, std::string* map = nullptr) {
-  return Compare(
-      request, [](double) { return true; },
-      [map](std::string_view bytes) {
-        if (map != nullptr) map->append(bytes);
-        return absl::OkStatus();
-      });
+// The only session there is: "s", whose body "square" lies at z = 0 at 0.5 s.
+absl::StatusOr<Mesh> BodyOf(const v1::SessionBody& body, v1::ComparedState& state) {
+  if (body.session_id() != "s") return absl::NotFoundError("there is no session");
+  state.set_session_id("s");
+  state.set_body("square");
+  state.set_tick(500);
+  state.set_time(0.5);
+  return Square(0.1, 2);
+}
+
+// What a comparison tells beside its table.
+struct Told {
+  std::string map;
+  std::vector<v1::VertexDistances> vertices;
+};
+
+absl::StatusOr<v1::ComparisonTable> Compared(const v1::CompareRequest& request, Told* told = nullptr) {
+  return Compare(request, BodyOf,
+                 {.progress = [](double) { return true; },
+                  .vertices =
+                      [told](const v1::VertexDistances& vertices) {
+                        if (told != nullptr) told->vertices.push_back(vertices);
+                        return absl::OkStatus();
+                      },
+                  .map =
+                      [told](std::string_view bytes) {
+                        if (told != nullptr) told->map += bytes;
+                        return absl::OkStatus();
+                      }});
+}
+
+// The body against a file.
+v1::CompareRequest BodyRequest(const std::string& name, const std::string& content) {
+  v1::CompareRequest request = Request("", "", name, content);
+  request.mutable_a()->mutable_body()->set_session_id("s");
+  request.set_vertex_distances(true);
+  return request;
 }
 
 TEST(Comparison, OfSurfacesHasOneRowWithoutATime) {
@@ -149,23 +183,103 @@ TEST(Comparison, BadInputIsRefusedByName) {
 }
 
 TEST(Comparison, EndsWhereNobodyListens) {
-  const auto table = Compare(
-      Request("a.obj", kObj, "b.obj", kObj), [](double) { return false; },
-      [](std::string_view) { return absl::OkStatus(); });
-  EXPECT_EQ(table.status().code(), absl::StatusCode::kCancelled);
+  const auto ends = [](bool progress, const absl::Status& vertices) {
+    auto request = Request("a.obj", kObj, "b.obj", kObj);
+    request.set_vertex_distances(true);
+    const auto table = Compare(request, BodyOf,
+                               {.progress = [=](double) { return progress; },
+                                .vertices = [=](const v1::VertexDistances&) { return vertices; },
+                                .map = [](std::string_view) { return absl::OkStatus(); }});
+    return table.status().code();
+  };
+  EXPECT_EQ(ends(true, absl::OkStatus()), absl::StatusCode::kOk);
+  EXPECT_EQ(ends(false, absl::OkStatus()), absl::StatusCode::kCancelled);
+  EXPECT_EQ(ends(true, absl::CancelledError()), absl::StatusCode::kCancelled);
 }
 
 TEST(Comparison, TheMapHasEachVertexOfTheSurfaceAndItsDistance) {
   auto request = Request("a.obj", "v 9 9 9\nv 0 0 5\nv 100 0 2\nv 0 100 3\nf 2 3 4\n", "b.obj", kObj);
-  std::string map;
+  Told told;
+  const std::string& map = told.map;
   request.set_map_format("msh");
-  ASSERT_TRUE(Compared(request, &map).ok());
+  ASSERT_TRUE(Compared(request, &told).ok());
   EXPECT_THAT(map, HasSubstr("$Nodes\n3\n")) << "the first vertex is in no triangle";
   EXPECT_THAT(map, HasSubstr("\"distance [mm]\"\n1\n0\n3\n0\n1\n3\n1 5\n2 2\n3 3\n$EndNodeData\n"));
-  map.clear();
+  EXPECT_TRUE(told.vertices.empty()) << "not asked for";
+  told.map.clear();
   request.set_map_format("vtp");
-  ASSERT_TRUE(Compared(request, &map).ok());
+  ASSERT_TRUE(Compared(request, &told).ok());
   EXPECT_THAT(map, HasSubstr("format=\"ascii\">\n5\n2\n3\n</DataArray>"));
+}
+
+TEST(Comparison, VertexDistancesAreThoseOfEachVertexOfA) {
+  auto request = Request("a.obj", "v 9 9 9\nv 0 0 5\nv 100 0 2\nv 0 100 3\nf 2 3 4\n", "b.obj", kObj);
+  request.set_vertex_distances(true);
+  Told told;
+  ASSERT_TRUE(Compared(request, &told).ok());
+  ASSERT_EQ(told.vertices.size(), 1U);
+  EXPECT_FALSE(told.vertices[0].has_time());
+  EXPECT_THAT(told.vertices[0].distances(),
+              ElementsAre(IsNan(), FloatNear(5, 1e-5), FloatNear(2, 1e-5), FloatNear(3, 1e-5)))
+      << "the first vertex is in no triangle";
+  EXPECT_TRUE(told.map.empty());
+}
+
+TEST(Comparison, VertexDistancesOfAMotionComeOnceATime) {
+  auto request = Request("a.msh", MotionText(0.01, {0, 1}), "b.msh", MotionText(0, {0, 1}));
+  request.set_vertex_distances(true);
+  Told told;
+  ASSERT_TRUE(Compared(request, &told).ok());
+  ASSERT_EQ(told.vertices.size(), 2U);
+  for (int time = 0; time < 2; ++time) {
+    EXPECT_EQ(told.vertices[time].time(), time);
+    EXPECT_NEAR(told.vertices[time].distances(0), 10 * time, 1e-4);
+  }
+}
+
+TEST(Comparison, OfASessionsBodySaysWhichStateItWas) {
+  Told told;
+  const auto table = Compared(BodyRequest("b.obj", "v 0 0 7\nv 100 0 7\nv 100 100 7\nv 0 100 7\nf 1 2 3 4\n"), &told);
+  ASSERT_TRUE(table.ok()) << table.status();
+  EXPECT_EQ(table->a(), "session:s/square");
+  EXPECT_EQ(table->state_a().tick(), 500);
+  EXPECT_FALSE(table->has_state_b());
+  EXPECT_NEAR(table->rows(0).distance().hd_max(), 7, 1e-6);
+  ASSERT_EQ(told.vertices.size(), 1U);
+  EXPECT_THAT(told.vertices[0].distances(), SizeIs(Square(0.1, 2).vertices.cols()));
+  EXPECT_THAT(told.vertices[0].distances(), Each(FloatNear(7, 1e-4)));
+}
+
+// The file's square rises by 10 mm/s: 5 mm above the body at the session's 0.5 s.
+TEST(Comparison, BesideASessionsBodyAMotionIsTakenAtItsTimeOrAtANamedOne) {
+  auto request = BodyRequest("b.msh", MotionText(0.01, {0, 1}, "still"));
+  request.set_by_region(true);
+  const auto at_its_time = Compared(request);
+  ASSERT_TRUE(at_its_time.ok()) << at_its_time.status();
+  EXPECT_NEAR(at_its_time->rows(0).distance().mean_a_to_b(), 5, 1e-4);
+  EXPECT_FALSE(at_its_time->rows(0).has_time());
+  request.mutable_b()->set_time(0.25);
+  EXPECT_NEAR(Compared(request)->rows(0).distance().mean_a_to_b(), 2.5, 1e-4);
+  request.mutable_b()->set_time(1.5);
+  const auto status = Compared(request).status();
+  EXPECT_EQ(status.code(), absl::StatusCode::kFailedPrecondition);
+  EXPECT_THAT(std::string(status.message()), HasSubstr("b.msh: has no state at 1.5 s, but from 0 to 1 s"));
+  auto later = BodyRequest("b.msh", MotionText(0.01, {1, 2}));
+  EXPECT_THAT(std::string(Compared(later).status().message()), HasSubstr("0.5 s, the session's time, but from 1 to 2"));
+}
+
+TEST(Comparison, ASessionsBodyHasNeitherUnitNorTimeOfAFile) {
+  auto unit = BodyRequest("b.obj", kObj);
+  unit.mutable_a()->set_unit_mm(10);
+  EXPECT_THAT(std::string(Compared(unit).status().message()), HasSubstr("a.unit_mm: is of files"));
+  auto time = BodyRequest("b.obj", kObj);
+  time.mutable_a()->set_time(1);
+  EXPECT_THAT(std::string(Compared(time).status().message()), HasSubstr("a.time: is of files"));
+  auto nobody = BodyRequest("b.obj", kObj);
+  nobody.mutable_a()->mutable_body()->set_session_id("t");
+  EXPECT_EQ(Compared(nobody).status().code(), absl::StatusCode::kNotFound);
+  EXPECT_THAT(std::string(Compared(Request("", kObj, "b.obj", kObj)).status().message()),
+              HasSubstr("a.name: must be set"));
 }
 
 }  // namespace
