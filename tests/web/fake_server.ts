@@ -2,6 +2,11 @@ import { create, type MessageInitShape } from "@bufbuild/protobuf";
 import { Code, ConnectError, createRouterTransport } from "@connectrpc/connect";
 import { createApi } from "../../web/src/api";
 import {
+  type CompareRequest,
+  type CompareResponseSchema,
+  CompareService,
+} from "../../web/src/gen/phrenic/v1/compare_pb";
+import {
   FrameService,
   GetGeometryResponseSchema,
   Placement,
@@ -16,6 +21,7 @@ import {
   SessionState,
 } from "../../web/src/gen/phrenic/v1/session_pb";
 
+type ComparisonEvent = MessageInitShape<typeof CompareResponseSchema>["event"];
 type Event = MessageInitShape<typeof WatchFramesResponseSchema>["event"];
 
 export function bytesOf(numbers: Float32Array | Uint32Array): Uint8Array<ArrayBuffer> {
@@ -50,6 +56,9 @@ export class FakeServer {
   readonly rates: number[] = [];
   readonly updates: object[] = [];
   readonly pulls: Pull[] = [];
+  readonly comparisons: CompareRequest[] = [];
+  /** What a comparison brings, one after the other; one that is a promise is waited for. */
+  found: (ComparisonEvent | Promise<ComparisonEvent>)[] = [];
   /** Of the scene. */
   presets: MessageInitShape<typeof PresetSchema>[] = [];
   private emitters = new Set<(event: Event | "end") => void>();
@@ -77,6 +86,7 @@ export class FakeServer {
         describeScene: () => this.answer({ scene: { name: "thorax", presets: this.presets } }),
       });
       service(FrameService, this.streams());
+      service(CompareService, this.comparing());
     }),
   );
 
@@ -108,6 +118,16 @@ export class FakeServer {
           if (event === "end") throw new ConnectError("connection reset", Code.Unavailable);
           yield { event };
         }
+      },
+    };
+  }
+
+  private comparing() {
+    const server = this;
+    return {
+      async *compare(request: CompareRequest) {
+        server.comparisons.push(request);
+        for (const event of server.found) yield server.answer({ event: await event });
       },
     };
   }

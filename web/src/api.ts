@@ -1,4 +1,5 @@
 import { type Client, ConnectError, createClient, type Transport } from "@connectrpc/connect";
+import { CompareService } from "./gen/phrenic/v1/compare_pb";
 import { FrameService } from "./gen/phrenic/v1/frames_pb";
 import { SceneService, SessionService } from "./gen/phrenic/v1/session_pb";
 
@@ -7,6 +8,7 @@ export interface Api {
   scenes: Client<typeof SceneService>;
   sessions: Client<typeof SessionService>;
   frames: Client<typeof FrameService>;
+  comparisons: Client<typeof CompareService>;
 }
 
 export function createApi(transport: Transport): Api {
@@ -14,6 +16,7 @@ export function createApi(transport: Transport): Api {
     scenes: createClient(SceneService, transport),
     sessions: createClient(SessionService, transport),
     frames: createClient(FrameService, transport),
+    comparisons: createClient(CompareService, transport),
   };
 }
 
