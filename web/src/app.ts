@@ -1,16 +1,21 @@
 import type { Api } from "./api";
 import type { Clock } from "./clock";
 import type { Body, FrameArrays } from "./codec";
+import { type Comparison, Comparisons } from "./comparison";
 import { Connection, type Link, type Sink } from "./connection";
 import { Controller } from "./controller";
 import { Demand } from "./demand";
+import { DistanceScale, topFor } from "./distance_scale";
 import { Frames } from "./frames";
 import type { CompileReport } from "./gen/phrenic/v1/report_pb";
 import { Looks } from "./looks";
 import { appearancePanel, layersPanel } from "./panels/appearance";
 import { banners } from "./panels/banner";
 import type { Chooser } from "./panels/chooser";
+import { comparePanel } from "./panels/compare";
+import { ComparisonCard } from "./panels/comparison_card";
 import { make, place } from "./panels/dom";
+import { dropZone } from "./panels/drop_zone";
 import { Margins } from "./panels/margins";
 import { Measures } from "./panels/measures";
 import { parameterSections } from "./panels/parameters";
@@ -21,6 +26,7 @@ import { LinkPill, Readout, ViewerCount } from "./panels/status";
 import { viewBar } from "./panels/view_bar";
 import { Signal } from "./signal";
 import { testHook } from "./test_hook";
+import type { Covered } from "./viewer/rig";
 import { Viewer } from "./viewer/viewer";
 
 /** How often words and numbers follow the picture [ms]. */
@@ -42,7 +48,9 @@ export class App {
   private readonly probes = new Probes();
   private readonly measures = new Measures();
   private readonly demand = new Demand();
-  private bodies: Body[] = [];
+  private readonly comparisons: Comparisons;
+  private readonly comparison: ComparisonCard;
+  private readonly bodies = new Signal<Body[]>([]);
   /** Names of the bodies that have mass and move by forces. */
   private deformable: ReadonlySet<string> = new Set();
 
@@ -53,8 +61,11 @@ export class App {
     private readonly clock: Clock,
   ) {
     this.controller = new Controller(api, sessionId, clock);
+    this.comparisons = new Comparisons(api, sessionId);
+    this.comparison = new ComparisonCard(this.comparisons);
     this.connection = new Connection(api, sessionId, this.sink(), clock);
     this.pill = new LinkPill(() => this.connection.retryNow());
+    place("comparison-place").append(this.comparison.element);
     const reduced = matchMedia("(prefers-reduced-motion: reduce)");
     this.viewer = new Viewer(
       place("view") as HTMLCanvasElement,
@@ -63,7 +74,7 @@ export class App {
       covered,
       () => reduced.matches,
     );
-    window.phrenic = testHook(() => this.bodies, this.frames, this.viewer);
+    window.phrenic = testHook(() => this.bodies.value, this.frames, this.viewer);
   }
 
   start(): void {
@@ -71,6 +82,7 @@ export class App {
     this.looks.all.subscribe((looks) => {
       for (const { layer, opacity, visible } of looks) this.viewer.setLayerOpacity(layer, visible ? opacity : 0);
     });
+    this.comparisons.result.subscribe((comparison) => this.viewer.paint(painted(comparison)));
     setInterval(() => this.tell(), statusInterval);
     void this.connection.run();
   }
@@ -81,6 +93,7 @@ export class App {
       ...parameterSections(controller, this.report),
       appearancePanel(looks, (kind, on) => viewer.setOverlay(kind, on)),
       layersPanel(looks),
+      comparePanel(this.comparisons, this.bodies),
       this.probes.element,
       this.measures.element,
       reportPanel(this.report),
@@ -90,6 +103,9 @@ export class App {
       (body, vertex, force) => controller.pull(body, vertex, force),
     );
     window.addEventListener("pagehide", () => controller.leave());
+    const drop = dropZone(document.body, (file) => void this.comparisons.compare(file));
+    place("stage").append(drop);
+    new ResizeObserver(() => viewer.resize()).observe(this.comparison.element);
     place("playback-place").append(playbackPanel(controller));
     place("readout-place").append(this.readout.element);
     place("link-place").append(this.viewers.element, this.pill.element);
@@ -122,15 +138,23 @@ export class App {
         this.viewer.refresh();
       },
       scene: (bodies, report) => {
-        this.bodies = bodies;
+        this.comparisons.clear();
+        this.bodies.set(bodies);
         this.frames.clear();
         this.report.set(report);
         this.deformable = new Set(report?.bodies.filter(({ role }) => role === "deformable").map(({ name }) => name));
+        this.comparisons.choose({ body: this.largestOf(bodies) });
         this.viewer.show(bodies);
         this.looks.start(bodies, report);
         place("loading").hidden = true;
       },
     };
+  }
+
+  /** What the simulation is about: of the deformable bodies the one with the most triangles. */
+  private largestOf(bodies: Body[]): string {
+    const moving = bodies.filter(({ name, triangles }) => this.deformable.has(name) && triangles.length > 0);
+    return moving.sort((a, b) => b.triangles.length - a.triangles.length)[0]?.name ?? "";
   }
 
   private arrays(): FrameArrays | undefined {
@@ -150,15 +174,26 @@ export class App {
     this.readout.show(status);
     this.probes.show(status.frame);
     this.measures.show(status.frame);
+    this.comparison.show(status.frame?.time);
   }
 }
 
-/** How much of the picture lies under the view buttons and the dock [CSS pixels]; the style sheet hears of it too. */
-function covered(): { top: number; bottom: number } {
+function painted(comparison: Comparison | undefined): { body: string; rgb: Uint8Array } | undefined {
+  if (comparison === undefined) return undefined;
+  const { body, distances } = comparison;
+  return { body, rgb: new DistanceScale(topFor(distances)).paint(distances) };
+}
+
+/** How much of the picture lies under view buttons, dock and card [CSS pixels]; the style sheet hears of it too. */
+function covered(): Covered {
   const stage = place("stage");
   const bottom = stage.clientHeight - place("dock").offsetTop;
+  const { offsetLeft, offsetWidth } = place("comparison");
+  // Where a card takes most of a narrow picture, the scene stays behind it.
+  const left = offsetLeft + offsetWidth < 0.6 * stage.clientWidth ? offsetLeft + offsetWidth : 0;
   stage.style.setProperty("--covered", `${bottom}px`);
-  return { top: 48, bottom };
+  stage.style.setProperty("--covered-left", `${left}px`);
+  return { left, top: 48, bottom };
 }
 
 /** The panel folds away; on a narrow screen it starts folded. */

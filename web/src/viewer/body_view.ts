@@ -5,6 +5,7 @@ import { edgesOf } from "./edges";
 import { pointMaterial, setOpacity, surfaceMaterial } from "./materials";
 import { computeNormals } from "./normals";
 import { addOverlays, type Overlay } from "./overlays";
+import { Paint } from "./paint";
 import { tendonWeights } from "./tendon";
 import { ThickLines } from "./thick_lines";
 
@@ -21,6 +22,8 @@ export class BodyView {
   private knownEdges: Uint32Array<ArrayBuffer> | undefined;
   private readonly normals: THREE.BufferAttribute | undefined;
   private readonly surface: THREE.MeshStandardMaterial | undefined;
+  private readonly colors: Paint | undefined;
+  private opacity: number;
   private readonly overlays: Overlay[];
   private readonly thick: ThickLines[] = [];
 
@@ -30,13 +33,17 @@ export class BodyView {
     diagram: boolean,
   ) {
     this.group.name = body.name;
+    this.opacity = body.opacity;
     this.positions = new THREE.BufferAttribute(body.rest.slice(), 3);
     const streamed = body.placement === Placement.STREAMED;
     if (streamed) this.positions.setUsage(THREE.DynamicDrawUsage);
     const solid = body.triangles.length > 0;
     if (solid) {
       this.normals = new THREE.BufferAttribute(new Float32Array(body.rest.length), 3);
-      this.surface = this.addSurface(this.normals);
+      const { geometry, material } = this.addSurface(this.normals);
+      const own = body.rigidLinks.length > 0 ? this.tendonColors() : undefined;
+      this.surface = material;
+      this.colors = new Paint(geometry, material, body.color, own);
     }
     if (!solid || diagram) this.addNetwork(solid ? lighter(body.color) : body.color);
     this.overlays = addOverlays(this);
@@ -62,20 +69,14 @@ export class BodyView {
     return geometry;
   }
 
-  private addSurface(normals: THREE.BufferAttribute): THREE.MeshStandardMaterial {
+  private addSurface(normals: THREE.BufferAttribute): THREE.Mesh<THREE.BufferGeometry, THREE.MeshStandardMaterial> {
     const { body } = this;
     computeNormals(body.rest, body.triangles, normals.array as Float32Array);
     const geometry = this.geometry(body.triangles).setAttribute("normal", normals);
-    const material = surfaceMaterial(body.color, body.opacity);
-    if (body.rigidLinks.length > 0) {
-      geometry.setAttribute("color", this.tendonColors());
-      material.vertexColors = true;
-      material.color.set("white");
-    }
-    const mesh = new THREE.Mesh(geometry, material);
+    const mesh = new THREE.Mesh(geometry, surfaceMaterial(body.color, body.opacity));
     mesh.frustumCulled = false;
     this.group.add(mesh);
-    return material;
+    return mesh;
   }
 
   private tendonColors(): THREE.BufferAttribute {
@@ -116,8 +117,16 @@ export class BodyView {
   }
 
   setOpacity(opacity: number): void {
+    this.opacity = opacity;
     this.group.visible = opacity > 0;
-    if (this.surface !== undefined) setOpacity(this.surface, opacity);
+    // Paint is solid: through a clear one its scale could not be read.
+    if (this.surface !== undefined) setOpacity(this.surface, this.colors?.covers ? 1 : opacity);
+  }
+
+  /** Colours of the vertices over the body's own: sRGB, three bytes each; undefined takes them away. */
+  paint(rgb: Uint8Array | undefined): void {
+    this.colors?.show(rgb);
+    this.setOpacity(this.opacity);
   }
 
   setOverlay(kind: OverlayKind, on: boolean): void {

@@ -18,6 +18,10 @@ export function surfaceMaterial(color: string, opacity: number): THREE.MeshStand
          float facing = abs(dot(normal, normalize(vViewPosition)));
          diffuseColor.a *= mix(1.0 + 1.6 * (1.0 - diffuseColor.a), 0.75, facing);
        #endif
+       #ifdef PAINTED
+         // Colours that are read off a scale keep to it: light gives them shape, and no gloss.
+         outgoingLight = mix(reflectedLight.directDiffuse + reflectedLight.indirectDiffuse, diffuseColor.rgb, 0.55);
+       #endif
        #include <opaque_fragment>`,
     );
   };

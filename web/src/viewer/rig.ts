@@ -1,6 +1,6 @@
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import { letterOf, openingView, standpoint, type ViewName } from "./views";
+import { type Free, letterOf, openingView, standpoint, type ViewName } from "./views";
 
 /** What the margins of the picture say about it. */
 export interface Compass {
@@ -12,6 +12,13 @@ export interface Compass {
   pixelsPerMetre: number;
 }
 
+/** How much of the picture panels hide at its edges [CSS pixels]. */
+export interface Covered {
+  left: number;
+  top: number;
+  bottom: number;
+}
+
 const glide = 350;
 
 /** The camera and its controls: orbit, zoom, pan, and gliding to named views. */
@@ -21,7 +28,7 @@ export class Rig {
   private points: THREE.Vector3[] = [];
   private center = new THREE.Vector3();
   private opening: ViewName = "home";
-  private free = 1;
+  private free: Free = { width: 1, height: 1 };
   /** The named view that the camera stands at or glides to, until a person moves it. */
   private held: ViewName | undefined;
   private extent = 1;
@@ -66,13 +73,13 @@ export class Rig {
     this.changed();
   }
 
-  /** `top` and `bottom` are CSS pixels of the picture that panels cover: the scene keeps to the middle of the rest. */
-  resize(top: number, bottom: number): void {
+  /** The scene keeps to the middle of what panels leave of the picture. */
+  resize({ left, top, bottom }: Covered): void {
     const width = Math.max(this.canvas.clientWidth, 1);
     const height = Math.max(this.canvas.clientHeight, 1);
-    this.free = Math.max(0.3, 1 - (top + bottom) / height);
+    this.free = { width: Math.max(0.3, 1 - left / width), height: Math.max(0.3, 1 - (top + bottom) / height) };
     this.camera.aspect = width / height;
-    this.camera.setViewOffset(width, height, 0, (bottom - top) / 2, width, height);
+    this.camera.setViewOffset(width, height, -left / 2, (bottom - top) / 2, width, height);
     this.camera.updateProjectionMatrix();
     if (this.held !== undefined) this.go(this.held, true);
   }

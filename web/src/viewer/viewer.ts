@@ -3,7 +3,7 @@ import type { Body, FrameArrays } from "../codec";
 import { BodyView, type OverlayKind } from "./body_view";
 import { addLights } from "./lights";
 import { type Pull, Pulling } from "./pulling";
-import { type Compass, Rig } from "./rig";
+import { type Compass, type Covered, Rig } from "./rig";
 import { Sharpness } from "./sharpness";
 import type { ViewName } from "./views";
 
@@ -29,12 +29,12 @@ export class Viewer {
 
   /**
    * `source` gives the newest frame when a picture is due; `drawn` hears of every picture; `covered` is how much
-   * of the canvas panels hide at its edges [CSS pixels]. */
+   * of the canvas panels hide. */
   constructor(
     private readonly canvas: HTMLCanvasElement,
     private readonly source: () => FrameArrays | undefined,
     private readonly drawn: (compass: Compass) => void,
-    private readonly covered: () => { top: number; bottom: number },
+    private readonly covered: () => Covered,
     calm: () => boolean,
   ) {
     this.renderer = new THREE.WebGLRenderer({
@@ -90,6 +90,12 @@ export class Viewer {
     this.refresh();
   }
 
+  /** Paints one body, sRGB, three bytes a vertex, and no other; undefined leaves none painted. */
+  paint(painted: { body: string; rgb: Uint8Array } | undefined): void {
+    for (const view of this.views) view.paint(view.body.name === painted?.body ? painted.rgb : undefined);
+    this.refresh();
+  }
+
   /** Dragging with the shift key pulls at the visible ones among the bodies of these names from now on. */
   letPull(names: () => ReadonlySet<string>, pull: Pull): void {
     const views = () => this.views.filter(({ body, group }) => group.visible && names().has(body.name));
@@ -100,12 +106,12 @@ export class Viewer {
     this.rig.go(view);
   }
 
-  private resize(): void {
+  /** Takes the canvas as it is now, and what panels leave of it. */
+  resize(): void {
     const { clientWidth, clientHeight } = this.canvas;
     if (clientWidth === 0 || clientHeight === 0) return;
     this.renderer.setSize(clientWidth, clientHeight, false);
-    const { top, bottom } = this.covered();
-    this.rig.resize(top, bottom);
+    this.rig.resize(this.covered());
     this.refresh();
   }
 

@@ -20,16 +20,19 @@ export function openingView(box: THREE.Box3): ViewName {
   return size.x < thin ? "left" : "home";
 }
 
-/**
- * Where the camera stands to see all of `points`, looking at `center` from the view's side, with `free` (0 to 1) of the
- * picture's height to fill.
- */
+/** How much of the picture's width and height there is to fill, 0 to 1. */
+export interface Free {
+  width: number;
+  height: number;
+}
+
+/** Where the camera stands to see all of `points`, looking at `center` from the view's side. */
 export function standpoint(
   view: ViewName,
   points: THREE.Vector3[],
   center: THREE.Vector3,
   camera: THREE.PerspectiveCamera,
-  free = 1,
+  free: Free = { width: 1, height: 1 },
 ): THREE.Vector3 {
   const away = new THREE.Vector3(...directions[view]).normalize();
   const right = new THREE.Vector3(-away.y, away.x, 0).normalize();
@@ -39,8 +42,8 @@ export function standpoint(
   let distance = 0;
   for (const point of points) {
     offset.subVectors(point, center);
-    const across = Math.abs(offset.dot(right)) / (slope * camera.aspect);
-    const along = Math.abs(offset.dot(up)) / (slope * free);
+    const across = Math.abs(offset.dot(right)) / (slope * camera.aspect * free.width);
+    const along = Math.abs(offset.dot(up)) / (slope * free.height);
     distance = Math.max(distance, offset.dot(away) + Math.max(across, along));
   }
   return center.clone().addScaledVector(away, margin * distance);
