@@ -1,9 +1,12 @@
 import { join } from "node:path";
 import { test } from "vitest";
 import { launchBrowser, ViewerPage } from "./browser";
-import { Server } from "./server";
+import { outFolder, Server } from "./server";
 
-// Not a test: `npm run screenshot` makes the picture that the README shows, breathing in.
+const web = join(import.meta.dirname, "../../web");
+const rest = join(outFolder, "rest.msh");
+
+// Not a test: `npm run screenshot` makes the pictures that the README shows, breathing in.
 test("Screenshot", async () => {
   const browser = await launchBrowser();
   const server = await Server.start();
@@ -13,6 +16,7 @@ test("Screenshot", async () => {
     await page.click('#play[aria-label="Pause"]');
     await page.click("#reset");
     await page.waitForFunction(() => window.phrenic!.tick() === 0);
+    await server.phrenic("export", "thorax", rest, "--seconds", "0", "--body", "diaphragm");
     await page.selectOption("#stride", "1000");
     while ((await page.evaluate(() => window.phrenic!.time())) < 0.5) {
       const before = await viewer.tick();
@@ -22,7 +26,15 @@ test("Screenshot", async () => {
     // At rest the picture is drawn in full.
     await page.mouse.move(0, 0);
     await page.waitForTimeout(4000);
-    await page.screenshot({ path: join(import.meta.dirname, "../../web/screenshot.png") });
+    await page.screenshot({ path: join(web, "screenshot.png") });
+    // The same state beside the diaphragm at rest.
+    await page.setInputFiles("#compare-file", rest);
+    await page.waitForSelector("#comparison .found:not([hidden])");
+    for (const layer of ["Ribs", "Sternum", "Costal cartilages", "Lungs"])
+      await page.uncheck(`[aria-label="Show ${layer}"]`);
+    await page.mouse.move(0, 0);
+    await page.waitForTimeout(4000);
+    await page.screenshot({ path: join(web, "comparison.png") });
   } finally {
     await browser.close();
     await server.kill();

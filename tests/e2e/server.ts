@@ -46,9 +46,14 @@ export class Server {
 
   /** The thorax' session as the command line, a second client, has it in JSON. */
   async session() {
-    const flags = ["--server", `127.0.0.1:${this.listen}`, "sessions", "-o", "json"];
-    const { sessions } = JSON.parse((await promisify(execFile)(program("phrenic"), flags)).stdout);
+    const { sessions } = JSON.parse(await this.phrenic("sessions", "-o", "json"));
     return sessions.find(({ id }: { id: string }) => id === "thorax");
+  }
+
+  /** What the command line says to these words about this server. */
+  async phrenic(...words: string[]): Promise<string> {
+    const flags = ["--server", `127.0.0.1:${this.listen}`, ...words];
+    return (await promisify(execFile)(program("phrenic"), flags)).stdout;
   }
 
   /** The tick at which the session stands once it is paused. */
