@@ -9,6 +9,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "server/record/distance_map.h"
+#include "server/study/domes.h"
 #include "server/study/moments.h"
 #include "server/study/surface_distance.h"
 
@@ -216,6 +217,7 @@ absl::StatusOr<v1::ComparisonTable> Compare(const v1::CompareRequest& request, B
   auto pair = ReadPair(request, bodies);
   if (!pair.ok()) return pair.status();
   if (absl::Status status = CheckVertices(request, *pair); !status.ok()) return status;
+  if (request.by_region()) AddDomes(pair->a.motion.mesh, pair->b.motion.mesh);
   auto moments = MatchTimes(pair->a.motion, pair->b.motion, request.match_phases());
   if (!moments.ok()) return moments.status();
   Comparer comparer(request, *std::move(pair), *std::move(moments), sink);
