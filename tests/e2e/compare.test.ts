@@ -147,6 +147,19 @@ describe("a cube beside a file of itself, 3 mm higher", () => {
   });
 });
 
+test("OnAPhoneTheScaleLeavesThePicture", async () => {
+  viewer = await ViewerPage.open(browser, `${server.url}?session=cube`, { width: 390, height: 780 });
+  await choose("higher.msh", await exported("cube", "cube", () => 3));
+  await found();
+  await viewer.page.waitForTimeout(1500);
+  await viewer.leave("compare-phone");
+  const card = (await viewer.page.locator("#comparison").boundingBox())!;
+  const stage = (await viewer.page.locator("#stage").boundingBox())!;
+  expect(card.x + card.width).toBeLessThanOrEqual(stage.width);
+  expect(card.height).toBeLessThan(0.4 * stage.height);
+  await viewer.close();
+});
+
 describe("the thorax beside a file of its diaphragm, its left side higher", () => {
   test("IsColouredOnThatSide", async () => {
     viewer = await ViewerPage.open(browser, `${server.url}?session=thorax`, { width: 1200, height: 720 });

@@ -6,6 +6,7 @@ import { ComparisonCard } from "../../web/src/panels/comparison_card";
 import { make } from "../../web/src/panels/dom";
 import { dropZone } from "../../web/src/panels/drop_zone";
 import { Signal } from "../../web/src/signal";
+import { settle } from "./fake_clock";
 import { FakeServer, triangleBody } from "./fake_server";
 
 let server: FakeServer;
@@ -77,6 +78,17 @@ describe("the card", () => {
     expect(byId("comparison-moved").textContent).toBe("");
     card.show(2.5);
     expect(byId("comparison-moved").textContent).toBe("The session is at 2.50 s now.");
+  });
+
+  test("ShowsProgressAndStops", async () => {
+    server.found = [{ case: "progress", value: 0.4 }, new Promise(() => {})];
+    void comparisons.compare(new File(["v 0 0 0"], "b.obj"));
+    await settle();
+    const bar = card.element.querySelector("progress")!;
+    expect([bar.value, Boolean(bar.ariaLabel)]).toEqual([0.4, true]);
+    expect(card.element.querySelector('[role="status"]')!.textContent).toContain("b.obj");
+    card.element.querySelector("button")!.click();
+    expect([card.element.hidden, comparisons.work.value.kind]).toEqual([true, "idle"]);
   });
 
   test("TellsAFailureAsAnAlertThatCanBeDismissed", async () => {
