@@ -11,10 +11,7 @@ beforeEach(() => {
 });
 
 const show = (study: object) => showStudy(page, JSON.stringify(study));
-const captions = () =>
-  [...page.querySelectorAll("figcaption")].map(
-    (each) => each.textContent ?? "",
-  );
+const captions = () => [...page.querySelectorAll("figcaption")].map((each) => each.textContent ?? "");
 const all = (selector: string) => [...page.querySelectorAll(selector)];
 const advice = () => all(".advice p").map((each) => each.textContent ?? "");
 const done = { id: "x", scene: "cube", state: "STUDY_STATE_DONE" };
@@ -25,44 +22,29 @@ const withTable = (study: typeof errorStudy, kind: string, table: object) => ({
 });
 
 describe("the page of a study", () => {
-  test.each([errorStudy, stabilityStudy, costStudy])(
-    "NamesEveryPictureAndSaysWhatToSee",
-    (study) => {
-      show(study);
-      expect(all("figure svg[role=img]").length).toBeGreaterThan(2);
-      for (const svg of all("figure svg"))
-        expect(svg.getAttribute("aria-label")?.length).toBeGreaterThan(20);
-      for (const caption of captions())
-        expect(caption).toMatch(/^[^.]+\. .+\.$/s);
-      for (const caption of captions())
-        expect(caption).not.toMatch(/undefined|NaN|Infinity/);
-      expect(page.textContent).toContain(
-        "Research and teaching; not for clinical use",
-      );
-    },
-  );
+  test.each([errorStudy, stabilityStudy, costStudy])("NamesEveryPictureAndSaysWhatToSee", (study) => {
+    show(study);
+    expect(all("figure svg[role=img]").length).toBeGreaterThan(2);
+    for (const svg of all("figure svg")) expect(svg.getAttribute("aria-label")?.length).toBeGreaterThan(20);
+    for (const caption of captions()) expect(caption).toMatch(/^[^.]+\. .+\.$/s);
+    for (const caption of captions()) expect(caption).not.toMatch(/undefined|NaN|Infinity/);
+    expect(page.textContent).toContain("Research and teaching; not for clinical use");
+  });
 
-  test.each([errorStudy, stabilityStudy, costStudy])(
-    "DrawsNothingThatIsNotANumber",
-    (study) => {
-      show(study);
-      expect(
-        all("figure svg")
-          .map((svg) => svg.outerHTML)
-          .join(""),
-      ).not.toMatch(/NaN|Infinity|undefined/);
-    },
-  );
+  test.each([errorStudy, stabilityStudy, costStudy])("DrawsNothingThatIsNotANumber", (study) => {
+    show(study);
+    expect(
+      all("figure svg")
+        .map((svg) => svg.outerHTML)
+        .join(""),
+    ).not.toMatch(/NaN|Infinity|undefined/);
+  });
 
   test("SaysWhatWasStudiedAndWithWhat", () => {
     show(errorStudy);
     const header = page.querySelector("header")!.textContent!;
-    expect(page.querySelector("h1")!.textContent).toBe(
-      "Error against run time: thorax",
-    );
-    expect(header).toContain(
-      "3d6792551747970ab59dde977832208208ed8ef8525ebe03783601e643b0e8d9",
-    );
+    expect(page.querySelector("h1")!.textContent).toBe("Error against run time: thorax");
+    expect(header).toContain("3d6792551747970ab59dde977832208208ed8ef8525ebe03783601e643b0e8d9");
     expect(header).toContain("breath force 1 · breath length 4 s");
     expect(header).toContain("integrator Semi-implicit Euler");
     expect(header).toContain("2 s simulated");
@@ -78,9 +60,7 @@ describe("the page of a study", () => {
       },
     });
     expect(page.querySelector("header")!.textContent).toContain("abc");
-    expect(page.querySelector(".advice")!.textContent).toBe(
-      "Use Velocity Verlet.",
-    );
+    expect(page.querySelector(".advice")!.textContent).toBe("Use Velocity Verlet.");
   });
 
   test("ShowsHostileTextAsText", () => {
@@ -92,20 +72,11 @@ describe("the page of a study", () => {
       cpuPerSecond: 1,
       verdict: scene,
     };
-    const rows = [
-      row,
-      { ...row, timeStepS: 0.05, errorRmsMm: 0.5, cpuPerSecond: 2 },
-    ];
+    const rows = [row, { ...row, timeStepS: 0.05, errorRmsMm: 0.5, cpuPerSecond: 2 }];
     show({ ...done, scene, result: { scene, error: { rows, advice: scene } } });
     expect(all("img, script, [onload], [onerror]")).toEqual([]);
-    expect(page.querySelector("h1")!.textContent).toBe(
-      `Error against run time: ${scene}`,
-    );
-    expect(
-      pageOf("<script>__PHRENIC_STUDY__</script>", { scene }).match(
-        /<\/script>/g,
-      ),
-    ).toHaveLength(1);
+    expect(page.querySelector("h1")!.textContent).toBe(`Error against run time: ${scene}`);
+    expect(pageOf("<script>__PHRENIC_STUDY__</script>", { scene }).match(/<\/script>/g)).toHaveLength(1);
   });
 
   test.each(["error", "stability", "cost"])("StandsAnEmptyTable", (kind) => {
@@ -129,15 +100,12 @@ describe("the page of a study", () => {
 describe("the error study", () => {
   test("SaysWhichRunsItDoesNotDraw", () => {
     show(errorStudy);
-    expect(captions()[0]).toContain(
-      "Not drawn: 5 runs (Thesis) without a result.",
-    );
+    expect(captions()[0]).toContain("Not drawn: 5 runs (Thesis) without a result.");
   });
 
   test("ShowsTheLargestErrorOnDemand", () => {
     show(errorStudy);
-    const [, largest] =
-      page.querySelectorAll<HTMLInputElement>("input[type=radio]");
+    const [, largest] = page.querySelectorAll<HTMLInputElement>("input[type=radio]");
     largest.checked = true;
     largest.dispatchEvent(new Event("change"));
     expect(captions()[0]).toContain("Largest error against run time.");
@@ -145,17 +113,8 @@ describe("the error study", () => {
 
   test("NamesEveryDrawnIntegratorInThePlotItself", () => {
     show(errorStudy);
-    const words = [
-      ...page.querySelector("figure svg")!.querySelectorAll("text"),
-    ].map((each) => each.textContent);
-    for (const name of [
-      "Semi-implicit Euler",
-      "Velocity Verlet",
-      "Runge-Kutta 4",
-      "BDF2",
-      "TR-BDF2",
-      "real time",
-    ]) {
+    const words = [...page.querySelector("figure svg")!.querySelectorAll("text")].map((each) => each.textContent);
+    for (const name of ["Semi-implicit Euler", "Velocity Verlet", "Runge-Kutta 4", "BDF2", "TR-BDF2", "real time"]) {
       expect(words).toContain(name);
     }
   });
@@ -195,9 +154,7 @@ describe("the error study", () => {
       verdict: "ok",
     };
     show(withTable(errorStudy, "error", { rows: [row] }));
-    expect(captions()[0]).toContain(
-      "Every run is faster than real time by far.",
-    );
+    expect(captions()[0]).toContain("Every run is faster than real time by far.");
   });
 });
 
@@ -218,33 +175,21 @@ describe("the stability study", () => {
 
   test("CountsExtremeCasesAndMarksThemInWords", () => {
     show(stabilityStudy);
-    expect(advice()).toContain(
-      "3 extreme cases: 1 pass, 1 stopped with a reason, 1 FAILED.",
-    );
+    expect(advice()).toContain("3 extreme cases: 1 pass, 1 stopped with a reason, 1 FAILED.");
     expect(page.querySelector(".verdict.bad")!.textContent).toBe("✖ FAILED");
   });
 
   test("SaysHowLongAStepMayBeAndWhatIsAlwaysStable", () => {
     show(stabilityStudy);
-    expect(advice()[0]).toMatch(
-      /^Longest stable step: Semi-implicit Euler .* ms \(10⁶ times as stiff: .* ms\)/,
-    );
-    expect(
-      advice().some((line) => line.startsWith("Stable at every stiffness")),
-    ).toBe(false);
-    const map = [
-      { integrator: "bdf2", stiffness: 1, timeStepS: 0.01, verdict: "damped" },
-    ];
+    expect(advice()[0]).toMatch(/^Longest stable step: Semi-implicit Euler .* ms \(10⁶ times as stiff: .* ms\)/);
+    expect(advice().some((line) => line.startsWith("Stable at every stiffness"))).toBe(false);
+    const map = [{ integrator: "bdf2", stiffness: 1, timeStepS: 0.01, verdict: "damped" }];
     show(withTable(stabilityStudy as never, "stability", { map }));
-    expect(advice()).toEqual([
-      "Stable at every stiffness and step of the map: BDF2.",
-    ]);
+    expect(advice()).toEqual(["Stable at every stiffness and step of the map: BDF2."]);
   });
 
   test("StandsASingleRunWithoutALimit", () => {
-    const map = [
-      { integrator: "bdf2", stiffness: 1, timeStepS: 0.01, verdict: "stable" },
-    ];
+    const map = [{ integrator: "bdf2", stiffness: 1, timeStepS: 0.01, verdict: "stable" }];
     show(withTable(stabilityStudy as never, "stability", { map }));
     expect(all(".tiles svg").length).toBe(1);
     expect(page.querySelector(".tiles")!.innerHTML).not.toMatch(/NaN/);
@@ -254,9 +199,7 @@ describe("the stability study", () => {
 describe("the cost study", () => {
   test("WritesTheThesisFigureBesideTheBar", () => {
     show(costStudy);
-    expect(page.querySelector("figure svg")!.textContent).toContain(
-      "214 µs, 26.4 % (thesis 625 µs, 2.92 × its pace)",
-    );
+    expect(page.querySelector("figure svg")!.textContent).toContain("214 µs, 26.4 % (thesis 625 µs, 2.92 × its pace)");
     expect(captions()[2]).toContain("to the power of 1.04");
   });
 
@@ -270,16 +213,11 @@ describe("the cost study", () => {
       overNeverHad,
     }));
     show(withTable(costStudy as never, "cost", { rows }));
-    expect(advice()).toEqual([
-      "What a scene leaves out: 0.99 to 1.02 of the time of a scene that never had it.",
-    ]);
+    expect(advice()).toEqual(["What a scene leaves out: 0.99 to 1.02 of the time of a scene that never had it."]);
   });
 
   test("StandsVariantsWithoutStagesAndGrowth", () => {
-    const rows = [
-      { variant: "full", cpuUsPerStep: 12 },
-      { variant: "springs alone" },
-    ];
+    const rows = [{ variant: "full", cpuUsPerStep: 12 }, { variant: "springs alone" }];
     show(withTable(costStudy as never, "cost", { rows }));
     expect(captions().length).toBe(1);
     expect(all("tbody tr").length).toBe(2);
