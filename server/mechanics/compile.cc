@@ -102,8 +102,11 @@ std::string StiffestElementAt(const Model& model, const Instant& at, int vertex)
   return name;
 }
 
-std::string Verdict(const Integrator& integrator, double limit) {
-  if (limit == 0) return absl::StrCat("; ", std::string(integrator.name()), " is stable at no step here");
+std::string Verdict(const Integrator& integrator, const Spectrum& spectrum, double limit) {
+  if (limit == 0) {
+    return absl::StrFormat("; %s is stable at no step here: least damping %.3g 1/s, lightest vertex %.3g kg",
+                           std::string(integrator.name()), spectrum.least_damping_rate, spectrum.least_mass);
+  }
   if (std::isinf(limit)) return absl::StrCat("; ", std::string(integrator.name()), " is stable at any step");
   return "";
 }
@@ -155,7 +158,7 @@ absl::StatusOr<std::shared_ptr<const Model>> Compile(const v1::Scene& scene, con
 double ChosenStep(const v1::StableStep& stable) {
   // Where no step is stable: a small one, so that it can be watched going wrong.
   const double limit = stable.seconds() > 0 ? stable.seconds() : 0.1 / stable.omega_max();
-  return std::min(RoundDown(kChosen * limit), kLongestStep);
+  return std::isinf(limit) ? kLongestStep : std::min(RoundDown(kChosen * limit), kLongestStep);
 }
 
 v1::StableStep LargestStableStep(const Model& model, const v1::Parameters& parameters) {
@@ -169,14 +172,15 @@ v1::StableStep LargestStableStep(const Model& model, const v1::Parameters& param
       v1::Parameters::descriptor()->FindFieldByName("time_step")->options().GetExtension(v1::quantity).maximum();
   report.set_seconds(std::min(limit, largest_step));
   if (fastest.vertex < 0) {
-    report.set_reason("nothing in the scene vibrates: any step is stable");
+    report.set_reason(limit > 0 ? "nothing in the scene vibrates: any step is stable"
+                                : "nothing in the scene vibrates" + Verdict(integrator, fastest.spectrum, limit));
     return report;
   }
   const BodyModel& body = model.BodyOf(fastest.vertex);
   const std::string stiffest = StiffestElementAt(model, MakeInstant(model, parameters, state), fastest.vertex);
   report.set_reason(absl::StrFormat("fastest vibration %.3g rad/s at vertex %d of %s, by %s; damping %.3g 1/s%s",
                                     fastest.spectrum.omega_max, fastest.vertex - body.first_vertex, body.name, stiffest,
-                                    fastest.spectrum.damping_rate, Verdict(integrator, limit)));
+                                    fastest.spectrum.damping_rate, Verdict(integrator, fastest.spectrum, limit)));
   return report;
 }
 

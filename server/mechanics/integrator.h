@@ -3,6 +3,7 @@
 #ifndef PHRENIC_SERVER_MECHANICS_INTEGRATOR_H_
 #define PHRENIC_SERVER_MECHANICS_INTEGRATOR_H_
 
+#include <limits>
 #include <memory>
 #include <string_view>
 #include <vector>
@@ -37,6 +38,7 @@ struct Spectrum {
   double omega_max = 0;           // largest eigenfrequency [rad/s]
   double damping_rate = 0;        // largest damping rate [1/s]
   double least_damping_rate = 0;  // smallest damping rate [1/s]
+  double least_mass = std::numeric_limits<double>::infinity();  // of a vertex that moves [kg]
 };
 
 // Immutable; keeps nothing between calls except through State, so that a run is a function of model, parameters and

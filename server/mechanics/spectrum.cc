@@ -50,6 +50,12 @@ class ScaledStiffness {
 };
 
 // Of the free vertices.
+void FindLeastMass(const Model& model, Spectrum& spectrum) {
+  for (Eigen::Index i = 0; i < model.mass.size(); ++i) {
+    if (model.inverse_mass[i] > 0) spectrum.least_mass = std::min(spectrum.least_mass, model.mass[i]);
+  }
+}
+
 void FindDampingRates(const Model& model, const Instant& at, Spectrum& spectrum) {
   Eigen::VectorXd c(model.rest.cols());
   SumDamping(model, at, c);
@@ -108,6 +114,7 @@ FastestMode FindFastestMode(const Model& model, const v1::Parameters& parameters
   FastestMode fastest;
   if (model.rest.cols() == 0 || model.inverse_mass.maxCoeff() == 0) return fastest;
   const Instant at = MakeInstant(model, parameters, state);
+  FindLeastMass(model, fastest.spectrum);
   FindDampingRates(model, at, fastest.spectrum);
   const Krylov krylov = Lanczos(ScaledStiffness(model, at));
   const auto size = static_cast<Eigen::Index>(krylov.diagonal.size());

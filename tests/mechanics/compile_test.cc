@@ -115,6 +115,24 @@ TEST(Compile, ChoosesAStepBelowTheLargestStableOne) {
   EXPECT_THAT(step.reason(), AllOf(HasSubstr("springs:sheet"), HasSubstr("rad/s")));
 }
 
+// A corner of the sheet has a twelfth of its mass, and each step of the listing takes 0.02 kg.
+TEST(Compile, SaysWhyTheThesisDampingIsStableAtNoStep) {
+  const auto report = [](const std::string& forces, double mass) {
+    std::string body = kBody;
+    body.replace(body.find("mass: 1"), 7, "mass: " + std::to_string(mass));
+    return CompileText(body + forces + "parameters { integrator: INTEGRATOR_THESIS }")->report.stable_step();
+  };
+  const std::string springs = "forces { springs { bodies: 'sheet' stiffness: 100 } }";
+  EXPECT_GT(report(springs, 1).seconds(), 0);
+  const v1::StableStep light = report(springs, 0.17);
+  EXPECT_EQ(light.seconds(), 0);
+  EXPECT_GT(light.chosen_seconds(), 0);
+  EXPECT_THAT(light.reason(), AllOf(HasSubstr("stable at no step"), HasSubstr("lightest vertex 0.0142 kg")));
+  EXPECT_GT(report("", 0.17).seconds(), 0) << "nothing turns round where nothing pulls";
+  EXPECT_EQ(report("", 0.08).seconds(), 0);
+  EXPECT_THAT(report("", 0.08).reason(), HasSubstr("stable at no step"));
+}
+
 TEST(Compile, SameSceneSameHashOtherSceneOther) {
   const std::string springs = "forces { springs { bodies: 'sheet' stiffness: ";
   const auto hash = [&](const char* k) { return CompileText(kBody + springs + k + " } }")->report.scene_hash(); };
