@@ -15,20 +15,6 @@ constexpr double kOvershot = 0.9;  // of the residual along a step, with the oth
 constexpr double kShortest = 0.1;
 constexpr int kShortenings = 6;
 
-// x = position + g v for free vertices; driven ones where they are at that time.
-void Place(const Model& model, const v1::Parameters& parameters, const ImplicitStage& stage, State& state) {
-  for (Eigen::Index i = 0; i < state.x.cols(); ++i) {
-    if (model.inverse_mass[i] > 0) state.x.col(i) = stage.position.col(i) + stage.g * state.v.col(i);
-  }
-  DriveMotions(model, parameters, stage.ahead, state);
-}
-
-// g f - m (v - velocity): what is missing to the stage's equation [N s].
-void Residual(const Model& model, const ImplicitStage& stage, const Instant& at, Points& residual) {
-  SumForces(model, at, residual);
-  residual = stage.g * residual - (at.v - stage.velocity) * model.mass.asDiagonal();
-}
-
 // A step of Newton's method, [m/s] at each vertex. The stiffness leaves out what is negative in it, so that a step goes
 // downhill; where it goes far beyond the bottom it is shortened, by the secant of the residual along it.
 struct NewtonStep {
@@ -56,18 +42,33 @@ struct NewtonStep {
 
 }  // namespace
 
+void PlaceStage(const Model& model, const v1::Parameters& parameters, const ImplicitStage& stage, State& state) {
+  for (Eigen::Index i = 0; i < state.x.cols(); ++i) {
+    if (model.inverse_mass[i] > 0) state.x.col(i) = stage.position.col(i) + stage.g * state.v.col(i);
+  }
+  DriveMotions(model, parameters, stage.ahead, state);
+}
+
+void StageResidual(const Model& model, const ImplicitStage& stage, const Instant& at, Points& residual) {
+  SumForces(model, at, residual);
+  residual = stage.g * residual - (at.v - stage.velocity) * model.mass.asDiagonal();
+}
+
 absl::Status SolveStage(const Model& model, const v1::Parameters& parameters, const ImplicitStage& stage, State& state,
                         Workspace& work) {
-  if (state.x.cols() == 0) return absl::OkStatus();
+  if (state.x.cols() == 0) {
+    DriveMotions(model, parameters, stage.ahead, state);
+    return absl::OkStatus();
+  }
   if (work.system == nullptr) work.system = std::make_unique<ImplicitSystem>(model);
   work.stages.resize(std::max<size_t>(work.stages.size(), 1));
   NewtonStep last{.change = work.stages[0]};
   last.change.setZero(3, state.x.cols());
   const auto moved = [&] { return stage.g * last.change.cwiseAbs().maxCoeff(); };
   for (int step = 0; step < stage.newton_steps; ++step) {
-    Place(model, parameters, stage, state);
+    PlaceStage(model, parameters, stage, state);
     const Instant at = InstantAhead(model, parameters, stage.ahead, state);
-    Residual(model, stage, at, work.force);
+    StageResidual(model, stage, at, work.force);
     if (last.Overshot(work.force)) {
       const double part = last.Shorten(work.force);
       AddToFree(model, 1 - 1 / part, last.change, state.v);
@@ -79,7 +80,7 @@ absl::Status SolveStage(const Model& model, const v1::Parameters& parameters, co
     AddToFree(model, 1, last.change, state.v);
     if (!(moved() > kSettled * model.size)) break;
   }
-  Place(model, parameters, stage, state);
+  PlaceStage(model, parameters, stage, state);
   if (stage.newton_steps > 1 && !(moved() <= kUsable * model.size)) {
     return absl::AbortedError("Newton's method found no end of the step: lower time_step, or set a step_tolerance");
   }

@@ -16,6 +16,11 @@ struct ImplicitStage {
   int newton_steps;        // at most; 1 makes the method linearly implicit
 };
 
+// x = position + g v for free vertices; driven ones and poses where the motions have them at that time.
+void PlaceStage(const Model& model, const v1::Parameters& parameters, const ImplicitStage& stage, State& state);
+// g f - m (v - velocity), with `at` the stage's moment: what is missing to the stage's equation [N s].
+void StageResidual(const Model& model, const ImplicitStage& stage, const Instant& at, Points& residual);
+
 // Solves the stage by Newton's method from the velocities that `state` has, and leaves x' and v' there, driven vertices
 // and poses where the motions have them. ABORTED where Newton's method does not settle within its steps (a single
 // one is not asked to). Does not allocate once `work` has its system.

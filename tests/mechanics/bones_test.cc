@@ -47,6 +47,16 @@ Points Placed(const Model& model, const State& state, const std::string& name) {
   return {};
 }
 
+TEST(Ribs, TurnUnderEveryIntegratorAlsoWhereNothingIsDeformable) {
+  const State usual = RunTo(*CompileText(Thorax()), 2, 0.1);
+  const auto& kinds = *v1::Integrator_descriptor();
+  for (int i = 0; i < kinds.value_count(); ++i) {
+    const auto model = CompileText(Thorax() + "parameters { integrator: " + kinds.value(i)->name() + " }");
+    const State state = RunTo(*model, 2, 0.1);
+    EXPECT_EQ(Placed(*model, state, "rib-3-r"), Placed(*model, usual, "rib-3-r")) << kinds.value(i)->name();
+  }
+}
+
 TEST(Ribs, TurnByTheirEndStateAboutTheirHeads) {
   const auto model = CompileText(Thorax());
   const State state = AtPeak(*model);
