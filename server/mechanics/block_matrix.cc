@@ -71,9 +71,7 @@ Eigen::SparseMatrix<double> BlockMatrix::ToSparse() const {
       for (int c = 0; c < 3; ++c) entries.emplace_back(3 * i + r, 3 * j + c, block(r, c));
     }
   };
-  for (int i = 0; i < vertices(); ++i) {
-    for (int k = first_[i]; k < first_[i + 1]; ++k) add(i, columns_[k], blocks_[k]);
-  }
+  ForEachBlock(add);
   for (const Extra& extra : extra_) add(extra.i, extra.j, extra.block);
   Eigen::SparseMatrix<double> sparse(3L * vertices(), 3L * vertices());
   sparse.setFromTriplets(entries.begin(), entries.end());

@@ -27,6 +27,13 @@ class BlockMatrix final : public StiffnessSink {
   void Times(const ConstPoints& x, MutablePoints y) const;
   // The block on the diagonal of vertex i, outer products left out.
   Eigen::Matrix3d Diagonal(int i) const { return blocks_[diagonal_[i]]; }
+  // Calls f(i, j, block) for every block whose place was known at rest, row by row, columns ascending.
+  template <typename F>
+  void ForEachBlock(F f) const {
+    for (int i = 0; i < vertices(); ++i) {
+      for (int k = first_[i]; k < first_[i + 1]; ++k) f(i, columns_[k], blocks_[k]);
+    }
+  }
   // K as scalars, for factorisations; outer products left out.
   Eigen::SparseMatrix<double> ToSparse() const;
   OuterProducts& outer() { return outer_; }

@@ -18,17 +18,25 @@ void OuterProducts::AddTimes(double factor, const ConstPoints& x, MutablePoints 
   for (size_t k = 0; k < used_; ++k) y += factor * terms_[k].scale * Dot(terms_[k].g, x) * terms_[k].g;
 }
 
-void OuterProducts::Correct(double factor, absl::FunctionRef<void(const Points&, Points&)> inverse, Points& y) {
-  const auto take_off = [&](const Term& term, Points& from) {
-    const double scale = factor * term.scale;
-    from -= scale * Dot(term.g, from) / (1 + scale * Dot(term.g, term.solved)) * term.solved;
-  };
+void OuterProducts::TakeOff(const Term& term, double factor, Points& y) {
+  const double scale = factor * term.scale;
+  y -= scale * Dot(term.g, y) / (1 + scale * Dot(term.g, term.solved)) * term.solved;
+}
+
+void OuterProducts::Prepare(double factor, absl::FunctionRef<void(const Points&, Points&)> inverse) {
   for (size_t k = 0; k < used_; ++k) {
-    Term& term = terms_[k];
-    inverse(term.g, term.solved);
-    for (size_t j = 0; j < k; ++j) take_off(terms_[j], term.solved);
-    take_off(term, y);
+    inverse(terms_[k].g, terms_[k].solved);
+    for (size_t j = 0; j < k; ++j) TakeOff(terms_[j], factor, terms_[k].solved);
   }
+}
+
+void OuterProducts::CorrectPrepared(double factor, Points& y) const {
+  for (size_t k = 0; k < used_; ++k) TakeOff(terms_[k], factor, y);
+}
+
+void OuterProducts::Correct(double factor, absl::FunctionRef<void(const Points&, Points&)> inverse, Points& y) {
+  Prepare(factor, inverse);
+  CorrectPrepared(factor, y);
 }
 
 double OuterProducts::Bound(const Eigen::VectorXd& weights) const {

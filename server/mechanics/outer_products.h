@@ -22,6 +22,9 @@ class OuterProducts {
   // Makes y = B^-1 b into (B + factor S)^-1 b (Sherman and Morrison 1950, term after term); `inverse` sets its second
   // argument to B^-1 times its first.
   void Correct(double factor, absl::FunctionRef<void(const Points&, Points&)> inverse, Points& y);
+  // Its two halves: what depends on B alone, and on b; for many right sides.
+  void Prepare(double factor, absl::FunctionRef<void(const Points&, Points&)> inverse);
+  void CorrectPrepared(double factor, Points& y) const;
   // Largest eigenvalue of W S at most, W the diagonal matrix of `weights`; exact for one term.
   double Bound(const Eigen::VectorXd& weights) const;
 
@@ -30,6 +33,8 @@ class OuterProducts {
     double scale;
     Points g, solved;
   };
+  static void TakeOff(const Term& term, double factor, Points& y);
+
   std::vector<Term> terms_;
   size_t used_ = 0;
 };

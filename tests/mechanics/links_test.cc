@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "absl/strings/str_format.h"
-#include "server/mechanics/constraints/sparse_ldlt.h"
 #include "server/mechanics/residual.h"
+#include "server/mechanics/sparse_ldlt.h"
 #include "tests/compile_text.h"
 
 namespace phrenic {
@@ -136,6 +136,12 @@ TEST(SparseLdlt, SolvesWhatADenseSolverDoesAndLeavesRedundantRowsOut) {
   ldlt.Solve(factors, x);
   EXPECT_LT((matrix * x - right).norm(), 1e-8 * right.norm());
   EXPECT_EQ(x[n - 1], 0);
+  Points three(3, n);
+  for (int axis = 0; axis < 3; ++axis) three.row(axis) = (axis + 1) * right.transpose();
+  ldlt.Solve(factors, three);
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_LT((three.row(axis).transpose() - (axis + 1) * x).norm(), 1e-12 * x.norm()) << "axis " << axis;
+  }
 }
 
 }  // namespace

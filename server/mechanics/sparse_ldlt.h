@@ -2,12 +2,14 @@
 // found once, so that factorising and solving allocate nothing. Where a pivot vanishes, the row depends on the ones
 // before and is left out: the solution found has 0 there (redundant links). Up-looking, as in T. Davis, Direct Methods
 // for Sparse Linear Systems, SIAM 2006, chapter 4.
-#ifndef PHRENIC_SERVER_MECHANICS_CONSTRAINTS_SPARSE_LDLT_H_
-#define PHRENIC_SERVER_MECHANICS_CONSTRAINTS_SPARSE_LDLT_H_
+#ifndef PHRENIC_SERVER_MECHANICS_SPARSE_LDLT_H_
+#define PHRENIC_SERVER_MECHANICS_SPARSE_LDLT_H_
 
 #include <Eigen/Core>
 #include <utility>
 #include <vector>
+
+#include "server/mesh/mesh.h"
 
 namespace phrenic {
 
@@ -31,6 +33,8 @@ class SparseLdlt {
   void Factorise(const Eigen::VectorXd& diagonal, const std::vector<double>& values, Factors& factors) const;
   // x becomes A^-1 x.
   void Solve(const Factors& factors, Eigen::VectorXd& x) const;
+  // The same for three right sides at once, one a row of x: 3 x size.
+  void Solve(const Factors& factors, Points& x) const;
   int size() const { return size_; }
 
  private:
@@ -50,4 +54,4 @@ class SparseLdlt {
 
 }  // namespace phrenic
 
-#endif  // PHRENIC_SERVER_MECHANICS_CONSTRAINTS_SPARSE_LDLT_H_
+#endif  // PHRENIC_SERVER_MECHANICS_SPARSE_LDLT_H_

@@ -1,4 +1,4 @@
-#include "server/mechanics/constraints/sparse_ldlt.h"
+#include "server/mechanics/sparse_ldlt.h"
 
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
@@ -117,6 +117,18 @@ void SparseLdlt::Solve(const Factors& factors, Eigen::VectorXd& x) const {
   for (int j = 0; j < size_; ++j) x[j] *= factors.inverse_pivot[j];
   for (int j = size_ - 1; j >= 0; --j) {
     for (int q = first_in_column_[j]; q < first_in_column_[j + 1]; ++q) x[j] -= factors.lower[q] * x[rows_[q]];
+  }
+}
+
+void SparseLdlt::Solve(const Factors& factors, Points& x) const {
+  for (int j = 0; j < size_; ++j) {
+    const Eigen::Vector3d solved = x.col(j);
+    for (int q = first_in_column_[j]; q < first_in_column_[j + 1]; ++q) x.col(rows_[q]) -= factors.lower[q] * solved;
+  }
+  for (int j = size_ - 1; j >= 0; --j) {
+    Eigen::Vector3d sum = factors.inverse_pivot[j] * x.col(j);
+    for (int q = first_in_column_[j]; q < first_in_column_[j + 1]; ++q) sum -= factors.lower[q] * x.col(rows_[q]);
+    x.col(j) = sum;
   }
 }
 
