@@ -22,6 +22,7 @@
 #include "server/mechanics/integrators/bdf2.h"
 #include "server/mechanics/integrators/explicit_euler.h"
 #include "server/mechanics/integrators/linear_implicit_euler.h"
+#include "server/mechanics/integrators/projective_dynamics.h"
 #include "server/mechanics/integrators/rk4.h"
 #include "server/mechanics/integrators/semi_implicit_euler.h"
 #include "server/mechanics/integrators/static_equilibrium.h"
@@ -131,6 +132,8 @@ const Integrator& FindIntegrator(v1::Integrator kind) {
       return Only<Bdf2>();
     case v1::INTEGRATOR_TR_BDF2:
       return Only<TrBdf2>();
+    case v1::INTEGRATOR_PROJECTIVE_DYNAMICS:
+      return Only<ProjectiveDynamics>();
     case v1::INTEGRATOR_STATIC:
       return Only<StaticEquilibrium>();
     case v1::INTEGRATOR_SEMI_IMPLICIT_EULER:

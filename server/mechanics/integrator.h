@@ -3,6 +3,7 @@
 #ifndef PHRENIC_SERVER_MECHANICS_INTEGRATOR_H_
 #define PHRENIC_SERVER_MECHANICS_INTEGRATOR_H_
 
+#include <array>
 #include <limits>
 #include <memory>
 #include <string_view>
@@ -16,6 +17,8 @@ namespace phrenic {
 
 struct Model;
 class ImplicitSystem;
+class PrefactoredSystem;
+class QuasiNewton;
 
 // Memory that a step needs; made once per session, so that no step allocates (the first one after a change of
 // integrator may). Holds nothing between steps but what can be worked out again.
@@ -31,13 +34,16 @@ struct Workspace {
   std::vector<Points> stages;              // of the integrators that have stages; made when first needed
   std::vector<State> trials;               // of adaptive steps; made when first needed
   std::unique_ptr<ImplicitSystem> system;  // of the implicit integrators; made when first needed
+  // Of projective dynamics; made when first needed.
+  std::array<std::unique_ptr<PrefactoredSystem>, 2> prefactored;
+  std::unique_ptr<QuasiNewton> quasi_newton;
 };
 
 // What limits an explicit step.
 struct Spectrum {
-  double omega_max = 0;           // largest eigenfrequency [rad/s]
-  double damping_rate = 0;        // largest damping rate [1/s]
-  double least_damping_rate = 0;  // smallest damping rate [1/s]
+  double omega_max = 0;                                         // largest eigenfrequency [rad/s]
+  double damping_rate = 0;                                      // largest damping rate [1/s]
+  double least_damping_rate = 0;                                // smallest damping rate [1/s]
   double least_mass = std::numeric_limits<double>::infinity();  // of a vertex that moves [kg]
 };
 

@@ -28,6 +28,7 @@ const IntegratorCase kIntegrators[] = {
     {"BDF2", 2e-3},
     {"TR_BDF2", 1e-2},
     {"STATIC", 1e-2},
+    {"PROJECTIVE_DYNAMICS", 1e-4},
 };
 
 // A free mass of 1 kg on a spring of rest length 1 m from a fixed one; x(0) is `stretch` beyond it.

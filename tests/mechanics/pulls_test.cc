@@ -56,7 +56,7 @@ TEST(Pulls, GoOnInACopyOfTheState) {
 
 TEST(Pulls, ActInEveryIntegrator) {
   for (const char* name : {"SEMI_IMPLICIT_EULER", "VELOCITY_VERLET", "RUNGE_KUTTA_4", "LINEAR_IMPLICIT_EULER", "BDF2",
-                           "TR_BDF2", "EXPLICIT_EULER"}) {
+                           "TR_BDF2", "EXPLICIT_EULER", "PROJECTIVE_DYNAMICS"}) {
     const auto model = CompileText(Retimed(std::string("time_step: 0.01 integrator: INTEGRATOR_") + name));
     State state = model->InitialState();
     Workspace work = model->MakeWorkspace();

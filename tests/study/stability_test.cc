@@ -60,7 +60,8 @@ v1::LimitRow Limit(const std::string& text, v1::Integrator integrator, double fa
 
 const v1::Integrator kExplicit[] = {v1::INTEGRATOR_SEMI_IMPLICIT_EULER, v1::INTEGRATOR_THESIS,
                                     v1::INTEGRATOR_VELOCITY_VERLET, v1::INTEGRATOR_RUNGE_KUTTA_4};
-const v1::Integrator kImplicit[] = {v1::INTEGRATOR_LINEAR_IMPLICIT_EULER, v1::INTEGRATOR_BDF2, v1::INTEGRATOR_TR_BDF2};
+const v1::Integrator kImplicit[] = {v1::INTEGRATOR_LINEAR_IMPLICIT_EULER, v1::INTEGRATOR_BDF2, v1::INTEGRATOR_TR_BDF2,
+                                    v1::INTEGRATOR_PROJECTIVE_DYNAMICS};
 
 TEST(Limits, OfAChainAreThosePredicted) {
   for (const v1::Integrator integrator : kExplicit) {

@@ -28,6 +28,7 @@ const looks: [string, string, string, Look["symbol"]][] = [
   ["linear_implicit_euler", "Linear-implicit Euler", "#a8216b", "hexagon"],
   ["bdf2", "BDF2", "#3d4650", "star"],
   ["tr_bdf2", "TR-BDF2", "#0b6f7d", "cross"],
+  ["projective_dynamics", "Projective dynamics", "#8f4a1e", "wye"],
 ];
 
 const known = new Map(looks.map(([id, name, color, symbol]) => [id, { name, color, symbol }]));
