@@ -48,7 +48,7 @@ void PairBodies(const BodyModel& body, const BodyModel& other, const Selection& 
 }
 
 std::unique_ptr<Force> Join(const Pairs& pairs, const std::string& name, double stiffness, Draft& draft) {
-  std::vector<Springs::Spring> springs;
+  std::vector<Spring> springs;
   springs.reserve(pairs.size());
   for (const auto& [a, b] : pairs) {
     springs.push_back({a, b, stiffness, (draft.model.rest.col(a) - draft.model.rest.col(b)).norm()});
@@ -56,7 +56,7 @@ std::unique_ptr<Force> Join(const Pairs& pairs, const std::string& name, double 
   const auto count = static_cast<std::int64_t>(springs.size());
   draft.model.report.set_springs(draft.model.report.springs() + count);
   draft.ReportElement("force", name, count, "springs", absl::StrFormat("k = %g N/m", stiffness));
-  return std::make_unique<Springs>(name, std::move(springs));
+  return std::make_unique<Springs>(name, std::move(springs), static_cast<int>(draft.model.rest.cols()));
 }
 
 }  // namespace

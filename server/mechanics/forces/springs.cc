@@ -39,34 +39,8 @@ std::string Detail(const v1::Springs& scene) {
                          1e3 * scene.material().thickness());
 }
 
-}  // namespace
-
-absl::StatusOr<std::unique_ptr<Force>> Springs::Make(const v1::Springs& scene, const std::string& given,
-                                                     std::string_view path, Draft& draft) {
-  const std::string name = ElementName(given, "springs", scene.bodies());
-  auto bodies = draft.DeformableBodies(scene.bodies(), absl::StrCat(std::string(path), ".bodies"));
-  if (!bodies.ok()) return bodies.status();
-  std::unique_ptr<Springs> force(new Springs(name));
-  for (const int b : *bodies) {
-    const auto selection = draft.Select(b, scene.region(), scene.exclude_region(), path);
-    if (!selection.ok()) return selection.status();
-    force->AddBody(scene, draft.model.bodies[b], *selection);
-  }
-  if (force->springs_.empty()) {
-    draft.ReportLeftOut(name, "no edge has both its vertices in the region");
-    return nullptr;
-  }
-  if (scene.balanced_at_rest() && scene.rest_length_ratio() != 1) {
-    force->rest_load_ = Points::Zero(3, draft.model.rest.cols());
-    force->AddTension(-1, draft.model.rest, force->rest_load_);
-  }
-  const auto count = static_cast<std::int64_t>(force->springs_.size());
-  draft.model.report.set_springs(draft.model.report.springs() + count);
-  draft.ReportElement("force", name, count, "springs", Detail(scene));
-  return force;
-}
-
-void Springs::AddBody(const v1::Springs& scene, const BodyModel& body, const Selection& selection) {
+void AppendSprings(const v1::Springs& scene, const BodyModel& body, const Selection& selection,
+                   std::vector<Spring>& springs) {
   const Edges edges = scene.has_material() ? TriangleEdges(body.mesh.triangles) : SpringEdges(body.mesh);
   Eigen::VectorXd stiffness = Eigen::VectorXd::Constant(edges.cols(), scene.stiffness());
   if (scene.has_material()) {
@@ -77,30 +51,48 @@ void Springs::AddBody(const v1::Springs& scene, const BodyModel& body, const Sel
     const Eigen::Vector2i ends = edges.col(e);
     if (scene.has_material() ? stiffness[e] == 0 : !selection.Takes(ends)) continue;
     const double length = (body.mesh.vertices.col(ends[0]) - body.mesh.vertices.col(ends[1])).norm();
-    springs_.push_back(
+    springs.push_back(
         {body.first_vertex + ends[0], body.first_vertex + ends[1], stiffness[e], length * scene.rest_length_ratio()});
   }
 }
 
-void Springs::AddTension(double scale, const ConstPoints& x, MutablePoints f) const {
-  const double* const position = x.data();
-  double* const force = f.data();
-  for (const Spring& spring : springs_) {
-    const double* const a = position + 3 * static_cast<std::ptrdiff_t>(spring.a);
-    const double* const b = position + 3 * static_cast<std::ptrdiff_t>(spring.b);
-    const double dx = b[0] - a[0], dy = b[1] - a[1], dz = b[2] - a[2];
-    const double length = std::sqrt(dx * dx + dy * dy + dz * dz);
-    const double pull = length > 0 ? scale * spring.stiffness * (1 - spring.rest_length / length) : 0;
-    double* const fa = force + 3 * static_cast<std::ptrdiff_t>(spring.a);
-    double* const fb = force + 3 * static_cast<std::ptrdiff_t>(spring.b);
-    fa[0] += pull * dx, fa[1] += pull * dy, fa[2] += pull * dz;
-    fb[0] -= pull * dx, fb[1] -= pull * dy, fb[2] -= pull * dz;
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<Force>> Springs::Make(const v1::Springs& scene, const std::string& given,
+                                                     std::string_view path, Draft& draft) {
+  const std::string name = ElementName(given, "springs", scene.bodies());
+  auto bodies = draft.DeformableBodies(scene.bodies(), absl::StrCat(std::string(path), ".bodies"));
+  if (!bodies.ok()) return bodies.status();
+  std::vector<Spring> springs;
+  for (const int b : *bodies) {
+    const auto selection = draft.Select(b, scene.region(), scene.exclude_region(), path);
+    if (!selection.ok()) return selection.status();
+    AppendSprings(scene, draft.model.bodies[b], *selection, springs);
   }
+  if (springs.empty()) {
+    draft.ReportLeftOut(name, "no edge has both its vertices in the region");
+    return nullptr;
+  }
+  const auto count = static_cast<std::int64_t>(springs.size());
+  const Points& rest = draft.model.rest;
+  auto force = std::make_unique<Springs>(name, std::move(springs), static_cast<int>(rest.cols()));
+  if (scene.balanced_at_rest() && scene.rest_length_ratio() != 1) force->Balance(rest);
+  draft.model.report.set_springs(draft.model.report.springs() + count);
+  draft.ReportElement("force", name, count, "springs", Detail(scene));
+  return force;
+}
+
+Springs::Springs(std::string name, std::vector<Spring> springs, int vertices)
+    : Force(std::move(name)), springs_(std::move(springs)), rows_(springs_, vertices) {}
+
+void Springs::Balance(const Points& rest) {
+  rest_load_ = Points::Zero(3, rest.cols());
+  rows_.AddForce(-1, rest, rest_load_);
+  rows_.SetLoad(rest_load_);
 }
 
 void Springs::AddForce(const Instant& at, MutablePoints f) const {
-  AddTension(at.parameters.elasticity(), at.x, f);
-  if (rest_load_.cols() > 0) f += at.parameters.elasticity() * rest_load_;
+  rows_.AddForce(at.parameters.elasticity(), at.x, f);
 }
 
 void Springs::AddStiffness(const Instant& at, StiffnessSink& sink) const {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "server/mechanics/draft.h"
+#include "server/mechanics/forces/spring_rows.h"
 
 namespace phrenic {
 
@@ -18,12 +19,8 @@ class Springs final : public Force {
   static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::Springs& scene, const std::string& name,
                                                      std::string_view path, Draft& draft);
 
-  struct Spring {
-    int a, b;            // simulated vertices
-    double stiffness;    // [N/m]
-    double rest_length;  // [m]
-  };
-  Springs(std::string name, std::vector<Spring> springs) : Force(std::move(name)), springs_(std::move(springs)) {}
+  // Of `vertices` simulated vertices.
+  Springs(std::string name, std::vector<Spring> springs, int vertices);
 
   void AddForce(const Instant& at, MutablePoints f) const override;
   void AddStiffness(const Instant& at, StiffnessSink& sink) const override;
@@ -31,11 +28,10 @@ class Springs final : public Force {
   bool conservative() const override { return true; }
 
  private:
-  explicit Springs(std::string name) : Force(std::move(name)) {}
-  void AddBody(const v1::Springs& scene, const BodyModel& body, const Selection& selection);
-  void AddTension(double scale, const ConstPoints& x, MutablePoints f) const;
+  void Balance(const Points& rest);
 
   std::vector<Spring> springs_;
+  SpringRows rows_;   // the same, and the load: what a step reads
   Points rest_load_;  // 3 x n [N] at elasticity 1; no columns where the rest is not balanced
 };
 

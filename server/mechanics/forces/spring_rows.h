@@ -1,0 +1,39 @@
+// Springs laid out for the machine: each vertex lists its own, so that every spring is worked out twice and nothing is
+// scattered; vertices in an order of locality, sorted by the number of their springs in windows, cut into slices
+// (spring_kernel.h).
+#ifndef PHRENIC_SERVER_MECHANICS_FORCES_SPRING_ROWS_H_
+#define PHRENIC_SERVER_MECHANICS_FORCES_SPRING_ROWS_H_
+
+#include <vector>
+
+#include "server/mechanics/forces/spring_kernel.h"
+#include "server/mesh/mesh.h"
+
+namespace phrenic {
+
+struct Spring {
+  int a, b;            // simulated vertices
+  double stiffness;    // [N/m]
+  double rest_length;  // [m]
+};
+
+// Immutable; any number of threads may call. Working memory is the thread's own: a thread's first call on more vertices
+// than any before allocates.
+class SpringRows {
+ public:
+  SpringRows() = default;
+  // Of `vertices` simulated vertices.
+  SpringRows(const std::vector<Spring>& springs, int vertices);
+
+  // On the vertices that have springs acts a steady force too: `load` is 3 x n [N], and nothing on others.
+  void SetLoad(const Points& load);
+  // f += scale (pulls + load) [N], 3 x n. The sum of a vertex is taken in the springs' order, on every machine.
+  void AddForce(double scale, const ConstPoints& x, MutablePoints f) const;
+
+ private:
+  SpringSlices slices_;
+};
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_SERVER_MECHANICS_FORCES_SPRING_ROWS_H_

@@ -1,0 +1,140 @@
+// The springs' fast layout against the plain loop over them: the same forces but for the order of the sums, and the
+// same bits on every instruction set that this machine has, the portable path among them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+
+#include "server/mechanics/forces/spring_rows.h"
+#include "tests/bench/plain_springs.h"
+
+namespace phrenic {
+namespace {
+
+// Each instruction set in turn: this machine's best is chosen again at the end.
+template <typename Check>
+void OnEveryTarget(const Check& check) {
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    SCOPED_TRACE(hwy::TargetName(target));
+    hwy::SetSupportedTargetsForTest(target);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    check();
+  }
+  hwy::SetSupportedTargetsForTest(0);
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+}
+
+struct Network {
+  Points x;
+  std::vector<Spring> springs;
+
+  Points Plain(double scale) const {
+    Points f = Points::Zero(3, x.cols());
+    AddPlainSprings(springs, scale, x, f);
+    return f;
+  }
+  Points Ours(const SpringRows& rows, double scale) const {
+    Points f = Points::Zero(3, x.cols());
+    rows.AddForce(scale, x, f);
+    return f;
+  }
+  SpringRows Rows() const { return {springs, static_cast<int>(x.cols())}; }
+  // The largest sum over a vertex' springs of k l: what rounding is measured by.
+  double Size() const {
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(x.cols());
+    for (const Spring& spring : springs) {
+      const double pull = spring.stiffness * (x.col(spring.a) - x.col(spring.b)).norm();
+      sum[spring.a] += pull, sum[spring.b] += pull;
+    }
+    return sum.maxCoeff();
+  }
+};
+
+// Springs between vertices drawn from all: rows of very different lengths, some empty, a pair joined twice.
+Network Random(int vertices, int springs) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> place(-0.1, 0.1), stiffness(1, 100), length(0.01, 0.2);
+  std::uniform_int_distribution<int> vertex(0, vertices - 1);
+  Network made{Points::NullaryExpr(3, vertices, [&] { return place(random); }), {}};
+  while (static_cast<int>(made.springs.size()) < springs) {
+    const int a = vertex(random), b = vertex(random) / (1 + vertex(random) % 3);
+    if (a != b) made.springs.push_back({a, b, stiffness(random), length(random)});
+  }
+  if (springs > 0) made.springs.push_back(made.springs.front());
+  return made;
+}
+
+// A closed chain through the vertices in random order.
+Network ScatteredRing(int vertices) {
+  Network made = Random(vertices, 0);
+  made.springs.clear();
+  std::vector<int> order(vertices);
+  std::iota(order.begin(), order.end(), 0);
+  std::shuffle(order.begin(), order.end(), std::mt19937(5));
+  for (int i = 0; i < vertices; ++i) made.springs.push_back({order[i], order[(i + 1) % vertices], 30, 0.05});
+  return made;
+}
+
+TEST(SpringRows, GiveWhatThePlainLoopGives) {
+  for (const int vertices : {2, 3, 7, 8, 9, 64, 1000}) {
+    const Network network = Random(vertices, 4 * vertices);
+    const SpringRows rows = network.Rows();
+    const Points plain = network.Plain(1.7);
+    OnEveryTarget([&] {
+      EXPECT_LT((network.Ours(rows, 1.7) - plain).cwiseAbs().maxCoeff(), 1e-13 * 1.7 * network.Size()) << vertices;
+    });
+  }
+}
+
+TEST(SpringRows, GiveTheSameBitsOnEveryInstructionSet) {
+  const Network network = Random(1000, 4000);
+  const SpringRows rows = network.Rows();
+  const Points here = network.Ours(rows, 0.3);
+  OnEveryTarget([&] { EXPECT_EQ(network.Ours(rows, 0.3), here); });
+}
+
+TEST(SpringRows, ThatAreReorderedGiveTheSame) {
+  const Network network = ScatteredRing(30000);
+  const SpringRows rows = network.Rows();
+  EXPECT_LT((network.Ours(rows, 1) - network.Plain(1)).cwiseAbs().maxCoeff(), 1e-13 * network.Size());
+}
+
+TEST(SpringRows, PullAtNothingWhereEndsCoincide) {
+  Network network = Random(20, 60);
+  network.x.rightCols(10).colwise() = Eigen::Vector3d(0.1, 0.2, 0.3);
+  const SpringRows rows = network.Rows();
+  const Points plain = network.Plain(1);
+  OnEveryTarget([&] { EXPECT_LT((network.Ours(rows, 1) - plain).cwiseAbs().maxCoeff(), 1e-13 * network.Size()); });
+}
+
+TEST(SpringRows, AddTheLoadToTheVerticesThatHaveSprings) {
+  Network network = Random(10, 30);
+  network.x.conservativeResize(3, 11);  // and one that has none
+  network.x.col(10).setZero();
+  SpringRows rows = network.Rows();
+  const Points load = Points::Random(3, 11);
+  const Points before = network.Ours(rows, 2);
+  rows.SetLoad(load);
+  OnEveryTarget([&] {
+    const Points difference = network.Ours(rows, 2) - before;
+    EXPECT_LT((difference - 2 * load).leftCols(10).cwiseAbs().maxCoeff(), 1e-12);
+    EXPECT_EQ(difference.col(10).norm(), 0);
+  });
+}
+
+TEST(SpringRows, ShowWhatIsNoNumber) {
+  Network network = Random(20, 60);
+  network.x(1, network.springs.front().a) = std::numeric_limits<double>::quiet_NaN();
+  const SpringRows rows = network.Rows();
+  OnEveryTarget([&] {
+    const Points f = network.Ours(rows, 1);
+    EXPECT_TRUE(f.col(network.springs.front().a).hasNaN());
+    EXPECT_TRUE(f.col(network.springs.front().b).hasNaN());
+  });
+}
+
+}  // namespace
+}  // namespace phrenic
