@@ -29,7 +29,7 @@ absl::StatusOr<std::unique_ptr<Force>> ActionLine::Make(const v1::ActionLine& sc
   const Eigen::Vector3d along = ToEigen(scene.direction());
   if (along.norm() == 0) return FieldError(absl::StrCat(std::string(path), ".direction"), "must not be zero");
   const Eigen::Vector3d direction = along.normalized();
-  std::unique_ptr<ActionLine> force(new ActionLine(name));
+  std::unique_ptr<ActionLine> force(new ActionLine(name, scene.force() * direction));
   double total = 0;
   for (const int b : *bodies) {
     const BodyModel& body = draft.model.bodies[b];
@@ -37,7 +37,7 @@ absl::StatusOr<std::unique_ptr<Force>> ActionLine::Make(const v1::ActionLine& sc
       const int vertex = body.first_vertex + i;
       const double weight = FallOff(scene, direction, body.mesh.vertices.col(i)) * draft.model.mass[vertex];
       if (weight == 0 || draft.model.inverse_mass[vertex] == 0) continue;
-      force->pulls_.push_back({vertex, weight * direction});
+      force->pulls_.push_back({vertex, weight});
       total += weight;
     }
   }
@@ -45,7 +45,7 @@ absl::StatusOr<std::unique_ptr<Force>> ActionLine::Make(const v1::ActionLine& sc
     draft.ReportLeftOut(name, force->pulls_.empty() ? "no free vertex is within its reach" : "its force is 0");
     return nullptr;
   }
-  for (Pull& pull : force->pulls_) pull.force *= scene.force() / total;
+  for (Pull& pull : force->pulls_) pull.share /= total;
   draft.model.action_lines.push_back({name, bodies->front(), ToEigen(scene.origin()), direction, scene.radius()});
   draft.ReportElement("force", name, static_cast<std::int64_t>(force->pulls_.size()), "vertices",
                       absl::StrFormat("%g N at the peak of a quiet breath", scene.force()));
@@ -55,12 +55,13 @@ absl::StatusOr<std::unique_ptr<Force>> ActionLine::Make(const v1::ActionLine& sc
 void ActionLine::AddForce(const Instant& at, MutablePoints f) const {
   const double signal = Signal(at);
   if (signal == 0) return;
-  for (const Pull& pull : pulls_) f.col(pull.vertex) += signal * pull.force;
+  const Eigen::Vector3d force = signal * force_;
+  for (const Pull& pull : pulls_) f.col(pull.vertex) += pull.share * force;
 }
 
 double ActionLine::Energy(const Instant& at) const {
   double work = 0;
-  for (const Pull& pull : pulls_) work += pull.force.dot(at.x.col(pull.vertex));
+  for (const Pull& pull : pulls_) work += pull.share * force_.dot(at.x.col(pull.vertex));
   return -Signal(at) * work;
 }
 

@@ -23,10 +23,11 @@ class ActionLine final : public Force {
  private:
   struct Pull {
     int vertex;
-    Eigen::Vector3d force;  // at signal 1 and breath force 1 [N]
+    double share;  // of the force; their sum is 1
   };
-  explicit ActionLine(std::string name) : Force(std::move(name)) {}
+  ActionLine(std::string name, const Eigen::Vector3d& force) : Force(std::move(name)), force_(force) {}
 
+  const Eigen::Vector3d force_;  // at signal 1 and breath force 1 [N]
   std::vector<Pull> pulls_;
 };
 
