@@ -26,17 +26,18 @@ void Table::ReportRuns(const std::vector<Run>& runs) {
   }
 }
 
-// Random interleaving hands over the rows in any order; "against" counts in the order of registration, and so do the
-// names' first characters.
+// Random interleaving hands over the rows in any order: their names start with their number.
 void Table::Finalize() {
   std::sort(rows_.begin(), rows_.end(), [](const Row& a, const Row& b) { return a.name < b.name; });
   std::printf("%-52s %12s %12s %8s\n", "", "CPU us", "ns a spring", "ratio");
   for (const Row& row : rows_) {
     const double median = Median(row.microseconds);
     std::printf("%-52s %12.1f %12.2f", row.name.c_str(), median, 1e3 * median / row.springs);
-    if (row.against >= 0) {
-      const Row& other = rows_[static_cast<size_t>(row.against)];
-      std::printf(" %8.2f  of row %d", median / Median(other.microseconds), row.against + 1);
+    const std::string number = std::to_string(row.against + 1);
+    const auto other = std::find_if(rows_.begin(), rows_.end(),
+                                    [&number](const Row& each) { return each.name.starts_with(number + " "); });
+    if (other != rows_.end()) {
+      std::printf(" %8.2f of row %d", median / Median(other->microseconds), row.against + 1);
     }
     std::printf("\n");
   }

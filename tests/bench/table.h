@@ -10,8 +10,8 @@
 
 namespace phrenic::bench {
 
-// Counters of a benchmark: "springs", how many it works out each time; "against", the place among the rows of what it
-// is divided by (the plain loop, the springs alone).
+// Each benchmark has two counters: "springs", how many it works out each time; "against", the row, from 0, that its
+// time is held against, or -1.
 class Table final : public benchmark::BenchmarkReporter {
  public:
   bool ReportContext(const Context&) override { return true; }
