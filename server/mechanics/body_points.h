@@ -8,6 +8,12 @@
 
 namespace phrenic {
 
+// What a pose adds to a point of its rest: displacement [m] or velocity [m/s].
+struct Affine {
+  Eigen::Matrix3d linear;
+  Eigen::Vector3d offset;
+};
+
 // Of one body, by the instant alone, for elements, which do not see the model while they act. Immutable; any number of
 // threads may call.
 class BodyPoints {
@@ -21,6 +27,8 @@ class BodyPoints {
   // Valid while the instant is, and until this thread locates another body. Allocates only while the largest body that
   // this thread has located grows.
   Moving Locate(const Instant& at) const;
+  // The same for x alone, at half the price.
+  ConstPoints Positions(const Instant& at) const;
 
   const Points& rest() const { return rest_; }  // [m]
   // Place of its first vertex among the simulated ones; -1 where it is not simulated.
@@ -28,8 +36,9 @@ class BodyPoints {
 
  private:
   using Buffer = Eigen::Map<Points>;
-  void Carry(const Pose& pose, Buffer& x, Buffer& v) const;
-  void Ride(const Instant& at, Buffer& x, Buffer& v) const;
+  void Carry(const Affine& affine, Buffer& y) const;
+  template <typename OfCarrier>
+  void Ride(const std::vector<Affine>& by_pose, const OfCarrier& of_carrier, Buffer& y) const;
 
   Points rest_;
   int first_vertex_ = -1;

@@ -96,7 +96,7 @@ double Chamber::VolumeAtRest() const {
 double Chamber::Volume(const Instant& at) const {
   double sum = 0;
   for (const Part& part : parts_) {
-    sum += part.side * SumVolumes(part.points.Locate(at).x, part.triangles, point_, normal_);
+    sum += part.side * SumVolumes(part.points.Positions(at), part.triangles, point_, normal_);
   }
   return sum;
 }

@@ -19,7 +19,7 @@ class HighestMeasure final : public Measure {
         direction_(direction),
         zero_(zero) {}
 
-  double Value(const Instant& at) const override { return Furthest(body_.Locate(at).x) - zero_; }
+  double Value(const Instant& at) const override { return Furthest(body_.Positions(at)) - zero_; }
   // Counted from rest instead.
   void CountFromRest() { zero_ = Furthest(body_.rest()); }
 
