@@ -21,15 +21,12 @@ absl::Status TooLarge(const std::string& name) {
       absl::StrCat(name, ":1: the file is larger than 1 GiB, the most that is read; make the surface coarser"));
 }
 
-absl::StatusOr<Format> FormatOf(const std::string& name) {
-  std::string endings;
+// The format by the name's ending; null where there is none such.
+const Format* Find(const std::string& name) {
   for (const Format& format : Formats()) {
-    const std::string ending(format.ending);
-    if (absl::EndsWith(absl::AsciiStrToLower(name), ending)) return format;
-    absl::StrAppend(&endings, endings.empty() ? "" : ", ", ending);
+    if (absl::EndsWith(absl::AsciiStrToLower(name), std::string(format.ending))) return &format;
   }
-  return absl::InvalidArgumentError(
-      absl::StrCat(name, ":1: the name's ending tells no known format; there are ", endings));
+  return nullptr;
 }
 
 absl::Status CheckReadable(const std::string& path) {
@@ -43,14 +40,41 @@ absl::Status CheckReadable(const std::string& path) {
   return absl::OkStatus();
 }
 
+// Half a turn about the vertical axis, without negative zeros.
+void TurnFromRas(Points& vertices) { vertices.topRows<2>() = (0.0 - vertices.topRows<2>().array()).matrix(); }
+
 }  // namespace
 
 const std::vector<Format>& Formats() {
   static const std::vector<Format> formats = {
-      {".obj", &ParseObj},
-      {".msh", &ParseMsh},
+      {".obj", &ParseObj, &WriteObj},
+      {".msh", &ParseMsh, &WriteMsh},
+      {".stl", &ParseStl, &WriteStl},
+      {".ply", &ParsePly, &WritePly},
   };
   return formats;
+}
+
+std::string Endings() {
+  std::string endings;
+  for (const Format& format : Formats()) {
+    absl::StrAppend(&endings, endings.empty() ? "" : ", ", std::string(format.ending));
+  }
+  return endings;
+}
+
+std::string WrittenEndings() {
+  std::string endings;
+  for (const Format& format : Formats()) {
+    if (format.write != nullptr) absl::StrAppend(&endings, endings.empty() ? "" : ", ", std::string(format.ending));
+  }
+  return endings;
+}
+
+void Collected::AddPolygon(const std::vector<int>& corners) {
+  for (std::size_t i = 2; i < corners.size(); ++i) {
+    triangles.insert(triangles.end(), {corners[0], corners[i - 1], corners[i]});
+  }
 }
 
 Mesh Collected::ToMesh() const {
@@ -63,28 +87,69 @@ Mesh Collected::ToMesh() const {
   return mesh;
 }
 
-absl::StatusOr<Mesh> Parse(std::string_view name, std::string_view bytes, double unit) {
-  const std::string file(name);
-  const auto format = FormatOf(file);
-  if (!format.ok()) return format.status();
-  if (bytes.size() > kMaxBytes) return TooLarge(file);
-  absl::StatusOr<Mesh> mesh = format->parse(name, bytes);
-  if (!mesh.ok()) return mesh;
-  mesh->vertices *= unit;
-  if (absl::Status status = Validate(*mesh); !status.ok()) {
-    return absl::InvalidArgumentError(absl::StrCat(file, ":1: ", status.message()));
-  }
-  return mesh;
+Frame FrameIn(std::string_view text, Frame otherwise) {
+  if (text.find("SPACE=RAS") != std::string_view::npos) return Frame::kRas;
+  if (text.find("SPACE=LPS") != std::string_view::npos) return Frame::kLps;
+  return otherwise;
 }
 
-absl::StatusOr<Mesh> ReadFile(const std::string& path, double unit) {
+absl::StatusOr<Surface> ParseSurface(std::string_view name, std::string_view bytes, double unit) {
+  const std::string file(name);
+  const Format* format = Find(file);
+  if (format == nullptr) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(file, ":1: the name's ending tells no known format; there are ", Endings()));
+  }
+  if (bytes.size() > kMaxBytes) return TooLarge(file);
+  absl::StatusOr<Surface> surface = format->parse(name, bytes);
+  if (!surface.ok()) return surface;
+  surface->mesh.vertices *= unit;
+  if (surface->frame == Frame::kRas) TurnFromRas(surface->mesh.vertices);
+  if (absl::Status status = Validate(surface->mesh); !status.ok()) {
+    return absl::InvalidArgumentError(absl::StrCat(file, ":1: ", status.message()));
+  }
+  return surface;
+}
+
+absl::StatusOr<Mesh> Parse(std::string_view name, std::string_view bytes, double unit) {
+  absl::StatusOr<Surface> surface = ParseSurface(name, bytes, unit);
+  if (!surface.ok()) return surface.status();
+  return std::move(surface->mesh);
+}
+
+absl::StatusOr<Surface> ReadSurface(const std::string& path, double unit) {
   if (absl::Status status = CheckReadable(path); !status.ok()) return status;
   std::ifstream file(path, std::ios::binary);
   std::ostringstream bytes;
   if (!file || (!(bytes << file.rdbuf()) && file.peek() != std::ifstream::traits_type::eof())) {
     return absl::PermissionDeniedError(absl::StrCat("\"", path, "\" cannot be read; check who may read it"));
   }
-  return Parse(path, std::move(bytes).str(), unit);
+  return ParseSurface(path, std::move(bytes).str(), unit);
+}
+
+absl::StatusOr<Mesh> ReadFile(const std::string& path, double unit) {
+  absl::StatusOr<Surface> surface = ReadSurface(path, unit);
+  if (!surface.ok()) return surface.status();
+  return std::move(surface->mesh);
+}
+
+absl::StatusOr<std::string> Write(std::string_view name, const Mesh& mesh, double unit) {
+  const std::string file(name);
+  const Format* format = Find(file);
+  if (format == nullptr || format->write == nullptr) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(file, ": the name's ending tells no format that is written; there are ", WrittenEndings()));
+  }
+  Mesh scaled = mesh;
+  scaled.vertices /= unit;
+  absl::Status status = Validate(scaled);
+  if (status.ok() && scaled.triangles.cols() == 0 && scaled.edges.cols() == 0) {
+    status = absl::InvalidArgumentError("the mesh has neither triangles nor edges to write");
+  }
+  if (!status.ok()) return absl::InvalidArgumentError(absl::StrCat(file, ": ", status.message()));
+  absl::StatusOr<std::string> bytes = format->write(scaled);
+  if (bytes.ok()) return bytes;
+  return absl::InvalidArgumentError(absl::StrCat(file, ": ", bytes.status().message()));
 }
 
 }  // namespace phrenic::meshio

@@ -1,43 +1,46 @@
-// Gmsh's MSH format 2.2 in text (Gmsh reference manual, "MSH file format version 2 (Legacy)").
+// Gmsh's MSH format 2.2 in text (Gmsh reference manual, "MSH file format version 2 (Legacy)"), and which of the other
+// versions a file has.
 #include <algorithm>
 #include <cstdint>
-#include <map>
-#include <unordered_map>
 
 #include "absl/strings/str_cat.h"
 #include "server/meshio/formats.h"
+#include "server/meshio/msh_surface.h"
 #include "server/meshio/text.h"
 
 namespace phrenic::meshio {
 namespace {
 
-constexpr std::int64_t kLine = 1;
-constexpr std::int64_t kTriangle = 2;
-constexpr std::int64_t kQuadrilateral = 3;
 constexpr std::int64_t kMaxTags = 1000;
-constexpr char kRemedy[] = "convert it with: gmsh FILE -save -format msh22 -o NEW.msh";
+constexpr double kBlocks = 4.1;  // the version
 
 class MshParser {
  public:
-  MshParser(std::string_view name, std::string_view bytes) : reader_(name, bytes) {}
+  MshParser(std::string_view name, std::string_view bytes) : name_(name), bytes_(bytes), reader_(name, bytes) {}
 
-  absl::StatusOr<Mesh> Parse() {
+  absl::StatusOr<Surface> Parse() {
     while (reader_.NextFilledLine()) {
       if (absl::Status status = ReadSection(std::string(reader_.Word())); !status.ok()) return status;
+      if (version_.binary || version_.version == kBlocks) {
+        return ParseMshBlocks(name_, bytes_, reader_.next_line(), version_);
+      }
     }
-    if (absl::Status status = CheckWhole(); !status.ok()) return status;
-    Mesh mesh = found_.ToMesh();
-    AddRegions(mesh);
-    return mesh;
+    if (version_.version == 0) return reader_.Error("the file has no $MeshFormat; is this a Gmsh file?");
+    if (absl::Status status = found_.Check(); !status.ok()) return Here(status);
+    return Surface{found_.ToMesh(), Frame::kUnsaid};
   }
 
  private:
+  absl::Status Here(const absl::Status& status) const {
+    return status.ok() ? status : reader_.Error(std::string(status.message()));
+  }
+
   absl::Status ReadSection(const std::string& section) {
     if (section.size() < 2 || section[0] != '$') {
       return reader_.Error(absl::StrCat("a section (\"$Nodes\") is expected, not ", Quoted(section)));
     }
     if (section == "$MeshFormat") return ReadFormat();
-    if (!format_read_) return reader_.Error("the file does not start with $MeshFormat; is this a Gmsh file?");
+    if (version_.version == 0) return reader_.Error("the file does not start with $MeshFormat; is this a Gmsh file?");
     if (section == "$PhysicalNames") return ReadList("$EndPhysicalNames", &MshParser::ReadPhysicalName);
     if (section == "$Nodes") return ReadList("$EndNodes", &MshParser::ReadNode);
     if (section == "$Elements") return ReadList("$EndElements", &MshParser::ReadElement);
@@ -45,17 +48,22 @@ class MshParser {
   }
 
   absl::Status ReadFormat() {
-    double version = 0;
-    std::int64_t binary = 0;
-    if (!reader_.NextFilledLine() || !reader_.Number(version) || !reader_.Integer(binary)) {
-      return reader_.Error("$MeshFormat is not followed by \"2.2 0 8\"");
+    if (version_.version != 0) return reader_.Error("there is a second $MeshFormat");
+    MshVersion version;
+    std::int64_t binary = 0, size = 0;
+    if (!reader_.NextFilledLine() || !reader_.Number(version.version) || !reader_.Integer(binary)) {
+      return reader_.Error("$MeshFormat is not followed by \"2.2 0 8\" or \"4.1 0 8\"");
     }
-    if (version < 2 || version >= 3) {
-      return reader_.Error(absl::StrCat("MSH version ", version, " is not read, only 2.2 in text; ", kRemedy));
+    if ((version.version < 2 || version.version >= 3) && version.version != kBlocks) {
+      return reader_.Error(absl::StrCat("MSH version ", version.version, " is not read, only 2.0 to 2.2 and 4.1; ",
+                                        "convert it with: gmsh FILE -save -format msh22 -o NEW.msh"));
     }
-    if (binary != 0) return reader_.Error(absl::StrCat("binary MSH is not read, only 2.2 in text; ", kRemedy));
-    format_read_ = true;
-    return PassOver("$EndMeshFormat");
+    version.binary = binary != 0;
+    if (version.binary && (!reader_.Integer(size) || size != 8)) {
+      return reader_.Error("the file's numbers are not of 8 bytes; convert it with: gmsh FILE -save -o NEW.msh");
+    }
+    version_ = version;
+    return version_.binary || version_.version == kBlocks ? absl::OkStatus() : PassOver("$EndMeshFormat");
   }
 
   absl::Status PassOver(const std::string& end) {
@@ -81,39 +89,19 @@ class MshParser {
     return reader_.Error(absl::StrCat("the file ends before ", end, ", after ", rows, " of ", claimed, " rows"));
   }
 
-  absl::Status ReadPhysicalName() {
-    std::int64_t dimension = 0;
-    std::int64_t number = 0;
-    if (!reader_.Integer(dimension) || !reader_.Integer(number)) {
-      return reader_.Error("a physical name is written: dimension number \"name\"");
-    }
-    std::string_view name = reader_.Rest();
-    if (name.size() < 3 || name.front() != '"' || name.back() != '"') {
-      return reader_.Error("the physical name is not in double quotes");
-    }
-    if (dimension == 2) surface_names_[number] = std::string(name.substr(1, name.size() - 2));
-    return absl::OkStatus();
-  }
+  absl::Status ReadPhysicalName() { return Here(found_.AddPhysicalName(reader_.Rest())); }
 
   absl::Status ReadNode() {
     std::int64_t number = 0;
-    double x = 0;
-    double y = 0;
-    double z = 0;
+    double x = 0, y = 0, z = 0;
     if (!reader_.Integer(number) || !reader_.Number(x) || !reader_.Number(y) || !reader_.Number(z)) {
       return reader_.Error("a node is written: number x y z, all of them finite");
     }
-    if (!index_of_.emplace(number, found_.vertices()).second) {
-      return reader_.Error(absl::StrCat("node ", number, " is there twice"));
-    }
-    found_.coordinates.insert(found_.coordinates.end(), {x, y, z});
-    return absl::OkStatus();
+    return Here(found_.AddNode(number, x, y, z));
   }
 
   absl::Status ReadElement() {
-    std::int64_t number = 0;
-    std::int64_t type = 0;
-    std::int64_t tags = 0;
+    std::int64_t number = 0, type = 0, tags = 0;
     if (!reader_.Integer(number) || !reader_.Integer(type) || !reader_.Integer(tags) || tags < 0 || tags > kMaxTags) {
       return reader_.Error("an element is written: number type count-of-tags tags... nodes...");
     }
@@ -122,68 +110,88 @@ class MshParser {
       if (!reader_.Integer(value)) return reader_.Error("a tag of the element is missing or not a whole number");
       if (tag == 0) physical = value;
     }
-    if (type == kLine) return ReadCorners(2, physical);
-    if (type == kTriangle) return ReadCorners(3, physical);
-    if (type == kQuadrilateral) return ReadCorners(4, physical);
-    ++passed_over_;
-    return absl::OkStatus();
-  }
-
-  absl::Status ReadCorners(int count, std::int64_t physical) {
-    int corners[4] = {};
-    for (int corner = 0; corner < count; ++corner) {
-      std::int64_t node = 0;
-      if (!reader_.Integer(node)) return reader_.Error(absl::StrCat("the element needs ", count, " node numbers"));
-      const auto found = index_of_.find(node);
-      if (found == index_of_.end()) {
-        return reader_.Error(absl::StrCat("the element names node ", node, ", which is not among the ",
-                                          found_.vertices(), " of $Nodes before it"));
+    nodes_.resize(MshIsRead(type) ? static_cast<std::size_t>(MshNodesOf(type)) : 0);
+    for (std::int64_t& node : nodes_) {
+      if (!reader_.Integer(node)) {
+        return reader_.Error(absl::StrCat("the element needs ", nodes_.size(), " node numbers"));
       }
-      corners[corner] = found->second;
     }
-    if (count == 2) found_.lines.insert(found_.lines.end(), corners, corners + 2);
-    for (int i = 2; i < count; ++i) {
-      found_.triangles.insert(found_.triangles.end(), {corners[0], corners[i - 1], corners[i]});
-      physical_of_triangle_.push_back(physical);
-    }
-    return absl::OkStatus();
+    return Here(found_.AddElement(type, nodes_, physical));
   }
 
-  absl::Status CheckWhole() const {
-    if (!format_read_) return reader_.Error("the file has no $MeshFormat; is this a Gmsh file?");
-    if (found_.coordinates.empty()) return reader_.Error("the file has no nodes");
-    if (!found_.triangles.empty() || !found_.lines.empty()) return absl::OkStatus();
-    return reader_.Error(absl::StrCat("the file has no triangles, quadrilaterals or lines of first order",
-                                      passed_over_ > 0 ? ", only " : "",
-                                      passed_over_ > 0 ? absl::StrCat(passed_over_, " elements of other types") : "",
-                                      "; make the surface with: gmsh FILE -2 -order 1 -format msh22 -o NEW.msh"));
-  }
-
-  void AddRegions(Mesh& mesh) const {
-    for (std::size_t triangle = 0; triangle < physical_of_triangle_.size(); ++triangle) {
-      const auto name = surface_names_.find(physical_of_triangle_[triangle]);
-      if (name == surface_names_.end()) continue;
-      std::vector<int>& region = mesh.regions[name->second];
-      const auto corners = found_.triangles.begin() + static_cast<std::ptrdiff_t>(3 * triangle);
-      region.insert(region.end(), corners, corners + 3);
-    }
-    for (auto& [name, region] : mesh.regions) {
-      std::sort(region.begin(), region.end());
-      region.erase(std::unique(region.begin(), region.end()), region.end());
-    }
-  }
-
+  std::string_view name_, bytes_;
   TextReader reader_;
-  Collected found_;
-  bool format_read_ = false;
-  std::int64_t passed_over_ = 0;
-  std::unordered_map<std::int64_t, int> index_of_;  // node number -> vertex
-  std::map<std::int64_t, std::string> surface_names_;
-  std::vector<std::int64_t> physical_of_triangle_;
+  MshVersion version_;  // 0 until $MeshFormat is read
+  MshSurface found_;
+  std::vector<std::int64_t> nodes_;
 };
+
+// The region that each triangle is written with: its number from 1, by name; 0 for none.
+std::vector<int> RegionOfTriangles(const Mesh& mesh) {
+  std::vector<int> region_of(static_cast<std::size_t>(mesh.triangles.cols()), 0);
+  int number = 0;
+  for (const auto& [name, region] : mesh.regions) {
+    ++number;
+    std::vector<bool> inside(static_cast<std::size_t>(mesh.vertices.cols()), false);
+    for (const int vertex : region) inside[static_cast<std::size_t>(vertex)] = true;
+    for (std::size_t t = 0; t < region_of.size(); ++t) {
+      const auto corners = mesh.triangles.col(static_cast<Eigen::Index>(t));
+      const bool whole = inside[corners[0]] && inside[corners[1]] && inside[corners[2]];
+      if (whole && region_of[t] == 0) region_of[t] = number;
+    }
+  }
+  return region_of;
+}
+
+void AppendPhysicalNames(std::string& text, const Mesh& mesh) {
+  if (mesh.regions.empty()) return;
+  absl::StrAppend(&text, "$PhysicalNames\n", mesh.regions.size(), "\n");
+  int number = 0;
+  for (const auto& [name, region] : mesh.regions) {
+    std::string quotable = name;
+    const auto breaks = [](char c) { return c == '"' || static_cast<unsigned char>(c) < ' '; };
+    std::replace_if(quotable.begin(), quotable.end(), breaks, '_');
+    absl::StrAppend(&text, "2 ", ++number, " \"", quotable, "\"\n");
+  }
+  text += "$EndPhysicalNames\n";
+}
 
 }  // namespace
 
-absl::StatusOr<Mesh> ParseMsh(std::string_view name, std::string_view bytes) { return MshParser(name, bytes).Parse(); }
+bool MshHasRows(std::string_view bytes) {
+  TextReader reader("", bytes);
+  MshVersion version;
+  std::int64_t binary = 0;
+  return reader.NextFilledLine() && reader.NextFilledLine() && reader.Number(version.version) &&
+         reader.Integer(binary) && binary == 0 && version.version < 3;
+}
+
+absl::StatusOr<Surface> ParseMsh(std::string_view name, std::string_view bytes) {
+  return MshParser(name, bytes).Parse();
+}
+
+absl::StatusOr<std::string> WriteMsh(const Mesh& mesh) {
+  std::string text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";
+  AppendPhysicalNames(text, mesh);
+  absl::StrAppend(&text, "$Nodes\n", mesh.vertices.cols(), "\n");
+  for (Eigen::Index i = 0; i < mesh.vertices.cols(); ++i) {
+    absl::StrAppend(&text, i + 1);
+    for (const double coordinate : mesh.vertices.col(i)) AppendNumber(text, coordinate);
+    text += "\n";
+  }
+  const bool network = mesh.triangles.cols() == 0;
+  absl::StrAppend(&text, "$EndNodes\n$Elements\n", network ? mesh.edges.cols() : mesh.triangles.cols(), "\n");
+  const std::vector<int> region_of = RegionOfTriangles(mesh);
+  for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
+    const int region = region_of[static_cast<std::size_t>(t)];
+    absl::StrAppend(&text, t + 1, " ", kMshTriangle, " 2 ", region, " ", region + 1);
+    for (const int corner : mesh.triangles.col(t)) absl::StrAppend(&text, " ", corner + 1);
+    text += "\n";
+  }
+  for (Eigen::Index e = 0; network && e < mesh.edges.cols(); ++e) {
+    absl::StrAppend(&text, e + 1, " ", kMshLine, " 2 0 1 ", mesh.edges(0, e) + 1, " ", mesh.edges(1, e) + 1, "\n");
+  }
+  return text + "$EndElements\n";
+}
 
 }  // namespace phrenic::meshio

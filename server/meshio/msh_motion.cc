@@ -9,6 +9,7 @@
 #include "absl/strings/str_cat.h"
 #include "server/meshio/meshio.h"
 #include "server/meshio/motion.h"
+#include "server/meshio/msh_surface.h"
 #include "server/meshio/text.h"
 
 namespace phrenic::meshio {
@@ -138,6 +139,12 @@ absl::StatusOr<Motion> ParseMotion(std::string_view name, std::string_view bytes
   if (!mesh.ok()) return mesh.status();
   Motion motion{*std::move(mesh), {}, {}};
   if (!absl::EndsWith(absl::AsciiStrToLower(std::string(name)), ".msh")) return motion;
+  if (!MshHasRows(bytes)) {
+    if (bytes.find(kView) == std::string_view::npos) return motion;
+    return absl::InvalidArgumentError(
+        absl::StrCat(std::string(name), ":1: the steps of the view ", kView,
+                     " are read from MSH 2.2 in text alone; save the views in that form"));
+  }
   if (absl::Status status = StepReader(name, bytes, unit, motion).Read(); !status.ok()) return status;
   return motion;
 }

@@ -19,19 +19,23 @@ class ObjParser {
  public:
   ObjParser(std::string_view name, std::string_view bytes) : reader_(name, bytes) {}
 
-  absl::StatusOr<Mesh> Parse() {
+  absl::StatusOr<Surface> Parse() {
     while (reader_.NextLine()) {
       // A comment may end in a path's "\\" without going on.
       if (reader_.Rest().substr(0, 1) != "#") reader_.JoinContinuedLine();
       if (absl::Status status = ReadStatement(reader_.Word()); !status.ok()) return status;
     }
     if (absl::Status status = CheckWhole(); !status.ok()) return status;
-    return found_.ToMesh();
+    return Surface{found_.ToMesh(), frame_};
   }
 
  private:
   absl::Status ReadStatement(std::string_view keyword) {
-    if (keyword.empty() || keyword[0] == '#') return absl::OkStatus();
+    if (keyword.empty()) return absl::OkStatus();
+    if (keyword[0] == '#') {
+      frame_ = FrameIn(keyword, FrameIn(reader_.Rest(), frame_));
+      return absl::OkStatus();
+    }
     if (keyword == "v") return ReadVertex();
     if (keyword == "f") return ReadFace();
     if (keyword == "l") return ReadLine();
@@ -57,9 +61,7 @@ class ObjParser {
     if (corners_.size() < 3) {
       return reader_.Error(absl::StrCat("a face needs at least 3 vertices, this one has ", corners_.size()));
     }
-    for (std::size_t i = 2; i < corners_.size(); ++i) {
-      found_.triangles.insert(found_.triangles.end(), {corners_[0], corners_[i - 1], corners_[i]});
-    }
+    found_.AddPolygon(corners_);
     return absl::OkStatus();
   }
 
@@ -108,6 +110,7 @@ class ObjParser {
 
   TextReader reader_;
   Collected found_;
+  Frame frame_ = Frame::kUnsaid;
   std::vector<int> corners_;
   // A face may stand before its vertices, so that the indices are checked at the end.
   int largest_index_ = -1;
@@ -116,6 +119,23 @@ class ObjParser {
 
 }  // namespace
 
-absl::StatusOr<Mesh> ParseObj(std::string_view name, std::string_view bytes) { return ObjParser(name, bytes).Parse(); }
+absl::StatusOr<Surface> ParseObj(std::string_view name, std::string_view bytes) {
+  return ObjParser(name, bytes).Parse();
+}
+
+absl::StatusOr<std::string> WriteObj(const Mesh& mesh) {
+  std::string text = "# Phrenic. SPACE=LPS\n";
+  for (const auto vertex : mesh.vertices.colwise()) {
+    text += "v";
+    for (const double coordinate : vertex) AppendNumber(text, coordinate);
+    text += "\n";
+  }
+  for (const auto triangle : mesh.triangles.colwise()) {
+    absl::StrAppend(&text, "f ", triangle[0] + 1, " ", triangle[1] + 1, " ", triangle[2] + 1, "\n");
+  }
+  if (mesh.triangles.cols() > 0) return text;
+  for (const auto edge : mesh.edges.colwise()) absl::StrAppend(&text, "l ", edge[0] + 1, " ", edge[1] + 1, "\n");
+  return text;
+}
 
 }  // namespace phrenic::meshio

@@ -72,7 +72,7 @@ std::string_view TextReader::Word() {
   return bytes_.substr(first, at_ - first);
 }
 
-bool TextReader::Number(double& number) { return ParseWhole(Word(), number) && std::isfinite(number); }
+bool TextReader::Number(double& number) { return ParseNumber(Word(), number); }
 
 bool TextReader::Integer(std::int64_t& integer) { return ParseWhole(Word(), integer); }
 
@@ -89,5 +89,14 @@ std::string Quoted(std::string_view word) {
 }
 
 bool ParseInteger(std::string_view word, std::int64_t& integer) { return ParseWhole(word, integer); }
+
+bool ParseNumber(std::string_view word, double& number) { return ParseWhole(word, number) && std::isfinite(number); }
+
+void AppendNumber(std::string& text, double number) {
+  char digits[32];
+  const auto end = std::to_chars(digits, digits + sizeof(digits), number).ptr;
+  text += ' ';
+  text.append(digits, end);
+}
 
 }  // namespace phrenic::meshio

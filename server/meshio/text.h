@@ -31,6 +31,8 @@ class TextReader {
   bool Number(double& number);
   bool Integer(std::int64_t& integer);
 
+  // Where the line after the present one starts [bytes from the first].
+  std::size_t next_line() const { return next_; }
   // Number of the present line, from 1.
   int line() const { return line_; }
   // INVALID_ARGUMENT "name:line: message".
@@ -49,8 +51,12 @@ class TextReader {
 // The word as it may stand in an error message: quoted, short and printable.
 std::string Quoted(std::string_view word);
 
-// Takes a whole word as an integer.
+// Takes a whole word as an integer, or as a finite number.
 bool ParseInteger(std::string_view word, std::int64_t& integer);
+bool ParseNumber(std::string_view word, double& number);
+
+// Adds a blank and the shortest text that reads back as the same number.
+void AppendNumber(std::string& text, double number);
 
 }  // namespace phrenic::meshio
 

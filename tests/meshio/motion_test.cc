@@ -47,6 +47,18 @@ TEST(Motion, AFileWithoutDisplacementsStandsStill) {
   EXPECT_FALSE(obj->moves());
 }
 
+TEST(Motion, StepsInOtherVersionsAreRefusedRatherThanPassedOver) {
+  const std::string still =
+      "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 3 1 3\n2 1 0 3\n1\n2\n3\n0 0 0\n1 0 0\n0 1 0\n$EndNodes\n"
+      "$Elements\n1 1 1 1\n2 1 2 1\n1 1 2 3\n$EndElements\n";
+  const auto motion = ParseMotion("a.msh", still, 1);
+  ASSERT_TRUE(motion.ok()) << motion.status();
+  EXPECT_FALSE(motion->moves());
+  const auto moving = ParseMotion("a.msh", still + Step("0", 0), 1);
+  EXPECT_EQ(moving.status().code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_THAT(std::string(moving.status().message()), HasSubstr("MSH 2.2 in text"));
+}
+
 struct Bad {
   const char* from;
   const char* to;

@@ -143,8 +143,8 @@ TEST(Files, MissingFilesAndUnknownEndingsAreNamed) {
   EXPECT_EQ(ReadFile("/nowhere/lung.obj", 1.0).status().code(), absl::StatusCode::kNotFound);
   EXPECT_THAT(std::string(ReadFile("/nowhere/lung.obj", 1.0).status().message()), HasSubstr("/nowhere/lung.obj"));
   EXPECT_EQ(ReadFile(PHRENIC_SOURCE_DIR, 1.0).status().code(), absl::StatusCode::kInvalidArgument);
-  const auto unknown = Parse("lung.stl", "solid", 1.0);
-  EXPECT_THAT(std::string(unknown.status().message()), HasSubstr(".obj, .msh"));
+  const auto unknown = Parse("lung.stp", "solid", 1.0);
+  EXPECT_THAT(std::string(unknown.status().message()), HasSubstr(Endings()));
 }
 
 // The meshes of the patient scene; the counts are those of their makers.

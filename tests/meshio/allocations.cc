@@ -1,0 +1,35 @@
+#include "tests/meshio/allocations.h"
+
+#include <atomic>
+
+namespace {
+
+std::atomic<std::size_t> largest = 0;
+
+[[maybe_unused]] void Note(std::size_t size) {
+  if (size > largest) largest = size;
+}
+
+}  // namespace
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+// glibc's own names; Eigen and operator new come by here.
+extern "C" void* __libc_malloc(std::size_t size);
+extern "C" void* __libc_realloc(void* memory, std::size_t size);
+
+extern "C" void* malloc(std::size_t size) {
+  Note(size);
+  return __libc_malloc(size);
+}
+
+extern "C" void* realloc(void* memory, std::size_t size) {
+  Note(size);
+  return __libc_realloc(memory, size);
+}
+#endif
+
+namespace phrenic {
+
+std::size_t TakeLargestAllocation() { return largest.exchange(0); }
+
+}  // namespace phrenic

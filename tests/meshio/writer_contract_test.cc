@@ -1,0 +1,144 @@
+// What every writer owes: what is written reads back, and from any format into any other. A format joins by its row in
+// the catalogue, and by a line here where it keeps less than the mesh.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "server/mesh/ellipsoid.h"
+#include "server/meshio/formats.h"
+
+namespace phrenic::meshio {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+std::vector<std::string> Written() {
+  std::vector<std::string> endings;
+  for (const Format& format : Formats()) {
+    if (format.write != nullptr) endings.emplace_back(format.ending);
+  }
+  return endings;
+}
+
+// Those that keep every digit of a float64, the vertices' order, unused vertices, and networks of edges.
+bool KeepsAll(const std::string& ending) { return ending != ".stl"; }
+
+// A closed surface of coordinates with all the digits there are; its vertices stand in the order of their triangles.
+Mesh Awkward() {
+  const Mesh plain = EllipsoidSurface({0.1, 0.2, 0.3}, {1.0 / 3, 2.0 / 7, 0.1}, 5, false);
+  Mesh mesh = plain;
+  std::vector<int> renumbered(static_cast<std::size_t>(plain.vertices.cols()), -1);
+  int next = 0;
+  for (int& corner : mesh.triangles.reshaped()) {
+    int& number = renumbered[static_cast<std::size_t>(corner)];
+    if (number < 0) {
+      mesh.vertices.col(next) = plain.vertices.col(corner);
+      number = next++;
+    }
+    corner = number;
+  }
+  return mesh;
+}
+
+Mesh Again(const Mesh& mesh, const std::string& ending, double unit = 1) {
+  const auto bytes = Write("a" + ending, mesh, unit);
+  EXPECT_TRUE(bytes.ok()) << bytes.status();
+  const auto again = bytes.ok() ? Parse("a" + ending, *bytes, unit) : bytes.status();
+  EXPECT_TRUE(again.ok()) << ending << again.status();
+  return again.ok() ? *again : Mesh{};
+}
+
+class Pair : public ::testing::TestWithParam<std::tuple<std::string, std::string>> {};
+
+TEST_P(Pair, ConvertingLosesNothingBeyondTheFormatsPrecision) {
+  const auto& [first, second] = GetParam();
+  const Mesh mesh = Awkward();
+  const Mesh there = Again(Again(mesh, first), second);
+  ASSERT_EQ(there.vertices.cols(), mesh.vertices.cols());
+  EXPECT_EQ(there.triangles, mesh.triangles);
+  if (KeepsAll(first) && KeepsAll(second)) {
+    EXPECT_EQ(there.vertices, mesh.vertices) << "every bit";
+  } else {
+    EXPECT_EQ(there.vertices, mesh.vertices.cast<float>().cast<double>()) << "float32, rounded once";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, Pair,
+                         ::testing::Combine(::testing::ValuesIn(Written()), ::testing::ValuesIn(Written())),
+                         [](const auto& pair) {
+                           return std::get<0>(pair.param).substr(1) + "_" + std::get<1>(pair.param).substr(1);
+                         });
+
+class Writer : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(Writer, UnitsGoThereAndBack) {
+  const Mesh mesh = Awkward(), there = Again(mesh, GetParam(), 0.001);
+  ASSERT_EQ(there.vertices.cols(), mesh.vertices.cols());
+  const double digits = KeepsAll(GetParam()) ? 1e-15 : 1e-7;
+  EXPECT_LT((there.vertices - mesh.vertices).cwiseAbs().maxCoeff(), digits);
+}
+
+TEST_P(Writer, UnusedVerticesAndNetworksAreKeptOrRefused) {
+  Mesh wire;
+  wire.vertices = Points::Random(3, 4);
+  wire.edges.resize(2, 2);
+  wire.edges << 0, 3, 2, 0;
+  if (!KeepsAll(GetParam())) {
+    const auto refused = Write("a" + GetParam(), wire, 1);
+    EXPECT_EQ(refused.status().code(), absl::StatusCode::kInvalidArgument);
+    EXPECT_THAT(std::string(refused.status().message()), HasSubstr("edges alone"));
+    return;
+  }
+  const Mesh there = Again(wire, GetParam());
+  EXPECT_EQ(there.vertices, wire.vertices);
+  EXPECT_EQ(there.edges, wire.edges);
+}
+
+TEST_P(Writer, WhatIsNoSurfaceIsRefusedWithTheFilesName) {
+  Mesh mesh = Awkward();
+  mesh.vertices(1, 3) = NAN;
+  const auto not_finite = Write("a" + GetParam(), mesh, 1);
+  EXPECT_EQ(not_finite.status().code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_THAT(std::string(not_finite.status().message()), StartsWith("a" + GetParam() + ": vertex 3"));
+  mesh = Awkward();
+  mesh.triangles.resize(3, 0);
+  EXPECT_THAT(std::string(Write("a" + GetParam(), mesh, 1).status().message()), HasSubstr("neither triangles nor"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, Writer, ::testing::ValuesIn(Written()),
+                         [](const auto& ending) { return ending.param.substr(1); });
+
+TEST(Writers, MshKeepsRegions) {
+  Mesh mesh = Awkward();
+  mesh.regions["rim"] = {mesh.triangles(0, 5), mesh.triangles(1, 5), mesh.triangles(2, 5)};
+  std::sort(mesh.regions["rim"].begin(), mesh.regions["rim"].end());
+  EXPECT_EQ(Again(mesh, ".msh").regions, mesh.regions);
+}
+
+TEST(Writers, StlRefusesWhatFloatsCannotHold) {
+  Mesh mesh = Awkward();
+  mesh.vertices(0, 0) = 1e39;
+  EXPECT_THAT(std::string(Write("a.stl", mesh, 1).status().message()), HasSubstr("too large for STL"));
+}
+
+TEST(Writers, TheFilesSayTheirFrame) {
+  for (const std::string ending : {".obj", ".stl", ".ply"}) {
+    const auto bytes = Write("a" + ending, Awkward(), 1);
+    ASSERT_TRUE(bytes.ok()) << bytes.status();
+    EXPECT_EQ(ParseSurface("a" + ending, *bytes, 1)->frame, Frame::kLps) << ending;
+  }
+}
+
+TEST(Writers, UnknownEndingsAreNamedWithThoseThereAre) {
+  const auto unknown = Write("a.stp", Awkward(), 1);
+  EXPECT_EQ(unknown.status().code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_THAT(std::string(unknown.status().message()), HasSubstr(WrittenEndings()));
+}
+
+}  // namespace
+}  // namespace phrenic::meshio
