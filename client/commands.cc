@@ -8,6 +8,7 @@
 #include "client/scene_argument.h"
 #include "client/schema_options.h"
 #include "phrenic/v1/compare.pb.h"
+#include "server/meshio/meshio.h"
 #include "server/schema/fields.h"
 
 namespace phrenic::client {
@@ -20,6 +21,8 @@ struct AllOptions {
   PhysiologyOptions physiology;
   StudyOptions error, stability, cost, study;
   CompareOptions compare;
+  InspectOptions inspect;
+  ConvertOptions convert;
   CreateOptions create;
   SessionOptions session;
   WatchOptions watch;
@@ -50,6 +53,7 @@ class CommandLine {
     AddSceneCommands();
     AddStudies();
     AddCompare();
+    AddFileCommands();
     AddSessionCommands();
     AddControlCommands();
     AddExport();
@@ -174,8 +178,9 @@ class CommandLine {
     CLI::App* command = Add("compare", "Say how far two surfaces, or two motions, are apart", &Compare, compare);
     command
         ->add_option("A", compare.a,
-                     "surface (.obj, .msh), motion as `phrenic run --export` writes it (.msh), or a session's body as "
-                     "it is now: session:ID or session:ID/BODY")
+                     "surface (" + meshio::Endings() +
+                         "), motion as `phrenic run --export` writes it (.msh), or a session's body as it is now: "
+                         "session:ID or session:ID/BODY")
         ->required();
     command->add_option("B", compare.b, "the same; its times are interpolated to A's")->required();
     AddNumber(command, "--tolerance", compare.tolerance_mm, *v1::CompareRequest::descriptor(), "tolerance_mm");
@@ -192,6 +197,26 @@ class CommandLine {
         ->delimiter(',')
         ->allow_extra_args(false);
     command->footer("\n" + MeasureHelp());
+  }
+
+  static void AddUnit(CLI::App* command, const char* flag, double& unit_mm, const std::string& whose) {
+    command->add_option(flag, unit_mm, "millimetres in one unit of " + whose + " lengths")
+        ->check(CLI::Range(1e-6, 1e6))
+        ->capture_default_str();
+  }
+
+  void AddFileCommands() {
+    InspectOptions& inspect = options_.inspect;
+    CLI::App* command = Add("inspect", "Say what a surface file holds, and whether it will do", &Inspect, inspect);
+    command->add_option("FILE", inspect.file, "a surface (" + meshio::Endings() + ")")->required();
+    AddUnit(command, "--unit-mm", inspect.unit_mm, "its");
+    ConvertOptions& convert = options_.convert;
+    command = Add("convert", "Write a surface file in another format", &Convert, convert);
+    command->add_option("IN", convert.in, "a surface (" + meshio::Endings() + ")")->required();
+    command->add_option("OUT", convert.out, "its ending tells the format (" + meshio::WrittenEndings() + ")")
+        ->required();
+    AddUnit(command, "--unit-mm", convert.unit_mm, "IN's");
+    AddUnit(command, "--out-unit-mm", convert.out_unit_mm, "OUT's");
   }
 
   void AddSessionCommands() {

@@ -50,6 +50,14 @@ struct CompareOptions {
   std::string map_file;  // empty: none
   std::vector<std::string> checks;
 };
+struct InspectOptions {
+  std::string file;
+  double unit_mm = 1;  // in one unit of the file's lengths
+};
+struct ConvertOptions {
+  std::string in, out;
+  double unit_mm = 1, out_unit_mm = 1;  // in one unit of IN's, and of OUT's lengths
+};
 struct CreateOptions {
   SceneOptions scene;
   std::string id;
@@ -108,6 +116,8 @@ int ListStudies(const Context& context);
 int WatchStudy(const Context& context, const StudyOptions& options);
 int DeleteStudy(const Context& context, const StudyOptions& options);
 int Compare(const Context& context, const CompareOptions& options);
+int Inspect(const Context& context, const InspectOptions& options);
+int Convert(const Context& context, const ConvertOptions& options);
 int Create(const Context& context, const CreateOptions& options);
 int Sessions(const Context& context);
 int Watch(const Context& context, const WatchOptions& options);

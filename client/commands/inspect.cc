@@ -1,0 +1,28 @@
+// `phrenic inspect`: what a surface file holds, read here as a scene would read it.
+#include <iostream>
+
+#include "client/commands.h"
+#include "client/surface_report.h"
+#include "server/meshio/meshio.h"
+#include "server/study/inspection.h"
+
+namespace phrenic::client {
+namespace {
+
+constexpr double kMetres = 1e-3;  // of a millimetre
+
+}  // namespace
+
+int Inspect(const Context& context, const InspectOptions& options) {
+  const auto surface = meshio::ReadSurface(options.file, kMetres * options.unit_mm);
+  if (!surface.ok()) return Fail(surface.status());
+  const v1::SurfaceReport report = study::Inspect(options.file, *surface, options.unit_mm);
+  if (context.json()) {
+    std::cout << Json(report) << "\n";
+  } else {
+    PrintSurface(report, std::cout);
+  }
+  return kOk;
+}
+
+}  // namespace phrenic::client
