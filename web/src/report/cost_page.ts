@@ -4,6 +4,7 @@ import {
   type CostTable,
   GrowthRowSchema,
   SizeRowSchema,
+  type StageRow,
   StageRowSchema,
 } from "../gen/phrenic/v1/study_results_pb";
 import { make } from "../panels/dom";
@@ -34,9 +35,13 @@ export function costParts(table: CostTable): HTMLElement[] {
 function adviceOf({ rows, stages }: CostTable): string[] {
   const full = rows.find(({ variant }) => variant === "full");
   const parts = stages.filter(({ stage }) => stage !== "step").sort((a, b) => b.usPerStep - a.usPerStep);
-  return [full && paceOf(full), parts[0] && `Most of it goes to ${parts[0].element}.`, leavingOut(rows)].filter(
+  return [full && paceOf(full), parts[0] && mostTo(parts[0]), leavingOut(rows)].filter(
     (sentence) => sentence !== undefined,
   );
+}
+
+function mostTo({ stage, element }: StageRow): string {
+  return `Most of it goes to ${stage === "integrator" ? "the integrator itself" : element}.`;
 }
 
 function paceOf({ cpuUsPerStep, timesThesis }: CostRow): string {
