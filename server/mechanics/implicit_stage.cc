@@ -81,7 +81,8 @@ absl::Status SolveStage(const Model& model, const v1::Parameters& parameters, co
     if (!(moved() > kSettled * model.size)) break;
   }
   PlaceStage(model, parameters, stage, state);
-  if (stage.newton_steps > 1 && !(moved() <= kUsable * model.size)) {
+  const bool usable = last.shortened == 0 && moved() <= kUsable * model.size;
+  if (stage.newton_steps > 1 && !usable) {
     return absl::AbortedError("Newton's method found no end of the step: lower time_step, or set a step_tolerance");
   }
   return absl::OkStatus();

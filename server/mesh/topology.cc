@@ -35,22 +35,10 @@ int Root(std::vector<int>& parent, int i) {
   return i;
 }
 
-// Components over used vertices, and their number.
-void CountComponents(const Mesh& mesh, SurfaceTopology& topology) {
-  std::vector<int> parent(static_cast<size_t>(mesh.vertices.cols()));
-  std::iota(parent.begin(), parent.end(), 0);
-  std::vector<bool> used(parent.size(), false);
-  for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
-    for (int k = 0; k < 3; ++k) {
-      used[static_cast<size_t>(mesh.triangles(k, t))] = true;
-      parent[Root(parent, mesh.triangles(k, t))] = Root(parent, mesh.triangles(0, t));
-    }
-  }
-  for (int i = 0; i < static_cast<int>(parent.size()); ++i) {
-    if (!used[i]) continue;
-    ++topology.vertices;
-    if (Root(parent, i) == i) ++topology.components;
-  }
+int CountUsed(const Mesh& mesh) {
+  std::vector<bool> used(static_cast<size_t>(mesh.vertices.cols()), false);
+  for (const int vertex : mesh.triangles.reshaped()) used[vertex] = true;
+  return static_cast<int>(std::count(used.begin(), used.end(), true));
 }
 
 bool Degenerate(const Mesh& mesh, Eigen::Index t) {
@@ -90,10 +78,30 @@ std::vector<int> BorderVertices(const Triangles& triangles) {
   return border;
 }
 
+std::vector<std::vector<int>> Components(const Mesh& mesh) {
+  std::vector<int> parent(static_cast<size_t>(mesh.vertices.cols()));
+  std::iota(parent.begin(), parent.end(), 0);
+  for (const auto t : mesh.triangles.colwise()) {
+    for (const int corner : t) parent[Root(parent, corner)] = Root(parent, t[0]);
+  }
+  std::vector<std::vector<int>> components;
+  std::vector<int> number(parent.size(), -1);
+  for (int t = 0; t < static_cast<int>(mesh.triangles.cols()); ++t) {
+    int& component = number[Root(parent, mesh.triangles(0, t))];
+    if (component < 0) {
+      component = static_cast<int>(components.size());
+      components.emplace_back();
+    }
+    components[component].push_back(t);
+  }
+  return components;
+}
+
 SurfaceTopology AnalyseTopology(const Mesh& mesh) {
   SurfaceTopology topology;
   topology.triangles = static_cast<int>(mesh.triangles.cols());
-  CountComponents(mesh, topology);
+  topology.vertices = CountUsed(mesh);
+  topology.components = static_cast<int>(Components(mesh).size());
   const std::vector<HalfEdge> edges = SortedHalfEdges(mesh.triangles);
   for (size_t i = 0; i < edges.size();) {
     size_t end = i;

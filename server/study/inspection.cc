@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -18,28 +17,9 @@ constexpr double kMillimetres = 1e3;  // in a metre
 constexpr double kSquare = kMillimetres * kMillimetres;
 constexpr double kMillilitres = 1e6;  // in a cubic metre
 
-int Root(std::vector<int>& parent, int i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-
-// The triangles of each component.
-std::vector<std::vector<int>> Components(const Mesh& mesh) {
-  std::vector<int> parent(static_cast<std::size_t>(mesh.vertices.cols()));
-  std::iota(parent.begin(), parent.end(), 0);
-  for (const auto t : mesh.triangles.colwise()) {
-    for (const int corner : t) parent[Root(parent, corner)] = Root(parent, t[0]);
-  }
-  std::vector<std::vector<int>> components;
-  std::vector<int> number(parent.size(), -1);
-  for (int t = 0; t < static_cast<int>(mesh.triangles.cols()); ++t) {
-    int& component = number[Root(parent, mesh.triangles(0, t))];
-    if (component < 0) {
-      component = static_cast<int>(components.size());
-      components.emplace_back();
-    }
-    components[component].push_back(t);
-  }
+// The largest first.
+std::vector<std::vector<int>> ComponentsBySize(const Mesh& mesh) {
+  std::vector<std::vector<int>> components = Components(mesh);
   std::stable_sort(components.begin(), components.end(),
                    [](const auto& a, const auto& b) { return a.size() > b.size(); });
   return components;
@@ -74,8 +54,8 @@ v1::SurfacePart PartOf(const Mesh& mesh) {
   part.set_non_manifold_edges(topology.non_manifold_edges);
   part.set_misoriented_edges(topology.misoriented_edges);
   part.set_closed(topology.boundary_edges == 0 && topology.non_manifold_edges == 0);
-  part.set_euler_characteristic(topology.vertices - topology.edges + topology.triangles);
-  if (part.closed() && part.euler_characteristic() % 2 == 0) part.set_genus(1 - part.euler_characteristic() / 2);
+  part.set_euler_characteristic(topology.euler_characteristic());
+  if (part.closed() && part.euler_characteristic() % 2 == 0) part.set_genus(topology.genus());
   if (topology.watertight()) part.set_volume_ml(kMillilitres * SignedVolume(mesh.vertices, mesh.triangles));
   return part;
 }
@@ -106,9 +86,10 @@ void Count(const Mesh& mesh, v1::SurfaceReport& report) {
   report.set_boundary_edges(topology.boundary_edges);
   report.set_non_manifold_edges(topology.non_manifold_edges);
   report.set_misoriented_edges(topology.misoriented_edges);
-  report.set_euler_characteristic(topology.vertices - topology.edges + topology.triangles);
+  report.set_euler_characteristic(topology.euler_characteristic());
   std::vector<int> number(static_cast<std::size_t>(mesh.vertices.cols()), -1);
-  for (const auto& triangles : Components(mesh)) *report.add_components() = PartOf(Extract(mesh, triangles, number));
+  for (const auto& triangles : ComponentsBySize(mesh))
+    *report.add_components() = PartOf(Extract(mesh, triangles, number));
 }
 
 void Measure(const Mesh& mesh, double unit_mm, v1::SurfaceReport& report) {
