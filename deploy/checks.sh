@@ -155,11 +155,14 @@ stage_tests() {
   ctests "$root/build"
 }
 
+# A folder's files are compiled eight at a time: that takes a third of the time, and finds what a folder names twice.
+unity=(-DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=8)
+
 # sanitized FOLDER SANITIZERS TARGET... builds the targets with the sanitizers.
 sanitized() {
   local folder=$1 sanitizers=$2
   shift 2
-  configure "$folder" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_FLAGS_RELWITHDEBINFO='-O1 -g1' \
+  configure "$folder" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_FLAGS_RELWITHDEBINFO='-O1 -g1' "${unity[@]}" \
     -DPHRENIC_SANITIZE="$sanitizers" && build "$folder" "$@"
 }
 
@@ -179,12 +182,13 @@ stage_tsan() {
 }
 
 check_tidy() {
-  run-clang-tidy -p "$root/build" -quiet -j "$(nproc)" "^$root/(server|client)/.*\.cc\$" >"$results/tidy.log" 2>&1 && return
+  local folder=$root/build/tidy
+  configure "$folder" "${unity[@]}" && build "$folder" generated_headers || return
+  run-clang-tidy -p "$folder" -quiet -j "$(nproc)" '/phrenic(_[a-z]*|d|)\.dir/Unity/' '_kernel\.cc$' >"$results/tidy.log" 2>&1 && return
   grep -E -A3 '(error|warning):' "$results/tidy.log" || cat "$results/tidy.log"
   return 1
 }
 
 stage_tidy() {
-  check check_build
   check check_tidy
 }

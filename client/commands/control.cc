@@ -9,8 +9,6 @@
 namespace phrenic::client {
 namespace {
 
-using Stub = v1::SessionService::Stub;
-
 template <typename Response>
 int Show(const Context& context, const grpc::Status& status, const Response& response) {
   if (!status.ok()) return Fail(context, status);
@@ -46,12 +44,12 @@ int Create(const Context& context, const CreateOptions& options) {
   *request.mutable_pulls() = *pulls;
   const auto stub = v1::SessionService::NewStub(Connect(context));
   v1::CreateSessionResponse response;
-  grpc::Status status = Call(context, *stub, &Stub::CreateSession, request, &response);
+  grpc::Status status = Call(context, *stub, &v1::SessionService::Stub::CreateSession, request, &response);
   if (status.ok() && options.play) {
     v1::PlaySessionRequest play;
     play.set_session_id(response.session().id());
     v1::PlaySessionResponse playing;
-    status = Call(context, *stub, &Stub::PlaySession, play, &playing);
+    status = Call(context, *stub, &v1::SessionService::Stub::PlaySession, play, &playing);
     *response.mutable_session() = playing.session();
   }
   return Show(context, status, response);
@@ -66,7 +64,7 @@ int Set(const Context& context, const SetOptions& options) {
   request.set_preset(options.preset);
   const auto stub = v1::SessionService::NewStub(Connect(context));
   v1::UpdateParametersResponse response;
-  const grpc::Status status = Call(context, *stub, &Stub::UpdateParameters, request, &response);
+  const grpc::Status status = Call(context, *stub, &v1::SessionService::Stub::UpdateParameters, request, &response);
   for (const std::string& warning : response.warnings()) std::cerr << "phrenic: warning: " << warning << "\n";
   return Show(context, status, response);
 }
@@ -83,7 +81,7 @@ int PullVertex(const Context& context, const PullOptions& options) {
     pull.mutable_force()->set_y(options.force[1]);
     pull.mutable_force()->set_z(options.force[2]);
   }
-  return CallAndShow<v1::PullSessionResponse>(context, &Stub::PullSession, request);
+  return CallAndShow<v1::PullSessionResponse>(context, &v1::SessionService::Stub::PullSession, request);
 }
 
 int Play(const Context& context, const PlayOptions& options) {
@@ -92,13 +90,13 @@ int Play(const Context& context, const PlayOptions& options) {
   if (options.speed > 0) request.set_speed(options.speed);
   request.set_as_fast_as_possible(options.fast);
   request.set_until_time(options.until);
-  return CallAndShow<v1::PlaySessionResponse>(context, &Stub::PlaySession, request);
+  return CallAndShow<v1::PlaySessionResponse>(context, &v1::SessionService::Stub::PlaySession, request);
 }
 
 int Pause(const Context& context, const SessionOptions& options) {
   v1::PauseSessionRequest request;
   request.set_session_id(options.id);
-  return CallAndShow<v1::PauseSessionResponse>(context, &Stub::PauseSession, request);
+  return CallAndShow<v1::PauseSessionResponse>(context, &v1::SessionService::Stub::PauseSession, request);
 }
 
 int TakeSteps(const Context& context, const StepOptions& options) {
@@ -106,13 +104,13 @@ int TakeSteps(const Context& context, const StepOptions& options) {
   request.set_session_id(options.id);
   request.set_ticks(options.ticks);
   if (options.expected_tick >= 0) request.set_expected_tick(options.expected_tick);
-  return CallAndShow<v1::StepSessionResponse>(context, &Stub::StepSession, request);
+  return CallAndShow<v1::StepSessionResponse>(context, &v1::SessionService::Stub::StepSession, request);
 }
 
 int Reset(const Context& context, const SessionOptions& options) {
   v1::ResetSessionRequest request;
   request.set_session_id(options.id);
-  return CallAndShow<v1::ResetSessionResponse>(context, &Stub::ResetSession, request);
+  return CallAndShow<v1::ResetSessionResponse>(context, &v1::SessionService::Stub::ResetSession, request);
 }
 
 int Delete(const Context& context, const SessionOptions& options) {
@@ -120,7 +118,7 @@ int Delete(const Context& context, const SessionOptions& options) {
   request.set_session_id(options.id);
   const auto stub = v1::SessionService::NewStub(Connect(context));
   v1::DeleteSessionResponse response;
-  const grpc::Status status = Call(context, *stub, &Stub::DeleteSession, request, &response);
+  const grpc::Status status = Call(context, *stub, &v1::SessionService::Stub::DeleteSession, request, &response);
   if (!status.ok()) return Fail(context, status);
   if (context.json()) std::cout << Json(response) << "\n";
   return kOk;

@@ -5,13 +5,12 @@
 #include "absl/strings/str_format.h"
 #include "client/commands.h"
 #include "client/whole_file.h"
+#include "server/mesh/units.h"
 #include "server/meshio/meshio.h"
 #include "server/study/inspection.h"
 
 namespace phrenic::client {
 namespace {
-
-constexpr double kMetres = 1e-3;  // of a millimetre
 
 // A sentence for each thing of `in` that `out` has not.
 void TellLosses(const meshio::Surface& in, const Mesh& out) {
@@ -37,7 +36,7 @@ int Convert(const Context& context, const ConvertOptions& options) {
   if (!written.ok()) return Fail(written.status());
   if (const absl::Status status = WriteWhole(options.out, *bytes); !status.ok()) return Fail(status);
   TellLosses(*surface, written->mesh);
-  written->mesh.vertices *= kMetres * options.out_unit_mm;
+  written->mesh.vertices *= kMillimetre * options.out_unit_mm;
   const v1::SurfaceReport report = study::Inspect(options.out, *written, options.out_unit_mm);
   if (context.json()) {
     std::cout << Json(report) << "\n";

@@ -3,18 +3,15 @@
 
 #include "client/commands.h"
 #include "client/surface_report.h"
+#include "server/mesh/units.h"
 #include "server/meshio/meshio.h"
 #include "server/study/inspection.h"
 
 namespace phrenic::client {
-namespace {
-
-constexpr double kMetres = 1e-3;  // of a millimetre
-
-}  // namespace
+namespace {}  // namespace
 
 int Inspect(const Context& context, const InspectOptions& options) {
-  const auto surface = meshio::ReadSurface(options.file, kMetres * options.unit_mm);
+  const auto surface = meshio::ReadSurface(options.file, kMillimetre * options.unit_mm);
   if (!surface.ok()) return Fail(surface.status());
   const v1::SurfaceReport report = study::Inspect(options.file, *surface, options.unit_mm);
   if (context.json()) {

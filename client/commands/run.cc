@@ -21,7 +21,6 @@
 namespace phrenic::client {
 namespace {
 
-using Stub = v1::SessionService::Stub;
 using Pulls = google::protobuf::RepeatedPtrField<v1::Pull>;
 
 constexpr double kReadingsASecond = 60;  // of simulated time
@@ -37,7 +36,7 @@ struct Cost {
 double ProcessCpuSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 grpc::Status CreateHere(const Context& context, const RunOptions& options, const v1::SceneSource& source,
-                        const v1::Parameters& parameters, const Pulls& pulls, Stub& stub,
+                        const v1::Parameters& parameters, const Pulls& pulls, v1::SessionService::Stub& stub,
                         v1::GetSessionResponse* session) {
   v1::CreateSessionRequest request;
   *request.mutable_source() = source;
@@ -47,16 +46,16 @@ grpc::Status CreateHere(const Context& context, const RunOptions& options, const
   for (const v1::Pull& pull : pulls) *request.add_pulls() = pull;
   v1::CreateSessionResponse created;
   const Progress compiling("compiling " + options.scene.scene, 1);
-  grpc::Status status = Call(context, stub, &Stub::CreateSession, request, &created);
+  grpc::Status status = Call(context, stub, &v1::SessionService::Stub::CreateSession, request, &created);
   if (!status.ok()) return status;
   v1::GetSessionRequest get;
   get.set_session_id("run");
-  return Call(context, stub, &Stub::GetSession, get, session);
+  return Call(context, stub, &v1::SessionService::Stub::GetSession, get, session);
 }
 
 // Steps in portions of about a fortieth of the run, for the bar's sake, and of a frame where the scene has measures.
-grpc::Status StepThrough(const Context& context, const RunOptions& options, bool measured, Stub& stub,
-                         v1::Session* session, Cost* cost) {
+grpc::Status StepThrough(const Context& context, const RunOptions& options, bool measured,
+                         v1::SessionService::Stub& stub, v1::Session* session, Cost* cost) {
   const auto total = static_cast<std::int64_t>(std::ceil(options.seconds / session->parameters().time_step() - 1e-9));
   std::int64_t portion = std::min<std::int64_t>(1'000'000, std::max<std::int64_t>(1, total / 40));
   if (measured) {
@@ -71,7 +70,7 @@ grpc::Status StepThrough(const Context& context, const RunOptions& options, bool
     request.set_session_id("run");
     request.set_ticks(std::min(portion, total - session->tick()));
     v1::StepSessionResponse response;
-    grpc::Status status = Call(context, stub, &Stub::StepSession, request, &response, 3600);
+    grpc::Status status = Call(context, stub, &v1::SessionService::Stub::StepSession, request, &response, 3600);
     if (!status.ok()) return status;
     *session = response.session();
     cost->state_hash = response.state_hash();

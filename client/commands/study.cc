@@ -15,8 +15,6 @@
 namespace phrenic::client {
 namespace {
 
-using Stub = v1::StudyService::Stub;
-
 const google::protobuf::Message& TablesOf(const v1::StudyResult& result) {
   switch (result.result_case()) {
     case v1::StudyResult::kStability:
@@ -44,7 +42,7 @@ std::string StateName(v1::StudyState state) {
 }
 
 // Draws the progress until the study has ended, and gives the study then.
-grpc::Status WaitFor(const Context& context, Stub& stub, const std::string& id, v1::Study* study) {
+grpc::Status WaitFor(const Context& context, v1::StudyService::Stub& stub, const std::string& id, v1::Study* study) {
   v1::WatchStudyRequest request;
   request.set_study_id(id);
   grpc::ClientContext call;
@@ -78,11 +76,11 @@ void Print(const v1::StudyResult& result) {
   }
 }
 
-int WritePage(const Context& context, Stub& stub, const std::string& id, const std::string& file) {
+int WritePage(const Context& context, v1::StudyService::Stub& stub, const std::string& id, const std::string& file) {
   v1::GetStudyPageRequest request;
   request.set_study_id(id);
   v1::GetStudyPageResponse response;
-  const grpc::Status status = Call(context, stub, &Stub::GetStudyPage, request, &response);
+  const grpc::Status status = Call(context, stub, &v1::StudyService::Stub::GetStudyPage, request, &response);
   if (!status.ok()) return Fail(context, status);
   if (const absl::Status written = WriteWhole(file, response.html()); !written.ok()) return Fail(written);
   std::cerr << "wrote " << file << "\n";
@@ -100,7 +98,7 @@ int Check(const std::string& file, const v1::StudyResult& result) {
   return passed->empty() ? kOk : kMissed;
 }
 
-int Finish(const Context& context, const StudyOptions& options, Stub& stub, const std::string& id) {
+int Finish(const Context& context, const StudyOptions& options, v1::StudyService::Stub& stub, const std::string& id) {
   v1::Study study;
   const grpc::Status status = WaitFor(context, stub, id, &study);
   if (!status.ok()) return Fail(context, status);
@@ -118,7 +116,7 @@ int Finish(const Context& context, const StudyOptions& options, Stub& stub, cons
   return options.limits.empty() ? kOk : Check(options.limits, study.result());
 }
 
-int Create(const Context& context, const StudyOptions& options, Stub& stub) {
+int Create(const Context& context, const StudyOptions& options, v1::StudyService::Stub& stub) {
   const auto source = ReadSceneArgument(options.scene.scene, options.scene.resolution_mm);
   if (!source.ok()) return Fail(source.status());
   const auto parameters = ReadSettings(options.settings);
@@ -127,7 +125,7 @@ int Create(const Context& context, const StudyOptions& options, Stub& stub) {
   *request.mutable_source() = *source;
   *request.mutable_parameters() = *parameters;
   v1::CreateStudyResponse response;
-  const grpc::Status status = Call(context, stub, &Stub::CreateStudy, request, &response);
+  const grpc::Status status = Call(context, stub, &v1::StudyService::Stub::CreateStudy, request, &response);
   if (!status.ok()) return Fail(context, status);
   const std::string& id = response.study().id();
   if (!options.detach) return Finish(context, options, stub, id);
@@ -160,14 +158,15 @@ int DeleteStudy(const Context& context, const StudyOptions& options) {
   request.set_study_id(options.id);
   v1::DeleteStudyResponse response;
   const auto stub = v1::StudyService::NewStub(Connect(context));
-  const grpc::Status status = Call(context, *stub, &Stub::DeleteStudy, request, &response);
+  const grpc::Status status = Call(context, *stub, &v1::StudyService::Stub::DeleteStudy, request, &response);
   return status.ok() ? kOk : Fail(context, status);
 }
 
 int ListStudies(const Context& context) {
   v1::ListStudiesResponse response;
   const auto stub = v1::StudyService::NewStub(Connect(context));
-  const grpc::Status status = Call(context, *stub, &Stub::ListStudies, v1::ListStudiesRequest(), &response);
+  const grpc::Status status =
+      Call(context, *stub, &v1::StudyService::Stub::ListStudies, v1::ListStudiesRequest(), &response);
   if (!status.ok()) return Fail(context, status);
   if (context.json()) {
     std::cout << Json(response) << "\n";

@@ -4,13 +4,13 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "server/anatomy/dimensions.h"
 
 namespace phrenic::anatomy {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kFoldAt = 1.3;      // d of the fold between dome and wall
 constexpr double kSquareness = 2.6;  // m: 1 is a cone's section, 2 a superellipse of degree four
 
@@ -47,8 +47,8 @@ struct Meridian {
 Meridian OnMeridian(const Eigen::Vector2d& p) {
   const Eigen::Vector2d azimuth = Azimuth(p);
   const double rho = Rho(p.norm()), fold = Fold(azimuth);
-  if (rho >= 1) return {azimuth, fold - kSquareness * kPi / 2 * (Top(azimuth) - fold) * (rho - 1)};
-  const double phi = kPi / 2 * std::pow(rho, kSquareness);
+  if (rho >= 1) return {azimuth, fold - kSquareness * std::numbers::pi / 2 * (Top(azimuth) - fold) * (rho - 1)};
+  const double phi = std::numbers::pi / 2 * std::pow(rho, kSquareness);
   const Eigen::Vector2d q = std::pow(std::sin(phi), 1 / kSquareness) * azimuth;
   return {q, fold + (Top(q) - fold) * std::cos(phi)};
 }
@@ -119,7 +119,7 @@ PlaneLoop Opening(const Eigen::Vector2d& centre, double across, double along) {
   const Eigen::Matrix2d back = local.inverse();
   PlaneLoop loop;
   for (int i = 0; i < kSamples; ++i) {
-    const double angle = 2 * kPi * i / kSamples;
+    const double angle = 2 * std::numbers::pi * i / kSamples;
     loop.push_back(centre + back * Eigen::Vector2d(across * std::cos(angle), along * std::sin(angle)));
   }
   return loop;
@@ -162,7 +162,7 @@ PlaneLoop DiaphragmRim() {
     }
     for (int i = 0; i < kSamplesASpan; ++i) {
       const Eigen::Vector2d at = Spline(around, span, static_cast<double>(i) / kSamplesASpan);
-      const double angle = at.x() * kPi / 180;
+      const double angle = at.x() * std::numbers::pi / 180;
       rim.push_back(AtHeight({std::sin(angle), -std::cos(angle)}, at.y()));
     }
   }

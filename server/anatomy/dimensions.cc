@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace phrenic::anatomy {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 // Half the width of the cage: widest at the eighth rib, closing over the lungs' tops like an ellipse.
 double HalfWidth(double z) {
@@ -30,9 +29,9 @@ double Front(double z) {
 
 }  // namespace
 
-double SpineFront(double z) { return 20 + 25 * std::cos(kPi * (z - 290) / 290); }
+double SpineFront(double z) { return 20 + 25 * std::cos(std::numbers::pi * (z - 290) / 290); }
 
-double SpineSlope(double z) { return -25 * kPi / 290 * std::sin(kPi * (z - 290) / 290); }
+double SpineSlope(double z) { return -25 * std::numbers::pi / 290 * std::sin(std::numbers::pi * (z - 290) / 290); }
 
 VertebralBody BodyOfVertebra(int number) {
   VertebralBody body{};
@@ -57,7 +56,7 @@ CageSection::CageSection(double z, double inset)
 
 namespace {
 
-constexpr double kSquareness = 0.3;      // 0 is an ellipse
+constexpr double kCageSquareness = 0.3;  // 0 is an ellipse
 constexpr double kColumnHalfWidth = 33;  // of the vertebral column with the muscles beside it [mm]
 
 double Pressed(double x) { return 1 / (1 + std::pow(x / kColumnHalfWidth, 4)); }
@@ -66,13 +65,13 @@ double Pressed(double x) { return 1 / (1 + std::pow(x / kColumnHalfWidth, 4)); }
 
 Eigen::Vector2d CageSection::Point(const Eigen::Vector2d& q) const {
   const double x = half_width_ * q.x();
-  const double y = centre_ + half_depth_ * q.y() * (1 + kSquareness * q.x() * q.x());
+  const double y = centre_ + half_depth_ * q.y() * (1 + kCageSquareness * q.x() * q.x());
   return {x, y - column_ * Pressed(x) * (1 + q.y()) / 2};
 }
 
 Eigen::Vector2d CageSection::DiscCoordinates(const Eigen::Vector2d& point) const {
   const double across = point.x() / half_width_, pressed = column_ * Pressed(point.x()) / 2;
-  const double slope = half_depth_ * (1 + kSquareness * across * across) - pressed;
+  const double slope = half_depth_ * (1 + kCageSquareness * across * across) - pressed;
   return {across, (point.y() - centre_ + pressed) / slope};
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "server/anatomy/dimensions.h"
+#include "server/anatomy/smooth.h"
 
 namespace phrenic::anatomy {
 namespace {
@@ -17,11 +18,6 @@ double FrontalSlope(int number) { return std::tan(std::min(50.0, 7 + 0.46 * (num
 
 // Azimuth of the anterior end from the front [degrees].
 double EndAzimuth(int number) { return number == 1 ? 40 : 26 + 0.98 * (number - 2) * (number - 2); }
-
-double Smooth(double t) {
-  t = std::clamp(t, 0.0, 1.0);
-  return t * t * (3 - 2 * t);
-}
 
 struct Neck {
   Eigen::Vector3d head, tubercle;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "server/anatomy/dimensions.h"
+#include "server/anatomy/smooth.h"
 #include "server/anatomy/tube.h"
 
 namespace phrenic::anatomy {
@@ -13,11 +14,6 @@ constexpr double kAngle = 317;    // sternal angle, where manubrium and body mee
 constexpr double kBodyEnd = 214;  // where the xiphoid begins
 constexpr double kNotch = 358;    // jugular notch
 constexpr double kXiphoidTip = 186;
-
-double Smooth(double t) {
-  t = std::clamp(t, 0.0, 1.0);
-  return t * t * (3 - 2 * t);
-}
 
 Mesh Plate(double bottom, double top, double thickness, double edge_length) {
   Curve line;

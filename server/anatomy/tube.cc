@@ -4,11 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace phrenic::anatomy {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 // Barry and Goldman's pyramid on knots spaced by the square root of the chords.
 Eigen::Vector3d CatmullRom(const std::array<Eigen::Vector3d, 4>& p, double t) {
@@ -38,11 +37,11 @@ Curve Dense(const Curve& through) {
   return dense;
 }
 
-struct Ring {
+struct Profile {
   Eigen::Vector3d centre, broad, thin;  // semi-axes as vectors
 };
 
-Ring RingAt(const Curve& path, size_t i, const TubeSection& section) {
+Profile RingAt(const Curve& path, size_t i, const TubeSection& section) {
   const Eigen::Vector3d along = path[std::min(i + 1, path.size() - 1)] - path[i > 0 ? i - 1 : 0];
   const Eigen::Vector3d broad = section.thin.cross(along).normalized();
   const Eigen::Vector3d thin = along.cross(broad).normalized();
@@ -50,20 +49,20 @@ Ring RingAt(const Curve& path, size_t i, const TubeSection& section) {
 }
 
 // The rings of the path, and at each end two that round it off.
-std::vector<Ring> Rings(const Curve& path, const SectionAt& section) {
+std::vector<Profile> Rings(const Curve& path, const SectionAt& section) {
   constexpr double kAngles[] = {62, 34};  // degrees of the quarter circle that rounds an end
-  std::vector<Ring> rings;
+  std::vector<Profile> rings;
   const double last = static_cast<double>(path.size()) - 1;
   for (size_t i = 0; i < path.size(); ++i) {
     rings.push_back(RingAt(path, i, section(static_cast<double>(i) / last, path[i])));
   }
-  const auto rounded = [&](const Ring& ring, const Eigen::Vector3d& outwards, double degrees) {
-    const double reach = ring.thin.norm() * std::sin(degrees * kPi / 180);
-    const double inset = ring.thin.norm() * (1 - std::cos(degrees * kPi / 180));
+  const auto rounded = [&](const Profile& ring, const Eigen::Vector3d& outwards, double degrees) {
+    const double reach = ring.thin.norm() * std::sin(degrees * std::numbers::pi / 180);
+    const double inset = ring.thin.norm() * (1 - std::cos(degrees * std::numbers::pi / 180));
     const double broad = 1 - inset / ring.broad.norm(), thin = 1 - inset / ring.thin.norm();
-    return Ring{ring.centre + reach * outwards, broad * ring.broad, thin * ring.thin};
+    return Profile{ring.centre + reach * outwards, broad * ring.broad, thin * ring.thin};
   };
-  const Ring first = rings.front(), end = rings.back();
+  const Profile first = rings.front(), end = rings.back();
   const Eigen::Vector3d before = (path[0] - path[1]).normalized();
   const Eigen::Vector3d behind = (path[path.size() - 1] - path[path.size() - 2]).normalized();
   rings.insert(rings.begin(), rounded(first, before, kAngles[1]));
@@ -78,7 +77,7 @@ std::vector<double> EvenAngles(double broad, double thin, int count, double shif
   constexpr int kFine = 720;
   std::vector<double> passed = {0};
   for (int i = 0; i < kFine; ++i) {
-    const double angle = 2 * kPi * (i + 0.5) / kFine;
+    const double angle = 2 * std::numbers::pi * (i + 0.5) / kFine;
     passed.push_back(passed.back() + std::hypot(broad * std::sin(angle), thin * std::cos(angle)));
   }
   std::vector<double> angles;
@@ -86,12 +85,12 @@ std::vector<double> EvenAngles(double broad, double thin, int count, double shif
   for (int i = 0; i < count; ++i) {
     const double aim = passed.back() * (i + shift) / count;
     while (passed[at + 1] <= aim) ++at;
-    angles.push_back(2 * kPi * (at + (aim - passed[at]) / (passed[at + 1] - passed[at])) / kFine);
+    angles.push_back(2 * std::numbers::pi * (at + (aim - passed[at]) / (passed[at + 1] - passed[at])) / kFine);
   }
   return angles;
 }
 
-Points RingPoints(const std::vector<Ring>& rings, int around) {
+Points RingPoints(const std::vector<Profile>& rings, int around) {
   Points points(3, static_cast<Eigen::Index>(rings.size()) * around);
   Eigen::Index column = 0;
   for (size_t r = 0; r < rings.size(); ++r) {
@@ -142,8 +141,8 @@ Triangles RingTriangles(int rings, int around) {
 }
 
 double Perimeter(const TubeSection& s) {
-  return kPi * (3 * (s.half_broad + s.half_thin) -
-                std::sqrt((3 * s.half_broad + s.half_thin) * (s.half_broad + 3 * s.half_thin)));
+  return std::numbers::pi * (3 * (s.half_broad + s.half_thin) -
+                             std::sqrt((3 * s.half_broad + s.half_thin) * (s.half_broad + 3 * s.half_thin)));
 }
 
 }  // namespace
@@ -180,7 +179,7 @@ Mesh Tube(const Curve& through, const SectionAt& section, double edge_length) {
   const size_t middle = path.size() / 2;
   const double perimeter = Perimeter(section(0.5, path[middle]));
   const int around = std::max(6, 2 * static_cast<int>(std::lround(perimeter / (2 * edge_length))));
-  const std::vector<Ring> rings = Rings(path, section);
+  const std::vector<Profile> rings = Rings(path, section);
   Mesh mesh;
   mesh.vertices = RingPoints(rings, around);
   mesh.triangles = RingTriangles(static_cast<int>(rings.size()), around);

@@ -6,6 +6,7 @@
 
 #include "server/anatomy/dimensions.h"
 #include "server/anatomy/implicit_surface.h"
+#include "server/anatomy/smooth.h"
 
 namespace phrenic::anatomy {
 namespace {
@@ -16,11 +17,6 @@ struct Shape {
   double spine, slope;          // length of the spinous process and its slope below the horizontal [rad]
   double canal;                 // half width of the vertebral canal
 };
-
-double Smooth(double t) {
-  t = std::clamp(t, 0.0, 1.0);
-  return t * t * (3 - 2 * t);
-}
 
 Shape ShapeOf(int number) {
   const VertebralBody body = BodyOfVertebra(number);

@@ -8,11 +8,11 @@
 namespace phrenic {
 namespace {
 
-constexpr double kSettled = 1e-7;  // of the scene's size: the last Newton step's way
-constexpr double kUsable = 1e-5;   // of the scene's size: what may be left after the last Newton step
-constexpr double kLinear = 1e-3;   // relative residual of the linear system: Newton's method mends the rest
+constexpr double kStageSettled = 1e-7;   // of the scene's size: the last Newton step's way
+constexpr double kUsable = 1e-5;         // of the scene's size: what may be left after the last Newton step
+constexpr double kStageResidual = 1e-3;  // relative residual of the linear system: Newton's method mends the rest
 constexpr double kOvershot = 0.9;  // of the residual along a step, with the other sign at its end: it went too far
-constexpr double kShortest = 0.1;
+constexpr double kLeastPart = 0.1;
 constexpr int kShortenings = 6;
 
 // A step of Newton's method, [m/s] at each vertex. The stiffness leaves out what is negative in it, so that a step goes
@@ -32,7 +32,7 @@ struct NewtonStep {
   }
   // Makes it the part of itself that it returns.
   double Shorten(const Points& residual) {
-    const double part = std::max(kShortest, along / (along - Along(residual)));
+    const double part = std::max(kLeastPart, along / (along - Along(residual)));
     change *= part;
     along *= part;
     ++shortened;
@@ -75,10 +75,11 @@ absl::Status SolveStage(const Model& model, const v1::Parameters& parameters, co
       continue;
     }
     work.system->Assemble(model, at, stage.g);
-    if (absl::Status solved = work.system->Solve(model, work.force, kLinear, last.change); !solved.ok()) return solved;
+    if (absl::Status solved = work.system->Solve(model, work.force, kStageResidual, last.change); !solved.ok())
+      return solved;
     last.Begin(work.force);
     AddToFree(model, 1, last.change, state.v);
-    if (!(moved() > kSettled * model.size)) break;
+    if (!(moved() > kStageSettled * model.size)) break;
   }
   PlaceStage(model, parameters, stage, state);
   const bool usable = last.shortened == 0 && moved() <= kUsable * model.size;

@@ -7,6 +7,9 @@
 
 namespace phrenic {
 
+// Enough for every step that settles at all.
+inline constexpr int kNewtonSteps = 40;
+
 // v' = velocity + g f(x', v', t + ahead)/m, x' = position + g v'.
 struct ImplicitStage {
   double ahead;            // [s] of the state's own time

@@ -1,11 +1,7 @@
 #include "server/mechanics/outer_products.h"
 
 namespace phrenic {
-namespace {
-
-double Dot(const ConstPoints& a, const ConstPoints& b) { return a.cwiseProduct(b).sum(); }
-
-}  // namespace
+namespace {}  // namespace
 
 void OuterProducts::Add(double scale, const Points& g) {
   if (used_ == terms_.size()) terms_.emplace_back();

@@ -9,6 +9,9 @@
 
 namespace phrenic {
 
+// The sum of the products of entries.
+inline double Dot(const ConstPoints& a, const ConstPoints& b) { return a.cwiseProduct(b).sum(); }
+
 // Not thread-safe. Allocates only while the number of terms grows.
 class OuterProducts {
  public:

@@ -1,11 +1,11 @@
 #include "server/mechanics/quasi_newton.h"
 
+#include "server/mechanics/outer_products.h"
+
 namespace phrenic {
 namespace {
 
-constexpr double kFlat = 1e-12;  // of the product of the lengths: a fall that is none
-
-double Dot(const Points& a, const Points& b) { return a.cwiseProduct(b).sum(); }
+constexpr double kNoFall = 1e-12;  // of the product of the lengths: a fall that is none
 
 }  // namespace
 
@@ -26,7 +26,7 @@ void QuasiNewton::Note(const Points& step, const Points& before, const Points& a
   pair.step = step;
   pair.fall = before - after;
   pair.along = Dot(pair.step, pair.fall);
-  if (pair.along > kFlat * pair.step.norm() * pair.fall.norm()) ++used_;
+  if (pair.along > kNoFall * pair.step.norm() * pair.fall.norm()) ++used_;
 }
 
 void QuasiNewton::Times(const Points& r, PrefactoredSystem& a, Points& y) {

@@ -11,7 +11,6 @@
 namespace phrenic::meshio {
 namespace {
 
-constexpr std::int64_t kMaxTags = 1000;
 constexpr double kBlocks = 4.1;  // the version
 
 class MshParser {

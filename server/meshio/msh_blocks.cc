@@ -12,7 +12,6 @@
 namespace phrenic::meshio {
 namespace {
 
-constexpr std::int64_t kMaxTags = 1000;
 constexpr int kSurfaceDimension = 2;
 constexpr int kBox = 6;  // least and greatest x, y, z of an entity
 

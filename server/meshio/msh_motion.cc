@@ -15,7 +15,6 @@
 namespace phrenic::meshio {
 namespace {
 
-constexpr std::int64_t kMaxTags = 1000;
 constexpr char kView[] = "\"displacement\"";
 
 // Reads bytes that Parse has accepted: the mesh's own sections are as they should be.

@@ -16,6 +16,7 @@ namespace phrenic::meshio {
 
 // Gmsh's types of elements.
 inline constexpr std::int64_t kMshLine = 1, kMshTriangle = 2, kMshQuadrilateral = 3;
+inline constexpr std::int64_t kMaxTags = 1000;  // of an element or a block of data: more is no file
 
 // How many nodes an element of the type has; 0 for a type that Gmsh's manual does not have.
 int MshNodesOf(std::int64_t type);

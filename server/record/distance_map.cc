@@ -2,15 +2,12 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "server/mesh/units.h"
 #include "server/record/msh.h"
 #include "server/record/text_block.h"
 
 namespace phrenic::record {
-namespace {
-
-constexpr double kMillimetres = 1e3;
-
-}  // namespace
+namespace {}  // namespace
 
 const std::vector<MapFormat>& MapFormats() {
   static const auto* const formats = new std::vector<MapFormat>{
@@ -37,7 +34,8 @@ absl::Status WriteMshMap(const DistanceMap& map, const Sink& sink) {
   for (std::size_t step = 0; step < map.times.size(); ++step) {
     const Eigen::VectorXd& distances = map.distances[step];
     text.Append("$NodeData\n1\n\"distance [mm]\"\n1\n%.9g\n3\n%d\n1\n%d\n", map.times[step], step, distances.size());
-    for (Eigen::Index i = 0; i < distances.size(); ++i) text.Append("%d %.6g\n", i + 1, kMillimetres * distances[i]);
+    for (Eigen::Index i = 0; i < distances.size(); ++i)
+      text.Append("%d %.6g\n", i + 1, kMillimetresAMetre * distances[i]);
     text.Append("$EndNodeData\n");
   }
   return text.Flush();
@@ -55,12 +53,13 @@ absl::Status WriteVtpMap(const DistanceMap& map, const Sink& sink) {
       "NumberOfPolys=\"%d\">\n<PointData Scalars=\"distance [mm]\">\n"
       "<DataArray type=\"Float64\" Name=\"distance [mm]\" format=\"ascii\">\n",
       x.cols(), triangles.cols());
-  for (Eigen::Index i = 0; i < largest.size(); ++i) text.Append("%.6g\n", kMillimetres * largest[i]);
+  for (Eigen::Index i = 0; i < largest.size(); ++i) text.Append("%.6g\n", kMillimetresAMetre * largest[i]);
   text.Append(
       "</DataArray>\n</PointData>\n<Points>\n<DataArray type=\"Float64\" NumberOfComponents=\"3\" "
       "format=\"ascii\">\n");
   for (Eigen::Index i = 0; i < x.cols(); ++i) {
-    text.Append("%.9g %.9g %.9g\n", kMillimetres * x(0, i), kMillimetres * x(1, i), kMillimetres * x(2, i));
+    text.Append("%.9g %.9g %.9g\n", kMillimetresAMetre * x(0, i), kMillimetresAMetre * x(1, i),
+                kMillimetresAMetre * x(2, i));
   }
   text.Append("</DataArray>\n</Points>\n<Polys>\n<DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">\n");
   for (Eigen::Index t = 0; t < triangles.cols(); ++t) {

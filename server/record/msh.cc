@@ -1,11 +1,11 @@
 #include "server/record/msh.h"
 
+#include "server/mesh/units.h"
 #include "server/record/text_block.h"
 
 namespace phrenic::record {
 namespace {
 
-constexpr double kMillimetres = 1e3;
 constexpr int kGmshLine = 1, kGmshTriangle = 2;
 constexpr int kCurve = 1, kSurface = 2;  // dimensions of physical groups
 
@@ -40,7 +40,7 @@ class MshRecorder final : public Recorder {
     if (positions.cols() != first_.cols()) return absl::InternalError("a frame has another number of vertices");
     text_.Append("$NodeData\n1\n\"displacement\"\n1\n%.9g\n3\n%d\n3\n%d\n", time, frames_, positions.cols());
     for (Eigen::Index i = 0; i < positions.cols(); ++i) {
-      const Eigen::Vector3d u = kMillimetres * (positions.col(i) - first_.col(i));
+      const Eigen::Vector3d u = kMillimetresAMetre * (positions.col(i) - first_.col(i));
       text_.Append("%d %.6g %.6g %.6g\n", i + 1, u.x(), u.y(), u.z());
     }
     text_.Append("$EndNodeData\n");
@@ -58,7 +58,7 @@ class MshRecorder final : public Recorder {
     Eigen::Index number = 0;
     for (const RecordedBody& body : bodies) {
       for (Eigen::Index i = 0; i < body.mesh.vertices.cols(); ++i) {
-        const Eigen::Vector3d x = kMillimetres * body.mesh.vertices.col(i);
+        const Eigen::Vector3d x = kMillimetresAMetre * body.mesh.vertices.col(i);
         text_.Append("%d %.9g %.9g %.9g\n", ++number, x.x(), x.y(), x.z());
       }
     }

@@ -13,13 +13,13 @@
 namespace phrenic::service {
 namespace {
 
-using Writer = grpc::ServerWriter<v1::CompareResponse>;
+using CompareWriter = grpc::ServerWriter<v1::CompareResponse>;
 
-absl::Status Send(Writer& writer, const v1::CompareResponse& response) {
+absl::Status Send(CompareWriter& writer, const v1::CompareResponse& response) {
   return writer.Write(response) ? absl::OkStatus() : absl::CancelledError("the receiver of the comparison went away");
 }
 
-study::ComparisonSink MakeSink(grpc::ServerContext& context, Writer& writer) {
+study::ComparisonSink MakeSink(grpc::ServerContext& context, CompareWriter& writer) {
   return {.progress =
               [&](double done) {
                 v1::CompareResponse response;

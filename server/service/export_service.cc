@@ -13,14 +13,14 @@
 namespace phrenic::service {
 namespace {
 
-using Writer = grpc::ServerWriter<v1::ExportMotionResponse>;
+using ExportWriter = grpc::ServerWriter<v1::ExportMotionResponse>;
 
-absl::Status Send(Writer& writer, const v1::ExportMotionResponse& response) {
+absl::Status Send(ExportWriter& writer, const v1::ExportMotionResponse& response) {
   if (writer.Write(response)) return absl::OkStatus();
   return absl::CancelledError("the receiver of the export went away");
 }
 
-session::ExportSink MakeSink(grpc::ServerContext& context, Writer& writer) {
+session::ExportSink MakeSink(grpc::ServerContext& context, ExportWriter& writer) {
   return {.chunk =
               [&writer](std::string_view bytes) {
                 v1::ExportMotionResponse response;
@@ -49,7 +49,7 @@ grpc::Status ExportService::ListFormats(grpc::ServerContext* /*context*/, const 
 }
 
 grpc::Status ExportService::ExportMotion(grpc::ServerContext* context, const v1::ExportMotionRequest* request,
-                                         Writer* writer) {
+                                         ExportWriter* writer) {
   if (absl::Status status = schema::Validate(*request); !status.ok()) return ToGrpc(status);
   const auto session = table_.Find(request->session_id());
   if (!session.ok()) return ToGrpc(session.status());

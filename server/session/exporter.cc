@@ -19,7 +19,6 @@ namespace {
 
 using Wall = std::chrono::steady_clock;
 
-constexpr double kTimeTolerance = 1e-9;                         // rounding of a long sum of steps [s]
 constexpr auto kBetweenWords = std::chrono::milliseconds(200);  // of progress
 
 double FramesPerSecond(const v1::ExportMotionRequest& request) {

@@ -13,6 +13,8 @@
 
 namespace phrenic::session {
 
+inline constexpr double kTimeTolerance = 1e-9;  // rounding of a long sum of steps [s]
+
 // Not thread-safe; a copy of `state` and `parameters` is a fork. No step allocates.
 class Run {
  public:

@@ -6,13 +6,13 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/mechanics/residual.h"
+#include "server/session/run.h"
 #include "server/session/session.h"
 
 namespace phrenic::session {
 namespace {
 
 // Simulated time that counts as reached: rounding of a long sum of steps [s].
-constexpr double kTimeTolerance = 1e-9;
 
 }  // namespace
 

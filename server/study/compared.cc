@@ -4,17 +4,17 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "server/mesh/units.h"
 #include "server/study/moments.h"
 
 namespace phrenic::study {
 namespace {
 
-constexpr double kMetres = 1e-3;   // of a millimetre
 constexpr double kFarthest = 1e6;  // [m]; squares and sums of what is nearer keep their digits
 
 absl::StatusOr<Compared> ReadFile(const v1::ComparedSurface& file, const char* field) {
   if (file.name().empty()) return absl::InvalidArgumentError(absl::StrCat(field, ".name: must be set for a file"));
-  const double unit = kMetres * (file.has_unit_mm() ? file.unit_mm() : 1);
+  const double unit = kMillimetre * (file.has_unit_mm() ? file.unit_mm() : 1);
   auto motion = meshio::ParseMotion(file.name(), file.content(), unit);
   if (!motion.ok()) return motion.status();
   double largest = motion->mesh.vertices.cwiseAbs().maxCoeff();

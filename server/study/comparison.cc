@@ -8,6 +8,7 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "server/mesh/units.h"
 #include "server/record/distance_map.h"
 #include "server/study/domes.h"
 #include "server/study/moments.h"
@@ -15,8 +16,6 @@
 
 namespace phrenic::study {
 namespace {
-
-constexpr double kMetres = 1e-3;  // of a millimetre
 
 Triangles TrianglesOf(const Mesh& mesh, const std::string& region) {
   const auto found = mesh.regions.find(region);
@@ -38,7 +37,7 @@ bool AsksForVertices(const v1::CompareRequest& request) {
 }
 
 // The whole surfaces, or one region of them, with what was measured of them.
-struct Part {
+struct ComparedPart {
   std::string region;
   MeasuredSurface a, b, rest;  // `rest` is A as it was at first
   std::vector<v1::SurfaceDistance> distances, baselines;
@@ -46,10 +45,10 @@ struct Part {
 
 class Comparer {
  public:
-  Comparer(const v1::CompareRequest& request, ComparedPair pair, Moments moments, const ComparisonSink& sink)
+  Comparer(const v1::CompareRequest& request, ComparedPair pair, MatchedMoments moments, const ComparisonSink& sink)
       : request_(request), compared_(std::move(pair)), moments_(std::move(moments)), sink_(sink) {
-    options_.tolerance = kMetres * (request.has_tolerance_mm() ? request.tolerance_mm() : 1);
-    if (request.has_spacing_mm()) options_.spacing = kMetres * request.spacing_mm();
+    options_.tolerance = kMillimetre * (request.has_tolerance_mm() ? request.tolerance_mm() : 1);
+    if (request.has_spacing_mm()) options_.spacing = kMillimetre * request.spacing_mm();
     AddPart("", a_.mesh.triangles, b_.mesh.triangles);
     if (!request.by_region()) return;
     std::set<std::string> names;
@@ -63,7 +62,7 @@ class Comparer {
     double done = 0;
     for (const Moment& moment : moments_.pairs) {
       const Points a = PositionsAt(a_, moment.a), b = PositionsAt(b_, moment.b);
-      for (Part& part : parts_) {
+      for (ComparedPart& part : parts_) {
         if (!sink_.progress(done++ / total)) return absl::CancelledError("the comparison was cancelled");
         part.a.MoveTo(a);
         part.b.MoveTo(b);
@@ -80,12 +79,12 @@ class Comparer {
     table.set_b(compared_.b.name);
     if (compared_.a.state) *table.mutable_state_a() = *compared_.a.state;
     if (compared_.b.state) *table.mutable_state_b() = *compared_.b.state;
-    table.set_tolerance_mm(options_.tolerance / kMetres);
+    table.set_tolerance_mm(options_.tolerance / kMillimetre);
     table.set_times_left_out(moments_.left_out);
-    for (const Part& part : parts_) AddRow(part.region, OverTimes(part.distances), part.baselines, table);
+    for (const ComparedPart& part : parts_) AddRow(part.region, OverTimes(part.distances), part.baselines, table);
     for (std::size_t m = 0; m < moments_.pairs.size(); ++m) {
       if (!moments_.pairs[m].time) break;
-      for (const Part& part : parts_) {
+      for (const ComparedPart& part : parts_) {
         AddRow(part.region, part.distances[m], {}, table);
         table.mutable_rows()->rbegin()->set_time(*moments_.pairs[m].time);
         if (a_.moves()) *table.mutable_rows()->rbegin()->mutable_baseline() = part.baselines[m];
@@ -115,7 +114,7 @@ class Comparer {
     parts_.push_back({name, MeasuredSurface(a, of_a), MeasuredSurface(b, of_b), MeasuredSurface(a, of_a), {}, {}});
   }
 
-  absl::Status MeasurePart(Part& part, const Moment& moment) {
+  absl::Status MeasurePart(ComparedPart& part, const Moment& moment) {
     const bool of_vertices = part.region.empty() && AsksForVertices(request_);
     Eigen::VectorXd at_vertices;
     auto distance = MeasureDistance(part.a, part.b, options_, of_vertices ? &at_vertices : nullptr);
@@ -137,7 +136,7 @@ class Comparer {
     v1::VertexDistances vertices;
     if (moment.time) vertices.set_time(*moment.time);
     vertices.mutable_distances()->Reserve(static_cast<int>(at_vertices.size()));
-    for (const double distance : at_vertices) vertices.add_distances(static_cast<float>(distance / kMetres));
+    for (const double distance : at_vertices) vertices.add_distances(static_cast<float>(distance / kMillimetre));
     return sink_.vertices(vertices);
   }
 
@@ -152,10 +151,10 @@ class Comparer {
   const v1::CompareRequest& request_;
   const ComparedPair compared_;
   const meshio::Motion &a_ = compared_.a.motion, &b_ = compared_.b.motion;
-  const Moments moments_;
+  const MatchedMoments moments_;
   const ComparisonSink& sink_;
   DistanceOptions options_;
-  std::vector<Part> parts_;                   // the whole first
+  std::vector<ComparedPart> parts_;           // the whole first
   std::vector<Eigen::VectorXd> at_vertices_;  // of the whole, one a moment, where there is a map
 };
 

@@ -16,6 +16,7 @@ using Compiler = std::function<absl::StatusOr<std::shared_ptr<const Model>>(cons
 
 // Is told how much is done, 0 to 1, and what is being done; false asks the study to end with CANCELLED.
 using Progress = std::function<bool(double done, std::string_view doing)>;
+inline constexpr long kLook = 16;  // steps between two looks at the clock and the caller
 
 // One model under the parameters that the study was asked for.
 struct Subject {

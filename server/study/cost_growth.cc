@@ -9,11 +9,11 @@
 namespace phrenic::study {
 namespace {
 
-constexpr double kCompiled = 0.5;        // of the progress
+constexpr double kGrowthCompiled = 0.5;  // of the progress
 constexpr int kSmallestSheet = 5000;     // vertices
 constexpr int kLargestOverSmallest = 8;  // at least
 constexpr double kCell = 0.01;           // edge of a sheet's cells [m]
-constexpr double kTurn = 1e7;            // vertices times steps of a turn, at most
+constexpr double kMostOfATurn = 1e7;     // vertices times steps of a turn, at most
 constexpr int kFewest = 10;              // steps of a turn
 
 // Doubled from the smallest on; the last one is the largest.
@@ -28,7 +28,7 @@ std::vector<int> SheetSizes(int largest) {
 
 Timing MakeTiming(const Subject& subject, int steps) {
   const auto vertices = static_cast<double>(std::max<int64_t>(1, subject.model->report.simulated_vertices()));
-  const int most = std::max(kFewest, static_cast<int>(kTurn / vertices));
+  const int most = std::max(kFewest, static_cast<int>(kMostOfATurn / vertices));
   return {.subject = subject, .steps = std::min(steps, most), .step_s = {}, .part_s = {}, .problem = ""};
 }
 
@@ -109,12 +109,12 @@ v1::Scene SheetOf(int vertices) {
 
 absl::Status AddGrowth(const v1::CreateStudyRequest& request, const Subject& subject, const Compiler& compile,
                        const Progress& progress, v1::CostTable& table) {
-  auto sheets = Sheets(request, subject, compile, Part(progress, 0, kCompiled / 2));
+  auto sheets = Sheets(request, subject, compile, Part(progress, 0, kGrowthCompiled / 2));
   if (!sheets.ok()) return sheets.status();
-  auto resolutions = Resolutions(request, compile, Part(progress, kCompiled / 2, kCompiled));
+  auto resolutions = Resolutions(request, compile, Part(progress, kGrowthCompiled / 2, kGrowthCompiled));
   if (!resolutions.ok()) return resolutions.status();
   const int trials = request.cost().trials();
-  absl::Status status = TimeInTurn(*sheets, trials, Part(progress, kCompiled, 0.8));
+  absl::Status status = TimeInTurn(*sheets, trials, Part(progress, kGrowthCompiled, 0.8));
   if (status.ok()) status = TimeInTurn(*resolutions, trials, Part(progress, 0.8, 1));
   if (!status.ok()) return status;
   const double of_sheets = AddRows("sheet of springs", *sheets, table);

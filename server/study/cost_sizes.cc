@@ -13,9 +13,9 @@
 namespace phrenic::study {
 namespace {
 
-constexpr double kCompiled = 0.6;     // of the progress
-constexpr double kNearEnough = 0.01;  // of the thesis' number of vertices
-constexpr int kTries = 3;             // at a resolution that gives it
+constexpr double kSizesCompiled = 0.6;  // of the progress
+constexpr double kNearEnough = 0.01;    // of the thesis' number of vertices
+constexpr int kTries = 3;               // at a resolution that gives it
 constexpr int kCubeVertices = 8;
 constexpr int kCubeSteps = 100'000;  // of a trial of figure 5.10
 
@@ -114,7 +114,7 @@ absl::Status AddSizes(const v1::CreateStudyRequest& request, const Subject& subj
   std::vector<Sized> made;
   std::vector<Timing> timings;
   for (size_t i = 0; i < sizes.size(); ++i) {
-    const double done = kCompiled * static_cast<double>(i) / static_cast<double>(sizes.size());
+    const double done = kSizesCompiled * static_cast<double>(i) / static_cast<double>(sizes.size());
     if (!progress(done, "making the meshes of figures 5.14-5.27")) return Cancelled();
     absl::StatusOr<Sized> sized = Sized{.subject = subject, .resolution_mm = 0};
     if (IsGenerated(subject.model->scene)) sized = WithVertices(request, subject, sizes[i].vertices, compile);
@@ -126,7 +126,7 @@ absl::Status AddSizes(const v1::CreateStudyRequest& request, const Subject& subj
     timings.push_back({.subject = *without, .steps = steps, .step_s = {}, .part_s = {}, .problem = ""});
     made.push_back(*std::move(sized));
   }
-  absl::Status status = TimeInTurn(timings, request.cost().trials(), Part(progress, kCompiled, 1));
+  absl::Status status = TimeInTurn(timings, request.cost().trials(), Part(progress, kSizesCompiled, 1));
   if (!status.ok()) return status;
   for (size_t i = 0; i < sizes.size(); ++i) AddRow(sizes[i], made[i], timings[2 * i], timings[2 * i + 1], table);
   return absl::OkStatus();

@@ -10,8 +10,8 @@
 namespace phrenic::study {
 namespace {
 
-constexpr int kBlock = 16;         // steps with clocks inside, then as many without, so that caches are warm
-constexpr int kMostSteps = 20000;  // whose times are kept
+constexpr int kBlock = 16;              // steps with clocks inside, then as many without, so that caches are warm
+constexpr int kMostTimedSteps = 20000;  // whose times are kept
 
 // One run, step by step.
 struct Watched {
@@ -81,7 +81,7 @@ void AddRow(const Stage& stage, double seconds, double whole, double calls, v1::
 
 absl::Status AddStages(const Subject& subject, int steps, const Progress& progress, v1::CostTable& table) {
   Stages stages;
-  steps = std::min(steps, kMostSteps);
+  steps = std::min(steps, kMostTimedSteps);
   const auto times = Watch(subject, steps, progress, stages);
   if (!times.ok()) return times.status();
   const double whole = MiddleMean(times->whole);

@@ -10,9 +10,9 @@
 namespace phrenic::study {
 namespace {
 
-constexpr double kLongest = 1.0 / 30;  // the ladder's first step where stability limits none [s]
-constexpr double kBlur = 3;            // of the reference's own error: an error below it says nothing
-constexpr double kWorthTiming = 0.02;  // runs shorter than this in all are timed again [s]
+constexpr double kFirstStep = 1.0 / 30;  // the ladder's first step where stability limits none [s]
+constexpr double kBlur = 3;              // of the reference's own error: an error below it says nothing
+constexpr double kTimedOnce = 0.02;      // runs shorter than this in all are timed again [s]
 constexpr size_t kMostRuns = 9;
 constexpr const char* kOk = "ok";
 
@@ -22,7 +22,7 @@ absl::StatusOr<Trajectory> Timed(const Subject& subject, const std::vector<doubl
   auto run = Simulate(subject, moments, dt, most_cpu_s, progress);
   if (!run.ok() || !run->problem.empty()) return run;
   std::vector<double> times = {run->cpu_s};
-  for (double spent = run->cpu_s; spent < kWorthTiming && times.size() < kMostRuns; spent += times.back()) {
+  for (double spent = run->cpu_s; spent < kTimedOnce && times.size() < kMostRuns; spent += times.back()) {
     auto again = Simulate(subject, moments, dt, most_cpu_s, progress);
     if (!again.ok()) return again;
     times.push_back(again->cpu_s);
@@ -32,7 +32,7 @@ absl::StatusOr<Trajectory> Timed(const Subject& subject, const std::vector<doubl
   return run;
 }
 
-double FirstStep(const Subject& subject) { return std::min(0.95 * PredictedStep(subject), kLongest); }
+double FirstStep(const Subject& subject) { return std::min(0.95 * PredictedStep(subject), kFirstStep); }
 
 void Judge(const Subject& subject, const Yardstick& yardstick, const Trajectory& run, v1::ErrorRow& row) {
   if (run.simulated_s > 0) row.set_cpu_per_second(run.cpu_s / run.simulated_s);
@@ -41,7 +41,7 @@ void Judge(const Subject& subject, const Yardstick& yardstick, const Trajectory&
     return;
   }
   row.set_real_time(row.cpu_per_second() < 1);
-  const Distance distance = Between(subject, run, yardstick.reference);
+  const Distance distance = DistanceBetween(subject, run, yardstick.reference);
   if (distance.rms < kBlur * yardstick.reference_rms || distance.largest < kBlur * yardstick.reference_max) {
     row.set_verdict("below the reference's error");
     return;

@@ -94,14 +94,6 @@ double ErrorOf(const Model& model, const Outcome& outcome, const Trajectory& ref
   return std::sqrt(squares / static_cast<double>(reference.states.size()));
 }
 
-double LargestWay(const Model& model, const Trajectory& reference) {
-  double largest = 0;
-  for (const State& state : reference.states) {
-    largest = std::max(largest, (state.x - model.rest).colwise().norm().maxCoeff());
-  }
-  return largest;
-}
-
 // The mean error over the largest way of the reference; over a little of the scene's size where it hardly moves.
 double RelativeError(const Model& model, const Outcome& outcome, const Trajectory& reference) {
   const double way = std::max(LargestWay(model, reference), kInvisible / kNegligible * model.size);

@@ -10,11 +10,11 @@ namespace {
 constexpr int kMostParts = 200'000;
 
 // A triangle, or a part of one.
-struct Part {
+struct Piece {
   Eigen::Matrix3d corners;  // one a column
   double distance;          // of its middle [m]
   double upper;             // of every point's distance [m]
-  bool operator<(const Part& other) const { return upper < other.upper; }
+  bool operator<(const Piece& other) const { return upper < other.upper; }
 };
 
 class Search {
@@ -39,7 +39,7 @@ class Search {
 
   Farthest Run() {
     while (!waiting_.empty() && waiting_.top().upper > Enough() && looked_at_ < kMostParts) {
-      const Part part = waiting_.top();
+      const Piece part = waiting_.top();
       waiting_.pop();
       Halve(part);
     }
@@ -50,7 +50,7 @@ class Search {
   double Enough() const { return found_ + std::max(1e-4 * found_, 1e-9); }
 
  private:
-  void Halve(const Part& part) {
+  void Halve(const Piece& part) {
     const Eigen::Vector3d a = part.corners.col(0), b = part.corners.col(1), c = part.corners.col(2);
     const Eigen::Vector3d ab = (a + b) / 2, bc = (b + c) / 2, ca = (c + a) / 2;
     const Eigen::Vector3d middle = part.corners.rowwise().mean();
@@ -68,7 +68,7 @@ class Search {
   const MeasuredSurface& to_;
   double found_;
   int looked_at_ = 0;
-  std::priority_queue<Part> waiting_;
+  std::priority_queue<Piece> waiting_;
 };
 
 }  // namespace

@@ -9,12 +9,12 @@
 #include "absl/strings/str_format.h"
 #include "server/mesh/normals.h"
 #include "server/mesh/topology.h"
+#include "server/mesh/units.h"
 
 namespace phrenic::study {
 namespace {
 
-constexpr double kMillimetres = 1e3;  // in a metre
-constexpr double kSquare = kMillimetres * kMillimetres;
+constexpr double kSquare = kMillimetresAMetre * kMillimetresAMetre;
 constexpr double kMillilitres = 1e6;  // in a cubic metre
 
 // The largest first.
@@ -95,10 +95,10 @@ void Count(const Mesh& mesh, v1::SurfaceReport& report) {
 void Measure(const Mesh& mesh, double unit_mm, v1::SurfaceReport& report) {
   const Eigen::Vector3d least = mesh.vertices.rowwise().minCoeff(), greatest = mesh.vertices.rowwise().maxCoeff();
   for (int axis = 0; axis < 3; ++axis) {
-    report.add_least_mm(kMillimetres * least[axis]);
-    report.add_greatest_mm(kMillimetres * greatest[axis]);
+    report.add_least_mm(kMillimetresAMetre * least[axis]);
+    report.add_greatest_mm(kMillimetresAMetre * greatest[axis]);
   }
-  report.set_likely_unit(LikelyUnit(kMillimetres * (greatest - least).maxCoeff() / unit_mm));
+  report.set_likely_unit(LikelyUnit(kMillimetresAMetre * (greatest - least).maxCoeff() / unit_mm));
   report.set_area_mm2(kSquare * VertexAreas(mesh.vertices, mesh.triangles).sum());
   double volume = 0;
   bool whole = report.components_size() > 0;

@@ -27,8 +27,8 @@ std::optional<Between> FindTime(const std::vector<double>& times, double time) {
   return Between{static_cast<int>(step), std::clamp((time - first) / (second - first), 0.0, 1.0)};
 }
 
-absl::StatusOr<Moments> MatchTimes(const meshio::Motion& a, const meshio::Motion& b, bool match_phases) {
-  Moments moments;
+absl::StatusOr<MatchedMoments> MatchTimes(const meshio::Motion& a, const meshio::Motion& b, bool match_phases) {
+  MatchedMoments moments;
   if (!a.moves() && !b.moves()) {
     moments.pairs.push_back({});
     return moments;

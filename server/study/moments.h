@@ -25,7 +25,7 @@ struct Moment {
   Between a, b;
 };
 
-struct Moments {
+struct MatchedMoments {
   std::vector<Moment> pairs;
   int left_out = 0;  // times of A that are outside those of B
 };
@@ -33,7 +33,7 @@ struct Moments {
 // A moment for each time of A, with B interpolated linearly in time; for each time of B where A stands still; one where
 // neither moves. With `match_phases` the times of B are stretched to begin and end with those of A.
 // FAILED_PRECONDITION where the motions share no time.
-absl::StatusOr<Moments> MatchTimes(const meshio::Motion& a, const meshio::Motion& b, bool match_phases);
+absl::StatusOr<MatchedMoments> MatchTimes(const meshio::Motion& a, const meshio::Motion& b, bool match_phases);
 
 // Where the vertices are, 3 x n [m]; a motion of no times stays as its file's nodes have it.
 Points PositionsAt(const meshio::Motion& motion, const Between& at);

@@ -20,7 +20,6 @@ namespace phrenic::study {
 namespace {
 
 constexpr double kFastest = 10;  // velocities may err by as much as this lets positions err in a second [1/s]
-constexpr long kLook = 16;       // evaluations between two looks at the caller
 constexpr int kStop = -1;        // CVODE: an error that nothing recovers from
 constexpr int kRetry = 1;        // CVODE: try a smaller step
 
@@ -115,14 +114,6 @@ class Solver {
   bool ok_ = false;
 };
 
-double LargestWay(const Model& model, const Trajectory& trajectory) {
-  double largest = 0;
-  for (const State& state : trajectory.states) {
-    if (state.x.cols() > 0) largest = std::max(largest, (state.x - model.rest).colwise().norm().maxCoeff());
-  }
-  return largest;
-}
-
 }  // namespace
 
 absl::StatusOr<Trajectory> SolveReference(const Subject& subject, const std::vector<double>& moments, double tolerance,
@@ -163,7 +154,7 @@ absl::StatusOr<Trajectory> ConfirmedReference(const Subject& subject, const std:
   if (!coarse.ok()) return coarse.status();
   auto fine = SolveReference(subject, moments, 0.1 * tolerance, Part(progress, 0.4, 1), report);
   if (!fine.ok()) return fine.status();
-  const Distance apart = Between(subject, *coarse, *fine);
+  const Distance apart = DistanceBetween(subject, *coarse, *fine);
   report.set_tolerance_m(tolerance);
   report.set_error_max_mm(1e3 * apart.largest);
   report.set_error_rms_mm(1e3 * apart.rms);

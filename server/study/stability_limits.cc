@@ -23,8 +23,6 @@ constexpr double kRunaway = 1e12;   // growth of the energy over the first one t
 constexpr double kWithin = 0.01;    // of the limit that is found
 constexpr double kNear = 1.03;      // the first look around the prediction
 constexpr double kFar = 4;          // how far from the prediction the limit is looked for
-constexpr double kLongest = 0.1;    // the longest step that a session takes [s]
-constexpr long kLook = 16;
 
 enum class Trial { kBounded, kGrows, kCut };
 
@@ -198,7 +196,7 @@ absl::Status MeasureLimit(const Subject& subject, double most_cpu_s, const Progr
   const double predicted = TheoreticalStep(subject, fastest);
   Bisection bisection(subject, fastest, most_cpu_s, progress);
   if (predicted == 0) return TryOne(bisection, predicted, 0.2 / fastest.spectrum.omega_max, row);
-  if (std::isinf(predicted)) return TryOne(bisection, predicted, kLongest, row);
+  if (std::isinf(predicted)) return TryOne(bisection, predicted, kLongestStep, row);
   row.set_predicted_s(predicted);
   if (StepsToSeeGrowth(subject, fastest, predicted) > kMostSteps) {
     row.set_note(

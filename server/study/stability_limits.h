@@ -8,6 +8,8 @@
 
 namespace phrenic::study {
 
+inline constexpr double kLongestStep = 0.1;  // that a session takes [s]
+
 // The subject with all springs and elements `factor` times as stiff as its parameters say. (Beyond what a session may
 // ask for: every force with a stiffness of its tissue takes elasticity as a factor.)
 Subject Stiffened(const Subject& subject, double factor);

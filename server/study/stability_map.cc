@@ -11,7 +11,6 @@
 namespace phrenic::study {
 namespace {
 
-constexpr double kLongest = 0.1;    // the longest step that a session takes [s]
 constexpr double kBeside = 0.05;    // how far from the limit the two steps next to it are
 constexpr double kSmall = 0.25;     // of the limit: the step that the others are held against
 constexpr double kDamped = 0.01;    // of the energy at the small step
@@ -28,7 +27,7 @@ double Centre(const Subject& subject, const FastestMode& fastest) {
 // The longest first.
 std::vector<double> Ladder(double centre, int steps, double seconds) {
   std::vector<double> ladder;
-  const double longest = std::min(kLongest, seconds);
+  const double longest = std::min(kLongestStep, seconds);
   if (std::isinf(centre) || centre > 2 * longest) {
     for (int i = 0; i < 2 * steps; ++i) ladder.push_back(std::ldexp(longest, -i));
     return ladder;

@@ -6,15 +6,15 @@
 #include <limits>
 #include <vector>
 
+#include "server/mesh/units.h"
 #include "server/study/farthest_point.h"
 #include "server/study/surface_samples.h"
 
 namespace phrenic::study {
 namespace {
 
-constexpr double kMillimetres = 1e3;
 constexpr double kSquareMillimetres = 1e6;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoDistance = std::numeric_limits<double>::quiet_NaN();
 
 struct Weighted {
   double distance;  // [m]
@@ -53,7 +53,7 @@ class Walk {
 };
 
 Eigen::VectorXd VertexDistances(const MeasuredSurface& from, const MeasuredSurface& to) {
-  Eigen::VectorXd distances = Eigen::VectorXd::Constant(from.vertices().cols(), kNan);
+  Eigen::VectorXd distances = Eigen::VectorXd::Constant(from.vertices().cols(), kNoDistance);
   Walk walk(to);
   for (const auto triangle : from.triangles().colwise()) {
     for (const int vertex : triangle) {
@@ -101,7 +101,7 @@ struct Sums {
 double Percentile95(const std::vector<Weighted>& samples) {
   double total = 0, area = 0;
   for (const Weighted& sample : samples) total += sample.area;
-  if (!(total > 0)) return kNan;
+  if (!(total > 0)) return kNoDistance;
   for (const Weighted& sample : samples) {
     area += sample.area;
     if (area >= 0.95 * total) return sample.distance;
@@ -122,31 +122,31 @@ v1::SurfaceDistance Unknown() {
   const auto* descriptor = v1::SurfaceDistance::descriptor();
   for (int i = 0; i < descriptor->field_count(); ++i) {
     if (descriptor->field(i)->cpp_type() != google::protobuf::FieldDescriptor::CPPTYPE_DOUBLE) continue;
-    distance.GetReflection()->SetDouble(&distance, descriptor->field(i), kNan);
+    distance.GetReflection()->SetDouble(&distance, descriptor->field(i), kNoDistance);
   }
   return distance;
 }
 
 void FillMeans(const Directed& a, const Directed& b, double tolerance, v1::SurfaceDistance& distance) {
   const Sums of_a(a.samples, tolerance), of_b(b.samples, tolerance);
-  distance.set_mean_a_to_b(kMillimetres * of_a.first / of_a.area);
-  distance.set_mean_b_to_a(kMillimetres * of_b.first / of_b.area);
-  distance.set_rms_a_to_b(kMillimetres * std::sqrt(of_a.second / of_a.area));
-  distance.set_rms_b_to_a(kMillimetres * std::sqrt(of_b.second / of_b.area));
-  distance.set_assd(kMillimetres * (of_a.first + of_b.first) / (of_a.area + of_b.area));
+  distance.set_mean_a_to_b(kMillimetresAMetre * of_a.first / of_a.area);
+  distance.set_mean_b_to_a(kMillimetresAMetre * of_b.first / of_b.area);
+  distance.set_rms_a_to_b(kMillimetresAMetre * std::sqrt(of_a.second / of_a.area));
+  distance.set_rms_b_to_a(kMillimetresAMetre * std::sqrt(of_b.second / of_b.area));
+  distance.set_assd(kMillimetresAMetre * (of_a.first + of_b.first) / (of_a.area + of_b.area));
   distance.set_surface_dice((of_a.within + of_b.within) / (of_a.area + of_b.area));
 }
 
 void FillLargest(const Directed& a, const Directed& b, v1::SurfaceDistance& distance) {
   const double p95_a = Percentile95(a.samples), p95_b = Percentile95(b.samples);
-  distance.set_p95_a_to_b(kMillimetres * p95_a);
-  distance.set_p95_b_to_a(kMillimetres * p95_b);
-  distance.set_hd95_max(kMillimetres * (std::isnan(p95_a) ? p95_a : std::max(p95_b, p95_a)));
-  distance.set_hd95_pooled(kMillimetres * Percentile95(Pooled(a.samples, b.samples)));
-  distance.set_hd_a_to_b(kMillimetres * a.farthest.found);
-  distance.set_hd_b_to_a(kMillimetres * b.farthest.found);
-  distance.set_hd_max(kMillimetres * std::max(a.farthest.found, b.farthest.found));
-  distance.set_hd_max_bound(kMillimetres * std::max(a.farthest.bound, b.farthest.bound));
+  distance.set_p95_a_to_b(kMillimetresAMetre * p95_a);
+  distance.set_p95_b_to_a(kMillimetresAMetre * p95_b);
+  distance.set_hd95_max(kMillimetresAMetre * (std::isnan(p95_a) ? p95_a : std::max(p95_b, p95_a)));
+  distance.set_hd95_pooled(kMillimetresAMetre * Percentile95(Pooled(a.samples, b.samples)));
+  distance.set_hd_a_to_b(kMillimetresAMetre * a.farthest.found);
+  distance.set_hd_b_to_a(kMillimetresAMetre * b.farthest.found);
+  distance.set_hd_max(kMillimetresAMetre * std::max(a.farthest.found, b.farthest.found));
+  distance.set_hd_max_bound(kMillimetresAMetre * std::max(a.farthest.bound, b.farthest.bound));
 }
 
 }  // namespace
@@ -160,11 +160,11 @@ absl::StatusOr<v1::SurfaceDistance> MeasureDistance(const MeasuredSurface& a, co
   v1::SurfaceDistance distance = Unknown();
   distance.set_samples_a(sampling_a->samples);
   distance.set_samples_b(sampling_b->samples);
-  distance.set_spacing_a(a.empty() ? kNan : kMillimetres * sampling_a->longest);
-  distance.set_spacing_b(b.empty() ? kNan : kMillimetres * sampling_b->longest);
+  distance.set_spacing_a(a.empty() ? kNoDistance : kMillimetresAMetre * sampling_a->longest);
+  distance.set_spacing_b(b.empty() ? kNoDistance : kMillimetresAMetre * sampling_b->longest);
   distance.set_area_a(kSquareMillimetres * a.Area());
   distance.set_area_b(kSquareMillimetres * b.Area());
-  if (at_vertices != nullptr) at_vertices->setConstant(a.vertices().cols(), kNan);
+  if (at_vertices != nullptr) at_vertices->setConstant(a.vertices().cols(), kNoDistance);
   if (a.empty() || b.empty()) return distance;
   // Each direction sums for itself, so that the bits do not depend on the threads.
   std::future<Directed> later = std::async([&] { return Measure(b, a, *sampling_b); });

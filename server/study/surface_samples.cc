@@ -7,13 +7,13 @@
 #include <numbers>
 
 #include "absl/strings/str_format.h"
+#include "server/mesh/units.h"
 
 namespace phrenic::study {
 namespace {
 
 constexpr double kWanted = 5e4;
 constexpr double kMost = 5e6;
-constexpr double kMillimetres = 1e3;
 
 struct Corners {
   Corners(const ConstPoints& x, const Triangles& triangles, Eigen::Index t)
@@ -57,7 +57,8 @@ absl::StatusOr<Sampling> PlanSampling(const ConstPoints& x, const Triangles& tri
     return absl::InvalidArgumentError(absl::StrFormat(
         "spacing_mm: %g mm asks for %.3g samples of a surface, and %g are the most; about %.2g mm is the "
         "least for it",
-        kMillimetres * *spacing, samples, kMost, 1.05 * kMillimetres * *spacing * std::sqrt(samples / kMost)));
+        kMillimetresAMetre * *spacing, samples, kMost,
+        1.05 * kMillimetresAMetre * *spacing * std::sqrt(samples / kMost)));
   }
   sampling.samples = static_cast<std::int64_t>(samples);
   for (Eigen::Index t = 0; t < triangles.cols(); ++t) {

@@ -28,7 +28,7 @@ constexpr Size kSizes[] = {
     {Kind::kPatient, {"patient model, high", 20740, 4858, 6.37, 6.84, 3.65, "fig. 5.24"}},
 };
 
-struct Trial {
+struct TrialRow {
   Kind kind;
   ThesisTrial trial;
   int vertices;
@@ -37,7 +37,7 @@ struct Trial {
 };
 
 // With parts left out; all of them with rigid links.
-constexpr Trial kTrials[] = {
+constexpr TrialRow kTrials[] = {
     {Kind::kPerfect, ThesisTrial::kNoAttachments, 20859, kThoraces / 12.2994, "fig. 5.12, no rib/sternum attachment"},
     {Kind::kPerfect, ThesisTrial::kNoRibs, 11359, kThoraces / 12.1572, "fig. 5.12, no rib kinematics"},
     {Kind::kPerfect, ThesisTrial::kNoRibs, 20909, 9.68, "fig. 5.24, diaphragm only, high"},
@@ -103,7 +103,7 @@ std::optional<ThesisFigure> LikeThesisFigure(const v1::Scene& scene, int64_t ver
   for (const Size& row : kSizes) {
     if (whole && row.kind == *like) take(row.size.vertices, FigureOf(row.size, trial == ThesisTrial::kFull));
   }
-  for (const Trial& row : kTrials) {
+  for (const TrialRow& row : kTrials) {
     if (row.trial != trial || row.kind != *like) continue;
     take(row.vertices, {absl::StrFormat("%s, %d vertices", row.what, row.vertices), row.rate});
   }

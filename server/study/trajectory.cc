@@ -10,8 +10,6 @@
 namespace phrenic::study {
 namespace {
 
-constexpr long kLook = 16;  // steps between two looks at the clock and the caller
-
 // Why a step was the last one.
 std::string Ended(const absl::Status& why, double time) {
   if (absl::IsAborted(why)) return absl::StrFormat("stopped at %.4g s: %s", time, std::string(why.message()));
@@ -85,7 +83,15 @@ absl::StatusOr<Trajectory> Simulate(const Subject& subject, const std::vector<do
   return trajectory;
 }
 
-Distance Between(const Subject& subject, const Trajectory& a, const Trajectory& b) {
+double LargestWay(const Model& model, const Trajectory& trajectory) {
+  double largest = 0;
+  for (const State& state : trajectory.states) {
+    if (state.x.cols() > 0) largest = std::max(largest, (state.x - model.rest).colwise().norm().maxCoeff());
+  }
+  return largest;
+}
+
+Distance DistanceBetween(const Subject& subject, const Trajectory& a, const Trajectory& b) {
   const Model& model = *subject.model;
   Distance distance;
   double squares = 0;

@@ -35,7 +35,10 @@ struct Distance {
 };
 
 // Over the moments that both have, and the vertices that forces move; equal models.
-Distance Between(const Subject& subject, const Trajectory& a, const Trajectory& b);
+Distance DistanceBetween(const Subject& subject, const Trajectory& a, const Trajectory& b);
+
+// How far any vertex came from rest [m].
+double LargestWay(const Model& model, const Trajectory& trajectory);
 
 // RMS distance of the vertices that forces move [m]; positions 3 x n.
 double RmsApart(const Model& model, const Points& a, const Points& b);

@@ -10,8 +10,6 @@
 namespace phrenic::study {
 namespace {
 
-constexpr long kLook = 16;  // steps between two looks at the clock and the caller
-
 v1::Divergence Explain(const Subject& subject, const absl::Status& why, double dt, const Workspace& work,
                        const State& diverged) {
   State before = diverged;

@@ -5,13 +5,12 @@
 #include "server/mesh/nearest.h"
 #include "server/mesh/normals.h"
 #include "server/mesh/topology.h"
+#include "server/mesh/units.h"
 #include "tests/anatomy/crossings.h"
 #include "tests/anatomy/parts.h"
 
 namespace phrenic::anatomy {
 namespace {
-
-constexpr double kMillimetre = 1e-3;
 
 class DiaphragmTest : public testing::Test {
  protected:

@@ -6,12 +6,11 @@
 #include "server/mesh/nearest.h"
 #include "server/mesh/normals.h"
 #include "server/mesh/topology.h"
+#include "server/mesh/units.h"
 #include "tests/anatomy/parts.h"
 
 namespace phrenic::anatomy {
 namespace {
-
-constexpr double kMillimetre = 1e-3;
 
 Points Together(const std::vector<v1::Anatomy>& parts) {
   Points all(3, 0);

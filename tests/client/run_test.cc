@@ -171,14 +171,14 @@ TEST(Run, BadScenesAreRefusedWithTheirFieldOrPlace) {
   }
 }
 
-struct BadWords {
+struct BadRun {
   std::vector<std::string> arguments;
   int code;
   const char* words;
 };
 
 TEST(Run, BadWordsAreRefusedWithTheRightCode) {
-  const BadWords lines[] = {
+  const BadRun lines[] = {
       {{"run", "no-such-scene"}, 1, "cube-springs"},
       {{"run", "/nowhere/scene.textproto"}, 1, "/nowhere/scene.textproto"},
       {{"run", "cube-springs", "--set", "breath_force=99"}, 1, "breath_force: 99 is outside 0 to 20"},
@@ -194,7 +194,7 @@ TEST(Run, BadWordsAreRefusedWithTheRightCode) {
       {{"dance"}, 2, ""},
       {{}, 2, "subcommand"},
   };
-  for (const BadWords& line : lines) {
+  for (const BadRun& line : lines) {
     const Outcome run = Phrenic(line.arguments);
     EXPECT_EQ(run.code, line.code) << testing::PrintToString(line.arguments);
     EXPECT_THAT(run.err, HasSubstr(line.words)) << testing::PrintToString(line.arguments);

@@ -62,7 +62,7 @@ TEST_P(SolidStrain, StretchesByYoungsModulusAndThinsByPoissonsRatio) {
 
 INSTANTIATE_TEST_SUITE_P(Strains, SolidStrain, testing::Values("STRAIN_LINEAR", "STRAIN_COROTATIONAL"));
 
-double LargestForceWhenTurned(const std::string& strain) {
+double LargestForceOfATurnedCube(const std::string& strain) {
   const auto model = Beam(2, strain);
   State state = model->InitialState();
   state.x = Eigen::AngleAxisd(1.2, Eigen::Vector3d(1, -2, 3).normalized()).toRotationMatrix() * model->rest;
@@ -70,8 +70,8 @@ double LargestForceWhenTurned(const std::string& strain) {
 }
 
 TEST(SolidTurned, PullsOnlyWhereStrainIsLinear) {
-  EXPECT_LT(LargestForceWhenTurned("STRAIN_COROTATIONAL"), 1e-13);
-  EXPECT_GT(LargestForceWhenTurned("STRAIN_LINEAR"), 0.1);
+  EXPECT_LT(LargestForceOfATurnedCube("STRAIN_COROTATIONAL"), 1e-13);
+  EXPECT_GT(LargestForceOfATurnedCube("STRAIN_LINEAR"), 0.1);
 }
 
 double SagOfCantilever(int n) {

@@ -15,7 +15,7 @@ Points RandomPoints(int n, unsigned seed) {
 }
 
 // An 11 x 11 x 11 lattice: many distances are exactly equal.
-Points Lattice() {
+Points Grid() {
   Points points(3, 11 * 11 * 11);
   for (int i = 0; i < points.cols(); ++i) points.col(i) << i % 11, i / 11 % 11, i / 121;
   return points;
@@ -42,7 +42,7 @@ TEST(Nearest, IsTheOneOfAFullSearch) {
 }
 
 TEST(Nearest, TiesGoToTheLowestIndex) {
-  const Points points = Lattice();
+  const Points points = Grid();
   const NearestSearch search(points);
   for (int i = 0; i < 10; ++i) {
     const Eigen::Vector3d middle = points.col(i * 133).array() + 0.5;  // eight corners equally far
@@ -64,7 +64,7 @@ TEST(Nearest, OnePointIsAlwaysTheNearest) {
 }
 
 TEST(Within, HoldsTheBallsBoundaryNearestFirst) {
-  const std::vector<Neighbour> found = NearestSearch(Lattice()).Within({5, 5, 5}, 1);
+  const std::vector<Neighbour> found = NearestSearch(Grid()).Within({5, 5, 5}, 1);
   ASSERT_EQ(found.size(), 7U);  // the centre and six at exactly 1 m
   EXPECT_EQ(found[0].vertex, 5 * 133);
   for (size_t i = 1; i < found.size(); ++i) EXPECT_EQ(found[i].distance, 1);
@@ -82,8 +82,8 @@ TEST(Within, IsTheOneOfAFullSearch) {
 }
 
 TEST(Within, OfNoRadiusIsEmpty) {
-  EXPECT_TRUE(NearestSearch(Lattice()).Within({5, 5, 5}, -2).empty());
-  EXPECT_TRUE(NearestSearch(Lattice()).Within({5, 5, 5}, std::numeric_limits<double>::quiet_NaN()).empty());
+  EXPECT_TRUE(NearestSearch(Grid()).Within({5, 5, 5}, -2).empty());
+  EXPECT_TRUE(NearestSearch(Grid()).Within({5, 5, 5}, std::numeric_limits<double>::quiet_NaN()).empty());
 }
 
 }  // namespace

@@ -59,14 +59,14 @@ TEST(Motion, StepsInOtherVersionsAreRefusedRatherThanPassedOver) {
   EXPECT_THAT(std::string(moving.status().message()), HasSubstr("MSH 2.2 in text"));
 }
 
-struct Bad {
+struct BadMotion {
   const char* from;
   const char* to;
   const char* words;
 };
 
 TEST(Motion, BadStepsAreRefusedWithTheirLine) {
-  const Bad cases[] = {
+  const BadMotion cases[] = {
       {"10 0 0 4\n", "", "a.msh:38: the step has rows for 2 of 3 nodes"},
       {"10 0 0 4\n", "7 0 0 4\n", "a.msh:37: node 7 twice"},
       {"10 0 0 4\n", "11 0 0 4\n", "a.msh:37: there is no node 11"},
@@ -79,7 +79,7 @@ TEST(Motion, BadStepsAreRefusedWithTheirLine) {
       {"1\n0.5\n3\n", "1\n0.5\n-3\n", "the number of the view's integer tags"},
   };
   const std::string good = kTriangle + Step("0", 0) + Step("0.5", 2);
-  for (const Bad& bad : cases) {
+  for (const BadMotion& bad : cases) {
     const std::string text = absl::StrReplaceAll(good, {{bad.from, bad.to}});
     ASSERT_NE(text, good) << bad.from;
     const auto motion = ParseMotion("a.msh", text, 1);

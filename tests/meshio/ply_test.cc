@@ -26,7 +26,7 @@ TEST(Ply, PolygonsAreFannedFromTheirFirstVertex) {
   EXPECT_EQ(mesh->triangles.col(2), Eigen::Vector3i(0, 3, 4));
 }
 
-struct Bad {
+struct BadPly {
   const char* from;
   const char* to;
   const char* start;
@@ -34,7 +34,7 @@ struct Bad {
 };
 
 TEST(Ply, ErrorsNameTheLineAndTheFault) {
-  const Bad changes[] = {
+  const BadPly changes[] = {
       {"ply\n", "plx\n", "a.ply:1: ", "start with \"ply\""},
       {"format ascii 1.0\n", "", "a.ply:2: ", "second line"},
       {"ascii", "zip", "a.ply:2: ", "encoding \"zip\""},
@@ -62,7 +62,7 @@ TEST(Ply, ErrorsNameTheLineAndTheFault) {
       {"vertex_indices", "corners", "a.ply:15: ", "no list \"vertex_indices\""},
       {"element face 1", "element tristrips 1", "a.ply:15: ", "triangle strips are not read"},
   };
-  for (const Bad& bad : changes) {
+  for (const BadPly& bad : changes) {
     const std::string text = absl::StrReplaceAll(kPentagon, {{bad.from, bad.to}});
     ASSERT_NE(text, kPentagon) << bad.from;
     const auto mesh = Parse("a.ply", text, 1.0);

@@ -41,7 +41,7 @@ TEST(Stl, LettersLineEndsAndTheNumberOfSolidsDoNotMatter) {
   }
 }
 
-struct Bad {
+struct BadStl {
   const char* from;
   const char* to;
   const char* start;
@@ -49,7 +49,7 @@ struct Bad {
 };
 
 TEST(Stl, ErrorsInTextNameTheLineAndTheFault) {
-  const Bad changes[] = {
+  const BadStl changes[] = {
       {"vertex 1 0 0", "vertex 1 0", "a.stl:5: ", "vertex x y z"},
       {"vertex 1 0 0", "vertex 1 0 nan", "a.stl:5: ", "finite"},
       {"vertex 1 0 0", "vertex 1 0 0 0", "a.stl:5: ", "vertex x y z"},
@@ -60,7 +60,7 @@ TEST(Stl, ErrorsInTextNameTheLineAndTheFault) {
       {"endsolid", "endsolid\nfacet", "a.stl:10: ", "\"solid\" is expected"},
   };
   const std::string good = kSolid + Facet("0 0 0", "1 0 0", "0 1 0") + "endsolid\n";
-  for (const Bad& bad : changes) {
+  for (const BadStl& bad : changes) {
     const auto mesh = Parse("a.stl", absl::StrReplaceAll(good, {{bad.from, bad.to}}), 1.0);
     EXPECT_EQ(mesh.status().code(), absl::StatusCode::kInvalidArgument) << bad.to;
     EXPECT_THAT(std::string(mesh.status().message()), StartsWith(bad.start)) << bad.from;

@@ -17,6 +17,7 @@
 #include "server/study/thesis_tables.h"
 #include "server/study/timed_model.h"
 #include "tests/compile_text.h"
+#include "tests/study/run_on.h"
 
 namespace phrenic::study {
 namespace {
@@ -59,16 +60,6 @@ const char kSheet[] = R"(
   constraints { rigid_links { body: "sheet" list { links { a: 44 b: 46 } links { a: 64 b: 66 } } } }
   constraints { limits { body: "sheet" at_most_ratio: 1.5 } }
 )";
-
-absl::StatusOr<v1::StudyResult> RunOn(
-    const std::string& text, v1::CreateStudyRequest request,
-    const Progress& progress = [](double, std::string_view) { return true; }) {
-  request.mutable_source()->mutable_scene()->CopyFrom(*schema::ParseScene("test", text));
-  const Compiler compile = [](const v1::SceneSource& source) {
-    return Compile(source.scene(), [](const v1::Body&) { return absl::NotFoundError("no files"); });
-  };
-  return Run(request, compile, progress);
-}
 
 v1::CreateStudyRequest CostRequest(int steps, int trials) {
   v1::CreateStudyRequest request;

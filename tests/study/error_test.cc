@@ -9,6 +9,7 @@
 #include "server/schema/fields.h"
 #include "server/study/run.h"
 #include "tests/compile_text.h"
+#include "tests/study/run_on.h"
 
 namespace phrenic::study {
 namespace {
@@ -34,14 +35,6 @@ const char kSwing[] = R"(
 const char kLinks[] = R"(
   constraints { rigid_links { body: "b" list { links { a: 0 b: 1 } } } }
 )";
-
-absl::StatusOr<v1::StudyResult> RunOn(const std::string& text, v1::CreateStudyRequest request) {
-  request.mutable_source()->mutable_scene()->CopyFrom(*schema::ParseScene("test", text));
-  const Compiler compile = [](const v1::SceneSource& source) {
-    return Compile(source.scene(), [](const v1::Body&) { return absl::NotFoundError("no files"); });
-  };
-  return Run(request, compile, [](double, std::string_view) { return true; });
-}
 
 v1::CreateStudyRequest ErrorRequest(double seconds, int levels) {
   v1::CreateStudyRequest request;

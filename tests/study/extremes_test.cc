@@ -12,6 +12,7 @@
 
 #include "server/study/energy_balance.h"
 #include "tests/compile_text.h"
+#include "tests/study/run_on.h"
 
 namespace phrenic::study {
 
@@ -20,8 +21,6 @@ void PrintTo(const ExtremeCase& extreme, std::ostream* out) { *out << extreme.na
 namespace {
 
 using testing::HasSubstr;
-
-const Progress kNobody = [](double, std::string_view) { return true; };
 
 v1::StabilityTable Judge(const ExtremeCase& extreme) {
   v1::StabilityStudy study;

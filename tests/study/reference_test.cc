@@ -6,16 +6,10 @@
 #include <numbers>
 
 #include "tests/compile_text.h"
+#include "tests/study/run_on.h"
 
 namespace phrenic::study {
 namespace {
-
-const Progress kNobody = [](double, std::string_view) { return true; };
-
-Subject SubjectOf(const std::string& text) {
-  auto model = CompileText(text);
-  return {.model = model, .parameters = model->parameters};
-}
 
 // A mass of 2 kg, 1 m above a fixed point, on a spring of 50 N/m with friction 0.8 N s/m, pulled down by gravity.
 const char kOscillator[] = R"(
@@ -51,7 +45,7 @@ TEST(Reference, IsTheClosedFormOfADampedOscillator) {
   EXPECT_NEAR(report.largest_displacement_mm(), 2e3 * sag, 0.5e3 * sag);
 }
 
-const char kPendulum[] = R"(
+const char kSwingingLink[] = R"(
   name: "pendulum" title: "Pendulum"
   bodies {
     name: "b" role: ROLE_DEFORMABLE mass: 2 fixed_vertices: [0]
@@ -63,7 +57,7 @@ const char kPendulum[] = R"(
 )";
 
 TEST(Reference, KeepsRigidLinksAndTheirPeriod) {
-  const Subject subject = SubjectOf(kPendulum);
+  const Subject subject = SubjectOf(kSwingingLink);
   v1::Reference report;
   const double period = 2.367841948;  // from 90 degrees, length 1 m, g = 9.81 m/s^2 (complete elliptic integral)
   const auto reference = SolveReference(subject, Moments(period, 4), 1e-10, kNobody, report);
@@ -74,7 +68,7 @@ TEST(Reference, KeepsRigidLinksAndTheirPeriod) {
 }
 
 TEST(Reference, IsMissingWhereNoSmoothEquationIs) {
-  std::string text = kPendulum;
+  std::string text = kSwingingLink;
   text.replace(text.find("list {"), 0, "projection: PROJECTION_THESIS ");
   v1::Reference report;
   const auto reference = SolveReference(SubjectOf(text), Moments(1, 1), 1e-8, kNobody, report);

@@ -13,18 +13,12 @@
 #include "server/study/stability_map.h"
 #include "server/study/subject.h"
 #include "tests/compile_text.h"
+#include "tests/study/run_on.h"
 
 namespace phrenic::study {
 namespace {
 
 using testing::HasSubstr;
-
-const Progress kNobody = [](double, std::string_view) { return true; };
-
-Subject SubjectOf(const std::string& text) {
-  auto model = CompileText(text);
-  return {.model = model, .parameters = model->parameters};
-}
 
 // Masses of 1 kg between two fixed ends, in a row.
 const char kChain[] = R"(
@@ -41,7 +35,7 @@ const char kChain[] = R"(
   forces { springs { bodies: "b" stiffness: 100 } }
 )";
 
-const char kSheet[] = R"(
+const char kHungSheet[] = R"(
   name: "sheet" title: "Sheet"
   bodies {
     name: "b" role: ROLE_DEFORMABLE mass: 18 fixed_vertices: [0, 1, 2, 3, 4, 5]
@@ -74,10 +68,10 @@ TEST(Limits, OfAChainAreThosePredicted) {
 
 TEST(Limits, OfASheetWithFrictionAreThosePredicted) {
   for (const v1::Integrator integrator : kExplicit) {
-    const v1::LimitRow row = Limit(kSheet, integrator);
+    const v1::LimitRow row = Limit(kHungSheet, integrator);
     EXPECT_NEAR(row.ratio(), 1, 0.1) << NameOf(integrator) << ": " << row.note();
   }
-  const v1::LimitRow euler = Limit(kSheet, v1::INTEGRATOR_EXPLICIT_EULER);
+  const v1::LimitRow euler = Limit(kHungSheet, v1::INTEGRATOR_EXPLICIT_EULER);
   EXPECT_NEAR(euler.ratio(), 1, 0.1) << euler.note();
 }
 
@@ -97,7 +91,7 @@ TEST(Limits, OfExplicitEulerWithoutFrictionAreNone) {
 TEST(Limits, OfImplicitIntegratorsAreNoneHoweverStiff) {
   for (const v1::Integrator integrator : kImplicit) {
     for (const double factor : {1.0, 1e6}) {
-      const v1::LimitRow row = Limit(kSheet, integrator, factor);
+      const v1::LimitRow row = Limit(kHungSheet, integrator, factor);
       EXPECT_FALSE(row.has_predicted_s());
       EXPECT_THAT(row.note(), HasSubstr("measured at 0.1 s: stable")) << NameOf(integrator) << factor;
     }
@@ -126,16 +120,9 @@ v1::CreateStudyRequest MapRequest() {
   return request;
 }
 
-absl::StatusOr<v1::StudyResult> RunOn(const std::string& text, v1::CreateStudyRequest request,
-                                      const Progress& progress = kNobody) {
-  request.mutable_source()->mutable_scene()->CopyFrom(*schema::ParseScene("test", text));
-  const Compiler compile = [](const v1::SceneSource& source) {
-    return Compile(source.scene(), [](const v1::Body&) { return absl::NotFoundError("no files"); });
-  };
-  return Run(request, compile, progress);
+std::string Loaded() {
+  return std::string(kHungSheet) + R"(forces { gravity { bodies: "b" acceleration { z: -2 } } })";
 }
-
-std::string Loaded() { return std::string(kSheet) + R"(forces { gravity { bodies: "b" acceleration { z: -2 } } })"; }
 
 TEST(Map, DividesAtTheLimit) {
   const auto result = RunOn(Loaded(), MapRequest());

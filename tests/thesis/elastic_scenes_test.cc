@@ -2,20 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
 #include "tests/compile_text.h"
+#include "tests/thesis/shipped.h"
 
 namespace phrenic {
 namespace {
-
-std::shared_ptr<const Model> ShippedScene(const std::string& name) {
-  std::ifstream file(std::string(PHRENIC_SOURCE_DIR) + "/server/scenes/" + name + ".textproto");
-  std::stringstream text;
-  text << file.rdbuf();
-  return CompileText(text.str());
-}
 
 State After(const Model& model, double time) { return RunTo(model, time, model.parameters.time_step()); }
 
@@ -27,7 +19,7 @@ double Descent(const Model& model, const State& state, size_t probe) {
 }
 
 TEST(HangingSheets, OfSpringsAndOfElementsComeDownAlike) {
-  const auto model = ShippedScene("hanging-sheet");
+  const auto model = CompileText(ShippedScene("hanging-sheet"));
   const State state = After(*model, 20);  // five breaths of wind: it is still then
   const double springs = Descent(*model, state, 0), membrane = Descent(*model, state, 1);
   EXPECT_GT(membrane, 0.01);
@@ -35,7 +27,7 @@ TEST(HangingSheets, OfSpringsAndOfElementsComeDownAlike) {
 }
 
 TEST(MixedMethods, TendonKeepsItsSizeWhereMuscleStretches) {
-  const auto model = ShippedScene("mixed-methods");
+  const auto model = CompileText(ShippedScene("mixed-methods"));
   const State state = After(*model, 2);
   EXPECT_GT(Descent(*model, state, 0), 0.05);
   const auto length = [&](int a, int b) {
@@ -46,14 +38,14 @@ TEST(MixedMethods, TendonKeepsItsSizeWhereMuscleStretches) {
 }
 
 TEST(Fibres, FlattenTheDomeAndLetItRiseAgain) {
-  const auto model = ShippedScene("fibres");
+  const auto model = CompileText(ShippedScene("fibres"));
   const double height = 0.09;
   EXPECT_GT(Descent(*model, After(*model, 2), 0), 0.2 * height);
   EXPECT_LT(std::abs(Descent(*model, After(*model, 4), 0)), 0.02 * height);
 }
 
 TEST(LiverAndDiaphragm, MoveTogether) {
-  const auto model = ShippedScene("fem-liver-diaphragm");
+  const auto model = CompileText(ShippedScene("fem-liver-diaphragm"));
   const State deep = After(*model, 2), end = After(*model, 4);
   EXPECT_GT(Descent(*model, deep, 0), 0.015);
   EXPECT_GT(Descent(*model, deep, 1), 0.005);

@@ -8,10 +8,10 @@
 namespace phrenic {
 namespace {
 
-constexpr double kTolerance = 1e-10;  // of the length
-constexpr double kGain = 0.5;         // an iteration that leaves more of the error than this is the last
-constexpr int kFactorisations = 20;   // along the directions of the moment, where those before do not get there
-constexpr double kLargestMove = 0.5;  // of a link's length in one go
+constexpr double kTolerance = 1e-10;   // of the length
+constexpr double kWorthAnother = 0.5;  // an iteration that leaves more of the error than this is the last
+constexpr int kFactorisations = 20;    // along the directions of the moment, where those before do not get there
+constexpr double kLargestMove = 0.5;   // of a link's length in one go
 constexpr int kSweeps = 200;
 constexpr int kSwitches = 30;      // rounds of limits that take hold or let go
 constexpr double kAtRest = 1e-12;  // of the fastest rate: a limit that is left slower needs no stopping
@@ -182,7 +182,7 @@ bool LinkNetwork::Correct(double dt, Scratch& scratch, State& state, double& err
 void LinkNetwork::Newton(const ConstPoints& before, double dt, Scratch& scratch, State& state) const {
   Factorise(before, scratch);
   double error = Errors(state, scratch), last = std::numeric_limits<double>::infinity();
-  while (error > kTolerance && error <= kGain * last) {
+  while (error > kTolerance && error <= kWorthAnother * last) {
     last = error;
     if (!Correct(dt, scratch, state, error)) break;
   }

@@ -10,7 +10,7 @@
 namespace phrenic {
 namespace {
 
-std::string In(std::string_view path, const char* field) { return absl::StrCat(std::string(path), ".", field); }
+std::string FieldOf(std::string_view path, const char* field) { return absl::StrCat(std::string(path), ".", field); }
 
 // The body may be driven, but neither give way nor ride on others.
 absl::StatusOr<int> FirmSurface(const std::string& name, std::string_view path, const Draft& draft) {
@@ -32,10 +32,10 @@ absl::StatusOr<int> FirmSurface(const std::string& name, std::string_view path, 
 absl::StatusOr<std::unique_ptr<Force>> Drag::Make(const v1::Drag& scene, const std::string& given,
                                                   std::string_view path, Draft& draft) {
   const std::string name = ElementName(given, "drag", scene.bodies());
-  auto bodies = draft.DeformableBodies(scene.bodies(), In(path, "bodies"));
+  auto bodies = draft.DeformableBodies(scene.bodies(), FieldOf(path, "bodies"));
   if (!bodies.ok()) return bodies.status();
   if (!scene.vertices().empty() && bodies->size() != 1) {
-    return FieldError(In(path, "vertices"), "are of one body, and several are named: write one drag for each");
+    return FieldError(FieldOf(path, "vertices"), "are of one body, and several are named: write one drag for each");
   }
   std::unique_ptr<Drag> force(new Drag(name));
   force->stiffness_ = scene.stiffness();
@@ -82,7 +82,7 @@ absl::Status Drag::FindTargets(const v1::Drag& scene, std::string_view path, con
 }
 
 absl::Status Drag::FindSurfaceTargets(const v1::Drag& scene, std::string_view path, const Draft& draft) {
-  const auto found = FirmSurface(scene.surface(), In(path, "surface"), draft);
+  const auto found = FirmSurface(scene.surface(), FieldOf(path, "surface"), draft);
   if (!found.ok()) return found.status();
   const BodyModel& surface = draft.model.bodies[*found];
   pose_ = surface.pose;

@@ -8,7 +8,7 @@
 namespace phrenic {
 namespace {
 
-constexpr std::array<Force::Output, 4> kOutputs = {
+constexpr std::array<Force::Output, 4> kLungOutputs = {
     {{"volume", "m^3"}, {"flow", "m^3/s"}, {"alveolar_pressure", "Pa"}, {"pleural_pressure", "Pa"}}};
 
 absl::Status AddSurfaces(const v1::Lungs& scene, const std::string& path, const Draft& draft, Chamber& chamber) {
@@ -66,7 +66,7 @@ double Lungs::Energy(const Instant& at) const {
   return change * change / (2 * compliance_);
 }
 
-std::span<const Force::Output> Lungs::outputs() const { return kOutputs; }
+std::span<const Force::Output> Lungs::outputs() const { return kLungOutputs; }
 
 double Lungs::Read(size_t output, const Instant& at) const {
   switch (output) {

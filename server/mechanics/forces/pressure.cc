@@ -9,7 +9,7 @@
 namespace phrenic {
 namespace {
 
-constexpr std::array<Force::Output, 2> kOutputs = {{{"pressure", "Pa"}, {"volume", "m^3"}}};
+constexpr std::array<Force::Output, 2> kPressureOutputs = {{{"pressure", "Pa"}, {"volume", "m^3"}}};
 
 std::string Detail(const v1::Pressure& scene) {
   std::string detail = absl::StrFormat("%g Pa", scene.pressure());
@@ -81,7 +81,7 @@ double Pressure::Energy(const Instant& at) const {
   return -Given(at) * volume + 0.5 * stiffness_ * more * more;
 }
 
-std::span<const Force::Output> Pressure::outputs() const { return kOutputs; }
+std::span<const Force::Output> Pressure::outputs() const { return kPressureOutputs; }
 
 double Pressure::Read(size_t output, const Instant& at) const {
   return output == 0 ? PressureAt(at) : chamber_.Volume(at);

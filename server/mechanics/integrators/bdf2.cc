@@ -10,8 +10,6 @@
 namespace phrenic {
 namespace {
 
-constexpr int kNewtonSteps = 40;
-
 bool HasStepBefore(const State& state, double dt) {
   const History& history = state.history;
   return history.integrator == v1::INTEGRATOR_BDF2 && history.tick == state.tick && history.dt == dt;

@@ -8,6 +8,7 @@
 #include "absl/functional/function_ref.h"
 #include "server/mechanics/advance.h"
 #include "server/mechanics/implicit_stage.h"
+#include "server/mechanics/outer_products.h"
 #include "server/mechanics/quasi_newton.h"
 
 namespace phrenic {
@@ -16,8 +17,6 @@ namespace {
 constexpr double kTurned = 0.5;  // of the residual along a way at its start: where it has turned by more, it is cut
 constexpr double kMostCut = 0.1;
 constexpr int kCuts = 12;
-
-double Dot(const Points& a, const Points& b) { return a.cwiseProduct(b).sum(); }
 
 // One step's search for the velocities at its end.
 class Search {

@@ -10,12 +10,12 @@
 namespace phrenic {
 namespace {
 
-constexpr int kNewtonSteps = 300;
-constexpr double kSettled = 1e-9;                 // of the scene's size: the last step's way
+constexpr int kMostSteps = 300;
+constexpr double kStillness = 1e-9;               // of the scene's size: the last step's way
 constexpr double kFar = 0.05;                     // of the scene's size: a step is to be no longer
 constexpr double kFirst = 1.0 / 60, kLast = 100;  // of the pseudo-time step h [s]
 constexpr double kGrowth = 4;
-constexpr double kLinear = 1e-4;  // relative residual of the linear system
+constexpr double kResidual = 1e-4;  // relative residual of the linear system
 
 // One step of pseudo-time h from work.stages[1]; how far the vertex that went furthest has gone [m].
 absl::StatusOr<double> Relax(const Model& model, const v1::Parameters& parameters, double dt, double h, State& state,
@@ -26,7 +26,7 @@ absl::StatusOr<double> Relax(const Model& model, const v1::Parameters& parameter
   SumForces(model, at, work.force);
   work.force *= h;
   work.system->Assemble(model, at, h);
-  if (absl::Status solved = work.system->Solve(model, work.force, kLinear, change); !solved.ok()) return solved;
+  if (absl::Status solved = work.system->Solve(model, work.force, kResidual, change); !solved.ok()) return solved;
   AddToFree(model, h, change, state.x);
   ProjectPositions(model, parameters, start, h, state);
   state.v.setZero();
@@ -46,10 +46,10 @@ absl::Status StaticEquilibrium::Advance(const Model& model, const v1::Parameters
   work.stages.resize(std::max<size_t>(work.stages.size(), 2));
   work.stages[0].resize(3, state.x.cols());
   double h = kFirst;
-  for (int step = 0; step < kNewtonSteps; ++step) {
+  for (int step = 0; step < kMostSteps; ++step) {
     const absl::StatusOr<double> moved = Relax(model, parameters, dt, h, state, work);
     if (!moved.ok()) return moved.status();
-    if (*moved <= kSettled * model.size && h >= kLast) return absl::OkStatus();
+    if (*moved <= kStillness * model.size && h >= kLast) return absl::OkStatus();
     const bool near = *moved <= kFar * model.size;
     if (!near) state.x = work.stages[1];
     h = near ? std::min(kLast, kGrowth * h) : h / kGrowth;

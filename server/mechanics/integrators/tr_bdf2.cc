@@ -10,7 +10,6 @@
 namespace phrenic {
 namespace {
 
-constexpr int kNewtonSteps = 40;
 constexpr double kGamma = 2 - std::numbers::sqrt2;
 constexpr double kWeight = kGamma / 2;  // of dt in g, the same in both stages
 // The second stage's own weights of the middle and of the start.

@@ -5,13 +5,13 @@
 #include <limits>
 
 #include "absl/strings/str_cat.h"
+#include "server/mesh/units.h"
 
 namespace phrenic {
 namespace {
 
-constexpr double kFlat = 1e-9;       // of a triangle's longest edge squared: with less area it has no normal
-constexpr double kStretch = 0.01;    // that the report speaks of
-constexpr double kMillimetre = 1e3;  // mm a metre
+constexpr double kNoArea = 1e-9;   // of a triangle's longest edge squared: with less area it has no normal
+constexpr double kStretch = 0.01;  // that the report speaks of
 
 // Twice the triangle's area times its unit normal [m^2].
 Eigen::Vector3d AreaVector(const ConstPoints& x, const Eigen::Vector3i& t) {
@@ -22,7 +22,7 @@ Eigen::Vector3d AreaVector(const ConstPoints& x, const Eigen::Vector3i& t) {
 bool HasArea(const ConstPoints& x, const Eigen::Vector3i& t) {
   const double longest = std::max({(x.col(t[0]) - x.col(t[1])).squaredNorm(), (x.col(t[1]) - x.col(t[2])).squaredNorm(),
                                    (x.col(t[2]) - x.col(t[0])).squaredNorm()});
-  return AreaVector(x, t).norm() > kFlat * longest;
+  return AreaVector(x, t).norm() > kNoArea * longest;
 }
 
 void AddTriangles(const Draft& draft, const BodyModel& body, std::vector<Eigen::Vector3i>& triangles) {
@@ -81,9 +81,9 @@ Ride Mapping::Carry(int body, v1::MappingReport& report) const {
     highest = std::max(highest, std::abs(ride.triangles.back().height));
   }
   report.set_body(seen.name);
-  report.set_mean_distance_mm(kMillimetre * sum / static_cast<double>(seen.mesh.vertices.cols()));
-  report.set_largest_distance_mm(kMillimetre * furthest);
-  report.set_largest_strain_error_mm(kMillimetre * LargestStretchError(highest));
+  report.set_mean_distance_mm(kMillimetresAMetre * sum / static_cast<double>(seen.mesh.vertices.cols()));
+  report.set_largest_distance_mm(kMillimetresAMetre * furthest);
+  report.set_largest_strain_error_mm(kMillimetresAMetre * LargestStretchError(highest));
   return ride;
 }
 

@@ -1,0 +1,12 @@
+// Files and people speak of millimetres; everything inside is in metres.
+#ifndef PHRENIC_SERVER_MESH_UNITS_H_
+#define PHRENIC_SERVER_MESH_UNITS_H_
+
+namespace phrenic {
+
+inline constexpr double kMillimetre = 1e-3;        // [m]
+inline constexpr double kMillimetresAMetre = 1e3;  // exact, where 1/kMillimetre is rounded
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_SERVER_MESH_UNITS_H_
