@@ -12,18 +12,20 @@ namespace phrenic {
 // Rows of a slice: one a vertex, all padded to the slice's longest.
 inline constexpr int kSliceRows = 8;
 
-// A neighbour is one aligned load of 32 bytes.
-struct alignas(32) PackedPoint {
-  double x = 0, y = 0, z = 0, unused = 0;  // [m]
+struct SpringSlice {
+  std::int32_t own[kSliceRows] = {};  // where the row's vertex lies in x and f [doubles]
+  int rows = 0;                       // the others are padding
+  bool at_end = false;                // one of its springs, or rows, is of the last vertex of all
+  std::int64_t first_column = 0;
 };
-inline constexpr int kPackedStride = sizeof(PackedPoint) / sizeof(double);
-
-// One spring of each row of a slice. Padding has no stiffness.
+// One spring of each row of a slice. Padding is a spring to itself, of no force at rest.
 struct alignas(64) SpringColumn {
-  double stiffness[kSliceRows] = {};  // k [N/m]
-  double at_rest[kSliceRows] = {};    // k l0 [N]
+  double at_rest[kSliceRows] = {};  // k l0 [N]
 };
-// Where the other ends of a column's springs are packed [doubles]; padding is its own neighbour.
+struct alignas(64) ColumnStiffness {
+  double k[kSliceRows] = {};  // [N/m]
+};
+// Where the other ends of a column's springs lie in x [doubles].
 struct SpringNeighbours {
   std::int32_t place[kSliceRows] = {};
 };
@@ -34,17 +36,19 @@ struct alignas(64) SliceLoad {
 
 // Springs by vertex, in slices of rows: SELL-C-sigma (Kreutzer et al., SIAM J Sci Comput 2014;36:C401).
 struct SpringSlices {
-  std::vector<int> vertices;               // of the rows, the simulated vertex
-  std::vector<std::int64_t> first_column;  // of the slices, and the end
+  std::vector<SpringSlice> slices;  // and one more, for the end of its columns
   std::vector<SpringColumn> columns;
   std::vector<SpringNeighbours> neighbours;  // a column
+  std::vector<ColumnStiffness> stiffness;    // a column; none where all springs are alike
+  double common_stiffness = 0;               // [N/m], where they are
   std::vector<SliceLoad> load;               // a slice, or none
 };
 
-// f += scale (sum over the row's springs of (k - k l0 / l) d + load) [N], d from the row's vertex to the neighbour, l
-// its length [m]; a spring with l = 0 pulls at nothing. `packed` has a position a row, those that the last slice lacks
-// as well; f is 3 x n, one column a simulated vertex. Any number of threads may call.
-void AddSlices(const SpringSlices& slices, double scale, const PackedPoint* packed, double* f);
+// f += scale (sum over the row's springs of (k - k l0 / l) d + load) [N] for the rows of slices first to end - 1, d
+// from the row's vertex to the neighbour, l its length [m]; a spring with l = 0 pulls at nothing. x and f are 3 x n,
+// one column a simulated vertex. Any number of threads may call, at once only on different slices.
+void AddSlices(const SpringSlices& slices, std::int64_t first, std::int64_t end, double scale, const double* x,
+               double* f);
 
 }  // namespace phrenic
 

@@ -7,103 +7,125 @@
 namespace phrenic {
 namespace {
 
-// Rows that may change places to lie beside others of their length: more pads less and is less local.
-constexpr int kWindow = 256;
 // Ends of springs this many vertices apart, on the mean, no longer meet in a core's cache.
 constexpr double kFarApart = 8192;
 
-// One end of a spring as its row sees it.
+// One end of a spring as its row sees it; vertices by their places.
 struct RowSpring {
-  int other = 0;  // simulated vertex
+  int other = 0;
   double stiffness = 0, rest_length = 0;
 };
-using Rows = std::vector<std::vector<RowSpring>>;  // a simulated vertex
+using Rows = std::vector<std::vector<RowSpring>>;  // a place
 
-Rows ByVertex(const std::vector<Spring>& springs, int vertices) {
-  Rows rows(vertices);
+// The order that the springs' vertices are to be taken in: none, as they come, which reads and writes them in one go,
+// unless what a spring joins is too far apart for that.
+std::vector<int> OrderOf(const std::vector<Spring>& springs, int vertices) {
+  if (springs.empty()) return {};
+  Edges edges(2, static_cast<Eigen::Index>(springs.size()));
+  for (size_t s = 0; s < springs.size(); ++s) edges.col(static_cast<Eigen::Index>(s)) << springs[s].a, springs[s].b;
+  const double apart = (edges.row(1) - edges.row(0)).cwiseAbs().cast<double>().mean();
+  return apart > kFarApart ? LocalOrder(edges, vertices) : std::vector<int>();
+}
+
+Rows ByPlace(const std::vector<Spring>& springs, const std::vector<int>& order, int vertices) {
+  std::vector<int> place(vertices);
+  for (int i = 0; i < vertices; ++i) place[i] = i;
+  for (size_t i = 0; i < order.size(); ++i) place[order[i]] = static_cast<int>(i);
+  Rows rows(order.empty() ? vertices : order.size());
   for (const Spring& spring : springs) {
-    rows[spring.a].push_back({spring.b, spring.stiffness, spring.rest_length});
-    rows[spring.b].push_back({spring.a, spring.stiffness, spring.rest_length});
+    rows[place[spring.a]].push_back({place[spring.b], spring.stiffness, spring.rest_length});
+    rows[place[spring.b]].push_back({place[spring.a], spring.stiffness, spring.rest_length});
   }
   return rows;
 }
 
-// The vertices that have springs: as they come, which reads and writes them in one go, unless what a spring joins is
-// too far apart for that.
-std::vector<int> LocalRows(const std::vector<Spring>& springs, const Rows& rows) {
-  Edges edges(2, static_cast<Eigen::Index>(springs.size()));
-  for (size_t s = 0; s < springs.size(); ++s) edges.col(static_cast<Eigen::Index>(s)) << springs[s].a, springs[s].b;
-  const double apart = springs.empty() ? 0 : (edges.row(1) - edges.row(0)).cwiseAbs().cast<double>().mean();
-  if (apart > kFarApart) return LocalOrder(edges, static_cast<int>(rows.size()));
-  std::vector<int> order;
-  for (size_t i = 0; i < rows.size(); ++i) {
-    if (!rows[i].empty()) order.push_back(static_cast<int>(i));
+// The block's rows that have springs, longest first.
+std::vector<int> SortedBlock(const Rows& rows, size_t first) {
+  std::vector<int> block;
+  for (size_t i = first; i < std::min(first + kVertexBlock, rows.size()); ++i) {
+    if (!rows[i].empty()) block.push_back(static_cast<int>(i));
   }
-  return order;
+  std::stable_sort(block.begin(), block.end(), [&rows](int a, int b) { return rows[a].size() > rows[b].size(); });
+  return block;
 }
 
-std::vector<int> RowOrder(const std::vector<Spring>& springs, const Rows& rows) {
-  std::vector<int> order = LocalRows(springs, rows);
-  const auto longer = [&rows](int a, int b) { return rows[a].size() > rows[b].size(); };
-  for (size_t first = 0; first < order.size(); first += kWindow) {
-    const size_t end = std::min(first + kWindow, order.size());
-    std::stable_sort(order.begin() + static_cast<std::ptrdiff_t>(first),
-                     order.begin() + static_cast<std::ptrdiff_t>(end), longer);
+bool Alike(const std::vector<Spring>& springs) {
+  return std::all_of(springs.begin(), springs.end(),
+                     [&springs](const Spring& spring) { return spring.stiffness == springs.front().stiffness; });
+}
+
+// Appends the slice of `count` rows, the longest first. What they lack to a whole slice, and to the longest, is filled
+// up with springs to themselves.
+void AppendSlice(const Rows& rows, const int* members, int count, SpringSlices& slices) {
+  SpringSlice& slice = slices.slices.back();
+  slice.rows = count;
+  const size_t first = slices.columns.size(), width = rows[members[0]].size();
+  slices.columns.resize(first + width);
+  slices.neighbours.resize(first + width);
+  if (slices.common_stiffness == 0) slices.stiffness.resize(first + width);
+  const int last = static_cast<int>(rows.size()) - 1;
+  for (int i = 0; i < kSliceRows; ++i) {
+    const int own = members[i < count ? i : 0];
+    slice.own[i] = 3 * own;
+    slice.at_end = slice.at_end || own == last;
+    for (size_t c = 0; c < width; ++c) {
+      const bool padding = i >= count || c >= rows[own].size();
+      const RowSpring spring = padding ? RowSpring{own, 0, 0} : rows[own][c];
+      slice.at_end = slice.at_end || spring.other == last;
+      slices.neighbours[first + c].place[i] = 3 * spring.other;
+      slices.columns[first + c].at_rest[i] = spring.stiffness * spring.rest_length;
+      if (slices.common_stiffness == 0) slices.stiffness[first + c].k[i] = spring.stiffness;
+    }
   }
-  return order;
+  slices.slices.push_back({.first_column = static_cast<std::int64_t>(slices.columns.size())});
+}
+
+void AppendBlock(const Rows& rows, const std::vector<int>& block, SpringSlices& slices) {
+  for (size_t i = 0; i < block.size(); i += kSliceRows) {
+    AppendSlice(rows, &block[i], static_cast<int>(std::min<size_t>(kSliceRows, block.size() - i)), slices);
+  }
 }
 
 }  // namespace
 
-SpringRows::SpringRows(const std::vector<Spring>& springs, int vertices) {
-  const Rows rows = ByVertex(springs, vertices);
-  slices_.vertices = RowOrder(springs, rows);
-  std::vector<std::int32_t> place(vertices, 0);
-  for (size_t r = 0; r < slices_.vertices.size(); ++r) {
-    place[slices_.vertices[r]] = static_cast<std::int32_t>(r) * kPackedStride;
+SpringRows::SpringRows(const std::vector<Spring>& springs, int vertices) : order_(OrderOf(springs, vertices)) {
+  const Rows rows = ByPlace(springs, order_, vertices);
+  if (!springs.empty() && Alike(springs)) slices_.common_stiffness = springs.front().stiffness;
+  slices_.slices.emplace_back();
+  for (size_t first = 0; first < rows.size(); first += kVertexBlock) {
+    first_slice_.push_back(static_cast<std::int64_t>(slices_.slices.size()) - 1);
+    AppendBlock(rows, SortedBlock(rows, first), slices_);
   }
-  slices_.first_column.push_back(0);
-  for (size_t first = 0; first < slices_.vertices.size(); first += kSliceRows) {
-    const size_t height = std::min<size_t>(kSliceRows, slices_.vertices.size() - first);
-    size_t width = 0;
-    for (size_t i = 0; i < height; ++i) width = std::max(width, rows[slices_.vertices[first + i]].size());
-    const size_t column = slices_.columns.size();
-    slices_.columns.resize(column + width);
-    slices_.neighbours.resize(column + width);
-    for (size_t i = 0; i < kSliceRows; ++i) {
-      const std::int32_t own = static_cast<std::int32_t>(first + i) * kPackedStride;
-      for (size_t c = 0; c < width; ++c) slices_.neighbours[column + c].place[i] = own;
-      if (i >= height) continue;
-      const std::vector<RowSpring>& row = rows[slices_.vertices[first + i]];
-      for (size_t c = 0; c < row.size(); ++c) {
-        slices_.neighbours[column + c].place[i] = place[row[c].other];
-        slices_.columns[column + c].stiffness[i] = row[c].stiffness;
-        slices_.columns[column + c].at_rest[i] = row[c].stiffness * row[c].rest_length;
-      }
-    }
-    slices_.first_column.push_back(static_cast<std::int64_t>(slices_.columns.size()));
-  }
+  first_slice_.push_back(static_cast<std::int64_t>(slices_.slices.size()) - 1);
 }
 
 void SpringRows::SetLoad(const Points& load) {
-  slices_.load.assign(slices_.first_column.size() - 1, {});
-  for (size_t r = 0; r < slices_.vertices.size(); ++r) {
-    const auto force = load.col(slices_.vertices[r]);
-    SliceLoad& slice = slices_.load[r / kSliceRows];
-    slice.x[r % kSliceRows] = force.x(), slice.y[r % kSliceRows] = force.y(), slice.z[r % kSliceRows] = force.z();
+  slices_.load.assign(slices_.slices.size() - 1, {});
+  for (size_t s = 0; s < slices_.load.size(); ++s) {
+    for (int i = 0; i < slices_.slices[s].rows; ++i) {
+      const int place = slices_.slices[s].own[i] / 3;
+      const int vertex = order_.empty() ? place : order_[place];
+      SliceLoad& slice = slices_.load[s];
+      slice.x[i] = load(0, vertex), slice.y[i] = load(1, vertex), slice.z[i] = load(2, vertex);
+    }
   }
 }
 
 void SpringRows::AddForce(double scale, const ConstPoints& x, MutablePoints f) const {
-  thread_local std::vector<PackedPoint> packed;
-  const size_t rows = slices_.vertices.size();
-  if (packed.size() < rows + kSliceRows) packed.resize(rows + kSliceRows);
-  const double* const from = x.data();
-  for (size_t r = 0; r < rows; ++r) {
-    const double* const point = from + 3 * static_cast<std::ptrdiff_t>(slices_.vertices[r]);
-    packed[r] = {point[0], point[1], point[2], 0};
-  }
-  AddSlices(slices_, scale, packed.data(), f.data());
+  const auto slices = static_cast<std::int64_t>(slices_.slices.size()) - 1;
+  if (order_.empty()) return AddSlices(slices_, 0, slices, scale, x.data(), f.data());
+  thread_local Points ordered, force;
+  const auto count = static_cast<Eigen::Index>(order_.size());
+  if (ordered.cols() < count) ordered.resize(3, count), force.resize(3, count);
+  for (Eigen::Index i = 0; i < count; ++i) ordered.col(i) = x.col(order_[i]);
+  force.leftCols(count).setZero();
+  AddSlices(slices_, 0, slices, scale, ordered.data(), force.data());
+  for (Eigen::Index i = 0; i < count; ++i) f.col(order_[i]) += force.col(i);
+}
+
+void SpringRows::AddForce(const VertexRange& range, double scale, const ConstPoints& x, MutablePoints f) const {
+  const auto block = [](Eigen::Index vertex) { return (vertex + kVertexBlock - 1) / kVertexBlock; };
+  AddSlices(slices_, first_slice_[block(range.first)], first_slice_[block(range.end)], scale, x.data(), f.data());
 }
 
 }  // namespace phrenic
