@@ -1,5 +1,6 @@
 #include "server/mechanics/advance.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "server/mechanics/residual.h"
@@ -12,6 +13,10 @@ constexpr int kRounds = 50;
 constexpr double kKept = 1e-11;   // of the scene's size: what is off by less is kept
 constexpr double kGain = 0.9;     // a round that leaves more of the residual than this is the last
 constexpr double kStill = 1e-12;  // of the largest velocity: a round that changes less is the last
+
+bool AllByRange(const Model& model) {
+  return std::all_of(model.forces.begin(), model.forces.end(), [](const auto& force) { return force->by_range(); });
+}
 
 }  // namespace
 
@@ -26,9 +31,26 @@ void DriveMotions(const Model& model, const v1::Parameters& parameters, double a
 }
 
 void SumForces(const Model& model, const Instant& at, Points& f) {
+  SumWholeForces(model, at, f);
+  ForEachBlock({0, f.cols()}, [&](const VertexRange& block) { SumForcesIn(block, model, at, f); });
+}
+
+void SumWholeForces(const Model& model, const Instant& at, Points& f) {
+  if (AllByRange(model)) return;
   f.setZero();
-  for (const auto& force : model.forces) force->AddForce(at, f);
-  for (const VertexPull& pull : at.pulls) f.col(pull.vertex) += pull.force;
+  for (const auto& force : model.forces) {
+    if (!force->by_range()) force->AddForce(at, f);
+  }
+}
+
+void SumForcesIn(const VertexRange& range, const Model& model, const Instant& at, Points& f) {
+  if (AllByRange(model)) f.middleCols(range.first, range.end - range.first).setZero();
+  for (const auto& force : model.forces) {
+    if (force->by_range()) force->AddForceIn(range, at, f);
+  }
+  for (const VertexPull& pull : at.pulls) {
+    if (pull.vertex >= range.first && pull.vertex < range.end) f.col(pull.vertex) += pull.force;
+  }
 }
 
 void SumDamping(const Model& model, const Instant& at, Eigen::VectorXd& c) {

@@ -14,6 +14,9 @@ void DriveMotions(const Model& model, const v1::Parameters& parameters, double a
 
 // f = the sum of all forces and pulls [N].
 void SumForces(const Model& model, const Instant& at, Points& f);
+// The same in two parts: first what can only be worked out for all vertices at once, then the rest range by range.
+void SumWholeForces(const Model& model, const Instant& at, Points& f);
+void SumForcesIn(const VertexRange& range, const Model& model, const Instant& at, Points& f);
 
 // c = the sum of all damping coefficients [N s/m].
 void SumDamping(const Model& model, const Instant& at, Eigen::VectorXd& c);

@@ -9,6 +9,7 @@
 #include "server/mechanics/instant.h"
 #include "server/mechanics/outer_products.h"
 #include "server/mechanics/stiffness.h"
+#include "server/mechanics/vertex_range.h"
 
 namespace phrenic {
 
@@ -22,7 +23,11 @@ class Force {
   const std::string& name() const { return name_; }
 
   // f += force [N], 3 x n; never clears.
-  virtual void AddForce(const Instant& at, MutablePoints f) const = 0;
+  virtual void AddForce(const Instant& at, MutablePoints f) const { AddForceIn({0, f.cols()}, at, f); }
+  // A force that can be worked out for some vertices alone, from the positions of all and the velocities of those, says
+  // so, and has this in AddForce's place; several threads may ask at once, for different ranges.
+  virtual bool by_range() const { return false; }
+  virtual void AddForceIn(const VertexRange&, const Instant&, MutablePoints /*f*/) const {}
   // Hands over K = -df/dx, positive semi-definite. Nothing where the force does not depend on positions.
   virtual void AddStiffness(const Instant&, StiffnessSink&) const {}
   // Hands over what AddStiffness may come to where nothing acts now (surfaces that do not touch, cables that are

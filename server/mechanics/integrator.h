@@ -30,6 +30,7 @@ struct Workspace {
 
   Points before, velocity_before;          // at the start of the step [m], [m/s]
   Points force;                            // [N]
+  Points next;                             // positions at the end of the step, while all still need those at its start
   Eigen::VectorXd damping;                 // [N s/m] a vertex
   std::vector<Points> stages;              // of the integrators that have stages; made when first needed
   std::vector<State> trials;               // of adaptive steps; made when first needed

@@ -46,17 +46,21 @@ absl::StatusOr<std::unique_ptr<Force>> ActionLine::Make(const v1::ActionLine& sc
     return nullptr;
   }
   for (Pull& pull : force->pulls_) pull.share /= total;
+  std::sort(force->pulls_.begin(), force->pulls_.end(),
+            [](const Pull& a, const Pull& b) { return a.vertex < b.vertex; });
   draft.model.action_lines.push_back({name, bodies->front(), ToEigen(scene.origin()), direction, scene.radius()});
   draft.ReportElement("force", name, static_cast<std::int64_t>(force->pulls_.size()), "vertices",
                       absl::StrFormat("%g N at the peak of a quiet breath", scene.force()));
   return force;
 }
 
-void ActionLine::AddForce(const Instant& at, MutablePoints f) const {
+void ActionLine::AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const {
   const double signal = Signal(at);
   if (signal == 0) return;
   const Eigen::Vector3d force = signal * force_;
-  for (const Pull& pull : pulls_) f.col(pull.vertex) += pull.share * force;
+  auto pull = std::lower_bound(pulls_.begin(), pulls_.end(), range.first,
+                               [](const Pull& each, Eigen::Index vertex) { return each.vertex < vertex; });
+  for (; pull != pulls_.end() && pull->vertex < range.end; ++pull) f.col(pull->vertex) += pull->share * force;
 }
 
 double ActionLine::Energy(const Instant& at) const {

@@ -16,7 +16,8 @@ class ActionLine final : public Force {
   static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::ActionLine& scene, const std::string& name,
                                                      std::string_view path, Draft& draft);
 
-  void AddForce(const Instant& at, MutablePoints f) const override;
+  bool by_range() const override { return true; }
+  void AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const override;
   double Energy(const Instant& at) const override;
   bool conservative() const override { return true; }
 
@@ -28,7 +29,7 @@ class ActionLine final : public Force {
   ActionLine(std::string name, const Eigen::Vector3d& force) : Force(std::move(name)), force_(force) {}
 
   const Eigen::Vector3d force_;  // at signal 1 and breath force 1 [N]
-  std::vector<Pull> pulls_;
+  std::vector<Pull> pulls_;      // by vertex
 };
 
 }  // namespace phrenic

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
@@ -49,7 +50,7 @@ absl::StatusOr<std::unique_ptr<Force>> Attachment::Make(const v1::Attachment& sc
     if (!region.ok()) return region.status();
     force->AddHolds(scene, *carriers, *region, b, draft);
   }
-  force->SortByCarrier();
+  force->Sort();
   if (force->holds_.empty()) {
     draft.ReportLeftOut(name, absl::StrFormat("no vertex is within %g m of a carrier", scene.radius()));
     return nullptr;
@@ -62,10 +63,12 @@ absl::StatusOr<std::unique_ptr<Force>> Attachment::Make(const v1::Attachment& sc
   return force;
 }
 
-void Attachment::SortByCarrier() {
-  const auto carrier = [this](const Hold& hold) { return hold.shares > 0 ? shares_[hold.first_share].pose : -1; };
+void Attachment::Sort() {
+  const auto place = [this](const Hold& hold) {
+    return std::pair(hold.vertex / kVertexBlock, hold.shares > 0 ? shares_[hold.first_share].pose : -1);
+  };
   std::stable_sort(holds_.begin(), holds_.end(),
-                   [&carrier](const Hold& a, const Hold& b) { return carrier(a) < carrier(b); });
+                   [&place](const Hold& a, const Hold& b) { return place(a) < place(b); });
 }
 
 void Attachment::AddHolds(const v1::Attachment& scene, const std::vector<int>& carriers,
@@ -87,11 +90,16 @@ void Attachment::AddHolds(const v1::Attachment& scene, const std::vector<int>& c
   }
 }
 
-void Attachment::AddForce(const Instant& at, MutablePoints f) const {
-  // Holds are sorted by carrier, so that a pose becomes a matrix once and not once a vertex.
+void Attachment::AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const {
+  // A block's holds are sorted by carrier, so that a pose becomes a matrix once and not once a vertex.
   int current = -1;
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
-  for (const Hold& hold : holds_) {
+  const auto before = [](const Hold& hold, Eigen::Index vertex) {
+    return hold.vertex / kVertexBlock < vertex / kVertexBlock;
+  };
+  for (auto next = std::lower_bound(holds_.begin(), holds_.end(), range.first, before);
+       next != holds_.end() && next->vertex < range.end; ++next) {
+    const Hold& hold = *next;
     Eigen::Vector3d carried = hold.rest;
     Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
     for (int s = hold.first_share; s < hold.first_share + hold.shares; ++s) {

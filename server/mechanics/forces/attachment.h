@@ -18,7 +18,8 @@ class Attachment final : public Force {
   static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::Attachment& scene, const std::string& name,
                                                      std::string_view path, Draft& draft);
 
-  void AddForce(const Instant& at, MutablePoints f) const override;
+  bool by_range() const override { return true; }
+  void AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const override;
   void AddStiffness(const Instant& at, StiffnessSink& sink) const override;
   void AddDamping(const Instant& at, Eigen::VectorXd& c) const override;
 
@@ -32,10 +33,10 @@ class Attachment final : public Force {
   explicit Attachment(std::string name) : Force(std::move(name)) {}
   void AddHolds(const v1::Attachment& scene, const std::vector<int>& carriers, const std::vector<bool>& region,
                 int body, Draft& draft);
-  void SortByCarrier();
+  void Sort();
 
   bool thesis_ = false;
-  std::vector<Hold> holds_;
+  std::vector<Hold> holds_;  // by blocks of vertices, and in each by carrier
   std::vector<RideShare> shares_;
 };
 

@@ -2,6 +2,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "server/mechanics/vertex_kernel.h"
 
 namespace phrenic {
 
@@ -28,8 +29,8 @@ absl::StatusOr<std::unique_ptr<Force>> Friction::Make(const v1::Friction& scene,
   return force;
 }
 
-void Friction::AddForce(const Instant& at, MutablePoints f) const {
-  for (Eigen::Index i = 0; i < coefficient_.size(); ++i) f.col(i) -= coefficient_[i] * at.v.col(i);
+void Friction::AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const {
+  AddFriction(range, coefficient_, at.v, f);
 }
 
 }  // namespace phrenic

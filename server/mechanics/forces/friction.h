@@ -12,7 +12,8 @@ class Friction final : public Force {
   static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::Friction& scene, const std::string& name,
                                                      std::string_view path, Draft& draft);
 
-  void AddForce(const Instant& at, MutablePoints f) const override;
+  bool by_range() const override { return true; }
+  void AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const override;
   void AddDamping(const Instant&, Eigen::VectorXd& c) const override { c += coefficient_; }
 
  private:

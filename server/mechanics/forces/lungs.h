@@ -20,6 +20,7 @@ class Lungs final : public Force {
                                                      std::string_view path, Draft& draft);
 
   void AddForce(const Instant& at, MutablePoints f) const override;
+  bool by_range() const override { return !pushes_; }  // nothing, in every range
   void AddStiffness(const Instant& at, StiffnessSink& sink) const override;
   void AddSharedDamping(const Instant& at, OuterProducts& shared) const override;
   double Energy(const Instant& at) const override;

@@ -95,6 +95,10 @@ void Springs::AddForce(const Instant& at, MutablePoints f) const {
   rows_.AddForce(at.parameters.elasticity(), at.x, f);
 }
 
+void Springs::AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const {
+  rows_.AddForce(range, at.parameters.elasticity(), at.x, f);
+}
+
 void Springs::AddStiffness(const Instant& at, StiffnessSink& sink) const {
   const double elasticity = at.parameters.elasticity();
   for (const Spring& spring : springs_) {

@@ -23,6 +23,8 @@ class Springs final : public Force {
   Springs(std::string name, std::vector<Spring> springs, int vertices);
 
   void AddForce(const Instant& at, MutablePoints f) const override;
+  bool by_range() const override { return rows_.InRanges(); }
+  void AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const override;
   void AddStiffness(const Instant& at, StiffnessSink& sink) const override;
   double Energy(const Instant& at) const override;
   bool conservative() const override { return true; }

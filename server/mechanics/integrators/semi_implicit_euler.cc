@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "server/mechanics/advance.h"
+#include "server/mechanics/vertex_kernel.h"
 
 namespace phrenic {
 
@@ -16,12 +17,13 @@ double SemiImplicitEuler::MaxStep(const Spectrum& spectrum) const {
 absl::Status SemiImplicitEuler::Advance(const Model& model, const v1::Parameters& parameters, double dt, State& state,
                                         Workspace& work) const {
   DriveMotions(model, parameters, dt, state);
-  SumForces(model, MakeInstant(model, parameters, state), work.force);
-  for (Eigen::Index i = 0; i < state.x.cols(); ++i) {
-    if (model.inverse_mass[i] == 0) continue;  // fixed, or set by a motion
-    state.v.col(i) += dt * model.inverse_mass[i] * work.force.col(i);
-    state.x.col(i) += dt * state.v.col(i);
-  }
+  const Instant at = MakeInstant(model, parameters, state);
+  SumWholeForces(model, at, work.force);
+  ForEachBlock({0, state.x.cols()}, [&](const VertexRange& block) {
+    SumForcesIn(block, model, at, work.force);
+    KickAndDrift(block, model.inverse_mass, dt, dt, work.force, state.x, state.v, work.next);
+  });
+  state.x.swap(work.next);
   ProjectPositions(model, parameters, work.before, dt, state);
   return absl::OkStatus();
 }

@@ -1,0 +1,99 @@
+#include "server/mechanics/vertex_kernel.h"
+
+// Targets whose vectors have no size that the compiler knows: their machines take NEON and the portable path.
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "server/mechanics/vertex_kernel.cc"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace phrenic::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Tag = hn::CappedTag<double, 8>;
+using Vector = hn::Vec<Tag>;
+constexpr Eigen::Index kLanes = hn::MaxLanes(Tag());
+
+// Of kLanes vertices, whose coordinates fill three vectors: a number a vertex, as often as it has coordinates in vector
+// 0, 1, 2.
+struct Spread {
+  using Indices = decltype(hn::SetTableIndices(Tag(), static_cast<const std::int64_t*>(nullptr)));
+
+  Spread() : indices{At(0), At(1), At(2)} {}
+  static Indices At(std::int64_t vector) {
+    std::int64_t vertex[kLanes];
+    for (std::int64_t lane = 0; lane < kLanes; ++lane) vertex[lane] = (vector * kLanes + lane) / 3;
+    return hn::SetTableIndices(Tag(), vertex);
+  }
+  HWY_INLINE Vector Of(Vector numbers, int vector) const { return hn::TableLookupLanes(numbers, indices[vector]); }
+
+  Indices indices[3];
+};
+
+// Vector i of the coordinates is handed to `whole` with its numbers of the vertices, and what is left over coordinate
+// by coordinate to `single`.
+template <typename Whole, typename Single>
+HWY_INLINE void ForEach(const VertexRange& range, const double* numbers, const Whole& whole, const Single& single) {
+  const Tag d;
+  const Spread spread;
+  Eigen::Index vertex = range.first;
+  for (; vertex + kLanes <= range.end; vertex += kLanes) {
+    const auto of_vertices = hn::LoadU(d, numbers + vertex);
+    for (int i = 0; i < 3; ++i) whole(3 * vertex + i * kLanes, spread.Of(of_vertices, i));
+  }
+  for (; vertex < range.end; ++vertex) {
+    for (int i = 0; i < 3; ++i) single(3 * vertex + i, numbers[vertex]);
+  }
+}
+
+void KickAndDriftHere(const VertexRange& range, const double* inverse_mass, double kick, double drift, const double* f,
+                      const double* x, double* v, double* x_next) {
+  const Tag d;
+  const auto kicks = hn::Set(d, kick), drifts = hn::Set(d, drift), zero = hn::Zero(d);
+  const auto whole = [&](Eigen::Index i, Vector w) {
+    const auto free = hn::Gt(w, zero);
+    const auto before = hn::LoadU(d, v + i), at = hn::LoadU(d, x + i);
+    const auto now = hn::IfThenElse(free, hn::Add(before, hn::Mul(hn::Mul(kicks, w), hn::LoadU(d, f + i))), before);
+    hn::StoreU(now, d, v + i);
+    hn::StoreU(hn::IfThenElse(free, hn::Add(at, hn::Mul(drifts, now)), at), d, x_next + i);
+  };
+  const auto single = [&](Eigen::Index i, double w) {
+    if (w > 0) v[i] += kick * w * f[i];
+    x_next[i] = w > 0 ? x[i] + drift * v[i] : x[i];
+  };
+  ForEach(range, inverse_mass, whole, single);
+}
+
+void AddFrictionHere(const VertexRange& range, const double* c, const double* v, double* f) {
+  const Tag d;
+  const auto whole = [&](Eigen::Index i, Vector of_vertices) {
+    hn::StoreU(hn::Sub(hn::LoadU(d, f + i), hn::Mul(of_vertices, hn::LoadU(d, v + i))), d, f + i);
+  };
+  const auto single = [&](Eigen::Index i, double of_vertex) { f[i] -= of_vertex * v[i]; };
+  ForEach(range, c, whole, single);
+}
+
+}  // namespace
+}  // namespace phrenic::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace phrenic {
+
+HWY_EXPORT(KickAndDriftHere);
+HWY_EXPORT(AddFrictionHere);
+
+void KickAndDrift(const VertexRange& range, const Eigen::VectorXd& w, double kick, double drift, const Points& f,
+                  const Points& x, Points& v, Points& x_next) {
+  HWY_DYNAMIC_DISPATCH(KickAndDriftHere)(range, w.data(), kick, drift, f.data(), x.data(), v.data(), x_next.data());
+}
+
+void AddFriction(const VertexRange& range, const Eigen::VectorXd& c, const ConstPoints& v, MutablePoints f) {
+  HWY_DYNAMIC_DISPATCH(AddFrictionHere)(range, c.data(), v.data(), f.data());
+}
+
+}  // namespace phrenic
+#endif  // HWY_ONCE

@@ -1,0 +1,22 @@
+// What is done to every vertex of a range alike, a whole vector at a time: written once with Google Highway, the
+// machine's best instruction set chosen at run time, with the same bits on all of them. f, v, x are 3 x n, one column a
+// simulated vertex. Any number of threads may call, at once only for different ranges.
+#ifndef PHRENIC_SERVER_MECHANICS_VERTEX_KERNEL_H_
+#define PHRENIC_SERVER_MECHANICS_VERTEX_KERNEL_H_
+
+#include "server/mechanics/vertex_range.h"
+#include "server/mesh/mesh.h"
+
+namespace phrenic {
+
+// v += kick w f, then x_next = x + drift v, for the vertices with w = 1/m > 0 [1/kg]; the others keep v and x. `kick`
+// and `drift` are times [s]. x_next may be x.
+void KickAndDrift(const VertexRange& range, const Eigen::VectorXd& w, double kick, double drift, const Points& f,
+                  const Points& x, Points& v, Points& x_next);
+
+// f -= c v, c a coefficient a vertex [N s/m].
+void AddFriction(const VertexRange& range, const Eigen::VectorXd& c, const ConstPoints& v, MutablePoints f);
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_SERVER_MECHANICS_VERTEX_KERNEL_H_
