@@ -9,6 +9,7 @@
 #include "server/mechanics/catalogue.h"
 #include "server/mechanics/compile.h"
 #include "server/mechanics/residual.h"
+#include "server/mechanics/vertex_kernel.h"
 
 namespace phrenic {
 namespace {
@@ -21,27 +22,14 @@ double DistanceFromRest(const Model& model, const State& state, int vertex) {
   return std::isfinite(squared) ? squared : std::numeric_limits<double>::infinity();
 }
 
-// True where every one of the coordinates is a number within the bound. What is no number shows in the sum, and the
-// largest in whole vectors: once a step, over all there is.
-bool AllWithin(const Points& x, double bound) {
-  using Block = Eigen::Array<double, 8, 1>;
-  Block largest = Block::Zero(), sum = Block::Zero();
-  const Eigen::Index whole = x.size() / 8 * 8;
-  for (Eigen::Index i = 0; i < whole; i += 8) {
-    const Block next = Eigen::Map<const Block>(x.data() + i).abs();
-    largest = largest.max(next);
-    sum += next;
-  }
-  const auto tail = x.reshaped().tail(x.size() - whole);
-  return largest.maxCoeff() <= bound && std::isfinite(sum.sum()) && (tail.array().abs() <= bound).all();
-}
-
 // True where every coordinate is a number within the bound, and the root mean square of the velocities one that takes
-// no longer than `dt` across it: constraints may hold positions back while velocities run away.
+// no longer than `dt` across it: constraints may hold positions back while velocities run away. What is no number shows
+// in the squares.
 bool WithinBounds(const Model& model, double dt, const State& state) {
   const double fastest = 2 * model.bound / dt;
-  return AllWithin(state.x, model.bound) &&
-         state.v.squaredNorm() <= static_cast<double>(state.v.cols()) * fastest * fastest;
+  const Reach positions = ReachOf(state.x);
+  return positions.largest <= model.bound && std::isfinite(positions.squares) &&
+         ReachOf(state.v).squares <= static_cast<double>(state.v.cols()) * fastest * fastest;
 }
 
 int FurthestVertex(const Model& model, const State& state) {
@@ -103,8 +91,8 @@ std::string Remedy(const Model& model, const v1::Parameters& parameters, const S
 }  // namespace
 
 absl::Status Step(const Model& model, const v1::Parameters& parameters, double dt, State& state, Workspace& work) {
-  work.before = state.x;
-  work.velocity_before = state.v;
+  std::copy_n(state.x.data(), state.x.size(), work.before.data());
+  std::copy_n(state.v.data(), state.v.size(), work.velocity_before.data());
   const Integrator& integrator = FindIntegrator(parameters.integrator());
   const bool adaptive = parameters.step_tolerance() > 0 && integrator.order() > 0;
   absl::Status advanced = adaptive ? AdvanceAdaptively(model, parameters, integrator, dt, state, work)

@@ -1,5 +1,8 @@
 #include "server/mechanics/vertex_kernel.h"
 
+#include <algorithm>
+#include <cmath>
+
 // Targets whose vectors have no size that the compiler knows: their machines take NEON and the portable path.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
@@ -76,6 +79,33 @@ void AddFrictionHere(const VertexRange& range, const double* c, const double* v,
   ForEach(range, c, whole, single);
 }
 
+// Eight sums whatever the vectors' length.
+Reach ReachOfHere(const double* x, Eigen::Index count) {
+  const Tag d;
+  constexpr Eigen::Index kSums = 8, kVectors = kSums / kLanes;
+  Vector largest[kVectors], squares[kVectors];
+  for (int k = 0; k < kVectors; ++k) largest[k] = squares[k] = hn::Zero(d);
+  Eigen::Index i = 0;
+  for (; i + kSums <= count; i += kSums) {
+    for (int k = 0; k < kVectors; ++k) {
+      const auto next = hn::LoadU(d, x + i + k * kLanes);
+      largest[k] = hn::Max(largest[k], hn::Abs(next));
+      squares[k] = hn::Add(squares[k], hn::Mul(next, next));
+    }
+  }
+  HWY_ALIGN double most[kSums], sums[kSums];
+  for (int k = 0; k < kVectors; ++k) {
+    hn::Store(largest[k], d, most + k * kLanes), hn::Store(squares[k], d, sums + k * kLanes);
+  }
+  for (Eigen::Index tail = i; tail < count; ++tail) {
+    most[tail - i] = std::max(most[tail - i], std::abs(x[tail]));
+    sums[tail - i] += x[tail] * x[tail];
+  }
+  Reach reach;
+  for (int k = 0; k < kSums; ++k) reach.largest = std::max(reach.largest, most[k]), reach.squares += sums[k];
+  return reach;
+}
+
 }  // namespace
 }  // namespace phrenic::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -85,6 +115,7 @@ namespace phrenic {
 
 HWY_EXPORT(KickAndDriftHere);
 HWY_EXPORT(AddFrictionHere);
+HWY_EXPORT(ReachOfHere);
 
 void KickAndDrift(const VertexRange& range, const Eigen::VectorXd& w, double kick, double drift, const Points& f,
                   const Points& x, Points& v, Points& x_next) {
@@ -94,6 +125,8 @@ void KickAndDrift(const VertexRange& range, const Eigen::VectorXd& w, double kic
 void AddFriction(const VertexRange& range, const Eigen::VectorXd& c, const ConstPoints& v, MutablePoints f) {
   HWY_DYNAMIC_DISPATCH(AddFrictionHere)(range, c.data(), v.data(), f.data());
 }
+
+Reach ReachOf(const Points& x) { return HWY_DYNAMIC_DISPATCH(ReachOfHere)(x.data(), x.size()); }
 
 }  // namespace phrenic
 #endif  // HWY_ONCE

@@ -17,6 +17,13 @@ void KickAndDrift(const VertexRange& range, const Eigen::VectorXd& w, double kic
 // f -= c v, c a coefficient a vertex [N s/m].
 void AddFriction(const VertexRange& range, const Eigen::VectorXd& c, const ConstPoints& v, MutablePoints f);
 
+// How far numbers reach: the largest of the absolute values, and the sum of the squares, which is no number where one
+// of them is none. The sum is taken in the same order by all instruction sets.
+struct Reach {
+  double largest = 0, squares = 0;
+};
+Reach ReachOf(const Points& x);
+
 }  // namespace phrenic
 
 #endif  // PHRENIC_SERVER_MECHANICS_VERTEX_KERNEL_H_

@@ -60,7 +60,9 @@ void ActionLine::AddForceIn(const VertexRange& range, const Instant& at, Mutable
   const Eigen::Vector3d force = signal * force_;
   auto pull = std::lower_bound(pulls_.begin(), pulls_.end(), range.first,
                                [](const Pull& each, Eigen::Index vertex) { return each.vertex < vertex; });
-  for (; pull != pulls_.end() && pull->vertex < range.end; ++pull) f.col(pull->vertex) += pull->share * force;
+  for (; pull != pulls_.end() && pull->vertex < range.end; ++pull) {
+    Eigen::Map<Eigen::Vector3d>(f.data() + 3 * static_cast<std::ptrdiff_t>(pull->vertex)) += pull->share * force;
+  }
 }
 
 double ActionLine::Energy(const Instant& at) const {

@@ -110,12 +110,14 @@ void Attachment::AddForceIn(const VertexRange& range, const Instant& at, Mutable
       carried += shares_[s].weight * (turned + pose.translation - hold.rest);
       velocity += shares_[s].weight * (pose.velocity + pose.angular_velocity.cross(turned));
     }
+    const std::ptrdiff_t place = 3 * static_cast<std::ptrdiff_t>(hold.vertex);
+    Eigen::Map<Eigen::Vector3d> force(f.data() + place);
     if (thesis_) {
-      f.col(hold.vertex) += hold.stiffness * at.parameters.time_step() * velocity;
+      force += hold.stiffness * at.parameters.time_step() * velocity;
       continue;
     }
-    f.col(hold.vertex) +=
-        hold.stiffness * (carried - at.x.col(hold.vertex)) + hold.damping * (velocity - at.v.col(hold.vertex));
+    const Eigen::Map<const Eigen::Vector3d> x(at.x.data() + place), v(at.v.data() + place);
+    force += hold.stiffness * (carried - x) + hold.damping * (velocity - v);
   }
 }
 

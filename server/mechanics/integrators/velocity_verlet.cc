@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "server/mechanics/advance.h"
+#include "server/mechanics/vertex_kernel.h"
 
 namespace phrenic {
 namespace {
@@ -42,11 +43,7 @@ double VelocityVerlet::MaxStep(const Spectrum& spectrum) const {
 absl::Status VelocityVerlet::Advance(const Model& model, const v1::Parameters& parameters, double dt, State& state,
                                      Workspace& work) const {
   RecallForce(model, parameters, state, work.force);
-  for (Eigen::Index i = 0; i < state.x.cols(); ++i) {
-    if (model.inverse_mass[i] == 0) continue;  // fixed, or set by a motion
-    state.v.col(i) += dt / 2 * model.inverse_mass[i] * work.force.col(i);
-    state.x.col(i) += dt * state.v.col(i);
-  }
+  KickAndDrift({0, state.x.cols()}, model.inverse_mass, dt / 2, dt, work.force, state.x, state.v, state.x);
   DriveMotions(model, parameters, dt, state);
   ProjectPositions(model, parameters, work.before, dt, state);
   const Instant end = InstantAhead(model, parameters, dt, state);
