@@ -42,9 +42,9 @@ ChamberReading SumReadings(const BodyPoints::Moving& body, const Triangles& tria
   ChamberReading sum;
   for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
     const int i = triangles(0, t), j = triangles(1, t), k = triangles(2, t);
-    const Vector a = body.x.col(i), ab = body.x.col(j) - body.x.col(i), ac = body.x.col(k) - body.x.col(i);
+    const Vector a = body.x.col(i), b = body.x.col(j), c = body.x.col(k), ab = b - a, ac = c - a;
     const Vector va = body.v.col(i), vab = body.v.col(j) - body.v.col(i), vac = body.v.col(k) - body.v.col(i);
-    const double heights = (3 * (a - point) + ab + ac).dot(n), rises = (3 * va + vab + vac).dot(n);
+    const double heights = ((a - point) + (b - point) + (c - point)).dot(n), rises = (3 * va + vab + vac).dot(n);
     const double area = n.dot(ab.cross(ac));
     sum.volume += heights * area;
     sum.flow += rises * area + heights * n.dot(vab.cross(ac) + ab.cross(vac));

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
 
-#include <chrono>
 #include <random>
 
 #include "tests/compile_text.h"
@@ -51,7 +50,7 @@ double Missing(const Model& model, const Instant& at, double g, const Points& b,
   return missing.norm() / all.norm();
 }
 
-// On every instruction set, from nothing and from a guess; what single precision may leave is said in the header.
+// What single precision may leave is said in the header.
 TEST(ImplicitSystem, SolvesToItsTolerance) {
   for (const char* tissue : kTissues) {
     const auto model = Sheet(tissue);
@@ -94,7 +93,7 @@ TEST(ImplicitSystem, GivesTheSameBitsOnEveryInstructionSet) {
   hwy::SetSupportedTargetsForTest(0);
 }
 
-// The solution as a guess leaves nothing to do, and one near it less than nothing does.
+// The solution as a guess leaves next to nothing to do.
 TEST(ImplicitSystem, StartsWarm) {
   const auto model = Sheet(kTissues[0]);
   const State state = model->InitialState();
@@ -130,17 +129,18 @@ TEST(ImplicitSystem, KeepsItsBudgetAndSaysWhatIsLeft) {
   EXPECT_GT(cut.residual(), whole.residual());
 }
 
-// Pushed together to 70 % of its rest length a sheet of springs buckles; its stiffness across is negative until then,
-// and is left out. Where it is not, steps of 10 ms gain energy without bound.
-TEST(LinearImplicitEuler, StaysInBoundsInCompression) {
+// Springs that want to be a third longer than they are: the sheet buckles. Their stiffness across is negative until
+// then, and is left out; where it is not, steps of 10 ms gain energy without bound.
+TEST(LinearImplicitEuler, GainsNoEnergyInCompression) {
   const auto model = Sheet(
-      "forces { springs { bodies: 'sheet' stiffness: 5000 } } forces { friction { bodies: 'sheet' "
-      "rate: 0.2 } }",
-      20, 20);
+      "forces { springs { bodies: 'sheet' stiffness: 300 rest_length_ratio: 1.3 } } forces { friction { bodies: "
+      "'sheet' "
+      "rate: 1 } }",
+      15, 15);
   v1::Parameters parameters = model->parameters;
   parameters.set_integrator(v1::INTEGRATOR_LINEAR_IMPLICIT_EULER);
   State state = model->InitialState();
-  state.x = 0.7 * state.x + 1e-4 * RandomPoints(state.x.cols(), 3);
+  state.x += 1e-5 * RandomPoints(state.x.cols(), 3);
   Workspace work = model->MakeWorkspace();
   const auto energy = [&] {
     const Instant at = MakeInstant(*model, parameters, state);
@@ -150,10 +150,10 @@ TEST(LinearImplicitEuler, StaysInBoundsInCompression) {
   const double first = energy();
   for (int step = 0; step < 200; ++step) {
     ASSERT_TRUE(Step(*model, parameters, 0.01, state, work).ok()) << step;
-    ASSERT_LE(energy(), 1.001 * first) << step;
+    ASSERT_LT(energy(), first) << step;
     ASSERT_LE(work.effort.residual(), 1e-3) << step;
   }
-  EXPECT_LT(energy(), 0.2 * first);  // it has let go, sideways
+  EXPECT_LT(energy(), 0.01 * first);  // it has let go, sideways
 }
 
 }  // namespace

