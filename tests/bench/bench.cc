@@ -77,8 +77,8 @@ class Bench {
   void RegisterSprings(Table& table) {
     const auto many = static_cast<double>(springs_.size()), vertices = static_cast<double>(x_.cols());
     table.Register({kPlain, [this] { AddPlainSprings(springs_, 1, x_, f_); }, many, "spring", ""});
-    // At each end stiffness, stiffness times length and a place; a vertex' point, and its force read and written.
-    const double bytes = 2 * many * (Doubles(2) + sizeof(int)) + vertices * Doubles(3 + 6);
+    // At each end stiffness times length and a place; a vertex' point, and its force read and written.
+    const double bytes = 2 * many * (Doubles(1) + sizeof(int)) + vertices * Doubles(3 + 6);
     table.Register({kSprings, [this] { rows_.AddForce(1, x_, f_); }, many, "spring", kPlain, bytes, 2 * many * 19});
     table.Register({kEuler, [this] { euler_.Step(); }, many, "spring", kPlain});
 #ifdef PHRENIC_BULLET
