@@ -51,6 +51,12 @@ std::string ResidualText(const v1::Session& session, const char* before, const c
   return absl::StrFormat("%s%.2g mm%s%s", before, 1e3 * session.constraint_residual(), whose, after);
 }
 
+std::string SolverText(const v1::Session& session, const char* before, const char* after) {
+  if (!session.has_solver_residual()) return "";
+  return absl::StrFormat("%s%.1e left after %d iterations%s", before, session.solver_residual(),
+                         session.solver_iterations(), after);
+}
+
 void PrintSession(const v1::Session& session, std::ostream& out) {
   out << absl::StrFormat("%s: %s, %s, t = %.3f s, tick %d, revision %d, %d viewers\n", session.id(), session.scene(),
                          StateName(session.state()), session.time(), session.tick(), session.revision(),
@@ -61,6 +67,7 @@ void PrintSession(const v1::Session& session, std::ostream& out) {
                            session.pace().cpu_per_simulated_second());
   }
   out << "  " << ParametersLine(session.parameters()) << "\n";
+  out << SolverText(session, "  solver: ", "\n");
   out << ResidualText(session, "  constraints kept within ", "\n");
   for (const v1::Pull& pull : session.pulls()) {
     out << absl::StrFormat("  pulled by (%g, %g, %g) N at vertex %d of %s\n", pull.force().x(), pull.force().y(),

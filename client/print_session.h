@@ -18,6 +18,9 @@ std::string ParametersLine(const v1::Parameters& parameters);
 // How well the session keeps its constraints, "1.2e-07 mm (rigid-links:cube)" between two words; "" where it has none.
 std::string ResidualText(const v1::Session& session, const char* before, const char* after);
 
+// What the last implicit step's solver left, "8.1e-04 left after 12 iterations" between two words; "" where none ran.
+std::string SolverText(const v1::Session& session, const char* before, const char* after);
+
 // A few lines: state, time, pace, parameters, constraints, pulls, and why it diverged where it has.
 void PrintSession(const v1::Session& session, std::ostream& out);
 

@@ -170,7 +170,10 @@ int RunOn(const Context& context, const RunOptions& options, const v1::SceneSour
   } else {
     PrintCost(options, session.report(), cost, thesis);
     // An export steps a copy of the session: what this one keeps is not its end.
-    if (options.file.empty()) std::cout << ResidualText(session.session(), "constraints kept within ", "\n");
+    if (options.file.empty()) {
+      std::cout << SolverText(session.session(), "solver: ", "\n")
+                << ResidualText(session.session(), "constraints kept within ", "\n");
+    }
   }
   if (session.session().state() != v1::SESSION_STATE_DIVERGED) return kOk;
   PrintSession(session.session(), std::cerr);

@@ -47,7 +47,7 @@ class Printer {
 
  private:
   void PrintState(const v1::Session& session) {
-    residual_ = ResidualText(session, "  constraints within ", "");
+    residual_ = SolverText(session, "  solver: ", "") + ResidualText(session, "  constraints within ", "");
     if (session.revision() == revision_) return;
     revision_ = session.revision();
     if (live_) std::cout << "\r\x1b[K";

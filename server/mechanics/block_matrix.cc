@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "server/mesh/bucket_sort.h"
+
 namespace phrenic {
 namespace {
 
@@ -24,7 +26,7 @@ BlockMatrix::BlockMatrix(const Model& model) {
   const State rest = model.InitialState();
   const Instant at = MakeInstant(model, model.parameters, rest);
   for (const auto& force : model.forces) force->AddStiffness(at, pattern);
-  std::sort(pattern.places.begin(), pattern.places.end());
+  BucketSort(pattern.places, n, [](const std::pair<int, int>& place) { return place.first; });
   pattern.places.erase(std::unique(pattern.places.begin(), pattern.places.end()), pattern.places.end());
   first_.assign(static_cast<size_t>(n) + 1, 0);
   diagonal_.resize(n);

@@ -37,25 +37,36 @@ double SumVolumes(const ConstPoints& x, const Triangles& triangles, const Vector
   return sum / 6;
 }
 
-double SumFlows(const BodyPoints::Moving& body, const Triangles& triangles, const Vector& point, const Vector& n) {
-  double sum = 0;
+ChamberReading SumReadings(const BodyPoints::Moving& body, const Triangles& triangles, const Vector& point,
+                           const Vector& n) {
+  ChamberReading sum;
   for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
     const int i = triangles(0, t), j = triangles(1, t), k = triangles(2, t);
-    const Vector a = body.x.col(i), ab = body.x.col(j) - body.x.col(i), ac = body.x.col(k) - body.x.col(i);
+    const Vector a = body.x.col(i), b = body.x.col(j), c = body.x.col(k), ab = b - a, ac = c - a;
     const Vector va = body.v.col(i), vab = body.v.col(j) - body.v.col(i), vac = body.v.col(k) - body.v.col(i);
-    const double heights = (3 * (a - point) + ab + ac).dot(n), rises = (3 * va + vab + vac).dot(n);
-    sum += rises * n.dot(ab.cross(ac)) + heights * n.dot(vab.cross(ac) + ab.cross(vac));
+    const double heights = ((a - point) + (b - point) + (c - point)).dot(n), rises = (3 * va + vab + vac).dot(n);
+    const double area = n.dot(ab.cross(ac));
+    sum.volume += heights * area;
+    sum.flow += rises * area + heights * n.dot(vab.cross(ac) + ab.cross(vac));
   }
-  return sum / 6;
+  return {sum.volume / 6, sum.flow / 6};
 }
 
 }  // namespace
+
+const ChamberReading* ChamberReadings::Find(const std::string& key) const {
+  for (const auto& [of, reading] : readings_) {
+    if (of == key) return &reading;
+  }
+  return nullptr;
+}
 
 absl::Status Chamber::Add(const v1::SurfacePatch& scene, double side, std::string_view path, const Draft& draft) {
   const std::string field(path);
   const auto bodies = draft.Bodies(scene.bodies(), field + ".bodies");
   if (!bodies.ok()) return bodies.status();
   const int before = triangles();
+  absl::StrAppend(&key_, side > 0 ? "+" : "-", scene.SerializeAsString());
   for (const int b : *bodies) {
     const auto selection = draft.Select(b, scene.region(), scene.exclude_region(), field);
     if (!selection.ok()) return selection.status();
@@ -75,6 +86,7 @@ absl::Status Chamber::SetPlane(const v1::Plane* scene, std::string_view path) {
     for (const int i : part.border) sum += part.points.rest().col(i), ++count;
   }
   point_ = count > 0 ? Vector(sum / count) : Vector(parts_.front().points.rest().col(parts_.front().triangles(0, 0)));
+  absl::StrAppend(&key_, "/", scene == nullptr ? "" : scene->SerializeAsString());
   if (scene != nullptr) {
     point_ = ToEigen(scene->point());
     if (scene->has_normal()) normal_ = ToEigen(scene->normal());
@@ -94,6 +106,7 @@ double Chamber::VolumeAtRest() const {
 }
 
 double Chamber::Volume(const Instant& at) const {
+  if (at.readings != nullptr) return Read(at).volume;
   double sum = 0;
   for (const Part& part : parts_) {
     sum += part.side * SumVolumes(part.points.Positions(at), part.triangles, point_, normal_);
@@ -101,9 +114,16 @@ double Chamber::Volume(const Instant& at) const {
   return sum;
 }
 
-double Chamber::Flow(const Instant& at) const {
-  double sum = 0;
-  for (const Part& part : parts_) sum += part.side * SumFlows(part.points.Locate(at), part.triangles, point_, normal_);
+ChamberReading Chamber::Read(const Instant& at) const {
+  const ChamberReading* const found = at.readings == nullptr ? nullptr : at.readings->Find(key_);
+  if (found != nullptr) return *found;
+  ChamberReading sum;
+  for (const Part& part : parts_) {
+    const ChamberReading reading = SumReadings(part.points.Locate(at), part.triangles, point_, normal_);
+    sum.volume += part.side * reading.volume;
+    sum.flow += part.side * reading.flow;
+  }
+  if (at.readings != nullptr) at.readings->Add(key_, sum);
   return sum;
 }
 

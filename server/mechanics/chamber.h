@@ -2,13 +2,32 @@
 #ifndef PHRENIC_SERVER_MECHANICS_CHAMBER_H_
 #define PHRENIC_SERVER_MECHANICS_CHAMBER_H_
 
+#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "server/mechanics/body_points.h"
 #include "server/mechanics/draft.h"
 
 namespace phrenic {
+
+struct ChamberReading {
+  double volume = 0;  // V [m^3]
+  double flow = 0;    // dV/dt [m^3/s]
+};
+
+// What has been read at one instant, so that the measures and forces that ask for the same surface go through it once.
+// For one thread.
+class ChamberReadings {
+ public:
+  // Null where the chamber of that key has not been read.
+  const ChamberReading* Find(const std::string& key) const;
+  void Add(const std::string& key, const ChamberReading& reading) { readings_.emplace_back(key, reading); }
+
+ private:
+  std::vector<std::pair<std::string, ChamberReading>> readings_;
+};
 
 // V = integral of h n.dA over the triangles [m^3], h the height over a plane with the unit normal n; by the divergence
 // theorem the volume that a closed surface encloses, whatever the plane, and the volume between an open one and the
@@ -25,7 +44,8 @@ class Chamber {
   absl::Status SetPlane(const v1::Plane* scene, std::string_view path);
 
   double Volume(const Instant& at) const;  // [m^3]
-  double Flow(const Instant& at) const;    // dV/dt [m^3/s]
+  // Volume and flow in one pass; of equal chambers once where the instant keeps readings.
+  ChamberReading Read(const Instant& at) const;
   double rest_volume() const { return rest_volume_; }
   // f += scale a, 3 x simulated vertices.
   void AddAreas(const Instant& at, double scale, MutablePoints f) const;
@@ -55,6 +75,7 @@ class Chamber {
   };
   double VolumeAtRest() const;
 
+  std::string key_;  // the same for chambers that are the same
   std::vector<Part> parts_;
   Eigen::Vector3d point_ = Eigen::Vector3d::Zero(), normal_ = Eigen::Vector3d::UnitZ();
   double rest_volume_ = 0;  // [m^3]

@@ -75,15 +75,20 @@ absl::Status SolveStage(const Model& model, const v1::Parameters& parameters, co
       continue;
     }
     work.system->Assemble(model, at, stage.g);
-    if (absl::Status solved = work.system->Solve(model, work.force, kStageResidual, last.change); !solved.ok())
-      return solved;
+    if (step == 0 && stage.guess != nullptr) {
+      last.change = *stage.guess;
+    } else {
+      last.change.setZero();
+    }
+    absl::Status solved = work.system->Solve(model, at, work.force, kStageResidual, work.effort, last.change);
+    if (!solved.ok()) return solved;
     last.Begin(work.force);
     AddToFree(model, 1, last.change, state.v);
-    if (!(moved() > kStageSettled * model.size)) break;
+    if (!(moved() > kStageSettled * model.size) || work.effort.Spent()) break;
   }
   PlaceStage(model, parameters, stage, state);
   const bool usable = last.shortened == 0 && moved() <= kUsable * model.size;
-  if (stage.newton_steps > 1 && !usable) {
+  if (stage.newton_steps > 1 && !usable && !work.effort.Spent()) {
     return absl::AbortedError("Newton's method found no end of the step: lower time_step, or set a step_tolerance");
   }
   return absl::OkStatus();

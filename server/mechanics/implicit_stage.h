@@ -17,6 +17,8 @@ struct ImplicitStage {
   const Points& position;  // [m]
   const Points& velocity;  // [m/s]
   int newton_steps;        // at most; 1 makes the method linearly implicit
+  // What the first Newton step is guessed to be [m/s], at which its linear system starts; null for nothing.
+  const Points* guess = nullptr;
 };
 
 // x = position + g v for free vertices; driven ones and poses where the motions have them at that time.

@@ -1,6 +1,6 @@
 #include "server/mechanics/implicit_system.h"
 
-#include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 #include "server/mechanics/advance.h"
@@ -10,92 +10,113 @@ namespace {
 
 constexpr int kIterations = 400;
 
+auto Values(Lanes& lanes) { return Eigen::Map<Eigen::Array<float, kSliceLanes, 1>>(lanes.at); }
+auto Values(const Lanes& lanes) { return Eigen::Map<const Eigen::Array<float, kSliceLanes, 1>>(lanes.at); }
+
+// The largest of a vector's numbers, and the sum of their squares.
+struct Size {
+  double largest = 0, squares = 0;
+};
+
+Size SizeOf(const RowVector& r) {
+  Size size;
+  for (const Lanes& lanes : r) {
+    size.largest = std::max(size.largest, static_cast<double>(Values(lanes).abs().maxCoeff()));
+    size.squares += Values(lanes).cast<double>().square().sum();
+  }
+  return size;
+}
+
 }  // namespace
 
-ImplicitSystem::ImplicitSystem(const Model& model) : stiffness_(model) {
-  const Eigen::Index n = model.rest.cols();
-  diagonal_ = Eigen::VectorXd::Zero(n);
-  inverses_.resize(n);
-  residual_ = direction_ = product_ = scaled_ = Points::Zero(3, n);
+ImplicitSystem::ImplicitSystem(const Model& model) : rows_(model), inertia_(model.rest.cols()) {
+  missing_.resize(3, model.rest.cols());
+  for (RowVector* each : {&change_, &residual_, &direction_, &product_}) each->resize(rows_.row_lanes());
 }
 
 void ImplicitSystem::Assemble(const Model& model, const Instant& at, double g) {
   g_ = g;
   factorised_ = false;
-  stiffness_.Assemble(model, at);
-  SumDamping(model, at, diagonal_);
-  SumSharedDamping(model, at, shared_damping_);
-  for (Eigen::Index i = 0; i < diagonal_.size(); ++i) {
-    diagonal_[i] = model.inverse_mass[i] > 0 ? model.mass[i] + g * diagonal_[i] : 0;
-    if (diagonal_[i] == 0) continue;
-    const int vertex = static_cast<int>(i);
-    inverses_[i] = (diagonal_[i] * Eigen::Matrix3d::Identity() + g * g * stiffness_.Diagonal(vertex)).inverse();
+  SumDamping(model, at, inertia_);
+  for (Eigen::Index i = 0; i < inertia_.size(); ++i) {
+    inertia_[i] = model.inverse_mass[i] > 0 ? model.mass[i] + g * inertia_[i] : 0;
   }
+  rows_.Assemble(model, at, g, inertia_);
 }
 
-void ImplicitSystem::Times(const Model& model, const Points& x, Points& y) const {
-  stiffness_.Times(x, y);
-  shared_damping_.AddTimes(1 / g_, x, y);
-  for (Eigen::Index i = 0; i < x.cols(); ++i) {
-    if (model.inverse_mass[i] > 0) {
-      y.col(i) = diagonal_[i] * x.col(i) + g_ * g_ * y.col(i);
-    } else {
-      y.col(i).setZero();
-    }
-  }
-}
-
-void ImplicitSystem::Precondition(const Points& r, Points& z) const {
-  for (Eigen::Index i = 0; i < r.cols(); ++i) {
-    if (diagonal_[i] > 0) {
-      z.col(i) = inverses_[i] * r.col(i);
-    } else {
-      z.col(i).setZero();
-    }
-  }
-}
-
-absl::Status ImplicitSystem::Solve(const Model& model, const Points& b, double tolerance, Points& y) {
+absl::Status ImplicitSystem::Solve(const Model& model, const Instant& at, const Points& b, double tolerance,
+                                   SolverEffort& effort, Points& y) {
   if (!b.allFinite()) return absl::AbortedError("a force is not finite: lower time_step");
-  if (!factorised_ && ConjugateGradients(model, b, tolerance, y)) return absl::OkStatus();
-  return Factorise(model, b, y);
+  if (factorised_) return Factorise(model, at, b, y);
+  const double unit = StartFrom(b, y);
+  if (unit == 0) return absl::OkStatus();
+  Progress progress;
+  Begin(tolerance, progress);
+  const End end = Iterate(effort, progress);
+  if (end == End::kTooLong && !effort.limited()) {
+    effort.Note(0, 0);
+    return Factorise(model, at, b, y);
+  }
+  rows_.AddDisplacements(unit, change_, y);
+  effort.Note(progress.iterations, std::sqrt(progress.now / progress.first));
+  return absl::OkStatus();
 }
 
-bool ImplicitSystem::ConjugateGradients(const Model& model, const Points& b, double tolerance, Points& y) {
-  y.setZero();
-  residual_ = b;
-  for (Eigen::Index i = 0; i < b.cols(); ++i) {
-    if (diagonal_[i] == 0) residual_.col(i).setZero();
+// What is missing to the guess y goes to residual_, in units of its largest number, with the fewest squares that are
+// worth going on for; the unit, 0 where nothing is missing.
+double ImplicitSystem::StartFrom(const Points& b, Points& y) {
+  for (Eigen::Index i = 0; i < y.cols(); ++i) {
+    if (inertia_[i] == 0) y.col(i).setZero();
   }
-  Precondition(residual_, scaled_);
-  direction_ = scaled_;
-  double rho = residual_.cwiseProduct(scaled_).sum();
-  const double enough = tolerance * tolerance * rho;  // in the preconditioner's norm
-  for (iterations_ = 0; iterations_ < kIterations; ++iterations_) {
-    if (rho <= enough) return true;
-    Times(model, direction_, product_);
-    const double along = rho / direction_.cwiseProduct(product_).sum();
-    if (!std::isfinite(along)) return false;
-    y += along * direction_;
-    residual_ -= along * product_;
-    Precondition(residual_, scaled_);
-    const double next = residual_.cwiseProduct(scaled_).sum();
-    direction_ = scaled_ + next / rho * direction_;
-    rho = next;
+  rows_.ForcesToRows(1, b, residual_);
+  floor_ = kFinest * kFinest * SizeOf(residual_).squares;
+  missing_ = b - y * inertia_.asDiagonal();
+  rows_.ForcesToRows(1, missing_, residual_);
+  if (!y.isZero(0)) {
+    rows_.DisplacementsToRows(y, product_);
+    rows_.Turn(0, product_, direction_);
+    rows_.Times(direction_, false, product_);
+    for (size_t k = 0; k < residual_.size(); ++k) Values(residual_[k]) -= Values(product_[k]);
   }
-  return false;
+  const double unit = SizeOf(residual_).largest;
+  if (unit == 0) return 0;
+  for (Lanes& lanes : residual_) Values(lanes) *= static_cast<float>(1 / unit);
+  floor_ /= unit * unit;
+  return unit;
 }
 
-absl::Status ImplicitSystem::Factorise(const Model& model, const Points& b, Points& y) {
+void ImplicitSystem::Begin(double tolerance, Progress& progress) {
+  for (RowVector* each : {&change_, &direction_, &product_}) std::fill(each->begin(), each->end(), Lanes());
+  progress.now = progress.first = Descend(rows_.slices(), 0, direction_, product_, change_, residual_);
+  progress.enough = std::max(tolerance * tolerance * progress.first, floor_);
+  rows_.Turn(0, product_, direction_);
+}
+
+ImplicitSystem::End ImplicitSystem::Iterate(const SolverEffort& effort, Progress& progress) {
+  for (; progress.iterations < kIterations; ++progress.iterations) {
+    if (progress.now <= progress.enough) return End::kSolved;
+    if (progress.iterations > 0 && effort.Spent()) return End::kSpent;
+    if (progress.iterations == effort.most_iterations()) return End::kSpent;
+    const double along = progress.now / rows_.Times(direction_, true, product_);
+    if (!(along > 0) || !std::isfinite(along)) return End::kTooLong;
+    const double next = Descend(rows_.slices(), static_cast<float>(along), direction_, product_, change_, residual_);
+    rows_.Turn(static_cast<float>(next / progress.now), product_, direction_);
+    progress.now = next;
+  }
+  return End::kTooLong;
+}
+
+absl::Status ImplicitSystem::Factorise(const Model& model, const Instant& at, const Points& b, Points& y) {
   const Eigen::Index n = b.cols();
-  iterations_ = 0;
-  Eigen::VectorXd free(3 * n), mass(3 * n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    free.segment<3>(3 * i).setConstant(model.inverse_mass[i] > 0 ? 1 : 0);
-    mass.segment<3>(3 * i).setConstant(model.inverse_mass[i] > 0 ? diagonal_[i] : 1);
-  }
+  if (stiffness_ == nullptr) stiffness_ = std::make_unique<BlockMatrix>(model);
   if (!factorised_) {
-    Eigen::SparseMatrix<double> matrix = free.asDiagonal() * stiffness_.ToSparse() * free.asDiagonal();
+    stiffness_->Assemble(model, at);
+    Eigen::VectorXd free(3 * n), mass(3 * n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      free.segment<3>(3 * i).setConstant(inertia_[i] > 0 ? 1 : 0);
+      mass.segment<3>(3 * i).setConstant(inertia_[i] > 0 ? inertia_[i] : 1);
+    }
+    Eigen::SparseMatrix<double> matrix = free.asDiagonal() * stiffness_->ToSparse() * free.asDiagonal();
     matrix *= g_ * g_;
     matrix.diagonal() += mass;
     factor_.compute(matrix);
@@ -103,22 +124,22 @@ absl::Status ImplicitSystem::Factorise(const Model& model, const Points& b, Poin
       return absl::AbortedError("the implicit step's matrix is singular: lower time_step");
     factorised_ = true;
   }
-  SolveFactored(model, b, y);
-  const auto inverse = [&](const Points& right, Points& left) { SolveFactored(model, right, left); };
-  stiffness_.outer().Correct(g_ * g_, inverse, y);
+  SolveFactored(b, y);
+  const auto inverse = [&](const Points& right, Points& left) { SolveFactored(right, left); };
+  stiffness_->outer().Correct(g_ * g_, inverse, y);
   // What damps comes on top of what the stiffness' products have made of the matrix.
   const auto stiffened = [&](const Points& right, Points& left) {
-    SolveFactored(model, right, left);
-    stiffness_.outer().Correct(g_ * g_, inverse, left);
+    SolveFactored(right, left);
+    stiffness_->outer().Correct(g_ * g_, inverse, left);
   };
-  shared_damping_.Correct(g_, stiffened, y);
+  rows_.shared_damping().Correct(g_, stiffened, y);
   return absl::OkStatus();
 }
 
-void ImplicitSystem::SolveFactored(const Model& model, const Points& b, Points& y) const {
+void ImplicitSystem::SolveFactored(const Points& b, Points& y) const {
   Eigen::VectorXd right = b.reshaped();
   for (Eigen::Index i = 0; i < b.cols(); ++i) {
-    if (model.inverse_mass[i] == 0) right.segment<3>(3 * i).setZero();
+    if (inertia_[i] == 0) right.segment<3>(3 * i).setZero();
   }
   y = factor_.solve(right).reshaped(3, b.cols());
 }

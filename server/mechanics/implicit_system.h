@@ -4,44 +4,57 @@
 #define PHRENIC_SERVER_MECHANICS_IMPLICIT_SYSTEM_H_
 
 #include <Eigen/SparseCholesky>
-#include <vector>
+#include <memory>
 
 #include "absl/status/status.h"
 #include "server/mechanics/block_matrix.h"
+#include "server/mechanics/block_rows.h"
+#include "server/mechanics/solver_effort.h"
 
 namespace phrenic {
 
 // Conjugate gradients with the inverse diagonal blocks as preconditioner (Baraff and Witkin 1998, their filter for what
 // is fixed); a sparse LDL^T factorisation where they take too many iterations, which they do where stiffnesses differ
-// by orders of magnitude. Not thread-safe. Allocates when it is made and when it factorises.
+// by orders of magnitude. The iterations are taken in single precision for what is missing to a first guess, which is
+// worked out in double: y is right to 1e-6 of that, so that a relative residual below kFinest is not to be had from
+// them. Not thread-safe. Allocates when it is made and when it factorises.
 class ImplicitSystem {
  public:
+  static constexpr double kFinest = 1e-6;
+
   explicit ImplicitSystem(const Model& model);
 
   // Takes M, C and K from the model at this instant.
   void Assemble(const Model& model, const Instant& at, double g);
-  // y = A^-1 b, to this relative residual; 0 for fixed and driven vertices. ABORTED where b is not finite or
-  // the matrix cannot be factorised.
-  absl::Status Solve(const Model& model, const Points& b, double tolerance, Points& y);
-  // Of the last Solve; 0 where it factorised.
-  int iterations() const { return iterations_; }
+  // y becomes A^-1 b, from what it is as a first guess, until what is missing, in the preconditioner's norm, is
+  // `tolerance` of what it was, or kFinest of b; 0 for fixed and driven vertices. At the instant of Assemble. Where the
+  // effort is spent y is the best there is by then, after one iteration at least; it notes what was reached. ABORTED
+  // where b is not finite or the matrix cannot be factorised.
+  absl::Status Solve(const Model& model, const Instant& at, const Points& b, double tolerance, SolverEffort& effort,
+                     Points& y);
 
  private:
-  void SolveFactored(const Model& model, const Points& b, Points& y) const;
-  void Times(const Model& model, const Points& x, Points& y) const;
-  void Precondition(const Points& r, Points& z) const;
-  bool ConjugateGradients(const Model& model, const Points& b, double tolerance, Points& y);
-  absl::Status Factorise(const Model& model, const Points& b, Points& y);
+  enum class End { kSolved, kSpent, kTooLong };
+  struct Progress {
+    double first = 0, enough = 0, now = 0;  // squared norms of what is missing: at first, in the end, and now
+    int iterations = 0;
+  };
+  double StartFrom(const Points& b, Points& y);
+  void Begin(double tolerance, Progress& progress);
+  End Iterate(const SolverEffort& effort, Progress& progress);
+  absl::Status Factorise(const Model& model, const Instant& at, const Points& b, Points& y);
+  void SolveFactored(const Points& b, Points& y) const;
 
-  BlockMatrix stiffness_;
-  OuterProducts shared_damping_;
+  BlockRows rows_;
   double g_ = 0;
-  Eigen::VectorXd diagonal_;               // m + g c; 0 for fixed and driven vertices
-  std::vector<Eigen::Matrix3d> inverses_;  // of the diagonal blocks
-  Points residual_, direction_, product_, scaled_;
+  Eigen::VectorXd inertia_;  // m + g c; 0 for fixed and driven vertices
+  Points missing_;           // to the first guess, K left out
+  double floor_ = 0;         // kFinest of b, squared, in the unit of residual_
+  RowVector change_, residual_, direction_, product_;
+  // Where a factorisation is needed; made when first needed.
+  std::unique_ptr<BlockMatrix> stiffness_;
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;
   bool factorised_ = false;  // factor_ is that of the present matrix
-  int iterations_ = 0;
 };
 
 }  // namespace phrenic

@@ -9,6 +9,8 @@
 
 namespace phrenic {
 
+class ChamberReadings;
+
 // References into the state of the caller: valid during the call only.
 struct Instant {
   double time;                       // [s]
@@ -19,6 +21,7 @@ struct Instant {
   const ConstPoints v;               // [m/s]
   const std::vector<Pose>& poses;
   const std::vector<VertexPull>& pulls;
+  ChamberReadings* readings = nullptr;  // what measures of one moment share (chamber.h); null in a step
 };
 
 }  // namespace phrenic

@@ -11,6 +11,7 @@
 
 #include "absl/status/status.h"
 #include "phrenic/v1/parameters.pb.h"
+#include "server/mechanics/solver_effort.h"
 #include "server/mechanics/state.h"
 
 namespace phrenic {
@@ -34,6 +35,7 @@ struct Workspace {
   Eigen::VectorXd damping;                 // [N s/m] a vertex
   std::vector<Points> stages;              // of the integrators that have stages; made when first needed
   std::vector<State> trials;               // of adaptive steps; made when first needed
+  SolverEffort effort;                     // of the implicit integrators' linear systems, in the last step
   std::unique_ptr<ImplicitSystem> system;  // of the implicit integrators; made when first needed
   // Of projective dynamics; made when first needed.
   std::array<std::unique_ptr<PrefactoredSystem>, 2> prefactored;

@@ -4,6 +4,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/mechanics/catalogue.h"
+#include "server/mechanics/chamber.h"
 
 namespace phrenic {
 
@@ -24,10 +25,13 @@ absl::Status AddMeasures(Draft& draft) {
 
 MeasureReadings ReadMeasures(const Model& model, const Instant& at) {
   MeasureReadings readings;
+  ChamberReadings shared;
+  Instant moment = at;
+  moment.readings = &shared;
   for (const auto& measure : model.measures) {
     v1::MeasureReading& reading = *readings.Add();
     reading.set_name(measure->name());
-    reading.set_value(measure->Value(at));
+    reading.set_value(measure->Value(moment));
     reading.set_unit(measure->unit());
   }
   return readings;

@@ -14,6 +14,7 @@ namespace phrenic {
 namespace {
 
 constexpr int kProducts = 20;
+constexpr double kMostlyLeft = 0.7;
 constexpr double kExhausted = 1e-11;  // a product that leaves less than this that is new leaves round-off
 
 // y = M^-1/2 K M^-1/2 x.
@@ -75,6 +76,19 @@ struct Krylov {
   std::vector<double> diagonal, off_diagonal;  // of the tridiagonal matrix; one more off_diagonal than needed
 };
 
+// Takes off q what of it lies along the basis, again where little is left, which may not be orthogonal (Daniel, Gragg,
+// Kaufman, Stewart 1976); what is left of its length.
+double Orthogonalise(const std::vector<Eigen::VectorXd>& basis, Eigen::VectorXd& q) {
+  double norm = q.norm();
+  for (int pass = 0; pass < 2; ++pass) {
+    const double before = norm;
+    for (const Eigen::VectorXd& b : basis) q -= q.dot(b) * b;
+    norm = q.norm();
+    if (norm > kMostlyLeft * before) break;
+  }
+  return norm;
+}
+
 Krylov Lanczos(const ScaledStiffness& matrix) {
   Krylov krylov;
   Eigen::VectorXd q = matrix.Start();
@@ -85,10 +99,9 @@ Krylov Lanczos(const ScaledStiffness& matrix) {
     q = matrix * krylov.basis.back();
     largest = std::max(largest, q.norm());
     krylov.diagonal.push_back(q.dot(krylov.basis.back()));
-    for (int pass = 0; pass < 2; ++pass) {
-      for (const Eigen::VectorXd& b : krylov.basis) q -= q.dot(b) * b;
-    }
-    norm = q.norm();
+    q -= krylov.diagonal.back() * krylov.basis.back();
+    if (krylov.basis.size() > 1) q -= krylov.off_diagonal.back() * krylov.basis[krylov.basis.size() - 2];
+    norm = Orthogonalise(krylov.basis, q);
     krylov.off_diagonal.push_back(norm);
   }
   return krylov;

@@ -51,7 +51,8 @@ struct State {
   int halvings = 0;  // of an adaptive step, the last time
 };
 
-// A word-wise FNV-1a over the bits of time, phase, positions and velocities: equal states, equal hashes.
+// A word-wise FNV-1a, in four lanes, over the bits of time, phase, positions and velocities: equal states, equal
+// hashes.
 std::uint64_t StateHash(const State& state);
 
 }  // namespace phrenic

@@ -93,6 +93,7 @@ std::string Remedy(const Model& model, const v1::Parameters& parameters, const S
 absl::Status Step(const Model& model, const v1::Parameters& parameters, double dt, State& state, Workspace& work) {
   std::copy_n(state.x.data(), state.x.size(), work.before.data());
   std::copy_n(state.v.data(), state.v.size(), work.velocity_before.data());
+  work.effort.Begin(parameters.solver_budget());
   const Integrator& integrator = FindIntegrator(parameters.integrator());
   const bool adaptive = parameters.step_tolerance() > 0 && integrator.order() > 0;
   absl::Status advanced = adaptive ? AdvanceAdaptively(model, parameters, integrator, dt, state, work)

@@ -19,7 +19,8 @@ class StiffnessSink {
   virtual void AddOuter(double scale, const Points& g) = 0;
 
   // What a spring between two vertices adds: the force on a changes by block (dx_b - dx_a), that on b by its opposite.
-  void AddBetween(int a, int b, const Eigen::Matrix3d& block) {
+  // The block is symmetric.
+  virtual void AddBetween(int a, int b, const Eigen::Matrix3d& block) {
     Add(a, a, block);
     Add(b, b, block);
     Add(a, b, -block);

@@ -6,6 +6,8 @@
 #include <numeric>
 #include <vector>
 
+#include "server/mesh/bucket_sort.h"
+
 namespace phrenic {
 namespace {
 
@@ -26,7 +28,7 @@ std::vector<HalfEdge> SortedHalfEdges(const Triangles& triangles) {
       edges.push_back({std::min(a, b), std::max(a, b), a < b});
     }
   }
-  std::sort(edges.begin(), edges.end());
+  BucketSort(edges, triangles.size() > 0 ? triangles.maxCoeff() + 1 : 0, [](const HalfEdge& edge) { return edge.low; });
   return edges;
 }
 

@@ -30,6 +30,8 @@ class Run {
   const Model& model() const { return *model_; }
   const State& state() const { return state_; }
   const v1::Parameters& parameters() const { return parameters_; }
+  // Of the last step.
+  const SolverEffort& effort() const { return work_.effort; }
   // Every field must be set.
   void set_parameters(const v1::Parameters& parameters) { parameters_ = parameters; }
   // As phrenic::ChangePulls: RESOURCE_EXHAUSTED where they become too many.

@@ -109,7 +109,7 @@ class Session {
   void OfferFrame(absl::Time now);
   void Changed() ABSL_LOCKS_EXCLUDED(mutex_);
   void Tell() ABSL_LOCKS_EXCLUDED(mutex_);
-  void WriteResidual(v1::Session& status) const;
+  void WriteResiduals(v1::Session& status) const;
   void NoteProgress() ABSL_LOCKS_EXCLUDED(mutex_);
   absl::Status CheckNotDiverged() const;
 

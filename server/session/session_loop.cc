@@ -179,7 +179,7 @@ void Session::Tell() {
     status_.set_largest_stable_step(stable_step_);
     *status_.mutable_pace() = meter_.pace();
     *status_.mutable_pulls() = DescribePulls(*model_, run_.state().pulls);
-    WriteResidual(status_);
+    WriteResiduals(status_);
     if (run_.divergence().has_value()) {
       *status_.mutable_divergence() = *run_.divergence();
     } else {
@@ -190,8 +190,14 @@ void Session::Tell() {
   publisher_.Announce(status);
 }
 
-// How well the present state keeps the constraints, where there are any.
-void Session::WriteResidual(v1::Session& status) const {
+// How well the last step was solved, and how well the present state keeps the constraints, where there are any.
+void Session::WriteResiduals(v1::Session& status) const {
+  status.clear_solver_residual();
+  status.clear_solver_iterations();
+  if (run_.effort().iterations() > 0) {
+    status.set_solver_residual(run_.effort().residual());
+    status.set_solver_iterations(run_.effort().iterations());
+  }
   if (model_->constraints.empty()) return;
   const ConstraintResidual residual = LargestResidual(*model_, run_.state());
   status.set_constraint_residual(residual.metres);
@@ -206,7 +212,7 @@ void Session::NoteProgress() {
     absl::MutexLock lock(&mutex_);
     status_.set_time(run_.state().time);
     status_.set_tick(run_.state().tick);
-    WriteResidual(status_);
+    WriteResiduals(status_);
     if (!measured) return;
     *status_.mutable_pace() = meter_.pace();
     status = status_;

@@ -1,74 +1,141 @@
-// Times what a step is made of on the generated diaphragm, beside the plain loop over its springs in the same run, so
-// that ratios hold whatever else the machine does: build/bench. Google Benchmark's options apply
-// (--benchmark_repetitions=30). Exit code 1 where a step fails.
+// Times what a step is made of on the generated diaphragm, beside the plain loop over its springs, another library and
+// what the machine can do, all in the same run, so that ratios hold whatever else the machine does: build/bench.
+// Google Benchmark's options apply (--benchmark_repetitions=30). Exit code 1 where a step fails.
 #include <benchmark/benchmark.h>
 #include <hwy/targets.h>
 
+#include <cmath>
 #include <cstdio>
-#include <functional>
-#include <memory>
 
-#include "server/mechanics/compile.h"
-#include "server/mechanics/step.h"
-#include "server/mesh/topology.h"
-#include "server/schema/schema.h"
-#include "server/session/meshes.h"
-#include "server/session/scene_catalogue.h"
+#include "absl/strings/str_cat.h"
+#include "tests/bench/bullet_body.h"
+#include "tests/bench/machine.h"
 #include "tests/bench/plain_springs.h"
+#include "tests/bench/subjects.h"
 #include "tests/bench/table.h"
 
 namespace phrenic::bench {
 namespace {
 
-const char kSpringsAlone[] = R"(
-  name: "springs"
-  bodies { name: "diaphragm" role: ROLE_DEFORMABLE mass: 3 fixed_regions: "rim"
-           anatomy { structure: STRUCTURE_DIAPHRAGM } generated {} }
-  forces { springs { bodies: "diaphragm" stiffness: 40 rest_length_ratio: 0.9 balanced_at_rest: true } }
-)";
+constexpr double kFrame = 1.0 / 60;  // [s]
+const char kPlain[] = "springs, plain loop with scatter", kSprings[] = "springs";
+const char kEuler[] = "springs and Euler's step", kThorax[] = "thorax, the whole step";
+const char kMeasures[] = "thorax' measures, a frame";
+const char kFew[] = "rigid links, few", kMany[] = "rigid links, ten times as many";
+const char kCache[] = "triad, 12 MB", kMultiplyAdds[] = "multiply-adds";
 
-std::shared_ptr<const Model> Compiled(const absl::StatusOr<v1::Scene>& scene) {
-  if (!scene.ok()) return nullptr;
-  auto model = Compile(*scene, session::MakeMeshSource(""));
-  if (!model.ok()) std::fprintf(stderr, "%s\n", std::string(model.status().message()).c_str());
-  return model.ok() ? *model : nullptr;
-}
+double Doubles(double places) { return sizeof(double) * places; }
 
-// A session that is stepped: it goes on from one repetition to the next.
-struct Run {
-  std::shared_ptr<const Model> model;
-  State state;
-  Workspace work;
-  absl::Status status;  // of the step that failed, if one did
-
-  explicit Run(std::shared_ptr<const Model> of)
-      : model(std::move(of)), state(model->InitialState()), work(model->MakeWorkspace()) {}
-  void Step() { status.Update(phrenic::Step(*model, model->parameters, model->parameters.time_step(), state, work)); }
-};
-
-std::vector<Spring> SpringsOf(const Model& model) {
-  std::vector<Spring> springs;
-  const Edges edges = SpringEdges(model.bodies.front().mesh);
-  for (const auto& edge : edges.colwise()) {
-    const double length = (model.rest.col(edge[1]) - model.rest.col(edge[0])).norm();
-    springs.push_back({edge[0], edge[1], 40, 0.9 * length});
+class Bench {
+ public:
+  explicit Bench(const Subjects& subjects)
+      : subjects_(subjects),
+        springs_(SpringsOf(*subjects.springs)),
+        rows_(springs_, static_cast<int>(subjects.springs->rest.cols())),
+        x_(subjects.springs->rest * 1.05),
+        f_(Points::Zero(3, x_.cols())),
+        solver_(subjects.springs) {
+    unlinked_.parameters.set_apply_links(false);
+    implicit_.parameters.set_integrator(v1::INTEGRATOR_LINEAR_IMPLICIT_EULER);
+    implicit_.parameters.set_time_step(kFrame);
   }
-  return springs;
-}
 
-void Register(const char* name, double springs, int against, std::function<void()> work) {
-  benchmark::RegisterBenchmark(name, [=](benchmark::State& state) {
-    for (auto _ : state) work();
-    state.counters["springs"] = springs;
-    state.counters["against"] = against;
-  })->Unit(benchmark::kMicrosecond);
-}
+  void Register(Table& table) {
+    RegisterSprings(table);
+    RegisterThorax(table);
+    RegisterOthers(table);
+    table.Register(Triad(kCache, 12));
+    table.Register(Triad("triad, 400 MB", 400));
+    table.Register(MultiplyAdds(kMultiplyAdds));
+  }
+
+  void PrintSums(const Table& table) const {
+    const double step = table.Microseconds(kThorax), few = table.Microseconds(kFew);
+    if (step > 0) {
+      const double a_second = step / thorax_.parameters.time_step() + table.Microseconds(kMeasures) / kFrame;
+      std::printf("thorax in real time at 60 frames a second: %.2f sessions a core\n", 1e6 / a_second);
+    }
+    if (few > 0) {
+      const double exponent = std::log(table.Microseconds(kMany) / few) / std::log(Links(many_) / Links(few_));
+      std::printf("rigid links: the cost grows as their number to the power of %.2f\n", exponent);
+    }
+  }
+
+  absl::Status status() const {
+    absl::Status status;
+    for (const Run* run : {&euler_, &thorax_, &unlinked_, &implicit_, &few_, &many_}) status.Update(run->status);
+    return status;
+  }
+  void PrintHead() const {
+    std::printf("%td vertices, %zu springs; %s\n", x_.cols(), springs_.size(),
+                hwy::TargetName(hwy::SupportedTargets() & -hwy::SupportedTargets()));
+  }
+
+ private:
+  static double Links(const Run& run) { return static_cast<double>(run.model->rigid_links.cols()); }
+
+  void RegisterSprings(Table& table) {
+    const auto many = static_cast<double>(springs_.size()), vertices = static_cast<double>(x_.cols());
+    table.Register({kPlain, [this] { AddPlainSprings(springs_, 1, x_, f_); }, many, "spring", ""});
+    // At each end stiffness times length and a place; a vertex' point, and its force read and written.
+    const double bytes = 2 * many * (Doubles(1) + sizeof(int)) + vertices * Doubles(3 + 6);
+    table.Register({kSprings, [this] { rows_.AddForce(1, x_, f_); }, many, "spring", kPlain, bytes, 2 * many * 19});
+    table.Register({kEuler, [this] { euler_.Step(); }, many, "spring", kPlain});
+#ifdef PHRENIC_BULLET
+    table.Register({"Bullet's soft body, 1 iteration", [this] { once_.Step(1e-3); }, many, "spring", kEuler});
+    table.Register({"Bullet's soft body, 4 iterations", [this] { often_.Step(1e-3); }, many, "spring", kEuler});
+#else
+    std::printf("two rows are missing: install libbullet-dev and run cmake again to see Bullet's soft body\n");
+#endif
+  }
+
+  void RegisterThorax(Table& table) {
+    const auto vertices = static_cast<double>(subjects_.thorax->rest.cols());
+    table.Register({kThorax, [this] { thorax_.Step(); }, vertices, "vertex", kEuler});
+    table.Register({"thorax without its rigid links", [this] { unlinked_.Step(); }, vertices, "vertex", kThorax});
+    const auto measure = [this] {
+      const Instant at = MakeInstant(*subjects_.thorax, thorax_.parameters, thorax_.state);
+      benchmark::DoNotOptimize(ReadMeasures(*subjects_.thorax, at));
+    };
+    table.Register({kMeasures, measure, vertices, "vertex", kThorax});
+    const auto compile = [this] { benchmark::DoNotOptimize(Compile(subjects_.scene, subjects_.meshes)); };
+    table.Register({"thorax, compiled from its meshes", compile, vertices, "vertex", ""});
+  }
+
+  void RegisterOthers(Table& table) {
+    const auto vertices = static_cast<double>(x_.cols());
+    const auto triangles = static_cast<double>(subjects_.membrane->bodies.front().mesh.triangles.cols());
+    const auto pull = [this] {
+      const Instant at = MakeInstant(*subjects_.membrane, subjects_.membrane->parameters, membrane_.state);
+      subjects_.membrane->forces.front()->AddForce(at, f_);
+    };
+    table.Register({"finite elements", pull, triangles, "triangle", ""});
+    table.Register({absl::StrCat("stiffness and ", Solver::kIterations, " iterations"), [this] { solver_.Solve(); },
+                    vertices, "vertex", ""});
+    table.Register({"an implicit step of 16.7 ms", [this] { implicit_.Step(); }, vertices, "vertex", ""});
+    table.Register({kFew, [this] { few_.Step(); }, Links(few_), "link", ""});
+    table.Register({kMany, [this] { many_.Step(); }, Links(many_), "link", kFew});
+  }
+
+  const Subjects& subjects_;
+  const std::vector<Spring> springs_;
+  const SpringRows rows_;
+  const Points x_;
+  Points f_;
+  Solver solver_;
+  Run euler_{subjects_.springs}, implicit_{subjects_.springs}, membrane_{subjects_.membrane};
+  Run thorax_{subjects_.thorax}, unlinked_{subjects_.thorax};
+  Run few_{subjects_.few_links}, many_{subjects_.many_links};
+#ifdef PHRENIC_BULLET
+  BulletBody once_{subjects_.springs->rest, subjects_.springs->inverse_mass, springs_, 1};
+  BulletBody often_{subjects_.springs->rest, subjects_.springs->inverse_mass, springs_, 4};
+#endif
+};
 
 }  // namespace
 }  // namespace phrenic::bench
 
 int main(int argc, char** argv) {
-  using namespace phrenic;
   using namespace phrenic::bench;
   std::vector<char*> arguments(argv, argv + argc);
   char repetitions[] = "--benchmark_repetitions=15", interleaving[] = "--benchmark_enable_random_interleaving=true";
@@ -78,27 +145,19 @@ int main(int argc, char** argv) {
   benchmark::Initialize(&count, arguments.data());
   if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) return 2;
 
-  const auto alone = Compiled(schema::ParseScene("springs", kSpringsAlone));
-  const auto thorax = Compiled(session::SceneCatalogue({PHRENIC_SCENES_DIR}).Find("thorax"));
-  if (alone == nullptr || thorax == nullptr) return 1;
-  const std::vector<Spring> springs = SpringsOf(*alone);
-  const SpringRows rows(springs, static_cast<int>(alone->rest.cols()));
-  const Points x = alone->rest * 1.05;
-  Points f = Points::Zero(3, x.cols());
-  Run springs_run(alone), thorax_run(thorax);
-  const auto many = static_cast<double>(springs.size());
-  Register("1 springs, plain loop with scatter", many, -1, [&] { AddPlainSprings(springs, 1, x, f); });
-  Register("2 springs", many, 0, [&] { rows.AddForce(1, x, f); });
-  Register("3 springs and Euler's step", many, 0, [&] { springs_run.Step(); });
-  Register("4 thorax, the whole step", thorax->report.springs(), 2, [&] { thorax_run.Step(); });
-  std::printf("%td vertices, %zu springs; %s\n", x.cols(), springs.size(),
-              hwy::TargetName(hwy::SupportedTargets() & -hwy::SupportedTargets()));
-  Table table;
-  benchmark::RunSpecifiedBenchmarks(&table);
-  for (const Run* run : {&springs_run, &thorax_run}) {
-    if (run->status.ok()) continue;
-    std::fprintf(stderr, "%s\n", std::string(run->status.message()).c_str());
+  const auto subjects = MakeSubjects();
+  if (!subjects.ok()) {
+    std::fprintf(stderr, "%s\n", std::string(subjects.status().message()).c_str());
     return 1;
   }
-  return 0;
+  Bench bench(*subjects);
+  Table table;
+  bench.Register(table);
+  bench.PrintHead();
+  benchmark::RunSpecifiedBenchmarks(&table);
+  table.Print(kCache, kMultiplyAdds);
+  bench.PrintSums(table);
+  if (bench.status().ok()) return 0;
+  std::fprintf(stderr, "%s\n", std::string(bench.status().message()).c_str());
+  return 1;
 }

@@ -132,13 +132,15 @@ TEST(ImplicitSystemWithLungs, FactorisesToWhatIterationsFind) {
   const State state = model->InitialState();
   const Points b = RandomPoints(static_cast<int>(state.x.cols()), 5);
   ImplicitSystem system(*model);
-  system.Assemble(*model, MakeInstant(*model, model->parameters, state), 0.1);
+  const Instant at = MakeInstant(*model, model->parameters, state);
+  system.Assemble(*model, at, 0.1);
   Points iterated = Points::Zero(3, b.cols()), factorised = iterated;
-  ASSERT_TRUE(system.Solve(*model, b, 1e-13, iterated).ok());
-  ASSERT_GT(system.iterations(), 0);
-  ASSERT_TRUE(system.Solve(*model, b, std::nan(""), factorised).ok());
-  ASSERT_EQ(system.iterations(), 0);
-  EXPECT_LT((iterated - factorised).norm(), 1e-9 * iterated.norm());
+  SolverEffort iterations, none;
+  ASSERT_TRUE(system.Solve(*model, at, b, 1e-6, iterations, iterated).ok());
+  ASSERT_GT(iterations.iterations(), 0);
+  ASSERT_TRUE(system.Solve(*model, at, b, std::nan(""), none, factorised).ok());
+  ASSERT_EQ(none.iterations(), 0);
+  EXPECT_LT((iterated - factorised).norm(), 1e-4 * iterated.norm());
 }
 
 }  // namespace

@@ -114,16 +114,41 @@ FiniteElement<3> MakeTetrahedron(const ConstPoints& rest, const Eigen::Vector4i&
   return element;
 }
 
+std::vector<TriangleBatch> InBatches(const std::vector<FiniteElement<2>>& elements) {
+  std::vector<TriangleBatch> batches((elements.size() + kBatch - 1) / kBatch);
+  for (size_t t = 0; t < elements.size(); ++t) {
+    TriangleBatch& batch = batches[t / kBatch];
+    const size_t i = t % kBatch;
+    const auto& g = elements[t].gradient;
+    batch.b1[i] = g(0, 1), batch.b2[i] = g(1, 1), batch.c1[i] = g(0, 2), batch.c2[i] = g(1, 2);
+    batch.volume[i] = elements[t].volume;
+    const Eigen::Vector3i place = 3 * elements[t].vertices;
+    batch.a[i] = place[0], batch.b[i] = place[1], batch.c[i] = place[2];
+  }
+  return batches;
+}
+
+template <int N>
+void Corotated<N>::AddForceOf(const FiniteElement<N>& element, double elasticity, const ConstPoints& x,
+                              MutablePoints f) const {
+  const Gradient<N> gradient = DeformationOf(element, x);
+  const Gradient<N> r = Rotation(element, gradient);
+  const Square strain = Symmetric<N>(r, gradient) - Square::Identity();
+  const Square stress = 2 * lame_.mu * strain + lame_.lambda * strain.trace() * Square::Identity();
+  AddStress<N>(element, elasticity * r * stress, f);
+}
+
 template <int N>
 void Corotated<N>::AddForce(const Instant& at, MutablePoints f) const {
   const double elasticity = at.parameters.elasticity();
-  for (const FiniteElement<N>& element : elements_) {
-    const Gradient<N> gradient = DeformationOf(element, at.x);
-    const Gradient<N> r = Rotation(element, gradient);
-    const Square strain = Symmetric<N>(r, gradient) - Square::Identity();
-    const Square stress = 2 * lame_.mu * strain + lame_.lambda * strain.trace() * Square::Identity();
-    AddStress<N>(element, elasticity * r * stress, f);
+  if (batches_.empty()) {
+    for (const FiniteElement<N>& element : elements_) AddForceOf(element, elasticity, at.x, f);
+    return;
   }
+  thread_local std::vector<int> flat;  // of which there are hardly ever any
+  flat.clear();
+  AddTriangles(batches_, elasticity * lame_.mu, elasticity * lame_.lambda, at.x.data(), f.data(), flat);
+  for (const int t : flat) AddForceOf(elements_[t], elasticity, at.x, f);
 }
 
 template <int N>

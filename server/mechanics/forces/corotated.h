@@ -13,6 +13,7 @@
 #include "phrenic/v1/scene.pb.h"
 #include "server/mechanics/force.h"
 #include "server/mechanics/forces/polar.h"
+#include "server/mechanics/forces/triangle_kernel.h"
 
 namespace phrenic {
 
@@ -51,12 +52,20 @@ void AddStress(const FiniteElement<N>& element, const Gradient<N>& stress, Mutab
   for (int a = 0; a <= N; ++a) f.col(element.vertices[a]) -= element.volume * (stress * element.gradient.col(a));
 }
 
+// Laid out for the machine; nothing of tetrahedra.
+std::vector<TriangleBatch> InBatches(const std::vector<FiniteElement<2>>& elements);
+inline std::vector<TriangleBatch> InBatches(const std::vector<FiniteElement<3>>&) { return {}; }
+
 // Stiffness is scaled by the live parameter elasticity.
 template <int N>
 class Corotated final : public Force {
  public:
   Corotated(std::string name, std::vector<FiniteElement<N>> elements, Lame lame, v1::Strain strain)
-      : Force(std::move(name)), elements_(std::move(elements)), lame_(lame), turns_(strain != v1::STRAIN_LINEAR) {}
+      : Force(std::move(name)),
+        elements_(std::move(elements)),
+        lame_(lame),
+        turns_(strain != v1::STRAIN_LINEAR),
+        batches_(turns_ ? InBatches(elements_) : std::vector<TriangleBatch>()) {}
 
   void AddForce(const Instant& at, MutablePoints f) const override;
   void AddStiffness(const Instant& at, StiffnessSink& sink) const override;
@@ -69,9 +78,12 @@ class Corotated final : public Force {
     return turns_ ? NearestRotation(f) : element.axes;
   }
 
+  void AddForceOf(const FiniteElement<N>& element, double elasticity, const ConstPoints& x, MutablePoints f) const;
+
   const std::vector<FiniteElement<N>> elements_;
   const Lame lame_;
   const bool turns_;
+  const std::vector<TriangleBatch> batches_;  // the same, where they are triangles that turn: what a step reads
 };
 
 extern template class Corotated<2>;

@@ -43,7 +43,7 @@ absl::StatusOr<std::unique_ptr<Force>> Lungs::Make(const v1::Lungs& scene, const
 }
 
 void Lungs::AddForce(const Instant& at, MutablePoints f) const {
-  if (pushes_) chamber_.AddAreas(at, PressureChange(at), f);
+  if (pushes_) chamber_.AddAreas(at, PressureChange(chamber_.Read(at)), f);
 }
 
 const Points& Lungs::Areas(const Instant& at) const {
@@ -62,22 +62,23 @@ void Lungs::AddSharedDamping(const Instant& at, OuterProducts& shared) const {
 }
 
 double Lungs::Energy(const Instant& at) const {
-  const double change = Change(at);
+  const double change = Change(chamber_.Volume(at));
   return change * change / (2 * compliance_);
 }
 
 std::span<const Force::Output> Lungs::outputs() const { return kLungOutputs; }
 
 double Lungs::Read(size_t output, const Instant& at) const {
+  const ChamberReading read = chamber_.Read(at);
   switch (output) {
     case 0:
-      return rest_volume_ + Change(at);
+      return rest_volume_ + Change(read.volume);
     case 1:
-      return chamber_.Flow(at);
+      return read.flow;
     case 2:
-      return AlveolarPressure(at);
+      return AlveolarPressure(read);
     default:
-      return rest_pressure_ + PressureChange(at);
+      return rest_pressure_ + PressureChange(read);
   }
 }
 

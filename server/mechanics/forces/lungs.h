@@ -30,9 +30,11 @@ class Lungs final : public Force {
 
  private:
   explicit Lungs(std::string name) : Force(std::move(name)) {}
-  double Change(const Instant& at) const { return chamber_.Volume(at) - chamber_.rest_volume(); }  // [m^3]
-  double AlveolarPressure(const Instant& at) const { return -resistance_ * chamber_.Flow(at); }
-  double PressureChange(const Instant& at) const { return AlveolarPressure(at) - Change(at) / compliance_; }
+  double Change(double volume) const { return volume - chamber_.rest_volume(); }                  // [m^3]
+  double AlveolarPressure(const ChamberReading& read) const { return -resistance_ * read.flow; }  // [Pa]
+  double PressureChange(const ChamberReading& read) const {
+    return AlveolarPressure(read) - Change(read.volume) / compliance_;
+  }
   const Points& Areas(const Instant& at) const;
 
   Chamber chamber_;

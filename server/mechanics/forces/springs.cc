@@ -105,10 +105,11 @@ void Springs::AddStiffness(const Instant& at, StiffnessSink& sink) const {
     const Eigen::Vector3d edge = at.x.col(spring.b) - at.x.col(spring.a);
     const double length = edge.norm();
     if (length == 0) continue;
-    const Eigen::Matrix3d along = edge / length * (edge / length).transpose();
-    const double transverse = std::max(0.0, 1 - spring.rest_length / length);
-    sink.AddBetween(spring.a, spring.b,
-                    elasticity * spring.stiffness * (along + transverse * (Eigen::Matrix3d::Identity() - along)));
+    const double stiffness = elasticity * spring.stiffness;
+    const double transverse = stiffness * std::max(0.0, 1 - spring.rest_length / length);
+    Eigen::Matrix3d block = edge * ((stiffness - transverse) / (length * length) * edge).transpose();
+    block.diagonal().array() += transverse;
+    sink.AddBetween(spring.a, spring.b, block);
   }
 }
 

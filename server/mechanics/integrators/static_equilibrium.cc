@@ -26,7 +26,9 @@ absl::StatusOr<double> Relax(const Model& model, const v1::Parameters& parameter
   SumForces(model, at, work.force);
   work.force *= h;
   work.system->Assemble(model, at, h);
-  if (absl::Status solved = work.system->Solve(model, work.force, kResidual, change); !solved.ok()) return solved;
+  change.setZero();
+  absl::Status solved = work.system->Solve(model, at, work.force, kResidual, work.effort, change);
+  if (!solved.ok()) return solved;
   AddToFree(model, h, change, state.x);
   ProjectPositions(model, parameters, start, h, state);
   state.v.setZero();
@@ -50,6 +52,7 @@ absl::Status StaticEquilibrium::Advance(const Model& model, const v1::Parameters
     const absl::StatusOr<double> moved = Relax(model, parameters, dt, h, state, work);
     if (!moved.ok()) return moved.status();
     if (*moved <= kStillness * model.size && h >= kLast) return absl::OkStatus();
+    if (work.effort.Spent()) return absl::OkStatus();
     const bool near = *moved <= kFar * model.size;
     if (!near) state.x = work.stages[1];
     h = near ? std::min(kLast, kGrowth * h) : h / kGrowth;

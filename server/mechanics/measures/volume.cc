@@ -21,7 +21,7 @@ class VolumeMeasure final : public Measure {
 class FlowMeasure final : public Measure {
  public:
   FlowMeasure(std::string name, Chamber chamber) : Measure(std::move(name), "m^3/s"), chamber_(std::move(chamber)) {}
-  double Value(const Instant& at) const override { return chamber_.Flow(at); }
+  double Value(const Instant& at) const override { return chamber_.Read(at).flow; }
 
  private:
   Chamber chamber_;

@@ -1,0 +1,302 @@
+#include "server/mechanics/block_kernel.h"
+
+#include <cstddef>
+
+// Targets whose vectors have no size that the compiler knows: their machines take NEON and the portable path.
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "server/mechanics/block_kernel.cc"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace phrenic::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Tag = hn::CappedTag<float, kSliceLanes>;
+using Vector = hn::Vec<Tag>;
+constexpr size_t kWidth = hn::MaxLanes(Tag());
+static_assert(kSliceLanes % kWidth == 0);
+
+constexpr float kLeastPivot = 1e-6F;  // of the mean diagonal: keeps the preconditioner positive definite
+constexpr size_t kFlush = 32;         // slices whose products are summed in single precision
+
+struct Vectors {
+  Vector x, y, z, w;
+};
+
+HWY_INLINE Vector At(const Lanes& lanes, size_t first) { return hn::Load(Tag(), lanes.at + first); }
+HWY_INLINE void Put(Vector v, size_t first, Lanes& lanes) { hn::Store(v, Tag(), lanes.at + first); }
+
+#if HWY_TARGET != HWY_SCALAR
+// The quadruples of floats at places 0, 4, 8 and 12, as many as the vector has room for.
+template <class D, typename Place>
+HWY_INLINE hn::Vec<D> EveryFourth(D d, const float* from, int first, const Place& place) {
+  if constexpr (hn::MaxLanes(D()) <= 4) {
+    return hn::Load(d, from + place(first));
+  } else {
+    const hn::Half<D> half;
+    constexpr int kHalf = static_cast<int>(hn::MaxLanes(half));
+    return hn::Combine(d, EveryFourth(half, from, first + kHalf, place), EveryFourth(half, from, first, place));
+  }
+}
+
+#endif
+
+// The quadruples at the places of kWidth lanes, transposed: all first floats, all second ones and so on.
+template <typename Place>
+HWY_INLINE Vectors Transposed(const float* from, const Place& place) {
+  const Tag d;
+#if HWY_TARGET == HWY_SCALAR
+  const float* const at = from + place(0);
+  return {hn::Load(d, at), hn::Load(d, at + 1), hn::Load(d, at + 2), hn::Load(d, at + 3)};
+#else
+  const hn::Repartition<double, Tag> pairs;
+  const auto a = EveryFourth(d, from, 0, place), b = EveryFourth(d, from, 1, place);
+  const auto c = EveryFourth(d, from, 2, place), e = EveryFourth(d, from, 3, place);
+  const auto low01 = hn::BitCast(pairs, hn::InterleaveLower(d, a, b));
+  const auto low23 = hn::BitCast(pairs, hn::InterleaveLower(d, c, e));
+  const auto high01 = hn::BitCast(pairs, hn::InterleaveUpper(d, a, b));
+  const auto high23 = hn::BitCast(pairs, hn::InterleaveUpper(d, c, e));
+  return {hn::BitCast(d, hn::InterleaveLower(pairs, low01, low23)),
+          hn::BitCast(d, hn::InterleaveUpper(pairs, low01, low23)),
+          hn::BitCast(d, hn::InterleaveLower(pairs, high01, high23)),
+          hn::BitCast(d, hn::InterleaveUpper(pairs, high01, high23))};
+#endif
+}
+
+// The points of a column's neighbours.
+HWY_INLINE Vectors Gathered(const Quad* packed, const LanePlaces& rows, size_t first) {
+  const std::int32_t* const row = rows.at + first;
+  return Transposed(packed->at, [row](int i) { return 4 * static_cast<std::ptrdiff_t>(row[i]); });
+}
+
+HWY_INLINE Vector Dot(const Vector& ax, const Vector& bx, const Vector& ay, const Vector& by, const Vector& az,
+                      const Vector& bz) {
+  return hn::Add(hn::Add(hn::Mul(ax, bx), hn::Mul(ay, by)), hn::Mul(az, bz));
+}
+
+// The symmetric block times a vector, row by row.
+HWY_INLINE Vectors Product(const Lanes* block, size_t first, const Vectors& v) {
+  const Vector xy = At(block[1], first), xz = At(block[2], first), yz = At(block[4], first);
+  return {Dot(At(block[0], first), v.x, xy, v.y, xz, v.z), Dot(xy, v.x, At(block[3], first), v.y, yz, v.z),
+          Dot(xz, v.x, yz, v.y, At(block[5], first), v.z), v.w};
+}
+
+// The same of any block.
+HWY_INLINE Vectors WholeProduct(const Lanes* block, size_t first, const Vectors& v) {
+  const auto row = [block, first, &v](int r) HWY_ATTR {
+    return Dot(At(block[3 * r], first), v.x, At(block[3 * r + 1], first), v.y, At(block[3 * r + 2], first), v.z);
+  };
+  return {row(0), row(1), row(2), v.w};
+}
+
+// A sum of many products that is the same on every target: by lane, flushed into a double now and then.
+class Sum {
+ public:
+  HWY_INLINE void Add(Vector v, size_t first) { Put(hn::Add(At(lanes_, first), v), first, lanes_); }
+  void EndSlice(size_t slice) {
+    if (slice % kFlush == kFlush - 1) Flush();
+  }
+  double Total() {
+    Flush();
+    return total_;
+  }
+
+ private:
+  void Flush() {
+    for (float& lane : lanes_.at) total_ += static_cast<double>(lane), lane = 0;
+  }
+  Lanes lanes_;
+  double total_ = 0;
+};
+
+// D and L of A = L D L^T, pivots kept positive.
+HWY_INLINE void Factorise(const Lanes* a, size_t first, Lanes* factors) {
+  const Tag d;
+  const Vector one = hn::Set(d, 1), least = hn::Set(d, kLeastPivot);
+  const Vector xy = At(a[1], first), xz = At(a[2], first);
+  const Vector dx = hn::Div(one, hn::Max(At(a[0], first), least));
+  const Vector yx = hn::Mul(xy, dx), zx = hn::Mul(xz, dx);
+  const Vector dy = hn::Div(one, hn::Max(hn::Sub(At(a[3], first), hn::Mul(yx, xy)), least));
+  const Vector left = hn::Sub(At(a[4], first), hn::Mul(zx, xy));  // D_y L_zy
+  const Vector zy = hn::Mul(left, dy);
+  const Vector rest = hn::Sub(hn::Sub(At(a[5], first), hn::Mul(zx, xz)), hn::Mul(zy, left));
+  Put(yx, first, factors[0]), Put(zx, first, factors[1]), Put(zy, first, factors[2]);
+  Put(dx, first, factors[3]), Put(dy, first, factors[4]);
+  Put(hn::Div(one, hn::Max(rest, least)), first, factors[5]);
+}
+
+// (L D L^T)^-1 r.
+HWY_INLINE Vectors Solved(const Lanes* factors, size_t first, const Vectors& r) {
+  const Vector yx = At(factors[0], first), zx = At(factors[1], first), zy = At(factors[2], first);
+  const Vector y = hn::Sub(r.y, hn::Mul(yx, r.x));
+  const Vector z = hn::Sub(hn::Sub(r.z, hn::Mul(zx, r.x)), hn::Mul(zy, y));
+  const Vector uz = hn::Mul(z, At(factors[5], first));
+  const Vector uy = hn::Sub(hn::Mul(y, At(factors[4], first)), hn::Mul(zy, uz));
+  const Vector ux = hn::Sub(hn::Sub(hn::Mul(r.x, At(factors[3], first)), hn::Mul(yx, uy)), hn::Mul(zx, uz));
+  return {ux, uy, uz, r.w};
+}
+
+HWY_INLINE Vectors Loaded(const Lanes* vector, size_t first) {
+  return {At(vector[0], first), At(vector[1], first), At(vector[2], first), hn::Zero(Tag())};
+}
+HWY_INLINE void Stored(const Vectors& v, size_t first, Lanes* vector) {
+  Put(v.x, first, vector[0]), Put(v.y, first, vector[1]), Put(v.z, first, vector[2]);
+}
+
+HWY_INLINE void Packed(const Vectors& v, Quad* packed) { hn::StoreInterleaved4(v.x, v.y, v.z, v.w, Tag(), packed->at); }
+
+void FillDiagonalHere(const Quad* entries, const Lanes* inertia, float weight, BlockSlices& slices, Quad* packed) {
+  const Tag d;
+  const auto place = [](int i) { return 8 * i; };
+  for (size_t s = 0; s < slices.size(); ++s) {
+    Lanes* const stiffness = slices.stiffness.data() + 6 * s;
+    Lanes* const diagonal = slices.diagonal.data() + 6 * s;
+    for (size_t first = 0; first < kSliceLanes; first += kWidth) {
+      const float* const from = entries[2 * (s * kSliceLanes + first)].at;
+      const Vectors a = Transposed(from, place), b = Transposed(from + 4, place);
+      const Vector k[6] = {a.x, a.y, a.z, a.w, b.x, b.y};
+      const Vector mass = At(inertia[s], first), by = hn::Set(d, weight), none = hn::Zero(d);
+      const Vector trace = hn::Add(hn::Mul(hn::Add(hn::Add(a.x, a.w), b.y), by), hn::Mul(mass, hn::Set(d, 3)));
+      const Vector squared = hn::IfThenElse(hn::Gt(trace, none), hn::Div(hn::Set(d, 3), trace), none);
+      const Vector scale = hn::Sqrt(squared);
+      for (int i = 0; i < 6; ++i) {
+        const Vector value = hn::Mul(hn::Mul(k[i], by), squared);
+        Put(value, first, stiffness[i]);
+        Put(i == 0 || i == 3 || i == 5 ? hn::Add(value, hn::Mul(mass, squared)) : value, first, diagonal[i]);
+      }
+      Put(scale, first, slices.scale[s]);
+      Packed({scale, none, none, none}, packed + s * kSliceLanes + first);
+      Factorise(diagonal, first, slices.factors.data() + 6 * s);
+    }
+  }
+}
+
+void FillBlocksHere(const Quad* entries, float weight, const Quad* packed, BlockSlices& slices) {
+  const Tag d;
+  for (size_t s = 0; s < slices.size(); ++s) {
+    for (std::int64_t c = slices.first_column[s]; c < slices.first_column[s + 1]; ++c) {
+      Lanes* const block = slices.blocks.data() + slices.values * c;
+      for (size_t first = 0; first < kSliceLanes; first += kWidth) {
+        const std::int32_t* const entry = slices.entries[c].at + first;
+        const auto place = [entry](int i) { return 4 * static_cast<std::ptrdiff_t>(entry[i] / 2); };
+        const Vector by = hn::Mul(hn::Mul(hn::Set(d, weight), At(slices.scale[s], first)),
+                                  Gathered(packed, slices.neighbours[c], first).x);
+        const Vectors a = Transposed(entries->at, place), b = Transposed(entries->at + 4, place);
+        if (slices.values == 6) {
+          const Vector k[6] = {a.x, a.y, a.z, a.w, b.x, b.y};
+          for (int i = 0; i < 6; ++i) Put(hn::Mul(k[i], by), first, block[i]);
+          continue;
+        }
+        Lanes sides;
+        for (size_t i = 0; i < kWidth; ++i) sides.at[first + i] = entry[i] % 2 == 0 ? 1.0F : -1.0F;
+        const Vector side = At(sides, first);
+        const Vector tx = hn::Mul(b.z, side), ty = hn::Mul(b.w, side);
+        const Vector tz = hn::Mul(Transposed(entries->at + 8, place).x, side);
+        const Vector k[9] = {a.x, hn::Sub(a.y, tz), hn::Add(a.z, ty), hn::Add(a.y, tz),
+                             a.w, hn::Sub(b.x, tx), hn::Sub(a.z, ty), hn::Add(b.x, tx),
+                             b.y};
+        for (int i = 0; i < 9; ++i) Put(hn::Mul(k[i], by), first, block[i]);
+      }
+    }
+  }
+}
+
+template <int kValues>
+HWY_INLINE Vectors RowSums(const BlockSlices& slices, size_t s, size_t first, const Quad* packed, Vectors sum) {
+  const Lanes* block = slices.blocks.data() + kValues * slices.first_column[s];
+  for (std::int64_t c = slices.first_column[s]; c < slices.first_column[s + 1]; ++c, block += kValues) {
+    const Vectors other = Gathered(packed, slices.neighbours[c], first);
+    const Vectors part = kValues == 6 ? Product(block, first, other) : WholeProduct(block, first, other);
+    sum = {hn::Add(sum.x, part.x), hn::Add(sum.y, part.y), hn::Add(sum.z, part.z), sum.w};
+  }
+  return sum;
+}
+
+double MultiplyHere(const BlockSlices& slices, const Lanes* diagonal, const Quad* packed, const Lanes* p, Lanes* q) {
+  Sum sum;
+  for (size_t s = 0; s < slices.size(); ++s) {
+    for (size_t first = 0; first < kSliceLanes; first += kWidth) {
+      const Vectors own = Loaded(p + kAxes * s, first);
+      const Vectors begun = Product(diagonal + 6 * s, first, own);
+      const Vectors row = slices.values == 6 ? RowSums<6>(slices, s, first, packed, begun)
+                                             : RowSums<9>(slices, s, first, packed, begun);
+      Stored(row, first, q + kAxes * s);
+      sum.Add(Dot(own.x, row.x, own.y, row.y, own.z, row.z), first);
+    }
+    sum.EndSlice(s);
+  }
+  return sum.Total();
+}
+
+double DescendHere(const BlockSlices& slices, float along, const Lanes* p, Lanes* q, Lanes* y, Lanes* r) {
+  const Vector by = hn::Set(Tag(), along);
+  Sum sum;
+  for (size_t s = 0; s < slices.size(); ++s, p += kAxes, q += kAxes, y += kAxes, r += kAxes) {
+    for (size_t first = 0; first < kSliceLanes; first += kWidth) {
+      for (int k = 0; k < kAxes; ++k) {
+        Put(hn::Add(At(y[k], first), hn::Mul(by, At(p[k], first))), first, y[k]);
+        Put(hn::Sub(At(r[k], first), hn::Mul(by, At(q[k], first))), first, r[k]);
+      }
+      const Vectors left = Loaded(r, first);
+      const Vectors z = Solved(slices.factors.data() + 6 * s, first, left);
+      Stored(z, first, q);
+      sum.Add(Dot(left.x, z.x, left.y, z.y, left.z, z.z), first);
+    }
+    sum.EndSlice(s);
+  }
+  return sum.Total();
+}
+
+void TurnHere(float keep, const Lanes* z, Lanes* p, Quad* packed, size_t slices) {
+  const Vector by = hn::Set(Tag(), keep);
+  for (size_t s = 0; s < slices; ++s, z += kAxes, p += kAxes) {
+    for (size_t first = 0; first < kSliceLanes; first += kWidth) {
+      for (int k = 0; k < kAxes; ++k) {
+        Put(hn::Add(At(z[k], first), hn::Mul(by, At(p[k], first))), first, p[k]);
+      }
+      Packed(Loaded(p, first), packed + s * kSliceLanes + first);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace phrenic::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace phrenic {
+
+HWY_EXPORT(FillDiagonalHere);
+HWY_EXPORT(FillBlocksHere);
+HWY_EXPORT(MultiplyHere);
+HWY_EXPORT(DescendHere);
+HWY_EXPORT(TurnHere);
+
+void FillDiagonal(const BlockEntries& entries, const std::vector<Lanes>& inertia, float weight, BlockSlices& slices,
+                  Quad* packed) {
+  HWY_DYNAMIC_DISPATCH(FillDiagonalHere)(entries.data(), inertia.data(), weight, slices, packed);
+}
+
+void FillBlocks(const BlockEntries& entries, float weight, const Quad* packed, BlockSlices& slices) {
+  HWY_DYNAMIC_DISPATCH(FillBlocksHere)(entries.data(), weight, packed, slices);
+}
+
+double Multiply(const BlockSlices& slices, const std::vector<Lanes>& diagonal, const Quad* packed, const RowVector& p,
+                RowVector& q) {
+  return HWY_DYNAMIC_DISPATCH(MultiplyHere)(slices, diagonal.data(), packed, p.data(), q.data());
+}
+
+double Descend(const BlockSlices& slices, float along, const RowVector& p, RowVector& q, RowVector& y, RowVector& r) {
+  return HWY_DYNAMIC_DISPATCH(DescendHere)(slices, along, p.data(), q.data(), y.data(), r.data());
+}
+
+void Turn(float keep, const RowVector& z, RowVector& p, Quad* packed) {
+  HWY_DYNAMIC_DISPATCH(TurnHere)(keep, z.data(), p.data(), packed, z.size() / kAxes);
+}
+
+}  // namespace phrenic
+#endif  // HWY_ONCE

@@ -1,0 +1,67 @@
+// The inner loops of conjugate gradients on a symmetric matrix of 3 x 3 blocks, in single precision: written once with
+// Google Highway, compiled for several instruction sets, the machine's best chosen at run time. No target fuses a
+// product into a sum, and all take the same sums in the same order, so that they give the same bits.
+#ifndef PHRENIC_SERVER_MECHANICS_BLOCK_KERNEL_H_
+#define PHRENIC_SERVER_MECHANICS_BLOCK_KERNEL_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace phrenic {
+
+// Rows of a slice: one a free vertex, all padded to the slice's longest.
+inline constexpr int kSliceLanes = 16;
+
+struct alignas(64) Lanes {
+  float at[kSliceLanes] = {};
+};
+struct alignas(64) LanePlaces {
+  std::int32_t at[kSliceLanes] = {};
+};
+// One vector of a system: for each slice all x, all y, all z.
+using RowVector = std::vector<Lanes>;
+inline constexpr int kAxes = 3;
+// What is gathered: a point a row, and parts of blocks.
+struct alignas(16) Quad {
+  float at[4] = {};
+};
+
+// Blocks as forces hand them over. One on the diagonal takes two: xx, xy, xz, yy, yz, zz. So does one off it, K_ij with
+// i < j, where all are symmetric; else it takes three, that of its symmetric part and then (K_zy - K_yz)/2, (K_xz -
+// K_zx)/2, (K_yx - K_xy)/2.
+using BlockEntries = std::vector<Quad>;
+
+// The matrix A = inertia + weight K, each vertex scaled by s so that its diagonal block has the trace 3: s_i A_ij s_j.
+// Off the diagonal by vertex, in slices of rows: SELL-C-sigma (Kreutzer et al., SIAM J Sci Comput 2014;36:C401).
+struct BlockSlices {
+  int values = 6;                          // lanes a column: 6 where every block is symmetric, else 9, row by row
+  std::vector<std::int64_t> first_column;  // of the slices, and the end
+  std::vector<LanePlaces> neighbours;      // a column: the other vertex' row; padding is its own neighbour
+  std::vector<LanePlaces> entries;         // a column: twice the entry's place, plus 1 where it is seen from j
+  std::vector<Lanes> blocks;               // `values` a column
+  std::vector<Lanes> scale;                // s, one a slice; 0 for rows that the last slice lacks
+  // Six a slice each: xx, xy, xz, yy, yz, zz of A and of weight K; the factors of A = L D L^T, L_yx, L_zx, L_zy and
+  // 1/D.
+  std::vector<Lanes> diagonal, stiffness, factors;
+
+  size_t size() const { return scale.size(); }
+};
+
+// The diagonal from K's and the inertia [kg], one a row, and the scale, which `packed` gets as x.
+void FillDiagonal(const BlockEntries& entries, const std::vector<Lanes>& inertia, float weight, BlockSlices& slices,
+                  Quad* packed);
+// The blocks off it; padding's entry is at 0, and zero. `packed` as FillDiagonal left it.
+void FillBlocks(const BlockEntries& entries, float weight, const Quad* packed, BlockSlices& slices);
+
+// q = A p with this diagonal; p . q. `packed` is p.
+double Multiply(const BlockSlices& slices, const std::vector<Lanes>& diagonal, const Quad* packed, const RowVector& p,
+                RowVector& q);
+// y += along p, r -= along q, then q = the inverse of A's diagonal blocks times r; r . q.
+double Descend(const BlockSlices& slices, float along, const RowVector& p, RowVector& q, RowVector& y, RowVector& r);
+// p = z + keep p, and packs it.
+void Turn(float keep, const RowVector& z, RowVector& p, Quad* packed);
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_SERVER_MECHANICS_BLOCK_KERNEL_H_

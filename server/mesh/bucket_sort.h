@@ -1,0 +1,28 @@
+// Sorting what has a small dense key, such as a vertex, in time that grows with its number.
+#ifndef PHRENIC_SERVER_MESH_BUCKET_SORT_H_
+#define PHRENIC_SERVER_MESH_BUCKET_SORT_H_
+
+#include <algorithm>
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
+namespace phrenic {
+
+// Sorts ascending, as std::sort would; an item's `key` is what its order compares first, from 0 to keys - 1. Items of a
+// key are few: each bucket is sorted by comparison.
+template <typename Item, typename Key>
+void BucketSort(std::vector<Item>& items, int keys, const Key& key) {
+  std::vector<std::int64_t> first(static_cast<size_t>(keys) + 1, 0);
+  for (const Item& item : items) ++first[key(item) + 1];
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<Item> sorted(items.size());
+  std::vector<std::int64_t> next(first.begin(), first.end() - 1);
+  for (const Item& item : items) sorted[next[key(item)]++] = item;
+  for (int k = 0; k < keys; ++k) std::sort(sorted.begin() + first[k], sorted.begin() + first[k + 1]);
+  items.swap(sorted);
+}
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_SERVER_MESH_BUCKET_SORT_H_

@@ -1,0 +1,57 @@
+// What is timed: models of the generated diaphragm, the thorax, and nets of rigid links.
+#ifndef PHRENIC_TESTS_BENCH_SUBJECTS_H_
+#define PHRENIC_TESTS_BENCH_SUBJECTS_H_
+
+#include <memory>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "server/mechanics/compile.h"
+#include "server/mechanics/forces/spring_rows.h"
+#include "server/mechanics/implicit_system.h"
+
+namespace phrenic::bench {
+
+using ModelPointer = std::shared_ptr<const Model>;
+
+// A session that is stepped: it goes on from one repetition to the next.
+struct Run {
+  ModelPointer model;
+  v1::Parameters parameters;
+  State state;
+  Workspace work;
+  absl::Status status;  // of the step that failed, if one did
+
+  explicit Run(ModelPointer of);
+  void Step();
+};
+
+// Conjugate gradients on a model's stiffness for steps of a frame, always as many iterations.
+class Solver {
+ public:
+  static constexpr int kIterations = 25;
+  explicit Solver(ModelPointer model);
+  void Solve();
+
+ private:
+  ModelPointer model_;
+  State state_;
+  ImplicitSystem system_;
+  Points b_, y_;
+  SolverEffort effort_;
+};
+
+struct Subjects {
+  v1::Scene scene;    // of the thorax
+  MeshSource meshes;  // makes each once
+  ModelPointer springs, membrane, thorax, few_links, many_links;
+};
+
+absl::StatusOr<Subjects> MakeSubjects();
+
+// The springs of the first body, as an array.
+std::vector<Spring> SpringsOf(const Model& model);
+
+}  // namespace phrenic::bench
+
+#endif  // PHRENIC_TESTS_BENCH_SUBJECTS_H_
