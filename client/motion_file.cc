@@ -1,5 +1,7 @@
 #include "client/motion_file.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
@@ -60,6 +62,13 @@ absl::Status Place(const v1::Export& job, const std::string& file, PartFile& par
   return status;
 }
 
+// Before work is done for a file that cannot be written.
+absl::Status CheckPlace(const std::string& file) {
+  const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
+  if (access(folder.c_str(), W_OK) == 0) return absl::OkStatus();
+  return absl::NotFoundError(absl::StrCat("cannot write ", file, ": is the folder there, and may it be written?"));
+}
+
 }  // namespace
 
 std::string FormatOf(const std::string& file) {
@@ -71,9 +80,10 @@ absl::StatusOr<v1::CreateExportRequest> MakeExportRequest(const std::string& ses
   v1::CreateExportRequest request;
   request.set_session_id(session);
   request.set_format(FormatOf(options.file));
-  request.set_file_stem(std::filesystem::path(options.file).stem().string());
   const auto format = record::FindFormat(session::ExportFormats(), request.format());
   if (!format.ok()) return format.status();
+  // Of the files of an archive, which name each other.
+  if (format->ending == kArchive) request.set_file_stem(std::filesystem::path(options.file).stem().string());
   request.set_seconds(options.seconds.value_or(format->instant ? 0 : kSeconds));
   if (options.start) request.set_start(*options.start);
   if (options.frames_per_second) request.set_frames_per_second(*options.frames_per_second);
@@ -126,6 +136,7 @@ int Download(const Context& context, v1::ExportService::Stub& stub, const v1::Ex
 
 int ExportToFile(const Context& context, const std::shared_ptr<grpc::Channel>& channel,
                  const v1::CreateExportRequest& request, const std::string& file, v1::ExportSummary* summary) {
+  if (absl::Status status = CheckPlace(file); !status.ok()) return Fail(status);
   const auto stub = v1::ExportService::NewStub(channel);
   v1::CreateExportResponse created;
   const grpc::Status status = Call(context, *stub, &v1::ExportService::Stub::CreateExport, request, &created);

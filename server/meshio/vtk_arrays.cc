@@ -92,9 +92,8 @@ absl::Status Inflate(const std::string& block, std::size_t size, std::string& by
 
 // Number of blocks, size of a block, size of a shorter last one or 0, packed size of each; then the blocks.
 absl::StatusOr<std::string> TakeCompressed(std::string_view from, bool base64, const VtkEncoding& encoding) {
-  Packed packed(from, base64);
-  const auto start = Packed(from, base64);
-  auto head = TakeWords(3, encoding, packed);
+  Packed start(from, base64), packed(from, base64);
+  const auto head = TakeWords(3, encoding, start);
   if (!head.ok()) return head.status();
   const std::uint64_t blocks = (*head)[0], size = (*head)[1], last = (*head)[2];
   if (blocks == 0) return std::string();
@@ -102,7 +101,6 @@ absl::StatusOr<std::string> TakeCompressed(std::string_view from, bool base64, c
   const double unpacked_size =
       static_cast<double>(blocks - 1) * static_cast<double>(size) + static_cast<double>(last > 0 ? last : size);
   if (unpacked_size > static_cast<double>(encoding.most_bytes)) return TooMuch(encoding);
-  packed = start;
   const auto sizes = TakeWords(3 + blocks, encoding, packed);
   if (!sizes.ok()) return sizes.status();
   std::uint64_t total = 0;

@@ -1,5 +1,7 @@
 // Round trips of motion files by small independent readers, and Gmsh itself.
 #include <gmock/gmock.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -7,6 +9,7 @@
 #include <optional>
 #include <sstream>
 
+#include "absl/strings/str_format.h"
 #include "server/record/msh.h"
 #include "server/record/recorder.h"
 #include "server/record/vertex_spool.h"
@@ -121,6 +124,32 @@ TEST(VertexSpool, GivesEachVertexItsRowsWhateverTheBuffer) {
   }
 }
 
+// The largest resident memory of a process that spools so many frames and reads them all back [kB].
+long PeakWith(int frames) {
+  constexpr int kVertices = 1000;
+  const pid_t child = fork();
+  if (child == 0) {
+    auto spool = VertexSpool::Open(testing::TempDir(), kVertices, std::size_t{1} << 20);
+    const VertexSpool::Rows rows = VertexSpool::Rows::Ones(3, kVertices);
+    std::int64_t sum = 0;
+    for (int f = 0; f < frames; ++f) (void)(*spool)->Add(rows);
+    const absl::Status all = (*spool)->ForEachVertex([&](const VertexSpool::Rows& path) {
+      sum += path.sum();
+      return absl::OkStatus();
+    });
+    _exit(all.ok() && sum == std::int64_t{3} * kVertices * frames ? 0 : 1);
+  }
+  int status = 0;
+  struct rusage usage {};
+  wait4(child, &status, 0, &usage);
+  EXPECT_EQ(status, 0);
+  return usage.ru_maxrss;
+}
+
+TEST(VertexSpool, MemoryDoesNotGrowWithTheFrames) {
+  EXPECT_LT(PeakWith(2000), PeakWith(50) + 8'000) << "48 MB of positions and 1 MB of them";
+}
+
 TEST(Depl, RunningSumIsThePositionToItsLastDecimal) {
   std::istringstream file(Record("depl"));
   std::string kind;
@@ -215,6 +244,47 @@ TEST(Msh, OpensInGmshWithAllItsStepsAndTimes) {
   EXPECT_THAT(said, testing::HasSubstr("nodes 6"));
   EXPECT_THAT(said, testing::HasSubstr("triangles 2"));
   EXPECT_THAT(said, testing::Not(testing::HasSubstr("Error")));
+}
+
+// Reads every .vtp of a .pvd that stands in an archive, by VTK: its times, points, cells and largest displacement.
+constexpr char kReadPvd[] = R"(
+import sys, zipfile, os, vtk
+import xml.etree.ElementTree as xml
+folder = sys.argv[1] + '.d'
+zipfile.ZipFile(sys.argv[1]).extractall(folder)
+for step in xml.parse(folder + '/' + sys.argv[2] + '.pvd').getroot().iter('DataSet'):
+    reader = vtk.vtkXMLPolyDataReader()
+    reader.SetFileName(folder + '/' + step.get('file'))
+    reader.Update()
+    data = reader.GetOutput()
+    moved = data.GetPointData().GetArray('displacement [mm]')
+    names = data.GetFieldData().GetAbstractArray('body names')
+    print(step.get('timestep'), data.GetNumberOfPoints(), data.GetNumberOfPolys(), data.GetNumberOfLines(),
+          '%.9g' % data.GetPoint(1)[0], '%.9g' % moved.GetTuple(1)[0], data.GetFieldData().GetAbstractArray('SPACE').GetValue(0),
+          [names.GetValue(int(data.GetCellData().GetArray('body').GetTuple1(c))) for c in range(data.GetNumberOfCells())])
+)";
+
+TEST(Pvd, OpensInVtkWithEveryFrameItsTimeAndItsBodies) {
+  const std::string python = "/usr/bin/python3";  // Debian's own: its VTK is for that one
+  if (std::system((python + " -c 'import vtk' >/dev/null 2>&1").c_str()) != 0) {
+    GTEST_SKIP() << "VTK is not installed (python3-vtk9)";
+  }
+  const std::string base = testing::TempDir() + "phrenic_pvd_" + std::to_string(getpid());
+  std::ofstream(base + ".py") << kReadPvd;
+  for (const Values values : {Values::kPositions, Values::kDisplacements}) {
+    std::ofstream(base + ".zip", std::ios::binary) << Recorded("pvd", values).file;
+    const std::string command = python + " " + base + ".py " + base + ".zip motion >" + base + ".out 2>&1";
+    ASSERT_EQ(std::system(command.c_str()), 0);
+    std::ifstream said(base + ".out");
+    std::string line;
+    for (int f = 0; f < kFrames; ++f) {
+      ASSERT_TRUE(std::getline(said, line)) << f;
+      const double moved = 1e3 * (PositionsAt(f)(0, 1) - PositionsAt(0)(0, 1));
+      const double x = values == Values::kPositions ? 1e3 * PositionsAt(f)(0, 1) : 1000;
+      EXPECT_EQ(line, absl::StrFormat("%.9g 6 2 1 %.9g %.9g LPS ['wire', 'sheet', 'sheet']", 0.25 * f, x, moved));
+    }
+    EXPECT_FALSE(std::getline(said, line)) << line;
+  }
 }
 
 }  // namespace

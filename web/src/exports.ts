@@ -1,4 +1,5 @@
 import type { MessageInitShape } from "@bufbuild/protobuf";
+import { Code, ConnectError } from "@connectrpc/connect";
 import { type Api, errorText, unreachable } from "./api";
 import {
   type CreateExportRequestSchema,
@@ -77,21 +78,22 @@ export class Exports {
     } catch (error) {
       if (!signal.aborted) this.work.set({ kind: "failed", words: errorText(error) });
     } finally {
-      this.forget();
+      await this.forget();
     }
   }
 
   /** Ends what runs, here and on the server, and lets go of a file that is ready. */
   stop(): void {
     this.running.abort();
-    this.forget();
+    void this.forget();
     if (this.work.value.kind === "ready") URL.revokeObjectURL(this.work.value.url);
     this.work.set({ kind: "idle" });
   }
 
-  private forget(): void {
-    if (this.job !== "") void this.api.exports.deleteExport({ exportId: this.job }).catch(() => undefined);
+  private async forget(): Promise<void> {
+    const exportId = this.job;
     this.job = "";
+    if (exportId !== "") await this.api.exports.deleteExport({ exportId }).catch(() => undefined);
   }
 
   private request(): MessageInitShape<typeof CreateExportRequestSchema> {
@@ -135,9 +137,14 @@ export class Exports {
         }
         return new Blob(chunks);
       } catch (error) {
-        if (attempt >= attempts || !unreachable(error)) throw error;
+        if (attempt >= attempts || signal.aborted || !brokeOff(error)) throw error;
         await new Promise((resume) => setTimeout(resume, this.pause));
       }
     }
   }
+}
+
+/** Whether a stream ended on its way, rather than by the server's word. */
+function brokeOff(error: unknown): boolean {
+  return unreachable(error) || [Code.Unavailable, Code.Unknown].includes(ConnectError.from(error).code);
 }
