@@ -10,8 +10,6 @@
 namespace phrenic::client {
 namespace {
 
-using Stub = v1::ExportService::Stub;
-
 std::string StateOf(const v1::Export& job) {
   if (job.state() == v1::EXPORT_STATE_FAILED) return "failed: " + job.problem();
   if (job.state() == v1::EXPORT_STATE_DONE) return "done";
@@ -23,7 +21,8 @@ std::string StateOf(const v1::Export& job) {
 int ListExports(const Context& context) {
   const auto stub = v1::ExportService::NewStub(Connect(context));
   v1::ListExportsResponse response;
-  const grpc::Status status = Call(context, *stub, &Stub::ListExports, v1::ListExportsRequest(), &response);
+  const grpc::Status status =
+      Call(context, *stub, &v1::ExportService::Stub::ListExports, v1::ListExportsRequest(), &response);
   if (!status.ok()) return Fail(context, status);
   if (context.json()) {
     std::cout << Json(response) << "\n";
@@ -59,7 +58,7 @@ int DeleteExport(const Context& context, const ExportsOptions& options) {
   v1::DeleteExportRequest request;
   request.set_export_id(options.id);
   v1::DeleteExportResponse response;
-  const grpc::Status status = Call(context, *stub, &Stub::DeleteExport, request, &response);
+  const grpc::Status status = Call(context, *stub, &v1::ExportService::Stub::DeleteExport, request, &response);
   return status.ok() ? kOk : Fail(context, status);
 }
 

@@ -18,8 +18,6 @@
 namespace phrenic::client {
 namespace {
 
-using Stub = v1::UploadService::Stub;
-
 std::string Sha256(const std::string& bytes) {
   unsigned char digest[SHA256_DIGEST_LENGTH];
   SHA256(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size(), digest);
@@ -37,7 +35,8 @@ absl::StatusOr<std::string> ReadBytes(const std::string& file) {
   return std::move(bytes).str();
 }
 
-grpc::Status Send(const Context& context, Stub& stub, const std::string& bytes, const v1::BeginUploadResponse& begun) {
+grpc::Status Send(const Context& context, v1::UploadService::Stub& stub, const std::string& bytes,
+                  const v1::BeginUploadResponse& begun) {
   Progress progress("uploading", static_cast<double>(bytes.size()));
   v1::AddUploadChunkRequest request;
   request.set_upload_id(begun.upload_id());
@@ -46,7 +45,7 @@ grpc::Status Send(const Context& context, Stub& stub, const std::string& bytes, 
     request.set_offset(at);
     request.set_chunk(bytes.substr(static_cast<std::size_t>(at), session::Uploads::kMostChunk));
     v1::AddUploadChunkResponse response;
-    const grpc::Status status = Call(context, stub, &Stub::AddUploadChunk, request, &response);
+    const grpc::Status status = Call(context, stub, &v1::UploadService::Stub::AddUploadChunk, request, &response);
     if (!status.ok()) return status;
     at = response.received();
     progress.Update(static_cast<double>(at));
@@ -74,7 +73,7 @@ int Upload(const Context& context, const UploadOptions& options) {
   begin.set_size(static_cast<std::int64_t>(bytes->size()));
   begin.set_sha256(Sha256(*bytes));
   v1::BeginUploadResponse begun;
-  grpc::Status status = Call(context, *stub, &Stub::BeginUpload, begin, &begun);
+  grpc::Status status = Call(context, *stub, &v1::UploadService::Stub::BeginUpload, begin, &begun);
   if (!status.ok()) return Fail(context, status);
   v1::FinishUploadResponse finished;
   *finished.mutable_file() = begun.file();
@@ -83,7 +82,7 @@ int Upload(const Context& context, const UploadOptions& options) {
     finish.set_upload_id(begun.upload_id());
     finish.set_unit_mm(options.unit_mm);
     status = Send(context, *stub, *bytes, begun);
-    if (status.ok()) status = Call(context, *stub, &Stub::FinishUpload, finish, &finished);
+    if (status.ok()) status = Call(context, *stub, &v1::UploadService::Stub::FinishUpload, finish, &finished);
     if (!status.ok()) return Fail(context, status);
   }
   Print(context, finished);

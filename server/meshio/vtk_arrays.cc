@@ -13,7 +13,7 @@
 namespace phrenic::meshio {
 namespace {
 
-constexpr std::string_view kBlanks = " \t\r\n";
+constexpr std::string_view kWhite = " \t\r\n";
 constexpr std::size_t kTriple = 3, kQuadruple = 4;  // base64: bytes, characters
 
 absl::Status Cut() {
@@ -135,7 +135,7 @@ absl::StatusOr<std::string> TakeBytes(const VtkArray& array, const VtkEncoding& 
   } else if (array.format != "binary") {
     return absl::InvalidArgumentError(absl::StrCat("there is no format ", Quoted(array.format), " of data arrays"));
   }
-  from.remove_prefix(base64 ? std::min(from.find_first_not_of(kBlanks), from.size()) : 0);
+  from.remove_prefix(base64 ? std::min(from.find_first_not_of(kWhite), from.size()) : 0);
   return encoding.compressed ? TakeCompressed(from, base64, encoding) : TakePlain(from, base64, encoding);
 }
 
@@ -172,9 +172,9 @@ template <typename Number>
 absl::StatusOr<std::vector<Number>> ReadText(std::string_view text) {
   std::vector<Number> numbers;
   while (true) {
-    text.remove_prefix(std::min(text.find_first_not_of(kBlanks), text.size()));
+    text.remove_prefix(std::min(text.find_first_not_of(kWhite), text.size()));
     if (text.empty()) return numbers;
-    const std::string_view word = text.substr(0, text.find_first_of(kBlanks));
+    const std::string_view word = text.substr(0, text.find_first_of(kWhite));
     Number number{};
     if (!ParseAs(word, number)) {
       return absl::InvalidArgumentError(absl::StrCat(Quoted(word), " is no number of the array's kind"));

@@ -7,7 +7,7 @@
 namespace phrenic::record {
 namespace {
 
-constexpr int kTimeDigits = 12, kDigits = 9;
+constexpr int kTimeDigits = 12, kNumberDigits = 9;
 
 // RFC 4180: in double quotes where it has to be, and never a line of its own.
 std::string Cell(const std::string& text) {
@@ -32,7 +32,7 @@ class CsvRecorder final : public Recorder {
   absl::Status AddFrame(const RecordedFrame& frame) override {
     text_.AppendNumber(frame.time, kTimeDigits, frame.numbers.empty() ? '\n' : ',');
     for (std::size_t i = 0; i < frame.numbers.size(); ++i) {
-      text_.AppendNumber(frame.numbers[i], kDigits, i + 1 < frame.numbers.size() ? ',' : '\n');
+      text_.AppendNumber(frame.numbers[i], kNumberDigits, i + 1 < frame.numbers.size() ? ',' : '\n');
     }
     return text_.status();
   }

@@ -8,6 +8,7 @@
 #include "server/record/text_block.h"
 
 namespace phrenic::record {
+
 const std::vector<MapFormat>& MapFormats() {
   static const auto* const formats = new std::vector<MapFormat>{
       {"msh", "Gmsh 2.2 text: the mesh, and the distance at every time as NodeData", &WriteMshMap},
@@ -34,7 +35,8 @@ absl::Status WriteMshMap(const DistanceMap& map, const Sink& sink) {
   for (std::size_t step = 0; step < map.times.size(); ++step) {
     const Eigen::VectorXd& distances = map.distances[step];
     text.Append("$NodeData\n1\n\"distance [mm]\"\n1\n%.9g\n3\n%d\n1\n%d\n", map.times[step], step, distances.size());
-    for (Eigen::Index i = 0; i < distances.size(); ++i) text.Append("%d %.6g\n", i + 1, kMillimetresAMetre * distances[i]);
+    for (Eigen::Index i = 0; i < distances.size(); ++i)
+      text.Append("%d %.6g\n", i + 1, kMillimetresAMetre * distances[i]);
     text.Append("$EndNodeData\n");
   }
   return text.Flush();

@@ -2,13 +2,12 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "server/mesh/units.h"
 #include "server/mesh/vtp.h"
 #include "server/record/archive.h"
 
 namespace phrenic::record {
 namespace {
-
-constexpr double kMillimetres = 1e3;
 
 Eigen::Index LinesOf(const Mesh& mesh) { return mesh.triangles.cols() > 0 ? 0 : mesh.edges.cols(); }
 
@@ -46,14 +45,14 @@ class PvdRecorder final : public Recorder {
   absl::Status Begin(const Recording& recording) override {
     data_ = Joined(recording.bodies);
     first_ = data_.points;
-    data_.points *= kMillimetres;
+    data_.points *= kMillimetresAMetre;
     data_.point_arrays.push_back({"displacement [mm]", Points::Zero(3, first_.cols())});
     return absl::OkStatus();
   }
 
   absl::Status AddFrame(const RecordedFrame& frame) override {
-    if (moved_) data_.points = kMillimetres * frame.positions;
-    data_.point_arrays[0].values = kMillimetres * (frame.positions - first_);
+    if (moved_) data_.points = kMillimetresAMetre * frame.positions;
+    data_.point_arrays[0].values = kMillimetresAMetre * (frame.positions - first_);
     const std::string name = absl::StrFormat("%s/%s_%06d.vtp", stem_, stem_, frames_++);
     absl::StrAppendFormat(&index_, "<DataSet timestep=\"%.9g\" group=\"\" part=\"0\" file=\"%s\"/>\n", frame.time,
                           name);

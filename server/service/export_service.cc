@@ -12,13 +12,14 @@
 namespace phrenic::service {
 namespace {
 
-constexpr int kMostStreams = 32;                           // each has a thread of its own
-constexpr absl::Duration kLook = absl::Milliseconds(200);  // between two looks at whether the watcher is still there
-constexpr std::int64_t kChunk = 128 << 10;                 // [bytes]
+constexpr int kMostExportStreams = 32;  // each has a thread of its own
+constexpr absl::Duration kExportLook =
+    absl::Milliseconds(200);                // between two looks at whether the watcher is still there
+constexpr std::int64_t kChunk = 128 << 10;  // [bytes]
 
 absl::Status TooMany() {
   return absl::ResourceExhaustedError(
-      absl::StrCat(kMostStreams, " exports are watched or downloaded, and no more are allowed: try later"));
+      absl::StrCat(kMostExportStreams, " exports are watched or downloaded, and no more are allowed: try later"));
 }
 
 v1::ExportValues ToProto(record::Values values) {
@@ -59,7 +60,7 @@ absl::Status ExportService::Watch(const std::string& id, grpc::ServerContext& co
                                   grpc::ServerWriter<v1::WatchExportResponse>& writer) const {
   std::int64_t version = 0;
   while (!context.IsCancelled()) {
-    auto seen = exports_.Wait(id, version, kLook);
+    auto seen = exports_.Wait(id, version, kExportLook);
     if (!seen.ok()) return seen.status();
     if (seen->version == version) continue;
     version = seen->version;
@@ -74,7 +75,7 @@ grpc::Status ExportService::WatchExport(grpc::ServerContext* context, const v1::
                                         grpc::ServerWriter<v1::WatchExportResponse>* writer) {
   if (absl::Status status = schema::Validate(*request); !status.ok()) return ToGrpc(status);
   const absl::Cleanup leave = [this] { --streams_; };
-  if (++streams_ > kMostStreams) return ToGrpc(TooMany());
+  if (++streams_ > kMostExportStreams) return ToGrpc(TooMany());
   return ToGrpc(Watch(request->export_id(), *context, *writer));
 }
 
@@ -115,7 +116,7 @@ grpc::Status ExportService::DownloadExport(grpc::ServerContext*, const v1::Downl
                                            grpc::ServerWriter<v1::DownloadExportResponse>* writer) {
   if (absl::Status status = schema::Validate(*request); !status.ok()) return ToGrpc(status);
   const absl::Cleanup leave = [this] { --streams_; };
-  if (++streams_ > kMostStreams) return ToGrpc(TooMany());
+  if (++streams_ > kMostExportStreams) return ToGrpc(TooMany());
   return ToGrpc(Download(*request, *writer));
 }
 

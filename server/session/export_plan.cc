@@ -10,14 +10,14 @@
 #include "absl/strings/str_join.h"
 #include "phrenic/v1/options.pb.h"
 #include "server/mechanics/measure.h"
+#include "server/mesh/units.h"
 #include "server/record/spool_file.h"
+#include "server/session/run.h"
 #include "server/session/surface_recorder.h"
 
 namespace phrenic::session {
 namespace {
 
-constexpr double kMillimetres = 1e3;
-constexpr double kTimeTolerance = 1e-9;     // [s]
 constexpr std::int64_t kBytesANumber = 16;  // of text
 constexpr std::int64_t kBytesAShape = 60;   // of text, or in a .vtp
 constexpr std::size_t kLongestStem = 100;
@@ -162,7 +162,7 @@ std::vector<double> NumbersAt(const Model& model, const v1::Parameters& paramete
   for (const Probe& probe : model.probes) {
     placed.resize(3, model.bodies[probe.body].mesh.vertices.cols());
     PlaceBody(model, state, probe.body, placed);
-    for (const double coordinate : placed.col(probe.vertex)) numbers.push_back(kMillimetres * coordinate);
+    for (const double coordinate : placed.col(probe.vertex)) numbers.push_back(kMillimetresAMetre * coordinate);
   }
   for (const v1::MeasureReading& reading : ReadMeasures(model, MakeInstant(model, parameters, state))) {
     numbers.push_back(reading.value());

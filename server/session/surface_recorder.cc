@@ -4,12 +4,12 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "server/mesh/units.h"
 #include "server/meshio/formats.h"
 
 namespace phrenic::session {
 namespace {
 
-constexpr double kMillimetre = 1e-3;         // [m]
 constexpr std::int64_t kBytesAVertex = 200;  // of the file, with its two triangles
 
 // All bodies as one surface. Networks are in it only where no body has triangles: the formats hold the one or the

@@ -9,13 +9,13 @@
 #include "absl/strings/escaping.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "server/mesh/units.h"
 #include "server/meshio/formats.h"
 
 namespace phrenic::session {
 namespace {
 
 constexpr std::size_t kMostPending = 16;
-constexpr double kMillimetre = 1e-3;  // [m]
 
 std::string Sha256(std::string_view bytes) {
   unsigned char digest[SHA256_DIGEST_LENGTH];

@@ -1,24 +1,17 @@
 #include "server/session/exporter.h"
 
 #include <gmock/gmock.h>
-#include <openssl/sha.h>
 
-#include "absl/strings/escaping.h"
 #include "server/mechanics/state.h"
 #include "server/session/surface_recorder.h"
 #include "tests/compile_text.h"
+#include "tests/session/sha256.h"
 #include "tests/small_scenes.h"
 
 namespace phrenic::session {
 namespace {
 
 using testing::HasSubstr;
-
-std::string Sha256(const std::string& bytes) {
-  unsigned char digest[SHA256_DIGEST_LENGTH];
-  SHA256(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size(), digest);
-  return absl::BytesToHexString(absl::string_view(reinterpret_cast<const char*>(digest), sizeof digest));
-}
 
 class ExporterTest : public testing::Test {
  protected:

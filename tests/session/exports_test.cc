@@ -2,15 +2,14 @@
 #include "server/session/exports.h"
 
 #include <gmock/gmock.h>
-#include <openssl/sha.h>
 
-#include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
 #include "server/mechanics/state.h"
 #include "server/session/meshes.h"
 #include "server/session/uploads.h"
 #include "tests/compile_text.h"
 #include "tests/fake_clock.h"
+#include "tests/session/sha256.h"
 #include "tests/small_scenes.h"
 
 namespace phrenic::session {
@@ -114,12 +113,6 @@ TEST_F(ExportsTest, AFailureSaysWhyAndKeepsNoFile) {
 }
 
 constexpr char kSurface[] = "v 0 0 0\nv 30 0 0\nv 0 30 0\nf 1 2 3\n";
-
-std::string Sha256(const std::string& bytes) {
-  unsigned char digest[SHA256_DIGEST_LENGTH];
-  SHA256(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size(), digest);
-  return absl::BytesToHexString(absl::string_view(reinterpret_cast<const char*>(digest), sizeof digest));
-}
 
 class UploadsTest : public testing::Test {
  protected:
