@@ -58,9 +58,10 @@ class Builder {
 
   int AddScalars(const Eigen::VectorXf& numbers, bool bounded) {
     const int index = AddAccessor(numbers, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_SCALAR, 0);
-    if (bounded)
-      SetBounds(Eigen::VectorXf::Constant(1, numbers.minCoeff()), Eigen::VectorXf::Constant(1, numbers.maxCoeff()),
-                index);
+    if (bounded) {
+      const auto bound = [](float number) { return Eigen::VectorXf::Constant(1, number).eval(); };
+      SetBounds(bound(numbers.minCoeff()), bound(numbers.maxCoeff()), index);
+    }
     return index;
   }
 
@@ -168,8 +169,8 @@ class GltfRecorder final : public Recorder {
     if (surface) {
       Floats normals = VertexNormals(at_first, mesh.triangles).cast<float>();
       for (auto normal : normals.colwise()) {
-        if (normal.isZero())
-          normal = Eigen::Vector3f::UnitZ();  // of a vertex in no triangle: glTF takes unit vectors alone
+        // Of a vertex in no triangle: glTF takes unit vectors alone.
+        if (normal.isZero()) normal = Eigen::Vector3f::UnitZ();
       }
       primitive.attributes["NORMAL"] = builder_.AddAccessor(normals, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3,
                                                             TINYGLTF_TARGET_ARRAY_BUFFER);
