@@ -8,8 +8,10 @@
 #include "client/scene_argument.h"
 #include "client/schema_options.h"
 #include "phrenic/v1/compare.pb.h"
+#include "phrenic/v1/export.pb.h"
 #include "server/meshio/meshio.h"
 #include "server/schema/fields.h"
+#include "server/session/surface_recorder.h"
 
 namespace phrenic::client {
 namespace {
@@ -31,6 +33,8 @@ struct AllOptions {
   PlayOptions play;
   StepOptions step;
   ExportOptions export_motion;
+  ExportsOptions exports;
+  UploadOptions upload;
 };
 
 class CommandLine {
@@ -57,6 +61,7 @@ class CommandLine {
     AddSessionCommands();
     AddControlCommands();
     AddExport();
+    AddUpload();
   }
 
   int ParseAndRun(int argc, char** argv) {
@@ -116,9 +121,9 @@ class CommandLine {
     command->add_option("--seconds", run.seconds, "simulated time [s]")
         ->check(CLI::Range(1e-6, 3600.0))
         ->capture_default_str();
-    command->add_option("--export", run.file, "write the motion to this file (.msh, .depl)");
-    command->add_option("--fps", run.frames_per_second, "frames a second in the file")->capture_default_str();
-    command->add_option("--body", run.bodies, "body or layer to export; may be repeated (all deformable ones)");
+    command->add_option("--export", run.motion.file, "write the motion to this file" + ExportEndings());
+    AddMotion(command, run.motion);
+    command->add_option("--spool", run.spool_dir, "folder on a disk with room for what an export holds back");
     command->add_option("--data", run.data_dir, "folder of surface files and of scenes/*.textproto");
     PhysiologyOptions& physiology = options_.physiology;
     command =
@@ -219,6 +224,13 @@ class CommandLine {
     AddUnit(command, "--out-unit-mm", convert.out_unit_mm, "OUT's");
   }
 
+  void AddUpload() {
+    UploadOptions& upload = options_.upload;
+    CLI::App* command = Add("upload", "Give the server a surface file, for scenes of any session", &Upload, upload);
+    command->add_option("FILE", upload.file, "a surface (" + meshio::Endings() + ")")->required();
+    AddUnit(command, "--unit-mm", upload.unit_mm, "its");
+  }
+
   void AddSessionCommands() {
     CreateOptions& create = options_.create;
     CLI::App* command = Add("create", "Create a session", &Create, create);
@@ -282,10 +294,47 @@ class CommandLine {
     ExportOptions& options = options_.export_motion;
     CLI::App* command = Add("export", "Run a copy of a session on and write its motion to a file", &Export, options);
     command->add_option("SESSION", options.id)->required();
-    command->add_option("FILE", options.file, ".msh (Gmsh, NodeData) or .depl (the thesis' format)")->required();
-    command->add_option("--seconds", options.seconds, "simulated time [s]")->capture_default_str();
-    command->add_option("--fps", options.frames_per_second, "frames a second in the file")->capture_default_str();
-    command->add_option("--body", options.bodies, "body or layer; may be repeated (all deformable ones)");
+    command->add_option("FILE", options.motion.file, "its ending tells the format" + ExportEndings())->required();
+    command->add_option("--seconds", options.motion.seconds, "simulated time [s] (8; of one instant 0)");
+    AddMotion(command, options.motion);
+    command->add_flag("--detach", options.detach, "say the export's id, and leave it to the server");
+    AddExports();
+  }
+
+  void AddExports() {
+    ExportsOptions& options = options_.exports;
+    CLI::App* exports =
+        app_.add_subcommand("exports", "The server's exports: list them, fetch their files, delete them");
+    exports->require_subcommand(1);
+    Add("list", "List the exports, and how far they are", &ListExports, exports);
+    CLI::App* get =
+        Add("get", "Wait for an export and download it; goes on with what FILE.part has", &GetExport, options, exports);
+    get->add_option("EXPORT", options.id)->required();
+    get->add_option("FILE", options.file, "the export's own name in this folder");
+    CLI::App* remove = Add("delete", "Cancel and forget an export", &DeleteExport, options, exports);
+    remove->add_option("EXPORT", options.id)->required();
+  }
+
+  static std::string ExportEndings() {
+    std::string names;
+    for (const record::Format& format : session::ExportFormats()) {
+      names += (names.empty() ? " (." : ", .") + format.name + (format.instant ? "*" : "");
+    }
+    return names + "; * of one instant)";
+  }
+
+  static void AddMotion(CLI::App* command, MotionOptions& motion) {
+    const google::protobuf::Descriptor& request = *v1::CreateExportRequest::descriptor();
+    command->add_option("--at,--from", motion.start, FieldHelp(request, "start"));
+    CLI::Option* rate =
+        command->add_option("--fps", motion.frames_per_second, "frames a second in the file (10; .glb: 24 a breath)");
+    command->add_option("--every", motion.steps_per_frame, FieldHelp(request, "steps_per_frame"))
+        ->check(CLI::Range(1, 1'000'000))
+        ->excludes(rate);
+    command->add_option("--body", motion.bodies, "body or layer; may be repeated (all deformable ones)");
+    CLI::Option* positions = command->add_flag("--positions", motion.positions, "where vertices are (.msh, .pvd)");
+    command->add_flag("--displacements", motion.displacements, "how far they are from the first frame (.msh, .pvd)")
+        ->excludes(positions);
   }
 
   Context& context_;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "client/connection.h"
+#include "client/motion_file.h"
 #include "phrenic/v1/study.pb.h"
 
 namespace phrenic::client {
@@ -20,11 +21,9 @@ struct RunOptions {
   double seconds = 8;
   std::string preset;
   std::vector<std::string> settings;
-  std::vector<std::string> pulls;  // "diaphragm:812:0,0,1"
-  std::string file;                // empty: none
-  std::vector<std::string> bodies;
-  double frames_per_second = 10;
-  std::string data_dir;
+  std::vector<std::string> pulls;   // "diaphragm:812:0,0,1"
+  MotionOptions motion;             // of no file: none
+  std::string data_dir, spool_dir;  // spool: empty for the usual one
 };
 struct PhysiologyOptions {
   SceneOptions scene;
@@ -100,10 +99,15 @@ struct StepOptions {
 };
 struct ExportOptions {
   std::string id;
+  MotionOptions motion;
+  bool detach = false;  // the export's id, and no waiting
+};
+struct ExportsOptions {
+  std::string id, file;
+};
+struct UploadOptions {
   std::string file;
-  double seconds = 8;
-  double frames_per_second = 10;
-  std::vector<std::string> bodies;
+  double unit_mm = 1;  // in one unit of the file's lengths
 };
 
 // One command a file in commands/. Each gives the exit code.
@@ -129,6 +133,10 @@ int TakeSteps(const Context& context, const StepOptions& options);
 int Reset(const Context& context, const SessionOptions& options);
 int Delete(const Context& context, const SessionOptions& options);
 int Export(const Context& context, const ExportOptions& options);
+int ListExports(const Context& context);
+int GetExport(const Context& context, const ExportsOptions& options);
+int DeleteExport(const Context& context, const ExportsOptions& options);
+int Upload(const Context& context, const UploadOptions& options);
 
 // Parses the command line and runs the command on it.
 int RunCommandLine(int argc, char** argv, Interruption& interruption);

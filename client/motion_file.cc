@@ -1,62 +1,73 @@
 #include "client/motion_file.h"
 
-#include <openssl/evp.h>
+#include <unistd.h>
 
-#include <cstdio>
-#include <fstream>
-#include <iostream>
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <thread>
 
-#include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
+#include "client/part_file.h"
 #include "client/progress.h"
-#include "phrenic/v1/export.grpc.pb.h"
+#include "client/unpack.h"
+#include "server/record/spool_file.h"
+#include "server/session/surface_recorder.h"
 
 namespace phrenic::client {
 namespace {
 
-// FILE.part, with the hash of what was written; removed unless it was put in its place.
-class PartFile {
- public:
-  explicit PartFile(const std::string& file)
-      : file_(file), part_(file + ".part"), out_(part_, std::ios::binary), hash_(EVP_MD_CTX_new(), &EVP_MD_CTX_free) {
-    EVP_DigestInit_ex(hash_.get(), EVP_sha256(), nullptr);
-  }
-  ~PartFile() {
-    out_.close();
-    std::remove(part_.c_str());
-  }
-  PartFile(const PartFile&) = delete;
-  PartFile& operator=(const PartFile&) = delete;
+constexpr double kSeconds = 8;  // of a motion, where no length is said
+constexpr int kAttempts = 5;    // of a download that breaks off
+constexpr char kArchive[] = "zip";
+constexpr double kMegabyte = 1e6;
 
-  bool Write(const std::string& bytes) {
-    out_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    EVP_DigestUpdate(hash_.get(), bytes.data(), bytes.size());
-    return static_cast<bool>(out_);
-  }
+bool BrokeOff(const grpc::Status& status) { return status.error_code() == grpc::StatusCode::UNAVAILABLE; }
 
-  std::string Error() const {
-    return absl::StrCat("cannot write ", part_, ": is the folder there, and the disk not full?");
-  }
+// Cancels and forgets, whatever became of the command: an interrupted one is not waited for.
+void Forget(v1::ExportService::Stub& stub, const std::string& id) {
+  v1::DeleteExportRequest request;
+  request.set_export_id(id);
+  v1::DeleteExportResponse response;
+  grpc::ClientContext call;
+  call.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(2));
+  (void)stub.DeleteExport(&call, request, &response);
+}
 
-  absl::Status PutInPlace(const v1::ExportSummary& summary) {
-    out_.close();
-    if (!out_) return absl::DataLossError(Error());
-    unsigned char digest[EVP_MAX_MD_SIZE];
-    unsigned int size = 0;
-    EVP_DigestFinal_ex(hash_.get(), digest, &size);
-    const std::string hex = absl::BytesToHexString(absl::string_view(reinterpret_cast<const char*>(digest), size));
-    if (hex != summary.sha256()) return absl::DataLossError(absl::StrCat(file_, " arrived damaged: try again"));
-    if (std::rename(part_.c_str(), file_.c_str()) != 0) {
-      return absl::DataLossError(absl::StrCat("cannot rename ", part_, " to ", file_));
-    }
-    return absl::OkStatus();
+// From where the part ends to the file's end; the first error of either side.
+grpc::Status Receive(const Context& context, v1::ExportService::Stub& stub, const v1::Export& job, PartFile& part,
+                     Progress& progress, absl::Status& written) {
+  v1::DownloadExportRequest request;
+  request.set_export_id(job.id());
+  request.set_offset(part.bytes());
+  grpc::ClientContext call;
+  const Interruption::Scope scope(*context.interruption, call);
+  const auto stream = stub.DownloadExport(&call, request);
+  v1::DownloadExportResponse response;
+  while (written.ok() && stream->Read(&response)) {
+    written = part.Write(response.chunk());
+    progress.Update(static_cast<double>(part.bytes()));
   }
+  if (!written.ok()) call.TryCancel();
+  return stream->Finish();
+}
 
- private:
-  std::string file_, part_;
-  std::ofstream out_;
-  std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> hash_;
-};
+absl::Status Place(const v1::Export& job, const std::string& file, PartFile& part) {
+  const bool unpacked = FormatOf(file) != kArchive && FormatOf(job.file_name()) == kArchive;
+  const std::string place = unpacked ? file + "." + kArchive : file;
+  if (absl::Status status = part.PutInPlace(job.summary().sha256()); !status.ok() || !unpacked) return status;
+  const absl::Status status = Unpack(place, std::filesystem::path(file).parent_path().string());
+  std::error_code ignored;
+  std::filesystem::remove(place, ignored);
+  return status;
+}
+
+// Before work is done for a file that cannot be written.
+absl::Status CheckPlace(const std::string& file) {
+  const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
+  if (access(folder.c_str(), W_OK) == 0) return absl::OkStatus();
+  return absl::NotFoundError(absl::StrCat("cannot write ", file, ": is the folder there, and may it be written?"));
+}
 
 }  // namespace
 
@@ -65,31 +76,77 @@ std::string FormatOf(const std::string& file) {
   return dot == std::string::npos || file.find('/', dot) != std::string::npos ? "" : file.substr(dot + 1);
 }
 
-int DownloadMotion(const Context& context, const std::shared_ptr<grpc::Channel>& channel,
-                   const v1::ExportMotionRequest& request, const std::string& file, v1::ExportSummary* summary) {
-  const auto stub = v1::ExportService::NewStub(channel);
+absl::StatusOr<v1::CreateExportRequest> MakeExportRequest(const std::string& session, const MotionOptions& options) {
+  v1::CreateExportRequest request;
+  request.set_session_id(session);
+  request.set_format(FormatOf(options.file));
+  const auto format = record::FindFormat(session::ExportFormats(), request.format());
+  if (!format.ok()) return format.status();
+  // Of the files of an archive, which name each other.
+  if (format->ending == kArchive) request.set_file_stem(std::filesystem::path(options.file).stem().string());
+  request.set_seconds(options.seconds.value_or(format->instant ? 0 : kSeconds));
+  if (options.start) request.set_start(*options.start);
+  if (options.frames_per_second) request.set_frames_per_second(*options.frames_per_second);
+  if (options.steps_per_frame > 0) request.set_steps_per_frame(options.steps_per_frame);
+  if (options.displacements) request.set_values(v1::EXPORT_VALUES_DISPLACEMENTS);
+  if (options.positions) request.set_values(v1::EXPORT_VALUES_POSITIONS);
+  for (const std::string& body : options.bodies) request.add_bodies(body);
+  return request;
+}
+
+int WatchToItsEnd(const Context& context, v1::ExportService::Stub& stub, const std::string& id, v1::Export* job) {
+  v1::WatchExportRequest request;
+  request.set_export_id(id);
   grpc::ClientContext call;
   const Interruption::Scope scope(*context.interruption, call);
-  const auto stream = stub->ExportMotion(&call, request);
-  PartFile part(file);
-  bool writable = true;
+  const auto stream = stub.WatchExport(&call, request);
+  v1::WatchExportResponse response;
   {
-    Progress progress("recording", request.seconds());
-    v1::ExportMotionResponse event;
-    while (writable && stream->Read(&event)) {
-      if (event.has_chunk()) writable = part.Write(event.chunk());
-      if (event.event_case() == v1::ExportMotionResponse::kRecordedSeconds) progress.Update(event.recorded_seconds());
-      if (event.has_summary()) *summary = event.summary();
+    Progress progress("recording", 1);
+    while (stream->Read(&response)) {
+      *job = response.job();
+      progress.Say(absl::StrCat(static_cast<std::int64_t>(static_cast<double>(job->bytes()) / kMegabyte), " MB"));
+      progress.Update(job->progress());
     }
   }
-  if (!writable) {
-    call.TryCancel();
-    return Fail(absl::DataLossError(part.Error()));
+  if (const grpc::Status status = stream->Finish(); !status.ok()) return Fail(context, status);
+  if (job->state() == v1::EXPORT_STATE_DONE) return kOk;
+  return Fail(absl::AbortedError(job->problem().empty() ? "the export ended without a word" : job->problem()));
+}
+
+int Download(const Context& context, v1::ExportService::Stub& stub, const v1::Export& job, const std::string& file,
+             bool keep_part) {
+  const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
+  const absl::Status room = record::CheckRoom(folder.string(), job.bytes());
+  if (absl::IsResourceExhausted(room)) return Fail(room);
+  const bool unpacked = FormatOf(file) != kArchive && FormatOf(job.file_name()) == kArchive;
+  PartFile part(unpacked ? file + "." + kArchive : file, keep_part);
+  Progress progress("downloading", static_cast<double>(job.bytes()));
+  absl::Status written;
+  grpc::Status status = Receive(context, stub, job, part, progress, written);
+  for (int attempt = 1; attempt < kAttempts && written.ok() && BrokeOff(status); ++attempt) {
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+    status = Receive(context, stub, job, part, progress, written);
   }
-  const grpc::Status status = stream->Finish();
+  if (!written.ok()) return Fail(written);
   if (!status.ok()) return Fail(context, status);
-  const absl::Status placed = part.PutInPlace(*summary);
+  const absl::Status placed = Place(job, file, part);
   return placed.ok() ? kOk : Fail(placed);
+}
+
+int ExportToFile(const Context& context, const std::shared_ptr<grpc::Channel>& channel,
+                 const v1::CreateExportRequest& request, const std::string& file, v1::ExportSummary* summary) {
+  if (absl::Status status = CheckPlace(file); !status.ok()) return Fail(status);
+  const auto stub = v1::ExportService::NewStub(channel);
+  v1::CreateExportResponse created;
+  const grpc::Status status = Call(context, *stub, &v1::ExportService::Stub::CreateExport, request, &created);
+  if (!status.ok()) return Fail(context, status);
+  v1::Export job;
+  int code = WatchToItsEnd(context, *stub, created.job().id(), &job);
+  if (code == kOk) code = Download(context, *stub, job, file, false);
+  Forget(*stub, created.job().id());
+  *summary = job.summary();
+  return code;
 }
 
 }  // namespace phrenic::client

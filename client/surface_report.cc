@@ -39,6 +39,7 @@ void PrintCounts(const v1::SurfaceReport& report, std::ostream& out) {
   line("boundary edges", absl::StrCat(report.boundary_edges()));
   line("non-manifold edges", absl::StrCat(report.non_manifold_edges()));
   line("inconsistently oriented edges", absl::StrCat(report.misoriented_edges()));
+  line("pinched vertices", absl::StrCat(report.pinched_vertices()));
   line("components", absl::StrCat(report.components_size()));
   line("Euler characteristic", absl::StrCat(report.euler_characteristic()));
   line("bounding box", Box(report));

@@ -31,6 +31,12 @@ void AddFlags(CLI::App& app, Flags& flags) {
   app.add_option("--web", options.web, "HOST:PORT of the viewer and gRPC-web")->capture_default_str();
   app.add_option("--data", options.data_dir, "Folder of surface files; scenes of your own in its folder scenes/");
   app.add_option("--scenes", options.scenes_dir, "Folder of the shipped scenes")->capture_default_str();
+  app.add_option("--spool", options.spool_dir,
+                 "Folder on a disk with room, for exports and uploads; nothing stays in it")
+      ->capture_default_str();
+  app.add_option("--keep-exports", options.limits.export_minutes, "Minutes that an export waits to be downloaded")
+      ->check(CLI::Range(1, 10080))
+      ->capture_default_str();
   app.add_option("--web-root", options.web_root, "Folder of the built viewer")->capture_default_str();
   app.add_option("--start", flags.start, "Scene to start and play, or none")->capture_default_str();
   app.add_option("--allow-origin", options.allowed_origins, "Web pages that may call, as https://example.org");

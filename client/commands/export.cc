@@ -1,3 +1,4 @@
+// `phrenic export`: a motion of a session as a file.
 #include <iostream>
 
 #include "absl/strings/str_format.h"
@@ -5,22 +6,36 @@
 #include "client/motion_file.h"
 
 namespace phrenic::client {
+namespace {
+
+int Detach(const Context& context, const v1::CreateExportRequest& request) {
+  const auto stub = v1::ExportService::NewStub(Connect(context));
+  v1::CreateExportResponse created;
+  const grpc::Status status = Call(context, *stub, &v1::ExportService::Stub::CreateExport, request, &created);
+  if (!status.ok()) return Fail(context, status);
+  if (context.json()) {
+    std::cout << Json(created.job()) << "\n";
+  } else {
+    std::cout << created.job().id() << "\n";
+    std::cerr << "phrenic: fetch it by: phrenic exports get " << created.job().id() << "\n";
+  }
+  return kOk;
+}
+
+}  // namespace
 
 int Export(const Context& context, const ExportOptions& options) {
-  v1::ExportMotionRequest request;
-  request.set_session_id(options.id);
-  request.set_format(FormatOf(options.file));
-  request.set_seconds(options.seconds);
-  request.set_frames_per_second(options.frames_per_second);
-  for (const std::string& body : options.bodies) request.add_bodies(body);
+  const auto request = MakeExportRequest(options.id, options.motion);
+  if (!request.ok()) return Fail(request.status());
+  if (options.detach) return Detach(context, *request);
   v1::ExportSummary summary;
-  const int code = DownloadMotion(context, Connect(context), request, options.file, &summary);
+  const int code = ExportToFile(context, Connect(context), *request, options.motion.file, &summary);
   if (code != kOk) return code;
   if (context.json()) {
     std::cout << Json(summary) << "\n";
   } else {
-    std::cout << absl::StrFormat("%s: %d frames of %d vertices, %.3f s, %d bytes\n", options.file, summary.frames(),
-                                 summary.vertices(), summary.simulated_seconds(), summary.bytes());
+    std::cout << absl::StrFormat("%s: %d frames of %d vertices, %.3f s, %d bytes\n", options.motion.file,
+                                 summary.frames(), summary.vertices(), summary.simulated_seconds(), summary.bytes());
   }
   return kOk;
 }

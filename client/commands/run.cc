@@ -16,6 +16,7 @@
 #include "client/table.h"
 #include "phrenic/v1/session.grpc.pb.h"
 #include "server/service/server.h"
+#include "server/session/surface_recorder.h"
 #include "server/study/thesis_tables.h"
 
 namespace phrenic::client {
@@ -84,14 +85,16 @@ grpc::Status StepThrough(const Context& context, const RunOptions& options, bool
 }
 
 int ExportHere(const Context& context, const RunOptions& options, service::Server& server, Cost* cost) {
-  v1::ExportMotionRequest request;
-  request.set_session_id("run");
-  request.set_format(FormatOf(options.file));
-  request.set_seconds(options.seconds);
-  request.set_frames_per_second(options.frames_per_second);
-  for (const std::string& body : options.bodies) request.add_bodies(body);
+  MotionOptions motion = options.motion;
+  const auto format = record::FindFormat(session::ExportFormats(), FormatOf(motion.file));
+  if (!format.ok()) return Fail(format.status());
+  // A surface is that of the run's end, unless a time is said; a motion is the whole run.
+  if (format->instant && !motion.start) motion.start = options.seconds;
+  if (!format->instant) motion.seconds = options.seconds - motion.start.value_or(0);
+  const auto request = MakeExportRequest("run", motion);
+  if (!request.ok()) return Fail(request.status());
   v1::ExportSummary summary;
-  const int code = DownloadMotion(context, server.InProcessChannel(), request, options.file, &summary);
+  const int code = ExportToFile(context, server.InProcessChannel(), *request, motion.file, &summary);
   *cost = {summary.steps(),
            summary.simulated_seconds(),
            summary.step_wall_seconds(),
@@ -120,7 +123,7 @@ void PrintCost(const RunOptions& options, const v1::CompileReport& report, const
   std::cout << absl::StrFormat("%.0f times the thesis' steps a second (another machine, 2008)\nstate hash %s\n",
                                rate / thesis.steps_per_second, cost.state_hash);
   cost.readings.Print(std::cout);
-  if (!options.file.empty()) std::cout << "wrote " << options.file << "\n";
+  if (!options.motion.file.empty()) std::cout << "wrote " << options.motion.file << "\n";
 }
 
 void PrintCostJson(const RunOptions& options, const v1::GetSessionResponse& session, const Cost& cost,
@@ -135,7 +138,7 @@ void PrintCostJson(const RunOptions& options, const v1::GetSessionResponse& sess
       {"thesis", {{"figure", thesis.what}, {"steps_per_second", thesis.steps_per_second}}},
       {"state_hash", cost.state_hash},
       {"measures", cost.readings.ToJson()},
-      {"file", options.file},
+      {"file", options.motion.file},
       {"report", nlohmann::json::parse(Json(session.report()))},
       {"session", nlohmann::json::parse(Json(session.session()))},
   };
@@ -156,7 +159,7 @@ int RunOn(const Context& context, const RunOptions& options, const v1::SceneSour
   status = Call(context, *scenes, &v1::SceneService::Stub::DescribeScene, describe, &described);
   if (!status.ok()) return Fail(context, status);
   Cost cost;
-  if (!options.file.empty()) {
+  if (!options.motion.file.empty()) {
     const int code = ExportHere(context, options, server, &cost);
     if (code != kOk) return code;
   } else {
@@ -170,7 +173,7 @@ int RunOn(const Context& context, const RunOptions& options, const v1::SceneSour
   } else {
     PrintCost(options, session.report(), cost, thesis);
     // An export steps a copy of the session: what this one keeps is not its end.
-    if (options.file.empty()) {
+    if (options.motion.file.empty()) {
       std::cout << SolverText(session.session(), "solver: ", "\n")
                 << ResidualText(session.session(), "constraints kept within ", "\n");
     }
@@ -191,6 +194,7 @@ int Run(const Context& context, const RunOptions& options) {
   if (!pulls.ok()) return Fail(pulls.status());
   service::ServerOptions server_options;
   server_options.data_dir = options.data_dir;
+  if (!options.spool_dir.empty()) server_options.spool_dir = options.spool_dir;
   auto server = service::Server::Start(server_options);
   if (!server.ok()) return Fail(server.status());
   return RunOn(context, options, *source, *parameters, *pulls, **server);

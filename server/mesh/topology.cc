@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "server/mesh/bucket_sort.h"
@@ -78,6 +79,39 @@ std::vector<int> BorderVertices(const Triangles& triangles) {
   std::sort(border.begin(), border.end());
   border.erase(std::unique(border.begin(), border.end()), border.end());
   return border;
+}
+
+std::vector<int> PinchedVertices(const Triangles& triangles) {
+  // Corner 3 t + k is where triangle t has its k-th vertex. Corners of one vertex are joined across each edge there.
+  struct Side {
+    int low, high, at_low, at_high;  // vertices, and their corners
+  };
+  std::vector<Side> sides;
+  std::vector<int> parent(static_cast<size_t>(triangles.size()));
+  std::iota(parent.begin(), parent.end(), 0);
+  for (int t = 0; t < static_cast<int>(triangles.cols()); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      const int next = (k + 1) % 3, a = triangles(k, t), b = triangles(next, t);
+      const int at_a = 3 * t + k, at_b = 3 * t + next;
+      sides.push_back(a < b ? Side{a, b, at_a, at_b} : Side{b, a, at_b, at_a});
+    }
+  }
+  const auto edge = [](const Side& side) { return std::pair(side.low, side.high); };
+  std::sort(sides.begin(), sides.end(), [&](const Side& a, const Side& b) { return edge(a) < edge(b); });
+  for (size_t i = 1; i < sides.size(); ++i) {
+    if (edge(sides[i - 1]) != edge(sides[i])) continue;
+    parent[Root(parent, sides[i].at_low)] = Root(parent, sides[i - 1].at_low);
+    parent[Root(parent, sides[i].at_high)] = Root(parent, sides[i - 1].at_high);
+  }
+  std::vector<int> fans(triangles.size() > 0 ? static_cast<size_t>(triangles.maxCoeff()) + 1 : 0, 0);
+  for (int corner = 0; corner < static_cast<int>(parent.size()); ++corner) {
+    if (parent[corner] == corner) ++fans[triangles(corner % 3, corner / 3)];
+  }
+  std::vector<int> pinched;
+  for (int vertex = 0; vertex < static_cast<int>(fans.size()); ++vertex) {
+    if (fans[vertex] > 1) pinched.push_back(vertex);
+  }
+  return pinched;
 }
 
 std::vector<std::vector<int>> Components(const Mesh& mesh) {

@@ -17,6 +17,10 @@ Edges SpringEdges(const Mesh& mesh);
 // The vertices on edges that one triangle alone has, ascending; none for a closed surface.
 std::vector<int> BorderVertices(const Triangles& triangles);
 
+// The vertices whose triangles form more than one fan, ascending: surfaces that touch in a point, or a pinched one.
+// Fans hang together by edges.
+std::vector<int> PinchedVertices(const Triangles& triangles);
+
 // The triangles of each component, ascending; the components in the order of their first triangles.
 std::vector<std::vector<int>> Components(const Mesh& mesh);
 

@@ -47,10 +47,8 @@ void TurnFromRas(Points& vertices) { vertices.topRows<2>() = (0.0 - vertices.top
 
 const std::vector<Format>& Formats() {
   static const std::vector<Format> formats = {
-      {".obj", &ParseObj, &WriteObj},
-      {".msh", &ParseMsh, &WriteMsh},
-      {".stl", &ParseStl, &WriteStl},
-      {".ply", &ParsePly, &WritePly},
+      {".obj", &ParseObj, &WriteObj}, {".msh", &ParseMsh, &WriteMsh}, {".stl", &ParseStl, &WriteStl},
+      {".ply", &ParsePly, &WritePly}, {".vtk", &ParseVtk, &WriteVtk}, {".vtp", &ParseVtp, &WriteVtp},
   };
   return formats;
 }

@@ -32,6 +32,13 @@ absl::StatusOr<std::string> WriteStl(const Mesh& mesh);
 absl::StatusOr<Surface> ParsePly(std::string_view name, std::string_view bytes);
 absl::StatusOr<std::string> WritePly(const Mesh& mesh);
 
+// VTK's PolyData: legacy .vtk, text and binary, and .vtp in XML, plain and compressed by zlib. Polygons, strips and
+// lines are read; numbers on points and cells are passed over. Written in float64, binary.
+absl::StatusOr<Surface> ParseVtk(std::string_view name, std::string_view bytes);
+absl::StatusOr<std::string> WriteVtk(const Mesh& mesh);
+absl::StatusOr<Surface> ParseVtp(std::string_view name, std::string_view bytes);
+absl::StatusOr<std::string> WriteVtp(const Mesh& mesh);
+
 struct Format {
   std::string_view ending;  // of the file's name, in small letters, with its dot
   absl::StatusOr<Surface> (*parse)(std::string_view name, std::string_view bytes);

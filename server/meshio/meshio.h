@@ -11,7 +11,7 @@
 namespace phrenic::meshio {
 
 // The axes that a file says its coordinates run along, as 3D Slicer writes them: "SPACE=LPS" or "SPACE=RAS" in the
-// header of an STL, in a comment of an OBJ or a PLY.
+// header of an STL, in a comment of an OBJ or a PLY, in the field "SPACE" of a VTK file.
 enum class Frame { kUnsaid, kLps, kRas };
 
 struct Surface {

@@ -1,72 +1,81 @@
 #include "server/record/depl.h"
 
-#include <cmath>
-#include <cstdint>
-
 #include "server/record/text_block.h"
+#include "server/record/vertex_spool.h"
 
 namespace phrenic::record {
 namespace {
 
-// Positions in nanometres: six decimals of a millimetre.
-using Rounded = Eigen::Matrix<std::int64_t, 3, Eigen::Dynamic>;
-
 constexpr double kNanometres = 1e9;
-constexpr double kPerMillimetre = 1e6;
+constexpr std::int64_t kPerMillimetre = 1'000'000;  // nanometres
+constexpr int kDecimals = 6;                        // of a millimetre: nanometres
+constexpr Eigen::Index kBetweenWords = 64;          // vertices
+
+// Whole nanometres as millimetres with six decimals.
+void AppendMillimetres(std::int64_t nanometres, char behind, TextBlock& text) {
+  if (nanometres < 0) text.Put('-');
+  const std::int64_t size = nanometres < 0 ? -nanometres : nanometres;
+  text.AppendInteger(size / kPerMillimetre, '.');
+  std::int64_t rest = size % kPerMillimetre;
+  char decimals[kDecimals];
+  for (int place = kDecimals - 1; place >= 0; --place, rest /= 10) decimals[place] = static_cast<char>('0' + rest % 10);
+  for (const char decimal : decimals) text.Put(decimal);
+  text.Put(behind);
+}
+
 class DeplRecorder final : public Recorder {
  public:
-  DeplRecorder(Sink sink, std::size_t max_bytes) : max_bytes_(max_bytes), text_(std::move(sink)) {}
+  explicit DeplRecorder(Settings settings) : folder_(std::move(settings.spool_folder)), text_(settings.sink) {}
 
-  absl::Status Begin(const std::vector<RecordedBody>& bodies) override {
-    for (const RecordedBody& body : bodies) {
+  absl::Status Begin(const Recording& recording) override {
+    for (const RecordedBody& body : recording.bodies) {
       triangles_ += body.mesh.triangles.cols();
       edges_ += body.mesh.edges.cols();
+      vertices_ += body.mesh.vertices.cols();
     }
+    auto spool = VertexSpool::Open(folder_, vertices_);
+    if (!spool.ok()) return spool.status();
+    spool_ = *std::move(spool);
     return absl::OkStatus();
   }
 
-  absl::Status AddFrame(double, const ConstPoints& positions) override {
-    const std::size_t bytes = sizeof(std::int64_t) * static_cast<std::size_t>(positions.size());
-    if ((frames_.size() + 1) * bytes > max_bytes_) {
-      return absl::ResourceExhaustedError(absl::StrFormat(
-          "a .depl recording holds all its frames in memory, %d MiB at most, and frame %d is beyond that: record fewer "
-          "frames a second, or a shorter time, or as .msh",
-          max_bytes_ >> 20, frames_.size() + 1));
-    }
-    frames_.push_back((kNanometres * positions).array().round().cast<std::int64_t>());
-    return absl::OkStatus();
+  absl::Status AddFrame(const RecordedFrame& frame) override {
+    rounded_ = (kNanometres * frame.positions).array().round().cast<std::int64_t>();
+    return spool_->Add(rounded_);
   }
 
-  absl::Status End() override {
-    const Eigen::Index vertices = frames_.empty() ? 0 : frames_.front().cols();
-    text_.Append("%s %d %d %d\n", triangles_ > 0 ? "TRIANGLES" : "EDGES", vertices,
-                 triangles_ > 0 ? triangles_ : edges_, frames_.size());
-    for (Eigen::Index i = 0; i < vertices; ++i) {
-      Eigen::Matrix<std::int64_t, 3, 1> before = Eigen::Matrix<std::int64_t, 3, 1>::Zero();
-      for (const Rounded& frame : frames_) {
-        const Eigen::Vector3d change = (frame.col(i) - before).cast<double>() / kPerMillimetre;
-        text_.Append("%.6f %.6f %.6f\n", change.x(), change.y(), change.z());
-        before = frame.col(i);
-      }
-    }
-    return text_.Flush();
+  absl::Status End(const std::function<absl::Status(double share)>& report) override {
+    text_.Append("%s %d %d %d\n", triangles_ > 0 ? "TRIANGLES" : "EDGES", vertices_,
+                 triangles_ > 0 ? triangles_ : edges_, spool_->frames());
+    Eigen::Index written = 0;
+    const absl::Status all = spool_->ForEachVertex([&](const VertexSpool::Rows& rows) {
+      WriteVertex(rows);
+      if (!text_.status().ok() || ++written % kBetweenWords != 0) return text_.status();
+      return report(static_cast<double>(written) / static_cast<double>(vertices_));
+    });
+    return all.ok() ? text_.Flush() : all;
   }
 
  private:
-  const std::size_t max_bytes_;
+  void WriteVertex(const VertexSpool::Rows& rows) {
+    Eigen::Matrix<std::int64_t, 3, 1> before = Eigen::Matrix<std::int64_t, 3, 1>::Zero();
+    for (const auto row : rows.colwise()) {
+      for (int axis = 0; axis < 3; ++axis) AppendMillimetres(row[axis] - before[axis], axis < 2 ? ' ' : '\n', text_);
+      before = row;
+    }
+  }
+
+  const std::string folder_;
   TextBlock text_;
-  std::vector<Rounded> frames_;
-  Eigen::Index triangles_ = 0, edges_ = 0;
+  std::unique_ptr<VertexSpool> spool_;
+  VertexSpool::Rows rounded_;
+  Eigen::Index triangles_ = 0, edges_ = 0, vertices_ = 0;
 };
 
 }  // namespace
 
-std::unique_ptr<Recorder> MakeDeplRecorder(Sink sink) {
-  return MakeBoundedDeplRecorder(std::move(sink), std::size_t{1} << 30);
-}
-
-std::unique_ptr<Recorder> MakeBoundedDeplRecorder(Sink sink, std::size_t max_bytes) {
-  return std::make_unique<DeplRecorder>(std::move(sink), max_bytes);
+std::unique_ptr<Recorder> MakeDeplRecorder(Settings settings) {
+  return std::make_unique<DeplRecorder>(std::move(settings));
 }
 
 }  // namespace phrenic::record

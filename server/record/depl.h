@@ -6,10 +6,8 @@
 
 namespace phrenic::record {
 
-// The format runs vertex by vertex, so all frames are held until the end; RESOURCE_EXHAUSTED past 1 GiB.
-std::unique_ptr<Recorder> MakeDeplRecorder(Sink sink);
-// The same past `max_bytes` of frames.
-std::unique_ptr<Recorder> MakeBoundedDeplRecorder(Sink sink, std::size_t max_bytes);
+// The format runs vertex by vertex: frames are spooled to disk and transposed there, in VertexSpool's memory.
+std::unique_ptr<Recorder> MakeDeplRecorder(Settings settings);
 
 }  // namespace phrenic::record
 

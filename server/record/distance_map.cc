@@ -3,11 +3,11 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "server/mesh/units.h"
+#include "server/mesh/vtp.h"
 #include "server/record/msh.h"
 #include "server/record/text_block.h"
 
 namespace phrenic::record {
-namespace {}  // namespace
 
 const std::vector<MapFormat>& MapFormats() {
   static const auto* const formats = new std::vector<MapFormat>{
@@ -28,8 +28,9 @@ absl::StatusOr<MapFormat> FindMapFormat(std::string_view name) {
 }
 
 absl::Status WriteMshMap(const DistanceMap& map, const Sink& sink) {
-  const auto mesh = MakeMshRecorder(sink);
-  if (absl::Status status = mesh->Begin({{"surface", map.surface}}); !status.ok()) return status;
+  const auto mesh = MakeMshRecorder({.sink = sink});
+  const Recording recording = {.bodies = {{"surface", map.surface}}};
+  if (absl::Status status = mesh->Begin(recording); !status.ok()) return status;
   TextBlock text(sink);
   for (std::size_t step = 0; step < map.times.size(); ++step) {
     const Eigen::VectorXd& distances = map.distances[step];
@@ -42,33 +43,11 @@ absl::Status WriteMshMap(const DistanceMap& map, const Sink& sink) {
 }
 
 absl::Status WriteVtpMap(const DistanceMap& map, const Sink& sink) {
-  const Points& x = map.surface.vertices;
-  const Triangles& triangles = map.surface.triangles;
   Eigen::VectorXd largest = map.distances.front();
   for (const Eigen::VectorXd& distances : map.distances) largest = largest.cwiseMax(distances);
-  TextBlock text(sink);
-  text.Append(
-      "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\" byte_order=\"LittleEndian\">\n<PolyData>\n"
-      "<Piece NumberOfPoints=\"%d\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" "
-      "NumberOfPolys=\"%d\">\n<PointData Scalars=\"distance [mm]\">\n"
-      "<DataArray type=\"Float64\" Name=\"distance [mm]\" format=\"ascii\">\n",
-      x.cols(), triangles.cols());
-  for (Eigen::Index i = 0; i < largest.size(); ++i) text.Append("%.6g\n", kMillimetresAMetre * largest[i]);
-  text.Append(
-      "</DataArray>\n</PointData>\n<Points>\n<DataArray type=\"Float64\" NumberOfComponents=\"3\" "
-      "format=\"ascii\">\n");
-  for (Eigen::Index i = 0; i < x.cols(); ++i) {
-    text.Append("%.9g %.9g %.9g\n", kMillimetresAMetre * x(0, i), kMillimetresAMetre * x(1, i),
-                kMillimetresAMetre * x(2, i));
-  }
-  text.Append("</DataArray>\n</Points>\n<Polys>\n<DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">\n");
-  for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
-    text.Append("%d %d %d\n", triangles(0, t), triangles(1, t), triangles(2, t));
-  }
-  text.Append("</DataArray>\n<DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">\n");
-  for (Eigen::Index t = 0; t < triangles.cols(); ++t) text.Append("%d\n", 3 * (t + 1));
-  text.Append("</DataArray>\n</Polys>\n</Piece>\n</PolyData>\n</VTKFile>\n");
-  return text.Flush();
+  PolyData data = {.points = kMillimetresAMetre * map.surface.vertices, .triangles = map.surface.triangles};
+  data.point_arrays.push_back({"distance [mm]", kMillimetresAMetre * largest.transpose()});
+  return sink(WriteVtp(data));
 }
 
 }  // namespace phrenic::record

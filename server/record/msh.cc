@@ -6,6 +6,7 @@
 namespace phrenic::record {
 namespace {
 
+constexpr int kDigits = 6, kPositionDigits = 9;
 constexpr int kGmshLine = 1, kGmshTriangle = 2;
 constexpr int kCurve = 1, kSurface = 2;  // dimensions of physical groups
 
@@ -21,9 +22,11 @@ std::string Quotable(std::string name) {
 
 class MshRecorder final : public Recorder {
  public:
-  explicit MshRecorder(Sink sink) : text_(std::move(sink)) {}
+  explicit MshRecorder(Settings settings)
+      : displacements_(settings.values == Values::kDisplacements), text_(std::move(settings.sink)) {}
 
-  absl::Status Begin(const std::vector<RecordedBody>& bodies) override {
+  absl::Status Begin(const Recording& recording) override {
+    const std::vector<RecordedBody>& bodies = recording.bodies;
     text_.Append("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n%d\n", bodies.size());
     for (size_t b = 0; b < bodies.size(); ++b) {
       text_.Append("%d %d \"%s\"\n", bodies[b].mesh.triangles.cols() > 0 ? kSurface : kCurve, b + 1,
@@ -35,20 +38,23 @@ class MshRecorder final : public Recorder {
     return text_.Flush();
   }
 
-  absl::Status AddFrame(double time, const ConstPoints& positions) override {
-    if (frames_ == 0) first_ = positions;
-    if (positions.cols() != first_.cols()) return absl::InternalError("a frame has another number of vertices");
-    text_.Append("$NodeData\n1\n\"displacement\"\n1\n%.9g\n3\n%d\n3\n%d\n", time, frames_, positions.cols());
-    for (Eigen::Index i = 0; i < positions.cols(); ++i) {
-      const Eigen::Vector3d u = kMillimetresAMetre * (positions.col(i) - first_.col(i));
-      text_.Append("%d %.6g %.6g %.6g\n", i + 1, u.x(), u.y(), u.z());
+  absl::Status AddFrame(const RecordedFrame& frame) override {
+    if (frames_ == 0) first_ = displacements_ ? frame.positions : Points::Zero(3, frame.positions.cols());
+    if (frame.positions.cols() != first_.cols()) return absl::InternalError("a frame has another number of vertices");
+    text_.Append("$NodeData\n1\n\"%s\"\n1\n%.9g\n3\n%d\n3\n%d\n", displacements_ ? "displacement" : "position",
+                 frame.time, frames_, first_.cols());
+    const int digits = displacements_ ? kDigits : kPositionDigits;
+    for (Eigen::Index i = 0; i < first_.cols(); ++i) {
+      const Eigen::Vector3d u = kMillimetresAMetre * (frame.positions.col(i) - first_.col(i));
+      text_.AppendInteger(i + 1, ' ');
+      for (int axis = 0; axis < 3; ++axis) text_.AppendNumber(u[axis], digits, axis < 2 ? ' ' : '\n');
     }
     text_.Append("$EndNodeData\n");
     ++frames_;
     return text_.Flush();
   }
 
-  absl::Status End() override { return text_.Flush(); }
+  absl::Status End(const std::function<absl::Status(double share)>& /*report*/) override { return text_.Flush(); }
 
  private:
   void WriteNodes(const std::vector<RecordedBody>& bodies) {
@@ -86,13 +92,16 @@ class MshRecorder final : public Recorder {
     text_.Append("$EndElements\n");
   }
 
+  const bool displacements_;
   TextBlock text_;
-  Points first_;
+  Points first_;  // zero where positions are written
   int frames_ = 0;
 };
 
 }  // namespace
 
-std::unique_ptr<Recorder> MakeMshRecorder(Sink sink) { return std::make_unique<MshRecorder>(std::move(sink)); }
+std::unique_ptr<Recorder> MakeMshRecorder(Settings settings) {
+  return std::make_unique<MshRecorder>(std::move(settings));
+}
 
 }  // namespace phrenic::record

@@ -7,7 +7,7 @@
 namespace phrenic::record {
 
 // Holds one frame, the first; every other one goes to the sink as it comes.
-std::unique_ptr<Recorder> MakeMshRecorder(Sink sink);
+std::unique_ptr<Recorder> MakeMshRecorder(Settings settings);
 
 }  // namespace phrenic::record
 

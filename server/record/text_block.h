@@ -2,6 +2,7 @@
 #ifndef PHRENIC_SERVER_RECORD_TEXT_BLOCK_H_
 #define PHRENIC_SERVER_RECORD_TEXT_BLOCK_H_
 
+#include <charconv>
 #include <string>
 #include <string_view>
 
@@ -22,12 +23,32 @@ class TextBlock {
     if (text_.size() >= kBlock) (void)Flush();
   }
 
+  // A number as "%.*g" writes it, and a character behind it; several times as fast.
+  void AppendNumber(double number, int digits, char behind) {
+    char text[48];
+    const auto end = std::to_chars(text, text + sizeof text, number, std::chars_format::general, digits).ptr;
+    text_.append(text, end);
+    Put(behind);
+  }
+
+  void AppendInteger(std::int64_t integer, char behind) {
+    char text[24];
+    text_.append(text, std::to_chars(text, text + sizeof text, integer).ptr);
+    Put(behind);
+  }
+
+  void Put(char character) {
+    text_ += character;
+    if (text_.size() >= kBlock) (void)Flush();
+  }
+
   // Hands on what there is; the first error of all.
   absl::Status Flush() {
     if (status_.ok() && !text_.empty()) status_ = sink_(text_);
     text_.clear();
     return status_;
   }
+  const absl::Status& status() const { return status_; }
 
  private:
   static constexpr size_t kBlock = 64 * 1024;

@@ -1,71 +1,123 @@
 #include "server/service/export_service.h"
 
+#include <algorithm>
 #include <string>
-#include <string_view>
 
 #include "absl/cleanup/cleanup.h"
 #include "absl/strings/str_cat.h"
-#include "server/record/recorder.h"
 #include "server/schema/schema.h"
 #include "server/service/status.h"
-#include "server/session/exporter.h"
+#include "server/session/surface_recorder.h"
 
 namespace phrenic::service {
 namespace {
 
-using ExportWriter = grpc::ServerWriter<v1::ExportMotionResponse>;
+constexpr int kMostExportStreams = 32;  // each has a thread of its own
+constexpr absl::Duration kExportLook =
+    absl::Milliseconds(200);                // between two looks at whether the watcher is still there
+constexpr std::int64_t kChunk = 128 << 10;  // [bytes]
 
-absl::Status Send(ExportWriter& writer, const v1::ExportMotionResponse& response) {
-  if (writer.Write(response)) return absl::OkStatus();
-  return absl::CancelledError("the receiver of the export went away");
+absl::Status TooMany() {
+  return absl::ResourceExhaustedError(
+      absl::StrCat(kMostExportStreams, " exports are watched or downloaded, and no more are allowed: try later"));
 }
 
-session::ExportSink MakeSink(grpc::ServerContext& context, ExportWriter& writer) {
-  return {.chunk =
-              [&writer](std::string_view bytes) {
-                v1::ExportMotionResponse response;
-                response.set_chunk(std::string(bytes));
-                return Send(writer, response);
-              },
-          .progress =
-              [&context, &writer](double seconds) {
-                if (context.IsCancelled()) return absl::CancelledError("the export was cancelled");
-                v1::ExportMotionResponse response;
-                response.set_recorded_seconds(seconds);
-                return Send(writer, response);
-              }};
+v1::ExportValues ToProto(record::Values values) {
+  return values == record::Values::kPositions ? v1::EXPORT_VALUES_POSITIONS : v1::EXPORT_VALUES_DISPLACEMENTS;
 }
 
 }  // namespace
 
-grpc::Status ExportService::ListFormats(grpc::ServerContext* /*context*/, const v1::ListFormatsRequest* /*request*/,
+grpc::Status ExportService::ListFormats(grpc::ServerContext*, const v1::ListFormatsRequest*,
                                         v1::ListFormatsResponse* response) {
-  for (const record::Format& format : record::Formats()) {
+  for (const record::Format& format : session::ExportFormats()) {
     v1::FileFormat& listed = *response->add_formats();
-    listed.set_name(std::string(format.name));
-    listed.set_description(std::string(format.description));
+    listed.set_name(format.name);
+    listed.set_description(format.description);
+    listed.set_ending(format.ending);
+    listed.set_instant(format.instant);
+    for (const record::Values values : format.values) listed.add_values(ToProto(values));
+    listed.set_frames_a_breath(format.frames_a_breath);
+    listed.set_numbers_only(format.numbers_only);
   }
   return grpc::Status::OK;
 }
 
-grpc::Status ExportService::ExportMotion(grpc::ServerContext* context, const v1::ExportMotionRequest* request,
-                                         ExportWriter* writer) {
+grpc::Status ExportService::CreateExport(grpc::ServerContext*, const v1::CreateExportRequest* request,
+                                         v1::CreateExportResponse* response) {
   if (absl::Status status = schema::Validate(*request); !status.ok()) return ToGrpc(status);
   const auto session = table_.Find(request->session_id());
   if (!session.ok()) return ToGrpc(session.status());
-  const absl::Cleanup leave = [this] { --exports_; };
-  if (++exports_ > max_exports_) {
-    return ToGrpc(absl::ResourceExhaustedError(
-        absl::StrCat(max_exports_, " exports are under way, and no more are allowed; try again when one is done")));
-  }
   auto fork = (*session)->MakeFork();
   if (!fork.ok()) return ToGrpc(fork.status());
-  auto summary =
-      session::ExportMotion(*request, (*session)->shared_model(), *std::move(fork), MakeSink(*context, *writer));
-  if (!summary.ok()) return ToGrpc(summary.status());
-  v1::ExportMotionResponse last;
-  *last.mutable_summary() = *std::move(summary);
-  return ToGrpc(Send(*writer, last));
+  auto job = exports_.Add(*request, (*session)->shared_model(), *std::move(fork));
+  if (!job.ok()) return ToGrpc(job.status());
+  *response->mutable_job() = *std::move(job);
+  return grpc::Status::OK;
+}
+
+absl::Status ExportService::Watch(const std::string& id, grpc::ServerContext& context,
+                                  grpc::ServerWriter<v1::WatchExportResponse>& writer) const {
+  std::int64_t version = 0;
+  while (!context.IsCancelled()) {
+    auto seen = exports_.Wait(id, version, kExportLook);
+    if (!seen.ok()) return seen.status();
+    if (seen->version == version) continue;
+    version = seen->version;
+    v1::WatchExportResponse response;
+    *response.mutable_job() = std::move(seen->job);
+    if (!writer.Write(response) || seen->ended) return absl::OkStatus();
+  }
+  return absl::OkStatus();
+}
+
+grpc::Status ExportService::WatchExport(grpc::ServerContext* context, const v1::WatchExportRequest* request,
+                                        grpc::ServerWriter<v1::WatchExportResponse>* writer) {
+  if (absl::Status status = schema::Validate(*request); !status.ok()) return ToGrpc(status);
+  const absl::Cleanup leave = [this] { --streams_; };
+  if (++streams_ > kMostExportStreams) return ToGrpc(TooMany());
+  return ToGrpc(Watch(request->export_id(), *context, *writer));
+}
+
+grpc::Status ExportService::ListExports(grpc::ServerContext*, const v1::ListExportsRequest*,
+                                        v1::ListExportsResponse* response) {
+  for (v1::Export& job : exports_.List()) *response->add_exports() = std::move(job);
+  return grpc::Status::OK;
+}
+
+grpc::Status ExportService::DeleteExport(grpc::ServerContext*, const v1::DeleteExportRequest* request,
+                                         v1::DeleteExportResponse*) {
+  if (absl::Status status = schema::Validate(*request); !status.ok()) return ToGrpc(status);
+  return ToGrpc(exports_.Delete(request->export_id()));
+}
+
+absl::Status ExportService::Download(const v1::DownloadExportRequest& request,
+                                     grpc::ServerWriter<v1::DownloadExportResponse>& writer) const {
+  const auto file = exports_.File(request.export_id());
+  if (!file.ok()) return file.status();
+  const std::int64_t size = (*file)->size();
+  if (request.offset() < 0 || request.offset() > size) {
+    return absl::OutOfRangeError(
+        absl::StrCat("offset: ", request.offset(), " is not within the file's ", size, " bytes"));
+  }
+  v1::DownloadExportResponse response;
+  for (std::int64_t at = request.offset(); at < size;) {
+    const std::int64_t count = std::min(kChunk, size - at);
+    response.mutable_chunk()->resize(static_cast<std::size_t>(count));
+    absl::Status status = (*file)->Read(at, response.mutable_chunk()->data(), static_cast<std::size_t>(count));
+    if (!status.ok()) return status;
+    if (!writer.Write(response)) return absl::CancelledError("the receiver of the export went away");
+    at += count;
+  }
+  return absl::OkStatus();
+}
+
+grpc::Status ExportService::DownloadExport(grpc::ServerContext*, const v1::DownloadExportRequest* request,
+                                           grpc::ServerWriter<v1::DownloadExportResponse>* writer) {
+  if (absl::Status status = schema::Validate(*request); !status.ok()) return ToGrpc(status);
+  const absl::Cleanup leave = [this] { --streams_; };
+  if (++streams_ > kMostExportStreams) return ToGrpc(TooMany());
+  return ToGrpc(Download(*request, *writer));
 }
 
 }  // namespace phrenic::service

@@ -5,25 +5,38 @@
 #include <atomic>
 
 #include "phrenic/v1/export.grpc.pb.h"
+#include "server/session/exports.h"
 #include "server/session/table.h"
 
 namespace phrenic::service {
 
-// gRPC's threads call, any number at a time; each export has one of them until it is done. A receiver that reads
-// slowly holds its export up, and one that goes away ends it.
+// gRPC's threads call, any number at a time; watchers and downloads have one each until they are done, 32 at most.
 class ExportService final : public v1::ExportService::Service {
  public:
-  ExportService(session::Table& table, int max_exports) : table_(table), max_exports_(max_exports) {}
+  ExportService(session::Table& table, session::Exports& exports) : table_(table), exports_(exports) {}
 
   grpc::Status ListFormats(grpc::ServerContext* context, const v1::ListFormatsRequest* request,
                            v1::ListFormatsResponse* response) override;
-  grpc::Status ExportMotion(grpc::ServerContext* context, const v1::ExportMotionRequest* request,
-                            grpc::ServerWriter<v1::ExportMotionResponse>* writer) override;
+  grpc::Status CreateExport(grpc::ServerContext* context, const v1::CreateExportRequest* request,
+                            v1::CreateExportResponse* response) override;
+  grpc::Status WatchExport(grpc::ServerContext* context, const v1::WatchExportRequest* request,
+                           grpc::ServerWriter<v1::WatchExportResponse>* writer) override;
+  grpc::Status ListExports(grpc::ServerContext* context, const v1::ListExportsRequest* request,
+                           v1::ListExportsResponse* response) override;
+  grpc::Status DeleteExport(grpc::ServerContext* context, const v1::DeleteExportRequest* request,
+                            v1::DeleteExportResponse* response) override;
+  grpc::Status DownloadExport(grpc::ServerContext* context, const v1::DownloadExportRequest* request,
+                              grpc::ServerWriter<v1::DownloadExportResponse>* writer) override;
 
  private:
+  absl::Status Watch(const std::string& id, grpc::ServerContext& context,
+                     grpc::ServerWriter<v1::WatchExportResponse>& writer) const;
+  absl::Status Download(const v1::DownloadExportRequest& request,
+                        grpc::ServerWriter<v1::DownloadExportResponse>& writer) const;
+
   session::Table& table_;
-  const int max_exports_;
-  std::atomic<int> exports_ = 0;
+  session::Exports& exports_;
+  std::atomic<int> streams_ = 0;
 };
 
 }  // namespace phrenic::service

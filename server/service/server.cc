@@ -16,7 +16,9 @@
 #include "server/service/scene_service.h"
 #include "server/service/session_service.h"
 #include "server/service/study_service.h"
+#include "server/service/upload_service.h"
 #include "server/service/web_gateway.h"
+#include "server/session/exports.h"
 #include "server/session/table.h"
 
 namespace phrenic::service {
@@ -58,12 +60,15 @@ void Configure(const ServerOptions& options, grpc::ServerBuilder& builder) {
 // In the order in which they depend on each other.
 struct Server::Parts {
   explicit Parts(const ServerOptions& options)
-      : models(session::SceneCatalogue(SceneFolders(options)), options.data_dir, options.limits.models),
+      : uploads(options.limits, options.spool_dir),
+        models(session::SceneCatalogue(SceneFolders(options)), options.data_dir, options.limits.models, &uploads),
         table(models, clock, options.limits),
         scene_service(models),
         session_service(table),
         frame_service(table),
-        export_service(table, options.limits.exports),
+        exports(options.limits, options.spool_dir, clock),
+        export_service(table, exports),
+        upload_service(uploads, options.limits),
         study_service(models, options.web_root),
         compare_service(table, options.limits.exports) {}
 
@@ -71,12 +76,15 @@ struct Server::Parts {
   absl::Status ServeWeb(const ServerOptions& options);
 
   stream::SystemClock clock;
+  session::Uploads uploads;
   session::Models models;
   session::Table table;
   SceneService scene_service;
   SessionService session_service;
   FrameService frame_service;
+  session::Exports exports;
   ExportService export_service;
+  UploadService upload_service;
   StudyService study_service;
   CompareService compare_service;
   std::unique_ptr<grpc::Server> grpc;
@@ -97,6 +105,7 @@ absl::Status Server::Parts::Serve(const ServerOptions& options) {
   builder.RegisterService(&session_service);
   builder.RegisterService(&frame_service);
   builder.RegisterService(&export_service);
+  builder.RegisterService(&upload_service);
   builder.RegisterService(&study_service);
   builder.RegisterService(&compare_service);
   grpc = builder.BuildAndStart();
@@ -126,6 +135,7 @@ Server::Server(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& options) {
   if (absl::Status status = CheckFolder(options.data_dir, "--data"); !status.ok()) return status;
   if (absl::Status status = CheckFolder(options.scenes_dir, "--scenes"); !status.ok()) return status;
+  if (absl::Status status = CheckFolder(options.spool_dir, "--spool"); !status.ok()) return status;
   std::unique_ptr<Server> server(new Server(std::make_unique<Parts>(options)));
   if (absl::Status status = server->parts_->Serve(options); !status.ok()) return status;
   if (absl::Status status = server->parts_->ServeWeb(options); !status.ok()) return status;

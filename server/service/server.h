@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "server/record/spool_file.h"
 #include "server/session/limits.h"
 
 namespace phrenic::service {
@@ -19,13 +20,14 @@ struct ServerOptions {
   std::string data_dir;  // surface files of scenes, and DATA/scenes; empty: none
   std::string scenes_dir = PHRENIC_SCENES_DIR;
   std::string web_root = PHRENIC_WEB_DIR;
+  std::string spool_dir = record::DefaultSpoolFolder();  // of exports and uploads; nothing in it has a name
   std::vector<std::string> allowed_origins;  // "https://host:port" beside the gateway's own and loopback ones
   session::Limits limits;
   int max_message_bytes = 16 << 20;  // of a request
   int max_web_connections = 256;
 };
 
-// Any thread may call. Its own threads: gRPC's, the gateway's, and two a session.
+// Any thread may call. Its own threads: gRPC's, the gateway's, two a session, and one an export at once.
 class Server {
  public:
   // UNAVAILABLE names the address that could not be listened on; NOT_FOUND the folder that is missing.

@@ -4,28 +4,24 @@
 
 #include <functional>
 #include <memory>
-#include <string_view>
 
 #include "absl/status/statusor.h"
 #include "phrenic/v1/export.pb.h"
+#include "server/session/export_file.h"
+#include "server/session/export_plan.h"
 #include "server/session/session.h"
 
 namespace phrenic::session {
 
-// Where an export goes. An error of either call stops it and becomes its own.
-struct ExportSink {
-  // The next bytes of the file; may block for as long as the receiver takes.
-  std::function<absl::Status(std::string_view bytes)> chunk;
-  // Simulated time recorded so far [s].
-  std::function<absl::Status(double seconds)> progress;
-};
+// Hears of an export about five times a second: the share that is done, 0 to 1, and the simulated time that is recorded
+// [s]. An error ends the export and becomes its own.
+using ExportProgress = std::function<absl::Status(double share, double recorded_seconds)>;
 
-// Steps `fork` on for request.seconds and records its first state and one state every 1/frames_per_second, each at the
-// first step that reaches its time. The request is in range. INVALID_ARGUMENT names the field where there is no such
-// format or body, OUT_OF_RANGE tells where the motion diverged. Runs on the caller's thread.
-absl::StatusOr<v1::ExportSummary> ExportMotion(const v1::ExportMotionRequest& request,
-                                               const std::shared_ptr<const Model>& model, Session::Fork fork,
-                                               const ExportSink& sink);
+// Steps `fork` on to plan.start, then for plan.seconds, and records the first state there and one state every
+// 1/frames_per_second, each at the first step that reaches its time, or one every steps_per_frame steps. OUT_OF_RANGE
+// tells where the motion diverged; RESOURCE_EXHAUSTED that the disk is full. Runs on the caller's thread.
+absl::StatusOr<v1::ExportSummary> ExportMotion(const ExportPlan& plan, const std::shared_ptr<const Model>& model,
+                                               Session::Fork fork, ExportFile& file, const ExportProgress& progress);
 
 }  // namespace phrenic::session
 

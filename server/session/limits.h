@@ -2,13 +2,20 @@
 #ifndef PHRENIC_SERVER_SESSION_LIMITS_H_
 #define PHRENIC_SERVER_SESSION_LIMITS_H_
 
+#include <cstdint>
+
 namespace phrenic::session {
 
 struct Limits {
   int sessions = 16;
-  int viewers = 64;  // of one session
-  int exports = 2;   // at once
-  int models = 4;    // compiled scenes kept for the next session
+  int viewers = 64;                                     // of one session
+  int exports = 2;                                      // at once; comparisons as well
+  int models = 4;                                       // compiled scenes kept for the next session
+  int kept_exports = 16;                                // waiting, running and ended
+  int export_minutes = 60;                              // that a file is kept for download
+  std::int64_t upload_bytes = std::int64_t{256} << 20;  // of one file
+  std::int64_t uploads_bytes = std::int64_t{1} << 30;   // of all of them
+  int uploads = 256;                                    // kept
 };
 
 }  // namespace phrenic::session

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "server/anatomy/anatomy.h"
 #include "server/meshio/meshio.h"
@@ -32,9 +33,12 @@ absl::StatusOr<std::string> ResolveBelow(const std::string& data_dir, const std:
   return resolved.string();
 }
 
-MeshSource MakeMeshSource(std::string data_dir) {
-  return [data_dir = std::move(data_dir)](const v1::Body& body) -> absl::StatusOr<Mesh> {
+MeshSource MakeMeshSource(std::string data_dir, Uploads* uploads) {
+  return [data_dir = std::move(data_dir), uploads](const v1::Body& body) -> absl::StatusOr<Mesh> {
     if (body.has_generated()) return anatomy::Generate(body.anatomy(), body.generated().resolution_mm());
+    if (uploads != nullptr && absl::StartsWith(body.file().path(), std::string(Uploads::kPrefix))) {
+      return uploads->Read(body.file().path(), body.file().unit());
+    }
     const absl::StatusOr<std::string> path = ResolveBelow(data_dir, body.file().path());
     if (!path.ok()) return path.status();
     return meshio::ReadFile(*path, body.file().unit());

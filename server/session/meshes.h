@@ -1,4 +1,4 @@
-// Where the compile step gets its meshes: the generated thorax, and surface files below the data folder.
+// Where the compile step gets its meshes: the generated thorax, surface files below the data folder, and uploads.
 #ifndef PHRENIC_SERVER_SESSION_MESHES_H_
 #define PHRENIC_SERVER_SESSION_MESHES_H_
 
@@ -6,6 +6,7 @@
 
 #include "absl/status/statusor.h"
 #include "server/mechanics/compile.h"
+#include "server/session/uploads.h"
 
 namespace phrenic::session {
 
@@ -13,8 +14,8 @@ namespace phrenic::session {
 // the folder (by ".." or a symbolic link), NOT_FOUND where there is no such file or no data folder.
 absl::StatusOr<std::string> ResolveBelow(const std::string& data_dir, const std::string& path);
 
-// Any thread may call it.
-MeshSource MakeMeshSource(std::string data_dir);
+// Any thread may call it. "upload:SHA256" is one of `uploads`, which outlives the source; null: there are none.
+MeshSource MakeMeshSource(std::string data_dir, Uploads* uploads = nullptr);
 
 }  // namespace phrenic::session
 

@@ -41,10 +41,10 @@ absl::Status CheckSize(const v1::Scene& scene) {
 
 }  // namespace
 
-Models::Models(SceneCatalogue catalogue, std::string data_dir, int capacity)
+Models::Models(SceneCatalogue catalogue, std::string data_dir, int capacity, Uploads* uploads)
     : catalogue_(std::move(catalogue)),
       data_dir_(data_dir),
-      meshes_(MakeMeshSource(std::move(data_dir))),
+      meshes_(MakeMeshSource(std::move(data_dir), uploads)),
       capacity_(std::max(1, capacity)) {}
 
 absl::StatusOr<v1::Scene> Models::Resolve(const v1::SceneSource& source) const {

@@ -12,14 +12,15 @@
 #include "phrenic/v1/session.pb.h"
 #include "server/mechanics/compile.h"
 #include "server/session/scene_catalogue.h"
+#include "server/session/uploads.h"
 
 namespace phrenic::session {
 
 // Any thread may call; scenes are compiled one at a time, so that memory and cores are for one.
 class Models {
  public:
-  // Keeps the `capacity` models that were asked for last.
-  Models(SceneCatalogue catalogue, std::string data_dir, int capacity);
+  // Keeps the `capacity` models that were asked for last. `uploads` outlives it; null: scenes name none.
+  Models(SceneCatalogue catalogue, std::string data_dir, int capacity, Uploads* uploads = nullptr);
 
   const SceneCatalogue& catalogue() const { return catalogue_; }
   // The scene that `source` names or holds, with its resolution; INVALID_ARGUMENT "source: ..." where it is empty.

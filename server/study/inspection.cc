@@ -55,7 +55,9 @@ v1::SurfacePart PartOf(const Mesh& mesh) {
   part.set_misoriented_edges(topology.misoriented_edges);
   part.set_closed(topology.boundary_edges == 0 && topology.non_manifold_edges == 0);
   part.set_euler_characteristic(topology.euler_characteristic());
-  if (part.closed() && part.euler_characteristic() % 2 == 0) part.set_genus(topology.genus());
+  part.set_pinched_vertices(static_cast<int>(PinchedVertices(mesh.triangles).size()));
+  const bool whole = part.closed() && part.pinched_vertices() == 0;
+  if (whole && part.euler_characteristic() % 2 == 0) part.set_genus(topology.genus());
   if (topology.watertight()) part.set_volume_ml(kMillilitres * SignedVolume(mesh.vertices, mesh.triangles));
   return part;
 }
@@ -90,6 +92,7 @@ void Count(const Mesh& mesh, v1::SurfaceReport& report) {
   std::vector<int> number(static_cast<std::size_t>(mesh.vertices.cols()), -1);
   for (const auto& triangles : ComponentsBySize(mesh))
     *report.add_components() = PartOf(Extract(mesh, triangles, number));
+  report.set_pinched_vertices(static_cast<int>(PinchedVertices(mesh.triangles).size()));
 }
 
 void Measure(const Mesh& mesh, double unit_mm, v1::SurfaceReport& report) {
@@ -126,6 +129,8 @@ void JudgeRepairs(v1::SurfaceReport& report) {
         "%d edges have three triangles or more: take them apart, the surface has no inside there");
   AddIf(report.misoriented_edges(), repairs,
         "%d edges lie between triangles that face opposite ways: turn one side, areas and volumes count wrongly");
+  AddIf(report.pinched_vertices(), repairs,
+        "%d vertices are where surfaces touch in a point: give each its own vertex, genus and normals are wrong there");
   AddIf(report.boundary_edges(), repairs, "%d edges are open: close them if this is to be an organ, not a sheet");
   AddIf(inwards, repairs, "%d closed components face inwards: turn them, unless they are hollows in others");
   if (report.unit_mm() == 1 && (report.likely_unit() == "cm" || report.likely_unit() == "m")) {

@@ -216,16 +216,41 @@ TEST(Help, IsMadeFromTheSchema) {
   }
 }
 
-TEST(Run, InterruptedLeavesNoPartialFile) {
-  const std::string file = Scratch("interrupted.msh");
-  const pid_t pid = Start("phrenic", {"run", "cube-springs", "--seconds", "3600", "--fps", "1000", "--export", file},
-                          Scratch("out"), Scratch("err"));
-  for (int tries = 0; tries < 600 && !std::filesystem::exists(file + ".part"); ++tries) usleep(20'000);
-  ASSERT_TRUE(std::filesystem::exists(file + ".part"));
+// Whether the process has a file open that has no name any more: its spool.
+bool Spools(pid_t pid) {
+  std::error_code error;
+  const std::string folder = "/proc/" + std::to_string(pid) + "/fd";
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    const std::string target = std::filesystem::read_symlink(entry.path(), error).string();
+    if (target.find("(deleted)") != std::string::npos) return true;
+  }
+  return false;
+}
+
+TEST(Run, InterruptedLeavesNothingBehind) {
+  const std::string file = Scratch("interrupted.msh"), spool = Scratch("spool");
+  std::filesystem::create_directory(spool);
+  const std::vector<std::string> words = {"run",  "cube-springs", "--seconds", "3600",    "--fps",
+                                          "1000", "--export",     file,        "--spool", spool};
+  const pid_t pid = Start("phrenic", words, Scratch("out"), Scratch("err"));
+  for (int tries = 0; tries < 600 && !Spools(pid); ++tries) usleep(20'000);
+  ASSERT_TRUE(Spools(pid));
   kill(pid, SIGINT);
   EXPECT_EQ(WaitFor(pid), 130);
   EXPECT_FALSE(std::filesystem::exists(file));
   EXPECT_FALSE(std::filesystem::exists(file + ".part"));
+  EXPECT_TRUE(std::filesystem::is_empty(spool));
+}
+
+TEST(Run, ASurfaceIsThatOfTheEndAndNumbersAreRows) {
+  const std::string end = Scratch("end.ply"), csv = Scratch("numbers.csv");
+  ASSERT_EQ(Phrenic({"run", "cube-tensegrity", "--seconds", "1", "--export", end}).code, 0);
+  const Outcome inspected = Phrenic({"inspect", end});
+  EXPECT_THAT(inspected.out, HasSubstr("vertices                      8\n"));
+  const std::string own = WriteScratch("own.textproto", Scene());
+  ASSERT_EQ(Phrenic({"run", own, "--seconds", "0.1", "--every", "5", "--export", csv}).code, 0);
+  EXPECT_THAT(ReadAll(csv),
+              testing::StartsWith("time [s],corner x [mm],corner y [mm],corner z [mm]\n0,0,1000,0\n0.05,"));
 }
 
 }  // namespace

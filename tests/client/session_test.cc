@@ -140,6 +140,46 @@ TEST_F(Sessions, ExportLeavesTheSessionAsItIs) {
   EXPECT_EQ(Json({"step", "kept", "1"})["session"]["tick"], "1");
 }
 
+TEST_F(Sessions, AnExportGoesOnWithoutItsCallerAndADownloadWhereItWas) {
+  ASSERT_EQ(Ask({"create", "cube-tensegrity", "--id", "away"}).code, 0);
+  const std::string plain = Scratch("plain.msh"), fetched = Scratch("away.msh");
+  ASSERT_EQ(Ask({"export", "away", plain, "--seconds", "1"}).code, 0);
+  EXPECT_EQ(Json({"exports", "list"})["exports"].size(), 0U) << "one that was fetched is forgotten";
+  const Outcome detached = Ask({"export", "away", fetched, "--seconds", "1", "--detach"});
+  EXPECT_EQ(detached.out, "away\n");
+  const std::string whole = ReadAll(plain);
+  std::ofstream(fetched + ".part", std::ios::binary) << whole.substr(0, whole.size() / 2);
+  ASSERT_EQ(Ask({"exports", "get", "away", fetched}).code, 0);
+  EXPECT_EQ(ReadAll(fetched), whole);
+  EXPECT_FALSE(std::filesystem::exists(fetched + ".part"));
+  EXPECT_EQ(Json({"exports", "list"})["exports"][0]["state"], "EXPORT_STATE_DONE");
+  EXPECT_EQ(Ask({"exports", "delete", "away"}).code, 0);
+  EXPECT_THAT(Ask({"exports", "get", "away"}).err, HasSubstr("there are none"));
+}
+
+TEST_F(Sessions, APvdComesWithItsFolder) {
+  ASSERT_EQ(Ask({"create", "cube-tensegrity", "--id", "pvd"}).code, 0);
+  const std::string file = Scratch("motion.pvd"), stem = Scratch("motion");
+  ASSERT_EQ(Ask({"export", "pvd", file, "--seconds", "0.2"}).code, 0);
+  EXPECT_THAT(ReadAll(file), HasSubstr("_motion_000002.vtp"));
+  EXPECT_TRUE(std::filesystem::exists(stem + "/" + std::filesystem::path(stem).filename().string() + "_000002.vtp"));
+  EXPECT_FALSE(std::filesystem::exists(file + ".zip"));
+}
+
+TEST_F(Sessions, AnUploadedSurfaceServesScenes) {
+  const std::string file = WriteScratch("lung.obj", "v 0 0 0\nv 30 0 0\nv 0 30 0\nf 1 2 3\n");
+  const Outcome uploaded = Ask({"upload", file});
+  ASSERT_EQ(uploaded.code, 0) << uploaded.err;
+  EXPECT_THAT(uploaded.out, testing::MatchesRegex("upload:[0-9a-f]{64}\n"));
+  EXPECT_EQ(Ask({"upload", file}).out, uploaded.out) << "it is there already";
+  const std::string scene =
+      WriteScratch("own.textproto", "name: 'own' bodies { name: 'a' role: ROLE_DEFORMABLE file { path: '" +
+                                        uploaded.out.substr(0, uploaded.out.size() - 1) + "' } }");
+  const Outcome created = Ask({"create", scene, "--id", "own"});
+  EXPECT_EQ(created.code, 0) << created.err;
+  EXPECT_THAT(Ask({"upload", WriteScratch("bad.obj", "v 0 0\n")}).err, HasSubstr("bad.obj:1: "));
+}
+
 TEST_F(Sessions, ErrorsNameTheRemedyOnStandardError) {
   ASSERT_EQ(Ask({"create", "cube-springs", "--id", "taken"}).code, 0);
   const struct {

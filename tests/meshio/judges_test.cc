@@ -51,19 +51,20 @@ TEST(Judges, VtkOpensWhatIsWritten) {
   const std::string script = testing::TempDir() + "phrenic_judge.py";
   std::ofstream(script) << "import sys, vtk\n"
                            "for name, reader in (('.obj', vtk.vtkOBJReader()), ('.stl', vtk.vtkSTLReader()),\n"
-                           "                     ('.ply', vtk.vtkPLYReader())):\n"
+                           "                     ('.ply', vtk.vtkPLYReader()), ('.vtk', vtk.vtkPolyDataReader()),\n"
+                           "                     ('.vtp', vtk.vtkXMLPolyDataReader())):\n"
                            "    reader.SetFileName(sys.argv[1] + name)\n"
                            "    reader.Update()\n"
                            "    surface = reader.GetOutput()\n"
                            "    print(name, surface.GetNumberOfPoints(), surface.GetNumberOfCells(),\n"
                            "          ['%.3f' % x for x in surface.GetBounds()])\n";
   std::string stem;
-  for (const std::string ending : {".obj", ".stl", ".ply"}) {
+  for (const std::string ending : {".obj", ".stl", ".ply", ".vtk", ".vtp"}) {
     const std::string path = WriteEllipsoid(ending);
     stem = path.substr(0, path.size() - ending.size());
   }
   std::string expected;
-  for (const std::string ending : {".obj", ".stl", ".ply"}) {
+  for (const std::string ending : {".obj", ".stl", ".ply", ".vtk", ".vtp"}) {
     expected += ending + " 102 200 ['-10.000', '10.000', '-20.000', '20.000', '70.000', '130.000']\n";
   }
   EXPECT_EQ(OutputOf(python + " " + script + " " + stem), expected);

@@ -46,6 +46,21 @@ constexpr Sample kSamples[] = {
     {"meshio_ply/many_properties_text.ply", Frame::kLps},
     {"meshio_ply/many_properties_little.ply", Frame::kLps},
     {"meshio_ply/many_properties_big.ply", Frame::kLps},
+    {"meshio_vtk/vtk_text_42.vtk"},
+    {"meshio_vtk/vtk_binary_42.vtk"},
+    {"meshio_vtk/vtk_text_51.vtk"},
+    {"meshio_vtk/vtk_binary_51.vtk"},
+    {"meshio_vtk/ras_text.vtk", Frame::kRas},
+    {"meshio_vtk/ras_binary_51.vtk", Frame::kRas},
+    {"meshio_vtk/lps_binary.vtk", Frame::kLps},
+    {"meshio_vtp/text.vtp"},
+    {"meshio_vtp/ras_text.vtp", Frame::kRas},
+    {"meshio_vtp/base64.vtp"},
+    {"meshio_vtp/base64_zlib.vtp"},
+    {"meshio_vtp/appended.vtp"},
+    {"meshio_vtp/appended_zlib.vtp", Frame::kLps},
+    {"meshio_vtp/appended_base64_zlib.vtp"},
+    {"meshio_vtp/big_endian.vtp"},
 };
 
 Points Corners() {

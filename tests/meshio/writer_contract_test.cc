@@ -127,7 +127,7 @@ TEST(Writers, StlRefusesWhatFloatsCannotHold) {
 }
 
 TEST(Writers, TheFilesSayTheirFrame) {
-  for (const std::string ending : {".obj", ".stl", ".ply"}) {
+  for (const std::string ending : {".obj", ".stl", ".ply", ".vtk", ".vtp"}) {
     const auto bytes = Write("a" + ending, Awkward(), 1);
     ASSERT_TRUE(bytes.ok()) << bytes.status();
     EXPECT_EQ(ParseSurface("a" + ending, *bytes, 1)->frame, Frame::kLps) << ending;

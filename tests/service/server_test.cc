@@ -5,6 +5,7 @@
 
 #include "absl/strings/escaping.h"
 #include "absl/time/clock.h"
+#include "phrenic/v1/upload.grpc.pb.h"
 #include "server/service/address.h"
 #include "tests/service/server_fixture.h"
 
@@ -101,81 +102,114 @@ TEST_F(ServerTest, HealthIsServing) {
 
 class ExportTest : public ServerFixture {
  protected:
-  grpc::Status Export(const std::string& text, std::string* file, v1::ExportSummary* summary) {
-    v1::ExportMotionRequest request;
-    EXPECT_TRUE(google::protobuf::TextFormat::ParseFromString(text, &request));
+  using Stub = v1::ExportService::Stub;
+
+  grpc::Status Create(const std::string& text, v1::CreateExportResponse* created) {
+    return Call(*exports_, &Stub::CreateExport, text, created);
+  }
+
+  v1::Export Watch(const std::string& id) {
     grpc::ClientContext context;
-    const auto reader = exports_->ExportMotion(&context, request);
-    v1::ExportMotionResponse response;
-    while (reader->Read(&response)) {
-      *file += response.chunk();
-      if (response.has_summary()) *summary = response.summary();
-    }
+    v1::WatchExportRequest request;
+    request.set_export_id(id);
+    const auto reader = exports_->WatchExport(&context, request);
+    v1::WatchExportResponse response;
+    while (reader->Read(&response)) continue;
+    EXPECT_TRUE(reader->Finish().ok());
+    return response.job();
+  }
+
+  grpc::Status Download(const std::string& id, std::int64_t offset, std::string* file) {
+    grpc::ClientContext context;
+    v1::DownloadExportRequest request;
+    request.set_export_id(id);
+    request.set_offset(offset);
+    const auto reader = exports_->DownloadExport(&context, request);
+    v1::DownloadExportResponse response;
+    while (reader->Read(&response)) *file += response.chunk();
     return reader->Finish();
   }
 };
 
-TEST_F(ExportTest, TheFileThatArrivesIsTheOneInTheSummary) {
+TEST_F(ExportTest, TheFileThatArrivesInTwoPartsIsTheOneInTheSummary) {
   CreateCube("cube");
   v1::ListFormatsResponse formats;
-  ASSERT_TRUE(Call(*exports_, &v1::ExportService::Stub::ListFormats, "", &formats).ok());
-  ASSERT_GE(formats.formats_size(), 2);
+  ASSERT_TRUE(Call(*exports_, &Stub::ListFormats, "", &formats).ok());
+  ASSERT_GE(formats.formats_size(), 8);
   for (const v1::FileFormat& format : formats.formats()) {
-    std::string file;
-    v1::ExportSummary summary;
+    if (format.numbers_only()) continue;  // the cube has no probes
+    v1::CreateExportResponse created;
+    const std::string length = format.instant() ? "0" : "2";
     const grpc::Status status =
-        Export(absl::StrCat("session_id: 'cube' format: '", format.name(), "' seconds: 2"), &file, &summary);
+        Create(absl::StrCat("session_id: 'cube' format: '", format.name(), "' seconds: ", length), &created);
     ASSERT_TRUE(status.ok()) << status.error_message();
+    const v1::Export job = Watch(created.job().id());
+    ASSERT_EQ(job.state(), v1::EXPORT_STATE_DONE) << format.name() << job.problem();
+    std::string file, rest;
+    ASSERT_TRUE(Download(job.id(), 0, &file).ok());
+    ASSERT_TRUE(Download(job.id(), job.bytes() / 3, &rest).ok());
+    EXPECT_EQ(file.substr(static_cast<std::size_t>(job.bytes() / 3)), rest) << format.name();
     unsigned char digest[SHA256_DIGEST_LENGTH];
     SHA256(reinterpret_cast<const unsigned char*>(file.data()), file.size(), digest);
-    EXPECT_EQ(summary.sha256(),
+    EXPECT_EQ(job.summary().sha256(),
               absl::BytesToHexString(absl::string_view(reinterpret_cast<const char*>(digest), sizeof digest)));
-    EXPECT_EQ(summary.frames(), 21);
   }
   v1::GetSessionResponse got;
   ASSERT_TRUE(Call(*sessions_, &v1::SessionService::Stub::GetSession, "session_id: 'cube'", &got).ok());
   EXPECT_EQ(got.session().tick(), 0) << "the session itself went on";
 }
 
-TEST_F(ExportTest, AnUnknownFormatIsRefusedAndTheOthersAreNamed) {
+TEST_F(ExportTest, WhatCannotBeIsRefusedAtOnce) {
   CreateCube("cube");
-  std::string file;
-  v1::ExportSummary summary;
-  const grpc::Status status = Export("session_id: 'cube' format: 'avi' seconds: 1", &file, &summary);
+  v1::CreateExportResponse created;
+  const grpc::Status status = Create("session_id: 'cube' format: 'avi' seconds: 1", &created);
   EXPECT_EQ(status.error_code(), grpc::INVALID_ARGUMENT);
   EXPECT_THAT(status.error_message(), HasSubstr("msh"));
-  EXPECT_EQ(Export("session_id: 'cube' format: 'msh' seconds: 1e9", &file, &summary).error_code(),
-            grpc::INVALID_ARGUMENT);
+  EXPECT_EQ(Create("session_id: 'cube' format: 'msh' seconds: 1e9", &created).error_code(), grpc::INVALID_ARGUMENT);
+  EXPECT_EQ(Create("session_id: 'nobody' format: 'msh'", &created).error_code(), grpc::NOT_FOUND);
+  std::string file;
+  EXPECT_EQ(Download("nothing", 0, &file).error_code(), grpc::NOT_FOUND);
+  ASSERT_TRUE(Create("session_id: 'cube' format: 'msh'", &created).ok());
+  EXPECT_EQ(Download(Watch("cube").id(), 1 << 30, &file).error_code(), grpc::OUT_OF_RANGE);
 }
 
-TEST_F(ExportTest, ExportsThatAreGivenUpMakeRoomForOthers) {
+TEST_F(ExportTest, AnExportIsListedWhileItRunsAndGoneWhenItIsDeleted) {
   CreateCube("cube");
-  v1::ExportMotionRequest endless;
-  endless.set_session_id("cube");
-  endless.set_format("msh");
-  endless.set_seconds(3600);
-  endless.set_frames_per_second(1000);
-  v1::ExportMotionResponse response;
+  v1::CreateExportResponse created;
+  ASSERT_TRUE(Create("session_id: 'cube' format: 'msh' seconds: 3600 frames_per_second: 1000", &created).ok());
+  v1::ListExportsResponse list;
+  ASSERT_TRUE(Call(*exports_, &Stub::ListExports, "", &list).ok());
+  ASSERT_EQ(list.exports_size(), 1);
   std::string file;
-  v1::ExportSummary summary;
-  const std::string small = "session_id: 'cube' format: 'msh' seconds: 0.1";
-  {
-    grpc::ClientContext a, b;
-    const auto first = exports_->ExportMotion(&a, endless), second = exports_->ExportMotion(&b, endless);
-    ASSERT_TRUE(first->Read(&response));
-    ASSERT_TRUE(second->Read(&response));
-    EXPECT_EQ(Export(small, &file, &summary).error_code(), grpc::RESOURCE_EXHAUSTED);
-    a.TryCancel();
-    b.TryCancel();
-    first->Finish();
-    second->Finish();
-  }
-  bool room = false;
-  for (int i = 0; i < 250 && !room; ++i) {
-    room = Export(small, &file, &summary).ok();
-    if (!room) absl::SleepFor(absl::Milliseconds(20));
-  }
-  EXPECT_TRUE(room) << "an export goes on with nobody to receive it";
+  EXPECT_EQ(Download("cube", 0, &file).error_code(), grpc::FAILED_PRECONDITION);
+  v1::DeleteExportResponse deleted;
+  ASSERT_TRUE(Call(*exports_, &Stub::DeleteExport, "export_id: 'cube'", &deleted).ok());
+  ASSERT_TRUE(Call(*exports_, &Stub::ListExports, "", &list).ok());
+  EXPECT_EQ(list.exports_size(), 0);
+}
+
+TEST_F(ExportTest, AnUploadedSurfaceIsABodyOfAnyScene) {
+  const auto uploads = v1::UploadService::NewStub(channel_);
+  using Uploads = v1::UploadService::Stub;
+  v1::BeginUploadResponse begun;
+  const std::string surface = "v 0 0 0\\nv 30 0 0\\nv 0 30 0\\nf 1 2 3\\n";
+  ASSERT_TRUE(Call(*uploads, &Uploads::BeginUpload, "name: 'a.obj' size: 34", &begun).ok());
+  v1::AddUploadChunkResponse added;
+  ASSERT_TRUE(Call(*uploads, &Uploads::AddUploadChunk,
+                   absl::StrCat("upload_id: '", begun.upload_id(), "' chunk: '", surface, "'"), &added)
+                  .ok());
+  v1::FinishUploadResponse finished;
+  const grpc::Status status =
+      Call(*uploads, &Uploads::FinishUpload, absl::StrCat("upload_id: '", begun.upload_id(), "'"), &finished);
+  ASSERT_TRUE(status.ok()) << status.error_message();
+  EXPECT_EQ(finished.report().triangles(), 1);
+  v1::CreateSessionResponse created;
+  const std::string scene = absl::StrCat(
+      "source { scene { name: 'own' bodies { name: 'a' role: ROLE_DEFORMABLE "
+      "file { path: '",
+      finished.file().path(), "' } } } } session_id: 'own'");
+  const grpc::Status made = Call(*sessions_, &v1::SessionService::Stub::CreateSession, scene, &created);
+  EXPECT_TRUE(made.ok()) << made.error_message();
 }
 
 }  // namespace

@@ -1,24 +1,17 @@
 #include "server/session/exporter.h"
 
 #include <gmock/gmock.h>
-#include <openssl/sha.h>
 
-#include "absl/strings/escaping.h"
 #include "server/mechanics/state.h"
-#include "server/session/chunks.h"
+#include "server/session/surface_recorder.h"
 #include "tests/compile_text.h"
+#include "tests/session/sha256.h"
 #include "tests/small_scenes.h"
 
 namespace phrenic::session {
 namespace {
 
 using testing::HasSubstr;
-
-std::string Sha256(const std::string& bytes) {
-  unsigned char digest[SHA256_DIGEST_LENGTH];
-  SHA256(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size(), digest);
-  return absl::BytesToHexString(absl::string_view(reinterpret_cast<const char*>(digest), sizeof digest));
-}
 
 class ExporterTest : public testing::Test {
  protected:
@@ -29,28 +22,42 @@ class ExporterTest : public testing::Test {
   }
 
   absl::StatusOr<v1::ExportSummary> Export() {
-    return ExportMotion(request_, model_, {model_->parameters, model_->InitialState()}, sink_);
+    const Session::Fork fork = {model_->parameters, model_->InitialState()};
+    const auto plan = PlanExport(request_, *model_, fork, testing::TempDir());
+    if (!plan.ok()) return plan.status();
+    auto spool = record::SpoolFile::Open(testing::TempDir());
+    EXPECT_TRUE(spool.ok()) << spool.status();
+    ExportFile file(*std::move(spool));
+    auto summary = ExportMotion(*plan, model_, fork, file, progress_);
+    file_.resize(static_cast<std::size_t>(file.spool()->size()));
+    EXPECT_TRUE(file.spool()->Read(0, file_.data(), file_.size()).ok());
+    return summary;
+  }
+
+  std::string Refusal() {
+    const auto refused = Export();
+    EXPECT_TRUE(absl::IsInvalidArgument(refused.status())) << refused.status();
+    return std::string(refused.status().message());
   }
 
   std::shared_ptr<const Model> model_ = CompileText(kTriangle);
-  v1::ExportMotionRequest request_;
+  v1::CreateExportRequest request_;
   std::string file_;
-  ExportSink sink_ = {.chunk =
-                          [this](std::string_view bytes) {
-                            file_ += bytes;
-                            return absl::OkStatus();
-                          },
-                      .progress = [](double) { return absl::OkStatus(); }};
+  ExportProgress progress_ = [](double, double) { return absl::OkStatus(); };
 };
 
 TEST_F(ExporterTest, TheSummaryTellsWhatTheFileHolds) {
-  for (const char* format : {"msh", "depl"}) {
-    file_.clear();
-    request_.set_format(format);
+  for (const record::Format& format : ExportFormats()) {
+    request_.set_format(format.name);
+    request_.clear_start();
+    if (format.instant) request_.set_start(1);
+    request_.set_seconds(format.instant ? 0 : 1);
+    request_.clear_frames_per_second();
+    if (format.frames_a_breath > 0) request_.set_frames_per_second(10);
     const auto summary = Export();
-    ASSERT_TRUE(summary.ok()) << summary.status();
-    EXPECT_EQ(summary->frames(), 11) << "the first state and ten a second";
-    EXPECT_EQ(summary->vertices(), 3);
+    ASSERT_TRUE(summary.ok()) << format.name << summary.status();
+    EXPECT_EQ(summary->frames(), format.instant ? 1 : 11) << "the first state and ten a second";
+    EXPECT_EQ(summary->vertices(), format.numbers_only ? 0 : 3);
     EXPECT_EQ(summary->bytes(), static_cast<std::int64_t>(file_.size()));
     EXPECT_EQ(summary->sha256(), Sha256(file_));
     EXPECT_EQ(summary->steps(), 100);
@@ -66,16 +73,55 @@ TEST_F(ExporterTest, TheMotionIsThatOfTheMechanicsBitForBit) {
   EXPECT_EQ(summary->state_hash(), HashText(RunTo(*model_, 1, 0.01)));
 }
 
-TEST_F(ExporterTest, AnUnknownFormatOrBodyIsRefusedAndTheOthersAreNamed) {
+TEST_F(ExporterTest, WhatCannotBeIsRefusedWithItsFieldAndARemedy) {
   request_.set_format("avi");
-  EXPECT_THAT(std::string(Export().status().message()), HasSubstr("msh"));
-  EXPECT_TRUE(absl::IsInvalidArgument(Export().status()));
-  request_.set_format("msh");
+  EXPECT_THAT(Refusal(), HasSubstr("msh"));
+  request_.set_format("stl");
+  EXPECT_THAT(Refusal(), HasSubstr("seconds: stl holds one instant"));
+  request_.set_format("depl");
+  request_.set_values(v1::EXPORT_VALUES_DISPLACEMENTS);
+  EXPECT_THAT(Refusal(), HasSubstr("values: depl has one kind"));
+  request_.clear_values();
+  request_.set_file_stem("../up");
+  EXPECT_THAT(Refusal(), HasSubstr("file_stem"));
+  request_.set_file_stem("fine");
+  request_.set_frames_per_second(10);
+  request_.set_steps_per_frame(3);
+  EXPECT_THAT(Refusal(), HasSubstr("steps_per_frame: give either"));
+  request_.clear_steps_per_frame();
   request_.add_bodies("lnug");
-  const auto missing = Export();
-  EXPECT_TRUE(absl::IsInvalidArgument(missing.status()));
-  EXPECT_THAT(std::string(missing.status().message()), HasSubstr("bodies[0]: there is no body or layer \"lnug\""));
+  EXPECT_THAT(Refusal(), HasSubstr("bodies[0]: there is no body or layer \"lnug\""));
   EXPECT_TRUE(file_.empty());
+}
+
+TEST_F(ExporterTest, WhatTheDiskHasNoRoomForIsRefusedBeforeItBegins) {
+  request_.set_seconds(3600);
+  request_.set_frames_per_second(1000);
+  const Session::Fork fork = {model_->parameters, model_->InitialState()};
+  const auto plan = PlanExport(request_, *model_, fork, testing::TempDir());
+  ASSERT_TRUE(plan.ok()) << plan.status();
+  EXPECT_NEAR(static_cast<double>(plan->bytes), 3'600'000.0 * 3 * 40, 1e6) << "rows of about 40 bytes";
+}
+
+TEST_F(ExporterTest, EveryNthStepIsAFrameFromTheTimeOn) {
+  request_.set_start(0.5);
+  request_.set_seconds(0.3);
+  request_.set_steps_per_frame(3);
+  const auto summary = Export();
+  ASSERT_TRUE(summary.ok()) << summary.status();
+  EXPECT_EQ(summary->frames(), 11) << "steps 50, 53 ... 80 of 0.01 s";
+  EXPECT_EQ(summary->steps(), 80);
+  EXPECT_THAT(file_, HasSubstr("\"displacement\"\n1\n0.5\n3\n0\n"));
+  EXPECT_THAT(file_, HasSubstr("\"displacement\"\n1\n0.8\n3\n10\n"));
+}
+
+TEST_F(ExporterTest, ProgressGrowsToItsEndAndAnErrorOfItEndsTheExport) {
+  request_.set_seconds(3600);
+  progress_ = [](double share, double seconds) {
+    EXPECT_NEAR(share, seconds / 3600, 1e-9);
+    return absl::CancelledError("enough");
+  };
+  EXPECT_TRUE(absl::IsCancelled(Export().status()));
 }
 
 TEST_F(ExporterTest, BodiesAreChosenByNameOrLayer) {
@@ -86,37 +132,12 @@ TEST_F(ExporterTest, BodiesAreChosenByNameOrLayer) {
   EXPECT_EQ(summary->vertices(), 5);
 }
 
-TEST_F(ExporterTest, AReceiverThatGoesAwayEndsIt) {
-  sink_.chunk = [](std::string_view) { return absl::CancelledError("gone"); };
-  EXPECT_TRUE(absl::IsCancelled(Export().status()));
-}
-
 TEST_F(ExporterTest, ADivergenceEndsItWithItsReason) {
   model_ = CompileText(Retimed("time_step: 0.1 elasticity: 100"));
   request_.set_seconds(1000);
   const auto diverged = Export();
   EXPECT_EQ(diverged.status().code(), absl::StatusCode::kOutOfRange);
   EXPECT_THAT(std::string(diverged.status().message()), HasSubstr("time_step"));
-}
-
-TEST(Chunks, AreTheBytesInOrderAndNoneIsTooLarge) {
-  std::string sent, added;
-  std::size_t largest = 0;
-  Chunks chunks([&](std::string_view bytes) {
-    sent += bytes;
-    largest = std::max(largest, bytes.size());
-    return absl::OkStatus();
-  });
-  for (int i = 0; i < 20; ++i) {
-    const std::string bytes(static_cast<std::size_t>(37'777) * (i % 7), static_cast<char>('a' + i));
-    added += bytes;
-    ASSERT_TRUE(chunks.Add(bytes).ok());
-  }
-  ASSERT_TRUE(chunks.Flush().ok());
-  EXPECT_EQ(sent, added);
-  EXPECT_EQ(largest, 128u << 10);
-  EXPECT_EQ(chunks.bytes(), static_cast<std::int64_t>(added.size()));
-  EXPECT_EQ(chunks.Sha256(), Sha256(added));
 }
 
 }  // namespace

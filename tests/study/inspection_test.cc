@@ -73,6 +73,18 @@ TEST(Inspection, EachComponentHasItsOwnGenus) {
   EXPECT_NEAR(report.volume_ml(), report.components(0).volume_ml() + report.components(1).volume_ml(), 1e-9);
 }
 
+TEST(Inspection, WhereTwoBallsTouchInAPointAVertexIsPinched) {
+  Mesh mesh = Together(Ball(), Ball(), {0.1, 0, 0});
+  EXPECT_EQ(Report(mesh).pinched_vertices(), 0);
+  const int shared = 5, other = 7 + static_cast<int>(Ball().vertices.cols());
+  for (int& corner : mesh.triangles.reshaped()) corner = corner == other ? shared : corner;
+  const v1::SurfaceReport report = Report(mesh);
+  EXPECT_EQ(report.pinched_vertices(), 1);
+  ASSERT_EQ(report.components_size(), 1);
+  EXPECT_FALSE(report.components(0).has_genus());
+  EXPECT_THAT(report.repairs(), testing::Contains(HasSubstr("touch in a point")));
+}
+
 TEST(Inspection, WhatIsWrongIsCountedAndSaid) {
   Mesh mesh = Ball();
   mesh.triangles.col(0).swap(mesh.triangles.col(7));  // order does not matter

@@ -30,7 +30,7 @@ beforeEach(() => {
 });
 
 describe("the panel", () => {
-  beforeEach(() => document.body.replaceChildren(comparePanel(comparisons, bodies)));
+  beforeEach(() => document.body.replaceChildren(comparePanel(comparisons, bodies, new Signal([".obj", ".vtp"]))));
 
   test("HasALabelForEveryInput", () => {
     for (const each of document.querySelectorAll<HTMLInputElement | HTMLSelectElement>("input, select")) {

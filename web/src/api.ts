@@ -1,7 +1,9 @@
 import { type Client, ConnectError, createClient, type Transport } from "@connectrpc/connect";
 import { CompareService } from "./gen/phrenic/v1/compare_pb";
+import { ExportService } from "./gen/phrenic/v1/export_pb";
 import { FrameService } from "./gen/phrenic/v1/frames_pb";
 import { SceneService, SessionService } from "./gen/phrenic/v1/session_pb";
+import { UploadService } from "./gen/phrenic/v1/upload_pb";
 
 /** The server's services over one transport: gRPC-web in the page, a router in tests. */
 export interface Api {
@@ -9,6 +11,8 @@ export interface Api {
   sessions: Client<typeof SessionService>;
   frames: Client<typeof FrameService>;
   comparisons: Client<typeof CompareService>;
+  exports: Client<typeof ExportService>;
+  uploads: Client<typeof UploadService>;
 }
 
 export function createApi(transport: Transport): Api {
@@ -17,6 +21,8 @@ export function createApi(transport: Transport): Api {
     sessions: createClient(SessionService, transport),
     frames: createClient(FrameService, transport),
     comparisons: createClient(CompareService, transport),
+    exports: createClient(ExportService, transport),
+    uploads: createClient(UploadService, transport),
   };
 }
 

@@ -6,6 +6,7 @@ import { Connection, type Link, type Sink } from "./connection";
 import { Controller } from "./controller";
 import { Demand } from "./demand";
 import { DistanceScale, topFor } from "./distance_scale";
+import { Exports } from "./exports";
 import { Frames } from "./frames";
 import type { CompileReport } from "./gen/phrenic/v1/report_pb";
 import { Looks } from "./looks";
@@ -16,6 +17,7 @@ import { comparePanel } from "./panels/compare";
 import { ComparisonCard } from "./panels/comparison_card";
 import { make, place } from "./panels/dom";
 import { dropZone } from "./panels/drop_zone";
+import { exportPanel } from "./panels/export";
 import { Margins } from "./panels/margins";
 import { Measures } from "./panels/measures";
 import { parameterSections } from "./panels/parameters";
@@ -23,9 +25,11 @@ import { playbackPanel } from "./panels/playback";
 import { Probes } from "./panels/probes";
 import { reportPanel } from "./panels/report";
 import { LinkPill, Readout, ViewerCount } from "./panels/status";
+import { uploadPanel } from "./panels/upload";
 import { viewBar } from "./panels/view_bar";
 import { Signal } from "./signal";
 import { testHook } from "./test_hook";
+import { Uploads } from "./uploads";
 import type { Covered } from "./viewer/rig";
 import { Viewer } from "./viewer/viewer";
 
@@ -49,6 +53,8 @@ export class App {
   private readonly measures = new Measures();
   private readonly demand = new Demand();
   private readonly comparisons: Comparisons;
+  private readonly exports: Exports;
+  private readonly uploads: Uploads;
   private readonly comparison: ComparisonCard;
   private readonly bodies = new Signal<Body[]>([]);
   /** Names of the bodies that have mass and move by forces. */
@@ -62,6 +68,8 @@ export class App {
   ) {
     this.controller = new Controller(api, sessionId, clock);
     this.comparisons = new Comparisons(api, sessionId);
+    this.exports = new Exports(api, sessionId);
+    this.uploads = new Uploads(api);
     this.comparison = new ComparisonCard(this.comparisons);
     this.connection = new Connection(api, sessionId, this.sink(), clock);
     this.pill = new LinkPill(() => this.connection.retryNow());
@@ -93,7 +101,9 @@ export class App {
       ...parameterSections(controller, this.report),
       appearancePanel(looks, (kind, on) => viewer.setOverlay(kind, on)),
       layersPanel(looks),
-      comparePanel(this.comparisons, this.bodies),
+      comparePanel(this.comparisons, this.bodies, this.uploads.endings),
+      exportPanel(this.exports, this.bodies),
+      uploadPanel(this.uploads),
       this.probes.element,
       this.measures.element,
       reportPanel(this.report),

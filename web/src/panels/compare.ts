@@ -10,8 +10,8 @@ const units: [label: string, millimetres: number][] = [
 ];
 
 /** Chooses a file to compare with, its unit, and the body that is compared; files may be dropped as well. */
-export function comparePanel(comparisons: Comparisons, bodies: Signal<Body[]>): HTMLElement {
-  const file = make("input", { type: "file", id: "compare-file", accept: ".obj,.msh,.stl,.ply", hidden: true });
+export function comparePanel(comparisons: Comparisons, bodies: Signal<Body[]>, endings: Signal<string[]>): HTMLElement {
+  const file = make("input", { type: "file", id: "compare-file", hidden: true });
   file.ariaLabel = "File to compare with";
   file.onchange = () => {
     const [chosen] = file.files ?? [];
@@ -19,11 +19,11 @@ export function comparePanel(comparisons: Comparisons, bodies: Signal<Body[]>): 
     if (chosen !== undefined) void comparisons.compare(chosen).finally(() => (file.value = ""));
   };
   const open = make("button", { type: "button", id: "compare", onclick: () => file.click() }, "Compare with a file…");
-  const hint = make(
-    "p",
-    { className: "faint" },
-    "A surface (.obj, .msh, .stl, .ply) or motion (.msh); or drop one on the picture.",
-  );
+  const hint = make("p", { className: "faint" });
+  endings.subscribe((all) => {
+    file.accept = all.join(",");
+    hint.textContent = `A surface (${all.join(", ")}) or motion (.msh); or drop one on the picture.`;
+  });
   const rows = [bodyRow(comparisons, bodies), unitRow(comparisons), timeRow(comparisons)];
   return section("Distance to a surface", true, ...rows, open, file, hint);
 }

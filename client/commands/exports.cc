@@ -1,0 +1,65 @@
+// `phrenic exports`: the server's export jobs.
+#include <iostream>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "client/commands.h"
+#include "client/motion_file.h"
+#include "client/table.h"
+
+namespace phrenic::client {
+namespace {
+
+std::string StateOf(const v1::Export& job) {
+  if (job.state() == v1::EXPORT_STATE_FAILED) return "failed: " + job.problem();
+  if (job.state() == v1::EXPORT_STATE_DONE) return "done";
+  return job.state() == v1::EXPORT_STATE_QUEUED ? "queued" : "running";
+}
+
+}  // namespace
+
+int ListExports(const Context& context) {
+  const auto stub = v1::ExportService::NewStub(Connect(context));
+  v1::ListExportsResponse response;
+  const grpc::Status status =
+      Call(context, *stub, &v1::ExportService::Stub::ListExports, v1::ListExportsRequest(), &response);
+  if (!status.ok()) return Fail(context, status);
+  if (context.json()) {
+    std::cout << Json(response) << "\n";
+    return kOk;
+  }
+  Table table({"export", "session", "file", "done", "left [s]", "MB", "state"});
+  for (const v1::Export& job : response.exports()) {
+    table.Add({job.id(), job.session_id(), job.file_name(), absl::StrFormat("%.0f %%", 100 * job.progress()),
+               job.has_seconds_left() ? absl::StrFormat("%.0f", job.seconds_left()) : "-",
+               absl::StrFormat("%.1f", 1e-6 * static_cast<double>(job.bytes())), StateOf(job)});
+  }
+  table.Print(std::cout);
+  return kOk;
+}
+
+int GetExport(const Context& context, const ExportsOptions& options) {
+  const auto stub = v1::ExportService::NewStub(Connect(context));
+  v1::Export job;
+  int code = WatchToItsEnd(context, *stub, options.id, &job);
+  const std::string file = options.file.empty() ? job.file_name() : options.file;
+  if (code == kOk) code = Download(context, *stub, job, file, true);
+  if (code != kOk) return code;
+  if (context.json()) {
+    std::cout << Json(job) << "\n";
+  } else {
+    std::cout << absl::StrFormat("%s: %d bytes\n", file, job.bytes());
+  }
+  return kOk;
+}
+
+int DeleteExport(const Context& context, const ExportsOptions& options) {
+  const auto stub = v1::ExportService::NewStub(Connect(context));
+  v1::DeleteExportRequest request;
+  request.set_export_id(options.id);
+  v1::DeleteExportResponse response;
+  const grpc::Status status = Call(context, *stub, &v1::ExportService::Stub::DeleteExport, request, &response);
+  return status.ok() ? kOk : Fail(context, status);
+}
+
+}  // namespace phrenic::client

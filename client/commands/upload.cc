@@ -1,0 +1,92 @@
+// `phrenic upload`: a surface file for scenes of the server.
+#include <openssl/sha.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <sstream>
+
+#include "absl/strings/escaping.h"
+#include "absl/strings/str_cat.h"
+#include "client/commands.h"
+#include "client/progress.h"
+#include "client/surface_report.h"
+#include "phrenic/v1/upload.grpc.pb.h"
+#include "server/session/uploads.h"
+
+namespace phrenic::client {
+namespace {
+
+std::string Sha256(const std::string& bytes) {
+  unsigned char digest[SHA256_DIGEST_LENGTH];
+  SHA256(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size(), digest);
+  return absl::BytesToHexString(absl::string_view(reinterpret_cast<const char*>(digest), sizeof digest));
+}
+
+absl::StatusOr<std::string> ReadBytes(const std::string& file) {
+  std::error_code error;
+  std::ifstream in(file, std::ios::binary);
+  if (!std::filesystem::is_regular_file(file, error) || !in) {
+    return absl::NotFoundError(absl::StrCat("cannot read \"", file, "\": is there such a file, and may it be read?"));
+  }
+  std::ostringstream bytes;
+  bytes << in.rdbuf();
+  return std::move(bytes).str();
+}
+
+grpc::Status Send(const Context& context, v1::UploadService::Stub& stub, const std::string& bytes,
+                  const v1::BeginUploadResponse& begun) {
+  Progress progress("uploading", static_cast<double>(bytes.size()));
+  v1::AddUploadChunkRequest request;
+  request.set_upload_id(begun.upload_id());
+  std::int64_t at = begun.received();
+  while (at < static_cast<std::int64_t>(bytes.size())) {
+    request.set_offset(at);
+    request.set_chunk(bytes.substr(static_cast<std::size_t>(at), session::Uploads::kMostChunk));
+    v1::AddUploadChunkResponse response;
+    const grpc::Status status = Call(context, stub, &v1::UploadService::Stub::AddUploadChunk, request, &response);
+    if (!status.ok()) return status;
+    at = response.received();
+    progress.Update(static_cast<double>(at));
+  }
+  return grpc::Status::OK;
+}
+
+void Print(const Context& context, const v1::FinishUploadResponse& response) {
+  if (context.json()) {
+    std::cout << Json(response) << "\n";
+    return;
+  }
+  std::cout << response.file().path() << "\n";
+  if (response.has_report() && !response.report().repairs().empty()) PrintSurface(response.report(), std::cerr);
+}
+
+}  // namespace
+
+int Upload(const Context& context, const UploadOptions& options) {
+  const auto bytes = ReadBytes(options.file);
+  if (!bytes.ok()) return Fail(bytes.status());
+  const auto stub = v1::UploadService::NewStub(Connect(context));
+  v1::BeginUploadRequest begin;
+  begin.set_name(std::filesystem::path(options.file).filename().string());
+  begin.set_size(static_cast<std::int64_t>(bytes->size()));
+  begin.set_sha256(Sha256(*bytes));
+  v1::BeginUploadResponse begun;
+  grpc::Status status = Call(context, *stub, &v1::UploadService::Stub::BeginUpload, begin, &begun);
+  if (!status.ok()) return Fail(context, status);
+  v1::FinishUploadResponse finished;
+  *finished.mutable_file() = begun.file();
+  if (!begun.upload_id().empty()) {
+    v1::FinishUploadRequest finish;
+    finish.set_upload_id(begun.upload_id());
+    finish.set_unit_mm(options.unit_mm);
+    status = Send(context, *stub, *bytes, begun);
+    if (status.ok()) status = Call(context, *stub, &v1::UploadService::Stub::FinishUpload, finish, &finished);
+    if (!status.ok()) return Fail(context, status);
+  }
+  Print(context, finished);
+  return kOk;
+}
+
+}  // namespace phrenic::client

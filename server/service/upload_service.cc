@@ -1,0 +1,73 @@
+#include "server/service/upload_service.h"
+
+#include "server/meshio/formats.h"
+#include "server/schema/schema.h"
+#include "server/service/status.h"
+#include "server/study/inspection.h"
+
+namespace phrenic::service {
+namespace {
+
+void Fill(const session::Uploads::File& file, v1::UploadedFile& filled) {
+  filled.set_path(file.path());
+  filled.set_name(file.name);
+  filled.set_size(file.size);
+}
+
+}  // namespace
+
+grpc::Status UploadService::ListSurfaceFormats(grpc::ServerContext*, const v1::ListSurfaceFormatsRequest*,
+                                               v1::ListSurfaceFormatsResponse* response) {
+  for (const meshio::Format& format : meshio::Formats()) {
+    v1::SurfaceFormat& listed = *response->add_formats();
+    listed.set_ending(std::string(format.ending));
+    listed.set_written(format.write != nullptr);
+  }
+  response->set_most_bytes(limits_.upload_bytes);
+  return grpc::Status::OK;
+}
+
+grpc::Status UploadService::BeginUpload(grpc::ServerContext*, const v1::BeginUploadRequest* request,
+                                        v1::BeginUploadResponse* response) {
+  if (absl::Status status = schema::Validate(*request); !status.ok()) return ToGrpc(status);
+  const auto begun = uploads_.Begin(request->name(), request->size(), request->sha256());
+  if (!begun.ok()) return ToGrpc(begun.status());
+  response->set_upload_id(begun->id);
+  response->set_received(begun->received);
+  if (begun->id.empty()) Fill(begun->file, *response->mutable_file());
+  return grpc::Status::OK;
+}
+
+grpc::Status UploadService::AddUploadChunk(grpc::ServerContext*, const v1::AddUploadChunkRequest* request,
+                                           v1::AddUploadChunkResponse* response) {
+  if (absl::Status status = schema::Validate(*request); !status.ok()) return ToGrpc(status);
+  const auto received = uploads_.Add(request->upload_id(), request->offset(), request->chunk());
+  if (!received.ok()) return ToGrpc(received.status());
+  response->set_received(*received);
+  return grpc::Status::OK;
+}
+
+grpc::Status UploadService::FinishUpload(grpc::ServerContext*, const v1::FinishUploadRequest* request,
+                                         v1::FinishUploadResponse* response) {
+  if (absl::Status status = schema::Validate(*request); !status.ok()) return ToGrpc(status);
+  const double unit_mm = request->has_unit_mm() ? request->unit_mm() : 1;
+  const auto finished = uploads_.Finish(request->upload_id(), unit_mm);
+  if (!finished.ok()) return ToGrpc(finished.status());
+  Fill(finished->file, *response->mutable_file());
+  *response->mutable_report() = study::Inspect(finished->file.name, finished->surface, unit_mm);
+  return grpc::Status::OK;
+}
+
+grpc::Status UploadService::ListUploads(grpc::ServerContext*, const v1::ListUploadsRequest*,
+                                        v1::ListUploadsResponse* response) {
+  for (const session::Uploads::File& file : uploads_.List()) Fill(file, *response->add_files());
+  return grpc::Status::OK;
+}
+
+grpc::Status UploadService::DeleteUpload(grpc::ServerContext*, const v1::DeleteUploadRequest* request,
+                                         v1::DeleteUploadResponse*) {
+  if (absl::Status status = schema::Validate(*request); !status.ok()) return ToGrpc(status);
+  return ToGrpc(uploads_.Delete(request->path()));
+}
+
+}  // namespace phrenic::service

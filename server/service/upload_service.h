@@ -1,0 +1,35 @@
+// Surface files from clients over gRPC.
+#ifndef PHRENIC_SERVER_SERVICE_UPLOAD_SERVICE_H_
+#define PHRENIC_SERVER_SERVICE_UPLOAD_SERVICE_H_
+
+#include "phrenic/v1/upload.grpc.pb.h"
+#include "server/session/uploads.h"
+
+namespace phrenic::service {
+
+// gRPC's threads call, any number at a time.
+class UploadService final : public v1::UploadService::Service {
+ public:
+  UploadService(session::Uploads& uploads, const session::Limits& limits) : uploads_(uploads), limits_(limits) {}
+
+  grpc::Status ListSurfaceFormats(grpc::ServerContext* context, const v1::ListSurfaceFormatsRequest* request,
+                                  v1::ListSurfaceFormatsResponse* response) override;
+  grpc::Status BeginUpload(grpc::ServerContext* context, const v1::BeginUploadRequest* request,
+                           v1::BeginUploadResponse* response) override;
+  grpc::Status AddUploadChunk(grpc::ServerContext* context, const v1::AddUploadChunkRequest* request,
+                              v1::AddUploadChunkResponse* response) override;
+  grpc::Status FinishUpload(grpc::ServerContext* context, const v1::FinishUploadRequest* request,
+                            v1::FinishUploadResponse* response) override;
+  grpc::Status ListUploads(grpc::ServerContext* context, const v1::ListUploadsRequest* request,
+                           v1::ListUploadsResponse* response) override;
+  grpc::Status DeleteUpload(grpc::ServerContext* context, const v1::DeleteUploadRequest* request,
+                            v1::DeleteUploadResponse* response) override;
+
+ private:
+  session::Uploads& uploads_;
+  const session::Limits limits_;
+};
+
+}  // namespace phrenic::service
+
+#endif  // PHRENIC_SERVER_SERVICE_UPLOAD_SERVICE_H_

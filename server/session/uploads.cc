@@ -1,0 +1,180 @@
+#include "server/session/uploads.h"
+
+#include <openssl/sha.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/escaping.h"
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "server/mesh/units.h"
+#include "server/meshio/formats.h"
+
+namespace phrenic::session {
+namespace {
+
+constexpr std::size_t kMostPending = 16;
+
+std::string Sha256(std::string_view bytes) {
+  unsigned char digest[SHA256_DIGEST_LENGTH];
+  SHA256(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size(), digest);
+  return absl::BytesToHexString(absl::string_view(reinterpret_cast<const char*>(digest), sizeof digest));
+}
+
+absl::StatusOr<std::string> AllBytes(const record::SpoolFile& spool) {
+  std::string bytes(static_cast<std::size_t>(spool.size()), '\0');
+  if (absl::Status status = spool.Read(0, bytes.data(), bytes.size()); !status.ok()) return status;
+  return bytes;
+}
+
+bool IsSurfaceName(const std::string& name) {
+  const auto& formats = meshio::Formats();
+  return std::any_of(formats.begin(), formats.end(), [&](const meshio::Format& format) {
+    return absl::EndsWith(absl::AsciiStrToLower(name), std::string(format.ending));
+  });
+}
+
+}  // namespace
+
+Uploads::Uploads(const Limits& limits, std::string spool_folder)
+    : limits_(limits), spool_folder_(std::move(spool_folder)) {}
+
+absl::Status Uploads::CheckFile(const std::string& name, std::int64_t size) const {
+  if (!IsSurfaceName(name)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("name: the ending of \"", name, "\" tells no known format; there are ", meshio::Endings()));
+  }
+  if (size <= 0) return absl::InvalidArgumentError(absl::StrCat("size: ", name, " is empty"));
+  if (size <= limits_.upload_bytes) return absl::OkStatus();
+  return absl::ResourceExhaustedError(absl::StrCat("size: ", name, " has ", size, " bytes, and a file may have ",
+                                                   limits_.upload_bytes, "; make the surface coarser, or write it in ",
+                                                   "a binary format (phrenic convert)"));
+}
+
+absl::StatusOr<Uploads::Begun> Uploads::Begin(const std::string& name, std::int64_t size, const std::string& sha256) {
+  if (absl::Status status = CheckFile(name, size); !status.ok()) return status;
+  absl::MutexLock lock(&mutex_);
+  if (const auto kept = FindKept(sha256); kept != kept_.end()) {
+    kept_.splice(kept_.begin(), kept_, kept);
+    return Begun{"", kept->file.size, kept->file};
+  }
+  for (const Pending& pending : pending_) {
+    const File& file = pending.file;
+    const bool same = !sha256.empty() && file.sha256 == sha256 && file.size == size;
+    if (same) return Begun{pending.id, pending.spool->size(), file};
+  }
+  if (absl::Status status = record::CheckRoom(spool_folder_, size); !status.ok()) return status;
+  auto spool = record::SpoolFile::Open(spool_folder_);
+  if (!spool.ok()) return spool.status();
+  if (pending_.size() >= kMostPending) pending_.pop_front();
+  pending_.push_back({absl::StrCat("u", ++begun_), {sha256, name, size}, *std::move(spool)});
+  return Begun{pending_.back().id, 0, pending_.back().file};
+}
+
+absl::StatusOr<std::int64_t> Uploads::Add(const std::string& id, std::int64_t offset, std::string_view chunk) {
+  absl::MutexLock lock(&mutex_);
+  const auto pending = FindPending(id);
+  if (pending == pending_.end()) return NoUpload(id);
+  const std::int64_t received = pending->spool->size();
+  if (offset != received) {
+    return absl::OutOfRangeError(absl::StrCat("offset: ", offset, " is not the next byte, ", received, " is"));
+  }
+  if (chunk.size() > kMostChunk) {
+    return absl::InvalidArgumentError(absl::StrCat("chunk: ", chunk.size(), " bytes; ", kMostChunk, " are the most"));
+  }
+  if (received + static_cast<std::int64_t>(chunk.size()) > pending->file.size) {
+    return absl::OutOfRangeError(absl::StrCat("chunk: more bytes than the ", pending->file.size, " that were said"));
+  }
+  if (absl::Status status = pending->spool->Append(chunk); !status.ok()) return status;
+  return pending->spool->size();
+}
+
+absl::StatusOr<Uploads::Finished> Uploads::Finish(const std::string& id, double unit_mm) {
+  Pending pending;
+  {
+    absl::MutexLock lock(&mutex_);
+    const auto found = FindPending(id);
+    if (found == pending_.end()) return NoUpload(id);
+    if (found->spool->size() < found->file.size) {
+      return absl::FailedPreconditionError(absl::StrCat("upload_id: ", found->spool->size(), " of ", found->file.size,
+                                                        " bytes are there; send the others first"));
+    }
+    pending = std::move(*found);
+    pending_.erase(found);
+  }
+  const auto bytes = AllBytes(*pending.spool);
+  if (!bytes.ok()) return bytes.status();
+  const std::string sha256 = Sha256(*bytes);
+  if (!pending.file.sha256.empty() && pending.file.sha256 != sha256) {
+    return absl::DataLossError(absl::StrCat(pending.file.name, " arrived damaged (its SHA-256 is ", sha256, " and not ",
+                                            pending.file.sha256, "): send it again"));
+  }
+  pending.file.sha256 = sha256;
+  auto surface = meshio::ParseSurface(pending.file.name, *bytes, kMillimetre * unit_mm);
+  if (!surface.ok()) return surface.status();
+  absl::MutexLock lock(&mutex_);
+  Keep({pending.file, pending.spool});
+  return Finished{pending.file, *std::move(surface)};
+}
+
+void Uploads::Keep(Kept kept) {
+  if (const auto same = FindKept(kept.file.sha256); same != kept_.end()) kept_.erase(same);
+  kept_.push_front(std::move(kept));
+  std::int64_t bytes = 0;
+  int files = 0;
+  for (auto file = kept_.begin(); file != kept_.end();) {
+    bytes += file->file.size;
+    const bool stays = files == 0 || (bytes <= limits_.uploads_bytes && files < limits_.uploads);
+    ++files;
+    file = stays ? std::next(file) : kept_.erase(file);
+  }
+}
+
+absl::Status Uploads::NoUpload(const std::string& id) const {
+  return absl::NotFoundError(
+      absl::StrCat("upload_id: there is no upload \"", id.substr(0, 64), "\" under way; begin it anew"));
+}
+
+std::list<Uploads::Kept>::iterator Uploads::FindKept(std::string_view sha256) {
+  return std::find_if(kept_.begin(), kept_.end(), [&](const Kept& kept) { return kept.file.sha256 == sha256; });
+}
+
+std::list<Uploads::Pending>::iterator Uploads::FindPending(const std::string& id) {
+  return std::find_if(pending_.begin(), pending_.end(), [&](const Pending& pending) { return pending.id == id; });
+}
+
+std::vector<Uploads::File> Uploads::List() const {
+  absl::MutexLock lock(&mutex_);
+  std::vector<File> files;
+  for (const Kept& kept : kept_) files.push_back(kept.file);
+  return files;
+}
+
+absl::Status Uploads::Delete(const std::string& path) {
+  absl::MutexLock lock(&mutex_);
+  const auto kept = FindKept(std::string_view(path).substr(std::min(path.size(), kPrefix.size())));
+  if (kept == kept_.end()) return absl::NotFoundError(absl::StrCat("path: there is no ", path.substr(0, 80)));
+  kept_.erase(kept);
+  return absl::OkStatus();
+}
+
+absl::StatusOr<Mesh> Uploads::Read(const std::string& path, double unit) {
+  Kept file;
+  {
+    absl::MutexLock lock(&mutex_);
+    const auto kept = FindKept(std::string_view(path).substr(std::min(path.size(), kPrefix.size())));
+    if (kept == kept_.end()) {
+      return absl::NotFoundError(absl::StrCat(path.substr(0, 80),
+                                              ": the server has no such file, or no longer; upload it "
+                                              "again (phrenic upload FILE)"));
+    }
+    kept_.splice(kept_.begin(), kept_, kept);
+    file = *kept;
+  }
+  const auto bytes = AllBytes(*file.spool);
+  return bytes.ok() ? meshio::Parse(file.file.name, *bytes, unit) : bytes.status();
+}
+
+}  // namespace phrenic::session

@@ -1,0 +1,70 @@
+import { createHash } from "node:crypto";
+import { mkdirSync } from "node:fs";
+import { readFile } from "node:fs/promises";
+import { join } from "node:path";
+import { validateBytes } from "gltf-validator";
+import type { Browser } from "playwright-core";
+import { afterAll, beforeAll, expect, test } from "vitest";
+import { launchBrowser, ViewerPage } from "./browser";
+import { outFolder, Server } from "./server";
+
+let server: Server;
+let browser: Browser;
+let viewer: ViewerPage;
+
+beforeAll(async () => {
+  browser = await launchBrowser();
+  server = await Server.start();
+  mkdirSync(outFolder, { recursive: true });
+  await server.phrenic("create", "cube-tensegrity", "--id", "cube");
+  viewer = await ViewerPage.open(browser, `${server.url}?session=cube`);
+});
+
+afterAll(async () => {
+  await viewer?.close();
+  await browser?.close();
+  await server?.kill();
+});
+
+test("AMotionAsGltfIsWhatTheValidatorOfGltfsMakersTakes", async () => {
+  for (const [session, ...bodies] of [["cube"], ["thorax", "--body", "ribs", "--body", "diaphragm"]]) {
+    const path = join(outFolder, `${session}.glb`);
+    await server.phrenic("export", session!, path, "--seconds", "2", "--fps", "3", ...bodies);
+    const { issues, info } = await validateBytes(new Uint8Array(await readFile(path)));
+    expect(issues.messages.filter(({ severity }) => severity < 2)).toEqual([]);
+    expect(info).toMatchObject({ version: "2.0", animationCount: 1, hasMorphTargets: true });
+  }
+});
+
+test("ThePanelRecordsAndGivesTheFileThatTheCommandLineGets", async () => {
+  await viewer.page.click('summary:has-text("Export the motion")');
+  await viewer.page.selectOption("#export-format", "depl");
+  await viewer.page.fill("#export-seconds", "0.5");
+  await viewer.page.click("#export");
+  const link = viewer.page.locator("#export-link");
+  await link.waitFor();
+  await viewer.leave("export");
+  const [download] = await Promise.all([viewer.page.waitForEvent("download"), link.click()]);
+  expect(download.suggestedFilename()).toBe("cube.depl");
+  const path = join(outFolder, "cube.depl");
+  await server.phrenic("export", "cube", path, "--seconds", "0.5");
+  const hash = async (file: string) =>
+    createHash("sha256")
+      .update(await readFile(file))
+      .digest("hex");
+  expect(await hash((await download.path())!)).toBe(await hash(path));
+  expect(JSON.parse(await server.phrenic("exports", "list", "-o", "json")).exports).toEqual([]);
+});
+
+test("AnUploadedSurfaceIsReportedAndABadOneIsRefusedWithItsLine", async () => {
+  const choose = (text: string) =>
+    viewer.page.setInputFiles("#upload-file", { name: "a.obj", mimeType: "text/plain", buffer: Buffer.from(text) });
+  await viewer.page.click('summary:has-text("Surface files")');
+  await choose("v 0 0 0\nv 1 0\nf 1 2 3\n");
+  await viewer.page.waitForSelector('#upload-work [role="alert"]:has-text("a.obj:2:")');
+  await choose("v 0 0 0\nv 30 0 0\nv 0 30 0\nf 1 2 3\n");
+  await viewer.page.waitForSelector("#upload-path");
+  expect(await viewer.page.inputValue("#upload-path")).toMatch(/^upload:[0-9a-f]{64}$/);
+  await viewer.leave("upload");
+  expect(viewer.complaints).toEqual([]);
+});

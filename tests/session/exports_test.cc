@@ -1,0 +1,187 @@
+// Exports as jobs, and uploads: what is kept, for how long, and what is refused.
+#include "server/session/exports.h"
+
+#include <gmock/gmock.h>
+
+#include "absl/strings/str_cat.h"
+#include "server/mechanics/state.h"
+#include "server/session/meshes.h"
+#include "server/session/uploads.h"
+#include "tests/compile_text.h"
+#include "tests/fake_clock.h"
+#include "tests/session/sha256.h"
+#include "tests/small_scenes.h"
+
+namespace phrenic::session {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+class ExportsTest : public testing::Test {
+ protected:
+  ExportsTest() {
+    request_.set_session_id("class");
+    request_.set_format("msh");
+    request_.set_seconds(0.5);
+  }
+
+  absl::StatusOr<v1::Export> Add() {
+    return exports_.Add(request_, model_, {model_->parameters, model_->InitialState()});
+  }
+  v1::Export Ended(const std::string& id) {
+    absl::StatusOr<Exports::Seen> seen;
+    EXPECT_TRUE(Eventually([&] {
+      seen = exports_.Wait(id, 0, absl::ZeroDuration());
+      return !seen.ok() || seen->ended;
+    }));
+    return seen.ok() ? seen->job : v1::Export();
+  }
+
+  FakeClock clock_;
+  std::shared_ptr<const Model> model_ = CompileText(kTriangle);
+  v1::CreateExportRequest request_;
+  Exports exports_{{.exports = 1, .kept_exports = 3, .export_minutes = 60}, testing::TempDir(), clock_};
+};
+
+TEST_F(ExportsTest, RunToTheirEndAndAreReadFromAnyPlace) {
+  const auto added = Add();
+  ASSERT_TRUE(added.ok()) << added.status();
+  EXPECT_EQ(added->id(), "class");
+  EXPECT_EQ(added->file_name(), "class.msh");
+  const v1::Export job = Ended("class");
+  EXPECT_EQ(job.state(), v1::EXPORT_STATE_DONE);
+  EXPECT_EQ(job.progress(), 1);
+  EXPECT_EQ(job.summary().frames(), 6);
+  const auto file = exports_.File("class");
+  ASSERT_TRUE(file.ok()) << file.status();
+  EXPECT_EQ((*file)->size(), job.bytes());
+  std::string head(11, ' '), tail(14, ' ');
+  ASSERT_TRUE((*file)->Read(0, head.data(), head.size()).ok());
+  ASSERT_TRUE((*file)->Read(job.bytes() - 14, tail.data(), tail.size()).ok());
+  EXPECT_EQ(head + tail, "$MeshFormat\n$EndNodeData\n") << "from both ends";
+  EXPECT_TRUE(absl::IsOutOfRange((*file)->Read(job.bytes() - 1, tail.data(), 2)));
+}
+
+TEST_F(ExportsTest, AreDeletedWhenTheirTimeIsOverAndAReaderKeepsItsFile) {
+  ASSERT_TRUE(Add().ok());
+  EXPECT_EQ(Ended("class").state(), v1::EXPORT_STATE_DONE);
+  const auto file = exports_.File("class");
+  ASSERT_TRUE(file.ok());
+  clock_.Advance(absl::Minutes(59));
+  EXPECT_THAT(exports_.List(), SizeIs(1));
+  clock_.Advance(absl::Minutes(2));
+  EXPECT_TRUE(Eventually([this] { return exports_.List().empty(); }));
+  EXPECT_TRUE(absl::IsNotFound(exports_.File("class").status()));
+  char byte = 0;
+  EXPECT_TRUE((*file)->Read(0, &byte, 1).ok());
+}
+
+TEST_F(ExportsTest, DeletingOneEndsItAndTheNextOneRuns) {
+  request_.set_seconds(3600);
+  request_.set_format("csv");
+  ASSERT_TRUE(Add().ok());
+  request_.set_seconds(0.5);
+  const auto second = Add();
+  ASSERT_TRUE(second.ok()) << second.status();
+  EXPECT_EQ(second->id(), "class-2");
+  EXPECT_TRUE(absl::IsFailedPrecondition(exports_.File("class-2").status())) << "it waits";
+  ASSERT_TRUE(exports_.Delete("class").ok());
+  EXPECT_EQ(Ended("class-2").state(), v1::EXPORT_STATE_DONE);
+  EXPECT_TRUE(absl::IsNotFound(exports_.Delete("class")));
+}
+
+TEST_F(ExportsTest, TheOldestThatHasEndedMakesRoomAndRunningOnesDoNot) {
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(Add().ok());
+  EXPECT_EQ(Ended("class-3").state(), v1::EXPORT_STATE_DONE);
+  request_.set_seconds(3600);
+  request_.set_format("csv");
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(Add().ok());
+  const auto full = Add();
+  EXPECT_TRUE(absl::IsResourceExhausted(full.status())) << full.status();
+  EXPECT_THAT(exports_.List(), SizeIs(3));
+}
+
+TEST_F(ExportsTest, AFailureSaysWhyAndKeepsNoFile) {
+  model_ = CompileText(Retimed("time_step: 0.1 elasticity: 100"));
+  request_.set_seconds(1000);
+  ASSERT_TRUE(Add().ok());
+  const v1::Export job = Ended("class");
+  EXPECT_EQ(job.state(), v1::EXPORT_STATE_FAILED);
+  EXPECT_THAT(job.problem(), HasSubstr("time_step"));
+  EXPECT_THAT(std::string(exports_.File("class").status().message()), HasSubstr("has failed"));
+}
+
+constexpr char kSurface[] = "v 0 0 0\nv 30 0 0\nv 0 30 0\nf 1 2 3\n";
+
+class UploadsTest : public testing::Test {
+ protected:
+  absl::StatusOr<Uploads::Finished> Upload(const std::string& name, const std::string& bytes,
+                                           const std::string& sha256 = "") {
+    const auto begun = uploads_.Begin(name, static_cast<std::int64_t>(bytes.size()), sha256);
+    if (!begun.ok()) return begun.status();
+    const std::size_t half = bytes.size() / 2;
+    EXPECT_EQ(*uploads_.Add(begun->id, 0, bytes.substr(0, half)), static_cast<std::int64_t>(half));
+    EXPECT_TRUE(absl::IsFailedPrecondition(uploads_.Finish(begun->id, 1).status())) << "half of it";
+    EXPECT_TRUE(absl::IsOutOfRange(uploads_.Add(begun->id, 0, "again").status()));
+    EXPECT_TRUE(uploads_.Add(begun->id, static_cast<std::int64_t>(half), bytes.substr(half)).ok());
+    return uploads_.Finish(begun->id, 1);
+  }
+
+  Uploads uploads_{{.upload_bytes = 100, .uploads_bytes = 120}, testing::TempDir()};
+};
+
+TEST_F(UploadsTest, AFileIsKeptByItsContentAndScenesNameIt) {
+  const auto finished = Upload("a.obj", kSurface, Sha256(kSurface));
+  ASSERT_TRUE(finished.ok()) << finished.status();
+  EXPECT_EQ(finished->file.path(), "upload:" + Sha256(kSurface));
+  EXPECT_EQ(finished->surface.mesh.vertices(0, 1), 0.03);
+  const auto again = uploads_.Begin("b.obj", sizeof kSurface - 1, Sha256(kSurface));
+  ASSERT_TRUE(again.ok()) << again.status();
+  EXPECT_TRUE(again->id.empty()) << "it is there";
+  v1::Body body;
+  body.mutable_file()->set_path(finished->file.path());
+  body.mutable_file()->set_unit(1);
+  const auto mesh = MakeMeshSource("", &uploads_)(body);
+  ASSERT_TRUE(mesh.ok()) << mesh.status();
+  EXPECT_EQ(mesh->vertices(0, 1), 30);
+  ASSERT_TRUE(uploads_.Delete(finished->file.path()).ok());
+  EXPECT_THAT(std::string(MakeMeshSource("", &uploads_)(body).status().message()), HasSubstr("upload it again"));
+}
+
+TEST_F(UploadsTest, WhatBrokeOffGoesOnWhereItWas) {
+  const std::string hash = Sha256(kSurface);
+  const auto first = uploads_.Begin("a.obj", sizeof kSurface - 1, hash);
+  ASSERT_TRUE(uploads_.Add(first->id, 0, "v 0 0").ok());
+  const auto second = uploads_.Begin("a.obj", sizeof kSurface - 1, hash);
+  EXPECT_EQ(second->id, first->id);
+  EXPECT_EQ(second->received, 5);
+}
+
+TEST_F(UploadsTest, EachKindOfBadFileIsRefusedWithItsReason) {
+  const auto words = [](const auto& status) { return std::string(status.status().message()); };
+  EXPECT_THAT(words(uploads_.Begin("a.doc", 10, "")), HasSubstr("there are .obj"));
+  EXPECT_THAT(words(uploads_.Begin("a.obj", 0, "")), HasSubstr("is empty"));
+  EXPECT_THAT(words(uploads_.Begin("a.obj", 101, "")), HasSubstr("a file may have 100"));
+  EXPECT_THAT(words(Upload("a.obj", "v 0 0 0\nv 1 0\nf 1 2 2\n")), HasSubstr("a.obj:2: "));
+  EXPECT_THAT(words(Upload("a.obj", kSurface, Sha256("another"))), HasSubstr("arrived damaged"));
+  EXPECT_THAT(words(uploads_.Add("u99", 0, "x")), HasSubstr("begin it anew"));
+  EXPECT_THAT(uploads_.List(), SizeIs(0));
+}
+
+TEST_F(UploadsTest, TheOneThatWasUsedLongestAgoMakesRoom) {
+  std::vector<std::string> paths;
+  for (const std::string more : {"", "\n", "\n\n"}) {
+    const auto finished = Upload("a.obj", kSurface + more);
+    ASSERT_TRUE(finished.ok()) << finished.status();
+    paths.push_back(finished->file.path());
+    EXPECT_TRUE(uploads_.Read(paths[0], 1).ok()) << "it stays in use";
+  }
+  const auto last = Upload("a.obj", std::string(kSurface) + "\n\n\n");
+  ASSERT_TRUE(last.ok());
+  EXPECT_TRUE(uploads_.Read(paths[0], 1).ok());
+  EXPECT_TRUE(absl::IsNotFound(uploads_.Read(paths[1], 1).status()));
+}
+
+}  // namespace
+}  // namespace phrenic::session
