@@ -113,7 +113,7 @@ std::string SectorName(int sector) {
 }
 
 v1::DerivedDiaphragm ReportOf(const Sheet& sheet, const SmoothSheet& smooth) {
-  std::array<double, 4> area{};  // by sight
+  std::array<double, 5> area{};  // by sight
   std::array<double, 8> sector_area{}, sector_unseen{};
   for (Eigen::Index t = 0; t < sheet.triangles.cols(); ++t) {
     const Eigen::Vector3i v = sheet.triangles.col(t);
@@ -125,13 +125,14 @@ v1::DerivedDiaphragm ReportOf(const Sheet& sheet, const SmoothSheet& smooth) {
     sector_area[sector] += own;
     if (sight == Sight::kNone) sector_unseen[sector] += own;
   }
-  const double all = area[0] + area[1] + area[2] + area[3];
+  const double all = area[0] + area[1] + area[2] + area[3] + area[4];
   v1::DerivedDiaphragm report;
   report.set_vertices(static_cast<int>(2 * sheet.points.size()));
   report.set_area_cm2(all / 100);
   report.set_between_organs(area[static_cast<int>(Sight::kBetween)] / all);
   report.set_beside_one_organ(area[static_cast<int>(Sight::kBesideOne)] / all);
   report.set_on_bone(area[static_cast<int>(Sight::kOnBone)] / all);
+  report.set_labelled(area[static_cast<int>(Sight::kLabel)] / all);
   report.set_extrapolated(area[static_cast<int>(Sight::kNone)] / all);
   for (int s = 0; s < 8; ++s) {
     if (sector_unseen[s] < kTold * sector_area[s] || sector_area[s] == 0) continue;

@@ -40,12 +40,12 @@ std::vector<double> CostalMargin(const LabelVolume& volume, const std::vector<Pa
 
 // The costal margin of one side from front to back; gaps are bridged linearly.
 std::vector<Knot> CostalKnots(const std::vector<double>& lowest, const CageFrame& frame, double side, int* bridged) {
-  constexpr double kAboveEdge = 4;  // muscle is fixed on the inner face, not on the lower edge [mm]
+  const double highest = frame.sternum_end;  // beside the xiphoid the margin rises in front of the sheet
   std::vector<Knot> known = {{0, frame.sternum_end}};
   for (int degrees = kStep; degrees <= kLastCostal; degrees += kStep) {
     const auto direction = (static_cast<int>(side) * degrees / kStep + kDirections) % kDirections;
     if (lowest[direction] < kUnknown) {
-      known.push_back({static_cast<double>(degrees), lowest[direction] + kAboveEdge});
+      known.push_back({static_cast<double>(degrees), std::min(highest, lowest[direction])});
     } else {
       ++*bridged;
     }

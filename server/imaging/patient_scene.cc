@@ -1,0 +1,187 @@
+#include "server/imaging/patient_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "absl/strings/str_cat.h"
+#include "server/imaging/rib_axis.h"
+
+namespace phrenic::imaging {
+namespace {
+
+using Names = google::protobuf::RepeatedPtrField<std::string>;
+
+constexpr double kPatternWidth = 262;  // of the generated thorax [mm]
+constexpr double kMetres = 1e-3;       // of a millimetre
+
+const char* LayerOf(v1::Structure structure) {
+  switch (structure) {
+    case v1::STRUCTURE_DIAPHRAGM:
+      return "diaphragm";
+    case v1::STRUCTURE_RIB:
+      return "ribs";
+    case v1::STRUCTURE_COSTAL_CARTILAGE:
+      return "cartilages";
+    case v1::STRUCTURE_VERTEBRA:
+      return "spine";
+    case v1::STRUCTURE_LUNG:
+      return "lungs";
+    default:
+      return "sternum";
+  }
+}
+
+v1::Role RoleOf(v1::Structure structure) {
+  switch (structure) {
+    case v1::STRUCTURE_DIAPHRAGM:
+      return v1::ROLE_DEFORMABLE;
+    case v1::STRUCTURE_VERTEBRA:
+      return v1::ROLE_AT_REST;
+    case v1::STRUCTURE_COSTAL_CARTILAGE:
+    case v1::STRUCTURE_LUNG:
+      return v1::ROLE_SEEN;
+    default:
+      return v1::ROLE_DRIVEN;
+  }
+}
+
+void AddBodies(const std::vector<PatientBody>& bodies, double mass, const std::string& folder, v1::Scene& scene) {
+  scene.clear_bodies();
+  for (const PatientBody& from : bodies) {
+    v1::Body& body = *scene.add_bodies();
+    body.set_name(from.name);
+    body.set_layer(LayerOf(from.anatomy.structure()));
+    body.set_role(RoleOf(from.anatomy.structure()));
+    *body.mutable_anatomy() = from.anatomy;
+    body.mutable_file()->set_path(absl::StrCat(folder, "/", from.name, ".msh"));
+    if (body.role() == v1::ROLE_DEFORMABLE) body.set_mass(mass);
+  }
+}
+
+void KeepKnown(const std::set<std::string>& layers, Names* names) {
+  names->erase(std::remove_if(names->begin(), names->end(), [&](const auto& name) { return !layers.contains(name); }),
+               names->end());
+}
+
+// A motion of its own for each rib: the language's end states go by number, and the two sides differ.
+void AddRib(const PatientBody& rib, const v1::Ribs& pattern, double scale, v1::Scene& scene) {
+  for (const v1::RibEndState& usual : pattern.end_states()) {
+    if (usual.number() != rib.anatomy.number()) continue;
+    const Eigen::Vector3d axis = FindRibNeck(rib.mesh, scale).Axis();
+    const double angle = std::hypot(usual.pump_degrees(), usual.bucket_degrees());
+    const double level = std::max(1e-6, std::hypot(axis.x(), axis.y()));
+    v1::Motion& motion = *scene.add_motions();
+    motion.set_name(absl::StrCat("turn:", rib.name));
+    motion.mutable_ribs()->add_bodies(rib.name);
+    motion.mutable_ribs()->set_quiet_state(pattern.quiet_state());
+    v1::RibEndState& end = *motion.mutable_ribs()->add_end_states();
+    end.set_number(usual.number());
+    end.set_pump_degrees(angle * std::abs(axis.x()) / level);
+    end.set_bucket_degrees(angle * axis.y() / level);
+  }
+}
+
+void AddMotions(const v1::Scene& pattern, const std::vector<PatientBody>& bodies, const std::set<std::string>& layers,
+                double scale, v1::Scene& scene) {
+  scene.clear_motions();
+  for (const v1::Motion& motion : pattern.motions()) {
+    if (motion.has_ribs()) {
+      for (const PatientBody& body : bodies) {
+        if (body.anatomy.structure() == v1::STRUCTURE_RIB) AddRib(body, motion.ribs(), scale, scene);
+      }
+    } else if (motion.has_sternum() && layers.contains("sternum")) {
+      *scene.add_motions() = motion;
+    } else if (motion.has_ride() && motion.ride().bodies(0) == "lungs") {
+      *scene.add_motions() = motion;
+      KeepKnown(layers, scene.mutable_motions(scene.motions_size() - 1)->mutable_ride()->mutable_carriers());
+    }
+  }
+  if (!layers.contains("cartilages")) return;
+  v1::Ride& ride = *scene.add_motions()->mutable_ride();
+  ride.add_bodies("cartilages");
+  ride.add_carriers("ribs");
+  if (layers.contains("sternum")) ride.add_carriers("sternum");
+}
+
+// Above the middle of the tendon's half on that side.
+Eigen::Vector3d AboveTendon(const Mesh& diaphragm, double side) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double count = 0;
+  for (const int i : diaphragm.regions.at("tendon")) {
+    if (side * diaphragm.vertices(0, i) > 0) sum += diaphragm.vertices.col(i), ++count;
+  }
+  Eigen::Vector3d middle = count > 0 ? Eigen::Vector3d(sum / count) : Eigen::Vector3d::Zero();
+  middle.z() = diaphragm.vertices.row(2).maxCoeff();
+  return middle;
+}
+
+void AdaptForces(const Mesh& diaphragm, const CageFrame& frame, const std::set<std::string>& layers, v1::Scene& scene) {
+  const double scale = ScaleOf(frame);
+  for (v1::Force& force : *scene.mutable_forces()) {
+    if (force.has_attachment()) {
+      KeepKnown(layers, force.mutable_attachment()->mutable_carriers());
+      force.mutable_attachment()->set_radius(force.attachment().radius() * std::max(1.0, scale));
+    }
+    if (!force.has_action_line()) continue;
+    v1::ActionLine& line = *force.mutable_action_line();
+    const double side = line.origin().x() < 0 ? -1 : 1;
+    const Eigen::Vector3d above = AboveTendon(diaphragm, side);
+    line.mutable_origin()->set_x(side * 0.21 * kMetres * frame.width);
+    line.mutable_origin()->set_y(above.y());
+    line.mutable_origin()->set_z(above.z());
+    line.set_radius(line.radius() * scale);
+    line.set_force(line.force() * scale);
+  }
+}
+
+v1::Probe ProbeOf(const std::string& name, const std::string& body) {
+  v1::Probe probe;
+  probe.set_name(name);
+  probe.set_body(body);
+  return probe;
+}
+
+void AddProbes(const std::vector<PatientBody>& bodies, v1::Scene& scene) {
+  scene.clear_probes();
+  (*scene.add_probes() = ProbeOf("right dome", "diaphragm")).set_highest_on(v1::SIDE_RIGHT);
+  (*scene.add_probes() = ProbeOf("left dome", "diaphragm")).set_highest_on(v1::SIDE_LEFT);
+  for (const PatientBody& body : bodies) {
+    Eigen::Index at = 0;
+    if (body.anatomy.structure() == v1::STRUCTURE_STERNUM_BODY) {
+      body.mesh.vertices.row(1).minCoeff(&at);
+      (*scene.add_probes() = ProbeOf("sternum", body.name)).set_vertex(static_cast<int>(at));
+    }
+    if (body.anatomy.structure() == v1::STRUCTURE_RIB && body.anatomy.number() == 8) {
+      body.mesh.vertices.row(0).cwiseAbs().maxCoeff(&at);
+      const char* side = body.anatomy.side() == v1::SIDE_LEFT ? "left" : "right";
+      (*scene.add_probes() = ProbeOf(absl::StrCat("rib 8 ", side), body.name)).set_vertex(static_cast<int>(at));
+    }
+  }
+}
+
+}  // namespace
+
+double ScaleOf(const CageFrame& frame) { return frame.width / kPatternWidth; }
+
+v1::Scene PatientScene(const v1::Scene& pattern, const std::vector<PatientBody>& bodies, const CageFrame& frame,
+                       const std::string& name) {
+  v1::Scene scene = pattern;
+  scene.set_name(name);
+  scene.set_title(absl::StrCat("Thorax of ", name, ", from a label volume"));
+  scene.set_description("Made by `phrenic patient`; the report beside it says where it had to guess.");
+  std::set<std::string> layers;
+  for (const PatientBody& body : bodies) layers.insert(LayerOf(body.anatomy.structure()));
+  auto& shown = *scene.mutable_layers();
+  shown.erase(std::remove_if(shown.begin(), shown.end(),
+                             [&](const v1::Layer& layer) { return !layers.contains(layer.name()); }),
+              shown.end());
+  const double scale = ScaleOf(frame);
+  AddBodies(bodies, pattern.bodies(0).mass() * scale * scale, name, scene);
+  AddMotions(pattern, bodies, layers, scale, scene);
+  AdaptForces(bodies.front().mesh, frame, layers, scene);
+  AddProbes(bodies, scene);
+  return scene;
+}
+
+}  // namespace phrenic::imaging
