@@ -151,9 +151,10 @@ absl::StatusOr<DerivedDiaphragm> DeriveDiaphragm(const LabelVolume& volume, cons
   const SmoothSheet smooth(frame, Look(volume, parts, frame));
   anatomy::SheetDomain domain;
   domain.loops = {FindRim(volume, parts, frame, smooth, fallbacks)};
-  // Six triangles meet at a vertex: one for each edge length squared times sqrt(3)/2.
+  // A hexagonal lattice has a vertex for each edge length squared times sqrt(3)/2, MeshSheet 0.855 as many.
+  constexpr double kOfLattice = 0.855;
   const double area = AreaOf(smooth, anatomy::PlaneRegion(domain.loops));
-  const double edge_length = std::sqrt(area / (options.vertices / 2.0) * 2 / std::sqrt(3.0));
+  const double edge_length = std::sqrt(kOfLattice * area / (options.vertices / 2.0) * 2 / std::sqrt(3.0));
   domain.map = [&smooth](const Eigen::Vector2d& p) { return smooth.Point(p); };
   domain.edge_length = [edge_length](const Eigen::Vector3d&) { return edge_length; };
   const Sheet sheet = anatomy::MeshSheet(domain);
