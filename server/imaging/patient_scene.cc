@@ -1,5 +1,6 @@
 #include "server/imaging/patient_scene.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -17,8 +18,9 @@ constexpr double kMetres = 1e-3;       // of a millimetre
 
 // The pattern is made for the generated sheet, with openings and another tendon. These, times its values, let the three
 // phantoms of the acceptance tests breathe quietly inside the published ranges.
-constexpr double kMuscle = 0.75, kTendon = 1.8;  // stiffness
-constexpr double kPull = 0.88;                   // of the action lines
+constexpr double kMuscle = 0.75, kTendon = 2.3;       // stiffness
+constexpr double kPullRight = 0.81, kPullLeft = 1.09;  // of the action lines, for a sheet of this area:
+constexpr double kSheet = 0.1045;                     // the adult phantom's [m^2]
 constexpr double kRibs = 1.15;                   // how far ribs turn in a quiet breath
 constexpr double kBehindMiddle = 6e-3;           // of the action lines, in the pattern's size [m]
 
@@ -111,8 +113,18 @@ void AddMotions(const v1::Scene& pattern, const std::vector<PatientBody>& bodies
   if (layers.contains("sternum")) ride.add_carriers("sternum");
 }
 
+double Area(const Mesh& mesh) {
+  double area = 0;
+  for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
+    const Eigen::Vector3d a = mesh.vertices.col(mesh.triangles(0, t)), b = mesh.vertices.col(mesh.triangles(1, t));
+    area += (b - a).cross(mesh.vertices.col(mesh.triangles(2, t)) - a).norm() / 2;
+  }
+  return area;
+}
+
 void AdaptForces(const Mesh& diaphragm, const CageFrame& frame, const std::set<std::string>& layers, v1::Scene& scene) {
   const double scale = ScaleOf(frame);
+  const double pull = std::sqrt(Area(diaphragm) / 2 / kSheet);  // of two layers
   const Eigen::Vector3d low = diaphragm.vertices.rowwise().minCoeff(), high = diaphragm.vertices.rowwise().maxCoeff();
   for (v1::Force& force : *scene.mutable_forces()) {
     if (force.has_attachment()) {
@@ -130,7 +142,7 @@ void AdaptForces(const Mesh& diaphragm, const CageFrame& frame, const std::set<s
     line.mutable_origin()->set_y((low.y() + high.y()) / 2 + kBehindMiddle * scale);
     line.mutable_origin()->set_z(high.z());
     line.set_radius(line.radius() * scale);
-    line.set_force(kPull * line.force() * scale);
+    line.set_force((side < 0 ? kPullRight : kPullLeft) * line.force() * pull);
   }
 }
 
