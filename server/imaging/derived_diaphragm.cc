@@ -10,6 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "server/anatomy/double_layer.h"
 #include "server/anatomy/plane_region.h"
+#include "server/imaging/millimetre.h"
 #include "server/imaging/rim.h"
 #include "server/mesh/topology.h"
 
@@ -18,7 +19,6 @@ namespace {
 
 using anatomy::Sheet;
 
-constexpr double kMetres = 1e-3;       // of a millimetre
 constexpr double kTold = 0.1;          // share of a sector that is worth a line of the report
 
 // Area of the sheet inside the rim [mm^2].
@@ -160,7 +160,7 @@ absl::StatusOr<DerivedDiaphragm> DeriveDiaphragm(const LabelVolume& volume, cons
   const Sheet sheet = anatomy::MeshSheet(domain);
   DerivedDiaphragm derived;
   derived.mesh = anatomy::DoubleLayer(sheet, [&smooth](const Eigen::Vector2d& p) { return smooth.Normal(p); });
-  derived.mesh.vertices *= kMetres;
+  derived.mesh.vertices *= kMillimetre;
   AddRegions(sheet, frame, edge_length, options.tendon_share, derived.mesh);
   derived.report = ReportOf(sheet, smooth);
   return derived;

@@ -6,13 +6,13 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/anatomy/implicit_surface.h"
+#include "server/imaging/millimetre.h"
 
 namespace phrenic::imaging {
 namespace {
 
 constexpr double kBlur = 0.7;         // of the longest edge of a voxel: the Gaussian's standard deviation
 constexpr double kReach = 2.5;        // standard deviations
-constexpr double kMetres = 1e-3;      // of a millimetre
 constexpr std::size_t kFewest = 8;    // voxels
 
 double Sigma(const LabelVolume& volume, int axis) {  // [voxels]
@@ -112,7 +112,7 @@ absl::StatusOr<Mesh> SurfaceOf(const LabelVolume& volume, const Mask& mask, doub
   const double level = soft.LevelOf(count), scale = 2 * kBlur * volume.Spacing().maxCoeff();
   const anatomy::Field field = [&](const Eigen::Vector3d& x) { return scale * (level - soft.At(x)); };
   Mesh mesh = anatomy::ImplicitSurface(field, BoxOf(volume, mask), edge_length, edge_length);
-  mesh.vertices *= kMetres;
+  mesh.vertices *= kMillimetre;
   return mesh;
 }
 

@@ -8,6 +8,7 @@
 #include "absl/strings/str_format.h"
 #include "server/imaging/label_map.h"
 #include "server/imaging/label_surface.h"
+#include "server/imaging/millimetre.h"
 #include "server/imaging/patient_scene.h"
 #include "server/imaging/rib_axis.h"
 #include "server/mesh/topology.h"
@@ -15,7 +16,6 @@
 namespace phrenic::imaging {
 namespace {
 
-constexpr double kMetres = 1e-3;           // of a millimetre
 constexpr double kDiaphragmsShare = 0.5;   // of the whole time
 constexpr double kLungEdges = 1.5;         // of the bones' edge length
 
@@ -65,7 +65,7 @@ void ReportRibs(const CageFrame& frame, Patient& patient) {
     const Eigen::Vector3d axis = neck.Axis();
     v1::PatientRib& rib = *patient.report.add_ribs();
     rib.set_body(body.name);
-    rib.set_neck_mm((neck.tubercle - neck.head).norm() / kMetres);
+    rib.set_neck_mm((neck.tubercle - neck.head).norm() / kMillimetre);
     rib.set_axis_degrees(kDegrees * std::atan2(std::abs(axis.x()), axis.y()));
     rib.set_drop_degrees(-kDegrees * std::asin(axis.z()));
   }
@@ -93,7 +93,7 @@ absl::StatusOr<Patient> MakePatient(const LabelVolume& volume, const v1::LabelMa
   anatomy.set_structure(v1::STRUCTURE_DIAPHRAGM);
   patient.bodies.insert(patient.bodies.begin(), {"diaphragm", anatomy, std::move(diaphragm->mesh)});
   patient.report.set_moved_left_mm(-frame->centre.x());
-  for (PatientBody& body : patient.bodies) body.mesh.vertices.row(0).array() -= kMetres * frame->centre.x();
+  for (PatientBody& body : patient.bodies) body.mesh.vertices.row(0).array() -= kMillimetre * frame->centre.x();
   ReportRibs(*frame, patient);
   patient.scene = PatientScene(pattern, patient.bodies, *frame, options.name);
   for (std::string& sentence : fallbacks) patient.report.add_fallbacks(std::move(sentence));

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "absl/strings/str_cat.h"
+#include "server/imaging/millimetre.h"
 #include "server/imaging/rib_axis.h"
 
 namespace phrenic::imaging {
@@ -14,7 +15,6 @@ namespace {
 using Names = google::protobuf::RepeatedPtrField<std::string>;
 
 constexpr double kPatternWidth = 262;  // of the generated thorax [mm]
-constexpr double kMetres = 1e-3;       // of a millimetre
 
 // The pattern is made for the generated sheet, with openings and another tendon. These, times its values, let the three
 // phantoms of the acceptance tests breathe quietly inside the published ranges.
@@ -138,7 +138,7 @@ void AdaptForces(const Mesh& diaphragm, const CageFrame& frame, const std::set<s
     if (!force.has_action_line()) continue;
     v1::ActionLine& line = *force.mutable_action_line();
     const double side = line.origin().x() < 0 ? -1 : 1;
-    line.mutable_origin()->set_x(side * 0.21 * kMetres * frame.width);
+    line.mutable_origin()->set_x(side * 0.21 * kMillimetre * frame.width);
     line.mutable_origin()->set_y((low.y() + high.y()) / 2 + kBehindMiddle * scale);
     line.mutable_origin()->set_z(high.z());
     line.set_radius(line.radius() * scale);

@@ -6,13 +6,13 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/anatomy/anatomy.h"
+#include "server/imaging/millimetre.h"
 #include "server/imaging/phantom_organs.h"
 #include "server/imaging/voxelise.h"
 
 namespace phrenic::imaging {
 namespace {
 
-constexpr double kMetres = 1e-3;  // of a millimetre
 const Eigen::Vector3d kLow(-145, -125, -12), kHigh(145, 160, 405);  // of the generated thorax [mm]
 
 // How much of the flattening a height takes [0, 1]: nothing at the rim and at the lungs' tops, all at the domes.
@@ -27,7 +27,7 @@ bool IsSoft(v1::Structure structure) {
 }
 
 LabelVolume EmptyVolume(const PhantomBody& body, double voxel) {
-  const Eigen::Vector3d low = 1e3 * body.Place(kMetres * kLow, false), high = 1e3 * body.Place(kMetres * kHigh, false);
+  const Eigen::Vector3d low = 1e3 * body.Place(kMillimetre * kLow, false), high = 1e3 * body.Place(kMillimetre * kHigh, false);
   LabelVolume volume;
   volume.size = ((high - low) / voxel).array().ceil().cast<int>() + 1;
   // As scanners do: i to the patient's right, j to the front, k up.
@@ -53,7 +53,7 @@ void AddOrgans(const PhantomBody& body, const v1::LabelMap& map, LabelVolume& vo
   ForEachVoxel(volume.size, [&](const Eigen::Vector3i& at) {
     Label& voxel = volume.labels[volume.Index(at)];
     if (voxel != 0) return;
-    const Eigen::Vector3d place = 1e3 * body.Generated(kMetres * (volume.to_patient * at.cast<double>()), true);
+    const Eigen::Vector3d place = 1e3 * body.Generated(kMillimetre * (volume.to_patient * at.cast<double>()), true);
     if (place.z() < 60 || place.z() > 310) return;
     for (const v1::LabelMeaning& organ : organs) {
       if (!InOrgan(organ.organ(), place)) continue;
@@ -145,16 +145,16 @@ void Pierce(int holes, double voxel, std::mt19937& random, LabelVolume& volume) 
 
 Eigen::Vector3d PhantomBody::Place(const Eigen::Vector3d& generated, bool soft) const {
   Eigen::Vector3d placed = generated;
-  if (soft) placed.z() -= kMetres * flattening * Share(generated.z() / kMetres);
-  return scale.cwiseProduct(placed) + kMetres * shift;
+  if (soft) placed.z() -= kMillimetre * flattening * Share(generated.z() / kMillimetre);
+  return scale.cwiseProduct(placed) + kMillimetre * shift;
 }
 
 Eigen::Vector3d PhantomBody::Generated(const Eigen::Vector3d& placed, bool soft) const {
-  const Eigen::Vector3d lowered = (placed - kMetres * shift).cwiseQuotient(scale);
+  const Eigen::Vector3d lowered = (placed - kMillimetre * shift).cwiseQuotient(scale);
   Eigen::Vector3d generated = lowered;
   constexpr int kRounds = 20;  // a fixed point: flattening changes by less than its own height
   for (int i = 0; soft && i < kRounds; ++i) {
-    generated.z() = lowered.z() + kMetres * flattening * Share(generated.z() / kMetres);
+    generated.z() = lowered.z() + kMillimetre * flattening * Share(generated.z() / kMillimetre);
   }
   return generated;
 }

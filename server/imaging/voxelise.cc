@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/imaging/millimetre.h"
+
 namespace phrenic::imaging {
 namespace {
-
-constexpr double kMillimetres = 1e3;  // of a metre
 
 double Cross(const Eigen::Vector2d& u, const Eigen::Vector2d& v) { return u.x() * v.y() - u.y() * v.x(); }
 
@@ -34,7 +34,7 @@ void Voxelise(const Mesh& mesh, Label number, LabelVolume& volume) {
   // Off the grid by a hair, so that no line runs through a vertex or an edge.
   const Eigen::Vector3d hair(1.234e-5, 2.345e-5, 0);
   const Points voxels =
-      (volume.to_patient.inverse() * (kMillimetres * mesh.vertices)).colwise() + hair;
+      (volume.to_patient.inverse() * (mesh.vertices / kMillimetre)).colwise() + hair;
   std::vector<std::vector<double>> crossings(static_cast<std::size_t>(volume.size.x()) * volume.size.y());
   for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
     Eigen::Matrix3d corners;

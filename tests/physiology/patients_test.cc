@@ -16,7 +16,7 @@
 namespace phrenic {
 namespace {
 
-v1::Scene Thorax() {
+v1::Scene ThoraxScene() {
   std::ifstream file(PHRENIC_SOURCE_DIR "/server/scenes/thorax.textproto");
   std::stringstream text;
   text << file.rdbuf();
@@ -31,7 +31,7 @@ absl::StatusOr<imaging::Patient> PatientOf(const std::string& body) {
   options.name = body;
   options.edge_length = 6;
   options.diaphragm.vertices = 6000;
-  return imaging::MakePatient(*volume, map, Thorax(), options, [](double, std::string_view) { return true; });
+  return imaging::MakePatient(*volume, map, ThoraxScene(), options, [](double, std::string_view) { return true; });
 }
 
 class Patients : public testing::TestWithParam<const char*> {};
