@@ -243,7 +243,8 @@ class CommandLine {
     command->add_option("--tendon-share", patient.tendon_share, "of the diaphragm's area")
         ->check(CLI::Range(0.05, 0.5))
         ->capture_default_str();
-    CLI::Option* serve = command->add_flag("--serve", patient.serve, "then start phrenicd, which plays it in the viewer");
+    CLI::Option* serve =
+        command->add_flag("--serve", patient.serve, "then start phrenicd, which plays it in the viewer");
     command->add_option("--web", patient.web, "HOST:PORT of the viewer")->needs(serve)->capture_default_str();
     AddPhantom();
   }

@@ -1,4 +1,6 @@
 // `phrenic patient`: a label volume becomes a thorax that breathes; `phrenic phantom`: a label volume of a known body.
+#include "server/imaging/patient.h"
+
 #include <unistd.h>
 
 #include <filesystem>
@@ -17,7 +19,6 @@
 #include "server/imaging/gzip.h"
 #include "server/imaging/label_map.h"
 #include "server/imaging/nifti.h"
-#include "server/imaging/patient.h"
 #include "server/imaging/phantom.h"
 #include "server/schema/id.h"
 #include "server/schema/schema.h"
@@ -28,7 +29,8 @@ namespace {
 absl::StatusOr<v1::Scene> ReadPattern() {
   const std::string path = PHRENIC_SCENES_DIR "/thorax.textproto";
   std::ifstream file(path);
-  if (!file) return absl::NotFoundError(absl::StrCat("cannot read the scene ", path, ", which patients' scenes follow"));
+  if (!file)
+    return absl::NotFoundError(absl::StrCat("cannot read the scene ", path, ", which patients' scenes follow"));
   std::stringstream text;
   text << file.rdbuf();
   return schema::ParseScene(path, text.str());
@@ -44,8 +46,7 @@ absl::StatusOr<imaging::Patient> Make(const PatientOptions& options) {
   bar.Update(0);
   const absl::StatusOr<imaging::LabelVolume> volume = imaging::ReadNifti(options.volume);
   if (!volume.ok()) return volume.status();
-  const imaging::PatientOptions made = {
-      options.name, options.edge_length, {options.vertices, options.tendon_share}};
+  const imaging::PatientOptions made = {options.name, options.edge_length, {options.vertices, options.tendon_share}};
   return imaging::MakePatient(*volume, *map, *pattern, made, [&](double done, std::string_view doing) {
     bar.Say(std::string(doing));
     bar.Update(done);
@@ -57,9 +58,8 @@ void PrintDiaphragm(const v1::DerivedDiaphragm& diaphragm) {
   std::cout << absl::StrFormat(
       "diaphragm: %d vertices, %.0f cm2 a layer; of it between organs %.0f %%, under one organ %.0f %%, on bone %.0f "
       "%%, in a label of its own %.0f %%, extrapolated %.0f %%\n",
-      diaphragm.vertices(), diaphragm.area_cm2(), 100 * diaphragm.between_organs(),
-      100 * diaphragm.beside_one_organ(), 100 * diaphragm.on_bone(), 100 * diaphragm.labelled(),
-      100 * diaphragm.extrapolated());
+      diaphragm.vertices(), diaphragm.area_cm2(), 100 * diaphragm.between_organs(), 100 * diaphragm.beside_one_organ(),
+      100 * diaphragm.on_bone(), 100 * diaphragm.labelled(), 100 * diaphragm.extrapolated());
   for (const v1::ExtrapolatedSector& sector : diaphragm.sectors()) {
     std::cout << absl::StrFormat("  extrapolated: %s, %.0f %% of it\n", sector.where(), 100 * sector.share());
   }
@@ -85,7 +85,8 @@ void Print(const v1::PatientReport& report) {
 // Becomes the server that plays the patient; comes back only where that cannot be.
 int Serve(const PatientOptions& options) {
   std::error_code error;
-  const std::string server = (std::filesystem::read_symlink("/proc/self/exe", error).parent_path() / "phrenicd").string();
+  const std::string server =
+      (std::filesystem::read_symlink("/proc/self/exe", error).parent_path() / "phrenicd").string();
   execl(server.c_str(), "phrenicd", "--data", options.out.c_str(), "--start", options.name.c_str(), "--web",
         options.web.c_str(), nullptr);
   return Fail(absl::NotFoundError(absl::StrCat("cannot start ", server, ": build it, or leave out --serve")));
@@ -115,8 +116,8 @@ int MakePhantom(const Context&, const PhantomOptions& options) {
   if (!body.ok()) return Fail(body.status());
   const absl::StatusOr<v1::LabelMap> map = imaging::ReadLabelMap(options.labels);
   if (!map.ok()) return Fail(map.status());
-  const absl::StatusOr<imaging::LabelVolume> volume = imaging::MakePhantom(
-      *body, {options.voxel, options.noise, options.holes, options.seed}, *map);
+  const absl::StatusOr<imaging::LabelVolume> volume =
+      imaging::MakePhantom(*body, {options.voxel, options.noise, options.holes, options.seed}, *map);
   if (!volume.ok()) return Fail(volume.status());
   std::string bytes = imaging::WriteNifti(*volume);
   if (absl::EndsWith(options.out, ".gz")) bytes = imaging::Deflate(bytes);

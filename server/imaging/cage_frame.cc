@@ -73,9 +73,9 @@ void PlaceLumbar(const Landmarks& marks, CageFrame& frame, Sentences& fallbacks)
 
 // y of the front of the vertebra nearest to T12 or L1.
 double SpineFront(const Landmarks& marks) {
-  const auto nearest = std::min_element(marks.vertebrae.begin(), marks.vertebrae.end(), [](const auto& a, const auto& b) {
-    return std::abs(a.first - kT12) < std::abs(b.first - kT12);
-  });
+  const auto nearest = std::min_element(
+      marks.vertebrae.begin(), marks.vertebrae.end(),
+      [](const auto& a, const auto& b) { return std::abs(a.first - kT12) < std::abs(b.first - kT12); });
   return nearest->second.box.min().y();
 }
 

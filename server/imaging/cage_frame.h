@@ -1,9 +1,9 @@
 // A patient's own polar frame for the sheet between thorax and abdomen.
 //
 // A point p of the plane stands for a ray: at |p| <= 1 from the centre, turned by |p| 90 degrees from upwards towards
-// the azimuth of p (p.x to the left, p.y to the back); beyond, horizontally, from |p| - 1 wall lengths below the centre.
-// So the domes are seen from below and the wall from the middle of the cage, and the sheet is a depth r(p) along the
-// rays, one smooth function without a pole.
+// the azimuth of p (p.x to the left, p.y to the back); beyond, horizontally, from |p| - 1 wall lengths below the
+// centre. So the domes are seen from below and the wall from the middle of the cage, and the sheet is a depth r(p)
+// along the rays, one smooth function without a pole.
 #ifndef PHRENIC_SERVER_IMAGING_CAGE_FRAME_H_
 #define PHRENIC_SERVER_IMAGING_CAGE_FRAME_H_
 
@@ -25,11 +25,11 @@ struct Ray {
 struct CageFrame {
   Eigen::Vector3d centre;
   double wall_length = 0;
-  double width = 0;                  // of the cage
-  double sternum_end = 0;            // z of the sternum's lower end
-  double lumbar[3] = {0, 0, 0};      // z of the middle of L1, L2, L3
-  double vertebra_height = 0;        // from one middle to the next
-  double spine_front = 0;            // y, of L1
+  double width = 0;              // of the cage
+  double sternum_end = 0;        // z of the sternum's lower end
+  double lumbar[3] = {0, 0, 0};  // z of the middle of L1, L2, L3
+  double vertebra_height = 0;    // from one middle to the next
+  double spine_front = 0;        // y, of L1
 
   Ray RayOf(const Eigen::Vector2d& p) const;
 };

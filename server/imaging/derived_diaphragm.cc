@@ -19,7 +19,7 @@ namespace {
 
 using anatomy::Sheet;
 
-constexpr double kTold = 0.1;          // share of a sector that is worth a line of the report
+constexpr double kTold = 0.1;  // share of a sector that is worth a line of the report
 
 // Area of the sheet inside the rim [mm^2].
 double AreaOf(const SmoothSheet& sheet, const anatomy::PlaneRegion& region) {

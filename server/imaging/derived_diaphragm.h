@@ -14,14 +14,16 @@ struct DiaphragmOptions {
 };
 
 struct DerivedDiaphragm {
-  Mesh mesh;  // [m], LPS: a closed double layer, 3 mm apart, with the regions "tendon", "rim", "crus-right", "crus-left"
+  Mesh
+      mesh;  // [m], LPS: a closed double layer, 3 mm apart, with the regions "tendon", "rim", "crus-right", "crus-left"
   v1::DerivedDiaphragm report;
 };
 
 // The domes from the under side of lungs and heart against the upper side of liver, spleen and stomach; the zone of
-// apposition from the inner face of ribs and cartilages; the crura along the lumbar vertebrae; smooth and, where nothing
-// was seen, going on from around (SmoothSheet). The tendon is the part of the sheet that is furthest from the rim along
-// the sheet, as large as the share says (automatic division, thesis 3.1). Without openings. Errors as FindCageFrame's.
+// apposition from the inner face of ribs and cartilages; the crura along the lumbar vertebrae; smooth and, where
+// nothing was seen, going on from around (SmoothSheet). The tendon is the part of the sheet that is furthest from the
+// rim along the sheet, as large as the share says (automatic division, thesis 3.1). Without openings. Errors as
+// FindCageFrame's.
 absl::StatusOr<DerivedDiaphragm> DeriveDiaphragm(const LabelVolume& volume, const std::vector<Part>& parts,
                                                  const CageFrame& frame, const DiaphragmOptions& options,
                                                  Sentences& fallbacks);

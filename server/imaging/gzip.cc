@@ -9,7 +9,7 @@
 namespace phrenic::imaging {
 namespace {
 
-constexpr int kGzip = 15 + 16;            // zlib's window bits for gzip alone
+constexpr int kGzip = 15 + 16;             // zlib's window bits for gzip alone
 constexpr std::size_t kPortion = 1 << 18;  // [bytes]
 
 Bytef* Bytes(const char* text) { return reinterpret_cast<Bytef*>(const_cast<char*>(text)); }

@@ -11,9 +11,9 @@
 namespace phrenic::imaging {
 namespace {
 
-constexpr double kBlur = 0.7;         // of the longest edge of a voxel: the Gaussian's standard deviation
-constexpr double kReach = 2.5;        // standard deviations
-constexpr std::size_t kFewest = 8;    // voxels
+constexpr double kBlur = 0.7;       // of the longest edge of a voxel: the Gaussian's standard deviation
+constexpr double kReach = 2.5;      // standard deviations
+constexpr std::size_t kFewest = 8;  // voxels
 
 double Sigma(const LabelVolume& volume, int axis) {  // [voxels]
   const Eigen::Vector3d spacing = volume.Spacing();
@@ -36,7 +36,9 @@ std::vector<float> Kernel(double sigma) {
 class SoftMask {
  public:
   SoftMask(const LabelVolume& volume, const Mask& mask)
-      : low_(mask.low.cast<double>()), size_(mask.size), to_voxel_(volume.to_patient.inverse()),
+      : low_(mask.low.cast<double>()),
+        size_(mask.size),
+        to_voxel_(volume.to_patient.inverse()),
         values_(mask.inside.begin(), mask.inside.end()) {
     for (int axis = 0; axis < 3; ++axis) Blur(axis, Kernel(Sigma(volume, axis)));
   }
@@ -45,7 +47,8 @@ class SoftMask {
   double LevelOf(std::size_t count) const {
     constexpr double kLowest = 0.15, kHighest = 0.6;  // outside of these the mask is no body with a surface
     std::vector<float> sorted = values_;
-    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(count), sorted.end(), std::greater<>());
+    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(count), sorted.end(),
+                     std::greater<>());
     return std::clamp<double>(sorted[count], kLowest, kHighest);
   }
 

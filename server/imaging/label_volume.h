@@ -15,10 +15,10 @@ using Label = std::uint16_t;  // 0: nothing
 
 // Lengths in millimetres, as images give them; frame LPS (+x left, +y posterior, +z superior).
 struct LabelVolume {
-  Eigen::Vector3i size = Eigen::Vector3i::Zero();                  // voxels along i, j, k
-  Eigen::Affine3d to_patient = Eigen::Affine3d::Identity();        // of (i, j, k), the middle of a voxel, to [mm]
-  std::vector<Label> labels;                                       // i runs fastest
-  std::map<int, std::string> names;                                // of labels, where the file says them
+  Eigen::Vector3i size = Eigen::Vector3i::Zero();            // voxels along i, j, k
+  Eigen::Affine3d to_patient = Eigen::Affine3d::Identity();  // of (i, j, k), the middle of a voxel, to [mm]
+  std::vector<Label> labels;                                 // i runs fastest
+  std::map<int, std::string> names;                          // of labels, where the file says them
 
   std::size_t Index(const Eigen::Vector3i& at) const {
     return (static_cast<std::size_t>(at.z()) * size.y() + at.y()) * size.x() + at.x();

@@ -22,9 +22,9 @@ struct Extent {
 std::map<Label, Extent> Extents(const LabelVolume& volume);
 
 struct Mask {
-  Eigen::Vector3i low = Eigen::Vector3i::Zero();   // where its first voxel lies in the volume; may be outside of it
+  Eigen::Vector3i low = Eigen::Vector3i::Zero();  // where its first voxel lies in the volume; may be outside of it
   Eigen::Vector3i size = Eigen::Vector3i::Zero();
-  std::vector<std::uint8_t> inside;                // 1 or 0, i fastest
+  std::vector<std::uint8_t> inside;  // 1 or 0, i fastest
 
   std::size_t Index(int i, int j, int k) const { return (static_cast<std::size_t>(k) * size.y() + j) * size.x() + i; }
   std::size_t Count() const;

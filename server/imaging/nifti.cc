@@ -91,11 +91,13 @@ absl::StatusOr<LabelVolume> ParsePlain(std::string_view name, std::string_view b
 }
 
 std::string NamesExtension(const std::map<int, std::string>& names) {
-  std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?><CaretExtension><VolumeInformation Index=\"0\"><LabelTable>";
+  std::string text =
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?><CaretExtension><VolumeInformation Index=\"0\"><LabelTable>";
   for (const auto& [number, name] : names) {
     absl::StrAppend(&text, "<Label Key=\"", number, "\"><![CDATA[", name, "]]></Label>");
   }
-  absl::StrAppend(&text, "</LabelTable><VolumeType><![CDATA[Label]]></VolumeType></VolumeInformation></CaretExtension>");
+  absl::StrAppend(&text,
+                  "</LabelTable><VolumeType><![CDATA[Label]]></VolumeType></VolumeInformation></CaretExtension>");
   text.resize((text.size() + 8 + 15) / 16 * 16 - 8, ' ');
   return text;
 }

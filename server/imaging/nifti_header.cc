@@ -21,7 +21,7 @@ struct Layout {
 constexpr Layout kNifti1 = {348, 344, 40, 70, 76, 108, 112, 252, 256, 268, 280, 123, false};
 constexpr Layout kNifti2 = {540, 4, 16, 12, 104, 168, 176, 344, 352, 376, 400, 500, true};
 
-constexpr std::int64_t kMostAlong = 32767;             // voxels along an axis
+constexpr std::int64_t kMostAlong = 32767;  // voxels along an axis
 constexpr std::size_t kMostVoxels = std::size_t{1} << 30;
 
 class Fields {
@@ -60,7 +60,8 @@ absl::StatusOr<Fields> Recognise(std::string_view name, std::string_view bytes) 
   for (const std::endian order : {std::endian::little, std::endian::big}) {
     for (const Layout* layout : {&kNifti1, &kNifti2}) {
       const Fields fields(name, bytes, order, *layout);
-      if (bytes.size() < layout->length + 4 || fields.Get<std::int32_t>(0) != static_cast<int>(layout->length)) continue;
+      if (bytes.size() < layout->length + 4 || fields.Get<std::int32_t>(0) != static_cast<int>(layout->length))
+        continue;
       const std::string_view magic = bytes.substr(layout->magic, 4);
       if (magic.starts_with("ni")) {
         return fields.Error(layout->magic, "the voxels are in a second file (.img); save it as one file, .nii");
@@ -69,8 +70,9 @@ absl::StatusOr<Fields> Recognise(std::string_view name, std::string_view bytes) 
     }
   }
   return absl::InvalidArgumentError(
-      absl::StrCat(std::string(name), ": no NIfTI-1 or NIfTI-2 file: its first bytes are not such a header; save the "
-                                      "segmentation as .nii or .nii.gz"));
+      absl::StrCat(std::string(name),
+                   ": no NIfTI-1 or NIfTI-2 file: its first bytes are not such a header; save the "
+                   "segmentation as .nii or .nii.gz"));
 }
 
 absl::Status ReadSize(const Fields& fields, NiftiHeader& header) {
@@ -83,7 +85,7 @@ absl::Status ReadSize(const Fields& fields, NiftiHeader& header) {
     const bool right = k <= 3 ? along >= 1 && along <= kMostAlong : along == 1;
     if (!right) {
       return fields.Error(fields.at->dim, absl::StrCat("dimension ", k, " has ", along, " entries; ",
-                                                      k <= 3 ? "1 to 32767 will do" : "one volume alone will do"));
+                                                       k <= 3 ? "1 to 32767 will do" : "one volume alone will do"));
     }
     if (k <= 3) header.size[k - 1] = static_cast<int>(along);
   }
@@ -97,13 +99,13 @@ absl::Status ReadType(const Fields& fields, NiftiHeader& header) {
   header.type = fields.Get<std::int16_t>(fields.at->type);
   if (!WithIntegerOf(header.type, [&](auto number) { header.voxel_bytes = sizeof(number); })) {
     return fields.Error(fields.at->type, absl::StrCat("voxels are of type ", header.type,
-                                                     "; labels are integers: save it as such (uint8, int16, ...)"));
+                                                      "; labels are integers: save it as such (uint8, int16, ...)"));
   }
   const double slope = fields.Real(fields.at->slope, 0), intercept = fields.Real(fields.at->slope, 1);
   const bool plain = (slope == 0 && std::isfinite(intercept)) || (slope == 1 && intercept == 0);
   if (!plain) return fields.Error(fields.at->slope, "voxels are scaled; labels must not be: save them as they are");
   const double start = fields.at->wide ? static_cast<double>(fields.Get<std::int64_t>(fields.at->data_at))
-                                      : fields.Get<float>(fields.at->data_at);
+                                       : fields.Get<float>(fields.at->data_at);
   if (!(start >= static_cast<double>(header.length) && start < 1e9) || start != std::floor(start)) {
     return fields.Error(fields.at->data_at, absl::StrCat("voxels cannot begin at byte ", start));
   }
@@ -135,7 +137,8 @@ Eigen::Affine3d ByQuaternion(const Fields& fields) {
 
 // Millimetres in the header's unit of length.
 double UnitOf(const Fields& fields) {
-  const int code = fields.at->wide ? fields.Get<std::int32_t>(fields.at->units) : fields.Get<std::uint8_t>(fields.at->units);
+  const int code =
+      fields.at->wide ? fields.Get<std::int32_t>(fields.at->units) : fields.Get<std::uint8_t>(fields.at->units);
   return (code & 7) == 1 ? 1e3 : (code & 7) == 3 ? 1e-3 : 1.0;
 }
 

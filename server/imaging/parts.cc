@@ -28,8 +28,8 @@ std::string NameOf(const std::string& label, const v1::Anatomy& anatomy) {
 }
 
 bool IsMany(const v1::Anatomy& anatomy) {
-  const bool divisible = anatomy.structure() == v1::STRUCTURE_RIB ||
-                         anatomy.structure() == v1::STRUCTURE_COSTAL_CARTILAGE;
+  const bool divisible =
+      anatomy.structure() == v1::STRUCTURE_RIB || anatomy.structure() == v1::STRUCTURE_COSTAL_CARTILAGE;
   return divisible && anatomy.number() == 0;
 }
 
@@ -46,7 +46,7 @@ Eigen::Vector3d Centroid(const LabelVolume& volume, const Mask& mask) {
 
 // The height of the end beside the spine.
 double HeadHeight(const LabelVolume& volume, const Mask& mask, double middle) {
-  constexpr double kHead = 12;  // [mm]
+  constexpr double kHead = 12;                     // [mm]
   const double back = Centroid(volume, mask).y();  // the front end may be as near to the middle: it does not count
   double nearest = 1e9, sum = 0, count = 0;
   for (const bool nearest_known : {false, true}) {
@@ -136,7 +136,8 @@ absl::StatusOr<std::vector<Part>> FindParts(const LabelVolume& volume, const v1:
     }
     for (std::size_t p = 0; p < pieces.size(); ++p) {
       const std::size_t voxels = pieces[p].Count();
-      parts.push_back({absl::StrCat("cartilage-", p + 1), label.anatomy(), v1::ORGAN_UNSPECIFIED, std::move(pieces[p]), voxels});
+      parts.push_back(
+          {absl::StrCat("cartilage-", p + 1), label.anatomy(), v1::ORGAN_UNSPECIFIED, std::move(pieces[p]), voxels});
     }
   }
   if (!ribs.empty()) AddNumberedRibs(volume, std::move(ribs), parts, fallbacks);

@@ -16,12 +16,10 @@
 namespace phrenic::imaging {
 namespace {
 
-constexpr double kDiaphragmsShare = 0.5;   // of the whole time
-constexpr double kLungEdges = 1.5;         // of the bones' edge length
+constexpr double kDiaphragmsShare = 0.5;  // of the whole time
+constexpr double kLungEdges = 1.5;        // of the bones' edge length
 
-bool HasSurface(const Part& part) {
-  return part.organ == v1::ORGAN_UNSPECIFIED && !part.Is(v1::STRUCTURE_DIAPHRAGM);
-}
+bool HasSurface(const Part& part) { return part.organ == v1::ORGAN_UNSPECIFIED && !part.Is(v1::STRUCTURE_DIAPHRAGM); }
 
 absl::Status CheckParts(const std::vector<Part>& parts) {
   const auto has = [&parts](v1::Structure structure) {

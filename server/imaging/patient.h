@@ -36,9 +36,9 @@ struct Patient {
 using PatientProgress = absl::FunctionRef<bool(double done, std::string_view doing)>;
 
 // `pattern` is the scene whose forces, breath and presets the patient gets, scaled to the patient's width: the shipped
-// "thorax". Every part is moved sideways by one distance (in the report), so that the spine's middle is x = 0, where the
-// scene language has its midsagittal plane. FAILED_PRECONDITION where the volume has no lungs, ribs or vertebrae, or is
-// no thorax; CANCELLED where the progress says so.
+// "thorax". Every part is moved sideways by one distance (in the report), so that the spine's middle is x = 0, where
+// the scene language has its midsagittal plane. FAILED_PRECONDITION where the volume has no lungs, ribs or vertebrae,
+// or is no thorax; CANCELLED where the progress says so.
 absl::StatusOr<Patient> MakePatient(const LabelVolume& volume, const v1::LabelMap& map, const v1::Scene& pattern,
                                     const PatientOptions& options, PatientProgress progress);
 

@@ -18,11 +18,11 @@ constexpr double kPatternWidth = 262;  // of the generated thorax [mm]
 
 // The pattern is made for the generated sheet, with openings and another tendon. These, times its values, let the three
 // phantoms of the acceptance tests breathe quietly inside the published ranges.
-constexpr double kMuscle = 0.75, kTendon = 2.3;       // stiffness
+constexpr double kMuscle = 0.75, kTendon = 2.3;        // stiffness
 constexpr double kPullRight = 0.81, kPullLeft = 1.09;  // of the action lines, for a sheet of this area:
-constexpr double kSheet = 0.1045;                     // the adult phantom's [m^2]
-constexpr double kRibs = 1.15;                   // how far ribs turn in a quiet breath
-constexpr double kBehindMiddle = 6e-3;           // of the action lines, in the pattern's size [m]
+constexpr double kSheetArea = 0.1045;                  // the adult phantom's [m^2]
+constexpr double kRibs = 1.15;                         // how far ribs turn in a quiet breath
+constexpr double kBehindMiddle = 6e-3;                 // of the action lines, in the pattern's size [m]
 
 const char* LayerOf(v1::Structure structure) {
   switch (structure) {
@@ -124,7 +124,7 @@ double Area(const Mesh& mesh) {
 
 void AdaptForces(const Mesh& diaphragm, const CageFrame& frame, const std::set<std::string>& layers, v1::Scene& scene) {
   const double scale = ScaleOf(frame);
-  const double pull = std::sqrt(Area(diaphragm) / 2 / kSheet);  // of two layers
+  const double pull = std::sqrt(Area(diaphragm) / 2 / kSheetArea);  // of two layers
   const Eigen::Vector3d low = diaphragm.vertices.rowwise().minCoeff(), high = diaphragm.vertices.rowwise().maxCoeff();
   for (v1::Force& force : *scene.mutable_forces()) {
     if (force.has_attachment()) {

@@ -22,12 +22,11 @@ double Share(double z) {
   return t * t * (3 - 2 * t);
 }
 
-bool IsSoft(v1::Structure structure) {
-  return structure == v1::STRUCTURE_LUNG || structure == v1::STRUCTURE_DIAPHRAGM;
-}
+bool IsSoft(v1::Structure structure) { return structure == v1::STRUCTURE_LUNG || structure == v1::STRUCTURE_DIAPHRAGM; }
 
 LabelVolume EmptyVolume(const PhantomBody& body, double voxel) {
-  const Eigen::Vector3d low = 1e3 * body.Place(kMillimetre * kLow, false), high = 1e3 * body.Place(kMillimetre * kHigh, false);
+  const Eigen::Vector3d low = 1e3 * body.Place(kMillimetre * kLow, false),
+                        high = 1e3 * body.Place(kMillimetre * kHigh, false);
   LabelVolume volume;
   volume.size = ((high - low) / voxel).array().ceil().cast<int>() + 1;
   // As scanners do: i to the patient's right, j to the front, k up.
@@ -87,9 +86,7 @@ std::vector<v1::Anatomy> PartsOf(const v1::Anatomy& anatomy) {
   return parts;
 }
 
-bool IsGenerated(const v1::Anatomy& part) {
-  return part.structure() != v1::STRUCTURE_VERTEBRA || part.number() <= 15;
-}
+bool IsGenerated(const v1::Anatomy& part) { return part.structure() != v1::STRUCTURE_VERTEBRA || part.number() <= 15; }
 
 absl::Status AddSurfaces(const PhantomBody& body, const v1::LabelMap& map, double voxel, LabelVolume& volume) {
   std::vector<std::string> made;
@@ -160,10 +157,8 @@ Eigen::Vector3d PhantomBody::Generated(const Eigen::Vector3d& placed, bool soft)
 }
 
 absl::StatusOr<PhantomBody> FindPhantomBody(std::string_view name) {
-  const std::vector<PhantomBody> bodies = {{"adult"},
-                                           {"small", {0.85, 0.85, 0.84}},
-                                           {"tall", {1.04, 1.02, 1.12}},
-                                           {"flat", {1.02, 1.08, 1.0}, 22}};
+  const std::vector<PhantomBody> bodies = {
+      {"adult"}, {"small", {0.85, 0.85, 0.84}}, {"tall", {1.04, 1.02, 1.12}}, {"flat", {1.02, 1.08, 1.0}, 22}};
   for (const PhantomBody& body : bodies) {
     if (body.name == name) return body;
   }

@@ -21,8 +21,8 @@ double AboveDome(const Eigen::Vector3d& point) {
   const Eigen::Vector2d q = Disc(point, anatomy::kDiaphragmInset);
   const double r = std::clamp(q.norm(), kStep, 1 - 2 * kStep);
   const Eigen::Vector2d unit = q / std::max(q.norm(), 1e-9);
-  const double slope = (anatomy::DomeHeight((r - kStep) * unit) - anatomy::DomeHeight((r + kStep) * unit)) /
-                       (2 * kStep * kRadius);
+  const double slope =
+      (anatomy::DomeHeight((r - kStep) * unit) - anatomy::DomeHeight((r + kStep) * unit)) / (2 * kStep * kRadius);
   return (point.z() - anatomy::DomeHeight(q)) / std::hypot(1.0, slope);
 }
 
@@ -36,7 +36,8 @@ bool InAbdomen(const Eigen::Vector3d& point) {
 }
 
 bool InHeart(const Eigen::Vector3d& point) {
-  const bool in = Ellipsoid(point, {20, -42, 238}, {44, 48, 54}) < 1 || Ellipsoid(point, {2, -26, 248}, {34, 28, 52}) < 1;
+  const bool in =
+      Ellipsoid(point, {20, -42, 238}, {44, 48, 54}) < 1 || Ellipsoid(point, {2, -26, 248}, {34, 28, 52}) < 1;
   return in && AboveDome(point) > kBeside && Disc(point, 6).norm() < 1;
 }
 

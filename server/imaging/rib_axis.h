@@ -13,8 +13,8 @@ struct RibNeck {
   Eigen::Vector3d Axis() const { return (tubercle - head).normalized(); }
 };
 
-// The head is the end of the rib nearest to the midsagittal plane x = 0; the neck runs from there to the tubercle, 14 to
-// 22 mm along (in a cage of 262 mm; times `scale` in another). Each end is the mean of the surface there.
+// The head is the end of the rib nearest to the midsagittal plane x = 0; the neck runs from there to the tubercle, 14
+// to 22 mm along (in a cage of 262 mm; times `scale` in another). Each end is the mean of the surface there.
 RibNeck FindRibNeck(const Mesh& rib, double scale);
 
 }  // namespace phrenic::imaging

@@ -11,9 +11,9 @@ namespace phrenic::imaging {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr int kStep = 10;             // between two knots on the costal margin [degrees from the front]
-constexpr double kHalfSternum = 8;    // [degrees]
-constexpr double kLastCostal = 140;   // further back the arcuate ligaments begin
+constexpr int kStep = 10;            // between two knots on the costal margin [degrees from the front]
+constexpr double kHalfSternum = 8;   // [degrees]
+constexpr double kLastCostal = 140;  // further back the arcuate ligaments begin
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
 constexpr int kDirections = 360 / kStep;
 
@@ -59,8 +59,14 @@ std::vector<Knot> CostalKnots(const std::vector<double>& lowest, const CageFrame
 std::vector<Knot> CrusKnots(const CageFrame& frame, v1::Side side) {
   const double l1 = frame.lumbar[0], h = frame.vertebra_height;
   const double tip = side == v1::SIDE_RIGHT ? frame.lumbar[2] : frame.lumbar[1] - 0.2 * h;
-  return {{28, l1 + 0.3 * h}, {20, l1 + 0.2 * h},       {15, l1 - 0.4 * h}, {12, (l1 + tip) / 2 - 0.3 * h},
-          {9, tip},           {6, (l1 + tip) / 2 - 0.3 * h}, {4, l1},       {2, l1 + h}};
+  return {{28, l1 + 0.3 * h},
+          {20, l1 + 0.2 * h},
+          {15, l1 - 0.4 * h},
+          {12, (l1 + tip) / 2 - 0.3 * h},
+          {9, tip},
+          {6, (l1 + tip) / 2 - 0.3 * h},
+          {4, l1},
+          {2, l1 + h}};
 }
 
 // Once round, anticlockwise seen from above with the front at the beginning: left side first.
@@ -73,8 +79,8 @@ std::vector<Knot> Knots(const std::vector<double>& lowest, const CageFrame& fram
   for (const Knot& knot : CrusKnots(frame, v1::SIDE_RIGHT)) right.push_back({knot.degrees - 180, knot.z});
   for (auto knot = right.rbegin(); knot != right.rend(); ++knot) knots.push_back({knot->degrees + 360, knot->z});
   if (bridged > 0) {
-    fallbacks.push_back(absl::StrFormat("costal margin: no rib or cartilage 7-12 in %d of 28 directions; bridged",
-                                        bridged));
+    fallbacks.push_back(
+        absl::StrFormat("costal margin: no rib or cartilage 7-12 in %d of 28 directions; bridged", bridged));
   }
   return knots;
 }

@@ -10,10 +10,10 @@ namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
 
-constexpr double kBending = 2;   // b, against a weight of 1 for each ray
-constexpr double kOff = 6;       // [mm]
-constexpr double kAgrees = 8;    // a sight that is further off did not count [mm]
-constexpr double kNearby = 10;   // [mm]
+constexpr double kBending = 2;  // b, against a weight of 1 for each ray
+constexpr double kOff = 6;      // [mm]
+constexpr double kAgrees = 8;   // a sight that is further off did not count [mm]
+constexpr double kNearby = 10;  // [mm]
 
 // The five-point Laplacian at the grid's inner points; second differences along its edges.
 Sparse Laplacian(const SheetEvidence& grid) {
@@ -71,8 +71,7 @@ SmoothSheet::SmoothSheet(const CageFrame& frame, const SheetEvidence& evidence)
     : frame_(frame), evidence_(evidence), depth_(Fit(evidence)) {}
 
 double SmoothSheet::Depth(const Eigen::Vector2d& p) const {
-  const Eigen::Array2d at =
-      ((p.array() + kPlaneReach) / evidence_.cell()).max(1.0).min(evidence_.count - 2.001);
+  const Eigen::Array2d at = ((p.array() + kPlaneReach) / evidence_.cell()).max(1.0).min(evidence_.count - 2.001);
   const int i = static_cast<int>(at.x()), j = static_cast<int>(at.y());
   const std::array<double, 4> across = SplineWeights(at.x() - i), along = SplineWeights(at.y() - j);
   double depth = 0;

@@ -8,9 +8,9 @@
 
 namespace phrenic::imaging {
 
-// A depth r(p) along the rays of a frame that is smooth everywhere: minimises sum w (r - seen)^2 + b sum (Laplacian r)^2
-// over the grid (a thin plate; Wahba, Spline Models, 1990), so that what was not seen goes on from around; seen depths
-// that lie off lose weight over some rounds, w = 1 / (1 + (off / 6 mm)^2). Immutable; any thread.
+// A depth r(p) along the rays of a frame that is smooth everywhere: minimises sum w (r - seen)^2 + b sum (Laplacian
+// r)^2 over the grid (a thin plate; Wahba, Spline Models, 1990), so that what was not seen goes on from around; seen
+// depths that lie off lose weight over some rounds, w = 1 / (1 + (off / 6 mm)^2). Immutable; any thread.
 class SmoothSheet {
  public:
   SmoothSheet(const CageFrame& frame, const SheetEvidence& evidence);

@@ -16,8 +16,7 @@ void Cross(const Eigen::Matrix3d& corners, const Eigen::Vector3i& size, std::vec
   const double twice = Cross(b - a, c - a);
   if (twice == 0) return;
   const Eigen::Vector2i low = a.cwiseMin(b).cwiseMin(c).array().ceil().cast<int>().max(0);
-  const Eigen::Vector2i high =
-      a.cwiseMax(b).cwiseMax(c).array().floor().cast<int>().min(size.head<2>().array() - 1);
+  const Eigen::Vector2i high = a.cwiseMax(b).cwiseMax(c).array().floor().cast<int>().min(size.head<2>().array() - 1);
   for (int j = low.y(); j <= high.y(); ++j) {
     for (int i = low.x(); i <= high.x(); ++i) {
       const Eigen::Vector2d p(i, j);
@@ -33,8 +32,7 @@ void Cross(const Eigen::Matrix3d& corners, const Eigen::Vector3i& size, std::vec
 void Voxelise(const Mesh& mesh, Label number, LabelVolume& volume) {
   // Off the grid by a hair, so that no line runs through a vertex or an edge.
   const Eigen::Vector3d hair(1.234e-5, 2.345e-5, 0);
-  const Points voxels =
-      (volume.to_patient.inverse() * (mesh.vertices / kMillimetre)).colwise() + hair;
+  const Points voxels = (volume.to_patient.inverse() * (mesh.vertices / kMillimetre)).colwise() + hair;
   std::vector<std::vector<double>> crossings(static_cast<std::size_t>(volume.size.x()) * volume.size.y());
   for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
     Eigen::Matrix3d corners;

@@ -1,4 +1,5 @@
-// Three bodies, small, tall and with flattened domes, go from noisy label volumes to a breath inside the published ranges.
+// Three bodies, small, tall and with flattened domes, go from noisy label volumes to a breath inside the published
+// ranges.
 #include <gtest/gtest.h>
 
 #include <cstdio>
