@@ -112,9 +112,9 @@ Mask CutOut(const LabelVolume& volume, Label label, const Extent& extent, int ma
   return mask;
 }
 
-void Close(Mask& mask) {
-  for (int axis = 0; axis < 3; ++axis) Spread(mask, axis, [](auto a, auto b) { return std::max(a, b); });
-  for (int axis = 0; axis < 3; ++axis) Spread(mask, axis, [](auto a, auto b) { return std::min(a, b); });
+void Close(Mask& mask, int reach) {
+  for (int step = 0; step < 3 * reach; ++step) Spread(mask, step % 3, [](auto a, auto b) { return std::max(a, b); });
+  for (int step = 0; step < 3 * reach; ++step) Spread(mask, step % 3, [](auto a, auto b) { return std::min(a, b); });
 }
 
 void FillCavities(Mask& mask) {

@@ -35,8 +35,9 @@ struct Mask {
 // The label's voxels with `margin` empty ones around, also where the volume ends: what is cut by its border is closed.
 Mask CutOut(const LabelVolume& volume, Label label, const Extent& extent, int margin);
 
-// Closing by one voxel (dilation, then erosion, by a cube of three): holes and cracks of one or two voxels go.
-void Close(Mask& mask);
+// Closing: dilation by a cube of three, `reach` times, then as many erosions. Holes and cracks of up to twice as many
+// voxels go; the mask needs as much room around.
+void Close(Mask& mask, int reach);
 
 // Cavities that the outside does not reach become inside.
 void FillCavities(Mask& mask);

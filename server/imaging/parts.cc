@@ -98,16 +98,32 @@ void AddNumberedRibs(const LabelVolume& volume, std::vector<Mask> ribs, std::vec
   }
 }
 
-void AddWhole(const v1::LabelMeaning& label, std::size_t voxels, const std::vector<Mask>& pieces,
-              std::vector<Part>& parts, Sentences& fallbacks) {
-  Part& part = parts.emplace_back(
-      Part{NameOf(label.name(), label.anatomy()), label.anatomy(), label.organ(), pieces.front(), voxels});
+double LargestShare(const std::vector<Mask>& pieces) {
   std::size_t all = 0;
   for (const Mask& piece : pieces) all += piece.Count();
-  const double share = static_cast<double>(part.mask.Count()) / static_cast<double>(all);
-  if (share < kWhole) {
-    fallbacks.push_back(absl::StrFormat("%s: label %d is in %d pieces; the largest, %.0f %% of it, is taken", part.name,
-                                        label.number(), pieces.size(), 100 * share));
+  return static_cast<double>(pieces.front().Count()) / static_cast<double>(all);
+}
+
+// Closed by one voxel, or by as many more, up to three, as make it one piece.
+void AddWhole(const LabelVolume& volume, const v1::LabelMeaning& label, const Extent& extent, std::vector<Part>& parts,
+              Sentences& fallbacks) {
+  constexpr int kFurthest = 3;
+  const int margin = SurfaceMargin(volume);
+  std::vector<Mask> pieces;
+  int reach = 0;
+  do {
+    Mask mask = CutOut(volume, static_cast<Label>(label.number()), extent, margin);
+    Close(mask, ++reach);
+    FillCavities(mask);
+    pieces = Pieces(mask, margin);
+  } while (LargestShare(pieces) < kWhole && reach < kFurthest);
+  const std::string name = NameOf(label.name(), label.anatomy());
+  parts.push_back({name, label.anatomy(), label.organ(), std::move(pieces.front()), extent.voxels});
+  if (reach > 1) {
+    fallbacks.push_back(
+        absl::StrFormat("%s: label %d had gaps; those of up to %d voxels were bridged, and the largest "
+                        "piece is taken",
+                        name, label.number(), 2 * reach));
   }
 }
 
@@ -121,14 +137,14 @@ absl::StatusOr<std::vector<Part>> FindParts(const LabelVolume& volume, const v1:
   for (const v1::LabelMeaning& label : map.labels()) {
     const auto extent = extents.find(static_cast<Label>(label.number()));
     if (extent == extents.end()) continue;
-    Mask mask = CutOut(volume, extent->first, extent->second, margin);
-    Close(mask);
-    FillCavities(mask);
-    std::vector<Mask> pieces = Pieces(mask, margin);
     if (!IsMany(label.anatomy())) {
-      AddWhole(label, extent->second.voxels, pieces, parts, fallbacks);
+      AddWhole(volume, label, extent->second, parts, fallbacks);
       continue;
     }
+    Mask mask = CutOut(volume, extent->first, extent->second, margin);
+    Close(mask, 1);
+    FillCavities(mask);
+    std::vector<Mask> pieces = Pieces(mask, margin);
     std::erase_if(pieces, [&](const Mask& p) { return p.Count() * VoxelVolume(volume) < kSmallestPiece; });
     if (label.anatomy().structure() == v1::STRUCTURE_RIB) {
       std::move(pieces.begin(), pieces.end(), std::back_inserter(ribs));
