@@ -25,6 +25,8 @@ struct AllOptions {
   CompareOptions compare;
   InspectOptions inspect;
   ConvertOptions convert;
+  PatientOptions patient;
+  PhantomOptions phantom;
   CreateOptions create;
   SessionOptions session;
   WatchOptions watch;
@@ -58,6 +60,7 @@ class CommandLine {
     AddStudies();
     AddCompare();
     AddFileCommands();
+    AddPatientCommands();
     AddSessionCommands();
     AddControlCommands();
     AddExport();
@@ -229,6 +232,51 @@ class CommandLine {
     CLI::App* command = Add("upload", "Give the server a surface file, for scenes of any session", &Upload, upload);
     command->add_option("FILE", upload.file, "a surface (" + meshio::Endings() + ")")->required();
     AddUnit(command, "--unit-mm", upload.unit_mm, "its");
+  }
+
+  static void AddLabels(CLI::App* command, std::string& labels) {
+    command->add_option("--labels", labels, "what its numbers mean: totalsegmentator, or a file NAME.textproto")
+        ->capture_default_str();
+  }
+
+  void AddPatientCommands() {
+    PatientOptions& patient = options_.patient;
+    CLI::App* command = Add("patient", "Make a thorax that breathes of a label volume", &MakePatient, patient);
+    command->add_option("VOLUME", patient.volume, "labels as NIfTI (.nii, .nii.gz)")->required();
+    AddLabels(command, patient.labels);
+    command->add_option("--out", patient.out, "data folder to write surfaces and scene to")->required();
+    command->add_option("--name", patient.name, "of the scene: 1 to 64 of a-z, 0-9 and -")->capture_default_str();
+    command->add_option("--edge-length", patient.edge_length, "of bones' triangles [mm]; of lungs' half as much again")
+        ->check(CLI::Range(1.0, 20.0))
+        ->capture_default_str();
+    command->add_option("--vertices", patient.vertices, "on the diaphragm, about")
+        ->check(CLI::Range(500, 200000))
+        ->capture_default_str();
+    command->add_option("--tendon-share", patient.tendon_share, "of the diaphragm's area")
+        ->check(CLI::Range(0.05, 0.5))
+        ->capture_default_str();
+    CLI::Option* serve =
+        command->add_flag("--serve", patient.serve, "then start phrenicd, which plays it in the viewer");
+    command->add_option("--web", patient.web, "HOST:PORT of the viewer")->needs(serve)->capture_default_str();
+    AddPhantom();
+  }
+
+  void AddPhantom() {
+    PhantomOptions& phantom = options_.phantom;
+    CLI::App* command = Add("phantom", "Write a label volume of a body whose truth is known", &MakePhantom, phantom);
+    command->add_option("--body", phantom.body, "adult, small, tall or flat (its domes)")->capture_default_str();
+    AddLabels(command, phantom.labels);
+    command->add_option("--out", phantom.out, "file to write, .nii or .nii.gz")->required();
+    command->add_option("--voxel", phantom.voxel, "edge length of a voxel [mm]")
+        ->check(CLI::Range(1.0, 10.0))
+        ->capture_default_str();
+    command->add_option("--noise", phantom.noise, "share of voxels at borders that have a neighbour's label")
+        ->check(CLI::Range(0.0, 0.3))
+        ->capture_default_str();
+    command->add_option("--holes", phantom.holes, "balls of 3 mm without a label")
+        ->check(CLI::Range(0, 10000))
+        ->capture_default_str();
+    command->add_option("--seed", phantom.seed, "of noise and holes")->capture_default_str();
   }
 
   void AddSessionCommands() {

@@ -57,6 +57,21 @@ struct ConvertOptions {
   std::string in, out;
   double unit_mm = 1, out_unit_mm = 1;  // in one unit of IN's, and of OUT's lengths
 };
+struct PatientOptions {
+  std::string volume, labels = "totalsegmentator";
+  std::string out, name = "patient";
+  double edge_length = 4;  // [mm]
+  int vertices = 20000;
+  double tendon_share = 0.22;
+  bool serve = false;
+  std::string web = "127.0.0.1:8080";
+};
+struct PhantomOptions {
+  std::string body = "adult", labels = "totalsegmentator", out;
+  double voxel = 2, noise = 0.02;
+  int holes = 40;
+  unsigned seed = 1;
+};
 struct CreateOptions {
   SceneOptions scene;
   std::string id;
@@ -122,6 +137,8 @@ int DeleteStudy(const Context& context, const StudyOptions& options);
 int Compare(const Context& context, const CompareOptions& options);
 int Inspect(const Context& context, const InspectOptions& options);
 int Convert(const Context& context, const ConvertOptions& options);
+int MakePatient(const Context& context, const PatientOptions& options);
+int MakePhantom(const Context& context, const PhantomOptions& options);
 int Create(const Context& context, const CreateOptions& options);
 int Sessions(const Context& context);
 int Watch(const Context& context, const WatchOptions& options);

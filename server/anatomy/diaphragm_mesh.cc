@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <set>
-#include <utility>
 #include <vector>
 
 #include "server/anatomy/diaphragm_shape.h"
 #include "server/anatomy/dimensions.h"
+#include "server/anatomy/double_layer.h"
 #include "server/anatomy/sheet_mesh.h"
 
 namespace phrenic::anatomy {
@@ -47,57 +45,6 @@ SheetDomain Domain(double edge_length) {
   return domain;
 }
 
-// The border's edges as the triangles run along them.
-std::vector<std::pair<int, int>> BorderEdges(const Sheet& sheet) {
-  std::set<std::pair<int, int>> along;
-  for (Eigen::Index t = 0; t < sheet.triangles.cols(); ++t) {
-    for (int k = 0; k < 3; ++k) along.emplace(sheet.triangles(k, t), sheet.triangles((k + 1) % 3, t));
-  }
-  std::vector<std::pair<int, int>> border;
-  for (const auto& [a, b] : along) {
-    if (!along.contains({b, a})) border.emplace_back(a, b);
-  }
-  return border;
-}
-
-double Distance(const Sheet& sheet, const std::vector<int>& loop, int vertex) {
-  double square = std::numeric_limits<double>::infinity();
-  for (const int other : loop) square = std::min(square, (sheet.points[other] - sheet.points[vertex]).squaredNorm());
-  return std::sqrt(square);
-}
-
-// The gap narrows to the border within 8 mm.
-double Gap(const Sheet& sheet, int vertex) {
-  constexpr double kTaper = 8;
-  double nearest = kTaper;
-  for (const std::vector<int>& loop : sheet.loops) nearest = std::min(nearest, Distance(sheet, loop, vertex));
-  const double t = nearest / kTaper;
-  return kBorderGap + (kDiaphragmGap - kBorderGap) * t * t * (3 - 2 * t);
-}
-
-// The layers and the band that joins them along every loop.
-void AddLayers(const Sheet& sheet, Mesh& mesh) {
-  const auto n = static_cast<int>(sheet.points.size());
-  mesh.vertices.resize(3, 2 * n);
-  for (int i = 0; i < n; ++i) {
-    const Eigen::Vector3d half = Gap(sheet, i) / 2 * DiaphragmNormal(sheet.plane[i]);
-    mesh.vertices.col(i) = sheet.points[i] + half;
-    mesh.vertices.col(n + i) = sheet.points[i] - half;
-  }
-  std::vector<Eigen::Vector3i> triangles;
-  for (Eigen::Index t = 0; t < sheet.triangles.cols(); ++t) triangles.emplace_back(sheet.triangles.col(t));
-  for (Eigen::Index t = 0; t < sheet.triangles.cols(); ++t) {
-    const Eigen::Vector3i v = sheet.triangles.col(t);
-    triangles.emplace_back(n + v[0], n + v[2], n + v[1]);
-  }
-  for (const auto& [a, b] : BorderEdges(sheet)) {
-    triangles.emplace_back(b, a, n + a);
-    triangles.emplace_back(b, n + a, n + b);
-  }
-  mesh.triangles.resize(3, static_cast<Eigen::Index>(triangles.size()));
-  for (size_t t = 0; t < triangles.size(); ++t) mesh.triangles.col(static_cast<Eigen::Index>(t)) = triangles[t];
-}
-
 void AddRegions(const Sheet& sheet, double edge_length, Mesh& mesh) {
   const auto n = static_cast<int>(sheet.points.size());
   const double band = std::max(8.0, 1.2 * edge_length);
@@ -112,7 +59,7 @@ void AddRegions(const Sheet& sheet, double edge_length, Mesh& mesh) {
       add("crus-right");
     } else if (InLeftCrus(p)) {
       add("crus-left");
-    } else if (!InTendon(p) && Distance(sheet, sheet.loops[0], i) < band) {
+    } else if (!InTendon(p) && LoopDistance(sheet, sheet.loops[0], i) < band) {
       add("rim");
     }
   }
@@ -123,8 +70,7 @@ void AddRegions(const Sheet& sheet, double edge_length, Mesh& mesh) {
 
 Mesh DiaphragmMesh(double edge_length) {
   const Sheet sheet = MeshSheet(Domain(edge_length));
-  Mesh mesh;
-  AddLayers(sheet, mesh);
+  Mesh mesh = DoubleLayer(sheet, DiaphragmNormal);
   AddRegions(sheet, edge_length, mesh);
   return mesh;
 }

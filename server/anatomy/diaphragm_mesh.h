@@ -7,9 +7,6 @@
 
 namespace phrenic::anatomy {
 
-inline constexpr double kDiaphragmGap = 3;  // between the layers [mm]
-inline constexpr double kBorderGap = 2.2;   // along the border and the openings, so that the edge is thin
-
 // In millimetres. `edge_length` [mm] is kept except near the openings and in the crura, which take finer ones where
 // they need them. With n vertices in all, vertex i < n / 2 is thoracic and i + n / 2 faces it on the abdominal surface.
 // Regions: "tendon"; "muscle", all the rest; "rim", the muscle near the costal and lumbar border; "crus-right" and

@@ -14,13 +14,14 @@ using Folders = std::set<std::string>;
 // What each folder of server/ may include besides itself; "main" is server/main.cc.
 const std::map<std::string, Folders>& Allowed() {
   static const Folders below = {"schema", "mesh", "meshio", "anatomy", "mechanics", "stream", "record"};
-  static const Folders all = {"schema", "mesh",   "meshio", "anatomy", "mechanics",
+  static const Folders all = {"schema", "mesh",   "meshio", "anatomy", "imaging", "mechanics",
                               "stream", "record", "study",  "session", "service"};
   static const std::map<std::string, Folders> allowed = {
       {"schema", {}},
       {"mesh", {"schema"}},
       {"meshio", {"schema", "mesh"}},
       {"anatomy", {"schema", "mesh"}},
+      {"imaging", {"schema", "mesh", "meshio", "anatomy"}},
       {"mechanics", {"schema", "mesh"}},
       {"stream", {"schema", "mesh", "mechanics"}},
       {"record", {"schema", "mesh"}},

@@ -1,0 +1,120 @@
+#include "server/imaging/cage_frame.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "absl/strings/str_format.h"
+
+namespace phrenic::imaging {
+namespace {
+
+constexpr int kT12 = 12, kL1 = 13;
+
+struct Bounds {
+  Eigen::AlignedBox3d box;
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+};
+
+Bounds BoundsOf(const LabelVolume& volume, const Mask& mask) {
+  Bounds bounds;
+  double count = 0;
+  for (std::size_t at = 0; at < mask.inside.size(); ++at) {
+    if (mask.inside[at] != 1) continue;
+    const Eigen::Vector3d place = mask.Place(volume, at);
+    bounds.box.extend(place);
+    bounds.mean += place;
+    ++count;
+  }
+  bounds.mean /= count;
+  return bounds;
+}
+
+struct Landmarks {
+  std::map<int, Bounds> vertebrae;
+  Eigen::AlignedBox3d lower_ribs, sternum, lungs;
+};
+
+Landmarks Find(const LabelVolume& volume, const std::vector<Part>& parts) {
+  Landmarks marks;
+  for (const Part& part : parts) {
+    const int number = part.anatomy.number();
+    if (part.Is(v1::STRUCTURE_VERTEBRA)) marks.vertebrae[number] = BoundsOf(volume, part.mask);
+    if (part.Is(v1::STRUCTURE_RIB) && number >= 6) marks.lower_ribs.extend(BoundsOf(volume, part.mask).box);
+    if (part.Is(v1::STRUCTURE_LUNG)) marks.lungs.extend(BoundsOf(volume, part.mask).box);
+    if (part.Is(v1::STRUCTURE_STERNUM_BODY) || part.Is(v1::STRUCTURE_XIPHOID)) {
+      marks.sternum.extend(BoundsOf(volume, part.mask).box);
+    }
+  }
+  return marks;
+}
+
+// Middles of L1 to L3; one that is not there stands as far from the next as the others do.
+void PlaceLumbar(const Landmarks& marks, CageFrame& frame, Sentences& fallbacks) {
+  const auto& [last, last_bounds] = *marks.vertebrae.rbegin();
+  const auto& [first, first_bounds] = *marks.vertebrae.begin();
+  constexpr double kUsual = 33;  // from one middle to the next, of lumbar vertebrae [mm]
+  frame.vertebra_height = kUsual * frame.width / 262;
+  const auto above = marks.vertebrae.find(last - 1);
+  if (above != marks.vertebrae.end()) frame.vertebra_height = above->second.mean.z() - last_bounds.mean.z();
+  for (int l = 0; l < 3; ++l) {
+    const auto found = marks.vertebrae.find(kL1 + l);
+    const bool below = kL1 + l > last;
+    const double from = below ? last_bounds.mean.z() - (kL1 + l - last) * frame.vertebra_height
+                              : first_bounds.mean.z() + (first - kL1 - l) * frame.vertebra_height;
+    frame.lumbar[l] = found != marks.vertebrae.end() ? found->second.mean.z() : from;
+    if (found == marks.vertebrae.end()) {
+      fallbacks.push_back(absl::StrFormat("no L%d: the crura are placed as if it stood %.0f mm from the next vertebra",
+                                          l + 1, frame.vertebra_height));
+    }
+  }
+}
+
+// y of the front of the vertebra nearest to T12 or L1.
+double SpineFront(const Landmarks& marks) {
+  const auto nearest = std::min_element(
+      marks.vertebrae.begin(), marks.vertebrae.end(),
+      [](const auto& a, const auto& b) { return std::abs(a.first - kT12) < std::abs(b.first - kT12); });
+  return nearest->second.box.min().y();
+}
+
+}  // namespace
+
+Ray CageFrame::RayOf(const Eigen::Vector2d& p) const {
+  const double s = p.norm();
+  const Eigen::Vector2d azimuth = s > 1e-9 ? Eigen::Vector2d(p / s) : Eigen::Vector2d(0, -1);
+  if (s > 1) {
+    return {centre - Eigen::Vector3d(0, 0, (s - 1) * wall_length), {azimuth.x(), azimuth.y(), 0}};
+  }
+  const double angle = s * std::numbers::pi / 2, across = std::sin(angle);
+  return {centre, {across * azimuth.x(), across * azimuth.y(), std::cos(angle)}};
+}
+
+absl::StatusOr<CageFrame> FindCageFrame(const LabelVolume& volume, const std::vector<Part>& parts,
+                                        Sentences& fallbacks) {
+  const Landmarks marks = Find(volume, parts);
+  if (marks.vertebrae.empty() || (marks.lower_ribs.isEmpty() && marks.lungs.isEmpty())) {
+    return absl::FailedPreconditionError(
+        "a diaphragm cannot be derived: labels of vertebrae, and of ribs 6-12 or lungs, are needed to say where it is");
+  }
+  CageFrame frame;
+  const Eigen::AlignedBox3d& cage = marks.lower_ribs.isEmpty() ? marks.lungs : marks.lower_ribs;
+  if (marks.lower_ribs.isEmpty()) fallbacks.push_back("no ribs 6-12: the cage is taken to be as wide as the lungs");
+  frame.width = cage.sizes().x();
+  double middle = 0;
+  for (const auto& [number, bounds] : marks.vertebrae) {
+    middle += bounds.mean.x() / static_cast<double>(marks.vertebrae.size());
+  }
+  PlaceLumbar(marks, frame, fallbacks);
+  frame.sternum_end = marks.sternum.isEmpty() ? frame.lumbar[0] + 3.3 * frame.vertebra_height : marks.sternum.min().z();
+  if (marks.sternum.isEmpty()) fallbacks.push_back("no sternum: the front of the rim is placed by the spine");
+  frame.spine_front = SpineFront(marks);
+  const double front = marks.sternum.isEmpty() ? cage.min().y() : marks.sternum.min().y() + 8;
+  // Towards the front, so that the gutters beside the spine are seen; low, so that both domes are.
+  frame.centre = {middle, front + 0.3 * (frame.spine_front - front), frame.sternum_end - 0.3 * frame.width};
+  frame.wall_length = 0.65 * frame.width;
+  return frame;
+}
+
+}  // namespace phrenic::imaging

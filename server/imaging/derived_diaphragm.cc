@@ -1,0 +1,169 @@
+#include "server/imaging/derived_diaphragm.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <queue>
+
+#include "absl/strings/str_cat.h"
+#include "server/anatomy/double_layer.h"
+#include "server/anatomy/plane_region.h"
+#include "server/imaging/millimetre.h"
+#include "server/imaging/rim.h"
+#include "server/mesh/topology.h"
+
+namespace phrenic::imaging {
+namespace {
+
+using anatomy::Sheet;
+
+constexpr double kTold = 0.1;  // share of a sector that is worth a line of the report
+
+// Area of the sheet inside the rim [mm^2].
+double AreaOf(const SmoothSheet& sheet, const anatomy::PlaneRegion& region) {
+  constexpr double kCell = 0.04;
+  const Eigen::Vector2d ex(kCell, 0), ey(0, kCell);
+  double area = 0;
+  for (double y = region.low().y(); y < region.high().y(); y += kCell) {
+    for (double x = region.low().x(); x < region.high().x(); x += kCell) {
+      const Eigen::Vector2d p(x, y);
+      if (!region.Contains(p)) continue;
+      const Eigen::Vector3d at = sheet.Point(p);
+      area += (sheet.Point(p + ex) - at).cross(sheet.Point(p + ey) - at).norm();
+    }
+  }
+  return area;
+}
+
+// Lengths of the shortest ways along edges from the border (Dijkstra).
+std::vector<double> FromBorder(const Sheet& sheet) {
+  std::vector<std::vector<int>> neighbours(sheet.points.size());
+  for (Eigen::Index t = 0; t < sheet.triangles.cols(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      neighbours[sheet.triangles(k, t)].push_back(sheet.triangles((k + 1) % 3, t));
+      neighbours[sheet.triangles((k + 1) % 3, t)].push_back(sheet.triangles(k, t));
+    }
+  }
+  using Reached = std::pair<double, int>;
+  std::priority_queue<Reached, std::vector<Reached>, std::greater<>> queue;
+  std::vector<double> distance(sheet.points.size(), std::numeric_limits<double>::infinity());
+  for (const int i : sheet.loops[0]) distance[i] = 0, queue.emplace(0, i);
+  while (!queue.empty()) {
+    const auto [so_far, i] = queue.top();
+    queue.pop();
+    if (so_far > distance[i]) continue;
+    for (const int j : neighbours[i]) {
+      const double way = so_far + (sheet.points[j] - sheet.points[i]).norm();
+      if (way < distance[j]) distance[j] = way, queue.emplace(way, j);
+    }
+  }
+  return distance;
+}
+
+double TriangleArea(const Sheet& sheet, Eigen::Index t) {
+  const Eigen::Vector3d &a = sheet.points[sheet.triangles(0, t)], &b = sheet.points[sheet.triangles(1, t)];
+  return (b - a).cross(sheet.points[sheet.triangles(2, t)] - a).norm() / 2;
+}
+
+// The least distance from the border that leaves `share` of the area further in.
+double TendonBorder(const Sheet& sheet, const std::vector<double>& distance, double share) {
+  std::vector<std::pair<double, double>> triangles;  // distance, area
+  double area = 0;
+  for (Eigen::Index t = 0; t < sheet.triangles.cols(); ++t) {
+    const Eigen::Vector3i v = sheet.triangles.col(t);
+    triangles.emplace_back(std::min({distance[v[0]], distance[v[1]], distance[v[2]]}), TriangleArea(sheet, t));
+    area += triangles.back().second;
+  }
+  std::sort(triangles.rbegin(), triangles.rend());
+  double taken = 0;
+  for (const auto& [from_border, own] : triangles) {
+    taken += own;
+    if (taken >= share * area) return from_border;
+  }
+  return 0;
+}
+
+void AddRegions(const Sheet& sheet, const CageFrame& frame, double edge_length, double tendon_share, Mesh& mesh) {
+  const std::vector<double> distance = FromBorder(sheet);
+  const double tendon = TendonBorder(sheet, distance, tendon_share), band = std::max(8.0, 2.2 * edge_length);
+  const auto n = static_cast<int>(sheet.points.size());
+  for (int i = 0; i < n; ++i) {
+    const auto add = [&](const char* name) {
+      mesh.regions[name].push_back(i);
+      mesh.regions[name].push_back(n + i);
+    };
+    if (distance[i] >= tendon) {
+      add("tendon");
+    } else if (InCrus(frame, sheet.points[i], v1::SIDE_RIGHT)) {
+      add("crus-right");
+    } else if (InCrus(frame, sheet.points[i], v1::SIDE_LEFT)) {
+      add("crus-left");
+    } else if (distance[i] < band) {
+      add("rim");
+    }
+  }
+  for (auto& [name, region] : mesh.regions) std::sort(region.begin(), region.end());
+}
+
+std::string SectorName(int sector) {
+  return absl::StrCat((sector & 4) != 0 ? "wall" : "dome", (sector & 1) != 0 ? ", left" : ", right",
+                      (sector & 2) != 0 ? ", back" : ", front");
+}
+
+v1::DerivedDiaphragm ReportOf(const Sheet& sheet, const SmoothSheet& smooth) {
+  std::array<double, 5> area{};  // by sight
+  std::array<double, 8> sector_area{}, sector_unseen{};
+  for (Eigen::Index t = 0; t < sheet.triangles.cols(); ++t) {
+    const Eigen::Vector3i v = sheet.triangles.col(t);
+    const Eigen::Vector2d p = (sheet.plane[v[0]] + sheet.plane[v[1]] + sheet.plane[v[2]]) / 3;
+    const Sight sight = smooth.SightAt(p);
+    const int sector = (p.norm() > 1 ? 4 : 0) + (p.y() > 0 ? 2 : 0) + (p.x() > 0 ? 1 : 0);
+    const double own = TriangleArea(sheet, t);
+    area[static_cast<int>(sight)] += own;
+    sector_area[sector] += own;
+    if (sight == Sight::kNone) sector_unseen[sector] += own;
+  }
+  const double all = area[0] + area[1] + area[2] + area[3] + area[4];
+  v1::DerivedDiaphragm report;
+  report.set_vertices(static_cast<int>(2 * sheet.points.size()));
+  report.set_area_cm2(all / 100);
+  report.set_between_organs(area[static_cast<int>(Sight::kBetween)] / all);
+  report.set_beside_one_organ(area[static_cast<int>(Sight::kBesideOne)] / all);
+  report.set_on_bone(area[static_cast<int>(Sight::kOnBone)] / all);
+  report.set_labelled(area[static_cast<int>(Sight::kLabel)] / all);
+  report.set_extrapolated(area[static_cast<int>(Sight::kNone)] / all);
+  for (int s = 0; s < 8; ++s) {
+    if (sector_unseen[s] < kTold * sector_area[s] || sector_area[s] == 0) continue;
+    v1::ExtrapolatedSector& sector = *report.add_sectors();
+    sector.set_where(SectorName(s));
+    sector.set_share(sector_unseen[s] / sector_area[s]);
+  }
+  return report;
+}
+
+}  // namespace
+
+absl::StatusOr<DerivedDiaphragm> DeriveDiaphragm(const LabelVolume& volume, const std::vector<Part>& parts,
+                                                 const CageFrame& frame, const DiaphragmOptions& options,
+                                                 Sentences& fallbacks) {
+  const SmoothSheet smooth(frame, Look(volume, parts, frame));
+  anatomy::SheetDomain domain;
+  domain.loops = {FindRim(volume, parts, frame, smooth, fallbacks)};
+  // A hexagonal lattice has a vertex for each edge length squared times sqrt(3)/2, MeshSheet 0.855 as many.
+  constexpr double kOfLattice = 0.855;
+  const double area = AreaOf(smooth, anatomy::PlaneRegion(domain.loops));
+  const double edge_length = std::sqrt(kOfLattice * area / (options.vertices / 2.0) * 2 / std::sqrt(3.0));
+  domain.map = [&smooth](const Eigen::Vector2d& p) { return smooth.Point(p); };
+  domain.edge_length = [edge_length](const Eigen::Vector3d&) { return edge_length; };
+  const Sheet sheet = anatomy::MeshSheet(domain);
+  DerivedDiaphragm derived;
+  derived.mesh = anatomy::DoubleLayer(sheet, [&smooth](const Eigen::Vector2d& p) { return smooth.Normal(p); });
+  derived.mesh.vertices *= kMillimetre;
+  AddRegions(sheet, frame, edge_length, options.tendon_share, derived.mesh);
+  derived.report = ReportOf(sheet, smooth);
+  return derived;
+}
+
+}  // namespace phrenic::imaging

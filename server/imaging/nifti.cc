@@ -1,0 +1,170 @@
+#include "server/imaging/nifti.h"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <limits>
+
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+#include "server/imaging/gzip.h"
+#include "server/imaging/nifti_header.h"
+#include "server/meshio/bytes.h"
+
+namespace phrenic::imaging {
+namespace {
+
+using meshio::AppendBytes;
+using meshio::ByteReader;
+
+constexpr std::size_t kDeflatesBestRatio = 1032;  // zlib's manual: no byte holds more
+const Eigen::Vector3d kRasToLps(-1, -1, 1);
+
+// The first number between quotes after `key`.
+int KeyOf(std::string_view text) {
+  int key = -1;
+  const std::size_t end = text.find('"');
+  if (end == std::string_view::npos || !absl::SimpleAtoi(std::string(text.substr(0, end)), &key)) return -1;
+  return key;
+}
+
+// <Label Key="5" ...><![CDATA[liver]]></Label>
+void ReadNames(std::string_view extension, std::map<int, std::string>& names) {
+  constexpr std::string_view kEntry = "<Label Key=\"", kOpen = "<![CDATA[", kClose = "]]>";
+  for (std::size_t at = extension.find(kEntry); at != std::string_view::npos; at = extension.find(kEntry, at + 1)) {
+    const std::size_t open = extension.find(kOpen, at), close = extension.find(kClose, at);
+    const int key = KeyOf(extension.substr(at + kEntry.size(), 12));
+    if (open == std::string_view::npos || close == std::string_view::npos || close < open || key < 0) continue;
+    names[key] = std::string(extension.substr(open + kOpen.size(), close - open - kOpen.size()));
+  }
+}
+
+// Extensions: a length of 16 n with these eight bytes, a code, and what they hold.
+absl::Status ReadExtensions(ByteReader reader, std::string_view bytes, std::size_t end, LabelVolume& volume) {
+  while (reader.at() + 8 <= end) {
+    const std::size_t at = reader.at();
+    std::int32_t length = 0, code = 0;
+    if (!reader.Take(length) || !reader.Take(code) || length < 8 || at + length > end || !reader.Skip(length - 8)) {
+      return reader.Error("an extension of the header has no length that fits before the voxels");
+    }
+    ReadNames(bytes.substr(at + 8, length - 8), volume.names);
+  }
+  return absl::OkStatus();
+}
+
+template <typename T>
+absl::Status ReadVoxels(ByteReader reader, std::size_t count, std::vector<Label>& labels) {
+  labels.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    T number{};
+    reader.Take(number);
+    if (std::cmp_less(number, 0) || std::cmp_greater(number, std::numeric_limits<Label>::max())) {
+      return reader.Error(absl::StrCat("label ", number, " is outside 0 to 65535; number the labels anew"));
+    }
+    labels.push_back(static_cast<Label>(number));
+  }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<LabelVolume> ParsePlain(std::string_view name, std::string_view bytes) {
+  const absl::StatusOr<NiftiHeader> header = ParseNiftiHeader(name, bytes);
+  if (!header.ok()) return header.status();
+  if (bytes.size() < header->end()) {
+    return absl::InvalidArgumentError(absl::StrCat(std::string(name), ": cut off: the header says ", header->end(),
+                                                   " bytes, there are ", bytes.size(), "; fetch the file again"));
+  }
+  LabelVolume volume;
+  volume.size = header->size;
+  volume.to_patient = Eigen::Scaling(kRasToLps) * header->to_ras;
+  if (bytes[header->length - 4] != 0) {
+    const ByteReader reader(name, bytes, header->length, header->order);
+    absl::Status status = ReadExtensions(reader, bytes, header->data_at, volume);
+    if (!status.ok()) return status;
+  }
+  absl::Status status;
+  WithIntegerOf(header->type, [&](auto number) {
+    const ByteReader reader(name, bytes, header->data_at, header->order);
+    status = ReadVoxels<decltype(number)>(reader, header->voxels(), volume.labels);
+  });
+  if (!status.ok()) return status;
+  return volume;
+}
+
+std::string NamesExtension(const std::map<int, std::string>& names) {
+  std::string text =
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?><CaretExtension><VolumeInformation Index=\"0\"><LabelTable>";
+  for (const auto& [number, name] : names) {
+    absl::StrAppend(&text, "<Label Key=\"", number, "\"><![CDATA[", name, "]]></Label>");
+  }
+  absl::StrAppend(&text,
+                  "</LabelTable><VolumeType><![CDATA[Label]]></VolumeType></VolumeInformation></CaretExtension>");
+  text.resize((text.size() + 8 + 15) / 16 * 16 - 8, ' ');
+  return text;
+}
+
+}  // namespace
+
+absl::StatusOr<LabelVolume> ParseNifti(std::string_view name, std::string_view bytes) {
+  if (!IsGzip(bytes)) return ParsePlain(name, bytes);
+  const absl::StatusOr<std::string> start = Inflate(name, bytes, kLongestHeader);
+  if (!start.ok()) return start.status();
+  const absl::StatusOr<NiftiHeader> header = ParseNiftiHeader(name, *start);
+  if (!header.ok()) return header.status();
+  if (header->end() / kDeflatesBestRatio > bytes.size()) {
+    return absl::InvalidArgumentError(absl::StrCat(std::string(name), ": the header says ", header->end(),
+                                                   " bytes, more than a file of ", bytes.size(), " can hold"));
+  }
+  // One byte more: at the stream's end the checksum is held.
+  const absl::StatusOr<std::string> whole = Inflate(name, bytes, header->end() + 1);
+  if (!whole.ok()) return whole.status();
+  return ParsePlain(name, *whole);
+}
+
+absl::StatusOr<LabelVolume> ReadNifti(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return absl::NotFoundError(absl::StrCat("cannot read the label volume ", path, ": is the path right?"));
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  return ParseNifti(path, bytes);
+}
+
+std::string WriteNifti(const LabelVolume& volume) {
+  constexpr int kHeader = 348, kUint16 = 512, kMillimetres = 2, kScanner = 1;
+  const std::string names = volume.names.empty() ? "" : NamesExtension(volume.names);
+  const std::size_t extension = names.empty() ? 0 : names.size() + 8;
+  std::string bytes;
+  const auto pad = [&bytes](std::size_t to) { bytes.resize(to, '\0'); };
+  AppendBytes(bytes, std::int32_t{kHeader});
+  pad(40);
+  for (const int along : {3, volume.size.x(), volume.size.y(), volume.size.z(), 1, 1, 1, 1}) {
+    AppendBytes(bytes, static_cast<std::int16_t>(along));
+  }
+  pad(70);
+  AppendBytes(bytes, std::int16_t{kUint16});
+  AppendBytes(bytes, std::int16_t{16});
+  pad(76);
+  AppendBytes(bytes, 1.0F);
+  for (const double along : volume.Spacing()) AppendBytes(bytes, static_cast<float>(along));
+  pad(108);
+  AppendBytes(bytes, static_cast<float>(kHeader + 4 + extension));
+  pad(123);
+  bytes.push_back(kMillimetres);
+  pad(254);
+  AppendBytes(bytes, std::int16_t{kScanner});
+  pad(280);
+  const Eigen::Affine3d to_ras = Eigen::Scaling(kRasToLps) * volume.to_patient;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 4; ++column) AppendBytes(bytes, static_cast<float>(to_ras.matrix()(row, column)));
+  }
+  pad(344);
+  bytes.append("n+1\0", 4);
+  bytes.append(names.empty() ? "\0\0\0\0" : "\1\0\0\0", 4);
+  if (!names.empty()) {
+    AppendBytes(bytes, static_cast<std::int32_t>(extension));
+    AppendBytes(bytes, std::int32_t{0});
+    bytes.append(names);
+  }
+  for (const Label label : volume.labels) AppendBytes(bytes, label);
+  return bytes;
+}
+
+}  // namespace phrenic::imaging

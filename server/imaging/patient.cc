@@ -1,0 +1,101 @@
+#include "server/imaging/patient.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "server/imaging/label_map.h"
+#include "server/imaging/label_surface.h"
+#include "server/imaging/millimetre.h"
+#include "server/imaging/patient_scene.h"
+#include "server/imaging/rib_axis.h"
+#include "server/mesh/topology.h"
+
+namespace phrenic::imaging {
+namespace {
+
+constexpr double kDiaphragmsShare = 0.5;  // of the whole time
+constexpr double kLungEdges = 1.5;        // of the bones' edge length
+
+bool HasSurface(const Part& part) { return part.organ == v1::ORGAN_UNSPECIFIED && !part.Is(v1::STRUCTURE_DIAPHRAGM); }
+
+absl::Status CheckParts(const std::vector<Part>& parts) {
+  const auto has = [&parts](v1::Structure structure) {
+    return std::any_of(parts.begin(), parts.end(), [&](const Part& part) { return part.Is(structure); });
+  };
+  if (has(v1::STRUCTURE_LUNG) && has(v1::STRUCTURE_RIB) && has(v1::STRUCTURE_VERTEBRA)) return absl::OkStatus();
+  return absl::FailedPreconditionError(
+      "the volume has no lungs, no ribs or no vertebrae by this label map: a thorax cannot be made of it");
+}
+
+absl::Status AddSurfaces(const LabelVolume& volume, const std::vector<Part>& parts, const PatientOptions& options,
+                         PatientProgress progress, Patient& patient) {
+  const double voxel_ml = std::abs(volume.to_patient.linear().determinant()) / 1000;
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    const Part& part = parts[p];
+    if (!HasSurface(part)) continue;
+    const double done = (1 - kDiaphragmsShare) * static_cast<double>(p) / static_cast<double>(parts.size());
+    if (!progress(done, part.name)) return absl::CancelledError("making the patient was cancelled");
+    const double edges = part.Is(v1::STRUCTURE_LUNG) ? kLungEdges : 1;
+    absl::StatusOr<Mesh> mesh = SurfaceOf(volume, part.mask, edges * options.edge_length);
+    if (!mesh.ok()) {
+      patient.report.add_fallbacks(absl::StrCat(part.name, ": left out, ", std::string(mesh.status().message())));
+      continue;
+    }
+    v1::PatientSurface& surface = *patient.report.add_surfaces();
+    surface.set_body(part.name);
+    surface.set_vertices(static_cast<int>(mesh->vertices.cols()));
+    surface.set_triangles(static_cast<int>(mesh->triangles.cols()));
+    surface.set_volume_ml(1e6 * SignedVolume(mesh->vertices, mesh->triangles));
+    surface.set_label_volume_ml(voxel_ml * static_cast<double>(part.label_voxels));
+    patient.bodies.push_back({part.name, part.anatomy, *std::move(mesh)});
+  }
+  return absl::OkStatus();
+}
+
+void ReportRibs(const CageFrame& frame, Patient& patient) {
+  constexpr double kDegrees = 180 / std::numbers::pi;
+  for (const PatientBody& body : patient.bodies) {
+    if (body.anatomy.structure() != v1::STRUCTURE_RIB) continue;
+    const RibNeck neck = FindRibNeck(body.mesh, ScaleOf(frame));
+    const Eigen::Vector3d axis = neck.Axis();
+    v1::PatientRib& rib = *patient.report.add_ribs();
+    rib.set_body(body.name);
+    rib.set_neck_mm((neck.tubercle - neck.head).norm() / kMillimetre);
+    rib.set_axis_degrees(kDegrees * std::atan2(std::abs(axis.x()), axis.y()));
+    rib.set_drop_degrees(-kDegrees * std::asin(axis.z()));
+  }
+}
+
+}  // namespace
+
+absl::StatusOr<Patient> MakePatient(const LabelVolume& volume, const v1::LabelMap& map, const v1::Scene& pattern,
+                                    const PatientOptions& options, PatientProgress progress) {
+  Patient patient;
+  patient.report.set_name(options.name);
+  Sentences fallbacks;
+  const absl::StatusOr<std::vector<Part>> parts = FindParts(volume, Resolve(map, volume), fallbacks);
+  if (!parts.ok()) return parts.status();
+  if (absl::Status status = CheckParts(*parts); !status.ok()) return status;
+  const absl::StatusOr<CageFrame> frame = FindCageFrame(volume, *parts, fallbacks);
+  if (!frame.ok()) return frame.status();
+  absl::Status status = AddSurfaces(volume, *parts, options, progress, patient);
+  if (!status.ok()) return status;
+  if (!progress(1 - kDiaphragmsShare, "diaphragm")) return absl::CancelledError("making the patient was cancelled");
+  absl::StatusOr<DerivedDiaphragm> diaphragm = DeriveDiaphragm(volume, *parts, *frame, options.diaphragm, fallbacks);
+  if (!diaphragm.ok()) return diaphragm.status();
+  *patient.report.mutable_diaphragm() = diaphragm->report;
+  v1::Anatomy anatomy;
+  anatomy.set_structure(v1::STRUCTURE_DIAPHRAGM);
+  patient.bodies.insert(patient.bodies.begin(), {"diaphragm", anatomy, std::move(diaphragm->mesh)});
+  patient.report.set_moved_left_mm(-frame->centre.x());
+  for (PatientBody& body : patient.bodies) body.mesh.vertices.row(0).array() -= kMillimetre * frame->centre.x();
+  ReportRibs(*frame, patient);
+  patient.scene = PatientScene(pattern, patient.bodies, *frame, options.name);
+  for (std::string& sentence : fallbacks) patient.report.add_fallbacks(std::move(sentence));
+  return patient;
+}
+
+}  // namespace phrenic::imaging

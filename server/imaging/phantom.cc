@@ -1,0 +1,190 @@
+#include "server/imaging/phantom.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "absl/strings/str_cat.h"
+#include "server/anatomy/anatomy.h"
+#include "server/imaging/millimetre.h"
+#include "server/imaging/phantom_organs.h"
+#include "server/imaging/voxelise.h"
+
+namespace phrenic::imaging {
+namespace {
+
+const Eigen::Vector3d kLow(-145, -125, -12), kHigh(145, 160, 405);  // of the generated thorax [mm]
+
+// How much of the flattening a height takes [0, 1]: nothing at the rim and at the lungs' tops, all at the domes.
+double Share(double z) {
+  const double up = z < 205 ? (z - 95) / 110 : (330 - z) / 125;
+  const double t = std::clamp(up, 0.0, 1.0);
+  return t * t * (3 - 2 * t);
+}
+
+bool IsSoft(v1::Structure structure) { return structure == v1::STRUCTURE_LUNG || structure == v1::STRUCTURE_DIAPHRAGM; }
+
+LabelVolume EmptyVolume(const PhantomBody& body, double voxel) {
+  const Eigen::Vector3d low = 1e3 * body.Place(kMillimetre * kLow, false),
+                        high = 1e3 * body.Place(kMillimetre * kHigh, false);
+  LabelVolume volume;
+  volume.size = ((high - low) / voxel).array().ceil().cast<int>() + 1;
+  // As scanners do: i to the patient's right, j to the front, k up.
+  volume.to_patient.linear() = Eigen::Vector3d(-voxel, -voxel, voxel).asDiagonal();
+  volume.to_patient.translation() = Eigen::Vector3d(high.x(), high.y(), low.z());
+  volume.labels.assign(static_cast<std::size_t>(volume.size.x()) * volume.size.y() * volume.size.z(), 0);
+  return volume;
+}
+
+template <typename Visit>
+void ForEachVoxel(const Eigen::Vector3i& size, const Visit& visit) {
+  for (int k = 0; k < size.z(); ++k) {
+    for (int j = 0; j < size.y(); ++j) {
+      for (int i = 0; i < size.x(); ++i) visit(Eigen::Vector3i(i, j, k));
+    }
+  }
+}
+
+void AddOrgans(const PhantomBody& body, const v1::LabelMap& map, LabelVolume& volume) {
+  std::vector<v1::LabelMeaning> organs;
+  std::copy_if(map.labels().begin(), map.labels().end(), std::back_inserter(organs),
+               [](const v1::LabelMeaning& label) { return label.has_organ(); });
+  ForEachVoxel(volume.size, [&](const Eigen::Vector3i& at) {
+    Label& voxel = volume.labels[volume.Index(at)];
+    if (voxel != 0) return;
+    const Eigen::Vector3d place = 1e3 * body.Generated(kMillimetre * (volume.to_patient * at.cast<double>()), true);
+    if (place.z() < 60 || place.z() > 310) return;
+    for (const v1::LabelMeaning& organ : organs) {
+      if (!InOrgan(organ.organ(), place)) continue;
+      voxel = static_cast<Label>(organ.number());
+      return;
+    }
+  });
+}
+
+// All cartilages and the three parts of the sternum where the map has one label for them.
+std::vector<v1::Anatomy> PartsOf(const v1::Anatomy& anatomy) {
+  std::vector<v1::Anatomy> parts;
+  if (anatomy.structure() == v1::STRUCTURE_STERNUM_BODY) {
+    for (const auto part : {v1::STRUCTURE_STERNUM_BODY, v1::STRUCTURE_MANUBRIUM, v1::STRUCTURE_XIPHOID}) {
+      parts.emplace_back().set_structure(part);
+    }
+    return parts;
+  }
+  if (anatomy.structure() != v1::STRUCTURE_COSTAL_CARTILAGE && anatomy.structure() != v1::STRUCTURE_RIB) {
+    return {anatomy};
+  }
+  if (anatomy.number() != 0) return {anatomy};
+  const int last = anatomy.structure() == v1::STRUCTURE_RIB ? 12 : 10;
+  for (const auto side : {v1::SIDE_RIGHT, v1::SIDE_LEFT}) {
+    for (int number = 1; number <= last; ++number) {
+      v1::Anatomy& part = parts.emplace_back(anatomy);
+      part.set_number(number);
+      part.set_side(side);
+    }
+  }
+  return parts;
+}
+
+bool IsGenerated(const v1::Anatomy& part) { return part.structure() != v1::STRUCTURE_VERTEBRA || part.number() <= 15; }
+
+absl::Status AddSurfaces(const PhantomBody& body, const v1::LabelMap& map, double voxel, LabelVolume& volume) {
+  std::vector<std::string> made;
+  for (const v1::LabelMeaning& label : map.labels()) {
+    if (!label.has_anatomy()) continue;
+    for (const v1::Anatomy& part : PartsOf(label.anatomy())) {
+      const std::string key = part.SerializeAsString();
+      if (!IsGenerated(part) || std::find(made.begin(), made.end(), key) != made.end()) continue;
+      made.push_back(key);
+      const absl::StatusOr<Mesh> mesh = PhantomPart(body, part, std::max(5.0, voxel));
+      if (!mesh.ok()) return mesh.status();
+      Voxelise(*mesh, static_cast<Label>(label.number()), volume);
+    }
+  }
+  return absl::OkStatus();
+}
+
+// Voxels at the borders of labels take the number of a neighbour, as people and networks disagree there.
+void Roughen(double share, std::mt19937& random, LabelVolume& volume) {
+  const std::vector<Label> before = volume.labels;
+  std::uniform_real_distribution<double> chance(0, 1);
+  std::uniform_int_distribution<int> step(-1, 1);
+  ForEachVoxel(volume.size, [&](const Eigen::Vector3i& at) {
+    const Eigen::Vector3i to = at + Eigen::Vector3i(step(random), step(random), step(random));
+    if (!volume.Contains(to) || before[volume.Index(to)] == before[volume.Index(at)]) return;
+    // A voxel within 27 of a border is asked about a third of the time.
+    if (chance(random) < 3 * share) volume.labels[volume.Index(at)] = before[volume.Index(to)];
+  });
+}
+
+void Pierce(int holes, double voxel, std::mt19937& random, LabelVolume& volume) {
+  std::vector<std::size_t> labelled;
+  for (std::size_t at = 0; at < volume.labels.size(); ++at) {
+    if (volume.labels[at] != 0) labelled.push_back(at);
+  }
+  std::uniform_int_distribution<std::size_t> any(0, labelled.size() - 1);
+  const int reach = std::max(1, static_cast<int>(std::lround(3 / voxel)));
+  for (int hole = 0; hole < holes; ++hole) {
+    const std::size_t at = labelled[any(random)];
+    const Eigen::Vector3i centre(static_cast<int>(at % volume.size.x()),
+                                 static_cast<int>(at / volume.size.x() % volume.size.y()),
+                                 static_cast<int>(at / volume.size.x() / volume.size.y()));
+    ForEachVoxel(Eigen::Vector3i::Constant(2 * reach + 1), [&](const Eigen::Vector3i& by) {
+      const Eigen::Vector3i offset = by.array() - reach;
+      if (offset.squaredNorm() <= reach * reach && volume.Contains(centre + offset)) {
+        volume.labels[volume.Index(centre + offset)] = 0;
+      }
+    });
+  }
+}
+
+}  // namespace
+
+Eigen::Vector3d PhantomBody::Place(const Eigen::Vector3d& generated, bool soft) const {
+  Eigen::Vector3d placed = generated;
+  if (soft) placed.z() -= kMillimetre * flattening * Share(generated.z() / kMillimetre);
+  return scale.cwiseProduct(placed) + kMillimetre * shift;
+}
+
+Eigen::Vector3d PhantomBody::Generated(const Eigen::Vector3d& placed, bool soft) const {
+  const Eigen::Vector3d lowered = (placed - kMillimetre * shift).cwiseQuotient(scale);
+  Eigen::Vector3d generated = lowered;
+  constexpr int kRounds = 20;  // a fixed point: flattening changes by less than its own height
+  for (int i = 0; soft && i < kRounds; ++i) {
+    generated.z() = lowered.z() + kMillimetre * flattening * Share(generated.z() / kMillimetre);
+  }
+  return generated;
+}
+
+absl::StatusOr<PhantomBody> FindPhantomBody(std::string_view name) {
+  const std::vector<PhantomBody> bodies = {
+      {"adult"}, {"small", {0.85, 0.85, 0.84}}, {"tall", {1.04, 1.02, 1.12}}, {"flat", {1.02, 1.08, 1.0}, 22}};
+  for (const PhantomBody& body : bodies) {
+    if (body.name == name) return body;
+  }
+  return absl::NotFoundError(absl::StrCat("there is no body \"", std::string(name), "\"; adult, small, tall, flat"));
+}
+
+absl::StatusOr<Mesh> PhantomPart(const PhantomBody& body, const v1::Anatomy& part, double resolution_mm) {
+  absl::StatusOr<Mesh> mesh = anatomy::Generate(part, resolution_mm);
+  if (!mesh.ok()) return mesh;
+  const bool soft = IsSoft(part.structure());
+  for (Eigen::Index i = 0; i < mesh->vertices.cols(); ++i) {
+    mesh->vertices.col(i) = body.Place(mesh->vertices.col(i), soft);
+  }
+  return mesh;
+}
+
+absl::StatusOr<LabelVolume> MakePhantom(const PhantomBody& body, const PhantomOptions& options,
+                                        const v1::LabelMap& map) {
+  LabelVolume volume = EmptyVolume(body, options.voxel);
+  if (absl::Status status = AddSurfaces(body, map, options.voxel, volume); !status.ok()) return status;
+  AddOrgans(body, map, volume);
+  std::mt19937 random(options.seed);
+  Roughen(options.noise, random, volume);
+  Pierce(options.holes, options.voxel, random, volume);
+  for (const v1::LabelMeaning& label : map.labels()) volume.names[label.number()] = label.name();
+  return volume;
+}
+
+}  // namespace phrenic::imaging

@@ -1,0 +1,105 @@
+#include "server/imaging/sheet_evidence.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace phrenic::imaging {
+namespace {
+
+enum Tissue : std::uint8_t { kNothing, kThorax, kAbdomen, kBone, kSheet };
+
+constexpr int kRays = 121;          // along an edge of the grid
+constexpr double kNear = 14;        // between two organs that touch the sheet both [mm]
+constexpr double kBelowLung = 3.5;  // from a lung's or heart's under side to the sheet's middle [mm]
+constexpr double kOffBone = 4;      // from a bone's inner face [mm]
+constexpr double kLongest = 260;    // of a ray [mm]
+
+Tissue TissueOf(const Part& part) {
+  if (part.organ != v1::ORGAN_UNSPECIFIED) return part.organ == v1::ORGAN_HEART ? kThorax : kAbdomen;
+  switch (part.anatomy.structure()) {
+    case v1::STRUCTURE_LUNG:
+      return kThorax;
+    case v1::STRUCTURE_VERTEBRA:
+      return part.anatomy.number() >= 11 ? kBone : kNothing;
+    case v1::STRUCTURE_DIAPHRAGM:
+      return kSheet;
+    default:
+      return kBone;
+  }
+}
+
+// Above this height the part says nothing of the sheet: sternum and cartilages stand in front of the heart there.
+double CeilingOf(const Part& part, const CageFrame& frame) {
+  constexpr double kInsertion = 12;  // [mm]
+  const bool in_front = part.Is(v1::STRUCTURE_STERNUM_BODY) || part.Is(v1::STRUCTURE_COSTAL_CARTILAGE) ||
+                        part.Is(v1::STRUCTURE_MANUBRIUM) || part.Is(v1::STRUCTURE_XIPHOID);
+  return in_front ? frame.sternum_end + kInsertion : std::numeric_limits<double>::infinity();
+}
+
+std::vector<Tissue> Paint(const LabelVolume& volume, const std::vector<Part>& parts, const CageFrame& frame) {
+  std::vector<Tissue> tissues(volume.labels.size(), kNothing);
+  for (const Part& part : parts) {
+    const Tissue tissue = TissueOf(part);
+    const Mask& mask = part.mask;
+    const double ceiling = CeilingOf(part, frame);
+    std::size_t at = 0;
+    for (int k = 0; k < mask.size.z(); ++k) {
+      for (int j = 0; j < mask.size.y(); ++j) {
+        for (int i = 0; i < mask.size.x(); ++i, ++at) {
+          const Eigen::Vector3i voxel = mask.low + Eigen::Vector3i(i, j, k);
+          if (mask.inside[at] != 1 || !volume.Contains(voxel)) continue;
+          if (mask.Place(volume, at).z() < ceiling) tissues[volume.Index(voxel)] = tissue;
+        }
+      }
+    }
+  }
+  return tissues;
+}
+
+struct Seen {
+  Sight sight = Sight::kNone;
+  double depth = 0;
+};
+
+Seen Follow(const LabelVolume& volume, const std::vector<Tissue>& tissues, const Eigen::Affine3d& to_voxel,
+            const Ray& ray) {
+  const double step = volume.Spacing().minCoeff() / 3;
+  double abdomen = -1, sheet = -1;
+  for (double depth = step; depth < kLongest; depth += step) {
+    const Eigen::Vector3i voxel = (to_voxel * ray.At(depth)).array().round().cast<int>();
+    if (!volume.Contains(voxel)) break;
+    const Tissue tissue = tissues[volume.Index(voxel)];
+    if (tissue == kSheet && sheet < 0) sheet = depth;
+    if (sheet > 0 && tissue != kSheet) return {Sight::kLabel, (sheet + depth - step) / 2};
+    if (tissue == kAbdomen) abdomen = depth;
+    if (tissue == kBone) return {Sight::kOnBone, depth - kOffBone};
+    if (tissue != kThorax) continue;
+    if (abdomen > 0 && depth - abdomen < kNear) return {Sight::kBetween, (depth + abdomen) / 2};
+    return {Sight::kBesideOne, depth - kBelowLung};
+  }
+  return {};
+}
+
+}  // namespace
+
+SheetEvidence Look(const LabelVolume& volume, const std::vector<Part>& parts, const CageFrame& frame) {
+  const std::vector<Tissue> tissues = Paint(volume, parts, frame);
+  const Eigen::Affine3d to_voxel = volume.to_patient.inverse();
+  SheetEvidence evidence;
+  evidence.count = kRays;
+  evidence.sight.assign(kRays * kRays, Sight::kNone);
+  evidence.depth.assign(kRays * kRays, 0);
+  for (int j = 0; j < kRays; ++j) {
+    for (int i = 0; i < kRays; ++i) {
+      const Eigen::Vector2d p = evidence.Plane(i, j);
+      if (p.norm() > kPlaneReach) continue;
+      const Seen seen = Follow(volume, tissues, to_voxel, frame.RayOf(p));
+      evidence.sight[evidence.Index(i, j)] = seen.sight;
+      evidence.depth[evidence.Index(i, j)] = seen.depth;
+    }
+  }
+  return evidence;
+}
+
+}  // namespace phrenic::imaging

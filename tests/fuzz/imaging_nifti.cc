@@ -1,0 +1,15 @@
+// Any bytes as a NIfTI file give a label volume with as many voxels as it says, or an error, and nothing else.
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+
+#include "server/imaging/nifti.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view bytes(reinterpret_cast<const char*>(data), size);
+  const auto volume = phrenic::imaging::ParseNifti("fuzz.nii.gz", bytes);
+  if (!volume.ok()) return 0;
+  const auto voxels = static_cast<std::size_t>(volume->size.x()) * volume->size.y() * volume->size.z();
+  if (volume->labels.size() != voxels || !volume->to_patient.matrix().allFinite()) std::abort();
+  return 0;
+}

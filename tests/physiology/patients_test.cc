@@ -1,0 +1,63 @@
+// Three bodies, small, tall and with flattened domes, go from noisy label volumes to a breath inside the published
+// ranges.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "server/imaging/label_map.h"
+#include "server/imaging/patient.h"
+#include "server/imaging/phantom.h"
+#include "server/mechanics/compile.h"
+#include "server/schema/schema.h"
+#include "server/study/physiology.h"
+
+namespace phrenic {
+namespace {
+
+v1::Scene ThoraxScene() {
+  std::ifstream file(PHRENIC_SOURCE_DIR "/server/scenes/thorax.textproto");
+  std::stringstream text;
+  text << file.rdbuf();
+  return *schema::ParseScene("thorax.textproto", text.str());
+}
+
+absl::StatusOr<imaging::Patient> PatientOf(const std::string& body) {
+  const v1::LabelMap map = *imaging::ReadLabelMap("totalsegmentator");
+  const auto volume = imaging::MakePhantom(*imaging::FindPhantomBody(body), {3, 0.02, 40, 1}, map);
+  if (!volume.ok()) return volume.status();
+  imaging::PatientOptions options;
+  options.name = body;
+  options.edge_length = 6;
+  options.diaphragm.vertices = 6000;
+  return imaging::MakePatient(*volume, map, ThoraxScene(), options, [](double, std::string_view) { return true; });
+}
+
+class Patients : public testing::TestWithParam<const char*> {};
+
+TEST_P(Patients, BreatheQuietlyInsideThePublishedRanges) {
+  auto patient = PatientOf(GetParam());
+  ASSERT_TRUE(patient.ok()) << patient.status();
+  patient->scene.clear_presets();  // the quiet breath alone
+  std::map<std::string, const Mesh*> meshes;
+  for (const imaging::PatientBody& body : patient->bodies) meshes[body.name] = &body.mesh;
+  const auto model =
+      Compile(patient->scene, [&](const v1::Body& body) -> absl::StatusOr<Mesh> { return *meshes.at(body.name()); });
+  ASSERT_TRUE(model.ok()) << model.status();
+  const auto table = study::CheckPhysiology(**model, [](double) { return true; });
+  ASSERT_TRUE(table.ok()) << table.status();
+  EXPECT_EQ(table->rows_size(), 11);
+  for (const v1::PhysiologyRow& row : table->rows()) {
+    std::printf("%-6s %-28s %7.2f   accepted %g to %g\n", GetParam(), row.what().c_str(), row.value(), row.low(),
+                row.high());
+    EXPECT_EQ(row.verdict(), v1::VERDICT_INSIDE) << row.what() << ": " << row.value();
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Bodies, Patients, testing::Values("small", "tall", "flat"),
+                         [](const auto& body) { return std::string(body.param); });
+
+}  // namespace
+}  // namespace phrenic
