@@ -27,10 +27,9 @@ absl::StatusOr<std::shared_ptr<session::Session>> Read(const session::Table& tab
   return table.Find(request.session_id());
 }
 
-// The streamed bodies among those that are named, ascending; none where none is named.
-absl::StatusOr<std::optional<std::vector<int>>> FindBodies(
-    const Model& model, const stream::Layout& layout, const google::protobuf::RepeatedPtrField<std::string>& names) {
-  if (names.empty()) return std::nullopt;
+// The streamed bodies among those that are named, ascending.
+absl::StatusOr<std::vector<int>> FindBodies(const Model& model, const stream::Layout& layout,
+                                            const google::protobuf::RepeatedPtrField<std::string>& names) {
   std::set<int> found;
   for (const std::string& name : names) {
     const auto body = std::find_if(model.bodies.begin(), model.bodies.end(),
@@ -64,6 +63,7 @@ absl::StatusOr<stream::ViewerOptions> ReadOptions(const Model& model, const stre
       .form = {.numbers_only = request.numbers_only(),
                .codec = raw ? v1::CODEC_RAW : request.codec(),
                .rung = bounded && !raw ? stream::RungWithin(request.max_error_mm()) : stream::kDefaultRung,
+               .chosen = !request.bodies().empty(),
                .bodies = *std::move(bodies)},
       .max_unacked = request.max_unacked_frames(),
       .may_coarsen = !raw && !bounded,

@@ -38,7 +38,7 @@ const Codec& Encoder::FindCodec(const Chosen& chosen) {
 }
 
 void Encoder::SetPositions(const Form& form, v1::Frame& frame) {
-  const std::vector<int>& bodies = form.bodies.has_value() ? *form.bodies : streamed_;
+  const std::vector<int>& bodies = form.chosen ? form.bodies : streamed_;
   const Floats positions = Pick(*model_, layout_, bodies, positions_);
   const double bound = form.codec == v1::CODEC_RAW ? 0 : RungMillimetres(form.rung);
   frame.set_codec(form.codec);

@@ -2,11 +2,9 @@
 #ifndef PHRENIC_SERVER_STREAM_FORM_H_
 #define PHRENIC_SERVER_STREAM_FORM_H_
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <compare>
-#include <optional>
 #include <vector>
 
 #include "phrenic/v1/frames.pb.h"
@@ -34,7 +32,8 @@ struct Form {
   bool numbers_only = false;  // neither positions nor poses
   v1::Codec codec = v1::CODEC_RAW;
   int rung = kDefaultRung;
-  std::optional<std::vector<int>> bodies = std::nullopt;  // streamed ones, ascending; none: all of them
+  bool chosen = false;           // of the bodies' vertices only those of `bodies`
+  std::vector<int> bodies = {};  // streamed ones, ascending
 
   auto operator<=>(const Form&) const = default;
 };

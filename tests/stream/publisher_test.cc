@@ -155,7 +155,7 @@ TEST(Viewer, TakesNoMoreFramesThanItsWindowUntilItAcknowledges) {
 }
 
 TEST_F(PublisherTest, EachFormIsEncodedOnceAndHoldsWhatWasAskedFor) {
-  const Form predicted{.codec = v1::CODEC_PREDICTED}, nothing{.bodies = std::vector<int>()};
+  const Form predicted{.codec = v1::CODEC_PREDICTED}, nothing{.chosen = true};
   const auto raw = Join(), a = Join({.form = predicted}), b = Join({.form = predicted}), none = Join({.form = nothing});
   Offer(1);
   const Bytes frame = NextFrame(*a);

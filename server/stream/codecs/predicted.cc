@@ -84,16 +84,18 @@ Floats InOrder(const Floats& values, const std::vector<int>& order) {
 PredictedCodec::PredictedCodec(const RestShape& shape)
     : neighbours_(MakeNeighbourWeights(shape)), rest_(InOrder(shape.rest, neighbours_.order)) {}
 
-std::int64_t PredictedCodec::Foretell(const Displacements& displacements, int place, int axis) const {
-  std::int64_t sum = kUnit / 2;
+std::array<std::int64_t, 3> PredictedCodec::Foretell(const Displacements& displacements, int place) const {
+  static_assert(kUnit == 1 << 12);
+  std::int64_t x = kUnit / 2, y = kUnit / 2, z = kUnit / 2;
   for (int i = neighbours_.first[place]; i < neighbours_.first[place + 1]; ++i) {
-    sum += static_cast<std::int64_t>(neighbours_.weights[i]) * displacements[3 * neighbours_.places[i] + axis];
+    const std::int64_t weight = neighbours_.weights[i];
+    const std::int32_t* const other = &displacements[3 * static_cast<std::size_t>(neighbours_.places[i])];
+    x += weight * other[0], y += weight * other[1], z += weight * other[2];
   }
-  return sum >> 12;  // over kUnit, rounded down
+  return {x >> 12, y >> 12, z >> 12};  // over kUnit, rounded down
 }
 
 absl::StatusOr<std::string> PredictedCodec::Encode(const Floats& positions, double max_error) const {
-  static_assert(kUnit == 1 << 12);
   const auto step = GridStep(positions, max_error);
   if (!step.has_value() || !IsGridStep(*step)) return absl::OutOfRangeError("the bound is finer than float32");
   const int vertices = static_cast<int>(rest_.cols());
@@ -108,13 +110,15 @@ absl::StatusOr<std::string> PredictedCodec::Encode(const Floats& positions, doub
       displacements[3 * place + axis] = static_cast<std::int32_t>(steps);
     }
   }
-  Parts parts(displacements.size());
-  for (int axis = 0; axis < 3; ++axis) {
-    for (int place = 0; place < vertices; ++place) {
-      const std::int64_t remainder = displacements[3 * place + axis] - Foretell(displacements, place, axis);
-      parts.Add(static_cast<std::int32_t>(remainder));  // modulo 2^32, as it is added
+  Displacements remainders(displacements.size());  // all x first
+  for (int place = 0; place < vertices; ++place) {
+    const auto foretold = Foretell(displacements, place);
+    for (int axis = 0; axis < 3; ++axis) {  // modulo 2^32, as it is added
+      remainders[axis * vertices + place] = static_cast<std::int32_t>(displacements[3 * place + axis] - foretold[axis]);
     }
   }
+  Parts parts(remainders.size());
+  for (const std::int32_t remainder : remainders) parts.Add(remainder);
   std::string bytes, compressed;
   const std::size_t first = AppendCompressed(parts.bits, compressed);
   AppendCompressed(parts.overflow, compressed);
@@ -141,8 +145,9 @@ absl::StatusOr<Floats> PredictedCodec::Decode(std::string_view bytes) const {
   Displacements displacements(count);
   Floats positions(3, rest_.cols());
   for (int place = 0; place < static_cast<int>(rest_.cols()); ++place) {
+    const auto foretold = Foretell(displacements, place);
     for (int axis = 0; axis < 3; ++axis) {
-      const std::int64_t sum = Foretell(displacements, place, axis) + (*remainders)[axis * rest_.cols() + place];
+      const std::int64_t sum = foretold[axis] + (*remainders)[axis * rest_.cols() + place];
       const auto displacement = static_cast<std::int32_t>(sum);
       displacements[3 * place + axis] = displacement;
       positions(axis, neighbours_.order[place]) =

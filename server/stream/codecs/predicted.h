@@ -2,6 +2,7 @@
 #ifndef PHRENIC_SERVER_STREAM_CODECS_PREDICTED_H_
 #define PHRENIC_SERVER_STREAM_CODECS_PREDICTED_H_
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -22,8 +23,8 @@ class PredictedCodec final : public Codec {
   // Three a place.
   using Displacements = std::vector<std::int32_t>;
 
-  // Of one coordinate of the vertex at `place`, in steps.
-  std::int64_t Foretell(const Displacements& displacements, int place, int axis) const;
+  // Of the vertex at `place`, in steps.
+  std::array<std::int64_t, 3> Foretell(const Displacements& displacements, int place) const;
 
   const NeighbourWeights neighbours_;
   Floats rest_;  // in the order of places
