@@ -23,7 +23,8 @@ TEST(Golden, PositionsOfEachCodecAreThoseInTheFile) {
   std::ifstream file(PHRENIC_SOURCE_DIR "/tests/golden/codecs.json");
   const Json golden = Json::parse(file);
   const auto corners = golden["triangles"].get<std::vector<int>>();
-  const Triangles triangles = Eigen::Map<const Triangles>(corners.data(), 3, static_cast<Eigen::Index>(corners.size() / 3));
+  const Triangles triangles =
+      Eigen::Map<const Triangles>(corners.data(), 3, static_cast<Eigen::Index>(corners.size() / 3));
   const RestShape shape{.rest = Positions(golden["rest"]), .edges = TriangleEdges(triangles)};
   ASSERT_EQ(golden["encodings"].size(), Codecs().size()) << "a codec has no bytes in the file";
   for (const Json& encoding : golden["encodings"]) {
