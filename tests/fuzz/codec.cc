@@ -10,7 +10,7 @@ namespace {
 
 // A strip of triangles, long enough for every kind of neighbour.
 phrenic::stream::RestShape Strip() {
-  constexpr int kVertices = 40;
+  constexpr int kVertices = 31;
   phrenic::stream::RestShape shape{.rest = phrenic::stream::Floats(3, kVertices), .edges = phrenic::Edges(2, 0)};
   for (int i = 0; i < kVertices; ++i) {
     shape.rest.col(i) = Eigen::Vector3f(0.01F * static_cast<float>(i), i % 2 == 0 ? 0.F : 0.02F, 0.F);
