@@ -60,7 +60,7 @@ async function watch(url: string, seconds: number) {
     systemClock,
   );
   const running = connection.run();
-  for (const deadline = Date.now() + 60_000; ages.length === 0 && Date.now() < deadline; ) await sleep(50);
+  for (const deadline = Date.now() + 90_000; ages.length === 0 && Date.now() < deadline;) await sleep(50);
   ages.length = 0;
   await sleep(1000 * seconds);
   const rate = frames.rate(last);

@@ -1,6 +1,14 @@
 import { create } from "@bufbuild/protobuf";
 import { describe, expect, test } from "vitest";
-import { decodeBody, floats, floatsPerPose, type FrameArrays, indices, positionsOf, vertexAt } from "../../web/src/codec";
+import {
+  decodeBody,
+  floats,
+  floatsPerPose,
+  type FrameArrays,
+  indices,
+  positionsOf,
+  vertexAt,
+} from "../../web/src/codec";
 import { GetGeometryResponseSchema, Placement } from "../../web/src/gen/phrenic/v1/frames_pb";
 import { bytesOf, triangleBody } from "./fake_server";
 

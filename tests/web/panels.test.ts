@@ -115,7 +115,10 @@ test("TheReadoutSpeaksOfConstraintsWhereThereAreAny", () => {
 test("TheLinkIsPutInWords", () => {
   const rate = { framesPerSecond: 30, age: 4.4, errorBound: 0.1 };
   const status = { session: session(1, 1n), frame: undefined, rate, now: 1000 };
-  expect(linkWords({ ...status, link: { kind: "live" } })).toMatchObject({ text: "Live", detail: "30 fps, 4 ms, ±0.1 mm" });
+  expect(linkWords({ ...status, link: { kind: "live" } })).toMatchObject({
+    text: "Live",
+    detail: "30 fps, 4 ms, ±0.1 mm",
+  });
   const lost = {
     kind: "lost" as const,
     reason: "refused",
