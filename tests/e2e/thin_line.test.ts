@@ -38,11 +38,12 @@ async function thinLine(url: string, bytesPerSecond: number): Promise<{ url: str
 
 // The viewer's own connection, without the picture: what a viewer on a line sees for `seconds`.
 async function watch(url: string, seconds: number) {
+  const api = createApi(createGrpcWebTransport({ baseUrl: url }));
   const frames = new Frames();
   const ages: number[] = [];
   let last = 0;
   const connection = new Connection(
-    createApi(createGrpcWebTransport({ baseUrl: url })),
+    api,
     "thorax",
     {
       link: () => {},
@@ -61,6 +62,9 @@ async function watch(url: string, seconds: number) {
   );
   const running = connection.run();
   for (const deadline = Date.now() + 90_000; ages.length === 0 && Date.now() < deadline;) await sleep(50);
+  // As many frames of a slower breath: what is measured is the line, not what is left of the processor.
+  await api.sessions.playSession({ sessionId: "thorax", speed: 0.1 });
+  await sleep(2000);
   ages.length = 0;
   await sleep(1000 * seconds);
   const rate = frames.rate(last);
@@ -74,7 +78,6 @@ test("OverFourMegabitsABreathIsSeenLessThan400MillisecondsOld", async () => {
   const line = await thinLine(server.url, 500_000);
   const seen = await watch(line.url, 8);
   line.close();
-  console.log(seen);
   expect(seen.median).toBeLessThan(400);
   expect(seen.frames).toBeGreaterThan(10);
   expect(seen.rate.age).toBeLessThan(600);

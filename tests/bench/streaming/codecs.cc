@@ -30,7 +30,7 @@ absl::StatusOr<Frames> Run(const std::string& scene, const std::string& data, in
   const auto model = models.Get(source);
   if (!model.ok()) return model.status();
   const stream::Layout layout(**model);
-  Frames frames{.shape = MakeRestShape(**model, StreamedBodies(**model, layout)), .positions = {}};
+  Frames frames{.shape = stream::MakeRestShape(**model, stream::StreamedBodies(**model, layout)), .positions = {}};
   stream::Snapshot snapshot{.state = (*model)->InitialState(), .parameters = (*model)->parameters, .made = absl::Now()};
   Workspace work = (*model)->MakeWorkspace();
   for (int i = 0; i < count; ++i) {
@@ -40,7 +40,7 @@ absl::StatusOr<Frames> Run(const std::string& scene, const std::string& data, in
           Step(**model, snapshot.parameters, snapshot.parameters.time_step(), snapshot.state, work);
       if (!stepped.ok()) return stepped;
     }
-    const auto frame = MakeFrame(**model, layout, snapshot);
+    const auto frame = stream::MakeFrame(**model, layout, snapshot);
     if (!frame.ok()) return frame.status();
     frames.positions.push_back(
         Eigen::Map<const Floats>(reinterpret_cast<const float*>(frame->positions().data()), 3, layout.vertices()));
