@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace phrenic::stream {
 namespace {
 
@@ -20,7 +22,7 @@ struct Watched {
 };
 
 // A frame of 13 kB at 0.1 mm, and a quarter less for each rung above.
-double Bytes(int rung) { return 13e3 * std::pow(0.75, rung - kDefaultRung); }
+double FrameBytes(int rung) { return 13e3 * std::pow(0.75, rung - kDefaultRung); }
 
 Watched Watch(Credit& credit, const Line& line, int seconds) {
   struct Frame {
@@ -46,7 +48,7 @@ Watched Watch(Credit& credit, const Line& line, int seconds) {
     }
     if (waiting == 0 || !credit.MaySend()) continue;
     credit.Sent(waiting, now);
-    free = std::max(free, now) + absl::Seconds(Bytes(credit.rung()) / line.bytes_per_second);
+    free = std::max(free, now) + absl::Seconds(FrameBytes(credit.rung()) / line.bytes_per_second);
     underway.push_back({waiting, now, free + line.delay});
     waiting = 0;
     watched.coarsest = std::max(watched.coarsest, credit.rung());

@@ -15,7 +15,7 @@ struct Head {
   double step = 0;  // [m]
   float corner[3] = {0, 0, 0};
 };
-constexpr std::size_t kHeadBytes = sizeof(double) + 3 * sizeof(float);
+constexpr std::size_t kPlanesHead = sizeof(double) + 3 * sizeof(float);
 
 }  // namespace
 
@@ -44,13 +44,13 @@ absl::StatusOr<std::string> PlanesCodec::Encode(const Floats& positions, double 
 }
 
 absl::StatusOr<Floats> PlanesCodec::Decode(std::string_view bytes) const {
-  if (bytes.size() < kHeadBytes) return absl::InvalidArgumentError("planes: the head is cut off");
+  if (bytes.size() < kPlanesHead) return absl::InvalidArgumentError("planes: the head is cut off");
   const Head head = {.step = Read<double>(bytes, 0),
                      .corner = {Read<float>(bytes, 8), Read<float>(bytes, 12), Read<float>(bytes, 16)}};
   if (!IsGridStep(head.step)) return absl::InvalidArgumentError("planes: the step is not within 0 to 1 m");
   Floats positions(3, vertices_);
   const std::ptrdiff_t count = positions.size();
-  const auto planes = Decompress(bytes.substr(kHeadBytes), 2 * static_cast<std::size_t>(count));
+  const auto planes = Decompress(bytes.substr(kPlanesHead), 2 * static_cast<std::size_t>(count));
   if (!planes.ok()) return planes.status();
   std::ptrdiff_t place = 0;
   for (int axis = 0; axis < 3; ++axis) {
