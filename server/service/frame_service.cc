@@ -2,6 +2,11 @@
 
 #include <grpcpp/support/proto_buffer_reader.h>
 
+#include <algorithm>
+#include <set>
+
+#include "absl/strings/str_cat.h"
+#include "server/schema/id.h"
 #include "server/schema/schema.h"
 #include "server/service/status.h"
 #include "server/service/watch_reactor.h"
@@ -20,6 +25,60 @@ absl::StatusOr<std::shared_ptr<session::Session>> Read(const session::Table& tab
   }
   if (absl::Status status = schema::Validate(request); !status.ok()) return status;
   return table.Find(request.session_id());
+}
+
+// The streamed bodies among those that are named, ascending.
+absl::StatusOr<std::vector<int>> FindBodies(const Model& model, const stream::Layout& layout,
+                                            const google::protobuf::RepeatedPtrField<std::string>& names) {
+  std::set<int> found;
+  for (const std::string& name : names) {
+    const auto body = std::find_if(model.bodies.begin(), model.bodies.end(),
+                                   [&name](const BodyModel& each) { return each.name == name; });
+    if (body == model.bodies.end()) return absl::InvalidArgumentError(absl::StrCat("bodies: there is no body ", name));
+    const auto index = static_cast<int>(body - model.bodies.begin());
+    if (layout.placement(index) == v1::PLACEMENT_STREAMED) found.insert(index);
+  }
+  return std::vector<int>(found.begin(), found.end());
+}
+
+absl::StatusOr<stream::ViewerOptions> ReadOptions(const Model& model, const stream::Layout& layout,
+                                                  const v1::WatchFramesRequest& request) {
+  if (absl::Status status = schema::CheckId("watch_id", request.watch_id()); !status.ok()) return status;
+  if (request.max_unacked_frames() > 0 && request.watch_id().empty()) {
+    return absl::InvalidArgumentError(
+        "watch_id: must be set where max_unacked_frames is: frames are acknowledged by it");
+  }
+  auto bodies = FindBodies(model, layout, request.bodies());
+  if (!bodies.ok()) return bodies.status();
+  if (request.numbers_only()) {
+    return stream::ViewerOptions{.max_fps = request.max_fps(),
+                                 .form = {.numbers_only = true},
+                                 .max_unacked = request.max_unacked_frames(),
+                                 .watch_id = request.watch_id()};
+  }
+  const bool raw = request.codec() == v1::CODEC_UNSPECIFIED || request.codec() == v1::CODEC_RAW;
+  const bool bounded = request.has_max_error_mm();
+  return stream::ViewerOptions{
+      .max_fps = request.max_fps(),
+      .form = {.numbers_only = request.numbers_only(),
+               .codec = raw ? v1::CODEC_RAW : request.codec(),
+               .rung = bounded && !raw ? stream::RungWithin(request.max_error_mm()) : stream::kDefaultRung,
+               .chosen = !request.bodies().empty(),
+               .bodies = *std::move(bodies)},
+      .max_unacked = request.max_unacked_frames(),
+      .may_coarsen = !raw && !bounded,
+      .watch_id = request.watch_id()};
+}
+
+absl::Status Acknowledge(const session::Table& table, const v1::AckFramesRequest& request,
+                         v1::AckFramesResponse& response) {
+  if (absl::Status status = schema::Validate(request); !status.ok()) return status;
+  const auto session = table.Find(request.session_id());
+  if (!session.ok()) return session.status();
+  const auto viewer = (*session)->publisher().Find(request.watch_id());
+  if (!viewer.ok()) return viewer.status();
+  response = (*viewer)->Acknowledge(request.sequence(), absl::Now());
+  return absl::OkStatus();
 }
 
 }  // namespace
@@ -42,11 +101,24 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* FrameService::WatchFrames(grpc::Call
   auto session = Read(table_, *bytes, request);
   const auto reactor = WatchReactor::Make();
   if (session.ok()) {
-    reactor->Watch(*std::move(session), {.max_fps = request.max_fps(), .numbers_only = request.numbers_only()});
+    const auto options = ReadOptions((*session)->model(), (*session)->publisher().layout(), request);
+    if (options.ok()) {
+      reactor->Watch(*std::move(session), *options);
+    } else {
+      reactor->Refuse(options.status());
+    }
   } else {
     reactor->Refuse(session.status());
   }
   return reactor.get();
+}
+
+grpc::ServerUnaryReactor* FrameService::AckFrames(grpc::CallbackServerContext* context,
+                                                  const v1::AckFramesRequest* request,
+                                                  v1::AckFramesResponse* response) {
+  grpc::ServerUnaryReactor* const reactor = context->DefaultReactor();
+  reactor->Finish(ToGrpc(Acknowledge(table_, *request, *response)));
+  return reactor;
 }
 
 }  // namespace phrenic::service

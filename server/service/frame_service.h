@@ -7,8 +7,10 @@
 
 namespace phrenic::service {
 
-// gRPC's threads call, any number at a time. WatchFrames keeps no thread waiting: viewers are served by callbacks.
-class FrameService final : public v1::FrameService::WithRawCallbackMethod_WatchFrames<v1::FrameService::Service> {
+// gRPC's threads call, any number at a time. Neither WatchFrames nor AckFrames keeps a thread waiting: viewers are
+// served by callbacks.
+class FrameService final : public v1::FrameService::WithRawCallbackMethod_WatchFrames<
+                               v1::FrameService::WithCallbackMethod_AckFrames<v1::FrameService::Service>> {
  public:
   explicit FrameService(session::Table& table) : table_(table) {}
 
@@ -16,6 +18,8 @@ class FrameService final : public v1::FrameService::WithRawCallbackMethod_WatchF
                            grpc::ServerWriter<v1::GetGeometryResponse>* writer) override;
   grpc::ServerWriteReactor<grpc::ByteBuffer>* WatchFrames(grpc::CallbackServerContext* context,
                                                           const grpc::ByteBuffer* request) override;
+  grpc::ServerUnaryReactor* AckFrames(grpc::CallbackServerContext* context, const v1::AckFramesRequest* request,
+                                      v1::AckFramesResponse* response) override;
 
  private:
   session::Table& table_;

@@ -57,7 +57,7 @@ WatchReactor::Next WatchReactor::TakeNext() {
     return {.finish = ToGrpc(*ended)};
   }
   Next next;
-  next.write = viewer_->Take();
+  next.write = viewer_->Take(absl::Now());
   writing_ = next.write != nullptr;
   return next;
 }

@@ -1,5 +1,8 @@
 #include "server/service/web_gateway.h"
 
+#include <netinet/tcp.h>
+#include <sys/socket.h>
+
 #include <boost/asio/connect.hpp>
 #include <boost/asio/strand.hpp>
 
@@ -24,6 +27,18 @@ absl::StatusOr<tcp::endpoint> Resolve(net::io_context& context, const std::strin
     return absl::UnavailableError(absl::StrCat(address, ": there is no such address on this machine"));
   }
   return found.begin()->endpoint();
+}
+
+// A peer that no longer answers is given up within 15 s, whether bytes are on their way to it or not.
+void NoticeDeath(tcp::socket& socket) {
+  constexpr int kOn = 1, kQuiet = 9, kBetween = 3, kProbes = 2;  // [s], [s]
+  constexpr unsigned kUnanswered = 15'000;                       // [ms]
+  const int handle = socket.native_handle();
+  setsockopt(handle, SOL_SOCKET, SO_KEEPALIVE, &kOn, sizeof kOn);
+  setsockopt(handle, IPPROTO_TCP, TCP_KEEPIDLE, &kQuiet, sizeof kQuiet);
+  setsockopt(handle, IPPROTO_TCP, TCP_KEEPINTVL, &kBetween, sizeof kBetween);
+  setsockopt(handle, IPPROTO_TCP, TCP_KEEPCNT, &kProbes, sizeof kProbes);
+  setsockopt(handle, IPPROTO_TCP, TCP_USER_TIMEOUT, &kUnanswered, sizeof kUnanswered);
 }
 
 }  // namespace
@@ -68,6 +83,7 @@ void WebGateway::OnAccept(boost::system::error_code error, tcp::socket socket) {
   if (!error) {
     boost::system::error_code ignored;
     socket.set_option(tcp::no_delay(true), ignored);
+    NoticeDeath(socket);
     const auto connection = std::make_shared<WebConnection>(std::move(socket), options_.settings, stub_);
     if (Admit(connection)) {
       connection->Run();

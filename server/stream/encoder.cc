@@ -1,46 +1,75 @@
 #include "server/stream/encoder.h"
 
 #include <string>
-#include <utility>
+
+#include "server/stream/rest_shape.h"
 
 namespace phrenic::stream {
+namespace {
+
+constexpr std::size_t kMostCodecs = 8;  // kept: each choice of bodies has its own
+
+}  // namespace
+
+Encoder::Encoder(std::shared_ptr<const Model> model, const Layout& layout)
+    : model_(std::move(model)), layout_(layout), streamed_(StreamedBodies(*model_, layout)) {}
 
 bool Encoder::Make(const Snapshot& snapshot) {
   if (snapshot.sequence == sequence_) return sendable_;
   sequence_ = snapshot.sequence;
-  full_ = numbers_ = nullptr;
+  made_.clear();
   absl::StatusOr<v1::Frame> frame = MakeFrame(*model_, layout_, snapshot);
   sendable_ = frame.ok();
-  if (sendable_) made_.mutable_frame()->Swap(&*frame);
-  return sendable_;
+  if (!sendable_) return false;
+  numbers_.Swap(&*frame);
+  positions_ =
+      Eigen::Map<const Floats>(reinterpret_cast<const float*>(numbers_.positions().data()), 3, layout_.vertices());
+  numbers_.clear_positions();
+  poses_ = std::move(*numbers_.mutable_poses());
+  numbers_.clear_poses();
+  return true;
 }
 
-Bytes Encoder::Full(const Snapshot& snapshot) {
-  if (!Make(snapshot)) return nullptr;
-  if (full_ == nullptr) {
-    full_ = std::make_shared<const std::string>(made_.SerializeAsString());
-    ++encodings_;
+const Codec& Encoder::FindCodec(const Chosen& chosen) {
+  if (codecs_.size() > kMostCodecs) codecs_.clear();
+  std::unique_ptr<Codec>& codec = codecs_[chosen];
+  if (codec == nullptr) codec = MakeCodec(chosen.first, MakeRestShape(*model_, chosen.second));
+  return *codec;
+}
+
+void Encoder::SetPositions(const Form& form, v1::Frame& frame) {
+  const std::vector<int>& bodies = form.chosen ? form.bodies : streamed_;
+  const Floats positions = Pick(*model_, layout_, bodies, positions_);
+  const double bound = form.codec == v1::CODEC_RAW ? 0 : RungMillimetres(form.rung);
+  frame.set_codec(form.codec);
+  frame.set_max_error_mm(bound);
+  auto bytes = FindCodec({form.codec, bodies}).Encode(positions, 1e-3 * bound);
+  if (!bytes.ok()) {
+    frame.set_codec(v1::CODEC_RAW);
+    frame.set_max_error_mm(0);
+    bytes = FindCodec({v1::CODEC_RAW, bodies}).Encode(positions, 0);
   }
-  return full_;
+  frame.set_positions(*std::move(bytes));  // raw is never refused
+  frame.mutable_bodies()->Assign(bodies.begin(), bodies.end());
+  frame.set_poses(poses_);
+  ++encodings_;
 }
 
-Bytes Encoder::Numbers(const Snapshot& snapshot) {
+Bytes Encoder::Encode(const Snapshot& snapshot, const Form& form) {
   if (!Make(snapshot)) return nullptr;
-  if (numbers_ == nullptr) {
-    v1::Frame& frame = *made_.mutable_frame();
-    std::string positions = std::exchange(*frame.mutable_positions(), {});
-    std::string poses = std::exchange(*frame.mutable_poses(), {});
-    numbers_ = std::make_shared<const std::string>(made_.SerializeAsString());
-    frame.set_positions(std::move(positions));
-    frame.set_poses(std::move(poses));
-  }
-  return numbers_;
+  Bytes& bytes = made_[form];
+  if (bytes != nullptr) return bytes;
+  v1::WatchFramesResponse response;
+  *response.mutable_frame() = numbers_;
+  if (!form.numbers_only) SetPositions(form, *response.mutable_frame());
+  bytes = std::make_shared<const std::string>(response.SerializeAsString());
+  return bytes;
 }
 
-Bytes EncodeSession(const v1::Session& session) {
+News EncodeSession(const v1::Session& session) {
   v1::WatchFramesResponse response;
   *response.mutable_session() = session;
-  return std::make_shared<const std::string>(response.SerializeAsString());
+  return {.revision = session.revision(), .bytes = std::make_shared<const std::string>(response.SerializeAsString())};
 }
 
 }  // namespace phrenic::stream

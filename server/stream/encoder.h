@@ -1,12 +1,16 @@
-// Frames to bytes, each frame once.
+// Frames to bytes, each frame once a form.
 #ifndef PHRENIC_SERVER_STREAM_ENCODER_H_
 #define PHRENIC_SERVER_STREAM_ENCODER_H_
 
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "phrenic/v1/frames.pb.h"
 #include "phrenic/v1/session.pb.h"
+#include "server/stream/codec.h"
 #include "server/stream/frame.h"
 #include "server/stream/viewer.h"
 
@@ -15,29 +19,36 @@ namespace phrenic::stream {
 // Keeps the encodings of the newest snapshot it was given. Not thread-safe: the publisher's thread has it.
 class Encoder {
  public:
-  Encoder(std::shared_ptr<const Model> model, const Layout& layout) : model_(std::move(model)), layout_(layout) {}
+  Encoder(std::shared_ptr<const Model> model, const Layout& layout);
 
-  // A WatchFramesResponse with the frame; null where a number of it is not finite. Numbers are the frame without
-  // positions and poses.
-  Bytes Full(const Snapshot& snapshot);
-  Bytes Numbers(const Snapshot& snapshot);
-  // How often Full had to encode.
+  // A WatchFramesResponse with the frame in that form; null where a number of it is not finite. What the form's codec
+  // cannot hold within its bound goes out raw.
+  Bytes Encode(const Snapshot& snapshot, const Form& form);
+  // How often positions were encoded.
   std::int64_t encodings() const { return encodings_; }
 
  private:
+  using Chosen = std::pair<v1::Codec, std::vector<int>>;
+
   // Makes the frame unless it is the one made last; false where it may not be sent.
   bool Make(const Snapshot& snapshot);
+  void SetPositions(const Form& form, v1::Frame& frame);
+  const Codec& FindCodec(const Chosen& chosen);
 
   const std::shared_ptr<const Model> model_;
   const Layout& layout_;
+  const std::vector<int> streamed_;
   std::int64_t sequence_ = -1;
   bool sendable_ = false;
-  v1::WatchFramesResponse made_;
-  Bytes full_, numbers_;
+  v1::Frame numbers_;  // without positions and poses
+  std::string poses_;
+  Floats positions_;  // of all streamed bodies
+  std::map<Form, Bytes> made_;
+  std::map<Chosen, std::unique_ptr<Codec>> codecs_;
   std::int64_t encodings_ = 0;
 };
 
-Bytes EncodeSession(const v1::Session& session);
+News EncodeSession(const v1::Session& session);
 
 }  // namespace phrenic::stream
 

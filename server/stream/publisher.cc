@@ -42,7 +42,8 @@ void Publisher::Announce(const v1::Session& session) {
 
 void Publisher::SessionChanged() {
   session_.set_viewers(static_cast<int>(seats_.size()));
-  ++session_number_;
+  if (!news_.empty() && news_.back().revision() == session_.revision()) news_.pop_back();
+  news_.push_back(session_);
   stirred_ = true;
 }
 
@@ -53,6 +54,10 @@ absl::StatusOr<std::shared_ptr<Viewer>> Publisher::Join(const ViewerOptions& opt
     return absl::ResourceExhaustedError(
         absl::StrCat("the session has ", seats_.size(), " viewers, and no more are allowed; try again later"));
   }
+  const bool taken = std::any_of(seats_.begin(), seats_.end(), [&options](const Seat& seat) {
+    return !options.watch_id.empty() && seat.viewer->options().watch_id == options.watch_id;
+  });
+  if (taken) return absl::AlreadyExistsError(absl::StrCat("watch_id: somebody watches as ", options.watch_id));
   auto viewer = std::make_shared<Viewer>(options, std::move(wake));
   seats_.emplace_back().viewer = viewer;
   SessionChanged();
@@ -74,6 +79,14 @@ void Publisher::Close(const absl::Status& reason) {
     for (const Seat& seat : seats_) viewers.push_back(seat.viewer);
   }
   for (const auto& viewer : viewers) viewer->End(reason);
+}
+
+absl::StatusOr<std::shared_ptr<Viewer>> Publisher::Find(const std::string& watch_id) const {
+  absl::MutexLock lock(&mutex_);
+  for (const Seat& seat : seats_) {
+    if (seat.viewer->options().watch_id == watch_id) return seat.viewer;
+  }
+  return absl::NotFoundError(absl::StrCat("watch_id: nobody watches as ", watch_id));
 }
 
 int Publisher::viewers() const {
@@ -98,37 +111,41 @@ absl::Time Publisher::NextDue() const {
 Publisher::Round Publisher::TakeRound(absl::Time now) {
   Round round;
   round.snapshot = newest_;
-  if (session_number_ > 0) round.session = EncodeSession(session_);
+  round.news.swap(news_);
+  const bool newcomers = std::any_of(seats_.begin(), seats_.end(), [](const Seat& seat) { return !seat.greeted; });
+  if (newcomers && round.news.empty()) round.news.push_back(session_);
   for (Seat& seat : seats_) {
-    if (seat.news < session_number_) {
-      seat.news = session_number_;
-      round.for_session.push_back(seat.viewer);
-    }
+    (seat.greeted ? round.greeted : round.newcomers).push_back(seat.viewer);
+    seat.greeted = true;
     if (newest_ == nullptr || seat.sequence >= newest_->sequence || now < seat.due) continue;
     seat.sequence = newest_->sequence;
     const ViewerOptions& options = seat.viewer->options();
     if (options.max_fps > 0) seat.due = now + absl::Seconds(1 / options.max_fps) - kEarly;
-    (options.numbers_only ? round.for_numbers : round.for_frame).push_back(seat.viewer);
+    round.frames[seat.viewer->form()].push_back(seat.viewer);
   }
   return round;
 }
 
 void Publisher::Deliver(const Round& round) {
-  for (const auto& viewer : round.for_session) viewer->PutSession(round.session);
-  if (!round.for_frame.empty()) {
-    const Bytes frame = encoder_.Full(*round.snapshot);
+  for (std::size_t i = 0; i < round.news.size(); ++i) {
+    const News news = EncodeSession(round.news[i]);
+    for (const auto& viewer : round.greeted) viewer->PutSession(news);
+    if (i + 1 < round.news.size()) continue;
+    for (const auto& viewer : round.newcomers) viewer->PutSession(news);
+  }
+  DeliverFrames(round);
+}
+
+void Publisher::DeliverFrames(const Round& round) {
+  for (const auto& [form, viewers] : round.frames) {
+    const Bytes bytes = encoder_.Encode(*round.snapshot, form);
     {
       absl::MutexLock lock(&mutex_);
       encodings_ = encoder_.encodings();
     }
-    for (const auto& viewer : round.for_frame) {
-      if (frame != nullptr) viewer->PutFrame(frame);
-    }
-  }
-  if (round.for_numbers.empty()) return;
-  const Bytes numbers = encoder_.Numbers(*round.snapshot);
-  for (const auto& viewer : round.for_numbers) {
-    if (numbers != nullptr) viewer->PutFrame(numbers);
+    if (bytes == nullptr) continue;
+    const absl::Time now = clock_.Now();
+    for (const auto& viewer : viewers) viewer->PutFrame(round.snapshot->sequence, bytes, now);
   }
 }
 

@@ -4,8 +4,10 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -36,14 +38,18 @@ class Publisher {
 
   // The viewer gets the session's state at once, then the newest frame, then what comes. RESOURCE_EXHAUSTED when there
   // are too many already, and the reason of Close after it.
+  // ALREADY_EXISTS when another watches under the same name.
   absl::StatusOr<std::shared_ptr<Viewer>> Join(const ViewerOptions& options, std::function<void()> wake)
       ABSL_LOCKS_EXCLUDED(mutex_);
   void Leave(const std::shared_ptr<Viewer>& viewer) ABSL_LOCKS_EXCLUDED(mutex_);
   // Ends every viewer with `reason` and the thread; nothing is delivered afterwards.
   void Close(const absl::Status& reason) ABSL_LOCKS_EXCLUDED(mutex_);
 
+  // The viewer of that name; NOT_FOUND where there is none.
+  absl::StatusOr<std::shared_ptr<Viewer>> Find(const std::string& watch_id) const ABSL_LOCKS_EXCLUDED(mutex_);
+
   int viewers() const ABSL_LOCKS_EXCLUDED(mutex_);
-  // How often a frame with positions was encoded.
+  // How often positions were encoded.
   std::int64_t encodings() const ABSL_LOCKS_EXCLUDED(mutex_);
   const Layout& layout() const { return layout_; }
 
@@ -52,14 +58,16 @@ class Publisher {
   struct Seat {
     std::shared_ptr<Viewer> viewer;
     std::int64_t sequence = 0;              // of the newest frame
-    std::int64_t news = 0;                  // number of the newest state of the session
+    bool greeted = false;                   // was told the session's state
     absl::Time due = absl::InfinitePast();  // no frame before this
   };
+  using Viewers = std::vector<std::shared_ptr<Viewer>>;
   // What is to be put into whose mailbox.
   struct Round {
     std::shared_ptr<const Snapshot> snapshot;
-    Bytes session;
-    std::vector<std::shared_ptr<Viewer>> for_session, for_frame, for_numbers;
+    std::vector<v1::Session> news;
+    Viewers greeted, newcomers;  // newcomers hear the last of the news only
+    std::map<Form, Viewers> frames;
   };
 
   void Run() ABSL_LOCKS_EXCLUDED(mutex_);
@@ -67,6 +75,7 @@ class Publisher {
   absl::Time NextDue() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   Round TakeRound(absl::Time now) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void Deliver(const Round& round) ABSL_LOCKS_EXCLUDED(mutex_);
+  void DeliverFrames(const Round& round) ABSL_LOCKS_EXCLUDED(mutex_);
   void SessionChanged() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
   const std::shared_ptr<const Model> model_;
@@ -76,7 +85,7 @@ class Publisher {
   mutable absl::Mutex mutex_;
   std::shared_ptr<const Snapshot> newest_ ABSL_GUARDED_BY(mutex_);
   v1::Session session_ ABSL_GUARDED_BY(mutex_);
-  std::int64_t session_number_ ABSL_GUARDED_BY(mutex_) = 0;
+  std::vector<v1::Session> news_ ABSL_GUARDED_BY(mutex_);  // not told yet
   std::vector<Seat> seats_ ABSL_GUARDED_BY(mutex_);
   bool stirred_ ABSL_GUARDED_BY(mutex_) = false;  // something came since the last round
   std::optional<absl::Status> closed_ ABSL_GUARDED_BY(mutex_);

@@ -2,23 +2,45 @@
 
 #include <utility>
 
+#include "absl/strings/str_cat.h"
+
 namespace phrenic::stream {
 
-void Viewer::PutFrame(Bytes frame) {
+Form Viewer::form() const {
+  absl::MutexLock lock(&mutex_);
+  Form form = options_.form;
+  form.rung = credit_.rung();
+  return form;
+}
+
+void Viewer::PutFrame(std::int64_t sequence, Bytes frame, absl::Time now) {
   {
     absl::MutexLock lock(&mutex_);
     if (end_.has_value()) return;
-    if (frame_ != nullptr) ++missed_;
+    if (frame_ != nullptr) {
+      ++missed_;
+      credit_.Missed(now);
+    }
     frame_ = std::move(frame);
+    sequence_ = sequence;
   }
   wake_();
 }
 
-void Viewer::PutSession(Bytes session) {
+void Viewer::PutSession(const News& news) {
   {
     absl::MutexLock lock(&mutex_);
     if (end_.has_value()) return;
-    session_ = std::move(session);
+    if (!news_.empty() && news_.back().revision == news.revision) {
+      news_.back() = news;
+    } else if (news_.size() < kMostNews) {
+      news_.push_back(news);
+    } else {
+      news_.clear();
+      frame_ = nullptr;
+      end_ = absl::ResourceExhaustedError(
+          absl::StrCat("the viewer took none of ", kMostNews, " changes of the session; watch again"));
+    }
   }
   wake_();
 }
@@ -28,19 +50,40 @@ void Viewer::End(absl::Status reason) {
     absl::MutexLock lock(&mutex_);
     if (end_.has_value()) return;
     end_ = std::move(reason);
+    if (!credit_.MaySend()) frame_ = nullptr;
   }
   wake_();
 }
 
-Bytes Viewer::Take() {
+Bytes Viewer::Take(absl::Time now) {
   absl::MutexLock lock(&mutex_);
-  if (session_ != nullptr) return std::exchange(session_, nullptr);
+  if (!news_.empty()) {
+    const Bytes bytes = std::move(news_.front().bytes);
+    news_.pop_front();
+    return bytes;
+  }
+  if (frame_ == nullptr || !credit_.MaySend()) return nullptr;
+  credit_.Sent(sequence_, now);
   return std::exchange(frame_, nullptr);
+}
+
+v1::AckFramesResponse Viewer::Acknowledge(std::int64_t sequence, absl::Time now) {
+  v1::AckFramesResponse response;
+  {
+    absl::MutexLock lock(&mutex_);
+    credit_.Acknowledged(sequence, now);
+    response.set_unix_nanos(absl::ToUnixNanos(now));
+    response.set_frames_per_second(credit_.FramesPerSecond(now));
+    response.set_max_error_mm(options_.form.codec == v1::CODEC_RAW ? 0 : RungMillimetres(credit_.rung()));
+    response.set_max_unacked_frames(credit_.allowed());
+  }
+  wake_();
+  return response;
 }
 
 std::optional<absl::Status> Viewer::ended() const {
   absl::MutexLock lock(&mutex_);
-  if (session_ != nullptr || frame_ != nullptr) return std::nullopt;
+  if (!news_.empty() || frame_ != nullptr) return std::nullopt;
   return end_;
 }
 

@@ -1,4 +1,4 @@
-// Numbers as they travel: little-endian, 4 bytes each (proto/README.md).
+// Numbers as they travel: little-endian (proto/README.md).
 #ifndef PHRENIC_SERVER_STREAM_WIRE_H_
 #define PHRENIC_SERVER_STREAM_WIRE_H_
 
@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstring>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "server/mesh/mesh.h"
@@ -26,9 +27,19 @@ inline void AppendIndices(const Eigen::Ref<const Eigen::MatrixXi>& indices, std:
   bytes.append(reinterpret_cast<const char*>(indices.data()), sizeof(int) * indices.size());
 }
 
-inline void AppendIndex(int index, std::string& bytes) {
-  const auto value = static_cast<std::uint32_t>(index);
+template <class Number>
+void Append(Number value, std::string& bytes) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+inline void AppendIndex(int index, std::string& bytes) { Append(static_cast<std::uint32_t>(index), bytes); }
+
+// The number that begins at `offset`; the bytes do not end before it does.
+template <class Number>
+Number Read(std::string_view bytes, std::size_t offset) {
+  Number value;
+  std::memcpy(&value, bytes.data() + offset, sizeof value);
+  return value;
 }
 
 }  // namespace phrenic::stream

@@ -105,7 +105,7 @@ TEST(Golden, BytesOfAFrameAreThoseInTheFile) {
   const auto model = CompileText(Triangle("measures { name: 'height' highest { body: 'sheet' } }"));
   const Layout layout(*model);
   Encoder encoder(model, layout);
-  const Bytes bytes = encoder.Full(MakeSnapshot(*model));
+  const Bytes bytes = encoder.Encode(MakeSnapshot(*model), {});
   ASSERT_NE(bytes, nullptr);
   EXPECT_EQ(Hex(*bytes), Golden("frame.hex"));
 }

@@ -113,6 +113,56 @@ TEST_F(FrameServiceTest, NumbersOnlyLeavesTheArraysOut) {
   EXPECT_EQ(reader->Finish().error_code(), grpc::CANCELLED);
 }
 
+// Positions and answers over a socket: no more frames than the window, until they are acknowledged.
+TEST_F(FrameServiceTest, AViewerThatAcknowledgesGetsOnAndOneThatDoesNotWaits) {
+  v1::WatchFramesRequest request;
+  request.set_session_id("cube");
+  request.set_codec(v1::CODEC_PREDICTED);
+  request.set_watch_id("page");
+  request.set_max_unacked_frames(2);
+  grpc::ClientContext context;
+  context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(30));
+  const auto reader = frames_->WatchFrames(&context, request);
+  const auto next = [&] {
+    v1::WatchFramesResponse response;
+    while (reader->Read(&response) && !response.has_frame()) continue;
+    return response.frame();
+  };
+  const v1::Frame first = next();
+  EXPECT_EQ(first.codec(), v1::CODEC_PREDICTED);
+  EXPECT_EQ(first.max_error_mm(), 0.1);
+  EXPECT_THAT(first.bodies(), testing::ElementsAre(0));
+  for (int i = 0; i < 4; ++i) ASSERT_TRUE(Session(&Sessions::StepSession, "session_id: 'cube' ticks: 20").ok());
+  EXPECT_EQ(next().sequence(), first.sequence() + 1);
+  v1::AckFramesResponse given;
+  const std::string ack = absl::StrCat("session_id: 'cube' watch_id: 'page' sequence: ", first.sequence() + 1);
+  ASSERT_TRUE(Call(*frames_, &v1::FrameService::Stub::AckFrames, ack, &given).ok());
+  EXPECT_EQ(given.max_error_mm(), 0.1);
+  EXPECT_GT(given.unix_nanos(), first.unix_nanos());
+  EXPECT_EQ(next().tick(), 80) << "not the newest frame";
+  const grpc::Status other =
+      Call(*frames_, &v1::FrameService::Stub::AckFrames, "session_id: 'cube' watch_id: 'other'", &given);
+  EXPECT_EQ(other.error_code(), grpc::NOT_FOUND) << other.error_message();
+  context.TryCancel();
+  reader->Finish();
+}
+
+TEST_F(FrameServiceTest, ARequestThatDoesNotFitIsRefusedByName) {
+  const auto refusal = [&](const std::string& text) {
+    v1::WatchFramesRequest request;
+    EXPECT_TRUE(google::protobuf::TextFormat::ParseFromString("session_id: 'cube' " + text, &request));
+    grpc::ClientContext context;
+    const auto reader = frames_->WatchFrames(&context, request);
+    v1::WatchFramesResponse response;
+    EXPECT_FALSE(reader->Read(&response)) << text;
+    return reader->Finish();
+  };
+  EXPECT_THAT(refusal("max_unacked_frames: 2").error_message(), testing::HasSubstr("watch_id"));
+  EXPECT_THAT(refusal("bodies: 'sphere'").error_message(), testing::HasSubstr("sphere"));
+  EXPECT_THAT(refusal("max_error_mm: 0").error_message(), testing::HasSubstr("max_error_mm"));
+  EXPECT_THAT(refusal("codec: 77").error_message(), testing::HasSubstr("codec"));
+}
+
 TEST_F(FrameServiceTest, DeletingASessionEndsItsViewers) {
   Watch watch(channel_, "cube");
   v1::WatchFramesResponse response;

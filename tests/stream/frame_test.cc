@@ -11,7 +11,7 @@
 namespace phrenic::stream {
 namespace {
 
-std::vector<float> Floats(const std::string& bytes) {
+std::vector<float> FloatsOf(const std::string& bytes) {
   std::vector<float> floats(bytes.size() / sizeof(float));
   std::memcpy(floats.data(), bytes.data(), bytes.size());
   return floats;
@@ -32,7 +32,7 @@ TEST(Frame, PositionsAreThoseOfTheStateRoundedToFloats) {
   const Snapshot snapshot = At(*model, 0.5);
   const auto frame = MakeFrame(*model, Layout(*model), snapshot);
   ASSERT_TRUE(frame.ok()) << frame.status();
-  const std::vector<float> positions = Floats(frame->positions());
+  const std::vector<float> positions = FloatsOf(frame->positions());
   ASSERT_EQ(positions.size(), 9u);
   for (int i = 0; i < 9; ++i) EXPECT_EQ(positions[i], static_cast<float>(snapshot.state.x.data()[i]));
   EXPECT_LT(positions[5], 0) << "a free corner has not fallen";
@@ -75,7 +75,7 @@ TEST(Frame, PosesAreRotationThenTranslation) {
   pose.translation = {1, 2, 3};
   const auto frame = MakeFrame(*model, Layout(*model), snapshot);
   ASSERT_TRUE(frame.ok()) << frame.status();
-  EXPECT_EQ(Floats(frame->poses()), (std::vector<float>{0.5, -0.5, 0.5, 0.5, 1, 2, 3}));
+  EXPECT_EQ(FloatsOf(frame->poses()), (std::vector<float>{0.5, -0.5, 0.5, 0.5, 1, 2, 3}));
 }
 
 TEST(Frame, WithANumberThatIsNotFiniteIsRefused) {
@@ -86,8 +86,8 @@ TEST(Frame, WithANumberThatIsNotFiniteIsRefused) {
     snapshot.state.x(1, 2) = bad;
     EXPECT_TRUE(absl::IsInternal(MakeFrame(*model, layout, snapshot).status())) << bad;
     Encoder encoder(model, layout);
-    EXPECT_EQ(encoder.Full(snapshot), nullptr);
-    EXPECT_EQ(encoder.Numbers(snapshot), nullptr);
+    EXPECT_EQ(encoder.Encode(snapshot, {}), nullptr);
+    EXPECT_EQ(encoder.Encode(snapshot, {.numbers_only = true}), nullptr);
   }
   Snapshot posed = At(*model, 0.1);
   posed.state.poses.emplace_back().translation.x() = std::numeric_limits<double>::quiet_NaN();
@@ -100,11 +100,13 @@ TEST(Frame, NumbersAreTheFrameWithoutItsArrays) {
   Encoder encoder(model, layout);
   const Snapshot snapshot = At(*model, 0.2);
   v1::WatchFramesResponse full, numbers;
-  ASSERT_TRUE(numbers.ParseFromString(*encoder.Numbers(snapshot)));
-  ASSERT_TRUE(full.ParseFromString(*encoder.Full(snapshot)));
+  ASSERT_TRUE(numbers.ParseFromString(*encoder.Encode(snapshot, {.numbers_only = true})));
+  ASSERT_TRUE(full.ParseFromString(*encoder.Encode(snapshot, {})));
   EXPECT_FALSE(full.frame().positions().empty());
   EXPECT_TRUE(numbers.frame().positions().empty());
   full.mutable_frame()->clear_positions();
+  full.mutable_frame()->clear_codec();
+  full.mutable_frame()->clear_bodies();
   EXPECT_EQ(full.SerializeAsString(), numbers.SerializeAsString());
 }
 
@@ -128,7 +130,7 @@ TEST(Geometry, TellsLookAndSurfaceOfEachBody) {
   EXPECT_EQ(post.body_count(), 2);
   EXPECT_EQ(post.layer(), "post") << "a body in no layer makes its own";
   EXPECT_EQ(Indices(post.edges()), (std::vector<std::uint32_t>{0, 1}));
-  EXPECT_EQ(Floats(post.rest_positions()), (std::vector<float>{2, 0, 0, 3, 0, 0}));
+  EXPECT_EQ(FloatsOf(post.rest_positions()), (std::vector<float>{2, 0, 0, 3, 0, 0}));
   EXPECT_EQ(sheet.body_index(), 1);
   EXPECT_EQ(sheet.layer_title(), "Tissue");
   EXPECT_EQ(sheet.color(), "#c8553d");

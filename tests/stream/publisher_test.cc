@@ -36,7 +36,7 @@ class PublisherTest : public testing::Test {
   Bytes NextFrame(Viewer& viewer) {
     Bytes frame;
     const bool came = Eventually([&] {
-      const Bytes bytes = viewer.Take();
+      const Bytes bytes = viewer.Take(absl::Now());
       if (bytes != nullptr && Parse(bytes).has_frame()) frame = bytes;
       return frame != nullptr;
     });
@@ -54,10 +54,10 @@ TEST(Viewer, NewestFrameReplacesTheOlder) {
   Viewer viewer({}, [&] { ++woken; });
   const auto first = std::make_shared<const std::string>("first"),
              second = std::make_shared<const std::string>("second");
-  viewer.PutFrame(first);
-  viewer.PutFrame(second);
-  EXPECT_EQ(viewer.Take(), second);
-  EXPECT_EQ(viewer.Take(), nullptr);
+  viewer.PutFrame(1, first, absl::Now());
+  viewer.PutFrame(2, second, absl::Now());
+  EXPECT_EQ(viewer.Take(absl::Now()), second);
+  EXPECT_EQ(viewer.Take(absl::Now()), nullptr);
   EXPECT_EQ(viewer.missed(), 1);
   EXPECT_EQ(woken, 2);
 }
@@ -65,12 +65,12 @@ TEST(Viewer, NewestFrameReplacesTheOlder) {
 TEST(Viewer, StateOfTheSessionComesBeforeAFrame) {
   Viewer viewer({}, [] {});
   const auto frame = std::make_shared<const std::string>("frame"), session = std::make_shared<const std::string>("s");
-  viewer.PutFrame(frame);
-  viewer.PutSession(session);
+  viewer.PutFrame(1, frame, absl::Now());
+  viewer.PutSession({.revision = 1, .bytes = session});
   viewer.End(absl::NotFoundError("deleted"));
   EXPECT_FALSE(viewer.ended().has_value()) << "what was put before the end is lost";
-  EXPECT_EQ(viewer.Take(), session);
-  EXPECT_EQ(viewer.Take(), frame);
+  EXPECT_EQ(viewer.Take(absl::Now()), session);
+  EXPECT_EQ(viewer.Take(absl::Now()), frame);
   ASSERT_TRUE(viewer.ended().has_value());
   EXPECT_TRUE(absl::IsNotFound(*viewer.ended()));
 }
@@ -114,11 +114,64 @@ TEST_F(PublisherTest, MaxFpsHoldsFramesBackUntilTheyAreDue) {
   Offer(2);
   Offer(3);
   while (Parse(NextFrame(*unlimited)).frame().sequence() < 3) continue;
-  for (Bytes bytes = viewer->Take(); bytes != nullptr; bytes = viewer->Take()) {
+  for (Bytes bytes = viewer->Take(absl::Now()); bytes != nullptr; bytes = viewer->Take(absl::Now())) {
     EXPECT_FALSE(Parse(bytes).has_frame()) << "a frame came before its time";
   }
   clock_.Advance(absl::Milliseconds(101));
   EXPECT_EQ(Parse(NextFrame(*viewer)).frame().sequence(), 3);
+}
+
+TEST(Viewer, ChangesOfTheSessionAllComeAndProgressReplacesItself) {
+  Viewer viewer({}, [] {});
+  const auto text = [](const char* words) { return std::make_shared<const std::string>(words); };
+  const Bytes played = text("played"), progress = text("progress"), paused = text("paused");
+  viewer.PutSession({.revision = 1, .bytes = played});
+  viewer.PutSession({.revision = 1, .bytes = progress});
+  viewer.PutSession({.revision = 2, .bytes = paused});
+  EXPECT_EQ(viewer.Take(absl::Now()), progress);
+  EXPECT_EQ(viewer.Take(absl::Now()), paused);
+  EXPECT_EQ(viewer.Take(absl::Now()), nullptr);
+  for (std::size_t i = 0; i <= kMostNews; ++i) {
+    EXPECT_FALSE(viewer.ended().has_value());
+    viewer.PutSession({.revision = static_cast<std::int64_t>(3 + i), .bytes = paused});
+  }
+  ASSERT_TRUE(viewer.ended().has_value()) << "a viewer that takes nothing is kept for ever";
+  EXPECT_TRUE(absl::IsResourceExhausted(*viewer.ended()));
+}
+
+TEST(Viewer, TakesNoMoreFramesThanItsWindowUntilItAcknowledges) {
+  int woken = 0;
+  Viewer viewer({.max_unacked = 2}, [&] { ++woken; });
+  const auto frame = std::make_shared<const std::string>("frame");
+  for (int sequence = 1; sequence <= 3; ++sequence) {
+    viewer.PutFrame(sequence, frame, absl::Now());
+    EXPECT_EQ(viewer.Take(absl::Now()), sequence < 3 ? frame : nullptr);
+  }
+  const v1::AckFramesResponse given = viewer.Acknowledge(2, absl::Now());
+  EXPECT_EQ(woken, 4) << "who serves it does not hear that it may go on";
+  EXPECT_EQ(given.max_unacked_frames(), 2);
+  EXPECT_EQ(given.frames_per_second(), 2);
+  EXPECT_EQ(viewer.Take(absl::Now()), frame);
+}
+
+TEST_F(PublisherTest, EachFormIsEncodedOnceAndHoldsWhatWasAskedFor) {
+  const Form predicted{.codec = v1::CODEC_PREDICTED}, nothing{.chosen = true};
+  const auto raw = Join(), a = Join({.form = predicted}), b = Join({.form = predicted}), none = Join({.form = nothing});
+  Offer(1);
+  const Bytes frame = NextFrame(*a);
+  EXPECT_EQ(NextFrame(*b), frame);
+  EXPECT_EQ(Parse(frame).frame().codec(), v1::CODEC_PREDICTED);
+  EXPECT_DOUBLE_EQ(Parse(frame).frame().max_error_mm(), 0.1);
+  EXPECT_EQ(Parse(NextFrame(*raw)).frame().positions().size(), 36U);
+  EXPECT_TRUE(Parse(NextFrame(*none)).frame().positions().empty());
+  EXPECT_EQ(publisher_.encodings(), 3);
+}
+
+TEST_F(PublisherTest, ANameIsOneViewersAlone) {
+  const auto viewer = Join({.watch_id = "page"});
+  EXPECT_EQ(*publisher_.Find("page"), viewer);
+  EXPECT_TRUE(absl::IsAlreadyExists(publisher_.Join({.watch_id = "page"}, [] {}).status()));
+  EXPECT_TRUE(absl::IsNotFound(publisher_.Find("other").status()));
 }
 
 TEST_F(PublisherTest, StateOfTheSessionIsTheFirstThingAViewerGets) {
@@ -128,7 +181,7 @@ TEST_F(PublisherTest, StateOfTheSessionIsTheFirstThingAViewerGets) {
   Offer(1);
   const auto viewer = Join();
   Bytes first;
-  ASSERT_TRUE(Eventually([&] { return (first = viewer->Take()) != nullptr; }));
+  ASSERT_TRUE(Eventually([&] { return (first = viewer->Take(absl::Now())) != nullptr; }));
   EXPECT_EQ(Parse(first).session().revision(), 7);
   EXPECT_EQ(Parse(first).session().viewers(), 1);
 }
@@ -145,7 +198,7 @@ TEST_F(PublisherTest, MoreViewersThanAllowedAreRefused) {
 TEST_F(PublisherTest, CloseEndsEveryViewerWithItsReason) {
   const auto viewer = Join();
   publisher_.Close(absl::NotFoundError("session x was deleted"));
-  while (viewer->Take() != nullptr) continue;
+  while (viewer->Take(absl::Now()) != nullptr) continue;
   ASSERT_TRUE(viewer->ended().has_value());
   EXPECT_EQ(viewer->ended()->message(), "session x was deleted");
   EXPECT_TRUE(absl::IsNotFound(publisher_.Join({}, [] {}).status()));

@@ -1,7 +1,15 @@
 import { create } from "@bufbuild/protobuf";
 import { describe, expect, test } from "vitest";
-import { decodeBody, decodeFrame, floats, indices, positionsOf, vertexAt } from "../../web/src/codec";
-import { FrameSchema, GetGeometryResponseSchema, Placement } from "../../web/src/gen/phrenic/v1/frames_pb";
+import {
+  decodeBody,
+  floats,
+  floatsPerPose,
+  type FrameArrays,
+  indices,
+  positionsOf,
+  vertexAt,
+} from "../../web/src/codec";
+import { GetGeometryResponseSchema, Placement } from "../../web/src/gen/phrenic/v1/frames_pb";
 import { bytesOf, triangleBody } from "./fake_server";
 
 describe("numbers on the wire", () => {
@@ -27,7 +35,10 @@ describe("numbers on the wire", () => {
 });
 
 describe("a vertex in a frame", () => {
-  const frame = (fields: object) => decodeFrame(create(FrameSchema, fields));
+  const frame = (fields: { positions?: Uint8Array; poses?: Uint8Array }): FrameArrays => ({
+    positions: floats(fields.positions ?? new Uint8Array(), 3, "positions"),
+    poses: floats(fields.poses ?? new Uint8Array(), floatsPerPose, "poses"),
+  });
 
   test("OfAStreamedBodyComesFromItsPartOfThePositions", () => {
     const body = decodeBody(triangleBody({ placement: Placement.STREAMED, firstVertex: 1 }));

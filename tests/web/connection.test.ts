@@ -16,6 +16,7 @@ const sink: Sink = {
   scene: () => {},
   session: (_session, fresh) => (freshSessions += fresh ? 1 : 0),
   frame: (frame) => ticks.push(frame.tick),
+  acknowledged: () => {},
 };
 
 const kinds = () => links.map((link) => link.kind);
@@ -118,15 +119,17 @@ test("RetryNowEndsTheWait", async () => {
   expect(links.at(-1)).toEqual({ kind: "live" });
 });
 
-test("AnotherRateIsAskedForWithoutALoss", async () => {
+test("FramesAreAcknowledgedAndAFailureIsTriedAgain", async () => {
   await settle();
-  connection.setMaxFps(10);
+  server.send({ case: "frame" as const, value: { sequence: 7n } });
   await settle();
-  expect(server.rates).toEqual([0, 10]);
-  expect(kinds()).toEqual(["connecting", "live"]);
-  server.send(frame(7n));
+  expect(server.acknowledged).toEqual([7n]);
+  server.down = true;
+  server.send({ case: "frame" as const, value: { sequence: 9n } });
   await settle();
-  expect(ticks).toEqual([7n]);
+  server.down = false;
+  await clock.advance(500);
+  expect(server.acknowledged).toEqual([7n, 9n, 9n]);
 });
 
 test("NothingIsAskedAfterStop", async () => {

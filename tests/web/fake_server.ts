@@ -52,8 +52,8 @@ export class FakeServer {
   sceneHash = "abc";
   down = false;
   geometryCalls = 0;
-  /** The frame rates that watchers asked for. */
-  readonly rates: number[] = [];
+  /** The frames that watchers said had come. */
+  readonly acknowledged: bigint[] = [];
   readonly updates: object[] = [];
   readonly pulls: Pull[] = [];
   readonly comparisons: CompareRequest[] = [];
@@ -104,12 +104,15 @@ export class FakeServer {
   private streams() {
     const server = this;
     return {
+      ackFrames({ sequence }: { sequence: bigint }) {
+        server.acknowledged.push(sequence);
+        return server.answer({ unixNanos: 1_000_000_000n, framesPerSecond: 30 });
+      },
       async *getGeometry() {
         server.geometryCalls++;
         yield server.answer(triangleBody({}));
       },
-      async *watchFrames({ maxFps }: { maxFps: number }, { signal }: { signal: AbortSignal }) {
-        server.rates.push(maxFps);
+      async *watchFrames(_: object, { signal }: { signal: AbortSignal }) {
         yield server.answer({
           event: { case: "session" as const, value: server.session },
         });

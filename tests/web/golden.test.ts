@@ -2,12 +2,16 @@ import { fromBinary, toBinary } from "@bufbuild/protobuf";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { expect, test } from "vitest";
-import { decodeBody, decodeFrame } from "../../web/src/codec";
+import { decodeBody } from "../../web/src/codec";
+import { FrameDecoder } from "../../web/src/frame_decoder";
 import {
   type Frame,
+  Placement,
   GetGeometryResponseSchema,
   WatchFramesResponseSchema,
 } from "../../web/src/gen/phrenic/v1/frames_pb";
+
+import { triangleBody } from "./fake_server";
 
 // The server's tests pin the same files: tests/golden/frame_test.cc.
 const golden = join(import.meta.dirname, "../golden");
@@ -23,7 +27,8 @@ function frameInTheFile(): Frame {
 
 test("BytesInTheFileAreTheFrameInTheFile", () => {
   const frame = frameInTheFile();
-  const { positions, poses } = decodeFrame(frame);
+  const scene = [triangleBody({ placement: Placement.STILL }), triangleBody({})].map(decodeBody);
+  const { positions, poses } = new FrameDecoder(scene).decode(frame);
   expect({
     sequence: Number(frame.sequence),
     tick: Number(frame.tick),

@@ -104,7 +104,7 @@ test("HowWellConstraintsAreKeptIsPutInWords", () => {
 test("TheReadoutSpeaksOfConstraintsWhereThereAreAny", () => {
   const readout = new Readout();
   const shown = () => !readout.element.querySelector<HTMLElement>(".links")!.hidden;
-  const rate = { framesPerSecond: 30, delay: 4 };
+  const rate = { framesPerSecond: 30, age: 4, errorBound: 0.1 };
   const status = { frame: undefined, rate, now: 0, link: { kind: "live" as const } };
   readout.show({ ...status, session: session(1, 1n) });
   expect(shown()).toBe(false);
@@ -113,9 +113,12 @@ test("TheReadoutSpeaksOfConstraintsWhereThereAreAny", () => {
 });
 
 test("TheLinkIsPutInWords", () => {
-  const rate = { framesPerSecond: 30, delay: 4.4 };
+  const rate = { framesPerSecond: 30, age: 4.4, errorBound: 0.1 };
   const status = { session: session(1, 1n), frame: undefined, rate, now: 1000 };
-  expect(linkWords({ ...status, link: { kind: "live" } })).toMatchObject({ text: "Live", detail: "30 fps, 4 ms" });
+  expect(linkWords({ ...status, link: { kind: "live" } })).toMatchObject({
+    text: "Live",
+    detail: "30 fps, 4 ms, ±0.1 mm",
+  });
   const lost = {
     kind: "lost" as const,
     reason: "refused",

@@ -4,7 +4,6 @@ import type { Body, FrameArrays } from "./codec";
 import { type Comparison, Comparisons } from "./comparison";
 import { Connection, type Link, type Sink } from "./connection";
 import { Controller } from "./controller";
-import { Demand } from "./demand";
 import { DistanceScale, topFor } from "./distance_scale";
 import { Exports } from "./exports";
 import { Frames } from "./frames";
@@ -51,7 +50,6 @@ export class App {
   private readonly readout = new Readout();
   private readonly probes = new Probes();
   private readonly measures = new Measures();
-  private readonly demand = new Demand();
   private readonly comparisons: Comparisons;
   private readonly exports: Exports;
   private readonly uploads: Uploads;
@@ -147,10 +145,11 @@ export class App {
         this.probes.receive(frame);
         this.viewer.refresh();
       },
+      acknowledged: (response, sent, answered) => this.frames.acknowledged(response, sent, answered),
       scene: (bodies, report) => {
         this.comparisons.clear();
         this.bodies.set(bodies);
-        this.frames.clear();
+        this.frames.start(bodies);
         this.report.set(report);
         this.deformable = new Set(report?.bodies.filter(({ role }) => role === "deformable").map(({ name }) => name));
         this.comparisons.choose({ body: this.largestOf(bodies) });
@@ -176,8 +175,6 @@ export class App {
     const now = this.clock.now();
     const session = this.controller.session.value;
     const rate = this.frames.rate(now);
-    if (this.demand.judge(now, rate.delay, rate.framesPerSecond))
-      this.connection.setMaxFps(this.demand.framesPerSecond);
     const status = { link: this.link.value, session, frame: this.frames.frame, rate, now };
     this.pill.show(status);
     this.viewers.show(status);

@@ -1,4 +1,4 @@
-import { type Frame, type GetGeometryResponse, Placement } from "./gen/phrenic/v1/frames_pb";
+import { type GetGeometryResponse, Placement } from "./gen/phrenic/v1/frames_pb";
 
 /** An action line as drawn [m]; `direction` is a unit vector. */
 export interface ActionLine {
@@ -100,13 +100,6 @@ export function decodeBody(message: GetGeometryResponse): Body {
 function triple(values: number[], what: string): [number, number, number] {
   if (values.length !== 3) throw new RangeError(`${what}: ${values.length} numbers instead of 3.`);
   return [values[0], values[1], values[2]];
-}
-
-export function decodeFrame(frame: Frame): FrameArrays {
-  return {
-    positions: floats(frame.positions, 3, "positions"),
-    poses: floats(frame.poses, floatsPerPose, "poses"),
-  };
 }
 
 /** The part of `frame` that is `body`'s; RangeError where the frame is too short for it. */

@@ -1,9 +1,10 @@
 import { Code, ConnectError } from "@connectrpc/connect";
+import { Acknowledger } from "./acknowledger";
 import { type Api, errorText } from "./api";
 import { Backoff } from "./backoff";
 import type { Clock } from "./clock";
 import { type Body, decodeBody } from "./codec";
-import type { Frame } from "./gen/phrenic/v1/frames_pb";
+import { type AckFramesResponse, Codec, type Frame } from "./gen/phrenic/v1/frames_pb";
 import type { CompileReport } from "./gen/phrenic/v1/report_pb";
 import type { Session } from "./gen/phrenic/v1/session_pb";
 
@@ -19,11 +20,18 @@ export interface Sink {
   /** `fresh` is the first word of a connection: a restarted server counts revisions from the start again. */
   session(session: Session, fresh: boolean): void;
   frame(frame: Frame): void;
+  /** What the server said to an acknowledgement, which was sent and answered at these times [ms]. */
+  acknowledged(response: AckFramesResponse, sent: number, answered: number): void;
 }
 
 /** Time to wait for an answer to a question [ms], and between two questions whether the server is still there. */
 const patience = 8000;
 const heartbeat = 2000;
+/** Frames on their way at most; the server lets fewer go where they come late. */
+const maxUnackedFrames = 6;
+
+/** A name under which no other page watches. */
+const newWatchId = () => `page-${Math.random().toString(36).slice(2)}`;
 
 /**
  * Follows one session for as long as the page lives: fetches the scene, watches its frames, and when the connection
@@ -32,9 +40,7 @@ const heartbeat = 2000;
 export class Connection {
   private readonly stopped = new AbortController();
   private wake = new AbortController();
-  private rewatch = new AbortController();
   private sceneHash: string | undefined;
-  private maxFps = 0;
 
   constructor(
     private readonly api: Api,
@@ -61,12 +67,6 @@ export class Connection {
   /** Ends the wait before the next attempt. */
   retryNow(): void {
     this.wake.abort();
-  }
-
-  /** Asks for at most so many frames a second from now on; 0 is the server's own rate. */
-  setMaxFps(framesPerSecond: number): void {
-    this.maxFps = framesPerSecond;
-    this.rewatch.abort();
   }
 
   private async rest(error: unknown): Promise<void> {
@@ -108,26 +108,23 @@ export class Connection {
   }
 
   private async watch(signal: AbortSignal): Promise<never> {
-    for (;;) {
-      this.rewatch = new AbortController();
-      const again = this.rewatch.signal;
-      try {
-        await this.listen(AbortSignal.any([signal, again]));
-        throw new ConnectError("The server closed the connection.", Code.Unavailable);
-      } catch (error) {
-        if (signal.aborted || !again.aborted) throw error;
-      }
-    }
-  }
-
-  private async listen(signal: AbortSignal): Promise<void> {
-    const request = { sessionId: this.sessionId, maxFps: this.maxFps };
+    const names = { sessionId: this.sessionId, watchId: newWatchId() };
+    const acknowledger = new Acknowledger(
+      (sequence) => this.api.frames.ackFrames({ ...names, sequence }, { signal, timeoutMs: patience }),
+      this.clock,
+      signal,
+      (response, sent, at) => this.sink.acknowledged(response, sent, at),
+    );
+    const request = { ...names, codec: Codec.PREDICTED, maxUnackedFrames };
     for await (const { event } of this.api.frames.watchFrames(request, { signal })) {
       this.backoff.reset();
       this.sink.link({ kind: "live" });
       if (event.case === "session") this.sink.session(event.value, false);
-      if (event.case === "frame") this.sink.frame(event.value);
+      if (event.case !== "frame") continue;
+      this.sink.frame(event.value);
+      acknowledger.received(event.value.sequence);
     }
+    throw new ConnectError("The server closed the connection.", Code.Unavailable);
   }
 
   /** A paused session sends no frames, so that only an answer tells a quiet server from one that is gone. */

@@ -13,7 +13,7 @@ export interface Status {
   now: number;
 }
 
-/** The state of the connection in a pill: connecting, live with frames a second and delay, or lost and retrying. */
+/** The state of the connection in a pill: connecting, live with frames a second, age and error bound, or lost and retrying. */
 export class LinkPill {
   readonly element = make("button", { type: "button", id: "link", className: "pill" });
   private readonly words = make("span");
@@ -40,10 +40,22 @@ export function linkWords({ link, session, rate, now }: Status): { text: string;
     const detail = seconds > 0 ? `retrying in ${seconds} s` : "retrying";
     return { text: "Lost", detail, title: `${link.reason} Click to retry now.` };
   }
-  const fast = `${rate.framesPerSecond} fps, ${Math.max(0, Math.round(rate.delay))} ms`;
+  const fast = rateWords(rate);
   const stopped = session?.state === SessionState.DIVERGED ? "diverged" : "paused";
   const detail = session?.state === SessionState.PLAYING ? fast : stopped;
-  return { text: "Live", detail, title: "Frames received a second, and how late they come." };
+  return { text: "Live", detail, title: rateTitle };
+}
+
+const rateTitle =
+  "Frames received a second, how old they are when they come, and how far a vertex may be from its place. " +
+  "On a thin line there are fewer frames, then coarser ones.";
+
+/** "30 fps, 12 ms, ±0.1 mm". */
+export function rateWords({ framesPerSecond, age, errorBound }: FrameRate): string {
+  const words = [`${framesPerSecond} fps`];
+  if (age !== undefined) words.push(`${Math.max(0, Math.round(age))} ms`);
+  if (errorBound > 0) words.push(`±${errorBound} mm`);
+  return words.join(", ");
 }
 
 /** How many watch the session. */

@@ -1,0 +1,22 @@
+// Sixteen bits a coordinate, low and high bytes apart: for programs that would rather not keep the rest shape.
+#ifndef PHRENIC_SERVER_STREAM_CODECS_PLANES_H_
+#define PHRENIC_SERVER_STREAM_CODECS_PLANES_H_
+
+#include "server/stream/codec.h"
+
+namespace phrenic::stream {
+
+// x = corner + step q, 0 <= q < 2^16, the corner that of the positions' own box; proto/README.md has the bytes.
+class PlanesCodec final : public Codec {
+ public:
+  explicit PlanesCodec(const RestShape& shape) : vertices_(shape.rest.cols()) {}
+  absl::StatusOr<std::string> Encode(const Floats& positions, double max_error) const override;
+  absl::StatusOr<Floats> Decode(std::string_view bytes) const override;
+
+ private:
+  const Eigen::Index vertices_;
+};
+
+}  // namespace phrenic::stream
+
+#endif  // PHRENIC_SERVER_STREAM_CODECS_PLANES_H_

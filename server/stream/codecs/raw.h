@@ -1,0 +1,22 @@
+// Float32 as it is: for programs, and for what no other codec can hold.
+#ifndef PHRENIC_SERVER_STREAM_CODECS_RAW_H_
+#define PHRENIC_SERVER_STREAM_CODECS_RAW_H_
+
+#include "server/stream/codec.h"
+
+namespace phrenic::stream {
+
+// x y z a vertex. Loses nothing.
+class RawCodec final : public Codec {
+ public:
+  explicit RawCodec(const RestShape& shape) : vertices_(shape.rest.cols()) {}
+  absl::StatusOr<std::string> Encode(const Floats& positions, double max_error) const override;
+  absl::StatusOr<Floats> Decode(std::string_view bytes) const override;
+
+ private:
+  const Eigen::Index vertices_;
+};
+
+}  // namespace phrenic::stream
+
+#endif  // PHRENIC_SERVER_STREAM_CODECS_RAW_H_

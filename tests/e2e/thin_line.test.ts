@@ -1,0 +1,84 @@
+import { createGrpcWebTransport } from "@connectrpc/connect-web";
+import { connect, createServer } from "node:net";
+import { setTimeout as sleep } from "node:timers/promises";
+import { afterAll, beforeAll, expect, test } from "vitest";
+import { createApi } from "../../web/src/api";
+import { systemClock } from "../../web/src/clock";
+import { Connection } from "../../web/src/connection";
+import { Frames } from "../../web/src/frames";
+import { Server } from "./server";
+
+let server: Server;
+beforeAll(async () => void (server = await Server.start()));
+afterAll(() => server.kill());
+
+/** A line to the server that carries so many bytes a second to the viewer, and as much as there is the other way. */
+async function thinLine(url: string, bytesPerSecond: number): Promise<{ url: string; close: () => void }> {
+  const { port } = new URL(url);
+  let free = 0; // when the line has carried everything
+  const line = createServer((viewer) => {
+    const upstream = connect(Number(port), "127.0.0.1");
+    viewer.pipe(upstream);
+    viewer.on("error", () => upstream.destroy());
+    viewer.on("close", () => upstream.destroy());
+    void (async () => {
+      for await (const chunk of upstream) {
+        free = Math.max(free, Date.now()) + (1000 * (chunk as Buffer).length) / bytesPerSecond;
+        await sleep(Math.max(0, free - Date.now()));
+        viewer.write(chunk as Buffer);
+      }
+      viewer.end();
+    })().catch(() => viewer.destroy());
+  });
+  await new Promise<void>((done) => line.listen(0, "127.0.0.1", done));
+  const address = line.address();
+  if (typeof address !== "object" || address === null) throw new Error("The line has no port.");
+  return { url: `http://127.0.0.1:${address.port}`, close: () => line.close() };
+}
+
+// The viewer's own connection, without the picture: what a viewer on a line sees for `seconds`.
+async function watch(url: string, seconds: number) {
+  const api = createApi(createGrpcWebTransport({ baseUrl: url }));
+  const frames = new Frames();
+  const ages: number[] = [];
+  let last = 0;
+  const connection = new Connection(
+    api,
+    "thorax",
+    {
+      link: () => {},
+      session: () => {},
+      scene: (bodies) => frames.start(bodies),
+      frame: (frame) => {
+        frames.receive(frame, Date.now());
+        expect(frames.arrays?.positions.every(Number.isFinite)).toBe(true);
+        // One machine, one clock.
+        ages.push(Date.now() - Number(frame.unixNanos / 1_000_000n));
+        last = Date.now();
+      },
+      acknowledged: (response, sent, answered) => frames.acknowledged(response, sent, answered),
+    },
+    systemClock,
+  );
+  const running = connection.run();
+  for (const deadline = Date.now() + 90_000; ages.length === 0 && Date.now() < deadline;) await sleep(50);
+  // As many frames of a slower breath: what is measured is the line, not what is left of the processor.
+  await api.sessions.playSession({ sessionId: "thorax", speed: 0.1 });
+  await sleep(2000);
+  ages.length = 0;
+  await sleep(1000 * seconds);
+  const rate = frames.rate(last);
+  connection.stop();
+  await running;
+  ages.sort((a, b) => a - b);
+  return { rate, frames: ages.length / seconds, median: ages[Math.floor(ages.length / 2)] };
+}
+
+test("OverFourMegabitsABreathIsSeenLessThan400MillisecondsOld", async () => {
+  const line = await thinLine(server.url, 500_000);
+  const seen = await watch(line.url, 8);
+  line.close();
+  expect(seen.median).toBeLessThan(400);
+  expect(seen.frames).toBeGreaterThan(10);
+  expect(seen.rate.age).toBeLessThan(600);
+});

@@ -1,0 +1,37 @@
+// Any bytes as positions of any codec give finite positions or an error, and nothing else. The first byte chooses the
+// codec.
+#include "server/stream/codec.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+
+namespace {
+
+// A strip of triangles, long enough for every kind of neighbour.
+phrenic::stream::RestShape Strip() {
+  constexpr int kVertices = 31;
+  phrenic::stream::RestShape shape{.rest = phrenic::stream::Floats(3, kVertices), .edges = phrenic::Edges(2, 0)};
+  for (int i = 0; i < kVertices; ++i) {
+    shape.rest.col(i) = Eigen::Vector3f(0.01F * static_cast<float>(i), i % 2 == 0 ? 0.F : 0.02F, 0.F);
+  }
+  shape.edges.resize(2, 2 * kVertices - 3);
+  for (int i = 0; i + 1 < kVertices; ++i) shape.edges.col(i) << i, i + 1;
+  for (int i = 0; i + 2 < kVertices; ++i) shape.edges.col(kVertices - 1 + i) << i, i + 2;
+  return shape;
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const auto& codecs = *new auto([] {
+    std::vector<std::unique_ptr<phrenic::stream::Codec>> made;
+    for (const auto& row : phrenic::stream::Codecs()) made.push_back(row.make(Strip()));
+    return made;
+  }());
+  if (size == 0) return 0;
+  const std::string_view bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
+  const auto positions = codecs[data[0] % codecs.size()]->Decode(bytes);
+  if (positions.ok() && !positions->allFinite()) std::abort();
+  return 0;
+}

@@ -1,0 +1,113 @@
+import type { RestShape } from "./rest_shape";
+
+/**
+ * An order of the vertices in which each can be foretold from those before it, and the weights to do so: bit for bit
+ * those of server/stream/neighbour_weights.h.
+ */
+export interface NeighbourWeights {
+  /** The vertex at each place. */
+  order: Int32Array;
+  /** The range of each place in `places` and `weights`, and one end more. */
+  first: Int32Array;
+  places: Int32Array;
+  /** In units of 1/4096; they sum to 4096. */
+  weights: Int32Array;
+}
+
+export const unit = 4096;
+const mostNeighbours = 8;
+const regularisation = 0.03125;
+const largestWeight = 4;
+
+type Triple = [number, number, number];
+
+export function neighbourWeights({ rest, beside }: RestShape): NeighbourWeights {
+  const order = breadthFirst(beside);
+  const place = new Int32Array(order.length);
+  order.forEach((vertex, i) => (place[vertex] = i));
+  const first = new Int32Array(order.length + 1);
+  const places: number[] = [];
+  const weights: number[] = [];
+  for (let i = 0; i < order.length; i++) {
+    const chosen = choose(beside, place, order[i]);
+    if (chosen.length === 0 && i > 0) chosen.push(order[i - 1]);
+    for (const vertex of chosen) places.push(place[vertex]);
+    if (chosen.length > 0) weights.push(...weigh(rest, order[i], chosen));
+    first[i + 1] = places.length;
+  }
+  return { order, first, places: Int32Array.from(places), weights: Int32Array.from(weights) };
+}
+
+/** From the lowest vertex, neighbours ascending. */
+function breadthFirst(beside: number[][]): Int32Array {
+  const order = new Int32Array(beside.length);
+  const seen = new Uint8Array(beside.length);
+  let count = 0;
+  const visit = (vertex: number) => {
+    if (seen[vertex] !== 0) return;
+    seen[vertex] = 1;
+    order[count++] = vertex;
+  };
+  for (let start = 0; start < beside.length; start++) {
+    let next = count;
+    visit(start);
+    for (; next < count; next++) beside[order[next]].forEach(visit);
+  }
+  return order;
+}
+
+/** Neighbours that come before the vertex, then theirs, each once. */
+function choose(beside: number[][], place: Int32Array, vertex: number): number[] {
+  const chosen: number[] = [];
+  const add = (candidate: number) => {
+    if (chosen.length === mostNeighbours || place[candidate] >= place[vertex]) return;
+    if (!chosen.includes(candidate)) chosen.push(candidate);
+  };
+  beside[vertex].forEach(add);
+  const near = chosen.length;
+  for (let i = 0; i < near; i++) beside[chosen[i]].forEach(add);
+  return chosen;
+}
+
+/** c of (r I + sum d d^T) c = sum d, by Cramer's rule: the server's operations in the server's order. */
+function fit(offsets: Triple[]): Triple {
+  let [xx, xy, xz, yy, yz, zz, x, y, z, furthest] = [0, 0, 0, 0, 0, 0, 0, 0, 0, 0];
+  for (const [dx, dy, dz] of offsets) {
+    xx += dx * dx;
+    xy += dx * dy;
+    xz += dx * dz;
+    yy += dy * dy;
+    yz += dy * dz;
+    zz += dz * dz;
+    x += dx;
+    y += dy;
+    z += dz;
+    furthest = Math.max(furthest, dx * dx + dy * dy + dz * dz);
+  }
+  const r = regularisation * furthest;
+  xx += r;
+  yy += r;
+  zz += r;
+  const [cx, cy, cz] = [yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy];
+  const determinant = xx * cx + xy * cy + xz * cz;
+  if (!(determinant > 0)) return [0, 0, 0];
+  const [ey, ez, ff] = [xx * zz - xz * xz, xy * xz - xx * yz, xx * yy - xy * xy];
+  return [
+    (cx * x + cy * y + cz * z) / determinant,
+    (cy * x + ey * y + ez * z) / determinant,
+    (cz * x + ez * y + ff * z) / determinant,
+  ];
+}
+
+/** In units of 1/4096; what rounding leaves goes to the first. */
+function weigh(rest: Float32Array, vertex: number, chosen: number[]): number[] {
+  const along = (other: number, axis: number) => rest[3 * other + axis] - rest[3 * vertex + axis];
+  const offsets = chosen.map((other): Triple => [along(other, 0), along(other, 1), along(other, 2)]);
+  const [cx, cy, cz] = fit(offsets);
+  const weights = offsets.map(([dx, dy, dz]) => 1 - (dx * cx + dy * cy + dz * cz));
+  const sum = weights.reduce((total, weight) => total + weight, 0);
+  const wild = weights.some((weight) => !(Math.abs(weight) <= largestWeight * sum));
+  const units = weights.map((weight) => Math.floor((wild ? 1 / weights.length : weight / sum) * unit + 0.5));
+  units[0] += unit - units.reduce((total, each) => total + each, 0);
+  return units;
+}
