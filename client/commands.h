@@ -69,6 +69,11 @@ struct CreateOptions {
 struct SessionOptions {
   std::string id;
 };
+struct ForkOptions {
+  std::string id;
+  std::string fork_id;  // empty: the server chooses
+  bool play = false;
+};
 struct WatchOptions {
   std::string id;
   double seconds = 0;  // 0: until interrupted
@@ -119,6 +124,7 @@ int Compare(const Context& context, const CompareOptions& options);
 int Inspect(const Context& context, const InspectOptions& options);
 int Convert(const Context& context, const ConvertOptions& options);
 int Create(const Context& context, const CreateOptions& options);
+int Fork(const Context& context, const ForkOptions& options);
 int Sessions(const Context& context);
 int Watch(const Context& context, const WatchOptions& options);
 int Set(const Context& context, const SetOptions& options);

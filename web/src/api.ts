@@ -2,6 +2,7 @@ import { type Client, ConnectError, createClient, type Transport } from "@connec
 import { CompareService } from "./gen/phrenic/v1/compare_pb";
 import { FrameService } from "./gen/phrenic/v1/frames_pb";
 import { SceneService, SessionService } from "./gen/phrenic/v1/session_pb";
+import { StudyService } from "./gen/phrenic/v1/study_pb";
 
 /** The server's services over one transport: gRPC-web in the page, a router in tests. */
 export interface Api {
@@ -9,6 +10,7 @@ export interface Api {
   sessions: Client<typeof SessionService>;
   frames: Client<typeof FrameService>;
   comparisons: Client<typeof CompareService>;
+  studies: Client<typeof StudyService>;
 }
 
 export function createApi(transport: Transport): Api {
@@ -17,6 +19,7 @@ export function createApi(transport: Transport): Api {
     sessions: createClient(SessionService, transport),
     frames: createClient(FrameService, transport),
     comparisons: createClient(CompareService, transport),
+    studies: createClient(StudyService, transport),
   };
 }
 

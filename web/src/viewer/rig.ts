@@ -10,6 +10,8 @@ export interface Compass {
   bottom: string;
   /** CSS pixels a metre at the centre of the scene. */
   pixelsPerMetre: number;
+  /** The directions to the right, up and towards the eye. */
+  axes: [THREE.Vector3, THREE.Vector3, THREE.Vector3];
 }
 
 /** How much of the picture panels hide at its edges [CSS pixels]. */
@@ -89,6 +91,22 @@ export class Rig {
     return { distance: this.camera.position.distanceTo(this.controls.target), extent: this.extent };
   }
 
+  /** Where a place is on the picture [CSS pixels]. */
+  project(place: THREE.Vector3): [x: number, y: number] {
+    const { x, y } = place.clone().project(this.camera);
+    return [((x + 1) / 2) * this.canvas.clientWidth, ((1 - y) / 2) * this.canvas.clientHeight];
+  }
+
+  /** Stands where another rig stands that shows the same scene. */
+  follow({ camera, controls }: Rig): void {
+    const apart = this.camera.position.distanceTo(camera.position) + this.controls.target.distanceTo(controls.target);
+    if (apart < 1e-5 * this.extent) return;
+    this.flight = this.held = undefined;
+    this.camera.position.copy(camera.position);
+    this.controls.target.copy(controls.target);
+    this.changed();
+  }
+
   /** Moves what moves by itself. */
   update(now: number): void {
     if (this.flight !== undefined) this.fly(this.flight, now);
@@ -124,7 +142,7 @@ export class Rig {
 
   compass(): Compass {
     const axis = (i: number) => new THREE.Vector3().setFromMatrixColumn(this.camera.matrixWorld, i);
-    const [right, up] = [axis(0), axis(1)];
+    const [right, up, back] = [axis(0), axis(1), axis(2)];
     const { distance } = this.depth;
     const slope = Math.tan(THREE.MathUtils.degToRad(this.camera.fov / 2));
     return {
@@ -133,6 +151,7 @@ export class Rig {
       top: letterOf(up),
       bottom: letterOf(up.clone().negate()),
       pixelsPerMetre: this.canvas.clientHeight / (2 * slope * distance),
+      axes: [right, up, back],
     };
   }
 }
