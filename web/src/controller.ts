@@ -73,8 +73,8 @@ export class Controller {
 
   set(name: ParameterName, value: number | boolean): void {
     const before = this.session.value?.parameters?.[name];
-    if (before === value) return;
-    if (before !== undefined) this.changes.note({ [name]: before }, { [name]: value }, this.clock.now());
+    if (before !== undefined && before !== value)
+      this.changes.note({ [name]: before }, { [name]: value }, this.clock.now());
     this.updates.push({ [name]: value });
   }
 

@@ -32,6 +32,7 @@ export class SceneTools {
   private readonly expiration = new Expiration();
   private ghost: GhostKind = "none";
   private bodies: Body[] = [];
+  private moving: Body[] = [];
   private time = 0;
 
   constructor(
@@ -66,7 +67,8 @@ export class SceneTools {
   /** Another scene, which the viewer shows already. */
   start(bodies: Body[], deformable: ReadonlySet<string>, diagram: boolean): void {
     this.bodies = bodies;
-    this.coloring.start(bodies.filter(({ name }) => deformable.has(name)));
+    this.moving = bodies.filter(({ name }) => deformable.has(name));
+    this.coloring.start(this.moving);
     this.following.clear();
     this.setGhost(this.ghost === "now" || this.ghost === "expiration" ? "none" : this.ghost);
     // Which edges are rigid is what a diagram is about.
@@ -76,7 +78,7 @@ export class SceneTools {
 
   receive(frame: Frame): void {
     const turned = this.expiration.receive(frame.breath);
-    if (turned && this.ghost === "expiration") this.viewer.setGhost(this.arrays());
+    if (turned && this.ghost === "expiration") this.viewer.setGhost(this.arrays(), this.moving);
   }
 
   /** A picture of the moment `time` [s] is about to be drawn from `arrays`. */
@@ -114,7 +116,7 @@ export class SceneTools {
 
   private setGhost(kind: GhostKind): void {
     this.ghost = kind;
-    this.viewer.setGhost(kind === "now" ? this.arrays() : kind === "rest" ? "rest" : undefined);
+    this.viewer.setGhost(kind === "now" ? this.arrays() : kind === "rest" ? "rest" : undefined, this.moving);
   }
 
   /** A comparison's colours come before those of a field. */

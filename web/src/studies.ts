@@ -32,7 +32,8 @@ export class Studies {
       const { study } = await this.api.studies.createStudy({
         source: { source: { case: "name", value: scene } },
         parameters,
-        what: { case: kind, value: {} },
+        // The meshes of the thesis' sizes take minutes to make, and have nothing of this scene.
+        what: kind === "cost" ? { case: kind, value: { leaveOutSizes: true } } : { case: kind, value: {} },
       });
       if (study === undefined) return;
       this.put(study);

@@ -32,13 +32,15 @@ const probeKey = (name: string) => `probe ${name}`;
 
 /** The graphs of whatever measures and probes come with the frames, most telling first. */
 export function graphsOf(frame: Frame): GraphSpec[] {
+  const [volume, ...volumes] = byUnit(frame, "m^3", "Volume", false);
   return [
-    ...byUnit(frame, "m^3", "Volume", false),
+    ...(volume === undefined ? [] : [volume]),
     ...byUnit(frame, "m^3/s", "Flow", true),
+    ...domes(frame),
     ...byUnit(frame, "Pa", "Pressure", true),
     ...loop(frame),
-    ...domes(frame),
     ...probes(frame),
+    ...volumes,
     ...byUnit(frame, "m", "Height", true),
     ...byUnit(frame, "J", "Energy", true),
     ...others(frame),

@@ -17,7 +17,7 @@ export interface PlotEvents {
 const faint = "#a3aeba";
 const grid = { stroke: "#2a323b", width: 1 };
 const font = "11px system-ui, sans-serif";
-const plotHeight = 112;
+const plotHeight = 104;
 
 /** One graph on the screen. */
 export class Plot {

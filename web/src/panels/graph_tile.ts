@@ -23,9 +23,12 @@ export class GraphTile {
     this.readings = spec.curves.map(() => make("b"));
     const keys = spec.curves.map(({ name }, i) => this.key(name, i));
     const save = ["SVG", "CSV"].map((kind) => this.saveButton(kind as "SVG" | "CSV"));
-    const head = make("header", {}, make("h3", {}, this.title()), make("div", { className: "save" }, ...save));
+    // The one curve of a graph needs no name beside the graph's own.
+    const alone = keys.length === 1;
+    const title = make("h3", {}, this.title(), ...(alone ? this.readings : []));
+    const head = make("header", {}, title, make("div", { className: "save" }, ...save));
     this.element = make("section", { className: "tile", ariaLabel: spec.title }, head, this.plot.element);
-    this.element.append(make("div", { className: "keys" }, ...keys));
+    if (!alone) this.element.append(make("div", { className: "keys" }, ...keys));
     this.element.dataset.graph = spec.id;
   }
 

@@ -8,6 +8,8 @@ import { planeAxes } from "./views";
 /** Names stand so far beside what they name, and at least so far apart [CSS pixels]. */
 const aside = 36;
 const apart = 20;
+/** About the width of a letter [CSS pixels]. */
+const letter = 7.5;
 
 /** What is written over the picture: names of the layers, and of a flat scene the axes of its plane. */
 export class Annotations {
@@ -41,18 +43,23 @@ export class Annotations {
   private drawNames(): SVGElement[] {
     const places = this.anchors.map(({ view, vertex, look }) => {
       const place = new THREE.Vector3().fromBufferAttribute(view.positions, vertex);
-      const [x, y] = this.viewer.rig.project(place.applyMatrix4(view.group.matrixWorld));
-      return { x, y, look };
+      place.applyMatrix4(view.group.matrixWorld);
+      const [x, y] = this.viewer.rig.project(place);
+      return { x, y, look, gone: this.viewer.cutAway(place) };
     });
+    const width = this.element.clientWidth;
     let last = -Infinity;
     return places
+      .filter(({ gone }) => !gone)
       .sort((a, b) => a.y - b.y)
       .flatMap(({ x, y, look }) => {
         last = Math.max(y, last + apart);
-        const [toX, toY] = [x + aside, last];
-        const line = svg("polyline", { points: `${x},${y} ${toX - 4},${toY}` });
+        // Where it would leave the picture, it stands on the other side.
+        const side = x + aside + letter * look.title.length > width ? -1 : 1;
+        const [toX, toY] = [x + side * aside, last];
+        const line = svg("polyline", { points: `${x},${y} ${toX - 4 * side},${toY}` });
         const dot = svg("circle", { cx: x, cy: y, r: 2.5 });
-        return [line, dot, words(toX, toY + 4, look.title, "start")];
+        return [line, dot, words(toX, toY + 4, look.title, side > 0 ? "start" : "end")];
       });
   }
 

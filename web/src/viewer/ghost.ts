@@ -11,7 +11,7 @@ export class Ghost {
     this.object.renderOrder = 3;
   }
 
-  /** At rest where `arrays` is undefined. */
+  /** Those of `bodies` that move by themselves; at rest where `arrays` is undefined. */
   show(bodies: Body[], arrays: FrameArrays | undefined): void {
     this.clear();
     for (const body of bodies) {

@@ -49,6 +49,8 @@ export class Viewer {
   private box = new THREE.Box3();
   private stale = true;
   private drawings = 0;
+  /** When the first picture with a frame was drawn, since the page was asked for [ms]; -1 before. */
+  firstPicture = -1;
   private shown: FrameArrays | undefined;
 
   constructor(
@@ -107,6 +109,11 @@ export class Viewer {
     return this.box;
   }
 
+  /** Whether a cut has taken this place away. */
+  cutAway(place: THREE.Vector3): boolean {
+    return (this.plane()?.distanceToPoint(place) ?? 0) < 0;
+  }
+
   /** Draws at the next beat. */
   refresh(): void {
     this.stale = true;
@@ -133,14 +140,10 @@ export class Viewer {
     return placeOf(cut, this.box);
   }
 
-  /** Shows the moving tissue as it was in `arrays`, at rest, or not at all, as a ghost. */
-  setGhost(of: FrameArrays | "rest" | undefined): void {
+  /** Shows bodies as they were in `arrays`, at rest, or not at all, as a ghost. */
+  setGhost(of: FrameArrays | "rest" | undefined, bodies: Body[]): void {
     if (of === undefined) this.ghost.clear();
-    else
-      this.ghost.show(
-        this.views.map(({ body }) => body),
-        of === "rest" ? undefined : of,
-      );
+    else this.ghost.show(bodies, of === "rest" ? undefined : of);
     this.refresh();
   }
 
@@ -229,6 +232,7 @@ export class Viewer {
     this.markers.scale(markerSize / compass.pixelsPerMetre);
     this.renderer.render(this.scene, this.rig.camera);
     this.drawings++;
+    if (frame !== undefined && this.firstPicture < 0) this.firstPicture = performance.now();
     this.around.drawn(compass);
   }
 }
