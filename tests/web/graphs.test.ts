@@ -31,9 +31,9 @@ describe("what a scene measures", () => {
     const words = graphs.map(({ title, unit, curves }) => `${title} [${unit}]: ${curves.map(({ name }) => name)}`);
     expect(words).toEqual([
       "Lung volume [l]: lung volume",
-      "Domes, M-mode: descent [mm]: right dome",
+      "M-mode: descent [mm]: right dome",
       "Pressures [Pa]: alveolar pressure,pleural pressure",
-      "Pressure–volume loop [l]: lung volume",
+      "P–V loop [l]: lung volume",
       "Probes: upward [mm]: sternum",
       "Below [l]: below",
       "Breath wave []: breath",

@@ -24,6 +24,7 @@ export class Beside {
   private readonly viewer: Viewer;
   private readonly controller: Controller;
   private readonly frames = new Frames();
+  private leads = false;
   private readonly time = make("span");
   private readonly differences = make("p", { className: "differences" });
 
@@ -48,8 +49,14 @@ export class Beside {
     this.viewer = new Viewer(canvas, {
       ...first.around,
       source: () => this.frames.arrays,
-      drawn: () => first.viewer.rig.follow(this.viewer.rig),
+      drawn: () => {
+        if (this.leads) first.viewer.rig.follow(this.viewer.rig);
+      },
     });
+    // The camera is that of the picture that a person turned last.
+    const lead = (event: Event) => (this.leads = event.target === canvas);
+    for (const kind of ["pointerdown", "wheel", "keydown"])
+      document.addEventListener(kind, lead, { capture: true, passive: true });
     this.controller = new Controller(api, sessionId, clock);
     first.controller.companion = this.controller;
     this.controller.session.subscribe(() => this.compare());
@@ -60,7 +67,7 @@ export class Beside {
 
   /** The first picture's camera has moved. */
   follow(): void {
-    this.viewer.rig.follow(this.first.viewer.rig);
+    if (!this.leads) this.viewer.rig.follow(this.first.viewer.rig);
   }
 
   resize(): void {
@@ -74,6 +81,7 @@ export class Beside {
       scene: (bodies) => {
         this.frames.clear();
         this.viewer.show(bodies);
+        this.follow();
         this.look();
       },
       frame: (frame) => {

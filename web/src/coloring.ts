@@ -27,7 +27,7 @@ export class Coloring {
     this.fit();
   }
 
-  /** A scale that ends at the largest value there is now. */
+  /** A scale that ends at the largest value there is now, but for one vertex in a hundred. */
   fit(): void {
     const info = fields.find(({ kind }) => kind === this.kind.value);
     if (info === undefined) return this.scale.set(undefined);
@@ -54,7 +54,6 @@ export class Coloring {
 }
 
 function largestOf(values: Float32Array | undefined): number {
-  let largest = 0;
-  for (const value of values ?? []) largest = Math.max(largest, Math.abs(value) || 0);
-  return largest;
+  const sizes = (values ?? new Float32Array()).map((value) => Math.abs(value) || 0).sort();
+  return sizes[Math.floor(0.99 * (sizes.length - 1))] ?? 0;
 }

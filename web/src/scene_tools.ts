@@ -50,7 +50,11 @@ export class SceneTools {
       labels,
       overlays: this.overlays,
       coloring: this.coloring,
-      setCut: (cut) => viewer.setCut(cut),
+      setCut: (cut) => {
+        const place = viewer.setCut(cut);
+        this.annotations.start(looks.all.value);
+        return place;
+      },
       setGhost: (kind) => this.setGhost(kind),
     });
     labels.subscribe((on) => this.annotations.setLabels(on));

@@ -74,13 +74,13 @@ function loop({ measures }: Frame): GraphSpec[] {
   const [unit, factor] = familiarUnit("m^3");
   const across = { ...curve(measureKey(pressure.name), pressure.name, 1), unit: "Pa" };
   const curves = [curve(measureKey(volume.name), volume.name, factor)];
-  return [{ id: "loop", title: "Pressure–volume loop", unit, curves, across }];
+  return [{ id: "loop", title: "P–V loop", unit, curves, across }];
 }
 
 /** What M-mode ultrasound shows: how far each dome has come down. */
 function domes({ probes }: Frame): GraphSpec[] {
   const curves = probes.filter(isDome).map(({ name }) => curve(probeKey(name), name, -1000));
-  return curves.length === 0 ? [] : [{ id: "domes", title: "Domes, M-mode: descent", unit: "mm", curves }];
+  return curves.length === 0 ? [] : [{ id: "domes", title: "M-mode: descent", unit: "mm", curves }];
 }
 
 function probes({ probes }: Frame): GraphSpec[] {

@@ -26,7 +26,7 @@ export class Annotations {
 
   /** Another scene, or other layers that are seen. */
   start(looks: Look[]): void {
-    this.anchors = looks.flatMap((look) => (look.visible ? (outermost(this.viewer.bodies, look) ?? []) : []));
+    this.anchors = looks.flatMap((look) => (look.visible ? (outermost(this.viewer, look) ?? []) : []));
     this.draw();
   }
 
@@ -109,15 +109,16 @@ function ruler(
   return parts;
 }
 
-/** Of a layer the vertex that rests farthest to the patient's left. */
-function outermost(views: readonly BodyView[], look: Look): { view: BodyView; vertex: number; look: Look } | undefined {
+/** Of a layer the vertex that rests farthest to the patient's left, of those that no cut takes away. */
+function outermost(viewer: Viewer, look: Look): { view: BodyView; vertex: number; look: Look } | undefined {
   let found: { view: BodyView; vertex: number; look: Look } | undefined;
   let farthest = -Infinity;
-  for (const view of views) {
+  const place = new THREE.Vector3();
+  for (const view of viewer.bodies) {
     if (view.body.layer !== look.layer) continue;
     const { rest } = view.body;
     for (let i = 0; i < rest.length; i += 3) {
-      if (rest[i] <= farthest) continue;
+      if (rest[i] <= farthest || viewer.cutAway(place.fromArray(rest, i))) continue;
       farthest = rest[i];
       found = { view, vertex: i / 3, look };
     }

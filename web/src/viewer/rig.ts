@@ -1,6 +1,6 @@
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import { type Free, letterOf, openingView, standpoint, type ViewName } from "./views";
+import { type Free, letterOf, openingView, planeAxes, standpoint, type ViewName } from "./views";
 
 /** What the margins of the picture say about it. */
 export interface Compass {
@@ -34,6 +34,7 @@ export class Rig {
   /** The named view that the camera stands at or glides to, until a person moves it. */
   private held: ViewName | undefined;
   private extent = 1;
+  private flat = false;
   private flight: { from: THREE.Vector3; to: THREE.Vector3; start: number } | undefined;
 
   constructor(
@@ -61,6 +62,7 @@ export class Rig {
     this.controls.minDistance = size / 20;
     this.controls.maxDistance = size * 8;
     this.opening = openingView(box);
+    this.flat = planeAxes(box) !== undefined;
     this.go("home", true);
   }
 
@@ -68,7 +70,10 @@ export class Rig {
     this.held = view;
     this.controls.target.copy(this.center);
     const side = view === "home" ? this.opening : view;
-    const to = standpoint(side, this.points, this.center, this.camera, this.free);
+    // A flat scene has its axes beside it.
+    const air = this.flat ? 0.84 : 1;
+    const free = { width: air * this.free.width, height: air * this.free.height };
+    const to = standpoint(side, this.points, this.center, this.camera, free);
     this.flight = undefined;
     if (atOnce) this.camera.position.copy(to);
     else this.flight = { from: this.camera.position.clone(), to, start: performance.now() };

@@ -111,7 +111,7 @@ export class Viewer {
 
   /** Whether a cut has taken this place away. */
   cutAway(place: THREE.Vector3): boolean {
-    return (this.plane()?.distanceToPoint(place) ?? 0) < 0;
+    return this.renderer.clippingPlanes.some((plane) => plane.distanceToPoint(place) < 0);
   }
 
   /** Draws at the next beat. */
