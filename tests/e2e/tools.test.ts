@@ -14,8 +14,7 @@ let viewer: ViewerPage;
 
 beforeAll(async () => {
   browser = await launchBrowser();
-  server = await Server.start();
-  await server.phrenic("pause", "thorax");
+  server = await Server.start("none");
   await server.phrenic("create", "pressure-lungs", "--id", "lungs");
   await server.phrenic("step", "lungs", "600");
   viewer = await ViewerPage.open(browser, `${server.url}?session=lungs`, { width: 1200, height: 720 });
@@ -73,7 +72,11 @@ describe("the picture", () => {
   test("IsColouredCutAndHauntedAsIsAsked", async () => {
     expect(await changed(() => viewer.page.selectOption("#coloring-kind", "displacement"))).toBeGreaterThan(0.02);
     expect(await viewer.page.textContent("#coloring")).toMatch(/Displacement.*mm/);
-    expect(await changed(() => viewer.page.click("#coloring-fit"))).toBeGreaterThan(0.005);
+    const fitted = await viewer.page.inputValue("#coloring-top");
+    expect(await changed(() => viewer.page.fill("#coloring-top", "100"))).toBe(0);
+    expect(await changed(() => viewer.page.press("#coloring-top", "Enter"))).toBeGreaterThan(0.01);
+    await viewer.page.click("#coloring-fit");
+    expect(await viewer.page.inputValue("#coloring-top")).toBe(fitted);
     expect(await changed(() => viewer.page.selectOption("#ghost", "rest"))).toBeGreaterThan(0.002);
     expect(await changed(() => viewer.page.selectOption("#cut", "coronal"))).toBeGreaterThan(0.02);
     await viewer.leave("tools");
