@@ -124,7 +124,7 @@ test("APermalinkRunsAgainToTheSameVertices", async () => {
   await again.close();
 
   // The dialog is still open.
-  await cube.page.click("#beside");
+  await cube.page.click("#share-beside");
   await cube.page.waitForSelector("#beside canvas");
   await cube.page.waitForSelector('.differences:text-is("The same parameters")');
   await cube.type("breathForce", 3);

@@ -46,10 +46,16 @@ export class ShareDialog {
     const { controller, open, photograph } = this.sharing;
     const here = controller.sessionId;
     return [
-      action("fork", "A session of your own", "From the present instant; nobody else steers it.", "Fork", async () => {
-        const id = await controller.fork();
-        if (id !== undefined) open(`?${new URLSearchParams({ session: id })}`);
-      }),
+      action(
+        "share-fork",
+        "A session of your own",
+        "From the present instant; nobody else steers it.",
+        "Fork",
+        async () => {
+          const id = await controller.fork();
+          if (id !== undefined) open(`?${new URLSearchParams({ session: id })}`);
+        },
+      ),
       action(
         "beside",
         "Side by side",
@@ -60,7 +66,7 @@ export class ShareDialog {
           if (id !== undefined) open(`?${new URLSearchParams({ session: id, beside: here })}`);
         },
       ),
-      action("photograph", "A picture", "What is seen now, as PNG.", "Save", async () => photograph()),
+      action("share-picture", "A picture", "What is seen now, as PNG.", "Save", async () => photograph()),
     ];
   }
 }
