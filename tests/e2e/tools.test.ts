@@ -73,8 +73,7 @@ describe("the picture", () => {
     expect(await changed(() => viewer.page.selectOption("#coloring-kind", "displacement"))).toBeGreaterThan(0.02);
     expect(await viewer.page.textContent("#coloring")).toMatch(/Displacement.*mm/);
     const fitted = await viewer.page.inputValue("#coloring-top");
-    expect(await changed(() => viewer.page.fill("#coloring-top", "100"))).toBe(0);
-    expect(await changed(() => viewer.page.press("#coloring-top", "Enter"))).toBeGreaterThan(0.01);
+    expect(await changed(() => viewer.page.fill("#coloring-top", "100"))).toBeGreaterThan(0.01);
     await viewer.page.click("#coloring-fit");
     expect(await viewer.page.inputValue("#coloring-top")).toBe(fitted);
     expect(await changed(() => viewer.page.selectOption("#ghost", "rest"))).toBeGreaterThan(0.002);
@@ -154,8 +153,8 @@ test("ThePageIsSmallAndSoonThere", async () => {
   const sizes = await Promise.all(scripts.map(async (name) => gzipSync(await readFile(join(folder, name))).length));
   expect(sizes.reduce((sum, size) => sum + size)).toBeLessThan(400_000);
   let quickest = Infinity;
-  // The quickest of three: a shared machine may stall a browser.
-  for (let i = 0; i < 3 && quickest > 2000; i++) {
+  // The quickest of five: a shared machine may stall a browser.
+  for (let i = 0; i < 5 && quickest > 2000; i++) {
     const page = await ViewerPage.open(browser, `${server.url}?session=lungs`);
     quickest = Math.min(quickest, await page.page.evaluate(() => window.phrenic!.firstPicture()));
     await page.close();

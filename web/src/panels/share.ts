@@ -57,7 +57,7 @@ export class ShareDialog {
         },
       ),
       action(
-        "beside",
+        "share-beside",
         "Side by side",
         "A copy beside this one, to set differently; one camera.",
         "Compare",
