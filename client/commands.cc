@@ -28,6 +28,7 @@ struct AllOptions {
   PatientOptions patient;
   PhantomOptions phantom;
   CreateOptions create;
+  ForkOptions fork;
   SessionOptions session;
   WatchOptions watch;
   SetOptions set;
@@ -288,6 +289,11 @@ class CommandLine {
     AddPulls(command, create.pulls);
     command->add_option("--id", create.id, "its name: 1 to 64 of a-z, 0-9 and -");
     command->add_flag("--play", create.play, "let it play at once");
+    ForkOptions& fork = options_.fork;
+    command = Add("fork", "Make another session that stands where this one stands", &Fork, fork);
+    command->add_option("SESSION", fork.id)->required();
+    command->add_option("--id", fork.fork_id, "its name: 1 to 64 of a-z, 0-9 and -");
+    command->add_flag("--play", fork.play, "let it play at once");
     Add("sessions", "List the sessions", &Sessions);
     WatchOptions& watch = options_.watch;
     command = Add("watch", "Print a session's numbers as they come", &Watch, watch);

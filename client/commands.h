@@ -83,6 +83,11 @@ struct CreateOptions {
 struct SessionOptions {
   std::string id;
 };
+struct ForkOptions {
+  std::string id;
+  std::string fork_id;  // empty: the server chooses
+  bool play = false;
+};
 struct WatchOptions {
   std::string id;
   double seconds = 0;  // 0: until interrupted
@@ -140,6 +145,7 @@ int Convert(const Context& context, const ConvertOptions& options);
 int MakePatient(const Context& context, const PatientOptions& options);
 int MakePhantom(const Context& context, const PhantomOptions& options);
 int Create(const Context& context, const CreateOptions& options);
+int Fork(const Context& context, const ForkOptions& options);
 int Sessions(const Context& context);
 int Watch(const Context& context, const WatchOptions& options);
 int Set(const Context& context, const SetOptions& options);

@@ -27,6 +27,16 @@ int CallAndShow(const Context& context, Method method, const Request& request) {
   return Show(context, Call(context, *stub, method, request, &response), response);
 }
 
+// Lets the session play, and writes down what it is then.
+grpc::Status StartPlaying(const Context& context, v1::SessionService::Stub& stub, v1::Session& session) {
+  v1::PlaySessionRequest request;
+  request.set_session_id(session.id());
+  v1::PlaySessionResponse playing;
+  grpc::Status status = Call(context, stub, &v1::SessionService::Stub::PlaySession, request, &playing);
+  if (status.ok()) session = playing.session();
+  return status;
+}
+
 }  // namespace
 
 int Create(const Context& context, const CreateOptions& options) {
@@ -45,13 +55,18 @@ int Create(const Context& context, const CreateOptions& options) {
   const auto stub = v1::SessionService::NewStub(Connect(context));
   v1::CreateSessionResponse response;
   grpc::Status status = Call(context, *stub, &v1::SessionService::Stub::CreateSession, request, &response);
-  if (status.ok() && options.play) {
-    v1::PlaySessionRequest play;
-    play.set_session_id(response.session().id());
-    v1::PlaySessionResponse playing;
-    status = Call(context, *stub, &v1::SessionService::Stub::PlaySession, play, &playing);
-    *response.mutable_session() = playing.session();
-  }
+  if (status.ok() && options.play) status = StartPlaying(context, *stub, *response.mutable_session());
+  return Show(context, status, response);
+}
+
+int Fork(const Context& context, const ForkOptions& options) {
+  v1::ForkSessionRequest request;
+  request.set_session_id(options.id);
+  request.set_fork_id(options.fork_id);
+  const auto stub = v1::SessionService::NewStub(Connect(context));
+  v1::ForkSessionResponse response;
+  grpc::Status status = Call(context, *stub, &v1::SessionService::Stub::ForkSession, request, &response);
+  if (status.ok() && options.play) status = StartPlaying(context, *stub, *response.mutable_session());
   return Show(context, status, response);
 }
 

@@ -41,6 +41,14 @@ grpc::Status SessionService::GetSession(grpc::ServerContext* /*context*/, const 
   return Answer((*session)->status(), response);
 }
 
+grpc::Status SessionService::ForkSession(grpc::ServerContext* /*context*/, const v1::ForkSessionRequest* request,
+                                         v1::ForkSessionResponse* response) {
+  if (absl::Status status = schema::Validate(*request); !status.ok()) return ToGrpc(status);
+  const auto fork = table_.Fork(*request);
+  if (!fork.ok()) return ToGrpc(fork.status());
+  return Answer((*fork)->status(), response);
+}
+
 grpc::Status SessionService::ListSessions(grpc::ServerContext* /*context*/, const v1::ListSessionsRequest* request,
                                           v1::ListSessionsResponse* response) {
   if (request->page_size() < 0 || request->page_size() > 1000) {

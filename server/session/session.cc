@@ -28,15 +28,14 @@ std::vector<std::string> Warnings(const v1::Parameters& parameters, double stabl
 
 }  // namespace
 
-Session::Session(std::string id, std::shared_ptr<const Model> model, const v1::Parameters& parameters,
-                 double stable_step, const stream::Clock& clock, int max_viewers, const std::vector<VertexPull>& pulls)
+Session::Session(std::string id, std::shared_ptr<const Model> model, Fork start, const stream::Clock& clock,
+                 int max_viewers)
     : id_(std::move(id)),
       model_(std::move(model)),
       clock_(clock),
       publisher_(model_, clock, max_viewers),
-      run_(model_, parameters),
-      stable_step_(stable_step) {
-  run_.ChangePulls(pulls, true).IgnoreError();  // they are not too many
+      run_(model_, std::move(start.parameters), std::move(start.state)),
+      stable_step_(start.stable_step) {
   {
     absl::MutexLock lock(&mutex_);
     status_.set_id(id_);
@@ -45,7 +44,7 @@ Session::Session(std::string id, std::shared_ptr<const Model> model, const v1::P
     *status_.mutable_create_time() =
         google::protobuf::util::TimeUtil::NanosecondsToTimestamp(absl::ToUnixNanos(clock.Now()));
   }
-  pacer_.Start(clock.Now(), 0, speed_);
+  pacer_.Start(clock.Now(), run_.state().time, speed_);
   Tell();
   OfferFrame(clock.Now());
   thread_ = std::thread([this] { Loop(); });
@@ -178,7 +177,7 @@ absl::StatusOr<Session::Fork> Session::MakeFork() {
   auto asked = Ask([&] {
     const absl::Status good = CheckNotDiverged();
     if (good.ok()) {
-      fork = Fork{run_.parameters(), run_.state()};
+      fork = Fork{run_.parameters(), run_.state(), stable_step_};
     } else {
       fork = good;
     }

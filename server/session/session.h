@@ -30,9 +30,11 @@ namespace phrenic::session {
 // they take effect at once and never in the middle of one; they return when that is done.
 class Session {
  public:
+  // Where a run stands, and from where another may go on.
   struct Fork {
     v1::Parameters parameters;
     State state;
+    double stable_step = 0;  // the largest one for the parameters [s]
   };
   struct Stepped {
     v1::Session session;
@@ -44,10 +46,8 @@ class Session {
     std::vector<std::string> warnings;
   };
 
-  // Paused at t = 0. Every field of `parameters` is set and in range; `stable_step` is the largest one for them [s].
-  // `pulls` are not more than kMostPulls.
-  Session(std::string id, std::shared_ptr<const Model> model, const v1::Parameters& parameters, double stable_step,
-          const stream::Clock& clock, int max_viewers, const std::vector<VertexPull>& pulls = {});
+  // Paused where `start` stands, which is a state of the model. Every field of its parameters is set and in range.
+  Session(std::string id, std::shared_ptr<const Model> model, Fork start, const stream::Clock& clock, int max_viewers);
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;

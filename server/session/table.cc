@@ -30,12 +30,12 @@ std::string Table::FreeId(const std::string& scene) const {
   });
 }
 
-absl::StatusOr<std::string> Table::Reserve(const std::string& wanted, const std::string& scene) {
-  if (absl::Status status = schema::CheckId("session_id", wanted); !status.ok()) return status;
+absl::StatusOr<std::string> Table::Reserve(const char* field, const std::string& wanted, const std::string& scene) {
+  if (absl::Status status = schema::CheckId(field, wanted); !status.ok()) return status;
   absl::MutexLock lock(&mutex_);
   if (closed_.has_value()) return *closed_;
   if (sessions_.contains(wanted)) {
-    return absl::AlreadyExistsError(absl::StrCat("session_id: there is a session \"", wanted, "\" already"));
+    return absl::AlreadyExistsError(absl::StrCat(field, ": there is a session \"", wanted, "\" already"));
   }
   if (static_cast<int>(sessions_.size()) >= limits_.sessions) {
     return absl::ResourceExhaustedError(absl::StrCat("there are ", sessions_.size(),
@@ -67,16 +67,34 @@ absl::StatusOr<std::shared_ptr<Session>> Table::Make(const std::string& id, cons
   if (absl::Status status = schema::Validate(parameters); !status.ok()) return status;
   const auto changes = FindPulls(*model, request.pulls(), "pulls");
   if (!changes.ok()) return changes.status();
-  std::vector<VertexPull> pulls;
-  if (absl::Status status = ChangePulls(*changes, true, pulls); !status.ok()) return status;
-  return std::make_shared<Session>(id, model, parameters, stable_step, clock_, limits_.viewers, pulls);
+  Session::Fork start{std::move(parameters), model->InitialState(), stable_step};
+  if (absl::Status status = ChangePulls(*changes, true, start.state.pulls); !status.ok()) return status;
+  return std::make_shared<Session>(id, model, std::move(start), clock_, limits_.viewers);
+}
+
+absl::StatusOr<std::shared_ptr<Session>> Table::MakeFork(const std::string& id, Session& of) const {
+  absl::StatusOr<Session::Fork> start = of.MakeFork();
+  if (!start.ok()) return start.status();
+  return std::make_shared<Session>(id, of.shared_model(), *std::move(start), clock_, limits_.viewers);
 }
 
 absl::StatusOr<std::shared_ptr<Session>> Table::Create(const v1::CreateSessionRequest& request) {
   const std::string scene = request.source().has_scene() ? request.source().scene().name() : request.source().name();
-  const absl::StatusOr<std::string> id = Reserve(request.session_id(), scene);
+  return Admit("session_id", request.session_id(), scene, [&](const std::string& id) { return Make(id, request); });
+}
+
+absl::StatusOr<std::shared_ptr<Session>> Table::Fork(const v1::ForkSessionRequest& request) {
+  const absl::StatusOr<std::shared_ptr<Session>> of = Find(request.session_id());
+  if (!of.ok()) return of.status();
+  return Admit("fork_id", request.fork_id(), (*of)->model().scene.name(),
+               [&](const std::string& id) { return MakeFork(id, **of); });
+}
+
+absl::StatusOr<std::shared_ptr<Session>> Table::Admit(const char* field, const std::string& wanted,
+                                                      const std::string& scene, absl::FunctionRef<Maker> make) {
+  const absl::StatusOr<std::string> id = Reserve(field, wanted, scene);
   if (!id.ok()) return id.status();
-  absl::StatusOr<std::shared_ptr<Session>> session = Make(*id, request);
+  absl::StatusOr<std::shared_ptr<Session>> session = make(*id);
   absl::MutexLock lock(&mutex_);
   if (closed_.has_value()) return *closed_;
   if (session.ok()) {

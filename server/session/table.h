@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "absl/base/thread_annotations.h"
+#include "absl/functional/function_ref.h"
 #include "absl/status/statusor.h"
 #include "absl/synchronization/mutex.h"
 #include "server/session/limits.h"
@@ -31,6 +32,8 @@ class Table {
   // Compiles the scene and makes a paused session. An empty id lets the table choose one from the scene's name.
   // INVALID_ARGUMENT, ALREADY_EXISTS or RESOURCE_EXHAUSTED tell why there is none.
   absl::StatusOr<std::shared_ptr<Session>> Create(const v1::CreateSessionRequest& request) ABSL_LOCKS_EXCLUDED(mutex_);
+  // A paused session that stands where another one stands (Session::MakeFork); its id is chosen likewise.
+  absl::StatusOr<std::shared_ptr<Session>> Fork(const v1::ForkSessionRequest& request) ABSL_LOCKS_EXCLUDED(mutex_);
   // NOT_FOUND lists the ids there are.
   absl::StatusOr<std::shared_ptr<Session>> Find(const std::string& id) const ABSL_LOCKS_EXCLUDED(mutex_);
   // Sessions in the order of their ids, after the one that `token` names.
@@ -41,9 +44,16 @@ class Table {
   void Close(const absl::Status& reason) ABSL_LOCKS_EXCLUDED(mutex_);
 
  private:
-  // A place taken while its session is being made: null.
-  absl::StatusOr<std::string> Reserve(const std::string& wanted, const std::string& scene) ABSL_LOCKS_EXCLUDED(mutex_);
+  using Maker = absl::StatusOr<std::shared_ptr<Session>>(const std::string& id);
+
+  // A place taken while its session is being made: null. `field` of the request holds the wanted id.
+  absl::StatusOr<std::string> Reserve(const char* field, const std::string& wanted, const std::string& scene)
+      ABSL_LOCKS_EXCLUDED(mutex_);
+  // Takes a place, has the session made and puts it there.
+  absl::StatusOr<std::shared_ptr<Session>> Admit(const char* field, const std::string& wanted, const std::string& scene,
+                                                 absl::FunctionRef<Maker> make) ABSL_LOCKS_EXCLUDED(mutex_);
   absl::StatusOr<std::shared_ptr<Session>> Make(const std::string& id, const v1::CreateSessionRequest& request);
+  absl::StatusOr<std::shared_ptr<Session>> MakeFork(const std::string& id, Session& of) const;
   std::string FreeId(const std::string& scene) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   absl::Status NoSession(const std::string& id) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 

@@ -66,6 +66,12 @@ TEST_F(Sessions, ASessionLivesFromCreateToDelete) {
   EXPECT_EQ(set["session"]["parameters"]["breath_force"], 1.5);
   EXPECT_EQ(set["session"]["parameters"]["apply_links"], false);
 
+  const auto fork = Json({"fork", "one", "--id", "two", "--play"});
+  EXPECT_EQ(fork["session"]["id"], "two");
+  EXPECT_EQ(fork["session"]["state"], "SESSION_STATE_PLAYING");
+  EXPECT_EQ(fork["session"]["parameters"]["breath_force"], 1.5);
+  EXPECT_EQ(Ask({"delete", "two"}).code, 0);
+
   EXPECT_EQ(Json({"play", "one", "--fast"})["session"]["state"], "SESSION_STATE_PLAYING");
   EXPECT_EQ(Json({"pause", "one"})["session"]["state"], "SESSION_STATE_PAUSED");
   EXPECT_EQ(Json({"reset", "one"})["session"]["tick"], "0");

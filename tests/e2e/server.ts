@@ -15,10 +15,12 @@ export class Server {
   private constructor(
     private readonly listen: number,
     private readonly web: number,
+    private readonly scene: string,
   ) {}
 
-  static async start(): Promise<Server> {
-    const server = new Server(await freePort(), await freePort());
+  /** With a session of `scene` that plays; "none" for no session. */
+  static async start(scene = "thorax"): Promise<Server> {
+    const server = new Server(await freePort(), await freePort(), scene);
     await server.restart();
     return server;
   }
@@ -31,7 +33,8 @@ export class Server {
   async restart(): Promise<void> {
     mkdirSync(outFolder, { recursive: true });
     const log = createWriteStream(join(outFolder, "phrenicd.log"), { flags: "a" });
-    const flags = ["--listen", `127.0.0.1:${this.listen}`, "--web", `127.0.0.1:${this.web}`];
+    const addresses = ["--listen", `127.0.0.1:${this.listen}`, "--web", `127.0.0.1:${this.web}`];
+    const flags = [...addresses, "--start", this.scene];
     const child = spawn(program("phrenicd"), flags, { stdio: ["ignore", "pipe", "pipe"] });
     child.stdout.pipe(log, { end: false });
     child.stderr.pipe(log, { end: false });

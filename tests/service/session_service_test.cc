@@ -26,6 +26,10 @@ TEST_F(SessionServiceTest, ASessionLivesFromCreateToDelete) {
   ASSERT_TRUE(Call(*sessions_, &Sessions::GetSession, "session_id: 'cube'", &got).ok());
   EXPECT_EQ(got.session().time(), stepped.session().time());
   EXPECT_EQ(got.report().scene(), "cube-springs");
+  v1::ForkSessionResponse fork;
+  ASSERT_TRUE(Call(*sessions_, &Sessions::ForkSession, "session_id: 'cube' fork_id: 'other'", &fork).ok());
+  EXPECT_EQ(fork.session().id(), "other");
+  EXPECT_EQ(fork.session().tick(), 10);
   EXPECT_TRUE(Session(&Sessions::PlaySession, "session_id: 'cube' speed: 2").ok());
   EXPECT_TRUE(Session(&Sessions::PauseSession, "session_id: 'cube'").ok());
   v1::ResetSessionResponse reset;
@@ -40,6 +44,7 @@ TEST_F(SessionServiceTest, EveryCallForASessionThatDoesNotExistIsNotFound) {
   const std::string hint = "session_id: there is no session \"x\"; there are cube";
   ExpectError(Session(&Sessions::GetSession, "session_id: 'x'"), grpc::NOT_FOUND, hint);
   ExpectError(Session(&Sessions::PlaySession, "session_id: 'x'"), grpc::NOT_FOUND, hint);
+  ExpectError(Session(&Sessions::ForkSession, "session_id: 'x'"), grpc::NOT_FOUND, hint);
   ExpectError(Session(&Sessions::PauseSession, "session_id: 'x'"), grpc::NOT_FOUND, hint);
   ExpectError(Session(&Sessions::StepSession, "session_id: 'x' ticks: 1"), grpc::NOT_FOUND, hint);
   ExpectError(Session(&Sessions::ResetSession, "session_id: 'x'"), grpc::NOT_FOUND, hint);

@@ -18,8 +18,8 @@ class SessionTest : public testing::Test {
  protected:
   std::unique_ptr<Session> Make(const std::string& text = kTriangle) {
     const auto model = CompileText(text);
-    return std::make_unique<Session>("test", model, model->parameters, model->report.stable_step().seconds(), clock_,
-                                     8);
+    Session::Fork start{model->parameters, model->InitialState(), model->report.stable_step().seconds()};
+    return std::make_unique<Session>("test", model, std::move(start), clock_, 8);
   }
 
   // Lets `seconds` pass on the wall, frame by frame, the session keeping up with each.

@@ -178,6 +178,28 @@ TEST_F(TableTest, ParametersOfTheRequestGoOverThoseOfTheScene) {
   EXPECT_EQ((*session)->status().parameters().time_step(), 0.01);
 }
 
+TEST_F(TableTest, AForkStandsWhereTheOtherStandsAndGoesItsOwnWay) {
+  const auto session = *Create("mine");
+  const auto step = [](Session& which) { return which.Step(5, std::nullopt, [] { return false; })->state_hash; };
+  step(*session);
+  v1::ForkSessionRequest request;
+  request.set_session_id("mine");
+  const auto fork = table_.Fork(request);
+  ASSERT_TRUE(fork.ok()) << fork.status();
+  EXPECT_EQ((*fork)->id(), "triangle");
+  EXPECT_EQ((*fork)->status().tick(), 5);
+  EXPECT_EQ((*fork)->status().largest_stable_step(), session->status().largest_stable_step());
+  v1::Parameters stiffer;
+  stiffer.set_elasticity(2);
+  ASSERT_TRUE(session->Update(stiffer, std::nullopt).ok());
+  const std::string alone = step(**fork);
+  EXPECT_NE(alone, step(*session));
+  request.set_fork_id("mine");
+  EXPECT_TRUE(absl::IsAlreadyExists(table_.Fork(request).status()));
+  request.set_session_id("nobody");
+  EXPECT_TRUE(absl::IsNotFound(table_.Fork(request).status()));
+}
+
 TEST_F(TableTest, DeleteEndsTheViewers) {
   const auto session = Create("mine");
   ASSERT_TRUE(session.ok());

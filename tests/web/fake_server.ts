@@ -14,12 +14,15 @@ import {
 } from "../../web/src/gen/phrenic/v1/frames_pb";
 import type { PresetSchema } from "../../web/src/gen/phrenic/v1/scene_pb";
 import {
+  type CreateSessionRequest,
   type Pull,
+  type SceneSource,
   SceneService,
   SessionSchema,
   SessionService,
   SessionState,
 } from "../../web/src/gen/phrenic/v1/session_pb";
+import { StudyService, StudyState } from "../../web/src/gen/phrenic/v1/study_pb";
 
 type ComparisonEvent = MessageInitShape<typeof CompareResponseSchema>["event"];
 type Event = MessageInitShape<typeof WatchFramesResponseSchema>["event"];
@@ -56,6 +59,10 @@ export class FakeServer {
   readonly acknowledged: bigint[] = [];
   readonly updates: object[] = [];
   readonly pulls: Pull[] = [];
+  /** What sessions were made from, the steps that were asked for (from which tick, how many), and what was deleted. */
+  readonly created: CreateSessionRequest[] = [];
+  readonly steps: [bigint | undefined, bigint][] = [];
+  readonly deleted: string[] = [];
   readonly comparisons: CompareRequest[] = [];
   /** What a comparison brings, one after the other; one that is a promise is waited for. */
   found: (ComparisonEvent | Promise<ComparisonEvent>)[] = [];
@@ -72,6 +79,19 @@ export class FakeServer {
             report: { sceneHash: this.sceneHash },
           }),
         listSessions: () => this.answer({ sessions: this.sessions }),
+        createSession: (request) => {
+          this.created.push(request);
+          return this.answer({ session: { id: "thorax-2", scene: "thorax" } });
+        },
+        forkSession: () => this.answer({ session: { id: "thorax-2", scene: "thorax" } }),
+        deleteSession: ({ sessionId }) => {
+          this.deleted.push(sessionId);
+          return this.answer({});
+        },
+        stepSession: ({ ticks, expectedTick }) => {
+          this.steps.push([expectedTick, ticks]);
+          return this.answer({});
+        },
         playSession: () => this.answer({ session: this.session }),
         updateParameters: ({ parameters, preset }) => {
           this.updates.push(preset === "" ? parameters! : { preset });
@@ -87,6 +107,7 @@ export class FakeServer {
       });
       service(FrameService, this.streams());
       service(CompareService, this.comparing());
+      service(StudyService, this.studying());
     }),
   );
 
@@ -122,6 +143,23 @@ export class FakeServer {
           yield { event };
         }
       },
+    };
+  }
+
+  private studying() {
+    const server = this;
+    const id = "cost-thorax";
+    return {
+      createStudy({ source }: { source?: SceneSource }) {
+        if (source?.source.value === "") throw new ConnectError("source.name: there is no scene", Code.InvalidArgument);
+        return server.answer({ study: { id, state: StudyState.RUNNING } });
+      },
+      async *watchStudy() {
+        yield server.answer({ study: { id, state: StudyState.RUNNING, progress: 0.5 } });
+        yield server.answer({ study: { id, state: StudyState.DONE, progress: 1, result: { tookS: 2 } } });
+      },
+      listStudies: () => server.answer({ studies: [] }),
+      deleteStudy: () => server.answer({}),
     };
   }
 

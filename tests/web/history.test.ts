@@ -6,7 +6,12 @@ test("OnlyTheLastSecondsAreKept", () => {
   for (let time = 0; time <= 10; time++) history.add(time, [["dome", -time]]);
   expect(history.times).toEqual([8, 9, 10]);
   expect(history.series.get("dome")).toEqual([-8, -9, -10]);
-  expect(history.range()).toEqual([-10, -8]);
+});
+
+test("ATimeIsFoundAmongThoseKept", () => {
+  const history = new History(20);
+  for (let time = 0; time <= 10; time += 2) history.add(time, [["dome", -time]]);
+  expect([-1, 0, 1, 4, 9.9, 11].map((time) => history.from(time))).toEqual([0, 0, 1, 2, 5, 6]);
 });
 
 test("TimeThatGoesBackStartsAfresh", () => {

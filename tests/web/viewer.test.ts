@@ -1,8 +1,11 @@
 import * as THREE from "three";
 import { mergeVertices } from "three/addons/utils/BufferGeometryUtils.js";
 import { describe, expect, test } from "vitest";
+import { OrientationCube } from "../../web/src/panels/orientation_cube";
+import { placeOf, planeOf } from "../../web/src/viewer/cut";
 import { edgesOf } from "../../web/src/viewer/edges";
 import { computeNormals } from "../../web/src/viewer/normals";
+import { pickVertex } from "../../web/src/viewer/picking";
 import { tendonWeights } from "../../web/src/viewer/tendon";
 import { Sharpness } from "../../web/src/viewer/sharpness";
 import { letterOf, openingView, standpoint, type ViewName } from "../../web/src/viewer/views";
@@ -81,6 +84,49 @@ describe("views", () => {
       "home",
     ]);
   });
+});
+
+describe("a cut", () => {
+  const box = new THREE.Box3(new THREE.Vector3(-1, -2, 0), new THREE.Vector3(1, 2, 4));
+
+  test("LiesWhereItIsSaidToAndTakesAwayOneSide", () => {
+    const cut = { kind: "coronal" as const, part: 0.25, flipped: false };
+    const plane = planeOf(cut, box)!;
+    expect(placeOf(cut, box)).toBe(-1);
+    expect(plane.distanceToPoint(new THREE.Vector3(0, -1.5, 0))).toBeLessThan(0);
+    expect(plane.distanceToPoint(new THREE.Vector3(0, 1.5, 0))).toBeGreaterThan(0);
+    const other = planeOf({ ...cut, flipped: true }, box)!;
+    expect(other.distanceToPoint(new THREE.Vector3(0, 1.5, 0))).toBeLessThan(0);
+    expect(planeOf({ ...cut, kind: "none" }, box)).toBeUndefined();
+  });
+
+  test("HidesWhatItTakesAwayFromTheHand", () => {
+    const camera = new THREE.PerspectiveCamera(26, 1);
+    camera.position.set(0, 0, 5);
+    camera.updateMatrixWorld();
+    const sheet = (z: number) => ({ positions: [-1, -1, z, 1, -1, z, 0, 1, z], triangles: [0, 1, 2] });
+    const sheets = [sheet(1), sheet(0)];
+    const center = new THREE.Vector2();
+    expect(pickVertex(center, camera, sheets)!.body).toBe(0);
+    const below = new THREE.Plane(new THREE.Vector3(0, 0, -1), 0.5);
+    expect(pickVertex(center, camera, sheets, below)!.body).toBe(1);
+  });
+});
+
+test("TheCubeShowsTheSideThatIsSeen", () => {
+  const cube = new OrientationCube(() => undefined);
+  const axes = [new THREE.Vector3(1, 0, 0), new THREE.Vector3(0, 0, 1), new THREE.Vector3(0, -1, 0)] as const;
+  cube.show({ left: "R", right: "L", top: "S", bottom: "I", pixelsPerMetre: 1, axes: [...axes] });
+  const numbers = (element: Element) =>
+    (element as HTMLElement).style.transform.match(/-?[\d.]+(?=[,)])/g)!.map(Number);
+  const turn = new THREE.Matrix4().fromArray(numbers(cube.element.firstElementChild!));
+  for (const side of cube.element.querySelectorAll("button")) {
+    const face = new THREE.Matrix4().fromArray(numbers(side)).premultiply(turn);
+    // On a page x runs to the right, y down and z out of it.
+    const out = new THREE.Vector3(0, 0, 1).transformDirection(face);
+    expect(out.z > 0.9, side.textContent!).toBe(side.textContent === "A");
+    if (side.textContent === "A") expect(new THREE.Vector3(0, 1, 0).transformDirection(face).y).toBeCloseTo(1, 3);
+  }
 });
 
 describe("sharpness", () => {

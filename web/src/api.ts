@@ -3,6 +3,7 @@ import { CompareService } from "./gen/phrenic/v1/compare_pb";
 import { ExportService } from "./gen/phrenic/v1/export_pb";
 import { FrameService } from "./gen/phrenic/v1/frames_pb";
 import { SceneService, SessionService } from "./gen/phrenic/v1/session_pb";
+import { StudyService } from "./gen/phrenic/v1/study_pb";
 import { UploadService } from "./gen/phrenic/v1/upload_pb";
 
 /** The server's services over one transport: gRPC-web in the page, a router in tests. */
@@ -13,6 +14,7 @@ export interface Api {
   comparisons: Client<typeof CompareService>;
   exports: Client<typeof ExportService>;
   uploads: Client<typeof UploadService>;
+  studies: Client<typeof StudyService>;
 }
 
 export function createApi(transport: Transport): Api {
@@ -23,6 +25,7 @@ export function createApi(transport: Transport): Api {
     comparisons: createClient(CompareService, transport),
     exports: createClient(ExportService, transport),
     uploads: createClient(UploadService, transport),
+    studies: createClient(StudyService, transport),
   };
 }
 

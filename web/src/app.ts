@@ -1,39 +1,57 @@
 import type { Api } from "./api";
+import { Beside } from "./beside";
 import type { Clock } from "./clock";
-import type { Body, FrameArrays } from "./codec";
-import { type Comparison, Comparisons } from "./comparison";
+import type { Body } from "./codec";
+import { Comparisons } from "./comparison";
 import { Connection, type Link, type Sink } from "./connection";
 import { Controller } from "./controller";
-import { DistanceScale, topFor } from "./distance_scale";
 import { Exports } from "./exports";
 import { Frames } from "./frames";
 import type { CompileReport } from "./gen/phrenic/v1/report_pb";
 import { Looks } from "./looks";
-import { appearancePanel, layersPanel } from "./panels/appearance";
+import { layersPanel } from "./panels/appearance";
 import { banners } from "./panels/banner";
 import type { Chooser } from "./panels/chooser";
 import { comparePanel } from "./panels/compare";
 import { ComparisonCard } from "./panels/comparison_card";
-import { make, place } from "./panels/dom";
+import { download, make, place } from "./panels/dom";
+import { drawers } from "./panels/drawers";
 import { dropZone } from "./panels/drop_zone";
 import { exportPanel } from "./panels/export";
+import { Graphs } from "./panels/graphs";
 import { Margins } from "./panels/margins";
 import { Measures } from "./panels/measures";
 import { parameterSections } from "./panels/parameters";
 import { playbackPanel } from "./panels/playback";
 import { Probes } from "./panels/probes";
 import { reportPanel } from "./panels/report";
+import { sessionButton } from "./panels/session_button";
+import { ShareDialog } from "./panels/share";
+import { shortcuts } from "./panels/shortcuts";
 import { LinkPill, Readout, ViewerCount } from "./panels/status";
+import { studiesPanel } from "./panels/studies";
 import { uploadPanel } from "./panels/upload";
 import { viewBar } from "./panels/view_bar";
+import { SceneTools } from "./scene_tools";
 import { Signal } from "./signal";
+import { Studies } from "./studies";
 import { testHook } from "./test_hook";
+import { covered } from "./panels/covered";
 import { Uploads } from "./uploads";
-import type { Covered } from "./viewer/rig";
 import { Viewer } from "./viewer/viewer";
 
-/** How often words and numbers follow the picture [ms]. */
+/** How often words and numbers follow the picture, and how often graphs do [ms]. */
 const statusInterval = 200;
+const graphInterval = 100;
+
+/** What the page is about, as its address names it. */
+export interface Subject {
+  sessionId: string;
+  /** A second session in a picture beside the first. */
+  beside: string | undefined;
+  /** Opens the page anew with this query. */
+  open(query: string): void;
+}
 
 /** One session on one page: ties the connection, the picture and the panels together. */
 export class App {
@@ -44,6 +62,9 @@ export class App {
   private readonly controller: Controller;
   private readonly connection: Connection;
   private readonly viewer: Viewer;
+  private readonly tools: SceneTools;
+  private readonly graphs: Graphs;
+  private readonly beside: Beside | undefined;
   private readonly margins = new Margins();
   private readonly pill: LinkPill;
   private readonly viewers = new ViewerCount();
@@ -59,11 +80,12 @@ export class App {
   private deformable: ReadonlySet<string> = new Set();
 
   constructor(
-    api: Api,
-    sessionId: string,
+    private readonly api: Api,
+    private readonly subject: Subject,
     private readonly chooser: Chooser,
     private readonly clock: Clock,
   ) {
+    const { sessionId } = subject;
     this.controller = new Controller(api, sessionId, clock);
     this.comparisons = new Comparisons(api, sessionId);
     this.exports = new Exports(api, sessionId);
@@ -71,68 +93,128 @@ export class App {
     this.comparison = new ComparisonCard(this.comparisons);
     this.connection = new Connection(api, sessionId, this.sink(), clock);
     this.pill = new LinkPill(() => this.connection.retryNow());
-    place("comparison-place").append(this.comparison.element);
-    const reduced = matchMedia("(prefers-reduced-motion: reduce)");
-    this.viewer = new Viewer(
-      place("view") as HTMLCanvasElement,
-      () => this.arrays(),
-      (compass) => this.margins.show(compass),
-      covered,
-      () => reduced.matches,
-    );
+    this.viewer = new Viewer(place("view") as HTMLCanvasElement, this.around());
+    this.tools = new SceneTools(this.viewer, () => this.frames.arrays, this.looks, this.comparisons);
+    this.graphs = new Graphs(() => sessionId, this.tools.following);
+    this.beside = this.openBeside();
     window.phrenic = testHook(() => this.bodies.value, this.frames, this.viewer);
   }
 
   start(): void {
-    this.furnish();
+    this.furnishStage();
+    this.furnishPanel();
+    this.furnishHeader();
     this.looks.all.subscribe((looks) => {
       for (const { layer, opacity, visible } of looks) this.viewer.setLayerOpacity(layer, visible ? opacity : 0);
     });
-    this.comparisons.result.subscribe((comparison) => this.viewer.paint(painted(comparison)));
     setInterval(() => this.tell(), statusInterval);
+    setInterval(() => document.hidden || this.graphs.draw(), graphInterval);
+    window.addEventListener("pagehide", () => this.controller.leave());
     void this.connection.run();
   }
 
-  private furnish(): void {
-    const { controller, looks, viewer } = this;
-    place("panel").append(
-      ...parameterSections(controller, this.report),
-      appearancePanel(looks, (kind, on) => viewer.setOverlay(kind, on)),
-      layersPanel(looks),
-      comparePanel(this.comparisons, this.bodies, this.uploads.endings),
-      exportPanel(this.exports, this.bodies),
-      uploadPanel(this.uploads),
-      this.probes.element,
-      this.measures.element,
-      reportPanel(this.report),
-    );
+  private around() {
+    const reduced = matchMedia("(prefers-reduced-motion: reduce)");
+    return {
+      source: () => this.frames.arrays,
+      update: (arrays: NonNullable<Frames["arrays"]>) => this.tools.update(this.frames.frame?.time ?? 0, arrays),
+      drawn: (compass: Parameters<Margins["show"]>[0]) => {
+        this.margins.show(compass);
+        this.tools.drawn(compass);
+        this.beside?.follow();
+      },
+      covered,
+      calm: () => reduced.matches,
+    };
+  }
+
+  private openBeside(): Beside | undefined {
+    const { sessionId, beside, open } = this.subject;
+    if (beside === undefined || beside === sessionId) return undefined;
+    const { viewer, looks, controller } = this;
+    return new Beside(this.api, beside, { viewer, looks, controller, around: this.around() }, this.clock, {
+      swap: () => open(`?${new URLSearchParams({ session: beside, beside: sessionId })}`),
+      close: () => open(`?${new URLSearchParams({ session: sessionId })}`),
+    });
+  }
+
+  private furnishStage(): void {
+    const { controller, viewer, tools } = this;
     viewer.letPull(
       () => this.deformable,
       (body, vertex, force) => controller.pull(body, vertex, force),
+      (newtons, x, y) => tools.tellForce(newtons, x, y),
     );
-    window.addEventListener("pagehide", () => controller.leave());
+    place("cards").append(...tools.cards, this.comparison.element);
+    new ResizeObserver(() => this.resize()).observe(place("cards"));
     const drop = dropZone(document.body, (file) => void this.comparisons.compare(file));
-    place("stage").append(drop);
-    new ResizeObserver(() => viewer.resize()).observe(this.comparison.element);
+    place("stage").append(drop, tools.force);
+    if (this.beside !== undefined) {
+      place("stage").classList.add("split");
+      const head = make(
+        "div",
+        { className: "pane-head" },
+        make("b", {}, this.subject.sessionId),
+        make("span", {}, "steered"),
+      );
+      place("stage").append(this.beside.element, head);
+    }
+    place("annotations-place").append(tools.annotations.element);
+    place("cube-place").append(tools.cube.element);
     place("playback-place").append(playbackPanel(controller));
     place("readout-place").append(this.readout.element);
-    place("link-place").append(this.viewers.element, this.pill.element);
-    place("session-place").append(this.sessionButton());
     place("margins").append(...this.margins.elements);
     place("views").append(...viewBar(viewer, place("view")));
     place("banners").append(...banners(controller, this.link, () => void this.chooser.show()));
-    foldPanel(place("panel-toggle") as HTMLButtonElement);
   }
 
-  private sessionButton(): HTMLElement {
-    const title = make("b");
-    const id = make("span");
-    this.controller.session.subscribe((session) => {
-      title.textContent = session?.sceneTitle || session?.scene || "";
-      id.textContent = session?.id ?? "";
-    });
-    const open = () => void this.chooser.show();
-    return make("button", { type: "button", id: "session", title: "Sessions and scenes", onclick: open }, title, id);
+  private furnishPanel(): void {
+    const { controller, looks } = this;
+    place("panel").append(
+      ...parameterSections(controller, this.report),
+      this.tools.panel,
+      layersPanel(looks),
+      this.probes.element,
+      this.measures.element,
+      comparePanel(this.comparisons, this.bodies, this.uploads.endings),
+      studiesPanel(new Studies(this.api, this.clock), controller),
+      exportPanel(this.exports, this.bodies),
+      uploadPanel(this.uploads),
+      reportPanel(this.report),
+    );
+    place("graphs").append(this.graphs.element);
+  }
+
+  private furnishHeader(): void {
+    const { controller, viewer, report } = this;
+    const { open, sessionId } = this.subject;
+    const photograph = async () => {
+      const picture = await viewer.photograph();
+      if (picture !== null) download(`${sessionId}.png`, picture);
+    };
+    const share = new ShareDialog({ controller, report, open, photograph: () => void photograph() });
+    const { graphs, panel } = drawers(() => this.resize());
+    const press = (id: string) => () => document.getElementById(id)?.click();
+    const keys = shortcuts(
+      [
+        { key: " ", words: "Play, pause", act: press("play") },
+        { key: ".", words: "Take some steps", act: press("step") },
+        { key: "r", words: "Back to the start", act: press("reset") },
+        { key: "g", words: "Graphs", act: graphs },
+        { key: "c", words: "Controls", act: panel },
+        { key: "h", words: "The whole scene", act: () => viewer.go("home") },
+        { key: "f", words: "From the front", act: () => viewer.go("front") },
+        { key: "p", words: "Save a picture", act: () => void photograph() },
+        { key: "s", words: "Share, copy, compare", act: () => share.show() },
+      ],
+      () => controller.undo(),
+      () => controller.redo(),
+    );
+    document.body.append(share.element, keys);
+    place("share-open").onclick = () => share.show();
+    place("help-open").onclick = () => keys.showModal();
+    place("link-place").append(this.viewers.element, this.pill.element);
+    place("session-place").append(sessionButton(controller, () => void this.chooser.show()));
   }
 
   /** What the connection brings. */
@@ -142,22 +224,27 @@ export class App {
       session: (session, fresh) => this.controller.receive(session, fresh),
       frame: (frame) => {
         this.frames.receive(frame, this.clock.now());
-        this.probes.receive(frame);
+        this.graphs.receive(frame);
+        this.tools.receive(frame);
         this.viewer.refresh();
       },
       acknowledged: (response, sent, answered) => this.frames.acknowledged(response, sent, answered),
-      scene: (bodies, report) => {
-        this.comparisons.clear();
-        this.bodies.set(bodies);
-        this.frames.start(bodies);
-        this.report.set(report);
-        this.deformable = new Set(report?.bodies.filter(({ role }) => role === "deformable").map(({ name }) => name));
-        this.comparisons.choose({ body: this.largestOf(bodies) });
-        this.viewer.show(bodies);
-        this.looks.start(bodies, report);
-        place("loading").hidden = true;
-      },
+      scene: (bodies, report) => this.showScene(bodies, report),
     };
+  }
+
+  private showScene(bodies: Body[], report: CompileReport): void {
+    this.comparisons.clear();
+    this.bodies.set(bodies);
+    this.frames.start(bodies);
+    this.graphs.clear();
+    this.report.set(report);
+    this.deformable = new Set(report.bodies.filter(({ role }) => role === "deformable").map(({ name }) => name));
+    this.comparisons.choose({ body: this.largestOf(bodies) });
+    const diagram = this.viewer.show(bodies);
+    this.looks.start(bodies, report);
+    this.tools.start(bodies, this.deformable, diagram);
+    place("loading").hidden = true;
   }
 
   /** What the simulation is about: of the deformable bodies the one with the most triangles. */
@@ -166,8 +253,9 @@ export class App {
     return moving.sort((a, b) => b.triangles.length - a.triangles.length)[0]?.name ?? "";
   }
 
-  private arrays(): FrameArrays | undefined {
-    return this.frames.arrays;
+  private resize(): void {
+    this.viewer.resize();
+    this.beside?.resize();
   }
 
   private tell(): void {
@@ -182,33 +270,6 @@ export class App {
     this.probes.show(status.frame);
     this.measures.show(status.frame);
     this.comparison.show(status.frame?.time);
+    this.tools.show();
   }
-}
-
-function painted(comparison: Comparison | undefined): { body: string; rgb: Uint8Array } | undefined {
-  if (comparison === undefined) return undefined;
-  const { body, distances } = comparison;
-  return { body, rgb: new DistanceScale(topFor(distances)).paint(distances) };
-}
-
-/** How much of the picture lies under view buttons, dock and card [CSS pixels]; the style sheet hears of it too. */
-function covered(): Covered {
-  const stage = place("stage");
-  const bottom = stage.clientHeight - place("dock").offsetTop;
-  const { offsetLeft, offsetWidth } = place("comparison");
-  // Where a card takes most of a narrow picture, the scene stays behind it.
-  const left = offsetLeft + offsetWidth < 0.6 * stage.clientWidth ? offsetLeft + offsetWidth : 0;
-  stage.style.setProperty("--covered", `${bottom}px`);
-  stage.style.setProperty("--covered-left", `${left}px`);
-  return { left, top: 48, bottom };
-}
-
-/** The panel folds away; on a narrow screen it starts folded. */
-function foldPanel(toggle: HTMLButtonElement): void {
-  const fold = (open: boolean) => {
-    document.body.classList.toggle("panel-open", open);
-    toggle.setAttribute("aria-expanded", String(open));
-  };
-  toggle.onclick = () => fold(!document.body.classList.contains("panel-open"));
-  fold(!matchMedia("(max-width: 760px)").matches);
 }

@@ -3,10 +3,11 @@ import { type Api, errorText, unreachable } from "./api";
 import type { Clock } from "./clock";
 import type { ParametersSchema } from "./gen/phrenic/v1/parameters_pb";
 import type { Preset } from "./gen/phrenic/v1/scene_pb";
-import type { PullSchema, Session } from "./gen/phrenic/v1/session_pb";
+import { type PullSchema, type Session, SessionState } from "./gen/phrenic/v1/session_pb";
 import { NewestWins } from "./newest";
-import type { ParameterName } from "./schema";
+import { parameterControls, type ParameterName } from "./schema";
 import { Signal } from "./signal";
+import { Undo, type Values } from "./undo";
 
 type PullValues = MessageInitShape<typeof PullSchema>;
 type ParameterValues = Omit<MessageInitShape<typeof ParametersSchema>, "$typeName">;
@@ -21,11 +22,15 @@ export class Controller {
   readonly notice = new Signal("");
   private readonly updates: NewestWins<ParameterValues>;
   private readonly pulls: NewestWins<Record<string, PullValues>>;
+  /** What this viewer changed. */
+  readonly changes = new Undo();
+  /** Another session that plays, pauses, steps and is reset with this one. */
+  companion: Controller | undefined;
 
   constructor(
     private readonly api: Api,
-    private readonly sessionId: string,
-    clock: Clock,
+    readonly sessionId: string,
+    private readonly clock: Clock,
   ) {
     // Whatever became of a change, the controls show what holds.
     const showAll = () => this.session.set(this.session.value);
@@ -46,24 +51,46 @@ export class Controller {
   }
 
   play(speed: Speed): Promise<void> {
+    void this.companion?.play(speed);
     const pace = speed === "fastest" ? { asFastAsPossible: true } : { speed };
     return this.ask(() => this.api.sessions.playSession({ sessionId: this.sessionId, ...pace }));
   }
 
   pause(): Promise<void> {
+    void this.companion?.pause();
     return this.ask(() => this.api.sessions.pauseSession({ sessionId: this.sessionId }));
   }
 
   step(ticks: number): Promise<void> {
+    void this.companion?.step(ticks);
     return this.ask(() => this.api.sessions.stepSession({ sessionId: this.sessionId, ticks: BigInt(ticks) }));
   }
 
   reset(): Promise<void> {
+    void this.companion?.reset();
     return this.ask(() => this.api.sessions.resetSession({ sessionId: this.sessionId }));
   }
 
   set(name: ParameterName, value: number | boolean): void {
+    const before = this.session.value?.parameters?.[name];
+    if (before !== undefined && before !== value)
+      this.changes.note({ [name]: before }, { [name]: value }, this.clock.now());
     this.updates.push({ [name]: value });
+  }
+
+  /** Takes this viewer's last change back, or does again what was taken back. */
+  undo(): void {
+    this.setAll(this.changes.undo());
+  }
+
+  redo(): void {
+    this.setAll(this.changes.redo());
+  }
+
+  /** Every parameter back to what a session of this scene starts with. */
+  async resetAll(): Promise<void> {
+    const start = await this.startValues();
+    if (start !== undefined) await this.noted(() => this.send(start));
   }
 
   /** Pulls a vertex by a force [N] from now on; zero lets go of it. */
@@ -94,7 +121,35 @@ export class Controller {
 
   /** Sets what belongs to one of the scene's presets. */
   usePreset(preset: string): Promise<void> {
-    return this.send({}, preset);
+    return this.noted(() => this.send({}, preset));
+  }
+
+  /** Another session that stands where this one stands, playing where this one plays; nothing where there is none. */
+  async fork(): Promise<string | undefined> {
+    try {
+      const { session } = await this.api.sessions.forkSession({ sessionId: this.sessionId });
+      const playing = this.session.value?.state === SessionState.PLAYING;
+      if (session !== undefined && playing) await this.api.sessions.playSession({ sessionId: session.id });
+      return session?.id;
+    } catch (error) {
+      this.notice.set(errorText(error));
+      return undefined;
+    }
+  }
+
+  private setAll(values: Values | undefined): void {
+    if (values !== undefined) this.updates.push(values);
+  }
+
+  /** Takes note of what `change` makes of the parameters. */
+  private async noted(change: () => Promise<void>): Promise<void> {
+    const before = { ...this.session.value?.parameters } as unknown as Values;
+    await change();
+    const after = { ...this.session.value?.parameters } as unknown as Values;
+    const names = parameterControls().map(({ field }) => field);
+    const changed = names.filter((name) => before[name] !== undefined && before[name] !== after[name]);
+    const part = (values: Values) => Object.fromEntries(changed.map((name) => [name, values[name]]));
+    if (changed.length > 0) this.changes.note(part(before), part(after), this.clock.now());
   }
 
   /** The values that a session of this scene starts with. */

@@ -1,4 +1,4 @@
-/** Values over simulated time, the last `span` seconds of them: what a strip chart shows. */
+/** Values over simulated time, the last `span` seconds of them: what graphs show. */
 export class History {
   readonly times: number[] = [];
   readonly series = new Map<string, number[]>();
@@ -14,13 +14,22 @@ export class History {
     if (!same || (last !== undefined && time < last)) this.restart(values.map(([name]) => name));
     this.times.push(time);
     for (const [name, value] of values) this.series.get(name)?.push(value);
-    while (this.times[0] < time - this.span) this.drop();
+    if (this.times[0] < time - this.span) this.drop(this.from(time - this.span));
   }
 
-  /** The least and greatest of all values; 0 to 0 where there are none. */
-  range(): [low: number, high: number] {
-    const all = [...this.series.values()].flat();
-    return all.length === 0 ? [0, 0] : [Math.min(...all), Math.max(...all)];
+  /** The first place whose time is `time` [s] or later. */
+  from(time: number): number {
+    let [low, high] = [0, this.times.length];
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (this.times[middle] < time) low = middle + 1;
+      else high = middle;
+    }
+    return low;
+  }
+
+  clear(): void {
+    this.restart([]);
   }
 
   private restart(names: string[]): void {
@@ -29,8 +38,8 @@ export class History {
     for (const name of names) this.series.set(name, []);
   }
 
-  private drop(): void {
-    this.times.shift();
-    for (const values of this.series.values()) values.shift();
+  private drop(count: number): void {
+    this.times.splice(0, count);
+    for (const values of this.series.values()) values.splice(0, count);
   }
 }

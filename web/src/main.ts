@@ -5,6 +5,7 @@ import { chooseSession } from "./choose_session";
 import { systemClock } from "./clock";
 import { Chooser } from "./panels/chooser";
 import { make, place } from "./panels/dom";
+import { recipeOf, rerun } from "./permalink";
 
 // What is sent while the page goes outlives it: a vertex that is let go of.
 let leaving = false;
@@ -30,11 +31,27 @@ function say(error?: unknown): void {
   else loading.replaceChildren(`No answer from the server (${errorText(error)}). Trying again…`);
 }
 
-const sessionId = await chooseSession(new URL(location.href), api, systemClock, say);
+const here = new URL(location.href);
+
+/** The session that the address names, or runs again what it tells how to. */
+async function find(): Promise<string> {
+  const recipe = recipeOf(here);
+  if (recipe === undefined) return chooseSession(here, api, systemClock, say);
+  return rerun(api, recipe, (part) => {
+    loading.replaceChildren(`Running ${recipe.scene} again: ${Math.round(100 * part)} %`);
+  });
+}
+
+const sessionId = await find().catch((error: unknown) => {
+  loading.replaceChildren(`This link cannot be run again: ${errorText(error)}. `, start);
+  throw error;
+});
+const beside = here.searchParams.get("beside") ?? undefined;
 loading.replaceChildren("Loading the scene…");
-history.replaceState(null, "", address(sessionId));
+history.replaceState(null, "", beside === undefined ? address(sessionId) : here.search);
 try {
-  new App(api, sessionId, chooser, systemClock).start();
+  const subject = { sessionId, beside, open: (query: string) => location.assign(query) };
+  new App(api, subject, chooser, systemClock).start();
 } catch (error) {
   loading.replaceChildren(
     "This browser cannot draw: Phrenic needs WebGL 2. Switch hardware acceleration on, or update it.",

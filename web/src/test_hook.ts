@@ -9,6 +9,8 @@ export interface TestHook {
   time(): number;
   /** Pictures drawn since the page was opened. */
   pictures(): number;
+  /** When the first picture with a frame was drawn, since the page was asked for [ms]; -1 before. */
+  firstPicture(): number;
   /** Names of the bodies, and a body's number of vertices. */
   bodies(): string[];
   vertices(body: string): number;
@@ -32,6 +34,7 @@ export function testHook(bodies: () => Body[], frames: Frames, viewer: Viewer): 
     tick: () => Number(frames.frame?.tick ?? -1),
     time: () => frames.frame?.time ?? -1,
     pictures: () => viewer.count,
+    firstPicture: () => viewer.firstPicture,
     bodies: () => bodies().map((body) => body.name),
     vertices: (body) => find(body).rest.length / 3,
     vertex: (body, index) => {

@@ -1,21 +1,97 @@
+import type { Coloring } from "../coloring";
+import { type FieldKind, fields } from "../fields";
 import type { Look, Looks } from "../looks";
+import type { Signal } from "../signal";
 import type { OverlayKind } from "../viewer/body_view";
+import type { Cut } from "../viewer/cut";
+import { cutRows } from "./cut_rows";
 import { make, section, switchRow } from "./dom";
 
-/** Transparency of what the simulation is about, and what is drawn over it: this viewer's business alone. */
-export function appearancePanel(looks: Looks, setOverlay: (kind: OverlayKind, on: boolean) => void): HTMLElement {
-  const overlays: [OverlayKind, string, string][] = [
-    ["wireframe", "Show wireframe", "The edges of every surface."],
-    ["links", "Show rigid links", "The links of constant length: the tensegrity."],
-    ["lines", "Show action lines", "The lines along which the muscle pulls."],
-    ["attachments", "Show attachments", "Vertices that follow a bone, and fixed ones."],
+/** What else is shown, as it was at another moment. */
+export type GhostKind = "none" | "rest" | "expiration" | "now";
+
+/** What the view can be told. */
+export interface Appearance {
+  looks: Looks;
+  overlays: Signal<ReadonlySet<OverlayKind>>;
+  coloring: Coloring;
+  labels: Signal<boolean>;
+  setCut(cut: Cut): number;
+  setGhost(kind: GhostKind): void;
+}
+
+const overlayRows: [OverlayKind, string, string][] = [
+  ["wireframe", "Show wireframe", "The edges of every surface."],
+  ["links", "Show rigid links", "The links of constant length: the tensegrity."],
+  ["lines", "Show action lines", "The lines along which the muscle pulls."],
+  ["attachments", "Show attachments", "Vertices that follow a bone, and fixed ones."],
+];
+
+const ghosts: [GhostKind, string][] = [
+  ["none", "None"],
+  ["rest", "At rest"],
+  ["expiration", "At the end of expiration"],
+  ["now", "As it is now"],
+];
+
+/** How this viewer sees the scene: colours, transparency, cut, ghost and what is drawn over it. */
+export function appearancePanel(view: Appearance): HTMLElement {
+  const ghost = choice("ghost", "Ghost", "The moving tissue as it was at another moment", ghosts, (kind) =>
+    view.setGhost(kind),
+  );
+  const labels = switchRow("Show names", "Names of the layers beside them.", (on) => view.labels.set(on));
+  labels.input.id = "show-labels";
+  const rows = overlayRows.map(([kind, label, help]) => overlayRow(kind, label, help, view.overlays));
+  const cut = cutRows((value) => view.setCut(value));
+  return section(
+    "View",
+    true,
+    coloringRow(view.coloring),
+    transparencyRow(view.looks),
+    ghost,
+    ...cut,
+    ...rows,
+    labels.row,
+  );
+}
+
+function coloringRow(coloring: Coloring): HTMLElement {
+  const options: [FieldKind | "own", string][] = [
+    ["own", "Own colours"],
+    ...fields.map(({ kind, label }): [FieldKind, string] => [kind, label]),
   ];
-  const rows = overlays.map(([kind, label, help]) => {
-    const { row, input } = switchRow(label, help, (on) => setOverlay(kind, on));
-    input.id = `show-${kind}`;
-    return row;
+  const help = "What the colours of the moving tissue mean";
+  return choice("coloring-kind", "Colour by", help, options, (kind) =>
+    coloring.choose(kind === "own" ? undefined : kind),
+  );
+}
+
+function choice<T extends string>(
+  id: string,
+  label: string,
+  title: string,
+  options: [T, string][],
+  chosen: (value: T) => void,
+): HTMLElement {
+  const list = make("select", { id, title });
+  list.append(...options.map(([value, words]) => make("option", { value }, words)));
+  list.onchange = () => chosen(list.value as T);
+  return make("div", { className: "compare-row" }, make("label", { htmlFor: id }, label), list);
+}
+
+function overlayRow(
+  kind: OverlayKind,
+  label: string,
+  help: string,
+  overlays: Signal<ReadonlySet<OverlayKind>>,
+): HTMLElement {
+  const { row, input } = switchRow(label, help, (on) => {
+    const rest = [...overlays.value].filter((each) => each !== kind);
+    overlays.set(new Set(on ? [...rest, kind] : rest));
   });
-  return section("View", true, transparencyRow(looks), ...rows);
+  input.id = `show-${kind}`;
+  overlays.subscribe((shown) => (input.checked = shown.has(kind)));
+  return row;
 }
 
 function transparencyRow(looks: Looks): HTMLElement {

@@ -43,7 +43,20 @@ function divergence({ divergence, largestStableStep }: Session, controller: Cont
   const where = `The simulation diverged at ${formatNumber(time)} s, at vertex ${vertex} of ${body} (${force}).`;
   const restart = make("button", { type: "button", className: "primary" }, "Use a stable step and start again");
   restart.onclick = () => void restartStable(controller, largestStableStep);
-  return [make("p", {}, make("b", {}, where), " ", sentence(remedy)), restart];
+  const halve = make("button", { type: "button", title: halvingHelp }, "Let steps be halved and start again");
+  halve.onclick = () => void restartHalving(controller);
+  return [make("p", {}, make("b", {}, where), " ", sentence(remedy)), restart, halve];
+}
+
+/** What one step may err by where steps are halved [m]. */
+const tolerance = 1e-5;
+const halvingHelp =
+  "Sets the step tolerance: a step that errs by more than 0.01 mm is taken in halves, which takes longer";
+
+async function restartHalving(controller: Controller): Promise<void> {
+  await controller.reset();
+  await controller.apply({ stepTolerance: tolerance });
+  await controller.play(controller.session.value?.speed || "fastest");
 }
 
 /** The server's words as a sentence; words with an underscore are names and stay as they are. */

@@ -1,5 +1,5 @@
 import type { Comparison, Comparisons, Work } from "../comparison";
-import { DistanceScale, topFor } from "../distance_scale";
+import { ColorScale, topFor } from "../color_scale";
 import { make } from "./dom";
 import { figuresTable } from "./figures";
 import { Legend } from "./legend";
@@ -56,7 +56,7 @@ export class ComparisonCard {
     this.moved.textContent = "";
     this.hide();
     if (result === undefined) return;
-    this.legend.show(new DistanceScale(topFor(result.distances)));
+    this.legend.show(new ColorScale(topFor(result.distances)));
     const figures = make("details", { open: this.open }, make("summary", {}, "Figures"), figuresTable(result.distance));
     figures.ontoggle = () => (this.open = figures.open);
     this.found.replaceChildren(...this.heading(result), this.legend.element, this.moved, this.buttons(), figures);

@@ -8,9 +8,14 @@ const familiar: Record<string, [name: string, factor: number]> = {
   "m^3/s": ["l/s", 1000],
 };
 
+/** The unit that people use for one of the wire, and how many of it that one is. */
+export function familiarUnit(unit: string): [name: string, factor: number] {
+  return familiar[unit] ?? [unit, 1];
+}
+
 /** Four significant digits in the unit that people use: "2.513 l". */
 export function readingText(value: number, unit: string): string {
-  const [name, factor] = familiar[unit] ?? [unit, 1];
+  const [name, factor] = familiarUnit(unit);
   return `${Number((factor * value).toPrecision(4))} ${name}`;
 }
 

@@ -4,7 +4,7 @@ import type { CompileReport } from "../gen/phrenic/v1/report_pb";
 import { type Control, parameterControls, type ParameterName, type SwitchControl } from "../schema";
 import type { Signal } from "../signal";
 import { ChoiceRow } from "./choice_row";
-import { section, switchRow } from "./dom";
+import { button, icon, make, section, switchRow } from "./dom";
 import { NumberRow } from "./number_row";
 import { PresetRow } from "./presets";
 import { pullRow } from "./pulls";
@@ -30,9 +30,22 @@ export function parameterSections(controller: Controller, report?: Signal<Compil
     rows.filter(({ name }) => ofTheSolver.test(name) === solver).map(({ element }) => element);
   const presets = new PresetRow(controller);
   return [
-    section("Breathing", true, presets.element, pullRow(controller), ...elements(false)),
+    section("Breathing", true, changesRow(controller), presets.element, pullRow(controller), ...elements(false)),
     section("Solver", true, ...elements(true)),
   ];
+}
+
+/** Takes changes back, does them again, and takes everything back to the start. */
+function changesRow(controller: Controller): HTMLElement {
+  const undo = button("Undo", () => controller.undo(), icon("undo"), "Undo");
+  const redo = button("Redo", () => controller.redo(), icon("redo"), "Redo");
+  const all = button("Reset all parameters", () => void controller.resetAll(), "Reset all");
+  [undo.id, redo.id, all.id] = ["undo", "redo", "reset-all"];
+  controller.changes.state.subscribe((state) => {
+    undo.disabled = !state.undo;
+    redo.disabled = !state.redo;
+  });
+  return make("div", { className: "changes" }, undo, redo, all);
 }
 
 function localNameOf(name: string): string | undefined {

@@ -33,7 +33,6 @@ export function playbackPanel(controller: Controller): HTMLElement {
     toggle.disabled = step.disabled = session === undefined || session.state === SessionState.DIVERGED;
     reset.disabled = session === undefined;
   });
-  document.addEventListener("keydown", (event) => onKey(event, toggle, step));
   return make("div", { className: "playback" }, reset, toggle, step, stride, speed);
 }
 
@@ -69,14 +68,4 @@ function show(select: HTMLSelectElement, speed: Speed): void {
 
 function chosenSpeed(select: HTMLSelectElement): Speed {
   return select.value === "fastest" ? "fastest" : Number(select.value);
-}
-
-/** Space plays and pauses, the full stop steps, unless a control has the keyboard. */
-function onKey(event: KeyboardEvent, toggle: HTMLButtonElement, step: HTMLButtonElement): void {
-  const target = event.target as Element | null;
-  if (target?.closest("input, select, button, summary, dialog, a") || event.ctrlKey || event.metaKey) return;
-  if (event.key === " ") toggle.click();
-  else if (event.key === ".") step.click();
-  else return;
-  event.preventDefault();
 }

@@ -61,6 +61,8 @@ export function draw(label: string, { x, y, ...options }: PlotOptions): SVGSVGEl
     y: { labelArrow: "none", labelOffset: 70, ...y },
     ...options,
   });
+  // What Plot says about the look of its pictures is in report.css: a page's policy may allow no style of theirs.
+  for (const style of drawn.querySelectorAll("style")) style.remove();
   // One picture with one name: the names of its parts would only be in the way.
   for (const part of drawn.querySelectorAll("[aria-label]")) part.removeAttribute("aria-label");
   drawn.setAttribute("role", "img");

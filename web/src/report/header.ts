@@ -8,13 +8,21 @@ import { nameOf } from "./names";
 
 const kinds = { error: "Error against run time", stability: "Stability", cost: "Cost" };
 
+/** "Cost: thorax – Phrenic" */
+export function titleOf(study: Study): string {
+  const { title, scene } = wordsOf(study);
+  return `${title}: ${scene} – Phrenic`;
+}
+
+function wordsOf({ result, scene }: Study): { title: string; scene: string } {
+  const kind = result?.result.case;
+  return { title: kind === undefined ? "Study" : kinds[kind], scene: result?.scene || scene || "unnamed scene" };
+}
+
 /** What was studied, of which scene, with which parameters. */
 export function header(study: Study): HTMLElement {
   const { result } = study;
-  const kind = result?.result.case;
-  const scene = result?.scene || study.scene || "unnamed scene";
-  const title = kind === undefined ? "Study" : kinds[kind];
-  document.title = `${title}: ${scene} – Phrenic`;
+  const { title, scene } = wordsOf(study);
   const facts: [string, string][] = [];
   if (result !== undefined) facts.push(...factsOf(result));
   const list = facts.flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)]);

@@ -4,7 +4,7 @@ import type { StudyResult } from "../gen/phrenic/v1/study_results_pb";
 import { make } from "../panels/dom";
 import { costParts } from "./cost_page";
 import { errorParts } from "./error_page";
-import { header } from "./header";
+import { header, titleOf } from "./header";
 import { stabilityParts } from "./stability_page";
 
 /** Fills the page with the study that `json` (proto3 JSON of phrenic.v1.Study) holds. */
@@ -16,9 +16,15 @@ export function showStudy(page: HTMLElement, json: string): void {
     page.replaceChildren(make("h1", {}, "Phrenic study"), make("p", { className: "none" }, "This page has no study."));
     return;
   }
+  document.title = titleOf(study);
+  page.replaceChildren(...contentsOf(study));
+}
+
+/** What there is to say of a study: plots, tables, and what they are of. */
+export function contentsOf(study: Study): HTMLElement[] {
   const { result } = study;
   const parts = result?.result.case === undefined ? [nothing(study)] : partsOf(result);
-  page.replaceChildren(header(study), ...parts, disclaimer());
+  return [header(study), ...parts, disclaimer()];
 }
 
 /** The kind's plots and tables, each of which may be missing. */

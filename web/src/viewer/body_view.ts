@@ -110,6 +110,13 @@ export class BodyView {
     this.normals.needsUpdate = true;
   }
 
+  /** Where the vertices are: x y z each. */
+  placed(): ArrayLike<number> {
+    if (this.body.placement !== Placement.RIGID) return this.positions.array;
+    this.group.updateMatrixWorld();
+    return this.positions.clone().applyMatrix4(this.group.matrixWorld).array;
+  }
+
   private pose(frame: FrameArrays): void {
     const at = floatsPerPose * this.body.pose;
     this.group.quaternion.fromArray(frame.poses, at);

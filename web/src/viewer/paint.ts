@@ -19,7 +19,9 @@ export class Paint {
 
   /** sRGB, three bytes a vertex; undefined for the surface's own colours. */
   show(rgb: Uint8Array | undefined): void {
-    this.painted = rgb && attributeOf(rgb);
+    if (rgb !== undefined && this.painted?.array.length === rgb.length) return this.renew(rgb, this.painted);
+    this.painted = rgb && new THREE.BufferAttribute(new Float32Array(rgb.length), 3);
+    if (rgb !== undefined) this.renew(rgb, this.painted!);
     const colors = this.painted ?? this.own;
     if (colors === undefined) this.geometry.deleteAttribute("color");
     else this.geometry.setAttribute("color", colors);
@@ -29,13 +31,16 @@ export class Paint {
     else delete this.material.defines?.PAINTED;
     this.material.needsUpdate = true;
   }
+
+  private renew(rgb: Uint8Array, attribute: THREE.BufferAttribute): void {
+    const values = attribute.array;
+    for (let i = 0; i < rgb.length; i++) values[i] = linear[rgb[i]];
+    attribute.needsUpdate = true;
+  }
 }
 
-function attributeOf(rgb: Uint8Array): THREE.BufferAttribute {
-  const values = new Float32Array(rgb.length);
-  const color = new THREE.Color();
-  for (let i = 0; i < rgb.length; i += 3) {
-    color.setRGB(rgb[i] / 255, rgb[i + 1] / 255, rgb[i + 2] / 255, THREE.SRGBColorSpace).toArray(values, i);
-  }
-  return new THREE.BufferAttribute(values, 3);
-}
+/** Light for each byte of sRGB. */
+const linear = Float32Array.from(
+  { length: 256 },
+  (_, byte) => new THREE.Color().setRGB(byte / 255, 0, 0, THREE.SRGBColorSpace).r,
+);

@@ -18,15 +18,25 @@ const slack = 0.03;
 
 /**
  * The vertex under the pointer (-1 to 1 from left to right and from bottom to top): of the triangle that is seen there
- * the corner nearest to the ray; where there is none, the nearest vertex within reach.
+ * the corner nearest to the ray; where there is none, the nearest vertex within reach. Behind `cut` there is nothing.
  */
-export function pickVertex(pointer: THREE.Vector2, camera: THREE.Camera, bodies: Pickable[]): Picked | undefined {
+export function pickVertex(
+  pointer: THREE.Vector2,
+  camera: THREE.Camera,
+  bodies: Pickable[],
+  cut?: THREE.Plane,
+): Picked | undefined {
   const caster = new THREE.Raycaster();
   caster.setFromCamera(pointer, camera);
-  return onSurface(caster.ray, bodies) ?? beside(pointer, camera, bodies);
+  return onSurface(caster.ray, bodies, cut) ?? beside(pointer, camera, bodies, cut);
 }
 
-function onSurface(ray: THREE.Ray, bodies: Pickable[]): Picked | undefined {
+/** Whether a cut has taken this place away. */
+function gone(place: THREE.Vector3, cut: THREE.Plane | undefined): boolean {
+  return cut !== undefined && cut.distanceToPoint(place) < 0;
+}
+
+function onSurface(ray: THREE.Ray, bodies: Pickable[], cut: THREE.Plane | undefined): Picked | undefined {
   const corners = [new THREE.Vector3(), new THREE.Vector3(), new THREE.Vector3()] as const;
   const hit = new THREE.Vector3();
   let nearest = Infinity;
@@ -34,7 +44,7 @@ function onSurface(ray: THREE.Ray, bodies: Pickable[]): Picked | undefined {
   bodies.forEach(({ positions, triangles }, body) => {
     for (let t = 0; t < triangles.length; t += 3) {
       corners.forEach((corner, i) => corner.fromArray(positions, 3 * triangles[t + i]));
-      if (ray.intersectTriangle(...corners, false, hit) === null) continue;
+      if (ray.intersectTriangle(...corners, false, hit) === null || gone(hit, cut)) continue;
       const distance = hit.distanceTo(ray.origin);
       if (distance >= nearest) continue;
       nearest = distance;
@@ -46,14 +56,20 @@ function onSurface(ray: THREE.Ray, bodies: Pickable[]): Picked | undefined {
   return found;
 }
 
-function beside(pointer: THREE.Vector2, camera: THREE.Camera, bodies: Pickable[]): Picked | undefined {
+function beside(
+  pointer: THREE.Vector2,
+  camera: THREE.Camera,
+  bodies: Pickable[],
+  cut: THREE.Plane | undefined,
+): Picked | undefined {
   const aspect = camera instanceof THREE.PerspectiveCamera ? camera.aspect : 1;
   const place = new THREE.Vector3();
   let nearest = 2 * slack;
   let found: Picked | undefined;
   bodies.forEach(({ positions }, body) => {
     for (let i = 0; i < positions.length; i += 3) {
-      place.fromArray(positions, i).project(camera);
+      if (gone(place.fromArray(positions, i), cut)) continue;
+      place.project(camera);
       const distance = Math.hypot(aspect * (place.x - pointer.x), place.y - pointer.y);
       if (distance >= nearest) continue;
       nearest = distance;
@@ -69,4 +85,10 @@ export function acrossFrom(pointer: THREE.Vector2, camera: THREE.Camera, place: 
   caster.setFromCamera(pointer, camera);
   const plane = new THREE.Plane().setFromNormalAndCoplanarPoint(camera.getWorldDirection(new THREE.Vector3()), place);
   return caster.ray.intersectPlane(plane, new THREE.Vector3()) ?? place.clone();
+}
+
+/** Where an event is on the picture: -1 to 1 from left to right and from bottom to top. */
+export function pointerOf({ offsetX, offsetY }: PointerEvent, canvas: HTMLElement): THREE.Vector2 {
+  const { clientWidth, clientHeight } = canvas;
+  return new THREE.Vector2((2 * offsetX) / clientWidth - 1, 1 - (2 * offsetY) / clientHeight);
 }

@@ -1,6 +1,6 @@
 import * as THREE from "three";
 import type { BodyView } from "./body_view";
-import { acrossFrom, pickVertex } from "./picking";
+import { acrossFrom, pickVertex, pointerOf } from "./picking";
 
 /** A force on a vertex of a body [N]; zero lets go. */
 export type Pull = (body: string, vertex: number, force: [number, number, number]) => void;
@@ -20,6 +20,9 @@ export class Pulling {
     private readonly views: () => BodyView[],
     private readonly pull: Pull,
     private readonly changed: () => void,
+    private readonly cut: () => THREE.Plane | undefined,
+    /** Hears how hard it pulls [N] and where on the picture; undefined when it lets go. */
+    private readonly told: (newtons: number | undefined, x: number, y: number) => void,
   ) {
     this.arrow.visible = false;
     // Over everything: the tissue may lie behind bone.
@@ -42,7 +45,7 @@ export class Pulling {
     if (!event.shiftKey || event.button !== 0) return;
     const views = this.views();
     const bodies = views.map((view) => ({ positions: view.positions.array, triangles: view.body.triangles }));
-    const picked = pickVertex(this.pointer(event), this.camera, bodies);
+    const picked = pickVertex(pointerOf(event, this.canvas), this.camera, bodies, this.cut());
     if (picked === undefined) return;
     event.stopImmediatePropagation();
     event.preventDefault();
@@ -55,9 +58,10 @@ export class Pulling {
     if (this.held === undefined) return;
     const { view, vertex } = this.held;
     const place = new THREE.Vector3().fromBufferAttribute(view.positions, vertex);
-    const way = acrossFrom(this.pointer(event), this.camera, place).sub(place);
+    const way = acrossFrom(pointerOf(event, this.canvas), this.camera, place).sub(place);
     this.point(place, way);
     const force = way.multiplyScalar(strength);
+    this.told(force.length(), event.offsetX, event.offsetY);
     this.pull(view.body.name, vertex, [force.x, force.y, force.z]);
   }
 
@@ -76,12 +80,8 @@ export class Pulling {
     const { view, vertex } = this.held;
     this.held = undefined;
     this.arrow.visible = false;
+    this.told(undefined, 0, 0);
     this.changed();
     this.pull(view.body.name, vertex, [0, 0, 0]);
-  }
-
-  private pointer({ offsetX, offsetY }: PointerEvent): THREE.Vector2 {
-    const { clientWidth, clientHeight } = this.canvas;
-    return new THREE.Vector2((2 * offsetX) / clientWidth - 1, 1 - (2 * offsetY) / clientHeight);
   }
 }

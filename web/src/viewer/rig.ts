@@ -1,6 +1,6 @@
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import { type Free, letterOf, openingView, standpoint, type ViewName } from "./views";
+import { type Free, letterOf, openingView, planeAxes, standpoint, type ViewName } from "./views";
 
 /** What the margins of the picture say about it. */
 export interface Compass {
@@ -10,6 +10,8 @@ export interface Compass {
   bottom: string;
   /** CSS pixels a metre at the centre of the scene. */
   pixelsPerMetre: number;
+  /** The directions to the right, up and towards the eye. */
+  axes: [THREE.Vector3, THREE.Vector3, THREE.Vector3];
 }
 
 /** How much of the picture panels hide at its edges [CSS pixels]. */
@@ -32,6 +34,7 @@ export class Rig {
   /** The named view that the camera stands at or glides to, until a person moves it. */
   private held: ViewName | undefined;
   private extent = 1;
+  private flat = false;
   private flight: { from: THREE.Vector3; to: THREE.Vector3; start: number } | undefined;
 
   constructor(
@@ -59,6 +62,7 @@ export class Rig {
     this.controls.minDistance = size / 20;
     this.controls.maxDistance = size * 8;
     this.opening = openingView(box);
+    this.flat = planeAxes(box) !== undefined;
     this.go("home", true);
   }
 
@@ -66,7 +70,10 @@ export class Rig {
     this.held = view;
     this.controls.target.copy(this.center);
     const side = view === "home" ? this.opening : view;
-    const to = standpoint(side, this.points, this.center, this.camera, this.free);
+    // A flat scene has its axes beside it.
+    const air = this.flat ? 0.84 : 1;
+    const free = { width: air * this.free.width, height: air * this.free.height };
+    const to = standpoint(side, this.points, this.center, this.camera, free);
     this.flight = undefined;
     if (atOnce) this.camera.position.copy(to);
     else this.flight = { from: this.camera.position.clone(), to, start: performance.now() };
@@ -87,6 +94,22 @@ export class Rig {
   /** From the camera to what it looks at, and the extent of the scene [m]. */
   get depth(): { distance: number; extent: number } {
     return { distance: this.camera.position.distanceTo(this.controls.target), extent: this.extent };
+  }
+
+  /** Where a place is on the picture [CSS pixels]. */
+  project(place: THREE.Vector3): [x: number, y: number] {
+    const { x, y } = place.clone().project(this.camera);
+    return [((x + 1) / 2) * this.canvas.clientWidth, ((1 - y) / 2) * this.canvas.clientHeight];
+  }
+
+  /** Stands where another rig stands that shows the same scene. */
+  follow({ camera, controls }: Rig): void {
+    const apart = this.camera.position.distanceTo(camera.position) + this.controls.target.distanceTo(controls.target);
+    if (apart < 1e-5 * this.extent) return;
+    this.flight = this.held = undefined;
+    this.camera.position.copy(camera.position);
+    this.controls.target.copy(controls.target);
+    this.changed();
   }
 
   /** Moves what moves by itself. */
@@ -124,7 +147,7 @@ export class Rig {
 
   compass(): Compass {
     const axis = (i: number) => new THREE.Vector3().setFromMatrixColumn(this.camera.matrixWorld, i);
-    const [right, up] = [axis(0), axis(1)];
+    const [right, up, back] = [axis(0), axis(1), axis(2)];
     const { distance } = this.depth;
     const slope = Math.tan(THREE.MathUtils.degToRad(this.camera.fov / 2));
     return {
@@ -133,6 +156,7 @@ export class Rig {
       top: letterOf(up),
       bottom: letterOf(up.clone().negate()),
       pixelsPerMetre: this.canvas.clientHeight / (2 * slope * distance),
+      axes: [right, up, back],
     };
   }
 }

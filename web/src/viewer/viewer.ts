@@ -1,7 +1,11 @@
 import * as THREE from "three";
 import type { Body, FrameArrays } from "../codec";
 import { BodyView, type OverlayKind } from "./body_view";
+import { letClick, type VertexRef } from "./clicking";
+import { type Cut, placeOf, planeOf } from "./cut";
+import { Ghost } from "./ghost";
 import { addLights } from "./lights";
+import { type Marker, Markers } from "./markers";
 import { type Pull, Pulling } from "./pulling";
 import { type Compass, type Covered, Rig } from "./rig";
 import { Sharpness } from "./sharpness";
@@ -9,6 +13,22 @@ import type { ViewName } from "./views";
 
 /** Scenes of at most so many vertices are diagrams rather than anatomy. */
 const mostOfADiagram = 2000;
+/** Radius of a marker [CSS pixels]. */
+const markerSize = 5;
+
+/** What a picture asks of its page. */
+export interface Surroundings {
+  /** The newest frame, when a picture is due. */
+  source(): FrameArrays | undefined;
+  /** Hears of a frame before it is drawn for the first time. */
+  update?(frame: FrameArrays): void;
+  /** Hears of every picture. */
+  drawn(compass: Compass): void;
+  /** How much of the canvas panels hide. */
+  covered(): Covered;
+  /** Whether the person asked for less motion. */
+  calm(): boolean;
+}
 
 /**
  * The picture. It draws only when something changed, on the browser's own beat, so a hidden tab draws nothing and any
@@ -23,19 +43,19 @@ export class Viewer {
   private views: BodyView[] = [];
   private readonly overlays = new Set<OverlayKind>();
   private readonly sharpness = new Sharpness(Math.min(devicePixelRatio, 2));
+  private readonly ghost = new Ghost();
+  private readonly markers = new Markers();
+  private cut: Cut = { kind: "none", part: 0.5, flipped: false };
+  private box = new THREE.Box3();
   private stale = true;
   private drawings = 0;
+  /** When the first picture with a frame was drawn, since the page was asked for [ms]; -1 before. */
+  firstPicture = -1;
   private shown: FrameArrays | undefined;
 
-  /**
-   * `source` gives the newest frame when a picture is due; `drawn` hears of every picture; `covered` is how much
-   * of the canvas panels hide. */
   constructor(
     private readonly canvas: HTMLCanvasElement,
-    private readonly source: () => FrameArrays | undefined,
-    private readonly drawn: (compass: Compass) => void,
-    private readonly covered: () => Covered,
-    calm: () => boolean,
+    private readonly around: Surroundings,
   ) {
     this.renderer = new THREE.WebGLRenderer({
       canvas,
@@ -46,9 +66,10 @@ export class Viewer {
     // No tone mapping: a layer has the colour that its swatch shows.
     this.renderer.toneMapping = THREE.NoToneMapping;
     this.renderer.setPixelRatio(this.sharpness.ratio);
-    this.rig = new Rig(canvas, () => this.refresh(), calm);
+    this.rig = new Rig(canvas, () => this.refresh(), around.calm);
     this.scene.fog = this.haze;
     addLights(this.scene, this.rig.camera);
+    this.scene.add(this.ghost.object, this.markers.object);
     new ResizeObserver(() => this.resize()).observe(canvas);
     this.renderer.setAnimationLoop((now) => this.beat(now));
   }
@@ -58,19 +79,39 @@ export class Viewer {
     return this.drawings;
   }
 
-  show(bodies: Body[]): void {
+  /** Whether the scene is shown as a diagram, with every vertex and edge. */
+  show(bodies: Body[]): boolean {
     for (const view of this.views) {
       this.scene.remove(view.group);
       view.dispose();
     }
     this.shown = undefined;
+    this.ghost.clear();
     const diagram = verticesOf(bodies) <= mostOfADiagram;
     this.views = bodies.map((body) => new BodyView(body, diagram));
     for (const view of this.views) this.scene.add(view.group);
     for (const kind of this.overlays) this.setOverlay(kind, true);
+    const sample = sampleOf(bodies);
+    this.box = new THREE.Box3().setFromPoints(sample);
+    this.setCut(this.cut);
     this.resize();
-    this.rig.frame(sampleOf(bodies));
+    this.rig.frame(sample);
     this.refresh();
+    return diagram;
+  }
+
+  /** The bodies as they stand, and the box they rest in. */
+  get bodies(): readonly BodyView[] {
+    return this.views;
+  }
+
+  get bounds(): THREE.Box3 {
+    return this.box;
+  }
+
+  /** Whether a cut has taken this place away. */
+  cutAway(place: THREE.Vector3): boolean {
+    return this.renderer.clippingPlanes.some((plane) => plane.distanceToPoint(place) < 0);
   }
 
   /** Draws at the next beat. */
@@ -90,20 +131,71 @@ export class Viewer {
     this.refresh();
   }
 
-  /** Paints one body, sRGB, three bytes a vertex, and no other; undefined leaves none painted. */
-  paint(painted: { body: string; rgb: Uint8Array } | undefined): void {
-    for (const view of this.views) view.paint(view.body.name === painted?.body ? painted.rgb : undefined);
+  /** Takes away what lies on one side of a plane; where that lies along its axis [m]. */
+  setCut(cut: Cut): number {
+    this.cut = cut;
+    const plane = this.plane();
+    this.renderer.clippingPlanes = plane === undefined ? [] : [plane];
+    this.refresh();
+    return placeOf(cut, this.box);
+  }
+
+  /** Shows bodies as they were in `arrays`, at rest, or not at all, as a ghost. */
+  setGhost(of: FrameArrays | "rest" | undefined, bodies: Body[]): void {
+    if (of === undefined) this.ghost.clear();
+    else this.ghost.show(bodies, of === "rest" ? undefined : of);
+    this.refresh();
+  }
+
+  mark(markers: Marker[]): void {
+    this.markers.show(markers);
+    this.refresh();
+  }
+
+  /** Paints bodies by name, sRGB, three bytes a vertex, and no other. */
+  paint(painted: ReadonlyMap<string, Uint8Array>): void {
+    for (const view of this.views) view.paint(painted.get(view.body.name));
     this.refresh();
   }
 
   /** Dragging with the shift key pulls at the visible ones among the bodies of these names from now on. */
-  letPull(names: () => ReadonlySet<string>, pull: Pull): void {
+  letPull(
+    names: () => ReadonlySet<string>,
+    pull: Pull,
+    told: (newtons: number | undefined, x: number, y: number) => void,
+  ): void {
     const views = () => this.views.filter(({ body, group }) => group.visible && names().has(body.name));
-    new Pulling(this.canvas, this.rig.camera, this.scene, views, pull, () => this.refresh());
+    const [changed, plane] = [() => this.refresh(), () => this.plane()];
+    new Pulling(this.canvas, this.rig.camera, this.scene, views, pull, changed, plane, told);
+  }
+
+  /** A click tells the vertex that is seen there from now on. */
+  letClick(picked: (vertex: VertexRef | undefined) => void): void {
+    letClick(
+      this.canvas,
+      this.rig.camera,
+      () => this.views,
+      () => this.plane(),
+      picked,
+    );
   }
 
   go(view: ViewName): void {
     this.rig.go(view);
+  }
+
+  /** The picture as it stands, without what lies over it. */
+  photograph(): Promise<Blob | null> {
+    this.renderer.render(this.scene, this.rig.camera);
+    const { width, height } = this.canvas;
+    const copy = Object.assign(document.createElement("canvas"), { width, height });
+    const pen = copy.getContext("2d");
+    if (pen === null) return Promise.resolve(null);
+    pen.fillStyle = "#1f262d";
+    pen.fillRect(0, 0, width, height);
+    // Before the browser takes the picture off the canvas.
+    pen.drawImage(this.canvas, 0, 0);
+    return new Promise((done) => copy.toBlob(done, "image/png"));
   }
 
   /** Takes the canvas as it is now, and what panels leave of it. */
@@ -111,8 +203,12 @@ export class Viewer {
     const { clientWidth, clientHeight } = this.canvas;
     if (clientWidth === 0 || clientHeight === 0) return;
     this.renderer.setSize(clientWidth, clientHeight, false);
-    this.rig.resize(this.covered());
+    this.rig.resize(this.around.covered());
     this.refresh();
+  }
+
+  private plane(): THREE.Plane | undefined {
+    return planeOf(this.cut, this.box);
   }
 
   private beat(now: number): void {
@@ -123,14 +219,21 @@ export class Viewer {
     }
     if (!this.stale) return;
     this.stale = false;
-    const frame = this.source();
-    if (frame !== undefined && frame !== this.shown) for (const view of this.views) view.update(frame);
+    const frame = this.around.source();
+    if (frame !== undefined && frame !== this.shown) {
+      for (const view of this.views) view.update(frame);
+      this.around.update?.(frame);
+      this.stale = false;
+    }
     this.shown = frame;
     const { distance, extent } = this.rig.depth;
     [this.haze.near, this.haze.far] = [distance - 0.1 * extent, distance + 0.75 * extent];
+    const compass = this.rig.compass();
+    this.markers.scale(markerSize / compass.pixelsPerMetre);
     this.renderer.render(this.scene, this.rig.camera);
     this.drawings++;
-    this.drawn(this.rig.compass());
+    if (frame !== undefined && this.firstPicture < 0) this.firstPicture = performance.now();
+    this.around.drawn(compass);
   }
 }
 

@@ -1,14 +1,17 @@
 import * as THREE from "three";
 
 /** Views by name. The frame is the patient's: +x left, +y posterior, +z up, so that "front" has the left on the right. */
-export type ViewName = "home" | "front" | "left" | "top";
+export type ViewName = "home" | "front" | "back" | "left" | "right" | "top" | "bottom";
 
 const directions: Record<ViewName, [number, number, number]> = {
   home: [0.36, -1, 0.2],
   front: [0, -1, 0],
+  back: [0, 1, 0],
   left: [1, 0, 0],
+  right: [-1, 0, 0],
   // Not quite vertical: the camera must know which way is up.
   top: [0, -0.001, 1],
+  bottom: [0, -0.001, -1],
 };
 
 /** The view that a scene opens with: a flat one is seen face on, everything else from the front, a little aside. */
@@ -18,6 +21,14 @@ export function openingView(box: THREE.Box3): ViewName {
   if (size.z < thin) return "top";
   if (size.y < thin) return "front";
   return size.x < thin ? "left" : "home";
+}
+
+/** The two axes of the plane that a flat scene lies in, to the right and up as it opens; nothing for any other. */
+export function planeAxes(box: THREE.Box3): ["x" | "y", "y" | "z"] | undefined {
+  const view = openingView(box);
+  if (view === "top") return ["x", "y"];
+  if (view === "front") return ["x", "z"];
+  return view === "left" ? ["y", "z"] : undefined;
 }
 
 /** How much of the picture's width and height there is to fill, 0 to 1. */

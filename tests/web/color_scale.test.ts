@@ -1,6 +1,6 @@
 import { create } from "@bufbuild/protobuf";
 import { describe, expect, test } from "vitest";
-import { DistanceScale, topFor } from "../../web/src/distance_scale";
+import { ColorScale, topFor } from "../../web/src/color_scale";
 import { SurfaceDistanceSchema } from "../../web/src/gen/phrenic/v1/compare_pb";
 import { figuresTable, millimetres } from "../../web/src/panels/figures";
 import { Legend } from "../../web/src/panels/legend";
@@ -25,7 +25,7 @@ describe("the scale", () => {
   });
 
   test("GrowsLighterByEqualStepsForEqualDistances", () => {
-    const scale = new DistanceScale(10);
+    const scale = new ColorScale(10);
     const lightness = Array.from({ length: 11 }, (_, i) => lightnessOf(scale.color(i)));
     const steps = lightness.slice(1).map((l, i) => l - lightness[i]);
     const mean = (lightness[10] - lightness[0]) / 10;
@@ -33,7 +33,7 @@ describe("the scale", () => {
   });
 
   test("HasItsEndsForWhatIsBeyondAndGreyForWhatIsUnknown", () => {
-    const scale = new DistanceScale(10);
+    const scale = new ColorScale(10);
     expect(scale.color(11)).toEqual(scale.color(10));
     expect(scale.color(-1)).toEqual(scale.color(0));
     const [red, green, blue] = scale.color(NaN);
@@ -41,21 +41,21 @@ describe("the scale", () => {
   });
 
   test("PaintsThreeBytesAVertex", () => {
-    const scale = new DistanceScale(10);
+    const scale = new ColorScale(10);
     expect([...scale.paint([0, 10])]).toEqual([...scale.color(0), ...scale.color(10)]);
   });
 
   test("IsMarkedFromNothingToItsEnd", () => {
-    const ticks = new DistanceScale(12).ticks();
+    const ticks = new ColorScale(12).ticks();
     expect(ticks[0]).toEqual({ part: 0, text: "0" });
     expect(ticks.at(-1)).toEqual({ part: 1, text: "12" });
-    expect(new DistanceScale(0.025).ticks().at(-1)).toEqual({ part: 1, text: "0.025" });
+    expect(new ColorScale(0.025).ticks().at(-1)).toEqual({ part: 1, text: "0.025" });
   });
 });
 
 test("TheLegendSaysItsRangeAndUnit", () => {
   const legend = new Legend();
-  legend.show(new DistanceScale(12));
+  legend.show(new ColorScale(12));
   expect(legend.element.querySelector("canvas")!.ariaLabel).toBe("Colours from 0 to 12 mm");
   expect(legend.element.textContent).toMatch(/^mm0.*12$/);
 });

@@ -1,0 +1,168 @@
+import { readdir, readFile } from "node:fs/promises";
+import { join } from "node:path";
+import { gzipSync } from "node:zlib";
+import axe from "axe-core";
+import type { Browser, Download } from "playwright-core";
+import { afterAll, beforeAll, describe, expect, test } from "vitest";
+import { launchBrowser, ViewerPage } from "./browser";
+import { canvasPicture, shareOfChangedPixels } from "./pixels";
+import { Server } from "./server";
+
+let server: Server;
+let browser: Browser;
+let viewer: ViewerPage;
+
+beforeAll(async () => {
+  browser = await launchBrowser();
+  server = await Server.start("none");
+  await server.phrenic("create", "pressure-lungs", "--id", "lungs");
+  await server.phrenic("step", "lungs", "600");
+  viewer = await ViewerPage.open(browser, `${server.url}?session=lungs`, { width: 1200, height: 720 });
+});
+
+afterAll(async () => {
+  await browser?.close();
+  await server?.kill();
+});
+
+async function textOf(download: Download): Promise<string> {
+  return readFile(await download.path(), "utf8");
+}
+
+/** How much the picture changes by `act`. */
+async function changed(act: () => Promise<unknown>): Promise<number> {
+  const before = await canvasPicture(viewer);
+  await act();
+  await viewer.page.waitForTimeout(1000);
+  return shareOfChangedPixels(browser, before, await canvasPicture(viewer));
+}
+
+async function violations(): Promise<string[]> {
+  await viewer.page.evaluate(axe.source);
+  return viewer.page.evaluate(async () => {
+    const { violations } = await (window as unknown as { axe: typeof axe }).axe.run();
+    return violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.target).join(", ")}`);
+  });
+}
+
+describe("the graphs", () => {
+  test("AreThereAndSaveWhatTheyShow", async () => {
+    await server.phrenic("step", "lungs", "200");
+    await viewer.atTick(800);
+    const loop = viewer.page.locator('.tile[data-graph="loop"]');
+    await loop.waitFor();
+    const [csv] = await Promise.all([viewer.page.waitForEvent("download"), loop.getByText("CSV").click()]);
+    const rows = (await textOf(csv)).trimEnd().split("\n");
+    expect(csv.suggestedFilename()).toBe("lungs-loop.csv");
+    expect(rows[0]).toBe("time [s],pleural pressure [Pa],lung volume [l]");
+    expect(Number(rows.at(-1)!.split(",")[0])).toBeCloseTo(await viewer.page.evaluate(() => window.phrenic!.time()), 9);
+    const [svg] = await Promise.all([viewer.page.waitForEvent("download"), loop.getByText("SVG").click()]);
+    expect(await textOf(svg)).toContain("<polyline");
+  });
+
+  test("StandStillWhenTheyAreHeld", async () => {
+    await viewer.page.click("#graphs-pause");
+    expect(await viewer.page.textContent("#graphs-span")).toMatch(/^held, 0\.0 to 12\.0 s$/);
+    await viewer.page.click("#graphs-pause");
+    expect(await viewer.page.textContent("#graphs-span")).toBe("");
+  });
+});
+
+describe("the picture", () => {
+  test("IsColouredCutAndHauntedAsIsAsked", async () => {
+    expect(await changed(() => viewer.page.selectOption("#coloring-kind", "displacement"))).toBeGreaterThan(0.02);
+    expect(await viewer.page.textContent("#coloring")).toMatch(/Displacement.*mm/);
+    const fitted = await viewer.page.inputValue("#coloring-top");
+    await viewer.page.fill("#coloring-top", "1");
+    expect(await changed(() => viewer.page.press("#coloring-top", "Enter"))).toBeGreaterThan(0.01);
+    await viewer.page.click("#coloring-fit");
+    expect(await viewer.page.inputValue("#coloring-top")).toBe(fitted);
+    expect(await changed(() => viewer.page.selectOption("#ghost", "rest"))).toBeGreaterThan(0.002);
+    expect(await changed(() => viewer.page.selectOption("#cut", "coronal"))).toBeGreaterThan(0.02);
+    await viewer.leave("tools");
+    await viewer.page.selectOption("#cut", "none");
+    await viewer.page.selectOption("#ghost", "none");
+  });
+
+  test("TellsWhichVertexWasClickedAndFollowsIt", async () => {
+    const box = (await viewer.page.locator("#view").boundingBox())!;
+    await viewer.page.mouse.click(box.x + 0.62 * box.width, box.y + 0.5 * box.height);
+    await viewer.page.waitForSelector("#picked:not([hidden])");
+    expect(await viewer.page.textContent("#picked h2")).toMatch(/^Vertex \d+ of (diaphragm|balloon)$/);
+    await viewer.page.click("#follow");
+    await viewer.page.click("#parameter-applyMuscles");
+    await server.phrenic("step", "lungs", "20");
+    await viewer.page.waitForSelector('.tile[data-graph="followed"]');
+  });
+
+  test("AxeFindsNothingAgainstItsCardsAndGraphs", async () => {
+    expect(await violations()).toEqual([]);
+  });
+});
+
+test("AChangeIsTakenBackByTheKeyboard", async () => {
+  await viewer.type("breathForce", 2);
+  await expect.poll(() => viewer.page.isEnabled("#undo")).toBe(true);
+  await viewer.page.focus("#view");
+  await viewer.page.keyboard.press("Control+z");
+  await viewer.page.waitForFunction(
+    () => document.querySelector<HTMLInputElement>("#parameter-breathForce-entry")?.value === "1",
+  );
+});
+
+test("APermalinkRunsAgainToTheSameVertices", async () => {
+  await server.phrenic("create", "cube-tensegrity", "--id", "cube", "--set", "breath_force=1.5");
+  await server.phrenic("step", "cube", "120");
+  const cube = await ViewerPage.open(browser, `${server.url}?session=cube`);
+  await cube.atTick(120);
+  await cube.page.click("#share-open");
+  const link = await cube.page.inputValue("#share-permalink");
+  const again = await ViewerPage.open(browser, link);
+  await again.atTick(120);
+  expect(new URL(again.page.url()).search).not.toBe("?session=cube");
+  expect((await again.sample("cube", 1)).points).toEqual((await cube.sample("cube", 1)).points);
+  await again.close();
+
+  // The dialog is still open.
+  await cube.page.click("#share-beside");
+  await cube.page.waitForSelector("#beside canvas");
+  await cube.page.waitForSelector('.differences:text-is("The same parameters")');
+  await cube.type("breathForce", 3);
+  await cube.page.waitForSelector('.differences:text-is("Breath force 1.5 instead of 3")');
+  await cube.leave("beside");
+  expect([...cube.complaints, ...again.complaints]).toEqual([]);
+  await cube.close();
+});
+
+test("AStudyIsRunAndShownInPlace", async () => {
+  const page = await ViewerPage.open(browser, `${server.url}?session=cube`);
+  await page.page.click('summary:has-text("Studies")');
+  await page.page.selectOption("#study-kind", "cost");
+  await page.page.click("#study-start");
+  await page.page.click('.study button:text-is("Open")', { timeout: 60_000 });
+  await page.page.waitForSelector(".study-view[open]");
+  await expect.poll(() => page.page.locator(".study-view h1").textContent()).toMatch(/^Cost: /);
+  expect(await page.page.locator(".study-view svg.plot").count()).toBeGreaterThan(0);
+  await page.leave("study");
+  expect(page.complaints).toEqual([]);
+  await page.close();
+});
+
+test("ThePageIsSmallAndSoonThere", async () => {
+  const folder = join(import.meta.dirname, "../../web/dist/assets");
+  const scripts = (await readdir(folder)).filter((name) => name.endsWith(".js"));
+  const sizes = await Promise.all(scripts.map(async (name) => gzipSync(await readFile(join(folder, name))).length));
+  expect(sizes.reduce((sum, size) => sum + size)).toBeLessThan(400_000);
+  let quickest = Infinity;
+  // The quickest of five: a shared machine may stall a browser.
+  for (let i = 0; i < 5 && quickest > 2000; i++) {
+    const page = await ViewerPage.open(browser, `${server.url}?session=lungs`);
+    quickest = Math.min(quickest, await page.page.evaluate(() => window.phrenic!.firstPicture()));
+    await page.close();
+  }
+  expect(quickest).toBeLessThan(2000);
+});
+
+test("ThePageHadNothingToComplainAbout", () => {
+  expect(viewer.complaints).toEqual([]);
+});

@@ -1,0 +1,101 @@
+import type { Frame } from "../gen/phrenic/v1/frames_pb";
+import { familiarUnit } from "../panels/measures";
+
+/** One line of a graph: where its values are kept, and what they are multiplied by to be in the graph's unit. */
+export interface Curve {
+  key: string;
+  name: string;
+  factor: number;
+}
+
+/** A graph that a scene offers: curves over time, or one curve over another. */
+export interface GraphSpec {
+  id: string;
+  title: string;
+  unit: string;
+  curves: Curve[];
+  /** Of a loop: what runs to the right, and its unit. */
+  across?: Curve & { unit: string };
+}
+
+/** The values of a frame by the keys of curves, SI. */
+export function valuesOf(frame: Frame): [key: string, value: number][] {
+  return [
+    ...frame.measures.map(({ name, value }): [string, number] => [measureKey(name), value]),
+    ...frame.probes.map(({ name, dz }): [string, number] => [probeKey(name), dz]),
+    ["breath", frame.breath],
+  ];
+}
+
+const measureKey = (name: string) => `measure ${name}`;
+const probeKey = (name: string) => `probe ${name}`;
+
+/** The graphs of whatever measures and probes come with the frames, most telling first. */
+export function graphsOf(frame: Frame): GraphSpec[] {
+  const [volume, ...volumes] = byUnit(frame, "m^3", "Volume", false);
+  return [
+    ...(volume === undefined ? [] : [volume]),
+    ...byUnit(frame, "m^3/s", "Flow", true),
+    ...domes(frame),
+    ...byUnit(frame, "Pa", "Pressure", true),
+    ...loop(frame),
+    ...probes(frame),
+    ...volumes,
+    ...byUnit(frame, "m", "Height", true),
+    ...byUnit(frame, "J", "Energy", true),
+    ...others(frame),
+    { id: "breath", title: "Breath wave", unit: "", curves: [{ key: "breath", name: "breath", factor: 1 }] },
+  ];
+}
+
+const known = ["m^3", "m^3/s", "Pa", "m", "J"];
+
+function others(frame: Frame): GraphSpec[] {
+  const units = new Set(frame.measures.map(({ unit }) => unit).filter((unit) => !known.includes(unit)));
+  return [...units].flatMap((unit) => byUnit(frame, unit, unit, true));
+}
+
+/** Measures of one unit in one graph, or in one each where they have little in common but the unit. */
+function byUnit({ measures }: Frame, unit: string, title: string, together: boolean): GraphSpec[] {
+  const [familiar, factor] = familiarUnit(unit);
+  const curves = measures.filter((each) => each.unit === unit).map(({ name }) => curve(measureKey(name), name, factor));
+  if (curves.length === 0) return [];
+  if (together && curves.length > 1)
+    return [{ id: title.toLowerCase(), title: `${title}s`.replace(/ys$/, "ies"), unit: familiar, curves }];
+  return curves.map((each) => ({ id: each.key, title: capital(each.name), unit: familiar, curves: [each] }));
+}
+
+/** Volume over the pressure around the lungs: the area inside is work. */
+function loop({ measures }: Frame): GraphSpec[] {
+  const pressures = measures.filter(({ unit }) => unit === "Pa");
+  const pressure = pressures.find(({ name }) => name.includes("pleural")) ?? pressures[0];
+  const volume = measures.find(({ unit }) => unit === "m^3");
+  if (pressure === undefined || volume === undefined) return [];
+  const [unit, factor] = familiarUnit("m^3");
+  const across = { ...curve(measureKey(pressure.name), pressure.name, 1), unit: "Pa" };
+  const curves = [curve(measureKey(volume.name), volume.name, factor)];
+  return [{ id: "loop", title: "P–V loop", unit, curves, across }];
+}
+
+/** What M-mode ultrasound shows: how far each dome has come down. */
+function domes({ probes }: Frame): GraphSpec[] {
+  const curves = probes.filter(isDome).map(({ name }) => curve(probeKey(name), name, -1000));
+  return curves.length === 0 ? [] : [{ id: "domes", title: "M-mode: descent", unit: "mm", curves }];
+}
+
+function probes({ probes }: Frame): GraphSpec[] {
+  const curves = probes.filter((probe) => !isDome(probe)).map(({ name }) => curve(probeKey(name), name, 1000));
+  return curves.length === 0 ? [] : [{ id: "probes", title: "Probes: upward", unit: "mm", curves }];
+}
+
+function isDome({ name }: { name: string }): boolean {
+  return name.includes("dome");
+}
+
+function curve(key: string, name: string, factor: number): Curve {
+  return { key, name, factor };
+}
+
+function capital(words: string): string {
+  return words.charAt(0).toUpperCase() + words.slice(1);
+}

@@ -1,0 +1,130 @@
+import uPlot from "uplot";
+import "uplot/dist/uPlot.min.css";
+import type { GraphSpec } from "./catalogue";
+import { curveColor } from "./colors";
+import { type GraphData, rangeOf, type Span } from "./window";
+
+/** What a plot tells its owner. */
+export interface PlotEvents {
+  /** A stretch of time was chosen by dragging over it. */
+  zoom(span: Span): void;
+  /** A double click: back to what comes. */
+  live(): void;
+  /** The place in the data under the pointer, in every plot over time at once. */
+  point(place: number | undefined): void;
+}
+
+const faint = "#a3aeba";
+const grid = { stroke: "#2a323b", width: 1 };
+const font = "11px system-ui, sans-serif";
+const plotHeight = 104;
+
+/** One graph on the screen. */
+export class Plot {
+  readonly element = document.createElement("div");
+  private readonly plot: uPlot;
+  private data: GraphData = { times: [], across: undefined, curves: [] };
+  private span: Span = { start: 0, end: 1 };
+
+  constructor(
+    private readonly spec: GraphSpec,
+    private readonly events: PlotEvents,
+  ) {
+    this.element.className = "plot";
+    this.plot = new uPlot(spec.across === undefined ? this.overTime() : this.loop(), [[]], this.element);
+    this.plot.over.addEventListener("dblclick", () => events.live());
+    new ResizeObserver(() => this.fit()).observe(this.element);
+  }
+
+  show(data: GraphData, span: Span): void {
+    [this.data, this.span] = [data, span];
+    if (data.across === undefined) this.plot.setData([data.times, ...data.curves], true);
+    else this.plot.setData([[0, 1]], true);
+  }
+
+  private fit(): void {
+    const width = this.element.clientWidth;
+    if (width > 0 && width !== this.plot.width) this.plot.setSize({ width, height: plotHeight });
+  }
+
+  private frame(
+    x: uPlot.Scale,
+    y: uPlot.Scale,
+  ): Pick<uPlot.Options, "width" | "height" | "legend" | "axes" | "scales"> {
+    const axis = { stroke: faint, grid, ticks: { show: false }, font, gap: 4 };
+    return {
+      width: 300,
+      height: plotHeight,
+      legend: { show: false },
+      scales: { x: { ...x, time: false }, y },
+      axes: [
+        { ...axis, size: 20, space: 46 },
+        { ...axis, size: 44, space: 24 },
+      ],
+    };
+  }
+
+  private overTime(): uPlot.Options {
+    const { curves } = this.spec;
+    return {
+      ...this.frame(
+        { range: () => [this.span.start, this.span.end] },
+        { range: () => rangeOf(this.data.curves, leastOf(this.spec.unit)) },
+      ),
+      series: [{}, ...curves.map((_, i) => ({ stroke: curveColor(i), width: 1.6, points: { show: false } }))],
+      cursor: { y: false, sync: { key: "phrenic" }, drag: { x: true, setScale: false }, points: { size: 6 } },
+      hooks: {
+        setSelect: [(plot) => this.select(plot)],
+        setCursor: [(plot) => this.events.point(plot.cursor.idx ?? undefined)],
+      },
+    };
+  }
+
+  private select(plot: uPlot): void {
+    const { left, width } = plot.select;
+    if (width < 4) return;
+    const [start, end] = [plot.posToVal(left, "x"), plot.posToVal(left + width, "x")];
+    plot.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
+    this.events.zoom({ start, end });
+  }
+
+  /** uPlot draws lines from left to right only; a loop is drawn by hand into its axes. */
+  private loop(): uPlot.Options {
+    return {
+      ...this.frame(
+        { range: () => rangeOf([this.data.across ?? []], 1) },
+        { range: () => rangeOf(this.data.curves, leastOf(this.spec.unit)) },
+      ),
+      series: [{}],
+      cursor: { show: false },
+      hooks: { draw: [(plot) => this.drawLoop(plot)] },
+    };
+  }
+
+  /** The last stretch bright, what came before it fading, and a dot where it is now. */
+  private drawLoop({ ctx, valToPos }: uPlot): void {
+    const { across = [], curves } = this.data;
+    const place = (i: number): [number, number] => [valToPos(across[i], "x", true), valToPos(curves[0][i], "y", true)];
+    if (across.length < 2) return;
+    const parts = 24;
+    ctx.save();
+    ctx.strokeStyle = ctx.fillStyle = curveColor(0);
+    ctx.lineWidth = 1.6 * devicePixelRatio;
+    for (let part = 0; part < parts; part++) {
+      ctx.globalAlpha = 0.15 + (0.85 * (part + 1)) / parts;
+      ctx.beginPath();
+      const [first, last] = [part, part + 1].map((k) => Math.floor((k * (across.length - 1)) / parts));
+      for (let i = first; i <= last; i++) ctx.lineTo(...place(i));
+      ctx.stroke();
+    }
+    ctx.beginPath();
+    ctx.arc(...place(across.length - 1), 3.5 * devicePixelRatio, 0, 7);
+    ctx.fill();
+    ctx.restore();
+  }
+}
+
+/** The least height of a graph: below it, what moves is rounding. */
+function leastOf(unit: string): number {
+  return { l: 0.01, "l/s": 0.01, Pa: 1, mm: 0.1 }[unit] ?? 1e-9;
+}

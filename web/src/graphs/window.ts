@@ -1,0 +1,43 @@
+import type { History } from "../history";
+import type { GraphSpec } from "./catalogue";
+
+/** A stretch of simulated time [s]. */
+export interface Span {
+  start: number;
+  end: number;
+}
+
+/** The numbers of one graph within a span, in its units. */
+export interface GraphData {
+  times: number[];
+  /** Of a loop: what runs to the right. */
+  across: number[] | undefined;
+  curves: number[][];
+}
+
+export function dataOf(spec: GraphSpec, history: History, { start, end }: Span): GraphData {
+  // One point more at either side, so that lines run to the edge.
+  const first = Math.max(0, history.from(start) - 1);
+  const last = Math.min(history.times.length, history.from(end) + 1);
+  const part = ({ key, factor }: { key: string; factor: number }) =>
+    (history.series.get(key) ?? []).slice(first, last).map((value) => factor * value);
+  return {
+    times: history.times.slice(first, last),
+    across: spec.across && part(spec.across),
+    curves: spec.curves.map(part),
+  };
+}
+
+/** From the least to the greatest of all, with some room; 0 is within reach of what hardly moves. */
+export function rangeOf(values: number[][], least: number): [low: number, high: number] {
+  let [low, high] = [Infinity, -Infinity];
+  for (const each of values) {
+    for (const value of each) {
+      if (value < low) low = value;
+      if (value > high) high = value;
+    }
+  }
+  if (low > high) return [-1, 1];
+  const room = Math.max(0.08 * (high - low), (least - (high - low)) / 2);
+  return [low - room, high + room];
+}

@@ -1,0 +1,25 @@
+import { place } from "./dom";
+
+/** Where there is room for them, graphs and controls are open at first. */
+const roomForControls = "(min-width: 761px) and (min-height: 480px)";
+const roomForGraphs = "(min-width: 1100px) and (min-height: 560px)";
+
+/** The controls and the graphs fold away by their buttons; the result folds each. `folded` hears of it. */
+export function drawers(folded: () => void): { graphs(): void; panel(): void } {
+  const panel = drawer("panel", matchMedia(roomForControls).matches, folded);
+  const graphs = drawer("graphs", matchMedia(roomForGraphs).matches, folded);
+  return { graphs, panel };
+}
+
+function drawer(name: string, open: boolean, folded: () => void): () => void {
+  const toggle = place(`${name}-toggle`) as HTMLButtonElement;
+  const fold = (wanted: boolean) => {
+    document.body.classList.toggle(`${name}-open`, wanted);
+    toggle.setAttribute("aria-expanded", String(wanted));
+    folded();
+  };
+  const turn = () => fold(!document.body.classList.contains(`${name}-open`));
+  toggle.onclick = turn;
+  fold(open);
+  return turn;
+}

@@ -1,0 +1,14 @@
+import type { Study } from "../gen/phrenic/v1/study_pb";
+import { make } from "../panels/dom";
+import { contentsOf } from "./page";
+import css from "./report.css?inline";
+
+/** Shows a study within another page, on paper of its own: neither's styles reach the other. */
+export function embed(host: HTMLElement, study: Study): void {
+  const root = host.shadowRoot ?? host.attachShadow({ mode: "open" });
+  const sheet = new CSSStyleSheet();
+  // What the page of its own says about itself, the host says here.
+  sheet.replaceSync(css.replaceAll(":root", ":host").replaceAll(/(^|\s)body(?=\s*\{)/g, "$1:host"));
+  root.adoptedStyleSheets = [sheet];
+  root.replaceChildren(make("main", {}, ...contentsOf(study)));
+}

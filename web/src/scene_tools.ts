@@ -1,0 +1,143 @@
+import type { Body, FrameArrays } from "./codec";
+import { ColorScale, topFor } from "./color_scale";
+import { Coloring } from "./coloring";
+import type { Comparisons } from "./comparison";
+import { Expiration } from "./expiration";
+import { Following } from "./following";
+import type { Frame } from "./gen/phrenic/v1/frames_pb";
+import type { Looks } from "./looks";
+import { Annotations } from "./viewer/annotations";
+import { appearancePanel, type GhostKind } from "./panels/appearance";
+import { coloringCard } from "./panels/coloring_card";
+import { make } from "./panels/dom";
+import { OrientationCube } from "./panels/orientation_cube";
+import { PickCard } from "./panels/pick_card";
+import { Signal } from "./signal";
+import type { OverlayKind } from "./viewer/body_view";
+import type { Compass } from "./viewer/rig";
+import type { Viewer } from "./viewer/viewer";
+
+/** What a viewer does with the picture for itself: colours, ghost, names, axes, and vertices that are picked. */
+export class SceneTools {
+  readonly following = new Following(() => this.bodies);
+  readonly panel: HTMLElement;
+  /** Cards over the picture. */
+  readonly cards: HTMLElement[];
+  readonly cube: OrientationCube;
+  readonly annotations: Annotations;
+  readonly force = make("output", { id: "force", hidden: true });
+  private readonly coloring = new Coloring();
+  private readonly overlays = new Signal<ReadonlySet<OverlayKind>>(new Set());
+  private readonly pickCard = new PickCard(this.following);
+  private readonly expiration = new Expiration();
+  private ghost: GhostKind = "none";
+  private bodies: Body[] = [];
+  private moving: Body[] = [];
+  private time = 0;
+
+  constructor(
+    private readonly viewer: Viewer,
+    private readonly arrays: () => FrameArrays | undefined,
+    looks: Looks,
+    private readonly comparisons: Comparisons,
+  ) {
+    this.annotations = new Annotations(viewer);
+    this.cube = new OrientationCube((view) => viewer.go(view));
+    this.cards = [coloringCard(this.coloring), this.pickCard.element];
+    const labels = new Signal(false);
+    this.panel = appearancePanel({
+      looks,
+      labels,
+      overlays: this.overlays,
+      coloring: this.coloring,
+      setCut: (cut) => {
+        const place = viewer.setCut(cut);
+        this.annotations.start(looks.all.value);
+        return place;
+      },
+      setGhost: (kind) => this.setGhost(kind),
+    });
+    labels.subscribe((on) => this.annotations.setLabels(on));
+    looks.all.subscribe((all) => this.annotations.start(all));
+    this.overlays.subscribe((shown) => this.showOverlays(shown));
+    this.coloring.kind.subscribe(() => this.note());
+    this.coloring.scale.subscribe(() => this.paint());
+    comparisons.result.subscribe(() => this.paint());
+    viewer.letClick((ref) => this.following.picked.set(ref));
+    this.following.picked.subscribe(() => this.mark());
+    this.following.all.subscribe(() => this.mark());
+  }
+
+  /** Another scene, which the viewer shows already. */
+  start(bodies: Body[], deformable: ReadonlySet<string>, diagram: boolean): void {
+    this.bodies = bodies;
+    this.moving = bodies.filter(({ name }) => deformable.has(name));
+    this.coloring.start(this.moving);
+    this.following.clear();
+    this.setGhost(this.ghost === "now" || this.ghost === "expiration" ? "none" : this.ghost);
+    // Which edges are rigid is what a diagram is about.
+    if (diagram && bodies.some(({ rigidLinks }) => rigidLinks.length > 0))
+      this.overlays.set(new Set([...this.overlays.value, "links"]));
+  }
+
+  receive(frame: Frame): void {
+    const turned = this.expiration.receive(frame.breath);
+    if (turned && this.ghost === "expiration") this.viewer.setGhost(this.arrays(), this.moving);
+  }
+
+  /** A picture of the moment `time` [s] is about to be drawn from `arrays`. */
+  update(time: number, arrays: FrameArrays): void {
+    this.time = time;
+    this.note();
+    this.following.receive(time, arrays);
+    if (this.coloring.kind.value !== undefined) this.paint();
+    this.mark();
+  }
+
+  /** The colours follow the moment that is shown. */
+  private note(): void {
+    const arrays = this.arrays();
+    if (arrays !== undefined) this.coloring.receive(this.time, arrays);
+  }
+
+  drawn(compass: Compass): void {
+    this.cube.show(compass);
+    this.annotations.draw();
+  }
+
+  /** Words that follow the picture a few times a second. */
+  show(): void {
+    this.pickCard.show(this.arrays());
+  }
+
+  /** How hard the pointer pulls [N], beside it. */
+  tellForce(newtons: number | undefined, x: number, y: number): void {
+    this.force.hidden = newtons === undefined;
+    if (newtons === undefined) return;
+    this.force.textContent = `${newtons.toFixed(2)} N`;
+    this.force.style.transform = `translate(${x + 14}px, ${y + 14}px)`;
+  }
+
+  private setGhost(kind: GhostKind): void {
+    this.ghost = kind;
+    this.viewer.setGhost(kind === "now" ? this.arrays() : kind === "rest" ? "rest" : undefined, this.moving);
+  }
+
+  /** A comparison's colours come before those of a field. */
+  private paint(): void {
+    const comparison = this.comparisons.result.value;
+    if (comparison === undefined) return this.viewer.paint(this.coloring.paint());
+    const { body, distances } = comparison;
+    this.viewer.paint(new Map([[body, new ColorScale(topFor(distances)).paint(distances)]]));
+  }
+
+  private mark(): void {
+    const arrays = this.arrays();
+    if (arrays !== undefined) this.viewer.mark(this.following.markers(arrays));
+  }
+
+  private showOverlays(shown: ReadonlySet<OverlayKind>): void {
+    for (const kind of ["wireframe", "links", "lines", "attachments"] as const)
+      this.viewer.setOverlay(kind, shown.has(kind));
+  }
+}

@@ -1,0 +1,143 @@
+import { scaleLinear } from "d3-scale";
+import * as THREE from "three";
+import type { Look } from "../looks";
+import type { BodyView } from "./body_view";
+import type { Viewer } from "./viewer";
+import { planeAxes } from "./views";
+
+/** Names stand so far beside what they name, and at least so far apart [CSS pixels]. */
+const aside = 36;
+const apart = 20;
+/** About the width of a letter [CSS pixels]. */
+const letter = 7.5;
+
+/** What is written over the picture: names of the layers, and of a flat scene the axes of its plane. */
+export class Annotations {
+  readonly element = svg("svg", { id: "annotations" });
+  private readonly names = svg("g", { class: "names" });
+  private readonly axes = svg("g", { class: "axes" });
+  private anchors: { view: BodyView; vertex: number; look: Look }[] = [];
+  private labels = false;
+
+  constructor(private readonly viewer: Viewer) {
+    this.element.setAttribute("aria-hidden", "true");
+    this.element.append(this.axes, this.names);
+  }
+
+  /** Another scene, or other layers that are seen. */
+  start(looks: Look[]): void {
+    this.anchors = looks.flatMap((look) => (look.visible ? (outermost(this.viewer, look) ?? []) : []));
+    this.draw();
+  }
+
+  setLabels(on: boolean): void {
+    this.labels = on;
+    this.draw();
+  }
+
+  draw(): void {
+    this.names.replaceChildren(...(this.labels ? this.drawNames() : []));
+    this.axes.replaceChildren(...this.drawAxes());
+  }
+
+  private drawNames(): SVGElement[] {
+    const places = this.anchors.map(({ view, vertex, look }) => {
+      const place = new THREE.Vector3().fromBufferAttribute(view.positions, vertex);
+      place.applyMatrix4(view.group.matrixWorld);
+      const [x, y] = this.viewer.rig.project(place);
+      return { x, y, look, gone: this.viewer.cutAway(place) };
+    });
+    const width = this.element.clientWidth;
+    let last = -Infinity;
+    return places
+      .filter(({ gone }) => !gone)
+      .sort((a, b) => a.y - b.y)
+      .flatMap(({ x, y, look }) => {
+        last = Math.max(y, last + apart);
+        // Where it would leave the picture, it stands on the other side.
+        const side = x + aside + letter * look.title.length > width ? -1 : 1;
+        const [toX, toY] = [x + side * aside, last];
+        const line = svg("polyline", { points: `${x},${y} ${toX - 4 * side},${toY}` });
+        const dot = svg("circle", { cx: x, cy: y, r: 2.5 });
+        return [line, dot, words(toX, toY + 4, look.title, side > 0 ? "start" : "end")];
+      });
+  }
+
+  /** Only where the camera looks straight at the plane, so that lengths in it are true. */
+  private drawAxes(): SVGElement[] {
+    const { bounds, rig } = this.viewer;
+    const plane = bounds.isEmpty() ? undefined : planeAxes(bounds);
+    if (plane === undefined) return [];
+    const [right, up] = plane;
+    const [across, along] = rig.compass().axes;
+    if (across[right] < 0.9995 || along[up] < 0.9995) return [];
+    const at = (x: number, y: number) => {
+      const place = bounds.min.clone();
+      place[right] = x;
+      place[up] = y;
+      return rig.project(place);
+    };
+    const { min } = bounds;
+    const alongX = (value: number) => at(value, min[up]);
+    const alongY = (value: number) => at(min[right], value);
+    return [...ruler(bounds, right, alongX, true), ...ruler(bounds, up, alongY, false)];
+  }
+}
+
+/** A side of the scene's box with its numbers [m]. */
+function ruler(
+  { min, max }: THREE.Box3,
+  axis: "x" | "y" | "z",
+  at: (value: number) => [number, number],
+  across: boolean,
+): SVGElement[] {
+  const scale = scaleLinear([min[axis], max[axis]], [0, 1]);
+  const [dx, dy] = across ? [0, 8] : [-8, 0];
+  const beside = (value: number): [number, number] => {
+    const [x, y] = at(value);
+    return [x + 2 * dx, y + 2 * dy];
+  };
+  const parts: SVGElement[] = [line(beside(min[axis]), beside(max[axis]))];
+  for (const tick of scale.ticks(6)) {
+    const [x, y] = beside(tick);
+    parts.push(line([x, y], [x + dx, y + dy]));
+    const text = scale.tickFormat(6)(tick).replace("-", "−");
+    parts.push(across ? words(x, y + 22, text, "middle") : words(x - 12, y + 4, text, "end"));
+  }
+  const [x, y] = beside(max[axis]);
+  parts.push(across ? words(x + 14, y + 5, `${axis} [m]`, "start") : words(x, y - 10, `${axis} [m]`, "middle"));
+  return parts;
+}
+
+/** Of a layer the vertex that rests farthest to the patient's left, of those that no cut takes away. */
+function outermost(viewer: Viewer, look: Look): { view: BodyView; vertex: number; look: Look } | undefined {
+  let found: { view: BodyView; vertex: number; look: Look } | undefined;
+  let farthest = -Infinity;
+  const place = new THREE.Vector3();
+  for (const view of viewer.bodies) {
+    if (view.body.layer !== look.layer) continue;
+    const { rest } = view.body;
+    for (let i = 0; i < rest.length; i += 3) {
+      if (rest[i] <= farthest || viewer.cutAway(place.fromArray(rest, i))) continue;
+      farthest = rest[i];
+      found = { view, vertex: i / 3, look };
+    }
+  }
+  return found;
+}
+
+function svg<K extends keyof SVGElementTagNameMap>(tag: K, attributes: Record<string, string | number>) {
+  const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, String(value));
+  return element;
+}
+
+function line([x1, y1]: [number, number], [x2, y2]: [number, number]): SVGElement {
+  return svg("line", { x1, y1, x2, y2 });
+}
+
+function words(x: number, y: number, text: string, anchor: string): SVGElement {
+  const element = svg("text", { x, y, "text-anchor": anchor });
+  element.textContent = text;
+  return element;
+}

@@ -1,0 +1,35 @@
+import * as THREE from "three";
+import type { BodyView } from "./body_view";
+import { pickVertex, pointerOf } from "./picking";
+
+/** A vertex of a body. */
+export interface VertexRef {
+  body: string;
+  vertex: number;
+}
+
+/** A pointer that goes farther [CSS pixels] or stays down longer [ms] than this turns the picture. */
+const still = 5;
+const brief = 500;
+
+/** Clicks on what is seen pick a vertex; one beside everything picks none. */
+export function letClick(
+  canvas: HTMLCanvasElement,
+  camera: THREE.Camera,
+  views: () => BodyView[],
+  cut: () => THREE.Plane | undefined,
+  picked: (vertex: VertexRef | undefined) => void,
+): void {
+  let down: PointerEvent | undefined;
+  canvas.addEventListener("pointerdown", (event) => {
+    down = event.button === 0 && !event.shiftKey ? event : undefined;
+  });
+  canvas.addEventListener("pointerup", (event) => {
+    if (down === undefined || event.timeStamp - down.timeStamp > brief) return;
+    if (Math.hypot(event.offsetX - down.offsetX, event.offsetY - down.offsetY) > still) return;
+    const visible = views().filter(({ group }) => group.visible);
+    const bodies = visible.map((view) => ({ positions: view.placed(), triangles: view.body.triangles }));
+    const found = pickVertex(pointerOf(event, canvas), camera, bodies, cut());
+    picked(found && { body: visible[found.body].body.name, vertex: found.vertex });
+  });
+}

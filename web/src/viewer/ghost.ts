@@ -1,0 +1,60 @@
+import * as THREE from "three";
+import { type Body, type FrameArrays, positionsOf } from "../codec";
+import { Placement } from "../gen/phrenic/v1/frames_pb";
+import { computeNormals } from "./normals";
+
+/** The moving tissue as it was at another moment, seen through. */
+export class Ghost {
+  readonly object = new THREE.Group();
+
+  constructor() {
+    this.object.renderOrder = 3;
+  }
+
+  /** Those of `bodies` that move by themselves; at rest where `arrays` is undefined. */
+  show(bodies: Body[], arrays: FrameArrays | undefined): void {
+    this.clear();
+    for (const body of bodies) {
+      if (body.placement !== Placement.STREAMED || body.triangles.length === 0) continue;
+      const positions = arrays === undefined ? body.rest : positionsOf(body, arrays).slice();
+      this.object.add(shell(positions, body.triangles));
+    }
+  }
+
+  clear(): void {
+    for (const child of this.object.children) {
+      if (!(child instanceof THREE.Mesh)) continue;
+      child.geometry.dispose();
+      child.material.dispose();
+    }
+    this.object.clear();
+  }
+}
+
+/** A surface that is dense at its outline and clear where it faces the eye. */
+function shell(positions: Float32Array, triangles: Uint32Array): THREE.Mesh {
+  const normals = new Float32Array(positions.length);
+  computeNormals(positions, triangles, normals);
+  const geometry = new THREE.BufferGeometry()
+    .setAttribute("position", new THREE.BufferAttribute(positions, 3))
+    .setAttribute("normal", new THREE.BufferAttribute(normals, 3))
+    .setIndex(new THREE.BufferAttribute(triangles, 1));
+  const material = new THREE.MeshLambertMaterial({
+    color: "#8fd0ff",
+    emissive: "#2d5f86",
+    transparent: true,
+    opacity: 0.3,
+    depthWrite: false,
+    side: THREE.DoubleSide,
+  });
+  material.onBeforeCompile = (shader) => {
+    shader.fragmentShader = shader.fragmentShader.replace(
+      "#include <opaque_fragment>",
+      `diffuseColor.a *= mix(2.6, 0.45, abs(dot(normalize(vNormal), normalize(vViewPosition))));
+       #include <opaque_fragment>`,
+    );
+  };
+  const mesh = new THREE.Mesh(geometry, material);
+  mesh.frustumCulled = false;
+  return mesh;
+}

@@ -1,0 +1,35 @@
+import * as THREE from "three";
+
+/** A place to be marked, in a colour. */
+export interface Marker {
+  place: [number, number, number];
+  color: string;
+}
+
+/** Balls of one size on the screen, over everything. */
+export class Markers {
+  readonly object = new THREE.Group();
+  private readonly ball = new THREE.SphereGeometry(1, 16, 12);
+
+  show(markers: Marker[]): void {
+    while (this.object.children.length > markers.length) this.object.remove(this.object.children.at(-1)!);
+    while (this.object.children.length < markers.length) this.object.add(this.make());
+    markers.forEach(({ place, color }, i) => {
+      const mesh = this.object.children[i] as THREE.Mesh<THREE.SphereGeometry, THREE.MeshBasicMaterial>;
+      mesh.position.fromArray(place);
+      mesh.material.color.set(color);
+    });
+  }
+
+  /** `size` is the radius at the centre of the scene [m]. */
+  scale(size: number): void {
+    for (const child of this.object.children) child.scale.setScalar(size);
+  }
+
+  private make(): THREE.Mesh {
+    const material = new THREE.MeshBasicMaterial({ depthTest: false, transparent: true, opacity: 0.95, fog: false });
+    const mesh = new THREE.Mesh(this.ball, material);
+    mesh.renderOrder = 5;
+    return mesh;
+  }
+}
