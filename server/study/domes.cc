@@ -42,6 +42,7 @@ Outline OutlineOf(const Mesh& mesh, const std::vector<int>& vertices) {
   std::vector<bool> inside(static_cast<std::size_t>(mesh.vertices.cols()), false);
   for (const int i : vertices) inside[static_cast<std::size_t>(i)] = true;
   const Points x = mesh.vertices(Eigen::all, vertices);
+  if (x.cols() == 0) return outline;
   Eigen::Index highest = 0;
   x.row(2).maxCoeff(&highest);
   outline.first = x.row(0).minCoeff();

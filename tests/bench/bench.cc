@@ -17,7 +17,6 @@
 namespace phrenic::bench {
 namespace {
 
-constexpr double kFrame = 1.0 / 60;  // [s]
 const char kPlain[] = "springs, plain loop with scatter", kSprings[] = "springs";
 const char kEuler[] = "springs and Euler's step", kThorax[] = "thorax, the whole step";
 const char kMeasures[] = "thorax' measures, a frame";

@@ -13,8 +13,7 @@
 namespace phrenic::bench {
 namespace {
 
-constexpr double kFrame = 1.0 / 60;  // [s]
-constexpr int kColumns = 5;          // of the nets of rigid links
+constexpr int kColumns = 5;  // of the nets of rigid links
 
 // The generated diaphragm under a force.
 std::string Diaphragm(const std::string& force) {

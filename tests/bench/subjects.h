@@ -12,6 +12,8 @@
 
 namespace phrenic::bench {
 
+inline constexpr double kFrame = 1.0 / 60;  // [s]
+
 using ModelPointer = std::shared_ptr<const Model>;
 
 // A session that is stepped: it goes on from one repetition to the next.

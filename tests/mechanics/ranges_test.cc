@@ -10,7 +10,7 @@ namespace phrenic {
 namespace {
 
 // More than two blocks of vertices, the last one no whole number of vectors; springs of two kinds, held at a side.
-const char kSheet[] = R"(
+const char kMixedSheet[] = R"(
   name: "ranges"
   bodies { name: "sheet" role: ROLE_DEFORMABLE mass: 2 grid { columns: 40 rows: 30 u { x: 0.01 } v { y: 0.01 } }
            regions { name: "left" low {} high { x: 0.201 y: 1 z: 1 } } }
@@ -23,7 +23,7 @@ const char kSheet[] = R"(
 )";
 
 TEST(Ranges, GiveEachForceTheBitsOfTheWhole) {
-  const auto model = CompileText(kSheet);
+  const auto model = CompileText(kMixedSheet);
   ASSERT_NE(model, nullptr);
   State state = model->InitialState();
   ASSERT_GT(state.x.cols(), 2 * kVertexBlock);

@@ -75,7 +75,8 @@ TEST(Ply, ErrorsNameTheLineAndTheFault) {
 TEST(Ply, ErrorsInBinaryNameTheByte) {
   Mesh mesh;
   mesh.vertices = Points::Identity(3, 3);
-  mesh.triangles = Eigen::Vector3i(0, 1, 2);
+  mesh.triangles.resize(3, 1);
+  mesh.triangles << 0, 1, 2;
   const std::string good = *Write("a.ply", mesh, 1.0);
   const auto cut = Parse("a.ply", std::string_view(good).substr(0, good.size() - 1), 1.0);
   EXPECT_THAT(std::string(cut.status().message()), HasSubstr("ends early"));

@@ -72,7 +72,8 @@ TEST(Stl, ErrorsInTextNameTheLineAndTheFault) {
 TEST(Stl, ErrorsInBinaryNameTheByteAndTheFault) {
   Mesh mesh;
   mesh.vertices = Points::Identity(3, 3);
-  mesh.triangles = Eigen::Vector3i(0, 1, 2);
+  mesh.triangles.resize(3, 1);
+  mesh.triangles << 0, 1, 2;
   const std::string good = *Write("a.stl", mesh, 1.0);
   const std::string nan("\0\0\xc0\x7f", 4);
   const std::pair<std::string, const char*> files[] = {

@@ -27,7 +27,7 @@ void ForEachField(const std::function<void(const FieldDescriptor&)>& visit) {
       if (type->field(i)->message_type() != nullptr) walk(type->field(i)->message_type());
     }
   };
-  for (const auto* file : {v1::SceneSource::descriptor()->file(), v1::ExportMotionRequest::descriptor()->file(),
+  for (const auto* file : {v1::SceneSource::descriptor()->file(), v1::CreateExportRequest::descriptor()->file(),
                            v1::WatchFramesRequest::descriptor()->file()}) {
     for (int i = 0; i < file->message_type_count(); ++i) walk(file->message_type(i));
   }

@@ -148,7 +148,7 @@ TEST(Validation, RefusesTextThatIsNotUtf8) {
 }
 
 TEST(Validation, LooksAtEveryValueOfARepeatedField) {
-  v1::ExportMotionRequest request;
+  v1::CreateExportRequest request;
   request.set_session_id("a");
   request.set_format("msh");
   request.add_bodies("lung");

@@ -133,7 +133,7 @@ TEST_F(SessionTest, AViewerSeesSixtyFramesASimulatedSecond) {
   ASSERT_TRUE(session->Play(1, false, 0).ok());
   std::int64_t first = -1, last = -1;
   const auto take = [&] {
-    for (stream::Bytes bytes = (*viewer)->Take(); bytes != nullptr; bytes = (*viewer)->Take()) {
+    for (stream::Bytes bytes = (*viewer)->Take(absl::Now()); bytes != nullptr; bytes = (*viewer)->Take(absl::Now())) {
       v1::WatchFramesResponse response;
       response.ParseFromString(*bytes);
       if (!response.has_frame()) continue;
@@ -222,7 +222,7 @@ TEST_F(DivergedTest, NoFrameEverHasANumberThatIsNotFinite) {
   ASSERT_TRUE(session_->Play(1, true, 0).ok());
   bool diverged = false;
   const auto all_finite = [&] {
-    for (stream::Bytes bytes = (*viewer)->Take(); bytes != nullptr; bytes = (*viewer)->Take()) {
+    for (stream::Bytes bytes = (*viewer)->Take(absl::Now()); bytes != nullptr; bytes = (*viewer)->Take(absl::Now())) {
       v1::WatchFramesResponse response;
       EXPECT_TRUE(response.ParseFromString(*bytes));
       diverged = diverged || response.session().state() == v1::SESSION_STATE_DIVERGED;

@@ -206,7 +206,7 @@ TEST_F(TableTest, DeleteEndsTheViewers) {
   const auto viewer = (*session)->publisher().Join({}, [] {});
   ASSERT_TRUE(viewer.ok());
   ASSERT_TRUE(table_.Delete("mine").ok());
-  while ((*viewer)->Take() != nullptr) continue;
+  while ((*viewer)->Take(absl::Now()) != nullptr) continue;
   ASSERT_TRUE((*viewer)->ended().has_value());
   EXPECT_TRUE(absl::IsNotFound(*(*viewer)->ended()));
 }

@@ -23,19 +23,21 @@ constexpr char kObj[] = "v 0 0 0\nv 100 0 0\nv 0 100 0\nf 1 2 3\n";
 // A square that rises by `speed` [m/s], and beside it one that stands still, as `phrenic run --export` writes them.
 std::string MotionText(double speed, const std::vector<double>& times, const std::string& second = "still") {
   std::string text;
-  const auto recorder = record::MakeMshRecorder([&text](std::string_view bytes) {
-    text += bytes;
-    return absl::OkStatus();
-  });
+  const auto recorder = record::MakeMshRecorder({.sink =
+                                                     [&text](std::string_view bytes) {
+                                                       text += bytes;
+                                                       return absl::OkStatus();
+                                                     },
+                                                 .values = record::Values::kDisplacements});
   const Mesh rising = Square(0.1, 2), still = Moved(Square(0.1, 2), {1, 0, 0});
-  EXPECT_TRUE(recorder->Begin({{"rising", rising}, {second, still}}).ok());
+  EXPECT_TRUE(recorder->Begin({.bodies = {{"rising", rising}, {second, still}}}).ok());
   for (const double time : times) {
     Points x(3, rising.vertices.cols() + still.vertices.cols());
     x << rising.vertices, still.vertices;
     x.row(2).head(rising.vertices.cols()).array() += speed * (time - times.front());
-    EXPECT_TRUE(recorder->AddFrame(time, x).ok());
+    EXPECT_TRUE(recorder->AddFrame({time, x, {}}).ok());
   }
-  EXPECT_TRUE(recorder->End().ok());
+  EXPECT_TRUE(recorder->End([](double) { return absl::OkStatus(); }).ok());
   return text;
 }
 
