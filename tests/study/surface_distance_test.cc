@@ -90,7 +90,8 @@ TEST(SurfaceDistance, MaximumIsRightBetweenSamples) {
   Mesh triangle;
   triangle.vertices.resize(3, 3);
   triangle.vertices << 0, 0.03, 0, 0, 0, 0.04, 0, 0, 0;
-  triangle.triangles = Eigen::Vector3i(0, 1, 2);
+  triangle.triangles.resize(3, 1);
+  triangle.triangles << 0, 1, 2;
   Mesh corners;
   corners.vertices.resize(3, 9);
   corners.triangles.resize(3, 3);
@@ -139,7 +140,8 @@ TEST(SurfaceDistance, OfASurfaceWithoutAreaHasAMaximumAndNoMean) {
   Mesh needle;
   needle.vertices = Points::Zero(3, 3);
   needle.vertices(2, 1) = 0.01;
-  needle.triangles = Eigen::Vector3i(0, 1, 2);
+  needle.triangles.resize(3, 1);
+  needle.triangles << 0, 1, 2;
   const v1::SurfaceDistance distance = Distance(needle, Square(0.1, 1));
   EXPECT_NEAR(distance.hd_a_to_b(), 10, 1e-9);
   EXPECT_TRUE(std::isnan(distance.mean_a_to_b()));
