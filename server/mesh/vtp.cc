@@ -68,7 +68,10 @@ class Writer {
 
 void WriteArrays(const char* section, const std::vector<PolyData::Array>& arrays, Writer& writer) {
   if (arrays.empty()) return;
-  writer.Say(absl::StrCat("<", section, ">\n"));
+  // What a viewer colours by unasked.
+  const std::string active =
+      arrays.front().values.rows() == 1 ? absl::StrCat(" Scalars=\"", Escaped(arrays.front().name), "\"") : "";
+  writer.Say(absl::StrCat("<", section, active, ">\n"));
   for (const PolyData::Array& array : arrays) writer.Add("Float64", array.name, array.values);
   writer.Say(absl::StrCat("</", section, ">\n"));
 }

@@ -17,16 +17,18 @@ double Since(Clock::time_point start) { return std::chrono::duration<double>(Clo
 // Adds the time until its end.
 class Span {
  public:
-  explicit Span(Stage& stage) : stage_(stage), start_(Clock::now()) {}
+  // A call may come in parts: the first one counts.
+  explicit Span(Stage& stage, bool first = true) : stage_(stage), first_(first), start_(Clock::now()) {}
   Span(const Span&) = delete;
   Span& operator=(const Span&) = delete;
   ~Span() {
     stage_.seconds += Since(start_);
-    ++stage_.calls;
+    if (first_) ++stage_.calls;
   }
 
  private:
   Stage& stage_;
+  const bool first_;
   const Clock::time_point start_;
 };
 
@@ -45,6 +47,11 @@ class TimedForce final : public Force {
   void AddForce(const Instant& at, MutablePoints f) const override {
     const Span span(adding_);
     force_.AddForce(at, f);
+  }
+  bool by_range() const override { return force_.by_range(); }
+  void AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const override {
+    const Span span(adding_, range.first == 0);
+    force_.AddForceIn(range, at, f);
   }
   void AddStiffness(const Instant& at, StiffnessSink& sink) const override {
     const Span span(stiffening_);
