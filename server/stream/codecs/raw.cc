@@ -20,7 +20,7 @@ absl::StatusOr<Floats> RawCodec::Decode(std::string_view bytes) const {
     return absl::InvalidArgumentError(
         absl::StrCat("positions: ", bytes.size(), " bytes, but ", vertices_, " vertices have ", size));
   }
-  std::memcpy(positions.data(), bytes.data(), size);
+  if (size > 0) std::memcpy(positions.data(), bytes.data(), size);
   if (!positions.allFinite()) return absl::InvalidArgumentError("positions: a number is not finite");
   return positions;
 }
