@@ -56,7 +56,7 @@ absl::Status Place(const v1::Export& job, const std::string& file, PartFile& par
   const bool unpacked = FormatOf(file) != kArchive && FormatOf(job.file_name()) == kArchive;
   const std::string place = unpacked ? file + "." + kArchive : file;
   if (absl::Status status = part.PutInPlace(job.summary().sha256()); !status.ok() || !unpacked) return status;
-  const absl::Status status = Unpack(place, std::filesystem::path(file).parent_path().string());
+  absl::Status status = Unpack(place, std::filesystem::path(file).parent_path().string());
   std::error_code ignored;
   std::filesystem::remove(place, ignored);
   return status;

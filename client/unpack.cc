@@ -50,7 +50,7 @@ absl::Status Unpack(const std::string& name, const std::string& folder) {
     for (const auto& part : inside) climbs = climbs || part == "..";
     if (climbs)
       return absl::InvalidArgumentError(absl::StrCat(name, ": ", inside.string(), " leads out of its folder"));
-    const absl::Status copied = CopyEntry(name, zip.get(), std::filesystem::path(folder) / inside);
+    absl::Status copied = CopyEntry(name, zip.get(), std::filesystem::path(folder) / inside);
     if (!copied.ok()) return copied;
   }
   return code == ARCHIVE_EOF ? absl::OkStatus() : CannotRead(name, zip.get());

@@ -45,7 +45,7 @@ grpc::Status Send(const Context& context, v1::UploadService::Stub& stub, const s
     request.set_offset(at);
     request.set_chunk(bytes.substr(static_cast<std::size_t>(at), session::Uploads::kMostChunk));
     v1::AddUploadChunkResponse response;
-    const grpc::Status status = Call(context, stub, &v1::UploadService::Stub::AddUploadChunk, request, &response);
+    grpc::Status status = Call(context, stub, &v1::UploadService::Stub::AddUploadChunk, request, &response);
     if (!status.ok()) return status;
     at = response.received();
     progress.Update(static_cast<double>(at));

@@ -133,6 +133,7 @@ std::vector<Mask> Pieces(const Mask& mask, int margin) {
   constexpr std::size_t kMost = 64;  // the rest are crumbs
   found.resize(std::min(found.size(), kMost));
   std::vector<Mask> pieces;
+  pieces.reserve(found.size());
   for (const std::vector<std::size_t>& voxels : found) pieces.push_back(Cropped(mask, voxels, margin));
   return pieces;
 }

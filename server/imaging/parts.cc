@@ -73,7 +73,7 @@ double Middle(const LabelVolume& volume, const std::vector<Part>& parts, const s
   return count > 0 ? sum / count : 0;
 }
 
-void AddNumberedRibs(const LabelVolume& volume, std::vector<Mask> ribs, std::vector<Part>& parts,
+void AddNumberedRibs(const LabelVolume& volume, const std::vector<Mask>& ribs, std::vector<Part>& parts,
                      Sentences& fallbacks) {
   const double middle = Middle(volume, parts, ribs);
   for (const auto side : {v1::SIDE_RIGHT, v1::SIDE_LEFT}) {
@@ -156,7 +156,7 @@ absl::StatusOr<std::vector<Part>> FindParts(const LabelVolume& volume, const v1:
           {absl::StrCat("cartilage-", p + 1), label.anatomy(), v1::ORGAN_UNSPECIFIED, std::move(pieces[p]), voxels});
     }
   }
-  if (!ribs.empty()) AddNumberedRibs(volume, std::move(ribs), parts, fallbacks);
+  if (!ribs.empty()) AddNumberedRibs(volume, ribs, parts, fallbacks);
   if (parts.empty()) {
     return absl::FailedPreconditionError("the volume has none of the labels that the map names; is it the right map?");
   }

@@ -11,7 +11,7 @@ constexpr int kTimeDigits = 12, kNumberDigits = 9;
 
 // RFC 4180: in double quotes where it has to be, and never a line of its own.
 std::string Cell(const std::string& text) {
-  const std::string line = absl::StrReplaceAll(text, {{"\n", " "}, {"\r", " "}});
+  std::string line = absl::StrReplaceAll(text, {{"\n", " "}, {"\r", " "}});
   if (line.find_first_of(",\"") == std::string::npos) return line;
   return absl::StrCat("\"", absl::StrReplaceAll(line, {{"\"", "\"\""}}), "\"");
 }

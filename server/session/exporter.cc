@@ -31,7 +31,7 @@ class Export {
   absl::Status Record() {
     if (absl::Status status = StepTo(plan_.start); !status.ok()) return status;
     if (absl::Status status = Begin(); !status.ok()) return status;
-    const absl::Status recorded = plan_.steps_per_frame > 0 ? RecordBySteps() : RecordByTime();
+    absl::Status recorded = plan_.steps_per_frame > 0 ? RecordBySteps() : RecordByTime();
     if (!recorded.ok()) return recorded;
     return recorder_.End([this](double share) {
       if (Wall::now() < last_word_ + kBetweenWords) return absl::OkStatus();

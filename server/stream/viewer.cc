@@ -58,7 +58,7 @@ void Viewer::End(absl::Status reason) {
 Bytes Viewer::Take(absl::Time now) {
   absl::MutexLock lock(&mutex_);
   if (!news_.empty()) {
-    const Bytes bytes = std::move(news_.front().bytes);
+    Bytes bytes = std::move(news_.front().bytes);
     news_.pop_front();
     return bytes;
   }
