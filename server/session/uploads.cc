@@ -1,27 +1,19 @@
 #include "server/session/uploads.h"
 
-#include <openssl/sha.h>
-
 #include <algorithm>
 #include <utility>
 
 #include "absl/strings/ascii.h"
-#include "absl/strings/escaping.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "server/mesh/units.h"
 #include "server/meshio/formats.h"
+#include "server/schema/sha256.h"
 
 namespace phrenic::session {
 namespace {
 
 constexpr std::size_t kMostPending = 16;
-
-std::string Sha256(std::string_view bytes) {
-  unsigned char digest[SHA256_DIGEST_LENGTH];
-  SHA256(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size(), digest);
-  return absl::BytesToHexString(absl::string_view(reinterpret_cast<const char*>(digest), sizeof digest));
-}
 
 absl::StatusOr<std::string> AllBytes(const record::SpoolFile& spool) {
   std::string bytes(static_cast<std::size_t>(spool.size()), '\0');
@@ -106,7 +98,7 @@ absl::StatusOr<Uploads::Finished> Uploads::Finish(const std::string& id, double 
   }
   const auto bytes = AllBytes(*pending.spool);
   if (!bytes.ok()) return bytes.status();
-  const std::string sha256 = Sha256(*bytes);
+  const std::string sha256 = Sha256Hex(*bytes);
   if (!pending.file.sha256.empty() && pending.file.sha256 != sha256) {
     return absl::DataLossError(absl::StrCat(pending.file.name, " arrived damaged (its SHA-256 is ", sha256, " and not ",
                                             pending.file.sha256, "): send it again"));
