@@ -70,16 +70,17 @@ absl::StatusOr<std::int64_t> Uploads::Add(const std::string& id, std::int64_t of
   const auto pending = FindPending(id);
   if (pending == pending_.end()) return NoUpload(id);
   const std::int64_t received = pending->spool->size();
-  if (offset != received) {
+  if (offset < 0 || offset > received) {
     return absl::OutOfRangeError(absl::StrCat("offset: ", offset, " is not the next byte, ", received, " is"));
   }
   if (chunk.size() > kMostChunk) {
     return absl::InvalidArgumentError(absl::StrCat("chunk: ", chunk.size(), " bytes; ", kMostChunk, " are the most"));
   }
-  if (received + static_cast<std::int64_t>(chunk.size()) > pending->file.size) {
+  if (offset + static_cast<std::int64_t>(chunk.size()) > pending->file.size) {
     return absl::OutOfRangeError(absl::StrCat("chunk: more bytes than the ", pending->file.size, " that were said"));
   }
-  if (absl::Status status = pending->spool->Append(chunk); !status.ok()) return status;
+  const std::size_t known = std::min(chunk.size(), static_cast<std::size_t>(received - offset));
+  if (absl::Status status = pending->spool->Append(chunk.substr(known)); !status.ok()) return status;
   return pending->spool->size();
 }
 
@@ -88,7 +89,7 @@ absl::StatusOr<Uploads::Finished> Uploads::Finish(const std::string& id, double 
   {
     absl::MutexLock lock(&mutex_);
     const auto found = FindPending(id);
-    if (found == pending_.end()) return NoUpload(id);
+    if (found == pending_.end()) return FinishedBefore(id, unit_mm);
     if (found->spool->size() < found->file.size) {
       return absl::FailedPreconditionError(absl::StrCat("upload_id: ", found->spool->size(), " of ", found->file.size,
                                                         " bytes are there; send the others first"));
@@ -107,8 +108,18 @@ absl::StatusOr<Uploads::Finished> Uploads::Finish(const std::string& id, double 
   auto surface = meshio::ParseSurface(pending.file.name, *bytes, kMillimetre * unit_mm);
   if (!surface.ok()) return surface.status();
   absl::MutexLock lock(&mutex_);
-  Keep({pending.file, pending.spool});
+  Keep({pending.id, pending.file, pending.spool});
   return Finished{pending.file, *std::move(surface)};
+}
+
+absl::StatusOr<Uploads::Finished> Uploads::FinishedBefore(const std::string& id, double unit_mm) const {
+  const auto kept = std::find_if(kept_.begin(), kept_.end(), [&id](const Kept& one) { return one.id == id; });
+  if (kept == kept_.end()) return NoUpload(id);
+  const auto bytes = AllBytes(*kept->spool);
+  if (!bytes.ok()) return bytes.status();
+  auto surface = meshio::ParseSurface(kept->file.name, *bytes, kMillimetre * unit_mm);
+  if (!surface.ok()) return surface.status();
+  return Finished{kept->file, *std::move(surface)};
 }
 
 void Uploads::Keep(Kept kept) {

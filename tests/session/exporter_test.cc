@@ -116,9 +116,9 @@ TEST_F(ExporterTest, EveryNthStepIsAFrameFromTheTimeOn) {
 }
 
 TEST_F(ExporterTest, ProgressGrowsToItsEndAndAnErrorOfItEndsTheExport) {
-  request_.set_seconds(3600);
+  request_.set_seconds(36'000);
   progress_ = [](double share, double seconds) {
-    EXPECT_NEAR(share, seconds / 3600, 1e-9);
+    EXPECT_NEAR(share, seconds / 36'000, 1e-9);
     return absl::CancelledError("enough");
   };
   EXPECT_TRUE(absl::IsCancelled(Export().status()));

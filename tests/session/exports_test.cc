@@ -123,7 +123,7 @@ class UploadsTest : public testing::Test {
     const std::size_t half = bytes.size() / 2;
     EXPECT_EQ(*uploads_.Add(begun->id, 0, bytes.substr(0, half)), static_cast<std::int64_t>(half));
     EXPECT_TRUE(absl::IsFailedPrecondition(uploads_.Finish(begun->id, 1).status())) << "half of it";
-    EXPECT_TRUE(absl::IsOutOfRange(uploads_.Add(begun->id, 0, "again").status()));
+    EXPECT_TRUE(absl::IsOutOfRange(uploads_.Add(begun->id, static_cast<std::int64_t>(half) + 1, "x").status()));
     EXPECT_TRUE(uploads_.Add(begun->id, static_cast<std::int64_t>(half), bytes.substr(half)).ok());
     return uploads_.Finish(begun->id, 1);
   }
@@ -156,6 +156,22 @@ TEST_F(UploadsTest, WhatBrokeOffGoesOnWhereItWas) {
   const auto second = uploads_.Begin("a.obj", sizeof kSurface - 1, hash);
   EXPECT_EQ(second->id, first->id);
   EXPECT_EQ(second->received, 5);
+}
+
+TEST_F(UploadsTest, TwoWhoBringTheSameFileAtOnceShareIt) {
+  const std::string bytes = kSurface, hash = Sha256Hex(bytes);
+  const auto size = static_cast<std::int64_t>(bytes.size());
+  const std::string mine = uploads_.Begin("a.obj", size, hash)->id, other = uploads_.Begin("b.obj", size, hash)->id;
+  EXPECT_EQ(*uploads_.Add(mine, 0, bytes.substr(0, 9)), 9);
+  EXPECT_EQ(*uploads_.Add(other, 0, bytes.substr(0, 5)), 9) << "they are there";
+  EXPECT_EQ(*uploads_.Add(other, 5, bytes.substr(5)), size) << "its first four are there";
+  EXPECT_EQ(*uploads_.Add(mine, 9, bytes.substr(9)), size);
+  const auto first = uploads_.Finish(mine, 1), second = uploads_.Finish(other, 1);
+  ASSERT_TRUE(first.ok()) << first.status();
+  ASSERT_TRUE(second.ok()) << second.status();
+  EXPECT_EQ(first->file.sha256, hash);
+  EXPECT_EQ(first->surface.mesh.vertices, second->surface.mesh.vertices);
+  EXPECT_THAT(uploads_.List(), SizeIs(1));
 }
 
 TEST_F(UploadsTest, EachKindOfBadFileIsRefusedWithItsReason) {
