@@ -6,6 +6,7 @@
 #include "client/commands.h"
 #include "client/print_session.h"
 #include "client/tokens.h"
+#include "phrenic/v1/control.grpc.pb.h"
 #include "phrenic/v1/session.grpc.pb.h"
 
 namespace phrenic::client {
