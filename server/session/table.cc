@@ -18,15 +18,15 @@ constexpr int kLargestPage = 1000;
 
 }  // namespace
 
-Table::Table(Models& models, const stream::Clock& clock, const Limits& limits)
-    : models_(models), clock_(clock), limits_(limits) {}
+Table::Table(Models& models, const stream::Clock& clock, const Limits& limits, store::Store* store)
+    : models_(models), clock_(clock), limits_(limits), store_(store) {}
 
 Table::~Table() { Close(absl::UnavailableError("the server is shutting down")); }
 
 std::string Table::FreeId(const std::string& scene) const {
   return schema::FreeId(scene, "session", [this](const std::string& id) {
     mutex_.AssertHeld();
-    return sessions_.contains(id);
+    return sessions_.contains(id) || lost_.contains(id);
   });
 }
 
@@ -36,6 +36,11 @@ absl::StatusOr<std::string> Table::Reserve(const char* field, const std::string&
   if (closed_.has_value()) return *closed_;
   if (sessions_.contains(wanted)) {
     return absl::AlreadyExistsError(absl::StrCat(field, ": there is a session \"", wanted, "\" already"));
+  }
+  if (const auto lost = lost_.find(wanted); lost != lost_.end()) {
+    return absl::AlreadyExistsError(absl::StrCat(field, ": the store has a session \"", wanted, "\" that could not be ",
+                                                 "restored (", lost->second.problem.message(),
+                                                 "); delete it, or choose another id"));
   }
   if (static_cast<int>(sessions_.size()) >= limits_.sessions) {
     return absl::ResourceExhaustedError(absl::StrCat("there are ", sessions_.size(),
@@ -70,7 +75,8 @@ absl::StatusOr<std::shared_ptr<Session>> Table::Make(const std::string& id, cons
   if (!changes.ok()) return changes.status();
   Session::Fork start{std::move(parameters), model->InitialState(), stable_step};
   if (absl::Status status = ChangePulls(*changes, true, start.state.pulls); !status.ok()) return status;
-  return std::make_shared<Session>(id, model, std::move(start), clock_, limits_.viewers, std::move(control));
+  return std::make_shared<Session>(id, model, std::move(start), clock_, limits_.viewers,
+                                   Session::Origin{std::move(control), Begin(id, *model)});
 }
 
 absl::StatusOr<std::shared_ptr<Session>> Table::MakeFork(const std::string& id, Session& of,
@@ -78,7 +84,7 @@ absl::StatusOr<std::shared_ptr<Session>> Table::MakeFork(const std::string& id, 
   absl::StatusOr<Session::Fork> start = of.MakeFork();
   if (!start.ok()) return start.status();
   return std::make_shared<Session>(id, of.shared_model(), *std::move(start), clock_, limits_.viewers,
-                                   std::move(control));
+                                   Session::Origin{std::move(control), Begin(id, of.model())});
 }
 
 absl::StatusOr<std::shared_ptr<Session>> Table::Create(const v1::CreateSessionRequest& request, ControlBook control) {
@@ -99,6 +105,12 @@ absl::StatusOr<std::shared_ptr<Session>> Table::Admit(const char* field, const s
   const absl::StatusOr<std::string> id = Reserve(field, wanted, scene);
   if (!id.ok()) return id.status();
   absl::StatusOr<std::shared_ptr<Session>> session = make(*id);
+  if (session.ok()) {
+    if (const absl::Status saved = (*session)->Flush(); !saved.ok()) {
+      (*session)->Forget();
+      session = saved;
+    }
+  }
   absl::MutexLock lock(&mutex_);
   if (closed_.has_value()) return *closed_;
   if (session.ok()) {
@@ -141,6 +153,15 @@ Table::Page Table::List(int page_size, const std::string& token) const {
 }
 
 absl::Status Table::Delete(const std::string& id, std::string_view token) {
+  {
+    absl::MutexLock lock(&mutex_);
+    if (const auto lost = lost_.find(id); lost != lost_.end()) {
+      const auto journal = store_->Continue(lost->second);
+      journal->Forget();
+      lost_.erase(lost);
+      return absl::OkStatus();
+    }
+  }
   const absl::StatusOr<std::shared_ptr<Session>> wanted = Find(id);
   if (!wanted.ok()) return wanted.status();
   if (absl::Status status = (*wanted)->CheckControl(token); !status.ok()) return status;
@@ -152,6 +173,8 @@ absl::Status Table::Delete(const std::string& id, std::string_view token) {
     session = std::move(found->second);
     sessions_.erase(found);
   }
+  session->Forget();
+  session->Flush().IgnoreError();
   session->Stop(absl::NotFoundError(absl::StrCat("session ", id, " was deleted")));
   return absl::OkStatus();
 }

@@ -81,7 +81,7 @@ class RunningServer {
     const std::string out = Scratch("server_out");
     pid_ = Start("phrenicd",
                  {"--listen", "127.0.0.1:0", "--web", "127.0.0.1:0", "--web-root",
-                  std::string(PHRENIC_SOURCE_DIR) + "/web", "--start", "none"},
+                  std::string(PHRENIC_SOURCE_DIR) + "/web", "--start", "none", "--store", "none"},
                  out, Scratch("server_err"));
     // It says its port when it listens; there is nothing else to wait on.
     for (int tries = 0; tries < 600 && port_ == 0; ++tries) {

@@ -34,7 +34,7 @@ export class Server {
     mkdirSync(outFolder, { recursive: true });
     const log = createWriteStream(join(outFolder, "phrenicd.log"), { flags: "a" });
     const addresses = ["--listen", `127.0.0.1:${this.listen}`, "--web", `127.0.0.1:${this.web}`];
-    const flags = [...addresses, "--start", this.scene];
+    const flags = [...addresses, "--start", this.scene, "--store", "none"];
     const child = spawn(program("phrenicd"), flags, { stdio: ["ignore", "pipe", "pipe"] });
     child.stdout.pipe(log, { end: false });
     child.stderr.pipe(log, { end: false });

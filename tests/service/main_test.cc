@@ -20,7 +20,7 @@ struct Outcome {
 Outcome RunPhrenicd(const std::string& arguments) {
   Outcome outcome;
   const std::string command =
-      "timeout --preserve-status -k 10 3 " PHRENIC_BINARY_DIR "/phrenicd " + arguments + " 2>&1";
+      "timeout --preserve-status -k 10 3 " PHRENIC_BINARY_DIR "/phrenicd --store none " + arguments + " 2>&1";
   FILE* pipe = popen(command.c_str(), "r");
   std::array<char, 4096> piece{};
   while (std::fgets(piece.data(), piece.size(), pipe) != nullptr) outcome.words += piece.data();
