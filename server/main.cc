@@ -12,6 +12,7 @@
 #include "phrenic/v1/session.grpc.pb.h"
 #include "server/service/address.h"
 #include "server/service/server.h"
+#include "server/store/check.h"
 
 namespace phrenic {
 namespace {
@@ -146,17 +147,31 @@ int Serve(const Flags& flags) {
   return kOk;
 }
 
+int Check(const std::string& folder) {
+  const auto checked = store::CheckStore(folder);
+  if (!checked.ok()) {
+    spdlog::error("{}", std::string(checked.status().message()));
+    return kFailed;
+  }
+  std::fputs(store::Describe(folder, *checked).c_str(), stdout);
+  return checked->whole() ? kOk : kFailed;
+}
+
 int Main(int argc, char** argv) {
   setenv("GRPC_VERBOSITY", "NONE", 0);  // what matters of it comes as a status
   spdlog::set_default_logger(spdlog::stderr_color_mt("phrenicd"));
   CLI::App app("phrenicd: simulates the breathing diaphragm and serves it to viewers and programs.");
   Flags flags;
   AddFlags(app, flags);
+  std::string checked;
+  CLI::App* check = app.add_subcommand("check", "Say what is in a store, and whether it is whole; changes nothing");
+  check->add_option("DIR", checked, "the store's folder")->required();
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kOk : kUsage;
   }
+  if (check->parsed()) return Check(checked);
   return Serve(flags);
 }
 
