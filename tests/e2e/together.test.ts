@@ -50,8 +50,11 @@ test("ASliderMovedHereMovesThere", async () => {
   await there.page.check("#parameter-applyMuscles");
 });
 
-test("ALostServerIsShownAndComesBack", async () => {
+test("ALostServerIsShownAndComesBackWithTheSessionAsItWas", async () => {
   await here.page.click("#play");
+  await server.phrenic("set", "thorax", "breath_force=1.5");
+  await here.waitForTick(await here.tick());
+  const { tick } = await server.session();
   await server.kill();
   await here.waitForLink("lost");
   expect(await here.page.textContent("#link")).toContain("retrying");
@@ -62,6 +65,10 @@ test("ALostServerIsShownAndComesBack", async () => {
   await there.waitForLink("live");
   expect(await here.page.isVisible("#banner-lost")).toBe(false);
   await here.waitForTick(await here.tick());
+  const session = await server.session();
+  expect(session.parameters.breath_force).toBe(1.5);
+  expect(session.state).toBe("SESSION_STATE_PLAYING");
+  expect(Number(session.tick)).toBeGreaterThan(Number(tick) - 1 / session.parameters.time_step);
 });
 
 test("OnlyTheLossWasWorthAComplaint", () => {
