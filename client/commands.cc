@@ -1,10 +1,10 @@
 #include "client/commands.h"
 
-#include <CLI/CLI.hpp>
 #include <iostream>
-#include <map>
 
+#include "client/command_line.h"
 #include "client/comparison.h"
+#include "client/manual.h"
 #include "client/scene_argument.h"
 #include "client/schema_options.h"
 #include "phrenic/v1/compare.pb.h"
@@ -38,25 +38,13 @@ struct AllOptions {
   ExportOptions export_motion;
   ExportsOptions exports;
   UploadOptions upload;
+  CompletionOptions completion;
 };
 
-class CommandLine {
+class Commands {
  public:
-  explicit CommandLine(Context& context) : context_(context) {
-    app_.description(
-        "Phrenic: the breathing diaphragm, simulated. Research and teaching; not for clinical use.\n\n"
-        "  phrenic run thorax --seconds 8 --set breath_force=1.5 --export out.msh   # no server needed\n"
-        "  phrenic scenes                                                           # what a server offers\n"
-        "  phrenic create thorax --play && phrenic watch thorax                     # a session, watched\n");
-    app_.require_subcommand(1);
-    app_.fallthrough();
-    app_.add_option("--server", context_.server, "HOST:PORT of the server")
-        ->envname("PHRENIC_SERVER")
-        ->each([this](const std::string&) { context_.server_given = true; })
-        ->capture_default_str();
-    app_.add_option("-o,--output", context_.output, "table, for people, json, for programs, or csv (studies, compare)")
-        ->transform(CLI::CheckedTransformer(
-            std::map<std::string, Output>{{"table", Output::kTable}, {"json", Output::kJson}, {"csv", Output::kCsv}}));
+  Commands(CLI::App& app, const Context& context, std::function<int()>& chosen)
+      : app_(app), context_(context), chosen_(chosen) {
     AddSceneCommands();
     AddStudies();
     AddCompare();
@@ -66,28 +54,20 @@ class CommandLine {
     AddControlCommands();
     AddExport();
     AddUpload();
-  }
-
-  int ParseAndRun(int argc, char** argv) {
-    try {
-      app_.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-      return app_.exit(error) == 0 ? kOk : kUsage;
-    }
-    return code_;
+    AddItself();
   }
 
  private:
   template <typename Function, typename Options>
   CLI::App* Add(const char* name, const char* help, Function function, Options& options, CLI::App* to = nullptr) {
     CLI::App* command = (to == nullptr ? &app_ : to)->add_subcommand(name, help);
-    command->callback([this, function, &options] { code_ = function(context_, options); });
+    command->callback([this, function, &options] { chosen_ = [&, function] { return function(context_, options); }; });
     return command;
   }
 
   CLI::App* Add(const char* name, const char* help, int (*function)(const Context&), CLI::App* to = nullptr) {
     CLI::App* command = (to == nullptr ? &app_ : to)->add_subcommand(name, help);
-    command->callback([this, function] { code_ = function(context_); });
+    command->callback([this, function] { chosen_ = [&, function] { return function(context_); }; });
     return command;
   }
 
@@ -97,7 +77,7 @@ class CommandLine {
         ->check(CLI::Range(0.5, 50.0));
   }
 
-  static void AddSettings(CLI::App* command, std::vector<std::string>& settings) {
+  static void AddParameters(CLI::App* command, std::vector<std::string>& settings) {
     command->add_option("--set", settings, "name=value of a live parameter; may be repeated")->allow_extra_args(false);
     command->footer("\n" + ParameterHelp());
   }
@@ -120,7 +100,7 @@ class CommandLine {
     CLI::App* command = Add("run", "Run a scene here, with no server, and say how fast it was", &Run, run);
     AddScene(command, run.scene);
     AddPreset(command, run.preset);
-    AddSettings(command, run.settings);
+    AddParameters(command, run.settings);
     AddPulls(command, run.pulls);
     command->add_option("--seconds", run.seconds, "simulated time [s]")
         ->check(CLI::Range(1e-6, 3600.0))
@@ -128,12 +108,12 @@ class CommandLine {
     command->add_option("--export", run.motion.file, "write the motion to this file" + ExportEndings());
     AddMotion(command, run.motion);
     command->add_option("--spool", run.spool_dir, "folder on a disk with room for what an export holds back");
-    command->add_option("--data", run.data_dir, "folder of surface files and of scenes/*.textproto");
+    command->add_option("--data", run.data_dir, "folder of surface files and of scenes/*.textproto")->envname("PHRENIC_DATA");
     PhysiologyOptions& physiology = options_.physiology;
     command =
         Add("physiology", "Let a thorax breathe here, and hold it against published ranges", &Physiology, physiology);
     AddScene(command, physiology.scene);
-    command->add_option("--data", physiology.data_dir, "folder of surface files and of scenes/*.textproto");
+    command->add_option("--data", physiology.data_dir, "folder of surface files and of scenes/*.textproto")->envname("PHRENIC_DATA");
   }
 
   void AddStudies() {
@@ -159,10 +139,10 @@ class CommandLine {
     CLI::App* command = Add(name, help, &Study, options, to);
     AddScene(command, options.scene);
     AddPreset(command, *options.request.mutable_preset());
-    AddSettings(command, options.settings);
+    AddParameters(command, options.settings);
     AddSchemaOptions(command, kind);
     AddFindings(command, options);
-    command->add_option("--data", options.data_dir, "folder of surface files and of scenes/*.textproto");
+    command->add_option("--data", options.data_dir, "folder of surface files and of scenes/*.textproto")->envname("PHRENIC_DATA");
     command->add_option("--id", *options.request.mutable_study_id(), "its name: 1 to 64 of a-z, 0-9 and -");
     command->add_flag("--detach", options.detach,
                       "run it on the server, and do not wait (with --server alone: and wait)");
@@ -285,7 +265,7 @@ class CommandLine {
     CLI::App* command = Add("create", "Create a session", &Create, create);
     AddScene(command, create.scene);
     AddPreset(command, create.preset);
-    AddSettings(command, create.settings);
+    AddParameters(command, create.settings);
     AddPulls(command, create.pulls);
     command->add_option("--id", create.id, "its name: 1 to 64 of a-z, 0-9 and -");
     command->add_flag("--play", create.play, "let it play at once");
@@ -307,6 +287,21 @@ class CommandLine {
     command->add_option("SETTING", set.settings, "name=value");
     AddPreset(command, set.preset);
     command->footer("\n" + ParameterHelp());
+  }
+
+  void AddItself() {
+    Add("doctor", "Say whether all is there, and what to type where it is not", &Doctor);
+    CompletionOptions& completion = options_.completion;
+    Add("completion", "Print what makes a shell complete commands, scenes, sessions and parameters", &PrintCompletion,
+        completion)
+        ->add_option("SHELL", completion.shell, "bash, zsh or fish")
+        ->required();
+    app_.add_subcommand("man", "Print the manual page")->callback([this] {
+      chosen_ = [this] {
+        std::cout << ManualOf(app_);
+        return kOk;
+      };
+    });
   }
 
   void AddPull() {
@@ -391,18 +386,16 @@ class CommandLine {
         ->excludes(positions);
   }
 
-  Context& context_;
+  CLI::App& app_;
+  const Context& context_;
+  std::function<int()>& chosen_;
   AllOptions options_;
-  CLI::App app_{"", "phrenic"};
-  int code_ = kOk;
 };
 
 }  // namespace
 
-int RunCommandLine(int argc, char** argv, Interruption& interruption) {
-  Context context;
-  context.interruption = &interruption;
-  return CommandLine(context).ParseAndRun(argc, argv);
+std::shared_ptr<void> AddCommands(CLI::App& app, const Context& context, std::function<int()>& chosen) {
+  return std::make_shared<Commands>(app, context, chosen);
 }
 
 }  // namespace phrenic::client

@@ -125,6 +125,9 @@ struct ExportOptions {
 struct ExportsOptions {
   std::string id, file;
 };
+struct CompletionOptions {
+  std::string shell;
+};
 struct UploadOptions {
   std::string file;
   double unit_mm = 1;  // in one unit of the file's lengths
@@ -160,9 +163,8 @@ int ListExports(const Context& context);
 int GetExport(const Context& context, const ExportsOptions& options);
 int DeleteExport(const Context& context, const ExportsOptions& options);
 int Upload(const Context& context, const UploadOptions& options);
-
-// Parses the command line and runs the command on it.
-int RunCommandLine(int argc, char** argv, Interruption& interruption);
+int Doctor(const Context& context);
+int PrintCompletion(const Context& context, const CompletionOptions& options);
 
 }  // namespace phrenic::client
 

@@ -12,25 +12,33 @@
 
 #include "absl/status/status.h"
 #include "client/interruption.h"
+#include "client/settings.h"
 
 namespace phrenic::client {
 
 // Exit codes, as scripts may rely on them.
 inline constexpr int kOk = 0, kFailed = 1, kUsage = 2, kUnreachable = 3, kMissed = 4, kInterrupted = 130;
 
-enum class Output { kTable, kJson, kCsv };
+// For people, as one JSON document, as one JSON document a line, and as RFC 4180 has it.
+enum class Output { kTable, kJson, kJsonl, kCsv };
 
 struct Context {
   std::string server = "127.0.0.1:50051";
-  bool server_given = false;  // by a flag or the environment
+  bool server_given = false;  // by a flag, the environment or the settings file
+  std::string viewer;         // "https://host"; empty: where the server says
   Output output = Output::kTable;
   Interruption* interruption = nullptr;  // outlives every command
+  std::vector<Setting> settings;         // as they came
 
-  bool json() const { return output == Output::kJson; }
+  bool json() const { return output == Output::kJson || output == Output::kJsonl; }
 };
 
 // A channel to the server; nothing is sent yet.
 std::shared_ptr<grpc::Channel> Connect(const Context& context);
+
+// The address of the viewer's page of a session, "http://127.0.0.1:8080/?session=class"; empty where the server serves
+// no viewer.
+std::string ViewerLink(const Context& context, const std::string& session);
 
 // Says the error on standard error, "phrenic: what is wrong and what to do", and gives the exit code for it.
 int Fail(const Context& context, const grpc::Status& status);

@@ -1,0 +1,147 @@
+#include "client/help.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "absl/strings/str_replace.h"
+#include "client/argument_kinds.h"
+#include "client/guide.h"
+#include "client/terminal.h"
+
+namespace phrenic::client {
+namespace {
+
+constexpr int kWidest = 100, kIndent = 2, kMeaningAt = 26;
+
+int Width() { return std::min(kWidest, WidthOf(STDOUT_FILENO)); }
+
+std::string Heading(const std::string& words) { return absl::StrCat("\n", Painted(words, Ink::kBold, STDOUT_FILENO), "\n"); }
+
+// Two columns; the second begins on a line of its own where the first is too long.
+std::string Pair(const std::string& first, const std::string& second) {
+  const int at = std::min(kMeaningAt, Width() / 3);
+  std::string text = std::string(kIndent, ' ') + first;
+  if (second.empty()) return text + "\n";
+  const int used = kIndent + ColumnsOf(first);
+  text += used + 1 < at ? std::string(at - used, ' ') : "\n" + std::string(at, ' ');
+  return text + Wrapped(second, Width(), at) + "\n";
+}
+
+// The range that CLI11 says behind the type: "FLOAT:FLOAT in [0.5 - 50]".
+std::string RangeOf(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  const std::size_t from = type.find(" in ["), to = type.find(']', from);
+  if (from == std::string::npos || to == std::string::npos) return "";
+  return absl::StrReplaceAll(type.substr(from + 5, to - from - 5), {{" - ", " to "}});
+}
+
+std::string Examples(std::span<const Example> examples) {
+  std::string text;
+  for (const Example& example : examples) {
+    absl::StrAppend(&text, "  ", Painted(example.line, Ink::kCyan, STDOUT_FILENO), "\n");
+    if (*example.meaning != 0) absl::StrAppend(&text, "      ", Wrapped(example.meaning, Width(), 6), "\n");
+  }
+  return text;
+}
+
+std::string List(const char* heading, const std::vector<const CLI::Option*>& options) {
+  if (options.empty()) return "";
+  std::string text = Heading(heading);
+  for (const CLI::Option* option : options) text += Pair(LabelOf(*option), MeaningOf(*option));
+  return text;
+}
+
+std::string List(const char* heading, std::span<const Named> rows) {
+  std::string text = Heading(heading);
+  for (const Named& row : rows) text += Pair(row.name, row.meaning);
+  return text;
+}
+
+std::string CommandsOf(const CLI::App& command) {
+  std::string text, group;
+  for (const CLI::App* below : command.get_subcommands([](const CLI::App*) { return true; })) {
+    const CommandGuide* guide = GuideOf(PathOf(*below));
+    const std::string in = guide == nullptr || *guide->group == 0 ? "Commands" : guide->group;
+    if (in != group) text += Heading(in);
+    group = in;
+    text += Pair(below->get_name(), below->get_description());
+  }
+  return text;
+}
+
+std::string OfTheRoot(const CLI::App& command) {
+  std::string text = Wrapped(command.get_description(), Width(), 0) + "\n";
+  text += Heading("Usage") + "  " + UsageOf(command) + "\n" + Heading("Examples") + Examples(FirstExamples());
+  text += CommandsOf(command) + List("Options of every command", OptionsOf(command));
+  text += List("Environment", EnvironmentVariables()) + List("Exit codes", ExitCodes());
+  text += "\n" + Wrapped(SettingsText(), Width(), 0) + "\n";
+  return text + "\n" + Wrapped("`phrenic COMMAND --help` says more; `phrenic man | man -l -` says everything.", Width(), 0) +
+         "\n";
+}
+
+std::string OfACommand(const CLI::App& command) {
+  std::string text = Wrapped(command.get_description(), Width(), 0) + "\n";
+  text += Heading("Usage") + "  " + Wrapped(UsageOf(command), Width(), 6) + "\n";
+  if (const CommandGuide* guide = GuideOf(PathOf(command))) text += Heading("Examples") + Examples(guide->examples);
+  text += CommandsOf(command) + List("Arguments", PositionalsOf(command)) + List("Options", OptionsOf(command));
+  text += command.get_footer();
+  return text + "\n" + Wrapped("And those of every command, as --server and --output: phrenic --help", Width(), 0) + "\n";
+}
+
+}  // namespace
+
+std::vector<const CLI::Option*> PositionalsOf(const CLI::App& command) {
+  return command.get_options([](const CLI::Option* option) { return option->get_positional(); });
+}
+
+std::vector<const CLI::Option*> OptionsOf(const CLI::App& command) {
+  return command.get_options([&](const CLI::Option* option) {
+    return option->nonpositional() && !option->get_group().empty() && option != command.get_help_ptr();
+  });
+}
+
+std::string UsageOf(const CLI::App& command) {
+  const std::string path = PathOf(command);
+  std::string usage = path.empty() ? "phrenic" : absl::StrCat("phrenic ", path);
+  if (command.get_require_subcommand_min() > 0) return usage + " COMMAND [options]";
+  for (const CLI::Option* option : PositionalsOf(command)) {
+    const bool many = option->get_expected_max() >= CLI::detail::expected_max_vector_size;
+    const std::string name = absl::StrCat(option->get_name(true), many ? "..." : "");
+    absl::StrAppend(&usage, " ", option->get_required() ? name : "[" + name + "]");
+  }
+  for (const CLI::Option* option : OptionsOf(command)) {
+    if (option->get_required()) absl::StrAppend(&usage, " ", LabelOf(*option));
+  }
+  return OptionsOf(command).empty() ? usage : usage + " [options]";
+}
+
+std::string LabelOf(const CLI::Option& option) {
+  if (option.get_positional()) return option.get_name(true);
+  const std::string names = absl::StrReplaceAll(option.get_name(false, true), {{",", ", "}});
+  if (option.get_type_size() == 0) return names;
+  const std::string type = option.get_type_name();
+  const std::string base = type.substr(0, type.find_first_of(": ", type.find("HOST:") == 0 ? 5 : 0));
+  const bool number = base == "FLOAT" || base == "INT" || base == "UINT";
+  return absl::StrCat(names, " ", number ? "N" : base == "TEXT" ? "TEXT" : type.substr(0, type.find(":FLOAT in")));
+}
+
+std::string MeaningOf(const CLI::Option& option) {
+  std::vector<std::string> notes;
+  if (option.get_required() && !option.get_positional()) notes.emplace_back("required");
+  if (const std::string range = RangeOf(option); !range.empty()) notes.push_back(range);
+  if (!option.get_default_str().empty()) notes.push_back(option.get_default_str());
+  if (!option.get_envname().empty()) notes.push_back(option.get_envname());
+  for (const CLI::Option* other : option.get_needs()) notes.push_back("with " + other->get_name());
+  for (const CLI::Option* other : option.get_excludes()) notes.push_back("not with " + other->get_name());
+  const std::string& text = option.get_description();
+  return notes.empty() ? text : absl::StrCat(text, text.empty() ? "(" : " (", absl::StrJoin(notes, "; "), ")");
+}
+
+std::string HelpFormatter::make_help(const CLI::App* command, std::string /*name*/, CLI::AppFormatMode /*mode*/) const {
+  return command->get_parent() == nullptr ? OfTheRoot(*command) : OfACommand(*command);
+}
+
+}  // namespace phrenic::client
