@@ -75,7 +75,9 @@ void ApplyTo(const CLI::App& command, CLI::Option& option) {
 
 }  // namespace
 
-std::string NameOf(const CLI::Option& option) { return option.get_positional() ? option.get_name(true) : option.get_name(); }
+std::string NameOf(const CLI::Option& option) {
+  return option.get_positional() ? option.get_name(true) : option.get_name();
+}
 
 std::string PathOf(const CLI::App& command) {
   if (command.get_parent() == nullptr) return "";

@@ -64,7 +64,8 @@ class CommandLine {
         ->capture_default_str();
     app_.add_option("--viewer", context_.viewer, "where links to the viewer lead, if not where the server says")
         ->envname("PHRENIC_VIEWER");
-    app_.add_flag_callback("--no-color", [] { setenv("NO_COLOR", "1", 1); }, "no colours, as with NO_COLOR");
+    app_.add_flag_callback(
+        "--no-color", [] { setenv("NO_COLOR", "1", 1); }, "no colours, as with NO_COLOR");
   }
 
   // Of help that was printed, or of an error; `chosen_` is empty then.
@@ -87,6 +88,7 @@ class CommandLine {
 
   int RunChosen(const Words& words) {
     context_.settings = SettingsOf(app_, words);
+    context_.settings_file = SettingsFile();
     context_.output = OutputOf(output_);
     const CLI::App* command = app_.get_subcommands().front();
     while (!command->get_subcommands().empty()) command = command->get_subcommands().front();

@@ -61,13 +61,14 @@ class Commands {
   template <typename Function, typename Options>
   CLI::App* Add(const char* name, const char* help, Function function, Options& options, CLI::App* to = nullptr) {
     CLI::App* command = (to == nullptr ? &app_ : to)->add_subcommand(name, help);
-    command->callback([this, function, &options] { chosen_ = [&, function] { return function(context_, options); }; });
+    command->callback(
+        [this, function, &options] { chosen_ = [this, function, &options] { return function(context_, options); }; });
     return command;
   }
 
   CLI::App* Add(const char* name, const char* help, int (*function)(const Context&), CLI::App* to = nullptr) {
     CLI::App* command = (to == nullptr ? &app_ : to)->add_subcommand(name, help);
-    command->callback([this, function] { chosen_ = [&, function] { return function(context_); }; });
+    command->callback([this, function] { chosen_ = [this, function] { return function(context_); }; });
     return command;
   }
 
@@ -79,7 +80,6 @@ class Commands {
 
   static void AddParameters(CLI::App* command, std::vector<std::string>& settings) {
     command->add_option("--set", settings, "name=value of a live parameter; may be repeated")->allow_extra_args(false);
-    command->footer("\n" + ParameterHelp());
   }
 
   static void AddPulls(CLI::App* command, std::vector<std::string>& pulls) {
@@ -108,12 +108,14 @@ class Commands {
     command->add_option("--export", run.motion.file, "write the motion to this file" + ExportEndings());
     AddMotion(command, run.motion);
     command->add_option("--spool", run.spool_dir, "folder on a disk with room for what an export holds back");
-    command->add_option("--data", run.data_dir, "folder of surface files and of scenes/*.textproto")->envname("PHRENIC_DATA");
+    command->add_option("--data", run.data_dir, "folder of surface files and of scenes/*.textproto")
+        ->envname("PHRENIC_DATA");
     PhysiologyOptions& physiology = options_.physiology;
     command =
         Add("physiology", "Let a thorax breathe here, and hold it against published ranges", &Physiology, physiology);
     AddScene(command, physiology.scene);
-    command->add_option("--data", physiology.data_dir, "folder of surface files and of scenes/*.textproto")->envname("PHRENIC_DATA");
+    command->add_option("--data", physiology.data_dir, "folder of surface files and of scenes/*.textproto")
+        ->envname("PHRENIC_DATA");
   }
 
   void AddStudies() {
@@ -142,7 +144,8 @@ class Commands {
     AddParameters(command, options.settings);
     AddSchemaOptions(command, kind);
     AddFindings(command, options);
-    command->add_option("--data", options.data_dir, "folder of surface files and of scenes/*.textproto")->envname("PHRENIC_DATA");
+    command->add_option("--data", options.data_dir, "folder of surface files and of scenes/*.textproto")
+        ->envname("PHRENIC_DATA");
     command->add_option("--id", *options.request.mutable_study_id(), "its name: 1 to 64 of a-z, 0-9 and -");
     command->add_flag("--detach", options.detach,
                       "run it on the server, and do not wait (with --server alone: and wait)");
@@ -286,7 +289,6 @@ class Commands {
     command->add_option("SESSION", set.id)->required();
     command->add_option("SETTING", set.settings, "name=value");
     AddPreset(command, set.preset);
-    command->footer("\n" + ParameterHelp());
   }
 
   void AddItself() {

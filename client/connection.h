@@ -9,10 +9,10 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "absl/status/status.h"
 #include "client/interruption.h"
-#include "client/settings.h"
 
 namespace phrenic::client {
 
@@ -22,6 +22,12 @@ inline constexpr int kOk = 0, kFailed = 1, kUsage = 2, kUnreachable = 3, kMissed
 // For people, as one JSON document, as one JSON document a line, and as RFC 4180 has it.
 enum class Output { kTable, kJson, kJsonl, kCsv };
 
+// A setting of every command, for `phrenic doctor`.
+struct Setting {
+  std::string name, value;
+  std::string origin;  // "--server", "PHRENIC_SERVER", the file's path, "default"
+};
+
 struct Context {
   std::string server = "127.0.0.1:50051";
   bool server_given = false;  // by a flag, the environment or the settings file
@@ -29,6 +35,7 @@ struct Context {
   Output output = Output::kTable;
   Interruption* interruption = nullptr;  // outlives every command
   std::vector<Setting> settings;         // as they came
+  std::string settings_file;             // whether it is there or not
 
   bool json() const { return output == Output::kJson || output == Output::kJsonl; }
 };
@@ -40,7 +47,11 @@ std::shared_ptr<grpc::Channel> Connect(const Context& context);
 // no viewer.
 std::string ViewerLink(const Context& context, const std::string& session);
 
-// Says the error on standard error, "phrenic: what is wrong and what to do", and gives the exit code for it.
+// "phrenic:", as errors begin on standard error; red on a terminal.
+std::string ErrorName();
+
+// Says the error on standard error, "phrenic: what is wrong and what to do", what to type next below it, and gives the
+// exit code for it.
 int Fail(const Context& context, const grpc::Status& status);
 int Fail(const absl::Status& status);
 

@@ -24,13 +24,10 @@ const std::vector<CommandGuide>& All() {
        kScenes,
        {{"phrenic patient labels.nii.gz --out data --name anna", "surfaces, a scene, and what had to be guessed"},
         {"phrenic patient labels.nii.gz --out data --name anna --serve", "and then breathing in the viewer"}}},
-      {"phantom",
-       kScenes,
-       {{"phrenic phantom --body tall --out tall.nii.gz", "a volume to try `phrenic patient` on"}}},
+      {"phantom", kScenes, {{"phrenic phantom --body tall --out tall.nii.gz", "a volume to try `phrenic patient` on"}}},
       {"scenes",
        kSessions,
-       {{"phrenic scenes", "names and titles"},
-        {"phrenic scenes -o jsonl", "one a line, for scripts"}}},
+       {{"phrenic scenes", "names and titles"}, {"phrenic scenes -o jsonl", "one a line, for scripts"}}},
       {"describe",
        kSessions,
        {{"phrenic describe thorax", "bodies, what runs, largest stable step, parameters"},
@@ -39,13 +36,10 @@ const std::vector<CommandGuide>& All() {
        kSessions,
        {{"phrenic create thorax --play", "a session called thorax, and the viewer's link"},
         {"phrenic create thorax --id class --preset deep --set breath_length=5", ""}}},
-      {"fork",
-       kSessions,
-       {{"phrenic fork class --id mine --play", "to try something else from the present instant"}}},
+      {"fork", kSessions, {{"phrenic fork class --id mine --play", "to try something else from the present instant"}}},
       {"sessions",
        kSessions,
-       {{"phrenic sessions", "what runs, how far, who watches"},
-        {"phrenic sessions -o csv", "for a spreadsheet"}}},
+       {{"phrenic sessions", "what runs, how far, who watches"}, {"phrenic sessions -o csv", "for a spreadsheet"}}},
       {"watch",
        kSessions,
        {{"phrenic watch class", "live bars and the last breaths, in a terminal"},
@@ -63,9 +57,7 @@ const std::vector<CommandGuide>& All() {
        kSessions,
        {{"phrenic play class --speed 0.5", "half as fast as life"},
         {"phrenic play class --fast --until 60", "as fast as the machine can, to t = 60 s"}}},
-      {"step",
-       kSessions,
-       {{"phrenic step class 100 --expected-tick 0 -o json", "with the state's hash"}}},
+      {"step", kSessions, {{"phrenic step class 100 --expected-tick 0 -o json", "with the state's hash"}}},
       {"pause", kSessions, {{"phrenic pause class", ""}}},
       {"reset", kSessions, {{"phrenic reset class", "back to t = 0; parameters stay"}}},
       {"delete", kSessions, {{"phrenic delete class", ""}}},
@@ -76,8 +68,7 @@ const std::vector<CommandGuide>& All() {
         {"phrenic export class motion.msh --seconds 60 --detach", "and fetch it later: phrenic exports get"}}},
       {"exports",
        kSessions,
-       {{"phrenic exports list", ""},
-        {"phrenic exports get class motion.msh", "goes on where it broke off"}}},
+       {{"phrenic exports list", ""}, {"phrenic exports get class motion.msh", "goes on where it broke off"}}},
       {"exports list", "", {{"phrenic exports list", "how far each is"}}},
       {"exports get", "", {{"phrenic exports get class motion.msh", "goes on with what motion.msh.part has"}}},
       {"exports delete", "", {{"phrenic exports delete class", ""}}},
@@ -116,8 +107,7 @@ const std::vector<CommandGuide>& All() {
         {"phrenic completion fish > ~/.config/fish/completions/phrenic.fish", ""}}},
       {"man",
        kItself,
-       {{"phrenic man | man -l -", "read it"},
-        {"phrenic man > ~/.local/share/man/man1/phrenic.1", "install it"}}},
+       {{"phrenic man | man -l -", "read it"}, {"phrenic man > ~/.local/share/man/man1/phrenic.1", "install it"}}},
   };
   return guides;
 }
@@ -155,14 +145,16 @@ struct Synonym {
   const char* command;
 };
 constexpr Synonym kSynonyms[] = {
-    {"ls", "sessions"},       {"list", "sessions"},     {"ps", "sessions"},      {"start", "play"},
-    {"resume", "play"},       {"stop", "pause"},        {"rm", "delete"},        {"remove", "delete"},
-    {"kill", "delete"},       {"new", "create"},        {"open", "create"},      {"add", "create"},
-    {"info", "describe"},     {"show", "describe"},     {"view", "watch"},       {"follow", "watch"},
-    {"get", "exports get"},   {"download", "exports get"}, {"save", "export"},   {"status", "doctor"},
-    {"check", "doctor"},      {"version", "--version"}, {"diff", "compare"},     {"distance", "compare"},
-    {"clone", "fork"},        {"copy", "fork"},         {"simulate", "run"},     {"parameters", "set"},
-    {"breathe", "physiology"}, {"completions", "completion"},
+    {"ls", "sessions"},       {"list", "sessions"},      {"ps", "sessions"},
+    {"start", "play"},        {"resume", "play"},        {"stop", "pause"},
+    {"rm", "delete"},         {"remove", "delete"},      {"kill", "delete"},
+    {"new", "create"},        {"open", "create"},        {"add", "create"},
+    {"info", "describe"},     {"show", "describe"},      {"view", "watch"},
+    {"follow", "watch"},      {"get", "exports get"},    {"download", "exports get"},
+    {"save", "export"},       {"status", "doctor"},      {"check", "doctor"},
+    {"version", "--version"}, {"diff", "compare"},       {"distance", "compare"},
+    {"clone", "fork"},        {"copy", "fork"},          {"simulate", "run"},
+    {"parameters", "set"},    {"breathe", "physiology"}, {"completions", "completion"},
 };
 
 }  // namespace
@@ -179,7 +171,8 @@ std::span<const Named> ExitCodes() { return kExitCodes; }
 std::span<const Named> EnvironmentVariables() { return kVariables; }
 
 std::string SettingsText() {
-  return "A setting comes from the command line, else from the environment, else from the settings file, else it is the "
+  return "A setting comes from the command line, else from the environment, else from the settings file, else it is "
+         "the "
          "default; `phrenic doctor` shows which. The file is $XDG_CONFIG_HOME/phrenic/config.toml: options by their "
          "names, those of one command below its name in brackets.";
 }

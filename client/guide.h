@@ -1,5 +1,5 @@
-// The words of the manual that belong to no single option: groups and examples of the commands, exit codes, environment.
-// Help, man page and errors are made from them.
+// The words of the manual that belong to no single option: groups and examples of the commands, exit codes,
+// environment. Help, man page and errors are made from them.
 #ifndef PHRENIC_CLIENT_GUIDE_H_
 #define PHRENIC_CLIENT_GUIDE_H_
 

@@ -16,18 +16,20 @@ namespace {
 
 constexpr int kWidest = 100, kIndent = 2, kMeaningAt = 26;
 
-int Width() { return std::min(kWidest, WidthOf(STDOUT_FILENO)); }
+int HelpWidth() { return std::min(kWidest, WidthOf(STDOUT_FILENO)); }
 
-std::string Heading(const std::string& words) { return absl::StrCat("\n", Painted(words, Ink::kBold, STDOUT_FILENO), "\n"); }
+std::string Heading(const std::string& words) {
+  return absl::StrCat("\n", Painted(words, Ink::kBold, STDOUT_FILENO), "\n");
+}
 
 // Two columns; the second begins on a line of its own where the first is too long.
 std::string Pair(const std::string& first, const std::string& second) {
-  const int at = std::min(kMeaningAt, Width() / 3);
+  const int at = std::min(kMeaningAt, HelpWidth() / 3);
   std::string text = std::string(kIndent, ' ') + first;
   if (second.empty()) return text + "\n";
   const int used = kIndent + ColumnsOf(first);
   text += used + 1 < at ? std::string(at - used, ' ') : "\n" + std::string(at, ' ');
-  return text + Wrapped(second, Width(), at) + "\n";
+  return text + Wrapped(second, HelpWidth(), at) + "\n";
 }
 
 // The range that CLI11 says behind the type: "FLOAT:FLOAT in [0.5 - 50]".
@@ -42,7 +44,7 @@ std::string Examples(std::span<const Example> examples) {
   std::string text;
   for (const Example& example : examples) {
     absl::StrAppend(&text, "  ", Painted(example.line, Ink::kCyan, STDOUT_FILENO), "\n");
-    if (*example.meaning != 0) absl::StrAppend(&text, "      ", Wrapped(example.meaning, Width(), 6), "\n");
+    if (*example.meaning != 0) absl::StrAppend(&text, "      ", Wrapped(example.meaning, HelpWidth(), 6), "\n");
   }
   return text;
 }
@@ -60,6 +62,12 @@ std::string List(const char* heading, std::span<const Named> rows) {
   return text;
 }
 
+std::string Parameters() {
+  std::string text;
+  for (const ParameterRow& row : ParameterRows()) text += Pair(row.name, MeaningOf(row));
+  return text;
+}
+
 std::string CommandsOf(const CLI::App& command) {
   std::string text, group;
   for (const CLI::App* below : command.get_subcommands([](const CLI::App*) { return true; })) {
@@ -73,22 +81,25 @@ std::string CommandsOf(const CLI::App& command) {
 }
 
 std::string OfTheRoot(const CLI::App& command) {
-  std::string text = Wrapped(command.get_description(), Width(), 0) + "\n";
+  std::string text = Wrapped(command.get_description(), HelpWidth(), 0) + "\n";
   text += Heading("Usage") + "  " + UsageOf(command) + "\n" + Heading("Examples") + Examples(FirstExamples());
   text += CommandsOf(command) + List("Options of every command", OptionsOf(command));
   text += List("Environment", EnvironmentVariables()) + List("Exit codes", ExitCodes());
-  text += "\n" + Wrapped(SettingsText(), Width(), 0) + "\n";
-  return text + "\n" + Wrapped("`phrenic COMMAND --help` says more; `phrenic man | man -l -` says everything.", Width(), 0) +
+  text += "\n" + Wrapped(SettingsText(), HelpWidth(), 0) + "\n";
+  return text + "\n" +
+         Wrapped("`phrenic COMMAND --help` says more; `phrenic man | man -l -` says everything.", HelpWidth(), 0) +
          "\n";
 }
 
 std::string OfACommand(const CLI::App& command) {
-  std::string text = Wrapped(command.get_description(), Width(), 0) + "\n";
-  text += Heading("Usage") + "  " + Wrapped(UsageOf(command), Width(), 6) + "\n";
+  std::string text = Wrapped(command.get_description(), HelpWidth(), 0) + "\n";
+  text += Heading("Usage") + "  " + Wrapped(UsageOf(command), HelpWidth(), 6) + "\n";
   if (const CommandGuide* guide = GuideOf(PathOf(command))) text += Heading("Examples") + Examples(guide->examples);
   text += CommandsOf(command) + List("Arguments", PositionalsOf(command)) + List("Options", OptionsOf(command));
+  if (SetsParameters(command)) text += Heading("Parameters") + Parameters();
   text += command.get_footer();
-  return text + "\n" + Wrapped("And those of every command, as --server and --output: phrenic --help", Width(), 0) + "\n";
+  return text + "\n" + Wrapped("And those of every command, as --server and --output: phrenic --help", HelpWidth(), 0) +
+         "\n";
 }
 
 }  // namespace
@@ -138,6 +149,17 @@ std::string MeaningOf(const CLI::Option& option) {
   for (const CLI::Option* other : option.get_excludes()) notes.push_back("not with " + other->get_name());
   const std::string& text = option.get_description();
   return notes.empty() ? text : absl::StrCat(text, text.empty() ? "(" : " (", absl::StrJoin(notes, "; "), ")");
+}
+
+std::string MeaningOf(const ParameterRow& parameter) {
+  return absl::StrCat(parameter.meaning, " (", parameter.range, parameter.unit.empty() ? "" : " ", parameter.unit, "; ",
+                      parameter.default_value, ")");
+}
+
+bool SetsParameters(const CLI::App& command) {
+  return std::ranges::any_of(command.get_options(), [&](const CLI::Option* option) {
+    return KindOf(command, *option).kind == Kind::kSetting;
+  });
 }
 
 std::string HelpFormatter::make_help(const CLI::App* command, std::string /*name*/, CLI::AppFormatMode /*mode*/) const {

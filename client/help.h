@@ -6,12 +6,19 @@
 #include <string>
 #include <vector>
 
+#include "client/scene_argument.h"
+
 namespace phrenic::client {
 
 class HelpFormatter final : public CLI::Formatter {
  public:
   std::string make_help(const CLI::App* command, std::string name, CLI::AppFormatMode mode) const override;
 };
+
+// "Step of the integrator. (s, 1e-07 to 0.1; automatic)".
+std::string MeaningOf(const ParameterRow& parameter);
+// Whether one of the command's arguments sets parameters.
+bool SetsParameters(const CLI::App& command);
 
 // "phrenic run SCENE [options]".
 std::string UsageOf(const CLI::App& command);

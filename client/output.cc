@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <iostream>
 
-
 namespace phrenic::client {
 namespace {
 

@@ -41,6 +41,13 @@ class Progress {
   std::thread drawing_;
 };
 
+// Does what cannot say how far it is, behind its name and the time since it began.
+template <typename Work>
+auto WithProgress(std::string what, Work work) {
+  const Progress progress(std::move(what));
+  return work();
+}
+
 // "12 s", "3 min", "2 h 05 min".
 std::string DurationText(double seconds);
 

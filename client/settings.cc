@@ -15,7 +15,7 @@
 namespace phrenic::client {
 namespace {
 
-std::string Variable(const char* name) {
+std::string Environment(const char* name) {
   const char* value = std::getenv(name);
   return value == nullptr ? "" : value;
 }
@@ -43,7 +43,7 @@ CLI::App* CommandOf(CLI::App& app, const CLI::ConfigItem& item) {
   return command;
 }
 
-std::vector<std::string> NamesOf(const CLI::App& command) {
+std::vector<std::string> SettingNames(const CLI::App& command) {
   std::vector<std::string> names;
   for (const CLI::Option* option : OptionsOf(command)) names.push_back(NameOf(*option).substr(2));
   return names;
@@ -57,8 +57,8 @@ absl::Status Apply(const CLI::ConfigItem& item, CLI::App& app) {
   }
   CLI::Option* option = command->get_option_no_throw("--" + item.name);
   if (option == nullptr) {
-    return absl::InvalidArgumentError(absl::StrCat("there is no setting \"", item.name, "\"",
-                                                   schema::ThereAre(item.name, NamesOf(*command))));
+    return absl::InvalidArgumentError(
+        absl::StrCat("there is no setting \"", item.name, "\"", schema::ThereAre(item.name, SettingNames(*command))));
   }
   if (item.inputs.size() != 1 || option->get_expected_max() > 1) {
     return absl::InvalidArgumentError(absl::StrCat(item.name, " takes several values: give it on the command line"));
@@ -92,16 +92,16 @@ std::string OriginOf(const CLI::Option& option, const std::vector<std::string>& 
 }  // namespace
 
 std::string SettingsFile() {
-  if (const std::string file = Variable("PHRENIC_CONFIG"); !file.empty()) return file;
-  std::string folder = Variable("XDG_CONFIG_HOME");
-  if (const std::string home = Variable("HOME"); folder.empty() && !home.empty()) folder = home + "/.config";
+  if (const std::string file = Environment("PHRENIC_CONFIG"); !file.empty()) return file;
+  std::string folder = Environment("XDG_CONFIG_HOME");
+  if (const std::string home = Environment("HOME"); folder.empty() && !home.empty()) folder = home + "/.config";
   return folder.empty() ? "" : folder + "/phrenic/config.toml";
 }
 
 absl::Status ReadSettingsFile(const std::string& file, CLI::App& app) {
   std::error_code error;
   if (file.empty() || !std::filesystem::exists(file, error)) {
-    if (Variable("PHRENIC_CONFIG").empty()) return absl::OkStatus();
+    if (Environment("PHRENIC_CONFIG").empty()) return absl::OkStatus();
     return absl::NotFoundError(absl::StrCat("PHRENIC_CONFIG: there is no file ", file));
   }
   std::vector<CLI::ConfigItem> items;

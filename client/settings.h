@@ -7,14 +7,9 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "client/connection.h"
 
 namespace phrenic::client {
-
-// A setting of every command, for `phrenic doctor`.
-struct Setting {
-  std::string name, value;
-  std::string origin;  // "--server", "PHRENIC_SERVER", the file's path, "default"
-};
 
 // $PHRENIC_CONFIG, else $XDG_CONFIG_HOME/phrenic/config.toml, else that in ~/.config; empty where no home is known.
 std::string SettingsFile();

@@ -14,7 +14,7 @@
 namespace phrenic::client {
 namespace {
 
-constexpr int kUsualWidth = 80, kLeastWidth = 20;
+constexpr int kUsualWidth = 80, kLeastWidth = 20, kUsualHeight = 24;
 
 std::string Variable(const char* name) {
   const char* value = std::getenv(name);
@@ -39,6 +39,13 @@ const char* CodeOf(Ink ink) {
   return "0";
 }
 
+// All zero where it is no terminal.
+winsize SizeOf(int stream) {
+  winsize size = {};
+  if (isatty(stream) == 0 || ioctl(stream, TIOCGWINSZ, &size) != 0) return {};
+  return size;
+}
+
 bool StartsCharacter(char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }
 
 }  // namespace
@@ -46,9 +53,13 @@ bool StartsCharacter(char c) { return (static_cast<unsigned char>(c) & 0xC0U) !=
 bool IsTerminal(int stream) { return isatty(stream) != 0 && Variable("TERM") != "dumb"; }
 
 int WidthOf(int stream) {
-  winsize size = {};
-  if (isatty(stream) == 0 || ioctl(stream, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return kUsualWidth;
-  return std::max<int>(kLeastWidth, size.ws_col);
+  const winsize size = SizeOf(stream);
+  return size.ws_col == 0 ? kUsualWidth : std::max<int>(kLeastWidth, size.ws_col);
+}
+
+int HeightOf(int stream) {
+  const winsize size = SizeOf(stream);
+  return size.ws_row == 0 ? kUsualHeight : size.ws_row;
 }
 
 bool HasColour(int stream) { return IsTerminal(stream) && Variable("NO_COLOR").empty(); }

@@ -13,6 +13,8 @@ namespace phrenic::client {
 bool IsTerminal(int stream);
 // Columns, 20 at least; 80 where it is no terminal.
 int WidthOf(int stream);
+// Lines; 24 where it is no terminal.
+int HeightOf(int stream);
 // A terminal, unless NO_COLOR is set to anything (no-color.org).
 bool HasColour(int stream);
 // Whether the locale is one of UTF-8.

@@ -1,21 +1,29 @@
 // The commands that change a session and show it as it is then.
 #include <iostream>
+#include <nlohmann/json.hpp>
 
 #include "client/commands.h"
 #include "client/print_session.h"
+#include "client/progress.h"
 #include "client/scene_argument.h"
 #include "phrenic/v1/session.grpc.pb.h"
 
 namespace phrenic::client {
 namespace {
 
+constexpr int kStepsSeconds = 3600;  // a million steps of a large scene are many minutes
+
+// Of one that was made, `viewer` is the link to it; empty: none.
 template <typename Response>
-int Show(const Context& context, const grpc::Status& status, const Response& response) {
+int Show(const Context& context, const grpc::Status& status, const Response& response, const std::string& viewer = "") {
   if (!status.ok()) return Fail(context, status);
   if (context.json()) {
-    std::cout << Json(response) << "\n";
+    auto answer = nlohmann::ordered_json::parse(Json(response));
+    if (!viewer.empty()) answer["viewer"] = viewer;
+    std::cout << answer.dump() << "\n";
   } else {
     PrintSession(response.session(), std::cout);
+    if (!viewer.empty()) std::cout << "  viewer: " << viewer << "\n";
   }
   return response.session().state() == v1::SESSION_STATE_DIVERGED ? kFailed : kOk;
 }
@@ -54,9 +62,11 @@ int Create(const Context& context, const CreateOptions& options) {
   *request.mutable_pulls() = *pulls;
   const auto stub = v1::SessionService::NewStub(Connect(context));
   v1::CreateSessionResponse response;
-  grpc::Status status = Call(context, *stub, &v1::SessionService::Stub::CreateSession, request, &response);
+  grpc::Status status = WithProgress("compiling " + options.scene.scene, [&] {
+    return Call(context, *stub, &v1::SessionService::Stub::CreateSession, request, &response);
+  });
   if (status.ok() && options.play) status = StartPlaying(context, *stub, *response.mutable_session());
-  return Show(context, status, response);
+  return Show(context, status, response, status.ok() ? ViewerLink(context, response.session().id()) : "");
 }
 
 int Fork(const Context& context, const ForkOptions& options) {
@@ -67,7 +77,7 @@ int Fork(const Context& context, const ForkOptions& options) {
   v1::ForkSessionResponse response;
   grpc::Status status = Call(context, *stub, &v1::SessionService::Stub::ForkSession, request, &response);
   if (status.ok() && options.play) status = StartPlaying(context, *stub, *response.mutable_session());
-  return Show(context, status, response);
+  return Show(context, status, response, status.ok() ? ViewerLink(context, response.session().id()) : "");
 }
 
 int Set(const Context& context, const SetOptions& options) {
@@ -119,7 +129,12 @@ int TakeSteps(const Context& context, const StepOptions& options) {
   request.set_session_id(options.id);
   request.set_ticks(options.ticks);
   if (options.expected_tick >= 0) request.set_expected_tick(options.expected_tick);
-  return CallAndShow<v1::StepSessionResponse>(context, &v1::SessionService::Stub::StepSession, request);
+  const auto stub = v1::SessionService::NewStub(Connect(context));
+  v1::StepSessionResponse response;
+  const grpc::Status status = WithProgress("stepping", [&] {
+    return Call(context, *stub, &v1::SessionService::Stub::StepSession, request, &response, kStepsSeconds);
+  });
+  return Show(context, status, response);
 }
 
 int Reset(const Context& context, const SessionOptions& options) {
