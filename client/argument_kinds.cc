@@ -1,9 +1,11 @@
 #include "client/argument_kinds.h"
 
-#include <map>
+#include <algorithm>
 
+#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
+#include "server/schema/fields.h"
 #include "server/schema/names.h"
 
 namespace phrenic::client {
@@ -74,6 +76,20 @@ void ApplyTo(const CLI::App& command, CLI::Option& option) {
 }
 
 }  // namespace
+
+CLI::Validator NumberIn(double low, double high) {
+  v1::Quantity quantity;
+  quantity.set_unit("1");
+  quantity.set_minimum(low);
+  quantity.set_maximum(high);
+  const std::string range = schema::FormatRange(quantity);
+  const auto check = [quantity, range](std::string& text) {
+    double value = 0;
+    if (!absl::SimpleAtod(text, &value)) return absl::StrCat("\"", text, "\" is not a number; allowed is ", range);
+    return schema::NumberProblem(value, &quantity).value_or("");
+  };
+  return CLI::Validator(check, absl::StrCat(" in [", range, "]"));
+}
 
 std::string NameOf(const CLI::Option& option) {
   return option.get_positional() ? option.get_name(true) : option.get_name();

@@ -23,6 +23,9 @@ ArgumentKind KindOf(const CLI::App& command, const CLI::Option& option);
 // the nearest.
 void ApplyKinds(CLI::App& command);
 
+// Refuses what is no number, and what is outside.
+CLI::Validator NumberIn(double low, double high);
+
 // "--seconds" of "-s,--seconds", or a positional's name.
 std::string NameOf(const CLI::Option& option);
 // "run", "study error"; empty for the root.

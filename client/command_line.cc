@@ -40,9 +40,8 @@ class CommandLine {
   }
 
   int Run(Words words) {
-    if (const absl::Status status = ReadSettingsFile(SettingsFile(), app_); !status.ok()) {
-      return Refuse(absl::StrCat(std::string(status.message()), "\n"));
-    }
+    const auto in_file = ReadSettingsFile(SettingsFile(), app_);
+    if (!in_file.ok()) return Refuse(absl::StrCat(in_file.status().message(), "\n"));
     if (!words.empty() && words[0] == kCompleteCommand) {
       PrintCandidates(app_, words.size() > 1 ? words[1] : "");
       return kOk;
@@ -52,7 +51,9 @@ class CommandLine {
       words.emplace_back("--help");
     }
     const int code = Parse(words);
-    return chosen_ ? RunChosen(words) : code;
+    if (!chosen_) return code;
+    context_.settings = SettingsOf(app_, words, *in_file);
+    return RunChosen();
   }
 
  private:
@@ -80,14 +81,13 @@ class CommandLine {
     } catch (const CLI::ParseError& error) {
       chosen_ = nullptr;
       if (!bare) return Refuse(Explain(app_, error));
-      std::cerr << app_.help();
+      std::cerr << ShortHelp(app_);
       return kUsage;
     }
     return kOk;
   }
 
-  int RunChosen(const Words& words) {
-    context_.settings = SettingsOf(app_, words);
+  int RunChosen() {
     context_.settings_file = SettingsFile();
     context_.output = OutputOf(output_);
     const CLI::App* command = app_.get_subcommands().front();

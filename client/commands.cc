@@ -2,6 +2,7 @@
 
 #include <iostream>
 
+#include "client/argument_kinds.h"
 #include "client/command_line.h"
 #include "client/comparison.h"
 #include "client/manual.h"
@@ -75,7 +76,7 @@ class Commands {
   static void AddScene(CLI::App* command, SceneOptions& options) {
     command->add_option("SCENE", options.scene, "name of a scene, or a .textproto file")->required();
     command->add_option("--resolution", options.resolution_mm, "edge length of generated bodies [mm]")
-        ->check(CLI::Range(0.5, 50.0));
+        ->check(NumberIn(0.5, 50.0));
   }
 
   static void AddParameters(CLI::App* command, std::vector<std::string>& settings) {
@@ -103,7 +104,7 @@ class Commands {
     AddParameters(command, run.settings);
     AddPulls(command, run.pulls);
     command->add_option("--seconds", run.seconds, "simulated time [s]")
-        ->check(CLI::Range(1e-6, 3600.0))
+        ->check(NumberIn(1e-6, 3600.0))
         ->capture_default_str();
     command->add_option("--export", run.motion.file, "write the motion to this file" + ExportEndings());
     AddMotion(command, run.motion);
@@ -162,7 +163,7 @@ class Commands {
                         const char* field) {
     const v1::Quantity& quantity = *schema::QuantityOf(*message.FindFieldByName(field));
     command->add_option(flag, value, FieldHelp(message, field))
-        ->check(CLI::Range(quantity.minimum(), quantity.maximum()));
+        ->check(NumberIn(quantity.minimum(), quantity.maximum()));
   }
 
   void AddCompare() {
@@ -193,7 +194,7 @@ class Commands {
 
   static void AddUnit(CLI::App* command, const char* flag, double& unit_mm, const std::string& whose) {
     command->add_option(flag, unit_mm, "millimetres in one unit of " + whose + " lengths")
-        ->check(CLI::Range(1e-6, 1e6))
+        ->check(NumberIn(1e-6, 1e6))
         ->capture_default_str();
   }
 
@@ -231,13 +232,13 @@ class Commands {
     command->add_option("--out", patient.out, "data folder to write surfaces and scene to")->required();
     command->add_option("--name", patient.name, "of the scene: 1 to 64 of a-z, 0-9 and -")->capture_default_str();
     command->add_option("--edge-length", patient.edge_length, "of bones' triangles [mm]; of lungs' half as much again")
-        ->check(CLI::Range(1.0, 20.0))
+        ->check(NumberIn(1.0, 20.0))
         ->capture_default_str();
     command->add_option("--vertices", patient.vertices, "on the diaphragm, about")
-        ->check(CLI::Range(500, 200000))
+        ->check(NumberIn(500, 200000))
         ->capture_default_str();
     command->add_option("--tendon-share", patient.tendon_share, "of the diaphragm's area")
-        ->check(CLI::Range(0.05, 0.5))
+        ->check(NumberIn(0.05, 0.5))
         ->capture_default_str();
     CLI::Option* serve =
         command->add_flag("--serve", patient.serve, "then start phrenicd, which plays it in the viewer");
@@ -252,13 +253,13 @@ class Commands {
     AddLabels(command, phantom.labels);
     command->add_option("--out", phantom.out, "file to write, .nii or .nii.gz")->required();
     command->add_option("--voxel", phantom.voxel, "edge length of a voxel [mm]")
-        ->check(CLI::Range(1.0, 10.0))
+        ->check(NumberIn(1.0, 10.0))
         ->capture_default_str();
     command->add_option("--noise", phantom.noise, "share of voxels at borders that have a neighbour's label")
-        ->check(CLI::Range(0.0, 0.3))
+        ->check(NumberIn(0.0, 0.3))
         ->capture_default_str();
     command->add_option("--holes", phantom.holes, "balls of 3 mm without a label")
-        ->check(CLI::Range(0, 10000))
+        ->check(NumberIn(0, 10000))
         ->capture_default_str();
     command->add_option("--seed", phantom.seed, "of noise and holes")->capture_default_str();
   }
@@ -324,7 +325,7 @@ class Commands {
     PlayOptions& play = options_.play;
     CLI::App* command = Add("play", "Let a session play", &Play, play);
     command->add_option("SESSION", play.id)->required();
-    command->add_option("--speed", play.speed, "simulated seconds a second")->check(CLI::Range(0.01, 100.0));
+    command->add_option("--speed", play.speed, "simulated seconds a second")->check(NumberIn(0.01, 100.0));
     command->add_flag("--fast", play.fast, "as fast as the machine can");
     command->add_option("--until", play.until, "pause at this simulated time [s]");
     StepOptions& step = options_.step;
@@ -380,7 +381,7 @@ class Commands {
     CLI::Option* rate =
         command->add_option("--fps", motion.frames_per_second, "frames a second in the file (10; .glb: 24 a breath)");
     command->add_option("--every", motion.steps_per_frame, FieldHelp(request, "steps_per_frame"))
-        ->check(CLI::Range(1, 1'000'000))
+        ->check(NumberIn(1, 1'000'000))
         ->excludes(rate);
     command->add_option("--body", motion.bodies, "body or layer; may be repeated (all deformable ones)");
     CLI::Option* positions = command->add_flag("--positions", motion.positions, "where vertices are (.msh, .pvd)");

@@ -26,6 +26,12 @@ const CLI::Option* FindOption(const CLI::App& app, const std::string& name) {
   return nullptr;
 }
 
+// Null where there is none of that name.
+const CLI::App* FindBelow(const CLI::App& command, const std::string& name) {
+  const auto found = command.get_subcommands([&](const CLI::App* below) { return below->get_name() == name; });
+  return found.empty() ? nullptr : found.front();
+}
+
 Place PlaceOfLast(const CLI::App& app, const Words& words) {
   Place place{&app};
   for (size_t i = 1; i + 1 < words.size(); ++i) {
@@ -34,9 +40,8 @@ Place PlaceOfLast(const CLI::App& app, const Words& words) {
       place.option = nullptr;
     } else if (absl::StartsWith(word, "-")) {
       const CLI::Option* option = FindOption(*place.command, word);
-      if (option != nullptr && option->get_type_size() > 0) place.option = option;
-    } else if (const CLI::App* below = place.command->get_subcommand_no_throw(word);
-               below != nullptr && place.positionals == 0) {
+      if (option != nullptr && option->get_items_expected_max() > 0) place.option = option;
+    } else if (const CLI::App* below = FindBelow(*place.command, word); below != nullptr && place.positionals == 0) {
       place.command = below;
     } else {
       ++place.positionals;

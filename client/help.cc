@@ -32,12 +32,14 @@ std::string Pair(const std::string& first, const std::string& second) {
   return text + Wrapped(second, HelpWidth(), at) + "\n";
 }
 
-// The range that CLI11 says behind the type: "FLOAT:FLOAT in [0.5 - 50]".
+// The range that NumberIn says behind the type: "FLOAT: in [0.5 to 50]".
+constexpr char kRangeBegins[] = ": in [";
+
 std::string RangeOf(const CLI::Option& option) {
   const std::string type = option.get_type_name();
-  const std::size_t from = type.find(" in ["), to = type.find(']', from);
+  const std::size_t from = type.find(kRangeBegins), to = type.find(']', from);
   if (from == std::string::npos || to == std::string::npos) return "";
-  return absl::StrReplaceAll(type.substr(from + 5, to - from - 5), {{" - ", " to "}});
+  return type.substr(from + sizeof kRangeBegins - 1, to - from - sizeof kRangeBegins + 1);
 }
 
 std::string Examples(std::span<const Example> examples) {
@@ -69,21 +71,30 @@ std::string Parameters() {
 }
 
 std::string CommandsOf(const CLI::App& command) {
+  const auto below = command.get_subcommands([](const CLI::App*) { return true; });
+  std::string text = below.empty() ? "" : Heading("Commands");
+  for (const CLI::App* one : below) text += Pair(one->get_name(), one->get_description());
+  return text;
+}
+
+std::string CommandsByGroup(const CLI::App& root) {
   std::string text, group;
-  for (const CLI::App* below : command.get_subcommands([](const CLI::App*) { return true; })) {
-    const CommandGuide* guide = GuideOf(PathOf(*below));
-    const std::string in = guide == nullptr || *guide->group == 0 ? "Commands" : guide->group;
-    if (in != group) text += Heading(in);
-    group = in;
-    text += Pair(below->get_name(), below->get_description());
+  for (const CommandGuide& guide : Guides()) {
+    if (*guide.group == 0) continue;
+    if (guide.group != group) text += Heading(guide.group);
+    group = guide.group;
+    text += Pair(guide.command, root.get_subcommand(guide.command)->get_description());
   }
   return text;
 }
 
-std::string OfTheRoot(const CLI::App& command) {
-  std::string text = Wrapped(command.get_description(), HelpWidth(), 0) + "\n";
-  text += Heading("Usage") + "  " + UsageOf(command) + "\n" + Heading("Examples") + Examples(FirstExamples());
-  text += CommandsOf(command) + List("Options of every command", OptionsOf(command));
+std::string Beginning(const CLI::App& root) {
+  return absl::StrCat(Wrapped(root.get_description(), HelpWidth(), 0), "\n", Heading("Usage"), "  ", UsageOf(root),
+                      "\n", Heading("Examples"), Examples(FirstExamples()));
+}
+
+std::string OfTheRoot(const CLI::App& root) {
+  std::string text = Beginning(root) + CommandsByGroup(root) + List("Options of every command", OptionsOf(root));
   text += List("Environment", EnvironmentVariables()) + List("Exit codes", ExitCodes());
   text += "\n" + Wrapped(SettingsText(), HelpWidth(), 0) + "\n";
   return text + "\n" +
@@ -96,13 +107,15 @@ std::string OfACommand(const CLI::App& command) {
   text += Heading("Usage") + "  " + Wrapped(UsageOf(command), HelpWidth(), 6) + "\n";
   if (const CommandGuide* guide = GuideOf(PathOf(command))) text += Heading("Examples") + Examples(guide->examples);
   text += CommandsOf(command) + List("Arguments", PositionalsOf(command)) + List("Options", OptionsOf(command));
-  if (SetsParameters(command)) text += Heading("Parameters") + Parameters();
+  if (SetsParameters(command)) text += Heading("Parameters, as NAME=VALUE") + Parameters();
   text += command.get_footer();
   return text + "\n" + Wrapped("And those of every command, as --server and --output: phrenic --help", HelpWidth(), 0) +
          "\n";
 }
 
 }  // namespace
+
+std::string ShortHelp(const CLI::App& root) { return Beginning(root) + "\nAll commands and options: phrenic --help\n"; }
 
 std::vector<const CLI::Option*> PositionalsOf(const CLI::App& command) {
   return command.get_options([](const CLI::Option* option) { return option->get_positional(); });
@@ -132,11 +145,11 @@ std::string UsageOf(const CLI::App& command) {
 std::string LabelOf(const CLI::Option& option) {
   if (option.get_positional()) return option.get_name(true);
   const std::string names = absl::StrReplaceAll(option.get_name(false, true), {{",", ", "}});
-  if (option.get_type_size() == 0) return names;
-  const std::string type = option.get_type_name();
-  const std::string base = type.substr(0, type.find_first_of(": ", type.find("HOST:") == 0 ? 5 : 0));
-  const bool number = base == "FLOAT" || base == "INT" || base == "UINT";
-  return absl::StrCat(names, " ", number ? "N" : base == "TEXT" ? "TEXT" : type.substr(0, type.find(":FLOAT in")));
+  if (option.get_items_expected_max() == 0) return names;
+  const std::string whole = option.get_type_name();
+  const std::string type = whole.substr(0, whole.find(kRangeBegins));
+  const bool number = type == "FLOAT" || type == "INT" || type == "UINT";
+  return absl::StrCat(names, " ", number ? "N" : type);
 }
 
 std::string MeaningOf(const CLI::Option& option) {

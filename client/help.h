@@ -15,6 +15,9 @@ class HelpFormatter final : public CLI::Formatter {
   std::string make_help(const CLI::App* command, std::string name, CLI::AppFormatMode mode) const override;
 };
 
+// For who types no command: how it begins.
+std::string ShortHelp(const CLI::App& root);
+
 // "Step of the integrator. (s, 1e-07 to 0.1; automatic)".
 std::string MeaningOf(const ParameterRow& parameter);
 // Whether one of the command's arguments sets parameters.

@@ -102,7 +102,8 @@ std::vector<Candidate> SettingsFor(const std::string& last) {
 // Of the scene that is named on the line, or that a session named there runs; of all where there is none.
 std::vector<Candidate> PresetsFor(const Server& server, const Words& typed) {
   Words named = typed;
-  for (const v1::Session& session : server.Sessions().sessions()) {
+  const v1::ListSessionsResponse sessions = server.Sessions();
+  for (const v1::Session& session : sessions.sessions()) {
     if (std::ranges::find(typed, session.id()) != typed.end()) named.push_back(session.scene());
   }
   std::vector<Candidate> presets;
@@ -113,35 +114,53 @@ std::vector<Candidate> PresetsFor(const Server& server, const Words& typed) {
   return presets;
 }
 
-std::vector<Candidate> NamesOf(Kind kind, const Server& server, const Words& typed) {
+std::vector<Candidate> ScenesOf(const Server& server) {
   std::vector<Candidate> names;
+  for (const v1::SceneSummary& scene : server.Scenes()) names.push_back({scene.name(), scene.title()});
+  return names;
+}
+
+std::vector<Candidate> SessionsOf(const v1::ListSessionsResponse& all) {
+  std::vector<Candidate> names;
+  for (const v1::Session& one : all.sessions()) names.push_back({one.id(), one.scene_title()});
+  return names;
+}
+
+std::vector<Candidate> ExportsOf(const v1::ListExportsResponse& all) {
+  std::vector<Candidate> names;
+  for (const v1::Export& one : all.exports()) names.push_back({one.id(), one.file_name()});
+  return names;
+}
+
+std::vector<Candidate> StudiesOf(const v1::ListStudiesResponse& all) {
+  std::vector<Candidate> names;
+  for (const v1::Study& one : all.studies()) names.push_back({one.id(), one.scene()});
+  return names;
+}
+
+std::vector<Candidate> NamesOfKind(Kind kind, const Server& server, const Words& typed) {
   switch (kind) {
     case Kind::kScene:
-      for (const v1::SceneSummary& scene : server.Scenes()) names.push_back({scene.name(), scene.title()});
-      break;
+      return ScenesOf(server);
     case Kind::kSession:
-      for (const v1::Session& one : server.Sessions().sessions()) names.push_back({one.id(), one.scene_title()});
-      break;
+      return SessionsOf(server.Sessions());
     case Kind::kExport:
-      for (const v1::Export& one : server.Exports().exports()) names.push_back({one.id(), one.file_name()});
-      break;
+      return ExportsOf(server.Exports());
     case Kind::kStudy:
-      for (const v1::Study& one : server.Studies().studies()) names.push_back({one.id(), one.scene()});
-      break;
+      return StudiesOf(server.Studies());
     case Kind::kPreset:
       return PresetsFor(server, typed);
     case Kind::kSetting:
       return SettingsFor(typed.back());
     default:
-      break;
+      return {};
   }
-  return names;
 }
 
 }  // namespace
 
 Lookup KnownNames(const CLI::App& app) {
-  return [&app](Kind kind, const Words& typed) { return NamesOf(kind, Server(AddressIn(app, typed)), typed); };
+  return [&app](Kind kind, const Words& typed) { return NamesOfKind(kind, Server(AddressIn(app, typed)), typed); };
 }
 
 }  // namespace phrenic::client

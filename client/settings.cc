@@ -34,11 +34,13 @@ int LineOf(const std::string& file, const CLI::ConfigItem& item) {
   return 1;
 }
 
+// Null where there is none.
 CLI::App* CommandOf(CLI::App& app, const CLI::ConfigItem& item) {
   CLI::App* command = &app;
   for (const std::string& name : item.parents) {
-    command = command->get_subcommand_no_throw(name);
-    if (command == nullptr) return nullptr;
+    const auto below = command->get_subcommands([&](const CLI::App* one) { return one->get_name() == name; });
+    if (below.empty()) return nullptr;
+    command = below.front();
   }
   return command;
 }
@@ -83,10 +85,11 @@ bool IsNamedBy(const CLI::Option& option, const std::vector<std::string>& words)
   return false;
 }
 
-std::string OriginOf(const CLI::Option& option, const std::vector<std::string>& words) {
+std::string OriginOf(const CLI::Option& option, const std::vector<std::string>& words,
+                     const std::set<std::string>& in_file) {
   if (IsNamedBy(option, words)) return NameOf(option);
   if (option.count() > 0) return option.get_envname();
-  return option.get_run_callback_for_default() ? SettingsFile() : "default";
+  return in_file.contains(NameOf(option).substr(2)) ? SettingsFile() : "default";
 }
 
 }  // namespace
@@ -98,10 +101,10 @@ std::string SettingsFile() {
   return folder.empty() ? "" : folder + "/phrenic/config.toml";
 }
 
-absl::Status ReadSettingsFile(const std::string& file, CLI::App& app) {
+absl::StatusOr<std::set<std::string>> ReadSettingsFile(const std::string& file, CLI::App& app) {
   std::error_code error;
   if (file.empty() || !std::filesystem::exists(file, error)) {
-    if (Environment("PHRENIC_CONFIG").empty()) return absl::OkStatus();
+    if (Environment("PHRENIC_CONFIG").empty()) return std::set<std::string>();
     return absl::NotFoundError(absl::StrCat("PHRENIC_CONFIG: there is no file ", file));
   }
   std::vector<CLI::ConfigItem> items;
@@ -110,20 +113,23 @@ absl::Status ReadSettingsFile(const std::string& file, CLI::App& app) {
   } catch (const CLI::Error& fault) {
     return absl::InvalidArgumentError(absl::StrCat(file, ": cannot be read as TOML: ", fault.what()));
   }
+  std::set<std::string> names;
   for (const CLI::ConfigItem& item : items) {
+    if (item.parents.empty()) names.insert(item.name);
     if (const absl::Status status = Apply(item, app); !status.ok()) {
       return absl::InvalidArgumentError(absl::StrCat(file, ":", LineOf(file, item), ": ", status.message()));
     }
   }
-  return absl::OkStatus();
+  return names;
 }
 
-std::vector<Setting> SettingsOf(const CLI::App& app, const std::vector<std::string>& words) {
+std::vector<Setting> SettingsOf(const CLI::App& app, const std::vector<std::string>& words,
+                                const std::set<std::string>& in_file) {
   std::vector<Setting> settings;
   for (const CLI::Option* option : OptionsOf(app)) {
-    if (option->get_type_size() == 0) continue;
+    if (option->get_items_expected_max() == 0) continue;
     const std::string value = option->count() > 0 ? option->as<std::string>() : option->get_default_str();
-    settings.push_back({NameOf(*option).substr(2), value, OriginOf(*option, words)});
+    settings.push_back({NameOf(*option).substr(2), value, OriginOf(*option, words, in_file)});
   }
   return settings;
 }

@@ -3,10 +3,11 @@
 #define PHRENIC_CLIENT_SETTINGS_H_
 
 #include <CLI/CLI.hpp>
+#include <set>
 #include <string>
 #include <vector>
 
-#include "absl/status/status.h"
+#include "absl/status/statusor.h"
 #include "client/connection.h"
 
 namespace phrenic::client {
@@ -15,11 +16,13 @@ namespace phrenic::client {
 std::string SettingsFile();
 
 // Makes the file's values the defaults of the tree's options; a file that is not there says nothing. To be called
-// before the command line is parsed. INVALID_ARGUMENT "FILE:LINE: ..." names the setting and those there are.
-absl::Status ReadSettingsFile(const std::string& file, CLI::App& app);
+// before the command line is parsed. Gives the settings of every command that the file has; INVALID_ARGUMENT
+// "FILE:LINE: ..." names the setting and those there are.
+absl::StatusOr<std::set<std::string>> ReadSettingsFile(const std::string& file, CLI::App& app);
 
-// Of the parsed root.
-std::vector<Setting> SettingsOf(const CLI::App& app, const std::vector<std::string>& words);
+// Of the parsed root; `in_file` as ReadSettingsFile gave it.
+std::vector<Setting> SettingsOf(const CLI::App& app, const std::vector<std::string>& words,
+                                const std::set<std::string>& in_file);
 
 }  // namespace phrenic::client
 

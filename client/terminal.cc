@@ -90,13 +90,13 @@ std::string Clipped(const std::string& text, int columns) {
 std::string Wrapped(const std::string& text, int width, int indent) {
   std::string wrapped;
   int column = 0;
-  for (const std::string word : absl::StrSplit(text, ' ', absl::SkipEmpty())) {
-    const int length = ColumnsOf(word);
+  for (const absl::string_view word : absl::StrSplit(text, ' ', absl::SkipEmpty())) {
+    const int length = ColumnsOf({word.data(), word.size()});
     if (column > 0 && indent + column + 1 + length > width) {
       wrapped += "\n" + std::string(indent, ' ');
       column = 0;
     }
-    wrapped += (column > 0 ? " " : "") + word;
+    absl::StrAppend(&wrapped, column > 0 ? " " : "", word);
     column += length + (column > 0 ? 1 : 0);
   }
   return wrapped;

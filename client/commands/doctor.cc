@@ -93,7 +93,7 @@ bool CheckServer(const Context& context, Findings& findings) {
 std::string FindProgram(const std::vector<std::string>& names) {
   const char* path = std::getenv("PATH");
   for (const std::string& name : names) {
-    for (const std::string folder : absl::StrSplit(path == nullptr ? "" : path, ':')) {
+    for (const absl::string_view folder : absl::StrSplit(path == nullptr ? "" : path, ':')) {
       if (access(absl::StrCat(folder, "/", name).c_str(), X_OK) == 0) return absl::StrCat(folder, "/", name);
     }
   }

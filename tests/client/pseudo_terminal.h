@@ -47,19 +47,19 @@ class PseudoTerminal {
 
   void Type(const std::string& keys) const { (void)!write(master_, keys.data(), keys.size()); }
 
-  // Everything written so far, once the words are among what came since the last call, or the program has ended.
+  // What was written since the last call, once the words are among it, or the program has ended.
   std::string ReadUntil(const std::string& words, std::chrono::seconds patience = std::chrono::seconds(20)) {
     const auto end = std::chrono::steady_clock::now() + patience;
-    while (text_.find(words, seen_) == std::string::npos && std::chrono::steady_clock::now() < end) {
+    std::string text;
+    while (text.find(words) == std::string::npos && std::chrono::steady_clock::now() < end) {
       pollfd ready = {master_, POLLIN, 0};
       if (poll(&ready, 1, 100) <= 0) continue;
       char part[4096];
       const ssize_t length = read(master_, part, sizeof part);
       if (length <= 0) break;
-      text_.append(part, static_cast<std::size_t>(length));
+      text.append(part, static_cast<std::size_t>(length));
     }
-    seen_ = text_.size();
-    return text_;
+    return text;
   }
   // To the program's end.
   std::string ReadAll() { return ReadUntil(std::string(1, '\0')); }
@@ -67,8 +67,6 @@ class PseudoTerminal {
  private:
   int master_ = -1;
   pid_t pid_ = -1;
-  std::string text_;
-  std::size_t seen_ = 0;
 };
 
 }  // namespace phrenic::client
