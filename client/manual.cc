@@ -64,7 +64,7 @@ void AddCommand(const CLI::App& command, std::string& text) {
 }  // namespace
 
 std::string ManualOf(const CLI::App& app) {
-  std::string text = ".TH PHRENIC 1 \"\" \"phrenic " PHRENIC_VERSION "\" \"User commands\"\n";
+  std::string text = ".TH PHRENIC 1 \"2026-11-22\" \"phrenic " PHRENIC_VERSION "\" \"User commands\"\n";
   absl::StrAppend(&text, ".SH NAME\nphrenic \\- the breathing diaphragm, simulated\n",
                   ".SH SYNOPSIS\n.B phrenic\n.I COMMAND\n[options]\n", ".SH DESCRIPTION\n",
                   Escaped(app.get_description()), "\n.SH EXAMPLES\n", ExampleItems(FirstExamples()));

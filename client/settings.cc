@@ -15,6 +15,8 @@
 namespace phrenic::client {
 namespace {
 
+constexpr char kSectionBegins[] = "++", kSectionEnds[] = "--";  // CLI11's names of what is no setting
+
 std::string Environment(const char* name) {
   const char* value = std::getenv(name);
   return value == nullptr ? "" : value;
@@ -29,6 +31,7 @@ int LineOf(const std::string& file, const CLI::ConfigItem& item) {
   for (int number = 1; std::getline(in, line); ++number) {
     absl::StripAsciiWhitespace(&line);
     if (absl::StartsWith(line, "[")) inside = line == section;
+    if (inside && item.name == kSectionBegins) return number;
     if (inside && absl::StartsWith(line, item.name)) return number;
   }
   return 1;
@@ -52,11 +55,11 @@ std::vector<std::string> SettingNames(const CLI::App& command) {
 }
 
 absl::Status Apply(const CLI::ConfigItem& item, CLI::App& app) {
-  if (item.name == "++" || item.name == "--") return absl::OkStatus();  // a command's section begins, or ends
   CLI::App* command = CommandOf(app, item);
   if (command == nullptr) {
     return absl::InvalidArgumentError(absl::StrCat("there is no command [", absl::StrJoin(item.parents, "."), "]"));
   }
+  if (item.name == kSectionBegins || item.name == kSectionEnds) return absl::OkStatus();
   CLI::Option* option = command->get_option_no_throw("--" + item.name);
   if (option == nullptr) {
     return absl::InvalidArgumentError(

@@ -70,7 +70,7 @@ TEST(LiveView, FitsEveryWidthAndShowsTheLastValue) {
   }
   const std::string volume = view.Lines({80, true})[2];
   EXPECT_THAT(volume, testing::HasSubstr("lung volume  0 l"));
-  EXPECT_THAT(volume, testing::HasSubstr("▁▁▂▃▄▅▅▆▇█"));
+  EXPECT_THAT(volume, testing::HasSubstr("▁▁▂▃▄▅▆▇██"));
 }
 
 TEST(LiveView, BeginsAnewWithAReset) {

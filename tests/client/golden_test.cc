@@ -90,7 +90,6 @@ TEST(Golden, AnswersOfAServer) {
       {"create", {"create", "cube-springs", "--id", "class"}},
       {"sessions", {"sessions"}},
       {"sessions-csv", {"sessions", "-o", "csv"}},
-      {"step", {"step", "class", "10"}},
       {"set", {"set", "class", "breath_force=2"}},
       {"fork", {"fork", "class", "--id", "mine"}},
       {"watch-csv", {"watch", "class", "--count", "1", "-o", "csv"}},
