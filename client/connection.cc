@@ -51,7 +51,7 @@ int Fail(const Context& context, const grpc::Status& status) {
   }
   std::cerr << ErrorName() << " " << status.error_message() << "\n";
   if (status.error_code() == grpc::StatusCode::NOT_FOUND) SayWhatThereIs(status.error_message());
-  return kFailed;
+  return status.error_code() == grpc::StatusCode::PERMISSION_DENIED ? kNotAllowed : kFailed;
 }
 
 int Fail(const absl::Status& status) {

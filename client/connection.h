@@ -17,7 +17,8 @@
 namespace phrenic::client {
 
 // Exit codes, as scripts may rely on them.
-inline constexpr int kOk = 0, kFailed = 1, kUsage = 2, kUnreachable = 3, kMissed = 4, kInterrupted = 130;
+inline constexpr int kOk = 0, kFailed = 1, kUsage = 2, kUnreachable = 3, kMissed = 4, kNotAllowed = 5,
+                     kInterrupted = 130;
 
 // For people, as one JSON document, as one JSON document a line, and as RFC 4180 has it.
 enum class Output { kTable, kJson, kJsonl, kCsv };

@@ -53,7 +53,7 @@ TEST(Golden, HelpOfEveryCommand) {
   const Words commands = CommandsBelow("phrenic");
   EXPECT_THAT(commands, testing::IsSupersetOf({"run", "watch", "doctor"}));
   for (const std::string& command : commands) ExpectGoldenHelp({command});
-  for (const std::string command : {"study", "exports"}) {
+  for (const std::string command : {"study", "exports", "control"}) {
     for (const std::string& below : CommandsBelow("phrenic " + command)) ExpectGoldenHelp({command, below});
   }
 }

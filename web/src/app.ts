@@ -1,5 +1,6 @@
 import type { Api } from "./api";
 import { Beside } from "./beside";
+import { CameraLead } from "./camera_lead";
 import type { Clock } from "./clock";
 import type { Body } from "./codec";
 import { Comparisons } from "./comparison";
@@ -8,12 +9,14 @@ import { Controller } from "./controller";
 import { Exports } from "./exports";
 import { Frames } from "./frames";
 import type { CompileReport } from "./gen/phrenic/v1/report_pb";
+import type { Identity } from "./identity";
 import { Looks } from "./looks";
 import { layersPanel } from "./panels/appearance";
 import { banners } from "./panels/banner";
 import type { Chooser } from "./panels/chooser";
 import { comparePanel } from "./panels/compare";
 import { ComparisonCard } from "./panels/comparison_card";
+import { controlBadge, controlled, ControlDialog } from "./panels/control";
 import { download, make, place } from "./panels/dom";
 import { drawers } from "./panels/drawers";
 import { dropZone } from "./panels/drop_zone";
@@ -34,6 +37,7 @@ import { uploadPanel } from "./panels/upload";
 import { viewBar } from "./panels/view_bar";
 import { SceneTools } from "./scene_tools";
 import { Signal } from "./signal";
+import { refusalWords, Standing } from "./standing";
 import { Studies } from "./studies";
 import { testHook } from "./test_hook";
 import { covered } from "./panels/covered";
@@ -60,6 +64,8 @@ export class App {
   private readonly report = new Signal<CompileReport | undefined>(undefined);
   private readonly link = new Signal<Link>({ kind: "connecting" });
   private readonly controller: Controller;
+  private readonly standing: Standing;
+  private readonly lead: CameraLead;
   private readonly connection: Connection;
   private readonly viewer: Viewer;
   private readonly tools: SceneTools;
@@ -83,10 +89,12 @@ export class App {
     private readonly api: Api,
     private readonly subject: Subject,
     private readonly chooser: Chooser,
+    identity: Identity,
     private readonly clock: Clock,
   ) {
     const { sessionId } = subject;
     this.controller = new Controller(api, sessionId, clock);
+    this.standing = new Standing(api, this.controller, identity, clock);
     this.comparisons = new Comparisons(api, sessionId);
     this.exports = new Exports(api, sessionId);
     this.uploads = new Uploads(api);
@@ -95,6 +103,7 @@ export class App {
     this.pill = new LinkPill(() => this.connection.retryNow());
     this.viewer = new Viewer(place("view") as HTMLCanvasElement, this.around());
     this.tools = new SceneTools(this.viewer, () => this.frames.arrays, this.looks, this.comparisons);
+    this.lead = new CameraLead(api, sessionId, this.standing, this.viewer.rig, clock);
     this.graphs = new Graphs(() => sessionId, this.tools.following);
     this.beside = this.openBeside();
     window.phrenic = testHook(() => this.bodies.value, this.frames, this.viewer);
@@ -111,6 +120,7 @@ export class App {
     setInterval(() => document.hidden || this.graphs.draw(), graphInterval);
     window.addEventListener("pagehide", () => this.controller.leave());
     void this.connection.run();
+    void this.standing.run();
   }
 
   private around() {
@@ -122,6 +132,7 @@ export class App {
         this.margins.show(compass);
         this.tools.drawn(compass);
         this.beside?.follow();
+        this.lead.drawn();
       },
       covered,
       calm: () => reduced.matches,
@@ -142,7 +153,11 @@ export class App {
     const { controller, viewer, tools } = this;
     viewer.letPull(
       () => this.deformable,
-      (body, vertex, force) => controller.pull(body, vertex, force),
+      (body, vertex, force) => {
+        const refused = refusalWords(this.standing.roles.value);
+        if (refused === "") controller.pull(body, vertex, force);
+        else controller.notice.set(refused);
+      },
       (newtons, x, y) => tools.tellForce(newtons, x, y),
     );
     place("cards").append(...tools.cards, this.comparison.element);
@@ -161,7 +176,7 @@ export class App {
     }
     place("annotations-place").append(tools.annotations.element);
     place("cube-place").append(tools.cube.element);
-    place("playback-place").append(playbackPanel(controller));
+    place("playback-place").append(controlled(this.standing, playbackPanel(controller)));
     place("readout-place").append(this.readout.element);
     place("margins").append(...this.margins.elements);
     place("views").append(...viewBar(viewer, place("view")));
@@ -171,7 +186,7 @@ export class App {
   private furnishPanel(): void {
     const { controller, looks } = this;
     place("panel").append(
-      ...parameterSections(controller, this.report),
+      controlled(this.standing, ...parameterSections(controller, this.report)),
       this.tools.panel,
       layersPanel(looks),
       this.probes.element,
@@ -210,10 +225,15 @@ export class App {
       () => controller.undo(),
       () => controller.redo(),
     );
-    document.body.append(share.element, keys);
+    const control = new ControlDialog(this.standing, () => this.lead.follow());
+    document.body.append(share.element, keys, control.element);
     place("share-open").onclick = () => share.show();
     place("help-open").onclick = () => keys.showModal();
-    place("link-place").append(this.viewers.element, this.pill.element);
+    place("link-place").append(
+      controlBadge(this.standing, () => control.show()),
+      this.viewers.element,
+      this.pill.element,
+    );
     place("session-place").append(sessionButton(controller, () => void this.chooser.show()));
   }
 
@@ -228,6 +248,7 @@ export class App {
         this.tools.receive(frame);
         this.viewer.refresh();
       },
+      camera: (camera) => this.lead.receive(camera),
       acknowledged: (response, sent, answered) => this.frames.acknowledged(response, sent, answered),
       scene: (bodies, report) => this.showScene(bodies, report),
     };
