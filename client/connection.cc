@@ -18,11 +18,11 @@ constexpr int kLinkSeconds = 5;  // a link is worth no more
 
 // The command that lists what the error did not find.
 void SayWhatThereIs(const std::string& error) {
-  constexpr std::pair<const char*, const char*> kLists[] = {
+  constexpr std::pair<const char*, const char*> kAnswers[] = {
       {"session_id:", "phrenic sessions; or make one: phrenic create thorax --play"},
       {"export_id:", "phrenic exports list"},
       {"study_id:", "phrenic study list"}};
-  for (const auto& [field, command] : kLists) {
+  for (const auto& [field, command] : kAnswers) {
     if (error.starts_with(field)) std::cerr << "  list them: " << command << "\n";
   }
 }

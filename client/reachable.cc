@@ -11,7 +11,7 @@
 namespace phrenic::client {
 
 bool IsReachable(const std::string& address) {
-  constexpr std::chrono::seconds kPatience(2);
+  constexpr std::chrono::seconds kMostWait(2);
   const auto parts = service::ParseAddress(address);
   if (!parts.ok()) return false;
   boost::asio::io_context io;
@@ -20,7 +20,7 @@ bool IsReachable(const std::string& address) {
   if (error) return false;
   bool reached = false;
   boost::beast::tcp_stream stream(io);
-  stream.expires_after(kPatience);
+  stream.expires_after(kMostWait);
   stream.async_connect(places, [&](const boost::system::error_code& refused, const auto&) { reached = !refused; });
   io.run();
   return reached;

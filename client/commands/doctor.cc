@@ -134,12 +134,12 @@ std::string Sign(const std::string& verdict) {
 }
 
 void Print(const Findings& findings) {
-  constexpr int kAt = 6;
+  constexpr int kRemedyAt = 6;
   for (const Finding& finding : findings) {
     std::cout << Sign(finding.verdict) << "  "
-              << Wrapped(absl::StrCat(finding.what, ": ", finding.found), WidthOf(STDOUT_FILENO), kAt) << "\n";
+              << Wrapped(absl::StrCat(finding.what, ": ", finding.found), WidthOf(STDOUT_FILENO), kRemedyAt) << "\n";
     if (!finding.remedy.empty()) {
-      std::cout << std::string(kAt, ' ') << Wrapped(finding.remedy, WidthOf(STDOUT_FILENO), kAt) << "\n";
+      std::cout << std::string(kRemedyAt, ' ') << Wrapped(finding.remedy, WidthOf(STDOUT_FILENO), kRemedyAt) << "\n";
     }
   }
 }

@@ -48,6 +48,13 @@ TEST(Complete, KnowsParametersTheirValuesAndPresets) {
   EXPECT_THAT(Asked("phrenic run thorax --server 127.0.0.1:1 --preset de"), testing::StartsWith("deep\t"));
 }
 
+TEST(Scripts, OfBashAreCleanForShellcheck) {
+  if (system("shellcheck --version >/dev/null 2>&1") != 0) GTEST_SKIP() << "shellcheck is not installed";
+  const std::string script = WriteScratch("completion.bash", Phrenic({"completion", "bash"}).out),
+                    said = Scratch("said");
+  EXPECT_EQ(system(("shellcheck -s bash " + script + " >" + said).c_str()), 0) << ReadAll(said);
+}
+
 // What is typed, and what the tab key adds to it.
 struct Typed {
   std::string line, added;
