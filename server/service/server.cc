@@ -15,6 +15,7 @@
 #include "server/service/export_service.h"
 #include "server/service/frame_service.h"
 #include "server/service/scene_service.h"
+#include "server/service/server_service.h"
 #include "server/service/session_service.h"
 #include "server/service/study_service.h"
 #include "server/service/upload_service.h"
@@ -74,7 +75,8 @@ struct Server::Parts {
         export_service(table, exports),
         upload_service(uploads, options.limits),
         study_service(models, options.web_root),
-        compare_service(table, options.limits.exports) {}
+        compare_service(table, options.limits.exports),
+        server_service(std::filesystem::exists(options.web_root + "/index.html"), !options.data_dir.empty()) {}
 
   absl::Status Restore(const ServerOptions& options);
   absl::Status Serve(const ServerOptions& options);
@@ -94,6 +96,7 @@ struct Server::Parts {
   UploadService upload_service;
   StudyService study_service;
   CompareService compare_service;
+  ServerService server_service;
   std::unique_ptr<grpc::Server> grpc;
   std::unique_ptr<WebGateway> web;
   int port = 0;
@@ -127,6 +130,7 @@ absl::Status Server::Parts::Serve(const ServerOptions& options) {
   builder.RegisterService(&upload_service);
   builder.RegisterService(&study_service);
   builder.RegisterService(&compare_service);
+  builder.RegisterService(&server_service);
   grpc = builder.BuildAndStart();
   if (grpc == nullptr) return CannotListen(options.listen, "the port is in use, or the address is not this machine's");
   return absl::OkStatus();
@@ -146,6 +150,7 @@ absl::Status Server::Parts::ServeWeb(const ServerOptions& options) {
   auto gateway = WebGateway::Start(web_options, grpc->InProcessChannel(arguments));
   if (!gateway.ok()) return gateway.status();
   web = *std::move(gateway);
+  server_service.set_web_port(web->port());
   return absl::OkStatus();
 }
 

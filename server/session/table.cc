@@ -4,10 +4,10 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_join.h"
 #include "server/mechanics/compile.h"
 #include "server/mechanics/pulls.h"
 #include "server/schema/id.h"
+#include "server/schema/names.h"
 #include "server/schema/schema.h"
 
 namespace phrenic::session {
@@ -126,8 +126,8 @@ absl::Status Table::NoSession(const std::string& id) const {
   for (const auto& [other, session] : sessions_) {
     if (session != nullptr) ids.push_back(other);
   }
-  return absl::NotFoundError(absl::StrCat("session_id: there is no session \"", schema::ShortId(id), "\"; there are ",
-                                          ids.empty() ? "none" : absl::StrJoin(ids, ", ")));
+  return absl::NotFoundError(
+      absl::StrCat("session_id: there is no session \"", schema::ShortId(id), "\"", schema::ThereAre(id, ids)));
 }
 
 absl::StatusOr<std::shared_ptr<Session>> Table::Find(const std::string& id) const {
