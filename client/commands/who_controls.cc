@@ -6,12 +6,13 @@
 #include "client/commands.h"
 #include "client/print_session.h"
 #include "client/tokens.h"
+#include "phrenic/v1/control.grpc.pb.h"
 #include "phrenic/v1/session.grpc.pb.h"
 
 namespace phrenic::client {
 namespace {
 
-using Stub = v1::ControlService::Stub;
+using Controls = v1::ControlService::Stub;
 
 template <typename Response>
 int ShowAnswer(const Context& context, const grpc::Status& status, const Response& response) {
@@ -39,15 +40,15 @@ std::string LoginName() {
 }
 
 // Enters under the name, or stays, and keeps the token. Who is known keeps their name where none is given.
-grpc::Status Enter(const Context& context, Stub& stub, const TakeControlOptions& options) {
+grpc::Status Enter(const Context& context, Controls& stub, const TakeControlOptions& options) {
   auto request = Signed<v1::EnterSessionRequest>(context, options.id);
   request.set_name(options.name);
   request.set_time_to_live(60 * options.minutes);
   v1::EnterSessionResponse entered;
-  grpc::Status status = Call(context, stub, &Stub::EnterSession, request, &entered);
+  grpc::Status status = Call(context, stub, &Controls::EnterSession, request, &entered);
   if (status.error_code() == grpc::StatusCode::INVALID_ARGUMENT && options.name.empty()) {
     request.set_name(LoginName());
-    status = Call(context, stub, &Stub::EnterSession, request, &entered);
+    status = Call(context, stub, &Controls::EnterSession, request, &entered);
   }
   if (status.ok()) KeepToken(context, options.id, entered.control_token());
   return status;
@@ -69,7 +70,7 @@ int TakeControl(const Context& context, const TakeControlOptions& options) {
   if (const grpc::Status entered = Enter(context, *stub, options); !entered.ok()) return Fail(context, entered);
   v1::TakeControlResponse response;
   const auto request = Signed<v1::TakeControlRequest>(context, options.id);
-  const grpc::Status status = Call(context, *stub, &Stub::TakeControl, request, &response);
+  const grpc::Status status = Call(context, *stub, &Controls::TakeControl, request, &response);
   const int code = ShowAnswer(context, status, response);
   if (code != kOk || response.granted()) return code;
   std::cerr << "phrenic: " << response.control().controller()
@@ -82,7 +83,7 @@ int HandControl(const Context& context, const HandControlOptions& options) {
   request.set_name(options.name);
   const auto stub = v1::ControlService::NewStub(Connect(context));
   v1::HandControlResponse response;
-  return ShowAnswer(context, Call(context, *stub, &Stub::HandControl, request, &response), response);
+  return ShowAnswer(context, Call(context, *stub, &Controls::HandControl, request, &response), response);
 }
 
 int LendControl(const Context& context, const SessionOptions& options) {
@@ -90,14 +91,14 @@ int LendControl(const Context& context, const SessionOptions& options) {
   request.set_everybody(true);
   const auto stub = v1::ControlService::NewStub(Connect(context));
   v1::HandControlResponse response;
-  return ShowAnswer(context, Call(context, *stub, &Stub::HandControl, request, &response), response);
+  return ShowAnswer(context, Call(context, *stub, &Controls::HandControl, request, &response), response);
 }
 
 int ReleaseControl(const Context& context, const SessionOptions& options) {
   const auto request = Signed<v1::ReleaseControlRequest>(context, options.id);
   const auto stub = v1::ControlService::NewStub(Connect(context));
   v1::ReleaseControlResponse response;
-  return ShowAnswer(context, Call(context, *stub, &Stub::ReleaseControl, request, &response), response);
+  return ShowAnswer(context, Call(context, *stub, &Controls::ReleaseControl, request, &response), response);
 }
 
 }  // namespace phrenic::client
