@@ -34,6 +34,11 @@ Request Signed(const Context& context, const std::string& id) {
   return request;
 }
 
+absl::Status NotThere(const std::string& id) {
+  return absl::FailedPreconditionError(absl::StrCat("you neither made nor entered the session ", id, " of this server ",
+                                                    "from this account: `phrenic control take ", id, "` first"));
+}
+
 std::string LoginName() {
   const char* name = std::getenv("USER");
   return name == nullptr || *name == '\0' ? "somebody" : name;
@@ -80,6 +85,7 @@ int TakeControl(const Context& context, const TakeControlOptions& options) {
 
 int HandControl(const Context& context, const HandControlOptions& options) {
   auto request = Signed<v1::HandControlRequest>(context, options.id);
+  if (request.control_token().empty()) return Fail(NotThere(options.id));
   request.set_name(options.name);
   const auto stub = v1::ControlService::NewStub(Connect(context));
   v1::HandControlResponse response;
@@ -88,6 +94,7 @@ int HandControl(const Context& context, const HandControlOptions& options) {
 
 int LendControl(const Context& context, const SessionOptions& options) {
   auto request = Signed<v1::HandControlRequest>(context, options.id);
+  if (request.control_token().empty()) return Fail(NotThere(options.id));
   request.set_everybody(true);
   const auto stub = v1::ControlService::NewStub(Connect(context));
   v1::HandControlResponse response;
@@ -96,6 +103,7 @@ int LendControl(const Context& context, const SessionOptions& options) {
 
 int ReleaseControl(const Context& context, const SessionOptions& options) {
   const auto request = Signed<v1::ReleaseControlRequest>(context, options.id);
+  if (request.control_token().empty()) return Fail(NotThere(options.id));
   const auto stub = v1::ControlService::NewStub(Connect(context));
   v1::ReleaseControlResponse response;
   return ShowAnswer(context, Call(context, *stub, &Controls::ReleaseControl, request, &response), response);
