@@ -229,6 +229,17 @@ class CommandLine {
         ->required();
     AddUnit(command, "--unit-mm", convert.unit_mm, "IN's");
     AddUnit(command, "--out-unit-mm", convert.out_unit_mm, "OUT's");
+    command
+        ->add_option(
+            "--repair", convert.repairs,
+            "weld (vertices at one place), slivers (and doubled triangles), fins (pieces that hang on an edge), "
+            "orient (neighbours agree, closed parts face outwards), or all; nothing unless asked for")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(CLI::IsMember({"weld", "slivers", "fins", "orient", "all"}));
+    command->add_option("--within-mm", convert.within_mm, "what is nearer than this is one place, to --repair")
+        ->check(CLI::Range(0.0, 10.0))
+        ->capture_default_str();
   }
 
   void AddUpload() {

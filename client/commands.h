@@ -55,6 +55,8 @@ struct InspectOptions {
 };
 struct ConvertOptions {
   std::string in, out;
+  std::vector<std::string> repairs;  // in the order of Repairs() in convert.cc
+  double within_mm = 1e-3;           // what is nearer is at one place
   double unit_mm = 1, out_unit_mm = 1;  // in one unit of IN's, and of OUT's lengths
 };
 struct PatientOptions {

@@ -10,7 +10,7 @@ import { PresetRow } from "./presets";
 import { pullRow } from "./pulls";
 
 /** What a parameter of the solver has in its name; all others are the breath's. */
-const ofTheSolver = /integrator|step/i;
+const ofTheSolver = /integrator|step|solver/i;
 
 /**
  * The live parameters, one row for each field of the schema, but for those that nothing in the scene answers to. Another
