@@ -1,6 +1,3 @@
-import { mkdtempSync } from "node:fs";
-import { tmpdir } from "node:os";
-import { join } from "node:path";
 import type { Browser } from "playwright-core";
 import { afterAll, beforeAll, expect, test } from "vitest";
 import { launchBrowser, ViewerPage } from "./browser";
@@ -36,7 +33,6 @@ const eye = (viewer: ViewerPage) => viewer.page.evaluate(() => window.phrenic!.e
 const apart = (a: number[], b: number[]) => Math.hypot(...a.map((value, i) => value - b[i]));
 
 beforeAll(async () => {
-  process.env.XDG_STATE_HOME = mkdtempSync(join(tmpdir(), "phrenic-e2e-"));
   server = await Server.start("cube-tensegrity");
   browsers = [await launchBrowser(), await launchBrowser()];
   teacher = await ViewerPage.open(browsers[0], server.url, { width: 1200, height: 700 });
