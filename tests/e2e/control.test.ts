@@ -35,13 +35,13 @@ const apart = (a: number[], b: number[]) => Math.hypot(...a.map((value, i) => va
 beforeAll(async () => {
   server = await Server.start("cube-tensegrity");
   browsers = [await launchBrowser(), await launchBrowser()];
-  teacher = await ViewerPage.open(browsers[0], server.url, { width: 1200, height: 700 });
+  teacher = await ViewerPage.open(browsers[0], server.url);
   // A session of the teacher's own, as anybody makes one; its link is for the class.
   await teacher.page.click("#share-open");
   const opened = teacher.page.waitForURL(/cube-tensegrity-2/, { waitUntil: "commit", timeout: 60_000 });
   await Promise.all([opened, teacher.page.click("#share-fork")]);
   await teacher.waitForPicture();
-  pupil = await ViewerPage.open(browsers[1], teacher.page.url(), { width: 1200, height: 700 });
+  pupil = await ViewerPage.open(browsers[1], teacher.page.url());
 });
 
 afterAll(async () => {

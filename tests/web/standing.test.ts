@@ -72,6 +72,16 @@ test("AnOlderWordAboutControlNeverReplacesANewerOne", () => {
   expect(controller.session.value?.control?.controller).toBe("Anna");
 });
 
+test("NothingIsShownAnewWhereNothingChanged", () => {
+  let shown = 0;
+  standing.roles.subscribe(() => shown++);
+  receive("Anna");
+  receive("Anna");
+  expect(shown).toBe(2);
+  receive("Ben", 2n);
+  expect(shown).toBe(3);
+});
+
 test("CallsAreSignedAndAnsweredTokensAreKept", async () => {
   const asked: string[] = [];
   const transport = createRouterTransport(
