@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -41,13 +42,21 @@ inline std::string WriteScratch(const std::string& name, const std::string& text
   return Scratch(name);
 }
 
+// Whose commands are run: each keeps tokens of their own, in the tests' folder.
+inline std::string& User() {
+  static std::string user = "anna";
+  return user;
+}
+
 // Starts a program of the build with standard output and error in files; it ends with the test.
 inline pid_t Start(const std::string& program, const std::vector<std::string>& arguments, const std::string& out,
                    const std::string& err) {
+  const std::string state = Scratch(User());
   const pid_t pid = fork();
   if (pid != 0) return pid;
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   setenv("XDG_CONFIG_HOME", Scratch("config").c_str(), 1);  // whatever the person who tests has set
+  setenv("XDG_STATE_HOME", state.c_str(), 1);
   const int to_out = open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
   const int to_err = open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
   dup2(to_out, STDOUT_FILENO);

@@ -60,7 +60,9 @@ export class Server {
   /** What the command line says to these words about this server. */
   async phrenic(...words: string[]): Promise<string> {
     const flags = ["--server", `127.0.0.1:${this.listen}`, ...words];
-    return (await promisify(execFile)(program("phrenic"), flags)).stdout;
+    // Its tokens stay in the tests' folder.
+    const env = { ...process.env, XDG_STATE_HOME: join(outFolder, "state") };
+    return (await promisify(execFile)(program("phrenic"), flags, { env })).stdout;
   }
 
   /** The tick at which the session stands once it is paused. */

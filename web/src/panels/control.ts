@@ -39,10 +39,14 @@ export class ControlDialog {
     followed: () => void,
   ) {
     const close = make("button", { type: "button", onclick: () => this.element.close() }, "Close");
-    const { row: follow, input } = switchRow("Follow the camera of who controls", "The picture turns with theirs", (on) => {
-      standing.identity.follows = on;
-      followed();
-    });
+    const { row: follow, input } = switchRow(
+      "Follow the camera of who controls",
+      "The picture turns with theirs",
+      (on) => {
+        standing.identity.follows = on;
+        followed();
+      },
+    );
     input.id = "control-follow";
     input.checked = standing.identity.follows;
     this.name.value = standing.identity.name;
