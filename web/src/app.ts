@@ -94,7 +94,7 @@ export class App {
     this.connection = new Connection(api, sessionId, this.sink(), clock);
     this.pill = new LinkPill(() => this.connection.retryNow());
     this.viewer = new Viewer(place("view") as HTMLCanvasElement, this.around());
-    this.tools = new SceneTools(this.viewer, () => this.frames.arrays, this.looks, this.comparisons);
+    this.tools = new SceneTools(this.viewer, () => this.frames.moment?.arrays, this.looks, this.comparisons);
     this.graphs = new Graphs(() => sessionId, this.tools.following);
     this.beside = this.openBeside();
     window.phrenic = testHook(() => this.bodies.value, this.frames, this.viewer);
@@ -116,8 +116,9 @@ export class App {
   private around() {
     const reduced = matchMedia("(prefers-reduced-motion: reduce)");
     return {
-      source: () => this.frames.arrays,
-      update: (arrays: NonNullable<Frames["arrays"]>) => this.tools.update(this.frames.frame?.time ?? 0, arrays),
+      advance: () => this.frames.advance(this.clock.now(), reduced.matches),
+      source: () => this.frames.moment?.arrays,
+      update: (arrays: NonNullable<Frames["arrays"]>) => this.tools.update(this.frames.moment?.time ?? 0, arrays),
       drawn: (compass: Parameters<Margins["show"]>[0]) => {
         this.margins.show(compass);
         this.tools.drawn(compass);
@@ -226,7 +227,6 @@ export class App {
         this.frames.receive(frame, this.clock.now());
         this.graphs.receive(frame);
         this.tools.receive(frame);
-        this.viewer.refresh();
       },
       acknowledged: (response, sent, answered) => this.frames.acknowledged(response, sent, answered),
       scene: (bodies, report) => this.showScene(bodies, report),

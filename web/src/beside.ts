@@ -48,7 +48,8 @@ export class Beside {
     this.element = make("div", { id: "beside" }, canvas, head, this.differences);
     this.viewer = new Viewer(canvas, {
       ...first.around,
-      source: () => this.frames.arrays,
+      advance: () => this.frames.advance(this.clock.now(), first.around.calm()),
+      source: () => this.frames.moment?.arrays,
       drawn: () => {
         if (this.leads) first.viewer.rig.follow(this.viewer.rig);
       },
@@ -88,7 +89,6 @@ export class Beside {
       frame: (frame) => {
         this.frames.receive(frame, this.clock.now());
         this.time.textContent = `${frame.time.toFixed(2)} s`;
-        this.viewer.refresh();
       },
     };
   }
