@@ -9,6 +9,7 @@
 #include "absl/strings/str_format.h"
 #include "server/mechanics/bodies.h"
 #include "server/mechanics/catalogue.h"
+#include "server/mechanics/presets.h"
 #include "server/mechanics/scene_hash.h"
 #include "server/mechanics/spectrum.h"
 #include "server/schema/schema.h"
@@ -20,6 +21,11 @@ constexpr double kSafety = 0.95;           // of the Lanczos estimate
 constexpr double kChosen = 0.9;            // of the largest stable step
 constexpr double kLongestStep = 1.0 / 60;  // [s]; one step a frame at most
 
+// "action_line": the name of the field that is set of the kinds there are.
+std::string KindOf(const v1::Force& force) {
+  return v1::Force::descriptor()->FindFieldByNumber(force.kind_case())->name();
+}
+
 absl::Status AddElements(Draft& draft) {
   const v1::Scene& scene = draft.model.scene;
   for (int i = 0; i < scene.motions_size(); ++i) {
@@ -28,7 +34,9 @@ absl::Status AddElements(Draft& draft) {
   for (int i = 0; i < scene.forces_size(); ++i) {
     auto force = MakeForce(scene.forces(i), absl::StrCat("forces[", i, "]"), draft);
     if (!force.ok()) return force.status();
-    if (*force != nullptr) draft.model.forces.push_back(*std::move(force));
+    if (*force == nullptr) continue;
+    draft.model.forces.push_back(*std::move(force));
+    draft.model.force_kinds.push_back(KindOf(scene.forces(i)));
   }
   for (int i = 0; i < scene.constraints_size(); ++i) {
     auto constraint = MakeConstraint(scene.constraints(i), absl::StrCat("constraints[", i, "]"), draft);
@@ -70,6 +78,12 @@ void ReportIdleParameters(const v1::Scene& scene, v1::CompileReport& report) {
     for (const char* name : {"rib_motion", "pump_handle", "bucket_handle"}) report.add_idle_parameters(name);
   }
   if (!muscles) report.add_idle_parameters("apply_muscles");
+  const auto has_line = [&scene](v1::Side side) {
+    return std::any_of(scene.forces().begin(), scene.forces().end(),
+                       [side](const v1::Force& force) { return force.action_line().side() == side; });
+  };
+  if (!has_line(v1::SIDE_RIGHT)) report.add_idle_parameters("right_activation");
+  if (!has_line(v1::SIDE_LEFT)) report.add_idle_parameters("left_activation");
   if (scene.constraints().empty()) report.add_idle_parameters("apply_links");
 }
 
@@ -141,6 +155,7 @@ absl::StatusOr<std::shared_ptr<const Model>> Compile(const v1::Scene& scene, con
   schema::FillDefaults(&model.scene);
   model.scene.mutable_parameters()->CopyFrom(scene.parameters());
   ResolveParameters(model);
+  CompletePresets(model.scene);
   if (absl::Status status = AddBodies(source, draft); !status.ok()) return status;
   if (absl::Status status = AddElements(draft); !status.ok()) return status;
   if (absl::Status status = AddProbes(draft); !status.ok()) return status;

@@ -8,6 +8,7 @@ import {
 } from "../../web/src/gen/phrenic/v1/compare_pb";
 import {
   FrameService,
+  type GetForcesRequest,
   GetGeometryResponseSchema,
   Placement,
   type WatchFramesResponseSchema,
@@ -63,6 +64,8 @@ export class FakeServer {
   readonly created: CreateSessionRequest[] = [];
   readonly steps: [bigint | undefined, bigint][] = [];
   readonly deleted: string[] = [];
+  /** What was asked of the forces. */
+  readonly forceQuestions: object[] = [];
   readonly comparisons: CompareRequest[] = [];
   /** What a comparison brings, one after the other; one that is a promise is waited for. */
   found: (ComparisonEvent | Promise<ComparisonEvent>)[] = [];
@@ -128,6 +131,16 @@ export class FakeServer {
       ackFrames({ sequence }: { sequence: bigint }) {
         server.acknowledged.push(sequence);
         return server.answer({ unixNanos: 1_000_000_000n, framesPerSecond: 30 });
+      },
+      getForces({ body, vertex, kind }: GetForcesRequest) {
+        server.forceQuestions.push({
+          body,
+          ...(vertex === undefined ? {} : { vertex }),
+          ...(kind === "" ? {} : { kind }),
+        });
+        const forces = vertex === undefined ? [] : [1, 2].map(() => ({ x: 1, y: 2, z: 3 }));
+        const sizes = kind === "" ? new Uint8Array() : bytesOf(new Float32Array([0.5, 0.25]));
+        return server.answer({ kinds: ["springs", "net"], forces, sizes });
       },
       async *getGeometry() {
         server.geometryCalls++;

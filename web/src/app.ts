@@ -6,8 +6,10 @@ import { Comparisons } from "./comparison";
 import { Connection, type Link, type Sink } from "./connection";
 import { Controller } from "./controller";
 import { Exports } from "./exports";
+import { Forces } from "./forces";
 import { Frames } from "./frames";
 import type { CompileReport } from "./gen/phrenic/v1/report_pb";
+import type { Preset } from "./gen/phrenic/v1/scene_pb";
 import { Looks } from "./looks";
 import { layersPanel } from "./panels/appearance";
 import { banners } from "./panels/banner";
@@ -58,6 +60,7 @@ export class App {
   private readonly frames = new Frames();
   private readonly looks = new Looks();
   private readonly report = new Signal<CompileReport | undefined>(undefined);
+  private readonly presets = new Signal<Preset[]>([]);
   private readonly link = new Signal<Link>({ kind: "connecting" });
   private readonly controller: Controller;
   private readonly connection: Connection;
@@ -94,7 +97,13 @@ export class App {
     this.connection = new Connection(api, sessionId, this.sink(), clock);
     this.pill = new LinkPill(() => this.connection.retryNow());
     this.viewer = new Viewer(place("view") as HTMLCanvasElement, this.around());
-    this.tools = new SceneTools(this.viewer, () => this.frames.moment?.arrays, this.looks, this.comparisons);
+    this.tools = new SceneTools(
+      this.viewer,
+      () => this.frames.moment?.arrays,
+      this.looks,
+      this.comparisons,
+      new Forces(api, sessionId),
+    );
     this.graphs = new Graphs(() => sessionId, this.tools.following);
     this.beside = this.openBeside();
     window.phrenic = testHook(() => this.bodies.value, this.frames, this.viewer);
@@ -108,7 +117,7 @@ export class App {
       for (const { layer, opacity, visible } of looks) this.viewer.setLayerOpacity(layer, visible ? opacity : 0);
     });
     setInterval(() => this.tell(), statusInterval);
-    setInterval(() => document.hidden || this.graphs.draw(), graphInterval);
+    setInterval(() => document.hidden || this.draw(), graphInterval);
     window.addEventListener("pagehide", () => this.controller.leave());
     void this.connection.run();
   }
@@ -132,8 +141,8 @@ export class App {
   private openBeside(): Beside | undefined {
     const { sessionId, beside, open } = this.subject;
     if (beside === undefined || beside === sessionId) return undefined;
-    const { viewer, looks, controller } = this;
-    return new Beside(this.api, beside, { viewer, looks, controller, around: this.around() }, this.clock, {
+    const { viewer, looks, controller, presets } = this;
+    return new Beside(this.api, beside, { viewer, looks, controller, presets, around: this.around() }, this.clock, {
       swap: () => open(`?${new URLSearchParams({ session: beside, beside: sessionId })}`),
       close: () => open(`?${new URLSearchParams({ session: sessionId })}`),
     });
@@ -156,6 +165,7 @@ export class App {
         "div",
         { className: "pane-head" },
         make("b", {}, this.subject.sessionId),
+        this.beside.way,
         make("span", {}, "steered"),
       );
       place("stage").append(this.beside.element, head);
@@ -172,7 +182,7 @@ export class App {
   private furnishPanel(): void {
     const { controller, looks } = this;
     place("panel").append(
-      ...parameterSections(controller, this.report),
+      ...parameterSections(controller, this.report, this.subject.open, this.presets),
       this.tools.panel,
       layersPanel(looks),
       this.probes.element,
@@ -256,6 +266,12 @@ export class App {
   private resize(): void {
     this.viewer.resize();
     this.beside?.resize();
+  }
+
+  private draw(): void {
+    this.graphs.draw();
+    const session = this.controller.session.value;
+    this.tools.askForces(`${this.frames.frame?.tick} ${session?.revision}`);
   }
 
   private tell(): void {

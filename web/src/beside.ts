@@ -4,10 +4,13 @@ import { Connection, type Sink } from "./connection";
 import { Controller } from "./controller";
 import { Frames } from "./frames";
 import type { Parameters } from "./gen/phrenic/v1/parameters_pb";
+import type { Preset } from "./gen/phrenic/v1/scene_pb";
 import type { Looks } from "./looks";
 import { formatNumber } from "./numbers";
 import { make } from "./panels/dom";
+import { labelOf, presetOf } from "./panels/presets";
 import { parameterControls } from "./schema";
+import type { Signal } from "./signal";
 import { type Surroundings, Viewer } from "./viewer/viewer";
 
 /** What the picture beside shares with the first. */
@@ -15,12 +18,16 @@ export interface First {
   viewer: Viewer;
   looks: Looks;
   controller: Controller;
+  presets: Signal<Preset[]>;
   around: Pick<Surroundings, "covered" | "calm">;
 }
 
 /** A second session in a picture of its own, with the first one's camera and looks; it plays and pauses with the first. */
 export class Beside {
   readonly element: HTMLElement;
+  /** How the first one breathes, in words. */
+  readonly way = make("span", { className: "way" });
+  private readonly ownWay = make("span", { className: "way" });
   private readonly viewer: Viewer;
   private readonly controller: Controller;
   private readonly frames = new Frames();
@@ -44,7 +51,7 @@ export class Beside {
     swap.onclick = () => actions.swap();
     const close = make("button", { type: "button", className: "small", ariaLabel: `Close ${sessionId}` }, "Close");
     close.onclick = () => actions.close();
-    const head = make("div", { className: "pane-head" }, make("b", {}, sessionId), this.time, swap, close);
+    const head = make("div", { className: "pane-head" }, make("b", {}, sessionId), this.ownWay, this.time, swap, close);
     this.element = make("div", { id: "beside" }, canvas, head, this.differences);
     this.viewer = new Viewer(canvas, {
       ...first.around,
@@ -62,6 +69,7 @@ export class Beside {
     first.controller.companion = this.controller;
     this.controller.session.subscribe(() => this.compare());
     first.controller.session.subscribe(() => this.compare());
+    first.presets.subscribe(() => this.compare());
     first.looks.all.subscribe(() => this.look());
     void new Connection(api, sessionId, this.sink(), clock).run();
   }
@@ -99,10 +107,13 @@ export class Beside {
   }
 
   private compare(): void {
-    const words = differences(
-      this.first.controller.session.value?.parameters,
-      this.controller.session.value?.parameters,
-    );
+    const [here, there] = [this.first.controller, this.controller].map(({ session }) => session.value?.parameters);
+    const words = differences(here, there);
+    const way = (parameters: Parameters | undefined) => {
+      const preset = presetOf(this.first.presets.value, parameters);
+      return preset === undefined ? "" : labelOf(preset);
+    };
+    [this.way.textContent, this.ownWay.textContent] = [way(here), way(there)];
     this.differences.textContent = words === "" ? "The same parameters" : words;
   }
 }
