@@ -21,6 +21,26 @@ constexpr double kSafety = 0.95;           // of the Lanczos estimate
 constexpr double kChosen = 0.9;            // of the largest stable step
 constexpr double kLongestStep = 1.0 / 60;  // [s]; one step a frame at most
 
+// Tells the report how long each stage takes, and all of them.
+class StageClock {
+ public:
+  explicit StageClock(v1::CompileReport& report) : report_(report) {}
+
+  void End(const char* stage) {
+    const auto now = std::chrono::steady_clock::now();
+    const double seconds = std::chrono::duration<double>(now - start_).count();
+    v1::StageTime& row = *report_.add_stages();
+    row.set_name(stage);
+    row.set_seconds(seconds);
+    report_.set_compile_seconds(report_.compile_seconds() + seconds);
+    start_ = now;
+  }
+
+ private:
+  v1::CompileReport& report_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
 // "action_line": the name of the field that is set of the kinds there are.
 std::string KindOf(const v1::Force& force) {
   return v1::Force::descriptor()->FindFieldByNumber(force.kind_case())->name();
@@ -147,7 +167,6 @@ void ChooseStep(Model& model) {
 }  // namespace
 
 absl::StatusOr<std::shared_ptr<const Model>> Compile(const v1::Scene& scene, const MeshSource& source) {
-  const auto start = std::chrono::steady_clock::now();
   if (absl::Status status = schema::Validate(scene); !status.ok()) return status;
   Draft draft;
   Model& model = draft.model;
@@ -156,17 +175,21 @@ absl::StatusOr<std::shared_ptr<const Model>> Compile(const v1::Scene& scene, con
   model.scene.mutable_parameters()->CopyFrom(scene.parameters());
   ResolveParameters(model);
   CompletePresets(model.scene);
+  StageClock clock(model.report);
   if (absl::Status status = AddBodies(source, draft); !status.ok()) return status;
+  clock.End("bodies");
   if (absl::Status status = AddElements(draft); !status.ok()) return status;
+  clock.End("elements");
   if (absl::Status status = AddProbes(draft); !status.ok()) return status;
   if (absl::Status status = AddMeasures(draft); !status.ok()) return status;
+  clock.End("measures");
   ReportUnused(draft);
   ReportIdleParameters(model.scene, model.report);
   model.report.set_scene(scene.name());
   model.report.set_scene_hash(SceneHash(model));
+  clock.End("hash");
   ChooseStep(model);
-  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-  model.report.set_compile_seconds(taken.count());
+  clock.End("largest step");
   return std::make_shared<const Model>(std::move(model));
 }
 

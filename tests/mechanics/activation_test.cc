@@ -52,7 +52,8 @@ TEST(Activation, OfOneSideDoesNothingToTheOtherOrToAMuscleOfNone) {
 }
 
 TEST(Activation, IsIdleWhereNoMuscleHasItsSide) {
-  const auto& idle = WithMuscle("side: SIDE_LEFT")->report.idle_parameters();
+  const auto model = WithMuscle("side: SIDE_LEFT");
+  const auto& idle = model->report.idle_parameters();
   EXPECT_EQ(std::count(idle.begin(), idle.end(), "left_activation"), 0);
   EXPECT_EQ(std::count(idle.begin(), idle.end(), "right_activation"), 1);
 }

@@ -31,9 +31,10 @@ class Paralysis : public testing::Test {
   }
   static void TearDownTestSuite() { model_.reset(); }
 
-  static Descent BreatheIn(const std::string& preset) {
+  static Descent BreatheIn(const std::string& preset, const v1::Parameters& changes = {}) {
     v1::Parameters parameters = model_->parameters;
     parameters.MergeFrom(*FindPreset(model_->scene, preset));
+    parameters.MergeFrom(changes);
     State state = model_->InitialState();
     Workspace work = model_->MakeWorkspace();
     while (state.phase < 0.5) {
@@ -60,10 +61,25 @@ TEST_F(Paralysis, ADomeWithoutMuscleMovesLessThanAThirdOfTheOther) {
   EXPECT_LT(left.left, left.right / 3);
 }
 
-TEST_F(Paralysis, WeakensNoOtherBreath) {
+TEST_F(Paralysis, OfOneSideIsThatOfTheOtherMirrored) {
+  const Descent right = BreatheIn("paralysis-right"), left = BreatheIn("paralysis-left");
+  EXPECT_NEAR(right.right, left.left, 2);
+  EXPECT_NEAR(right.left, left.right, 4);  // the right muscle is the stronger one
+}
+
+TEST_F(Paralysis, ASniffDrawsTheParalysedDomeUp) {
+  v1::Parameters changes;
+  changes.set_right_activation(0);
+  const Descent sniff = BreatheIn("sniff", changes);
+  EXPECT_LT(sniff.right, -1);
+  EXPECT_GT(sniff.left, 5);
+}
+
+TEST_F(Paralysis, IsNoPartOfOtherBreaths) {
   const Descent quiet = BreatheIn("quiet"), weak = BreatheIn("COPD"), sniff = BreatheIn("sniff");
-  EXPECT_LT(weak.right, 0.7 * quiet.right);
-  EXPECT_GT(sniff.right, 0.7 * quiet.right);
+  EXPECT_LT(weak.right, quiet.right / 2);
+  EXPECT_GT(sniff.right, 20);  // 29 +- 6 mm in men (Boussuges 2009)
+  EXPECT_LT(sniff.right, 35);
 }
 
 }  // namespace
