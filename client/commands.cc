@@ -35,6 +35,8 @@ struct AllOptions {
   PullOptions pull;
   PlayOptions play;
   StepOptions step;
+  TakeControlOptions take_control;
+  HandControlOptions hand_control;
   ExportOptions export_motion;
   ExportsOptions exports;
   UploadOptions upload;
@@ -63,7 +65,8 @@ class CommandLine {
     AddFileCommands();
     AddPatientCommands();
     AddSessionCommands();
-    AddControlCommands();
+    AddChanges();
+    AddControl();
     AddExport();
     AddUpload();
   }
@@ -226,6 +229,17 @@ class CommandLine {
         ->required();
     AddUnit(command, "--unit-mm", convert.unit_mm, "IN's");
     AddUnit(command, "--out-unit-mm", convert.out_unit_mm, "OUT's");
+    command
+        ->add_option(
+            "--repair", convert.repairs,
+            "weld (vertices at one place), slivers (and doubled triangles), fins (pieces that hang on an edge), "
+            "orient (neighbours agree, closed parts face outwards), or all; nothing unless asked for")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(CLI::IsMember({"weld", "slivers", "fins", "orient", "all"}));
+    command->add_option("--within-mm", convert.within_mm, "what is nearer than this is one place, to --repair")
+        ->check(CLI::Range(0.0, 10.0))
+        ->capture_default_str();
   }
 
   void AddUpload() {
@@ -289,11 +303,13 @@ class CommandLine {
     AddPulls(command, create.pulls);
     command->add_option("--id", create.id, "its name: 1 to 64 of a-z, 0-9 and -");
     command->add_flag("--play", create.play, "let it play at once");
+    AddOwner(command, create.mine, create.name);
     ForkOptions& fork = options_.fork;
     command = Add("fork", "Make another session that stands where this one stands", &Fork, fork);
     command->add_option("SESSION", fork.id)->required();
     command->add_option("--id", fork.fork_id, "its name: 1 to 64 of a-z, 0-9 and -");
     command->add_flag("--play", fork.play, "let it play at once");
+    AddOwner(command, fork.mine, fork.name);
     Add("sessions", "List the sessions", &Sessions);
     WatchOptions& watch = options_.watch;
     command = Add("watch", "Print a session's numbers as they come", &Watch, watch);
@@ -306,7 +322,41 @@ class CommandLine {
     command->add_option("SESSION", set.id)->required();
     command->add_option("SETTING", set.settings, "name=value");
     AddPreset(command, set.preset);
+    command->add_option("--at-tick", set.at_tick, "let the change wait until the session stands at this tick");
+    command->add_option("--expected-revision", set.expected_revision, "refuse when the session is at another revision");
+    AddRequestId(command, set.request_id);
     command->footer("\n" + ParameterHelp());
+  }
+
+  static void AddOwner(CLI::App* command, bool& mine, std::string& name) {
+    command->add_flag("--mine", mine, "nobody else may change it, unless you hand control over");
+    command->add_option("--name", name, "what others see you as: its owner");
+  }
+
+  static void AddRequestId(CLI::App* command, std::string& id) {
+    command->add_option("--request-id", id, "a repeat under the same id does nothing more and is answered alike");
+  }
+
+  void AddControl() {
+    CLI::App* control = app_.add_subcommand("control", "Who may change a session: one at a time, or everybody");
+    control->require_subcommand(1);
+    const auto add = [this, control](const char* name, const char* help, auto function, auto& options) {
+      CLI::App* command = Add(name, help, function, options, control);
+      command->add_option("SESSION", options.id)->required();
+      return command;
+    };
+    add("show", "Say who controls it, who is there, and who asks", &ShowControl, options_.session);
+    TakeControlOptions& take = options_.take_control;
+    CLI::App* command = add("take", "Take control, or ask whoever has it; the owner takes it back", &TakeControl, take);
+    command->add_option("--name", take.name, "what others see you as (your login name)");
+    command->add_option("--minutes", take.minutes, "how long it stays yours without a command of yours")
+        ->check(CLI::Range(1.0 / 60, 60.0))
+        ->capture_default_str();
+    HandControlOptions& hand = options_.hand_control;
+    command = add("hand", "Hand control to somebody who is there", &HandControl, hand);
+    command->add_option("NAME", hand.name, "as `phrenic control show` lists them")->required();
+    add("lend", "Let everybody control it", &LendControl, options_.session);
+    add("release", "Give control back, or ask for it no more", &ReleaseControl, options_.session);
   }
 
   void AddPull() {
@@ -322,7 +372,7 @@ class CommandLine {
     command->add_flag("--release", pull.release, "let go of all others");
   }
 
-  void AddControlCommands() {
+  void AddChanges() {
     AddPull();
     PlayOptions& play = options_.play;
     CLI::App* command = Add("play", "Let a session play", &Play, play);
@@ -335,6 +385,7 @@ class CommandLine {
     command->add_option("SESSION", step.id)->required();
     command->add_option("TICKS", step.ticks, "number of steps")->capture_default_str();
     command->add_option("--expected-tick", step.expected_tick, "refuse when the session is at another tick");
+    AddRequestId(command, step.request_id);
     AddOnSession("pause", "Pause a session", &Pause);
     AddOnSession("reset", "Take a session back to t = 0", &Reset);
     AddOnSession("delete", "Delete a session", &Delete);

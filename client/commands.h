@@ -55,6 +55,8 @@ struct InspectOptions {
 };
 struct ConvertOptions {
   std::string in, out;
+  std::vector<std::string> repairs;  // in the order of Repairs() in convert.cc
+  double within_mm = 1e-3;           // what is nearer is at one place
   double unit_mm = 1, out_unit_mm = 1;  // in one unit of IN's, and of OUT's lengths
 };
 struct PatientOptions {
@@ -79,6 +81,8 @@ struct CreateOptions {
   std::vector<std::string> settings;
   std::vector<std::string> pulls;
   bool play = false;
+  bool mine = false;  // nobody else controls it
+  std::string name;   // the owner's
 };
 struct SessionOptions {
   std::string id;
@@ -87,6 +91,8 @@ struct ForkOptions {
   std::string id;
   std::string fork_id;  // empty: the server chooses
   bool play = false;
+  bool mine = false;
+  std::string name;
 };
 struct WatchOptions {
   std::string id;
@@ -98,6 +104,16 @@ struct SetOptions {
   std::string id;
   std::string preset;
   std::vector<std::string> settings;
+  long at_tick = -1;            // -1: at once
+  long expected_revision = -1;  // -1: any
+  std::string request_id;
+};
+struct TakeControlOptions {
+  std::string id, name;
+  double minutes = 10;
+};
+struct HandControlOptions {
+  std::string id, name;
 };
 struct PullOptions {
   std::string id;
@@ -116,6 +132,7 @@ struct StepOptions {
   std::string id;
   long ticks = 1;
   long expected_tick = -1;  // -1: any
+  std::string request_id;
 };
 struct ExportOptions {
   std::string id;
@@ -155,6 +172,11 @@ int Pause(const Context& context, const SessionOptions& options);
 int TakeSteps(const Context& context, const StepOptions& options);
 int Reset(const Context& context, const SessionOptions& options);
 int Delete(const Context& context, const SessionOptions& options);
+int ShowControl(const Context& context, const SessionOptions& options);
+int TakeControl(const Context& context, const TakeControlOptions& options);
+int HandControl(const Context& context, const HandControlOptions& options);
+int LendControl(const Context& context, const SessionOptions& options);
+int ReleaseControl(const Context& context, const SessionOptions& options);
 int Export(const Context& context, const ExportOptions& options);
 int ListExports(const Context& context);
 int GetExport(const Context& context, const ExportsOptions& options);

@@ -2,14 +2,12 @@
 #ifndef PHRENIC_CLIENT_PART_FILE_H_
 #define PHRENIC_CLIENT_PART_FILE_H_
 
-#include <openssl/evp.h>
-
 #include <cstdint>
 #include <fstream>
-#include <memory>
 #include <string>
 
 #include "absl/status/status.h"
+#include "server/schema/sha256.h"
 
 namespace phrenic::client {
 
@@ -36,7 +34,7 @@ class PartFile {
   const bool keep_;
   bool damaged_ = false;
   std::int64_t bytes_ = 0;
-  std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> hash_;
+  Sha256 hash_;
   std::ofstream out_;
 };
 

@@ -1,6 +1,7 @@
 #include "client/print_session.h"
 
 #include <google/protobuf/descriptor.h>
+#include <google/protobuf/util/time_util.h>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
@@ -57,6 +58,23 @@ std::string SolverText(const v1::Session& session, const char* before, const cha
                          session.solver_iterations(), after);
 }
 
+std::string ControlText(const v1::Control& control) {
+  std::string text = "  everybody controls it\n";
+  if (!control.controller().empty()) {
+    text = absl::StrCat("  controlled by ", control.controller());
+    if (control.has_expire_time()) {
+      absl::StrAppend(&text, ", until ", google::protobuf::util::TimeUtil::ToString(control.expire_time()),
+                      " unless they go on");
+    }
+    text += "\n";
+  }
+  for (const v1::Participant& person : control.participants()) {
+    absl::StrAppend(&text, "  ", person.name(), person.owner() ? ", who owns it" : "",
+                    person.asks() ? ", asks for control" : "", "\n");
+  }
+  return text;
+}
+
 void PrintSession(const v1::Session& session, std::ostream& out) {
   out << absl::StrFormat("%s: %s, %s, t = %.3f s, tick %d, revision %d, %d viewers\n", session.id(), session.scene(),
                          StateName(session.state()), session.time(), session.tick(), session.revision(),
@@ -69,6 +87,8 @@ void PrintSession(const v1::Session& session, std::ostream& out) {
   out << "  " << ParametersLine(session.parameters()) << "\n";
   out << SolverText(session, "  solver: ", "\n");
   out << ResidualText(session, "  constraints kept within ", "\n");
+  if (!session.control().controller().empty()) out << ControlText(session.control());
+  if (session.waiting_updates() > 0) out << "  " << session.waiting_updates() << " changes wait for their tick\n";
   for (const v1::Pull& pull : session.pulls()) {
     out << absl::StrFormat("  pulled by (%g, %g, %g) N at vertex %d of %s\n", pull.force().x(), pull.force().y(),
                            pull.force().z(), pull.vertex(), pull.body());

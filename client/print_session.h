@@ -21,6 +21,9 @@ std::string ResidualText(const v1::Session& session, const char* before, const c
 // What the last implicit step's solver left, "8.1e-04 left after 12 iterations" between two words; "" where none ran.
 std::string SolverText(const v1::Session& session, const char* before, const char* after);
 
+// Who controls a session, who is there and who asks, a line each.
+std::string ControlText(const v1::Control& control);
+
 // A few lines: state, time, pace, parameters, constraints, pulls, and why it diverged where it has.
 void PrintSession(const v1::Session& session, std::ostream& out);
 

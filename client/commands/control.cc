@@ -4,6 +4,7 @@
 #include "client/commands.h"
 #include "client/print_session.h"
 #include "client/scene_argument.h"
+#include "client/tokens.h"
 #include "phrenic/v1/session.grpc.pb.h"
 
 namespace phrenic::client {
@@ -21,7 +22,8 @@ int Show(const Context& context, const grpc::Status& status, const Response& res
 }
 
 template <typename Response, typename Method, typename Request>
-int CallAndShow(const Context& context, Method method, const Request& request) {
+int CallAndShow(const Context& context, Method method, Request request) {
+  request.set_control_token(TokenOf(context, request.session_id()));
   const auto stub = v1::SessionService::NewStub(Connect(context));
   Response response;
   return Show(context, Call(context, *stub, method, request, &response), response);
@@ -31,10 +33,24 @@ int CallAndShow(const Context& context, Method method, const Request& request) {
 grpc::Status StartPlaying(const Context& context, v1::SessionService::Stub& stub, v1::Session& session) {
   v1::PlaySessionRequest request;
   request.set_session_id(session.id());
+  request.set_control_token(TokenOf(context, session.id()));
   v1::PlaySessionResponse playing;
   grpc::Status status = Call(context, stub, &v1::SessionService::Stub::PlaySession, request, &playing);
   if (status.ok()) session = playing.session();
   return status;
+}
+
+v1::ControlPolicy PolicyOf(bool mine) { return mine ? v1::CONTROL_POLICY_OWNER : v1::CONTROL_POLICY_EVERYBODY; }
+
+// Of a session that was just made: keeps the owner's token, and lets it play where that was asked for.
+template <typename Response>
+int ShowOwn(const Context& context, v1::SessionService::Stub& stub, grpc::Status status, bool play,
+            Response& response) {
+  if (status.ok() && !response.control_token().empty()) {
+    KeepToken(context, response.session().id(), response.control_token());
+  }
+  if (status.ok() && play) status = StartPlaying(context, stub, *response.mutable_session());
+  return Show(context, status, response);
 }
 
 }  // namespace
@@ -43,6 +59,8 @@ int Create(const Context& context, const CreateOptions& options) {
   v1::CreateSessionRequest request;
   request.set_preset(options.preset);
   request.set_session_id(options.id);
+  request.set_control(PolicyOf(options.mine));
+  request.set_owner_name(options.name);
   absl::StatusOr<v1::SceneSource> source = ReadSceneArgument(options.scene.scene, options.scene.resolution_mm);
   if (!source.ok()) return Fail(source.status());
   *request.mutable_source() = *std::move(source);
@@ -54,20 +72,20 @@ int Create(const Context& context, const CreateOptions& options) {
   *request.mutable_pulls() = *pulls;
   const auto stub = v1::SessionService::NewStub(Connect(context));
   v1::CreateSessionResponse response;
-  grpc::Status status = Call(context, *stub, &v1::SessionService::Stub::CreateSession, request, &response);
-  if (status.ok() && options.play) status = StartPlaying(context, *stub, *response.mutable_session());
-  return Show(context, status, response);
+  const grpc::Status status = Call(context, *stub, &v1::SessionService::Stub::CreateSession, request, &response);
+  return ShowOwn(context, *stub, status, options.play, response);
 }
 
 int Fork(const Context& context, const ForkOptions& options) {
   v1::ForkSessionRequest request;
   request.set_session_id(options.id);
   request.set_fork_id(options.fork_id);
+  request.set_control(PolicyOf(options.mine));
+  request.set_owner_name(options.name);
   const auto stub = v1::SessionService::NewStub(Connect(context));
   v1::ForkSessionResponse response;
-  grpc::Status status = Call(context, *stub, &v1::SessionService::Stub::ForkSession, request, &response);
-  if (status.ok() && options.play) status = StartPlaying(context, *stub, *response.mutable_session());
-  return Show(context, status, response);
+  const grpc::Status status = Call(context, *stub, &v1::SessionService::Stub::ForkSession, request, &response);
+  return ShowOwn(context, *stub, status, options.play, response);
 }
 
 int Set(const Context& context, const SetOptions& options) {
@@ -77,6 +95,10 @@ int Set(const Context& context, const SetOptions& options) {
   if (!parameters.ok()) return Fail(parameters.status());
   *request.mutable_parameters() = *std::move(parameters);
   request.set_preset(options.preset);
+  if (options.at_tick >= 0) request.set_apply_at_tick(options.at_tick);
+  if (options.expected_revision >= 0) request.set_expected_revision(options.expected_revision);
+  request.set_request_id(options.request_id);
+  request.set_control_token(TokenOf(context, options.id));
   const auto stub = v1::SessionService::NewStub(Connect(context));
   v1::UpdateParametersResponse response;
   const grpc::Status status = Call(context, *stub, &v1::SessionService::Stub::UpdateParameters, request, &response);
@@ -119,6 +141,7 @@ int TakeSteps(const Context& context, const StepOptions& options) {
   request.set_session_id(options.id);
   request.set_ticks(options.ticks);
   if (options.expected_tick >= 0) request.set_expected_tick(options.expected_tick);
+  request.set_request_id(options.request_id);
   return CallAndShow<v1::StepSessionResponse>(context, &v1::SessionService::Stub::StepSession, request);
 }
 
@@ -131,10 +154,12 @@ int Reset(const Context& context, const SessionOptions& options) {
 int Delete(const Context& context, const SessionOptions& options) {
   v1::DeleteSessionRequest request;
   request.set_session_id(options.id);
+  request.set_control_token(TokenOf(context, options.id));
   const auto stub = v1::SessionService::NewStub(Connect(context));
   v1::DeleteSessionResponse response;
   const grpc::Status status = Call(context, *stub, &v1::SessionService::Stub::DeleteSession, request, &response);
   if (!status.ok()) return Fail(context, status);
+  ForgetToken(context, options.id);
   if (context.json()) std::cout << Json(response) << "\n";
   return kOk;
 }

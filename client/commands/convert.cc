@@ -1,10 +1,12 @@
 // `phrenic convert`: a surface file in another format. What was written is read back, and told.
+#include <algorithm>
 #include <iostream>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "client/commands.h"
 #include "client/whole_file.h"
+#include "server/mesh/repair.h"
 #include "server/mesh/units.h"
 #include "server/meshio/meshio.h"
 #include "server/study/inspection.h"
@@ -24,12 +26,27 @@ void TellLosses(const meshio::Surface& in, const Mesh& out) {
   if (in.frame == meshio::Frame::kRas) std::cerr << "phrenic: turned from RAS to LPS\n";
 }
 
+// What `options` asks for, in the order in which each helps the next.
+void Repair(const ConvertOptions& options, Mesh& mesh) {
+  const auto asked = [&options](const char* repair) {
+    const auto& repairs = options.repairs;
+    return std::any_of(repairs.begin(), repairs.end(), [&](const auto& one) { return one == repair || one == "all"; });
+  };
+  const double within = options.within_mm / options.out_unit_mm;
+  const auto tell = [](int count, const char* what) { std::cerr << "phrenic: " << count << what; };
+  if (asked("weld")) tell(Weld(within, mesh), " vertices were at the place of another, or unused\n");
+  if (asked("slivers")) tell(DropSlivers(within, mesh), " triangles were slivers or doubled\n");
+  if (asked("fins")) tell(DropFins(mesh), " triangles were of fins\n");
+  if (asked("orient")) tell(Orient(mesh), " triangles were turned\n");
+}
+
 }  // namespace
 
 int Convert(const Context& context, const ConvertOptions& options) {
   // In units of OUT rather than metres: where the two units are one, every digit is kept.
-  const auto surface = meshio::ReadSurface(options.in, options.unit_mm / options.out_unit_mm);
+  auto surface = meshio::ReadSurface(options.in, options.unit_mm / options.out_unit_mm);
   if (!surface.ok()) return Fail(surface.status());
+  Repair(options, surface->mesh);
   const auto bytes = meshio::Write(options.out, surface->mesh, 1);
   if (!bytes.ok()) return Fail(bytes.status());
   auto written = meshio::ParseSurface(options.out, *bytes, 1);

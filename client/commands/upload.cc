@@ -1,28 +1,20 @@
 // `phrenic upload`: a surface file for scenes of the server.
-#include <openssl/sha.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <sstream>
 
-#include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
 #include "client/commands.h"
 #include "client/progress.h"
 #include "client/surface_report.h"
 #include "phrenic/v1/upload.grpc.pb.h"
+#include "server/schema/sha256.h"
 #include "server/session/uploads.h"
 
 namespace phrenic::client {
 namespace {
-
-std::string Sha256(const std::string& bytes) {
-  unsigned char digest[SHA256_DIGEST_LENGTH];
-  SHA256(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size(), digest);
-  return absl::BytesToHexString(absl::string_view(reinterpret_cast<const char*>(digest), sizeof digest));
-}
 
 absl::StatusOr<std::string> ReadBytes(const std::string& file) {
   std::error_code error;
@@ -71,7 +63,7 @@ int Upload(const Context& context, const UploadOptions& options) {
   v1::BeginUploadRequest begin;
   begin.set_name(std::filesystem::path(options.file).filename().string());
   begin.set_size(static_cast<std::int64_t>(bytes->size()));
-  begin.set_sha256(Sha256(*bytes));
+  begin.set_sha256(Sha256Hex(*bytes));
   v1::BeginUploadResponse begun;
   grpc::Status status = Call(context, *stub, &v1::UploadService::Stub::BeginUpload, begin, &begun);
   if (!status.ok()) return Fail(context, status);

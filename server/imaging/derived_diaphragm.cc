@@ -10,9 +10,9 @@
 #include "absl/strings/str_cat.h"
 #include "server/anatomy/double_layer.h"
 #include "server/anatomy/plane_region.h"
-#include "server/imaging/millimetre.h"
 #include "server/imaging/rim.h"
 #include "server/mesh/topology.h"
+#include "server/mesh/units.h"
 
 namespace phrenic::imaging {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/anatomy/implicit_surface.h"
-#include "server/imaging/millimetre.h"
+#include "server/mesh/units.h"
 
 namespace phrenic::imaging {
 namespace {

@@ -123,11 +123,11 @@ void FillCavities(Mask& mask) {
   for (std::size_t at = 0; at < mask.inside.size(); ++at) mask.inside[at] = outside[at] ? 0 : 1;
 }
 
-std::vector<Mask> Pieces(const Mask& mask, int margin) {
+std::vector<Mask> Pieces(const Mask& mask, int margin, Joint joint) {
   std::vector<std::vector<std::size_t>> found;
   std::vector<bool> seen(mask.inside.size(), false);
   for (std::size_t at = 0; at < mask.inside.size(); ++at) {
-    if (mask.inside[at] == 1 && !seen[at]) found.push_back(Flood(mask, at, 1, 3, seen));
+    if (mask.inside[at] == 1 && !seen[at]) found.push_back(Flood(mask, at, 1, static_cast<int>(joint), seen));
   }
   std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
   constexpr std::size_t kMost = 64;  // the rest are crumbs

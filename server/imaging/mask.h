@@ -42,8 +42,10 @@ void Close(Mask& mask, int reach);
 // Cavities that the outside does not reach become inside.
 void FillCavities(Mask& mask);
 
-// What hangs together by faces, edges or corners, largest first; each in a box of its own with `margin` around.
-std::vector<Mask> Pieces(const Mask& mask, int margin);
+enum class Joint : std::uint8_t { kFaces = 1, kCorners = 3 };  // kCorners: by faces, edges or corners
+
+// What hangs together, largest first; each in a box of its own with `margin` around.
+std::vector<Mask> Pieces(const Mask& mask, int margin, Joint joint = Joint::kCorners);
 
 }  // namespace phrenic::imaging
 

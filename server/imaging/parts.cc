@@ -98,6 +98,28 @@ void AddNumberedRibs(const LabelVolume& volume, const std::vector<Mask>& ribs, s
   }
 }
 
+// The ribs of one label: pieces of what one voxel closes, or where some of those touch of the label as it is, or of
+// what hangs together by faces alone: the first of these with as many pieces as a body has ribs, else with the nearest
+// number.
+std::vector<Mask> RibsOf(const LabelVolume& volume, const Mask& label, int margin) {
+  constexpr int kRibs = 24;
+  std::vector<Mask> best;
+  const auto off = [](const std::vector<Mask>& ribs) { return std::abs(static_cast<int>(ribs.size()) - kRibs); };
+  for (const auto& [reach, joint] : {std::pair(1, Joint::kCorners), {0, Joint::kCorners}, {0, Joint::kFaces}}) {
+    Mask mask = label;
+    Close(mask, reach);
+    std::vector<Mask> pieces = Pieces(mask, margin, joint);
+    std::erase_if(pieces, [&](const Mask& p) { return p.Count() * VoxelVolume(volume) < kSmallestPiece; });
+    if (best.empty() || off(pieces) < off(best)) best = std::move(pieces);
+    if (off(best) == 0) break;
+  }
+  for (Mask& rib : best) {
+    Close(rib, 1);
+    FillCavities(rib);
+  }
+  return best;
+}
+
 double LargestShare(const std::vector<Mask>& pieces) {
   std::size_t all = 0;
   for (const Mask& piece : pieces) all += piece.Count();
@@ -142,14 +164,15 @@ absl::StatusOr<std::vector<Part>> FindParts(const LabelVolume& volume, const v1:
       continue;
     }
     Mask mask = CutOut(volume, extent->first, extent->second, margin);
+    if (label.anatomy().structure() == v1::STRUCTURE_RIB) {
+      std::vector<Mask> found = RibsOf(volume, mask, margin);
+      std::move(found.begin(), found.end(), std::back_inserter(ribs));
+      continue;
+    }
     Close(mask, 1);
     FillCavities(mask);
     std::vector<Mask> pieces = Pieces(mask, margin);
     std::erase_if(pieces, [&](const Mask& p) { return p.Count() * VoxelVolume(volume) < kSmallestPiece; });
-    if (label.anatomy().structure() == v1::STRUCTURE_RIB) {
-      std::move(pieces.begin(), pieces.end(), std::back_inserter(ribs));
-      continue;
-    }
     for (std::size_t p = 0; p < pieces.size(); ++p) {
       const std::size_t voxels = pieces[p].Count();
       parts.push_back(

@@ -8,10 +8,10 @@
 #include "absl/strings/str_format.h"
 #include "server/imaging/label_map.h"
 #include "server/imaging/label_surface.h"
-#include "server/imaging/millimetre.h"
 #include "server/imaging/patient_scene.h"
 #include "server/imaging/rib_axis.h"
 #include "server/mesh/topology.h"
+#include "server/mesh/units.h"
 
 namespace phrenic::imaging {
 namespace {

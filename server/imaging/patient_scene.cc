@@ -6,8 +6,8 @@
 #include <set>
 
 #include "absl/strings/str_cat.h"
-#include "server/imaging/millimetre.h"
 #include "server/imaging/rib_axis.h"
+#include "server/mesh/units.h"
 
 namespace phrenic::imaging {
 namespace {

@@ -6,9 +6,9 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/anatomy/anatomy.h"
-#include "server/imaging/millimetre.h"
 #include "server/imaging/phantom_organs.h"
 #include "server/imaging/voxelise.h"
+#include "server/mesh/units.h"
 
 namespace phrenic::imaging {
 namespace {

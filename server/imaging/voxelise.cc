@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "server/imaging/millimetre.h"
+#include "server/mesh/units.h"
 
 namespace phrenic::imaging {
 namespace {

@@ -7,31 +7,12 @@
 #include <utility>
 #include <vector>
 
-#include "server/mesh/bucket_sort.h"
+#include "server/mesh/sides.h"
 
 namespace phrenic {
 namespace {
 
 constexpr double kSmallestArea = 1e-14;  // [m^2]
-
-struct HalfEdge {
-  int low, high;
-  bool forward;                                       // runs from low to high in its triangle
-  auto operator<=>(const HalfEdge&) const = default;  // NOLINT(modernize-use-nullptr): a false alarm of clang-tidy 14
-};
-
-std::vector<HalfEdge> SortedHalfEdges(const Triangles& triangles) {
-  std::vector<HalfEdge> edges;
-  edges.reserve(static_cast<size_t>(3 * triangles.cols()));
-  for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
-    for (int k = 0; k < 3; ++k) {
-      const int a = triangles(k, t), b = triangles((k + 1) % 3, t);
-      edges.push_back({std::min(a, b), std::max(a, b), a < b});
-    }
-  }
-  BucketSort(edges, triangles.size() > 0 ? triangles.maxCoeff() + 1 : 0, [](const HalfEdge& edge) { return edge.low; });
-  return edges;
-}
 
 int Root(std::vector<int>& parent, int i) {
   while (parent[i] != i) i = parent[i] = parent[parent[i]];
@@ -55,8 +36,8 @@ bool Degenerate(const Mesh& mesh, Eigen::Index t) {
 }  // namespace
 
 Edges TriangleEdges(const Triangles& triangles) {
-  std::vector<HalfEdge> edges = SortedHalfEdges(triangles);
-  const auto same = [](const HalfEdge& a, const HalfEdge& b) { return a.low == b.low && a.high == b.high; };
+  std::vector<Side> edges = SortedSides(triangles);
+  const auto same = [](const Side& a, const Side& b) { return a.low == b.low && a.high == b.high; };
   edges.erase(std::unique(edges.begin(), edges.end(), same), edges.end());
   Edges unique(2, static_cast<Eigen::Index>(edges.size()));
   for (Eigen::Index i = 0; i < unique.cols(); ++i) {
@@ -68,7 +49,7 @@ Edges TriangleEdges(const Triangles& triangles) {
 Edges SpringEdges(const Mesh& mesh) { return mesh.edges.cols() > 0 ? mesh.edges : TriangleEdges(mesh.triangles); }
 
 std::vector<int> BorderVertices(const Triangles& triangles) {
-  const std::vector<HalfEdge> edges = SortedHalfEdges(triangles);
+  const std::vector<Side> edges = SortedSides(triangles);
   const auto same = [&](size_t i, size_t j) { return edges[i].low == edges[j].low && edges[i].high == edges[j].high; };
   std::vector<int> border;
   for (size_t i = 0; i < edges.size(); ++i) {
@@ -83,21 +64,21 @@ std::vector<int> BorderVertices(const Triangles& triangles) {
 
 std::vector<int> PinchedVertices(const Triangles& triangles) {
   // Corner 3 t + k is where triangle t has its k-th vertex. Corners of one vertex are joined across each edge there.
-  struct Side {
+  struct Corners {
     int low, high, at_low, at_high;  // vertices, and their corners
   };
-  std::vector<Side> sides;
+  std::vector<Corners> sides;
   std::vector<int> parent(static_cast<size_t>(triangles.size()));
   std::iota(parent.begin(), parent.end(), 0);
   for (int t = 0; t < static_cast<int>(triangles.cols()); ++t) {
     for (int k = 0; k < 3; ++k) {
       const int next = (k + 1) % 3, a = triangles(k, t), b = triangles(next, t);
       const int at_a = 3 * t + k, at_b = 3 * t + next;
-      sides.push_back(a < b ? Side{a, b, at_a, at_b} : Side{b, a, at_b, at_a});
+      sides.push_back(a < b ? Corners{a, b, at_a, at_b} : Corners{b, a, at_b, at_a});
     }
   }
-  const auto edge = [](const Side& side) { return std::pair(side.low, side.high); };
-  std::sort(sides.begin(), sides.end(), [&](const Side& a, const Side& b) { return edge(a) < edge(b); });
+  const auto edge = [](const Corners& side) { return std::pair(side.low, side.high); };
+  std::sort(sides.begin(), sides.end(), [&](const Corners& a, const Corners& b) { return edge(a) < edge(b); });
   for (size_t i = 1; i < sides.size(); ++i) {
     if (edge(sides[i - 1]) != edge(sides[i])) continue;
     parent[Root(parent, sides[i].at_low)] = Root(parent, sides[i - 1].at_low);
@@ -138,7 +119,7 @@ SurfaceTopology AnalyseTopology(const Mesh& mesh) {
   topology.triangles = static_cast<int>(mesh.triangles.cols());
   topology.vertices = CountUsed(mesh);
   topology.components = static_cast<int>(Components(mesh).size());
-  const std::vector<HalfEdge> edges = SortedHalfEdges(mesh.triangles);
+  const std::vector<Side> edges = SortedSides(mesh.triangles);
   for (size_t i = 0; i < edges.size();) {
     size_t end = i;
     int forward = 0;

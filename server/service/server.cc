@@ -11,6 +11,7 @@
 #include "absl/strings/str_cat.h"
 #include "server/service/address.h"
 #include "server/service/compare_service.h"
+#include "server/service/control_service.h"
 #include "server/service/export_service.h"
 #include "server/service/frame_service.h"
 #include "server/service/scene_service.h"
@@ -65,6 +66,7 @@ struct Server::Parts {
         table(models, clock, options.limits),
         scene_service(models),
         session_service(table),
+        control_service(table),
         frame_service(table),
         exports(options.limits, options.spool_dir, clock),
         export_service(table, exports),
@@ -81,6 +83,7 @@ struct Server::Parts {
   session::Table table;
   SceneService scene_service;
   SessionService session_service;
+  ControlService control_service;
   FrameService frame_service;
   session::Exports exports;
   ExportService export_service;
@@ -103,6 +106,7 @@ absl::Status Server::Parts::Serve(const ServerOptions& options) {
   }
   builder.RegisterService(&scene_service);
   builder.RegisterService(&session_service);
+  builder.RegisterService(&control_service);
   builder.RegisterService(&frame_service);
   builder.RegisterService(&export_service);
   builder.RegisterService(&upload_service);

@@ -5,6 +5,7 @@
 #include "absl/strings/str_cat.h"
 #include "server/mechanics/presets.h"
 #include "server/schema/schema.h"
+#include "server/service/repeatable.h"
 #include "server/service/status.h"
 
 namespace phrenic::service {
@@ -18,18 +19,41 @@ absl::StatusOr<std::shared_ptr<session::Session>> Find(const session::Table& tab
 }
 
 template <class Response>
-grpc::Status Answer(absl::StatusOr<v1::Session> session, Response* response) {
-  if (!session.ok()) return ToGrpc(session.status());
-  *response->mutable_session() = *std::move(session);
+grpc::Status Answer(v1::Session session, Response* response) {
+  *response->mutable_session() = std::move(session);
   return grpc::Status::OK;
+}
+
+// What came of a change.
+template <class Response>
+absl::Status Fill(absl::StatusOr<v1::Session> session, Response* response) {
+  if (!session.ok()) return session.status();
+  *response->mutable_session() = *std::move(session);
+  return absl::OkStatus();
+}
+
+template <class Number>
+std::optional<Number> OptionalOf(bool has, Number value) {
+  return has ? std::optional(value) : std::nullopt;
 }
 
 }  // namespace
 
+// Has `act` change the session that the request names, once however often the request is repeated.
+template <class Request, class Response, class Act>
+grpc::Status SessionService::Change(const Request& request, Response* response, Act act) {
+  const auto session = Find(table_, request);
+  if (!session.ok()) return ToGrpc(session.status());
+  return ToGrpc(Once((*session)->answers(), request, response, [&] { return act(**session); }));
+}
+
 grpc::Status SessionService::CreateSession(grpc::ServerContext* /*context*/, const v1::CreateSessionRequest* request,
                                            v1::CreateSessionResponse* response) {
   if (absl::Status status = schema::Validate(*request); !status.ok()) return ToGrpc(status);
-  const auto session = table_.Create(*request);
+  auto control = session::ControlBook::Make(request->control(), request->owner_name());
+  if (!control.ok()) return ToGrpc(control.status());
+  response->set_control_token(control->state().owner.token);
+  const auto session = table_.Create(*request, *std::move(control));
   if (!session.ok()) return ToGrpc(session.status());
   return Answer((*session)->status(), response);
 }
@@ -45,7 +69,10 @@ grpc::Status SessionService::GetSession(grpc::ServerContext* /*context*/, const 
 grpc::Status SessionService::ForkSession(grpc::ServerContext* /*context*/, const v1::ForkSessionRequest* request,
                                          v1::ForkSessionResponse* response) {
   if (absl::Status status = schema::Validate(*request); !status.ok()) return ToGrpc(status);
-  const auto fork = table_.Fork(*request);
+  auto control = session::ControlBook::Make(request->control(), request->owner_name());
+  if (!control.ok()) return ToGrpc(control.status());
+  response->set_control_token(control->state().owner.token);
+  const auto fork = table_.Fork(*request, *std::move(control));
   if (!fork.ok()) return ToGrpc(fork.status());
   return Answer((*fork)->status(), response);
 }
@@ -65,67 +92,68 @@ grpc::Status SessionService::ListSessions(grpc::ServerContext* /*context*/, cons
 grpc::Status SessionService::DeleteSession(grpc::ServerContext* /*context*/, const v1::DeleteSessionRequest* request,
                                            v1::DeleteSessionResponse* /*response*/) {
   if (absl::Status status = schema::Validate(*request); !status.ok()) return ToGrpc(status);
-  return ToGrpc(table_.Delete(request->session_id()));
+  return ToGrpc(table_.Delete(request->session_id(), request->control_token()));
 }
 
 grpc::Status SessionService::PlaySession(grpc::ServerContext* /*context*/, const v1::PlaySessionRequest* request,
                                          v1::PlaySessionResponse* response) {
-  const auto session = Find(table_, *request);
-  if (!session.ok()) return ToGrpc(session.status());
-  const auto speed = request->has_speed() ? std::optional(request->speed()) : std::nullopt;
-  return Answer((*session)->Play(speed, request->as_fast_as_possible(), request->until_time()), response);
+  return Change(*request, response, [&](session::Session& session) {
+    const auto speed = OptionalOf(request->has_speed(), request->speed());
+    return Fill(session.Play(speed, request->as_fast_as_possible(), request->until_time(), request->control_token()),
+                response);
+  });
 }
 
 grpc::Status SessionService::PauseSession(grpc::ServerContext* /*context*/, const v1::PauseSessionRequest* request,
                                           v1::PauseSessionResponse* response) {
-  const auto session = Find(table_, *request);
-  if (!session.ok()) return ToGrpc(session.status());
-  return Answer((*session)->Pause(), response);
+  return Change(*request, response,
+                [&](session::Session& session) { return Fill(session.Pause(request->control_token()), response); });
 }
 
 grpc::Status SessionService::StepSession(grpc::ServerContext* context, const v1::StepSessionRequest* request,
                                          v1::StepSessionResponse* response) {
-  const auto session = Find(table_, *request);
-  if (!session.ok()) return ToGrpc(session.status());
-  const auto tick = request->has_expected_tick() ? std::optional<std::int64_t>(request->expected_tick()) : std::nullopt;
-  auto stepped = (*session)->Step(request->ticks(), tick, [&] { return context->IsCancelled(); });
-  if (!stepped.ok()) return ToGrpc(stepped.status());
-  response->set_state_hash(std::move(stepped->state_hash));
-  *response->mutable_measures() = std::move(stepped->measures);
-  return Answer(std::move(stepped->session), response);
+  return Change(*request, response, [&](session::Session& session) {
+    const auto tick = OptionalOf(request->has_expected_tick(), request->expected_tick());
+    const bool repeatable = !request->request_id().empty();
+    auto stepped = session.Step(
+        request->ticks(), tick, [&] { return !repeatable && context->IsCancelled(); }, request->control_token());
+    if (!stepped.ok()) return stepped.status();
+    response->set_state_hash(std::move(stepped->state_hash));
+    *response->mutable_measures() = std::move(stepped->measures);
+    return Fill(std::move(stepped->session), response);
+  });
 }
 
 grpc::Status SessionService::ResetSession(grpc::ServerContext* /*context*/, const v1::ResetSessionRequest* request,
                                           v1::ResetSessionResponse* response) {
-  const auto session = Find(table_, *request);
-  if (!session.ok()) return ToGrpc(session.status());
-  return Answer((*session)->Reset(), response);
+  return Change(*request, response,
+                [&](session::Session& session) { return Fill(session.Reset(request->control_token()), response); });
 }
 
 grpc::Status SessionService::UpdateParameters(grpc::ServerContext* /*context*/,
                                               const v1::UpdateParametersRequest* request,
                                               v1::UpdateParametersResponse* response) {
-  const auto session = Find(table_, *request);
-  if (!session.ok()) return ToGrpc(session.status());
-  const auto revision =
-      request->has_expected_revision() ? std::optional<std::int64_t>(request->expected_revision()) : std::nullopt;
-  auto changes = FindPreset((*session)->model().scene, request->preset());
-  if (!changes.ok()) return ToGrpc(changes.status());
-  changes->MergeFrom(request->parameters());
-  auto updated = (*session)->Update(*changes, revision);
-  if (!updated.ok()) return ToGrpc(updated.status());
-  for (std::string& warning : updated->warnings) response->add_warnings(std::move(warning));
-  return Answer(std::move(updated->session), response);
+  return Change(*request, response, [&](session::Session& session) {
+    auto changes = FindPreset(session.model().scene, request->preset());
+    if (!changes.ok()) return changes.status();
+    changes->MergeFrom(request->parameters());
+    auto updated =
+        session.Update(*changes, OptionalOf(request->has_expected_revision(), request->expected_revision()),
+                       OptionalOf(request->has_apply_at_tick(), request->apply_at_tick()), request->control_token());
+    if (!updated.ok()) return updated.status();
+    for (std::string& warning : updated->warnings) response->add_warnings(std::move(warning));
+    return Fill(std::move(updated->session), response);
+  });
 }
 
 grpc::Status SessionService::PullSession(grpc::ServerContext* /*context*/, const v1::PullSessionRequest* request,
                                          v1::PullSessionResponse* response) {
-  const auto session = Find(table_, *request);
-  if (!session.ok()) return ToGrpc(session.status());
-  if (request->pulls().empty() && !request->release_others()) {
-    return ToGrpc(absl::InvalidArgumentError("pulls: there is none; name one, or set release_others to let go of all"));
-  }
-  return Answer((*session)->Pull(request->pulls(), request->release_others()), response);
+  return Change(*request, response, [&](session::Session& session) {
+    if (request->pulls().empty() && !request->release_others()) {
+      return absl::InvalidArgumentError("pulls: there is none; name one, or set release_others to let go of all");
+    }
+    return Fill(session.Pull(request->pulls(), request->release_others(), request->control_token()), response);
+  });
 }
 
 }  // namespace phrenic::service

@@ -36,6 +36,9 @@ class SessionService final : public v1::SessionService::Service {
                            v1::PullSessionResponse* response) override;
 
  private:
+  template <class Request, class Response, class Act>
+  grpc::Status Change(const Request& request, Response* response, Act act);
+
   session::Table& table_;
 };
 

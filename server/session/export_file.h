@@ -2,13 +2,12 @@
 #ifndef PHRENIC_SERVER_SESSION_EXPORT_FILE_H_
 #define PHRENIC_SERVER_SESSION_EXPORT_FILE_H_
 
-#include <openssl/evp.h>
-
 #include <memory>
 #include <string>
 #include <string_view>
 
 #include "server/record/spool_file.h"
+#include "server/schema/sha256.h"
 
 namespace phrenic::session {
 
@@ -19,12 +18,12 @@ class ExportFile {
 
   absl::Status Append(std::string_view bytes);
   // Of everything, in hexadecimal; ends the hash, so call it once, at the end.
-  std::string Sha256();
+  std::string Sha256Digits() { return hash_.Hex(); }
   const std::shared_ptr<record::SpoolFile>& spool() const { return spool_; }
 
  private:
   const std::shared_ptr<record::SpoolFile> spool_;
-  std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> hash_;
+  Sha256 hash_;
 };
 
 }  // namespace phrenic::session

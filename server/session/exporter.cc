@@ -161,7 +161,7 @@ absl::StatusOr<v1::ExportSummary> ExportMotion(const ExportPlan& plan, const std
   v1::ExportSummary summary;
   work.FillSummary(summary);
   summary.set_bytes(file.spool()->size());
-  summary.set_sha256(file.Sha256());
+  summary.set_sha256(file.Sha256Digits());
   return summary;
 }
 

@@ -3,9 +3,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_format.h"
 #include "google/protobuf/util/time_util.h"
-#include "server/mechanics/compile.h"
 
 namespace phrenic::session {
 namespace {
@@ -13,29 +11,17 @@ namespace {
 // How long a waiting call goes on before it looks again whether its caller is still there.
 constexpr absl::Duration kLook = absl::Milliseconds(50);
 
-absl::Status StaleRevision(std::int64_t expected, std::int64_t present) {
-  return absl::AbortedError(absl::StrCat("expected_revision: ", expected, " is stale, the session is at revision ",
-                                         present, "; read it again and repeat the change"));
-}
-
-std::vector<std::string> Warnings(const v1::Parameters& parameters, double stable_step) {
-  if (parameters.time_step() <= stable_step) return {};
-  return {
-      absl::StrFormat("time_step: %.3g s is above %.3g s, the largest stable step at the present stiffness, and "
-                      "the session will probably diverge; set it to %.2g s or less",
-                      parameters.time_step(), stable_step, 0.9 * stable_step)};
-}
-
 }  // namespace
 
 Session::Session(std::string id, std::shared_ptr<const Model> model, Fork start, const stream::Clock& clock,
-                 int max_viewers)
+                 int max_viewers, ControlBook control)
     : id_(std::move(id)),
       model_(std::move(model)),
       clock_(clock),
       publisher_(model_, clock, max_viewers),
       run_(model_, std::move(start.parameters), std::move(start.state)),
-      stable_step_(start.stable_step) {
+      stable_step_(start.stable_step),
+      control_(std::move(control)) {
   {
     absl::MutexLock lock(&mutex_);
     status_.set_id(id_);
@@ -85,29 +71,28 @@ absl::Status Session::Ask(absl::FunctionRef<void()> act) {
   return stopped_.value_or(absl::InternalError("the stepping thread refused a call"));
 }
 
-absl::StatusOr<v1::Session> Session::Play(std::optional<double> speed, bool as_fast_as_possible, double until) {
-  absl::Status played;
-  if (auto asked = Ask([&] { played = StartPlaying(speed, as_fast_as_possible, until); }); !asked.ok()) return asked;
+absl::StatusOr<v1::Session> Session::Play(std::optional<double> speed, bool as_fast_as_possible, double until,
+                                          std::string_view token) {
+  auto played = AskAs(token, [&] { return StartPlaying(speed, as_fast_as_possible, until); });
   if (!played.ok()) return played;
   return status();
 }
 
-absl::StatusOr<v1::Session> Session::Pause() {
-  auto asked = Ask([&] {
+absl::StatusOr<v1::Session> Session::Pause(std::string_view token) {
+  auto paused = AskAs(token, [&] {
     EndJob(absl::AbortedError("the session was paused while it was being stepped"));
     if (state_ == v1::SESSION_STATE_PLAYING) Halt(v1::SESSION_STATE_PAUSED);
+    return absl::OkStatus();
   });
-  if (!asked.ok()) return asked;
+  if (!paused.ok()) return paused;
   return status();
 }
 
 absl::StatusOr<Session::Stepped> Session::Step(std::int64_t ticks, std::optional<std::int64_t> expected_tick,
-                                               absl::FunctionRef<bool()> cancelled) {
+                                               absl::FunctionRef<bool()> cancelled, std::string_view token) {
   auto job = std::make_shared<StepJob>();
   job->left = ticks;
-  absl::Status started;
-  if (auto asked = Ask([&] { started = StartJob(job, expected_tick); }); !asked.ok()) return asked;
-  if (!started.ok()) return started;
+  if (auto started = AskAs(token, [&] { return StartJob(job, expected_tick); }); !started.ok()) return started;
   while (!job->done.WaitForNotificationWithTimeout(kLook)) {
     if (!cancelled()) continue;
     auto asked = Ask([&] {
@@ -119,56 +104,30 @@ absl::StatusOr<Session::Stepped> Session::Step(std::int64_t ticks, std::optional
   return std::move(job->result);
 }
 
-absl::StatusOr<v1::Session> Session::Reset() {
-  auto asked = Ask([&] {
+absl::StatusOr<v1::Session> Session::Reset(std::string_view token) {
+  auto reset = AskAs(token, [&] {
     EndJob(absl::AbortedError("the session was reset while it was being stepped"));
     run_.Reset();
+    waiting_updates_.clear();
     framed_tick_ = -1;
     state_ = v1::SESSION_STATE_PAUSED;
     ++revision_;
     Halt(v1::SESSION_STATE_PAUSED);
+    return absl::OkStatus();
   });
-  if (!asked.ok()) return asked;
+  if (!reset.ok()) return reset;
   return status();
 }
 
-absl::StatusOr<Session::Updated> Session::Update(const v1::Parameters& changes,
-                                                 std::optional<std::int64_t> expected_revision) {
-  absl::MutexLock one_at_a_time(&update_mutex_);
-  const v1::Session before = status();
-  if (expected_revision.has_value() && *expected_revision != before.revision()) {
-    return StaleRevision(*expected_revision, before.revision());
-  }
-  v1::Parameters parameters = before.parameters();
-  parameters.MergeFrom(changes);
-  double stable_step = before.largest_stable_step();
-  if (parameters.elasticity() != before.parameters().elasticity() ||
-      parameters.integrator() != before.parameters().integrator()) {
-    stable_step = LargestStableStep(*model_, parameters).seconds();  // not on the stepping thread: it takes a while
-  }
-  absl::Status merged;
-  auto asked = Ask([&] {
-    if (expected_revision.has_value() && *expected_revision != revision_) {
-      merged = StaleRevision(*expected_revision, revision_);
-    } else {
-      Merge(changes, stable_step);
-    }
-  });
-  if (!asked.ok()) return asked;
-  if (!merged.ok()) return merged;
-  return Updated{status(), Warnings(parameters, stable_step)};
-}
-
-absl::StatusOr<v1::Session> Session::Pull(const PullList& pulls, bool release_others) {
+absl::StatusOr<v1::Session> Session::Pull(const PullList& pulls, bool release_others, std::string_view token) {
   const auto changes = FindPulls(*model_, pulls, "pulls");
   if (!changes.ok()) return changes.status();
-  absl::Status changed;
-  auto asked = Ask([&] {
-    changed = run_.ChangePulls(*changes, release_others);
+  auto pulled = AskAs(token, [&] {
+    absl::Status changed = run_.ChangePulls(*changes, release_others);
     if (changed.ok()) Changed();
+    return changed;
   });
-  if (!asked.ok()) return asked;
-  if (!changed.ok()) return changed;
+  if (!pulled.ok()) return pulled;
   return status();
 }
 

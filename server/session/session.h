@@ -6,9 +6,11 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -19,6 +21,8 @@
 #include "absl/synchronization/notification.h"
 #include "phrenic/v1/session.pb.h"
 #include "server/mechanics/pulls.h"
+#include "server/session/answers.h"
+#include "server/session/control.h"
 #include "server/session/pace_meter.h"
 #include "server/session/pacer.h"
 #include "server/session/run.h"
@@ -27,7 +31,8 @@
 namespace phrenic::session {
 
 // Any thread may call. Calls that change something are carried out by the stepping thread between two steps, so that
-// they take effect at once and never in the middle of one; they return when that is done.
+// they take effect at once and never in the middle of one; they return when that is done. `token` says who calls: those
+// of who may not change the session are refused with PERMISSION_DENIED (ControlBook::Check).
 class Session {
  public:
   // Where a run stands, and from where another may go on.
@@ -47,7 +52,8 @@ class Session {
   };
 
   // Paused where `start` stands, which is a state of the model. Every field of its parameters is set and in range.
-  Session(std::string id, std::shared_ptr<const Model> model, Fork start, const stream::Clock& clock, int max_viewers);
+  Session(std::string id, std::shared_ptr<const Model> model, Fork start, const stream::Clock& clock, int max_viewers,
+          ControlBook control = {});
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -57,21 +63,33 @@ class Session {
   std::shared_ptr<const Model> shared_model() const { return model_; }
   v1::Session status() const ABSL_LOCKS_EXCLUDED(mutex_);
   stream::Publisher& publisher() { return publisher_; }
+  // What was answered to requests that can be repeated.
+  Answers& answers() { return answers_; }
 
   // `speed` not set keeps the present one, `until` 0 never pauses. FAILED_PRECONDITION when the session has diverged,
   // INVALID_ARGUMENT when `until` lies behind.
-  absl::StatusOr<v1::Session> Play(std::optional<double> speed, bool as_fast_as_possible, double until);
-  absl::StatusOr<v1::Session> Pause();
+  absl::StatusOr<v1::Session> Play(std::optional<double> speed, bool as_fast_as_possible, double until,
+                                   std::string_view token = {});
+  absl::StatusOr<v1::Session> Pause(std::string_view token = {});
   // Pauses, takes `ticks` steps and pauses again. ABORTED when the session is at another tick than expected, when
   // somebody else steps it, or when it is played, paused or reset meanwhile; CANCELLED as soon as `cancelled` says so.
   absl::StatusOr<Stepped> Step(std::int64_t ticks, std::optional<std::int64_t> expected_tick,
-                               absl::FunctionRef<bool()> cancelled);
-  absl::StatusOr<v1::Session> Reset();
-  // Fields that are set change; they are in range. ABORTED when the session's revision is another than expected.
-  absl::StatusOr<Updated> Update(const v1::Parameters& changes, std::optional<std::int64_t> expected_revision)
+                               absl::FunctionRef<bool()> cancelled, std::string_view token = {});
+  // Forgets updates that wait.
+  absl::StatusOr<v1::Session> Reset(std::string_view token = {});
+  // Fields that are set change; they are in range. ABORTED when the session's revision is another than expected. Waits
+  // for `at_tick`: FAILED_PRECONDITION where that is past, RESOURCE_EXHAUSTED where kMostWaiting wait already.
+  absl::StatusOr<Updated> Update(const v1::Parameters& changes, std::optional<std::int64_t> expected_revision,
+                                 std::optional<std::int64_t> at_tick = std::nullopt, std::string_view token = {})
       ABSL_LOCKS_EXCLUDED(update_mutex_);
   // Pulls vertices, or lets go of them (phrenic::ChangePulls). INVALID_ARGUMENT names what cannot be pulled.
-  absl::StatusOr<v1::Session> Pull(const PullList& pulls, bool release_others);
+  absl::StatusOr<v1::Session> Pull(const PullList& pulls, bool release_others, std::string_view token = {});
+  // Whether this token's bearer may change the session.
+  absl::Status CheckControl(std::string_view token);
+  // What `act` does with control, or why it did not. Viewers are told.
+  absl::StatusOr<v1::Control> ChangeControl(absl::FunctionRef<absl::Status(ControlBook& book, absl::Time now)> act);
+  // Shows viewers where the one who controls looks from.
+  absl::Status ShowCamera(const v1::Camera& camera, std::string_view token);
   // A copy of the present state, from which another run may go on. FAILED_PRECONDITION when the session has diverged.
   absl::StatusOr<Fork> MakeFork();
   // Ends the stepping thread at once and all viewers with `reason`; later calls return it.
@@ -92,6 +110,8 @@ class Session {
 
   // Has the stepping thread run `act` between two steps and waits for it; the reason of Stop when it did not.
   absl::Status Ask(absl::FunctionRef<void()> act) ABSL_LOCKS_EXCLUDED(mutex_);
+  // The same where the token's bearer may change the session; what came of it.
+  absl::Status AskAs(std::string_view token, absl::FunctionRef<absl::Status()> act) ABSL_LOCKS_EXCLUDED(mutex_);
 
   // Of the stepping thread.
   void Loop() ABSL_LOCKS_EXCLUDED(mutex_);
@@ -103,7 +123,12 @@ class Session {
   bool Finished() const;
   absl::Status StartPlaying(std::optional<double> speed, bool as_fast_as_possible, double until);
   absl::Status StartJob(std::shared_ptr<StepJob> job, std::optional<std::int64_t> expected_tick);
+  absl::Status CheckRevision(std::optional<std::int64_t> expected) const;
+  absl::Status UpdateAt(const v1::Parameters& changes, double stable_step, std::optional<std::int64_t> at_tick);
   void Merge(const v1::Parameters& changes, double stable_step);
+  void ApplyDueUpdates();
+  // Tells of control where it changed since that was told.
+  void NoteControl() ABSL_LOCKS_EXCLUDED(mutex_);
   void Halt(v1::SessionState state);
   void EndJob(absl::Status status);
   void OfferFrame(absl::Time now);
@@ -117,6 +142,7 @@ class Session {
   const std::shared_ptr<const Model> model_;
   const stream::Clock& clock_;
   stream::Publisher publisher_;
+  Answers answers_;
 
   absl::Mutex update_mutex_;  // one update at a time; taken before mutex_
   mutable absl::Mutex mutex_;
@@ -138,9 +164,15 @@ class Session {
   std::int64_t frames_ = 0;
   std::int64_t framed_tick_ = -1;  // of the newest frame
   std::shared_ptr<StepJob> job_;
+  std::multimap<std::int64_t, v1::Parameters> waiting_updates_;  // by the tick that they wait for
+  ControlBook control_;
+  std::int64_t told_control_ = 0;  // its revision
+  std::string camera_of_;          // who controlled when a camera was shown
 
   std::thread thread_;
 };
+
+inline constexpr std::size_t kMostWaiting = 256;  // updates
 
 }  // namespace phrenic::session
 

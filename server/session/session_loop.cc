@@ -1,6 +1,7 @@
 // The stepping thread of a session: commands between steps, steps in bursts of one frame.
 #include <pthread.h>
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -10,11 +11,6 @@
 #include "server/session/session.h"
 
 namespace phrenic::session {
-namespace {
-
-// Simulated time that counts as reached: rounding of a long sum of steps [s].
-
-}  // namespace
 
 void Session::Loop() {
   pthread_setname_np(pthread_self(), "stepping");
@@ -28,16 +24,18 @@ bool Session::ServeCommands() {
   bool stopped = false;
   {
     absl::MutexLock lock(&mutex_);
-    const absl::Time next = NextBurst();
+    const absl::Time next = std::min(NextBurst(), control_.next_expiry());
     if (!Called() && next > clock_.Now()) clock_.Await(mutex_, absl::Condition(this, &Session::Called), next);
     commands.swap(commands_);
     stopped = stopped_.has_value();
     called_ = false;
   }
+  if (control_.next_expiry() <= clock_.Now()) control_.Expire(clock_.Now());
   for (const Command& command : commands) {
     if (!stopped) command.act();
     command.done->Notify();
   }
+  NoteControl();
   if (stopped) EndJob(absl::CancelledError("the session ended while it was being stepped"));
   return !stopped;
 }
@@ -76,6 +74,7 @@ void Session::Burst() {
 
 bool Session::StepOnce() {
   if (!run_.Step().ok()) return false;
+  if (!waiting_updates_.empty()) ApplyDueUpdates();
   if (job_ != nullptr) --job_->left;
   return true;
 }
@@ -116,14 +115,6 @@ absl::Status Session::StartJob(std::shared_ptr<StepJob> job, std::optional<std::
   job_ = std::move(job);
   meter_.Start(clock_.Now(), tick, run_.state().time);
   return absl::OkStatus();
-}
-
-void Session::Merge(const v1::Parameters& changes, double stable_step) {
-  v1::Parameters parameters = run_.parameters();
-  parameters.MergeFrom(changes);
-  run_.set_parameters(parameters);
-  stable_step_ = stable_step;
-  Changed();
 }
 
 // Stops stepping; the frame of the last good state is shown.
@@ -167,6 +158,7 @@ void Session::Changed() {
 }
 
 void Session::Tell() {
+  told_control_ = control_.state().revision;
   v1::Session status;
   {
     absl::MutexLock lock(&mutex_);
@@ -178,6 +170,8 @@ void Session::Tell() {
     status_.set_speed(as_fast_as_possible_ ? 0 : speed_);
     status_.set_largest_stable_step(stable_step_);
     *status_.mutable_pace() = meter_.pace();
+    status_.set_waiting_updates(static_cast<int>(waiting_updates_.size()));
+    *status_.mutable_control() = control_.Describe(clock_.Now());
     *status_.mutable_pulls() = DescribePulls(*model_, run_.state().pulls);
     WriteResiduals(status_);
     if (run_.divergence().has_value()) {

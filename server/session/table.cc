@@ -48,7 +48,8 @@ absl::StatusOr<std::string> Table::Reserve(const char* field, const std::string&
   return id;
 }
 
-absl::StatusOr<std::shared_ptr<Session>> Table::Make(const std::string& id, const v1::CreateSessionRequest& request) {
+absl::StatusOr<std::shared_ptr<Session>> Table::Make(const std::string& id, const v1::CreateSessionRequest& request,
+                                                     ControlBook control) {
   const auto compiled = models_.Get(request.source());
   if (!compiled.ok()) return compiled.status();
   const std::shared_ptr<const Model>& model = *compiled;
@@ -70,25 +71,28 @@ absl::StatusOr<std::shared_ptr<Session>> Table::Make(const std::string& id, cons
   if (!changes.ok()) return changes.status();
   Session::Fork start{std::move(parameters), model->InitialState(), stable_step};
   if (absl::Status status = ChangePulls(*changes, true, start.state.pulls); !status.ok()) return status;
-  return std::make_shared<Session>(id, model, std::move(start), clock_, limits_.viewers);
+  return std::make_shared<Session>(id, model, std::move(start), clock_, limits_.viewers, std::move(control));
 }
 
-absl::StatusOr<std::shared_ptr<Session>> Table::MakeFork(const std::string& id, Session& of) const {
+absl::StatusOr<std::shared_ptr<Session>> Table::MakeFork(const std::string& id, Session& of,
+                                                         ControlBook control) const {
   absl::StatusOr<Session::Fork> start = of.MakeFork();
   if (!start.ok()) return start.status();
-  return std::make_shared<Session>(id, of.shared_model(), *std::move(start), clock_, limits_.viewers);
+  return std::make_shared<Session>(id, of.shared_model(), *std::move(start), clock_, limits_.viewers,
+                                   std::move(control));
 }
 
-absl::StatusOr<std::shared_ptr<Session>> Table::Create(const v1::CreateSessionRequest& request) {
+absl::StatusOr<std::shared_ptr<Session>> Table::Create(const v1::CreateSessionRequest& request, ControlBook control) {
   const std::string scene = request.source().has_scene() ? request.source().scene().name() : request.source().name();
-  return Admit("session_id", request.session_id(), scene, [&](const std::string& id) { return Make(id, request); });
+  return Admit("session_id", request.session_id(), scene,
+               [&](const std::string& id) { return Make(id, request, std::move(control)); });
 }
 
-absl::StatusOr<std::shared_ptr<Session>> Table::Fork(const v1::ForkSessionRequest& request) {
+absl::StatusOr<std::shared_ptr<Session>> Table::Fork(const v1::ForkSessionRequest& request, ControlBook control) {
   const absl::StatusOr<std::shared_ptr<Session>> of = Find(request.session_id());
   if (!of.ok()) return of.status();
   return Admit("fork_id", request.fork_id(), (*of)->model().scene.name(),
-               [&](const std::string& id) { return MakeFork(id, **of); });
+               [&](const std::string& id) { return MakeFork(id, **of, std::move(control)); });
 }
 
 absl::StatusOr<std::shared_ptr<Session>> Table::Admit(const char* field, const std::string& wanted,
@@ -137,12 +141,15 @@ Table::Page Table::List(int page_size, const std::string& token) const {
   return page;
 }
 
-absl::Status Table::Delete(const std::string& id) {
+absl::Status Table::Delete(const std::string& id, std::string_view token) {
+  const absl::StatusOr<std::shared_ptr<Session>> wanted = Find(id);
+  if (!wanted.ok()) return wanted.status();
+  if (absl::Status status = (*wanted)->CheckControl(token); !status.ok()) return status;
   std::shared_ptr<Session> session;
   {
     absl::MutexLock lock(&mutex_);
     const auto found = sessions_.find(id);
-    if (found == sessions_.end() || found->second == nullptr) return NoSession(id);
+    if (found == sessions_.end() || found->second != *wanted) return NoSession(id);
     session = std::move(found->second);
     sessions_.erase(found);
   }

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "absl/base/thread_annotations.h"
@@ -31,15 +32,17 @@ class Table {
 
   // Compiles the scene and makes a paused session. An empty id lets the table choose one from the scene's name.
   // INVALID_ARGUMENT, ALREADY_EXISTS or RESOURCE_EXHAUSTED tell why there is none.
-  absl::StatusOr<std::shared_ptr<Session>> Create(const v1::CreateSessionRequest& request) ABSL_LOCKS_EXCLUDED(mutex_);
+  absl::StatusOr<std::shared_ptr<Session>> Create(const v1::CreateSessionRequest& request, ControlBook control = {})
+      ABSL_LOCKS_EXCLUDED(mutex_);
   // A paused session that stands where another one stands (Session::MakeFork); its id is chosen likewise.
-  absl::StatusOr<std::shared_ptr<Session>> Fork(const v1::ForkSessionRequest& request) ABSL_LOCKS_EXCLUDED(mutex_);
+  absl::StatusOr<std::shared_ptr<Session>> Fork(const v1::ForkSessionRequest& request, ControlBook control = {})
+      ABSL_LOCKS_EXCLUDED(mutex_);
   // NOT_FOUND lists the ids there are.
   absl::StatusOr<std::shared_ptr<Session>> Find(const std::string& id) const ABSL_LOCKS_EXCLUDED(mutex_);
   // Sessions in the order of their ids, after the one that `token` names.
   Page List(int page_size, const std::string& token) const ABSL_LOCKS_EXCLUDED(mutex_);
-  // Stops the session and ends its viewers with NOT_FOUND.
-  absl::Status Delete(const std::string& id) ABSL_LOCKS_EXCLUDED(mutex_);
+  // Stops the session, where the token's bearer may (Session::CheckControl), and ends its viewers with NOT_FOUND.
+  absl::Status Delete(const std::string& id, std::string_view token = {}) ABSL_LOCKS_EXCLUDED(mutex_);
   // Stops every session; none can be made afterwards.
   void Close(const absl::Status& reason) ABSL_LOCKS_EXCLUDED(mutex_);
 
@@ -52,8 +55,9 @@ class Table {
   // Takes a place, has the session made and puts it there.
   absl::StatusOr<std::shared_ptr<Session>> Admit(const char* field, const std::string& wanted, const std::string& scene,
                                                  absl::FunctionRef<Maker> make) ABSL_LOCKS_EXCLUDED(mutex_);
-  absl::StatusOr<std::shared_ptr<Session>> Make(const std::string& id, const v1::CreateSessionRequest& request);
-  absl::StatusOr<std::shared_ptr<Session>> MakeFork(const std::string& id, Session& of) const;
+  absl::StatusOr<std::shared_ptr<Session>> Make(const std::string& id, const v1::CreateSessionRequest& request,
+                                                ControlBook control);
+  absl::StatusOr<std::shared_ptr<Session>> MakeFork(const std::string& id, Session& of, ControlBook control) const;
   std::string FreeId(const std::string& scene) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   absl::Status NoSession(const std::string& id) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 

@@ -1,27 +1,19 @@
 #include "server/session/uploads.h"
 
-#include <openssl/sha.h>
-
 #include <algorithm>
 #include <utility>
 
 #include "absl/strings/ascii.h"
-#include "absl/strings/escaping.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "server/mesh/units.h"
 #include "server/meshio/formats.h"
+#include "server/schema/sha256.h"
 
 namespace phrenic::session {
 namespace {
 
 constexpr std::size_t kMostPending = 16;
-
-std::string Sha256(std::string_view bytes) {
-  unsigned char digest[SHA256_DIGEST_LENGTH];
-  SHA256(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size(), digest);
-  return absl::BytesToHexString(absl::string_view(reinterpret_cast<const char*>(digest), sizeof digest));
-}
 
 absl::StatusOr<std::string> AllBytes(const record::SpoolFile& spool) {
   std::string bytes(static_cast<std::size_t>(spool.size()), '\0');
@@ -78,16 +70,17 @@ absl::StatusOr<std::int64_t> Uploads::Add(const std::string& id, std::int64_t of
   const auto pending = FindPending(id);
   if (pending == pending_.end()) return NoUpload(id);
   const std::int64_t received = pending->spool->size();
-  if (offset != received) {
+  if (offset < 0 || offset > received) {
     return absl::OutOfRangeError(absl::StrCat("offset: ", offset, " is not the next byte, ", received, " is"));
   }
   if (chunk.size() > kMostChunk) {
     return absl::InvalidArgumentError(absl::StrCat("chunk: ", chunk.size(), " bytes; ", kMostChunk, " are the most"));
   }
-  if (received + static_cast<std::int64_t>(chunk.size()) > pending->file.size) {
+  if (offset + static_cast<std::int64_t>(chunk.size()) > pending->file.size) {
     return absl::OutOfRangeError(absl::StrCat("chunk: more bytes than the ", pending->file.size, " that were said"));
   }
-  if (absl::Status status = pending->spool->Append(chunk); !status.ok()) return status;
+  const std::size_t known = std::min(chunk.size(), static_cast<std::size_t>(received - offset));
+  if (absl::Status status = pending->spool->Append(chunk.substr(known)); !status.ok()) return status;
   return pending->spool->size();
 }
 
@@ -96,7 +89,7 @@ absl::StatusOr<Uploads::Finished> Uploads::Finish(const std::string& id, double 
   {
     absl::MutexLock lock(&mutex_);
     const auto found = FindPending(id);
-    if (found == pending_.end()) return NoUpload(id);
+    if (found == pending_.end()) return FinishedBefore(id, unit_mm);
     if (found->spool->size() < found->file.size) {
       return absl::FailedPreconditionError(absl::StrCat("upload_id: ", found->spool->size(), " of ", found->file.size,
                                                         " bytes are there; send the others first"));
@@ -106,7 +99,7 @@ absl::StatusOr<Uploads::Finished> Uploads::Finish(const std::string& id, double 
   }
   const auto bytes = AllBytes(*pending.spool);
   if (!bytes.ok()) return bytes.status();
-  const std::string sha256 = Sha256(*bytes);
+  const std::string sha256 = Sha256Hex(*bytes);
   if (!pending.file.sha256.empty() && pending.file.sha256 != sha256) {
     return absl::DataLossError(absl::StrCat(pending.file.name, " arrived damaged (its SHA-256 is ", sha256, " and not ",
                                             pending.file.sha256, "): send it again"));
@@ -115,8 +108,18 @@ absl::StatusOr<Uploads::Finished> Uploads::Finish(const std::string& id, double 
   auto surface = meshio::ParseSurface(pending.file.name, *bytes, kMillimetre * unit_mm);
   if (!surface.ok()) return surface.status();
   absl::MutexLock lock(&mutex_);
-  Keep({pending.file, pending.spool});
+  Keep({pending.id, pending.file, pending.spool});
   return Finished{pending.file, *std::move(surface)};
+}
+
+absl::StatusOr<Uploads::Finished> Uploads::FinishedBefore(const std::string& id, double unit_mm) const {
+  const auto kept = std::find_if(kept_.begin(), kept_.end(), [&id](const Kept& one) { return one.id == id; });
+  if (kept == kept_.end()) return NoUpload(id);
+  const auto bytes = AllBytes(*kept->spool);
+  if (!bytes.ok()) return bytes.status();
+  auto surface = meshio::ParseSurface(kept->file.name, *bytes, kMillimetre * unit_mm);
+  if (!surface.ok()) return surface.status();
+  return Finished{kept->file, *std::move(surface)};
 }
 
 void Uploads::Keep(Kept kept) {

@@ -41,7 +41,9 @@ class Uploads {
 
   Uploads(const Limits& limits, std::string spool_folder);
 
-  // The errors of upload.proto. The oldest file that waits for its bytes makes room for another one past 16.
+  // The errors of upload.proto. The oldest file that waits for its bytes makes room for another one past 16. Who brings
+  // a file that another one is bringing shares its upload: bytes that are there are passed over, and each may finish
+  // it.
   absl::StatusOr<Begun> Begin(const std::string& name, std::int64_t size, const std::string& sha256)
       ABSL_LOCKS_EXCLUDED(mutex_);
   absl::StatusOr<std::int64_t> Add(const std::string& id, std::int64_t offset, std::string_view chunk)
@@ -55,6 +57,7 @@ class Uploads {
 
  private:
   struct Kept {
+    std::string id;  // under which it came
     File file;
     std::shared_ptr<record::SpoolFile> spool;
   };
@@ -65,6 +68,8 @@ class Uploads {
   };
 
   absl::Status CheckFile(const std::string& name, std::int64_t size) const;
+  absl::StatusOr<Finished> FinishedBefore(const std::string& id, double unit_mm) const
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   absl::Status NoUpload(const std::string& id) const;
   std::list<Kept>::iterator FindKept(std::string_view sha256) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   std::list<Pending>::iterator FindPending(const std::string& id) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);

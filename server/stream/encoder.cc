@@ -72,4 +72,10 @@ News EncodeSession(const v1::Session& session) {
   return {.revision = session.revision(), .bytes = std::make_shared<const std::string>(response.SerializeAsString())};
 }
 
+Bytes EncodeCamera(const v1::Camera& camera) {
+  v1::WatchFramesResponse response;
+  *response.mutable_camera() = camera;
+  return std::make_shared<const std::string>(response.SerializeAsString());
+}
+
 }  // namespace phrenic::stream

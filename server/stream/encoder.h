@@ -49,6 +49,7 @@ class Encoder {
 };
 
 News EncodeSession(const v1::Session& session);
+Bytes EncodeCamera(const v1::Camera& camera);
 
 }  // namespace phrenic::stream
 

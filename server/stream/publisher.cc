@@ -16,16 +16,16 @@ constexpr absl::Duration kEarly = absl::Milliseconds(2);
 }  // namespace
 
 Publisher::Publisher(std::shared_ptr<const Model> model, const Clock& clock, int max_viewers)
-    : model_(std::move(model)),
-      layout_(*model_),
-      clock_(clock),
-      max_viewers_(max_viewers),
-      encoder_(model_, layout_),
-      thread_([this] { Run(); }) {}
+    : model_(std::move(model)), layout_(*model_), clock_(clock), max_viewers_(max_viewers), encoder_(model_, layout_) {}
 
 Publisher::~Publisher() {
   Close(absl::UnavailableError("the session has ended"));
-  thread_.join();
+  std::thread thread;
+  {
+    absl::MutexLock lock(&mutex_);
+    thread = std::move(thread_);
+  }
+  if (thread.joinable()) thread.join();
 }
 
 void Publisher::Offer(std::shared_ptr<const Snapshot> snapshot) {
@@ -40,8 +40,16 @@ void Publisher::Announce(const v1::Session& session) {
   SessionChanged();
 }
 
+void Publisher::ShowCamera(Bytes camera) {
+  absl::MutexLock lock(&mutex_);
+  camera_ = std::move(camera);
+  camera_moved_ = camera_ != nullptr;
+  stirred_ = true;
+}
+
 void Publisher::SessionChanged() {
   session_.set_viewers(static_cast<int>(seats_.size()));
+  if (seats_.empty()) return;  // who comes is told the newest
   if (!news_.empty() && news_.back().revision() == session_.revision()) news_.pop_back();
   news_.push_back(session_);
   stirred_ = true;
@@ -60,6 +68,7 @@ absl::StatusOr<std::shared_ptr<Viewer>> Publisher::Join(const ViewerOptions& opt
   if (taken) return absl::AlreadyExistsError(absl::StrCat("watch_id: somebody watches as ", options.watch_id));
   auto viewer = std::make_shared<Viewer>(options, std::move(wake));
   seats_.emplace_back().viewer = viewer;
+  if (!thread_.joinable()) thread_ = std::thread([this] { Run(); });
   SessionChanged();
   return viewer;
 }
@@ -112,6 +121,8 @@ Publisher::Round Publisher::TakeRound(absl::Time now) {
   Round round;
   round.snapshot = newest_;
   round.news.swap(news_);
+  round.camera = camera_;
+  round.camera_moved = std::exchange(camera_moved_, false);
   const bool newcomers = std::any_of(seats_.begin(), seats_.end(), [](const Seat& seat) { return !seat.greeted; });
   if (newcomers && round.news.empty()) round.news.push_back(session_);
   for (Seat& seat : seats_) {
@@ -133,7 +144,15 @@ void Publisher::Deliver(const Round& round) {
     if (i + 1 < round.news.size()) continue;
     for (const auto& viewer : round.newcomers) viewer->PutSession(news);
   }
+  DeliverCamera(round);
   DeliverFrames(round);
+}
+
+void Publisher::DeliverCamera(const Round& round) {
+  if (round.camera == nullptr) return;
+  for (const auto& viewer : round.newcomers) viewer->PutCamera(round.camera);
+  if (!round.camera_moved) return;
+  for (const auto& viewer : round.greeted) viewer->PutCamera(round.camera);
 }
 
 void Publisher::DeliverFrames(const Round& round) {

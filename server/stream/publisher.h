@@ -23,7 +23,7 @@
 namespace phrenic::stream {
 
 // Any thread may call; its own thread encodes and delivers, so that the stepping thread does neither. A frame that
-// nobody watches is not encoded.
+// nobody watches is not encoded, and a session that nobody ever watched has no such thread.
 class Publisher {
  public:
   Publisher(std::shared_ptr<const Model> model, const Clock& clock, int max_viewers);
@@ -35,6 +35,8 @@ class Publisher {
   void Offer(std::shared_ptr<const Snapshot> snapshot) ABSL_LOCKS_EXCLUDED(mutex_);
   // The newest state of the session; `viewers` of it is filled in here.
   void Announce(const v1::Session& session) ABSL_LOCKS_EXCLUDED(mutex_);
+  // Where the one who controls looks from, for those who watch and those who come; null: nobody shows it any more.
+  void ShowCamera(Bytes camera) ABSL_LOCKS_EXCLUDED(mutex_);
 
   // The viewer gets the session's state at once, then the newest frame, then what comes. RESOURCE_EXHAUSTED when there
   // are too many already, and the reason of Close after it.
@@ -67,6 +69,8 @@ class Publisher {
     std::shared_ptr<const Snapshot> snapshot;
     std::vector<v1::Session> news;
     Viewers greeted, newcomers;  // newcomers hear the last of the news only
+    Bytes camera;
+    bool camera_moved = false;
     std::map<Form, Viewers> frames;
   };
 
@@ -75,6 +79,7 @@ class Publisher {
   absl::Time NextDue() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   Round TakeRound(absl::Time now) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void Deliver(const Round& round) ABSL_LOCKS_EXCLUDED(mutex_);
+  static void DeliverCamera(const Round& round);
   void DeliverFrames(const Round& round) ABSL_LOCKS_EXCLUDED(mutex_);
   void SessionChanged() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
@@ -86,12 +91,14 @@ class Publisher {
   std::shared_ptr<const Snapshot> newest_ ABSL_GUARDED_BY(mutex_);
   v1::Session session_ ABSL_GUARDED_BY(mutex_);
   std::vector<v1::Session> news_ ABSL_GUARDED_BY(mutex_);  // not told yet
+  Bytes camera_ ABSL_GUARDED_BY(mutex_);
+  bool camera_moved_ ABSL_GUARDED_BY(mutex_) = false;  // not told yet
   std::vector<Seat> seats_ ABSL_GUARDED_BY(mutex_);
   bool stirred_ ABSL_GUARDED_BY(mutex_) = false;  // something came since the last round
   std::optional<absl::Status> closed_ ABSL_GUARDED_BY(mutex_);
   std::int64_t encodings_ ABSL_GUARDED_BY(mutex_) = 0;
-  Encoder encoder_;  // of the publisher's thread only
-  std::thread thread_;
+  Encoder encoder_;                             // of the publisher's thread only
+  std::thread thread_ ABSL_GUARDED_BY(mutex_);  // since the first viewer came
 };
 
 }  // namespace phrenic::stream

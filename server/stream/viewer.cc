@@ -38,9 +38,19 @@ void Viewer::PutSession(const News& news) {
     } else {
       news_.clear();
       frame_ = nullptr;
+      camera_ = nullptr;
       end_ = absl::ResourceExhaustedError(
           absl::StrCat("the viewer took none of ", kMostNews, " changes of the session; watch again"));
     }
+  }
+  wake_();
+}
+
+void Viewer::PutCamera(Bytes camera) {
+  {
+    absl::MutexLock lock(&mutex_);
+    if (end_.has_value()) return;
+    camera_ = std::move(camera);
   }
   wake_();
 }
@@ -62,6 +72,7 @@ Bytes Viewer::Take(absl::Time now) {
     news_.pop_front();
     return bytes;
   }
+  if (camera_ != nullptr) return std::exchange(camera_, nullptr);
   if (frame_ == nullptr || !credit_.MaySend()) return nullptr;
   credit_.Sent(sequence_, now);
   return std::exchange(frame_, nullptr);
@@ -83,7 +94,7 @@ v1::AckFramesResponse Viewer::Acknowledge(std::int64_t sequence, absl::Time now)
 
 std::optional<absl::Status> Viewer::ended() const {
   absl::MutexLock lock(&mutex_);
-  if (!news_.empty() || frame_ != nullptr) return std::nullopt;
+  if (!news_.empty() || camera_ != nullptr || frame_ != nullptr) return std::nullopt;
   return end_;
 }
 

@@ -1,5 +1,6 @@
-// One viewer's mailbox: a slot for the newest frame, and the states of the session in their order. A frame that is not
-// taken in time is replaced, so that a slow viewer misses frames and holds nobody up; a change of the session is not.
+// One viewer's mailbox: a slot for the newest frame, one for the newest camera, and the states of the session in their
+// order. A frame that is not taken in time is replaced, so that a slow viewer misses frames and holds nobody up, and so
+// is a camera; a change of the session is not.
 #ifndef PHRENIC_SERVER_STREAM_VIEWER_H_
 #define PHRENIC_SERVER_STREAM_VIEWER_H_
 
@@ -52,11 +53,12 @@ class Viewer {
   void PutFrame(std::int64_t sequence, Bytes frame, absl::Time now) ABSL_LOCKS_EXCLUDED(mutex_);
   // A viewer that leaves kMostNews changes untaken is ended with RESOURCE_EXHAUSTED.
   void PutSession(const News& news) ABSL_LOCKS_EXCLUDED(mutex_);
+  void PutCamera(Bytes camera) ABSL_LOCKS_EXCLUDED(mutex_);
   // Nothing more comes; what was put before may still be taken.
   void End(absl::Status reason) ABSL_LOCKS_EXCLUDED(mutex_);
 
-  // The next message, the session's states before a frame, a frame only where few enough are unacknowledged; null where
-  // there is none.
+  // The next message, the session's states and the camera before a frame, a frame only where few enough are
+  // unacknowledged; null where there is none.
   Bytes Take(absl::Time now) ABSL_LOCKS_EXCLUDED(mutex_);
   // What came of it.
   v1::AckFramesResponse Acknowledge(std::int64_t sequence, absl::Time now) ABSL_LOCKS_EXCLUDED(mutex_);
@@ -72,6 +74,7 @@ class Viewer {
   Credit credit_ ABSL_GUARDED_BY(mutex_);
   Bytes frame_ ABSL_GUARDED_BY(mutex_);
   std::int64_t sequence_ ABSL_GUARDED_BY(mutex_) = 0;  // of frame_
+  Bytes camera_ ABSL_GUARDED_BY(mutex_);
   std::deque<News> news_ ABSL_GUARDED_BY(mutex_);
   std::optional<absl::Status> end_ ABSL_GUARDED_BY(mutex_);
   std::int64_t missed_ ABSL_GUARDED_BY(mutex_) = 0;

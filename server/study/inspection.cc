@@ -122,17 +122,21 @@ void JudgeRepairs(v1::SurfaceReport& report) {
   int inwards = 0;
   for (const v1::SurfacePart& part : report.components()) inwards += part.volume_ml() < 0 ? 1 : 0;
   auto* repairs = report.mutable_repairs();
-  AddIf(report.duplicate_vertices(), repairs, "%d vertices lie at the place of another: weld them");
-  AddIf(report.unused_vertices(), repairs, "%d vertices are in no triangle: drop them");
-  AddIf(report.degenerate_triangles(), repairs, "%d triangles have no area: drop them, finite elements leave them out");
+  AddIf(report.duplicate_vertices(), repairs,
+        "%d vertices lie at the place of another: weld them (phrenic convert --repair weld)");
+  AddIf(report.unused_vertices(), repairs, "%d vertices are in no triangle: drop them (--repair weld)");
+  AddIf(report.degenerate_triangles(), repairs,
+        "%d triangles have no area: finite elements leave them out (--repair slivers)");
   AddIf(report.non_manifold_edges(), repairs,
-        "%d edges have three triangles or more: take them apart, the surface has no inside there");
+        "%d edges have three triangles or more, the surface has no inside there: drop what hangs on them (--repair "
+        "fins)");
   AddIf(report.misoriented_edges(), repairs,
-        "%d edges lie between triangles that face opposite ways: turn one side, areas and volumes count wrongly");
+        "%d edges lie between triangles that face opposite ways: areas and volumes count wrongly (--repair orient)");
   AddIf(report.pinched_vertices(), repairs,
         "%d vertices are where surfaces touch in a point: give each its own vertex, genus and normals are wrong there");
   AddIf(report.boundary_edges(), repairs, "%d edges are open: close them if this is to be an organ, not a sheet");
-  AddIf(inwards, repairs, "%d closed components face inwards: turn them, unless they are hollows in others");
+  AddIf(inwards, repairs,
+        "%d closed components face inwards: turn them, unless they are hollows in others (--repair orient)");
   if (report.unit_mm() == 1 && (report.likely_unit() == "cm" || report.likely_unit() == "m")) {
     repairs->Add(absl::StrCat("its size is that of a body part in ", report.likely_unit(),
                               ", and mm are assumed: say so by --unit-mm here, by unit in a scene"));

@@ -15,7 +15,7 @@ using Folders = std::set<std::string>;
 const std::map<std::string, Folders>& Allowed() {
   static const Folders below = {"schema", "mesh", "meshio", "anatomy", "mechanics", "stream", "record"};
   static const Folders all = {"schema", "mesh",   "meshio", "anatomy", "imaging", "mechanics",
-                              "stream", "record", "study",  "session", "service"};
+                              "stream", "record", "store",  "study",   "session", "service"};
   static const std::map<std::string, Folders> allowed = {
       {"schema", {}},
       {"mesh", {"schema"}},
@@ -25,8 +25,9 @@ const std::map<std::string, Folders>& Allowed() {
       {"mechanics", {"schema", "mesh"}},
       {"stream", {"schema", "mesh", "mechanics"}},
       {"record", {"schema", "mesh"}},
+      {"store", {"schema", "mesh", "mechanics"}},
       {"study", below},
-      {"session", below},
+      {"session", {"schema", "mesh", "meshio", "anatomy", "mechanics", "stream", "record", "store"}},
       {"service", all},
       {"main", all},
       {"client", all},

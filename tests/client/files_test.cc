@@ -1,6 +1,8 @@
 // `phrenic inspect` and `phrenic convert`: surface files looked at, and written in other formats.
 #include <gmock/gmock.h>
 
+#include <filesystem>
+
 #include "tests/client/programs.h"
 
 namespace phrenic::client {
@@ -90,6 +92,34 @@ TEST(ConvertCommand, WhatAFormatCannotHoldIsSaid) {
   const Outcome unknown = Phrenic({"convert", regions, Scratch("out.step")});
   EXPECT_EQ(unknown.code, 1);
   EXPECT_THAT(unknown.err, HasSubstr(".obj, .msh, .stl, .ply"));
+}
+
+TEST(ConvertCommand, RepairsWhatItIsAskedTo) {
+  const std::string turned = WriteScratch("turned.obj",
+                                          "v 0 0 0\nv 50 0 0\nv 0 60 0\nv 0 0 70\nv 0 0 70\n"
+                                          "f 1 3 2\nf 1 2 4\nf 1 5 3\nf 2 4 3\n");
+  const std::string out = Scratch("repaired.obj");
+  const auto repairs = [&out] { return Phrenic({"inspect", out, "-o", "json"}).json()["repairs"].size(); };
+  ASSERT_EQ(Phrenic({"convert", turned, out}).code, 0);
+  EXPECT_EQ(repairs(), 3u) << "nothing unless asked for: a double vertex, open edges, one turned triangle";
+  const Outcome welded = Phrenic({"convert", turned, out, "--repair", "weld,orient"});
+  EXPECT_THAT(welded.err, HasSubstr("1 vertices were at the place of another"));
+  EXPECT_THAT(welded.err, HasSubstr("1 triangles were turned"));
+  EXPECT_EQ(repairs(), 0u);
+  EXPECT_EQ(Phrenic({"convert", turned, out, "--repair", "magic"}).code, 2);
+}
+
+// A lung with a fin inside, as its authors published it.
+TEST(ConvertCommand, ALungWithAFinBecomesWhole) {
+  const std::filesystem::path lungs = std::filesystem::path(PHRENIC_SHARED_DIR) / "data" / "thorax" / "lungs";
+  const std::string lung = lungs / "inferior_lobe_of_right_lung_closed.obj";
+  if (!std::filesystem::exists(lung)) GTEST_SKIP() << "no " << lung;
+  const std::string out = Scratch("lung.obj");
+  ASSERT_EQ(Phrenic({"convert", lung, out, "--repair", "all"}).code, 0);
+  const auto json = Phrenic({"inspect", out, "-o", "json"}).json();
+  EXPECT_EQ(json["triangles"], 8456);
+  EXPECT_EQ(json["repairs"].size(), 0u);
+  EXPECT_NEAR(json["volume_ml"].get<double>(), 691.6, 0.1);
 }
 
 TEST(CompareCommand, TakesEveryFormatThatIsRead) {

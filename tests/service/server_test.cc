@@ -1,11 +1,10 @@
 #include "server/service/server.h"
 
 #include <grpcpp/generic/generic_stub.h>
-#include <openssl/sha.h>
 
-#include "absl/strings/escaping.h"
 #include "absl/time/clock.h"
 #include "phrenic/v1/upload.grpc.pb.h"
+#include "server/schema/sha256.h"
 #include "server/service/address.h"
 #include "tests/service/server_fixture.h"
 
@@ -149,10 +148,7 @@ TEST_F(ExportTest, TheFileThatArrivesInTwoPartsIsTheOneInTheSummary) {
     ASSERT_TRUE(Download(job.id(), 0, &file).ok());
     ASSERT_TRUE(Download(job.id(), job.bytes() / 3, &rest).ok());
     EXPECT_EQ(file.substr(static_cast<std::size_t>(job.bytes() / 3)), rest) << format.name();
-    unsigned char digest[SHA256_DIGEST_LENGTH];
-    SHA256(reinterpret_cast<const unsigned char*>(file.data()), file.size(), digest);
-    EXPECT_EQ(job.summary().sha256(),
-              absl::BytesToHexString(absl::string_view(reinterpret_cast<const char*>(digest), sizeof digest)));
+    EXPECT_EQ(job.summary().sha256(), Sha256Hex(file));
   }
   v1::GetSessionResponse got;
   ASSERT_TRUE(Call(*sessions_, &v1::SessionService::Stub::GetSession, "session_id: 'cube'", &got).ok());

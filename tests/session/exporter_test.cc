@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 
 #include "server/mechanics/state.h"
+#include "server/schema/sha256.h"
 #include "server/session/surface_recorder.h"
 #include "tests/compile_text.h"
-#include "tests/session/sha256.h"
 #include "tests/small_scenes.h"
 
 namespace phrenic::session {
@@ -59,7 +59,7 @@ TEST_F(ExporterTest, TheSummaryTellsWhatTheFileHolds) {
     EXPECT_EQ(summary->frames(), format.instant ? 1 : 11) << "the first state and ten a second";
     EXPECT_EQ(summary->vertices(), format.numbers_only ? 0 : 3);
     EXPECT_EQ(summary->bytes(), static_cast<std::int64_t>(file_.size()));
-    EXPECT_EQ(summary->sha256(), Sha256(file_));
+    EXPECT_EQ(summary->sha256(), Sha256Hex(file_));
     EXPECT_EQ(summary->steps(), 100);
     EXPECT_NEAR(summary->simulated_seconds(), 1, 1e-9);
     EXPECT_GT(summary->step_wall_seconds(), 0);
@@ -116,9 +116,9 @@ TEST_F(ExporterTest, EveryNthStepIsAFrameFromTheTimeOn) {
 }
 
 TEST_F(ExporterTest, ProgressGrowsToItsEndAndAnErrorOfItEndsTheExport) {
-  request_.set_seconds(3600);
+  request_.set_seconds(36'000);
   progress_ = [](double share, double seconds) {
-    EXPECT_NEAR(share, seconds / 3600, 1e-9);
+    EXPECT_NEAR(share, seconds / 36'000, 1e-9);
     return absl::CancelledError("enough");
   };
   EXPECT_TRUE(absl::IsCancelled(Export().status()));

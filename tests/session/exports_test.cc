@@ -5,11 +5,11 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/mechanics/state.h"
+#include "server/schema/sha256.h"
 #include "server/session/meshes.h"
 #include "server/session/uploads.h"
 #include "tests/compile_text.h"
 #include "tests/fake_clock.h"
-#include "tests/session/sha256.h"
 #include "tests/small_scenes.h"
 
 namespace phrenic::session {
@@ -123,7 +123,7 @@ class UploadsTest : public testing::Test {
     const std::size_t half = bytes.size() / 2;
     EXPECT_EQ(*uploads_.Add(begun->id, 0, bytes.substr(0, half)), static_cast<std::int64_t>(half));
     EXPECT_TRUE(absl::IsFailedPrecondition(uploads_.Finish(begun->id, 1).status())) << "half of it";
-    EXPECT_TRUE(absl::IsOutOfRange(uploads_.Add(begun->id, 0, "again").status()));
+    EXPECT_TRUE(absl::IsOutOfRange(uploads_.Add(begun->id, static_cast<std::int64_t>(half) + 1, "x").status()));
     EXPECT_TRUE(uploads_.Add(begun->id, static_cast<std::int64_t>(half), bytes.substr(half)).ok());
     return uploads_.Finish(begun->id, 1);
   }
@@ -132,11 +132,11 @@ class UploadsTest : public testing::Test {
 };
 
 TEST_F(UploadsTest, AFileIsKeptByItsContentAndScenesNameIt) {
-  const auto finished = Upload("a.obj", kSurface, Sha256(kSurface));
+  const auto finished = Upload("a.obj", kSurface, Sha256Hex(kSurface));
   ASSERT_TRUE(finished.ok()) << finished.status();
-  EXPECT_EQ(finished->file.path(), "upload:" + Sha256(kSurface));
+  EXPECT_EQ(finished->file.path(), "upload:" + Sha256Hex(kSurface));
   EXPECT_EQ(finished->surface.mesh.vertices(0, 1), 0.03);
-  const auto again = uploads_.Begin("b.obj", sizeof kSurface - 1, Sha256(kSurface));
+  const auto again = uploads_.Begin("b.obj", sizeof kSurface - 1, Sha256Hex(kSurface));
   ASSERT_TRUE(again.ok()) << again.status();
   EXPECT_TRUE(again->id.empty()) << "it is there";
   v1::Body body;
@@ -150,12 +150,28 @@ TEST_F(UploadsTest, AFileIsKeptByItsContentAndScenesNameIt) {
 }
 
 TEST_F(UploadsTest, WhatBrokeOffGoesOnWhereItWas) {
-  const std::string hash = Sha256(kSurface);
+  const std::string hash = Sha256Hex(kSurface);
   const auto first = uploads_.Begin("a.obj", sizeof kSurface - 1, hash);
   ASSERT_TRUE(uploads_.Add(first->id, 0, "v 0 0").ok());
   const auto second = uploads_.Begin("a.obj", sizeof kSurface - 1, hash);
   EXPECT_EQ(second->id, first->id);
   EXPECT_EQ(second->received, 5);
+}
+
+TEST_F(UploadsTest, TwoWhoBringTheSameFileAtOnceShareIt) {
+  const std::string bytes = kSurface, hash = Sha256Hex(bytes);
+  const auto size = static_cast<std::int64_t>(bytes.size());
+  const std::string mine = uploads_.Begin("a.obj", size, hash)->id, other = uploads_.Begin("b.obj", size, hash)->id;
+  EXPECT_EQ(*uploads_.Add(mine, 0, bytes.substr(0, 9)), 9);
+  EXPECT_EQ(*uploads_.Add(other, 0, bytes.substr(0, 5)), 9) << "they are there";
+  EXPECT_EQ(*uploads_.Add(other, 5, bytes.substr(5)), size) << "its first four are there";
+  EXPECT_EQ(*uploads_.Add(mine, 9, bytes.substr(9)), size);
+  const auto first = uploads_.Finish(mine, 1), second = uploads_.Finish(other, 1);
+  ASSERT_TRUE(first.ok()) << first.status();
+  ASSERT_TRUE(second.ok()) << second.status();
+  EXPECT_EQ(first->file.sha256, hash);
+  EXPECT_EQ(first->surface.mesh.vertices, second->surface.mesh.vertices);
+  EXPECT_THAT(uploads_.List(), SizeIs(1));
 }
 
 TEST_F(UploadsTest, EachKindOfBadFileIsRefusedWithItsReason) {
@@ -164,7 +180,7 @@ TEST_F(UploadsTest, EachKindOfBadFileIsRefusedWithItsReason) {
   EXPECT_THAT(words(uploads_.Begin("a.obj", 0, "")), HasSubstr("is empty"));
   EXPECT_THAT(words(uploads_.Begin("a.obj", 101, "")), HasSubstr("a file may have 100"));
   EXPECT_THAT(words(Upload("a.obj", "v 0 0 0\nv 1 0\nf 1 2 2\n")), HasSubstr("a.obj:2: "));
-  EXPECT_THAT(words(Upload("a.obj", kSurface, Sha256("another"))), HasSubstr("arrived damaged"));
+  EXPECT_THAT(words(Upload("a.obj", kSurface, Sha256Hex("another"))), HasSubstr("arrived damaged"));
   EXPECT_THAT(words(uploads_.Add("u99", 0, "x")), HasSubstr("begin it anew"));
   EXPECT_THAT(uploads_.List(), SizeIs(0));
 }

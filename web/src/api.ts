@@ -1,5 +1,6 @@
 import { type Client, ConnectError, createClient, type Transport } from "@connectrpc/connect";
 import { CompareService } from "./gen/phrenic/v1/compare_pb";
+import { ControlService } from "./gen/phrenic/v1/control_pb";
 import { ExportService } from "./gen/phrenic/v1/export_pb";
 import { FrameService } from "./gen/phrenic/v1/frames_pb";
 import { SceneService, SessionService } from "./gen/phrenic/v1/session_pb";
@@ -10,6 +11,7 @@ import { UploadService } from "./gen/phrenic/v1/upload_pb";
 export interface Api {
   scenes: Client<typeof SceneService>;
   sessions: Client<typeof SessionService>;
+  control: Client<typeof ControlService>;
   frames: Client<typeof FrameService>;
   comparisons: Client<typeof CompareService>;
   exports: Client<typeof ExportService>;
@@ -21,6 +23,7 @@ export function createApi(transport: Transport): Api {
   return {
     scenes: createClient(SceneService, transport),
     sessions: createClient(SessionService, transport),
+    control: createClient(ControlService, transport),
     frames: createClient(FrameService, transport),
     comparisons: createClient(CompareService, transport),
     exports: createClient(ExportService, transport),

@@ -1,5 +1,6 @@
 import type { Api } from "./api";
 import { Beside } from "./beside";
+import { CameraLead } from "./camera_lead";
 import type { Clock } from "./clock";
 import type { Body } from "./codec";
 import { Comparisons } from "./comparison";
@@ -10,12 +11,15 @@ import { Forces } from "./forces";
 import { Frames } from "./frames";
 import type { CompileReport } from "./gen/phrenic/v1/report_pb";
 import type { Preset } from "./gen/phrenic/v1/scene_pb";
+import type { Identity } from "./identity";
 import { Looks } from "./looks";
 import { layersPanel } from "./panels/appearance";
 import { banners } from "./panels/banner";
 import type { Chooser } from "./panels/chooser";
+import { compareWith } from "./panels/compare_with";
 import { comparePanel } from "./panels/compare";
 import { ComparisonCard } from "./panels/comparison_card";
+import { controlBadge, controlled, ControlDialog } from "./panels/control";
 import { download, make, place } from "./panels/dom";
 import { drawers } from "./panels/drawers";
 import { dropZone } from "./panels/drop_zone";
@@ -36,6 +40,7 @@ import { uploadPanel } from "./panels/upload";
 import { viewBar } from "./panels/view_bar";
 import { SceneTools } from "./scene_tools";
 import { Signal } from "./signal";
+import { refusalWords, Standing } from "./standing";
 import { Studies } from "./studies";
 import { testHook } from "./test_hook";
 import { covered } from "./panels/covered";
@@ -63,6 +68,8 @@ export class App {
   private readonly presets = new Signal<Preset[]>([]);
   private readonly link = new Signal<Link>({ kind: "connecting" });
   private readonly controller: Controller;
+  private readonly standing: Standing;
+  private readonly lead: CameraLead;
   private readonly connection: Connection;
   private readonly viewer: Viewer;
   private readonly tools: SceneTools;
@@ -86,10 +93,12 @@ export class App {
     private readonly api: Api,
     private readonly subject: Subject,
     private readonly chooser: Chooser,
+    identity: Identity,
     private readonly clock: Clock,
   ) {
     const { sessionId } = subject;
     this.controller = new Controller(api, sessionId, clock);
+    this.standing = new Standing(api, this.controller, identity, clock);
     this.comparisons = new Comparisons(api, sessionId);
     this.exports = new Exports(api, sessionId);
     this.uploads = new Uploads(api);
@@ -104,6 +113,7 @@ export class App {
       this.comparisons,
       new Forces(api, sessionId),
     );
+    this.lead = new CameraLead(api, sessionId, this.standing, this.viewer.rig, clock);
     this.graphs = new Graphs(() => sessionId, this.tools.following);
     this.beside = this.openBeside();
     window.phrenic = testHook(() => this.bodies.value, this.frames, this.viewer);
@@ -120,6 +130,7 @@ export class App {
     setInterval(() => document.hidden || this.draw(), graphInterval);
     window.addEventListener("pagehide", () => this.controller.leave());
     void this.connection.run();
+    void this.standing.run();
   }
 
   private around() {
@@ -132,6 +143,7 @@ export class App {
         this.margins.show(compass);
         this.tools.drawn(compass);
         this.beside?.follow();
+        this.lead.drawn();
       },
       covered,
       calm: () => reduced.matches,
@@ -152,7 +164,11 @@ export class App {
     const { controller, viewer, tools } = this;
     viewer.letPull(
       () => this.deformable,
-      (body, vertex, force) => controller.pull(body, vertex, force),
+      (body, vertex, force) => {
+        const refused = refusalWords(this.standing.roles.value);
+        if (refused === "") controller.pull(body, vertex, force);
+        else controller.notice.set(refused);
+      },
       (newtons, x, y) => tools.tellForce(newtons, x, y),
     );
     place("cards").append(...tools.cards, this.comparison.element);
@@ -172,7 +188,7 @@ export class App {
     }
     place("annotations-place").append(tools.annotations.element);
     place("cube-place").append(tools.cube.element);
-    place("playback-place").append(playbackPanel(controller));
+    place("playback-place").append(controlled(this.standing, playbackPanel(controller)));
     place("readout-place").append(this.readout.element);
     place("margins").append(...this.margins.elements);
     place("views").append(...viewBar(viewer, place("view")));
@@ -182,7 +198,8 @@ export class App {
   private furnishPanel(): void {
     const { controller, looks } = this;
     place("panel").append(
-      ...parameterSections(controller, this.report, this.subject.open, this.presets),
+      compareWith(controller, this.presets, this.subject.open),
+      controlled(this.standing, ...parameterSections(controller, this.report, this.presets)),
       this.tools.panel,
       layersPanel(looks),
       this.probes.element,
@@ -221,10 +238,15 @@ export class App {
       () => controller.undo(),
       () => controller.redo(),
     );
-    document.body.append(share.element, keys);
+    const control = new ControlDialog(this.standing, () => this.lead.follow());
+    document.body.append(share.element, keys, control.element);
     place("share-open").onclick = () => share.show();
     place("help-open").onclick = () => keys.showModal();
-    place("link-place").append(this.viewers.element, this.pill.element);
+    place("link-place").append(
+      controlBadge(this.standing, () => control.show()),
+      this.viewers.element,
+      this.pill.element,
+    );
     place("session-place").append(sessionButton(controller, () => void this.chooser.show()));
   }
 
@@ -238,6 +260,7 @@ export class App {
         this.graphs.receive(frame);
         this.tools.receive(frame);
       },
+      camera: (camera) => this.lead.receive(camera),
       acknowledged: (response, sent, answered) => this.frames.acknowledged(response, sent, answered),
       scene: (bodies, report) => this.showScene(bodies, report),
     };

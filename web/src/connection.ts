@@ -4,6 +4,7 @@ import { type Api, errorText } from "./api";
 import { Backoff } from "./backoff";
 import type { Clock } from "./clock";
 import { type Body, decodeBody } from "./codec";
+import type { Camera } from "./gen/phrenic/v1/control_pb";
 import { type AckFramesResponse, Codec, type Frame } from "./gen/phrenic/v1/frames_pb";
 import type { CompileReport } from "./gen/phrenic/v1/report_pb";
 import type { Session } from "./gen/phrenic/v1/session_pb";
@@ -20,6 +21,8 @@ export interface Sink {
   /** `fresh` is the first word of a connection: a restarted server counts revisions from the start again. */
   session(session: Session, fresh: boolean): void;
   frame(frame: Frame): void;
+  /** Where the one who controls looks from. */
+  camera?(camera: Camera): void;
   /** What the server said to an acknowledgement, which was sent and answered at these times [ms]. */
   acknowledged(response: AckFramesResponse, sent: number, answered: number): void;
 }
@@ -120,6 +123,7 @@ export class Connection {
       this.backoff.reset();
       this.sink.link({ kind: "live" });
       if (event.case === "session") this.sink.session(event.value, false);
+      if (event.case === "camera") this.sink.camera?.(event.value);
       if (event.case !== "frame") continue;
       this.sink.frame(event.value);
       acknowledger.received(event.value.sequence);

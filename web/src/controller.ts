@@ -1,6 +1,7 @@
 import type { MessageInitShape } from "@bufbuild/protobuf";
 import { type Api, errorText, unreachable } from "./api";
 import type { Clock } from "./clock";
+import type { Control } from "./gen/phrenic/v1/control_pb";
 import type { ParametersSchema } from "./gen/phrenic/v1/parameters_pb";
 import type { Preset } from "./gen/phrenic/v1/scene_pb";
 import { type PullSchema, type Session, SessionState } from "./gen/phrenic/v1/session_pb";
@@ -47,7 +48,19 @@ export class Controller {
     const known = this.session.value;
     if (session === undefined) return;
     if (fresh) this.notice.set("");
-    if (fresh || known === undefined || session.revision >= known.revision) this.session.set(session);
+    if (!fresh && known !== undefined) {
+      if (session.revision < known.revision) return;
+      // Control changes beside all else: a state may be new and still be older in this.
+      if ((session.control?.revision ?? 0n) < (known.control?.revision ?? 0n)) session.control = known.control;
+    }
+    this.session.set(session);
+  }
+
+  /** Takes in who controls the session, unless that is older than what is known. */
+  receiveControl(control: Control): void {
+    const known = this.session.value;
+    if (known === undefined || control.revision < (known.control?.revision ?? 0n)) return;
+    this.session.set({ ...known, control });
   }
 
   play(speed: Speed): Promise<void> {

@@ -4,6 +4,7 @@ import { App } from "./app";
 import { chooseSession } from "./choose_session";
 import { systemClock } from "./clock";
 import { Chooser } from "./panels/chooser";
+import { Identity, signing } from "./identity";
 import { make, place } from "./panels/dom";
 import { recipeOf, rerun } from "./permalink";
 
@@ -14,7 +15,9 @@ window.addEventListener("pageshow", () => (leaving = false));
 const carry: typeof fetch = (input, init) => fetch(input, { ...init, keepalive: leaving });
 
 // The page and the services come from one address.
-const api = createApi(createGrpcWebTransport({ baseUrl: location.origin, fetch: carry }));
+const identity = new Identity(localStorage);
+const interceptors = [signing(identity)];
+const api = createApi(createGrpcWebTransport({ baseUrl: location.origin, fetch: carry, interceptors }));
 
 function address(sessionId: string): string {
   return `?${new URLSearchParams({ session: sessionId })}`;
@@ -51,7 +54,7 @@ loading.replaceChildren("Loading the scene…");
 history.replaceState(null, "", beside === undefined ? address(sessionId) : here.search);
 try {
   const subject = { sessionId, beside, open: (query: string) => location.assign(query) };
-  new App(api, subject, chooser, systemClock).start();
+  new App(api, subject, chooser, identity, systemClock).start();
 } catch (error) {
   loading.replaceChildren(
     "This browser cannot draw: Phrenic needs WebGL 2. Switch hardware acceleration on, or update it.",

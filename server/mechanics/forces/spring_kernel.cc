@@ -1,7 +1,6 @@
 #include "server/mechanics/forces/spring_kernel.h"
 
-// Targets whose vectors have no size that the compiler knows: their machines take NEON and the portable path.
-#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#include "server/mechanics/vector_targets.h"
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "server/mechanics/forces/spring_kernel.cc"
 #include <hwy/foreach_target.h>

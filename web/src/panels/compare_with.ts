@@ -15,7 +15,7 @@ export function compareWith(
 ): HTMLElement {
   const list = make("select", { id: "compare-with", title: "Opens a second picture that breathes this way" });
   const label = make("label", { htmlFor: "compare-with" }, "Compare with");
-  const row = make("div", { className: "compare-row" }, label, list);
+  const row = make("div", { className: "compare-row", id: "compare-with-row" }, label, list);
   const { companion, sessionId } = controller;
   list.onchange = async () => {
     if (companion !== undefined) return companion.usePreset(list.value);

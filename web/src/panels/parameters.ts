@@ -4,7 +4,6 @@ import type { Preset } from "../gen/phrenic/v1/scene_pb";
 import type { CompileReport } from "../gen/phrenic/v1/report_pb";
 import { type Control, parameterControls, type ParameterName, type SwitchControl } from "../schema";
 import { Signal } from "../signal";
-import { compareWith } from "./compare_with";
 import { ChoiceRow } from "./choice_row";
 import { button, icon, make, section, switchRow } from "./dom";
 import { NumberRow } from "./number_row";
@@ -12,7 +11,7 @@ import { PresetRow } from "./presets";
 import { pullRow } from "./pulls";
 
 /** What a parameter of the solver has in its name; all others are the breath's. */
-const ofTheSolver = /integrator|step/i;
+const ofTheSolver = /integrator|step|solver/i;
 
 /**
  * The live parameters, one row for each field of the schema, but for those that nothing in the scene answers to. Another
@@ -21,7 +20,6 @@ const ofTheSolver = /integrator|step/i;
 export function parameterSections(
   controller: Controller,
   report?: Signal<CompileReport | undefined>,
-  open: (query: string) => void = () => undefined,
   presets = new Signal<Preset[]>([]),
 ): HTMLElement[] {
   const rows = parameterControls().map((control) => parameterRow(control, controller));
@@ -35,9 +33,9 @@ export function parameterSections(
   });
   const elements = (solver: boolean) =>
     rows.filter(({ name }) => ofTheSolver.test(name) === solver).map(({ element }) => element);
-  const ways = [new PresetRow(controller, presets).element, compareWith(controller, presets, open)];
+  const ways = new PresetRow(controller, presets).element;
   return [
-    section("Breathing", true, ...ways, changesRow(controller), pullRow(controller), ...elements(false)),
+    section("Breathing", true, ways, changesRow(controller), pullRow(controller), ...elements(false)),
     section("Solver", true, ...elements(true)),
   ];
 }

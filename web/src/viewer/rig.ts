@@ -21,7 +21,15 @@ export interface Covered {
   bottom: number;
 }
 
+/** Where a camera is, and what it looks at [m]. */
+export interface Pose {
+  eye: { x: number; y: number; z: number };
+  target: { x: number; y: number; z: number };
+}
+
 const glide = 350;
+/** What part of the way to where somebody else looks from is left after one picture. */
+const lag = 0.7;
 
 /** The camera and its controls: orbit, zoom, pan, and gliding to named views. */
 export class Rig {
@@ -35,6 +43,7 @@ export class Rig {
   private held: ViewName | undefined;
   private extent = 1;
   private flat = false;
+  private chased: Pose | undefined;
   private flight: { from: THREE.Vector3; to: THREE.Vector3; start: number } | undefined;
 
   constructor(
@@ -47,7 +56,7 @@ export class Rig {
     this.controls.enableDamping = !calm();
     this.controls.dampingFactor = 0.12;
     this.controls.addEventListener("change", changed);
-    this.controls.addEventListener("start", () => (this.flight = this.held = undefined));
+    this.controls.addEventListener("start", () => (this.flight = this.held = this.chased = undefined));
   }
 
   /** Fits the camera to a new scene, of which `points` are a fair sample. */
@@ -68,6 +77,7 @@ export class Rig {
 
   go(view: ViewName, atOnce = this.calm()): void {
     this.held = view;
+    this.chased = undefined;
     this.controls.target.copy(this.center);
     const side = view === "home" ? this.opening : view;
     // A flat scene has its axes beside it.
@@ -112,8 +122,29 @@ export class Rig {
     this.changed();
   }
 
+  get pose(): Pose {
+    const plain = ({ x, y, z }: THREE.Vector3) => ({ x, y, z });
+    return { eye: plain(this.camera.position), target: plain(this.controls.target) };
+  }
+
+  /** Goes where somebody else looks from; smoothly, as their places come a few times a second. */
+  place(pose: Pose): void {
+    this.flight = this.held = undefined;
+    this.chased = pose;
+    this.changed();
+  }
+
+  private chase({ eye, target }: Pose): void {
+    const part = this.calm() ? 1 : 1 - lag;
+    this.camera.position.lerp(eye, part);
+    this.controls.target.lerp(target, part);
+    if (this.camera.position.distanceTo(eye) < 1e-5 * this.extent) this.chased = undefined;
+    this.changed();
+  }
+
   /** Moves what moves by itself. */
   update(now: number): void {
+    if (this.chased !== undefined) this.chase(this.chased);
     if (this.flight !== undefined) this.fly(this.flight, now);
     this.controls.update();
   }

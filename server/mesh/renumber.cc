@@ -1,0 +1,50 @@
+#include "server/mesh/renumber.h"
+
+#include <algorithm>
+
+namespace phrenic {
+namespace {
+
+template <typename Indices>
+void Rename(const std::vector<int>& name, Indices& indices) {
+  for (int& vertex : indices.reshaped()) vertex = name[vertex];
+}
+
+}  // namespace
+
+void KeepTriangles(const std::vector<bool>& keep, Mesh& mesh) {
+  std::vector<int> kept;
+  for (int t = 0; t < static_cast<int>(keep.size()); ++t) {
+    if (keep[t]) kept.push_back(t);
+  }
+  mesh.triangles = Triangles(mesh.triangles(Eigen::all, kept));
+}
+
+void RenameVertices(const std::vector<int>& name, Mesh& mesh) {
+  Rename(name, mesh.triangles);
+  Rename(name, mesh.tetrahedra);
+  Rename(name, mesh.edges);
+  for (auto& [region, vertices] : mesh.regions) {
+    for (int& vertex : vertices) vertex = name[vertex];
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  }
+}
+
+void DropUnusedVertices(Mesh& mesh) {
+  std::vector<bool> used(static_cast<size_t>(mesh.vertices.cols()), false);
+  for (const int vertex : mesh.triangles.reshaped()) used[vertex] = true;
+  for (const int vertex : mesh.tetrahedra.reshaped()) used[vertex] = true;
+  for (const int vertex : mesh.edges.reshaped()) used[vertex] = true;
+  std::vector<int> name(used.size(), -1), kept;
+  for (int i = 0; i < static_cast<int>(used.size()); ++i) {
+    if (!used[i]) continue;
+    name[i] = static_cast<int>(kept.size());
+    kept.push_back(i);
+  }
+  for (auto& [region, vertices] : mesh.regions) std::erase_if(vertices, [&](int vertex) { return !used[vertex]; });
+  mesh.vertices = Points(mesh.vertices(Eigen::all, kept));
+  RenameVertices(name, mesh);
+}
+
+}  // namespace phrenic

@@ -1,0 +1,18 @@
+// A State as bytes and back, bit for bit.
+#ifndef PHRENIC_SERVER_STORE_SAVED_STATE_H_
+#define PHRENIC_SERVER_STORE_SAVED_STATE_H_
+
+#include "absl/status/statusor.h"
+#include "phrenic/v1/saved.pb.h"
+#include "server/mechanics/model.h"
+
+namespace phrenic::store {
+
+v1::SavedState Save(const State& state);
+
+// DATA_LOSS where `saved` is not a state of the model: other numbers of vertices or poses, or a vertex that is none.
+absl::StatusOr<State> Restore(const Model& model, const v1::SavedState& saved);
+
+}  // namespace phrenic::store
+
+#endif  // PHRENIC_SERVER_STORE_SAVED_STATE_H_

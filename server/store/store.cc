@@ -1,0 +1,182 @@
+#include "server/store/store.h"
+
+#include <pthread.h>
+
+#include <filesystem>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "server/schema/sha256.h"
+#include "server/store/saved_state.h"
+
+namespace phrenic::store {
+namespace {
+
+constexpr absl::Duration kAgain = absl::Seconds(1);  // after the disk refused
+
+// The statements of one transaction.
+struct Writer {
+  static absl::StatusOr<Writer> Make(const Database& database) {
+    auto scene =
+        Statement::Prepare(database, "INSERT OR REPLACE INTO sessions (id, scene, scene_sha256) VALUES (?, ?, ?)");
+    auto state = Statement::Prepare(
+        database, "UPDATE sessions SET sequence = ?2, moment = ?3, state = ?4, sha256 = ?5 WHERE id = ?1");
+    auto shorten = Statement::Prepare(database, "DELETE FROM journal WHERE session = ? AND sequence <= ?");
+    auto moment = Statement::Prepare(database, "INSERT OR REPLACE INTO journal VALUES (?, ?, ?, ?)");
+    auto forget = Statement::Prepare(database, "DELETE FROM sessions WHERE id = ?");
+    for (const auto* statement : {&scene, &state, &shorten, &moment, &forget}) {
+      if (!statement->ok()) return statement->status();
+    }
+    return Writer{*std::move(scene), *std::move(state), *std::move(shorten), *std::move(moment), *std::move(forget)};
+  }
+
+  absl::Status Shorten(const std::string& id, std::int64_t last) { return shorten.Bind(1, id).Bind(2, last).Run(); }
+  absl::Status WriteScene(const std::string& id, const v1::SavedScene& saved) {
+    const std::string bytes = saved.SerializeAsString();
+    if (absl::Status status = Shorten(id, INT64_MAX); !status.ok()) return status;
+    return scene.Bind(1, id).BindBytes(2, bytes).Bind(3, Sha256Hex(bytes)).Run();
+  }
+  absl::Status WriteState(const std::string& id, std::int64_t sequence, const v1::SavedMoment& at, const State& saved) {
+    const std::string words = at.SerializeAsString(), bytes = Save(saved).SerializeAsString();
+    Sha256 hash;
+    hash.Add(words);
+    hash.Add(bytes);
+    state.Bind(1, id).Bind(2, sequence).BindBytes(3, words).BindBytes(4, bytes).Bind(5, hash.Hex());
+    if (absl::Status status = state.Run(); !status.ok()) return status;
+    return Shorten(id, sequence);
+  }
+  absl::Status WriteMoment(const std::string& id, std::int64_t sequence, const v1::SavedMoment& saved) {
+    const std::string bytes = saved.SerializeAsString();
+    return moment.Bind(1, id).Bind(2, sequence).BindBytes(3, bytes).Bind(4, Sha256Hex(bytes)).Run();
+  }
+  absl::Status Forget(const std::string& id) {
+    if (absl::Status status = Shorten(id, INT64_MAX); !status.ok()) return status;
+    return forget.Bind(1, id).Run();
+  }
+
+  Statement scene, state, shorten, moment, forget;
+};
+
+}  // namespace
+
+Store::Store(Database database) : database_(std::move(database)), thread_([this] { Run(); }) {}
+
+absl::StatusOr<std::unique_ptr<Store>> Store::Open(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) return absl::NotFoundError(absl::StrCat("cannot make the folder ", folder, ": ", error.message()));
+  std::filesystem::permissions(folder, std::filesystem::perms::owner_all, error);
+  auto database = Database::Open(StoreFile(folder), Access::kWrite);
+  if (!database.ok()) return database.status();
+  if (absl::Status status = Prepare(folder, *database); !status.ok()) return status;
+  return std::unique_ptr<Store>(new Store(*std::move(database)));
+}
+
+Store::~Store() {
+  {
+    absl::MutexLock lock(&mutex_);
+    closing_ = true;
+  }
+  thread_.join();
+}
+
+absl::StatusOr<std::vector<SavedSession>> Store::Load() { return ReadSessions(database_); }
+
+absl::Status Store::LimitSize(std::int64_t bytes) {
+  const absl::StatusOr<std::int64_t> page = database_.Number("PRAGMA page_size");
+  if (!page.ok()) return page.status();
+  return database_.Run(absl::StrCat("PRAGMA max_page_count = ", bytes / *page));
+}
+
+std::shared_ptr<Journal> Store::Begin(const std::string& id, v1::SavedScene scene) {
+  absl::MutexLock lock(&mutex_);
+  std::shared_ptr<Journal> journal(new Journal(*this, id, 0));
+  journal->pending_.scene = std::move(scene);
+  return journal;
+}
+
+std::shared_ptr<Journal> Store::Continue(const SavedSession& saved) {
+  return std::shared_ptr<Journal>(new Journal(*this, saved.id, saved.sequence));
+}
+
+void Store::Told(Journal& journal) {
+  ++journal.told_;
+  journal.pending_.told = journal.told_;
+  if (journal.waiting_) return;
+  journal.waiting_ = true;
+  waiting_.push_back(journal.shared_from_this());
+}
+
+Store::Batch Store::TakeBatch() {
+  Batch batch;
+  for (auto& journal : waiting_) {
+    journal->waiting_ = false;
+    batch.emplace_back(journal, std::exchange(journal->pending_, {}));
+  }
+  waiting_.clear();
+  return batch;
+}
+
+// What could not be written goes before what came meanwhile, unless a state has made it superfluous.
+void Store::PutBack(Batch batch) {
+  std::vector<std::shared_ptr<Journal>> waiting;
+  for (auto& [journal, before] : batch) {
+    Journal::Pending& now = journal->pending_;
+    now.told = journal->told_;
+    if (before.scene.has_value() && !now.forgotten) now.scene = std::move(before.scene);
+    now.forgotten = now.forgotten || before.forgotten;
+    if (!now.kept.has_value() && !now.forgotten) {
+      now.kept = std::move(before.kept);
+      before.moments.insert(before.moments.end(), now.moments.begin(), now.moments.end());
+      now.moments = std::move(before.moments);
+    }
+    if (!journal->waiting_) waiting.push_back(journal);
+    journal->waiting_ = true;
+  }
+  waiting_.insert(waiting_.begin(), waiting.begin(), waiting.end());
+}
+
+absl::Status Store::Write(const Batch& batch) {
+  if (absl::Status status = database_.Run("BEGIN IMMEDIATE"); !status.ok()) return status;
+  absl::StatusOr<Writer> writer = Writer::Make(database_);
+  absl::Status status = writer.status();
+  for (const auto& [journal, pending] : batch) {
+    if (!status.ok()) break;
+    if (pending.forgotten) status = writer->Forget(journal->id_);
+    if (status.ok() && pending.scene.has_value()) status = writer->WriteScene(journal->id_, *pending.scene);
+    if (status.ok() && pending.kept.has_value()) {
+      const Journal::Kept& kept = *pending.kept;
+      status = writer->WriteState(journal->id_, kept.sequence, kept.moment, *kept.state);
+    }
+    for (const auto& [sequence, moment] : pending.moments) {
+      if (status.ok()) status = writer->WriteMoment(journal->id_, sequence, moment);
+    }
+  }
+  if (status.ok()) status = database_.Run("COMMIT");
+  if (!status.ok()) database_.Run("ROLLBACK").IgnoreError();
+  return status;
+}
+
+void Store::Run() {
+  pthread_setname_np(pthread_self(), "saving");
+  absl::MutexLock lock(&mutex_);
+  for (;;) {
+    mutex_.Await(absl::Condition(this, &Store::Stirred));
+    if (waiting_.empty()) return;
+    const bool last = closing_;
+    Batch batch = TakeBatch();
+    mutex_.Unlock();
+    const absl::Status status = Write(batch);
+    mutex_.Lock();
+    for (const auto& [journal, pending] : batch) {
+      journal->problem_ = status;
+      if (status.ok()) journal->written_ = pending.told;
+    }
+    if (status.ok()) continue;
+    if (last) return;
+    PutBack(std::move(batch));
+    mutex_.AwaitWithTimeout(absl::Condition(this, &Store::Closing), kAgain);
+  }
+}
+
+}  // namespace phrenic::store

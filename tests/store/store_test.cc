@@ -1,0 +1,219 @@
+// What is saved is there after the store was opened anew, whole or not at all.
+#include "server/store/store.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <functional>
+
+#include "absl/time/clock.h"
+#include "server/store/saved_state.h"
+#include "server/store/sqlite.h"
+
+namespace phrenic::store {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::SizeIs;
+
+class StoreTest : public testing::Test {
+ protected:
+  StoreTest() { std::filesystem::remove_all(folder_); }
+  ~StoreTest() override { std::filesystem::remove_all(folder_); }
+
+  std::unique_ptr<Store> Open() const {
+    auto store = Store::Open(folder_);
+    EXPECT_TRUE(store.ok()) << store.status();
+    return *std::move(store);
+  }
+  static v1::SavedScene Scene(const std::string& name) {
+    v1::SavedScene scene;
+    scene.mutable_source()->mutable_scene()->set_name(name);
+    return scene;
+  }
+  static v1::SavedMoment At(std::int64_t tick) {
+    v1::SavedMoment moment;
+    moment.mutable_session()->set_tick(tick);
+    return moment;
+  }
+  static std::shared_ptr<const State> StateAt(std::int64_t tick) {
+    auto state = std::make_shared<State>();
+    state->tick = tick;
+    state->x = state->v = Points::Constant(3, 2, 0.1 * static_cast<double>(tick));
+    return state;
+  }
+  static std::vector<std::int64_t> Ticks(const SavedSession& session) {
+    std::vector<std::int64_t> ticks = {session.state.tick()};
+    for (const v1::SavedMoment& moment : session.later) ticks.push_back(moment.session().tick());
+    return ticks;
+  }
+  // Has the file's bytes changed by `change`.
+  void Damage(const std::function<void(std::string&)>& change) const {
+    std::ifstream in(StoreFile(folder_), std::ios::binary);
+    std::string bytes((std::istreambuf_iterator<char>(in)), {});
+    change(bytes);
+    std::ofstream(StoreFile(folder_), std::ios::binary) << bytes;
+  }
+
+  const std::string folder_ = testing::TempDir() + "phrenic_store_" + std::to_string(getpid());
+};
+
+TEST_F(StoreTest, ASessionIsItsLastStateAndWhatItWasToldSince) {
+  {
+    const auto store = Open();
+    const auto journal = store->Begin("a", Scene("cube"));
+    journal->Keep(At(0), StateAt(0));
+    journal->Append(At(3), false);
+    journal->Append(At(5), false);
+    ASSERT_TRUE(journal->Flush().ok());
+    journal->Keep(At(7), StateAt(7));
+    journal->Append(At(9), false);
+    ASSERT_TRUE(journal->Flush().ok());
+  }
+  const auto sessions = Open()->Load();
+  ASSERT_TRUE(sessions.ok()) << sessions.status();
+  ASSERT_THAT(*sessions, SizeIs(1));
+  EXPECT_EQ((*sessions)[0].id, "a");
+  EXPECT_EQ((*sessions)[0].scene.source().scene().name(), "cube");
+  EXPECT_THAT(Ticks((*sessions)[0]), ElementsAre(7, 9));
+  EXPECT_EQ((*sessions)[0].moment.session().tick(), 7);
+}
+
+TEST_F(StoreTest, MomentsOfTimeAloneReplaceEachOther) {
+  {
+    const auto store = Open();
+    const auto journal = store->Begin("a", Scene("cube"));
+    journal->Keep(At(0), StateAt(0));
+    for (const std::int64_t tick : {1, 2, 3}) {
+      journal->Append(At(tick), true);
+      ASSERT_TRUE(journal->Flush().ok());
+    }
+    journal->Append(At(4), false);
+    journal->Append(At(5), true);
+  }
+  EXPECT_THAT(Ticks(Open()->Load()->at(0)), ElementsAre(0, 3, 4, 5));
+}
+
+TEST_F(StoreTest, ASessionGoesOnWhereItWasLoaded) {
+  {
+    const auto store = Open();
+    const auto journal = store->Begin("a", Scene("cube"));
+    journal->Keep(At(0), StateAt(0));
+    journal->Append(At(1), false);
+  }
+  {
+    const auto store = Open();
+    store->Continue(store->Load()->at(0))->Append(At(2), false);
+  }
+  EXPECT_THAT(Ticks(Open()->Load()->at(0)), ElementsAre(0, 1, 2));
+}
+
+TEST_F(StoreTest, WhatIsForgottenIsGoneAndItsNameIsFree) {
+  {
+    const auto store = Open();
+    const auto old = store->Begin("a", Scene("cube"));
+    old->Keep(At(0), StateAt(0));
+    old->Append(At(1), false);
+    ASSERT_TRUE(old->Flush().ok());
+    old->Forget();
+    old->Append(At(2), false);
+    const auto other = store->Begin("a", Scene("prism"));
+    other->Keep(At(5), StateAt(5));
+    ASSERT_TRUE(other->Flush().ok());
+  }
+  const auto sessions = Open()->Load();
+  ASSERT_THAT(*sessions, SizeIs(1));
+  EXPECT_EQ((*sessions)[0].scene.source().scene().name(), "prism");
+  EXPECT_THAT(Ticks((*sessions)[0]), ElementsAre(5));
+}
+
+TEST_F(StoreTest, TwoServersDoNotShareOne) {
+  const auto first = Open();
+  const auto second = Store::Open(folder_);
+  EXPECT_TRUE(absl::IsFailedPrecondition(second.status())) << second.status();
+  EXPECT_THAT(std::string(second.status().message()), HasSubstr("in use by another server"));
+}
+
+TEST_F(StoreTest, ANewerFormatIsRefusedAndLeftAsItIs) {
+  { Open(); }
+  {
+    auto database = Database::Open(StoreFile(folder_), Access::kWrite);
+    ASSERT_TRUE(database->Run("PRAGMA user_version = 2").ok());
+  }
+  const auto store = Store::Open(folder_);
+  EXPECT_TRUE(absl::IsFailedPrecondition(store.status())) << store.status();
+  EXPECT_THAT(std::string(store.status().message()), HasSubstr("format 2, written by a newer Phrenic"));
+  EXPECT_EQ(*Database::Open(StoreFile(folder_), Access::kRead)->Number("PRAGMA user_version"), 2);
+}
+
+TEST_F(StoreTest, WhatIsNoStoreIsRefused) {
+  std::filesystem::create_directories(folder_);
+  Damage([](std::string& bytes) { bytes = std::string(5000, 'x'); });
+  EXPECT_TRUE(absl::IsDataLoss(Store::Open(folder_).status())) << Store::Open(folder_).status();
+  std::filesystem::remove(StoreFile(folder_));
+  ASSERT_TRUE(Database::Open(StoreFile(folder_), Access::kWrite)->Run("CREATE TABLE t (a)").ok());
+  EXPECT_THAT(std::string(Store::Open(folder_).status().message()), HasSubstr("another program's"));
+}
+
+TEST_F(StoreTest, EveryFlippedByteOfASessionIsFound) {
+  {
+    const auto store = Open();
+    for (const char* id : {"a", "b"}) {
+      const auto journal = store->Begin(id, Scene("cube"));
+      journal->Keep(At(0), StateAt(3));
+    }
+  }
+  const std::string saved = Save(*StateAt(3)).SerializeAsString();
+  int found = 0;
+  for (size_t at = 0; at < saved.size(); at += 7) {
+    Damage([&](std::string& bytes) {
+      const size_t first = bytes.find(saved);
+      ASSERT_NE(first, std::string::npos);
+      bytes[first + at] = static_cast<char>(bytes[first + at] ^ 1);
+    });
+    const auto store = Store::Open(folder_);
+    ASSERT_TRUE(store.ok()) << store.status();
+    const auto sessions = (*store)->Load();
+    ASSERT_THAT(*sessions, SizeIs(2));
+    found += (*sessions)[0].problem.ok() && (*sessions)[1].problem.ok() ? 0 : 1;
+    Damage([&](std::string& bytes) {
+      std::string flipped = saved;
+      flipped[at] = static_cast<char>(flipped[at] ^ 1);
+      const size_t first = bytes.find(flipped);
+      if (first != std::string::npos) bytes[first + at] = saved[at];
+    });
+  }
+  EXPECT_EQ(found, static_cast<int>((saved.size() + 6) / 7));
+}
+
+TEST_F(StoreTest, AFullDiskIsToldAndEverythingIsSavedWhenThereIsRoomAgain) {
+  {
+    const auto store = Open();
+    const auto journal = store->Begin("a", Scene("cube"));
+    journal->Keep(At(0), StateAt(0));
+    ASSERT_TRUE(journal->Flush().ok());
+    ASSERT_TRUE(store->LimitSize(8 * 4096).ok());
+    auto large = std::make_shared<State>(*StateAt(4));
+    large->x = large->v = Points::Random(3, 4000);
+    journal->Keep(At(4), large);
+    journal->Append(At(5), false);
+    const absl::Status full = journal->Flush();
+    EXPECT_TRUE(absl::IsResourceExhausted(full)) << full;
+    EXPECT_THAT(std::string(full.message()), HasSubstr("is full"));
+    ASSERT_TRUE(store->LimitSize(1 << 28).ok());
+    absl::Status status = full;
+    for (int i = 0; i < 50 && !status.ok(); ++i) {
+      absl::SleepFor(absl::Milliseconds(100));
+      status = journal->Flush();
+    }
+    EXPECT_TRUE(status.ok()) << status;
+  }
+  EXPECT_THAT(Ticks(Open()->Load()->at(0)), ElementsAre(4, 5));
+}
+
+}  // namespace
+}  // namespace phrenic::store
