@@ -172,7 +172,9 @@ absl::StatusOr<std::shared_ptr<const Model>> Compile(const v1::Scene& scene, con
   Model& model = draft.model;
   model.scene = scene;
   schema::FillDefaults(&model.scene);
+  // What these leave open has a meaning of its own.
   model.scene.mutable_parameters()->CopyFrom(scene.parameters());
+  model.scene.mutable_presets()->CopyFrom(scene.presets());
   ResolveParameters(model);
   CompletePresets(model.scene);
   StageClock clock(model.report);

@@ -26,7 +26,7 @@ test("FromTheAddressToAParalysedHemidiaphragmBesideAHealthyOneInUnderAMinute", a
   await page.waitForURL(/beside=/);
   await viewer.waitForPicture();
   await page.locator("#beside").getByText("Paralysis right").waitFor();
-  const ways = await page.locator(".pane-head .way").allTextContents();
+  const ways = await page.locator(".pane-head b").allTextContents();
   expect(ways.toSorted()).toEqual(["Paralysis right", "Quiet"]);
   expect(Date.now() - start).toBeLessThan(60_000);
   expect(await page.textContent(".differences")).toBe("Right muscle 0 instead of 1");

@@ -64,6 +64,8 @@ export class FakeServer {
   readonly created: CreateSessionRequest[] = [];
   readonly steps: [bigint | undefined, bigint][] = [];
   readonly deleted: string[] = [];
+  /** How near to the truth frames were asked to be [mm], by each watch. */
+  readonly errorBounds: (number | undefined)[] = [];
   /** What was asked of the forces. */
   readonly forceQuestions: object[] = [];
   readonly comparisons: CompareRequest[] = [];
@@ -146,7 +148,8 @@ export class FakeServer {
         server.geometryCalls++;
         yield server.answer(triangleBody({}));
       },
-      async *watchFrames(_: object, { signal }: { signal: AbortSignal }) {
+      async *watchFrames({ maxErrorMm }: { maxErrorMm?: number }, { signal }: { signal: AbortSignal }) {
+        server.errorBounds.push(maxErrorMm);
         yield server.answer({
           event: { case: "session" as const, value: server.session },
         });

@@ -7,6 +7,7 @@ import { Comparisons } from "./comparison";
 import { Connection, type Link, type Sink } from "./connection";
 import { Controller } from "./controller";
 import { Exports } from "./exports";
+import { needsExact } from "./fields";
 import { Forces } from "./forces";
 import { Frames } from "./frames";
 import type { CompileReport } from "./gen/phrenic/v1/report_pb";
@@ -20,7 +21,7 @@ import { compareWith } from "./panels/compare_with";
 import { comparePanel } from "./panels/compare";
 import { ComparisonCard } from "./panels/comparison_card";
 import { controlBadge, controlled, ControlDialog } from "./panels/control";
-import { download, make, place } from "./panels/dom";
+import { download, place } from "./panels/dom";
 import { drawers } from "./panels/drawers";
 import { dropZone } from "./panels/drop_zone";
 import { exportPanel } from "./panels/export";
@@ -129,6 +130,7 @@ export class App {
     setInterval(() => this.tell(), statusInterval);
     setInterval(() => document.hidden || this.draw(), graphInterval);
     window.addEventListener("pagehide", () => this.controller.leave());
+    this.tools.coloring.kind.subscribe((kind) => this.connection.setExact(needsExact(kind)));
     void this.connection.run();
     void this.standing.run();
   }
@@ -177,14 +179,7 @@ export class App {
     place("stage").append(drop, tools.force);
     if (this.beside !== undefined) {
       place("stage").classList.add("split");
-      const head = make(
-        "div",
-        { className: "pane-head" },
-        make("b", {}, this.subject.sessionId),
-        this.beside.way,
-        make("span", {}, "steered"),
-      );
-      place("stage").append(this.beside.element, head);
+      place("stage").append(this.beside.element, this.beside.firstHead);
     }
     place("annotations-place").append(tools.annotations.element);
     place("cube-place").append(tools.cube.element);
@@ -221,7 +216,7 @@ export class App {
       if (picture !== null) download(`${sessionId}.png`, picture);
     };
     const share = new ShareDialog({ controller, report, open, photograph: () => void photograph() });
-    const { graphs, panel } = drawers(() => this.resize());
+    const { graphs, panel } = drawers(() => this.resize(), this.beside !== undefined);
     const press = (id: string) => () => document.getElementById(id)?.click();
     const keys = shortcuts(
       [

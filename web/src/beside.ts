@@ -25,9 +25,10 @@ export interface First {
 /** A second session in a picture of its own, with the first one's camera and looks; it plays and pauses with the first. */
 export class Beside {
   readonly element: HTMLElement;
-  /** How the first one breathes, in words. */
-  readonly way = make("span", { className: "way" });
-  private readonly ownWay = make("span", { className: "way" });
+  /** What the first picture is headed by. */
+  readonly firstHead: HTMLElement;
+  /** Each is named by how it breathes, where a preset says that; else by its session. */
+  private readonly names = [make("b"), make("b")];
   private readonly viewer: Viewer;
   private readonly controller: Controller;
   private readonly frames = new Frames();
@@ -51,7 +52,10 @@ export class Beside {
     swap.onclick = () => actions.swap();
     const close = make("button", { type: "button", className: "small", ariaLabel: `Close ${sessionId}` }, "Close");
     close.onclick = () => actions.close();
-    const head = make("div", { className: "pane-head" }, make("b", {}, sessionId), this.ownWay, this.time, swap, close);
+    const [here, there] = this.names;
+    const head = make("div", { className: "pane-head", title: sessionId }, there, this.time, swap, close);
+    const steered = make("span", {}, "steered");
+    this.firstHead = make("div", { className: "pane-head", title: first.controller.sessionId }, here, steered);
     this.element = make("div", { id: "beside" }, canvas, head, this.differences);
     this.viewer = new Viewer(canvas, {
       ...first.around,
@@ -109,11 +113,10 @@ export class Beside {
   private compare(): void {
     const [here, there] = [this.first.controller, this.controller].map(({ session }) => session.value?.parameters);
     const words = differences(here, there);
-    const way = (parameters: Parameters | undefined) => {
-      const preset = presetOf(this.first.presets.value, parameters);
-      return preset === undefined ? "" : labelOf(preset);
-    };
-    [this.way.textContent, this.ownWay.textContent] = [way(here), way(there)];
+    [this.first.controller, this.controller].forEach(({ session, sessionId }, i) => {
+      const preset = presetOf(this.first.presets.value, session.value?.parameters);
+      this.names[i].textContent = preset === undefined ? sessionId : labelOf(preset);
+    });
     this.differences.textContent = words === "" ? "The same parameters" : words;
   }
 }

@@ -53,6 +53,11 @@ export const fields: FieldInfo[] = [
   },
 ];
 
+/** Whether neighbours' distances count in a field, so that an error of 0.1 mm would show. */
+export function needsExact(kind: FieldKind | undefined): boolean {
+  return kind === "area" || kind === "largest" || kind === "smallest";
+}
+
 /** The kind of force that a field is, if it is one. */
 export function forceOf(kind: FieldKind | undefined): string | undefined {
   return kind?.startsWith("force:") ? kind.slice("force:".length) : undefined;

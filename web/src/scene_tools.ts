@@ -28,7 +28,7 @@ export class SceneTools {
   readonly cube: OrientationCube;
   readonly annotations: Annotations;
   readonly force = make("output", { id: "force", hidden: true });
-  private readonly coloring: Coloring;
+  readonly coloring: Coloring;
   private readonly overlays = new Signal<ReadonlySet<OverlayKind>>(new Set());
   private readonly pickCard: PickCard;
   private readonly expiration = new Expiration();
