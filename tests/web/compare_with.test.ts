@@ -1,6 +1,8 @@
 import { create } from "@bufbuild/protobuf";
 import { beforeEach, expect, test } from "vitest";
+import { domeWords } from "../../web/src/beside";
 import { Controller } from "../../web/src/controller";
+import { FrameSchema } from "../../web/src/gen/phrenic/v1/frames_pb";
 import { ParametersSchema } from "../../web/src/gen/phrenic/v1/parameters_pb";
 import { PresetSchema } from "../../web/src/gen/phrenic/v1/scene_pb";
 import { SessionSchema } from "../../web/src/gen/phrenic/v1/session_pb";
@@ -56,4 +58,13 @@ test("TheListTellsHowTheSecondOneBreathes", () => {
 
 test("ASceneWithoutPresetsHasNothingToCompareWith", () => {
   expect(compareWith(controller, new Signal(presets.value.slice(0, 0)), () => undefined).hidden).toBe(true);
+});
+
+test("WhereTheDomesAreIsPutInWords", () => {
+  const probe = (name: string, dz: number) => ({ name, dz });
+  const frame = create(FrameSchema, {
+    probes: [probe("right dome", 0.0021), probe("rib", 1), probe("left dome", -0.0143)],
+  });
+  expect(domeWords(frame)).toBe("right dome 2.1 mm up, left dome 14.3 mm down");
+  expect(domeWords(undefined)).toBe("");
 });

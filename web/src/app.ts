@@ -302,6 +302,7 @@ export class App {
     this.viewers.show(status);
     this.readout.show(status);
     this.probes.show(status.frame);
+    this.beside?.tell(status.frame);
     this.measures.show(status.frame);
     this.comparison.show(status.frame?.time);
     this.tools.show();

@@ -3,8 +3,10 @@ import type { Clock } from "./clock";
 import { Connection, type Sink } from "./connection";
 import { Controller } from "./controller";
 import { Frames } from "./frames";
+import type { Frame } from "./gen/phrenic/v1/frames_pb";
 import type { Parameters } from "./gen/phrenic/v1/parameters_pb";
 import type { Preset } from "./gen/phrenic/v1/scene_pb";
+import { isDome } from "./graphs/catalogue";
 import type { Looks } from "./looks";
 import { formatNumber } from "./numbers";
 import { make } from "./panels/dom";
@@ -29,6 +31,7 @@ export class Beside {
   readonly firstHead: HTMLElement;
   /** Each is named by how it breathes, where a preset says that; else by its session. */
   private readonly names = [make("b"), make("b")];
+  private readonly descents = [make("span", { className: "domes" }), make("span", { className: "domes" })];
   private readonly viewer: Viewer;
   private readonly controller: Controller;
   private readonly frames = new Frames();
@@ -53,9 +56,23 @@ export class Beside {
     const close = make("button", { type: "button", className: "small", ariaLabel: `Close ${sessionId}` }, "Close");
     close.onclick = () => actions.close();
     const [here, there] = this.names;
-    const head = make("div", { className: "pane-head", title: sessionId }, there, this.time, swap, close);
+    const head = make(
+      "div",
+      { className: "pane-head", title: sessionId },
+      there,
+      this.time,
+      swap,
+      close,
+      this.descents[1],
+    );
     const steered = make("span", {}, "steered");
-    this.firstHead = make("div", { className: "pane-head", title: first.controller.sessionId }, here, steered);
+    this.firstHead = make(
+      "div",
+      { className: "pane-head", title: first.controller.sessionId },
+      here,
+      steered,
+      this.descents[0],
+    );
     this.element = make("div", { id: "beside" }, canvas, head, this.differences);
     this.viewer = new Viewer(canvas, {
       ...first.around,
@@ -105,6 +122,11 @@ export class Beside {
     };
   }
 
+  /** How far the domes of both have come down by now. */
+  tell(first: Frame | undefined): void {
+    [first, this.frames.frame].forEach((frame, i) => (this.descents[i].textContent = domeWords(frame)));
+  }
+
   private look(): void {
     for (const { layer, opacity, visible } of this.first.looks.all.value)
       this.viewer.setLayerOpacity(layer, visible ? opacity : 0);
@@ -119,6 +141,14 @@ export class Beside {
     });
     this.differences.textContent = words === "" ? "The same parameters" : words;
   }
+}
+
+/** "right dome 19.5 mm down, left dome 2.1 mm up"; empty where the scene has no probe of a dome. */
+export function domeWords(frame: Frame | undefined): string {
+  return (frame?.probes ?? [])
+    .filter(isDome)
+    .map(({ name, dz }) => `${name} ${(1000 * Math.abs(dz)).toFixed(1)} mm ${dz > 0 ? "up" : "down"}`)
+    .join(", ");
 }
 
 /** What is set otherwise in `there`: "Breath force 2 instead of 1". */

@@ -25,6 +25,14 @@ export function unitFor(all: ForceOnVertex[]): { name: string; factor: number } 
 }
 
 function row({ kind, force }: ForceOnVertex, factor: number): HTMLElement {
-  const cells = force.map((each) => make("td", {}, (factor * each).toFixed(2).replace("-", "−")));
+  const cells = force.map((each) => make("td", {}, words(factor * each)));
   return make("tr", {}, make("th", { scope: "row" }, wordsOf(kind)), ...cells);
+}
+
+/** Two decimals, and no sign before a zero. */
+function words(value: number): string {
+  return value
+    .toFixed(2)
+    .replace(/^-(0\.00)$/, "$1")
+    .replace("-", "−");
 }
