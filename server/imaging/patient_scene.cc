@@ -142,7 +142,9 @@ void AdaptForces(const Mesh& diaphragm, const CageFrame& frame, const std::set<s
     line.mutable_origin()->set_y((low.y() + high.y()) / 2 + kBehindMiddle * scale);
     line.mutable_origin()->set_z(high.z());
     line.set_radius(line.radius() * scale);
-    line.set_force((side < 0 ? kPullRight : kPullLeft) * line.force() * pull);
+    const double share = (side < 0 ? kPullRight : kPullLeft) * pull;
+    line.set_force(share * line.force());
+    line.set_lung_load(share * line.lung_load());
   }
 }
 

@@ -9,6 +9,7 @@
 #include "absl/strings/str_format.h"
 #include "server/mechanics/bodies.h"
 #include "server/mechanics/catalogue.h"
+#include "server/mechanics/presets.h"
 #include "server/mechanics/scene_hash.h"
 #include "server/mechanics/spectrum.h"
 #include "server/schema/schema.h"
@@ -20,6 +21,31 @@ constexpr double kSafety = 0.95;           // of the Lanczos estimate
 constexpr double kChosen = 0.9;            // of the largest stable step
 constexpr double kLongestStep = 1.0 / 60;  // [s]; one step a frame at most
 
+// Tells the report how long each stage takes, and all of them.
+class StageClock {
+ public:
+  explicit StageClock(v1::CompileReport& report) : report_(report) {}
+
+  void End(const char* stage) {
+    const auto now = std::chrono::steady_clock::now();
+    const double seconds = std::chrono::duration<double>(now - start_).count();
+    v1::StageTime& row = *report_.add_stages();
+    row.set_name(stage);
+    row.set_seconds(seconds);
+    report_.set_compile_seconds(report_.compile_seconds() + seconds);
+    start_ = now;
+  }
+
+ private:
+  v1::CompileReport& report_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+// "action_line": the name of the field that is set of the kinds there are.
+std::string KindOf(const v1::Force& force) {
+  return v1::Force::descriptor()->FindFieldByNumber(force.kind_case())->name();
+}
+
 absl::Status AddElements(Draft& draft) {
   const v1::Scene& scene = draft.model.scene;
   for (int i = 0; i < scene.motions_size(); ++i) {
@@ -28,7 +54,9 @@ absl::Status AddElements(Draft& draft) {
   for (int i = 0; i < scene.forces_size(); ++i) {
     auto force = MakeForce(scene.forces(i), absl::StrCat("forces[", i, "]"), draft);
     if (!force.ok()) return force.status();
-    if (*force != nullptr) draft.model.forces.push_back(*std::move(force));
+    if (*force == nullptr) continue;
+    draft.model.forces.push_back(*std::move(force));
+    draft.model.force_kinds.push_back(KindOf(scene.forces(i)));
   }
   for (int i = 0; i < scene.constraints_size(); ++i) {
     auto constraint = MakeConstraint(scene.constraints(i), absl::StrCat("constraints[", i, "]"), draft);
@@ -70,6 +98,12 @@ void ReportIdleParameters(const v1::Scene& scene, v1::CompileReport& report) {
     for (const char* name : {"rib_motion", "pump_handle", "bucket_handle"}) report.add_idle_parameters(name);
   }
   if (!muscles) report.add_idle_parameters("apply_muscles");
+  const auto has_line = [&scene](v1::Side side) {
+    return std::any_of(scene.forces().begin(), scene.forces().end(),
+                       [side](const v1::Force& force) { return force.action_line().side() == side; });
+  };
+  if (!has_line(v1::SIDE_RIGHT)) report.add_idle_parameters("right_activation");
+  if (!has_line(v1::SIDE_LEFT)) report.add_idle_parameters("left_activation");
   if (scene.constraints().empty()) report.add_idle_parameters("apply_links");
 }
 
@@ -133,25 +167,31 @@ void ChooseStep(Model& model) {
 }  // namespace
 
 absl::StatusOr<std::shared_ptr<const Model>> Compile(const v1::Scene& scene, const MeshSource& source) {
-  const auto start = std::chrono::steady_clock::now();
   if (absl::Status status = schema::Validate(scene); !status.ok()) return status;
   Draft draft;
   Model& model = draft.model;
   model.scene = scene;
   schema::FillDefaults(&model.scene);
+  // What these leave open has a meaning of its own.
   model.scene.mutable_parameters()->CopyFrom(scene.parameters());
+  model.scene.mutable_presets()->CopyFrom(scene.presets());
   ResolveParameters(model);
+  CompletePresets(model.scene);
+  StageClock clock(model.report);
   if (absl::Status status = AddBodies(source, draft); !status.ok()) return status;
+  clock.End("bodies");
   if (absl::Status status = AddElements(draft); !status.ok()) return status;
+  clock.End("elements");
   if (absl::Status status = AddProbes(draft); !status.ok()) return status;
   if (absl::Status status = AddMeasures(draft); !status.ok()) return status;
+  clock.End("measures");
   ReportUnused(draft);
   ReportIdleParameters(model.scene, model.report);
   model.report.set_scene(scene.name());
   model.report.set_scene_hash(SceneHash(model));
+  clock.End("hash");
   ChooseStep(model);
-  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-  model.report.set_compile_seconds(taken.count());
+  clock.End("largest step");
   return std::make_shared<const Model>(std::move(model));
 }
 

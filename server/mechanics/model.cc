@@ -3,9 +3,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "absl/strings/str_cat.h"
-#include "server/schema/names.h"
-
 namespace phrenic {
 
 State Model::InitialState() const {
@@ -33,17 +30,6 @@ const BodyModel& Model::BodyOf(int simulated_vertex) const {
     if (body.first_vertex >= 0 && body.first_vertex <= simulated_vertex) found = &body;
   }
   return *found;
-}
-
-absl::StatusOr<v1::Parameters> FindPreset(const v1::Scene& scene, const std::string& name) {
-  if (name.empty()) return v1::Parameters();
-  std::vector<std::string> names;
-  for (const v1::Preset& preset : scene.presets()) {
-    if (preset.name() == name) return preset.parameters();
-    names.push_back(preset.name());
-  }
-  return absl::InvalidArgumentError(
-      absl::StrCat("preset: scene \"", scene.name(), "\" has no preset \"", name, "\"", schema::ThereAre(name, names)));
 }
 
 double BreathSignal(v1::Waveform waveform, double phase) {

@@ -52,6 +52,7 @@ struct Model {
   Eigen::VectorXd mass;          // [kg]
   Eigen::VectorXd inverse_mass;  // [1/kg]; 0 for fixed and driven vertices
   std::vector<std::unique_ptr<Force>> forces;
+  std::vector<std::string> force_kinds;  // of each of `forces`, as scene text names it: "action_line"
   std::vector<std::unique_ptr<Motion>> motions;
   std::vector<std::unique_ptr<Constraint>> constraints;
   std::vector<Ride> rides;  // seen bodies; worked out with frames, not with steps
@@ -71,10 +72,6 @@ struct Model {
   // The body that a simulated vertex belongs to.
   const BodyModel& BodyOf(int simulated_vertex) const;
 };
-
-// The parameters of one of the scene's presets, none where the name is empty. INVALID_ARGUMENT with the names there
-// are.
-absl::StatusOr<v1::Parameters> FindPreset(const v1::Scene& scene, const std::string& name);
 
 // The breath's signal at a phase [breaths] and its derivative by the phase.
 double BreathSignal(v1::Waveform waveform, double phase);

@@ -10,6 +10,7 @@
 #include "server/schema/schema.h"
 #include "server/service/status.h"
 #include "server/service/watch_reactor.h"
+#include "server/session/present_forces.h"
 #include "server/stream/geometry.h"
 
 namespace phrenic::service {
@@ -119,6 +120,15 @@ grpc::ServerUnaryReactor* FrameService::AckFrames(grpc::CallbackServerContext* c
   grpc::ServerUnaryReactor* const reactor = context->DefaultReactor();
   reactor->Finish(ToGrpc(Acknowledge(table_, *request, *response)));
   return reactor;
+}
+
+grpc::Status FrameService::GetForces(grpc::ServerContext* /*context*/, const v1::GetForcesRequest* request,
+                                     v1::GetForcesResponse* response) {
+  if (absl::Status status = schema::Validate(*request); !status.ok()) return ToGrpc(status);
+  auto read = session::ReadForces(table_, *request);
+  if (!read.ok()) return ToGrpc(read.status());
+  *response = *std::move(read);
+  return grpc::Status::OK;
 }
 
 }  // namespace phrenic::service

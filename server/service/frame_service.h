@@ -20,6 +20,8 @@ class FrameService final : public v1::FrameService::WithRawCallbackMethod_WatchF
                                                           const grpc::ByteBuffer* request) override;
   grpc::ServerUnaryReactor* AckFrames(grpc::CallbackServerContext* context, const v1::AckFramesRequest* request,
                                       v1::AckFramesResponse* response) override;
+  grpc::Status GetForces(grpc::ServerContext* context, const v1::GetForcesRequest* request,
+                         v1::GetForcesResponse* response) override;
 
  private:
   session::Table& table_;

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "server/mechanics/presets.h"
 #include "server/schema/schema.h"
 #include "server/service/repeatable.h"
 #include "server/service/status.h"

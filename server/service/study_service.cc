@@ -1,5 +1,6 @@
 #include "server/service/study_service.h"
 
+#include "server/mechanics/presets.h"
 #include "server/schema/schema.h"
 #include "server/service/status.h"
 #include "server/service/study_page.h"

@@ -85,10 +85,15 @@ const Check kChecks[] = {
     {"chest", "abdominal share of volume", "%", 0, 35, &AbdominalShare},
 };
 
+bool IsChecked(const std::string& breath) {
+  return std::any_of(std::begin(kChecks), std::end(kChecks),
+                     [&breath](const Check& each) { return each.breath == breath; });
+}
+
 std::vector<Breath> BreathsOf(const Model& model) {
   std::vector<Breath> breaths = {{.name = "quiet", .parameters = model.parameters}};
   for (const v1::Preset& preset : model.scene.presets()) {
-    if (preset.name() == "quiet") continue;
+    if (preset.name() == "quiet" || !IsChecked(preset.name())) continue;
     breaths.push_back({.name = preset.name(), .parameters = model.parameters});
     breaths.back().parameters.MergeFrom(preset.parameters());
   }

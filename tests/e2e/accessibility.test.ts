@@ -49,6 +49,34 @@ test("AxeFindsNothingAgainstTheChooser", async () => {
   await viewer.page.keyboard.press("Escape");
 });
 
+test("AxeFindsNothingAgainstColoursForcesAndDialogs", async () => {
+  const { page } = viewer;
+  await page.selectOption("#coloring-kind", "largest");
+  await page.waitForSelector("#coloring:not([hidden])");
+  expect(await violations()).toEqual([]);
+  await page.selectOption("#coloring-kind", "own");
+  for (const dialog of ["#share-open", "#help-open"]) {
+    await page.click(dialog);
+    expect(await violations(), dialog).toEqual([]);
+    await page.keyboard.press("Escape");
+  }
+});
+
+test.each([
+  ["twice the size, as at 200 %", 600, 360],
+  ["a phone", 390, 780],
+  ["a projector", 1280, 800],
+])("NothingOfTheHeaderIsOutOfReachAndAxeFindsNothingOn %s", async (_, width, height) => {
+  await viewer.page.setViewportSize({ width, height });
+  for (const button of await viewer.page.locator("#header button:visible").all()) {
+    const box = (await button.boundingBox())!;
+    expect(box.x).toBeGreaterThanOrEqual(0);
+    expect(box.x + box.width).toBeLessThanOrEqual(width);
+  }
+  expect(await violations()).toEqual([]);
+  await viewer.page.setViewportSize({ width: 900, height: 620 });
+});
+
 test("TheKeyboardAlonePlaysStepsTurnsAndSlides", async () => {
   await viewer.page.focus("#view");
   await viewer.page.keyboard.press("Space");

@@ -236,5 +236,45 @@ TEST_F(FrameServiceTest, BytesThatAreNoRequestAreRefused) {
   EXPECT_EQ(status.error_code(), grpc::INVALID_ARGUMENT) << status.error_message();
 }
 
+TEST_F(FrameServiceTest, ForcesOfAVertexComeByKindAndThoseOfAKindForEveryVertex) {
+  v1::GetForcesRequest request;
+  request.set_session_id("cube");
+  request.set_body("cube");
+  request.set_vertex(2);
+  request.set_kind("springs");
+  v1::GetForcesResponse response;
+  grpc::ClientContext context;
+  const grpc::Status status = frames_->GetForces(&context, request, &response);
+  ASSERT_TRUE(status.ok()) << status.error_message();
+  ASSERT_EQ(response.forces_size(), response.kinds_size());
+  ASSERT_EQ(response.sizes().size(), 8 * sizeof(float));
+  EXPECT_EQ(response.kinds(response.kinds_size() - 1), "net");
+  for (int i = 0; i < response.kinds_size(); ++i) {
+    if (response.kinds(i) != "springs") continue;
+    const v1::Vector& force = response.forces(i);
+    float size = 0;
+    std::memcpy(&size, response.sizes().data() + 2 * sizeof(float), sizeof(float));
+    EXPECT_NEAR(size, std::hypot(force.x(), force.y(), force.z()), 1e-6 * size);
+  }
+}
+
+TEST_F(FrameServiceTest, ForcesOfWhatIsNotThereAreRefusedWithWhatIs) {
+  const auto refusal = [this](const std::string& body, int vertex, const std::string& kind) {
+    v1::GetForcesRequest request;
+    request.set_session_id("cube");
+    request.set_body(body);
+    request.set_vertex(vertex);
+    request.set_kind(kind);
+    v1::GetForcesResponse response;
+    grpc::ClientContext context;
+    const grpc::Status status = frames_->GetForces(&context, request, &response);
+    EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+    return status.error_message();
+  };
+  EXPECT_THAT(refusal("ball", 0, ""), testing::HasSubstr("body: there is no deformable body \"ball\"; there are cube"));
+  EXPECT_THAT(refusal("cube", 8, ""), testing::HasSubstr("its vertices are 0 to 7"));
+  EXPECT_THAT(refusal("cube", 0, "magic"), testing::HasSubstr("there are springs, "));
+}
+
 }  // namespace
 }  // namespace phrenic::service

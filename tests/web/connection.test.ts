@@ -139,3 +139,16 @@ test("NothingIsAskedAfterStop", async () => {
   await clock.advance(60_000);
   expect(links.length).toBe(before);
 });
+
+test("FramesThatStrainCanBeToldFromAreWatchedAnewWithoutALoss", async () => {
+  await settle();
+  connection.setExact(true);
+  await settle();
+  connection.setExact(true);
+  await settle();
+  expect(server.errorBounds).toEqual([undefined, 0.01]);
+  server.send(frame(7n));
+  await settle();
+  expect(ticks).toEqual([7n]);
+  expect(kinds()).toEqual(["connecting", "live"]);
+});

@@ -8,6 +8,7 @@ import {
 } from "../../web/src/gen/phrenic/v1/compare_pb";
 import {
   FrameService,
+  type GetForcesRequest,
   GetGeometryResponseSchema,
   Placement,
   type WatchFramesResponseSchema,
@@ -63,6 +64,10 @@ export class FakeServer {
   readonly created: CreateSessionRequest[] = [];
   readonly steps: [bigint | undefined, bigint][] = [];
   readonly deleted: string[] = [];
+  /** How near to the truth frames were asked to be [mm], by each watch. */
+  readonly errorBounds: (number | undefined)[] = [];
+  /** What was asked of the forces. */
+  readonly forceQuestions: object[] = [];
   readonly comparisons: CompareRequest[] = [];
   /** What a comparison brings, one after the other; one that is a promise is waited for. */
   found: (ComparisonEvent | Promise<ComparisonEvent>)[] = [];
@@ -129,11 +134,22 @@ export class FakeServer {
         server.acknowledged.push(sequence);
         return server.answer({ unixNanos: 1_000_000_000n, framesPerSecond: 30 });
       },
+      getForces({ body, vertex, kind }: GetForcesRequest) {
+        server.forceQuestions.push({
+          body,
+          ...(vertex === undefined ? {} : { vertex }),
+          ...(kind === "" ? {} : { kind }),
+        });
+        const forces = vertex === undefined ? [] : [1, 2].map(() => ({ x: 1, y: 2, z: 3 }));
+        const sizes = kind === "" ? new Uint8Array() : bytesOf(new Float32Array([0.5, 0.25]));
+        return server.answer({ kinds: ["springs", "net"], forces, sizes });
+      },
       async *getGeometry() {
         server.geometryCalls++;
         yield server.answer(triangleBody({}));
       },
-      async *watchFrames(_: object, { signal }: { signal: AbortSignal }) {
+      async *watchFrames({ maxErrorMm }: { maxErrorMm?: number }, { signal }: { signal: AbortSignal }) {
+        server.errorBounds.push(maxErrorMm);
         yield server.answer({
           event: { case: "session" as const, value: server.session },
         });

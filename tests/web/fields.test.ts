@@ -2,7 +2,8 @@ import { describe, expect, test } from "vitest";
 import { decodeBody } from "../../web/src/codec";
 import { Coloring } from "../../web/src/coloring";
 import { areaChanges, displacements, Fields, speeds } from "../../web/src/fields";
-import { triangleBody } from "./fake_server";
+import { Forces } from "../../web/src/forces";
+import { FakeServer, triangleBody } from "./fake_server";
 
 const body = decodeBody(triangleBody({}));
 const { rest, triangles } = body;
@@ -55,7 +56,7 @@ describe("the fields of a body", () => {
 });
 
 test("TheScaleStaysUntilItIsFittedOrSet", () => {
-  const coloring = new Coloring();
+  const coloring = new Coloring(new Forces(new FakeServer().api, "cube"));
   coloring.start([body]);
   const lift = (time: number, metres: number) =>
     coloring.receive(time, { positions: moved((x, y, z) => [x, y, z + metres]), poses: new Float32Array() });

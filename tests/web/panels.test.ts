@@ -104,7 +104,7 @@ test("HowWellConstraintsAreKeptIsPutInWords", () => {
 test("TheReadoutSpeaksOfConstraintsWhereThereAreAny", () => {
   const readout = new Readout();
   const shown = () => !readout.element.querySelector<HTMLElement>(".links")!.hidden;
-  const rate = { framesPerSecond: 30, age: 4, errorBound: 0.1 };
+  const rate = { framesPerSecond: 30, age: 4, delay: 0, errorBound: 0.1 };
   const status = { frame: undefined, rate, now: 0, link: { kind: "live" as const } };
   readout.show({ ...status, session: session(1, 1n) });
   expect(shown()).toBe(false);
@@ -113,7 +113,7 @@ test("TheReadoutSpeaksOfConstraintsWhereThereAreAny", () => {
 });
 
 test("TheLinkIsPutInWords", () => {
-  const rate = { framesPerSecond: 30, age: 4.4, errorBound: 0.1 };
+  const rate = { framesPerSecond: 30, age: 4.4, delay: 0, errorBound: 0.1 };
   const status = { session: session(1, 1n), frame: undefined, rate, now: 1000 };
   expect(linkWords({ ...status, link: { kind: "live" } })).toMatchObject({
     text: "Live",

@@ -7,17 +7,21 @@ import { Comparisons } from "./comparison";
 import { Connection, type Link, type Sink } from "./connection";
 import { Controller } from "./controller";
 import { Exports } from "./exports";
+import { needsExact } from "./fields";
+import { Forces } from "./forces";
 import { Frames } from "./frames";
 import type { CompileReport } from "./gen/phrenic/v1/report_pb";
+import type { Preset } from "./gen/phrenic/v1/scene_pb";
 import type { Identity } from "./identity";
 import { Looks } from "./looks";
 import { layersPanel } from "./panels/appearance";
 import { banners } from "./panels/banner";
 import type { Chooser } from "./panels/chooser";
+import { compareWith } from "./panels/compare_with";
 import { comparePanel } from "./panels/compare";
 import { ComparisonCard } from "./panels/comparison_card";
 import { controlBadge, controlled, ControlDialog } from "./panels/control";
-import { download, make, place } from "./panels/dom";
+import { download, place } from "./panels/dom";
 import { drawers } from "./panels/drawers";
 import { dropZone } from "./panels/drop_zone";
 import { exportPanel } from "./panels/export";
@@ -62,6 +66,7 @@ export class App {
   private readonly frames = new Frames();
   private readonly looks = new Looks();
   private readonly report = new Signal<CompileReport | undefined>(undefined);
+  private readonly presets = new Signal<Preset[]>([]);
   private readonly link = new Signal<Link>({ kind: "connecting" });
   private readonly controller: Controller;
   private readonly standing: Standing;
@@ -102,7 +107,13 @@ export class App {
     this.connection = new Connection(api, sessionId, this.sink(), clock);
     this.pill = new LinkPill(() => this.connection.retryNow());
     this.viewer = new Viewer(place("view") as HTMLCanvasElement, this.around());
-    this.tools = new SceneTools(this.viewer, () => this.frames.arrays, this.looks, this.comparisons);
+    this.tools = new SceneTools(
+      this.viewer,
+      () => this.frames.moment?.arrays,
+      this.looks,
+      this.comparisons,
+      new Forces(api, sessionId),
+    );
     this.lead = new CameraLead(api, sessionId, this.standing, this.viewer.rig, clock);
     this.graphs = new Graphs(() => sessionId, this.tools.following);
     this.beside = this.openBeside();
@@ -117,8 +128,9 @@ export class App {
       for (const { layer, opacity, visible } of looks) this.viewer.setLayerOpacity(layer, visible ? opacity : 0);
     });
     setInterval(() => this.tell(), statusInterval);
-    setInterval(() => document.hidden || this.graphs.draw(), graphInterval);
+    setInterval(() => document.hidden || this.draw(), graphInterval);
     window.addEventListener("pagehide", () => this.controller.leave());
+    this.tools.coloring.kind.subscribe((kind) => this.connection.setExact(needsExact(kind)));
     void this.connection.run();
     void this.standing.run();
   }
@@ -126,8 +138,9 @@ export class App {
   private around() {
     const reduced = matchMedia("(prefers-reduced-motion: reduce)");
     return {
-      source: () => this.frames.arrays,
-      update: (arrays: NonNullable<Frames["arrays"]>) => this.tools.update(this.frames.frame?.time ?? 0, arrays),
+      advance: () => this.frames.advance(this.clock.now(), reduced.matches),
+      source: () => this.frames.moment?.arrays,
+      update: (arrays: NonNullable<Frames["arrays"]>) => this.tools.update(this.frames.moment?.time ?? 0, arrays),
       drawn: (compass: Parameters<Margins["show"]>[0]) => {
         this.margins.show(compass);
         this.tools.drawn(compass);
@@ -142,8 +155,8 @@ export class App {
   private openBeside(): Beside | undefined {
     const { sessionId, beside, open } = this.subject;
     if (beside === undefined || beside === sessionId) return undefined;
-    const { viewer, looks, controller } = this;
-    return new Beside(this.api, beside, { viewer, looks, controller, around: this.around() }, this.clock, {
+    const { viewer, looks, controller, presets } = this;
+    return new Beside(this.api, beside, { viewer, looks, controller, presets, around: this.around() }, this.clock, {
       swap: () => open(`?${new URLSearchParams({ session: beside, beside: sessionId })}`),
       close: () => open(`?${new URLSearchParams({ session: sessionId })}`),
     });
@@ -166,13 +179,7 @@ export class App {
     place("stage").append(drop, tools.force);
     if (this.beside !== undefined) {
       place("stage").classList.add("split");
-      const head = make(
-        "div",
-        { className: "pane-head" },
-        make("b", {}, this.subject.sessionId),
-        make("span", {}, "steered"),
-      );
-      place("stage").append(this.beside.element, head);
+      place("stage").append(this.beside.element, this.beside.firstHead);
     }
     place("annotations-place").append(tools.annotations.element);
     place("cube-place").append(tools.cube.element);
@@ -186,7 +193,8 @@ export class App {
   private furnishPanel(): void {
     const { controller, looks } = this;
     place("panel").append(
-      controlled(this.standing, ...parameterSections(controller, this.report)),
+      compareWith(controller, this.presets, this.subject.open),
+      controlled(this.standing, ...parameterSections(controller, this.report, this.presets)),
       this.tools.panel,
       layersPanel(looks),
       this.probes.element,
@@ -208,7 +216,7 @@ export class App {
       if (picture !== null) download(`${sessionId}.png`, picture);
     };
     const share = new ShareDialog({ controller, report, open, photograph: () => void photograph() });
-    const { graphs, panel } = drawers(() => this.resize());
+    const { graphs, panel } = drawers(() => this.resize(), this.beside !== undefined);
     const press = (id: string) => () => document.getElementById(id)?.click();
     const keys = shortcuts(
       [
@@ -246,7 +254,6 @@ export class App {
         this.frames.receive(frame, this.clock.now());
         this.graphs.receive(frame);
         this.tools.receive(frame);
-        this.viewer.refresh();
       },
       camera: (camera) => this.lead.receive(camera),
       acknowledged: (response, sent, answered) => this.frames.acknowledged(response, sent, answered),
@@ -279,6 +286,12 @@ export class App {
     this.beside?.resize();
   }
 
+  private draw(): void {
+    this.graphs.draw();
+    const session = this.controller.session.value;
+    this.tools.askForces(`${this.frames.frame?.tick} ${session?.revision}`);
+  }
+
   private tell(): void {
     if (document.hidden) return;
     const now = this.clock.now();
@@ -289,6 +302,7 @@ export class App {
     this.viewers.show(status);
     this.readout.show(status);
     this.probes.show(status.frame);
+    this.beside?.tell(status.frame);
     this.measures.show(status.frame);
     this.comparison.show(status.frame?.time);
     this.tools.show();

@@ -3,11 +3,16 @@ import type { Clock } from "./clock";
 import { Connection, type Sink } from "./connection";
 import { Controller } from "./controller";
 import { Frames } from "./frames";
+import type { Frame } from "./gen/phrenic/v1/frames_pb";
 import type { Parameters } from "./gen/phrenic/v1/parameters_pb";
+import type { Preset } from "./gen/phrenic/v1/scene_pb";
+import { isDome } from "./graphs/catalogue";
 import type { Looks } from "./looks";
 import { formatNumber } from "./numbers";
 import { make } from "./panels/dom";
+import { labelOf, presetOf } from "./panels/presets";
 import { parameterControls } from "./schema";
+import type { Signal } from "./signal";
 import { type Surroundings, Viewer } from "./viewer/viewer";
 
 /** What the picture beside shares with the first. */
@@ -15,12 +20,18 @@ export interface First {
   viewer: Viewer;
   looks: Looks;
   controller: Controller;
+  presets: Signal<Preset[]>;
   around: Pick<Surroundings, "covered" | "calm">;
 }
 
 /** A second session in a picture of its own, with the first one's camera and looks; it plays and pauses with the first. */
 export class Beside {
   readonly element: HTMLElement;
+  /** What the first picture is headed by. */
+  readonly firstHead: HTMLElement;
+  /** Each is named by how it breathes, where a preset says that; else by its session. */
+  private readonly names = [make("b"), make("b")];
+  private readonly descents = [make("span", { className: "domes" }), make("span", { className: "domes" })];
   private readonly viewer: Viewer;
   private readonly controller: Controller;
   private readonly frames = new Frames();
@@ -44,11 +55,29 @@ export class Beside {
     swap.onclick = () => actions.swap();
     const close = make("button", { type: "button", className: "small", ariaLabel: `Close ${sessionId}` }, "Close");
     close.onclick = () => actions.close();
-    const head = make("div", { className: "pane-head" }, make("b", {}, sessionId), this.time, swap, close);
+    const [here, there] = this.names;
+    const head = make(
+      "div",
+      { className: "pane-head", title: sessionId },
+      there,
+      this.time,
+      swap,
+      close,
+      this.descents[1],
+    );
+    const steered = make("span", {}, "steered");
+    this.firstHead = make(
+      "div",
+      { className: "pane-head", title: first.controller.sessionId },
+      here,
+      steered,
+      this.descents[0],
+    );
     this.element = make("div", { id: "beside" }, canvas, head, this.differences);
     this.viewer = new Viewer(canvas, {
       ...first.around,
-      source: () => this.frames.arrays,
+      advance: () => this.frames.advance(this.clock.now(), first.around.calm()),
+      source: () => this.frames.moment?.arrays,
       drawn: () => {
         if (this.leads) first.viewer.rig.follow(this.viewer.rig);
       },
@@ -61,6 +90,7 @@ export class Beside {
     first.controller.companion = this.controller;
     this.controller.session.subscribe(() => this.compare());
     first.controller.session.subscribe(() => this.compare());
+    first.presets.subscribe(() => this.compare());
     first.looks.all.subscribe(() => this.look());
     void new Connection(api, sessionId, this.sink(), clock).run();
   }
@@ -88,9 +118,13 @@ export class Beside {
       frame: (frame) => {
         this.frames.receive(frame, this.clock.now());
         this.time.textContent = `${frame.time.toFixed(2)} s`;
-        this.viewer.refresh();
       },
     };
+  }
+
+  /** How far the domes of both have come down by now. */
+  tell(first: Frame | undefined): void {
+    [first, this.frames.frame].forEach((frame, i) => (this.descents[i].textContent = domeWords(frame)));
   }
 
   private look(): void {
@@ -99,12 +133,22 @@ export class Beside {
   }
 
   private compare(): void {
-    const words = differences(
-      this.first.controller.session.value?.parameters,
-      this.controller.session.value?.parameters,
-    );
+    const [here, there] = [this.first.controller, this.controller].map(({ session }) => session.value?.parameters);
+    const words = differences(here, there);
+    [this.first.controller, this.controller].forEach(({ session, sessionId }, i) => {
+      const preset = presetOf(this.first.presets.value, session.value?.parameters);
+      this.names[i].textContent = preset === undefined ? sessionId : labelOf(preset);
+    });
     this.differences.textContent = words === "" ? "The same parameters" : words;
   }
+}
+
+/** "right dome 19.5 mm down, left dome 2.1 mm up"; empty where the scene has no probe of a dome. */
+export function domeWords(frame: Frame | undefined): string {
+  return (frame?.probes ?? [])
+    .filter(isDome)
+    .map(({ name, dz }) => `${name} ${(1000 * Math.abs(dz)).toFixed(1)} mm ${dz > 0 ? "up" : "down"}`)
+    .join(", ");
 }
 
 /** What is set otherwise in `there`: "Breath force 2 instead of 1". */

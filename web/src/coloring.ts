@@ -1,6 +1,7 @@
 import type { Body, FrameArrays } from "./codec";
 import { ColorScale, topFor } from "./color_scale";
-import { type FieldKind, Fields, fields } from "./fields";
+import { type FieldKind, Fields, forceOf, infoOf, type ShapeKind } from "./fields";
+import type { Forces } from "./forces";
 import { Placement } from "./gen/phrenic/v1/frames_pb";
 import { Signal } from "./signal";
 
@@ -11,6 +12,19 @@ export class Coloring {
   readonly scale = new Signal<ColorScale | undefined>(undefined);
   private readonly fields = new Fields();
   private bodies: Body[] = [];
+  /** The scale is to be fitted once there are values. */
+  private unfitted = false;
+
+  constructor(private readonly forces: Forces) {
+    forces.sizes.subscribe((sizes) => {
+      if (this.unfitted && sizes.size > 0) this.fit();
+    });
+  }
+
+  /** Names of the bodies that are coloured. */
+  get names(): string[] {
+    return this.bodies.map(({ name }) => name);
+  }
 
   /** Another scene: its deformable bodies. */
   start(bodies: Body[]): void {
@@ -25,18 +39,20 @@ export class Coloring {
   choose(kind: FieldKind | undefined): void {
     this.kind.set(kind);
     this.fit();
+    this.unfitted = forceOf(kind) !== undefined;
   }
 
   /** A scale that ends at the largest value there is now, but for one vertex in a hundred. */
   fit(): void {
-    const info = fields.find(({ kind }) => kind === this.kind.value);
+    const info = infoOf(this.kind.value);
     if (info === undefined) return this.scale.set(undefined);
-    const largest = this.bodies.map((body) => largestOf(this.fields.of(info.kind, body)));
+    this.unfitted = false;
+    const largest = this.bodies.map((body) => largestOf(this.values(info.kind, body)));
     this.setTop(topFor(largest, info.least));
   }
 
   setTop(top: number): void {
-    const info = fields.find(({ kind }) => kind === this.kind.value);
+    const info = infoOf(this.kind.value);
     if (info !== undefined && top > 0) this.scale.set(new ColorScale(top, info.unit, info.diverging));
   }
 
@@ -46,10 +62,15 @@ export class Coloring {
     const [kind, scale] = [this.kind.value, this.scale.value];
     if (kind === undefined || scale === undefined) return painted;
     for (const body of this.bodies) {
-      const values = this.fields.of(kind, body);
+      const values = this.values(kind, body);
       if (values !== undefined) painted.set(body.name, scale.paint(values));
     }
     return painted;
+  }
+
+  private values(kind: FieldKind, body: Body): Float32Array | undefined {
+    if (forceOf(kind) !== undefined) return this.forces.sizes.value.get(body.name);
+    return this.fields.of(kind as ShapeKind, body);
   }
 }
 

@@ -32,6 +32,8 @@ const patience = 8000;
 const heartbeat = 2000;
 /** Frames on their way at most; the server lets fewer go where they come late. */
 const maxUnackedFrames = 6;
+/** How far a vertex may be from its own where its neighbours' distances count, some millimetres [mm]. */
+const exactError = 0.01;
 
 /** A name under which no other page watches. */
 const newWatchId = () => `page-${Math.random().toString(36).slice(2)}`;
@@ -44,6 +46,8 @@ export class Connection {
   private readonly stopped = new AbortController();
   private wake = new AbortController();
   private sceneHash: string | undefined;
+  private anew = new AbortController();
+  private exact = false;
 
   constructor(
     private readonly api: Api,
@@ -70,6 +74,13 @@ export class Connection {
   /** Ends the wait before the next attempt. */
   retryNow(): void {
     this.wake.abort();
+  }
+
+  /** Asks for frames that are near enough to tell strain from, or for those that a thin line takes. */
+  setExact(exact: boolean): void {
+    if (exact === this.exact) return;
+    this.exact = exact;
+    this.anew.abort();
   }
 
   private async rest(error: unknown): Promise<void> {
@@ -111,6 +122,16 @@ export class Connection {
   }
 
   private async watch(signal: AbortSignal): Promise<never> {
+    for (;;) {
+      this.anew = new AbortController();
+      const { signal: changed } = this.anew;
+      await this.watchOnce(AbortSignal.any([signal, changed])).catch((error: unknown) => {
+        if (!changed.aborted || signal.aborted) throw error;
+      });
+    }
+  }
+
+  private async watchOnce(signal: AbortSignal): Promise<never> {
     const names = { sessionId: this.sessionId, watchId: newWatchId() };
     const acknowledger = new Acknowledger(
       (sequence) => this.api.frames.ackFrames({ ...names, sequence }, { signal, timeoutMs: patience }),
@@ -118,7 +139,8 @@ export class Connection {
       signal,
       (response, sent, at) => this.sink.acknowledged(response, sent, at),
     );
-    const request = { ...names, codec: Codec.PREDICTED, maxUnackedFrames };
+    const maxErrorMm = this.exact ? exactError : undefined;
+    const request = { ...names, codec: Codec.PREDICTED, maxUnackedFrames, maxErrorMm };
     for await (const { event } of this.api.frames.watchFrames(request, { signal })) {
       this.backoff.reset();
       this.sink.link({ kind: "live" });

@@ -137,13 +137,19 @@ export class Controller {
     return this.noted(() => this.send({}, preset));
   }
 
-  /** Another session that stands where this one stands, playing where this one plays; nothing where there is none. */
-  async fork(): Promise<string | undefined> {
+  /**
+   * Another session that stands where this one stands, by a preset where one is named, playing where this one plays;
+   * nothing where there is none.
+   */
+  async fork(preset = ""): Promise<string | undefined> {
+    const { sessions } = this.api;
     try {
-      const { session } = await this.api.sessions.forkSession({ sessionId: this.sessionId });
+      const sessionId = (await sessions.forkSession({ sessionId: this.sessionId })).session?.id;
       const playing = this.session.value?.state === SessionState.PLAYING;
-      if (session !== undefined && playing) await this.api.sessions.playSession({ sessionId: session.id });
-      return session?.id;
+      if (sessionId !== undefined && preset !== "")
+        await sessions.updateParameters({ sessionId, parameters: {}, preset });
+      if (sessionId !== undefined && playing) await sessions.playSession({ sessionId });
+      return sessionId;
     } catch (error) {
       this.notice.set(errorText(error));
       return undefined;

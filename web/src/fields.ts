@@ -1,7 +1,10 @@
 import { type Body, type FrameArrays, positionsOf } from "./codec";
+import { wordsOf } from "./forces";
+import { strains } from "./strain";
 
-/** What a body's surface can be coloured by. */
-export type FieldKind = "displacement" | "speed" | "area";
+/** What a body's surface can be coloured by: what its shape tells, or a kind of force that the server tells. */
+export type FieldKind = ShapeKind | `force:${string}`;
+export type ShapeKind = "displacement" | "speed" | "area" | "largest" | "smallest";
 
 export interface FieldInfo {
   kind: FieldKind;
@@ -32,7 +35,40 @@ export const fields: FieldInfo[] = [
     diverging: true,
     least: 5,
   },
+  {
+    kind: "largest",
+    label: "Strain, largest",
+    unit: "%",
+    help: "How much the surface is stretched where it is stretched most: the larger principal strain",
+    diverging: true,
+    least: 5,
+  },
+  {
+    kind: "smallest",
+    label: "Strain, smallest",
+    unit: "%",
+    help: "How much the surface is stretched, or shortened, the other way: the smaller principal strain",
+    diverging: true,
+    least: 5,
+  },
 ];
+
+/** Whether neighbours' distances count in a field, so that an error of 0.1 mm would show. */
+export function needsExact(kind: FieldKind | undefined): boolean {
+  return kind === "area" || kind === "largest" || kind === "smallest";
+}
+
+/** The kind of force that a field is, if it is one. */
+export function forceOf(kind: FieldKind | undefined): string | undefined {
+  return kind?.startsWith("force:") ? kind.slice("force:".length) : undefined;
+}
+
+export function infoOf(kind: FieldKind | undefined): FieldInfo | undefined {
+  const force = forceOf(kind);
+  if (kind === undefined || force === undefined) return fields.find((each) => each.kind === kind);
+  const label = `Force: ${wordsOf(force)}`;
+  return { kind, label, unit: "N", help: "How large it is on each vertex", diverging: false, least: 1e-4 };
+}
 
 /** |x - x_rest| of each vertex [mm]. */
 export function displacements(rest: Float32Array, now: Float32Array): Float32Array {
@@ -86,10 +122,11 @@ export class Fields {
     this.last = { time, arrays };
   }
 
-  of(kind: FieldKind, body: Body): Float32Array | undefined {
+  of(kind: ShapeKind, body: Body): Float32Array | undefined {
     if (this.last === undefined) return undefined;
     const now = positionsOf(body, this.last.arrays);
     if (kind === "displacement") return displacements(body.rest, now);
+    if (kind === "largest" || kind === "smallest") return strains(body.rest, now, body.triangles, kind);
     if (kind === "area") return areaChanges(body.rest, now, body.triangles);
     if (this.before === undefined) return new Float32Array(body.rest.length / 3);
     return speeds(positionsOf(body, this.before.arrays), now, this.last.time - this.before.time);

@@ -1,12 +1,17 @@
+import { blend } from "./blend";
 import type { Body, FrameArrays } from "./codec";
 import { FrameDecoder } from "./frame_decoder";
 import type { AckFramesResponse, Frame } from "./gen/phrenic/v1/frames_pb";
+import { Playout } from "./playout";
+import { SteadyBeat } from "./steady_beat";
 
 /** How frames arrive. */
 export interface FrameRate {
   framesPerSecond: number;
   /** How old the newest frame was when it came [ms], by the server's clock; undefined until that is known. */
   age: number | undefined;
+  /** How much later than it came it is shown, so that the picture moves evenly [ms]. */
+  delay: number;
   /** How far a vertex may be from its own [mm]. */
   errorBound: number;
 }
@@ -14,26 +19,45 @@ export interface FrameRate {
 /** Measurements of the server's clock that are kept: the quickest of them counts. */
 const mostMeasurements = 30;
 
-/** The newest frame, decoded only when somebody draws it, and the rate over the last second. */
+/** A frame, decoded when somebody draws it. */
+interface Taken {
+  frame: Frame;
+  arrays: FrameArrays | undefined;
+}
+
+/** What the picture shows: a frame, or a moment between two [s]. */
+export interface Moment {
+  time: number;
+  arrays: FrameArrays;
+}
+
+/** The newest frame, the moment that the picture shows, and the rate over the last second. */
 export class Frames {
-  private newest: Frame | undefined;
-  private decoded: FrameArrays | undefined;
+  private newest: Taken | undefined;
+  private shown: Moment | undefined;
+  private playout = new Playout<Taken>();
+  private readonly steady = new SteadyBeat();
+  private changed = false;
+  private smooth = false;
   private decoder = new FrameDecoder([]);
   private arrivals: number[] = [];
   private clock: { offset: number; tripTime: number }[] = [];
 
   /** Forgets everything: another scene, or another server. */
   start(bodies: Body[]): void {
-    this.newest = undefined;
-    this.decoded = undefined;
+    this.newest = this.shown = undefined;
+    this.playout.clear();
     this.decoder = new FrameDecoder(bodies);
     this.arrivals = [];
     this.clock = [];
   }
 
   receive(frame: Frame, now: number): void {
-    this.newest = frame;
-    this.decoded = undefined;
+    const before = this.newest?.frame;
+    this.newest = { frame, arrays: undefined };
+    // Another run of the session does not go on from the one before.
+    if (before !== undefined && frame.time < before.time) this.playout.clear();
+    this.playout.receive(this.newest, milliseconds(frame.unixNanos), now);
     this.arrivals.push(now);
     this.forget(now);
   }
@@ -46,24 +70,59 @@ export class Frames {
   }
 
   get frame(): Frame | undefined {
-    return this.newest;
+    return this.newest?.frame;
   }
 
+  /** Of the newest frame. */
   get arrays(): FrameArrays | undefined {
-    if (this.newest !== undefined) this.decoded ??= this.decoder.decode(this.newest);
-    return this.decoded;
+    return this.newest === undefined ? undefined : this.decode(this.newest);
+  }
+
+  /** What `advance` came to last. */
+  get moment(): Moment | undefined {
+    return this.shown;
+  }
+
+  /**
+   * Goes on to the moment that is due at `now` [ms]; whether the picture changes by it. Where a person asked for calm, or
+   * the machine is slow, that is the newest frame.
+   */
+  advance(now: number, calm: boolean): boolean {
+    this.steady.beat(now, this.changed);
+    this.smooth = !calm && this.steady.fast;
+    const due = this.due(now);
+    this.changed = due !== undefined && due.arrays !== this.shown?.arrays;
+    this.shown = due;
+    return this.changed;
+  }
+
+  private due(now: number): Moment | undefined {
+    const between = this.playout.at(now);
+    if (this.newest === undefined || between === undefined) return undefined;
+    const { before, after, part } = this.smooth ? between : { before: this.newest, after: this.newest, part: 0 };
+    const arrays = blend(this.decode(before), this.decode(after), part);
+    return { time: before.frame.time + part * (after.frame.time - before.frame.time), arrays };
+  }
+
+  private decode(taken: Taken): FrameArrays {
+    return (taken.arrays ??= this.decoder.decode(taken.frame));
   }
 
   rate(now: number): FrameRate {
     this.forget(now);
-    return { framesPerSecond: this.arrivals.length, age: this.age(), errorBound: this.newest?.maxErrorMm ?? 0 };
+    return {
+      framesPerSecond: this.arrivals.length,
+      age: this.age(),
+      delay: this.smooth ? this.playout.delay : 0,
+      errorBound: this.frame?.maxErrorMm ?? 0,
+    };
   }
 
   private age(): number | undefined {
     const arrived = this.arrivals.at(-1);
     if (this.newest === undefined || arrived === undefined || this.clock.length === 0) return undefined;
     const best = this.clock.reduce((a, b) => (b.tripTime < a.tripTime ? b : a));
-    return arrived + best.offset - milliseconds(this.newest.unixNanos);
+    return arrived + best.offset - milliseconds(this.newest.frame.unixNanos);
   }
 
   private forget(now: number): void {

@@ -4,6 +4,8 @@ import { Coloring } from "./coloring";
 import type { Comparisons } from "./comparison";
 import { Expiration } from "./expiration";
 import { Following } from "./following";
+import { forceOf } from "./fields";
+import type { Forces } from "./forces";
 import type { Frame } from "./gen/phrenic/v1/frames_pb";
 import type { Looks } from "./looks";
 import { Annotations } from "./viewer/annotations";
@@ -26,9 +28,9 @@ export class SceneTools {
   readonly cube: OrientationCube;
   readonly annotations: Annotations;
   readonly force = make("output", { id: "force", hidden: true });
-  private readonly coloring = new Coloring();
+  readonly coloring: Coloring;
   private readonly overlays = new Signal<ReadonlySet<OverlayKind>>(new Set());
-  private readonly pickCard = new PickCard(this.following);
+  private readonly pickCard: PickCard;
   private readonly expiration = new Expiration();
   private ghost: GhostKind = "none";
   private bodies: Body[] = [];
@@ -40,7 +42,10 @@ export class SceneTools {
     private readonly arrays: () => FrameArrays | undefined,
     looks: Looks,
     private readonly comparisons: Comparisons,
+    private readonly forces: Forces,
   ) {
+    this.coloring = new Coloring(forces);
+    this.pickCard = new PickCard(this.following, forces.onVertex);
     this.annotations = new Annotations(viewer);
     this.cube = new OrientationCube((view) => viewer.go(view));
     this.cards = [coloringCard(this.coloring), this.pickCard.element];
@@ -48,6 +53,7 @@ export class SceneTools {
     this.panel = appearancePanel({
       looks,
       labels,
+      forceKinds: forces.kinds,
       overlays: this.overlays,
       coloring: this.coloring,
       setCut: (cut) => {
@@ -63,8 +69,12 @@ export class SceneTools {
     this.coloring.kind.subscribe(() => this.note());
     this.coloring.scale.subscribe(() => this.paint());
     comparisons.result.subscribe(() => this.paint());
+    forces.sizes.subscribe(() => this.paint());
     viewer.letClick((ref) => this.following.picked.set(ref));
-    this.following.picked.subscribe(() => this.mark());
+    this.following.picked.subscribe(() => {
+      this.forces.onVertex.set([]);
+      this.mark();
+    });
     this.following.all.subscribe(() => this.mark());
   }
 
@@ -73,6 +83,7 @@ export class SceneTools {
     this.bodies = bodies;
     this.moving = bodies.filter(({ name }) => deformable.has(name));
     this.coloring.start(this.moving);
+    void this.forces.start(this.moving[0]?.name);
     this.following.clear();
     this.setGhost(this.ghost === "now" || this.ghost === "expiration" ? "none" : this.ghost);
     // Which edges are rigid is what a diagram is about.
@@ -103,6 +114,14 @@ export class SceneTools {
   drawn(compass: Compass): void {
     this.cube.show(compass);
     this.annotations.draw();
+  }
+
+  /** Has the server tell the forces of the state that was seen last, where they are shown. */
+  askForces(seen: string): void {
+    const kind = forceOf(this.coloring.kind.value);
+    const picked = this.following.picked.value;
+    const vertex = this.moving.some(({ name }) => name === picked?.body) ? picked : undefined;
+    void this.forces.ask({ vertex, kind, bodies: kind === undefined ? [] : this.coloring.names }, seen);
   }
 
   /** Words that follow the picture a few times a second. */

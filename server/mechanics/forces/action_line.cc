@@ -19,6 +19,11 @@ double Signal(const Instant& at) {
   return at.parameters.apply_muscles() ? at.parameters.breath_force() * at.breath : 0.0;
 }
 
+double Activation(v1::Side side, const v1::Parameters& parameters) {
+  if (side == v1::SIDE_RIGHT) return parameters.right_activation();
+  return side == v1::SIDE_LEFT ? parameters.left_activation() : 1.0;
+}
+
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<Force>> ActionLine::Make(const v1::ActionLine& scene, const std::string& given,
@@ -29,7 +34,7 @@ absl::StatusOr<std::unique_ptr<Force>> ActionLine::Make(const v1::ActionLine& sc
   const Eigen::Vector3d along = ToEigen(scene.direction());
   if (along.norm() == 0) return FieldError(absl::StrCat(std::string(path), ".direction"), "must not be zero");
   const Eigen::Vector3d direction = along.normalized();
-  std::unique_ptr<ActionLine> force(new ActionLine(name, scene.force() * direction));
+  std::unique_ptr<ActionLine> force(new ActionLine(name, scene, direction));
   double total = 0;
   for (const int b : *bodies) {
     const BodyModel& body = draft.model.bodies[b];
@@ -54,10 +59,19 @@ absl::StatusOr<std::unique_ptr<Force>> ActionLine::Make(const v1::ActionLine& sc
   return force;
 }
 
+ActionLine::ActionLine(std::string name, const v1::ActionLine& scene, const Eigen::Vector3d& direction)
+    : Force(std::move(name)),
+      side_(scene.side()),
+      force_(scene.force() * direction),
+      muscle_((scene.force() + scene.lung_load()) * direction) {}
+
+Eigen::Vector3d ActionLine::Whole(const Instant& at) const {
+  return Signal(at) * (force_ - (1 - Activation(side_, at.parameters)) * muscle_);
+}
+
 void ActionLine::AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const {
-  const double signal = Signal(at);
-  if (signal == 0) return;
-  const Eigen::Vector3d force = signal * force_;
+  const Eigen::Vector3d force = Whole(at);
+  if (force.isZero(0)) return;
   auto pull = std::lower_bound(pulls_.begin(), pulls_.end(), range.first,
                                [](const Pull& each, Eigen::Index vertex) { return each.vertex < vertex; });
   for (; pull != pulls_.end() && pull->vertex < range.end; ++pull) {
@@ -66,9 +80,10 @@ void ActionLine::AddForceIn(const VertexRange& range, const Instant& at, Mutable
 }
 
 double ActionLine::Energy(const Instant& at) const {
+  const Eigen::Vector3d force = Whole(at);
   double work = 0;
-  for (const Pull& pull : pulls_) work += pull.share * force_.dot(at.x.col(pull.vertex));
-  return -Signal(at) * work;
+  for (const Pull& pull : pulls_) work += pull.share * force.dot(at.x.col(pull.vertex));
+  return -work;
 }
 
 }  // namespace phrenic

@@ -1,6 +1,7 @@
 // A muscle as a line (thesis section 3.4, listing A.1.2): f_i = F breath_force signal(t) w_i / sum w, along the line.
 // w_i = fall-off times mass at rest, so that the sum over the vertices is F whatever the mesh. Cylinder: 1 - d/radius,
 // d the perpendicular distance; vertical: height above the origin over the radius, where positive.
+// Where the muscle of its side is active by a alone, F is F - (1 - a)(F + lung load).
 #ifndef PHRENIC_SERVER_MECHANICS_FORCES_ACTION_LINE_H_
 #define PHRENIC_SERVER_MECHANICS_FORCES_ACTION_LINE_H_
 
@@ -26,10 +27,14 @@ class ActionLine final : public Force {
     int vertex;
     double share;  // of the force; their sum is 1
   };
-  ActionLine(std::string name, const Eigen::Vector3d& force) : Force(std::move(name)), force_(force) {}
+  ActionLine(std::string name, const v1::ActionLine& scene, const Eigen::Vector3d& direction);
+  // The sum over its vertices at this moment [N].
+  Eigen::Vector3d Whole(const Instant& at) const;
 
-  const Eigen::Vector3d force_;  // at signal 1 and breath force 1 [N]
-  std::vector<Pull> pulls_;      // by vertex
+  const v1::Side side_;
+  const Eigen::Vector3d force_;   // at signal 1, breath force 1 and full activation [N]
+  const Eigen::Vector3d muscle_;  // the part of it that the activation scales: what the lungs pull is not in it [N]
+  std::vector<Pull> pulls_;       // by vertex
 };
 
 }  // namespace phrenic

@@ -88,7 +88,7 @@ function probes({ probes }: Frame): GraphSpec[] {
   return curves.length === 0 ? [] : [{ id: "probes", title: "Probes: upward", unit: "mm", curves }];
 }
 
-function isDome({ name }: { name: string }): boolean {
+export function isDome({ name }: { name: string }): boolean {
   return name.includes("dome");
 }
 

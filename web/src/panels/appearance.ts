@@ -1,5 +1,6 @@
 import type { Coloring } from "../coloring";
 import { type FieldKind, fields } from "../fields";
+import { wordsOf } from "../forces";
 import type { Look, Looks } from "../looks";
 import type { Signal } from "../signal";
 import type { OverlayKind } from "../viewer/body_view";
@@ -16,6 +17,7 @@ export interface Appearance {
   overlays: Signal<ReadonlySet<OverlayKind>>;
   coloring: Coloring;
   labels: Signal<boolean>;
+  forceKinds: Signal<string[]>;
   setCut(cut: Cut): number;
   setGhost(kind: GhostKind): void;
 }
@@ -46,7 +48,7 @@ export function appearancePanel(view: Appearance): HTMLElement {
   return section(
     "View",
     true,
-    coloringRow(view.coloring),
+    coloringRow(view.coloring, view.forceKinds),
     transparencyRow(view.looks),
     ghost,
     ...cut,
@@ -55,16 +57,28 @@ export function appearancePanel(view: Appearance): HTMLElement {
   );
 }
 
-function coloringRow(coloring: Coloring): HTMLElement {
+function coloringRow(coloring: Coloring, kinds: Signal<string[]>): HTMLElement {
   const options: [FieldKind | "own", string][] = [
     ["own", "Own colours"],
     ...fields.map(({ kind, label }): [FieldKind, string] => [kind, label]),
   ];
   const help = "What the colours of the moving tissue mean";
-  return choice("coloring-kind", "Colour by", help, options, (kind) =>
+  const row = choice("coloring-kind", "Colour by", help, options, (kind) =>
     coloring.choose(kind === "own" ? undefined : kind),
   );
+  // Which forces there are is known later, and changes where somebody pulls.
+  const group = make("optgroup", { label: "Force" });
+  row.querySelector("select")?.append(group);
+  kinds.subscribe((all) => {
+    const wanted = all.map((kind) => make("option", { value: `force:${kind}` }, upper(wordsOf(kind))));
+    group.hidden = all.length === 0;
+    group.replaceChildren(...wanted);
+    row.querySelector("select")!.value = coloring.kind.value ?? "own";
+  });
+  return row;
 }
+
+const upper = (words: string) => words.charAt(0).toUpperCase() + words.slice(1);
 
 function choice<T extends string>(
   id: string,

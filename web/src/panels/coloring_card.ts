@@ -1,5 +1,5 @@
 import type { Coloring } from "../coloring";
-import { fields } from "../fields";
+import { infoOf } from "../fields";
 import { make } from "./dom";
 import { Legend } from "./legend";
 
@@ -26,7 +26,7 @@ export function coloringCard(coloring: Coloring): HTMLElement {
   card.ariaLabel = "Colours of the surface";
   coloring.scale.subscribe((scale) => {
     card.hidden = scale === undefined;
-    const info = fields.find(({ kind }) => kind === coloring.kind.value);
+    const info = infoOf(coloring.kind.value);
     if (scale === undefined || info === undefined) return;
     title.textContent = info.label;
     title.title = info.help;

@@ -3,11 +3,15 @@ import { place } from "./dom";
 /** Where there is room for them, graphs and controls are open at first. */
 const roomForControls = "(min-width: 761px) and (min-height: 480px)";
 const roomForGraphs = "(min-width: 1100px) and (min-height: 560px)";
+const roomForGraphsBesideTwo = "(min-width: 1600px) and (min-height: 560px)";
 
-/** The controls and the graphs fold away by their buttons; the result folds each. `folded` hears of it. */
-export function drawers(folded: () => void): { graphs(): void; panel(): void } {
+/**
+ * The controls and the graphs fold away by their buttons; the result folds each. `folded` hears of it. Two pictures need
+ * more room than one.
+ */
+export function drawers(folded: () => void, two: boolean): { graphs(): void; panel(): void } {
   const panel = drawer("panel", matchMedia(roomForControls).matches, folded);
-  const graphs = drawer("graphs", matchMedia(roomForGraphs).matches, folded);
+  const graphs = drawer("graphs", matchMedia(two ? roomForGraphsBesideTwo : roomForGraphs).matches, folded);
   return { graphs, panel };
 }
 

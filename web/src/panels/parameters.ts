@@ -1,8 +1,9 @@
 import type { Controller } from "../controller";
 import { ParametersSchema } from "../gen/phrenic/v1/parameters_pb";
+import type { Preset } from "../gen/phrenic/v1/scene_pb";
 import type { CompileReport } from "../gen/phrenic/v1/report_pb";
 import { type Control, parameterControls, type ParameterName, type SwitchControl } from "../schema";
-import type { Signal } from "../signal";
+import { Signal } from "../signal";
 import { ChoiceRow } from "./choice_row";
 import { button, icon, make, section, switchRow } from "./dom";
 import { NumberRow } from "./number_row";
@@ -16,7 +17,11 @@ const ofTheSolver = /integrator|step|solver/i;
  * The live parameters, one row for each field of the schema, but for those that nothing in the scene answers to. Another
  * viewer's changes move the rows.
  */
-export function parameterSections(controller: Controller, report?: Signal<CompileReport | undefined>): HTMLElement[] {
+export function parameterSections(
+  controller: Controller,
+  report?: Signal<CompileReport | undefined>,
+  presets = new Signal<Preset[]>([]),
+): HTMLElement[] {
   const rows = parameterControls().map((control) => parameterRow(control, controller));
   controller.session.subscribe((session) => {
     if (session?.parameters === undefined) return;
@@ -28,9 +33,9 @@ export function parameterSections(controller: Controller, report?: Signal<Compil
   });
   const elements = (solver: boolean) =>
     rows.filter(({ name }) => ofTheSolver.test(name) === solver).map(({ element }) => element);
-  const presets = new PresetRow(controller);
+  const ways = new PresetRow(controller, presets).element;
   return [
-    section("Breathing", true, changesRow(controller), presets.element, pullRow(controller), ...elements(false)),
+    section("Breathing", true, ways, changesRow(controller), pullRow(controller), ...elements(false)),
     section("Solver", true, ...elements(true)),
   ];
 }

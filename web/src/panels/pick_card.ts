@@ -1,7 +1,10 @@
 import type { FrameArrays } from "../codec";
 import { type Following, nameOf, type Standing } from "../following";
+import type { ForceOnVertex } from "../forces";
 import { curveColor } from "../graphs/colors";
+import type { Signal } from "../signal";
 import type { VertexRef } from "../viewer/clicking";
+import { forceTable } from "./force_table";
 import { make } from "./dom";
 
 /** Over the picture: the vertex that was picked, where it is, and those that are followed. */
@@ -12,7 +15,10 @@ export class PickCard {
   private readonly followed = make("div", { className: "followed" });
   private readonly follow = make("button", { type: "button", id: "follow" }, "Follow it");
 
-  constructor(private readonly following: Following) {
+  constructor(
+    private readonly following: Following,
+    forces: Signal<ForceOnVertex[]>,
+  ) {
     const close = make("button", { type: "button", onclick: () => following.picked.set(undefined) }, "Close");
     this.follow.title = "Mark it and draw a graph of it";
     this.follow.onclick = () => {
@@ -21,7 +27,7 @@ export class PickCard {
     const heads = ["mm", "Left", "Back", "Up"].map((text) => make("th", { scope: "col" }, text));
     const table = make("table", { className: "figures" }, make("thead", {}, make("tr", {}, ...heads)), this.rows);
     const buttons = make("div", { className: "row" }, this.follow, close);
-    const own = make("div", { className: "found" }, this.title, table, buttons);
+    const own = make("div", { className: "found" }, this.title, table, forceTable(forces), buttons);
     this.element.append(own, this.followed);
     following.picked.subscribe((ref) => {
       own.hidden = ref === undefined;

@@ -2,6 +2,7 @@ import type { Controller } from "../controller";
 import { type Parameters, ParametersSchema } from "../gen/phrenic/v1/parameters_pb";
 import type { Preset } from "../gen/phrenic/v1/scene_pb";
 import type { ParameterName } from "../schema";
+import { Signal } from "../signal";
 import { make } from "./dom";
 
 /** The scene's ways to breathe, a button each; hidden where it has none. The one that holds is pressed. */
@@ -10,7 +11,10 @@ export class PresetRow {
   private scene = "";
   private buttons: { preset: Preset; element: HTMLButtonElement }[] = [];
 
-  constructor(private readonly controller: Controller) {
+  constructor(
+    private readonly controller: Controller,
+    private readonly presets = new Signal<Preset[]>([]),
+  ) {
     this.element.ariaLabel = "Ways to breathe";
     controller.session.subscribe((session) => {
       if (session === undefined) return;
@@ -26,13 +30,14 @@ export class PresetRow {
     this.buttons = presets.map((preset) => ({ preset, element: this.button(preset) }));
     this.element.replaceChildren(...this.buttons.map(({ element }) => element));
     this.element.hidden = presets.length === 0;
+    this.presets.set(presets);
     this.press(this.controller.session.value?.parameters);
   }
 
-  private button({ name, title }: Preset): HTMLButtonElement {
-    const onclick = () => void this.controller.usePreset(name);
-    const words = name.charAt(0).toUpperCase() + name.slice(1);
-    return make("button", { type: "button", title: title || words, onclick }, words);
+  private button(preset: Preset): HTMLButtonElement {
+    const onclick = () => void this.controller.usePreset(preset.name);
+    const words = labelOf(preset);
+    return make("button", { type: "button", title: preset.title || words, onclick }, words);
   }
 
   private press(parameters: Parameters | undefined): void {
@@ -40,6 +45,16 @@ export class PresetRow {
       element.ariaPressed = String(parameters !== undefined && holds(preset, parameters));
     }
   }
+}
+
+/** "paralysis-right" is "Paralysis right". */
+export function labelOf({ name }: Preset): string {
+  return name.charAt(0).toUpperCase() + name.slice(1).replaceAll("-", " ");
+}
+
+/** The preset that holds; of several the first. */
+export function presetOf(presets: Preset[], parameters: Parameters | undefined): Preset | undefined {
+  return parameters === undefined ? undefined : presets.find((preset) => holds(preset, parameters));
 }
 
 /** Whether all that the preset sets is as it says. */

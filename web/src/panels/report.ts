@@ -13,7 +13,7 @@ export function reportPanel(report: Signal<CompileReport | undefined>): HTMLElem
 }
 
 function contents(report: CompileReport): HTMLElement[] {
-  return [totals(report), step(report), runs(report), leftOut(report), bodies(report), hash(report)];
+  return [totals(report), step(report), runs(report), leftOut(report), bodies(report), times(report), hash(report)];
 }
 
 function totals(report: CompileReport): HTMLElement {
@@ -55,6 +55,16 @@ function leftOut(report: CompileReport): HTMLElement {
     "Left out",
     report.leftOut.map(({ what, why }): [string, string] => [what, why]),
   );
+}
+
+/** Where the time of the compile step went. */
+function times({ stages, compileSeconds }: CompileReport): HTMLElement {
+  const part = (seconds: number) => Math.round((100 * seconds) / (compileSeconds || 1));
+  const items = stages.map(({ name, seconds }): [string, string] => [
+    name,
+    `${formatNumber(1000 * seconds)} ms, ${part(seconds)} %`,
+  ]);
+  return list("Compiling took", items);
 }
 
 function bodies(report: CompileReport): HTMLElement {

@@ -47,13 +47,15 @@ export function linkWords({ link, session, rate, now }: Status): { text: string;
 }
 
 const rateTitle =
-  "Frames received a second, how old they are when they come, and how far a vertex may be from its place. " +
+  "Frames received a second, how old they are when they come, how much later they are shown so that the picture moves " +
+  "evenly between them, and how far a vertex may be from its place. " +
   "On a thin line there are fewer frames, then coarser ones.";
 
-/** "30 fps, 12 ms, ±0.1 mm". */
-export function rateWords({ framesPerSecond, age, errorBound }: FrameRate): string {
+/** "30 fps, 12+35 ms, ±0.1 mm". */
+export function rateWords({ framesPerSecond, age, delay, errorBound }: FrameRate): string {
   const words = [`${framesPerSecond} fps`];
-  if (age !== undefined) words.push(`${Math.max(0, Math.round(age))} ms`);
+  const held = Math.round(delay);
+  if (age !== undefined) words.push(`${Math.max(0, Math.round(age))}${held > 0 ? `+${held}` : ""} ms`);
   if (errorBound > 0) words.push(`±${errorBound} mm`);
   return words.join(", ");
 }

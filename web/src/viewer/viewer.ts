@@ -18,7 +18,9 @@ const markerSize = 5;
 
 /** What a picture asks of its page. */
 export interface Surroundings {
-  /** The newest frame, when a picture is due. */
+  /** Goes on to the moment that is due; whether the picture changes by it. */
+  advance(): boolean;
+  /** That moment. */
   source(): FrameArrays | undefined;
   /** Hears of a frame before it is drawn for the first time. */
   update?(frame: FrameArrays): void;
@@ -213,6 +215,7 @@ export class Viewer {
 
   private beat(now: number): void {
     this.rig.update(now);
+    if (this.around.advance()) this.stale = true;
     if (this.sharpness.beat(now, this.stale)) {
       this.renderer.setPixelRatio(this.sharpness.ratio);
       this.stale = true;

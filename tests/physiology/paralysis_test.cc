@@ -1,0 +1,86 @@
+// A hemidiaphragm whose muscle does not pull: what the presets of the generated thorax promise.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <fstream>
+#include <sstream>
+
+#include "server/anatomy/anatomy.h"
+#include "server/mechanics/compile.h"
+#include "server/mechanics/presets.h"
+#include "server/mechanics/step.h"
+#include "server/schema/schema.h"
+#include "server/study/thorax_metrics.h"
+
+namespace phrenic {
+namespace {
+
+struct Descent {
+  double right = 0, left = 0;  // [mm], at the peak of a breath in
+};
+
+class Paralysis : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    std::ifstream file(PHRENIC_SOURCE_DIR "/server/scenes/thorax.textproto");
+    std::stringstream text;
+    text << file.rdbuf();
+    model_ = *Compile(*schema::ParseScene("thorax.textproto", text.str()), [](const v1::Body& body) {
+      return anatomy::Generate(body.anatomy(), body.generated().resolution_mm());
+    });
+  }
+  static void TearDownTestSuite() { model_.reset(); }
+
+  static Descent BreatheIn(const std::string& preset, const v1::Parameters& changes = {}) {
+    v1::Parameters parameters = model_->parameters;
+    parameters.MergeFrom(*FindPreset(model_->scene, preset));
+    parameters.MergeFrom(changes);
+    State state = model_->InitialState();
+    Workspace work = model_->MakeWorkspace();
+    while (state.phase < 0.5) {
+      EXPECT_TRUE(Step(*model_, parameters, parameters.time_step(), state, work).ok()) << preset;
+    }
+    const auto metrics = study::ThoraxMetrics::Of(*model_);
+    EXPECT_TRUE(metrics.ok()) << metrics.status();
+    const Descent descent{1e3 * metrics->DomeDescent(state, v1::SIDE_RIGHT),
+                          1e3 * metrics->DomeDescent(state, v1::SIDE_LEFT)};
+    std::printf("%-16s right %6.1f mm  left %6.1f mm\n", preset.c_str(), descent.right, descent.left);
+    return descent;
+  }
+
+  static std::shared_ptr<const Model> model_;
+};
+
+std::shared_ptr<const Model> Paralysis::model_;
+
+TEST_F(Paralysis, ADomeWithoutMuscleMovesLessThanAThirdOfTheOther) {
+  const Descent right = BreatheIn("paralysis-right"), left = BreatheIn("paralysis-left");
+  EXPECT_GT(right.left, 10);
+  EXPECT_LT(right.right, right.left / 3);
+  EXPECT_GT(left.right, 10);
+  EXPECT_LT(left.left, left.right / 3);
+}
+
+TEST_F(Paralysis, OfOneSideIsThatOfTheOtherMirrored) {
+  const Descent right = BreatheIn("paralysis-right"), left = BreatheIn("paralysis-left");
+  EXPECT_NEAR(right.right, left.left, 2);
+  EXPECT_NEAR(right.left, left.right, 4);  // the right muscle is the stronger one
+}
+
+TEST_F(Paralysis, ASniffDrawsTheParalysedDomeUp) {
+  v1::Parameters changes;
+  changes.set_right_activation(0);
+  const Descent sniff = BreatheIn("sniff", changes);
+  EXPECT_LT(sniff.right, -1);
+  EXPECT_GT(sniff.left, 5);
+}
+
+TEST_F(Paralysis, IsNoPartOfOtherBreaths) {
+  const Descent quiet = BreatheIn("quiet"), weak = BreatheIn("COPD"), sniff = BreatheIn("sniff");
+  EXPECT_LT(weak.right, quiet.right / 2);
+  EXPECT_GT(sniff.right, 20);  // 29 +- 6 mm in men (Boussuges 2009)
+  EXPECT_LT(sniff.right, 35);
+}
+
+}  // namespace
+}  // namespace phrenic
