@@ -1,10 +1,11 @@
 #include "client/commands.h"
 
-#include <CLI/CLI.hpp>
 #include <iostream>
-#include <map>
 
+#include "client/argument_kinds.h"
+#include "client/command_line.h"
 #include "client/comparison.h"
+#include "client/manual.h"
 #include "client/scene_argument.h"
 #include "client/schema_options.h"
 #include "phrenic/v1/compare.pb.h"
@@ -40,25 +41,13 @@ struct AllOptions {
   ExportOptions export_motion;
   ExportsOptions exports;
   UploadOptions upload;
+  CompletionOptions completion;
 };
 
-class CommandLine {
+class Commands {
  public:
-  explicit CommandLine(Context& context) : context_(context) {
-    app_.description(
-        "Phrenic: the breathing diaphragm, simulated. Research and teaching; not for clinical use.\n\n"
-        "  phrenic run thorax --seconds 8 --set breath_force=1.5 --export out.msh   # no server needed\n"
-        "  phrenic scenes                                                           # what a server offers\n"
-        "  phrenic create thorax --play && phrenic watch thorax                     # a session, watched\n");
-    app_.require_subcommand(1);
-    app_.fallthrough();
-    app_.add_option("--server", context_.server, "HOST:PORT of the server")
-        ->envname("PHRENIC_SERVER")
-        ->each([this](const std::string&) { context_.server_given = true; })
-        ->capture_default_str();
-    app_.add_option("-o,--output", context_.output, "table, for people, json, for programs, or csv (studies, compare)")
-        ->transform(CLI::CheckedTransformer(
-            std::map<std::string, Output>{{"table", Output::kTable}, {"json", Output::kJson}, {"csv", Output::kCsv}}));
+  Commands(CLI::App& app, const Context& context, std::function<int()>& chosen)
+      : app_(app), context_(context), chosen_(chosen) {
     AddSceneCommands();
     AddStudies();
     AddCompare();
@@ -69,40 +58,32 @@ class CommandLine {
     AddControl();
     AddExport();
     AddUpload();
-  }
-
-  int ParseAndRun(int argc, char** argv) {
-    try {
-      app_.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-      return app_.exit(error) == 0 ? kOk : kUsage;
-    }
-    return code_;
+    AddItself();
   }
 
  private:
   template <typename Function, typename Options>
   CLI::App* Add(const char* name, const char* help, Function function, Options& options, CLI::App* to = nullptr) {
     CLI::App* command = (to == nullptr ? &app_ : to)->add_subcommand(name, help);
-    command->callback([this, function, &options] { code_ = function(context_, options); });
+    command->callback(
+        [this, function, &options] { chosen_ = [this, function, &options] { return function(context_, options); }; });
     return command;
   }
 
   CLI::App* Add(const char* name, const char* help, int (*function)(const Context&), CLI::App* to = nullptr) {
     CLI::App* command = (to == nullptr ? &app_ : to)->add_subcommand(name, help);
-    command->callback([this, function] { code_ = function(context_); });
+    command->callback([this, function] { chosen_ = [this, function] { return function(context_); }; });
     return command;
   }
 
   static void AddScene(CLI::App* command, SceneOptions& options) {
     command->add_option("SCENE", options.scene, "name of a scene, or a .textproto file")->required();
     command->add_option("--resolution", options.resolution_mm, "edge length of generated bodies [mm]")
-        ->check(CLI::Range(0.5, 50.0));
+        ->check(NumberIn(0.5, 50.0));
   }
 
-  static void AddSettings(CLI::App* command, std::vector<std::string>& settings) {
+  static void AddParameters(CLI::App* command, std::vector<std::string>& settings) {
     command->add_option("--set", settings, "name=value of a live parameter; may be repeated")->allow_extra_args(false);
-    command->footer("\n" + ParameterHelp());
   }
 
   static void AddPulls(CLI::App* command, std::vector<std::string>& pulls) {
@@ -123,20 +104,22 @@ class CommandLine {
     CLI::App* command = Add("run", "Run a scene here, with no server, and say how fast it was", &Run, run);
     AddScene(command, run.scene);
     AddPreset(command, run.preset);
-    AddSettings(command, run.settings);
+    AddParameters(command, run.settings);
     AddPulls(command, run.pulls);
     command->add_option("--seconds", run.seconds, "simulated time [s]")
-        ->check(CLI::Range(1e-6, 3600.0))
+        ->check(NumberIn(1e-6, 3600.0))
         ->capture_default_str();
     command->add_option("--export", run.motion.file, "write the motion to this file" + ExportEndings());
     AddMotion(command, run.motion);
     command->add_option("--spool", run.spool_dir, "folder on a disk with room for what an export holds back");
-    command->add_option("--data", run.data_dir, "folder of surface files and of scenes/*.textproto");
+    command->add_option("--data", run.data_dir, "folder of surface files and of scenes/*.textproto")
+        ->envname("PHRENIC_DATA");
     PhysiologyOptions& physiology = options_.physiology;
     command =
         Add("physiology", "Let a thorax breathe here, and hold it against published ranges", &Physiology, physiology);
     AddScene(command, physiology.scene);
-    command->add_option("--data", physiology.data_dir, "folder of surface files and of scenes/*.textproto");
+    command->add_option("--data", physiology.data_dir, "folder of surface files and of scenes/*.textproto")
+        ->envname("PHRENIC_DATA");
   }
 
   void AddStudies() {
@@ -162,10 +145,11 @@ class CommandLine {
     CLI::App* command = Add(name, help, &Study, options, to);
     AddScene(command, options.scene);
     AddPreset(command, *options.request.mutable_preset());
-    AddSettings(command, options.settings);
+    AddParameters(command, options.settings);
     AddSchemaOptions(command, kind);
     AddFindings(command, options);
-    command->add_option("--data", options.data_dir, "folder of surface files and of scenes/*.textproto");
+    command->add_option("--data", options.data_dir, "folder of surface files and of scenes/*.textproto")
+        ->envname("PHRENIC_DATA");
     command->add_option("--id", *options.request.mutable_study_id(), "its name: 1 to 64 of a-z, 0-9 and -");
     command->add_flag("--detach", options.detach,
                       "run it on the server, and do not wait (with --server alone: and wait)");
@@ -182,7 +166,7 @@ class CommandLine {
                         const char* field) {
     const v1::Quantity& quantity = *schema::QuantityOf(*message.FindFieldByName(field));
     command->add_option(flag, value, FieldHelp(message, field))
-        ->check(CLI::Range(quantity.minimum(), quantity.maximum()));
+        ->check(NumberIn(quantity.minimum(), quantity.maximum()));
   }
 
   void AddCompare() {
@@ -213,7 +197,7 @@ class CommandLine {
 
   static void AddUnit(CLI::App* command, const char* flag, double& unit_mm, const std::string& whose) {
     command->add_option(flag, unit_mm, "millimetres in one unit of " + whose + " lengths")
-        ->check(CLI::Range(1e-6, 1e6))
+        ->check(NumberIn(1e-6, 1e6))
         ->capture_default_str();
   }
 
@@ -238,7 +222,7 @@ class CommandLine {
         ->allow_extra_args(false)
         ->check(CLI::IsMember({"weld", "slivers", "fins", "orient", "all"}));
     command->add_option("--within-mm", convert.within_mm, "what is nearer than this is one place, to --repair")
-        ->check(CLI::Range(0.0, 10.0))
+        ->check(NumberIn(0.0, 10.0))
         ->capture_default_str();
   }
 
@@ -262,13 +246,13 @@ class CommandLine {
     command->add_option("--out", patient.out, "data folder to write surfaces and scene to")->required();
     command->add_option("--name", patient.name, "of the scene: 1 to 64 of a-z, 0-9 and -")->capture_default_str();
     command->add_option("--edge-length", patient.edge_length, "of bones' triangles [mm]; of lungs' half as much again")
-        ->check(CLI::Range(1.0, 20.0))
+        ->check(NumberIn(1.0, 20.0))
         ->capture_default_str();
     command->add_option("--vertices", patient.vertices, "on the diaphragm, about")
-        ->check(CLI::Range(500, 200000))
+        ->check(NumberIn(500, 200000))
         ->capture_default_str();
     command->add_option("--tendon-share", patient.tendon_share, "of the diaphragm's area")
-        ->check(CLI::Range(0.05, 0.5))
+        ->check(NumberIn(0.05, 0.5))
         ->capture_default_str();
     CLI::Option* serve =
         command->add_flag("--serve", patient.serve, "then start phrenicd, which plays it in the viewer");
@@ -283,13 +267,13 @@ class CommandLine {
     AddLabels(command, phantom.labels);
     command->add_option("--out", phantom.out, "file to write, .nii or .nii.gz")->required();
     command->add_option("--voxel", phantom.voxel, "edge length of a voxel [mm]")
-        ->check(CLI::Range(1.0, 10.0))
+        ->check(NumberIn(1.0, 10.0))
         ->capture_default_str();
     command->add_option("--noise", phantom.noise, "share of voxels at borders that have a neighbour's label")
-        ->check(CLI::Range(0.0, 0.3))
+        ->check(NumberIn(0.0, 0.3))
         ->capture_default_str();
     command->add_option("--holes", phantom.holes, "balls of 3 mm without a label")
-        ->check(CLI::Range(0, 10000))
+        ->check(NumberIn(0, 10000))
         ->capture_default_str();
     command->add_option("--seed", phantom.seed, "of noise and holes")->capture_default_str();
   }
@@ -299,7 +283,7 @@ class CommandLine {
     CLI::App* command = Add("create", "Create a session", &Create, create);
     AddScene(command, create.scene);
     AddPreset(command, create.preset);
-    AddSettings(command, create.settings);
+    AddParameters(command, create.settings);
     AddPulls(command, create.pulls);
     command->add_option("--id", create.id, "its name: 1 to 64 of a-z, 0-9 and -");
     command->add_flag("--play", create.play, "let it play at once");
@@ -325,7 +309,21 @@ class CommandLine {
     command->add_option("--at-tick", set.at_tick, "let the change wait until the session stands at this tick");
     command->add_option("--expected-revision", set.expected_revision, "refuse when the session is at another revision");
     AddRequestId(command, set.request_id);
-    command->footer("\n" + ParameterHelp());
+  }
+
+  void AddItself() {
+    Add("doctor", "Say whether all is there, and what to type where it is not", &Doctor);
+    CompletionOptions& completion = options_.completion;
+    Add("completion", "Print what makes a shell complete commands, scenes, sessions and parameters", &PrintCompletion,
+        completion)
+        ->add_option("SHELL", completion.shell, "bash, zsh or fish")
+        ->required();
+    app_.add_subcommand("man", "Print the manual page")->callback([this] {
+      chosen_ = [this] {
+        std::cout << ManualOf(app_);
+        return kOk;
+      };
+    });
   }
 
   static void AddOwner(CLI::App* command, bool& mine, std::string& name) {
@@ -350,7 +348,7 @@ class CommandLine {
     CLI::App* command = add("take", "Take control, or ask whoever has it; the owner takes it back", &TakeControl, take);
     command->add_option("--name", take.name, "what others see you as (your login name)");
     command->add_option("--minutes", take.minutes, "how long it stays yours without a command of yours")
-        ->check(CLI::Range(1.0 / 60, 60.0))
+        ->check(NumberIn(1.0 / 60, 60.0))
         ->capture_default_str();
     HandControlOptions& hand = options_.hand_control;
     command = add("hand", "Hand control to somebody who is there", &HandControl, hand);
@@ -377,7 +375,7 @@ class CommandLine {
     PlayOptions& play = options_.play;
     CLI::App* command = Add("play", "Let a session play", &Play, play);
     command->add_option("SESSION", play.id)->required();
-    command->add_option("--speed", play.speed, "simulated seconds a second")->check(CLI::Range(0.01, 100.0));
+    command->add_option("--speed", play.speed, "simulated seconds a second")->check(NumberIn(0.01, 100.0));
     command->add_flag("--fast", play.fast, "as fast as the machine can");
     command->add_option("--until", play.until, "pause at this simulated time [s]");
     StepOptions& step = options_.step;
@@ -434,7 +432,7 @@ class CommandLine {
     CLI::Option* rate =
         command->add_option("--fps", motion.frames_per_second, "frames a second in the file (10; .glb: 24 a breath)");
     command->add_option("--every", motion.steps_per_frame, FieldHelp(request, "steps_per_frame"))
-        ->check(CLI::Range(1, 1'000'000))
+        ->check(NumberIn(1, 1'000'000))
         ->excludes(rate);
     command->add_option("--body", motion.bodies, "body or layer; may be repeated (all deformable ones)");
     CLI::Option* positions = command->add_flag("--positions", motion.positions, "where vertices are (.msh, .pvd)");
@@ -442,18 +440,16 @@ class CommandLine {
         ->excludes(positions);
   }
 
-  Context& context_;
+  CLI::App& app_;
+  const Context& context_;
+  std::function<int()>& chosen_;
   AllOptions options_;
-  CLI::App app_{"", "phrenic"};
-  int code_ = kOk;
 };
 
 }  // namespace
 
-int RunCommandLine(int argc, char** argv, Interruption& interruption) {
-  Context context;
-  context.interruption = &interruption;
-  return CommandLine(context).ParseAndRun(argc, argv);
+std::shared_ptr<void> AddCommands(CLI::App& app, const Context& context, std::function<int()>& chosen) {
+  return std::make_shared<Commands>(app, context, chosen);
 }
 
 }  // namespace phrenic::client

@@ -55,8 +55,8 @@ struct InspectOptions {
 };
 struct ConvertOptions {
   std::string in, out;
-  std::vector<std::string> repairs;  // in the order of Repairs() in convert.cc
-  double within_mm = 1e-3;           // what is nearer is at one place
+  std::vector<std::string> repairs;     // in the order of Repairs() in convert.cc
+  double within_mm = 1e-3;              // what is nearer is at one place
   double unit_mm = 1, out_unit_mm = 1;  // in one unit of IN's, and of OUT's lengths
 };
 struct PatientOptions {
@@ -142,6 +142,9 @@ struct ExportOptions {
 struct ExportsOptions {
   std::string id, file;
 };
+struct CompletionOptions {
+  std::string shell;
+};
 struct UploadOptions {
   std::string file;
   double unit_mm = 1;  // in one unit of the file's lengths
@@ -182,9 +185,8 @@ int ListExports(const Context& context);
 int GetExport(const Context& context, const ExportsOptions& options);
 int DeleteExport(const Context& context, const ExportsOptions& options);
 int Upload(const Context& context, const UploadOptions& options);
-
-// Parses the command line and runs the command on it.
-int RunCommandLine(int argc, char** argv, Interruption& interruption);
+int Doctor(const Context& context);
+int PrintCompletion(const Context& context, const CompletionOptions& options);
 
 }  // namespace phrenic::client
 

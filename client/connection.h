@@ -9,6 +9,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "absl/status/status.h"
 #include "client/interruption.h"
@@ -16,23 +17,42 @@
 namespace phrenic::client {
 
 // Exit codes, as scripts may rely on them.
-inline constexpr int kOk = 0, kFailed = 1, kUsage = 2, kUnreachable = 3, kMissed = 4, kInterrupted = 130;
+inline constexpr int kOk = 0, kFailed = 1, kUsage = 2, kUnreachable = 3, kMissed = 4, kNotAllowed = 5,
+                     kInterrupted = 130;
 
-enum class Output { kTable, kJson, kCsv };
+// For people, as one JSON document, as one JSON document a line, and as RFC 4180 has it.
+enum class Output { kTable, kJson, kJsonl, kCsv };
+
+// A setting of every command, for `phrenic doctor`.
+struct Setting {
+  std::string name, value;
+  std::string origin;  // "--server", "PHRENIC_SERVER", the file's path, "default"
+};
 
 struct Context {
   std::string server = "127.0.0.1:50051";
-  bool server_given = false;  // by a flag or the environment
+  bool server_given = false;  // by a flag, the environment or the settings file
+  std::string viewer;         // "https://host"; empty: where the server says
   Output output = Output::kTable;
   Interruption* interruption = nullptr;  // outlives every command
+  std::vector<Setting> settings;         // as they came
+  std::string settings_file;             // whether it is there or not
 
-  bool json() const { return output == Output::kJson; }
+  bool json() const { return output == Output::kJson || output == Output::kJsonl; }
 };
 
 // A channel to the server; nothing is sent yet.
 std::shared_ptr<grpc::Channel> Connect(const Context& context);
 
-// Says the error on standard error, "phrenic: what is wrong and what to do", and gives the exit code for it.
+// The address of the viewer's page of a session, "http://127.0.0.1:8080/?session=class"; empty where the server serves
+// no viewer.
+std::string ViewerLink(const Context& context, const std::string& session);
+
+// "phrenic:", as errors begin on standard error; red on a terminal.
+std::string ErrorName();
+
+// Says the error on standard error, "phrenic: what is wrong and what to do", what to type next below it, and gives the
+// exit code for it.
 int Fail(const Context& context, const grpc::Status& status);
 int Fail(const absl::Status& status);
 

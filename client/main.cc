@@ -1,5 +1,5 @@
 // The command line client.
-#include "client/commands.h"
+#include "client/command_line.h"
 
 int main(int argc, char** argv) {
   phrenic::client::Interruption interruption;

@@ -63,8 +63,9 @@ std::string ControlText(const v1::Control& control) {
   if (!control.controller().empty()) {
     text = absl::StrCat("  controlled by ", control.controller());
     if (control.has_expire_time()) {
-      absl::StrAppend(&text, ", until ", google::protobuf::util::TimeUtil::ToString(control.expire_time()),
-                      " unless they go on");
+      google::protobuf::Timestamp second;
+      second.set_seconds(control.expire_time().seconds());
+      absl::StrAppend(&text, ", until ", google::protobuf::util::TimeUtil::ToString(second), " unless they go on");
     }
     text += "\n";
   }

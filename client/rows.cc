@@ -6,7 +6,6 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "absl/strings/str_replace.h"
 #include "client/table.h"
 #include "server/schema/fields.h"
 
@@ -31,11 +30,6 @@ std::string Text(const Message& row, const FieldDescriptor& field, bool every_di
     default:
       return reflection.GetString(row, &field);
   }
-}
-
-std::string Quoted(const std::string& cell) {
-  if (cell.find_first_of(",\"\n") == std::string::npos) return cell;
-  return absl::StrCat("\"", absl::StrReplaceAll(cell, {{"\"", "\"\""}}), "\"");
 }
 
 std::vector<const FieldDescriptor*> TablesOf(const Message& message) {
@@ -63,11 +57,6 @@ std::vector<std::string> Cells(const Message& row, bool every_digit) {
   cells.reserve(static_cast<size_t>(type.field_count()));
   for (int f = 0; f < type.field_count(); ++f) cells.push_back(Text(row, *type.field(f), every_digit));
   return cells;
-}
-
-void PrintCsvLine(const std::vector<std::string>& cells, std::ostream& out) {
-  for (size_t i = 0; i < cells.size(); ++i) out << (i == 0 ? "" : ",") << Quoted(cells[i]);
-  out << "\n";
 }
 
 }  // namespace

@@ -10,7 +10,6 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_split.h"
-#include "client/table.h"
 #include "server/schema/fields.h"
 #include "server/schema/schema.h"
 
@@ -19,25 +18,20 @@ namespace {
 
 using google::protobuf::FieldDescriptor;
 
-// The names stand in the last column: there are too many of them for any other.
-std::vector<std::string> ChoiceRow(const FieldDescriptor& field, const v1::Choice& choice) {
-  const google::protobuf::EnumDescriptor& type = *field.enum_type();
-  return {field.name(), "", "a name", schema::ChoiceName(*type.FindValueByNumber(choice.default_value())),
-          absl::StrCat(choice.help(), " One of ", schema::ChoiceNames(type), ".")};
-}
-
-std::vector<std::string> QuantityRow(const FieldDescriptor& field, const v1::Quantity& quantity) {
-  return {field.name(), quantity.unit() == "1" ? "" : quantity.unit(),
-          absl::StrFormat("%g to %g", quantity.minimum(), quantity.maximum()),
-          quantity.automatic() ? "automatic" : absl::StrFormat("%g", quantity.default_value()), quantity.help()};
-}
-
-std::vector<std::string> ParameterRow(const FieldDescriptor& field) {
+ParameterRow RowOf(const FieldDescriptor& field) {
   if (const v1::Toggle* toggle = schema::ToggleOf(field)) {
     return {field.name(), "", "on, off", toggle->default_value() ? "on" : "off", toggle->help()};
   }
-  if (const v1::Choice* choice = schema::ChoiceOf(field)) return ChoiceRow(field, *choice);
-  return QuantityRow(field, field.options().GetExtension(v1::quantity));
+  if (const v1::Choice* choice = schema::ChoiceOf(field)) {
+    const google::protobuf::EnumDescriptor& type = *field.enum_type();
+    // The names stand in the last column: there are too many of them for any other.
+    return {field.name(), "", "a name", schema::ChoiceName(*type.FindValueByNumber(choice->default_value())),
+            absl::StrCat(choice->help(), " One of ", schema::ChoiceNames(type), ".")};
+  }
+  const v1::Quantity& quantity = field.options().GetExtension(v1::quantity);
+  return {field.name(), quantity.unit() == "1" ? "" : quantity.unit(),
+          absl::StrFormat("%g to %g", quantity.minimum(), quantity.maximum()),
+          quantity.automatic() ? "automatic" : absl::StrFormat("%g", quantity.default_value()), quantity.help()};
 }
 
 // A body's name may hold colons: the last two count.
@@ -107,13 +101,11 @@ absl::StatusOr<v1::Parameters> ReadSettings(const std::vector<std::string>& sett
   return parameters;
 }
 
-std::string ParameterHelp() {
-  Table table({"parameter", "unit", "range", "default", "meaning"});
+std::vector<ParameterRow> ParameterRows() {
+  std::vector<ParameterRow> rows;
   const google::protobuf::Descriptor& type = *v1::Parameters::descriptor();
-  for (int f = 0; f < type.field_count(); ++f) table.Add(ParameterRow(*type.field(f)));
-  std::ostringstream text;
-  table.Print(text);
-  return text.str();
+  for (int f = 0; f < type.field_count(); ++f) rows.push_back(RowOf(*type.field(f)));
+  return rows;
 }
 
 }  // namespace phrenic::client

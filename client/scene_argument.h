@@ -20,8 +20,11 @@ absl::StatusOr<google::protobuf::RepeatedPtrField<v1::Pull>> ReadPulls(const std
 // Parameters from "name=value" words; INVALID_ARGUMENT names the word.
 absl::StatusOr<v1::Parameters> ReadSettings(const std::vector<std::string>& settings);
 
-// A table of all live parameters with unit, range, default and meaning, for help texts.
-std::string ParameterHelp();
+// All live parameters with unit, range, default and meaning.
+struct ParameterRow {
+  std::string name, unit, range, default_value, meaning;
+};
+std::vector<ParameterRow> ParameterRows();
 
 }  // namespace phrenic::client
 

@@ -12,6 +12,7 @@
 #include "phrenic/v1/session.grpc.pb.h"
 #include "server/service/address.h"
 #include "server/service/server.h"
+#include "server/store/check.h"
 
 namespace phrenic {
 namespace {
@@ -23,10 +24,24 @@ struct Flags {
   std::string start = "thorax";
 };
 
+// systemd's StateDirectory, else the user's.
+std::string DefaultStore() {
+  const auto from = [](const char* variable, const char* below) {
+    const char* folder = std::getenv(variable);
+    return folder == nullptr || *folder == '\0' ? std::string() : absl::StrCat(folder, below);
+  };
+  for (const auto& [variable, below] :
+       {std::pair("STATE_DIRECTORY", ""), {"XDG_STATE_HOME", "/phrenic"}, {"HOME", "/.local/state/phrenic"}}) {
+    if (std::string folder = from(variable, below); !folder.empty()) return folder;
+  }
+  return "none";
+}
+
 void AddFlags(CLI::App& app, Flags& flags) {
   service::ServerOptions& options = flags.options;
   options.listen = "127.0.0.1:50051";
   options.web = "127.0.0.1:8080";
+  options.store_dir = DefaultStore();
   app.add_option("--listen", options.listen, "HOST:PORT of gRPC")->capture_default_str();
   app.add_option("--web", options.web, "HOST:PORT of the viewer and gRPC-web")->capture_default_str();
   app.add_option("--data", options.data_dir, "Folder of surface files; scenes of your own in its folder scenes/");
@@ -36,6 +51,9 @@ void AddFlags(CLI::App& app, Flags& flags) {
       ->capture_default_str();
   app.add_option("--keep-exports", options.limits.export_minutes, "Minutes that an export waits to be downloaded")
       ->check(CLI::Range(1, 10080))
+      ->capture_default_str();
+  app.add_option("--store", options.store_dir,
+                 "Folder that sessions are saved in, so that they go on after the server ended; none: nowhere")
       ->capture_default_str();
   app.add_option("--web-root", options.web_root, "Folder of the built viewer")->capture_default_str();
   app.add_option("--start", flags.start, "Scene to start and play, or none")->capture_default_str();
@@ -73,7 +91,9 @@ grpc::Status StartScene(service::Server& server, const std::string& scene) {
   request.mutable_source()->set_name(scene);
   v1::CreateSessionResponse created;
   grpc::ClientContext creating, playing;
-  if (grpc::Status status = stub->CreateSession(&creating, request, &created); !status.ok()) return status;
+  const grpc::Status status = stub->CreateSession(&creating, request, &created);
+  if (status.error_code() == grpc::StatusCode::ALREADY_EXISTS) return grpc::Status::OK;  // it goes on as it was
+  if (!status.ok()) return status;
   v1::PlaySessionRequest play;
   play.set_session_id(scene);
   v1::PlaySessionResponse played;
@@ -93,10 +113,16 @@ sigset_t HoldSignals() {
 
 int Serve(const Flags& flags) {
   const sigset_t signals = HoldSignals();
-  auto server = service::Server::Start(flags.options);
+  service::ServerOptions chosen = flags.options;
+  if (chosen.store_dir == "none") chosen.store_dir.clear();
+  chosen.restoring = [](const std::string& id) { spdlog::info("restoring the session {}", id); };
+  auto server = service::Server::Start(chosen);
   if (!server.ok()) {
     spdlog::error("{}", std::string(server.status().message()));
     return kFailed;
+  }
+  for (const auto& [id, reason] : (*server)->lost()) {
+    spdlog::warn("the session {} stays in the store: {}", id, std::string(reason.message()));
   }
   WarnIfReachable(flags.options.listen);
   WarnIfReachable(flags.options.web);
@@ -121,17 +147,31 @@ int Serve(const Flags& flags) {
   return kOk;
 }
 
+int Check(const std::string& folder) {
+  const auto checked = store::CheckStore(folder);
+  if (!checked.ok()) {
+    spdlog::error("{}", std::string(checked.status().message()));
+    return kFailed;
+  }
+  std::fputs(store::Describe(folder, *checked).c_str(), stdout);
+  return checked->whole() ? kOk : kFailed;
+}
+
 int Main(int argc, char** argv) {
   setenv("GRPC_VERBOSITY", "NONE", 0);  // what matters of it comes as a status
   spdlog::set_default_logger(spdlog::stderr_color_mt("phrenicd"));
   CLI::App app("phrenicd: simulates the breathing diaphragm and serves it to viewers and programs.");
   Flags flags;
   AddFlags(app, flags);
+  std::string checked;
+  CLI::App* check = app.add_subcommand("check", "Say what is in a store, and whether it is whole; changes nothing");
+  check->add_option("DIR", checked, "the store's folder")->required();
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kOk : kUsage;
   }
+  if (check->parsed()) return Check(checked);
   return Serve(flags);
 }
 

@@ -1,8 +1,10 @@
 // The commands that change a session and show it as it is then.
 #include <iostream>
+#include <nlohmann/json.hpp>
 
 #include "client/commands.h"
 #include "client/print_session.h"
+#include "client/progress.h"
 #include "client/scene_argument.h"
 #include "client/tokens.h"
 #include "phrenic/v1/session.grpc.pb.h"
@@ -10,23 +12,31 @@
 namespace phrenic::client {
 namespace {
 
+constexpr int kStepsSeconds = 3600;  // a million steps of a large scene are many minutes
+
+// Of one that was made, `viewer` is the link to it; empty: none.
 template <typename Response>
-int Show(const Context& context, const grpc::Status& status, const Response& response) {
+int Show(const Context& context, const grpc::Status& status, const Response& response, const std::string& viewer = "") {
   if (!status.ok()) return Fail(context, status);
   if (context.json()) {
-    std::cout << Json(response) << "\n";
+    auto answer = nlohmann::ordered_json::parse(Json(response));
+    if (!viewer.empty()) answer["viewer"] = viewer;
+    std::cout << answer.dump() << "\n";
   } else {
     PrintSession(response.session(), std::cout);
+    if (!viewer.empty()) std::cout << "  viewer: " << viewer << "\n";
   }
   return response.session().state() == v1::SESSION_STATE_DIVERGED ? kFailed : kOk;
 }
 
 template <typename Response, typename Method, typename Request>
-int CallAndShow(const Context& context, Method method, Request request) {
+int CallAndShow(const Context& context, Method method, Request request, int deadline_seconds = 120) {
   request.set_control_token(TokenOf(context, request.session_id()));
   const auto stub = v1::SessionService::NewStub(Connect(context));
   Response response;
-  return Show(context, Call(context, *stub, method, request, &response), response);
+  const grpc::Status status =
+      WithProgress("waiting", [&] { return Call(context, *stub, method, request, &response, deadline_seconds); });
+  return Show(context, status, response);
 }
 
 // Lets the session play, and writes down what it is then.
@@ -50,7 +60,7 @@ int ShowOwn(const Context& context, v1::SessionService::Stub& stub, grpc::Status
     KeepToken(context, response.session().id(), response.control_token());
   }
   if (status.ok() && play) status = StartPlaying(context, stub, *response.mutable_session());
-  return Show(context, status, response);
+  return Show(context, status, response, status.ok() ? ViewerLink(context, response.session().id()) : "");
 }
 
 }  // namespace
@@ -72,7 +82,9 @@ int Create(const Context& context, const CreateOptions& options) {
   *request.mutable_pulls() = *pulls;
   const auto stub = v1::SessionService::NewStub(Connect(context));
   v1::CreateSessionResponse response;
-  const grpc::Status status = Call(context, *stub, &v1::SessionService::Stub::CreateSession, request, &response);
+  const grpc::Status status = WithProgress("compiling " + options.scene.scene, [&] {
+    return Call(context, *stub, &v1::SessionService::Stub::CreateSession, request, &response);
+  });
   return ShowOwn(context, *stub, status, options.play, response);
 }
 
@@ -142,7 +154,7 @@ int TakeSteps(const Context& context, const StepOptions& options) {
   request.set_ticks(options.ticks);
   if (options.expected_tick >= 0) request.set_expected_tick(options.expected_tick);
   request.set_request_id(options.request_id);
-  return CallAndShow<v1::StepSessionResponse>(context, &v1::SessionService::Stub::StepSession, request);
+  return CallAndShow<v1::StepSessionResponse>(context, &v1::SessionService::Stub::StepSession, request, kStepsSeconds);
 }
 
 int Reset(const Context& context, const SessionOptions& options) {

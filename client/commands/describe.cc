@@ -5,6 +5,7 @@
 #include "absl/strings/str_join.h"
 #include "client/commands.h"
 #include "client/print_session.h"
+#include "client/progress.h"
 #include "client/scene_argument.h"
 #include "client/table.h"
 #include "phrenic/v1/session.grpc.pb.h"
@@ -55,7 +56,11 @@ void PrintReport(const v1::DescribeSceneResponse& response) {
   if (report.idle_parameters_size() > 0) {
     std::cout << "Without effect here: " << absl::StrJoin(report.idle_parameters(), ", ") << "\n";
   }
-  std::cout << ParameterHelp();
+  Table parameters({"parameter", "unit", "range", "default", "meaning"});
+  for (const ParameterRow& row : ParameterRows()) {
+    parameters.Add({row.name, row.unit, row.range, row.default_value, row.meaning});
+  }
+  parameters.Print(std::cout);
 }
 
 }  // namespace
@@ -67,7 +72,9 @@ int Describe(const Context& context, const SceneOptions& options) {
   *request.mutable_source() = *source;
   const auto stub = v1::SceneService::NewStub(Connect(context));
   v1::DescribeSceneResponse response;
-  const grpc::Status status = Call(context, *stub, &v1::SceneService::Stub::DescribeScene, request, &response);
+  const grpc::Status status = WithProgress("compiling " + options.scene, [&] {
+    return Call(context, *stub, &v1::SceneService::Stub::DescribeScene, request, &response);
+  });
   if (!status.ok()) return Fail(context, status);
   if (context.json()) {
     std::cout << Json(response) << "\n";

@@ -5,7 +5,7 @@
 #include "absl/strings/str_format.h"
 #include "client/commands.h"
 #include "client/motion_file.h"
-#include "client/table.h"
+#include "client/output.h"
 
 namespace phrenic::client {
 namespace {
@@ -24,17 +24,13 @@ int ListExports(const Context& context) {
   const grpc::Status status =
       Call(context, *stub, &v1::ExportService::Stub::ListExports, v1::ListExportsRequest(), &response);
   if (!status.ok()) return Fail(context, status);
-  if (context.json()) {
-    std::cout << Json(response) << "\n";
-    return kOk;
-  }
   Table table({"export", "session", "file", "done", "left [s]", "MB", "state"});
   for (const v1::Export& job : response.exports()) {
     table.Add({job.id(), job.session_id(), job.file_name(), absl::StrFormat("%.0f %%", 100 * job.progress()),
                job.has_seconds_left() ? absl::StrFormat("%.0f", job.seconds_left()) : "-",
                absl::StrFormat("%.1f", 1e-6 * static_cast<double>(job.bytes())), StateOf(job)});
   }
-  table.Print(std::cout);
+  PrintList(context, response, table);
   return kOk;
 }
 

@@ -88,7 +88,7 @@ int Serve(const PatientOptions& options) {
   const std::string server =
       (std::filesystem::read_symlink("/proc/self/exe", error).parent_path() / "phrenicd").string();
   execl(server.c_str(), "phrenicd", "--data", options.out.c_str(), "--start", options.name.c_str(), "--web",
-        options.web.c_str(), nullptr);
+        options.web.c_str(), "--store", "none", nullptr);
   return Fail(absl::NotFoundError(absl::StrCat("cannot start ", server, ": build it, or leave out --serve")));
 }
 

@@ -46,7 +46,7 @@ grpc::Status CreateHere(const Context& context, const RunOptions& options, const
   request.set_preset(options.preset);
   for (const v1::Pull& pull : pulls) *request.add_pulls() = pull;
   v1::CreateSessionResponse created;
-  const Progress compiling("compiling " + options.scene.scene, 1);
+  const Progress compiling("compiling " + options.scene.scene);
   grpc::Status status = Call(context, stub, &v1::SessionService::Stub::CreateSession, request, &created);
   if (!status.ok()) return status;
   v1::GetSessionRequest get;

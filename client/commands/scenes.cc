@@ -1,7 +1,5 @@
-#include <iostream>
-
 #include "client/commands.h"
-#include "client/table.h"
+#include "client/output.h"
 #include "phrenic/v1/session.grpc.pb.h"
 
 namespace phrenic::client {
@@ -12,13 +10,9 @@ int Scenes(const Context& context) {
   const grpc::Status status =
       Call(context, *stub, &v1::SceneService::Stub::ListScenes, v1::ListScenesRequest(), &response);
   if (!status.ok()) return Fail(context, status);
-  if (context.json()) {
-    std::cout << Json(response) << "\n";
-    return kOk;
-  }
   Table table({"scene", "title", "description"});
   for (const v1::SceneSummary& scene : response.scenes()) table.Add({scene.name(), scene.title(), scene.description()});
-  table.Print(std::cout);
+  PrintList(context, response, table);
   return kOk;
 }
 

@@ -1,10 +1,8 @@
-#include <iostream>
-
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "client/commands.h"
+#include "client/output.h"
 #include "client/print_session.h"
-#include "client/table.h"
 #include "phrenic/v1/session.grpc.pb.h"
 
 namespace phrenic::client {
@@ -20,17 +18,13 @@ int Sessions(const Context& context) {
     request.set_page_token(page.next_page_token());
     all.mutable_sessions()->MergeFrom(page.sessions());
   } while (!request.page_token().empty());
-  if (context.json()) {
-    std::cout << Json(all) << "\n";
-    return kOk;
-  }
   Table table({"session", "scene", "state", "t [s]", "tick", "viewers", "x real time"});
   for (const v1::Session& session : all.sessions()) {
     table.Add({session.id(), session.scene(), StateName(session.state()), absl::StrFormat("%.2f", session.time()),
                absl::StrCat(session.tick()), absl::StrCat(session.viewers()),
                absl::StrFormat("%.2f", session.pace().times_real_time())});
   }
-  table.Print(std::cout);
+  PrintList(context, all, table);
   return kOk;
 }
 

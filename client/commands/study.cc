@@ -4,10 +4,10 @@
 #include "absl/strings/str_format.h"
 #include "client/commands.h"
 #include "client/limits.h"
+#include "client/output.h"
 #include "client/progress.h"
 #include "client/rows.h"
 #include "client/scene_argument.h"
-#include "client/table.h"
 #include "client/whole_file.h"
 #include "phrenic/v1/study.grpc.pb.h"
 #include "server/service/server.h"
@@ -168,16 +168,12 @@ int ListStudies(const Context& context) {
   const grpc::Status status =
       Call(context, *stub, &v1::StudyService::Stub::ListStudies, v1::ListStudiesRequest(), &response);
   if (!status.ok()) return Fail(context, status);
-  if (context.json()) {
-    std::cout << Json(response) << "\n";
-    return kOk;
-  }
   Table table({"study", "scene", "state", "done", "doing"});
   for (const v1::Study& study : response.studies()) {
     table.Add({study.id(), study.scene(), StateName(study.state()), absl::StrFormat("%.0f %%", 100 * study.progress()),
                study.state() == v1::STUDY_STATE_FAILED ? study.problem() : study.doing()});
   }
-  table.Print(std::cout);
+  PrintList(context, response, table);
   return kOk;
 }
 

@@ -6,12 +6,13 @@
 #include "client/commands.h"
 #include "client/print_session.h"
 #include "client/tokens.h"
+#include "phrenic/v1/control.grpc.pb.h"
 #include "phrenic/v1/session.grpc.pb.h"
 
 namespace phrenic::client {
 namespace {
 
-using Stub = v1::ControlService::Stub;
+using Controls = v1::ControlService::Stub;
 
 template <typename Response>
 int ShowAnswer(const Context& context, const grpc::Status& status, const Response& response) {
@@ -33,21 +34,26 @@ Request Signed(const Context& context, const std::string& id) {
   return request;
 }
 
+absl::Status NotThere(const std::string& id) {
+  return absl::FailedPreconditionError(absl::StrCat("you neither made nor entered the session ", id, " of this server ",
+                                                    "from this account: `phrenic control take ", id, "` first"));
+}
+
 std::string LoginName() {
   const char* name = std::getenv("USER");
   return name == nullptr || *name == '\0' ? "somebody" : name;
 }
 
 // Enters under the name, or stays, and keeps the token. Who is known keeps their name where none is given.
-grpc::Status Enter(const Context& context, Stub& stub, const TakeControlOptions& options) {
+grpc::Status Enter(const Context& context, Controls& stub, const TakeControlOptions& options) {
   auto request = Signed<v1::EnterSessionRequest>(context, options.id);
   request.set_name(options.name);
   request.set_time_to_live(60 * options.minutes);
   v1::EnterSessionResponse entered;
-  grpc::Status status = Call(context, stub, &Stub::EnterSession, request, &entered);
+  grpc::Status status = Call(context, stub, &Controls::EnterSession, request, &entered);
   if (status.error_code() == grpc::StatusCode::INVALID_ARGUMENT && options.name.empty()) {
     request.set_name(LoginName());
-    status = Call(context, stub, &Stub::EnterSession, request, &entered);
+    status = Call(context, stub, &Controls::EnterSession, request, &entered);
   }
   if (status.ok()) KeepToken(context, options.id, entered.control_token());
   return status;
@@ -69,7 +75,7 @@ int TakeControl(const Context& context, const TakeControlOptions& options) {
   if (const grpc::Status entered = Enter(context, *stub, options); !entered.ok()) return Fail(context, entered);
   v1::TakeControlResponse response;
   const auto request = Signed<v1::TakeControlRequest>(context, options.id);
-  const grpc::Status status = Call(context, *stub, &Stub::TakeControl, request, &response);
+  const grpc::Status status = Call(context, *stub, &Controls::TakeControl, request, &response);
   const int code = ShowAnswer(context, status, response);
   if (code != kOk || response.granted()) return code;
   std::cerr << "phrenic: " << response.control().controller()
@@ -79,25 +85,28 @@ int TakeControl(const Context& context, const TakeControlOptions& options) {
 
 int HandControl(const Context& context, const HandControlOptions& options) {
   auto request = Signed<v1::HandControlRequest>(context, options.id);
+  if (request.control_token().empty()) return Fail(NotThere(options.id));
   request.set_name(options.name);
   const auto stub = v1::ControlService::NewStub(Connect(context));
   v1::HandControlResponse response;
-  return ShowAnswer(context, Call(context, *stub, &Stub::HandControl, request, &response), response);
+  return ShowAnswer(context, Call(context, *stub, &Controls::HandControl, request, &response), response);
 }
 
 int LendControl(const Context& context, const SessionOptions& options) {
   auto request = Signed<v1::HandControlRequest>(context, options.id);
+  if (request.control_token().empty()) return Fail(NotThere(options.id));
   request.set_everybody(true);
   const auto stub = v1::ControlService::NewStub(Connect(context));
   v1::HandControlResponse response;
-  return ShowAnswer(context, Call(context, *stub, &Stub::HandControl, request, &response), response);
+  return ShowAnswer(context, Call(context, *stub, &Controls::HandControl, request, &response), response);
 }
 
 int ReleaseControl(const Context& context, const SessionOptions& options) {
   const auto request = Signed<v1::ReleaseControlRequest>(context, options.id);
+  if (request.control_token().empty()) return Fail(NotThere(options.id));
   const auto stub = v1::ControlService::NewStub(Connect(context));
   v1::ReleaseControlResponse response;
-  return ShowAnswer(context, Call(context, *stub, &Stub::ReleaseControl, request, &response), response);
+  return ShowAnswer(context, Call(context, *stub, &Controls::ReleaseControl, request, &response), response);
 }
 
 }  // namespace phrenic::client

@@ -1,6 +1,9 @@
 #include "server/mechanics/presets.h"
 
+#include <vector>
+
 #include "absl/strings/str_cat.h"
+#include "server/schema/names.h"
 #include "server/schema/schema.h"
 
 namespace phrenic {
@@ -23,13 +26,13 @@ void CompletePresets(v1::Scene& scene) {
 
 absl::StatusOr<v1::Parameters> FindPreset(const v1::Scene& scene, const std::string& name) {
   if (name.empty()) return v1::Parameters();
-  std::string names;
+  std::vector<std::string> names;
   for (const v1::Preset& preset : scene.presets()) {
     if (preset.name() == name) return preset.parameters();
-    absl::StrAppend(&names, names.empty() ? "" : ", ", preset.name());
+    names.push_back(preset.name());
   }
-  return absl::InvalidArgumentError(absl::StrCat("preset: scene \"", scene.name(), "\" has no preset \"", name,
-                                                 names.empty() ? "\"; it has none" : "\"; it has ", names));
+  return absl::InvalidArgumentError(
+      absl::StrCat("preset: scene \"", scene.name(), "\" has no preset \"", name, "\"", schema::ThereAre(name, names)));
 }
 
 }  // namespace phrenic

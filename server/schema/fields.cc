@@ -7,6 +7,7 @@
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 
 namespace phrenic::schema {
 
@@ -32,13 +33,13 @@ std::string ChoiceName(const EnumValueDescriptor& value) {
   return absl::AsciiStrToLower(value.name().substr(prefix));
 }
 
-std::string ChoiceNames(const EnumDescriptor& type) {
-  std::string names;
-  for (int i = 1; i < type.value_count(); ++i) {
-    absl::StrAppend(&names, i > 1 ? ", " : "", ChoiceName(*type.value(i)));
-  }
+std::vector<std::string> ChoiceNameList(const EnumDescriptor& type) {
+  std::vector<std::string> names;
+  for (int i = 1; i < type.value_count(); ++i) names.push_back(ChoiceName(*type.value(i)));
   return names;
 }
+
+std::string ChoiceNames(const EnumDescriptor& type) { return absl::StrJoin(ChoiceNameList(type), ", "); }
 
 const EnumValueDescriptor* FindChoice(const EnumDescriptor& type, std::string_view name) {
   std::string wanted = absl::AsciiStrToLower(std::string(name));

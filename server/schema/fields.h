@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "phrenic/v1/options.pb.h"
 
@@ -20,7 +21,8 @@ bool IsRequired(const google::protobuf::FieldDescriptor& field);
 
 // What a person calls a value of an enum: "velocity_verlet" for INTEGRATOR_VELOCITY_VERLET of enum Integrator.
 std::string ChoiceName(const google::protobuf::EnumValueDescriptor& value);
-// The names of all values but the unspecified one: "semi_implicit_euler, velocity_verlet".
+// The names of all values but the unspecified one; with commas "semi_implicit_euler, velocity_verlet".
+std::vector<std::string> ChoiceNameList(const google::protobuf::EnumDescriptor& type);
 std::string ChoiceNames(const google::protobuf::EnumDescriptor& type);
 // The value of that name, whatever the case; null where there is none.
 const google::protobuf::EnumValueDescriptor* FindChoice(const google::protobuf::EnumDescriptor& type,

@@ -1,12 +1,10 @@
-#include <algorithm>
-#include <numeric>
 #include <vector>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_join.h"
 #include "server/schema/fields.h"
+#include "server/schema/names.h"
 #include "server/schema/schema.h"
 
 namespace phrenic::schema {
@@ -15,37 +13,14 @@ namespace {
 using google::protobuf::Descriptor;
 using google::protobuf::FieldDescriptor;
 
-// Levenshtein's distance: the fewest insertions, deletions and replacements that make `b` of `a`.
-size_t EditDistance(std::string_view a, std::string_view b) {
-  std::vector<size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), size_t{0});
-  for (size_t i = 1; i <= a.size(); ++i) {
-    size_t diagonal = row[0];
-    row[0] = i;
-    for (size_t j = 1; j <= b.size(); ++j) {
-      const size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
-    }
-  }
-  return row.back();
-}
-
 absl::Status NoSuchParameter(std::string_view name) {
-  constexpr size_t kLongestGuess = 64;  // a longer name is no slip of the fingers
+  constexpr size_t kLongestShown = 64;
   const Descriptor& type = *v1::Parameters::descriptor();
   std::vector<std::string> names;
   names.reserve(type.field_count());
   for (int i = 0; i < type.field_count(); ++i) names.push_back(type.field(i)->name());
-  const std::string shown(name.substr(0, kLongestGuess));
-  const auto farther = [&](const std::string& a, const std::string& b) {
-    return EditDistance(shown, a) < EditDistance(shown, b);
-  };
-  const std::string nearest = *std::min_element(names.begin(), names.end(), farther);
-  const std::string guess =
-      EditDistance(shown, nearest) <= nearest.size() / 2 ? absl::StrCat("; did you mean ", nearest, "?") : ";";
-  return absl::InvalidArgumentError(
-      absl::StrCat("there is no parameter \"", shown, "\"", guess, " The parameters are ", absl::StrJoin(names, ", ")));
+  const std::string shown(name.substr(0, kLongestShown));
+  return absl::InvalidArgumentError(absl::StrCat("there is no parameter \"", shown, "\"", ThereAre(shown, names)));
 }
 
 absl::Status SetToggle(const FieldDescriptor& field, const std::string& value, v1::Parameters* parameters) {
@@ -63,7 +38,7 @@ absl::Status SetChoice(const FieldDescriptor& field, const std::string& text, v1
   const google::protobuf::EnumValueDescriptor* value = FindChoice(*field.enum_type(), text);
   if (value == nullptr) {
     return absl::InvalidArgumentError(
-        absl::StrCat(field.name(), ": there is no \"", text, "\"; there are ", ChoiceNames(*field.enum_type())));
+        absl::StrCat(field.name(), ": there is no \"", text, "\"", ThereAre(text, ChoiceNameList(*field.enum_type()))));
   }
   parameters->GetReflection()->SetEnum(parameters, &field, value);
   return absl::OkStatus();

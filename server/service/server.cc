@@ -15,12 +15,14 @@
 #include "server/service/export_service.h"
 #include "server/service/frame_service.h"
 #include "server/service/scene_service.h"
+#include "server/service/server_service.h"
 #include "server/service/session_service.h"
 #include "server/service/study_service.h"
 #include "server/service/upload_service.h"
 #include "server/service/web_gateway.h"
 #include "server/session/exports.h"
 #include "server/session/table.h"
+#include "server/store/store.h"
 
 namespace phrenic::service {
 namespace {
@@ -60,10 +62,11 @@ void Configure(const ServerOptions& options, grpc::ServerBuilder& builder) {
 
 // In the order in which they depend on each other.
 struct Server::Parts {
-  explicit Parts(const ServerOptions& options)
-      : uploads(options.limits, options.spool_dir),
+  Parts(const ServerOptions& options, std::unique_ptr<store::Store> kept)
+      : store(std::move(kept)),
+        uploads(options.limits, options.spool_dir),
         models(session::SceneCatalogue(SceneFolders(options)), options.data_dir, options.limits.models, &uploads),
-        table(models, clock, options.limits),
+        table(models, clock, options.limits, store.get()),
         scene_service(models),
         session_service(table),
         control_service(table),
@@ -72,11 +75,14 @@ struct Server::Parts {
         export_service(table, exports),
         upload_service(uploads, options.limits),
         study_service(models, options.web_root),
-        compare_service(table, options.limits.exports) {}
+        compare_service(table, options.limits.exports),
+        server_service(std::filesystem::exists(options.web_root + "/index.html"), !options.data_dir.empty()) {}
 
+  absl::Status Restore(const ServerOptions& options);
   absl::Status Serve(const ServerOptions& options);
   absl::Status ServeWeb(const ServerOptions& options);
 
+  const std::unique_ptr<store::Store> store;  // null: there is none
   stream::SystemClock clock;
   session::Uploads uploads;
   session::Models models;
@@ -90,10 +96,22 @@ struct Server::Parts {
   UploadService upload_service;
   StudyService study_service;
   CompareService compare_service;
+  ServerService server_service;
   std::unique_ptr<grpc::Server> grpc;
   std::unique_ptr<WebGateway> web;
   int port = 0;
+  std::map<std::string, absl::Status> lost;
 };
+
+absl::Status Server::Parts::Restore(const ServerOptions& options) {
+  if (store == nullptr) return absl::OkStatus();
+  auto restored = table.Restore([&options](const std::string& id) {
+    if (options.restoring) options.restoring(id);
+  });
+  if (!restored.ok()) return restored.status();
+  lost = *std::move(restored);
+  return absl::OkStatus();
+}
 
 absl::Status Server::Parts::Serve(const ServerOptions& options) {
   grpc::EnableDefaultHealthCheckService(true);
@@ -112,6 +130,7 @@ absl::Status Server::Parts::Serve(const ServerOptions& options) {
   builder.RegisterService(&upload_service);
   builder.RegisterService(&study_service);
   builder.RegisterService(&compare_service);
+  builder.RegisterService(&server_service);
   grpc = builder.BuildAndStart();
   if (grpc == nullptr) return CannotListen(options.listen, "the port is in use, or the address is not this machine's");
   return absl::OkStatus();
@@ -131,6 +150,7 @@ absl::Status Server::Parts::ServeWeb(const ServerOptions& options) {
   auto gateway = WebGateway::Start(web_options, grpc->InProcessChannel(arguments));
   if (!gateway.ok()) return gateway.status();
   web = *std::move(gateway);
+  server_service.set_web_port(web->port());
   return absl::OkStatus();
 }
 
@@ -140,7 +160,14 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& optio
   if (absl::Status status = CheckFolder(options.data_dir, "--data"); !status.ok()) return status;
   if (absl::Status status = CheckFolder(options.scenes_dir, "--scenes"); !status.ok()) return status;
   if (absl::Status status = CheckFolder(options.spool_dir, "--spool"); !status.ok()) return status;
-  std::unique_ptr<Server> server(new Server(std::make_unique<Parts>(options)));
+  std::unique_ptr<store::Store> store;
+  if (!options.store_dir.empty()) {
+    auto opened = store::Store::Open(options.store_dir);
+    if (!opened.ok()) return opened.status();
+    store = *std::move(opened);
+  }
+  std::unique_ptr<Server> server(new Server(std::make_unique<Parts>(options, std::move(store))));
+  if (absl::Status status = server->parts_->Restore(options); !status.ok()) return status;
   if (absl::Status status = server->parts_->Serve(options); !status.ok()) return status;
   if (absl::Status status = server->parts_->ServeWeb(options); !status.ok()) return status;
   return server;
@@ -157,6 +184,8 @@ std::shared_ptr<grpc::Channel> Server::InProcessChannel() {
 int Server::port() const { return parts_->port; }
 
 int Server::web_port() const { return parts_->web == nullptr ? 0 : parts_->web->port(); }
+
+const std::map<std::string, absl::Status>& Server::lost() const { return parts_->lost; }
 
 void Server::Shutdown() {
   parts_->table.Close(absl::UnavailableError("the server is shutting down"));

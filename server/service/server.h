@@ -4,6 +4,8 @@
 
 #include <grpcpp/channel.h>
 
+#include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -21,6 +23,8 @@ struct ServerOptions {
   std::string scenes_dir = PHRENIC_SCENES_DIR;
   std::string web_root = PHRENIC_WEB_DIR;
   std::string spool_dir = record::DefaultSpoolFolder();  // of exports and uploads; nothing in it has a name
+  std::string store_dir;  // of sessions, which go on after the server ended; empty: they end with it
+  std::function<void(const std::string& session)> restoring;  // is called before each session of the store
   std::vector<std::string> allowed_origins;  // "https://host:port" beside the gateway's own and loopback ones
   session::Limits limits;
   int max_message_bytes = 16 << 20;  // of a request
@@ -30,7 +34,8 @@ struct ServerOptions {
 // Any thread may call. Its own threads: gRPC's, the gateway's, two a session, and one an export at once.
 class Server {
  public:
-  // UNAVAILABLE names the address that could not be listened on; NOT_FOUND the folder that is missing.
+  // Listens once the store's sessions are restored. UNAVAILABLE names the address that could not be listened on;
+  // NOT_FOUND the folder that is missing; else what is wrong with the store.
   static absl::StatusOr<std::unique_ptr<Server>> Start(const ServerOptions& options);
   ~Server();
   Server(const Server&) = delete;
@@ -41,6 +46,8 @@ class Server {
   // The ports that are listened on; 0 where there is none.
   int port() const;
   int web_port() const;
+  // Why sessions of the store could not be restored: they stay in it.
+  const std::map<std::string, absl::Status>& lost() const;
   // Ends calls and sessions, within about two seconds; a second call does nothing.
   void Shutdown();
 

@@ -26,7 +26,7 @@ grpc::Status Answer(v1::Session session, Response* response) {
 
 // What came of a change.
 template <class Response>
-absl::Status Fill(absl::StatusOr<v1::Session> session, Response* response) {
+absl::Status FillSession(absl::StatusOr<v1::Session> session, Response* response) {
   if (!session.ok()) return session.status();
   *response->mutable_session() = *std::move(session);
   return absl::OkStatus();
@@ -99,15 +99,16 @@ grpc::Status SessionService::PlaySession(grpc::ServerContext* /*context*/, const
                                          v1::PlaySessionResponse* response) {
   return Change(*request, response, [&](session::Session& session) {
     const auto speed = OptionalOf(request->has_speed(), request->speed());
-    return Fill(session.Play(speed, request->as_fast_as_possible(), request->until_time(), request->control_token()),
-                response);
+    return FillSession(
+        session.Play(speed, request->as_fast_as_possible(), request->until_time(), request->control_token()), response);
   });
 }
 
 grpc::Status SessionService::PauseSession(grpc::ServerContext* /*context*/, const v1::PauseSessionRequest* request,
                                           v1::PauseSessionResponse* response) {
-  return Change(*request, response,
-                [&](session::Session& session) { return Fill(session.Pause(request->control_token()), response); });
+  return Change(*request, response, [&](session::Session& session) {
+    return FillSession(session.Pause(request->control_token()), response);
+  });
 }
 
 grpc::Status SessionService::StepSession(grpc::ServerContext* context, const v1::StepSessionRequest* request,
@@ -120,14 +121,15 @@ grpc::Status SessionService::StepSession(grpc::ServerContext* context, const v1:
     if (!stepped.ok()) return stepped.status();
     response->set_state_hash(std::move(stepped->state_hash));
     *response->mutable_measures() = std::move(stepped->measures);
-    return Fill(std::move(stepped->session), response);
+    return FillSession(std::move(stepped->session), response);
   });
 }
 
 grpc::Status SessionService::ResetSession(grpc::ServerContext* /*context*/, const v1::ResetSessionRequest* request,
                                           v1::ResetSessionResponse* response) {
-  return Change(*request, response,
-                [&](session::Session& session) { return Fill(session.Reset(request->control_token()), response); });
+  return Change(*request, response, [&](session::Session& session) {
+    return FillSession(session.Reset(request->control_token()), response);
+  });
 }
 
 grpc::Status SessionService::UpdateParameters(grpc::ServerContext* /*context*/,
@@ -142,7 +144,7 @@ grpc::Status SessionService::UpdateParameters(grpc::ServerContext* /*context*/,
                        OptionalOf(request->has_apply_at_tick(), request->apply_at_tick()), request->control_token());
     if (!updated.ok()) return updated.status();
     for (std::string& warning : updated->warnings) response->add_warnings(std::move(warning));
-    return Fill(std::move(updated->session), response);
+    return FillSession(std::move(updated->session), response);
   });
 }
 
@@ -152,7 +154,7 @@ grpc::Status SessionService::PullSession(grpc::ServerContext* /*context*/, const
     if (request->pulls().empty() && !request->release_others()) {
       return absl::InvalidArgumentError("pulls: there is none; name one, or set release_others to let go of all");
     }
-    return Fill(session.Pull(request->pulls(), request->release_others(), request->control_token()), response);
+    return FillSession(session.Pull(request->pulls(), request->release_others(), request->control_token()), response);
   });
 }
 

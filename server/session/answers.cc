@@ -1,24 +1,13 @@
 #include "server/session/answers.h"
 
-#include <openssl/sha.h>
-
 #include <algorithm>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "server/schema/id.h"
+#include "server/schema/sha256.h"
 
 namespace phrenic::session {
-namespace {
-
-// Requests may be large, and need not be kept to be known again.
-std::string DigestOf(const std::string& content) {
-  unsigned char digest[SHA256_DIGEST_LENGTH];
-  SHA256(reinterpret_cast<const unsigned char*>(content.data()), content.size(), digest);
-  return {reinterpret_cast<const char*>(digest), sizeof digest};
-}
-
-}  // namespace
 
 Answers::Entries::iterator Answers::Find(const std::string& id) {
   return std::find_if(entries_.begin(), entries_.end(), [&id](const Entry& entry) { return entry.id == id; });
@@ -31,7 +20,7 @@ bool Answers::UnderWay(const std::string& id) {
 
 absl::StatusOr<std::optional<Answer>> Answers::Begin(const std::string& id, const std::string& content) {
   if (absl::Status status = schema::CheckId("request_id", id); !status.ok()) return status;
-  const std::string digest = DigestOf(content);
+  const std::string digest = Sha256Hex(content);  // contents may be large
   const auto free = [this, &id] {
     mutex_.AssertHeld();
     return !UnderWay(id);

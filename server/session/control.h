@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "absl/status/status.h"
@@ -36,6 +37,8 @@ class ControlBook {
  public:
   // Everybody controls, and nobody owns it.
   ControlBook() = default;
+  // As it was kept.
+  explicit ControlBook(ControlState state) : state_(std::move(state)) {}
   // A new session's: the owner has not entered. INVALID_ARGUMENT for a name that is none (CheckName).
   static absl::StatusOr<ControlBook> Make(v1::ControlPolicy policy, const std::string& owner);
 

@@ -4,9 +4,9 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_join.h"
 #include "google/protobuf/util/time_util.h"
 #include "server/schema/id.h"
+#include "server/schema/names.h"
 
 namespace phrenic::session {
 
@@ -91,8 +91,8 @@ std::shared_ptr<Exports::Job> Exports::NextQueued() const {
 absl::Status Exports::NoExport(const std::string& id) const {
   std::vector<std::string> ids;
   for (const auto& job : jobs_) ids.push_back(job->seen.job.id());
-  return absl::NotFoundError(absl::StrCat("export_id: there is no export \"", schema::ShortId(id), "\"; there are ",
-                                          ids.empty() ? "none" : absl::StrJoin(ids, ", ")));
+  return absl::NotFoundError(
+      absl::StrCat("export_id: there is no export \"", schema::ShortId(id), "\"", schema::ThereAre(id, ids)));
 }
 
 absl::StatusOr<Exports::Seen> Exports::Wait(const std::string& id, std::int64_t seen, absl::Duration longest) const {

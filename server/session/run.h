@@ -37,6 +37,8 @@ class Run {
   // As phrenic::ChangePulls: RESOURCE_EXHAUSTED where they become too many.
   absl::Status ChangePulls(const std::vector<VertexPull>& changes, bool alone);
   const std::optional<v1::Divergence>& divergence() const { return divergence_; }
+  // It had diverged before it was saved.
+  void set_divergence(const v1::Divergence& divergence) { divergence_ = divergence; }
 
  private:
   const std::shared_ptr<const Model> model_;

@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_join.h"
+#include "server/schema/names.h"
 #include "server/schema/schema.h"
 
 namespace phrenic::session {
@@ -53,6 +53,7 @@ std::vector<v1::SceneSummary> SceneCatalogue::List() const {
     if (scene.ok()) {
       summary.set_title(scene->title());
       summary.set_description(scene->description());
+      for (const v1::Preset& preset : scene->presets()) summary.add_presets(preset.name());
     } else {
       summary.set_title(absl::StrCat(name, " (cannot be read)"));
       summary.set_description(std::string(scene.status().message()));
@@ -65,8 +66,8 @@ absl::StatusOr<v1::Scene> SceneCatalogue::Find(const std::string& name) const {
   const auto files = Files(folders_);
   const auto found = files.find(name);
   if (found != files.end()) return Read(found->second);
-  return absl::NotFoundError(absl::StrCat("source.name: there is no scene \"", name, "\"; there are ",
-                                          files.empty() ? "none" : absl::StrJoin(Names(), ", ")));
+  return absl::NotFoundError(
+      absl::StrCat("source.name: there is no scene \"", name, "\"", schema::ThereAre(name, Names())));
 }
 
 std::vector<std::string> SceneCatalogue::Names() const {

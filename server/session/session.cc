@@ -14,14 +14,15 @@ constexpr absl::Duration kLook = absl::Milliseconds(50);
 }  // namespace
 
 Session::Session(std::string id, std::shared_ptr<const Model> model, Fork start, const stream::Clock& clock,
-                 int max_viewers, ControlBook control)
+                 int max_viewers, Origin origin)
     : id_(std::move(id)),
       model_(std::move(model)),
       clock_(clock),
       publisher_(model_, clock, max_viewers),
       run_(model_, std::move(start.parameters), std::move(start.state)),
       stable_step_(start.stable_step),
-      control_(std::move(control)) {
+      control_(std::move(origin.control)),
+      journal_(std::move(origin.journal)) {
   {
     absl::MutexLock lock(&mutex_);
     status_.set_id(id_);
@@ -30,7 +31,9 @@ Session::Session(std::string id, std::shared_ptr<const Model> model, Fork start,
     *status_.mutable_create_time() =
         google::protobuf::util::TimeUtil::NanosecondsToTimestamp(absl::ToUnixNanos(clock.Now()));
   }
+  if (origin.told.has_value()) GoOn(*origin.told);
   pacer_.Start(clock.Now(), run_.state().time, speed_);
+  meter_.Start(clock.Now(), run_.state().tick, run_.state().time);
   Tell();
   OfferFrame(clock.Now());
   thread_ = std::thread([this] { Loop(); });
@@ -48,6 +51,7 @@ v1::Session Session::status() const {
     status = status_;
   }
   status.set_viewers(publisher_.viewers());
+  if (journal_ != nullptr) status.set_not_saved(std::string(journal_->problem().message()));
   return status;
 }
 
@@ -75,7 +79,7 @@ absl::StatusOr<v1::Session> Session::Play(std::optional<double> speed, bool as_f
                                           std::string_view token) {
   auto played = AskAs(token, [&] { return StartPlaying(speed, as_fast_as_possible, until); });
   if (!played.ok()) return played;
-  return status();
+  return Saved();
 }
 
 absl::StatusOr<v1::Session> Session::Pause(std::string_view token) {
@@ -85,7 +89,7 @@ absl::StatusOr<v1::Session> Session::Pause(std::string_view token) {
     return absl::OkStatus();
   });
   if (!paused.ok()) return paused;
-  return status();
+  return Saved();
 }
 
 absl::StatusOr<Session::Stepped> Session::Step(std::int64_t ticks, std::optional<std::int64_t> expected_tick,
@@ -108,6 +112,7 @@ absl::StatusOr<v1::Session> Session::Reset(std::string_view token) {
   auto reset = AskAs(token, [&] {
     EndJob(absl::AbortedError("the session was reset while it was being stepped"));
     run_.Reset();
+    from_start_ = true;
     waiting_updates_.clear();
     framed_tick_ = -1;
     state_ = v1::SESSION_STATE_PAUSED;
@@ -116,7 +121,7 @@ absl::StatusOr<v1::Session> Session::Reset(std::string_view token) {
     return absl::OkStatus();
   });
   if (!reset.ok()) return reset;
-  return status();
+  return Saved();
 }
 
 absl::StatusOr<v1::Session> Session::Pull(const PullList& pulls, bool release_others, std::string_view token) {
@@ -128,7 +133,7 @@ absl::StatusOr<v1::Session> Session::Pull(const PullList& pulls, bool release_ot
     return changed;
   });
   if (!pulled.ok()) return pulled;
-  return status();
+  return Saved();
 }
 
 absl::StatusOr<Session::Fork> Session::MakeFork() {

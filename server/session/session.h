@@ -19,6 +19,7 @@
 #include "absl/status/statusor.h"
 #include "absl/synchronization/mutex.h"
 #include "absl/synchronization/notification.h"
+#include "phrenic/v1/saved.pb.h"
 #include "phrenic/v1/session.pb.h"
 #include "server/mechanics/pulls.h"
 #include "server/session/answers.h"
@@ -26,9 +27,17 @@
 #include "server/session/pace_meter.h"
 #include "server/session/pacer.h"
 #include "server/session/run.h"
+#include "server/store/store.h"
 #include "server/stream/publisher.h"
 
 namespace phrenic::session {
+
+// Who has it, where it is saved, and what it was told last where it goes on after the server ended.
+struct SessionOrigin {
+  ControlBook control;
+  std::shared_ptr<store::Journal> journal = nullptr;  // null: it is not saved
+  std::optional<v1::SavedMoment> told = std::nullopt;
+};
 
 // Any thread may call. Calls that change something are carried out by the stepping thread between two steps, so that
 // they take effect at once and never in the middle of one; they return when that is done. `token` says who calls: those
@@ -51,9 +60,12 @@ class Session {
     std::vector<std::string> warnings;
   };
 
-  // Paused where `start` stands, which is a state of the model. Every field of its parameters is set and in range.
+  using Origin = SessionOrigin;
+
+  // Paused where `start` stands, which is a state of the model; one that goes on is as it was. Every field of its
+  // parameters is set and in range.
   Session(std::string id, std::shared_ptr<const Model> model, Fork start, const stream::Clock& clock, int max_viewers,
-          ControlBook control = {});
+          Origin origin = {});
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -90,6 +102,10 @@ class Session {
   absl::StatusOr<v1::Control> ChangeControl(absl::FunctionRef<absl::Status(ControlBook& book, absl::Time now)> act);
   // Shows viewers where the one who controls looks from.
   absl::Status ShowCamera(const v1::Camera& camera, std::string_view token);
+  // Waits until what was answered is in the store; why it is not, where it cannot be.
+  absl::Status Flush() const;
+  // Removes it from the store; before Stop.
+  void Forget();
   // A copy of the present state, from which another run may go on. FAILED_PRECONDITION when the session has diverged.
   absl::StatusOr<Fork> MakeFork();
   // Ends the stepping thread at once and all viewers with `reason`; later calls return it.
@@ -132,6 +148,14 @@ class Session {
   void Halt(v1::SessionState state);
   void EndJob(absl::Status status);
   void OfferFrame(absl::Time now);
+  // The status once it is in the store, or cannot be (not_saved).
+  v1::Session Saved() const;
+  // Of session_saving.cc.
+  void GoOn(const v1::SavedMoment& told);
+  v1::SavedMoment Moment() const;
+  void SaveChange(v1::Session status);
+  void SaveProgress(absl::Time now);
+  void SaveState(v1::SavedMoment moment);
   void Changed() ABSL_LOCKS_EXCLUDED(mutex_);
   void Tell() ABSL_LOCKS_EXCLUDED(mutex_);
   void WriteResiduals(v1::Session& status) const;
@@ -168,6 +192,11 @@ class Session {
   ControlBook control_;
   std::int64_t told_control_ = 0;  // its revision
   std::string camera_of_;          // who controlled when a camera was shown
+  const std::shared_ptr<store::Journal> journal_;
+  absl::Time state_saved_ = absl::InfinitePast(), progress_saved_ = absl::InfinitePast();
+  std::int64_t saved_tick_ = -1;                         // of the last state that was saved
+  std::int64_t saved_revision_ = 0, saved_control_ = 0;  // of the last change
+  bool from_start_ = false;                              // reset since the last change was saved
 
   std::thread thread_;
 };

@@ -30,6 +30,7 @@ absl::StatusOr<v1::Control> Session::ChangeControl(
   });
   if (!asked.ok()) return asked;
   if (!changed.ok()) return changed;
+  Flush().IgnoreError();
   return control;
 }
 

@@ -36,6 +36,7 @@ bool Session::ServeCommands() {
     command.done->Notify();
   }
   NoteControl();
+  if (stopped && journal_ != nullptr) Tell();  // where it stands, for the store
   if (stopped) EndJob(absl::CancelledError("the session ended while it was being stepped"));
   return !stopped;
 }
@@ -68,6 +69,7 @@ void Session::Burst() {
     Halt(v1::SESSION_STATE_PAUSED);
   } else {
     NoteProgress();
+    SaveProgress(now);
     if (pacer_.FrameDue(now)) OfferFrame(now);
   }
 }
@@ -182,6 +184,7 @@ void Session::Tell() {
     status = status_;
   }
   publisher_.Announce(status);
+  SaveChange(std::move(status));
 }
 
 // How well the last step was solved, and how well the present state keeps the constraints, where there are any.

@@ -4,11 +4,11 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_join.h"
 #include "server/mechanics/compile.h"
 #include "server/mechanics/presets.h"
 #include "server/mechanics/pulls.h"
 #include "server/schema/id.h"
+#include "server/schema/names.h"
 #include "server/schema/schema.h"
 
 namespace phrenic::session {
@@ -19,15 +19,15 @@ constexpr int kLargestPage = 1000;
 
 }  // namespace
 
-Table::Table(Models& models, const stream::Clock& clock, const Limits& limits)
-    : models_(models), clock_(clock), limits_(limits) {}
+Table::Table(Models& models, const stream::Clock& clock, const Limits& limits, store::Store* store)
+    : models_(models), clock_(clock), limits_(limits), store_(store) {}
 
 Table::~Table() { Close(absl::UnavailableError("the server is shutting down")); }
 
 std::string Table::FreeId(const std::string& scene) const {
   return schema::FreeId(scene, "session", [this](const std::string& id) {
     mutex_.AssertHeld();
-    return sessions_.contains(id);
+    return sessions_.contains(id) || lost_.contains(id);
   });
 }
 
@@ -37,6 +37,11 @@ absl::StatusOr<std::string> Table::Reserve(const char* field, const std::string&
   if (closed_.has_value()) return *closed_;
   if (sessions_.contains(wanted)) {
     return absl::AlreadyExistsError(absl::StrCat(field, ": there is a session \"", wanted, "\" already"));
+  }
+  if (const auto lost = lost_.find(wanted); lost != lost_.end()) {
+    return absl::AlreadyExistsError(absl::StrCat(field, ": the store has a session \"", wanted, "\" that could not be ",
+                                                 "restored (", lost->second.problem.message(),
+                                                 "); delete it, or choose another id"));
   }
   if (static_cast<int>(sessions_.size()) >= limits_.sessions) {
     return absl::ResourceExhaustedError(absl::StrCat("there are ", sessions_.size(),
@@ -71,7 +76,8 @@ absl::StatusOr<std::shared_ptr<Session>> Table::Make(const std::string& id, cons
   if (!changes.ok()) return changes.status();
   Session::Fork start{std::move(parameters), model->InitialState(), stable_step};
   if (absl::Status status = ChangePulls(*changes, true, start.state.pulls); !status.ok()) return status;
-  return std::make_shared<Session>(id, model, std::move(start), clock_, limits_.viewers, std::move(control));
+  return std::make_shared<Session>(id, model, std::move(start), clock_, limits_.viewers,
+                                   Session::Origin{std::move(control), Begin(id, *model)});
 }
 
 absl::StatusOr<std::shared_ptr<Session>> Table::MakeFork(const std::string& id, Session& of,
@@ -79,7 +85,7 @@ absl::StatusOr<std::shared_ptr<Session>> Table::MakeFork(const std::string& id, 
   absl::StatusOr<Session::Fork> start = of.MakeFork();
   if (!start.ok()) return start.status();
   return std::make_shared<Session>(id, of.shared_model(), *std::move(start), clock_, limits_.viewers,
-                                   std::move(control));
+                                   Session::Origin{std::move(control), Begin(id, of.model())});
 }
 
 absl::StatusOr<std::shared_ptr<Session>> Table::Create(const v1::CreateSessionRequest& request, ControlBook control) {
@@ -100,6 +106,12 @@ absl::StatusOr<std::shared_ptr<Session>> Table::Admit(const char* field, const s
   const absl::StatusOr<std::string> id = Reserve(field, wanted, scene);
   if (!id.ok()) return id.status();
   absl::StatusOr<std::shared_ptr<Session>> session = make(*id);
+  if (session.ok()) {
+    if (const absl::Status saved = (*session)->Flush(); !saved.ok()) {
+      (*session)->Forget();
+      session = saved;
+    }
+  }
   absl::MutexLock lock(&mutex_);
   if (closed_.has_value()) return *closed_;
   if (session.ok()) {
@@ -115,8 +127,8 @@ absl::Status Table::NoSession(const std::string& id) const {
   for (const auto& [other, session] : sessions_) {
     if (session != nullptr) ids.push_back(other);
   }
-  return absl::NotFoundError(absl::StrCat("session_id: there is no session \"", schema::ShortId(id), "\"; there are ",
-                                          ids.empty() ? "none" : absl::StrJoin(ids, ", ")));
+  return absl::NotFoundError(
+      absl::StrCat("session_id: there is no session \"", schema::ShortId(id), "\"", schema::ThereAre(id, ids)));
 }
 
 absl::StatusOr<std::shared_ptr<Session>> Table::Find(const std::string& id) const {
@@ -142,6 +154,15 @@ Table::Page Table::List(int page_size, const std::string& token) const {
 }
 
 absl::Status Table::Delete(const std::string& id, std::string_view token) {
+  {
+    absl::MutexLock lock(&mutex_);
+    if (const auto lost = lost_.find(id); lost != lost_.end()) {
+      const auto journal = store_->Continue(lost->second);
+      journal->Forget();
+      lost_.erase(lost);
+      return absl::OkStatus();
+    }
+  }
   const absl::StatusOr<std::shared_ptr<Session>> wanted = Find(id);
   if (!wanted.ok()) return wanted.status();
   if (absl::Status status = (*wanted)->CheckControl(token); !status.ok()) return status;
@@ -153,6 +174,8 @@ absl::Status Table::Delete(const std::string& id, std::string_view token) {
     session = std::move(found->second);
     sessions_.erase(found);
   }
+  session->Forget();
+  session->Flush().IgnoreError();
   session->Stop(absl::NotFoundError(absl::StrCat("session ", id, " was deleted")));
   return absl::OkStatus();
 }

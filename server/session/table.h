@@ -16,6 +16,7 @@
 #include "server/session/limits.h"
 #include "server/session/models.h"
 #include "server/session/session.h"
+#include "server/store/store.h"
 
 namespace phrenic::session {
 
@@ -27,8 +28,14 @@ class Table {
     std::string next_token;
   };
 
-  Table(Models& models, const stream::Clock& clock, const Limits& limits);
+  // `store` outlives the table and saves its sessions; null: nothing is saved.
+  Table(Models& models, const stream::Clock& clock, const Limits& limits, store::Store* store = nullptr);
   ~Table();
+
+  // What the store has of an earlier server's, each as it was: those that played go on. Why a session could not be
+  // restored, for each of those: it stays in the store under its id until it is deleted. `progress` hears of each.
+  absl::StatusOr<std::map<std::string, absl::Status>> Restore(absl::FunctionRef<void(const std::string& id)> progress)
+      ABSL_LOCKS_EXCLUDED(mutex_);
 
   // Compiles the scene and makes a paused session. An empty id lets the table choose one from the scene's name.
   // INVALID_ARGUMENT, ALREADY_EXISTS or RESOURCE_EXHAUSTED tell why there is none.
@@ -58,14 +65,18 @@ class Table {
   absl::StatusOr<std::shared_ptr<Session>> Make(const std::string& id, const v1::CreateSessionRequest& request,
                                                 ControlBook control);
   absl::StatusOr<std::shared_ptr<Session>> MakeFork(const std::string& id, Session& of, ControlBook control) const;
+  std::shared_ptr<store::Journal> Begin(const std::string& id, const Model& model) const;
+  absl::StatusOr<std::shared_ptr<Session>> Restored(const store::SavedSession& saved);
   std::string FreeId(const std::string& scene) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   absl::Status NoSession(const std::string& id) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
   Models& models_;
   const stream::Clock& clock_;
   const Limits limits_;
+  store::Store* const store_;
   mutable absl::Mutex mutex_;
   std::map<std::string, std::shared_ptr<Session>> sessions_ ABSL_GUARDED_BY(mutex_);
+  std::map<std::string, store::SavedSession> lost_ ABSL_GUARDED_BY(mutex_);  // could not be restored
   std::optional<absl::Status> closed_ ABSL_GUARDED_BY(mutex_);
 };
 

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_join.h"
 #include "server/schema/id.h"
+#include "server/schema/names.h"
 
 namespace phrenic::study {
 namespace {
@@ -89,8 +89,8 @@ std::shared_ptr<Jobs::Job> Jobs::NextQueued() const {
 absl::Status Jobs::NoStudy(const std::string& id) const {
   std::vector<std::string> ids;
   for (const auto& job : jobs_) ids.push_back(job->seen.study.id());
-  return absl::NotFoundError(absl::StrCat("study_id: there is no study \"", schema::ShortId(id), "\"; there are ",
-                                          ids.empty() ? "none" : absl::StrJoin(ids, ", ")));
+  return absl::NotFoundError(
+      absl::StrCat("study_id: there is no study \"", schema::ShortId(id), "\"", schema::ThereAre(id, ids)));
 }
 
 absl::StatusOr<Jobs::Seen> Jobs::Wait(const std::string& id, std::int64_t seen, absl::Duration longest) const {

@@ -26,7 +26,7 @@ TEST(Presets, GiveWayToWhatIsSetBesideThem) {
 TEST(Presets, ThatAreNotThereNameThoseThatAre) {
   const Outcome none = Phrenic({"run", "thorax", "--resolution", "20", "--preset", "snore"});
   EXPECT_EQ(none.code, 1);
-  EXPECT_THAT(none.err, HasSubstr("has no preset \"snore\"; it has quiet, deep, diaphragmatic, chest"));
+  EXPECT_THAT(none.err, HasSubstr("has no preset \"snore\"; there are quiet, deep, diaphragmatic, chest"));
 }
 
 TEST(Physiology, PrintsValueRangeAndVerdict) {

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -41,12 +42,21 @@ inline std::string WriteScratch(const std::string& name, const std::string& text
   return Scratch(name);
 }
 
+// Whose commands are run: each keeps tokens of their own, in the tests' folder.
+inline std::string& User() {
+  static std::string user = "anna";
+  return user;
+}
+
 // Starts a program of the build with standard output and error in files; it ends with the test.
 inline pid_t Start(const std::string& program, const std::vector<std::string>& arguments, const std::string& out,
                    const std::string& err) {
+  const std::string state = Scratch(User());
   const pid_t pid = fork();
   if (pid != 0) return pid;
   prctl(PR_SET_PDEATHSIG, SIGKILL);
+  setenv("XDG_CONFIG_HOME", Scratch("config").c_str(), 1);  // whatever the person who tests has set
+  setenv("XDG_STATE_HOME", state.c_str(), 1);
   const int to_out = open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
   const int to_err = open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
   dup2(to_out, STDOUT_FILENO);
@@ -74,22 +84,21 @@ inline Outcome Phrenic(const std::vector<std::string>& arguments) {
   return outcome;
 }
 
-// phrenicd on a free port, with no session; stopped by the destructor.
+// phrenicd on free ports, with no session; stopped by the destructor.
 class RunningServer {
  public:
   RunningServer() {
     const std::string out = Scratch("server_out");
     pid_ = Start("phrenicd",
                  {"--listen", "127.0.0.1:0", "--web", "127.0.0.1:0", "--web-root",
-                  std::string(PHRENIC_SOURCE_DIR) + "/web", "--start", "none"},
+                  std::string(PHRENIC_SOURCE_DIR) + "/web", "--start", "none", "--store", "none"},
                  out, Scratch("server_err"));
     // It says its port when it listens; there is nothing else to wait on.
     for (int tries = 0; tries < 600 && port_ == 0; ++tries) {
       usleep(50'000);
-      const std::string said = ReadAll(out);  // "gRPC:   127.0.0.1:50051"
-      const std::size_t at = said.find("gRPC:");
-      const std::size_t end = said.find('\n', at);
-      if (at != std::string::npos && end != std::string::npos) port_ = std::stoi(said.substr(said.rfind(':', end) + 1));
+      const std::string said = ReadAll(out);  // "gRPC:   127.0.0.1:50051", "Viewer: http://127.0.0.1:8080/"
+      web_port_ = PortBehind(said, "Viewer:");
+      if (web_port_ != 0) port_ = PortBehind(said, "gRPC:");
       if (waitpid(pid_, nullptr, WNOHANG) != 0) break;
     }
   }
@@ -101,12 +110,19 @@ class RunningServer {
   RunningServer& operator=(const RunningServer&) = delete;
 
   int port() const { return port_; }
+  int web_port() const { return web_port_; }
   std::string address() const { return "127.0.0.1:" + std::to_string(port_); }
   std::string said() const { return ReadAll(Scratch("server_err")); }
 
  private:
+  // Of the whole line that begins with the word; 0 where there is none yet.
+  static int PortBehind(const std::string& said, const char* word) {
+    const std::size_t at = said.find(word), end = said.find('\n', at);
+    return at == std::string::npos || end == std::string::npos ? 0 : std::stoi(said.substr(said.rfind(':', end) + 1));
+  }
+
   pid_t pid_ = -1;
-  int port_ = 0;
+  int port_ = 0, web_port_ = 0;
 };
 
 }  // namespace phrenic::client

@@ -205,7 +205,7 @@ TEST(Help, IsMadeFromTheSchema) {
   const Outcome help = Phrenic({"run", "--help"});
   EXPECT_EQ(help.code, 0);
   for (const char* words : {"breath_force", "0 to 20", "time_step", "automatic", "Switches every action line",
-                            "integrator", "One of semi_implicit_euler"}) {
+                            "integrator", "velocity_verlet"}) {
     EXPECT_THAT(help.out, HasSubstr(words));
   }
   const Outcome all = Phrenic({"--help"});

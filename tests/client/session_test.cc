@@ -230,5 +230,46 @@ TEST(Unreachable, TheEnvironmentNamesTheServer) {
   EXPECT_THAT(outcome.err, HasSubstr("no server at 127.0.0.1:2"));
 }
 
+TEST_F(Sessions, WhoMadeASessionControlsItUntilTheyHandItOver) {
+  ASSERT_EQ(Ask({"create", "cube-springs", "--id", "mine", "--mine", "--name", "Anna"}).code, 0);
+  EXPECT_EQ(Ask({"set", "mine", "breath_force=2"}).code, 0);
+  User() = "ben";
+  const Outcome refused = Ask({"set", "mine", "breath_force=3"});
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("controlled by Anna"));
+  EXPECT_THAT(Ask({"control", "release", "mine"}).err, HasSubstr("`phrenic control take mine` first"));
+  EXPECT_EQ(Ask({"control", "take", "mine", "--name", "Ben"}).code, 1) << "Ben only asks";
+  User() = "anna";
+  EXPECT_THAT(Ask({"control", "show", "mine"}).out, HasSubstr("Ben, asks for control"));
+  EXPECT_EQ(Ask({"control", "hand", "mine", "Ben"}).code, 0);
+  EXPECT_EQ(Ask({"pause", "mine"}).code, 1);
+  EXPECT_EQ(Ask({"control", "take", "mine"}).code, 0) << "the owner takes it back";
+  EXPECT_EQ(Ask({"control", "lend", "mine"}).code, 0);
+  User() = "ben";
+  EXPECT_EQ(Ask({"delete", "mine"}).code, 0);
+  User() = "anna";
+}
+
+TEST_F(Sessions, TokensAreNobodyElsesToRead) {
+  namespace fs = std::filesystem;
+  const std::string token = Json({"create", "cube-springs", "--id", "kept"})["control_token"];
+  const fs::path folder = fs::path(Scratch("anna")) / "phrenic";
+  EXPECT_THAT(ReadAll((folder / "control").string()), HasSubstr(" kept " + token + "\n"));
+  EXPECT_EQ(fs::status(folder / "control").permissions(), fs::perms::owner_read | fs::perms::owner_write);
+  EXPECT_EQ(fs::status(folder).permissions(), fs::perms::owner_all);
+  ASSERT_EQ(Ask({"delete", "kept"}).code, 0);
+  EXPECT_THAT(ReadAll((folder / "control").string()), Not(HasSubstr(token)));
+}
+
+TEST_F(Sessions, AStepThatIsRepeatedUnderItsIdIsTakenOnce) {
+  ASSERT_EQ(Ask({"create", "cube-springs", "--id", "once"}).code, 0);
+  ASSERT_EQ(Ask({"set", "once", "breath_force=3", "--at-tick", "5"}).code, 0);
+  const auto first = Json({"step", "once", "10", "--request-id", "a-1"});
+  EXPECT_EQ(Json({"step", "once", "10", "--request-id", "a-1"}), first);
+  EXPECT_EQ(first["session"]["tick"], "10");
+  EXPECT_EQ(first["session"]["parameters"]["breath_force"], 3);
+  EXPECT_THAT(Ask({"step", "once", "11", "--request-id", "a-1"}).err, HasSubstr("request_id: a-1"));
+}
+
 }  // namespace
 }  // namespace phrenic::client

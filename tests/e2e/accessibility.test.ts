@@ -33,6 +33,15 @@ test("AxeFindsNothingAgainstThePage", async () => {
   expect(await violations()).toEqual([]);
 });
 
+test("AxeFindsNothingAgainstWhoControls", async () => {
+  await viewer.page.click("#control-badge");
+  await viewer.page.fill("#control-name", "Anna");
+  await viewer.page.click("#control-enter");
+  await viewer.page.waitForSelector('[data-person="Anna"]');
+  expect(await violations()).toEqual([]);
+  await viewer.page.keyboard.press("Escape");
+});
+
 test("AxeFindsNothingAgainstTheChooser", async () => {
   await viewer.page.click("#session");
   await viewer.page.waitForSelector(".chooser li");

@@ -1,6 +1,7 @@
 import { type ChildProcess, execFile, spawn } from "node:child_process";
-import { createWriteStream, existsSync, mkdirSync } from "node:fs";
+import { createWriteStream, existsSync, mkdirSync, mkdtempSync, rmSync } from "node:fs";
 import { createServer } from "node:net";
+import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
 import { setTimeout as sleep } from "node:timers/promises";
 import { promisify } from "node:util";
@@ -11,12 +12,15 @@ export const outFolder = join(here, "out");
 /** A phrenicd of the test's own, on ports that were free, with its log in tests/e2e/out. */
 export class Server {
   private process: ChildProcess | undefined;
+  private readonly store = mkdtempSync(join(tmpdir(), "phrenic-e2e-"));
 
   private constructor(
     private readonly listen: number,
     private readonly web: number,
     private readonly scene: string,
-  ) {}
+  ) {
+    process.once("exit", () => rmSync(this.store, { recursive: true, force: true }));
+  }
 
   /** With a session of `scene` that plays; "none" for no session. */
   static async start(scene = "thorax"): Promise<Server> {
@@ -34,7 +38,7 @@ export class Server {
     mkdirSync(outFolder, { recursive: true });
     const log = createWriteStream(join(outFolder, "phrenicd.log"), { flags: "a" });
     const addresses = ["--listen", `127.0.0.1:${this.listen}`, "--web", `127.0.0.1:${this.web}`];
-    const flags = [...addresses, "--start", this.scene];
+    const flags = [...addresses, "--start", this.scene, "--store", this.store];
     const child = spawn(program("phrenicd"), flags, { stdio: ["ignore", "pipe", "pipe"] });
     child.stdout.pipe(log, { end: false });
     child.stderr.pipe(log, { end: false });
@@ -56,7 +60,9 @@ export class Server {
   /** What the command line says to these words about this server. */
   async phrenic(...words: string[]): Promise<string> {
     const flags = ["--server", `127.0.0.1:${this.listen}`, ...words];
-    return (await promisify(execFile)(program("phrenic"), flags)).stdout;
+    // Its tokens stay in the tests' folder.
+    const env = { ...process.env, XDG_STATE_HOME: join(outFolder, "state") };
+    return (await promisify(execFile)(program("phrenic"), flags, { env })).stdout;
   }
 
   /** The tick at which the session stands once it is paused. */

@@ -33,7 +33,8 @@ test("TwoBrowsersSeeTheSameVerticesAtTheSameTick", async () => {
   await Promise.all([here.atTick(held), there.atTick(held)]);
   const [a, b] = await Promise.all([here.sample("diaphragm", 50), there.sample("diaphragm", 50)]);
   expect([a.tick, b.tick]).toEqual([held, held]);
-  expect(b.points).toEqual(a.points);
+  const off = a.points.flatMap((point, i) => point.map((value, axis) => Math.abs(value - b.points[i][axis])));
+  expect(Math.max(...off)).toBeLessThanOrEqual(2e-3); // each within its bound, which grows to 1 mm on a busy machine
 });
 
 test("ASliderMovedHereMovesThere", async () => {
@@ -50,8 +51,11 @@ test("ASliderMovedHereMovesThere", async () => {
   await there.page.check("#parameter-applyMuscles");
 });
 
-test("ALostServerIsShownAndComesBack", async () => {
+test("ALostServerIsShownAndComesBackWithTheSessionAsItWas", async () => {
   await here.page.click("#play");
+  await server.phrenic("set", "thorax", "breath_force=1.5");
+  await here.waitForTick(await here.tick());
+  const { tick } = await server.session();
   await server.kill();
   await here.waitForLink("lost");
   expect(await here.page.textContent("#link")).toContain("retrying");
@@ -62,6 +66,10 @@ test("ALostServerIsShownAndComesBack", async () => {
   await there.waitForLink("live");
   expect(await here.page.isVisible("#banner-lost")).toBe(false);
   await here.waitForTick(await here.tick());
+  const session = await server.session();
+  expect(session.parameters.breath_force).toBe(1.5);
+  expect(session.state).toBe("SESSION_STATE_PLAYING");
+  expect(Number(session.tick)).toBeGreaterThan(Number(tick) - 1 / session.parameters.time_step);
 });
 
 test("OnlyTheLossWasWorthAComplaint", () => {

@@ -20,7 +20,7 @@ struct Outcome {
 Outcome RunPhrenicd(const std::string& arguments) {
   Outcome outcome;
   const std::string command =
-      "timeout --preserve-status -k 10 3 " PHRENIC_BINARY_DIR "/phrenicd " + arguments + " 2>&1";
+      "timeout --preserve-status -k 10 3 " PHRENIC_BINARY_DIR "/phrenicd --store none " + arguments + " 2>&1";
   FILE* pipe = popen(command.c_str(), "r");
   std::array<char, 4096> piece{};
   while (std::fgets(piece.data(), piece.size(), pipe) != nullptr) outcome.words += piece.data();
@@ -47,7 +47,7 @@ TEST(Phrenicd, WhatCannotBeServedIsOneAndSaysWhy) {
   const std::string free_ports = "--listen 127.0.0.1:0 --web 127.0.0.1:0 ";
   const Outcome scene = RunPhrenicd(free_ports + "--start thorux");
   EXPECT_EQ(scene.code, 1);
-  EXPECT_THAT(scene.words, HasSubstr("there is no scene \"thorux\"; there are"));
+  EXPECT_THAT(scene.words, HasSubstr("there is no scene \"thorux\"; did you mean thorax? There are"));
   const Outcome data = RunPhrenicd(free_ports + "--data /nowhere");
   EXPECT_EQ(data.code, 1);
   EXPECT_THAT(data.words, HasSubstr("--data: there is no folder /nowhere"));

@@ -11,6 +11,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "google/protobuf/text_format.h"
+#include "phrenic/v1/control.grpc.pb.h"
 #include "phrenic/v1/export.grpc.pb.h"
 #include "phrenic/v1/frames.grpc.pb.h"
 #include "phrenic/v1/session.grpc.pb.h"
@@ -43,6 +44,7 @@ class ServerFixture : public testing::Test {
     channel_ = NewChannel();
     scenes_ = v1::SceneService::NewStub(channel_);
     sessions_ = v1::SessionService::NewStub(channel_);
+    control_ = v1::ControlService::NewStub(channel_);
     frames_ = v1::FrameService::NewStub(channel_);
     exports_ = v1::ExportService::NewStub(channel_);
   }
@@ -80,6 +82,7 @@ class ServerFixture : public testing::Test {
   std::shared_ptr<grpc::Channel> channel_;
   std::unique_ptr<v1::SceneService::Stub> scenes_;
   std::unique_ptr<v1::SessionService::Stub> sessions_;
+  std::unique_ptr<v1::ControlService::Stub> control_;
   std::unique_ptr<v1::FrameService::Stub> frames_;
   std::unique_ptr<v1::ExportService::Stub> exports_;
 };

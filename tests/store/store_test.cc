@@ -10,6 +10,7 @@
 #include <functional>
 
 #include "absl/time/clock.h"
+#include "server/store/check.h"
 #include "server/store/saved_state.h"
 #include "server/store/sqlite.h"
 
@@ -188,6 +189,31 @@ TEST_F(StoreTest, EveryFlippedByteOfASessionIsFound) {
     });
   }
   EXPECT_EQ(found, static_cast<int>((saved.size() + 6) / 7));
+}
+
+TEST_F(StoreTest, CheckSaysWhatIsThereAndWhatIsDamaged) {
+  EXPECT_TRUE(absl::IsNotFound(CheckStore(folder_).status()));
+  {
+    const auto store = Open();
+    for (const char* id : {"a", "b"}) {
+      const auto journal = store->Begin(id, Scene("cube"));
+      journal->Keep(At(0), StateAt(3));
+      journal->Append(At(5), false);
+      ASSERT_TRUE(journal->Flush().ok());
+    }
+    EXPECT_TRUE(absl::IsFailedPrecondition(CheckStore(folder_).status())) << "it is in use";
+  }
+  const auto good = CheckStore(folder_);
+  ASSERT_TRUE(good.ok()) << good.status();
+  EXPECT_TRUE(good->whole());
+  EXPECT_THAT(Describe(folder_, *good), HasSubstr("2 sessions, whole"));
+  Damage([](std::string& bytes) { bytes[bytes.find(Save(*StateAt(3)).SerializeAsString()) + 9] ^= 1; });
+  const auto damaged = CheckStore(folder_);
+  ASSERT_TRUE(damaged.ok()) << damaged.status();
+  EXPECT_FALSE(damaged->whole());
+  EXPECT_THAT(Describe(folder_, *damaged), HasSubstr("its state is damaged in the store"));
+  Damage([](std::string& bytes) { bytes.resize(bytes.size() / 2); });
+  EXPECT_FALSE(CheckStore(folder_).ok() && CheckStore(folder_)->whole());
 }
 
 TEST_F(StoreTest, AFullDiskIsToldAndEverythingIsSavedWhenThereIsRoomAgain) {

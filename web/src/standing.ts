@@ -1,7 +1,8 @@
+import { toJsonString } from "@bufbuild/protobuf";
 import { type Api, errorText } from "./api";
 import type { Clock } from "./clock";
 import type { Controller } from "./controller";
-import { type Control, ControlPolicy } from "./gen/phrenic/v1/control_pb";
+import { type Control, ControlPolicy, ControlSchema } from "./gen/phrenic/v1/control_pb";
 import type { Identity } from "./identity";
 import { Signal } from "./signal";
 
@@ -48,6 +49,7 @@ export class Standing {
   /** What the server last had against it; empty when all is well. */
   readonly fault = new Signal("");
   private me = "";
+  private told = "";
 
   constructor(
     private readonly api: Api,
@@ -55,7 +57,16 @@ export class Standing {
     readonly identity: Identity,
     private readonly clock: Clock,
   ) {
-    controller.session.subscribe((session) => this.roles.set(rolesOf(session?.control, this.me)));
+    controller.session.subscribe((session) => this.tell(session?.control));
+  }
+
+  /** A session's state comes every second: buttons are not made anew under somebody's finger when nothing changed. */
+  private tell(control: Control | undefined): void {
+    const words = control && toJsonString(ControlSchema, { ...control, expireTime: undefined });
+    const news = `${this.me} ${words}`;
+    if (news === this.told) return;
+    this.told = news;
+    this.roles.set(rolesOf(control, this.me));
   }
 
   /** Enters where this person has a name, and says again and again that they are there. */

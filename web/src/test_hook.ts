@@ -16,6 +16,8 @@ export interface TestHook {
   vertices(body: string): number;
   /** Where a vertex is in the newest frame [m]. */
   vertex(body: string, index: number): [number, number, number];
+  /** Where the camera is [m]. */
+  eye(): [number, number, number];
 }
 
 declare global {
@@ -36,6 +38,10 @@ export function testHook(bodies: () => Body[], frames: Frames, viewer: Viewer): 
     pictures: () => viewer.count,
     firstPicture: () => viewer.firstPicture,
     bodies: () => bodies().map((body) => body.name),
+    eye: () => {
+      const { x, y, z } = viewer.rig.pose.eye;
+      return [x, y, z];
+    },
     vertices: (body) => find(body).rest.length / 3,
     vertex: (body, index) => {
       if (frames.arrays === undefined) throw new RangeError("There is no frame yet.");

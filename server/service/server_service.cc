@@ -1,0 +1,14 @@
+#include "server/service/server_service.h"
+
+namespace phrenic::service {
+
+grpc::Status ServerService::GetServer(grpc::ServerContext* /*context*/, const v1::GetServerRequest* /*request*/,
+                                      v1::GetServerResponse* response) {
+  response->set_version(PHRENIC_VERSION);
+  response->set_web_port(web_port_);
+  response->set_viewer_is_built(viewer_is_built_);
+  response->set_has_data_folder(has_data_folder_);
+  return grpc::Status::OK;
+}
+
+}  // namespace phrenic::service

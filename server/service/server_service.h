@@ -1,0 +1,30 @@
+// What a server tells of itself.
+#ifndef PHRENIC_SERVER_SERVICE_SERVER_SERVICE_H_
+#define PHRENIC_SERVER_SERVICE_SERVER_SERVICE_H_
+
+#include <atomic>
+
+#include "phrenic/v1/server.grpc.pb.h"
+
+namespace phrenic::service {
+
+// gRPC's threads call, any number at a time.
+class ServerService final : public v1::ServerService::Service {
+ public:
+  ServerService(bool viewer_is_built, bool has_data_folder)
+      : viewer_is_built_(viewer_is_built), has_data_folder_(has_data_folder) {}
+
+  // Known once the gateway listens, which is after the first calls may come.
+  void set_web_port(int port) { web_port_ = port; }
+
+  grpc::Status GetServer(grpc::ServerContext* context, const v1::GetServerRequest* request,
+                         v1::GetServerResponse* response) override;
+
+ private:
+  const bool viewer_is_built_, has_data_folder_;
+  std::atomic<int> web_port_ = 0;
+};
+
+}  // namespace phrenic::service
+
+#endif  // PHRENIC_SERVER_SERVICE_SERVER_SERVICE_H_

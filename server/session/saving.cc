@@ -1,0 +1,90 @@
+#include "server/session/saving.h"
+
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "google/protobuf/util/time_util.h"
+#include "server/mechanics/pulls.h"
+#include "server/session/run.h"
+#include "server/store/saved_state.h"
+
+namespace phrenic::session {
+namespace {
+
+using google::protobuf::util::TimeUtil;
+using Person = ControlState::Person;
+
+void SavePerson(const Person& person, v1::SavedPerson& saved) {
+  saved.set_name(person.name);
+  saved.set_token(person.token);
+  saved.set_time_to_live_ms(absl::ToInt64Milliseconds(person.time_to_live));
+  saved.set_asks(person.asks);
+  if (person.expires == absl::InfinitePast()) return;
+  *saved.mutable_expires() = TimeUtil::NanosecondsToTimestamp(absl::ToUnixNanos(person.expires));
+}
+
+Person RestorePerson(const v1::SavedPerson& saved) {
+  Person person;
+  person.name = saved.name();
+  person.token = saved.token();
+  person.time_to_live = absl::Milliseconds(saved.time_to_live_ms());
+  person.asks = saved.asks();
+  if (saved.has_expires()) {
+    person.expires = absl::FromUnixNanos(TimeUtil::TimestampToNanoseconds(saved.expires()));
+  }
+  return person;
+}
+
+// What the session was told: `run` stands at its tick.
+absl::Status Take(const v1::SavedMoment& moment, Run& run) {
+  run.set_parameters(moment.session().parameters());
+  const auto pulls = FindPulls(run.model(), moment.session().pulls(), "pulls");
+  if (!pulls.ok()) return absl::DataLossError(pulls.status().message());
+  return run.ChangePulls(*pulls, true);
+}
+
+absl::Status StepTo(std::int64_t tick, Run& run) {
+  while (run.state().tick < tick) {
+    if (absl::Status stepped = run.Step(); !stepped.ok()) return absl::DataLossError(stepped.message());
+  }
+  if (run.state().tick == tick) return absl::OkStatus();
+  return absl::DataLossError(absl::StrCat("its journal goes back from tick ", run.state().tick, " to ", tick));
+}
+
+}  // namespace
+
+v1::SavedControl SaveControl(const ControlState& state) {
+  v1::SavedControl saved;
+  saved.set_policy(state.policy);
+  SavePerson(state.owner, *saved.mutable_owner());
+  for (const Person& person : state.people) SavePerson(person, *saved.add_people());
+  saved.set_holder(state.holder);
+  saved.set_revision(state.revision);
+  return saved;
+}
+
+ControlState RestoreControl(const v1::SavedControl& saved) {
+  ControlState state;
+  state.policy = saved.policy();
+  state.owner = RestorePerson(saved.owner());
+  for (const v1::SavedPerson& person : saved.people()) state.people.push_back(RestorePerson(person));
+  state.holder = saved.holder();
+  state.revision = saved.revision();
+  return state;
+}
+
+absl::StatusOr<Replayed> Replay(std::shared_ptr<const Model> model, const store::SavedSession& saved) {
+  absl::StatusOr<State> state = store::Restore(*model, saved.state);
+  if (!state.ok()) return state.status();
+  Run run(std::move(model), saved.moment.session().parameters(), *std::move(state));
+  const v1::SavedMoment* last = &saved.moment;
+  for (const v1::SavedMoment& moment : saved.later) {
+    last = &moment;
+    if (moment.from_start()) run.Reset();
+    if (absl::Status status = StepTo(moment.session().tick(), run); !status.ok()) return status;
+    if (absl::Status status = Take(moment, run); !status.ok()) return status;
+  }
+  return Replayed{run.state(), *last};
+}
+
+}  // namespace phrenic::session

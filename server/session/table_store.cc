@@ -1,0 +1,56 @@
+// The table's sessions in a store, and back.
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "server/session/saving.h"
+#include "server/session/table.h"
+
+namespace phrenic::session {
+
+std::shared_ptr<store::Journal> Table::Begin(const std::string& id, const Model& model) const {
+  if (store_ == nullptr) return nullptr;
+  v1::SavedScene scene;
+  *scene.mutable_source()->mutable_scene() = model.scene;
+  scene.set_scene_hash(model.report.scene_hash());
+  return store_->Begin(id, std::move(scene));
+}
+
+absl::StatusOr<std::shared_ptr<Session>> Table::Restored(const store::SavedSession& saved) {
+  if (!saved.problem.ok()) return saved.problem;
+  const auto model = models_.Get(saved.scene.source());
+  if (!model.ok()) return model.status();
+  if ((*model)->report.scene_hash() != saved.scene.scene_hash()) {
+    return absl::FailedPreconditionError(absl::StrCat(
+        "session ", saved.id, ": the surface files of its scene \"", (*model)->scene.name(),
+        "\", or the version of Phrenic, are not those that it was made with: put the files back and start anew"));
+  }
+  absl::StatusOr<Replayed> replayed = Replay(*model, saved);
+  if (!replayed.ok()) return replayed.status();
+  const v1::Session& told = replayed->moment.session();
+  Session::Fork start{told.parameters(), std::move(replayed->state), told.largest_stable_step()};
+  Session::Origin origin{ControlBook(RestoreControl(replayed->moment.control())), store_->Continue(saved),
+                         replayed->moment};
+  return std::make_shared<Session>(saved.id, *model, std::move(start), clock_, limits_.viewers, std::move(origin));
+}
+
+absl::StatusOr<std::map<std::string, absl::Status>> Table::Restore(
+    absl::FunctionRef<void(const std::string& id)> progress) {
+  std::map<std::string, absl::Status> lost;
+  auto sessions = store_->Load();
+  if (!sessions.ok()) return sessions.status();
+  for (store::SavedSession& saved : *sessions) {
+    progress(saved.id);
+    absl::StatusOr<std::shared_ptr<Session>> session = Restored(saved);
+    absl::MutexLock lock(&mutex_);
+    if (session.ok()) {
+      sessions_[saved.id] = *std::move(session);
+      continue;
+    }
+    lost[saved.id] = saved.problem = session.status();
+    std::string id = saved.id;
+    lost_.emplace(std::move(id), std::move(saved));
+  }
+  return lost;
+}
+
+}  // namespace phrenic::session

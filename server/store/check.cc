@@ -1,0 +1,49 @@
+#include "server/store/check.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+
+namespace phrenic::store {
+
+bool CheckedStore::whole() const {
+  return problem.ok() &&
+         std::all_of(sessions.begin(), sessions.end(), [](const SavedSession& one) { return one.problem.ok(); });
+}
+
+absl::StatusOr<CheckedStore> CheckStore(const std::string& folder) {
+  const std::string file = StoreFile(folder);
+  if (!std::filesystem::exists(file)) return absl::NotFoundError(absl::StrCat("there is no ", file));
+  auto database = Database::Open(file, Access::kRead);
+  if (!database.ok()) return database.status();
+  CheckedStore checked;
+  checked.problem = Examine(folder, *database);
+  if (absl::IsFailedPrecondition(checked.problem)) return checked.problem;
+  auto sessions = ReadSessions(*database);
+  if (!sessions.ok()) return checked.problem.ok() ? sessions.status() : checked.problem;
+  checked.sessions = *std::move(sessions);
+  return checked;
+}
+
+std::string Describe(const std::string& folder, const CheckedStore& store) {
+  std::string text =
+      absl::StrFormat("%-24s %-20s %12s %10s %8s %10s\n", "session", "scene", "tick", "time [s]", "changes", "kB");
+  for (const SavedSession& session : store.sessions) {
+    if (!session.problem.ok()) {
+      absl::StrAppend(&text, session.id, ": ", session.problem.message(), "\n");
+      continue;
+    }
+    const v1::Session& last = session.later.empty() ? session.moment.session() : session.later.back().session();
+    absl::StrAppendFormat(&text, "%-24s %-20s %12d %10.3f %8d %10.1f\n", session.id, last.scene(), last.tick(),
+                          last.time(), session.later.size(), 1e-3 * static_cast<double>(session.bytes));
+  }
+  if (!store.problem.ok()) absl::StrAppend(&text, store.problem.message(), "\n");
+  absl::StrAppend(&text, StoreFile(folder), ": ", store.sessions.size(), " sessions, ",
+                  store.whole() ? "whole" : "damaged", "\n");
+  return text;
+}
+
+}  // namespace phrenic::store

@@ -1,0 +1,234 @@
+// A session that was saved goes on as if nothing had happened.
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <random>
+
+#include "server/session/saving.h"
+#include "server/session/table.h"
+#include "tests/fake_clock.h"
+#include "tests/small_scenes.h"
+
+namespace phrenic::session {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+bool Never() { return false; }
+
+// A server's models, table and store, ended and begun anew.
+class RestoreTest : public testing::Test {
+ protected:
+  RestoreTest() {
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_ + "/scenes");
+    WriteScene(kTriangle);
+    Begin();
+  }
+  ~RestoreTest() override {
+    End();
+    std::filesystem::remove_all(folder_);
+  }
+
+  void WriteScene(const std::string& text) const { std::ofstream(folder_ + "/scenes/triangle.textproto") << text; }
+  void Begin() {
+    auto store = store::Store::Open(folder_ + "/store");
+    ASSERT_TRUE(store.ok()) << store.status();
+    store_ = *std::move(store);
+    models_ = std::make_unique<Models>(SceneCatalogue({folder_ + "/scenes"}), "", 4);
+    table_ = std::make_unique<Table>(*models_, clock_, Limits(), store_.get());
+    auto lost = table_->Restore([](const std::string&) {});
+    ASSERT_TRUE(lost.ok()) << lost.status();
+    lost_ = *std::move(lost);
+  }
+  void End() {
+    table_.reset();
+    store_.reset();
+  }
+  void Again() {
+    End();
+    Begin();
+  }
+  std::shared_ptr<Session> Create(const std::string& id) {
+    v1::CreateSessionRequest request;
+    request.set_session_id(id);
+    request.mutable_source()->set_name("triangle");
+    auto session = table_->Create(request);
+    EXPECT_TRUE(session.ok()) << session.status();
+    return *session;
+  }
+  std::shared_ptr<Session> Find(const std::string& id) {
+    auto session = table_->Find(id);
+    EXPECT_TRUE(session.ok()) << session.status();
+    return *session;
+  }
+  static std::string HashAfter(Session& session, std::int64_t ticks) {
+    const auto stepped = session.Step(ticks, std::nullopt, Never);
+    EXPECT_TRUE(stepped.ok()) << stepped.status();
+    return stepped.ok() ? stepped->state_hash : "";
+  }
+  static void Set(Session& session, double force) {
+    v1::Parameters parameters;
+    parameters.set_breath_force(force);
+    EXPECT_TRUE(session.Update(parameters, std::nullopt).ok());
+  }
+  static void Pull(Session& session, double force) {
+    PullList pulls;
+    v1::Pull& pull = *pulls.Add();
+    pull.set_body("sheet");
+    pull.set_vertex(2);
+    pull.mutable_force()->set_x(force);
+    EXPECT_TRUE(session.Pull(pulls, false).ok());
+  }
+  static void Reset(Session& session) { EXPECT_TRUE(session.Reset().ok()); }
+
+  const std::string folder_ = testing::TempDir() + "phrenic_restore_" + std::to_string(getpid());
+  FakeClock clock_;
+  std::unique_ptr<store::Store> store_;
+  std::unique_ptr<Models> models_;
+  std::unique_ptr<Table> table_;
+  std::map<std::string, absl::Status> lost_;
+};
+
+// `whole` has the same history, no store and no interruption.
+TEST_F(RestoreTest, ItIsBitForBitTheSessionThatWasNeverInterrupted) {
+  std::mt19937 random(11);
+  const auto model = Create("saved")->shared_model();
+  Session whole("whole", model, {model->parameters, model->InitialState(), 0.01}, clock_, 1);
+  for (int round = 0; round < 12; ++round) {
+    const auto what = random() % 3;
+    const double amount = 0.1 * static_cast<double>(1 + random() % 20);
+    const auto ticks = static_cast<std::int64_t>(1 + random() % 30);
+    for (Session* session : {Find("saved").get(), &whole}) {
+      if (what == 0) Set(*session, amount);
+      if (what == 1) Pull(*session, amount);
+      if (what == 2 && round > 6) Reset(*session);
+      HashAfter(*session, ticks);
+    }
+    const v1::Session before = Find("saved")->status();
+    End();
+    if (round % 3 == 0) clock_.Advance(absl::Seconds(3));
+    Begin();
+    const v1::Session after = Find("saved")->status();
+    EXPECT_EQ(after.tick(), before.tick());
+    EXPECT_EQ(after.time(), before.time());
+    EXPECT_EQ(after.revision(), before.revision());
+    EXPECT_EQ(after.parameters().SerializeAsString(), before.parameters().SerializeAsString());
+    EXPECT_EQ(after.pulls_size(), before.pulls_size());
+    EXPECT_EQ(after.create_time().seconds(), before.create_time().seconds());
+    EXPECT_EQ(HashAfter(*Find("saved"), 5), HashAfter(whole, 5)) << "round " << round;
+  }
+  EXPECT_THAT(lost_, IsEmpty());
+}
+
+TEST_F(RestoreTest, OneThatPlayedGoesOn) {
+  ASSERT_TRUE(Create("a")->Play(0.5, false, 7).ok());
+  Again();
+  EXPECT_EQ(Find("a")->status().state(), v1::SESSION_STATE_PLAYING);
+  EXPECT_EQ(Find("a")->status().speed(), 0.5);
+  clock_.Advance(absl::Seconds(0.034));
+  EXPECT_TRUE(Eventually([&] { return Find("a")->status().tick() > 0; }));
+}
+
+TEST_F(RestoreTest, WhoOwnsItAndWhatWaitsForItsTickAreKept) {
+  const auto session = Create("a");
+  std::string token;
+  const auto entered = session->ChangeControl([&](ControlBook& book, absl::Time now) {
+    auto given = book.Enter("Anna", "", absl::Minutes(2), now);
+    if (!given.ok()) return given.status();
+    token = *given;
+    return book.Take(token, now).status();
+  });
+  ASSERT_TRUE(entered.ok()) << entered.status();
+  v1::Parameters later;
+  later.set_breath_force(2);
+  ASSERT_TRUE(session->Update(later, std::nullopt, 9, token).ok());
+  Again();
+  EXPECT_TRUE(absl::IsPermissionDenied(Find("a")->CheckControl("")));
+  EXPECT_TRUE(Find("a")->CheckControl(token).ok());
+  EXPECT_EQ(Find("a")->status().waiting_updates(), 1);
+  ASSERT_TRUE(Find("a")->Step(9, std::nullopt, Never, token).ok());
+  EXPECT_EQ(Find("a")->status().parameters().breath_force(), 2);
+}
+
+TEST_F(RestoreTest, WhatWasDeletedStaysDeleted) {
+  Create("a");
+  Create("b");
+  ASSERT_TRUE(table_->Delete("a", "").ok());
+  Again();
+  EXPECT_TRUE(absl::IsNotFound(table_->Find("a").status()));
+  EXPECT_TRUE(table_->Find("b").ok());
+}
+
+TEST_F(RestoreTest, AnEditedSceneOfTheCatalogueDoesNotChangeASession) {
+  Create("a");
+  const std::string hash = HashAfter(*Find("a"), 4);
+  WriteScene(Retimed("time_step: 0.001"));
+  Again();
+  EXPECT_EQ(Find("a")->status().parameters().time_step(), 0.01);
+  EXPECT_EQ(HashText(Find("a")->MakeFork()->state), hash);
+}
+
+TEST_F(RestoreTest, OneThatDivergedHasDiverged) {
+  v1::Parameters wild;
+  wild.set_time_step(1);
+  wild.set_elasticity(10);
+  const auto session = Create("a");
+  ASSERT_TRUE(session->Update(wild, std::nullopt).ok());
+  EXPECT_TRUE(absl::IsOutOfRange(session->Step(10000, std::nullopt, Never).status()));
+  const std::string told = session->status().divergence().remedy();
+  Again();
+  EXPECT_EQ(Find("a")->status().state(), v1::SESSION_STATE_DIVERGED);
+  EXPECT_EQ(Find("a")->status().divergence().remedy(), told);
+  EXPECT_TRUE(absl::IsFailedPrecondition(Find("a")->Step(1, std::nullopt, Never).status()));
+  EXPECT_TRUE(Find("a")->Reset().ok());
+}
+
+TEST_F(RestoreTest, WhatCannotBeRestoredStaysUntilItIsDeleted) {
+  {
+    v1::SavedScene scene;
+    *scene.mutable_source()->mutable_scene() = (*models_->Resolve([] {
+      v1::SceneSource source;
+      source.set_name("triangle");
+      return source;
+    }()));
+    scene.set_scene_hash("another");
+    const auto journal = store_->Begin("odd", scene);
+    journal->Keep(v1::SavedMoment(), std::make_shared<State>());
+    ASSERT_TRUE(journal->Flush().ok());
+  }
+  Again();
+  ASSERT_TRUE(lost_.contains("odd"));
+  EXPECT_THAT(std::string(lost_["odd"].message()), HasSubstr("are not those that it was made with"));
+  v1::CreateSessionRequest request;
+  request.set_session_id("odd");
+  request.mutable_source()->set_name("triangle");
+  EXPECT_THAT(std::string(table_->Create(request).status().message()), HasSubstr("could not be restored"));
+  Again();
+  EXPECT_TRUE(lost_.contains("odd"));
+  ASSERT_TRUE(table_->Delete("odd", "").ok());
+  EXPECT_TRUE(table_->Create(request).ok());
+}
+
+TEST_F(RestoreTest, AFullDiskIsToldAndNothingStops) {
+  const auto session = Create("a");
+  ASSERT_TRUE(store_->LimitSize(4096).ok());
+  for (int i = 1; i < 50 && session->status().not_saved().empty(); ++i) Set(*session, 0.1 * i);
+  EXPECT_THAT(session->status().not_saved(), HasSubstr("is full"));
+  Set(*session, 2);
+  EXPECT_TRUE(session->Step(10, std::nullopt, Never).ok());
+  v1::CreateSessionRequest request;
+  request.mutable_source()->set_name("triangle");
+  EXPECT_TRUE(absl::IsResourceExhausted(table_->Create(request).status())) << "it could not be kept";
+  ASSERT_TRUE(store_->LimitSize(1 << 28).ok());
+  EXPECT_TRUE(Eventually([&] { return session->status().not_saved().empty(); }));
+  Again();
+  EXPECT_EQ(Find("a")->status().parameters().breath_force(), 2);
+  EXPECT_EQ(Find("a")->status().tick(), 10);
+}
+
+}  // namespace
+}  // namespace phrenic::session
