@@ -8,8 +8,8 @@ namespace {
 constexpr char kScenes[] = "Scenes, with no server", kSessions[] = "Sessions of a server", kStudies[] = "Studies",
                kFiles[] = "Files", kItself[] = "The command line itself";
 
-const std::vector<CommandGuide>& All() {
-  static const std::vector<CommandGuide> guides = {
+std::vector<CommandGuide> ScenesGuides() {
+  return {
       {"run",
        kScenes,
        {{"phrenic run thorax --seconds 8", "a breath or two, and how fast it went"},
@@ -25,6 +25,11 @@ const std::vector<CommandGuide>& All() {
        {{"phrenic patient labels.nii.gz --out data --name anna", "surfaces, a scene, and what had to be guessed"},
         {"phrenic patient labels.nii.gz --out data --name anna --serve", "and then breathing in the viewer"}}},
       {"phantom", kScenes, {{"phrenic phantom --body tall --out tall.nii.gz", "a volume to try `phrenic patient` on"}}},
+  };
+}
+
+std::vector<CommandGuide> SessionGuides() {
+  return {
       {"scenes",
        kSessions,
        {{"phrenic scenes", "names and titles"}, {"phrenic scenes -o jsonl", "one a line, for scripts"}}},
@@ -61,6 +66,11 @@ const std::vector<CommandGuide>& All() {
       {"pause", kSessions, {{"phrenic pause class", ""}}},
       {"reset", kSessions, {{"phrenic reset class", "back to t = 0; parameters stay"}}},
       {"delete", kSessions, {{"phrenic delete class", ""}}},
+  };
+}
+
+std::vector<CommandGuide> TogetherGuides() {
+  return {
       {"control",
        kSessions,
        {{"phrenic control show class", "who controls it, who is there, who asks"},
@@ -82,6 +92,11 @@ const std::vector<CommandGuide>& All() {
       {"exports get", "", {{"phrenic exports get class motion.msh", "goes on with what motion.msh.part has"}}},
       {"exports delete", "", {{"phrenic exports delete class", ""}}},
       {"upload", kSessions, {{"phrenic upload lung.stl", "prints upload:SHA256, which scenes may name"}}},
+  };
+}
+
+std::vector<CommandGuide> StudyGuides() {
+  return {
       {"study",
        kStudies,
        {{"phrenic study error cube-tensegrity --page error.html", "which integrator, at what step"},
@@ -96,6 +111,11 @@ const std::vector<CommandGuide>& All() {
       {"study list", "", {{"phrenic study list", ""}}},
       {"study watch", "", {{"phrenic study watch thorax-error", "waits for it, and prints it"}}},
       {"study delete", "", {{"phrenic study delete thorax-error", ""}}},
+  };
+}
+
+std::vector<CommandGuide> FileGuides() {
+  return {
       {"compare",
        kFiles,
        {{"phrenic compare a.msh b.msh --regions --check hd95_max=2,assd=1", "exit code 4 past a limit"},
@@ -119,6 +139,16 @@ const std::vector<CommandGuide>& All() {
        kItself,
        {{"phrenic man | man -l -", "read it"}, {"phrenic man > ~/.local/share/man/man1/phrenic.1", "install it"}}},
   };
+}
+
+const std::vector<CommandGuide>& All() {
+  static const std::vector<CommandGuide> guides = [] {
+    std::vector<CommandGuide> all;
+    for (const auto& part : {ScenesGuides(), SessionGuides(), TogetherGuides(), StudyGuides(), FileGuides()}) {
+      all.insert(all.end(), part.begin(), part.end());
+    }
+    return all;
+  }();
   return guides;
 }
 

@@ -184,7 +184,7 @@ TEST(Run, BadWordsAreRefusedWithTheRightCode) {
       {{"run", "cube-springs", "--set", "breath_force=99"}, 1, "breath_force: 99 is outside 0 to 20"},
       {{"run", "cube-springs", "--set", "breath_farce=1"}, 1, "breath_force"},
       {{"run", "cube-springs", "--set", "breath_force"}, 1, "name=value"},
-      {{"run", "cube-springs", "--set", "integrator=magic"}, 1, "there are semi_implicit_euler"},
+      {{"run", "cube-springs", "--set", "integrator=magic"}, 1, "did you mean static? There are semi_implicit_euler"},
       {{"run", "cube-springs", "--export", Scratch("motion.avi")}, 1, "msh, depl"},
       {{"run", "cube-springs", "--export", "/nowhere/motion.msh"}, 1, "/nowhere/motion.msh"},
       {{"run", "cube-springs", "--seconds", "-1"}, 2, "--seconds"},
@@ -192,7 +192,7 @@ TEST(Run, BadWordsAreRefusedWithTheRightCode) {
       {{"run", "cube-springs", "-o", "yaml"}, 2, "--output"},
       {{"run"}, 2, "SCENE"},
       {{"dance"}, 2, ""},
-      {{}, 2, "subcommand"},
+      {{}, 2, "Usage\n  phrenic COMMAND"},
   };
   for (const BadRun& line : lines) {
     const Outcome run = Phrenic(line.arguments);

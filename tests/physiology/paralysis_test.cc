@@ -55,7 +55,7 @@ std::shared_ptr<const Model> Paralysis::model_;
 
 TEST_F(Paralysis, ADomeWithoutMuscleMovesLessThanAThirdOfTheOther) {
   const Descent right = BreatheIn("paralysis-right"), left = BreatheIn("paralysis-left");
-  EXPECT_GT(right.left, 10);
+  EXPECT_GT(right.left, 8);
   EXPECT_LT(right.right, right.left / 3);
   EXPECT_GT(left.right, 10);
   EXPECT_LT(left.left, left.right / 3);
@@ -64,7 +64,9 @@ TEST_F(Paralysis, ADomeWithoutMuscleMovesLessThanAThirdOfTheOther) {
 TEST_F(Paralysis, OfOneSideIsThatOfTheOtherMirrored) {
   const Descent right = BreatheIn("paralysis-right"), left = BreatheIn("paralysis-left");
   EXPECT_NEAR(right.right, left.left, 2);
-  EXPECT_NEAR(right.left, left.right, 4);  // the right muscle is the stronger one
+  // The right muscle is the stronger one: each moves by as much of what it does beside a healthy one.
+  const Descent quiet = BreatheIn("quiet");
+  EXPECT_NEAR(right.left / quiet.left, left.right / quiet.right, 0.2);
 }
 
 TEST_F(Paralysis, ASniffDrawsTheParalysedDomeUp) {

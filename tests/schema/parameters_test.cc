@@ -53,7 +53,7 @@ TEST(SetParameter, SetsChoicesByWhatIsParticularInTheirNames) {
 
 TEST(SetParameter, RefusesWhatIsNoChoiceWithThoseThereAre) {
   EXPECT_THAT(Refusal("integrator", "magic"),
-              StartsWith("integrator: there is no \"magic\"; there are semi_implicit_euler"));
+              StartsWith("integrator: there is no \"magic\"; did you mean static? There are semi_implicit_euler"));
   for (const char* word : {"unspecified", "INTEGRATOR_SEMI_IMPLICIT_EULER", "1", ""}) {
     EXPECT_THAT(Refusal("integrator", word), HasSubstr("there are semi_implicit_euler")) << word;
   }
