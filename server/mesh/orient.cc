@@ -12,11 +12,11 @@ namespace {
 
 void TurnTriangle(int t, Triangles& triangles) { std::swap(triangles(1, t), triangles(2, t)); }
 
-// Neighbours of each triangle across edges of two: which, and whether they face the same way.
-using Neighbours = std::vector<std::vector<std::pair<int, bool>>>;
+// Adjacency of each triangle across edges of two: which, and whether they face the same way.
+using Adjacency = std::vector<std::vector<std::pair<int, bool>>>;
 
-Neighbours NeighboursOf(const Triangles& triangles) {
-  Neighbours neighbours(static_cast<size_t>(triangles.cols()));
+Adjacency NeighboursOf(const Triangles& triangles) {
+  Adjacency neighbours(static_cast<size_t>(triangles.cols()));
   ForEachEdge(SortedSides(triangles), [&](auto first, auto last) {
     if (last - first != 2) return;
     const auto second = first + 1;
@@ -28,7 +28,7 @@ Neighbours NeighboursOf(const Triangles& triangles) {
 }
 
 // The triangles that hang together with `seed` by edges of two, and whether each is to be turned to face as it does.
-std::vector<std::pair<int, bool>> Agreed(int seed, const Neighbours& neighbours, std::vector<bool>& seen) {
+std::vector<std::pair<int, bool>> Agreed(int seed, const Adjacency& neighbours, std::vector<bool>& seen) {
   std::vector<std::pair<int, bool>> part = {{seed, false}};
   seen[seed] = true;
   for (size_t i = 0; i < part.size(); ++i) {
@@ -49,7 +49,7 @@ struct Part {
   Eigen::AlignedBox3d box;
 };
 
-Part Measured(const Mesh& mesh, const std::vector<std::pair<int, bool>>& members, const Neighbours& neighbours) {
+Part Measured(const Mesh& mesh, const std::vector<std::pair<int, bool>>& members, const Adjacency& neighbours) {
   Part part;
   for (const auto& [t, turned] : members) {
     part.triangles.push_back(t);
@@ -64,7 +64,7 @@ Part Measured(const Mesh& mesh, const std::vector<std::pair<int, bool>>& members
 
 int Orient(Mesh& mesh) {
   const Triangles before = mesh.triangles;
-  const Neighbours neighbours = NeighboursOf(mesh.triangles);
+  const Adjacency neighbours = NeighboursOf(mesh.triangles);
   std::vector<bool> seen(neighbours.size(), false);
   std::vector<Part> parts;
   for (int t = 0; t < static_cast<int>(neighbours.size()); ++t) {

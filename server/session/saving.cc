@@ -43,7 +43,7 @@ absl::Status Take(const v1::SavedMoment& moment, Run& run) {
   return run.ChangePulls(*pulls, true);
 }
 
-absl::Status StepTo(std::int64_t tick, Run& run) {
+absl::Status StepAgainTo(std::int64_t tick, Run& run) {
   while (run.state().tick < tick) {
     if (absl::Status stepped = run.Step(); !stepped.ok()) return absl::DataLossError(stepped.message());
   }
@@ -81,7 +81,7 @@ absl::StatusOr<Replayed> Replay(std::shared_ptr<const Model> model, const store:
   for (const v1::SavedMoment& moment : saved.later) {
     last = &moment;
     if (moment.from_start()) run.Reset();
-    if (absl::Status status = StepTo(moment.session().tick(), run); !status.ok()) return status;
+    if (absl::Status status = StepAgainTo(moment.session().tick(), run); !status.ok()) return status;
     if (absl::Status status = Take(moment, run); !status.ok()) return status;
   }
   return Replayed{run.state(), *last};

@@ -21,7 +21,7 @@ std::shared_ptr<const Model> Domes(int coarse, int fine) {
 }
 
 // A coarse sheet of 3 x 3 cells of 1 m, and points over it.
-std::string Sheet(const std::string& points) {
+std::string SheetText(const std::string& points) {
   return "name: 'sheet' bodies { name: 'coarse' role: ROLE_DEFORMABLE grid { columns: 4 rows: 4 u { x: 1 } v { y: 1 } "
          "} } bodies { name: 'fine' role: ROLE_SEEN polyhedron { " +
          points + " } } motions { ride { bodies: 'fine' carriers: 'coarse' mode: RIDE_MODE_TRIANGLES } }";
@@ -64,7 +64,7 @@ TEST(Mapping, IsTheIdentityWhereFineIsCoarse) {
 }
 
 TEST(Mapping, CarriesEvenStretchesExactlyInThePlane) {
-  const auto model = CompileText(Sheet("vertices { x: 0.3 y: 1.7 } vertices { x: 2.9 y: 0.05 z: 0.4 }"));
+  const auto model = CompileText(SheetText("vertices { x: 0.3 y: 1.7 } vertices { x: 2.9 y: 0.05 z: 0.4 }"));
   Eigen::Matrix3d stretch = Eigen::Matrix3d::Identity();
   stretch.topLeftCorner<2, 2>() << 1.3, 0.4, -0.2, 0.7;
   EXPECT_LT(LargestDistance(Carried(*model, stretch * model->rest), stretch * Fine(*model)), 1e-14);
@@ -87,7 +87,7 @@ TEST(Mapping, ReportsTheErrorOfAnEvenStretch) {
 }
 
 TEST(Mapping, ReportsHowFarTheFineSurfaceLies) {
-  const auto model = CompileText(Sheet("vertices { x: 0.3 y: 1.7 z: 0.01 } vertices { x: 2.9 y: 0.05 z: -0.03 }"));
+  const auto model = CompileText(SheetText("vertices { x: 0.3 y: 1.7 z: 0.01 } vertices { x: 2.9 y: 0.05 z: -0.03 }"));
   const v1::MappingReport& report = model->report.mappings(0);
   EXPECT_EQ(report.body(), "fine");
   EXPECT_NEAR(report.mean_distance_mm(), 20, 1e-9);
@@ -102,7 +102,7 @@ TEST(Mapping, IsContinuousAcrossTheEdges) {
   for (int i = 0; i <= kPoints; ++i) {
     line += "vertices { x: " + std::to_string(3.0 * i / kPoints) + " y: " + std::to_string(2.2 * i / kPoints) + " } ";
   }
-  const auto model = CompileText(Sheet(line));
+  const auto model = CompileText(SheetText(line));
   const Points bent = Carried(*model, Shaken(model->rest, 0.3));
   const double longest = (bent.rightCols(kPoints) - bent.leftCols(kPoints)).colwise().norm().maxCoeff();
   EXPECT_LT(longest, 4 * std::hypot(3.0, 2.2) / kPoints);

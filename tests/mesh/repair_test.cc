@@ -17,14 +17,14 @@ constexpr double kNear = 1e-6;
 
 Mesh Ring() { return Torus(2, 0.5, 16, 8); }
 
-double VolumeOf(const Mesh& mesh) { return SignedVolume(mesh.vertices, mesh.triangles); }
+double EnclosedBy(const Mesh& mesh) { return SignedVolume(mesh.vertices, mesh.triangles); }
 
 void ExpectWholeRing(const Mesh& mesh, const char* what) {
   const SurfaceTopology topology = AnalyseTopology(mesh);
   EXPECT_TRUE(topology.watertight()) << what;
   EXPECT_EQ(topology.genus(), 1) << what;
   EXPECT_EQ(topology.degenerate_triangles, 0) << what;
-  EXPECT_NEAR(VolumeOf(mesh), VolumeOf(Ring()), 1e-5) << what;
+  EXPECT_NEAR(EnclosedBy(mesh), EnclosedBy(Ring()), 1e-5) << what;
 }
 
 // Every triangle with vertices of its own, each off by up to `off` in each direction.

@@ -17,7 +17,7 @@ namespace {
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-bool Never() { return false; }
+bool Nobody() { return false; }
 
 // A server's models, table and store, ended and begun anew.
 class RestoreTest : public testing::Test {
@@ -66,7 +66,7 @@ class RestoreTest : public testing::Test {
     return *session;
   }
   static std::string HashAfter(Session& session, std::int64_t ticks) {
-    const auto stepped = session.Step(ticks, std::nullopt, Never);
+    const auto stepped = session.Step(ticks, std::nullopt, Nobody);
     EXPECT_TRUE(stepped.ok()) << stepped.status();
     return stepped.ok() ? stepped->state_hash : "";
   }
@@ -150,7 +150,7 @@ TEST_F(RestoreTest, WhoOwnsItAndWhatWaitsForItsTickAreKept) {
   EXPECT_TRUE(absl::IsPermissionDenied(Find("a")->CheckControl("")));
   EXPECT_TRUE(Find("a")->CheckControl(token).ok());
   EXPECT_EQ(Find("a")->status().waiting_updates(), 1);
-  ASSERT_TRUE(Find("a")->Step(9, std::nullopt, Never, token).ok());
+  ASSERT_TRUE(Find("a")->Step(9, std::nullopt, Nobody, token).ok());
   EXPECT_EQ(Find("a")->status().parameters().breath_force(), 2);
 }
 
@@ -178,12 +178,12 @@ TEST_F(RestoreTest, OneThatDivergedHasDiverged) {
   wild.set_elasticity(10);
   const auto session = Create("a");
   ASSERT_TRUE(session->Update(wild, std::nullopt).ok());
-  EXPECT_TRUE(absl::IsOutOfRange(session->Step(10000, std::nullopt, Never).status()));
+  EXPECT_TRUE(absl::IsOutOfRange(session->Step(10000, std::nullopt, Nobody).status()));
   const std::string told = session->status().divergence().remedy();
   Again();
   EXPECT_EQ(Find("a")->status().state(), v1::SESSION_STATE_DIVERGED);
   EXPECT_EQ(Find("a")->status().divergence().remedy(), told);
-  EXPECT_TRUE(absl::IsFailedPrecondition(Find("a")->Step(1, std::nullopt, Never).status()));
+  EXPECT_TRUE(absl::IsFailedPrecondition(Find("a")->Step(1, std::nullopt, Nobody).status()));
   EXPECT_TRUE(Find("a")->Reset().ok());
 }
 
@@ -219,7 +219,7 @@ TEST_F(RestoreTest, AFullDiskIsToldAndNothingStops) {
   for (int i = 1; i < 50 && session->status().not_saved().empty(); ++i) Set(*session, 0.1 * i);
   EXPECT_THAT(session->status().not_saved(), HasSubstr("is full"));
   Set(*session, 2);
-  EXPECT_TRUE(session->Step(10, std::nullopt, Never).ok());
+  EXPECT_TRUE(session->Step(10, std::nullopt, Nobody).ok());
   v1::CreateSessionRequest request;
   request.mutable_source()->set_name("triangle");
   EXPECT_TRUE(absl::IsResourceExhausted(table_->Create(request).status())) << "it could not be kept";
