@@ -162,6 +162,12 @@ describe("the buttons", () => {
       "Deep",
       "Diaphragmatic",
       "Chest",
+      "Mixed",
+      "Sniff",
+      "Paralysis right",
+      "Paralysis left",
+      "COPD",
+      "Tensegrity off",
     ]);
     await preset("Chest").click();
     await expect.poll(async () => (await server.session()).parameters.rib_motion, { timeout: 10_000 }).toBe(2.5);
