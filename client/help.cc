@@ -144,7 +144,7 @@ std::string UsageOf(const CLI::App& command) {
 
 std::string LabelOf(const CLI::Option& option) {
   if (option.get_positional()) return option.get_name(true);
-  const std::string names = absl::StrReplaceAll(option.get_name(false, true), {{",", ", "}});
+  std::string names = absl::StrReplaceAll(option.get_name(false, true), {{",", ", "}});
   if (option.get_items_expected_max() == 0) return names;
   const std::string whole = option.get_type_name();
   const std::string type = whole.substr(0, whole.find(kRangeBegins));

@@ -104,6 +104,7 @@ absl::StatusOr<v1::Parameters> ReadSettings(const std::vector<std::string>& sett
 std::vector<ParameterRow> ParameterRows() {
   std::vector<ParameterRow> rows;
   const google::protobuf::Descriptor& type = *v1::Parameters::descriptor();
+  rows.reserve(static_cast<std::size_t>(type.field_count()));
   for (int f = 0; f < type.field_count(); ++f) rows.push_back(RowOf(*type.field(f)));
   return rows;
 }

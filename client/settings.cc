@@ -98,7 +98,7 @@ std::string OriginOf(const CLI::Option& option, const std::vector<std::string>& 
 }  // namespace
 
 std::string SettingsFile() {
-  if (const std::string file = Environment("PHRENIC_CONFIG"); !file.empty()) return file;
+  if (std::string file = Environment("PHRENIC_CONFIG"); !file.empty()) return file;
   std::string folder = Environment("XDG_CONFIG_HOME");
   if (const std::string home = Environment("HOME"); folder.empty() && !home.empty()) folder = home + "/.config";
   return folder.empty() ? "" : folder + "/phrenic/config.toml";

@@ -91,7 +91,7 @@ grpc::Status StartScene(service::Server& server, const std::string& scene) {
   request.mutable_source()->set_name(scene);
   v1::CreateSessionResponse created;
   grpc::ClientContext creating, playing;
-  const grpc::Status status = stub->CreateSession(&creating, request, &created);
+  grpc::Status status = stub->CreateSession(&creating, request, &created);
   if (status.error_code() == grpc::StatusCode::ALREADY_EXISTS) return grpc::Status::OK;  // it goes on as it was
   if (!status.ok()) return status;
   v1::PlaySessionRequest play;

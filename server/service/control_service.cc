@@ -28,7 +28,7 @@ grpc::Status ControlService::EnterSession(grpc::ServerContext* /*context*/, cons
   return Change(*request, response, [&](session::ControlBook& book, absl::Time now) {
     const auto stay = absl::Seconds(request->has_time_to_live() ? request->time_to_live() : kUsualStay);
     auto token = book.Enter(request->name(), request->control_token(), stay, now);
-    if (token.ok()) response->set_control_token(*std::move(token));
+    if (token.ok()) response->set_control_token(*token);
     return token.status();
   });
 }

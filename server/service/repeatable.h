@@ -27,7 +27,7 @@ absl::Status Once(session::Answers& answers, const Request& request, Response* r
     if ((*before)->status.ok()) response->ParseFromString((*before)->bytes);
     return (*before)->status;
   }
-  const absl::Status status = act();
+  absl::Status status = act();
   if (MayHaveChanged(status)) {
     answers.Keep(id, {status, response->SerializeAsString()});
   } else {

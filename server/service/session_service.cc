@@ -19,8 +19,8 @@ absl::StatusOr<std::shared_ptr<session::Session>> Find(const session::Table& tab
 }
 
 template <class Response>
-grpc::Status Answer(v1::Session session, Response* response) {
-  *response->mutable_session() = std::move(session);
+grpc::Status Answer(const v1::Session& session, Response* response) {
+  *response->mutable_session() = session;
   return grpc::Status::OK;
 }
 

@@ -118,7 +118,7 @@ Store::Batch Store::TakeBatch() {
 }
 
 // What could not be written goes before what came meanwhile, unless a state has made it superfluous.
-void Store::PutBack(Batch batch) {
+void Store::PutBack(Batch& batch) {
   std::vector<std::shared_ptr<Journal>> waiting;
   for (auto& [journal, before] : batch) {
     Journal::Pending& now = journal->pending_;
@@ -174,7 +174,7 @@ void Store::Run() {
     }
     if (status.ok()) continue;
     if (last) return;
-    PutBack(std::move(batch));
+    PutBack(batch);
     mutex_.AwaitWithTimeout(absl::Condition(this, &Store::Closing), kAgain);
   }
 }

@@ -97,7 +97,7 @@ class Store {
   bool Stirred() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) { return closing_ || !waiting_.empty(); }
   void Run() ABSL_LOCKS_EXCLUDED(mutex_);
   Batch TakeBatch() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  void PutBack(Batch batch) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void PutBack(Batch& batch) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   absl::Status Write(const Batch& batch);
 
   Database database_;  // of one thread at a time
