@@ -15,7 +15,7 @@ namespace phrenic {
 
 inline constexpr double kLongestReading = 1e-3;  // [s]
 
-// Reads one state, of which it takes a copy. One thread at a time.
+// Reads one state under its parameters, of which it takes copies; the model outlives it. One thread at a time.
 class ForceReading {
  public:
   ForceReading(const Model& model, const v1::Parameters& parameters, const State& state);
@@ -34,7 +34,7 @@ class ForceReading {
   Points Loads() const;  // all but constraints
 
   const Model& model_;
-  const v1::Parameters& parameters_;
+  const v1::Parameters parameters_;
   const double dt_;  // [s]
   State state_;      // driven vertices and poses are where the next step has them
   std::vector<std::string> kinds_;
