@@ -63,7 +63,8 @@ absl::StatusOr<v1::GetForcesResponse> ReadForces(const Table& table, const v1::G
   response.mutable_kinds()->Add(reading.kinds().begin(), reading.kinds().end());
   if (request.has_vertex()) WriteForces(reading, (*body)->first_vertex + request.vertex(), response);
   if (!request.kind().empty()) {
-    const auto part = reading.Of(request.kind()).middleCols((*body)->first_vertex, (*body)->mesh.vertices.cols());
+    const Points forces = reading.Of(request.kind());
+    const auto part = forces.middleCols((*body)->first_vertex, (*body)->mesh.vertices.cols());
     const Eigen::VectorXf sizes = part.colwise().norm().cast<float>();
     response.set_sizes(sizes.data(), sizeof(float) * static_cast<std::size_t>(sizes.size()));
   }

@@ -82,7 +82,8 @@ TEST(Settings, AnOutputThatACommandDoesNotKnowIsAPreferenceOnly) {
 TEST(Doctor, GivesEveryLineThatIsNotWellARemedy) {
   const Outcome alone = Phrenic({"doctor", "--server", "127.0.0.1:1", "-o", "json"});
   EXPECT_EQ(alone.code, 3);
-  for (const auto& finding : alone.json()["findings"]) {
+  const auto answer = alone.json();
+  for (const auto& finding : answer["findings"]) {
     EXPECT_NE(finding["verdict"] == "good", !finding["remedy"].get<std::string>().empty()) << finding;
   }
   RunningServer server;

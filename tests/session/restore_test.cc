@@ -134,7 +134,7 @@ TEST_F(RestoreTest, OneThatPlayedGoesOn) {
 }
 
 TEST_F(RestoreTest, WhoOwnsItAndWhatWaitsForItsTickAreKept) {
-  const auto session = Create("a");
+  auto session = Create("a");
   std::string token;
   const auto entered = session->ChangeControl([&](ControlBook& book, absl::Time now) {
     auto given = book.Enter("Anna", "", absl::Minutes(2), now);
@@ -146,6 +146,7 @@ TEST_F(RestoreTest, WhoOwnsItAndWhatWaitsForItsTickAreKept) {
   v1::Parameters later;
   later.set_breath_force(2);
   ASSERT_TRUE(session->Update(later, std::nullopt, 9, token).ok());
+  session.reset();  // it ends with the table
   Again();
   EXPECT_TRUE(absl::IsPermissionDenied(Find("a")->CheckControl("")));
   EXPECT_TRUE(Find("a")->CheckControl(token).ok());
@@ -176,10 +177,11 @@ TEST_F(RestoreTest, OneThatDivergedHasDiverged) {
   v1::Parameters wild;
   wild.set_time_step(1);
   wild.set_elasticity(10);
-  const auto session = Create("a");
+  auto session = Create("a");
   ASSERT_TRUE(session->Update(wild, std::nullopt).ok());
   EXPECT_TRUE(absl::IsOutOfRange(session->Step(10000, std::nullopt, Nobody).status()));
   const std::string told = session->status().divergence().remedy();
+  session.reset();  // it ends with the table
   Again();
   EXPECT_EQ(Find("a")->status().state(), v1::SESSION_STATE_DIVERGED);
   EXPECT_EQ(Find("a")->status().divergence().remedy(), told);
@@ -214,7 +216,7 @@ TEST_F(RestoreTest, WhatCannotBeRestoredStaysUntilItIsDeleted) {
 }
 
 TEST_F(RestoreTest, AFullDiskIsToldAndNothingStops) {
-  const auto session = Create("a");
+  auto session = Create("a");
   ASSERT_TRUE(store_->LimitSize(4096).ok());
   for (int i = 1; i < 50 && session->status().not_saved().empty(); ++i) Set(*session, 0.1 * i);
   EXPECT_THAT(session->status().not_saved(), HasSubstr("is full"));
@@ -225,6 +227,7 @@ TEST_F(RestoreTest, AFullDiskIsToldAndNothingStops) {
   EXPECT_TRUE(absl::IsResourceExhausted(table_->Create(request).status())) << "it could not be kept";
   ASSERT_TRUE(store_->LimitSize(1 << 28).ok());
   EXPECT_TRUE(Eventually([&] { return session->status().not_saved().empty(); }));
+  session.reset();  // it ends with the table
   Again();
   EXPECT_EQ(Find("a")->status().parameters().breath_force(), 2);
   EXPECT_EQ(Find("a")->status().tick(), 10);
