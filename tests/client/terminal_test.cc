@@ -39,7 +39,7 @@ TEST(Help, FitsTheTerminal) {
 }
 
 TEST(Progress, TellsTheTimeLeftInATerminalAlone) {
-  PseudoTerminal terminal({kProgram, "run", "cube-springs", "--seconds", "3600"}, 60);
+  PseudoTerminal terminal({kProgram, "run", "hanging-sheet", "--seconds", "3600"}, 60);
   EXPECT_THAT(terminal.ReadUntil("s left"), HasSubstr("stepping ["));
 }
 
