@@ -32,6 +32,14 @@ bool WithinBounds(const Model& model, double dt, const State& state) {
          ReachOf(state.v).squares <= static_cast<double>(state.v.cols()) * fastest * fastest;
 }
 
+void KeepBefore(const State& state, Workspace& work) {
+  ForEachBlock({0, state.x.cols()}, [&](const VertexRange& block) {
+    const Eigen::Index first = 3 * block.first, count = 3 * (block.end - block.first);
+    std::copy_n(state.x.data() + first, count, work.before.data() + first);
+    std::copy_n(state.v.data() + first, count, work.velocity_before.data() + first);
+  });
+}
+
 int FurthestVertex(const Model& model, const State& state) {
   int furthest = 0;
   double largest = -1;
@@ -91,8 +99,7 @@ std::string Remedy(const Model& model, const v1::Parameters& parameters, const S
 }  // namespace
 
 absl::Status Step(const Model& model, const v1::Parameters& parameters, double dt, State& state, Workspace& work) {
-  std::copy_n(state.x.data(), state.x.size(), work.before.data());
-  std::copy_n(state.v.data(), state.v.size(), work.velocity_before.data());
+  KeepBefore(state, work);
   work.effort.Begin(parameters.solver_budget());
   const Integrator& integrator = FindIntegrator(parameters.integrator());
   const bool adaptive = parameters.step_tolerance() > 0 && integrator.order() > 0;

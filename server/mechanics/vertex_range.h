@@ -5,6 +5,8 @@
 #include <Eigen/Core>
 #include <algorithm>
 
+#include "server/mechanics/share_out.h"
+
 namespace phrenic {
 
 // Vertices first to end - 1.
@@ -16,12 +18,14 @@ struct VertexRange {
 // into a core's nearest cache.
 inline constexpr Eigen::Index kVertexBlock = 512;
 
-// Calls `work` with the blocks of a range, one after the other.
+// Calls `work` with the blocks of a range, shared out over the threads of a step.
 template <typename Work>
 void ForEachBlock(const VertexRange& range, const Work& work) {
-  for (Eigen::Index first = range.first; first < range.end; first += kVertexBlock) {
+  const Eigen::Index blocks = (range.end - range.first + kVertexBlock - 1) / kVertexBlock;
+  ShareOut(blocks, [&](std::int64_t block) {
+    const Eigen::Index first = range.first + block * kVertexBlock;
     work(VertexRange{first, std::min(first + kVertexBlock, range.end)});
-  }
+  });
 }
 
 }  // namespace phrenic

@@ -24,11 +24,14 @@ void TriadHere(const double* b, const double* c, double s, size_t count, double*
   }
 }
 
-// Ten sums side by side: more than any machine's multiply-adds are long. Its flops.
+// Ten sums side by side, each from another start, as a compiler would take equal ones once: more than any machine's
+// multiply-adds are long. Its flops.
 double MultiplyAddsHere(int rounds, double* result) {
   const Tag d;
   const auto by = hn::Set(d, 0.999), plus = hn::Set(d, 1e-3);
-  auto a = plus, b = plus, c = plus, e = plus, f = plus, g = plus, h = plus, i = plus, j = plus, k = plus;
+  const auto from = [&](int start) { return hn::Set(d, *result + start); };
+  auto a = from(0), b = from(1), c = from(2), e = from(3), f = from(4), g = from(5), h = from(6), i = from(7),
+       j = from(8), k = from(9);
   for (int r = 0; r < rounds; ++r) {
     a = hn::MulAdd(a, by, plus), b = hn::MulAdd(b, by, plus), c = hn::MulAdd(c, by, plus);
     e = hn::MulAdd(e, by, plus), f = hn::MulAdd(f, by, plus), g = hn::MulAdd(g, by, plus);

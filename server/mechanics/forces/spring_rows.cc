@@ -114,18 +114,22 @@ void SpringRows::SetLoad(const Points& load) {
 void SpringRows::AddForce(double scale, const ConstPoints& x, MutablePoints f) const {
   const auto slices = static_cast<std::int64_t>(slices_.slices.size()) - 1;
   if (order_.empty()) return AddSlices(slices_, 0, slices, scale, x.data(), f.data());
-  thread_local Points ordered, force;
+  thread_local Points in_order, in_order_force;
   const auto count = static_cast<Eigen::Index>(order_.size());
-  if (ordered.cols() < count) ordered.resize(3, count), force.resize(3, count);
-  for (Eigen::Index i = 0; i < count; ++i) ordered.col(i) = x.col(order_[i]);
-  force.leftCols(count).setZero();
-  AddSlices(slices_, 0, slices, scale, ordered.data(), force.data());
-  for (Eigen::Index i = 0; i < count; ++i) f.col(order_[i]) += force.col(i);
+  if (in_order.cols() < count) in_order.resize(3, count), in_order_force.resize(3, count);
+  Points &ordered = in_order, &force = in_order_force;  // this thread's own, for all that help it
+  ForEachBlock({0, count}, [&](const VertexRange& block) {
+    for (Eigen::Index i = block.first; i < block.end; ++i) ordered.col(i) = x.col(order_[i]);
+  });
+  ForEachBlock({0, count}, [&](const VertexRange& block) {
+    force.middleCols(block.first, block.end - block.first).setZero();
+    AddSlices(slices_, FirstSlice(block.first), FirstSlice(block.end), scale, ordered.data(), force.data());
+    for (Eigen::Index i = block.first; i < block.end; ++i) f.col(order_[i]) += force.col(i);
+  });
 }
 
 void SpringRows::AddForce(const VertexRange& range, double scale, const ConstPoints& x, MutablePoints f) const {
-  const auto block = [](Eigen::Index vertex) { return (vertex + kVertexBlock - 1) / kVertexBlock; };
-  AddSlices(slices_, first_slice_[block(range.first)], first_slice_[block(range.end)], scale, x.data(), f.data());
+  AddSlices(slices_, FirstSlice(range.first), FirstSlice(range.end), scale, x.data(), f.data());
 }
 
 }  // namespace phrenic

@@ -37,6 +37,10 @@ class SpringRows {
   void AddForce(const VertexRange& range, double scale, const ConstPoints& x, MutablePoints f) const;
 
  private:
+  std::int64_t FirstSlice(Eigen::Index vertex) const {
+    return first_slice_[(vertex + kVertexBlock - 1) / kVertexBlock];
+  }
+
   SpringSlices slices_;
   std::vector<std::int64_t> first_slice_;  // of the blocks, and the end
   std::vector<int> order_;                 // vertices as the slices count them; none where they come so

@@ -1,0 +1,136 @@
+// How cost grows with size, and what a second thread gives: springs under gravity on square sheets from 5,000 vertices
+// to over a million, all in one run: build/growth_bench [LARGEST] [THREADS]. Exit code 1 where a step fails or threads
+// change a bit.
+#include <malloc.h>
+#include <time.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <optional>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "server/mechanics/compile.h"
+#include "server/mechanics/share_out.h"
+#include "server/mechanics/step.h"
+#include "server/schema/schema.h"
+
+namespace phrenic::bench {
+namespace {
+
+constexpr int kSides[] = {71, 102, 145, 289, 576, 1145};
+constexpr int kRepetitions = 9;
+constexpr double kLeastTime = 0.03;  // of a repetition [s]
+
+double Wall() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+double Cpu() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+double ResidentBytes() {
+  malloc_trim(0);
+  std::ifstream file("/proc/self/statm");
+  double pages = 0, resident = 0;
+  file >> pages >> resident;
+  return 4096 * resident;
+}
+
+double Median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
+  return values[values.size() / 2];
+}
+
+std::string Sheet(int side) {
+  const double edge = 1.0 / side;
+  return absl::StrCat(
+      "name: 'sheet' bodies { name: 'sheet' role: ROLE_DEFORMABLE mass: 3 fixed_vertices: [0] grid { columns: ", side,
+      " rows: ", side, " u { x: ", edge, " } v { y: ", edge,
+      " } } } forces { springs { bodies: 'sheet' stiffness: 40 rest_length_ratio: 0.9 } } forces { friction { bodies: "
+      "'sheet' rate: 2 } } forces { gravity { bodies: 'sheet' acceleration { z: -9.81 } } } parameters { time_step: ",
+      1e-2 / side, " }");
+}
+
+struct Timed {
+  double cpu = 0, wall = 0;  // of a step [s], medians
+  std::uint64_t hash = 0;    // after as many steps as were asked
+};
+
+// Times steps in chunks of at least kLeastTime. `steps` of a chunk are found by the first call and kept.
+std::optional<Timed> TimeSteps(const Model& model, int threads, int& steps) {
+  SetStepThreads(threads);
+  State state = model.InitialState();
+  Workspace work = model.MakeWorkspace();
+  const auto take = [&](int count) {
+    for (int i = 0; i < count; ++i) {
+      if (!Step(model, model.parameters, model.parameters.time_step(), state, work).ok()) return false;
+    }
+    return true;
+  };
+  if (steps == 0) {
+    const double start = Cpu();
+    if (!take(3)) return std::nullopt;
+    steps = std::max(1, static_cast<int>(std::ceil(kLeastTime * 3 / (Cpu() - start))));
+    state = model.InitialState();
+  }
+  std::vector<double> cpu, wall;
+  for (int i = 0; i < kRepetitions; ++i) {
+    const double cpu_start = Cpu(), wall_start = Wall();
+    if (!take(steps)) return std::nullopt;
+    cpu.push_back((Cpu() - cpu_start) / steps), wall.push_back((Wall() - wall_start) / steps);
+  }
+  return Timed{Median(cpu), Median(wall), StateHash(state)};
+}
+
+// One line of the table; the CPU time of a step on one thread [s], 0 where it failed.
+double PrintSize(int side, int threads) {
+  const auto scene = schema::ParseScene("sheet", Sheet(side));
+  if (!scene.ok()) return 0;
+  const double resident = ResidentBytes(), start = Cpu();
+  const auto model = Compile(*scene, [](const v1::Body&) { return absl::NotFoundError("no files"); });
+  if (!model.ok()) return 0;
+  const double compiled = Cpu() - start;
+  int steps = 0;
+  const auto alone = TimeSteps(**model, 1, steps);
+  const double held = ResidentBytes() - resident;
+  const auto shared = TimeSteps(**model, threads, steps);
+  if (!alone.has_value() || !shared.has_value()) return 0;
+  const auto vertices = static_cast<double>((*model)->rest.cols());
+  std::printf("%9.0f %11.3f %11.0f %12.0f %12.1f %12.0f %10.2f   %s\n", vertices, compiled, held / vertices,
+              1e6 * alone->cpu, 1e9 * alone->cpu / vertices, 1e6 * shared->wall, alone->wall / shared->wall,
+              alone->hash == shared->hash ? "same bits" : "OTHER BITS");
+  return alone->hash == shared->hash ? alone->cpu : 0;
+}
+
+int Run(double largest, int threads) {
+  std::printf("%9s %11s %11s %12s %12s %12s %10s\n", "vertices", "compile s", "bytes each", "CPU us", "ns a vertex",
+              "wall us", "speed-up");
+  std::printf("%9s %11s %11s %12s %12s %9d thr %10s\n", "", "(CPU)", "", "1 thread", "", threads, "");
+  double first = 0, last = 0;
+  int first_side = 0, last_side = 0;
+  for (const int side : kSides) {
+    if (side * side > largest) break;
+    const double cpu = PrintSize(side, threads);
+    if (cpu == 0) return 1;
+    if (first == 0) first = cpu, first_side = side;
+    last = cpu, last_side = side;
+  }
+  if (last_side > first_side) {
+    std::printf("CPU time grows as the number of vertices to the power of %.2f\n",
+                std::log(last / first) / (2 * std::log(static_cast<double>(last_side) / first_side)));
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace phrenic::bench
+
+int main(int argc, char** argv) {
+  return phrenic::bench::Run(argc > 1 ? std::atof(argv[1]) : 2e6, argc > 2 ? std::atoi(argv[2]) : 2);
+}
