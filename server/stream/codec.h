@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "phrenic/v1/frames.pb.h"
@@ -18,7 +19,8 @@ using Floats = Eigen::Matrix3Xf;  // 3 x n [m], one column per vertex
 // What both ends know of the vertices that travel, from the geometry.
 struct RestShape {
   Floats rest;
-  Edges edges;  // which vertices are beside each other
+  Edges edges;                      // which vertices are beside each other
+  std::vector<Floats> shapes = {};  // displacements of all vertices, of which codecs may put frames together
 };
 
 // Every encoding stands by itself: given the rest shape, no other frame is needed. Immutable; any thread may call.

@@ -2,6 +2,7 @@
 #include <array>
 
 #include "server/stream/codec.h"
+#include "server/stream/codecs/basis.h"
 #include "server/stream/codecs/planes.h"
 #include "server/stream/codecs/predicted.h"
 #include "server/stream/codecs/raw.h"
@@ -18,6 +19,7 @@ constexpr std::array kCodecs = {
     CodecRow{v1::CODEC_RAW, "raw", Make<RawCodec>},
     CodecRow{v1::CODEC_PLANES, "planes", Make<PlanesCodec>},
     CodecRow{v1::CODEC_PREDICTED, "predicted", Make<PredictedCodec>},
+    CodecRow{v1::CODEC_BASIS, "basis", Make<BasisCodec>},
 };
 
 }  // namespace

@@ -18,6 +18,7 @@ bool Encoder::Make(const Snapshot& snapshot) {
   if (snapshot.sequence == sequence_) return sendable_;
   sequence_ = snapshot.sequence;
   made_.clear();
+  shown_ = false;
   absl::StatusOr<v1::Frame> frame = MakeFrame(*model_, layout_, snapshot);
   sendable_ = frame.ok();
   if (!sendable_) return false;
@@ -30,24 +31,52 @@ bool Encoder::Make(const Snapshot& snapshot) {
   return true;
 }
 
-const Codec& Encoder::FindCodec(const Chosen& chosen) {
+std::shared_ptr<const Codec> Encoder::FindCodec(const Chosen& chosen) {
   if (codecs_.size() > kMostCodecs) codecs_.clear();
-  std::unique_ptr<Codec>& codec = codecs_[chosen];
-  if (codec == nullptr) codec = MakeCodec(chosen.first, MakeRestShape(*model_, chosen.second));
-  return *codec;
+  std::shared_ptr<const Codec>& codec = codecs_[chosen];
+  if (codec != nullptr) return codec;
+  const auto& [kind, bodies, epoch] = chosen;
+  RestShape shape = MakeRestShape(*model_, bodies);
+  if (const auto basis = FindBasis(epoch); basis != nullptr) {
+    for (const Floats& each : basis->shapes) shape.shapes.push_back(Pick(*model_, layout_, bodies, each));
+  }
+  codec = MakeCodec(kind, shape);
+  return codec;
+}
+
+std::shared_ptr<const Basis> Encoder::FindBasis(std::int64_t epoch) const {
+  for (const auto& basis : bases_) {
+    if (basis != nullptr && basis->epoch == epoch) return basis;
+  }
+  return nullptr;
+}
+
+void Encoder::LookForBasis(absl::Time made) {
+  if (std::exchange(shown_, true)) return;
+  if (maker_ == nullptr) {
+    maker_ =
+        std::make_unique<BasisMaker>(MakeRestShape(*model_, streamed_), FindCodec({v1::CODEC_PREDICTED, streamed_, 0}));
+  }
+  maker_->See(positions_, made);
+  if (maker_->newest() != bases_.front()) bases_ = {maker_->newest(), bases_.front()};
 }
 
 void Encoder::SetPositions(const Form& form, v1::Frame& frame) {
   const std::vector<int>& bodies = form.chosen ? form.bodies : streamed_;
   const Floats positions = Pick(*model_, layout_, bodies, positions_);
-  const double bound = form.codec == v1::CODEC_RAW ? 0 : RungMillimetres(form.rung);
-  frame.set_codec(form.codec);
+  const bool put_together = form.codec == v1::CODEC_BASIS && FindBasis(form.basis_epoch) != nullptr;
+  const v1::Codec codec = form.codec == v1::CODEC_BASIS && !put_together ? v1::CODEC_PREDICTED : form.codec;
+  const std::int64_t epoch = put_together ? form.basis_epoch : 0;
+  const double bound = codec == v1::CODEC_RAW ? 0 : RungMillimetres(form.rung);
+  frame.set_codec(codec);
   frame.set_max_error_mm(bound);
-  auto bytes = FindCodec({form.codec, bodies}).Encode(positions, 1e-3 * bound);
+  frame.set_basis_epoch(epoch);
+  auto bytes = FindCodec({codec, bodies, epoch})->Encode(positions, 1e-3 * bound);
   if (!bytes.ok()) {
     frame.set_codec(v1::CODEC_RAW);
     frame.set_max_error_mm(0);
-    bytes = FindCodec({v1::CODEC_RAW, bodies}).Encode(positions, 0);
+    frame.set_basis_epoch(0);
+    bytes = FindCodec({v1::CODEC_RAW, bodies, 0})->Encode(positions, 0);
   }
   frame.set_positions(*std::move(bytes));  // raw is never refused
   frame.mutable_bodies()->Assign(bodies.begin(), bodies.end());
@@ -61,6 +90,7 @@ Bytes Encoder::Encode(const Snapshot& snapshot, const Form& form) {
   if (bytes != nullptr) return bytes;
   v1::WatchFramesResponse response;
   *response.mutable_frame() = numbers_;
+  if (form.codec == v1::CODEC_BASIS) LookForBasis(snapshot.made);
   if (!form.numbers_only) SetPositions(form, *response.mutable_frame());
   bytes = std::make_shared<const std::string>(response.SerializeAsString());
   return bytes;

@@ -2,14 +2,17 @@
 #ifndef PHRENIC_SERVER_STREAM_ENCODER_H_
 #define PHRENIC_SERVER_STREAM_ENCODER_H_
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "phrenic/v1/frames.pb.h"
 #include "phrenic/v1/session.pb.h"
+#include "server/stream/basis_maker.h"
 #include "server/stream/codec.h"
 #include "server/stream/frame.h"
 #include "server/stream/viewer.h"
@@ -26,14 +29,20 @@ class Encoder {
   Bytes Encode(const Snapshot& snapshot, const Form& form);
   // How often positions were encoded.
   std::int64_t encodings() const { return encodings_; }
+  // The newest; null where nobody asked for CODEC_BASIS, or too little was seen.
+  std::shared_ptr<const Basis> basis() const { return bases_.front(); }
 
  private:
-  using Chosen = std::pair<v1::Codec, std::vector<int>>;
+  using Chosen = std::tuple<v1::Codec, std::vector<int>, std::int64_t>;  // codec, bodies, epoch of the basis
 
   // Makes the frame unless it is the one made last; false where it may not be sent.
   bool Make(const Snapshot& snapshot);
   void SetPositions(const Form& form, v1::Frame& frame);
-  const Codec& FindCodec(const Chosen& chosen);
+  std::shared_ptr<const Codec> FindCodec(const Chosen& chosen);
+  // Shows the frame to who makes the basis, once.
+  void LookForBasis(absl::Time made);
+  // That of `epoch`; null where it is no longer kept.
+  std::shared_ptr<const Basis> FindBasis(std::int64_t epoch) const;
 
   const std::shared_ptr<const Model> model_;
   const Layout& layout_;
@@ -44,7 +53,10 @@ class Encoder {
   std::string poses_;
   Floats positions_;  // of all streamed bodies
   std::map<Form, Bytes> made_;
-  std::map<Chosen, std::unique_ptr<Codec>> codecs_;
+  std::map<Chosen, std::shared_ptr<const Codec>> codecs_;
+  std::unique_ptr<BasisMaker> maker_;                  // since somebody asked for CODEC_BASIS
+  bool shown_ = false;                                 // the present frame, to maker_
+  std::array<std::shared_ptr<const Basis>, 2> bases_;  // the newest, and the one before, which viewers still have
   std::int64_t encodings_ = 0;
 };
 

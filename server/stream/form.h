@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <compare>
+#include <cstdint>
 #include <vector>
 
 #include "phrenic/v1/frames.pb.h"
@@ -34,6 +35,7 @@ struct Form {
   int rung = kDefaultRung;
   bool chosen = false;           // of the bodies' vertices only those of `bodies`
   std::vector<int> bodies = {};  // streamed ones, ascending
+  std::int64_t basis_epoch = 0;  // of the basis that the viewer has; of CODEC_BASIS alone
 
   // clang-tidy takes the zero that a defaulted comparison is held against for a null pointer.
   auto operator<=>(const Form&) const = default;  // NOLINT(modernize-use-nullptr)

@@ -59,14 +59,14 @@ absl::StatusOr<std::shared_ptr<Viewer>> Publisher::Join(const ViewerOptions& opt
   absl::MutexLock lock(&mutex_);
   if (closed_.has_value()) return *closed_;
   if (static_cast<int>(seats_.size()) >= max_viewers_) {
-    return absl::ResourceExhaustedError(
-        absl::StrCat("the session has ", seats_.size(), " viewers, and no more are allowed; try again later"));
+    return absl::ResourceExhaustedError(absl::StrCat(
+        "the session has ", seats_.size(), " viewers, and no more are allowed (--max-viewers); try again later"));
   }
-  const bool taken = std::any_of(seats_.begin(), seats_.end(), [&options](const Seat& seat) {
-    return !options.watch_id.empty() && seat.viewer->options().watch_id == options.watch_id;
-  });
-  if (taken) return absl::AlreadyExistsError(absl::StrCat("watch_id: somebody watches as ", options.watch_id));
+  if (named_.count(options.watch_id) > 0) {
+    return absl::AlreadyExistsError(absl::StrCat("watch_id: somebody watches as ", options.watch_id));
+  }
   auto viewer = std::make_shared<Viewer>(options, std::move(wake));
+  if (!options.watch_id.empty()) named_[options.watch_id] = viewer;
   seats_.emplace_back().viewer = viewer;
   if (!thread_.joinable()) thread_ = std::thread([this] { Run(); });
   SessionChanged();
@@ -76,7 +76,9 @@ absl::StatusOr<std::shared_ptr<Viewer>> Publisher::Join(const ViewerOptions& opt
 void Publisher::Leave(const std::shared_ptr<Viewer>& viewer) {
   absl::MutexLock lock(&mutex_);
   const auto left = std::erase_if(seats_, [&](const Seat& seat) { return seat.viewer == viewer; });
-  if (left > 0) SessionChanged();
+  if (left == 0) return;
+  named_.erase(viewer->options().watch_id);
+  SessionChanged();
 }
 
 void Publisher::Close(const absl::Status& reason) {
@@ -90,12 +92,29 @@ void Publisher::Close(const absl::Status& reason) {
   for (const auto& viewer : viewers) viewer->End(reason);
 }
 
-absl::StatusOr<std::shared_ptr<Viewer>> Publisher::Find(const std::string& watch_id) const {
-  absl::MutexLock lock(&mutex_);
-  for (const Seat& seat : seats_) {
-    if (seat.viewer->options().watch_id == watch_id) return seat.viewer;
+absl::StatusOr<v1::AckFramesResponse> Publisher::Acknowledge(const v1::AckFramesRequest& request) {
+  std::shared_ptr<Viewer> viewer;
+  std::int64_t epoch = 0;
+  {
+    absl::MutexLock lock(&mutex_);
+    const auto found = named_.find(request.watch_id());
+    if (found == named_.end()) {
+      return absl::NotFoundError(absl::StrCat("watch_id: nobody watches as ", request.watch_id()));
+    }
+    viewer = found->second;
+    if (viewer->options().form.codec == v1::CODEC_BASIS && basis_ != nullptr) epoch = basis_->epoch;
   }
-  return absl::NotFoundError(absl::StrCat("watch_id: nobody watches as ", watch_id));
+  v1::AckFramesResponse response = viewer->Acknowledge(request.sequence(), request.basis_epoch(), clock_.Now());
+  response.set_basis_epoch(epoch);
+  if (!viewer->passed_over()) return response;
+  absl::MutexLock lock(&mutex_);
+  stirred_ = true;
+  return response;
+}
+
+std::shared_ptr<const Basis> Publisher::basis() const {
+  absl::MutexLock lock(&mutex_);
+  return basis_;
 }
 
 int Publisher::viewers() const {
@@ -112,7 +131,7 @@ absl::Time Publisher::NextDue() const {
   absl::Time next = absl::InfiniteFuture();
   if (newest_ == nullptr) return next;
   for (const Seat& seat : seats_) {
-    if (seat.sequence < newest_->sequence) next = std::min(next, seat.due);
+    if (std::max(seat.sequence, seat.passed) < newest_->sequence) next = std::min(next, seat.due);
   }
   return next;
 }
@@ -128,13 +147,30 @@ Publisher::Round Publisher::TakeRound(absl::Time now) {
   for (Seat& seat : seats_) {
     (seat.greeted ? round.greeted : round.newcomers).push_back(seat.viewer);
     seat.greeted = true;
-    if (newest_ == nullptr || seat.sequence >= newest_->sequence || now < seat.due) continue;
-    seat.sequence = newest_->sequence;
-    const ViewerOptions& options = seat.viewer->options();
-    if (options.max_fps > 0) seat.due = now + absl::Seconds(1 / options.max_fps) - kEarly;
-    round.frames[seat.viewer->form()].push_back(seat.viewer);
   }
+  if (newest_ != nullptr) TakeFrames(now, round);
   return round;
+}
+
+void Publisher::TakeFrames(absl::Time now, Round& round) {
+  const std::int64_t sequence = newest_->sequence;
+  std::map<Form, std::vector<Seat*>> wanted;
+  for (Seat& seat : seats_) {
+    if (seat.sequence < sequence && now >= seat.due) wanted[seat.viewer->form()].push_back(&seat);
+  }
+  for (const auto& [form, seats] : wanted) {
+    const bool taken = std::any_of(seats.begin(), seats.end(), [sequence, now](const Seat* seat) {
+      return !seat->viewer->PassOver(sequence, now);
+    });
+    for (Seat* seat : seats) {
+      seat->passed = sequence;
+      if (!taken) continue;
+      seat->sequence = sequence;
+      const double max_fps = seat->viewer->options().max_fps;
+      if (max_fps > 0) seat->due = now + absl::Seconds(1 / max_fps) - kEarly;
+      round.frames[form].push_back(seat->viewer);
+    }
+  }
 }
 
 void Publisher::Deliver(const Round& round) {
@@ -161,6 +197,7 @@ void Publisher::DeliverFrames(const Round& round) {
     {
       absl::MutexLock lock(&mutex_);
       encodings_ = encoder_.encodings();
+      basis_ = encoder_.basis();
     }
     if (bytes == nullptr) continue;
     const absl::Time now = clock_.Now();

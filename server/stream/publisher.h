@@ -22,8 +22,9 @@
 
 namespace phrenic::stream {
 
-// Any thread may call; its own thread encodes and delivers, so that the stepping thread does neither. A frame that
-// nobody watches is not encoded, and a session that nobody ever watched has no such thread.
+// Any thread may call; its own thread encodes and delivers, so that the stepping thread does neither. A frame is
+// encoded in the forms that somebody may take: not for viewers who have yet to acknowledge earlier ones, whom the
+// newest waits for. A session that nobody ever watched has no such thread.
 class Publisher {
  public:
   Publisher(std::shared_ptr<const Model> model, const Clock& clock, int max_viewers);
@@ -47,10 +48,12 @@ class Publisher {
   // Ends every viewer with `reason` and the thread; nothing is delivered afterwards.
   void Close(const absl::Status& reason) ABSL_LOCKS_EXCLUDED(mutex_);
 
-  // The viewer of that name; NOT_FOUND where there is none.
-  absl::StatusOr<std::shared_ptr<Viewer>> Find(const std::string& watch_id) const ABSL_LOCKS_EXCLUDED(mutex_);
+  // The viewer of that name has taken frames; NOT_FOUND where there is none.
+  absl::StatusOr<v1::AckFramesResponse> Acknowledge(const v1::AckFramesRequest& request) ABSL_LOCKS_EXCLUDED(mutex_);
 
   int viewers() const ABSL_LOCKS_EXCLUDED(mutex_);
+  // The newest; null where there is none.
+  std::shared_ptr<const Basis> basis() const ABSL_LOCKS_EXCLUDED(mutex_);
   // How often positions were encoded.
   std::int64_t encodings() const ABSL_LOCKS_EXCLUDED(mutex_);
   const Layout& layout() const { return layout_; }
@@ -61,6 +64,7 @@ class Publisher {
     std::shared_ptr<Viewer> viewer;
     std::int64_t sequence = 0;              // of the newest frame
     bool greeted = false;                   // was told the session's state
+    std::int64_t passed = 0;                // the newest frame that was not made for it
     absl::Time due = absl::InfinitePast();  // no frame before this
   };
   using Viewers = std::vector<std::shared_ptr<Viewer>>;
@@ -78,6 +82,8 @@ class Publisher {
   bool Stirred() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) { return stirred_ || closed_.has_value(); }
   absl::Time NextDue() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   Round TakeRound(absl::Time now) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // Chooses who gets the newest frame, and in which form.
+  void TakeFrames(absl::Time now, Round& round) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void Deliver(const Round& round) ABSL_LOCKS_EXCLUDED(mutex_);
   static void DeliverCamera(const Round& round);
   void DeliverFrames(const Round& round) ABSL_LOCKS_EXCLUDED(mutex_);
@@ -94,9 +100,11 @@ class Publisher {
   Bytes camera_ ABSL_GUARDED_BY(mutex_);
   bool camera_moved_ ABSL_GUARDED_BY(mutex_) = false;  // not told yet
   std::vector<Seat> seats_ ABSL_GUARDED_BY(mutex_);
-  bool stirred_ ABSL_GUARDED_BY(mutex_) = false;  // something came since the last round
+  std::map<std::string, std::shared_ptr<Viewer>> named_ ABSL_GUARDED_BY(mutex_);  // those of seats_ that have a name
+  bool stirred_ ABSL_GUARDED_BY(mutex_) = false;                                  // something came since the last round
   std::optional<absl::Status> closed_ ABSL_GUARDED_BY(mutex_);
   std::int64_t encodings_ ABSL_GUARDED_BY(mutex_) = 0;
+  std::shared_ptr<const Basis> basis_ ABSL_GUARDED_BY(mutex_);
   Encoder encoder_;                             // of the publisher's thread only
   std::thread thread_ ABSL_GUARDED_BY(mutex_);  // since the first viewer came
 };

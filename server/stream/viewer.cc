@@ -10,19 +10,39 @@ Form Viewer::form() const {
   absl::MutexLock lock(&mutex_);
   Form form = options_.form;
   form.rung = credit_.rung();
+  if (form.codec == v1::CODEC_BASIS) form.basis_epoch = basis_epoch_;
   return form;
+}
+
+bool Viewer::passed_over() const {
+  absl::MutexLock lock(&mutex_);
+  return passed_over_;
+}
+
+void Viewer::Wait(std::int64_t sequence, absl::Time now) {
+  if ((frame_ != nullptr || passed_over_) && sequence_ != sequence) {
+    ++missed_;
+    credit_.Missed(now);
+  }
+  sequence_ = sequence;
+}
+
+bool Viewer::PassOver(std::int64_t sequence, absl::Time now) {
+  absl::MutexLock lock(&mutex_);
+  if (credit_.MaySend()) return false;
+  Wait(sequence, now);
+  frame_ = nullptr;
+  passed_over_ = true;
+  return true;
 }
 
 void Viewer::PutFrame(std::int64_t sequence, Bytes frame, absl::Time now) {
   {
     absl::MutexLock lock(&mutex_);
     if (end_.has_value()) return;
-    if (frame_ != nullptr) {
-      ++missed_;
-      credit_.Missed(now);
-    }
+    Wait(sequence, now);
     frame_ = std::move(frame);
-    sequence_ = sequence;
+    passed_over_ = false;
   }
   wake_();
 }
@@ -78,11 +98,12 @@ Bytes Viewer::Take(absl::Time now) {
   return std::exchange(frame_, nullptr);
 }
 
-v1::AckFramesResponse Viewer::Acknowledge(std::int64_t sequence, absl::Time now) {
+v1::AckFramesResponse Viewer::Acknowledge(std::int64_t sequence, std::int64_t basis_epoch, absl::Time now) {
   v1::AckFramesResponse response;
   {
     absl::MutexLock lock(&mutex_);
     credit_.Acknowledged(sequence, now);
+    basis_epoch_ = basis_epoch;
     response.set_unix_nanos(absl::ToUnixNanos(now));
     response.set_frames_per_second(credit_.FramesPerSecond(now));
     response.set_max_error_mm(options_.form.codec == v1::CODEC_RAW ? 0 : RungMillimetres(credit_.rung()));

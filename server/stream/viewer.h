@@ -51,6 +51,8 @@ class Viewer {
   Form form() const ABSL_LOCKS_EXCLUDED(mutex_);
 
   void PutFrame(std::int64_t sequence, Bytes frame, absl::Time now) ABSL_LOCKS_EXCLUDED(mutex_);
+  // False where a frame may be taken now; else this one waits without having been made, in the place of any other.
+  bool PassOver(std::int64_t sequence, absl::Time now) ABSL_LOCKS_EXCLUDED(mutex_);
   // A viewer that leaves kMostNews changes untaken is ended with RESOURCE_EXHAUSTED.
   void PutSession(const News& news) ABSL_LOCKS_EXCLUDED(mutex_);
   void PutCamera(Bytes camera) ABSL_LOCKS_EXCLUDED(mutex_);
@@ -60,20 +62,28 @@ class Viewer {
   // The next message, the session's states and the camera before a frame, a frame only where few enough are
   // unacknowledged; null where there is none.
   Bytes Take(absl::Time now) ABSL_LOCKS_EXCLUDED(mutex_);
-  // What came of it.
-  v1::AckFramesResponse Acknowledge(std::int64_t sequence, absl::Time now) ABSL_LOCKS_EXCLUDED(mutex_);
+  // What came of it. `basis_epoch` is that of the basis which the viewer has.
+  v1::AckFramesResponse Acknowledge(std::int64_t sequence, std::int64_t basis_epoch, absl::Time now)
+      ABSL_LOCKS_EXCLUDED(mutex_);
+  // A frame waits to be made for this viewer.
+  bool passed_over() const ABSL_LOCKS_EXCLUDED(mutex_);
   // Why nothing more comes, once everything is taken that may be.
   std::optional<absl::Status> ended() const ABSL_LOCKS_EXCLUDED(mutex_);
   // Frames that were replaced before they were taken.
   std::int64_t missed() const ABSL_LOCKS_EXCLUDED(mutex_);
 
  private:
+  // This frame waits from now on: another that did was missed.
+  void Wait(std::int64_t sequence, absl::Time now) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+
   const ViewerOptions options_;
   const std::function<void()> wake_;
   mutable absl::Mutex mutex_;
   Credit credit_ ABSL_GUARDED_BY(mutex_);
   Bytes frame_ ABSL_GUARDED_BY(mutex_);
-  std::int64_t sequence_ ABSL_GUARDED_BY(mutex_) = 0;  // of frame_
+  std::int64_t sequence_ ABSL_GUARDED_BY(mutex_) = 0;  // of frame_, or of the one that is still to be made
+  bool passed_over_ ABSL_GUARDED_BY(mutex_) = false;   // it is still to be made
+  std::int64_t basis_epoch_ ABSL_GUARDED_BY(mutex_) = 0;
   Bytes camera_ ABSL_GUARDED_BY(mutex_);
   std::deque<News> news_ ABSL_GUARDED_BY(mutex_);
   std::optional<absl::Status> end_ ABSL_GUARDED_BY(mutex_);

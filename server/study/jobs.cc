@@ -18,7 +18,8 @@ v1::Study WithoutResult(const v1::Study& study) {
 
 }  // namespace
 
-Jobs::Jobs(int kept) : kept_(static_cast<size_t>(kept)), thread_([this] { Loop(); }) {}
+Jobs::Jobs(int kept, Keeper keeper)
+    : kept_(static_cast<size_t>(kept)), keeper_(std::move(keeper)), thread_([this] { Loop(); }) {}
 
 Jobs::~Jobs() {
   {
@@ -48,6 +49,15 @@ absl::StatusOr<v1::Study> Jobs::Add(const std::string& id, const std::string& ki
   return study;
 }
 
+void Jobs::Restore(v1::Study study) {
+  auto job = std::make_shared<Job>();
+  job->seen.study = std::move(study);
+  job->seen.version = 1;
+  job->seen.ended = true;
+  absl::MutexLock lock(&mutex_);
+  jobs_.push_back(std::move(job));
+}
+
 absl::StatusOr<std::string> Jobs::ChooseId(const std::string& wanted, const std::string& kind,
                                            const std::string& scene) const {
   if (absl::Status status = schema::CheckId("study_id", wanted); !status.ok()) return status;
@@ -68,6 +78,7 @@ absl::Status Jobs::MakeRoom() {
     return absl::ResourceExhaustedError(
         absl::StrCat(kept_, " studies wait or run, and no more are allowed: delete one, or wait for one to end"));
   }
+  if (keeper_.gone) keeper_.gone((*ended)->seen.study.id());
   jobs_.erase(ended);
   return absl::OkStatus();
 }
@@ -119,6 +130,7 @@ absl::Status Jobs::Delete(const std::string& id) {
   if (job == nullptr) return NoStudy(id);
   job->cancelled = true;
   jobs_.remove(job);
+  if (keeper_.gone) keeper_.gone(id);
   return absl::OkStatus();
 }
 
@@ -164,6 +176,7 @@ void Jobs::RunOne(Job& job) {
   }
   job.seen.ended = true;
   Change(job);
+  if (keeper_.ended && !job.cancelled) keeper_.ended(study);
 }
 
 }  // namespace phrenic::study

@@ -28,15 +28,24 @@ class Jobs {
     bool ended = false;
   };
 
+  // What becomes of a study, for whoever writes it down; called by a thread of the jobs or a caller of theirs, and may
+  // not call them.
+  struct Keeper {
+    std::function<void(const v1::Study& study)> ended;      // with its result
+    std::function<void(const std::string& study_id)> gone;  // deleted, or made room
+  };
+
   // Keeps `kept` studies, waiting, running and ended.
-  explicit Jobs(int kept);
-  // Cancels what runs and waits for it.
+  explicit Jobs(int kept, Keeper keeper = Keeper());
+  // Cancels what runs and waits for it; it has not ended then.
   ~Jobs();
 
   // Queues a study; an empty id is chosen from `kind` and the scene. The oldest that has ended makes room;
   // RESOURCE_EXHAUSTED where none has. INVALID_ARGUMENT or ALREADY_EXISTS for an id that cannot be.
   absl::StatusOr<v1::Study> Add(const std::string& id, const std::string& kind, const std::string& scene, Work work)
       ABSL_LOCKS_EXCLUDED(mutex_);
+  // One that ended before.
+  void Restore(v1::Study study) ABSL_LOCKS_EXCLUDED(mutex_);
   // The study as soon as its version is above `seen`, or after `longest`. NOT_FOUND lists the ids there are.
   absl::StatusOr<Seen> Wait(const std::string& id, std::int64_t seen, absl::Duration longest) const
       ABSL_LOCKS_EXCLUDED(mutex_);
@@ -62,6 +71,7 @@ class Jobs {
   void Change(Job& job) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) { ++job.seen.version; }
 
   const size_t kept_;
+  const Keeper keeper_;
   mutable absl::Mutex mutex_;
   std::list<std::shared_ptr<Job>> jobs_ ABSL_GUARDED_BY(mutex_);  // oldest first
   bool closed_ ABSL_GUARDED_BY(mutex_) = false;

@@ -7,6 +7,7 @@
 #include "server/study/cost.h"
 #include "server/study/error.h"
 #include "server/study/stability.h"
+#include "server/study/streaming.h"
 #include "server/study/subject.h"
 
 namespace phrenic::study {
@@ -17,6 +18,7 @@ void FillStudy(v1::CreateStudyRequest& request) {
   if (request.has_error()) schema::FillDefaults(request.mutable_error());
   if (request.has_stability()) schema::FillDefaults(request.mutable_stability());
   if (request.has_cost()) schema::FillDefaults(request.mutable_cost());
+  if (request.has_streaming()) schema::FillDefaults(request.mutable_streaming());
 }
 
 absl::Status Fill(const v1::CreateStudyRequest& request, const Subject& subject, const Compiler& compile,
@@ -40,10 +42,16 @@ absl::Status Fill(const v1::CreateStudyRequest& request, const Subject& subject,
       *result.mutable_stability() = *std::move(table);
       return absl::OkStatus();
     }
+    case v1::CreateStudyRequest::kStreaming: {
+      auto table = StudyStreaming(request, subject, progress);
+      if (!table.ok()) return table.status();
+      *result.mutable_streaming() = *std::move(table);
+      return absl::OkStatus();
+    }
     case v1::CreateStudyRequest::WHAT_NOT_SET:
       break;
   }
-  return absl::InvalidArgumentError("what: must be set: error, stability or cost");
+  return absl::InvalidArgumentError("what: must be set: error, stability, cost or streaming");
 }
 
 }  // namespace

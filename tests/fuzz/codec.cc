@@ -18,6 +18,7 @@ phrenic::stream::RestShape Strip() {
   shape.edges.resize(2, 2 * kVertices - 3);
   for (int i = 0; i + 1 < kVertices; ++i) shape.edges.col(i) << i, i + 1;
   for (int i = 0; i + 2 < kVertices; ++i) shape.edges.col(kVertices - 1 + i) << i, i + 2;
+  for (const float part : {0.1F, -0.5F}) shape.shapes.emplace_back(part * shape.rest.colwise().reverse());
   return shape;
 }
 

@@ -4,6 +4,7 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "absl/strings/escaping.h"
 #include "server/mesh/topology.h"
@@ -25,19 +26,29 @@ TEST(Golden, PositionsOfEachCodecAreThoseInTheFile) {
   const auto corners = golden["triangles"].get<std::vector<int>>();
   const Triangles triangles =
       Eigen::Map<const Triangles>(corners.data(), 3, static_cast<Eigen::Index>(corners.size() / 3));
-  const RestShape shape{.rest = Positions(golden["rest"]), .edges = TriangleEdges(triangles)};
-  ASSERT_EQ(golden["encodings"].size(), Codecs().size()) << "a codec has no bytes in the file";
+  RestShape shape{.rest = Positions(golden["rest"]), .edges = TriangleEdges(triangles)};
+  const auto predicted = MakeCodec(v1::CODEC_PREDICTED, shape);
+  for (const Json& each : golden["shapes"]) {
+    const auto placed = predicted->Decode(absl::HexStringToBytes(each["bytes"].get<std::string>()));
+    ASSERT_TRUE(placed.ok()) << placed.status();
+    shape.shapes.emplace_back(*placed - shape.rest);
+    EXPECT_EQ(shape.shapes.back(), Positions(each["displacements"]));
+  }
+  std::set<v1::Codec> pinned;
   for (const Json& encoding : golden["encodings"]) {
     v1::Codec named = v1::CODEC_UNSPECIFIED;
     ASSERT_TRUE(v1::Codec_Parse(encoding["codec"].get<std::string>(), &named));
+    pinned.insert(named);
     const auto codec = MakeCodec(named, shape);
     const auto decoded = codec->Decode(absl::HexStringToBytes(encoding["bytes"].get<std::string>()));
     ASSERT_TRUE(decoded.ok()) << decoded.status();
     EXPECT_EQ(*decoded, Positions(encoding["positions"])) << encoding["codec"];
-    const auto again = codec->Encode(Positions(golden["positions"]), 1e-3 * golden["maxErrorMm"].get<double>());
+    const auto again = codec->Encode(Positions(golden["positions"]),
+                                     1e-3 * encoding.value("maxErrorMm", golden["maxErrorMm"].get<double>()));
     ASSERT_TRUE(again.ok()) << again.status();
     EXPECT_EQ(*codec->Decode(*again), *decoded) << encoding["codec"];
   }
+  EXPECT_EQ(pinned.size(), Codecs().size()) << "a codec has no bytes in the file";
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 
 #include "server/mechanics/step.h"
 #include "server/session/models.h"
+#include "server/stream/basis.h"
 #include "server/stream/rest_shape.h"
 
 namespace phrenic::stream {
@@ -46,6 +47,8 @@ Frames RunScene(const std::string& scene, const std::string& data, double resolu
       positions.middleCols(layout.first_vertex(body), placed.cols()) = placed.cast<float>();
     }
   }
+  // Of the first frame alone: what the others leave is for the codec to send.
+  made.shape.shapes = FindShapes({made.positions.front() - made.shape.rest});
   return made;
 }
 
@@ -162,6 +165,41 @@ TEST(PredictedCodec, IsTheSmallestOnAThorax) {
 TEST(PredictedCodec, MovingAsOneCostsNextToNothing) {
   const RestShape& shape = Thorax().shape;
   EXPECT_LT(Size(v1::CODEC_PREDICTED, shape, shape.rest.colwise() + Eigen::Vector3f(0.01F, 0.02F, -0.03F)), 400U);
+}
+
+// Displacements that are sums of two shapes: found, and sent as two numbers.
+TEST(BasisCodec, WhatTheShapesSpanTakesTheirPartsAlone) {
+  RestShape shape = Thorax().shape;
+  const Floats one = shape.rest * 0.02F, other = shape.rest.colwise().reverse() * 0.01F;
+  shape.shapes = FindShapes({one + other, one - 2 * other, 0.5F * one});
+  ASSERT_EQ(shape.shapes.size(), 2U);
+  const auto codec = MakeCodec(v1::CODEC_BASIS, shape);
+  const Floats positions = shape.rest + 0.3F * one - 0.7F * other;
+  const auto bytes = codec->Encode(positions, 0.01 * kMillimetre);
+  ASSERT_TRUE(bytes.ok()) << bytes.status();
+  EXPECT_EQ(bytes->size(), 16U + 2 * sizeof(float));
+  ExpectWithin(*codec->Decode(*bytes), positions, 0.01 * kMillimetre);
+}
+
+TEST(BasisCodec, OneVertexThatLeavesTheShapesCostsLittleMore) {
+  RestShape shape = Thorax().shape;
+  shape.shapes = FindShapes({shape.rest * 0.02F});
+  const auto codec = MakeCodec(v1::CODEC_BASIS, shape);
+  Floats positions = shape.rest + 0.5F * shape.shapes[0];
+  positions(2, 100) += 0.02F;
+  const auto bytes = codec->Encode(positions, 0.1 * kMillimetre);
+  ASSERT_TRUE(bytes.ok()) << bytes.status();
+  EXPECT_LT(bytes->size(), 120U);
+  ExpectWithin(*codec->Decode(*bytes), positions, 0.1 * kMillimetre);
+}
+
+// However bad the shapes are, a frame takes little more than without them.
+TEST(BasisCodec, ShapesOfAnotherMotionCostLittle) {
+  RestShape shape = Thorax().shape;
+  shape.shapes = FindShapes({Noisy(shape.rest, 0.01) - shape.rest, Noisy(shape.rest, 0.02) - shape.rest});
+  for (const Floats& frame : Thorax().positions) {
+    EXPECT_LT(Size(v1::CODEC_BASIS, shape, frame), 1.2 * static_cast<double>(Size(v1::CODEC_PREDICTED, shape, frame)));
+  }
 }
 
 }  // namespace

@@ -44,6 +44,13 @@ class PublisherTest : public testing::Test {
     return frame;
   }
 
+  absl::StatusOr<v1::AckFramesResponse> Acknowledge(const std::string& watch_id, std::int64_t sequence) {
+    v1::AckFramesRequest request;
+    request.set_watch_id(watch_id);
+    request.set_sequence(sequence);
+    return publisher_.Acknowledge(request);
+  }
+
   std::shared_ptr<const Model> model_ = CompileText(kTriangle);
   FakeClock clock_;
   Publisher publisher_{model_, clock_, 4};
@@ -147,7 +154,7 @@ TEST(Viewer, TakesNoMoreFramesThanItsWindowUntilItAcknowledges) {
     viewer.PutFrame(sequence, frame, absl::Now());
     EXPECT_EQ(viewer.Take(absl::Now()), sequence < 3 ? frame : nullptr);
   }
-  const v1::AckFramesResponse given = viewer.Acknowledge(2, absl::Now());
+  const v1::AckFramesResponse given = viewer.Acknowledge(2, 0, absl::Now());
   EXPECT_EQ(woken, 4) << "who serves it does not hear that it may go on";
   EXPECT_EQ(given.max_unacked_frames(), 2);
   EXPECT_EQ(given.frames_per_second(), 2);
@@ -167,11 +174,42 @@ TEST_F(PublisherTest, EachFormIsEncodedOnceAndHoldsWhatWasAskedFor) {
   EXPECT_EQ(publisher_.encodings(), 3);
 }
 
+TEST_F(PublisherTest, NothingIsEncodedForThoseWhoMayNotTakeItAndTheNewestComesOnceTheyMay) {
+  const auto full = Join({.form = {.codec = v1::CODEC_PREDICTED}, .max_unacked = 1, .watch_id = "full"}), raw = Join();
+  for (int sequence = 1; sequence <= 5; ++sequence) {
+    Offer(sequence);
+    NextFrame(*raw);
+    if (sequence == 1) NextFrame(*full);
+  }
+  EXPECT_EQ(publisher_.encodings(), 5 + 1) << "frames were encoded for a viewer that could not take them";
+  EXPECT_EQ(full->missed(), 3) << "of 2 to 5 the last still waits";
+  ASSERT_TRUE(Acknowledge("full", 1).ok());
+  EXPECT_EQ(Parse(NextFrame(*full)).frame().sequence(), 5);
+  EXPECT_EQ(publisher_.encodings(), 5 + 2);
+}
+
+TEST_F(PublisherTest, WhatOneMayTakeIsThereForAllOfItsForm) {
+  const Form form{.codec = v1::CODEC_PREDICTED};
+  const auto full = Join({.form = form, .max_unacked = 1, .watch_id = "full"}), quick = Join({.form = form});
+  for (int sequence = 1; sequence <= 3; ++sequence) {
+    Offer(sequence);
+    NextFrame(*quick);
+    if (sequence == 1) NextFrame(*full);
+  }
+  EXPECT_EQ(full->missed(), 1);
+  EXPECT_EQ(full->Acknowledge(1, 0, absl::Now()).max_unacked_frames(), 1);
+  EXPECT_EQ(Parse(NextFrame(*full)).frame().sequence(), 3);
+  EXPECT_EQ(publisher_.encodings(), 3);
+}
+
 TEST_F(PublisherTest, ANameIsOneViewersAlone) {
   const auto viewer = Join({.watch_id = "page"});
-  EXPECT_EQ(*publisher_.Find("page"), viewer);
+  EXPECT_TRUE(Acknowledge("page", 0).ok());
   EXPECT_TRUE(absl::IsAlreadyExists(publisher_.Join({.watch_id = "page"}, [] {}).status()));
-  EXPECT_TRUE(absl::IsNotFound(publisher_.Find("other").status()));
+  EXPECT_TRUE(absl::IsNotFound(Acknowledge("other", 0).status()));
+  publisher_.Leave(viewer);
+  EXPECT_TRUE(absl::IsNotFound(Acknowledge("page", 0).status()));
+  Join({.watch_id = "page"});
 }
 
 TEST_F(PublisherTest, StateOfTheSessionIsTheFirstThingAViewerGets) {

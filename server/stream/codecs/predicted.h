@@ -2,17 +2,12 @@
 #ifndef PHRENIC_SERVER_STREAM_CODECS_PREDICTED_H_
 #define PHRENIC_SERVER_STREAM_CODECS_PREDICTED_H_
 
-#include <array>
-#include <cstdint>
-#include <vector>
-
 #include "server/stream/codec.h"
-#include "server/stream/neighbour_weights.h"
+#include "server/stream/codecs/foretelling.h"
 
 namespace phrenic::stream {
 
-// x = rest + step d; d_i - round(sum w_j d_j) is small where neighbours move alike. Two bits each and the larger ones'
-// rest are compressed apart; proto/README.md has the bytes. Neighbours and weights: neighbour_weights.h.
+// x = rest + step d, d whole numbers; proto/README.md has the bytes.
 class PredictedCodec final : public Codec {
  public:
   explicit PredictedCodec(const RestShape& shape);
@@ -20,14 +15,8 @@ class PredictedCodec final : public Codec {
   absl::StatusOr<Floats> Decode(std::string_view bytes) const override;
 
  private:
-  // Three a place.
-  using Displacements = std::vector<std::int32_t>;
-
-  // Of the vertex at `place`, in steps.
-  std::array<std::int64_t, 3> Foretell(const Displacements& displacements, int place) const;
-
-  const NeighbourWeights neighbours_;
-  Floats rest_;  // in the order of places
+  const Foretelling foretelling_;
+  const Floats rest_;  // in the order of places
 };
 
 }  // namespace phrenic::stream

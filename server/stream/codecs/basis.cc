@@ -1,0 +1,125 @@
+#include "server/stream/codecs/basis.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "server/stream/quantise.h"
+#include "server/stream/wire.h"
+
+namespace phrenic::stream {
+namespace {
+
+constexpr std::size_t kBasisHead = 16;  // step float64, number of shapes, what follows
+constexpr double kRidge = 1e-9;         // of the shapes' mean square: two of them may be alike on chosen bodies
+
+// What follows the shapes' parts.
+enum class Rest : std::uint32_t { kNothing = 0, kAsItIs = 1, kForetold = 2 };
+
+// Steps from `sum` for each vertex that it leaves further from `positions` than `max_error`, three a place. None where
+// one is too far; empty where the sum suffices.
+std::optional<Steps> StepsFrom(const Eigen::Matrix3Xd& sum, const Floats& positions, double max_error, double step,
+                               const std::vector<int>& order) {
+  Steps steps;
+  for (std::size_t place = 0; place < order.size(); ++place) {
+    const Eigen::Vector3d own = positions.col(order[place]).cast<double>();
+    const Eigen::Vector3f alone = sum.col(order[place]).cast<float>();
+    if ((alone.cast<double>() - own).squaredNorm() <= max_error * max_error) continue;
+    if (steps.empty()) steps.resize(3 * order.size());
+    for (int axis = 0; axis < 3; ++axis) {
+      const double moved = std::floor((own[axis] - sum(axis, order[place])) / step + 0.5);
+      if (!(std::abs(moved) <= kFurthest)) return std::nullopt;
+      steps[3 * place + axis] = static_cast<std::int32_t>(moved);
+    }
+  }
+  return steps;
+}
+
+std::ptrdiff_t Zeros(const Steps& steps) { return std::count(steps.begin(), steps.end(), 0); }
+
+absl::Status BadBasis(const char* what) { return absl::InvalidArgumentError(std::string("basis: ") + what); }
+
+}  // namespace
+
+BasisCodec::BasisCodec(const RestShape& shape) : shape_(shape), foretelling_(shape) {
+  const auto count = static_cast<Eigen::Index>(shape.shapes.size());
+  Eigen::MatrixXd gram(count, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    for (Eigen::Index j = 0; j <= i; ++j) {
+      gram(i, j) = gram(j, i) = shape.shapes[i].cast<double>().cwiseProduct(shape.shapes[j].cast<double>()).sum();
+    }
+  }
+  if (count == 0) return;
+  gram.diagonal().array() += kRidge * (gram.trace() / static_cast<double>(count) + 1e-30);
+  gram_.compute(gram);
+}
+
+BasisCodec::Parts BasisCodec::FindParts(const Floats& positions) const {
+  const auto count = static_cast<Eigen::Index>(shape_.shapes.size());
+  const Floats moved = positions - shape_.rest;
+  Eigen::VectorXd along(count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    along[k] = shape_.shapes[k].cast<double>().cwiseProduct(moved.cast<double>()).sum();
+  }
+  Parts parts(shape_.shapes.size(), 0);
+  if (count == 0) return parts;
+  const Eigen::VectorXf found = gram_.solve(along).cast<float>();
+  if (found.allFinite()) std::copy(found.begin(), found.end(), parts.begin());
+  return parts;
+}
+
+BasisCodec::Doubles BasisCodec::Sum(const Parts& parts) const {
+  Doubles sum = shape_.rest.cast<double>();
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    const double part = parts[k];
+    const float* const shape = shape_.shapes[k].data();
+    double* const to = sum.data();
+    for (Eigen::Index i = 0; i < sum.size(); ++i) to[i] += part * static_cast<double>(shape[i]);
+  }
+  return sum;
+}
+
+absl::StatusOr<std::string> BasisCodec::Encode(const Floats& positions, double max_error) const {
+  const auto step = GridStep(positions, max_error);
+  if (!step.has_value() || !IsGridStep(*step)) return absl::OutOfRangeError("the bound is finer than float32");
+  const Parts parts = FindParts(positions);
+  const auto steps = StepsFrom(Sum(parts), positions, max_error, *step, foretelling_.order());
+  if (!steps.has_value()) return absl::OutOfRangeError("a vertex is too far from rest");
+  const Steps foretold = foretelling_.Remainders(*steps);
+  const bool fewer = Zeros(foretold) > Zeros(*steps);
+  const Rest rest = steps->empty() ? Rest::kNothing : fewer ? Rest::kForetold : Rest::kAsItIs;
+  std::string bytes;
+  Append(*step, bytes);
+  Append(static_cast<std::uint32_t>(parts.size()), bytes);
+  Append(static_cast<std::uint32_t>(rest), bytes);
+  for (const float part : parts) Append(part, bytes);
+  if (rest != Rest::kNothing) AppendRemainders(fewer ? foretold : *steps, bytes);
+  return bytes;
+}
+
+absl::StatusOr<Floats> BasisCodec::Decode(std::string_view bytes) const {
+  const std::size_t head = kBasisHead + sizeof(float) * shape_.shapes.size();
+  if (bytes.size() < head) return BadBasis("the head is cut off");
+  const double step = Read<double>(bytes, 0);
+  if (!IsGridStep(step)) return BadBasis("the step is not within 0 to 1 m");
+  if (Read<std::uint32_t>(bytes, 8) != shape_.shapes.size()) return BadBasis("it is of another number of shapes");
+  const auto rest = static_cast<Rest>(Read<std::uint32_t>(bytes, 12));
+  if (rest > Rest::kForetold) return BadBasis("nobody knows what follows");
+  Parts parts;
+  for (std::size_t at = kBasisHead; at < head; at += sizeof(float)) parts.push_back(Read<float>(bytes, at));
+  Doubles sum = Sum(parts);
+  if (rest == Rest::kNothing && bytes.size() != head) return BadBasis("more follows than was said");
+  if (rest != Rest::kNothing) {
+    auto steps = ReadRemainders(bytes.substr(head), foretelling_.order().size());
+    if (!steps.ok()) return steps.status();
+    if (rest == Rest::kForetold) *steps = foretelling_.Sums(*steps);
+    for (std::size_t place = 0; place < foretelling_.order().size(); ++place) {
+      const int vertex = foretelling_.order()[place];
+      for (int axis = 0; axis < 3; ++axis) sum(axis, vertex) += step * (*steps)[3 * place + axis];
+    }
+  }
+  const Floats positions = sum.cast<float>();
+  if (!positions.allFinite()) return BadBasis("a number is not finite");
+  return positions;
+}
+
+}  // namespace phrenic::stream

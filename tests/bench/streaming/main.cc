@@ -1,0 +1,40 @@
+// What viewers get and what they cost the server, held against the aims of its design, over real sockets:
+// streaming_bench [fanout] [stalled] [lines] [stepping] [--seconds S] [--viewers N]... The server is a process of its
+// own, and its CPU time is read from outside; times of arrival depend on what else the machine does.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "tests/bench/streaming/parts.h"
+
+namespace phrenic::bench {
+namespace {
+
+int Main(int argc, char** argv) {
+  Settings settings;
+  CLI::App app("Frames to many viewers: rate, age, CPU, memory and bytes, beside what is aimed at.");
+  std::vector<std::string> wanted;
+  app.add_option("parts", wanted, "Parts of the table; all where none is named")
+      ->check(CLI::IsMember({"fanout", "stalled", "lines", "stepping"}));
+  app.add_option("--scene", settings.scene, "Scene that is watched")->capture_default_str();
+  app.add_option("--seconds", settings.seconds, "Seconds that each row is watched")->check(CLI::Range(0.2, 60.0));
+  app.add_option("--viewers", settings.viewers, "Viewers of the fan-out's rows")->check(CLI::Range(1, 900));
+  CLI11_PARSE(app, argc, argv);
+  auto bench = Bench::Start(settings);
+  if (!bench.ok()) {
+    std::fprintf(stderr, "%s\n", std::string(bench.status().message()).c_str());
+    return 1;
+  }
+  bool complete = true;
+  const std::pair<const char*, bool (*)(Bench&)> parts[] = {
+      {"fanout", FanOut}, {"stalled", Stalled}, {"lines", Lines}, {"stepping", Stepping}};
+  for (const auto& [name, run] : parts) {
+    const bool named = std::find(wanted.begin(), wanted.end(), name) != wanted.end();
+    if (wanted.empty() || named) complete = run(**bench) && complete;
+  }
+  return complete ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace phrenic::bench
+
+int main(int argc, char** argv) { return phrenic::bench::Main(argc, argv); }
