@@ -6,6 +6,7 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "server/schema/places.h"
 #include "server/schema/schema.h"
 
 namespace phrenic::imaging {
@@ -13,7 +14,8 @@ namespace phrenic::imaging {
 absl::StatusOr<v1::LabelMap> ReadLabelMap(const std::string& name_or_file) {
   const bool is_file = absl::StrContains(name_or_file, "/") || absl::EndsWith(name_or_file, ".textproto");
   const std::string path =
-      is_file ? name_or_file : absl::StrCat(PHRENIC_LABEL_MAPS_DIR "/", name_or_file, ".textproto");
+      is_file ? name_or_file
+              : absl::StrCat(Installed("labels", PHRENIC_LABEL_MAPS_DIR), "/", name_or_file, ".textproto");
   std::ifstream file(path);
   if (!file) {
     return absl::NotFoundError(absl::StrCat("cannot read the label map ", path,

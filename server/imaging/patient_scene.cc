@@ -55,7 +55,8 @@ v1::Role RoleOf(v1::Structure structure) {
   }
 }
 
-void AddBodies(const std::vector<PatientBody>& bodies, double mass, const std::string& folder, v1::Scene& scene) {
+void AddBodies(const std::vector<PatientBody>& bodies, const v1::Body& sheet, double mass, const std::string& folder,
+               v1::Scene& scene) {
   scene.clear_bodies();
   for (const PatientBody& from : bodies) {
     v1::Body& body = *scene.add_bodies();
@@ -64,7 +65,9 @@ void AddBodies(const std::vector<PatientBody>& bodies, double mass, const std::s
     body.set_role(RoleOf(from.anatomy.structure()));
     *body.mutable_anatomy() = from.anatomy;
     body.mutable_file()->set_path(absl::StrCat(folder, "/", from.name, ".msh"));
-    if (body.role() == v1::ROLE_DEFORMABLE) body.set_mass(mass);
+    if (body.role() != v1::ROLE_DEFORMABLE) continue;
+    body.set_mass(mass);
+    *body.mutable_regions() = sheet.regions();
   }
 }
 
@@ -157,8 +160,8 @@ v1::Probe ProbeOf(const std::string& name, const std::string& body) {
 
 void AddProbes(const std::vector<PatientBody>& bodies, v1::Scene& scene) {
   scene.clear_probes();
-  (*scene.add_probes() = ProbeOf("right dome", "diaphragm")).set_highest_on(v1::SIDE_RIGHT);
-  (*scene.add_probes() = ProbeOf("left dome", "diaphragm")).set_highest_on(v1::SIDE_LEFT);
+  (*scene.add_probes() = ProbeOf("right summit", "diaphragm")).set_highest_on(v1::SIDE_RIGHT);
+  (*scene.add_probes() = ProbeOf("left summit", "diaphragm")).set_highest_on(v1::SIDE_LEFT);
   for (const PatientBody& body : bodies) {
     Eigen::Index at = 0;
     if (body.anatomy.structure() == v1::STRUCTURE_STERNUM_BODY) {
@@ -190,7 +193,7 @@ v1::Scene PatientScene(const v1::Scene& pattern, const std::vector<PatientBody>&
                              [&](const v1::Layer& layer) { return !layers.contains(layer.name()); }),
               shown.end());
   const double scale = ScaleOf(frame);
-  AddBodies(bodies, pattern.bodies(0).mass() * scale * scale, name, scene);
+  AddBodies(bodies, pattern.bodies(0), pattern.bodies(0).mass() * scale * scale, name, scene);
   AddMotions(pattern, bodies, layers, scale, scene);
   AdaptForces(bodies.front().mesh, frame, layers, scene);
   AddProbes(bodies, scene);

@@ -5,7 +5,6 @@
 
 #include "absl/cleanup/cleanup.h"
 #include "absl/strings/str_cat.h"
-#include "server/schema/schema.h"
 #include "server/service/status.h"
 #include "server/session/present_body.h"
 #include "server/study/comparison.h"
@@ -44,13 +43,16 @@ study::ComparisonSink MakeSink(grpc::ServerContext& context, CompareWriter& writ
 
 grpc::Status CompareService::Compare(grpc::ServerContext* context, const v1::CompareRequest* request,
                                      grpc::ServerWriter<v1::CompareResponse>* writer) {
-  if (absl::Status status = schema::Validate(*request); !status.ok()) return ToGrpc(status);
+  const auto caller = door_.Admit(*context, *request);
+  if (!caller.ok()) return ToGrpc(caller.status());
   const absl::Cleanup leave = [this] { --comparisons_; };
   if (++comparisons_ > max_comparisons_) {
     return ToGrpc(absl::ResourceExhaustedError(absl::StrCat(
-        max_comparisons_, " comparisons are under way, and no more are allowed; try again when one is done")));
+        max_comparisons_,
+        " comparisons are under way, and no more are allowed (--max-exports); try again when one is done")));
   }
-  const auto bodies = [this](const v1::SessionBody& body, v1::ComparedState& state) {
+  const auto bodies = [&](const v1::SessionBody& body, v1::ComparedState& state) -> absl::StatusOr<Mesh> {
+    if (const auto seen = door_.Find(*caller, body.session_id()); !seen.ok()) return seen.status();
     return session::FindPresentBody(table_, body, state);
   };
   const auto table = study::Compare(*request, bodies, MakeSink(*context, *writer));

@@ -5,6 +5,7 @@
 #include <atomic>
 
 #include "phrenic/v1/compare.grpc.pb.h"
+#include "server/service/door.h"
 #include "server/session/table.h"
 
 namespace phrenic::service {
@@ -13,7 +14,8 @@ namespace phrenic::service {
 // goes away.
 class CompareService final : public v1::CompareService::Service {
  public:
-  CompareService(const session::Table& table, int max_comparisons) : table_(table), max_comparisons_(max_comparisons) {}
+  CompareService(const session::Table& table, int max_comparisons, Door& door)
+      : table_(table), max_comparisons_(max_comparisons), door_(door) {}
 
   grpc::Status Compare(grpc::ServerContext* context, const v1::CompareRequest* request,
                        grpc::ServerWriter<v1::CompareResponse>* writer) override;
@@ -21,6 +23,7 @@ class CompareService final : public v1::CompareService::Service {
  private:
   const session::Table& table_;
   const int max_comparisons_;
+  Door& door_;
   std::atomic<int> comparisons_ = 0;
 };
 

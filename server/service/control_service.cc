@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "server/schema/schema.h"
 #include "server/service/status.h"
 
 namespace phrenic::service {
@@ -13,8 +12,10 @@ constexpr double kUsualStay = 30;  // [s]
 }  // namespace
 
 template <class Request, class Response, class Act>
-grpc::Status ControlService::Change(const Request& request, Response* response, Act act) {
-  if (absl::Status status = schema::Validate(request); !status.ok()) return ToGrpc(status);
+grpc::Status ControlService::Change(const grpc::ServerContext& context, const Request& request, Response* response,
+                                    Act act) {
+  const auto caller = door_.Admit(context, request);
+  if (!caller.ok()) return ToGrpc(caller.status());
   const auto session = table_.Find(request.session_id());
   if (!session.ok()) return ToGrpc(session.status());
   auto control = (*session)->ChangeControl(act);
@@ -23,9 +24,9 @@ grpc::Status ControlService::Change(const Request& request, Response* response, 
   return grpc::Status::OK;
 }
 
-grpc::Status ControlService::EnterSession(grpc::ServerContext* /*context*/, const v1::EnterSessionRequest* request,
+grpc::Status ControlService::EnterSession(grpc::ServerContext* context, const v1::EnterSessionRequest* request,
                                           v1::EnterSessionResponse* response) {
-  return Change(*request, response, [&](session::ControlBook& book, absl::Time now) {
+  return Change(*context, *request, response, [&](session::ControlBook& book, absl::Time now) {
     const auto stay = absl::Seconds(request->has_time_to_live() ? request->time_to_live() : kUsualStay);
     auto token = book.Enter(request->name(), request->control_token(), stay, now);
     if (token.ok()) response->set_control_token(*token);
@@ -33,34 +34,35 @@ grpc::Status ControlService::EnterSession(grpc::ServerContext* /*context*/, cons
   });
 }
 
-grpc::Status ControlService::TakeControl(grpc::ServerContext* /*context*/, const v1::TakeControlRequest* request,
+grpc::Status ControlService::TakeControl(grpc::ServerContext* context, const v1::TakeControlRequest* request,
                                          v1::TakeControlResponse* response) {
-  return Change(*request, response, [&](session::ControlBook& book, absl::Time now) {
+  return Change(*context, *request, response, [&](session::ControlBook& book, absl::Time now) {
     const auto granted = book.Take(request->control_token(), now);
     if (granted.ok()) response->set_granted(*granted);
     return granted.status();
   });
 }
 
-grpc::Status ControlService::HandControl(grpc::ServerContext* /*context*/, const v1::HandControlRequest* request,
+grpc::Status ControlService::HandControl(grpc::ServerContext* context, const v1::HandControlRequest* request,
                                          v1::HandControlResponse* response) {
-  return Change(*request, response, [&](session::ControlBook& book, absl::Time now) -> absl::Status {
+  return Change(*context, *request, response, [&](session::ControlBook& book, absl::Time now) -> absl::Status {
     if (request->everybody()) return book.HandToEverybody(request->control_token(), now);
     if (!request->name().empty()) return book.Hand(request->control_token(), request->name(), now);
     return absl::InvalidArgumentError("to: say to whom control goes: a name, or everybody");
   });
 }
 
-grpc::Status ControlService::ReleaseControl(grpc::ServerContext* /*context*/, const v1::ReleaseControlRequest* request,
+grpc::Status ControlService::ReleaseControl(grpc::ServerContext* context, const v1::ReleaseControlRequest* request,
                                             v1::ReleaseControlResponse* response) {
-  return Change(*request, response, [&](session::ControlBook& book, absl::Time now) {
+  return Change(*context, *request, response, [&](session::ControlBook& book, absl::Time now) {
     return book.Release(request->control_token(), now);
   });
 }
 
-grpc::Status ControlService::ShowCamera(grpc::ServerContext* /*context*/, const v1::ShowCameraRequest* request,
+grpc::Status ControlService::ShowCamera(grpc::ServerContext* context, const v1::ShowCameraRequest* request,
                                         v1::ShowCameraResponse* /*response*/) {
-  if (absl::Status status = schema::Validate(*request); !status.ok()) return ToGrpc(status);
+  const auto caller = door_.Admit(*context, *request);
+  if (!caller.ok()) return ToGrpc(caller.status());
   const auto session = table_.Find(request->session_id());
   if (!session.ok()) return ToGrpc(session.status());
   return ToGrpc((*session)->ShowCamera(request->camera(), request->control_token()));

@@ -3,6 +3,7 @@
 #define PHRENIC_SERVER_SERVICE_CONTROL_SERVICE_H_
 
 #include "phrenic/v1/control.grpc.pb.h"
+#include "server/service/door.h"
 #include "server/session/table.h"
 
 namespace phrenic::service {
@@ -10,7 +11,7 @@ namespace phrenic::service {
 // gRPC's threads call, any number at a time.
 class ControlService final : public v1::ControlService::Service {
  public:
-  explicit ControlService(session::Table& table) : table_(table) {}
+  explicit ControlService(session::Table& table, Door& door) : table_(table), door_(door) {}
 
   grpc::Status EnterSession(grpc::ServerContext* context, const v1::EnterSessionRequest* request,
                             v1::EnterSessionResponse* response) override;
@@ -26,9 +27,10 @@ class ControlService final : public v1::ControlService::Service {
  private:
   // Has `act` change who controls the session that the request names, and writes down who does then.
   template <class Request, class Response, class Act>
-  grpc::Status Change(const Request& request, Response* response, Act act);
+  grpc::Status Change(const grpc::ServerContext& context, const Request& request, Response* response, Act act);
 
   session::Table& table_;
+  Door& door_;
 };
 
 }  // namespace phrenic::service

@@ -5,7 +5,6 @@
 
 #include "absl/cleanup/cleanup.h"
 #include "absl/strings/str_cat.h"
-#include "server/schema/schema.h"
 #include "server/service/status.h"
 #include "server/session/surface_recorder.h"
 
@@ -28,8 +27,10 @@ v1::ExportValues ToProto(record::Values values) {
 
 }  // namespace
 
-grpc::Status ExportService::ListFormats(grpc::ServerContext*, const v1::ListFormatsRequest*,
+grpc::Status ExportService::ListFormats(grpc::ServerContext* context, const v1::ListFormatsRequest* request,
                                         v1::ListFormatsResponse* response) {
+  const auto caller = door_.Admit(*context, *request);
+  if (!caller.ok()) return ToGrpc(caller.status());
   for (const record::Format& format : session::ExportFormats()) {
     v1::FileFormat& listed = *response->add_formats();
     listed.set_name(format.name);
@@ -43,15 +44,17 @@ grpc::Status ExportService::ListFormats(grpc::ServerContext*, const v1::ListForm
   return grpc::Status::OK;
 }
 
-grpc::Status ExportService::CreateExport(grpc::ServerContext*, const v1::CreateExportRequest* request,
+grpc::Status ExportService::CreateExport(grpc::ServerContext* context, const v1::CreateExportRequest* request,
                                          v1::CreateExportResponse* response) {
-  if (absl::Status status = schema::Validate(*request); !status.ok()) return ToGrpc(status);
+  const auto caller = door_.Admit(*context, *request);
+  if (!caller.ok()) return ToGrpc(caller.status());
   const auto session = table_.Find(request->session_id());
   if (!session.ok()) return ToGrpc(session.status());
   auto fork = (*session)->MakeFork();
   if (!fork.ok()) return ToGrpc(fork.status());
   auto job = exports_.Add(*request, (*session)->shared_model(), *std::move(fork));
   if (!job.ok()) return ToGrpc(job.status());
+  door_.Give(Door::Kind::kExport, job->id(), caller->id());
   *response->mutable_job() = *std::move(job);
   return grpc::Status::OK;
 }
@@ -73,21 +76,31 @@ absl::Status ExportService::Watch(const std::string& id, grpc::ServerContext& co
 
 grpc::Status ExportService::WatchExport(grpc::ServerContext* context, const v1::WatchExportRequest* request,
                                         grpc::ServerWriter<v1::WatchExportResponse>* writer) {
-  if (absl::Status status = schema::Validate(*request); !status.ok()) return ToGrpc(status);
+  const auto caller = door_.Admit(*context, *request);
+  if (!caller.ok()) return ToGrpc(caller.status());
+  if (absl::Status own = door_.CheckOwns(Door::Kind::kExport, request->export_id(), *caller); !own.ok())
+    return ToGrpc(own);
   const absl::Cleanup leave = [this] { --streams_; };
   if (++streams_ > kMostExportStreams) return ToGrpc(TooMany());
   return ToGrpc(Watch(request->export_id(), *context, *writer));
 }
 
-grpc::Status ExportService::ListExports(grpc::ServerContext*, const v1::ListExportsRequest*,
+grpc::Status ExportService::ListExports(grpc::ServerContext* context, const v1::ListExportsRequest* request,
                                         v1::ListExportsResponse* response) {
-  for (v1::Export& job : exports_.List()) *response->add_exports() = std::move(job);
+  const auto caller = door_.Admit(*context, *request);
+  if (!caller.ok()) return ToGrpc(caller.status());
+  for (v1::Export& job : exports_.List()) {
+    if (door_.Owns(Door::Kind::kExport, job.id(), *caller)) *response->add_exports() = std::move(job);
+  }
   return grpc::Status::OK;
 }
 
-grpc::Status ExportService::DeleteExport(grpc::ServerContext*, const v1::DeleteExportRequest* request,
+grpc::Status ExportService::DeleteExport(grpc::ServerContext* context, const v1::DeleteExportRequest* request,
                                          v1::DeleteExportResponse*) {
-  if (absl::Status status = schema::Validate(*request); !status.ok()) return ToGrpc(status);
+  const auto caller = door_.Admit(*context, *request);
+  if (!caller.ok()) return ToGrpc(caller.status());
+  if (absl::Status own = door_.CheckOwns(Door::Kind::kExport, request->export_id(), *caller); !own.ok())
+    return ToGrpc(own);
   return ToGrpc(exports_.Delete(request->export_id()));
 }
 
@@ -112,9 +125,12 @@ absl::Status ExportService::Download(const v1::DownloadExportRequest& request,
   return absl::OkStatus();
 }
 
-grpc::Status ExportService::DownloadExport(grpc::ServerContext*, const v1::DownloadExportRequest* request,
+grpc::Status ExportService::DownloadExport(grpc::ServerContext* context, const v1::DownloadExportRequest* request,
                                            grpc::ServerWriter<v1::DownloadExportResponse>* writer) {
-  if (absl::Status status = schema::Validate(*request); !status.ok()) return ToGrpc(status);
+  const auto caller = door_.Admit(*context, *request);
+  if (!caller.ok()) return ToGrpc(caller.status());
+  if (absl::Status own = door_.CheckOwns(Door::Kind::kExport, request->export_id(), *caller); !own.ok())
+    return ToGrpc(own);
   const absl::Cleanup leave = [this] { --streams_; };
   if (++streams_ > kMostExportStreams) return ToGrpc(TooMany());
   return ToGrpc(Download(*request, *writer));

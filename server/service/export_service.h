@@ -5,6 +5,7 @@
 #include <atomic>
 
 #include "phrenic/v1/export.grpc.pb.h"
+#include "server/service/door.h"
 #include "server/session/exports.h"
 #include "server/session/table.h"
 
@@ -13,7 +14,8 @@ namespace phrenic::service {
 // gRPC's threads call, any number at a time; watchers and downloads have one each until they are done, 32 at most.
 class ExportService final : public v1::ExportService::Service {
  public:
-  ExportService(session::Table& table, session::Exports& exports) : table_(table), exports_(exports) {}
+  ExportService(session::Table& table, session::Exports& exports, Door& door)
+      : table_(table), exports_(exports), door_(door) {}
 
   grpc::Status ListFormats(grpc::ServerContext* context, const v1::ListFormatsRequest* request,
                            v1::ListFormatsResponse* response) override;
@@ -36,6 +38,7 @@ class ExportService final : public v1::ExportService::Service {
 
   session::Table& table_;
   session::Exports& exports_;
+  Door& door_;
   std::atomic<int> streams_ = 0;
 };
 

@@ -7,7 +7,6 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/schema/id.h"
-#include "server/schema/schema.h"
 #include "server/service/status.h"
 #include "server/service/watch_reactor.h"
 #include "server/session/present_forces.h"
@@ -16,16 +15,11 @@
 namespace phrenic::service {
 namespace {
 
-// The session that the request names, when the request is in order.
-absl::StatusOr<std::shared_ptr<session::Session>> Read(const session::Table& table, const grpc::ByteBuffer& bytes,
-                                                       v1::WatchFramesRequest& request) {
+absl::Status Parse(const grpc::ByteBuffer& bytes, v1::WatchFramesRequest& request) {
   grpc::ByteBuffer copy = bytes;  // shares the bytes
   grpc::ProtoBufferReader reader(&copy);
-  if (!request.ParseFromZeroCopyStream(&reader)) {
-    return absl::InvalidArgumentError("the bytes are no phrenic.v1.WatchFramesRequest");
-  }
-  if (absl::Status status = schema::Validate(request); !status.ok()) return status;
-  return table.Find(request.session_id());
+  if (request.ParseFromZeroCopyStream(&reader)) return absl::OkStatus();
+  return absl::InvalidArgumentError("the bytes are no phrenic.v1.WatchFramesRequest");
 }
 
 // The streamed bodies among those that are named, ascending.
@@ -73,20 +67,20 @@ absl::StatusOr<stream::ViewerOptions> ReadOptions(const Model& model, const stre
 
 absl::Status Acknowledge(const session::Table& table, const v1::AckFramesRequest& request,
                          v1::AckFramesResponse& response) {
-  if (absl::Status status = schema::Validate(request); !status.ok()) return status;
   const auto session = table.Find(request.session_id());
   if (!session.ok()) return session.status();
-  const auto viewer = (*session)->publisher().Find(request.watch_id());
-  if (!viewer.ok()) return viewer.status();
-  response = (*viewer)->Acknowledge(request.sequence(), absl::Now());
+  auto acknowledged = (*session)->publisher().Acknowledge(request);
+  if (!acknowledged.ok()) return acknowledged.status();
+  response = *std::move(acknowledged);
   return absl::OkStatus();
 }
 
 }  // namespace
 
-grpc::Status FrameService::GetGeometry(grpc::ServerContext* /*context*/, const v1::GetGeometryRequest* request,
+grpc::Status FrameService::GetGeometry(grpc::ServerContext* context, const v1::GetGeometryRequest* request,
                                        grpc::ServerWriter<v1::GetGeometryResponse>* writer) {
-  if (absl::Status status = schema::Validate(*request); !status.ok()) return ToGrpc(status);
+  const auto caller = door_.Admit(*context, *request);
+  if (!caller.ok()) return ToGrpc(caller.status());
   const auto session = table_.Find(request->session_id());
   if (!session.ok()) return ToGrpc(session.status());
   const Model& model = (*session)->model();
@@ -96,21 +90,32 @@ grpc::Status FrameService::GetGeometry(grpc::ServerContext* /*context*/, const v
   return grpc::Status::OK;
 }
 
-grpc::ServerWriteReactor<grpc::ByteBuffer>* FrameService::WatchFrames(grpc::CallbackServerContext* /*context*/,
-                                                                      const grpc::ByteBuffer* bytes) {
+absl::Status FrameService::Watch(const grpc::CallbackServerContext& context, const grpc::ByteBuffer& bytes,
+                                 WatchReactor& reactor) {
   v1::WatchFramesRequest request;
-  auto session = Read(table_, *bytes, request);
-  const auto reactor = WatchReactor::Make();
-  if (session.ok()) {
-    const auto options = ReadOptions((*session)->model(), (*session)->publisher().layout(), request);
-    if (options.ok()) {
-      reactor->Watch(*std::move(session), *options);
-    } else {
-      reactor->Refuse(options.status());
-    }
-  } else {
-    reactor->Refuse(session.status());
+  if (absl::Status parsed = Parse(bytes, request); !parsed.ok()) return parsed;
+  const auto caller = door_.Admit(context, request);
+  if (!caller.ok()) return caller.status();
+  auto session = table_.Find(request.session_id());
+  if (!session.ok()) return session.status();
+  const auto options = ReadOptions((*session)->model(), (*session)->publisher().layout(), request);
+  if (!options.ok()) return options.status();
+  const std::shared_ptr<void> seat(nullptr, [viewers = viewers_](void*) { --*viewers; });
+  if (++*viewers_ > max_viewers_) {
+    return absl::ResourceExhaustedError(absl::StrCat("there are ", max_viewers_,
+                                                     " viewers on this server, and no more ",
+                                                     "are allowed (--max-viewers-in-all); try again later"));
   }
+  auto may_see = door_.StillMaySee(*caller, **session);
+  reactor.Watch(*std::move(session), *options,
+                {seat, std::move(may_see), [this](std::size_t sent) { metrics_.CountFrame(sent); }});
+  return absl::OkStatus();
+}
+
+grpc::ServerWriteReactor<grpc::ByteBuffer>* FrameService::WatchFrames(grpc::CallbackServerContext* context,
+                                                                      const grpc::ByteBuffer* bytes) {
+  const auto reactor = WatchReactor::Make();
+  if (const absl::Status watched = Watch(*context, *bytes, *reactor); !watched.ok()) reactor->Refuse(watched);
   return reactor.get();
 }
 
@@ -118,13 +123,28 @@ grpc::ServerUnaryReactor* FrameService::AckFrames(grpc::CallbackServerContext* c
                                                   const v1::AckFramesRequest* request,
                                                   v1::AckFramesResponse* response) {
   grpc::ServerUnaryReactor* const reactor = context->DefaultReactor();
-  reactor->Finish(ToGrpc(Acknowledge(table_, *request, *response)));
+  const auto caller = door_.Admit(*context, *request);
+  reactor->Finish(ToGrpc(caller.ok() ? Acknowledge(table_, *request, *response) : caller.status()));
   return reactor;
 }
 
-grpc::Status FrameService::GetForces(grpc::ServerContext* /*context*/, const v1::GetForcesRequest* request,
+grpc::Status FrameService::GetBasis(grpc::ServerContext* context, const v1::GetBasisRequest* request,
+                                    v1::GetBasisResponse* response) {
+  const auto caller = door_.Admit(*context, *request);
+  if (!caller.ok()) return ToGrpc(caller.status());
+  const auto session = table_.Find(request->session_id());
+  if (!session.ok()) return ToGrpc(session.status());
+  const auto basis = (*session)->publisher().basis();
+  if (basis == nullptr) return grpc::Status::OK;
+  response->set_epoch(basis->epoch);
+  for (const std::string& shape : basis->encoded) response->add_shapes(shape);
+  return grpc::Status::OK;
+}
+
+grpc::Status FrameService::GetForces(grpc::ServerContext* context, const v1::GetForcesRequest* request,
                                      v1::GetForcesResponse* response) {
-  if (absl::Status status = schema::Validate(*request); !status.ok()) return ToGrpc(status);
+  const auto caller = door_.Admit(*context, *request);
+  if (!caller.ok()) return ToGrpc(caller.status());
   auto read = session::ReadForces(table_, *request);
   if (!read.ok()) return ToGrpc(read.status());
   *response = *std::move(read);

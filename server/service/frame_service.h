@@ -2,7 +2,13 @@
 #ifndef PHRENIC_SERVER_SERVICE_FRAME_SERVICE_H_
 #define PHRENIC_SERVER_SERVICE_FRAME_SERVICE_H_
 
+#include <atomic>
+#include <memory>
+
 #include "phrenic/v1/frames.grpc.pb.h"
+#include "server/service/door.h"
+#include "server/service/metrics.h"
+#include "server/service/watch_reactor.h"
 #include "server/session/table.h"
 
 namespace phrenic::service {
@@ -12,7 +18,8 @@ namespace phrenic::service {
 class FrameService final : public v1::FrameService::WithRawCallbackMethod_WatchFrames<
                                v1::FrameService::WithCallbackMethod_AckFrames<v1::FrameService::Service>> {
  public:
-  explicit FrameService(session::Table& table) : table_(table) {}
+  FrameService(session::Table& table, Door& door, Metrics& metrics, int max_viewers)
+      : table_(table), door_(door), metrics_(metrics), max_viewers_(max_viewers) {}
 
   grpc::Status GetGeometry(grpc::ServerContext* context, const v1::GetGeometryRequest* request,
                            grpc::ServerWriter<v1::GetGeometryResponse>* writer) override;
@@ -20,11 +27,20 @@ class FrameService final : public v1::FrameService::WithRawCallbackMethod_WatchF
                                                           const grpc::ByteBuffer* request) override;
   grpc::ServerUnaryReactor* AckFrames(grpc::CallbackServerContext* context, const v1::AckFramesRequest* request,
                                       v1::AckFramesResponse* response) override;
+  grpc::Status GetBasis(grpc::ServerContext* context, const v1::GetBasisRequest* request,
+                        v1::GetBasisResponse* response) override;
   grpc::Status GetForces(grpc::ServerContext* context, const v1::GetForcesRequest* request,
                          v1::GetForcesResponse* response) override;
 
  private:
+  // Watches on the reactor, or says why not.
+  absl::Status Watch(const grpc::CallbackServerContext& context, const grpc::ByteBuffer& bytes, WatchReactor& reactor);
+
   session::Table& table_;
+  Door& door_;
+  Metrics& metrics_;
+  const int max_viewers_;  // of all sessions
+  std::shared_ptr<std::atomic<int>> viewers_ = std::make_shared<std::atomic<int>>(0);
 };
 
 }  // namespace phrenic::service

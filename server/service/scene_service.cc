@@ -1,19 +1,21 @@
 #include "server/service/scene_service.h"
 
-#include "server/schema/schema.h"
 #include "server/service/status.h"
 
 namespace phrenic::service {
 
-grpc::Status SceneService::ListScenes(grpc::ServerContext* /*context*/, const v1::ListScenesRequest* /*request*/,
+grpc::Status SceneService::ListScenes(grpc::ServerContext* context, const v1::ListScenesRequest* request,
                                       v1::ListScenesResponse* response) {
+  const auto caller = door_.Admit(*context, *request);
+  if (!caller.ok()) return ToGrpc(caller.status());
   for (v1::SceneSummary& summary : models_.catalogue().List()) *response->add_scenes() = std::move(summary);
   return grpc::Status::OK;
 }
 
-grpc::Status SceneService::DescribeScene(grpc::ServerContext* /*context*/, const v1::DescribeSceneRequest* request,
+grpc::Status SceneService::DescribeScene(grpc::ServerContext* context, const v1::DescribeSceneRequest* request,
                                          v1::DescribeSceneResponse* response) {
-  if (absl::Status status = schema::Validate(*request); !status.ok()) return ToGrpc(status);
+  const auto caller = door_.Admit(*context, *request);
+  if (!caller.ok()) return ToGrpc(caller.status());
   const auto model = models_.Get(request->source());
   if (!model.ok()) return ToGrpc(model.status());
   *response->mutable_scene() = (*model)->scene;

@@ -3,6 +3,7 @@
 #define PHRENIC_SERVER_SERVICE_SCENE_SERVICE_H_
 
 #include "phrenic/v1/session.grpc.pb.h"
+#include "server/service/door.h"
 #include "server/session/models.h"
 
 namespace phrenic::service {
@@ -10,7 +11,7 @@ namespace phrenic::service {
 // gRPC's threads call, any number at a time.
 class SceneService final : public v1::SceneService::Service {
  public:
-  explicit SceneService(session::Models& models) : models_(models) {}
+  SceneService(session::Models& models, Door& door) : models_(models), door_(door) {}
 
   grpc::Status ListScenes(grpc::ServerContext* context, const v1::ListScenesRequest* request,
                           v1::ListScenesResponse* response) override;
@@ -19,6 +20,7 @@ class SceneService final : public v1::SceneService::Service {
 
  private:
   session::Models& models_;
+  Door& door_;
 };
 
 }  // namespace phrenic::service

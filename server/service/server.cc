@@ -9,17 +9,24 @@
 #include <filesystem>
 
 #include "absl/strings/str_cat.h"
+#include "server/mechanics/share_out.h"
+#include "server/service/access_service.h"
 #include "server/service/address.h"
+#include "server/service/caretaker.h"
 #include "server/service/compare_service.h"
 #include "server/service/control_service.h"
+#include "server/service/door.h"
 #include "server/service/export_service.h"
 #include "server/service/frame_service.h"
+#include "server/service/grpc_listener.h"
+#include "server/service/metrics.h"
 #include "server/service/scene_service.h"
 #include "server/service/server_service.h"
 #include "server/service/session_service.h"
 #include "server/service/study_service.h"
 #include "server/service/upload_service.h"
 #include "server/service/web_gateway.h"
+#include "server/service/web_pages.h"
 #include "server/session/exports.h"
 #include "server/session/table.h"
 #include "server/store/store.h"
@@ -27,9 +34,10 @@
 namespace phrenic::service {
 namespace {
 
-constexpr int kMostThreads = 128;   // of unary calls and exports; viewers need none of their own
-constexpr int kMostStreams = 1000;  // of one connection
-constexpr std::chrono::milliseconds kGrace(500);
+constexpr int kMostThreads = 128;                 // of unary calls and exports; viewers need none of their own
+constexpr int kMostStreams = 1000;                // of one connection
+constexpr std::chrono::milliseconds kGrace(500);  // for calls to end by themselves
+constexpr absl::Duration kTendPause = absl::Seconds(2);
 
 absl::Status CheckFolder(const std::string& folder, const char* option) {
   std::error_code error;
@@ -43,6 +51,22 @@ std::vector<std::string> SceneFolders(const ServerOptions& options) {
   return folders;
 }
 
+// What may be read and changed on its way is for this machine alone, unless somebody says so.
+absl::Status CheckReach(const ServerOptions& options) {
+  if (options.tls.used() || options.insecure_listen) return absl::OkStatus();
+  for (const auto& [flag, address] : {std::pair("--listen", options.listen), {"--web", options.web}}) {
+    const auto parts = ParseAddress(address);
+    if (!parts.ok() || IsLoopback(*parts)) continue;
+    return absl::FailedPreconditionError(
+        absl::StrCat(flag, ": ", address, " can be reached from other machines, and nothing is encrypted: give ",
+                     "--tls-cert and --tls-key, listen to 127.0.0.1 behind a proxy that has them, or say ",
+                     "--insecure-listen in a network that you trust"));
+  }
+  return absl::OkStatus();
+}
+
+int Milliseconds(double seconds) { return static_cast<int>(seconds * 1000); }
+
 // A dead peer is noticed within 15 s, and two servers never share a port.
 void Configure(const ServerOptions& options, grpc::ServerBuilder& builder) {
   builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
@@ -51,6 +75,12 @@ void Configure(const ServerOptions& options, grpc::ServerBuilder& builder) {
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, 5'000);
   builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, kMostStreams);
+  builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, Milliseconds(options.head_seconds));
+  builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_IDLE_MS, Milliseconds(options.idle_seconds));
+  // gRPC unpacks a compressed message of whatever size before it looks how long it is: none are taken.
+  builder.SetCompressionAlgorithmSupportStatus(GRPC_COMPRESS_GZIP, false);
+  builder.SetCompressionAlgorithmSupportStatus(GRPC_COMPRESS_DEFLATE, false);
+  builder.AddChannelArgument(GRPC_ARG_ENABLE_PER_MESSAGE_DECOMPRESSION, 0);
   builder.SetMaxReceiveMessageSize(options.max_message_bytes);
   builder.SetMaxSendMessageSize(-1);  // ours: bounded by the scenes that are taken on
   grpc::ResourceQuota quota("phrenicd");
@@ -62,34 +92,48 @@ void Configure(const ServerOptions& options, grpc::ServerBuilder& builder) {
 
 // In the order in which they depend on each other.
 struct Server::Parts {
-  Parts(const ServerOptions& options, std::unique_ptr<store::Store> kept)
+  Parts(const ServerOptions& options, std::unique_ptr<store::Store> kept, std::unique_ptr<access::Accounts> who,
+        std::unique_ptr<access::AuditLog> log)
       : store(std::move(kept)),
+        accounts(std::move(who)),
+        audit(std::move(log)),
         uploads(options.limits, options.spool_dir),
-        models(session::SceneCatalogue(SceneFolders(options)), options.data_dir, options.limits.models, &uploads),
+        models(session::SceneCatalogue(SceneFolders(options)), options.data_dir, options.limits.models, &uploads,
+               options.limits.vertices),
         table(models, clock, options.limits, store.get()),
-        scene_service(models),
-        session_service(table),
-        control_service(table),
-        frame_service(table),
+        door(*accounts, *audit, table, metrics, options.max_requests),
+        pages(door, metrics, table),
+        scene_service(models, door),
+        session_service(table, door),
+        control_service(table, door),
+        access_service(door, table),
+        frame_service(table, door, metrics, options.limits.viewers_in_all),
         exports(options.limits, options.spool_dir, clock),
-        export_service(table, exports),
-        upload_service(uploads, options.limits),
-        study_service(models, options.web_root),
-        compare_service(table, options.limits.exports),
-        server_service(std::filesystem::exists(options.web_root + "/index.html"), !options.data_dir.empty()) {}
+        export_service(table, exports, door),
+        upload_service(uploads, options.limits, door),
+        study_service(models, options.web_root, door, store.get()),
+        compare_service(table, options.limits.exports, door),
+        server_service(std::filesystem::exists(options.web_root + "/index.html"), !options.data_dir.empty(),
+                       options.tls.used(), door) {}
 
   absl::Status Restore(const ServerOptions& options);
   absl::Status Serve(const ServerOptions& options);
   absl::Status ServeWeb(const ServerOptions& options);
 
   const std::unique_ptr<store::Store> store;  // null: there is none
+  const std::unique_ptr<access::Accounts> accounts;
+  const std::unique_ptr<access::AuditLog> audit;
   stream::SystemClock clock;
   session::Uploads uploads;
   session::Models models;
   session::Table table;
+  Metrics metrics;
+  Door door;
+  WebPages pages;
   SceneService scene_service;
   SessionService session_service;
   ControlService control_service;
+  AccessService access_service;
   FrameService frame_service;
   session::Exports exports;
   ExportService export_service;
@@ -97,14 +141,16 @@ struct Server::Parts {
   StudyService study_service;
   CompareService compare_service;
   ServerService server_service;
+  std::unique_ptr<GrpcListener> listener;
   std::unique_ptr<grpc::Server> grpc;
   std::unique_ptr<WebGateway> web;
-  int port = 0;
+  std::unique_ptr<Caretaker> caretaker;
   std::map<std::string, absl::Status> lost;
 };
 
 absl::Status Server::Parts::Restore(const ServerOptions& options) {
   if (store == nullptr) return absl::OkStatus();
+  if (absl::Status status = study_service.Restore(); !status.ok()) return status;
   auto restored = table.Restore([&options](const std::string& id) {
     if (options.restoring) options.restoring(id);
   });
@@ -119,12 +165,15 @@ absl::Status Server::Parts::Serve(const ServerOptions& options) {
   grpc::ServerBuilder builder;
   Configure(options, builder);
   if (!options.listen.empty()) {
-    if (auto address = ParseAddress(options.listen); !address.ok()) return address.status();
-    builder.AddListeningPort(options.listen, grpc::InsecureServerCredentials(), &port);
+    auto listening = GrpcListener::Make(options.listen, static_cast<std::size_t>(options.max_connections),
+                                        MakeCredentials(options.tls), builder);
+    if (!listening.ok()) return listening.status();
+    listener = *std::move(listening);
   }
   builder.RegisterService(&scene_service);
   builder.RegisterService(&session_service);
   builder.RegisterService(&control_service);
+  builder.RegisterService(&access_service);
   builder.RegisterService(&frame_service);
   builder.RegisterService(&export_service);
   builder.RegisterService(&upload_service);
@@ -132,7 +181,8 @@ absl::Status Server::Parts::Serve(const ServerOptions& options) {
   builder.RegisterService(&compare_service);
   builder.RegisterService(&server_service);
   grpc = builder.BuildAndStart();
-  if (grpc == nullptr) return CannotListen(options.listen, "the port is in use, or the address is not this machine's");
+  if (grpc == nullptr) return absl::InternalError("gRPC could not be started");
+  if (listener != nullptr) listener->Start();
   return absl::OkStatus();
 }
 
@@ -143,8 +193,13 @@ absl::Status Server::Parts::ServeWeb(const ServerOptions& options) {
       .address = options.web,
       .settings = {.root = options.web_root,
                    .allowed_origins = options.allowed_origins,
-                   .max_body_bytes = kBase64 * static_cast<std::size_t>(options.max_message_bytes)},
-      .max_connections = static_cast<std::size_t>(options.max_web_connections)};
+                   .max_body_bytes = kBase64 * static_cast<std::size_t>(options.max_message_bytes),
+                   .head_time = std::chrono::milliseconds(Milliseconds(options.head_seconds)),
+                   .idle_time = std::chrono::milliseconds(Milliseconds(options.idle_seconds)),
+                   .page = [this](std::string_view target,
+                                  std::string_view authorization) { return pages.Find(target, authorization); }},
+      .max_connections = static_cast<std::size_t>(options.max_connections),
+      .tls = options.tls};
   grpc::ChannelArguments arguments;
   arguments.SetMaxReceiveMessageSize(-1);
   auto gateway = WebGateway::Start(web_options, grpc->InProcessChannel(arguments));
@@ -157,19 +212,32 @@ absl::Status Server::Parts::ServeWeb(const ServerOptions& options) {
 Server::Server(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 
 absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& options) {
+  if (absl::Status status = CheckTls(options.tls); !status.ok()) return status;
+  if (absl::Status status = CheckReach(options); !status.ok()) return status;
+  auto accounts = access::Accounts::Open(options.accounts);
+  if (!accounts.ok()) return accounts.status();
+  auto audit = access::AuditLog::Open(options.audit_file);
+  if (!audit.ok()) return audit.status();
   if (absl::Status status = CheckFolder(options.data_dir, "--data"); !status.ok()) return status;
   if (absl::Status status = CheckFolder(options.scenes_dir, "--scenes"); !status.ok()) return status;
   if (absl::Status status = CheckFolder(options.spool_dir, "--spool"); !status.ok()) return status;
+  if (options.step_threads != StepThreads()) SetStepThreads(options.step_threads);
   std::unique_ptr<store::Store> store;
   if (!options.store_dir.empty()) {
     auto opened = store::Store::Open(options.store_dir);
     if (!opened.ok()) return opened.status();
     store = *std::move(opened);
   }
-  std::unique_ptr<Server> server(new Server(std::make_unique<Parts>(options, std::move(store))));
+  std::unique_ptr<Server> server(
+      new Server(std::make_unique<Parts>(options, std::move(store), *std::move(accounts), *std::move(audit))));
   if (absl::Status status = server->parts_->Restore(options); !status.ok()) return status;
   if (absl::Status status = server->parts_->Serve(options); !status.ok()) return status;
   if (absl::Status status = server->parts_->ServeWeb(options); !status.ok()) return status;
+  server->parts_->caretaker = std::make_unique<Caretaker>(kTendPause, [parts = server->parts_.get()] {
+    parts->table.Tend();
+    parts->accounts->Refresh().IgnoreError();  // what was good before stays
+  });
+  server->parts_->pages.set_ready(true);
   return server;
 }
 
@@ -181,13 +249,17 @@ std::shared_ptr<grpc::Channel> Server::InProcessChannel() {
   return parts_->grpc->InProcessChannel(arguments);
 }
 
-int Server::port() const { return parts_->port; }
+int Server::port() const { return parts_->listener == nullptr ? 0 : parts_->listener->port(); }
 
 int Server::web_port() const { return parts_->web == nullptr ? 0 : parts_->web->port(); }
 
 const std::map<std::string, absl::Status>& Server::lost() const { return parts_->lost; }
 
 void Server::Shutdown() {
+  parts_->pages.set_ready(false);
+  if (parts_->grpc != nullptr) parts_->grpc->GetHealthCheckService()->SetServingStatus(false);
+  parts_->caretaker.reset();
+  if (parts_->listener != nullptr) parts_->listener->Shutdown();
   parts_->table.Close(absl::UnavailableError("the server is shutting down"));
   if (parts_->web != nullptr) parts_->web->Shutdown();
   if (parts_->grpc != nullptr) parts_->grpc->Shutdown(std::chrono::system_clock::now() + kGrace);

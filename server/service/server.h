@@ -11,7 +11,10 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "server/access/accounts.h"
 #include "server/record/spool_file.h"
+#include "server/schema/places.h"
+#include "server/service/tls.h"
 #include "server/session/limits.h"
 
 namespace phrenic::service {
@@ -20,21 +23,30 @@ struct ServerOptions {
   std::string listen;    // "127.0.0.1:50051", port 0 chooses one; empty: in process only
   std::string web;       // "127.0.0.1:8080", port 0 chooses one; empty: no web gateway
   std::string data_dir;  // surface files of scenes, and DATA/scenes; empty: none
-  std::string scenes_dir = PHRENIC_SCENES_DIR;
-  std::string web_root = PHRENIC_WEB_DIR;
+  std::string scenes_dir = Installed("scenes", PHRENIC_SCENES_DIR);
+  std::string web_root = Installed("web", PHRENIC_WEB_DIR);
   std::string spool_dir = record::DefaultSpoolFolder();  // of exports and uploads; nothing in it has a name
   std::string store_dir;  // of sessions, which go on after the server ended; empty: they end with it
   std::function<void(const std::string& session)> restoring;  // is called before each session of the store
-  std::vector<std::string> allowed_origins;  // "https://host:port" beside the gateway's own and loopback ones
+  std::vector<std::string> allowed_origins;  // "https://host:port", beside its own: may call, and frame the viewer
   session::Limits limits;
+  int step_threads = 1;              // that a step may have, of the whole process (mechanics/share_out.h)
   int max_message_bytes = 16 << 20;  // of a request
-  int max_web_connections = 256;
+  double max_requests = 200;         // a second, of one account or of another machine; 0: any number
+  int max_connections = 512;         // to each of `web` and `listen`
+  double head_seconds = 10;          // for a request's head to come
+  double idle_seconds = 60;          // for its rest, and for a connection without a request
+  TlsFiles tls;                      // none: nothing is encrypted
+  bool insecure_listen = false;      // unencrypted on an address that other machines can reach
+  access::AccountOptions accounts;   // none: every caller may do everything
+  std::string audit_file;            // empty: none
 };
 
 // Any thread may call. Its own threads: gRPC's, the gateway's, two a session, and one an export at once.
 class Server {
  public:
-  // Listens once the store's sessions are restored. UNAVAILABLE names the address that could not be listened on;
+  // Listens once the store's sessions are restored. FAILED_PRECONDITION where other machines would be listened to
+  // unencrypted, and nobody said that they may be; UNAVAILABLE names the address that could not be listened on;
   // NOT_FOUND the folder that is missing; else what is wrong with the store.
   static absl::StatusOr<std::unique_ptr<Server>> Start(const ServerOptions& options);
   ~Server();
@@ -48,7 +60,8 @@ class Server {
   int web_port() const;
   // Why sessions of the store could not be restored: they stay in it.
   const std::map<std::string, absl::Status>& lost() const;
-  // Ends calls and sessions, within about two seconds; a second call does nothing.
+  // Tells viewers, saves and ends sessions, breaks exports off and ends calls, within about two seconds but for a scene
+  // that is being built; a second call does nothing.
   void Shutdown();
 
  private:

@@ -1,13 +1,18 @@
 #include "server/service/server_service.h"
 
+#include "server/service/status.h"
+
 namespace phrenic::service {
 
-grpc::Status ServerService::GetServer(grpc::ServerContext* /*context*/, const v1::GetServerRequest* /*request*/,
+grpc::Status ServerService::GetServer(grpc::ServerContext* context, const v1::GetServerRequest* request,
                                       v1::GetServerResponse* response) {
+  const auto caller = door_.Admit(*context, *request);
+  if (!caller.ok()) return ToGrpc(caller.status());
   response->set_version(PHRENIC_VERSION);
   response->set_web_port(web_port_);
   response->set_viewer_is_built(viewer_is_built_);
   response->set_has_data_folder(has_data_folder_);
+  response->set_encrypted(encrypted_);
   return grpc::Status::OK;
 }
 

@@ -5,14 +5,15 @@
 #include <atomic>
 
 #include "phrenic/v1/server.grpc.pb.h"
+#include "server/service/door.h"
 
 namespace phrenic::service {
 
 // gRPC's threads call, any number at a time.
 class ServerService final : public v1::ServerService::Service {
  public:
-  ServerService(bool viewer_is_built, bool has_data_folder)
-      : viewer_is_built_(viewer_is_built), has_data_folder_(has_data_folder) {}
+  ServerService(bool viewer_is_built, bool has_data_folder, bool encrypted, Door& door)
+      : viewer_is_built_(viewer_is_built), has_data_folder_(has_data_folder), encrypted_(encrypted), door_(door) {}
 
   // Known once the gateway listens, which is after the first calls may come.
   void set_web_port(int port) { web_port_ = port; }
@@ -21,7 +22,8 @@ class ServerService final : public v1::ServerService::Service {
                          v1::GetServerResponse* response) override;
 
  private:
-  const bool viewer_is_built_, has_data_folder_;
+  const bool viewer_is_built_, has_data_folder_, encrypted_;
+  Door& door_;
   std::atomic<int> web_port_ = 0;
 };
 

@@ -4,19 +4,11 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/mechanics/presets.h"
-#include "server/schema/schema.h"
 #include "server/service/repeatable.h"
 #include "server/service/status.h"
 
 namespace phrenic::service {
 namespace {
-
-// The session that a request names, when the request is in order.
-template <class Request>
-absl::StatusOr<std::shared_ptr<session::Session>> Find(const session::Table& table, const Request& request) {
-  if (absl::Status status = schema::Validate(request); !status.ok()) return status;
-  return table.Find(request.session_id());
-}
 
 template <class Response>
 grpc::Status Answer(const v1::Session& session, Response* response) {
@@ -37,20 +29,43 @@ std::optional<Number> OptionalOf(bool has, Number value) {
   return has ? std::optional(value) : std::nullopt;
 }
 
+// How far the session is that this one plays in step with; null where it plays by itself.
+absl::StatusOr<std::shared_ptr<const session::ReachedTime>> LeaderOf(const Door& door, const access::Caller& caller,
+                                                                     const v1::PlaySessionRequest& request) {
+  if (request.in_step_with().empty()) return nullptr;
+  if (request.in_step_with() == request.session_id()) {
+    return absl::InvalidArgumentError("in_step_with: is the session itself; name another one, or none");
+  }
+  const auto leader = door.Find(caller, request.in_step_with());
+  if (leader.ok()) return (*leader)->reached();
+  return absl::NotFoundError(
+      absl::StrCat("in_step_with: there is no session \"", request.in_step_with(), "\"; list the sessions there are"));
+}
+
 }  // namespace
 
 // Has `act` change the session that the request names, once however often the request is repeated.
 template <class Request, class Response, class Act>
-grpc::Status SessionService::Change(const Request& request, Response* response, Act act) {
-  const auto session = Find(table_, request);
+grpc::Status SessionService::Change(const grpc::ServerContext& context, const Request& request, Response* response,
+                                    Act act) {
+  const auto caller = door_.Admit(context, request);
+  if (!caller.ok()) return ToGrpc(caller.status());
+  const auto session = table_.Find(request.session_id());
   if (!session.ok()) return ToGrpc(session.status());
-  return ToGrpc(Once((*session)->answers(), request, response, [&] { return act(**session); }));
+  return ToGrpc(Once((*session)->answers(), request, response, [&] {
+    if constexpr (std::is_invocable_v<Act, session::Session&, const access::Caller&>) {
+      return act(**session, *caller);
+    } else {
+      return act(**session);
+    }
+  }));
 }
 
-grpc::Status SessionService::CreateSession(grpc::ServerContext* /*context*/, const v1::CreateSessionRequest* request,
+grpc::Status SessionService::CreateSession(grpc::ServerContext* context, const v1::CreateSessionRequest* request,
                                            v1::CreateSessionResponse* response) {
-  if (absl::Status status = schema::Validate(*request); !status.ok()) return ToGrpc(status);
-  auto control = session::ControlBook::Make(request->control(), request->owner_name());
+  const auto caller = door_.Admit(*context, *request);
+  if (!caller.ok()) return ToGrpc(caller.status());
+  auto control = session::ControlBook::Make(request->control(), request->owner_name(), caller->account.name);
   if (!control.ok()) return ToGrpc(control.status());
   response->set_control_token(control->state().owner.token);
   const auto session = table_.Create(*request, *std::move(control));
@@ -58,18 +73,21 @@ grpc::Status SessionService::CreateSession(grpc::ServerContext* /*context*/, con
   return Answer((*session)->status(), response);
 }
 
-grpc::Status SessionService::GetSession(grpc::ServerContext* /*context*/, const v1::GetSessionRequest* request,
+grpc::Status SessionService::GetSession(grpc::ServerContext* context, const v1::GetSessionRequest* request,
                                         v1::GetSessionResponse* response) {
-  const auto session = Find(table_, *request);
+  const auto caller = door_.Admit(*context, *request);
+  if (!caller.ok()) return ToGrpc(caller.status());
+  const auto session = table_.Find(request->session_id());
   if (!session.ok()) return ToGrpc(session.status());
   *response->mutable_report() = (*session)->model().report;
   return Answer((*session)->status(), response);
 }
 
-grpc::Status SessionService::ForkSession(grpc::ServerContext* /*context*/, const v1::ForkSessionRequest* request,
+grpc::Status SessionService::ForkSession(grpc::ServerContext* context, const v1::ForkSessionRequest* request,
                                          v1::ForkSessionResponse* response) {
-  if (absl::Status status = schema::Validate(*request); !status.ok()) return ToGrpc(status);
-  auto control = session::ControlBook::Make(request->control(), request->owner_name());
+  const auto caller = door_.Admit(*context, *request);
+  if (!caller.ok()) return ToGrpc(caller.status());
+  auto control = session::ControlBook::Make(request->control(), request->owner_name(), caller->account.name);
   if (!control.ok()) return ToGrpc(control.status());
   response->set_control_token(control->state().owner.token);
   const auto fork = table_.Fork(*request, *std::move(control));
@@ -77,43 +95,52 @@ grpc::Status SessionService::ForkSession(grpc::ServerContext* /*context*/, const
   return Answer((*fork)->status(), response);
 }
 
-grpc::Status SessionService::ListSessions(grpc::ServerContext* /*context*/, const v1::ListSessionsRequest* request,
+grpc::Status SessionService::ListSessions(grpc::ServerContext* context, const v1::ListSessionsRequest* request,
                                           v1::ListSessionsResponse* response) {
+  const auto caller = door_.Admit(*context, *request);
+  if (!caller.ok()) return ToGrpc(caller.status());
   if (request->page_size() < 0 || request->page_size() > 1000) {
     return ToGrpc(
         absl::InvalidArgumentError(absl::StrCat("page_size: ", request->page_size(), " is outside 0 to 1000")));
   }
   session::Table::Page page = table_.List(request->page_size(), request->page_token());
-  for (const auto& session : page.sessions) *response->add_sessions() = session->status();
+  for (const auto& session : page.sessions) {
+    if (door_.MaySee(*caller, *session)) *response->add_sessions() = session->status();
+  }
   response->set_next_page_token(std::move(page.next_token));
   return grpc::Status::OK;
 }
 
-grpc::Status SessionService::DeleteSession(grpc::ServerContext* /*context*/, const v1::DeleteSessionRequest* request,
+grpc::Status SessionService::DeleteSession(grpc::ServerContext* context, const v1::DeleteSessionRequest* request,
                                            v1::DeleteSessionResponse* /*response*/) {
-  if (absl::Status status = schema::Validate(*request); !status.ok()) return ToGrpc(status);
+  const auto caller = door_.Admit(*context, *request);
+  if (!caller.ok()) return ToGrpc(caller.status());
+  if (door_.Owns(*caller, request->session_id())) return ToGrpc(table_.DeleteAnyway(request->session_id()));
   return ToGrpc(table_.Delete(request->session_id(), request->control_token()));
 }
 
-grpc::Status SessionService::PlaySession(grpc::ServerContext* /*context*/, const v1::PlaySessionRequest* request,
+grpc::Status SessionService::PlaySession(grpc::ServerContext* context, const v1::PlaySessionRequest* request,
                                          v1::PlaySessionResponse* response) {
-  return Change(*request, response, [&](session::Session& session) {
+  return Change(*context, *request, response, [&](session::Session& session, const access::Caller& caller) {
     const auto speed = OptionalOf(request->has_speed(), request->speed());
+    const auto leader = LeaderOf(door_, caller, *request);
+    if (!leader.ok()) return leader.status();
     return FillSession(
-        session.Play(speed, request->as_fast_as_possible(), request->until_time(), request->control_token()), response);
+        session.Play(speed, request->as_fast_as_possible(), request->until_time(), request->control_token(), *leader),
+        response);
   });
 }
 
-grpc::Status SessionService::PauseSession(grpc::ServerContext* /*context*/, const v1::PauseSessionRequest* request,
+grpc::Status SessionService::PauseSession(grpc::ServerContext* context, const v1::PauseSessionRequest* request,
                                           v1::PauseSessionResponse* response) {
-  return Change(*request, response, [&](session::Session& session) {
+  return Change(*context, *request, response, [&](session::Session& session) {
     return FillSession(session.Pause(request->control_token()), response);
   });
 }
 
 grpc::Status SessionService::StepSession(grpc::ServerContext* context, const v1::StepSessionRequest* request,
                                          v1::StepSessionResponse* response) {
-  return Change(*request, response, [&](session::Session& session) {
+  return Change(*context, *request, response, [&](session::Session& session) {
     const auto tick = OptionalOf(request->has_expected_tick(), request->expected_tick());
     const bool repeatable = !request->request_id().empty();
     auto stepped = session.Step(
@@ -125,17 +152,16 @@ grpc::Status SessionService::StepSession(grpc::ServerContext* context, const v1:
   });
 }
 
-grpc::Status SessionService::ResetSession(grpc::ServerContext* /*context*/, const v1::ResetSessionRequest* request,
+grpc::Status SessionService::ResetSession(grpc::ServerContext* context, const v1::ResetSessionRequest* request,
                                           v1::ResetSessionResponse* response) {
-  return Change(*request, response, [&](session::Session& session) {
+  return Change(*context, *request, response, [&](session::Session& session) {
     return FillSession(session.Reset(request->control_token()), response);
   });
 }
 
-grpc::Status SessionService::UpdateParameters(grpc::ServerContext* /*context*/,
-                                              const v1::UpdateParametersRequest* request,
+grpc::Status SessionService::UpdateParameters(grpc::ServerContext* context, const v1::UpdateParametersRequest* request,
                                               v1::UpdateParametersResponse* response) {
-  return Change(*request, response, [&](session::Session& session) {
+  return Change(*context, *request, response, [&](session::Session& session) {
     auto changes = FindPreset(session.model().scene, request->preset());
     if (!changes.ok()) return changes.status();
     changes->MergeFrom(request->parameters());
@@ -148,9 +174,9 @@ grpc::Status SessionService::UpdateParameters(grpc::ServerContext* /*context*/,
   });
 }
 
-grpc::Status SessionService::PullSession(grpc::ServerContext* /*context*/, const v1::PullSessionRequest* request,
+grpc::Status SessionService::PullSession(grpc::ServerContext* context, const v1::PullSessionRequest* request,
                                          v1::PullSessionResponse* response) {
-  return Change(*request, response, [&](session::Session& session) {
+  return Change(*context, *request, response, [&](session::Session& session) {
     if (request->pulls().empty() && !request->release_others()) {
       return absl::InvalidArgumentError("pulls: there is none; name one, or set release_others to let go of all");
     }

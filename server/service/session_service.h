@@ -3,6 +3,7 @@
 #define PHRENIC_SERVER_SERVICE_SESSION_SERVICE_H_
 
 #include "phrenic/v1/session.grpc.pb.h"
+#include "server/service/door.h"
 #include "server/session/table.h"
 
 namespace phrenic::service {
@@ -10,7 +11,7 @@ namespace phrenic::service {
 // gRPC's threads call, any number at a time.
 class SessionService final : public v1::SessionService::Service {
  public:
-  explicit SessionService(session::Table& table) : table_(table) {}
+  explicit SessionService(session::Table& table, Door& door) : table_(table), door_(door) {}
 
   grpc::Status CreateSession(grpc::ServerContext* context, const v1::CreateSessionRequest* request,
                              v1::CreateSessionResponse* response) override;
@@ -37,9 +38,10 @@ class SessionService final : public v1::SessionService::Service {
 
  private:
   template <class Request, class Response, class Act>
-  grpc::Status Change(const Request& request, Response* response, Act act);
+  grpc::Status Change(const grpc::ServerContext& context, const Request& request, Response* response, Act act);
 
   session::Table& table_;
+  Door& door_;
 };
 
 }  // namespace phrenic::service

@@ -1,7 +1,7 @@
 #include "server/service/study_service.h"
 
+#include "phrenic/v1/saved.pb.h"
 #include "server/mechanics/presets.h"
-#include "server/schema/schema.h"
 #include "server/service/status.h"
 #include "server/service/study_page.h"
 #include "server/study/physiology.h"
@@ -10,6 +10,8 @@
 namespace phrenic::service {
 namespace {
 
+constexpr char kRecord[] = "study";
+constexpr int kMostStudies = 16;
 constexpr int kMostWatchers = 16;                          // each has a thread of its own
 constexpr absl::Duration kLook = absl::Milliseconds(200);  // between two looks at whether the watcher is still there
 
@@ -21,6 +23,8 @@ const char* KindOf(const v1::CreateStudyRequest& request) {
       return "stability";
     case v1::CreateStudyRequest::kCost:
       return "cost";
+    case v1::CreateStudyRequest::kStreaming:
+      return "streaming";
     case v1::CreateStudyRequest::WHAT_NOT_SET:
       break;
   }
@@ -29,21 +33,72 @@ const char* KindOf(const v1::CreateStudyRequest& request) {
 
 }  // namespace
 
-grpc::Status StudyService::CreateStudy(grpc::ServerContext*, const v1::CreateStudyRequest* request,
-                                       v1::CreateStudyResponse* response) {
-  if (absl::Status status = schema::Validate(*request); !status.ok()) return ToGrpc(status);
-  const char* kind = KindOf(*request);
-  if (kind == nullptr) return ToGrpc(absl::InvalidArgumentError("what: must be set: error, stability or cost"));
-  const auto scene = models_.Resolve(request->source());
-  if (!scene.ok()) return ToGrpc(scene.status());
-  const auto preset = FindPreset(*scene, request->preset());
-  if (!preset.ok()) return ToGrpc(preset.status());
-  const auto work = [this, copy = *request](const study::Progress& progress) {
+StudyService::StudyService(session::Models& models, std::string web_root, Door& door, store::Store* store)
+    : models_(models),
+      web_root_(std::move(web_root)),
+      door_(door),
+      store_(store),
+      jobs_(kMostStudies, {[this](const v1::Study& study) { Save(study, nullptr); },
+                           [this](const std::string& id) {
+                             if (store_ != nullptr) store_->Remove(kRecord, id);
+                           }}) {}
+
+void StudyService::Save(const v1::Study& study, const v1::CreateStudyRequest* request) const {
+  if (store_ == nullptr) return;
+  v1::SavedStudy saved;
+  if (request != nullptr) *saved.mutable_request() = *request;
+  *saved.mutable_study() = study;
+  saved.set_owner(door_.OwnerOf(Door::Kind::kStudy, study.id()));
+  store_->Put(kRecord, study.id(), saved.SerializeAsString());
+}
+
+absl::Status StudyService::Restore() {
+  if (store_ == nullptr) return absl::OkStatus();
+  const auto records = store_->LoadRecords(kRecord);
+  if (!records.ok()) return records.status();
+  absl::Status damaged;
+  for (const store::SavedRecord& record : *records) {
+    v1::SavedStudy saved;
+    if (!record.problem.ok() || !saved.ParseFromString(record.bytes)) {
+      damaged.Update(record.problem);
+      continue;
+    }
+    door_.Give(Door::Kind::kStudy, record.id, saved.owner());
+    if (!saved.has_request()) {
+      jobs_.Restore(saved.study());
+    } else if (const auto again = Run(saved.request()); !again.ok()) {
+      saved.mutable_study()->set_state(v1::STUDY_STATE_FAILED);
+      saved.mutable_study()->set_problem(std::string(again.status().message()));
+      jobs_.Restore(saved.study());
+    }
+  }
+  return damaged;
+}
+
+absl::StatusOr<v1::Study> StudyService::Run(const v1::CreateStudyRequest& request) {
+  const char* kind = KindOf(request);
+  if (kind == nullptr) return absl::InvalidArgumentError("what: must be set: error, stability, cost or streaming");
+  const auto scene = models_.Resolve(request.source());
+  if (!scene.ok()) return scene.status();
+  const auto preset = FindPreset(*scene, request.preset());
+  if (!preset.ok()) return preset.status();
+  const auto work = [this, copy = request](const study::Progress& progress) {
     return study::Run(
         copy, [this](const v1::SceneSource& source) { return models_.Get(source); }, progress);
   };
-  auto study = jobs_.Add(request->study_id(), kind, scene->name(), work);
+  return jobs_.Add(request.study_id(), kind, scene->name(), work);
+}
+
+grpc::Status StudyService::CreateStudy(grpc::ServerContext* context, const v1::CreateStudyRequest* request,
+                                       v1::CreateStudyResponse* response) {
+  const auto caller = door_.Admit(*context, *request);
+  if (!caller.ok()) return ToGrpc(caller.status());
+  auto study = Run(*request);
   if (!study.ok()) return ToGrpc(study.status());
+  door_.Give(Door::Kind::kStudy, study->id(), caller->id());
+  v1::CreateStudyRequest again = *request;
+  again.set_study_id(study->id());
+  Save(*study, &again);
   *response->mutable_study() = *std::move(study);
   return grpc::Status::OK;
 }
@@ -65,28 +120,41 @@ absl::Status StudyService::Watch(const std::string& id, grpc::ServerContext& con
 
 grpc::Status StudyService::WatchStudy(grpc::ServerContext* context, const v1::WatchStudyRequest* request,
                                       grpc::ServerWriter<v1::WatchStudyResponse>* writer) {
-  if (absl::Status status = schema::Validate(*request); !status.ok()) return ToGrpc(status);
+  const auto caller = door_.Admit(*context, *request);
+  if (!caller.ok()) return ToGrpc(caller.status());
+  if (absl::Status own = door_.CheckOwns(Door::Kind::kStudy, request->study_id(), *caller); !own.ok())
+    return ToGrpc(own);
   absl::Status watched = absl::ResourceExhaustedError("16 callers watch studies, and no more are allowed: try later");
   if (watchers_.fetch_add(1) < kMostWatchers) watched = Watch(request->study_id(), *context, *writer);
   watchers_.fetch_sub(1);
   return ToGrpc(watched);
 }
 
-grpc::Status StudyService::ListStudies(grpc::ServerContext*, const v1::ListStudiesRequest*,
+grpc::Status StudyService::ListStudies(grpc::ServerContext* context, const v1::ListStudiesRequest* request,
                                        v1::ListStudiesResponse* response) {
-  for (v1::Study& study : jobs_.List()) *response->add_studies() = std::move(study);
+  const auto caller = door_.Admit(*context, *request);
+  if (!caller.ok()) return ToGrpc(caller.status());
+  for (v1::Study& study : jobs_.List()) {
+    if (door_.Owns(Door::Kind::kStudy, study.id(), *caller)) *response->add_studies() = std::move(study);
+  }
   return grpc::Status::OK;
 }
 
-grpc::Status StudyService::DeleteStudy(grpc::ServerContext*, const v1::DeleteStudyRequest* request,
+grpc::Status StudyService::DeleteStudy(grpc::ServerContext* context, const v1::DeleteStudyRequest* request,
                                        v1::DeleteStudyResponse*) {
-  if (absl::Status status = schema::Validate(*request); !status.ok()) return ToGrpc(status);
+  const auto caller = door_.Admit(*context, *request);
+  if (!caller.ok()) return ToGrpc(caller.status());
+  if (absl::Status own = door_.CheckOwns(Door::Kind::kStudy, request->study_id(), *caller); !own.ok())
+    return ToGrpc(own);
   return ToGrpc(jobs_.Delete(request->study_id()));
 }
 
-grpc::Status StudyService::GetStudyPage(grpc::ServerContext*, const v1::GetStudyPageRequest* request,
+grpc::Status StudyService::GetStudyPage(grpc::ServerContext* context, const v1::GetStudyPageRequest* request,
                                         v1::GetStudyPageResponse* response) {
-  if (absl::Status status = schema::Validate(*request); !status.ok()) return ToGrpc(status);
+  const auto caller = door_.Admit(*context, *request);
+  if (!caller.ok()) return ToGrpc(caller.status());
+  if (absl::Status own = door_.CheckOwns(Door::Kind::kStudy, request->study_id(), *caller); !own.ok())
+    return ToGrpc(own);
   const auto seen = jobs_.Wait(request->study_id(), 0, absl::ZeroDuration());
   if (!seen.ok()) return ToGrpc(seen.status());
   auto page = StudyPage(seen->study, web_root_);
@@ -97,7 +165,8 @@ grpc::Status StudyService::GetStudyPage(grpc::ServerContext*, const v1::GetStudy
 
 grpc::Status StudyService::CheckPhysiology(grpc::ServerContext* context, const v1::CheckPhysiologyRequest* request,
                                            grpc::ServerWriter<v1::CheckPhysiologyResponse>* writer) {
-  if (absl::Status status = schema::Validate(*request); !status.ok()) return ToGrpc(status);
+  const auto caller = door_.Admit(*context, *request);
+  if (!caller.ok()) return ToGrpc(caller.status());
   const auto model = models_.Get(request->source());
   if (!model.ok()) return ToGrpc(model.status());
   v1::CheckPhysiologyResponse response;

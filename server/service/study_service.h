@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "phrenic/v1/study.grpc.pb.h"
+#include "server/service/door.h"
 #include "server/session/models.h"
+#include "server/store/store.h"
 #include "server/study/jobs.h"
 
 namespace phrenic::service {
@@ -15,8 +17,11 @@ namespace phrenic::service {
 // gRPC's threads call, any number at a time.
 class StudyService final : public v1::StudyService::Service {
  public:
-  // `web_root` has report.html, the page without a study.
-  StudyService(session::Models& models, std::string web_root) : models_(models), web_root_(std::move(web_root)) {}
+  // `web_root` has report.html, the page without a study. `store` is null where studies end with the server.
+  StudyService(session::Models& models, std::string web_root, Door& door, store::Store* store);
+  // What an earlier server left: studies that ended are there again, the others run anew. Before any call. DATA_LOSS
+  // names one that is damaged: it is left out.
+  absl::Status Restore();
 
   grpc::Status CreateStudy(grpc::ServerContext* context, const v1::CreateStudyRequest* request,
                            v1::CreateStudyResponse* response) override;
@@ -33,12 +38,16 @@ class StudyService final : public v1::StudyService::Service {
                                grpc::ServerWriter<v1::CheckPhysiologyResponse>* writer) override;
 
  private:
+  absl::StatusOr<v1::Study> Run(const v1::CreateStudyRequest& request);
+  void Save(const v1::Study& study, const v1::CreateStudyRequest* request) const;
   absl::Status Watch(const std::string& id, grpc::ServerContext& context,
                      grpc::ServerWriter<v1::WatchStudyResponse>& writer) const;
 
   session::Models& models_;
   const std::string web_root_;
-  study::Jobs jobs_{16};
+  Door& door_;
+  store::Store* const store_;
+  study::Jobs jobs_;
   std::atomic<int> watchers_ = 0;
 };
 

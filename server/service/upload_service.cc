@@ -1,7 +1,6 @@
 #include "server/service/upload_service.h"
 
 #include "server/meshio/formats.h"
-#include "server/schema/schema.h"
 #include "server/service/status.h"
 #include "server/study/inspection.h"
 
@@ -16,8 +15,11 @@ void Fill(const session::Uploads::File& file, v1::UploadedFile& filled) {
 
 }  // namespace
 
-grpc::Status UploadService::ListSurfaceFormats(grpc::ServerContext*, const v1::ListSurfaceFormatsRequest*,
+grpc::Status UploadService::ListSurfaceFormats(grpc::ServerContext* context,
+                                               const v1::ListSurfaceFormatsRequest* request,
                                                v1::ListSurfaceFormatsResponse* response) {
+  const auto caller = door_.Admit(*context, *request);
+  if (!caller.ok()) return ToGrpc(caller.status());
   for (const meshio::Format& format : meshio::Formats()) {
     v1::SurfaceFormat& listed = *response->add_formats();
     listed.set_ending(std::string(format.ending));
@@ -27,46 +29,57 @@ grpc::Status UploadService::ListSurfaceFormats(grpc::ServerContext*, const v1::L
   return grpc::Status::OK;
 }
 
-grpc::Status UploadService::BeginUpload(grpc::ServerContext*, const v1::BeginUploadRequest* request,
+grpc::Status UploadService::BeginUpload(grpc::ServerContext* context, const v1::BeginUploadRequest* request,
                                         v1::BeginUploadResponse* response) {
-  if (absl::Status status = schema::Validate(*request); !status.ok()) return ToGrpc(status);
+  const auto caller = door_.Admit(*context, *request);
+  if (!caller.ok()) return ToGrpc(caller.status());
   const auto begun = uploads_.Begin(request->name(), request->size(), request->sha256());
   if (!begun.ok()) return ToGrpc(begun.status());
   response->set_upload_id(begun->id);
   response->set_received(begun->received);
   if (begun->id.empty()) Fill(begun->file, *response->mutable_file());
+  if (begun->id.empty()) door_.Give(Door::Kind::kUpload, begun->file.path(), caller->id());
   return grpc::Status::OK;
 }
 
-grpc::Status UploadService::AddUploadChunk(grpc::ServerContext*, const v1::AddUploadChunkRequest* request,
+grpc::Status UploadService::AddUploadChunk(grpc::ServerContext* context, const v1::AddUploadChunkRequest* request,
                                            v1::AddUploadChunkResponse* response) {
-  if (absl::Status status = schema::Validate(*request); !status.ok()) return ToGrpc(status);
+  const auto caller = door_.Admit(*context, *request);
+  if (!caller.ok()) return ToGrpc(caller.status());
   const auto received = uploads_.Add(request->upload_id(), request->offset(), request->chunk());
   if (!received.ok()) return ToGrpc(received.status());
   response->set_received(*received);
   return grpc::Status::OK;
 }
 
-grpc::Status UploadService::FinishUpload(grpc::ServerContext*, const v1::FinishUploadRequest* request,
+grpc::Status UploadService::FinishUpload(grpc::ServerContext* context, const v1::FinishUploadRequest* request,
                                          v1::FinishUploadResponse* response) {
-  if (absl::Status status = schema::Validate(*request); !status.ok()) return ToGrpc(status);
+  const auto caller = door_.Admit(*context, *request);
+  if (!caller.ok()) return ToGrpc(caller.status());
   const double unit_mm = request->has_unit_mm() ? request->unit_mm() : 1;
   const auto finished = uploads_.Finish(request->upload_id(), unit_mm);
   if (!finished.ok()) return ToGrpc(finished.status());
   Fill(finished->file, *response->mutable_file());
+  door_.Give(Door::Kind::kUpload, finished->file.path(), caller->id());
   *response->mutable_report() = study::Inspect(finished->file.name, finished->surface, unit_mm);
   return grpc::Status::OK;
 }
 
-grpc::Status UploadService::ListUploads(grpc::ServerContext*, const v1::ListUploadsRequest*,
+grpc::Status UploadService::ListUploads(grpc::ServerContext* context, const v1::ListUploadsRequest* request,
                                         v1::ListUploadsResponse* response) {
-  for (const session::Uploads::File& file : uploads_.List()) Fill(file, *response->add_files());
+  const auto caller = door_.Admit(*context, *request);
+  if (!caller.ok()) return ToGrpc(caller.status());
+  for (const session::Uploads::File& file : uploads_.List()) {
+    if (door_.Owns(Door::Kind::kUpload, file.path(), *caller)) Fill(file, *response->add_files());
+  }
   return grpc::Status::OK;
 }
 
-grpc::Status UploadService::DeleteUpload(grpc::ServerContext*, const v1::DeleteUploadRequest* request,
+grpc::Status UploadService::DeleteUpload(grpc::ServerContext* context, const v1::DeleteUploadRequest* request,
                                          v1::DeleteUploadResponse*) {
-  if (absl::Status status = schema::Validate(*request); !status.ok()) return ToGrpc(status);
+  const auto caller = door_.Admit(*context, *request);
+  if (!caller.ok()) return ToGrpc(caller.status());
+  if (absl::Status own = door_.CheckOwns(Door::Kind::kUpload, request->path(), *caller); !own.ok()) return ToGrpc(own);
   return ToGrpc(uploads_.Delete(request->path()));
 }
 

@@ -3,6 +3,7 @@
 #define PHRENIC_SERVER_SERVICE_UPLOAD_SERVICE_H_
 
 #include "phrenic/v1/upload.grpc.pb.h"
+#include "server/service/door.h"
 #include "server/session/uploads.h"
 
 namespace phrenic::service {
@@ -10,7 +11,8 @@ namespace phrenic::service {
 // gRPC's threads call, any number at a time.
 class UploadService final : public v1::UploadService::Service {
  public:
-  UploadService(session::Uploads& uploads, const session::Limits& limits) : uploads_(uploads), limits_(limits) {}
+  UploadService(session::Uploads& uploads, const session::Limits& limits, Door& door)
+      : uploads_(uploads), limits_(limits), door_(door) {}
 
   grpc::Status ListSurfaceFormats(grpc::ServerContext* context, const v1::ListSurfaceFormatsRequest* request,
                                   v1::ListSurfaceFormatsResponse* response) override;
@@ -28,6 +30,7 @@ class UploadService final : public v1::UploadService::Service {
  private:
   session::Uploads& uploads_;
   const session::Limits limits_;
+  Door& door_;
 };
 
 }  // namespace phrenic::service

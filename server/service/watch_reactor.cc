@@ -27,7 +27,8 @@ std::shared_ptr<WatchReactor> WatchReactor::Make() {
   return reactor;
 }
 
-void WatchReactor::Watch(std::shared_ptr<session::Session> session, const stream::ViewerOptions& options) {
+void WatchReactor::Watch(std::shared_ptr<session::Session> session, const stream::ViewerOptions& options, Seat seat) {
+  seat_ = std::move(seat);
   auto viewer = session->publisher().Join(options, [weak = weak_from_this()] {
     if (const auto reactor = weak.lock()) reactor->Pump();
   });
@@ -51,7 +52,10 @@ void WatchReactor::Refuse(const absl::Status& status) {
 WatchReactor::Next WatchReactor::TakeNext() {
   absl::MutexLock lock(&mutex_);
   if (viewer_ == nullptr || writing_ || finished_) return {};
-  const std::optional<absl::Status> ended = cancelled_ ? absl::CancelledError() : viewer_->ended();
+  std::optional<absl::Status> ended = cancelled_ ? absl::CancelledError() : viewer_->ended();
+  if (!ended.has_value() && seat_.may_see && !seat_.may_see()) {
+    ended = absl::PermissionDeniedError("authorization: the session may no longer be watched; ask its owner");
+  }
   if (ended.has_value()) {
     finished_ = true;
     return {.finish = ToGrpc(*ended)};
@@ -69,6 +73,7 @@ void WatchReactor::Pump() {
   if (next.finish.has_value()) {
     Finish(*next.finish);
   } else if (next.write != nullptr) {
+    if (seat_.sent) seat_.sent(next.write->size());
     buffer_ = Share(next.write);
     StartWrite(&buffer_);
   }

@@ -5,6 +5,7 @@
 #include <grpcpp/support/byte_buffer.h>
 #include <grpcpp/support/server_callback.h>
 
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -21,8 +22,15 @@ class WatchReactor final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
  public:
   static std::shared_ptr<WatchReactor> Make();
 
+  // What a viewer is besides: held until they go.
+  struct Seat {
+    std::shared_ptr<void> place;                  // among the viewers of all sessions
+    std::function<bool()> may_see;                // asked before each message; null: for ever
+    std::function<void(std::size_t bytes)> sent;  // hears of each message
+  };
+
   // Either is called once, before gRPC gets the reactor.
-  void Watch(std::shared_ptr<session::Session> session, const stream::ViewerOptions& options);
+  void Watch(std::shared_ptr<session::Session> session, const stream::ViewerOptions& options, Seat seat);
   void Refuse(const absl::Status& status);
 
   void OnWriteDone(bool ok) override;
@@ -45,6 +53,7 @@ class WatchReactor final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
   std::shared_ptr<WatchReactor> self_ ABSL_GUARDED_BY(mutex_);  // gRPC's hold on it
   std::shared_ptr<session::Session> session_ ABSL_GUARDED_BY(mutex_);
   std::shared_ptr<stream::Viewer> viewer_ ABSL_GUARDED_BY(mutex_);
+  Seat seat_;  // set before the viewer is
   bool writing_ ABSL_GUARDED_BY(mutex_) = false;
   bool cancelled_ ABSL_GUARDED_BY(mutex_) = false;
   bool finished_ ABSL_GUARDED_BY(mutex_) = false;

@@ -1,13 +1,9 @@
 #include "server/service/web_gateway.h"
 
-#include <netinet/tcp.h>
-#include <sys/socket.h>
-
 #include <boost/asio/connect.hpp>
 #include <boost/asio/strand.hpp>
 
-#include "absl/strings/str_cat.h"
-#include "server/service/address.h"
+#include "server/service/listen.h"
 
 namespace phrenic::service {
 namespace {
@@ -17,34 +13,15 @@ using net::ip::tcp;
 
 constexpr int kThreads = 2;
 
-absl::StatusOr<tcp::endpoint> Resolve(net::io_context& context, const std::string& address) {
-  const absl::StatusOr<Address> parts = ParseAddress(address);
-  if (!parts.ok()) return parts.status();
-  tcp::resolver resolver(context);
-  boost::system::error_code error;
-  const auto found = resolver.resolve(parts->host, absl::StrCat(parts->port), tcp::resolver::passive, error);
-  if (error || found.empty()) {
-    return absl::UnavailableError(absl::StrCat(address, ": there is no such address on this machine"));
-  }
-  return found.begin()->endpoint();
-}
-
-// A peer that no longer answers is given up within 15 s, whether bytes are on their way to it or not.
-void NoticeDeath(tcp::socket& socket) {
-  constexpr int kOn = 1, kQuiet = 9, kBetween = 3, kProbes = 2;  // [s], [s]
-  constexpr unsigned kUnanswered = 15'000;                       // [ms]
-  const int handle = socket.native_handle();
-  setsockopt(handle, SOL_SOCKET, SO_KEEPALIVE, &kOn, sizeof kOn);
-  setsockopt(handle, IPPROTO_TCP, TCP_KEEPIDLE, &kQuiet, sizeof kQuiet);
-  setsockopt(handle, IPPROTO_TCP, TCP_KEEPINTVL, &kBetween, sizeof kBetween);
-  setsockopt(handle, IPPROTO_TCP, TCP_KEEPCNT, &kProbes, sizeof kProbes);
-  setsockopt(handle, IPPROTO_TCP, TCP_USER_TIMEOUT, &kUnanswered, sizeof kUnanswered);
-}
-
 }  // namespace
 
 WebGateway::WebGateway(const Options& options, std::shared_ptr<grpc::Channel> channel)
-    : options_(options), stub_(std::move(channel)), context_(kThreads), acceptor_(context_), pause_(context_) {}
+    : options_(options),
+      stub_(std::move(channel)),
+      context_(kThreads),
+      acceptor_(context_),
+      pause_(context_),
+      tls_(options.tls) {}
 
 absl::StatusOr<std::unique_ptr<WebGateway>> WebGateway::Start(const Options& options,
                                                               std::shared_ptr<grpc::Channel> channel) {
@@ -60,16 +37,9 @@ absl::StatusOr<std::unique_ptr<WebGateway>> WebGateway::Start(const Options& opt
 WebGateway::~WebGateway() { Shutdown(); }
 
 absl::Status WebGateway::Listen() {
-  const auto endpoint = Resolve(context_, options_.address);
-  if (!endpoint.ok()) return endpoint.status();
-  boost::system::error_code error;
-  acceptor_.open(endpoint->protocol(), error);
-  if (!error) acceptor_.set_option(net::socket_base::reuse_address(true), error);  // not while another one listens
-  if (!error) acceptor_.bind(*endpoint, error);
-  if (!error) acceptor_.listen(net::socket_base::max_listen_connections, error);
-  if (error) return CannotListen(options_.address, error.message());
-  port_ = acceptor_.local_endpoint(error).port();
-  return absl::OkStatus();
+  const auto port = ListenOn(options_.address, acceptor_);
+  if (port.ok()) port_ = *port;
+  return port.status();
 }
 
 void WebGateway::Accept() {
@@ -84,7 +54,8 @@ void WebGateway::OnAccept(boost::system::error_code error, tcp::socket socket) {
     boost::system::error_code ignored;
     socket.set_option(tcp::no_delay(true), ignored);
     NoticeDeath(socket);
-    const auto connection = std::make_shared<WebConnection>(std::move(socket), options_.settings, stub_);
+    const auto connection =
+        std::make_shared<WebConnection>(std::move(socket), tls_.Current(), options_.settings, stub_);
     if (Admit(connection)) {
       connection->Run();
     } else {
@@ -105,8 +76,23 @@ void WebGateway::AcceptNext() {
 bool WebGateway::Admit(const std::shared_ptr<WebConnection>& connection) {
   absl::MutexLock lock(&mutex_);
   connections_.remove_if([](const std::weak_ptr<WebConnection>& other) { return other.expired(); });
-  if (closed_ || connections_.size() >= options_.max_connections) return false;
+  if (closed_ || (connections_.size() >= options_.max_connections && !MakeRoom())) return false;
   connections_.push_back(connection);
+  return true;
+}
+
+bool WebGateway::MakeRoom() {
+  auto longest = connections_.end();
+  auto since = std::chrono::steady_clock::time_point::max();
+  for (auto place = connections_.begin(); place != connections_.end(); ++place) {
+    const auto connection = place->lock();
+    if (connection == nullptr || connection->waiting_since() >= since) continue;
+    since = connection->waiting_since();
+    longest = place;
+  }
+  if (longest == connections_.end()) return false;
+  if (const auto connection = longest->lock()) connection->Close();
+  connections_.erase(longest);
   return true;
 }
 

@@ -19,6 +19,7 @@
 #include "absl/status/statusor.h"
 #include "absl/synchronization/mutex.h"
 #include "server/service/web_connection.h"
+#include "server/service/web_tls.h"
 
 namespace phrenic::service {
 
@@ -29,6 +30,7 @@ class WebGateway {
     std::string address;  // "127.0.0.1:8080", "[::1]:8080"; port 0 chooses one
     WebSettings settings;
     std::size_t max_connections = 0;
+    TlsFiles tls;
   };
 
   // UNAVAILABLE names the address that could not be listened on, INVALID_ARGUMENT one that is none.
@@ -46,8 +48,10 @@ class WebGateway {
   void Accept() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void AcceptNext() ABSL_LOCKS_EXCLUDED(mutex_);
   void OnAccept(boost::system::error_code error, boost::asio::ip::tcp::socket socket);
-  // False when there are too many connections already.
+  // False when there are too many connections already: the one that has waited longest for a request makes room, but
+  // none that is being answered.
   bool Admit(const std::shared_ptr<WebConnection>& connection) ABSL_LOCKS_EXCLUDED(mutex_);
+  bool MakeRoom() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
   const Options options_;
   grpc::GenericStub stub_;
@@ -55,6 +59,7 @@ class WebGateway {
   boost::asio::ip::tcp::acceptor acceptor_;  // used by one thread at a time, or with mutex_ held
   boost::asio::steady_timer pause_;
   int port_ = 0;
+  WebTls tls_;  // used by one thread at a time, as acceptor_
   absl::Mutex mutex_;
   std::list<std::weak_ptr<WebConnection>> connections_ ABSL_GUARDED_BY(mutex_);
   bool closed_ ABSL_GUARDED_BY(mutex_) = false;

@@ -3,7 +3,13 @@
 
 #include <array>
 #include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <sstream>
 
+#include "absl/strings/ascii.h"
+#include "absl/strings/str_split.h"
 #include "tests/service/server_fixture.h"
 
 namespace phrenic::service {
@@ -67,9 +73,104 @@ TEST_F(PhrenicdBesideAnother, APortInUseIsOneAndNamed) {
   EXPECT_THAT(second.words, HasSubstr("cannot listen on " + web));
 }
 
-TEST(Phrenicd, WarnsOfAddressesThatOthersCanReach) {
-  EXPECT_THAT(RunPhrenicd("--start none --listen 127.0.0.1:0 --web 0.0.0.0:0").words,
-              HasSubstr("can be reached from other"));
+TEST(Phrenicd, ListensToOtherMachinesUnencryptedWhenToldSoAlone) {
+  const std::string reachable = "--start none --listen 127.0.0.1:0 --web 0.0.0.0:0 ";
+  const Outcome refused = RunPhrenicd(reachable);
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_THAT(refused.words, HasSubstr("--web: 0.0.0.0:0 can be reached from other machines"));
+  EXPECT_THAT(refused.words, HasSubstr("--tls-cert"));
+  const Outcome told = RunPhrenicd(reachable + "--insecure-listen");
+  EXPECT_EQ(told.code, 0);
+  EXPECT_THAT(told.words, HasSubstr("anybody on the way can read"));
+  EXPECT_THAT(told.words, HasSubstr("--tokens"));
+}
+
+// The settings file of a test.
+class PhrenicdConfig : public testing::Test {
+ protected:
+  PhrenicdConfig() : file_(absl::StrCat(testing::TempDir(), "/phrenicd-", getpid(), ".toml")) {}
+  ~PhrenicdConfig() override { unlink(file_.c_str()); }
+  Outcome Run(const std::string& text, const std::string& before, const std::string& words) const {
+    std::ofstream(file_) << text;
+    Outcome outcome;
+    const std::string command =
+        absl::StrCat(before, " " PHRENIC_BINARY_DIR "/phrenicd ", words, " --config ", file_, " 2>&1");
+    FILE* pipe = popen(command.c_str(), "r");
+    std::array<char, 4096> piece{};
+    while (std::fgets(piece.data(), piece.size(), pipe) != nullptr) outcome.words += piece.data();
+    outcome.code = WEXITSTATUS(pclose(pipe));
+    return outcome;
+  }
+  const std::string file_;
+};
+
+TEST_F(PhrenicdConfig, FlagsComeBeforeTheEnvironmentBeforeTheFileBeforeTheDefault) {
+  const std::string text = "max-sessions = 3\nmax-viewers = 4\nmax-exports = 5\n";
+  const Outcome said = Run(text, "PHRENICD_MAX_SESSIONS=6 PHRENICD_MAX_VIEWERS=7", "config --max-sessions 8");
+  EXPECT_EQ(said.code, 0) << said.words;
+  EXPECT_THAT(said.words, testing::ContainsRegex("max-sessions = 8 +# --max-sessions\n"));
+  EXPECT_THAT(said.words, testing::ContainsRegex("max-viewers = 7 +# PHRENICD_MAX_VIEWERS\n"));
+  EXPECT_THAT(said.words, testing::ContainsRegex("max-exports = 5 +# " + file_ + "\n"));
+  EXPECT_THAT(said.words, testing::ContainsRegex("max-uploads-mb = 1024 +# default\n"));
+}
+
+TEST_F(PhrenicdConfig, WhatItSaysIsASettingsFileAgain) {
+  const std::string text = "allow-origin = [\"https://a.example\", \"https://b.example\"]\nlisten = \"127.0.0.1:0\"\n";
+  const auto without_origins = [](const std::string& words) {
+    std::string values;
+    for (absl::string_view line : absl::StrSplit(words, '\n')) {
+      absl::StrAppend(&values, absl::StripTrailingAsciiWhitespace(line.substr(0, line.find('#'))), "\n");
+    }
+    return values;
+  };
+  const Outcome first = Run(text, "", "config");
+  ASSERT_EQ(first.code, 0) << first.words;
+  EXPECT_THAT(first.words, HasSubstr("https://a.example,https://b.example"));
+  EXPECT_EQ(without_origins(Run(first.words, "", "config").words), without_origins(first.words));
+}
+
+TEST_F(PhrenicdConfig, ASettingThatIsWrongIsTwoAndNamedWithItsLine) {
+  const Outcome unknown = Run("\nmax-sesions = 3\n", "", "config");
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_THAT(unknown.words, HasSubstr(":2: there is no setting \"max-sesions\"; did you mean max-sessions?"));
+  EXPECT_EQ(Run("max-sessions = 0\n", "", "config").code, 2);
+  EXPECT_EQ(Run("", "PHRENICD_MAX_SESSIONS=many", "config").code, 2);
+}
+
+TEST_F(PhrenicdConfig, TheShippedFileHasEverySettingWithItsMeaningAndDefault) {
+  std::ifstream in(PHRENIC_SOURCE_DIR "/deploy/phrenicd.toml");
+  const std::string shipped(std::istreambuf_iterator<char>(in), {});
+  const Outcome told = Run("", "env -u STATE_DIRECTORY -u XDG_STATE_HOME HOME=/root", "config --template");
+  EXPECT_EQ(told.words, shipped) << "build/phrenicd config --template > deploy/phrenicd.toml";
+}
+
+TEST(PhrenicdToken, IsToldOnceAndTakenBack) {
+  const std::string file = absl::StrCat(testing::TempDir(), "/phrenicd-accounts-", getpid());
+  const std::string words = " --tokens " + file;
+  unlink(file.c_str());
+  EXPECT_EQ(RunPhrenicd("token add --name anna --role viewer" + words).code, 0);
+  const Outcome listed = RunPhrenicd("token list" + words);
+  EXPECT_THAT(listed.words, testing::ContainsRegex("viewer +anna"));
+  EXPECT_EQ(RunPhrenicd("token add --name anna" + words).code, 1);
+  EXPECT_EQ(RunPhrenicd("token remove --name anna" + words).code, 0);
+  EXPECT_EQ(RunPhrenicd("token list" + words).words, "");
+  EXPECT_EQ(RunPhrenicd("token add --name anna --role king" + words).code, 2);
+  unlink(file.c_str());
+}
+
+TEST(Phrenicd, WritesItsLogAsJsonWhenAsked) {
+  const Outcome outcome =
+      RunPhrenicd("--log json --listen 127.0.0.1:0 --web 127.0.0.1:0 --start cube-springs --web-root /");
+  std::istringstream lines(outcome.words);
+  int read = 0;
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("{")) continue;
+    const auto entry = nlohmann::json::parse(line);
+    EXPECT_EQ(entry["level"], "info");
+    EXPECT_FALSE(entry["message"].get<std::string>().empty());
+    ++read;
+  }
+  EXPECT_GE(read, 2) << outcome.words;
 }
 
 }  // namespace

@@ -57,6 +57,16 @@ TEST_F(SessionServiceTest, EveryCallForASessionThatDoesNotExistIsNotFound) {
   ExpectError(watch.Finish(), grpc::NOT_FOUND, hint);
 }
 
+TEST_F(SessionServiceTest, OneInStepWithNoneOrItselfIsRefused) {
+  CreateCube("cube");
+  CreateCube("other");
+  EXPECT_TRUE(Session(&Sessions::PlaySession, "session_id: 'cube' in_step_with: 'other'").ok());
+  ExpectError(Session(&Sessions::PlaySession, "session_id: 'cube' in_step_with: 'x'"), grpc::NOT_FOUND,
+              "in_step_with: there is no session \"x\"");
+  ExpectError(Session(&Sessions::PlaySession, "session_id: 'cube' in_step_with: 'cube'"), grpc::INVALID_ARGUMENT,
+              "in_step_with: is the session itself");
+}
+
 TEST_F(SessionServiceTest, AParameterOutOfRangeIsRefusedWithItsFieldAndRange) {
   CreateCube("cube");
   ExpectError(Session(&Sessions::UpdateParameters, "session_id: 'cube' parameters { breath_force: 21 }"),

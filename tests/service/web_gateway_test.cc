@@ -36,7 +36,8 @@ class WebGatewayTest : public ServerFixture {
     std::ofstream(root_ / "site" / "index.html") << "<!doctype html><title>Phrenic</title>";
     std::ofstream(root_ / "site" / "assets" / "main-1a2b.js") << "export {};";
     options_.web_root = (root_ / "site").string();
-    options_.max_web_connections = 8;
+    options_.max_connections = 8;
+    options_.limits.viewers = 16;
   }
   ~WebGatewayTest() override { fs::remove_all(root_); }
 
@@ -210,13 +211,28 @@ TEST_F(WebGatewayTest, FilesComeWithTypeCachingAndPolicy) {
   EXPECT_EQ(page[http::field::content_type], "text/html; charset=utf-8");
   EXPECT_EQ(page[http::field::cache_control], "no-cache");
   EXPECT_THAT(std::string(page["Content-Security-Policy"]), HasSubstr("script-src 'self'"));
+  EXPECT_THAT(std::string(page["Content-Security-Policy"]), HasSubstr("frame-ancestors 'none'"));
   EXPECT_EQ(page["X-Content-Type-Options"], "nosniff");
+  EXPECT_EQ(page["X-Frame-Options"], "DENY");
+  EXPECT_EQ(page["Referrer-Policy"], "no-referrer");
+  EXPECT_EQ(page["Cross-Origin-Opener-Policy"], "same-origin");
+  EXPECT_EQ(page.count("Strict-Transport-Security"), 0u) << "the page is not encrypted";
   const auto script = Get("/assets/main-1a2b.js");
   EXPECT_EQ(script[http::field::content_type], "text/javascript; charset=utf-8");
   EXPECT_THAT(std::string(script[http::field::cache_control]), HasSubstr("immutable"));
   const auto again = Get("/", "If-None-Match: " + std::string(page[http::field::etag]) + "\r\n");
   EXPECT_EQ(again.result(), http::status::not_modified);
   EXPECT_TRUE(again.body().empty());
+}
+
+class FramedGatewayTest : public WebGatewayTest {
+ protected:
+  FramedGatewayTest() { options_.allowed_origins = {"https://course.example"}; }
+};
+
+TEST_F(FramedGatewayTest, APageThatMayCallMayShowTheViewerInAFrame) {
+  const auto page = Get("/?session=thorax&embed");
+  EXPECT_THAT(std::string(page["Content-Security-Policy"]), HasSubstr("frame-ancestors https://course.example"));
 }
 
 TEST_F(WebGatewayTest, NoFileOutsideTheFolderIsServed) {
@@ -253,11 +269,13 @@ TEST_F(WebGatewayTest, MethodsAndTypesThatAreNotServedAreRefused) {
             http::status::unsupported_media_type);
 }
 
-TEST_F(WebGatewayTest, MoreConnectionsThanAllowedAreRefused) {
+TEST_F(WebGatewayTest, MoreConnectionsThanAllowedAreRefusedWhileAllAreAnswered) {
+  CreateCube("cube");
   std::vector<std::unique_ptr<RawSocket>> sockets;
   for (int i = 0; i < 8; ++i) {
     sockets.push_back(std::make_unique<RawSocket>(server_->web_port()));
-    ASSERT_TRUE(sockets.back()->Ask("GET / HTTP/1.1\r\nHost: x\r\n\r\n").has_value());
+    sockets.back()->Send(Post("FrameService/WatchFrames", Text<v1::WatchFramesRequest>("session_id: 'cube'")));
+    ASSERT_FALSE(sockets.back()->ReadSome(100).empty());
   }
   const auto refused = Connect().Read();
   ASSERT_TRUE(refused.has_value());
@@ -270,6 +288,17 @@ TEST_F(WebGatewayTest, MoreConnectionsThanAllowedAreRefused) {
     if (!room) std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   EXPECT_TRUE(room);
+}
+
+TEST_F(WebGatewayTest, AConnectionThatWaitsMakesRoomForANewOneAndTheLongestWaitingFirst) {
+  std::vector<std::unique_ptr<RawSocket>> sockets;
+  for (int i = 0; i < 8; ++i) {
+    sockets.push_back(std::make_unique<RawSocket>(server_->web_port()));
+    ASSERT_TRUE(sockets.back()->Ask("GET / HTTP/1.1\r\nHost: x\r\n\r\n").has_value());
+  }
+  EXPECT_EQ(Get("/").result(), http::status::ok);
+  EXPECT_FALSE(sockets.front()->Ask("GET / HTTP/1.1\r\nHost: x\r\n\r\n").has_value());
+  EXPECT_TRUE(sockets.back()->Ask("GET / HTTP/1.1\r\nHost: x\r\n\r\n").has_value());
 }
 
 TEST_F(WebGatewayTest, ShutdownEndsOpenStreams) {

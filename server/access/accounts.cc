@@ -1,0 +1,76 @@
+#include "server/access/accounts.h"
+
+#include <utility>
+
+#include "absl/time/clock.h"
+#include "server/schema/sha256.h"
+
+namespace phrenic::access {
+namespace {
+
+std::filesystem::file_time_type ChangeOf(const std::string& file) {
+  std::error_code gone;
+  return std::filesystem::last_write_time(file, gone);
+}
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<Accounts>> Accounts::Open(AccountOptions options) {
+  std::unique_ptr<Accounts> accounts(new Accounts(std::move(options)));
+  if (absl::Status status = accounts->ReadTokenFile(); !status.ok()) return status;
+  if (absl::Status status = accounts->ReadKeys(); !status.ok()) return status;
+  return accounts;
+}
+
+absl::Status Accounts::ReadTokenFile() {
+  if (options_.tokens_file.empty()) return absl::OkStatus();
+  tokens_changed_ = ChangeOf(options_.tokens_file);
+  auto tokens = ReadTokens(options_.tokens_file);
+  if (!tokens.ok()) return tokens.status();
+  absl::MutexLock lock(&mutex_);
+  tokens_ = std::make_shared<const TokenTable>(*std::move(tokens));
+  return absl::OkStatus();
+}
+
+absl::Status Accounts::ReadKeys() {
+  if (options_.jwt.keys_file.empty()) return absl::OkStatus();
+  keys_changed_ = ChangeOf(options_.jwt.keys_file);
+  auto keys = JwtKeys::Read(options_.jwt);
+  if (!keys.ok()) return keys.status();
+  absl::MutexLock lock(&mutex_);
+  keys_ = *std::move(keys);
+  return absl::OkStatus();
+}
+
+absl::Status Accounts::Refresh() {
+  if (!options_.tokens_file.empty() && ChangeOf(options_.tokens_file) != tokens_changed_) {
+    if (absl::Status status = ReadTokenFile(); !status.ok()) return status;
+  }
+  if (options_.jwt.keys_file.empty() || ChangeOf(options_.jwt.keys_file) == keys_changed_) return absl::OkStatus();
+  return ReadKeys();
+}
+
+bool Accounts::StillHas(const Account& account) const {
+  if (account.token_sha256.empty()) return true;
+  absl::MutexLock lock(&mutex_);
+  return tokens_ != nullptr && tokens_->contains(account.token_sha256);
+}
+
+absl::StatusOr<Account> Accounts::Check(std::string_view token) const {
+  std::shared_ptr<const TokenTable> tokens;
+  std::shared_ptr<const JwtKeys> keys;
+  {
+    absl::MutexLock lock(&mutex_);
+    tokens = tokens_;
+    keys = keys_;
+  }
+  if (tokens != nullptr) {
+    // By its hash: how long this takes tells nothing of a token.
+    if (const auto found = tokens->find(Sha256Hex(token)); found != tokens->end()) return found->second;
+  }
+  if (keys != nullptr) return keys->Check(token, absl::Now());
+  return absl::UnauthenticatedError(
+      "authorization: no account has this token; ask for a new one (phrenicd token add), and see that it is whole");
+}
+
+}  // namespace phrenic::access

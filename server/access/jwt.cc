@@ -1,0 +1,137 @@
+#include "server/access/jwt.h"
+
+#include <cjose/cjose.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "absl/strings/str_cat.h"
+#include "server/access/rules.h"
+
+namespace phrenic::access {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kLongestToken = 16 << 10;
+constexpr absl::Duration kClocksDiffer = absl::Seconds(60);
+constexpr std::string_view kAlgorithms[] = {"RS256", "RS384", "RS512", "PS256", "PS384",
+                                            "PS512", "ES256", "ES384", "ES512"};
+
+absl::Status Refused(const std::string& why) {
+  return absl::UnauthenticatedError(absl::StrCat("authorization: the token ", why, "; sign in again"));
+}
+
+std::string TextOf(const json& claims, const std::string& name) {
+  const auto found = claims.find(name);
+  return found != claims.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
+bool HasText(const json& claims, const std::string& name, const std::string& wanted) {
+  const auto found = claims.find(name);
+  if (found == claims.end()) return false;
+  if (found->is_array()) return std::find(found->begin(), found->end(), json(wanted)) != found->end();
+  return found->is_string() && found->get<std::string>() == wanted;
+}
+
+// Nothing where it is no time.
+absl::Time TimeOf(const json& claims, const char* name, absl::Time otherwise) {
+  const auto found = claims.find(name);
+  if (found == claims.end() || !found->is_number()) return otherwise;
+  return absl::UnixEpoch() + absl::Seconds(found->get<double>());
+}
+
+absl::Status CheckTimes(const json& claims, absl::Time now) {
+  if (TimeOf(claims, "exp", absl::InfinitePast()) + kClocksDiffer <= now) return Refused("has no end, or has ended");
+  if (TimeOf(claims, "nbf", absl::InfinitePast()) - kClocksDiffer > now) return Refused("is not good yet");
+  return absl::OkStatus();
+}
+
+// The highest one that the claim names.
+v1::AccessRole RoleIn(const json& claims, const std::string& claim) {
+  for (int role = v1::ACCESS_ROLE_ADMIN; role > v1::ACCESS_ROLE_UNSPECIFIED; --role) {
+    const auto one = static_cast<v1::AccessRole>(role);
+    if (HasText(claims, claim, std::string(NameOf(one)))) return one;
+  }
+  return v1::ACCESS_ROLE_UNSPECIFIED;
+}
+
+}  // namespace
+
+struct JwtKeys::Key {
+  explicit Key(cjose_jwk_t* imported) : jwk(imported) {}
+  ~Key() { cjose_jwk_release(jwk); }
+  Key(const Key&) = delete;
+  Key& operator=(const Key&) = delete;
+  cjose_jwk_t* const jwk;
+};
+
+JwtKeys::JwtKeys(JwtOptions options) : options_(std::move(options)) {}
+
+JwtKeys::~JwtKeys() = default;
+
+absl::StatusOr<std::shared_ptr<const JwtKeys>> JwtKeys::Read(const JwtOptions& options) {
+  if (options.issuer.empty() || options.audience.empty()) {
+    return absl::InvalidArgumentError("--jwt-issuer, --jwt-audience: must be given where --jwt-keys is");
+  }
+  std::ifstream in(options.keys_file);
+  const json set = json::parse(in, nullptr, false);
+  if (!set.is_object() || !set.contains("keys") || !set["keys"].is_array()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("--jwt-keys: ", options.keys_file, " is no JSON Web Key Set, {\"keys\": [...]}"));
+  }
+  std::shared_ptr<JwtKeys> keys(new JwtKeys(options));
+  for (const json& key : set["keys"]) {
+    const std::string text = key.dump();
+    cjose_err error;
+    cjose_jwk_t* jwk = cjose_jwk_import(text.data(), text.size(), &error);
+    if (jwk == nullptr) continue;  // of a kind that is not known
+    auto held = std::make_unique<Key>(jwk);
+    const cjose_jwk_kty_t kind = cjose_jwk_get_kty(jwk, &error);
+    // A shared secret in a file of public keys would let whoever reads them sign.
+    if (kind == CJOSE_JWK_KTY_RSA || kind == CJOSE_JWK_KTY_EC) keys->keys_.push_back(std::move(held));
+  }
+  if (!keys->keys_.empty()) return keys;
+  return absl::InvalidArgumentError(absl::StrCat("--jwt-keys: ", options.keys_file, " has no RSA or EC key"));
+}
+
+absl::StatusOr<std::string> JwtKeys::VerifiedClaims(std::string_view token) const {
+  if (token.size() > kLongestToken) return Refused("is too long");
+  cjose_err error;
+  const std::unique_ptr<cjose_jws_t, decltype(&cjose_jws_release)> jws(
+      cjose_jws_import(token.data(), token.size(), &error), &cjose_jws_release);
+  if (jws == nullptr) return Refused("is none of this server's, and no JWT");
+  const char* algorithm = cjose_header_get(cjose_jws_get_protected(jws.get()), CJOSE_HDR_ALG, &error);
+  if (algorithm == nullptr ||
+      std::find(std::begin(kAlgorithms), std::end(kAlgorithms), algorithm) == std::end(kAlgorithms)) {
+    return Refused("is not signed by RS, PS or ES");
+  }
+  const bool good = std::any_of(keys_.begin(), keys_.end(), [&](const std::unique_ptr<Key>& key) {
+    const bool elliptic = cjose_jwk_get_kty(key->jwk, &error) == CJOSE_JWK_KTY_EC;
+    return elliptic == (algorithm[0] == 'E') && cjose_jws_verify(jws.get(), key->jwk, &error);
+  });
+  if (!good) return Refused("is signed by none of the keys");
+  std::uint8_t* bytes = nullptr;
+  std::size_t size = 0;
+  if (!cjose_jws_get_plaintext(jws.get(), &bytes, &size, &error)) return Refused("is empty");
+  return std::string(reinterpret_cast<const char*>(bytes), size);
+}
+
+absl::StatusOr<Account> JwtKeys::Check(std::string_view token, absl::Time now) const {
+  const auto text = VerifiedClaims(token);
+  if (!text.ok()) return text.status();
+  const json claims = json::parse(*text, nullptr, false);
+  if (!claims.is_object()) return Refused("holds no claims");
+  if (TextOf(claims, "iss") != options_.issuer) return Refused("comes from another issuer");
+  if (!HasText(claims, "aud", options_.audience)) return Refused("is meant for somebody else");
+  if (absl::Status status = CheckTimes(claims, now); !status.ok()) return status;
+  const Account account{TextOf(claims, options_.name_claim), RoleIn(claims, options_.role_claim)};
+  if (account.name.empty()) return Refused(absl::StrCat("names nobody in \"", options_.name_claim, "\""));
+  if (account.role == v1::ACCESS_ROLE_UNSPECIFIED) {
+    return Refused(absl::StrCat("has no role in \"", options_.role_claim, "\": viewer, controller, owner, admin"));
+  }
+  return account;
+}
+
+}  // namespace phrenic::access

@@ -1,0 +1,96 @@
+#include "server/service/access_service.h"
+
+#include "absl/strings/str_cat.h"
+#include "google/protobuf/util/time_util.h"
+#include "server/schema/secret.h"
+#include "server/schema/sha256.h"
+#include "server/service/status.h"
+
+namespace phrenic::service {
+namespace {
+
+using session::ControlState;
+
+constexpr double kUsualStayOfLink = 7 * 24 * 3600;  // [s]
+constexpr std::size_t kShownId = 8;
+
+void FillLink(const ControlState::Link& link, v1::JoinLink& filled) {
+  filled.set_id(link.id);
+  filled.set_role(link.role);
+  filled.set_made_by(link.made_by);
+  *filled.mutable_expire_time() =
+      google::protobuf::util::TimeUtil::NanosecondsToTimestamp(absl::ToUnixNanos(link.expires));
+}
+
+// A link to a session and the secret that opens it.
+std::pair<ControlState::Link, std::string> NewLink(const v1::CreateLinkRequest& request, const access::Caller& caller) {
+  std::string secret = NewToken();
+  const double stay = request.has_time_to_live() ? request.time_to_live() : kUsualStayOfLink;
+  const auto role = request.role() == v1::ACCESS_ROLE_UNSPECIFIED ? v1::ACCESS_ROLE_VIEWER : request.role();
+  ControlState::Link link{NewToken().substr(0, kShownId), Sha256Hex(secret), role, absl::Now() + absl::Seconds(stay),
+                          caller.id()};
+  return {std::move(link), std::move(secret)};
+}
+
+}  // namespace
+
+absl::Status AccessService::CheckGuarded() const {
+  if (door_.guarded()) return absl::OkStatus();
+  return absl::FailedPreconditionError(
+      "the server has no accounts, and everybody sees every session: its address is the link (?session=ID); start it "
+      "with --tokens FILE to have links that end");
+}
+
+grpc::Status AccessService::GetAccess(grpc::ServerContext* context, const v1::GetAccessRequest* request,
+                                      v1::GetAccessResponse* response) {
+  const auto caller = door_.Admit(*context, *request);
+  if (!caller.ok()) return ToGrpc(caller.status());
+  response->set_accounts(door_.guarded());
+  response->set_name(caller->account.name);
+  response->set_role(caller->account.role);
+  return grpc::Status::OK;
+}
+
+grpc::Status AccessService::CreateLink(grpc::ServerContext* context, const v1::CreateLinkRequest* request,
+                                       v1::CreateLinkResponse* response) {
+  const auto caller = door_.Admit(*context, *request);
+  if (!caller.ok()) return ToGrpc(caller.status());
+  if (absl::Status status = CheckGuarded(); !status.ok()) return ToGrpc(status);
+  if (request->role() > v1::ACCESS_ROLE_CONTROLLER) {
+    return ToGrpc(absl::InvalidArgumentError("role: a link is for a viewer or a controller"));
+  }
+  const auto session = table_.Find(request->session_id());
+  if (!session.ok()) return ToGrpc(session.status());
+  auto [link, secret] = NewLink(*request, *caller);
+  FillLink(link, *response->mutable_link());
+  const auto changed = (*session)->ChangeControl(
+      [&link = link](session::ControlBook& book, absl::Time now) { return book.AddLink(std::move(link), now); });
+  if (changed.ok()) response->set_secret(secret);
+  return ToGrpc(changed.status());
+}
+
+grpc::Status AccessService::ListLinks(grpc::ServerContext* context, const v1::ListLinksRequest* request,
+                                      v1::ListLinksResponse* response) {
+  const auto caller = door_.Admit(*context, *request);
+  if (!caller.ok()) return ToGrpc(caller.status());
+  const auto session = table_.Find(request->session_id());
+  if (!session.ok()) return ToGrpc(session.status());
+  const auto access = (*session)->access();
+  for (const ControlState::Link& link : access->links) {
+    if (absl::Now() < link.expires) FillLink(link, *response->add_links());
+  }
+  return grpc::Status::OK;
+}
+
+grpc::Status AccessService::RevokeLink(grpc::ServerContext* context, const v1::RevokeLinkRequest* request,
+                                       v1::RevokeLinkResponse* /*response*/) {
+  const auto caller = door_.Admit(*context, *request);
+  if (!caller.ok()) return ToGrpc(caller.status());
+  const auto session = table_.Find(request->session_id());
+  if (!session.ok()) return ToGrpc(session.status());
+  const auto changed = (*session)->ChangeControl(
+      [&](session::ControlBook& book, absl::Time) { return book.RemoveLink(request->link_id()); });
+  return ToGrpc(changed.status());
+}
+
+}  // namespace phrenic::service

@@ -1,0 +1,34 @@
+// Who calls, and join links, over gRPC.
+#ifndef PHRENIC_SERVER_SERVICE_ACCESS_SERVICE_H_
+#define PHRENIC_SERVER_SERVICE_ACCESS_SERVICE_H_
+
+#include "phrenic/v1/access.grpc.pb.h"
+#include "server/service/door.h"
+#include "server/session/table.h"
+
+namespace phrenic::service {
+
+// gRPC's threads call, any number at a time.
+class AccessService final : public v1::AccessService::Service {
+ public:
+  AccessService(Door& door, session::Table& table) : door_(door), table_(table) {}
+
+  grpc::Status GetAccess(grpc::ServerContext* context, const v1::GetAccessRequest* request,
+                         v1::GetAccessResponse* response) override;
+  grpc::Status CreateLink(grpc::ServerContext* context, const v1::CreateLinkRequest* request,
+                          v1::CreateLinkResponse* response) override;
+  grpc::Status ListLinks(grpc::ServerContext* context, const v1::ListLinksRequest* request,
+                         v1::ListLinksResponse* response) override;
+  grpc::Status RevokeLink(grpc::ServerContext* context, const v1::RevokeLinkRequest* request,
+                          v1::RevokeLinkResponse* response) override;
+
+ private:
+  absl::Status CheckGuarded() const;
+
+  Door& door_;
+  session::Table& table_;
+};
+
+}  // namespace phrenic::service
+
+#endif  // PHRENIC_SERVER_SERVICE_ACCESS_SERVICE_H_

@@ -1,0 +1,36 @@
+// The gateway's pages that are no files: whether the server lives, whether it serves, and its numbers.
+#ifndef PHRENIC_SERVER_SERVICE_WEB_PAGES_H_
+#define PHRENIC_SERVER_SERVICE_WEB_PAGES_H_
+
+#include <atomic>
+#include <optional>
+#include <string_view>
+
+#include "server/service/door.h"
+#include "server/service/metrics.h"
+#include "server/service/web_connection.h"
+#include "server/session/table.h"
+
+namespace phrenic::service {
+
+// Any thread may call.
+class WebPages {
+ public:
+  WebPages(const Door& door, Metrics& metrics, const session::Table& table)
+      : door_(door), metrics_(metrics), table_(table) {}
+
+  // Before it is called, and once the server ends, /readyz answers 503.
+  void set_ready(bool ready) { ready_ = ready; }
+  // "/healthz" and "/readyz" for everybody; "/metrics" for an administrator, or everybody where there are no accounts.
+  std::optional<WebSettings::Page> Find(std::string_view target, std::string_view authorization);
+
+ private:
+  const Door& door_;
+  Metrics& metrics_;
+  const session::Table& table_;
+  std::atomic<bool> ready_ = false;
+};
+
+}  // namespace phrenic::service
+
+#endif  // PHRENIC_SERVER_SERVICE_WEB_PAGES_H_

@@ -1,0 +1,16 @@
+// One setting of a program, and where it comes from.
+#ifndef PHRENIC_SERVER_SETTINGS_SETTING_H_
+#define PHRENIC_SERVER_SETTINGS_SETTING_H_
+
+#include <string>
+
+namespace phrenic::settings {
+
+struct Setting {
+  std::string name, value;
+  std::string origin;  // "--server", "PHRENIC_SERVER", the file's path, "default"
+};
+
+}  // namespace phrenic::settings
+
+#endif  // PHRENIC_SERVER_SETTINGS_SETTING_H_

@@ -1,0 +1,146 @@
+#include "server/access/jwt.h"
+
+#include <cjose/cjose.h>
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "absl/strings/escaping.h"
+#include "absl/strings/str_cat.h"
+
+namespace phrenic::access {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+const absl::Time kNow = absl::FromUnixSeconds(1'800'000'000);
+
+// An identity provider with a key of its own.
+class Provider {
+ public:
+  Provider() : key_(cjose_jwk_create_RSA_random(2048, nullptr, 0, &error_)) {}
+  ~Provider() { cjose_jwk_release(key_); }
+  Provider(const Provider&) = delete;
+  Provider& operator=(const Provider&) = delete;
+
+  json PublicKey() {
+    char* text = cjose_jwk_to_json(key_, false, &error_);
+    json key = json::parse(text);
+    free(text);
+    return key;
+  }
+  std::string Sign(const json& claims) { return SignWith(key_, "RS256", claims); }
+  static std::string SignWith(cjose_jwk_t* key, const char* algorithm, const json& claims) {
+    cjose_err error;
+    cjose_header_t* header = cjose_header_new(&error);
+    cjose_header_set(header, CJOSE_HDR_ALG, algorithm, &error);
+    const std::string text = claims.dump();
+    cjose_jws_t* jws =
+        cjose_jws_sign(key, header, reinterpret_cast<const std::uint8_t*>(text.data()), text.size(), &error);
+    const char* compact = nullptr;
+    cjose_jws_export(jws, &compact, &error);
+    std::string token = compact;
+    cjose_jws_release(jws);
+    cjose_header_release(header);
+    return token;
+  }
+
+ private:
+  cjose_err error_{};
+  cjose_jwk_t* const key_;
+};
+
+class Jwt : public testing::Test {
+ protected:
+  Jwt() {
+    options_.keys_file = absl::StrCat(testing::TempDir(), "/phrenic-keys-", getpid(), ".json");
+    options_.issuer = "https://id.example.org";
+    options_.audience = "phrenic";
+    std::ofstream(options_.keys_file) << json{{"keys", {provider_.PublicKey()}}};
+    keys_ = *JwtKeys::Read(options_);
+  }
+  ~Jwt() override { unlink(options_.keys_file.c_str()); }
+
+  static json Claims() {
+    return {{"iss", "https://id.example.org"}, {"aud", {"other", "phrenic"}}, {"sub", "anna"},
+            {"phrenic_role", "controller"},    {"exp", 1'800'000'600},        {"nbf", 1'799'999'000}};
+  }
+  // Of Claims() with one of them another, or none.
+  absl::Status With(const char* claim, const json& value) {
+    json claims = Claims();
+    claims.erase(claim);
+    if (!value.is_null()) claims[claim] = value;
+    return keys_->Check(provider_.Sign(claims), kNow).status();
+  }
+
+  Provider provider_;
+  JwtOptions options_;
+  std::shared_ptr<const JwtKeys> keys_;
+};
+
+TEST_F(Jwt, OfTheProviderIsAnAccount) {
+  const auto account = keys_->Check(provider_.Sign(Claims()), kNow);
+  ASSERT_TRUE(account.ok()) << account.status();
+  EXPECT_EQ(account->name, "anna");
+  EXPECT_EQ(account->role, v1::ACCESS_ROLE_CONTROLLER);
+  EXPECT_TRUE(With("phrenic_role", json{"staff", "admin"}).ok());
+}
+
+TEST_F(Jwt, WithAnyClaimWrongIsRefused) {
+  for (const auto& [claim, value] : {std::pair<const char*, json>("iss", "https://evil.example.org"),
+                                     {"iss", nullptr},
+                                     {"aud", "other"},
+                                     {"aud", nullptr},
+                                     {"exp", 1'799'999'000},
+                                     {"exp", nullptr},
+                                     {"exp", "soon"},
+                                     {"nbf", 1'800'000'900},
+                                     {"sub", nullptr},
+                                     {"sub", 7},
+                                     {"phrenic_role", "king"},
+                                     {"phrenic_role", nullptr}}) {
+    EXPECT_TRUE(absl::IsUnauthenticated(With(claim, value))) << claim << " " << value;
+  }
+}
+
+TEST_F(Jwt, OfAnotherKeyOrChangedOnItsWayIsRefused) {
+  Provider other;
+  EXPECT_THAT(std::string(keys_->Check(other.Sign(Claims()), kNow).status().message()), HasSubstr("none of the keys"));
+  const std::string token = provider_.Sign(Claims());
+  for (std::size_t i = 0; i < token.size(); i += 7) {
+    std::string changed = token;
+    changed[i] = changed[i] == 'x' ? 'y' : 'x';
+    EXPECT_FALSE(keys_->Check(changed, kNow).ok()) << i;
+  }
+  for (std::size_t cut = 0; cut < token.size(); cut += 13) EXPECT_FALSE(keys_->Check(token.substr(0, cut), kNow).ok());
+}
+
+// Two classics: "alg": "none", and the public key taken for a shared secret.
+TEST_F(Jwt, WithoutASignatureOrSignedByThePublicKeyIsRefused) {
+  std::string payload, header;
+  absl::WebSafeBase64Escape(Claims().dump(), &payload);
+  absl::WebSafeBase64Escape(R"({"alg":"none"})", &header);
+  EXPECT_TRUE(absl::IsUnauthenticated(keys_->Check(absl::StrCat(header, ".", payload, "."), kNow).status()));
+  const std::string secret = provider_.PublicKey().dump();
+  cjose_err error;
+  cjose_jwk_t* shared =
+      cjose_jwk_create_oct_spec(reinterpret_cast<const std::uint8_t*>(secret.data()), secret.size(), &error);
+  const std::string token = Provider::SignWith(shared, "HS256", Claims());
+  cjose_jwk_release(shared);
+  EXPECT_THAT(std::string(keys_->Check(token, kNow).status().message()), HasSubstr("not signed by RS, PS or ES"));
+}
+
+TEST_F(Jwt, KeysThatAreNoneAreAnErrorThatNamesTheFile) {
+  std::ofstream(options_.keys_file) << "{\"keys\": [{\"kty\": \"oct\", \"k\": \"c2VjcmV0\"}]}";
+  EXPECT_THAT(std::string(JwtKeys::Read(options_).status().message()), HasSubstr("has no RSA or EC key"));
+  std::ofstream(options_.keys_file) << "nonsense";
+  EXPECT_THAT(std::string(JwtKeys::Read(options_).status().message()), HasSubstr("is no JSON Web Key Set"));
+  options_.audience.clear();
+  EXPECT_THAT(std::string(JwtKeys::Read(options_).status().message()), HasSubstr("--jwt-audience"));
+}
+
+}  // namespace
+}  // namespace phrenic::access

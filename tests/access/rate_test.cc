@@ -1,0 +1,45 @@
+#include "server/access/rate.h"
+
+#include <gtest/gtest.h>
+
+#include "absl/strings/str_cat.h"
+
+namespace phrenic::access {
+namespace {
+
+const absl::Time kStart = absl::UnixEpoch();
+
+int Taken(RateLimit& limit, const std::string& caller, absl::Time now, int tries) {
+  int taken = 0;
+  for (int i = 0; i < tries; ++i) taken += limit.Take(caller, now).ok() ? 1 : 0;
+  return taken;
+}
+
+TEST(RateLimit, GivesABurstAndThenSoManyASecond) {
+  RateLimit limit(10);
+  EXPECT_EQ(Taken(limit, "anna", kStart, 100), 20);
+  EXPECT_EQ(Taken(limit, "anna", kStart + absl::Seconds(1), 100), 10);
+  EXPECT_EQ(Taken(limit, "anna", kStart + absl::Hours(1), 100), 20) << "more was saved up than a burst";
+  EXPECT_TRUE(absl::IsResourceExhausted(limit.Take("anna", kStart + absl::Hours(1))));
+}
+
+TEST(RateLimit, OfOneCallerHurtsNoOther) {
+  RateLimit limit(10);
+  EXPECT_EQ(Taken(limit, "anna", kStart, 1000), 20);
+  EXPECT_EQ(Taken(limit, "bert", kStart, 1000), 20);
+}
+
+TEST(RateLimit, ForgetsTheLongestSilentAlone) {
+  RateLimit limit(10);
+  EXPECT_EQ(Taken(limit, "anna", kStart, 1000), 20);
+  for (int i = 0; i < 9'000; ++i) EXPECT_TRUE(limit.Take(absl::StrCat("caller ", i), kStart).ok());
+  EXPECT_FALSE(limit.Take("anna", kStart).ok()) << "whoever has many names gets their bucket filled anew";
+}
+
+TEST(RateLimit, OfZeroIsNone) {
+  RateLimit limit(0);
+  EXPECT_EQ(Taken(limit, "anna", kStart, 10'000), 10'000);
+}
+
+}  // namespace
+}  // namespace phrenic::access

@@ -1,0 +1,115 @@
+// SIGTERM: sessions are saved, viewers told, exports ended, and the program is gone in time.
+#include <gmock/gmock.h>
+
+#include <thread>
+
+#include "phrenic/v1/export.grpc.pb.h"
+#include "phrenic/v1/frames.grpc.pb.h"
+#include "phrenic/v1/session.grpc.pb.h"
+#include "tests/service/running_server.h"
+
+namespace phrenic::service {
+namespace {
+
+using testing::HasSubstr;
+
+class StopTest : public testing::Test {
+ protected:
+  StopTest() : folder_(testing::TempDir() + "/phrenic-stop-" + std::to_string(getpid())) {
+    std::filesystem::create_directories(folder_);
+    server_ = std::make_unique<RunningServer>(
+        folder_, std::vector<std::string>{"--store", folder_ + "/store", "--stop-seconds", "8"});
+  }
+  ~StopTest() override {
+    server_.reset();
+    std::filesystem::remove_all(folder_);
+  }
+  template <class Stub, class Request, class Response>
+  static void Call(Stub& stub, grpc::Status (Stub::*method)(grpc::ClientContext*, const Request&, Response*),
+                   const Request& request, Response* response) {
+    grpc::ClientContext context;
+    const grpc::Status status = (stub.*method)(&context, request, response);
+    ASSERT_TRUE(status.ok()) << status.error_message();
+  }
+  void CreateAndPlay() {
+    const auto sessions = v1::SessionService::NewStub(server_->NewChannel());
+    v1::CreateSessionRequest create;
+    create.set_session_id("sheet");
+    create.mutable_source()->set_name("sheet-2d");
+    v1::CreateSessionResponse created;
+    Call(*sessions, &v1::SessionService::Stub::CreateSession, create, &created);
+    v1::PlaySessionRequest play;
+    play.set_session_id("sheet");
+    v1::PlaySessionResponse played;
+    Call(*sessions, &v1::SessionService::Stub::PlaySession, play, &played);
+  }
+  v1::Session Get() {
+    const auto sessions = v1::SessionService::NewStub(server_->NewChannel());
+    v1::GetSessionRequest get;
+    get.set_session_id("sheet");
+    v1::GetSessionResponse got;
+    Call(*sessions, &v1::SessionService::Stub::GetSession, get, &got);
+    return got.session();
+  }
+
+  const std::string folder_;
+  std::unique_ptr<RunningServer> server_;
+};
+
+TEST_F(StopTest, TellsViewersAndKeepsWhatTheyLastSaw) {
+  CreateAndPlay();
+  const auto frames = v1::FrameService::NewStub(server_->NewChannel());
+  grpc::ClientContext context;
+  v1::WatchFramesRequest watch;
+  watch.set_session_id("sheet");
+  const auto reader = frames->WatchFrames(&context, watch);
+  v1::WatchFramesResponse response;
+  std::int64_t seen = 0;
+  for (int i = 0; i < 30; ++i) {
+    ASSERT_TRUE(reader->Read(&response));
+    if (response.has_frame()) seen = response.frame().tick();
+  }
+  std::thread rest([&] {
+    while (reader->Read(&response)) {
+      if (response.has_frame()) seen = response.frame().tick();
+    }
+  });
+  EXPECT_EQ(server_->Stop(absl::Seconds(10)), 0) << server_->Said();
+  rest.join();
+  const grpc::Status told = reader->Finish();
+  EXPECT_EQ(told.error_code(), grpc::UNAVAILABLE);
+  EXPECT_THAT(told.error_message(), HasSubstr("the server is shutting down"));
+  server_->Start();
+  const v1::Session session = Get();
+  EXPECT_GE(session.tick(), seen) << "what somebody saw is lost";
+  EXPECT_EQ(session.state(), v1::SESSION_STATE_PLAYING);
+}
+
+TEST_F(StopTest, BreaksExportsOffAndTellsWhoWaits) {
+  CreateAndPlay();
+  const auto exports = v1::ExportService::NewStub(server_->NewChannel());
+  v1::CreateExportRequest create;
+  create.set_export_id("long");
+  create.set_session_id("sheet");
+  create.set_format("csv");
+  create.set_seconds(3600);
+  v1::CreateExportResponse created;
+  Call(*exports, &v1::ExportService::Stub::CreateExport, create, &created);
+  grpc::ClientContext context;
+  v1::WatchExportRequest watch;
+  watch.set_export_id("long");
+  const auto reader = exports->WatchExport(&context, watch);
+  v1::WatchExportResponse response;
+  ASSERT_TRUE(reader->Read(&response));
+  std::thread rest([&] {
+    while (reader->Read(&response)) continue;
+  });
+  const absl::Time start = absl::Now();
+  EXPECT_EQ(server_->Stop(absl::Seconds(10)), 0) << server_->Said();
+  EXPECT_LT(absl::Now() - start, absl::Seconds(5));
+  rest.join();
+  EXPECT_FALSE(reader->Finish().ok());
+}
+
+}  // namespace
+}  // namespace phrenic::service

@@ -1,0 +1,83 @@
+// Studies outlive their server: what had ended is there, what had not is run again and comes to the same.
+#include <gtest/gtest.h>
+
+#include "phrenic/v1/study.grpc.pb.h"
+#include "tests/service/running_server.h"
+
+namespace phrenic::service {
+namespace {
+
+class StudyRestartTest : public testing::Test {
+ protected:
+  StudyRestartTest() : folder_(testing::TempDir() + "/phrenic-study-" + std::to_string(getpid())) {
+    std::filesystem::create_directories(folder_);
+    server_ = std::make_unique<RunningServer>(folder_, std::vector<std::string>{"--store", folder_ + "/store"});
+  }
+  ~StudyRestartTest() override {
+    server_.reset();
+    std::filesystem::remove_all(folder_);
+  }
+  std::unique_ptr<v1::StudyService::Stub> Studies() const { return v1::StudyService::NewStub(server_->NewChannel()); }
+
+  std::string Create(const std::string& id) const {
+    v1::CreateStudyRequest request;
+    request.set_study_id(id);
+    request.mutable_source()->set_name("cube-springs");
+    request.mutable_error()->set_seconds(0.2);
+    v1::CreateStudyResponse response;
+    grpc::ClientContext context;
+    const grpc::Status status = Studies()->CreateStudy(&context, request, &response);
+    EXPECT_TRUE(status.ok()) << status.error_message();
+    return response.study().id();
+  }
+  v1::Study Await(const std::string& id) const {
+    v1::WatchStudyRequest watch;
+    watch.set_study_id(id);
+    grpc::ClientContext context;
+    const auto studies = Studies();
+    const auto reader = studies->WatchStudy(&context, watch);
+    v1::WatchStudyResponse response;
+    while (reader->Read(&response)) continue;
+    return response.study();
+  }
+  // What a study of the same scene must come to, whenever it runs: errors, and not times.
+  static std::vector<double> Errors(const v1::Study& study) {
+    std::vector<double> errors;
+    for (const auto& row : study.result().error().rows()) errors.push_back(row.error_rms_mm());
+    return errors;
+  }
+
+  const std::string folder_;
+  std::unique_ptr<RunningServer> server_;
+};
+
+TEST_F(StudyRestartTest, WhatHadEndedIsThereAndWhatHadNotIsRunAgain) {
+  const v1::Study ended = Await(Create("ended"));
+  ASSERT_EQ(ended.state(), v1::STUDY_STATE_DONE) << ended.problem();
+  Create("killed");
+  Create("waiting");
+  absl::SleepFor(absl::Milliseconds(100));
+  server_->Kill();
+  server_->Start();
+  EXPECT_EQ(Await("ended").result().SerializeAsString(), ended.result().SerializeAsString());
+  for (const char* id : {"killed", "waiting"}) {
+    const v1::Study again = Await(id);
+    EXPECT_EQ(again.state(), v1::STUDY_STATE_DONE) << again.problem();
+    EXPECT_EQ(Errors(again), Errors(ended));
+  }
+  v1::DeleteStudyRequest remove;
+  remove.set_study_id("ended");
+  v1::DeleteStudyResponse removed;
+  grpc::ClientContext context;
+  ASSERT_TRUE(Studies()->DeleteStudy(&context, remove, &removed).ok());
+  absl::SleepFor(absl::Milliseconds(200));
+  server_->Kill();
+  server_->Start();
+  v1::ListStudiesResponse list;
+  grpc::ClientContext listing;
+  ASSERT_TRUE(Studies()->ListStudies(&listing, {}, &list).ok());
+  EXPECT_EQ(list.studies_size(), 2);
+}
+
+}  // namespace
+}  // namespace phrenic::service
