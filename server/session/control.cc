@@ -6,7 +6,7 @@
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "google/protobuf/util/time_util.h"
-#include "server/session/token.h"
+#include "server/schema/secret.h"
 
 namespace phrenic::session {
 namespace {
@@ -38,7 +38,8 @@ absl::Status CheckName(const std::string& field, const std::string& name) {
                    " characters, none of them a control character, and neither begins nor ends with a space"));
 }
 
-absl::StatusOr<ControlBook> ControlBook::Make(v1::ControlPolicy policy, const std::string& owner) {
+absl::StatusOr<ControlBook> ControlBook::Make(v1::ControlPolicy policy, const std::string& owner,
+                                              const std::string& account) {
   if (!owner.empty()) {
     if (absl::Status status = CheckName("owner_name", owner); !status.ok()) return status;
   }
@@ -46,7 +47,27 @@ absl::StatusOr<ControlBook> ControlBook::Make(v1::ControlPolicy policy, const st
   book.state_.policy = policy == v1::CONTROL_POLICY_UNSPECIFIED ? v1::CONTROL_POLICY_EVERYBODY : policy;
   book.state_.owner.name = owner.empty() ? "owner" : owner;
   book.state_.owner.token = NewToken();
+  book.state_.account = account;
   return book;
+}
+
+absl::Status ControlBook::AddLink(ControlState::Link link, absl::Time now) {
+  std::erase_if(state_.links, [now](const ControlState::Link& each) { return each.expires <= now; });
+  if (state_.links.size() >= kMostLinks) {
+    return absl::ResourceExhaustedError(
+        absl::StrCat("the session has ", kMostLinks, " join links, and no more are allowed; revoke one first"));
+  }
+  state_.links.push_back(std::move(link));
+  ++state_.revision;
+  return absl::OkStatus();
+}
+
+absl::Status ControlBook::RemoveLink(const std::string& id) {
+  if (std::erase_if(state_.links, [&id](const ControlState::Link& each) { return each.id == id; }) == 0) {
+    return absl::NotFoundError(absl::StrCat("link_id: the session has no link \"", id, "\""));
+  }
+  ++state_.revision;
+  return absl::OkStatus();
 }
 
 bool ControlBook::IsOwner(std::string_view token) const { return SameToken(token, state_.owner.token); }

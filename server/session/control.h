@@ -11,6 +11,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/time/time.h"
+#include "phrenic/v1/access.pb.h"
 #include "phrenic/v1/control.pb.h"
 
 namespace phrenic::session {
@@ -24,11 +25,22 @@ struct ControlState {
     absl::Time expires = absl::InfinitePast();  // is forgotten then; of the owner: counts as away, and stays the owner
     bool asks = false;
   };
+  // Of a join link; whoever has its secret may do as its role says.
+  struct Link {
+    std::string id;
+    std::string secret_sha256;
+    v1::AccessRole role = v1::ACCESS_ROLE_VIEWER;
+    absl::Time expires;
+    std::string made_by;  // an account
+  };
   v1::ControlPolicy policy = v1::CONTROL_POLICY_EVERYBODY;  // while `holder` is empty
   Person owner;
   std::vector<Person> people;  // who entered, but the owner
   std::string holder;          // the token of the one of them who has control; empty: none
   std::int64_t revision = 1;
+  // On a server with accounts: whom the session belongs to; empty: everybody who has an account may see it.
+  std::string account;
+  std::vector<Link> links;
 };
 
 // At any moment one person controls, or everybody does: the holder while they stay, else as the policy says. The owner
@@ -40,7 +52,8 @@ class ControlBook {
   // As it was kept.
   explicit ControlBook(ControlState state) : state_(std::move(state)) {}
   // A new session's: the owner has not entered. INVALID_ARGUMENT for a name that is none (CheckName).
-  static absl::StatusOr<ControlBook> Make(v1::ControlPolicy policy, const std::string& owner);
+  static absl::StatusOr<ControlBook> Make(v1::ControlPolicy policy, const std::string& owner,
+                                          const std::string& account = "");
 
   const ControlState& state() const { return state_; }
   // For everybody: nothing of it is secret.
@@ -62,6 +75,11 @@ class ControlBook {
   absl::Status Hand(std::string_view token, const std::string& name, absl::Time now);
   absl::Status HandToEverybody(std::string_view token, absl::Time now);
   absl::Status Release(std::string_view token, absl::Time now);
+
+  // A link for as long as it says, and none that has ended is kept. RESOURCE_EXHAUSTED past 64.
+  absl::Status AddLink(ControlState::Link link, absl::Time now);
+  // NOT_FOUND where there is no such link.
+  absl::Status RemoveLink(const std::string& id);
 
   // Forgets whose time is over; whether there was one.
   bool Expire(absl::Time now);
@@ -90,6 +108,7 @@ class ControlBook {
 absl::Status CheckName(const std::string& field, const std::string& name);
 
 inline constexpr std::size_t kMostPeople = 256;
+inline constexpr std::size_t kMostLinks = 64;
 
 }  // namespace phrenic::session
 

@@ -8,14 +8,19 @@ namespace phrenic::session {
 
 struct Limits {
   int sessions = 16;
-  int viewers = 64;                                     // of one session
+  int sessions_of_user = 8;  // on a server with accounts
+  int viewers = 64;          // of one session
+  int viewers_in_all = 256;
   int exports = 2;                                      // at once; comparisons as well
   int models = 4;                                       // compiled scenes kept for the next session
+  std::int64_t vertices = 4'000'000;                    // of one scene
   int kept_exports = 16;                                // waiting, running and ended
   int export_minutes = 60;                              // that a file is kept for download
   std::int64_t upload_bytes = std::int64_t{256} << 20;  // of one file
   std::int64_t uploads_bytes = std::int64_t{1} << 30;   // of all of them
   int uploads = 256;                                    // kept
+  double pause_minutes = 60;                            // a session plays on without anybody; 0: for ever
+  double delete_minutes = 0;                            // a session is kept without anybody; 0: for ever
 };
 
 }  // namespace phrenic::session

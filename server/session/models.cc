@@ -13,8 +13,6 @@
 namespace phrenic::session {
 namespace {
 
-constexpr std::int64_t kMostVertices = 4'000'000;
-
 std::string SerializedAlike(const v1::Scene& scene) {
   std::string bytes;
   google::protobuf::io::StringOutputStream out(&bytes);
@@ -25,27 +23,39 @@ std::string SerializedAlike(const v1::Scene& scene) {
   return bytes;
 }
 
-// Refuses a scene whose shapes would not fit before they are made.
-absl::Status CheckSize(const v1::Scene& scene) {
+absl::Status TooLarge(const std::string& what, std::int64_t vertices, std::int64_t most) {
+  return absl::ResourceExhaustedError(
+      absl::StrCat(what, " has ", vertices, " vertices, and no more than ", most, " are allowed (--max-vertices)"));
+}
+
+}  // namespace
+
+Models::Models(SceneCatalogue catalogue, std::string data_dir, int capacity, Uploads* uploads,
+               std::int64_t most_vertices)
+    : catalogue_(std::move(catalogue)),
+      data_dir_(data_dir),
+      meshes_(MakeMeshSource(std::move(data_dir), uploads)),
+      capacity_(std::max(1, capacity)),
+      most_vertices_(most_vertices) {}
+
+absl::Status Models::CheckSize(const v1::Scene& scene) const {
   std::int64_t vertices = 0;
   for (int i = 0; i < scene.bodies_size(); ++i) {
     const v1::Body& body = scene.bodies(i);
     if (body.has_grid()) vertices += std::int64_t{body.grid().columns()} * body.grid().rows();
-    if (vertices > kMostVertices) {
-      return absl::ResourceExhaustedError(absl::StrCat("bodies[", i, "].grid: with it the scene has ", vertices,
-                                                       " vertices, and no more than ", kMostVertices, " are allowed"));
+    if (vertices > most_vertices_) {
+      return TooLarge(absl::StrCat("bodies[", i, "].grid: with it the scene"), vertices, most_vertices_);
     }
   }
   return absl::OkStatus();
 }
 
-}  // namespace
-
-Models::Models(SceneCatalogue catalogue, std::string data_dir, int capacity, Uploads* uploads)
-    : catalogue_(std::move(catalogue)),
-      data_dir_(data_dir),
-      meshes_(MakeMeshSource(std::move(data_dir), uploads)),
-      capacity_(std::max(1, capacity)) {}
+absl::Status Models::CheckSize(const Model& model) const {
+  std::int64_t vertices = 0;
+  for (const BodyModel& body : model.bodies) vertices += body.mesh.vertices.cols();
+  if (vertices <= most_vertices_) return absl::OkStatus();
+  return TooLarge("bodies: the scene", vertices, most_vertices_);
+}
 
 absl::StatusOr<v1::Scene> Models::Resolve(const v1::SceneSource& source) const {
   v1::Scene scene;
@@ -94,6 +104,7 @@ absl::StatusOr<std::shared_ptr<const Model>> Models::Get(const v1::SceneSource& 
   }
   absl::StatusOr<std::shared_ptr<const Model>> model = Compile(*scene, meshes_);
   if (!model.ok()) return model.status();
+  if (absl::Status status = CheckSize(**model); !status.ok()) return status;
   entries_.push_front({std::move(key), *model});
   if (entries_.size() > capacity_) entries_.pop_back();
   return model;

@@ -35,6 +35,19 @@ Person RestorePerson(const v1::SavedPerson& saved) {
   return person;
 }
 
+void SaveLink(const ControlState::Link& link, v1::SavedLink& saved) {
+  saved.set_id(link.id);
+  saved.set_secret_sha256(link.secret_sha256);
+  saved.set_role(link.role);
+  saved.set_made_by(link.made_by);
+  *saved.mutable_expires() = TimeUtil::NanosecondsToTimestamp(absl::ToUnixNanos(link.expires));
+}
+
+ControlState::Link RestoreLink(const v1::SavedLink& saved) {
+  return {saved.id(), saved.secret_sha256(), saved.role(),
+          absl::FromUnixNanos(TimeUtil::TimestampToNanoseconds(saved.expires())), saved.made_by()};
+}
+
 // What the session was told: `run` stands at its tick.
 absl::Status Take(const v1::SavedMoment& moment, Run& run) {
   run.set_parameters(moment.session().parameters());
@@ -60,6 +73,8 @@ v1::SavedControl SaveControl(const ControlState& state) {
   for (const Person& person : state.people) SavePerson(person, *saved.add_people());
   saved.set_holder(state.holder);
   saved.set_revision(state.revision);
+  saved.set_account(state.account);
+  for (const ControlState::Link& link : state.links) SaveLink(link, *saved.add_links());
   return saved;
 }
 
@@ -70,6 +85,8 @@ ControlState RestoreControl(const v1::SavedControl& saved) {
   for (const v1::SavedPerson& person : saved.people()) state.people.push_back(RestorePerson(person));
   state.holder = saved.holder();
   state.revision = saved.revision();
+  state.account = saved.account();
+  for (const v1::SavedLink& link : saved.links()) state.links.push_back(RestoreLink(link));
   return state;
 }
 

@@ -19,6 +19,7 @@ Session::Session(std::string id, std::shared_ptr<const Model> model, Fork start,
       model_(std::move(model)),
       clock_(clock),
       publisher_(model_, clock, max_viewers),
+      attended_(absl::ToUnixNanos(clock.Now())),
       run_(model_, std::move(start.parameters), std::move(start.state)),
       stable_step_(start.stable_step),
       control_(std::move(origin.control)),
@@ -32,6 +33,7 @@ Session::Session(std::string id, std::shared_ptr<const Model> model, Fork start,
         google::protobuf::util::TimeUtil::NanosecondsToTimestamp(absl::ToUnixNanos(clock.Now()));
   }
   if (origin.told.has_value()) GoOn(*origin.told);
+  if (state_ == v1::SESSION_STATE_PLAYING) *reached_ = run_.state().time;
   pacer_.Start(clock.Now(), run_.state().time, speed_);
   meter_.Start(clock.Now(), run_.state().tick, run_.state().time);
   Tell();
@@ -51,7 +53,7 @@ v1::Session Session::status() const {
     status = status_;
   }
   status.set_viewers(publisher_.viewers());
-  if (journal_ != nullptr) status.set_not_saved(std::string(journal_->problem().message()));
+  WriteNotSaved(status);
   return status;
 }
 
@@ -76,8 +78,8 @@ absl::Status Session::Ask(absl::FunctionRef<void()> act) {
 }
 
 absl::StatusOr<v1::Session> Session::Play(std::optional<double> speed, bool as_fast_as_possible, double until,
-                                          std::string_view token) {
-  auto played = AskAs(token, [&] { return StartPlaying(speed, as_fast_as_possible, until); });
+                                          std::string_view token, std::weak_ptr<const ReachedTime> leader) {
+  auto played = AskAs(token, [&] { return StartPlaying(speed, as_fast_as_possible, until, leader); });
   if (!played.ok()) return played;
   return Saved();
 }

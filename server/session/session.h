@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -31,6 +32,10 @@
 #include "server/stream/publisher.h"
 
 namespace phrenic::session {
+
+// The simulated time that a session has come to [s], for one that plays in step with it; infinity where it does not
+// play: nobody waits for one that stands. Any thread may call.
+using ReachedTime = std::atomic<double>;
 
 // Who has it, where it is saved, and what it was told last where it goes on after the server ended.
 struct SessionOrigin {
@@ -78,10 +83,12 @@ class Session {
   // What was answered to requests that can be repeated.
   Answers& answers() { return answers_; }
 
-  // `speed` not set keeps the present one, `until` 0 never pauses. FAILED_PRECONDITION when the session has diverged,
-  // INVALID_ARGUMENT when `until` lies behind.
+  // `speed` not set keeps the present one, `until` 0 never pauses. It waits where it gets a frame ahead of `leader`
+  // (PlaySessionRequest.in_step_with). FAILED_PRECONDITION when the session has diverged, INVALID_ARGUMENT when `until`
+  // lies behind.
   absl::StatusOr<v1::Session> Play(std::optional<double> speed, bool as_fast_as_possible, double until,
-                                   std::string_view token = {});
+                                   std::string_view token = {}, std::weak_ptr<const ReachedTime> leader = {});
+  std::shared_ptr<const ReachedTime> reached() const { return reached_; }
   absl::StatusOr<v1::Session> Pause(std::string_view token = {});
   // Pauses, takes `ticks` steps and pauses again. ABORTED when the session is at another tick than expected, when
   // somebody else steps it, or when it is played, paused or reset meanwhile; CANCELLED as soon as `cancelled` says so.
@@ -96,6 +103,17 @@ class Session {
       ABSL_LOCKS_EXCLUDED(update_mutex_);
   // Pulls vertices, or lets go of them (phrenic::ChangePulls). INVALID_ARGUMENT names what cannot be pulled.
   absl::StatusOr<v1::Session> Pull(const PullList& pulls, bool release_others, std::string_view token = {});
+  // Who may see the session, on a server with accounts.
+  struct Access {
+    std::string account;  // whom it belongs to; empty: everybody
+    std::vector<ControlState::Link> links;
+  };
+  std::shared_ptr<const Access> access() const ABSL_LOCKS_EXCLUDED(mutex_);
+  // Somebody asked for it now; since when nobody has, or watched.
+  void NoteAttention() { attended_ = absl::ToUnixNanos(clock_.Now()); }
+  absl::Time attended() const { return absl::FromUnixNanos(attended_); }
+  // Pauses it, whoever controls.
+  void Rest();
   // Whether this token's bearer may change the session.
   absl::Status CheckControl(std::string_view token);
   // What `act` does with control, or why it did not. Viewers are told.
@@ -137,7 +155,10 @@ class Session {
   void Burst();
   bool StepOnce();
   bool Finished() const;
-  absl::Status StartPlaying(std::optional<double> speed, bool as_fast_as_possible, double until);
+  double FurthestInStep() const;
+  bool WaitsInStep() const;
+  absl::Status StartPlaying(std::optional<double> speed, bool as_fast_as_possible, double until,
+                            std::weak_ptr<const ReachedTime> leader);
   absl::Status StartJob(std::shared_ptr<StepJob> job, std::optional<std::int64_t> expected_tick);
   absl::Status CheckRevision(std::optional<std::int64_t> expected) const;
   absl::Status UpdateAt(const v1::Parameters& changes, double stable_step, std::optional<std::int64_t> at_tick);
@@ -149,7 +170,7 @@ class Session {
   void EndJob(absl::Status status);
   void OfferFrame(absl::Time now);
   // The status once it is in the store, or cannot be (not_saved).
-  v1::Session Saved() const;
+  v1::Session Saved();
   // Of session_saving.cc.
   void GoOn(const v1::SavedMoment& told);
   v1::SavedMoment Moment() const;
@@ -159,6 +180,7 @@ class Session {
   void Changed() ABSL_LOCKS_EXCLUDED(mutex_);
   void Tell() ABSL_LOCKS_EXCLUDED(mutex_);
   void WriteResiduals(v1::Session& status) const;
+  void WriteNotSaved(v1::Session& status) const;
   void NoteProgress() ABSL_LOCKS_EXCLUDED(mutex_);
   absl::Status CheckNotDiverged() const;
 
@@ -173,7 +195,10 @@ class Session {
   v1::Session status_ ABSL_GUARDED_BY(mutex_);
   std::deque<Command> commands_ ABSL_GUARDED_BY(mutex_);  // as many as there are callers waiting
   std::optional<absl::Status> stopped_ ABSL_GUARDED_BY(mutex_);
-  std::atomic<bool> called_ = false;  // a hint to end a burst early
+  std::shared_ptr<const Access> access_ ABSL_GUARDED_BY(mutex_);
+  std::atomic<std::int64_t> attended_;  // [ns] since 1970
+  std::atomic<bool> called_ = false;    // a hint to end a burst early
+  const std::shared_ptr<ReachedTime> reached_ = std::make_shared<ReachedTime>(std::numeric_limits<double>::infinity());
 
   // Of the stepping thread alone.
   Run run_;
@@ -182,7 +207,8 @@ class Session {
   v1::SessionState state_ = v1::SESSION_STATE_PAUSED;
   double speed_ = 1;  // simulated seconds per second
   bool as_fast_as_possible_ = false;
-  double until_ = 0;        // [s]; 0 never pauses
+  double until_ = 0;  // [s]; 0 never pauses
+  std::weak_ptr<const ReachedTime> leader_;
   double stable_step_ = 0;  // [s]
   std::int64_t revision_ = 1;
   std::int64_t frames_ = 0;

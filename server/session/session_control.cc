@@ -15,6 +15,18 @@ absl::Status Session::AskAs(std::string_view token, absl::FunctionRef<absl::Stat
   return asked.ok() ? done : asked;
 }
 
+std::shared_ptr<const Session::Access> Session::access() const {
+  absl::MutexLock lock(&mutex_);
+  return access_;
+}
+
+void Session::Rest() {
+  (void)Ask([this] {
+    EndJob(absl::AbortedError("the session was paused, as nobody watched it"));
+    if (state_ == v1::SESSION_STATE_PLAYING) Halt(v1::SESSION_STATE_PAUSED);
+  });
+}
+
 absl::Status Session::CheckControl(std::string_view token) {
   return AskAs(token, [] { return absl::OkStatus(); });
 }
@@ -30,7 +42,7 @@ absl::StatusOr<v1::Control> Session::ChangeControl(
   });
   if (!asked.ok()) return asked;
   if (!changed.ok()) return changed;
-  Flush().IgnoreError();
+  Saved();
   return control;
 }
 

@@ -11,11 +11,19 @@
 #include "server/session/session.h"
 
 namespace phrenic::session {
+namespace {
+
+// Farther ahead of the session that it plays in step with a session does not wait [s].
+constexpr double kLongestWait = 2;
+// Until one that waits looks again how far the other is.
+constexpr absl::Duration kLookAgain = absl::Milliseconds(1);
+
+}  // namespace
 
 void Session::Loop() {
   pthread_setname_np(pthread_self(), "stepping");
   while (ServeCommands()) {
-    if (job_ != nullptr || state_ == v1::SESSION_STATE_PLAYING) Burst();
+    if (job_ != nullptr || (state_ == v1::SESSION_STATE_PLAYING && !WaitsInStep())) Burst();
   }
 }
 
@@ -44,15 +52,31 @@ bool Session::ServeCommands() {
 absl::Time Session::NextBurst() const {
   if (job_ != nullptr) return absl::InfinitePast();
   if (state_ != v1::SESSION_STATE_PLAYING) return absl::InfiniteFuture();
+  if (WaitsInStep()) return clock_.Now() + kLookAgain;
   return as_fast_as_possible_ ? absl::InfinitePast() : pacer_.next_frame();
+}
+
+bool Session::WaitsInStep() const {
+  return run_.state().time + run_.parameters().time_step() > FurthestInStep() + kTimeTolerance;
+}
+
+// The time up to which it need not wait for the session that it plays in step with [s].
+double Session::FurthestInStep() const {
+  const double anywhere = std::numeric_limits<double>::infinity();
+  const auto leader = leader_.lock();
+  if (leader == nullptr) return anywhere;
+  const double reached = *leader;
+  const double frame = (as_fast_as_possible_ ? 1 : speed_) / kFramesPerSecond;
+  return run_.state().time > reached + std::max(kLongestWait, 2 * frame) ? anywhere : reached + frame;
 }
 
 // Steps until the time of the next frame is reached, in the simulation or on the wall, or somebody calls.
 void Session::Burst() {
-  const bool hurry = job_ != nullptr || as_fast_as_possible_;
   const absl::Time start = clock_.Now();
   const absl::Time end = start + absl::Seconds(1 / kFramesPerSecond);
-  const double target = hurry ? std::numeric_limits<double>::infinity() : pacer_.Target(start, run_.state().time);
+  const double anywhere = std::numeric_limits<double>::infinity();
+  const double due = as_fast_as_possible_ ? anywhere : pacer_.Target(start, run_.state().time);
+  const double target = job_ != nullptr ? anywhere : std::min(due, FurthestInStep());
   bool stepping = true;
   while (stepping && !called_) {
     if (run_.state().time + run_.parameters().time_step() > target + kTimeTolerance) break;
@@ -76,6 +100,7 @@ void Session::Burst() {
 
 bool Session::StepOnce() {
   if (!run_.Step().ok()) return false;
+  if (state_ == v1::SESSION_STATE_PLAYING) *reached_ = run_.state().time;
   if (!waiting_updates_.empty()) ApplyDueUpdates();
   if (job_ != nullptr) --job_->left;
   return true;
@@ -87,7 +112,8 @@ bool Session::Finished() const {
   return until_ > 0 && run_.state().time >= until_ - kTimeTolerance;
 }
 
-absl::Status Session::StartPlaying(std::optional<double> speed, bool as_fast_as_possible, double until) {
+absl::Status Session::StartPlaying(std::optional<double> speed, bool as_fast_as_possible, double until,
+                                   std::weak_ptr<const ReachedTime> leader) {
   if (absl::Status good = CheckNotDiverged(); !good.ok()) return good;
   const double time = run_.state().time;
   if (until > 0 && until <= time + kTimeTolerance) {
@@ -98,6 +124,8 @@ absl::Status Session::StartPlaying(std::optional<double> speed, bool as_fast_as_
   speed_ = speed.value_or(speed_);
   as_fast_as_possible_ = as_fast_as_possible;
   until_ = until;
+  leader_ = std::move(leader);
+  *reached_ = time;
   state_ = v1::SESSION_STATE_PLAYING;
   pacer_.Start(clock_.Now(), time, speed_);
   meter_.Start(clock_.Now(), run_.state().tick, time);
@@ -126,6 +154,7 @@ void Session::Halt(v1::SessionState state) {
   }
   if (state_ != state) ++revision_;
   state_ = state;
+  *reached_ = std::numeric_limits<double>::infinity();
   until_ = 0;
   Tell();
   OfferFrame(clock_.Now());
@@ -162,8 +191,10 @@ void Session::Changed() {
 void Session::Tell() {
   told_control_ = control_.state().revision;
   v1::Session status;
+  auto access = std::make_shared<const Access>(Access{control_.state().account, control_.state().links});
   {
     absl::MutexLock lock(&mutex_);
+    access_ = std::move(access);
     status_.set_state(state_);
     status_.set_time(run_.state().time);
     status_.set_tick(run_.state().tick);
@@ -183,6 +214,7 @@ void Session::Tell() {
     }
     status = status_;
   }
+  WriteNotSaved(status);
   publisher_.Announce(status);
   SaveChange(std::move(status));
 }
@@ -214,6 +246,7 @@ void Session::NoteProgress() {
     *status_.mutable_pace() = meter_.pace();
     status = status_;
   }
+  WriteNotSaved(status);
   publisher_.Announce(status);
 }
 

@@ -16,9 +16,15 @@ constexpr absl::Duration kProgress = absl::Milliseconds(500);
 
 absl::Status Session::Flush() const { return journal_ == nullptr ? absl::OkStatus() : journal_->Flush(); }
 
-v1::Session Session::Saved() const {
-  Flush().IgnoreError();
-  return status();
+v1::Session Session::Saved() {
+  const bool saved = Flush().ok();
+  v1::Session now = status();
+  if (!saved) publisher_.Announce(now);  // viewers were told before the store was asked
+  return now;
+}
+
+void Session::WriteNotSaved(v1::Session& status) const {
+  if (journal_ != nullptr) status.set_not_saved(std::string(journal_->problem().message()));
 }
 
 void Session::Forget() {

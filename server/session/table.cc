@@ -31,7 +31,24 @@ std::string Table::FreeId(const std::string& scene) const {
   });
 }
 
-absl::StatusOr<std::string> Table::Reserve(const char* field, const std::string& wanted, const std::string& scene) {
+absl::Status Table::CheckRoom(const std::string& account) const {
+  if (static_cast<int>(sessions_.size()) >= limits_.sessions) {
+    return absl::ResourceExhaustedError(absl::StrCat("there are ", sessions_.size(),
+                                                     " sessions, and no more are allowed; delete one first, or "
+                                                     "start the server with a larger --max-sessions"));
+  }
+  if (account.empty()) return absl::OkStatus();
+  const auto own = std::count_if(sessions_.begin(), sessions_.end(), [&account](const auto& each) {
+    return each.second != nullptr && each.second->access()->account == account;
+  });
+  if (own < limits_.sessions_of_user) return absl::OkStatus();
+  return absl::ResourceExhaustedError(absl::StrCat(account, " has ", own,
+                                                   " sessions, and nobody may have more; delete one first, or start "
+                                                   "the server with a larger --max-sessions-of-user"));
+}
+
+absl::StatusOr<std::string> Table::Reserve(const char* field, const std::string& wanted, const std::string& scene,
+                                           const std::string& account) {
   if (absl::Status status = schema::CheckId(field, wanted); !status.ok()) return status;
   absl::MutexLock lock(&mutex_);
   if (closed_.has_value()) return *closed_;
@@ -43,11 +60,7 @@ absl::StatusOr<std::string> Table::Reserve(const char* field, const std::string&
                                                  "restored (", lost->second.problem.message(),
                                                  "); delete it, or choose another id"));
   }
-  if (static_cast<int>(sessions_.size()) >= limits_.sessions) {
-    return absl::ResourceExhaustedError(absl::StrCat("there are ", sessions_.size(),
-                                                     " sessions, and no more are allowed; delete one first, or "
-                                                     "start the server with a larger --max-sessions"));
-  }
+  if (absl::Status room = CheckRoom(account); !room.ok()) return room;
   const std::string id = wanted.empty() ? FreeId(scene) : wanted;
   sessions_.emplace(id, nullptr);
   return id;
@@ -90,20 +103,23 @@ absl::StatusOr<std::shared_ptr<Session>> Table::MakeFork(const std::string& id, 
 
 absl::StatusOr<std::shared_ptr<Session>> Table::Create(const v1::CreateSessionRequest& request, ControlBook control) {
   const std::string scene = request.source().has_scene() ? request.source().scene().name() : request.source().name();
-  return Admit("session_id", request.session_id(), scene,
+  const std::string account = control.state().account;
+  return Admit("session_id", request.session_id(), scene, account,
                [&](const std::string& id) { return Make(id, request, std::move(control)); });
 }
 
 absl::StatusOr<std::shared_ptr<Session>> Table::Fork(const v1::ForkSessionRequest& request, ControlBook control) {
   const absl::StatusOr<std::shared_ptr<Session>> of = Find(request.session_id());
   if (!of.ok()) return of.status();
-  return Admit("fork_id", request.fork_id(), (*of)->model().scene.name(),
+  const std::string account = control.state().account;
+  return Admit("fork_id", request.fork_id(), (*of)->model().scene.name(), account,
                [&](const std::string& id) { return MakeFork(id, **of, std::move(control)); });
 }
 
 absl::StatusOr<std::shared_ptr<Session>> Table::Admit(const char* field, const std::string& wanted,
-                                                      const std::string& scene, absl::FunctionRef<Maker> make) {
-  const absl::StatusOr<std::string> id = Reserve(field, wanted, scene);
+                                                      const std::string& scene, const std::string& account,
+                                                      absl::FunctionRef<Maker> make) {
+  const absl::StatusOr<std::string> id = Reserve(field, wanted, scene, account);
   if (!id.ok()) return id.status();
   absl::StatusOr<std::shared_ptr<Session>> session = make(*id);
   if (session.ok()) {
@@ -135,6 +151,7 @@ absl::StatusOr<std::shared_ptr<Session>> Table::Find(const std::string& id) cons
   absl::MutexLock lock(&mutex_);
   const auto found = sessions_.find(id);
   if (found == sessions_.end() || found->second == nullptr) return NoSession(id);
+  found->second->NoteAttention();
   return found->second;
 }
 
@@ -153,19 +170,20 @@ Table::Page Table::List(int page_size, const std::string& token) const {
   return page;
 }
 
-absl::Status Table::Delete(const std::string& id, std::string_view token) {
+absl::Status Table::Delete(const std::string& id, std::string_view token) { return Remove(id, token); }
+
+absl::Status Table::DeleteAnyway(const std::string& id) { return Remove(id, std::nullopt); }
+
+absl::Status Table::Remove(const std::string& id, std::optional<std::string_view> token) {
   {
     absl::MutexLock lock(&mutex_);
-    if (const auto lost = lost_.find(id); lost != lost_.end()) {
-      const auto journal = store_->Continue(lost->second);
-      journal->Forget();
-      lost_.erase(lost);
-      return absl::OkStatus();
-    }
+    if (lost_.contains(id)) return DeleteLost(id, token);
   }
   const absl::StatusOr<std::shared_ptr<Session>> wanted = Find(id);
   if (!wanted.ok()) return wanted.status();
-  if (absl::Status status = (*wanted)->CheckControl(token); !status.ok()) return status;
+  if (token.has_value()) {
+    if (absl::Status status = (*wanted)->CheckControl(*token); !status.ok()) return status;
+  }
   std::shared_ptr<Session> session;
   {
     absl::MutexLock lock(&mutex_);
@@ -178,6 +196,19 @@ absl::Status Table::Delete(const std::string& id, std::string_view token) {
   session->Flush().IgnoreError();
   session->Stop(absl::NotFoundError(absl::StrCat("session ", id, " was deleted")));
   return absl::OkStatus();
+}
+
+void Table::Tend() {
+  const absl::Time now = clock_.Now();
+  const auto over = [now](const Session& session, double minutes) {
+    return minutes > 0 && now - session.attended() >= absl::Minutes(minutes);
+  };
+  for (const auto& session : List(kLargestPage, "").sessions) {
+    const v1::Session status = session->status();
+    if (status.viewers() > 0) session->NoteAttention();
+    if (status.state() == v1::SESSION_STATE_PLAYING && over(*session, limits_.pause_minutes)) session->Rest();
+    if (over(*session, limits_.delete_minutes)) DeleteAnyway(session->id()).IgnoreError();
+  }
 }
 
 void Table::Close(const absl::Status& reason) {

@@ -50,6 +50,11 @@ class Table {
   Page List(int page_size, const std::string& token) const ABSL_LOCKS_EXCLUDED(mutex_);
   // Stops the session, where the token's bearer may (Session::CheckControl), and ends its viewers with NOT_FOUND.
   absl::Status Delete(const std::string& id, std::string_view token = {}) ABSL_LOCKS_EXCLUDED(mutex_);
+  // The same, whoever controls it.
+  absl::Status DeleteAnyway(const std::string& id) ABSL_LOCKS_EXCLUDED(mutex_);
+  // Pauses and deletes the sessions that nobody has watched or asked for as long as the limits have it. To be called
+  // now and then.
+  void Tend() ABSL_LOCKS_EXCLUDED(mutex_);
   // Stops every session; none can be made afterwards.
   void Close(const absl::Status& reason) ABSL_LOCKS_EXCLUDED(mutex_);
 
@@ -57,16 +62,22 @@ class Table {
   using Maker = absl::StatusOr<std::shared_ptr<Session>>(const std::string& id);
 
   // A place taken while its session is being made: null. `field` of the request holds the wanted id.
-  absl::StatusOr<std::string> Reserve(const char* field, const std::string& wanted, const std::string& scene)
-      ABSL_LOCKS_EXCLUDED(mutex_);
+  absl::StatusOr<std::string> Reserve(const char* field, const std::string& wanted, const std::string& scene,
+                                      const std::string& account) ABSL_LOCKS_EXCLUDED(mutex_);
+  absl::Status CheckRoom(const std::string& account) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   // Takes a place, has the session made and puts it there.
   absl::StatusOr<std::shared_ptr<Session>> Admit(const char* field, const std::string& wanted, const std::string& scene,
-                                                 absl::FunctionRef<Maker> make) ABSL_LOCKS_EXCLUDED(mutex_);
+                                                 const std::string& account, absl::FunctionRef<Maker> make)
+      ABSL_LOCKS_EXCLUDED(mutex_);
   absl::StatusOr<std::shared_ptr<Session>> Make(const std::string& id, const v1::CreateSessionRequest& request,
                                                 ControlBook control);
   absl::StatusOr<std::shared_ptr<Session>> MakeFork(const std::string& id, Session& of, ControlBook control) const;
   std::shared_ptr<store::Journal> Begin(const std::string& id, const Model& model) const;
   absl::StatusOr<std::shared_ptr<Session>> Restored(const store::SavedSession& saved);
+  // `token` of who asks; none: whoever it is.
+  absl::Status Remove(const std::string& id, std::optional<std::string_view> token) ABSL_LOCKS_EXCLUDED(mutex_);
+  absl::Status DeleteLost(const std::string& id, std::optional<std::string_view> token)
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   std::string FreeId(const std::string& scene) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   absl::Status NoSession(const std::string& id) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 

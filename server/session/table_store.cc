@@ -53,4 +53,19 @@ absl::StatusOr<std::map<std::string, absl::Status>> Table::Restore(
   return lost;
 }
 
+// Who might have deleted it while it ran may delete it now.
+absl::Status Table::DeleteLost(const std::string& id, std::optional<std::string_view> token) {
+  const auto lost = lost_.find(id);
+  const store::SavedSession& saved = lost->second;
+  ControlBook control(RestoreControl((saved.later.empty() ? saved.moment : saved.later.back()).control()));
+  if (token.has_value()) {
+    if (absl::Status status = control.Check(*token, clock_.Now()); !status.ok()) return status;
+  }
+  const auto journal = store_->Continue(saved);
+  journal->Forget();
+  if (absl::Status status = journal->Flush(); !status.ok()) return status;
+  lost_.erase(lost);
+  return absl::OkStatus();
+}
+
 }  // namespace phrenic::session

@@ -40,9 +40,9 @@ absl::Status Uploads::CheckFile(const std::string& name, std::int64_t size) cons
   }
   if (size <= 0) return absl::InvalidArgumentError(absl::StrCat("size: ", name, " is empty"));
   if (size <= limits_.upload_bytes) return absl::OkStatus();
-  return absl::ResourceExhaustedError(absl::StrCat("size: ", name, " has ", size, " bytes, and a file may have ",
-                                                   limits_.upload_bytes, "; make the surface coarser, or write it in ",
-                                                   "a binary format (phrenic convert)"));
+  return absl::ResourceExhaustedError(absl::StrCat(
+      "size: ", name, " has ", size, " bytes, and a file may have ", limits_.upload_bytes,
+      " (--max-upload-mb); make the surface coarser, or write it in ", "a binary format (phrenic convert)"));
 }
 
 absl::StatusOr<Uploads::Begun> Uploads::Begin(const std::string& name, std::int64_t size, const std::string& sha256) {

@@ -16,6 +16,11 @@ constexpr char kTables[] = R"(
   CREATE TABLE journal (session TEXT NOT NULL, sequence INTEGER NOT NULL, moment BLOB NOT NULL, sha256 TEXT NOT NULL,
                         PRIMARY KEY (session, sequence)) WITHOUT ROWID;)";
 
+// Since format 2.
+constexpr char kRecordTable[] = R"(
+  CREATE TABLE records (number INTEGER PRIMARY KEY, kind TEXT NOT NULL, id TEXT NOT NULL, bytes BLOB NOT NULL,
+                        sha256 TEXT NOT NULL, UNIQUE (kind, id));)";
+
 absl::Status Damaged(const std::string& id, const char* what) {
   return absl::DataLossError(absl::StrCat("session ", id, ": its ", what, " is damaged in the store"));
 }
@@ -78,14 +83,23 @@ absl::Status Examine(const std::string& folder, Database& database) {
                                           "): nothing was changed; phrenicd check says what is left of it"));
 }
 
+// Of an earlier format that was examined: it lacks tables, and has nothing else otherwise.
+absl::Status Upgrade(Database& database) {
+  const absl::StatusOr<std::int64_t> format = database.Number("PRAGMA user_version");
+  if (!format.ok() || *format == kFormat) return format.status();
+  return database.Run(absl::StrCat("PRAGMA user_version = ", kFormat, ";", kRecordTable));
+}
+
 absl::Status Prepare(const std::string& folder, Database& database) {
   if (absl::Status status = database.Run("PRAGMA locking_mode = EXCLUSIVE; BEGIN EXCLUSIVE"); !status.ok())
     return status;
   const absl::StatusOr<std::int64_t> tables = database.Number("SELECT count(*) FROM sqlite_master");
   if (!tables.ok()) return tables.status();
-  absl::Status status = *tables > 0 ? Examine(folder, database)
-                                    : database.Run(absl::StrCat("PRAGMA application_id = ", kApplication,
-                                                                "; PRAGMA user_version = ", kFormat, ";", kTables));
+  absl::Status status =
+      *tables > 0 ? Examine(folder, database)
+                  : database.Run(absl::StrCat("PRAGMA application_id = ", kApplication,
+                                              "; PRAGMA user_version = ", kFormat, ";", kTables, kRecordTable));
+  if (status.ok()) status = Upgrade(database);
   if (!status.ok()) {
     database.Run("ROLLBACK").IgnoreError();
     return status;
@@ -111,6 +125,23 @@ absl::StatusOr<std::vector<SavedSession>> ReadSessions(Database& database) {
     session.problem =
         Parse(rows->Bytes(1), rows->Bytes(2), session.scene) ? ReadState(*rows, session) : Damaged(session.id, "scene");
     if (session.problem.ok()) session.problem = ReadJournal(database, session);
+  }
+}
+
+absl::StatusOr<std::vector<SavedRecord>> ReadRecords(Database& database, const std::string& kind) {
+  auto rows = Statement::Prepare(database, "SELECT id, bytes, sha256 FROM records WHERE kind = ? ORDER BY number");
+  if (!rows.ok()) return rows.status();
+  rows->Bind(1, kind);
+  std::vector<SavedRecord> records;
+  for (;;) {
+    const absl::StatusOr<bool> row = rows->Next();
+    if (!row.ok()) return row.status();
+    if (!*row) return records;
+    SavedRecord& record = records.emplace_back();
+    record.id = std::string(rows->Bytes(0));
+    record.bytes = std::string(rows->Bytes(1));
+    if (Sha256Hex(record.bytes) == rows->Bytes(2)) continue;
+    record.problem = absl::DataLossError(absl::StrCat(kind, " ", record.id, " is damaged in the store"));
   }
 }
 

@@ -10,7 +10,7 @@
 
 namespace phrenic::store {
 
-inline constexpr int kFormat = 1;  // of the tables; grows when they change
+inline constexpr int kFormat = 2;  // of the tables; grows when they change
 
 // What the store has of one session.
 struct SavedSession {
@@ -24,17 +24,25 @@ struct SavedSession {
   absl::Status problem;  // DATA_LOSS: what was read is not what was written
 };
 
+// What the store has of something else: a message, by its kind ("study") and name.
+struct SavedRecord {
+  std::string id, bytes;
+  absl::Status problem;  // DATA_LOSS, as above
+};
+
 // FOLDER/phrenic.db
 std::string StoreFile(const std::string& folder);
 
-// Makes the tables in an empty file. Else FAILED_PRECONDITION where another program wrote it or a newer Phrenic, and
-// DATA_LOSS where SQLite finds it damaged; nothing is changed then.
+// Makes the tables in an empty file, and what a file of an earlier format lacks. Else FAILED_PRECONDITION where another
+// program wrote it or a newer Phrenic, and DATA_LOSS where SQLite finds it damaged; nothing is changed then.
 absl::Status Prepare(const std::string& folder, Database& database);
 // The same checks, and nothing is made.
 absl::Status Examine(const std::string& folder, Database& database);
 
 // Every session, in the order of the ids; one with a `problem` does not keep the others from being read.
 absl::StatusOr<std::vector<SavedSession>> ReadSessions(Database& database);
+// Every record of a kind, in the order in which they were first saved.
+absl::StatusOr<std::vector<SavedRecord>> ReadRecords(Database& database, const std::string& kind);
 
 }  // namespace phrenic::store
 

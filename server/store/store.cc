@@ -24,10 +24,15 @@ struct Writer {
     auto shorten = Statement::Prepare(database, "DELETE FROM journal WHERE session = ? AND sequence <= ?");
     auto moment = Statement::Prepare(database, "INSERT OR REPLACE INTO journal VALUES (?, ?, ?, ?)");
     auto forget = Statement::Prepare(database, "DELETE FROM sessions WHERE id = ?");
-    for (const auto* statement : {&scene, &state, &shorten, &moment, &forget}) {
+    auto record = Statement::Prepare(database,
+                                     "INSERT INTO records (kind, id, bytes, sha256) VALUES (?1, ?2, ?3, ?4) ON "
+                                     "CONFLICT (kind, id) DO UPDATE SET bytes = ?3, sha256 = ?4");
+    auto remove = Statement::Prepare(database, "DELETE FROM records WHERE kind = ? AND id = ?");
+    for (const auto* statement : {&scene, &state, &shorten, &moment, &forget, &record, &remove}) {
       if (!statement->ok()) return statement->status();
     }
-    return Writer{*std::move(scene), *std::move(state), *std::move(shorten), *std::move(moment), *std::move(forget)};
+    return Writer{*std::move(scene),  *std::move(state),  *std::move(shorten), *std::move(moment),
+                  *std::move(forget), *std::move(record), *std::move(remove)};
   }
 
   absl::Status Shorten(const std::string& id, std::int64_t last) { return shorten.Bind(1, id).Bind(2, last).Run(); }
@@ -54,7 +59,12 @@ struct Writer {
     return forget.Bind(1, id).Run();
   }
 
-  Statement scene, state, shorten, moment, forget;
+  absl::Status WriteRecord(const std::string& kind, const std::string& id, const std::optional<std::string>& bytes) {
+    if (!bytes.has_value()) return remove.Bind(1, kind).Bind(2, id).Run();
+    return record.Bind(1, kind).Bind(2, id).BindBytes(3, *bytes).Bind(4, Sha256Hex(*bytes)).Run();
+  }
+
+  Statement scene, state, shorten, moment, forget, record, remove;
 };
 
 }  // namespace
@@ -81,6 +91,20 @@ Store::~Store() {
 }
 
 absl::StatusOr<std::vector<SavedSession>> Store::Load() { return ReadSessions(database_); }
+
+absl::StatusOr<std::vector<SavedRecord>> Store::LoadRecords(const std::string& kind) {
+  return ReadRecords(database_, kind);
+}
+
+void Store::Put(const std::string& kind, const std::string& id, std::string bytes) {
+  absl::MutexLock lock(&mutex_);
+  records_[{kind, id}] = std::move(bytes);
+}
+
+void Store::Remove(const std::string& kind, const std::string& id) {
+  absl::MutexLock lock(&mutex_);
+  records_[{kind, id}] = std::nullopt;
+}
 
 absl::Status Store::LimitSize(std::int64_t bytes) {
   const absl::StatusOr<std::int64_t> page = database_.Number("PRAGMA page_size");
@@ -136,7 +160,7 @@ void Store::PutBack(Batch& batch) {
   waiting_.insert(waiting_.begin(), waiting.begin(), waiting.end());
 }
 
-absl::Status Store::Write(const Batch& batch) {
+absl::Status Store::Write(const Batch& batch, const Records& records) {
   if (absl::Status status = database_.Run("BEGIN IMMEDIATE"); !status.ok()) return status;
   absl::StatusOr<Writer> writer = Writer::Make(database_);
   absl::Status status = writer.status();
@@ -152,6 +176,9 @@ absl::Status Store::Write(const Batch& batch) {
       if (status.ok()) status = writer->WriteMoment(journal->id_, sequence, moment);
     }
   }
+  for (const auto& [name, bytes] : records) {
+    if (status.ok()) status = writer->WriteRecord(name.first, name.second, bytes);
+  }
   if (status.ok()) status = database_.Run("COMMIT");
   if (!status.ok()) database_.Run("ROLLBACK").IgnoreError();
   return status;
@@ -162,11 +189,12 @@ void Store::Run() {
   absl::MutexLock lock(&mutex_);
   for (;;) {
     mutex_.Await(absl::Condition(this, &Store::Stirred));
-    if (waiting_.empty()) return;
+    if (!Waits()) return;
     const bool last = closing_;
     Batch batch = TakeBatch();
+    Records records = std::exchange(records_, {});
     mutex_.Unlock();
-    const absl::Status status = Write(batch);
+    const absl::Status status = Write(batch, records);
     mutex_.Lock();
     for (const auto& [journal, pending] : batch) {
       journal->problem_ = status;
@@ -175,6 +203,7 @@ void Store::Run() {
     if (status.ok()) continue;
     if (last) return;
     PutBack(batch);
+    records_.merge(records);  // what came meanwhile is newer
     mutex_.AwaitWithTimeout(absl::Condition(this, &Store::Closing), kAgain);
   }
 }

@@ -4,6 +4,7 @@
 #define PHRENIC_SERVER_STORE_STORE_H_
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -80,6 +81,11 @@ class Store {
 
   // What an earlier server left; before anything is saved.
   absl::StatusOr<std::vector<SavedSession>> Load();
+  absl::StatusOr<std::vector<SavedRecord>> LoadRecords(const std::string& kind);
+  // Saves a message by its kind and name, in the place of an earlier one, or removes it; on the disk within
+  // milliseconds, or once that has room.
+  void Put(const std::string& kind, const std::string& id, std::string bytes) ABSL_LOCKS_EXCLUDED(mutex_);
+  void Remove(const std::string& kind, const std::string& id) ABSL_LOCKS_EXCLUDED(mutex_);
   // The file may grow no larger [bytes]: past that the disk counts as full.
   absl::Status LimitSize(std::int64_t bytes);
   // Of a new session, which is in the store with its first state.
@@ -90,19 +96,22 @@ class Store {
  private:
   friend class Journal;
   using Batch = std::vector<std::pair<std::shared_ptr<Journal>, Journal::Pending>>;
+  using Records = std::map<std::pair<std::string, std::string>, std::optional<std::string>>;  // nothing: remove it
 
   explicit Store(Database database);
   void Told(Journal& journal) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   bool Closing() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) { return closing_; }
-  bool Stirred() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) { return closing_ || !waiting_.empty(); }
+  bool Stirred() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) { return closing_ || Waits(); }
+  bool Waits() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) { return !waiting_.empty() || !records_.empty(); }
   void Run() ABSL_LOCKS_EXCLUDED(mutex_);
   Batch TakeBatch() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void PutBack(Batch& batch) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  absl::Status Write(const Batch& batch);
+  absl::Status Write(const Batch& batch, const Records& records);
 
   Database database_;  // of one thread at a time
   mutable absl::Mutex mutex_;
   std::vector<std::shared_ptr<Journal>> waiting_ ABSL_GUARDED_BY(mutex_);  // in the order in which they were told
+  Records records_ ABSL_GUARDED_BY(mutex_);                                // that wait
   bool closing_ ABSL_GUARDED_BY(mutex_) = false;
   std::thread thread_;
 };

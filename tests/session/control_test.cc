@@ -5,7 +5,7 @@
 #include <random>
 #include <set>
 
-#include "server/session/token.h"
+#include "server/schema/secret.h"
 
 namespace phrenic::session {
 namespace {

@@ -199,7 +199,11 @@ TEST_F(RestoreTest, WhatCannotBeRestoredStaysUntilItIsDeleted) {
     }()));
     scene.set_scene_hash("another");
     const auto journal = store_->Begin("odd", scene);
-    journal->Keep(v1::SavedMoment(), std::make_shared<State>());
+    v1::SavedMoment moment;
+    moment.mutable_control()->set_policy(v1::CONTROL_POLICY_OWNER);
+    moment.mutable_control()->mutable_owner()->set_name("Anna");
+    moment.mutable_control()->mutable_owner()->set_token("anna's");
+    journal->Keep(moment, std::make_shared<State>());
     ASSERT_TRUE(journal->Flush().ok());
   }
   Again();
@@ -211,7 +215,8 @@ TEST_F(RestoreTest, WhatCannotBeRestoredStaysUntilItIsDeleted) {
   EXPECT_THAT(std::string(table_->Create(request).status().message()), HasSubstr("could not be restored"));
   Again();
   EXPECT_TRUE(lost_.contains("odd"));
-  ASSERT_TRUE(table_->Delete("odd", "").ok());
+  EXPECT_TRUE(absl::IsPermissionDenied(table_->Delete("odd", ""))) << "it is Anna's";
+  ASSERT_TRUE(table_->Delete("odd", "anna's").ok());
   EXPECT_TRUE(table_->Create(request).ok());
 }
 
@@ -231,6 +236,30 @@ TEST_F(RestoreTest, AFullDiskIsToldAndNothingStops) {
   Again();
   EXPECT_EQ(Find("a")->status().parameters().breath_force(), 2);
   EXPECT_EQ(Find("a")->status().tick(), 10);
+}
+
+TEST_F(RestoreTest, WhomASessionBelongsToAndItsLinksGoOn) {
+  v1::CreateSessionRequest request;
+  request.set_session_id("mine");
+  request.mutable_source()->set_name("triangle");
+  auto book = ControlBook::Make(v1::CONTROL_POLICY_EVERYBODY, "", "anna");
+  ASSERT_TRUE(book.ok());
+  auto session = table_->Create(request, *std::move(book));
+  ASSERT_TRUE(session.ok());
+  const absl::Time end = clock_.Now() + absl::Hours(1);
+  const auto changed = (*session)->ChangeControl([end](ControlBook& control, absl::Time now) {
+    return control.AddLink({"l1", "hash", v1::ACCESS_ROLE_CONTROLLER, end, "anna"}, now);
+  });
+  ASSERT_TRUE(changed.ok()) << changed.status();
+  session->reset();
+  Again();
+  const auto access = Find("mine")->access();
+  EXPECT_EQ(access->account, "anna");
+  ASSERT_EQ(access->links.size(), 1u);
+  EXPECT_EQ(access->links[0].id, "l1");
+  EXPECT_EQ(access->links[0].secret_sha256, "hash");
+  EXPECT_EQ(access->links[0].role, v1::ACCESS_ROLE_CONTROLLER);
+  EXPECT_EQ(access->links[0].expires, end);
 }
 
 }  // namespace

@@ -218,5 +218,70 @@ TEST_F(TableTest, NothingIsMadeAfterClose) {
   EXPECT_TRUE(absl::IsNotFound(table_.Find("mine").status()));
 }
 
+class TendedTable : public FolderTest {
+ protected:
+  std::shared_ptr<Session> Play(const std::string& id) {
+    v1::CreateSessionRequest request;
+    request.set_session_id(id);
+    request.mutable_source()->set_name("triangle");
+    auto session = table_.Create(request);
+    EXPECT_TRUE(session.ok()) << session.status();
+    EXPECT_TRUE((*session)->Play(std::nullopt, false, 0).ok());
+    return *session;
+  }
+  static bool Plays(const Session& session) { return session.status().state() == v1::SESSION_STATE_PLAYING; }
+
+  FakeClock clock_;
+  Models models_{Catalogue(), "", 4};
+  Table table_{models_, clock_, {.pause_minutes = 10, .delete_minutes = 30}};
+};
+
+TEST_F(TendedTable, WhatNobodyAsksForIsPausedAndThenDeleted) {
+  const auto left = Play("left"), asked = Play("asked");
+  clock_.Advance(absl::Minutes(9));
+  ASSERT_TRUE(table_.Find("asked").ok());
+  table_.Tend();
+  EXPECT_TRUE(Plays(*left) && Plays(*asked));
+  clock_.Advance(absl::Minutes(2));
+  table_.Tend();
+  EXPECT_FALSE(Plays(*left));
+  EXPECT_TRUE(Plays(*asked)) << "somebody asked for it";
+  clock_.Advance(absl::Minutes(20));
+  table_.Tend();
+  EXPECT_TRUE(absl::IsNotFound(table_.Find("left").status()));
+  EXPECT_TRUE(table_.Find("asked").ok());
+}
+
+TEST_F(TendedTable, WhatIsWatchedGoesOn) {
+  const auto watched = Play("watched");
+  const auto viewer = watched->publisher().Join({}, [] {});
+  ASSERT_TRUE(viewer.ok());
+  for (int i = 0; i < 10; ++i) {
+    clock_.Advance(absl::Minutes(9));
+    table_.Tend();
+    ASSERT_TRUE(Plays(*watched));
+  }
+  watched->publisher().Leave(*viewer);
+  clock_.Advance(absl::Minutes(11));
+  table_.Tend();
+  EXPECT_FALSE(Plays(*watched));
+}
+
+TEST_F(TendedTable, AnAccountHasSoManySessions) {
+  Table table(models_, clock_, {.sessions_of_user = 1});
+  const auto make = [&](const std::string& account) {
+    v1::CreateSessionRequest request;
+    request.mutable_source()->set_name("triangle");
+    return table.Create(request, *ControlBook::Make(v1::CONTROL_POLICY_EVERYBODY, "", account)).status();
+  };
+  EXPECT_TRUE(make("anna").ok());
+  const absl::Status second = make("anna");
+  EXPECT_TRUE(absl::IsResourceExhausted(second));
+  EXPECT_THAT(Message(second), HasSubstr("--max-sessions-of-user"));
+  EXPECT_TRUE(make("bert").ok());
+  EXPECT_TRUE(make("").ok()) << "of nobody";
+  EXPECT_TRUE(make("").ok());
+}
+
 }  // namespace
 }  // namespace phrenic::session

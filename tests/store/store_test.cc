@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <map>
 
 #include "absl/time/clock.h"
 #include "server/store/check.h"
@@ -143,12 +144,12 @@ TEST_F(StoreTest, ANewerFormatIsRefusedAndLeftAsItIs) {
   { Open(); }
   {
     auto database = Database::Open(StoreFile(folder_), Access::kWrite);
-    ASSERT_TRUE(database->Run("PRAGMA user_version = 2").ok());
+    ASSERT_TRUE(database->Run("PRAGMA user_version = 99").ok());
   }
   const auto store = Store::Open(folder_);
   EXPECT_TRUE(absl::IsFailedPrecondition(store.status())) << store.status();
-  EXPECT_THAT(std::string(store.status().message()), HasSubstr("format 2, written by a newer Phrenic"));
-  EXPECT_EQ(*Database::Open(StoreFile(folder_), Access::kRead)->Number("PRAGMA user_version"), 2);
+  EXPECT_THAT(std::string(store.status().message()), HasSubstr("format 99, written by a newer Phrenic"));
+  EXPECT_EQ(*Database::Open(StoreFile(folder_), Access::kRead)->Number("PRAGMA user_version"), 99);
 }
 
 TEST_F(StoreTest, WhatIsNoStoreIsRefused) {
@@ -239,6 +240,45 @@ TEST_F(StoreTest, AFullDiskIsToldAndEverythingIsSavedWhenThereIsRoomAgain) {
     EXPECT_TRUE(status.ok()) << status;
   }
   EXPECT_THAT(Ticks(Open()->Load()->at(0)), ElementsAre(4, 5));
+}
+
+TEST_F(StoreTest, RecordsAreTheNewestOfEachKindAndName) {
+  {
+    const auto store = Open();
+    store->Put("study", "b", "1");
+    store->Put("study", "a", "2");
+    store->Put("other", "a", "3");
+    store->Put("study", "gone", "4");
+    store->Remove("study", "gone");
+  }
+  {
+    const auto store = Open();
+    store->Put("study", "b", std::string("\0new", 4));
+  }
+  const auto records = Open()->LoadRecords("study");
+  ASSERT_TRUE(records.ok()) << records.status();
+  ASSERT_THAT(*records, SizeIs(2));
+  std::map<std::string, std::string> bytes;
+  for (const SavedRecord& record : *records) bytes[record.id] = record.bytes;
+  EXPECT_EQ(bytes["a"], "2");
+  EXPECT_EQ(bytes["b"], std::string("\0new", 4));
+}
+
+TEST_F(StoreTest, AStoreOfTheFirstFormatOpensAndKeepsItsSessions) {
+  {
+    const auto store = Open();
+    const auto journal = store->Begin("old", Scene("cube"));
+    journal->Keep(At(4), StateAt(4));
+    ASSERT_TRUE(journal->Flush().ok());
+  }
+  {
+    auto database = Database::Open(StoreFile(folder_), Access::kWrite);
+    ASSERT_TRUE(database.ok());
+    ASSERT_TRUE(database->Run("DROP TABLE records; PRAGMA user_version = 1").ok());
+  }
+  const auto store = Open();
+  ASSERT_THAT(*store->Load(), SizeIs(1));
+  store->Put("study", "a", "1");
 }
 
 }  // namespace

@@ -1,0 +1,80 @@
+#include <gmock/gmock.h>
+
+#include "server/session/session.h"
+#include "tests/compile_text.h"
+#include "tests/fake_clock.h"
+#include "tests/small_scenes.h"
+
+namespace phrenic::session {
+namespace {
+
+// Two sessions of one scene, on a clock that only the test moves.
+class InStepTest : public testing::Test {
+ protected:
+  std::unique_ptr<Session> Start(const char* id) {
+    Session::Fork start{model_->parameters, model_->InitialState(), model_->report.stable_step().seconds()};
+    return std::make_unique<Session>(id, model_, std::move(start), clock_, 8);
+  }
+  void PassTenths(int tenths) {
+    for (int i = 0; i < 6 * tenths; ++i) {
+      clock_.Advance(absl::Seconds(1 / kFramesPerSecond + 1e-6));
+      absl::SleepFor(absl::Milliseconds(2));
+    }
+  }
+  double Apart() const { return ahead_->status().time() - behind_->status().time(); }
+
+  static constexpr double kFrame = 1 / kFramesPerSecond;
+  FakeClock clock_;
+  const std::shared_ptr<const Model> model_ = CompileText(kTriangle);
+  const std::unique_ptr<Session> behind_ = Start("behind"), ahead_ = Start("ahead");
+};
+
+TEST_F(InStepTest, TheOneAheadWaitsForASlowerOne) {
+  ASSERT_TRUE(ahead_->Play(1, false, 0, {}, behind_->reached()).ok());
+  ASSERT_TRUE(behind_->Play(0.25, false, 0, {}, ahead_->reached()).ok());
+  PassTenths(10);
+  ASSERT_TRUE(Eventually([&] { return behind_->status().time() > 0.2; }));
+  EXPECT_LT(behind_->status().time(), 0.3);
+  EXPECT_LE(Apart(), kFrame + 1e-6);
+}
+
+TEST_F(InStepTest, AsFastAsPossibleItWaitsToo) {
+  ASSERT_TRUE(behind_->Play(0.25, false, 0).ok());
+  ASSERT_TRUE(ahead_->Play(1, true, 0, {}, behind_->reached()).ok());
+  PassTenths(4);
+  ASSERT_TRUE(Eventually([&] { return ahead_->status().time() > 0.08; }));
+  EXPECT_LE(Apart(), kFrame + 1e-6);
+}
+
+TEST_F(InStepTest, WithoutItTheyPart) {
+  ASSERT_TRUE(ahead_->Play(1, false, 0).ok());
+  ASSERT_TRUE(behind_->Play(0.25, false, 0).ok());
+  PassTenths(4);
+  EXPECT_TRUE(Eventually([&] { return Apart() > 0.1; }));
+}
+
+TEST_F(InStepTest, NobodyWaitsForOneThatStands) {
+  ASSERT_TRUE(behind_->Play(1, false, 0).ok());
+  ASSERT_TRUE(ahead_->Play(1, false, 0, {}, behind_->reached()).ok());
+  ASSERT_TRUE(behind_->Pause().ok());
+  PassTenths(4);
+  EXPECT_TRUE(Eventually([&] { return Apart() > 0.2; }));
+}
+
+TEST_F(InStepTest, OneThatIsFarAheadOrWhoseOtherIsGoneGoesOn) {
+  ASSERT_TRUE(ahead_->Step(500, std::nullopt, [] { return false; }).ok());
+  ASSERT_GT(Apart(), 2);
+  ASSERT_TRUE(behind_->Play(0.01, false, 0).ok());
+  ASSERT_TRUE(ahead_->Play(1, false, 0, {}, behind_->reached()).ok());
+  const double before = ahead_->status().time();
+  PassTenths(1);
+  EXPECT_TRUE(Eventually([&] { return ahead_->status().time() > before + 0.05; }));
+  auto other = Start("other");
+  ASSERT_TRUE(behind_->Play(1, false, 0, {}, other->reached()).ok());
+  other.reset();
+  PassTenths(2);
+  EXPECT_TRUE(Eventually([&] { return behind_->status().time() > 0.1; }));
+}
+
+}  // namespace
+}  // namespace phrenic::session
