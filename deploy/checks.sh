@@ -78,7 +78,7 @@ stage_format() {
 }
 
 check_shellcheck() {
-  (cd "$root" && shellcheck -x deploy/run deploy/test deploy/report deploy/*.sh client/examples/*.sh .ci/run tests/deploy/*.sh)
+  (cd "$root" && shellcheck -x deploy/run deploy/test deploy/report deploy/faults deploy/*.sh client/examples/*.sh tests/client/slurm/* .ci/run tests/deploy/*.sh)
 }
 
 stage_scripts() {
@@ -151,8 +151,14 @@ ctests() {
   fi
 }
 
+# Campaigns run on a Slurm of this machine alone where one can be started; their test says where it cannot.
 stage_tests() {
+  local slurm=$root/build/slurm
+  if [[ $(id -u) == 0 ]] && "$root/tests/client/slurm/start" "$slurm" > /dev/null; then
+    export SLURM_CONF=$slurm/slurm.conf
+  fi
   ctests "$root/build"
+  if [[ -n ${SLURM_CONF:-} ]]; then "$root/tests/client/slurm/stop" "$slurm"; fi
 }
 
 # A folder's files are compiled eight at a time: that takes a third of the time, and finds what a folder names twice.

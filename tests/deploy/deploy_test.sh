@@ -100,9 +100,18 @@ failed_tests_are_named() {
   expect_equal FailedBrowserTestsAreNamed "$(in_checks failed_of "$json")" "Breaks: expected 1 to be 2"
 }
 
+# What systemd itself thinks of how little the service may do, in tenths: 0 is nothing, 100 everything.
+service_is_confined() {
+  command -v systemd-analyze >/dev/null || return 0
+  expect ServiceIsConfined \
+    "$(systemd-analyze security --offline=true --threshold=20 "$root/deploy/phrenicd.service" 2>&1 || echo "status $?")" \
+    "exposure level for phrenicd.service: 1."
+}
+
 packages
 node
 run_flags
+service_is_confined
 stages
 failed_tests_are_named
 [[ $failures -eq 0 ]]

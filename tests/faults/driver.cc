@@ -1,0 +1,121 @@
+#include "tests/faults/driver.h"
+
+#include <grpcpp/create_channel.h>
+
+#include <cstdio>
+
+#include "absl/time/clock.h"
+
+namespace phrenic::faults {
+namespace {
+
+constexpr char kSession[] = "driven";
+constexpr int kStepsAChange = 5;
+
+// Each call ends within two seconds, so that a server that is gone is noticed.
+struct Call : grpc::ClientContext {
+  explicit Call(double seconds = 2) {
+    set_deadline(std::chrono::system_clock::now() + std::chrono::milliseconds(static_cast<int>(1e3 * seconds)));
+  }
+};
+
+grpc::Status Create(v1::SessionService::Stub& stub) {
+  v1::CreateSessionRequest request;
+  request.set_session_id(kSession);
+  request.mutable_source()->set_name("sheet-2d");
+  v1::CreateSessionResponse created;
+  Call call(30);
+  return stub.CreateSession(&call, request, &created);
+}
+
+grpc::Status ChangeAt(v1::SessionService::Stub& stub, std::int64_t tick) {
+  v1::UpdateParametersRequest update;
+  update.set_session_id(kSession);
+  update.mutable_parameters()->set_breath_force(0.5 + 0.001 * static_cast<double>(tick % 997));
+  v1::UpdateParametersResponse updated;
+  Call call;
+  return stub.UpdateParameters(&call, update, &updated);
+}
+
+grpc::Status StepTo(v1::SessionService::Stub& stub, std::int64_t from, std::int64_t to,
+                    v1::StepSessionResponse& stepped) {
+  v1::StepSessionRequest step;
+  step.set_session_id(kSession);
+  step.set_expected_tick(from);
+  step.set_ticks(to - from);
+  Call call;
+  return stub.StepSession(&call, step, &stepped);
+}
+
+bool ChangesAt(std::int64_t tick) { return tick % (kStepsAChange * kTicksAStep) == 0; }
+
+}  // namespace
+
+Oracle::Oracle() {
+  auto server = service::Server::Start({});
+  if (!server.ok()) return;
+  server_ = *std::move(server);
+  stub_ = v1::SessionService::NewStub(server_->InProcessChannel());
+  if (!Create(*stub_).ok()) stub_ = nullptr;
+  hashes_[0] = "";
+}
+
+std::string Oracle::HashAt(std::int64_t tick) {
+  while (stub_ != nullptr && hashes_.rbegin()->first < tick) {
+    const std::int64_t at = hashes_.rbegin()->first;
+    v1::StepSessionResponse stepped;
+    if (ChangesAt(at) && !ChangeAt(*stub_, at).ok()) break;
+    if (!StepTo(*stub_, at, at + kTicksAStep, stepped).ok()) break;
+    hashes_[at + kTicksAStep] = stepped.state_hash();
+  }
+  const auto found = hashes_.find(tick);
+  return found == hashes_.end() ? "no undisturbed run" : found->second;
+}
+
+bool Driver::Connect(const std::string& address, bool create) {
+  stub_ = v1::SessionService::NewStub(grpc::CreateCustomChannel(address, grpc::InsecureChannelCredentials(), [] {
+    grpc::ChannelArguments arguments;
+    arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);  // no connection of an earlier server is taken up again
+    arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 20);
+    arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 100);
+    arguments.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS, 20);
+    return arguments;
+  }()));
+  tick_ = -1;
+  return !create || Create(*stub_).ok();
+}
+
+std::optional<std::int64_t> Driver::FindTick(double seconds) {
+  const absl::Time until = absl::Now() + absl::Seconds(seconds);
+  do {
+    v1::GetSessionRequest request;
+    request.set_session_id(kSession);
+    v1::GetSessionResponse got;
+    Call call;
+    const grpc::Status status = stub_->GetSession(&call, request, &got);
+    if (status.ok()) return tick_ = got.session().tick();
+    error_ = status.error_message();
+    if (status.error_code() == grpc::StatusCode::NOT_FOUND) return std::nullopt;
+    absl::SleepFor(absl::Milliseconds(5));
+  } while (absl::Now() < until);
+  return std::nullopt;
+}
+
+bool Driver::Step() {
+  if (tick_ < 0 && !FindTick(0).has_value()) return false;
+  // Where it stands within a call's steps, those are finished first.
+  const std::int64_t end = (tick_ / kTicksAStep + 1) * kTicksAStep;
+  v1::StepSessionResponse stepped;
+  grpc::Status status = ChangesAt(tick_) ? ChangeAt(*stub_, tick_) : grpc::Status::OK;
+  if (status.ok()) status = StepTo(*stub_, tick_, end, stepped);
+  error_ = status.error_message();
+  tick_ = status.ok() ? end : -1;  // it may have been done all the same: ask
+  if (!status.ok()) return false;
+  if (stepped.session().tick() == end && stepped.state_hash() == oracle_.HashAt(end)) return true;
+  ++wrong_;
+  std::fprintf(stderr, "wrong answer at tick %lld: %s, not %s\n", static_cast<long long>(end),
+               stepped.state_hash().c_str(), oracle_.HashAt(end).c_str());
+  return true;
+}
+
+}  // namespace phrenic::faults

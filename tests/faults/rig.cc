@@ -1,0 +1,61 @@
+#include "tests/faults/rig.h"
+
+#include <atomic>
+#include <cstdio>
+#include <filesystem>
+#include <thread>
+
+#include "absl/time/clock.h"
+
+namespace phrenic::faults {
+namespace {
+
+double Now() { return absl::ToDoubleSeconds(absl::Now() - absl::UnixEpoch()); }
+
+}  // namespace
+
+Rig::Rig(Oracle& oracle, std::string folder, std::vector<std::string> environment) : driver_(oracle) {
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder);
+  daemon_ = std::make_unique<Daemon>(folder + "/store", std::move(environment));
+  if (absl::Status status = daemon_->Start(); !status.ok()) std::fprintf(stderr, "%s\n", status.ToString().c_str());
+  if (!driver_.Connect(daemon_->address(), true)) std::fprintf(stderr, "no session could be made\n");
+}
+
+void Rig::StepSome(int steps) {
+  for (int i = 0; i < steps; ++i) driver_.Step();
+}
+
+void Rig::Disturb(const std::function<void()>& fault) {
+  std::atomic<bool> enough = false;
+  std::thread client([&] {
+    while (!enough) driver_.Step();
+  });
+  absl::SleepFor(absl::Seconds(Wait(0.06)));
+  disturbed_ = Now();
+  fault();
+  enough = true;
+  client.join();
+}
+
+void Rig::Recover(Tally& tally) {
+  ++tally.tried;
+  if (!daemon_->running()) {
+    if (absl::Status status = daemon_->Start(); !status.ok()) {
+      std::fprintf(stderr, "it does not start again: %s\n", status.ToString().c_str());
+      ++tally.lost;
+      return;
+    }
+  }
+  driver_.Connect(daemon_->address());
+  const bool found = driver_.FindTick(30).has_value();
+  tally.recovered.push_back(Now() - disturbed_);
+  if (!found || !driver_.Step()) {
+    std::fprintf(stderr, "the session is gone: %s\n", driver_.error().c_str());
+    ++tally.lost;
+  }
+  tally.wrong += driver_.wrong() - wrong_before_;
+  wrong_before_ = driver_.wrong();
+}
+
+}  // namespace phrenic::faults

@@ -1,0 +1,134 @@
+#include <sys/mount.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "absl/strings/str_cat.h"
+#include "absl/time/clock.h"
+#include "tests/faults/faults.h"
+
+namespace phrenic::faults {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A disk of a few megabytes, for as long as it lives.
+class SmallDisk {
+ public:
+  explicit SmallDisk(std::string folder) : folder_(std::move(folder)) {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+    mounted_ = mount("tmpfs", folder_.c_str(), "tmpfs", 0, "size=8m") == 0;
+  }
+  ~SmallDisk() {
+    if (mounted_) umount2(folder_.c_str(), MNT_DETACH);
+  }
+  SmallDisk(const SmallDisk&) = delete;
+  SmallDisk& operator=(const SmallDisk&) = delete;
+
+  bool mounted() const { return mounted_; }
+  void Fill() const {
+    std::ofstream file(folder_ + "/full", std::ios::binary);
+    const std::string block(4096, 'x');
+    while (file.write(block.data(), 4096).flush()) continue;
+  }
+  void Clear() const { fs::remove(folder_ + "/full"); }
+
+ private:
+  const std::string folder_;
+  bool mounted_ = false;
+};
+
+std::string ReadFile(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void WriteFile(const fs::path& path, const std::string& bytes) {
+  std::ofstream out(path, std::ios::binary);
+  out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+}
+
+fs::path LargestFile(const fs::path& folder) {
+  fs::path largest;
+  for (const auto& file : fs::directory_iterator(folder)) {
+    if (file.is_regular_file() && (largest.empty() || file.file_size() > fs::file_size(largest))) largest = file.path();
+  }
+  return largest;
+}
+
+}  // namespace
+
+// While it is full the session goes on; once there is room it is saved, and outlives a kill.
+Tally DiskFull(Oracle& oracle, const std::string& folder, int times) {
+  Tally tally;
+  const SmallDisk disk(folder + ".disk");
+  if (!disk.mounted()) {
+    tally.skipped = "no small disk can be mounted: run as root";
+    return tally;
+  }
+  Rig rig(oracle, folder + ".disk/run");
+  for (int i = 0; i < times; ++i) {
+    rig.Disturb([&] {
+      disk.Fill();
+      absl::SleepFor(absl::Milliseconds(100));
+      disk.Clear();
+      absl::SleepFor(absl::Milliseconds(100));
+      rig.daemon().Signal(SIGKILL);
+      rig.daemon().Await(60);
+    });
+    rig.Recover(tally);
+  }
+  return tally;
+}
+
+// It is either refused, and nothing is overwritten, so that all is back with the right byte, or does not matter.
+Tally Flipped(Oracle& oracle, const std::string& folder, int times) {
+  Tally tally;
+  Rig rig(oracle, folder);
+  for (int i = 0; i < times; ++i) {
+    rig.Disturb([&] {
+      rig.daemon().Signal(SIGTERM);
+      rig.daemon().Await(15);
+    });
+    const fs::path file = LargestFile(rig.daemon().store());
+    const std::string right = ReadFile(file);
+    std::string wrong = right;
+    wrong[rig.random()() % wrong.size()] ^= static_cast<char>(1 << rig.random()() % 8);
+    WriteFile(file, wrong);
+    if (!rig.daemon().Start().ok()) {
+      if (ReadFile(file) != wrong) {
+        std::fprintf(stderr, "a store that was refused was written to\n");
+        ++tally.lost;
+      }
+      WriteFile(file, right);
+    } else if (rig.driver().Connect(rig.daemon().address()) && !rig.driver().FindTick(5).has_value()) {
+      // It runs without the session, says so, and keeps it.
+      rig.daemon().Signal(SIGTERM);
+      rig.daemon().Await(15);
+      WriteFile(file, right);
+    }
+    rig.Recover(tally);
+  }
+  return tally;
+}
+
+Tally TwoServers(Oracle& oracle, const std::string& folder, int times) {
+  Tally tally;
+  Rig rig(oracle, folder);
+  Daemon second(rig.daemon().store());
+  for (int i = 0; i < times; ++i) {
+    rig.Disturb([&] {
+      if (!second.Start().ok()) return;
+      std::fprintf(stderr, "a second server took the store\n");
+      ++tally.lost;
+      second.Signal(SIGKILL);
+      second.Await(60);
+    });
+    rig.Recover(tally);
+  }
+  return tally;
+}
+
+}  // namespace phrenic::faults
