@@ -52,7 +52,7 @@ class CommandLine {
     }
     const int code = Parse(words);
     if (!chosen_) return code;
-    context_.settings = SettingsOf(app_, words, *in_file);
+    context_.settings = settings::SettingsOf(app_, words, SettingsFile(), *in_file);
     return RunChosen();
   }
 
@@ -65,6 +65,14 @@ class CommandLine {
         ->capture_default_str();
     app_.add_option("--viewer", context_.viewer, "where links to the viewer lead, if not where the server says")
         ->envname("PHRENIC_VIEWER");
+    app_.add_option("--tls-ca", context_.tls_ca, "authorities to trust, PEM; the system's where it is https://")
+        ->envname("PHRENIC_TLS_CA");
+    app_.add_option("--tls-cert", context_.tls_cert, "your own certificate, PEM, where the server asks for one")
+        ->envname("PHRENIC_TLS_CERT");
+    app_.add_option("--tls-key", context_.tls_key, "its key, PEM")->envname("PHRENIC_TLS_KEY");
+    app_.add_option("--token-file", context_.token_file,
+                    "file with your account's token, where the server asks for one")
+        ->envname("PHRENIC_TOKEN_FILE");
     app_.add_flag_callback(
         "--no-color", [] { setenv("NO_COLOR", "1", 1); }, "no colours, as with NO_COLOR");
   }
@@ -92,7 +100,7 @@ class CommandLine {
     context_.output = OutputOf(output_);
     const CLI::App* command = app_.get_subcommands().front();
     while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
-    for (const Setting& setting : context_.settings) {
+    for (const settings::Setting& setting : context_.settings) {
       if (setting.name == "server") context_.server_given = setting.origin != "default";
       if (setting.name != "output" || Knows(PathOf(*command), context_.output)) continue;
       if (setting.origin == "--output") {
@@ -102,6 +110,7 @@ class CommandLine {
       // A preference, and not asked for now.
       context_.output = context_.output == Output::kJsonl ? Output::kJson : Output::kTable;
     }
+    if (const absl::Status good = CheckConnection(context_); !good.ok()) return Fail(good);
     return chosen_();
   }
 

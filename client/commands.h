@@ -24,17 +24,34 @@ struct RunOptions {
   std::vector<std::string> pulls;   // "diaphragm:812:0,0,1"
   MotionOptions motion;             // of no file: none
   std::string data_dir, spool_dir;  // spool: empty for the usual one
+  int threads = 1;
+  bool dry = false;  // compile, and say what would run
+};
+struct CampaignOptions {
+  std::string file;  // Campaign, as text
+  std::string out;   // folder of results
+  int jobs = 0;      // processes at once; 0: one a core
+  std::string on = "here";
+  std::string share;  // of a worker
+  std::string page, data_dir;
+};
+struct ReplayOptions {
+  std::string file;
+  SceneOptions scene;  // empty: the one that the file names
+  std::string data_dir;
 };
 struct PhysiologyOptions {
   SceneOptions scene;
   std::string data_dir;
+  bool check = false;
+  std::string junit_file;  // empty: none, here and below
 };
 struct StudyOptions {
   SceneOptions scene;
   std::vector<std::string> settings;
   v1::CreateStudyRequest request;  // the kind and its options; the rest is filled in from the above
   std::string id;
-  std::string page, limits;  // files; empty: none
+  std::string page, limits, junit_file;
   std::string data_dir;
   bool detach = false;  // on the server, without waiting
 };
@@ -48,6 +65,7 @@ struct CompareOptions {
   bool match_phases = false;
   std::string map_file;  // empty: none
   std::vector<std::string> checks;
+  std::string junit_file;
 };
 struct InspectOptions {
   std::string file;
@@ -99,6 +117,8 @@ struct WatchOptions {
   double seconds = 0;  // 0: until interrupted
   int count = 0;       // 0: any number
   double frames_per_second = 5;
+  std::string codec;    // of vertices that come with the numbers; empty: none come
+  double bound_mm = 0;  // of it; 0: the server's own
 };
 struct SetOptions {
   std::string id;
@@ -115,6 +135,10 @@ struct TakeControlOptions {
 struct HandControlOptions {
   std::string id, name;
 };
+struct LinkOptions {
+  std::string id, link, role = "viewer";
+  double hours = 168;
+};
 struct PullOptions {
   std::string id;
   std::string body;  // empty: none
@@ -127,6 +151,7 @@ struct PlayOptions {
   double speed = 0;  // 0: as it was
   bool fast = false;
   double until = 0;  // 0: for ever
+  std::string in_step_with;
 };
 struct StepOptions {
   std::string id;
@@ -154,6 +179,10 @@ struct UploadOptions {
 int Scenes(const Context& context);
 int Describe(const Context& context, const SceneOptions& options);
 int Run(const Context& context, const RunOptions& options);
+int RunCampaign(const Context& context, const CampaignOptions& options);
+int WorkOnCampaign(const Context& context, const CampaignOptions& options);
+int ReportCampaign(const Context& context, const CampaignOptions& options);
+int Replay(const Context& context, const ReplayOptions& options);
 int Physiology(const Context& context, const PhysiologyOptions& options);
 int Study(const Context& context, const StudyOptions& options);
 int ListStudies(const Context& context);
@@ -180,6 +209,9 @@ int TakeControl(const Context& context, const TakeControlOptions& options);
 int HandControl(const Context& context, const HandControlOptions& options);
 int LendControl(const Context& context, const SessionOptions& options);
 int ReleaseControl(const Context& context, const SessionOptions& options);
+int CreateLink(const Context& context, const LinkOptions& options);
+int ListLinks(const Context& context, const LinkOptions& options);
+int RevokeLink(const Context& context, const LinkOptions& options);
 int Export(const Context& context, const ExportOptions& options);
 int ListExports(const Context& context);
 int GetExport(const Context& context, const ExportsOptions& options);

@@ -2,14 +2,22 @@
 
 #include <google/protobuf/util/json_util.h>
 #include <grpcpp/create_channel.h>
+#include <grpcpp/support/client_interceptor.h>
 #include <unistd.h>
 
+#include <cstdlib>
+#include <fstream>
 #include <iostream>
+#include <iterator>
+#include <string_view>
+#include <utility>
 
+#include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/strip.h"
 #include "client/terminal.h"
 #include "phrenic/v1/server.grpc.pb.h"
+#include "server/service/address.h"
 
 namespace phrenic::client {
 namespace {
@@ -27,15 +35,109 @@ void SayWhatThereIs(const std::string& error) {
   }
 }
 
+constexpr std::string_view kEncrypted = "https://", kPlainScheme = "http://";
+
+// Without blanks at its ends; empty where it cannot be read.
+std::string FileText(const std::string& file) {
+  std::ifstream in(file);
+  return std::string(absl::StripAsciiWhitespace(std::string(std::istreambuf_iterator<char>(in), {})));
+}
+
+std::string VariableText(const char* name) {
+  const char* value = std::getenv(name);
+  return value == nullptr ? "" : value;
+}
+
+using Metadata = std::vector<std::pair<std::string, std::string>>;
+
+// What says who calls.
+Metadata MetadataOf(const Context& context) {
+  Metadata metadata;
+  const std::string token = context.token_file.empty() ? VariableText("PHRENIC_TOKEN") : FileText(context.token_file);
+  if (!token.empty()) metadata.emplace_back("authorization", absl::StrCat("Bearer ", token));
+  if (const std::string join = VariableText("PHRENIC_JOIN"); !join.empty()) metadata.emplace_back("x-join", join);
+  return metadata;
+}
+
+// Signs each call. gRPC's own call credentials work on encrypted channels alone, and here loopback may do without.
+class Credential final : public grpc::experimental::Interceptor {
+ public:
+  explicit Credential(const Metadata& metadata) : metadata_(metadata) {}
+  void Intercept(grpc::experimental::InterceptorBatchMethods* methods) override {
+    if (methods->QueryInterceptionHookPoint(grpc::experimental::InterceptionHookPoints::PRE_SEND_INITIAL_METADATA)) {
+      for (const auto& [name, value] : metadata_) methods->GetSendInitialMetadata()->emplace(name, value);
+    }
+    methods->Proceed();
+  }
+
+ private:
+  const Metadata& metadata_;
+};
+
+class CredentialFactory final : public grpc::experimental::ClientInterceptorFactoryInterface {
+ public:
+  explicit CredentialFactory(Metadata metadata) : metadata_(std::move(metadata)) {}
+  grpc::experimental::Interceptor* CreateClientInterceptor(grpc::experimental::ClientRpcInfo* /*info*/) override {
+    return new Credential(metadata_);
+  }
+
+ private:
+  const Metadata metadata_;
+};
+
+std::shared_ptr<grpc::ChannelCredentials> CredentialsOf(const Context& context) {
+  if (!IsEncrypted(context)) return grpc::InsecureChannelCredentials();
+  return grpc::SslCredentials({.pem_root_certs = context.tls_ca.empty() ? "" : FileText(context.tls_ca),
+                               .pem_private_key = context.tls_key.empty() ? "" : FileText(context.tls_key),
+                               .pem_cert_chain = context.tls_cert.empty() ? "" : FileText(context.tls_cert)});
+}
+
 }  // namespace
 
 std::string ErrorName() { return Painted("phrenic:", Ink::kRed, STDERR_FILENO); }
+
+std::string HostOf(const Context& context) {
+  const std::string_view server = context.server;
+  for (const std::string_view scheme : {kEncrypted, kPlainScheme}) {
+    if (server.starts_with(scheme)) return std::string(server.substr(scheme.size()));
+  }
+  return context.server;
+}
+
+bool IsEncrypted(const Context& context) {
+  return context.server.starts_with(kEncrypted) || !context.tls_ca.empty() || !context.tls_cert.empty();
+}
+
+absl::Status CheckConnection(const Context& context) {
+  for (const auto& [flag, file] : {std::pair("--tls-ca", context.tls_ca),
+                                   {"--tls-cert", context.tls_cert},
+                                   {"--tls-key", context.tls_key},
+                                   {"--token-file", context.token_file}}) {
+    if (!file.empty() && FileText(file).empty()) {
+      return absl::InvalidArgumentError(absl::StrCat(flag, ": ", file, " cannot be read, or is empty"));
+    }
+  }
+  if (context.tls_cert.empty() != context.tls_key.empty()) {
+    return absl::InvalidArgumentError("--tls-cert, --tls-key: one's own certificate needs both");
+  }
+  const auto address = service::ParseAddress(HostOf(context));
+  const bool secret = !MetadataOf(context).empty();
+  if (!secret || IsEncrypted(context) || !address.ok() || service::IsLoopback(*address)) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat("--server: the token would go to ", context.server,
+                                                 " unencrypted, for anybody on the way to read; write https://",
+                                                 context.server));
+}
 
 std::shared_ptr<grpc::Channel> Connect(const Context& context) {
   grpc::ChannelArguments arguments;
   arguments.SetMaxReceiveMessageSize(64 << 20);
   arguments.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);
-  return grpc::CreateCustomChannel(context.server, grpc::InsecureChannelCredentials(), arguments);
+  std::vector<std::unique_ptr<grpc::experimental::ClientInterceptorFactoryInterface>> factories;
+  if (auto metadata = MetadataOf(context); !metadata.empty()) {
+    factories.push_back(std::make_unique<CredentialFactory>(std::move(metadata)));
+  }
+  return grpc::experimental::CreateCustomChannelWithInterceptors(HostOf(context), CredentialsOf(context), arguments,
+                                                                 std::move(factories));
 }
 
 int Fail(const Context& context, const grpc::Status& status) {
@@ -51,7 +153,9 @@ int Fail(const Context& context, const grpc::Status& status) {
   }
   std::cerr << ErrorName() << " " << status.error_message() << "\n";
   if (status.error_code() == grpc::StatusCode::NOT_FOUND) SayWhatThereIs(status.error_message());
-  return status.error_code() == grpc::StatusCode::PERMISSION_DENIED ? kNotAllowed : kFailed;
+  const bool refused = status.error_code() == grpc::StatusCode::PERMISSION_DENIED ||
+                       status.error_code() == grpc::StatusCode::UNAUTHENTICATED;
+  return refused ? kNotAllowed : kFailed;
 }
 
 int Fail(const absl::Status& status) {
@@ -67,7 +171,9 @@ std::string ViewerLink(const Context& context, const std::string& session) {
     const grpc::Status status =
         Call(context, *stub, &v1::ServerService::Stub::GetServer, v1::GetServerRequest(), &server, kLinkSeconds);
     if (!status.ok() || server.web_port() == 0) return "";
-    viewer = absl::StrCat("http://", context.server.substr(0, context.server.rfind(':')), ":", server.web_port());
+    const std::string host = HostOf(context);
+    viewer = absl::StrCat(server.encrypted() ? "https://" : "http://", host.substr(0, host.rfind(':')), ":",
+                          server.web_port());
   }
   return absl::StrCat(absl::StripSuffix(viewer, "/"), "/?session=", session);
 }

@@ -13,6 +13,7 @@
 
 #include "absl/status/status.h"
 #include "client/interruption.h"
+#include "server/settings/setting.h"
 
 namespace phrenic::client {
 
@@ -23,26 +24,30 @@ inline constexpr int kOk = 0, kFailed = 1, kUsage = 2, kUnreachable = 3, kMissed
 // For people, as one JSON document, as one JSON document a line, and as RFC 4180 has it.
 enum class Output { kTable, kJson, kJsonl, kCsv };
 
-// A setting of every command, for `phrenic doctor`.
-struct Setting {
-  std::string name, value;
-  std::string origin;  // "--server", "PHRENIC_SERVER", the file's path, "default"
-};
-
 struct Context {
-  std::string server = "127.0.0.1:50051";
-  bool server_given = false;  // by a flag, the environment or the settings file
-  std::string viewer;         // "https://host"; empty: where the server says
+  std::string server = "127.0.0.1:50051";  // "https://HOST:PORT" where it is encrypted
+  std::string tls_ca;                      // file of the authorities to trust; empty: the system's
+  std::string tls_cert, tls_key;           // files of one's own certificate; empty: none
+  std::string token_file;                  // of an account; empty: $PHRENIC_TOKEN, or none
+  bool server_given = false;               // by a flag, the environment or the settings file
+  std::string viewer;                      // "https://host"; empty: where the server says
   Output output = Output::kTable;
-  Interruption* interruption = nullptr;  // outlives every command
-  std::vector<Setting> settings;         // as they came
-  std::string settings_file;             // whether it is there or not
+  Interruption* interruption = nullptr;     // outlives every command
+  std::vector<settings::Setting> settings;  // as they came
+  std::string settings_file;                // whether it is there or not
 
   bool json() const { return output == Output::kJson || output == Output::kJsonl; }
 };
 
-// A channel to the server; nothing is sent yet.
+// HOST:PORT of the server, and whether calls are encrypted.
+std::string HostOf(const Context& context);
+bool IsEncrypted(const Context& context);
+
+// A channel to the server, whose calls carry the account's token; nothing is sent yet.
 std::shared_ptr<grpc::Channel> Connect(const Context& context);
+
+// What Connect needs can be read, and no token goes to another machine unencrypted; else what to do.
+absl::Status CheckConnection(const Context& context);
 
 // The address of the viewer's page of a session, "http://127.0.0.1:8080/?session=class"; empty where the server serves
 // no viewer.

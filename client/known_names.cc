@@ -9,6 +9,7 @@
 #include "phrenic/v1/session.grpc.pb.h"
 #include "phrenic/v1/study.grpc.pb.h"
 #include "server/schema/fields.h"
+#include "server/schema/places.h"
 #include "server/session/scene_catalogue.h"
 
 namespace phrenic::client {
@@ -41,7 +42,7 @@ class Server {
   std::vector<v1::SceneSummary> Scenes() const {
     const auto all = Ask<v1::SceneService, v1::ListScenesResponse>(channel_, &v1::SceneService::Stub::ListScenes,
                                                                    v1::ListScenesRequest());
-    if (all.scenes_size() == 0) return session::SceneCatalogue({PHRENIC_SCENES_DIR}).List();
+    if (all.scenes_size() == 0) return session::SceneCatalogue({Installed("scenes", PHRENIC_SCENES_DIR)}).List();
     return {all.scenes().begin(), all.scenes().end()};
   }
   v1::ListSessionsResponse Sessions() const {

@@ -37,12 +37,6 @@ absl::StatusOr<bool> Fits(const Message& row, const FieldDescriptor& table, cons
   return true;
 }
 
-std::string Describe(const v1::StudyLimit& limit) {
-  std::string text = absl::StrCat(limit.table(), ".", limit.column());
-  for (const std::string& condition : limit.where()) absl::StrAppend(&text, " where ", condition);
-  return text;
-}
-
 // What is wrong with this row, if anything.
 std::string Problem(const Message& row, const FieldDescriptor& column, const v1::StudyLimit& limit) {
   const std::string cell = CellOf(row, column);
@@ -75,13 +69,19 @@ absl::Status Check(const v1::StudyLimit& limit, const Message& tables, std::vect
     if (!*fits) continue;
     any = true;
     const std::string problem = Problem(row, **column, limit);
-    if (!problem.empty()) passed.push_back(absl::StrCat(Describe(limit), " (row ", i + 1, ") ", problem));
+    if (!problem.empty()) passed.push_back(absl::StrCat(LimitText(limit), " (row ", i + 1, ") ", problem));
   }
-  if (!any) passed.push_back(absl::StrCat(Describe(limit), ": no row is like that"));
+  if (!any) passed.push_back(absl::StrCat(LimitText(limit), ": no row is like that"));
   return absl::OkStatus();
 }
 
 }  // namespace
+
+std::string LimitText(const v1::StudyLimit& limit) {
+  std::string text = absl::StrCat(limit.table(), ".", limit.column());
+  for (const std::string& condition : limit.where()) absl::StrAppend(&text, " where ", condition);
+  return text;
+}
 
 absl::StatusOr<v1::StudyLimits> ReadStudyLimits(const std::string& file) {
   std::ifstream stream(file);

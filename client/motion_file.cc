@@ -65,7 +65,7 @@ absl::Status Place(const v1::Export& job, const std::string& file, PartFile& par
 // Before work is done for a file that cannot be written.
 absl::Status CheckPlace(const std::string& file) {
   const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
-  if (access(folder.c_str(), W_OK) == 0) return absl::OkStatus();
+  if (::access(folder.c_str(), W_OK) == 0) return absl::OkStatus();
   return absl::NotFoundError(absl::StrCat("cannot write ", file, ": is the folder there, and may it be written?"));
 }
 

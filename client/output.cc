@@ -11,7 +11,8 @@ namespace {
 using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 
-constexpr const char* kLists[] = {"scenes", "sessions", "watch", "exports list", "study list"};
+constexpr const char* kLists[] = {"scenes",     "sessions",     "watch",          "exports list",
+                                  "study list", "campaign run", "campaign report"};
 constexpr const char* kTables[] = {"compare", "study error", "study stability", "study cost", "study watch"};
 
 void PrintLines(const Message& message) {

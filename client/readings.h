@@ -19,6 +19,11 @@ std::string ReadingText(double value, const std::string& unit);
 // The last value of each measure, the least and the greatest. Not thread-safe.
 class Readings {
  public:
+  struct Range {
+    std::string name, unit;
+    double last, minimum, maximum;
+  };
+  const std::vector<Range>& ranges() const { return ranges_; }
   void Add(const google::protobuf::RepeatedPtrField<v1::MeasureReading>& readings);
   // A table; nothing where there are no measures.
   void Print(std::ostream& out) const;
@@ -26,10 +31,6 @@ class Readings {
   nlohmann::json ToJson() const;
 
  private:
-  struct Range {
-    std::string name, unit;
-    double last, minimum, maximum;
-  };
   std::vector<Range> ranges_;
 };
 

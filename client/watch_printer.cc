@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <iostream>
 
+#include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/time/clock.h"
 #include "client/live_view.h"
 #include "client/print_session.h"
 #include "client/readings.h"
@@ -16,6 +18,15 @@
 
 namespace phrenic::client {
 namespace {
+
+// "  predicted: 12912 bytes within 0.1 mm, 4 ms old"; nothing where no vertices came.
+std::string SendingText(const v1::Frame& frame) {
+  if (frame.positions().empty()) return "";
+  const std::string name = absl::AsciiStrToLower(v1::Codec_Name(frame.codec()).substr(sizeof "CODEC_" - 1));
+  const double age = absl::ToDoubleMilliseconds(absl::Now() - absl::FromUnixNanos(frame.unix_nanos()));
+  return absl::StrFormat("  %s: %d bytes within %g mm, %.0f ms old", name, frame.positions().size(),
+                         frame.max_error_mm(), age);
+}
 
 // "t 1.250 s  tick 2500  breath 0.500  right dome -0.1 -0.4 -9.2 mm  lung volume 2.513 l".
 std::string FrameLine(const v1::Frame& frame) {
@@ -27,7 +38,7 @@ std::string FrameLine(const v1::Frame& frame) {
   for (const v1::MeasureReading& reading : frame.measures()) {
     absl::StrAppendFormat(&line, "  %s %s", reading.name(), ReadingText(reading.value(), reading.unit()));
   }
-  return line;
+  return line + SendingText(frame);
 }
 
 class JsonPrinter final : public WatchPrinter {

@@ -1,4 +1,5 @@
 // `phrenic compare`: how far two surfaces or motions are apart, by the server's own study.
+#include <algorithm>
 #include <climits>
 #include <cstdint>
 #include <filesystem>
@@ -12,6 +13,7 @@
 #include "absl/strings/strip.h"
 #include "client/commands.h"
 #include "client/comparison.h"
+#include "client/junit.h"
 #include "client/motion_file.h"
 #include "client/progress.h"
 #include "client/whole_file.h"
@@ -86,6 +88,21 @@ void Print(const Context& context, const v1::ComparisonTable& table) {
   }
 }
 
+int JudgeLimits(const CompareOptions& options, const v1::ComparisonTable& table, const std::vector<Limit>& limits) {
+  std::vector<JudgedCase> cases;
+  for (const Limit& limit : limits) {
+    const std::vector<std::string> missed = MissedLimits(table, {limit});
+    cases.push_back({limit.measure->name(), missed.empty() ? "" : missed.front()});
+    for (const std::string& sentence : missed) std::cerr << "phrenic: " << sentence << "\n";
+  }
+  if (!options.junit_file.empty()) {
+    const absl::Status written = WriteJUnit(options.junit_file, options.a + " and " + options.b, cases);
+    if (!written.ok()) return Fail(written);
+  }
+  const auto failed = [](const JudgedCase& judged) { return !judged.failure.empty(); };
+  return std::any_of(cases.begin(), cases.end(), failed) ? kMissed : kOk;
+}
+
 int CompareOn(const Context& context, const CompareOptions& options, const v1::CompareRequest& request,
               const std::vector<Limit>& limits, const std::shared_ptr<grpc::Channel>& channel) {
   grpc::ClientContext call;
@@ -113,9 +130,7 @@ int CompareOn(const Context& context, const CompareOptions& options, const v1::C
     if (const absl::Status status = WriteWhole(options.map_file, map); !status.ok()) return Fail(status);
   }
   Print(context, response.table());
-  const std::vector<std::string> missed = MissedLimits(response.table(), limits);
-  for (const std::string& sentence : missed) std::cerr << "phrenic: " << sentence << "\n";
-  return missed.empty() ? kOk : kMissed;
+  return JudgeLimits(options, response.table(), limits);
 }
 
 }  // namespace

@@ -139,6 +139,7 @@ int Play(const Context& context, const PlayOptions& options) {
   if (options.speed > 0) request.set_speed(options.speed);
   request.set_as_fast_as_possible(options.fast);
   request.set_until_time(options.until);
+  request.set_in_step_with(options.in_step_with);
   return CallAndShow<v1::PlaySessionResponse>(context, &v1::SessionService::Stub::PlaySession, request);
 }
 

@@ -26,7 +26,7 @@ struct Finding {
 using Findings = std::vector<Finding>;
 
 void CheckSettings(const Context& context, Findings& findings) {
-  for (const Setting& setting : context.settings) {
+  for (const settings::Setting& setting : context.settings) {
     findings.push_back({"good", "setting " + setting.name,
                         absl::StrCat(setting.value.empty() ? "none" : setting.value, ", by ", setting.origin), ""});
   }
@@ -38,7 +38,7 @@ void CheckSettings(const Context& context, Findings& findings) {
 }
 
 void CheckViewer(const Context& context, const v1::GetServerResponse& server, Findings& findings) {
-  const std::string host = context.server.substr(0, context.server.rfind(':'));
+  const std::string host = HostOf(context).substr(0, HostOf(context).rfind(':'));
   const std::string address = absl::StrCat(host, ":", server.web_port());
   if (server.web_port() == 0) {
     findings.push_back({"hint", "viewer", "not served", "start the server with --web HOST:PORT"});
@@ -48,7 +48,7 @@ void CheckViewer(const Context& context, const v1::GetServerResponse& server, Fi
   } else if (!server.viewer_is_built()) {
     findings.push_back({"bad", "viewer", "not built", "deploy/run --build-only, or npm run build in web/"});
   } else {
-    findings.push_back({"good", "viewer", absl::StrCat("http://", address, "/"), ""});
+    findings.push_back({"good", "viewer", absl::StrCat(server.encrypted() ? "https://" : "http://", address, "/"), ""});
   }
 }
 
@@ -75,7 +75,7 @@ bool CheckServer(const Context& context, Findings& findings) {
     CheckAnswer(context, server, findings);
     return true;
   }
-  const bool another = IsReachable(context.server);
+  const bool another = IsReachable(HostOf(context));
   if (status.error_code() == grpc::StatusCode::UNIMPLEMENTED) {
     findings.push_back(
         {"bad", "server", absl::StrCat("an older one at ", context.server), "build and start it anew: deploy/run"});
@@ -94,7 +94,7 @@ std::string FindProgram(const std::vector<std::string>& names) {
   const char* path = std::getenv("PATH");
   for (const std::string& name : names) {
     for (const absl::string_view folder : absl::StrSplit(path == nullptr ? "" : path, ':')) {
-      if (access(absl::StrCat(folder, "/", name).c_str(), X_OK) == 0) return absl::StrCat(folder, "/", name);
+      if (::access(absl::StrCat(folder, "/", name).c_str(), X_OK) == 0) return absl::StrCat(folder, "/", name);
     }
   }
   return "";

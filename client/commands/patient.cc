@@ -21,13 +21,14 @@
 #include "server/imaging/nifti.h"
 #include "server/imaging/phantom.h"
 #include "server/schema/id.h"
+#include "server/schema/places.h"
 #include "server/schema/schema.h"
 
 namespace phrenic::client {
 namespace {
 
 absl::StatusOr<v1::Scene> ReadPattern() {
-  const std::string path = PHRENIC_SCENES_DIR "/thorax.textproto";
+  const std::string path = Installed("scenes", PHRENIC_SCENES_DIR) + "/thorax.textproto";
   std::ifstream file(path);
   if (!file)
     return absl::NotFoundError(absl::StrCat("cannot read the scene ", path, ", which patients' scenes follow"));

@@ -1,8 +1,10 @@
 // `phrenic physiology`: a scene's breath held against published ranges, by the server's own study in this process.
 #include <iostream>
 
+#include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "client/commands.h"
+#include "client/junit.h"
 #include "client/progress.h"
 #include "client/scene_argument.h"
 #include "client/table.h"
@@ -38,6 +40,24 @@ void Print(const v1::PhysiologyTable& result) {
   std::cout << absl::StrFormat("%s: %d of %d inside the published ranges\n", result.scene(), inside, judged);
 }
 
+int JudgeBreaths(const PhysiologyOptions& options, const v1::PhysiologyTable& table) {
+  std::vector<JudgedCase> cases;
+  bool outside = false;
+  for (const v1::PhysiologyRow& row : table.rows()) {
+    JudgedCase& judged = cases.emplace_back();
+    judged.name = absl::StrCat(row.breath(), " breath: ", row.what());
+    judged.skipped = row.verdict() == v1::VERDICT_NOT_MODELLED;
+    if (row.verdict() != v1::VERDICT_OUTSIDE) continue;
+    outside = true;
+    judged.failure = absl::StrFormat("%.4g is outside %g to %g %s", row.value(), row.low(), row.high(), row.unit());
+  }
+  if (!options.junit_file.empty()) {
+    const absl::Status written = WriteJUnit(options.junit_file, "physiology of " + table.scene(), cases);
+    if (!written.ok()) return Fail(written);
+  }
+  return options.check && outside ? kMissed : kOk;
+}
+
 }  // namespace
 
 int Physiology(const Context& context, const PhysiologyOptions& options) {
@@ -64,7 +84,7 @@ int Physiology(const Context& context, const PhysiologyOptions& options) {
   } else {
     Print(response.table());
   }
-  return kOk;
+  return JudgeBreaths(options, response.table());
 }
 
 }  // namespace phrenic::client

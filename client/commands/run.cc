@@ -1,17 +1,13 @@
 // `phrenic run`: the server's own services in this process, over an in-process channel; one way to run a session.
-#include <algorithm>
-#include <chrono>
-#include <cmath>
-#include <ctime>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "absl/strings/str_format.h"
 #include "client/commands.h"
+#include "client/local_run.h"
 #include "client/motion_file.h"
 #include "client/print_session.h"
 #include "client/progress.h"
-#include "client/readings.h"
 #include "client/scene_argument.h"
 #include "client/table.h"
 #include "phrenic/v1/session.grpc.pb.h"
@@ -23,18 +19,6 @@ namespace phrenic::client {
 namespace {
 
 using Pulls = google::protobuf::RepeatedPtrField<v1::Pull>;
-
-constexpr double kReadingsASecond = 60;  // of simulated time
-
-// What a run took.
-struct Cost {
-  std::int64_t steps = 0;
-  double simulated = 0, wall = 0, cpu = 0;  // [s]; of the stepping
-  std::string state_hash;
-  Readings readings;
-};
-
-double ProcessCpuSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 grpc::Status CreateHere(const Context& context, const RunOptions& options, const v1::SceneSource& source,
                         const v1::Parameters& parameters, const Pulls& pulls, v1::SessionService::Stub& stub,
@@ -52,36 +36,6 @@ grpc::Status CreateHere(const Context& context, const RunOptions& options, const
   v1::GetSessionRequest get;
   get.set_session_id("run");
   return Call(context, stub, &v1::SessionService::Stub::GetSession, get, session);
-}
-
-// Steps in portions of about a fortieth of the run, for the bar's sake, and of a frame where the scene has measures.
-grpc::Status StepThrough(const Context& context, const RunOptions& options, bool measured,
-                         v1::SessionService::Stub& stub, v1::Session* session, Cost* cost) {
-  const auto total = static_cast<std::int64_t>(std::ceil(options.seconds / session->parameters().time_step() - 1e-9));
-  std::int64_t portion = std::min<std::int64_t>(1'000'000, std::max<std::int64_t>(1, total / 40));
-  if (measured) {
-    const double ticks = 1 / (kReadingsASecond * session->parameters().time_step());
-    portion = std::min(portion, std::max<std::int64_t>(1, std::lround(ticks)));
-  }
-  Progress progress("stepping", static_cast<double>(total));
-  const auto start = std::chrono::steady_clock::now();
-  const double cpu = ProcessCpuSeconds();
-  while (session->tick() < total && session->state() != v1::SESSION_STATE_DIVERGED) {
-    v1::StepSessionRequest request;
-    request.set_session_id("run");
-    request.set_ticks(std::min(portion, total - session->tick()));
-    v1::StepSessionResponse response;
-    grpc::Status status = Call(context, stub, &v1::SessionService::Stub::StepSession, request, &response, 3600);
-    if (!status.ok()) return status;
-    *session = response.session();
-    cost->state_hash = response.state_hash();
-    cost->readings.Add(response.measures());
-    progress.Update(static_cast<double>(session->tick()));
-  }
-  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
-  cost->steps = session->tick(), cost->simulated = session->time();
-  cost->wall = wall.count(), cost->cpu = ProcessCpuSeconds() - cpu;
-  return grpc::Status::OK;
 }
 
 int ExportHere(const Context& context, const RunOptions& options, service::Server& server, Cost* cost) {
@@ -145,6 +99,26 @@ void PrintCostJson(const RunOptions& options, const v1::GetSessionResponse& sess
   std::cout << json.dump(1) << "\n";
 }
 
+// What a run would do, once its scene is compiled.
+int Foretell(const Context& context, const RunOptions& options, const v1::GetSessionResponse& session) {
+  const double step = session.session().parameters().time_step();
+  const auto steps = static_cast<std::int64_t>(std::ceil(options.seconds / step - 1e-9));
+  if (context.json()) {
+    const nlohmann::json json = {{"steps", steps},
+                                 {"time_step", step},
+                                 {"file", options.motion.file},
+                                 {"report", nlohmann::json::parse(Json(session.report()))},
+                                 {"session", nlohmann::json::parse(Json(session.session()))}};
+    std::cout << json.dump(1) << "\n";
+    return kOk;
+  }
+  std::cout << absl::StrFormat("%s: %d vertices, %d springs, %d rigid links\nwould take %d steps of %.4g ms\n",
+                               session.report().scene(), session.report().simulated_vertices(),
+                               session.report().springs(), session.report().rigid_links(), steps, 1e3 * step);
+  if (!options.motion.file.empty()) std::cout << "would write " << options.motion.file << "\n";
+  return kOk;
+}
+
 int RunOn(const Context& context, const RunOptions& options, const v1::SceneSource& source,
           const v1::Parameters& parameters, const Pulls& pulls, service::Server& server) {
   const auto stub = v1::SessionService::NewStub(server.InProcessChannel());
@@ -158,13 +132,17 @@ int RunOn(const Context& context, const RunOptions& options, const v1::SceneSour
   const auto scenes = v1::SceneService::NewStub(server.InProcessChannel());
   status = Call(context, *scenes, &v1::SceneService::Stub::DescribeScene, describe, &described);
   if (!status.ok()) return Fail(context, status);
+  if (options.dry) return Foretell(context, options, session);
   Cost cost;
   if (!options.motion.file.empty()) {
     const int code = ExportHere(context, options, server, &cost);
     if (code != kOk) return code;
   } else {
-    status =
-        StepThrough(context, options, described.scene().measures_size() > 0, *stub, session.mutable_session(), &cost);
+    {
+      Progress progress("stepping", options.seconds / session.session().parameters().time_step());
+      status = StepThrough(context, options.seconds, *stub, session.mutable_session(), &cost,
+                           [&](std::int64_t tick) { progress.Update(static_cast<double>(tick)); });
+    }
     if (!status.ok()) return Fail(context, status);
   }
   const study::ThesisFigure thesis = study::NearestThesisFigure(described.scene(), session.report());
@@ -194,6 +172,7 @@ int Run(const Context& context, const RunOptions& options) {
   if (!pulls.ok()) return Fail(pulls.status());
   service::ServerOptions server_options;
   server_options.data_dir = options.data_dir;
+  server_options.step_threads = options.threads;
   if (!options.spool_dir.empty()) server_options.spool_dir = options.spool_dir;
   auto server = service::Server::Start(server_options);
   if (!server.ok()) return Fail(server.status());

@@ -1,8 +1,10 @@
-// `phrenic study`: error, stability and cost of a scene, here or on the server; the studies of a server.
+// `phrenic study`: error, stability, cost and streaming of a scene, here or on the server; the studies of a server.
 #include <iostream>
 
 #include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
 #include "client/commands.h"
+#include "client/junit.h"
 #include "client/limits.h"
 #include "client/output.h"
 #include "client/progress.h"
@@ -21,6 +23,8 @@ const google::protobuf::Message& TablesOf(const v1::StudyResult& result) {
       return result.stability();
     case v1::StudyResult::kCost:
       return result.cost();
+    case v1::StudyResult::kStreaming:
+      return result.streaming();
     default:
       return result.error();
   }
@@ -66,11 +70,17 @@ void PrintReference(const v1::Reference& reference) {
       reference.evaluations(), reference.cpu_s(), reference.largest_displacement_mm());
 }
 
+void PrintStreaming(const v1::StreamingTable& table) {
+  std::cout << absl::StrFormat("\n%s\n%d vertices, %d frames; the shapes of \"basis\" take %d bytes once\n",
+                               table.advice(), table.vertices(), table.frames(), table.basis_bytes());
+}
+
 void Print(const v1::StudyResult& result) {
   std::cout << absl::StrFormat("%s (scene %.12s), %.1f s\n", result.scene(), result.scene_hash(), result.took_s());
   if (result.has_error()) PrintReference(result.error().reference());
   PrintTables(TablesOf(result), std::cout);
   if (result.has_error()) std::cout << "\n" << result.error().advice() << "\n";
+  if (result.has_streaming()) PrintStreaming(result.streaming());
   if (result.cost().has_growth_exponent()) {
     std::cout << absl::StrFormat("\ncost grows with vertices^%.3f\n", result.cost().growth_exponent());
   }
@@ -87,15 +97,26 @@ int WritePage(const Context& context, v1::StudyService::Stub& stub, const std::s
   return kOk;
 }
 
-int Check(const std::string& file, const v1::StudyResult& result) {
-  const auto limits = ReadStudyLimits(file);
+int Check(const StudyOptions& options, const v1::StudyResult& result) {
+  const auto limits = ReadStudyLimits(options.limits);
   if (!limits.ok()) return Fail(limits.status());
-  const auto passed = PassedLimits(*limits, TablesOf(result));
-  if (!passed.ok()) return Fail(passed.status());
-  for (const std::string& sentence : *passed) std::cerr << "phrenic: limit passed: " << sentence << "\n";
-  std::cerr << absl::StrFormat("%d of %d limits kept\n", limits->limits_size() - static_cast<int>(passed->size()),
-                               limits->limits_size());
-  return passed->empty() ? kOk : kMissed;
+  std::vector<JudgedCase> cases;
+  int kept = 0;
+  for (const v1::StudyLimit& limit : limits->limits()) {
+    v1::StudyLimits one;
+    *one.add_limits() = limit;
+    const auto passed = PassedLimits(one, TablesOf(result));
+    if (!passed.ok()) return Fail(passed.status());
+    for (const std::string& sentence : *passed) std::cerr << "phrenic: limit passed: " << sentence << "\n";
+    cases.push_back({LimitText(limit), absl::StrJoin(*passed, "; ")});
+    kept += passed->empty() ? 1 : 0;
+  }
+  std::cerr << absl::StrFormat("%d of %d limits kept\n", kept, limits->limits_size());
+  if (!options.junit_file.empty()) {
+    const absl::Status written = WriteJUnit(options.junit_file, "study of " + result.scene(), cases);
+    if (!written.ok()) return Fail(written);
+  }
+  return kept == limits->limits_size() ? kOk : kMissed;
 }
 
 int Finish(const Context& context, const StudyOptions& options, v1::StudyService::Stub& stub, const std::string& id) {
@@ -113,7 +134,7 @@ int Finish(const Context& context, const StudyOptions& options, v1::StudyService
   if (!options.page.empty()) {
     if (const int code = WritePage(context, stub, id, options.page); code != kOk) return code;
   }
-  return options.limits.empty() ? kOk : Check(options.limits, study.result());
+  return options.limits.empty() ? kOk : Check(options, study.result());
 }
 
 int Create(const Context& context, const StudyOptions& options, v1::StudyService::Stub& stub) {

@@ -11,6 +11,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -32,9 +33,20 @@ inline std::string ReadAll(const std::string& path) {
   return text.str();
 }
 
-// A path in the tests' own folder, one a process.
+// A folder of the process' own, which goes with it.
+struct ScratchFolder {
+  ScratchFolder() { std::filesystem::create_directories(path); }
+  ~ScratchFolder() {
+    std::error_code gone;
+    std::filesystem::remove_all(path, gone);
+  }
+  const std::string path = testing::TempDir() + "phrenic_client_" + std::to_string(getpid());
+};
+
+// A path in it.
 inline std::string Scratch(const std::string& name) {
-  return testing::TempDir() + "phrenic_client_" + std::to_string(getpid()) + "_" + name;
+  static const ScratchFolder folder;
+  return folder.path + "/" + name;
 }
 
 inline std::string WriteScratch(const std::string& name, const std::string& text) {

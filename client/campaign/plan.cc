@@ -1,0 +1,113 @@
+#include "client/campaign/plan.h"
+
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "client/scene_argument.h"
+#include "server/schema/schema.h"
+#include "server/schema/sha256.h"
+
+namespace phrenic::client {
+namespace {
+
+constexpr size_t kNameDigits = 16;
+constexpr size_t kMostCells = 1'000'000;
+
+using Settings = std::vector<std::string>;  // "time_step=0.001"
+
+// Every way to take one value of each axis.
+absl::StatusOr<std::vector<Settings>> SettingsOf(const v1::Campaign& campaign) {
+  std::vector<Settings> all(1);
+  for (const v1::CampaignAxis& axis : campaign.axes()) {
+    std::vector<Settings> longer;
+    for (const Settings& settings : all) {
+      for (const std::string& value : axis.values()) {
+        longer.push_back(settings);
+        longer.back().push_back(absl::StrCat(axis.parameter(), "=", value));
+      }
+    }
+    if (longer.size() > kMostCells) return absl::InvalidArgumentError("more than a million runs: split the campaign");
+    all = std::move(longer);
+  }
+  return all;
+}
+
+std::string ScenePath(const std::string& scene, const std::string& campaign_file) {
+  if (!absl::EndsWith(scene, ".textproto")) return scene;
+  return (std::filesystem::path(campaign_file).parent_path() / scene).string();
+}
+
+// An empty list counts as one entry: the scene's own.
+template <typename List, typename Value>
+std::vector<Value> OrOne(const List& list, Value own) {
+  std::vector<Value> all(list.begin(), list.end());
+  if (all.empty()) all.push_back(own);
+  return all;
+}
+
+std::string NameOf(const CampaignCell& cell) {
+  std::string bytes = absl::StrCat(PHRENIC_VERSION, "\n", cell.row.preset(), "\n", cell.seconds, "\n");
+  absl::StrAppend(&bytes, cell.source.SerializeAsString(), "\n", cell.parameters.SerializeAsString());
+  return Sha256Hex(bytes).substr(0, kNameDigits);
+}
+
+absl::StatusOr<CampaignCell> CellOf(const v1::Campaign& campaign, const v1::SceneSource& source,
+                                    const std::string& scene, const std::string& preset, const Settings& settings) {
+  CampaignCell cell;
+  const absl::StatusOr<v1::Parameters> parameters = ReadSettings(settings);
+  if (!parameters.ok()) {
+    return absl::InvalidArgumentError(absl::StrCat("axes: ", std::string(parameters.status().message())));
+  }
+  cell.parameters = *parameters;
+  cell.source = source;
+  cell.seconds = campaign.seconds();
+  cell.row.set_scene(scene);
+  cell.row.set_resolution_mm(source.resolution_mm());
+  cell.row.set_preset(preset);
+  cell.row.set_settings(absl::StrJoin(settings, " "));
+  cell.row.set_cell(NameOf(cell));
+  return cell;
+}
+
+}  // namespace
+
+absl::StatusOr<v1::Campaign> ReadCampaign(const std::string& file) {
+  std::ifstream in(file);
+  if (!in) return absl::NotFoundError(absl::StrCat("cannot read the campaign ", file, ": is the path right?"));
+  std::stringstream text;
+  text << in.rdbuf();
+  v1::Campaign campaign;
+  if (absl::Status status = schema::ParseText(file, text.str(), &campaign); !status.ok()) return status;
+  schema::FillDefaults(&campaign);
+  return campaign;
+}
+
+absl::StatusOr<std::vector<CampaignCell>> CellsOf(const v1::Campaign& campaign, const std::string& file) {
+  const auto settings = SettingsOf(campaign);
+  if (!settings.ok()) return settings.status();
+  std::vector<CampaignCell> cells;
+  std::set<std::string> names;
+  for (const std::string& scene : campaign.scenes()) {
+    for (const double resolution : OrOne(campaign.resolutions_mm(), 0.0)) {
+      const auto source = ReadSceneArgument(ScenePath(scene, file), resolution);
+      if (!source.ok()) return source.status();
+      for (const std::string& preset : OrOne(campaign.presets(), std::string())) {
+        for (const Settings& chosen : *settings) {
+          auto cell = CellOf(campaign, *source, scene, preset, chosen);
+          if (!cell.ok()) return cell.status();
+          if (names.insert(cell->row.cell()).second) cells.push_back(*std::move(cell));
+        }
+        if (cells.size() > kMostCells)
+          return absl::InvalidArgumentError("more than a million runs: split the campaign");
+      }
+    }
+  }
+  return cells;
+}
+
+}  // namespace phrenic::client

@@ -1,0 +1,179 @@
+#include "client/campaign/report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
+#include "absl/strings/str_replace.h"
+#include "absl/strings/str_split.h"
+#include "client/readings.h"
+
+namespace phrenic::client {
+namespace {
+
+using Cells = std::vector<std::string>;
+
+struct Grid {
+  Cells header;
+  std::vector<Cells> rows;
+};
+
+// The parameters that the runs set, in the order in which they first come.
+Cells ParametersOf(const v1::CampaignResult& result) {
+  Cells names;
+  for (const v1::CampaignRow& row : result.rows()) {
+    for (const std::string& setting : Cells(absl::StrSplit(row.settings(), ' ', absl::SkipEmpty()))) {
+      const std::string name = setting.substr(0, setting.find('='));
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    }
+  }
+  return names;
+}
+
+std::string SettingOf(const v1::CampaignRow& row, const std::string& name) {
+  for (const std::string& setting : Cells(absl::StrSplit(row.settings(), ' ', absl::SkipEmpty()))) {
+    if (setting.substr(0, setting.find('=')) == name) return setting.substr(name.size() + 1);
+  }
+  return "";
+}
+
+using ReadingsOfCells = std::map<std::string, std::map<std::string, const v1::CampaignReading*>>;
+
+Cells MeasuresOf(const v1::CampaignResult& result) {
+  Cells names;
+  for (const v1::CampaignReading& reading : result.readings()) {
+    if (std::find(names.begin(), names.end(), reading.measure()) == names.end()) names.push_back(reading.measure());
+  }
+  return names;
+}
+
+// "3.695 l" without its unit, which stands in the header.
+std::string NumberOf(const v1::CampaignReading& reading) {
+  const std::string text = ReadingText(reading.greatest(), reading.unit());
+  return text.substr(0, text.find(' '));
+}
+
+std::string UnitOf(const v1::CampaignReading& reading) {
+  const std::string text = ReadingText(reading.greatest(), reading.unit());
+  return text.substr(text.find(' ') + 1);
+}
+
+Grid MakeGrid(const v1::CampaignResult& result) {
+  const Cells parameters = ParametersOf(result), measures = MeasuresOf(result);
+  ReadingsOfCells readings;
+  std::map<std::string, std::string> units;
+  for (const v1::CampaignReading& reading : result.readings()) {
+    readings[reading.cell()][reading.measure()] = &reading;
+    units[reading.measure()] = UnitOf(reading);
+  }
+  Grid grid{{"scene", "mm", "preset"}, {}};
+  grid.header.insert(grid.header.end(), parameters.begin(), parameters.end());
+  grid.header.insert(grid.header.end(), {"outcome", "x real time", "us CPU a step"});
+  for (const std::string& measure : measures)
+    grid.header.push_back(absl::StrCat(measure, ", most [", units[measure], "]"));
+  for (const v1::CampaignRow& row : result.rows()) {
+    Cells cells = {row.scene(), row.resolution_mm() > 0 ? absl::StrFormat("%g", row.resolution_mm()) : "",
+                   row.preset()};
+    for (const std::string& name : parameters) cells.push_back(SettingOf(row, name));
+    cells.push_back(row.outcome());
+    cells.push_back(absl::StrFormat("%.3g", row.times_real_time()));
+    cells.push_back(absl::StrFormat("%.3g", row.cpu_us_a_step()));
+    const auto& of_cell = readings[row.cell()];
+    for (const std::string& measure : measures) {
+      const auto found = of_cell.find(measure);
+      cells.push_back(found == of_cell.end() ? "" : NumberOf(*found->second));
+    }
+    grid.rows.push_back(std::move(cells));
+  }
+  return grid;
+}
+
+// Without the columns that are empty in every row.
+Grid Trimmed(const Grid& grid) {
+  Grid kept;
+  kept.rows.resize(grid.rows.size());
+  for (size_t c = 0; c < grid.header.size(); ++c) {
+    const auto said = [c](const Cells& row) { return !row[c].empty(); };
+    if (!std::any_of(grid.rows.begin(), grid.rows.end(), said)) continue;
+    kept.header.push_back(grid.header[c]);
+    for (size_t r = 0; r < grid.rows.size(); ++r) kept.rows[r].push_back(grid.rows[r][c]);
+  }
+  return kept;
+}
+
+std::string Escaped(const std::string& text) {
+  return absl::StrReplaceAll(text, {{"&", "&amp;"}, {"<", "&lt;"}, {">", "&gt;"}, {"\"", "&quot;"}});
+}
+
+// Where a number stands between the least and the greatest of its column, 0 to 1; -1 for what is none.
+std::vector<std::vector<double>> Shades(const Grid& grid) {
+  std::vector<std::vector<double>> shades(grid.rows.size(), std::vector<double>(grid.header.size(), -1));
+  for (size_t c = 0; c < grid.header.size(); ++c) {
+    double least = HUGE_VAL, greatest = -HUGE_VAL, value = 0;
+    for (const Cells& row : grid.rows) {
+      if (!absl::SimpleAtod(row[c], &value)) continue;
+      least = std::min(least, value), greatest = std::max(greatest, value);
+    }
+    for (size_t r = 0; r < grid.rows.size() && greatest > least; ++r) {
+      if (absl::SimpleAtod(grid.rows[r][c], &value)) shades[r][c] = (value - least) / (greatest - least);
+    }
+  }
+  return shades;
+}
+
+std::string TableOf(const Grid& grid) {
+  const auto shades = Shades(grid);
+  std::string html = "<table><thead><tr>";
+  for (const std::string& name : grid.header) absl::StrAppend(&html, "<th scope=col>", Escaped(name), "</th>");
+  absl::StrAppend(&html, "</tr></thead><tbody>\n");
+  for (size_t r = 0; r < grid.rows.size(); ++r) {
+    absl::StrAppend(&html, "<tr>");
+    for (size_t c = 0; c < grid.header.size(); ++c) {
+      const double shade = shades[r][c];
+      const std::string style =
+          shade < 0 ? "" : absl::StrFormat(" style=\"background:rgb(31 119 180/%.2f)\"", 0.45 * shade);
+      absl::StrAppend(&html, "<td", style, ">", Escaped(grid.rows[r][c]), "</td>");
+    }
+    absl::StrAppend(&html, "</tr>\n");
+  }
+  return html + "</tbody></table>\n";
+}
+
+constexpr char kHead[] =
+    "<!doctype html><html lang=en><meta charset=utf-8><meta name=viewport content='width=device-width'>"
+    "<style>body{font:15px system-ui,sans-serif;margin:2rem;color:#1b1f24}table{border-collapse:collapse}"
+    "th,td{padding:.25rem .6rem;border-bottom:1px solid #d5d9de;text-align:right;white-space:nowrap}"
+    "th{position:sticky;top:0;background:#fff;white-space:normal;vertical-align:bottom}"
+    "th:first-child,td:first-child{text-align:left}li{margin:.2rem 0}</style>\n";
+
+}  // namespace
+
+Table CampaignTable(const v1::CampaignResult& result) {
+  const Grid grid = Trimmed(MakeGrid(result));
+  Table table(grid.header);
+  for (const Cells& row : grid.rows) table.Add(row);
+  return table;
+}
+
+std::string CampaignPage(const v1::Campaign& campaign, const v1::CampaignResult& result,
+                         const std::vector<std::string>& passed_limits) {
+  std::map<std::string, int> outcomes;
+  for (const v1::CampaignRow& row : result.rows()) ++outcomes[row.outcome()];
+  const auto count = [](std::string* out, const auto& entry) { absl::StrAppend(out, entry.second, " ", entry.first); };
+  std::string html =
+      absl::StrCat(kHead, "<title>", Escaped(campaign.name()), "</title><h1>", Escaped(campaign.name()), "</h1><p>",
+                   result.rows_size(), " runs of ", campaign.seconds(), " s: ", absl::StrJoin(outcomes, ", ", count),
+                   "; ", campaign.limits_size() - static_cast<int>(passed_limits.size()), " of ",
+                   campaign.limits_size(), " limits kept. Shaded from a column's least to its most.</p>\n");
+  if (!passed_limits.empty()) absl::StrAppend(&html, "<h2>Limits that were passed</h2><ul>\n");
+  for (const std::string& sentence : passed_limits) absl::StrAppend(&html, "<li>", Escaped(sentence), "</li>\n");
+  if (!passed_limits.empty()) absl::StrAppend(&html, "</ul>\n");
+  return html + TableOf(Trimmed(MakeGrid(result))) + "</html>\n";
+}
+
+}  // namespace phrenic::client

@@ -1,0 +1,54 @@
+#include "client/campaign/results.h"
+
+#include <google/protobuf/util/json_util.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "absl/strings/str_cat.h"
+#include "client/connection.h"
+#include "client/whole_file.h"
+
+namespace phrenic::client {
+
+absl::StatusOr<CampaignFolder> CampaignFolder::Open(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder + "/cells", error);
+  if (error) return absl::PermissionDeniedError(absl::StrCat("cannot make ", folder, "/cells: ", error.message()));
+  return CampaignFolder(folder);
+}
+
+std::string CampaignFolder::FileOf(const std::string& cell) const {
+  return absl::StrCat(path_, "/cells/", cell, ".json");
+}
+
+bool CampaignFolder::Has(const CampaignCell& cell) const { return std::filesystem::exists(FileOf(cell.row.cell())); }
+
+std::int64_t CampaignFolder::Finished(const std::vector<CampaignCell>& cells) const {
+  return std::count_if(cells.begin(), cells.end(), [this](const CampaignCell& cell) { return Has(cell); });
+}
+
+absl::Status CampaignFolder::Write(const v1::CampaignResult& result) const {
+  return WriteWhole(FileOf(result.rows(0).cell()), Json(result) + "\n");
+}
+
+absl::StatusOr<v1::CampaignResult> CampaignFolder::Read(const std::vector<CampaignCell>& cells) const {
+  v1::CampaignResult all;
+  for (const CampaignCell& cell : cells) {
+    const std::string file = FileOf(cell.row.cell());
+    std::ifstream in(file);
+    if (!in) continue;  // not finished
+    std::stringstream text;
+    text << in.rdbuf();
+    v1::CampaignResult one;
+    if (!google::protobuf::util::JsonStringToMessage(text.str(), &one).ok() || one.rows_size() != 1) {
+      return absl::DataLossError(absl::StrCat(file, " is no result of a run: remove it to run it again"));
+    }
+    all.MergeFrom(one);
+  }
+  return all;
+}
+
+}  // namespace phrenic::client

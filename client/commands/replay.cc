@@ -1,0 +1,123 @@
+// `phrenic replay`: a run that was written down is run again, and is the same to the last bit or not.
+#include <google/protobuf/util/json_util.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "client/commands.h"
+#include "client/progress.h"
+#include "client/scene_argument.h"
+#include "phrenic/v1/session.grpc.pb.h"
+#include "server/service/server.h"
+
+namespace phrenic::client {
+namespace {
+
+constexpr std::int64_t kPortion = 200;  // steps, for the bar's sake
+
+// What was written down of a run.
+struct Recorded {
+  v1::Session session;
+  std::string state_hash, scene_hash;  // the scene's may be empty: not known
+};
+
+absl::StatusOr<Recorded> ReadRecorded(const std::string& file) {
+  std::ifstream stream(file);
+  if (!stream) return absl::NotFoundError(absl::StrCat("cannot read ", file, ": is the path right?"));
+  const auto json = nlohmann::json::parse(stream, nullptr, false);
+  if (!json.is_object() || !json.contains("session") || !json.contains("state_hash") ||
+      !json["state_hash"].is_string()) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        file, ": has no session and state_hash; write it by `phrenic run ... -o json` or `phrenic step ... -o json`"));
+  }
+  Recorded recorded;
+  recorded.state_hash = json["state_hash"].get<std::string>();
+  const nlohmann::json report = json.value("report", nlohmann::json::object());
+  if (report.contains("scene_hash")) recorded.scene_hash = report["scene_hash"].get<std::string>();
+  google::protobuf::util::JsonParseOptions options;
+  options.ignore_unknown_fields = true;
+  const auto parsed = google::protobuf::util::JsonStringToMessage(json["session"].dump(), &recorded.session, options);
+  if (parsed.ok()) return recorded;
+  return absl::InvalidArgumentError(absl::StrCat(file, ": session: ", std::string(parsed.message())));
+}
+
+absl::Status CheckScene(const Recorded& recorded, const v1::CompileReport& report) {
+  if (recorded.scene_hash.empty() || recorded.scene_hash == report.scene_hash()) return absl::OkStatus();
+  return absl::FailedPreconditionError(absl::StrFormat(
+      "the scene is another one here: its hash is %.12s, not %.12s; name the one that was run by --scene",
+      report.scene_hash(), recorded.scene_hash));
+}
+
+grpc::Status StepTo(const Context& context, std::int64_t last, v1::SessionService::Stub& stub,
+                    v1::StepSessionResponse* response) {
+  Progress progress("stepping", static_cast<double>(last));
+  for (std::int64_t tick = 0; tick < last; tick = response->session().tick()) {
+    v1::StepSessionRequest request;
+    request.set_session_id("replay");
+    request.set_expected_tick(tick);
+    request.set_ticks(std::min(kPortion, last - tick));
+    grpc::Status status = Call(context, stub, &v1::SessionService::Stub::StepSession, request, response, 3600);
+    if (!status.ok()) return status;
+    progress.Update(static_cast<double>(response->session().tick()));
+  }
+  return grpc::Status::OK;
+}
+
+int TellWhetherSame(const Context& context, const Recorded& recorded, const std::string& hash) {
+  const bool same = hash == recorded.state_hash;
+  if (context.json()) {
+    std::cout << nlohmann::json({{"same", same}, {"state_hash", hash}, {"recorded", recorded.state_hash}}).dump(1)
+              << "\n";
+  } else {
+    std::cout << absl::StrFormat("%s, %d steps: state hash %s, %s\n", recorded.session.scene(), recorded.session.tick(),
+                                 hash, same ? "the same to the last bit" : "not the recorded " + recorded.state_hash);
+  }
+  return same ? kOk : kMissed;
+}
+
+int ReplayOn(const Context& context, const Recorded& recorded, const v1::SceneSource& source, service::Server& server) {
+  const auto stub = v1::SessionService::NewStub(server.InProcessChannel());
+  v1::CreateSessionRequest request;
+  request.set_session_id("replay");
+  *request.mutable_source() = source;
+  *request.mutable_parameters() = recorded.session.parameters();
+  *request.mutable_pulls() = recorded.session.pulls();
+  v1::CreateSessionResponse created;
+  grpc::Status status = WithProgress("compiling " + recorded.session.scene(), [&] {
+    return Call(context, *stub, &v1::SessionService::Stub::CreateSession, request, &created);
+  });
+  if (!status.ok()) return Fail(context, status);
+  v1::GetSessionRequest get;
+  get.set_session_id("replay");
+  v1::GetSessionResponse session;
+  status = Call(context, *stub, &v1::SessionService::Stub::GetSession, get, &session);
+  if (!status.ok()) return Fail(context, status);
+  if (const absl::Status same = CheckScene(recorded, session.report()); !same.ok()) return Fail(same);
+  v1::StepSessionResponse response;
+  status = StepTo(context, recorded.session.tick(), *stub, &response);
+  return status.ok() ? TellWhetherSame(context, recorded, response.state_hash()) : Fail(context, status);
+}
+
+}  // namespace
+
+int Replay(const Context& context, const ReplayOptions& options) {
+  const auto recorded = ReadRecorded(options.file);
+  if (!recorded.ok()) return Fail(recorded.status());
+  if (recorded->session.tick() < 1) {
+    return Fail(absl::InvalidArgumentError(absl::StrCat(options.file, ": session.tick: no step was taken")));
+  }
+  const std::string scene = options.scene.scene.empty() ? recorded->session.scene() : options.scene.scene;
+  const auto source = ReadSceneArgument(scene, options.scene.resolution_mm);
+  if (!source.ok()) return Fail(source.status());
+  service::ServerOptions server_options;
+  server_options.data_dir = options.data_dir;
+  auto server = service::Server::Start(server_options);
+  if (!server.ok()) return Fail(server.status());
+  return ReplayOn(context, *recorded, *source, **server);
+}
+
+}  // namespace phrenic::client

@@ -1,0 +1,90 @@
+// Runs that are run again, foretold, and judged for CI.
+#include <gmock/gmock.h>
+
+#include <filesystem>
+
+#include "tests/client/programs.h"
+
+namespace phrenic::client {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+// What `phrenic run` says of a cube, after `change` was made to it.
+template <typename Change>
+std::string RecordedCube(Change change) {
+  const Outcome run = Phrenic({"run", "cube-tensegrity", "--seconds", "0.5", "--set", "elasticity=1.5", "-o", "json"});
+  EXPECT_EQ(run.code, 0) << run.err;
+  nlohmann::json json = run.json();
+  change(json);
+  return WriteScratch("recorded.json", json.dump());
+}
+
+TEST(Replay, ComesToTheSameStateToTheLastBit) {
+  const std::string file = RecordedCube([](nlohmann::json&) {});
+  const Outcome again = Phrenic({"replay", file});
+  EXPECT_EQ(again.code, 0) << again.err;
+  EXPECT_THAT(again.out, HasSubstr("100 steps: state hash "));
+  EXPECT_THAT(again.out, HasSubstr("the same to the last bit"));
+  EXPECT_EQ(Phrenic({"replay", file, "-o", "json"}).json()["same"], true);
+}
+
+TEST(Replay, OfAnotherStateIsAMissedLimit) {
+  const auto softer = [](nlohmann::json& json) { json["session"]["parameters"]["elasticity"] = 1.4; };
+  const Outcome again = Phrenic({"replay", RecordedCube(softer)});
+  EXPECT_EQ(again.code, 4) << again.err;
+  EXPECT_THAT(again.out, HasSubstr("not the recorded "));
+}
+
+TEST(Replay, OfAnotherSceneIsRefused) {
+  const auto other = [](nlohmann::json& json) { json["report"]["scene_hash"] = "0123456789abcdef"; };
+  const Outcome again = Phrenic({"replay", RecordedCube(other)});
+  EXPECT_EQ(again.code, 1);
+  EXPECT_THAT(again.err, HasSubstr("the scene is another one here"));
+  EXPECT_THAT(again.err, HasSubstr("--scene"));
+}
+
+TEST(Replay, OfWhatIsNoRecordSaysWhatToWriteItBy) {
+  for (const char* text : {"", "{", "[]", "{\"session\": {}}", "{\"session\": 3, \"state_hash\": 4}"}) {
+    const Outcome again = Phrenic({"replay", WriteScratch("bad.json", text)});
+    EXPECT_EQ(again.code, 1) << text;
+    EXPECT_THAT(again.err, HasSubstr("phrenic run ... -o json")) << text;
+  }
+  const Outcome wrong = Phrenic({"replay", RecordedCube([](nlohmann::json& json) { json["session"]["tick"] = "x"; })});
+  EXPECT_EQ(wrong.code, 1);
+  EXPECT_THAT(wrong.err, HasSubstr("session: "));
+  EXPECT_THAT(Phrenic({"replay", Scratch("missing.json")}).err, HasSubstr("is the path right?"));
+}
+
+TEST(DryRun, SaysWhatWouldBeDoneAndDoesNothing) {
+  const std::string file = Scratch("dry.msh");
+  const Outcome dry = Phrenic({"run", "cube-tensegrity", "--seconds", "1", "--export", file, "--dry-run"});
+  EXPECT_EQ(dry.code, 0) << dry.err;
+  EXPECT_THAT(dry.out, HasSubstr("would take 200 steps of 5 ms"));
+  EXPECT_THAT(dry.out, HasSubstr("would write " + file));
+  EXPECT_FALSE(std::filesystem::exists(file));
+  const auto json = Phrenic({"run", "cube-tensegrity", "--seconds", "1", "--dry-run", "-o", "json"}).json();
+  EXPECT_EQ(json["steps"], 200);
+  EXPECT_EQ(json["session"]["tick"], "0");
+}
+
+TEST(JUnit, HasACaseForEachLimitAndAFailureForEachThatIsMissed) {
+  const std::string square = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  const std::string here = WriteScratch("here.obj", square);
+  const std::string there = WriteScratch("there.obj", "v 0 0 2\nv 1 0 2\nv 0 1 2\nf 1 2 3\n");
+  const std::string report = Scratch("judged.xml");
+  const Outcome judged = Phrenic({"compare", here, there, "--check", "hd_max=1,assd=3", "--junit", report});
+  EXPECT_EQ(judged.code, 4) << judged.err;
+  const std::string xml = ReadAll(report);
+  EXPECT_THAT(xml, HasSubstr("tests=\"2\" failures=\"1\""));
+  EXPECT_THAT(xml, HasSubstr("name=\"hd_max\""));
+  EXPECT_THAT(xml, HasSubstr("message=\"hd_max is 2 mm, and 1 is the most that was asked for\""));
+  EXPECT_THAT(xml, HasSubstr("name=\"assd\" />"));
+  const Outcome kept = Phrenic({"compare", here, there, "--check", "hd_max=3", "--junit", report});
+  EXPECT_EQ(kept.code, 0) << kept.err;
+  EXPECT_THAT(ReadAll(report), Not(HasSubstr("<failure")));
+}
+
+}  // namespace
+}  // namespace phrenic::client
