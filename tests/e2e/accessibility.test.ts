@@ -62,6 +62,23 @@ test("AxeFindsNothingAgainstColoursForcesAndDialogs", async () => {
   }
 });
 
+test("AxeFindsNothingAgainstLargeTypeForAProjectorOrTwoPictures", async () => {
+  const { page } = viewer;
+  await page.check("#projector");
+  expect(await violations()).toEqual([]);
+  await page.uncheck("#projector");
+  await page.getByLabel("Compare with", { exact: true }).selectOption({ label: "COPD" });
+  await page.waitForURL(/beside=/);
+  await viewer.waitForPicture();
+  await page.evaluate(axe.source);
+  await page.selectOption("#coloring-kind", "displacement");
+  await page.check("#show-labels");
+  expect(await violations()).toEqual([]);
+  await page.goto(server.url);
+  await viewer.waitForPicture();
+  await page.evaluate(axe.source);
+});
+
 test.each([
   ["twice the size, as at 200 %", 600, 360],
   ["a phone", 390, 780],

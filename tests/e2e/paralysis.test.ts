@@ -1,3 +1,4 @@
+import axe from "axe-core";
 import type { Browser } from "playwright-core";
 import { afterAll, beforeAll, expect, test } from "vitest";
 import { launchBrowser, ViewerPage } from "./browser";
@@ -25,14 +26,82 @@ test("FromTheAddressToAParalysedHemidiaphragmBesideAHealthyOneInUnderAMinute", a
   await list.selectOption({ label: "Paralysis right" });
   await page.waitForURL(/beside=/);
   await viewer.waitForPicture();
-  await page.locator("#beside").getByText("Paralysis right").waitFor();
+  await page.locator("#pane-heads").getByText("Paralysis right").waitFor();
   const ways = await page.locator(".pane-head b").allTextContents();
   expect(ways.toSorted()).toEqual(["Paralysis right", "Quiet"]);
   expect(Date.now() - start).toBeLessThan(60_000);
   expect(await page.textContent(".differences")).toBe("Right muscle 0 instead of 1");
   // The list is now of the second picture.
   await page.getByLabel("Compare with", { exact: true }).selectOption({ label: "Paralysis left" });
-  await page.locator("#beside").getByText("Paralysis left").waitFor();
+  await page.locator("#pane-heads").getByText("Paralysis left").waitFor();
   expect(viewer.complaints).toEqual([]);
   await viewer.leave("paralysis");
+});
+
+/** The times [s] of both pictures, as their heads say them. */
+async function times(viewer: ViewerPage): Promise<number[]> {
+  const words = await viewer.page.locator(".pane-head .time").allTextContents();
+  return words.map((each) => Number.parseFloat(each));
+}
+
+test("BothBreatheInStepStopAtOneInstantAndHaveTheSameColours", async () => {
+  const viewer = await ViewerPage.open(browser, server.url, { width: 1200, height: 720 });
+  const { page } = viewer;
+  await page.getByLabel("Compare with", { exact: true }).selectOption({ label: "Deep" });
+  await page.waitForURL(/beside=/);
+  await viewer.waitForPicture();
+  await page.locator("#pane-heads").getByText("Deep").waitFor();
+  const start = await viewer.tick();
+  await viewer.waitForTick(start + 400);
+  const [here, there] = await times(viewer);
+  expect(Math.abs(here - there)).toBeLessThan(0.1);
+  await page.click('#play[aria-label="Pause"]');
+  await page.waitForSelector('#play[aria-label="Play"]');
+  await page.waitForFunction(() => {
+    const [first, second] = [...document.querySelectorAll(".pane-head .time")].map((each) => each.textContent);
+    return first === second;
+  });
+  const picture = () => page.locator("#beside canvas").screenshot();
+  const before = await picture();
+  await page.selectOption("#coloring-kind", "displacement");
+  await page.waitForSelector("#coloring:not([hidden])");
+  await expect.poll(async () => (await picture()).equals(before), { timeout: 20_000 }).toBe(false);
+  // The descent in the head is what the command line reads.
+  const { measures } = JSON.parse(await server.phrenic("step", "thorax", "1", "-o", "json"));
+  const dome = measures.find(({ name }: { name: string }) => name === "right dome");
+  const words = `right dome ${(1000 * Math.abs(dome.value)).toFixed(1)} mm`;
+  await page.locator(".pane-head").first().getByText(words).waitFor({ timeout: 20_000 });
+  expect(viewer.complaints).toEqual([]);
+});
+
+test("TheLastSecondsAreLookedAtAgainWithoutTheSimulationGoingBack", async () => {
+  const viewer = await ViewerPage.open(browser, server.url, { width: 1200, height: 720 });
+  const { page } = viewer;
+  if ((await page.locator('#play[aria-label="Play"]').count()) > 0) await page.click("#play");
+  await viewer.waitForTick((await viewer.tick()) + 200);
+  await page.click('#play[aria-label="Pause"]');
+  await page.waitForSelector('#play[aria-label="Play"]');
+  await page.waitForTimeout(500);
+  const [tick, time] = [await viewer.tick(), await page.textContent("#status-time")];
+  await page.focus("#view");
+  await page.keyboard.press(",");
+  await page.keyboard.press(",");
+  await page.waitForSelector("#timeline.back");
+  await expect.poll(() => page.textContent("#status-time")).not.toBe(time);
+  expect(await viewer.tick()).toBe(tick);
+  await page.click("#look-live");
+  await expect.poll(() => page.textContent("#status-time")).toBe(time);
+  expect(await page.locator("#timeline.back").count()).toBe(0);
+});
+
+test("ForThePageOfACourseThereIsThePictureAndItsPlaybackAlone", async () => {
+  const viewer = await ViewerPage.open(browser, `${server.url}?session=thorax&embed`, { width: 720, height: 540 });
+  const { page } = viewer;
+  for (const id of ["header", "panel", "graphs"]) expect(await page.locator(`#${id}`).isVisible()).toBe(false);
+  for (const id of ["play", "disclaimer", "whole"]) expect(await page.locator(`#${id}`).isVisible()).toBe(true);
+  expect(await page.getAttribute("#whole", "href")).toBe("?session=thorax");
+  await page.evaluate(axe.source);
+  const { violations } = await page.evaluate(() => (window as unknown as { axe: typeof axe }).axe.run());
+  expect(violations.map(({ id }) => id)).toEqual([]);
+  await viewer.leave("embedded");
 });

@@ -35,6 +35,25 @@ test("Screenshot", async () => {
     await page.mouse.move(0, 0);
     await page.waitForTimeout(4000);
     await page.screenshot({ path: join(web, "comparison.png") });
+    // A paralysed right hemidiaphragm beside a healthy one, both as far into a breath.
+    await page.goto(server.url);
+    await viewer.waitForPicture();
+    await page.getByLabel("Compare with", { exact: true }).selectOption({ label: "Paralysis right" });
+    await page.waitForURL(/beside=/);
+    await viewer.waitForPicture();
+    await page.click("#reset");
+    await page.waitForFunction(() => window.phrenic!.tick() === 0);
+    await page.selectOption("#stride", "100");
+    while ((await page.evaluate(() => window.phrenic!.time())) < 2) {
+      const before = await viewer.tick();
+      await page.click("#step");
+      await viewer.waitForTick(before);
+    }
+    await page.selectOption("#coloring-kind", "displacement");
+    for (const layer of ["Ribs", "Sternum", "Costal cartilages"]) await page.uncheck(`[aria-label="Show ${layer}"]`);
+    await page.mouse.move(0, 0);
+    await page.waitForTimeout(4000);
+    await page.screenshot({ path: join(web, "paralysis.jpg"), type: "jpeg", quality: 85 });
   } finally {
     await browser.close();
     await server.kill();

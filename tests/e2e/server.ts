@@ -18,13 +18,14 @@ export class Server {
     private readonly listen: number,
     private readonly web: number,
     private readonly scene: string,
+    private readonly flags: string[],
   ) {
     process.once("exit", () => rmSync(this.store, { recursive: true, force: true }));
   }
 
   /** With a session of `scene` that plays; "none" for no session. */
-  static async start(scene = "thorax"): Promise<Server> {
-    const server = new Server(await freePort(), await freePort(), scene);
+  static async start(scene = "thorax", flags: string[] = []): Promise<Server> {
+    const server = new Server(await freePort(), await freePort(), scene, flags);
     await server.restart();
     return server;
   }
@@ -33,12 +34,17 @@ export class Server {
     return `http://127.0.0.1:${this.web}/`;
   }
 
+  /** Of gRPC. */
+  get address(): string {
+    return `127.0.0.1:${this.listen}`;
+  }
+
   /** Starts the program again on the same ports; resolves when it serves the page. */
   async restart(): Promise<void> {
     mkdirSync(outFolder, { recursive: true });
     const log = createWriteStream(join(outFolder, "phrenicd.log"), { flags: "a" });
     const addresses = ["--listen", `127.0.0.1:${this.listen}`, "--web", `127.0.0.1:${this.web}`];
-    const flags = [...addresses, "--start", this.scene, "--store", this.store];
+    const flags = [...addresses, "--start", this.scene, "--store", this.store, ...this.flags];
     const child = spawn(program("phrenicd"), flags, { stdio: ["ignore", "pipe", "pipe"] });
     child.stdout.pipe(log, { end: false });
     child.stderr.pipe(log, { end: false });
@@ -55,6 +61,12 @@ export class Server {
   async session() {
     const { sessions } = JSON.parse(await this.phrenic("sessions", "-o", "json"));
     return sessions.find(({ id }: { id: string }) => id === "thorax");
+  }
+
+  /** A new account in a file of accounts: its token. */
+  static async addAccount(file: string, name: string, role: string): Promise<string> {
+    const words = ["token", "add", "--tokens", file, "--name", name, "--role", role];
+    return (await promisify(execFile)(program("phrenicd"), words)).stdout.trim();
   }
 
   /** What the command line says to these words about this server. */

@@ -56,6 +56,7 @@ async function watch(url: string, seconds: number) {
         ages.push(Date.now() - Number(frame.unixNanos / 1_000_000n));
         last = Date.now();
       },
+      basis: (basis) => frames.learn(basis),
       acknowledged: (response, sent, answered) => frames.acknowledged(response, sent, answered),
     },
     systemClock,

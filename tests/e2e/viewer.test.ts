@@ -28,21 +28,32 @@ async function pass(seconds: number): Promise<void> {
   await viewer.page.waitForFunction((time) => window.phrenic!.time() >= time, until, { timeout: 60_000 });
 }
 
-/** Height that the highest vertex of the diaphragm goes through in `seconds` of simulated time [m]. */
-async function domeTravel(seconds: number): Promise<number> {
-  return viewer.page.evaluate(async (length) => {
+/** The vertex of the diaphragm that is highest now. */
+async function highestVertex(): Promise<number> {
+  return viewer.page.evaluate(() => {
     const hook = window.phrenic!;
-    const count = hook.vertices("diaphragm");
     let dome = 0;
-    for (let i = 0; i < count; i++) if (hook.vertex("diaphragm", i)[2] > hook.vertex("diaphragm", dome)[2]) dome = i;
-    let [low, high] = [Infinity, -Infinity];
-    for (const start = hook.time(); hook.time() < start + length;) {
-      const z = hook.vertex("diaphragm", dome)[2];
-      [low, high] = [Math.min(low, z), Math.max(high, z)];
-      await new Promise((resolve) => setTimeout(resolve, 30));
-    }
-    return high - low;
-  }, seconds);
+    for (let i = 0; i < hook.vertices("diaphragm"); i++)
+      if (hook.vertex("diaphragm", i)[2] > hook.vertex("diaphragm", dome)[2]) dome = i;
+    return dome;
+  });
+}
+
+/** Height that a vertex of the diaphragm goes through in `seconds` of simulated time [m]. */
+async function travel(vertex: number, seconds: number): Promise<number> {
+  return viewer.page.evaluate(
+    async ({ vertex, seconds }) => {
+      const hook = window.phrenic!;
+      let [low, high] = [Infinity, -Infinity];
+      for (const start = hook.time(); hook.time() < start + seconds;) {
+        const z = hook.vertex("diaphragm", vertex)[2];
+        [low, high] = [Math.min(low, z), Math.max(high, z)];
+        await new Promise((resolve) => setTimeout(resolve, 30));
+      }
+      return high - low;
+    },
+    { vertex, seconds },
+  );
 }
 
 /** Greatest way between two samples [m]. */
@@ -90,11 +101,13 @@ describe("the thorax in the browser", () => {
     // Short breaths, since a loaded machine may simulate slower than real time.
     await viewer.type("breathLength", 2);
     await pass(1);
-    const quiet = await domeTravel(2.1);
+    // The same vertex both times: which one is highest depends on the moment.
+    const dome = await highestVertex();
+    const quiet = await travel(dome, 2.1);
     await viewer.type("breathForce", 2);
     // One breath to grow into the new force.
     await pass(2);
-    const strong = await domeTravel(2.1);
+    const strong = await travel(dome, 2.1);
     await viewer.page.click('[aria-label="Reset breath force"]');
     await viewer.page.click('[aria-label="Reset breath length"]');
     await viewer.page.waitForFunction(
@@ -170,7 +183,11 @@ describe("the buttons", () => {
       "Tensegrity off",
     ]);
     await preset("Chest").click();
-    await expect.poll(async () => (await server.session()).parameters.rib_motion, { timeout: 10_000 }).toBe(2.5);
+    await expect
+      .poll(async () => (await server.session()).parameters.rib_motion, {
+        timeout: 10_000,
+      })
+      .toBe(2.5);
     await viewer.page.waitForSelector('#presets button[aria-pressed="true"]:text-is("Chest")');
     await viewer.leave("presets");
     await preset("Quiet").click();
@@ -186,7 +203,11 @@ describe("the buttons", () => {
     await viewer.page.mouse.move(x, y);
     await viewer.page.mouse.down();
     await viewer.page.mouse.move(x + 40, y - 20, { steps: 4 });
-    await expect.poll(async () => (await pulls()).map(({ body }) => body), { timeout: 10_000 }).toEqual(["diaphragm"]);
+    await expect
+      .poll(async () => (await pulls()).map(({ body }) => body), {
+        timeout: 10_000,
+      })
+      .toEqual(["diaphragm"]);
     await viewer.page.waitForSelector("#pulls:not([hidden])");
     await viewer.leave("pull");
     await viewer.page.mouse.up();
@@ -195,9 +216,13 @@ describe("the buttons", () => {
   });
 
   test("AnotherIntegratorIsTakenWhileItPlays", async () => {
-    await viewer.page.selectOption("#parameter-integrator", { label: "Velocity Verlet" });
+    await viewer.page.selectOption("#parameter-integrator", {
+      label: "Velocity Verlet",
+    });
     await expect
-      .poll(async () => (await server.session()).parameters.integrator, { timeout: 10_000 })
+      .poll(async () => (await server.session()).parameters.integrator, {
+        timeout: 10_000,
+      })
       .toBe("INTEGRATOR_VELOCITY_VERLET");
     await viewer.waitForTick(await viewer.tick());
     await viewer.page.click('[aria-label="Reset integrator"]');

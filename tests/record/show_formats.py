@@ -91,7 +91,7 @@ def gmsh(file, png, step):
 def curves(file, png):
     run("gnuplot", "-e", f"set terminal pngcairo size {SIZE},{SIZE} font 'sans,9'; set output '{png}';"
         "set datafile separator ','; set xlabel 'time [s]'; set ylabel 'height [mm]';"
-        f"plot '{file}' every ::1 using 1:4 with linespoints title 'right dome',"
+        f"plot '{file}' every ::1 using 1:4 with linespoints title 'right summit',"
         f" '' every ::1 using 1:7 with linespoints title 'left dome'")
 
 

@@ -1,12 +1,12 @@
 import { create } from "@bufbuild/protobuf";
 import { beforeEach, expect, test } from "vitest";
-import { domeWords } from "../../web/src/beside";
 import { Controller } from "../../web/src/controller";
 import { FrameSchema } from "../../web/src/gen/phrenic/v1/frames_pb";
 import { ParametersSchema } from "../../web/src/gen/phrenic/v1/parameters_pb";
 import { PresetSchema } from "../../web/src/gen/phrenic/v1/scene_pb";
 import { SessionSchema } from "../../web/src/gen/phrenic/v1/session_pb";
 import { compareWith } from "../../web/src/panels/compare_with";
+import { domeWords } from "../../web/src/panels/pane_heads";
 import { Signal } from "../../web/src/signal";
 import { FakeClock, settle } from "./fake_clock";
 import { FakeServer } from "./fake_server";
@@ -58,6 +58,17 @@ test("TheListTellsHowTheSecondOneBreathes", () => {
 
 test("ASceneWithoutPresetsHasNothingToCompareWith", () => {
   expect(compareWith(controller, new Signal(presets.value.slice(0, 0)), () => undefined).hidden).toBe(true);
+});
+
+test("WhereASceneMeasuresItsDomesTheirHeightCountsAndNoVertex", () => {
+  const frame = create(FrameSchema, {
+    measures: [
+      { name: "right dome", value: -0.0243, unit: "m" },
+      { name: "dome height", value: 0.1, unit: "m" },
+    ],
+    probes: [{ name: "right summit", dz: -0.0622 }],
+  });
+  expect(domeWords(frame)).toBe("right dome 24.3 mm down");
 });
 
 test("WhereTheDomesAreIsPutInWords", () => {

@@ -1,6 +1,7 @@
 import { afterEach, beforeEach, expect, test } from "vitest";
 import { Backoff } from "../../web/src/backoff";
 import { Connection, type Link, type Sink } from "../../web/src/connection";
+import { Codec } from "../../web/src/gen/phrenic/v1/frames_pb";
 import { FakeClock, settle } from "./fake_clock";
 import { FakeServer } from "./fake_server";
 
@@ -8,6 +9,7 @@ let server: FakeServer;
 let clock: FakeClock;
 let links: Link[];
 let ticks: bigint[];
+let epochs: bigint[];
 let freshSessions: number;
 let connection: Connection;
 
@@ -16,6 +18,7 @@ const sink: Sink = {
   scene: () => {},
   session: (_session, fresh) => (freshSessions += fresh ? 1 : 0),
   frame: (frame) => ticks.push(frame.tick),
+  basis: ({ epoch }) => epochs.push(epoch),
   acknowledged: () => {},
 };
 
@@ -23,7 +26,7 @@ const kinds = () => links.map((link) => link.kind);
 const frame = (tick: bigint) => ({ case: "frame" as const, value: { tick } });
 
 beforeEach(() => {
-  [server, clock, links, ticks, freshSessions] = [new FakeServer(), new FakeClock(), [], [], 0];
+  [server, clock, links, ticks, epochs, freshSessions] = [new FakeServer(), new FakeClock(), [], [], [], 0];
   connection = new Connection(server.api, "thorax", sink, clock, new Backoff(500, 10_000, () => 0));
   void connection.run();
 });
@@ -151,4 +154,18 @@ test("FramesThatStrainCanBeToldFromAreWatchedAnewWithoutALoss", async () => {
   await settle();
   expect(ticks).toEqual([7n]);
   expect(kinds()).toEqual(["connecting", "live"]);
+});
+
+test("ShapesAreFetchedOnceTheServerHasThemAndItIsToldSo", async () => {
+  server.basis.epoch = 4n;
+  await settle();
+  connection.setCodec(Codec.BASIS);
+  await settle();
+  expect(server.codecs).toEqual([Codec.PREDICTED, Codec.BASIS]);
+  for (const tick of [1n, 2n, 3n]) {
+    server.send({ case: "frame", value: { tick, sequence: tick } });
+    await settle();
+  }
+  expect(epochs).toEqual([4n]);
+  expect(server.basesTold).toEqual([0n, 4n, 4n]);
 });

@@ -55,13 +55,41 @@ test("AChangeIsTakenBackToWhatHeldBefore", async () => {
   expect(controller.changes.state.value).toEqual({ undo: false, redo: true });
 });
 
-test("AForkOfAPlayingSessionPlays", async () => {
-  let played = "";
-  server.api.sessions.playSession = (({ sessionId }: { sessionId: string }) => {
-    played = sessionId;
-    return Promise.resolve({ session: undefined });
-  }) as unknown as typeof server.api.sessions.playSession;
+test("AForkOfAPlayingSessionPlaysAndTheSessionGoesOn", async () => {
   controller.receive(create(SessionSchema, { state: SessionState.PLAYING }));
   expect(await controller.fork()).toBe("thorax-2");
-  expect(played).toBe("thorax-2");
+  expect(server.played).toEqual([["thorax-2", ""]]);
+  expect(server.paused).toEqual([]);
+});
+
+test("AForkToBeShownBesideStartsAtOneInstantWithItsOriginalAndTheyPlayInStep", async () => {
+  controller.receive(create(SessionSchema, { state: SessionState.PLAYING, speed: 0.5 }));
+  expect(await controller.forkBeside("deep")).toBe("thorax-2");
+  await settle();
+  expect(server.paused).toEqual(["thorax"]);
+  expect(server.updates).toEqual([{ preset: "deep" }]);
+  expect(server.played).toEqual(
+    expect.arrayContaining([
+      ["thorax", "thorax-2"],
+      ["thorax-2", "thorax"],
+    ]),
+  );
+});
+
+test("AForkOfAPausedSessionLeavesBothPaused", async () => {
+  controller.receive(create(SessionSchema, { state: SessionState.PAUSED }));
+  expect(await controller.forkBeside()).toBe("thorax-2");
+  expect([server.paused, server.played]).toEqual([[], []]);
+});
+
+test("TwoThatArePausedStandAtOneInstant", async () => {
+  const parameters = create(ParametersSchema, { timeStep: 0.001 });
+  const standing = (time: number) => create(SessionSchema, { revision: 2n, time, parameters });
+  server.resting.set("thorax", standing(1)).set("other", standing(1.012));
+  controller.companion = new Controller(server.api, "other", clock);
+  await controller.pause();
+  expect(server.stepped).toEqual([["thorax", 12n]]);
+  server.resting.set("thorax", standing(9));
+  await controller.pause();
+  expect(server.stepped).toHaveLength(1);
 });

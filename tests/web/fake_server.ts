@@ -7,7 +7,9 @@ import {
   CompareService,
 } from "../../web/src/gen/phrenic/v1/compare_pb";
 import {
+  type Codec,
   FrameService,
+  GetBasisResponseSchema,
   type GetForcesRequest,
   GetGeometryResponseSchema,
   Placement,
@@ -64,8 +66,18 @@ export class FakeServer {
   readonly created: CreateSessionRequest[] = [];
   readonly steps: [bigint | undefined, bigint][] = [];
   readonly deleted: string[] = [];
+  /** What was played, and in step with what; paused; stepped, by how many ticks. */
+  readonly played: [string, string][] = [];
+  readonly paused: string[] = [];
+  readonly stepped: [string, bigint][] = [];
+  /** Where sessions stand once they are paused. */
+  readonly resting = new Map<string, typeof this.session>();
   /** How near to the truth frames were asked to be [mm], by each watch. */
   readonly errorBounds: (number | undefined)[] = [];
+  readonly codecs: Codec[] = [];
+  /** What it would have frames put together from, and the epochs that viewers said they had. */
+  basis = create(GetBasisResponseSchema, {});
+  readonly basesTold: bigint[] = [];
   /** What was asked of the forces. */
   readonly forceQuestions: object[] = [];
   readonly comparisons: CompareRequest[] = [];
@@ -93,11 +105,19 @@ export class FakeServer {
           this.deleted.push(sessionId);
           return this.answer({});
         },
-        stepSession: ({ ticks, expectedTick }) => {
+        stepSession: ({ sessionId, ticks, expectedTick }) => {
           this.steps.push([expectedTick, ticks]);
+          this.stepped.push([sessionId, ticks]);
           return this.answer({});
         },
-        playSession: () => this.answer({ session: this.session }),
+        playSession: ({ sessionId, inStepWith }) => {
+          this.played.push([sessionId, inStepWith]);
+          return this.answer({ session: this.session });
+        },
+        pauseSession: ({ sessionId }) => {
+          this.paused.push(sessionId);
+          return this.answer({ session: this.resting.get(sessionId) ?? this.session });
+        },
         updateParameters: ({ parameters, preset }) => {
           this.updates.push(preset === "" ? parameters! : { preset });
           return this.answer({ session: this.session });
@@ -130,9 +150,13 @@ export class FakeServer {
   private streams() {
     const server = this;
     return {
-      ackFrames({ sequence }: { sequence: bigint }) {
+      ackFrames({ sequence, basisEpoch }: { sequence: bigint; basisEpoch: bigint }) {
         server.acknowledged.push(sequence);
-        return server.answer({ unixNanos: 1_000_000_000n, framesPerSecond: 30 });
+        server.basesTold.push(basisEpoch);
+        return server.answer({ unixNanos: 1_000_000_000n, framesPerSecond: 30, basisEpoch: server.basis.epoch });
+      },
+      getBasis() {
+        return server.answer(server.basis);
       },
       getForces({ body, vertex, kind }: GetForcesRequest) {
         server.forceQuestions.push({
@@ -148,8 +172,12 @@ export class FakeServer {
         server.geometryCalls++;
         yield server.answer(triangleBody({}));
       },
-      async *watchFrames({ maxErrorMm }: { maxErrorMm?: number }, { signal }: { signal: AbortSignal }) {
+      async *watchFrames(
+        { maxErrorMm, codec }: { maxErrorMm?: number; codec: Codec },
+        { signal }: { signal: AbortSignal },
+      ) {
         server.errorBounds.push(maxErrorMm);
+        server.codecs.push(codec);
         yield server.answer({
           event: { case: "session" as const, value: server.session },
         });

@@ -4,13 +4,23 @@ import { join } from "node:path";
 import { describe, expect, test } from "vitest";
 import type { Body } from "../../web/src/codec";
 import { decodeBody } from "../../web/src/codec";
+import { decodeShapes } from "../../web/src/codecs/basis";
+import { makeDecoder } from "../../web/src/codecs/decoder";
+import { restShapeOf } from "../../web/src/codecs/rest_shape";
 import { FrameDecoder } from "../../web/src/frame_decoder";
-import { Codec, FrameSchema, GetGeometryResponseSchema, Placement } from "../../web/src/gen/phrenic/v1/frames_pb";
+import {
+  Codec,
+  FrameSchema,
+  GetBasisResponseSchema,
+  GetGeometryResponseSchema,
+  Placement,
+} from "../../web/src/gen/phrenic/v1/frames_pb";
 import { bytesOf, triangleBody } from "./fake_server";
 
 interface Golden {
   rest: number[];
   triangles: number[];
+  shapes: { bytes: string; displacements: number[] }[];
   encodings: { codec: keyof typeof Codec; bytes: string; positions: number[] }[];
 }
 
@@ -28,8 +38,14 @@ const sheet: Body = decodeBody(
   }),
 );
 
-const decode = (codec: Codec, positions: Uint8Array) =>
-  new FrameDecoder([sheet]).decode(create(FrameSchema, { codec, positions, bodies: [0] })).positions;
+const basis = create(GetBasisResponseSchema, { epoch: 1n, shapes: golden.shapes.map(({ bytes }) => bytesIn(bytes)) });
+
+function decode(codec: Codec, positions: Uint8Array) {
+  const decoder = new FrameDecoder([sheet]);
+  decoder.learn(basis);
+  const basisEpoch = codec === Codec.BASIS ? 1n : 0n;
+  return decoder.decode(create(FrameSchema, { codec, positions, bodies: [0], basisEpoch })).positions;
+}
 
 describe.each(golden.encodings)("$codec", ({ codec, bytes, positions }) => {
   test("PositionsAreThoseInTheFileBitForBit", () => {
@@ -59,7 +75,46 @@ describe.each(golden.encodings)("$codec", ({ codec, bytes, positions }) => {
 
 test("EveryCodecOfTheWireIsInTheFile", () => {
   const named = golden.encodings.map(({ codec }) => codecOf(codec));
-  expect(named.sort()).toEqual([Codec.RAW, Codec.PLANES, Codec.PREDICTED]);
+  expect([...new Set(named)].sort()).toEqual([Codec.RAW, Codec.PLANES, Codec.PREDICTED, Codec.BASIS]);
+});
+
+test("ShapesAreThoseInTheFileBitForBit", () => {
+  const predicted = makeDecoder(Codec.PREDICTED, restShapeOf([sheet]));
+  const shapes = decodeShapes(sheet.rest, predicted, basis.shapes);
+  expect(shapes.map((each) => [...each])).toEqual(
+    golden.shapes.map(({ displacements }) => [...Float32Array.from(displacements)]),
+  );
+});
+
+test("AFrameOfShapesThatHaveNotComeIsRefused", () => {
+  const frame = create(FrameSchema, { codec: Codec.BASIS, bodies: [0], basisEpoch: 2n });
+  expect(() => new FrameDecoder([sheet]).decode(frame)).toThrow("basis_epoch: the shapes of 2 have not come");
+});
+
+/** CODEC_PREDICTED of two triangles, all vertices a metre above rest: the first one's remainder, and no other. */
+function allUp(): Uint8Array {
+  const pairs = [0, 0, 0, 2, 0]; // of 18 numbers: the 13th is 1
+  const frame = [0x28, 0xb5, 0x2f, 0xfd, 0x20, pairs.length, (pairs.length << 3) | 1, 0, 0, ...pairs];
+  const head = new DataView(new ArrayBuffer(16));
+  head.setFloat64(0, 1, true);
+  head.setUint32(8, frame.length, true);
+  return Uint8Array.from([...new Uint8Array(head.buffer), ...frame]);
+}
+
+test("ABodyOfABasisHasItsOwnPartOfTheShapes", () => {
+  const [one, other] = [0, 3].map((firstVertex) =>
+    decodeBody(triangleBody({ placement: Placement.STREAMED, firstVertex })),
+  );
+  const decoder = new FrameDecoder([one, other]);
+  decoder.learn(create(GetBasisResponseSchema, { epoch: 3n, shapes: [allUp()] }));
+  const head = new DataView(new ArrayBuffer(20));
+  head.setFloat64(0, 1, true);
+  head.setUint32(8, 1, true);
+  head.setFloat32(16, 2, true);
+  const positions = new Uint8Array(head.buffer);
+  const frame = create(FrameSchema, { codec: Codec.BASIS, bodies: [1], basisEpoch: 3n, positions });
+  const raised = [...other.rest].map((x, i) => (i % 3 === 2 ? x + 2 : x));
+  expect([...decoder.decode(frame).positions]).toEqual([...one.rest, ...raised]);
 });
 
 test("BodiesThatAreNotInAFrameStayAtRest", () => {

@@ -1,6 +1,6 @@
 import { create } from "@bufbuild/protobuf";
 import { expect, test } from "vitest";
-import { differences } from "../../web/src/beside";
+import { differences } from "../../web/src/panels/pane_heads";
 import { ParametersSchema } from "../../web/src/gen/phrenic/v1/parameters_pb";
 import { SessionSchema } from "../../web/src/gen/phrenic/v1/session_pb";
 import { permalinkOf, recipeOf, rerun } from "../../web/src/permalink";

@@ -1,7 +1,7 @@
 import { beforeEach, describe, expect, test } from "vitest";
 import { showStudy } from "../../web/src/report/page";
 import { make } from "../../web/src/panels/dom";
-import { costStudy, errorStudy, pageOf, stabilityStudy } from "./study_samples";
+import { costStudy, errorStudy, pageOf, stabilityStudy, streamingStudy } from "./study_samples";
 
 let page: HTMLElement;
 
@@ -193,6 +193,25 @@ describe("the stability study", () => {
     show(withTable(stabilityStudy as never, "stability", { map }));
     expect(all(".tiles svg").length).toBe(1);
     expect(page.querySelector(".tiles")!.innerHTML).not.toMatch(/NaN/);
+  });
+});
+
+describe("the streaming study", () => {
+  test("DrawsEachCodecThatErrsAndSaysWhatTheExactOneTakes", () => {
+    show(streamingStudy as never);
+    expect(page.querySelector("h1")!.textContent).toBe("Error against bandwidth: thorax");
+    expect(advice().join() || page.querySelector(".advice")!.textContent).toContain("28.3 Mbit/s");
+    const [drawn] = all("figure svg[role=img]");
+    expect(drawn.outerHTML).not.toMatch(/NaN|Infinity|undefined/);
+    for (const name of ["Planes", "Predicted", "Basis"]) expect(drawn.textContent).toContain(name);
+    expect(captions()[0]).toContain("Raw frames err by nothing and take 91.5 Mbit/s.");
+    expect(page.textContent).toContain("31\u202f772 vertices, 16 frames");
+    expect(all("tbody tr")).toHaveLength(10);
+  });
+
+  test("StandsAnEmptyTable", () => {
+    show(withTable(streamingStudy as never, "streaming", {}));
+    expect(captions()[0]).toContain("No codec has an error to show.");
   });
 });
 

@@ -1,4 +1,5 @@
 import { type Client, ConnectError, createClient, type Transport } from "@connectrpc/connect";
+import { AccessService } from "./gen/phrenic/v1/access_pb";
 import { CompareService } from "./gen/phrenic/v1/compare_pb";
 import { ControlService } from "./gen/phrenic/v1/control_pb";
 import { ExportService } from "./gen/phrenic/v1/export_pb";
@@ -9,6 +10,7 @@ import { UploadService } from "./gen/phrenic/v1/upload_pb";
 
 /** The server's services over one transport: gRPC-web in the page, a router in tests. */
 export interface Api {
+  access: Client<typeof AccessService>;
   scenes: Client<typeof SceneService>;
   sessions: Client<typeof SessionService>;
   control: Client<typeof ControlService>;
@@ -21,6 +23,7 @@ export interface Api {
 
 export function createApi(transport: Transport): Api {
   return {
+    access: createClient(AccessService, transport),
     scenes: createClient(SceneService, transport),
     sessions: createClient(SessionService, transport),
     control: createClient(ControlService, transport),

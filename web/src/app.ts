@@ -12,6 +12,7 @@ import { Forces } from "./forces";
 import { Frames } from "./frames";
 import type { CompileReport } from "./gen/phrenic/v1/report_pb";
 import type { Preset } from "./gen/phrenic/v1/scene_pb";
+import { SessionState } from "./gen/phrenic/v1/session_pb";
 import type { Identity } from "./identity";
 import { Looks } from "./looks";
 import { layersPanel } from "./panels/appearance";
@@ -36,7 +37,9 @@ import { sessionButton } from "./panels/session_button";
 import { ShareDialog } from "./panels/share";
 import { shortcuts } from "./panels/shortcuts";
 import { LinkPill, Readout, ViewerCount } from "./panels/status";
+import { streamPanel } from "./panels/stream";
 import { studiesPanel } from "./panels/studies";
+import { Timeline } from "./panels/timeline";
 import { uploadPanel } from "./panels/upload";
 import { viewBar } from "./panels/view_bar";
 import { SceneTools } from "./scene_tools";
@@ -80,6 +83,7 @@ export class App {
   private readonly pill: LinkPill;
   private readonly viewers = new ViewerCount();
   private readonly readout = new Readout();
+  private readonly timeline = new Timeline(this.frames, (time) => this.lookBack(time));
   private readonly probes = new Probes();
   private readonly measures = new Measures();
   private readonly comparisons: Comparisons;
@@ -87,6 +91,8 @@ export class App {
   private readonly uploads: Uploads;
   private readonly comparison: ComparisonCard;
   private readonly bodies = new Signal<Body[]>([]);
+  /** Where the dock began when that was looked at last [CSS pixels]. */
+  private dockTop = 0;
   /** Names of the bodies that have mass and move by forces. */
   private deformable: ReadonlySet<string> = new Set();
 
@@ -127,6 +133,13 @@ export class App {
     this.looks.all.subscribe((looks) => {
       for (const { layer, opacity, visible } of looks) this.viewer.setLayerOpacity(layer, visible ? opacity : 0);
     });
+    // Who plays on has looked back enough.
+    let playing = true;
+    this.controller.session.subscribe((session) => {
+      const [before, now] = [playing, session?.state === SessionState.PLAYING];
+      playing = now;
+      if (now && !before && this.timeline.back) this.lookBack(undefined);
+    });
     setInterval(() => this.tell(), statusInterval);
     setInterval(() => document.hidden || this.draw(), graphInterval);
     window.addEventListener("pagehide", () => this.controller.leave());
@@ -155,8 +168,10 @@ export class App {
   private openBeside(): Beside | undefined {
     const { sessionId, beside, open } = this.subject;
     if (beside === undefined || beside === sessionId) return undefined;
-    const { viewer, looks, controller, presets } = this;
-    return new Beside(this.api, beside, { viewer, looks, controller, presets, around: this.around() }, this.clock, {
+    const { viewer, tools, looks, controller, presets } = this;
+    const mayChange = () => refusalWords(this.standing.roles.value) === "";
+    const first = { viewer, tools, looks, controller, presets, around: this.around(), mayChange };
+    return new Beside(this.api, beside, first, this.clock, {
       swap: () => open(`?${new URLSearchParams({ session: beside, beside: sessionId })}`),
       close: () => open(`?${new URLSearchParams({ session: sessionId })}`),
     });
@@ -179,12 +194,13 @@ export class App {
     place("stage").append(drop, tools.force);
     if (this.beside !== undefined) {
       place("stage").classList.add("split");
-      place("stage").append(this.beside.element, this.beside.firstHead);
+      place("stage").append(this.beside.element, this.beside.heads.element);
+      new ResizeObserver(() => this.resize()).observe(this.beside.heads.element);
     }
     place("annotations-place").append(tools.annotations.element);
     place("cube-place").append(tools.cube.element);
     place("playback-place").append(controlled(this.standing, playbackPanel(controller)));
-    place("readout-place").append(this.readout.element);
+    place("readout-place").append(this.timeline.element, this.readout.element);
     place("margins").append(...this.margins.elements);
     place("views").append(...viewBar(viewer, place("view")));
     place("banners").append(...banners(controller, this.link, () => void this.chooser.show()));
@@ -197,6 +213,7 @@ export class App {
       controlled(this.standing, ...parameterSections(controller, this.report, this.presets)),
       this.tools.panel,
       layersPanel(looks),
+      streamPanel((codec) => this.connection.setCodec(codec)),
       this.probes.element,
       this.measures.element,
       comparePanel(this.comparisons, this.bodies, this.uploads.endings),
@@ -221,7 +238,8 @@ export class App {
     const keys = shortcuts(
       [
         { key: " ", words: "Play, pause", act: press("play") },
-        { key: ".", words: "Take some steps", act: press("step") },
+        { key: ".", words: "Take some steps; one picture on where you look back", act: () => this.stepOn() },
+        { key: ",", words: "Look back, one picture a time", act: () => this.timeline.turn(-1) },
         { key: "r", words: "Back to the start", act: press("reset") },
         { key: "g", words: "Graphs", act: graphs },
         { key: "c", words: "Controls", act: panel },
@@ -256,6 +274,7 @@ export class App {
         this.tools.receive(frame);
       },
       camera: (camera) => this.lead.receive(camera),
+      basis: (basis) => this.frames.learn(basis),
       acknowledged: (response, sent, answered) => this.frames.acknowledged(response, sent, answered),
       scene: (bodies, report) => this.showScene(bodies, report),
     };
@@ -286,10 +305,24 @@ export class App {
     this.beside?.resize();
   }
 
+  private lookBack(time: number | undefined): void {
+    this.frames.lookBack(time);
+    this.beside?.lookBack(time);
+    // Which forces acted then is not known.
+    this.tools.forgetForces();
+  }
+
+  private stepOn(): void {
+    if (this.timeline.back) this.timeline.turn(1);
+    else document.getElementById("step")?.click();
+  }
+
   private draw(): void {
     this.graphs.draw();
+    if (this.timeline.back) return;
     const session = this.controller.session.value;
     this.tools.askForces(`${this.frames.frame?.tick} ${session?.revision}`);
+    this.beside?.askForces();
   }
 
   private tell(): void {
@@ -297,11 +330,16 @@ export class App {
     const now = this.clock.now();
     const session = this.controller.session.value;
     const rate = this.frames.rate(now);
-    const status = { link: this.link.value, session, frame: this.frames.frame, rate, now };
+    const frame = this.frames.lookedAt ?? this.frames.frame;
+    const status = { link: this.link.value, session, frame, rate, now };
     this.pill.show(status);
     this.viewers.show(status);
     this.readout.show(status);
     this.probes.show(status.frame);
+    this.timeline.show();
+    // Words that take another line make the dock higher.
+    if (place("dock").offsetTop !== this.dockTop) this.resize();
+    this.dockTop = place("dock").offsetTop;
     this.beside?.tell(status.frame);
     this.measures.show(status.frame);
     this.comparison.show(status.frame?.time);

@@ -1,43 +1,57 @@
 import type { Api } from "./api";
 import type { Clock } from "./clock";
+import type { Body } from "./codec";
 import { Connection, type Sink } from "./connection";
 import { Controller } from "./controller";
+import { forceOf, needsExact } from "./fields";
+import { Forces } from "./forces";
 import { Frames } from "./frames";
 import type { Frame } from "./gen/phrenic/v1/frames_pb";
-import type { Parameters } from "./gen/phrenic/v1/parameters_pb";
-import type { Preset } from "./gen/phrenic/v1/scene_pb";
-import { isDome } from "./graphs/catalogue";
+import { type Preset } from "./gen/phrenic/v1/scene_pb";
+import { SessionState } from "./gen/phrenic/v1/session_pb";
+import { Ghosts } from "./ghosts";
 import type { Looks } from "./looks";
-import { formatNumber } from "./numbers";
 import { make } from "./panels/dom";
-import { labelOf, presetOf } from "./panels/presets";
-import { parameterControls } from "./schema";
+import { PaneHeads } from "./panels/pane_heads";
+import { Painter } from "./painter";
+import type { SceneTools } from "./scene_tools";
 import type { Signal } from "./signal";
+import { Annotations } from "./viewer/annotations";
 import { type Surroundings, Viewer } from "./viewer/viewer";
+
+/** Two that play and are between these apart [s] are brought together, after so many looks. */
+const [leastApart, mostApart] = [0.2, 2];
+const looksApart = 10;
 
 /** What the picture beside shares with the first. */
 export interface First {
   viewer: Viewer;
+  tools: SceneTools;
   looks: Looks;
   controller: Controller;
   presets: Signal<Preset[]>;
   around: Pick<Surroundings, "covered" | "calm">;
+  /** Whether this viewer may play and pause it. */
+  mayChange(): boolean;
 }
 
-/** A second session in a picture of its own, with the first one's camera and looks; it plays and pauses with the first. */
+/**
+ * A second session in a picture of its own, with the first one's camera and looks: layers, colours and their scale, cut,
+ * ghost and names. It plays and pauses with the first, in step.
+ */
 export class Beside {
   readonly element: HTMLElement;
-  /** What the first picture is headed by. */
-  readonly firstHead: HTMLElement;
-  /** Each is named by how it breathes, where a preset says that; else by its session. */
-  private readonly names = [make("b"), make("b")];
-  private readonly descents = [make("span", { className: "domes" }), make("span", { className: "domes" })];
+  readonly heads: PaneHeads;
   private readonly viewer: Viewer;
   private readonly controller: Controller;
+  private readonly connection: Connection;
   private readonly frames = new Frames();
+  private readonly forces: Forces;
+  private readonly painter: Painter;
+  private readonly ghosts: Ghosts;
+  private readonly annotations: Annotations;
   private leads = false;
-  private readonly time = make("span");
-  private readonly differences = make("p", { className: "differences" });
+  private apart = 0;
 
   constructor(
     api: Api,
@@ -47,52 +61,19 @@ export class Beside {
     actions: { swap(): void; close(): void },
   ) {
     const canvas = make("canvas", { role: "img", ariaLabel: `The session ${sessionId}, in three dimensions` });
-    const swap = make(
-      "button",
-      { type: "button", className: "small", title: "Controls act on this one then" },
-      "Steer",
-    );
-    swap.onclick = () => actions.swap();
-    const close = make("button", { type: "button", className: "small", ariaLabel: `Close ${sessionId}` }, "Close");
-    close.onclick = () => actions.close();
-    const [here, there] = this.names;
-    const head = make(
-      "div",
-      { className: "pane-head", title: sessionId },
-      there,
-      this.time,
-      swap,
-      close,
-      this.descents[1],
-    );
-    const steered = make("span", {}, "steered");
-    this.firstHead = make(
-      "div",
-      { className: "pane-head", title: first.controller.sessionId },
-      here,
-      steered,
-      this.descents[0],
-    );
-    this.element = make("div", { id: "beside" }, canvas, head, this.differences);
-    this.viewer = new Viewer(canvas, {
-      ...first.around,
-      advance: () => this.frames.advance(this.clock.now(), first.around.calm()),
-      source: () => this.frames.moment?.arrays,
-      drawn: () => {
-        if (this.leads) first.viewer.rig.follow(this.viewer.rig);
-      },
-    });
-    // The camera is that of the picture that a person turned last.
-    const lead = (event: Event) => (this.leads = event.target === canvas);
-    for (const kind of ["pointerdown", "wheel", "keydown"])
-      document.addEventListener(kind, lead, { capture: true, passive: true });
     this.controller = new Controller(api, sessionId, clock);
     first.controller.companion = this.controller;
-    this.controller.session.subscribe(() => this.compare());
-    first.controller.session.subscribe(() => this.compare());
-    first.presets.subscribe(() => this.compare());
-    first.looks.all.subscribe(() => this.look());
-    void new Connection(api, sessionId, this.sink(), clock).run();
+    this.heads = new PaneHeads([first.controller, this.controller], first.presets, actions);
+    this.viewer = new Viewer(canvas, this.around());
+    this.annotations = new Annotations(this.viewer);
+    this.element = make("div", { id: "beside" }, canvas, this.annotations.element);
+    this.forces = new Forces(api, sessionId);
+    this.painter = new Painter(this.forces);
+    this.ghosts = new Ghosts(this.viewer, () => this.frames.moment?.arrays, first.tools.ghost);
+    this.connection = new Connection(api, sessionId, this.sink(), clock);
+    this.letLead(canvas);
+    this.share();
+    void this.connection.run();
   }
 
   /** The first picture's camera has moved. */
@@ -104,66 +85,120 @@ export class Beside {
     this.viewer.resize();
   }
 
-  private sink(): Sink {
+  /** What both show by now. */
+  tell(first: Frame | undefined): void {
+    const frame = this.frames.lookedAt ?? this.frames.frame;
+    this.heads.tell([first, frame]);
+    this.keepTogether(Math.abs((first?.time ?? 0) - (frame?.time ?? 0)));
+  }
+
+  /** Shows an earlier moment as the first does, or the present. */
+  lookBack(time: number | undefined): void {
+    this.frames.lookBack(time);
+    this.forces.clear();
+  }
+
+  /** Has the server tell the forces that this picture is coloured by. */
+  askForces(): void {
+    const kind = forceOf(this.first.tools.coloring.kind.value);
+    const seen = `${this.frames.frame?.tick} ${this.controller.session.value?.revision}`;
+    const bodies = kind === undefined ? [] : this.painter.names;
+    void this.forces.ask({ vertex: undefined, kind, bodies }, seen);
+  }
+
+  /** The camera is that of the picture that a person turned last. */
+  private letLead(canvas: HTMLCanvasElement): void {
+    const lead = (event: Event) => (this.leads = event.target === canvas);
+    for (const kind of ["pointerdown", "wheel", "keydown"])
+      document.addEventListener(kind, lead, { capture: true, passive: true });
+  }
+
+  /** Shows what the first picture shows, and how. */
+  private share(): void {
+    const { looks, tools } = this.first;
+    const { coloring } = tools;
+    looks.all.subscribe(() => this.look());
+    tools.overlays.subscribe((shown) => this.viewer.showOverlays(shown));
+    tools.labels.subscribe((on) => this.annotations.setLabels(on));
+    tools.cut.subscribe((cut) => {
+      this.viewer.setCut(cut);
+      this.annotations.start(looks.all.value);
+    });
+    coloring.kind.subscribe((kind) => {
+      this.connection.setExact(needsExact(kind));
+      this.note();
+    });
+    coloring.scale.subscribe(() => this.paint());
+    this.forces.sizes.subscribe(() => this.paint());
+  }
+
+  private around(): Surroundings {
+    const { around, viewer } = this.first;
     return {
-      link: () => undefined,
-      session: (session, fresh) => this.controller.receive(session, fresh),
-      scene: (bodies) => {
-        this.frames.start(bodies);
-        this.viewer.show(bodies);
-        this.follow();
-        this.look();
+      ...around,
+      advance: () => this.frames.advance(this.clock.now(), around.calm()),
+      source: () => this.frames.moment?.arrays,
+      update: () => {
+        this.note();
+        if (this.first.tools.coloring.kind.value !== undefined) this.paint();
       },
-      acknowledged: (response, sent, answered) => this.frames.acknowledged(response, sent, answered),
-      frame: (frame) => {
-        this.frames.receive(frame, this.clock.now());
-        this.time.textContent = `${frame.time.toFixed(2)} s`;
+      drawn: () => {
+        this.annotations.draw();
+        if (this.leads) viewer.rig.follow(this.viewer.rig);
       },
     };
   }
 
-  /** How far the domes of both have come down by now. */
-  tell(first: Frame | undefined): void {
-    [first, this.frames.frame].forEach((frame, i) => (this.descents[i].textContent = domeWords(frame)));
+  private sink(): Sink {
+    return {
+      link: () => undefined,
+      session: (session, fresh) => this.controller.receive(session, fresh),
+      scene: (bodies, report) => {
+        const moving = new Set(report.bodies.filter(({ role }) => role === "deformable").map(({ name }) => name));
+        this.show(bodies, moving);
+      },
+      basis: (basis) => this.frames.learn(basis),
+      acknowledged: (response, sent, answered) => this.frames.acknowledged(response, sent, answered),
+      frame: (frame) => {
+        this.frames.receive(frame, this.clock.now());
+        this.ghosts.receive(frame);
+      },
+    };
+  }
+
+  private show(bodies: Body[], moving: ReadonlySet<string>): void {
+    const deformable = bodies.filter(({ name }) => moving.has(name));
+    this.frames.start(bodies);
+    this.viewer.show(bodies);
+    this.painter.start(deformable);
+    this.ghosts.start(deformable);
+    this.follow();
+    this.look();
   }
 
   private look(): void {
-    for (const { layer, opacity, visible } of this.first.looks.all.value)
-      this.viewer.setLayerOpacity(layer, visible ? opacity : 0);
+    const looks = this.first.looks.all.value;
+    for (const { layer, opacity, visible } of looks) this.viewer.setLayerOpacity(layer, visible ? opacity : 0);
+    this.annotations.start(looks);
   }
 
-  private compare(): void {
-    const [here, there] = [this.first.controller, this.controller].map(({ session }) => session.value?.parameters);
-    const words = differences(here, there);
-    [this.first.controller, this.controller].forEach(({ session, sessionId }, i) => {
-      const preset = presetOf(this.first.presets.value, session.value?.parameters);
-      this.names[i].textContent = preset === undefined ? sessionId : labelOf(preset);
-    });
-    this.differences.textContent = words === "" ? "The same parameters" : words;
+  private note(): void {
+    const moment = this.frames.moment;
+    if (moment !== undefined) this.painter.receive(moment.time, moment.arrays);
   }
-}
 
-/** "right dome 19.5 mm down, left dome 2.1 mm up"; empty where the scene has no probe of a dome. */
-export function domeWords(frame: Frame | undefined): string {
-  return (frame?.probes ?? [])
-    .filter(isDome)
-    .map(({ name, dz }) => `${name} ${(1000 * Math.abs(dz)).toFixed(1)} mm ${dz > 0 ? "up" : "down"}`)
-    .join(", ");
-}
+  private paint(): void {
+    const { kind, scale } = this.first.tools.coloring;
+    this.viewer.paint(this.painter.paint(kind.value, scale.value));
+  }
 
-/** What is set otherwise in `there`: "Breath force 2 instead of 1". */
-export function differences(here: Parameters | undefined, there: Parameters | undefined): string {
-  if (here === undefined || there === undefined) return "";
-  const values = (of: Parameters) => of as unknown as Record<string, number | boolean>;
-  return parameterControls()
-    .filter(({ field }) => values(here)[field] !== values(there)[field])
-    .map((control) => {
-      const words = (value: number | boolean) => {
-        if (typeof value === "boolean") return value ? "on" : "off";
-        const named = control.kind === "choice" ? control.options.find((each) => each.value === value) : undefined;
-        return named?.label ?? formatNumber(value);
-      };
-      return `${control.label} ${words(values(there)[control.field])} instead of ${words(values(here)[control.field])}`;
-    })
-    .join(", ");
+  /** Where others played them one by one, or the server began anew, two that play are not in step. */
+  private keepTogether(apart: number): void {
+    const { controller, mayChange } = this.first;
+    const playing = [controller, this.controller].every(({ session }) => session.value?.state === SessionState.PLAYING);
+    this.apart = playing && mayChange() && apart > leastApart && apart < mostApart ? this.apart + 1 : 0;
+    if (this.apart < looksApart) return;
+    this.apart = 0;
+    void controller.gather();
+  }
 }

@@ -5,9 +5,10 @@ import { Backoff } from "./backoff";
 import type { Clock } from "./clock";
 import { type Body, decodeBody } from "./codec";
 import type { Camera } from "./gen/phrenic/v1/control_pb";
-import { type AckFramesResponse, Codec, type Frame } from "./gen/phrenic/v1/frames_pb";
+import { type AckFramesResponse, Codec, type Frame, type GetBasisResponse } from "./gen/phrenic/v1/frames_pb";
 import type { CompileReport } from "./gen/phrenic/v1/report_pb";
 import type { Session } from "./gen/phrenic/v1/session_pb";
+import { Learner } from "./learner";
 
 /** The state of the connection, as people see it. */
 export type Link =
@@ -21,6 +22,8 @@ export interface Sink {
   /** `fresh` is the first word of a connection: a restarted server counts revisions from the start again. */
   session(session: Session, fresh: boolean): void;
   frame(frame: Frame): void;
+  /** Shapes that later frames are put together from. */
+  basis(basis: GetBasisResponse): void;
   /** Where the one who controls looks from. */
   camera?(camera: Camera): void;
   /** What the server said to an acknowledgement, which was sent and answered at these times [ms]. */
@@ -48,6 +51,7 @@ export class Connection {
   private sceneHash: string | undefined;
   private anew = new AbortController();
   private exact = false;
+  private codec = Codec.PREDICTED;
 
   constructor(
     private readonly api: Api,
@@ -80,6 +84,13 @@ export class Connection {
   setExact(exact: boolean): void {
     if (exact === this.exact) return;
     this.exact = exact;
+    this.anew.abort();
+  }
+
+  /** Asks for frames in this form. */
+  setCodec(codec: Codec): void {
+    if (codec === this.codec) return;
+    this.codec = codec;
     this.anew.abort();
   }
 
@@ -133,14 +144,22 @@ export class Connection {
 
   private async watchOnce(signal: AbortSignal): Promise<never> {
     const names = { sessionId: this.sessionId, watchId: newWatchId() };
+    const learner = new Learner(
+      () => this.api.frames.getBasis({ sessionId: this.sessionId }, { signal, timeoutMs: patience }),
+      (basis) => this.sink.basis(basis),
+    );
     const acknowledger = new Acknowledger(
-      (sequence) => this.api.frames.ackFrames({ ...names, sequence }, { signal, timeoutMs: patience }),
+      (sequence) =>
+        this.api.frames.ackFrames({ ...names, sequence, basisEpoch: learner.epoch }, { signal, timeoutMs: patience }),
       this.clock,
       signal,
-      (response, sent, at) => this.sink.acknowledged(response, sent, at),
+      (response, sent, at) => {
+        this.sink.acknowledged(response, sent, at);
+        learner.offered(response.basisEpoch);
+      },
     );
     const maxErrorMm = this.exact ? exactError : undefined;
-    const request = { ...names, codec: Codec.PREDICTED, maxUnackedFrames, maxErrorMm };
+    const request = { ...names, codec: this.codec, maxUnackedFrames, maxErrorMm };
     for await (const { event } of this.api.frames.watchFrames(request, { signal })) {
       this.backoff.reset();
       this.sink.link({ kind: "live" });

@@ -16,6 +16,9 @@ type ParameterValues = Omit<MessageInitShape<typeof ParametersSchema>, "$typeNam
 /** How fast to play: simulated seconds a second, or as fast as the machine can. */
 export type Speed = number | "fastest";
 
+/** Farther apart two sessions do not find together by themselves [s]: the server's limit, too. */
+const mostApart = 2;
+
 /** What a viewer asks of one session; each answer is shown at once, each refusal in the server's words. */
 export class Controller {
   readonly session = new Signal<Session | undefined>(undefined);
@@ -63,20 +66,29 @@ export class Controller {
     this.session.set({ ...known, control });
   }
 
+  /** With a companion each waits for the other where it gets ahead. */
   play(speed: Speed): Promise<void> {
-    void this.companion?.play(speed);
-    const pace = speed === "fastest" ? { asFastAsPossible: true } : { speed };
-    return this.ask(() => this.api.sessions.playSession({ sessionId: this.sessionId, ...pace }));
+    void this.companion?.playInStep(speed, this.sessionId);
+    return this.playInStep(speed, this.companion?.sessionId);
   }
 
-  pause(): Promise<void> {
-    void this.companion?.pause();
-    return this.ask(() => this.api.sessions.pauseSession({ sessionId: this.sessionId }));
+  /** With a companion both come to rest at the same instant. */
+  async pause(): Promise<void> {
+    await Promise.all([this.pauseAlone(), this.companion?.pauseAlone()]);
+    await this.meet();
   }
 
-  step(ticks: number): Promise<void> {
-    void this.companion?.step(ticks);
-    return this.ask(() => this.api.sessions.stepSession({ sessionId: this.sessionId, ticks: BigInt(ticks) }));
+  /** Two that play and have come apart stand still where the one behind has caught up, and go on in step. */
+  async gather(): Promise<void> {
+    const speed = this.pace;
+    await this.pause();
+    await this.play(speed);
+  }
+
+  /** With a companion both have stepped as far in the end, also where one was still at its last steps. */
+  async step(ticks: number): Promise<void> {
+    await Promise.all([this.stepAlone(ticks), this.companion?.stepAlone(ticks)]);
+    await this.meet();
   }
 
   reset(): Promise<void> {
@@ -137,23 +149,67 @@ export class Controller {
     return this.noted(() => this.send({}, preset));
   }
 
+  /** Another session that stands where this one stands, playing where this one plays; nothing where there is none. */
+  async fork(): Promise<string | undefined> {
+    const copy = await this.copy();
+    if (copy !== undefined && this.playing) await copy.play(this.pace);
+    return copy?.sessionId;
+  }
+
   /**
-   * Another session that stands where this one stands, by a preset where one is named, playing where this one plays;
-   * nothing where there is none.
+   * A fork to be shown beside this session, by a preset where one is named: both start from one instant, and play in step
+   * where this one plays.
    */
-  async fork(preset = ""): Promise<string | undefined> {
-    const { sessions } = this.api;
+  async forkBeside(preset = ""): Promise<string | undefined> {
+    const [playing, speed] = [this.playing, this.pace];
+    if (playing) await this.pause();
+    const copy = await this.copy();
+    if (copy !== undefined && preset !== "") await copy.usePreset(preset);
+    this.companion = copy;
+    if (playing) await this.play(speed);
+    return copy?.sessionId;
+  }
+
+  private get playing(): boolean {
+    return this.session.value?.state === SessionState.PLAYING;
+  }
+
+  /** How fast it plays, or would. */
+  private get pace(): Speed {
+    return this.session.value?.speed || "fastest";
+  }
+
+  private async copy(): Promise<Controller | undefined> {
     try {
-      const sessionId = (await sessions.forkSession({ sessionId: this.sessionId })).session?.id;
-      const playing = this.session.value?.state === SessionState.PLAYING;
-      if (sessionId !== undefined && preset !== "")
-        await sessions.updateParameters({ sessionId, parameters: {}, preset });
-      if (sessionId !== undefined && playing) await sessions.playSession({ sessionId });
-      return sessionId;
+      const { session } = await this.api.sessions.forkSession({ sessionId: this.sessionId });
+      return session === undefined ? undefined : new Controller(this.api, session.id, this.clock);
     } catch (error) {
       this.notice.set(errorText(error));
       return undefined;
     }
+  }
+
+  private playInStep(speed: Speed, inStepWith = ""): Promise<void> {
+    const pace = speed === "fastest" ? { asFastAsPossible: true } : { speed };
+    return this.ask(() => this.api.sessions.playSession({ sessionId: this.sessionId, inStepWith, ...pace }));
+  }
+
+  private pauseAlone(): Promise<void> {
+    return this.ask(() => this.api.sessions.pauseSession({ sessionId: this.sessionId }));
+  }
+
+  private stepAlone(ticks: number): Promise<void> {
+    return this.ask(() => this.api.sessions.stepSession({ sessionId: this.sessionId, ticks: BigInt(ticks) }));
+  }
+
+  /** Of two that stand the one behind goes on to where the other is, where that is near. */
+  private async meet(): Promise<void> {
+    const { companion } = this;
+    const apart = (companion?.session.value?.time ?? 0) - (this.session.value?.time ?? 0);
+    if (companion === undefined || Math.abs(apart) > mostApart) return;
+    const behind = apart > 0 ? this : companion;
+    const ticks = Math.round(Math.abs(apart) / (behind.session.value?.parameters?.timeStep ?? Infinity));
+    if (ticks > 0) await behind.stepAlone(ticks);
   }
 
   private setAll(values: Values | undefined): void {

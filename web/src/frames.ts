@@ -1,7 +1,8 @@
 import { blend } from "./blend";
 import type { Body, FrameArrays } from "./codec";
 import { FrameDecoder } from "./frame_decoder";
-import type { AckFramesResponse, Frame } from "./gen/phrenic/v1/frames_pb";
+import type { AckFramesResponse, Frame, GetBasisResponse } from "./gen/phrenic/v1/frames_pb";
+import { Past } from "./past";
 import { Playout } from "./playout";
 import { SteadyBeat } from "./steady_beat";
 
@@ -34,6 +35,8 @@ export interface Moment {
 /** The newest frame, the moment that the picture shows, and the rate over the last second. */
 export class Frames {
   private newest: Taken | undefined;
+  private readonly past = new Past();
+  private again: Taken | undefined;
   private shown: Moment | undefined;
   private playout = new Playout<Taken>();
   private readonly steady = new SteadyBeat();
@@ -45,7 +48,8 @@ export class Frames {
 
   /** Forgets everything: another scene, or another server. */
   start(bodies: Body[]): void {
-    this.newest = this.shown = undefined;
+    this.newest = this.shown = this.again = undefined;
+    this.past.clear();
     this.playout.clear();
     this.decoder = new FrameDecoder(bodies);
     this.arrivals = [];
@@ -55,11 +59,17 @@ export class Frames {
   receive(frame: Frame, now: number): void {
     const before = this.newest?.frame;
     this.newest = { frame, arrays: undefined };
+    this.past.add(frame);
     // Another run of the session does not go on from the one before.
     if (before !== undefined && frame.time < before.time) this.playout.clear();
     this.playout.receive(this.newest, milliseconds(frame.unixNanos), now);
     this.arrivals.push(now);
     this.forget(now);
+  }
+
+  /** Frames that are put together from these shapes may come from now on. */
+  learn(basis: GetBasisResponse): void {
+    this.decoder.learn(basis);
   }
 
   /** An acknowledgement, sent and answered at these times [ms], tells the server's clock half way between. */
@@ -71,6 +81,26 @@ export class Frames {
 
   get frame(): Frame | undefined {
     return this.newest?.frame;
+  }
+
+  /** From the oldest frame that can be looked back to, to the newest [s]. */
+  get span(): { start: number; end: number } {
+    return this.past.span;
+  }
+
+  /** The earlier frame that the picture shows; nothing where it shows the present. */
+  get lookedAt(): Frame | undefined {
+    return this.past.lookedAt;
+  }
+
+  /** Shows the moment `time` [s] again from now on, or the present. */
+  lookBack(time: number | undefined): void {
+    this.past.look(time);
+  }
+
+  /** The time of the frame before, or after, the one that is shown; nothing where that is the present. */
+  neighbour(by: -1 | 1): number | undefined {
+    return this.past.neighbour(by);
   }
 
   /** Of the newest frame. */
@@ -99,9 +129,17 @@ export class Frames {
   private due(now: number): Moment | undefined {
     const between = this.playout.at(now);
     if (this.newest === undefined || between === undefined) return undefined;
+    const { lookedAt } = this.past;
+    if (lookedAt !== undefined) return this.once(lookedAt);
     const { before, after, part } = this.smooth ? between : { before: this.newest, after: this.newest, part: 0 };
     const arrays = blend(this.decode(before), this.decode(after), part);
     return { time: before.frame.time + part * (after.frame.time - before.frame.time), arrays };
+  }
+
+  /** A frame that is looked at again is decoded again. */
+  private once(frame: Frame): Moment {
+    if (this.again?.frame !== frame) this.again = { frame, arrays: undefined };
+    return { time: frame.time, arrays: this.decode(this.again) };
   }
 
   private decode(taken: Taken): FrameArrays {

@@ -1,4 +1,5 @@
 import { createGrpcWebTransport } from "@connectrpc/connect-web";
+import { Access, identifying, takeLink } from "./access";
 import { createApi, errorText } from "./api";
 import { App } from "./app";
 import { chooseSession } from "./choose_session";
@@ -6,6 +7,7 @@ import { systemClock } from "./clock";
 import { Chooser } from "./panels/chooser";
 import { Identity, signing } from "./identity";
 import { make, place } from "./panels/dom";
+import { signIn } from "./panels/sign_in";
 import { recipeOf, rerun } from "./permalink";
 
 // What is sent while the page goes outlives it: a vertex that is let go of.
@@ -16,7 +18,8 @@ const carry: typeof fetch = (input, init) => fetch(input, { ...init, keepalive: 
 
 // The page and the services come from one address.
 const identity = new Identity(localStorage);
-const interceptors = [signing(identity)];
+const access = new Access(localStorage);
+const interceptors = [signing(identity), identifying(access)];
 const api = createApi(createGrpcWebTransport({ baseUrl: location.origin, fetch: carry, interceptors }));
 
 function address(sessionId: string): string {
@@ -35,6 +38,7 @@ function say(error?: unknown): void {
 }
 
 const here = new URL(location.href);
+takeLink(here, access);
 
 /** The session that the address names, or runs again what it tells how to. */
 async function find(): Promise<string> {
@@ -45,13 +49,18 @@ async function find(): Promise<string> {
   });
 }
 
+await signIn(api, access, loading);
 const sessionId = await find().catch((error: unknown) => {
   loading.replaceChildren(`This link cannot be run again: ${errorText(error)}. `, start);
   throw error;
 });
 const beside = here.searchParams.get("beside") ?? undefined;
+// Within the page of a course there is the picture and its playback alone.
+const embedded = here.searchParams.has("embed");
+document.body.classList.toggle("embedded", embedded);
 loading.replaceChildren("Loading the scene…");
-history.replaceState(null, "", beside === undefined ? address(sessionId) : here.search);
+history.replaceState(null, "", beside === undefined && !embedded ? address(sessionId) : here.search);
+place("whole").setAttribute("href", address(sessionId));
 try {
   const subject = { sessionId, beside, open: (query: string) => location.assign(query) };
   new App(api, subject, chooser, identity, systemClock).start();

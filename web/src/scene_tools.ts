@@ -2,20 +2,21 @@ import type { Body, FrameArrays } from "./codec";
 import { ColorScale, topFor } from "./color_scale";
 import { Coloring } from "./coloring";
 import type { Comparisons } from "./comparison";
-import { Expiration } from "./expiration";
 import { Following } from "./following";
 import { forceOf } from "./fields";
 import type { Forces } from "./forces";
 import type { Frame } from "./gen/phrenic/v1/frames_pb";
+import { type GhostKind, Ghosts } from "./ghosts";
 import type { Looks } from "./looks";
 import { Annotations } from "./viewer/annotations";
-import { appearancePanel, type GhostKind } from "./panels/appearance";
+import { appearancePanel } from "./panels/appearance";
 import { coloringCard } from "./panels/coloring_card";
 import { make } from "./panels/dom";
 import { OrientationCube } from "./panels/orientation_cube";
 import { PickCard } from "./panels/pick_card";
 import { Signal } from "./signal";
 import type { OverlayKind } from "./viewer/body_view";
+import type { Cut } from "./viewer/cut";
 import type { Compass } from "./viewer/rig";
 import type { Viewer } from "./viewer/viewer";
 
@@ -29,10 +30,13 @@ export class SceneTools {
   readonly annotations: Annotations;
   readonly force = make("output", { id: "force", hidden: true });
   readonly coloring: Coloring;
-  private readonly overlays = new Signal<ReadonlySet<OverlayKind>>(new Set());
+  /** What is shown of every picture, also of one beside. */
+  readonly overlays = new Signal<ReadonlySet<OverlayKind>>(new Set());
+  readonly labels = new Signal(false);
+  readonly cut = new Signal<Cut>({ kind: "none", part: 0.5, flipped: false });
+  readonly ghost = new Signal<GhostKind>("none");
   private readonly pickCard: PickCard;
-  private readonly expiration = new Expiration();
-  private ghost: GhostKind = "none";
+  private readonly ghosts: Ghosts;
   private bodies: Body[] = [];
   private moving: Body[] = [];
   private time = 0;
@@ -45,27 +49,29 @@ export class SceneTools {
     private readonly forces: Forces,
   ) {
     this.coloring = new Coloring(forces);
+    this.ghosts = new Ghosts(viewer, arrays, this.ghost);
     this.pickCard = new PickCard(this.following, forces.onVertex);
     this.annotations = new Annotations(viewer);
     this.cube = new OrientationCube((view) => viewer.go(view));
     this.cards = [coloringCard(this.coloring), this.pickCard.element];
-    const labels = new Signal(false);
+    const { labels, ghost } = this;
     this.panel = appearancePanel({
       looks,
       labels,
+      ghost,
       forceKinds: forces.kinds,
       overlays: this.overlays,
       coloring: this.coloring,
       setCut: (cut) => {
         const place = viewer.setCut(cut);
         this.annotations.start(looks.all.value);
+        this.cut.set(cut);
         return place;
       },
-      setGhost: (kind) => this.setGhost(kind),
     });
     labels.subscribe((on) => this.annotations.setLabels(on));
     looks.all.subscribe((all) => this.annotations.start(all));
-    this.overlays.subscribe((shown) => this.showOverlays(shown));
+    this.overlays.subscribe((shown) => viewer.showOverlays(shown));
     this.coloring.kind.subscribe(() => this.note());
     this.coloring.scale.subscribe(() => this.paint());
     comparisons.result.subscribe(() => this.paint());
@@ -85,15 +91,15 @@ export class SceneTools {
     this.coloring.start(this.moving);
     void this.forces.start(this.moving[0]?.name);
     this.following.clear();
-    this.setGhost(this.ghost === "now" || this.ghost === "expiration" ? "none" : this.ghost);
+    if (this.ghost.value === "now") this.ghost.set("none");
+    this.ghosts.start(this.moving);
     // Which edges are rigid is what a diagram is about.
     if (diagram && bodies.some(({ rigidLinks }) => rigidLinks.length > 0))
       this.overlays.set(new Set([...this.overlays.value, "links"]));
   }
 
   receive(frame: Frame): void {
-    const turned = this.expiration.receive(frame.breath);
-    if (turned && this.ghost === "expiration") this.viewer.setGhost(this.arrays(), this.moving);
+    this.ghosts.receive(frame);
   }
 
   /** A picture of the moment `time` [s] is about to be drawn from `arrays`. */
@@ -124,6 +130,11 @@ export class SceneTools {
     void this.forces.ask({ vertex, kind, bodies: kind === undefined ? [] : this.coloring.names }, seen);
   }
 
+  /** What is known of the forces is of another moment than the one that is shown. */
+  forgetForces(): void {
+    this.forces.clear();
+  }
+
   /** Words that follow the picture a few times a second. */
   show(): void {
     this.pickCard.show(this.arrays());
@@ -137,11 +148,6 @@ export class SceneTools {
     this.force.style.transform = `translate(${x + 14}px, ${y + 14}px)`;
   }
 
-  private setGhost(kind: GhostKind): void {
-    this.ghost = kind;
-    this.viewer.setGhost(kind === "now" ? this.arrays() : kind === "rest" ? "rest" : undefined, this.moving);
-  }
-
   /** A comparison's colours come before those of a field. */
   private paint(): void {
     const comparison = this.comparisons.result.value;
@@ -153,10 +159,5 @@ export class SceneTools {
   private mark(): void {
     const arrays = this.arrays();
     if (arrays !== undefined) this.viewer.mark(this.following.markers(arrays));
-  }
-
-  private showOverlays(shown: ReadonlySet<OverlayKind>): void {
-    for (const kind of ["wireframe", "links", "lines", "attachments"] as const)
-      this.viewer.setOverlay(kind, shown.has(kind));
   }
 }

@@ -4,7 +4,7 @@ import { type Study, StudyState } from "./gen/phrenic/v1/study_pb";
 import type { Parameters } from "./gen/phrenic/v1/parameters_pb";
 import { Signal } from "./signal";
 
-export type StudyKind = "error" | "stability" | "cost";
+export type StudyKind = "error" | "stability" | "cost" | "streaming";
 
 /** The studies of the server: asks for them, follows those that are not done, cancels. */
 export class Studies {

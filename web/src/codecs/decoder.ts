@@ -1,4 +1,5 @@
 import { Codec } from "../gen/phrenic/v1/frames_pb";
+import { basisDecoder } from "./basis";
 import { planesDecoder } from "./planes";
 import { predictedDecoder } from "./predicted";
 import { rawDecoder } from "./raw";
@@ -12,6 +13,7 @@ const decoders = new Map<Codec, (shape: RestShape) => Decoder>([
   [Codec.RAW, rawDecoder],
   [Codec.PLANES, planesDecoder],
   [Codec.PREDICTED, predictedDecoder],
+  [Codec.BASIS, basisDecoder],
 ]);
 
 export function makeDecoder(codec: Codec, shape: RestShape): Decoder {

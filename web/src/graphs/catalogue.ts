@@ -12,6 +12,8 @@ export interface Curve {
 export interface GraphSpec {
   id: string;
   title: string;
+  /** What it is, where its title leaves that open. */
+  help?: string;
   unit: string;
   curves: Curve[];
   /** Of a loop: what runs to the right, and its unit. */
@@ -58,7 +60,9 @@ function others(frame: Frame): GraphSpec[] {
 /** Measures of one unit in one graph, or in one each where they have little in common but the unit. */
 function byUnit({ measures }: Frame, unit: string, title: string, together: boolean): GraphSpec[] {
   const [familiar, factor] = familiarUnit(unit);
-  const curves = measures.filter((each) => each.unit === unit).map(({ name }) => curve(measureKey(name), name, factor));
+  const curves = measures
+    .filter((each) => each.unit === unit && !isDomeHeight(each))
+    .map(({ name }) => curve(measureKey(name), name, factor));
   if (curves.length === 0) return [];
   if (together && curves.length > 1)
     return [{ id: title.toLowerCase(), title: `${title}s`.replace(/ys$/, "ies"), unit: familiar, curves }];
@@ -78,19 +82,31 @@ function loop({ measures }: Frame): GraphSpec[] {
 }
 
 /** What M-mode ultrasound shows: how far each dome has come down. */
-function domes({ probes }: Frame): GraphSpec[] {
-  const curves = probes.filter(isDome).map(({ name }) => curve(probeKey(name), name, -1000));
-  return curves.length === 0 ? [] : [{ id: "domes", title: "M-mode: descent", unit: "mm", curves }];
+function domes(frame: Frame): GraphSpec[] {
+  const curves = domesOf(frame).map(({ key, name }) => curve(key, name, -1000));
+  return curves.length === 0 ? [] : [{ id: "domes", title: "M-mode: descent", help: domeHelp, unit: "mm", curves }];
 }
 
 function probes({ probes }: Frame): GraphSpec[] {
   const curves = probes.filter((probe) => !isDome(probe)).map(({ name }) => curve(probeKey(name), name, 1000));
-  return curves.length === 0 ? [] : [{ id: "probes", title: "Probes: upward", unit: "mm", curves }];
+  return curves.length === 0 ? [] : [{ id: "probes", title: "Probes: upward", help: probeHelp, unit: "mm", curves }];
 }
 
-export function isDome({ name }: { name: string }): boolean {
-  return name.includes("dome");
+/** What a dome's descent is: with `phrenic physiology` it is the same. */
+export const domeHelp =
+  "How far the highest point of each side is below where it was at rest, whichever point that is now";
+export const probeHelp = "How far one vertex each, always the same, is above where it rests";
+
+/** How high each dome is above its rest [m], by the scene's measures or, where it has none, its probes of that name. */
+export function domesOf({ measures, probes }: Frame): { key: string; name: string; height: number }[] {
+  return [
+    ...measures.filter(isDomeHeight).map(({ name, value }) => ({ key: measureKey(name), name, height: value })),
+    ...probes.filter(isDome).map(({ name, dz }) => ({ key: probeKey(name), name, height: dz })),
+  ];
 }
+
+const isDome = ({ name }: { name: string }) => /\bdome\b/.test(name);
+const isDomeHeight = ({ name, unit }: { name: string; unit: string }) => unit === "m" && /\bdome$/.test(name);
 
 function curve(key: string, name: string, factor: number): Curve {
   return { key, name, factor };

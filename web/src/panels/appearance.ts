@@ -1,5 +1,6 @@
 import type { Coloring } from "../coloring";
 import { type FieldKind, fields } from "../fields";
+import type { GhostKind } from "../ghosts";
 import { wordsOf } from "../forces";
 import type { Look, Looks } from "../looks";
 import type { Signal } from "../signal";
@@ -7,9 +8,7 @@ import type { OverlayKind } from "../viewer/body_view";
 import type { Cut } from "../viewer/cut";
 import { cutRows } from "./cut_rows";
 import { make, section, switchRow } from "./dom";
-
-/** What else is shown, as it was at another moment. */
-export type GhostKind = "none" | "rest" | "expiration" | "now";
+import { projectorRow } from "./projector";
 
 /** What the view can be told. */
 export interface Appearance {
@@ -19,7 +18,7 @@ export interface Appearance {
   labels: Signal<boolean>;
   forceKinds: Signal<string[]>;
   setCut(cut: Cut): number;
-  setGhost(kind: GhostKind): void;
+  ghost: Signal<GhostKind>;
 }
 
 const overlayRows: [OverlayKind, string, string][] = [
@@ -39,8 +38,9 @@ const ghosts: [GhostKind, string][] = [
 /** How this viewer sees the scene: colours, transparency, cut, ghost and what is drawn over it. */
 export function appearancePanel(view: Appearance): HTMLElement {
   const ghost = choice("ghost", "Ghost", "The moving tissue as it was at another moment", ghosts, (kind) =>
-    view.setGhost(kind),
+    view.ghost.set(kind),
   );
+  view.ghost.subscribe((kind) => (ghost.querySelector("select")!.value = kind));
   const labels = switchRow("Show names", "Names of the layers beside them.", (on) => view.labels.set(on));
   labels.input.id = "show-labels";
   const rows = overlayRows.map(([kind, label, help]) => overlayRow(kind, label, help, view.overlays));
@@ -54,6 +54,7 @@ export function appearancePanel(view: Appearance): HTMLElement {
     ...cut,
     ...rows,
     labels.row,
+    projectorRow(),
   );
 }
 

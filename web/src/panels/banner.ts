@@ -22,13 +22,26 @@ export function banners(controller: Controller, link: Signal<Link>, chooseSessio
     lost.hidden = value.kind !== "lost";
     if (value.kind === "lost") lost.replaceChildren(...loss(value.reason, value.missing, chooseSession));
   });
+  const unsaved = banner("status", "unsaved");
+  controller.session.subscribe((session) => {
+    const why = session?.notSaved ?? "";
+    if (unsaved.textContent === unsavedText(why)) return;
+    unsaved.hidden = why === "";
+    unsaved.replaceChildren(make("p", {}, unsavedText(why)));
+  });
   const notice = banner("status", "notice");
   controller.notice.subscribe((text) => {
     notice.hidden = text === "";
     const dismiss = make("button", { type: "button", onclick: () => controller.notice.set("") }, "Dismiss");
     notice.replaceChildren(make("p", {}, sentence(text)), dismiss);
   });
-  return [diverged, lost, notice];
+  return [diverged, lost, unsaved, notice];
+}
+
+function unsavedText(why: string): string {
+  return why === ""
+    ? ""
+    : `The last changes are not saved: ${why}. The session runs on, and is saved once that is mended.`;
 }
 
 function banner(role: string, name: string): HTMLElement {

@@ -20,7 +20,7 @@ export function compareWith(
   list.onchange = async () => {
     if (companion !== undefined) return companion.usePreset(list.value);
     list.disabled = true;
-    const beside = await controller.fork(list.value);
+    const beside = await controller.forkBeside(list.value);
     list.disabled = false;
     if (beside !== undefined) open(`?${new URLSearchParams({ session: sessionId, beside })}`);
     list.value = "";

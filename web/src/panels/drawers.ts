@@ -10,8 +10,10 @@ const roomForGraphsBesideTwo = "(min-width: 1600px) and (min-height: 560px)";
  * more room than one.
  */
 export function drawers(folded: () => void, two: boolean): { graphs(): void; panel(): void } {
-  const panel = drawer("panel", matchMedia(roomForControls).matches, folded);
-  const graphs = drawer("graphs", matchMedia(two ? roomForGraphsBesideTwo : roomForGraphs).matches, folded);
+  const alone = document.body.classList.contains("embedded");
+  const open = (room: string) => !alone && matchMedia(room).matches;
+  const panel = drawer("panel", open(roomForControls), folded);
+  const graphs = drawer("graphs", open(two ? roomForGraphsBesideTwo : roomForGraphs), folded);
   return { graphs, panel };
 }
 

@@ -25,7 +25,7 @@ export class GraphTile {
     const save = ["SVG", "CSV"].map((kind) => this.saveButton(kind as "SVG" | "CSV"));
     // The one curve of a graph needs no name beside the graph's own.
     const alone = keys.length === 1;
-    const title = make("h3", {}, this.title(), ...(alone ? this.readings : []));
+    const title = make("h3", { title: spec.help ?? "" }, this.title(), ...(alone ? this.readings : []));
     const head = make("header", {}, title, make("div", { className: "save" }, ...save));
     this.element = make("section", { className: "tile", ariaLabel: spec.title }, head, this.plot.element);
     if (!alone) this.element.append(make("div", { className: "keys" }, ...keys));

@@ -17,6 +17,7 @@ export interface Sharing {
 export class ShareDialog {
   readonly element = make("dialog", { className: "chooser", id: "share", ariaLabel: "Share and copy" });
   private readonly session = linkRow("share-session", "This session, for others to join");
+  private readonly frame = linkRow("share-embed", "For the page of a course, as HTML");
   private readonly permalink = linkRow("share-permalink", "This moment, run again by whoever opens it");
 
   constructor(private readonly sharing: Sharing) {
@@ -28,6 +29,8 @@ export class ShareDialog {
       this.session.row,
       this.permalink.row,
       make("p", { className: "faint" }, rerunWords),
+      this.frame.row,
+      make("p", { className: "faint" }, "The server lets pages of an origin show it that --allow-origin names."),
       make("h2", {}, "Copy"),
       make("ul", {}, ...this.copies()),
     );
@@ -38,6 +41,8 @@ export class ShareDialog {
     const session = controller.session.value;
     const base = `${location.origin}${location.pathname}`;
     this.session.entry.value = `${base}?${new URLSearchParams({ session: controller.sessionId })}`;
+    const embedded = `${base}?${new URLSearchParams({ session: controller.sessionId })}&amp;embed`;
+    this.frame.entry.value = `<iframe src="${embedded}" width="720" height="540" title="Phrenic"></iframe>`;
     if (session !== undefined) this.permalink.entry.value = base + permalinkOf(session, report.value?.sceneHash ?? "");
     this.element.showModal();
   }
@@ -62,7 +67,7 @@ export class ShareDialog {
         "A copy beside this one, to set differently; one camera.",
         "Compare",
         async () => {
-          const id = await controller.fork();
+          const id = await controller.forkBeside();
           if (id !== undefined) open(`?${new URLSearchParams({ session: id, beside: here })}`);
         },
       ),

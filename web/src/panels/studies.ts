@@ -7,6 +7,11 @@ const kinds: [StudyKind, string, string][] = [
   ["error", "Error against run time", "Every integrator over a ladder of time steps, against an independent reference"],
   ["stability", "Stability", "A map over stiffness and time step, and a suite of extreme cases"],
   ["cost", "Cost", "What each part of the scene costs, and what leaving it out saves"],
+  [
+    "streaming",
+    "Error against bandwidth",
+    "What a frame of the scene takes on the line, by every codec and error bound",
+  ],
 ];
 
 /** Studies of the session's scene with its parameters: started, followed, cancelled and shown from here. */

@@ -6,7 +6,12 @@ import { type Control, parameterControls } from "../schema";
 import { formatDigits } from "./format";
 import { nameOf } from "./names";
 
-const kinds = { error: "Error against run time", stability: "Stability", cost: "Cost" };
+const kinds = {
+  error: "Error against run time",
+  stability: "Stability",
+  cost: "Cost",
+  streaming: "Error against bandwidth",
+};
 
 /** "Cost: thorax – Phrenic" */
 export function titleOf(study: Study): string {

@@ -6,6 +6,8 @@ const whole: Record<string, string> = {
   cpu_per_second: "CPU [s per s]",
   real_time: "Faster than real time",
   pareto: "On front",
+  bytes_per_frame: "Bytes per frame",
+  mbit_per_second: "Mbit/s at 30 fps",
   order: "Measured order",
   case: "Case",
 };

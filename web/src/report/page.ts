@@ -6,6 +6,7 @@ import { costParts } from "./cost_page";
 import { errorParts } from "./error_page";
 import { header, titleOf } from "./header";
 import { stabilityParts } from "./stability_page";
+import { streamingParts } from "./streaming_page";
 
 /** Fills the page with the study that `json` (proto3 JSON of phrenic.v1.Study) holds. */
 export function showStudy(page: HTMLElement, json: string): void {
@@ -31,7 +32,8 @@ export function contentsOf(study: Study): HTMLElement[] {
 function partsOf({ result }: StudyResult): HTMLElement[] {
   if (result.case === "error") return errorParts(result.value);
   if (result.case === "stability") return stabilityParts(result.value);
-  return result.case === "cost" ? costParts(result.value) : [];
+  if (result.case === "cost") return costParts(result.value);
+  return result.case === "streaming" ? streamingParts(result.value) : [];
 }
 
 function nothing({ problem }: Study): HTMLElement {

@@ -13,7 +13,7 @@ const letter = 7.5;
 
 /** What is written over the picture: names of the layers, and of a flat scene the axes of its plane. */
 export class Annotations {
-  readonly element = svg("svg", { id: "annotations" });
+  readonly element = svg("svg", { class: "annotations" });
   private readonly names = svg("g", { class: "names" });
   private readonly axes = svg("g", { class: "axes" });
   private anchors: { view: BodyView; vertex: number; look: Look }[] = [];

@@ -10,7 +10,8 @@ import { tendonWeights } from "./tendon";
 import { ThickLines } from "./thick_lines";
 
 /** What can be drawn over a body. */
-export type OverlayKind = "wireframe" | "links" | "lines" | "attachments";
+export const overlayKinds = ["wireframe", "links", "lines", "attachments"] as const;
+export type OverlayKind = (typeof overlayKinds)[number];
 
 /**
  * One body on the screen. Everything that lies on its vertices shares one position buffer, so that a frame is one copy

@@ -1,6 +1,6 @@
 import * as THREE from "three";
 import type { Body, FrameArrays } from "../codec";
-import { BodyView, type OverlayKind } from "./body_view";
+import { BodyView, type OverlayKind, overlayKinds } from "./body_view";
 import { letClick, type VertexRef } from "./clicking";
 import { type Cut, placeOf, planeOf } from "./cut";
 import { Ghost } from "./ghost";
@@ -43,7 +43,7 @@ export class Viewer {
   private readonly haze = new THREE.Fog("#1f262d");
   private readonly renderer: THREE.WebGLRenderer;
   private views: BodyView[] = [];
-  private readonly overlays = new Set<OverlayKind>();
+  private overlays: ReadonlySet<OverlayKind> = new Set();
   private readonly sharpness = new Sharpness(Math.min(devicePixelRatio, 2));
   private readonly ghost = new Ghost();
   private readonly markers = new Markers();
@@ -92,7 +92,7 @@ export class Viewer {
     const diagram = verticesOf(bodies) <= mostOfADiagram;
     this.views = bodies.map((body) => new BodyView(body, diagram));
     for (const view of this.views) this.scene.add(view.group);
-    for (const kind of this.overlays) this.setOverlay(kind, true);
+    this.showOverlays(this.overlays);
     const sample = sampleOf(bodies);
     this.box = new THREE.Box3().setFromPoints(sample);
     this.setCut(this.cut);
@@ -126,10 +126,9 @@ export class Viewer {
     this.refresh();
   }
 
-  setOverlay(kind: OverlayKind, on: boolean): void {
-    if (on) this.overlays.add(kind);
-    else this.overlays.delete(kind);
-    for (const view of this.views) view.setOverlay(kind, on);
+  showOverlays(shown: ReadonlySet<OverlayKind>): void {
+    this.overlays = shown;
+    for (const view of this.views) for (const kind of overlayKinds) view.setOverlay(kind, shown.has(kind));
     this.refresh();
   }
 

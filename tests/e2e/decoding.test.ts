@@ -1,0 +1,94 @@
+import { createGrpcWebTransport } from "@connectrpc/connect-web";
+import { setTimeout as sleep } from "node:timers/promises";
+import { afterAll, beforeAll, expect, test } from "vitest";
+import { createApi } from "../../web/src/api";
+import { systemClock } from "../../web/src/clock";
+import { type Body, type FrameArrays } from "../../web/src/codec";
+import { Connection } from "../../web/src/connection";
+import { FrameDecoder } from "../../web/src/frame_decoder";
+import { Codec, type Frame } from "../../web/src/gen/phrenic/v1/frames_pb";
+import { Server } from "./server";
+
+let server: Server;
+beforeAll(async () => void (server = await Server.start()));
+afterAll(() => server?.kill());
+
+const names = { [Codec.PLANES]: "planes", [Codec.PREDICTED]: "predicted", [Codec.BASIS]: "basis" };
+type Coded = keyof typeof names;
+
+/** Largest distance of a vertex from its own [mm]. */
+function worst({ positions: a }: FrameArrays, { positions: b }: FrameArrays): number {
+  let largest = 0;
+  for (let i = 0; i < a.length; i += 3) {
+    largest = Math.max(largest, Math.hypot(a[i] - b[i], a[i + 1] - b[i + 1], a[i + 2] - b[i + 2]));
+  }
+  return 1000 * largest;
+}
+
+/** Follows the thorax by one codec until `until` has seen what it wants. */
+async function follow(codec: Codec, until: (frame: Frame, decoder: FrameDecoder) => boolean): Promise<void> {
+  const api = createApi(createGrpcWebTransport({ baseUrl: server.url }));
+  let decoder = new FrameDecoder([]);
+  let done = false;
+  const sink = {
+    link: () => {},
+    session: () => {},
+    acknowledged: () => {},
+    scene: (bodies: Body[]) => void (decoder = new FrameDecoder(bodies)),
+    basis: (basis: Parameters<FrameDecoder["learn"]>[0]) => decoder.learn(basis),
+    frame: (frame: Frame) => void (done ||= until(frame, decoder)),
+  };
+  const connection = new Connection(api, "thorax", sink, systemClock);
+  connection.setCodec(codec);
+  const running = connection.run();
+  for (const deadline = Date.now() + 60_000; !done && Date.now() < deadline;) await sleep(20);
+  connection.stop();
+  await running;
+  expect(done, "the frames did not come within a minute").toBe(true);
+}
+
+/** CPU time of decoding a frame of that codec [ms], once the engine knows the code. */
+async function decodingTime(codec: Coded): Promise<number> {
+  const frames: Frame[] = [];
+  let decoder = new FrameDecoder([]);
+  await follow(codec, (frame, used) => {
+    decoder = used;
+    if (frame.codec === codec) frames.push(frame);
+    return frames.length === 30;
+  });
+  const pass = () => frames.forEach((frame) => decoder.decode(frame));
+  for (let i = 0; i < 5; i++) pass();
+  const passes = 10;
+  const { user: start } = process.cpuUsage();
+  for (let i = 0; i < passes; i++) pass();
+  return (process.cpuUsage().user - start) / 1000 / passes / frames.length;
+}
+
+// The engine is the browser's. CPU time, as the machine may be shared; frames come sixty times a second.
+test.each([Codec.PLANES, Codec.PREDICTED, Codec.BASIS] as Coded[])("AFrameIsDecodedInTime (%d)", async (codec) => {
+  const time = await decodingTime(codec);
+  console.log(`decoding a frame of thorax, ${names[codec]}: ${time.toFixed(2)} ms of CPU`);
+  expect(time).toBeLessThan(1000 / 60);
+});
+
+test("WhatIsDecodedLiesWithinItsBoundOfTheRawFrame", async () => {
+  const api = createApi(createGrpcWebTransport({ baseUrl: server.url }));
+  // Shapes are known by now; a frame stands still to be compared.
+  await api.sessions.pauseSession({ sessionId: "thorax" });
+  const at = async (codec: Codec) => {
+    let seen: { frame: Frame; arrays: FrameArrays } | undefined;
+    await follow(codec, (frame, decoder) => {
+      seen = { frame, arrays: decoder.decode(frame) };
+      return true;
+    });
+    return seen!;
+  };
+  const raw = await at(Codec.RAW);
+  for (const codec of [Codec.PLANES, Codec.PREDICTED]) {
+    const { frame, arrays } = await at(codec);
+    expect(frame.tick).toBe(raw.frame.tick);
+    expect(frame.codec).toBe(codec);
+    expect(worst(arrays, raw.arrays)).toBeLessThanOrEqual(frame.maxErrorMm);
+    expect(worst(arrays, raw.arrays)).toBeGreaterThan(0);
+  }
+});

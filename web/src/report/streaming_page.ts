@@ -1,0 +1,23 @@
+import { type StreamingTable, StreamingRowSchema } from "../gen/phrenic/v1/study_results_pb";
+import { make } from "../panels/dom";
+import { bandwidth } from "./bandwidth";
+import { formatDigits } from "./format";
+import { tableOf } from "./table";
+
+export function streamingParts(table: StreamingTable): HTMLElement[] {
+  return [
+    make("p", { className: "advice" }, table.advice),
+    make("h2", {}, "What exactness costs on the line"),
+    bandwidth(table),
+    measured(table),
+    make("h2", {}, "Tables"),
+    tableOf("Codecs", StreamingRowSchema, table.rows),
+  ];
+}
+
+function measured({ vertices, frames, basisBytes }: StreamingTable): HTMLElement {
+  const sentence =
+    `${formatDigits(Number(vertices), 9)} vertices, ${frames} frames. The codec "basis" needs its shapes once, ` +
+    `${formatDigits(Number(basisBytes), 9)} bytes; they were made from as many frames before those that were measured.`;
+  return make("section", {}, make("h2", {}, "What was measured"), make("p", {}, sentence));
+}
