@@ -14,8 +14,8 @@ using Folders = std::set<std::string>;
 // What each folder of server/ may include besides itself; "main" is server/main.cc.
 const std::map<std::string, Folders>& Allowed() {
   static const Folders below = {"schema", "mesh", "meshio", "anatomy", "mechanics", "stream", "record"};
-  static const Folders all = {"schema", "mesh",   "meshio", "anatomy", "imaging", "mechanics",
-                              "stream", "record", "store",  "study",   "session", "service"};
+  static const Folders all = {"schema", "mesh",  "meshio",  "anatomy", "imaging", "mechanics", "stream", "record",
+                              "store",  "study", "session", "service", "access",  "settings",  "daemon"};
   static const std::map<std::string, Folders> allowed = {
       {"schema", {}},
       {"mesh", {"schema"}},
@@ -28,7 +28,10 @@ const std::map<std::string, Folders>& Allowed() {
       {"store", {"schema", "mesh", "mechanics"}},
       {"study", below},
       {"session", {"schema", "mesh", "meshio", "anatomy", "mechanics", "stream", "record", "store"}},
+      {"settings", {"schema"}},
+      {"access", {"schema"}},
       {"service", all},
+      {"daemon", all},
       {"main", all},
       {"client", all},
   };
@@ -53,8 +56,8 @@ bool IsGrpc(const std::string& header) {
 }
 
 std::string IncludeFault(const std::string& folder, const std::string& header) {
-  static const Folders with_grpc = {"service", "client", "main"};
-  if (IsGrpc(header)) return with_grpc.contains(folder) ? "" : "gRPC belongs to service/, client/ and main.cc";
+  static const Folders with_grpc = {"service", "daemon", "client", "main"};
+  if (IsGrpc(header)) return with_grpc.contains(folder) ? "" : "gRPC belongs to service/, daemon/, client/ and main.cc";
   if (header.starts_with("tests/")) return "tests are included by tests alone";
   const std::string target = FolderOf(header);
   if (target.empty() || target == folder) return "";
