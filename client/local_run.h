@@ -1,4 +1,5 @@
-// One session stepped to its end over an in-process channel, and what that took: `phrenic run` and campaigns.
+// One session stepped to its end over an in-process channel, and what that took: `phrenic run`, `phrenic replay` and
+// campaigns.
 #ifndef PHRENIC_CLIENT_LOCAL_RUN_H_
 #define PHRENIC_CLIENT_LOCAL_RUN_H_
 
@@ -19,11 +20,13 @@ struct Cost {
   Readings readings;
 };
 
-// Steps the session until `seconds` [s] of simulated time or until it diverges, in portions of about a fortieth, or of
-// a frame where the scene has measures to be read. `session` is its state before, and then after; `progress` is told
-// the tick.
-grpc::Status StepThrough(const Context& context, double seconds, v1::SessionService::Stub& stub, v1::Session* session,
-                         Cost* cost, const std::function<void(std::int64_t)>& progress);
+// The tick at which a session that begins at rest has simulated `seconds` [s].
+std::int64_t TickAt(double seconds, const v1::Session& session);
+
+// Steps the session until tick `last` or until it diverges, in portions of about a fortieth, or of a frame where the
+// scene has measures to be read. `session` is its state before, and then after; `progress` is told the tick.
+grpc::Status StepThrough(const Context& context, std::int64_t last, v1::SessionService::Stub& stub,
+                         v1::Session* session, Cost* cost, const std::function<void(std::int64_t)>& progress);
 
 }  // namespace phrenic::client
 

@@ -41,7 +41,7 @@ grpc::Status RunSession(const Context& context, const CampaignCell& cell, v1::Se
   if (!status.ok()) return status;
   Cost cost;
   v1::Session& session = *created.mutable_session();
-  status = StepThrough(context, cell.seconds, stub, &session, &cost, [](std::int64_t) {});
+  status = StepThrough(context, TickAt(cell.seconds, session), stub, &session, &cost, [](std::int64_t) {});
   if (status.ok()) WriteCost(cost, cell.row.cell(), result);
   v1::CampaignRow& row = *result.mutable_rows(0);
   row.set_outcome(session.has_divergence() ? "diverged" : "done");

@@ -33,9 +33,8 @@ absl::StatusOr<pid_t> Spawn(const Workers& workers, const std::string& share) {
   std::vector<std::string> words = {ThisProgram()};
   words.insert(words.end(), workers.arguments.begin(), workers.arguments.end());
   words.insert(words.end(), {"--share", share});
-  std::vector<char*> argv;
-  for (std::string& word : words) argv.push_back(word.data());
-  argv.push_back(nullptr);
+  std::vector<char*> argv(words.size() + 1, nullptr);
+  std::ranges::transform(words, argv.begin(), [](std::string& word) { return word.data(); });
   pid_t pid = 0;
   const int error = posix_spawn(&pid, words[0].c_str(), nullptr, nullptr, argv.data(), environ);
   if (error != 0) return absl::InternalError(absl::StrCat("cannot start ", words[0], ": error ", error));

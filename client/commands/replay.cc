@@ -1,7 +1,6 @@
 // `phrenic replay`: a run that was written down is run again, and is the same to the last bit or not.
 #include <google/protobuf/util/json_util.h>
 
-#include <algorithm>
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -9,6 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "client/commands.h"
+#include "client/local_run.h"
 #include "client/progress.h"
 #include "client/scene_argument.h"
 #include "phrenic/v1/session.grpc.pb.h"
@@ -16,8 +16,6 @@
 
 namespace phrenic::client {
 namespace {
-
-constexpr std::int64_t kPortion = 200;  // steps, for the bar's sake
 
 // What was written down of a run.
 struct Recorded {
@@ -52,19 +50,11 @@ absl::Status CheckScene(const Recorded& recorded, const v1::CompileReport& repor
       report.scene_hash(), recorded.scene_hash));
 }
 
-grpc::Status StepTo(const Context& context, std::int64_t last, v1::SessionService::Stub& stub,
-                    v1::StepSessionResponse* response) {
+grpc::Status StepAll(const Context& context, std::int64_t last, v1::SessionService::Stub& stub, v1::Session* session,
+                     Cost* cost) {
   Progress progress("stepping", static_cast<double>(last));
-  for (std::int64_t tick = 0; tick < last; tick = response->session().tick()) {
-    v1::StepSessionRequest request;
-    request.set_session_id("replay");
-    request.set_expected_tick(tick);
-    request.set_ticks(std::min(kPortion, last - tick));
-    grpc::Status status = Call(context, stub, &v1::SessionService::Stub::StepSession, request, response, 3600);
-    if (!status.ok()) return status;
-    progress.Update(static_cast<double>(response->session().tick()));
-  }
-  return grpc::Status::OK;
+  return StepThrough(context, last, stub, session, cost,
+                     [&](std::int64_t tick) { progress.Update(static_cast<double>(tick)); });
 }
 
 int TellWhetherSame(const Context& context, const Recorded& recorded, const std::string& hash) {
@@ -97,9 +87,9 @@ int ReplayOn(const Context& context, const Recorded& recorded, const v1::SceneSo
   status = Call(context, *stub, &v1::SessionService::Stub::GetSession, get, &session);
   if (!status.ok()) return Fail(context, status);
   if (const absl::Status same = CheckScene(recorded, session.report()); !same.ok()) return Fail(same);
-  v1::StepSessionResponse response;
-  status = StepTo(context, recorded.session.tick(), *stub, &response);
-  return status.ok() ? TellWhetherSame(context, recorded, response.state_hash()) : Fail(context, status);
+  Cost cost;
+  status = StepAll(context, recorded.session.tick(), *stub, session.mutable_session(), &cost);
+  return status.ok() ? TellWhetherSame(context, recorded, cost.state_hash) : Fail(context, status);
 }
 
 }  // namespace

@@ -139,8 +139,9 @@ int RunOn(const Context& context, const RunOptions& options, const v1::SceneSour
     if (code != kOk) return code;
   } else {
     {
-      Progress progress("stepping", options.seconds / session.session().parameters().time_step());
-      status = StepThrough(context, options.seconds, *stub, session.mutable_session(), &cost,
+      const std::int64_t last = TickAt(options.seconds, session.session());
+      Progress progress("stepping", static_cast<double>(last));
+      status = StepThrough(context, last, *stub, session.mutable_session(), &cost,
                            [&](std::int64_t tick) { progress.Update(static_cast<double>(tick)); });
     }
     if (!status.ok()) return Fail(context, status);

@@ -76,8 +76,9 @@ std::unique_ptr<service::Server> Start(const Flags& flags) {
     return nullptr;
   }
   if (const std::size_t lost = (*server)->lost().size(); lost > 0) {
-    spdlog::warn("{} sessions could not be restored and stay in the store: phrenicd check {} says which and why", lost,
-                 options.store_dir);
+    spdlog::warn(
+        "{} sessions or studies could not be restored and stay in the store: phrenicd check {} says which and why",
+        lost, options.store_dir);
   }
   WarnOfReach(options);
   return *std::move(server);

@@ -27,22 +27,26 @@ Helpers& TheHelpers() {
 
 // One call's parts, taken one by one by whoever is free. A helper that comes when all are taken does not touch `work`,
 // which is gone when the caller is.
-struct Parts {
-  const std::int64_t count;
-  const absl::FunctionRef<void(std::int64_t)> work;
-  std::atomic<std::int64_t> next = 0, done = 0;
+class Parts {
+ public:
+  Parts(std::int64_t count, absl::FunctionRef<void(std::int64_t)> work) : count_(count), work_(work) {}
 
   void Take() {
-    for (std::int64_t part = next++; part < count; part = next++) {
-      work(part);
-      ++done;
+    for (std::int64_t part = next_++; part < count_; part = next_++) {
+      work_(part);
+      ++done_;
     }
   }
   void Await() const {
-    for (int spins = 0; done < count; ++spins) {
+    for (int spins = 0; done_ < count_; ++spins) {
       if (spins > kSpins) std::this_thread::yield();
     }
   }
+
+ private:
+  const std::int64_t count_;
+  const absl::FunctionRef<void(std::int64_t)> work_;
+  std::atomic<std::int64_t> next_ = 0, done_ = 0;
 };
 
 }  // namespace

@@ -52,7 +52,7 @@ void AddLinks(std::string_view secrets, std::vector<std::string>& links) {
   }
 }
 
-std::string_view TextOf(grpc::string_ref text) { return {text.data(), text.size()}; }
+std::string_view TextOf(const grpc::string_ref& text) { return {text.data(), text.size()}; }
 
 }  // namespace
 

@@ -150,12 +150,12 @@ struct Server::Parts {
 
 absl::Status Server::Parts::Restore(const ServerOptions& options) {
   if (store == nullptr) return absl::OkStatus();
-  if (absl::Status status = study_service.Restore(); !status.ok()) return status;
+  if (absl::Status status = study_service.Restore(lost); !status.ok()) return status;
   auto restored = table.Restore([&options](const std::string& id) {
     if (options.restoring) options.restoring(id);
   });
   if (!restored.ok()) return restored.status();
-  lost = *std::move(restored);
+  lost.merge(*restored);
   return absl::OkStatus();
 }
 

@@ -52,15 +52,16 @@ void StudyService::Save(const v1::Study& study, const v1::CreateStudyRequest* re
   store_->Put(kRecord, study.id(), saved.SerializeAsString());
 }
 
-absl::Status StudyService::Restore() {
+absl::Status StudyService::Restore(std::map<std::string, absl::Status>& lost) {
   if (store_ == nullptr) return absl::OkStatus();
-  const auto records = store_->LoadRecords(kRecord);
+  const auto records = store_->LoadRecords();
   if (!records.ok()) return records.status();
-  absl::Status damaged;
   for (const store::SavedRecord& record : *records) {
+    if (record.kind != kRecord) continue;
     v1::SavedStudy saved;
     if (!record.problem.ok() || !saved.ParseFromString(record.bytes)) {
-      damaged.Update(record.problem);
+      lost[absl::StrCat(kRecord, " ", record.id)] =
+          record.problem.ok() ? absl::DataLossError("what is in the store is no study") : record.problem;
       continue;
     }
     door_.Give(Door::Kind::kStudy, record.id, saved.owner());
@@ -72,7 +73,7 @@ absl::Status StudyService::Restore() {
       jobs_.Restore(saved.study());
     }
   }
-  return damaged;
+  return absl::OkStatus();
 }
 
 absl::StatusOr<v1::Study> StudyService::Run(const v1::CreateStudyRequest& request) {

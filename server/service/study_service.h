@@ -3,6 +3,7 @@
 #define PHRENIC_SERVER_SERVICE_STUDY_SERVICE_H_
 
 #include <atomic>
+#include <map>
 #include <string>
 #include <utility>
 
@@ -19,9 +20,9 @@ class StudyService final : public v1::StudyService::Service {
  public:
   // `web_root` has report.html, the page without a study. `store` is null where studies end with the server.
   StudyService(session::Models& models, std::string web_root, Door& door, store::Store* store);
-  // What an earlier server left: studies that ended are there again, the others run anew. Before any call. DATA_LOSS
-  // names one that is damaged: it is left out.
-  absl::Status Restore();
+  // What an earlier server left: studies that ended are there again, the others run anew. Before any call. Why one
+  // could not be is in `lost`, by "study NAME"; it stays in the store.
+  absl::Status Restore(std::map<std::string, absl::Status>& lost);
 
   grpc::Status CreateStudy(grpc::ServerContext* context, const v1::CreateStudyRequest* request,
                            v1::CreateStudyResponse* response) override;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -10,8 +11,8 @@
 namespace phrenic::store {
 
 bool CheckedStore::whole() const {
-  return problem.ok() &&
-         std::all_of(sessions.begin(), sessions.end(), [](const SavedSession& one) { return one.problem.ok(); });
+  const auto good = [](const auto& one) { return one.problem.ok(); };
+  return problem.ok() && std::ranges::all_of(sessions, good) && std::ranges::all_of(records, good);
 }
 
 absl::StatusOr<CheckedStore> CheckStore(const std::string& folder) {
@@ -25,6 +26,9 @@ absl::StatusOr<CheckedStore> CheckStore(const std::string& folder) {
   auto sessions = ReadSessions(*database);
   if (!sessions.ok()) return checked.problem.ok() ? sessions.status() : checked.problem;
   checked.sessions = *std::move(sessions);
+  auto records = ReadRecords(*database);
+  if (!records.ok()) return checked.problem.ok() ? records.status() : checked.problem;
+  checked.records = *std::move(records);
   return checked;
 }
 
@@ -40,9 +44,15 @@ std::string Describe(const std::string& folder, const CheckedStore& store) {
     absl::StrAppendFormat(&text, "%-24s %-20s %12d %10.3f %8d %10.1f\n", session.id, last.scene(), last.tick(),
                           last.time(), session.later.size(), 1e-3 * static_cast<double>(session.bytes));
   }
+  std::map<std::string, int> others;
+  for (const SavedRecord& record : store.records) {
+    ++others[record.kind];
+    if (!record.problem.ok()) absl::StrAppend(&text, record.problem.message(), "\n");
+  }
   if (!store.problem.ok()) absl::StrAppend(&text, store.problem.message(), "\n");
-  absl::StrAppend(&text, StoreFile(folder), ": ", store.sessions.size(), " sessions, ",
-                  store.whole() ? "whole" : "damaged", "\n");
+  absl::StrAppend(&text, StoreFile(folder), ": ", store.sessions.size(), " sessions, ");
+  for (const auto& [kind, count] : others) absl::StrAppend(&text, kind, " records: ", count, ", ");
+  absl::StrAppend(&text, store.whole() ? "whole" : "damaged", "\n");
   return text;
 }
 

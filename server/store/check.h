@@ -13,6 +13,7 @@ namespace phrenic::store {
 struct CheckedStore {
   absl::Status problem;                // of the file as a whole, where sessions can be read all the same
   std::vector<SavedSession> sessions;  // each with its own problem
+  std::vector<SavedRecord> records;    // studies and the like; as with sessions
   bool whole() const;
 };
 
@@ -20,7 +21,7 @@ struct CheckedStore {
 // DATA_LOSS where nothing of it can be read.
 absl::StatusOr<CheckedStore> CheckStore(const std::string& folder);
 
-// A line a session, and one for the whole, as people read it.
+// A line a session, one for each other thing that is damaged, and one for the whole, as people read it.
 std::string Describe(const std::string& folder, const CheckedStore& store);
 
 }  // namespace phrenic::store

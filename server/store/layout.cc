@@ -128,20 +128,23 @@ absl::StatusOr<std::vector<SavedSession>> ReadSessions(Database& database) {
   }
 }
 
-absl::StatusOr<std::vector<SavedRecord>> ReadRecords(Database& database, const std::string& kind) {
-  auto rows = Statement::Prepare(database, "SELECT id, bytes, sha256 FROM records WHERE kind = ? ORDER BY number");
-  if (!rows.ok()) return rows.status();
-  rows->Bind(1, kind);
+absl::StatusOr<std::vector<SavedRecord>> ReadRecords(Database& database) {
   std::vector<SavedRecord> records;
+  const auto tables = database.Number("SELECT count(*) FROM sqlite_master WHERE name = 'records'");
+  if (!tables.ok()) return tables.status();
+  if (*tables == 0) return records;
+  auto rows = Statement::Prepare(database, "SELECT kind, id, bytes, sha256 FROM records ORDER BY number");
+  if (!rows.ok()) return rows.status();
   for (;;) {
     const absl::StatusOr<bool> row = rows->Next();
     if (!row.ok()) return row.status();
     if (!*row) return records;
     SavedRecord& record = records.emplace_back();
-    record.id = std::string(rows->Bytes(0));
-    record.bytes = std::string(rows->Bytes(1));
-    if (Sha256Hex(record.bytes) == rows->Bytes(2)) continue;
-    record.problem = absl::DataLossError(absl::StrCat(kind, " ", record.id, " is damaged in the store"));
+    record.kind = std::string(rows->Bytes(0));
+    record.id = std::string(rows->Bytes(1));
+    record.bytes = std::string(rows->Bytes(2));
+    if (Sha256Hex(record.bytes) == rows->Bytes(3)) continue;
+    record.problem = absl::DataLossError(absl::StrCat(record.kind, " ", record.id, " is damaged in the store"));
   }
 }
 

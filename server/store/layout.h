@@ -26,7 +26,7 @@ struct SavedSession {
 
 // What the store has of something else: a message, by its kind ("study") and name.
 struct SavedRecord {
-  std::string id, bytes;
+  std::string kind, id, bytes;
   absl::Status problem;  // DATA_LOSS, as above
 };
 
@@ -41,8 +41,8 @@ absl::Status Examine(const std::string& folder, Database& database);
 
 // Every session, in the order of the ids; one with a `problem` does not keep the others from being read.
 absl::StatusOr<std::vector<SavedSession>> ReadSessions(Database& database);
-// Every record of a kind, in the order in which they were first saved.
-absl::StatusOr<std::vector<SavedRecord>> ReadRecords(Database& database, const std::string& kind);
+// Every record, in the order in which they were first saved; as with sessions. A store of format 1 has none.
+absl::StatusOr<std::vector<SavedRecord>> ReadRecords(Database& database);
 
 }  // namespace phrenic::store
 

@@ -2,6 +2,7 @@
 
 #include <pthread.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <utility>
 
@@ -92,18 +93,26 @@ Store::~Store() {
 
 absl::StatusOr<std::vector<SavedSession>> Store::Load() { return ReadSessions(database_); }
 
-absl::StatusOr<std::vector<SavedRecord>> Store::LoadRecords(const std::string& kind) {
-  return ReadRecords(database_, kind);
-}
+absl::StatusOr<std::vector<SavedRecord>> Store::LoadRecords() { return ReadRecords(database_); }
 
 void Store::Put(const std::string& kind, const std::string& id, std::string bytes) {
   absl::MutexLock lock(&mutex_);
-  records_[{kind, id}] = std::move(bytes);
+  Tell({kind, id, std::move(bytes)});
 }
 
 void Store::Remove(const std::string& kind, const std::string& id) {
   absl::MutexLock lock(&mutex_);
-  records_[{kind, id}] = std::nullopt;
+  Tell({kind, id, std::nullopt});
+}
+
+void Store::Tell(Record record) {
+  const auto same = std::ranges::find_if(
+      records_, [&](const Record& other) { return other.kind == record.kind && other.id == record.id; });
+  if (same == records_.end()) {
+    records_.push_back(std::move(record));
+  } else {
+    same->bytes = std::move(record.bytes);
+  }
 }
 
 absl::Status Store::LimitSize(std::int64_t bytes) {
@@ -176,8 +185,8 @@ absl::Status Store::Write(const Batch& batch, const Records& records) {
       if (status.ok()) status = writer->WriteMoment(journal->id_, sequence, moment);
     }
   }
-  for (const auto& [name, bytes] : records) {
-    if (status.ok()) status = writer->WriteRecord(name.first, name.second, bytes);
+  for (const auto& [kind, id, bytes] : records) {
+    if (status.ok()) status = writer->WriteRecord(kind, id, bytes);
   }
   if (status.ok()) status = database_.Run("COMMIT");
   if (!status.ok()) database_.Run("ROLLBACK").IgnoreError();
@@ -203,7 +212,8 @@ void Store::Run() {
     if (status.ok()) continue;
     if (last) return;
     PutBack(batch);
-    records_.merge(records);  // what came meanwhile is newer
+    records_.swap(records);
+    for (Record& newer : records) Tell(std::move(newer));
     mutex_.AwaitWithTimeout(absl::Condition(this, &Store::Closing), kAgain);
   }
 }

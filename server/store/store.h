@@ -4,7 +4,6 @@
 #define PHRENIC_SERVER_STORE_STORE_H_
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -81,7 +80,7 @@ class Store {
 
   // What an earlier server left; before anything is saved.
   absl::StatusOr<std::vector<SavedSession>> Load();
-  absl::StatusOr<std::vector<SavedRecord>> LoadRecords(const std::string& kind);
+  absl::StatusOr<std::vector<SavedRecord>> LoadRecords();
   // Saves a message by its kind and name, in the place of an earlier one, or removes it; on the disk within
   // milliseconds, or once that has room.
   void Put(const std::string& kind, const std::string& id, std::string bytes) ABSL_LOCKS_EXCLUDED(mutex_);
@@ -96,9 +95,14 @@ class Store {
  private:
   friend class Journal;
   using Batch = std::vector<std::pair<std::shared_ptr<Journal>, Journal::Pending>>;
-  using Records = std::map<std::pair<std::string, std::string>, std::optional<std::string>>;  // nothing: remove it
+  struct Record {
+    std::string kind, id;
+    std::optional<std::string> bytes;  // nothing: remove it
+  };
+  using Records = std::vector<Record>;  // in the order in which they were first told
 
   explicit Store(Database database);
+  void Tell(Record record) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void Told(Journal& journal) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   bool Closing() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) { return closing_; }
   bool Stirred() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) { return closing_ || Waits(); }
@@ -111,7 +115,7 @@ class Store {
   Database database_;  // of one thread at a time
   mutable absl::Mutex mutex_;
   std::vector<std::shared_ptr<Journal>> waiting_ ABSL_GUARDED_BY(mutex_);  // in the order in which they were told
-  Records records_ ABSL_GUARDED_BY(mutex_);                                // that wait
+  Records records_ ABSL_GUARDED_BY(mutex_);                                // that wait, each name once
   bool closing_ ABSL_GUARDED_BY(mutex_) = false;
   std::thread thread_;
 };

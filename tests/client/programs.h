@@ -18,6 +18,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/server_process.h"
+
 namespace phrenic::client {
 
 struct Outcome {
@@ -96,45 +98,15 @@ inline Outcome Phrenic(const std::vector<std::string>& arguments) {
   return outcome;
 }
 
-// phrenicd on free ports, with no session; stopped by the destructor.
-class RunningServer {
+// phrenicd on free ports, with no session and no store; it ends with the object.
+class RunningServer : public ServerProcess {
  public:
-  RunningServer() {
-    const std::string out = Scratch("server_out");
-    pid_ = Start("phrenicd",
-                 {"--listen", "127.0.0.1:0", "--web", "127.0.0.1:0", "--web-root",
-                  std::string(PHRENIC_SOURCE_DIR) + "/web", "--start", "none", "--store", "none"},
-                 out, Scratch("server_err"));
-    // It says its port when it listens; there is nothing else to wait on.
-    for (int tries = 0; tries < 600 && port_ == 0; ++tries) {
-      usleep(50'000);
-      const std::string said = ReadAll(out);  // "gRPC:   127.0.0.1:50051", "Viewer: http://127.0.0.1:8080/"
-      web_port_ = PortBehind(said, "Viewer:");
-      if (web_port_ != 0) port_ = PortBehind(said, "gRPC:");
-      if (waitpid(pid_, nullptr, WNOHANG) != 0) break;
-    }
+  RunningServer()
+      : ServerProcess(Scratch("server"), {"--web-root", std::string(PHRENIC_SOURCE_DIR) + "/web", "--store", "none"},
+                      {"XDG_CONFIG_HOME=" + Scratch("config"), "XDG_STATE_HOME=" + Scratch(User())}) {
+    const absl::Status status = Start();
+    EXPECT_TRUE(status.ok()) << status;
   }
-  ~RunningServer() {
-    kill(pid_, SIGTERM);
-    WaitFor(pid_);
-  }
-  RunningServer(const RunningServer&) = delete;
-  RunningServer& operator=(const RunningServer&) = delete;
-
-  int port() const { return port_; }
-  int web_port() const { return web_port_; }
-  std::string address() const { return "127.0.0.1:" + std::to_string(port_); }
-  std::string said() const { return ReadAll(Scratch("server_err")); }
-
- private:
-  // Of the whole line that begins with the word; 0 where there is none yet.
-  static int PortBehind(const std::string& said, const char* word) {
-    const std::size_t at = said.find(word), end = said.find('\n', at);
-    return at == std::string::npos || end == std::string::npos ? 0 : std::stoi(said.substr(said.rfind(':', end) + 1));
-  }
-
-  pid_t pid_ = -1;
-  int port_ = 0, web_port_ = 0;
 };
 
 }  // namespace phrenic::client

@@ -44,10 +44,7 @@ Tally Killed(Oracle& oracle, const std::string& folder, int times) {
   Tally tally;
   Rig rig(oracle, folder);
   for (int i = 0; i < times; ++i) {
-    rig.Disturb([&] {
-      rig.daemon().Signal(SIGKILL);
-      rig.daemon().Await(60);
-    });
+    rig.Disturb([&] { rig.server().Kill(); });
     rig.Recover(tally);
   }
   return tally;
@@ -59,10 +56,7 @@ Tally Ended(Oracle& oracle, const std::string& folder, int times) {
   Rig rig(oracle, folder);
   for (int i = 0; i < times; ++i) {
     int code = -1;
-    rig.Disturb([&] {
-      rig.daemon().Signal(SIGTERM);
-      code = rig.daemon().Await(15);
-    });
+    rig.Disturb([&] { code = rig.server().Stop(15); });
     if (code != 0) {
       std::fprintf(stderr, "told to end, it gave %d\n", code);
       ++tally.lost;
@@ -77,9 +71,9 @@ Tally Frozen(Oracle& oracle, const std::string& folder, int times) {
   Rig rig(oracle, folder);
   for (int i = 0; i < times; ++i) {
     rig.Disturb([&] {
-      rig.daemon().Signal(SIGSTOP);
+      rig.server().Signal(SIGSTOP);
       absl::SleepFor(absl::Seconds(rig.Wait(0.5)));
-      rig.daemon().Signal(SIGCONT);
+      rig.server().Signal(SIGCONT);
     });
     rig.Recover(tally);
   }
@@ -115,11 +109,11 @@ Tally OutOfMemory(Oracle& oracle, const std::string& folder, int times) {
   Rig rig(oracle, folder);
   for (int i = 0; i < times; ++i) {
     rig.Disturb([&] {
-      const rlim_t most = SizeOf(rig.daemon().pid()) + (rlim_t{20} << 20);
+      const rlim_t most = SizeOf(rig.server().pid()) + (rlim_t{20} << 20);
       const rlimit limit = {most, RLIM_INFINITY}, none = {RLIM_INFINITY, RLIM_INFINITY};
-      prlimit(rig.daemon().pid(), RLIMIT_AS, &limit, nullptr);
-      AskForTooMuch(rig.daemon().address());
-      prlimit(rig.daemon().pid(), RLIMIT_AS, &none, nullptr);
+      prlimit(rig.server().pid(), RLIMIT_AS, &limit, nullptr);
+      AskForTooMuch(rig.server().address());
+      prlimit(rig.server().pid(), RLIMIT_AS, &none, nullptr);
     });
     rig.Recover(tally);
   }

@@ -14,12 +14,14 @@ double Now() { return absl::ToDoubleSeconds(absl::Now() - absl::UnixEpoch()); }
 
 }  // namespace
 
-Rig::Rig(Oracle& oracle, std::string folder, std::vector<std::string> environment) : driver_(oracle) {
+Rig::Rig(Oracle& oracle, const std::string& folder, std::vector<std::string> environment)
+    : store_(folder + "/store"), driver_(oracle) {
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
-  daemon_ = std::make_unique<Daemon>(folder + "/store", std::move(environment));
-  if (absl::Status status = daemon_->Start(); !status.ok()) std::fprintf(stderr, "%s\n", status.ToString().c_str());
-  if (!driver_.Connect(daemon_->address(), true)) std::fprintf(stderr, "no session could be made\n");
+  server_ = std::make_unique<ServerProcess>(folder + "/said", std::vector<std::string>{"--store", store_},
+                                            std::move(environment));
+  if (absl::Status status = server_->Start(); !status.ok()) std::fprintf(stderr, "%s\n", status.ToString().c_str());
+  if (!driver_.Connect(server_->address(), true)) std::fprintf(stderr, "no session could be made\n");
 }
 
 void Rig::StepSome(int steps) {
@@ -40,14 +42,14 @@ void Rig::Disturb(const std::function<void()>& fault) {
 
 void Rig::Recover(Tally& tally) {
   ++tally.tried;
-  if (!daemon_->running()) {
-    if (absl::Status status = daemon_->Start(); !status.ok()) {
+  if (!server_->running()) {
+    if (absl::Status status = server_->Start(); !status.ok()) {
       std::fprintf(stderr, "it does not start again: %s\n", status.ToString().c_str());
       ++tally.lost;
       return;
     }
   }
-  driver_.Connect(daemon_->address());
+  driver_.Connect(server_->address());
   const bool found = driver_.FindTick(30).has_value();
   tally.recovered.push_back(Now() - disturbed_);
   if (!found || !driver_.Step()) {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "tests/faults/daemon.h"
 #include "tests/faults/driver.h"
+#include "tests/support/server_process.h"
 
 namespace phrenic::faults {
 
@@ -23,7 +23,7 @@ struct Tally {
 class Rig {
  public:
   // Starts the server and makes the session. `folder` is emptied first.
-  Rig(Oracle& oracle, std::string folder, std::vector<std::string> environment = {});
+  Rig(Oracle& oracle, const std::string& folder, std::vector<std::string> environment = {});
 
   // The client steps until a random moment within 60 ms, `fault` happens while it goes on, and it stops.
   void Disturb(const std::function<void()>& fault);
@@ -32,7 +32,8 @@ class Rig {
   void Recover(Tally& tally);
   void StepSome(int steps);
 
-  Daemon& daemon() { return *daemon_; }
+  ServerProcess& server() { return *server_; }
+  const std::string& store() const { return store_; }  // its folder
   Driver& driver() { return driver_; }
   std::mt19937& random() { return random_; }
   // Between 0 and `most` seconds.
@@ -40,7 +41,8 @@ class Rig {
 
  private:
   std::mt19937 random_{3};
-  std::unique_ptr<Daemon> daemon_;
+  const std::string store_;
+  std::unique_ptr<ServerProcess> server_;
   Driver driver_;
   double disturbed_ = 0;  // [s]
   int wrong_before_ = 0;

@@ -75,8 +75,7 @@ Tally DiskFull(Oracle& oracle, const std::string& folder, int times) {
       absl::SleepFor(absl::Milliseconds(100));
       disk.Clear();
       absl::SleepFor(absl::Milliseconds(100));
-      rig.daemon().Signal(SIGKILL);
-      rig.daemon().Await(60);
+      rig.server().Kill();
     });
     rig.Recover(tally);
   }
@@ -88,25 +87,21 @@ Tally Flipped(Oracle& oracle, const std::string& folder, int times) {
   Tally tally;
   Rig rig(oracle, folder);
   for (int i = 0; i < times; ++i) {
-    rig.Disturb([&] {
-      rig.daemon().Signal(SIGTERM);
-      rig.daemon().Await(15);
-    });
-    const fs::path file = LargestFile(rig.daemon().store());
+    rig.Disturb([&] { rig.server().Stop(15); });
+    const fs::path file = LargestFile(rig.store());
     const std::string right = ReadFile(file);
     std::string wrong = right;
     wrong[rig.random()() % wrong.size()] ^= static_cast<char>(1 << rig.random()() % 8);
     WriteFile(file, wrong);
-    if (!rig.daemon().Start().ok()) {
+    if (!rig.server().Start().ok()) {
       if (ReadFile(file) != wrong) {
         std::fprintf(stderr, "a store that was refused was written to\n");
         ++tally.lost;
       }
       WriteFile(file, right);
-    } else if (rig.driver().Connect(rig.daemon().address()) && !rig.driver().FindTick(5).has_value()) {
+    } else if (rig.driver().Connect(rig.server().address()) && !rig.driver().FindTick(5).has_value()) {
       // It runs without the session, says so, and keeps it.
-      rig.daemon().Signal(SIGTERM);
-      rig.daemon().Await(15);
+      rig.server().Stop(15);
       WriteFile(file, right);
     }
     rig.Recover(tally);
@@ -117,7 +112,7 @@ Tally Flipped(Oracle& oracle, const std::string& folder, int times) {
 Tally TwoServers(Oracle& oracle, const std::string& folder, int times) {
   Tally tally;
   Rig rig(oracle, folder);
-  Daemon second(rig.daemon().store());
+  ServerProcess second(folder + "/second", {"--store", rig.store()});
   for (int i = 0; i < times; ++i) {
     rig.Disturb([&] {
       if (!second.Start().ok()) return;

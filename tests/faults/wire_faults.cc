@@ -204,7 +204,7 @@ Tally LineCut(Oracle& oracle, const std::string& folder, int times) {
   Tally tally;
   Rig rig(oracle, folder);
   for (int i = 0; i < times; ++i) {
-    Line line(rig.daemon().address());
+    Line line(rig.server().address());
     rig.driver().Connect(line.address());
     rig.Disturb([&line] { line.Cut(); });
     rig.Recover(tally);
@@ -217,7 +217,7 @@ Tally Delayed(Oracle& oracle, const std::string& folder, int times) {
   Tally tally;
   Rig rig(oracle, folder);
   for (int i = 0; i < times; ++i) {
-    Line line(rig.daemon().address(), 0.4);
+    Line line(rig.server().address(), 0.4);
     rig.driver().Connect(line.address());
     rig.Disturb([] { absl::SleepFor(absl::Seconds(1)); });
     rig.Recover(tally);
@@ -229,7 +229,7 @@ Tally Delayed(Oracle& oracle, const std::string& folder, int times) {
 Tally RandomRequests(Oracle& oracle, const std::string& folder, int times) {
   Tally tally;
   Rig rig(oracle, folder);
-  const auto channel = grpc::CreateChannel(rig.daemon().address(), grpc::InsecureChannelCredentials());
+  const auto channel = grpc::CreateChannel(rig.server().address(), grpc::InsecureChannelCredentials());
   grpc::GenericStub stub(channel);
   const auto methods = Methods();
   google::protobuf::DynamicMessageFactory factory;
@@ -260,7 +260,7 @@ Tally RandomBytes(Oracle& oracle, const std::string& folder, int times) {
     rig.Disturb([&] {
       std::string bytes = kStarts[rig.random()() % std::size(kStarts)];
       for (int k = 0; k < 200; ++k) bytes.push_back(static_cast<char>(rig.random()()));
-      SendBytes(i % 2 == 0 ? rig.daemon().address() : rig.daemon().web_address(), bytes);
+      SendBytes(i % 2 == 0 ? rig.server().address() : rig.server().web_address(), bytes);
     });
     rig.Recover(tally);
   }

@@ -12,7 +12,7 @@
 #include "absl/strings/str_cat.h"
 #include "phrenic/v1/session.grpc.pb.h"
 #include "phrenic/v1/upload.grpc.pb.h"
-#include "tests/service/running_server.h"
+#include "tests/support/server_process.h"
 
 namespace phrenic::service {
 namespace {
@@ -30,7 +30,9 @@ class Limits : public testing::Test {
   }
   void Start(std::vector<std::string> flags = {}) {
     flags.insert(flags.end(), {"--store", "none", "--web-root", folder_});
-    server_ = std::make_unique<RunningServer>(folder_, flags);
+    server_ = std::make_unique<ServerProcess>(folder_ + "/said", flags);
+    const absl::Status status = server_->Start();
+    ASSERT_TRUE(status.ok()) << status;
   }
   // How long a good client waits for its answer; nothing where it gets none.
   std::optional<absl::Duration> WebAnswer() const {
@@ -50,7 +52,7 @@ class Limits : public testing::Test {
   }
 
   const std::string folder_;
-  std::unique_ptr<RunningServer> server_;
+  std::unique_ptr<ServerProcess> server_;
 };
 
 TEST_F(Limits, AHeadThatComesSlowlyIsCutOffThoughEachByteComesInTime) {

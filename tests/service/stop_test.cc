@@ -6,7 +6,7 @@
 #include "phrenic/v1/export.grpc.pb.h"
 #include "phrenic/v1/frames.grpc.pb.h"
 #include "phrenic/v1/session.grpc.pb.h"
-#include "tests/service/running_server.h"
+#include "tests/support/server_process.h"
 
 namespace phrenic::service {
 namespace {
@@ -17,11 +17,13 @@ class StopTest : public testing::Test {
  protected:
   StopTest() : folder_(testing::TempDir() + "/phrenic-stop-" + std::to_string(getpid())) {
     std::filesystem::create_directories(folder_);
-    server_ = std::make_unique<RunningServer>(
-        folder_, std::vector<std::string>{"--store", folder_ + "/store", "--stop-seconds", "8"});
+  }
+  void SetUp() override {
+    const absl::Status status = server_.Start();
+    ASSERT_TRUE(status.ok()) << status;
   }
   ~StopTest() override {
-    server_.reset();
+    server_.Kill();
     std::filesystem::remove_all(folder_);
   }
   template <class Stub, class Request, class Response>
@@ -32,7 +34,7 @@ class StopTest : public testing::Test {
     ASSERT_TRUE(status.ok()) << status.error_message();
   }
   void CreateAndPlay() {
-    const auto sessions = v1::SessionService::NewStub(server_->NewChannel());
+    const auto sessions = v1::SessionService::NewStub(server_.NewChannel());
     v1::CreateSessionRequest create;
     create.set_session_id("sheet");
     create.mutable_source()->set_name("sheet-2d");
@@ -44,7 +46,7 @@ class StopTest : public testing::Test {
     Call(*sessions, &v1::SessionService::Stub::PlaySession, play, &played);
   }
   v1::Session Get() {
-    const auto sessions = v1::SessionService::NewStub(server_->NewChannel());
+    const auto sessions = v1::SessionService::NewStub(server_.NewChannel());
     v1::GetSessionRequest get;
     get.set_session_id("sheet");
     v1::GetSessionResponse got;
@@ -53,12 +55,12 @@ class StopTest : public testing::Test {
   }
 
   const std::string folder_;
-  std::unique_ptr<RunningServer> server_;
+  ServerProcess server_{folder_ + "/said", {"--store", folder_ + "/store", "--stop-seconds", "8"}};
 };
 
 TEST_F(StopTest, TellsViewersAndKeepsWhatTheyLastSaw) {
   CreateAndPlay();
-  const auto frames = v1::FrameService::NewStub(server_->NewChannel());
+  const auto frames = v1::FrameService::NewStub(server_.NewChannel());
   grpc::ClientContext context;
   v1::WatchFramesRequest watch;
   watch.set_session_id("sheet");
@@ -74,12 +76,12 @@ TEST_F(StopTest, TellsViewersAndKeepsWhatTheyLastSaw) {
       if (response.has_frame()) seen = response.frame().tick();
     }
   });
-  EXPECT_EQ(server_->Stop(absl::Seconds(10)), 0) << server_->Said();
+  EXPECT_EQ(server_.Stop(10), 0) << server_.said();
   rest.join();
   const grpc::Status told = reader->Finish();
   EXPECT_EQ(told.error_code(), grpc::UNAVAILABLE);
   EXPECT_THAT(told.error_message(), HasSubstr("the server is shutting down"));
-  server_->Start();
+  ASSERT_TRUE(server_.Start().ok()) << server_.said();
   const v1::Session session = Get();
   EXPECT_GE(session.tick(), seen) << "what somebody saw is lost";
   EXPECT_EQ(session.state(), v1::SESSION_STATE_PLAYING);
@@ -87,7 +89,7 @@ TEST_F(StopTest, TellsViewersAndKeepsWhatTheyLastSaw) {
 
 TEST_F(StopTest, BreaksExportsOffAndTellsWhoWaits) {
   CreateAndPlay();
-  const auto exports = v1::ExportService::NewStub(server_->NewChannel());
+  const auto exports = v1::ExportService::NewStub(server_.NewChannel());
   v1::CreateExportRequest create;
   create.set_export_id("long");
   create.set_session_id("sheet");
@@ -105,7 +107,7 @@ TEST_F(StopTest, BreaksExportsOffAndTellsWhoWaits) {
     while (reader->Read(&response)) continue;
   });
   const absl::Time start = absl::Now();
-  EXPECT_EQ(server_->Stop(absl::Seconds(10)), 0) << server_->Said();
+  EXPECT_EQ(server_.Stop(10), 0) << server_.said();
   EXPECT_LT(absl::Now() - start, absl::Seconds(5));
   rest.join();
   EXPECT_FALSE(reader->Finish().ok());

@@ -2,7 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "phrenic/v1/study.grpc.pb.h"
-#include "tests/service/running_server.h"
+#include "server/store/layout.h"
+#include "tests/support/server_process.h"
 
 namespace phrenic::service {
 namespace {
@@ -11,13 +12,18 @@ class StudyRestartTest : public testing::Test {
  protected:
   StudyRestartTest() : folder_(testing::TempDir() + "/phrenic-study-" + std::to_string(getpid())) {
     std::filesystem::create_directories(folder_);
-    server_ = std::make_unique<RunningServer>(folder_, std::vector<std::string>{"--store", folder_ + "/store"});
+  }
+  void SetUp() override { Restart(); }
+  void Restart() {
+    server_.Kill();
+    const absl::Status status = server_.Start();
+    ASSERT_TRUE(status.ok()) << status;
   }
   ~StudyRestartTest() override {
-    server_.reset();
+    server_.Kill();
     std::filesystem::remove_all(folder_);
   }
-  std::unique_ptr<v1::StudyService::Stub> Studies() const { return v1::StudyService::NewStub(server_->NewChannel()); }
+  std::unique_ptr<v1::StudyService::Stub> Studies() const { return v1::StudyService::NewStub(server_.NewChannel()); }
 
   std::string Create(const std::string& id) const {
     v1::CreateStudyRequest request;
@@ -48,7 +54,7 @@ class StudyRestartTest : public testing::Test {
   }
 
   const std::string folder_;
-  std::unique_ptr<RunningServer> server_;
+  ServerProcess server_{folder_ + "/said", {"--store", folder_ + "/store"}};
 };
 
 TEST_F(StudyRestartTest, WhatHadEndedIsThereAndWhatHadNotIsRunAgain) {
@@ -57,8 +63,7 @@ TEST_F(StudyRestartTest, WhatHadEndedIsThereAndWhatHadNotIsRunAgain) {
   Create("killed");
   Create("waiting");
   absl::SleepFor(absl::Milliseconds(100));
-  server_->Kill();
-  server_->Start();
+  Restart();
   EXPECT_EQ(Await("ended").result().SerializeAsString(), ended.result().SerializeAsString());
   for (const char* id : {"killed", "waiting"}) {
     const v1::Study again = Await(id);
@@ -71,12 +76,28 @@ TEST_F(StudyRestartTest, WhatHadEndedIsThereAndWhatHadNotIsRunAgain) {
   grpc::ClientContext context;
   ASSERT_TRUE(Studies()->DeleteStudy(&context, remove, &removed).ok());
   absl::SleepFor(absl::Milliseconds(200));
-  server_->Kill();
-  server_->Start();
+  Restart();
   v1::ListStudiesResponse list;
   grpc::ClientContext listing;
   ASSERT_TRUE(Studies()->ListStudies(&listing, {}, &list).ok());
   EXPECT_EQ(list.studies_size(), 2);
+}
+
+TEST_F(StudyRestartTest, ADamagedOneIsLeftOutAndTheOthersAreThere) {
+  for (const char* id : {"damaged", "good"}) ASSERT_EQ(Await(Create(id)).state(), v1::STUDY_STATE_DONE);
+  absl::SleepFor(absl::Milliseconds(200));
+  server_.Kill();
+  {
+    auto database = store::Database::Open(store::StoreFile(folder_ + "/store"), store::Access::kWrite);
+    ASSERT_TRUE(database.ok()) << database.status();
+    ASSERT_TRUE(database->Run("UPDATE records SET bytes = 'other' WHERE id = 'damaged'").ok());
+  }
+  Restart();
+  v1::ListStudiesResponse list;
+  grpc::ClientContext listing;
+  ASSERT_TRUE(Studies()->ListStudies(&listing, {}, &list).ok());
+  ASSERT_EQ(list.studies_size(), 1);
+  EXPECT_EQ(list.studies(0).id(), "good");
 }
 
 }  // namespace

@@ -255,13 +255,33 @@ TEST_F(StoreTest, RecordsAreTheNewestOfEachKindAndName) {
     const auto store = Open();
     store->Put("study", "b", std::string("\0new", 4));
   }
-  const auto records = Open()->LoadRecords("study");
+  const auto records = Open()->LoadRecords();
   ASSERT_TRUE(records.ok()) << records.status();
+  std::vector<std::vector<std::string>> found;
+  for (const SavedRecord& record : *records) found.push_back({record.kind, record.id, record.bytes});
+  EXPECT_THAT(found, ElementsAre(ElementsAre("study", "b", std::string("\0new", 4)), ElementsAre("study", "a", "2"),
+                                 ElementsAre("other", "a", "3")));
+}
+
+TEST_F(StoreTest, ADamagedRecordIsNamedAndKeepsNoOtherFromBeingRead) {
+  {
+    const auto store = Open();
+    store->Put("study", "bad", "what was written");
+    store->Put("study", "good", "2");
+  }
+  {
+    auto database = Database::Open(StoreFile(folder_), Access::kWrite);
+    ASSERT_TRUE(database.ok());
+    ASSERT_TRUE(database->Run("UPDATE records SET bytes = 'what is read' WHERE id = 'bad'").ok());
+  }
+  const auto checked = CheckStore(folder_);
+  ASSERT_TRUE(checked.ok()) << checked.status();
+  EXPECT_FALSE(checked->whole());
+  EXPECT_THAT(Describe(folder_, *checked), HasSubstr("study bad is damaged in the store\n"));
+  const auto records = Open()->LoadRecords();
   ASSERT_THAT(*records, SizeIs(2));
-  std::map<std::string, std::string> bytes;
-  for (const SavedRecord& record : *records) bytes[record.id] = record.bytes;
-  EXPECT_EQ(bytes["a"], "2");
-  EXPECT_EQ(bytes["b"], std::string("\0new", 4));
+  EXPECT_TRUE(absl::IsDataLoss(records->at(0).problem));
+  EXPECT_TRUE(records->at(1).problem.ok());
 }
 
 TEST_F(StoreTest, AStoreOfTheFirstFormatOpensAndKeepsItsSessions) {

@@ -27,9 +27,10 @@ Bench::Bench(const Settings& settings, std::unique_ptr<ServerProcess> server)
           v1::SessionService::NewStub(grpc::CreateChannel(server_->address(), grpc::InsecureChannelCredentials()))) {}
 
 absl::StatusOr<std::unique_ptr<Bench>> Bench::Start(const Settings& settings) {
-  auto server = ServerProcess::Start();
-  if (!server.ok()) return server.status();
-  std::unique_ptr<Bench> bench(new Bench(settings, *std::move(server)));
+  auto server = std::make_unique<ServerProcess>(PHRENIC_BINARY_DIR "/streaming_bench.said",
+                                                std::vector<std::string>{"--store", "none", "--max-viewers", "1000"});
+  if (absl::Status status = server->Start(); !status.ok()) return status;
+  std::unique_ptr<Bench> bench(new Bench(settings, std::move(server)));
   v1::CreateSessionRequest request;
   request.set_session_id(kSession);
   request.mutable_source()->set_name(settings.scene);

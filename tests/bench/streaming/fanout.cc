@@ -40,7 +40,7 @@ bool Row(Bench& bench, const char* codec, const Way& way, const Wanted& wanted) 
   const double cpu = 1e6 * cost.sending / frames, bytes = static_cast<double>(sight.bytes) / frames;
   std::printf("%7d  %-9s %-8s %6.1f %8.1f %8.1f %9.1f %7.2f %7.0f %9.0f  %s\n", wanted.viewers, codec, way.name,
               frames / wanted.viewers / cost.wall, 1e3 * sight.Age(0.5), 1e3 * sight.Age(0.99), cpu,
-              cost.sending / cost.wall, bench.server().Memory(), bytes,
+              cost.sending / cost.wall, 1e-6 * static_cast<double>(bench.server().Memory()), bytes,
               AimOf(wanted, bytes, cpu, sight.Age(0.99)).c_str());
   std::fflush(stdout);
   return true;

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "phrenic/v1/session.grpc.pb.h"
-#include "tests/bench/streaming/server_process.h"
 #include "tests/bench/streaming/viewers.h"
+#include "tests/support/server_process.h"
 
 namespace phrenic::bench {
 

@@ -36,11 +36,11 @@ bool Stalled(Bench& bench) {
   const auto healthy = WatchOverGrpc(bench.server().address(), {.viewers = 20, .max_fps = 0});
   healthy->WaitForAll(absl::Seconds(30));
   const Sight alone = Healthy(bench, *healthy, seconds);
-  const double before = bench.server().Memory();
+  const std::int64_t before = bench.server().Memory();
   const auto stalled = WatchOverGrpc(
       bench.server().address(), {.viewers = 20, .codec = v1::CODEC_RAW, .max_fps = 0, .window = 0, .reads = false});
   const Sight beside = Healthy(bench, *healthy, seconds);
-  const double growth = bench.server().Memory() - before;
+  const double growth = 1e-6 * static_cast<double>(bench.server().Memory() - before);  // [MB]
   std::printf(
       "\n20 viewers of every frame, alone: %lld of %lld frames missed; beside 20 that read nothing of raw frames: "
       "%lld of %lld  %s\nmemory grows by %.1f MB in %.0f s  %s\n",
