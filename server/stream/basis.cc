@@ -7,8 +7,8 @@
 namespace phrenic::stream {
 namespace {
 
-constexpr double kBound =
-    1e-5;  // of an encoded shape [m]: frames are put together from what comes out, so that it costs no exactness
+// Of an encoded shape [m]: frames are put together from what comes out, so that it costs no exactness.
+constexpr double kBound = 1e-5;
 constexpr double kSmallest = 1e-6;  // root mean square of a shape over the displacements [m]
 
 Eigen::MatrixXd GramOf(const std::vector<Floats>& displacements) {

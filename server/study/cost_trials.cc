@@ -1,6 +1,7 @@
 #include "server/study/cost_trials.h"
 
 #include <algorithm>
+#include <boost/math/statistics/univariate_statistics.hpp>
 #include <cmath>
 #include <cstdint>
 #include <numeric>
@@ -125,12 +126,7 @@ absl::Status TimeInTurn(std::vector<Timing>& timings, int trials, const Progress
   return absl::OkStatus();
 }
 
-double Median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  std::sort(values.begin(), values.end());
-  const size_t middle = values.size() / 2;
-  return values.size() % 2 == 1 ? values[middle] : (values[middle - 1] + values[middle]) / 2;
-}
+double Median(std::vector<double> values) { return values.empty() ? 0 : boost::math::statistics::median(values); }
 
 double MiddleMean(std::vector<double> values) {
   if (values.size() < 4) return Median(std::move(values));

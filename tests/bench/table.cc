@@ -1,17 +1,13 @@
 #include "tests/bench/table.h"
 
 #include <algorithm>
+#include <boost/math/statistics/univariate_statistics.hpp>
 #include <cstdio>
 
 namespace phrenic::bench {
 namespace {
 
-double Median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
+double Median(std::vector<double> values) { return values.empty() ? 0 : boost::math::statistics::median(values); }
 
 }  // namespace
 

@@ -5,6 +5,7 @@
 #include <time.h>
 
 #include <algorithm>
+#include <boost/math/statistics/univariate_statistics.hpp>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -40,11 +41,6 @@ double ResidentBytes() {
   double pages = 0, resident = 0;
   file >> pages >> resident;
   return 4096 * resident;
-}
-
-double Median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return values[values.size() / 2];
 }
 
 std::string Sheet(int side) {
@@ -85,7 +81,7 @@ std::optional<Timed> TimeSteps(const Model& model, int threads, int& steps) {
     if (!take(steps)) return std::nullopt;
     cpu.push_back((Cpu() - cpu_start) / steps), wall.push_back((Wall() - wall_start) / steps);
   }
-  return Timed{Median(cpu), Median(wall), StateHash(state)};
+  return Timed{boost::math::statistics::median(cpu), boost::math::statistics::median(wall), StateHash(state)};
 }
 
 // One line of the table; the CPU time of a step on one thread [s], 0 where it failed.
