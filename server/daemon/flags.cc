@@ -86,6 +86,7 @@ void AddLimits(CLI::App& app, Flags& flags) {
   group.Add("max-upload-mb", flags.upload_mb, "Size of an uploaded file [MiB]", 1, 65536);
   group.Add("max-uploads-mb", flags.uploads_mb,
             "Size of all uploaded files [MiB]; past it the one used longest ago goes", 1, 1048576);
+  group.Add("session-cpu", limits.session_cpu, "Share of a processor core that stepping one session may have", 0.01, 1);
   group.Add("max-exports", limits.exports, "Exports at once; comparisons as well", 1, 64);
   group.Add("max-requests", options.max_requests,
             "Requests a second of one caller, an account or another machine, twice as many in a burst; 0: any number",

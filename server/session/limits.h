@@ -11,6 +11,7 @@ struct Limits {
   int sessions_of_user = 8;  // on a server with accounts
   int viewers = 64;          // of one session
   int viewers_in_all = 256;
+  double session_cpu = 1;                               // of a core, for stepping one session; 1: no limit
   int exports = 2;                                      // at once; comparisons as well
   int models = 4;                                       // compiled scenes kept for the next session
   std::int64_t vertices = 4'000'000;                    // of one scene

@@ -14,13 +14,14 @@ constexpr absl::Duration kLook = absl::Milliseconds(50);
 }  // namespace
 
 Session::Session(std::string id, std::shared_ptr<const Model> model, Fork start, const stream::Clock& clock,
-                 int max_viewers, Origin origin)
+                 const Limits& limits, Origin origin)
     : id_(std::move(id)),
       model_(std::move(model)),
       clock_(clock),
-      publisher_(model_, clock, max_viewers),
+      publisher_(model_, clock, limits.viewers),
       attended_(absl::ToUnixNanos(clock.Now())),
       run_(model_, std::move(start.parameters), std::move(start.state)),
+      share_(limits.session_cpu),
       stable_step_(start.stable_step),
       control_(std::move(origin.control)),
       journal_(std::move(origin.journal)) {

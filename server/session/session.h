@@ -25,6 +25,8 @@
 #include "server/mechanics/pulls.h"
 #include "server/session/answers.h"
 #include "server/session/control.h"
+#include "server/session/cpu_share.h"
+#include "server/session/limits.h"
 #include "server/session/pace_meter.h"
 #include "server/session/pacer.h"
 #include "server/session/run.h"
@@ -69,8 +71,8 @@ class Session {
 
   // Paused where `start` stands, which is a state of the model; one that goes on is as it was. Every field of its
   // parameters is set and in range.
-  Session(std::string id, std::shared_ptr<const Model> model, Fork start, const stream::Clock& clock, int max_viewers,
-          Origin origin = {});
+  Session(std::string id, std::shared_ptr<const Model> model, Fork start, const stream::Clock& clock,
+          const Limits& limits, Origin origin = {});
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -157,6 +159,7 @@ class Session {
   bool Finished() const;
   double FurthestInStep() const;
   bool WaitsInStep() const;
+  bool Steps() const;
   absl::Status StartPlaying(std::optional<double> speed, bool as_fast_as_possible, double until,
                             std::weak_ptr<const ReachedTime> leader);
   absl::Status StartJob(std::shared_ptr<StepJob> job, std::optional<std::int64_t> expected_tick);
@@ -203,6 +206,7 @@ class Session {
   // Of the stepping thread alone.
   Run run_;
   Pacer pacer_;
+  CpuShare share_;
   PaceMeter meter_;
   v1::SessionState state_ = v1::SESSION_STATE_PAUSED;
   double speed_ = 1;  // simulated seconds per second

@@ -23,7 +23,10 @@ constexpr absl::Duration kLookAgain = absl::Milliseconds(1);
 void Session::Loop() {
   pthread_setname_np(pthread_self(), "stepping");
   while (ServeCommands()) {
-    if (job_ != nullptr || (state_ == v1::SESSION_STATE_PLAYING && !WaitsInStep())) Burst();
+    if (!Steps()) continue;
+    share_.Begin(clock_.Now(), ThreadCpu());
+    Burst();
+    share_.End(ThreadCpu());
   }
 }
 
@@ -50,10 +53,16 @@ bool Session::ServeCommands() {
 }
 
 absl::Time Session::NextBurst() const {
-  if (job_ != nullptr) return absl::InfinitePast();
-  if (state_ != v1::SESSION_STATE_PLAYING) return absl::InfiniteFuture();
-  if (WaitsInStep()) return clock_.Now() + kLookAgain;
-  return as_fast_as_possible_ ? absl::InfinitePast() : pacer_.next_frame();
+  const bool playing = state_ == v1::SESSION_STATE_PLAYING;
+  if (job_ == nullptr && !playing) return absl::InfiniteFuture();
+  if (job_ == nullptr && WaitsInStep()) return clock_.Now() + kLookAgain;
+  const bool at_once = job_ != nullptr || as_fast_as_possible_;
+  return std::max(share_.RestsUntil(clock_.Now()), at_once ? absl::InfinitePast() : pacer_.next_frame());
+}
+
+bool Session::Steps() const {
+  if (job_ == nullptr && (state_ != v1::SESSION_STATE_PLAYING || WaitsInStep())) return false;
+  return share_.RestsUntil(clock_.Now()) <= clock_.Now();
 }
 
 bool Session::WaitsInStep() const {

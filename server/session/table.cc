@@ -89,7 +89,7 @@ absl::StatusOr<std::shared_ptr<Session>> Table::Make(const std::string& id, cons
   if (!changes.ok()) return changes.status();
   Session::Fork start{std::move(parameters), model->InitialState(), stable_step};
   if (absl::Status status = ChangePulls(*changes, true, start.state.pulls); !status.ok()) return status;
-  return std::make_shared<Session>(id, model, std::move(start), clock_, limits_.viewers,
+  return std::make_shared<Session>(id, model, std::move(start), clock_, limits_,
                                    Session::Origin{std::move(control), Begin(id, *model)});
 }
 
@@ -97,7 +97,7 @@ absl::StatusOr<std::shared_ptr<Session>> Table::MakeFork(const std::string& id, 
                                                          ControlBook control) const {
   absl::StatusOr<Session::Fork> start = of.MakeFork();
   if (!start.ok()) return start.status();
-  return std::make_shared<Session>(id, of.shared_model(), *std::move(start), clock_, limits_.viewers,
+  return std::make_shared<Session>(id, of.shared_model(), *std::move(start), clock_, limits_,
                                    Session::Origin{std::move(control), Begin(id, of.model())});
 }
 

@@ -30,7 +30,7 @@ absl::StatusOr<std::shared_ptr<Session>> Table::Restored(const store::SavedSessi
   Session::Fork start{told.parameters(), std::move(replayed->state), told.largest_stable_step()};
   Session::Origin origin{ControlBook(RestoreControl(replayed->moment.control())), store_->Continue(saved),
                          replayed->moment};
-  return std::make_shared<Session>(saved.id, *model, std::move(start), clock_, limits_.viewers, std::move(origin));
+  return std::make_shared<Session>(saved.id, *model, std::move(start), clock_, limits_, std::move(origin));
 }
 
 absl::StatusOr<std::map<std::string, absl::Status>> Table::Restore(

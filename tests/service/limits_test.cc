@@ -219,6 +219,28 @@ TEST_F(Limits, TenThousandConnectionsToEachPortKeepNobodyOut) {
   EXPECT_LT(server_->PeakMemory() - before, 256 << 20);
 }
 
+TEST_F(Limits, ASessionHasNoMoreOfAProcessorThanItsShare) {
+  Start({"--session-cpu", "0.1"});
+  const auto sessions = v1::SessionService::NewStub(server_->NewChannel());
+  v1::CreateSessionRequest create;
+  create.set_session_id("greedy");
+  create.mutable_source()->set_name("cube-springs");
+  v1::CreateSessionResponse created;
+  grpc::ClientContext creating, playing;
+  ASSERT_TRUE(sessions->CreateSession(&creating, create, &created).ok());
+  v1::PlaySessionRequest play;
+  play.set_session_id("greedy");
+  play.set_as_fast_as_possible(true);
+  v1::PlaySessionResponse played;
+  ASSERT_TRUE(sessions->PlaySession(&playing, play, &played).ok());
+  const absl::Time start = absl::Now();
+  const double before = server_->Cpu("stepping");
+  absl::SleepFor(absl::Seconds(2));
+  const double share = (server_->Cpu("stepping") - before) / absl::ToDoubleSeconds(absl::Now() - start);
+  EXPECT_LT(share, 0.15);
+  EXPECT_GT(share, 0.01) << "it does not play";
+}
+
 TEST_F(Limits, ASilentConnectionIsClosed) {
   Start({"--idle-seconds", "1", "--head-seconds", "1"});
   RawSocket fresh(server_->web_port()), kept(server_->web_port());

@@ -13,7 +13,7 @@ class InStepTest : public testing::Test {
  protected:
   std::unique_ptr<Session> Start(const char* id) {
     Session::Fork start{model_->parameters, model_->InitialState(), model_->report.stable_step().seconds()};
-    return std::make_unique<Session>(id, model_, std::move(start), clock_, 8);
+    return std::make_unique<Session>(id, model_, std::move(start), clock_, Limits{});
   }
   void PassTenths(int tenths) {
     for (int i = 0; i < 6 * tenths; ++i) {

@@ -15,7 +15,8 @@ class SessionControlTest : public testing::Test {
   std::unique_ptr<Session> Make(ControlBook control = {}) {
     const auto model = CompileText(kTriangle);
     Session::Fork start{model->parameters, model->InitialState(), model->report.stable_step().seconds()};
-    return std::make_unique<Session>("test", model, std::move(start), clock_, 8, Session::Origin{std::move(control)});
+    return std::make_unique<Session>("test", model, std::move(start), clock_, Limits{},
+                                     Session::Origin{std::move(control)});
   }
   static v1::Parameters Elasticity(double value) {
     v1::Parameters change;

@@ -19,7 +19,7 @@ class SessionTest : public testing::Test {
   std::unique_ptr<Session> Make(const std::string& text = kTriangle) {
     const auto model = CompileText(text);
     Session::Fork start{model->parameters, model->InitialState(), model->report.stable_step().seconds()};
-    return std::make_unique<Session>("test", model, std::move(start), clock_, 8);
+    return std::make_unique<Session>("test", model, std::move(start), clock_, Limits{.viewers = 8});
   }
 
   // Lets `seconds` pass on the wall, frame by frame, the session keeping up with each.
