@@ -3,10 +3,13 @@
 #include <utility>
 
 #include "absl/time/clock.h"
+#include "server/access/fetch.h"
 #include "server/schema/sha256.h"
 
 namespace phrenic::access {
 namespace {
+
+constexpr absl::Duration kKeysAge = absl::Minutes(1);  // after which an address is asked again
 
 std::filesystem::file_time_type ChangeOf(const std::string& file) {
   std::error_code gone;
@@ -33,8 +36,9 @@ absl::Status Accounts::ReadTokenFile() {
 }
 
 absl::Status Accounts::ReadKeys() {
-  if (options_.jwt.keys_file.empty()) return absl::OkStatus();
-  keys_changed_ = ChangeOf(options_.jwt.keys_file);
+  if (options_.jwt.keys.empty()) return absl::OkStatus();
+  keys_changed_ = ChangeOf(options_.jwt.keys);
+  keys_due_ = absl::Now() + kKeysAge;
   auto keys = JwtKeys::Read(options_.jwt);
   if (!keys.ok()) return keys.status();
   absl::MutexLock lock(&mutex_);
@@ -46,8 +50,10 @@ absl::Status Accounts::Refresh() {
   if (!options_.tokens_file.empty() && ChangeOf(options_.tokens_file) != tokens_changed_) {
     if (absl::Status status = ReadTokenFile(); !status.ok()) return status;
   }
-  if (options_.jwt.keys_file.empty() || ChangeOf(options_.jwt.keys_file) == keys_changed_) return absl::OkStatus();
-  return ReadKeys();
+  if (options_.jwt.keys.empty()) return absl::OkStatus();
+  const bool due =
+      IsAddress(options_.jwt.keys) ? absl::Now() >= keys_due_ : ChangeOf(options_.jwt.keys) != keys_changed_;
+  return due ? ReadKeys() : absl::OkStatus();
 }
 
 bool Accounts::StillHas(const Account& account) const {

@@ -19,11 +19,11 @@ struct AccountOptions {
   std::string tokens_file;  // empty: none
   JwtOptions jwt;
 
-  bool used() const { return !tokens_file.empty() || !jwt.keys_file.empty(); }
+  bool used() const { return !tokens_file.empty() || !jwt.keys.empty(); }
 };
 
-// Any thread may call. Files that change are read again by Refresh; where they are not good, what they held before
-// stays.
+// Any thread may call. Files that change, and keys of an address after a while, are read again by Refresh; where they
+// are not good, what they held before stays.
 class Accounts {
  public:
   // What is wrong with a file.
@@ -35,7 +35,7 @@ class Accounts {
   absl::StatusOr<Account> Check(std::string_view token) const ABSL_LOCKS_EXCLUDED(mutex_);
   // Whether its file has it still; true for one that no file has.
   bool StillHas(const Account& account) const ABSL_LOCKS_EXCLUDED(mutex_);
-  // To be called now and then; what is wrong with a file that changed.
+  // To be called now and then; what is wrong with a file that changed, or with an address.
   absl::Status Refresh() ABSL_LOCKS_EXCLUDED(mutex_);
 
  private:
@@ -44,7 +44,9 @@ class Accounts {
   absl::Status ReadKeys() ABSL_LOCKS_EXCLUDED(mutex_);
 
   const AccountOptions options_;
-  std::filesystem::file_time_type tokens_changed_, keys_changed_;  // of who calls Refresh
+  // Of who calls Refresh.
+  std::filesystem::file_time_type tokens_changed_, keys_changed_;
+  absl::Time keys_due_;  // of an address
   mutable absl::Mutex mutex_;
   std::shared_ptr<const TokenTable> tokens_ ABSL_GUARDED_BY(mutex_);
   std::shared_ptr<const JwtKeys> keys_ ABSL_GUARDED_BY(mutex_);

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "absl/strings/str_cat.h"
+#include "server/access/fetch.h"
 #include "server/access/rules.h"
 
 namespace phrenic::access {
@@ -57,6 +59,26 @@ v1::AccessRole RoleIn(const json& claims, const std::string& claim) {
   return v1::ACCESS_ROLE_UNSPECIFIED;
 }
 
+absl::StatusOr<std::string> ReadText(const std::string& place) {
+  if (IsAddress(place)) return Fetch(place);
+  std::ifstream in(place);
+  return std::string(std::istreambuf_iterator<char>(in), {});
+}
+
+absl::StatusOr<json> ReadKeySet(std::string place) {
+  for (int documents = 0; documents < 2; ++documents) {
+    const auto text = ReadText(place);
+    if (!text.ok()) return absl::Status(text.status().code(), absl::StrCat("--jwt-keys: ", text.status().message()));
+    json set = json::parse(*text, nullptr, false);
+    if (set.is_object() && set.contains("keys") && set["keys"].is_array()) return set;
+    if (!set.is_object() || !set.contains("jwks_uri") || !set["jwks_uri"].is_string()) break;
+    place = set["jwks_uri"].get<std::string>();
+    if (!IsAddress(place)) break;
+  }
+  return absl::InvalidArgumentError(
+      absl::StrCat("--jwt-keys: ", place, " is no JSON Web Key Set, {\"keys\": [...]}, and names none as jwks_uri"));
+}
+
 }  // namespace
 
 struct JwtKeys::Key {
@@ -75,14 +97,10 @@ absl::StatusOr<std::shared_ptr<const JwtKeys>> JwtKeys::Read(const JwtOptions& o
   if (options.issuer.empty() || options.audience.empty()) {
     return absl::InvalidArgumentError("--jwt-issuer, --jwt-audience: must be given where --jwt-keys is");
   }
-  std::ifstream in(options.keys_file);
-  const json set = json::parse(in, nullptr, false);
-  if (!set.is_object() || !set.contains("keys") || !set["keys"].is_array()) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("--jwt-keys: ", options.keys_file, " is no JSON Web Key Set, {\"keys\": [...]}"));
-  }
+  const absl::StatusOr<json> set = ReadKeySet(options.keys);
+  if (!set.ok()) return set.status();
   std::shared_ptr<JwtKeys> keys(new JwtKeys(options));
-  for (const json& key : set["keys"]) {
+  for (const json& key : (*set)["keys"]) {
     const std::string text = key.dump();
     cjose_err error;
     cjose_jwk_t* jwk = cjose_jwk_import(text.data(), text.size(), &error);
@@ -93,7 +111,7 @@ absl::StatusOr<std::shared_ptr<const JwtKeys>> JwtKeys::Read(const JwtOptions& o
     if (kind == CJOSE_JWK_KTY_RSA || kind == CJOSE_JWK_KTY_EC) keys->keys_.push_back(std::move(held));
   }
   if (!keys->keys_.empty()) return keys;
-  return absl::InvalidArgumentError(absl::StrCat("--jwt-keys: ", options.keys_file, " has no RSA or EC key"));
+  return absl::InvalidArgumentError(absl::StrCat("--jwt-keys: ", options.keys, " has no RSA or EC key"));
 }
 
 absl::StatusOr<std::string> JwtKeys::VerifiedClaims(std::string_view token) const {

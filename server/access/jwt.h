@@ -14,9 +14,11 @@
 namespace phrenic::access {
 
 struct JwtOptions {
-  std::string keys_file;  // a JSON Web Key Set (RFC 7517); empty: none are taken
-  std::string issuer;     // "iss" must be this
-  std::string audience;   // "aud" must be, or hold, this
+  // A file, or an address, of a JSON Web Key Set (RFC 7517), or of an OpenID Connect configuration, whose "jwks_uri"
+  // has one; empty: none are taken.
+  std::string keys;
+  std::string issuer;    // "iss" must be this
+  std::string audience;  // "aud" must be, or hold, this
   std::string name_claim = "sub";
   std::string role_claim = "phrenic_role";  // "viewer" .. "admin", or a list with one of them
 };
@@ -24,7 +26,7 @@ struct JwtOptions {
 // Immutable: any thread may call.
 class JwtKeys {
  public:
-  // INVALID_ARGUMENT with the file and what is wrong: no JSON, no key that signs.
+  // INVALID_ARGUMENT with the file and what is wrong: no JSON, no key that signs. The errors of Fetch.
   static absl::StatusOr<std::shared_ptr<const JwtKeys>> Read(const JwtOptions& options);
   JwtKeys(const JwtKeys&) = delete;
   JwtKeys& operator=(const JwtKeys&) = delete;

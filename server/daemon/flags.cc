@@ -120,8 +120,10 @@ void AddAccess(CLI::App& app, Flags& flags) {
                 "Listen to other machines without TLS: anybody on the way can read and change everything");
   access::AccountOptions& accounts = options.accounts;
   group.Add("tokens", accounts.tokens_file, "File of accounts (phrenicd token add); with it every call needs one");
-  group.Add("jwt-keys", accounts.jwt.keys_file,
-            "File of an identity provider's keys, a JSON Web Key Set: its signed tokens (OIDC) are accounts too");
+  group.Add(
+      "jwt-keys", accounts.jwt.keys,
+      "File or https:// address of an identity provider's keys, a JSON Web Key Set or an OpenID configuration: its "
+      "signed tokens are accounts too");
   group.Add("jwt-issuer", accounts.jwt.issuer, "What \"iss\" of such a token must be");
   group.Add("jwt-audience", accounts.jwt.audience, "What \"aud\" must be, or hold");
   group.Add("jwt-name-claim", accounts.jwt.name_claim, "Which claim names the account");

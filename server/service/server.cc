@@ -5,6 +5,7 @@
 #include <grpcpp/resource_quota.h>
 #include <grpcpp/server.h>
 #include <grpcpp/server_builder.h>
+#include <spdlog/spdlog.h>
 
 #include <filesystem>
 
@@ -117,6 +118,8 @@ struct Server::Parts {
                        options.tls.used(), door) {}
 
   absl::Status Restore(const ServerOptions& options);
+  // Now and then.
+  void Tend();
   absl::Status Serve(const ServerOptions& options);
   absl::Status ServeWeb(const ServerOptions& options);
 
@@ -146,6 +149,7 @@ struct Server::Parts {
   std::unique_ptr<WebGateway> web;
   std::unique_ptr<Caretaker> caretaker;
   std::map<std::string, absl::Status> lost;
+  absl::Status not_refreshed;  // of the accounts, the last time
 };
 
 absl::Status Server::Parts::Restore(const ServerOptions& options) {
@@ -157,6 +161,15 @@ absl::Status Server::Parts::Restore(const ServerOptions& options) {
   if (!restored.ok()) return restored.status();
   lost.merge(*restored);
   return absl::OkStatus();
+}
+
+void Server::Parts::Tend() {
+  table.Tend();
+  const absl::Status refreshed = accounts->Refresh();
+  if (!refreshed.ok() && refreshed != not_refreshed) {
+    spdlog::warn("{}; what was good before stays", std::string(refreshed.message()));
+  }
+  not_refreshed = refreshed;
 }
 
 absl::Status Server::Parts::Serve(const ServerOptions& options) {
@@ -233,10 +246,8 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& optio
   if (absl::Status status = server->parts_->Restore(options); !status.ok()) return status;
   if (absl::Status status = server->parts_->Serve(options); !status.ok()) return status;
   if (absl::Status status = server->parts_->ServeWeb(options); !status.ok()) return status;
-  server->parts_->caretaker = std::make_unique<Caretaker>(kTendPause, [parts = server->parts_.get()] {
-    parts->table.Tend();
-    parts->accounts->Refresh().IgnoreError();  // what was good before stays
-  });
+  server->parts_->caretaker =
+      std::make_unique<Caretaker>(kTendPause, [parts = server->parts_.get()] { parts->Tend(); });
   server->parts_->pages.set_ready(true);
   return server;
 }

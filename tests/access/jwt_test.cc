@@ -9,6 +9,7 @@
 
 #include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
+#include "tests/access/provider.h"
 
 namespace phrenic::access {
 namespace {
@@ -18,51 +19,16 @@ using testing::HasSubstr;
 
 const absl::Time kNow = absl::FromUnixSeconds(1'800'000'000);
 
-// An identity provider with a key of its own.
-class Provider {
- public:
-  Provider() : key_(cjose_jwk_create_RSA_random(2048, nullptr, 0, &error_)) {}
-  ~Provider() { cjose_jwk_release(key_); }
-  Provider(const Provider&) = delete;
-  Provider& operator=(const Provider&) = delete;
-
-  json PublicKey() {
-    char* text = cjose_jwk_to_json(key_, false, &error_);
-    json key = json::parse(text);
-    free(text);
-    return key;
-  }
-  std::string Sign(const json& claims) { return SignWith(key_, "RS256", claims); }
-  static std::string SignWith(cjose_jwk_t* key, const char* algorithm, const json& claims) {
-    cjose_err error;
-    cjose_header_t* header = cjose_header_new(&error);
-    cjose_header_set(header, CJOSE_HDR_ALG, algorithm, &error);
-    const std::string text = claims.dump();
-    cjose_jws_t* jws =
-        cjose_jws_sign(key, header, reinterpret_cast<const std::uint8_t*>(text.data()), text.size(), &error);
-    const char* compact = nullptr;
-    cjose_jws_export(jws, &compact, &error);
-    std::string token = compact;
-    cjose_jws_release(jws);
-    cjose_header_release(header);
-    return token;
-  }
-
- private:
-  cjose_err error_{};
-  cjose_jwk_t* const key_;
-};
-
 class Jwt : public testing::Test {
  protected:
   Jwt() {
-    options_.keys_file = absl::StrCat(testing::TempDir(), "/phrenic-keys-", getpid(), ".json");
+    options_.keys = absl::StrCat(testing::TempDir(), "/phrenic-keys-", getpid(), ".json");
     options_.issuer = "https://id.example.org";
     options_.audience = "phrenic";
-    std::ofstream(options_.keys_file) << json{{"keys", {provider_.PublicKey()}}};
+    std::ofstream(options_.keys) << json{{"keys", {provider_.PublicKey()}}};
     keys_ = *JwtKeys::Read(options_);
   }
-  ~Jwt() override { unlink(options_.keys_file.c_str()); }
+  ~Jwt() override { unlink(options_.keys.c_str()); }
 
   static json Claims() {
     return {{"iss", "https://id.example.org"}, {"aud", {"other", "phrenic"}}, {"sub", "anna"},
@@ -134,9 +100,9 @@ TEST_F(Jwt, WithoutASignatureOrSignedByThePublicKeyIsRefused) {
 }
 
 TEST_F(Jwt, KeysThatAreNoneAreAnErrorThatNamesTheFile) {
-  std::ofstream(options_.keys_file) << "{\"keys\": [{\"kty\": \"oct\", \"k\": \"c2VjcmV0\"}]}";
+  std::ofstream(options_.keys) << "{\"keys\": [{\"kty\": \"oct\", \"k\": \"c2VjcmV0\"}]}";
   EXPECT_THAT(std::string(JwtKeys::Read(options_).status().message()), HasSubstr("has no RSA or EC key"));
-  std::ofstream(options_.keys_file) << "nonsense";
+  std::ofstream(options_.keys) << "nonsense";
   EXPECT_THAT(std::string(JwtKeys::Read(options_).status().message()), HasSubstr("is no JSON Web Key Set"));
   options_.audience.clear();
   EXPECT_THAT(std::string(JwtKeys::Read(options_).status().message()), HasSubstr("--jwt-audience"));
