@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "google/protobuf/io/coded_stream.h"
 #include "google/protobuf/io/zero_copy_stream_impl_lite.h"
@@ -34,6 +35,7 @@ Models::Models(SceneCatalogue catalogue, std::string data_dir, int capacity, Upl
                std::int64_t most_vertices)
     : catalogue_(std::move(catalogue)),
       data_dir_(data_dir),
+      uploads_(uploads),
       meshes_(MakeMeshSource(std::move(data_dir), uploads)),
       capacity_(std::max(1, capacity)),
       most_vertices_(most_vertices) {}
@@ -55,6 +57,28 @@ absl::Status Models::CheckSize(const Model& model) const {
   for (const BodyModel& body : model.bodies) vertices += body.mesh.vertices.cols();
   if (vertices <= most_vertices_) return absl::OkStatus();
   return TooLarge("bodies: the scene", vertices, most_vertices_);
+}
+
+absl::StatusOr<std::vector<Uploads::Held>> Models::HoldSurfaces(const v1::Scene& scene) const {
+  std::vector<Uploads::Held> surfaces;
+  for (const v1::Body& body : scene.bodies()) {
+    if (uploads_ == nullptr || !absl::StartsWith(body.file().path(), std::string(Uploads::kPrefix))) continue;
+    auto held = uploads_->Hold(body.file().path());
+    if (!held.ok()) return held.status();
+    surfaces.push_back(*std::move(held));
+  }
+  return surfaces;
+}
+
+absl::StatusOr<std::vector<Uploads::Held>> Models::AdoptSurfaces(const v1::SavedScene& saved) const {
+  std::vector<Uploads::Held> surfaces;
+  if (uploads_ == nullptr) return surfaces;
+  for (const v1::SavedSurface& surface : saved.surfaces()) {
+    auto held = uploads_->Adopt(surface.name(), surface.content());
+    if (!held.ok()) return held.status();
+    surfaces.push_back(*std::move(held));
+  }
+  return surfaces;
 }
 
 absl::StatusOr<v1::Scene> Models::Resolve(const v1::SceneSource& source) const {

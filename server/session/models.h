@@ -6,10 +6,12 @@
 #include <list>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "absl/base/thread_annotations.h"
 #include "absl/status/statusor.h"
 #include "absl/synchronization/mutex.h"
+#include "phrenic/v1/saved.pb.h"
 #include "phrenic/v1/session.pb.h"
 #include "server/mechanics/compile.h"
 #include "server/session/scene_catalogue.h"
@@ -30,6 +32,10 @@ class Models {
   // The same scene gives the same model as long as its surface files stay as they are. A model with no more
   // vertices in all than are allowed, else RESOURCE_EXHAUSTED.
   absl::StatusOr<std::shared_ptr<const Model>> Get(const v1::SceneSource& source) ABSL_LOCKS_EXCLUDED(mutex_);
+  // The files that clients gave which the scene names; Uploads::Hold.
+  absl::StatusOr<std::vector<Uploads::Held>> HoldSurfaces(const v1::Scene& scene) const;
+  // Those of a scene that was saved, before it is compiled.
+  absl::StatusOr<std::vector<Uploads::Held>> AdoptSurfaces(const v1::SavedScene& saved) const;
 
  private:
   struct Entry {
@@ -43,6 +49,7 @@ class Models {
 
   const SceneCatalogue catalogue_;
   const std::string data_dir_;
+  Uploads* const uploads_;
   const MeshSource meshes_;
   const std::size_t capacity_;
   const std::int64_t most_vertices_;

@@ -17,6 +17,7 @@ Session::Session(std::string id, std::shared_ptr<const Model> model, Fork start,
                  const Limits& limits, Origin origin)
     : id_(std::move(id)),
       model_(std::move(model)),
+      surfaces_(std::move(origin.surfaces)),
       clock_(clock),
       publisher_(model_, clock, limits.viewers),
       attended_(absl::ToUnixNanos(clock.Now())),

@@ -30,6 +30,7 @@
 #include "server/session/pace_meter.h"
 #include "server/session/pacer.h"
 #include "server/session/run.h"
+#include "server/session/uploads.h"
 #include "server/store/store.h"
 #include "server/stream/publisher.h"
 
@@ -44,6 +45,7 @@ struct SessionOrigin {
   ControlBook control;
   std::shared_ptr<store::Journal> journal = nullptr;  // null: it is not saved
   std::optional<v1::SavedMoment> told = std::nullopt;
+  std::vector<Uploads::Held> surfaces = {};  // that clients gave, of which its scene is made
 };
 
 // Any thread may call. Calls that change something are carried out by the stepping thread between two steps, so that
@@ -81,6 +83,7 @@ class Session {
   const Model& model() const { return *model_; }
   std::shared_ptr<const Model> shared_model() const { return model_; }
   v1::Session status() const ABSL_LOCKS_EXCLUDED(mutex_);
+  const std::vector<Uploads::Held>& surfaces() const { return surfaces_; }
   stream::Publisher& publisher() { return publisher_; }
   // What was answered to requests that can be repeated.
   Answers& answers() { return answers_; }
@@ -189,6 +192,7 @@ class Session {
 
   const std::string id_;
   const std::shared_ptr<const Model> model_;
+  const std::vector<Uploads::Held> surfaces_;
   const stream::Clock& clock_;
   stream::Publisher publisher_;
   Answers answers_;

@@ -89,16 +89,20 @@ absl::StatusOr<std::shared_ptr<Session>> Table::Make(const std::string& id, cons
   if (!changes.ok()) return changes.status();
   Session::Fork start{std::move(parameters), model->InitialState(), stable_step};
   if (absl::Status status = ChangePulls(*changes, true, start.state.pulls); !status.ok()) return status;
-  return std::make_shared<Session>(id, model, std::move(start), clock_, limits_,
-                                   Session::Origin{std::move(control), Begin(id, *model)});
+  auto surfaces = models_.HoldSurfaces(model->scene);
+  if (!surfaces.ok()) return surfaces.status();
+  auto origin = Begin(id, *model, *std::move(surfaces), std::move(control));
+  if (!origin.ok()) return origin.status();
+  return std::make_shared<Session>(id, model, std::move(start), clock_, limits_, *std::move(origin));
 }
 
 absl::StatusOr<std::shared_ptr<Session>> Table::MakeFork(const std::string& id, Session& of,
                                                          ControlBook control) const {
   absl::StatusOr<Session::Fork> start = of.MakeFork();
   if (!start.ok()) return start.status();
-  return std::make_shared<Session>(id, of.shared_model(), *std::move(start), clock_, limits_,
-                                   Session::Origin{std::move(control), Begin(id, of.model())});
+  auto origin = Begin(id, of.model(), of.surfaces(), std::move(control));
+  if (!origin.ok()) return origin.status();
+  return std::make_shared<Session>(id, of.shared_model(), *std::move(start), clock_, limits_, *std::move(origin));
 }
 
 absl::StatusOr<std::shared_ptr<Session>> Table::Create(const v1::CreateSessionRequest& request, ControlBook control) {

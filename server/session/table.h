@@ -72,7 +72,9 @@ class Table {
   absl::StatusOr<std::shared_ptr<Session>> Make(const std::string& id, const v1::CreateSessionRequest& request,
                                                 ControlBook control);
   absl::StatusOr<std::shared_ptr<Session>> MakeFork(const std::string& id, Session& of, ControlBook control) const;
-  std::shared_ptr<store::Journal> Begin(const std::string& id, const Model& model) const;
+  // Of a new session: its journal is begun where there is a store.
+  absl::StatusOr<SessionOrigin> Begin(const std::string& id, const Model& model, std::vector<Uploads::Held> surfaces,
+                                      ControlBook control) const;
   absl::StatusOr<std::shared_ptr<Session>> Restored(const store::SavedSession& saved);
   // `token` of who asks; none: whoever it is.
   absl::Status Remove(const std::string& id, std::optional<std::string_view> token) ABSL_LOCKS_EXCLUDED(mutex_);

@@ -7,16 +7,28 @@
 
 namespace phrenic::session {
 
-std::shared_ptr<store::Journal> Table::Begin(const std::string& id, const Model& model) const {
-  if (store_ == nullptr) return nullptr;
+absl::StatusOr<SessionOrigin> Table::Begin(const std::string& id, const Model& model,
+                                           std::vector<Uploads::Held> surfaces, ControlBook control) const {
+  SessionOrigin origin{std::move(control), nullptr, std::nullopt, std::move(surfaces)};
+  if (store_ == nullptr) return origin;
   v1::SavedScene scene;
   *scene.mutable_source()->mutable_scene() = model.scene;
   scene.set_scene_hash(model.report.scene_hash());
-  return store_->Begin(id, std::move(scene));
+  for (const Uploads::Held& surface : origin.surfaces) {
+    auto bytes = surface.Bytes();
+    if (!bytes.ok()) return bytes.status();
+    v1::SavedSurface& saved = *scene.add_surfaces();
+    saved.set_name(surface.file.name);
+    saved.set_content(*std::move(bytes));
+  }
+  origin.journal = store_->Begin(id, std::move(scene));
+  return origin;
 }
 
 absl::StatusOr<std::shared_ptr<Session>> Table::Restored(const store::SavedSession& saved) {
   if (!saved.problem.ok()) return saved.problem;
+  auto surfaces = models_.AdoptSurfaces(saved.scene);
+  if (!surfaces.ok()) return surfaces.status();
   const auto model = models_.Get(saved.scene.source());
   if (!model.ok()) return model.status();
   if ((*model)->report.scene_hash() != saved.scene.scene_hash()) {
@@ -29,7 +41,7 @@ absl::StatusOr<std::shared_ptr<Session>> Table::Restored(const store::SavedSessi
   const v1::Session& told = replayed->moment.session();
   Session::Fork start{told.parameters(), std::move(replayed->state), told.largest_stable_step()};
   Session::Origin origin{ControlBook(RestoreControl(replayed->moment.control())), store_->Continue(saved),
-                         replayed->moment};
+                         replayed->moment, *std::move(surfaces)};
   return std::make_shared<Session>(saved.id, *model, std::move(start), clock_, limits_, std::move(origin));
 }
 

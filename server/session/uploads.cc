@@ -15,12 +15,6 @@ namespace {
 
 constexpr std::size_t kMostPending = 16;
 
-absl::StatusOr<std::string> AllBytes(const record::SpoolFile& spool) {
-  std::string bytes(static_cast<std::size_t>(spool.size()), '\0');
-  if (absl::Status status = spool.Read(0, bytes.data(), bytes.size()); !status.ok()) return status;
-  return bytes;
-}
-
 bool IsSurfaceName(const std::string& name) {
   const auto& formats = meshio::Formats();
   return std::any_of(formats.begin(), formats.end(), [&](const meshio::Format& format) {
@@ -29,6 +23,12 @@ bool IsSurfaceName(const std::string& name) {
 }
 
 }  // namespace
+
+absl::StatusOr<std::string> Uploads::Held::Bytes() const {
+  std::string bytes(static_cast<std::size_t>(spool->size()), '\0');
+  if (absl::Status status = spool->Read(0, bytes.data(), bytes.size()); !status.ok()) return status;
+  return bytes;
+}
 
 Uploads::Uploads(const Limits& limits, std::string spool_folder)
     : limits_(limits), spool_folder_(std::move(spool_folder)) {}
@@ -52,7 +52,7 @@ absl::StatusOr<Uploads::Begun> Uploads::Begin(const std::string& name, std::int6
     kept_.splice(kept_.begin(), kept_, kept);
     return Begun{"", kept->file.size, kept->file};
   }
-  for (const Pending& pending : pending_) {
+  for (const Held& pending : pending_) {
     const File& file = pending.file;
     const bool same = !sha256.empty() && file.sha256 == sha256 && file.size == size;
     if (same) return Begun{pending.id, pending.spool->size(), file};
@@ -85,7 +85,7 @@ absl::StatusOr<std::int64_t> Uploads::Add(const std::string& id, std::int64_t of
 }
 
 absl::StatusOr<Uploads::Finished> Uploads::Finish(const std::string& id, double unit_mm) {
-  Pending pending;
+  Held pending;
   {
     absl::MutexLock lock(&mutex_);
     const auto found = FindPending(id);
@@ -97,7 +97,7 @@ absl::StatusOr<Uploads::Finished> Uploads::Finish(const std::string& id, double 
     pending = std::move(*found);
     pending_.erase(found);
   }
-  const auto bytes = AllBytes(*pending.spool);
+  const auto bytes = pending.Bytes();
   if (!bytes.ok()) return bytes.status();
   const std::string sha256 = Sha256Hex(*bytes);
   if (!pending.file.sha256.empty() && pending.file.sha256 != sha256) {
@@ -108,21 +108,21 @@ absl::StatusOr<Uploads::Finished> Uploads::Finish(const std::string& id, double 
   auto surface = meshio::ParseSurface(pending.file.name, *bytes, kMillimetre * unit_mm);
   if (!surface.ok()) return surface.status();
   absl::MutexLock lock(&mutex_);
-  Keep({pending.id, pending.file, pending.spool});
+  Keep(pending);
   return Finished{pending.file, *std::move(surface)};
 }
 
 absl::StatusOr<Uploads::Finished> Uploads::FinishedBefore(const std::string& id, double unit_mm) const {
-  const auto kept = std::find_if(kept_.begin(), kept_.end(), [&id](const Kept& one) { return one.id == id; });
+  const auto kept = std::find_if(kept_.begin(), kept_.end(), [&id](const Held& one) { return one.id == id; });
   if (kept == kept_.end()) return NoUpload(id);
-  const auto bytes = AllBytes(*kept->spool);
+  const auto bytes = kept->Bytes();
   if (!bytes.ok()) return bytes.status();
   auto surface = meshio::ParseSurface(kept->file.name, *bytes, kMillimetre * unit_mm);
   if (!surface.ok()) return surface.status();
   return Finished{kept->file, *std::move(surface)};
 }
 
-void Uploads::Keep(Kept kept) {
+void Uploads::Keep(Held kept) {
   if (const auto same = FindKept(kept.file.sha256); same != kept_.end()) kept_.erase(same);
   kept_.push_front(std::move(kept));
   std::int64_t bytes = 0;
@@ -140,18 +140,18 @@ absl::Status Uploads::NoUpload(const std::string& id) const {
       absl::StrCat("upload_id: there is no upload \"", id.substr(0, 64), "\" under way; begin it anew"));
 }
 
-std::list<Uploads::Kept>::iterator Uploads::FindKept(std::string_view sha256) {
-  return std::find_if(kept_.begin(), kept_.end(), [&](const Kept& kept) { return kept.file.sha256 == sha256; });
+std::list<Uploads::Held>::iterator Uploads::FindKept(std::string_view sha256) {
+  return std::find_if(kept_.begin(), kept_.end(), [&](const Held& kept) { return kept.file.sha256 == sha256; });
 }
 
-std::list<Uploads::Pending>::iterator Uploads::FindPending(const std::string& id) {
-  return std::find_if(pending_.begin(), pending_.end(), [&](const Pending& pending) { return pending.id == id; });
+std::list<Uploads::Held>::iterator Uploads::FindPending(const std::string& id) {
+  return std::find_if(pending_.begin(), pending_.end(), [&](const Held& pending) { return pending.id == id; });
 }
 
 std::vector<Uploads::File> Uploads::List() const {
   absl::MutexLock lock(&mutex_);
   std::vector<File> files;
-  for (const Kept& kept : kept_) files.push_back(kept.file);
+  for (const Held& kept : kept_) files.push_back(kept.file);
   return files;
 }
 
@@ -163,21 +163,34 @@ absl::Status Uploads::Delete(const std::string& path) {
   return absl::OkStatus();
 }
 
-absl::StatusOr<Mesh> Uploads::Read(const std::string& path, double unit) {
-  Kept file;
-  {
-    absl::MutexLock lock(&mutex_);
-    const auto kept = FindKept(std::string_view(path).substr(std::min(path.size(), kPrefix.size())));
-    if (kept == kept_.end()) {
-      return absl::NotFoundError(absl::StrCat(path.substr(0, 80),
-                                              ": the server has no such file, or no longer; upload it "
-                                              "again (phrenic upload FILE)"));
-    }
-    kept_.splice(kept_.begin(), kept_, kept);
-    file = *kept;
+absl::StatusOr<Uploads::Held> Uploads::Hold(const std::string& path) {
+  absl::MutexLock lock(&mutex_);
+  const auto kept = FindKept(std::string_view(path).substr(std::min(path.size(), kPrefix.size())));
+  if (kept == kept_.end()) {
+    return absl::NotFoundError(absl::StrCat(
+        path.substr(0, 80), ": the server has no such file, or no longer; upload it again (phrenic upload FILE)"));
   }
-  const auto bytes = AllBytes(*file.spool);
-  return bytes.ok() ? meshio::Parse(file.file.name, *bytes, unit) : bytes.status();
+  kept_.splice(kept_.begin(), kept_, kept);
+  return *kept;
+}
+
+absl::StatusOr<Uploads::Held> Uploads::Adopt(const std::string& name, std::string_view bytes) {
+  const std::string sha256 = Sha256Hex(bytes);
+  if (auto there = Hold(absl::StrCat(std::string(kPrefix), sha256)); there.ok()) return there;
+  auto spool = record::SpoolFile::Open(spool_folder_);
+  if (!spool.ok()) return spool.status();
+  if (absl::Status status = (*spool)->Append(bytes); !status.ok()) return status;
+  Held held{"", {sha256, name, static_cast<std::int64_t>(bytes.size())}, *std::move(spool)};
+  absl::MutexLock lock(&mutex_);
+  Keep(held);
+  return held;
+}
+
+absl::StatusOr<Mesh> Uploads::Read(const std::string& path, double unit) {
+  const auto held = Hold(path);
+  if (!held.ok()) return held.status();
+  const auto bytes = held->Bytes();
+  return bytes.ok() ? meshio::Parse(held->file.name, *bytes, unit) : bytes.status();
 }
 
 }  // namespace phrenic::session

@@ -36,6 +36,13 @@ class Uploads {
     File file;
     meshio::Surface surface;  // in metres
   };
+  // A file that is there as long as this is, whatever becomes of the others.
+  struct Held {
+    std::string id;  // under which it came
+    File file;
+    std::shared_ptr<record::SpoolFile> spool;
+    absl::StatusOr<std::string> Bytes() const;
+  };
   static constexpr std::string_view kPrefix = "upload:";
   static constexpr std::size_t kMostChunk = std::size_t{4} << 20;  // [bytes]
 
@@ -52,34 +59,27 @@ class Uploads {
   std::vector<File> List() const ABSL_LOCKS_EXCLUDED(mutex_);
   absl::Status Delete(const std::string& path) ABSL_LOCKS_EXCLUDED(mutex_);
 
+  // NOT_FOUND says to upload it again.
+  absl::StatusOr<Held> Hold(const std::string& path) ABSL_LOCKS_EXCLUDED(mutex_);
+  // A file that an earlier server had is there again, as if it had just come.
+  absl::StatusOr<Held> Adopt(const std::string& name, std::string_view bytes) ABSL_LOCKS_EXCLUDED(mutex_);
   // The surface of "upload:SHA256" in metres. NOT_FOUND says to upload it again; the parser's errors.
   absl::StatusOr<Mesh> Read(const std::string& path, double unit) ABSL_LOCKS_EXCLUDED(mutex_);
 
  private:
-  struct Kept {
-    std::string id;  // under which it came
-    File file;
-    std::shared_ptr<record::SpoolFile> spool;
-  };
-  struct Pending {
-    std::string id;
-    File file;
-    std::shared_ptr<record::SpoolFile> spool;
-  };
-
   absl::Status CheckFile(const std::string& name, std::int64_t size) const;
   absl::StatusOr<Finished> FinishedBefore(const std::string& id, double unit_mm) const
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   absl::Status NoUpload(const std::string& id) const;
-  std::list<Kept>::iterator FindKept(std::string_view sha256) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  std::list<Pending>::iterator FindPending(const std::string& id) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  void Keep(Kept kept) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  std::list<Held>::iterator FindKept(std::string_view sha256) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  std::list<Held>::iterator FindPending(const std::string& id) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void Keep(Held kept) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
   const Limits limits_;
   const std::string spool_folder_;
   mutable absl::Mutex mutex_;
-  std::list<Kept> kept_ ABSL_GUARDED_BY(mutex_);        // last used first
-  std::list<Pending> pending_ ABSL_GUARDED_BY(mutex_);  // oldest first
+  std::list<Held> kept_ ABSL_GUARDED_BY(mutex_);     // last used first
+  std::list<Held> pending_ ABSL_GUARDED_BY(mutex_);  // oldest first
   int begun_ ABSL_GUARDED_BY(mutex_) = 0;
 };
 

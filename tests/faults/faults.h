@@ -32,6 +32,8 @@ Tally LineCut(Oracle& oracle, const std::string& folder, int times);
 Tally Delayed(Oracle& oracle, const std::string& folder, int times);
 Tally RandomRequests(Oracle& oracle, const std::string& folder, int times);
 Tally RandomBytes(Oracle& oracle, const std::string& folder, int times);
+// Of time (crowd.cc).
+Tally ComingAndGoing(Oracle& oracle, const std::string& folder, int times);
 
 inline constexpr Fault kFaults[] = {
     {"killed", "SIGKILL at a random moment", 100, &Killed},
@@ -46,6 +48,7 @@ inline constexpr Fault kFaults[] = {
     {"delayed", "bytes that come up to 0.4 s late", 10, &Delayed},
     {"requests", "every method with random requests", 2000, &RandomRequests},
     {"bytes", "random bytes on both ports", 200, &RandomBytes},
+    {"crowd", "six sessions, eighteen viewers come and go", 60, &ComingAndGoing},
 };
 
 }  // namespace phrenic::faults

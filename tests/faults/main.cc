@@ -25,6 +25,7 @@ void PrintLine(const Fault& fault, const Tally& tally) {
     std::printf("%-9s %-46s %6d %6d %6d %9.0f %9.0f\n", fault.name, fault.what, tally.tried, tally.lost, tally.wrong,
                 1e3 * Quantile(tally.recovered, 0.5), 1e3 * Quantile(tally.recovered, 1));
   }
+  if (!tally.told.empty()) std::printf("%-9s %s\n", "", tally.told.c_str());
   std::fflush(stdout);
 }
 

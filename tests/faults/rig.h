@@ -18,6 +18,7 @@ struct Tally {
   int tried = 0, lost = 0, wrong = 0;
   std::vector<double> recovered;  // from the fault to the next answer [s]
   std::string skipped;            // why it could not be tried
+  std::string told;               // what else there is to say
 };
 
 class Rig {

@@ -1,5 +1,6 @@
 // A session that was saved goes on as if nothing had happened.
 #include <gmock/gmock.h>
+#include <google/protobuf/text_format.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -38,7 +39,8 @@ class RestoreTest : public testing::Test {
     auto store = store::Store::Open(folder_ + "/store");
     ASSERT_TRUE(store.ok()) << store.status();
     store_ = *std::move(store);
-    models_ = std::make_unique<Models>(SceneCatalogue({folder_ + "/scenes"}), "", 4);
+    uploads_ = std::make_unique<Uploads>(Limits(), testing::TempDir());
+    models_ = std::make_unique<Models>(SceneCatalogue({folder_ + "/scenes"}), "", 4, uploads_.get());
     table_ = std::make_unique<Table>(*models_, clock_, Limits(), store_.get());
     auto lost = table_->Restore([](const std::string&) {});
     ASSERT_TRUE(lost.ok()) << lost.status();
@@ -88,6 +90,7 @@ class RestoreTest : public testing::Test {
   const std::string folder_ = testing::TempDir() + "phrenic_restore_" + std::to_string(getpid());
   FakeClock clock_;
   std::unique_ptr<store::Store> store_;
+  std::unique_ptr<Uploads> uploads_;
   std::unique_ptr<Models> models_;
   std::unique_ptr<Table> table_;
   std::map<std::string, absl::Status> lost_;
@@ -97,7 +100,7 @@ class RestoreTest : public testing::Test {
 TEST_F(RestoreTest, ItIsBitForBitTheSessionThatWasNeverInterrupted) {
   std::mt19937 random(11);
   const auto model = Create("saved")->shared_model();
-  Session whole("whole", model, {model->parameters, model->InitialState(), 0.01}, clock_, 1);
+  Session whole("whole", model, {model->parameters, model->InitialState(), 0.01}, clock_, Limits{});
   for (int round = 0; round < 12; ++round) {
     const auto what = random() % 3;
     const double amount = 0.1 * static_cast<double>(1 + random() % 20);
@@ -122,6 +125,33 @@ TEST_F(RestoreTest, ItIsBitForBitTheSessionThatWasNeverInterrupted) {
     EXPECT_EQ(HashAfter(*Find("saved"), 5), HashAfter(whole, 5)) << "round " << round;
   }
   EXPECT_THAT(lost_, IsEmpty());
+}
+
+TEST_F(RestoreTest, OneOfAFileThatAClientGaveIsCompleteInItself) {
+  const auto given = uploads_->Adopt("tent.obj", "v 0 0 0\nv 100 0 0\nv 0 100 0\nv 0 0 100\nf 1 2 3\nf 1 3 4\n");
+  ASSERT_TRUE(given.ok()) << given.status();
+  v1::CreateSessionRequest request;
+  request.set_session_id("given");
+  ASSERT_TRUE(google::protobuf::TextFormat::ParseFromString(
+      absl::StrCat(R"(name: "tent" bodies { name: "tent" role: ROLE_DEFORMABLE mass: 1 fixed_vertices: [0]
+                      file { path: ")",
+                   given->file.path(), R"(" unit: UNIT_MILLIMETRE } }
+                      forces { springs { bodies: "tent" stiffness: 20 } }
+                      forces { gravity { bodies: "tent" acceleration { z: -1 } } })"),
+      request.mutable_source()->mutable_scene()));
+  const auto session = table_->Create(request);
+  ASSERT_TRUE(session.ok()) << session.status();
+  ASSERT_TRUE(uploads_->Delete(given->file.path()).ok());
+  v1::ForkSessionRequest fork;
+  fork.set_session_id("given");
+  fork.set_fork_id("fork");
+  ASSERT_TRUE(table_->Fork(fork).ok());
+  const std::string hash = HashAfter(**session, 20);
+  Again();
+  ASSERT_THAT(lost_, IsEmpty());
+  EXPECT_EQ(HashText(Find("given")->MakeFork()->state), hash);
+  EXPECT_EQ(HashAfter(*Find("fork"), 20), hash);
+  EXPECT_EQ(uploads_->List().size(), 1u);
 }
 
 TEST_F(RestoreTest, OneThatPlayedGoesOn) {

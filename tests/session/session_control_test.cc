@@ -16,7 +16,7 @@ class SessionControlTest : public testing::Test {
     const auto model = CompileText(kTriangle);
     Session::Fork start{model->parameters, model->InitialState(), model->report.stable_step().seconds()};
     return std::make_unique<Session>("test", model, std::move(start), clock_, Limits{},
-                                     Session::Origin{std::move(control)});
+                                     Session::Origin{.control = std::move(control)});
   }
   static v1::Parameters Elasticity(double value) {
     v1::Parameters change;

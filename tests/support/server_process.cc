@@ -135,9 +135,14 @@ std::int64_t ServerProcess::Status(const std::string& name) const {
   std::ifstream in(absl::StrCat("/proc/", pid_, "/status"));
   std::string word;
   while (in >> word && word != name) continue;
-  std::int64_t kilobytes = 0;
-  in >> kilobytes;
-  return kilobytes << 10;
+  std::int64_t number = 0;
+  in >> number;
+  return number;
+}
+
+std::int64_t ServerProcess::Files() const {
+  std::error_code gone;
+  return std::distance(std::filesystem::directory_iterator(absl::StrCat("/proc/", pid_, "/fd"), gone), {});
 }
 
 }  // namespace phrenic

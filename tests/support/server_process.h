@@ -49,8 +49,11 @@ class ServerProcess {
   double Cpu() const;
   double Cpu(const std::string& thread) const;
   // What is resident, and the most that ever was [bytes].
-  std::int64_t Memory() const { return Status("VmRSS:"); }
-  std::int64_t PeakMemory() const { return Status("VmHWM:"); }
+  std::int64_t Memory() const { return 1024 * Status("VmRSS:"); }
+  std::int64_t PeakMemory() const { return 1024 * Status("VmHWM:"); }
+  std::int64_t Threads() const { return Status("Threads:"); }
+  // Open file descriptors.
+  std::int64_t Files() const;
 
  private:
   static int PortOf(const std::string& address);
