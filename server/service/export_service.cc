@@ -52,7 +52,8 @@ grpc::Status ExportService::CreateExport(grpc::ServerContext* context, const v1:
   if (!session.ok()) return ToGrpc(session.status());
   auto fork = (*session)->MakeFork();
   if (!fork.ok()) return ToGrpc(fork.status());
-  auto job = exports_.Add(*request, (*session)->shared_model(), *std::move(fork));
+  auto job =
+      exports_.Add(*request, {(*session)->shared_model(), *std::move(fork), (*session)->surfaces(), caller->id()});
   if (!job.ok()) return ToGrpc(job.status());
   door_.Give(Door::Kind::kExport, job->id(), caller->id());
   *response->mutable_job() = *std::move(job);

@@ -109,7 +109,7 @@ struct Server::Parts {
         control_service(table, door),
         access_service(door, table),
         frame_service(table, door, metrics, options.limits.viewers_in_all),
-        exports(options.limits, options.spool_dir, clock),
+        exports(options.limits, options.spool_dir, clock, store.get()),
         export_service(table, exports, door),
         upload_service(uploads, options.limits, door),
         study_service(models, options.web_root, door, store.get()),
@@ -154,12 +154,18 @@ struct Server::Parts {
 
 absl::Status Server::Parts::Restore(const ServerOptions& options) {
   if (store == nullptr) return absl::OkStatus();
-  if (absl::Status status = study_service.Restore(lost); !status.ok()) return status;
+  const auto records = store->LoadRecords();  // before sessions go on, and are saved
+  if (!records.ok()) return records.status();
   auto restored = table.Restore([&options](const std::string& id) {
     if (options.restoring) options.restoring(id);
   });
   if (!restored.ok()) return restored.status();
-  lost.merge(*restored);
+  lost = *std::move(restored);
+  study_service.Restore(*records, lost);
+  const auto take = [this](const std::string& id, const std::string& owner) {
+    door.Give(Door::Kind::kExport, id, owner);
+  };
+  exports.Restore(*records, models, take, lost);
   return absl::OkStatus();
 }
 

@@ -58,7 +58,8 @@ class Server {
   // The ports that are listened on; 0 where there is none.
   int port() const;
   int web_port() const;
-  // Why sessions of the store, by their ids, and studies ("study NAME") could not be restored: they stay in it.
+  // Why sessions of the store, by their ids, and studies and exports ("study NAME") could not be restored: they stay in
+  // it.
   const std::map<std::string, absl::Status>& lost() const;
   // Tells viewers, saves and ends sessions, breaks exports off and ends calls, within about two seconds but for a scene
   // that is being built; a second call does nothing.

@@ -52,11 +52,8 @@ void StudyService::Save(const v1::Study& study, const v1::CreateStudyRequest* re
   store_->Put(kRecord, study.id(), saved.SerializeAsString());
 }
 
-absl::Status StudyService::Restore(std::map<std::string, absl::Status>& lost) {
-  if (store_ == nullptr) return absl::OkStatus();
-  const auto records = store_->LoadRecords();
-  if (!records.ok()) return records.status();
-  for (const store::SavedRecord& record : *records) {
+void StudyService::Restore(const std::vector<store::SavedRecord>& records, std::map<std::string, absl::Status>& lost) {
+  for (const store::SavedRecord& record : records) {
     if (record.kind != kRecord) continue;
     v1::SavedStudy saved;
     if (!record.problem.ok() || !saved.ParseFromString(record.bytes)) {
@@ -73,7 +70,6 @@ absl::Status StudyService::Restore(std::map<std::string, absl::Status>& lost) {
       jobs_.Restore(saved.study());
     }
   }
-  return absl::OkStatus();
 }
 
 absl::StatusOr<v1::Study> StudyService::Run(const v1::CreateStudyRequest& request) {

@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "phrenic/v1/study.grpc.pb.h"
 #include "server/service/door.h"
@@ -22,7 +23,7 @@ class StudyService final : public v1::StudyService::Service {
   StudyService(session::Models& models, std::string web_root, Door& door, store::Store* store);
   // What an earlier server left: studies that ended are there again, the others run anew. Before any call. Why one
   // could not be is in `lost`, by "study NAME"; it stays in the store.
-  absl::Status Restore(std::map<std::string, absl::Status>& lost);
+  void Restore(const std::vector<store::SavedRecord>& records, std::map<std::string, absl::Status>& lost);
 
   grpc::Status CreateStudy(grpc::ServerContext* context, const v1::CreateStudyRequest* request,
                            v1::CreateStudyResponse* response) override;

@@ -10,8 +10,8 @@
 
 namespace phrenic::session {
 
-Exports::Exports(const Limits& limits, std::string spool_folder, const stream::Clock& clock)
-    : limits_(limits), spool_folder_(std::move(spool_folder)), clock_(clock) {
+Exports::Exports(const Limits& limits, std::string spool_folder, const stream::Clock& clock, store::Store* store)
+    : limits_(limits), spool_folder_(std::move(spool_folder)), clock_(clock), store_(store) {
   for (int i = 0; i < limits_.exports; ++i) threads_.emplace_back([this] { Loop(); });
 }
 
@@ -24,16 +24,16 @@ Exports::~Exports() {
   for (std::thread& thread : threads_) thread.join();
 }
 
-absl::StatusOr<v1::Export> Exports::Add(const v1::CreateExportRequest& request, std::shared_ptr<const Model> model,
-                                        Session::Fork fork) {
-  auto plan = PlanExport(request, *model, fork, spool_folder_);
+absl::StatusOr<v1::Export> Exports::Add(const v1::CreateExportRequest& request, Start start) {
+  auto plan = PlanExport(request, *start.model, start.fork, spool_folder_);
   if (!plan.ok()) return plan.status();
   auto spool = record::SpoolFile::Open(spool_folder_);
   if (!spool.ok()) return spool.status();
+  auto record = Record(request, start);
+  if (!record.ok()) return record.status();
   auto job = std::make_shared<Job>();
   job->plan = *std::move(plan);
-  job->model = std::move(model);
-  job->fork = std::move(fork);
+  job->start = std::move(start);
   job->spool = *std::move(spool);
   absl::MutexLock lock(&mutex_);
   if (closed_) return absl::UnavailableError("the server is shutting down");
@@ -48,6 +48,7 @@ absl::StatusOr<v1::Export> Exports::Add(const v1::CreateExportRequest& request, 
   seen.set_state(v1::EXPORT_STATE_QUEUED);
   job->seen.version = 1;
   jobs_.push_back(job);
+  if (store_ != nullptr) store_->Put(kExportRecord, *id, *std::move(record));
   return seen;
 }
 
@@ -70,6 +71,7 @@ absl::Status Exports::MakeRoom() {
     return absl::ResourceExhaustedError(absl::StrCat(
         limits_.kept_exports, " exports wait or run, and no more are allowed: delete one, or wait for one to end"));
   }
+  Forget((*ended)->seen.job.id());
   jobs_.erase(ended);
   return absl::OkStatus();
 }
@@ -120,6 +122,7 @@ absl::Status Exports::Delete(const std::string& id) {
   const std::shared_ptr<Job> job = Find(id);
   if (job == nullptr) return NoExport(id);
   job->cancelled = true;
+  Forget(id);
   jobs_.remove(job);
   return absl::OkStatus();
 }
@@ -135,7 +138,11 @@ absl::StatusOr<std::shared_ptr<const record::SpoolFile>> Exports::File(const std
 }
 
 void Exports::Expire() {
-  jobs_.remove_if([now = clock_.Now()](const auto& job) { return job->expires <= now; });
+  jobs_.remove_if([this, now = clock_.Now()](const auto& job) {
+    if (job->expires > now) return false;
+    Forget(job->seen.job.id());
+    return true;
+  });
 }
 
 absl::Time Exports::NextExpiry() const {
@@ -168,7 +175,7 @@ void Exports::Loop() {
 
 void Exports::RunOne(Job& job) {
   ExportFile file(job.spool);
-  End(ExportMotion(job.plan, job.model, std::move(job.fork), file,
+  End(ExportMotion(job.plan, job.start.model, std::move(job.start.fork), file,
                    [&](double share, double recorded) { return Note(share, recorded, job); }),
       job);
 }
@@ -199,8 +206,9 @@ void Exports::End(const absl::StatusOr<v1::ExportSummary>& summary, Job& job) {
   } else {
     seen.set_problem(std::string(summary.status().message()));
     job.spool = nullptr;  // the disk is not kept for what is no file
+    if (!job.cancelled) Forget(seen.id());
   }
-  job.model = nullptr;
+  job.start = {};
   job.expires = clock_.Now() + absl::Minutes(limits_.export_minutes);
   *seen.mutable_expire_time() =
       google::protobuf::util::TimeUtil::NanosecondsToTimestamp(absl::ToUnixNanos(job.expires));

@@ -66,6 +66,32 @@ absl::Status StepAgainTo(std::int64_t tick, Run& run) {
 
 }  // namespace
 
+absl::StatusOr<v1::SavedScene> SaveScene(const Model& model, const std::vector<Uploads::Held>& surfaces) {
+  v1::SavedScene scene;
+  *scene.mutable_source()->mutable_scene() = model.scene;
+  scene.set_scene_hash(model.report.scene_hash());
+  for (const Uploads::Held& surface : surfaces) {
+    auto bytes = surface.Bytes();
+    if (!bytes.ok()) return bytes.status();
+    v1::SavedSurface& saved = *scene.add_surfaces();
+    saved.set_name(surface.file.name);
+    saved.set_content(*std::move(bytes));
+  }
+  return scene;
+}
+
+absl::StatusOr<Compiled> RestoreScene(const v1::SavedScene& saved, const std::string& what, Models& models) {
+  auto surfaces = models.AdoptSurfaces(saved);
+  if (!surfaces.ok()) return surfaces.status();
+  auto model = models.Get(saved.source());
+  if (!model.ok()) return model.status();
+  if ((*model)->report.scene_hash() == saved.scene_hash()) return Compiled{*std::move(model), *std::move(surfaces)};
+  return absl::FailedPreconditionError(
+      absl::StrCat(what, ": the surface files of its scene \"", (*model)->scene.name(),
+                   "\", or the version of Phrenic, are not those that it was made with: put the files back and start "
+                   "anew"));
+}
+
 v1::SavedControl SaveControl(const ControlState& state) {
   v1::SavedControl saved;
   saved.set_policy(state.policy);

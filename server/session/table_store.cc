@@ -11,38 +11,23 @@ absl::StatusOr<SessionOrigin> Table::Begin(const std::string& id, const Model& m
                                            std::vector<Uploads::Held> surfaces, ControlBook control) const {
   SessionOrigin origin{std::move(control), nullptr, std::nullopt, std::move(surfaces)};
   if (store_ == nullptr) return origin;
-  v1::SavedScene scene;
-  *scene.mutable_source()->mutable_scene() = model.scene;
-  scene.set_scene_hash(model.report.scene_hash());
-  for (const Uploads::Held& surface : origin.surfaces) {
-    auto bytes = surface.Bytes();
-    if (!bytes.ok()) return bytes.status();
-    v1::SavedSurface& saved = *scene.add_surfaces();
-    saved.set_name(surface.file.name);
-    saved.set_content(*std::move(bytes));
-  }
-  origin.journal = store_->Begin(id, std::move(scene));
+  auto scene = SaveScene(model, origin.surfaces);
+  if (!scene.ok()) return scene.status();
+  origin.journal = store_->Begin(id, *std::move(scene));
   return origin;
 }
 
 absl::StatusOr<std::shared_ptr<Session>> Table::Restored(const store::SavedSession& saved) {
   if (!saved.problem.ok()) return saved.problem;
-  auto surfaces = models_.AdoptSurfaces(saved.scene);
-  if (!surfaces.ok()) return surfaces.status();
-  const auto model = models_.Get(saved.scene.source());
-  if (!model.ok()) return model.status();
-  if ((*model)->report.scene_hash() != saved.scene.scene_hash()) {
-    return absl::FailedPreconditionError(absl::StrCat(
-        "session ", saved.id, ": the surface files of its scene \"", (*model)->scene.name(),
-        "\", or the version of Phrenic, are not those that it was made with: put the files back and start anew"));
-  }
-  absl::StatusOr<Replayed> replayed = Replay(*model, saved);
+  auto compiled = RestoreScene(saved.scene, absl::StrCat("session ", saved.id), models_);
+  if (!compiled.ok()) return compiled.status();
+  absl::StatusOr<Replayed> replayed = Replay(compiled->model, saved);
   if (!replayed.ok()) return replayed.status();
   const v1::Session& told = replayed->moment.session();
   Session::Fork start{told.parameters(), std::move(replayed->state), told.largest_stable_step()};
   Session::Origin origin{ControlBook(RestoreControl(replayed->moment.control())), store_->Continue(saved),
-                         replayed->moment, *std::move(surfaces)};
-  return std::make_shared<Session>(saved.id, *model, std::move(start), clock_, limits_, std::move(origin));
+                         replayed->moment, std::move(compiled->surfaces)};
+  return std::make_shared<Session>(saved.id, compiled->model, std::move(start), clock_, limits_, std::move(origin));
 }
 
 absl::StatusOr<std::map<std::string, absl::Status>> Table::Restore(

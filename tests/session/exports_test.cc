@@ -3,8 +3,11 @@
 
 #include <gmock/gmock.h>
 
+#include <filesystem>
+
 #include "absl/strings/str_cat.h"
 #include "server/mechanics/state.h"
+#include "server/mechanics/step.h"
 #include "server/schema/sha256.h"
 #include "server/session/meshes.h"
 #include "server/session/uploads.h"
@@ -16,6 +19,8 @@ namespace phrenic::session {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Pair;
 using ::testing::SizeIs;
 
 class ExportsTest : public testing::Test {
@@ -27,7 +32,7 @@ class ExportsTest : public testing::Test {
   }
 
   absl::StatusOr<v1::Export> Add() {
-    return exports_.Add(request_, model_, {model_->parameters, model_->InitialState()});
+    return exports_.Add(request_, {model_, {model_->parameters, model_->InitialState()}});
   }
   v1::Export Ended(const std::string& id) {
     absl::StatusOr<Exports::Seen> seen;
@@ -43,6 +48,49 @@ class ExportsTest : public testing::Test {
   v1::CreateExportRequest request_;
   Exports exports_{{.exports = 1, .kept_exports = 3, .export_minutes = 60}, testing::TempDir(), clock_};
 };
+
+// Killed in the middle of one, and with another that had ended: both come to the files that they were.
+TEST_F(ExportsTest, OutliveTheirServerAndComeToTheSameFiles) {
+  const std::string folder = testing::TempDir() + "phrenic_exports_" + std::to_string(getpid());
+  Models models(SceneCatalogue({}), "", 1);
+  const auto begin = [&](store::Store& store) {
+    return std::make_unique<Exports>(Limits{.exports = 1}, testing::TempDir(), clock_, &store);
+  };
+  const auto hash_of = [](Exports& exports, const std::string& id) {
+    absl::StatusOr<Exports::Seen> seen;
+    EXPECT_TRUE(Eventually([&] {
+      seen = exports.Wait(id, 0, absl::ZeroDuration());
+      return !seen.ok() || seen->ended;
+    }));
+    return seen.ok() ? seen->job.summary().sha256() : std::string(seen.status().message());
+  };
+  State start = model_->InitialState();
+  Workspace work = model_->MakeWorkspace();
+  for (int i = 0; i < 7; ++i) ASSERT_TRUE(Step(*model_, model_->parameters, 0.01, start, work).ok());
+  std::string whole;
+  {
+    auto store = *store::Store::Open(folder);
+    const auto exports = begin(*store);
+    for (const auto& [id, seconds] : {std::pair("short", 0.5), {"deleted", 0.5}, {"long", 600.0}}) {
+      request_.set_export_id(id);
+      request_.set_seconds(seconds);
+      ASSERT_TRUE(exports->Add(request_, {model_, {model_->parameters, start}, {}, "anna"}).ok());
+    }
+    whole = hash_of(*exports, "short");
+    ASSERT_TRUE(exports->Delete("deleted").ok());
+  }
+  auto store = *store::Store::Open(folder);
+  const auto exports = begin(*store);
+  std::map<std::string, std::string> found;
+  std::map<std::string, absl::Status> lost;
+  exports->Restore(
+      *store->LoadRecords(), models, [&](const std::string& id, const std::string& owner) { found[id] = owner; }, lost);
+  EXPECT_THAT(found, ::testing::UnorderedElementsAre(Pair("short", "anna"), Pair("long", "anna")));
+  EXPECT_THAT(lost, IsEmpty());
+  EXPECT_EQ(hash_of(*exports, "short"), whole);
+  EXPECT_TRUE(exports->Wait("long", 0, absl::ZeroDuration()).ok());
+  std::filesystem::remove_all(folder);
+}
 
 TEST_F(ExportsTest, RunToTheirEndAndAreReadFromAnyPlace) {
   const auto added = Add();

@@ -135,7 +135,7 @@ TEST_F(RestoreTest, OneOfAFileThatAClientGaveIsCompleteInItself) {
   ASSERT_TRUE(google::protobuf::TextFormat::ParseFromString(
       absl::StrCat(R"(name: "tent" bodies { name: "tent" role: ROLE_DEFORMABLE mass: 1 fixed_vertices: [0]
                       file { path: ")",
-                   given->file.path(), R"(" unit: UNIT_MILLIMETRE } }
+                   given->file.path(), R"(" } }
                       forces { springs { bodies: "tent" stiffness: 20 } }
                       forces { gravity { bodies: "tent" acceleration { z: -1 } } })"),
       request.mutable_source()->mutable_scene()));
