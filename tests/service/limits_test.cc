@@ -6,6 +6,7 @@
 #include <sys/socket.h>
 #include <zlib.h>
 
+#include <filesystem>
 #include <thread>
 
 #include "absl/strings/escaping.h"

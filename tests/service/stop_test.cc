@@ -1,6 +1,7 @@
 // SIGTERM: sessions are saved, viewers told, exports ended, and the program is gone in time.
 #include <gmock/gmock.h>
 
+#include <filesystem>
 #include <thread>
 
 #include "phrenic/v1/export.grpc.pb.h"

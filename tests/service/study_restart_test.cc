@@ -1,6 +1,8 @@
 // Studies outlive their server: what had ended is there, what had not is run again and comes to the same.
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "phrenic/v1/study.grpc.pb.h"
 #include "server/store/layout.h"
 #include "tests/support/server_process.h"

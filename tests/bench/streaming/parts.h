@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "absl/status/statusor.h"
 #include "phrenic/v1/session.grpc.pb.h"
 #include "tests/bench/streaming/viewers.h"
 #include "tests/support/server_process.h"
