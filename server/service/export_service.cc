@@ -70,9 +70,10 @@ absl::Status ExportService::Watch(const std::string& id, grpc::ServerContext& co
     version = seen->version;
     v1::WatchExportResponse response;
     *response.mutable_job() = std::move(seen->job);
-    if (!writer.Write(response) || seen->ended) return absl::OkStatus();
+    if (!writer.Write(response)) break;
+    if (seen->ended) return absl::OkStatus();
   }
-  return absl::OkStatus();
+  return absl::UnavailableError("the server is shutting down");  // or nobody hears it
 }
 
 grpc::Status ExportService::WatchExport(grpc::ServerContext* context, const v1::WatchExportRequest* request,

@@ -110,9 +110,10 @@ absl::Status StudyService::Watch(const std::string& id, grpc::ServerContext& con
     version = seen->version;
     v1::WatchStudyResponse response;
     *response.mutable_study() = std::move(seen->study);
-    if (!writer.Write(response) || seen->ended) return absl::OkStatus();
+    if (!writer.Write(response)) break;
+    if (seen->ended) return absl::OkStatus();
   }
-  return absl::OkStatus();
+  return absl::UnavailableError("the server is shutting down");  // or nobody hears it
 }
 
 grpc::Status StudyService::WatchStudy(grpc::ServerContext* context, const v1::WatchStudyRequest* request,

@@ -39,6 +39,7 @@ class StopTest : public testing::Test {
     v1::CreateSessionRequest create;
     create.set_session_id("sheet");
     create.mutable_source()->set_name("sheet-2d");
+    create.mutable_parameters()->set_time_step(1e-5);  // an hour of it takes a minute
     v1::CreateSessionResponse created;
     Call(*sessions, &v1::SessionService::Stub::CreateSession, create, &created);
     v1::PlaySessionRequest play;
