@@ -5,11 +5,13 @@
 #include <grpcpp/support/client_interceptor.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
 #include <iterator>
 #include <string_view>
+#include <thread>
 #include <utility>
 
 #include "absl/strings/ascii.h"
@@ -132,12 +134,29 @@ std::shared_ptr<grpc::Channel> Connect(const Context& context) {
   grpc::ChannelArguments arguments;
   arguments.SetMaxReceiveMessageSize(64 << 20);
   arguments.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);
+  arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 1000);
   std::vector<std::unique_ptr<grpc::experimental::ClientInterceptorFactoryInterface>> factories;
   if (auto metadata = MetadataOf(context); !metadata.empty()) {
     factories.push_back(std::make_unique<CredentialFactory>(std::move(metadata)));
   }
   return grpc::experimental::CreateCustomChannelWithInterceptors(HostOf(context), CredentialsOf(context), arguments,
                                                                  std::move(factories));
+}
+
+grpc::Status RideOut(const Context& context, absl::FunctionRef<grpc::Status(bool& heard)> stream) {
+  constexpr int kAttempts = 60;
+  grpc::Status status;
+  bool ever = false;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    bool heard = false;
+    status = stream(heard);
+    if (heard) ever = true, attempt = 0;
+    const bool interrupted = context.interruption != nullptr && context.interruption->happened();
+    if (status.error_code() != grpc::StatusCode::UNAVAILABLE || !ever || interrupted) break;
+    if (heard) std::cerr << "phrenic: the server at " << context.server << " is gone; waiting for it\n";
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+  }
+  return status;
 }
 
 int Fail(const Context& context, const grpc::Status& status) {

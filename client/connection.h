@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "absl/functional/function_ref.h"
 #include "absl/status/status.h"
 #include "client/interruption.h"
 #include "server/settings/setting.h"
@@ -58,6 +59,10 @@ std::string ErrorName();
 
 // Says the error on standard error, "phrenic: what is wrong and what to do", what to type next below it, and gives the
 // exit code for it.
+// A stream of a job, which outlives its server: where it breaks off after something was `heard`, it is called again
+// every second until the server is back, for a minute at the most. Its last status.
+grpc::Status RideOut(const Context& context, absl::FunctionRef<grpc::Status(bool& heard)> stream);
+
 int Fail(const Context& context, const grpc::Status& status);
 int Fail(const absl::Status& status);
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
-#include <thread>
 
 #include "absl/strings/str_cat.h"
 #include "client/part_file.h"
@@ -18,11 +17,8 @@ namespace phrenic::client {
 namespace {
 
 constexpr double kSeconds = 8;  // of a motion, where no length is said
-constexpr int kAttempts = 5;    // of a download that breaks off
 constexpr char kArchive[] = "zip";
 constexpr double kMegabyte = 1e6;
-
-bool BrokeOff(const grpc::Status& status) { return status.error_code() == grpc::StatusCode::UNAVAILABLE; }
 
 // Cancels and forgets, whatever became of the command: an interrupted one is not waited for.
 void Forget(v1::ExportService::Stub& stub, const std::string& id) {
@@ -97,19 +93,22 @@ absl::StatusOr<v1::CreateExportRequest> MakeExportRequest(const std::string& ses
 int WatchToItsEnd(const Context& context, v1::ExportService::Stub& stub, const std::string& id, v1::Export* job) {
   v1::WatchExportRequest request;
   request.set_export_id(id);
-  grpc::ClientContext call;
-  const Interruption::Scope scope(*context.interruption, call);
-  const auto stream = stub.WatchExport(&call, request);
-  v1::WatchExportResponse response;
+  grpc::Status status;
   {
     Progress progress("recording", 1);
-    while (stream->Read(&response)) {
-      *job = response.job();
-      progress.Say(absl::StrCat(static_cast<std::int64_t>(static_cast<double>(job->bytes()) / kMegabyte), " MB"));
-      progress.Update(job->progress());
-    }
+    status = RideOut(context, [&](bool& heard) {
+      grpc::ClientContext call;
+      const Interruption::Scope scope(*context.interruption, call);
+      const auto stream = stub.WatchExport(&call, request);
+      for (v1::WatchExportResponse response; stream->Read(&response); heard = true) {
+        *job = response.job();
+        progress.Say(absl::StrCat(static_cast<std::int64_t>(static_cast<double>(job->bytes()) / kMegabyte), " MB"));
+        progress.Update(job->progress());
+      }
+      return stream->Finish();
+    });
   }
-  if (const grpc::Status status = stream->Finish(); !status.ok()) return Fail(context, status);
+  if (!status.ok()) return Fail(context, status);
   if (job->state() == v1::EXPORT_STATE_DONE) return kOk;
   return Fail(absl::AbortedError(job->problem().empty() ? "the export ended without a word" : job->problem()));
 }
@@ -123,11 +122,12 @@ int Download(const Context& context, v1::ExportService::Stub& stub, const v1::Ex
   PartFile part(unpacked ? file + "." + kArchive : file, keep_part);
   Progress progress("downloading", static_cast<double>(job.bytes()));
   absl::Status written;
-  grpc::Status status = Receive(context, stub, job, part, progress, written);
-  for (int attempt = 1; attempt < kAttempts && written.ok() && BrokeOff(status); ++attempt) {
-    std::this_thread::sleep_for(std::chrono::seconds(1));
-    status = Receive(context, stub, job, part, progress, written);
-  }
+  const grpc::Status status = RideOut(context, [&](bool& heard) {
+    const std::int64_t before = part.bytes();
+    grpc::Status received = Receive(context, stub, job, part, progress, written);
+    heard = part.bytes() > before;
+    return received;
+  });
   if (!written.ok()) return Fail(written);
   if (!status.ok()) return Fail(context, status);
   const absl::Status placed = Place(job, file, part);

@@ -49,17 +49,18 @@ std::string StateName(v1::StudyState state) {
 grpc::Status WaitFor(const Context& context, v1::StudyService::Stub& stub, const std::string& id, v1::Study* study) {
   v1::WatchStudyRequest request;
   request.set_study_id(id);
-  grpc::ClientContext call;
-  const Interruption::Scope scope(*context.interruption, call);
-  const auto reader = stub.WatchStudy(&call, request);
-  v1::WatchStudyResponse response;
   Progress progress(id, 1);
-  while (reader->Read(&response)) {
-    progress.Say(response.study().doing());
-    progress.Update(response.study().progress());
-    *study = response.study();
-  }
-  return reader->Finish();
+  return RideOut(context, [&](bool& heard) {
+    grpc::ClientContext call;
+    const Interruption::Scope scope(*context.interruption, call);
+    const auto reader = stub.WatchStudy(&call, request);
+    for (v1::WatchStudyResponse response; reader->Read(&response); heard = true) {
+      progress.Say(response.study().doing());
+      progress.Update(response.study().progress());
+      *study = response.study();
+    }
+    return reader->Finish();
+  });
 }
 
 void PrintReference(const v1::Reference& reference) {

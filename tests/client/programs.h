@@ -98,11 +98,12 @@ inline Outcome Phrenic(const std::vector<std::string>& arguments) {
   return outcome;
 }
 
-// phrenicd on free ports, with no session and no store; it ends with the object.
+// phrenicd on free ports, with no session; it ends with the object.
 class RunningServer : public ServerProcess {
  public:
-  RunningServer()
-      : ServerProcess(Scratch("server"), {"--web-root", std::string(PHRENIC_SOURCE_DIR) + "/web", "--store", "none"},
+  // `store` is a folder, or "none".
+  explicit RunningServer(const std::string& store = "none")
+      : ServerProcess(Scratch("server"), {"--web-root", std::string(PHRENIC_SOURCE_DIR) + "/web", "--store", store},
                       {"XDG_CONFIG_HOME=" + Scratch("config"), "XDG_STATE_HOME=" + Scratch(User())}) {
     const absl::Status status = Start();
     EXPECT_TRUE(status.ok()) << status;

@@ -36,15 +36,13 @@ std::string FirstLine(const std::filesystem::path& path) {
 }
 
 // The child's part; does not return.
-[[noreturn]] void Become(const std::string& said, const std::vector<std::string>& flags,
+[[noreturn]] void Become(const std::string& said, std::vector<std::string> words,
                          const std::vector<std::string>& environment) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   for (const std::string& variable : environment) putenv(const_cast<char*>(variable.c_str()));
   const int file = open(said.c_str(), O_CREAT | O_WRONLY, 0600);
   dup2(file, STDOUT_FILENO);
   dup2(file, STDERR_FILENO);
-  std::vector<std::string> words = {"phrenicd", "--listen", "127.0.0.1:0", "--web", "127.0.0.1:0", "--start", "none"};
-  words.insert(words.end(), flags.begin(), flags.end());
   std::vector<char*> arguments(words.size() + 1, nullptr);
   std::ranges::transform(words, arguments.begin(), [](std::string& word) { return word.data(); });
   execv(PHRENIC_BINARY_DIR "/phrenicd", arguments.data());
@@ -56,13 +54,15 @@ std::string FirstLine(const std::filesystem::path& path) {
 ServerProcess::ServerProcess(std::string said, std::vector<std::string> flags, std::vector<std::string> environment)
     : said_(std::move(said)), flags_(std::move(flags)), environment_(std::move(environment)) {}
 
-absl::Status ServerProcess::Start() {
+absl::Status ServerProcess::StartOn(const std::string& address, const std::string& web_address) {
+  std::vector<std::string> words = {"phrenicd", "--listen", address, "--web", web_address, "--start", "none"};
+  words.insert(words.end(), flags_.begin(), flags_.end());
   std::filesystem::remove(said_);
   ended_ = -1;
   address_ = web_address_ = "";
   pid_ = fork();
   if (pid_ < 0) return absl::UnavailableError("no process for the server");
-  if (pid_ == 0) Become(said_, flags_, environment_);
+  if (pid_ == 0) Become(said_, words, environment_);
   for (int tries = 0; tries < 12'000 && running(); ++tries) {
     const std::string text = said();
     address_ = LineBehind(text, "gRPC:   ");

@@ -27,7 +27,9 @@ class ServerProcess {
   ServerProcess& operator=(const ServerProcess&) = delete;
 
   // Returns once it listens. UNAVAILABLE, with what it said, where it ends instead or takes a minute.
-  absl::Status Start();
+  absl::Status Start() { return StartOn("127.0.0.1:0", "127.0.0.1:0"); }
+  // On the ports that it had before.
+  absl::Status Restart() { return StartOn(address_, web_address_); }
   void Signal(int signal) const { kill(pid_, signal); }
   // Waits for its end, at most so many seconds; its exit code, 128 and the signal, or -1 where it still runs.
   int Await(double seconds);
@@ -56,6 +58,7 @@ class ServerProcess {
   std::int64_t Files() const;
 
  private:
+  absl::Status StartOn(const std::string& address, const std::string& web_address);
   static int PortOf(const std::string& address);
   std::int64_t Status(const std::string& name) const;
 
