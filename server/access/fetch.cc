@@ -12,12 +12,12 @@
 namespace phrenic::access {
 namespace {
 
-constexpr std::size_t kLargest = 1 << 20;  // [bytes]
-constexpr long kLongest = 10;              // [s]
+constexpr std::size_t kLargestDocument = 1 << 20;  // [bytes]
+constexpr long kLongestWait = 10;                  // [s]
 
 std::size_t Append(const char* bytes, std::size_t, std::size_t count, void* text) {
   auto& whole = *static_cast<std::string*>(text);
-  if (whole.size() + count > kLargest) return 0;
+  if (whole.size() + count > kLargestDocument) return 0;
   whole.append(bytes, count);
   return count;
 }
@@ -52,7 +52,7 @@ absl::StatusOr<std::string> Fetch(const std::string& address) {
   curl_easy_setopt(curl.get(), CURLOPT_URL, address.c_str());
   curl_easy_setopt(curl.get(), CURLOPT_PROTOCOLS_STR, open ? "http" : "https");
   curl_easy_setopt(curl.get(), CURLOPT_NOSIGNAL, 1L);
-  curl_easy_setopt(curl.get(), CURLOPT_TIMEOUT, kLongest);
+  curl_easy_setopt(curl.get(), CURLOPT_TIMEOUT, kLongestWait);
   curl_easy_setopt(curl.get(), CURLOPT_ERRORBUFFER, why.data());
   curl_easy_setopt(curl.get(), CURLOPT_WRITEFUNCTION, Append);
   curl_easy_setopt(curl.get(), CURLOPT_WRITEDATA, &text);
