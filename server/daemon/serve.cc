@@ -77,7 +77,8 @@ std::unique_ptr<service::Server> Start(const Flags& flags) {
   }
   if (const std::size_t lost = (*server)->lost().size(); lost > 0) {
     spdlog::warn(
-        "{} sessions, studies or exports could not be restored and stay in the store: phrenicd check {} says which and why",
+        "{} sessions, studies or exports could not be restored and stay in the store: phrenicd check {} says which and "
+        "why",
         lost, options.store_dir);
   }
   WarnOfReach(options);

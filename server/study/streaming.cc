@@ -35,8 +35,7 @@ absl::Status RunFrames(const Subject& subject, double interval, int count, const
   for (int i = 0; i < count; ++i) {
     if (!progress(kRunEnd * i / count, "running the scene")) return Cancelled();
     while (snapshot.state.time < interval * (i + 1)) {
-      absl::Status stepped =
-          Step(model, subject.parameters, subject.parameters.time_step(), snapshot.state, work);
+      absl::Status stepped = Step(model, subject.parameters, subject.parameters.time_step(), snapshot.state, work);
       if (!stepped.ok()) return stepped;
     }
     const auto frame = stream::MakeFrame(model, layout, snapshot);
