@@ -78,10 +78,14 @@ void PlaceRide(const Model& model, const State& state, const BodyModel& body, Mu
     return PlaceOnTriangles(model.rides[body.ride].triangles, state.x, out);
   }
   out = body.mesh.vertices;
+  std::vector<Eigen::Matrix3d> rotations;  // once a pose, not once a vertex
+  rotations.reserve(state.poses.size());
+  for (const Pose& pose : state.poses) rotations.push_back(pose.rotation.toRotationMatrix());
   for (const RideShare& share : model.rides[body.ride].shares) {
-    const auto rest = body.mesh.vertices.col(share.vertex);
     if (share.pose >= 0) {
-      out.col(share.vertex) += share.weight * (state.poses[share.pose].At(rest) - rest);
+      const auto pose = static_cast<size_t>(share.pose);
+      const Eigen::Vector3d rest = body.mesh.vertices.col(share.vertex);
+      out.col(share.vertex) += share.weight * (rotations[pose] * rest + state.poses[pose].translation - rest);
     } else {
       const int carrier = share.simulated_vertex;
       out.col(share.vertex) += share.weight * (state.x.col(carrier) - model.rest.col(carrier));
