@@ -161,9 +161,6 @@ stage_tests() {
   if [[ -n ${SLURM_CONF:-} ]]; then "$root/tests/client/slurm/stop" "$slurm"; fi
 }
 
-# A folder's files are compiled eight at a time: that takes a third of the time, and finds what a folder names twice.
-unity=(-DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=8)
-
 # sanitized FOLDER SANITIZERS TARGET... builds the targets with the sanitizers.
 sanitized() {
   local folder=$1 sanitizers=$2

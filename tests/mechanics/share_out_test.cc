@@ -1,0 +1,72 @@
+// Any number of threads gives the same bits. ThreadSanitizer runs these as well.
+#include "server/mechanics/share_out.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <set>
+#include <thread>
+
+#include "server/mechanics/forces/spring_rows.h"
+#include "tests/compile_text.h"
+#include "tests/mechanics/mixed_sheet.h"
+
+namespace phrenic {
+namespace {
+
+// Gives a process of tests its one thread back.
+struct OneThreadAgain {
+  ~OneThreadAgain() { SetStepThreads(1); }
+};
+
+TEST(ShareOut, AnyNumberOfThreadsGivesTheSameBits) {
+  const OneThreadAgain again;
+  std::string large = kMixedSheet;
+  large.replace(large.find("columns: 40 rows: 30"), 20, "columns: 120 rows: 90");
+  const auto model = CompileText(large);
+  ASSERT_NE(model, nullptr);
+  std::set<std::uint64_t> hashes;
+  for (const int threads : {1, 2, 5}) {
+    SetStepThreads(threads);
+    hashes.insert(StateHash(RunTo(*model, 0.02, 1e-4)));
+  }
+  EXPECT_EQ(hashes.size(), 1);
+}
+
+TEST(ShareOut, SpringsInAnOrderOfTheirOwnToo) {
+  const OneThreadAgain again;
+  const int vertices = 60 * kVertexBlock + 3;
+  std::mt19937 random(2);
+  std::uniform_int_distribution<int> vertex(0, vertices - 1);
+  std::vector<Spring> springs;
+  for (int i = 0; i < 3 * vertices; ++i) springs.push_back({i % vertices, vertex(random), 20, 0.4});
+  std::erase_if(springs, [](const Spring& spring) { return spring.a == spring.b; });
+  const SpringRows rows(springs, vertices);
+  ASSERT_FALSE(rows.InRanges());
+  const Points x = Points::Random(3, vertices);
+  Points alone = Points::Zero(3, vertices), shared = alone;
+  rows.AddForce(1, x, alone);
+  SetStepThreads(4);
+  rows.AddForce(1, x, shared);
+  EXPECT_EQ(alone, shared);
+  EXPECT_GT(alone.norm(), 0);
+}
+
+TEST(ShareOut, CallsOnceForEachPartFromManyCallersAtOnce) {
+  const OneThreadAgain again;
+  SetStepThreads(3);
+  std::vector<std::thread> callers;
+  for (int c = 0; c < 4; ++c) {
+    callers.emplace_back([] {
+      for (int round = 0; round < 200; ++round) {
+        std::vector<int> calls(100);
+        ShareOut(100, [&calls](std::int64_t part) { ++calls[static_cast<size_t>(part)]; });
+        ASSERT_EQ(calls, std::vector<int>(100, 1));
+      }
+    });
+  }
+  for (std::thread& caller : callers) caller.join();
+}
+
+}  // namespace
+}  // namespace phrenic
