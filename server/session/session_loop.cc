@@ -25,6 +25,7 @@ void Session::Loop() {
   while (ServeCommands()) {
     if (job_ != nullptr || (state_ == v1::SESSION_STATE_PLAYING && !WaitsInStep())) Burst();
   }
+  ended_.Notify();
 }
 
 bool Session::ServeCommands() {

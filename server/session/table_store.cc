@@ -15,7 +15,8 @@ std::shared_ptr<store::Journal> Table::Begin(const std::string& id, const Model&
   return store_->Begin(id, std::move(scene));
 }
 
-absl::StatusOr<std::shared_ptr<Session>> Table::Restored(const store::SavedSession& saved) {
+absl::StatusOr<std::shared_ptr<Session>> Table::Restored(const store::SavedSession& saved, std::int64_t epoch,
+                                                         bool taken) {
   if (!saved.problem.ok()) return saved.problem;
   const auto model = models_.Get(saved.scene.source());
   if (!model.ok()) return model.status();
@@ -28,8 +29,9 @@ absl::StatusOr<std::shared_ptr<Session>> Table::Restored(const store::SavedSessi
   if (!replayed.ok()) return replayed.status();
   const v1::Session& told = replayed->moment.session();
   Session::Fork start{told.parameters(), std::move(replayed->state), told.largest_stable_step()};
-  Session::Origin origin{ControlBook(RestoreControl(replayed->moment.control())), store_->Continue(saved),
-                         replayed->moment};
+  Session::Origin origin{ControlBook(RestoreControl(replayed->moment.control())),
+                         taken ? store_->Begin(saved.id, saved.scene) : store_->Continue(saved), replayed->moment,
+                         epoch};
   return std::make_shared<Session>(saved.id, *model, std::move(start), clock_, limits_.viewers, std::move(origin));
 }
 
@@ -40,7 +42,11 @@ absl::StatusOr<std::map<std::string, absl::Status>> Table::Restore(
   if (!sessions.ok()) return sessions.status();
   for (store::SavedSession& saved : *sessions) {
     progress(saved.id);
-    absl::StatusOr<std::shared_ptr<Session>> session = Restored(saved);
+    const absl::StatusOr<std::int64_t> epoch = Reclaim(saved);
+    if (absl::IsUnavailable(epoch.status())) return epoch.status();
+    if (absl::IsFailedPrecondition(epoch.status())) continue;
+    absl::StatusOr<std::shared_ptr<Session>> session = epoch.ok() ? Restored(saved, *epoch, false) : epoch.status();
+    if (epoch.ok() && !session.ok() && ownership_ != nullptr) ownership_->Abandon(saved.id);
     absl::MutexLock lock(&mutex_);
     if (session.ok()) {
       sessions_[saved.id] = *std::move(session);
@@ -51,6 +57,29 @@ absl::StatusOr<std::map<std::string, absl::Status>> Table::Restore(
     lost_.emplace(std::move(id), std::move(saved));
   }
   return lost;
+}
+
+absl::StatusOr<std::int64_t> Table::Reclaim(const store::SavedSession& saved) {
+  const std::int64_t before = (saved.later.empty() ? saved.moment : saved.later.back()).session().epoch();
+  if (ownership_ == nullptr || !saved.problem.ok()) return before;
+  const absl::StatusOr<std::int64_t> epoch = ownership_->Reclaim(saved);
+  if (!absl::IsFailedPrecondition(epoch.status())) return epoch;
+  // One that was never the cluster's stays, under a name that another server's session has.
+  if (before == 0) return absl::AlreadyExistsError(epoch.status().message());
+  const auto journal = store_->Continue(saved);
+  journal->Forget();
+  if (absl::Status status = journal->Flush(); !status.ok()) return absl::UnavailableError(status.message());
+  return epoch;
+}
+
+absl::Status Table::TakeOver(const store::SavedSession& saved, std::int64_t epoch) {
+  absl::StatusOr<std::shared_ptr<Session>> session = Restored(saved, epoch, true);
+  if (!session.ok()) return session.status();
+  absl::MutexLock lock(&mutex_);
+  if (closed_.has_value()) return *closed_;
+  lost_.erase(saved.id);
+  sessions_[saved.id] = *std::move(session);
+  return absl::OkStatus();
 }
 
 // Who might have deleted it while it ran may delete it now.
