@@ -95,9 +95,13 @@ void ForwardedCall::Ended(const grpc::Status& status) {
 }
 
 void ForwardedCall::OnCancel() {
-  absl::MutexLock lock(&mutex_);
-  cancelled_ = true;
-  if (leg_ != nullptr) leg_->Cancel();
+  std::shared_ptr<Leg> way;
+  {
+    absl::MutexLock lock(&mutex_);
+    cancelled_ = true;
+    way = leg_;
+  }
+  if (way != nullptr) way->Cancel();
 }
 
 void ForwardedCall::OnDone() {
