@@ -96,6 +96,13 @@ std::shared_ptr<grpc::ChannelCredentials> CredentialsOf(const Context& context) 
 
 }  // namespace
 
+void NameSession(const google::protobuf::Message& request, grpc::ClientContext& call) {
+  const auto* field = request.GetDescriptor()->FindFieldByName("session_id");
+  if (field == nullptr) return;
+  const std::string id = request.GetReflection()->GetString(request, field);
+  if (!id.empty()) call.AddMetadata("x-session-id", id);
+}
+
 std::string ErrorName() { return Painted("phrenic:", Ink::kRed, STDERR_FILENO); }
 
 std::string HostOf(const Context& context) {

@@ -69,12 +69,17 @@ int Fail(const absl::Status& status);
 // "{...}" with the proto's own field names, every field written.
 std::string Json(const google::protobuf::Message& message);
 
+// Names the session that the request is about in the call's head, where it is about one: by it a cluster's front
+// chooses the server.
+void NameSession(const google::protobuf::Message& request, grpc::ClientContext& call);
+
 // One unary call with a deadline: `method` is a stub's member, as in Call(context, stub, &Stub::GetSession, ...).
 template <typename Stub, typename Method, typename Request, typename Response>
 grpc::Status Call(const Context& context, Stub& stub, Method method, const Request& request, Response* response,
                   int deadline_seconds = 120) {
   grpc::ClientContext call;
   call.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(deadline_seconds));
+  NameSession(request, call);
   const Interruption::Scope scope(*context.interruption, call);
   return (stub.*method)(&call, request, response);
 }

@@ -78,7 +78,7 @@ stage_format() {
 }
 
 check_shellcheck() {
-  (cd "$root" && shellcheck -x deploy/run deploy/test deploy/report deploy/faults deploy/*.sh client/examples/*.sh tests/client/slurm/* .ci/run tests/deploy/*.sh)
+  (cd "$root" && shellcheck -x deploy/run deploy/test deploy/report deploy/faults deploy/cluster deploy/*.sh client/examples/*.sh tests/client/slurm/* .ci/run tests/deploy/*.sh)
 }
 
 stage_scripts() {

@@ -36,9 +36,11 @@ void Acknowledge(v1::FrameService::Stub& stub, const v1::WatchFramesRequest& wat
   taken.set_watch_id(watched.watch_id());
   v1::AckFramesResponse answer;
   grpc::ClientContext call, fetch;
+  NameSession(taken, call);
   if (!stub.AckFrames(&call, taken, &answer).ok() || answer.basis_epoch() <= taken.basis_epoch()) return;
   v1::GetBasisRequest request;
   request.set_session_id(watched.session_id());
+  NameSession(request, fetch);
   v1::GetBasisResponse basis;
   if (stub.GetBasis(&fetch, request, &basis).ok()) taken.set_basis_epoch(basis.epoch());
 }
@@ -49,6 +51,7 @@ int Watch(const Context& context, const WatchOptions& options) {
   const auto stub = v1::FrameService::NewStub(Connect(context));
   const v1::WatchFramesRequest request = RequestOf(options);
   grpc::ClientContext call;
+  NameSession(request, call);
   if (options.seconds > 0) {
     call.set_deadline(std::chrono::system_clock::now() +
                       std::chrono::milliseconds(static_cast<long>(1e3 * options.seconds)));

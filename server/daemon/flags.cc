@@ -131,17 +131,27 @@ void AddAccess(CLI::App& app, Flags& flags) {
   group.Add("audit", options.audit_file, "File that is told who did what; rotated past 16 MiB");
 }
 
+void AddCluster(CLI::App& app, Flags& flags) {
+  cluster::ClusterOptions& cluster = flags.options.cluster;
+  Group group(app, "More than one machine");
+  group.Add("cluster", cluster.redis,
+            "redis://[:PASSWORD@]HOST:PORT that the servers of a cluster share; none: a server by itself");
+  group.Add("advertise", cluster.advertise, "HOST:PORT at which the cluster's other servers reach --listen");
+}
+
 }  // namespace
 
 void AddFlags(CLI::App& app, Flags& flags) {
   AddPlaces(app, flags);
   AddAccess(app, flags);
   AddLimits(app, flags);
+  AddCluster(app, flags);
 }
 
 service::ServerOptions OptionsOf(const Flags& flags) {
   service::ServerOptions options = flags.options;
   if (options.store_dir == "none") options.store_dir.clear();
+  if (options.cluster.advertise.empty()) options.cluster.advertise = options.listen;
   options.max_message_bytes = flags.message_mb << 20;
   options.limits.upload_bytes = std::int64_t{flags.upload_mb} << 20;
   options.limits.uploads_bytes = std::int64_t{flags.uploads_mb} << 20;

@@ -53,6 +53,32 @@ void Metrics::CountFrame(std::size_t bytes) {
   bytes_.Increment(static_cast<double>(bytes));
 }
 
+void Metrics::Follow(std::function<std::pair<cluster::ClusterCounts, std::int64_t>()> counts) {
+  cluster_ = std::move(counts);
+  for (const auto& [name, help] :
+       {std::pair("phrenic_cluster_sessions", "Sessions that this server of the cluster has"),
+        {"phrenic_cluster_servers", "Servers of the cluster that take sessions"},
+        {"phrenic_cluster_reached", "Whether Redis answered at the last attempt: 1 or 0"},
+        {"phrenic_cluster_taken", "Sessions of other servers that this one went on with, since it started"},
+        {"phrenic_cluster_lost", "Sessions that other servers went on with, while this one was slow or cut off"},
+        {"phrenic_cluster_forwarded", "Calls that were passed on to other servers"}}) {
+    of_cluster_[name] = &NewGauge(registry_, name, help);
+  }
+}
+
+void Metrics::CollectCluster() {
+  if (!cluster_) return;
+  const auto [counts, forwarded] = cluster_();
+  for (const auto& [name, value] : {std::pair("sessions", static_cast<double>(counts.owned)),
+                                    {"servers", static_cast<double>(counts.servers)},
+                                    {"reached", counts.reached ? 1.0 : 0.0},
+                                    {"taken", static_cast<double>(counts.taken)},
+                                    {"lost", static_cast<double>(counts.lost)},
+                                    {"forwarded", static_cast<double>(forwarded)}}) {
+    of_cluster_.at(std::string("phrenic_cluster_") + name)->Set(value);
+  }
+}
+
 std::string Metrics::Text(const session::Table& table) {
   constexpr int kAll = 1000;
   int sessions = 0, playing = 0, viewers = 0;
@@ -71,6 +97,7 @@ std::string Metrics::Text(const session::Table& table) {
   viewers_.Set(viewers);
   step_seconds_.Set(step);
   slowest_.Set(playing > 0 ? slowest : 0);
+  CollectCluster();
   return prometheus::TextSerializer().Serialize(registry_.Collect());
 }
 

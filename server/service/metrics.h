@@ -5,9 +5,13 @@
 #include <prometheus/registry.h>
 
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <string>
+#include <utility>
 
 #include "absl/status/status.h"
+#include "server/cluster/cluster.h"
 #include "server/session/table.h"
 
 namespace phrenic::service {
@@ -21,6 +25,8 @@ class Metrics {
   void CountRequest(const absl::Status& outcome);
   // A message that was sent to a viewer [bytes].
   void CountFrame(std::size_t bytes);
+  // Numbers of a cluster's server: what it counts, and the calls that went to others. Before anybody asks for the text.
+  void Follow(std::function<std::pair<cluster::ClusterCounts, std::int64_t>()> counts);
   // The text that Prometheus reads, with what the table's sessions do now.
   std::string Text(const session::Table& table);
 
@@ -29,6 +35,10 @@ class Metrics {
   prometheus::Family<prometheus::Counter>& requests_;
   prometheus::Counter& admitted_;
   prometheus::Counter &frames_, &bytes_;
+  void CollectCluster();
+
+  std::function<std::pair<cluster::ClusterCounts, std::int64_t>()> cluster_;  // null: a server by itself
+  std::map<std::string, prometheus::Gauge*> of_cluster_;
   prometheus::Gauge &sessions_, &playing_, &viewers_, &step_seconds_, &slowest_;
 };
 

@@ -19,6 +19,7 @@
 #include "server/service/door.h"
 #include "server/service/export_service.h"
 #include "server/service/frame_service.h"
+#include "server/service/front.h"
 #include "server/service/grpc_listener.h"
 #include "server/service/metrics.h"
 #include "server/service/scene_service.h"
@@ -66,6 +67,23 @@ absl::Status CheckReach(const ServerOptions& options) {
   return absl::OkStatus();
 }
 
+// What a server of a cluster must have, and may not.
+absl::Status CheckCluster(const ServerOptions& options) {
+  if (options.cluster.redis.empty()) return absl::OkStatus();
+  if (options.store_dir.empty()) {
+    return absl::InvalidArgumentError("--cluster: a server of a cluster saves on its own disk first: give --store DIR");
+  }
+  if (options.tls.used()) {
+    return absl::InvalidArgumentError(
+        "--cluster: servers of a cluster call each other unencrypted: leave --tls-cert to nginx in front of them, and "
+        "listen in a network of their own");
+  }
+  const auto parts = ParseAddress(options.cluster.advertise);
+  if (parts.ok() && parts->port != 0 && parts->host != "0.0.0.0" && parts->host != "::") return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      "--advertise: name the HOST:PORT at which the cluster's other servers reach --listen");
+}
+
 int Milliseconds(double seconds) { return static_cast<int>(seconds * 1000); }
 
 // A dead peer is noticed within 15 s, and two servers never share a port.
@@ -93,15 +111,17 @@ void Configure(const ServerOptions& options, grpc::ServerBuilder& builder) {
 
 // In the order in which they depend on each other.
 struct Server::Parts {
-  Parts(const ServerOptions& options, std::unique_ptr<store::Store> kept, std::unique_ptr<access::Accounts> who,
-        std::unique_ptr<access::AuditLog> log)
-      : store(std::move(kept)),
+  Parts(const ServerOptions& options, std::unique_ptr<cluster::Cluster> others, std::unique_ptr<store::Store> kept,
+        std::unique_ptr<access::Accounts> who, std::unique_ptr<access::AuditLog> log)
+      : cluster(std::move(others)),
+        store(std::move(kept)),
         accounts(std::move(who)),
         audit(std::move(log)),
         uploads(options.limits, options.spool_dir),
         models(session::SceneCatalogue(SceneFolders(options)), options.data_dir, options.limits.models, &uploads,
                options.limits.vertices),
-        table(models, clock, options.limits, store.get()),
+        table(models, clock, options.limits, store.get(), cluster.get()),
+        front(cluster == nullptr ? nullptr : std::make_unique<Front>(*cluster)),
         door(*accounts, *audit, table, metrics, options.max_requests),
         pages(door, metrics, table),
         scene_service(models, door),
@@ -117,19 +137,27 @@ struct Server::Parts {
         server_service(std::filesystem::exists(options.web_root + "/index.html"), !options.data_dir.empty(),
                        options.tls.used(), door) {}
 
+  void JoinCluster();
   absl::Status Restore(const ServerOptions& options);
   // Now and then.
   void Tend();
   absl::Status Serve(const ServerOptions& options);
   absl::Status ServeWeb(const ServerOptions& options);
 
-  const std::unique_ptr<store::Store> store;  // null: there is none
+  absl::Status Listen(const ServerOptions& options, grpc::ServerBuilder& builder);
+  absl::Status ServeFront(const ServerOptions& options);
+  // Where calls come in that may be another server's.
+  grpc::Server& outer() { return front_grpc == nullptr ? *grpc : *front_grpc; }
+
+  const std::unique_ptr<cluster::Cluster> cluster;  // null: a server by itself
+  const std::unique_ptr<store::Store> store;        // null: there is none
   const std::unique_ptr<access::Accounts> accounts;
   const std::unique_ptr<access::AuditLog> audit;
   stream::SystemClock clock;
   session::Uploads uploads;
   session::Models models;
   session::Table table;
+  const std::unique_ptr<Front> front;  // of a cluster's server
   Metrics metrics;
   Door door;
   WebPages pages;
@@ -145,12 +173,22 @@ struct Server::Parts {
   CompareService compare_service;
   ServerService server_service;
   std::unique_ptr<GrpcListener> listener;
-  std::unique_ptr<grpc::Server> grpc;
+  std::unique_ptr<grpc::Server> grpc, front_grpc;
   std::unique_ptr<WebGateway> web;
   std::unique_ptr<Caretaker> caretaker;
   std::map<std::string, absl::Status> lost;
   absl::Status not_refreshed;  // of the accounts, the last time
 };
+
+void Server::Parts::JoinCluster() {
+  if (cluster == nullptr) return;
+  store->set_ownership(cluster.get());
+  cluster->Begin({.lost = [this](const std::string& id) { table.Drop(id); },
+                  .take_over = [this](const store::SavedSession& saved,
+                                      std::int64_t epoch) { return table.TakeOver(saved, epoch); },
+                  .copy_whole = [this](const std::vector<std::string>& ids) { store->CopyWhole(ids); }});
+  metrics.Follow([this] { return std::pair(cluster->counts(), front->forwarded()); });
+}
 
 absl::Status Server::Parts::Restore(const ServerOptions& options) {
   if (store == nullptr) return absl::OkStatus();
@@ -178,16 +216,35 @@ void Server::Parts::Tend() {
   not_refreshed = refreshed;
 }
 
+absl::Status Server::Parts::Listen(const ServerOptions& options, grpc::ServerBuilder& builder) {
+  if (options.listen.empty()) return absl::OkStatus();
+  auto listening = GrpcListener::Make(options.listen, static_cast<std::size_t>(options.max_connections),
+                                      MakeCredentials(options.tls), builder);
+  if (!listening.ok()) return listening.status();
+  listener = *std::move(listening);
+  return absl::OkStatus();
+}
+
+// Calls come in at the front, and those that are this server's go on within the process.
+absl::Status Server::Parts::ServeFront(const ServerOptions& options) {
+  grpc::ChannelArguments arguments;
+  arguments.SetMaxReceiveMessageSize(-1);
+  front->set_here(grpc->InProcessChannel(arguments));
+  grpc::ServerBuilder builder;
+  Configure(options, builder);
+  if (absl::Status status = Listen(options, builder); !status.ok()) return status;
+  builder.RegisterCallbackGenericService(front.get());
+  front_grpc = builder.BuildAndStart();
+  return front_grpc == nullptr ? absl::InternalError("gRPC could not be started") : absl::OkStatus();
+}
+
 absl::Status Server::Parts::Serve(const ServerOptions& options) {
   grpc::EnableDefaultHealthCheckService(true);
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
   grpc::ServerBuilder builder;
   Configure(options, builder);
-  if (!options.listen.empty()) {
-    auto listening = GrpcListener::Make(options.listen, static_cast<std::size_t>(options.max_connections),
-                                        MakeCredentials(options.tls), builder);
-    if (!listening.ok()) return listening.status();
-    listener = *std::move(listening);
+  if (front == nullptr) {
+    if (absl::Status status = Listen(options, builder); !status.ok()) return status;
   }
   builder.RegisterService(&scene_service);
   builder.RegisterService(&session_service);
@@ -201,6 +258,9 @@ absl::Status Server::Parts::Serve(const ServerOptions& options) {
   builder.RegisterService(&server_service);
   grpc = builder.BuildAndStart();
   if (grpc == nullptr) return absl::InternalError("gRPC could not be started");
+  if (front != nullptr) {
+    if (absl::Status status = ServeFront(options); !status.ok()) return status;
+  }
   if (listener != nullptr) listener->Start();
   return absl::OkStatus();
 }
@@ -221,7 +281,7 @@ absl::Status Server::Parts::ServeWeb(const ServerOptions& options) {
       .tls = options.tls};
   grpc::ChannelArguments arguments;
   arguments.SetMaxReceiveMessageSize(-1);
-  auto gateway = WebGateway::Start(web_options, grpc->InProcessChannel(arguments));
+  auto gateway = WebGateway::Start(web_options, outer().InProcessChannel(arguments));
   if (!gateway.ok()) return gateway.status();
   web = *std::move(gateway);
   server_service.set_web_port(web->port());
@@ -233,6 +293,7 @@ Server::Server(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& options) {
   if (absl::Status status = CheckTls(options.tls); !status.ok()) return status;
   if (absl::Status status = CheckReach(options); !status.ok()) return status;
+  if (absl::Status status = CheckCluster(options); !status.ok()) return status;
   auto accounts = access::Accounts::Open(options.accounts);
   if (!accounts.ok()) return accounts.status();
   auto audit = access::AuditLog::Open(options.audit_file);
@@ -247,13 +308,21 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& optio
     if (!opened.ok()) return opened.status();
     store = *std::move(opened);
   }
-  std::unique_ptr<Server> server(
-      new Server(std::make_unique<Parts>(options, std::move(store), *std::move(accounts), *std::move(audit))));
+  std::unique_ptr<cluster::Cluster> cluster;
+  if (!options.cluster.redis.empty()) {
+    auto joined = cluster::Cluster::Join(options.cluster);
+    if (!joined.ok()) return joined.status();
+    cluster = *std::move(joined);
+  }
+  std::unique_ptr<Server> server(new Server(
+      std::make_unique<Parts>(options, std::move(cluster), std::move(store), *std::move(accounts), *std::move(audit))));
+  server->parts_->JoinCluster();
   if (absl::Status status = server->parts_->Restore(options); !status.ok()) return status;
   if (absl::Status status = server->parts_->Serve(options); !status.ok()) return status;
   if (absl::Status status = server->parts_->ServeWeb(options); !status.ok()) return status;
   server->parts_->caretaker =
       std::make_unique<Caretaker>(kTendPause, [parts = server->parts_.get()] { parts->Tend(); });
+  if (server->parts_->cluster != nullptr) server->parts_->cluster->Watch();
   server->parts_->pages.set_ready(true);
   return server;
 }
@@ -276,9 +345,12 @@ void Server::Shutdown() {
   parts_->pages.set_ready(false);
   if (parts_->grpc != nullptr) parts_->grpc->GetHealthCheckService()->SetServingStatus(false);
   parts_->caretaker.reset();
+  if (parts_->cluster != nullptr) parts_->cluster->Rest();
   if (parts_->listener != nullptr) parts_->listener->Shutdown();
   parts_->table.Close(absl::UnavailableError("the server is shutting down"));
+  if (parts_->cluster != nullptr) parts_->cluster->Leave();
   if (parts_->web != nullptr) parts_->web->Shutdown();
+  if (parts_->front_grpc != nullptr) parts_->front_grpc->Shutdown(std::chrono::system_clock::now() + kGrace);
   if (parts_->grpc != nullptr) parts_->grpc->Shutdown(std::chrono::system_clock::now() + kGrace);
 }
 

@@ -12,6 +12,7 @@
 
 #include "absl/status/statusor.h"
 #include "server/access/accounts.h"
+#include "server/cluster/cluster.h"
 #include "server/record/spool_file.h"
 #include "server/schema/places.h"
 #include "server/service/tls.h"
@@ -40,13 +41,15 @@ struct ServerOptions {
   bool insecure_listen = false;      // unencrypted on an address that other machines can reach
   access::AccountOptions accounts;   // none: every caller may do everything
   std::string audit_file;            // empty: none
+  cluster::ClusterOptions cluster;   // none: a server by itself
 };
 
 // Any thread may call. Its own threads: gRPC's, the gateway's, two a session, and one an export at once.
 class Server {
  public:
   // Listens once the store's sessions are restored. FAILED_PRECONDITION where other machines would be listened to
-  // unencrypted, and nobody said that they may be; UNAVAILABLE names the address that could not be listened on;
+  // unencrypted, and nobody said that they may be; INVALID_ARGUMENT for settings that a cluster's server cannot have;
+  // UNAVAILABLE names the address that could not be listened on, or Redis that cannot be reached;
   // NOT_FOUND the folder that is missing; else what is wrong with the store.
   static absl::StatusOr<std::unique_ptr<Server>> Start(const ServerOptions& options);
   ~Server();
@@ -61,8 +64,8 @@ class Server {
   // Why sessions of the store, by their ids, and studies and exports ("study NAME") could not be restored: they stay in
   // it.
   const std::map<std::string, absl::Status>& lost() const;
-  // Tells viewers, saves and ends sessions, breaks exports off and ends calls, within about two seconds but for a scene
-  // that is being built; a second call does nothing.
+  // Tells viewers, hands sessions on where there is a cluster, saves and ends sessions, breaks exports off and ends
+  // calls, within about two seconds but for a scene that is being built; a second call does nothing.
   void Shutdown();
 
  private:

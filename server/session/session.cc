@@ -16,6 +16,7 @@ constexpr absl::Duration kLook = absl::Milliseconds(50);
 Session::Session(std::string id, std::shared_ptr<const Model> model, Fork start, const stream::Clock& clock,
                  const Limits& limits, Origin origin)
     : id_(std::move(id)),
+      epoch_(origin.epoch),
       model_(std::move(model)),
       surfaces_(std::move(origin.surfaces)),
       clock_(clock),
@@ -29,6 +30,7 @@ Session::Session(std::string id, std::shared_ptr<const Model> model, Fork start,
   {
     absl::MutexLock lock(&mutex_);
     status_.set_id(id_);
+    status_.set_epoch(epoch_);
     status_.set_scene(model_->scene.name());
     status_.set_scene_title(model_->scene.title());
     *status_.mutable_create_time() =

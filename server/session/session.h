@@ -45,6 +45,7 @@ struct SessionOrigin {
   ControlBook control;
   std::shared_ptr<store::Journal> journal = nullptr;  // null: it is not saved
   std::optional<v1::SavedMoment> told = std::nullopt;
+  std::int64_t epoch = 0;  // in a cluster
   std::vector<Uploads::Held> surfaces = {};  // that clients gave, of which its scene is made
 };
 
@@ -131,6 +132,8 @@ class Session {
   void Forget();
   // A copy of the present state, from which another run may go on. FAILED_PRECONDITION when the session has diverged.
   absl::StatusOr<Fork> MakeFork();
+  // Waits until the stepping thread has ended, after Stop: what it came to is handed to the store.
+  void AwaitEnd() const { ended_.WaitForNotification(); }
   // Ends the stepping thread at once and all viewers with `reason`; later calls return it.
   void Stop(const absl::Status& reason) ABSL_LOCKS_EXCLUDED(mutex_);
 
@@ -175,11 +178,12 @@ class Session {
   void Halt(v1::SessionState state);
   void EndJob(absl::Status status);
   void OfferFrame(absl::Time now);
-  // The status once it is in the store, or cannot be (not_saved).
-  v1::Session Saved();
+  // The status once it is in the store, or cannot be (not_saved). ABORTED where another server has the session by now.
+  absl::StatusOr<v1::Session> Saved();
   // Of session_saving.cc.
   void GoOn(const v1::SavedMoment& told);
   v1::SavedMoment Moment() const;
+  absl::Duration StatePause() const;
   void SaveChange(v1::Session status);
   void SaveProgress(absl::Time now);
   void SaveState(v1::SavedMoment moment);
@@ -191,6 +195,7 @@ class Session {
   absl::Status CheckNotDiverged() const;
 
   const std::string id_;
+  const std::int64_t epoch_;
   const std::shared_ptr<const Model> model_;
   const std::vector<Uploads::Held> surfaces_;
   const stream::Clock& clock_;
@@ -231,6 +236,7 @@ class Session {
   std::int64_t saved_tick_ = -1;                         // of the last state that was saved
   std::int64_t saved_revision_ = 0, saved_control_ = 0;  // of the last change
   bool from_start_ = false;                              // reset since the last change was saved
+  absl::Notification ended_;
 
   std::thread thread_;
 };

@@ -42,7 +42,7 @@ absl::StatusOr<v1::Control> Session::ChangeControl(
   });
   if (!asked.ok()) return asked;
   if (!changed.ok()) return changed;
-  Saved();
+  if (const auto saved = Saved(); !saved.ok()) return saved.status();
   return control;
 }
 

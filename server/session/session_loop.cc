@@ -28,6 +28,7 @@ void Session::Loop() {
     Burst();
     share_.End(ThreadCpu());
   }
+  ended_.Notify();
 }
 
 bool Session::ServeCommands() {

@@ -8,7 +8,7 @@ namespace phrenic::session {
 namespace {
 
 // A session that is restored steps again through what came after its last state: at most this long.
-constexpr absl::Duration kStates = absl::Seconds(2);
+constexpr absl::Duration kStates = absl::Seconds(2), kStatesInCluster = absl::Seconds(1);
 // Of a session that plays: what is lost with the server.
 constexpr absl::Duration kProgress = absl::Milliseconds(500);
 
@@ -16,10 +16,11 @@ constexpr absl::Duration kProgress = absl::Milliseconds(500);
 
 absl::Status Session::Flush() const { return journal_ == nullptr ? absl::OkStatus() : journal_->Flush(); }
 
-v1::Session Session::Saved() {
-  const bool saved = Flush().ok();
+absl::StatusOr<v1::Session> Session::Saved() {
+  const absl::Status saved = Flush();
+  if (absl::IsAborted(saved)) return saved;
   v1::Session now = status();
-  if (!saved) publisher_.Announce(now);  // viewers were told before the store was asked
+  if (!saved.ok()) publisher_.Announce(now);  // viewers were told before the store was asked
   return now;
 }
 
@@ -59,6 +60,8 @@ v1::SavedMoment Session::Moment() const {
   return moment;
 }
 
+absl::Duration Session::StatePause() const { return epoch_ > 0 ? kStatesInCluster : kStates; }
+
 void Session::SaveState(v1::SavedMoment moment) {
   saved_tick_ = run_.state().tick;
   state_saved_ = progress_saved_ = clock_.Now();
@@ -74,7 +77,7 @@ void Session::SaveChange(v1::Session status) {
   const bool time_alone = revision_ == saved_revision_ && control_.state().revision == saved_control_ && !from_start;
   saved_revision_ = revision_;
   saved_control_ = control_.state().revision;
-  const bool stale = run_.state().tick != saved_tick_ && clock_.Now() - state_saved_ > kStates;
+  const bool stale = run_.state().tick != saved_tick_ && clock_.Now() - state_saved_ > StatePause();
   if (saved_tick_ < 0 || stale || journal_->wants_state()) {
     SaveState(std::move(moment));
   } else {
@@ -88,7 +91,7 @@ void Session::SaveProgress(absl::Time now) {
   progress_saved_ = now;
   v1::SavedMoment moment = Moment();
   *moment.mutable_session() = status();
-  if (now - state_saved_ > kStates || journal_->wants_state()) {
+  if (now - state_saved_ > StatePause() || journal_->wants_state()) {
     SaveState(std::move(moment));
   } else {
     journal_->Append(std::move(moment), true);

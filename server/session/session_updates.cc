@@ -46,7 +46,9 @@ absl::StatusOr<Session::Updated> Session::Update(const v1::Parameters& changes,
     return good.ok() ? UpdateAt(changes, stable_step, at_tick) : good;
   });
   if (!updated.ok()) return updated;
-  return Updated{Saved(), Warnings(parameters, stable_step)};
+  auto saved = Saved();
+  if (!saved.ok()) return saved.status();
+  return Updated{*std::move(saved), Warnings(parameters, stable_step)};
 }
 
 absl::Status Session::UpdateAt(const v1::Parameters& changes, double stable_step, std::optional<std::int64_t> at_tick) {

@@ -19,15 +19,16 @@ constexpr int kLargestPage = 1000;
 
 }  // namespace
 
-Table::Table(Models& models, const stream::Clock& clock, const Limits& limits, store::Store* store)
-    : models_(models), clock_(clock), limits_(limits), store_(store) {}
+Table::Table(Models& models, const stream::Clock& clock, const Limits& limits, store::Store* store,
+             store::Ownership* ownership)
+    : models_(models), clock_(clock), limits_(limits), store_(store), ownership_(ownership) {}
 
 Table::~Table() { Close(absl::UnavailableError("the server is shutting down")); }
 
-std::string Table::FreeId(const std::string& scene) const {
-  return schema::FreeId(scene, "session", [this](const std::string& id) {
+std::string Table::FreeId(const std::string& scene, const std::set<std::string>& elsewhere) const {
+  return schema::FreeId(scene, "session", [this, &elsewhere](const std::string& id) {
     mutex_.AssertHeld();
-    return sessions_.contains(id) || lost_.contains(id);
+    return sessions_.contains(id) || lost_.contains(id) || elsewhere.contains(id);
   });
 }
 
@@ -48,7 +49,7 @@ absl::Status Table::CheckRoom(const std::string& account) const {
 }
 
 absl::StatusOr<std::string> Table::Reserve(const char* field, const std::string& wanted, const std::string& scene,
-                                           const std::string& account) {
+                                           const std::string& account, const std::set<std::string>& elsewhere) {
   if (absl::Status status = schema::CheckId(field, wanted); !status.ok()) return status;
   absl::MutexLock lock(&mutex_);
   if (closed_.has_value()) return *closed_;
@@ -61,12 +62,32 @@ absl::StatusOr<std::string> Table::Reserve(const char* field, const std::string&
                                                  "); delete it, or choose another id"));
   }
   if (absl::Status room = CheckRoom(account); !room.ok()) return room;
-  const std::string id = wanted.empty() ? FreeId(scene) : wanted;
+  const std::string id = wanted.empty() ? FreeId(scene, elsewhere) : wanted;
   sessions_.emplace(id, nullptr);
   return id;
 }
 
-absl::StatusOr<std::shared_ptr<Session>> Table::Make(const std::string& id, const v1::CreateSessionRequest& request,
+absl::StatusOr<Table::Claim> Table::ReserveEverywhere(const char* field, const std::string& wanted,
+                                                      const std::string& scene, const std::string& account) {
+  std::set<std::string> elsewhere;
+  for (;;) {
+    auto id = Reserve(field, wanted, scene, account, elsewhere);
+    if (!id.ok()) return id.status();
+    if (ownership_ == nullptr) return Claim{*std::move(id)};
+    const absl::StatusOr<std::int64_t> epoch = ownership_->Claim(*id);
+    if (epoch.ok()) return Claim{*std::move(id), *epoch};
+    {
+      absl::MutexLock lock(&mutex_);
+      sessions_.erase(*id);
+    }
+    if (!wanted.empty() || !absl::IsAlreadyExists(epoch.status())) {
+      return absl::Status(epoch.status().code(), absl::StrCat(field, ": ", epoch.status().message()));
+    }
+    elsewhere.insert(*id);
+  }
+}
+
+absl::StatusOr<std::shared_ptr<Session>> Table::Make(const Claim& claim, const v1::CreateSessionRequest& request,
                                                      ControlBook control) {
   const auto compiled = models_.Get(request.source());
   if (!compiled.ok()) return compiled.status();
@@ -91,25 +112,24 @@ absl::StatusOr<std::shared_ptr<Session>> Table::Make(const std::string& id, cons
   if (absl::Status status = ChangePulls(*changes, true, start.state.pulls); !status.ok()) return status;
   auto surfaces = models_.HoldSurfaces(model->scene);
   if (!surfaces.ok()) return surfaces.status();
-  auto origin = Begin(id, *model, *std::move(surfaces), std::move(control));
+  auto origin = Begin(claim, *model, *std::move(surfaces), std::move(control));
   if (!origin.ok()) return origin.status();
-  return std::make_shared<Session>(id, model, std::move(start), clock_, limits_, *std::move(origin));
+  return std::make_shared<Session>(claim.id, model, std::move(start), clock_, limits_, *std::move(origin));
 }
 
-absl::StatusOr<std::shared_ptr<Session>> Table::MakeFork(const std::string& id, Session& of,
-                                                         ControlBook control) const {
+absl::StatusOr<std::shared_ptr<Session>> Table::MakeFork(const Claim& claim, Session& of, ControlBook control) const {
   absl::StatusOr<Session::Fork> start = of.MakeFork();
   if (!start.ok()) return start.status();
-  auto origin = Begin(id, of.model(), of.surfaces(), std::move(control));
+  auto origin = Begin(claim, of.model(), of.surfaces(), std::move(control));
   if (!origin.ok()) return origin.status();
-  return std::make_shared<Session>(id, of.shared_model(), *std::move(start), clock_, limits_, *std::move(origin));
+  return std::make_shared<Session>(claim.id, of.shared_model(), *std::move(start), clock_, limits_, *std::move(origin));
 }
 
 absl::StatusOr<std::shared_ptr<Session>> Table::Create(const v1::CreateSessionRequest& request, ControlBook control) {
   const std::string scene = request.source().has_scene() ? request.source().scene().name() : request.source().name();
   const std::string account = control.state().account;
   return Admit("session_id", request.session_id(), scene, account,
-               [&](const std::string& id) { return Make(id, request, std::move(control)); });
+               [&](const Claim& claim) { return Make(claim, request, std::move(control)); });
 }
 
 absl::StatusOr<std::shared_ptr<Session>> Table::Fork(const v1::ForkSessionRequest& request, ControlBook control) {
@@ -117,27 +137,28 @@ absl::StatusOr<std::shared_ptr<Session>> Table::Fork(const v1::ForkSessionReques
   if (!of.ok()) return of.status();
   const std::string account = control.state().account;
   return Admit("fork_id", request.fork_id(), (*of)->model().scene.name(), account,
-               [&](const std::string& id) { return MakeFork(id, **of, std::move(control)); });
+               [&](const Claim& claim) { return MakeFork(claim, **of, std::move(control)); });
 }
 
 absl::StatusOr<std::shared_ptr<Session>> Table::Admit(const char* field, const std::string& wanted,
                                                       const std::string& scene, const std::string& account,
                                                       absl::FunctionRef<Maker> make) {
-  const absl::StatusOr<std::string> id = Reserve(field, wanted, scene, account);
-  if (!id.ok()) return id.status();
-  absl::StatusOr<std::shared_ptr<Session>> session = make(*id);
+  const absl::StatusOr<Claim> claim = ReserveEverywhere(field, wanted, scene, account);
+  if (!claim.ok()) return claim.status();
+  absl::StatusOr<std::shared_ptr<Session>> session = make(*claim);
   if (session.ok()) {
     if (const absl::Status saved = (*session)->Flush(); !saved.ok()) {
       (*session)->Forget();
       session = saved;
     }
   }
+  if (!session.ok() && ownership_ != nullptr) ownership_->Abandon(claim->id);
   absl::MutexLock lock(&mutex_);
   if (closed_.has_value()) return *closed_;
   if (session.ok()) {
-    sessions_[*id] = *session;
+    sessions_[claim->id] = *session;
   } else {
-    sessions_.erase(*id);
+    sessions_.erase(claim->id);
   }
   return session;
 }
@@ -202,7 +223,25 @@ absl::Status Table::Remove(const std::string& id, std::optional<std::string_view
   return absl::OkStatus();
 }
 
+void Table::Drop(const std::string& id) {
+  std::shared_ptr<Session> session;
+  {
+    absl::MutexLock lock(&mutex_);
+    const auto found = sessions_.find(id);
+    if (found == sessions_.end() || found->second == nullptr) return;
+    session = dropped_.emplace_back(std::move(found->second));
+    sessions_.erase(found);
+  }
+  session->Forget();
+  session->Stop(absl::UnavailableError(absl::StrCat("session ", id, " goes on on another server; ask again")));
+}
+
 void Table::Tend() {
+  std::vector<std::shared_ptr<Session>> dropped;
+  {
+    absl::MutexLock lock(&mutex_);
+    dropped.swap(dropped_);
+  }
   const absl::Time now = clock_.Now();
   const auto over = [now](const Session& session, double minutes) {
     return minutes > 0 && now - session.attended() >= absl::Minutes(minutes);
@@ -224,6 +263,12 @@ void Table::Close(const absl::Status& reason) {
   }
   for (const auto& [id, session] : sessions) {
     if (session != nullptr) session->Stop(reason);
+  }
+  if (ownership_ == nullptr) return;
+  for (const auto& [id, session] : sessions) {
+    if (session == nullptr) continue;
+    session->AwaitEnd();
+    if (session->Flush().ok()) ownership_->Release(id);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,13 +30,20 @@ class Table {
   };
 
   // `store` outlives the table and saves its sessions; null: nothing is saved.
-  Table(Models& models, const stream::Clock& clock, const Limits& limits, store::Store* store = nullptr);
+  // `ownership` outlives the table as well, and says which sessions are this server's; null: all, it is by itself.
+  Table(Models& models, const stream::Clock& clock, const Limits& limits, store::Store* store = nullptr,
+        store::Ownership* ownership = nullptr);
   ~Table();
 
   // What the store has of an earlier server's, each as it was: those that played go on. Why a session could not be
   // restored, for each of those: it stays in the store under its id until it is deleted. `progress` hears of each.
   absl::StatusOr<std::map<std::string, absl::Status>> Restore(absl::FunctionRef<void(const std::string& id)> progress)
       ABSL_LOCKS_EXCLUDED(mutex_);
+
+  // Goes on with a session of a server that is gone. Why it cannot be: the errors of Restore.
+  absl::Status TakeOver(const store::SavedSession& saved, std::int64_t epoch) ABSL_LOCKS_EXCLUDED(mutex_);
+  // Another server goes on with it: ends it here, and its viewers with UNAVAILABLE. Does not wait.
+  void Drop(const std::string& id) ABSL_LOCKS_EXCLUDED(mutex_);
 
   // Compiles the scene and makes a paused session. An empty id lets the table choose one from the scene's name.
   // INVALID_ARGUMENT, ALREADY_EXISTS or RESOURCE_EXHAUSTED tell why there is none.
@@ -55,41 +63,57 @@ class Table {
   // Pauses and deletes the sessions that nobody has watched or asked for as long as the limits have it. To be called
   // now and then.
   void Tend() ABSL_LOCKS_EXCLUDED(mutex_);
-  // Stops every session; none can be made afterwards.
+  // Stops and saves every session, for another server to go on with; none can be made afterwards.
   void Close(const absl::Status& reason) ABSL_LOCKS_EXCLUDED(mutex_);
 
  private:
-  using Maker = absl::StatusOr<std::shared_ptr<Session>>(const std::string& id);
+  // A session's id, and its epoch in a cluster.
+  struct Claim {
+    std::string id;
+    std::int64_t epoch = 0;
+  };
+  using Maker = absl::StatusOr<std::shared_ptr<Session>>(const Claim& claim);
 
   // A place taken while its session is being made: null. `field` of the request holds the wanted id.
+  // `elsewhere` are ids that other servers have.
   absl::StatusOr<std::string> Reserve(const char* field, const std::string& wanted, const std::string& scene,
-                                      const std::string& account) ABSL_LOCKS_EXCLUDED(mutex_);
+                                      const std::string& account, const std::set<std::string>& elsewhere)
+      ABSL_LOCKS_EXCLUDED(mutex_);
+  // The same in the whole cluster.
+  absl::StatusOr<Claim> ReserveEverywhere(const char* field, const std::string& wanted, const std::string& scene,
+                                          const std::string& account) ABSL_LOCKS_EXCLUDED(mutex_);
   absl::Status CheckRoom(const std::string& account) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   // Takes a place, has the session made and puts it there.
   absl::StatusOr<std::shared_ptr<Session>> Admit(const char* field, const std::string& wanted, const std::string& scene,
                                                  const std::string& account, absl::FunctionRef<Maker> make)
       ABSL_LOCKS_EXCLUDED(mutex_);
-  absl::StatusOr<std::shared_ptr<Session>> Make(const std::string& id, const v1::CreateSessionRequest& request,
+  absl::StatusOr<std::shared_ptr<Session>> Make(const Claim& claim, const v1::CreateSessionRequest& request,
                                                 ControlBook control);
-  absl::StatusOr<std::shared_ptr<Session>> MakeFork(const std::string& id, Session& of, ControlBook control) const;
+  absl::StatusOr<std::shared_ptr<Session>> MakeFork(const Claim& claim, Session& of, ControlBook control) const;
   // Of a new session: its journal is begun where there is a store.
-  absl::StatusOr<SessionOrigin> Begin(const std::string& id, const Model& model, std::vector<Uploads::Held> surfaces,
+  absl::StatusOr<SessionOrigin> Begin(const Claim& claim, const Model& model, std::vector<Uploads::Held> surfaces,
                                       ControlBook control) const;
-  absl::StatusOr<std::shared_ptr<Session>> Restored(const store::SavedSession& saved);
+  // `taken`: it was another server's, and the store is to have all of it.
+  absl::StatusOr<std::shared_ptr<Session>> Restored(const store::SavedSession& saved, std::int64_t epoch, bool taken);
+  // Its epoch; FAILED_PRECONDITION where another server has it, and it goes from this one's store.
+  absl::StatusOr<std::int64_t> Reclaim(const store::SavedSession& saved);
   // `token` of who asks; none: whoever it is.
   absl::Status Remove(const std::string& id, std::optional<std::string_view> token) ABSL_LOCKS_EXCLUDED(mutex_);
   absl::Status DeleteLost(const std::string& id, std::optional<std::string_view> token)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  std::string FreeId(const std::string& scene) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  std::string FreeId(const std::string& scene, const std::set<std::string>& elsewhere) const
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   absl::Status NoSession(const std::string& id) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
   Models& models_;
   const stream::Clock& clock_;
   const Limits limits_;
   store::Store* const store_;
+  store::Ownership* const ownership_;
   mutable absl::Mutex mutex_;
   std::map<std::string, std::shared_ptr<Session>> sessions_ ABSL_GUARDED_BY(mutex_);
   std::map<std::string, store::SavedSession> lost_ ABSL_GUARDED_BY(mutex_);  // could not be restored
+  std::vector<std::shared_ptr<Session>> dropped_ ABSL_GUARDED_BY(mutex_);    // to be let go of by Tend
   std::optional<absl::Status> closed_ ABSL_GUARDED_BY(mutex_);
 };
 

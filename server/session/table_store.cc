@@ -7,17 +7,18 @@
 
 namespace phrenic::session {
 
-absl::StatusOr<SessionOrigin> Table::Begin(const std::string& id, const Model& model,
+absl::StatusOr<SessionOrigin> Table::Begin(const Claim& claim, const Model& model,
                                            std::vector<Uploads::Held> surfaces, ControlBook control) const {
-  SessionOrigin origin{std::move(control), nullptr, std::nullopt, std::move(surfaces)};
+  SessionOrigin origin{std::move(control), nullptr, std::nullopt, claim.epoch, std::move(surfaces)};
   if (store_ == nullptr) return origin;
   auto scene = SaveScene(model, origin.surfaces);
   if (!scene.ok()) return scene.status();
-  origin.journal = store_->Begin(id, *std::move(scene));
+  origin.journal = store_->Begin(claim.id, *std::move(scene));
   return origin;
 }
 
-absl::StatusOr<std::shared_ptr<Session>> Table::Restored(const store::SavedSession& saved) {
+absl::StatusOr<std::shared_ptr<Session>> Table::Restored(const store::SavedSession& saved, std::int64_t epoch,
+                                                         bool taken) {
   if (!saved.problem.ok()) return saved.problem;
   auto compiled = RestoreScene(saved.scene, absl::StrCat("session ", saved.id), models_);
   if (!compiled.ok()) return compiled.status();
@@ -25,8 +26,9 @@ absl::StatusOr<std::shared_ptr<Session>> Table::Restored(const store::SavedSessi
   if (!replayed.ok()) return replayed.status();
   const v1::Session& told = replayed->moment.session();
   Session::Fork start{told.parameters(), std::move(replayed->state), told.largest_stable_step()};
-  Session::Origin origin{ControlBook(RestoreControl(replayed->moment.control())), store_->Continue(saved),
-                         replayed->moment, std::move(compiled->surfaces)};
+  Session::Origin origin{ControlBook(RestoreControl(replayed->moment.control())),
+                         taken ? store_->Begin(saved.id, saved.scene) : store_->Continue(saved), replayed->moment,
+                         epoch, std::move(compiled->surfaces)};
   return std::make_shared<Session>(saved.id, compiled->model, std::move(start), clock_, limits_, std::move(origin));
 }
 
@@ -37,7 +39,11 @@ absl::StatusOr<std::map<std::string, absl::Status>> Table::Restore(
   if (!sessions.ok()) return sessions.status();
   for (store::SavedSession& saved : *sessions) {
     progress(saved.id);
-    absl::StatusOr<std::shared_ptr<Session>> session = Restored(saved);
+    const absl::StatusOr<std::int64_t> epoch = Reclaim(saved);
+    if (absl::IsUnavailable(epoch.status())) return epoch.status();
+    if (absl::IsFailedPrecondition(epoch.status())) continue;
+    absl::StatusOr<std::shared_ptr<Session>> session = epoch.ok() ? Restored(saved, *epoch, false) : epoch.status();
+    if (epoch.ok() && !session.ok() && ownership_ != nullptr) ownership_->Abandon(saved.id);
     absl::MutexLock lock(&mutex_);
     if (session.ok()) {
       sessions_[saved.id] = *std::move(session);
@@ -48,6 +54,29 @@ absl::StatusOr<std::map<std::string, absl::Status>> Table::Restore(
     lost_.emplace(std::move(id), std::move(saved));
   }
   return lost;
+}
+
+absl::StatusOr<std::int64_t> Table::Reclaim(const store::SavedSession& saved) {
+  const std::int64_t before = (saved.later.empty() ? saved.moment : saved.later.back()).session().epoch();
+  if (ownership_ == nullptr || !saved.problem.ok()) return before;
+  const absl::StatusOr<std::int64_t> epoch = ownership_->Reclaim(saved);
+  if (!absl::IsFailedPrecondition(epoch.status())) return epoch;
+  // One that was never the cluster's stays, under a name that another server's session has.
+  if (before == 0) return absl::AlreadyExistsError(epoch.status().message());
+  const auto journal = store_->Continue(saved);
+  journal->Forget();
+  if (absl::Status status = journal->Flush(); !status.ok()) return absl::UnavailableError(status.message());
+  return epoch;
+}
+
+absl::Status Table::TakeOver(const store::SavedSession& saved, std::int64_t epoch) {
+  absl::StatusOr<std::shared_ptr<Session>> session = Restored(saved, epoch, true);
+  if (!session.ok()) return session.status();
+  absl::MutexLock lock(&mutex_);
+  if (closed_.has_value()) return *closed_;
+  lost_.erase(saved.id);
+  sessions_[saved.id] = *std::move(session);
+  return absl::OkStatus();
 }
 
 // Who might have deleted it while it ran may delete it now.

@@ -108,11 +108,12 @@ absl::Status Prepare(const std::string& folder, Database& database) {
   return database.Run("COMMIT; PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL");
 }
 
-absl::StatusOr<std::vector<SavedSession>> ReadSessions(Database& database) {
+absl::StatusOr<std::vector<SavedSession>> ReadSessions(Database& database, const std::string& only) {
   auto rows = Statement::Prepare(database,
                                  "SELECT id, scene, scene_sha256, sequence, moment, state, sha256 FROM sessions "
-                                 "WHERE state IS NOT NULL ORDER BY id");
+                                 "WHERE state IS NOT NULL AND (?1 = '' OR id = ?1) ORDER BY id");
   if (!rows.ok()) return rows.status();
+  rows->Bind(1, only);
   std::vector<SavedSession> sessions;
   for (;;) {
     const absl::StatusOr<bool> row = rows->Next();

@@ -40,7 +40,8 @@ absl::Status Prepare(const std::string& folder, Database& database);
 absl::Status Examine(const std::string& folder, Database& database);
 
 // Every session, in the order of the ids; one with a `problem` does not keep the others from being read.
-absl::StatusOr<std::vector<SavedSession>> ReadSessions(Database& database);
+// `only` names the one to read; empty: all.
+absl::StatusOr<std::vector<SavedSession>> ReadSessions(Database& database, const std::string& only = "");
 // Every record, in the order in which they were first saved; as with sessions. A store of format 1 has none.
 absl::StatusOr<std::vector<SavedRecord>> ReadRecords(Database& database);
 

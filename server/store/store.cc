@@ -193,6 +193,42 @@ absl::Status Store::Write(const Batch& batch, const Records& records) {
   return status;
 }
 
+void Store::set_ownership(Ownership* ownership) {
+  absl::MutexLock lock(&mutex_);
+  ownership_ = ownership;
+}
+
+void Store::CopyWhole(const std::vector<std::string>& ids) {
+  absl::MutexLock lock(&mutex_);
+  whole_.insert(ids.begin(), ids.end());
+}
+
+std::vector<absl::Status> Store::Copy(Ownership* ownership, Batch& batch, const std::set<std::string>& whole) {
+  std::vector<absl::Status> results(batch.size());
+  if (ownership == nullptr) return results;
+  for (std::size_t i = 0; i < batch.size(); ++i) {
+    auto& [journal, pending] = batch[i];
+    Written written;
+    written.id = journal->id_;
+    written.forgotten = pending.forgotten;
+    written.scene = std::move(pending.scene);
+    if (pending.kept.has_value()) {
+      written.sequence = pending.kept->sequence;
+      written.moment = std::move(pending.kept->moment);
+      written.state = std::move(pending.kept->state);
+    }
+    written.moments = std::move(pending.moments);
+    if (ownership->Copy(written)) continue;
+    results[i] = absl::AbortedError(
+        absl::StrCat("session ", journal->id_, " goes on on another server, without this change; repeat it there"));
+  }
+  for (const std::string& id : whole) {
+    const auto sessions = ReadSessions(database_, id);
+    if (sessions.ok() && !sessions->empty() && sessions->front().problem.ok()) ownership->CopyWhole(sessions->front());
+  }
+  return results;
+}
+
 void Store::Run() {
   pthread_setname_np(pthread_self(), "saving");
   absl::MutexLock lock(&mutex_);
@@ -202,12 +238,17 @@ void Store::Run() {
     const bool last = closing_;
     Batch batch = TakeBatch();
     Records records = std::exchange(records_, {});
+    const std::set<std::string> whole = std::exchange(whole_, {});
+    Ownership* const ownership = ownership_;
     mutex_.Unlock();
     const absl::Status status = Write(batch, records);
+    std::vector<absl::Status> results(batch.size(), status);
+    if (status.ok()) results = Copy(ownership, batch, whole);
     mutex_.Lock();
-    for (const auto& [journal, pending] : batch) {
-      journal->problem_ = status;
-      if (status.ok()) journal->written_ = pending.told;
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+      Journal& journal = *batch[i].first;
+      journal.problem_ = results[i];
+      if (results[i].ok()) journal.written_ = batch[i].second.told;
     }
     if (status.ok()) continue;
     if (last) return;

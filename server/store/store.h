@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <thread>
 #include <utility>
@@ -16,6 +17,7 @@
 #include "absl/synchronization/mutex.h"
 #include "server/mechanics/state.h"
 #include "server/store/layout.h"
+#include "server/store/ownership.h"
 
 namespace phrenic::store {
 
@@ -85,6 +87,11 @@ class Store {
   // milliseconds, or once that has room.
   void Put(const std::string& kind, const std::string& id, std::string bytes) ABSL_LOCKS_EXCLUDED(mutex_);
   void Remove(const std::string& kind, const std::string& id) ABSL_LOCKS_EXCLUDED(mutex_);
+  // Has every session's part copied there as well, once it is on the disk; before anything is saved. `ownership`
+  // outlives the store.
+  void set_ownership(Ownership* ownership) ABSL_LOCKS_EXCLUDED(mutex_);
+  // Has all that the disk has of these copied there.
+  void CopyWhole(const std::vector<std::string>& ids) ABSL_LOCKS_EXCLUDED(mutex_);
   // The file may grow no larger [bytes]: past that the disk counts as full.
   absl::Status LimitSize(std::int64_t bytes);
   // Of a new session, which is in the store with its first state.
@@ -106,16 +113,22 @@ class Store {
   void Told(Journal& journal) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   bool Closing() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) { return closing_; }
   bool Stirred() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) { return closing_ || Waits(); }
-  bool Waits() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) { return !waiting_.empty() || !records_.empty(); }
+  bool Waits() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) {
+    return !waiting_.empty() || !records_.empty() || !whole_.empty();
+  }
   void Run() ABSL_LOCKS_EXCLUDED(mutex_);
   Batch TakeBatch() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void PutBack(Batch& batch) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   absl::Status Write(const Batch& batch, const Records& records);
+  // What came of each of the batch: ABORTED for a session that is another server's by now.
+  std::vector<absl::Status> Copy(Ownership* ownership, Batch& batch, const std::set<std::string>& whole);
 
   Database database_;  // of one thread at a time
   mutable absl::Mutex mutex_;
   std::vector<std::shared_ptr<Journal>> waiting_ ABSL_GUARDED_BY(mutex_);  // in the order in which they were told
   Records records_ ABSL_GUARDED_BY(mutex_);                                // that wait, each name once
+  std::set<std::string> whole_ ABSL_GUARDED_BY(mutex_);                    // to be copied
+  Ownership* ownership_ ABSL_GUARDED_BY(mutex_) = nullptr;
   bool closing_ ABSL_GUARDED_BY(mutex_) = false;
   std::thread thread_;
 };

@@ -15,7 +15,7 @@ using Folders = std::set<std::string>;
 const std::map<std::string, Folders>& Allowed() {
   static const Folders below = {"schema", "mesh", "meshio", "anatomy", "mechanics", "stream", "record"};
   static const Folders all = {"schema", "mesh",  "meshio",  "anatomy", "imaging", "mechanics", "stream", "record",
-                              "store",  "study", "session", "service", "access",  "settings",  "daemon"};
+                              "store",  "study", "session", "service", "access",  "settings",  "daemon", "cluster"};
   static const std::map<std::string, Folders> allowed = {
       {"schema", {}},
       {"mesh", {"schema"}},
@@ -26,6 +26,7 @@ const std::map<std::string, Folders>& Allowed() {
       {"stream", {"schema", "mesh", "mechanics"}},
       {"record", {"schema", "mesh"}},
       {"store", {"schema", "mesh", "mechanics"}},
+      {"cluster", {"schema", "mechanics", "store"}},
       {"study", below},
       {"session", {"schema", "mesh", "meshio", "anatomy", "mechanics", "stream", "record", "store"}},
       {"settings", {"schema"}},

@@ -112,6 +112,17 @@ test("AServerThatGoesSilentIsFoundOut", async () => {
   });
 });
 
+test("ASessionThatGoesOnOnAnotherServerIsFollowedAnew", async () => {
+  await settle();
+  // The stream of a server that was cut off stays open.
+  server.session.epoch = 2n;
+  await clock.advance(2000);
+  expect(links.at(-1)).toMatchObject({ kind: "lost", reason: "The session has moved." });
+  await clock.advance(500);
+  expect(links.at(-1)).toEqual({ kind: "live" });
+  expect(freshSessions).toBe(2);
+});
+
 test("RetryNowEndsTheWait", async () => {
   await settle();
   server.kill();

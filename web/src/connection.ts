@@ -49,6 +49,7 @@ export class Connection {
   private readonly stopped = new AbortController();
   private wake = new AbortController();
   private sceneHash: string | undefined;
+  private epoch = 0n;
   private anew = new AbortController();
   private exact = false;
   private codec = Codec.PREDICTED;
@@ -129,7 +130,9 @@ export class Connection {
       this.sink.scene(bodies, report);
       this.sceneHash = hash;
     }
-    if (session !== undefined) this.sink.session(session, true);
+    if (session === undefined) return;
+    this.epoch = session.epoch;
+    this.sink.session(session, true);
   }
 
   private async watch(signal: AbortSignal): Promise<never> {
@@ -179,7 +182,10 @@ export class Connection {
       if (signal.aborted) return;
       try {
         const { session } = await this.ask(signal);
-        if (session !== undefined) this.sink.session(session, false);
+        if (session === undefined) continue;
+        // Where another server has it, what still streams is of one that was cut off.
+        if (session.epoch !== this.epoch) throw new ConnectError("The session has moved.", Code.Unavailable);
+        this.sink.session(session, false);
       } catch (error) {
         attempt.abort(error);
       }

@@ -9,6 +9,7 @@ import { Identity, signing } from "./identity";
 import { make, place } from "./panels/dom";
 import { signIn } from "./panels/sign_in";
 import { recipeOf, rerun } from "./permalink";
+import { routing } from "./routing";
 
 // What is sent while the page goes outlives it: a vertex that is let go of.
 let leaving = false;
@@ -19,7 +20,7 @@ const carry: typeof fetch = (input, init) => fetch(input, { ...init, keepalive: 
 // The page and the services come from one address.
 const identity = new Identity(localStorage);
 const access = new Access(localStorage);
-const interceptors = [signing(identity), identifying(access)];
+const interceptors = [signing(identity), identifying(access), routing()];
 const api = createApi(createGrpcWebTransport({ baseUrl: location.origin, fetch: carry, interceptors }));
 
 function address(sessionId: string): string {

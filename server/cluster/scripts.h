@@ -1,0 +1,147 @@
+// What Redis has of a cluster's sessions, and the scripts that change it, each at once or not at all.
+//
+//   phrenic:sessions        set      the ids of the sessions that there are
+//   phrenic:session:ID      hash     epoch: of its last owner; scene, moment, state: SavedScene, SavedMoment,
+//   SavedState;
+//                                    sequence: of the state; last: of the last entry. Of a deleted one: epoch and
+//                                    deleted
+//   phrenic:journal:ID      hash     sequence -> SavedMoment, since the state
+//   phrenic:lease:ID        string   "EPOCH ADDRESS" of the server that has it; gone once its time is over
+//   phrenic:servers         set      addresses
+//   phrenic:server:ADDRESS  string   the sessions that it has; gone once its time is over
+//
+// The epoch is the fence: who writes names the epoch that it was given, and writes nothing once there is a later one.
+#ifndef PHRENIC_SERVER_CLUSTER_SCRIPTS_H_
+#define PHRENIC_SERVER_CLUSTER_SCRIPTS_H_
+
+namespace phrenic::cluster {
+
+// Arguments: id, address, lease [ms]. The epoch of a new session, or 0 where there is one already.
+inline constexpr char kClaim[] = R"(
+local id, address, lease = ARGV[1], ARGV[2], ARGV[3]
+local session = 'phrenic:session:' .. id
+if redis.call('EXISTS', 'phrenic:lease:' .. id) == 1 or redis.call('HEXISTS', session, 'state') == 1 then return 0 end
+local epoch = redis.call('HINCRBY', session, 'epoch', 1)
+redis.call('HDEL', session, 'deleted')
+redis.call('PERSIST', session)
+redis.call('SADD', 'phrenic:sessions', id)
+redis.call('SET', 'phrenic:lease:' .. id, epoch .. ' ' .. address, 'PX', lease)
+return epoch)";
+
+// Arguments: id, address, lease [ms], the epoch and the sequence of one's own copy. The next epoch; 0 where another
+// server has the session, or has had it since, or it was deleted.
+inline constexpr char kReclaim[] = R"(
+local id, address, lease = ARGV[1], ARGV[2], ARGV[3]
+local own, sequence = tonumber(ARGV[4]), tonumber(ARGV[5])
+local session = 'phrenic:session:' .. id
+local held = redis.call('GET', 'phrenic:lease:' .. id)
+if held and string.match(held, '^%d+ (.*)$') ~= address then return 0 end
+local epoch = tonumber(redis.call('HGET', session, 'epoch') or -1)
+if epoch > own then return 0 end
+if epoch == own then
+  if redis.call('HEXISTS', session, 'deleted') == 1 then return 0 end
+  if tonumber(redis.call('HGET', session, 'last') or 0) > sequence then return 0 end
+end
+epoch = math.max(epoch, own) + 1
+redis.call('HSET', session, 'epoch', epoch)
+redis.call('SADD', 'phrenic:sessions', id)
+redis.call('SET', 'phrenic:lease:' .. id, epoch .. ' ' .. address, 'PX', lease)
+return epoch)";
+
+// Arguments: id, address, lease [ms]. Of a session without an owner: epoch, scene, sequence, moment, state, and its
+// journal, a sequence and a moment each. {0} where it has an owner, {-1} where there is nothing to go on from.
+inline constexpr char kTake[] = R"(
+local id, address, lease = ARGV[1], ARGV[2], ARGV[3]
+local session = 'phrenic:session:' .. id
+if redis.call('EXISTS', 'phrenic:lease:' .. id) == 1 then return {0} end
+if redis.call('HEXISTS', session, 'state') == 0 then
+  redis.call('SREM', 'phrenic:sessions', id)
+  return {-1}
+end
+local epoch = redis.call('HINCRBY', session, 'epoch', 1)
+redis.call('SET', 'phrenic:lease:' .. id, epoch .. ' ' .. address, 'PX', lease)
+local saved = redis.call('HMGET', session, 'scene', 'sequence', 'moment', 'state')
+return {epoch, saved[1], saved[2], saved[3], saved[4], redis.call('HGETALL', 'phrenic:journal:' .. id)})";
+
+// Arguments: address, lease [ms], whether this server takes sessions ("1"), and an id and an epoch each. A number each:
+// 1 its own for another lease, 2 the same, but Redis has lost it, 0 another server's now.
+inline constexpr char kRenew[] = R"(
+local address, lease = ARGV[1], ARGV[2]
+if ARGV[3] == '1' then
+  redis.call('SADD', 'phrenic:servers', address)
+  redis.call('SET', 'phrenic:server:' .. address, (#ARGV - 3) / 2, 'PX', lease)
+else
+  redis.call('SREM', 'phrenic:servers', address)
+end
+local answers = {}
+for i = 4, #ARGV, 2 do
+  local id, own = ARGV[i], tonumber(ARGV[i + 1])
+  local session = 'phrenic:session:' .. id
+  local epoch = tonumber(redis.call('HGET', session, 'epoch') or -1)
+  local answer = 0
+  if epoch == own then answer = 1 end
+  if epoch < own then
+    redis.call('HSET', session, 'epoch', own)
+    answer = 2
+  end
+  if answer > 0 then
+    redis.call('SADD', 'phrenic:sessions', id)
+    redis.call('SET', 'phrenic:lease:' .. id, own .. ' ' .. address, 'PX', lease)
+  end
+  answers[#answers + 1] = answer
+end
+return answers)";
+
+// Arguments: id, epoch, scene or "", the state's sequence or "", its moment, the state, and a sequence and a moment
+// each. 1, or 0 where the epoch is over.
+inline constexpr char kSave[] = R"(
+local id, own = ARGV[1], ARGV[2]
+local session, journal = 'phrenic:session:' .. id, 'phrenic:journal:' .. id
+if redis.call('HGET', session, 'epoch') ~= own then return 0 end
+if ARGV[3] ~= '' then redis.call('HSET', session, 'scene', ARGV[3]) end
+if ARGV[4] ~= '' then
+  redis.call('HSET', session, 'sequence', ARGV[4], 'last', ARGV[4], 'moment', ARGV[5], 'state', ARGV[6])
+  redis.call('DEL', journal)
+end
+for i = 7, #ARGV, 2 do
+  redis.call('HSET', journal, ARGV[i], ARGV[i + 1])
+  redis.call('HSET', session, 'last', ARGV[i])
+end
+return 1)";
+
+// Arguments: id, epoch, how long it is remembered that there was one [s]. 1, or 0 where the epoch is over.
+inline constexpr char kForget[] = R"(
+local id, own = ARGV[1], ARGV[2]
+local session = 'phrenic:session:' .. id
+if redis.call('HGET', session, 'epoch') ~= own then return 0 end
+redis.call('DEL', session, 'phrenic:journal:' .. id, 'phrenic:lease:' .. id)
+redis.call('SREM', 'phrenic:sessions', id)
+redis.call('HSET', session, 'epoch', own, 'deleted', 1)
+redis.call('EXPIRE', session, ARGV[3])
+return 1)";
+
+// Arguments: id, epoch. Ends the lease.
+inline constexpr char kRelease[] = R"(
+if redis.call('HGET', 'phrenic:session:' .. ARGV[1], 'epoch') ~= ARGV[2] then return 0 end
+return redis.call('DEL', 'phrenic:lease:' .. ARGV[1]))";
+
+// The ids of sessions without an owner, and the addresses of the servers that take sessions.
+inline constexpr char kLook[] = R"(
+local free, servers = {}, {}
+for _, id in ipairs(redis.call('SMEMBERS', 'phrenic:sessions')) do
+  if redis.call('EXISTS', 'phrenic:lease:' .. id) == 0 then free[#free + 1] = id end
+end
+for _, address in ipairs(redis.call('SMEMBERS', 'phrenic:servers')) do
+  if redis.call('EXISTS', 'phrenic:server:' .. address) == 1 then servers[#servers + 1] = address
+  else redis.call('SREM', 'phrenic:servers', address) end
+end
+return {free, servers})";
+
+// Argument: id. {"EPOCH ADDRESS" or "", whether there is one to go on from}.
+inline constexpr char kWhere[] = R"(
+return {redis.call('GET', 'phrenic:lease:' .. ARGV[1]) or '',
+        redis.call('HEXISTS', 'phrenic:session:' .. ARGV[1], 'state')})";
+
+}  // namespace phrenic::cluster
+
+#endif  // PHRENIC_SERVER_CLUSTER_SCRIPTS_H_

@@ -1,0 +1,209 @@
+// A session has one server at a time, and nobody else writes its copy.
+#include "server/cluster/cluster.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "tests/cluster/redis_server.h"
+
+namespace phrenic::cluster {
+namespace {
+
+// A server of the cluster without sessions of its own: what it was told.
+class Member {
+ public:
+  Member(const RedisServer& redis, std::string address) {
+    auto joined = Cluster::Join({.redis = redis.url(), .advertise = std::move(address)});
+    EXPECT_TRUE(joined.ok()) << joined.status();
+    cluster_ = *std::move(joined);
+    cluster_->Begin({.lost =
+                         [this](const std::string& id) {
+                           absl::MutexLock lock(&mutex_);
+                           lost_.insert(id);
+                         },
+                     .take_over =
+                         [this](const store::SavedSession& saved, std::int64_t epoch) {
+                           absl::MutexLock lock(&mutex_);
+                           taken_.push_back({saved, epoch});
+                           return absl::OkStatus();
+                         },
+                     .copy_whole =
+                         [this](const std::vector<std::string>& ids) {
+                           absl::MutexLock lock(&mutex_);
+                           asked_.insert(ids.begin(), ids.end());
+                         }});
+  }
+  Cluster* operator->() { return cluster_.get(); }
+  bool Lost(const std::string& id) {
+    absl::MutexLock lock(&mutex_);
+    return lost_.contains(id);
+  }
+  bool AskedFor(const std::string& id) {
+    absl::MutexLock lock(&mutex_);
+    return asked_.contains(id);
+  }
+  struct Taken {
+    store::SavedSession saved;
+    std::int64_t epoch = 0;
+  };
+  std::vector<Taken> taken() {
+    absl::MutexLock lock(&mutex_);
+    return taken_;
+  }
+
+ private:
+  absl::Mutex mutex_;
+  std::set<std::string> lost_ ABSL_GUARDED_BY(mutex_), asked_ ABSL_GUARDED_BY(mutex_);
+  std::vector<Taken> taken_ ABSL_GUARDED_BY(mutex_);
+  std::unique_ptr<Cluster> cluster_;  // the first to go
+};
+
+v1::SavedMoment MomentAt(std::int64_t tick) {
+  v1::SavedMoment moment;
+  moment.mutable_session()->set_tick(tick);
+  return moment;
+}
+
+store::Written StateAt(const std::string& id, std::int64_t sequence) {
+  store::Written written;
+  written.id = id;
+  written.scene.emplace().set_scene_hash("hash");
+  written.sequence = sequence;
+  written.moment = MomentAt(sequence);
+  auto state = std::make_shared<State>();
+  state->tick = sequence;
+  written.state = std::move(state);
+  return written;
+}
+
+store::Written MomentOf(const std::string& id, std::int64_t sequence) {
+  store::Written written;
+  written.id = id;
+  written.moments.emplace_back(sequence, MomentAt(sequence));
+  return written;
+}
+
+store::SavedSession SavedAt(const std::string& id, std::int64_t epoch, std::int64_t sequence) {
+  store::SavedSession saved;
+  saved.id = id;
+  saved.moment = MomentAt(sequence);
+  saved.moment.mutable_session()->set_epoch(epoch);
+  saved.sequence = sequence;
+  return saved;
+}
+
+// False where it has not come true within the time.
+template <class Wanted>
+bool Within(absl::Duration time, Wanted wanted) {
+  for (const absl::Time end = absl::Now() + time; absl::Now() < end; absl::SleepFor(absl::Milliseconds(10))) {
+    if (wanted()) return true;
+  }
+  return wanted();
+}
+
+class ClusterTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!RedisServer::Installed()) GTEST_SKIP() << "there is no redis-server here (deploy/packages.txt)";
+    std::signal(SIGPIPE, SIG_IGN);
+    redis_ = std::make_unique<RedisServer>();
+  }
+  std::unique_ptr<RedisServer> redis_;
+};
+
+TEST_F(ClusterTest, ASessionHasOneServer) {
+  Member a(*redis_, "a:1"), b(*redis_, "b:1");
+  EXPECT_EQ(*a->Claim("s"), 1);
+  EXPECT_EQ(b->Claim("s").status().code(), absl::StatusCode::kAlreadyExists);
+  EXPECT_EQ(a->Where("s").kind, Place::Kind::kHere);
+  const Place seen = b->Where("s");
+  EXPECT_EQ(seen.kind, Place::Kind::kElsewhere);
+  EXPECT_EQ(seen.address, "a:1");
+  EXPECT_EQ(b->Where("t").kind, Place::Kind::kNowhere);
+  a->Abandon("s");
+  EXPECT_EQ(*b->Claim("s"), 2) << "epochs are not used again";
+}
+
+TEST_F(ClusterTest, WhoWasOnlySlowWritesNothingOverItsSuccessor) {
+  Member b(*redis_, "b:1");
+  b->Watch();
+  Member a(*redis_, "a:1");
+  ASSERT_TRUE(a->Claim("s").ok());
+  ASSERT_TRUE(a->Copy(StateAt("s", 1)));
+  ASSERT_TRUE(a->Copy(MomentOf("s", 2)));
+  ASSERT_TRUE(a->Copy(MomentOf("s", 3)));
+  a->Leave();  // it renews no more, as if it were stopped
+  ASSERT_TRUE(Within(absl::Seconds(6), [&] { return !b.taken().empty(); }));
+  const Member::Taken taken = b.taken()[0];
+  EXPECT_EQ(taken.epoch, 2);
+  EXPECT_EQ(taken.saved.state.tick(), 1);
+  EXPECT_EQ(taken.saved.sequence, 3);
+  ASSERT_EQ(taken.saved.later.size(), 2U);
+  EXPECT_EQ(taken.saved.later[1].session().tick(), 3);
+  EXPECT_FALSE(a->Copy(MomentOf("s", 4))) << "its epoch is over";
+  EXPECT_EQ(a->Where("s").address, "b:1") << "by its own clock its lease was over: it asked";
+  EXPECT_TRUE(a.Lost("s"));
+  EXPECT_TRUE(b->Copy(StateAt("s", 1)));
+}
+
+TEST_F(ClusterTest, WhatIsReleasedGoesOnAtOnce) {
+  Member b(*redis_, "b:1");
+  b->Watch();
+  absl::SleepFor(absl::Seconds(3.3));  // until it takes over anything
+  Member a(*redis_, "a:1");
+  ASSERT_TRUE(a->Claim("s").ok());
+  ASSERT_TRUE(a->Copy(StateAt("s", 1)));
+  a->Release("s");
+  EXPECT_TRUE(Within(absl::Milliseconds(600), [&] { return !b.taken().empty(); }));
+}
+
+TEST_F(ClusterTest, SessionsGoOnWithoutRedisAndAreCopiedAnewWhenItComesBackEmpty) {
+  Member a(*redis_, "a:1");
+  ASSERT_TRUE(a->Claim("s").ok());
+  redis_->Kill();
+  EXPECT_TRUE(Within(absl::Seconds(3), [&] { return !a->counts().reached; }));
+  absl::SleepFor(absl::Seconds(3.2));  // its lease is over
+  const absl::Time asked = absl::Now();
+  EXPECT_EQ(a->Where("s").kind, Place::Kind::kHere);
+  EXPECT_EQ(a->Where("t").kind, Place::Kind::kUnknown);
+  EXPECT_TRUE(a->Copy(StateAt("s", 1))) << "a copy that is late is no reason to stop";
+  EXPECT_LT(absl::Now() - asked, absl::Seconds(1));
+  EXPECT_EQ(a->Claim("u").status().code(), absl::StatusCode::kUnavailable);
+  redis_->Start();
+  EXPECT_TRUE(Within(absl::Seconds(4), [&] { return a.AskedFor("s"); }));
+  EXPECT_TRUE(a->counts().reached);
+  EXPECT_FALSE(a.Lost("s"));
+}
+
+TEST_F(ClusterTest, AStoresOwnSessionComesBackUnlessOthersHadItSince) {
+  Member a(*redis_, "a:1"), b(*redis_, "b:1");
+  EXPECT_EQ(*a->Reclaim(SavedAt("alone", 0, 5)), 1) << "of before there was a cluster";
+  EXPECT_FALSE(b->Reclaim(SavedAt("alone", 0, 5)).ok()) << "another server has one of that name";
+  ASSERT_EQ(*b->Reclaim(SavedAt("newer", 3, 9)), 4);
+  b->Abandon("newer");
+  EXPECT_FALSE(a->Reclaim(SavedAt("newer", 2, 20)).ok());
+  EXPECT_EQ(*a->Reclaim(SavedAt("newer", 4, 10)), 5);
+  store::Written gone;
+  gone.id = "newer";
+  gone.forgotten = true;
+  EXPECT_TRUE(a->Copy(gone));
+  EXPECT_FALSE(b->Reclaim(SavedAt("newer", 5, 10)).ok()) << "it was deleted";
+}
+
+TEST(RedisAddress, SaysWhatIsWrongWithoutThePassword) {
+  const auto good = ParseRedisAddress("redis://:secret@10.0.0.1:7000");
+  ASSERT_TRUE(good.ok());
+  EXPECT_EQ(good->host, "10.0.0.1");
+  EXPECT_EQ(good->port, 7000);
+  EXPECT_EQ(good->password, "secret");
+  for (const char* bad :
+       {"10.0.0.1:7000", "redis://", "redis://host:0", "redis://secret@host:1", "redis://:secret@:1"}) {
+    const auto address = ParseRedisAddress(bad);
+    ASSERT_FALSE(address.ok()) << bad;
+    EXPECT_EQ(address.status().message().find("secret@"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace phrenic::cluster

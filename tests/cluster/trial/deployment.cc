@@ -1,0 +1,163 @@
+#include "tests/cluster/trial/deployment.h"
+
+#include <arpa/inet.h>
+#include <fcntl.h>
+#include <grpcpp/create_channel.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
+#include "absl/time/clock.h"
+
+namespace phrenic::cluster {
+namespace {
+
+std::string TextOf(const std::string& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+bool IsFree(int port) {
+  const int file = socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  address.sin_port = htons(static_cast<std::uint16_t>(port));
+  const bool is_free = bind(file, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+  close(file);
+  return is_free;
+}
+
+// The first of so many free ports in a row, below those that the system gives out.
+int FreePorts(int count) {
+  for (int first = 21'000 + getpid() % 100 * 100; first < 32'000; first += count) {
+    bool good = true;
+    for (int port = first; port < first + count && good; ++port) good = IsFree(port);
+    if (good) return first;
+  }
+  return 0;
+}
+
+[[noreturn]] void Become(const std::vector<std::string>& words, const std::string& log) {
+  const int file = open(log.c_str(), O_CREAT | O_APPEND | O_WRONLY, 0600);
+  dup2(file, 1);
+  dup2(file, 2);
+  std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
+  for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+  execvp(arguments[0], arguments.data());
+  _exit(127);
+}
+
+bool Runs(pid_t pid) {
+  return kill(pid, 0) == 0 && !absl::StrContains(TextOf(absl::StrCat("/proc/", pid, "/stat")), ") Z ");
+}
+
+}  // namespace
+
+std::string Deployment::Said() const { return TextOf(folder_ + "/said"); }
+
+absl::Status Deployment::Start(int servers) {
+  std::string name = std::filesystem::temp_directory_path() / "phrenic-cluster-XXXXXX";
+  if (mkdtemp(name.data()) == nullptr) return absl::UnavailableError("no folder for it could be made");
+  folder_ = name;
+  std::filesystem::permissions(folder_, static_cast<std::filesystem::perms>(0755));
+  base_ = FreePorts(2 * servers + 2);
+  port_ = base_ + 2 * servers + 1;
+  script_ = fork();
+  if (script_ == 0) {
+    Become({PHRENIC_SOURCE_DIR "/deploy/cluster", std::to_string(servers), "--no-build", "--dir", folder_, "--base",
+            std::to_string(base_), "--port", std::to_string(port_), "--start", "none"},
+           folder_ + "/said");
+  }
+  for (int tries = 0; tries < 600 && !absl::StrContains(Said(), "Ctrl-C"); ++tries) {
+    absl::SleepFor(absl::Milliseconds(100));
+    if (!Runs(script_)) break;
+  }
+  if (!absl::StrContains(Said(), "Ctrl-C")) return absl::UnavailableError(Said());
+  trust_ = TextOf(folder_ + "/phrenic/cert.pem");
+  std::vector<std::string> names = {"redis"};
+  for (int i = 1; i <= servers; ++i) names.push_back(absl::StrCat("server-", i));
+  for (const std::string& each : names) {
+    const pid_t pid = std::atoi(TextOf(absl::StrCat(folder_, "/", each, ".pid")).c_str());
+    std::vector<std::string> words =
+        absl::StrSplit(TextOf(absl::StrCat("/proc/", pid, "/cmdline")), '\0', absl::SkipEmpty());
+    // Redis writes its address behind its name.
+    if (each == "redis") {
+      words = {"redis-server", "--bind", "127.0.0.1", "--port", std::to_string(base_), "--dir", folder_,
+               "--appendonly", "yes",    "--save",    ""};
+    }
+    programs_.push_back({each, pid, std::move(words)});
+  }
+  return absl::OkStatus();
+}
+
+Deployment::~Deployment() {
+  for (const Program& program : programs_) {
+    if (program.ours && program.pid > 0) {
+      kill(program.pid, SIGKILL);
+      waitpid(program.pid, nullptr, 0);
+    }
+  }
+  if (script_ > 0) {
+    kill(script_, SIGTERM);
+    waitpid(script_, nullptr, 0);
+  }
+  std::error_code ignored;
+  if (!folder_.empty()) std::filesystem::remove_all(folder_, ignored);
+}
+
+std::shared_ptr<grpc::Channel> Deployment::NewChannel() const {
+  grpc::ChannelArguments arguments;
+  arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
+  arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 100);
+  arguments.SetMaxReceiveMessageSize(-1);
+  return grpc::CreateCustomChannel(
+      absl::StrCat("localhost:", port_),
+      grpc::SslCredentials({.pem_root_certs = trust_, .pem_private_key = "", .pem_cert_chain = ""}), arguments);
+}
+
+std::shared_ptr<grpc::Channel> Deployment::NewChannelTo(int server) const {
+  grpc::ChannelArguments arguments;
+  arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
+  arguments.SetMaxReceiveMessageSize(-1);
+  return grpc::CreateCustomChannel(absl::StrCat("127.0.0.1:", base_ + 2 * server - 1),
+                                   grpc::InsecureChannelCredentials(), arguments);
+}
+
+Deployment::Program& Deployment::Find(const std::string& name) {
+  for (Program& program : programs_) {
+    if (program.name == name) return program;
+  }
+  return programs_.front();
+}
+
+void Deployment::Signal(const std::string& name, int signal) { kill(Find(name).pid, signal); }
+
+void Deployment::End(const std::string& name, int signal) {
+  Program& program = Find(name);
+  kill(program.pid, signal);
+  if (program.ours) waitpid(program.pid, nullptr, 0);
+  while (!program.ours && Runs(program.pid)) absl::SleepFor(absl::Milliseconds(2));
+  program.pid = -1;
+}
+
+void Deployment::StartAgain(const std::string& name) {
+  Program& program = Find(name);
+  program.ours = true;
+  program.pid = fork();
+  if (program.pid == 0) Become(program.words, absl::StrCat(folder_, "/", name, ".log"));
+}
+
+}  // namespace phrenic::cluster
