@@ -66,6 +66,7 @@ absl::StatusOr<Mesh> BodyOf(const v1::SessionBody& body, v1::ComparedState& stat
 struct Told {
   std::string map;
   std::vector<v1::VertexDistances> vertices;
+  std::vector<Mesh> meshes;
 };
 
 absl::StatusOr<v1::ComparisonTable> Compared(const v1::CompareRequest& request, Told* told = nullptr) {
@@ -79,6 +80,11 @@ absl::StatusOr<v1::ComparisonTable> Compared(const v1::CompareRequest& request, 
                   .map =
                       [told](std::string_view bytes) {
                         if (told != nullptr) told->map += bytes;
+                        return absl::OkStatus();
+                      },
+                  .mesh =
+                      [told](ConstPoints x, const Triangles& triangles) {
+                        if (told != nullptr) told->meshes.push_back({.vertices = x, .triangles = triangles});
                         return absl::OkStatus();
                       }});
 }
@@ -165,6 +171,18 @@ TEST(Comparison, ARegionOfOneFileAloneIsNotANumber) {
     EXPECT_EQ(std::isnan(row.distance().hd_max()), !common) << row.region();
   }
   EXPECT_THAT(regions, ElementsAre("", "left", "right", "rising"));
+}
+
+TEST(Comparison, TheMeshOfBIsToldAsItWasMeasured) {
+  Told told;
+  auto request = BodyRequest("b.msh", MotionText(0.01, {0, 1}));
+  ASSERT_TRUE(Compared(request, &told).ok());
+  EXPECT_TRUE(told.meshes.empty()) << "not asked for";
+  request.set_mesh_of_b(true);
+  ASSERT_TRUE(Compared(request, &told).ok());
+  ASSERT_EQ(told.meshes.size(), 1U);
+  EXPECT_NEAR(told.meshes[0].vertices(2, 0), 0.005, 1e-6) << "at the session's 0.5 s";
+  EXPECT_EQ(told.meshes[0].triangles.cols(), 2 * Square(0.1, 2).triangles.cols());
 }
 
 TEST(Comparison, BadInputIsRefusedByName) {
