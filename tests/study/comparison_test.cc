@@ -84,7 +84,10 @@ absl::StatusOr<v1::ComparisonTable> Compared(const v1::CompareRequest& request, 
                       },
                   .mesh =
                       [told](ConstPoints x, const Triangles& triangles) {
-                        if (told != nullptr) told->meshes.push_back({.vertices = x, .triangles = triangles});
+                        Mesh mesh;
+                        mesh.vertices = x;
+                        mesh.triangles = triangles;
+                        if (told != nullptr) told->meshes.push_back(std::move(mesh));
                         return absl::OkStatus();
                       }});
 }
@@ -207,10 +210,12 @@ TEST(Comparison, EndsWhereNobodyListens) {
   const auto ends = [](bool progress, const absl::Status& vertices) {
     auto request = Request("a.obj", kObj, "b.obj", kObj);
     request.set_vertex_distances(true);
+    request.set_mesh_of_b(true);
     const auto table = Compare(request, BodyOf,
                                {.progress = [=](double) { return progress; },
                                 .vertices = [=](const v1::VertexDistances&) { return vertices; },
-                                .map = [](std::string_view) { return absl::OkStatus(); }});
+                                .map = [](std::string_view) { return absl::OkStatus(); },
+                                .mesh = [=](ConstPoints, const Triangles&) { return vertices; }});
     return table.status().code();
   };
   EXPECT_EQ(ends(true, absl::OkStatus()), absl::StatusCode::kOk);

@@ -23,8 +23,9 @@ export class ComparisonCard {
   show(time: number | undefined): void {
     const result = this.comparisons.result.value;
     const elsewhere = result !== undefined && time !== undefined && time !== result.time;
-    const moved = result?.surface === undefined ? "The session is" : "Colours follow the body,";
-    const words = elsewhere ? `${moved} at ${time.toFixed(2)} s now; “Again” measures there.` : "";
+    const now = `at ${time?.toFixed(2)} s now`;
+    const follows = `Colours follow the body, ${now}; “Again” measures there.`;
+    const words = elsewhere ? (result.surface === undefined ? `The session is ${now}.` : follows) : "";
     if (this.moved.textContent !== words) this.moved.textContent = words;
   }
 
