@@ -7,6 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "server/service/status.h"
 #include "server/session/present_body.h"
+#include "server/stream/wire.h"
 #include "server/study/comparison.h"
 
 namespace phrenic::service {
@@ -35,6 +36,13 @@ study::ComparisonSink MakeSink(grpc::ServerContext& context, CompareWriter& writ
               [&](std::string_view bytes) {
                 v1::CompareResponse response;
                 response.set_map_chunk(std::string(bytes));
+                return Send(writer, response);
+              },
+          .mesh =
+              [&](ConstPoints x, const Triangles& triangles) {
+                v1::CompareResponse response;
+                stream::AppendFloats(x.cast<float>(), *response.mutable_mesh()->mutable_positions());
+                stream::AppendIndices(triangles, *response.mutable_mesh()->mutable_triangles());
                 return Send(writer, response);
               }};
 }

@@ -60,6 +60,7 @@ class Comparer {
   absl::Status Measure() {
     const auto total = static_cast<double>(moments_.pairs.size() * parts_.size());
     double done = 0;
+    if (absl::Status status = TellMesh(); !status.ok()) return status;
     for (const Moment& moment : moments_.pairs) {
       const Points a = PositionsAt(a_, moment.a), b = PositionsAt(b_, moment.b);
       for (ComparedPart& part : parts_) {
@@ -138,6 +139,11 @@ class Comparer {
     vertices.mutable_distances()->Reserve(static_cast<int>(at_vertices.size()));
     for (const double distance : at_vertices) vertices.add_distances(static_cast<float>(distance / kMillimetre));
     return sink_.vertices(vertices);
+  }
+
+  absl::Status TellMesh() const {
+    if (!request_.mesh_of_b() || moments_.pairs.empty()) return absl::OkStatus();
+    return sink_.mesh(PositionsAt(b_, moments_.pairs.front().b), b_.mesh.triangles);
   }
 
   static void AddRow(const std::string& region, const v1::SurfaceDistance& distance,

@@ -16,7 +16,8 @@ namespace phrenic::study {
 struct ComparisonSink {
   std::function<bool(double)> progress;  // how much is done, 0 to 1; false: CANCELLED
   std::function<absl::Status(const v1::VertexDistances&)> vertices;
-  record::Sink map;  // the next bytes of the map's file
+  record::Sink map;                                                             // the next bytes of the map's file
+  std::function<absl::Status(ConstPoints x, const Triangles& triangles)> mesh;  // B's [m]
 };
 
 // Compares as compare.proto says; `request` has been validated. A triangle belongs to a region when its three vertices

@@ -94,6 +94,19 @@ test.each([
   await viewer.page.setViewportSize({ width: 900, height: 620 });
 });
 
+test("LargeTypeLeavesNothingOfTheHeaderOutOfReach", async () => {
+  const { page } = viewer;
+  await page.setViewportSize({ width: 1024, height: 768 });
+  await page.check("#projector");
+  await viewer.leave("projector");
+  for (const button of await page.locator("#header button:visible").all()) {
+    const box = (await button.boundingBox())!;
+    expect(box.x + box.width).toBeLessThanOrEqual(1024);
+  }
+  await page.uncheck("#projector");
+  await page.setViewportSize({ width: 900, height: 620 });
+});
+
 test("TheKeyboardAlonePlaysStepsTurnsAndSlides", async () => {
   await viewer.page.focus("#view");
   await viewer.page.keyboard.press("Space");

@@ -76,11 +76,20 @@ describe("a cube beside a file of itself, 3 mm higher", () => {
     await server.phrenic("step", "cube", "200");
     await viewer.atTick(200);
     await viewer.page.waitForFunction(() => document.querySelector("#comparison-moved")?.textContent !== "");
+    expect(await viewer.page.textContent("#comparison-moved")).toMatch(/^Colours follow the body, at \d/);
     const before = await measure("rms_a_to_b");
     await viewer.page.click("#compare-again");
     await viewer.page.waitForSelector('#comparison-when:has-text("tick 200")');
     expect(await measure("rms_a_to_b")).not.toBe(before);
     expect(await viewer.page.textContent("#comparison-moved")).toBe("");
+  });
+
+  test("TheFilesSurfaceIsSeenUntilItIsSwitchedOff", async () => {
+    const before = await canvasPicture(viewer);
+    await viewer.page.uncheck("#compare-drawn");
+    const changed = async () => shareOfChangedPixels(browser, before, await canvasPicture(viewer));
+    await expect.poll(changed, { timeout: 20_000 }).toBeGreaterThan(0.005);
+    await viewer.page.check("#compare-drawn");
   });
 
   test("AFileInMetresIsReadInMetres", async () => {

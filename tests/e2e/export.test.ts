@@ -56,6 +56,17 @@ test("ThePanelRecordsAndGivesTheFileThatTheCommandLineGets", async () => {
   expect(JSON.parse(await server.phrenic("exports", "list", "-o", "json")).exports).toEqual([]);
 });
 
+test("AMotionThatIsDownloadedFromThePanelOpens", async () => {
+  await viewer.page.selectOption("#export-format", "glb");
+  await viewer.page.click("#export");
+  const link = viewer.page.locator("#export-link");
+  await viewer.page.waitForSelector('#export-link[download$=".glb"]');
+  const [download] = await Promise.all([viewer.page.waitForEvent("download"), link.click()]);
+  const { issues, info } = await validateBytes(new Uint8Array(await readFile((await download.path())!)));
+  expect(issues.messages.filter(({ severity }) => severity < 2)).toEqual([]);
+  expect(info).toMatchObject({ animationCount: 1 });
+});
+
 test("AnUploadedSurfaceIsReportedAndABadOneIsRefusedWithItsLine", async () => {
   const choose = (text: string) =>
     viewer.page.setInputFiles("#upload-file", { name: "a.obj", mimeType: "text/plain", buffer: Buffer.from(text) });

@@ -94,6 +94,28 @@ test("TheLastSecondsAreLookedAtAgainWithoutTheSimulationGoingBack", async () => 
   expect(await page.locator("#timeline.back").count()).toBe(0);
 });
 
+test("TheForcesOfAMomentAgoAreSeenAgain", async () => {
+  const viewer = await ViewerPage.open(browser, server.url, { width: 1200, height: 720 });
+  const { page } = viewer;
+  const note = () => page.textContent("#coloring-note");
+  await page.selectOption("#coloring-kind", "force:action_line");
+  await page.waitForSelector("#coloring:not([hidden])");
+  if ((await page.locator('#play[aria-label="Play"]').count()) > 0) await page.click("#play");
+  await viewer.waitForTick((await viewer.tick()) + 400);
+  await page.click('#play[aria-label="Pause"]');
+  await page.waitForSelector('#play[aria-label="Play"]');
+  await page.focus("#view");
+  await page.keyboard.press(",");
+  await page.waitForSelector("#timeline.back");
+  expect(await note()).toBe("");
+  // Of another kind nothing was asked then.
+  await page.selectOption("#coloring-kind", "force:springs");
+  expect(await note()).toContain("Not known of this moment");
+  await page.click("#look-live");
+  await expect.poll(note).toBe("");
+  expect(viewer.complaints).toEqual([]);
+});
+
 test("ForThePageOfACourseThereIsThePictureAndItsPlaybackAlone", async () => {
   const viewer = await ViewerPage.open(browser, `${server.url}?session=thorax&embed`, { width: 720, height: 540 });
   const { page } = viewer;

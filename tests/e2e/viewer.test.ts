@@ -72,13 +72,9 @@ describe("the thorax in the browser", () => {
 
   test("ItsDiaphragmsVerticesMove", async () => {
     const before = await viewer.sample("diaphragm");
-    let greatest = 0;
-    // After a quarter and after half of a breath: at one of them the dome is elsewhere, wherever it began.
-    for (let quarter = 1; quarter <= 2; quarter++) {
-      await pass(1);
-      greatest = Math.max(greatest, greatestMove(before.points, (await viewer.sample("diaphragm")).points));
-    }
-    expect(greatest).toBeGreaterThan(0.002);
+    // Wherever in a breath it began, some part of it later the dome is elsewhere.
+    const moved = async () => greatestMove(before.points, (await viewer.sample("diaphragm")).points);
+    await expect.poll(moved, { timeout: 90_000, interval: 500 }).toBeGreaterThan(0.002);
   });
 
   test("ItsDiaphragmsPixelsMove", async () => {
@@ -86,15 +82,12 @@ describe("the thorax in the browser", () => {
     const others = viewer.page.locator(".layer-name", { hasNotText: "Diaphragm" }).locator("input");
     expect(await boxes.count()).toBeGreaterThan(3);
     for (const box of await others.all()) await box.uncheck();
+    // The picture follows the frames as fast as the machine draws: until something that moves is seen, however long.
     const first = await canvasPicture(viewer);
-    let greatest = 0;
-    for (let quarter = 1; quarter <= 2; quarter++) {
-      await pass(1);
-      greatest = Math.max(greatest, await shareOfChangedPixels(browser, first, await canvasPicture(viewer)));
-    }
+    const changed = async () => shareOfChangedPixels(browser, first, await canvasPicture(viewer));
+    await expect.poll(changed, { timeout: 90_000, interval: 1000 }).toBeGreaterThan(0.005);
     await viewer.leave("diaphragm");
     for (const box of await others.all()) await box.check();
-    expect(greatest).toBeGreaterThan(0.005);
   });
 
   test("BreathForceChangesTheMotion", async () => {

@@ -66,6 +66,7 @@ absl::StatusOr<Mesh> BodyOf(const v1::SessionBody& body, v1::ComparedState& stat
 struct Told {
   std::string map;
   std::vector<v1::VertexDistances> vertices;
+  std::vector<Mesh> meshes;
 };
 
 absl::StatusOr<v1::ComparisonTable> Compared(const v1::CompareRequest& request, Told* told = nullptr) {
@@ -79,6 +80,14 @@ absl::StatusOr<v1::ComparisonTable> Compared(const v1::CompareRequest& request, 
                   .map =
                       [told](std::string_view bytes) {
                         if (told != nullptr) told->map += bytes;
+                        return absl::OkStatus();
+                      },
+                  .mesh =
+                      [told](ConstPoints x, const Triangles& triangles) {
+                        Mesh mesh;
+                        mesh.vertices = x;
+                        mesh.triangles = triangles;
+                        if (told != nullptr) told->meshes.push_back(std::move(mesh));
                         return absl::OkStatus();
                       }});
 }
@@ -167,6 +176,18 @@ TEST(Comparison, ARegionOfOneFileAloneIsNotANumber) {
   EXPECT_THAT(regions, ElementsAre("", "left", "right", "rising"));
 }
 
+TEST(Comparison, TheMeshOfBIsToldAsItWasMeasured) {
+  Told told;
+  auto request = BodyRequest("b.msh", MotionText(0.01, {0, 1}));
+  ASSERT_TRUE(Compared(request, &told).ok());
+  EXPECT_TRUE(told.meshes.empty()) << "not asked for";
+  request.set_mesh_of_b(true);
+  ASSERT_TRUE(Compared(request, &told).ok());
+  ASSERT_EQ(told.meshes.size(), 1U);
+  EXPECT_NEAR(told.meshes[0].vertices(2, 0), 0.005, 1e-6) << "at the session's 0.5 s";
+  EXPECT_EQ(told.meshes[0].triangles.cols(), 2 * Square(0.1, 2).triangles.cols());
+}
+
 TEST(Comparison, BadInputIsRefusedByName) {
   const auto message = [](const v1::CompareRequest& request) {
     const auto table = Compared(request);
@@ -189,10 +210,12 @@ TEST(Comparison, EndsWhereNobodyListens) {
   const auto ends = [](bool progress, const absl::Status& vertices) {
     auto request = Request("a.obj", kObj, "b.obj", kObj);
     request.set_vertex_distances(true);
+    request.set_mesh_of_b(true);
     const auto table = Compare(request, BodyOf,
                                {.progress = [=](double) { return progress; },
                                 .vertices = [=](const v1::VertexDistances&) { return vertices; },
-                                .map = [](std::string_view) { return absl::OkStatus(); }});
+                                .map = [](std::string_view) { return absl::OkStatus(); },
+                                .mesh = [=](ConstPoints, const Triangles&) { return vertices; }});
     return table.status().code();
   };
   EXPECT_EQ(ends(true, absl::OkStatus()), absl::StatusCode::kOk);

@@ -80,6 +80,8 @@ export class FakeServer {
   readonly basesTold: bigint[] = [];
   /** What was asked of the forces. */
   readonly forceQuestions: object[] = [];
+  /** Of which moment [s] forces are told, and how large those of a kind are. */
+  forcesTold = { time: 0, sizes: [0.5, 0.25] };
   readonly comparisons: CompareRequest[] = [];
   /** What a comparison brings, one after the other; one that is a promise is waited for. */
   found: (ComparisonEvent | Promise<ComparisonEvent>)[] = [];
@@ -165,8 +167,8 @@ export class FakeServer {
           ...(kind === "" ? {} : { kind }),
         });
         const forces = vertex === undefined ? [] : [1, 2].map(() => ({ x: 1, y: 2, z: 3 }));
-        const sizes = kind === "" ? new Uint8Array() : bytesOf(new Float32Array([0.5, 0.25]));
-        return server.answer({ kinds: ["springs", "net"], forces, sizes });
+        const sizes = kind === "" ? new Uint8Array() : bytesOf(new Float32Array(server.forcesTold.sizes));
+        return server.answer({ kinds: ["springs", "net"], time: server.forcesTold.time, forces, sizes });
       },
       async *getGeometry() {
         server.geometryCalls++;

@@ -50,3 +50,39 @@ test("SmallForcesAreToldInThousandths", () => {
   expect(unitFor([{ kind: "net", force: [0, 0.6, 0.79] }])).toEqual({ name: "mN", factor: 1000 });
   expect(unitFor([{ kind: "net", force: [0, 0.6, 0.81] }])).toEqual({ name: "N", factor: 1 });
 });
+
+test("WhatWasToldOfAMomentIsShownToWhoLooksBackAtIt", async () => {
+  const wanted = { vertex: undefined, kind: "net", bodies: ["sheet"] };
+  const tell = async (time: number, size: number) => {
+    server.forcesTold = { time, sizes: [size, size] };
+    await forces.ask(wanted, String(time));
+  };
+  await tell(1, 0.25);
+  await tell(2, 0.5);
+  const shown = () => forces.sizes.value.get("sheet")?.[0];
+  forces.recall(1.05, wanted);
+  expect(shown()).toBe(0.25);
+  forces.recall(1.5, wanted);
+  expect(shown()).toBeUndefined();
+  forces.recall(1, { ...wanted, kind: "springs" });
+  expect(shown()).toBeUndefined();
+  // What comes meanwhile is of the present.
+  forces.recall(1, wanted);
+  await tell(3, 0.75);
+  expect(shown()).toBe(0.25);
+  forces.recall(undefined, wanted);
+  await tell(3.1, 1);
+  expect(shown()).toBe(1);
+});
+
+test("AnotherRunOfTheSessionHasForcesOfItsOwn", async () => {
+  const wanted = { vertex, kind: undefined, bodies: [] };
+  server.forcesTold = { time: 5, sizes: [] };
+  await forces.ask(wanted, "1");
+  server.forcesTold = { time: 1, sizes: [] };
+  await forces.ask(wanted, "2");
+  forces.recall(5, wanted);
+  expect(forces.onVertex.value).toEqual([]);
+  forces.recall(1, wanted);
+  expect(forces.onVertex.value.length).toBe(2);
+});

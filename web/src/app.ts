@@ -308,8 +308,7 @@ export class App {
   private lookBack(time: number | undefined): void {
     this.frames.lookBack(time);
     this.beside?.lookBack(time);
-    // Which forces acted then is not known.
-    this.tools.forgetForces();
+    this.tools.lookBack(this.frames.lookedAt?.time);
   }
 
   private stepOn(): void {

@@ -4,7 +4,7 @@ import type { Body } from "./codec";
 import { Connection, type Sink } from "./connection";
 import { Controller } from "./controller";
 import { forceOf, needsExact } from "./fields";
-import { Forces } from "./forces";
+import { Forces, type Wanted } from "./forces";
 import { Frames } from "./frames";
 import type { Frame } from "./gen/phrenic/v1/frames_pb";
 import { type Preset } from "./gen/phrenic/v1/scene_pb";
@@ -95,15 +95,18 @@ export class Beside {
   /** Shows an earlier moment as the first does, or the present. */
   lookBack(time: number | undefined): void {
     this.frames.lookBack(time);
-    this.forces.clear();
+    this.forces.recall(time, this.wanted());
   }
 
   /** Has the server tell the forces that this picture is coloured by. */
   askForces(): void {
-    const kind = forceOf(this.first.tools.coloring.kind.value);
     const seen = `${this.frames.frame?.tick} ${this.controller.session.value?.revision}`;
-    const bodies = kind === undefined ? [] : this.painter.names;
-    void this.forces.ask({ vertex: undefined, kind, bodies }, seen);
+    void this.forces.ask(this.wanted(), seen);
+  }
+
+  private wanted(): Wanted {
+    const kind = forceOf(this.first.tools.coloring.kind.value);
+    return { vertex: undefined, kind, bodies: kind === undefined ? [] : this.painter.names };
   }
 
   /** The camera is that of the picture that a person turned last. */

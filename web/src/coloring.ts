@@ -10,6 +10,8 @@ export class Coloring {
   /** What is coloured by; nothing where bodies have their own colours. */
   readonly kind = new Signal<FieldKind | undefined>(undefined);
   readonly scale = new Signal<ColorScale | undefined>(undefined);
+  /** Why there are no colours, where there are none. */
+  readonly note = new Signal("");
   private readonly painter: Painter;
   /** The scale is to be fitted once there are values. */
   private unfitted = false;

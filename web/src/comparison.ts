@@ -1,6 +1,8 @@
 import { type Api, errorText } from "./api";
-import type { CompareResponse, ComparisonTable, SurfaceDistance } from "./gen/phrenic/v1/compare_pb";
+import { floats, indices } from "./codec";
+import type { ComparedMesh, CompareResponse, ComparisonTable, SurfaceDistance } from "./gen/phrenic/v1/compare_pb";
 import { Signal } from "./signal";
+import type { Surface } from "./viewer/nearest_surface";
 
 /** How a file is compared. */
 export interface Choices {
@@ -25,6 +27,8 @@ export interface Comparison {
   distance: SurfaceDistance;
   /** Of each vertex of the body [mm]; NaN for one that is in no triangle. */
   distances: number[];
+  /** The file's surface, to be drawn and measured on. */
+  surface: Surface | undefined;
 }
 
 export type Work =
@@ -37,6 +41,8 @@ const mostBytes = (16 << 20) - 4096;
 export class Comparisons {
   readonly result = new Signal<Comparison | undefined>(undefined);
   readonly work = new Signal<Work>({ kind: "idle" });
+  /** Whether the file's surface is drawn. */
+  readonly drawn = new Signal(true);
   readonly choices = new Signal<Choices>({ body: "", unitMm: 1, time: undefined });
   private file: { name: string; content: Uint8Array } | undefined;
   private running = new AbortController();
@@ -108,10 +114,12 @@ export class Comparisons {
 
   private async ask(signal: AbortSignal, progress: (done: number) => void): Promise<Comparison> {
     let distances: number[] | undefined;
+    let surface: Surface | undefined;
     for await (const { event } of this.call(signal)) {
       if (event.case === "progress" && !signal.aborted) progress(event.value);
       if (event.case === "vertices") distances = event.value.distances;
-      if (event.case === "table" && distances !== undefined) return this.resultOf(event.value, distances);
+      if (event.case === "mesh") surface = surfaceOf(event.value);
+      if (event.case === "table" && distances !== undefined) return { ...resultOf(event.value, distances), surface };
     }
     throw new Error("the server ended the comparison without a result");
   }
@@ -124,14 +132,20 @@ export class Comparisons {
         a: { source: { case: "body", value: { sessionId: this.sessionId, body } } },
         b: { name, source: { case: "content", value: content }, unitMm, time },
         vertexDistances: true,
+        meshOfB: true,
       },
       { signal },
     );
   }
+}
 
-  private resultOf({ b, stateA, rows }: ComparisonTable, distances: number[]): Comparison {
-    const distance = rows[0]?.distance;
-    if (stateA === undefined || distance === undefined) throw new Error("the server sent a comparison of nothing");
-    return { file: b, body: stateA.body, time: stateA.time, tick: stateA.tick, distance, distances };
-  }
+function resultOf({ b, stateA, rows }: ComparisonTable, distances: number[]): Omit<Comparison, "surface"> {
+  const distance = rows[0]?.distance;
+  if (stateA === undefined || distance === undefined) throw new Error("the server sent a comparison of nothing");
+  return { file: b, body: stateA.body, time: stateA.time, tick: stateA.tick, distance, distances };
+}
+
+function surfaceOf(mesh: ComparedMesh): Surface {
+  const positions = floats(mesh.positions, 3, "mesh.positions");
+  return { positions, triangles: indices(mesh.triangles, 3, positions.length / 3, "mesh.triangles") };
 }

@@ -4,9 +4,10 @@ import { Coloring } from "./coloring";
 import type { Comparisons } from "./comparison";
 import { Following } from "./following";
 import { forceOf } from "./fields";
-import type { Forces } from "./forces";
+import type { Forces, Wanted } from "./forces";
 import type { Frame } from "./gen/phrenic/v1/frames_pb";
 import { type GhostKind, Ghosts } from "./ghosts";
+import { LiveDistance } from "./live_distance";
 import type { Looks } from "./looks";
 import { Annotations } from "./viewer/annotations";
 import { appearancePanel } from "./panels/appearance";
@@ -39,7 +40,10 @@ export class SceneTools {
   private readonly ghosts: Ghosts;
   private bodies: Body[] = [];
   private moving: Body[] = [];
+  private live: LiveDistance | undefined;
   private time = 0;
+  /** The earlier moment that is shown [s]. */
+  private back: number | undefined;
 
   constructor(
     private readonly viewer: Viewer,
@@ -72,13 +76,21 @@ export class SceneTools {
     labels.subscribe((on) => this.annotations.setLabels(on));
     looks.all.subscribe((all) => this.annotations.start(all));
     this.overlays.subscribe((shown) => viewer.showOverlays(shown));
-    this.coloring.kind.subscribe(() => this.note());
+    this.coloring.kind.subscribe(() => {
+      this.note();
+      this.recallForces();
+    });
     this.coloring.scale.subscribe(() => this.paint());
-    comparisons.result.subscribe(() => this.paint());
+    comparisons.result.subscribe((result) => {
+      this.live = result === undefined ? undefined : new LiveDistance(result);
+      this.drawTarget();
+      this.paint();
+    });
+    comparisons.drawn.subscribe(() => this.drawTarget());
     forces.sizes.subscribe(() => this.paint());
     viewer.letClick((ref) => this.following.picked.set(ref));
     this.following.picked.subscribe(() => {
-      this.forces.onVertex.set([]);
+      this.recallForces();
       this.mark();
     });
     this.following.all.subscribe(() => this.mark());
@@ -124,20 +136,33 @@ export class SceneTools {
 
   /** Has the server tell the forces of the state that was seen last, where they are shown. */
   askForces(seen: string): void {
+    void this.forces.ask(this.wanted(), seen);
+  }
+
+  /** An earlier moment is shown [s], or the present: with the forces that were told of it. */
+  lookBack(time: number | undefined): void {
+    this.back = time;
+    this.recallForces();
+  }
+
+  private wanted(): Wanted {
     const kind = forceOf(this.coloring.kind.value);
     const picked = this.following.picked.value;
     const vertex = this.moving.some(({ name }) => name === picked?.body) ? picked : undefined;
-    void this.forces.ask({ vertex, kind, bodies: kind === undefined ? [] : this.coloring.names }, seen);
+    return { vertex, kind, bodies: kind === undefined ? [] : this.coloring.names };
   }
 
-  /** What is known of the forces is of another moment than the one that is shown. */
-  forgetForces(): void {
-    this.forces.clear();
+  private recallForces(): void {
+    this.forces.recall(this.back, this.wanted());
+    const unknown = this.back !== undefined && this.wanted().kind !== undefined && this.forces.sizes.value.size === 0;
+    this.coloring.note.set(unknown ? "Not known of this moment: forces are kept while they are shown." : "");
   }
 
-  /** Words that follow the picture a few times a second. */
+  /** Words, and the colours of a comparison, follow the picture a few times a second. */
   show(): void {
-    this.pickCard.show(this.arrays());
+    const arrays = this.arrays();
+    this.pickCard.show(arrays);
+    if (arrays !== undefined && this.live?.follow(this.bodies, arrays, () => performance.now())) this.paint();
   }
 
   /** How hard the pointer pulls [N], beside it. */
@@ -153,7 +178,13 @@ export class SceneTools {
     const comparison = this.comparisons.result.value;
     if (comparison === undefined) return this.viewer.paint(this.coloring.paint());
     const { body, distances } = comparison;
-    this.viewer.paint(new Map([[body, new ColorScale(topFor(distances)).paint(distances)]]));
+    const scale = new ColorScale(topFor(distances));
+    this.viewer.paint(new Map([[body, scale.paint(this.live?.values ?? distances)]]));
+  }
+
+  private drawTarget(): void {
+    const { result, drawn } = this.comparisons;
+    this.viewer.setTarget(drawn.value ? result.value?.surface : undefined);
   }
 
   private mark(): void {

@@ -11,6 +11,8 @@ const foretold = 2;
 export function basisDecoder(shape: RestShape): Decoder {
   const { rest, shapes } = shape;
   const { order, add } = foretelling(shape);
+  const side = sideBySide(shapes);
+  const parts = new Float64Array(shapes.length);
   const sum = new Float64Array(rest.length); // both are kept, as they are written anew each time
   const steps = new Int32Array(rest.length);
   return (bytes) => {
@@ -20,22 +22,40 @@ export function basisDecoder(shape: RestShape): Decoder {
     const kind = head.getUint32(12, true);
     const left = bytes.subarray(headBytes + 4 * shapes.length);
     if (kind > foretold || (kind === nothing && left.length > 0)) throw new RangeError("positions: too much follows.");
-    sum.set(rest);
-    for (let k = 0; k < shapes.length; k++) addPart(sum, head.getFloat32(headBytes + 4 * k, true), shapes[k]);
+    for (let k = 0; k < parts.length; k++) parts[k] = finitePart(head.getFloat32(headBytes + 4 * k, true));
+    sumUp(rest, parts, side, sum);
     if (kind !== nothing) {
       readRemainders(left, steps);
       if (kind === foretold) add(steps);
-      for (let i = 0; i < order.length; i++) {
-        for (let axis = 0; axis < 3; axis++) sum[3 * order[i] + axis] += step * steps[3 * i + axis];
+      for (let i = 0, from = 0; i < order.length; i++, from += 3) {
+        const to = 3 * order[i];
+        sum[to] += step * steps[from];
+        sum[to + 1] += step * steps[from + 1];
+        sum[to + 2] += step * steps[from + 2];
       }
     }
     return finite(new Float32Array(sum));
   };
 }
 
-function addPart(sum: Float64Array, part: number, shape: Float32Array): void {
+/** The numbers of all shapes for a coordinate, one after the other, so that one pass takes them all. */
+function sideBySide(shapes: Float32Array[]): Float32Array {
+  const result = new Float32Array(shapes.length * (shapes[0]?.length ?? 0));
+  shapes.forEach((shape, k) => shape.forEach((value, i) => (result[i * shapes.length + k] = value)));
+  return result;
+}
+
+function finitePart(part: number): number {
   if (!Number.isFinite(part)) throw new RangeError("positions: a shape's part is not finite.");
-  for (let i = 0; i < sum.length; i++) sum[i] += part * shape[i];
+  return part;
+}
+
+function sumUp(rest: Float32Array, parts: Float64Array, side: Float32Array, sum: Float64Array): void {
+  for (let i = 0, at = 0; i < sum.length; i++) {
+    let x = rest[i];
+    for (let k = 0; k < parts.length; k++) x += parts[k] * side[at++];
+    sum[i] = x;
+  }
 }
 
 function finite(positions: Float32Array<ArrayBuffer>): Float32Array<ArrayBuffer> {

@@ -5,6 +5,7 @@ import { unpack } from "./zstd";
 const escape = 3;
 const lengthBytes = 8;
 const longestNumber = 5;
+const unitBits = Math.log2(unit);
 
 /** Foretells whole numbers at vertices from their neighbours'. */
 export interface Foretelling {
@@ -17,29 +18,61 @@ export interface Foretelling {
 export function foretelling(shape: RestShape): Foretelling {
   const { order, first, places, weights } = neighbourWeights(shape);
   const others = places.map((place) => 3 * place);
-  const doubles = Float64Array.from(weights);
-  return { order, add: (values) => addForetold(values, first, others, doubles) };
+  const most = largestExact(first, weights);
+  const add = (values: Int32Array) => {
+    const place = addSmall(values, first, others, weights, most);
+    if (place < order.length) addLarge(values, first, others, weights, place);
+  };
+  return { order, add };
 }
 
-/** Whole numbers below 2^53, so that doubles are exact; plain variables, as this is where the time goes. */
-function addForetold(values: Int32Array, first: Int32Array, others: Int32Array, weights: Float64Array): void {
-  const half = unit / 2;
-  const part = 1 / unit;
+/** Numbers up to this size are foretold from in 32 bits, wherever they stand. */
+function largestExact(first: Int32Array, weights: Int32Array): number {
+  let most = 1;
+  for (let place = 0; place + 1 < first.length; place++) {
+    let sum = 0;
+    for (let i = first[place]; i < first[place + 1]; i++) sum += Math.abs(weights[i]);
+    most = Math.max(most, sum);
+  }
+  return Math.floor((2 ** 31 - unit) / most);
+}
+
+/**
+ * In whole numbers of 32 bits, which is where the time goes: so in plain variables. Ends after the first place with a
+ * number above `most`, and tells the one after it.
+ */
+function addSmall(values: Int32Array, first: Int32Array, others: Int32Array, weights: Int32Array, most: number) {
   for (let place = 0, own = 0; place + 1 < first.length; place++, own += 3) {
-    let x = half;
-    let y = half;
-    let z = half;
+    let x = unit / 2;
+    let y = unit / 2;
+    let z = unit / 2;
     const end = first[place + 1];
     for (let i = first[place]; i < end; i++) {
       const other = others[i];
       const weight = weights[i];
-      x += weight * values[other];
-      y += weight * values[other + 1];
-      z += weight * values[other + 2];
+      x = (x + Math.imul(weight, values[other])) | 0;
+      y = (y + Math.imul(weight, values[other + 1])) | 0;
+      z = (z + Math.imul(weight, values[other + 2])) | 0;
     }
-    values[own] += Math.floor(x * part);
-    values[own + 1] += Math.floor(y * part);
-    values[own + 2] += Math.floor(z * part);
+    x = (values[own] + (x >> unitBits)) | 0;
+    y = (values[own + 1] + (y >> unitBits)) | 0;
+    z = (values[own + 2] + (z >> unitBits)) | 0;
+    values[own] = x;
+    values[own + 1] = y;
+    values[own + 2] = z;
+    if (x > most || x < -most || y > most || y < -most || z > most || z < -most) return place + 1;
+  }
+  return first.length - 1;
+}
+
+/** The same from place `start` on, for numbers of any size: below 2^53, so that doubles are exact. */
+function addLarge(values: Int32Array, first: Int32Array, others: Int32Array, weights: Int32Array, start: number): void {
+  for (let place = start; place + 1 < first.length; place++) {
+    for (let axis = 0; axis < 3; axis++) {
+      let sum = unit / 2;
+      for (let i = first[place]; i < first[place + 1]; i++) sum += weights[i] * values[others[i] + axis];
+      values[3 * place + axis] += Math.floor(sum / unit);
+    }
   }
 }
 
@@ -58,20 +91,29 @@ export function readRemainders(bytes: Uint8Array, remainders: Int32Array): void 
 
 /** All x first, from two bits each and what follows of those that are `escape`. */
 function join(bits: Uint8Array, overflow: Uint8Array, remainders: Int32Array): void {
-  const places = remainders.length / 3;
+  const count = remainders.length;
   let at = 0;
-  for (let axis = 0, i = 0; axis < 3; axis++) {
-    for (let place = 0; place < places; place++, i++) {
-      let value = (bits[i >> 2] >> (2 * (i & 3))) & 3;
+  remainders.fill(0);
+  for (let i = 0, to = 0; i < count; i += 4) {
+    const four = bits[i >> 2];
+    // Most are 0, and come in fours.
+    if (four === 0 && to + 12 < count) {
+      to += 12;
+      continue;
+    }
+    for (let shift = 0; shift < 8 && i + shift / 2 < count; shift += 2) {
+      let value = (four >> shift) & 3;
       if (value === escape) {
         let byte = 0x80;
-        for (let shift = 0; byte >= 0x80; shift += 7) {
-          if (at === overflow.length || shift === 35) throw new RangeError("positions: the overflow ends too early.");
+        for (let bit = 0; byte >= 0x80; bit += 7) {
+          if (at === overflow.length || bit === 35) throw new RangeError("positions: the overflow ends too early.");
           byte = overflow[at++];
-          value += (byte & 0x7f) * 2 ** shift;
+          value += (byte & 0x7f) * 2 ** bit;
         }
       }
-      remainders[3 * place + axis] = (value >>> 1) ^ -(value & 1);
+      remainders[to] = (value >>> 1) ^ -(value & 1);
+      to += 3;
+      if (to >= count) to -= count - 1; // the next axis
     }
   }
   if (at !== overflow.length) throw new RangeError("positions: the overflow is too long.");

@@ -14,7 +14,7 @@ export interface PlotEvents {
   point(place: number | undefined): void;
 }
 
-const faint = "#a3aeba";
+const faint = "#b6c0ca";
 const grid = { stroke: "#2a323b", width: 1 };
 const font = "11px system-ui, sans-serif";
 const plotHeight = 104;

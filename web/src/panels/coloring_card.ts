@@ -22,7 +22,10 @@ export function coloringCard(coloring: Coloring): HTMLElement {
   );
   fit.onclick = () => coloring.fit();
   const row = make("div", { className: "row" }, make("label", { htmlFor: "coloring-top" }, "Scale to"), top, fit);
-  const card = make("section", { id: "coloring", className: "card", hidden: true }, title, legend.element, row);
+  const note = make("p", { className: "faint", id: "coloring-note" });
+  note.setAttribute("role", "status");
+  coloring.note.subscribe((words) => (note.textContent = words));
+  const card = make("section", { id: "coloring", className: "card", hidden: true }, title, legend.element, row, note);
   card.ariaLabel = "Colours of the surface";
   coloring.scale.subscribe((scale) => {
     card.hidden = scale === undefined;

@@ -1,6 +1,6 @@
 import type { Comparison, Comparisons, Work } from "../comparison";
 import { ColorScale, topFor } from "../color_scale";
-import { make } from "./dom";
+import { make, switchRow } from "./dom";
 import { figuresTable } from "./figures";
 import { Legend } from "./legend";
 
@@ -23,7 +23,9 @@ export class ComparisonCard {
   show(time: number | undefined): void {
     const result = this.comparisons.result.value;
     const elsewhere = result !== undefined && time !== undefined && time !== result.time;
-    const words = elsewhere ? `The session is at ${time.toFixed(2)} s now.` : "";
+    const now = `at ${time?.toFixed(2)} s now`;
+    const follows = `Colours follow the body, ${now}; “Again” measures there.`;
+    const words = elsewhere ? (result.surface === undefined ? `The session is ${now}.` : follows) : "";
     if (this.moved.textContent !== words) this.moved.textContent = words;
   }
 
@@ -59,7 +61,17 @@ export class ComparisonCard {
     this.legend.show(new ColorScale(topFor(result.distances)));
     const figures = make("details", { open: this.open }, make("summary", {}, "Figures"), figuresTable(result.distance));
     figures.ontoggle = () => (this.open = figures.open);
-    this.found.replaceChildren(...this.heading(result), this.legend.element, this.moved, this.buttons(), figures);
+    const rows = [this.legend.element, this.moved, ...this.drawnRow(result), this.buttons(), figures];
+    this.found.replaceChildren(...this.heading(result), ...rows);
+  }
+
+  private drawnRow({ file, surface }: Comparison): HTMLElement[] {
+    if (surface === undefined) return [];
+    const { drawn } = this.comparisons;
+    const { row, input } = switchRow("Show the surface", `${file}, yellow and seen through`, (on) => drawn.set(on));
+    input.id = "compare-drawn";
+    input.checked = drawn.value;
+    return [row];
   }
 
   private heading({ file, body, time, tick }: Comparison): HTMLElement[] {

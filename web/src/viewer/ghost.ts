@@ -1,14 +1,26 @@
 import * as THREE from "three";
 import { type Body, type FrameArrays, positionsOf } from "../codec";
 import { Placement } from "../gen/phrenic/v1/frames_pb";
+import type { Surface } from "./nearest_surface";
 import { computeNormals } from "./normals";
 
-/** The moving tissue as it was at another moment, seen through. */
+interface Colors {
+  color: string;
+  emissive: string;
+}
+
+/** Surfaces that are seen through: the moving tissue as it was at another moment, or what it is compared with. */
 export class Ghost {
   readonly object = new THREE.Group();
 
-  constructor() {
+  constructor(private readonly colors: Colors) {
     this.object.renderOrder = 3;
+  }
+
+  /** A surface that stands still. */
+  showSurface({ positions, triangles }: Surface): void {
+    this.clear();
+    this.object.add(shell(positions, triangles, this.colors));
   }
 
   /** Those of `bodies` that move by themselves; at rest where `arrays` is undefined. */
@@ -17,7 +29,7 @@ export class Ghost {
     for (const body of bodies) {
       if (body.placement !== Placement.STREAMED || body.triangles.length === 0) continue;
       const positions = arrays === undefined ? body.rest : positionsOf(body, arrays).slice();
-      this.object.add(shell(positions, body.triangles));
+      this.object.add(shell(positions, body.triangles, this.colors));
     }
   }
 
@@ -32,7 +44,7 @@ export class Ghost {
 }
 
 /** A surface that is dense at its outline and clear where it faces the eye. */
-function shell(positions: Float32Array, triangles: Uint32Array): THREE.Mesh {
+function shell(positions: Float32Array, triangles: Uint32Array, colors: Colors): THREE.Mesh {
   const normals = new Float32Array(positions.length);
   computeNormals(positions, triangles, normals);
   const geometry = new THREE.BufferGeometry()
@@ -40,8 +52,7 @@ function shell(positions: Float32Array, triangles: Uint32Array): THREE.Mesh {
     .setAttribute("normal", new THREE.BufferAttribute(normals, 3))
     .setIndex(new THREE.BufferAttribute(triangles, 1));
   const material = new THREE.MeshLambertMaterial({
-    color: "#8fd0ff",
-    emissive: "#2d5f86",
+    ...colors,
     transparent: true,
     opacity: 0.3,
     depthWrite: false,

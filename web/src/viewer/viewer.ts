@@ -6,6 +6,7 @@ import { type Cut, placeOf, planeOf } from "./cut";
 import { Ghost } from "./ghost";
 import { addLights } from "./lights";
 import { type Marker, Markers } from "./markers";
+import type { Surface } from "./nearest_surface";
 import { type Pull, Pulling } from "./pulling";
 import { type Compass, type Covered, Rig } from "./rig";
 import { Sharpness } from "./sharpness";
@@ -45,7 +46,8 @@ export class Viewer {
   private views: BodyView[] = [];
   private overlays: ReadonlySet<OverlayKind> = new Set();
   private readonly sharpness = new Sharpness(Math.min(devicePixelRatio, 2));
-  private readonly ghost = new Ghost();
+  private readonly ghost = new Ghost({ color: "#8fd0ff", emissive: "#2d5f86" });
+  private readonly target = new Ghost({ color: "#ffd166", emissive: "#7a5a12" });
   private readonly markers = new Markers();
   private cut: Cut = { kind: "none", part: 0.5, flipped: false };
   private box = new THREE.Box3();
@@ -71,7 +73,7 @@ export class Viewer {
     this.rig = new Rig(canvas, () => this.refresh(), around.calm);
     this.scene.fog = this.haze;
     addLights(this.scene, this.rig.camera);
-    this.scene.add(this.ghost.object, this.markers.object);
+    this.scene.add(this.ghost.object, this.target.object, this.markers.object);
     new ResizeObserver(() => this.resize()).observe(canvas);
     this.renderer.setAnimationLoop((now) => this.beat(now));
   }
@@ -89,6 +91,7 @@ export class Viewer {
     }
     this.shown = undefined;
     this.ghost.clear();
+    this.target.clear();
     const diagram = verticesOf(bodies) <= mostOfADiagram;
     this.views = bodies.map((body) => new BodyView(body, diagram));
     for (const view of this.views) this.scene.add(view.group);
@@ -145,6 +148,13 @@ export class Viewer {
   setGhost(of: FrameArrays | "rest" | undefined, bodies: Body[]): void {
     if (of === undefined) this.ghost.clear();
     else this.ghost.show(bodies, of === "rest" ? undefined : of);
+    this.refresh();
+  }
+
+  /** Shows what bodies are compared with, or nothing. */
+  setTarget(surface: Surface | undefined): void {
+    if (surface === undefined) this.target.clear();
+    else this.target.showSurface(surface);
     this.refresh();
   }
 
