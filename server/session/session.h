@@ -45,7 +45,7 @@ struct SessionOrigin {
   ControlBook control;
   std::shared_ptr<store::Journal> journal = nullptr;  // null: it is not saved
   std::optional<v1::SavedMoment> told = std::nullopt;
-  std::int64_t epoch = 0;  // in a cluster
+  std::int64_t epoch = 0;                    // in a cluster
   std::vector<Uploads::Held> surfaces = {};  // that clients gave, of which its scene is made
 };
 

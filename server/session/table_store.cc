@@ -7,8 +7,8 @@
 
 namespace phrenic::session {
 
-absl::StatusOr<SessionOrigin> Table::Begin(const Claim& claim, const Model& model,
-                                           std::vector<Uploads::Held> surfaces, ControlBook control) const {
+absl::StatusOr<SessionOrigin> Table::Begin(const Claim& claim, const Model& model, std::vector<Uploads::Held> surfaces,
+                                           ControlBook control) const {
   SessionOrigin origin{std::move(control), nullptr, std::nullopt, claim.epoch, std::move(surfaces)};
   if (store_ == nullptr) return origin;
   auto scene = SaveScene(model, origin.surfaces);
