@@ -118,13 +118,14 @@ void Cluster::KeepRenewing() {
 
 void Cluster::Renew(Redis& redis) {
   std::vector<std::pair<std::string, std::int64_t>> own;
-  std::vector<std::string> words = {address_, lease_, "0"};
+  bool takes = false;
   {
     absl::MutexLock lock(&mutex_);
-    if (takes_) words[2] = "1";
+    takes = takes_;
     own.reserve(own_.size());
     for (const auto& [id, mine] : own_) own.emplace_back(id, mine.epoch);
   }
+  std::vector<std::string> words = {address_, lease_, takes ? "1" : "0"};
   words.reserve(words.size() + 2 * own.size());
   for (const auto& [id, epoch] : own) {
     words.push_back(id);
