@@ -165,6 +165,7 @@ stage_tests() {
 sanitized() {
   local folder=$1 sanitizers=$2
   shift 2
+  # shellcheck disable=SC2154  # unity is lib.sh's
   configure "$folder" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_FLAGS_RELWITHDEBINFO='-O1 -g1' "${unity[@]}" \
     -DPHRENIC_SANITIZE="$sanitizers" && build "$folder" "$@"
 }

@@ -22,11 +22,11 @@ struct Outcome {
   std::string words;  // of both streams
 };
 
-// Runs phrenicd for at most three seconds, then asks it to stop.
+// Runs phrenicd for at most three seconds, then asks it to stop, once.
 Outcome RunPhrenicd(const std::string& arguments) {
   Outcome outcome;
   const std::string command =
-      "timeout --preserve-status -k 10 3 " PHRENIC_BINARY_DIR "/phrenicd --store none " + arguments + " 2>&1";
+      "timeout --foreground --preserve-status -k 10 3 " PHRENIC_BINARY_DIR "/phrenicd --store none " + arguments + " 2>&1";
   FILE* pipe = popen(command.c_str(), "r");
   std::array<char, 4096> piece{};
   while (std::fgets(piece.data(), piece.size(), pipe) != nullptr) outcome.words += piece.data();

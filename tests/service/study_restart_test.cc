@@ -16,8 +16,11 @@ class StudyRestartTest : public testing::Test {
     std::filesystem::create_directories(folder_);
   }
   void SetUp() override { Restart(); }
+  // It has written what waited.
   void Restart() {
-    server_.Kill();
+    if (server_.running()) {
+      ASSERT_EQ(server_.Stop(20), 0) << server_.said();
+    }
     const absl::Status status = server_.Start();
     ASSERT_TRUE(status.ok()) << status;
   }
@@ -64,7 +67,6 @@ TEST_F(StudyRestartTest, WhatHadEndedIsThereAndWhatHadNotIsRunAgain) {
   ASSERT_EQ(ended.state(), v1::STUDY_STATE_DONE) << ended.problem();
   Create("killed");
   Create("waiting");
-  absl::SleepFor(absl::Milliseconds(100));
   Restart();
   EXPECT_EQ(Await("ended").result().SerializeAsString(), ended.result().SerializeAsString());
   for (const char* id : {"killed", "waiting"}) {
@@ -77,7 +79,6 @@ TEST_F(StudyRestartTest, WhatHadEndedIsThereAndWhatHadNotIsRunAgain) {
   v1::DeleteStudyResponse removed;
   grpc::ClientContext context;
   ASSERT_TRUE(Studies()->DeleteStudy(&context, remove, &removed).ok());
-  absl::SleepFor(absl::Milliseconds(200));
   Restart();
   v1::ListStudiesResponse list;
   grpc::ClientContext listing;
@@ -87,8 +88,7 @@ TEST_F(StudyRestartTest, WhatHadEndedIsThereAndWhatHadNotIsRunAgain) {
 
 TEST_F(StudyRestartTest, ADamagedOneIsLeftOutAndTheOthersAreThere) {
   for (const char* id : {"damaged", "good"}) ASSERT_EQ(Await(Create(id)).state(), v1::STUDY_STATE_DONE);
-  absl::SleepFor(absl::Milliseconds(200));
-  server_.Kill();
+  ASSERT_EQ(server_.Stop(20), 0) << server_.said();
   {
     auto database = store::Database::Open(store::StoreFile(folder_ + "/store"), store::Access::kWrite);
     ASSERT_TRUE(database.ok()) << database.status();
