@@ -1,6 +1,6 @@
 import axe from "axe-core";
 import type { Browser } from "playwright-core";
-import { afterAll, beforeAll, expect, test } from "vitest";
+import { afterAll, afterEach, beforeAll, expect, test } from "vitest";
 import { launchBrowser, ViewerPage } from "./browser";
 import { Server } from "./server";
 
@@ -10,6 +10,13 @@ let browser: Browser;
 beforeAll(async () => {
   browser = await launchBrowser();
   server = await Server.start();
+});
+
+// What a test leaves open or playing would take the processor from the next one's pictures.
+afterEach(async () => {
+  for (const context of browser.contexts()) await context.close();
+  const { sessions } = JSON.parse(await server.phrenic("sessions", "-o", "json"));
+  for (const { id } of sessions) if (id !== "thorax") await server.phrenic("delete", id);
 });
 
 afterAll(async () => {
