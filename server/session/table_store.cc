@@ -59,7 +59,7 @@ absl::StatusOr<std::map<std::string, absl::Status>> Table::Restore(
 absl::StatusOr<std::int64_t> Table::Reclaim(const store::SavedSession& saved) {
   const std::int64_t before = (saved.later.empty() ? saved.moment : saved.later.back()).session().epoch();
   if (ownership_ == nullptr || !saved.problem.ok()) return before;
-  const absl::StatusOr<std::int64_t> epoch = ownership_->Reclaim(saved);
+  absl::StatusOr<std::int64_t> epoch = ownership_->Reclaim(saved);
   if (!absl::IsFailedPrecondition(epoch.status())) return epoch;
   // One that was never the cluster's stays, under a name that another server's session has.
   if (before == 0) return absl::AlreadyExistsError(epoch.status().message());
