@@ -67,9 +67,10 @@ absl::Status Redis::GiveUp(const std::string& why) {
 
 absl::Status Redis::Connect() {
   if (context_ != nullptr) return absl::OkStatus();
-  if (absl::Now() < again_)
+  if (absl::Now() < again_) {
     return absl::UnavailableError(
         absl::StrCat("Redis at ", address_.host, ":", address_.port, " could not be reached a moment ago; start it"));
+  }
   const timeval patience = absl::ToTimeval(kPatience);
   context_.reset(redisConnectWithTimeout(address_.host.c_str(), address_.port, patience));
   if (context_ == nullptr) return GiveUp("no memory");
