@@ -39,7 +39,7 @@ study::ComparisonSink MakeSink(grpc::ServerContext& context, CompareWriter& writ
                 return Send(writer, response);
               },
           .mesh =
-              [&](ConstPoints x, const Triangles& triangles) {
+              [&](const ConstPoints& x, const Triangles& triangles) {
                 v1::CompareResponse response;
                 stream::AppendFloats(x.cast<float>(), *response.mutable_mesh()->mutable_positions());
                 stream::AppendIndices(triangles, *response.mutable_mesh()->mutable_triangles());
