@@ -25,8 +25,9 @@ struct Outcome {
 // Runs phrenicd for at most three seconds, then asks it to stop, once.
 Outcome RunPhrenicd(const std::string& arguments) {
   Outcome outcome;
-  const std::string command =
-      "timeout --foreground --preserve-status -k 10 3 " PHRENIC_BINARY_DIR "/phrenicd --store none " + arguments + " 2>&1";
+  const std::string command = "timeout --foreground --preserve-status -k 10 3 " PHRENIC_BINARY_DIR
+                              "/phrenicd --store none " +
+                              arguments + " 2>&1";
   FILE* pipe = popen(command.c_str(), "r");
   std::array<char, 4096> piece{};
   while (std::fgets(piece.data(), piece.size(), pipe) != nullptr) outcome.words += piece.data();
