@@ -10,6 +10,7 @@ namespace {
 
 // For how long it is believed where another server's session is.
 constexpr std::chrono::milliseconds kBelieved(500);
+constexpr absl::Duration kWholePatience = absl::Seconds(2);  // for a copy that is behind
 constexpr std::size_t kMostSeen = 100'000;
 
 absl::Status Unreachable(const std::string& id, const absl::Status& why) {
@@ -92,12 +93,27 @@ absl::StatusOr<std::int64_t> Cluster::Reclaim(const store::SavedSession& saved) 
 void Cluster::Release(const std::string& id) {
   const auto epoch = EpochOf(id);
   if (!epoch.has_value()) return;
+  if (!AwaitWhole(id)) return;  // nobody could go on from where it stands: the lease stays until it ends
   {
     absl::MutexLock lock(&mutex_);
-    if (own_[id].behind) return;  // nobody could go on with it: the lease stays until it ends
     own_.erase(id);
   }
   Ask(kRelease, {id, std::to_string(*epoch)}).IgnoreError();
+}
+
+bool Cluster::AwaitWhole(const std::string& id) {
+  const auto whole = [this, &id] {
+    mutex_.AssertReaderHeld();
+    const auto own = own_.find(id);
+    return own == own_.end() || !own->second.behind;
+  };
+  {
+    absl::MutexLock lock(&mutex_);
+    if (whole()) return true;
+  }
+  hooks_.copy_whole({id});
+  absl::MutexLock lock(&mutex_);
+  return mutex_.AwaitWithTimeout(absl::Condition(&whole), kWholePatience);
 }
 
 void Cluster::Abandon(const std::string& id) {

@@ -115,6 +115,8 @@ class Cluster final : public store::Ownership {
   // The same for one session of this server: 1, 0 where it is another's by now, or UNAVAILABLE.
   absl::StatusOr<std::int64_t> Save(const std::string& id, std::vector<std::string> words);
   void SetBehind(const std::string& id, bool behind) ABSL_LOCKS_EXCLUDED(mutex_);
+  // Has the session's copy made whole where it is behind; false where that takes too long.
+  bool AwaitWhole(const std::string& id) ABSL_LOCKS_EXCLUDED(mutex_);
   void Renew(Redis& redis) ABSL_LOCKS_EXCLUDED(mutex_);
   std::vector<std::string> NoteRenewed(const std::vector<std::pair<std::string, std::int64_t>>& own,
                                        const Reply& answers, Clock::time_point asked, bool anew)

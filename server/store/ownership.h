@@ -41,7 +41,8 @@ class Ownership {
   virtual absl::StatusOr<std::int64_t> Reclaim(const SavedSession& saved) = 0;
   // Of one that could not be made after all.
   virtual void Abandon(const std::string& id) = 0;
-  // Of one that has ended here and is saved: another server may go on with it at once.
+  // Of one that has ended here and is saved: another server may go on with it at once. Waits, for a bounded time, until
+  // its copy is whole.
   virtual void Release(const std::string& id) = 0;
 
   // Whether this server still had the session when the copy was made; where it did not, nothing was copied. A copy that

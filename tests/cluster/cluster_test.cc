@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <set>
+#include <thread>
 
 #include "tests/cluster/redis_server.h"
 
@@ -174,6 +175,27 @@ TEST_F(ClusterTest, SessionsGoOnWithoutRedisAndAreCopiedAnewWhenItComesBackEmpty
   EXPECT_TRUE(Within(absl::Seconds(4), [&] { return a.AskedFor("s"); }));
   EXPECT_TRUE(a->counts().reached);
   EXPECT_FALSE(a.Lost("s"));
+}
+
+// Its heir would go on from an old state otherwise.
+TEST_F(ClusterTest, WhatIsBehindIsCopiedWholeBeforeItIsReleased) {
+  Member a(*redis_, "a:1"), b(*redis_, "b:1");
+  b->Watch();
+  ASSERT_TRUE(a->Claim("s").ok());
+  ASSERT_TRUE(a->Copy(StateAt("s", 1)));
+  redis_->Kill();
+  ASSERT_TRUE(a->Copy(MomentOf("s", 2)));  // late
+  redis_->Start();
+  ASSERT_TRUE(Within(absl::Seconds(4), [&] { return a.AskedFor("s"); }));
+  std::thread store([&] {
+    absl::SleepFor(absl::Milliseconds(500));
+    a->CopyWhole(SavedAt("s", 1, 7));
+  });
+  a->Release("s");
+  EXPECT_EQ(a->counts().owned, 0) << "it was not released";
+  store.join();
+  ASSERT_TRUE(Within(absl::Seconds(6), [&] { return !b.taken().empty(); }));
+  EXPECT_EQ(b.taken()[0].saved.sequence, 7);
 }
 
 TEST_F(ClusterTest, AStoresOwnSessionComesBackUnlessOthersHadItSince) {
