@@ -96,6 +96,10 @@ grpc::Status StudyService::CreateStudy(grpc::ServerContext* context, const v1::C
   v1::CreateStudyRequest again = *request;
   again.set_study_id(study->id());
   Save(*study, &again);
+  if (absl::Status saved = store_ == nullptr ? absl::OkStatus() : store_->FlushRecords(); !saved.ok()) {
+    jobs_.Delete(study->id()).IgnoreError();
+    return ToGrpc(saved);
+  }
   *response->mutable_study() = *std::move(study);
   return grpc::Status::OK;
 }

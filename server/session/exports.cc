@@ -25,6 +25,16 @@ Exports::~Exports() {
 }
 
 absl::StatusOr<v1::Export> Exports::Add(const v1::CreateExportRequest& request, Start start) {
+  auto added = Queue(request, std::move(start));
+  if (!added.ok() || store_ == nullptr) return added;
+  if (absl::Status saved = store_->FlushRecords(); !saved.ok()) {
+    Delete(added->id()).IgnoreError();
+    return saved;
+  }
+  return added;
+}
+
+absl::StatusOr<v1::Export> Exports::Queue(const v1::CreateExportRequest& request, Start start) {
   auto plan = PlanExport(request, *start.model, start.fork, spool_folder_);
   if (!plan.ok()) return plan.status();
   auto spool = record::SpoolFile::Open(spool_folder_);

@@ -53,7 +53,8 @@ class Exports {
                absl::FunctionRef<void(const std::string& id, const std::string& owner)> found,
                std::map<std::string, absl::Status>& lost);
 
-  // Plans the export and queues it; an empty id is chosen from the session's. Errors of PlanExport;
+  // Plans the export and queues it, and returns once the store's disk has it; an empty id is chosen from the session's.
+  // Errors of PlanExport and of Store::FlushRecords;
   // INVALID_ARGUMENT or ALREADY_EXISTS for an id that cannot be; RESOURCE_EXHAUSTED where limits.kept_exports are there
   // and none of them has ended: the oldest that has makes room.
   absl::StatusOr<v1::Export> Add(const v1::CreateExportRequest& request, Start start) ABSL_LOCKS_EXCLUDED(mutex_);
@@ -77,6 +78,7 @@ class Exports {
     std::atomic<bool> cancelled = false;
   };
 
+  absl::StatusOr<v1::Export> Queue(const v1::CreateExportRequest& request, Start start) ABSL_LOCKS_EXCLUDED(mutex_);
   absl::Status RestoreOne(Models& models, const store::SavedRecord& record, std::string& owner);
   absl::StatusOr<std::string> Record(const v1::CreateExportRequest& request, const Start& start) const;
   void Forget(const std::string& id) const;

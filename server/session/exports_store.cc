@@ -37,7 +37,7 @@ absl::Status Exports::RestoreOne(Models& models, const store::SavedRecord& recor
   owner = saved.owner();
   saved.mutable_request()->set_export_id(record.id);
   Session::Fork fork{saved.parameters(), *std::move(state), saved.largest_stable_step()};
-  return Add(saved.request(), {compiled->model, std::move(fork), std::move(compiled->surfaces), owner}).status();
+  return Queue(saved.request(), {compiled->model, std::move(fork), std::move(compiled->surfaces), owner}).status();
 }
 
 void Exports::Restore(const std::vector<store::SavedRecord>& records, Models& models,

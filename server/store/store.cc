@@ -97,12 +97,25 @@ absl::StatusOr<std::vector<SavedRecord>> Store::LoadRecords() { return ReadRecor
 
 void Store::Put(const std::string& kind, const std::string& id, std::string bytes) {
   absl::MutexLock lock(&mutex_);
+  ++progress_.told;
   Tell({kind, id, std::move(bytes)});
 }
 
 void Store::Remove(const std::string& kind, const std::string& id) {
   absl::MutexLock lock(&mutex_);
+  ++progress_.told;
   Tell({kind, id, std::nullopt});
+}
+
+absl::Status Store::FlushRecords() const {
+  absl::MutexLock lock(&mutex_);
+  const std::int64_t told = progress_.told;
+  const auto settled = [this, told] {
+    mutex_.AssertReaderHeld();
+    return progress_.written >= told || !progress_.problem.ok();
+  };
+  mutex_.Await(absl::Condition(&settled));
+  return progress_.written >= told ? absl::OkStatus() : progress_.problem;
 }
 
 void Store::Tell(Record record) {
@@ -238,6 +251,7 @@ void Store::Run() {
     const bool last = closing_;
     Batch batch = TakeBatch();
     Records records = std::exchange(records_, {});
+    const std::int64_t records_told = progress_.told;
     const std::set<std::string> whole = std::exchange(whole_, {});
     Ownership* const ownership = ownership_;
     mutex_.Unlock();
@@ -245,6 +259,8 @@ void Store::Run() {
     std::vector<absl::Status> results(batch.size(), status);
     if (status.ok()) results = Copy(ownership, batch, whole);
     mutex_.Lock();
+    progress_.problem = status;
+    if (status.ok()) progress_.written = records_told;
     for (std::size_t i = 0; i < batch.size(); ++i) {
       Journal& journal = *batch[i].first;
       journal.problem_ = results[i];

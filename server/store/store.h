@@ -87,6 +87,8 @@ class Store {
   // milliseconds, or once that has room.
   void Put(const std::string& kind, const std::string& id, std::string bytes) ABSL_LOCKS_EXCLUDED(mutex_);
   void Remove(const std::string& kind, const std::string& id) ABSL_LOCKS_EXCLUDED(mutex_);
+  // Waits until all that Put and Remove were told is on the disk. The errors of Journal::Flush.
+  absl::Status FlushRecords() const ABSL_LOCKS_EXCLUDED(mutex_);
   // Has every session's part copied there as well, once it is on the disk; before anything is saved. `ownership`
   // outlives the store.
   void set_ownership(Ownership* ownership) ABSL_LOCKS_EXCLUDED(mutex_);
@@ -108,6 +110,12 @@ class Store {
   };
   using Records = std::vector<Record>;  // in the order in which they were first told
 
+  // How far the disk has what records were told.
+  struct RecordsProgress {
+    std::int64_t told = 0, written = 0;
+    absl::Status problem;  // the last attempt's
+  };
+
   explicit Store(Database database);
   void Tell(Record record) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void Told(Journal& journal) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
@@ -127,7 +135,8 @@ class Store {
   mutable absl::Mutex mutex_;
   std::vector<std::shared_ptr<Journal>> waiting_ ABSL_GUARDED_BY(mutex_);  // in the order in which they were told
   Records records_ ABSL_GUARDED_BY(mutex_);                                // that wait, each name once
-  std::set<std::string> whole_ ABSL_GUARDED_BY(mutex_);                    // to be copied
+  RecordsProgress progress_ ABSL_GUARDED_BY(mutex_);
+  std::set<std::string> whole_ ABSL_GUARDED_BY(mutex_);  // to be copied
   Ownership* ownership_ ABSL_GUARDED_BY(mutex_) = nullptr;
   bool closing_ ABSL_GUARDED_BY(mutex_) = false;
   std::thread thread_;

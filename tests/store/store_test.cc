@@ -263,6 +263,21 @@ TEST_F(StoreTest, RecordsAreTheNewestOfEachKindAndName) {
                                  ElementsAre("other", "a", "3")));
 }
 
+// What a power cut would leave: the files as they are, though their store still has them open.
+TEST_F(StoreTest, ARecordIsOnTheDiskOnceItWasWaitedFor) {
+  const auto store = Open();
+  store->Put("study", "a", "1");
+  ASSERT_TRUE(store->FlushRecords().ok());
+  const std::string left = folder_ + "_left";
+  std::filesystem::copy(folder_, left);
+  EXPECT_THAT(*(*Store::Open(left))->LoadRecords(), SizeIs(1));
+  std::filesystem::remove_all(left);
+  ASSERT_TRUE(store->LimitSize(8 * 4096).ok());
+  store->Put("study", "large", std::string(100'000, 'x'));
+  const absl::Status full = store->FlushRecords();
+  EXPECT_TRUE(absl::IsResourceExhausted(full)) << full;
+}
+
 TEST_F(StoreTest, ADamagedRecordIsNamedAndKeepsNoOtherFromBeingRead) {
   {
     const auto store = Open();
