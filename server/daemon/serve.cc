@@ -2,6 +2,7 @@
 
 #include <signal.h>
 #include <spdlog/spdlog.h>
+#include <systemd/sd-daemon.h>
 
 #include <cstdio>
 #include <cstdlib>
@@ -17,6 +18,8 @@
 
 namespace phrenic::daemon {
 namespace {
+
+constexpr int kMostToRestoreOne = 60'000'000;  // [us] that a service manager waits for a session to be restored
 
 // Of what others can reach: that nothing is encrypted, and that nobody is asked who they are.
 void WarnOfReach(const service::ServerOptions& options) {
@@ -65,11 +68,17 @@ sigset_t HoldSignals() {
   return signals;
 }
 
+// Tells a service manager that has started this program; without one, nothing (sd_notify(3)).
+void TellManager(const std::string& state) { sd_notify(0, state.c_str()); }
+
 // Null: why is in the log.
 std::unique_ptr<service::Server> Start(const Flags& flags) {
   service::ServerOptions options = OptionsOf(flags);
   int restored = 0;
-  options.restoring = [&restored](const std::string&) { spdlog::info("restoring session {}", ++restored); };
+  options.restoring = [&restored](const std::string&) {
+    spdlog::info("restoring session {}", ++restored);
+    TellManager(absl::StrCat("STATUS=restoring session ", restored, "\nEXTEND_TIMEOUT_USEC=", kMostToRestoreOne));
+  };
   auto server = service::Server::Start(options);
   if (!server.ok()) {
     spdlog::error("{}", std::string(server.status().message()));
@@ -122,9 +131,11 @@ int Serve(const Flags& flags) {
     }
   }
   SayWhere(flags.options, *server);
+  TellManager("READY=1\nSTATUS=");
   int signal_number = 0;
   sigwait(&signals, &signal_number);
   spdlog::info("stopping");
+  TellManager("STOPPING=1");
   pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);  // a second one ends the program at once
   signal(signal_number == SIGTERM ? SIGINT : SIGTERM, SIG_DFL);
   EndWithin(flags.stop_seconds);
