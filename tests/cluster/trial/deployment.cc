@@ -7,8 +7,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -64,11 +66,31 @@ bool Runs(pid_t pid) {
   return kill(pid, 0) == 0 && !absl::StrContains(TextOf(absl::StrCat("/proc/", pid, "/stat")), ") Z ");
 }
 
+// What a program prints.
+std::string Printed(const std::string& command) {
+  std::string text;
+  FILE* const pipe = popen(command.c_str(), "r");
+  if (pipe == nullptr) return text;
+  char block[4096];
+  for (std::size_t got = 0; (got = fread(block, 1, sizeof block, pipe)) > 0;) text.append(block, got);
+  pclose(pipe);
+  return text;
+}
+
 }  // namespace
+
+bool HasTools() {
+  for (const char* tool : {"nginx", "redis-server", "openssl"}) {
+    if (std::system(absl::StrCat("PATH=$PATH:/usr/sbin command -v ", tool, " > /dev/null").c_str()) == 0) continue;
+    std::printf("not tried: there is no %s here (deploy/packages.txt)\n", tool);
+    return false;
+  }
+  return true;
+}
 
 std::string Deployment::Said() const { return TextOf(folder_ + "/said"); }
 
-absl::Status Deployment::Start(int servers) {
+absl::Status Deployment::Start(int servers, const std::vector<std::string>& flags) {
   std::string name = std::filesystem::temp_directory_path() / "phrenic-cluster-XXXXXX";
   if (mkdtemp(name.data()) == nullptr) return absl::UnavailableError("no folder for it could be made");
   folder_ = name;
@@ -77,9 +99,19 @@ absl::Status Deployment::Start(int servers) {
   port_ = base_ + 2 * servers + 1;
   script_ = fork();
   if (script_ == 0) {
-    Become({PHRENIC_SOURCE_DIR "/deploy/cluster", std::to_string(servers), "--no-build", "--dir", folder_, "--base",
-            std::to_string(base_), "--port", std::to_string(port_), "--start", "none"},
-           folder_ + "/said");
+    std::vector<std::string> words = {PHRENIC_SOURCE_DIR "/deploy/cluster",
+                                      std::to_string(servers),
+                                      "--no-build",
+                                      "--dir",
+                                      folder_,
+                                      "--base",
+                                      std::to_string(base_),
+                                      "--port",
+                                      std::to_string(port_),
+                                      "--start",
+                                      "none"};
+    words.insert(words.end(), flags.begin(), flags.end());
+    Become(words, folder_ + "/said");
   }
   for (int tries = 0; tries < 600 && !absl::StrContains(Said(), "Ctrl-C"); ++tries) {
     absl::SleepFor(absl::Milliseconds(100));
@@ -134,6 +166,30 @@ std::shared_ptr<grpc::Channel> Deployment::NewChannelTo(int server) const {
   arguments.SetMaxReceiveMessageSize(-1);
   return grpc::CreateCustomChannel(absl::StrCat("127.0.0.1:", base_ + 2 * server - 1),
                                    grpc::InsecureChannelCredentials(), arguments);
+}
+
+double Deployment::Metric(int server, const std::string& name) const {
+  const std::string all = Printed(absl::StrCat("curl -sf http://127.0.0.1:", base_ + 2 * server, "/metrics"));
+  for (const absl::string_view line : absl::StrSplit(all, '\n')) {
+    if (absl::StartsWith(line, absl::StrCat(name, " ")))
+      return std::atof(std::string(line.substr(name.size())).c_str());
+  }
+  return 0;
+}
+
+double Deployment::Cpu(const std::string& name) const {
+  const std::string pid = std::to_string(std::atoi(TextOf(absl::StrCat(folder_, "/", name, ".pid")).c_str()));
+  double ticks = 0;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+    if (std::atoi(entry.path().filename().c_str()) == 0) continue;  // no process
+    const std::string stat = TextOf(entry.path() / "stat");
+    const std::vector<std::string> words =
+        absl::StrSplit(stat.substr(std::min(stat.size(), stat.rfind(')') + 1)), ' ', absl::SkipEmpty());
+    constexpr std::size_t kParent = 1, kUser = 11, kSystem = 12;  // behind the name (proc(5))
+    if (words.size() <= kSystem || (entry.path().filename() != pid && words[kParent] != pid)) continue;
+    ticks += std::atof(words[kUser].c_str()) + std::atof(words[kSystem].c_str());
+  }
+  return ticks / static_cast<double>(sysconf(_SC_CLK_TCK));
 }
 
 Deployment::Program& Deployment::Find(const std::string& name) {

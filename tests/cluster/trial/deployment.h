@@ -13,6 +13,10 @@
 
 namespace phrenic::cluster {
 
+inline constexpr int kSkipped = 77;  // ctest's SKIP_RETURN_CODE
+// Whether a cluster can be started here; where not, says so.
+bool HasTools();
+
 // Not thread-safe, but for NewChannel. Stopped with the object.
 class Deployment {
  public:
@@ -29,8 +33,8 @@ class Deployment {
   Deployment(const Deployment&) = delete;
   Deployment& operator=(const Deployment&) = delete;
 
-  // With so many servers, on free ports. UNAVAILABLE with what it said.
-  absl::Status Start(int servers);
+  // With so many servers, on free ports, each with these flags as well. UNAVAILABLE with what it said.
+  absl::Status Start(int servers, const std::vector<std::string>& flags = {});
   // A connection of its own to nginx, with TLS.
   std::shared_ptr<grpc::Channel> NewChannel() const;
   // The same to one server itself.
@@ -42,6 +46,10 @@ class Deployment {
   // Starts it again as it was; returns at once.
   void StartAgain(const std::string& name);
   const std::string& folder() const { return folder_; }
+  // CPU time so far of "nginx", "redis", "server-1" ... and the processes it started [s].
+  double Cpu(const std::string& name) const;
+  // A number of a server's /metrics; 0 where it has none of that name.
+  double Metric(int server, const std::string& name) const;
 
  private:
   Program& Find(const std::string& name);

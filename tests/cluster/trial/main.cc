@@ -16,8 +16,6 @@
 namespace phrenic::cluster {
 namespace {
 
-constexpr int kSkipped = 77;  // ctest's SKIP_RETURN_CODE
-
 struct Options {
   int servers = 3, steppers = 6, watchers = 3, kills = 3, drains = 2, outages = 1;
   double outage_seconds = 5;
@@ -172,15 +170,6 @@ class Trial {
   Row killed_{"a server is killed"}, drained_{"a server is drained"}, outage_{"Redis is away"},
       emptied_{"Redis loses all"};
 };
-
-bool HasTools() {
-  for (const char* tool : {"nginx", "redis-server", "openssl"}) {
-    if (std::system(absl::StrCat("PATH=$PATH:/usr/sbin command -v ", tool, " > /dev/null").c_str()) == 0) continue;
-    std::printf("not tried: there is no %s here (deploy/packages.txt)\n", tool);
-    return false;
-  }
-  return true;
-}
 
 int Main(int argc, char** argv) {
   Options options;
