@@ -8,12 +8,6 @@
 
 namespace phrenic {
 
-// What a pose adds to a point of its rest: displacement [m] or velocity [m/s].
-struct Affine {
-  Eigen::Matrix3d linear;
-  Eigen::Vector3d offset;
-};
-
 // Of one body, by the instant alone, for elements, which do not see the model while they act. Immutable; any number of
 // threads may call.
 class BodyPoints {
@@ -35,10 +29,8 @@ class BodyPoints {
   int first_vertex() const { return first_vertex_; }
 
  private:
-  using Buffer = Eigen::Map<Points>;
-  void Carry(const Affine& affine, Buffer& y) const;
-  template <typename OfCarrier>
-  void Ride(const std::vector<Affine>& by_pose, const OfCarrier& of_carrier, Buffer& y) const;
+  template <bool kVelocities>
+  Moving Place(const Instant& at) const;
 
   Points rest_;
   int first_vertex_ = -1;

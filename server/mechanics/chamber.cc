@@ -24,32 +24,63 @@ Triangles Chosen(const Mesh& mesh, const Selection& selection, const v1::Surface
   return mesh.triangles(Eigen::all, chosen);
 }
 
-// Six times the volume between a triangle and the plane.
-double SixVolumes(const Vector& point, const Vector& n, const Vector& a, const Vector& b, const Vector& c) {
-  return ((a - point) + (b - point) + (c - point)).dot(n) * n.dot((b - a).cross(c - a));
-}
+// What a triangle's corners have of one coordinate, or of its rate.
+struct Corners {
+  double a, b, c;
+  Corners(const ConstPoints& y, int axis, const Eigen::Vector3i& at)
+      : a(y(axis, at[0])), b(y(axis, at[1])), c(y(axis, at[2])) {}
+  double Sum() const { return a + b + c; }
+};
 
-double SumVolumes(const ConstPoints& x, const Triangles& triangles, const Vector& point, const Vector& n) {
+// Of the triangle over its height: n.((b - a) x (c - a)), the corners in the plane's own axes.
+double Area(const Corners& p, const Corners& q) { return p.a * (q.b - q.c) + p.b * (q.c - q.a) + p.c * (q.a - q.b); }
+
+double SumVolumes(const ConstPoints& y, const Triangles& triangles, double height) {
   double sum = 0;
-  for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
-    sum += SixVolumes(point, n, x.col(triangles(0, t)), x.col(triangles(1, t)), x.col(triangles(2, t)));
+  for (const auto& at : triangles.colwise()) {
+    const Corners p(y, 0, at), q(y, 1, at), h(y, 2, at);
+    sum += (h.Sum() - 3 * height) * Area(p, q);
   }
   return sum / 6;
 }
 
-ChamberReading SumReadings(const BodyPoints::Moving& body, const Triangles& triangles, const Vector& point,
-                           const Vector& n) {
+ChamberReading SumReadings(const BodyPoints::Moving& body, const Triangles& triangles, double height) {
   ChamberReading sum;
-  for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
-    const int i = triangles(0, t), j = triangles(1, t), k = triangles(2, t);
-    const Vector a = body.x.col(i), b = body.x.col(j), c = body.x.col(k), ab = b - a, ac = c - a;
-    const Vector va = body.v.col(i), vab = body.v.col(j) - body.v.col(i), vac = body.v.col(k) - body.v.col(i);
-    const double heights = ((a - point) + (b - point) + (c - point)).dot(n), rises = (3 * va + vab + vac).dot(n);
-    const double area = n.dot(ab.cross(ac));
+  for (const auto& at : triangles.colwise()) {
+    const Corners p(body.x, 0, at), q(body.x, 1, at), h(body.x, 2, at);
+    const Corners dp(body.v, 0, at), dq(body.v, 1, at), dh(body.v, 2, at);
+    const double heights = h.Sum() - 3 * height, area = Area(p, q);
     sum.volume += heights * area;
-    sum.flow += rises * area + heights * n.dot(vab.cross(ac) + ab.cross(vac));
+    sum.flow += dh.Sum() * area + heights * (Area(dp, q) + Area(p, dq));
   }
   return {sum.volume / 6, sum.flow / 6};
+}
+
+// The points in axes of which the third is the plane's normal; valid until this thread turns others.
+ConstPoints Turned(const Eigen::Matrix3d& axes, const ConstPoints& y, Points& memory) {
+  if (axes.isIdentity(0)) return y;
+  if (memory.cols() < y.cols()) memory.resize(3, y.cols());
+  memory.leftCols(y.cols()).noalias() = axes * y;
+  return memory.leftCols(y.cols());
+}
+
+ConstPoints TurnedPositions(const Eigen::Matrix3d& axes, const ConstPoints& x) {
+  thread_local Points memory;
+  return Turned(axes, x, memory);
+}
+
+BodyPoints::Moving TurnedMoving(const Eigen::Matrix3d& axes, const BodyPoints::Moving& body) {
+  thread_local Points memory;
+  return {TurnedPositions(axes, body.x), Turned(axes, body.v, memory)};
+}
+
+// Right-handed.
+Eigen::Matrix3d AxesOf(const Vector& normal) {
+  if (normal == Vector::UnitZ()) return Eigen::Matrix3d::Identity();
+  const Vector p = normal.unitOrthogonal();
+  Eigen::Matrix3d axes;
+  axes << p.transpose(), normal.cross(p).transpose(), normal.transpose();
+  return axes;
 }
 
 }  // namespace
@@ -80,28 +111,33 @@ absl::Status Chamber::Add(const v1::SurfacePatch& scene, double side, std::strin
 }
 
 absl::Status Chamber::SetPlane(const v1::Plane* scene, std::string_view path) {
-  Vector sum = Vector::Zero();
+  Vector sum = Vector::Zero(), normal = Vector::UnitZ();
   double count = 0;
   for (const Part& part : parts_) {
     for (const int i : part.border) sum += part.points.rest().col(i), ++count;
   }
-  point_ = count > 0 ? Vector(sum / count) : Vector(parts_.front().points.rest().col(parts_.front().triangles(0, 0)));
+  Vector point =
+      count > 0 ? Vector(sum / count) : Vector(parts_.front().points.rest().col(parts_.front().triangles(0, 0)));
   absl::StrAppend(&key_, "/", scene == nullptr ? "" : scene->SerializeAsString());
   if (scene != nullptr) {
-    point_ = ToEigen(scene->point());
-    if (scene->has_normal()) normal_ = ToEigen(scene->normal());
+    point = ToEigen(scene->point());
+    if (scene->has_normal()) normal = ToEigen(scene->normal());
   }
-  if (!(normal_.norm() > 0)) {
+  if (!(normal.norm() > 0)) {
     return FieldError(absl::StrCat(std::string(path), ".normal"), "has no direction: set x, y or z");
   }
-  normal_.normalize();
+  normal.normalize();
+  axes_ = AxesOf(normal);
+  height_ = normal.dot(point);
   rest_volume_ = VolumeAtRest();
   return absl::OkStatus();
 }
 
 double Chamber::VolumeAtRest() const {
   double sum = 0;
-  for (const Part& part : parts_) sum += part.side * SumVolumes(part.points.rest(), part.triangles, point_, normal_);
+  for (const Part& part : parts_) {
+    sum += part.side * SumVolumes(TurnedPositions(axes_, part.points.rest()), part.triangles, height_);
+  }
   return sum;
 }
 
@@ -109,7 +145,7 @@ double Chamber::Volume(const Instant& at) const {
   if (at.readings != nullptr) return Read(at).volume;
   double sum = 0;
   for (const Part& part : parts_) {
-    sum += part.side * SumVolumes(part.points.Positions(at), part.triangles, point_, normal_);
+    sum += part.side * SumVolumes(TurnedPositions(axes_, part.points.Positions(at)), part.triangles, height_);
   }
   return sum;
 }
@@ -119,7 +155,7 @@ ChamberReading Chamber::Read(const Instant& at) const {
   if (found != nullptr) return *found;
   ChamberReading sum;
   for (const Part& part : parts_) {
-    const ChamberReading reading = SumReadings(part.points.Locate(at), part.triangles, point_, normal_);
+    const ChamberReading reading = SumReadings(TurnedMoving(axes_, part.points.Locate(at)), part.triangles, height_);
     sum.volume += part.side * reading.volume;
     sum.flow += part.side * reading.flow;
   }

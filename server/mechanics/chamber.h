@@ -77,8 +77,9 @@ class Chamber {
 
   std::string key_;  // the same for chambers that are the same
   std::vector<Part> parts_;
-  Eigen::Vector3d point_ = Eigen::Vector3d::Zero(), normal_ = Eigen::Vector3d::UnitZ();
-  double rest_volume_ = 0;  // [m^3]
+  Eigen::Matrix3d axes_ = Eigen::Matrix3d::Identity();  // rows: two in the plane, and the normal
+  double height_ = 0;                                   // of the plane along its normal [m]
+  double rest_volume_ = 0;                              // [m^3]
 };
 
 }  // namespace phrenic
