@@ -3,6 +3,7 @@
 #include <arpa/inet.h>
 #include <fcntl.h>
 #include <grpcpp/create_channel.h>
+#include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -51,6 +52,7 @@ int FreePorts(int count) {
 }
 
 [[noreturn]] void Become(const std::vector<std::string>& words, const std::string& log) {
+  prctl(PR_SET_PDEATHSIG, SIGTERM);  // it ends with this process, however that ends
   const int file = open(log.c_str(), O_CREAT | O_APPEND | O_WRONLY, 0600);
   dup2(file, 1);
   dup2(file, 2);
