@@ -60,6 +60,7 @@ test("ALostServerIsShownAndComesBackWithTheSessionAsItWas", async () => {
   await here.waitForLink("lost");
   expect(await here.page.textContent("#link")).toContain("retrying");
   expect(await here.page.isVisible("#banner-lost")).toBe(true);
+  expect(await here.violations()).toEqual([]);
   await here.leave("lost");
   await server.restart();
   await here.waitForLink("live");
