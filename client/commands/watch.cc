@@ -71,9 +71,9 @@ class Watcher {
       if (request_.max_unacked_frames() > 0) Acknowledge(*stub_, request_, taken);
     }
     printer_->Leave();
-    grpc::Status status = stream->Finish();
+    const grpc::Status status = stream->Finish();
     const bool enough = frames_ > 0 && frames_ == options_.count;
-    return enough ? grpc::Status::OK : std::move(status);
+    return enough ? grpc::Status::OK : status;
   }
 
  private:

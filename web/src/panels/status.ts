@@ -97,7 +97,8 @@ export class Readout {
   }
 
   show({ session, frame }: Status): void {
-    this.write("time", `${(frame?.time ?? session?.time ?? 0).toFixed(2)} s`);
+    const digits = session?.state === SessionState.PLAYING ? 2 : 3;
+    this.write("time", `${(frame?.time ?? session?.time ?? 0).toFixed(digits)} s`);
     this.write("tick", String(frame?.tick ?? session?.tick ?? 0));
     const { breath, phase } = frame ?? { breath: 0, phase: 0 };
     this.write("breath", `${this.way(phase, breath)} ${Math.floor(100 * phase)} %`);
