@@ -23,7 +23,8 @@ TEST(RideOut, AnExportGoesOnWhenTheServerIsBackAndIsTheSameFile) {
   ASSERT_EQ(Phrenic(with({"export", "class", whole, "--seconds", "30", "--fps", "2"})).code, 0);
   const pid_t client =
       Start("phrenic", with({"export", "class", torn, "--seconds", "30", "--fps", "2"}), "/dev/null", said);
-  usleep(700'000);
+  while (Phrenic(with({"exports", "list", "-o", "json"})).json()["exports"].empty()) usleep(20'000);
+  usleep(500'000);  // in which it hears of it
   server.Kill();
   usleep(300'000);
   const absl::Status back = server.Restart();
