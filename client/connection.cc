@@ -17,6 +17,7 @@
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/strip.h"
+#include "client/reachable.h"
 #include "client/terminal.h"
 #include "phrenic/v1/server.grpc.pb.h"
 #include "server/service/address.h"
@@ -35,6 +36,19 @@ void SayWhatThereIs(const std::string& error) {
   for (const auto& [field, command] : kAnswers) {
     if (error.starts_with(field)) std::cerr << "  list them: " << command << "\n";
   }
+}
+
+// gRPC has one code for a server that is not there and for one that answers that it cannot now.
+int FailUnavailable(const Context& context, const std::string& message) {
+  if (IsReachable(HostOf(context))) {
+    std::cerr << ErrorName() << " the server at " << context.server << " cannot do it now: " << message
+              << "\n  try again; what is wrong: phrenic doctor\n";
+  } else {
+    std::cerr << ErrorName() << " no server at " << context.server << " (" << message
+              << "): start one with deploy/run or phrenicd, or name another with --server HOST:PORT\n"
+              << "  what is wrong: phrenic doctor\n";
+  }
+  return kUnreachable;
 }
 
 constexpr std::string_view kEncrypted = "https://", kPlainScheme = "http://";
@@ -142,6 +156,8 @@ std::shared_ptr<grpc::Channel> Connect(const Context& context) {
   arguments.SetMaxReceiveMessageSize(64 << 20);
   arguments.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);
   arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 1000);
+  arguments.SetInt(GRPC_ARG_KEEPALIVE_TIME_MS, 10'000);  // a line that was cut is noticed though nothing is sent
+  arguments.SetInt(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, 3'000);
   std::vector<std::unique_ptr<grpc::experimental::ClientInterceptorFactoryInterface>> factories;
   if (auto metadata = MetadataOf(context); !metadata.empty()) {
     factories.push_back(std::make_unique<CredentialFactory>(std::move(metadata)));
@@ -150,17 +166,23 @@ std::shared_ptr<grpc::Channel> Connect(const Context& context) {
                                                                  std::move(factories));
 }
 
-grpc::Status RideOut(const Context& context, absl::FunctionRef<grpc::Status(bool& heard)> stream) {
+grpc::Status RideOut(const Context& context, absl::FunctionRef<grpc::Status(Heard heard)> stream) {
   constexpr int kAttempts = 60;
   grpc::Status status;
-  bool ever = false;
+  bool ever = false, lost = false;
+  const auto heard = [&] {
+    if (lost) std::cerr << "phrenic: the server at " << context.server << " is back\n";
+    ever = true, lost = false;
+  };
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    bool heard = false;
     status = stream(heard);
-    if (heard) ever = true, attempt = 0;
     const bool interrupted = context.interruption != nullptr && context.interruption->happened();
     if (status.error_code() != grpc::StatusCode::UNAVAILABLE || !ever || interrupted) break;
-    if (heard) std::cerr << "phrenic: the server at " << context.server << " is gone; waiting for it\n";
+    if (!lost) {
+      std::cerr << "phrenic: the server at " << context.server << " is gone; waiting for it\n";
+      lost = true;
+      attempt = 0;
+    }
     std::this_thread::sleep_for(std::chrono::seconds(1));
   }
   return status;
@@ -171,12 +193,7 @@ int Fail(const Context& context, const grpc::Status& status) {
     std::cerr << ErrorName() << " interrupted\n";
     return kInterrupted;
   }
-  if (status.error_code() == grpc::StatusCode::UNAVAILABLE) {
-    std::cerr << ErrorName() << " no server at " << context.server << " (" << status.error_message()
-              << "): start one with deploy/run or phrenicd, or name another with --server HOST:PORT\n"
-              << "  what is wrong: phrenic doctor\n";
-    return kUnreachable;
-  }
+  if (status.error_code() == grpc::StatusCode::UNAVAILABLE) return FailUnavailable(context, status.error_message());
   std::cerr << ErrorName() << " " << status.error_message() << "\n";
   if (status.error_code() == grpc::StatusCode::NOT_FOUND) SayWhatThereIs(status.error_message());
   const bool refused = status.error_code() == grpc::StatusCode::PERMISSION_DENIED ||

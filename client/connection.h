@@ -57,12 +57,13 @@ std::string ViewerLink(const Context& context, const std::string& session);
 // "phrenic:", as errors begin on standard error; red on a terminal.
 std::string ErrorName();
 
+// A stream of what outlives its server: where it breaks off after it `heard` something, it is called again every second
+// until the server is back, for a minute at the most; standard error says both. Its last status.
+using Heard = absl::FunctionRef<void()>;
+grpc::Status RideOut(const Context& context, absl::FunctionRef<grpc::Status(Heard heard)> stream);
+
 // Says the error on standard error, "phrenic: what is wrong and what to do", what to type next below it, and gives the
 // exit code for it.
-// A stream of a job, which outlives its server: where it breaks off after something was `heard`, it is called again
-// every second until the server is back, for a minute at the most. Its last status.
-grpc::Status RideOut(const Context& context, absl::FunctionRef<grpc::Status(bool& heard)> stream);
-
 int Fail(const Context& context, const grpc::Status& status);
 int Fail(const absl::Status& status);
 

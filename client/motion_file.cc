@@ -32,7 +32,7 @@ void Forget(v1::ExportService::Stub& stub, const std::string& id) {
 
 // From where the part ends to the file's end; the first error of either side.
 grpc::Status Receive(const Context& context, v1::ExportService::Stub& stub, const v1::Export& job, PartFile& part,
-                     Progress& progress, absl::Status& written) {
+                     absl::Status& written, absl::FunctionRef<void()> on_chunk) {
   v1::DownloadExportRequest request;
   request.set_export_id(job.id());
   request.set_offset(part.bytes());
@@ -42,7 +42,7 @@ grpc::Status Receive(const Context& context, v1::ExportService::Stub& stub, cons
   v1::DownloadExportResponse response;
   while (written.ok() && stream->Read(&response)) {
     written = part.Write(response.chunk());
-    progress.Update(static_cast<double>(part.bytes()));
+    on_chunk();
   }
   if (!written.ok()) call.TryCancel();
   return stream->Finish();
@@ -96,11 +96,12 @@ int WatchToItsEnd(const Context& context, v1::ExportService::Stub& stub, const s
   grpc::Status status;
   {
     Progress progress("recording", 1);
-    status = RideOut(context, [&](bool& heard) {
+    status = RideOut(context, [&](Heard heard) {
       grpc::ClientContext call;
       const Interruption::Scope scope(*context.interruption, call);
       const auto stream = stub.WatchExport(&call, request);
-      for (v1::WatchExportResponse response; stream->Read(&response); heard = true) {
+      for (v1::WatchExportResponse response; stream->Read(&response);) {
+        heard();
         *job = response.job();
         progress.Say(absl::StrCat(static_cast<std::int64_t>(static_cast<double>(job->bytes()) / kMegabyte), " MB"));
         progress.Update(job->progress());
@@ -122,11 +123,11 @@ int Download(const Context& context, v1::ExportService::Stub& stub, const v1::Ex
   PartFile part(unpacked ? file + "." + kArchive : file, keep_part);
   Progress progress("downloading", static_cast<double>(job.bytes()));
   absl::Status written;
-  const grpc::Status status = RideOut(context, [&](bool& heard) {
-    const std::int64_t before = part.bytes();
-    grpc::Status received = Receive(context, stub, job, part, progress, written);
-    heard = part.bytes() > before;
-    return received;
+  const grpc::Status status = RideOut(context, [&](Heard heard) {
+    return Receive(context, stub, job, part, written, [&] {
+      heard();
+      progress.Update(static_cast<double>(part.bytes()));
+    });
   });
   if (!written.ok()) return Fail(written);
   if (!status.ok()) return Fail(context, status);

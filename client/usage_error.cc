@@ -5,7 +5,10 @@
 #include <vector>
 
 #include "absl/strings/match.h"
+#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
+#include "absl/strings/strip.h"
 #include "client/argument_kinds.h"
 #include "client/guide.h"
 #include "client/help.h"
@@ -79,6 +82,15 @@ std::string FromEnvironment(const CLI::App& root, const std::string& message) {
              : absl::StrCat(" (from ", option->get_envname(), ")");
 }
 
+// "TICKS: "x" is not a number" for CLI11's "Could not convert: TICKS = x": strings are taken as they are.
+std::string NoNumber(absl::string_view message) {
+  const std::pair<std::string, std::string> parts =
+      absl::StrSplit(absl::StripPrefix(message, "Could not convert: "), absl::MaxSplits(" = ", 1));
+  double value = 0;
+  const char* what = absl::SimpleAtod(parts.second, &value) ? "whole number" : "number";
+  return absl::StrCat(parts.first, ": \"", parts.second, "\" is not a ", what);
+}
+
 }  // namespace
 
 std::string Explain(const CLI::App& app, const CLI::ParseError& error) {
@@ -89,6 +101,10 @@ std::string Explain(const CLI::App& app, const CLI::ParseError& error) {
     if (app.remaining_size(true) > 0) return TooMuch(app, command);
     if (lacks_command) return absl::StrCat(Typed(command), " needs a command\n", Next(command));
     return absl::StrCat(Typed(command), ": ", error.what(), ": ", UsageOf(command), "\n", Next(command));
+  }
+  const bool converts = dynamic_cast<const CLI::ConversionError*>(&error) != nullptr;
+  if (converts && absl::StartsWith(error.what(), "Could not convert: ")) {
+    return absl::StrCat(NoNumber(error.what()), "\n", Next(command));
   }
   return absl::StrCat(error.what(), FromEnvironment(app, error.what()), "\n", Next(command));
 }

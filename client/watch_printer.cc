@@ -112,6 +112,8 @@ class LivePrinter final : public WatchPrinter {
     drawn_ = static_cast<int>(lines.size());
   }
 
+  void Leave() override { drawn_ = 0; }
+
  private:
   LiveView view_;
   int drawn_ = 0;

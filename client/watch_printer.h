@@ -14,6 +14,8 @@ class WatchPrinter {
  public:
   virtual ~WatchPrinter() = default;
   virtual void Print(const v1::WatchFramesResponse& event) = 0;
+  // Somebody else writes below: what is there is drawn over no more.
+  virtual void Leave() {}
 };
 
 // Live bars where standard output is a terminal, a line a frame where not; as the context's output says otherwise.

@@ -50,11 +50,12 @@ grpc::Status WaitFor(const Context& context, v1::StudyService::Stub& stub, const
   v1::WatchStudyRequest request;
   request.set_study_id(id);
   Progress progress(id, 1);
-  return RideOut(context, [&](bool& heard) {
+  return RideOut(context, [&](Heard heard) {
     grpc::ClientContext call;
     const Interruption::Scope scope(*context.interruption, call);
     const auto reader = stub.WatchStudy(&call, request);
-    for (v1::WatchStudyResponse response; reader->Read(&response); heard = true) {
+    for (v1::WatchStudyResponse response; reader->Read(&response);) {
+      heard();
       progress.Say(response.study().doing());
       progress.Update(response.study().progress());
       *study = response.study();

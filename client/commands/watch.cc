@@ -45,33 +45,55 @@ void Acknowledge(v1::FrameService::Stub& stub, const v1::WatchFramesRequest& wat
   if (stub.GetBasis(&fetch, request, &basis).ok()) taken.set_basis_epoch(basis.epoch());
 }
 
+// The frames of one connection, up to `count` of them over all.
+class Watcher {
+ public:
+  Watcher(const Context& context, const WatchOptions& options)
+      : context_(context),
+        options_(options),
+        stub_(v1::FrameService::NewStub(Connect(context))),
+        request_(RequestOf(options)),
+        printer_(MakeWatchPrinter(context)) {}
+
+  grpc::Status Follow(Heard heard) {
+    grpc::ClientContext call;
+    NameSession(request_, call);
+    if (options_.seconds > 0) call.set_deadline(end_);
+    const Interruption::Scope scope(*context_.interruption, call);
+    const auto stream = stub_->WatchFrames(&call, request_);
+    v1::AckFramesRequest taken;  // what a server that starts anew knows of it: nothing
+    for (v1::WatchFramesResponse event; stream->Read(&event);) {
+      heard();
+      printer_->Print(event);
+      if (!event.has_frame()) continue;
+      if (++frames_ == options_.count) call.TryCancel();
+      taken.set_sequence(event.frame().sequence());
+      if (request_.max_unacked_frames() > 0) Acknowledge(*stub_, request_, taken);
+    }
+    printer_->Leave();
+    const grpc::Status status = stream->Finish();
+    const bool enough = frames_ > 0 && frames_ == options_.count;
+    return enough ? grpc::Status::OK : status;
+  }
+
+ private:
+  const Context& context_;
+  const WatchOptions& options_;
+  const std::chrono::system_clock::time_point end_ =
+      std::chrono::system_clock::now() + std::chrono::milliseconds(static_cast<long>(1e3 * options_.seconds));
+  const std::unique_ptr<v1::FrameService::Stub> stub_;
+  const v1::WatchFramesRequest request_;
+  const std::unique_ptr<WatchPrinter> printer_;
+  int frames_ = 0;
+};
+
 }  // namespace
 
 int Watch(const Context& context, const WatchOptions& options) {
-  const auto stub = v1::FrameService::NewStub(Connect(context));
-  const v1::WatchFramesRequest request = RequestOf(options);
-  grpc::ClientContext call;
-  NameSession(request, call);
-  if (options.seconds > 0) {
-    call.set_deadline(std::chrono::system_clock::now() +
-                      std::chrono::milliseconds(static_cast<long>(1e3 * options.seconds)));
-  }
-  const Interruption::Scope scope(*context.interruption, call);
-  const auto stream = stub->WatchFrames(&call, request);
-  int lines = 0;
-  const std::unique_ptr<WatchPrinter> printer = MakeWatchPrinter(context);
-  v1::WatchFramesResponse event;
-  v1::AckFramesRequest taken;
-  while (stream->Read(&event)) {
-    printer->Print(event);
-    if (event.has_frame() && ++lines == options.count) call.TryCancel();
-    taken.set_sequence(event.frame().sequence());
-    if (event.has_frame() && request.max_unacked_frames() > 0) Acknowledge(*stub, request, taken);
-  }
-  const grpc::Status status = stream->Finish();
-  const bool enough = lines > 0 && lines == options.count;
+  Watcher watcher(context, options);
+  const grpc::Status status = RideOut(context, [&](Heard heard) { return watcher.Follow(heard); });
   const bool time_is_up = options.seconds > 0 && status.error_code() == grpc::StatusCode::DEADLINE_EXCEEDED;
-  return status.ok() || enough || time_is_up ? kOk : Fail(context, status);
+  return status.ok() || time_is_up ? kOk : Fail(context, status);
 }
 
 }  // namespace phrenic::client

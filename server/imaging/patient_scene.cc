@@ -148,6 +148,7 @@ void AdaptForces(const Mesh& diaphragm, const CageFrame& frame, const std::set<s
     const double share = (side < 0 ? kPullRight : kPullLeft) * pull;
     line.set_force(share * line.force());
     line.set_lung_load(share * line.lung_load());
+    line.set_air_load(share * line.air_load());
   }
 }
 

@@ -102,6 +102,9 @@ void ReportIdleParameters(const v1::Scene& scene, v1::CompileReport& report) {
     return std::any_of(scene.forces().begin(), scene.forces().end(),
                        [side](const v1::Force& force) { return force.action_line().side() == side; });
   };
+  const bool air = std::any_of(scene.forces().begin(), scene.forces().end(),
+                               [](const v1::Force& force) { return force.action_line().air_load() > 0; });
+  if (!ribs && !air) report.add_idle_parameters("hyperinflation");
   if (!has_line(v1::SIDE_RIGHT)) report.add_idle_parameters("right_activation");
   if (!has_line(v1::SIDE_LEFT)) report.add_idle_parameters("left_activation");
   if (scene.constraints().empty()) report.add_idle_parameters("apply_links");

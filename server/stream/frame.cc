@@ -74,6 +74,7 @@ absl::StatusOr<v1::Frame> MakeFrame(const Model& model, const Layout& layout, co
   frame.set_tick(state.tick);
   frame.set_time(state.time);
   frame.set_breath(MakeInstant(model, snapshot.parameters, state).breath);
+  frame.set_phase(state.phase - std::floor(state.phase));
   frame.set_unix_nanos(absl::ToUnixNanos(snapshot.made));
   if (!std::isfinite(frame.time()) || !std::isfinite(frame.breath())) return NotFinite("the time", state);
   if (absl::Status status = AddPositions(model, layout, state, frame); !status.ok()) return status;

@@ -75,6 +75,7 @@ TEST(Golden, ErrorsOfTheCommandLine) {
       {"output-of-no-list", {"describe", "thorax", "-o", "csv"}},
       {"one-word-too-many", {"scenes", "thorax"}},
       {"no-number", {"run", "cube-springs", "--seconds", "long"}},
+      {"no-whole-number", {"step", "class", "1.5"}},
       {"no-server", {"sessions", "--server", "127.0.0.1:1"}},
   };
   for (const auto& [name, words] : cases) {

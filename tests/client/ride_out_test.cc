@@ -1,6 +1,9 @@
 // A command that waits for a job outlives the server's end, as the job does.
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
+#include "client/connection.h"
 #include "tests/client/programs.h"
 
 namespace phrenic::client {
@@ -20,7 +23,8 @@ TEST(RideOut, AnExportGoesOnWhenTheServerIsBackAndIsTheSameFile) {
   ASSERT_EQ(Phrenic(with({"export", "class", whole, "--seconds", "30", "--fps", "2"})).code, 0);
   const pid_t client =
       Start("phrenic", with({"export", "class", torn, "--seconds", "30", "--fps", "2"}), "/dev/null", said);
-  usleep(700'000);
+  while (Phrenic(with({"exports", "list", "-o", "json"})).json()["exports"].empty()) usleep(20'000);
+  usleep(500'000);  // in which it hears of it
   server.Kill();
   usleep(300'000);
   const absl::Status back = server.Restart();
@@ -28,6 +32,39 @@ TEST(RideOut, AnExportGoesOnWhenTheServerIsBackAndIsTheSameFile) {
   EXPECT_EQ(WaitFor(client), 0) << ReadAll(said);
   EXPECT_THAT(ReadAll(said), HasSubstr("is gone; waiting for it"));
   EXPECT_EQ(ReadAll(torn), ReadAll(whole));
+}
+
+TEST(RideOut, AWatchGoesOnWhenTheServerIsBackAndSaysSo) {
+  RunningServer server(Scratch("ride_out_watch"));
+  const auto at = [&server](std::vector<std::string> words) {
+    words.insert(words.end(), {"--server", server.address()});
+    return words;
+  };
+  ASSERT_EQ(Phrenic(at({"create", "sheet-2d", "--id", "class", "--play"})).code, 0);
+  const std::string lines = Scratch("watched.csv"), said = Scratch("watched.err");
+  const pid_t client =
+      Start("phrenic", at({"watch", "class", "--count", "40", "--fps", "20", "-o", "csv"}), lines, said);
+  while (ReadAll(lines).size() < 500) usleep(20'000);
+  server.Kill();
+  const absl::Status back = server.Restart();
+  ASSERT_TRUE(back.ok()) << back;
+  // A session that a server finds when it starts is paused.
+  EXPECT_EQ(Phrenic(at({"play", "class"})).code, 0);
+  EXPECT_EQ(WaitFor(client), 0) << ReadAll(said);
+  EXPECT_THAT(ReadAll(said),
+              testing::MatchesRegex("phrenic: the server at .* is gone; waiting for it\nphrenic: .* is back\n"));
+  const std::string csv = ReadAll(lines);
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 41) << "a header, and forty frames";
+}
+
+TEST(RideOut, AServerThatAnswersIsNotSaidToBeAway) {
+  RunningServer server;
+  Context context;
+  context.server = server.address();
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(Fail(context, {grpc::StatusCode::UNAVAILABLE, "the disk is away"}), kUnreachable);
+  EXPECT_THAT(testing::internal::GetCapturedStderr(),
+              testing::AllOf(HasSubstr("cannot do it now: the disk is away"), testing::Not(HasSubstr("no server"))));
 }
 
 TEST(RideOut, AServerThatNeverWasIsNotWaitedFor) {

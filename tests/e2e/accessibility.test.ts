@@ -1,4 +1,3 @@
-import axe from "axe-core";
 import type { Browser } from "playwright-core";
 import { afterAll, beforeAll, expect, test } from "vitest";
 import { launchBrowser, ViewerPage } from "./browser";
@@ -12,7 +11,6 @@ beforeAll(async () => {
   browser = await launchBrowser();
   server = await Server.start();
   viewer = await ViewerPage.open(browser, server.url);
-  await viewer.page.evaluate(axe.source);
 });
 
 afterAll(async () => {
@@ -20,17 +18,9 @@ afterAll(async () => {
   await server?.kill();
 });
 
-/** What axe finds against the page as it stands, in words. */
-function violations(): Promise<string[]> {
-  return viewer.page.evaluate(async () => {
-    const { violations } = await (window as unknown as { axe: typeof axe }).axe.run();
-    return violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.target).join(", ")}`);
-  });
-}
-
 test("AxeFindsNothingAgainstThePage", async () => {
   await viewer.page.click('summary:has-text("What runs")');
-  expect(await violations()).toEqual([]);
+  expect(await viewer.violations()).toEqual([]);
 });
 
 test("AxeFindsNothingAgainstWhoControls", async () => {
@@ -38,14 +28,14 @@ test("AxeFindsNothingAgainstWhoControls", async () => {
   await viewer.page.fill("#control-name", "Anna");
   await viewer.page.click("#control-enter");
   await viewer.page.waitForSelector('[data-person="Anna"]');
-  expect(await violations()).toEqual([]);
+  expect(await viewer.violations()).toEqual([]);
   await viewer.page.keyboard.press("Escape");
 });
 
 test("AxeFindsNothingAgainstTheChooser", async () => {
   await viewer.page.click("#session");
   await viewer.page.waitForSelector(".chooser li");
-  expect(await violations()).toEqual([]);
+  expect(await viewer.violations()).toEqual([]);
   await viewer.page.keyboard.press("Escape");
 });
 
@@ -53,11 +43,11 @@ test("AxeFindsNothingAgainstColoursForcesAndDialogs", async () => {
   const { page } = viewer;
   await page.selectOption("#coloring-kind", "largest");
   await page.waitForSelector("#coloring:not([hidden])");
-  expect(await violations()).toEqual([]);
+  expect(await viewer.violations()).toEqual([]);
   await page.selectOption("#coloring-kind", "own");
   for (const dialog of ["#share-open", "#help-open"]) {
     await page.click(dialog);
-    expect(await violations(), dialog).toEqual([]);
+    expect(await viewer.violations(), dialog).toEqual([]);
     await page.keyboard.press("Escape");
   }
 });
@@ -65,18 +55,16 @@ test("AxeFindsNothingAgainstColoursForcesAndDialogs", async () => {
 test("AxeFindsNothingAgainstLargeTypeForAProjectorOrTwoPictures", async () => {
   const { page } = viewer;
   await page.check("#projector");
-  expect(await violations()).toEqual([]);
+  expect(await viewer.violations()).toEqual([]);
   await page.uncheck("#projector");
   await page.getByLabel("Compare with", { exact: true }).selectOption({ label: "COPD" });
   await page.waitForURL(/beside=/);
   await viewer.waitForPicture();
-  await page.evaluate(axe.source);
   await page.selectOption("#coloring-kind", "displacement");
   await page.check("#show-labels");
-  expect(await violations()).toEqual([]);
+  expect(await viewer.violations()).toEqual([]);
   await page.goto(server.url);
   await viewer.waitForPicture();
-  await page.evaluate(axe.source);
 });
 
 test.each([
@@ -90,7 +78,7 @@ test.each([
     expect(box.x).toBeGreaterThanOrEqual(0);
     expect(box.x + box.width).toBeLessThanOrEqual(width);
   }
-  expect(await violations()).toEqual([]);
+  expect(await viewer.violations()).toEqual([]);
   await viewer.page.setViewportSize({ width: 900, height: 620 });
 });
 

@@ -1,5 +1,6 @@
 import { existsSync, mkdirSync } from "node:fs";
 import { join } from "node:path";
+import axe from "axe-core";
 import { type Browser, chromium, type Page } from "playwright-core";
 import type { TestHook } from "../../web/src/test_hook";
 import { outFolder } from "./server";
@@ -111,6 +112,15 @@ export class ViewerPage {
   async leave(name: string): Promise<void> {
     mkdirSync(outFolder, { recursive: true });
     await this.page.screenshot({ path: join(outFolder, `${name}.png`) });
+  }
+
+  /** What axe finds against the page as it stands, in words. */
+  async violations(): Promise<string[]> {
+    await this.page.evaluate(axe.source);
+    return this.page.evaluate(async () => {
+      const { violations } = await (window as unknown as { axe: typeof axe }).axe.run();
+      return violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.target).join(", ")}`);
+    });
   }
 
   close(): Promise<void> {

@@ -1,7 +1,6 @@
 import { mkdirSync } from "node:fs";
 import { readFile } from "node:fs/promises";
 import { join } from "node:path";
-import axe from "axe-core";
 import type { Browser } from "playwright-core";
 import { afterAll, beforeAll, describe, expect, test } from "vitest";
 import { launchBrowser, ViewerPage } from "./browser";
@@ -40,15 +39,6 @@ const choose = (name: string, buffer: Buffer) =>
   viewer.page.setInputFiles("#compare-file", { name, mimeType: "text/plain", buffer });
 const measure = async (name: string) => Number(await viewer.page.textContent(`[data-measure="${name}"]`));
 const found = () => viewer.page.waitForSelector("#comparison .found:not([hidden])", { timeout: 60_000 });
-
-/** What axe finds against the page as it stands, in words. */
-async function violations(): Promise<string[]> {
-  await viewer.page.evaluate(axe.source);
-  return viewer.page.evaluate(async () => {
-    const { violations } = await (window as unknown as { axe: typeof axe }).axe.run();
-    return violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.target).join(", ")}`);
-  });
-}
 
 describe("a cube beside a file of itself, 3 mm higher", () => {
   beforeAll(async () => {
@@ -139,7 +129,7 @@ describe("a cube beside a file of itself, 3 mm higher", () => {
   });
 
   test("AxeFindsNothingAgainstIt", async () => {
-    expect(await violations()).toEqual([]);
+    expect(await viewer.violations()).toEqual([]);
   });
 
   test("TheKeyboardAloneRepeatsAndClears", async () => {

@@ -43,6 +43,7 @@ test("ThePanelRecordsAndGivesTheFileThatTheCommandLineGets", async () => {
   await viewer.page.click("#export");
   const link = viewer.page.locator("#export-link");
   await link.waitFor();
+  expect(await viewer.violations()).toEqual([]);
   await viewer.leave("export");
   const [download] = await Promise.all([viewer.page.waitForEvent("download"), link.click()]);
   expect(download.suggestedFilename()).toBe("cube.depl");

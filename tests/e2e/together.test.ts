@@ -58,8 +58,9 @@ test("ALostServerIsShownAndComesBackWithTheSessionAsItWas", async () => {
   const { tick } = await server.session();
   await server.kill();
   await here.waitForLink("lost");
-  expect(await here.page.textContent("#link")).toContain("retrying");
+  expect(await here.page.innerText("#link")).toContain("retrying");
   expect(await here.page.isVisible("#banner-lost")).toBe(true);
+  expect(await here.violations()).toEqual([]);
   await here.leave("lost");
   await server.restart();
   await here.waitForLink("live");

@@ -1,7 +1,6 @@
 import { readdir, readFile } from "node:fs/promises";
 import { join } from "node:path";
 import { gzipSync } from "node:zlib";
-import axe from "axe-core";
 import type { Browser, Download } from "playwright-core";
 import { afterAll, beforeAll, describe, expect, test } from "vitest";
 import { launchBrowser, ViewerPage } from "./browser";
@@ -35,14 +34,6 @@ async function changed(act: () => Promise<unknown>): Promise<number> {
   await act();
   await viewer.page.waitForTimeout(1000);
   return shareOfChangedPixels(browser, before, await canvasPicture(viewer));
-}
-
-async function violations(): Promise<string[]> {
-  await viewer.page.evaluate(axe.source);
-  return viewer.page.evaluate(async () => {
-    const { violations } = await (window as unknown as { axe: typeof axe }).axe.run();
-    return violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.target).join(", ")}`);
-  });
 }
 
 describe("the graphs", () => {
@@ -96,7 +87,7 @@ describe("the picture", () => {
   });
 
   test("AxeFindsNothingAgainstItsCardsAndGraphs", async () => {
-    expect(await violations()).toEqual([]);
+    expect(await viewer.violations()).toEqual([]);
   });
 });
 
@@ -143,6 +134,7 @@ test("AStudyIsRunAndShownInPlace", async () => {
   await page.page.waitForSelector(".study-view[open]");
   await expect.poll(() => page.page.locator(".study-view h1").textContent()).toMatch(/^Cost: /);
   expect(await page.page.locator(".study-view svg.plot").count()).toBeGreaterThan(0);
+  expect(await page.violations()).toEqual([]);
   await page.leave("study");
   expect(page.complaints).toEqual([]);
   await page.close();

@@ -202,6 +202,7 @@ describe("the buttons", () => {
       })
       .toEqual(["diaphragm"]);
     await viewer.page.waitForSelector("#pulls:not([hidden])");
+    expect(await viewer.page.textContent("#force:not([hidden])")).toMatch(/^\d+\.\d\d N$/);
     await viewer.leave("pull");
     await viewer.page.mouse.up();
     await viewer.page.keyboard.up("Shift");

@@ -65,6 +65,7 @@ Json Decode(const v1::Frame& frame) {
                {"tick", frame.tick()},
                {"time", frame.time()},
                {"breath", frame.breath()},
+               {"phase", frame.phase()},
                {"unixNanos", std::to_string(frame.unix_nanos())},
                {"positions", Numbers<float>(frame.positions())},
                {"poses", Numbers<float>(frame.poses())},

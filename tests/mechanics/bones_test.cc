@@ -87,7 +87,7 @@ TEST(Ribs, RiseForwardAndOutward) {
 }
 
 TEST(Ribs, VelocityIsTheRateOfThePosition) {
-  const auto model = CompileText(Thorax());
+  const auto model = CompileText(Thorax() + "parameters { hyperinflation: 0.3 }");
   const State early = RunTo(*model, 0.999, 1e-3), middle = RunTo(*model, 1.0, 1e-3), late = RunTo(*model, 1.001, 1e-3);
   for (size_t p = 0; p < middle.poses.size(); ++p) {
     const Eigen::Vector3d point(-0.06, -0.18, -0.1);
@@ -104,6 +104,19 @@ TEST(Ribs, WholeHandlesChangeNoBit) {
   const Eigen::Quaterniond whole(Eigen::AngleAxisd(k * turn.norm(), Eigen::Vector3d(turn / turn.norm())));
   ASSERT_EQ(model->bodies[4].name, "rib-3-r");
   EXPECT_EQ(state.poses[model->bodies[4].pose].rotation.coeffs(), whole.coeffs());
+}
+
+// The test's quiet breath goes all the way.
+TEST(Ribs, OfFullLungsStartHighAndPassTotalCapacityNever) {
+  const auto empty = CompileText(Thorax()), full = CompileText(Thorax() + "parameters { hyperinflation: 0.4 }");
+  const auto turned = [](const Model& model, double time) {
+    const State state = RunTo(model, time, 1e-3);
+    return Eigen::AngleAxisd(state.poses[model.bodies[4].pose].rotation).angle();
+  };
+  const double whole = turned(*empty, 2);
+  EXPECT_NEAR(turned(*full, 4), 0.4 * whole, 1e-4 * whole);
+  EXPECT_NEAR(turned(*full, 2), whole, 1e-9);
+  EXPECT_NEAR(turned(*CompileText(Thorax() + "parameters { hyperinflation: 2 }"), 1), whole, 1e-9);
 }
 
 TEST(Ribs, WithoutHandlesRest) {

@@ -58,7 +58,7 @@ TEST(Parameters, ThatNothingAnswersToAreReported) {
     return std::vector<std::string>(model->report.idle_parameters().begin(), model->report.idle_parameters().end());
   };
   EXPECT_THAT(idle(""), testing::ElementsAre("rib_motion", "pump_handle", "bucket_handle", "apply_muscles",
-                                             "right_activation", "left_activation", "apply_links"));
+                                             "hyperinflation", "right_activation", "left_activation", "apply_links"));
   EXPECT_THAT(idle("constraints { limits { body: 'sheet' at_most_ratio: 2 } }"),
               testing::Not(testing::Contains("apply_links")));
   EXPECT_THAT(idle("forces { action_line { bodies: 'sheet' origin {} direction { z: 1 } radius: 3 force: 1 } }"),

@@ -34,6 +34,7 @@ test("BytesInTheFileAreTheFrameInTheFile", () => {
     tick: Number(frame.tick),
     time: frame.time,
     breath: frame.breath,
+    phase: frame.phase,
     unixNanos: String(frame.unixNanos),
     positions: [...positions],
     poses: [...poses],

@@ -1,6 +1,7 @@
 import { create } from "@bufbuild/protobuf";
 import { beforeEach, describe, expect, test } from "vitest";
 import { Controller } from "../../web/src/controller";
+import { FrameSchema } from "../../web/src/gen/phrenic/v1/frames_pb";
 import { ParametersSchema } from "../../web/src/gen/phrenic/v1/parameters_pb";
 import { type CompileReport, CompileReportSchema } from "../../web/src/gen/phrenic/v1/report_pb";
 import { type Session, SessionSchema, SessionState } from "../../web/src/gen/phrenic/v1/session_pb";
@@ -110,6 +111,20 @@ test("TheReadoutSpeaksOfConstraintsWhereThereAreAny", () => {
   expect(shown()).toBe(false);
   readout.show({ ...status, session: create(SessionSchema, { constraintResidual: 0 }) });
   expect(shown()).toBe(true);
+});
+
+test("TheReadoutSaysHowFarTheBreathIsAndWhichWayLookedBackAtToo", () => {
+  const readout = new Readout();
+  const rate = { framesPerSecond: 30, age: 4, delay: 0, errorBound: 0.1 };
+  const status = { session: undefined, rate, now: 0, link: { kind: "live" as const } };
+  const shown = (phase: number) => {
+    const breath = (1 - Math.cos(2 * Math.PI * phase)) / 2;
+    readout.show({ ...status, frame: create(FrameSchema, { phase, breath }) });
+    return readout.element.querySelector("#status-breath")!.textContent;
+  };
+  const words = [0, 0.25, 0.45, 0.625, 0.8, 0.99, 0.02, 0.97, 0.6].map(shown);
+  const forwards = ["in 0 %", "in 25 %", "in 45 %", "out 62 %", "out 80 %", "out 99 %", "in 2 %"];
+  expect(words).toEqual([...forwards, "out 97 %", "out 60 %"]);
 });
 
 test("TheLinkIsPutInWords", () => {

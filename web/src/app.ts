@@ -194,7 +194,8 @@ export class App {
     place("stage").append(drop, tools.force);
     if (this.beside !== undefined) {
       place("stage").classList.add("split");
-      place("stage").append(this.beside.element, this.beside.heads.element);
+      place("view").after(this.beside.element);
+      place("stage").append(this.beside.heads.element);
       new ResizeObserver(() => this.resize()).observe(this.beside.heads.element);
     }
     place("annotations-place").append(tools.annotations.element);
@@ -208,11 +209,13 @@ export class App {
 
   private furnishPanel(): void {
     const { controller, looks } = this;
+    const [breathing, solver] = parameterSections(controller, this.report, this.presets);
     place("panel").append(
       compareWith(controller, this.presets, this.subject.open),
-      controlled(this.standing, ...parameterSections(controller, this.report, this.presets)),
+      controlled(this.standing, breathing),
       this.tools.panel,
       layersPanel(looks),
+      controlled(this.standing, solver),
       streamPanel((codec) => this.connection.setCodec(codec)),
       this.probes.element,
       this.measures.element,

@@ -46,7 +46,7 @@ absl::StatusOr<std::unique_ptr<Force>> ActionLine::Make(const v1::ActionLine& sc
       total += weight;
     }
   }
-  if (force->pulls_.empty() || scene.force() == 0) {
+  if (force->pulls_.empty() || (scene.force() == 0 && scene.air_load() == 0)) {
     draft.ReportLeftOut(name, force->pulls_.empty() ? "no free vertex is within its reach" : "its force is 0");
     return nullptr;
   }
@@ -63,10 +63,12 @@ ActionLine::ActionLine(std::string name, const v1::ActionLine& scene, const Eige
     : Force(std::move(name)),
       side_(scene.side()),
       force_(scene.force() * direction),
-      muscle_((scene.force() + scene.lung_load()) * direction) {}
+      muscle_((scene.force() + scene.lung_load()) * direction),
+      air_(scene.air_load() * direction) {}
 
 Eigen::Vector3d ActionLine::Whole(const Instant& at) const {
-  return Signal(at) * (force_ - (1 - Activation(side_, at.parameters)) * muscle_);
+  const Eigen::Vector3d breath = force_ - (1 - Activation(side_, at.parameters)) * muscle_;
+  return Signal(at) * breath + at.parameters.hyperinflation() * air_;
 }
 
 void ActionLine::AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const {

@@ -72,8 +72,9 @@ absl::StatusOr<std::unique_ptr<Motion>> Ribs::Make(const v1::Ribs& scene, const 
 }
 
 void Ribs::Drive(const Instant& at, State& state) const {
-  const double scale = quiet_state_ * at.parameters.rib_motion();
-  const double k = scale * at.breath, k_rate = scale * at.breath_rate;
+  const double kept = std::min(1.0, quiet_state_ * at.parameters.hyperinflation());
+  const double scale = (1 - kept) * (quiet_state_ * at.parameters.rib_motion());
+  const double k = kept + scale * at.breath, k_rate = scale * at.breath_rate;
   const Eigen::Vector3d shares(at.parameters.pump_handle(), at.parameters.bucket_handle(), 1);
   for (const Rib& rib : ribs_) {
     Pose& pose = state.poses[rib.pose];

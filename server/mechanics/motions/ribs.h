@@ -1,8 +1,9 @@
 // Ribs turn about axes through their heads (thesis equations 3.1-3.3): t_i = k T_i, a_i = k A_i, k the breathing state:
 // 0 at functional residual capacity, 1 at total lung capacity. Right rib: A = (-pump, +bucket, 0); left rib its mirror
 // image, (-pump, -bucket, 0) (Wilson et al., J Appl Physiol 1987;62:1872). Live parameters pump_handle and
-// bucket_handle scale the two parts of A, and leave T as it is. The head is the mean of the vertices within 6 mm of the
-// medial-most one.
+// bucket_handle scale the two parts of A, and leave T as it is. With a live parameter hyperinflation h they breathe on
+// from k0 = h k_quiet, within what is left: k = k0 + (1 - k0) k_breath, so that no breath passes total lung capacity.
+// The head is the mean of the vertices within 6 mm of the medial-most one.
 #ifndef PHRENIC_SERVER_MECHANICS_MOTIONS_RIBS_H_
 #define PHRENIC_SERVER_MECHANICS_MOTIONS_RIBS_H_
 

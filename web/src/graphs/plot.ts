@@ -126,5 +126,5 @@ export class Plot {
 
 /** The least height of a graph: below it, what moves is rounding. */
 function leastOf(unit: string): number {
-  return { l: 0.01, "l/s": 0.01, Pa: 1, mm: 0.1 }[unit] ?? 1e-9;
+  return { l: 0.01, "l/s": 0.01, Pa: 1, mm: 0.1, "": 0.1 }[unit] ?? 1e-9;
 }

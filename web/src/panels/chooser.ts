@@ -33,7 +33,9 @@ export class Chooser {
         this.api.scenes.listScenes({}),
       ]);
       this.sessions.replaceChildren(...sessions.map((session) => this.sessionRow(session)));
-      this.scenes.replaceChildren(...scenes.map((scene) => this.sceneRow(scene)));
+      // What breathes in several ways comes first.
+      const sorted = scenes.toSorted((a, b) => b.presets.length - a.presets.length);
+      this.scenes.replaceChildren(...sorted.map((scene) => this.sceneRow(scene)));
     } catch (error) {
       this.words.textContent = errorText(error);
     }

@@ -5,7 +5,7 @@ import type { Signal } from "../signal";
 import { make, section } from "./dom";
 
 const valueNames: [ExportValues, string][] = [
-  [ExportValues.UNSPECIFIED, "the format's own"],
+  [ExportValues.UNSPECIFIED, "as usual"],
   [ExportValues.POSITIONS, "positions"],
   [ExportValues.DISPLACEMENTS, "displacements"],
 ];

@@ -59,8 +59,8 @@ export class PaneHeads {
       const preset = presetOf(this.presets.value, session.value?.parameters);
       this.names[i].textContent = preset === undefined ? sessionId : labelOf(preset);
     });
-    const words = differences(here, there);
-    this.differences.textContent = this.differences.title = words === "" ? "The same parameters" : words;
+    this.differences.textContent = shortDifferences(here, there) || "The same parameters";
+    this.differences.title = differences(here, there);
   }
 }
 
@@ -77,13 +77,21 @@ function buttons(sessionId: string, { swap, close }: Actions): HTMLElement[] {
 export function domeWords(frame: Frame | undefined): string {
   if (frame === undefined) return "";
   return domesOf(frame)
-    .map(({ name, height }) => `${name} ${(1000 * Math.abs(height)).toFixed(1)} mm ${height > 0 ? "up" : "down"}`)
+    .map(({ name, height }) => {
+      const way = (1000 * Math.abs(height)).toFixed(1);
+      return `${name} ${way} mm${way === "0.0" ? "" : height > 0 ? " up" : " down"}`;
+    })
     .join(", ");
 }
 
-/** What is set otherwise in `there`: "Breath force 2 instead of 1". */
-export function differences(here: Parameters | undefined, there: Parameters | undefined): string {
-  if (here === undefined || there === undefined) return "";
+interface Difference {
+  label: string;
+  here: string;
+  there: string;
+}
+
+function differing(here: Parameters | undefined, there: Parameters | undefined): Difference[] {
+  if (here === undefined || there === undefined) return [];
   const values = (of: Parameters) => of as unknown as Record<string, number | boolean>;
   return parameterControls()
     .filter(({ field }) => values(here)[field] !== values(there)[field])
@@ -93,7 +101,21 @@ export function differences(here: Parameters | undefined, there: Parameters | un
         const named = control.kind === "choice" ? control.options.find((each) => each.value === value) : undefined;
         return named?.label ?? formatNumber(value);
       };
-      return `${control.label} ${words(values(there)[control.field])} instead of ${words(values(here)[control.field])}`;
-    })
+      const { field, label } = control;
+      return { label, here: words(values(here)[field]), there: words(values(there)[field]) };
+    });
+}
+
+/** What is set otherwise in `there`: "Breath force 2 instead of 1". */
+export function differences(here: Parameters | undefined, there: Parameters | undefined): string {
+  return differing(here, there)
+    .map(({ label, here, there }) => `${label} ${there} instead of ${here}`)
     .join(", ");
+}
+
+/** The same, and of more than two "With breath force 0.45, breath length 3, rib motion 1.5". */
+export function shortDifferences(here: Parameters | undefined, there: Parameters | undefined): string {
+  const all = differing(here, there);
+  if (all.length < 3) return differences(here, there);
+  return `With ${all.map(({ label, there }) => `${label.toLowerCase()} ${there}`).join(", ")}`;
 }

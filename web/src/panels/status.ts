@@ -84,6 +84,8 @@ export class Readout {
   readonly element = make("div", { className: "readout", id: "readout" });
   private readonly values = new Map<string, HTMLElement>();
   private readonly bar = make("span", { className: "breath-bar" });
+  private last = { phase: 0, breath: 0 };
+  private inwards = true;
 
   constructor() {
     for (const [name, title] of fields) {
@@ -95,15 +97,25 @@ export class Readout {
   }
 
   show({ session, frame }: Status): void {
-    this.write("time", `${(frame?.time ?? session?.time ?? 0).toFixed(2)} s`);
+    const digits = session?.state === SessionState.PLAYING ? 2 : 3;
+    this.write("time", `${(frame?.time ?? session?.time ?? 0).toFixed(digits)} s`);
     this.write("tick", String(frame?.tick ?? session?.tick ?? 0));
-    const breath = frame?.breath ?? 0;
-    this.write("breath", `${breath < 0 ? "−" : "+"}${Math.abs(breath).toFixed(2)}`);
+    const { breath, phase } = frame ?? { breath: 0, phase: 0 };
+    this.write("breath", `${this.way(phase, breath)} ${Math.floor(100 * phase)} %`);
     this.bar.style.transform = `translateX(${50 * breath}%)`;
     const pace = session?.state === SessionState.PLAYING ? (session.pace?.timesRealTime ?? 0) : 0;
     this.write("pace", `${pace.toFixed(2)}×`);
     this.write("links", residualWords(session?.constraintResidual));
     this.element.querySelector<HTMLElement>(".links")!.hidden = session?.constraintResidual === undefined;
+  }
+
+  /** Whether the breath goes in or out, by what was shown last; whoever looks back sees it the other way round. */
+  private way(phase: number, breath: number): string {
+    const gone = phase - this.last.phase;
+    const later = gone - Math.round(gone) > 0;
+    if (breath !== this.last.breath) this.inwards = breath > this.last.breath === later;
+    this.last = { phase, breath };
+    return this.inwards ? "in" : "out";
   }
 
   private write(name: string, text: string): void {
@@ -121,7 +133,7 @@ export function residualWords(metres: number | undefined): string {
 const fields: [string, string][] = [
   ["time", "Simulated time"],
   ["tick", "Steps since the start"],
-  ["breath", "The breath signal, -1 to 1"],
+  ["breath", "Whether the breath goes in or out, and how much of the whole breath has gone"],
   ["pace", "Simulated seconds a second"],
   ["links", "By how much the worst rigid link or limit is off; kept: less than a micrometre"],
 ];

@@ -19,6 +19,11 @@ export function streamPanel(choose: (codec: Codec) => void): HTMLElement {
     choose(Number(list.value));
   };
   show();
-  const row = make("div", { className: "compare-row" }, make("label", { htmlFor: "stream-codec" }, "Frames"), list);
+  const row = make(
+    "div",
+    { className: "compare-row wide" },
+    make("label", { htmlFor: "stream-codec" }, "Frames"),
+    list,
+  );
   return section("Stream", false, row, hint);
 }

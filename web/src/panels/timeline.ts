@@ -37,7 +37,8 @@ export class Timeline {
   show(): void {
     const { span, lookedAt } = this.frames;
     this.slider.disabled = span.end - span.start < shortest;
-    [this.slider.min, this.slider.max] = [String(span.start), String(span.end)];
+    // Where there is nothing to look back on, the knob stands at the end.
+    [this.slider.min, this.slider.max] = [String(Math.min(span.start, span.end - shortest)), String(span.end)];
     const ago = lookedAt === undefined ? 0 : span.end - lookedAt.time;
     if (document.activeElement !== this.slider || lookedAt === undefined) this.slider.value = String(span.end - ago);
     const words = lookedAt === undefined ? "now" : `${ago.toFixed(2)} s ago`;

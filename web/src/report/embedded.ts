@@ -10,5 +10,5 @@ export function embed(host: HTMLElement, study: Study): void {
   // What the page of its own says about itself, the host says here.
   sheet.replaceSync(css.replaceAll(":root", ":host").replaceAll(/(^|\s)body(?=\s*\{)/g, "$1:host"));
   root.adoptedStyleSheets = [sheet];
-  root.replaceChildren(make("main", {}, ...contentsOf(study)));
+  root.replaceChildren(make("article", { className: "page" }, ...contentsOf(study)));
 }

@@ -177,6 +177,7 @@ export class Rig {
   }
 
   compass(): Compass {
+    this.camera.updateMatrixWorld(); // not only when the next picture is drawn
     const axis = (i: number) => new THREE.Vector3().setFromMatrixColumn(this.camera.matrixWorld, i);
     const [right, up, back] = [axis(0), axis(1), axis(2)];
     const { distance } = this.depth;
