@@ -65,6 +65,7 @@ class Scale {
   grpc::Status ForEach(int count, const Act& act) {
     std::vector<grpc::Status> errors(kCallers);
     std::vector<std::thread> callers;
+    callers.reserve(kCallers);
     for (int c = 0; c < kCallers; ++c) {
       callers.emplace_back([&, c] {
         const auto stub = v1::SessionService::NewStub(deployment_.NewChannel());
@@ -181,6 +182,7 @@ class Scale {
     }
     bench::Seen seen;
     std::vector<std::unique_ptr<Viewer>> viewers;
+    viewers.reserve(static_cast<std::size_t>(options_.viewers));
     for (int i = 0; i < options_.viewers; ++i) {
       viewers.push_back(Watch(channel(i % sessions), name(i % sessions), seen));
     }
