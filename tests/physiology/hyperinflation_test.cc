@@ -2,15 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <fstream>
-#include <sstream>
 
-#include "server/anatomy/anatomy.h"
-#include "server/mechanics/compile.h"
-#include "server/mechanics/presets.h"
 #include "server/mechanics/step.h"
-#include "server/schema/schema.h"
 #include "server/study/thorax_metrics.h"
+#include "tests/physiology/generated_thorax.h"
 
 namespace phrenic {
 namespace {
@@ -25,18 +20,8 @@ struct Breath {
   Extent out, in;  // at the end of the third expiration, and the peak of the breath after it
 };
 
-class Hyperinflated : public testing::Test {
+class Hyperinflated : public GeneratedThorax {
  protected:
-  static void SetUpTestSuite() {
-    std::ifstream file(PHRENIC_SOURCE_DIR "/server/scenes/thorax.textproto");
-    std::stringstream text;
-    text << file.rdbuf();
-    model_ = *Compile(*schema::ParseScene("thorax.textproto", text.str()), [](const v1::Body& body) {
-      return anatomy::Generate(body.anatomy(), body.generated().resolution_mm());
-    });
-  }
-  static void TearDownTestSuite() { model_.reset(); }
-
   static Extent Measure(const State& state) {
     const auto metrics = study::ThoraxMetrics::Of(*model_);
     return {1e3 * metrics->DomeDescent(state, v1::SIDE_RIGHT), 1e3 * metrics->DomeDescent(state, v1::SIDE_LEFT),
@@ -61,17 +46,7 @@ class Hyperinflated : public testing::Test {
     }
     return breath;
   }
-
-  static v1::Parameters With(const std::string& preset) {
-    v1::Parameters parameters = model_->parameters;
-    parameters.MergeFrom(*FindPreset(model_->scene, preset));
-    return parameters;
-  }
-
-  static std::shared_ptr<const Model> model_;
 };
-
-std::shared_ptr<const Model> Hyperinflated::model_;
 
 TEST_F(Hyperinflated, CopdBreathesFromLowDomesHighRibsAndFullLungs) {
   const Breath quiet = Breathe(With("quiet")), copd = Breathe(With("COPD"));

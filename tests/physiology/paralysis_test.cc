@@ -2,15 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <fstream>
-#include <sstream>
 
-#include "server/anatomy/anatomy.h"
-#include "server/mechanics/compile.h"
-#include "server/mechanics/presets.h"
 #include "server/mechanics/step.h"
-#include "server/schema/schema.h"
 #include "server/study/thorax_metrics.h"
+#include "tests/physiology/generated_thorax.h"
 
 namespace phrenic {
 namespace {
@@ -19,21 +14,10 @@ struct Descent {
   double right = 0, left = 0;  // [mm], at the peak of a breath in
 };
 
-class Paralysis : public testing::Test {
+class Paralysis : public GeneratedThorax {
  protected:
-  static void SetUpTestSuite() {
-    std::ifstream file(PHRENIC_SOURCE_DIR "/server/scenes/thorax.textproto");
-    std::stringstream text;
-    text << file.rdbuf();
-    model_ = *Compile(*schema::ParseScene("thorax.textproto", text.str()), [](const v1::Body& body) {
-      return anatomy::Generate(body.anatomy(), body.generated().resolution_mm());
-    });
-  }
-  static void TearDownTestSuite() { model_.reset(); }
-
   static Descent BreatheIn(const std::string& preset, const v1::Parameters& changes = {}) {
-    v1::Parameters parameters = model_->parameters;
-    parameters.MergeFrom(*FindPreset(model_->scene, preset));
+    v1::Parameters parameters = With(preset);
     parameters.MergeFrom(changes);
     State state = model_->InitialState();
     Workspace work = model_->MakeWorkspace();
@@ -47,11 +31,7 @@ class Paralysis : public testing::Test {
     std::printf("%-16s right %6.1f mm  left %6.1f mm\n", preset.c_str(), descent.right, descent.left);
     return descent;
   }
-
-  static std::shared_ptr<const Model> model_;
 };
-
-std::shared_ptr<const Model> Paralysis::model_;
 
 TEST_F(Paralysis, ADomeWithoutMuscleMovesLessThanAThirdOfTheOther) {
   const Descent right = BreatheIn("paralysis-right"), left = BreatheIn("paralysis-left");

@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
-#include <map>
 #include <thread>
 
 #include "absl/strings/str_cat.h"
@@ -224,7 +223,7 @@ int Main(int argc, char** argv) {
   Options options;
   CLI::App app("cluster_scale: many sessions and viewers on a cluster of this machine.");
   app.add_option("--servers", options.servers, "servers")->check(CLI::Range(1, 16))->capture_default_str();
-  app.add_option("--sessions", options.sessions, "small sessions")->check(CLI::Range(32, 4000))->capture_default_str();
+  app.add_option("--sessions", options.sessions, "small sessions")->check(CLI::Range(80, 1000))->capture_default_str();
   app.add_option("--viewers", options.viewers, "viewers, 25 a session")
       ->check(CLI::Range(1, 2000))
       ->capture_default_str();

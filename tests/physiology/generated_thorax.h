@@ -1,0 +1,42 @@
+// The generated thorax, compiled once for all tests of a suite, and its ways to breathe.
+#ifndef PHRENIC_TESTS_PHYSIOLOGY_GENERATED_THORAX_H_
+#define PHRENIC_TESTS_PHYSIOLOGY_GENERATED_THORAX_H_
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <string>
+
+#include "server/anatomy/anatomy.h"
+#include "server/mechanics/compile.h"
+#include "server/mechanics/presets.h"
+#include "server/schema/schema.h"
+
+namespace phrenic {
+
+class GeneratedThorax : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    std::ifstream file(PHRENIC_SOURCE_DIR "/server/scenes/thorax.textproto");
+    std::stringstream text;
+    text << file.rdbuf();
+    model_ = *Compile(*schema::ParseScene("thorax.textproto", text.str()), [](const v1::Body& body) {
+      return anatomy::Generate(body.anatomy(), body.generated().resolution_mm());
+    });
+  }
+  static void TearDownTestSuite() { model_.reset(); }
+
+  static v1::Parameters With(const std::string& preset) {
+    v1::Parameters parameters = model_->parameters;
+    parameters.MergeFrom(*FindPreset(model_->scene, preset));
+    return parameters;
+  }
+
+  inline static std::shared_ptr<const Model> model_;
+};
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_TESTS_PHYSIOLOGY_GENERATED_THORAX_H_
