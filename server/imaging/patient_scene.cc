@@ -67,6 +67,7 @@ void AddBodies(const std::vector<PatientBody>& bodies, const v1::Body& sheet, do
     body.mutable_file()->set_path(absl::StrCat(folder, "/", from.name, ".msh"));
     if (body.role() != v1::ROLE_DEFORMABLE) continue;
     body.set_mass(mass);
+    body.set_mass_shares(sheet.mass_shares());
     *body.mutable_regions() = sheet.regions();
   }
 }

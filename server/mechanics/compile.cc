@@ -9,6 +9,7 @@
 #include "absl/strings/str_format.h"
 #include "server/mechanics/bodies.h"
 #include "server/mechanics/catalogue.h"
+#include "server/mechanics/masses.h"
 #include "server/mechanics/presets.h"
 #include "server/mechanics/scene_hash.h"
 #include "server/mechanics/spectrum.h"
@@ -182,6 +183,8 @@ absl::StatusOr<std::shared_ptr<const Model>> Compile(const v1::Scene& scene, con
   CompletePresets(model.scene);
   StageClock clock(model.report);
   if (absl::Status status = AddBodies(source, draft); !status.ok()) return status;
+  draft.area_mass = model.mass;
+  if (absl::Status status = SpreadMassByStiffness(draft); !status.ok()) return status;
   clock.End("bodies");
   if (absl::Status status = AddElements(draft); !status.ok()) return status;
   clock.End("elements");

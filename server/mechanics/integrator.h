@@ -31,7 +31,7 @@ struct Workspace {
 
   Points before, velocity_before;          // at the start of the step [m], [m/s]
   Points force;                            // [N]
-  Points next;                             // positions at the end of the step, while all still need those at its start
+  std::vector<Eigen::Vector3d> driven;     // positions and velocities of driven vertices at the start of the step
   Eigen::VectorXd damping;                 // [N s/m] a vertex
   std::vector<Points> stages;              // of the integrators that have stages; made when first needed
   std::vector<State> trials;               // of adaptive steps; made when first needed
@@ -60,6 +60,9 @@ class Integrator {
   virtual int order() const = 0;
   // The largest stable step [s]; infinity where nothing limits it, 0 where no step is stable.
   virtual double MaxStep(const Spectrum& spectrum) const = 0;
+  // Whether Advance leaves the start of the step in the workspace's `before` and `velocity_before` itself; they are to
+  // hold it already for one that does not.
+  virtual bool keeps_start() const { return false; }
   // Carries positions, velocities and poses from state.time to state.time + dt; motions drive the bones, forces the
   // tissue, and constraints have the last word. Leaves state.time, phase and tick as they are. ABORTED
   // with the remedy where it finds no next state.

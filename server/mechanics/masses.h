@@ -4,7 +4,7 @@
 
 #include "absl/status/statusor.h"
 #include "phrenic/v1/scene.pb.h"
-#include "server/mesh/mesh.h"
+#include "server/mechanics/draft.h"
 
 namespace phrenic {
 
@@ -13,6 +13,11 @@ namespace phrenic {
 // all (on a real diaphragm, half the step). Equal shares where there is neither; a substance without is
 // INVALID_ARGUMENT with `path`, the body's.
 absl::StatusOr<Eigen::VectorXd> VertexMasses(const v1::Body& body, const Mesh& mesh, std::string_view path);
+// Where bodies ask for it, spreads their mass anew by the stiffness of the springs that the scene has at each vertex
+// (the sum over its springs at rest; by Gershgorin's theorem no frequency is then above sqrt(2 sum/m), the same for
+// all), half an equal share at least. To be called between bodies and elements. INVALID_ARGUMENT where no spring acts
+// on such a body.
+absl::Status SpreadMassByStiffness(Draft& draft);
 
 }  // namespace phrenic
 

@@ -19,7 +19,7 @@ State Model::InitialState() const {
 
 Workspace Model::MakeWorkspace() const {
   Workspace work;
-  work.before = work.velocity_before = work.force = work.next = Points::Zero(3, rest.cols());
+  work.before = work.velocity_before = work.force = Points::Zero(3, rest.cols());
   work.damping = Eigen::VectorXd::Zero(rest.cols());
   return work;
 }

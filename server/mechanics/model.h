@@ -65,6 +65,7 @@ struct Model {
   Edges rigid_links;
   std::vector<int> attached_vertices;
   std::vector<int> fixed_vertices;
+  std::vector<int> driven_vertices;  // those that motions move
   std::vector<ActionLineView> action_lines;
 
   State InitialState() const;

@@ -99,10 +99,10 @@ std::string Remedy(const Model& model, const v1::Parameters& parameters, const S
 }  // namespace
 
 absl::Status Step(const Model& model, const v1::Parameters& parameters, double dt, State& state, Workspace& work) {
-  KeepBefore(state, work);
-  work.effort.Begin(parameters.solver_budget());
   const Integrator& integrator = FindIntegrator(parameters.integrator());
   const bool adaptive = parameters.step_tolerance() > 0 && integrator.order() > 0;
+  if (adaptive || !integrator.keeps_start()) KeepBefore(state, work);
+  work.effort.Begin(parameters.solver_budget());
   absl::Status advanced = adaptive ? AdvanceAdaptively(model, parameters, integrator, dt, state, work)
                                    : integrator.Advance(model, parameters, dt, state, work);
   state.time += dt;

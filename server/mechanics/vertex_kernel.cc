@@ -52,19 +52,19 @@ HWY_INLINE void ForEach(const VertexRange& range, const double* numbers, const W
 }
 
 void KickAndDriftHere(const VertexRange& range, const double* inverse_mass, double kick, double drift, const double* f,
-                      const double* x, double* v, double* x_next) {
+                      const double* x, const double* v, double* x_next, double* v_next) {
   const Tag d;
   const auto kicks = hn::Set(d, kick), drifts = hn::Set(d, drift), zero = hn::Zero(d);
   const auto whole = [&](Eigen::Index i, Vector w) {
     const auto free = hn::Gt(w, zero);
     const auto before = hn::LoadU(d, v + i), at = hn::LoadU(d, x + i);
     const auto now = hn::IfThenElse(free, hn::Add(before, hn::Mul(hn::Mul(kicks, w), hn::LoadU(d, f + i))), before);
-    hn::StoreU(now, d, v + i);
+    hn::StoreU(now, d, v_next + i);
     hn::StoreU(hn::IfThenElse(free, hn::Add(at, hn::Mul(drifts, now)), at), d, x_next + i);
   };
   const auto single = [&](Eigen::Index i, double w) {
-    if (w > 0) v[i] += kick * w * f[i];
-    x_next[i] = w > 0 ? x[i] + drift * v[i] : x[i];
+    v_next[i] = w > 0 ? v[i] + kick * w * f[i] : v[i];
+    x_next[i] = w > 0 ? x[i] + drift * v_next[i] : x[i];
   };
   ForEach(range, inverse_mass, whole, single);
 }
@@ -76,6 +76,18 @@ void AddFrictionHere(const VertexRange& range, const double* c, const double* v,
   };
   const auto single = [&](Eigen::Index i, double of_vertex) { f[i] -= of_vertex * v[i]; };
   ForEach(range, c, whole, single);
+}
+
+void AddSharesHere(const VertexRange& range, const double* s, const double* force, double* f) {
+  const Tag d;
+  HWY_ALIGN double repeated[3 * kLanes];
+  for (Eigen::Index i = 0; i < 3 * kLanes; ++i) repeated[i] = force[i % 3];
+  const auto whole = [&](Eigen::Index i, Vector of_vertices) {
+    const auto here = hn::Load(d, repeated + (i - 3 * range.first) % (3 * kLanes));
+    hn::StoreU(hn::Add(hn::LoadU(d, f + i), hn::Mul(of_vertices, here)), d, f + i);
+  };
+  const auto single = [&](Eigen::Index i, double of_vertex) { f[i] += of_vertex * force[i % 3]; };
+  ForEach(range, s, whole, single);
 }
 
 // Eight sums whatever the vectors' length.
@@ -114,15 +126,21 @@ namespace phrenic {
 
 HWY_EXPORT(KickAndDriftHere);
 HWY_EXPORT(AddFrictionHere);
+HWY_EXPORT(AddSharesHere);
 HWY_EXPORT(ReachOfHere);
 
 void KickAndDrift(const VertexRange& range, const Eigen::VectorXd& w, double kick, double drift, const Points& f,
-                  const Points& x, Points& v, Points& x_next) {
-  HWY_DYNAMIC_DISPATCH(KickAndDriftHere)(range, w.data(), kick, drift, f.data(), x.data(), v.data(), x_next.data());
+                  const Points& x, const Points& v, Points& x_next, Points& v_next) {
+  HWY_DYNAMIC_DISPATCH(KickAndDriftHere)
+  (range, w.data(), kick, drift, f.data(), x.data(), v.data(), x_next.data(), v_next.data());
 }
 
 void AddFriction(const VertexRange& range, const Eigen::VectorXd& c, const ConstPoints& v, MutablePoints f) {
   HWY_DYNAMIC_DISPATCH(AddFrictionHere)(range, c.data(), v.data(), f.data());
+}
+
+void AddShares(const VertexRange& range, const Eigen::VectorXd& s, const Eigen::Vector3d& force, MutablePoints f) {
+  HWY_DYNAMIC_DISPATCH(AddSharesHere)(range, s.data(), force.data(), f.data());
 }
 
 Reach ReachOf(const Points& x) { return HWY_DYNAMIC_DISPATCH(ReachOfHere)(x.data(), x.size()); }

@@ -9,13 +9,16 @@
 
 namespace phrenic {
 
-// v += kick w f, then x_next = x + drift v, for the vertices with w = 1/m > 0 [1/kg]; the others keep v and x. `kick`
-// and `drift` are times [s]. x_next may be x.
+// v_next = v + kick w f, then x_next = x + drift v_next, for the vertices with w = 1/m > 0 [1/kg]; the others keep v and
+// x. `kick` and `drift` are times [s]. x_next may be x, and v_next v.
 void KickAndDrift(const VertexRange& range, const Eigen::VectorXd& w, double kick, double drift, const Points& f,
-                  const Points& x, Points& v, Points& x_next);
+                  const Points& x, const Points& v, Points& x_next, Points& v_next);
 
 // f -= c v, c a coefficient a vertex [N s/m].
 void AddFriction(const VertexRange& range, const Eigen::VectorXd& c, const ConstPoints& v, MutablePoints f);
+
+// f += s F, s a share a vertex, F one force for all [N].
+void AddShares(const VertexRange& range, const Eigen::VectorXd& s, const Eigen::Vector3d& force, MutablePoints f);
 
 // How far numbers reach: the largest of the absolute values, and the sum of the squares, which is no number where one
 // of them is none. The sum is taken in the same order by all instruction sets.

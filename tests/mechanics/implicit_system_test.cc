@@ -2,11 +2,11 @@
 #include "server/mechanics/implicit_system.h"
 
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <random>
 
 #include "tests/compile_text.h"
+#include "tests/mechanics/every_target.h"
 
 namespace phrenic {
 namespace {
@@ -79,9 +79,7 @@ TEST(ImplicitSystem, GivesTheSameBitsOnEveryInstructionSet) {
   const Instant at = MakeInstant(*model, model->parameters, state);
   const Points b = RandomPoints(state.x.cols(), 2);
   Points first;
-  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    SCOPED_TRACE(hwy::TargetName(target));
-    hwy::SetSupportedTargetsForTest(target);
+  OnEveryTarget([&] {
     ImplicitSystem system(*model);
     system.Assemble(*model, at, 0.01);
     Points y = Points::Zero(3, b.cols());
@@ -89,8 +87,7 @@ TEST(ImplicitSystem, GivesTheSameBitsOnEveryInstructionSet) {
     ASSERT_TRUE(system.Solve(*model, at, b, 1e-4, effort, y).ok());
     if (first.size() == 0) first = y;
     EXPECT_EQ(y, first);
-  }
-  hwy::SetSupportedTargetsForTest(0);
+  });
 }
 
 // The solution as a guess leaves next to nothing to do.

@@ -1,10 +1,11 @@
 // What is worked out range by range gives the bits of the whole, on every instruction set that this machine has.
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include "server/mechanics/advance.h"
+#include "server/mechanics/forces/carry_kernel.h"
 #include "server/mechanics/vertex_kernel.h"
 #include "tests/compile_text.h"
+#include "tests/mechanics/every_target.h"
 #include "tests/mechanics/mixed_sheet.h"
 
 namespace phrenic {
@@ -46,17 +47,55 @@ TEST(Ranges, KickAndDriftAsVertexByVertexOnEveryInstructionSet) {
     v_plain.col(i) += 0.3 * w[i] * f.col(i);
     x_plain.col(i) += 0.7 * v_plain.col(i);
   }
-  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    SCOPED_TRACE(hwy::TargetName(target));
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  OnEveryTarget([&] {
     Points v_here = v, x_here = x;
-    KickAndDrift(range, w, 0.3, 0.7, f, x, v_here, x_here);
+    KickAndDrift(range, w, 0.3, 0.7, f, x, v_here, x_here, v_here);
     EXPECT_EQ(v_here, v_plain);
     EXPECT_EQ(x_here, x_plain);
+  });
+}
+
+TEST(Ranges, SharesOfAForceAsVertexByVertexOnEveryInstructionSet) {
+  const Eigen::Index vertices = 45;
+  const VertexRange range{8, vertices};
+  const Eigen::VectorXd share = Eigen::VectorXd::Random(vertices);
+  const Eigen::Vector3d force(0.3, -0.2, 0.7);
+  const Points f = Points::Random(3, vertices);
+  Points plain = f;
+  for (Eigen::Index i = range.first; i < range.end; ++i) plain.col(i) += share[i] * force;
+  OnEveryTarget([&] {
+    Points here = f;
+    AddShares(range, share, force, here);
+    EXPECT_EQ(here, plain);
+  });
+}
+
+TEST(Ranges, WhatAPoseCarriesAsVertexByVertexOnEveryInstructionSet) {
+  Pose pose;
+  pose.rotation = Eigen::AngleAxisd(0.4, Eigen::Vector3d(1, 2, -1).normalized());
+  pose.translation = {0.01, -0.02, 0.03};
+  pose.angular_velocity = {0.3, 0.1, -0.2};
+  pose.velocity = {0.05, 0.02, 0.01};
+  std::vector<CarriedPacket> packets(3);  // the last one not full
+  Points plain = Points::Zero(3, 24);
+  for (int i = 0; i < 21; ++i) {
+    CarriedPacket& packet = packets[i / kCarried];
+    const auto lane = packet.count++;
+    const Eigen::Vector3d rest = Eigen::Vector3d::Random();
+    const double stiffness = 10 + i, damping = 0.1 * i;
+    packet.x[lane] = rest.x(), packet.y[lane] = rest.y(), packet.z[lane] = rest.z();
+    packet.stiffness[lane] = stiffness, packet.damping[lane] = damping;
+    packet.place[lane] = 3 * (23 - i);
+    plain.col(23 - i) = 0.5 * (stiffness * (pose.At(rest) - rest) + damping * pose.VelocityAt(rest));
   }
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  Points first;
+  OnEveryTarget([&] {
+    Points here = Points::Zero(3, 24);
+    AddCarried(pose, 0.5, packets.data(), packets.data() + packets.size(), here.data());
+    EXPECT_LT((here - plain).norm(), 1e-14 * plain.norm());
+    if (first.size() == 0) first = here;
+    EXPECT_EQ(here, first);
+  });
 }
 
 }  // namespace

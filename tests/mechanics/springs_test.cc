@@ -2,7 +2,6 @@
 // same bits on every instruction set that this machine has, the portable path among them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <algorithm>
 #include <numeric>
@@ -10,22 +9,10 @@
 
 #include "server/mechanics/forces/spring_rows.h"
 #include "tests/bench/plain_springs.h"
+#include "tests/mechanics/every_target.h"
 
 namespace phrenic {
 namespace {
-
-// Each instruction set in turn: this machine's best is chosen again at the end.
-template <typename Check>
-void OnEveryTarget(const Check& check) {
-  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    SCOPED_TRACE(hwy::TargetName(target));
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    check();
-  }
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-}
 
 struct Network {
   Points x;

@@ -1,12 +1,12 @@
 // Triangles worked out several at a time, held against one at a time.
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <random>
 
 #include "server/mechanics/forces/corotated.h"
 #include "server/mechanics/forces/triangle_kernel.h"
 #include "tests/compile_text.h"
+#include "tests/mechanics/every_target.h"
 
 namespace phrenic {
 namespace {
@@ -50,13 +50,10 @@ class TriangleForce : public testing::Test {
 
 TEST_F(TriangleForce, PullAsOneAtATimeWithTheSameBitsOnEveryInstructionSet) {
   const Points by_one = ByOne(*model_, state_.x), first = Force();
-  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    SCOPED_TRACE(hwy::TargetName(target));
-    hwy::SetSupportedTargetsForTest(target);
+  OnEveryTarget([&] {
     EXPECT_LT((Force() - by_one).norm(), 1e-13 * by_one.norm());
     EXPECT_EQ(Force(), first);
-  }
-  hwy::SetSupportedTargetsForTest(0);
+  });
 }
 
 // Squashed to a point the rotation is any: it is the same as of one at a time. So it is to a line, and another one for

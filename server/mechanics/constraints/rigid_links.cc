@@ -87,6 +87,7 @@ void RigidLinks::Sort(const std::vector<Link>& links, const Model& model) {
       joined.push_back(link);
     }
   }
+  if (!thesis_) packets_ = PackLinks(alone_);
   if (!joined.empty()) network_ = LinkNetwork(joined);
 }
 
@@ -104,13 +105,24 @@ void RigidLinks::ProjectThesis(const ConstPoints& before, Points& x) const {
   }
 }
 
+void RigidLinks::RestoreAlone(const ConstPoints& before, double dt, State& state) const {
+  auto link = alone_.begin();
+  for (const LinkPacket& packet : packets_) {
+    unsigned missed = RestorePacket(packet, before.data(), dt, state.x.data(), state.v.data());
+    for (int i = 0; missed != 0; ++i, missed >>= 1) {
+      if (missed & 1) Restore(link[i], before, dt, state);
+    }
+    link += packet.count;
+  }
+}
+
 void RigidLinks::Project(const v1::Parameters& parameters, const ConstPoints& before, double dt, State& state) const {
   if (!parameters.apply_links()) return;
   if (thesis_) {
     ProjectThesis(before, state.x);
     return;
   }
-  for (const Link& link : alone_) Restore(link, before, dt, state);
+  RestoreAlone(before, dt, state);
   network_.Project(before, dt, state);
 }
 

@@ -12,6 +12,7 @@
 
 #include <vector>
 
+#include "server/mechanics/constraints/link_kernel.h"
 #include "server/mechanics/constraints/link_network.h"
 
 namespace phrenic {
@@ -30,11 +31,13 @@ class RigidLinks final : public Constraint {
  private:
   explicit RigidLinks(std::string name) : Constraint(std::move(name)) {}
   void Sort(const std::vector<Link>& links, const Model& model);
+  void RestoreAlone(const ConstPoints& before, double dt, State& state) const;
   void ProjectThesis(const ConstPoints& before, Points& x) const;
 
   bool thesis_ = false;
   std::vector<Link> alone_;  // no vertex that moves has another link (or the projection asks for no more)
-  LinkNetwork network_;      // the others
+  std::vector<LinkPacket> packets_;  // the same
+  LinkNetwork network_;              // the others
 };
 
 }  // namespace phrenic

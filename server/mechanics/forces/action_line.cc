@@ -4,6 +4,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "server/mechanics/vertex_kernel.h"
 
 namespace phrenic {
 namespace {
@@ -35,26 +36,26 @@ absl::StatusOr<std::unique_ptr<Force>> ActionLine::Make(const v1::ActionLine& sc
   if (along.norm() == 0) return FieldError(absl::StrCat(std::string(path), ".direction"), "must not be zero");
   const Eigen::Vector3d direction = along.normalized();
   std::unique_ptr<ActionLine> force(new ActionLine(name, scene, direction));
-  double total = 0;
+  force->share_ = Eigen::VectorXd::Zero(draft.model.rest.cols());
+  std::int64_t count = 0;
   for (const int b : *bodies) {
     const BodyModel& body = draft.model.bodies[b];
     for (int i = 0; i < body.mesh.vertices.cols(); ++i) {
       const int vertex = body.first_vertex + i;
-      const double weight = FallOff(scene, direction, body.mesh.vertices.col(i)) * draft.model.mass[vertex];
+      const double weight = FallOff(scene, direction, body.mesh.vertices.col(i)) * draft.area_mass[vertex];
       if (weight == 0 || draft.model.inverse_mass[vertex] == 0) continue;
-      force->pulls_.push_back({vertex, weight});
-      total += weight;
+      force->share_[vertex] = weight;
+      ++count;
     }
   }
-  if (force->pulls_.empty() || (scene.force() == 0 && scene.air_load() == 0)) {
-    draft.ReportLeftOut(name, force->pulls_.empty() ? "no free vertex is within its reach" : "its force is 0");
+  if (count == 0 || (scene.force() == 0 && scene.air_load() == 0)) {
+    draft.ReportLeftOut(name, count == 0 ? "no free vertex is within its reach" : "its force is 0");
     return nullptr;
   }
-  for (Pull& pull : force->pulls_) pull.share /= total;
-  std::sort(force->pulls_.begin(), force->pulls_.end(),
-            [](const Pull& a, const Pull& b) { return a.vertex < b.vertex; });
+  force->share_ /= force->share_.sum();
+  force->NoteBlocks();
   draft.model.action_lines.push_back({name, bodies->front(), ToEigen(scene.origin()), direction, scene.radius()});
-  draft.ReportElement("force", name, static_cast<std::int64_t>(force->pulls_.size()), "vertices",
+  draft.ReportElement("force", name, count, "vertices",
                       absl::StrFormat("%g N at the peak of a quiet breath", scene.force()));
   return force;
 }
@@ -66,6 +67,13 @@ ActionLine::ActionLine(std::string name, const v1::ActionLine& scene, const Eige
       muscle_((scene.force() + scene.lung_load()) * direction),
       air_(scene.air_load() * direction) {}
 
+void ActionLine::NoteBlocks() {
+  acts_.assign((share_.size() + kVertexBlock - 1) / kVertexBlock, false);
+  for (Eigen::Index i = 0; i < share_.size(); ++i) {
+    if (share_[i] > 0) acts_[i / kVertexBlock] = true;
+  }
+}
+
 Eigen::Vector3d ActionLine::Whole(const Instant& at) const {
   const Eigen::Vector3d breath = force_ - (1 - Activation(side_, at.parameters)) * muscle_;
   return Signal(at) * breath + at.parameters.hyperinflation() * air_;
@@ -74,18 +82,15 @@ Eigen::Vector3d ActionLine::Whole(const Instant& at) const {
 void ActionLine::AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const {
   const Eigen::Vector3d force = Whole(at);
   if (force.isZero(0)) return;
-  auto pull = std::lower_bound(pulls_.begin(), pulls_.end(), range.first,
-                               [](const Pull& each, Eigen::Index vertex) { return each.vertex < vertex; });
-  for (; pull != pulls_.end() && pull->vertex < range.end; ++pull) {
-    Eigen::Map<Eigen::Vector3d>(f.data() + 3 * static_cast<std::ptrdiff_t>(pull->vertex)) += pull->share * force;
+  for (Eigen::Index first = range.first; first < range.end; first += kVertexBlock) {
+    if (!acts_[first / kVertexBlock]) continue;
+    AddShares({first, std::min(first + kVertexBlock, range.end)}, share_, force, f);
   }
 }
 
 double ActionLine::Energy(const Instant& at) const {
   const Eigen::Vector3d force = Whole(at);
-  double work = 0;
-  for (const Pull& pull : pulls_) work += pull.share * force.dot(at.x.col(pull.vertex));
-  return -work;
+  return -force.dot(at.x * share_);
 }
 
 }  // namespace phrenic

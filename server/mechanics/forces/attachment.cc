@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -45,12 +46,13 @@ absl::StatusOr<std::unique_ptr<Force>> Attachment::Make(const v1::Attachment& sc
   if (!carriers.ok()) return carriers.status();
   std::unique_ptr<Attachment> force(new Attachment(name));
   force->thesis_ = scene.mode() == v1::ATTACHMENT_MODE_THESIS;
+  std::vector<RideShare> shares;
   for (const int b : *bodies) {
     auto region = draft.Region(b, scene.region(), absl::StrCat(std::string(path), ".region"));
     if (!region.ok()) return region.status();
-    force->AddHolds(scene, *carriers, *region, b, draft);
+    force->AddHolds(scene, *carriers, *region, b, shares, draft);
   }
-  force->Sort();
+  force->Pack(std::move(shares));
   if (force->holds_.empty()) {
     draft.ReportLeftOut(name, absl::StrFormat("no vertex is within %g m of a carrier", scene.radius()));
     return nullptr;
@@ -63,16 +65,8 @@ absl::StatusOr<std::unique_ptr<Force>> Attachment::Make(const v1::Attachment& sc
   return force;
 }
 
-void Attachment::Sort() {
-  const auto place = [this](const Hold& hold) {
-    return std::pair(hold.vertex / kVertexBlock, hold.shares > 0 ? shares_[hold.first_share].pose : -1);
-  };
-  std::stable_sort(holds_.begin(), holds_.end(),
-                   [&place](const Hold& a, const Hold& b) { return place(a) < place(b); });
-}
-
 void Attachment::AddHolds(const v1::Attachment& scene, const std::vector<int>& carriers,
-                          const std::vector<bool>& region, int b, Draft& draft) {
+                          const std::vector<bool>& region, int b, std::vector<RideShare>& shares, Draft& draft) {
   const BodyModel& body = draft.model.bodies[b];
   const Carriers search(draft, carriers);
   for (int i = 0; i < body.mesh.vertices.cols(); ++i) {
@@ -82,42 +76,59 @@ void Attachment::AddHolds(const v1::Attachment& scene, const std::vector<int>& c
     if (contact.distance >= scene.radius() || draft.model.inverse_mass[vertex] == 0) continue;
     const double stiffness = (1 - contact.distance / scene.radius()) * scene.stiffness();
     const double damping = 2 * scene.damping_ratio() * std::sqrt(stiffness * draft.model.mass[vertex]);
-    const std::vector<RideShare> shares = search.Shares(contact, vertex);
-    holds_.push_back({vertex, stiffness, damping, body.mesh.vertices.col(i), static_cast<int>(shares_.size()),
-                      static_cast<int>(shares.size())});
-    shares_.insert(shares_.end(), shares.begin(), shares.end());
+    holds_.push_back({vertex, stiffness, damping, body.mesh.vertices.col(i)});
+    for (const RideShare& share : search.Shares(contact, vertex)) shares.push_back(share);
     draft.model.attached_vertices.push_back(vertex);
   }
 }
 
-void Attachment::AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const {
-  // A block's holds are sorted by carrier, so that a pose becomes a matrix once and not once a vertex.
-  int current = -1;
-  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
-  const auto before = [](const Hold& hold, Eigen::Index vertex) {
-    return hold.vertex / kVertexBlock < vertex / kVertexBlock;
+// By block, pose and vertex, each pose's in packets.
+void Attachment::Pack(std::vector<RideShare> shares) {
+  const auto by_vertex = [](const Hold& hold, int vertex) { return hold.vertex < vertex; };
+  std::sort(holds_.begin(), holds_.end(), [](const Hold& a, const Hold& b) { return a.vertex < b.vertex; });
+  const auto place = [](const RideShare& share) {
+    return std::tuple(share.vertex / kVertexBlock, share.pose, share.vertex);
   };
-  for (auto next = std::lower_bound(holds_.begin(), holds_.end(), range.first, before);
-       next != holds_.end() && next->vertex < range.end; ++next) {
-    const Hold& hold = *next;
-    Eigen::Vector3d carried = hold.rest;
-    Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
-    for (int s = hold.first_share; s < hold.first_share + hold.shares; ++s) {
-      const Pose& pose = at.poses[shares_[s].pose];
-      if (shares_[s].pose != current) rotation = pose.rotation.toRotationMatrix();
-      current = shares_[s].pose;
-      const Eigen::Vector3d turned = rotation * hold.rest;
-      carried += shares_[s].weight * (turned + pose.translation - hold.rest);
-      velocity += shares_[s].weight * (pose.velocity + pose.angular_velocity.cross(turned));
-    }
-    const std::ptrdiff_t place = 3 * static_cast<std::ptrdiff_t>(hold.vertex);
-    Eigen::Map<Eigen::Vector3d> force(f.data() + place);
-    if (thesis_) {
-      force += hold.stiffness * at.parameters.time_step() * velocity;
-      continue;
-    }
-    const Eigen::Map<const Eigen::Vector3d> x(at.x.data() + place), v(at.v.data() + place);
-    force += hold.stiffness * (carried - x) + hold.damping * (velocity - v);
+  std::sort(shares.begin(), shares.end(), [&](const auto& a, const auto& b) { return place(a) < place(b); });
+  int last = -1;
+  for (const RideShare& share : shares) {
+    const Hold& hold = *std::lower_bound(holds_.begin(), holds_.end(), share.vertex, by_vertex);
+    const Eigen::Index block = share.vertex / kVertexBlock;
+    const bool goes_on = !carried_.empty() && carried_.back().block == block && carried_.back().pose == share.pose;
+    if (!goes_on) carried_.push_back({block, share.pose, packets_.size(), packets_.size()});
+    if (!goes_on || packets_.back().count == kCarried || share.vertex == last) packets_.emplace_back();
+    CarriedPacket& packet = packets_.back();
+    const std::int64_t i = packet.count++;
+    packet.x[i] = hold.rest.x(), packet.y[i] = hold.rest.y(), packet.z[i] = hold.rest.z();
+    packet.stiffness[i] = thesis_ ? 0 : share.weight * hold.stiffness;
+    packet.damping[i] = share.weight * (thesis_ ? hold.stiffness : hold.damping);
+    packet.place[i] = 3 * static_cast<std::int64_t>(share.vertex);
+    carried_.back().end_packet = packets_.size();
+    last = share.vertex;
+  }
+}
+
+// Towards the vertex's own rest position, whatever carries it.
+void Attachment::AddOwn(const VertexRange& range, const Instant& at, MutablePoints f) const {
+  auto hold = std::lower_bound(holds_.begin(), holds_.end(), range.first,
+                               [](const Hold& each, Eigen::Index vertex) { return each.vertex < vertex; });
+  for (; hold != holds_.end() && hold->vertex < range.end; ++hold) {
+    const std::ptrdiff_t place = 3 * static_cast<std::ptrdiff_t>(hold->vertex);
+    const double *const x = at.x.data() + place, *const v = at.v.data() + place;
+    double* const force = f.data() + place;
+    for (int k = 0; k < 3; ++k) force[k] += hold->stiffness * (hold->rest[k] - x[k]) - hold->damping * v[k];
+  }
+}
+
+void Attachment::AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const {
+  if (!thesis_) AddOwn(range, at, f);
+  const double scale = thesis_ ? at.parameters.time_step() : 1;
+  auto carried = std::lower_bound(carried_.begin(), carried_.end(), range.first / kVertexBlock,
+                                  [](const Carried& each, Eigen::Index block) { return each.block < block; });
+  for (; carried != carried_.end() && carried->block * kVertexBlock < range.end; ++carried) {
+    const CarriedPacket* const packets = packets_.data();
+    AddCarried(at.poses[carried->pose], scale, packets + carried->first_packet, packets + carried->end_packet,
+               f.data());
   }
 }
 

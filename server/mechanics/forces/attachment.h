@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "server/mechanics/draft.h"
+#include "server/mechanics/forces/carry_kernel.h"
 
 namespace phrenic {
 
@@ -28,16 +29,23 @@ class Attachment final : public Force {
     int vertex;
     double stiffness, damping;  // [N/m], [N s/m]
     Eigen::Vector3d rest;       // [m]
-    int first_share, shares;    // in shares_
+  };
+  // The holds of one block of vertices in which one pose has a share.
+  struct Carried {
+    Eigen::Index block;
+    int pose;
+    size_t first_packet, end_packet;
   };
   explicit Attachment(std::string name) : Force(std::move(name)) {}
   void AddHolds(const v1::Attachment& scene, const std::vector<int>& carriers, const std::vector<bool>& region,
-                int body, Draft& draft);
-  void Sort();
+                int body, std::vector<RideShare>& shares, Draft& draft);
+  void Pack(std::vector<RideShare> shares);
+  void AddOwn(const VertexRange& range, const Instant& at, MutablePoints f) const;
 
   bool thesis_ = false;
-  std::vector<Hold> holds_;  // by blocks of vertices, and in each by carrier
-  std::vector<RideShare> shares_;
+  std::vector<Hold> holds_;       // by vertex
+  std::vector<Carried> carried_;  // by block
+  std::vector<CarriedPacket> packets_;
 };
 
 }  // namespace phrenic

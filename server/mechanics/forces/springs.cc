@@ -58,9 +58,8 @@ void AppendSprings(const v1::Springs& scene, const BodyModel& body, const Select
 
 }  // namespace
 
-absl::StatusOr<std::unique_ptr<Force>> Springs::Make(const v1::Springs& scene, const std::string& given,
-                                                     std::string_view path, Draft& draft) {
-  const std::string name = ElementName(given, "springs", scene.bodies());
+absl::StatusOr<std::vector<Spring>> Springs::Find(const v1::Springs& scene, std::string_view path,
+                                                  const Draft& draft) {
   auto bodies = draft.DeformableBodies(scene.bodies(), absl::StrCat(std::string(path), ".bodies"));
   if (!bodies.ok()) return bodies.status();
   std::vector<Spring> springs;
@@ -69,13 +68,21 @@ absl::StatusOr<std::unique_ptr<Force>> Springs::Make(const v1::Springs& scene, c
     if (!selection.ok()) return selection.status();
     AppendSprings(scene, draft.model.bodies[b], *selection, springs);
   }
-  if (springs.empty()) {
+  return springs;
+}
+
+absl::StatusOr<std::unique_ptr<Force>> Springs::Make(const v1::Springs& scene, const std::string& given,
+                                                     std::string_view path, Draft& draft) {
+  const std::string name = ElementName(given, "springs", scene.bodies());
+  auto springs = Find(scene, path, draft);
+  if (!springs.ok()) return springs.status();
+  if (springs->empty()) {
     draft.ReportLeftOut(name, "no edge has both its vertices in the region");
     return nullptr;
   }
-  const auto count = static_cast<std::int64_t>(springs.size());
+  const auto count = static_cast<std::int64_t>(springs->size());
   const Points& rest = draft.model.rest;
-  auto force = std::make_unique<Springs>(name, std::move(springs), static_cast<int>(rest.cols()));
+  auto force = std::make_unique<Springs>(name, *std::move(springs), static_cast<int>(rest.cols()));
   if (scene.balanced_at_rest() && scene.rest_length_ratio() != 1) force->Balance(rest);
   draft.model.report.set_springs(draft.model.report.springs() + count);
   draft.ReportElement("force", name, count, "springs", Detail(scene));

@@ -7,6 +7,19 @@
 #include "server/mechanics/vertex_kernel.h"
 
 namespace phrenic {
+namespace {
+
+void TakeDriven(const Model& model, const Points& x, const Points& v, std::vector<Eigen::Vector3d>& driven) {
+  driven.clear();
+  for (const int i : model.driven_vertices) driven.insert(driven.end(), {x.col(i), v.col(i)});
+}
+
+void PutDriven(const Model& model, const std::vector<Eigen::Vector3d>& driven, Points& x, Points& v) {
+  auto next = driven.begin();
+  for (const int i : model.driven_vertices) x.col(i) = *next++, v.col(i) = *next++;
+}
+
+}  // namespace
 
 double SemiImplicitEuler::MaxStep(const Spectrum& spectrum) const {
   const double omega2 = spectrum.omega_max * spectrum.omega_max, c = spectrum.damping_rate;
@@ -14,16 +27,21 @@ double SemiImplicitEuler::MaxStep(const Spectrum& spectrum) const {
   return 4 / (c + std::sqrt(c * c + 4 * omega2));
 }
 
+// The end of the step is written over what `work` has of the last one's start, and the two change places, so that
+// nothing is copied but what motions have already driven on.
 absl::Status SemiImplicitEuler::Advance(const Model& model, const v1::Parameters& parameters, double dt, State& state,
                                         Workspace& work) const {
+  TakeDriven(model, state.x, state.v, work.driven);
   DriveMotions(model, parameters, dt, state);
   const Instant at = MakeInstant(model, parameters, state);
   SumWholeForces(model, at, work.force);
   ForEachBlock({0, state.x.cols()}, [&](const VertexRange& block) {
     SumForcesIn(block, model, at, work.force);
-    KickAndDrift(block, model.inverse_mass, dt, dt, work.force, state.x, state.v, work.next);
+    KickAndDrift(block, model.inverse_mass, dt, dt, work.force, state.x, state.v, work.before, work.velocity_before);
   });
-  state.x.swap(work.next);
+  state.x.swap(work.before);
+  state.v.swap(work.velocity_before);
+  PutDriven(model, work.driven, work.before, work.velocity_before);
   ProjectPositions(model, parameters, work.before, dt, state);
   return absl::OkStatus();
 }

@@ -11,6 +11,7 @@ class SemiImplicitEuler final : public Integrator {
  public:
   std::string_view name() const override { return "semi-implicit Euler"; }
   int order() const override { return 1; }
+  bool keeps_start() const override { return true; }
   double MaxStep(const Spectrum& spectrum) const override;
   absl::Status Advance(const Model& model, const v1::Parameters& parameters, double dt, State& state,
                        Workspace& work) const override;

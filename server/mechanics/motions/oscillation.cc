@@ -25,6 +25,7 @@ absl::StatusOr<std::unique_ptr<Motion>> Oscillation::Make(const v1::Oscillation&
     motion->vertices_.push_back(vertex);
     motion->rest_.col(i) = draft.model.rest.col(vertex);
     draft.model.inverse_mass[vertex] = 0;
+    draft.model.driven_vertices.push_back(vertex);
   }
   motion->amplitude_ = ToEigen(scene.amplitude());
   motion->frequency_ = 2 * std::numbers::pi / scene.period();

@@ -1,0 +1,31 @@
+// Links that share no vertex that moves, restored eight at a time (Restore in link.h is the rule): written once with
+// Google Highway, the machine's best instruction set chosen at run time, with the same bits on all of them.
+#ifndef PHRENIC_SERVER_MECHANICS_CONSTRAINTS_LINK_KERNEL_H_
+#define PHRENIC_SERVER_MECHANICS_CONSTRAINTS_LINK_KERNEL_H_
+
+#include <cstdint>
+#include <vector>
+
+#include "server/mechanics/constraints/link.h"
+
+namespace phrenic {
+
+inline constexpr int kLinks = 8;
+
+struct alignas(64) LinkPacket {
+  double squared_length[kLinks] = {};                 // [m^2]
+  double inverse_a[kLinks] = {}, inverse_b[kLinks] = {};  // 1/m of the ends [1/kg]
+  double reduced[kLinks] = {};                        // 1/(inverse_a + inverse_b) [kg]; 0 where neither end moves
+  std::int64_t a[kLinks] = {}, b[kLinks] = {};        // where the ends lie in x [doubles]
+  int count = 0;
+};
+
+std::vector<LinkPacket> PackLinks(const std::vector<Link>& links);
+
+// Restores the packet's links: x and v, 3 x n, change as by Restore over dt [s], for which a link's direction is that of
+// `before`. Returns the links, a bit each, that have turned too far for that and are left as they were.
+unsigned RestorePacket(const LinkPacket& packet, const double* before, double dt, double* x, double* v);
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_SERVER_MECHANICS_CONSTRAINTS_LINK_KERNEL_H_

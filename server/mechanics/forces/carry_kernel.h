@@ -1,0 +1,29 @@
+// What carriers pull at the vertices that hold on to them (attachment.h), eight at a time: written once with Google
+// Highway, the machine's best instruction set chosen at run time, with the same bits on all of them.
+#ifndef PHRENIC_SERVER_MECHANICS_FORCES_CARRY_KERNEL_H_
+#define PHRENIC_SERVER_MECHANICS_FORCES_CARRY_KERNEL_H_
+
+#include <cstdint>
+#include <vector>
+
+#include "server/mechanics/state.h"
+
+namespace phrenic {
+
+inline constexpr int kCarried = 8;
+
+// Up to eight vertices and the share that one pose has in them; what is left of it pulls at nothing.
+struct alignas(64) CarriedPacket {
+  double x[kCarried] = {}, y[kCarried] = {}, z[kCarried] = {};  // at rest [m]
+  double stiffness[kCarried] = {}, damping[kCarried] = {};      // times the share [N/m], [N s/m]
+  std::int64_t place[kCarried] = {};                            // of the vertex in f [doubles]; none twice
+  std::int64_t count = 0;
+};
+
+// f += scale (stiffness u + damping u') [N] for each of the packets' vertices, u the way that the pose carries its
+// point at rest [m]. f is 3 x n. Any number of threads may call, at once only for different vertices.
+void AddCarried(const Pose& pose, double scale, const CarriedPacket* first, const CarriedPacket* end, double* f);
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_SERVER_MECHANICS_FORCES_CARRY_KERNEL_H_
