@@ -35,8 +35,8 @@ struct Spread {
   Indices indices[3];
 };
 
-// Vector i of the coordinates is handed to `whole` with its numbers of the vertices, and what is left over coordinate
-// by coordinate to `single`.
+// Each vector of the coordinates is handed to `whole` with its numbers of the vertices and which of three it is, and what
+// is left over coordinate by coordinate to `single`.
 template <typename Whole, typename Single>
 HWY_INLINE void ForEach(const VertexRange& range, const double* numbers, const Whole& whole, const Single& single) {
   const Tag d;
@@ -44,7 +44,7 @@ HWY_INLINE void ForEach(const VertexRange& range, const double* numbers, const W
   Eigen::Index vertex = range.first;
   for (; vertex + kLanes <= range.end; vertex += kLanes) {
     const auto of_vertices = hn::LoadU(d, numbers + vertex);
-    for (int i = 0; i < 3; ++i) whole(3 * vertex + i * kLanes, spread.Of(of_vertices, i));
+    for (int i = 0; i < 3; ++i) whole(3 * vertex + i * kLanes, spread.Of(of_vertices, i), i);
   }
   for (; vertex < range.end; ++vertex) {
     for (int i = 0; i < 3; ++i) single(3 * vertex + i, numbers[vertex]);
@@ -55,7 +55,7 @@ void KickAndDriftHere(const VertexRange& range, const double* inverse_mass, doub
                       const double* x, const double* v, double* x_next, double* v_next) {
   const Tag d;
   const auto kicks = hn::Set(d, kick), drifts = hn::Set(d, drift), zero = hn::Zero(d);
-  const auto whole = [&](Eigen::Index i, Vector w) {
+  const auto whole = [&](Eigen::Index i, Vector w, int) {
     const auto free = hn::Gt(w, zero);
     const auto before = hn::LoadU(d, v + i), at = hn::LoadU(d, x + i);
     const auto now = hn::IfThenElse(free, hn::Add(before, hn::Mul(hn::Mul(kicks, w), hn::LoadU(d, f + i))), before);
@@ -71,7 +71,7 @@ void KickAndDriftHere(const VertexRange& range, const double* inverse_mass, doub
 
 void AddFrictionHere(const VertexRange& range, const double* c, const double* v, double* f) {
   const Tag d;
-  const auto whole = [&](Eigen::Index i, Vector of_vertices) {
+  const auto whole = [&](Eigen::Index i, Vector of_vertices, int) {
     hn::StoreU(hn::Sub(hn::LoadU(d, f + i), hn::Mul(of_vertices, hn::LoadU(d, v + i))), d, f + i);
   };
   const auto single = [&](Eigen::Index i, double of_vertex) { f[i] -= of_vertex * v[i]; };
@@ -82,9 +82,9 @@ void AddSharesHere(const VertexRange& range, const double* s, const double* forc
   const Tag d;
   HWY_ALIGN double repeated[3 * kLanes];
   for (Eigen::Index i = 0; i < 3 * kLanes; ++i) repeated[i] = force[i % 3];
-  const auto whole = [&](Eigen::Index i, Vector of_vertices) {
-    const auto here = hn::Load(d, repeated + (i - 3 * range.first) % (3 * kLanes));
-    hn::StoreU(hn::Add(hn::LoadU(d, f + i), hn::Mul(of_vertices, here)), d, f + i);
+  const Vector forces[3] = {hn::Load(d, repeated), hn::Load(d, repeated + kLanes), hn::Load(d, repeated + 2 * kLanes)};
+  const auto whole = [&](Eigen::Index i, Vector of_vertices, int which) {
+    hn::StoreU(hn::Add(hn::LoadU(d, f + i), hn::Mul(of_vertices, forces[which])), d, f + i);
   };
   const auto single = [&](Eigen::Index i, double of_vertex) { f[i] += of_vertex * force[i % 3]; };
   ForEach(range, s, whole, single);

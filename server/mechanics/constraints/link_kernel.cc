@@ -1,52 +1,66 @@
 #include "server/mechanics/constraints/link_kernel.h"
 
+#include <algorithm>
+
 #include "server/mechanics/vector_targets.h"
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "server/mechanics/constraints/link_kernel.cc"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "server/mechanics/points-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace phrenic::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using Tag = hn::CappedTag<double, kLinks>;
-using Vector = hn::Vec<Tag>;
-constexpr int kLanes = static_cast<int>(hn::MaxLanes(Tag()));
+using points::Tag, points::Vector, points::Vectors;
+constexpr int kLanes = static_cast<int>(points::kLanes);
 
-// A vector for each link, by coordinates.
-struct Triples {
-  HWY_ALIGN double of[3][kLinks] = {};
-};
-
-HWY_INLINE Triples Between(const LinkPacket& packet, const double* x) {
-  Triples between;
-  for (int i = 0; i < packet.count; ++i) {
-    for (int k = 0; k < 3; ++k) between.of[k][i] = x[packet.b[i] + k] - x[packet.a[i] + k];
-  }
-  return between;
+// From a to b of kLanes links.
+HWY_INLINE Vectors Between(const LinkPacket& packet, int first, const double* x) {
+  const bool at_end = packet.at_end;
+  const auto fetch = [&](const std::int64_t* place) {
+    return at_end ? points::Gathered(x, place) : points::Transposed<false>(x, place);
+  };
+  const Vectors a = fetch(packet.a + first), b = fetch(packet.b + first);
+  return {hn::Sub(b.x, a.x), hn::Sub(b.y, a.y), hn::Sub(b.z, a.z)};
 }
 
-HWY_INLINE Vector Dot(const Triples& p, const Triples& q, int first) {
-  const Tag d;
-  const auto product = [&](int k) { return hn::Mul(hn::Load(d, p.of[k] + first), hn::Load(d, q.of[k] + first)); };
-  return hn::Add(hn::Add(product(0), product(1)), product(2));
+HWY_INLINE Vector Dot(const Vectors& p, const Vectors& q) {
+  return hn::Add(hn::Add(hn::Mul(p.x, q.x), hn::Mul(p.y, q.y)), hn::Mul(p.z, q.z));
 }
 
-// Impulses [kg m] along the directions for links from `first` on; 0 for those that do not reach, whose bits it returns.
-HWY_INLINE unsigned Impulses(const LinkPacket& packet, const Triples& between, const Triples& direction, int first,
-                             Triples& impulse) {
+HWY_INLINE Vectors Scaled(Vector factor, const Vectors& by) {
+  return {hn::Mul(factor, by.x), hn::Mul(factor, by.y), hn::Mul(factor, by.z)};
+}
+
+// Moves one end of kLanes links, and their velocities, by an impulse [kg m].
+HWY_INLINE void Move(Vector inverse_mass, const Vectors& impulse, double rate, const std::int64_t* place, int count,
+                     double* x, double* v) {
+  const Vectors way = Scaled(inverse_mass, impulse);
+  points::AddRows(points::ToRows(way), place, count, x);
+  points::AddRows(points::ToRows(Scaled(hn::Set(Tag(), rate), way)), place, count, v);
+}
+
+// Restores links from `first` on; those that do not reach stay as they are, and it returns their bits.
+HWY_INLINE unsigned RestoreFrom(const LinkPacket& packet, int first, const double* before, double rate, double* x,
+                                double* v) {
   const Tag d;
   const auto zero = hn::Zero(d);
-  const auto excess = hn::Sub(Dot(between, between, first), hn::Load(d, packet.squared_length + first));
-  const auto along = Dot(between, direction, first);
-  const auto discriminant = hn::Sub(hn::Mul(along, along), hn::Mul(Dot(direction, direction, first), excess));
+  const Vectors between = Between(packet, first, x), direction = Between(packet, first, before);
+  const auto excess = hn::Sub(Dot(between, between), hn::Load(d, packet.squared_length + first));
+  const auto along = Dot(between, direction);
+  const auto discriminant = hn::Sub(hn::Mul(along, along), hn::Mul(Dot(direction, direction), excess));
   const auto reaches = hn::And(hn::Gt(along, zero), hn::Ge(discriminant, zero));
   const auto sum = hn::Add(along, hn::Sqrt(hn::Max(discriminant, zero)));
   const auto part = hn::Div(excess, hn::IfThenElse(reaches, sum, hn::Set(d, 1.0)));
   const auto scale = hn::IfThenElseZero(reaches, hn::Mul(part, hn::Load(d, packet.reduced + first)));
-  for (int k = 0; k < 3; ++k) hn::Store(hn::Mul(scale, hn::Load(d, direction.of[k] + first)), d, impulse.of[k] + first);
+  const Vectors impulse = Scaled(scale, direction);
+  Move(hn::Load(d, packet.inverse_a + first), impulse, rate, packet.a + first, packet.count - first, x, v);
+  const auto inverse_b = hn::Neg(hn::Load(d, packet.inverse_b + first));
+  Move(inverse_b, impulse, rate, packet.b + first, packet.count - first, x, v);
   unsigned missed = 0;
   HWY_ALIGN double flags[kLanes];
   hn::Store(hn::IfThenElseZero(reaches, hn::Set(d, 1.0)), d, flags);
@@ -55,18 +69,9 @@ HWY_INLINE unsigned Impulses(const LinkPacket& packet, const Triples& between, c
 }
 
 unsigned RestorePacketHere(const LinkPacket& packet, const double* before, double dt, double* x, double* v) {
-  const Triples between = Between(packet, x), direction = Between(packet, before);
-  Triples impulse;
   unsigned missed = 0;
-  for (int first = 0; first < kLinks; first += kLanes) missed |= Impulses(packet, between, direction, first, impulse);
-  const double rate = 1 / dt;
-  for (int i = 0; i < packet.count; ++i) {
-    const std::int64_t a = packet.a[i], b = packet.b[i];
-    for (int k = 0; k < 3; ++k) {
-      const double of_a = packet.inverse_a[i] * impulse.of[k][i], of_b = packet.inverse_b[i] * impulse.of[k][i];
-      x[a + k] += of_a, v[a + k] += rate * of_a;
-      x[b + k] -= of_b, v[b + k] -= rate * of_b;
-    }
+  for (int first = 0; first < packet.count; first += kLanes) {
+    missed |= RestoreFrom(packet, first, before, 1 / dt, x, v);
   }
   return missed & ((1U << packet.count) - 1);
 }
@@ -80,12 +85,13 @@ namespace phrenic {
 
 HWY_EXPORT(RestorePacketHere);
 
-std::vector<LinkPacket> PackLinks(const std::vector<Link>& links) {
+std::vector<LinkPacket> PackLinks(const std::vector<Link>& links, int vertices) {
   std::vector<LinkPacket> packets;
   for (const Link& link : links) {
     if (packets.empty() || packets.back().count == kLinks) packets.emplace_back();
     LinkPacket& packet = packets.back();
     const int i = packet.count++;
+    packet.at_end = packet.at_end || std::max(link.a, link.b) == vertices - 1;
     packet.squared_length[i] = link.length * link.length;
     packet.inverse_a[i] = link.inverse_a;
     packet.inverse_b[i] = link.inverse_b;

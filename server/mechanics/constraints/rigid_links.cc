@@ -87,7 +87,7 @@ void RigidLinks::Sort(const std::vector<Link>& links, const Model& model) {
       joined.push_back(link);
     }
   }
-  if (!thesis_) packets_ = PackLinks(alone_);
+  if (!thesis_) packets_ = PackLinks(alone_, static_cast<int>(model.rest.cols()));
   if (!joined.empty()) network_ = LinkNetwork(joined);
 }
 
@@ -107,8 +107,9 @@ void RigidLinks::ProjectThesis(const ConstPoints& before, Points& x) const {
 
 void RigidLinks::RestoreAlone(const ConstPoints& before, double dt, State& state) const {
   auto link = alone_.begin();
+  double *const x = state.x.data(), *const v = state.v.data();
   for (const LinkPacket& packet : packets_) {
-    unsigned missed = RestorePacket(packet, before.data(), dt, state.x.data(), state.v.data());
+    unsigned missed = RestorePacket(packet, before.data(), dt, x, v);
     for (int i = 0; missed != 0; ++i, missed >>= 1) {
       if (missed & 1) Restore(link[i], before, dt, state);
     }

@@ -6,65 +6,19 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "server/mechanics/points-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace phrenic::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-using Tag = hn::CappedTag<double, kSliceRows>;
-using Vector = hn::Vec<Tag>;
-constexpr size_t kLanes = hn::MaxLanes(Tag());
+using points::kLanes, points::Tag, points::Transposed, points::Vector, points::Vectors;
+
 // [m^2]; keeps 1/l finite, so that l = 0 gives no force and no exception is made of it.
 constexpr double kShortestSquared = 1e-300;
 static_assert(kSliceRows % kLanes == 0);
-
-struct Vectors {
-  Vector x, y, z;
-};
-
-// Points one by one: reads nothing beyond them.
-HWY_INLINE Vectors Gathered(const double* x, const std::int32_t* place) {
-  const Tag d;
-  HWY_ALIGN double values[3][kLanes];
-  for (size_t i = 0; i < kLanes; ++i) {
-    for (int c = 0; c < 3; ++c) values[c][i] = x[place[i] + c];
-  }
-  return {hn::Load(d, values[0]), hn::Load(d, values[1]), hn::Load(d, values[2])};
-}
-
-// The points at these places, transposed: one vector of every x, one of every y, one of every z. A point is one load,
-// with what follows it: of the last of all only where `kAtEnd`.
-template <bool kAtEnd>
-HWY_INLINE Vectors Transposed(const double* x, const std::int32_t* place) {
-#if HWY_TARGET == HWY_SCALAR
-  return Gathered(x, place);
-#else
-  if constexpr (kAtEnd) return Gathered(x, place);
-  const Tag d;
-#if HWY_TARGET <= HWY_AVX3
-  const hn::Half<Tag> half;
-  const auto pair = [&](int i) {
-    return hn::Combine(d, hn::LoadU(half, x + place[i + 4]), hn::LoadU(half, x + place[i]));
-  };
-  const auto a = pair(0), b = pair(1), c = pair(2), e = pair(3);
-  const auto xz01 = hn::InterleaveLower(d, a, b), xz23 = hn::InterleaveLower(d, c, e);
-  const auto y01 = hn::InterleaveUpper(d, a, b), y23 = hn::InterleaveUpper(d, c, e);
-  return {hn::OddEvenBlocks(hn::SwapAdjacentBlocks(xz23), xz01), hn::OddEvenBlocks(hn::SwapAdjacentBlocks(y23), y01),
-          hn::OddEvenBlocks(xz23, hn::SwapAdjacentBlocks(xz01))};
-#elif HWY_TARGET == HWY_AVX2
-  const auto a = hn::LoadU(d, x + place[0]), b = hn::LoadU(d, x + place[1]);
-  const auto c = hn::LoadU(d, x + place[2]), e = hn::LoadU(d, x + place[3]);
-  const auto xz01 = hn::InterleaveLower(d, a, b), xz23 = hn::InterleaveLower(d, c, e);
-  const auto y01 = hn::InterleaveUpper(d, a, b), y23 = hn::InterleaveUpper(d, c, e);
-  return {hn::ConcatLowerLower(d, xz23, xz01), hn::ConcatLowerLower(d, y23, y01), hn::ConcatUpperUpper(d, xz23, xz01)};
-#else
-  const auto a = hn::LoadU(d, x + place[0]), b = hn::LoadU(d, x + place[1]);
-  const auto az = hn::LoadU(d, x + place[0] + 2), bz = hn::LoadU(d, x + place[1] + 2);
-  return {hn::InterleaveLower(d, a, b), hn::InterleaveUpper(d, a, b), hn::InterleaveLower(d, az, bz)};
-#endif
-#endif
-}
 
 // kLanes rows of a slice; every slice has kParts of them.
 struct Part {
@@ -111,42 +65,11 @@ HWY_INLINE void AddLoad(const SpringSlices& slices, const Part& part, Vectors& s
   sum.z = hn::Add(sum.z, hn::Load(d, load.z + part.first_row));
 }
 
-struct Rows {
-  HWY_ALIGN double even[kLanes], odd[kLanes], z[kLanes];
-};
-
-HWY_INLINE void AddRow(const Rows& sums, int row, double* force) {
-#if HWY_TARGET == HWY_SCALAR
-  force[0] += sums.even[row], force[1] += sums.odd[row];
-#else
-  const hn::FixedTag<double, 2> both;
-  const auto xy = hn::Load(both, (row % 2 == 0 ? sums.even : sums.odd) + row / 2 * 2);
-  hn::StoreU(hn::Add(hn::LoadU(both, force), xy), both, force);
-#endif
-  force[2] += sums.z[row];
-}
-
 // f += scale sum, row by row.
-HWY_INLINE void AddRows(const Vectors& sum, double scale, const Part& part, double* f) {
-  const Tag d;
-  const auto factor = hn::Set(d, scale);
-  const auto x = hn::Mul(factor, sum.x), y = hn::Mul(factor, sum.y);
-  Rows sums;
-  hn::Store(hn::Mul(factor, sum.z), d, sums.z);
-#if HWY_TARGET == HWY_SCALAR
-  hn::Store(x, d, sums.even), hn::Store(y, d, sums.odd);
-#else
-  hn::Store(hn::InterleaveLower(d, x, y), d, sums.even);
-  hn::Store(hn::InterleaveUpper(d, x, y), d, sums.odd);
-#endif
-  const std::int32_t* const own = part.slice.own + part.first_row;
-  const int rows = part.slice.rows - part.first_row;
-  if (rows >= static_cast<int>(kLanes)) {
-#pragma GCC unroll 8
-    for (int i = 0; i < static_cast<int>(kLanes); ++i) AddRow(sums, i, f + own[i]);
-  } else {
-    for (int i = 0; i < rows; ++i) AddRow(sums, i, f + own[i]);
-  }
+HWY_INLINE void AddSums(const Vectors& sum, double scale, const Part& part, double* f) {
+  const auto factor = hn::Set(Tag(), scale);
+  const auto rows = points::ToRows({hn::Mul(factor, sum.x), hn::Mul(factor, sum.y), hn::Mul(factor, sum.z)});
+  points::AddRows(rows, part.slice.own + part.first_row, part.slice.rows - part.first_row, f);
 }
 
 template <bool kAlike>
@@ -158,7 +81,7 @@ void AddParts(const SpringSlices& slices, std::int64_t begin, std::int64_t end, 
     Vectors sum =
         part.slice.at_end ? SumPulls<kAlike, true>(slices, part, x) : SumPulls<kAlike, false>(slices, part, x);
     AddLoad(slices, part, sum);
-    AddRows(sum, scale, part, f);
+    AddSums(sum, scale, part, f);
   }
 }
 

@@ -1,0 +1,117 @@
+// Points of a 3 x n array, fetched and added to as vectors of coordinates. To be included between the namespaces of a
+// file that Google Highway compiles once for each instruction set, after <hwy/highway.h>.
+#if defined(PHRENIC_SERVER_MECHANICS_POINTS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PHRENIC_SERVER_MECHANICS_POINTS_INL_H_
+#undef PHRENIC_SERVER_MECHANICS_POINTS_INL_H_
+#else
+#define PHRENIC_SERVER_MECHANICS_POINTS_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <cstdint>
+
+HWY_BEFORE_NAMESPACE();
+namespace phrenic::HWY_NAMESPACE {
+namespace points {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Eight points at most: what comes in packets and slices of eight is one vector, two or four.
+using Tag = hn::CappedTag<double, 8>;
+using Vector = hn::Vec<Tag>;
+constexpr size_t kLanes = hn::MaxLanes(Tag());
+
+struct Vectors {
+  Vector x, y, z;
+};
+
+// Points one by one: reads nothing beyond them.
+template <typename Place>
+HWY_INLINE Vectors Gathered(const double* x, const Place* place) {
+  const Tag d;
+  HWY_ALIGN double values[3][kLanes];
+  for (size_t i = 0; i < kLanes; ++i) {
+    for (int c = 0; c < 3; ++c) values[c][i] = x[place[i] + c];
+  }
+  return {hn::Load(d, values[0]), hn::Load(d, values[1]), hn::Load(d, values[2])};
+}
+
+// The points at these places [doubles], transposed: one vector of every x, one of every y, one of every z. A point is
+// one load, with what follows it: of the last of all only where `kAtEnd`.
+template <bool kAtEnd, typename Place>
+HWY_INLINE Vectors Transposed(const double* x, const Place* place) {
+#if HWY_TARGET == HWY_SCALAR
+  return Gathered(x, place);
+#else
+  if constexpr (kAtEnd) return Gathered(x, place);
+  const Tag d;
+#if HWY_TARGET <= HWY_AVX3
+  const hn::Half<Tag> half;
+  const auto pair = [&](int i) {
+    return hn::Combine(d, hn::LoadU(half, x + place[i + 4]), hn::LoadU(half, x + place[i]));
+  };
+  const auto a = pair(0), b = pair(1), c = pair(2), e = pair(3);
+  const auto xz01 = hn::InterleaveLower(d, a, b), xz23 = hn::InterleaveLower(d, c, e);
+  const auto y01 = hn::InterleaveUpper(d, a, b), y23 = hn::InterleaveUpper(d, c, e);
+  return {hn::OddEvenBlocks(hn::SwapAdjacentBlocks(xz23), xz01), hn::OddEvenBlocks(hn::SwapAdjacentBlocks(y23), y01),
+          hn::OddEvenBlocks(xz23, hn::SwapAdjacentBlocks(xz01))};
+#elif HWY_TARGET == HWY_AVX2
+  const auto a = hn::LoadU(d, x + place[0]), b = hn::LoadU(d, x + place[1]);
+  const auto c = hn::LoadU(d, x + place[2]), e = hn::LoadU(d, x + place[3]);
+  const auto xz01 = hn::InterleaveLower(d, a, b), xz23 = hn::InterleaveLower(d, c, e);
+  const auto y01 = hn::InterleaveUpper(d, a, b), y23 = hn::InterleaveUpper(d, c, e);
+  return {hn::ConcatLowerLower(d, xz23, xz01), hn::ConcatLowerLower(d, y23, y01), hn::ConcatUpperUpper(d, xz23, xz01)};
+#else
+  const auto a = hn::LoadU(d, x + place[0]), b = hn::LoadU(d, x + place[1]);
+  const auto az = hn::LoadU(d, x + place[0] + 2), bz = hn::LoadU(d, x + place[1] + 2);
+  return {hn::InterleaveLower(d, a, b), hn::InterleaveUpper(d, a, b), hn::InterleaveLower(d, az, bz)};
+#endif
+#endif
+}
+
+// Vectors of coordinates as points again.
+struct Rows {
+  HWY_ALIGN double even[kLanes], odd[kLanes], z[kLanes];
+};
+
+HWY_INLINE Rows ToRows(const Vectors& sum) {
+  const Tag d;
+  Rows rows;
+  hn::Store(sum.z, d, rows.z);
+#if HWY_TARGET == HWY_SCALAR
+  hn::Store(sum.x, d, rows.even), hn::Store(sum.y, d, rows.odd);
+#else
+  hn::Store(hn::InterleaveLower(d, sum.x, sum.y), d, rows.even);
+  hn::Store(hn::InterleaveUpper(d, sum.x, sum.y), d, rows.odd);
+#endif
+  return rows;
+}
+
+HWY_INLINE void AddRow(const Rows& rows, int row, double* point) {
+#if HWY_TARGET == HWY_SCALAR
+  point[0] += rows.even[row], point[1] += rows.odd[row];
+#else
+  const hn::FixedTag<double, 2> both;
+  const auto xy = hn::Load(both, (row % 2 == 0 ? rows.even : rows.odd) + row / 2 * 2);
+  hn::StoreU(hn::Add(hn::LoadU(both, point), xy), both, point);
+#endif
+  point[2] += rows.z[row];
+}
+
+// The points at the first `count` places += rows.
+template <typename Place>
+HWY_INLINE void AddRows(const Rows& rows, const Place* place, int count, double* x) {
+  if (count >= static_cast<int>(kLanes)) {
+#pragma GCC unroll 8
+    for (int i = 0; i < static_cast<int>(kLanes); ++i) AddRow(rows, i, x + place[i]);
+  } else {
+    for (int i = 0; i < count; ++i) AddRow(rows, i, x + place[i]);
+  }
+}
+
+}  // namespace points
+}  // namespace phrenic::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // PHRENIC_SERVER_MECHANICS_POINTS_INL_H_
