@@ -35,8 +35,8 @@ struct Spread {
   Indices indices[3];
 };
 
-// Each vector of the coordinates is handed to `whole` with its numbers of the vertices and which of three it is, and what
-// is left over coordinate by coordinate to `single`.
+// Each vector of the coordinates is handed to `whole` with its numbers of the vertices and which of three it is, and
+// what is left over coordinate by coordinate to `single`.
 template <typename Whole, typename Single>
 HWY_INLINE void ForEach(const VertexRange& range, const double* numbers, const Whole& whole, const Single& single) {
   const Tag d;
@@ -143,7 +143,9 @@ void AddShares(const VertexRange& range, const Eigen::VectorXd& s, const Eigen::
   HWY_DYNAMIC_DISPATCH(AddSharesHere)(range, s.data(), force.data(), f.data());
 }
 
-Reach ReachOf(const Points& x) { return HWY_DYNAMIC_DISPATCH(ReachOfHere)(x.data(), x.size()); }
+Reach ReachOf(const VertexRange& range, const Points& x) {
+  return HWY_DYNAMIC_DISPATCH(ReachOfHere)(x.data() + 3 * range.first, 3 * (range.end - range.first));
+}
 
 }  // namespace phrenic
 #endif  // HWY_ONCE

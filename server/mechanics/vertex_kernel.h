@@ -9,8 +9,8 @@
 
 namespace phrenic {
 
-// v_next = v + kick w f, then x_next = x + drift v_next, for the vertices with w = 1/m > 0 [1/kg]; the others keep v and
-// x. `kick` and `drift` are times [s]. x_next may be x, and v_next v.
+// v_next = v + kick w f, then x_next = x + drift v_next, for the vertices with w = 1/m > 0 [1/kg]; the others keep v
+// and x. `kick` and `drift` are times [s]. x_next may be x, and v_next v.
 void KickAndDrift(const VertexRange& range, const Eigen::VectorXd& w, double kick, double drift, const Points& f,
                   const Points& x, const Points& v, Points& x_next, Points& v_next);
 
@@ -25,7 +25,7 @@ void AddShares(const VertexRange& range, const Eigen::VectorXd& s, const Eigen::
 struct Reach {
   double largest = 0, squares = 0;
 };
-Reach ReachOf(const Points& x);
+Reach ReachOf(const VertexRange& range, const Points& x);
 
 }  // namespace phrenic
 

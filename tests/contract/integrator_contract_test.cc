@@ -141,6 +141,33 @@ TEST_P(IntegratorContract, AllocatesNothingInAStep) {
   EXPECT_EQ(Allocations(), before);
 }
 
+// A row of three: driven, linked to it, held by a spring.
+std::string DrivenRow(const IntegratorCase& integrator) {
+  return "name: 'row' bodies { name: 'row' role: ROLE_DEFORMABLE mass: 3 polyhedron { vertices {} vertices { x: 0.1 } "
+         "vertices { x: 0.2 } edges { a: 1 b: 2 } } } forces { springs { bodies: 'row' stiffness: 40 } } "
+         "motions { oscillation { body: 'row' vertices: 0 amplitude { y: 0.01 } period: 1 } } "
+         "constraints { rigid_links { body: 'row' list { links { a: 0 b: 1 } } } } parameters { integrator: "
+         "INTEGRATOR_" +
+         std::string(integrator.name) + " }";
+}
+
+TEST_P(IntegratorContract, AStepIsTakenBackToItsStart) {
+  const auto model = CompileText(DrivenRow(GetParam()));
+  ASSERT_NE(model, nullptr);
+  State state = RunTo(*model, 0.1, 1e-3);
+  Workspace work = model->MakeWorkspace();
+  for (int i = 0; i < 3; ++i) {
+    const State start = state;
+    ASSERT_TRUE(Step(*model, model->parameters, 1e-3, state, work).ok());
+    EXPECT_NE(state.x, start.x);
+    EXPECT_EQ(work.before, start.x);
+    EXPECT_EQ(work.velocity_before, start.v);
+    State back = state;
+    TakeBack(*model, model->parameters, 1e-3, work, back);
+    EXPECT_LT((back.x - start.x).norm() + (back.v - start.v).norm(), 1e-12);  // driven ones by their time
+  }
+}
+
 TEST_P(IntegratorContract, FixedVerticesStay) {
   const auto model = CompileText(Oscillator(GetParam(), 40, 0.1));
   EXPECT_EQ(RunTo(*model, 2, 1e-3).x.col(0), model->rest.col(0));

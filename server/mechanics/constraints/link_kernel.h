@@ -13,10 +13,10 @@ namespace phrenic {
 inline constexpr int kLinks = 8;
 
 struct alignas(64) LinkPacket {
-  double squared_length[kLinks] = {};                 // [m^2]
+  double squared_length[kLinks] = {};                     // [m^2]
   double inverse_a[kLinks] = {}, inverse_b[kLinks] = {};  // 1/m of the ends [1/kg]
-  double reduced[kLinks] = {};                        // 1/(inverse_a + inverse_b) [kg]; 0 where neither end moves
-  std::int64_t a[kLinks] = {}, b[kLinks] = {};        // where the ends lie in x [doubles]
+  double reduced[kLinks] = {};                            // 1/(inverse_a + inverse_b) [kg]; 0 where neither end moves
+  std::int64_t a[kLinks] = {}, b[kLinks] = {};            // where the ends lie in x [doubles]
   int count = 0;
   bool at_end = false;  // one of the ends is the last vertex of all
 };
@@ -24,8 +24,8 @@ struct alignas(64) LinkPacket {
 // Of links between `vertices` simulated vertices.
 std::vector<LinkPacket> PackLinks(const std::vector<Link>& links, int vertices);
 
-// Restores the packet's links: x and v, 3 x n, change as by Restore over dt [s], for which a link's direction is that of
-// `before`. Returns the links, a bit each, that have turned too far for that and are left as they were.
+// Restores the packet's links: x and v, 3 x n, change as by Restore over dt [s], for which a link's direction is that
+// of `before`. Returns the links, a bit each, that have turned too far for that and are left as they were.
 unsigned RestorePacket(const LinkPacket& packet, const double* before, double dt, double* x, double* v);
 
 }  // namespace phrenic
