@@ -25,7 +25,9 @@ class Recorder final : public StiffnessSink {
     pairs.emplace_back(i, j);
     symmetric = false;
   }
-  void AddBetween(int a, int b, const Eigen::Matrix3d&) override { pairs.push_back(std::minmax(a, b)); }
+  void AddSprings(std::span<const SpringStiffness> springs) override {
+    for (const auto& spring : springs) pairs.push_back(std::minmax(spring.a, spring.b));
+  }
   void AddOuter(double, const Points&) override {}
 
   CallPairs pairs;
@@ -189,6 +191,9 @@ void BlockRows::Add(int i, int j, const Eigen::Matrix3d& block) {
   AddTurning(block, entry);
 }
 
+void BlockRows::AddSprings(std::span<const SpringStiffness> springs) {
+  for (const auto& s : springs) AddBetween(s.a, s.b, s.Block());
+}
 void BlockRows::AddBetween(int a, int b, const Eigen::Matrix3d& block) {
   const SymmetricPart part(block);
   const std::ptrdiff_t row_a = row_[a], row_b = row_[b];

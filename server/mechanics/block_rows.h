@@ -22,7 +22,7 @@ class BlockRows final : public StiffnessSink {
   void Assemble(const Model& model, const Instant& at, double g, const Eigen::VectorXd& inertia);
 
   void Add(int i, int j, const Eigen::Matrix3d& block) override;
-  void AddBetween(int a, int b, const Eigen::Matrix3d& block) override;
+  void AddSprings(std::span<const SpringStiffness> springs) override;
   void AddOuter(double scale, const Points& g) override { outer_.Add(scale, g); }
 
   // q = A p, or without the inertia, both scaled (BlockSlices); p . q. `p` is what Turn made last.
@@ -49,6 +49,7 @@ class BlockRows final : public StiffnessSink {
     int i, j;
     Eigen::Matrix3d block;
   };
+  void AddBetween(int a, int b, const Eigen::Matrix3d& block);
   void NoteCalls(const Model& model);
   void PlaceRows(int vertices);
   void PlaceBlocks();

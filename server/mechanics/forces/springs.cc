@@ -1,6 +1,7 @@
 #include "server/mechanics/forces/springs.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -12,6 +13,8 @@
 namespace phrenic {
 
 namespace {
+
+constexpr size_t kBatch = 64;  // springs whose stiffness is handed over at a time
 
 // The sum over the triangles that take part of 3 area / (sum of edges squared), for each of the edges.
 Eigen::VectorXd StiffnessShares(const Mesh& mesh, const Edges& edges, const Selection& selection) {
@@ -101,16 +104,23 @@ void Springs::AddForceIn(const VertexRange& range, const Instant& at, MutablePoi
 
 void Springs::AddStiffness(const Instant& at, StiffnessSink& sink) const {
   const double elasticity = at.parameters.elasticity();
+  const double* const x = at.x.data();
+  std::array<SpringStiffness, kBatch> batch;
+  size_t count = 0;
   for (const Spring& spring : springs_) {
-    const Eigen::Vector3d edge = at.x.col(spring.b) - at.x.col(spring.a);
-    const double length = edge.norm();
-    if (length == 0) continue;
+    const double* const a = x + 3 * static_cast<std::ptrdiff_t>(spring.a);
+    const double* const b = x + 3 * static_cast<std::ptrdiff_t>(spring.b);
+    const double u = b[0] - a[0], v = b[1] - a[1], w = b[2] - a[2];
+    const double squared = u * u + v * v + w * w;
+    if (squared == 0) continue;
     const double stiffness = elasticity * spring.stiffness;
-    const double transverse = stiffness * std::max(0.0, 1 - spring.rest_length / length);
-    Eigen::Matrix3d block = edge * ((stiffness - transverse) / (length * length) * edge).transpose();
-    block.diagonal().array() += transverse;
-    sink.AddBetween(spring.a, spring.b, block);
+    const double transverse = stiffness * std::max(0.0, 1 - spring.rest_length / std::sqrt(squared));
+    batch[count++] = {spring.a, spring.b, {u, v, w}, (stiffness - transverse) / squared, transverse};
+    if (count < kBatch) continue;
+    sink.AddSprings(batch);
+    count = 0;
   }
+  sink.AddSprings({batch.data(), count});
 }
 
 double Springs::Energy(const Instant& at) const {
