@@ -3,6 +3,7 @@
 #ifndef PHRENIC_SERVER_MECHANICS_BLOCK_ROWS_H_
 #define PHRENIC_SERVER_MECHANICS_BLOCK_ROWS_H_
 
+#include <span>
 #include <vector>
 
 #include "server/mechanics/block_kernel.h"
@@ -49,14 +50,13 @@ class BlockRows final : public StiffnessSink {
     int i, j;
     Eigen::Matrix3d block;
   };
-  void AddBetween(int a, int b, const Eigen::Matrix3d& block);
   void NoteCalls(const Model& model);
   void PlaceRows(int vertices);
   void PlaceBlocks();
   Quad* Find(int i, int j);
   void AddBeside(const RowVector& p, RowVector& q);
 
-  bool symmetric_ = true;           // every block off the diagonal is
+  bool springs_only_ = true;        // off the diagonal
   std::vector<int> row_;            // of each vertex; -1 where it does not move
   std::vector<int> vertices_;       // of each row
   std::vector<Call> calls_;         // in the order in which forces hand blocks over at rest
