@@ -45,9 +45,11 @@ void Blender::FindNear(const Eigen::Vector3d& point) {
     track.found = false;
   }
   Find(nearest_, point);
+  double reach = ReachOf(tracks_[nearest_].distance) * (1 + kSlack);
   for (int c = 0; c < carriers_.count(); ++c) {
-    const double reach = ReachOf(tracks_[nearest_].distance) * (1 + kSlack);
-    if (!tracks_[c].found && tracks_[c].at_least <= reach) Find(c, point);
+    if (tracks_[c].found || tracks_[c].at_least > reach) continue;
+    Find(c, point);
+    reach = ReachOf(tracks_[nearest_].distance) * (1 + kSlack);
   }
 }
 

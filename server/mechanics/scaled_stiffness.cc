@@ -6,6 +6,7 @@ namespace phrenic {
 
 ScaledStiffness::ScaledStiffness(const Model& model, const Instant& at)
     : blocks_(model, BlockMatrix::Springs::kElsewhere), scale_(model.inverse_mass.cwiseSqrt()) {
+  joints_.reserve(static_cast<size_t>(model.report.springs()));
   for (const auto& force : model.forces) {
     force->AddStiffness(at, *this);
     force->AddLatentStiffness(at, *this);
