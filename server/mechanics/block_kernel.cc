@@ -5,6 +5,7 @@
 #include "server/mechanics/vector_targets.h"
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "server/mechanics/block_kernel.cc"
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -20,7 +21,8 @@ constexpr size_t kWidth = hn::MaxLanes(Tag());
 static_assert(kSliceLanes % kWidth == 0);
 
 constexpr float kLeastPivot = 1e-6F;  // of the mean diagonal: keeps the preconditioner positive definite
-constexpr size_t kFlush = 32;         // slices whose products are summed in single precision
+constexpr int kColumnsAhead = 12;
+constexpr size_t kFlush = 32;  // slices whose products are summed in single precision
 
 struct Vectors {
   Vector x, y, z, w;
@@ -69,7 +71,7 @@ HWY_INLINE Vectors Transposed(const float* from, const Place& place) {
 // The points of a column's neighbours.
 HWY_INLINE Vectors Gathered(const Quad* packed, const LanePlaces& rows, size_t first) {
   const std::int32_t* const row = rows.at + first;
-  return Transposed(packed->at, [row](int i) { return 4 * static_cast<std::ptrdiff_t>(row[i]); });
+  return Transposed(packed->at, [row](int i) { return static_cast<std::ptrdiff_t>(row[i]); });
 }
 
 HWY_INLINE Vector Dot(const Vector& ax, const Vector& bx, const Vector& ay, const Vector& by, const Vector& az,
@@ -148,7 +150,27 @@ HWY_INLINE void Stored(const Vectors& v, size_t first, Lanes* vector) {
 
 HWY_INLINE void Packed(const Vectors& v, Quad* packed) { hn::StoreInterleaved4(v.x, v.y, v.z, v.w, Tag(), packed->at); }
 
-void FillDiagonalHere(const Quad* entries, const Lanes* inertia, float weight, BlockSlices& slices, Quad* packed) {
+// v and t of a column of springs, unscaled.
+HWY_INLINE Vectors SpringEntries(const Quad* entries, const LanePlaces& column, size_t first) {
+  const std::int32_t* const entry = column.at + first;
+  return Transposed(entries->at, [entry](int i) { return 4 * static_cast<std::ptrdiff_t>(entry[i] / 2); });
+}
+
+// k, six numbers a row, += v v^T + t I of all its springs.
+HWY_INLINE void AddSprings(const Quad* entries, const BlockSlices& slices, size_t s, size_t first, Vector* k) {
+  for (std::int64_t c = slices.first_column[s]; c < slices.first_column[s + 1]; ++c) {
+    const Vectors v = SpringEntries(entries, slices.entries[c], first);
+    k[0] = hn::Add(k[0], hn::Add(hn::Mul(v.x, v.x), v.w));
+    k[1] = hn::Add(k[1], hn::Mul(v.x, v.y));
+    k[2] = hn::Add(k[2], hn::Mul(v.x, v.z));
+    k[3] = hn::Add(k[3], hn::Add(hn::Mul(v.y, v.y), v.w));
+    k[4] = hn::Add(k[4], hn::Mul(v.y, v.z));
+    k[5] = hn::Add(k[5], hn::Add(hn::Mul(v.z, v.z), v.w));
+  }
+}
+
+void FillDiagonalHere(const Quad* entries, const Quad* off_diagonal, const Lanes* inertia, float weight,
+                      BlockSlices& slices, Quad* packed) {
   const Tag d;
   const auto place = [](int i) { return 8 * i; };
   for (size_t s = 0; s < slices.size(); ++s) {
@@ -157,9 +179,10 @@ void FillDiagonalHere(const Quad* entries, const Lanes* inertia, float weight, B
     for (size_t first = 0; first < kSliceLanes; first += kWidth) {
       const float* const from = entries[2 * (s * kSliceLanes + first)].at;
       const Vectors a = Transposed(from, place), b = Transposed(from + 4, place);
-      const Vector k[6] = {a.x, a.y, a.z, a.w, b.x, b.y};
+      Vector k[6] = {a.x, a.y, a.z, a.w, b.x, b.y};
+      if (slices.values == kSpringValues) AddSprings(off_diagonal, slices, s, first, k);
       const Vector mass = At(inertia[s], first), by = hn::Set(d, weight), none = hn::Zero(d);
-      const Vector trace = hn::Add(hn::Mul(hn::Add(hn::Add(a.x, a.w), b.y), by), hn::Mul(mass, hn::Set(d, 3)));
+      const Vector trace = hn::Add(hn::Mul(hn::Add(hn::Add(k[0], k[3]), k[5]), by), hn::Mul(mass, hn::Set(d, 3)));
       const Vector squared = hn::IfThenElse(hn::Gt(trace, none), hn::Div(hn::Set(d, 3), trace), none);
       const Vector scale = hn::Sqrt(squared);
       for (int i = 0; i < 6; ++i) {
@@ -168,49 +191,81 @@ void FillDiagonalHere(const Quad* entries, const Lanes* inertia, float weight, B
         Put(i == 0 || i == 3 || i == 5 ? hn::Add(value, hn::Mul(mass, squared)) : value, first, diagonal[i]);
       }
       Put(scale, first, slices.scale[s]);
-      Packed({scale, none, none, none}, packed + s * kSliceLanes + first);
+      Packed({scale, hn::Sqrt(scale), none, none}, packed + s * kSliceLanes + first);
       Factorise(diagonal, first, slices.factors.data() + 6 * s);
     }
   }
 }
 
+// A column of springs, scaled.
+HWY_INLINE void FillSprings(const Vectors& k, const Vector& root, size_t first, Lanes* block) {
+  Put(hn::Mul(k.x, root), first, block[0]), Put(hn::Mul(k.y, root), first, block[1]);
+  Put(hn::Mul(k.z, root), first, block[2]), Put(hn::Mul(k.w, hn::Mul(root, root)), first, block[3]);
+}
+
+// A column of any blocks, scaled: an entry's symmetric part, and what turns, with the sign of the side it is seen from.
+HWY_INLINE void FillWhole(const Quad* entries, const std::int32_t* entry, const Vector& by, size_t first,
+                          Lanes* block) {
+  const auto place = [entry](int i) { return 4 * static_cast<std::ptrdiff_t>(entry[i] / 2); };
+  const Vectors a = Transposed(entries->at, place), b = Transposed(entries->at + 4, place);
+  Lanes sides;
+  for (size_t i = 0; i < kWidth; ++i) sides.at[first + i] = entry[i] % 2 == 0 ? 1.0F : -1.0F;
+  const Vector side = At(sides, first);
+  const Vector tx = hn::Mul(b.z, side), ty = hn::Mul(b.w, side);
+  const Vector tz = hn::Mul(Transposed(entries->at + 8, place).x, side);
+  const Vector k[9] = {a.x, hn::Sub(a.y, tz), hn::Add(a.z, ty), hn::Add(a.y, tz),
+                       a.w, hn::Sub(b.x, tx), hn::Sub(a.z, ty), hn::Add(b.x, tx),
+                       b.y};
+  for (int i = 0; i < 9; ++i) Put(hn::Mul(k[i], by), first, block[i]);
+}
+
 void FillBlocksHere(const Quad* entries, float weight, const Quad* packed, BlockSlices& slices) {
-  const Tag d;
+  const Vector by = hn::Set(Tag(), weight), root = hn::Sqrt(by);
   for (size_t s = 0; s < slices.size(); ++s) {
     for (std::int64_t c = slices.first_column[s]; c < slices.first_column[s + 1]; ++c) {
       Lanes* const block = slices.blocks.data() + slices.values * c;
       for (size_t first = 0; first < kSliceLanes; first += kWidth) {
-        const std::int32_t* const entry = slices.entries[c].at + first;
-        const auto place = [entry](int i) { return 4 * static_cast<std::ptrdiff_t>(entry[i] / 2); };
-        const Vector by = hn::Mul(hn::Mul(hn::Set(d, weight), At(slices.scale[s], first)),
-                                  Gathered(packed, slices.neighbours[c], first).x);
-        const Vectors a = Transposed(entries->at, place), b = Transposed(entries->at + 4, place);
-        if (slices.values == 6) {
-          const Vector k[6] = {a.x, a.y, a.z, a.w, b.x, b.y};
-          for (int i = 0; i < 6; ++i) Put(hn::Mul(k[i], by), first, block[i]);
-          continue;
+        const Vectors other = Gathered(packed, slices.neighbours[c], first);  // its scale and the root of it
+        const Vector scale = At(slices.scale[s], first);
+        if (slices.values == kSpringValues) {
+          FillSprings(SpringEntries(entries, slices.entries[c], first),
+                      hn::Mul(hn::Mul(root, hn::Sqrt(scale)), other.y), first, block);
+        } else {
+          FillWhole(entries, slices.entries[c].at + first, hn::Mul(hn::Mul(by, scale), other.x), first, block);
         }
-        Lanes sides;
-        for (size_t i = 0; i < kWidth; ++i) sides.at[first + i] = entry[i] % 2 == 0 ? 1.0F : -1.0F;
-        const Vector side = At(sides, first);
-        const Vector tx = hn::Mul(b.z, side), ty = hn::Mul(b.w, side);
-        const Vector tz = hn::Mul(Transposed(entries->at + 8, place).x, side);
-        const Vector k[9] = {a.x, hn::Sub(a.y, tz), hn::Add(a.z, ty), hn::Add(a.y, tz),
-                             a.w, hn::Sub(b.x, tx), hn::Sub(a.z, ty), hn::Add(b.x, tx),
-                             b.y};
-        for (int i = 0; i < 9; ++i) Put(hn::Mul(k[i], by), first, block[i]);
       }
     }
   }
+}
+
+// Of a column of springs: (v v^T + t I) x.
+HWY_INLINE Vectors SpringProduct(const Lanes* block, size_t first, const Vectors& x) {
+  const Vectors v = Loaded(block, first);
+  const Vector t = At(block[3], first), along = Dot(v.x, x.x, v.y, x.y, v.z, x.z);
+  return {hn::Add(hn::Mul(v.x, along), hn::Mul(t, x.x)), hn::Add(hn::Mul(v.y, along), hn::Mul(t, x.y)),
+          hn::Add(hn::Mul(v.z, along), hn::Mul(t, x.z)), x.w};
+}
+
+// What comes some columns later, on its way from a farther cache.
+template <int kValues>
+HWY_INLINE void Prefetched(const Lanes* block, const LanePlaces* rows) {
+  for (int i = 0; i < kValues; ++i) hwy::Prefetch(block + kColumnsAhead * kValues + i);
+  hwy::Prefetch(rows + kColumnsAhead);
 }
 
 template <int kValues>
 HWY_INLINE Vectors RowSums(const BlockSlices& slices, size_t s, size_t first, const Quad* packed, Vectors sum) {
   const Lanes* block = slices.blocks.data() + kValues * slices.first_column[s];
   for (std::int64_t c = slices.first_column[s]; c < slices.first_column[s + 1]; ++c, block += kValues) {
+    if (first == 0) Prefetched<kValues>(block, slices.neighbours.data() + c);
     const Vectors other = Gathered(packed, slices.neighbours[c], first);
-    const Vectors part = kValues == 6 ? Product(block, first, other) : WholeProduct(block, first, other);
-    sum = {hn::Add(sum.x, part.x), hn::Add(sum.y, part.y), hn::Add(sum.z, part.z), sum.w};
+    if constexpr (kValues == kSpringValues) {
+      const Vectors part = SpringProduct(block, first, other);
+      sum = {hn::Sub(sum.x, part.x), hn::Sub(sum.y, part.y), hn::Sub(sum.z, part.z), sum.w};
+    } else {
+      const Vectors part = WholeProduct(block, first, other);
+      sum = {hn::Add(sum.x, part.x), hn::Add(sum.y, part.y), hn::Add(sum.z, part.z), sum.w};
+    }
   }
   return sum;
 }
@@ -221,8 +276,8 @@ double MultiplyHere(const BlockSlices& slices, const Lanes* diagonal, const Quad
     for (size_t first = 0; first < kSliceLanes; first += kWidth) {
       const Vectors own = Loaded(p + kAxes * s, first);
       const Vectors begun = Product(diagonal + 6 * s, first, own);
-      const Vectors row = slices.values == 6 ? RowSums<6>(slices, s, first, packed, begun)
-                                             : RowSums<9>(slices, s, first, packed, begun);
+      const Vectors row = slices.values == kSpringValues ? RowSums<kSpringValues>(slices, s, first, packed, begun)
+                                                         : RowSums<9>(slices, s, first, packed, begun);
       Stored(row, first, q + kAxes * s);
       sum.Add(Dot(own.x, row.x, own.y, row.y, own.z, row.z), first);
     }
@@ -275,9 +330,10 @@ HWY_EXPORT(MultiplyHere);
 HWY_EXPORT(DescendHere);
 HWY_EXPORT(TurnHere);
 
-void FillDiagonal(const BlockEntries& entries, const std::vector<Lanes>& inertia, float weight, BlockSlices& slices,
-                  Quad* packed) {
-  HWY_DYNAMIC_DISPATCH(FillDiagonalHere)(entries.data(), inertia.data(), weight, slices, packed);
+void FillDiagonal(const BlockEntries& diagonal, const BlockEntries& entries, const std::vector<Lanes>& inertia,
+                  float weight, BlockSlices& slices, Quad* packed) {
+  HWY_DYNAMIC_DISPATCH(FillDiagonalHere)
+  (diagonal.data(), entries.data(), inertia.data(), weight, slices, packed);
 }
 
 void FillBlocks(const BlockEntries& entries, float weight, const Quad* packed, BlockSlices& slices) {

@@ -27,17 +27,19 @@ struct alignas(16) Quad {
   float at[4] = {};
 };
 
-// Blocks as forces hand them over. One on the diagonal takes two: xx, xy, xz, yy, yz, zz. So does one off it, K_ij with
-// i < j, where all are symmetric; else it takes three, that of its symmetric part and then (K_zy - K_yz)/2, (K_xz -
-// K_zx)/2, (K_yx - K_xy)/2.
+// Blocks as forces hand them over. One on the diagonal takes two: xx, xy, xz, yy, yz, zz. One off it, K_ij with i < j,
+// takes one where all are springs', K_ij = -(v v^T + t I): vx, vy, vz, t; else three, the symmetric part as on the
+// diagonal and then (K_zy - K_yz)/2, (K_xz - K_zx)/2, (K_yx - K_xy)/2.
 using BlockEntries = std::vector<Quad>;
+
+inline constexpr int kSpringValues = 4;
 
 // The matrix A = inertia + weight K, each vertex scaled by s so that its diagonal block has the trace 3: s_i A_ij s_j.
 // Off the diagonal by vertex, in slices of rows: SELL-C-sigma (Kreutzer et al., SIAM J Sci Comput 2014;36:C401).
 struct BlockSlices {
-  int values = 6;                          // lanes a column: 6 where every block is symmetric, else 9, row by row
+  int values = kSpringValues;              // lanes a column: as springs' entries, or 9, row by row
   std::vector<std::int64_t> first_column;  // of the slices, and the end
-  std::vector<LanePlaces> neighbours;      // a column: the other vertex' row; padding is its own neighbour
+  std::vector<LanePlaces> neighbours;      // a column: four times the other vertex' row; padding is its own neighbour
   std::vector<LanePlaces> entries;         // a column: twice the entry's place, plus 1 where it is seen from j
   std::vector<Lanes> blocks;               // `values` a column
   std::vector<Lanes> scale;                // s, one a slice; 0 for rows that the last slice lacks
@@ -48,9 +50,10 @@ struct BlockSlices {
   size_t size() const { return scale.size(); }
 };
 
-// The diagonal from K's and the inertia [kg], one a row, and the scale, which `packed` gets as x.
-void FillDiagonal(const BlockEntries& entries, const std::vector<Lanes>& inertia, float weight, BlockSlices& slices,
-                  Quad* packed);
+// The diagonal from K's and the inertia [kg], one a row, and the scale, which `packed` gets as x, its root as y. Where
+// all entries off the diagonal are springs', what they add on it comes from them.
+void FillDiagonal(const BlockEntries& diagonal, const BlockEntries& entries, const std::vector<Lanes>& inertia,
+                  float weight, BlockSlices& slices, Quad* packed);
 // The blocks off it; padding's entry is at 0, and zero. `packed` as FillDiagonal left it.
 void FillBlocks(const BlockEntries& entries, float weight, const Quad* packed, BlockSlices& slices);
 

@@ -1,6 +1,7 @@
 #include "server/mechanics/block_matrix.h"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include "server/mesh/bucket_sort.h"
@@ -11,16 +12,26 @@ namespace {
 // Notes which blocks the forces fill.
 class Pattern final : public StiffnessSink {
  public:
+  explicit Pattern(bool springs) : springs_(springs) {}
   void Add(int i, int j, const Eigen::Matrix3d&) override { places.emplace_back(i, j); }
+  void AddSprings(std::span<const SpringStiffness> springs) override {
+    if (!springs_) return;
+    for (const auto& [a, b, edge, axial, transverse] : springs) {
+      places.insert(places.end(), {{a, b}, {b, a}});
+    }
+  }
   void AddOuter(double, const Points&) override {}
 
   std::vector<std::pair<int, int>> places;
+
+ private:
+  const bool springs_;
 };
 
 }  // namespace
 
-BlockMatrix::BlockMatrix(const Model& model) {
-  Pattern pattern;
+BlockMatrix::BlockMatrix(const Model& model, Springs springs) {
+  Pattern pattern(springs == Springs::kWithin);
   const int n = static_cast<int>(model.rest.cols());
   for (int i = 0; i < n; ++i) pattern.places.emplace_back(i, i);
   const State rest = model.InitialState();
@@ -57,9 +68,13 @@ void BlockMatrix::Add(int i, int j, const Eigen::Matrix3d& block) {
 
 void BlockMatrix::Times(const ConstPoints& x, MutablePoints y) const {
   for (int i = 0; i < vertices(); ++i) {
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (int k = first_[i]; k < first_[i + 1]; ++k) sum += blocks_[k] * x.col(columns_[k]);
-    y.col(i) = sum;
+    double sum[3] = {};
+    for (int k = first_[i]; k < first_[i + 1]; ++k) {
+      const double* const b = blocks_[k].data();
+      const double* const from = x.data() + 3 * static_cast<std::ptrdiff_t>(columns_[k]);
+      for (int r = 0; r < 3; ++r) sum[r] += b[r] * from[0] + b[3 + r] * from[1] + b[6 + r] * from[2];
+    }
+    y.col(i) = Eigen::Vector3d(sum);
   }
   for (const Extra& extra : extra_) y.col(extra.i) += extra.block * x.col(extra.j);
   outer_.AddTimes(1, x, y);

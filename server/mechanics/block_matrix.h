@@ -14,8 +14,10 @@ namespace phrenic {
 // up later (a contact) is kept beside, more slowly.
 class BlockMatrix final : public StiffnessSink {
  public:
+  // Whether there are blocks off the diagonal for springs.
+  enum class Springs { kWithin, kElsewhere };
   // The pattern of every force of the model at rest; values zero.
-  explicit BlockMatrix(const Model& model);
+  explicit BlockMatrix(const Model& model, Springs springs = Springs::kWithin);
 
   // K = the stiffness of the model's forces at this instant. Allocates only for blocks that are new to the pattern.
   void Assemble(const Model& model, const Instant& at);

@@ -1,6 +1,7 @@
 #include "server/mechanics/block_rows.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "server/mechanics/advance.h"
@@ -23,13 +24,15 @@ class Recorder final : public StiffnessSink {
   void Add(int i, int j, const Eigen::Matrix3d&) override {
     if (i >= j) return;
     pairs.emplace_back(i, j);
-    symmetric = false;
+    springs_only = false;
   }
-  void AddBetween(int a, int b, const Eigen::Matrix3d&) override { pairs.push_back(std::minmax(a, b)); }
+  void AddSprings(std::span<const SpringStiffness> springs) override {
+    for (const auto& spring : springs) pairs.push_back(std::minmax(spring.a, spring.b));
+  }
   void AddOuter(double, const Points&) override {}
 
   CallPairs pairs;
-  bool symmetric = true;  // all that came
+  bool springs_only = true;
 };
 
 // The symmetric part of a block, as entries have it.
@@ -44,13 +47,36 @@ class SymmetricPart {
     Eigen::Map<Eigen::Array4f, Eigen::Aligned16>(entry[0].at) += low_;
     Eigen::Map<Eigen::Array4f, Eigen::Aligned16>(entry[1].at) += high_;
   }
-  void TakeFrom(Quad* entry) const {
-    Eigen::Map<Eigen::Array4f, Eigen::Aligned16>(entry[0].at) -= low_;
-    Eigen::Map<Eigen::Array4f, Eigen::Aligned16>(entry[1].at) -= high_;
-  }
 
  private:
   Eigen::Array4f low_, high_;
+};
+
+// A spring's stiffness in single precision.
+struct SpringPart {
+  float x, y, z, axial, transverse;
+
+  explicit SpringPart(const SpringStiffness& spring)
+      : x(static_cast<float>(spring.edge[0])),
+        y(static_cast<float>(spring.edge[1])),
+        z(static_cast<float>(spring.edge[2])),
+        axial(static_cast<float>(spring.axial)),
+        transverse(static_cast<float>(spring.transverse)) {}
+  // To the symmetric part of a block.
+  void AddTo(float sign, Quad* entry) const {
+    const float by_x = sign * axial * x, by_y = sign * axial * y, t = sign * transverse;
+    entry[0].at[0] += by_x * x + t, entry[0].at[1] += by_x * y, entry[0].at[2] += by_x * z;
+    entry[0].at[3] += by_y * y + t;
+    entry[1].at[0] += by_y * z, entry[1].at[1] += sign * axial * z * z + t;
+  }
+  // To v and t of a pair, which may have those of another spring already: along the same edge.
+  void AddAlong(Quad* entry) const {
+    float* const v = entry->at;
+    const float before = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+    const float root = std::sqrt(before > 0 ? axial + before / (x * x + y * y + z * z) : axial);
+    v[0] = root * x, v[1] = root * y, v[2] = root * z;
+    v[3] += transverse;
+  }
 };
 
 void AddTurning(const Eigen::Matrix3d& block, Quad* entry) {
@@ -83,11 +109,11 @@ void BlockRows::NoteCalls(const Model& model) {
       if (model.inverse_mass[i] > 0 && model.inverse_mass[j] > 0) calls_.push_back({i, j, 0});
     }
   }
-  symmetric_ = recorder.symmetric;
+  springs_only_ = recorder.springs_only;
   known_ = calls_;
   BucketSort(known_, static_cast<int>(row_.size()), [](const Call& call) { return call.i; });
   known_.erase(std::unique(known_.begin(), known_.end()), known_.end());
-  const int quads = symmetric_ ? 2 : 3;
+  const int quads = springs_only_ ? 1 : 3;
   for (size_t k = 0; k < known_.size(); ++k) known_[k].place = quads * static_cast<int>(k + 1);
   for (Call& call : calls_) call.place = std::lower_bound(known_.begin(), known_.end(), call)->place;
   entries_.resize(quads * (known_.size() + 1));
@@ -127,7 +153,7 @@ void BlockRows::PlaceBlocks() {
     seen[row_[call.i]].push_back({row_[call.j], 2 * call.place});
     seen[row_[call.j]].push_back({row_[call.i], 2 * call.place + 1});
   }
-  slices_.values = symmetric_ ? 6 : 9;
+  slices_.values = springs_only_ ? kSpringValues : 9;
   slices_.first_column.push_back(0);
   for (size_t first = 0; first < rows; first += kSliceLanes) {
     size_t width = 0;
@@ -137,7 +163,7 @@ void BlockRows::PlaceBlocks() {
       LanePlaces& entries = slices_.entries.emplace_back();
       for (size_t lane = 0; lane < kSliceLanes; ++lane) {
         const std::vector<Seen>& row = seen[first + lane];
-        neighbours.at[lane] = c < row.size() ? row[c].row : static_cast<int>(first + lane);
+        neighbours.at[lane] = 4 * (c < row.size() ? row[c].row : static_cast<int>(first + lane));
         entries.at[lane] = c < row.size() ? row[c].entry : 0;
       }
     }
@@ -166,7 +192,7 @@ void BlockRows::Assemble(const Model& model, const Instant& at, double g, const 
     inertia_[r / kSliceLanes].at[r % kSliceLanes] = static_cast<float>(inertia[vertices_[r]]);
   }
   const auto weight = static_cast<float>(g * g);
-  FillDiagonal(diagonal_, inertia_, weight, slices_, packed_.data());
+  FillDiagonal(diagonal_, entries_, inertia_, weight, slices_, packed_.data());
   FillBlocks(entries_, weight, packed_.data(), slices_);
 }
 
@@ -183,21 +209,28 @@ Quad* BlockRows::Find(int i, int j) {
 void BlockRows::Add(int i, int j, const Eigen::Matrix3d& block) {
   if (i > j || row_[i] < 0 || row_[j] < 0) return;  // (j, i) is its transpose
   if (i == j) return SymmetricPart(block).AddTo(diagonal_.data() + 2 * static_cast<std::ptrdiff_t>(row_[i]));
-  Quad* const entry = symmetric_ ? nullptr : Find(i, j);
+  Quad* const entry = springs_only_ ? nullptr : Find(i, j);
   if (entry == nullptr) return extra_.push_back({i, j, block});
   SymmetricPart(block).AddTo(entry);
   AddTurning(block, entry);
 }
 
-void BlockRows::AddBetween(int a, int b, const Eigen::Matrix3d& block) {
-  const SymmetricPart part(block);
-  const std::ptrdiff_t row_a = row_[a], row_b = row_[b];
-  if (row_a >= 0) part.AddTo(diagonal_.data() + 2 * row_a);
-  if (row_b >= 0) part.AddTo(diagonal_.data() + 2 * row_b);
-  if (row_a < 0 || row_b < 0) return;
-  Quad* const entry = Find(std::min(a, b), std::max(a, b));
-  if (entry == nullptr) return extra_.push_back({std::min(a, b), std::max(a, b), -block});
-  part.TakeFrom(entry);
+void BlockRows::AddSprings(std::span<const SpringStiffness> springs) {
+  for (const SpringStiffness& spring : springs) {
+    const std::ptrdiff_t row_a = row_[spring.a], row_b = row_[spring.b];
+    const bool both = row_a >= 0 && row_b >= 0;
+    const auto [i, j] = std::minmax(spring.a, spring.b);
+    Quad* const entry = both ? Find(i, j) : nullptr;
+    const SpringPart part(spring);
+    if (entry != nullptr && springs_only_) {
+      part.AddAlong(entry);
+      continue;
+    }
+    if (row_a >= 0) part.AddTo(1, diagonal_.data() + 2 * row_a);
+    if (row_b >= 0) part.AddTo(1, diagonal_.data() + 2 * row_b);
+    if (entry != nullptr) part.AddTo(-1, entry);
+    if (both && entry == nullptr) extra_.push_back({i, j, -spring.Block()});
+  }
 }
 
 double BlockRows::Times(const RowVector& p, bool inertia, RowVector& q) {

@@ -3,6 +3,7 @@
 #ifndef PHRENIC_SERVER_MECHANICS_BLOCK_ROWS_H_
 #define PHRENIC_SERVER_MECHANICS_BLOCK_ROWS_H_
 
+#include <span>
 #include <vector>
 
 #include "server/mechanics/block_kernel.h"
@@ -22,7 +23,7 @@ class BlockRows final : public StiffnessSink {
   void Assemble(const Model& model, const Instant& at, double g, const Eigen::VectorXd& inertia);
 
   void Add(int i, int j, const Eigen::Matrix3d& block) override;
-  void AddBetween(int a, int b, const Eigen::Matrix3d& block) override;
+  void AddSprings(std::span<const SpringStiffness> springs) override;
   void AddOuter(double scale, const Points& g) override { outer_.Add(scale, g); }
 
   // q = A p, or without the inertia, both scaled (BlockSlices); p . q. `p` is what Turn made last.
@@ -55,7 +56,7 @@ class BlockRows final : public StiffnessSink {
   Quad* Find(int i, int j);
   void AddBeside(const RowVector& p, RowVector& q);
 
-  bool symmetric_ = true;           // every block off the diagonal is
+  bool springs_only_ = true;        // off the diagonal
   std::vector<int> row_;            // of each vertex; -1 where it does not move
   std::vector<int> vertices_;       // of each row
   std::vector<Call> calls_;         // in the order in which forces hand blocks over at rest

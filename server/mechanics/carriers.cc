@@ -3,15 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace phrenic {
 namespace {
-
-constexpr double kNear = 5e-3;           // distances below this count alike [m]
-constexpr double kSmallestShare = 0.01;  // smaller shares are dropped and the rest scaled to 1
-
-double Weight(double distance) { return std::pow(distance * distance + kNear * kNear, -2); }
 
 std::vector<RideShare> OfVertex(const Ride& ride, int vertex) {
   if (!ride.triangles.empty()) {
@@ -27,15 +21,8 @@ std::vector<RideShare> OfVertex(const Ride& ride, int vertex) {
   return {first, last};
 }
 
-// Leaves out what is too small to see and brings the rest back to the same sum.
-void Prune(std::vector<double>& weights) {
-  double sum = 0, kept = 0;
-  for (const double weight : weights) sum += weight;
-  for (double& weight : weights) {
-    if (weight < kSmallestShare * sum) weight = 0;
-    kept += weight;
-  }
-  for (double& weight : weights) weight /= kept;
+bool Farther(const NearestBoxes::Box& a, const NearestBoxes::Box& b) {
+  return a.squared != b.squared ? a.squared > b.squared : a.carrier > b.carrier;
 }
 
 }  // namespace
@@ -43,26 +30,18 @@ void Prune(std::vector<double>& weights) {
 Carriers::Carriers(const Draft& draft, const std::vector<int>& bodies) : draft_(draft), bodies_(bodies) {
   for (const int b : bodies) {
     const Points& vertices = draft.model.bodies[b].mesh.vertices;
-    searches_.push_back(std::make_unique<NearestSearch>(vertices));
+    searches_.push_back(&draft.Search(b));
     boxes_.emplace_back(vertices.rowwise().minCoeff(), vertices.rowwise().maxCoeff());
   }
 }
 
-std::vector<int> Carriers::NearestBoxFirst(const Eigen::Vector3d& point) const {
-  std::vector<int> order(boxes_.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::vector<double> distance(boxes_.size());
-  for (size_t c = 0; c < boxes_.size(); ++c) distance[c] = boxes_[c].squaredExteriorDistance(point);
-  std::stable_sort(order.begin(), order.end(), [&distance](int a, int b) { return distance[a] < distance[b]; });
-  return order;
-}
-
 Carriers::Contact Carriers::Nearest(const Eigen::Vector3d& point) const {
   Contact nearest{.distance = std::numeric_limits<double>::infinity()};
-  for (const int c : NearestBoxFirst(point)) {
-    if (boxes_[c].exteriorDistance(point) >= nearest.distance) break;
-    const Neighbour found = searches_[c]->Nearest(point);
-    if (found.distance < nearest.distance) nearest = {c, found.vertex, found.distance};
+  for (NearestBoxes boxes(*this, point); !boxes.empty();) {
+    const auto [squared, carrier] = boxes.Take();
+    if (std::sqrt(squared) >= nearest.distance) break;
+    const Neighbour found = searches_[carrier]->Nearest(point, nearest.distance);
+    if (found.distance < nearest.distance) nearest = {carrier, found.vertex, found.distance};
   }
   return nearest;
 }
@@ -77,27 +56,17 @@ std::vector<RideShare> Carriers::Shares(const Contact& contact, int for_vertex) 
   return shares;
 }
 
-std::vector<RideShare> Carriers::Blend(const Eigen::Vector3d& point, int for_vertex) const {
-  std::vector<Contact> contacts;
-  std::vector<double> weights;
-  double largest = 0;
-  for (const int c : NearestBoxFirst(point)) {
-    if (Weight(boxes_[c].exteriorDistance(point)) < kSmallestShare * largest) break;  // it and the rest are too far
-    const Neighbour found = searches_[c]->Nearest(point);
-    contacts.push_back({c, found.vertex, found.distance});
-    weights.push_back(Weight(found.distance));
-    largest = std::max(largest, weights.back());
-  }
-  Prune(weights);
-  std::vector<RideShare> blended;
-  for (size_t c = 0; c < contacts.size(); ++c) {
-    if (weights[c] == 0) continue;
-    for (RideShare share : Shares(contacts[c], for_vertex)) {
-      share.weight *= weights[c];
-      blended.push_back(share);
-    }
-  }
-  return blended;
+NearestBoxes::NearestBoxes(const Carriers& carriers, const Eigen::Vector3d& point) {
+  heap_.reserve(static_cast<size_t>(carriers.count()));
+  for (int c = 0; c < carriers.count(); ++c) heap_.push_back({carriers.SquaredToBox(c, point), c});
+  std::make_heap(heap_.begin(), heap_.end(), Farther);
+}
+
+NearestBoxes::Box NearestBoxes::Take() {
+  std::pop_heap(heap_.begin(), heap_.end(), Farther);
+  const Box nearest = heap_.back();
+  heap_.pop_back();
+  return nearest;
 }
 
 }  // namespace phrenic

@@ -3,7 +3,6 @@
 #define PHRENIC_SERVER_MECHANICS_CARRIERS_H_
 
 #include <Eigen/Geometry>
-#include <memory>
 #include <vector>
 
 #include "server/mechanics/draft.h"
@@ -24,16 +23,35 @@ class Carriers {
   Contact Nearest(const Eigen::Vector3d& point) const;
   // What the carrier does to a point near one of its vertices; `vertex` of the shares is `for_vertex`.
   std::vector<RideShare> Shares(const Contact& contact, int for_vertex) const;
-  // Shares of all carriers by inverse distance, w_c ~ (d_c^2 + (5 mm)^2)^(-2): smooth, and the nearest has the say.
-  std::vector<RideShare> Blend(const Eigen::Vector3d& point, int for_vertex) const;
+
+  int count() const { return static_cast<int>(bodies_.size()); }
+  const NearestSearch& search(int carrier) const { return *searches_[carrier]; }
+  // To the box around the carrier's vertices, squared [m^2].
+  double SquaredToBox(int carrier, const Eigen::Vector3d& point) const {
+    return boxes_[carrier].squaredExteriorDistance(point);
+  }
+  const Points& vertices(int carrier) const { return draft_.model.bodies[bodies_[carrier]].mesh.vertices; }
 
  private:
-  std::vector<int> NearestBoxFirst(const Eigen::Vector3d& point) const;
-
   const Draft& draft_;
   std::vector<int> bodies_;
-  std::vector<std::unique_ptr<NearestSearch>> searches_;
+  std::vector<const NearestSearch*> searches_;
   std::vector<Eigen::AlignedBox3d> boxes_;  // what is outside reach is not searched
+};
+
+// The carriers by their boxes' distances from a point, nearest first; of equally near ones the first.
+class NearestBoxes {
+ public:
+  NearestBoxes(const Carriers& carriers, const Eigen::Vector3d& point);
+  bool empty() const { return heap_.empty(); }
+  struct Box {
+    double squared;  // [m^2]
+    int carrier;
+  };
+  Box Take();
+
+ private:
+  std::vector<Box> heap_;
 };
 
 }  // namespace phrenic

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <span>
 #include <string>
 
 #include "absl/strings/str_cat.h"
@@ -117,6 +118,11 @@ class VertexStiffness final : public StiffnessSink {
   explicit VertexStiffness(int vertex) : vertex_(vertex) {}
   void Add(int i, int j, const Eigen::Matrix3d& block) override {
     if (i == vertex_ && j == vertex_) sum_ += block;
+  }
+  void AddSprings(std::span<const SpringStiffness> springs) override {
+    for (const SpringStiffness& spring : springs) {
+      if (spring.a == vertex_ || spring.b == vertex_) sum_ += spring.Block();
+    }
   }
   void AddOuter(double scale, const Points& g) override { sum_ += scale * g.col(vertex_) * g.col(vertex_).transpose(); }
   double Size() const { return sum_.norm(); }

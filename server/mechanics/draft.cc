@@ -110,6 +110,13 @@ absl::Status Draft::CheckVertex(int body, int vertex, std::string_view path) con
                                        "\": its vertices are 0 to ", vertices - 1));
 }
 
+const NearestSearch& Draft::Search(int body) const {
+  searches_.resize(model.bodies.size());
+  std::unique_ptr<NearestSearch>& search = searches_[body];
+  if (search == nullptr) search = std::make_unique<NearestSearch>(model.bodies[body].mesh.vertices);
+  return *search;
+}
+
 void Draft::ReportElement(std::string_view family, std::string_view name, std::int64_t count, std::string_view counted,
                           std::string_view detail) {
   v1::ElementReport* element = model.report.add_elements();

@@ -2,6 +2,7 @@
 #ifndef PHRENIC_SERVER_MECHANICS_DRAFT_H_
 #define PHRENIC_SERVER_MECHANICS_DRAFT_H_
 
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "google/protobuf/repeated_field.h"
 #include "google/protobuf/repeated_ptr_field.h"
 #include "server/mechanics/model.h"
+#include "server/mesh/nearest.h"
 
 namespace phrenic {
 
@@ -54,10 +56,15 @@ struct Draft {
   absl::StatusOr<std::vector<int>> FreeVertices(int body, const std::string& region, const Indices& vertices,
                                                 std::string_view path) const;
   absl::Status CheckVertex(int body, int vertex, std::string_view path) const;
+  // Over the vertices of a body at rest; made when first asked for. Valid while the draft is.
+  const NearestSearch& Search(int body) const;
 
   void ReportElement(std::string_view family, std::string_view name, std::int64_t count, std::string_view counted,
                      std::string_view detail);
   void ReportLeftOut(std::string_view what, std::string_view why);
+
+ private:
+  mutable std::vector<std::unique_ptr<NearestSearch>> searches_;  // of each body; null where none has asked
 };
 
 // Bodies' names joined for an element that has no name of its own: "springs:diaphragm".

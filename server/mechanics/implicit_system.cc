@@ -69,16 +69,18 @@ double ImplicitSystem::StartFrom(const Points& b, Points& y) {
     if (inertia_[i] == 0) y.col(i).setZero();
   }
   rows_.ForcesToRows(1, b, residual_);
-  floor_ = kFinest * kFinest * SizeOf(residual_).squares;
-  missing_ = b - y * inertia_.asDiagonal();
-  rows_.ForcesToRows(1, missing_, residual_);
+  const Size whole = SizeOf(residual_);
+  floor_ = kFinest * kFinest * whole.squares;
+  double unit = whole.largest;
   if (!y.isZero(0)) {
+    missing_ = b - y * inertia_.asDiagonal();
+    rows_.ForcesToRows(1, missing_, residual_);
     rows_.DisplacementsToRows(y, product_);
     rows_.Turn(0, product_, direction_);
     rows_.Times(direction_, false, product_);
     for (size_t k = 0; k < residual_.size(); ++k) Values(residual_[k]) -= Values(product_[k]);
+    unit = SizeOf(residual_).largest;
   }
-  const double unit = SizeOf(residual_).largest;
   if (unit == 0) return 0;
   for (Lanes& lanes : residual_) Values(lanes) *= static_cast<float>(1 / unit);
   floor_ /= unit * unit;

@@ -8,47 +8,26 @@
 #include <vector>
 
 #include "server/mechanics/advance.h"
-#include "server/mechanics/block_matrix.h"
+#include "server/mechanics/scaled_stiffness.h"
 
 namespace phrenic {
 namespace {
 
 constexpr int kProducts = 20;
 constexpr double kMostlyLeft = 0.7;
+constexpr double kConverged = 1e-5;   // of the largest Ritz value: round-off over it is still small
 constexpr double kExhausted = 1e-11;  // a product that leaves less than this that is new leaves round-off
 
-// y = M^-1/2 K M^-1/2 x.
-class ScaledStiffness {
- public:
-  ScaledStiffness(const Model& model, const Instant& at) : stiffness_(model), scale_(model.inverse_mass.cwiseSqrt()) {
-    stiffness_.Assemble(model, at);
-    for (const auto& force : model.forces) force->AddLatentStiffness(at, stiffness_);
+// Deterministic and without a pattern that a mesh could share; zero where the scale is.
+Eigen::VectorXd Start(const Eigen::VectorXd& scale) {
+  Eigen::VectorXd x(3 * scale.size());
+  std::uint64_t bits = 0x9e3779b97f4a7c15;
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    bits ^= bits << 13, bits ^= bits >> 7, bits ^= bits << 17;
+    x[i] = scale[i / 3] > 0 ? static_cast<double>(bits >> 11) * 0x1p-53 - 0.5 : 0;
   }
-
-  Eigen::VectorXd operator*(const Eigen::VectorXd& x) const {
-    const Eigen::Index n = scale_.size();
-    const Points scaled = Eigen::Map<const Points>(x.data(), 3, n) * scale_.asDiagonal();
-    Points product(3, n);
-    stiffness_.Times(scaled, product);
-    product = product * scale_.asDiagonal();
-    return Eigen::Map<const Eigen::VectorXd>(product.data(), product.size());
-  }
-
-  // Deterministic and without a pattern that a mesh could share.
-  Eigen::VectorXd Start() const {
-    Eigen::VectorXd x(3 * scale_.size());
-    std::uint64_t bits = 0x9e3779b97f4a7c15;
-    for (Eigen::Index i = 0; i < x.size(); ++i) {
-      bits ^= bits << 13, bits ^= bits >> 7, bits ^= bits << 17;
-      x[i] = scale_[i / 3] > 0 ? static_cast<double>(bits >> 11) * 0x1p-53 - 0.5 : 0;
-    }
-    return x;
-  }
-
- private:
-  BlockMatrix stiffness_;
-  Eigen::VectorXd scale_;
-};
+  return x;
+}
 
 // Of the free vertices.
 void FindLeastMass(const Model& model, Spectrum& spectrum) {
@@ -76,6 +55,25 @@ struct Krylov {
   std::vector<double> diagonal, off_diagonal;  // of the tridiagonal matrix; one more off_diagonal than needed
 };
 
+using Ritz = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>;
+
+Ritz RitzPairs(const Krylov& krylov) {
+  const auto size = static_cast<Eigen::Index>(krylov.diagonal.size());
+  const Eigen::Map<const Eigen::VectorXd> diagonal(krylov.diagonal.data(), size);
+  const Eigen::Map<const Eigen::VectorXd> off(krylov.off_diagonal.data(), size - 1);
+  Ritz pairs;
+  pairs.computeFromTridiagonal(diagonal, off);
+  return pairs;
+}
+
+// Whether a Ritz vector has converged: only along those does the next vector lose its right angle to the basis (Paige,
+// J Inst Maths Applics 1976;18:341), by round-off over what is left of it.
+bool OneHasConverged(const Krylov& krylov) {
+  const Ritz pairs = RitzPairs(krylov);
+  const double left = krylov.off_diagonal.back() * pairs.eigenvectors().bottomRows<1>().cwiseAbs().minCoeff();
+  return left <= kConverged * pairs.eigenvalues().cwiseAbs().maxCoeff();
+}
+
 // Takes off q what of it lies along the basis, again where little is left, which may not be orthogonal (Daniel, Gragg,
 // Kaufman, Stewart 1976); what is left of its length.
 double Orthogonalise(const std::vector<Eigen::VectorXd>& basis, Eigen::VectorXd& q) {
@@ -89,20 +87,24 @@ double Orthogonalise(const std::vector<Eigen::VectorXd>& basis, Eigen::VectorXd&
   return norm;
 }
 
-Krylov Lanczos(const ScaledStiffness& matrix) {
+Krylov Lanczos(ScaledStiffness& matrix) {
   Krylov krylov;
-  Eigen::VectorXd q = matrix.Start();
+  Eigen::VectorXd q = Start(matrix.scale());
   double norm = q.norm();
   double largest = 0;  // product: what is left of one is measured by it, whatever the unit of stiffness
+  bool converged = false;
   while (static_cast<int>(krylov.basis.size()) < kProducts && norm > kExhausted * largest) {
-    krylov.basis.push_back(q / norm);
-    q = matrix * krylov.basis.back();
+    krylov.basis.emplace_back(q / norm);
+    const Eigen::VectorXd& last = krylov.basis.back();
+    matrix.Times(last, q);
     largest = std::max(largest, q.norm());
-    krylov.diagonal.push_back(q.dot(krylov.basis.back()));
-    q -= krylov.diagonal.back() * krylov.basis.back();
+    krylov.diagonal.push_back(q.dot(last));
+    q -= krylov.diagonal.back() * last;
     if (krylov.basis.size() > 1) q -= krylov.off_diagonal.back() * krylov.basis[krylov.basis.size() - 2];
-    norm = Orthogonalise(krylov.basis, q);
-    krylov.off_diagonal.push_back(norm);
+    krylov.off_diagonal.push_back(q.norm());
+    converged = converged || OneHasConverged(krylov);
+    if (converged) krylov.off_diagonal.back() = Orthogonalise(krylov.basis, q);
+    norm = krylov.off_diagonal.back();
   }
   return krylov;
 }
@@ -129,16 +131,13 @@ FastestMode FindFastestMode(const Model& model, const v1::Parameters& parameters
   const Instant at = MakeInstant(model, parameters, state);
   FindLeastMass(model, fastest.spectrum);
   FindDampingRates(model, at, fastest.spectrum);
-  const Krylov krylov = Lanczos(ScaledStiffness(model, at));
-  const auto size = static_cast<Eigen::Index>(krylov.diagonal.size());
-  if (size == 0) return fastest;
-  const Eigen::Map<const Eigen::VectorXd> diagonal(krylov.diagonal.data(), size);
-  const Eigen::Map<const Eigen::VectorXd> off(krylov.off_diagonal.data(), size - 1);
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
-  solver.computeFromTridiagonal(diagonal, off);
-  const Eigen::VectorXd combination = solver.eigenvectors().col(size - 1);
-  const double residual = krylov.off_diagonal.back() * std::abs(combination[size - 1]);
-  const double eigenvalue = std::max(0.0, solver.eigenvalues()[size - 1] + residual);
+  ScaledStiffness stiffness(model, at);
+  const Krylov krylov = Lanczos(stiffness);
+  if (krylov.basis.empty()) return fastest;
+  const Ritz pairs = RitzPairs(krylov);
+  const Eigen::VectorXd combination = pairs.eigenvectors().rightCols<1>();
+  const double residual = krylov.off_diagonal.back() * std::abs(combination.tail<1>()[0]);
+  const double eigenvalue = std::max(0.0, pairs.eigenvalues().tail<1>()[0] + residual);
   if (eigenvalue <= 0) return fastest;
   fastest.spectrum.omega_max = std::sqrt(eigenvalue);
   FindMode(model, krylov, combination, fastest);

@@ -12,9 +12,9 @@ struct FastestMode {
   Points mode;      // its displacements, 3 x n, the largest of length 1; no columns where nothing vibrates
 };
 
-// Lanczos with full reorthogonalisation on M^-1/2 K M^-1/2 in the state, K positive semi-definite, with what may yet
-// wake (latent stiffness): 20 products, plus the residual of the largest Ritz value, which makes it an upper bound of
-// the eigenvalue it found (estimates over true omega: 0.985-1.008). Deterministic.
+// Lanczos on M^-1/2 K M^-1/2 in the state, K positive semi-definite, with what may yet wake (latent stiffness): 20
+// products, plus the residual of the largest Ritz value, which makes it an upper bound of the eigenvalue it found
+// (estimates over true omega: 0.985-1.008). Reorthogonalised as soon as a Ritz vector converges. Deterministic.
 FastestMode FindFastestMode(const Model& model, const v1::Parameters& parameters, const State& state);
 
 }  // namespace phrenic

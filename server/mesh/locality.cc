@@ -1,7 +1,10 @@
 #include "server/mesh/locality.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <numeric>
+#include <utility>
 
 namespace phrenic {
 namespace {
@@ -43,6 +46,30 @@ void AppendComponent(int start, const Neighbours& neighbours, std::vector<bool>&
   }
 }
 
+constexpr int kCurveBits = 10;  // of a cell's place along each axis
+
+// A cell's place along the curve, from its places along the axes.
+std::uint32_t AlongCurve(std::array<std::uint32_t, 3> x) {
+  constexpr std::uint32_t kHighest = 1U << (kCurveBits - 1);
+  for (std::uint32_t bit = kHighest; bit > 1; bit >>= 1) {
+    const std::uint32_t below = bit - 1;
+    for (std::uint32_t& axis : x) {
+      const std::uint32_t swapped = (axis & bit) != 0 ? 0 : (x[0] ^ axis) & below;
+      x[0] ^= (axis & bit) != 0 ? below : swapped;
+      axis ^= swapped;
+    }
+  }
+  x[1] ^= x[0];
+  x[2] ^= x[1];
+  std::uint32_t gray = 0;
+  for (std::uint32_t bit = kHighest; bit > 1; bit >>= 1) gray ^= (x[2] & bit) != 0 ? bit - 1 : 0;
+  std::uint32_t along = 0;
+  for (int b = kCurveBits - 1; b >= 0; --b) {
+    for (const std::uint32_t axis : x) along = along << 1 | ((axis ^ gray) >> b & 1);
+  }
+  return along;
+}
+
 }  // namespace
 
 std::vector<int> LocalOrder(const Edges& edges, int vertices) {
@@ -57,6 +84,25 @@ std::vector<int> LocalOrder(const Edges& edges, int vertices) {
     if (!seen[start] && neighbours.Degree(start) > 0) AppendComponent(start, neighbours, seen, order);
   }
   std::reverse(order.begin(), order.end());
+  return order;
+}
+
+std::vector<int> CurveOrder(const ConstPoints& points) {
+  if (points.cols() == 0) return {};
+  const Eigen::Vector3d low = points.rowwise().minCoeff();
+  const double size = (points.rowwise().maxCoeff() - low).maxCoeff();
+  const double scale = size > 0 ? ((1 << kCurveBits) - 1) / size : 0;
+  std::vector<std::pair<std::uint32_t, int>> places;
+  places.reserve(static_cast<size_t>(points.cols()));
+  for (int i = 0; i < static_cast<int>(points.cols()); ++i) {
+    std::array<std::uint32_t, 3> cell{};
+    for (int k = 0; k < 3; ++k) cell[k] = static_cast<std::uint32_t>(scale * (points(k, i) - low[k]));
+    places.emplace_back(AlongCurve(cell), i);
+  }
+  std::sort(places.begin(), places.end());
+  std::vector<int> order;
+  order.reserve(places.size());
+  for (const auto& [along, i] : places) order.push_back(i);
   return order;
 }
 

@@ -1,4 +1,5 @@
-// An order of vertices in which those joined by edges are close together, for what is joined to be found in the cache.
+// Orders of vertices in which those joined by edges, or close in space, are close together: what is then asked of one
+// after another is found in the cache.
 #ifndef PHRENIC_SERVER_MESH_LOCALITY_H_
 #define PHRENIC_SERVER_MESH_LOCALITY_H_
 
@@ -12,6 +13,10 @@ namespace phrenic {
 // from a vertex of least degree, neighbours by their degree, backwards. The same edges give the same order. Time and
 // memory grow with the edges; `vertices` is their number, above every index.
 std::vector<int> LocalOrder(const Edges& edges, int vertices);
+
+// All points along a Hilbert curve through the cube around them (Skilling, AIP Conf Proc 2004;707:381), of 1024 cells
+// a side; those of one cell by their index.
+std::vector<int> CurveOrder(const ConstPoints& points);
 
 }  // namespace phrenic
 

@@ -30,6 +30,7 @@ double LittleFarther(double squared) { return squared * (1 + 1e-9) + std::numeri
 // The nearest vertex; of equally near ones the lowest index.
 class NearestResult {
  public:
+  explicit NearestResult(double reach) : squared_(LittleFarther(reach * reach)) {}
   bool addPoint(double squared, int vertex) {
     if (squared < squared_ || (squared == squared_ && vertex < vertex_)) {
       squared_ = squared;
@@ -39,10 +40,14 @@ class NearestResult {
   }
   double worstDist() const { return LittleFarther(squared_); }
   bool full() const { return vertex_ >= 0; }
-  Neighbour neighbour() const { return {vertex_, std::sqrt(squared_)}; }
+  Neighbour Within(double reach) const {
+    const double distance = std::sqrt(squared_);
+    if (full() && distance <= reach) return {vertex_, distance};
+    return {-1, std::numeric_limits<double>::infinity()};
+  }
 
  private:
-  double squared_ = std::numeric_limits<double>::infinity();
+  double squared_;
   int vertex_ = -1;
 };
 
@@ -75,10 +80,10 @@ struct NearestSearch::Tree {
 NearestSearch::NearestSearch(Points points) : tree_(std::make_unique<Tree>(std::move(points))) {}
 NearestSearch::~NearestSearch() = default;
 
-Neighbour NearestSearch::Nearest(const Eigen::Vector3d& point) const {
-  NearestResult result;
+Neighbour NearestSearch::Nearest(const Eigen::Vector3d& point, double reach) const {
+  NearestResult result(reach);
   tree_->index.findNeighbors(result, point.data(), nanoflann::SearchParams());
-  return result.neighbour();
+  return result.Within(reach);
 }
 
 std::vector<Neighbour> NearestSearch::Within(const Eigen::Vector3d& point, double radius) const {

@@ -2,6 +2,7 @@
 #ifndef PHRENIC_SERVER_MESH_NEAREST_H_
 #define PHRENIC_SERVER_MESH_NEAREST_H_
 
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -10,7 +11,7 @@
 namespace phrenic {
 
 struct Neighbour {
-  int vertex = -1;
+  int vertex = -1;      // -1: there is none
   double distance = 0;  // [m]
 };
 
@@ -22,8 +23,9 @@ class NearestSearch {
   NearestSearch(const NearestSearch&) = delete;
   NearestSearch& operator=(const NearestSearch&) = delete;
 
-  // Equal distances are settled by the lower index, so that results do not depend on the tree.
-  Neighbour Nearest(const Eigen::Vector3d& point) const;
+  // Equal distances are settled by the lower index, so that results do not depend on the tree. None, at an infinite
+  // distance, where the nearest is farther than `reach` [m]; the less it is, the sooner that is known.
+  Neighbour Nearest(const Eigen::Vector3d& point, double reach = std::numeric_limits<double>::infinity()) const;
   // Every vertex within `radius` [m], nearest first.
   std::vector<Neighbour> Within(const Eigen::Vector3d& point, double radius) const;
 

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -33,30 +34,63 @@ bool Degenerate(const Mesh& mesh, Eigen::Index t) {
   return (b - a).cross(c - a).norm() / 2 < kSmallestArea;
 }
 
+// The triangles' sides by their lower vertices, of each the higher ones ascending: one item a side.
+class SideEnds {
+ public:
+  explicit SideEnds(const Triangles& triangles) : high_(static_cast<size_t>(triangles.size())) {
+    first_.assign(triangles.size() > 0 ? static_cast<size_t>(triangles.maxCoeff()) + 3 : 2, 0);
+    ForEachSide(triangles, [this](int low, int) { ++first_[low + 2]; });
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    ForEachSide(triangles, [this](int low, int high) { high_[first_[low + 1]++] = high; });
+    for (size_t v = 0; v + 2 < first_.size(); ++v) std::sort(high_.begin() + first_[v], high_.begin() + first_[v + 1]);
+  }
+  // Calls `use(low, high, sides)` for each edge, in order.
+  template <typename Use>
+  void ForEachEdge(const Use& use) const {
+    for (size_t v = 0; v + 2 < first_.size(); ++v) {
+      for (std::int64_t k = first_[v]; k < first_[v + 1];) {
+        const std::int64_t begin = k;
+        while (k < first_[v + 1] && high_[k] == high_[begin]) ++k;
+        use(static_cast<int>(v), high_[begin], static_cast<int>(k - begin));
+      }
+    }
+  }
+
+ private:
+  template <typename Use>
+  static void ForEachSide(const Triangles& triangles, const Use& use) {
+    const int* corner = triangles.data();
+    for (Eigen::Index t = 0; t < triangles.cols(); ++t, corner += 3) {
+      for (int k = 0; k < 3; ++k) {
+        const int a = corner[k], b = corner[(k + 1) % 3];
+        use(std::min(a, b), std::max(a, b));
+      }
+    }
+  }
+
+  std::vector<std::int64_t> first_;  // of each vertex, and the end; one more while they are counted
+  std::vector<int> high_;
+};
+
 }  // namespace
 
 Edges TriangleEdges(const Triangles& triangles) {
-  std::vector<Side> edges = SortedSides(triangles);
-  const auto same = [](const Side& a, const Side& b) { return a.low == b.low && a.high == b.high; };
-  edges.erase(std::unique(edges.begin(), edges.end(), same), edges.end());
-  Edges unique(2, static_cast<Eigen::Index>(edges.size()));
-  for (Eigen::Index i = 0; i < unique.cols(); ++i) {
-    unique.col(i) = Eigen::Vector2i(edges[static_cast<size_t>(i)].low, edges[static_cast<size_t>(i)].high);
-  }
-  return unique;
+  SideEnds ends(triangles);
+  std::int64_t count = 0;
+  ends.ForEachEdge([&](int, int, int) { ++count; });
+  Edges edges(2, count);
+  int* next = edges.data();
+  ends.ForEachEdge([&](int low, int high, int) { *next++ = low, *next++ = high; });
+  return edges;
 }
 
 Edges SpringEdges(const Mesh& mesh) { return mesh.edges.cols() > 0 ? mesh.edges : TriangleEdges(mesh.triangles); }
 
 std::vector<int> BorderVertices(const Triangles& triangles) {
-  const std::vector<Side> edges = SortedSides(triangles);
-  const auto same = [&](size_t i, size_t j) { return edges[i].low == edges[j].low && edges[i].high == edges[j].high; };
   std::vector<int> border;
-  for (size_t i = 0; i < edges.size(); ++i) {
-    if ((i > 0 && same(i - 1, i)) || (i + 1 < edges.size() && same(i, i + 1))) continue;
-    border.push_back(edges[i].low);
-    border.push_back(edges[i].high);
-  }
+  SideEnds(triangles).ForEachEdge([&](int low, int high, int sides) {
+    if (sides == 1) border.insert(border.end(), {low, high});
+  });
   std::sort(border.begin(), border.end());
   border.erase(std::unique(border.begin(), border.end()), border.end());
   return border;

@@ -28,6 +28,8 @@ std::shared_ptr<const Model> Sheet(const std::string& forces, int columns = 9, i
 const char* const kTissues[] = {
     "forces { springs { bodies: 'sheet' stiffness: 300 } }",
     "forces { membrane { bodies: 'sheet' youngs_modulus: 9000 } }",  // its blocks are not symmetric
+    "forces { springs { bodies: 'sheet' stiffness: 300 } } forces { springs { bodies: 'sheet' stiffness: 900 "
+    "rest_length_ratio: 0.7 } }",  // two along each edge
     "forces { springs { bodies: 'sheet' stiffness: 300 } } forces { springs { bodies: 'sheet' stiffness: 5000 "
     "rest_length_ratio: 1.3 } } forces { bending { bodies: 'sheet' youngs_modulus: 9000 } } forces { friction { "
     "bodies: 'sheet' rate: 40 } } forces { drag { bodies: 'sheet' displacement { z: 0.01 } stiffness: 2 } }",

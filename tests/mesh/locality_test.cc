@@ -57,5 +57,20 @@ TEST(LocalOrder, BringsTheEdgesOfAGridTogether) {
   EXPECT_LE(furthest, 11);  // the narrower side, and one
 }
 
+TEST(CurveOrder, GoesFromCellToNextCell) {
+  Points cells(3, 512);  // 8 x 8 x 8, each an edge from its neighbours
+  for (int i = 0; i < 512; ++i) cells.col(i) << i % 8, i / 8 % 8, i / 64;
+  const std::vector<int> order = CurveOrder(cells);
+  std::vector<int> all = order;
+  std::sort(all.begin(), all.end());
+  for (int i = 0; i < 512; ++i) EXPECT_EQ(all[i], i);
+  for (int i = 1; i < 512; ++i) EXPECT_EQ((cells.col(order[i]) - cells.col(order[i - 1])).norm(), 1) << i;
+}
+
+TEST(CurveOrder, TakesPointsOfOnePlaceByTheirIndex) {
+  EXPECT_THAT(CurveOrder(Points::Constant(3, 3, 0.5)), ElementsAre(0, 1, 2));
+  EXPECT_THAT(CurveOrder(Points(3, 0)), IsEmpty());
+}
+
 }  // namespace
 }  // namespace phrenic

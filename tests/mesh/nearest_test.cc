@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <random>
 
@@ -61,6 +62,21 @@ TEST(Nearest, TiesAmongManyCopiesGoToTheFirst) {
 TEST(Nearest, OnePointIsAlwaysTheNearest) {
   const NearestSearch search(Points::Constant(3, 1, 1.0));
   EXPECT_EQ(search.Nearest({1e6, 0, 0}).vertex, 0);
+}
+
+TEST(Nearest, WithinReachIsTheNearestOfAll) {
+  const Points points = RandomPoints(2000, 1), queries = RandomPoints(500, 2);
+  const NearestSearch search(points);
+  for (Eigen::Index q = 0; q < queries.cols(); ++q) {
+    const Neighbour nearest = search.Nearest(queries.col(q));
+    for (const double reach : {nearest.distance, 1.5 * nearest.distance}) {
+      EXPECT_EQ(search.Nearest(queries.col(q), reach).vertex, nearest.vertex);
+      EXPECT_EQ(search.Nearest(queries.col(q), reach).distance, nearest.distance);
+    }
+    const Neighbour none = search.Nearest(queries.col(q), std::nextafter(nearest.distance, 0));
+    EXPECT_EQ(none.vertex, -1);
+    EXPECT_EQ(none.distance, std::numeric_limits<double>::infinity());
+  }
 }
 
 TEST(Within, HoldsTheBallsBoundaryNearestFirst) {

@@ -45,18 +45,20 @@ void Cables::AddStiffness(const Instant& at, StiffnessSink& sink) const {
     const Eigen::Vector3d between = at.x.col(cable.b) - at.x.col(cable.a);
     const double length = between.norm();
     if (length <= cable.rest_length) continue;
-    const Eigen::Vector3d d = between / length;
     const double slack_share = cable.rest_length / length;
-    sink.AddBetween(cable.a, cable.b,
-                    stiffness * ((1 - slack_share) * Eigen::Matrix3d::Identity() + slack_share * (d * d.transpose())));
+    const SpringStiffness spring{cable.a, cable.b, between, stiffness * slack_share / (length * length),
+                                 stiffness * (1 - slack_share)};
+    sink.AddSprings({&spring, 1});
   }
 }
 
 void Cables::AddLatentStiffness(const Instant& at, StiffnessSink& sink) const {
   const double stiffness = at.parameters.elasticity() * stiffness_;
   for (const Cable& cable : cables_) {
-    if ((at.x.col(cable.b) - at.x.col(cable.a)).norm() > cable.rest_length) continue;
-    sink.AddBetween(cable.a, cable.b, stiffness * Eigen::Matrix3d::Identity());
+    const Eigen::Vector3d between = at.x.col(cable.b) - at.x.col(cable.a);
+    if (between.norm() > cable.rest_length) continue;
+    const SpringStiffness spring{cable.a, cable.b, between, 0, stiffness};
+    sink.AddSprings({&spring, 1});
   }
 }
 

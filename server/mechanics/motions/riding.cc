@@ -1,11 +1,13 @@
 #include "server/mechanics/motions/riding.h"
 
+#include <numeric>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "server/mechanics/carriers.h"
+#include "server/mechanics/blender.h"
 #include "server/mechanics/motions/mapping.h"
+#include "server/mesh/locality.h"
 
 namespace phrenic {
 namespace {
@@ -18,13 +20,22 @@ absl::Status CheckRider(const BodyModel& body, std::string_view path) {
   return absl::OkStatus();
 }
 
+// Sorts by vertex what lies together for each.
+std::vector<RideShare> ByVertex(const std::vector<RideShare>& shares, Eigen::Index vertices) {
+  std::vector<int> next(static_cast<size_t>(vertices) + 1, 0);
+  for (const RideShare& share : shares) ++next[share.vertex + 1];
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  std::vector<RideShare> sorted(shares.size());
+  for (const RideShare& share : shares) sorted[next[share.vertex]++] = share;
+  return sorted;
+}
+
 Ride RideOnVertices(const Carriers& search, const BodyModel& body, int b) {
-  Ride ride{.body = b, .shares = {}, .triangles = {}};
-  for (int i = 0; i < body.mesh.vertices.cols(); ++i) {
-    const std::vector<RideShare> shares = search.Blend(body.mesh.vertices.col(i), i);
-    ride.shares.insert(ride.shares.end(), shares.begin(), shares.end());
-  }
-  return ride;
+  const Points& vertices = body.mesh.vertices;
+  Blender blender(search);
+  std::vector<RideShare> shares;
+  for (const int i : CurveOrder(vertices)) blender.Blend(vertices.col(i), i, shares);
+  return {.body = b, .shares = ByVertex(shares, vertices.cols()), .triangles = {}};
 }
 
 void Seat(Ride ride, Draft& draft) {

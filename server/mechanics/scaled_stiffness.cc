@@ -1,0 +1,45 @@
+#include "server/mechanics/scaled_stiffness.h"
+
+#include <cmath>
+
+namespace phrenic {
+
+ScaledStiffness::ScaledStiffness(const Model& model, const Instant& at)
+    : blocks_(model, BlockMatrix::Springs::kElsewhere), scale_(model.inverse_mass.cwiseSqrt()) {
+  joints_.reserve(static_cast<size_t>(model.report.springs()));
+  for (const auto& force : model.forces) {
+    force->AddStiffness(at, *this);
+    force->AddLatentStiffness(at, *this);
+  }
+}
+
+void ScaledStiffness::AddSprings(std::span<const SpringStiffness> springs) {
+  for (const auto& [a, b, edge, axial, transverse] : springs) {
+    if (scale_[a] == 0 && scale_[b] == 0) continue;
+    const double root = std::sqrt(axial);
+    joints_.push_back({a, b, {root * edge[0], root * edge[1], root * edge[2]}, transverse});
+  }
+}
+
+void ScaledStiffness::Times(const Eigen::VectorXd& x, Eigen::VectorXd& y) {
+  const Eigen::Index n = scale_.size();
+  scaled_.noalias() = Eigen::Map<const Points>(x.data(), 3, n) * scale_.asDiagonal();
+  Eigen::Map<Points> product(y.data(), 3, n);
+  blocks_.Times(scaled_, product);
+  for (const auto& [a, b, along, transverse] : joints_) {
+    const double* const from_a = scaled_.data() + 3 * static_cast<std::ptrdiff_t>(a);
+    const double* const from_b = scaled_.data() + 3 * static_cast<std::ptrdiff_t>(b);
+    double* const to_a = y.data() + 3 * static_cast<std::ptrdiff_t>(a);
+    double* const to_b = y.data() + 3 * static_cast<std::ptrdiff_t>(b);
+    const double d[3] = {from_a[0] - from_b[0], from_a[1] - from_b[1], from_a[2] - from_b[2]};
+    const double axial = along[0] * d[0] + along[1] * d[1] + along[2] * d[2];
+    for (int k = 0; k < 3; ++k) {
+      const double force = axial * along[k] + transverse * d[k];
+      to_a[k] += force;
+      to_b[k] -= force;
+    }
+  }
+  product *= scale_.asDiagonal();
+}
+
+}  // namespace phrenic
