@@ -135,7 +135,7 @@ absl::StatusOr<int> ProbeVertex(const v1::Probe& probe, int body, const std::str
       return probe.vertex();
     }
     case v1::Probe::kNearestTo:
-      return NearestSearch(vertices).Nearest(ToEigen(probe.nearest_to())).vertex;
+      return draft.Search(body).Nearest(ToEigen(probe.nearest_to())).vertex;
     case v1::Probe::kHighestOn:
       vertex = HighestOn(probe.highest_on(), vertices);
       if (vertex < 0) return FieldError(path + ".highest_on", "the body has no vertex on that side");

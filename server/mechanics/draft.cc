@@ -4,6 +4,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "server/mesh/topology.h"
 
 namespace phrenic {
 namespace {
@@ -115,6 +116,13 @@ const NearestSearch& Draft::Search(int body) const {
   std::unique_ptr<NearestSearch>& search = searches_[body];
   if (search == nullptr) search = std::make_unique<NearestSearch>(model.bodies[body].mesh.vertices);
   return *search;
+}
+
+const Edges& Draft::EdgesOf(int body) const {
+  edges_.resize(model.bodies.size());
+  std::unique_ptr<Edges>& edges = edges_[body];
+  if (edges == nullptr) edges = std::make_unique<Edges>(SpringEdges(model.bodies[body].mesh));
+  return *edges;
 }
 
 void Draft::ReportElement(std::string_view family, std::string_view name, std::int64_t count, std::string_view counted,

@@ -58,13 +58,17 @@ struct Draft {
   absl::Status CheckVertex(int body, int vertex, std::string_view path) const;
   // Over the vertices of a body at rest; made when first asked for. Valid while the draft is.
   const NearestSearch& Search(int body) const;
+  // The same of a body's edges: its mesh's own, or else its triangles' (mesh/topology.h).
+  const Edges& EdgesOf(int body) const;
 
   void ReportElement(std::string_view family, std::string_view name, std::int64_t count, std::string_view counted,
                      std::string_view detail);
   void ReportLeftOut(std::string_view what, std::string_view why);
 
  private:
-  mutable std::vector<std::unique_ptr<NearestSearch>> searches_;  // of each body; null where none has asked
+  // Of each body; null where none has asked.
+  mutable std::vector<std::unique_ptr<NearestSearch>> searches_;
+  mutable std::vector<std::unique_ptr<Edges>> edges_;
 };
 
 // Bodies' names joined for an element that has no name of its own: "springs:diaphragm".

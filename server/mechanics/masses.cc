@@ -31,7 +31,7 @@ Eigen::VectorXd Spread(double total, const Eigen::VectorXd& shares) {
 }
 
 // The sum of the stiffness of each simulated vertex's springs [N/m].
-absl::StatusOr<Eigen::VectorXd> SpringStiffness(const Draft& draft) {
+absl::StatusOr<Eigen::VectorXd> StiffnessOfSprings(const Draft& draft) {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(draft.model.rest.cols());
   for (int i = 0; i < draft.model.scene.forces_size(); ++i) {
     const v1::Force& force = draft.model.scene.forces(i);
@@ -70,7 +70,7 @@ absl::Status SpreadMassByStiffness(Draft& draft) {
   Model& model = draft.model;
   const auto& bodies = model.scene.bodies();
   if (std::none_of(bodies.begin(), bodies.end(), ByStiffness)) return absl::OkStatus();
-  const auto stiffness = SpringStiffness(draft);
+  const auto stiffness = StiffnessOfSprings(draft);
   if (!stiffness.ok()) return stiffness.status();
   for (int b = 0; b < bodies.size(); ++b) {
     if (!ByStiffness(bodies[b])) continue;

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <atomic>
+#include <boost/asio/executor_work_guard.hpp>
+#include <boost/asio/io_context.hpp>
 #include <boost/asio/post.hpp>
-#include <boost/asio/thread_pool.hpp>
 #include <memory>
 #include <thread>
+#include <vector>
 
 namespace phrenic {
 namespace {
@@ -15,9 +17,43 @@ constexpr std::int64_t kLeastParts = 16;
 // How often a thread looks whether the others are done before it lets somebody else have its core.
 constexpr int kSpins = 2000;
 
+// How often a helper looks for work before it sleeps: longer than from one part of a step to the next, as waking it takes
+// longer than it would help.
+constexpr int kLooks = 1000;
+
+// Threads that help whoever posts work.
+class Pool {
+ public:
+  explicit Pool(int threads) {
+    for (int i = 0; i < threads; ++i) threads_.emplace_back([this] { Help(); });
+  }
+  Pool(const Pool&) = delete;
+  Pool& operator=(const Pool&) = delete;
+  ~Pool() {
+    guard_.reset();
+    for (std::thread& thread : threads_) thread.join();
+  }
+
+  template <typename Work>
+  void Post(Work work) {
+    boost::asio::post(context_, std::move(work));
+  }
+
+ private:
+  void Help() {
+    for (int looks = 0; !context_.stopped(); ++looks) {
+      if (context_.poll_one() > 0 || (looks > kLooks && context_.run_one() > 0)) looks = 0;
+    }
+  }
+
+  boost::asio::io_context context_;
+  boost::asio::executor_work_guard<boost::asio::io_context::executor_type> guard_{context_.get_executor()};
+  std::vector<std::thread> threads_;
+};
+
 struct Helpers {
   int threads = 1;  // with the caller
-  std::unique_ptr<boost::asio::thread_pool> pool;
+  std::unique_ptr<Pool> pool;
 };
 
 Helpers& TheHelpers() {
@@ -53,10 +89,9 @@ class Parts {
 
 void SetStepThreads(int threads) {
   Helpers& helpers = TheHelpers();
-  if (helpers.pool != nullptr) helpers.pool->join();
+  helpers.pool.reset();
   helpers.threads = std::max(1, threads);
-  helpers.pool =
-      helpers.threads > 1 ? std::make_unique<boost::asio::thread_pool>(static_cast<size_t>(threads - 1)) : nullptr;
+  if (helpers.threads > 1) helpers.pool = std::make_unique<Pool>(threads - 1);
 }
 
 int StepThreads() { return TheHelpers().threads; }
@@ -68,7 +103,7 @@ void ShareOut(std::int64_t parts, absl::FunctionRef<void(std::int64_t)> work) {
     return;
   }
   const auto shared = std::make_shared<Parts>(parts, work);
-  for (int i = 1; i < helpers.threads; ++i) boost::asio::post(*helpers.pool, [shared] { shared->Take(); });
+  for (int i = 1; i < helpers.threads; ++i) helpers.pool->Post([shared] { shared->Take(); });
   shared->Take();
   shared->Await();
 }

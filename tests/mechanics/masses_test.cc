@@ -25,11 +25,11 @@ const char kByStiffness[] = "mass_shares: MASS_SHARES_BY_STIFFNESS";
 class StiffnessAt final : public StiffnessSink {
  public:
   explicit StiffnessAt(Eigen::Index vertices) : sum(Eigen::VectorXd::Zero(vertices)) {}
-  void Add(int, int, const Eigen::Matrix3d&) override {}
-  void AddOuter(double, const Points&) override {}
-  void AddBetween(int a, int b, const Eigen::Matrix3d& block) override {
-    sum[a] += block.trace(), sum[b] += block.trace();  // at rest length: k along the edge, nothing across
+  // At rest length a spring's is k along it, and nothing across.
+  void Add(int i, int j, const Eigen::Matrix3d& block) override {
+    if (i == j) sum[i] += block.trace();
   }
+  void AddOuter(double, const Points&) override {}
   Eigen::VectorXd sum;
 };
 

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "absl/strings/str_cat.h"
-#include "server/mesh/topology.h"
 
 namespace phrenic {
 namespace {
@@ -49,7 +48,7 @@ absl::StatusOr<std::vector<Link>> ListedOrEdges(bool listed, const v1::LinkList&
   if (!inside.ok()) return inside.status();
   const BodyModel& model = draft.model.bodies[body];
   std::vector<Link> links;
-  const Edges edges = SpringEdges(model.mesh);
+  const Edges& edges = draft.EdgesOf(body);
   for (const auto edge : edges.colwise()) {
     if (!(*inside)[edge[0]] || !(*inside)[edge[1]]) continue;
     const Link link = MakeLink(draft.model, model.first_vertex + edge[0], model.first_vertex + edge[1]);

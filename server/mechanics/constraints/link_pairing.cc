@@ -54,7 +54,7 @@ absl::StatusOr<Edges> PairLinks(const v1::LinkPairing& scene, int b, std::string
   const auto region = draft.Region(b, scene.region(), absl::StrCat(std::string(path), ".region"));
   if (!region.ok()) return region.status();
   const Points normals = VertexNormals(mesh.vertices, mesh.triangles);
-  const NearestSearch search(mesh.vertices);
+  const NearestSearch& search = draft.Search(b);
   std::vector<bool> free = *region;
   for (size_t i = 0; i < free.size(); ++i) {
     free[i] = free[i] && plane->Above(mesh.vertices.col(static_cast<Eigen::Index>(i)));

@@ -76,9 +76,12 @@ std::string Detail(const v1::Springs& scene) {
                          1e3 * scene.material().thickness());
 }
 
-void AppendSprings(const v1::Springs& scene, const BodyModel& body, const Selection& selection,
+void AppendSprings(const v1::Springs& scene, int b, const Selection& selection, const Draft& draft,
                    std::vector<Spring>& springs) {
-  const Edges edges = scene.has_material() ? TriangleEdges(body.mesh.triangles) : SpringEdges(body.mesh);
+  const BodyModel& body = draft.model.bodies[b];
+  const bool others = scene.has_material() && body.mesh.edges.cols() > 0;
+  const Edges of_triangles = others ? TriangleEdges(body.mesh.triangles) : Edges();
+  const Edges& edges = others ? of_triangles : draft.EdgesOf(b);
   Eigen::VectorXd stiffness = Eigen::VectorXd::Constant(edges.cols(), scene.stiffness());
   if (scene.has_material()) {
     stiffness =
@@ -103,7 +106,7 @@ absl::StatusOr<std::vector<Spring>> Springs::Find(const v1::Springs& scene, std:
   for (const int b : *bodies) {
     const auto selection = draft.Select(b, scene.region(), scene.exclude_region(), path);
     if (!selection.ok()) return selection.status();
-    AppendSprings(scene, draft.model.bodies[b], *selection, springs);
+    AppendSprings(scene, b, *selection, draft, springs);
   }
   return springs;
 }
