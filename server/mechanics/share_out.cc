@@ -17,8 +17,8 @@ constexpr std::int64_t kLeastParts = 16;
 // How often a thread looks whether the others are done before it lets somebody else have its core.
 constexpr int kSpins = 2000;
 
-// How often a helper looks for work before it sleeps: longer than from one part of a step to the next, as waking it takes
-// longer than it would help.
+// How often a helper looks for work before it sleeps: longer than from one part of a step to the next, as waking it
+// takes longer than it would help.
 constexpr int kLooks = 1000;
 
 // Threads that help whoever posts work.

@@ -164,7 +164,8 @@ TEST_P(IntegratorContract, AStepIsTakenBackToItsStart) {
     EXPECT_EQ(work.velocity_before, start.v);
     State back = state;
     TakeBack(*model, model->parameters, 1e-3, work, back);
-    EXPECT_LT((back.x - start.x).norm() + (back.v - start.v).norm(), 1e-12);  // driven ones by their time
+    EXPECT_LT((back.x - start.x).norm(), 1e-15);  // the driven one by its time
+    EXPECT_EQ(back.v.rightCols(2), start.v.rightCols(2));
   }
 }
 

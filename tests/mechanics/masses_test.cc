@@ -68,7 +68,8 @@ TEST(Masses, LeaveWhatAMusclePullsWhereByAreaAsItIs) {
 
 TEST(Masses, ByStiffnessOfNoSpringsAreRefusedByField) {
   const auto model = TryCompileText(
-      "name: 'ball' bodies { name: 'ball' role: ROLE_DEFORMABLE mass_shares: MASS_SHARES_BY_STIFFNESS grid { columns: 2 "
+      "name: 'ball' bodies { name: 'ball' role: ROLE_DEFORMABLE mass_shares: MASS_SHARES_BY_STIFFNESS grid { columns: "
+      "2 "
       "rows: 2 u { x: 1 } v { y: 1 } } } forces { gravity { bodies: 'ball' acceleration { z: -9.81 } } }");
   ASSERT_FALSE(model.ok());
   EXPECT_EQ(model.status().message(),

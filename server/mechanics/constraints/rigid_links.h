@@ -35,7 +35,7 @@ class RigidLinks final : public Constraint {
   void ProjectThesis(const ConstPoints& before, Points& x) const;
 
   bool thesis_ = false;
-  std::vector<Link> alone_;  // no vertex that moves has another link (or the projection asks for no more)
+  std::vector<Link> alone_;          // no vertex that moves has another link (or the projection asks for no more)
   std::vector<LinkPacket> packets_;  // the same
   LinkNetwork network_;              // the others
 };

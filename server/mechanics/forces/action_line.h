@@ -1,8 +1,8 @@
 // A muscle as a line (thesis section 3.4, listing A.1.2): f_i = F breath_force signal(t) w_i / sum w, along the line.
-// w_i = fall-off times the mass of the area around i at rest, so that the sum over the vertices is F whatever the mesh. Cylinder: 1 - d/radius,
-// d the perpendicular distance; vertical: height above the origin over the radius, where positive.
-// Where the muscle of its side is active by a alone, F is F - (1 - a)(F + lung load). Air that stays in the lungs adds
-// hyperinflation times the air load, whatever the muscle does.
+// w_i = fall-off times the mass of the area around i at rest, so that the sum over the vertices is F whatever the mesh.
+// Cylinder: 1 - d/radius, d the perpendicular distance; vertical: height above the origin over the radius, where
+// positive. Where the muscle of its side is active by a alone, F is F - (1 - a)(F + lung load). Air that stays in the
+// lungs adds hyperinflation times the air load, whatever the muscle does.
 #ifndef PHRENIC_SERVER_MECHANICS_FORCES_ACTION_LINE_H_
 #define PHRENIC_SERVER_MECHANICS_FORCES_ACTION_LINE_H_
 

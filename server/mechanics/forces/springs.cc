@@ -98,8 +98,7 @@ void AppendSprings(const v1::Springs& scene, int b, const Selection& selection, 
 
 }  // namespace
 
-absl::StatusOr<std::vector<Spring>> Springs::Find(const v1::Springs& scene, std::string_view path,
-                                                  const Draft& draft) {
+absl::StatusOr<std::vector<Spring>> Springs::Find(const v1::Springs& scene, std::string_view path, const Draft& draft) {
   auto bodies = draft.DeformableBodies(scene.bodies(), absl::StrCat(std::string(path), ".bodies"));
   if (!bodies.ok()) return bodies.status();
   std::vector<Spring> springs;
