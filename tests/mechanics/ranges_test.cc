@@ -79,7 +79,7 @@ TEST(Ranges, WhatAPoseCarriesAsVertexByVertexOnEveryInstructionSet) {
   std::vector<CarriedPacket> packets(3);  // the last one not full
   Points plain = Points::Zero(3, 24);
   for (int i = 0; i < 21; ++i) {
-    CarriedPacket& packet = packets[i / kCarried];
+    CarriedPacket& packet = packets[i / kPacketVertices];
     const auto lane = packet.count++;
     const Eigen::Vector3d rest = Eigen::Vector3d::Random();
     const double stiffness = 10 + i, damping = 0.1 * i;

@@ -88,7 +88,7 @@ HWY_EXPORT(RestorePacketHere);
 std::vector<LinkPacket> PackLinks(const std::vector<Link>& links, int vertices) {
   std::vector<LinkPacket> packets;
   for (const Link& link : links) {
-    if (packets.empty() || packets.back().count == kLinks) packets.emplace_back();
+    if (packets.empty() || packets.back().count == kPacketLinks) packets.emplace_back();
     LinkPacket& packet = packets.back();
     const int i = packet.count++;
     packet.at_end = packet.at_end || std::max(link.a, link.b) == vertices - 1;

@@ -10,13 +10,13 @@
 
 namespace phrenic {
 
-inline constexpr int kLinks = 8;
+inline constexpr int kPacketLinks = 8;
 
 struct alignas(64) LinkPacket {
-  double squared_length[kLinks] = {};                     // [m^2]
-  double inverse_a[kLinks] = {}, inverse_b[kLinks] = {};  // 1/m of the ends [1/kg]
-  double reduced[kLinks] = {};                            // 1/(inverse_a + inverse_b) [kg]; 0 where neither end moves
-  std::int64_t a[kLinks] = {}, b[kLinks] = {};            // where the ends lie in x [doubles]
+  double squared_length[kPacketLinks] = {};                           // [m^2]
+  double inverse_a[kPacketLinks] = {}, inverse_b[kPacketLinks] = {};  // 1/m of the ends [1/kg]
+  double reduced[kPacketLinks] = {};                        // 1/(inverse_a + inverse_b) [kg]; 0 where neither end moves
+  std::int64_t a[kPacketLinks] = {}, b[kPacketLinks] = {};  // where the ends lie in x [doubles]
   int count = 0;
   bool at_end = false;  // one of the ends is the last vertex of all
 };

@@ -96,7 +96,7 @@ void Attachment::Pack(std::vector<RideShare> shares) {
     const Eigen::Index block = share.vertex / kVertexBlock;
     const bool goes_on = !carried_.empty() && carried_.back().block == block && carried_.back().pose == share.pose;
     if (!goes_on) carried_.push_back({block, share.pose, packets_.size(), packets_.size()});
-    if (!goes_on || packets_.back().count == kCarried || share.vertex == last) packets_.emplace_back();
+    if (!goes_on || packets_.back().count == kPacketVertices || share.vertex == last) packets_.emplace_back();
     CarriedPacket& packet = packets_.back();
     const std::int64_t i = packet.count++;
     packet.x[i] = hold.rest.x(), packet.y[i] = hold.rest.y(), packet.z[i] = hold.rest.z();

@@ -11,7 +11,7 @@ namespace phrenic::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using Tag = hn::CappedTag<double, kCarried>;
+using Tag = hn::CappedTag<double, kPacketVertices>;
 constexpr int kLanes = static_cast<int>(hn::MaxLanes(Tag()));
 
 // One coordinate of the pull on the vertices from lane `first` on.
@@ -30,9 +30,9 @@ HWY_INLINE void Pull(const CarriedPacket& packet, int first, const double* way, 
 
 void AddCarriedHere(const double* way, const double* velocity, double scale, const CarriedPacket* packet,
                     const CarriedPacket* end, double* f) {
-  HWY_ALIGN double pull[3][kCarried];
+  HWY_ALIGN double pull[3][kPacketVertices];
   for (; packet != end; ++packet) {
-    for (int first = 0; first < kCarried; first += kLanes) {
+    for (int first = 0; first < kPacketVertices; first += kLanes) {
       for (int k = 0; k < 3; ++k) Pull(*packet, first, way + k, velocity + k, scale, pull[k]);
     }
     for (std::int64_t i = 0; i < packet->count; ++i) {

@@ -10,13 +10,13 @@
 
 namespace phrenic {
 
-inline constexpr int kCarried = 8;
+inline constexpr int kPacketVertices = 8;
 
 // Up to eight vertices and the share that one pose has in them; what is left of it pulls at nothing.
 struct alignas(64) CarriedPacket {
-  double x[kCarried] = {}, y[kCarried] = {}, z[kCarried] = {};  // at rest [m]
-  double stiffness[kCarried] = {}, damping[kCarried] = {};      // times the share [N/m], [N s/m]
-  std::int64_t place[kCarried] = {};                            // of the vertex in f [doubles]; none twice
+  double x[kPacketVertices] = {}, y[kPacketVertices] = {}, z[kPacketVertices] = {};  // at rest [m]
+  double stiffness[kPacketVertices] = {}, damping[kPacketVertices] = {};             // times the share [N/m], [N s/m]
+  std::int64_t place[kPacketVertices] = {};  // of the vertex in f [doubles]; none twice
   std::int64_t count = 0;
 };
 
