@@ -71,12 +71,12 @@ TEST(LinkedNet, DoesNotDependOnTheOrderOfItsLinks) {
 
 // Of a falling chain the free end cracks like a whip: links there turn by a radian in one step.
 TEST(LinkedChain, HoldsAllItsLengthsWhereItsEndCracksLikeAWhip) {
-  constexpr int kLinks = 100;
+  constexpr int kLength = 100;
   std::string text = absl::StrFormat(
-      "name: 'whip' bodies { name: 'whip' role: ROLE_DEFORMABLE mass: %d fixed_vertices: 0 polyhedron {", kLinks);
+      "name: 'whip' bodies { name: 'whip' role: ROLE_DEFORMABLE mass: %d fixed_vertices: 0 polyhedron {", kLength);
   std::vector<Pair> pairs;
-  for (int i = 0; i <= kLinks; ++i) text += absl::StrFormat(" vertices { x: %g }", 0.01 * i);
-  for (int i = 0; i < kLinks; ++i) pairs.push_back({i, i + 1});
+  for (int i = 0; i <= kLength; ++i) text += absl::StrFormat(" vertices { x: %g }", 0.01 * i);
+  for (int i = 0; i < kLength; ++i) pairs.push_back({i, i + 1});
   const auto model = CompileText(text +
                                  " } } forces { gravity { bodies: 'whip' acceleration { z: -9.81 } } } constraints { "
                                  "rigid_links { body: 'whip' " +

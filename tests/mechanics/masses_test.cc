@@ -8,7 +8,7 @@ namespace phrenic {
 namespace {
 
 // Soft on one side and stiff on the other, held at a corner, small triangles in the last column, pulled by a muscle.
-std::string Sheet(const std::string& mass_shares) {
+std::string TwoStiffnesses(const std::string& mass_shares) {
   return absl::StrCat(
       "name: 'sheet' bodies { name: 'sheet' role: ROLE_DEFORMABLE mass: 2 fixed_vertices: [0] ", mass_shares,
       " grid { columns: 12 rows: 9 u { x: 0.01 } v { y: 0.01 } } regions { name: 'stiff' low { x: 0.055 y: -1 z: -1 } "
@@ -34,7 +34,7 @@ class StiffnessAt final : public StiffnessSink {
 };
 
 TEST(Masses, AreSpreadByStiffnessDownToHalfAnEqualShare) {
-  const auto model = CompileText(Sheet(kByStiffness));
+  const auto model = CompileText(TwoStiffnesses(kByStiffness));
   ASSERT_NE(model, nullptr);
   StiffnessAt stiffness(model->rest.cols());
   const State rest = model->InitialState();
@@ -47,13 +47,13 @@ TEST(Masses, AreSpreadByStiffnessDownToHalfAnEqualShare) {
 }
 
 TEST(Masses, ByStiffnessLetExplicitStepsBeLonger) {
-  const auto by_area = CompileText(Sheet("")), by_stiffness = CompileText(Sheet(kByStiffness));
+  const auto by_area = CompileText(TwoStiffnesses("")), by_stiffness = CompileText(TwoStiffnesses(kByStiffness));
   ASSERT_NE(by_stiffness, nullptr);
   EXPECT_GT(by_stiffness->report.stable_step().seconds(), 1.2 * by_area->report.stable_step().seconds());
 }
 
 TEST(Masses, LeaveWhatAMusclePullsWhereByAreaAsItIs) {
-  const auto by_area = CompileText(Sheet("")), by_stiffness = CompileText(Sheet(kByStiffness));
+  const auto by_area = CompileText(TwoStiffnesses("")), by_stiffness = CompileText(TwoStiffnesses(kByStiffness));
   ASSERT_NE(by_stiffness, nullptr);
   const auto pull = [](const Model& model) {
     State state = model.InitialState();
