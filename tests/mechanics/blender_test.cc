@@ -17,13 +17,15 @@ Points Cloud(int n, const Eigen::Vector3d& middle, double size, unsigned seed) {
 }
 
 // Twelve clouds of vertices around a ring of 0.3 m; each has a pose.
-void MakeClouds(Draft& draft) {
+Draft Clouds() {
+  Draft draft;
   for (int c = 0; c < 12; ++c) {
     BodyModel body;
     body.pose = c;
     body.mesh.vertices = Cloud(200, {0.15 * std::cos(c * 0.52), 0.15 * std::sin(c * 0.52), 0}, 0.04, c + 1);
     draft.model.bodies.push_back(std::move(body));
   }
+  return draft;
 }
 
 std::vector<int> All(const Draft& draft) {
@@ -60,12 +62,15 @@ std::map<int, double> SharesOf(const Draft& draft, const Eigen::Vector3d& point)
   return weights;
 }
 
-TEST(Blender, GivesSharesByInverseDistance) {
-  Draft draft;
-  MakeClouds(draft);
-  const Carriers carriers(draft, All(draft));
-  Blender blender(carriers);
+class BlenderBetweenClouds : public testing::Test {
+ protected:
+  const Draft draft = Clouds();
+  const Carriers carriers{draft, All(draft)};
+  Blender blender{carriers};
   const Points path = Path();
+};
+
+TEST_F(BlenderBetweenClouds, GivesSharesByInverseDistance) {
   int shared = 0;
   for (int i = 0; i < path.cols(); ++i) {
     std::vector<RideShare> shares;
@@ -82,12 +87,7 @@ TEST(Blender, GivesSharesByInverseDistance) {
   EXPECT_GT(shared, 500) << "the path is between carriers";
 }
 
-TEST(Blender, IsTheSameWhateverWasBlendedBefore) {
-  Draft draft;
-  MakeClouds(draft);
-  const Carriers carriers(draft, All(draft));
-  Blender blender(carriers);
-  const Points path = Path();
+TEST_F(BlenderBetweenClouds, IsTheSameWhateverWasBlendedBefore) {
   for (int i = 0; i < path.cols(); ++i) {
     std::vector<RideShare> shares, alone;
     blender.Blend(path.col(i), i, shares);
