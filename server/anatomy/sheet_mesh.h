@@ -26,7 +26,8 @@ struct Sheet {
 // Border vertices first, spaced by the edge length along each loop (at least eight a loop); then quasi-random points
 // at least 0.8 edge lengths apart (a low-discrepancy sequence thinned by distance), triangulated in the plane, made
 // Delaunay on the surface and relaxed to the area-weighted centroids of their triangles (as in centroidal Voronoi
-// tessellation; Du, Faber and Gunzburger, SIAM Review 1999;41:637). Deterministic.
+// tessellation; Du, Faber and Gunzburger, SIAM Review 1999;41:637); at last numbered so that neighbours are near each
+// other in memory. Deterministic.
 Sheet MeshSheet(const SheetDomain& domain);
 
 }  // namespace phrenic::anatomy

@@ -31,6 +31,7 @@ class Bench {
       : subjects_(subjects),
         springs_(SpringsOf(*subjects.springs)),
         rows_(springs_, static_cast<int>(subjects.springs->rest.cols())),
+        single_(springs_, static_cast<int>(subjects.springs->rest.cols()), Precision::kSingle),
         x_(subjects.springs->rest * 1.05),
         f_(Points::Zero(3, x_.cols())),
         solver_(subjects.springs) {
@@ -79,6 +80,7 @@ class Bench {
     // At each end stiffness times length and a place; a vertex' point, and its force read and written.
     const double bytes = 2 * many * (Doubles(1) + sizeof(int)) + vertices * Doubles(3 + 6);
     table.Register({kSprings, [this] { rows_.AddForce(1, x_, f_); }, many, "spring", kPlain, bytes, 2 * many * 19});
+    table.Register({"springs, single precision", [this] { single_.AddForce(1, x_, f_); }, many, "spring", kPlain});
     table.Register({kEuler, [this] { euler_.Step(); }, many, "spring", kPlain});
 #ifdef PHRENIC_BULLET
     table.Register({"Bullet's soft body, 1 iteration", [this] { once_.Step(1e-3); }, many, "spring", kEuler});
@@ -118,7 +120,7 @@ class Bench {
 
   const Subjects& subjects_;
   const std::vector<Spring> springs_;
-  const SpringRows rows_;
+  const SpringRows rows_, single_;
   const Points x_;
   Points f_;
   Solver solver_;

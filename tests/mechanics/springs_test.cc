@@ -1,9 +1,11 @@
-// The springs' fast layout against the plain loop over them: the same forces but for the order of the sums, and the
-// same bits on every instruction set that this machine has, the portable path among them.
+// The springs' fast layouts against the plain loop over them: the same forces but for the order of the sums, or within
+// the error that single precision states, and the same bits on every instruction set that this machine has, the
+// portable path among them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <random>
 
@@ -28,7 +30,9 @@ struct Network {
     rows.AddForce(scale, x, f);
     return f;
   }
-  SpringRows Rows() const { return {springs, static_cast<int>(x.cols())}; }
+  SpringRows Rows(Precision precision = Precision::kDouble) const {
+    return {springs, static_cast<int>(x.cols()), precision};
+  }
   // The largest sum over a vertex' springs of k l: what rounding is measured by.
   double Size() const {
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(x.cols());
@@ -38,7 +42,20 @@ struct Network {
     }
     return sum.maxCoeff();
   }
+  // The error that spring_rows.h states for single precision, of each vertex [N].
+  Eigen::VectorXd SingleError() const {
+    const double away = (x.rowwise().maxCoeff() - x.rowwise().minCoeff()).norm();
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(x.cols());
+    for (const Spring& spring : springs) {
+      const double length = (x.col(spring.a) - x.col(spring.b)).norm();
+      const double error = std::ldexp(spring.stiffness * (away + length) * (1 + spring.rest_length / length), -19);
+      sum[spring.a] += error, sum[spring.b] += error;
+    }
+    return sum;
+  }
 };
+
+const Precision kPrecisions[] = {Precision::kDouble, Precision::kSingle};
 
 // Springs between vertices drawn from all: rows of very different lengths, some empty, a pair joined twice.
 Network Random(int vertices, int springs) {
@@ -76,17 +93,54 @@ TEST(SpringRows, GiveWhatThePlainLoopGives) {
   }
 }
 
+// Also far from where coordinates begin.
+TEST(SpringRows, InSinglePrecisionKeepWithinTheErrorTheyState) {
+  for (const int vertices : {2, 3, 7, 16, 17, 64, 1000}) {
+    for (const double shift : {0, 1000}) {
+      Network network = Random(vertices, 4 * vertices);
+      network.x.array() += shift;
+      const SpringRows rows = network.Rows(Precision::kSingle);
+      const Points plain = network.Plain(1.7);
+      const Eigen::VectorXd error = 1.7 * network.SingleError();
+      OnEveryTarget([&] {
+        const Points off = (network.Ours(rows, 1.7) - plain).cwiseAbs();
+        EXPECT_LE((off.colwise().maxCoeff().transpose() - error).maxCoeff(), 0) << vertices << ", " << shift;
+      });
+    }
+  }
+}
+
 TEST(SpringRows, GiveTheSameBitsOnEveryInstructionSet) {
   const Network network = Random(1000, 4000);
-  const SpringRows rows = network.Rows();
-  const Points here = network.Ours(rows, 0.3);
-  OnEveryTarget([&] { EXPECT_EQ(network.Ours(rows, 0.3), here); });
+  for (const Precision precision : kPrecisions) {
+    const SpringRows rows = network.Rows(precision);
+    const Points here = network.Ours(rows, 0.3);
+    OnEveryTarget([&] { EXPECT_EQ(network.Ours(rows, 0.3), here); });
+  }
 }
 
 TEST(SpringRows, ThatAreReorderedGiveTheSame) {
   const Network network = ScatteredRing(30000);
-  const SpringRows rows = network.Rows();
-  EXPECT_LT((network.Ours(rows, 1) - network.Plain(1)).cwiseAbs().maxCoeff(), 1e-13 * network.Size());
+  const Points plain = network.Plain(1);
+  EXPECT_LT((network.Ours(network.Rows(), 1) - plain).cwiseAbs().maxCoeff(), 1e-13 * network.Size());
+  const Points off = (network.Ours(network.Rows(Precision::kSingle), 1) - plain).cwiseAbs();
+  EXPECT_LE((off.colwise().maxCoeff().transpose() - network.SingleError()).maxCoeff(), 0);
+}
+
+// A sheet's blocks, whose vertices all have springs, and a few springs among many vertices that have none.
+TEST(SpringRows, LeaveVerticesWithoutSpringsAlone) {
+  for (const int springs : {40, 20000}) {
+    Network network = Random(2000, springs);
+    std::erase_if(network.springs, [](const Spring& spring) { return spring.a % 5 == 0 || spring.b % 5 == 0; });
+    for (const Precision precision : kPrecisions) {
+      const SpringRows rows = network.Rows(precision);
+      OnEveryTarget([&] {
+        const Points f = network.Ours(rows, 1);
+        for (int i = 0; i < 2000; i += 5) EXPECT_EQ(f.col(i).norm(), 0) << i;
+        EXPECT_GT(f.norm(), 0);
+      });
+    }
+  }
 }
 
 TEST(SpringRows, PullAtNothingWhereEndsCoincide) {
@@ -101,26 +155,31 @@ TEST(SpringRows, AddTheLoadToTheVerticesThatHaveSprings) {
   Network network = Random(10, 30);
   network.x.conservativeResize(3, 11);  // and one that has none
   network.x.col(10).setZero();
-  SpringRows rows = network.Rows();
-  const Points load = Points::Random(3, 11);
-  const Points before = network.Ours(rows, 2);
-  rows.SetLoad(load);
-  OnEveryTarget([&] {
-    const Points difference = network.Ours(rows, 2) - before;
-    EXPECT_LT((difference - 2 * load).leftCols(10).cwiseAbs().maxCoeff(), 1e-12);
-    EXPECT_EQ(difference.col(10).norm(), 0);
-  });
+  for (const Precision precision : kPrecisions) {
+    SpringRows rows = network.Rows(precision);
+    const Points load = Points::Random(3, 11);
+    const Points before = network.Ours(rows, 2);
+    rows.SetLoad(load);
+    OnEveryTarget([&] {
+      const Points difference = network.Ours(rows, 2) - before;
+      const double rounding = precision == Precision::kSingle ? 1e-5 : 1e-12;
+      EXPECT_LT((difference - 2 * load).leftCols(10).cwiseAbs().maxCoeff(), rounding);
+      EXPECT_EQ(difference.col(10).norm(), 0);
+    });
+  }
 }
 
 TEST(SpringRows, ShowWhatIsNoNumber) {
   Network network = Random(20, 60);
   network.x(1, network.springs.front().a) = std::numeric_limits<double>::quiet_NaN();
-  const SpringRows rows = network.Rows();
-  OnEveryTarget([&] {
-    const Points f = network.Ours(rows, 1);
-    EXPECT_TRUE(f.col(network.springs.front().a).hasNaN());
-    EXPECT_TRUE(f.col(network.springs.front().b).hasNaN());
-  });
+  for (const Precision precision : kPrecisions) {
+    const SpringRows rows = network.Rows(precision);
+    OnEveryTarget([&] {
+      const Points f = network.Ours(rows, 1);
+      EXPECT_TRUE(f.col(network.springs.front().a).hasNaN());
+      EXPECT_TRUE(f.col(network.springs.front().b).hasNaN());
+    });
+  }
 }
 
 }  // namespace

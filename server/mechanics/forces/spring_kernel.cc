@@ -14,40 +14,89 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-using points::kLanes, points::Tag, points::Transposed, points::Vector, points::Vectors;
+// One vector is a slice, a half or a quarter of one, or less.
+template <typename Number>
+using SliceTag = hn::CappedTag<Number, kSliceRows<Number>>;
+template <typename Number>
+constexpr int kWidth = static_cast<int>(hn::MaxLanes(SliceTag<Number>()));
 
-// [m^2]; keeps 1/l finite, so that l = 0 gives no force and no exception is made of it.
-constexpr double kShortestSquared = 1e-300;
-static_assert(kSliceRows % kLanes == 0);
-
-// kLanes rows of a slice; every slice has kParts of them.
-struct Part {
-  const SpringSlice& slice;
-  std::int64_t number;  // of the slice
-  int first_row;
-  std::int64_t end_column;
+template <typename Number>
+struct Coordinates {
+  hn::Vec<SliceTag<Number>> x, y, z;
 };
-constexpr int kParts = static_cast<int>(kSliceRows / kLanes);
 
-HWY_INLINE Part PartOf(const SpringSlices& slices, std::int64_t part) {
-  const std::int64_t number = part / kParts;
-  const SpringSlice& slice = slices.slices[number];
-  return {slice, number, static_cast<int>(part % kParts * kLanes), slices.slices[number + 1].first_column};
+// Keeps 1/l finite, so that l = 0 gives no force and no exception is made of it [m^2].
+template <typename Number>
+constexpr Number kShortestSquared = std::is_same_v<Number, float> ? 1e-36 : 1e-300;
+
+template <bool kAtEnd>
+HWY_INLINE Coordinates<double> Fetch(const double* x, const std::int32_t* place) {
+  const points::Vectors fetched = points::Transposed<kAtEnd>(x, place);
+  return {fetched.x, fetched.y, fetched.z};
 }
 
+// Points i, i + 4, ... , as many as a vector has.
+HWY_INLINE hn::Vec<SliceTag<float>> EveryFourth(const float* x, const std::int32_t* place, int i) {
+  const SliceTag<float> d;
+#if HWY_TARGET == HWY_SCALAR
+  return hn::Load(d, x + place[i]);
+#elif HWY_TARGET <= HWY_AVX3
+  const hn::FixedTag<float, 8> half;
+  const hn::FixedTag<float, 4> one;
+  const auto low = hn::Combine(half, hn::Load(one, x + place[i + 4]), hn::Load(one, x + place[i]));
+  const auto high = hn::Combine(half, hn::Load(one, x + place[i + 12]), hn::Load(one, x + place[i + 8]));
+  return hn::Combine(d, high, low);
+#elif HWY_TARGET == HWY_AVX2
+  const hn::FixedTag<float, 4> one;
+  return hn::Combine(d, hn::Load(one, x + place[i + 4]), hn::Load(one, x + place[i]));
+#else
+  return hn::Load(d, x + place[i]);
+#endif
+}
+
+template <bool kAtEnd>
+HWY_INLINE Coordinates<float> Fetch(const float* x, const std::int32_t* place) {
+  const SliceTag<float> d;
+#if HWY_TARGET == HWY_SCALAR
+  return {hn::Load(d, x + *place), hn::Load(d, x + *place + 1), hn::Load(d, x + *place + 2)};
+#else
+  const hn::RepartitionToWide<SliceTag<float>> pairs;
+  const auto a = EveryFourth(x, place, 0), b = EveryFourth(x, place, 1);
+  const auto c = EveryFourth(x, place, 2), e = EveryFourth(x, place, 3);
+  const auto xy01 = hn::BitCast(pairs, hn::InterleaveLower(d, a, b));
+  const auto xy23 = hn::BitCast(pairs, hn::InterleaveLower(d, c, e));
+  const auto z01 = hn::BitCast(pairs, hn::InterleaveUpper(d, a, b));
+  const auto z23 = hn::BitCast(pairs, hn::InterleaveUpper(d, c, e));
+  return {hn::BitCast(d, hn::InterleaveLower(pairs, xy01, xy23)),
+          hn::BitCast(d, hn::InterleaveUpper(pairs, xy01, xy23)),
+          hn::BitCast(d, hn::InterleaveLower(pairs, z01, z23))};
+#endif
+}
+
+// The rows of a slice from `row` on, as many as a vector has.
+template <typename Number>
+struct Part {
+  const SpringSlices<Number>& slices;
+  std::int64_t slice;
+  int row;
+};
+
 // Sum of the pulls on the part's rows.
-template <bool kAlike, bool kAtEnd>
-HWY_INLINE Vectors SumPulls(const SpringSlices& slices, const Part& part, const double* x) {
-  const Tag d;
-  const auto common = hn::Set(d, slices.common_stiffness), shortest = hn::Set(d, kShortestSquared);
-  const Vectors own = Transposed<kAtEnd>(x, part.slice.own + part.first_row);
-  Vectors sum = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
-  for (std::int64_t c = part.slice.first_column; c < part.end_column; ++c) {
-    const Vectors other = Transposed<kAtEnd>(x, slices.neighbours[c].place + part.first_row);
+template <bool kAlike, bool kAtEnd, typename Number>
+HWY_INLINE Coordinates<Number> SumPulls(const Part<Number>& part, const Number* x) {
+  const SliceTag<Number> d;
+  const SpringSlices<Number>& slices = part.slices;
+  const auto common = hn::Set(d, slices.common_stiffness), shortest = hn::Set(d, kShortestSquared<Number>);
+  const SpringSlice<Number>& slice = slices.slices[part.slice];
+  const std::int64_t end = slices.slices[part.slice + 1].first_column;
+  const Coordinates<Number> own = Fetch<kAtEnd>(x, slice.own + part.row);
+  Coordinates<Number> sum = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+  for (std::int64_t c = slice.first_column; c < end; ++c) {
+    const Coordinates<Number> other = Fetch<kAtEnd>(x, slices.neighbours[c].place + part.row);
     const auto dx = hn::Sub(other.x, own.x), dy = hn::Sub(other.y, own.y), dz = hn::Sub(other.z, own.z);
     const auto squared = hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz));
-    const auto stiffness = kAlike ? common : hn::Load(d, slices.stiffness[c].k + part.first_row);
-    const auto at_rest = hn::Load(d, slices.columns[c].at_rest + part.first_row);
+    const auto stiffness = kAlike ? common : hn::Load(d, slices.stiffness[c].row + part.row);
+    const auto at_rest = hn::Load(d, slices.at_rest[c].row + part.row);
     const auto pull = hn::Sub(stiffness, hn::Div(at_rest, hn::Sqrt(hn::Max(squared, shortest))));
     sum.x = hn::Add(sum.x, hn::Mul(pull, dx));
     sum.y = hn::Add(sum.y, hn::Mul(pull, dy));
@@ -56,41 +105,177 @@ HWY_INLINE Vectors SumPulls(const SpringSlices& slices, const Part& part, const 
   return sum;
 }
 
-HWY_INLINE void AddLoad(const SpringSlices& slices, const Part& part, Vectors& sum) {
-  if (slices.load.empty()) return;
-  const Tag d;
-  const SliceLoad& load = slices.load[part.number];
-  sum.x = hn::Add(sum.x, hn::Load(d, load.x + part.first_row));
-  sum.y = hn::Add(sum.y, hn::Load(d, load.y + part.first_row));
-  sum.z = hn::Add(sum.z, hn::Load(d, load.z + part.first_row));
+template <typename Number>
+HWY_INLINE void AddLoad(const Part<Number>& part, Coordinates<Number>& sum) {
+  if (part.slices.load.empty()) return;
+  const SliceTag<Number> d;
+  const SliceLoad<Number>& load = part.slices.load[part.slice];
+  sum.x = hn::Add(sum.x, hn::Load(d, load.x.row + part.row));
+  sum.y = hn::Add(sum.y, hn::Load(d, load.y.row + part.row));
+  sum.z = hn::Add(sum.z, hn::Load(d, load.z.row + part.row));
 }
 
-// f += scale sum, row by row.
-HWY_INLINE void AddSums(const Vectors& sum, double scale, const Part& part, double* f) {
-  const auto factor = hn::Set(Tag(), scale);
-  const auto rows = points::ToRows({hn::Mul(factor, sum.x), hn::Mul(factor, sum.y), hn::Mul(factor, sum.z)});
-  points::AddRows(rows, part.slice.own + part.first_row, part.slice.rows - part.first_row, f);
-}
-
-template <bool kAlike>
-void AddParts(const SpringSlices& slices, std::int64_t begin, std::int64_t end, double scale, const double* x,
-              double* f) {
-  for (std::int64_t p = begin; p < end; ++p) {
-    const Part part = PartOf(slices, p);
-    if (part.first_row >= part.slice.rows) continue;
-    Vectors sum =
-        part.slice.at_end ? SumPulls<kAlike, true>(slices, part, x) : SumPulls<kAlike, false>(slices, part, x);
-    AddLoad(slices, part, sum);
-    AddSums(sum, scale, part, f);
+// The sums of a slice's rows from `row` on as points (x, y, z, 0), to their slots; `tile` is where the slice's begin.
+template <typename Number>
+HWY_INLINE void ToSlots(const Coordinates<Number>& sum, int row, Number* tile) {
+  const SliceTag<Number> d;
+  [[maybe_unused]] constexpr int kRows = kSliceRows<Number>;
+  if constexpr (kWidth<Number> < 4) {
+    HWY_ALIGN Number lanes[3][kWidth<Number>];
+    hn::Store(sum.x, d, lanes[0]), hn::Store(sum.y, d, lanes[1]), hn::Store(sum.z, d, lanes[2]);
+    for (int i = 0; i < kWidth<Number>; ++i) {
+      for (int c = 0; c < 3; ++c) tile[SlotOf<Number>(0, row + i) + c] = lanes[c][i];
+    }
+  } else {
+#if HWY_TARGET != HWY_SCALAR
+    const auto xy = hn::InterleaveLower(d, sum.x, sum.y), xy_up = hn::InterleaveUpper(d, sum.x, sum.y);
+    const auto z = hn::InterleaveLower(d, sum.z, hn::Zero(d)), z_up = hn::InterleaveUpper(d, sum.z, hn::Zero(d));
+    if constexpr (std::is_same_v<Number, float>) {
+      const hn::RepartitionToWide<SliceTag<float>> pairs;
+      const auto store = [&](int i, auto points) { hn::Store(hn::BitCast(d, points), d, tile + i * kRows + row); };
+      const auto a = hn::BitCast(pairs, xy), b = hn::BitCast(pairs, z);
+      const auto a_up = hn::BitCast(pairs, xy_up), b_up = hn::BitCast(pairs, z_up);
+      store(0, hn::InterleaveLower(pairs, a, b)), store(1, hn::InterleaveUpper(pairs, a, b));
+      store(2, hn::InterleaveLower(pairs, a_up, b_up)), store(3, hn::InterleaveUpper(pairs, a_up, b_up));
+    } else {
+      const auto store = [&](int i, auto points) { hn::Store(points, d, tile + i * kRows + row); };
+      store(0, hn::OddEvenBlocks(hn::SwapAdjacentBlocks(z), xy));
+      store(1, hn::OddEvenBlocks(hn::SwapAdjacentBlocks(z_up), xy_up));
+      store(2, hn::OddEvenBlocks(z, hn::SwapAdjacentBlocks(xy)));
+      store(3, hn::OddEvenBlocks(z_up, hn::SwapAdjacentBlocks(xy_up)));
+    }
+#endif
   }
 }
 
-void AddSlicesHere(const SpringSlices& slices, std::int64_t begin, std::int64_t end, double scale, const double* x,
-                   double* f) {
-  if (slices.stiffness.empty()) {
-    AddParts<true>(slices, begin * kParts, end * kParts, scale, x, f);
-  } else {
-    AddParts<false>(slices, begin * kParts, end * kParts, scale, x, f);
+// A block's sums by slot. Three numbers before a slot and two after it are read with it, for nothing.
+template <typename Number>
+class Tile {
+ public:
+  Tile() {
+    for (int i = 0; i < 4; ++i) begin()[kNoSlot<Number> + i] = 0;
+  }
+  Number* begin() { return numbers_ + kAhead; }
+
+ private:
+  static constexpr int kAhead = kSliceRows<Number>;  // keeps slots aligned
+  alignas(64) Number numbers_[kAhead + kNoSlot<Number> + 8];
+};
+
+template <bool kAlike, typename Number>
+HWY_INLINE void FillTile(const SpringSlices<Number>& slices, std::int64_t block, Number scale, const Number* x,
+                         Number* tile) {
+  const auto factor = hn::Set(SliceTag<Number>(), scale);
+  const std::int64_t first = slices.blocks[block].first_slice, end = slices.blocks[block + 1].first_slice;
+  for (std::int64_t s = first; s < end; ++s, tile += 4 * kSliceRows<Number>) {
+    const SpringSlice<Number>& slice = slices.slices[s];
+    for (int row = 0; row < slice.rows; row += kWidth<Number>) {
+      const Part<Number> part = {slices, s, row};
+      Coordinates<Number> sum = slice.at_end ? SumPulls<kAlike, true>(part, x) : SumPulls<kAlike, false>(part, x);
+      AddLoad(part, sum);
+      ToSlots({hn::Mul(factor, sum.x), hn::Mul(factor, sum.y), hn::Mul(factor, sum.z)}, row, tile);
+    }
+  }
+}
+
+HWY_INLINE void AddSlot(const double* slot, double* point) {
+  for (int c = 0; c < 3; ++c) point[c] += slot[c];
+}
+HWY_INLINE void AddSlot(const float* slot, double* point) {
+  for (int c = 0; c < 3; ++c) point[c] += static_cast<double>(slot[c]);
+}
+
+#if HWY_TARGET != HWY_SCALAR
+using FourDoubles = hn::CappedTag<double, 4>;
+HWY_INLINE hn::Vec<FourDoubles> Doubles(hn::Vec<FourDoubles> numbers) { return numbers; }
+HWY_INLINE hn::Vec<FourDoubles> Doubles(hn::Vec<hn::Rebind<float, FourDoubles>> numbers) {
+  return hn::PromoteTo(FourDoubles(), numbers);
+}
+
+// Four points at f, one after the other, += those at the slots.
+template <typename Number>
+HWY_INLINE void AddFour(const Number* tile, const std::uint16_t* slot, double* f) {
+  const hn::Rebind<Number, FourDoubles> four;
+  const FourDoubles d;
+  const Number *p0 = tile + slot[0], *p1 = tile + slot[1], *p2 = tile + slot[2], *p3 = tile + slot[3];
+  const auto xyzx = hn::IfThenElse(hn::FirstN(four, 3), hn::LoadU(four, p0), hn::LoadU(four, p1 - 3));
+  const auto yzxy = hn::ConcatUpperLower(four, hn::LoadU(four, p2 - 2), hn::LoadU(four, p1 + 1));
+  const auto zxyz = hn::IfThenElse(hn::FirstN(four, 1), hn::LoadU(four, p2 + 2), hn::LoadU(four, p3 - 1));
+  hn::StoreU(hn::Add(hn::LoadU(d, f), Doubles(xyzx)), d, f);
+  hn::StoreU(hn::Add(hn::LoadU(d, f + 4), Doubles(yzxy)), d, f + 4);
+  hn::StoreU(hn::Add(hn::LoadU(d, f + 8), Doubles(zxyz)), d, f + 8);
+}
+#endif
+
+// A block whose vertices lie in f one after the other.
+template <typename Number>
+HWY_INLINE void AddWhole(const SpringSlices<Number>& slices, const VertexRange& range, const Number* tile, double* f) {
+  const std::uint16_t* const slot = slices.slot.data();
+  Eigen::Index v = range.first;
+#if HWY_TARGET != HWY_SCALAR
+  if constexpr (hn::MaxLanes(FourDoubles()) == 4) {
+    for (; v + 4 <= range.end; v += 4) AddFour(tile, slot + v, f + 3 * v);
+  }
+#endif
+  for (; v < range.end; ++v) AddSlot(tile + slot[v], f + 3 * v);
+}
+
+template <typename Number>
+HWY_INLINE void AddRowByRow(const SpringSlices<Number>& slices, std::int64_t block, const Number* tile, double* f) {
+  const std::int64_t first = slices.blocks[block].first_slice, end = slices.blocks[block + 1].first_slice;
+  for (std::int64_t s = first; s < end; ++s) {
+    const SpringSlice<Number>& slice = slices.slices[s];
+    for (int row = 0; row < slice.rows; ++row) {
+      const std::int64_t place = slice.own[row] / kPointStride<Number>;
+      const std::int64_t vertex = slices.order.empty() ? place : slices.order[place];
+      AddSlot(tile + SlotOf<Number>(s - first, row), f + 3 * vertex);
+    }
+  }
+}
+
+template <typename Number>
+HWY_INLINE void AddBlocks(const SpringSlices<Number>& slices, std::int64_t begin, std::int64_t end, double scale,
+                          const Number* x, double* f) {
+  Tile<Number> memory;
+  Number* const tile = memory.begin();
+  for (std::int64_t b = begin; b < end; ++b) {
+    const auto factor = static_cast<Number>(scale);
+    if (slices.stiffness.empty()) {
+      FillTile<true>(slices, b, factor, x, tile);
+    } else {
+      FillTile<false>(slices, b, factor, x, tile);
+    }
+    const auto places = static_cast<Eigen::Index>(slices.slot.size());
+    const VertexRange range = {b * kVertexBlock, std::min((b + 1) * kVertexBlock, places)};
+    slices.blocks[b].whole ? AddWhole(slices, range, tile, f) : AddRowByRow(slices, b, tile, f);
+  }
+}
+
+void AddInDouble(const SpringSlices<double>& slices, std::int64_t begin, std::int64_t end, double scale,
+                 const double* x, double* f) {
+  AddBlocks(slices, begin, end, scale, x, f);
+}
+
+void AddInSingle(const SpringSlices<float>& slices, std::int64_t begin, std::int64_t end, double scale, const float* x,
+                 double* f) {
+  AddBlocks(slices, begin, end, scale, x, f);
+}
+
+void PackHere(const VertexRange& range, const double* x, const double* origin, float* packed) {
+  Eigen::Index v = range.first;
+#if HWY_TARGET != HWY_SCALAR
+  if constexpr (hn::MaxLanes(FourDoubles()) == 4) {
+    const FourDoubles d;
+    const hn::Rebind<float, FourDoubles> four;
+    HWY_ALIGN const double at[4] = {origin[0], origin[1], origin[2], 0};
+    const auto from = hn::Load(d, at);
+    for (; v + 1 < range.end; ++v) {
+      hn::Store(hn::DemoteTo(four, hn::Sub(hn::LoadU(d, x + 3 * v), from)), four, packed + 4 * v);
+    }
+  }
+#endif
+  for (; v < range.end; ++v) {
+    for (int c = 0; c < 3; ++c) packed[4 * v + c] = static_cast<float>(x[3 * v + c] - origin[c]);
   }
 }
 
@@ -101,11 +286,22 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace phrenic {
 
-HWY_EXPORT(AddSlicesHere);
+HWY_EXPORT(AddInDouble);
+HWY_EXPORT(AddInSingle);
+HWY_EXPORT(PackHere);
 
-void AddSlices(const SpringSlices& slices, std::int64_t first, std::int64_t end, double scale, const double* x,
-               double* f) {
-  HWY_DYNAMIC_DISPATCH(AddSlicesHere)(slices, first, end, scale, x, f);
+void AddSprings(const SpringSlices<double>& slices, std::int64_t first, std::int64_t end, double scale, const double* x,
+                double* f) {
+  HWY_DYNAMIC_DISPATCH(AddInDouble)(slices, first, end, scale, x, f);
+}
+
+void AddSprings(const SpringSlices<float>& slices, std::int64_t first, std::int64_t end, double scale, const float* x,
+                double* f) {
+  HWY_DYNAMIC_DISPATCH(AddInSingle)(slices, first, end, scale, x, f);
+}
+
+void PackPoints(const VertexRange& range, const double* x, const double* origin, float* packed) {
+  HWY_DYNAMIC_DISPATCH(PackHere)(range, x, origin, packed);
 }
 
 }  // namespace phrenic

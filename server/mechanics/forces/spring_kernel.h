@@ -1,54 +1,92 @@
 // The inner loop of springs (springs.h), for each vertex the sum over its own: written once with Google Highway,
 // compiled for several instruction sets, the machine's best chosen at run time. No target fuses a product into a sum,
-// and all take the same sums in the same order, so that they give the same bits.
+// and all take the same sums in the same order, so that they give the same bits. `Number` is double, or float for
+// half the memory and twice the springs an instruction.
 #ifndef PHRENIC_SERVER_MECHANICS_FORCES_SPRING_KERNEL_H_
 #define PHRENIC_SERVER_MECHANICS_FORCES_SPRING_KERNEL_H_
 
 #include <cstdint>
+#include <type_traits>
 #include <vector>
+
+#include "server/mechanics/vertex_range.h"
 
 namespace phrenic {
 
 // Rows of a slice: one a vertex, all padded to the slice's longest.
-inline constexpr int kSliceRows = 8;
+template <typename Number>
+inline constexpr int kSliceRows = 64 / sizeof(Number);
 
+// From a point to the next [Numbers]. Those in single precision are four numbers each, so that one aligned load has one
+// point: the last is not read for its value.
+template <typename Number>
+inline constexpr int kPointStride = std::is_same_v<Number, float> ? 4 : 3;
+
+template <typename Number>
 struct SpringSlice {
-  std::int32_t own[kSliceRows] = {};  // where the row's vertex lies in x and f [doubles]
-  int rows = 0;                       // the others are padding
-  bool at_end = false;                // one of its springs, or rows, is of the last vertex of all
+  std::int32_t own[kSliceRows<Number>] = {};  // where the row's vertex lies in x [Numbers]
+  int rows = 0;                               // the others are padding
+  bool at_end = false;                        // one of its springs, or rows, is of the last vertex of all
   std::int64_t first_column = 0;
 };
-// One spring of each row of a slice. Padding is a spring to itself, of no force at rest.
-struct alignas(64) SpringColumn {
-  double at_rest[kSliceRows] = {};  // k l0 [N]
+// A number for each row of a slice: for one spring of each, k l0 [N] or k [N/m].
+template <typename Number>
+struct alignas(64) SliceNumbers {
+  Number row[kSliceRows<Number>] = {};
 };
-struct alignas(64) ColumnStiffness {
-  double k[kSliceRows] = {};  // [N/m]
-};
-// Where the other ends of a column's springs lie in x [doubles].
+// Where the other ends of a column's springs lie in x [Numbers].
+template <typename Number>
 struct SpringNeighbours {
-  std::int32_t place[kSliceRows] = {};
+  std::int32_t place[kSliceRows<Number>] = {};
 };
 // A steady force on each row of a slice [N].
-struct alignas(64) SliceLoad {
-  double x[kSliceRows] = {}, y[kSliceRows] = {}, z[kSliceRows] = {};
+template <typename Number>
+struct SliceLoad {
+  SliceNumbers<Number> x, y, z;
+};
+// kVertexBlock vertices as the slices count them. Their sums are gathered in a tile before they are added to f.
+struct SpringBlock {
+  std::int64_t first_slice = 0;
+  bool whole = false;  // nearly all its vertices have springs, and lie in f as they do in x
+  bool asked = false;  // for a position, by springs of this block or another
 };
 
-// Springs by vertex, in slices of rows: SELL-C-sigma (Kreutzer et al., SIAM J Sci Comput 2014;36:C401).
+// Springs by vertex, in slices of rows: SELL-C-sigma (Kreutzer et al., SIAM J Sci Comput 2014;36:C401). Padding is a
+// spring to itself, of no force at rest.
+template <typename Number>
 struct SpringSlices {
-  std::vector<SpringSlice> slices;  // and one more, for the end of its columns
-  std::vector<SpringColumn> columns;
-  std::vector<SpringNeighbours> neighbours;  // a column
-  std::vector<ColumnStiffness> stiffness;    // a column; none where all springs are alike
-  double common_stiffness = 0;               // [N/m], where they are
-  std::vector<SliceLoad> load;               // a slice, or none
+  std::vector<SpringBlock> blocks;                    // and one more, for the end of its slices
+  std::vector<SpringSlice<Number>> slices;            // and one more, for the end of its columns
+  std::vector<SliceNumbers<Number>> at_rest;          // a column
+  std::vector<SpringNeighbours<Number>> neighbours;   // a column
+  std::vector<SliceNumbers<Number>> stiffness;        // a column; none where all springs are alike
+  Number common_stiffness = 0;                        // [N/m], where they are
+  std::vector<SliceLoad<Number>> load;                // a slice, or none
+  std::vector<std::uint16_t> slot;                    // of each vertex in its block's tile
+  std::vector<int> order;                             // the vertices as the slices count them; none where they come so
 };
 
-// f += scale (sum over the row's springs of (k - k l0 / l) d + load) [N] for the rows of slices first to end - 1, d
-// from the row's vertex to the neighbour, l its length [m]; a spring with l = 0 pulls at nothing. x and f are 3 x n,
-// one column a simulated vertex. Any number of threads may call, at once only on different slices.
-void AddSlices(const SpringSlices& slices, std::int64_t first, std::int64_t end, double scale, const double* x,
-               double* f);
+// Where the sum of a slice's row lies in a tile, so that one transposition of them all writes whole vectors.
+template <typename Number>
+constexpr int SlotOf(std::int64_t slice_in_block, int row) {
+  constexpr int kRows = kSliceRows<Number>;
+  return static_cast<int>(slice_in_block) * 4 * kRows + row % 4 * kRows + row / 4 * 4;
+}
+// That of a vertex without springs.
+template <typename Number>
+inline constexpr int kNoSlot = SlotOf<Number>(kVertexBlock / kSliceRows<Number>, 0);
+
+// f += scale (sum over the row's springs of (k - k l0 / l) d + load) [N] for the vertices of blocks first to end - 1, d
+// from the row's vertex to the neighbour, l its length [m]; a spring with l = 0 pulls at nothing. x are points in the
+// slices' order, kPointStride numbers each; f is 3 x n, one column a simulated vertex. Any number of threads may call,
+// at once only on different blocks.
+void AddSprings(const SpringSlices<double>& slices, std::int64_t first, std::int64_t end, double scale, const double* x,
+                double* f);
+void AddSprings(const SpringSlices<float>& slices, std::int64_t first, std::int64_t end, double scale, const float* x,
+                double* f);
+
+// Points first to end - 1 of the 3 x n array x, from `origin` [m], in single precision; aligned to 16 bytes.
+void PackPoints(const VertexRange& range, const double* x, const double* origin, float* packed);
 
 }  // namespace phrenic
 

@@ -9,6 +9,8 @@ namespace {
 
 // Ends of springs this many vertices apart, on the mean, no longer meet in a core's cache.
 constexpr double kFarApart = 8192;
+// Of a block's vertices: with springs at more of them than this its sums are added vertex by vertex, not row by row.
+constexpr double kNearlyAll = 0.75;
 
 // One end of a spring as its row sees it; vertices by their places.
 struct RowSpring {
@@ -56,80 +58,145 @@ bool Alike(const std::vector<Spring>& springs) {
 
 // Appends the slice of `count` rows, the longest first. What they lack to a whole slice, and to the longest, is filled
 // up with springs to themselves.
-void AppendSlice(const Rows& rows, const int* members, int count, SpringSlices& slices) {
-  SpringSlice& slice = slices.slices.back();
+template <typename Number>
+void AppendSlice(const Rows& rows, const int* members, int count, SpringSlices<Number>& slices) {
+  constexpr int kStride = kPointStride<Number>;
+  SpringSlice<Number>& slice = slices.slices.back();
   slice.rows = count;
-  const size_t first = slices.columns.size(), width = rows[members[0]].size();
-  slices.columns.resize(first + width);
+  const size_t first = slices.at_rest.size(), width = rows[members[0]].size();
+  slices.at_rest.resize(first + width);
   slices.neighbours.resize(first + width);
   if (slices.common_stiffness == 0) slices.stiffness.resize(first + width);
   const int last = static_cast<int>(rows.size()) - 1;
-  for (int i = 0; i < kSliceRows; ++i) {
+  for (int i = 0; i < kSliceRows<Number>; ++i) {
     const int own = members[i < count ? i : 0];
-    slice.own[i] = 3 * own;
+    slice.own[i] = kStride * own;
     slice.at_end = slice.at_end || own == last;
     for (size_t c = 0; c < width; ++c) {
       const bool padding = i >= count || c >= rows[own].size();
       const RowSpring spring = padding ? RowSpring{own, 0, 0} : rows[own][c];
       slice.at_end = slice.at_end || spring.other == last;
-      slices.neighbours[first + c].place[i] = 3 * spring.other;
-      slices.columns[first + c].at_rest[i] = spring.stiffness * spring.rest_length;
-      if (slices.common_stiffness == 0) slices.stiffness[first + c].k[i] = spring.stiffness;
+      slices.neighbours[first + c].place[i] = kStride * spring.other;
+      slices.at_rest[first + c].row[i] = static_cast<Number>(spring.stiffness * spring.rest_length);
+      if (slices.common_stiffness == 0) slices.stiffness[first + c].row[i] = static_cast<Number>(spring.stiffness);
     }
   }
-  slices.slices.push_back({.first_column = static_cast<std::int64_t>(slices.columns.size())});
+  slices.slices.push_back({.first_column = static_cast<std::int64_t>(slices.at_rest.size())});
 }
 
-void AppendBlock(const Rows& rows, const std::vector<int>& block, SpringSlices& slices) {
-  for (size_t i = 0; i < block.size(); i += kSliceRows) {
-    AppendSlice(rows, &block[i], static_cast<int>(std::min<size_t>(kSliceRows, block.size() - i)), slices);
+template <typename Number>
+void AppendBlock(const Rows& rows, size_t first, SpringSlices<Number>& slices) {
+  const std::vector<int> block = SortedBlock(rows, first);
+  const size_t vertices = std::min<size_t>(kVertexBlock, rows.size() - first);
+  slices.blocks.back().whole =
+      slices.order.empty() && static_cast<double>(block.size()) > kNearlyAll * static_cast<double>(vertices);
+  for (size_t i = 0; i < block.size(); ++i) {
+    constexpr size_t kRows = kSliceRows<Number>;
+    if (i % kRows == 0) AppendSlice(rows, &block[i], static_cast<int>(std::min(kRows, block.size() - i)), slices);
+    slices.slot[block[i]] = static_cast<std::uint16_t>(SlotOf<Number>(i / kRows, static_cast<int>(i % kRows)));
   }
+  slices.blocks.push_back({.first_slice = static_cast<std::int64_t>(slices.slices.size()) - 1});
+}
+
+template <typename Number>
+void MarkAsked(SpringSlices<Number>& slices) {
+  for (const SpringNeighbours<Number>& column : slices.neighbours) {
+    for (const std::int32_t place : column.place) slices.blocks[place / kPointStride<Number> / kVertexBlock].asked = true;
+  }
+}
+
+template <typename Number>
+SpringSlices<Number> Lay(const std::vector<Spring>& springs, int vertices) {
+  SpringSlices<Number> slices;
+  slices.order = OrderOf(springs, vertices);
+  const Rows rows = ByPlace(springs, slices.order, vertices);
+  if (!springs.empty() && Alike(springs)) slices.common_stiffness = static_cast<Number>(springs.front().stiffness);
+  slices.slot.assign(rows.size(), kNoSlot<Number>);
+  slices.blocks.emplace_back();
+  slices.slices.emplace_back();
+  for (size_t first = 0; first < rows.size(); first += kVertexBlock) AppendBlock(rows, first, slices);
+  MarkAsked(slices);
+  return slices;
+}
+
+template <typename Number>
+void LayLoad(const Points& load, SpringSlices<Number>& slices) {
+  slices.load.assign(slices.slices.size() - 1, {});
+  for (size_t s = 0; s < slices.load.size(); ++s) {
+    for (int i = 0; i < slices.slices[s].rows; ++i) {
+      const int place = slices.slices[s].own[i] / kPointStride<Number>;
+      const Eigen::Vector3d force = load.col(slices.order.empty() ? place : slices.order[place]);
+      SliceLoad<Number>& slice = slices.load[s];
+      slice.x.row[i] = static_cast<Number>(force.x());
+      slice.y.row[i] = static_cast<Number>(force.y());
+      slice.z.row[i] = static_cast<Number>(force.z());
+    }
+  }
+}
+
+// The positions of a block's vertices, in the slices' order, to where all of them are packed.
+void Pack(const SpringSlices<double>& slices, const VertexRange& block, const ConstPoints& x, int /*origin*/,
+          double* packed) {
+  for (Eigen::Index i = block.first; i < block.end; ++i) {
+    for (int c = 0; c < 3; ++c) packed[3 * i + c] = x(c, slices.order[i]);
+  }
+}
+
+void Pack(const SpringSlices<float>& slices, const VertexRange& block, const ConstPoints& x, int origin,
+          float* packed) {
+  if (slices.order.empty()) return PackPoints(block, x.data(), x.col(origin).data(), packed);
+  for (Eigen::Index i = block.first; i < block.end; ++i) {
+    for (int c = 0; c < 3; ++c) packed[4 * i + c] = static_cast<float>(x(c, slices.order[i]) - x(c, origin));
+  }
+}
+
+template <typename Number>
+struct alignas(64) CacheLine {
+  Number numbers[kSliceRows<Number>];
+};
+
+template <typename Number>
+void AddPacked(const SpringSlices<Number>& slices, int origin, double scale, const ConstPoints& x, double* f) {
+  thread_local std::vector<CacheLine<Number>> memory;
+  const auto places = static_cast<Eigen::Index>(slices.slot.size());
+  const auto lines = static_cast<size_t>(kPointStride<Number> * places / kSliceRows<Number> + 1);
+  if (memory.size() < lines) memory.resize(lines);
+  Number* const packed = memory.front().numbers;  // this thread's own, for all that help it
+  ForEachBlock({0, places}, [&](const VertexRange& block) {
+    if (slices.blocks[block.first / kVertexBlock].asked) Pack(slices, block, x, origin, packed);
+  });
+  ForEachBlock({0, places}, [&](const VertexRange& range) {
+    const std::int64_t block = range.first / kVertexBlock;
+    AddSprings(slices, block, block + 1, scale, packed, f);
+  });
 }
 
 }  // namespace
 
-SpringRows::SpringRows(const std::vector<Spring>& springs, int vertices) : order_(OrderOf(springs, vertices)) {
-  const Rows rows = ByPlace(springs, order_, vertices);
-  if (!springs.empty() && Alike(springs)) slices_.common_stiffness = springs.front().stiffness;
-  slices_.slices.emplace_back();
-  for (size_t first = 0; first < rows.size(); first += kVertexBlock) {
-    first_slice_.push_back(static_cast<std::int64_t>(slices_.slices.size()) - 1);
-    AppendBlock(rows, SortedBlock(rows, first), slices_);
+SpringRows::SpringRows(const std::vector<Spring>& springs, int vertices, Precision precision) {
+  if (precision == Precision::kSingle) {
+    slices_ = Lay<float>(springs, vertices);
+  } else {
+    slices_ = Lay<double>(springs, vertices);
   }
-  first_slice_.push_back(static_cast<std::int64_t>(slices_.slices.size()) - 1);
+  packed_ = std::visit([&](const auto& slices) { return precision == Precision::kSingle || !slices.order.empty(); },
+                       slices_);
+  if (!springs.empty()) origin_ = springs[springs.size() / 2].a;
 }
 
 void SpringRows::SetLoad(const Points& load) {
-  slices_.load.assign(slices_.slices.size() - 1, {});
-  for (size_t s = 0; s < slices_.load.size(); ++s) {
-    for (int i = 0; i < slices_.slices[s].rows; ++i) {
-      const int place = slices_.slices[s].own[i] / 3;
-      const int vertex = order_.empty() ? place : order_[place];
-      SliceLoad& slice = slices_.load[s];
-      slice.x[i] = load(0, vertex), slice.y[i] = load(1, vertex), slice.z[i] = load(2, vertex);
-    }
-  }
+  std::visit([&load](auto& slices) { LayLoad(load, slices); }, slices_);
 }
 
 void SpringRows::AddForce(double scale, const ConstPoints& x, MutablePoints f) const {
-  const auto slices = static_cast<std::int64_t>(slices_.slices.size()) - 1;
-  if (order_.empty()) return AddSlices(slices_, 0, slices, scale, x.data(), f.data());
-  thread_local Points in_order, in_order_force;
-  const auto count = static_cast<Eigen::Index>(order_.size());
-  if (in_order.cols() < count) in_order.resize(3, count), in_order_force.resize(3, count);
-  Points &ordered = in_order, &force = in_order_force;  // this thread's own, for all that help it
-  ForEachBlock({0, count}, [&](const VertexRange& block) {
-    for (Eigen::Index i = block.first; i < block.end; ++i) ordered.col(i) = x.col(order_[i]);
-  });
-  ForEachBlock({0, count}, [&](const VertexRange& block) {
-    force.middleCols(block.first, block.end - block.first).setZero();
-    AddSlices(slices_, FirstSlice(block.first), FirstSlice(block.end), scale, ordered.data(), force.data());
-    for (Eigen::Index i = block.first; i < block.end; ++i) f.col(order_[i]) += force.col(i);
-  });
+  if (!packed_) return AddForce({0, x.cols()}, scale, x, f);
+  std::visit([&](const auto& slices) { AddPacked(slices, origin_, scale, x, f.data()); }, slices_);
 }
 
 void SpringRows::AddForce(const VertexRange& range, double scale, const ConstPoints& x, MutablePoints f) const {
-  AddSlices(slices_, FirstSlice(range.first), FirstSlice(range.end), scale, x.data(), f.data());
+  const auto& slices = std::get<SpringSlices<double>>(slices_);
+  const auto block = [](Eigen::Index vertex) { return (vertex + kVertexBlock - 1) / kVertexBlock; };
+  AddSprings(slices, block(range.first), block(range.end), scale, x.data(), f.data());
 }
 
 }  // namespace phrenic

@@ -71,9 +71,10 @@ Eigen::VectorXd StiffnessShares(const Mesh& mesh, const Edges& edges, const Sele
 }
 
 std::string Detail(const v1::Springs& scene) {
-  if (!scene.has_material()) return absl::StrFormat("k = %g N/m", scene.stiffness());
-  return absl::StrFormat("k of E = %g Pa, %g mm thick", scene.material().youngs_modulus(),
-                         1e3 * scene.material().thickness());
+  const char* const precision = scene.precision() == v1::PRECISION_SINGLE ? ", single precision" : "";
+  if (!scene.has_material()) return absl::StrFormat("k = %g N/m%s", scene.stiffness(), precision);
+  return absl::StrFormat("k of E = %g Pa, %g mm thick%s", scene.material().youngs_modulus(),
+                         1e3 * scene.material().thickness(), precision);
 }
 
 void AppendSprings(const v1::Springs& scene, int b, const Selection& selection, const Draft& draft,
@@ -121,15 +122,16 @@ absl::StatusOr<std::unique_ptr<Force>> Springs::Make(const v1::Springs& scene, c
   }
   const auto count = static_cast<std::int64_t>(springs->size());
   const Points& rest = draft.model.rest;
-  auto force = std::make_unique<Springs>(name, *std::move(springs), static_cast<int>(rest.cols()));
+  const Precision precision = scene.precision() == v1::PRECISION_SINGLE ? Precision::kSingle : Precision::kDouble;
+  auto force = std::make_unique<Springs>(name, *std::move(springs), static_cast<int>(rest.cols()), precision);
   if (scene.balanced_at_rest() && scene.rest_length_ratio() != 1) force->Balance(rest);
   draft.model.report.set_springs(draft.model.report.springs() + count);
   draft.ReportElement("force", name, count, "springs", Detail(scene));
   return force;
 }
 
-Springs::Springs(std::string name, std::vector<Spring> springs, int vertices)
-    : Force(std::move(name)), springs_(std::move(springs)), rows_(springs_, vertices) {}
+Springs::Springs(std::string name, std::vector<Spring> springs, int vertices, Precision precision)
+    : Force(std::move(name)), springs_(std::move(springs)), rows_(springs_, vertices, precision) {}
 
 void Springs::Balance(const Points& rest) {
   rest_load_ = Points::Zero(3, rest.cols());

@@ -2,6 +2,7 @@
 // k [N/m] is given, or follows from a tissue's Young's modulus E and thickness h: k = E h sum over the edge's triangles
 // of 3 area / (sum of the triangle's edges squared), which puts the right mean stiffness into every triangle. It is
 // scaled by the live parameter elasticity. A spring of length 0 has no direction and pulls with no force.
+// In single precision, where a scene asks for it, the pulls have the error that SpringRows states.
 // With `balanced_at_rest` the constant load -f(rest) acts too, so that the mesh as it stands is in balance.
 #ifndef PHRENIC_SERVER_MECHANICS_FORCES_SPRINGS_H_
 #define PHRENIC_SERVER_MECHANICS_FORCES_SPRINGS_H_
@@ -22,7 +23,7 @@ class Springs final : public Force {
   static absl::StatusOr<std::vector<Spring>> Find(const v1::Springs& scene, std::string_view path, const Draft& draft);
 
   // Of `vertices` simulated vertices.
-  Springs(std::string name, std::vector<Spring> springs, int vertices);
+  Springs(std::string name, std::vector<Spring> springs, int vertices, Precision precision = Precision::kDouble);
 
   void AddForce(const Instant& at, MutablePoints f) const override;
   bool by_range() const override { return rows_.InRanges(); }
