@@ -15,7 +15,8 @@ constexpr double kGain = 0.9;     // a round that leaves more of the residual th
 constexpr double kStill = 1e-12;  // of the largest velocity: a round that changes less is the last
 
 bool AllByRange(const Model& model) {
-  return std::all_of(model.forces.begin(), model.forces.end(), [](const auto& force) { return force->by_range(); });
+  return std::all_of(model.step_forces.begin(), model.step_forces.end(),
+                     [](const Force* force) { return force->by_range(); });
 }
 
 }  // namespace
@@ -38,14 +39,14 @@ void SumForces(const Model& model, const Instant& at, Points& f) {
 void SumWholeForces(const Model& model, const Instant& at, Points& f) {
   if (AllByRange(model)) return;
   f.setZero();
-  for (const auto& force : model.forces) {
+  for (const Force* force : model.step_forces) {
     if (!force->by_range()) force->AddForce(at, f);
   }
 }
 
 void SumForcesIn(const VertexRange& range, const Model& model, const Instant& at, Points& f) {
   if (AllByRange(model)) f.middleCols(range.first, range.end - range.first).setZero();
-  for (const auto& force : model.forces) {
+  for (const Force* force : model.step_forces) {
     if (force->by_range()) force->AddForceIn(range, at, f);
   }
   for (const VertexPull& pull : at.pulls) {

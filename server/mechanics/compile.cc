@@ -10,6 +10,7 @@
 #include "absl/strings/str_format.h"
 #include "server/mechanics/bodies.h"
 #include "server/mechanics/catalogue.h"
+#include "server/mechanics/forces/spring_batch.h"
 #include "server/mechanics/masses.h"
 #include "server/mechanics/presets.h"
 #include "server/mechanics/scene_hash.h"
@@ -60,6 +61,7 @@ absl::Status AddElements(Draft& draft) {
     draft.model.forces.push_back(*std::move(force));
     draft.model.force_kinds.push_back(KindOf(scene.forces(i)));
   }
+  draft.model.step_forces = BatchSprings(draft.model.forces, draft.model.rest, draft.model.batches);
   for (int i = 0; i < scene.constraints_size(); ++i) {
     auto constraint = MakeConstraint(scene.constraints(i), absl::StrCat("constraints[", i, "]"), draft);
     if (!constraint.ok()) return constraint.status();

@@ -53,6 +53,9 @@ struct Model {
   Eigen::VectorXd inverse_mass;  // [1/kg]; 0 for fixed and driven vertices
   std::vector<std::unique_ptr<Force>> forces;
   std::vector<std::string> force_kinds;  // of each of `forces`, as scene text names it: "action_line"
+  // The same sum as a step takes it: those of `forces` that are best worked out together are in `batches`.
+  std::vector<std::unique_ptr<Force>> batches;
+  std::vector<const Force*> step_forces;
   std::vector<std::unique_ptr<Motion>> motions;
   std::vector<std::unique_ptr<Constraint>> constraints;
   std::vector<Ride> rides;  // seen bodies; worked out with frames, not with steps

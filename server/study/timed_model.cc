@@ -113,6 +113,15 @@ class TimedConstraint final : public Constraint {
   Stage &positions_, &velocities_;
 };
 
+const Force& TimedOf(const Force& force, const Model& model, const Model& timed) {
+  for (size_t i = 0; i < model.forces.size(); ++i) {
+    if (model.forces[i].get() == &force) return *timed.forces[i];
+  }
+  size_t batch = 0;
+  while (model.batches[batch].get() != &force) ++batch;
+  return *timed.batches[batch];
+}
+
 }  // namespace
 
 Model Timed(const Model& model, Stages& stages) {
@@ -126,6 +135,8 @@ Model Timed(const Model& model, Stages& stages) {
   timed.bound = model.bound;
   for (const auto& motion : model.motions) timed.motions.push_back(std::make_unique<TimedMotion>(*motion, stages));
   for (const auto& force : model.forces) timed.forces.push_back(std::make_unique<TimedForce>(*force, stages));
+  for (const auto& batch : model.batches) timed.batches.push_back(std::make_unique<TimedForce>(*batch, stages));
+  for (const Force* force : model.step_forces) timed.step_forces.push_back(&TimedOf(*force, model, timed));
   for (const auto& constraint : model.constraints) {
     timed.constraints.push_back(std::make_unique<TimedConstraint>(*constraint, stages));
   }

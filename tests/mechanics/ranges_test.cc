@@ -20,7 +20,7 @@ TEST(Ranges, GiveEachForceTheBitsOfTheWhole) {
   state.x += 0.002 * Points::Random(3, state.x.cols());
   state.v = Points::Random(3, state.x.cols());
   const Instant at = MakeInstant(*model, model->parameters, state);
-  for (const auto& force : model->forces) {
+  for (const Force* force : model->step_forces) {
     ASSERT_TRUE(force->by_range()) << force->name();
     Points whole = Points::Zero(3, state.x.cols()), parts = whole;
     force->AddForce(at, whole);

@@ -56,7 +56,7 @@ std::unique_ptr<Force> Join(const Pairs& pairs, const std::string& name, double 
   const auto count = static_cast<std::int64_t>(springs.size());
   draft.model.report.set_springs(draft.model.report.springs() + count);
   draft.ReportElement("force", name, count, "springs", absl::StrFormat("k = %g N/m", stiffness));
-  return std::make_unique<Springs>(name, std::move(springs), static_cast<int>(draft.model.rest.cols()));
+  return std::make_unique<Springs>(name, std::move(springs));
 }
 
 }  // namespace

@@ -97,6 +97,18 @@ void AppendSprings(const v1::Springs& scene, int b, const Selection& selection, 
   }
 }
 
+// f += scale times the pulls of all springs [N].
+void AddPulls(const std::vector<Spring>& springs, double scale, const ConstPoints& x, MutablePoints f) {
+  for (const Spring& spring : springs) {
+    const Eigen::Vector3d edge = x.col(spring.b) - x.col(spring.a);
+    const double length = edge.norm();
+    if (length == 0) continue;
+    const Eigen::Vector3d pull = scale * spring.stiffness * (1 - spring.rest_length / length) * edge;
+    f.col(spring.a) += pull;
+    f.col(spring.b) -= pull;
+  }
+}
+
 }  // namespace
 
 absl::StatusOr<std::vector<Spring>> Springs::Find(const v1::Springs& scene, std::string_view path, const Draft& draft) {
@@ -123,28 +135,24 @@ absl::StatusOr<std::unique_ptr<Force>> Springs::Make(const v1::Springs& scene, c
   const auto count = static_cast<std::int64_t>(springs->size());
   const Points& rest = draft.model.rest;
   const Precision precision = scene.precision() == v1::PRECISION_SINGLE ? Precision::kSingle : Precision::kDouble;
-  auto force = std::make_unique<Springs>(name, *std::move(springs), static_cast<int>(rest.cols()), precision);
+  auto force = std::make_unique<Springs>(name, *std::move(springs), precision);
   if (scene.balanced_at_rest() && scene.rest_length_ratio() != 1) force->Balance(rest);
   draft.model.report.set_springs(draft.model.report.springs() + count);
   draft.ReportElement("force", name, count, "springs", Detail(scene));
   return force;
 }
 
-Springs::Springs(std::string name, std::vector<Spring> springs, int vertices, Precision precision)
-    : Force(std::move(name)), springs_(std::move(springs)), rows_(springs_, vertices, precision) {}
+Springs::Springs(std::string name, std::vector<Spring> springs, Precision precision)
+    : Force(std::move(name)), springs_(std::move(springs)), precision_(precision) {}
 
 void Springs::Balance(const Points& rest) {
   rest_load_ = Points::Zero(3, rest.cols());
-  rows_.AddForce(-1, rest, rest_load_);
-  rows_.SetLoad(rest_load_);
+  AddPulls(springs_, -1, rest, rest_load_);
 }
 
 void Springs::AddForce(const Instant& at, MutablePoints f) const {
-  rows_.AddForce(at.parameters.elasticity(), at.x, f);
-}
-
-void Springs::AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const {
-  rows_.AddForce(range, at.parameters.elasticity(), at.x, f);
+  AddPulls(springs_, at.parameters.elasticity(), at.x, f);
+  if (balanced()) f += at.parameters.elasticity() * rest_load_;
 }
 
 void Springs::AddStiffness(const Instant& at, StiffnessSink& sink) const {
@@ -166,7 +174,7 @@ double Springs::Energy(const Instant& at) const {
     const double stretch = (at.x.col(spring.b) - at.x.col(spring.a)).norm() - spring.rest_length;
     energy += 0.5 * spring.stiffness * stretch * stretch;
   }
-  if (rest_load_.cols() > 0) energy -= rest_load_.cwiseProduct(at.x).sum();
+  if (balanced()) energy -= rest_load_.cwiseProduct(at.x).sum();
   return at.parameters.elasticity() * energy;
 }
 

@@ -2,7 +2,6 @@
 // k [N/m] is given, or follows from a tissue's Young's modulus E and thickness h: k = E h sum over the edge's triangles
 // of 3 area / (sum of the triangle's edges squared), which puts the right mean stiffness into every triangle. It is
 // scaled by the live parameter elasticity. A spring of length 0 has no direction and pulls with no force.
-// In single precision, where a scene asks for it, the pulls have the error that SpringRows states.
 // With `balanced_at_rest` the constant load -f(rest) acts too, so that the mesh as it stands is in balance.
 #ifndef PHRENIC_SERVER_MECHANICS_FORCES_SPRINGS_H_
 #define PHRENIC_SERVER_MECHANICS_FORCES_SPRINGS_H_
@@ -22,21 +21,25 @@ class Springs final : public Force {
   // The same springs alone; INVALID_ARGUMENT as Make.
   static absl::StatusOr<std::vector<Spring>> Find(const v1::Springs& scene, std::string_view path, const Draft& draft);
 
-  // Of `vertices` simulated vertices.
-  Springs(std::string name, std::vector<Spring> springs, int vertices, Precision precision = Precision::kDouble);
+  Springs(std::string name, std::vector<Spring> springs, Precision precision = Precision::kDouble);
 
+  const std::vector<Spring>& springs() const { return springs_; }
+  // A step works all springs out together (spring_batch.h), in the precision that the scene asks for.
+  Precision precision() const { return precision_; }
+  bool balanced() const { return rest_load_.cols() > 0; }
+
+  // As one would write it down, in double precision.
   void AddForce(const Instant& at, MutablePoints f) const override;
-  bool by_range() const override { return rows_.InRanges(); }
-  void AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const override;
   void AddStiffness(const Instant& at, StiffnessSink& sink) const override;
   double Energy(const Instant& at) const override;
   bool conservative() const override { return true; }
 
  private:
+  // The constant load that holds the springs at rest acts from now on.
   void Balance(const Points& rest);
 
   std::vector<Spring> springs_;
-  SpringRows rows_;   // the same, and the load: what a step reads
+  Precision precision_;
   Points rest_load_;  // 3 x n [N] at elasticity 1; no columns where the rest is not balanced
 };
 

@@ -1,0 +1,63 @@
+#include "server/mechanics/forces/spring_batch.h"
+
+#include <map>
+#include <string>
+#include <utility>
+
+#include "absl/strings/str_join.h"
+
+namespace phrenic {
+namespace {
+
+std::string JointName(std::span<const Springs* const> members) {
+  return absl::StrJoin(members, " + ",
+                       [](std::string* out, const Springs* springs) { out->append(springs->name()); });
+}
+
+SpringRows Lay(std::span<const Springs* const> members, const Points& rest) {
+  const auto vertices = static_cast<int>(rest.cols());
+  const Precision precision = members.front()->precision();
+  if (members.size() == 1) return {members.front()->springs(), vertices, precision};
+  std::vector<Spring> all;
+  for (const Springs* springs : members) all.insert(all.end(), springs->springs().begin(), springs->springs().end());
+  return {all, vertices, precision};
+}
+
+}  // namespace
+
+SpringBatch::SpringBatch(std::span<const Springs* const> members, const Points& rest)
+    : Force(JointName(members)), rows_(Lay(members, rest)) {
+  if (!members.front()->balanced()) return;
+  Points load = Points::Zero(3, rest.cols());
+  rows_.AddForce(-1, rest, load);
+  rows_.SetLoad(load);
+}
+
+void SpringBatch::AddForce(const Instant& at, MutablePoints f) const {
+  rows_.AddForce(at.parameters.elasticity(), at.x, f);
+}
+
+void SpringBatch::AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const {
+  rows_.AddForce(range, at.parameters.elasticity(), at.x, f);
+}
+
+std::vector<const Force*> BatchSprings(const std::vector<std::unique_ptr<Force>>& forces, const Points& rest,
+                                       std::vector<std::unique_ptr<Force>>& batches) {
+  std::vector<const Force*> step;
+  std::map<std::pair<Precision, bool>, std::vector<const Springs*>> alike;
+  for (const auto& force : forces) {
+    const auto* const springs = dynamic_cast<const Springs*>(force.get());
+    if (springs == nullptr) {
+      step.push_back(force.get());
+    } else {
+      alike[{springs->precision(), springs->balanced()}].push_back(springs);
+    }
+  }
+  for (const auto& [how, members] : alike) {
+    batches.push_back(std::make_unique<SpringBatch>(members, rest));
+    step.insert(step.begin(), batches.back().get());
+  }
+  return step;
+}
+
+}  // namespace phrenic
