@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "server/mechanics/forces/packed_points.h"
 #include "server/mechanics/residual.h"
 
 namespace phrenic {
@@ -31,9 +32,16 @@ void DriveMotions(const Model& model, const v1::Parameters& parameters, double a
   for (const auto& motion : model.motions) motion->Drive(at, state);
 }
 
+Instant Packed(const Model& model, const Instant& at) {
+  Instant packed = at;
+  if (model.packed_from >= 0) packed.packed = PackAll(at.x, model.packed_from);
+  return packed;
+}
+
 void SumForces(const Model& model, const Instant& at, Points& f) {
-  SumWholeForces(model, at, f);
-  ForEachBlock({0, f.cols()}, [&](const VertexRange& block) { SumForcesIn(block, model, at, f); });
+  const Instant packed = Packed(model, at);
+  SumWholeForces(model, packed, f);
+  ForEachBlock({0, f.cols()}, [&](const VertexRange& block) { SumForcesIn(block, model, packed, f); });
 }
 
 void SumWholeForces(const Model& model, const Instant& at, Points& f) {

@@ -14,7 +14,9 @@ void DriveMotions(const Model& model, const v1::Parameters& parameters, double a
 
 // f = the sum of all forces and pulls [N].
 void SumForces(const Model& model, const Instant& at, Points& f);
-// The same in two parts: first what can only be worked out for all vertices at once, then the rest range by range.
+// The same in three parts: positions packed, where forces ask for it, in memory of the thread's own until its next
+// call; then what can only be worked out for all vertices at once, and the rest range by range.
+Instant Packed(const Model& model, const Instant& at);
 void SumWholeForces(const Model& model, const Instant& at, Points& f);
 void SumForcesIn(const VertexRange& range, const Model& model, const Instant& at, Points& f);
 

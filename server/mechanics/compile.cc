@@ -61,7 +61,7 @@ absl::Status AddElements(Draft& draft) {
     draft.model.forces.push_back(*std::move(force));
     draft.model.force_kinds.push_back(KindOf(scene.forces(i)));
   }
-  draft.model.step_forces = BatchSprings(draft.model.forces, draft.model.rest, draft.model.batches);
+  BatchSprings(draft.model);
   for (int i = 0; i < scene.constraints_size(); ++i) {
     auto constraint = MakeConstraint(scene.constraints(i), absl::StrCat("constraints[", i, "]"), draft);
     if (!constraint.ok()) return constraint.status();

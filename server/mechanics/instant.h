@@ -22,6 +22,7 @@ struct Instant {
   const std::vector<Pose>& poses;
   const std::vector<VertexPull>& pulls;
   ChamberReadings* readings = nullptr;  // what measures of one moment share (chamber.h); null in a step
+  const float* packed = nullptr;        // x in single precision (PackPoints), where a step has packed it
 };
 
 }  // namespace phrenic

@@ -56,6 +56,7 @@ struct Model {
   // The same sum as a step takes it: those of `forces` that are best worked out together are in `batches`.
   std::vector<std::unique_ptr<Force>> batches;
   std::vector<const Force*> step_forces;
+  int packed_from = -1;  // a step packs positions, from this vertex, for forces in single precision; -1 where none are
   std::vector<std::unique_ptr<Motion>> motions;
   std::vector<std::unique_ptr<Constraint>> constraints;
   std::vector<Ride> rides;  // seen bodies; worked out with frames, not with steps

@@ -22,36 +22,33 @@ double DistanceFromRest(const Model& model, const State& state, int vertex) {
   return std::isfinite(squared) ? squared : std::numeric_limits<double>::infinity();
 }
 
-// Of positions and velocities: block by block, and the blocks' in their order.
+// Of all blocks, in their order.
 struct StateReach {
-  Reach x, v;
+  double furthest = 0;  // coordinate [m]
+  double squares = 0;   // sum over the velocities [m^2/s^2]
 };
 
-void Include(const Reach& more, Reach& reach) {
-  reach.largest = std::max(reach.largest, more.largest);
-  reach.squares += more.squares;
-}
-
-StateReach ReachOfState(const State& state) {
+StateReach ReachOf(const State& state) {
   thread_local std::vector<StateReach> kept;
   std::vector<StateReach>& blocks = kept;  // this thread's own, for all that help it
   blocks.resize((state.x.cols() + kVertexBlock - 1) / kVertexBlock);
   ForEachBlock({0, state.x.cols()}, [&](const VertexRange& block) {
-    blocks[block.first / kVertexBlock] = {ReachOf(block, state.x), ReachOf(block, state.v)};
+    blocks[block.first / kVertexBlock] = {LargestOf(block, state.x), SquaresOf(block, state.v)};
   });
   StateReach whole;
-  for (const StateReach& block : blocks) Include(block.x, whole.x), Include(block.v, whole.v);
+  for (const StateReach& block : blocks) {
+    whole.furthest = block.furthest > whole.furthest || std::isnan(block.furthest) ? block.furthest : whole.furthest;
+    whole.squares += block.squares;
+  }
   return whole;
 }
 
 // True where every coordinate is a number within the bound, and the root mean square of the velocities one that takes
-// no longer than `dt` across it: constraints may hold positions back while velocities run away. What is no number shows
-// in the squares.
+// no longer than `dt` across it: constraints may hold positions back while velocities run away.
 bool WithinBounds(const Model& model, double dt, const State& state) {
   const double fastest = 2 * model.bound / dt;
-  const StateReach reach = ReachOfState(state);
-  return reach.x.largest <= model.bound && std::isfinite(reach.x.squares) &&
-         reach.v.squares <= static_cast<double>(state.v.cols()) * fastest * fastest;
+  const StateReach reach = ReachOf(state);
+  return reach.furthest <= model.bound && reach.squares <= static_cast<double>(state.v.cols()) * fastest * fastest;
 }
 
 void KeepBefore(const State& state, Workspace& work) {

@@ -1,7 +1,9 @@
 #include "server/mechanics/vertex_kernel.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <limits>
 
 #include "server/mechanics/vector_targets.h"
 #undef HWY_TARGET_INCLUDE
@@ -90,31 +92,49 @@ void AddSharesHere(const VertexRange& range, const double* s, const double* forc
   ForEach(range, s, whole, single);
 }
 
-// Eight sums whatever the vectors' length.
-Reach ReachOfHere(const double* x, Eigen::Index count) {
+// Numbers are taken in groups of this many, one of each for a running result: whatever the vectors' length, and so many
+// that none waits for the one before.
+constexpr Eigen::Index kGroup = 32, kGroupVectors = kGroup / kLanes;
+
+// As whole numbers: without their signs numbers are in the order of their bits, infinity above all, and what is no
+// number above that.
+double LargestHere(const double* x, Eigen::Index count) {
   const Tag d;
-  constexpr Eigen::Index kSums = 8, kVectors = kSums / kLanes;
-  Vector largest[kVectors], squares[kVectors];
-  for (int k = 0; k < kVectors; ++k) largest[k] = squares[k] = hn::Zero(d);
+  const hn::RebindToSigned<Tag> bits;
+  const auto magnitude = hn::Set(bits, std::numeric_limits<std::int64_t>::max());
+  hn::Vec<decltype(bits)> most[kGroupVectors];
+  for (auto& vector : most) vector = hn::Zero(bits);
   Eigen::Index i = 0;
-  for (; i + kSums <= count; i += kSums) {
-    for (int k = 0; k < kVectors; ++k) {
-      const auto next = hn::LoadU(d, x + i + k * kLanes);
-      largest[k] = hn::Max(largest[k], hn::Abs(next));
+  for (; i + kGroup <= count; i += kGroup) {
+    for (int k = 0; k < kGroupVectors; ++k) {
+      const auto next = hn::BitCast(bits, hn::LoadU(d, x + i + k * kLanes));
+      most[k] = hn::Max(most[k], hn::And(next, magnitude));
+    }
+  }
+  HWY_ALIGN std::int64_t all[kGroup];
+  for (int k = 0; k < kGroupVectors; ++k) hn::Store(most[k], bits, all + k * kLanes);
+  std::int64_t largest = *std::max_element(all, all + kGroup);
+  for (; i < count; ++i) largest = std::max(largest, std::bit_cast<std::int64_t>(std::abs(x[i])));
+  return std::bit_cast<double>(largest);
+}
+
+double SquaresHere(const double* v, Eigen::Index count) {
+  const Tag d;
+  Vector squares[kGroupVectors];
+  for (auto& vector : squares) vector = hn::Zero(d);
+  Eigen::Index i = 0;
+  for (; i + kGroup <= count; i += kGroup) {
+    for (int k = 0; k < kGroupVectors; ++k) {
+      const auto next = hn::LoadU(d, v + i + k * kLanes);
       squares[k] = hn::Add(squares[k], hn::Mul(next, next));
     }
   }
-  HWY_ALIGN double most[kSums], sums[kSums];
-  for (int k = 0; k < kVectors; ++k) {
-    hn::Store(largest[k], d, most + k * kLanes), hn::Store(squares[k], d, sums + k * kLanes);
-  }
-  for (Eigen::Index tail = i; tail < count; ++tail) {
-    most[tail - i] = std::max(most[tail - i], std::abs(x[tail]));
-    sums[tail - i] += x[tail] * x[tail];
-  }
-  Reach reach;
-  for (int k = 0; k < kSums; ++k) reach.largest = std::max(reach.largest, most[k]), reach.squares += sums[k];
-  return reach;
+  HWY_ALIGN double sums[kGroup];
+  for (int k = 0; k < kGroupVectors; ++k) hn::Store(squares[k], d, sums + k * kLanes);
+  double sum = 0;
+  for (const double part : sums) sum += part;
+  for (; i < count; ++i) sum += v[i] * v[i];
+  return sum;
 }
 
 }  // namespace
@@ -127,7 +147,8 @@ namespace phrenic {
 HWY_EXPORT(KickAndDriftHere);
 HWY_EXPORT(AddFrictionHere);
 HWY_EXPORT(AddSharesHere);
-HWY_EXPORT(ReachOfHere);
+HWY_EXPORT(LargestHere);
+HWY_EXPORT(SquaresHere);
 
 void KickAndDrift(const VertexRange& range, const Eigen::VectorXd& w, double kick, double drift, const Points& f,
                   const Points& x, const Points& v, Points& x_next, Points& v_next) {
@@ -143,8 +164,12 @@ void AddShares(const VertexRange& range, const Eigen::VectorXd& s, const Eigen::
   HWY_DYNAMIC_DISPATCH(AddSharesHere)(range, s.data(), force.data(), f.data());
 }
 
-Reach ReachOf(const VertexRange& range, const Points& x) {
-  return HWY_DYNAMIC_DISPATCH(ReachOfHere)(x.data() + 3 * range.first, 3 * (range.end - range.first));
+double LargestOf(const VertexRange& range, const Points& x) {
+  return HWY_DYNAMIC_DISPATCH(LargestHere)(x.data() + 3 * range.first, 3 * (range.end - range.first));
+}
+
+double SquaresOf(const VertexRange& range, const Points& v) {
+  return HWY_DYNAMIC_DISPATCH(SquaresHere)(v.data() + 3 * range.first, 3 * (range.end - range.first));
 }
 
 }  // namespace phrenic

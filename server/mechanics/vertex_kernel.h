@@ -20,12 +20,11 @@ void AddFriction(const VertexRange& range, const Eigen::VectorXd& c, const Const
 // f += s F, s a share a vertex, F one force for all [N].
 void AddShares(const VertexRange& range, const Eigen::VectorXd& s, const Eigen::Vector3d& force, MutablePoints f);
 
-// How far numbers reach: the largest of the absolute values, and the sum of the squares, which is no number where one
-// of them is none. The sum is taken in the same order by all instruction sets.
-struct Reach {
-  double largest = 0, squares = 0;
-};
-Reach ReachOf(const VertexRange& range, const Points& x);
+// The largest absolute value, no number where one of them is none.
+double LargestOf(const VertexRange& range, const Points& x);
+
+// The sum of squares, taken in the same order by all instruction sets.
+double SquaresOf(const VertexRange& range, const Points& v);
 
 }  // namespace phrenic
 

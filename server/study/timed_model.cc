@@ -136,6 +136,7 @@ Model Timed(const Model& model, Stages& stages) {
   for (const auto& motion : model.motions) timed.motions.push_back(std::make_unique<TimedMotion>(*motion, stages));
   for (const auto& force : model.forces) timed.forces.push_back(std::make_unique<TimedForce>(*force, stages));
   for (const auto& batch : model.batches) timed.batches.push_back(std::make_unique<TimedForce>(*batch, stages));
+  timed.packed_from = model.packed_from;
   for (const Force* force : model.step_forces) timed.step_forces.push_back(&TimedOf(*force, model, timed));
   for (const auto& constraint : model.constraints) {
     timed.constraints.push_back(std::make_unique<TimedConstraint>(*constraint, stages));

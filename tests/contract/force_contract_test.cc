@@ -14,9 +14,9 @@ namespace {
 
 struct ForceCase {
   const char* name;
-  const char* text;    // one force of the scene
-  bool internal;       // its forces and torques sum to zero, and a rigid motion changes nothing
-  bool turns = false;  // follows normals as they turn, which is indefinite and left out of its stiffness
+  const char* text;         // one force of the scene
+  bool internal;            // its forces and torques sum to zero, and a rigid motion changes nothing
+  bool turns = false;       // follows normals as they turn, which is indefinite and left out of its stiffness
   double rounding = 1e-12;  // of its forces in these scenes [N]
 
   // Of a difference that is to show a derivative [m], and how near that comes [N/m].

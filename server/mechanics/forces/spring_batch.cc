@@ -1,17 +1,19 @@
 #include "server/mechanics/forces/spring_batch.h"
 
 #include <map>
+#include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/str_join.h"
+#include "server/mechanics/forces/packed_points.h"
 
 namespace phrenic {
 namespace {
 
 std::string JointName(std::span<const Springs* const> members) {
-  return absl::StrJoin(members, " + ",
-                       [](std::string* out, const Springs* springs) { out->append(springs->name()); });
+  return absl::StrJoin(members, " + ", [](std::string* out, const Springs* springs) { out->append(springs->name()); });
 }
 
 SpringRows Lay(std::span<const Springs* const> members, const Points& rest) {
@@ -26,7 +28,9 @@ SpringRows Lay(std::span<const Springs* const> members, const Points& rest) {
 }  // namespace
 
 SpringBatch::SpringBatch(std::span<const Springs* const> members, const Points& rest)
-    : Force(JointName(members)), rows_(Lay(members, rest)) {
+    : Force(JointName(members)),
+      rows_(Lay(members, rest)),
+      packs_(rows_.InRanges() && members.front()->precision() == Precision::kSingle) {
   if (!members.front()->balanced()) return;
   Points load = Points::Zero(3, rest.cols());
   rows_.AddForce(-1, rest, load);
@@ -38,26 +42,27 @@ void SpringBatch::AddForce(const Instant& at, MutablePoints f) const {
 }
 
 void SpringBatch::AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const {
-  rows_.AddForce(range, at.parameters.elasticity(), at.x, f);
+  const bool missing = packs_ && at.packed == nullptr;
+  const float* const packed = missing ? PackAll(at.x, rows_.origin()) : at.packed;
+  rows_.AddForce(range, at.parameters.elasticity(), at.x, packed, f);
 }
 
-std::vector<const Force*> BatchSprings(const std::vector<std::unique_ptr<Force>>& forces, const Points& rest,
-                                       std::vector<std::unique_ptr<Force>>& batches) {
-  std::vector<const Force*> step;
+void BatchSprings(Model& model) {
   std::map<std::pair<Precision, bool>, std::vector<const Springs*>> alike;
-  for (const auto& force : forces) {
+  for (const auto& force : model.forces) {
     const auto* const springs = dynamic_cast<const Springs*>(force.get());
     if (springs == nullptr) {
-      step.push_back(force.get());
+      model.step_forces.push_back(force.get());
     } else {
       alike[{springs->precision(), springs->balanced()}].push_back(springs);
     }
   }
   for (const auto& [how, members] : alike) {
-    batches.push_back(std::make_unique<SpringBatch>(members, rest));
-    step.insert(step.begin(), batches.back().get());
+    auto batch = std::make_unique<SpringBatch>(members, model.rest);
+    if (batch->packs() && model.packed_from < 0) model.packed_from = batch->rows().origin();
+    model.step_forces.insert(model.step_forces.begin(), batch.get());
+    model.batches.push_back(std::move(batch));
   }
-  return step;
 }
 
 }  // namespace phrenic

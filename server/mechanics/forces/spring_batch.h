@@ -2,9 +2,7 @@
 #ifndef PHRENIC_SERVER_MECHANICS_FORCES_SPRING_BATCH_H_
 #define PHRENIC_SERVER_MECHANICS_FORCES_SPRING_BATCH_H_
 
-#include <memory>
 #include <span>
-#include <vector>
 
 #include "server/mechanics/forces/spring_rows.h"
 #include "server/mechanics/forces/springs.h"
@@ -18,16 +16,20 @@ class SpringBatch final : public Force {
   SpringBatch(std::span<const Springs* const> members, const Points& rest);
 
   void AddForce(const Instant& at, MutablePoints f) const override;
+  // In single precision from `at.packed`; without it, packs positions of all first.
   bool by_range() const override { return rows_.InRanges(); }
   void AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const override;
 
+  const SpringRows& rows() const { return rows_; }
+  bool packs() const { return packs_; }
+
  private:
   SpringRows rows_;
+  bool packs_;  // reads `at.packed`
 };
 
-// What a step sums: `forces`, in their order, but for springs; those are in `batches`, which are added to it.
-std::vector<const Force*> BatchSprings(const std::vector<std::unique_ptr<Force>>& forces, const Points& rest,
-                                       std::vector<std::unique_ptr<Force>>& batches);
+// Sets what a step sums: `forces`, in their order, but for springs; those are in `batches`.
+void BatchSprings(Model& model);
 
 }  // namespace phrenic
 

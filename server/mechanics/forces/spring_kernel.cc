@@ -68,8 +68,7 @@ HWY_INLINE Coordinates<float> Fetch(const float* x, const std::int32_t* place) {
   const auto z01 = hn::BitCast(pairs, hn::InterleaveUpper(d, a, b));
   const auto z23 = hn::BitCast(pairs, hn::InterleaveUpper(d, c, e));
   return {hn::BitCast(d, hn::InterleaveLower(pairs, xy01, xy23)),
-          hn::BitCast(d, hn::InterleaveUpper(pairs, xy01, xy23)),
-          hn::BitCast(d, hn::InterleaveLower(pairs, z01, z23))};
+          hn::BitCast(d, hn::InterleaveUpper(pairs, xy01, xy23)), hn::BitCast(d, hn::InterleaveLower(pairs, z01, z23))};
 #endif
 }
 

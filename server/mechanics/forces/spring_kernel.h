@@ -48,22 +48,21 @@ struct SliceLoad {
 struct SpringBlock {
   std::int64_t first_slice = 0;
   bool whole = false;  // nearly all its vertices have springs, and lie in f as they do in x
-  bool asked = false;  // for a position, by springs of this block or another
 };
 
 // Springs by vertex, in slices of rows: SELL-C-sigma (Kreutzer et al., SIAM J Sci Comput 2014;36:C401). Padding is a
 // spring to itself, of no force at rest.
 template <typename Number>
 struct SpringSlices {
-  std::vector<SpringBlock> blocks;                    // and one more, for the end of its slices
-  std::vector<SpringSlice<Number>> slices;            // and one more, for the end of its columns
-  std::vector<SliceNumbers<Number>> at_rest;          // a column
-  std::vector<SpringNeighbours<Number>> neighbours;   // a column
-  std::vector<SliceNumbers<Number>> stiffness;        // a column; none where all springs are alike
-  Number common_stiffness = 0;                        // [N/m], where they are
-  std::vector<SliceLoad<Number>> load;                // a slice, or none
-  std::vector<std::uint16_t> slot;                    // of each vertex in its block's tile
-  std::vector<int> order;                             // the vertices as the slices count them; none where they come so
+  std::vector<SpringBlock> blocks;                   // and one more, for the end of its slices
+  std::vector<SpringSlice<Number>> slices;           // and one more, for the end of its columns
+  std::vector<SliceNumbers<Number>> at_rest;         // a column
+  std::vector<SpringNeighbours<Number>> neighbours;  // a column
+  std::vector<SliceNumbers<Number>> stiffness;       // a column; none where all springs are alike
+  Number common_stiffness = 0;                       // [N/m], where they are
+  std::vector<SliceLoad<Number>> load;               // a slice, or none
+  std::vector<std::uint16_t> slot;                   // of each vertex in its block's tile
+  std::vector<int> order;                            // the vertices as the slices count them; none where they come so
 };
 
 // Where the sum of a slice's row lies in a tile, so that one transposition of them all writes whole vectors.

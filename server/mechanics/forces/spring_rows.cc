@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "server/mechanics/forces/packed_points.h"
 #include "server/mesh/locality.h"
 
 namespace phrenic {
@@ -99,13 +100,6 @@ void AppendBlock(const Rows& rows, size_t first, SpringSlices<Number>& slices) {
 }
 
 template <typename Number>
-void MarkAsked(SpringSlices<Number>& slices) {
-  for (const SpringNeighbours<Number>& column : slices.neighbours) {
-    for (const std::int32_t place : column.place) slices.blocks[place / kPointStride<Number> / kVertexBlock].asked = true;
-  }
-}
-
-template <typename Number>
 SpringSlices<Number> Lay(const std::vector<Spring>& springs, int vertices) {
   SpringSlices<Number> slices;
   slices.order = OrderOf(springs, vertices);
@@ -115,7 +109,6 @@ SpringSlices<Number> Lay(const std::vector<Spring>& springs, int vertices) {
   slices.blocks.emplace_back();
   slices.slices.emplace_back();
   for (size_t first = 0; first < rows.size(); first += kVertexBlock) AppendBlock(rows, first, slices);
-  MarkAsked(slices);
   return slices;
 }
 
@@ -134,40 +127,28 @@ void LayLoad(const Points& load, SpringSlices<Number>& slices) {
   }
 }
 
-// The positions of a block's vertices, in the slices' order, to where all of them are packed.
-void Pack(const SpringSlices<double>& slices, const VertexRange& block, const ConstPoints& x, int /*origin*/,
-          double* packed) {
+void PutInOrder(const SpringSlices<double>& slices, const VertexRange& block, const ConstPoints& x, int /*origin*/,
+                double* ordered) {
   for (Eigen::Index i = block.first; i < block.end; ++i) {
-    for (int c = 0; c < 3; ++c) packed[3 * i + c] = x(c, slices.order[i]);
+    for (int c = 0; c < 3; ++c) ordered[3 * i + c] = x(c, slices.order[i]);
   }
 }
 
-void Pack(const SpringSlices<float>& slices, const VertexRange& block, const ConstPoints& x, int origin,
-          float* packed) {
-  if (slices.order.empty()) return PackPoints(block, x.data(), x.col(origin).data(), packed);
+void PutInOrder(const SpringSlices<float>& slices, const VertexRange& block, const ConstPoints& x, int origin,
+                float* ordered) {
   for (Eigen::Index i = block.first; i < block.end; ++i) {
-    for (int c = 0; c < 3; ++c) packed[4 * i + c] = static_cast<float>(x(c, slices.order[i]) - x(c, origin));
+    for (int c = 0; c < 3; ++c) ordered[4 * i + c] = static_cast<float>(x(c, slices.order[i]) - x(c, origin));
   }
 }
 
 template <typename Number>
-struct alignas(64) CacheLine {
-  Number numbers[kSliceRows<Number>];
-};
-
-template <typename Number>
-void AddPacked(const SpringSlices<Number>& slices, int origin, double scale, const ConstPoints& x, double* f) {
-  thread_local std::vector<CacheLine<Number>> memory;
-  const auto places = static_cast<Eigen::Index>(slices.slot.size());
-  const auto lines = static_cast<size_t>(kPointStride<Number> * places / kSliceRows<Number> + 1);
-  if (memory.size() < lines) memory.resize(lines);
-  Number* const packed = memory.front().numbers;  // this thread's own, for all that help it
-  ForEachBlock({0, places}, [&](const VertexRange& block) {
-    if (slices.blocks[block.first / kVertexBlock].asked) Pack(slices, block, x, origin, packed);
-  });
+void AddInOrder(const SpringSlices<Number>& slices, int origin, double scale, const ConstPoints& x, double* f) {
+  const auto places = static_cast<Eigen::Index>(slices.order.size());
+  auto* const ordered = ThreadMemory<Kept::kInOrder, Number>(kPointStride<Number> * places);
+  ForEachBlock({0, places}, [&](const VertexRange& block) { PutInOrder(slices, block, x, origin, ordered); });
   ForEachBlock({0, places}, [&](const VertexRange& range) {
     const std::int64_t block = range.first / kVertexBlock;
-    AddSprings(slices, block, block + 1, scale, packed, f);
+    AddSprings(slices, block, block + 1, scale, ordered, f);
   });
 }
 
@@ -179,8 +160,7 @@ SpringRows::SpringRows(const std::vector<Spring>& springs, int vertices, Precisi
   } else {
     slices_ = Lay<double>(springs, vertices);
   }
-  packed_ = std::visit([&](const auto& slices) { return precision == Precision::kSingle || !slices.order.empty(); },
-                       slices_);
+  ordered_ = std::visit([](const auto& slices) { return !slices.order.empty(); }, slices_);
   if (!springs.empty()) origin_ = springs[springs.size() / 2].a;
 }
 
@@ -189,14 +169,23 @@ void SpringRows::SetLoad(const Points& load) {
 }
 
 void SpringRows::AddForce(double scale, const ConstPoints& x, MutablePoints f) const {
-  if (!packed_) return AddForce({0, x.cols()}, scale, x, f);
-  std::visit([&](const auto& slices) { AddPacked(slices, origin_, scale, x, f.data()); }, slices_);
+  if (ordered_) {
+    std::visit([&](const auto& slices) { AddInOrder(slices, origin_, scale, x, f.data()); }, slices_);
+  } else {
+    const bool single = std::holds_alternative<SpringSlices<float>>(slices_);
+    AddForce({0, x.cols()}, scale, x, single ? PackAll(x, origin_) : nullptr, f);
+  }
 }
 
-void SpringRows::AddForce(const VertexRange& range, double scale, const ConstPoints& x, MutablePoints f) const {
-  const auto& slices = std::get<SpringSlices<double>>(slices_);
+void SpringRows::AddForce(const VertexRange& range, double scale, const ConstPoints& x, const float* packed,
+                          MutablePoints f) const {
   const auto block = [](Eigen::Index vertex) { return (vertex + kVertexBlock - 1) / kVertexBlock; };
-  AddSprings(slices, block(range.first), block(range.end), scale, x.data(), f.data());
+  const std::int64_t first = block(range.first), end = block(range.end);
+  if (const auto* const singles = std::get_if<SpringSlices<float>>(&slices_)) {
+    AddSprings(*singles, first, end, scale, packed, f.data());
+  } else {
+    AddSprings(std::get<SpringSlices<double>>(slices_), first, end, scale, x.data(), f.data());
+  }
 }
 
 }  // namespace phrenic

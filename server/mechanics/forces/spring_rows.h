@@ -20,16 +20,15 @@ struct Spring {
 
 enum class Precision { kDouble, kSingle };
 
-// Immutable; any number of threads may call. Working memory is the thread's own: where positions are packed, as in
-// single precision and where springs join vertices that are far apart, a thread's first call on more vertices than any
-// before allocates.
+// Immutable; any number of threads may call. Where springs join vertices that are far apart, they are put into an order
+// of their own first, in memory of the thread's own: its first call on more vertices than any before allocates.
 class SpringRows {
  public:
   SpringRows() = default;
-  // Of `vertices` simulated vertices. In single precision positions are rounded from the place of a vertex of theirs,
-  // and so is all that is worked out from them: the force on a vertex, in each coordinate, is off by less than
+  // Of `vertices` simulated vertices. In single precision positions are rounded, as they lie from some vertex, and so
+  // is all that is worked out from them: the force on a vertex, in each coordinate, is off by less than
   //   2^-19 sum over its springs of k (r + l) (1 + l0 / l),
-  // r [m] its distance from that vertex, l and l0 the spring's length and rest length; with a load, by 2^-22 of it more.
+  // r [m] its distance from there, l and l0 the spring's length and rest length; with a load, by 2^-22 of it more.
   SpringRows(const std::vector<Spring>& springs, int vertices, Precision precision = Precision::kDouble);
 
   // On the vertices that have springs acts a steady force too: `load` is 3 x n [N], and nothing on others.
@@ -37,15 +36,19 @@ class SpringRows {
   // f += scale (pulls + load) [N], 3 x n. The sum of a vertex is taken in the springs' order, on every machine.
   void AddForce(double scale, const ConstPoints& x, MutablePoints f) const;
 
-  // Whether the same can be had range by range: not where positions are packed first.
-  bool InRanges() const { return !packed_; }
-  // The same on the vertices of the range alone.
-  void AddForce(const VertexRange& range, double scale, const ConstPoints& x, MutablePoints f) const;
+  // Whether the same can be had range by range: not in an order of its own.
+  bool InRanges() const { return !ordered_; }
+  // The same on the vertices of the range alone. In single precision from `packed`, which is x as PackPoints has it.
+  void AddForce(const VertexRange& range, double scale, const ConstPoints& x, const float* packed,
+                MutablePoints f) const;
+
+  // In single precision, the vertex to pack from: in the middle of theirs.
+  int origin() const { return origin_; }
 
  private:
   std::variant<SpringSlices<double>, SpringSlices<float>> slices_;
-  bool packed_ = false;
-  int origin_ = 0;  // a vertex
+  bool ordered_ = false;
+  int origin_ = 0;
 };
 
 }  // namespace phrenic

@@ -33,7 +33,7 @@ absl::Status SemiImplicitEuler::Advance(const Model& model, const v1::Parameters
                                         Workspace& work) const {
   TakeDriven(model, state.x, state.v, work.driven);
   DriveMotions(model, parameters, dt, state);
-  const Instant at = MakeInstant(model, parameters, state);
+  const Instant at = Packed(model, MakeInstant(model, parameters, state));
   SumWholeForces(model, at, work.force);
   ForEachBlock({0, state.x.cols()}, [&](const VertexRange& block) {
     SumForcesIn(block, model, at, work.force);
