@@ -50,19 +50,20 @@ constexpr int kCurveBits = 10;  // of a cell's place along each axis
 
 // A cell's place along the curve, from its places along the axes.
 std::uint32_t AlongCurve(std::array<std::uint32_t, 3> x) {
-  constexpr std::uint32_t kHighest = 1U << (kCurveBits - 1);
-  for (std::uint32_t bit = kHighest; bit > 1; bit >>= 1) {
-    const std::uint32_t below = bit - 1;
+  // Of a number's bit: all bits or none. Without a branch, as either is as likely.
+  const auto all = [](std::uint32_t number, int bit) { return 0 - (number >> bit & 1); };
+  for (int bit = kCurveBits - 1; bit > 0; --bit) {
+    const std::uint32_t below = (1U << bit) - 1;
     for (std::uint32_t& axis : x) {
-      const std::uint32_t swapped = (axis & bit) != 0 ? 0 : (x[0] ^ axis) & below;
-      x[0] ^= (axis & bit) != 0 ? below : swapped;
+      const std::uint32_t set = all(axis, bit), swapped = (x[0] ^ axis) & below & ~set;
+      x[0] ^= swapped | (below & set);
       axis ^= swapped;
     }
   }
   x[1] ^= x[0];
   x[2] ^= x[1];
   std::uint32_t gray = 0;
-  for (std::uint32_t bit = kHighest; bit > 1; bit >>= 1) gray ^= (x[2] & bit) != 0 ? bit - 1 : 0;
+  for (int bit = kCurveBits - 1; bit > 0; --bit) gray ^= all(x[2], bit) & ((1U << bit) - 1);
   std::uint32_t along = 0;
   for (int b = kCurveBits - 1; b >= 0; --b) {
     for (const std::uint32_t axis : x) along = along << 1 | ((axis ^ gray) >> b & 1);
