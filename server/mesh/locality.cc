@@ -48,6 +48,14 @@ void AppendComponent(int start, const Neighbours& neighbours, std::vector<bool>&
 
 constexpr int kCurveBits = 10;  // of a cell's place along each axis
 
+// Two empty bits before each of the number's.
+std::uint32_t Spread(std::uint32_t number) {
+  number = (number | number << 16) & 0x030000ff;
+  number = (number | number << 8) & 0x0300f00f;
+  number = (number | number << 4) & 0x030c30c3;
+  return (number | number << 2) & 0x09249249;
+}
+
 // A cell's place along the curve, from its places along the axes.
 std::uint32_t AlongCurve(std::array<std::uint32_t, 3> x) {
   // Of a number's bit: all bits or none. Without a branch, as either is as likely.
@@ -64,11 +72,7 @@ std::uint32_t AlongCurve(std::array<std::uint32_t, 3> x) {
   x[2] ^= x[1];
   std::uint32_t gray = 0;
   for (int bit = kCurveBits - 1; bit > 0; --bit) gray ^= all(x[2], bit) & ((1U << bit) - 1);
-  std::uint32_t along = 0;
-  for (int b = kCurveBits - 1; b >= 0; --b) {
-    for (const std::uint32_t axis : x) along = along << 1 | ((axis ^ gray) >> b & 1);
-  }
-  return along;
+  return Spread(x[0] ^ gray) << 2 | Spread(x[1] ^ gray) << 1 | Spread(x[2] ^ gray);
 }
 
 }  // namespace
