@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace phrenic {
 namespace {
@@ -35,13 +34,15 @@ Carriers::Carriers(const Draft& draft, const std::vector<int>& bodies) : draft_(
   }
 }
 
-Carriers::Contact Carriers::Nearest(const Eigen::Vector3d& point) const {
-  Contact nearest{.distance = std::numeric_limits<double>::infinity()};
-  for (NearestBoxes boxes(*this, point); !boxes.empty();) {
+Carriers::Contact Carriers::Nearest(const Eigen::Vector3d& point, double reach) const {
+  Contact nearest{.distance = kAnywhere};
+  for (NearestBoxes boxes(*this, point, reach); !boxes.empty();) {
     const auto [squared, carrier] = boxes.Take();
-    if (std::sqrt(squared) >= nearest.distance) break;
-    const Neighbour found = searches_[carrier]->Nearest(point, nearest.distance);
-    if (found.distance < nearest.distance) nearest = {carrier, found.vertex, found.distance};
+    if (std::sqrt(squared) >= reach) break;
+    const Neighbour found = searches_[carrier]->Nearest(point, reach);
+    if (!(found.distance < reach)) continue;
+    nearest = {carrier, found.vertex, found.distance};
+    reach = found.distance;
   }
   return nearest;
 }
@@ -56,9 +57,12 @@ std::vector<RideShare> Carriers::Shares(const Contact& contact, int for_vertex) 
   return shares;
 }
 
-NearestBoxes::NearestBoxes(const Carriers& carriers, const Eigen::Vector3d& point) {
+NearestBoxes::NearestBoxes(const Carriers& carriers, const Eigen::Vector3d& point, double reach) {
   heap_.reserve(static_cast<size_t>(carriers.count()));
-  for (int c = 0; c < carriers.count(); ++c) heap_.push_back({carriers.SquaredToBox(c, point), c});
+  for (int c = 0; c < carriers.count(); ++c) {
+    const double squared = carriers.SquaredToBox(c, point);
+    if (std::sqrt(squared) < reach) heap_.push_back({squared, c});
+  }
   std::make_heap(heap_.begin(), heap_.end(), Farther);
 }
 

@@ -3,6 +3,7 @@
 #define PHRENIC_SERVER_MECHANICS_CARRIERS_H_
 
 #include <Eigen/Geometry>
+#include <limits>
 #include <vector>
 
 #include "server/mechanics/draft.h"
@@ -13,6 +14,8 @@ namespace phrenic {
 // Nearest-vertex search over each of several carriers. Keeps references into the draft: use it while it lasts.
 class Carriers {
  public:
+  static constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+
   Carriers(const Draft& draft, const std::vector<int>& bodies);
 
   struct Contact {
@@ -20,7 +23,8 @@ class Carriers {
     int vertex = 0;   // of that body
     double distance = 0;
   };
-  Contact Nearest(const Eigen::Vector3d& point) const;
+  // At an infinite distance where none is nearer than `reach` [m]; the less it is, the sooner that is known.
+  Contact Nearest(const Eigen::Vector3d& point, double reach = kAnywhere) const;
   // What the carrier does to a point near one of its vertices; `vertex` of the shares is `for_vertex`.
   std::vector<RideShare> Shares(const Contact& contact, int for_vertex) const;
 
@@ -39,10 +43,11 @@ class Carriers {
   std::vector<Eigen::AlignedBox3d> boxes_;  // what is outside reach is not searched
 };
 
-// The carriers by their boxes' distances from a point, nearest first; of equally near ones the first.
+// The carriers by their boxes' distances from a point, nearest first; of equally near ones the first. Those whose boxes
+// are nearer than `reach` [m].
 class NearestBoxes {
  public:
-  NearestBoxes(const Carriers& carriers, const Eigen::Vector3d& point);
+  NearestBoxes(const Carriers& carriers, const Eigen::Vector3d& point, double reach = Carriers::kAnywhere);
   bool empty() const { return heap_.empty(); }
   struct Box {
     double squared;  // [m^2]

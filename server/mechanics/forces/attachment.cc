@@ -72,7 +72,7 @@ void Attachment::AddHolds(const v1::Attachment& scene, const std::vector<int>& c
   for (int i = 0; i < body.mesh.vertices.cols(); ++i) {
     const int vertex = body.first_vertex + i;
     if (!region[i]) continue;
-    const Carriers::Contact contact = search.Nearest(body.mesh.vertices.col(i));
+    const Carriers::Contact contact = search.Nearest(body.mesh.vertices.col(i), scene.radius());
     if (contact.distance >= scene.radius() || draft.model.inverse_mass[vertex] == 0) continue;
     const double stiffness = (1 - contact.distance / scene.radius()) * scene.stiffness();
     const double damping = 2 * scene.damping_ratio() * std::sqrt(stiffness * draft.model.mass[vertex]);
