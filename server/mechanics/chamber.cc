@@ -103,7 +103,8 @@ absl::Status Chamber::Add(const v1::SurfacePatch& scene, double side, std::strin
     if (!selection.ok()) return selection.status();
     Part part{BodyPoints(draft.model, b), Chosen(draft.model.bodies[b].mesh, *selection, scene), {}, side};
     if (part.triangles.cols() == 0) continue;
-    part.border = BorderVertices(part.triangles);
+    const bool whole = part.triangles.cols() == draft.model.bodies[b].mesh.triangles.cols();
+    part.border = whole ? draft.BorderOf(b) : BorderVertices(part.triangles);
     parts_.push_back(std::move(part));
   }
   if (triangles() > before) return absl::OkStatus();

@@ -125,6 +125,13 @@ const Edges& Draft::EdgesOf(int body) const {
   return *edges;
 }
 
+const std::vector<int>& Draft::BorderOf(int body) const {
+  borders_.resize(model.bodies.size());
+  std::unique_ptr<std::vector<int>>& border = borders_[body];
+  if (border == nullptr) border = std::make_unique<std::vector<int>>(BorderVertices(model.bodies[body].mesh.triangles));
+  return *border;
+}
+
 void Draft::ReportElement(std::string_view family, std::string_view name, std::int64_t count, std::string_view counted,
                           std::string_view detail) {
   v1::ElementReport* element = model.report.add_elements();

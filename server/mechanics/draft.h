@@ -60,6 +60,8 @@ struct Draft {
   const NearestSearch& Search(int body) const;
   // The same of a body's edges: its mesh's own, or else its triangles' (mesh/topology.h).
   const Edges& EdgesOf(int body) const;
+  // And its border's vertices, none where it is closed.
+  const std::vector<int>& BorderOf(int body) const;
 
   void ReportElement(std::string_view family, std::string_view name, std::int64_t count, std::string_view counted,
                      std::string_view detail);
@@ -69,6 +71,7 @@ struct Draft {
   // Of each body; null where none has asked.
   mutable std::vector<std::unique_ptr<NearestSearch>> searches_;
   mutable std::vector<std::unique_ptr<Edges>> edges_;
+  mutable std::vector<std::unique_ptr<std::vector<int>>> borders_;
 };
 
 // Bodies' names joined for an element that has no name of its own: "springs:diaphragm".

@@ -17,9 +17,10 @@ namespace {
 using Pairs = std::set<std::pair<int, int>>;  // of simulated vertices
 
 // The nearest vertices of the opposite layer for each vertex that takes part.
-void PairLayers(const BodyModel& body, const Selection& selection, const v1::CrossLayer& scene, Pairs& pairs) {
+void PairLayers(const Draft& draft, int b, const Selection& selection, const v1::CrossLayer& scene, Pairs& pairs) {
+  const BodyModel& body = draft.model.bodies[b];
   const Points normals = VertexNormals(body.mesh.vertices, body.mesh.triangles);
-  const NearestSearch search(body.mesh.vertices);
+  const NearestSearch& search = draft.Search(b);
   for (int i = 0; i < body.mesh.vertices.cols(); ++i) {
     int wanted = scene.neighbours();
     for (const Neighbour& other : search.Within(body.mesh.vertices.col(i), scene.distance())) {
@@ -33,9 +34,10 @@ void PairLayers(const BodyModel& body, const Selection& selection, const v1::Cro
 }
 
 // The nearest vertices of another body for each vertex that takes part.
-void PairBodies(const BodyModel& body, const BodyModel& other, const Selection& selection, const v1::CrossLayer& scene,
+void PairBodies(const Draft& draft, int b, int to, const Selection& selection, const v1::CrossLayer& scene,
                 Pairs& pairs) {
-  const NearestSearch search(other.mesh.vertices);
+  const BodyModel &body = draft.model.bodies[b], &other = draft.model.bodies[to];
+  const NearestSearch& search = draft.Search(to);
   for (int i = 0; i < body.mesh.vertices.cols(); ++i) {
     if (!selection.Takes(std::array{i})) continue;
     int wanted = scene.neighbours();
@@ -72,10 +74,9 @@ absl::StatusOr<std::unique_ptr<Force>> MakeCrossLayer(const v1::CrossLayer& scen
   for (const int b : *bodies) {
     const auto selection = draft.Select(b, scene.region(), scene.exclude_region(), path);
     if (!selection.ok()) return selection.status();
-    const BodyModel& body = draft.model.bodies[b];
-    if (others->empty()) PairLayers(body, *selection, scene, pairs);
+    if (others->empty()) PairLayers(draft, b, *selection, scene, pairs);
     for (const int other : *others) {
-      if (other != b) PairBodies(body, draft.model.bodies[other], *selection, scene, pairs);
+      if (other != b) PairBodies(draft, b, other, *selection, scene, pairs);
     }
   }
   if (!pairs.empty()) return Join(pairs, name, scene.stiffness(), draft);
