@@ -21,24 +21,37 @@ void ScaledStiffness::AddSprings(std::span<const SpringStiffness> springs) {
   }
 }
 
-void ScaledStiffness::Times(const Eigen::VectorXd& x, Eigen::VectorXd& y) {
+// Joints of one vertex after another, as edges are sorted, add to it in a register, in the same order.
+void ScaledStiffness::AddJoints(double* y) const {
+  const double* const x = scaled_.data();
+  for (auto joint = joints_.begin(); joint != joints_.end();) {
+    const int vertex = joint->a;
+    const double* const from_a = x + 3 * static_cast<std::ptrdiff_t>(vertex);
+    double* const to_a = y + 3 * static_cast<std::ptrdiff_t>(vertex);
+    const double from[3] = {from_a[0], from_a[1], from_a[2]};
+    double sum[3] = {to_a[0], to_a[1], to_a[2]};
+    for (; joint != joints_.end() && joint->a == vertex; ++joint) {
+      const double* const from_b = x + 3 * static_cast<std::ptrdiff_t>(joint->b);
+      double* const to_b = y + 3 * static_cast<std::ptrdiff_t>(joint->b);
+      const double* const along = joint->along;
+      const double d[3] = {from[0] - from_b[0], from[1] - from_b[1], from[2] - from_b[2]};
+      const double axial = along[0] * d[0] + along[1] * d[1] + along[2] * d[2];
+      for (int k = 0; k < 3; ++k) {
+        const double force = axial * along[k] + joint->transverse * d[k];
+        sum[k] += force;
+        to_b[k] -= force;
+      }
+    }
+    for (int k = 0; k < 3; ++k) to_a[k] = sum[k];
+  }
+}
+
+void ScaledStiffness::Times(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::VectorXd& y) {
   const Eigen::Index n = scale_.size();
   scaled_.noalias() = Eigen::Map<const Points>(x.data(), 3, n) * scale_.asDiagonal();
   Eigen::Map<Points> product(y.data(), 3, n);
   blocks_.Times(scaled_, product);
-  for (const auto& [a, b, along, transverse] : joints_) {
-    const double* const from_a = scaled_.data() + 3 * static_cast<std::ptrdiff_t>(a);
-    const double* const from_b = scaled_.data() + 3 * static_cast<std::ptrdiff_t>(b);
-    double* const to_a = y.data() + 3 * static_cast<std::ptrdiff_t>(a);
-    double* const to_b = y.data() + 3 * static_cast<std::ptrdiff_t>(b);
-    const double d[3] = {from_a[0] - from_b[0], from_a[1] - from_b[1], from_a[2] - from_b[2]};
-    const double axial = along[0] * d[0] + along[1] * d[1] + along[2] * d[2];
-    for (int k = 0; k < 3; ++k) {
-      const double force = axial * along[k] + transverse * d[k];
-      to_a[k] += force;
-      to_b[k] -= force;
-    }
-  }
+  AddJoints(y.data());
   product *= scale_.asDiagonal();
 }
 

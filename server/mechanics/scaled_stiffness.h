@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "server/mechanics/block_matrix.h"
+#include "server/mechanics/large_pages.h"
 
 namespace phrenic {
 
@@ -20,7 +21,7 @@ class ScaledStiffness final : public StiffnessSink {
   void AddOuter(double scale, const Points& g) override { blocks_.AddOuter(scale, g); }
 
   // y = M^-1/2 K M^-1/2 x, both of 3 n numbers.
-  void Times(const Eigen::VectorXd& x, Eigen::VectorXd& y);
+  void Times(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::VectorXd& y);
   const Eigen::VectorXd& scale() const { return scale_; }  // M^-1/2 [kg^-1/2]
 
  private:
@@ -30,8 +31,10 @@ class ScaledStiffness final : public StiffnessSink {
     double transverse;  // [N/m]
   };
 
+  void AddJoints(double* y) const;
+
   BlockMatrix blocks_;
-  std::vector<Joint> joints_;
+  std::vector<Joint, LargePages<Joint>> joints_;
   Eigen::VectorXd scale_;
   Points scaled_;
 };

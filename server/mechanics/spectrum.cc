@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "server/mechanics/advance.h"
+#include "server/mechanics/large_pages.h"
 #include "server/mechanics/scaled_stiffness.h"
 
 namespace phrenic {
@@ -50,8 +51,31 @@ void FindDampingRates(const Model& model, const Instant& at, Spectrum& spectrum)
   spectrum.damping_rate += shared.Bound(model.inverse_mass);
 }
 
+// Vectors one after another; each begins at an even place, so that sums over them are taken alike.
+class Basis {
+ public:
+  using Column = Eigen::Map<const Eigen::VectorXd, Eigen::Aligned16>;
+  explicit Basis(Eigen::Index rows) : rows_(rows) { values_.reserve(static_cast<size_t>(kProducts * Stride())); }
+
+  // q / norm
+  void Append(const Eigen::VectorXd& q, double norm) {
+    values_.resize(static_cast<size_t>((size_ + 1) * Stride()));
+    Eigen::Map<Eigen::VectorXd, Eigen::Aligned16>(values_.data() + size_++ * Stride(), rows_) = q / norm;
+  }
+  Column operator[](int k) const { return {values_.data() + k * Stride(), rows_}; }
+  int size() const { return size_; }
+  Eigen::Index rows() const { return rows_; }
+
+ private:
+  Eigen::Index Stride() const { return rows_ + rows_ % 2; }
+
+  Eigen::Index rows_;
+  std::vector<double, LargePages<double>> values_;
+  int size_ = 0;
+};
+
 struct Krylov {
-  std::vector<Eigen::VectorXd> basis;
+  Basis basis;
   std::vector<double> diagonal, off_diagonal;  // of the tridiagonal matrix; one more off_diagonal than needed
 };
 
@@ -76,11 +100,11 @@ bool OneHasConverged(const Krylov& krylov) {
 
 // Takes off q what of it lies along the basis, again where little is left, which may not be orthogonal (Daniel, Gragg,
 // Kaufman, Stewart 1976); what is left of its length.
-double Orthogonalise(const std::vector<Eigen::VectorXd>& basis, Eigen::VectorXd& q) {
+double Orthogonalise(const Basis& basis, Eigen::VectorXd& q) {
   double norm = q.norm();
   for (int pass = 0; pass < 2; ++pass) {
     const double before = norm;
-    for (const Eigen::VectorXd& b : basis) q -= q.dot(b) * b;
+    for (int k = 0; k < basis.size(); ++k) q -= q.dot(basis[k]) * basis[k];
     norm = q.norm();
     if (norm > kMostlyLeft * before) break;
   }
@@ -88,19 +112,24 @@ double Orthogonalise(const std::vector<Eigen::VectorXd>& basis, Eigen::VectorXd&
 }
 
 Krylov Lanczos(ScaledStiffness& matrix) {
-  Krylov krylov;
   Eigen::VectorXd q = Start(matrix.scale());
+  Krylov krylov{.basis = Basis(q.size()), .diagonal = {}, .off_diagonal = {}};
   double norm = q.norm();
   double largest = 0;  // product: what is left of one is measured by it, whatever the unit of stiffness
   bool converged = false;
-  while (static_cast<int>(krylov.basis.size()) < kProducts && norm > kExhausted * largest) {
-    krylov.basis.emplace_back(q / norm);
-    const Eigen::VectorXd& last = krylov.basis.back();
+  while (krylov.basis.size() < kProducts && norm > kExhausted * largest) {
+    krylov.basis.Append(q, norm);
+    const int k = krylov.basis.size() - 1;
+    const Basis::Column last = krylov.basis[k];
     matrix.Times(last, q);
     largest = std::max(largest, q.norm());
-    krylov.diagonal.push_back(q.dot(last));
-    q -= krylov.diagonal.back() * last;
-    if (krylov.basis.size() > 1) q -= krylov.off_diagonal.back() * krylov.basis[krylov.basis.size() - 2];
+    const double along = q.dot(last);
+    if (k == 0) {
+      q -= along * last;
+    } else {
+      q = (q - along * last) - krylov.off_diagonal.back() * krylov.basis[k - 1];
+    }
+    krylov.diagonal.push_back(along);
     krylov.off_diagonal.push_back(q.norm());
     converged = converged || OneHasConverged(krylov);
     if (converged) krylov.off_diagonal.back() = Orthogonalise(krylov.basis, q);
@@ -109,12 +138,20 @@ Krylov Lanczos(ScaledStiffness& matrix) {
   return krylov;
 }
 
+// What the basis comes to with these weights; part by part, each of which stays in the nearest cache.
+Eigen::VectorXd Combine(const Basis& basis, const Eigen::VectorXd& weights) {
+  constexpr Eigen::Index kPart = 1024;
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(basis.rows());
+  for (Eigen::Index first = 0; first < sum.size(); first += kPart) {
+    auto part = sum.segment(first, std::min(kPart, sum.size() - first));
+    for (int k = 0; k < basis.size(); ++k) part += weights[k] * basis[k].segment(first, part.size());
+  }
+  return sum;
+}
+
 // The combination of the basis as displacements, of which the largest is of length 1.
 void FindMode(const Model& model, const Krylov& krylov, const Eigen::VectorXd& combination, FastestMode& fastest) {
-  Eigen::VectorXd scaled = Eigen::VectorXd::Zero(krylov.basis.front().size());
-  for (size_t k = 0; k < krylov.basis.size(); ++k) {
-    scaled += combination[static_cast<Eigen::Index>(k)] * krylov.basis[k];
-  }
+  const Eigen::VectorXd scaled = Combine(krylov.basis, combination);
   const Eigen::Map<const Points> mode(scaled.data(), 3, scaled.size() / 3);
   Eigen::Index largest = 0;
   mode.colwise().squaredNorm().maxCoeff(&largest);
@@ -133,7 +170,7 @@ FastestMode FindFastestMode(const Model& model, const v1::Parameters& parameters
   FindDampingRates(model, at, fastest.spectrum);
   ScaledStiffness stiffness(model, at);
   const Krylov krylov = Lanczos(stiffness);
-  if (krylov.basis.empty()) return fastest;
+  if (krylov.basis.size() == 0) return fastest;
   const Ritz pairs = RitzPairs(krylov);
   const Eigen::VectorXd combination = pairs.eigenvectors().rightCols<1>();
   const double residual = krylov.off_diagonal.back() * std::abs(combination.tail<1>()[0]);
