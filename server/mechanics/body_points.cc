@@ -1,6 +1,7 @@
 #include "server/mechanics/body_points.h"
 
 #include <Eigen/Geometry>
+#include <vector>
 
 namespace phrenic {
 namespace {
@@ -44,7 +45,7 @@ void Add(double weight, const Eigen::Vector3d& what, double* points, Eigen::Inde
 
 }  // namespace
 
-BodyPoints::BodyPoints(const Model& model, int body) : rest_(model.bodies[body].mesh.vertices) {
+BodyPoints::BodyPoints(const Model& model, int body) : rest_(&model.bodies[body].mesh.vertices) {
   const BodyModel& of = model.bodies[body];
   first_vertex_ = of.first_vertex;
   pose_ = of.pose;
@@ -58,23 +59,23 @@ BodyPoints::BodyPoints(const Model& model, int body) : rest_(model.bodies[body].
 }
 
 ConstPoints BodyPoints::Positions(const Instant& at) const {
-  if (first_vertex_ >= 0) return at.x.middleCols(first_vertex_, rest_.cols());
+  if (first_vertex_ >= 0) return at.x.middleCols(first_vertex_, rest_->cols());
   return Place<false>(at).x;
 }
 
 BodyPoints::Moving BodyPoints::Locate(const Instant& at) const {
   if (first_vertex_ < 0) return Place<true>(at);
-  return {at.x.middleCols(first_vertex_, rest_.cols()), at.v.middleCols(first_vertex_, rest_.cols())};
+  return {at.x.middleCols(first_vertex_, rest_->cols()), at.v.middleCols(first_vertex_, rest_->cols())};
 }
 
 template <bool kVelocities>
 BodyPoints::Moving BodyPoints::Place(const Instant& at) const {
   thread_local std::vector<double> positions, velocities;
-  Eigen::Map<Points> x = Fit(positions, rest_), v = Fit(velocities, rest_);
-  x = rest_;
+  Eigen::Map<Points> x = Fit(positions, *rest_), v = Fit(velocities, *rest_);
+  x = *rest_;
   if (kVelocities) v.setZero();
   const auto carry = [&](const Affine& pose, Eigen::Index i, double weight) {
-    const Eigen::Vector3d rest = At(rest_.data(), i), moved = pose.linear * rest + pose.offset;
+    const Eigen::Vector3d rest = At(rest_->data(), i), moved = pose.linear * rest + pose.offset;
     Add(weight, moved, x.data(), i);
     if (!kVelocities) return;
     const Eigen::Vector3d velocity = pose.rate * rest + pose.velocity;
@@ -82,7 +83,7 @@ BodyPoints::Moving BodyPoints::Place(const Instant& at) const {
   };
   if (pose_ >= 0) {
     const Affine pose(at.poses[pose_]);
-    for (Eigen::Index i = 0; i < rest_.cols(); ++i) carry(pose, i, 1);
+    for (Eigen::Index i = 0; i < rest_->cols(); ++i) carry(pose, i, 1);
     return {x, v};
   }
   const std::vector<Affine>& by_pose = ByPose(at);

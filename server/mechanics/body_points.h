@@ -2,14 +2,15 @@
 #ifndef PHRENIC_SERVER_MECHANICS_BODY_POINTS_H_
 #define PHRENIC_SERVER_MECHANICS_BODY_POINTS_H_
 
-#include <vector>
+#include <span>
 
 #include "server/mechanics/model.h"
 
 namespace phrenic {
 
-// Of one body, by the instant alone, for elements, which do not see the model while they act. Immutable; any number of
-// threads may call.
+// Of one body, by the instant alone, for elements, which do not see the model while they act. Refers to the body's mesh
+// and ride: for the model's own elements, once all its bodies and motions are there. Immutable; any number of threads
+// may call.
 class BodyPoints {
  public:
   BodyPoints(const Model& model, int body);
@@ -24,7 +25,7 @@ class BodyPoints {
   // The same for x alone, at half the price.
   ConstPoints Positions(const Instant& at) const;
 
-  const Points& rest() const { return rest_; }  // [m]
+  const Points& rest() const { return *rest_; }  // [m]
   // Place of its first vertex among the simulated ones; -1 where it is not simulated.
   int first_vertex() const { return first_vertex_; }
 
@@ -32,11 +33,11 @@ class BodyPoints {
   template <bool kVelocities>
   Moving Place(const Instant& at) const;
 
-  Points rest_;
+  const Points* rest_;  // of the model, whose bodies stay where they are when it is moved
   int first_vertex_ = -1;
   int pose_ = -1;
-  std::vector<RideShare> shares_;
-  Points carriers_;  // simulated carriers at rest, one a share [m]
+  std::span<const RideShare> shares_;  // of the model
+  Points carriers_;                    // simulated carriers at rest, one a share [m]
 };
 
 }  // namespace phrenic

@@ -1,6 +1,6 @@
 // Memory for large arrays that live shortly: from the system and straight back to it, in pages as large as it has
-// (Linux: madvise(2), MADV_HUGEPAGE). Touching 10 MB of new memory in pages of 4 KiB takes as long as to fill it ten
-// times over.
+// (Linux: madvise(2), MADV_HUGEPAGE). To touch 10 MB of new memory in pages of 4 KiB took some 3 ms where this was
+// measured.
 #ifndef PHRENIC_SERVER_MECHANICS_LARGE_PAGES_H_
 #define PHRENIC_SERVER_MECHANICS_LARGE_PAGES_H_
 
