@@ -1,6 +1,7 @@
 #include "server/mechanics/forces/spring_rows.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "server/mechanics/forces/packed_points.h"
 #include "server/mesh/locality.h"
@@ -18,7 +19,15 @@ struct RowSpring {
   int other = 0;
   double stiffness = 0, rest_length = 0;
 };
-using Rows = std::vector<std::vector<RowSpring>>;  // a place
+// Those of place i: of[first[i]] to of[first[i + 1] - 1].
+struct Rows {
+  std::vector<int> first;
+  std::vector<RowSpring> of;
+
+  int count() const { return static_cast<int>(first.size()) - 1; }
+  int Size(int place) const { return first[place + 1] - first[place]; }
+  const RowSpring& At(int place, int column) const { return of[first[place] + column]; }
+};
 
 // The order that the springs' vertices are to be taken in: none, as they come, which reads and writes them in one go,
 // unless what a spring joins is too far apart for that.
@@ -34,21 +43,27 @@ Rows ByPlace(const std::vector<Spring>& springs, const std::vector<int>& order, 
   std::vector<int> place(vertices);
   for (int i = 0; i < vertices; ++i) place[i] = i;
   for (size_t i = 0; i < order.size(); ++i) place[order[i]] = static_cast<int>(i);
-  Rows rows(order.empty() ? vertices : order.size());
+  Rows rows{std::vector<int>((order.empty() ? vertices : order.size()) + 1, 0),
+            std::vector<RowSpring>(2 * springs.size())};
+  for (const Spring& spring : springs) ++rows.first[place[spring.a] + 1], ++rows.first[place[spring.b] + 1];
+  std::partial_sum(rows.first.begin(), rows.first.end(), rows.first.begin());
+  std::vector<int> next(rows.first.begin(), rows.first.end() - 1);
   for (const Spring& spring : springs) {
-    rows[place[spring.a]].push_back({place[spring.b], spring.stiffness, spring.rest_length});
-    rows[place[spring.b]].push_back({place[spring.a], spring.stiffness, spring.rest_length});
+    const int a = place[spring.a], b = place[spring.b];
+    rows.of[next[a]++] = {b, spring.stiffness, spring.rest_length};
+    rows.of[next[b]++] = {a, spring.stiffness, spring.rest_length};
   }
   return rows;
 }
 
 // The block's rows that have springs, longest first.
-std::vector<int> SortedBlock(const Rows& rows, size_t first) {
+std::vector<int> SortedBlock(const Rows& rows, int first) {
   std::vector<int> block;
-  for (size_t i = first; i < std::min(first + kVertexBlock, rows.size()); ++i) {
-    if (!rows[i].empty()) block.push_back(static_cast<int>(i));
+  block.reserve(kVertexBlock);
+  for (int i = first; i < std::min(first + static_cast<int>(kVertexBlock), rows.count()); ++i) {
+    if (rows.Size(i) > 0) block.push_back(i);
   }
-  std::stable_sort(block.begin(), block.end(), [&rows](int a, int b) { return rows[a].size() > rows[b].size(); });
+  std::stable_sort(block.begin(), block.end(), [&rows](int a, int b) { return rows.Size(a) > rows.Size(b); });
   return block;
 }
 
@@ -64,18 +79,19 @@ void AppendSlice(const Rows& rows, const int* members, int count, SpringSlices<N
   constexpr int kStride = kPointStride<Number>;
   SpringSlice<Number>& slice = slices.slices.back();
   slice.rows = count;
-  const size_t first = slices.at_rest.size(), width = rows[members[0]].size();
+  const size_t first = slices.at_rest.size();
+  const int width = rows.Size(members[0]);
   slices.at_rest.resize(first + width);
   slices.neighbours.resize(first + width);
   if (slices.common_stiffness == 0) slices.stiffness.resize(first + width);
-  const int last = static_cast<int>(rows.size()) - 1;
+  const int last = rows.count() - 1;
   for (int i = 0; i < kSliceRows<Number>; ++i) {
     const int own = members[i < count ? i : 0];
     slice.own[i] = kStride * own;
     slice.at_end = slice.at_end || own == last;
-    for (size_t c = 0; c < width; ++c) {
-      const bool padding = i >= count || c >= rows[own].size();
-      const RowSpring spring = padding ? RowSpring{own, 0, 0} : rows[own][c];
+    for (int c = 0; c < width; ++c) {
+      const bool padding = i >= count || c >= rows.Size(own);
+      const RowSpring spring = padding ? RowSpring{own, 0, 0} : rows.At(own, c);
       slice.at_end = slice.at_end || spring.other == last;
       slices.neighbours[first + c].place[i] = kStride * spring.other;
       slices.at_rest[first + c].row[i] = static_cast<Number>(spring.stiffness * spring.rest_length);
@@ -86,11 +102,10 @@ void AppendSlice(const Rows& rows, const int* members, int count, SpringSlices<N
 }
 
 template <typename Number>
-void AppendBlock(const Rows& rows, size_t first, SpringSlices<Number>& slices) {
+void AppendBlock(const Rows& rows, int first, SpringSlices<Number>& slices) {
   const std::vector<int> block = SortedBlock(rows, first);
-  const size_t vertices = std::min<size_t>(kVertexBlock, rows.size() - first);
-  slices.blocks.back().whole =
-      slices.order.empty() && static_cast<double>(block.size()) > kNearlyAll * static_cast<double>(vertices);
+  const int vertices = std::min(static_cast<int>(kVertexBlock), rows.count() - first);
+  slices.blocks.back().whole = slices.order.empty() && static_cast<double>(block.size()) > kNearlyAll * vertices;
   for (size_t i = 0; i < block.size(); ++i) {
     constexpr size_t kRows = kSliceRows<Number>;
     if (i % kRows == 0) AppendSlice(rows, &block[i], static_cast<int>(std::min(kRows, block.size() - i)), slices);
@@ -105,10 +120,10 @@ SpringSlices<Number> Lay(const std::vector<Spring>& springs, int vertices) {
   slices.order = OrderOf(springs, vertices);
   const Rows rows = ByPlace(springs, slices.order, vertices);
   if (!springs.empty() && Alike(springs)) slices.common_stiffness = static_cast<Number>(springs.front().stiffness);
-  slices.slot.assign(rows.size(), kNoSlot<Number>);
+  slices.slot.assign(rows.count(), kNoSlot<Number>);
   slices.blocks.emplace_back();
   slices.slices.emplace_back();
-  for (size_t first = 0; first < rows.size(); first += kVertexBlock) AppendBlock(rows, first, slices);
+  for (int first = 0; first < rows.count(); first += kVertexBlock) AppendBlock(rows, first, slices);
   return slices;
 }
 
