@@ -10,12 +10,13 @@ constexpr const char* kAttachments = "attachments";
 constexpr const char* kLinks = "links";
 constexpr const char* kMuscles = "muscles";
 constexpr const char* kRibs = "ribs";
+constexpr const char* kSprings = "springs";
 constexpr const char* kNone = "";
 
 std::string PartOf(const v1::Force& force) {
   switch (force.kind_case()) {
     case v1::Force::kSprings:
-      return "springs";
+      return kSprings;
     case v1::Force::kFriction:
       return "friction";
     case v1::Force::kActionLine:
@@ -107,6 +108,11 @@ void AddNowhere(const Model& model, v1::Scene& scene) {
   }
 }
 
+// No mass can be spread by the stiffness of springs that are not there.
+void SpreadMassByArea(v1::Scene& scene) {
+  for (v1::Body& body : *scene.mutable_bodies()) body.clear_mass_shares();
+}
+
 template <typename Element>
 bool Confine(Element& element) {
   element.set_region(kNowhere);
@@ -183,6 +189,7 @@ v1::Scene Without(v1::Scene scene, const std::string& part) {
   Drop(part, *scene.mutable_forces());
   Drop(part, *scene.mutable_motions());
   Drop(part, *scene.mutable_constraints());
+  if (part == kSprings) SpreadMassByArea(scene);
   if (part != kRibs) return scene;
   for (v1::Body& body : *scene.mutable_bodies()) {
     if (body.role() == v1::ROLE_DRIVEN) body.set_role(v1::ROLE_AT_REST);
@@ -193,6 +200,7 @@ v1::Scene Without(v1::Scene scene, const std::string& part) {
 std::optional<v1::Scene> LeftOut(const Model& model, const std::string& part) {
   v1::Scene scene = model.scene;
   AddNowhere(model, scene);
+  if (part == kSprings) SpreadMassByArea(scene);
   bool any = false;
   for (v1::Force& force : *scene.mutable_forces()) {
     if (PartOf(force) != part) continue;

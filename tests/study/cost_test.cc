@@ -43,7 +43,7 @@ const char kSheet[] = R"(
     }
   }
   bodies {
-    name: "sheet" role: ROLE_DEFORMABLE
+    name: "sheet" role: ROLE_DEFORMABLE mass_shares: MASS_SHARES_BY_STIFFNESS
     grid { columns: 10 rows: 10 u { x: 0.1 } v { y: 0.1 } }
     substance { density: 1030 thickness: 0.003 }
   }
