@@ -139,6 +139,7 @@ bool Void(v1::Force& force) {
       return true;
     case v1::Force::kActionLine:
       force.mutable_action_line()->set_force(0);
+      force.mutable_action_line()->clear_air_load();
       return true;
     case v1::Force::kAttachment:
       force.mutable_attachment()->set_radius(1e-6);

@@ -55,7 +55,7 @@ const char kSheet[] = R"(
   forces { friction { bodies: "sheet" rate: 3 } }
   forces { gravity { bodies: "sheet" acceleration { z: -1 } } }
   forces { attachment { bodies: "sheet" carriers: "post" radius: 0.15 stiffness: 20 } }
-  forces { action_line { bodies: "sheet" origin { x: 0.5 y: 0.5 } direction { z: 1 } radius: 0.3 force: 1 } }
+  forces { action_line { bodies: "sheet" origin { x: 0.5 y: 0.5 } direction { z: 1 } radius: 0.3 force: 1 air_load: 0.5 } }
   forces { contact { bodies: "sheet" surfaces: "floor" depth: 0.01 load: 1 } }
   constraints { rigid_links { body: "sheet" list { links { a: 44 b: 46 } links { a: 64 b: 66 } } } }
   constraints { limits { body: "sheet" at_most_ratio: 1.5 } }
