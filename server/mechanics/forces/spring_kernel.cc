@@ -186,23 +186,26 @@ HWY_INLINE void AddSlot(const float* slot, double* point) {
 
 #if HWY_TARGET != HWY_SCALAR
 using FourDoubles = hn::CappedTag<double, 4>;
-HWY_INLINE hn::Vec<FourDoubles> Doubles(hn::Vec<FourDoubles> numbers) { return numbers; }
-HWY_INLINE hn::Vec<FourDoubles> Doubles(hn::Vec<hn::Rebind<float, FourDoubles>> numbers) {
-  return hn::PromoteTo(FourDoubles(), numbers);
-}
 
 // Four points at f, one after the other, += those at the slots.
 template <typename Number>
 HWY_INLINE void AddFour(const Number* tile, const std::uint16_t* slot, double* f) {
   const hn::Rebind<Number, FourDoubles> four;
   const FourDoubles d;
+  const auto doubles = [](auto numbers) {
+    if constexpr (std::is_same_v<Number, float>) {
+      return hn::PromoteTo(FourDoubles(), numbers);
+    } else {
+      return numbers;
+    }
+  };
   const Number *p0 = tile + slot[0], *p1 = tile + slot[1], *p2 = tile + slot[2], *p3 = tile + slot[3];
   const auto xyzx = hn::IfThenElse(hn::FirstN(four, 3), hn::LoadU(four, p0), hn::LoadU(four, p1 - 3));
   const auto yzxy = hn::ConcatUpperLower(four, hn::LoadU(four, p2 - 2), hn::LoadU(four, p1 + 1));
   const auto zxyz = hn::IfThenElse(hn::FirstN(four, 1), hn::LoadU(four, p2 + 2), hn::LoadU(four, p3 - 1));
-  hn::StoreU(hn::Add(hn::LoadU(d, f), Doubles(xyzx)), d, f);
-  hn::StoreU(hn::Add(hn::LoadU(d, f + 4), Doubles(yzxy)), d, f + 4);
-  hn::StoreU(hn::Add(hn::LoadU(d, f + 8), Doubles(zxyz)), d, f + 8);
+  hn::StoreU(hn::Add(hn::LoadU(d, f), doubles(xyzx)), d, f);
+  hn::StoreU(hn::Add(hn::LoadU(d, f + 4), doubles(yzxy)), d, f + 4);
+  hn::StoreU(hn::Add(hn::LoadU(d, f + 8), doubles(zxyz)), d, f + 8);
 }
 #endif
 
