@@ -131,14 +131,16 @@ void Relax(const SheetDomain& domain, int first_free, Sheet& sheet) {
   }
 }
 
-// Vertices that triangles join come close together: what is asked of one after the other lies in a core's cache.
+// Vertices that triangles join come close together: what is asked of one after the other lies in a core's cache. Those
+// that no triangle has are left out.
 Sheet InLocalOrder(const Sheet& sheet) {
   const std::vector<int> order = LocalOrder(TriangleEdges(sheet.triangles), static_cast<int>(sheet.plane.size()));
-  std::vector<int> name(order.size());
-  Sheet ordered = sheet;
-  for (size_t i = 0; i < order.size(); ++i) {
-    name[order[i]] = static_cast<int>(i);
-    ordered.plane[i] = sheet.plane[order[i]], ordered.points[i] = sheet.points[order[i]];
+  std::vector<int> name(sheet.plane.size(), -1);
+  Sheet ordered{.plane = {}, .points = {}, .triangles = sheet.triangles, .loops = sheet.loops};
+  for (const int vertex : order) {
+    name[vertex] = static_cast<int>(ordered.plane.size());
+    ordered.plane.push_back(sheet.plane[vertex]);
+    ordered.points.push_back(sheet.points[vertex]);
   }
   for (int& corner : ordered.triangles.reshaped()) corner = name[corner];
   for (std::vector<int>& loop : ordered.loops) {

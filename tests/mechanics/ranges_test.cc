@@ -19,7 +19,7 @@ TEST(Ranges, GiveEachForceTheBitsOfTheWhole) {
   state.phase = 0.3;
   state.x += 0.002 * Points::Random(3, state.x.cols());
   state.v = Points::Random(3, state.x.cols());
-  const Instant at = MakeInstant(*model, model->parameters, state);
+  const Instant at = Packed(*model, MakeInstant(*model, model->parameters, state));
   for (const Force* force : model->step_forces) {
     ASSERT_TRUE(force->by_range()) << force->name();
     Points whole = Points::Zero(3, state.x.cols()), parts = whole;

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "absl/strings/str_join.h"
-#include "server/mechanics/forces/packed_points.h"
 
 namespace phrenic {
 namespace {
@@ -42,9 +41,7 @@ void SpringBatch::AddForce(const Instant& at, MutablePoints f) const {
 }
 
 void SpringBatch::AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const {
-  const bool missing = packs_ && at.packed == nullptr;
-  const float* const packed = missing ? PackAll(at.x, rows_.origin()) : at.packed;
-  rows_.AddForce(range, at.parameters.elasticity(), at.x, packed, f);
+  rows_.AddForce(range, at.parameters.elasticity(), at.x, at.packed, f);
 }
 
 void BatchSprings(Model& model) {

@@ -16,7 +16,7 @@ class SpringBatch final : public Force {
   SpringBatch(std::span<const Springs* const> members, const Points& rest);
 
   void AddForce(const Instant& at, MutablePoints f) const override;
-  // In single precision from `at.packed`; without it, packs positions of all first.
+  // In single precision from `at.packed`, which is to be there (Packed, advance.h).
   bool by_range() const override { return rows_.InRanges(); }
   void AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const override;
 
