@@ -5,6 +5,7 @@
 
 #include "server/mechanics/forces/packed_points.h"
 #include "server/mechanics/residual.h"
+#include "server/mechanics/vertex_kernel.h"
 
 namespace phrenic {
 namespace {
@@ -40,25 +41,27 @@ Instant Packed(const Model& model, const Instant& at) {
 
 void SumForces(const Model& model, const Instant& at, Points& f) {
   const Instant packed = Packed(model, at);
-  SumWholeForces(model, packed, f);
-  ForEachBlock({0, f.cols()}, [&](const VertexRange& block) { SumForcesIn(block, model, packed, f); });
+  if (!SumWholeForces(model, packed, f)) f.setZero();
+  ForEachBlock({0, f.cols()}, [&](const VertexRange& block) {
+    AddForcesIn(block, model, packed, f.middleCols(block.first, block.end - block.first));
+  });
 }
 
-void SumWholeForces(const Model& model, const Instant& at, Points& f) {
-  if (AllByRange(model)) return;
+bool SumWholeForces(const Model& model, const Instant& at, Points& f) {
+  if (AllByRange(model)) return false;
   f.setZero();
   for (const Force* force : model.step_forces) {
     if (!force->by_range()) force->AddForce(at, f);
   }
+  return true;
 }
 
-void SumForcesIn(const VertexRange& range, const Model& model, const Instant& at, Points& f) {
-  if (AllByRange(model)) f.middleCols(range.first, range.end - range.first).setZero();
+void AddForcesIn(const VertexRange& range, const Model& model, const Instant& at, MutablePoints f) {
   for (const Force* force : model.step_forces) {
     if (force->by_range()) force->AddForceIn(range, at, f);
   }
   for (const VertexPull& pull : at.pulls) {
-    if (pull.vertex >= range.first && pull.vertex < range.end) f.col(pull.vertex) += pull.force;
+    if (pull.vertex >= range.first && pull.vertex < range.end) f.col(pull.vertex - range.first) += pull.force;
   }
 }
 
@@ -70,6 +73,10 @@ void SumDamping(const Model& model, const Instant& at, Eigen::VectorXd& c) {
 void SumSharedDamping(const Model& model, const Instant& at, OuterProducts& shared) {
   shared.Clear();
   for (const auto& force : model.forces) force->AddSharedDamping(at, shared);
+}
+
+void NoteReach(const VertexRange& block, const Points& x, const Points& v, std::vector<StateReach>& blocks) {
+  blocks[block.first / kVertexBlock] = {LargestOf(block, x), SquaresOf(block, v)};
 }
 
 void AddToFree(const Model& model, double scale, const Points& shift, Points& x) {

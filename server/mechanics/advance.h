@@ -15,14 +15,18 @@ void DriveMotions(const Model& model, const v1::Parameters& parameters, double a
 // f = the sum of all forces and pulls [N].
 void SumForces(const Model& model, const Instant& at, Points& f);
 // The same in three parts: positions packed, where forces ask for it, in memory of the thread's own until its next
-// call; then what can only be worked out for all vertices at once, and the rest range by range.
+// call; then what can only be worked out for all vertices at once, false and f as it was where there is nothing of the
+// kind; and the rest range by range, added to f, 3 x the range's vertices.
 Instant Packed(const Model& model, const Instant& at);
-void SumWholeForces(const Model& model, const Instant& at, Points& f);
-void SumForcesIn(const VertexRange& range, const Model& model, const Instant& at, Points& f);
+bool SumWholeForces(const Model& model, const Instant& at, Points& f);
+void AddForcesIn(const VertexRange& range, const Model& model, const Instant& at, MutablePoints f);
 
 // c = the sum of all damping coefficients [N s/m].
 void SumDamping(const Model& model, const Instant& at, Eigen::VectorXd& c);
 void SumSharedDamping(const Model& model, const Instant& at, OuterProducts& shared);
+
+// Notes how far a range that begins a block has got, at the block's place.
+void NoteReach(const VertexRange& block, const Points& x, const Points& v, std::vector<StateReach>& blocks);
 
 // x += shift, but for fixed and driven vertices; shift 3 x n.
 void AddToFree(const Model& model, double scale, const Points& shift, Points& x);

@@ -25,7 +25,8 @@ class Force {
   // f += force [N], 3 x n; never clears.
   virtual void AddForce(const Instant& at, MutablePoints f) const { AddForceIn({0, f.cols()}, at, f); }
   // A force that can be worked out for some vertices alone, from the positions of all and the velocities of those, says
-  // so, and has this in AddForce's place; several threads may ask at once, for different ranges.
+  // so, and has this in AddForce's place, f then 3 x the range's vertices; several threads may ask at once, for
+  // different ranges.
   virtual bool by_range() const { return false; }
   virtual void AddForceIn(const VertexRange&, const Instant&, MutablePoints /*f*/) const {}
   // Hands over K = -df/dx, positive semi-definite. Nothing where the force does not depend on positions.

@@ -35,6 +35,7 @@ struct Workspace {
   Eigen::VectorXd damping;                 // [N s/m] a vertex
   std::vector<Points> stages;              // of the integrators that have stages; made when first needed
   std::vector<State> trials;               // of adaptive steps; made when first needed
+  std::vector<StateReach> reach;           // of each block after the step, where its integrator has noted it; or none
   SolverEffort effort;                     // of the implicit integrators' linear systems, in the last step
   std::unique_ptr<ImplicitSystem> system;  // of the implicit integrators; made when first needed
   // Of projective dynamics; made when first needed.

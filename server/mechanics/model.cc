@@ -21,6 +21,7 @@ Workspace Model::MakeWorkspace() const {
   Workspace work;
   work.before = work.velocity_before = work.force = Points::Zero(3, rest.cols());
   work.damping = Eigen::VectorXd::Zero(rest.cols());
+  work.reach.reserve((rest.cols() + kVertexBlock - 1) / kVertexBlock);
   return work;
 }
 

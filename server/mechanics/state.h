@@ -51,6 +51,12 @@ struct State {
   int halvings = 0;  // of an adaptive step, the last time
 };
 
+// How far vertices have got: of a block of them, or all.
+struct StateReach {
+  double furthest = 0;  // coordinate [m], no number where one is none
+  double squares = 0;   // sum over the velocities [m^2/s^2]
+};
+
 // A word-wise FNV-1a, in four lanes, over the bits of time, phase, positions and velocities: equal states, equal
 // hashes.
 std::uint64_t StateHash(const State& state);

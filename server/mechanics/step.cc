@@ -9,7 +9,6 @@
 #include "server/mechanics/catalogue.h"
 #include "server/mechanics/compile.h"
 #include "server/mechanics/residual.h"
-#include "server/mechanics/vertex_kernel.h"
 
 namespace phrenic {
 namespace {
@@ -22,19 +21,12 @@ double DistanceFromRest(const Model& model, const State& state, int vertex) {
   return std::isfinite(squared) ? squared : std::numeric_limits<double>::infinity();
 }
 
-// Of all blocks, in their order.
-struct StateReach {
-  double furthest = 0;  // coordinate [m]
-  double squares = 0;   // sum over the velocities [m^2/s^2]
-};
-
-StateReach ReachOf(const State& state) {
-  thread_local std::vector<StateReach> kept;
-  std::vector<StateReach>& blocks = kept;  // this thread's own, for all that help it
-  blocks.resize((state.x.cols() + kVertexBlock - 1) / kVertexBlock);
-  ForEachBlock({0, state.x.cols()}, [&](const VertexRange& block) {
-    blocks[block.first / kVertexBlock] = {LargestOf(block, state.x), SquaresOf(block, state.v)};
-  });
+// Of all blocks, in their order; notes those that the integrator has not.
+StateReach ReachOf(const State& state, std::vector<StateReach>& blocks) {
+  if (blocks.empty()) {
+    blocks.resize((state.x.cols() + kVertexBlock - 1) / kVertexBlock);
+    ForEachBlock({0, state.x.cols()}, [&](const VertexRange& block) { NoteReach(block, state.x, state.v, blocks); });
+  }
   StateReach whole;
   for (const StateReach& block : blocks) {
     whole.furthest = block.furthest > whole.furthest || std::isnan(block.furthest) ? block.furthest : whole.furthest;
@@ -45,9 +37,9 @@ StateReach ReachOf(const State& state) {
 
 // True where every coordinate is a number within the bound, and the root mean square of the velocities one that takes
 // no longer than `dt` across it: constraints may hold positions back while velocities run away.
-bool WithinBounds(const Model& model, double dt, const State& state) {
+bool WithinBounds(const Model& model, double dt, const State& state, std::vector<StateReach>& blocks) {
   const double fastest = 2 * model.bound / dt;
-  const StateReach reach = ReachOf(state);
+  const StateReach reach = ReachOf(state, blocks);
   return reach.furthest <= model.bound && reach.squares <= static_cast<double>(state.v.cols()) * fastest * fastest;
 }
 
@@ -122,13 +114,15 @@ absl::Status Step(const Model& model, const v1::Parameters& parameters, double d
   const bool adaptive = parameters.step_tolerance() > 0 && integrator.order() > 0;
   if (adaptive || !integrator.keeps_start()) KeepBefore(state, work);
   work.effort.Begin(parameters.solver_budget());
+  work.reach.clear();
   absl::Status advanced = adaptive ? AdvanceAdaptively(model, parameters, integrator, dt, state, work)
                                    : integrator.Advance(model, parameters, dt, state, work);
   state.time += dt;
   state.phase += dt / parameters.breath_length();
   ++state.tick;
   if (!advanced.ok()) return advanced;
-  if (!WithinBounds(model, dt, state)) return absl::OutOfRangeError("the step diverged");
+  if (adaptive) work.reach.clear();  // of a part of the step, or a trial
+  if (!WithinBounds(model, dt, state, work.reach)) return absl::OutOfRangeError("the step diverged");
   return absl::OkStatus();
 }
 

@@ -56,16 +56,18 @@ HWY_INLINE void ForEach(const VertexRange& range, const double* numbers, const W
 void KickAndDriftHere(const VertexRange& range, const double* inverse_mass, double kick, double drift, const double* f,
                       const double* x, const double* v, double* x_next, double* v_next) {
   const Tag d;
+  const Eigen::Index own = 3 * range.first;
   const auto kicks = hn::Set(d, kick), drifts = hn::Set(d, drift), zero = hn::Zero(d);
   const auto whole = [&](Eigen::Index i, Vector w, int) {
     const auto free = hn::Gt(w, zero);
     const auto before = hn::LoadU(d, v + i), at = hn::LoadU(d, x + i);
-    const auto now = hn::IfThenElse(free, hn::Add(before, hn::Mul(hn::Mul(kicks, w), hn::LoadU(d, f + i))), before);
+    const auto force = hn::LoadU(d, f + i - own);
+    const auto now = hn::IfThenElse(free, hn::Add(before, hn::Mul(hn::Mul(kicks, w), force)), before);
     hn::StoreU(now, d, v_next + i);
     hn::StoreU(hn::IfThenElse(free, hn::Add(at, hn::Mul(drifts, now)), at), d, x_next + i);
   };
   const auto single = [&](Eigen::Index i, double w) {
-    v_next[i] = w > 0 ? v[i] + kick * w * f[i] : v[i];
+    v_next[i] = w > 0 ? v[i] + kick * w * f[i - own] : v[i];
     x_next[i] = w > 0 ? x[i] + drift * v_next[i] : x[i];
   };
   ForEach(range, inverse_mass, whole, single);
@@ -73,22 +75,26 @@ void KickAndDriftHere(const VertexRange& range, const double* inverse_mass, doub
 
 void AddFrictionHere(const VertexRange& range, const double* c, const double* v, double* f) {
   const Tag d;
+  const Eigen::Index own = 3 * range.first;
   const auto whole = [&](Eigen::Index i, Vector of_vertices, int) {
-    hn::StoreU(hn::Sub(hn::LoadU(d, f + i), hn::Mul(of_vertices, hn::LoadU(d, v + i))), d, f + i);
+    double* const to = f + i - own;
+    hn::StoreU(hn::Sub(hn::LoadU(d, to), hn::Mul(of_vertices, hn::LoadU(d, v + i))), d, to);
   };
-  const auto single = [&](Eigen::Index i, double of_vertex) { f[i] -= of_vertex * v[i]; };
+  const auto single = [&](Eigen::Index i, double of_vertex) { f[i - own] -= of_vertex * v[i]; };
   ForEach(range, c, whole, single);
 }
 
 void AddSharesHere(const VertexRange& range, const double* s, const double* force, double* f) {
   const Tag d;
+  const Eigen::Index own = 3 * range.first;
   HWY_ALIGN double repeated[3 * kLanes];
   for (Eigen::Index i = 0; i < 3 * kLanes; ++i) repeated[i] = force[i % 3];
   const Vector forces[3] = {hn::Load(d, repeated), hn::Load(d, repeated + kLanes), hn::Load(d, repeated + 2 * kLanes)};
   const auto whole = [&](Eigen::Index i, Vector of_vertices, int which) {
-    hn::StoreU(hn::Add(hn::LoadU(d, f + i), hn::Mul(of_vertices, forces[which])), d, f + i);
+    double* const to = f + i - own;
+    hn::StoreU(hn::Add(hn::LoadU(d, to), hn::Mul(of_vertices, forces[which])), d, to);
   };
-  const auto single = [&](Eigen::Index i, double of_vertex) { f[i] += of_vertex * force[i % 3]; };
+  const auto single = [&](Eigen::Index i, double of_vertex) { f[i - own] += of_vertex * force[i % 3]; };
   ForEach(range, s, whole, single);
 }
 
@@ -150,7 +156,7 @@ HWY_EXPORT(AddSharesHere);
 HWY_EXPORT(LargestHere);
 HWY_EXPORT(SquaresHere);
 
-void KickAndDrift(const VertexRange& range, const Eigen::VectorXd& w, double kick, double drift, const Points& f,
+void KickAndDrift(const VertexRange& range, const Eigen::VectorXd& w, double kick, double drift, const ConstPoints& f,
                   const Points& x, const Points& v, Points& x_next, Points& v_next) {
   HWY_DYNAMIC_DISPATCH(KickAndDriftHere)
   (range, w.data(), kick, drift, f.data(), x.data(), v.data(), x_next.data(), v_next.data());

@@ -1,6 +1,6 @@
 // What is done to every vertex of a range alike, a whole vector at a time: written once with Google Highway, the
-// machine's best instruction set chosen at run time, with the same bits on all of them. f, v, x are 3 x n, one column a
-// simulated vertex. Any number of threads may call, at once only for different ranges.
+// machine's best instruction set chosen at run time, with the same bits on all of them. v and x are 3 x n, one column a
+// simulated vertex; f has the columns of the range. Any number of threads may call, at once only for different ranges.
 #ifndef PHRENIC_SERVER_MECHANICS_VERTEX_KERNEL_H_
 #define PHRENIC_SERVER_MECHANICS_VERTEX_KERNEL_H_
 
@@ -11,7 +11,7 @@ namespace phrenic {
 
 // v_next = v + kick w f, then x_next = x + drift v_next, for the vertices with w = 1/m > 0 [1/kg]; the others keep v
 // and x. `kick` and `drift` are times [s]. x_next may be x, and v_next v.
-void KickAndDrift(const VertexRange& range, const Eigen::VectorXd& w, double kick, double drift, const Points& f,
+void KickAndDrift(const VertexRange& range, const Eigen::VectorXd& w, double kick, double drift, const ConstPoints& f,
                   const Points& x, const Points& v, Points& x_next, Points& v_next);
 
 // f -= c v, c a coefficient a vertex [N s/m].

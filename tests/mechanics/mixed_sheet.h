@@ -15,6 +15,8 @@ inline const char kMixedSheet[] = R"(
   forces { springs { bodies: "sheet" exclude_region: "left" material { youngs_modulus: 5000 thickness: 0.003 }
            precision: PRECISION_SINGLE } }
   forces { friction { bodies: "sheet" rate: 3 } }
+  forces { gravity { bodies: "sheet" acceleration { x: 1 z: -9.81 } } }
+  forces { point_load { body: "sheet" vertices: [3, 700, 511] force { y: 2 } } }
   forces { attachment { bodies: "sheet" carriers: "bone" radius: 0.05 stiffness: 40 } }
   forces { action_line { bodies: "sheet" origin {} direction { z: -1 } radius: 0.3 force: 2 } }
 )";

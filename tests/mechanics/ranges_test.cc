@@ -25,11 +25,12 @@ TEST(Ranges, GiveEachForceTheBitsOfTheWhole) {
     Points whole = Points::Zero(3, state.x.cols()), parts = whole;
     force->AddForce(at, whole);
     ForEachBlock({0, state.x.cols()}, [&](const VertexRange& block) {
-      const Points before = parts;
-      force->AddForceIn(block, at, parts);
-      Points others = parts - before;
-      others.middleCols(block.first, block.end - block.first).setZero();
-      EXPECT_EQ(others.norm(), 0) << force->name() << " reaches beyond its range";
+      const Eigen::Index vertices = block.end - block.first;
+      Points guarded = Points::Zero(3, vertices + 2);  // a column before the range's own, and one after
+      force->AddForceIn(block, at, guarded.middleCols(1, vertices));
+      parts.middleCols(block.first, vertices) = guarded.middleCols(1, vertices);
+      EXPECT_EQ(guarded.col(0).norm() + guarded.col(vertices + 1).norm(), 0)
+          << force->name() << " reaches beyond its range";
     });
     EXPECT_EQ(parts, whole) << force->name();
     EXPECT_GT(whole.norm(), 0) << force->name();
@@ -49,7 +50,7 @@ TEST(Ranges, KickAndDriftAsVertexByVertexOnEveryInstructionSet) {
   }
   OnEveryTarget([&] {
     Points v_here = v, x_here = x;
-    KickAndDrift(range, w, 0.3, 0.7, f, x, v_here, x_here, v_here);
+    KickAndDrift(range, w, 0.3, 0.7, f.middleCols(range.first, range.end - range.first), x, v_here, x_here, v_here);
     EXPECT_EQ(v_here, v_plain);
     EXPECT_EQ(x_here, x_plain);
   });
@@ -65,7 +66,7 @@ TEST(Ranges, SharesOfAForceAsVertexByVertexOnEveryInstructionSet) {
   for (Eigen::Index i = range.first; i < range.end; ++i) plain.col(i) += share[i] * force;
   OnEveryTarget([&] {
     Points here = f;
-    AddShares(range, share, force, here);
+    AddShares(range, share, force, here.middleCols(range.first, range.end - range.first));
     EXPECT_EQ(here, plain);
   });
 }

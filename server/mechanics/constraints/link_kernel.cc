@@ -61,11 +61,9 @@ HWY_INLINE unsigned RestoreFrom(const LinkPacket& packet, int first, const doubl
   Move(hn::Load(d, packet.inverse_a + first), impulse, rate, packet.a + first, packet.count - first, x, v);
   const auto inverse_b = hn::Neg(hn::Load(d, packet.inverse_b + first));
   Move(inverse_b, impulse, rate, packet.b + first, packet.count - first, x, v);
-  unsigned missed = 0;
-  HWY_ALIGN double flags[kLanes];
-  hn::Store(hn::IfThenElseZero(reaches, hn::Set(d, 1.0)), d, flags);
-  for (int i = 0; i < kLanes; ++i) missed |= (flags[i] == 0 ? 1U : 0U) << (first + i);
-  return missed;
+  std::uint8_t missed[8];
+  hn::StoreMaskBits(d, hn::Not(reaches), missed);
+  return static_cast<unsigned>(*missed) << first;
 }
 
 unsigned RestorePacketHere(const LinkPacket& packet, const double* before, double dt, double* x, double* v) {

@@ -5,9 +5,12 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/mechanics/constraints/link_pairing.h"
+#include "server/mechanics/share_out.h"
 
 namespace phrenic {
 namespace {
+
+constexpr size_t kTogether = 8;  // packets that one thread of a step takes at a time
 
 absl::StatusOr<std::vector<Link>> PairedLinks(const v1::LinkPairing& scene, int body, const std::string& path,
                                               const Draft& draft) {
@@ -40,6 +43,15 @@ std::vector<int> LinksPerVertex(const std::vector<Link>& links, const Model& mod
     count[link.b] += link.inverse_b > 0;
   }
   return count;
+}
+
+bool NoVertexTwice(const std::vector<Link>& links, const Model& model) {
+  std::vector<bool> taken(static_cast<size_t>(model.rest.cols()), false);
+  for (const Link& link : links) {
+    if (taken[link.a] || taken[link.b] || link.a == link.b) return false;
+    taken[link.a] = taken[link.b] = true;
+  }
+  return true;
 }
 
 // For viewers.
@@ -88,6 +100,7 @@ void RigidLinks::Sort(const std::vector<Link>& links, const Model& model) {
     }
   }
   if (!thesis_) packets_ = PackLinks(alone_, static_cast<int>(model.rest.cols()));
+  apart_ = NoVertexTwice(alone_, model);
   if (!joined.empty()) network_ = LinkNetwork(joined);
 }
 
@@ -106,15 +119,17 @@ void RigidLinks::ProjectThesis(const ConstPoints& before, Points& x) const {
 }
 
 void RigidLinks::RestoreAlone(const ConstPoints& before, double dt, State& state) const {
-  auto link = alone_.begin();
-  double *const x = state.x.data(), *const v = state.v.data();
-  for (const LinkPacket& packet : packets_) {
-    unsigned missed = RestorePacket(packet, before.data(), dt, x, v);
-    for (int i = 0; missed != 0; ++i, missed >>= 1) {
-      if (missed & 1) Restore(link[i], before, dt, state);
+  const size_t together = apart_ ? kTogether : packets_.size();
+  if (packets_.empty()) return;
+  ShareOut(static_cast<std::int64_t>((packets_.size() - 1) / together + 1), [&](std::int64_t part) {
+    const size_t first = static_cast<size_t>(part) * together, end = std::min(first + together, packets_.size());
+    for (size_t p = first; p < end; ++p) {
+      unsigned missed = RestorePacket(packets_[p], before.data(), dt, state.x.data(), state.v.data());
+      for (size_t link = p * kPacketLinks; missed != 0; ++link, missed >>= 1) {
+        if (missed & 1) Restore(alone_[link], before, dt, state);
+      }
     }
-    link += packet.count;
-  }
+  });
 }
 
 void RigidLinks::Project(const v1::Parameters& parameters, const ConstPoints& before, double dt, State& state) const {

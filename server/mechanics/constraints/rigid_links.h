@@ -37,6 +37,7 @@ class RigidLinks final : public Constraint {
   bool thesis_ = false;
   std::vector<Link> alone_;          // no vertex that moves has another link (or the projection asks for no more)
   std::vector<LinkPacket> packets_;  // the same
+  bool apart_ = false;               // they share no vertex at all: threads may take them
   LinkNetwork network_;              // the others
 };
 

@@ -84,7 +84,8 @@ void ActionLine::AddForceIn(const VertexRange& range, const Instant& at, Mutable
   if (force.isZero(0)) return;
   for (Eigen::Index first = range.first; first < range.end; first += kVertexBlock) {
     if (!acts_[first / kVertexBlock]) continue;
-    AddShares({first, std::min(first + kVertexBlock, range.end)}, share_, force, f);
+    const VertexRange block = {first, std::min(first + kVertexBlock, range.end)};
+    AddShares(block, share_, force, f.middleCols(first - range.first, block.end - first));
   }
 }
 

@@ -102,7 +102,7 @@ void Attachment::Pack(std::vector<RideShare> shares) {
     packet.x[i] = hold.rest.x(), packet.y[i] = hold.rest.y(), packet.z[i] = hold.rest.z();
     packet.stiffness[i] = thesis_ ? 0 : share.weight * hold.stiffness;
     packet.damping[i] = share.weight * (thesis_ ? hold.stiffness : hold.damping);
-    packet.place[i] = 3 * static_cast<std::int64_t>(share.vertex);
+    packet.place[i] = 3 * (share.vertex % kVertexBlock);
     carried_.back().end_packet = packets_.size();
     last = share.vertex;
   }
@@ -115,7 +115,7 @@ void Attachment::AddOwn(const VertexRange& range, const Instant& at, MutablePoin
   for (; hold != holds_.end() && hold->vertex < range.end; ++hold) {
     const std::ptrdiff_t place = 3 * static_cast<std::ptrdiff_t>(hold->vertex);
     const double *const x = at.x.data() + place, *const v = at.v.data() + place;
-    double* const force = f.data() + place;
+    double* const force = f.data() + place - 3 * range.first;
     for (int k = 0; k < 3; ++k) force[k] += hold->stiffness * (hold->rest[k] - x[k]) - hold->damping * v[k];
   }
 }
@@ -128,7 +128,7 @@ void Attachment::AddForceIn(const VertexRange& range, const Instant& at, Mutable
   for (; carried != carried_.end() && carried->block * kVertexBlock < range.end; ++carried) {
     const CarriedPacket* const packets = packets_.data();
     AddCarried(at.poses[carried->pose], scale, packets + carried->first_packet, packets + carried->end_packet,
-               f.data());
+               f.data() + 3 * (carried->block * kVertexBlock - range.first));
   }
 }
 

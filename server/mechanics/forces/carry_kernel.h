@@ -16,12 +16,12 @@ inline constexpr int kPacketVertices = 8;
 struct alignas(64) CarriedPacket {
   double x[kPacketVertices] = {}, y[kPacketVertices] = {}, z[kPacketVertices] = {};  // at rest [m]
   double stiffness[kPacketVertices] = {}, damping[kPacketVertices] = {};             // times the share [N/m], [N s/m]
-  std::int64_t place[kPacketVertices] = {};  // of the vertex in f [doubles]; none twice
+  std::int64_t place[kPacketVertices] = {};  // of the vertex in its block's f [doubles]; none twice
   std::int64_t count = 0;
 };
 
 // f += scale (stiffness u + damping u') [N] for each of the packets' vertices, u the way that the pose carries its
-// point at rest [m]. f is 3 x n. Any number of threads may call, at once only for different vertices.
+// point at rest [m]. f is 3 x n, of a block. Any number of threads may call, at once only for different vertices.
 void AddCarried(const Pose& pose, double scale, const CarriedPacket* first, const CarriedPacket* end, double* f);
 
 }  // namespace phrenic

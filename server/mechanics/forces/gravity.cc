@@ -1,6 +1,7 @@
 #include "server/mechanics/forces/gravity.h"
 
 #include "absl/strings/str_cat.h"
+#include "server/mechanics/vertex_kernel.h"
 
 namespace phrenic {
 
@@ -14,21 +15,23 @@ absl::StatusOr<std::unique_ptr<Force>> Gravity::Make(const v1::Gravity& scene, c
     return nullptr;
   }
   std::unique_ptr<Gravity> force(new Gravity(name));
-  force->weight_ = Points::Zero(3, draft.model.rest.cols());
+  force->acceleration_ = ToEigen(scene.acceleration());
+  force->mass_ = Eigen::VectorXd::Zero(draft.model.rest.cols());
   std::int64_t count = 0;
   for (const int b : *bodies) {
     const BodyModel& body = draft.model.bodies[b];
     const auto vertices = body.mesh.vertices.cols();
-    force->weight_.middleCols(body.first_vertex, vertices) =
-        ToEigen(scene.acceleration()) * draft.model.mass.segment(body.first_vertex, vertices).transpose();
+    force->mass_.segment(body.first_vertex, vertices) = draft.model.mass.segment(body.first_vertex, vertices);
     count += vertices;
   }
   draft.ReportElement("force", name, count, "vertices", "f = m g");
   return force;
 }
 
-void Gravity::AddForce(const Instant&, MutablePoints f) const { f += weight_; }
+void Gravity::AddForceIn(const VertexRange& range, const Instant&, MutablePoints f) const {
+  AddShares(range, mass_, acceleration_, f);
+}
 
-double Gravity::Energy(const Instant& at) const { return -weight_.cwiseProduct(at.x).sum(); }
+double Gravity::Energy(const Instant& at) const { return -acceleration_.dot(at.x * mass_); }
 
 }  // namespace phrenic

@@ -11,14 +11,16 @@ class Gravity final : public Force {
   static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::Gravity& scene, const std::string& name,
                                                      std::string_view path, Draft& draft);
 
-  void AddForce(const Instant& at, MutablePoints f) const override;
+  bool by_range() const override { return true; }
+  void AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const override;
   double Energy(const Instant& at) const override;
   bool conservative() const override { return true; }
 
  private:
   explicit Gravity(std::string name) : Force(std::move(name)) {}
 
-  Points weight_;  // 3 x n [N]
+  Eigen::VectorXd mass_;          // of the vertices that it pulls at, 0 for others [kg]
+  Eigen::Vector3d acceleration_;  // [m/s^2]
 };
 
 }  // namespace phrenic

@@ -1,5 +1,7 @@
 #include "server/mechanics/forces/point_load.h"
 
+#include <algorithm>
+
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 
@@ -31,6 +33,7 @@ absl::StatusOr<std::unique_ptr<Force>> PointLoad::Make(const v1::PointLoad& scen
   if (!vertices.ok()) return vertices.status();
   std::unique_ptr<PointLoad> force(new PointLoad(name));
   force->vertices_ = *std::move(vertices);
+  std::sort(force->vertices_.begin(), force->vertices_.end());
   force->breathes_ = scene.scaled_by_breath();
   const Eigen::Vector3d whole = ToEigen(scene.force());
   if (force->vertices_.empty() || whole.isZero(0)) {
@@ -47,9 +50,10 @@ Eigen::Vector3d PointLoad::LoadAt(const Instant& at) const {
   return (breathes_ ? at.parameters.breath_force() * at.breath : 1.0) * load_;
 }
 
-void PointLoad::AddForce(const Instant& at, MutablePoints f) const {
+void PointLoad::AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const {
   const Eigen::Vector3d load = LoadAt(at);
-  for (const int vertex : vertices_) f.col(vertex) += load;
+  auto vertex = std::lower_bound(vertices_.begin(), vertices_.end(), range.first);
+  for (; vertex != vertices_.end() && *vertex < range.end; ++vertex) f.col(*vertex - range.first) += load;
 }
 
 double PointLoad::Energy(const Instant& at) const {

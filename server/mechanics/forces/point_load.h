@@ -15,7 +15,8 @@ class PointLoad final : public Force {
   static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::PointLoad& scene, const std::string& name,
                                                      std::string_view path, Draft& draft);
 
-  void AddForce(const Instant& at, MutablePoints f) const override;
+  bool by_range() const override { return true; }
+  void AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const override;
   double Energy(const Instant& at) const override;
   bool conservative() const override { return true; }
 
@@ -23,8 +24,8 @@ class PointLoad final : public Force {
   explicit PointLoad(std::string name) : Force(std::move(name)) {}
   Eigen::Vector3d LoadAt(const Instant& at) const;
 
-  std::vector<int> vertices_;
-  Eigen::Vector3d load_;  // on each vertex [N]
+  std::vector<int> vertices_;  // ascending
+  Eigen::Vector3d load_;       // on each vertex [N]
   bool breathes_ = false;
 };
 

@@ -209,27 +209,28 @@ HWY_INLINE void AddFour(const Number* tile, const std::uint16_t* slot, double* f
 }
 #endif
 
-// A block whose vertices lie in f one after the other.
+// A block whose vertices lie in f one after the other; `f` is where they begin.
 template <typename Number>
 HWY_INLINE void AddWhole(const SpringSlices<Number>& slices, const VertexRange& range, const Number* tile, double* f) {
   const std::uint16_t* const slot = slices.slot.data();
   Eigen::Index v = range.first;
 #if HWY_TARGET != HWY_SCALAR
   if constexpr (hn::MaxLanes(FourDoubles()) == 4) {
-    for (; v + 4 <= range.end; v += 4) AddFour(tile, slot + v, f + 3 * v);
+    for (; v + 4 <= range.end; v += 4) AddFour(tile, slot + v, f + 3 * (v - range.first));
   }
 #endif
-  for (; v < range.end; ++v) AddSlot(tile + slot[v], f + 3 * v);
+  for (; v < range.end; ++v) AddSlot(tile + slot[v], f + 3 * (v - range.first));
 }
 
 template <typename Number>
-HWY_INLINE void AddRowByRow(const SpringSlices<Number>& slices, std::int64_t block, const Number* tile, double* f) {
+HWY_INLINE void AddRowByRow(const SpringSlices<Number>& slices, std::int64_t block, const Number* tile,
+                            std::int64_t first_vertex, double* f) {
   const std::int64_t first = slices.blocks[block].first_slice, end = slices.blocks[block + 1].first_slice;
   for (std::int64_t s = first; s < end; ++s) {
     const SpringSlice<Number>& slice = slices.slices[s];
     for (int row = 0; row < slice.rows; ++row) {
       const std::int64_t place = slice.own[row] / kPointStride<Number>;
-      const std::int64_t vertex = slices.order.empty() ? place : slices.order[place];
+      const std::int64_t vertex = slices.order.empty() ? place - first_vertex : slices.order[place];
       AddSlot(tile + SlotOf<Number>(s - first, row), f + 3 * vertex);
     }
   }
@@ -249,7 +250,11 @@ HWY_INLINE void AddBlocks(const SpringSlices<Number>& slices, std::int64_t begin
     }
     const auto places = static_cast<Eigen::Index>(slices.slot.size());
     const VertexRange range = {b * kVertexBlock, std::min((b + 1) * kVertexBlock, places)};
-    slices.blocks[b].whole ? AddWhole(slices, range, tile, f) : AddRowByRow(slices, b, tile, f);
+    if (slices.blocks[b].whole) {
+      AddWhole(slices, range, tile, f + 3 * (b - begin) * kVertexBlock);
+    } else {
+      AddRowByRow(slices, b, tile, begin * kVertexBlock, f);
+    }
   }
 }
 

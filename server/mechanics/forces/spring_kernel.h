@@ -77,8 +77,9 @@ inline constexpr int kNoSlot = SlotOf<Number>(kVertexBlock / kSliceRows<Number>,
 
 // f += scale (sum over the row's springs of (k - k l0 / l) d + load) [N] for the vertices of blocks first to end - 1, d
 // from the row's vertex to the neighbour, l its length [m]; a spring with l = 0 pulls at nothing. x are points in the
-// slices' order, kPointStride numbers each; f is 3 x n, one column a simulated vertex. Any number of threads may call,
-// at once only on different blocks.
+// slices' order, kPointStride numbers each; f has a column a simulated vertex, the first that of block `first`'s first
+// vertex, or of vertex 0 where the slices have an order of their own. Any number of threads may call, at once only on
+// different blocks.
 void AddSprings(const SpringSlices<double>& slices, std::int64_t first, std::int64_t end, double scale, const double* x,
                 double* f);
 void AddSprings(const SpringSlices<float>& slices, std::int64_t first, std::int64_t end, double scale, const float* x,

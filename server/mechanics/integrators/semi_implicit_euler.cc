@@ -34,10 +34,18 @@ absl::Status SemiImplicitEuler::Advance(const Model& model, const v1::Parameters
   TakeDriven(model, state.x, state.v, work.driven);
   DriveMotions(model, parameters, dt, state);
   const Instant at = Packed(model, MakeInstant(model, parameters, state));
-  SumWholeForces(model, at, work.force);
+  // How far a block gets is noted while it is at hand, unless constraints move vertices yet.
+  if (model.constraints.empty()) work.reach.resize((state.x.cols() + kVertexBlock - 1) / kVertexBlock);
+  const bool whole = SumWholeForces(model, at, work.force);
   ForEachBlock({0, state.x.cols()}, [&](const VertexRange& block) {
-    SumForcesIn(block, model, at, work.force);
-    KickAndDrift(block, model.inverse_mass, dt, dt, work.force, state.x, state.v, work.before, work.velocity_before);
+    const Eigen::Index vertices = block.end - block.first;
+    alignas(64) double memory[3 * kVertexBlock];
+    Eigen::Map<Points> own(memory, 3, vertices);
+    MutablePoints f =
+        whole ? MutablePoints(work.force.middleCols(block.first, vertices)) : MutablePoints(own.setZero());
+    AddForcesIn(block, model, at, f);
+    KickAndDrift(block, model.inverse_mass, dt, dt, f, state.x, state.v, work.before, work.velocity_before);
+    if (!work.reach.empty()) NoteReach(block, work.before, work.velocity_before, work.reach);
   });
   state.x.swap(work.before);
   state.v.swap(work.velocity_before);
