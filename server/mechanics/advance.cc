@@ -75,6 +75,10 @@ void SumSharedDamping(const Model& model, const Instant& at, OuterProducts& shar
   for (const auto& force : model.forces) force->AddSharedDamping(at, shared);
 }
 
+void MakePlaces(Eigen::Index vertices, std::vector<StateReach>& blocks) {
+  blocks.resize((vertices + kVertexBlock - 1) / kVertexBlock);
+}
+
 void NoteReach(const VertexRange& block, const Points& x, const Points& v, std::vector<StateReach>& blocks) {
   blocks[block.first / kVertexBlock] = {LargestOf(block, x), SquaresOf(block, v)};
 }

@@ -25,7 +25,8 @@ void AddForcesIn(const VertexRange& range, const Model& model, const Instant& at
 void SumDamping(const Model& model, const Instant& at, Eigen::VectorXd& c);
 void SumSharedDamping(const Model& model, const Instant& at, OuterProducts& shared);
 
-// Notes how far a range that begins a block has got, at the block's place.
+// A place for each block of that many vertices; and how far a block has got, noted at its place.
+void MakePlaces(Eigen::Index vertices, std::vector<StateReach>& blocks);
 void NoteReach(const VertexRange& block, const Points& x, const Points& v, std::vector<StateReach>& blocks);
 
 // x += shift, but for fixed and driven vertices; shift 3 x n.

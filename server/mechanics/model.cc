@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "server/mechanics/advance.h"
+
 namespace phrenic {
 
 State Model::InitialState() const {
@@ -21,7 +23,7 @@ Workspace Model::MakeWorkspace() const {
   Workspace work;
   work.before = work.velocity_before = work.force = Points::Zero(3, rest.cols());
   work.damping = Eigen::VectorXd::Zero(rest.cols());
-  work.reach.reserve((rest.cols() + kVertexBlock - 1) / kVertexBlock);
+  MakePlaces(rest.cols(), work.reach);
   return work;
 }
 

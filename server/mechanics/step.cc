@@ -24,7 +24,7 @@ double DistanceFromRest(const Model& model, const State& state, int vertex) {
 // Of all blocks, in their order; notes those that the integrator has not.
 StateReach ReachOf(const State& state, std::vector<StateReach>& blocks) {
   if (blocks.empty()) {
-    blocks.resize((state.x.cols() + kVertexBlock - 1) / kVertexBlock);
+    MakePlaces(state.x.cols(), blocks);
     ForEachBlock({0, state.x.cols()}, [&](const VertexRange& block) { NoteReach(block, state.x, state.v, blocks); });
   }
   StateReach whole;

@@ -119,8 +119,8 @@ void RigidLinks::ProjectThesis(const ConstPoints& before, Points& x) const {
 }
 
 void RigidLinks::RestoreAlone(const ConstPoints& before, double dt, State& state) const {
-  const size_t together = apart_ ? kTogether : packets_.size();
   if (packets_.empty()) return;
+  const size_t together = apart_ ? kTogether : packets_.size();
   ShareOut(static_cast<std::int64_t>((packets_.size() - 1) / together + 1), [&](std::int64_t part) {
     const size_t first = static_cast<size_t>(part) * together, end = std::min(first + together, packets_.size());
     for (size_t p = first; p < end; ++p) {

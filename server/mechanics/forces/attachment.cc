@@ -115,7 +115,7 @@ void Attachment::AddOwn(const VertexRange& range, const Instant& at, MutablePoin
   for (; hold != holds_.end() && hold->vertex < range.end; ++hold) {
     const std::ptrdiff_t place = 3 * static_cast<std::ptrdiff_t>(hold->vertex);
     const double *const x = at.x.data() + place, *const v = at.v.data() + place;
-    double* const force = f.data() + place - 3 * range.first;
+    double* const force = f.data() + (place - 3 * range.first);
     for (int k = 0; k < 3; ++k) force[k] += hold->stiffness * (hold->rest[k] - x[k]) - hold->damping * v[k];
   }
 }

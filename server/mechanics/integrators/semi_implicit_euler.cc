@@ -35,7 +35,7 @@ absl::Status SemiImplicitEuler::Advance(const Model& model, const v1::Parameters
   DriveMotions(model, parameters, dt, state);
   const Instant at = Packed(model, MakeInstant(model, parameters, state));
   // How far a block gets is noted while it is at hand, unless constraints move vertices yet.
-  if (model.constraints.empty()) work.reach.resize((state.x.cols() + kVertexBlock - 1) / kVertexBlock);
+  if (model.constraints.empty()) MakePlaces(state.x.cols(), work.reach);
   const bool whole = SumWholeForces(model, at, work.force);
   ForEachBlock({0, state.x.cols()}, [&](const VertexRange& block) {
     const Eigen::Index vertices = block.end - block.first;
