@@ -129,7 +129,7 @@ TEST(LinkPackets, AreRestoredAsLinkByLinkOnEveryInstructionSet) {
   OnEveryTarget([&] {
     State here = start;
     std::vector<unsigned> missed;
-    for (const LinkPacket& packet : PackLinks(links, 26)) {
+    for (const LinkPacket& packet : PackLinks(links)) {
       missed.push_back(RestorePacket(packet, before.data(), 0.01, here.x.data(), here.v.data()));
     }
     EXPECT_EQ(missed, (std::vector<unsigned>{1U << 3, 0}));

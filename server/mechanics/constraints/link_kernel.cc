@@ -1,6 +1,7 @@
 #include "server/mechanics/constraints/link_kernel.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "server/mechanics/vector_targets.h"
 #undef HWY_TARGET_INCLUDE
@@ -18,13 +19,9 @@ namespace hn = hwy::HWY_NAMESPACE;
 using points::Tag, points::Vector, points::Vectors;
 constexpr int kLanes = static_cast<int>(points::kLanes);
 
-// From a to b of kLanes links.
+// From a to b of kLanes links. Reads their ends alone: what lies beside may be another thread's.
 HWY_INLINE Vectors Between(const LinkPacket& packet, int first, const double* x) {
-  const bool at_end = packet.at_end;
-  const auto fetch = [&](const std::int64_t* place) {
-    return at_end ? points::Gathered(x, place) : points::Transposed<false>(x, place);
-  };
-  const Vectors a = fetch(packet.a + first), b = fetch(packet.b + first);
+  const Vectors a = points::Transposed<true>(x, packet.a + first), b = points::Transposed<true>(x, packet.b + first);
   return {hn::Sub(b.x, a.x), hn::Sub(b.y, a.y), hn::Sub(b.z, a.z)};
 }
 
@@ -83,19 +80,19 @@ namespace phrenic {
 
 HWY_EXPORT(RestorePacketHere);
 
-std::vector<LinkPacket> PackLinks(const std::vector<Link>& links, int vertices) {
+std::vector<LinkPacket> PackLinks(const std::vector<Link>& links) {
   std::vector<LinkPacket> packets;
   for (const Link& link : links) {
     if (packets.empty() || packets.back().count == kPacketLinks) packets.emplace_back();
     LinkPacket& packet = packets.back();
     const int i = packet.count++;
-    packet.at_end = packet.at_end || std::max(link.a, link.b) == vertices - 1;
     packet.squared_length[i] = link.length * link.length;
     packet.inverse_a[i] = link.inverse_a;
     packet.inverse_b[i] = link.inverse_b;
     packet.reduced[i] = link.Movable() ? 1 / (link.inverse_a + link.inverse_b) : 0;
-    packet.a[i] = 3 * static_cast<std::int64_t>(link.a);
-    packet.b[i] = 3 * static_cast<std::int64_t>(link.b);
+    // Lanes that stay empty read the last link's ends.
+    std::fill(packet.a + i, std::end(packet.a), 3 * static_cast<std::int64_t>(link.a));
+    std::fill(packet.b + i, std::end(packet.b), 3 * static_cast<std::int64_t>(link.b));
   }
   return packets;
 }

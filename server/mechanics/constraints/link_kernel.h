@@ -18,14 +18,13 @@ struct alignas(64) LinkPacket {
   double reduced[kPacketLinks] = {};                        // 1/(inverse_a + inverse_b) [kg]; 0 where neither end moves
   std::int64_t a[kPacketLinks] = {}, b[kPacketLinks] = {};  // where the ends lie in x [doubles]
   int count = 0;
-  bool at_end = false;  // one of the ends is the last vertex of all
 };
 
-// Of links between `vertices` simulated vertices.
-std::vector<LinkPacket> PackLinks(const std::vector<Link>& links, int vertices);
+std::vector<LinkPacket> PackLinks(const std::vector<Link>& links);
 
 // Restores the packet's links: x and v, 3 x n, change as by Restore over dt [s], for which a link's direction is that
-// of `before`. Returns the links, a bit each, that have turned too far for that and are left as they were.
+// of `before`. Returns the links, a bit each, that have turned too far for that and are left as they were. Threads may
+// call at once for packets that share no vertex.
 unsigned RestorePacket(const LinkPacket& packet, const double* before, double dt, double* x, double* v);
 
 }  // namespace phrenic

@@ -99,7 +99,7 @@ void RigidLinks::Sort(const std::vector<Link>& links, const Model& model) {
       joined.push_back(link);
     }
   }
-  if (!thesis_) packets_ = PackLinks(alone_, static_cast<int>(model.rest.cols()));
+  if (!thesis_) packets_ = PackLinks(alone_);
   apart_ = NoVertexTwice(alone_, model);
   if (!joined.empty()) network_ = LinkNetwork(joined);
 }
