@@ -50,8 +50,8 @@ void AddRegions(const Sheet& sheet, double edge_length, Mesh& mesh) {
   const double band = std::max(8.0, 1.2 * edge_length);
   for (int i = 0; i < n; ++i) {
     const auto add = [&](const char* name) {
-      mesh.regions[name].push_back(i);
-      mesh.regions[name].push_back(n + i);
+      mesh.regions[name].push_back(UpperVertex(i));
+      mesh.regions[name].push_back(LowerVertex(i));
     };
     const Eigen::Vector2d& p = sheet.plane[i];
     add(InTendon(p) ? "tendon" : "muscle");

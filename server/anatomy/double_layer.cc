@@ -46,18 +46,21 @@ Mesh DoubleLayer(const Sheet& sheet, const SheetNormal& normal) {
   mesh.vertices.resize(3, 2 * n);
   for (int i = 0; i < n; ++i) {
     const Eigen::Vector3d half = Gap(sheet, i) / 2 * normal(sheet.plane[i]);
-    mesh.vertices.col(i) = sheet.points[i] + half;
-    mesh.vertices.col(n + i) = sheet.points[i] - half;
+    mesh.vertices.col(UpperVertex(i)) = sheet.points[i] + half;
+    mesh.vertices.col(LowerVertex(i)) = sheet.points[i] - half;
   }
   std::vector<Eigen::Vector3i> triangles;
-  for (Eigen::Index t = 0; t < sheet.triangles.cols(); ++t) triangles.emplace_back(sheet.triangles.col(t));
   for (Eigen::Index t = 0; t < sheet.triangles.cols(); ++t) {
     const Eigen::Vector3i v = sheet.triangles.col(t);
-    triangles.emplace_back(n + v[0], n + v[2], n + v[1]);
+    triangles.emplace_back(UpperVertex(v[0]), UpperVertex(v[1]), UpperVertex(v[2]));
+  }
+  for (Eigen::Index t = 0; t < sheet.triangles.cols(); ++t) {
+    const Eigen::Vector3i v = sheet.triangles.col(t);
+    triangles.emplace_back(LowerVertex(v[0]), LowerVertex(v[2]), LowerVertex(v[1]));
   }
   for (const auto& [a, b] : BorderEdges(sheet)) {
-    triangles.emplace_back(b, a, n + a);
-    triangles.emplace_back(b, n + a, n + b);
+    triangles.emplace_back(UpperVertex(b), UpperVertex(a), LowerVertex(a));
+    triangles.emplace_back(UpperVertex(b), LowerVertex(a), LowerVertex(b));
   }
   mesh.triangles.resize(3, static_cast<Eigen::Index>(triangles.size()));
   for (size_t t = 0; t < triangles.size(); ++t) mesh.triangles.col(static_cast<Eigen::Index>(t)) = triangles[t];

@@ -15,7 +15,13 @@ inline constexpr double kBorderGap = 2.2;   // along the border and the openings
 // Of the upper layer, at a point of the plane; unit.
 using SheetNormal = std::function<Eigen::Vector3d(const Eigen::Vector2d&)>;
 
-// With n vertices in all, vertex i < n / 2 is upper and i + n / 2 faces it on the lower layer. No regions.
+// Where vertex i of the sheet lies in the double layer's mesh. Those that face each other come one after the other: a
+// rigid link's ends, and what joins the layers, are then fetched together.
+constexpr int UpperVertex(int i) { return 2 * i; }
+constexpr int LowerVertex(int i) { return 2 * i + 1; }
+constexpr bool IsUpper(int vertex) { return vertex % 2 == 0; }
+
+// Without regions.
 Mesh DoubleLayer(const Sheet& sheet, const SheetNormal& normal);
 
 // From a vertex of the sheet to the nearest one of the loop.

@@ -91,8 +91,8 @@ void AddRegions(const Sheet& sheet, const CageFrame& frame, double edge_length, 
   const auto n = static_cast<int>(sheet.points.size());
   for (int i = 0; i < n; ++i) {
     const auto add = [&](const char* name) {
-      mesh.regions[name].push_back(i);
-      mesh.regions[name].push_back(n + i);
+      mesh.regions[name].push_back(anatomy::UpperVertex(i));
+      mesh.regions[name].push_back(anatomy::LowerVertex(i));
     };
     if (distance[i] >= tendon) {
       add("tendon");

@@ -14,13 +14,10 @@ namespace {
 
 class DiaphragmTest : public testing::Test {
  protected:
-  Eigen::Index Half() const { return mesh_.vertices.cols() / 2; }
-
   // The highest thoracic vertex whose x is in the range [m].
   Eigen::Vector3d Highest(double from, double to) const {
     Eigen::Vector3d highest(0, 0, -1);
-    for (Eigen::Index i = 0; i < Half(); ++i) {
-      const Eigen::Vector3d x = mesh_.vertices.col(i);
+    for (const Eigen::Vector3d x : thoracic_.colwise()) {
       if (x.x() >= from && x.x() <= to && x.z() > highest.z()) highest = x;
     }
     return highest;
@@ -32,6 +29,7 @@ class DiaphragmTest : public testing::Test {
   }
 
   const Mesh mesh_ = Diaphragm();
+  const Points thoracic_ = UpperLayer(mesh_);
 };
 
 TEST_F(DiaphragmTest, DefaultHasTheThesisSize) {
@@ -79,8 +77,7 @@ TEST_F(DiaphragmTest, LeftSideIsADomeOfItsOwn) {
   double between = 1;  // the lowest of the ridge from the midline to the left dome, in its coronal plane
   for (double x = 0; x < left.x(); x += 0.005) {
     double ridge = 0;
-    for (Eigen::Index i = 0; i < Half(); ++i) {
-      const Eigen::Vector3d p = mesh_.vertices.col(i);
+    for (const Eigen::Vector3d p : thoracic_.colwise()) {
       if (std::abs(p.x() - x) < 0.004 && std::abs(p.y() - left.y()) < 0.004) ridge = std::max(ridge, p.z());
     }
     between = std::min(between, ridge);
@@ -105,16 +102,16 @@ TEST_F(DiaphragmTest, RimIsHighInFrontAndLowAtTheSidesAndCruraReachTheLumbarSpin
 }
 
 TEST_F(DiaphragmTest, LayersFaceEachOtherThreeMillimetresApart) {
-  const Eigen::Index n = Half();
-  const NearestSearch abdominal(mesh_.vertices.rightCols(n));
+  const auto n = static_cast<int>(thoracic_.cols());
+  const NearestSearch abdominal(LowerLayer(mesh_));
   const Points normals = VertexNormals(mesh_.vertices, mesh_.triangles);
   int acute = 0;
-  for (Eigen::Index i = 0; i < n; ++i) {
-    EXPECT_LE((mesh_.vertices.col(i) - mesh_.vertices.col(n + i)).norm(), 3.001 * kMillimetre);
-    const Neighbour nearest = abdominal.Nearest(mesh_.vertices.col(i));
+  for (int i = 0; i < n; ++i) {
+    EXPECT_LE((thoracic_.col(i) - mesh_.vertices.col(LowerVertex(i))).norm(), 3.001 * kMillimetre);
+    const Neighbour nearest = abdominal.Nearest(thoracic_.col(i));
     EXPECT_GT(nearest.distance, 2 * kMillimetre);
     EXPECT_LT(nearest.distance, 4 * kMillimetre);
-    acute += normals.col(i).dot(normals.col(n + i)) > 0 ? 1 : 0;
+    acute += normals.col(UpperVertex(i)).dot(normals.col(LowerVertex(i))) > 0 ? 1 : 0;
   }
   EXPECT_LT(acute, 0.005 * static_cast<double>(n)) << "only sharp corners of the border look the same way";
 }
@@ -152,21 +149,19 @@ TEST_F(DiaphragmTest, RegionsPartitionTheSheet) {
   for (const int i : rim) EXPECT_FALSE(right.contains(i) || left.contains(i));
   for (const int i : right) EXPECT_LT(mesh_.vertices(0, i), 0);
   for (const int i : left) EXPECT_GT(mesh_.vertices(0, i), 0);
-  const auto n = static_cast<int>(Half());
   for (const auto& [name, region] : mesh_.regions) {
     const std::set<int> both(region.begin(), region.end());
-    for (const int i : both) EXPECT_TRUE(both.contains(i < n ? i + n : i - n)) << name << " has both layers";
+    for (const int i : both) EXPECT_TRUE(both.contains(IsUpper(i) ? i + 1 : i - 1)) << name << " has both layers";
   }
 }
 
 // The loops of edges that join the layers, each with its mean place: the border and the two openings.
 std::vector<std::pair<Eigen::Vector3d, std::vector<int>>> JoinLoops(const Mesh& mesh) {
-  const auto n = static_cast<int>(mesh.vertices.cols() / 2);
   std::map<int, int> next;
   for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
     for (int k = 0; k < 3; ++k) {
       const int a = mesh.triangles(k, t), b = mesh.triangles((k + 1) % 3, t), c = mesh.triangles((k + 2) % 3, t);
-      if (a < n && b < n && c >= n) next[a] = b;
+      if (IsUpper(a) && IsUpper(b) && !IsUpper(c)) next[a] = b;
     }
   }
   std::vector<std::pair<Eigen::Vector3d, std::vector<int>>> loops;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "server/anatomy/anatomy.h"
+#include "server/anatomy/double_layer.h"
 
 namespace phrenic::anatomy {
 
@@ -25,6 +26,14 @@ inline Mesh Made(const v1::Anatomy& part, double resolution_mm = 0) {
 }
 
 inline Mesh Diaphragm(double resolution_mm = 0) { return Made(Part(v1::STRUCTURE_DIAPHRAGM), resolution_mm); }
+
+// Those of a double layer.
+inline Points UpperLayer(const Mesh& mesh) {
+  return mesh.vertices(Eigen::all, Eigen::seq(UpperVertex(0), Eigen::last, UpperVertex(1)));
+}
+inline Points LowerLayer(const Mesh& mesh) {
+  return mesh.vertices(Eigen::all, Eigen::seq(LowerVertex(0), Eigen::last, UpperVertex(1)));
+}
 
 inline std::vector<v1::Anatomy> Bones() {
   std::vector<v1::Anatomy> parts = {Part(v1::STRUCTURE_MANUBRIUM), Part(v1::STRUCTURE_STERNUM_BODY),

@@ -59,9 +59,8 @@ TEST(Thorax, CruraLieOnTheLumbarBodies) {
 // Bones stay on the thoracic side of the sheet: beyond the middle surface along its normal, where they are near.
 TEST(Thorax, NoBonePiercesTheDiaphragm) {
   const Mesh diaphragm = Diaphragm();
-  const Eigen::Index n = diaphragm.vertices.cols() / 2;
-  const Points middle = (diaphragm.vertices.leftCols(n) + diaphragm.vertices.rightCols(n)) / 2;
-  const Points across = diaphragm.vertices.leftCols(n) - diaphragm.vertices.rightCols(n);
+  const Points upper = UpperLayer(diaphragm), lower = LowerLayer(diaphragm);
+  const Points middle = (upper + lower) / 2, across = upper - lower;
   const NearestSearch sheet(middle);
   for (const v1::Anatomy& part : Bones()) {
     const Mesh bone = Made(part);
@@ -122,9 +121,8 @@ TEST(Thorax, CartilagesJoinRibAndSternumOrTheCartilageAbove) {
 
 TEST(Thorax, LungsRestAboveTheDomesAndLeaveTheRecessFree) {
   const Mesh diaphragm = Diaphragm();
-  const Eigen::Index n = diaphragm.vertices.cols() / 2;
   const Points normals = VertexNormals(diaphragm.vertices, diaphragm.triangles);
-  const NearestSearch thoracic(diaphragm.vertices.leftCols(n));
+  const NearestSearch thoracic(UpperLayer(diaphragm));
   for (const v1::Side side : {v1::SIDE_RIGHT, v1::SIDE_LEFT}) {
     const Mesh lung = Lung(side);
     double closest = 1;
@@ -132,8 +130,9 @@ TEST(Thorax, LungsRestAboveTheDomesAndLeaveTheRecessFree) {
       const Neighbour at = thoracic.Nearest(lung.vertices.col(i));
       closest = std::min(closest, at.distance);
       if (at.distance > 15 * kMillimetre) continue;
-      const Eigen::Vector3d offset = lung.vertices.col(i) - diaphragm.vertices.col(at.vertex);
-      EXPECT_GT(offset.dot(normals.col(at.vertex)), 0) << "above the thoracic layer";
+      const int facing = UpperVertex(at.vertex);
+      const Eigen::Vector3d offset = lung.vertices.col(i) - diaphragm.vertices.col(facing);
+      EXPECT_GT(offset.dot(normals.col(facing)), 0) << "above the thoracic layer";
     }
     EXPECT_LT(closest, 5 * kMillimetre);
     double rim = 1;

@@ -114,6 +114,19 @@ TEST_P(ConstraintContract, KeepsMomentumAndAngularMomentum) {
   EXPECT_LT((AngularMomentum(*model_, state) - angular).norm(), 1e-6 * angular.norm());
 }
 
+// Another that never acts has both worked out for all vertices at once.
+TEST_P(ConstraintContract, HoldsBlockByBlockToTheBitAsForAll) {
+  if (!model_->constraints.front()->by_range()) GTEST_SKIP() << "is worked out for all at once";
+  const std::string slack = " } constraints { limits { body: 'truss' list { links { a: 3 b: 6 } } at_most_ratio: 9 }";
+  const auto both = CompileText(Scene(GetParam().text + slack));
+  ASSERT_NE(both, nullptr);
+  ASSERT_EQ(both->constraints.size(), 2u);
+  State alone = Thrown(*model_, 2), together = alone;
+  Fly(*model_, 1e-3, 100, alone);
+  Fly(*both, 1e-3, 100, together);
+  EXPECT_EQ(StateHash(alone), StateHash(together));
+}
+
 // Then a move along the velocities leaves the constraint at second order only, and there is nothing more to take.
 TEST_P(ConstraintContract, ProjectedVelocitiesStayOnIt) {
   if (!GetParam().exact) GTEST_SKIP() << "leaves velocities alone";

@@ -63,19 +63,19 @@ absl::StatusOr<int> DeformableBody(const std::string& name, std::string_view pat
   return FieldError(path, absl::StrCat("body \"", name, "\" must be ROLE_DEFORMABLE"));
 }
 
-void Pull(const Link& link, const Eigen::Vector3d& impulse, double dt, State& state) {
-  state.x.col(link.a) += link.inverse_a * impulse;
-  state.x.col(link.b) -= link.inverse_b * impulse;
-  state.v.col(link.a) += link.inverse_a / dt * impulse;
-  state.v.col(link.b) -= link.inverse_b / dt * impulse;
+void Pull(const Link& link, const Eigen::Vector3d& impulse, double dt, Points& x, Points& v) {
+  x.col(link.a) += link.inverse_a * impulse;
+  x.col(link.b) -= link.inverse_b * impulse;
+  v.col(link.a) += link.inverse_a / dt * impulse;
+  v.col(link.b) -= link.inverse_b / dt * impulse;
 }
 
-void Restore(const Link& link, const ConstPoints& before, double dt, State& state) {
+void Restore(const Link& link, const ConstPoints& before, double dt, Points& x, Points& v) {
   if (!link.Movable()) return;
-  const Eigen::Vector3d between = state.x.col(link.b) - state.x.col(link.a);
+  const Eigen::Vector3d between = x.col(link.b) - x.col(link.a);
   const double excess = between.squaredNorm() - link.length * link.length;
   const Eigen::Vector3d correction = Correction(between, before.col(link.b) - before.col(link.a), excess);
-  Pull(link, correction / (link.inverse_a + link.inverse_b), dt, state);
+  Pull(link, correction / (link.inverse_a + link.inverse_b), dt, x, v);
 }
 
 void Push(const Link& link, const Eigen::Vector3d& impulse, State& state) {

@@ -49,7 +49,7 @@ absl::StatusOr<int> DeformableBody(const std::string& name, std::string_view pat
 Link MakeLink(const Model& model, int a, int b);
 
 // Moves both ends by `impulse` [kg m] along the link, against its stretch, and the velocities by the same over dt.
-void Pull(const Link& link, const Eigen::Vector3d& impulse, double dt, State& state);
+void Pull(const Link& link, const Eigen::Vector3d& impulse, double dt, Points& x, Points& v);
 
 // The same to the velocities alone, by an impulse in kg m/s.
 void Push(const Link& link, const Eigen::Vector3d& impulse, State& state);
@@ -57,7 +57,7 @@ void Push(const Link& link, const Eigen::Vector3d& impulse, State& state);
 // Brings the length back in one go (SHAKE): a pull along the direction that the link had `before`, which keeps angular
 // momentum; along itself where it has turned too far in one step for that to reach. Nothing where both ends are in one
 // point.
-void Restore(const Link& link, const ConstPoints& before, double dt, State& state);
+void Restore(const Link& link, const ConstPoints& before, double dt, Points& x, Points& v);
 
 // Takes the relative velocity along the link from both ends, by their masses.
 void StopStretching(const Link& link, State& state);

@@ -33,17 +33,14 @@ HWY_INLINE Vectors Scaled(Vector factor, const Vectors& by) {
   return {hn::Mul(factor, by.x), hn::Mul(factor, by.y), hn::Mul(factor, by.z)};
 }
 
-// Moves one end of kLanes links, and their velocities, by an impulse [kg m].
-HWY_INLINE void Move(Vector inverse_mass, const Vectors& impulse, double rate, const std::int64_t* place, int count,
-                     double* x, double* v) {
-  const Vectors way = Scaled(inverse_mass, impulse);
-  points::AddRows(points::ToRows(way), place, count, x);
-  points::AddRows(points::ToRows(Scaled(hn::Set(Tag(), rate), way)), place, count, v);
-}
+// What pulls a packet's links back [kg m].
+struct Impulses {
+  HWY_ALIGN double x[kPacketLinks], y[kPacketLinks], z[kPacketLinks];
+};
 
-// Restores links from `first` on; those that do not reach stay as they are, and it returns their bits.
-HWY_INLINE unsigned RestoreFrom(const LinkPacket& packet, int first, const double* before, double rate, double* x,
-                                double* v) {
+// Of links from `first` on. Those that do not reach get none, and it returns their bits.
+HWY_INLINE std::uint64_t Correct(const LinkPacket& packet, int first, const double* before, const double* x,
+                                 Impulses& impulses) {
   const Tag d;
   const auto zero = hn::Zero(d);
   const Vectors between = Between(packet, first, x), direction = Between(packet, first, before);
@@ -55,20 +52,47 @@ HWY_INLINE unsigned RestoreFrom(const LinkPacket& packet, int first, const doubl
   const auto part = hn::Div(excess, hn::IfThenElse(reaches, sum, hn::Set(d, 1.0)));
   const auto scale = hn::IfThenElseZero(reaches, hn::Mul(part, hn::Load(d, packet.reduced + first)));
   const Vectors impulse = Scaled(scale, direction);
-  Move(hn::Load(d, packet.inverse_a + first), impulse, rate, packet.a + first, packet.count - first, x, v);
-  const auto inverse_b = hn::Neg(hn::Load(d, packet.inverse_b + first));
-  Move(inverse_b, impulse, rate, packet.b + first, packet.count - first, x, v);
+  hn::Store(impulse.x, d, impulses.x + first);
+  hn::Store(impulse.y, d, impulses.y + first);
+  hn::Store(impulse.z, d, impulses.z + first);
   std::uint8_t missed[8];
   hn::StoreMaskBits(d, hn::Not(reaches), missed);
-  return static_cast<unsigned>(*missed) << first;
+  return static_cast<std::uint64_t>(*missed) << first;
 }
 
-unsigned RestorePacketHere(const LinkPacket& packet, const double* before, double dt, double* x, double* v) {
-  unsigned missed = 0;
-  for (int first = 0; first < packet.count; first += kLanes) {
-    missed |= RestoreFrom(packet, first, before, 1 / dt, x, v);
+// Moves one end of links from `first` on, and their velocities.
+HWY_INLINE void MoveEnds(Vector inverse_mass, const Vectors& impulse, double rate, const std::int64_t* place, int count,
+                         double* x, double* v) {
+  const Vectors way = Scaled(inverse_mass, impulse);
+  points::AddRows(points::ToRows(way), place, count, x);
+  points::AddRows(points::ToRows(Scaled(hn::Set(Tag(), rate), way)), place, count, v);
+}
+
+HWY_INLINE void Move(const LinkPacket& packet, int first, const Impulses& impulses, double rate, double* x, double* v) {
+  const Tag d;
+  const Vectors impulse = {hn::Load(d, impulses.x + first), hn::Load(d, impulses.y + first),
+                           hn::Load(d, impulses.z + first)};
+  const int count = packet.count - first;
+  MoveEnds(hn::Load(d, packet.inverse_a + first), impulse, rate, packet.a + first, count, x, v);
+  MoveEnds(hn::Neg(hn::Load(d, packet.inverse_b + first)), impulse, rate, packet.b + first, count, x, v);
+}
+
+// All roots and divisions first: what one packet waits for, the next does not.
+std::uint64_t RestorePacketsHere(const LinkPacket* packets, int count, const double* before, double dt, double* x,
+                                 double* v) {
+  Impulses impulses[kPacketsTogether];
+  std::uint64_t missed = 0;
+  for (int p = 0; p < count; ++p) {
+    std::uint64_t of_packet = 0;
+    for (int first = 0; first < packets[p].count; first += kLanes) {
+      of_packet |= Correct(packets[p], first, before, x, impulses[p]);
+    }
+    missed |= (of_packet & ((1U << packets[p].count) - 1)) << (p * kPacketLinks);
   }
-  return missed & ((1U << packet.count) - 1);
+  for (int p = 0; p < count; ++p) {
+    for (int first = 0; first < packets[p].count; first += kLanes) Move(packets[p], first, impulses[p], 1 / dt, x, v);
+  }
+  return missed;
 }
 
 }  // namespace
@@ -78,12 +102,14 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace phrenic {
 
-HWY_EXPORT(RestorePacketHere);
+HWY_EXPORT(RestorePacketsHere);
 
 std::vector<LinkPacket> PackLinks(const std::vector<Link>& links) {
   std::vector<LinkPacket> packets;
-  for (const Link& link : links) {
-    if (packets.empty() || packets.back().count == kPacketLinks) packets.emplace_back();
+  for (size_t next = 0; next < links.size(); ++next) {
+    const Link& link = links[next];
+    const bool goes_on = next > 0 && links[next - 1].a / kVertexBlock == link.a / kVertexBlock;
+    if (!goes_on || packets.back().count == kPacketLinks) packets.push_back({.first = static_cast<int>(next)});
     LinkPacket& packet = packets.back();
     const int i = packet.count++;
     packet.squared_length[i] = link.length * link.length;
@@ -97,8 +123,9 @@ std::vector<LinkPacket> PackLinks(const std::vector<Link>& links) {
   return packets;
 }
 
-unsigned RestorePacket(const LinkPacket& packet, const double* before, double dt, double* x, double* v) {
-  return HWY_DYNAMIC_DISPATCH(RestorePacketHere)(packet, before, dt, x, v);
+std::uint64_t RestorePackets(absl::Span<const LinkPacket> packets, const double* before, double dt, double* x,
+                             double* v) {
+  return HWY_DYNAMIC_DISPATCH(RestorePacketsHere)(packets.data(), static_cast<int>(packets.size()), before, dt, x, v);
 }
 
 }  // namespace phrenic

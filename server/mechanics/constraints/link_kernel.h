@@ -6,11 +6,13 @@
 #include <cstdint>
 #include <vector>
 
+#include "absl/types/span.h"
 #include "server/mechanics/constraints/link.h"
 
 namespace phrenic {
 
 inline constexpr int kPacketLinks = 8;
+inline constexpr int kPacketsTogether = 8;
 
 struct alignas(64) LinkPacket {
   double squared_length[kPacketLinks] = {};                           // [m^2]
@@ -18,14 +20,18 @@ struct alignas(64) LinkPacket {
   double reduced[kPacketLinks] = {};                        // 1/(inverse_a + inverse_b) [kg]; 0 where neither end moves
   std::int64_t a[kPacketLinks] = {}, b[kPacketLinks] = {};  // where the ends lie in x [doubles]
   int count = 0;
+  int first = 0;  // of its links
 };
 
+// The links one after another; those of a packet begin in one block of vertices (kVertexBlock).
 std::vector<LinkPacket> PackLinks(const std::vector<Link>& links);
 
-// Restores the packet's links: x and v, 3 x n, change as by Restore over dt [s], for which a link's direction is that
-// of `before`. Returns the links, a bit each, that have turned too far for that and are left as they were. Threads may
-// call at once for packets that share no vertex.
-unsigned RestorePacket(const LinkPacket& packet, const double* before, double dt, double* x, double* v);
+// Restores the links of up to kPacketsTogether packets that share no vertex that moves: x and v, 3 x n, change as by
+// Restore over dt [s], for which a link's direction is that of `before`. Returns the links that have turned too far for
+// that and are left as they were: bit kPacketLinks p + i for link i of packet p. Threads may call at once for packets
+// that share no vertex.
+std::uint64_t RestorePackets(absl::Span<const LinkPacket> packets, const double* before, double dt, double* x,
+                             double* v);
 
 }  // namespace phrenic
 

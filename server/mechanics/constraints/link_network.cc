@@ -150,7 +150,7 @@ double LinkNetwork::LargestMove(const Scratch& scratch) const {
 void LinkNetwork::PullAll(double sign, double dt, Scratch& scratch, State& state) const {
   for (size_t i = 0; i < links_.size(); ++i) {
     const auto column = static_cast<Eigen::Index>(i);
-    Pull(links_[i], sign * scratch.pulls[column] * scratch.directions.col(column), dt, state);
+    Pull(links_[i], sign * scratch.pulls[column] * scratch.directions.col(column), dt, state.x, state.v);
     scratch.totals[column] += sign * scratch.pulls[column];
   }
 }
@@ -200,7 +200,7 @@ bool LinkNetwork::Switch(double dt, Scratch& scratch, State& state) const {
     double& total = scratch.totals[static_cast<Eigen::Index>(i)];
     if (link.sign == 0) continue;
     if (scratch.active[i] && link.sign * total * (link.inverse_a + link.inverse_b) < -kTolerance * link.length) {
-      Pull(link, -total * scratch.directions.col(static_cast<Eigen::Index>(i)), dt, state);
+      Pull(link, -total * scratch.directions.col(static_cast<Eigen::Index>(i)), dt, state.x, state.v);
       total = 0;
       scratch.active[i] = false;
       changed = true;
@@ -225,7 +225,7 @@ void LinkNetwork::Project(const ConstPoints& before, double dt, State& state) co
   }
   for (int sweep = 0; sweep < kSweeps && LargestViolation(state) > kTolerance; ++sweep) {
     for (const Link& link : links_) {
-      if (link.Violation(state.x) > 0) Restore(link, before, dt, state);
+      if (link.Violation(state.x) > 0) Restore(link, before, dt, state.x, state.v);
     }
   }
 }

@@ -1,16 +1,15 @@
 #include "server/mechanics/constraints/rigid_links.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <numeric>
 
 #include "absl/strings/str_cat.h"
 #include "server/mechanics/constraints/link_pairing.h"
-#include "server/mechanics/share_out.h"
 
 namespace phrenic {
 namespace {
-
-constexpr size_t kTogether = 8;  // packets that one thread of a step takes at a time
 
 absl::StatusOr<std::vector<Link>> PairedLinks(const v1::LinkPairing& scene, int body, const std::string& path,
                                               const Draft& draft) {
@@ -45,13 +44,18 @@ std::vector<int> LinksPerVertex(const std::vector<Link>& links, const Model& mod
   return count;
 }
 
-bool NoVertexTwice(const std::vector<Link>& links, const Model& model) {
-  std::vector<bool> taken(static_cast<size_t>(model.rest.cols()), false);
-  for (const Link& link : links) {
-    if (taken[link.a] || taken[link.b] || link.a == link.b) return false;
-    taken[link.a] = taken[link.b] = true;
-  }
-  return true;
+// Both ends move by forces, and lie in one block.
+bool InOneBlock(const Link& link) {
+  return link.inverse_a > 0 && link.inverse_b > 0 && link.a / kVertexBlock == link.b / kVertexBlock;
+}
+
+// Of each block's packets, and their end.
+std::vector<size_t> BlockStarts(const std::vector<Link>& links, const std::vector<LinkPacket>& packets,
+                                Eigen::Index vertices) {
+  std::vector<size_t> starts((vertices + kVertexBlock - 1) / kVertexBlock + 1, 0);
+  for (const LinkPacket& packet : packets) ++starts[links[packet.first].a / kVertexBlock + 1];
+  std::partial_sum(starts.begin(), starts.end(), starts.begin());
+  return starts;
 }
 
 // For viewers.
@@ -99,9 +103,13 @@ void RigidLinks::Sort(const std::vector<Link>& links, const Model& model) {
       joined.push_back(link);
     }
   }
-  if (!thesis_) packets_ = PackLinks(alone_);
-  apart_ = NoVertexTwice(alone_, model);
   if (!joined.empty()) network_ = LinkNetwork(joined);
+  if (thesis_) return;
+  std::stable_sort(alone_.begin(), alone_.end(),
+                   [](const Link& p, const Link& q) { return p.a / kVertexBlock < q.a / kVertexBlock; });
+  packets_ = PackLinks(alone_);
+  block_start_ = BlockStarts(alone_, packets_, model.rest.cols());
+  by_range_ = joined.empty() && std::all_of(alone_.begin(), alone_.end(), InOneBlock);
 }
 
 void RigidLinks::ProjectThesis(const ConstPoints& before, Points& x) const {
@@ -118,18 +126,23 @@ void RigidLinks::ProjectThesis(const ConstPoints& before, Points& x) const {
   }
 }
 
-void RigidLinks::RestoreAlone(const ConstPoints& before, double dt, State& state) const {
-  if (packets_.empty()) return;
-  const size_t together = apart_ ? kTogether : packets_.size();
-  ShareOut(static_cast<std::int64_t>((packets_.size() - 1) / together + 1), [&](std::int64_t part) {
-    const size_t first = static_cast<size_t>(part) * together, end = std::min(first + together, packets_.size());
-    for (size_t p = first; p < end; ++p) {
-      unsigned missed = RestorePacket(packets_[p], before.data(), dt, state.x.data(), state.v.data());
-      for (size_t link = p * kPacketLinks; missed != 0; ++link, missed >>= 1) {
-        if (missed & 1) Restore(alone_[link], before, dt, state);
-      }
+void RigidLinks::RestoreAlone(const VertexRange& range, const ConstPoints& before, double dt, Points& x,
+                              Points& v) const {
+  const size_t first = block_start_[range.first / kVertexBlock];
+  const size_t end = block_start_[(range.end + kVertexBlock - 1) / kVertexBlock];
+  for (size_t p = first; p < end; p += kPacketsTogether) {
+    const absl::Span<const LinkPacket> packets(&packets_[p], std::min<size_t>(kPacketsTogether, end - p));
+    std::uint64_t missed = RestorePackets(packets, before.data(), dt, x.data(), v.data());
+    for (; missed != 0; missed &= missed - 1) {
+      const int link = std::countr_zero(missed);
+      Restore(alone_[packets[link / kPacketLinks].first + link % kPacketLinks], before, dt, x, v);
     }
-  });
+  }
+}
+
+void RigidLinks::ProjectIn(const VertexRange& range, const v1::Parameters& parameters, const ConstPoints& before,
+                           double dt, Points& x, Points& v) const {
+  if (parameters.apply_links()) RestoreAlone(range, before, dt, x, v);
 }
 
 void RigidLinks::Project(const v1::Parameters& parameters, const ConstPoints& before, double dt, State& state) const {
@@ -138,7 +151,7 @@ void RigidLinks::Project(const v1::Parameters& parameters, const ConstPoints& be
     ProjectThesis(before, state.x);
     return;
   }
-  RestoreAlone(before, dt, state);
+  RestoreAlone({0, state.x.cols()}, before, dt, state.x, state.v);
   network_.Project(before, dt, state);
 }
 

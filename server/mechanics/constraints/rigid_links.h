@@ -24,6 +24,9 @@ class RigidLinks final : public Constraint {
                                                           std::string_view path, Draft& draft);
 
   void Project(const v1::Parameters& parameters, const ConstPoints& before, double dt, State& state) const override;
+  bool by_range() const override { return by_range_; }
+  void ProjectIn(const VertexRange& range, const v1::Parameters& parameters, const ConstPoints& before, double dt,
+                 Points& x, Points& v) const override;
   void ProjectVelocities(const v1::Parameters& parameters, State& state) const override;
   bool smooth() const override { return !thesis_; }
   double Residual(const State& state) const override;
@@ -31,13 +34,14 @@ class RigidLinks final : public Constraint {
  private:
   explicit RigidLinks(std::string name) : Constraint(std::move(name)) {}
   void Sort(const std::vector<Link>& links, const Model& model);
-  void RestoreAlone(const ConstPoints& before, double dt, State& state) const;
+  void RestoreAlone(const VertexRange& range, const ConstPoints& before, double dt, Points& x, Points& v) const;
   void ProjectThesis(const ConstPoints& before, Points& x) const;
 
   bool thesis_ = false;
   std::vector<Link> alone_;          // no vertex that moves has another link (or the projection asks for no more)
-  std::vector<LinkPacket> packets_;  // the same
-  bool apart_ = false;               // they share no vertex at all: threads may take them
+  std::vector<LinkPacket> packets_;  // the same, by the block that they begin in
+  std::vector<size_t> block_start_;  // of each block's packets, and their end
+  bool by_range_ = false;            // all end in the block that they begin in
   LinkNetwork network_;              // the others
 };
 

@@ -19,6 +19,12 @@ void PutDriven(const Model& model, const std::vector<Eigen::Vector3d>& driven, P
   for (const int i : model.driven_vertices) x.col(i) = *next++, v.col(i) = *next++;
 }
 
+// The constraint that a block's vertices are brought onto while they are at hand, if it is the only one.
+const Constraint* InBlocks(const Model& model) {
+  const bool can = model.constraints.size() == 1 && model.constraints.front()->by_range();
+  return can ? model.constraints.front().get() : nullptr;
+}
+
 }  // namespace
 
 double SemiImplicitEuler::MaxStep(const Spectrum& spectrum) const {
@@ -34,8 +40,10 @@ absl::Status SemiImplicitEuler::Advance(const Model& model, const v1::Parameters
   TakeDriven(model, state.x, state.v, work.driven);
   DriveMotions(model, parameters, dt, state);
   const Instant at = Packed(model, MakeInstant(model, parameters, state));
+  const Constraint* in_blocks = InBlocks(model);
   // How far a block gets is noted while it is at hand, unless constraints move vertices yet.
-  if (model.constraints.empty()) MakePlaces(state.x.cols(), work.reach);
+  const bool later = !model.constraints.empty() && in_blocks == nullptr;
+  if (!later) MakePlaces(state.x.cols(), work.reach);
   const bool whole = SumWholeForces(model, at, work.force);
   ForEachBlock({0, state.x.cols()}, [&](const VertexRange& block) {
     const Eigen::Index vertices = block.end - block.first;
@@ -45,12 +53,13 @@ absl::Status SemiImplicitEuler::Advance(const Model& model, const v1::Parameters
         whole ? MutablePoints(work.force.middleCols(block.first, vertices)) : MutablePoints(own.setZero());
     AddForcesIn(block, model, at, f);
     KickAndDrift(block, model.inverse_mass, dt, dt, f, state.x, state.v, work.before, work.velocity_before);
-    if (!work.reach.empty()) NoteReach(block, work.before, work.velocity_before, work.reach);
+    if (in_blocks) in_blocks->ProjectIn(block, parameters, state.x, dt, work.before, work.velocity_before);
+    if (!later) NoteReach(block, work.before, work.velocity_before, work.reach);
   });
   state.x.swap(work.before);
   state.v.swap(work.velocity_before);
   PutDriven(model, work.driven, work.before, work.velocity_before);
-  ProjectPositions(model, parameters, work.before, dt, state);
+  if (later) ProjectPositions(model, parameters, work.before, dt, state);
   return absl::OkStatus();
 }
 
