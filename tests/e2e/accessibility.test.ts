@@ -15,7 +15,7 @@ beforeAll(async () => {
 
 afterAll(async () => {
   await browser?.close();
-  await server?.kill();
+  await server?.end();
 });
 
 test("AxeFindsNothingAgainstThePage", async () => {

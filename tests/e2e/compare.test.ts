@@ -19,7 +19,7 @@ beforeAll(async () => {
 
 afterAll(async () => {
   await browser?.close();
-  await server?.kill();
+  await server?.end();
 });
 
 /** A session as it is now, in a file of `phrenic export` whose nodes are moved up by `up` millimetres. */

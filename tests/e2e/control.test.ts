@@ -46,7 +46,7 @@ beforeAll(async () => {
 
 afterAll(async () => {
   for (const browser of browsers ?? []) await browser.close();
-  await server?.kill();
+  await server?.end();
 });
 
 test("BothMayChangeTheSessionUntilItsOwnerTakesControl", async () => {

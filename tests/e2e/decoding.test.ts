@@ -11,7 +11,7 @@ import { Server } from "./server";
 
 let server: Server;
 beforeAll(async () => void (server = await Server.start()));
-afterAll(() => server?.kill());
+afterAll(() => server?.end());
 
 const names = { [Codec.PLANES]: "planes", [Codec.PREDICTED]: "predicted", [Codec.BASIS]: "basis" };
 type Coded = keyof typeof names;

@@ -23,7 +23,7 @@ beforeAll(async () => {
 afterAll(async () => {
   await viewer?.close();
   await browser?.close();
-  await server?.kill();
+  await server?.end();
 });
 
 test("AMotionAsGltfIsWhatTheValidatorOfGltfsMakersTakes", async () => {

@@ -19,7 +19,7 @@ const buf = join(import.meta.dirname, "node_modules/.bin/buf");
 
 let server: Server;
 beforeAll(async () => void (server = await Server.start("cube-springs")));
-afterAll(() => server?.kill());
+afterAll(() => server?.end());
 
 type Answer = Record<string, any>;
 type Call = (request: object, answered: (error: ServiceError | null, answer: Answer) => void) => void;

@@ -1,11 +1,9 @@
 import { execFile } from "node:child_process";
-import { mkdtempSync } from "node:fs";
-import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { promisify } from "node:util";
 import { afterAll, beforeAll, expect, test } from "vitest";
 import { studyError } from "../../client/examples/harness";
-import { Server } from "./server";
+import { outFolder, Server } from "./server";
 
 let server: Server;
 
@@ -14,7 +12,7 @@ beforeAll(async () => {
 });
 
 afterAll(async () => {
-  await server?.kill();
+  await server?.end();
 });
 
 test("TheHarnessOverConnectRunsAStudyToItsEnd", async () => {
@@ -32,7 +30,7 @@ test("TheHarnessOverConnectRunsAStudyToItsEnd", async () => {
 
 test("TheHarnessInTheShellKeepsItsLimits", async () => {
   const script = join(import.meta.dirname, "../../client/examples/harness.sh");
-  const env = { ...process.env, OUT: mkdtempSync(join(tmpdir(), "phrenic-harness-")) };
+  const env = { ...process.env, OUT: join(outFolder, "harness") };
   const { stdout } = await promisify(execFile)(script, ["cube-tensegrity"], { env });
   expect(stdout).toContain("cube-tensegrity: every limit kept");
 });

@@ -20,7 +20,7 @@ afterEach(async () => {
 
 afterAll(async () => {
   await browser?.close();
-  await server?.kill();
+  await server?.end();
 });
 
 test("FromTheAddressToAParalysedHemidiaphragmBesideAHealthyOneInUnderAMinute", async () => {

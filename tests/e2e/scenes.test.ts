@@ -13,7 +13,7 @@ beforeAll(async () => {
 
 afterAll(async () => {
   await browser?.close();
-  await server?.kill();
+  await server?.end();
 });
 
 describe("a session made in the browser", () => {

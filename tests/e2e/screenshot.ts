@@ -56,6 +56,6 @@ test("Screenshot", async () => {
     await page.screenshot({ path: join(web, "paralysis.jpg"), type: "jpeg", quality: 85 });
   } finally {
     await browser.close();
-    await server.kill();
+    await server.end();
   }
 });

@@ -19,9 +19,7 @@ export class Server {
     private readonly web: number,
     private readonly scene: string,
     private readonly flags: string[],
-  ) {
-    process.once("exit", () => rmSync(this.store, { recursive: true, force: true }));
-  }
+  ) {}
 
   /** With a session of `scene` that plays; "none" for no session. */
   static async start(scene = "thorax", flags: string[] = []): Promise<Server> {
@@ -93,6 +91,12 @@ export class Server {
     const ended = new Promise((done) => child.once("exit", done));
     child.kill("SIGKILL");
     await ended;
+  }
+
+  /** The last of it: what it has stored goes too. */
+  async end(): Promise<void> {
+    await this.kill();
+    rmSync(this.store, { recursive: true, force: true });
   }
 }
 

@@ -10,7 +10,7 @@ import { Server } from "./server";
 
 let server: Server;
 beforeAll(async () => void (server = await Server.start()));
-afterAll(() => server.kill());
+afterAll(() => server.end());
 
 /** A line to the server that carries so many bytes a second to the viewer, and as much as there is the other way. */
 async function thinLine(url: string, bytesPerSecond: number): Promise<{ url: string; close: () => void }> {

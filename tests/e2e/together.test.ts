@@ -17,7 +17,7 @@ beforeAll(async () => {
 
 afterAll(async () => {
   for (const browser of browsers ?? []) await browser.close();
-  await server?.kill();
+  await server?.end();
 });
 
 test("TwoBrowsersPlayTogether", async () => {

@@ -16,7 +16,7 @@ beforeAll(async () => {
 
 afterAll(async () => {
   await browser?.close();
-  await server?.kill();
+  await server?.end();
 });
 
 const play = () => viewer.page.locator('#play[aria-label="Play"]');
