@@ -10,10 +10,7 @@ constexpr double kNear = 5e-3;           // distances below this count alike [m]
 constexpr double kSmallestShare = 0.01;  // smaller shares are dropped and the rest scaled to 1
 constexpr double kSlack = 1e-9;          // of distances and weights that are bounds: more than they are rounded by
 
-double Weight(double distance) { return std::pow(distance * distance + kNear * kNear, -2); }
-
-// The same for bounds.
-double Roughly(double distance) {
+double Weight(double distance) {
   const double squared = distance * distance + kNear * kNear;
   return 1 / (squared * squared);
 }
@@ -61,7 +58,7 @@ bool Blender::WeighNear(const Eigen::Vector3d& point) {
   for (int c = 0; c < carriers_.count(); ++c) {
     const double distance = tracks_[c].at_least;
     if (distance > reach) {
-      beyond += Roughly(distance);
+      beyond += Weight(distance);
       continue;
     }
     near_.push_back({carriers_.SquaredToBox(c, point), c, Weight(distance)});
