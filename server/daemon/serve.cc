@@ -40,11 +40,20 @@ std::string Reachable(const std::string& address, int port) {
   return absl::StrCat(host, ":", port);
 }
 
-// A session of the scene, with the scene's name, playing.
+// The scene's name, or with the next number where a session of that name could not be restored.
+std::string FirstSession(const service::Server& server, const std::string& scene) {
+  std::string id = scene;
+  for (int i = 2; server.lost().contains(id); ++i) id = absl::StrCat(scene, "-", i);
+  return id;
+}
+
+// A session of the scene, playing.
 grpc::Status StartScene(service::Server& server, const std::string& scene) {
+  const std::string id = FirstSession(server, scene);
+  spdlog::info("building the first scene: session {}", id);
   const auto stub = v1::SessionService::NewStub(server.InProcessChannel());
   v1::CreateSessionRequest request;
-  request.set_session_id(scene);
+  request.set_session_id(id);
   request.mutable_source()->set_name(scene);
   v1::CreateSessionResponse created;
   grpc::ClientContext creating, playing;
@@ -52,7 +61,7 @@ grpc::Status StartScene(service::Server& server, const std::string& scene) {
   if (status.error_code() == grpc::StatusCode::ALREADY_EXISTS) return grpc::Status::OK;  // it goes on as it was
   if (!status.ok()) return status;
   v1::PlaySessionRequest play;
-  play.set_session_id(scene);
+  play.set_session_id(id);
   v1::PlaySessionResponse played;
   return stub->PlaySession(&playing, play, &played);
 }
@@ -84,11 +93,9 @@ std::unique_ptr<service::Server> Start(const Flags& flags) {
     spdlog::error("{}", std::string(server.status().message()));
     return nullptr;
   }
-  if (const std::size_t lost = (*server)->lost().size(); lost > 0) {
-    spdlog::warn(
-        "{} sessions, studies or exports could not be restored and stay in the store: phrenicd check {} says which and "
-        "why",
-        lost, options.store_dir);
+  for (const auto& [what, why] : (*server)->lost()) {
+    spdlog::warn("{} could not be restored and stays in the store until it is deleted: {}", what,
+                 std::string(why.message()));
   }
   WarnOfReach(options);
   return *std::move(server);
@@ -121,7 +128,6 @@ int Serve(const Flags& flags) {
   const auto server = Start(flags);
   if (server == nullptr) return kFailed;
   if (flags.start != "none") {
-    spdlog::info("building the first scene");
     pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);  // nothing to lose yet: a signal ends the program at once
     const grpc::Status status = StartScene(*server, flags.start);
     pthread_sigmask(SIG_BLOCK, &signals, nullptr);

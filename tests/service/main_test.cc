@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -23,11 +24,10 @@ struct Outcome {
 };
 
 // Runs phrenicd for at most three seconds, then asks it to stop, once.
-Outcome RunPhrenicd(const std::string& arguments) {
+Outcome RunPhrenicd(const std::string& arguments, const std::string& store = "none") {
   Outcome outcome;
-  const std::string command = "timeout --foreground --preserve-status -k 10 3 " PHRENIC_BINARY_DIR
-                              "/phrenicd --store none " +
-                              arguments + " 2>&1";
+  const std::string command = absl::StrCat("timeout --foreground --preserve-status -k 10 3 ", PHRENIC_BINARY_DIR,
+                                           "/phrenicd --store ", store, " ", arguments, " 2>&1");
   FILE* pipe = popen(command.c_str(), "r");
   std::array<char, 4096> piece{};
   while (std::fgets(piece.data(), piece.size(), pipe) != nullptr) outcome.words += piece.data();
@@ -41,6 +41,26 @@ TEST(Phrenicd, SaysWhatItServesAndStopsWhenAsked) {
   EXPECT_THAT(outcome.words, HasSubstr("Viewer: http://127.0.0.1:"));
   EXPECT_THAT(outcome.words, HasSubstr("gRPC:   127.0.0.1:"));
   EXPECT_EQ(outcome.words.find("127.0.0.1:0"), std::string::npos) << "the ports that were chosen are not told";
+}
+
+// As after a new version of Phrenic, of which a scene's parts are made otherwise.
+TEST(Phrenicd, StartsAnewBesideASessionThatCannotBeRestored) {
+  const std::string folder = testing::TempDir() + "phrenic_anew_" + std::to_string(getpid());
+  std::filesystem::create_directories(folder + "/scenes");
+  std::ofstream(folder + "/scenes/patch.textproto")
+      << "name: 'patch' bodies { name: 'patch' role: ROLE_DEFORMABLE mass: 1 file { path: 'patch.obj' } }";
+  const auto run = [&](const std::string& height) {
+    std::ofstream(folder + "/patch.obj") << "v 0 0 0\nv 100 0 0\nv 0 " << height << " 0\nf 1 2 3\n";
+    const std::string flags = "--listen 127.0.0.1:0 --web 127.0.0.1:0 --start patch --data " + folder;
+    return RunPhrenicd(flags, folder + "/store").words;
+  };
+  EXPECT_THAT(run("100"), HasSubstr("first scene: session patch\n"));
+  EXPECT_THAT(run("100"), HasSubstr("first scene: session patch\n"));
+  const std::string anew = run("120");
+  EXPECT_THAT(anew, HasSubstr("patch could not be restored and stays in the store until it is deleted: "));
+  EXPECT_THAT(anew, HasSubstr("first scene: session patch-2\n"));
+  EXPECT_THAT(run("120"), HasSubstr("first scene: session patch-2\n"));
+  std::filesystem::remove_all(folder);
 }
 
 TEST(Phrenicd, WrongUsageIsTwo) {
