@@ -13,6 +13,7 @@ namespace phrenic {
 
 inline constexpr int kPacketLinks = 8;
 inline constexpr int kPacketsTogether = 8;
+static_assert(kPacketLinks * kPacketsTogether <= 64, "a bit each");
 
 struct alignas(64) LinkPacket {
   double squared_length[kPacketLinks] = {};                           // [m^2]
