@@ -60,11 +60,12 @@ TEST(Contact, ABallOnAFloorStaysWithinTheStatedDepth) {
 }
 
 // Whatever presses, one vertex sinks in by force over load times the depth.
+// It stands on one vertex: friction takes the sinking's motion long before a rounding has tipped it over.
 TEST(Contact, ABallPressedWithItsLoadSinksToTheDepth) {
-  const auto model = CompileText(
-      "name: 'pressed' " + Floor("ROLE_AT_REST") + Ball(0.1) + Sliding("load: 300") +
-      "forces { friction { bodies: 'ball' rate: 5 } } forces { gravity { bodies: 'ball' acceleration { z: -50 } } } ");
-  const State state = Settle(*model, 5);
+  const auto model = CompileText("name: 'pressed' " + Floor("ROLE_AT_REST") + Ball(0.1) + Sliding("load: 300") +
+                                 "forces { friction { bodies: 'ball' rate: 100 } } forces { gravity { bodies: 'ball' "
+                                 "acceleration { z: -50 } } } ");
+  const State state = Settle(*model, 1);
   EXPECT_NEAR(Deepest(state), 0.002, 0.002 * 1e-3);
 }
 

@@ -6,6 +6,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "server/mechanics/inverse_root-inl.h"
 #include "server/mechanics/points-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -80,27 +81,55 @@ struct Part {
   int row;
 };
 
+// What a column of a slice has for the part's rows.
+template <typename Number>
+struct Column {
+  hn::Vec<SliceTag<Number>> stiffness, at_rest;
+};
+
+template <bool kAlike, typename Number>
+HWY_INLINE Column<Number> ColumnAt(const Part<Number>& part, std::int64_t c) {
+  const SliceTag<Number> d;
+  const SpringSlices<Number>& slices = part.slices;
+  return {kAlike ? hn::Set(d, slices.common_stiffness) : hn::Load(d, slices.stiffness[c].row + part.row),
+          hn::Load(d, slices.at_rest[c].row + part.row)};
+}
+
+// Adds the pulls of kTogether columns, step by step: what one of them waits for, the others do not.
+template <bool kAlike, bool kAtEnd, int kTogether, typename Number>
+HWY_INLINE void AddPulls(const Part<Number>& part, std::int64_t first, const Number* x, const Coordinates<Number>& own,
+                         Coordinates<Number>& sum) {
+  const SliceTag<Number> d;
+  const auto shortest = hn::Set(d, kShortestSquared<Number>);
+  Coordinates<Number> way[kTogether];
+  hn::Vec<SliceTag<Number>> inverse[kTogether];  // of the length; before that, the length squared
+  for (int i = 0; i < kTogether; ++i) {
+    const Coordinates<Number> other = Fetch<kAtEnd>(x, part.slices.neighbours[first + i].place + part.row);
+    way[i] = {hn::Sub(other.x, own.x), hn::Sub(other.y, own.y), hn::Sub(other.z, own.z)};
+    const auto& [dx, dy, dz] = way[i];
+    inverse[i] = hn::Max(hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz)), shortest);
+  }
+  InvertRoots(d, inverse);
+  for (int i = 0; i < kTogether; ++i) {
+    const Column<Number> column = ColumnAt<kAlike>(part, first + i);
+    const auto pull = hn::Sub(column.stiffness, hn::Mul(column.at_rest, inverse[i]));
+    sum.x = hn::Add(sum.x, hn::Mul(pull, way[i].x));
+    sum.y = hn::Add(sum.y, hn::Mul(pull, way[i].y));
+    sum.z = hn::Add(sum.z, hn::Mul(pull, way[i].z));
+  }
+}
+
 // Sum of the pulls on the part's rows.
 template <bool kAlike, bool kAtEnd, typename Number>
 HWY_INLINE Coordinates<Number> SumPulls(const Part<Number>& part, const Number* x) {
   const SliceTag<Number> d;
-  const SpringSlices<Number>& slices = part.slices;
-  const auto common = hn::Set(d, slices.common_stiffness), shortest = hn::Set(d, kShortestSquared<Number>);
-  const SpringSlice<Number>& slice = slices.slices[part.slice];
-  const std::int64_t end = slices.slices[part.slice + 1].first_column;
-  const Coordinates<Number> own = Fetch<kAtEnd>(x, slice.own + part.row);
+  std::int64_t c = part.slices.slices[part.slice].first_column;
+  const std::int64_t end = part.slices.slices[part.slice + 1].first_column;
+  const Coordinates<Number> own = Fetch<kAtEnd>(x, part.slices.slices[part.slice].own + part.row);
   Coordinates<Number> sum = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
-  for (std::int64_t c = slice.first_column; c < end; ++c) {
-    const Coordinates<Number> other = Fetch<kAtEnd>(x, slices.neighbours[c].place + part.row);
-    const auto dx = hn::Sub(other.x, own.x), dy = hn::Sub(other.y, own.y), dz = hn::Sub(other.z, own.z);
-    const auto squared = hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz));
-    const auto stiffness = kAlike ? common : hn::Load(d, slices.stiffness[c].row + part.row);
-    const auto at_rest = hn::Load(d, slices.at_rest[c].row + part.row);
-    const auto pull = hn::Sub(stiffness, hn::Div(at_rest, hn::Sqrt(hn::Max(squared, shortest))));
-    sum.x = hn::Add(sum.x, hn::Mul(pull, dx));
-    sum.y = hn::Add(sum.y, hn::Mul(pull, dy));
-    sum.z = hn::Add(sum.z, hn::Mul(pull, dz));
-  }
+  for (; c + 6 <= end; c += 6) AddPulls<kAlike, kAtEnd, 6>(part, c, x, own, sum);
+  for (; c + 3 <= end; c += 3) AddPulls<kAlike, kAtEnd, 3>(part, c, x, own, sum);
+  for (; c < end; ++c) AddPulls<kAlike, kAtEnd, 1>(part, c, x, own, sum);
   return sum;
 }
 
