@@ -24,38 +24,6 @@ Triangles Chosen(const Mesh& mesh, const Selection& selection, const v1::Surface
   return mesh.triangles(Eigen::all, chosen);
 }
 
-// What a triangle's corners have of one coordinate, or of its rate.
-struct Corners {
-  double a, b, c;
-  Corners(const ConstPoints& y, int axis, const Eigen::Vector3i& at)
-      : a(y(axis, at[0])), b(y(axis, at[1])), c(y(axis, at[2])) {}
-  double Sum() const { return a + b + c; }
-};
-
-// Of the triangle over its height: n.((b - a) x (c - a)), the corners in the plane's own axes.
-double Area(const Corners& p, const Corners& q) { return p.a * (q.b - q.c) + p.b * (q.c - q.a) + p.c * (q.a - q.b); }
-
-double SumVolumes(const ConstPoints& y, const Triangles& triangles, double height) {
-  double sum = 0;
-  for (const auto& at : triangles.colwise()) {
-    const Corners p(y, 0, at), q(y, 1, at), h(y, 2, at);
-    sum += (h.Sum() - 3 * height) * Area(p, q);
-  }
-  return sum / 6;
-}
-
-ChamberReading SumReadings(const BodyPoints::Moving& body, const Triangles& triangles, double height) {
-  ChamberReading sum;
-  for (const auto& at : triangles.colwise()) {
-    const Corners p(body.x, 0, at), q(body.x, 1, at), h(body.x, 2, at);
-    const Corners dp(body.v, 0, at), dq(body.v, 1, at), dh(body.v, 2, at);
-    const double heights = h.Sum() - 3 * height, area = Area(p, q);
-    sum.volume += heights * area;
-    sum.flow += dh.Sum() * area + heights * (Area(dp, q) + Area(p, dq));
-  }
-  return {sum.volume / 6, sum.flow / 6};
-}
-
 // The points in axes of which the third is the plane's normal; valid until this thread turns others.
 ConstPoints Turned(const Eigen::Matrix3d& axes, const ConstPoints& y, Points& memory) {
   if (axes.isIdentity(0)) return y;
@@ -101,8 +69,9 @@ absl::Status Chamber::Add(const v1::SurfacePatch& scene, double side, std::strin
   for (const int b : *bodies) {
     const auto selection = draft.Select(b, scene.region(), scene.exclude_region(), field);
     if (!selection.ok()) return selection.status();
-    Part part{BodyPoints(draft.model, b), Chosen(draft.model.bodies[b].mesh, *selection, scene), {}, side};
+    Part part{BodyPoints(draft.model, b), Chosen(draft.model.bodies[b].mesh, *selection, scene), {}, {}, side};
     if (part.triangles.cols() == 0) continue;
+    part.packets = PackTriangles(part.triangles);
     const bool whole = part.triangles.cols() == draft.model.bodies[b].mesh.triangles.cols();
     part.border = whole ? draft.BorderOf(b) : BorderVertices(part.triangles);
     parts_.push_back(std::move(part));
@@ -137,7 +106,7 @@ absl::Status Chamber::SetPlane(const v1::Plane* scene, std::string_view path) {
 double Chamber::VolumeAtRest() const {
   double sum = 0;
   for (const Part& part : parts_) {
-    sum += part.side * SumVolumes(TurnedPositions(axes_, part.points.rest()), part.triangles, height_);
+    sum += part.side * SumTriangles(part.packets, height_, TurnedPositions(axes_, part.points.rest()).data()).volume;
   }
   return sum;
 }
@@ -146,7 +115,8 @@ double Chamber::Volume(const Instant& at) const {
   if (at.readings != nullptr) return Read(at).volume;
   double sum = 0;
   for (const Part& part : parts_) {
-    sum += part.side * SumVolumes(TurnedPositions(axes_, part.points.Positions(at)), part.triangles, height_);
+    const ConstPoints x = TurnedPositions(axes_, part.points.Positions(at));
+    sum += part.side * SumTriangles(part.packets, height_, x.data()).volume;
   }
   return sum;
 }
@@ -156,7 +126,8 @@ ChamberReading Chamber::Read(const Instant& at) const {
   if (found != nullptr) return *found;
   ChamberReading sum;
   for (const Part& part : parts_) {
-    const ChamberReading reading = SumReadings(TurnedMoving(axes_, part.points.Locate(at)), part.triangles, height_);
+    const BodyPoints::Moving body = TurnedMoving(axes_, part.points.Locate(at));
+    const ChamberReading reading = SumTriangles(part.packets, height_, body.x.data(), body.v.data());
     sum.volume += part.side * reading.volume;
     sum.flow += part.side * reading.flow;
   }

@@ -8,14 +8,10 @@
 #include <vector>
 
 #include "server/mechanics/body_points.h"
+#include "server/mechanics/chamber_kernel.h"
 #include "server/mechanics/draft.h"
 
 namespace phrenic {
-
-struct ChamberReading {
-  double volume = 0;  // V [m^3]
-  double flow = 0;    // dV/dt [m^3/s]
-};
 
 // What has been read at one instant, so that the measures and forces that ask for the same surface go through it once.
 // For one thread.
@@ -69,8 +65,9 @@ class Chamber {
  private:
   struct Part {
     BodyPoints points;
-    Triangles triangles;      // of the body
-    std::vector<int> border;  // vertices of the body
+    Triangles triangles;                  // of the body
+    std::vector<TrianglePacket> packets;  // the same
+    std::vector<int> border;              // vertices of the body
     double side;
   };
   double VolumeAtRest() const;

@@ -9,6 +9,7 @@
 
 #include "server/mechanics/implicit_system.h"
 #include "tests/compile_text.h"
+#include "tests/mechanics/every_target.h"
 
 namespace phrenic {
 namespace {
@@ -26,6 +27,53 @@ Points RandomPoints(int columns, int seed) {
   std::uniform_real_distribution<double> value(-1, 1);
   return Points::NullaryExpr(3, columns, [&] { return value(random); });
 }
+
+struct Surface {
+  Triangles triangles;
+  Points x, v;
+};
+
+Surface RandomSurface(int triangles) {
+  constexpr int kVertices = 40;
+  std::mt19937 random(triangles);
+  std::uniform_int_distribution<int> vertex(0, kVertices - 1);
+  Surface made{Triangles::NullaryExpr(3, triangles, [&] { return vertex(random); }), RandomPoints(kVertices, 1),
+               RandomPoints(kVertices, 2)};
+  made.triangles(0, triangles - 1) = kVertices - 1;  // nothing follows it in memory
+  return made;
+}
+
+// Each triangle's prism down to the plane, and its rate, one by one.
+ChamberReading OneByOne(const Surface& of, double height) {
+  ChamberReading sum;
+  for (const auto& at : of.triangles.colwise()) {
+    const Eigen::Vector3d a = of.x.col(at[0]), b = of.x.col(at[1]), c = of.x.col(at[2]);
+    const Eigen::Vector3d da = of.v.col(at[0]), db = of.v.col(at[1]), dc = of.v.col(at[2]);
+    const double heights = a.z() + b.z() + c.z() - 3 * height, rise = da.z() + db.z() + dc.z();
+    const double widening = (db - da).cross(c - a).z() + (b - a).cross(dc - da).z();
+    sum.volume += heights * (b - a).cross(c - a).z() / 6;
+    sum.flow += (rise * (b - a).cross(c - a).z() + heights * widening) / 6;
+  }
+  return sum;
+}
+
+TEST(SumTriangles, GivesWhatTheyGiveOneByOneWithTheSameBitsOnEveryInstructionSet) {
+  for (const int triangles : {1, 7, 8, 9, 1000}) {
+    const Surface surface = RandomSurface(triangles);
+    const std::vector<TrianglePacket> packets = PackTriangles(surface.triangles);
+    const auto sum = [&] { return SumTriangles(packets, 0.3, surface.x.data(), surface.v.data()); };
+    const ChamberReading here = sum(), exact = OneByOne(surface, 0.3);
+    EXPECT_NEAR(here.volume, exact.volume, 1e-13 * triangles);
+    EXPECT_NEAR(here.flow, exact.flow, 1e-13 * triangles);
+    OnEveryTarget([&] {
+      EXPECT_EQ(sum().volume, here.volume);
+      EXPECT_EQ(sum().flow, here.flow);
+      EXPECT_EQ(SumTriangles(packets, 0.3, surface.x.data()).volume, here.volume);
+    });
+  }
+}
+
+TEST(SumTriangles, OfNoneIsNothing) { EXPECT_EQ(SumTriangles(PackTriangles(Triangles(3, 0)), 1, nullptr).volume, 0); }
 
 // Where the rim stays, the push along the normals is minus the gradient of -p V + (V - V0)^2/(2 C).
 TEST(PressureOnADome, HasAnEnergyWhereTheRimIsHeld) {
