@@ -8,9 +8,10 @@
 
 namespace phrenic {
 
-// Of one body, by the instant alone, for elements, which do not see the model while they act. Refers to the body's mesh
-// and ride: for the model's own elements, once all its bodies and motions are there. Immutable; any number of threads
-// may call.
+// Of one body, by the instant alone, for elements, which do not see the model while they act; what is seen and exported
+// is placed by the same. Refers to the model's bodies, rides and points at rest, which stay where they are when it is
+// moved: for the model's own elements, once all its bodies and motions are there. Immutable; any number of threads may
+// call.
 class BodyPoints {
  public:
   BodyPoints(const Model& model, int body);
@@ -24,6 +25,8 @@ class BodyPoints {
   Moving Locate(const Instant& at) const;
   // The same for x alone, at half the price.
   ConstPoints Positions(const Instant& at) const;
+  // Into memory of one's own.
+  void Place(const Instant& at, MutablePoints x) const;
 
   const Points& rest() const { return *rest_; }  // [m]
   // Place of its first vertex among the simulated ones; -1 where it is not simulated.
@@ -31,13 +34,14 @@ class BodyPoints {
 
  private:
   template <bool kVelocities>
-  Moving Place(const Instant& at) const;
+  void Follow(const Instant& at, MutablePoints x, MutablePoints v) const;
 
-  const Points* rest_;  // of the model, whose bodies stay where they are when it is moved
+  const Points* rest_;
   int first_vertex_ = -1;
   int pose_ = -1;
-  std::span<const RideShare> shares_;  // of the model
-  Points carriers_;                    // simulated carriers at rest, one a share [m]
+  std::span<const RideShare> shares_;
+  std::span<const TriangleShare> triangles_;
+  Eigen::Map<const Points> carriers_;  // the simulated vertices at rest [m]
 };
 
 }  // namespace phrenic

@@ -1,9 +1,11 @@
 // The laws that every measure keeps. A new measure joins with one line in kMeasures.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
+#include "server/mesh/topology.h"
 #include "tests/compile_text.h"
 #include "tests/contract/allocations.h"
 
@@ -22,16 +24,18 @@ const MeasureCase kMeasures[] = {
     {"volume", "volume { surface { bodies: 'ball' } }", "m^3", 8, false},
     {"volume_of_a_driven_body", "volume { surface { bodies: 'piston' } }", "m^3", 8, false},
     {"volume_of_a_riding_body", "volume { surface { bodies: 'passenger' } }", "m^3", 8, false},
+    {"volume_of_a_mapped_body", "volume { surface { bodies: 'skin' } }", "m^3", 0, false},
     {"volume_of_two", "volume { surface { bodies: ['ball', 'piston'] } }", "m^3", 8, false},
     {"volume_below", "volume { surface { bodies: 'sheet' } plane { normal { x: 1 z: 2 } } }", "m^3", 8, true},
     {"volume_of_one_face", "volume { surface { bodies: 'ball' facing { z: 1 } } plane {} }", "m^3", 8, true},
     {"volume_from_rest", "volume { surface { bodies: 'ball' } from_rest: true }", "m^3", 0, false},
     {"flow", "flow { surface { bodies: 'ball' } }", "m^3/s", 8, false},
-    {"flow_of_several", "flow { surface { bodies: ['ball', 'piston', 'passenger'] } }", "m^3/s", 8, false},
+    {"flow_of_several", "flow { surface { bodies: ['ball', 'piston', 'passenger', 'skin'] } }", "m^3/s", 0, false},
     {"kinetic_energy", "kinetic_energy { bodies: ['ball', 'sheet'] }", "J", 4, false},
     {"elastic_energy", "elastic_energy {}", "J", 0, false},
     {"highest", "highest { body: 'ball' direction { x: 1 z: 3 } }", "m", 2, true},
     {"highest_of_a_driven_body", "highest { body: 'piston' }", "m", 2, true},
+    {"highest_of_a_mapped_body", "highest { body: 'skin' }", "m", 0, true},
     {"highest_from_rest", "highest { body: 'ball' from_rest: true }", "m", 0, true},
     {"force_output", "force_output { force: 'gas' output: 'volume' }", "m^3", 8, false},
 };
@@ -47,6 +51,8 @@ const char kScene[] =
     "x: 2 } "
     "radii { x: 0.5 y: 0.5 z: 0.5 } divisions: 2 } } motions { ride { bodies: 'rider' carriers: ['ball', 'piston'] } } "
     "motions { ride { bodies: 'passenger' carriers: 'piston' } } "
+    "bodies { name: 'skin' role: ROLE_SEEN ellipsoid { radii { x: 1.2 y: 1.2 z: 2.2 } divisions: 4 } } "
+    "motions { ride { bodies: 'skin' carriers: 'ball' mode: RIDE_MODE_TRIANGLES } } "
     "forces { springs { bodies: 'ball' } } "
     "forces { name: 'gas' pressure { surface { bodies: 'ball' } pressure: 3 } } ";
 
@@ -62,6 +68,24 @@ State Ahead(const State& state, double dt) {
   return ahead;
 }
 
+void Shake(State& state) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> shift(-0.1, 0.1);
+  for (double& value : state.x.reshaped()) value += shift(random);
+  for (double& value : state.v.reshaped()) value = shift(random);
+  Pose& pose = state.poses.front();
+  pose.rotation = Eigen::AngleAxisd(0.3, Eigen::Vector3d(1, 2, -1).normalized());
+  pose.translation = {0.1, -0.2, 0.3};
+  pose.angular_velocity = {0.5, -0.4, 0.3};
+  pose.velocity = {-0.2, 0.1, 0.4};
+}
+
+int IndexOf(const Model& model, const std::string& body) {
+  const auto found =
+      std::find_if(model.bodies.begin(), model.bodies.end(), [&](const BodyModel& of) { return of.name == body; });
+  return static_cast<int>(found - model.bodies.begin());
+}
+
 class MeasureContract : public testing::TestWithParam<MeasureCase> {
  protected:
   void SetUp() override {
@@ -73,15 +97,7 @@ class MeasureContract : public testing::TestWithParam<MeasureCase> {
 
   static State Somewhere(const Model& model) {
     State state = model.InitialState();
-    std::mt19937 random(7);
-    std::uniform_real_distribution<double> shift(-0.1, 0.1);
-    for (double& value : state.x.reshaped()) value += shift(random);
-    for (double& value : state.v.reshaped()) value = shift(random);
-    Pose& pose = state.poses.front();
-    pose.rotation = Eigen::AngleAxisd(0.3, Eigen::Vector3d(1, 2, -1).normalized());
-    pose.translation = {0.1, -0.2, 0.3};
-    pose.angular_velocity = {0.5, -0.4, 0.3};
-    pose.velocity = {-0.2, 0.1, 0.4};
+    Shake(state);
     return state;
   }
   static double ValueAt(const Model& model, const State& state) {
@@ -153,12 +169,32 @@ TEST_P(MeasureContract, AllocatesNothing) {
 INSTANTIATE_TEST_SUITE_P(Measures, MeasureContract, testing::ValuesIn(kMeasures),
                          [](const auto& test) { return std::string(test.param.name); });
 
+// On every kind of body, what is measured is what is seen.
+TEST(VolumeContract, IsThatOfTheSurfaceWherePeopleSeeIt) {
+  for (const std::string body : {"ball", "piston", "rider", "passenger", "skin"}) {
+    const auto model =
+        CompileText(std::string(kScene) + "measures { name: 'v' volume { surface { bodies: '" + body + "' } } }");
+    ASSERT_NE(model, nullptr);
+    State state = model->InitialState();
+    Shake(state);
+    const int index = IndexOf(*model, body);
+    const Mesh& mesh = model->bodies[index].mesh;
+    Points seen(3, mesh.vertices.cols());
+    PlaceBody(*model, state, index, seen);
+    EXPECT_GT((seen - mesh.vertices).cwiseAbs().maxCoeff(), 0.01) << body;
+    const double measured = model->measures.front()->Value(MakeInstant(*model, model->parameters, state));
+    EXPECT_NEAR(measured, SignedVolume(seen, mesh.triangles), 1e-12) << body;
+  }
+}
+
 // On every kind of body, closed and open: flow is the derivative of the volume of the same surface.
 TEST(FlowContract, IsTheRateOfTheVolume) {
-  const char* const surfaces[] = {"surface { bodies: 'ball' }", "surface { bodies: 'piston' }",
+  const char* const surfaces[] = {"surface { bodies: 'ball' }",
+                                  "surface { bodies: 'piston' }",
                                   "surface { bodies: 'rider' }",
+                                  "surface { bodies: 'skin' }",
                                   "surface { bodies: 'sheet' } plane { point { x: 1 } normal { x: 1 z: 2 } }",
-                                  "surface { bodies: ['ball', 'piston', 'rider'] facing { z: 1 } }"};
+                                  "surface { bodies: ['ball', 'piston', 'rider', 'skin'] facing { z: 1 } }"};
   for (const std::string surface : surfaces) {
     const auto model = CompileText(std::string(kScene) + "measures { name: 'v' volume { " + surface +
                                    " } } measures { name: 'f' flow { " + surface + " } }");
