@@ -78,3 +78,42 @@ test("BackToTheStartIsShownAtOnce", () => {
   frames.advance(1080, false);
   expect(frames.moment!.time).toBe(0);
 });
+
+/** Two in step: of the first, frames up to 1.4 s have come, of the second up to 1.1 s, all just before 1400 ms. */
+function pair(): [Frames, Frames] {
+  const [ahead, behind] = [watched(), watched()];
+  ahead.goInStepWith(behind);
+  for (const time of [1, 1.1, 1.2, 1.3, 1.4]) ahead.receive(frameAt(50_000 + 1000 * time, time), 1000 * time);
+  for (const time of [1, 1.1]) behind.receive(frameAt(50_000 + 1000 * time, time), 1000 * time);
+  return [ahead, behind];
+}
+
+test("OfTwoInStepNeitherIsShownAheadOfTheOther", () => {
+  const [ahead, behind] = pair();
+  expect(ahead.present(1400)?.time).toBeCloseTo(1.1, 9);
+  expect(behind.present(1400)?.time).toBeCloseTo(1.1, 9);
+  expect(ahead.frame?.time).toBeCloseTo(1.4, 9);
+  ahead.advance(1400, true);
+  expect(ahead.moment?.time).toBeCloseTo(1.1, 9);
+  expect(ahead.moment?.arrays.positions[0]).toBeCloseTo(1.1, 6);
+  behind.receive(frameAt(51_420, 1.3), 1420);
+  ahead.advance(1420, true);
+  expect(ahead.moment?.time).toBeCloseTo(1.3, 9);
+});
+
+test("APictureThatNothingComesToIsNotWaitedFor", () => {
+  const [ahead, behind] = pair();
+  ahead.receive(frameAt(52_000, 1.5), 3200);
+  expect(ahead.present(3200)?.time).toBeCloseTo(1.5, 9);
+  // Nor does the picture go back to it when frames come again.
+  ahead.advance(3200, true);
+  behind.receive(frameAt(52_200, 1.2), 3201);
+  ahead.advance(3201, true);
+  expect(ahead.moment?.time).toBeCloseTo(1.5, 9);
+});
+
+test("APictureFarBehindIsNotWaitedFor", () => {
+  const [ahead] = pair();
+  ahead.receive(frameAt(51_500, 3.2), 1500);
+  expect(ahead.present(1500)?.time).toBeCloseTo(3.2, 9);
+});

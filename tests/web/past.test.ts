@@ -48,3 +48,9 @@ test("ANewRunHasNoPast", () => {
   expect(frames.span).toEqual({ start: 0, end: 0 });
   expect(frames.lookedAt).toBeUndefined();
 });
+
+test("TheNearestFrameIsOnEitherSide", () => {
+  const frames = past(0, 1, 2);
+  expect([-3, 0.4, 0.6, 1, 1.7, 9].map((time) => frames.nearest(time)?.time)).toEqual([0, 0, 1, 1, 2, 2]);
+  expect(past().nearest(1)).toBeUndefined();
+});

@@ -168,9 +168,9 @@ export class App {
   private openBeside(): Beside | undefined {
     const { sessionId, beside, open } = this.subject;
     if (beside === undefined || beside === sessionId) return undefined;
-    const { viewer, tools, looks, controller, presets } = this;
+    const { viewer, frames, tools, looks, controller, presets } = this;
     const mayChange = () => refusalWords(this.standing.roles.value) === "";
-    const first = { viewer, tools, looks, controller, presets, around: this.around(), mayChange };
+    const first = { viewer, frames, tools, looks, controller, presets, around: this.around(), mayChange };
     return new Beside(this.api, beside, first, this.clock, {
       swap: () => open(`?${new URLSearchParams({ session: beside, beside: sessionId })}`),
       close: () => open(`?${new URLSearchParams({ session: sessionId })}`),
@@ -332,7 +332,7 @@ export class App {
     const now = this.clock.now();
     const session = this.controller.session.value;
     const rate = this.frames.rate(now);
-    const frame = this.frames.lookedAt ?? this.frames.frame;
+    const frame = this.frames.lookedAt ?? this.frames.present(now);
     const status = { link: this.link.value, session, frame, rate, now };
     this.pill.show(status);
     this.viewers.show(status);
@@ -342,7 +342,7 @@ export class App {
     // Words that take another line make the dock higher.
     if (place("dock").offsetTop !== this.dockTop) this.resize();
     this.dockTop = place("dock").offsetTop;
-    this.beside?.tell(status.frame);
+    this.beside?.tell(status.frame, now);
     this.measures.show(status.frame);
     this.comparison.show(status.frame?.time);
     this.tools.show();

@@ -5,7 +5,7 @@ import { Connection, type Sink } from "./connection";
 import { Controller } from "./controller";
 import { forceOf, needsExact } from "./fields";
 import { Forces, type Wanted } from "./forces";
-import { Frames } from "./frames";
+import { Frames, longestWait } from "./frames";
 import type { Frame } from "./gen/phrenic/v1/frames_pb";
 import { type Preset } from "./gen/phrenic/v1/scene_pb";
 import { SessionState } from "./gen/phrenic/v1/session_pb";
@@ -19,13 +19,14 @@ import type { Signal } from "./signal";
 import { Annotations } from "./viewer/annotations";
 import { type Surroundings, Viewer } from "./viewer/viewer";
 
-/** Two that play and are between these apart [s] are brought together, after so many looks. */
-const [leastApart, mostApart] = [0.2, 2];
+/** Two that play and are this far apart or more [s] are brought together, after so many looks. */
+const leastApart = 0.2;
 const looksApart = 10;
 
 /** What the picture beside shares with the first. */
 export interface First {
   viewer: Viewer;
+  frames: Frames;
   tools: SceneTools;
   looks: Looks;
   controller: Controller;
@@ -63,6 +64,7 @@ export class Beside {
     const canvas = make("canvas", { role: "img", ariaLabel: `The session ${sessionId}, in three dimensions` });
     this.controller = new Controller(api, sessionId, clock);
     first.controller.companion = this.controller;
+    first.frames.goInStepWith(this.frames);
     this.heads = new PaneHeads([first.controller, this.controller], first.presets, actions);
     this.viewer = new Viewer(canvas, this.around());
     this.annotations = new Annotations(this.viewer);
@@ -85,11 +87,11 @@ export class Beside {
     this.viewer.resize();
   }
 
-  /** What both show by now. */
-  tell(first: Frame | undefined): void {
-    const frame = this.frames.lookedAt ?? this.frames.frame;
-    this.heads.tell([first, frame]);
-    this.keepTogether(Math.abs((first?.time ?? 0) - (frame?.time ?? 0)));
+  /** What both show at `now` [ms]. */
+  tell(first: Frame | undefined, now: number): void {
+    this.heads.tell([first, this.frames.lookedAt ?? this.frames.present(now)]);
+    const [here, there] = [this.first.frames, this.frames].map(({ frame }) => frame?.time ?? 0);
+    this.keepTogether(Math.abs(here - there));
   }
 
   /** Shows an earlier moment as the first does, or the present. */
@@ -199,7 +201,7 @@ export class Beside {
   private keepTogether(apart: number): void {
     const { controller, mayChange } = this.first;
     const playing = [controller, this.controller].every(({ session }) => session.value?.state === SessionState.PLAYING);
-    this.apart = playing && mayChange() && apart > leastApart && apart < mostApart ? this.apart + 1 : 0;
+    this.apart = playing && mayChange() && apart > leastApart && apart < longestWait ? this.apart + 1 : 0;
     if (this.apart < looksApart) return;
     this.apart = 0;
     void controller.gather();

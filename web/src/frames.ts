@@ -20,6 +20,10 @@ export interface FrameRate {
 /** Measurements of the server's clock that are kept: the quickest of them counts. */
 const mostMeasurements = 30;
 
+/** How far behind a picture may be to be waited for [simulated s], and how long ago its last frame [ms]. */
+export const longestWait = 2;
+const longestQuiet = 2000;
+
 /** A frame, decoded when somebody draws it. */
 interface Taken {
   frame: Frame;
@@ -43,8 +47,16 @@ export class Frames {
   private changed = false;
   private smooth = false;
   private decoder = new FrameDecoder([]);
+  private arrived = -Infinity;
   private arrivals: number[] = [];
   private clock: { offset: number; tripTime: number }[] = [];
+  private companion: Frames | undefined;
+
+  /** Both show one moment from now on: frames of one may come later than those of the other. */
+  goInStepWith(other: Frames): void {
+    this.companion = other;
+    other.companion = this;
+  }
 
   /** Forgets everything: another scene, or another server. */
   start(bodies: Body[]): void {
@@ -63,6 +75,7 @@ export class Frames {
     // Another run of the session does not go on from the one before.
     if (before !== undefined && frame.time < before.time) this.playout.clear();
     this.playout.receive(this.newest, milliseconds(frame.unixNanos), now);
+    this.arrived = now;
     this.arrivals.push(now);
     this.forget(now);
   }
@@ -81,6 +94,20 @@ export class Frames {
 
   get frame(): Frame | undefined {
     return this.newest?.frame;
+  }
+
+  /** The frame of the present that is shown at `now` [ms]: the newest, or what the picture beside has come to. */
+  present(now: number): Frame | undefined {
+    const [newest, there] = [this.frame, this.companion?.coming(now)];
+    if (newest === undefined || there === undefined) return newest;
+    const ahead = newest.time - there.time;
+    if (ahead <= 0 || ahead > longestWait) return newest;
+    return this.past.nearest(Math.max(there.time, this.shown?.time ?? 0));
+  }
+
+  /** The newest frame, where some have come of late. */
+  private coming(now: number): Frame | undefined {
+    return now - this.arrived < longestQuiet ? this.frame : undefined;
   }
 
   /** From the oldest frame that can be looked back to, to the newest [s]. */
@@ -132,8 +159,10 @@ export class Frames {
     const { lookedAt } = this.past;
     if (lookedAt !== undefined) return this.once(lookedAt);
     const { before, after, part } = this.smooth ? between : { before: this.newest, after: this.newest, part: 0 };
-    const arrays = blend(this.decode(before), this.decode(after), part);
-    return { time: before.frame.time + part * (after.frame.time - before.frame.time), arrays };
+    const time = before.frame.time + part * (after.frame.time - before.frame.time);
+    const present = this.present(now);
+    if (present !== undefined && present.time < time) return this.once(present);
+    return { time, arrays: blend(this.decode(before), this.decode(after), part) };
   }
 
   /** A frame that is looked at again is decoded again. */

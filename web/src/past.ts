@@ -35,6 +35,14 @@ export class Past {
     return this.frames[this.place()];
   }
 
+  /** The frame nearest to a time [s]. */
+  nearest(time: number): Frame | undefined {
+    const away = ({ time: each }: Frame) => Math.abs(each - time);
+    const after = this.frames.findIndex((each) => each.time >= time);
+    const [a, b] = [this.frames.at(after - 1), this.frames.at(after)];
+    return a !== undefined && b !== undefined && after > 0 && away(a) < away(b) ? a : b;
+  }
+
   /** The time of the frame before, or after, the one that is looked at; nothing at the newest. */
   neighbour(by: -1 | 1): number | undefined {
     const from = this.back === undefined ? this.frames.length - 1 : this.place();
