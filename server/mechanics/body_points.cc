@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 #include <vector>
 
+#include "server/mechanics/carry_kernel.h"
+
 namespace phrenic {
 namespace {
 
@@ -12,62 +14,26 @@ Eigen::Map<Points> Fit(std::vector<double>& memory, const Points& like) {
   return {memory.data(), 3, like.cols()};
 }
 
-// a x . [1/s] as a matrix
-Eigen::Matrix3d Cross(const Eigen::Vector3d& a) {
-  return Eigen::Matrix3d{{0, -a.z(), a.y()}, {a.z(), 0, -a.x()}, {-a.y(), a.x(), 0}};
-}
-
-// What a pose adds to a point of its rest: displacement [m] and velocity [m/s].
-struct Affine {
-  Eigen::Matrix3d linear, rate;
-  Eigen::Vector3d offset, velocity;
-
-  Affine() = default;
-  explicit Affine(const Pose& pose) : offset(pose.translation), velocity(pose.velocity) {
-    const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
-    linear = rotation - Eigen::Matrix3d::Identity();
-    rate = Cross(pose.angular_velocity) * rotation;
-  }
-};
-
 // Once a call, not once a vertex.
-const std::vector<Affine>& ByPose(const Instant& at) {
-  thread_local std::vector<Affine> affines;
-  affines.resize(at.poses.size());
-  for (size_t i = 0; i < affines.size(); ++i) affines[i] = Affine(at.poses[i]);
-  return affines;
+std::span<const PoseColumns> ByPose(const Instant& at) {
+  thread_local std::vector<PoseColumns> poses;
+  poses.clear();
+  for (const Pose& pose : at.poses) poses.emplace_back(pose);
+  return poses;
 }
 
-// 3 x vertices: x [m], and v [m/s] where kVelocities.
+// x [m], and v [m/s] where kVelocities.
 struct Placed {
   MutablePoints x, v;
 };
 
 template <bool kVelocities>
-void Carry(const Affine& pose, double weight, const Points& rest, Eigen::Index i, Placed& out) {
-  const Eigen::Vector3d moved = pose.linear * rest.col(i) + pose.offset;
-  out.x.col(i) += weight * moved;
-  if constexpr (!kVelocities) return;
-  const Eigen::Vector3d velocity = pose.rate * rest.col(i) + pose.velocity;
-  out.v.col(i) += weight * velocity;
-}
-
-template <bool kVelocities>
-void CarryAll(const Affine& pose, const Points& rest, Placed& out) {
-  for (Eigen::Index i = 0; i < rest.cols(); ++i) Carry<kVelocities>(pose, 1, rest, i, out);
-}
-
-template <bool kVelocities>
-void CarryShares(std::span<const RideShare> shares, const Points& rest, const ConstPoints& carriers, const Instant& at,
-                 Placed& out) {
-  const std::vector<Affine>& by_pose = ByPose(at);
-  for (const auto& [vertex, pose, carrier, weight] : shares) {
-    if (pose >= 0) {
-      Carry<kVelocities>(by_pose[pose], weight, rest, vertex, out);
-      continue;
-    }
-    out.x.col(vertex) += weight * (at.x.col(carrier) - carriers.col(carrier));
-    if (kVelocities) out.v.col(vertex) += weight * at.v.col(carrier);
+void CarryAll(const Pose& pose, const Points& rest, Placed& out) {
+  const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
+  for (Eigen::Index i = 0; i < rest.cols(); ++i) {
+    const Eigen::Vector3d turned = rotation * rest.col(i);
+    out.x.col(i) = turned + pose.translation;
+    if (kVelocities) out.v.col(i) = pose.velocity + pose.angular_velocity.cross(turned);
   }
 }
 
@@ -109,7 +75,7 @@ BodyPoints::BodyPoints(const Model& model, int body)
     : rest_(&model.bodies[body].mesh.vertices),
       first_vertex_(model.bodies[body].first_vertex),
       pose_(model.bodies[body].pose),
-      carriers_(model.rest.data(), 3, model.rest.cols()) {
+      carriers_(model.rest.data()) {
   const int ride = model.bodies[body].ride;
   if (ride < 0) return;
   shares_ = model.rides[ride].shares;
@@ -121,10 +87,11 @@ template <bool kVelocities>
 void BodyPoints::Follow(const Instant& at, MutablePoints x, MutablePoints v) const {
   Placed out{x, v};
   if (!triangles_.empty()) return PlaceOnTriangles<kVelocities>(triangles_, at, out);
+  if (pose_ >= 0) return CarryAll<kVelocities>(at.poses[pose_], *rest_, out);
   x = *rest_;
   if (kVelocities) v.setZero();
-  if (pose_ >= 0) return CarryAll<kVelocities>(Affine(at.poses[pose_]), *rest_, out);
-  CarryShares<kVelocities>(shares_, *rest_, carriers_, at, out);
+  const CarriersNow carriers = {ByPose(at), carriers_, at.x.data(), at.v.data()};
+  CarryShares(shares_, carriers, rest_->data(), x.data(), kVelocities ? v.data() : nullptr);
 }
 
 void BodyPoints::Place(const Instant& at, MutablePoints x) const {

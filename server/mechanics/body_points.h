@@ -41,7 +41,7 @@ class BodyPoints {
   int pose_ = -1;
   std::span<const RideShare> shares_;
   std::span<const TriangleShare> triangles_;
-  Eigen::Map<const Points> carriers_;  // the simulated vertices at rest [m]
+  const double* carriers_;  // the simulated vertices at rest [m]
 };
 
 }  // namespace phrenic

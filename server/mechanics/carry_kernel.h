@@ -1,0 +1,33 @@
+// Where carriers (ride.h) take a body's vertices, position and velocity in one vector: written once with Google
+// Highway, the machine's best instruction set chosen at run time, with the same bits on all of them.
+#ifndef PHRENIC_SERVER_MECHANICS_CARRY_KERNEL_H_
+#define PHRENIC_SERVER_MECHANICS_CARRY_KERNEL_H_
+
+#include <span>
+
+#include "server/mechanics/ride.h"
+
+namespace phrenic {
+
+// What a pose does to a point X of its rest, (R - 1) X + t and its rate (w x R) X + v: column by column of the
+// matrices, and of what is added, the displacement [m] in the first half and the velocity [m/s] in the second.
+struct alignas(64) PoseColumns {
+  explicit PoseColumns(const Pose& pose);
+  double column[4][8];
+};
+
+// What shares are of. Arrays are 3 x n, point after point.
+struct CarriersNow {
+  std::span<const PoseColumns> poses;
+  const double* rest;   // simulated vertices [m]
+  const double *x, *v;  // the same now [m], [m/s]
+};
+
+// x = rest + sum of what each of the vertex' shares gives, and v the sum of their velocities; of vertices that have
+// shares alone. `rest`, x [m] and v [m/s] are those of the riding body. Without v, positions alone.
+void CarryShares(std::span<const RideShare> shares, const CarriersNow& carriers, const double* rest, double* x,
+                 double* v = nullptr);
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_SERVER_MECHANICS_CARRY_KERNEL_H_
