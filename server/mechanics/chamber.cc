@@ -53,9 +53,9 @@ Eigen::Matrix3d AxesOf(const Vector& normal) {
 
 }  // namespace
 
-const ChamberReading* ChamberReadings::Find(const std::string& key) const {
-  for (const auto& [of, reading] : readings_) {
-    if (of == key) return &reading;
+const ChamberReading* ChamberReadings::Find(const std::string& key, What what) const {
+  for (const Kept& kept : kept_) {
+    if (kept.key == key && kept.what >= what) return &kept.reading;
   }
   return nullptr;
 }
@@ -111,29 +111,28 @@ double Chamber::VolumeAtRest() const {
   return sum;
 }
 
-double Chamber::Volume(const Instant& at) const {
-  if (at.readings != nullptr) return Read(at).volume;
-  double sum = 0;
-  for (const Part& part : parts_) {
-    const ConstPoints x = TurnedPositions(axes_, part.points.Positions(at));
-    sum += part.side * SumTriangles(part.packets, height_, x.data()).volume;
-  }
-  return sum;
-}
-
-ChamberReading Chamber::Read(const Instant& at) const {
-  const ChamberReading* const found = at.readings == nullptr ? nullptr : at.readings->Find(key_);
+ChamberReading Chamber::Sum(ChamberReadings::What what, const Instant& at) const {
+  const ChamberReading* const found = at.readings == nullptr ? nullptr : at.readings->Find(key_, what);
   if (found != nullptr) return *found;
   ChamberReading sum;
   for (const Part& part : parts_) {
-    const BodyPoints::Moving body = TurnedMoving(axes_, part.points.Locate(at));
-    const ChamberReading reading = SumTriangles(part.packets, height_, body.x.data(), body.v.data());
+    ChamberReading reading;
+    if (what == ChamberReadings::What::kVolume) {
+      reading = SumTriangles(part.packets, height_, TurnedPositions(axes_, part.points.Positions(at)).data());
+    } else {
+      const BodyPoints::Moving body = TurnedMoving(axes_, part.points.Locate(at));
+      reading = SumTriangles(part.packets, height_, body.x.data(), body.v.data());
+    }
     sum.volume += part.side * reading.volume;
     sum.flow += part.side * reading.flow;
   }
-  if (at.readings != nullptr) at.readings->Add(key_, sum);
+  if (at.readings != nullptr) at.readings->Add(key_, what, sum);
   return sum;
 }
+
+double Chamber::Volume(const Instant& at) const { return Sum(ChamberReadings::What::kVolume, at).volume; }
+
+ChamberReading Chamber::Read(const Instant& at) const { return Sum(ChamberReadings::What::kFlowToo, at); }
 
 void Chamber::AddAreas(const Instant& at, double scale, MutablePoints f) const {
   for (const Part& part : parts_) {

@@ -4,7 +4,6 @@
 
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "server/mechanics/body_points.h"
@@ -17,12 +16,18 @@ namespace phrenic {
 // For one thread.
 class ChamberReadings {
  public:
-  // Null where the chamber of that key has not been read.
-  const ChamberReading* Find(const std::string& key) const;
-  void Add(const std::string& key, const ChamberReading& reading) { readings_.emplace_back(key, reading); }
+  enum class What { kVolume, kFlowToo };
+  // Null where the chamber of that key has not been read, or less of it.
+  const ChamberReading* Find(const std::string& key, What what) const;
+  void Add(const std::string& key, What what, const ChamberReading& reading) { kept_.push_back({key, what, reading}); }
 
  private:
-  std::vector<std::pair<std::string, ChamberReading>> readings_;
+  struct Kept {
+    std::string key;
+    What what;
+    ChamberReading reading;
+  };
+  std::vector<Kept> kept_;
 };
 
 // V = integral of h n.dA over the triangles [m^3], h the height over a plane with the unit normal n; by the divergence
@@ -39,8 +44,8 @@ class Chamber {
   // Every patch is there. INVALID_ARGUMENT where the normal has no direction.
   absl::Status SetPlane(const v1::Plane* scene, std::string_view path);
 
-  double Volume(const Instant& at) const;  // [m^3]
-  // Volume and flow in one pass; of equal chambers once where the instant keeps readings.
+  // Of equal chambers once where the instant keeps readings. Volume and flow in one pass, for twice the price [m^3].
+  double Volume(const Instant& at) const;
   ChamberReading Read(const Instant& at) const;
   double rest_volume() const { return rest_volume_; }
   // f += scale a, 3 x simulated vertices.
@@ -71,6 +76,7 @@ class Chamber {
     double side;
   };
   double VolumeAtRest() const;
+  ChamberReading Sum(ChamberReadings::What what, const Instant& at) const;
 
   std::string key_;  // the same for chambers that are the same
   std::vector<Part> parts_;

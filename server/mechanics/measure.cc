@@ -23,6 +23,7 @@ absl::Status AddMeasures(Draft& draft) {
   return absl::OkStatus();
 }
 
+// Volumes last: where a flow has been worked out, the volume is known.
 MeasureReadings ReadMeasures(const Model& model, const Instant& at) {
   MeasureReadings readings;
   ChamberReadings shared;
@@ -31,8 +32,12 @@ MeasureReadings ReadMeasures(const Model& model, const Instant& at) {
   for (const auto& measure : model.measures) {
     v1::MeasureReading& reading = *readings.Add();
     reading.set_name(measure->name());
-    reading.set_value(measure->Value(moment));
     reading.set_unit(measure->unit());
+  }
+  for (const bool volumes : {false, true}) {
+    for (int i = 0; i < readings.size(); ++i) {
+      if (model.scene.measures(i).has_volume() == volumes) readings[i].set_value(model.measures[i]->Value(moment));
+    }
   }
   return readings;
 }

@@ -169,6 +169,29 @@ TEST_P(MeasureContract, AllocatesNothing) {
 INSTANTIATE_TEST_SUITE_P(Measures, MeasureContract, testing::ValuesIn(kMeasures),
                          [](const auto& test) { return std::string(test.param.name); });
 
+// What measures share changes none of them, whichever comes first.
+TEST(ReadMeasuresContract, TellsInTheScenesOrderWhatEachTellsAlone) {
+  const char* const kinds[] = {"volume { surface { bodies: 'ball' } }",
+                               "flow { surface { bodies: 'ball' } }",
+                               "volume { surface { bodies: 'ball' } from_rest: true }",
+                               "force_output { force: 'gas' output: 'volume' }",
+                               "volume { surface { bodies: 'rider' } }",
+                               "flow { surface { bodies: 'skin' } }"};
+  std::string text = kScene;
+  for (int i = 0; i < 12; ++i) text += "measures { name: '" + std::to_string(i) + "' " + kinds[5 * i % 6] + " } ";
+  const auto model = CompileText(text);
+  ASSERT_NE(model, nullptr);
+  State state = model->InitialState();
+  Shake(state);
+  const Instant at = MakeInstant(*model, model->parameters, state);
+  const MeasureReadings readings = ReadMeasures(*model, at);
+  ASSERT_EQ(readings.size(), 12);
+  for (int i = 0; i < readings.size(); ++i) {
+    EXPECT_EQ(readings[i].name(), std::to_string(i));
+    EXPECT_EQ(readings[i].value(), model->measures[i]->Value(at)) << i;
+  }
+}
+
 // On every kind of body, what is measured is what is seen.
 TEST(VolumeContract, IsThatOfTheSurfaceWherePeopleSeeIt) {
   for (const std::string body : {"ball", "piston", "rider", "passenger", "skin"}) {
