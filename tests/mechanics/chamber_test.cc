@@ -28,23 +28,23 @@ Points RandomPoints(int columns, int seed) {
   return Points::NullaryExpr(3, columns, [&] { return value(random); });
 }
 
-struct Surface {
+struct LooseTriangles {
   Triangles triangles;
   Points x, v;
 };
 
-Surface RandomSurface(int triangles) {
-  constexpr int kVertices = 40;
+LooseTriangles RandomTriangles(int triangles) {
+  constexpr int kCorners = 40;
   std::mt19937 random(triangles);
-  std::uniform_int_distribution<int> vertex(0, kVertices - 1);
-  Surface made{Triangles::NullaryExpr(3, triangles, [&] { return vertex(random); }), RandomPoints(kVertices, 1),
-               RandomPoints(kVertices, 2)};
-  made.triangles(0, triangles - 1) = kVertices - 1;  // nothing follows it in memory
+  std::uniform_int_distribution<int> vertex(0, kCorners - 1);
+  LooseTriangles made{Triangles::NullaryExpr(3, triangles, [&] { return vertex(random); }), RandomPoints(kCorners, 1),
+                      RandomPoints(kCorners, 2)};
+  made.triangles(0, triangles - 1) = kCorners - 1;  // nothing follows it in memory
   return made;
 }
 
 // Each triangle's prism down to the plane, and its rate, one by one.
-ChamberReading OneByOne(const Surface& of, double height) {
+ChamberReading OneByOne(const LooseTriangles& of, double height) {
   ChamberReading sum;
   for (const auto& at : of.triangles.colwise()) {
     const Eigen::Vector3d a = of.x.col(at[0]), b = of.x.col(at[1]), c = of.x.col(at[2]);
@@ -59,7 +59,7 @@ ChamberReading OneByOne(const Surface& of, double height) {
 
 TEST(SumTriangles, GivesWhatTheyGiveOneByOneWithTheSameBitsOnEveryInstructionSet) {
   for (const int triangles : {1, 7, 8, 9, 1000}) {
-    const Surface surface = RandomSurface(triangles);
+    const LooseTriangles surface = RandomTriangles(triangles);
     const std::vector<TrianglePacket> packets = PackTriangles(surface.triangles);
     const auto sum = [&] { return SumTriangles(packets, 0.3, surface.x.data(), surface.v.data()); };
     const ChamberReading here = sum(), exact = OneByOne(surface, 0.3);
