@@ -18,7 +18,7 @@ struct Riding {
   std::vector<RideShare> shares;
 };
 
-struct Placed {
+struct Moved {
   Points x, v;
 };
 
@@ -44,8 +44,8 @@ Riding RandomRiding() {
   return made;
 }
 
-Placed ByDefinition(const Riding& of) {
-  Placed out{of.rest, Points::Zero(3, kVertices)};
+Moved ByDefinition(const Riding& of) {
+  Moved out{of.rest, Points::Zero(3, kVertices)};
   for (const RideShare& share : of.shares) {
     const Eigen::Vector3d rest = of.rest.col(share.vertex);
     if (share.pose >= 0) {
@@ -60,8 +60,8 @@ Placed ByDefinition(const Riding& of) {
   return out;
 }
 
-Placed Ours(const Riding& of, bool velocities) {
-  Placed out{of.rest, Points::Zero(3, kVertices)};
+Moved Ours(const Riding& of, bool velocities) {
+  Moved out{of.rest, Points::Zero(3, kVertices)};
   const CarriersNow carriers = {of.columns, of.rest_of_carriers.data(), of.x.data(), of.v.data()};
   CarryShares(of.shares, carriers, of.rest.data(), out.x.data(), velocities ? out.v.data() : nullptr);
   return out;
@@ -69,7 +69,7 @@ Placed Ours(const Riding& of, bool velocities) {
 
 TEST(CarryShares, MovesEachVertexByItsSharesWithTheSameBitsOnEveryInstructionSet) {
   const Riding riding = RandomRiding();
-  const Placed exact = ByDefinition(riding), here = Ours(riding, true);
+  const Moved exact = ByDefinition(riding), here = Ours(riding, true);
   EXPECT_LT((here.x - exact.x).cwiseAbs().maxCoeff(), 1e-14);
   EXPECT_LT((here.v - exact.v).cwiseAbs().maxCoeff(), 1e-14);
   OnEveryTarget([&] {
@@ -80,7 +80,7 @@ TEST(CarryShares, MovesEachVertexByItsSharesWithTheSameBitsOnEveryInstructionSet
 
 TEST(CarryShares, PutsPositionsAloneWhereTheyAreWithVelocities) {
   const Riding riding = RandomRiding();
-  const Placed both = Ours(riding, true);
+  const Moved both = Ours(riding, true);
   OnEveryTarget([&] {
     EXPECT_EQ(Ours(riding, false).x, both.x);
     EXPECT_TRUE(Ours(riding, false).v.isZero(0));
