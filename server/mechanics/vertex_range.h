@@ -14,9 +14,9 @@ struct VertexRange {
   Eigen::Index first = 0, end = 0;
 };
 
-// Ranges begin, and but for the last one end, at a multiple of this. A block's forces, positions and velocities fit
-// into a core's nearest cache.
-inline constexpr Eigen::Index kVertexBlock = 512;
+// Ranges begin, and but for the last one end, at a multiple of this. A block's forces, positions and velocities, before
+// and after a step, fit into a core's nearest cache beside what its springs take.
+inline constexpr Eigen::Index kVertexBlock = 256;
 
 // Calls `work` with the blocks of a range, shared out over the threads of a step.
 template <typename Work>

@@ -59,7 +59,7 @@ TEST(ShareOut, RigidLinksToo) {
 
 TEST(ShareOut, SpringsInAnOrderOfTheirOwnToo) {
   const OneThreadAgain again;
-  const int vertices = 60 * kVertexBlock + 3;
+  const int vertices = 120 * kVertexBlock + 3;
   std::mt19937 random(2);
   std::uniform_int_distribution<int> vertex(0, vertices - 1);
   std::vector<Spring> springs;
