@@ -11,10 +11,10 @@ namespace {
 
 class HighestMeasure final : public Measure {
  public:
-  HighestMeasure(std::string name, BodyPoints body, std::vector<int> vertices, const Eigen::Vector3d& direction,
+  HighestMeasure(std::string name, const BodyPoints& body, std::vector<int> vertices, const Eigen::Vector3d& direction,
                  double zero)
       : Measure(std::move(name), "m"),
-        body_(std::move(body)),
+        body_(body),
         vertices_(std::move(vertices)),
         direction_(direction),
         zero_(zero) {}
