@@ -24,6 +24,7 @@ const char kFew[] = "rigid links, few", kMany[] = "rigid links, ten times as man
 const char kCache[] = "triad, 12 MB", kMultiplyAdds[] = "multiply-adds";
 
 double Doubles(double places) { return sizeof(double) * places; }
+double Floats(double places) { return sizeof(float) * places; }
 
 class Bench {
  public:
@@ -78,16 +79,26 @@ class Bench {
     const auto many = static_cast<double>(springs_.size()), vertices = static_cast<double>(x_.cols());
     table.Register({kPlain, [this] { AddPlainSprings(springs_, 1, x_, f_); }, many, "spring", ""});
     // At each end stiffness times length and a place; a vertex' point, and its force read and written.
-    const double bytes = 2 * many * (Doubles(1) + sizeof(int)) + vertices * Doubles(3 + 6);
-    table.Register({kSprings, [this] { rows_.AddForce(1, x_, f_); }, many, "spring", kPlain, bytes, 2 * many * 19});
-    table.Register({"springs, single precision", [this] { single_.AddForce(1, x_, f_); }, many, "spring", kPlain});
-    table.Register({kEuler, [this] { euler_.Step(); }, many, "spring", kPlain});
+    const double ends = 2 * many * (Doubles(1) + sizeof(int)), single_ends = 2 * many * (Floats(1) + sizeof(int));
+    const double points = vertices * Doubles(3 + 6), packed = vertices * Floats(4), flops = 2 * many * 19;
+    table.Register({kSprings, [this] { rows_.AddForce(1, x_, f_); }, many, "spring", kPlain, ends + points, flops});
+    table.Register({"springs, single precision", [this] { single_.AddForce(1, x_, f_); }, many, "spring", kPlain,
+                    single_ends + points + packed});
+    // Position and velocity, read and written, and the mass.
+    table.Register({kEuler, [this] { euler_.Step(); }, many, "spring", kPlain, ends + vertices * Doubles(12 + 1)});
 #ifdef PHRENIC_BULLET
     table.Register({"Bullet's soft body, 1 iteration", [this] { once_.Step(1e-3); }, many, "spring", kEuler});
     table.Register({"Bullet's soft body, 4 iterations", [this] { often_.Step(1e-3); }, many, "spring", kEuler});
 #else
     std::printf("two rows are missing: install libbullet-dev and run cmake again to see Bullet's soft body\n");
 #endif
+  }
+
+  // Of conjugate gradients: at each end of a spring four numbers and a place; of a vertex what Multiply (diagonal, p,
+  // its packed copy, q), Descend (p, q, y and r with the diagonal's factors) and Turn read and write.
+  double IterationBytes() const {
+    const double ends = 2 * static_cast<double>(springs_.size()) * (Floats(4) + sizeof(int));
+    return ends + static_cast<double>(x_.cols()) * Floats((6 + 3 + 4 + 3) + (3 + 6 + 6 + 6 + 6) + (3 + 6 + 4));
   }
 
   void RegisterThorax(Table& table) {
@@ -112,7 +123,7 @@ class Bench {
     };
     table.Register({"finite elements", pull, triangles, "triangle", ""});
     table.Register({absl::StrCat("stiffness and ", Solver::kIterations, " iterations"), [this] { solver_.Solve(); },
-                    vertices, "vertex", ""});
+                    vertices, "vertex", "", Solver::kIterations * IterationBytes()});
     table.Register({"an implicit step of 16.7 ms", [this] { implicit_.Step(); }, vertices, "vertex", ""});
     table.Register({kFew, [this] { few_.Step(); }, Links(few_), "link", ""});
     table.Register({kMany, [this] { many_.Step(); }, Links(many_), "link", kFew});
