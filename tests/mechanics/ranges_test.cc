@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "server/mechanics/advance.h"
-#include "server/mechanics/forces/carry_kernel.h"
+#include "server/mechanics/forces/attachment_kernel.h"
 #include "server/mechanics/vertex_kernel.h"
 #include "tests/compile_text.h"
 #include "tests/mechanics/every_target.h"

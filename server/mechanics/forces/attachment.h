@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "server/mechanics/draft.h"
-#include "server/mechanics/forces/carry_kernel.h"
+#include "server/mechanics/forces/attachment_kernel.h"
 
 namespace phrenic {
 

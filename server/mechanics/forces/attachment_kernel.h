@@ -1,7 +1,7 @@
 // What carriers pull at the vertices that hold on to them (attachment.h), eight at a time: written once with Google
 // Highway, the machine's best instruction set chosen at run time, with the same bits on all of them.
-#ifndef PHRENIC_SERVER_MECHANICS_FORCES_CARRY_KERNEL_H_
-#define PHRENIC_SERVER_MECHANICS_FORCES_CARRY_KERNEL_H_
+#ifndef PHRENIC_SERVER_MECHANICS_FORCES_ATTACHMENT_KERNEL_H_
+#define PHRENIC_SERVER_MECHANICS_FORCES_ATTACHMENT_KERNEL_H_
 
 #include <cstdint>
 #include <vector>
@@ -26,4 +26,4 @@ void AddCarried(const Pose& pose, double scale, const CarriedPacket* first, cons
 
 }  // namespace phrenic
 
-#endif  // PHRENIC_SERVER_MECHANICS_FORCES_CARRY_KERNEL_H_
+#endif  // PHRENIC_SERVER_MECHANICS_FORCES_ATTACHMENT_KERNEL_H_

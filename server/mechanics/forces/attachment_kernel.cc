@@ -1,8 +1,8 @@
-#include "server/mechanics/forces/carry_kernel.h"
+#include "server/mechanics/forces/attachment_kernel.h"
 
 #include "server/mechanics/vector_targets.h"
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "server/mechanics/forces/carry_kernel.cc"
+#define HWY_TARGET_INCLUDE "server/mechanics/forces/attachment_kernel.cc"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
