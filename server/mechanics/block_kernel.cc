@@ -68,6 +68,13 @@ HWY_INLINE Vectors Transposed(const float* from, const Place& place) {
 #endif
 }
 
+// The points of a slice's own rows.
+HWY_INLINE Vectors OwnRows(const Quad* packed, size_t first) {
+  Vectors own;
+  hn::LoadInterleaved4(Tag(), packed[first].at, own.x, own.y, own.z, own.w);
+  return own;
+}
+
 // The points of a column's neighbours.
 HWY_INLINE Vectors Gathered(const Quad* packed, const LanePlaces& rows, size_t first) {
   const std::int32_t* const row = rows.at + first;
@@ -270,14 +277,14 @@ HWY_INLINE Vectors RowSums(const BlockSlices& slices, size_t s, size_t first, co
   return sum;
 }
 
-double MultiplyHere(const BlockSlices& slices, const Lanes* diagonal, const Quad* packed, const Lanes* p, Lanes* q) {
+double MultiplyHere(const BlockSlices& slices, const Lanes* diagonal, const Quad* p, Lanes* q) {
   Sum sum;
   for (size_t s = 0; s < slices.size(); ++s) {
     for (size_t first = 0; first < kSliceLanes; first += kWidth) {
-      const Vectors own = Loaded(p + kAxes * s, first);
+      const Vectors own = OwnRows(p + s * kSliceLanes, first);
       const Vectors begun = Product(diagonal + 6 * s, first, own);
-      const Vectors row = slices.values == kSpringValues ? RowSums<kSpringValues>(slices, s, first, packed, begun)
-                                                         : RowSums<9>(slices, s, first, packed, begun);
+      const Vectors row = slices.values == kSpringValues ? RowSums<kSpringValues>(slices, s, first, p, begun)
+                                                         : RowSums<9>(slices, s, first, p, begun);
       Stored(row, first, q + kAxes * s);
       sum.Add(Dot(own.x, row.x, own.y, row.y, own.z, row.z), first);
     }
@@ -286,13 +293,12 @@ double MultiplyHere(const BlockSlices& slices, const Lanes* diagonal, const Quad
   return sum.Total();
 }
 
-double DescendHere(const BlockSlices& slices, float along, const Lanes* p, Lanes* q, Lanes* y, Lanes* r) {
+double DescendHere(const BlockSlices& slices, float along, Lanes* q, Lanes* r) {
   const Vector by = hn::Set(Tag(), along);
   Sum sum;
-  for (size_t s = 0; s < slices.size(); ++s, p += kAxes, q += kAxes, y += kAxes, r += kAxes) {
+  for (size_t s = 0; s < slices.size(); ++s, q += kAxes, r += kAxes) {
     for (size_t first = 0; first < kSliceLanes; first += kWidth) {
       for (int k = 0; k < kAxes; ++k) {
-        Put(hn::Add(At(y[k], first), hn::Mul(by, At(p[k], first))), first, y[k]);
         Put(hn::Sub(At(r[k], first), hn::Mul(by, At(q[k], first))), first, r[k]);
       }
       const Vectors left = Loaded(r, first);
@@ -305,14 +311,23 @@ double DescendHere(const BlockSlices& slices, float along, const Lanes* p, Lanes
   return sum.Total();
 }
 
-void TurnHere(float keep, const Lanes* z, Lanes* p, Quad* packed, size_t slices) {
-  const Vector by = hn::Set(Tag(), keep);
-  for (size_t s = 0; s < slices; ++s, z += kAxes, p += kAxes) {
+void PackHere(const Lanes* z, Quad* p, size_t slices) {
+  for (size_t s = 0; s < slices; ++s, z += kAxes, p += kSliceLanes) {
+    for (size_t first = 0; first < kSliceLanes; first += kWidth) Packed(Loaded(z, first), p + first);
+  }
+}
+
+HWY_INLINE Vectors Sum3(const Vectors& a, const Vector& by, const Vectors& b) {
+  return {hn::Add(a.x, hn::Mul(by, b.x)), hn::Add(a.y, hn::Mul(by, b.y)), hn::Add(a.z, hn::Mul(by, b.z)), a.w};
+}
+
+void TurnHere(float along, float keep, const Lanes* z, Lanes* y, Quad* p, size_t slices) {
+  const Vector forward = hn::Set(Tag(), along), kept = hn::Set(Tag(), keep);
+  for (size_t s = 0; s < slices; ++s, z += kAxes, y += kAxes, p += kSliceLanes) {
     for (size_t first = 0; first < kSliceLanes; first += kWidth) {
-      for (int k = 0; k < kAxes; ++k) {
-        Put(hn::Add(At(z[k], first), hn::Mul(by, At(p[k], first))), first, p[k]);
-      }
-      Packed(Loaded(p, first), packed + s * kSliceLanes + first);
+      const Vectors last = OwnRows(p, first);
+      Stored(Sum3(Loaded(y, first), forward, last), first, y);
+      Packed(Sum3(Loaded(z, first), kept, last), p + first);
     }
   }
 }
@@ -326,6 +341,7 @@ namespace phrenic {
 
 HWY_EXPORT(FillDiagonalHere);
 HWY_EXPORT(FillBlocksHere);
+HWY_EXPORT(PackHere);
 HWY_EXPORT(MultiplyHere);
 HWY_EXPORT(DescendHere);
 HWY_EXPORT(TurnHere);
@@ -340,17 +356,18 @@ void FillBlocks(const BlockEntries& entries, float weight, const Quad* packed, B
   HWY_DYNAMIC_DISPATCH(FillBlocksHere)(entries.data(), weight, packed, slices);
 }
 
-double Multiply(const BlockSlices& slices, const std::vector<Lanes>& diagonal, const Quad* packed, const RowVector& p,
-                RowVector& q) {
-  return HWY_DYNAMIC_DISPATCH(MultiplyHere)(slices, diagonal.data(), packed, p.data(), q.data());
+void Pack(const RowVector& z, Quad* p) { HWY_DYNAMIC_DISPATCH(PackHere)(z.data(), p, z.size() / kAxes); }
+
+double Multiply(const BlockSlices& slices, const std::vector<Lanes>& diagonal, const Quad* p, RowVector& q) {
+  return HWY_DYNAMIC_DISPATCH(MultiplyHere)(slices, diagonal.data(), p, q.data());
 }
 
-double Descend(const BlockSlices& slices, float along, const RowVector& p, RowVector& q, RowVector& y, RowVector& r) {
-  return HWY_DYNAMIC_DISPATCH(DescendHere)(slices, along, p.data(), q.data(), y.data(), r.data());
+double Descend(const BlockSlices& slices, float along, RowVector& q, RowVector& r) {
+  return HWY_DYNAMIC_DISPATCH(DescendHere)(slices, along, q.data(), r.data());
 }
 
-void Turn(float keep, const RowVector& z, RowVector& p, Quad* packed) {
-  HWY_DYNAMIC_DISPATCH(TurnHere)(keep, z.data(), p.data(), packed, z.size() / kAxes);
+void Turn(float along, float keep, const RowVector& z, RowVector& y, Quad* p) {
+  HWY_DYNAMIC_DISPATCH(TurnHere)(along, keep, z.data(), y.data(), p, z.size() / kAxes);
 }
 
 }  // namespace phrenic

@@ -57,13 +57,14 @@ void FillDiagonal(const BlockEntries& diagonal, const BlockEntries& entries, con
 // The blocks off it; padding's entry is at 0, and zero. `packed` as FillDiagonal left it.
 void FillBlocks(const BlockEntries& entries, float weight, const Quad* packed, BlockSlices& slices);
 
-// q = A p with this diagonal; p . q. `packed` is p.
-double Multiply(const BlockSlices& slices, const std::vector<Lanes>& diagonal, const Quad* packed, const RowVector& p,
-                RowVector& q);
-// y += along p, r -= along q, then q = the inverse of A's diagonal blocks times r; r . q.
-double Descend(const BlockSlices& slices, float along, const RowVector& p, RowVector& q, RowVector& y, RowVector& r);
-// p = z + keep p, and packs it.
-void Turn(float keep, const RowVector& z, RowVector& p, Quad* packed);
+// The direction p is kept row by row, as it is gathered: x, y, z and nothing.
+void Pack(const RowVector& z, Quad* p);
+// q = A p with this diagonal; p . q.
+double Multiply(const BlockSlices& slices, const std::vector<Lanes>& diagonal, const Quad* p, RowVector& q);
+// r -= along q, then q = the inverse of A's diagonal blocks times r; r . q.
+double Descend(const BlockSlices& slices, float along, RowVector& q, RowVector& r);
+// y += along p, then p = z + keep p.
+void Turn(float along, float keep, const RowVector& z, RowVector& y, Quad* p);
 
 }  // namespace phrenic
 

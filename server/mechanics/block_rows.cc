@@ -174,7 +174,7 @@ void BlockRows::PlaceBlocks() {
   for (std::vector<Lanes>* each : {&slices_.diagonal, &slices_.stiffness, &slices_.factors}) each->resize(6 * slices);
   inertia_.resize(slices);
   diagonal_.resize(2 * rows);
-  packed_.resize(rows);
+  direction_.resize(rows);
 }
 
 void BlockRows::Assemble(const Model& model, const Instant& at, double g, const Eigen::VectorXd& inertia) {
@@ -192,8 +192,8 @@ void BlockRows::Assemble(const Model& model, const Instant& at, double g, const 
     inertia_[r / kSliceLanes].at[r % kSliceLanes] = static_cast<float>(inertia[vertices_[r]]);
   }
   const auto weight = static_cast<float>(g * g);
-  FillDiagonal(diagonal_, entries_, inertia_, weight, slices_, packed_.data());
-  FillBlocks(entries_, weight, packed_.data(), slices_);
+  FillDiagonal(diagonal_, entries_, inertia_, weight, slices_, direction_.data());
+  FillBlocks(entries_, weight, direction_.data(), slices_);
 }
 
 // Where block (i, j) is kept, i < j: most often the one that came next at rest. Null where it is not.
@@ -233,22 +233,27 @@ void BlockRows::AddSprings(std::span<const SpringStiffness> springs) {
   }
 }
 
-double BlockRows::Times(const RowVector& p, bool inertia, RowVector& q) {
-  const double along = Multiply(slices_, inertia ? slices_.diagonal : slices_.stiffness, packed_.data(), p, q);
+double BlockRows::Times(bool inertia, RowVector& q) {
+  const double along = Multiply(slices_, inertia ? slices_.diagonal : slices_.stiffness, direction_.data(), q);
   if (extra_.empty() && outer_.empty() && shared_.empty()) return along;
-  AddBeside(p, q);
+  AddBeside(q);
   double sum = 0;
-  for (size_t k = 0; k < q.size(); ++k) {
-    for (int lane = 0; lane < kSliceLanes; ++lane) sum += static_cast<double>(p[k].at[lane]) * q[k].at[lane];
+  for (size_t r = 0; r < vertices_.size(); ++r) {
+    for (int k = 0; k < kAxes; ++k) {
+      sum += static_cast<double>(direction_[r].at[k]) * q[kAxes * (r / kSliceLanes) + k].at[r % kSliceLanes];
+    }
   }
   return sum;
 }
 
-void BlockRows::AddBeside(const RowVector& p, RowVector& q) {
+void BlockRows::AddBeside(RowVector& q) {
   const auto vertices = static_cast<Eigen::Index>(row_.size());
+  const auto scale = [this](size_t row) { return slices_.scale[row / kSliceLanes].at[row % kSliceLanes]; };
   beside_x_.setZero(3, vertices);
   beside_y_.setZero(3, vertices);
-  AddDisplacements(1, p, beside_x_);
+  for (size_t r = 0; r < vertices_.size(); ++r) {
+    for (int k = 0; k < kAxes; ++k) beside_x_(k, vertices_[r]) = static_cast<double>(scale(r)) * direction_[r].at[k];
+  }
   for (const Extra& extra : extra_) {
     beside_y_.col(extra.i) += g_ * g_ * extra.block * beside_x_.col(extra.j);
     beside_y_.col(extra.j) += g_ * g_ * extra.block.transpose() * beside_x_.col(extra.i);
@@ -256,9 +261,8 @@ void BlockRows::AddBeside(const RowVector& p, RowVector& q) {
   outer_.AddTimes(g_ * g_, beside_x_, beside_y_);
   shared_.AddTimes(g_, beside_x_, beside_y_);
   for (size_t r = 0; r < vertices_.size(); ++r) {
-    const size_t slice = r / kSliceLanes, lane = r % kSliceLanes;
     for (int k = 0; k < kAxes; ++k) {
-      q[kAxes * slice + k].at[lane] += slices_.scale[slice].at[lane] * static_cast<float>(beside_y_(k, vertices_[r]));
+      q[kAxes * (r / kSliceLanes) + k].at[r % kSliceLanes] += scale(r) * static_cast<float>(beside_y_(k, vertices_[r]));
     }
   }
 }

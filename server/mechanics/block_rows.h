@@ -26,9 +26,13 @@ class BlockRows final : public StiffnessSink {
   void AddSprings(std::span<const SpringStiffness> springs) override;
   void AddOuter(double scale, const Points& g) override { outer_.Add(scale, g); }
 
-  // q = A p, or without the inertia, both scaled (BlockSlices); p . q. `p` is what Turn made last.
-  double Times(const RowVector& p, bool inertia, RowVector& q);
-  void Turn(float keep, const RowVector& z, RowVector& p) { phrenic::Turn(keep, z, p, packed_.data()); }
+  // The direction p of a search, scaled (BlockSlices): z to begin with, then as block_kernel.h turns it.
+  void Face(const RowVector& z) { Pack(z, direction_.data()); }
+  void Turn(float along, float keep, const RowVector& z, RowVector& y) {
+    phrenic::Turn(along, keep, z, y, direction_.data());
+  }
+  // q = A p, or without the inertia, scaled too; p . q.
+  double Times(bool inertia, RowVector& q);
   const BlockSlices& slices() const { return slices_; }
   size_t row_lanes() const { return kAxes * slices_.size(); }
   OuterProducts& shared_damping() { return shared_; }
@@ -54,7 +58,7 @@ class BlockRows final : public StiffnessSink {
   void PlaceRows(int vertices);
   void PlaceBlocks();
   Quad* Find(int i, int j);
-  void AddBeside(const RowVector& p, RowVector& q);
+  void AddBeside(RowVector& q);
 
   bool springs_only_ = true;        // off the diagonal
   std::vector<int> row_;            // of each vertex; -1 where it does not move
@@ -69,7 +73,7 @@ class BlockRows final : public StiffnessSink {
   OuterProducts outer_, shared_;
   BlockSlices slices_;
   std::vector<Lanes> inertia_;
-  std::vector<Quad> packed_;
+  std::vector<Quad> direction_;  // of each row; while A is assembled, its scale
   Points beside_x_, beside_y_;
 };
 

@@ -31,7 +31,7 @@ Size SizeOf(const RowVector& r) {
 
 ImplicitSystem::ImplicitSystem(const Model& model) : rows_(model), inertia_(model.rest.cols()) {
   missing_.resize(3, model.rest.cols());
-  for (RowVector* each : {&change_, &residual_, &direction_, &product_}) each->resize(rows_.row_lanes());
+  for (RowVector* each : {&change_, &residual_, &product_}) each->resize(rows_.row_lanes());
 }
 
 void ImplicitSystem::Assemble(const Model& model, const Instant& at, double g) {
@@ -76,8 +76,8 @@ double ImplicitSystem::StartFrom(const Points& b, Points& y) {
     missing_ = b - y * inertia_.asDiagonal();
     rows_.ForcesToRows(1, missing_, residual_);
     rows_.DisplacementsToRows(y, product_);
-    rows_.Turn(0, product_, direction_);
-    rows_.Times(direction_, false, product_);
+    rows_.Face(product_);
+    rows_.Times(false, product_);
     for (size_t k = 0; k < residual_.size(); ++k) Values(residual_[k]) -= Values(product_[k]);
     unit = SizeOf(residual_).largest;
   }
@@ -88,10 +88,10 @@ double ImplicitSystem::StartFrom(const Points& b, Points& y) {
 }
 
 void ImplicitSystem::Begin(double tolerance, Progress& progress) {
-  for (RowVector* each : {&change_, &direction_, &product_}) std::fill(each->begin(), each->end(), Lanes());
-  progress.now = progress.first = Descend(rows_.slices(), 0, direction_, product_, change_, residual_);
+  for (RowVector* each : {&change_, &product_}) std::fill(each->begin(), each->end(), Lanes());
+  progress.now = progress.first = Descend(rows_.slices(), 0, product_, residual_);
   progress.enough = std::max(tolerance * tolerance * progress.first, floor_);
-  rows_.Turn(0, product_, direction_);
+  rows_.Face(product_);
 }
 
 ImplicitSystem::End ImplicitSystem::Iterate(const SolverEffort& effort, Progress& progress) {
@@ -99,10 +99,11 @@ ImplicitSystem::End ImplicitSystem::Iterate(const SolverEffort& effort, Progress
     if (progress.now <= progress.enough) return End::kSolved;
     if (progress.iterations > 0 && effort.Spent()) return End::kSpent;
     if (progress.iterations == effort.most_iterations()) return End::kSpent;
-    const double along = progress.now / rows_.Times(direction_, true, product_);
+    const double along = progress.now / rows_.Times(true, product_);
     if (!(along > 0) || !std::isfinite(along)) return End::kTooLong;
-    const double next = Descend(rows_.slices(), static_cast<float>(along), direction_, product_, change_, residual_);
-    rows_.Turn(static_cast<float>(next / progress.now), product_, direction_);
+    const auto step = static_cast<float>(along);
+    const double next = Descend(rows_.slices(), step, product_, residual_);
+    rows_.Turn(step, static_cast<float>(next / progress.now), product_, change_);
     progress.now = next;
   }
   return End::kTooLong;

@@ -50,7 +50,7 @@ class ImplicitSystem {
   Eigen::VectorXd inertia_;  // m + g c; 0 for fixed and driven vertices
   Points missing_;           // to the first guess, K left out
   double floor_ = 0;         // kFinest of b, squared, in the unit of residual_
-  RowVector change_, residual_, direction_, product_;
+  RowVector change_, residual_, product_;
   // Where a factorisation is needed; made when first needed.
   std::unique_ptr<BlockMatrix> stiffness_;
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;

@@ -95,10 +95,10 @@ class Bench {
   }
 
   // Of conjugate gradients: at each end of a spring four numbers and a place; of a vertex what Multiply (diagonal, p,
-  // its packed copy, q), Descend (p, q, y and r with the diagonal's factors) and Turn read and write.
+  // q), Descend (q and r with the diagonal's factors) and Turn (z, y and p) read and write.
   double IterationBytes() const {
     const double ends = 2 * static_cast<double>(springs_.size()) * (Floats(4) + sizeof(int));
-    return ends + static_cast<double>(x_.cols()) * Floats((6 + 3 + 4 + 3) + (3 + 6 + 6 + 6 + 6) + (3 + 6 + 4));
+    return ends + static_cast<double>(x_.cols()) * Floats((6 + 4 + 3) + (6 + 6 + 6) + (3 + 6 + 8));
   }
 
   void RegisterThorax(Table& table) {
