@@ -77,7 +77,6 @@ absl::StatusOr<Subjects> MakeSubjects() {
   subjects.meshes = OnceEach();
   const auto thorax = session::SceneCatalogue({PHRENIC_SCENES_DIR}).Find("thorax");
   if (!thorax.ok()) return thorax.status();
-  subjects.scene = *thorax;
   const std::pair<ModelPointer*, absl::StatusOr<v1::Scene>> wanted[] = {
       {&subjects.thorax, thorax},
       {&subjects.springs, schema::ParseScene("springs", Diaphragm("springs { bodies: 'diaphragm' stiffness: 40 "

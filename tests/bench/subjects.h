@@ -44,7 +44,6 @@ class Solver {
 };
 
 struct Subjects {
-  v1::Scene scene;    // of the thorax
   MeshSource meshes;  // makes each once
   ModelPointer springs, membrane, thorax, few_links, many_links;
 };
