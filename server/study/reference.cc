@@ -39,6 +39,8 @@ Eigen::Map<Points> Half(N_Vector y, int half) {
 
 int Evaluate(realtype t, N_Vector y, N_Vector derivative, void* user) {
   Problem& problem = *static_cast<Problem*>(user);
+  // The fixed-point iteration takes a stop for one step's failure: it is said until CVODE believes it.
+  if (problem.cancelled) return kStop;
   if (problem.evaluations++ % kLook == 0 && !problem.progress(t / problem.seconds, "solving the reference")) {
     problem.cancelled = true;
     return kStop;

@@ -67,6 +67,18 @@ TEST(Reference, KeepsRigidLinksAndTheirPeriod) {
   EXPECT_NEAR(reference->states[3].x(0, 1), 1, 1e-6);
 }
 
+TEST(Reference, StopsWhereverItIsCancelled) {
+  const Subject subject = SubjectOf(kOscillator);
+  for (int looks = 1; looks <= 8; ++looks) {
+    int seen = 0;
+    v1::Reference report;
+    const auto stop = [&](double, std::string_view) { return ++seen < looks; };
+    const auto reference = SolveReference(subject, Moments(1, 1), 1e-12, stop, report);
+    EXPECT_TRUE(absl::IsCancelled(reference.status())) << reference.status();
+    EXPECT_EQ(seen, looks) << "it went on and asked again";
+  }
+}
+
 TEST(Reference, IsMissingWhereNoSmoothEquationIs) {
   std::string text = kSwingingLink;
   text.replace(text.find("list {"), 0, "projection: PROJECTION_THESIS ");
