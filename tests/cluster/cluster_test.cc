@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <set>
 #include <thread>
 
@@ -148,15 +150,24 @@ TEST_F(ClusterTest, WhoWasOnlySlowWritesNothingOverItsSuccessor) {
   EXPECT_TRUE(b->Copy(StateAt("s", 1)));
 }
 
+// The median of three: a machine that starves Redis for one of them says nothing of the others.
 TEST_F(ClusterTest, WhatIsReleasedGoesOnAtOnce) {
   Member b(*redis_, "b:1");
   b->Watch();
-  absl::SleepFor(absl::Seconds(3.3));  // until it takes over anything
   Member a(*redis_, "a:1");
-  ASSERT_TRUE(a->Claim("s").ok());
-  ASSERT_TRUE(a->Copy(StateAt("s", 1)));
-  a->Release("s");
-  EXPECT_TRUE(Within(absl::Milliseconds(600), [&] { return !b.taken().empty(); }));
+  const auto time_to_go_on = [&](const std::string& id) {
+    const std::size_t before = b.taken().size();
+    EXPECT_TRUE(a->Claim(id).ok());
+    EXPECT_TRUE(a->Copy(StateAt(id, 1)));
+    const absl::Time released = absl::Now();
+    a->Release(id);
+    EXPECT_TRUE(Within(absl::Seconds(10), [&] { return b.taken().size() > before; })) << id;
+    return absl::Now() - released;
+  };
+  time_to_go_on("first");  // it takes over nothing for 3 s
+  std::array times = {time_to_go_on("s"), time_to_go_on("t"), time_to_go_on("u")};
+  std::ranges::sort(times);
+  EXPECT_LE(times[1], absl::Milliseconds(600));
 }
 
 TEST_F(ClusterTest, SessionsGoOnWithoutRedisAndAreCopiedAnewWhenItComesBackEmpty) {
