@@ -12,9 +12,9 @@
 namespace phrenic::bench {
 namespace {
 
-constexpr double kLine = 4e6 / 8;    // [bytes/s]
-constexpr double kAimAge = 0.400;    // [s]
-constexpr double kAimFirst = 0.300;  // [s]
+constexpr double kLine = 4e6 / 8;        // [bytes/s]
+constexpr double kAimMedianAge = 0.400;  // [s]
+constexpr double kAimFirst = 0.300;      // [s]
 constexpr int kJoiners = 5;
 
 bool ThinLineRow(Bench& bench, const char* what, bool gateway, const Wanted& wanted) {
@@ -28,7 +28,7 @@ bool ThinLineRow(Bench& bench, const char* what, bool gateway, const Wanted& wan
   const double age = sight.Age(0.5);
   std::printf("4 Mbit/s, %-18s %5.1f fps, age p50 %4.0f ms, p99 %4.0f ms, within %g mm  %s\n", what,
               static_cast<double>(sight.frames) / cost.wall, 1e3 * age, 1e3 * sight.Age(0.99), sight.largest_error,
-              Verdict(sight.frames > 0 && age <= kAimAge, "p50 <= 400 ms").c_str());
+              Verdict(sight.frames > 0 && age <= kAimMedianAge, "p50 <= 400 ms").c_str());
   return sight.frames > 0;
 }
 
