@@ -20,14 +20,23 @@ bool HasLinks(const v1::Scene& scene) {
                      [](const v1::Constraint& constraint) { return constraint.has_rigid_links(); });
 }
 
-// The subject's scene with every rigid link projected in this way.
-absl::StatusOr<Subject> Projected(const v1::CreateStudyRequest& request, const Subject& subject,
-                                  v1::Projection projection, const Compiler& compile) {
-  v1::SceneSource source = request.source();
-  *source.mutable_scene() = subject.model->scene;
-  for (v1::Constraint& constraint : *source.mutable_scene()->mutable_constraints()) {
+void ProjectLinks(v1::Projection projection, v1::Scene& scene) {
+  for (v1::Constraint& constraint : *scene.mutable_constraints()) {
     if (constraint.has_rigid_links()) constraint.mutable_rigid_links()->set_projection(projection);
   }
+}
+
+void UseDoublePrecision(v1::Scene& scene) {
+  for (v1::Force& force : *scene.mutable_forces()) {
+    if (force.has_springs()) force.mutable_springs()->set_precision(v1::PRECISION_DOUBLE);
+  }
+}
+
+// The subject with a scene in this one's place.
+absl::StatusOr<Subject> WithScene(const v1::CreateStudyRequest& request, const Subject& subject, const v1::Scene& scene,
+                                  const Compiler& compile) {
+  v1::SceneSource source = request.source();
+  *source.mutable_scene() = scene;
   const auto model = compile(source);
   if (!model.ok()) return model.status();
   return Subject{.model = *model, .parameters = subject.parameters};
@@ -36,8 +45,10 @@ absl::StatusOr<Subject> Projected(const v1::CreateStudyRequest& request, const S
 absl::StatusOr<Yardstick> MakeYardstick(const v1::CreateStudyRequest& request, const Subject& subject,
                                         const Compiler& compile, const Progress& progress, v1::ErrorTable& table) {
   const v1::ErrorStudy& study = request.error();
-  absl::StatusOr<Subject> exact = subject;
-  if (HasLinks(subject.model->scene)) exact = Projected(request, subject, v1::PROJECTION_EXACT, compile);
+  v1::Scene scene = subject.model->scene;
+  ProjectLinks(v1::PROJECTION_EXACT, scene);
+  UseDoublePrecision(scene);
+  const auto exact = WithScene(request, subject, scene, compile);
   if (!exact.ok()) return exact.status();
   Yardstick yardstick;
   yardstick.moments = Moments(study.seconds(), study.moments());
@@ -68,7 +79,9 @@ absl::Status AddResiduals(const v1::CreateStudyRequest& request, const Subject& 
                           const Compiler& compile, const Progress& progress, v1::ErrorTable& table) {
   if (!HasLinks(subject.model->scene)) return absl::OkStatus();
   for (const v1::Projection projection : {v1::PROJECTION_EXACT, v1::PROJECTION_THESIS}) {
-    const auto projected = Projected(request, subject, projection, compile);
+    v1::Scene scene = subject.model->scene;
+    ProjectLinks(projection, scene);
+    const auto projected = WithScene(request, subject, scene, compile);
     if (!projected.ok()) return projected.status();
     const auto run = Simulate(*projected, yardstick.moments, subject.parameters.time_step(),
                               request.error().most_seconds_a_run(), progress);

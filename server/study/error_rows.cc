@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "server/study/subject.h"
@@ -15,6 +16,7 @@ constexpr double kBlur = 3;              // of the reference's own error: an err
 constexpr double kTimedOnce = 0.02;      // runs shorter than this in all are timed again [s]
 constexpr size_t kMostRuns = 9;
 constexpr const char* kOk = "ok";
+constexpr const char* kLate = "out of time";
 
 // The run, and again while it is so short that its time says nothing: the median of the times.
 absl::StatusOr<Trajectory> Timed(const Subject& subject, const std::vector<double>& moments, double dt,
@@ -92,17 +94,23 @@ absl::Status AddLadder(const Subject& subject, const v1::ErrorStudy& study, cons
   }
   // Level n costs 2^n.
   const double all = std::exp2(study.levels()) - 1;
+  bool late = false;
   for (int level = 0; level < study.levels(); ++level, dt /= 2) {
+    v1::ErrorRow& row = *table.add_rows();
+    row.set_integrator(name);
+    row.set_time_step_s(DividingStep(yardstick.moments, dt));
+    if (late) {
+      row.set_verdict(kLate);
+      continue;
+    }
     const Progress part = Part(progress, (std::exp2(level) - 1) / all, (std::exp2(level + 1) - 1) / all);
     const auto labelled = [&](double done, std::string_view) {
       return part(done, absl::StrFormat("%s at %.3g ms", name, 1e3 * dt));
     };
     const auto run = Timed(subject, yardstick.moments, dt, study.most_seconds_a_run(), labelled);
     if (!run.ok()) return run.status();
-    v1::ErrorRow& row = *table.add_rows();
-    row.set_integrator(name);
-    row.set_time_step_s(DividingStep(yardstick.moments, dt));
     Judge(subject, yardstick, *run, row);
+    late = absl::StartsWith(run->problem, kLate);
   }
   SetOrders(first, table);
   return absl::OkStatus();

@@ -13,7 +13,7 @@ struct Trajectory {
   std::vector<State> states;  // one a moment
   double cpu_s = 0;           // CPU time of this thread [s]
   double simulated_s = 0;     // [s]
-  std::string problem;        // why there are fewer states than moments; empty where there are not
+  std::string problem;        // why there are fewer states than moments ("out of time at 0.2 s"); or empty
 };
 
 // `count` moments, evenly spaced, the last one at `seconds`.
