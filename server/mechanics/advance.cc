@@ -41,9 +41,9 @@ Instant Packed(const Model& model, const Instant& at) {
 
 void SumForces(const Model& model, const Instant& at, Points& f) {
   const Instant packed = Packed(model, at);
-  if (!SumWholeForces(model, packed, f)) f.setZero();
+  const bool fresh = !SumWholeForces(model, packed, f);
   ForEachBlock({0, f.cols()}, [&](const VertexRange& block) {
-    AddForcesIn(block, model, packed, f.middleCols(block.first, block.end - block.first));
+    AddForcesIn(block, model, packed, fresh, f.middleCols(block.first, block.end - block.first));
   });
 }
 
@@ -56,10 +56,13 @@ bool SumWholeForces(const Model& model, const Instant& at, Points& f) {
   return true;
 }
 
-void AddForcesIn(const VertexRange& range, const Model& model, const Instant& at, MutablePoints f) {
+void AddForcesIn(const VertexRange& range, const Model& model, const Instant& at, bool fresh, MutablePoints f) {
   for (const Force* force : model.step_forces) {
-    if (force->by_range()) force->AddForceIn(range, at, f);
+    if (!force->by_range()) continue;
+    fresh ? force->SetForceIn(range, at, f) : force->AddForceIn(range, at, f);
+    fresh = false;
   }
+  if (fresh) f.setZero();
   for (const VertexPull& pull : at.pulls) {
     if (pull.vertex >= range.first && pull.vertex < range.end) f.col(pull.vertex - range.first) += pull.force;
   }
@@ -80,7 +83,7 @@ void MakePlaces(Eigen::Index vertices, std::vector<StateReach>& blocks) {
 }
 
 void NoteReach(const VertexRange& block, const Points& x, const Points& v, std::vector<StateReach>& blocks) {
-  blocks[block.first / kVertexBlock] = {LargestOf(block, x), SquaresOf(block, v)};
+  blocks[block.first / kVertexBlock] = ReachOf(block, x, v);
 }
 
 void AddToFree(const Model& model, double scale, const Points& shift, Points& x) {

@@ -16,10 +16,10 @@ void DriveMotions(const Model& model, const v1::Parameters& parameters, double a
 void SumForces(const Model& model, const Instant& at, Points& f);
 // The same in three parts: positions packed, where forces ask for it, in memory of the thread's own until its next
 // call; then what can only be worked out for all vertices at once, false and f as it was where there is nothing of the
-// kind; and the rest range by range, added to f, 3 x the range's vertices.
+// kind; and the rest range by range, added to f, 3 x the range's vertices, or where it is `fresh` set as f.
 Instant Packed(const Model& model, const Instant& at);
 bool SumWholeForces(const Model& model, const Instant& at, Points& f);
-void AddForcesIn(const VertexRange& range, const Model& model, const Instant& at, MutablePoints f);
+void AddForcesIn(const VertexRange& range, const Model& model, const Instant& at, bool fresh, MutablePoints f);
 
 // c = the sum of all damping coefficients [N s/m].
 void SumDamping(const Model& model, const Instant& at, Eigen::VectorXd& c);

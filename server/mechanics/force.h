@@ -29,6 +29,11 @@ class Force {
   // different ranges.
   virtual bool by_range() const { return false; }
   virtual void AddForceIn(const VertexRange&, const Instant&, MutablePoints /*f*/) const {}
+  // f = force, whatever it held: what the first to act on it is asked.
+  virtual void SetForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const {
+    f.setZero();
+    AddForceIn(range, at, f);
+  }
   // Hands over K = -df/dx, positive semi-definite. Nothing where the force does not depend on positions.
   virtual void AddStiffness(const Instant&, StiffnessSink&) const {}
   // Hands over what AddStiffness may come to where nothing acts now (surfaces that do not touch, cables that are

@@ -102,45 +102,62 @@ void AddSharesHere(const VertexRange& range, const double* s, const double* forc
 // that none waits for the one before.
 constexpr Eigen::Index kGroup = 32, kGroupVectors = kGroup / kLanes;
 
+// The running results folded into one by halves, first with sixteenth, and so on: in the same order whatever the
+// vectors' length.
+template <typename D, typename V, typename Join>
+HWY_INLINE hn::TFromD<D> Fold(D d, V (&results)[kGroupVectors], const Join& join) {
+  for (Eigen::Index half = kGroupVectors / 2; half > 0; half /= 2) {
+    for (Eigen::Index k = 0; k < half; ++k) results[k] = join(results[k], results[k + half]);
+  }
+  HWY_ALIGN hn::TFromD<D> all[kLanes];
+  hn::Store(results[0], d, all);
+  for (Eigen::Index half = kLanes / 2; half > 0; half /= 2) {
+    for (Eigen::Index k = 0; k < half; ++k) all[k] = join(all[k], all[k + half]);
+  }
+  return all[0];
+}
+
+// Larger and sum, of vectors and of numbers.
+struct Larger {
+  template <typename V>
+  HWY_INLINE V operator()(V a, V b) const {
+    return hn::Max(a, b);
+  }
+  std::int64_t operator()(std::int64_t a, std::int64_t b) const { return std::max(a, b); }
+};
+struct Plus {
+  template <typename V>
+  HWY_INLINE V operator()(V a, V b) const {
+    return hn::Add(a, b);
+  }
+  double operator()(double a, double b) const { return a + b; }
+};
+
 // As whole numbers: without their signs numbers are in the order of their bits, infinity above all, and what is no
 // number above that.
-double LargestHere(const double* x, Eigen::Index count) {
+StateReach ReachHere(const double* x, const double* v, Eigen::Index count) {
   const Tag d;
   const hn::RebindToSigned<Tag> bits;
   const auto magnitude = hn::Set(bits, std::numeric_limits<std::int64_t>::max());
   hn::Vec<decltype(bits)> most[kGroupVectors];
-  for (auto& vector : most) vector = hn::Zero(bits);
-  Eigen::Index i = 0;
-  for (; i + kGroup <= count; i += kGroup) {
-    for (int k = 0; k < kGroupVectors; ++k) {
-      const auto next = hn::BitCast(bits, hn::LoadU(d, x + i + k * kLanes));
-      most[k] = hn::Max(most[k], hn::And(next, magnitude));
-    }
-  }
-  HWY_ALIGN std::int64_t all[kGroup];
-  for (int k = 0; k < kGroupVectors; ++k) hn::Store(most[k], bits, all + k * kLanes);
-  std::int64_t largest = *std::max_element(all, all + kGroup);
-  for (; i < count; ++i) largest = std::max(largest, std::bit_cast<std::int64_t>(std::abs(x[i])));
-  return std::bit_cast<double>(largest);
-}
-
-double SquaresHere(const double* v, Eigen::Index count) {
-  const Tag d;
   Vector squares[kGroupVectors];
-  for (auto& vector : squares) vector = hn::Zero(d);
+  for (Eigen::Index k = 0; k < kGroupVectors; ++k) most[k] = hn::Zero(bits), squares[k] = hn::Zero(d);
   Eigen::Index i = 0;
   for (; i + kGroup <= count; i += kGroup) {
-    for (int k = 0; k < kGroupVectors; ++k) {
-      const auto next = hn::LoadU(d, v + i + k * kLanes);
-      squares[k] = hn::Add(squares[k], hn::Mul(next, next));
+    for (Eigen::Index k = 0; k < kGroupVectors; ++k) {
+      const auto place = hn::BitCast(bits, hn::LoadU(d, x + i + k * kLanes));
+      const auto velocity = hn::LoadU(d, v + i + k * kLanes);
+      most[k] = hn::Max(most[k], hn::And(place, magnitude));
+      squares[k] = hn::Add(squares[k], hn::Mul(velocity, velocity));
     }
   }
-  HWY_ALIGN double sums[kGroup];
-  for (int k = 0; k < kGroupVectors; ++k) hn::Store(squares[k], d, sums + k * kLanes);
-  double sum = 0;
-  for (const double part : sums) sum += part;
-  for (; i < count; ++i) sum += v[i] * v[i];
-  return sum;
+  std::int64_t furthest = Fold(bits, most, Larger());
+  double sum = Fold(d, squares, Plus());
+  for (; i < count; ++i) {
+    furthest = std::max(furthest, std::bit_cast<std::int64_t>(std::abs(x[i])));
+    sum += v[i] * v[i];
+  }
+  return {std::bit_cast<double>(furthest), sum};
 }
 
 }  // namespace
@@ -153,8 +170,7 @@ namespace phrenic {
 HWY_EXPORT(KickAndDriftHere);
 HWY_EXPORT(AddFrictionHere);
 HWY_EXPORT(AddSharesHere);
-HWY_EXPORT(LargestHere);
-HWY_EXPORT(SquaresHere);
+HWY_EXPORT(ReachHere);
 
 void KickAndDrift(const VertexRange& range, const Eigen::VectorXd& w, double kick, double drift, const ConstPoints& f,
                   const Points& x, const Points& v, Points& x_next, Points& v_next) {
@@ -170,12 +186,9 @@ void AddShares(const VertexRange& range, const Eigen::VectorXd& s, const Eigen::
   HWY_DYNAMIC_DISPATCH(AddSharesHere)(range, s.data(), force.data(), f.data());
 }
 
-double LargestOf(const VertexRange& range, const Points& x) {
-  return HWY_DYNAMIC_DISPATCH(LargestHere)(x.data() + 3 * range.first, 3 * (range.end - range.first));
-}
-
-double SquaresOf(const VertexRange& range, const Points& v) {
-  return HWY_DYNAMIC_DISPATCH(SquaresHere)(v.data() + 3 * range.first, 3 * (range.end - range.first));
+StateReach ReachOf(const VertexRange& range, const Points& x, const Points& v) {
+  const Eigen::Index first = 3 * range.first;
+  return HWY_DYNAMIC_DISPATCH(ReachHere)(x.data() + first, v.data() + first, 3 * range.end - first);
 }
 
 }  // namespace phrenic

@@ -4,6 +4,7 @@
 #ifndef PHRENIC_SERVER_MECHANICS_VERTEX_KERNEL_H_
 #define PHRENIC_SERVER_MECHANICS_VERTEX_KERNEL_H_
 
+#include "server/mechanics/state.h"
 #include "server/mechanics/vertex_range.h"
 #include "server/mesh/mesh.h"
 
@@ -20,11 +21,8 @@ void AddFriction(const VertexRange& range, const Eigen::VectorXd& c, const Const
 // f += s F, s a share a vertex, F one force for all [N].
 void AddShares(const VertexRange& range, const Eigen::VectorXd& s, const Eigen::Vector3d& force, MutablePoints f);
 
-// The largest absolute value, no number where one of them is none.
-double LargestOf(const VertexRange& range, const Points& x);
-
-// The sum of squares, taken in the same order by all instruction sets.
-double SquaresOf(const VertexRange& range, const Points& v);
+// How far the range has got; sums are taken in the same order by all instruction sets.
+StateReach ReachOf(const VertexRange& range, const Points& x, const Points& v);
 
 }  // namespace phrenic
 

@@ -1,6 +1,9 @@
 // What is worked out range by range gives the bits of the whole, on every instruction set that this machine has.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
 #include "server/mechanics/advance.h"
 #include "server/mechanics/forces/attachment_kernel.h"
 #include "server/mechanics/vertex_kernel.h"
@@ -34,6 +37,45 @@ TEST(Ranges, GiveEachForceTheBitsOfTheWhole) {
     });
     EXPECT_EQ(parts, whole) << force->name();
     EXPECT_GT(whole.norm(), 0) << force->name();
+  }
+}
+
+TEST(Ranges, SetTheForceThatTheyWouldAddToNothingOnEveryInstructionSet) {
+  const auto model = CompileText(kMixedSheet);
+  ASSERT_NE(model, nullptr);
+  State state = model->InitialState();
+  state.phase = 0.3;
+  state.x += 0.002 * Points::Random(3, state.x.cols());
+  state.v = Points::Random(3, state.x.cols());
+  OnEveryTarget([&] {
+    const Instant at = Packed(*model, MakeInstant(*model, model->parameters, state));
+    for (const Force* force : model->step_forces) {
+      ForEachBlock({0, state.x.cols()}, [&](const VertexRange& block) {
+        Points added = Points::Zero(3, block.end - block.first);
+        Points set = Points::Constant(3, block.end - block.first, std::nan(""));
+        force->AddForceIn(block, at, added);
+        force->SetForceIn(block, at, set);
+        EXPECT_EQ(set, added) << force->name() << " from vertex " << block.first;
+      });
+    }
+  });
+}
+
+TEST(Ranges, ReachAsCoordinateByCoordinateOnEveryInstructionSet) {
+  const VertexRange range{8, 45};
+  Points x = Points::Random(3, 45), v = Points::Random(3, 45);
+  x.col(7).setConstant(9), v.col(7).setConstant(9);  // beside the range
+  const auto own = [&](const Points& of) { return of.rightCols(range.end - range.first); };
+  for (const double one : {-3.0, std::numeric_limits<double>::infinity(), std::nan("")}) {
+    for (const Eigen::Index vertex : {8, 20, 44}) {
+      Points there = x;
+      there(1, vertex) = one;
+      OnEveryTarget([&] {
+        const StateReach reach = ReachOf(range, there, v);
+        EXPECT_TRUE(reach.furthest == std::abs(one) || (std::isnan(one) && std::isnan(reach.furthest))) << vertex;
+        EXPECT_NEAR(reach.squares, own(v).squaredNorm(), 1e-13);
+      });
+    }
   }
 }
 

@@ -41,7 +41,11 @@ void SpringBatch::AddForce(const Instant& at, MutablePoints f) const {
 }
 
 void SpringBatch::AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const {
-  rows_.AddForce(range, at.parameters.elasticity(), at.x, at.packed, f);
+  rows_.AddForce(range, at.parameters.elasticity(), at.x, at.packed, false, f);
+}
+
+void SpringBatch::SetForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const {
+  rows_.AddForce(range, at.parameters.elasticity(), at.x, at.packed, true, f);
 }
 
 void BatchSprings(Model& model) {

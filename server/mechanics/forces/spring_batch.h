@@ -19,6 +19,7 @@ class SpringBatch final : public Force {
   // In single precision from `at.packed`, which is to be there (Packed, advance.h).
   bool by_range() const override { return rows_.InRanges(); }
   void AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const override;
+  void SetForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const override;
 
   const SpringRows& rows() const { return rows_; }
   bool packs() const { return packs_; }

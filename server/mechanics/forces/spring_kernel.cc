@@ -91,8 +91,10 @@ template <bool kAlike, typename Number>
 HWY_INLINE Column<Number> ColumnAt(const Part<Number>& part, std::int64_t c) {
   const SliceTag<Number> d;
   const SpringSlices<Number>& slices = part.slices;
-  return {kAlike ? hn::Set(d, slices.common_stiffness) : hn::Load(d, slices.stiffness[c].row + part.row),
-          hn::Load(d, slices.at_rest[c].row + part.row)};
+  const SpringSlice<Number>& slice = slices.slices[part.slice];
+  const auto at_rest = hn::Load(d, slices.at_rest[c].row + part.row);
+  if constexpr (kAlike) return {hn::Set(d, slice.common_stiffness), at_rest};
+  return {hn::Load(d, slices.stiffness[c - slice.first_column + slice.first_stiffness].row + part.row), at_rest};
 }
 
 // Adds the pulls of kTogether columns, step by step: what one of them waits for, the others do not.
@@ -191,6 +193,11 @@ class Tile {
 };
 
 template <bool kAlike, typename Number>
+HWY_INLINE Coordinates<Number> SumPulls(const Part<Number>& part, bool at_end, const Number* x) {
+  return at_end ? SumPulls<kAlike, true>(part, x) : SumPulls<kAlike, false>(part, x);
+}
+
+template <typename Number>
 HWY_INLINE void FillTile(const SpringSlices<Number>& slices, std::int64_t block, Number scale, const Number* x,
                          Number* tile) {
   const auto factor = hn::Set(SliceTag<Number>(), scale);
@@ -199,25 +206,24 @@ HWY_INLINE void FillTile(const SpringSlices<Number>& slices, std::int64_t block,
     const SpringSlice<Number>& slice = slices.slices[s];
     for (int row = 0; row < slice.rows; row += kWidth<Number>) {
       const Part<Number> part = {slices, s, row};
-      Coordinates<Number> sum = slice.at_end ? SumPulls<kAlike, true>(part, x) : SumPulls<kAlike, false>(part, x);
+      Coordinates<Number> sum =
+          slice.first_stiffness < 0 ? SumPulls<true>(part, slice.at_end, x) : SumPulls<false>(part, slice.at_end, x);
       AddLoad(part, sum);
       ToSlots({hn::Mul(factor, sum.x), hn::Mul(factor, sum.y), hn::Mul(factor, sum.z)}, row, tile);
     }
   }
 }
 
-HWY_INLINE void AddSlot(const double* slot, double* point) {
-  for (int c = 0; c < 3; ++c) point[c] += slot[c];
-}
-HWY_INLINE void AddSlot(const float* slot, double* point) {
-  for (int c = 0; c < 3; ++c) point[c] += static_cast<double>(slot[c]);
+template <bool kFresh, typename Number>
+HWY_INLINE void AddSlot(const Number* slot, double* point) {
+  for (int c = 0; c < 3; ++c) point[c] = (kFresh ? 0 : point[c]) + static_cast<double>(slot[c]);
 }
 
 #if HWY_TARGET != HWY_SCALAR
 using FourDoubles = hn::CappedTag<double, 4>;
 
 // Four points at f, one after the other, += those at the slots.
-template <typename Number>
+template <bool kFresh, typename Number>
 HWY_INLINE void AddFour(const Number* tile, const std::uint16_t* slot, double* f) {
   const hn::Rebind<Number, FourDoubles> four;
   const FourDoubles d;
@@ -232,23 +238,24 @@ HWY_INLINE void AddFour(const Number* tile, const std::uint16_t* slot, double* f
   const auto xyzx = hn::IfThenElse(hn::FirstN(four, 3), hn::LoadU(four, p0), hn::LoadU(four, p1 - 3));
   const auto yzxy = hn::ConcatUpperLower(four, hn::LoadU(four, p2 - 2), hn::LoadU(four, p1 + 1));
   const auto zxyz = hn::IfThenElse(hn::FirstN(four, 1), hn::LoadU(four, p2 + 2), hn::LoadU(four, p3 - 1));
-  hn::StoreU(hn::Add(hn::LoadU(d, f), doubles(xyzx)), d, f);
-  hn::StoreU(hn::Add(hn::LoadU(d, f + 4), doubles(yzxy)), d, f + 4);
-  hn::StoreU(hn::Add(hn::LoadU(d, f + 8), doubles(zxyz)), d, f + 8);
+  const auto add = [d](auto numbers, double* to) {
+    hn::StoreU(kFresh ? numbers : hn::Add(hn::LoadU(d, to), numbers), d, to);
+  };
+  add(doubles(xyzx), f), add(doubles(yzxy), f + 4), add(doubles(zxyz), f + 8);
 }
 #endif
 
 // A block whose vertices lie in f one after the other; `f` is where they begin.
-template <typename Number>
+template <bool kFresh, typename Number>
 HWY_INLINE void AddWhole(const SpringSlices<Number>& slices, const VertexRange& range, const Number* tile, double* f) {
   const std::uint16_t* const slot = slices.slot.data();
   Eigen::Index v = range.first;
 #if HWY_TARGET != HWY_SCALAR
   if constexpr (hn::MaxLanes(FourDoubles()) == 4) {
-    for (; v + 4 <= range.end; v += 4) AddFour(tile, slot + v, f + 3 * (v - range.first));
+    for (; v + 4 <= range.end; v += 4) AddFour<kFresh>(tile, slot + v, f + 3 * (v - range.first));
   }
 #endif
-  for (; v < range.end; ++v) AddSlot(tile + slot[v], f + 3 * (v - range.first));
+  for (; v < range.end; ++v) AddSlot<kFresh>(tile + slot[v], f + 3 * (v - range.first));
 }
 
 template <typename Number>
@@ -260,27 +267,23 @@ HWY_INLINE void AddRowByRow(const SpringSlices<Number>& slices, std::int64_t blo
     for (int row = 0; row < slice.rows; ++row) {
       const std::int64_t place = slice.own[row] / kPointStride<Number>;
       const std::int64_t vertex = slices.order.empty() ? place - first_vertex : slices.order[place];
-      AddSlot(tile + SlotOf<Number>(s - first, row), f + 3 * vertex);
+      AddSlot<false>(tile + SlotOf<Number>(s - first, row), f + 3 * vertex);
     }
   }
 }
 
-template <typename Number>
+template <bool kFresh, typename Number>
 HWY_INLINE void AddBlocks(const SpringSlices<Number>& slices, std::int64_t begin, std::int64_t end, double scale,
                           const Number* x, double* f) {
   Tile<Number> memory;
   Number* const tile = memory.begin();
   for (std::int64_t b = begin; b < end; ++b) {
-    const auto factor = static_cast<Number>(scale);
-    if (slices.stiffness.empty()) {
-      FillTile<true>(slices, b, factor, x, tile);
-    } else {
-      FillTile<false>(slices, b, factor, x, tile);
-    }
+    FillTile(slices, b, static_cast<Number>(scale), x, tile);
     const auto places = static_cast<Eigen::Index>(slices.slot.size());
     const VertexRange range = {b * kVertexBlock, std::min((b + 1) * kVertexBlock, places)};
-    if (slices.blocks[b].whole) {
-      AddWhole(slices, range, tile, f + 3 * (b - begin) * kVertexBlock);
+    double* const own = f + 3 * (b - begin) * kVertexBlock;
+    if (kFresh || slices.blocks[b].whole) {
+      AddWhole<kFresh>(slices, range, tile, own);
     } else {
       AddRowByRow(slices, b, tile, begin * kVertexBlock, f);
     }
@@ -288,13 +291,13 @@ HWY_INLINE void AddBlocks(const SpringSlices<Number>& slices, std::int64_t begin
 }
 
 void AddInDouble(const SpringSlices<double>& slices, std::int64_t begin, std::int64_t end, double scale,
-                 const double* x, double* f) {
-  AddBlocks(slices, begin, end, scale, x, f);
+                 const double* x, bool fresh, double* f) {
+  fresh ? AddBlocks<true>(slices, begin, end, scale, x, f) : AddBlocks<false>(slices, begin, end, scale, x, f);
 }
 
 void AddInSingle(const SpringSlices<float>& slices, std::int64_t begin, std::int64_t end, double scale, const float* x,
-                 double* f) {
-  AddBlocks(slices, begin, end, scale, x, f);
+                 bool fresh, double* f) {
+  fresh ? AddBlocks<true>(slices, begin, end, scale, x, f) : AddBlocks<false>(slices, begin, end, scale, x, f);
 }
 
 void PackHere(const VertexRange& range, const double* x, const double* origin, float* packed) {
@@ -327,13 +330,13 @@ HWY_EXPORT(AddInSingle);
 HWY_EXPORT(PackHere);
 
 void AddSprings(const SpringSlices<double>& slices, std::int64_t first, std::int64_t end, double scale, const double* x,
-                double* f) {
-  HWY_DYNAMIC_DISPATCH(AddInDouble)(slices, first, end, scale, x, f);
+                bool fresh, double* f) {
+  HWY_DYNAMIC_DISPATCH(AddInDouble)(slices, first, end, scale, x, fresh, f);
 }
 
 void AddSprings(const SpringSlices<float>& slices, std::int64_t first, std::int64_t end, double scale, const float* x,
-                double* f) {
-  HWY_DYNAMIC_DISPATCH(AddInSingle)(slices, first, end, scale, x, f);
+                bool fresh, double* f) {
+  HWY_DYNAMIC_DISPATCH(AddInSingle)(slices, first, end, scale, x, fresh, f);
 }
 
 void PackPoints(const VertexRange& range, const double* x, const double* origin, float* packed) {

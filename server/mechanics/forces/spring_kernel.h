@@ -28,6 +28,8 @@ struct SpringSlice {
   int rows = 0;                               // the others are padding
   bool at_end = false;                        // one of its springs, or rows, is of the last vertex of all
   std::int64_t first_column = 0;
+  std::int64_t first_stiffness = -1;  // of its columns; -1 where its springs are alike
+  Number common_stiffness = 0;        // [N/m], where they are
 };
 // A number for each row of a slice: for one spring of each, k l0 [N] or k [N/m].
 template <typename Number>
@@ -58,8 +60,7 @@ struct SpringSlices {
   std::vector<SpringSlice<Number>> slices;           // and one more, for the end of its columns
   std::vector<SliceNumbers<Number>> at_rest;         // a column
   std::vector<SpringNeighbours<Number>> neighbours;  // a column
-  std::vector<SliceNumbers<Number>> stiffness;       // a column; none where all springs are alike
-  Number common_stiffness = 0;                       // [N/m], where they are
+  std::vector<SliceNumbers<Number>> stiffness;       // a column of the slices with springs that are not alike
   std::vector<SliceLoad<Number>> load;               // a slice, or none
   std::vector<std::uint16_t> slot;                   // of each vertex in its block's tile
   std::vector<int> order;                            // the vertices as the slices count them; none where they come so
@@ -78,12 +79,12 @@ inline constexpr int kNoSlot = SlotOf<Number>(kVertexBlock / kSliceRows<Number>,
 // f += scale (sum over the row's springs of (k - k l0 / l) d + load) [N] for the vertices of blocks first to end - 1, d
 // from the row's vertex to the neighbour, l its length [m]; a spring with l = 0 pulls at nothing. x are points in the
 // slices' order, kPointStride numbers each; f has a column a simulated vertex, the first that of block `first`'s first
-// vertex, or of vertex 0 where the slices have an order of their own. Any number of threads may call, at once only on
-// different blocks.
+// vertex, or of vertex 0 where the slices have an order of their own; where it is `fresh`, which it cannot be in such
+// an order, what it held counts for nothing. Any number of threads may call, at once only on different blocks.
 void AddSprings(const SpringSlices<double>& slices, std::int64_t first, std::int64_t end, double scale, const double* x,
-                double* f);
+                bool fresh, double* f);
 void AddSprings(const SpringSlices<float>& slices, std::int64_t first, std::int64_t end, double scale, const float* x,
-                double* f);
+                bool fresh, double* f);
 
 // Points first to end - 1 of the 3 x n array x, from `origin` [m], in single precision; aligned to 16 bytes.
 void PackPoints(const VertexRange& range, const double* x, const double* origin, float* packed);

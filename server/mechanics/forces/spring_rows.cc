@@ -67,9 +67,13 @@ std::vector<int> SortedBlock(const Rows& rows, int first) {
   return block;
 }
 
-bool Alike(const std::vector<Spring>& springs) {
-  return std::all_of(springs.begin(), springs.end(),
-                     [&springs](const Spring& spring) { return spring.stiffness == springs.front().stiffness; });
+// Whether all springs of these rows have the stiffness of the first one's first.
+bool Alike(const Rows& rows, const int* members, int count) {
+  const double stiffness = rows.At(members[0], 0).stiffness;
+  return std::all_of(members, members + count, [&](int row) {
+    return std::all_of(&rows.At(row, 0), &rows.At(row, 0) + rows.Size(row),
+                       [stiffness](const RowSpring& spring) { return spring.stiffness == stiffness; });
+  });
 }
 
 // Appends the slice of `count` rows, the longest first. What they lack to a whole slice, and to the longest, is filled
@@ -83,7 +87,12 @@ void AppendSlice(const Rows& rows, const int* members, int count, SpringSlices<N
   const int width = rows.Size(members[0]);
   slices.at_rest.resize(first + width);
   slices.neighbours.resize(first + width);
-  if (slices.common_stiffness == 0) slices.stiffness.resize(first + width);
+  if (Alike(rows, members, count)) {
+    slice.common_stiffness = static_cast<Number>(rows.At(members[0], 0).stiffness);
+  } else {
+    slice.first_stiffness = static_cast<std::int64_t>(slices.stiffness.size());
+    slices.stiffness.resize(slices.stiffness.size() + width);
+  }
   const int last = rows.count() - 1;
   for (int i = 0; i < kSliceRows<Number>; ++i) {
     const int own = members[i < count ? i : 0];
@@ -95,7 +104,9 @@ void AppendSlice(const Rows& rows, const int* members, int count, SpringSlices<N
       slice.at_end = slice.at_end || spring.other == last;
       slices.neighbours[first + c].place[i] = kStride * spring.other;
       slices.at_rest[first + c].row[i] = static_cast<Number>(spring.stiffness * spring.rest_length);
-      if (slices.common_stiffness == 0) slices.stiffness[first + c].row[i] = static_cast<Number>(spring.stiffness);
+      if (slice.first_stiffness >= 0) {
+        slices.stiffness[slice.first_stiffness + c].row[i] = static_cast<Number>(spring.stiffness);
+      }
     }
   }
   slices.slices.push_back({.first_column = static_cast<std::int64_t>(slices.at_rest.size())});
@@ -119,7 +130,6 @@ SpringSlices<Number> Lay(const std::vector<Spring>& springs, int vertices) {
   SpringSlices<Number> slices;
   slices.order = OrderOf(springs, vertices);
   const Rows rows = ByPlace(springs, slices.order, vertices);
-  if (!springs.empty() && Alike(springs)) slices.common_stiffness = static_cast<Number>(springs.front().stiffness);
   slices.slot.assign(rows.count(), kNoSlot<Number>);
   slices.blocks.emplace_back();
   slices.slices.emplace_back();
@@ -163,7 +173,7 @@ void AddInOrder(const SpringSlices<Number>& slices, int origin, double scale, co
   ForEachBlock({0, places}, [&](const VertexRange& block) { PutInOrder(slices, block, x, origin, ordered); });
   ForEachBlock({0, places}, [&](const VertexRange& range) {
     const std::int64_t block = range.first / kVertexBlock;
-    AddSprings(slices, block, block + 1, scale, ordered, f);
+    AddSprings(slices, block, block + 1, scale, ordered, false, f);
   });
 }
 
@@ -188,18 +198,18 @@ void SpringRows::AddForce(double scale, const ConstPoints& x, MutablePoints f) c
     std::visit([&](const auto& slices) { AddInOrder(slices, origin_, scale, x, f.data()); }, slices_);
   } else {
     const bool single = std::holds_alternative<SpringSlices<float>>(slices_);
-    AddForce({0, x.cols()}, scale, x, single ? PackAll(x, origin_) : nullptr, f);
+    AddForce({0, x.cols()}, scale, x, single ? PackAll(x, origin_) : nullptr, false, f);
   }
 }
 
-void SpringRows::AddForce(const VertexRange& range, double scale, const ConstPoints& x, const float* packed,
+void SpringRows::AddForce(const VertexRange& range, double scale, const ConstPoints& x, const float* packed, bool fresh,
                           MutablePoints f) const {
   const auto block = [](Eigen::Index vertex) { return (vertex + kVertexBlock - 1) / kVertexBlock; };
   const std::int64_t first = block(range.first), end = block(range.end);
   if (const auto* const singles = std::get_if<SpringSlices<float>>(&slices_)) {
-    AddSprings(*singles, first, end, scale, packed, f.data());
+    AddSprings(*singles, first, end, scale, packed, fresh, f.data());
   } else {
-    AddSprings(std::get<SpringSlices<double>>(slices_), first, end, scale, x.data(), f.data());
+    AddSprings(std::get<SpringSlices<double>>(slices_), first, end, scale, x.data(), fresh, f.data());
   }
 }
 

@@ -38,8 +38,9 @@ class SpringRows {
 
   // Whether the same can be had range by range: not in an order of its own.
   bool InRanges() const { return !ordered_; }
-  // The same on the vertices of the range alone. In single precision from `packed`, which is x as PackPoints has it.
-  void AddForce(const VertexRange& range, double scale, const ConstPoints& x, const float* packed,
+  // The same on the vertices of the range alone; what f held counts for nothing where it is `fresh`. In single
+  // precision from `packed`, which is x as PackPoints has it.
+  void AddForce(const VertexRange& range, double scale, const ConstPoints& x, const float* packed, bool fresh,
                 MutablePoints f) const;
 
   // In single precision, the vertex to pack from: in the middle of theirs.

@@ -97,6 +97,18 @@ void AppendSprings(const v1::Springs& scene, int b, const Selection& selection, 
   }
 }
 
+absl::StatusOr<std::vector<Spring>> FindSprings(const v1::Springs& scene, std::string_view path, const Draft& draft) {
+  auto bodies = draft.DeformableBodies(scene.bodies(), absl::StrCat(std::string(path), ".bodies"));
+  if (!bodies.ok()) return bodies.status();
+  std::vector<Spring> springs;
+  for (const int b : *bodies) {
+    const auto selection = draft.Select(b, scene.region(), scene.exclude_region(), path);
+    if (!selection.ok()) return selection.status();
+    AppendSprings(scene, b, *selection, draft, springs);
+  }
+  return springs;
+}
+
 // f += scale times the pulls of all springs [N].
 void AddPulls(const std::vector<Spring>& springs, double scale, const ConstPoints& x, MutablePoints f) {
   for (const Spring& spring : springs) {
@@ -111,22 +123,10 @@ void AddPulls(const std::vector<Spring>& springs, double scale, const ConstPoint
 
 }  // namespace
 
-absl::StatusOr<std::vector<Spring>> Springs::Find(const v1::Springs& scene, std::string_view path, const Draft& draft) {
-  auto bodies = draft.DeformableBodies(scene.bodies(), absl::StrCat(std::string(path), ".bodies"));
-  if (!bodies.ok()) return bodies.status();
-  std::vector<Spring> springs;
-  for (const int b : *bodies) {
-    const auto selection = draft.Select(b, scene.region(), scene.exclude_region(), path);
-    if (!selection.ok()) return selection.status();
-    AppendSprings(scene, b, *selection, draft, springs);
-  }
-  return springs;
-}
-
 absl::StatusOr<std::unique_ptr<Force>> Springs::Make(const v1::Springs& scene, const std::string& given,
                                                      std::string_view path, Draft& draft) {
   const std::string name = ElementName(given, "springs", scene.bodies());
-  auto springs = Find(scene, path, draft);
+  auto springs = FindSprings(scene, path, draft);
   if (!springs.ok()) return springs.status();
   if (springs->empty()) {
     draft.ReportLeftOut(name, "no edge has both its vertices in the region");

@@ -18,8 +18,6 @@ class Springs final : public Force {
   // Null where no edge lies in the region.
   static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::Springs& scene, const std::string& name,
                                                      std::string_view path, Draft& draft);
-  // The same springs alone; INVALID_ARGUMENT as Make.
-  static absl::StatusOr<std::vector<Spring>> Find(const v1::Springs& scene, std::string_view path, const Draft& draft);
 
   Springs(std::string name, std::vector<Spring> springs, Precision precision = Precision::kDouble);
 

@@ -14,6 +14,7 @@ class ThesisEuler final : public Integrator {
   std::string_view name() const override { return "thesis (A.1.3)"; }
   int order() const override { return 0; }
   double MaxStep(const Spectrum& spectrum) const override;
+  Damping counted_damping() const override { return Damping::kAll; }
   absl::Status Advance(const Model& model, const v1::Parameters& parameters, double dt, State& state,
                        Workspace& work) const override;
 };
