@@ -1,6 +1,7 @@
 #include "server/mechanics/block_matrix.h"
 
 #include <algorithm>
+#include <numeric>
 #include <span>
 #include <utility>
 
@@ -33,19 +34,23 @@ class Pattern final : public StiffnessSink {
 BlockMatrix::BlockMatrix(const Model& model, Springs springs) {
   Pattern pattern(springs == Springs::kWithin);
   const int n = static_cast<int>(model.rest.cols());
-  for (int i = 0; i < n; ++i) pattern.places.emplace_back(i, i);
+  for (int i = 0; springs == Springs::kWithin && i < n; ++i) pattern.places.emplace_back(i, i);
   const State rest = model.InitialState();
   const Instant at = MakeInstant(model, model.parameters, rest);
-  for (const auto& force : model.forces) force->AddStiffness(at, pattern);
+  for (const auto& force : model.forces) {
+    force->AddStiffness(at, pattern);
+    if (springs == Springs::kElsewhere) force->AddLatentStiffness(at, pattern);
+  }
   BucketSort(pattern.places, n, [](const std::pair<int, int>& place) { return place.first; });
   pattern.places.erase(std::unique(pattern.places.begin(), pattern.places.end()), pattern.places.end());
   first_.assign(static_cast<size_t>(n) + 1, 0);
-  diagonal_.resize(n);
+  diagonal_.assign(n, -1);
   for (const auto& [i, j] : pattern.places) {
     if (i == j) diagonal_[i] = static_cast<int>(columns_.size());
     columns_.push_back(j);
-    first_[i + 1] = static_cast<int>(columns_.size());
+    ++first_[i + 1];
   }
+  std::partial_sum(first_.begin(), first_.end(), first_.begin());
   blocks_.assign(columns_.size(), Eigen::Matrix3d::Zero());
 }
 
@@ -58,7 +63,8 @@ void BlockMatrix::Assemble(const Model& model, const Instant& at) {
 
 void BlockMatrix::Add(int i, int j, const Eigen::Matrix3d& block) {
   const auto begin = columns_.begin() + first_[i], end = columns_.begin() + first_[i + 1];
-  const auto place = i == j ? columns_.begin() + diagonal_[i] : std::lower_bound(begin, end, j);
+  const bool known = i == j && diagonal_[i] >= 0;
+  const auto place = known ? columns_.begin() + diagonal_[i] : std::lower_bound(begin, end, j);
   if (place != end && *place == j) {
     blocks_[place - columns_.begin()] += block;
   } else {

@@ -14,9 +14,9 @@ namespace phrenic {
 // up later (a contact) is kept beside, more slowly.
 class BlockMatrix final : public StiffnessSink {
  public:
-  // Whether there are blocks off the diagonal for springs.
+  // Whether springs have blocks. Where they have not, the diagonal has only those of vertices on which others act.
   enum class Springs { kWithin, kElsewhere };
-  // The pattern of every force of the model at rest; values zero.
+  // The pattern of every force of the model at rest, and on the diagonal; values zero.
   explicit BlockMatrix(const Model& model, Springs springs = Springs::kWithin);
 
   // K = the stiffness of the model's forces at this instant. Allocates only for blocks that are new to the pattern.
@@ -27,7 +27,7 @@ class BlockMatrix final : public StiffnessSink {
 
   // y = K x, both 3 x n.
   void Times(const ConstPoints& x, MutablePoints y) const;
-  // The block on the diagonal of vertex i, outer products left out.
+  // The block on the diagonal of vertex i, outer products left out; with springs within.
   Eigen::Matrix3d Diagonal(int i) const { return blocks_[diagonal_[i]]; }
   // Calls f(i, j, block) for every block whose place was known at rest, row by row, columns ascending.
   template <typename F>
@@ -49,7 +49,7 @@ class BlockMatrix final : public StiffnessSink {
 
   std::vector<int> first_;     // of row i in columns_ and blocks_; n + 1 of them
   std::vector<int> columns_;   // ascending in each row
-  std::vector<int> diagonal_;  // place of block (i, i)
+  std::vector<int> diagonal_;  // place of block (i, i); -1 where there is none
   std::vector<Eigen::Matrix3d> blocks_;
   std::vector<Extra> extra_;
   OuterProducts outer_;

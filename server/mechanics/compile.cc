@@ -62,6 +62,7 @@ absl::Status AddElements(Draft& draft) {
     draft.model.force_kinds.push_back(KindOf(scene.forces(i)));
   }
   BatchSprings(draft.model);
+  if (absl::Status s = SpreadMassByStiffness(draft.model); !s.ok()) return s;
   for (int i = 0; i < scene.constraints_size(); ++i) {
     auto constraint = MakeConstraint(scene.constraints(i), absl::StrCat("constraints[", i, "]"), draft);
     if (!constraint.ok()) return constraint.status();
@@ -163,10 +164,10 @@ void ResolveParameters(Model& model) {
   if (!model.parameters.has_time_step()) model.parameters.set_time_step(kLongestStep);  // until the limit is known
 }
 
-// Two significant digits, downwards, and just what those digits read as: people see and type it.
+// Three significant digits, downwards, and just what those digits read as: people see and type it.
 double RoundDown(double value) {
-  const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
-  return std::stod(absl::StrFormat("%.1e", std::floor(value / unit * (1 + 1e-12)) * unit));
+  const double unit = std::pow(10, std::floor(std::log10(value)) - 2);
+  return std::stod(absl::StrFormat("%.2e", std::floor(value / unit * (1 + 1e-12)) * unit));
 }
 
 void ChooseStep(Model& model) {
@@ -191,8 +192,6 @@ absl::StatusOr<std::shared_ptr<const Model>> Compile(const v1::Scene& scene, con
   CompletePresets(model.scene);
   StageClock clock(model.report);
   if (absl::Status status = AddBodies(source, draft); !status.ok()) return status;
-  draft.area_mass = model.mass;
-  if (absl::Status status = SpreadMassByStiffness(draft); !status.ok()) return status;
   clock.End("bodies");
   if (absl::Status status = AddElements(draft); !status.ok()) return status;
   clock.End("elements");

@@ -37,9 +37,6 @@ struct Selection {
 // The model in the making: bodies, rest positions and masses are there before the first element is made.
 struct Draft {
   Model model;
-  // Masses as the area (volume) around each simulated vertex has them, however they are spread [kg]: weights by which
-  // elements share out what they act by over a body.
-  Eigen::VectorXd area_mass;
 
   // Bodies by the names of bodies or layers; INVALID_ARGUMENT with the field's path and the names there are.
   absl::StatusOr<std::vector<int>> Bodies(const Names& names, std::string_view path) const;

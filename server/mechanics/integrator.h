@@ -11,6 +11,7 @@
 
 #include "absl/status/status.h"
 #include "phrenic/v1/parameters.pb.h"
+#include "server/mechanics/outer_products.h"
 #include "server/mechanics/solver_effort.h"
 #include "server/mechanics/state.h"
 
@@ -35,6 +36,7 @@ struct Workspace {
   Eigen::VectorXd damping;                 // [N s/m] a vertex
   std::vector<Points> stages;              // of the integrators that have stages; made when first needed
   std::vector<State> trials;               // of adaptive steps; made when first needed
+  OuterProducts shared_damping;            // of the last step, where its integrator asks for it
   std::vector<StateReach> reach;           // of each block after the step, where its integrator has noted it; or none
   SolverEffort effort;                     // of the implicit integrators' linear systems, in the last step
   std::unique_ptr<ImplicitSystem> system;  // of the implicit integrators; made when first needed
@@ -43,10 +45,11 @@ struct Workspace {
   std::unique_ptr<QuasiNewton> quasi_newton;
 };
 
-// What limits an explicit step.
+// What limits an explicit step: largest frequency and damping rate of all modes, or, where damping counts
+// (Integrator::counted_damping), of the mode for which the two together are largest.
 struct Spectrum {
-  double omega_max = 0;                                         // largest eigenfrequency [rad/s]
-  double damping_rate = 0;                                      // largest damping rate [1/s]
+  double omega_max = 0;                                         // eigenfrequency [rad/s]
+  double damping_rate = 0;                                      // [1/s]
   double least_damping_rate = 0;                                // smallest damping rate [1/s]
   double least_mass = std::numeric_limits<double>::infinity();  // of a vertex that moves [kg]
 };
@@ -61,6 +64,10 @@ class Integrator {
   virtual int order() const = 0;
   // The largest stable step [s]; infinity where nothing limits it, 0 where no step is stable.
   virtual double MaxStep(const Spectrum& spectrum) const = 0;
+  // Which damping counts beside a mode's frequency, by its rate c in that mode: the limit is then
+  // dt^2 omega^2 + 2 dt c = 4.
+  enum class Damping { kNone, kOfEachVertex, kAll };
+  virtual Damping counted_damping() const { return Damping::kNone; }
   // Whether Advance leaves the start of the step in the workspace's `before` and `velocity_before` itself; they are to
   // hold it already for one that does not.
   virtual bool keeps_start() const { return false; }

@@ -1,9 +1,12 @@
 #include "server/mechanics/masses.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <span>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "server/mechanics/forces/springs.h"
+#include "server/mechanics/stiffness.h"
 #include "server/mesh/normals.h"
 #include "server/mesh/tetrahedra.h"
 
@@ -30,20 +33,47 @@ Eigen::VectorXd Spread(double total, const Eigen::VectorXd& shares) {
   return raised * (total / raised.sum());
 }
 
-// The sum of the stiffness of each simulated vertex's springs [N/m].
-absl::StatusOr<Eigen::VectorXd> StiffnessOfSprings(const Draft& draft) {
-  Eigen::VectorXd sum = Eigen::VectorXd::Zero(draft.model.rest.cols());
-  for (int i = 0; i < draft.model.scene.forces_size(); ++i) {
-    const v1::Force& force = draft.model.scene.forces(i);
-    if (!force.has_springs()) continue;
-    const auto springs = Springs::Find(force.springs(), absl::StrCat("forces[", i, "].springs"), draft);
-    if (!springs.ok()) return springs.status();
-    for (const Spring& spring : *springs) {
-      sum[spring.a] += spring.stiffness;
-      sum[spring.b] += spring.stiffness;
+// The stiffness that each simulated vertex meets where the others stay: K_ii. A load on a whole surface at once
+// (outer products) is left out: at one vertex it comes to little.
+class OwnStiffness final : public StiffnessSink {
+ public:
+  explicit OwnStiffness(Eigen::Index vertices) : blocks_(vertices, Eigen::Matrix3d::Zero()) {}
+  void Add(int i, int j, const Eigen::Matrix3d& block) override {
+    if (i == j) blocks_[i] += block;
+  }
+  void AddSprings(std::span<const SpringStiffness> springs) override {
+    for (const SpringStiffness& spring : springs) {
+      const Eigen::Matrix3d block = spring.Block();
+      blocks_[spring.a] += block;
+      blocks_[spring.b] += block;
     }
   }
-  return sum;
+  void AddOuter(double, const Points&) override {}
+
+  // Of vertices first ... first + count - 1, each in the direction in which it is stiffest [N/m].
+  Eigen::VectorXd Largest(Eigen::Index first, Eigen::Index count) const {
+    Eigen::VectorXd largest(count);
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+    for (Eigen::Index i = 0; i < count; ++i) {
+      solver.computeDirect(blocks_[first + i], Eigen::EigenvaluesOnly);
+      largest[i] = std::max(0.0, solver.eigenvalues()[2]);
+    }
+    return largest;
+  }
+
+ private:
+  std::vector<Eigen::Matrix3d> blocks_;
+};
+
+OwnStiffness StiffnessAtRest(const Model& model) {
+  OwnStiffness stiffness(model.rest.cols());
+  const State rest = model.InitialState();
+  const Instant at = MakeInstant(model, model.parameters, rest);
+  for (const auto& force : model.forces) {
+    force->AddStiffness(at, stiffness);
+    force->AddLatentStiffness(at, stiffness);
+  }
+  return stiffness;
 }
 
 bool ByStiffness(const v1::Body& body) {
@@ -66,20 +96,18 @@ absl::StatusOr<Eigen::VectorXd> VertexMasses(const v1::Body& body, const Mesh& m
   return Spread(total, share);
 }
 
-absl::Status SpreadMassByStiffness(Draft& draft) {
-  Model& model = draft.model;
+absl::Status SpreadMassByStiffness(Model& model) {
   const auto& bodies = model.scene.bodies();
   if (std::none_of(bodies.begin(), bodies.end(), ByStiffness)) return absl::OkStatus();
-  const auto stiffness = StiffnessOfSprings(draft);
-  if (!stiffness.ok()) return stiffness.status();
+  const OwnStiffness stiffness = StiffnessAtRest(model);
   for (int b = 0; b < bodies.size(); ++b) {
     if (!ByStiffness(bodies[b])) continue;
     const BodyModel& body = model.bodies[b];
     const auto vertices = body.mesh.vertices.cols();
-    const Eigen::VectorXd shares = stiffness->segment(body.first_vertex, vertices);
+    const Eigen::VectorXd shares = stiffness.Largest(body.first_vertex, vertices);
     if (shares.sum() == 0) {
       return FieldError(absl::StrCat("bodies[", b, "].mass_shares"),
-                        "no spring of the scene acts on the body: leave MASS_SHARES_BY_AREA");
+                        "nothing in the scene resists a motion of the body: leave MASS_SHARES_BY_AREA");
     }
     auto mass = model.mass.segment(body.first_vertex, vertices);
     auto inverse = model.inverse_mass.segment(body.first_vertex, vertices);

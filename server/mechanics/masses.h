@@ -13,11 +13,12 @@ namespace phrenic {
 // all (on a real diaphragm, half the step). Equal shares where there is neither; a substance without is
 // INVALID_ARGUMENT with `path`, the body's.
 absl::StatusOr<Eigen::VectorXd> VertexMasses(const v1::Body& body, const Mesh& mesh, std::string_view path);
-// Where bodies ask for it, spreads their mass anew by the stiffness of the springs that the scene has at each vertex
-// (the sum over its springs at rest; by Gershgorin's theorem no frequency is then above sqrt(2 sum/m), the same for
-// all), half an equal share at least. To be called between bodies and elements. INVALID_ARGUMENT where no spring acts
-// on such a body.
-absl::Status SpreadMassByStiffness(Draft& draft);
+// Where bodies ask for it, spreads their inertia anew: by the stiffness [N/m] that each vertex meets at rest in the
+// direction in which it is stiffest, half an equal share at least. With springs no frequency is then above
+// sqrt(2 stiffness/m), the same for all ((a - b)^2 <= 2 a^2 + 2 b^2). To be called once forces are made, which act by
+// the masses of before (weight, friction), and before constraints are. INVALID_ARGUMENT where nothing resists a motion
+// of such a body.
+absl::Status SpreadMassByStiffness(Model& model);
 
 }  // namespace phrenic
 

@@ -2,10 +2,16 @@
 
 #include <cmath>
 
+#include "server/mechanics/advance.h"
+
 namespace phrenic {
 
-ScaledStiffness::ScaledStiffness(const Model& model, const Instant& at)
-    : blocks_(model, BlockMatrix::Springs::kElsewhere), scale_(model.inverse_mass.cwiseSqrt()) {
+ScaledStiffness::ScaledStiffness(const Model& model, const Instant& at, Integrator::Damping counted)
+    : blocks_(model, BlockMatrix::Springs::kElsewhere),
+      damping_(model.rest.cols()),
+      scale_(model.inverse_mass.cwiseSqrt()) {
+  SumDamping(model, at, damping_);
+  if (counted == Integrator::Damping::kAll) SumSharedDamping(model, at, shared_damping_);
   joints_.reserve(static_cast<size_t>(model.report.springs()));
   for (const auto& force : model.forces) {
     force->AddStiffness(at, *this);
@@ -52,6 +58,10 @@ void ScaledStiffness::Times(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::V
   Eigen::Map<Points> product(y.data(), 3, n);
   blocks_.Times(scaled_, product);
   AddJoints(y.data());
+  if (damping_weight_ > 0) {
+    product += scaled_ * (damping_weight_ * damping_).asDiagonal();
+    shared_damping_.AddTimes(damping_weight_, scaled_, product);
+  }
   product *= scale_.asDiagonal();
 }
 

@@ -1,4 +1,5 @@
-// What a model's vibrations follow from: M^-1/2 K M^-1/2, of which the eigenvalues are their frequencies squared.
+// What a model's vibrations follow from: M^-1/2 K M^-1/2, of which the eigenvalues are their frequencies squared; and
+// with it the damping C that an integrator counts, where it is given weight.
 #ifndef PHRENIC_SERVER_MECHANICS_SCALED_STIFFNESS_H_
 #define PHRENIC_SERVER_MECHANICS_SCALED_STIFFNESS_H_
 
@@ -14,11 +15,14 @@ namespace phrenic {
 // thread-safe.
 class ScaledStiffness final : public StiffnessSink {
  public:
-  ScaledStiffness(const Model& model, const Instant& at);
+  ScaledStiffness(const Model& model, const Instant& at, Integrator::Damping counted);
 
   void Add(int i, int j, const Eigen::Matrix3d& block) override { blocks_.Add(i, j, block); }
   void AddSprings(std::span<const SpringStiffness> springs) override;
   void AddOuter(double scale, const Points& g) override { blocks_.AddOuter(scale, g); }
+
+  // From now on K is K + weight C; `weight` in 1/s, 0 at first.
+  void WeighDamping(double weight) { damping_weight_ = weight; }
 
   // y = M^-1/2 K M^-1/2 x, both of 3 n numbers.
   void Times(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::VectorXd& y);
@@ -34,6 +38,9 @@ class ScaledStiffness final : public StiffnessSink {
   void AddJoints(double* y) const;
 
   BlockMatrix blocks_;
+  Eigen::VectorXd damping_;  // C's diagonal [N s/m], and the rest of it
+  OuterProducts shared_damping_;
+  double damping_weight_ = 0;
   std::vector<Joint, LargePages<Joint>> joints_;
   Eigen::VectorXd scale_;
   Points scaled_;

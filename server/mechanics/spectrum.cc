@@ -5,9 +5,11 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "server/mechanics/advance.h"
+#include "server/mechanics/catalogue.h"
 #include "server/mechanics/large_pages.h"
 #include "server/mechanics/scaled_stiffness.h"
 
@@ -15,6 +17,9 @@ namespace phrenic {
 namespace {
 
 constexpr int kProducts = 20;
+constexpr int kRough = 8;        // products for a first guess of the step
+constexpr double kNearby = 0.1;  // of a step: a guess that is off by less is as good as the step itself
+constexpr int kGuesses = 4;
 constexpr double kMostlyLeft = 0.7;
 constexpr double kConverged = 1e-5;   // of the largest Ritz value: round-off over it is still small
 constexpr double kExhausted = 1e-11;  // a product that leaves less than this that is new leaves round-off
@@ -111,18 +116,17 @@ double Orthogonalise(const Basis& basis, Eigen::VectorXd& q) {
   return norm;
 }
 
-Krylov Lanczos(ScaledStiffness& matrix) {
+Krylov Lanczos(ScaledStiffness& matrix, int products) {
   Eigen::VectorXd q = Start(matrix.scale());
   Krylov krylov{.basis = Basis(q.size()), .diagonal = {}, .off_diagonal = {}};
   double norm = q.norm();
-  double largest = 0;  // product: what is left of one is measured by it, whatever the unit of stiffness
+  double largest = 0;  // product's length: what is left of one is measured by it, whatever the unit of stiffness
   bool converged = false;
-  while (krylov.basis.size() < kProducts && norm > kExhausted * largest) {
+  while (krylov.basis.size() < products && norm > kExhausted * largest) {
     krylov.basis.Append(q, norm);
     const int k = krylov.basis.size() - 1;
     const Basis::Column last = krylov.basis[k];
     matrix.Times(last, q);
-    largest = std::max(largest, q.norm());
     const double along = q.dot(last);
     if (k == 0) {
       q -= along * last;
@@ -130,7 +134,9 @@ Krylov Lanczos(ScaledStiffness& matrix) {
       q = (q - along * last) - krylov.off_diagonal.back() * krylov.basis[k - 1];
     }
     krylov.diagonal.push_back(along);
-    krylov.off_diagonal.push_back(q.norm());
+    const double back = k == 0 ? 0 : krylov.off_diagonal.back(), on = q.norm();
+    largest = std::max(largest, std::hypot(back, along, on));
+    krylov.off_diagonal.push_back(on);
     converged = converged || OneHasConverged(krylov);
     if (converged) krylov.off_diagonal.back() = Orthogonalise(krylov.basis, q);
     norm = krylov.off_diagonal.back();
@@ -149,10 +155,48 @@ Eigen::VectorXd Combine(const Basis& basis, const Eigen::VectorXd& weights) {
   return sum;
 }
 
-// The combination of the basis as displacements, of which the largest is of length 1.
-void FindMode(const Model& model, const Krylov& krylov, const Eigen::VectorXd& combination, FastestMode& fastest) {
-  const Eigen::VectorXd scaled = Combine(krylov.basis, combination);
-  const Eigen::Map<const Points> mode(scaled.data(), 3, scaled.size() / 3);
+// The largest of the matrix' eigenvalues.
+struct Largest {
+  double ritz = 0;         // at most the eigenvalue
+  double residual = 0;     // with it, at least
+  Eigen::VectorXd vector;  // of length 1; no rows where there is no eigenvalue above 0
+};
+
+Largest FindLargest(ScaledStiffness& matrix, int products) {
+  const Krylov krylov = Lanczos(matrix, products);
+  if (krylov.basis.size() == 0) return {};
+  const Ritz pairs = RitzPairs(krylov);
+  const Eigen::VectorXd combination = pairs.eigenvectors().rightCols<1>();
+  const double residual = krylov.off_diagonal.back() * std::abs(combination.tail<1>()[0]);
+  const double ritz = pairs.eigenvalues().tail<1>()[0];
+  if (ritz + residual <= 0) return {};
+  return {ritz, residual, Combine(krylov.basis, combination)};
+}
+
+// The mode that limits the integrator's step; the spectrum has its own damping rate then, in the largest one's place.
+Largest FindLimiting(ScaledStiffness& matrix, const Integrator& integrator, Spectrum& spectrum) {
+  Largest rough = FindLargest(matrix, kRough);
+  if (rough.vector.size() == 0) return rough;
+  Largest limiting;
+  Eigen::VectorXd product(rough.vector.size());
+  double step = 2 / std::sqrt(rough.ritz + rough.residual);
+  for (int guess = 0; guess < kGuesses; ++guess) {
+    matrix.WeighDamping(2 / step);
+    limiting = FindLargest(matrix, kProducts);
+    matrix.WeighDamping(0);
+    matrix.Times(limiting.vector, product);
+    const double elastic = limiting.vector.dot(product);
+    spectrum.omega_max = std::sqrt(std::max(0.0, elastic) + limiting.residual);
+    spectrum.damping_rate = std::max(0.0, limiting.ritz - elastic) * step / 2;
+    const double guessed = std::exchange(step, integrator.MaxStep(spectrum));
+    if (std::abs(guessed / step - 1) < kNearby) break;
+  }
+  return limiting;
+}
+
+// The vector as displacements, of which the largest is of length 1.
+void TakeMode(const Model& model, const Eigen::VectorXd& vector, FastestMode& fastest) {
+  const Eigen::Map<const Points> mode(vector.data(), 3, vector.size() / 3);
   Eigen::Index largest = 0;
   mode.colwise().squaredNorm().maxCoeff(&largest);
   fastest.vertex = static_cast<int>(largest);
@@ -166,18 +210,19 @@ FastestMode FindFastestMode(const Model& model, const v1::Parameters& parameters
   FastestMode fastest;
   if (model.rest.cols() == 0 || model.inverse_mass.maxCoeff() == 0) return fastest;
   const Instant at = MakeInstant(model, parameters, state);
-  FindLeastMass(model, fastest.spectrum);
-  FindDampingRates(model, at, fastest.spectrum);
-  ScaledStiffness stiffness(model, at);
-  const Krylov krylov = Lanczos(stiffness);
-  if (krylov.basis.size() == 0) return fastest;
-  const Ritz pairs = RitzPairs(krylov);
-  const Eigen::VectorXd combination = pairs.eigenvectors().rightCols<1>();
-  const double residual = krylov.off_diagonal.back() * std::abs(combination.tail<1>()[0]);
-  const double eigenvalue = std::max(0.0, pairs.eigenvalues().tail<1>()[0] + residual);
-  if (eigenvalue <= 0) return fastest;
-  fastest.spectrum.omega_max = std::sqrt(eigenvalue);
-  FindMode(model, krylov, combination, fastest);
+  const Integrator& integrator = FindIntegrator(parameters.integrator());
+  Spectrum& spectrum = fastest.spectrum;
+  FindLeastMass(model, spectrum);
+  FindDampingRates(model, at, spectrum);
+  ScaledStiffness matrix(model, at, integrator.counted_damping());
+  Largest largest;
+  if (integrator.counted_damping() != Integrator::Damping::kNone && spectrum.damping_rate > 0) {
+    largest = FindLimiting(matrix, integrator, spectrum);
+  } else {
+    largest = FindLargest(matrix, kProducts);
+    spectrum.omega_max = std::sqrt(largest.ritz + largest.residual);
+  }
+  if (largest.vector.size() > 0) TakeMode(model, largest.vector, fastest);
   return fastest;
 }
 

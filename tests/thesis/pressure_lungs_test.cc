@@ -3,7 +3,10 @@
 
 #include <cmath>
 #include <map>
+#include <string>
 
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_replace.h"
 #include "tests/compile_text.h"
 #include "tests/thesis/shipped.h"
 
@@ -49,6 +52,29 @@ TEST(PressureLungs, BreatheAsAPersonDoes) {
   EXPECT_LT(Read(*model, state).at("flow"), -1e-4) << "and goes out";
   advance(length);
   EXPECT_NEAR(Read(*model, state).at("lung volume"), rest.at("lung volume"), 0.15 * tidal);
+}
+
+// What resists the flow of air is met at the end of a step: however narrow the airways, steps are as long, and the
+// lungs take in the less.
+TEST(PressureLungs, NarrowAirwaysShortenNoStep) {
+  const std::string open = "resistance: 1.5e5", scene = ShippedScene("pressure-lungs");
+  ASSERT_NE(scene.find(open), std::string::npos);
+  double last = 1;
+  for (const char* resistance : {"1.5e5", "1.5e6", "1.5e9"}) {
+    SCOPED_TRACE(resistance);
+    const auto model = CompileText(absl::StrReplaceAll(scene, {{open, absl::StrCat("resistance: ", resistance)}}));
+    ASSERT_NE(model, nullptr);
+    const double dt = model->parameters.time_step();
+    EXPECT_GT(dt, 2e-3);
+    State state = model->InitialState();
+    Workspace work = model->MakeWorkspace();
+    while (state.time < 2) ASSERT_TRUE(Step(*model, model->parameters, dt, state, work).ok());
+    const double taken = Read(*model, state).at("lung volume") - 0.0025;
+    EXPECT_GT(taken, 0);
+    EXPECT_LT(taken, last);
+    last = taken;
+  }
+  EXPECT_LT(last, 1e-6);
 }
 
 }  // namespace

@@ -42,7 +42,7 @@ absl::StatusOr<std::unique_ptr<Force>> ActionLine::Make(const v1::ActionLine& sc
     const BodyModel& body = draft.model.bodies[b];
     for (int i = 0; i < body.mesh.vertices.cols(); ++i) {
       const int vertex = body.first_vertex + i;
-      const double weight = FallOff(scene, direction, body.mesh.vertices.col(i)) * draft.area_mass[vertex];
+      const double weight = FallOff(scene, direction, body.mesh.vertices.col(i)) * draft.model.mass[vertex];
       if (weight == 0 || draft.model.inverse_mass[vertex] == 0) continue;
       force->share_[vertex] = weight;
       ++count;

@@ -25,6 +25,18 @@ const Constraint* InBlocks(const Model& model) {
   return can ? model.constraints.front().get() : nullptr;
 }
 
+// Makes v_next, where M (v_next - v) = dt f, one for which (M + dt S)(v_next - v) = dt f, and x_next with it.
+void HoldBack(const Model& model, double dt, const State& start, OuterProducts& shared, Points& x_next,
+              Points& v_next) {
+  thread_local Points gain;
+  gain = v_next - start.v;
+  shared.Correct(
+      dt, [&model](const Points& b, Points& y) { y = b * model.inverse_mass.asDiagonal(); }, gain);
+  v_next = start.v + gain;
+  x_next = start.x;
+  AddToFree(model, dt, v_next, x_next);
+}
+
 }  // namespace
 
 double SemiImplicitEuler::MaxStep(const Spectrum& spectrum) const {
@@ -40,22 +52,24 @@ absl::Status SemiImplicitEuler::Advance(const Model& model, const v1::Parameters
   TakeDriven(model, state.x, state.v, work.driven);
   DriveMotions(model, parameters, dt, state);
   const Instant at = Packed(model, MakeInstant(model, parameters, state));
-  const Constraint* in_blocks = InBlocks(model);
-  // How far a block gets is noted while it is at hand, unless constraints move vertices yet.
-  const bool later = !model.constraints.empty() && in_blocks == nullptr;
+  SumSharedDamping(model, at, work.shared_damping);
+  const bool held_back = !work.shared_damping.empty();
+  const Constraint* in_blocks = held_back ? nullptr : InBlocks(model);
+  // How far a block gets is noted while it is at hand, unless vertices are moved yet.
+  const bool later = held_back || (!model.constraints.empty() && in_blocks == nullptr);
   if (!later) MakePlaces(state.x.cols(), work.reach);
   const bool whole = SumWholeForces(model, at, work.force);
   ForEachBlock({0, state.x.cols()}, [&](const VertexRange& block) {
     const Eigen::Index vertices = block.end - block.first;
     alignas(64) double memory[3 * kVertexBlock];
     Eigen::Map<Points> own(memory, 3, vertices);
-    MutablePoints f =
-        whole ? MutablePoints(work.force.middleCols(block.first, vertices)) : MutablePoints(own.setZero());
-    AddForcesIn(block, model, at, f);
+    MutablePoints f = whole ? MutablePoints(work.force.middleCols(block.first, vertices)) : MutablePoints(own);
+    AddForcesIn(block, model, at, !whole, f);
     KickAndDrift(block, model.inverse_mass, dt, dt, f, state.x, state.v, work.before, work.velocity_before);
     if (in_blocks) in_blocks->ProjectIn(block, parameters, state.x, dt, work.before, work.velocity_before);
     if (!later) NoteReach(block, work.before, work.velocity_before, work.reach);
   });
+  if (held_back) HoldBack(model, dt, state, work.shared_damping, work.before, work.velocity_before);
   state.x.swap(work.before);
   state.v.swap(work.velocity_before);
   PutDriven(model, work.driven, work.before, work.velocity_before);

@@ -1,5 +1,7 @@
 // Semi-implicit Euler (thesis equations 2.6-2.7): v += dt f/m, then x += dt v. Order 1, symplectic. With friction rate
-// c it is stable for omega^2 dt^2 + 2 c dt < 4 (from the characteristic polynomial of x'' = -omega^2 x - c x').
+// c it is stable for omega^2 dt^2 + 2 c dt < 4 (from the characteristic polynomial of x'' = -omega^2 x - c x'). A
+// resistance S that vertices share (flow out of a chamber) is met at the end of the step, (M + dt S)(v' - v) = dt f,
+// and shortens no step.
 #ifndef PHRENIC_SERVER_MECHANICS_INTEGRATORS_SEMI_IMPLICIT_EULER_H_
 #define PHRENIC_SERVER_MECHANICS_INTEGRATORS_SEMI_IMPLICIT_EULER_H_
 
@@ -13,6 +15,7 @@ class SemiImplicitEuler final : public Integrator {
   int order() const override { return 1; }
   bool keeps_start() const override { return true; }
   double MaxStep(const Spectrum& spectrum) const override;
+  Damping counted_damping() const override { return Damping::kOfEachVertex; }
   absl::Status Advance(const Model& model, const v1::Parameters& parameters, double dt, State& state,
                        Workspace& work) const override;
 };
