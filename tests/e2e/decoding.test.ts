@@ -1,12 +1,11 @@
-import { createGrpcWebTransport } from "@connectrpc/connect-web";
 import { setTimeout as sleep } from "node:timers/promises";
 import { afterAll, beforeAll, expect, test } from "vitest";
-import { createApi } from "../../web/src/api";
 import { systemClock } from "../../web/src/clock";
 import { type Body, type FrameArrays } from "../../web/src/codec";
 import { Connection } from "../../web/src/connection";
 import { FrameDecoder } from "../../web/src/frame_decoder";
 import { Codec, type Frame } from "../../web/src/gen/phrenic/v1/frames_pb";
+import { nodeApi } from "./node_api";
 import { Server } from "./server";
 
 let server: Server;
@@ -27,7 +26,7 @@ function worst({ positions: a }: FrameArrays, { positions: b }: FrameArrays): nu
 
 /** Follows the thorax by one codec until `until` has seen what it wants. */
 async function follow(codec: Codec, until: (frame: Frame, decoder: FrameDecoder) => boolean): Promise<void> {
-  const api = createApi(createGrpcWebTransport({ baseUrl: server.url }));
+  const api = nodeApi(server.url);
   let decoder = new FrameDecoder([]);
   let done = false;
   const sink = {
@@ -72,7 +71,7 @@ test.each([Codec.PLANES, Codec.PREDICTED, Codec.BASIS] as Coded[])("AFrameIsDeco
 });
 
 test("WhatIsDecodedLiesWithinItsBoundOfTheRawFrame", async () => {
-  const api = createApi(createGrpcWebTransport({ baseUrl: server.url }));
+  const api = nodeApi(server.url);
   // Shapes are known by now; a frame stands still to be compared.
   await api.sessions.pauseSession({ sessionId: "thorax" });
   const at = async (codec: Codec) => {

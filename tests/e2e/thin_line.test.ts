@@ -1,11 +1,10 @@
-import { createGrpcWebTransport } from "@connectrpc/connect-web";
 import { connect, createServer } from "node:net";
 import { setTimeout as sleep } from "node:timers/promises";
 import { afterAll, beforeAll, expect, test } from "vitest";
-import { createApi } from "../../web/src/api";
 import { systemClock } from "../../web/src/clock";
 import { Connection } from "../../web/src/connection";
 import { Frames } from "../../web/src/frames";
+import { nodeApi } from "./node_api";
 import { Server } from "./server";
 
 let server: Server;
@@ -38,7 +37,7 @@ async function thinLine(url: string, bytesPerSecond: number): Promise<{ url: str
 
 // The viewer's own connection, without the picture: what a viewer on a line sees for `seconds`.
 async function watch(url: string, seconds: number) {
-  const api = createApi(createGrpcWebTransport({ baseUrl: url }));
+  const api = nodeApi(url);
   const frames = new Frames();
   const ages: number[] = [];
   let last = 0;
