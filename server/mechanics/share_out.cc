@@ -1,6 +1,7 @@
 #include "server/mechanics/share_out.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/io_context.hpp>
@@ -25,7 +26,7 @@ constexpr int kLooks = 1000;
 class Pool {
  public:
   explicit Pool(int threads) {
-    for (int i = 0; i < threads; ++i) threads_.emplace_back([this] { Help(); });
+    for (int i = 1; i <= threads; ++i) threads_.emplace_back([this, i] { Help(i); });
   }
   Pool(const Pool&) = delete;
   Pool& operator=(const Pool&) = delete;
@@ -36,20 +37,25 @@ class Pool {
 
   template <typename Work>
   void Post(Work work) {
-    boost::asio::post(context_, std::move(work));
+    boost::asio::post(context_, [work = std::move(work)] { work(number); });
   }
 
  private:
-  void Help() {
+  void Help(int own) {
+    number = own;
     for (int looks = 0; !context_.stopped(); ++looks) {
       if (context_.poll_one() > 0 || (looks > kLooks && context_.run_one() > 0)) looks = 0;
     }
   }
 
+  static thread_local int number;  // of a helper, from 1 on
+
   boost::asio::io_context context_;
   boost::asio::executor_work_guard<boost::asio::io_context::executor_type> guard_{context_.get_executor()};
   std::vector<std::thread> threads_;
 };
+
+thread_local int Pool::number = 0;
 
 struct Helpers {
   int threads = 1;  // with the caller
@@ -61,17 +67,17 @@ Helpers& TheHelpers() {
   return helpers;
 }
 
-// One call's parts, taken one by one by whoever is free. A helper that comes when all are taken does not touch `work`,
-// which is gone when the caller is.
+// One call's parts, in a run for each thread. It begins with its own and goes on with what others have left. A helper
+// that comes when all are taken does not touch `work`, which is gone when the caller is.
 class Parts {
  public:
-  Parts(std::int64_t count, absl::FunctionRef<void(std::int64_t)> work) : count_(count), work_(work) {}
+  Parts(std::int64_t count, int threads, absl::FunctionRef<void(std::int64_t)> work)
+      : count_(count), runs_(std::min<std::int64_t>(threads, kMostRuns)), work_(work) {
+    for (std::int64_t r = 0; r < runs_; ++r) run_[r].next = count * r / runs_, run_[r].end = count * (r + 1) / runs_;
+  }
 
-  void Take() {
-    for (std::int64_t part = next_++; part < count_; part = next_++) {
-      work_(part);
-      ++done_;
-    }
+  void Take(int thread) {
+    for (std::int64_t i = 0; i < runs_; ++i) TakeRun(run_[(thread + i) % runs_]);
   }
   void Await() const {
     for (int spins = 0; done_ < count_; ++spins) {
@@ -80,9 +86,22 @@ class Parts {
   }
 
  private:
-  const std::int64_t count_;
+  static constexpr std::int64_t kMostRuns = 16;
+  struct alignas(64) Run {
+    std::atomic<std::int64_t> next = 0;
+    std::int64_t end = 0;
+  };
+
+  void TakeRun(Run& run) {
+    std::int64_t taken = 0;
+    for (std::int64_t part = run.next++; part < run.end; part = run.next++, ++taken) work_(part);
+    if (taken > 0) done_ += taken;
+  }
+
+  const std::int64_t count_, runs_;
   const absl::FunctionRef<void(std::int64_t)> work_;
-  std::atomic<std::int64_t> next_ = 0, done_ = 0;
+  std::array<Run, kMostRuns> run_;
+  std::atomic<std::int64_t> done_ = 0;
 };
 
 }  // namespace
@@ -102,9 +121,9 @@ void ShareOut(std::int64_t parts, absl::FunctionRef<void(std::int64_t)> work) {
     for (std::int64_t part = 0; part < parts; ++part) work(part);
     return;
   }
-  const auto shared = std::make_shared<Parts>(parts, work);
-  for (int i = 1; i < helpers.threads; ++i) helpers.pool->Post([shared] { shared->Take(); });
-  shared->Take();
+  const auto shared = std::make_shared<Parts>(parts, helpers.threads, work);
+  for (int i = 1; i < helpers.threads; ++i) helpers.pool->Post([shared](int helper) { shared->Take(helper); });
+  shared->Take(0);
   shared->Await();
 }
 

@@ -15,8 +15,9 @@ void SetStepThreads(int threads);
 int StepThreads();
 
 // Calls work(part) once for each part from 0 to parts - 1, on the caller and on whichever of the others are free, in
-// any order; few parts on the caller alone. Returns when all are done, and never waits for a thread that has not begun.
-// Any number of threads may call.
+// any order; few parts on the caller alone. Each thread begins with parts of its own, the same in every call of as
+// many: what it wrote there last is still in its core's cache. Returns when all are done, and never waits for a thread
+// that has not begun. Any number of threads may call.
 void ShareOut(std::int64_t parts, absl::FunctionRef<void(std::int64_t)> work);
 
 }  // namespace phrenic
