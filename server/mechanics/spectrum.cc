@@ -116,8 +116,7 @@ double Orthogonalise(const Basis& basis, Eigen::VectorXd& q) {
   return norm;
 }
 
-Krylov Lanczos(ScaledStiffness& matrix, int products) {
-  Eigen::VectorXd q = Start(matrix.scale());
+Krylov Lanczos(ScaledStiffness& matrix, Eigen::VectorXd q, int products) {
   Krylov krylov{.basis = Basis(q.size()), .diagonal = {}, .off_diagonal = {}};
   double norm = q.norm();
   double largest = 0;  // product's length: what is left of one is measured by it, whatever the unit of stiffness
@@ -162,8 +161,8 @@ struct Largest {
   Eigen::VectorXd vector;  // of length 1; no rows where there is no eigenvalue above 0
 };
 
-Largest FindLargest(ScaledStiffness& matrix, int products) {
-  const Krylov krylov = Lanczos(matrix, products);
+Largest FindLargest(ScaledStiffness& matrix, const Eigen::VectorXd& start, int products) {
+  const Krylov krylov = Lanczos(matrix, start, products);
   if (krylov.basis.size() == 0) return {};
   const Ritz pairs = RitzPairs(krylov);
   const Eigen::VectorXd combination = pairs.eigenvectors().rightCols<1>();
@@ -173,16 +172,17 @@ Largest FindLargest(ScaledStiffness& matrix, int products) {
   return {ritz, residual, Combine(krylov.basis, combination)};
 }
 
-// The mode that limits the integrator's step; the spectrum has its own damping rate then, in the largest one's place.
+// The mode that limits the integrator's step; the spectrum has its own damping rate then, in the largest one's place. A
+// search goes on from what the last one found, and from all directions, as another mode may be the one now.
 Largest FindLimiting(ScaledStiffness& matrix, const Integrator& integrator, Spectrum& spectrum) {
-  Largest rough = FindLargest(matrix, kRough);
-  if (rough.vector.size() == 0) return rough;
-  Largest limiting;
-  Eigen::VectorXd product(rough.vector.size());
-  double step = 2 / std::sqrt(rough.ritz + rough.residual);
+  const Eigen::VectorXd start = Start(matrix.scale()).normalized();
+  Largest limiting = FindLargest(matrix, start, kRough);
+  if (limiting.vector.size() == 0) return limiting;
+  Eigen::VectorXd product(limiting.vector.size());
+  double step = 2 / std::sqrt(limiting.ritz + limiting.residual);
   for (int guess = 0; guess < kGuesses; ++guess) {
     matrix.WeighDamping(2 / step);
-    limiting = FindLargest(matrix, kProducts);
+    limiting = FindLargest(matrix, start + limiting.vector, kProducts - kRough);
     matrix.WeighDamping(0);
     matrix.Times(limiting.vector, product);
     const double elastic = limiting.vector.dot(product);
@@ -219,7 +219,7 @@ FastestMode FindFastestMode(const Model& model, const v1::Parameters& parameters
   if (integrator.counted_damping() != Integrator::Damping::kNone && spectrum.damping_rate > 0) {
     largest = FindLimiting(matrix, integrator, spectrum);
   } else {
-    largest = FindLargest(matrix, kProducts);
+    largest = FindLargest(matrix, Start(matrix.scale()), kProducts);
     spectrum.omega_max = std::sqrt(largest.ritz + largest.residual);
   }
   if (largest.vector.size() > 0) TakeMode(model, largest.vector, fastest);

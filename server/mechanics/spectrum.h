@@ -16,8 +16,8 @@ struct FastestMode {
 // Lanczos on M^-1/2 K M^-1/2 in the state, K positive semi-definite, with what may yet wake (latent stiffness): 20
 // products, plus the residual of the largest Ritz value, which makes it an upper bound of the eigenvalue it found
 // (estimates over true omega: 0.985-1.008). Reorthogonalised as soon as a Ritz vector converges. Where damping counts
-// (Integrator::counted_damping), the same for K + (2/dt) C, dt near the largest step that it gives: of dt^2 K + 2 dt C
-// the largest eigenvalue is then 4. Deterministic.
+// (Integrator::counted_damping), for K + (2/dt) C, dt near the largest step that it gives: of dt^2 K + 2 dt C the
+// largest eigenvalue is then 4. Eight of the products are K's alone then, for a first dt and a start. Deterministic.
 FastestMode FindFastestMode(const Model& model, const v1::Parameters& parameters, const State& state);
 
 }  // namespace phrenic
