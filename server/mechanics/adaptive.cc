@@ -51,8 +51,6 @@ absl::Status AdvanceAdaptively(const Model& model, const v1::Parameters& paramet
       std::swap(from, halves);
       ++done;
     } else if (halvings == kMostHalvings) {
-      work.before = state.x;
-      work.velocity_before = state.v;
       return absl::AbortedError("no part of the step is small enough for step_tolerance: raise it, or lower time_step");
     } else {
       ++halvings;
@@ -65,8 +63,6 @@ absl::Status AdvanceAdaptively(const Model& model, const v1::Parameters& paramet
   from.tick = state.tick;
   from.halvings = halvings;
   std::swap(state, from);
-  work.before = from.x;
-  work.velocity_before = from.v;
   return absl::OkStatus();
 }
 

@@ -16,11 +16,6 @@ constexpr double kKept = 1e-11;   // of the scene's size: what is off by less is
 constexpr double kGain = 0.9;     // a round that leaves more of the residual than this is the last
 constexpr double kStill = 1e-12;  // of the largest velocity: a round that changes less is the last
 
-bool AllByRange(const Model& model) {
-  return std::all_of(model.step_forces.begin(), model.step_forces.end(),
-                     [](const Force* force) { return force->by_range(); });
-}
-
 }  // namespace
 
 Instant InstantAhead(const Model& model, const v1::Parameters& parameters, double ahead, const State& state) {
@@ -48,17 +43,14 @@ void SumForces(const Model& model, const Instant& at, Points& f) {
 }
 
 bool SumWholeForces(const Model& model, const Instant& at, Points& f) {
-  if (AllByRange(model)) return false;
+  if (model.whole_forces.empty()) return false;
   f.setZero();
-  for (const Force* force : model.step_forces) {
-    if (!force->by_range()) force->AddForce(at, f);
-  }
+  for (const Force* force : model.whole_forces) force->AddForce(at, f);
   return true;
 }
 
 void AddForcesIn(const VertexRange& range, const Model& model, const Instant& at, bool fresh, MutablePoints f) {
-  for (const Force* force : model.step_forces) {
-    if (!force->by_range()) continue;
+  for (const Force* force : model.range_forces) {
     fresh ? force->SetForceIn(range, at, f) : force->AddForceIn(range, at, f);
     fresh = false;
   }

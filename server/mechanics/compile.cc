@@ -10,7 +10,7 @@
 #include "absl/strings/str_format.h"
 #include "server/mechanics/bodies.h"
 #include "server/mechanics/catalogue.h"
-#include "server/mechanics/forces/spring_batch.h"
+#include "server/mechanics/forces/step_forces.h"
 #include "server/mechanics/masses.h"
 #include "server/mechanics/presets.h"
 #include "server/mechanics/scene_hash.h"
@@ -61,7 +61,7 @@ absl::Status AddElements(Draft& draft) {
     draft.model.forces.push_back(*std::move(force));
     draft.model.force_kinds.push_back(KindOf(scene.forces(i)));
   }
-  BatchSprings(draft.model);
+  ChooseStepForces(draft.model);
   if (absl::Status s = SpreadMassByStiffness(draft.model); !s.ok()) return s;
   for (int i = 0; i < scene.constraints_size(); ++i) {
     auto constraint = MakeConstraint(scene.constraints(i), absl::StrCat("constraints[", i, "]"), draft);

@@ -2,6 +2,7 @@
 #ifndef PHRENIC_SERVER_MECHANICS_CONSTRAINT_H_
 #define PHRENIC_SERVER_MECHANICS_CONSTRAINT_H_
 
+#include <span>
 #include <string>
 
 #include "server/mechanics/instant.h"
@@ -17,12 +18,21 @@ class Constraint {
   // Moves the positions of `state` onto the constraint, and its velocities by the same over `dt`. `before` are the
   // positions at the start of the step, `dt` its length [s].
   virtual void Project(const v1::Parameters& parameters, const ConstPoints& before, double dt, State& state) const = 0;
-  // A constraint that holds for all vertices once it holds for each block of them (kVertexBlock) by itself says so:
-  // what Project does, this does to the blocks of a range, with the same bits, and writes and reads at x, v and
-  // `before` no others' places; several threads may ask at once, for different ranges.
+  // A constraint of which a part holds once it holds for each block of vertices (kVertexBlock) by itself says so. What
+  // Project does, ProjectIn does to a block, of which `before` has the columns, and writes and reads no others' places;
+  // several threads may ask at once, for different blocks. ProjectAcross does what is left, after all of them, reads
+  // `before` of the vertices `across` alone, and returns the blocks of which it may have moved one. Both together give
+  // Project's bits.
   virtual bool by_range() const { return false; }
-  virtual void ProjectIn(const VertexRange&, const v1::Parameters&, const ConstPoints& /*before*/, double /*dt*/,
-                         Points& /*x*/, Points& /*v*/) const {}
+  // Whether there is anything to do in a block.
+  virtual bool ActsIn(Eigen::Index /*block*/) const { return false; }
+  virtual void ProjectIn(const VertexRange& /*block*/, const v1::Parameters&, const ConstPoints& /*before*/,
+                         double /*dt*/, Points& /*x*/, Points& /*v*/) const {}
+  virtual std::span<const int> across() const { return {}; }
+  virtual std::span<const Eigen::Index> ProjectAcross(const v1::Parameters&, const ConstPoints& /*before*/,
+                                                      double /*dt*/, State&) const {
+    return {};
+  }
   // Takes from the velocities what would lead off the constraint (the second half of RATTLE). Positions lie on it.
   virtual void ProjectVelocities(const v1::Parameters&, State&) const {}
   // Whether an equation that always holds describes it, as ProjectVelocities keeps it: not for what jerks.

@@ -29,6 +29,8 @@ class Force {
   // different ranges.
   virtual bool by_range() const { return false; }
   virtual void AddForceIn(const VertexRange&, const Instant&, MutablePoints /*f*/) const {}
+  // Whether it then reads positions of vertices outside the range, `at.packed` apart: those are to wait for it.
+  virtual bool reads_others() const { return false; }
   // f = force, whatever it held: what the first to act on it is asked.
   virtual void SetForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const {
     f.setZero();

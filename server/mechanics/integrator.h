@@ -30,9 +30,9 @@ struct Workspace {
   Workspace& operator=(Workspace&&) noexcept;
   ~Workspace();
 
-  Points before, velocity_before;          // at the start of the step [m], [m/s]
+  Points before, velocity_before;          // at the start of the step, for integrators that need it [m], [m/s]
   Points force;                            // [N]
-  std::vector<Eigen::Vector3d> driven;     // positions and velocities of driven vertices at the start of the step
+  std::vector<Eigen::Vector3d> driven;     // positions of driven vertices at the start of the step [m]
   Eigen::VectorXd damping;                 // [N s/m] a vertex
   std::vector<Points> stages;              // of the integrators that have stages; made when first needed
   std::vector<State> trials;               // of adaptive steps; made when first needed
@@ -68,9 +68,8 @@ class Integrator {
   // dt^2 omega^2 + 2 dt c = 4.
   enum class Damping { kNone, kOfEachVertex, kAll };
   virtual Damping counted_damping() const { return Damping::kNone; }
-  // Whether Advance leaves the start of the step in the workspace's `before` and `velocity_before` itself; they are to
-  // hold it already for one that does not.
-  virtual bool keeps_start() const { return false; }
+  // Whether the workspace's `before` and `velocity_before` are to hold the start of the step when it is to advance.
+  virtual bool needs_start() const { return true; }
   // Carries positions, velocities and poses from state.time to state.time + dt; motions drive the bones, forces the
   // tissue, and constraints have the last word. Leaves state.time, phase and tick as they are. ABORTED
   // with the remedy where it finds no next state.

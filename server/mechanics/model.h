@@ -53,9 +53,10 @@ struct Model {
   Eigen::VectorXd inverse_mass;  // [1/kg]; 0 for fixed and driven vertices
   std::vector<std::unique_ptr<Force>> forces;
   std::vector<std::string> force_kinds;  // of each of `forces`, as scene text names it: "action_line"
-  // The same sum as a step takes it: those of `forces` that are best worked out together are in `batches`.
+  // The same sum as a step takes it: those of `forces` that are best worked out together are in `batches`, and those
+  // that can be worked out range by range are, after the others.
   std::vector<std::unique_ptr<Force>> batches;
-  std::vector<const Force*> step_forces;
+  std::vector<const Force*> whole_forces, range_forces;
   int packed_from = -1;  // a step packs positions, from this vertex, for forces in single precision; -1 where none are
   std::vector<std::unique_ptr<Motion>> motions;
   std::vector<std::unique_ptr<Constraint>> constraints;

@@ -112,7 +112,7 @@ std::string Remedy(const Model& model, const v1::Parameters& parameters, const S
 absl::Status Step(const Model& model, const v1::Parameters& parameters, double dt, State& state, Workspace& work) {
   const Integrator& integrator = FindIntegrator(parameters.integrator());
   const bool adaptive = parameters.step_tolerance() > 0 && integrator.order() > 0;
-  if (adaptive || !integrator.keeps_start()) KeepBefore(state, work);
+  if (!adaptive && integrator.needs_start()) KeepBefore(state, work);
   work.effort.Begin(parameters.solver_budget());
   work.reach.clear();
   absl::Status advanced = adaptive ? AdvanceAdaptively(model, parameters, integrator, dt, state, work)
@@ -124,16 +124,6 @@ absl::Status Step(const Model& model, const v1::Parameters& parameters, double d
   if (adaptive) work.reach.clear();  // of a part of the step, or a trial
   if (!WithinBounds(model, dt, state, work.reach)) return absl::OutOfRangeError("the step diverged");
   return absl::OkStatus();
-}
-
-void TakeBack(const Model& model, const v1::Parameters& parameters, double dt, const Workspace& work, State& state) {
-  state.x = work.before;
-  state.v = work.velocity_before;
-  state.time -= dt;
-  state.phase -= dt / parameters.breath_length();
-  --state.tick;
-  state.history = {};
-  DriveMotions(model, parameters, 0, state);
 }
 
 v1::Divergence Diagnose(const Model& model, const v1::Parameters& parameters, const absl::Status& why,

@@ -73,29 +73,52 @@ void KickAndDriftHere(const VertexRange& range, const double* inverse_mass, doub
   ForEach(range, inverse_mass, whole, single);
 }
 
-void AddFrictionHere(const VertexRange& range, const double* c, const double* v, double* f) {
+// A force as often as vertices' coordinates fill three vectors.
+struct Repeated {
+  HWY_ALIGN double numbers[3 * kLanes];
+
+  void Set(const Eigen::Vector3d& force) {
+    for (Eigen::Index i = 0; i < 3 * kLanes; ++i) numbers[i] = force[i % 3];
+  }
+  HWY_INLINE Vector At(int vector) const { return hn::Load(Tag(), numbers + vector * kLanes); }
+};
+
+template <bool kRubs>
+HWY_INLINE void AddLoadsTo(const VertexRange& range, const double* c, const double* v, const SharedLoad* loads,
+                           size_t count, double* f) {
   const Tag d;
-  const Eigen::Index own = 3 * range.first;
-  const auto whole = [&](Eigen::Index i, Vector of_vertices, int) {
-    double* const to = f + i - own;
-    hn::StoreU(hn::Sub(hn::LoadU(d, to), hn::Mul(of_vertices, hn::LoadU(d, v + i))), d, to);
-  };
-  const auto single = [&](Eigen::Index i, double of_vertex) { f[i - own] -= of_vertex * v[i]; };
-  ForEach(range, c, whole, single);
+  const Spread spread;
+  Repeated forces[kMostLoads];
+  for (size_t l = 0; l < count; ++l) forces[l].Set(loads[l].force);
+  Eigen::Index vertex = range.first;
+  for (; vertex + kLanes <= range.end; vertex += kLanes) {
+    double* const to = f + 3 * (vertex - range.first);
+    Vector sum[3];
+    for (int i = 0; i < 3; ++i) sum[i] = hn::LoadU(d, to + i * kLanes);
+    if constexpr (kRubs) {
+      const Vector of = hn::LoadU(d, c + vertex);
+      for (int i = 0; i < 3; ++i) {
+        sum[i] = hn::Sub(sum[i], hn::Mul(spread.Of(of, i), hn::LoadU(d, v + 3 * vertex + i * kLanes)));
+      }
+    }
+    for (size_t l = 0; l < count; ++l) {
+      const Vector of = hn::LoadU(d, loads[l].share + vertex);
+      for (int i = 0; i < 3; ++i) sum[i] = hn::Add(sum[i], hn::Mul(spread.Of(of, i), forces[l].At(i)));
+    }
+    for (int i = 0; i < 3; ++i) hn::StoreU(sum[i], d, to + i * kLanes);
+  }
+  for (; vertex < range.end; ++vertex) {
+    for (int i = 0; i < 3; ++i) {
+      double& to = f[3 * (vertex - range.first) + i];
+      if constexpr (kRubs) to -= c[vertex] * v[3 * vertex + i];
+      for (size_t l = 0; l < count; ++l) to += loads[l].share[vertex] * loads[l].force[i];
+    }
+  }
 }
 
-void AddSharesHere(const VertexRange& range, const double* s, const double* force, double* f) {
-  const Tag d;
-  const Eigen::Index own = 3 * range.first;
-  HWY_ALIGN double repeated[3 * kLanes];
-  for (Eigen::Index i = 0; i < 3 * kLanes; ++i) repeated[i] = force[i % 3];
-  const Vector forces[3] = {hn::Load(d, repeated), hn::Load(d, repeated + kLanes), hn::Load(d, repeated + 2 * kLanes)};
-  const auto whole = [&](Eigen::Index i, Vector of_vertices, int which) {
-    double* const to = f + i - own;
-    hn::StoreU(hn::Add(hn::LoadU(d, to), hn::Mul(of_vertices, forces[which])), d, to);
-  };
-  const auto single = [&](Eigen::Index i, double of_vertex) { f[i - own] += of_vertex * force[i % 3]; };
-  ForEach(range, s, whole, single);
+void AddLoadsHere(const VertexRange& range, const double* c, const double* v, const SharedLoad* loads, size_t count,
+                  double* f) {
+  c != nullptr ? AddLoadsTo<true>(range, c, v, loads, count, f) : AddLoadsTo<false>(range, c, v, loads, count, f);
 }
 
 // Numbers are taken in groups of this many, one of each for a running result: whatever the vectors' length, and so many
@@ -168,8 +191,7 @@ HWY_AFTER_NAMESPACE();
 namespace phrenic {
 
 HWY_EXPORT(KickAndDriftHere);
-HWY_EXPORT(AddFrictionHere);
-HWY_EXPORT(AddSharesHere);
+HWY_EXPORT(AddLoadsHere);
 HWY_EXPORT(ReachHere);
 
 void KickAndDrift(const VertexRange& range, const Eigen::VectorXd& w, double kick, double drift, const ConstPoints& f,
@@ -178,12 +200,10 @@ void KickAndDrift(const VertexRange& range, const Eigen::VectorXd& w, double kic
   (range, w.data(), kick, drift, f.data(), x.data(), v.data(), x_next.data(), v_next.data());
 }
 
-void AddFriction(const VertexRange& range, const Eigen::VectorXd& c, const ConstPoints& v, MutablePoints f) {
-  HWY_DYNAMIC_DISPATCH(AddFrictionHere)(range, c.data(), v.data(), f.data());
-}
-
-void AddShares(const VertexRange& range, const Eigen::VectorXd& s, const Eigen::Vector3d& force, MutablePoints f) {
-  HWY_DYNAMIC_DISPATCH(AddSharesHere)(range, s.data(), force.data(), f.data());
+void AddLoads(const VertexRange& range, const Eigen::VectorXd* c, const ConstPoints& v,
+              std::span<const SharedLoad> loads, MutablePoints f) {
+  HWY_DYNAMIC_DISPATCH(AddLoadsHere)
+  (range, c == nullptr ? nullptr : c->data(), v.data(), loads.data(), loads.size(), f.data());
 }
 
 StateReach ReachOf(const VertexRange& range, const Points& x, const Points& v) {

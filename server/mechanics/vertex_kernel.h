@@ -4,6 +4,9 @@
 #ifndef PHRENIC_SERVER_MECHANICS_VERTEX_KERNEL_H_
 #define PHRENIC_SERVER_MECHANICS_VERTEX_KERNEL_H_
 
+#include <cstddef>
+#include <span>
+
 #include "server/mechanics/state.h"
 #include "server/mechanics/vertex_range.h"
 #include "server/mesh/mesh.h"
@@ -15,11 +18,17 @@ namespace phrenic {
 void KickAndDrift(const VertexRange& range, const Eigen::VectorXd& w, double kick, double drift, const ConstPoints& f,
                   const Points& x, const Points& v, Points& x_next, Points& v_next);
 
-// f -= c v, c a coefficient a vertex [N s/m].
-void AddFriction(const VertexRange& range, const Eigen::VectorXd& c, const ConstPoints& v, MutablePoints f);
+// A force [N] of which each vertex has a share.
+struct SharedLoad {
+  const double* share;  // one a simulated vertex
+  Eigen::Vector3d force;
+};
+inline constexpr size_t kMostLoads = 4;
 
-// f += s F, s a share a vertex, F one force for all [N].
-void AddShares(const VertexRange& range, const Eigen::VectorXd& s, const Eigen::Vector3d& force, MutablePoints f);
+// f -= c v, c a coefficient a vertex [N s/m], where one is given; then f += share force for each of the loads,
+// kMostLoads at most, in their order.
+void AddLoads(const VertexRange& range, const Eigen::VectorXd* c, const ConstPoints& v,
+              std::span<const SharedLoad> loads, MutablePoints f);
 
 // How far the range has got; sums are taken in the same order by all instruction sets.
 StateReach ReachOf(const VertexRange& range, const Points& x, const Points& v);

@@ -10,6 +10,7 @@
 #include "absl/status/status.h"
 #include "phrenic/v1/session.pb.h"
 #include "server/mechanics/model.h"
+#include "server/mechanics/trail.h"
 
 namespace phrenic::session {
 
@@ -33,7 +34,7 @@ class Run {
   // Of the last step.
   const SolverEffort& effort() const { return work_.effort; }
   // Every field must be set.
-  void set_parameters(const v1::Parameters& parameters) { parameters_ = parameters; }
+  void set_parameters(const v1::Parameters& parameters);
   // As phrenic::ChangePulls: RESOURCE_EXHAUSTED where they become too many.
   absl::Status ChangePulls(const std::vector<VertexPull>& changes, bool alone);
   const std::optional<v1::Divergence>& divergence() const { return divergence_; }
@@ -45,6 +46,7 @@ class Run {
   v1::Parameters parameters_;
   State state_;
   Workspace work_;
+  Trail trail_;
   std::optional<v1::Divergence> divergence_;
 };
 

@@ -49,6 +49,7 @@ class TimedForce final : public Force {
     force_.AddForce(at, f);
   }
   bool by_range() const override { return force_.by_range(); }
+  bool reads_others() const override { return force_.reads_others(); }
   void AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const override {
     const Span span(adding_, range.first == 0);
     force_.AddForceIn(range, at, f);
@@ -137,7 +138,8 @@ Model Timed(const Model& model, Stages& stages) {
   for (const auto& force : model.forces) timed.forces.push_back(std::make_unique<TimedForce>(*force, stages));
   for (const auto& batch : model.batches) timed.batches.push_back(std::make_unique<TimedForce>(*batch, stages));
   timed.packed_from = model.packed_from;
-  for (const Force* force : model.step_forces) timed.step_forces.push_back(&TimedOf(*force, model, timed));
+  for (const Force* force : model.whole_forces) timed.whole_forces.push_back(&TimedOf(*force, model, timed));
+  for (const Force* force : model.range_forces) timed.range_forces.push_back(&TimedOf(*force, model, timed));
   for (const auto& constraint : model.constraints) {
     timed.constraints.push_back(std::make_unique<TimedConstraint>(*constraint, stages));
   }

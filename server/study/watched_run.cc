@@ -5,19 +5,10 @@
 
 #include "absl/strings/str_format.h"
 #include "server/mechanics/step.h"
+#include "server/mechanics/trail.h"
 #include "server/study/trajectory.h"
 
 namespace phrenic::study {
-namespace {
-
-v1::Divergence Explain(const Subject& subject, const absl::Status& why, double dt, const Workspace& work,
-                       const State& diverged) {
-  State before = diverged;
-  TakeBack(*subject.model, subject.parameters, dt, work, before);
-  return Diagnose(*subject.model, subject.parameters, why, before, diverged);
-}
-
-}  // namespace
 
 double KineticEnergy(const Model& model, const Points& v) {
   double energy = 0;
@@ -33,12 +24,14 @@ std::string Where(const v1::Divergence& divergence) {
 
 absl::StatusOr<WatchedRun> Watch(const Subject& subject, const State& start, double seconds, double dt,
                                  double most_cpu_s, const Progress& progress, const EachState& each) {
-  Subject stepped = subject;
-  stepped.parameters.set_time_step(dt);
+  const Model& model = *subject.model;
+  v1::Parameters parameters = subject.parameters;
+  parameters.set_time_step(dt);
   WatchedRun run;
   State& state = run.last;
   state = start;
-  Workspace work = subject.model->MakeWorkspace();
+  Workspace work = model.MakeWorkspace();
+  Trail trail;
   const long all = std::max(1L, std::lround(std::ceil(seconds / dt * (1 - 1e-9))));
   const double began = ThreadCpuSeconds();
   if (each) each(state);
@@ -48,13 +41,15 @@ absl::StatusOr<WatchedRun> Watch(const Subject& subject, const State& start, dou
       run.cut = ThreadCpuSeconds() - began > most_cpu_s;
       if (run.cut) return run;
     }
-    run.status = Step(*subject.model, stepped.parameters, dt, state, work);
+    trail.Note(parameters, state);
+    run.status = Step(model, parameters, dt, state, work);
     if (!run.status.ok()) {
-      run.divergence = Explain(stepped, run.status, dt, work, state);
+      const State before = trail.StartOfLastStep(model, parameters, dt, work);
+      run.divergence = Diagnose(model, parameters, run.status, before, state);
       return run;
     }
     run.simulated_s = state.time;
-    const double kinetic = KineticEnergy(*subject.model, state.v);
+    const double kinetic = KineticEnergy(model, state.v);
     run.largest_kinetic = std::max(run.largest_kinetic, kinetic);
     if (2 * done >= all) run.late_kinetic = std::max(run.late_kinetic, kinetic);
     if (each) each(state);

@@ -124,12 +124,15 @@ TEST(LinkPackets, AreRestoredAsLinkByLinkOnEveryInstructionSet) {
   start.x += 0.003 * Points::Random(3, start.x.cols());
   start.x.col(6).swap(start.x.col(7));
   plain = start;
-  for (const Link& link : links) Restore(link, before, 0.01, plain.x, plain.v);
+  const auto restore = [&before](const Link& link, State& state) {
+    Restore(link, before.col(link.b) - before.col(link.a), 0.01, state.x, state.v);
+  };
+  for (const Link& link : links) restore(link, plain);
   State first;
   OnEveryTarget([&] {
     State here = start;
-    EXPECT_EQ(RestorePackets(PackLinks(links), before.data(), 0.01, here.x.data(), here.v.data()), 1U << 3);
-    Restore(links[3], before, 0.01, here.x, here.v);
+    EXPECT_EQ(RestorePackets(PackLinks(links, 0, false), before.data(), 0.01, here.x.data(), here.v.data()), 1U << 3);
+    restore(links[3], here);
     EXPECT_LT((here.x - plain.x).norm(), 1e-15);
     EXPECT_LT((here.v - plain.v).norm(), 1e-12);
     if (first.x.size() == 0) first = here;

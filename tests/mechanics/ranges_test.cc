@@ -4,8 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "absl/strings/str_cat.h"
 #include "server/mechanics/advance.h"
 #include "server/mechanics/forces/attachment_kernel.h"
+#include "server/mechanics/forces/spring_kernel.h"
 #include "server/mechanics/vertex_kernel.h"
 #include "tests/compile_text.h"
 #include "tests/mechanics/every_target.h"
@@ -14,17 +16,23 @@
 namespace phrenic {
 namespace {
 
-TEST(Ranges, GiveEachForceTheBitsOfTheWhole) {
-  const auto model = CompileText(kMixedSheet);
-  ASSERT_NE(model, nullptr);
-  State state = model->InitialState();
-  ASSERT_GT(state.x.cols(), 2 * kVertexBlock);
+// In the midst of a breath, all vertices off their places and moving.
+State Disturbed(const Model& model) {
+  State state = model.InitialState();
   state.phase = 0.3;
   state.x += 0.002 * Points::Random(3, state.x.cols());
   state.v = Points::Random(3, state.x.cols());
+  return state;
+}
+
+TEST(Ranges, GiveEachForceTheBitsOfTheWhole) {
+  const auto model = CompileText(kMixedSheet);
+  ASSERT_NE(model, nullptr);
+  const State state = Disturbed(*model);
+  ASSERT_GT(state.x.cols(), 2 * kVertexBlock);
   const Instant at = Packed(*model, MakeInstant(*model, model->parameters, state));
-  for (const Force* force : model->step_forces) {
-    ASSERT_TRUE(force->by_range()) << force->name();
+  ASSERT_TRUE(model->whole_forces.empty());
+  for (const Force* force : model->range_forces) {
     Points whole = Points::Zero(3, state.x.cols()), parts = whole;
     force->AddForce(at, whole);
     ForEachBlock({0, state.x.cols()}, [&](const VertexRange& block) {
@@ -40,16 +48,57 @@ TEST(Ranges, GiveEachForceTheBitsOfTheWhole) {
   }
 }
 
+TEST(Ranges, ReadNoPlacesOfOthersUnlessTheySaySo) {
+  const auto model = CompileText(kMixedSheet);
+  ASSERT_NE(model, nullptr);
+  const State state = Disturbed(*model);
+  const Instant at = Packed(*model, MakeInstant(*model, model->parameters, state));
+  int readers = 0;
+  for (const Force* force : model->range_forces) {
+    bool read = false;
+    ForEachBlock({0, state.x.cols()}, [&](const VertexRange& block) {
+      const Eigen::Index vertices = block.end - block.first;
+      State others = state;
+      others.x.setConstant(7);
+      others.x.middleCols(block.first, vertices) = state.x.middleCols(block.first, vertices);
+      Instant moved = MakeInstant(*model, model->parameters, others);
+      moved.packed = at.packed;
+      Points here = Points::Zero(3, vertices), there = here;
+      force->AddForceIn(block, at, here);
+      force->AddForceIn(block, moved, there);
+      read = read || here != there;
+    });
+    EXPECT_EQ(read, force->reads_others()) << force->name();
+    readers += force->reads_others();
+  }
+  EXPECT_EQ(readers, 1) << "the springs in double precision alone";
+}
+
+// Whatever is worked out together: five shared forces are more than the kernel takes at a time.
+TEST(Ranges, SumWhatTheElementsSayOneByOne) {
+  std::string scene = kMixedSheet;
+  for (const char* axis : {"x", "y", "z"}) {
+    absl::StrAppend(&scene, "forces { gravity { bodies: 'sheet' acceleration { ", axis, ": 3 } } }");
+  }
+  absl::StrAppend(&scene, "forces { friction { bodies: 'sheet' rate: 2 } }");
+  const auto model = CompileText(scene);
+  ASSERT_NE(model, nullptr);
+  const State state = Disturbed(*model);
+  const Instant at = MakeInstant(*model, model->parameters, state);
+  Points apart = Points::Zero(3, state.x.cols()), together = apart;
+  for (const auto& force : model->forces) force->AddForce(at, apart);
+  SumForces(*model, at, together);
+  EXPECT_LT((together - apart).cwiseAbs().maxCoeff(), 1e-5 * apart.cwiseAbs().maxCoeff());
+  EXPECT_LT(model->range_forces.size(), model->forces.size() - 4);
+}
+
 TEST(Ranges, SetTheForceThatTheyWouldAddToNothingOnEveryInstructionSet) {
   const auto model = CompileText(kMixedSheet);
   ASSERT_NE(model, nullptr);
-  State state = model->InitialState();
-  state.phase = 0.3;
-  state.x += 0.002 * Points::Random(3, state.x.cols());
-  state.v = Points::Random(3, state.x.cols());
+  const State state = Disturbed(*model);
   OnEveryTarget([&] {
     const Instant at = Packed(*model, MakeInstant(*model, model->parameters, state));
-    for (const Force* force : model->step_forces) {
+    for (const Force* force : model->range_forces) {
       ForEachBlock({0, state.x.cols()}, [&](const VertexRange& block) {
         Points added = Points::Zero(3, block.end - block.first);
         Points set = Points::Constant(3, block.end - block.first, std::nan(""));
@@ -98,37 +147,66 @@ TEST(Ranges, KickAndDriftAsVertexByVertexOnEveryInstructionSet) {
   });
 }
 
-TEST(Ranges, SharesOfAForceAsVertexByVertexOnEveryInstructionSet) {
-  const Eigen::Index vertices = 45;
-  const VertexRange range{8, vertices};
-  const Eigen::VectorXd share = Eigen::VectorXd::Random(vertices);
-  const Eigen::Vector3d force(0.3, -0.2, 0.7);
-  const Points f = Points::Random(3, vertices);
-  Points plain = f;
-  for (Eigen::Index i = range.first; i < range.end; ++i) plain.col(i) += share[i] * force;
+TEST(Ranges, PackPointsAsVertexByVertexOnEveryInstructionSet) {
+  struct alignas(64) Packed {
+    float at[4 * 45] = {};
+  };
+  const VertexRange range{8, 45};
+  const Points x = Points::Random(3, range.end + 1);
+  const Eigen::Vector3d origin = Eigen::Vector3d::Random();
   OnEveryTarget([&] {
-    Points here = f;
-    AddShares(range, share, force, here.middleCols(range.first, range.end - range.first));
-    EXPECT_EQ(here, plain);
+    Packed packed;
+    PackPoints(range, x.data(), origin.data(), packed.at);
+    for (Eigen::Index v = 0; v < range.end; ++v) {
+      for (int c = 0; c < 3; ++c) {
+        EXPECT_EQ(packed.at[4 * v + c], v < range.first ? 0 : static_cast<float>(x(c, v) - origin[c])) << v;
+      }
+    }
   });
 }
 
-TEST(Ranges, WhatAPoseCarriesAsVertexByVertexOnEveryInstructionSet) {
+TEST(Ranges, LoadsAsVertexByVertexOnEveryInstructionSet) {
+  const Eigen::Index vertices = 45;
+  const VertexRange range{8, vertices};
+  const Eigen::VectorXd friction = Eigen::VectorXd::Random(vertices), first = Eigen::VectorXd::Random(vertices),
+                        second = Eigen::VectorXd::Random(vertices);
+  const std::vector<SharedLoad> all = {{first.data(), {0.3, -0.2, 0.7}}, {second.data(), {-0.1, 0.4, 0.9}}};
+  const Points f = Points::Random(3, vertices), v = Points::Random(3, vertices);
+  for (const auto* const c : {static_cast<const Eigen::VectorXd*>(nullptr), &friction}) {
+    for (const size_t count : {0, 1, 2}) {
+      const std::span<const SharedLoad> loads(all.data(), count);
+      Points plain = f;
+      for (Eigen::Index i = range.first; i < range.end; ++i) {
+        if (c != nullptr) plain.col(i) -= (*c)[i] * v.col(i);
+        for (const SharedLoad& load : loads) plain.col(i) += load.share[i] * load.force;
+      }
+      OnEveryTarget([&] {
+        Points here = f;
+        AddLoads(range, c, v, loads, here.middleCols(range.first, range.end - range.first));
+        EXPECT_EQ(here, plain);
+      });
+    }
+  }
+}
+
+TEST(Ranges, WhatIsHeldAndWhatAPoseCarriesAsVertexByVertexOnEveryInstructionSet) {
   Pose pose;
   pose.rotation = Eigen::AngleAxisd(0.4, Eigen::Vector3d(1, 2, -1).normalized());
   pose.translation = {0.01, -0.02, 0.03};
   pose.angular_velocity = {0.3, 0.1, -0.2};
   pose.velocity = {0.05, 0.02, 0.01};
-  std::vector<CarriedPacket> packets(3);  // the last one not full
-  Points plain = Points::Zero(3, 24);
+  std::vector<HoldPacket> packets(3);  // the last one not full
+  const Points x = Points::Random(3, 24), v = Points::Random(3, 24);
+  Points plain = Points::Zero(3, 24), held = plain;
   for (int i = 0; i < 21; ++i) {
-    CarriedPacket& packet = packets[i / kPacketVertices];
+    HoldPacket& packet = packets[i / kPacketVertices];
     const auto lane = packet.count++;
     const Eigen::Vector3d rest = Eigen::Vector3d::Random();
     const double stiffness = 10 + i, damping = 0.1 * i;
     packet.x[lane] = rest.x(), packet.y[lane] = rest.y(), packet.z[lane] = rest.z();
     packet.stiffness[lane] = stiffness, packet.damping[lane] = damping;
     packet.place[lane] = 3 * (23 - i);
+    held.col(23 - i) = stiffness * (rest - x.col(23 - i)) - damping * v.col(23 - i);
     plain.col(23 - i) = 0.5 * (stiffness * (pose.At(rest) - rest) + damping * pose.VelocityAt(rest));
   }
   Points first;
@@ -138,6 +216,9 @@ TEST(Ranges, WhatAPoseCarriesAsVertexByVertexOnEveryInstructionSet) {
     EXPECT_LT((here - plain).norm(), 1e-14 * plain.norm());
     if (first.size() == 0) first = here;
     EXPECT_EQ(here, first);
+    here.setZero();
+    AddHeld(packets.data(), packets.data() + packets.size(), x.data(), v.data(), here.data());
+    EXPECT_EQ(here, held);
   });
 }
 

@@ -146,15 +146,18 @@ TEST(CostStudy, SeesWhatTheDearestPartCosts) { EXPECT_LT(RowsOf(SheetTable())["w
 
 TEST(CostStudy, StagesSumToTheStep) {
   double sum = 0, whole = 0;
+  int joint = 0;
   std::map<std::string, int> stages;
   for (const v1::StageRow& row : SheetTable().stages()) {
     ++stages[row.stage()];
+    joint += row.element().find("friction") != std::string::npos && row.element().find("gravity") != std::string::npos;
     (row.stage() == "step" ? whole : sum) += row.us_per_step();
     EXPECT_TRUE(row.us_per_step() >= 0 || row.stage() == "integrator") << row.element();
   }
   EXPECT_NEAR(sum, whole, 1e-9 * whole);
   EXPECT_GT(whole, 0);
-  EXPECT_EQ(stages["force"], 9);
+  EXPECT_EQ(stages["force"], 7);
+  EXPECT_EQ(joint, 1);  // friction, weight and action line, worked out together
   EXPECT_EQ(stages["motion"], 1);
   EXPECT_EQ(stages["constraint"], 2);
   EXPECT_EQ(stages["integrator"], 1);

@@ -70,11 +70,11 @@ void Pull(const Link& link, const Eigen::Vector3d& impulse, double dt, Points& x
   v.col(link.b) -= link.inverse_b / dt * impulse;
 }
 
-void Restore(const Link& link, const ConstPoints& before, double dt, Points& x, Points& v) {
+void Restore(const Link& link, const Eigen::Vector3d& direction, double dt, Points& x, Points& v) {
   if (!link.Movable()) return;
   const Eigen::Vector3d between = x.col(link.b) - x.col(link.a);
   const double excess = between.squaredNorm() - link.length * link.length;
-  const Eigen::Vector3d correction = Correction(between, before.col(link.b) - before.col(link.a), excess);
+  const Eigen::Vector3d correction = Correction(between, direction, excess);
   Pull(link, correction / (link.inverse_a + link.inverse_b), dt, x, v);
 }
 

@@ -54,10 +54,10 @@ void Pull(const Link& link, const Eigen::Vector3d& impulse, double dt, Points& x
 // The same to the velocities alone, by an impulse in kg m/s.
 void Push(const Link& link, const Eigen::Vector3d& impulse, State& state);
 
-// Brings the length back in one go (SHAKE): a pull along the direction that the link had `before`, which keeps angular
-// momentum; along itself where it has turned too far in one step for that to reach. Nothing where both ends are in one
-// point.
-void Restore(const Link& link, const ConstPoints& before, double dt, Points& x, Points& v);
+// Brings the length back in one go (SHAKE): a pull along `direction`, from a to b, which it had at the start of the
+// step [m] and which keeps angular momentum; along itself where it has turned too far in one step for that to reach.
+// Nothing where both ends are in one point.
+void Restore(const Link& link, const Eigen::Vector3d& direction, double dt, Points& x, Points& v);
 
 // Takes the relative velocity along the link from both ends, by their masses.
 void StopStretching(const Link& link, State& state);

@@ -104,12 +104,12 @@ namespace phrenic {
 
 HWY_EXPORT(RestorePacketsHere);
 
-std::vector<LinkPacket> PackLinks(const std::vector<Link>& links) {
+std::vector<LinkPacket> PackLinks(absl::Span<const Link> links, int first, bool in_blocks) {
   std::vector<LinkPacket> packets;
   for (size_t next = 0; next < links.size(); ++next) {
     const Link& link = links[next];
     const bool goes_on = next > 0 && links[next - 1].a / kVertexBlock == link.a / kVertexBlock;
-    if (!goes_on || packets.back().count == kPacketLinks) packets.push_back({.first = static_cast<int>(next)});
+    if (!goes_on || packets.back().count == kPacketLinks) packets.push_back({.first = first + static_cast<int>(next)});
     LinkPacket& packet = packets.back();
     const int i = packet.count++;
     packet.squared_length[i] = link.length * link.length;
@@ -117,8 +117,9 @@ std::vector<LinkPacket> PackLinks(const std::vector<Link>& links) {
     packet.inverse_b[i] = link.inverse_b;
     packet.reduced[i] = link.Movable() ? 1 / (link.inverse_a + link.inverse_b) : 0;
     // Lanes that stay empty read the last link's ends.
-    std::fill(packet.a + i, std::end(packet.a), 3 * static_cast<std::int64_t>(link.a));
-    std::fill(packet.b + i, std::end(packet.b), 3 * static_cast<std::int64_t>(link.b));
+    const std::int64_t from = in_blocks ? link.a / kVertexBlock * kVertexBlock : 0;
+    std::fill(packet.a + i, std::end(packet.a), 3 * (link.a - from));
+    std::fill(packet.b + i, std::end(packet.b), 3 * (link.b - from));
   }
   return packets;
 }

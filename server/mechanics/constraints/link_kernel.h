@@ -19,18 +19,19 @@ struct alignas(64) LinkPacket {
   double squared_length[kPacketLinks] = {};                           // [m^2]
   double inverse_a[kPacketLinks] = {}, inverse_b[kPacketLinks] = {};  // 1/m of the ends [1/kg]
   double reduced[kPacketLinks] = {};                        // 1/(inverse_a + inverse_b) [kg]; 0 where neither end moves
-  std::int64_t a[kPacketLinks] = {}, b[kPacketLinks] = {};  // where the ends lie in x [doubles]
+  std::int64_t a[kPacketLinks] = {}, b[kPacketLinks] = {};  // places of the ends [doubles]
   int count = 0;
   int first = 0;  // of its links
 };
 
-// The links one after another; those of a packet begin in one block of vertices (kVertexBlock).
-std::vector<LinkPacket> PackLinks(const std::vector<Link>& links);
+// The links one after another, numbered from `first` on. Those of a packet begin in one block of vertices
+// (kVertexBlock), from which on their places count where all links lie `in_blocks`.
+std::vector<LinkPacket> PackLinks(absl::Span<const Link> links, int first, bool in_blocks);
 
-// Restores the links of up to kPacketsTogether packets that share no vertex that moves: x and v, 3 x n, change as by
-// Restore over dt [s], for which a link's direction is that of `before`. Returns the links that have turned too far for
-// that and are left as they were: bit kPacketLinks p + i for link i of packet p. Threads may call at once for packets
-// that share no vertex.
+// Restores the links of up to kPacketsTogether packets that share no vertex that moves: x and v, points from where
+// their places count, change as by Restore over dt [s], for which a link's direction is that of `before`, likewise.
+// Returns the links that have turned too far for that and are left as they were: bit kPacketLinks p + i for link i of
+// packet p. Threads may call at once for packets that share no vertex.
 std::uint64_t RestorePackets(absl::Span<const LinkPacket> packets, const double* before, double dt, double* x,
                              double* v);
 

@@ -225,7 +225,7 @@ void LinkNetwork::Project(const ConstPoints& before, double dt, State& state) co
   }
   for (int sweep = 0; sweep < kSweeps && LargestViolation(state) > kTolerance; ++sweep) {
     for (const Link& link : links_) {
-      if (link.Violation(state.x) > 0) Restore(link, before, dt, state.x, state.v);
+      if (link.Violation(state.x) > 0) Restore(link, before.col(link.b) - before.col(link.a), dt, state.x, state.v);
     }
   }
 }

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "server/mechanics/constraints/link_pairing.h"
@@ -58,6 +59,13 @@ std::vector<size_t> BlockStarts(const std::vector<Link>& links, const std::vecto
   return starts;
 }
 
+// Sorted, each once.
+template <typename Number>
+void KeepEachOnce(std::vector<Number>& numbers) {
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+}
+
 // For viewers.
 void Show(const std::vector<Link>& links, Model& model) {
   Eigen::Index at = model.rigid_links.cols();
@@ -104,12 +112,30 @@ void RigidLinks::Sort(const std::vector<Link>& links, const Model& model) {
     }
   }
   if (!joined.empty()) network_ = LinkNetwork(joined);
-  if (thesis_) return;
-  std::stable_sort(alone_.begin(), alone_.end(),
-                   [](const Link& p, const Link& q) { return p.a / kVertexBlock < q.a / kVertexBlock; });
-  packets_ = PackLinks(alone_);
-  block_start_ = BlockStarts(alone_, packets_, model.rest.cols());
-  by_range_ = joined.empty() && std::all_of(alone_.begin(), alone_.end(), InOneBlock);
+  if (!thesis_) PackAlone(model.rest.cols());
+}
+
+void RigidLinks::PackAlone(Eigen::Index vertices) {
+  const auto place = [](const Link& link) { return std::pair(!InOneBlock(link), link.a / kVertexBlock); };
+  std::stable_sort(alone_.begin(), alone_.end(), [&](const Link& p, const Link& q) { return place(p) < place(q); });
+  const auto across = std::partition_point(alone_.begin(), alone_.end(), InOneBlock);
+  const auto inside = static_cast<size_t>(across - alone_.begin());
+  const absl::Span<const Link> all(alone_);
+  packets_ = PackLinks(all.first(inside), 0, true);
+  block_start_ = BlockStarts(alone_, packets_, vertices);
+  const std::vector<LinkPacket> others = PackLinks(all.subspan(inside), static_cast<int>(inside), false);
+  packets_.insert(packets_.end(), others.begin(), others.end());
+  for (const auto links : {all.subspan(inside), absl::Span<const Link>(network_.links())}) NoteAcross(links);
+  KeepEachOnce(across_);
+  KeepEachOnce(moved_);
+}
+
+void RigidLinks::NoteAcross(absl::Span<const Link> links) {
+  for (const Link& link : links) {
+    across_.insert(across_.end(), {link.a, link.b});
+    if (link.inverse_a > 0) moved_.push_back(link.a / kVertexBlock);
+    if (link.inverse_b > 0) moved_.push_back(link.b / kVertexBlock);
+  }
 }
 
 void RigidLinks::ProjectThesis(const ConstPoints& before, Points& x) const {
@@ -126,23 +152,36 @@ void RigidLinks::ProjectThesis(const ConstPoints& before, Points& x) const {
   }
 }
 
-void RigidLinks::RestoreAlone(const VertexRange& range, const ConstPoints& before, double dt, Points& x,
-                              Points& v) const {
-  const size_t first = block_start_[range.first / kVertexBlock];
-  const size_t end = block_start_[(range.end + kVertexBlock - 1) / kVertexBlock];
+void RigidLinks::RestoreAlone(size_t first, size_t end, Eigen::Index from, const ConstPoints& before, double dt,
+                              Points& x, Points& v) const {
   for (size_t p = first; p < end; p += kPacketsTogether) {
     const absl::Span<const LinkPacket> packets(&packets_[p], std::min<size_t>(kPacketsTogether, end - p));
-    std::uint64_t missed = RestorePackets(packets, before.data(), dt, x.data(), v.data());
+    std::uint64_t missed = RestorePackets(packets, before.data(), dt, x.data() + 3 * from, v.data() + 3 * from);
     for (; missed != 0; missed &= missed - 1) {
-      const int link = std::countr_zero(missed);
-      Restore(alone_[packets[link / kPacketLinks].first + link % kPacketLinks], before, dt, x, v);
+      const int bit = std::countr_zero(missed);
+      const Link& link = alone_[packets[bit / kPacketLinks].first + bit % kPacketLinks];
+      Restore(link, before.col(link.b - from) - before.col(link.a - from), dt, x, v);
     }
   }
 }
 
-void RigidLinks::ProjectIn(const VertexRange& range, const v1::Parameters& parameters, const ConstPoints& before,
+void RigidLinks::RestoreAcross(const ConstPoints& before, double dt, State& state) const {
+  RestoreAlone(block_start_.back(), packets_.size(), 0, before, dt, state.x, state.v);
+  network_.Project(before, dt, state);
+}
+
+void RigidLinks::ProjectIn(const VertexRange& block, const v1::Parameters& parameters, const ConstPoints& before,
                            double dt, Points& x, Points& v) const {
-  if (parameters.apply_links()) RestoreAlone(range, before, dt, x, v);
+  if (!parameters.apply_links()) return;
+  const Eigen::Index b = block.first / kVertexBlock;
+  RestoreAlone(block_start_[b], block_start_[b + 1], block.first, before, dt, x, v);
+}
+
+std::span<const Eigen::Index> RigidLinks::ProjectAcross(const v1::Parameters& parameters, const ConstPoints& before,
+                                                        double dt, State& state) const {
+  if (!parameters.apply_links()) return {};
+  RestoreAcross(before, dt, state);
+  return moved_;
 }
 
 void RigidLinks::Project(const v1::Parameters& parameters, const ConstPoints& before, double dt, State& state) const {
@@ -151,8 +190,11 @@ void RigidLinks::Project(const v1::Parameters& parameters, const ConstPoints& be
     ProjectThesis(before, state.x);
     return;
   }
-  RestoreAlone({0, state.x.cols()}, before, dt, state.x, state.v);
-  network_.Project(before, dt, state);
+  for (Eigen::Index first = 0; first < state.x.cols(); first += kVertexBlock) {
+    const VertexRange block = {first, std::min(first + kVertexBlock, state.x.cols())};
+    ProjectIn(block, parameters, before.middleCols(first, block.end - first), dt, state.x, state.v);
+  }
+  RestoreAcross(before, dt, state);
 }
 
 void RigidLinks::ProjectVelocities(const v1::Parameters& parameters, State& state) const {

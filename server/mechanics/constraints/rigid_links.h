@@ -24,9 +24,13 @@ class RigidLinks final : public Constraint {
                                                           std::string_view path, Draft& draft);
 
   void Project(const v1::Parameters& parameters, const ConstPoints& before, double dt, State& state) const override;
-  bool by_range() const override { return by_range_; }
-  void ProjectIn(const VertexRange& range, const v1::Parameters& parameters, const ConstPoints& before, double dt,
+  bool by_range() const override { return !thesis_; }
+  bool ActsIn(Eigen::Index block) const override { return block_start_[block] < block_start_[block + 1]; }
+  void ProjectIn(const VertexRange& block, const v1::Parameters& parameters, const ConstPoints& before, double dt,
                  Points& x, Points& v) const override;
+  std::span<const int> across() const override { return across_; }
+  std::span<const Eigen::Index> ProjectAcross(const v1::Parameters& parameters, const ConstPoints& before, double dt,
+                                              State& state) const override;
   void ProjectVelocities(const v1::Parameters& parameters, State& state) const override;
   bool smooth() const override { return !thesis_; }
   double Residual(const State& state) const override;
@@ -34,15 +38,21 @@ class RigidLinks final : public Constraint {
  private:
   explicit RigidLinks(std::string name) : Constraint(std::move(name)) {}
   void Sort(const std::vector<Link>& links, const Model& model);
-  void RestoreAlone(const VertexRange& range, const ConstPoints& before, double dt, Points& x, Points& v) const;
+  void PackAlone(Eigen::Index vertices);
+  void NoteAcross(absl::Span<const Link> links);
+  // Packets first to end - 1, whose places count from vertex `from` on, as the columns of `before` do.
+  void RestoreAlone(size_t first, size_t end, Eigen::Index from, const ConstPoints& before, double dt, Points& x,
+                    Points& v) const;
+  void RestoreAcross(const ConstPoints& before, double dt, State& state) const;
   void ProjectThesis(const ConstPoints& before, Points& x) const;
 
   bool thesis_ = false;
   std::vector<Link> alone_;          // no vertex that moves has another link (or the projection asks for no more)
-  std::vector<LinkPacket> packets_;  // the same, by the block that they begin in
+  std::vector<LinkPacket> packets_;  // the same: by block those that lie in one, then the others
   std::vector<size_t> block_start_;  // of each block's packets, and their end
-  bool by_range_ = false;            // all end in the block that they begin in
-  LinkNetwork network_;              // the others
+  std::vector<int> across_;          // ends of the others and of the network's
+  std::vector<Eigen::Index> moved_;  // the blocks of those of them that move
+  LinkNetwork network_;              // of links that share vertices
 };
 
 }  // namespace phrenic

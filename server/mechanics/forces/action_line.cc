@@ -4,7 +4,6 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "server/mechanics/vertex_kernel.h"
 
 namespace phrenic {
 namespace {
@@ -36,7 +35,7 @@ absl::StatusOr<std::unique_ptr<Force>> ActionLine::Make(const v1::ActionLine& sc
   if (along.norm() == 0) return FieldError(absl::StrCat(std::string(path), ".direction"), "must not be zero");
   const Eigen::Vector3d direction = along.normalized();
   std::unique_ptr<ActionLine> force(new ActionLine(name, scene, direction));
-  force->share_ = Eigen::VectorXd::Zero(draft.model.rest.cols());
+  Eigen::VectorXd share = Eigen::VectorXd::Zero(draft.model.rest.cols());
   std::int64_t count = 0;
   for (const int b : *bodies) {
     const BodyModel& body = draft.model.bodies[b];
@@ -44,7 +43,7 @@ absl::StatusOr<std::unique_ptr<Force>> ActionLine::Make(const v1::ActionLine& sc
       const int vertex = body.first_vertex + i;
       const double weight = FallOff(scene, direction, body.mesh.vertices.col(i)) * draft.model.mass[vertex];
       if (weight == 0 || draft.model.inverse_mass[vertex] == 0) continue;
-      force->share_[vertex] = weight;
+      share[vertex] = weight;
       ++count;
     }
   }
@@ -52,8 +51,7 @@ absl::StatusOr<std::unique_ptr<Force>> ActionLine::Make(const v1::ActionLine& sc
     draft.ReportLeftOut(name, count == 0 ? "no free vertex is within its reach" : "its force is 0");
     return nullptr;
   }
-  force->share_ /= force->share_.sum();
-  force->NoteBlocks();
+  force->SetShare(share / share.sum());
   draft.model.action_lines.push_back({name, bodies->front(), ToEigen(scene.origin()), direction, scene.radius()});
   draft.ReportElement("force", name, count, "vertices",
                       absl::StrFormat("%g N at the peak of a quiet breath", scene.force()));
@@ -61,37 +59,15 @@ absl::StatusOr<std::unique_ptr<Force>> ActionLine::Make(const v1::ActionLine& sc
 }
 
 ActionLine::ActionLine(std::string name, const v1::ActionLine& scene, const Eigen::Vector3d& direction)
-    : Force(std::move(name)),
+    : SharedForce(std::move(name)),
       side_(scene.side()),
       force_(scene.force() * direction),
       muscle_((scene.force() + scene.lung_load()) * direction),
       air_(scene.air_load() * direction) {}
 
-void ActionLine::NoteBlocks() {
-  acts_.assign((share_.size() + kVertexBlock - 1) / kVertexBlock, false);
-  for (Eigen::Index i = 0; i < share_.size(); ++i) {
-    if (share_[i] > 0) acts_[i / kVertexBlock] = true;
-  }
-}
-
 Eigen::Vector3d ActionLine::Whole(const Instant& at) const {
   const Eigen::Vector3d breath = force_ - (1 - Activation(side_, at.parameters)) * muscle_;
   return Signal(at) * breath + at.parameters.hyperinflation() * air_;
-}
-
-void ActionLine::AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const {
-  const Eigen::Vector3d force = Whole(at);
-  if (force.isZero(0)) return;
-  for (Eigen::Index first = range.first; first < range.end; first += kVertexBlock) {
-    if (!acts_[first / kVertexBlock]) continue;
-    const VertexRange block = {first, std::min(first + kVertexBlock, range.end)};
-    AddShares(block, share_, force, f.middleCols(first - range.first, block.end - first));
-  }
-}
-
-double ActionLine::Energy(const Instant& at) const {
-  const Eigen::Vector3d force = Whole(at);
-  return -force.dot(at.x * share_);
 }
 
 }  // namespace phrenic

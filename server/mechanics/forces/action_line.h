@@ -6,35 +6,25 @@
 #ifndef PHRENIC_SERVER_MECHANICS_FORCES_ACTION_LINE_H_
 #define PHRENIC_SERVER_MECHANICS_FORCES_ACTION_LINE_H_
 
-#include <vector>
-
-#include "server/mechanics/draft.h"
+#include "server/mechanics/forces/shared_force.h"
 
 namespace phrenic {
 
-class ActionLine final : public Force {
+class ActionLine final : public SharedForce {
  public:
   // Null where no vertex is within reach or the force is 0.
   static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::ActionLine& scene, const std::string& name,
                                                      std::string_view path, Draft& draft);
 
-  bool by_range() const override { return true; }
-  void AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const override;
-  double Energy(const Instant& at) const override;
-  bool conservative() const override { return true; }
+  Eigen::Vector3d Whole(const Instant& at) const override;
 
  private:
   ActionLine(std::string name, const v1::ActionLine& scene, const Eigen::Vector3d& direction);
-  void NoteBlocks();
-  // The sum over its vertices at this moment [N].
-  Eigen::Vector3d Whole(const Instant& at) const;
 
   const v1::Side side_;
   const Eigen::Vector3d force_;   // at signal 1, breath force 1 and full activation [N]
   const Eigen::Vector3d muscle_;  // the part of it that the activation scales: what the lungs pull is not in it [N]
   const Eigen::Vector3d air_;     // at hyperinflation 1 [N]
-  Eigen::VectorXd share_;         // a simulated vertex; their sum is 1
-  std::vector<bool> acts_;        // on vertices of a block
 };
 
 }  // namespace phrenic

@@ -82,54 +82,61 @@ void Attachment::AddHolds(const v1::Attachment& scene, const std::vector<int>& c
   }
 }
 
-// By block, pose and vertex, each pose's in packets.
+// In packets by block and, of what is carried, by pose.
 void Attachment::Pack(std::vector<RideShare> shares) {
   const auto by_vertex = [](const Hold& hold, int vertex) { return hold.vertex < vertex; };
   std::sort(holds_.begin(), holds_.end(), [](const Hold& a, const Hold& b) { return a.vertex < b.vertex; });
+  for (const Hold& hold : holds_) {
+    if (!thesis_) PackInto(held_, -1, hold, hold.stiffness, hold.damping);
+  }
   const auto place = [](const RideShare& share) {
     return std::tuple(share.vertex / kVertexBlock, share.pose, share.vertex);
   };
   std::sort(shares.begin(), shares.end(), [&](const auto& a, const auto& b) { return place(a) < place(b); });
-  int last = -1;
   for (const RideShare& share : shares) {
     const Hold& hold = *std::lower_bound(holds_.begin(), holds_.end(), share.vertex, by_vertex);
-    const Eigen::Index block = share.vertex / kVertexBlock;
-    const bool goes_on = !carried_.empty() && carried_.back().block == block && carried_.back().pose == share.pose;
-    if (!goes_on) carried_.push_back({block, share.pose, packets_.size(), packets_.size()});
-    if (!goes_on || packets_.back().count == kPacketVertices || share.vertex == last) packets_.emplace_back();
-    CarriedPacket& packet = packets_.back();
-    const std::int64_t i = packet.count++;
-    packet.x[i] = hold.rest.x(), packet.y[i] = hold.rest.y(), packet.z[i] = hold.rest.z();
-    packet.stiffness[i] = thesis_ ? 0 : share.weight * hold.stiffness;
-    packet.damping[i] = share.weight * (thesis_ ? hold.stiffness : hold.damping);
-    packet.place[i] = 3 * (share.vertex % kVertexBlock);
-    carried_.back().end_packet = packets_.size();
-    last = share.vertex;
+    const double stiffness = thesis_ ? 0 : share.weight * hold.stiffness;
+    PackInto(carried_, share.pose, hold, stiffness, share.weight * (thesis_ ? hold.stiffness : hold.damping));
   }
 }
 
-// Towards the vertex's own rest position, whatever carries it.
-void Attachment::AddOwn(const VertexRange& range, const Instant& at, MutablePoints f) const {
-  auto hold = std::lower_bound(holds_.begin(), holds_.end(), range.first,
-                               [](const Hold& each, Eigen::Index vertex) { return each.vertex < vertex; });
-  for (; hold != holds_.end() && hold->vertex < range.end; ++hold) {
-    const std::ptrdiff_t place = 3 * static_cast<std::ptrdiff_t>(hold->vertex);
-    const double *const x = at.x.data() + place, *const v = at.v.data() + place;
-    double* const force = f.data() + (place - 3 * range.first);
-    for (int k = 0; k < 3; ++k) force[k] += hold->stiffness * (hold->rest[k] - x[k]) - hold->damping * v[k];
-  }
+// A vertex twice in a row, which has two shares of one pose, goes into two packets.
+void Attachment::PackInto(std::vector<Group>& groups, int pose, const Hold& hold, double stiffness, double damping) {
+  const Eigen::Index block = hold.vertex / kVertexBlock;
+  const std::int64_t place = 3 * (hold.vertex % kVertexBlock);
+  const bool goes_on = !groups.empty() && groups.back().block == block && groups.back().pose == pose;
+  if (!goes_on) groups.push_back({block, pose, packets_.size(), packets_.size()});
+  const auto full = [place](const HoldPacket& packet) {
+    return packet.count == kPacketVertices || packet.place[packet.count - 1] == place;
+  };
+  if (!goes_on || full(packets_.back())) packets_.emplace_back();
+  HoldPacket& packet = packets_.back();
+  const std::int64_t i = packet.count++;
+  packet.x[i] = hold.rest.x(), packet.y[i] = hold.rest.y(), packet.z[i] = hold.rest.z();
+  packet.stiffness[i] = stiffness;
+  packet.damping[i] = damping;
+  packet.place[i] = place;
+  groups.back().end_packet = packets_.size();
 }
 
 void Attachment::AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const {
-  if (!thesis_) AddOwn(range, at, f);
   const double scale = thesis_ ? at.parameters.time_step() : 1;
-  auto carried = std::lower_bound(carried_.begin(), carried_.end(), range.first / kVertexBlock,
-                                  [](const Carried& each, Eigen::Index block) { return each.block < block; });
-  for (; carried != carried_.end() && carried->block * kVertexBlock < range.end; ++carried) {
-    const CarriedPacket* const packets = packets_.data();
-    AddCarried(at.poses[carried->pose], scale, packets + carried->first_packet, packets + carried->end_packet,
-               f.data() + 3 * (carried->block * kVertexBlock - range.first));
-  }
+  const HoldPacket* const packets = packets_.data();
+  const auto for_each = [&range](const std::vector<Group>& groups, const auto& add) {
+    auto group = std::lower_bound(groups.begin(), groups.end(), range.first / kVertexBlock,
+                                  [](const Group& each, Eigen::Index block) { return each.block < block; });
+    for (; group != groups.end() && group->block * kVertexBlock < range.end; ++group) {
+      add(*group, 3 * group->block * kVertexBlock);
+    }
+  };
+  for_each(held_, [&](const Group& group, Eigen::Index block) {
+    AddHeld(packets + group.first_packet, packets + group.end_packet, at.x.data() + block, at.v.data() + block,
+            f.data() + (block - 3 * range.first));
+  });
+  for_each(carried_, [&](const Group& group, Eigen::Index block) {
+    AddCarried(at.poses[group.pose], scale, packets + group.first_packet, packets + group.end_packet,
+               f.data() + (block - 3 * range.first));
+  });
 }
 
 void Attachment::AddStiffness(const Instant&, StiffnessSink& sink) const {

@@ -30,8 +30,8 @@ class Attachment final : public Force {
     double stiffness, damping;  // [N/m], [N s/m]
     Eigen::Vector3d rest;       // [m]
   };
-  // The holds of one block of vertices in which one pose has a share.
-  struct Carried {
+  // Holds of one block of vertices: all of them, or those in which one pose has a share.
+  struct Group {
     Eigen::Index block;
     int pose;
     size_t first_packet, end_packet;
@@ -40,12 +40,12 @@ class Attachment final : public Force {
   void AddHolds(const v1::Attachment& scene, const std::vector<int>& carriers, const std::vector<bool>& region,
                 int body, std::vector<RideShare>& shares, Draft& draft);
   void Pack(std::vector<RideShare> shares);
-  void AddOwn(const VertexRange& range, const Instant& at, MutablePoints f) const;
+  void PackInto(std::vector<Group>& groups, int pose, const Hold& hold, double stiffness, double damping);
 
   bool thesis_ = false;
-  std::vector<Hold> holds_;       // by vertex
-  std::vector<Carried> carried_;  // by block
-  std::vector<CarriedPacket> packets_;
+  std::vector<Hold> holds_;            // by vertex
+  std::vector<Group> held_, carried_;  // by block
+  std::vector<HoldPacket> packets_;
 };
 
 }  // namespace phrenic

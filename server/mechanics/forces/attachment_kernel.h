@@ -1,4 +1,4 @@
-// What carriers pull at the vertices that hold on to them (attachment.h), eight at a time: written once with Google
+// What pulls at the vertices that hold on to carriers (attachment.h), eight at a time: written once with Google
 // Highway, the machine's best instruction set chosen at run time, with the same bits on all of them.
 #ifndef PHRENIC_SERVER_MECHANICS_FORCES_ATTACHMENT_KERNEL_H_
 #define PHRENIC_SERVER_MECHANICS_FORCES_ATTACHMENT_KERNEL_H_
@@ -12,17 +12,23 @@ namespace phrenic {
 
 inline constexpr int kPacketVertices = 8;
 
-// Up to eight vertices and the share that one pose has in them; what is left of it pulls at nothing.
-struct alignas(64) CarriedPacket {
+// Up to eight vertices of a block; what is left of it pulls at nothing.
+struct alignas(64) HoldPacket {
   double x[kPacketVertices] = {}, y[kPacketVertices] = {}, z[kPacketVertices] = {};  // at rest [m]
-  double stiffness[kPacketVertices] = {}, damping[kPacketVertices] = {};             // times the share [N/m], [N s/m]
-  std::int64_t place[kPacketVertices] = {};  // of the vertex in its block's f [doubles]; none twice
+  double stiffness[kPacketVertices] = {}, damping[kPacketVertices] = {};             // [N/m], [N s/m]
+  std::int64_t place[kPacketVertices] = {};  // of the vertex in its block's arrays [doubles]; none twice
   std::int64_t count = 0;
 };
 
-// f += scale (stiffness u + damping u') [N] for each of the packets' vertices, u the way that the pose carries its
-// point at rest [m]. f is 3 x n, of a block. Any number of threads may call, at once only for different vertices.
-void AddCarried(const Pose& pose, double scale, const CarriedPacket* first, const CarriedPacket* end, double* f);
+// Both are for packets first to end - 1 of one block, whose positions, velocities and forces are 3 x n. Any number of
+// threads may call, at once only for different vertices.
+
+// f += stiffness (r - x) - damping v [N] for each vertex, r where it is at rest.
+void AddHeld(const HoldPacket* first, const HoldPacket* end, const double* x, const double* v, double* f);
+
+// f += scale (stiffness u + damping u') [N] for each vertex, u the way that the pose carries its point at rest [m];
+// stiffness and damping are times the pose's share in it.
+void AddCarried(const Pose& pose, double scale, const HoldPacket* first, const HoldPacket* end, double* f);
 
 }  // namespace phrenic
 

@@ -30,7 +30,7 @@ absl::StatusOr<std::unique_ptr<Force>> Friction::Make(const v1::Friction& scene,
 }
 
 void Friction::AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const {
-  AddFriction(range, coefficient_, at.v, f);
+  AddLoads(range, &coefficient_, at.v, {}, f);
 }
 
 }  // namespace phrenic

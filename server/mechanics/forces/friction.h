@@ -15,11 +15,13 @@ class Friction final : public Force {
   bool by_range() const override { return true; }
   void AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const override;
   void AddDamping(const Instant&, Eigen::VectorXd& c) const override { c += coefficient_; }
+  // g of each simulated vertex [N s/m].
+  const Eigen::VectorXd& coefficient() const { return coefficient_; }
 
  private:
   explicit Friction(std::string name) : Force(std::move(name)) {}
 
-  Eigen::VectorXd coefficient_;  // g of each simulated vertex [N s/m]
+  Eigen::VectorXd coefficient_;
 };
 
 }  // namespace phrenic

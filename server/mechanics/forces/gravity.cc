@@ -1,7 +1,8 @@
 #include "server/mechanics/forces/gravity.h"
 
+#include <utility>
+
 #include "absl/strings/str_cat.h"
-#include "server/mechanics/vertex_kernel.h"
 
 namespace phrenic {
 
@@ -16,22 +17,17 @@ absl::StatusOr<std::unique_ptr<Force>> Gravity::Make(const v1::Gravity& scene, c
   }
   std::unique_ptr<Gravity> force(new Gravity(name));
   force->acceleration_ = ToEigen(scene.acceleration());
-  force->mass_ = Eigen::VectorXd::Zero(draft.model.rest.cols());
+  Eigen::VectorXd mass = Eigen::VectorXd::Zero(draft.model.rest.cols());
   std::int64_t count = 0;
   for (const int b : *bodies) {
     const BodyModel& body = draft.model.bodies[b];
     const auto vertices = body.mesh.vertices.cols();
-    force->mass_.segment(body.first_vertex, vertices) = draft.model.mass.segment(body.first_vertex, vertices);
+    mass.segment(body.first_vertex, vertices) = draft.model.mass.segment(body.first_vertex, vertices);
     count += vertices;
   }
+  force->SetShare(std::move(mass));
   draft.ReportElement("force", name, count, "vertices", "f = m g");
   return force;
 }
-
-void Gravity::AddForceIn(const VertexRange& range, const Instant&, MutablePoints f) const {
-  AddShares(range, mass_, acceleration_, f);
-}
-
-double Gravity::Energy(const Instant& at) const { return -acceleration_.dot(at.x * mass_); }
 
 }  // namespace phrenic

@@ -2,24 +2,20 @@
 #ifndef PHRENIC_SERVER_MECHANICS_FORCES_GRAVITY_H_
 #define PHRENIC_SERVER_MECHANICS_FORCES_GRAVITY_H_
 
-#include "server/mechanics/draft.h"
+#include "server/mechanics/forces/shared_force.h"
 
 namespace phrenic {
 
-class Gravity final : public Force {
+class Gravity final : public SharedForce {
  public:
   static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::Gravity& scene, const std::string& name,
                                                      std::string_view path, Draft& draft);
 
-  bool by_range() const override { return true; }
-  void AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const override;
-  double Energy(const Instant& at) const override;
-  bool conservative() const override { return true; }
+  Eigen::Vector3d Whole(const Instant&) const override { return acceleration_; }  // for each kilogram
 
  private:
-  explicit Gravity(std::string name) : Force(std::move(name)) {}
+  explicit Gravity(std::string name) : SharedForce(std::move(name)) {}
 
-  Eigen::VectorXd mass_;          // of the vertices that it pulls at, 0 for others [kg]
   Eigen::Vector3d acceleration_;  // [m/s^2]
 };
 

@@ -1,9 +1,6 @@
 #include "server/mechanics/forces/spring_batch.h"
 
-#include <map>
-#include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "absl/strings/str_join.h"
@@ -46,24 +43,6 @@ void SpringBatch::AddForceIn(const VertexRange& range, const Instant& at, Mutabl
 
 void SpringBatch::SetForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const {
   rows_.AddForce(range, at.parameters.elasticity(), at.x, at.packed, true, f);
-}
-
-void BatchSprings(Model& model) {
-  std::map<std::pair<Precision, bool>, std::vector<const Springs*>> alike;
-  for (const auto& force : model.forces) {
-    const auto* const springs = dynamic_cast<const Springs*>(force.get());
-    if (springs == nullptr) {
-      model.step_forces.push_back(force.get());
-    } else {
-      alike[{springs->precision(), springs->balanced()}].push_back(springs);
-    }
-  }
-  for (const auto& [how, members] : alike) {
-    auto batch = std::make_unique<SpringBatch>(members, model.rest);
-    if (batch->packs() && model.packed_from < 0) model.packed_from = batch->rows().origin();
-    model.step_forces.insert(model.step_forces.begin(), batch.get());
-    model.batches.push_back(std::move(batch));
-  }
 }
 
 }  // namespace phrenic

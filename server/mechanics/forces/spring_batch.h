@@ -18,6 +18,7 @@ class SpringBatch final : public Force {
   void AddForce(const Instant& at, MutablePoints f) const override;
   // In single precision from `at.packed`, which is to be there (Packed, advance.h).
   bool by_range() const override { return rows_.InRanges(); }
+  bool reads_others() const override { return !packs_; }
   void AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const override;
   void SetForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const override;
 
@@ -28,9 +29,6 @@ class SpringBatch final : public Force {
   SpringRows rows_;
   bool packs_;  // reads `at.packed`
 };
-
-// Sets what a step sums: `forces`, in their order, but for springs; those are in `batches`.
-void BatchSprings(Model& model);
 
 }  // namespace phrenic
 

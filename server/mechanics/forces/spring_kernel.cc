@@ -300,8 +300,36 @@ void AddInSingle(const SpringSlices<float>& slices, std::int64_t begin, std::int
   fresh ? AddBlocks<true>(slices, begin, end, scale, x, f) : AddBlocks<false>(slices, begin, end, scale, x, f);
 }
 
+#if HWY_TARGET <= HWY_AVX3
+// Eight points: three whole vectors of coordinates.
+HWY_INLINE Eigen::Index PackEights(const VertexRange& range, const double* x, const double* origin, float* packed) {
+  const hn::FixedTag<double, 8> d;
+  const hn::FixedTag<float, 8> half;
+  const hn::FixedTag<float, 16> whole;
+  HWY_ALIGN double repeated[24];
+  for (int i = 0; i < 24; ++i) repeated[i] = origin[i % 3];
+  HWY_ALIGN static constexpr std::int32_t kFirst[16] = {0, 1, 2, 0, 3, 4, 5, 0, 6, 7, 8, 0, 9, 10, 11, 0};
+  HWY_ALIGN static constexpr std::int32_t kLast[16] = {4, 5, 6, 0, 7, 8, 9, 0, 10, 11, 12, 0, 13, 14, 15, 0};
+  const auto first = hn::SetTableIndices(whole, kFirst), last = hn::SetTableIndices(whole, kLast);
+  const auto a0 = hn::Load(d, repeated), b0 = hn::Load(d, repeated + 8), c0 = hn::Load(d, repeated + 16);
+  Eigen::Index v = range.first;
+  for (; v + 8 <= range.end; v += 8) {
+    const double* const from = x + 3 * v;
+    const auto a = hn::DemoteTo(half, hn::Sub(hn::LoadU(d, from), a0));
+    const auto b = hn::DemoteTo(half, hn::Sub(hn::LoadU(d, from + 8), b0));
+    const auto c = hn::DemoteTo(half, hn::Sub(hn::LoadU(d, from + 16), c0));
+    hn::StoreU(hn::TableLookupLanes(hn::Combine(whole, b, a), first), whole, packed + 4 * v);
+    hn::StoreU(hn::TableLookupLanes(hn::Combine(whole, c, b), last), whole, packed + 4 * v + 16);
+  }
+  return v;
+}
+#endif
+
 void PackHere(const VertexRange& range, const double* x, const double* origin, float* packed) {
   Eigen::Index v = range.first;
+#if HWY_TARGET <= HWY_AVX3
+  v = PackEights(range, x, origin, packed);
+#endif
 #if HWY_TARGET != HWY_SCALAR
   if constexpr (hn::MaxLanes(FourDoubles()) == 4) {
     const FourDoubles d;

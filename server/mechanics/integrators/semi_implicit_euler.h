@@ -13,7 +13,7 @@ class SemiImplicitEuler final : public Integrator {
  public:
   std::string_view name() const override { return "semi-implicit Euler"; }
   int order() const override { return 1; }
-  bool keeps_start() const override { return true; }
+  bool needs_start() const override { return false; }
   double MaxStep(const Spectrum& spectrum) const override;
   Damping counted_damping() const override { return Damping::kOfEachVertex; }
   absl::Status Advance(const Model& model, const v1::Parameters& parameters, double dt, State& state,

@@ -1,0 +1,22 @@
+#include "server/mechanics/forces/shared_force.h"
+
+#include "server/mechanics/forces/load_batch.h"
+
+namespace phrenic {
+
+void SharedForce::SetShare(Eigen::VectorXd share) {
+  share_ = std::move(share);
+  acts_.assign(static_cast<size_t>((share_.size() + kVertexBlock - 1) / kVertexBlock), false);
+  for (Eigen::Index i = 0; i < share_.size(); ++i) {
+    if (share_[i] != 0) acts_[static_cast<size_t>(i / kVertexBlock)] = true;
+  }
+}
+
+void SharedForce::AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const {
+  const SharedForce* const self = this;
+  AddLoadsOf({&self, 1}, nullptr, range, at, f);
+}
+
+double SharedForce::Energy(const Instant& at) const { return -Whole(at).dot(at.x * share_); }
+
+}  // namespace phrenic
