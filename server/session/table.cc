@@ -264,11 +264,11 @@ void Table::Close(const absl::Status& reason) {
   for (const auto& [id, session] : sessions) {
     if (session != nullptr) session->Stop(reason);
   }
-  if (ownership_ == nullptr) return;
+  // Whoever else holds one may hold it longer than there is a store.
   for (const auto& [id, session] : sessions) {
     if (session == nullptr) continue;
     session->AwaitEnd();
-    if (session->Flush().ok()) ownership_->Release(id);
+    if (ownership_ != nullptr && session->Flush().ok()) ownership_->Release(id);
   }
 }
 

@@ -63,7 +63,8 @@ class Table {
   // Pauses and deletes the sessions that nobody has watched or asked for as long as the limits have it. To be called
   // now and then.
   void Tend() ABSL_LOCKS_EXCLUDED(mutex_);
-  // Stops and saves every session, for another server to go on with; none can be made afterwards.
+  // Stops and saves every session, for another server to go on with; none can be made afterwards, and none steps or
+  // writes to the store any more, whoever holds it.
   void Close(const absl::Status& reason) ABSL_LOCKS_EXCLUDED(mutex_);
 
  private:

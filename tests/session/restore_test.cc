@@ -163,6 +163,18 @@ TEST_F(RestoreTest, OneThatPlayedGoesOn) {
   EXPECT_TRUE(Eventually([&] { return Find("a")->status().tick() > 0; }));
 }
 
+TEST_F(RestoreTest, ItEndsWithTheTableWhoeverHoldsIt) {
+  Create("held");
+  for (int round = 0; round < 50; ++round) {
+    ASSERT_TRUE(Find("held")->Play(1, true, 0).ok());
+    const auto playing = Find("held");
+    table_.reset();
+    const std::int64_t tick = playing->status().tick();
+    Again();
+    ASSERT_EQ(Find("held")->status().tick(), tick) << "round " << round;
+  }
+}
+
 TEST_F(RestoreTest, WhoOwnsItAndWhatWaitsForItsTickAreKept) {
   auto session = Create("a");
   std::string token;
@@ -176,7 +188,6 @@ TEST_F(RestoreTest, WhoOwnsItAndWhatWaitsForItsTickAreKept) {
   v1::Parameters later;
   later.set_breath_force(2);
   ASSERT_TRUE(session->Update(later, std::nullopt, 9, token).ok());
-  session.reset();  // it ends with the table
   Again();
   EXPECT_TRUE(absl::IsPermissionDenied(Find("a")->CheckControl("")));
   EXPECT_TRUE(Find("a")->CheckControl(token).ok());
@@ -211,7 +222,6 @@ TEST_F(RestoreTest, OneThatDivergedHasDiverged) {
   ASSERT_TRUE(session->Update(wild, std::nullopt).ok());
   EXPECT_TRUE(absl::IsOutOfRange(session->Step(10000, std::nullopt, Nobody).status()));
   const std::string told = session->status().divergence().remedy();
-  session.reset();  // it ends with the table
   Again();
   EXPECT_EQ(Find("a")->status().state(), v1::SESSION_STATE_DIVERGED);
   EXPECT_EQ(Find("a")->status().divergence().remedy(), told);
@@ -262,7 +272,6 @@ TEST_F(RestoreTest, AFullDiskIsToldAndNothingStops) {
   EXPECT_TRUE(absl::IsResourceExhausted(table_->Create(request).status())) << "it could not be kept";
   ASSERT_TRUE(store_->LimitSize(1 << 28).ok());
   EXPECT_TRUE(Eventually([&] { return session->status().not_saved().empty(); }));
-  session.reset();  // it ends with the table
   Again();
   EXPECT_EQ(Find("a")->status().parameters().breath_force(), 2);
   EXPECT_EQ(Find("a")->status().tick(), 10);
