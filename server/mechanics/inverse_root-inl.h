@@ -1,7 +1,7 @@
 // 1/sqrt(x) of several vectors at once. Roots and divisions go through one unit of a processor, one after the other; on
-// some machines they take longer than all else of a spring. Most are worked out in the units that multiply, therefore,
-// and the others beside them. To be included between the namespaces of a file that Google Highway compiles once for
-// each instruction set, after <hwy/highway.h>.
+// some machines those of doubles take longer than all else of a spring. Three vectors share one division, therefore. To
+// be included between the namespaces of a file that Google Highway compiles once for each instruction set, after
+// <hwy/highway.h>.
 #if defined(PHRENIC_SERVER_MECHANICS_INVERSE_ROOT_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PHRENIC_SERVER_MECHANICS_INVERSE_ROOT_INL_H_
 #undef PHRENIC_SERVER_MECHANICS_INVERSE_ROOT_INL_H_
@@ -11,51 +11,38 @@
 
 #include <hwy/highway.h>
 
-#include <cstdint>
 #include <type_traits>
 
 HWY_BEFORE_NAMESPACE();
 namespace phrenic::HWY_NAMESPACE {
 
-namespace inverse_root {
-
-// By Newton's method for 1/y^2 = x, y <- y (3 - x y^2)/2, from a start that halves the exponent (off by 3.5 %; Lomont,
-// "Fast inverse square root", 2003): a round takes a relative error e to 3/2 e^2.
-template <int kCount, typename Tag>
-HWY_INLINE void ByNewton(Tag d, hwy::HWY_NAMESPACE::Vec<Tag>* x) {
-  namespace hn = hwy::HWY_NAMESPACE;
-  using Number = hn::TFromD<Tag>;
-  using Bits = std::conditional_t<sizeof(Number) == 4, std::uint32_t, std::uint64_t>;
-  constexpr auto kStart = static_cast<Bits>(sizeof(Number) == 4 ? 0x5f375a86 : 0x5fe6eb50c7b537a9);
-  constexpr int kRounds = sizeof(Number) == 4 ? 3 : 4;
-  const hn::RebindToUnsigned<Tag> bits;
-  const auto half = hn::Set(d, Number{0.5}), three_halves = hn::Set(d, Number{1.5});
-  hn::Vec<Tag> halves[kCount];
-  for (int i = 0; i < kCount; ++i) {
-    halves[i] = hn::Mul(half, x[i]);
-    x[i] = hn::BitCast(d, hn::Sub(hn::Set(bits, kStart), hn::ShiftRight<1>(hn::BitCast(bits, x[i]))));
-  }
-#pragma GCC unroll 4
-  for (int round = 0; round < kRounds; ++round) {
-#pragma GCC unroll 4
-    for (int i = 0; i < kCount; ++i) {
-      x[i] = hn::Mul(x[i], hn::Sub(three_halves, hn::Mul(hn::Mul(halves[i], x[i]), x[i])));
-    }
-  }
-}
-
-}  // namespace inverse_root
-
-// x <- 1/sqrt(x) for normal x > 0, off by three units in the last place at most; the same bits on every machine. Of six
-// vectors two by root and division, of three one.
+// x <- 1/sqrt(x), off by four units in the last place at most; the same bits on every machine. Doubles lie between
+// 1e-200 and 1e200: each root's inverse is taken from that of the product of all (Montgomery, Math Comp 1987;48:243),
+// which three of them leave within range.
 template <typename Tag, int kCount>
 HWY_INLINE void InvertRoots(Tag d, hwy::HWY_NAMESPACE::Vec<Tag> (&x)[kCount]) {
   namespace hn = hwy::HWY_NAMESPACE;
-  static_assert(kCount == 1 || kCount == 3 || kCount == 6);
-  constexpr int kByRoot = (kCount + 2) / 3;
-  for (int i = 0; i < kByRoot; ++i) x[i] = hn::Sqrt(x[i]);
-  if constexpr (kCount > kByRoot) inverse_root::ByNewton<kCount - kByRoot>(d, x + kByRoot);
-  for (int i = 0; i < kByRoot; ++i) x[i] = hn::Div(hn::Set(d, hn::TFromD<Tag>{1}), x[i]);
+  static_assert(kCount <= 3);
+  constexpr bool kAlone = std::is_same_v<hn::TFromD<Tag>, float>;
+  const auto one = hn::Set(d, hn::TFromD<Tag>{1});
+#pragma GCC unroll 3
+  for (int i = 0; i < kCount; ++i) x[i] = hn::Sqrt(x[i]);
+  if constexpr (kAlone) {
+#pragma GCC unroll 3
+    for (int i = 0; i < kCount; ++i) x[i] = hn::Div(one, x[i]);
+  } else {
+    hn::Vec<Tag> product[kCount] = {x[0]};  // of the roots up to this one
+#pragma GCC unroll 2
+    for (int i = 1; i < kCount; ++i) product[i] = hn::Mul(product[i - 1], x[i]);
+    auto inverse = hn::Div(one, product[kCount - 1]);
+#pragma GCC unroll 2
+    for (int i = kCount - 1; i > 0; --i) {
+      product[i] = hn::Mul(inverse, product[i - 1]);
+      inverse = hn::Mul(inverse, x[i]);
+      x[i] = product[i];
+    }
+    x[0] = inverse;
+  }
 }
 
 }  // namespace phrenic::HWY_NAMESPACE

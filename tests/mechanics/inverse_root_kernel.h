@@ -1,4 +1,5 @@
-// What server/mechanics/inverse_root-inl.h makes of one number in each of six vectors, on the instruction set chosen.
+// What server/mechanics/inverse_root-inl.h makes of one number alone, with another, and with two others, on the
+// instruction set chosen.
 #ifndef PHRENIC_TESTS_MECHANICS_INVERSE_ROOT_KERNEL_H_
 #define PHRENIC_TESTS_MECHANICS_INVERSE_ROOT_KERNEL_H_
 

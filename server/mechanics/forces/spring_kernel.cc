@@ -26,9 +26,9 @@ struct Coordinates {
   hn::Vec<SliceTag<Number>> x, y, z;
 };
 
-// Keeps 1/l finite, so that l = 0 gives no force and no exception is made of it [m^2].
+// Keeps 1/l finite, and 1 over the product of three, so that l = 0 gives no force and no exception is made of it [m^2].
 template <typename Number>
-constexpr Number kShortestSquared = std::is_same_v<Number, float> ? 1e-36 : 1e-300;
+constexpr Number kShortestSquared = std::is_same_v<Number, float> ? 1e-36 : 1e-200;
 
 template <bool kAtEnd>
 HWY_INLINE Coordinates<double> Fetch(const double* x, const std::int32_t* place) {
@@ -105,6 +105,7 @@ HWY_INLINE void AddPulls(const Part<Number>& part, std::int64_t first, const Num
   const auto shortest = hn::Set(d, kShortestSquared<Number>);
   Coordinates<Number> way[kTogether];
   hn::Vec<SliceTag<Number>> inverse[kTogether];  // of the length; before that, the length squared
+#pragma GCC unroll 3
   for (int i = 0; i < kTogether; ++i) {
     const Coordinates<Number> other = Fetch<kAtEnd>(x, part.slices.neighbours[first + i].place + part.row);
     way[i] = {hn::Sub(other.x, own.x), hn::Sub(other.y, own.y), hn::Sub(other.z, own.z)};
@@ -112,6 +113,7 @@ HWY_INLINE void AddPulls(const Part<Number>& part, std::int64_t first, const Num
     inverse[i] = hn::Max(hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz)), shortest);
   }
   InvertRoots(d, inverse);
+#pragma GCC unroll 3
   for (int i = 0; i < kTogether; ++i) {
     const Column<Number> column = ColumnAt<kAlike>(part, first + i);
     const auto pull = hn::Sub(column.stiffness, hn::Mul(column.at_rest, inverse[i]));
@@ -129,9 +131,9 @@ HWY_INLINE Coordinates<Number> SumPulls(const Part<Number>& part, const Number* 
   const std::int64_t end = part.slices.slices[part.slice + 1].first_column;
   const Coordinates<Number> own = Fetch<kAtEnd>(x, part.slices.slices[part.slice].own + part.row);
   Coordinates<Number> sum = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
-  for (; c + 6 <= end; c += 6) AddPulls<kAlike, kAtEnd, 6>(part, c, x, own, sum);
   for (; c + 3 <= end; c += 3) AddPulls<kAlike, kAtEnd, 3>(part, c, x, own, sum);
-  for (; c < end; ++c) AddPulls<kAlike, kAtEnd, 1>(part, c, x, own, sum);
+  if (c + 2 == end) AddPulls<kAlike, kAtEnd, 2>(part, c, x, own, sum);
+  if (c + 1 == end) AddPulls<kAlike, kAtEnd, 1>(part, c, x, own, sum);
   return sum;
 }
 
