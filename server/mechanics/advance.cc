@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <limits>
 
+#include "server/mechanics/forces/load_batch.h"
 #include "server/mechanics/forces/packed_points.h"
+#include "server/mechanics/pose_columns.h"
 #include "server/mechanics/residual.h"
 #include "server/mechanics/vertex_kernel.h"
 
@@ -29,8 +31,10 @@ void DriveMotions(const Model& model, const v1::Parameters& parameters, double a
 }
 
 Instant Packed(const Model& model, const Instant& at) {
+  thread_local std::vector<PoseColumns> columns;
   Instant packed = at;
   if (model.packed_from >= 0) packed.packed = PackAll(at.x, model.packed_from);
+  if (!model.attached_vertices.empty()) packed.columns = MakeColumns(at.poses, columns).data();
   return packed;
 }
 
@@ -49,8 +53,12 @@ bool SumWholeForces(const Model& model, const Instant& at, Points& f) {
   return true;
 }
 
-void AddForcesIn(const VertexRange& range, const Model& model, const Instant& at, bool fresh, MutablePoints f) {
+namespace {
+
+void AddForcesBut(const Force* left, const VertexRange& range, const Model& model, const Instant& at, bool fresh,
+                  MutablePoints f) {
   for (const Force* force : model.range_forces) {
+    if (force == left) continue;
     fresh ? force->SetForceIn(range, at, f) : force->AddForceIn(range, at, f);
     fresh = false;
   }
@@ -58,6 +66,18 @@ void AddForcesIn(const VertexRange& range, const Model& model, const Instant& at
   for (const VertexPull& pull : at.pulls) {
     if (pull.vertex >= range.first && pull.vertex < range.end) f.col(pull.vertex - range.first) += pull.force;
   }
+}
+
+}  // namespace
+
+void AddForcesIn(const VertexRange& range, const Model& model, const Instant& at, bool fresh, MutablePoints f) {
+  AddForcesBut(nullptr, range, model, at, fresh, f);
+}
+
+VertexLoads AddForcesButLoads(const VertexRange& block, const Model& model, const Instant& at, bool fresh,
+                              MutablePoints f) {
+  AddForcesBut(model.loads, block, model, at, fresh, f);
+  return model.loads == nullptr ? VertexLoads() : model.loads->InBlock(block, at, f);
 }
 
 void SumDamping(const Model& model, const Instant& at, Eigen::VectorXd& c) {

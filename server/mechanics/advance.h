@@ -3,6 +3,7 @@
 #define PHRENIC_SERVER_MECHANICS_ADVANCE_H_
 
 #include "server/mechanics/model.h"
+#include "server/mechanics/vertex_kernel.h"
 
 namespace phrenic {
 
@@ -14,12 +15,16 @@ void DriveMotions(const Model& model, const v1::Parameters& parameters, double a
 
 // f = the sum of all forces and pulls [N].
 void SumForces(const Model& model, const Instant& at, Points& f);
-// The same in three parts: positions packed, where forces ask for it, in memory of the thread's own until its next
-// call; then what can only be worked out for all vertices at once, false and f as it was where there is nothing of the
-// kind; and the rest range by range, added to f, 3 x the range's vertices, or where it is `fresh` set as f.
+// The same in three parts: positions packed, and poses as columns, where forces ask for it, in memory of the thread's
+// own until its next call; then what can only be worked out for all vertices at once, false and f as it was where there
+// is nothing of the kind; and the rest range by range, added to f, 3 x the range's vertices, or where it is `fresh` set
+// as f.
 Instant Packed(const Model& model, const Instant& at);
 bool SumWholeForces(const Model& model, const Instant& at, Points& f);
 void AddForcesIn(const VertexRange& range, const Model& model, const Instant& at, bool fresh, MutablePoints f);
+// The same of a block, but for what its kick is to add.
+VertexLoads AddForcesButLoads(const VertexRange& block, const Model& model, const Instant& at, bool fresh,
+                              MutablePoints f);
 
 // c = the sum of all damping coefficients [N s/m].
 void SumDamping(const Model& model, const Instant& at, Eigen::VectorXd& c);

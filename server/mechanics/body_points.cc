@@ -14,14 +14,6 @@ Eigen::Map<Points> Fit(std::vector<double>& memory, const Points& like) {
   return {memory.data(), 3, like.cols()};
 }
 
-// Once a call, not once a vertex.
-std::span<const PoseColumns> ByPose(const Instant& at) {
-  thread_local std::vector<PoseColumns> poses;
-  poses.clear();
-  for (const Pose& pose : at.poses) poses.emplace_back(pose);
-  return poses;
-}
-
 // x [m], and v [m/s] where kVelocities.
 struct Placed {
   MutablePoints x, v;
@@ -90,7 +82,7 @@ void BodyPoints::Follow(const Instant& at, MutablePoints x, MutablePoints v) con
   if (pose_ >= 0) return CarryAll<kVelocities>(at.poses[pose_], *rest_, out);
   x = *rest_;
   if (kVelocities) v.setZero();
-  const CarriersNow carriers = {ByPose(at), carriers_, at.x.data(), at.v.data()};
+  const CarriersNow carriers = {ColumnsOf(at), carriers_, at.x.data(), at.v.data()};
   CarryShares(shares_, carriers, rest_->data(), x.data(), kVelocities ? v.data() : nullptr);
 }
 

@@ -93,17 +93,6 @@ namespace phrenic {
 
 HWY_EXPORT(CarryHere);
 
-PoseColumns::PoseColumns(const Pose& pose) {
-  const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
-  const Eigen::Vector3d& w = pose.angular_velocity;
-  Eigen::Map<Eigen::Matrix<double, 8, 4>, Eigen::Aligned64> columns(column[0]);
-  columns.setZero();
-  columns.topLeftCorner<3, 3>() = rotation - Eigen::Matrix3d::Identity();
-  columns.block<3, 1>(0, 3) = pose.translation;
-  for (int k = 0; k < 3; ++k) columns.block<3, 1>(4, k) = w.cross(rotation.col(k));
-  columns.block<3, 1>(4, 3) = pose.velocity;
-}
-
 void CarryShares(std::span<const RideShare> shares, const CarriersNow& carriers, const double* rest, double* x,
                  double* v) {
   HWY_DYNAMIC_DISPATCH(CarryHere)(shares, carriers, rest, x, v);

@@ -5,16 +5,10 @@
 
 #include <span>
 
+#include "server/mechanics/pose_columns.h"
 #include "server/mechanics/ride.h"
 
 namespace phrenic {
-
-// What a pose does to a point X of its rest, (R - 1) X + t and its rate (w x R) X + v: column by column of the
-// matrices, and of what is added, the displacement [m] in the first half and the velocity [m/s] in the second.
-struct alignas(64) PoseColumns {
-  explicit PoseColumns(const Pose& pose);
-  double column[4][8];
-};
 
 // What shares are of. Arrays are 3 x n, point after point.
 struct CarriersNow {

@@ -10,6 +10,7 @@
 namespace phrenic {
 
 class ChamberReadings;
+struct PoseColumns;
 
 // References into the state of the caller: valid during the call only.
 struct Instant {
@@ -21,8 +22,9 @@ struct Instant {
   const ConstPoints v;               // [m/s]
   const std::vector<Pose>& poses;
   const std::vector<VertexPull>& pulls;
-  ChamberReadings* readings = nullptr;  // what measures of one moment share (chamber.h); null in a step
-  const float* packed = nullptr;        // x in single precision (PackPoints), where a step has packed it
+  ChamberReadings* readings = nullptr;   // what measures of one moment share (chamber.h); null in a step
+  const float* packed = nullptr;         // x in single precision (PackPoints), where a step has packed it
+  const PoseColumns* columns = nullptr;  // one of each pose, where a step has made them
 };
 
 }  // namespace phrenic

@@ -18,6 +18,8 @@
 
 namespace phrenic {
 
+class LoadBatch;
+
 struct BodyModel {
   std::string name;
   std::string layer;
@@ -57,6 +59,7 @@ struct Model {
   // that can be worked out range by range are, after the others.
   std::vector<std::unique_ptr<Force>> batches;
   std::vector<const Force*> whole_forces, range_forces;
+  const LoadBatch* loads = nullptr;  // the last of range_forces, where a step may leave it to its kick
   int packed_from = -1;  // a step packs positions, from this vertex, for forces in single precision; -1 where none are
   std::vector<std::unique_ptr<Motion>> motions;
   std::vector<std::unique_ptr<Constraint>> constraints;

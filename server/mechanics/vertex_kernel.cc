@@ -37,88 +37,145 @@ struct Spread {
   Indices indices[3];
 };
 
-// Each vector of the coordinates is handed to `whole` with its numbers of the vertices and which of three it is, and
-// what is left over coordinate by coordinate to `single`.
-template <typename Whole, typename Single>
-HWY_INLINE void ForEach(const VertexRange& range, const double* numbers, const Whole& whole, const Single& single) {
-  const Tag d;
-  const Spread spread;
-  Eigen::Index vertex = range.first;
-  for (; vertex + kLanes <= range.end; vertex += kLanes) {
-    const auto of_vertices = hn::LoadU(d, numbers + vertex);
-    for (int i = 0; i < 3; ++i) whole(3 * vertex + i * kLanes, spread.Of(of_vertices, i), i);
-  }
-  for (; vertex < range.end; ++vertex) {
-    for (int i = 0; i < 3; ++i) single(3 * vertex + i, numbers[vertex]);
-  }
-}
-
-void KickAndDriftHere(const VertexRange& range, const double* inverse_mass, double kick, double drift, const double* f,
-                      const double* x, const double* v, double* x_next, double* v_next) {
-  const Tag d;
-  const Eigen::Index own = 3 * range.first;
-  const auto kicks = hn::Set(d, kick), drifts = hn::Set(d, drift), zero = hn::Zero(d);
-  const auto whole = [&](Eigen::Index i, Vector w, int) {
-    const auto free = hn::Gt(w, zero);
-    const auto before = hn::LoadU(d, v + i), at = hn::LoadU(d, x + i);
-    const auto force = hn::LoadU(d, f + i - own);
-    const auto now = hn::IfThenElse(free, hn::Add(before, hn::Mul(hn::Mul(kicks, w), force)), before);
-    hn::StoreU(now, d, v_next + i);
-    hn::StoreU(hn::IfThenElse(free, hn::Add(at, hn::Mul(drifts, now)), at), d, x_next + i);
-  };
-  const auto single = [&](Eigen::Index i, double w) {
-    v_next[i] = w > 0 ? v[i] + kick * w * f[i - own] : v[i];
-    x_next[i] = w > 0 ? x[i] + drift * v_next[i] : x[i];
-  };
-  ForEach(range, inverse_mass, whole, single);
-}
-
 // A force as often as vertices' coordinates fill three vectors.
 struct Repeated {
   HWY_ALIGN double numbers[3 * kLanes];
 
   void Set(const Eigen::Vector3d& force) {
-    for (Eigen::Index i = 0; i < 3 * kLanes; ++i) numbers[i] = force[i % 3];
+    for (Eigen::Index i = 0; i < kLanes; ++i) {
+      for (Eigen::Index c = 0; c < 3; ++c) numbers[3 * i + c] = force[c];
+    }
   }
   HWY_INLINE Vector At(int vector) const { return hn::Load(Tag(), numbers + vector * kLanes); }
 };
 
-template <bool kRubs>
-HWY_INLINE void AddLoadsTo(const VertexRange& range, const double* c, const double* v, const SharedLoad* loads,
-                           size_t count, double* f) {
-  const Tag d;
-  const Spread spread;
-  Repeated forces[kMostLoads];
-  for (size_t l = 0; l < count; ++l) forces[l].Set(loads[l].force);
-  Eigen::Index vertex = range.first;
-  for (; vertex + kLanes <= range.end; vertex += kLanes) {
-    double* const to = f + 3 * (vertex - range.first);
-    Vector sum[3];
-    for (int i = 0; i < 3; ++i) sum[i] = hn::LoadU(d, to + i * kLanes);
+// Loads whose number is known to the compiler.
+template <bool kRubs, size_t kCount>
+class Loads {
+ public:
+  explicit Loads(const VertexLoads& loads) : loads_(loads) {
+    for (size_t l = 0; l < kCount; ++l) forces_[l].Set(loads.shared[l].force), shares_[l] = loads.shared[l].share;
+  }
+
+  // f += the loads of kLanes vertices, v [m/s] theirs.
+  HWY_INLINE void AddTo(const Spread& spread, Eigen::Index vertex, const Vector (&v)[3], Vector (&f)[3]) const {
+    const Tag d;
     if constexpr (kRubs) {
-      const Vector of = hn::LoadU(d, c + vertex);
-      for (int i = 0; i < 3; ++i) {
-        sum[i] = hn::Sub(sum[i], hn::Mul(spread.Of(of, i), hn::LoadU(d, v + 3 * vertex + i * kLanes)));
-      }
+      const Vector c = hn::LoadU(d, loads_.c + vertex);
+      for (int i = 0; i < 3; ++i) f[i] = hn::Sub(f[i], hn::Mul(spread.Of(c, i), v[i]));
     }
-    for (size_t l = 0; l < count; ++l) {
-      const Vector of = hn::LoadU(d, loads[l].share + vertex);
-      for (int i = 0; i < 3; ++i) sum[i] = hn::Add(sum[i], hn::Mul(spread.Of(of, i), forces[l].At(i)));
-    }
-    for (int i = 0; i < 3; ++i) hn::StoreU(sum[i], d, to + i * kLanes);
-  }
-  for (; vertex < range.end; ++vertex) {
-    for (int i = 0; i < 3; ++i) {
-      double& to = f[3 * (vertex - range.first) + i];
-      if constexpr (kRubs) to -= c[vertex] * v[3 * vertex + i];
-      for (size_t l = 0; l < count; ++l) to += loads[l].share[vertex] * loads[l].force[i];
+#pragma GCC unroll 4
+    for (size_t l = 0; l < kCount; ++l) {
+      const Vector share = hn::LoadU(d, shares_[l] + vertex);
+      for (int i = 0; i < 3; ++i) f[i] = hn::Add(f[i], hn::Mul(spread.Of(share, i), forces_[l].At(i)));
     }
   }
+  // A coordinate of the force on one vertex, with its loads.
+  double Sum(double f, Eigen::Index vertex, int i, double v) const {
+    if constexpr (kRubs) f -= loads_.c[vertex] * v;
+    for (size_t l = 0; l < kCount; ++l) f += shares_[l][vertex] * loads_.shared[l].force[i];
+    return f;
+  }
+
+ private:
+  const VertexLoads& loads_;
+  Repeated forces_[kCount + 1];
+  const double* shares_[kCount + 1];
+};
+
+// What is done to a range with loads of any number: Do(range, loads, ...) is called with those of its own.
+template <typename Do, bool kRubs, typename... Arguments>
+HWY_INLINE void ByCount(const VertexRange& range, const VertexLoads& loads, Arguments... arguments) {
+  static_assert(VertexLoads::kMost == 4);
+  if (loads.count == 0) Do::In(range, Loads<kRubs, 0>(loads), arguments...);
+  if (loads.count == 1) Do::In(range, Loads<kRubs, 1>(loads), arguments...);
+  if (loads.count == 2) Do::In(range, Loads<kRubs, 2>(loads), arguments...);
+  if (loads.count == 3) Do::In(range, Loads<kRubs, 3>(loads), arguments...);
+  if (loads.count == 4) Do::In(range, Loads<kRubs, 4>(loads), arguments...);
 }
 
-void AddLoadsHere(const VertexRange& range, const double* c, const double* v, const SharedLoad* loads, size_t count,
-                  double* f) {
-  c != nullptr ? AddLoadsTo<true>(range, c, v, loads, count, f) : AddLoadsTo<false>(range, c, v, loads, count, f);
+template <typename Do, typename... Arguments>
+HWY_INLINE void WithLoads(const VertexRange& range, const VertexLoads& loads, Arguments... arguments) {
+  loads.c != nullptr ? ByCount<Do, true>(range, loads, arguments...) : ByCount<Do, false>(range, loads, arguments...);
+}
+
+HWY_INLINE void LoadThree(const double* from, Vector (&to)[3]) {
+  for (int i = 0; i < 3; ++i) to[i] = hn::LoadU(Tag(), from + i * kLanes);
+}
+
+struct Adding {
+  template <typename Loads>
+  static HWY_INLINE void In(const VertexRange& range, const Loads& loads, const double* v, double* f) {
+    const Spread spread;
+    Eigen::Index vertex = range.first;
+    for (; vertex + kLanes <= range.end; vertex += kLanes) {
+      double* const to = f + 3 * (vertex - range.first);
+      Vector sum[3], speed[3];
+      LoadThree(to, sum), LoadThree(v + 3 * vertex, speed);
+      loads.AddTo(spread, vertex, speed, sum);
+      for (int i = 0; i < 3; ++i) hn::StoreU(sum[i], Tag(), to + i * kLanes);
+    }
+    for (; vertex < range.end; ++vertex) {
+      for (int i = 0; i < 3; ++i) {
+        double& to = f[3 * (vertex - range.first) + i];
+        to = loads.Sum(to, vertex, i, v[3 * vertex + i]);
+      }
+    }
+  }
+};
+
+void AddLoadsHere(const VertexRange& range, const VertexLoads& loads, const double* v, double* f) {
+  WithLoads<Adding>(range, loads, v, f);
+}
+
+// The arrays of all vertices; f has those of the range.
+struct Kick {
+  const double* inverse_mass;
+  double kick, drift;
+  const double *f, *x, *v;
+  double *x_next, *v_next;
+};
+
+struct Kicking {
+  template <typename Loads>
+  static HWY_INLINE void In(const VertexRange& range, const Loads& loads, const Kick& with) {
+    const Spread spread;
+    Eigen::Index vertex = range.first;
+    for (; vertex + kLanes <= range.end; vertex += kLanes) Eight(spread, range.first, vertex, loads, with);
+    for (; vertex < range.end; ++vertex) {
+      const double w = with.inverse_mass[vertex];
+      for (Eigen::Index c = 0, i = 3 * vertex; c < 3; ++c, ++i) {
+        const double f = loads.Sum(with.f[i - 3 * range.first], vertex, static_cast<int>(c), with.v[i]);
+        with.v_next[i] = w > 0 ? with.v[i] + with.kick * w * f : with.v[i];
+        with.x_next[i] = w > 0 ? with.x[i] + with.drift * with.v_next[i] : with.x[i];
+      }
+    }
+  }
+
+  // kLanes of them.
+  template <typename Loads>
+  static HWY_INLINE void Eight(const Spread& spread, Eigen::Index first, Eigen::Index vertex, const Loads& loads,
+                               const Kick& with) {
+    const Tag d;
+    const auto kicks = hn::Set(d, with.kick), drifts = hn::Set(d, with.drift);
+    const Vector inverse_mass = hn::LoadU(d, with.inverse_mass + vertex);
+    Vector f[3], before[3];
+    LoadThree(with.f + 3 * (vertex - first), f), LoadThree(with.v + 3 * vertex, before);
+    loads.AddTo(spread, vertex, before, f);
+    for (int i = 0; i < 3; ++i) {
+      const Eigen::Index place = 3 * vertex + i * kLanes;
+      const Vector w = spread.Of(inverse_mass, i), at = hn::LoadU(d, with.x + place);
+      const auto free = hn::Gt(w, hn::Zero(d));
+      const auto now = hn::IfThenElse(free, hn::Add(before[i], hn::Mul(hn::Mul(kicks, w), f[i])), before[i]);
+      hn::StoreU(now, d, with.v_next + place);
+      hn::StoreU(hn::IfThenElse(free, hn::Add(at, hn::Mul(drifts, now)), at), d, with.x_next + place);
+    }
+  }
+};
+
+void KickAndDriftHere(const VertexRange& range, const VertexLoads& loads, const double* inverse_mass, double kick,
+                      double drift, const double* f, const double* x, const double* v, double* x_next, double* v_next) {
+  WithLoads<Kicking>(range, loads, Kick{inverse_mass, kick, drift, f, x, v, x_next, v_next});
 }
 
 // Numbers are taken in groups of this many, one of each for a running result: whatever the vectors' length, and so many
@@ -194,16 +251,14 @@ HWY_EXPORT(KickAndDriftHere);
 HWY_EXPORT(AddLoadsHere);
 HWY_EXPORT(ReachHere);
 
-void KickAndDrift(const VertexRange& range, const Eigen::VectorXd& w, double kick, double drift, const ConstPoints& f,
-                  const Points& x, const Points& v, Points& x_next, Points& v_next) {
-  HWY_DYNAMIC_DISPATCH(KickAndDriftHere)
-  (range, w.data(), kick, drift, f.data(), x.data(), v.data(), x_next.data(), v_next.data());
+void AddLoads(const VertexRange& range, const VertexLoads& loads, const ConstPoints& v, MutablePoints f) {
+  HWY_DYNAMIC_DISPATCH(AddLoadsHere)(range, loads, v.data(), f.data());
 }
 
-void AddLoads(const VertexRange& range, const Eigen::VectorXd* c, const ConstPoints& v,
-              std::span<const SharedLoad> loads, MutablePoints f) {
-  HWY_DYNAMIC_DISPATCH(AddLoadsHere)
-  (range, c == nullptr ? nullptr : c->data(), v.data(), loads.data(), loads.size(), f.data());
+void KickAndDrift(const VertexRange& range, const Eigen::VectorXd& w, double kick, double drift, const ConstPoints& f,
+                  const VertexLoads& loads, const Points& x, const Points& v, Points& x_next, Points& v_next) {
+  HWY_DYNAMIC_DISPATCH(KickAndDriftHere)
+  (range, loads, w.data(), kick, drift, f.data(), x.data(), v.data(), x_next.data(), v_next.data());
 }
 
 StateReach ReachOf(const VertexRange& range, const Points& x, const Points& v) {

@@ -4,8 +4,8 @@
 #ifndef PHRENIC_SERVER_MECHANICS_VERTEX_KERNEL_H_
 #define PHRENIC_SERVER_MECHANICS_VERTEX_KERNEL_H_
 
+#include <array>
 #include <cstddef>
-#include <span>
 
 #include "server/mechanics/state.h"
 #include "server/mechanics/vertex_range.h"
@@ -13,22 +13,29 @@
 
 namespace phrenic {
 
-// v_next = v + kick w f, then x_next = x + drift v_next, for the vertices with w = 1/m > 0 [1/kg]; the others keep v
-// and x. `kick` and `drift` are times [s]. x_next may be x, and v_next v.
-void KickAndDrift(const VertexRange& range, const Eigen::VectorXd& w, double kick, double drift, const ConstPoints& f,
-                  const Points& x, const Points& v, Points& x_next, Points& v_next);
-
 // A force [N] of which each vertex has a share.
 struct SharedLoad {
-  const double* share;  // one a simulated vertex
-  Eigen::Vector3d force;
+  const double* share = nullptr;  // one a simulated vertex
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();
 };
-inline constexpr size_t kMostLoads = 4;
+// What pulls at vertices whatever the others do: -c v + sum of share times force, in their order [N].
+struct VertexLoads {
+  static constexpr size_t kMost = 4;
 
-// f -= c v, c a coefficient a vertex [N s/m], where one is given; then f += share force for each of the loads,
-// kMostLoads at most, in their order.
-void AddLoads(const VertexRange& range, const Eigen::VectorXd* c, const ConstPoints& v,
-              std::span<const SharedLoad> loads, MutablePoints f);
+  const double* c = nullptr;  // a coefficient a simulated vertex [N s/m], where there is one
+  std::array<SharedLoad, kMost> shared = {};
+  size_t count = 0;
+
+  bool empty() const { return c == nullptr && count == 0; }
+};
+
+// f += the loads.
+void AddLoads(const VertexRange& range, const VertexLoads& loads, const ConstPoints& v, MutablePoints f);
+
+// v_next = v + kick w (f + loads), then x_next = x + drift v_next, for the vertices with w = 1/m > 0 [1/kg]; the others
+// keep v and x. `kick` and `drift` are times [s]. x_next may be x, and v_next v.
+void KickAndDrift(const VertexRange& range, const Eigen::VectorXd& w, double kick, double drift, const ConstPoints& f,
+                  const VertexLoads& loads, const Points& x, const Points& v, Points& x_next, Points& v_next);
 
 // How far the range has got; sums are taken in the same order by all instruction sets.
 StateReach ReachOf(const VertexRange& range, const Points& x, const Points& v);

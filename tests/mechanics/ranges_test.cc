@@ -128,23 +128,49 @@ TEST(Ranges, ReachAsCoordinateByCoordinateOnEveryInstructionSet) {
   }
 }
 
-TEST(Ranges, KickAndDriftAsVertexByVertexOnEveryInstructionSet) {
-  const Eigen::Index vertices = 45;
-  const VertexRange range{8, vertices};
-  const Points f = Points::Random(3, vertices), x = Points::Random(3, vertices), v = Points::Random(3, vertices);
-  Eigen::VectorXd w = Eigen::VectorXd::Random(vertices).cwiseMax(0);  // about half of them fixed
-  Points v_plain = v, x_plain = x;
-  for (Eigen::Index i = range.first; i < range.end; ++i) {
-    if (w[i] == 0) continue;
-    v_plain.col(i) += 0.3 * w[i] * f.col(i);
-    x_plain.col(i) += 0.7 * v_plain.col(i);
+// With friction and without, as many shared forces as there may be, and none.
+struct LoadsOfEveryNumber {
+  explicit LoadsOfEveryNumber(Eigen::Index vertices) : numbers(Eigen::MatrixXd::Random(vertices, 5)) {
+    for (const bool rubs : {false, true}) {
+      VertexLoads loads;
+      if (rubs) loads.c = numbers.col(4).data();
+      of.push_back(loads);
+      for (Eigen::Index l = 0; l < 4; ++l) {
+        loads.shared[loads.count++] = {numbers.col(l).data(), Eigen::Vector3d::Random()};
+        of.push_back(loads);
+      }
+    }
   }
-  OnEveryTarget([&] {
-    Points v_here = v, x_here = x;
-    KickAndDrift(range, w, 0.3, 0.7, f.middleCols(range.first, range.end - range.first), x, v_here, x_here, v_here);
-    EXPECT_EQ(v_here, v_plain);
-    EXPECT_EQ(x_here, x_plain);
-  });
+  Eigen::MatrixXd numbers;
+  std::vector<VertexLoads> of;
+};
+
+Eigen::Vector3d Loaded(Eigen::Vector3d f, const VertexLoads& loads, Eigen::Index vertex, const Eigen::Vector3d& v) {
+  if (loads.c != nullptr) f -= loads.c[vertex] * v;
+  for (size_t l = 0; l < loads.count; ++l) f += loads.shared[l].share[vertex] * loads.shared[l].force;
+  return f;
+}
+
+TEST(Ranges, KickAndDriftAsVertexByVertexOnEveryInstructionSet) {
+  const VertexRange range{8, 45};
+  const LoadsOfEveryNumber all(range.end);
+  const Points f = Points::Random(3, range.end), x = Points::Random(3, range.end), v = Points::Random(3, range.end);
+  Eigen::VectorXd w = Eigen::VectorXd::Random(range.end).cwiseMax(0);  // about half of them fixed
+  for (const VertexLoads& loads : all.of) {
+    Points v_plain = v, x_plain = x;
+    for (Eigen::Index i = range.first; i < range.end; ++i) {
+      if (w[i] == 0) continue;
+      v_plain.col(i) += 0.3 * w[i] * Loaded(f.col(i), loads, i, v.col(i));
+      x_plain.col(i) += 0.7 * v_plain.col(i);
+    }
+    OnEveryTarget([&] {
+      Points v_here = v, x_here = x;
+      const auto own = f.middleCols(range.first, range.end - range.first);
+      KickAndDrift(range, w, 0.3, 0.7, own, loads, x, v_here, x_here, v_here);
+      EXPECT_EQ(v_here, v_plain);
+      EXPECT_EQ(x_here, x_plain);
+    });
+  }
 }
 
 TEST(Ranges, PackPointsAsVertexByVertexOnEveryInstructionSet) {
@@ -166,26 +192,17 @@ TEST(Ranges, PackPointsAsVertexByVertexOnEveryInstructionSet) {
 }
 
 TEST(Ranges, LoadsAsVertexByVertexOnEveryInstructionSet) {
-  const Eigen::Index vertices = 45;
-  const VertexRange range{8, vertices};
-  const Eigen::VectorXd friction = Eigen::VectorXd::Random(vertices), first = Eigen::VectorXd::Random(vertices),
-                        second = Eigen::VectorXd::Random(vertices);
-  const std::vector<SharedLoad> all = {{first.data(), {0.3, -0.2, 0.7}}, {second.data(), {-0.1, 0.4, 0.9}}};
-  const Points f = Points::Random(3, vertices), v = Points::Random(3, vertices);
-  for (const auto* const c : {static_cast<const Eigen::VectorXd*>(nullptr), &friction}) {
-    for (const size_t count : {0, 1, 2}) {
-      const std::span<const SharedLoad> loads(all.data(), count);
-      Points plain = f;
-      for (Eigen::Index i = range.first; i < range.end; ++i) {
-        if (c != nullptr) plain.col(i) -= (*c)[i] * v.col(i);
-        for (const SharedLoad& load : loads) plain.col(i) += load.share[i] * load.force;
-      }
-      OnEveryTarget([&] {
-        Points here = f;
-        AddLoads(range, c, v, loads, here.middleCols(range.first, range.end - range.first));
-        EXPECT_EQ(here, plain);
-      });
-    }
+  const VertexRange range{8, 45};
+  const LoadsOfEveryNumber all(range.end);
+  const Points f = Points::Random(3, range.end), v = Points::Random(3, range.end);
+  for (const VertexLoads& loads : all.of) {
+    Points plain = f;
+    for (Eigen::Index i = range.first; i < range.end; ++i) plain.col(i) = Loaded(f.col(i), loads, i, v.col(i));
+    OnEveryTarget([&] {
+      Points here = f;
+      AddLoads(range, loads, v, here.middleCols(range.first, range.end - range.first));
+      EXPECT_EQ(here, plain);
+    });
   }
 }
 
@@ -212,7 +229,7 @@ TEST(Ranges, WhatIsHeldAndWhatAPoseCarriesAsVertexByVertexOnEveryInstructionSet)
   Points first;
   OnEveryTarget([&] {
     Points here = Points::Zero(3, 24);
-    AddCarried(pose, 0.5, packets.data(), packets.data() + packets.size(), here.data());
+    AddCarried(PoseColumns(pose), 0.5, packets.data(), packets.data() + packets.size(), here.data());
     EXPECT_LT((here - plain).norm(), 1e-14 * plain.norm());
     if (first.size() == 0) first = here;
     EXPECT_EQ(here, first);

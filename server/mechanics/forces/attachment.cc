@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -52,7 +53,7 @@ absl::StatusOr<std::unique_ptr<Force>> Attachment::Make(const v1::Attachment& sc
     if (!region.ok()) return region.status();
     force->AddHolds(scene, *carriers, *region, b, shares, draft);
   }
-  force->Pack(std::move(shares));
+  force->Pack(std::move(shares), draft.model.mass.size());
   if (force->holds_.empty()) {
     draft.ReportLeftOut(name, absl::StrFormat("no vertex is within %g m of a carrier", scene.radius()));
     return nullptr;
@@ -83,11 +84,11 @@ void Attachment::AddHolds(const v1::Attachment& scene, const std::vector<int>& c
 }
 
 // In packets by block and, of what is carried, by pose.
-void Attachment::Pack(std::vector<RideShare> shares) {
+void Attachment::Pack(std::vector<RideShare> shares, Eigen::Index vertices) {
   const auto by_vertex = [](const Hold& hold, int vertex) { return hold.vertex < vertex; };
   std::sort(holds_.begin(), holds_.end(), [](const Hold& a, const Hold& b) { return a.vertex < b.vertex; });
   for (const Hold& hold : holds_) {
-    if (!thesis_) PackInto(held_, -1, hold, hold.stiffness, hold.damping);
+    if (!thesis_) PackInto(held_.of, -1, hold, hold.stiffness, hold.damping);
   }
   const auto place = [](const RideShare& share) {
     return std::tuple(share.vertex / kVertexBlock, share.pose, share.vertex);
@@ -96,14 +97,21 @@ void Attachment::Pack(std::vector<RideShare> shares) {
   for (const RideShare& share : shares) {
     const Hold& hold = *std::lower_bound(holds_.begin(), holds_.end(), share.vertex, by_vertex);
     const double stiffness = thesis_ ? 0 : share.weight * hold.stiffness;
-    PackInto(carried_, share.pose, hold, stiffness, share.weight * (thesis_ ? hold.stiffness : hold.damping));
+    PackInto(carried_.of, share.pose, hold, stiffness, share.weight * (thesis_ ? hold.stiffness : hold.damping));
   }
+  held_.Index(vertices), carried_.Index(vertices);
+}
+
+void Attachment::Groups::Index(Eigen::Index vertices) {
+  first.assign(vertices / kVertexBlock + 2, 0);
+  for (const Group& group : of) ++first[group.block + 1];
+  std::partial_sum(first.begin(), first.end(), first.begin());
 }
 
 // A vertex twice in a row, which has two shares of one pose, goes into two packets.
 void Attachment::PackInto(std::vector<Group>& groups, int pose, const Hold& hold, double stiffness, double damping) {
   const Eigen::Index block = hold.vertex / kVertexBlock;
-  const std::int64_t place = 3 * (hold.vertex % kVertexBlock);
+  const auto place = static_cast<std::int32_t>(3 * (hold.vertex % kVertexBlock));
   const bool goes_on = !groups.empty() && groups.back().block == block && groups.back().pose == pose;
   if (!goes_on) groups.push_back({block, pose, packets_.size(), packets_.size()});
   const auto full = [place](const HoldPacket& packet) {
@@ -111,7 +119,7 @@ void Attachment::PackInto(std::vector<Group>& groups, int pose, const Hold& hold
   };
   if (!goes_on || full(packets_.back())) packets_.emplace_back();
   HoldPacket& packet = packets_.back();
-  const std::int64_t i = packet.count++;
+  const std::int32_t i = packet.count++;
   packet.x[i] = hold.rest.x(), packet.y[i] = hold.rest.y(), packet.z[i] = hold.rest.z();
   packet.stiffness[i] = stiffness;
   packet.damping[i] = damping;
@@ -122,19 +130,19 @@ void Attachment::PackInto(std::vector<Group>& groups, int pose, const Hold& hold
 void Attachment::AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const {
   const double scale = thesis_ ? at.parameters.time_step() : 1;
   const HoldPacket* const packets = packets_.data();
-  const auto for_each = [&range](const std::vector<Group>& groups, const auto& add) {
-    auto group = std::lower_bound(groups.begin(), groups.end(), range.first / kVertexBlock,
-                                  [](const Group& each, Eigen::Index block) { return each.block < block; });
-    for (; group != groups.end() && group->block * kVertexBlock < range.end; ++group) {
-      add(*group, 3 * group->block * kVertexBlock);
+  const auto for_each = [&range](const Groups& groups, const auto& add) {
+    const size_t end = groups.first[(range.end + kVertexBlock - 1) / kVertexBlock];
+    for (size_t g = groups.first[range.first / kVertexBlock]; g < end; ++g) {
+      add(groups.of[g], 3 * groups.of[g].block * kVertexBlock);
     }
   };
   for_each(held_, [&](const Group& group, Eigen::Index block) {
     AddHeld(packets + group.first_packet, packets + group.end_packet, at.x.data() + block, at.v.data() + block,
             f.data() + (block - 3 * range.first));
   });
+  const auto poses = ColumnsOf(at);
   for_each(carried_, [&](const Group& group, Eigen::Index block) {
-    AddCarried(at.poses[group.pose], scale, packets + group.first_packet, packets + group.end_packet,
+    AddCarried(poses[group.pose], scale, packets + group.first_packet, packets + group.end_packet,
                f.data() + (block - 3 * range.first));
   });
 }

@@ -36,15 +36,20 @@ class Attachment final : public Force {
     int pose;
     size_t first_packet, end_packet;
   };
+  struct Groups {
+    std::vector<Group> of;      // by block
+    std::vector<size_t> first;  // of each block, and one more
+    void Index(Eigen::Index vertices);
+  };
   explicit Attachment(std::string name) : Force(std::move(name)) {}
   void AddHolds(const v1::Attachment& scene, const std::vector<int>& carriers, const std::vector<bool>& region,
                 int body, std::vector<RideShare>& shares, Draft& draft);
-  void Pack(std::vector<RideShare> shares);
+  void Pack(std::vector<RideShare> shares, Eigen::Index vertices);
   void PackInto(std::vector<Group>& groups, int pose, const Hold& hold, double stiffness, double damping);
 
   bool thesis_ = false;
-  std::vector<Hold> holds_;            // by vertex
-  std::vector<Group> held_, carried_;  // by block
+  std::vector<Hold> holds_;  // by vertex
+  Groups held_, carried_;
   std::vector<HoldPacket> packets_;
 };
 

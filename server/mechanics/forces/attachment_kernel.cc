@@ -30,7 +30,7 @@ HWY_INLINE void AddPulls(const HoldPacket* packet, const HoldPacket* end, double
     for (int first = 0; first < packet->count; first += kLanes) {
       const auto stiffness = hn::Load(d, packet->stiffness + first), damping = hn::Load(d, packet->damping + first);
       const Vectors force = pull(*packet, first, stiffness, damping);
-      points::AddRows(points::ToRows(force), packet->place + first, static_cast<int>(packet->count) - first, f);
+      points::AddRows(points::ToRows(force), packet->place + first, packet->count - first, f);
     }
   }
 }
@@ -47,19 +47,19 @@ void AddHeldHere(const HoldPacket* packet, const HoldPacket* end, const double* 
   AddPulls(packet, end, f, pull);
 }
 
-// One coordinate of where an affine map, 3 x 4, takes points.
-HWY_INLINE Vector Mapped(const double* row, const Vectors& p) {
+// What the pose gives points, by a row of its columns.
+HWY_INLINE Vector Mapped(const PoseColumns& pose, int row, const Vectors& p) {
   const Tag d;
-  const auto xy = hn::Add(hn::Mul(hn::Set(d, row[0]), p.x), hn::Mul(hn::Set(d, row[3]), p.y));
-  return hn::Add(hn::Add(xy, hn::Mul(hn::Set(d, row[6]), p.z)), hn::Set(d, row[9]));
+  const auto of = [&](int c) HWY_ATTR { return hn::Set(d, pose.column[c][row]); };
+  const auto xy = hn::Add(hn::Mul(of(0), p.x), hn::Mul(of(1), p.y));
+  return hn::Add(hn::Add(xy, hn::Mul(of(2), p.z)), of(3));
 }
 
-void AddCarriedHere(const double* way, const double* velocity, double scale, const HoldPacket* packet,
-                    const HoldPacket* end, double* f) {
+void AddCarriedHere(const PoseColumns& pose, double scale, const HoldPacket* packet, const HoldPacket* end, double* f) {
   const auto pull = [&](const HoldPacket& of, int first, Vector stiffness, Vector damping) HWY_ATTR {
     const Vectors rest = AtRest(of, first);
     const auto along = [&](int k) HWY_ATTR {
-      const auto sum = hn::Add(hn::Mul(stiffness, Mapped(way + k, rest)), hn::Mul(damping, Mapped(velocity + k, rest)));
+      const auto sum = hn::Add(hn::Mul(stiffness, Mapped(pose, k, rest)), hn::Mul(damping, Mapped(pose, 4 + k, rest)));
       return hn::Mul(hn::Set(Tag(), scale), sum);
     };
     return Vectors{along(0), along(1), along(2)};
@@ -81,15 +81,8 @@ void AddHeld(const HoldPacket* first, const HoldPacket* end, const double* x, co
   HWY_DYNAMIC_DISPATCH(AddHeldHere)(first, end, x, v, f);
 }
 
-void AddCarried(const Pose& pose, double scale, const HoldPacket* first, const HoldPacket* end, double* f) {
-  const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
-  // The point's way and its velocity: a column for each of its coordinates at rest, and one that is the same for all.
-  Eigen::Matrix<double, 3, 4> way, velocity;
-  way.leftCols<3>() = rotation - Eigen::Matrix3d::Identity();
-  way.col(3) = pose.translation;
-  for (int c = 0; c < 3; ++c) velocity.col(c) = pose.angular_velocity.cross(rotation.col(c));
-  velocity.col(3) = pose.velocity;
-  HWY_DYNAMIC_DISPATCH(AddCarriedHere)(way.data(), velocity.data(), scale, first, end, f);
+void AddCarried(const PoseColumns& pose, double scale, const HoldPacket* first, const HoldPacket* end, double* f) {
+  HWY_DYNAMIC_DISPATCH(AddCarriedHere)(pose, scale, first, end, f);
 }
 
 }  // namespace phrenic

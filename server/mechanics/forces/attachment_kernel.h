@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "server/mechanics/state.h"
+#include "server/mechanics/pose_columns.h"
 
 namespace phrenic {
 
@@ -16,8 +16,8 @@ inline constexpr int kPacketVertices = 8;
 struct alignas(64) HoldPacket {
   double x[kPacketVertices] = {}, y[kPacketVertices] = {}, z[kPacketVertices] = {};  // at rest [m]
   double stiffness[kPacketVertices] = {}, damping[kPacketVertices] = {};             // [N/m], [N s/m]
-  std::int64_t place[kPacketVertices] = {};  // of the vertex in its block's arrays [doubles]; none twice
-  std::int64_t count = 0;
+  std::int32_t place[kPacketVertices] = {};  // of the vertex in its block's arrays [doubles]; none twice
+  std::int32_t count = 0;
 };
 
 // Both are for packets first to end - 1 of one block, whose positions, velocities and forces are 3 x n. Any number of
@@ -28,7 +28,7 @@ void AddHeld(const HoldPacket* first, const HoldPacket* end, const double* x, co
 
 // f += scale (stiffness u + damping u') [N] for each vertex, u the way that the pose carries its point at rest [m];
 // stiffness and damping are times the pose's share in it.
-void AddCarried(const Pose& pose, double scale, const HoldPacket* first, const HoldPacket* end, double* f);
+void AddCarried(const PoseColumns& pose, double scale, const HoldPacket* first, const HoldPacket* end, double* f);
 
 }  // namespace phrenic
 

@@ -30,7 +30,9 @@ absl::StatusOr<std::unique_ptr<Force>> Friction::Make(const v1::Friction& scene,
 }
 
 void Friction::AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const {
-  AddLoads(range, &coefficient_, at.v, {}, f);
+  VertexLoads loads;
+  loads.c = coefficient_.data();
+  AddLoads(range, loads, at.v, f);
 }
 
 }  // namespace phrenic

@@ -17,25 +17,6 @@ std::string JointName(std::span<const Friction* const> friction, std::span<const
   return absl::StrJoin(names, " + ");
 }
 
-// In a block, as many at a time as the kernel takes.
-void AddInBlock(std::span<const SharedForce* const> shared, const Eigen::VectorXd* coefficient,
-                const VertexRange& block, const Instant& at, MutablePoints f) {
-  std::array<SharedLoad, kMostLoads> loads;
-  size_t count = 0;
-  for (const SharedForce* force : shared) {
-    if (!force->ActsOn(block.first / kVertexBlock)) continue;
-    const Eigen::Vector3d whole = force->Whole(at);
-    if (whole.isZero(0)) continue;
-    if (count == kMostLoads) {
-      AddLoads(block, coefficient, at.v, loads, f);
-      coefficient = nullptr;
-      count = 0;
-    }
-    loads[count++] = {force->share().data(), whole};
-  }
-  if (coefficient != nullptr || count > 0) AddLoads(block, coefficient, at.v, {loads.data(), count}, f);
-}
-
 }  // namespace
 
 LoadBatch::LoadBatch(std::span<const Friction* const> friction, std::span<const SharedForce* const> shared)
@@ -45,15 +26,28 @@ LoadBatch::LoadBatch(std::span<const Friction* const> friction, std::span<const 
   }
 }
 
-void LoadBatch::AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const {
-  AddLoadsOf(shared_, coefficient_.size() > 0 ? &coefficient_ : nullptr, range, at, f);
+VertexLoads LoadBatch::InBlock(const VertexRange& block, const Instant& at, MutablePoints f) const {
+  VertexLoads loads;
+  if (coefficient_.size() > 0) loads.c = coefficient_.data();
+  for (const SharedForce* force : shared_) {
+    if (!force->ActsOn(block.first / kVertexBlock)) continue;
+    const Eigen::Vector3d whole = force->Whole(at);
+    if (whole.isZero(0)) continue;
+    if (loads.count == VertexLoads::kMost) {
+      AddLoads(block, loads, at.v, f);
+      loads = {};
+    }
+    loads.shared[loads.count++] = {force->share().data(), whole};
+  }
+  return loads;
 }
 
-void AddLoadsOf(std::span<const SharedForce* const> shared, const Eigen::VectorXd* coefficient,
-                const VertexRange& range, const Instant& at, MutablePoints f) {
+void LoadBatch::AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const {
   for (Eigen::Index first = range.first; first < range.end; first += kVertexBlock) {
     const VertexRange block = {first, std::min(first + kVertexBlock, range.end)};
-    AddInBlock(shared, coefficient, block, at, f.middleCols(first - range.first, block.end - first));
+    const MutablePoints own = f.middleCols(first - range.first, block.end - first);
+    const VertexLoads loads = InBlock(block, at, own);
+    if (!loads.empty()) AddLoads(block, loads, at.v, own);
   }
 }
 

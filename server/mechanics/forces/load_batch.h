@@ -7,6 +7,7 @@
 
 #include "server/mechanics/forces/friction.h"
 #include "server/mechanics/forces/shared_force.h"
+#include "server/mechanics/vertex_kernel.h"
 
 namespace phrenic {
 
@@ -18,15 +19,14 @@ class LoadBatch final : public Force {
 
   bool by_range() const override { return true; }
   void AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const override;
+  // What is to be added to the forces on a block (kVertexBlock), for a pass over it that has more to do; of more loads
+  // than VertexLoads holds the first are added to f.
+  VertexLoads InBlock(const VertexRange& block, const Instant& at, MutablePoints f) const;
 
  private:
   Eigen::VectorXd coefficient_;  // c of all friction, one a simulated vertex [N s/m]; none where there is none
   std::vector<const SharedForce*> shared_;
 };
-
-// f += the range's part of these; the friction too, where there is one.
-void AddLoadsOf(std::span<const SharedForce* const> shared, const Eigen::VectorXd* coefficient,
-                const VertexRange& range, const Instant& at, MutablePoints f);
 
 }  // namespace phrenic
 

@@ -1,6 +1,6 @@
 #include "server/mechanics/forces/shared_force.h"
 
-#include "server/mechanics/forces/load_batch.h"
+#include "server/mechanics/vertex_kernel.h"
 
 namespace phrenic {
 
@@ -13,8 +13,9 @@ void SharedForce::SetShare(Eigen::VectorXd share) {
 }
 
 void SharedForce::AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const {
-  const SharedForce* const self = this;
-  AddLoadsOf({&self, 1}, nullptr, range, at, f);
+  VertexLoads loads;
+  loads.shared[loads.count++] = {share_.data(), Whole(at)};
+  AddLoads(range, loads, at.v, f);
 }
 
 double SharedForce::Energy(const Instant& at) const { return -Whole(at).dot(at.x * share_); }

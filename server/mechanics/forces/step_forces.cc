@@ -53,10 +53,11 @@ void ChooseStepForces(Model& model) {
     if (batch->packs() && model.packed_from < 0) model.packed_from = batch->rows().origin();
     TakeBatch(std::move(batch), model);
   }
-  if (!kinds.friction.empty() || !kinds.shared.empty()) {
-    TakeBatch(std::make_unique<LoadBatch>(kinds.friction, kinds.shared), model);
-  }
   for (const Force* force : kinds.others) Take(*force, model);
+  if (kinds.friction.empty() && kinds.shared.empty()) return;
+  auto batch = std::make_unique<LoadBatch>(kinds.friction, kinds.shared);
+  model.loads = batch.get();
+  TakeBatch(std::move(batch), model);
 }
 
 }  // namespace phrenic

@@ -6,8 +6,8 @@
 
 namespace phrenic {
 
-// Sets the model's `whole_forces` and `range_forces`: springs first and then loads, each worked out together in
-// `batches`, then the others in their order.
+// Sets the model's `whole_forces` and `range_forces`: springs first and loads last, each worked out together in
+// `batches`, the others in their order between them.
 void ChooseStepForces(Model& model);
 
 }  // namespace phrenic

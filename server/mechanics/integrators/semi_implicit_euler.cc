@@ -91,11 +91,11 @@ absl::Status SemiImplicitEuler::Advance(const Model& model, const v1::Parameters
     alignas(64) double memory[3 * kVertexBlock], start[3 * kVertexBlock];
     Eigen::Map<Points> own(memory, 3, vertices);
     MutablePoints f = whole ? MutablePoints(work.force.middleCols(block.first, vertices)) : MutablePoints(own);
-    AddForcesIn(block, model, at, !whole, f);
+    const VertexLoads loads = AddForcesButLoads(block, model, at, !whole, f);
     const bool constrained = in_blocks != nullptr && in_blocks->ActsIn(block.first / kVertexBlock);
     const double* const x = state.x.data() + 3 * block.first;
     if (constrained && over) std::copy_n(x, 3 * vertices, start);
-    KickAndDrift(block, model.inverse_mass, dt, dt, f, state.x, state.v, x_next, v_next);
+    KickAndDrift(block, model.inverse_mass, dt, dt, f, loads, state.x, state.v, x_next, v_next);
     const Eigen::Map<const Points> before(over ? start : x, 3, vertices);
     if (constrained) in_blocks->ProjectIn(block, parameters, before, dt, x_next, v_next);
     if (!later) NoteReach(block, x_next, v_next, work.reach);

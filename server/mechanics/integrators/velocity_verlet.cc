@@ -43,7 +43,7 @@ double VelocityVerlet::MaxStep(const Spectrum& spectrum) const {
 absl::Status VelocityVerlet::Advance(const Model& model, const v1::Parameters& parameters, double dt, State& state,
                                      Workspace& work) const {
   RecallForce(model, parameters, state, work.force);
-  KickAndDrift({0, state.x.cols()}, model.inverse_mass, dt / 2, dt, work.force, state.x, state.v, state.x, state.v);
+  KickAndDrift({0, state.x.cols()}, model.inverse_mass, dt / 2, dt, work.force, {}, state.x, state.v, state.x, state.v);
   DriveMotions(model, parameters, dt, state);
   ProjectPositions(model, parameters, work.before, dt, state);
   const Instant end = InstantAhead(model, parameters, dt, state);
