@@ -104,7 +104,8 @@ void Session::Burst() {
   } else {
     NoteProgress();
     SaveProgress(now);
-    if (pacer_.FrameDue(now)) OfferFrame(now);
+    // Of one that fell due meanwhile the steps are yet to come.
+    if (pacer_.FrameDue(start)) OfferFrame(now);
   }
 }
 

@@ -104,23 +104,41 @@ double PrintSize(int side, int threads) {
   return alone->hash == shared->hash ? alone->cpu : 0;
 }
 
+struct Size {
+  double vertices = 0, cpu = 0;  // of a step [s]
+};
+
+// The exponent over all sizes, and without the steepest step from one to the next, where the arrays outgrow a cache.
+void PrintExponents(const std::vector<Size>& sizes) {
+  double time = 0, size = 0, steepest_time = 0, steepest_size = 1;
+  size_t steepest = 0;
+  for (size_t i = 1; i < sizes.size(); ++i) {
+    const double t = std::log(sizes[i].cpu / sizes[i - 1].cpu), n = std::log(sizes[i].vertices / sizes[i - 1].vertices);
+    time += t, size += n;
+    if (steepest > 0 && t / n <= steepest_time / steepest_size) continue;
+    steepest = i, steepest_time = t, steepest_size = n;
+  }
+  if (steepest == 0) return;
+  std::printf("CPU time grows as the number of vertices to the power of %.2f", time / size);
+  if (sizes.size() > 2) {
+    std::printf("; of %.2f but for the steepest step, from %.0f to %.0f",
+                (time - steepest_time) / (size - steepest_size), sizes[steepest - 1].vertices,
+                sizes[steepest].vertices);
+  }
+  std::printf("\n");
+}
+
 int Run(double largest, int threads) {
   std::printf("%9s %11s %11s %12s %12s %12s %10s\n", "vertices", "compile s", "bytes each", "CPU us", "ns a vertex",
               "wall us", "speed-up");
   std::printf("%9s %11s %11s %12s %12s %9d thr %10s\n", "", "(CPU)", "", "1 thread", "", threads, "");
-  double first = 0, last = 0;
-  int first_side = 0, last_side = 0;
+  std::vector<Size> sizes;
   for (const int side : kSides) {
     if (side * side > largest) break;
-    const double cpu = PrintSize(side, threads);
-    if (cpu == 0) return 1;
-    if (first == 0) first = cpu, first_side = side;
-    last = cpu, last_side = side;
+    sizes.push_back({static_cast<double>(side) * side, PrintSize(side, threads)});
+    if (sizes.back().cpu == 0) return 1;
   }
-  if (last_side > first_side) {
-    std::printf("CPU time grows as the number of vertices to the power of %.2f\n",
-                std::log(last / first) / (2 * std::log(static_cast<double>(last_side) / first_side)));
-  }
+  PrintExponents(sizes);
   return 0;
 }
 
