@@ -15,7 +15,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
+#include <sstream>
+#include <utility>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
@@ -25,9 +26,11 @@
 namespace phrenic::cluster {
 namespace {
 
+// Nothing of one that cannot be read: what /proc has of a process may go while it is read.
 std::string TextOf(const std::string& file) {
-  std::ifstream in(file);
-  return {std::istreambuf_iterator<char>(in), {}};
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  return std::move(text).str();
 }
 
 bool IsFree(int port) {
@@ -65,7 +68,8 @@ int FreePorts(int count) {
 }
 
 bool Runs(pid_t pid) {
-  return kill(pid, 0) == 0 && !absl::StrContains(TextOf(absl::StrCat("/proc/", pid, "/stat")), ") Z ");
+  const std::string state = TextOf(absl::StrCat("/proc/", pid, "/stat"));
+  return kill(pid, 0) == 0 && !state.empty() && !absl::StrContains(state, ") Z ");
 }
 
 // What a program prints.
