@@ -40,10 +40,11 @@ struct Times {
 
 void Collect(double clock, Stages& stages, Times& times) {
   for (size_t i = 0; i < stages.size(); ++i) {
-    times.stages[i].push_back(stages[i].seconds - stages[i].calls * clock);
+    times.stages[i].push_back(stages[i].seconds - stages[i].parts * clock);
     times.calls[i] += stages[i].calls;
     stages[i].seconds = 0;
     stages[i].calls = 0;
+    stages[i].parts = 0;
   }
 }
 
@@ -92,8 +93,9 @@ absl::Status AddStages(const Subject& subject, int steps, const Progress& progre
     sum += seconds;
     AddRow(stages[i], seconds, whole, static_cast<double>(times->calls[i]) / steps, table);
   }
-  AddRow({.stage = "integrator", .element = "what remains", .seconds = 0, .calls = 0}, whole - sum, whole, 1, table);
-  AddRow({.stage = "step", .element = "whole", .seconds = 0, .calls = 0}, whole, whole, 1, table);
+  AddRow({.stage = "integrator", .element = "what remains", .seconds = 0, .calls = 0, .parts = 0}, whole - sum, whole,
+         1, table);
+  AddRow({.stage = "step", .element = "whole", .seconds = 0, .calls = 0, .parts = 0}, whole, whole, 1, table);
   return absl::OkStatus();
 }
 

@@ -23,6 +23,7 @@ class Span {
   Span& operator=(const Span&) = delete;
   ~Span() {
     stage_.seconds += Since(start_);
+    ++stage_.parts;
     if (first_) ++stage_.calls;
   }
 
@@ -33,7 +34,7 @@ class Span {
 };
 
 Stage& NewStage(const char* what, const std::string& element, Stages& stages) {
-  return stages.emplace_back(Stage{.stage = what, .element = element, .seconds = 0, .calls = 0});
+  return stages.emplace_back(Stage{.stage = what, .element = element, .seconds = 0, .calls = 0, .parts = 0});
 }
 
 class TimedForce final : public Force {
@@ -138,6 +139,7 @@ Model Timed(const Model& model, Stages& stages) {
   for (const auto& force : model.forces) timed.forces.push_back(std::make_unique<TimedForce>(*force, stages));
   for (const auto& batch : model.batches) timed.batches.push_back(std::make_unique<TimedForce>(*batch, stages));
   timed.packed_from = model.packed_from;
+  timed.attached_vertices = model.attached_vertices;
   for (const Force* force : model.whole_forces) timed.whole_forces.push_back(&TimedOf(*force, model, timed));
   for (const Force* force : model.range_forces) timed.range_forces.push_back(&TimedOf(*force, model, timed));
   for (const auto& constraint : model.constraints) {

@@ -15,6 +15,7 @@ struct Stage {
   std::string element;  // "springs:muscle"
   double seconds = 0;   // wall time
   int calls = 0;
+  int parts = 0;  // in which the calls came: the clock was read before and after each
 };
 
 using Stages = std::deque<Stage>;  // places stay where they are

@@ -140,6 +140,7 @@ void Attachment::AddForceIn(const VertexRange& range, const Instant& at, Mutable
     AddHeld(packets + group.first_packet, packets + group.end_packet, at.x.data() + block, at.v.data() + block,
             f.data() + (block - 3 * range.first));
   });
+  if (carried_.of.empty()) return;
   const auto poses = ColumnsOf(at);
   for_each(carried_, [&](const Group& group, Eigen::Index block) {
     AddCarried(poses[group.pose], scale, packets + group.first_packet, packets + group.end_packet,
