@@ -1,11 +1,9 @@
 #include "server/mechanics/forces/load_batch.h"
 
 #include <algorithm>
-#include <array>
 #include <string>
 
 #include "absl/strings/str_join.h"
-#include "server/mechanics/vertex_kernel.h"
 
 namespace phrenic {
 namespace {
