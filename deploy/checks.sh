@@ -167,8 +167,8 @@ stage_tests() {
 sanitized() {
   local folder=$1 sanitizers=$2
   shift 2
-  configure "$folder" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_FLAGS_RELWITHDEBINFO='-O1 -g1' "${unity[@]}" \
-    -DPHRENIC_SANITIZE="$sanitizers" && build "$folder" "$@"
+  configure "$folder" -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=RelWithDebInfo \
+    -DCMAKE_CXX_FLAGS_RELWITHDEBINFO='-O1 -g1' "${unity[@]}" -DPHRENIC_SANITIZE="$sanitizers" && build "$folder" "$@"
 }
 
 # The physiology tests simulate a whole breath of 20,000 vertices: too long here, and the same code runs in the others.

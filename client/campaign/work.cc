@@ -9,7 +9,7 @@
 namespace phrenic::client {
 namespace {
 
-constexpr char kSession[] = "cell";
+constexpr char kCell[] = "cell";
 
 void WriteCost(const Cost& cost, const std::string& cell, v1::CampaignResult& result) {
   v1::CampaignRow& row = *result.mutable_rows(0);
@@ -35,7 +35,7 @@ grpc::Status RunSession(const Context& context, const CampaignCell& cell, v1::Se
   *create.mutable_source() = cell.source;
   *create.mutable_parameters() = cell.parameters;
   create.set_preset(cell.row.preset());
-  create.set_session_id(kSession);
+  create.set_session_id(kCell);
   v1::CreateSessionResponse created;
   grpc::Status status = Call(context, stub, &v1::SessionService::Stub::CreateSession, create, &created);
   if (!status.ok()) return status;
@@ -51,7 +51,7 @@ grpc::Status RunSession(const Context& context, const CampaignCell& cell, v1::Se
                              why.force(), "; ", why.remedy()));
   }
   v1::DeleteSessionRequest remove;
-  remove.set_session_id(kSession);
+  remove.set_session_id(kCell);
   v1::DeleteSessionResponse removed;
   const grpc::Status deleted = Call(context, stub, &v1::SessionService::Stub::DeleteSession, remove, &removed);
   return status.ok() ? deleted : status;

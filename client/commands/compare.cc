@@ -23,14 +23,14 @@
 namespace phrenic::client {
 namespace {
 
-constexpr absl::string_view kSession = "session:";
+constexpr absl::string_view kSessionPrefix = "session:";
 constexpr std::uintmax_t kMostBytes = std::uintmax_t{1000} << 20;  // two such files fit one message
 
 // "session:ID", "session:ID/BODY".
-bool IsSession(const std::string& words) { return absl::StartsWith(words, kSession); }
+bool IsSession(const std::string& words) { return absl::StartsWith(words, kSessionPrefix); }
 
 void NameBody(const std::string& words, v1::SessionBody& body) {
-  const std::vector<std::string> parts = absl::StrSplit(absl::StripPrefix(words, kSession), absl::MaxSplits('/', 1));
+  const std::vector<std::string> parts = absl::StrSplit(absl::StripPrefix(words, kSessionPrefix), absl::MaxSplits('/', 1));
   body.set_session_id(parts[0]);
   if (parts.size() > 1) body.set_body(parts[1]);
 }

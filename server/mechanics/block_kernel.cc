@@ -214,12 +214,12 @@ HWY_INLINE void FillSprings(const Vectors& k, const Vector& root, size_t first, 
 HWY_INLINE void FillWhole(const Quad* entries, const std::int32_t* entry, const Vector& by, size_t first,
                           Lanes* block) {
   const auto place = [entry](int i) { return 4 * static_cast<std::ptrdiff_t>(entry[i] / 2); };
-  const Vectors a = Transposed(entries->at, place), b = Transposed(entries->at + 4, place);
+  const Vectors a = Transposed(entries[0].at, place), b = Transposed(entries[1].at, place);
   Lanes sides;
   for (size_t i = 0; i < kWidth; ++i) sides.at[first + i] = entry[i] % 2 == 0 ? 1.0F : -1.0F;
   const Vector side = At(sides, first);
   const Vector tx = hn::Mul(b.z, side), ty = hn::Mul(b.w, side);
-  const Vector tz = hn::Mul(Transposed(entries->at + 8, place).x, side);
+  const Vector tz = hn::Mul(Transposed(entries[2].at, place).x, side);
   const Vector k[9] = {a.x, hn::Sub(a.y, tz), hn::Add(a.z, ty), hn::Add(a.y, tz),
                        a.w, hn::Sub(b.x, tx), hn::Sub(a.z, ty), hn::Add(b.x, tx),
                        b.y};

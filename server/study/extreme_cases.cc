@@ -28,10 +28,10 @@ std::string Hanging(const std::string& mass, const std::string& more) {
 }
 
 const char kGravity[] = R"(forces { gravity { bodies: "b" acceleration { z: -9.81 } } })";
-const char kSprings[] = R"(forces { springs { bodies: "b" stiffness: 100 } })";
+const char kSoftSprings[] = R"(forces { springs { bodies: "b" stiffness: 100 } })";
 const char kFriction[] = R"(forces { friction { bodies: "b" rate: 1 } })";
 
-std::string Usual() { return absl::StrCat(kSprings, kFriction, kGravity); }
+std::string Usual() { return absl::StrCat(kSoftSprings, kFriction, kGravity); }
 std::string Sheet(const std::string& more) { return Hanging("0.36", more); }
 
 // Pulls the sheet out of its plane with `newtons` at the peak of a breath of half a second.
@@ -231,7 +231,7 @@ std::vector<ExtremeCase> Stiff() {
       {.name = "fibre ratio 1e6", .scene = FibreRatio(), .judged = {.error = false}},
       {.name = "time step x 10", .scene = Sheet(Usual()), .step = 0.04, .judged = {.error = false}},
       {.name = "friction rate 1e6",
-       .scene = Sheet(absl::StrCat(kSprings, kGravity, R"(forces { friction { bodies: "b" rate: 1e6 } })")),
+       .scene = Sheet(absl::StrCat(kSoftSprings, kGravity, R"(forces { friction { bodies: "b" rate: 1e6 } })")),
        .seconds = 0.1},
       {.name = "force x 10", .scene = Pulled("10")},
       {.name = "force x 1000", .scene = Pulled("1000")},

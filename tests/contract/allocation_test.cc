@@ -10,7 +10,7 @@ namespace phrenic {
 namespace {
 
 TEST(Allocations, AreSeen) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef PHRENIC_SANITIZED
   GTEST_SKIP() << "the sanitizer has a malloc of its own";
 #endif
   const std::int64_t before = Allocations();

@@ -9,7 +9,7 @@ std::atomic<std::int64_t> calls = 0;
 
 }  // namespace
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#ifndef PHRENIC_SANITIZED
 // glibc's own names; Eigen and operator new come by here.
 extern "C" void* __libc_malloc(std::size_t size);
 extern "C" void* __libc_realloc(void* memory, std::size_t size);

@@ -140,7 +140,7 @@ TEST(ProjectiveDynamics, StaysBoundedWhereStiffnessesDifferAMillionfold) {
 // direction.
 TEST(PrefactoredSystem, IsTheLaplacianOfSpringsAtRest) {
   const auto model = CompileText(kNet);
-  constexpr double kStep = 0.1, kStiffness = 100;
+  constexpr double kStep = 0.1, kSpring = 100;
   PrefactoredSystem system(*model);
   system.Prepare(*model, model->parameters, kStep);
   const Points b = Disturbed(*model, 1).v;
@@ -149,7 +149,7 @@ TEST(PrefactoredSystem, IsTheLaplacianOfSpringsAtRest) {
   Points product = y * model->mass.asDiagonal();
   const Edges edges = SpringEdges(model->bodies[0].mesh);
   for (Eigen::Index e = 0; e < edges.cols(); ++e) {
-    const Eigen::Vector3d apart = kStep * kStep * kStiffness * (y.col(edges(0, e)) - y.col(edges(1, e)));
+    const Eigen::Vector3d apart = kStep * kStep * kSpring * (y.col(edges(0, e)) - y.col(edges(1, e)));
     product.col(edges(0, e)) += apart;
     product.col(edges(1, e)) -= apart;
   }

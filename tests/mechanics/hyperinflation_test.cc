@@ -8,9 +8,9 @@
 namespace phrenic {
 namespace {
 
-constexpr double kForce = 4, kAir = 2;
+constexpr double kMuscle = 4, kAir = 2;
 
-std::shared_ptr<const Model> WithMuscle(const std::string& air) {
+std::shared_ptr<const Model> WithAir(const std::string& air) {
   return CompileText(
       Triangle("breath { waveform: WAVEFORM_RAISED_COSINE } forces { action_line { bodies: 'sheet' "
                "origin {} direction { z: -1 } radius: 3 force: 4 " +
@@ -26,17 +26,17 @@ double Upwards(const Model& model, const v1::Parameters& parameters, double phas
 }
 
 TEST(Hyperinflation, HoldsTheDomesLowWhateverTheMuscleDoes) {
-  const auto model = WithMuscle("air_load: 2");
+  const auto model = WithAir("air_load: 2");
   v1::Parameters parameters = model->parameters;
   parameters.set_hyperinflation(1.5);
   EXPECT_NEAR(Upwards(*model, parameters, 0), -1.5 * kAir, 1e-12);
-  EXPECT_NEAR(Upwards(*model, parameters, 0.5), -1.5 * kAir - kForce, 1e-12);
+  EXPECT_NEAR(Upwards(*model, parameters, 0.5), -1.5 * kAir - kMuscle, 1e-12);
   parameters.set_apply_muscles(false);
   EXPECT_NEAR(Upwards(*model, parameters, 0.5), -1.5 * kAir, 1e-12);
 }
 
 TEST(Hyperinflation, OfNothingIsTheMotionWithoutItToTheLastBit) {
-  const auto with = WithMuscle("air_load: 2"), without = WithMuscle("");
+  const auto with = WithAir("air_load: 2"), without = WithAir("");
   State a = with->InitialState(), b = without->InitialState();
   Workspace work_a = with->MakeWorkspace(), work_b = without->MakeWorkspace();
   for (int i = 0; i < 200; ++i) {
@@ -47,9 +47,9 @@ TEST(Hyperinflation, OfNothingIsTheMotionWithoutItToTheLastBit) {
 }
 
 TEST(Hyperinflation, IsIdleWhereNothingHoldsAir) {
-  const auto idle = WithMuscle("")->report.idle_parameters();
+  const auto idle = WithAir("")->report.idle_parameters();
   EXPECT_THAT(idle, testing::Contains("hyperinflation"));
-  const auto active = WithMuscle("air_load: 2")->report.idle_parameters();
+  const auto active = WithAir("air_load: 2")->report.idle_parameters();
   EXPECT_THAT(active, testing::Not(testing::Contains("hyperinflation")));
 }
 

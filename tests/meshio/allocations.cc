@@ -12,7 +12,7 @@ std::atomic<std::size_t> largest = 0;
 
 }  // namespace
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#ifndef PHRENIC_SANITIZED
 // glibc's own names; Eigen and operator new come by here.
 extern "C" void* __libc_malloc(std::size_t size);
 extern "C" void* __libc_realloc(void* memory, std::size_t size);

@@ -12,7 +12,7 @@ namespace phrenic::study {
 namespace {
 
 // A sheet that hangs on one side and is swung at it.
-const char kSwing[] = R"(
+const char kWavingSheet[] = R"(
   name: "swing" title: "Swing"
   bodies {
     name: "sheet" role: ROLE_DEFORMABLE
@@ -32,7 +32,7 @@ v1::CreateStudyRequest Wanted() {
 }
 
 TEST(StreamingStudy, NoRowErrsByMoreThanItsBound) {
-  const auto result = RunOn(kSwing, Wanted());
+  const auto result = RunOn(kWavingSheet, Wanted());
   ASSERT_TRUE(result.ok()) << result.status();
   const v1::StreamingTable& table = result->streaming();
   EXPECT_EQ(table.vertices(), 144);
@@ -51,7 +51,7 @@ TEST(StreamingStudy, NoRowErrsByMoreThanItsBound) {
 }
 
 TEST(StreamingStudy, ACoarserBoundTakesNoMoreAndNothingBeatsTheFront) {
-  const auto result = RunOn(kSwing, Wanted());
+  const auto result = RunOn(kWavingSheet, Wanted());
   ASSERT_TRUE(result.ok()) << result.status();
   const v1::StreamingRow* before = nullptr;
   for (const v1::StreamingRow& row : result->streaming().rows()) {
@@ -67,7 +67,7 @@ TEST(StreamingStudy, ACoarserBoundTakesNoMoreAndNothingBeatsTheFront) {
 }
 
 TEST(StreamingStudy, EndsWhenItIsToldTo) {
-  const auto result = RunOn(kSwing, Wanted(), [](double done, std::string_view) { return done < 0.5; });
+  const auto result = RunOn(kWavingSheet, Wanted(), [](double done, std::string_view) { return done < 0.5; });
   EXPECT_TRUE(absl::IsCancelled(result.status())) << result.status();
 }
 

@@ -54,7 +54,6 @@ TEST(AbslNotification, OrdersWhatCameBeforeIt) {
   other.join();
 }
 
-#ifdef __SANITIZE_THREAD__
 TEST(ThreadSanitizer, StillSeesARace) {
   testing::GTEST_FLAG(death_test_style) = "threadsafe";
   EXPECT_DEATH(
@@ -72,6 +71,5 @@ TEST(ThreadSanitizer, StillSeesARace) {
       },
       "data race");
 }
-#endif
 
 }  // namespace
