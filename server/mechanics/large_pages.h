@@ -1,4 +1,4 @@
-// Memory for large arrays that live shortly, in pages as large as the system has (Linux: madvise(2), MADV_HUGEPAGE),
+// Memory for large arrays, in pages as large as the system has (Linux: madvise(2), MADV_HUGEPAGE),
 // which begin where such a page may. To touch 10 MB of new memory in pages of 4 KiB took 3 ms on one machine, and 25 ms
 // on a virtual one inside another.
 #ifndef PHRENIC_SERVER_MECHANICS_LARGE_PAGES_H_

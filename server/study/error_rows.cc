@@ -72,10 +72,10 @@ bool Beats(const v1::ErrorRow& a, const v1::ErrorRow& b) {
 }
 
 // Three digits, without a power of ten.
-std::string Times(double pace) { return pace < 100 ? absl::StrFormat("%.3g", pace) : absl::StrFormat("%.0f", pace); }
+std::string PaceText(double pace) { return pace < 100 ? absl::StrFormat("%.3g", pace) : absl::StrFormat("%.0f", pace); }
 
 std::string Pace(double cpu_per_second) {
-  return cpu_per_second < 1 ? absl::StrCat(Times(1 / cpu_per_second), " times faster than real time")
+  return cpu_per_second < 1 ? absl::StrCat(PaceText(1 / cpu_per_second), " times faster than real time")
                             : absl::StrFormat("%.3g times slower than real time", cpu_per_second);
 }
 

@@ -22,7 +22,7 @@ struct RowSpring {
 // Those of place i: of[first[i]] to of[first[i + 1] - 1].
 struct Rows {
   std::vector<int> first;
-  std::vector<RowSpring> of;
+  std::vector<RowSpring, LargePages<RowSpring>> of;
 
   int count() const { return static_cast<int>(first.size()) - 1; }
   int Size(int place) const { return first[place + 1] - first[place]; }
@@ -44,7 +44,7 @@ Rows ByPlace(const std::vector<Spring>& springs, const std::vector<int>& order, 
   for (int i = 0; i < vertices; ++i) place[i] = i;
   for (size_t i = 0; i < order.size(); ++i) place[order[i]] = static_cast<int>(i);
   Rows rows{std::vector<int>((order.empty() ? vertices : order.size()) + 1, 0),
-            std::vector<RowSpring>(2 * springs.size())};
+            std::vector<RowSpring, LargePages<RowSpring>>(2 * springs.size())};
   for (const Spring& spring : springs) ++rows.first[place[spring.a] + 1], ++rows.first[place[spring.b] + 1];
   std::partial_sum(rows.first.begin(), rows.first.end(), rows.first.begin());
   std::vector<int> next(rows.first.begin(), rows.first.end() - 1);
@@ -131,6 +131,8 @@ SpringSlices<Number> Lay(const std::vector<Spring>& springs, int vertices) {
   slices.order = OrderOf(springs, vertices);
   const Rows rows = ByPlace(springs, slices.order, vertices);
   slices.slot.assign(rows.count(), kNoSlot<Number>);
+  const size_t columns = (rows.of.size() + rows.of.size() / 8) / kSliceRows<Number>;  // sorted rows need little padding
+  slices.at_rest.reserve(columns), slices.neighbours.reserve(columns);
   slices.blocks.emplace_back();
   slices.slices.emplace_back();
   for (int first = 0; first < rows.count(); first += kVertexBlock) AppendBlock(rows, first, slices);
