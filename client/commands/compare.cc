@@ -30,7 +30,8 @@ constexpr std::uintmax_t kMostBytes = std::uintmax_t{1000} << 20;  // two such f
 bool IsSession(const std::string& words) { return absl::StartsWith(words, kSessionPrefix); }
 
 void NameBody(const std::string& words, v1::SessionBody& body) {
-  const std::vector<std::string> parts = absl::StrSplit(absl::StripPrefix(words, kSessionPrefix), absl::MaxSplits('/', 1));
+  const std::vector<std::string> parts =
+      absl::StrSplit(absl::StripPrefix(words, kSessionPrefix), absl::MaxSplits('/', 1));
   body.set_session_id(parts[0]);
   if (parts.size() > 1) body.set_body(parts[1]);
 }
