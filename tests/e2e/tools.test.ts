@@ -147,17 +147,20 @@ test("ThePageIsSmallAndSoonThere", async () => {
   const bytes = sizes.reduce((sum, size) => sum + size);
   console.log(`all scripts, compressed: ${(bytes / 1000).toFixed(0)} kB`);
   expect(bytes).toBeLessThan(400_000);
-  // Soon: nothing is asked for that the first picture can do without. Its time is printed; people judge it.
-  const context = await browser.newContext();
-  const page = await context.newPage();
-  const asked: string[] = [];
-  page.on("request", (request) => asked.push(new URL(request.url()).pathname));
-  await page.goto(`${server.url}?session=lungs`);
-  await page.waitForFunction(() => (window.phrenic?.firstPicture() ?? -1) >= 0);
-  const time = await page.evaluate(() => window.phrenic!.firstPicture());
-  console.log(`first picture after the address: ${time.toFixed(0)} ms, ${asked.length} requests: ${asked.join(" ")}`);
-  expect(asked.length).toBeLessThanOrEqual(15);
-  await context.close();
+  // Soon: nothing is asked for that the first picture can do without. Times are printed; people judge them.
+  const times: number[] = [];
+  for (let i = 0; i < 5; i++) {
+    const context = await browser.newContext({ viewport: { width: 900, height: 620 } });
+    const page = await context.newPage();
+    const asked: string[] = [];
+    page.on("request", (request) => asked.push(new URL(request.url()).pathname));
+    await page.goto(`${server.url}?session=lungs`);
+    await page.waitForFunction(() => (window.phrenic?.firstPicture() ?? -1) >= 0);
+    times.push(Math.round(await page.evaluate(() => window.phrenic!.firstPicture())));
+    expect(asked.length, asked.join(" ")).toBeLessThanOrEqual(15);
+    await context.close();
+  }
+  console.log(`first picture after the address, five times [ms]: ${times.join(" ")}`);
 });
 
 test("ThePageHadNothingToComplainAbout", () => {
