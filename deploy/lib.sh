@@ -140,7 +140,7 @@ configure() {
   }
 }
 
-# A folder's files are compiled sixteen at a time: that takes a quarter of the time, and finds what a folder names twice.
+# A folder's files are compiled sixteen at a time: that takes far less time, and finds what a folder names twice.
 # shellcheck disable=SC2034  # for who sources this
 unity=(-DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=16)
 

@@ -11,6 +11,7 @@
 #include <memory>
 #include <new>
 #include <utility>
+#include <vector>
 
 namespace phrenic {
 
@@ -53,6 +54,9 @@ class LargePages {
   static constexpr size_t kPage = size_t{1} << 21, kLeast = kPage;  // bytes
   static constexpr size_t Whole(size_t bytes) { return (bytes + kPage - 1) / kPage * kPage; }
 };
+
+template <typename T>
+using LargeVector = std::vector<T, LargePages<T>>;
 
 }  // namespace phrenic
 

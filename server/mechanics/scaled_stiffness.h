@@ -41,7 +41,7 @@ class ScaledStiffness final : public StiffnessSink {
   Eigen::VectorXd damping_;  // C's diagonal [N s/m], and the rest of it
   OuterProducts shared_damping_;
   double damping_weight_ = 0;
-  std::vector<Joint, LargePages<Joint>> joints_;
+  LargeVector<Joint> joints_;
   Eigen::VectorXd scale_;
   Points scaled_;
 };

@@ -75,7 +75,7 @@ class Basis {
   Eigen::Index Stride() const { return rows_ + rows_ % 2; }
 
   Eigen::Index rows_;
-  std::vector<double, LargePages<double>> values_;
+  LargeVector<double> values_;
   int size_ = 0;
 };
 

@@ -57,16 +57,14 @@ struct SpringBlock {
 // spring to itself, of no force at rest.
 template <typename Number>
 struct SpringSlices {
-  template <typename Entry>
-  using Large = std::vector<Entry, LargePages<Entry>>;
-  std::vector<SpringBlock> blocks;             // and one more, for the end of its slices
-  std::vector<SpringSlice<Number>> slices;     // and one more, for the end of its columns
-  Large<SliceNumbers<Number>> at_rest;         // a column
-  Large<SpringNeighbours<Number>> neighbours;  // a column
-  Large<SliceNumbers<Number>> stiffness;       // a column of the slices with springs that are not alike
-  std::vector<SliceLoad<Number>> load;         // a slice, or none
-  std::vector<std::uint16_t> slot;             // of each vertex in its block's tile
-  std::vector<int> order;                      // the vertices as the slices count them; none where they come so
+  std::vector<SpringBlock> blocks;                   // and one more, for the end of its slices
+  std::vector<SpringSlice<Number>> slices;           // and one more, for the end of its columns
+  LargeVector<SliceNumbers<Number>> at_rest;         // a column
+  LargeVector<SpringNeighbours<Number>> neighbours;  // a column
+  LargeVector<SliceNumbers<Number>> stiffness;       // a column of the slices with springs that are not alike
+  std::vector<SliceLoad<Number>> load;               // a slice, or none
+  std::vector<std::uint16_t> slot;                   // of each vertex in its block's tile
+  std::vector<int> order;                            // the vertices as the slices count them; none where they come so
 };
 
 // Where the sum of a slice's row lies in a tile, so that one transposition of them all writes whole vectors.

@@ -22,7 +22,7 @@ struct RowSpring {
 // Those of place i: of[first[i]] to of[first[i + 1] - 1].
 struct Rows {
   std::vector<int> first;
-  std::vector<RowSpring, LargePages<RowSpring>> of;
+  LargeVector<RowSpring> of;
 
   int count() const { return static_cast<int>(first.size()) - 1; }
   int Size(int place) const { return first[place + 1] - first[place]; }
@@ -44,7 +44,7 @@ Rows ByPlace(const std::vector<Spring>& springs, const std::vector<int>& order, 
   for (int i = 0; i < vertices; ++i) place[i] = i;
   for (size_t i = 0; i < order.size(); ++i) place[order[i]] = static_cast<int>(i);
   Rows rows{std::vector<int>((order.empty() ? vertices : order.size()) + 1, 0),
-            std::vector<RowSpring, LargePages<RowSpring>>(2 * springs.size())};
+            LargeVector<RowSpring>(2 * springs.size())};
   for (const Spring& spring : springs) ++rows.first[place[spring.a] + 1], ++rows.first[place[spring.b] + 1];
   std::partial_sum(rows.first.begin(), rows.first.end(), rows.first.begin());
   std::vector<int> next(rows.first.begin(), rows.first.end() - 1);
