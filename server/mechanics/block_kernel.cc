@@ -9,6 +9,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "server/mechanics/points-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace phrenic::HWY_NAMESPACE {
 namespace {
@@ -20,7 +22,8 @@ using Vector = hn::Vec<Tag>;
 constexpr size_t kWidth = hn::MaxLanes(Tag());
 static_assert(kSliceLanes % kWidth == 0);
 
-constexpr float kLeastPivot = 1e-6F;  // of the mean diagonal: keeps the preconditioner positive definite
+constexpr float kLeastPivot = 1e-6F;        // of the mean diagonal: keeps the preconditioner positive definite
+constexpr float kShortestSquared = 1e-36F;  // keeps 1/l^2 finite [m^2]
 constexpr int kColumnsAhead = 12;
 constexpr size_t kFlush = 32;  // slices whose products are summed in single precision
 
@@ -157,16 +160,75 @@ HWY_INLINE void Stored(const Vectors& v, size_t first, Lanes* vector) {
 
 HWY_INLINE void Packed(const Vectors& v, Quad* packed) { hn::StoreInterleaved4(v.x, v.y, v.z, v.w, Tag(), packed->at); }
 
-// v and t of a column of springs, unscaled.
-HWY_INLINE Vectors SpringEntries(const Quad* entries, const LanePlaces& column, size_t first) {
-  const std::int32_t* const entry = column.at + first;
-  return Transposed(entries->at, [entry](int i) { return 4 * static_cast<std::ptrdiff_t>(entry[i] / 2); });
+// Rows of a slice, from row `first` on, where they are: differences are taken in double precision, and then rounded.
+constexpr int kParts = kWidth / points::kLanes;
+struct Places {
+  points::Vectors part[kParts];
+};
+
+HWY_INLINE Places OwnPlaces(const Position* own) {
+  Places places;
+  for (size_t i = 0; i < kParts; ++i) {
+    points::Vector nothing;
+    points::Vectors& part = places.part[i];
+    hn::LoadInterleaved4(points::Tag(), own[i * points::kLanes].at, part.x, part.y, part.z, nothing);
+  }
+  return places;
 }
 
-// k, six numbers a row, += v v^T + t I of all its springs.
-HWY_INLINE void AddSprings(const Quad* entries, const BlockSlices& slices, size_t s, size_t first, Vector* k) {
-  for (std::int64_t c = slices.first_column[s]; c < slices.first_column[s + 1]; ++c) {
-    const Vectors v = SpringEntries(entries, slices.entries[c], first);
+// From `from` to a column's neighbours, e, and what is left of l^2 - l0^2 where both are nearly the same.
+HWY_INLINE Vectors Ways(const Position* positions, const std::int32_t* neighbours, const double* rest_length,
+                        const Places& from) {
+  const hn::Rebind<float, points::Tag> part;
+  using Part = hn::Vec<decltype(part)>;
+  Part x[kParts], y[kParts], z[kParts], excess[kParts];
+  for (size_t i = 0; i < kParts; ++i) {
+    const points::Vectors to = points::Transposed<false>(positions->at, neighbours + i * points::kLanes);
+    const points::Vector ex = hn::Sub(to.x, from.part[i].x), ey = hn::Sub(to.y, from.part[i].y);
+    const points::Vector ez = hn::Sub(to.z, from.part[i].z);
+    const points::Vector rest = hn::Load(points::Tag(), rest_length + i * points::kLanes);
+    const points::Vector squared = hn::Add(hn::Add(hn::Mul(ex, ex), hn::Mul(ey, ey)), hn::Mul(ez, ez));
+    x[i] = hn::DemoteTo(part, ex), y[i] = hn::DemoteTo(part, ey), z[i] = hn::DemoteTo(part, ez);
+    excess[i] = hn::DemoteTo(part, hn::Sub(squared, hn::Mul(rest, rest)));
+  }
+#if HWY_TARGET == HWY_SCALAR
+  return {x[0], y[0], z[0], excess[0]};
+#else
+  static_assert(kParts == 2);
+  const Tag d;
+  return {hn::Combine(d, x[1], x[0]), hn::Combine(d, y[1], y[0]), hn::Combine(d, z[1], z[0]),
+          hn::Combine(d, excess[1], excess[0])};
+#endif
+}
+
+// v and t of springs: t = max(k (l - l0)/l, 0) and v v^T + t e e^T/l^2 = k e e^T/l^2. None where l = 0: e is, and
+// l - l0 is not positive.
+HWY_INLINE Vectors SpringBlock(const Vectors& way, const Vector& stiffness, const Vector& rest_length) {
+  const Tag d;
+  const Vector length = hn::Sqrt(Dot(way.x, way.x, way.y, way.y, way.z, way.z));
+  const Vector sum = hn::Add(length, rest_length);
+  const Vector inverse = hn::Div(hn::Set(d, 1), hn::Max(hn::Mul(length, sum), hn::Set(d, kShortestSquared)));
+  const Vector t = hn::Max(hn::Mul(hn::Mul(stiffness, way.w), inverse), hn::Zero(d));
+  const Vector root = hn::Mul(hn::Sqrt(hn::Max(hn::Sub(stiffness, t), hn::Zero(d))), hn::Mul(sum, inverse));
+  return {hn::Mul(way.x, root), hn::Mul(way.y, root), hn::Mul(way.z, root), t};
+}
+
+HWY_INLINE void StoredBlock(const Vectors& v, size_t first, Lanes* block) {
+  Stored(v, first, block);
+  Put(v.w, first, block[3]);
+}
+
+// Springs' blocks to their columns; k, six numbers a row, += v v^T + t I of all its springs.
+HWY_INLINE void AddSprings(const Position* positions, float elasticity, BlockSlices& slices, size_t s, size_t first,
+                           Vector* k) {
+  const Places own = OwnPlaces(positions + s * kSliceLanes + first);
+  const Vector factor = hn::Set(Tag(), elasticity);
+  for (std::int64_t c = slices.springs.first[s]; c < slices.springs.first[s + 1]; ++c) {
+    const Vectors way =
+        Ways(positions, slices.springs.neighbours[c].at + first, slices.spring_rest[c].exact + first, own);
+    const Vector stiffness = hn::Mul(factor, At(slices.spring_stiffness[c], first));
+    const Vectors v = SpringBlock(way, stiffness, At(slices.spring_rest[c].rounded, first));
+    StoredBlock(v, first, slices.springs.blocks.data() + kSpringValues * c);
     k[0] = hn::Add(k[0], hn::Add(hn::Mul(v.x, v.x), v.w));
     k[1] = hn::Add(k[1], hn::Mul(v.x, v.y));
     k[2] = hn::Add(k[2], hn::Mul(v.x, v.z));
@@ -176,19 +238,24 @@ HWY_INLINE void AddSprings(const Quad* entries, const BlockSlices& slices, size_
   }
 }
 
-void FillDiagonalHere(const Quad* entries, const Quad* off_diagonal, const Lanes* inertia, float weight,
-                      BlockSlices& slices, Quad* packed) {
-  const Tag d;
+// K's diagonal blocks as forces have handed them over.
+HWY_INLINE void LoadDiagonal(const Quad* entries, Vector* k) {
   const auto place = [](int i) { return 8 * i; };
+  const Vectors a = Transposed(entries->at, place), b = Transposed(entries->at + 4, place);
+  k[0] = a.x, k[1] = a.y, k[2] = a.z, k[3] = a.w, k[4] = b.x, k[5] = b.y;
+}
+
+void FillDiagonalHere(const Quad* entries, const Position* positions, float elasticity, const Lanes* inertia,
+                      float weight, BlockSlices& slices, Quad* packed) {
+  const Tag d;
   for (size_t s = 0; s < slices.size(); ++s) {
     Lanes* const stiffness = slices.stiffness.data() + 6 * s;
     Lanes* const diagonal = slices.diagonal.data() + 6 * s;
     for (size_t first = 0; first < kSliceLanes; first += kWidth) {
-      const float* const from = entries[2 * (s * kSliceLanes + first)].at;
-      const Vectors a = Transposed(from, place), b = Transposed(from + 4, place);
-      Vector k[6] = {a.x, a.y, a.z, a.w, b.x, b.y};
-      if (slices.values == kSpringValues) AddSprings(off_diagonal, slices, s, first, k);
       const Vector mass = At(inertia[s], first), by = hn::Set(d, weight), none = hn::Zero(d);
+      Vector k[6] = {none, none, none, none, none, none};
+      if (entries != nullptr) LoadDiagonal(entries + 2 * (s * kSliceLanes + first), k);
+      AddSprings(positions, elasticity, slices, s, first, k);
       const Vector trace = hn::Add(hn::Mul(hn::Add(hn::Add(k[0], k[3]), k[5]), by), hn::Mul(mass, hn::Set(d, 3)));
       const Vector squared = hn::IfThenElse(hn::Gt(trace, none), hn::Div(hn::Set(d, 3), trace), none);
       const Vector scale = hn::Sqrt(squared);
@@ -204,10 +271,10 @@ void FillDiagonalHere(const Quad* entries, const Quad* off_diagonal, const Lanes
   }
 }
 
-// A column of springs, scaled.
-HWY_INLINE void FillSprings(const Vectors& k, const Vector& root, size_t first, Lanes* block) {
-  Put(hn::Mul(k.x, root), first, block[0]), Put(hn::Mul(k.y, root), first, block[1]);
-  Put(hn::Mul(k.z, root), first, block[2]), Put(hn::Mul(k.w, hn::Mul(root, root)), first, block[3]);
+// A column of springs, scaled by the square of `root`.
+HWY_INLINE void ScaleSprings(const Vector& root, size_t first, Lanes* block) {
+  for (int i = 0; i < kAxes; ++i) Put(hn::Mul(At(block[i], first), root), first, block[i]);
+  Put(hn::Mul(At(block[3], first), hn::Mul(root, root)), first, block[3]);
 }
 
 // A column of any blocks, scaled: an entry's symmetric part, and what turns, with the sign of the side it is seen from.
@@ -229,17 +296,17 @@ HWY_INLINE void FillWhole(const Quad* entries, const std::int32_t* entry, const 
 void FillBlocksHere(const Quad* entries, float weight, const Quad* packed, BlockSlices& slices) {
   const Vector by = hn::Set(Tag(), weight), root = hn::Sqrt(by);
   for (size_t s = 0; s < slices.size(); ++s) {
-    for (std::int64_t c = slices.first_column[s]; c < slices.first_column[s + 1]; ++c) {
-      Lanes* const block = slices.blocks.data() + slices.values * c;
-      for (size_t first = 0; first < kSliceLanes; first += kWidth) {
-        const Vectors other = Gathered(packed, slices.neighbours[c], first);  // its scale and the root of it
-        const Vector scale = At(slices.scale[s], first);
-        if (slices.values == kSpringValues) {
-          FillSprings(SpringEntries(entries, slices.entries[c], first),
-                      hn::Mul(hn::Mul(root, hn::Sqrt(scale)), other.y), first, block);
-        } else {
-          FillWhole(entries, slices.entries[c].at + first, hn::Mul(hn::Mul(by, scale), other.x), first, block);
-        }
+    for (size_t first = 0; first < kSliceLanes; first += kWidth) {
+      const Vector own = hn::Mul(by, At(slices.scale[s], first));
+      const Vector own_root = hn::Mul(root, hn::Sqrt(At(slices.scale[s], first)));
+      for (std::int64_t c = slices.springs.first[s]; c < slices.springs.first[s + 1]; ++c) {
+        const Vectors other = Gathered(packed, slices.springs.neighbours[c], first);  // its scale and the root of it
+        ScaleSprings(hn::Mul(own_root, other.y), first, slices.springs.blocks.data() + kSpringValues * c);
+      }
+      for (std::int64_t c = slices.whole.first[s]; c < slices.whole.first[s + 1]; ++c) {
+        const Vectors other = Gathered(packed, slices.whole.neighbours[c], first);
+        FillWhole(entries, slices.entries[c].at + first, hn::Mul(own, other.x), first,
+                  slices.whole.blocks.data() + kWholeValues * c);
       }
     }
   }
@@ -261,11 +328,11 @@ HWY_INLINE void Prefetched(const Lanes* block, const LanePlaces* rows) {
 }
 
 template <int kValues>
-HWY_INLINE Vectors RowSums(const BlockSlices& slices, size_t s, size_t first, const Quad* packed, Vectors sum) {
-  const Lanes* block = slices.blocks.data() + kValues * slices.first_column[s];
-  for (std::int64_t c = slices.first_column[s]; c < slices.first_column[s + 1]; ++c, block += kValues) {
-    if (first == 0) Prefetched<kValues>(block, slices.neighbours.data() + c);
-    const Vectors other = Gathered(packed, slices.neighbours[c], first);
+HWY_INLINE Vectors RowSums(const BlockColumns& columns, size_t s, size_t first, const Quad* packed, Vectors sum) {
+  const Lanes* block = columns.blocks.data() + kValues * columns.first[s];
+  for (std::int64_t c = columns.first[s]; c < columns.first[s + 1]; ++c, block += kValues) {
+    if (first == 0) Prefetched<kValues>(block, columns.neighbours.data() + c);
+    const Vectors other = Gathered(packed, columns.neighbours[c], first);
     if constexpr (kValues == kSpringValues) {
       const Vectors part = SpringProduct(block, first, other);
       sum = {hn::Sub(sum.x, part.x), hn::Sub(sum.y, part.y), hn::Sub(sum.z, part.z), sum.w};
@@ -282,9 +349,9 @@ double MultiplyHere(const BlockSlices& slices, const Lanes* diagonal, const Quad
   for (size_t s = 0; s < slices.size(); ++s) {
     for (size_t first = 0; first < kSliceLanes; first += kWidth) {
       const Vectors own = OwnRows(p + s * kSliceLanes, first);
-      const Vectors begun = Product(diagonal + 6 * s, first, own);
-      const Vectors row = slices.values == kSpringValues ? RowSums<kSpringValues>(slices, s, first, p, begun)
-                                                         : RowSums<9>(slices, s, first, p, begun);
+      Vectors row = Product(diagonal + 6 * s, first, own);
+      row = RowSums<kSpringValues>(slices.springs, s, first, p, row);
+      row = RowSums<kWholeValues>(slices.whole, s, first, p, row);
       Stored(row, first, q + kAxes * s);
       sum.Add(Dot(own.x, row.x, own.y, row.y, own.z, row.z), first);
     }
@@ -346,10 +413,10 @@ HWY_EXPORT(MultiplyHere);
 HWY_EXPORT(DescendHere);
 HWY_EXPORT(TurnHere);
 
-void FillDiagonal(const BlockEntries& diagonal, const BlockEntries& entries, const std::vector<Lanes>& inertia,
-                  float weight, BlockSlices& slices, Quad* packed) {
+void FillDiagonal(const BlockEntries& diagonal, const std::vector<Position>& positions, float elasticity,
+                  const std::vector<Lanes>& inertia, float weight, BlockSlices& slices, Quad* packed) {
   HWY_DYNAMIC_DISPATCH(FillDiagonalHere)
-  (diagonal.data(), entries.data(), inertia.data(), weight, slices, packed);
+  (diagonal.empty() ? nullptr : diagonal.data(), positions.data(), elasticity, inertia.data(), weight, slices, packed);
 }
 
 void FillBlocks(const BlockEntries& entries, float weight, const Quad* packed, BlockSlices& slices) {

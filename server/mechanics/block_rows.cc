@@ -1,38 +1,34 @@
 #include "server/mechanics/block_rows.h"
 
 #include <algorithm>
-#include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "server/mechanics/advance.h"
 #include "server/mesh/bucket_sort.h"
 #include "server/mesh/locality.h"
+#include "server/mesh/topology.h"
 
 namespace phrenic {
 namespace {
 
 // Rows that may change places to lie beside others of their length: more pads less and is less local.
 constexpr size_t kRowWindow = 256;
-// Ends of blocks this many vertices apart, on the mean, no longer meet in a core's cache.
-constexpr double kEndsFarApart = 8192;
+constexpr int kQuads = 3;  // of an entry off the diagonal
 
 using CallPairs = std::vector<std::pair<int, int>>;
 
-// Notes the blocks off the diagonal in the order in which they come, i < j.
+// Notes lists of springs, and the blocks off the diagonal in the order in which they come, i < j.
 class Recorder final : public StiffnessSink {
  public:
   void Add(int i, int j, const Eigen::Matrix3d&) override {
-    if (i >= j) return;
-    pairs.emplace_back(i, j);
-    springs_only = false;
+    if (i < j) pairs.emplace_back(i, j);
   }
-  void AddSprings(std::span<const SpringStiffness> springs) override {
-    for (const auto& spring : springs) pairs.push_back(std::minmax(spring.a, spring.b));
-  }
+  void AddSpringsAt(std::span<const Spring> list, const Instant&) override { springs.push_back(list); }
   void AddOuter(double, const Points&) override {}
 
   CallPairs pairs;
-  bool springs_only = true;
+  std::vector<std::span<const Spring>> springs;
 };
 
 // The symmetric part of a block, as entries have it.
@@ -52,33 +48,6 @@ class SymmetricPart {
   Eigen::Array4f low_, high_;
 };
 
-// A spring's stiffness in single precision.
-struct SpringPart {
-  float x, y, z, axial, transverse;
-
-  explicit SpringPart(const SpringStiffness& spring)
-      : x(static_cast<float>(spring.edge[0])),
-        y(static_cast<float>(spring.edge[1])),
-        z(static_cast<float>(spring.edge[2])),
-        axial(static_cast<float>(spring.axial)),
-        transverse(static_cast<float>(spring.transverse)) {}
-  // To the symmetric part of a block.
-  void AddTo(float sign, Quad* entry) const {
-    const float by_x = sign * axial * x, by_y = sign * axial * y, t = sign * transverse;
-    entry[0].at[0] += by_x * x + t, entry[0].at[1] += by_x * y, entry[0].at[2] += by_x * z;
-    entry[0].at[3] += by_y * y + t;
-    entry[1].at[0] += by_y * z, entry[1].at[1] += sign * axial * z * z + t;
-  }
-  // To v and t of a pair, which may have those of another spring already: along the same edge.
-  void AddAlong(Quad* entry) const {
-    float* const v = entry->at;
-    const float before = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
-    const float root = std::sqrt(before > 0 ? axial + before / (x * x + y * y + z * z) : axial);
-    v[0] = root * x, v[1] = root * y, v[2] = root * z;
-    v[3] += transverse;
-  }
-};
-
 void AddTurning(const Eigen::Matrix3d& block, Quad* entry) {
   const Eigen::Matrix3f b = block.cast<float>() / 2;
   entry[1].at[2] += b(2, 1) - b(1, 2);
@@ -86,15 +55,56 @@ void AddTurning(const Eigen::Matrix3d& block, Quad* entry) {
   entry[2].at[0] += b(1, 0) - b(0, 1);
 }
 
+// What rows list, a column of each slice's after another; a slice has as many as its longest row.
+template <typename Seen>
+void LayColumns(const std::vector<std::vector<Seen>>& rows, BlockColumns& columns) {
+  columns.first.push_back(0);
+  for (size_t first = 0; first < rows.size(); first += kSliceLanes) {
+    const size_t begin = columns.neighbours.size();
+    size_t width = 0;
+    for (size_t lane = 0; lane < kSliceLanes; ++lane) width = std::max(width, rows[first + lane].size());
+    columns.neighbours.resize(begin + width);
+    for (size_t lane = 0; lane < kSliceLanes; ++lane) {
+      const std::vector<Seen>& row = rows[first + lane];
+      for (size_t c = 0; c < width; ++c) {
+        columns.neighbours[begin + c].at[lane] = 4 * (c < row.size() ? row[c].row : static_cast<int>(first + lane));
+      }
+    }
+    columns.first.push_back(static_cast<std::int64_t>(columns.neighbours.size()));
+  }
+}
+
+// Calls put(what a row lists, its column, its lane) for all that rows list.
+template <typename Seen, typename Put>
+void FillColumns(const std::vector<std::vector<Seen>>& rows, const BlockColumns& columns, Put put) {
+  for (size_t r = 0; r < rows.size(); ++r) {
+    std::int64_t column = columns.first[r / kSliceLanes];
+    for (const Seen& one : rows[r]) put(one, column++, r % kSliceLanes);
+  }
+}
+
+// The vertices in this order, as far as it goes, then the rest.
+void PutFirst(std::vector<int> order, int all, std::vector<int>& vertices) {
+  std::vector<bool> taken(all, false);
+  for (const int vertex : order) taken[vertex] = true;
+  std::copy_if(vertices.begin(), vertices.end(), std::back_inserter(order), [&taken](int i) { return !taken[i]; });
+  vertices = std::move(order);
+}
+
 }  // namespace
 
 BlockRows::BlockRows(const Model& model) : row_(model.rest.cols(), -1) {
   NoteCalls(model);
   for (int i = 0; i < static_cast<int>(row_.size()); ++i) {
-    if (model.inverse_mass[i] > 0) vertices_.push_back(i);
+    if (model.inverse_mass[i] == 0) continue;
+    row_[i] = static_cast<int>(vertices_.size());
+    vertices_.push_back(i);
   }
-  PlaceRows(static_cast<int>(row_.size()));
+  PlaceRows();
+  slices_.scale.resize((vertices_.size() + kSliceLanes - 1) / kSliceLanes);
+  PlaceSprings();
   PlaceBlocks();
+  MakeRoom();
 }
 
 void BlockRows::NoteCalls(const Model& model) {
@@ -109,31 +119,32 @@ void BlockRows::NoteCalls(const Model& model) {
       if (model.inverse_mass[i] > 0 && model.inverse_mass[j] > 0) calls_.push_back({i, j, 0});
     }
   }
-  springs_only_ = recorder.springs_only;
+  springs_ = recorder.springs;
   known_ = calls_;
   BucketSort(known_, static_cast<int>(row_.size()), [](const Call& call) { return call.i; });
   known_.erase(std::unique(known_.begin(), known_.end()), known_.end());
-  const int quads = springs_only_ ? 1 : 3;
-  for (size_t k = 0; k < known_.size(); ++k) known_[k].place = quads * static_cast<int>(k + 1);
+  for (size_t k = 0; k < known_.size(); ++k) known_[k].place = kQuads * static_cast<int>(k + 1);
   for (Call& call : calls_) call.place = std::lower_bound(known_.begin(), known_.end(), call)->place;
-  entries_.resize(quads * (known_.size() + 1));
+  if (!known_.empty()) entries_.resize(kQuads * (known_.size() + 1));
 }
 
-// Vertices as they come, unless what a block joins is too far apart for that; by their number of blocks in windows.
-void BlockRows::PlaceRows(int vertices) {
-  Edges edges(2, static_cast<Eigen::Index>(known_.size()));
-  std::vector<int> degree(vertices, 0);
-  for (size_t k = 0; k < known_.size(); ++k) {
-    edges.col(static_cast<Eigen::Index>(k)) << known_[k].i, known_[k].j;
-    ++degree[known_[k].i], ++degree[known_[k].j];
+// Vertices as they come, unless what is joined is too far apart for that; by their numbers of springs and of other
+// blocks in windows.
+void BlockRows::PlaceRows() {
+  std::vector<std::pair<int, int>> degree(row_.size());  // springs, other blocks
+  CallPairs joined;
+  for (const auto& list : springs_) {
+    for (const Spring& spring : list) {
+      ++degree[spring.a].first, ++degree[spring.b].first;
+      if (row_[spring.a] >= 0 && row_[spring.b] >= 0) joined.emplace_back(spring.a, spring.b);
+    }
   }
-  const double apart = known_.empty() ? 0 : (edges.row(1) - edges.row(0)).cast<double>().mean();
-  if (apart > kEndsFarApart) {
-    const auto joined = [&degree](int i) { return degree[i] > 0; };
-    vertices_.erase(std::remove_if(vertices_.begin(), vertices_.end(), joined), vertices_.end());
-    const std::vector<int> local = LocalOrder(edges, vertices);
-    vertices_.insert(vertices_.begin(), local.begin(), local.end());
+  for (const Call& call : known_) {
+    ++degree[call.i].second, ++degree[call.j].second;
+    joined.emplace_back(call.i, call.j);
   }
+  const auto all = static_cast<int>(row_.size());
+  PutFirst(LocalOrderIfFar(ToEdges(joined), all), all, vertices_);
   const auto longer = [&degree](int a, int b) { return degree[a] > degree[b]; };
   for (size_t first = 0; first < vertices_.size(); first += kRowWindow) {
     const size_t end = std::min(first + kRowWindow, vertices_.size());
@@ -143,42 +154,66 @@ void BlockRows::PlaceRows(int vertices) {
   for (size_t r = 0; r < vertices_.size(); ++r) row_[vertices_[r]] = static_cast<int>(r);
 }
 
+void BlockRows::PlaceSprings() {
+  struct Seen {
+    int row;
+    const Spring* spring;
+  };
+  std::vector<std::vector<Seen>> seen(slices_.size() * kSliceLanes);
+  std::vector<int> row = row_;
+  const auto row_of = [&](int vertex) {
+    if (row[vertex] < 0) {
+      row[vertex] = static_cast<int>(seen.size() + held_.size());
+      held_.push_back(vertex);
+    }
+    return row[vertex];
+  };
+  for (const auto& list : springs_) {
+    for (const Spring& spring : list) {
+      if (row_[spring.a] >= 0) seen[row_[spring.a]].push_back({row_of(spring.b), &spring});
+      if (row_[spring.b] >= 0) seen[row_[spring.b]].push_back({row_of(spring.a), &spring});
+    }
+  }
+  LayColumns(seen, slices_.springs);
+  const size_t columns = slices_.springs.neighbours.size();
+  slices_.spring_stiffness.resize(columns), slices_.spring_rest.resize(columns);
+  slices_.springs.blocks.resize(kSpringValues * columns);
+  FillColumns(seen, slices_.springs, [this](const Seen& one, std::int64_t column, size_t lane) {
+    slices_.spring_stiffness[column].at[lane] = static_cast<float>(one.spring->stiffness);
+    slices_.spring_rest[column].exact[lane] = one.spring->rest_length;
+    slices_.spring_rest[column].rounded.at[lane] = static_cast<float>(one.spring->rest_length);
+  });
+}
+
 void BlockRows::PlaceBlocks() {
-  const size_t slices = (vertices_.size() + kSliceLanes - 1) / kSliceLanes, rows = slices * kSliceLanes;
   struct Seen {
     int row, entry;
   };
-  std::vector<std::vector<Seen>> seen(rows);  // what each row has
+  std::vector<std::vector<Seen>> seen(slices_.size() * kSliceLanes);
   for (const Call& call : known_) {
     seen[row_[call.i]].push_back({row_[call.j], 2 * call.place});
     seen[row_[call.j]].push_back({row_[call.i], 2 * call.place + 1});
   }
-  slices_.values = springs_only_ ? kSpringValues : 9;
-  slices_.first_column.push_back(0);
-  for (size_t first = 0; first < rows; first += kSliceLanes) {
-    size_t width = 0;
-    for (size_t lane = 0; lane < kSliceLanes; ++lane) width = std::max(width, seen[first + lane].size());
-    for (size_t c = 0; c < width; ++c) {
-      LanePlaces& neighbours = slices_.neighbours.emplace_back();
-      LanePlaces& entries = slices_.entries.emplace_back();
-      for (size_t lane = 0; lane < kSliceLanes; ++lane) {
-        const std::vector<Seen>& row = seen[first + lane];
-        neighbours.at[lane] = 4 * (c < row.size() ? row[c].row : static_cast<int>(first + lane));
-        entries.at[lane] = c < row.size() ? row[c].entry : 0;
-      }
-    }
-    slices_.first_column.push_back(static_cast<std::int64_t>(slices_.neighbours.size()));
-  }
-  slices_.blocks.resize(slices_.values * slices_.neighbours.size());
-  slices_.scale.resize(slices);
+  LayColumns(seen, slices_.whole);
+  const size_t columns = slices_.whole.neighbours.size();
+  slices_.entries.resize(columns);
+  slices_.whole.blocks.resize(kWholeValues * columns);
+  FillColumns(seen, slices_.whole, [this](const Seen& one, std::int64_t column, size_t lane) {
+    slices_.entries[column].at[lane] = one.entry;
+  });
+}
+
+void BlockRows::MakeRoom() {
+  const size_t slices = slices_.size(), rows = slices * kSliceLanes;
   for (std::vector<Lanes>* each : {&slices_.diagonal, &slices_.stiffness, &slices_.factors}) each->resize(6 * slices);
   inertia_.resize(slices);
-  diagonal_.resize(2 * rows);
-  direction_.resize(rows);
+  positions_.resize(rows + held_.size());
+  direction_.resize(rows + held_.size());
 }
 
 void BlockRows::Assemble(const Model& model, const Instant& at, double g, const Eigen::VectorXd& inertia) {
   g_ = g;
+  PlaceAll(at.x);
   std::fill(entries_.begin(), entries_.end(), Quad());
   std::fill(diagonal_.begin(), diagonal_.end(), Quad());
   extra_.clear();
@@ -192,8 +227,20 @@ void BlockRows::Assemble(const Model& model, const Instant& at, double g, const 
     inertia_[r / kSliceLanes].at[r % kSliceLanes] = static_cast<float>(inertia[vertices_[r]]);
   }
   const auto weight = static_cast<float>(g * g);
-  FillDiagonal(diagonal_, entries_, inertia_, weight, slices_, direction_.data());
+  const auto elasticity = static_cast<float>(at.parameters.elasticity());
+  FillDiagonal(diagonal_, positions_, elasticity, inertia_, weight, slices_, direction_.data());
   FillBlocks(entries_, weight, direction_.data(), slices_);
+}
+
+// Where the slices' rows are, and those beyond them.
+void BlockRows::PlaceAll(const ConstPoints& x) {
+  const auto place = [&x](int vertex, Position& position) {
+    const double* const from = x.data() + 3 * static_cast<std::ptrdiff_t>(vertex);
+    position = {from[0], from[1], from[2], 0};
+  };
+  for (size_t r = 0; r < vertices_.size(); ++r) place(vertices_[r], positions_[r]);
+  const size_t rows = slices_.size() * kSliceLanes;
+  for (size_t h = 0; h < held_.size(); ++h) place(held_[h], positions_[rows + h]);
 }
 
 // Where block (i, j) is kept, i < j: most often the one that came next at rest. Null where it is not.
@@ -208,29 +255,19 @@ Quad* BlockRows::Find(int i, int j) {
 
 void BlockRows::Add(int i, int j, const Eigen::Matrix3d& block) {
   if (i > j || row_[i] < 0 || row_[j] < 0) return;  // (j, i) is its transpose
-  if (i == j) return SymmetricPart(block).AddTo(diagonal_.data() + 2 * static_cast<std::ptrdiff_t>(row_[i]));
-  Quad* const entry = springs_only_ ? nullptr : Find(i, j);
+  if (i == j) {
+    if (diagonal_.empty()) diagonal_.resize(2 * kSliceLanes * slices_.size());
+    return SymmetricPart(block).AddTo(diagonal_.data() + 2 * static_cast<std::ptrdiff_t>(row_[i]));
+  }
+  Quad* const entry = Find(i, j);
   if (entry == nullptr) return extra_.push_back({i, j, block});
   SymmetricPart(block).AddTo(entry);
   AddTurning(block, entry);
 }
 
-void BlockRows::AddSprings(std::span<const SpringStiffness> springs) {
-  for (const SpringStiffness& spring : springs) {
-    const std::ptrdiff_t row_a = row_[spring.a], row_b = row_[spring.b];
-    const bool both = row_a >= 0 && row_b >= 0;
-    const auto [i, j] = std::minmax(spring.a, spring.b);
-    Quad* const entry = both ? Find(i, j) : nullptr;
-    const SpringPart part(spring);
-    if (entry != nullptr && springs_only_) {
-      part.AddAlong(entry);
-      continue;
-    }
-    if (row_a >= 0) part.AddTo(1, diagonal_.data() + 2 * row_a);
-    if (row_b >= 0) part.AddTo(1, diagonal_.data() + 2 * row_b);
-    if (entry != nullptr) part.AddTo(-1, entry);
-    if (both && entry == nullptr) extra_.push_back({i, j, -spring.Block()});
-  }
+void BlockRows::AddSpringsAt(std::span<const Spring> springs, const Instant& at) {
+  const auto same = [springs](const auto& list) { return list.data() == springs.data(); };
+  if (std::none_of(springs_.begin(), springs_.end(), same)) StiffnessSink::AddSpringsAt(springs, at);
 }
 
 double BlockRows::Times(bool inertia, RowVector& q) {

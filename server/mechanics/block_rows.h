@@ -14,7 +14,8 @@ namespace phrenic {
 
 // A = inertia + g^2 K + g S on the free vertices of a model, S the shared damping. Not thread-safe. Where a block lies
 // is found once, from the model at rest, as is the order in which forces hand blocks over; a block that turns up later
-// (a contact) is kept beside, more slowly, as are outer products.
+// (a contact) is kept beside, more slowly, as are outer products. Springs' blocks are worked out where they lie: a
+// force that hands over a list of springs at rest hands over that list always.
 class BlockRows final : public StiffnessSink {
  public:
   explicit BlockRows(const Model& model);
@@ -23,7 +24,7 @@ class BlockRows final : public StiffnessSink {
   void Assemble(const Model& model, const Instant& at, double g, const Eigen::VectorXd& inertia);
 
   void Add(int i, int j, const Eigen::Matrix3d& block) override;
-  void AddSprings(std::span<const SpringStiffness> springs) override;
+  void AddSpringsAt(std::span<const Spring> springs, const Instant& at) override;
   void AddOuter(double scale, const Points& g) override { outer_.Add(scale, g); }
 
   // The direction p of a search, scaled (BlockSlices): z to begin with, then as block_kernel.h turns it.
@@ -55,25 +56,30 @@ class BlockRows final : public StiffnessSink {
     Eigen::Matrix3d block;
   };
   void NoteCalls(const Model& model);
-  void PlaceRows(int vertices);
+  void PlaceRows();
+  void PlaceSprings();
   void PlaceBlocks();
+  void MakeRoom();
+  void PlaceAll(const ConstPoints& x);
   Quad* Find(int i, int j);
   void AddBeside(RowVector& q);
 
-  bool springs_only_ = true;        // off the diagonal
-  std::vector<int> row_;            // of each vertex; -1 where it does not move
-  std::vector<int> vertices_;       // of each row
+  std::vector<std::span<const Spring>> springs_;  // whose columns are laid out
+  std::vector<int> row_;                          // of each vertex; -1 where it does not move
+  std::vector<int> vertices_;                     // of each row
+  std::vector<int> held_;           // vertices that do not move, with springs to those that do: rows beyond the slices
   std::vector<Call> calls_;         // in the order in which forces hand blocks over at rest
   std::vector<Call> known_;         // each block once, sorted
   std::vector<size_t> first_call_;  // of each force
   size_t next_ = 0;                 // of calls_, while forces hand over
   double g_ = 0;
-  BlockEntries entries_, diagonal_;
+  BlockEntries entries_, diagonal_;  // none while nothing but springs hands over
   std::vector<Extra> extra_;
   OuterProducts outer_, shared_;
   BlockSlices slices_;
   std::vector<Lanes> inertia_;
-  std::vector<Quad> direction_;  // of each row; while A is assembled, its scale
+  std::vector<Position> positions_;  // of each row
+  std::vector<Quad> direction_;      // of each row; while A is assembled, its scale
   Points beside_x_, beside_y_;
 };
 

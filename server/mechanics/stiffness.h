@@ -5,9 +5,12 @@
 #include <Eigen/Core>
 #include <span>
 
+#include "server/mechanics/spring.h"
 #include "server/mesh/mesh.h"
 
 namespace phrenic {
+
+struct Instant;
 
 // What a spring between two vertices adds: the force on a changes by (axial e e^T + transverse I)(dx_b - dx_a), that on
 // b by its opposite. `edge` is e = x_b - x_a at the instant [m]; axial [N/m^3] and transverse [N/m] are not negative.
@@ -33,7 +36,9 @@ class StiffnessSink {
   // K += scale g g^T [N/m], g 3 x n: a pressure that answers to the volume below a whole surface.
   virtual void AddOuter(double scale, const Points& g) = 0;
 
-  // Many springs at a time.
+  // All springs of a force at this instant. One without length is left out: it has no direction.
+  virtual void AddSpringsAt(std::span<const Spring> springs, const Instant& at);
+  // Many springs at a time, as they are worked out.
   virtual void AddSprings(std::span<const SpringStiffness> springs) {
     for (const SpringStiffness& spring : springs) {
       const Eigen::Matrix3d block = spring.Block();

@@ -46,7 +46,8 @@ void AppendComponent(int start, const Neighbours& neighbours, std::vector<bool>&
   }
 }
 
-constexpr int kCurveBits = 10;  // of a cell's place along each axis
+constexpr double kFarApart = 8192;  // vertices between the ends of an edge, on the mean
+constexpr int kCurveBits = 10;      // of a cell's place along each axis
 
 // Two empty bits before each of the number's.
 std::uint32_t Spread(std::uint32_t number) {
@@ -90,6 +91,12 @@ std::vector<int> LocalOrder(const Edges& edges, int vertices) {
   }
   std::reverse(order.begin(), order.end());
   return order;
+}
+
+std::vector<int> LocalOrderIfFar(const Edges& edges, int vertices) {
+  if (edges.cols() == 0) return {};
+  const double apart = (edges.row(1) - edges.row(0)).cwiseAbs().cast<double>().mean();
+  return apart > kFarApart ? LocalOrder(edges, vertices) : std::vector<int>();
 }
 
 std::vector<int> CurveOrder(const ConstPoints& points) {

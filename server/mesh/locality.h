@@ -14,6 +14,10 @@ namespace phrenic {
 // memory grow with the edges; `vertices` is their number, above every index.
 std::vector<int> LocalOrder(const Edges& edges, int vertices);
 
+// The same where it is worth while: none where edges join vertices that are near by their numbers, and so meet in a
+// core's cache as they come.
+std::vector<int> LocalOrderIfFar(const Edges& edges, int vertices);
+
 // All points along a Hilbert curve through the cube around them (Skilling, AIP Conf Proc 2004;707:381), of 1024 cells
 // a side; those of one cell by their index.
 std::vector<int> CurveOrder(const ConstPoints& points);

@@ -84,6 +84,12 @@ Edges TriangleEdges(const Triangles& triangles) {
   return edges;
 }
 
+Edges ToEdges(const std::vector<std::pair<int, int>>& pairs) {
+  Edges edges(2, static_cast<Eigen::Index>(pairs.size()));
+  for (size_t i = 0; i < pairs.size(); ++i) edges.col(static_cast<Eigen::Index>(i)) << pairs[i].first, pairs[i].second;
+  return edges;
+}
+
 Edges SpringEdges(const Mesh& mesh) { return mesh.edges.cols() > 0 ? mesh.edges : TriangleEdges(mesh.triangles); }
 
 std::vector<int> BorderVertices(const Triangles& triangles) {

@@ -2,6 +2,7 @@
 #ifndef PHRENIC_SERVER_MESH_TOPOLOGY_H_
 #define PHRENIC_SERVER_MESH_TOPOLOGY_H_
 
+#include <utility>
 #include <vector>
 
 #include "server/mesh/mesh.h"
@@ -10,6 +11,9 @@ namespace phrenic {
 
 // The undirected edges of the triangles, each once, lower index first, sorted.
 Edges TriangleEdges(const Triangles& triangles);
+
+// Pairs of vertices as edges.
+Edges ToEdges(const std::vector<std::pair<int, int>>& pairs);
 
 // The mesh's own edges where it has any, else its triangles' edges.
 Edges SpringEdges(const Mesh& mesh);

@@ -3,6 +3,7 @@
 #include "absl/strings/str_cat.h"
 #include "server/mesh/nearest.h"
 #include "server/mesh/normals.h"
+#include "server/mesh/topology.h"
 
 namespace phrenic {
 namespace {
@@ -35,14 +36,6 @@ absl::StatusOr<Plane> MakePlane(const v1::LinkPairing& scene, int body, std::str
   const Eigen::Vector3d normal = ToEigen(scene.plane_normal());
   if (normal.isZero()) return FieldError(absl::StrCat(std::string(path), ".plane_normal"), "must not be zero");
   return Plane{ToEigen(scene.plane_point()), normal.normalized()};
-}
-
-Edges ToEdges(const std::vector<std::pair<int, int>>& pairs) {
-  Edges edges(2, static_cast<Eigen::Index>(pairs.size()));
-  for (Eigen::Index i = 0; i < edges.cols(); ++i) {
-    edges.col(i) = Eigen::Vector2i(pairs[static_cast<size_t>(i)].first, pairs[static_cast<size_t>(i)].second);
-  }
-  return edges;
 }
 
 }  // namespace

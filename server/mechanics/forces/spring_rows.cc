@@ -9,8 +9,6 @@
 namespace phrenic {
 namespace {
 
-// Ends of springs this many vertices apart, on the mean, no longer meet in a core's cache.
-constexpr double kFarApart = 8192;
 // Of a block's vertices: with springs at more of them than this its sums are added vertex by vertex, not row by row.
 constexpr double kNearlyAll = 0.75;
 
@@ -32,11 +30,9 @@ struct Rows {
 // The order that the springs' vertices are to be taken in: none, as they come, which reads and writes them in one go,
 // unless what a spring joins is too far apart for that.
 std::vector<int> OrderOf(const std::vector<Spring>& springs, int vertices) {
-  if (springs.empty()) return {};
   Edges edges(2, static_cast<Eigen::Index>(springs.size()));
   for (size_t s = 0; s < springs.size(); ++s) edges.col(static_cast<Eigen::Index>(s)) << springs[s].a, springs[s].b;
-  const double apart = (edges.row(1) - edges.row(0)).cwiseAbs().cast<double>().mean();
-  return apart > kFarApart ? LocalOrder(edges, vertices) : std::vector<int>();
+  return LocalOrderIfFar(edges, vertices);
 }
 
 Rows ByPlace(const std::vector<Spring>& springs, const std::vector<int>& order, int vertices) {

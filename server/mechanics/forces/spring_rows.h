@@ -7,16 +7,11 @@
 #include <vector>
 
 #include "server/mechanics/forces/spring_kernel.h"
+#include "server/mechanics/spring.h"
 #include "server/mechanics/vertex_range.h"
 #include "server/mesh/mesh.h"
 
 namespace phrenic {
-
-struct Spring {
-  int a, b;            // simulated vertices
-  double stiffness;    // [N/m]
-  double rest_length;  // [m]
-};
 
 enum class Precision { kDouble, kSingle };
 
