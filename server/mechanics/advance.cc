@@ -91,11 +91,20 @@ void SumSharedDamping(const Model& model, const Instant& at, OuterProducts& shar
 }
 
 void MakePlaces(Eigen::Index vertices, std::vector<StateReach>& blocks) {
-  blocks.resize((vertices + kVertexBlock - 1) / kVertexBlock);
+  blocks.resize((vertices + kVertexBlock - 1) / kVertexBlock + 1);
+  blocks.back() = {};
 }
 
 void NoteReach(const VertexRange& block, const Points& x, const Points& v, std::vector<StateReach>& blocks) {
   blocks[block.first / kVertexBlock] = ReachOf(block, x, v);
+}
+
+void NoteReach(std::span<const int> vertices, const Points& x, const Points& v, std::vector<StateReach>& blocks) {
+  StateReach& reach = blocks.back();
+  for (const int vertex : vertices) {
+    reach.furthest = Further(reach.furthest, x.col(vertex).cwiseAbs().maxCoeff<Eigen::PropagateNaN>());
+    reach.squares += v.col(vertex).squaredNorm();
+  }
 }
 
 void AddToFree(const Model& model, double scale, const Points& shift, Points& x) {

@@ -2,6 +2,9 @@
 #ifndef PHRENIC_SERVER_MECHANICS_ADVANCE_H_
 #define PHRENIC_SERVER_MECHANICS_ADVANCE_H_
 
+#include <span>
+#include <vector>
+
 #include "server/mechanics/model.h"
 #include "server/mechanics/vertex_kernel.h"
 
@@ -30,9 +33,11 @@ VertexLoads AddForcesButLoads(const VertexRange& block, const Model& model, cons
 void SumDamping(const Model& model, const Instant& at, Eigen::VectorXd& c);
 void SumSharedDamping(const Model& model, const Instant& at, OuterProducts& shared);
 
-// A place for each block of that many vertices; and how far a block has got, noted at its place.
+// A place for each block of that many vertices, and one more; how far a block has got, noted at its place, and how far
+// some vertices have, wherever they lie, at the one more.
 void MakePlaces(Eigen::Index vertices, std::vector<StateReach>& blocks);
 void NoteReach(const VertexRange& block, const Points& x, const Points& v, std::vector<StateReach>& blocks);
+void NoteReach(std::span<const int> vertices, const Points& x, const Points& v, std::vector<StateReach>& blocks);
 
 // x += shift, but for fixed and driven vertices; shift 3 x n.
 void AddToFree(const Model& model, double scale, const Points& shift, Points& x);

@@ -19,20 +19,18 @@ class Constraint {
   // positions at the start of the step, `dt` its length [s].
   virtual void Project(const v1::Parameters& parameters, const ConstPoints& before, double dt, State& state) const = 0;
   // A constraint of which a part holds once it holds for each block of vertices (kVertexBlock) by itself says so. What
-  // Project does, ProjectIn does to a block, of which `before` has the columns, and writes and reads no others' places;
-  // several threads may ask at once, for different blocks. ProjectAcross does what is left, after all of them, reads
-  // `before` of the vertices `across` alone, and returns the blocks of which it may have moved one. Both together give
-  // Project's bits.
+  // Project does, ProjectIn does to a block, and writes and reads no others' places; of where they were at the start of
+  // the step it knows what Remember has put into `start`, which has room for 3 kVertexBlock numbers and is aligned for
+  // vectors. Several threads may ask at once, for different blocks. ProjectAcross does what is left, after all of them;
+  // it reads `before` of the vertices `across` and moves no others. Both together give Project's bits.
   virtual bool by_range() const { return false; }
-  // Whether there is anything to do in a block.
-  virtual bool ActsIn(Eigen::Index /*block*/) const { return false; }
-  virtual void ProjectIn(const VertexRange& /*block*/, const v1::Parameters&, const ConstPoints& /*before*/,
-                         double /*dt*/, Points& /*x*/, Points& /*v*/) const {}
+  // Whether there is anything to do in a block; the two that follow are not called for others.
+  virtual bool ActsIn(const VertexRange& /*block*/, const v1::Parameters&) const { return false; }
+  virtual void Remember(const VertexRange& /*block*/, const ConstPoints& /*x*/, double* /*start*/) const {}
+  virtual void ProjectIn(const VertexRange& /*block*/, const double* /*start*/, double /*dt*/, Points& /*x*/,
+                         Points& /*v*/) const {}
   virtual std::span<const int> across() const { return {}; }
-  virtual std::span<const Eigen::Index> ProjectAcross(const v1::Parameters&, const ConstPoints& /*before*/,
-                                                      double /*dt*/, State&) const {
-    return {};
-  }
+  virtual void ProjectAcross(const v1::Parameters&, const ConstPoints& /*before*/, double /*dt*/, State&) const {}
   // Takes from the velocities what would lead off the constraint (the second half of RATTLE). Positions lie on it.
   virtual void ProjectVelocities(const v1::Parameters&, State&) const {}
   // Whether an equation that always holds describes it, as ProjectVelocities keeps it: not for what jerks.

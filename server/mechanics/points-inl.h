@@ -37,6 +37,28 @@ HWY_INLINE Vectors Gathered(const double* x, const Place* place) {
   return {hn::Load(d, values[0]), hn::Load(d, values[1]), hn::Load(d, values[2])};
 }
 
+#if HWY_TARGET <= HWY_AVX2
+// Points that `point` gives by their lanes, as x, y, z and anything, transposed: one vector of every x, one of every y,
+// one of every z.
+template <typename Point>
+HWY_INLINE Vectors Columns(const Point& point) {
+  const Tag d;
+#if HWY_TARGET <= HWY_AVX3
+  const auto pair = [&](int i) HWY_ATTR { return hn::Combine(d, point(i + 4), point(i)); };
+  const auto a = pair(0), b = pair(1), c = pair(2), e = pair(3);
+  const auto xz01 = hn::InterleaveLower(d, a, b), xz23 = hn::InterleaveLower(d, c, e);
+  const auto y01 = hn::InterleaveUpper(d, a, b), y23 = hn::InterleaveUpper(d, c, e);
+  return {hn::OddEvenBlocks(hn::SwapAdjacentBlocks(xz23), xz01), hn::OddEvenBlocks(hn::SwapAdjacentBlocks(y23), y01),
+          hn::OddEvenBlocks(xz23, hn::SwapAdjacentBlocks(xz01))};
+#else
+  const auto a = point(0), b = point(1), c = point(2), e = point(3);
+  const auto xz01 = hn::InterleaveLower(d, a, b), xz23 = hn::InterleaveLower(d, c, e);
+  const auto y01 = hn::InterleaveUpper(d, a, b), y23 = hn::InterleaveUpper(d, c, e);
+  return {hn::ConcatLowerLower(d, xz23, xz01), hn::ConcatLowerLower(d, y23, y01), hn::ConcatUpperUpper(d, xz23, xz01)};
+#endif
+}
+#endif
+
 // The points at these places [doubles], transposed: one vector of every x, one of every y, one of every z. A point is
 // one load, with what follows it; where that may not be read, as after the last of all or where another thread writes
 // it, `kAlone`.
@@ -44,32 +66,17 @@ template <bool kAlone, typename Place>
 HWY_INLINE Vectors Transposed(const double* x, const Place* place) {
 #if HWY_TARGET == HWY_SCALAR
   return Gathered(x, place);
-#else
-  const Tag d;
-#if HWY_TARGET <= HWY_AVX2
+#elif HWY_TARGET <= HWY_AVX2
   const hn::FixedTag<double, 4> four;
-  const auto point = [&](int i) {
+  return Columns([&](int i) HWY_ATTR {
     return kAlone ? hn::MaskedLoad(hn::FirstN(four, 3), four, x + place[i]) : hn::LoadU(four, x + place[i]);
-  };
-#endif
-#if HWY_TARGET <= HWY_AVX3
-  const auto pair = [&](int i) { return hn::Combine(d, point(i + 4), point(i)); };
-  const auto a = pair(0), b = pair(1), c = pair(2), e = pair(3);
-  const auto xz01 = hn::InterleaveLower(d, a, b), xz23 = hn::InterleaveLower(d, c, e);
-  const auto y01 = hn::InterleaveUpper(d, a, b), y23 = hn::InterleaveUpper(d, c, e);
-  return {hn::OddEvenBlocks(hn::SwapAdjacentBlocks(xz23), xz01), hn::OddEvenBlocks(hn::SwapAdjacentBlocks(y23), y01),
-          hn::OddEvenBlocks(xz23, hn::SwapAdjacentBlocks(xz01))};
-#elif HWY_TARGET == HWY_AVX2
-  const auto a = point(0), b = point(1), c = point(2), e = point(3);
-  const auto xz01 = hn::InterleaveLower(d, a, b), xz23 = hn::InterleaveLower(d, c, e);
-  const auto y01 = hn::InterleaveUpper(d, a, b), y23 = hn::InterleaveUpper(d, c, e);
-  return {hn::ConcatLowerLower(d, xz23, xz01), hn::ConcatLowerLower(d, y23, y01), hn::ConcatUpperUpper(d, xz23, xz01)};
+  });
 #else
   if constexpr (kAlone) return Gathered(x, place);
+  const Tag d;
   const auto a = hn::LoadU(d, x + place[0]), b = hn::LoadU(d, x + place[1]);
   const auto az = hn::LoadU(d, x + place[0] + 2), bz = hn::LoadU(d, x + place[1] + 2);
   return {hn::InterleaveLower(d, a, b), hn::InterleaveUpper(d, a, b), hn::InterleaveLower(d, az, bz)};
-#endif
 #endif
 }
 

@@ -3,6 +3,7 @@
 #define PHRENIC_SERVER_MECHANICS_STATE_H_
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -56,6 +57,8 @@ struct StateReach {
   double furthest = 0;  // coordinate [m], no number where one is none
   double squares = 0;   // sum over the velocities [m^2/s^2]
 };
+// The larger of two; no number where one is none.
+inline double Further(double a, double b) { return a > b || std::isnan(a) ? a : b; }
 
 // A word-wise FNV-1a, in four lanes, over the bits of time, phase, positions and velocities: equal states, equal
 // hashes.

@@ -29,18 +29,24 @@ StateReach ReachOf(const State& state, std::vector<StateReach>& blocks) {
   }
   StateReach whole;
   for (const StateReach& block : blocks) {
-    whole.furthest = block.furthest > whole.furthest || std::isnan(block.furthest) ? block.furthest : whole.furthest;
+    whole.furthest = Further(block.furthest, whole.furthest);
     whole.squares += block.squares;
   }
   return whole;
 }
 
 // True where every coordinate is a number within the bound, and the root mean square of the velocities one that takes
-// no longer than `dt` across it: constraints may hold positions back while velocities run away.
+// no longer than `dt` across it: constraints may hold positions back while velocities run away. What an integrator has
+// noted may be too much, where constraints have since brought vertices back.
 bool WithinBounds(const Model& model, double dt, const State& state, std::vector<StateReach>& blocks) {
   const double fastest = 2 * model.bound / dt;
-  const StateReach reach = ReachOf(state, blocks);
-  return reach.furthest <= model.bound && reach.squares <= static_cast<double>(state.v.cols()) * fastest * fastest;
+  const auto within = [&](const StateReach& reach) {
+    return reach.furthest <= model.bound && reach.squares <= static_cast<double>(state.v.cols()) * fastest * fastest;
+  };
+  const bool noted = !blocks.empty();
+  if (within(ReachOf(state, blocks))) return true;
+  blocks.clear();
+  return noted && within(ReachOf(state, blocks));
 }
 
 void KeepBefore(const State& state, Workspace& work) {

@@ -21,8 +21,15 @@ constexpr int kLanes = static_cast<int>(points::kLanes);
 
 // From a to b of kLanes links. Reads their ends alone: what lies beside may be another thread's.
 HWY_INLINE Vectors Between(const LinkPacket& packet, int first, const double* x) {
+#if HWY_TARGET <= HWY_AVX2
+  const hn::FixedTag<double, 4> four;
+  const auto end = [&](const std::int32_t* place)
+                       HWY_ATTR { return hn::MaskedLoad(hn::FirstN(four, 3), four, x + *place); };
+  return points::Columns([&](int i) HWY_ATTR { return hn::Sub(end(packet.b + first + i), end(packet.a + first + i)); });
+#else
   const Vectors a = points::Transposed<true>(x, packet.a + first), b = points::Transposed<true>(x, packet.b + first);
   return {hn::Sub(b.x, a.x), hn::Sub(b.y, a.y), hn::Sub(b.z, a.z)};
+#endif
 }
 
 HWY_INLINE Vector Dot(const Vectors& p, const Vectors& q) {
@@ -33,65 +40,133 @@ HWY_INLINE Vectors Scaled(Vector factor, const Vectors& by) {
   return {hn::Mul(factor, by.x), hn::Mul(factor, by.y), hn::Mul(factor, by.z)};
 }
 
-// What pulls a packet's links back [kg m].
-struct Impulses {
-  HWY_ALIGN double x[kPacketLinks], y[kPacketLinks], z[kPacketLinks];
-};
+HWY_INLINE Vectors Loaded(const LinkVectors& of, int first) {
+  const Tag d;
+  return {hn::Load(d, of.x + first), hn::Load(d, of.y + first), hn::Load(d, of.z + first)};
+}
+HWY_INLINE void Store(const Vectors& v, int first, LinkVectors& to) {
+  const Tag d;
+  hn::Store(v.x, d, to.x + first), hn::Store(v.y, d, to.y + first), hn::Store(v.z, d, to.z + first);
+}
 
-// Of links from `first` on. Those that do not reach get none, and it returns their bits.
-HWY_INLINE std::uint64_t Correct(const LinkPacket& packet, int first, const double* before, const double* x,
-                                 Impulses& impulses) {
+void FindDirectionsHere(const LinkPacket* packets, int count, const double* x, LinkVectors* directions) {
+  for (int p = 0; p < count; ++p) {
+    for (int first = 0; first < packets[p].count; first += kLanes) {
+      Store(Between(packets[p], first, x), first, directions[p]);
+    }
+  }
+}
+
+// What pulls links from `first` on back [kg m]. Those that do not reach get none, and it returns their bits.
+HWY_INLINE std::uint64_t Correct(const LinkPacket& packet, int first, const LinkVectors& directions, const double* x,
+                                 LinkVectors& impulses) {
   const Tag d;
   const auto zero = hn::Zero(d);
-  const Vectors between = Between(packet, first, x), direction = Between(packet, first, before);
+  const Vectors between = Between(packet, first, x), direction = Loaded(directions, first);
   const auto excess = hn::Sub(Dot(between, between), hn::Load(d, packet.squared_length + first));
   const auto along = Dot(between, direction);
   const auto discriminant = hn::Sub(hn::Mul(along, along), hn::Mul(Dot(direction, direction), excess));
   const auto reaches = hn::And(hn::Gt(along, zero), hn::Ge(discriminant, zero));
   const auto sum = hn::Add(along, hn::Sqrt(hn::Max(discriminant, zero)));
-  const auto part = hn::Div(excess, hn::IfThenElse(reaches, sum, hn::Set(d, 1.0)));
-  const auto scale = hn::IfThenElseZero(reaches, hn::Mul(part, hn::Load(d, packet.reduced + first)));
-  const Vectors impulse = Scaled(scale, direction);
-  hn::Store(impulse.x, d, impulses.x + first);
-  hn::Store(impulse.y, d, impulses.y + first);
-  hn::Store(impulse.z, d, impulses.z + first);
+  const auto inverse_mass = hn::Add(hn::Load(d, packet.inverse_a + first), hn::Load(d, packet.inverse_b + first));
+  const auto moves = hn::And(reaches, hn::Gt(inverse_mass, zero));
+  const auto by = hn::IfThenElse(moves, hn::Mul(sum, inverse_mass), hn::Set(d, 1.0));
+  const auto scale = hn::IfThenElseZero(moves, hn::Div(excess, by));
+  Store(Scaled(scale, direction), first, impulses);
   std::uint8_t missed[8];
   hn::StoreMaskBits(d, hn::Not(reaches), missed);
   return static_cast<std::uint64_t>(*missed) << first;
 }
 
 // Moves one end of links from `first` on, and their velocities.
-HWY_INLINE void MoveEnds(Vector inverse_mass, const Vectors& impulse, double rate, const std::int64_t* place, int count,
+HWY_INLINE void MoveEnds(Vector inverse_mass, const Vectors& impulse, double rate, const std::int32_t* place, int count,
                          double* x, double* v) {
   const Vectors way = Scaled(inverse_mass, impulse);
   points::AddRows(points::ToRows(way), place, count, x);
   points::AddRows(points::ToRows(Scaled(hn::Set(Tag(), rate), way)), place, count, v);
 }
 
-HWY_INLINE void Move(const LinkPacket& packet, int first, const Impulses& impulses, double rate, double* x, double* v) {
+HWY_INLINE void Move(const LinkPacket& packet, int first, const LinkVectors& impulses, double rate, double* x,
+                     double* v) {
   const Tag d;
-  const Vectors impulse = {hn::Load(d, impulses.x + first), hn::Load(d, impulses.y + first),
-                           hn::Load(d, impulses.z + first)};
+  const Vectors impulse = Loaded(impulses, first);
   const int count = packet.count - first;
   MoveEnds(hn::Load(d, packet.inverse_a + first), impulse, rate, packet.a + first, count, x, v);
   MoveEnds(hn::Neg(hn::Load(d, packet.inverse_b + first)), impulse, rate, packet.b + first, count, x, v);
 }
 
+#if HWY_TARGET <= HWY_AVX3
+// Numbers of a pair's ends += way, and those of their velocities by its rate. No more of them is written than that:
+// what is fetched beside it next need not wait.
+template <class D>
+HWY_INLINE void MovePart(D d, hn::Vec<D> way, hn::Vec<D> rate, double* x, double* v) {
+  hn::StoreU(hn::Add(hn::LoadU(d, x), way), d, x);
+  hn::StoreU(hn::Add(hn::LoadU(d, v), hn::Mul(rate, way)), d, v);
+}
+
+// Of two pairs, one after the next but one: xyzx has (xa, ya, za, xb), yz (yb, zb).
+HWY_INLINE void MoveTwo(Vector xyzx, hn::Vec<hn::FixedTag<double, 4>> yz, double rate, const LinkPacket& packet,
+                        int first, int second, double* x, double* v) {
+  const hn::FixedTag<double, 4> four;
+  const hn::FixedTag<double, 2> two;
+  const auto rate4 = hn::Set(four, rate);
+  const auto rate2 = hn::Set(two, rate);
+  if (first < packet.count) {
+    const std::int32_t place = packet.a[first];
+    MovePart(four, hn::LowerHalf(four, xyzx), rate4, x + place, v + place);
+    MovePart(two, hn::LowerHalf(two, yz), rate2, x + place + 4, v + place + 4);
+  }
+  if (second < packet.count) {
+    const std::int32_t place = packet.a[second];
+    MovePart(four, hn::UpperHalf(four, xyzx), rate4, x + place, v + place);
+    MovePart(two, hn::UpperHalf(two, yz), rate2, x + place + 4, v + place + 4);
+  }
+}
+
+// Every second pair from `first` on: p has their (xa, ya), q (za, xb), r (yb, zb), a block each.
+HWY_INLINE void MoveFour(Vector p, Vector q, Vector r, double rate, const LinkPacket& packet, int first, double* x,
+                         double* v) {
+  const hn::FixedTag<double, 4> four;
+  const Vector even = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(q), p);
+  const Vector odd = hn::OddEvenBlocks(q, hn::SwapAdjacentBlocks(p));
+  const auto low = hn::LowerHalf(four, r), high = hn::UpperHalf(four, r);
+  MoveTwo(even, hn::ConcatLowerLower(four, high, low), rate, packet, first, first + 4, x, v);
+  MoveTwo(odd, hn::ConcatUpperUpper(four, high, low), rate, packet, first + 2, first + 6, x, v);
+}
+
+// A packet of pairs: both ends of a link are fetched, moved and put back together.
+HWY_INLINE void MovePairs(const LinkPacket& packet, const LinkVectors& impulses, double rate, double* x, double* v) {
+  const Tag d;
+  const Vectors impulse = Loaded(impulses, 0);
+  const Vectors a = Scaled(hn::Load(d, packet.inverse_a), impulse);
+  const Vectors b = Scaled(hn::Neg(hn::Load(d, packet.inverse_b)), impulse);
+  MoveFour(hn::InterleaveLower(d, a.x, a.y), hn::InterleaveLower(d, a.z, b.x), hn::InterleaveLower(d, b.y, b.z), rate,
+           packet, 0, x, v);
+  MoveFour(hn::InterleaveUpper(d, a.x, a.y), hn::InterleaveUpper(d, a.z, b.x), hn::InterleaveUpper(d, b.y, b.z), rate,
+           packet, 1, x, v);
+}
+#endif
+
+HWY_INLINE void MoveAll(const LinkPacket& packet, const LinkVectors& impulses, double rate, double* x, double* v) {
+#if HWY_TARGET <= HWY_AVX3
+  if (packet.pairs) return MovePairs(packet, impulses, rate, x, v);
+#endif
+  for (int first = 0; first < packet.count; first += kLanes) Move(packet, first, impulses, rate, x, v);
+}
+
 // All roots and divisions first: what one packet waits for, the next does not.
-std::uint64_t RestorePacketsHere(const LinkPacket* packets, int count, const double* before, double dt, double* x,
-                                 double* v) {
-  Impulses impulses[kPacketsTogether];
+std::uint64_t RestorePacketsHere(const LinkPacket* packets, int count, const LinkVectors* directions, double dt,
+                                 double* x, double* v) {
+  LinkVectors impulses[kPacketsTogether];
   std::uint64_t missed = 0;
   for (int p = 0; p < count; ++p) {
     std::uint64_t of_packet = 0;
     for (int first = 0; first < packets[p].count; first += kLanes) {
-      of_packet |= Correct(packets[p], first, before, x, impulses[p]);
+      of_packet |= Correct(packets[p], first, directions[p], x, impulses[p]);
     }
     missed |= (of_packet & ((1U << packets[p].count) - 1)) << (p * kPacketLinks);
   }
-  for (int p = 0; p < count; ++p) {
-    for (int first = 0; first < packets[p].count; first += kLanes) Move(packets[p], first, impulses[p], 1 / dt, x, v);
-  }
+  for (int p = 0; p < count; ++p) MoveAll(packets[p], impulses[p], 1 / dt, x, v);
   return missed;
 }
 
@@ -102,31 +177,39 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace phrenic {
 
+HWY_EXPORT(FindDirectionsHere);
 HWY_EXPORT(RestorePacketsHere);
 
 std::vector<LinkPacket> PackLinks(absl::Span<const Link> links, int first, bool in_blocks) {
   std::vector<LinkPacket> packets;
   for (size_t next = 0; next < links.size(); ++next) {
     const Link& link = links[next];
-    const bool goes_on = next > 0 && links[next - 1].a / kVertexBlock == link.a / kVertexBlock;
-    if (!goes_on || packets.back().count == kPacketLinks) packets.push_back({.first = first + static_cast<int>(next)});
+    const bool goes_on =
+        next > 0 && links[next - 1].a / kVertexBlock == link.a / kVertexBlock && packets.back().pairs == IsPair(link);
+    if (!goes_on || packets.back().count == kPacketLinks) {
+      packets.push_back({.first = first + static_cast<int>(next), .pairs = IsPair(link)});
+    }
     LinkPacket& packet = packets.back();
     const int i = packet.count++;
     packet.squared_length[i] = link.length * link.length;
     packet.inverse_a[i] = link.inverse_a;
     packet.inverse_b[i] = link.inverse_b;
-    packet.reduced[i] = link.Movable() ? 1 / (link.inverse_a + link.inverse_b) : 0;
     // Lanes that stay empty read the last link's ends.
-    const std::int64_t from = in_blocks ? link.a / kVertexBlock * kVertexBlock : 0;
+    const int from = in_blocks ? static_cast<int>(link.a / kVertexBlock * kVertexBlock) : 0;
     std::fill(packet.a + i, std::end(packet.a), 3 * (link.a - from));
     std::fill(packet.b + i, std::end(packet.b), 3 * (link.b - from));
   }
   return packets;
 }
 
-std::uint64_t RestorePackets(absl::Span<const LinkPacket> packets, const double* before, double dt, double* x,
+void FindDirections(absl::Span<const LinkPacket> packets, const double* x, LinkVectors* directions) {
+  HWY_DYNAMIC_DISPATCH(FindDirectionsHere)(packets.data(), static_cast<int>(packets.size()), x, directions);
+}
+
+std::uint64_t RestorePackets(absl::Span<const LinkPacket> packets, const LinkVectors* directions, double dt, double* x,
                              double* v) {
-  return HWY_DYNAMIC_DISPATCH(RestorePacketsHere)(packets.data(), static_cast<int>(packets.size()), before, dt, x, v);
+  const auto count = static_cast<int>(packets.size());
+  return HWY_DYNAMIC_DISPATCH(RestorePacketsHere)(packets.data(), count, directions, dt, x, v);
 }
 
 }  // namespace phrenic

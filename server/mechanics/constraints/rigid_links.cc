@@ -4,7 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <numeric>
-#include <utility>
+#include <tuple>
 
 #include "absl/strings/str_cat.h"
 #include "server/mechanics/constraints/link_pairing.h"
@@ -59,13 +59,6 @@ std::vector<size_t> BlockStarts(const std::vector<Link>& links, const std::vecto
   return starts;
 }
 
-// Sorted, each once.
-template <typename Number>
-void KeepEachOnce(std::vector<Number>& numbers) {
-  std::sort(numbers.begin(), numbers.end());
-  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
-}
-
 // For viewers.
 void Show(const std::vector<Link>& links, Model& model) {
   Eigen::Index at = model.rigid_links.cols();
@@ -116,7 +109,9 @@ void RigidLinks::Sort(const std::vector<Link>& links, const Model& model) {
 }
 
 void RigidLinks::PackAlone(Eigen::Index vertices) {
-  const auto place = [](const Link& link) { return std::pair(!InOneBlock(link), link.a / kVertexBlock); };
+  const auto place = [](const Link& link) {
+    return std::tuple(!InOneBlock(link), link.a / kVertexBlock, !IsPair(link));
+  };
   std::stable_sort(alone_.begin(), alone_.end(), [&](const Link& p, const Link& q) { return place(p) < place(q); });
   const auto across = std::partition_point(alone_.begin(), alone_.end(), InOneBlock);
   const auto inside = static_cast<size_t>(across - alone_.begin());
@@ -125,17 +120,11 @@ void RigidLinks::PackAlone(Eigen::Index vertices) {
   block_start_ = BlockStarts(alone_, packets_, vertices);
   const std::vector<LinkPacket> others = PackLinks(all.subspan(inside), static_cast<int>(inside), false);
   packets_.insert(packets_.end(), others.begin(), others.end());
-  for (const auto links : {all.subspan(inside), absl::Span<const Link>(network_.links())}) NoteAcross(links);
-  KeepEachOnce(across_);
-  KeepEachOnce(moved_);
-}
-
-void RigidLinks::NoteAcross(absl::Span<const Link> links) {
-  for (const Link& link : links) {
-    across_.insert(across_.end(), {link.a, link.b});
-    if (link.inverse_a > 0) moved_.push_back(link.a / kVertexBlock);
-    if (link.inverse_b > 0) moved_.push_back(link.b / kVertexBlock);
+  for (const auto links : {all.subspan(inside), absl::Span<const Link>(network_.links())}) {
+    for (const Link& link : links) across_.insert(across_.end(), {link.a, link.b});
   }
+  std::sort(across_.begin(), across_.end());
+  across_.erase(std::unique(across_.begin(), across_.end()), across_.end());
 }
 
 void RigidLinks::ProjectThesis(const ConstPoints& before, Points& x) const {
@@ -152,36 +141,46 @@ void RigidLinks::ProjectThesis(const ConstPoints& before, Points& x) const {
   }
 }
 
-void RigidLinks::RestoreAlone(size_t first, size_t end, Eigen::Index from, const ConstPoints& before, double dt,
-                              Points& x, Points& v) const {
-  for (size_t p = first; p < end; p += kPacketsTogether) {
-    const absl::Span<const LinkPacket> packets(&packets_[p], std::min<size_t>(kPacketsTogether, end - p));
-    std::uint64_t missed = RestorePackets(packets, before.data(), dt, x.data() + 3 * from, v.data() + 3 * from);
+void RigidLinks::RestoreAlone(absl::Span<const LinkPacket> packets, Eigen::Index from, const LinkVectors* directions,
+                              double dt, Points& x, Points& v) const {
+  for (size_t p = 0; p < packets.size(); p += kPacketsTogether) {
+    const absl::Span<const LinkPacket> some = packets.subspan(p, kPacketsTogether);
+    std::uint64_t missed = RestorePackets(some, directions + p, dt, x.data() + 3 * from, v.data() + 3 * from);
     for (; missed != 0; missed &= missed - 1) {
-      const int bit = std::countr_zero(missed);
-      const Link& link = alone_[packets[bit / kPacketLinks].first + bit % kPacketLinks];
-      Restore(link, before.col(link.b - from) - before.col(link.a - from), dt, x, v);
+      const int bit = std::countr_zero(missed), lane = bit % kPacketLinks;
+      const LinkVectors& of = directions[p + bit / kPacketLinks];
+      Restore(alone_[some[bit / kPacketLinks].first + lane], {of.x[lane], of.y[lane], of.z[lane]}, dt, x, v);
     }
   }
 }
 
 void RigidLinks::RestoreAcross(const ConstPoints& before, double dt, State& state) const {
-  RestoreAlone(block_start_.back(), packets_.size(), 0, before, dt, state.x, state.v);
+  const absl::Span<const LinkPacket> packets = absl::MakeConstSpan(packets_).subspan(block_start_.back());
+  LinkVectors directions[kPacketsTogether];
+  for (size_t p = 0; p < packets.size(); p += kPacketsTogether) {
+    const absl::Span<const LinkPacket> some = packets.subspan(p, kPacketsTogether);
+    FindDirections(some, before.data(), directions);
+    RestoreAlone(some, 0, directions, dt, state.x, state.v);
+  }
   network_.Project(before, dt, state);
 }
 
-void RigidLinks::ProjectIn(const VertexRange& block, const v1::Parameters& parameters, const ConstPoints& before,
-                           double dt, Points& x, Points& v) const {
-  if (!parameters.apply_links()) return;
+absl::Span<const LinkPacket> RigidLinks::PacketsIn(const VertexRange& block) const {
   const Eigen::Index b = block.first / kVertexBlock;
-  RestoreAlone(block_start_[b], block_start_[b + 1], block.first, before, dt, x, v);
+  return absl::MakeConstSpan(packets_).subspan(block_start_[b], block_start_[b + 1] - block_start_[b]);
 }
 
-std::span<const Eigen::Index> RigidLinks::ProjectAcross(const v1::Parameters& parameters, const ConstPoints& before,
-                                                        double dt, State& state) const {
-  if (!parameters.apply_links()) return {};
-  RestoreAcross(before, dt, state);
-  return moved_;
+void RigidLinks::Remember(const VertexRange& block, const ConstPoints& x, double* start) const {
+  FindDirections(PacketsIn(block), x.data() + 3 * block.first, reinterpret_cast<LinkVectors*>(start));
+}
+
+void RigidLinks::ProjectIn(const VertexRange& block, const double* start, double dt, Points& x, Points& v) const {
+  RestoreAlone(PacketsIn(block), block.first, reinterpret_cast<const LinkVectors*>(start), dt, x, v);
+}
+
+void RigidLinks::ProjectAcross(const v1::Parameters& parameters, const ConstPoints& before, double dt,
+                               State& state) const {
+  if (parameters.apply_links()) RestoreAcross(before, dt, state);
 }
 
 void RigidLinks::Project(const v1::Parameters& parameters, const ConstPoints& before, double dt, State& state) const {
@@ -190,9 +189,11 @@ void RigidLinks::Project(const v1::Parameters& parameters, const ConstPoints& be
     ProjectThesis(before, state.x);
     return;
   }
+  alignas(LinkVectors) double start[3 * kVertexBlock];
   for (Eigen::Index first = 0; first < state.x.cols(); first += kVertexBlock) {
     const VertexRange block = {first, std::min(first + kVertexBlock, state.x.cols())};
-    ProjectIn(block, parameters, before.middleCols(first, block.end - first), dt, state.x, state.v);
+    Remember(block, before, start);
+    ProjectIn(block, start, dt, state.x, state.v);
   }
   RestoreAcross(before, dt, state);
 }

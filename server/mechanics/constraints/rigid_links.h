@@ -25,12 +25,14 @@ class RigidLinks final : public Constraint {
 
   void Project(const v1::Parameters& parameters, const ConstPoints& before, double dt, State& state) const override;
   bool by_range() const override { return !thesis_; }
-  bool ActsIn(Eigen::Index block) const override { return block_start_[block] < block_start_[block + 1]; }
-  void ProjectIn(const VertexRange& block, const v1::Parameters& parameters, const ConstPoints& before, double dt,
-                 Points& x, Points& v) const override;
+  bool ActsIn(const VertexRange& block, const v1::Parameters& parameters) const override {
+    return parameters.apply_links() && !PacketsIn(block).empty();
+  }
+  void Remember(const VertexRange& block, const ConstPoints& x, double* start) const override;
+  void ProjectIn(const VertexRange& block, const double* start, double dt, Points& x, Points& v) const override;
   std::span<const int> across() const override { return across_; }
-  std::span<const Eigen::Index> ProjectAcross(const v1::Parameters& parameters, const ConstPoints& before, double dt,
-                                              State& state) const override;
+  void ProjectAcross(const v1::Parameters& parameters, const ConstPoints& before, double dt,
+                     State& state) const override;
   void ProjectVelocities(const v1::Parameters& parameters, State& state) const override;
   bool smooth() const override { return !thesis_; }
   double Residual(const State& state) const override;
@@ -39,10 +41,10 @@ class RigidLinks final : public Constraint {
   explicit RigidLinks(std::string name) : Constraint(std::move(name)) {}
   void Sort(const std::vector<Link>& links, const Model& model);
   void PackAlone(Eigen::Index vertices);
-  void NoteAcross(absl::Span<const Link> links);
-  // Packets first to end - 1, whose places count from vertex `from` on, as the columns of `before` do.
-  void RestoreAlone(size_t first, size_t end, Eigen::Index from, const ConstPoints& before, double dt, Points& x,
-                    Points& v) const;
+  absl::Span<const LinkPacket> PacketsIn(const VertexRange& block) const;
+  // Their places count from vertex `from` on.
+  void RestoreAlone(absl::Span<const LinkPacket> packets, Eigen::Index from, const LinkVectors* directions, double dt,
+                    Points& x, Points& v) const;
   void RestoreAcross(const ConstPoints& before, double dt, State& state) const;
   void ProjectThesis(const ConstPoints& before, Points& x) const;
 
@@ -51,7 +53,6 @@ class RigidLinks final : public Constraint {
   std::vector<LinkPacket> packets_;  // the same: by block those that lie in one, then the others
   std::vector<size_t> block_start_;  // of each block's packets, and their end
   std::vector<int> across_;          // ends of the others and of the network's
-  std::vector<Eigen::Index> moved_;  // the blocks of those of them that move
   LinkNetwork network_;              // of links that share vertices
 };
 

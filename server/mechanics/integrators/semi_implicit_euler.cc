@@ -38,15 +38,6 @@ const Constraint* InBlocks(const Model& model) {
   return can ? model.constraints.front().get() : nullptr;
 }
 
-void ProjectAcross(const Constraint& constraint, const v1::Parameters& parameters, double dt, State& state,
-                   Workspace& work) {
-  const auto blocks = constraint.ProjectAcross(parameters, work.before, dt, state);
-  ShareOut(static_cast<std::int64_t>(blocks.size()), [&](std::int64_t i) {
-    const Eigen::Index first = blocks[static_cast<size_t>(i)] * kVertexBlock;
-    NoteReach({first, std::min(first + kVertexBlock, state.x.cols())}, state.x, state.v, work.reach);
-  });
-}
-
 // Makes v_next, where M (v_next - v) = dt f, one for which (M + dt S)(v_next - v) = dt f, and x_next with it.
 void HoldBack(const Model& model, double dt, const State& start, OuterProducts& shared, Points& x_next,
               Points& v_next) {
@@ -92,19 +83,20 @@ absl::Status SemiImplicitEuler::Advance(const Model& model, const v1::Parameters
     Eigen::Map<Points> own(memory, 3, vertices);
     MutablePoints f = whole ? MutablePoints(work.force.middleCols(block.first, vertices)) : MutablePoints(own);
     const VertexLoads loads = AddForcesButLoads(block, model, at, !whole, f);
-    const bool constrained = in_blocks != nullptr && in_blocks->ActsIn(block.first / kVertexBlock);
-    const double* const x = state.x.data() + 3 * block.first;
-    if (constrained && over) std::copy_n(x, 3 * vertices, start);
+    const bool constrained = in_blocks != nullptr && in_blocks->ActsIn(block, parameters);
+    if (constrained) in_blocks->Remember(block, state.x, start);
     KickAndDrift(block, model.inverse_mass, dt, dt, f, loads, state.x, state.v, x_next, v_next);
-    const Eigen::Map<const Points> before(over ? start : x, 3, vertices);
-    if (constrained) in_blocks->ProjectIn(block, parameters, before, dt, x_next, v_next);
+    if (constrained) in_blocks->ProjectIn(block, start, dt, x_next, v_next);
     if (!later) NoteReach(block, x_next, v_next, work.reach);
   });
   if (held_back) HoldBack(model, dt, state, work.shared_damping, work.before, work.velocity_before);
   if (!over) state.x.swap(work.before);
   if (held_back) state.v.swap(work.velocity_before);
   PutDriven(model, work.driven, work.before);
-  if (in_blocks) ProjectAcross(*in_blocks, parameters, dt, state, work);
+  if (in_blocks) {
+    in_blocks->ProjectAcross(parameters, work.before, dt, state);
+    NoteReach(in_blocks->across(), state.x, state.v, work.reach);
+  }
   if (later) ProjectPositions(model, parameters, work.before, dt, state);
   return absl::OkStatus();
 }
