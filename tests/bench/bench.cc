@@ -18,7 +18,8 @@ namespace phrenic::bench {
 namespace {
 
 const char kPlain[] = "springs, plain loop with scatter", kSprings[] = "springs";
-const char kEuler[] = "springs and Euler's step", kThorax[] = "thorax, the whole step";
+const char kEuler[] = "springs and Euler's step", kEulerSingle[] = "springs and Euler's step, single";
+const char kThorax[] = "thorax, the whole step";
 const char kMeasures[] = "thorax' measures, a frame";
 const char kFew[] = "rigid links, few", kMany[] = "rigid links, ten times as many";
 const char kCache[] = "triad, 12 MB", kMultiplyAdds[] = "multiply-adds";
@@ -64,7 +65,8 @@ class Bench {
 
   absl::Status status() const {
     absl::Status status;
-    for (const Run* run : {&euler_, &thorax_, &unlinked_, &implicit_, &few_, &many_}) status.Update(run->status);
+    for (const Run* run : {&euler_, &euler_single_, &thorax_, &unlinked_, &implicit_, &few_, &many_})
+      status.Update(run->status);
     return status;
   }
   void PrintHead() const {
@@ -86,6 +88,8 @@ class Bench {
                     single_ends + points + packed});
     // Position and velocity, read and written, and the mass.
     table.Register({kEuler, [this] { euler_.Step(); }, many, "spring", kPlain, ends + vertices * Doubles(12 + 1)});
+    table.Register({kEulerSingle, [this] { euler_single_.Step(); }, many, "spring", kPlain,
+                    single_ends + packed + vertices * Doubles(12 + 1)});
 #ifdef PHRENIC_BULLET
     table.Register({"Bullet's soft body, 1 iteration", [this] { once_.Step(1e-3); }, many, "spring", kEuler});
     table.Register({"Bullet's soft body, 4 iterations", [this] { often_.Step(1e-3); }, many, "spring", kEuler});
@@ -105,7 +109,7 @@ class Bench {
 
   void RegisterThorax(Table& table) {
     const auto vertices = static_cast<double>(subjects_.thorax->rest.cols());
-    table.Register({kThorax, [this] { thorax_.Step(); }, vertices, "vertex", kEuler});
+    table.Register({kThorax, [this] { thorax_.Step(); }, vertices, "vertex", kEulerSingle});
     table.Register({"thorax without its rigid links", [this] { unlinked_.Step(); }, vertices, "vertex", kThorax});
     const auto measure = [this] {
       const Instant at = MakeInstant(*subjects_.thorax, thorax_.parameters, thorax_.state);
@@ -139,7 +143,8 @@ class Bench {
   const Points x_;
   Points f_;
   Solver solver_;
-  Run euler_{subjects_.springs}, implicit_{subjects_.springs}, membrane_{subjects_.membrane};
+  Run euler_{subjects_.springs}, euler_single_{subjects_.single_springs}, implicit_{subjects_.springs},
+      membrane_{subjects_.membrane};
   Run thorax_{subjects_.thorax}, unlinked_{subjects_.thorax};
   Run few_{subjects_.few_links}, many_{subjects_.many_links};
 #ifdef PHRENIC_BULLET

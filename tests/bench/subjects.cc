@@ -24,6 +24,11 @@ std::string Diaphragm(const std::string& force) {
       force, " }");
 }
 
+std::string Springs(const std::string& precision) {
+  return Diaphragm("springs { bodies: 'diaphragm' stiffness: 40 rest_length_ratio: 0.9 balanced_at_rest: true " +
+                   precision + " }");
+}
+
 // A net of rigid links along columns and rows, several at each vertex, that hangs from its first row.
 std::string Net(int rows) {
   std::string links;
@@ -79,8 +84,8 @@ absl::StatusOr<Subjects> MakeSubjects() {
   if (!thorax.ok()) return thorax.status();
   const std::pair<ModelPointer*, absl::StatusOr<v1::Scene>> wanted[] = {
       {&subjects.thorax, thorax},
-      {&subjects.springs, schema::ParseScene("springs", Diaphragm("springs { bodies: 'diaphragm' stiffness: 40 "
-                                                                  "rest_length_ratio: 0.9 balanced_at_rest: true }"))},
+      {&subjects.springs, schema::ParseScene("springs", Springs(""))},
+      {&subjects.single_springs, schema::ParseScene("springs", Springs("precision: PRECISION_SINGLE"))},
       {&subjects.membrane,
        schema::ParseScene("membrane", Diaphragm("membrane { bodies: 'diaphragm' youngs_modulus: 5000 }"))},
       {&subjects.few_links, schema::ParseScene("net", Net(73))},
