@@ -201,8 +201,8 @@ HWY_INLINE Vectors Ways(const Position* positions, const std::int32_t* neighbour
 #endif
 }
 
-// v and t of springs: t = max(k (l - l0)/l, 0) and v v^T + t e e^T/l^2 = k e e^T/l^2. None where l = 0: e is, and
-// l - l0 is not positive.
+// v and t of springs: t = max(k (l - l0)/l, 0) and v v^T + t e e^T/l^2 = k e e^T/l^2. Both are zero where
+// l is: so is e, and l - l0 is not positive.
 HWY_INLINE Vectors SpringBlock(const Vectors& way, const Vector& stiffness, const Vector& rest_length) {
   const Tag d;
   const Vector length = hn::Sqrt(Dot(way.x, way.x, way.y, way.y, way.z, way.z));

@@ -119,7 +119,7 @@ void BlockRows::NoteCalls(const Model& model) {
       if (model.inverse_mass[i] > 0 && model.inverse_mass[j] > 0) calls_.push_back({i, j, 0});
     }
   }
-  springs_ = recorder.springs;
+  springs_ = std::move(recorder.springs);
   known_ = calls_;
   BucketSort(known_, static_cast<int>(row_.size()), [](const Call& call) { return call.i; });
   known_.erase(std::unique(known_.begin(), known_.end()), known_.end());

@@ -5,6 +5,7 @@
 
 #include <random>
 
+#include "absl/strings/str_cat.h"
 #include "tests/compile_text.h"
 #include "tests/mechanics/every_target.h"
 
@@ -73,6 +74,37 @@ TEST(ImplicitSystem, SolvesToItsTolerance) {
       EXPECT_LT(Missing(*model, at, 0.01, b, y), 20 * tolerance) << tissue;  // by another norm
     }
   }
+}
+
+// A chain whose even vertices are numbered first, then the odd ones; the first is held.
+std::shared_ptr<const Model> ChainOfTwoHalves(int half) {
+  std::string vertices, edges;
+  for (int i = 0; i < 2 * half; ++i) {
+    absl::StrAppend(&vertices, " vertices { x: ", 0.01 * (i < half ? 2 * i : 2 * (i - half) + 1), " }");
+    if (i < half) absl::StrAppend(&edges, " edges { a: ", i, " b: ", i + half, " }");
+    if (i >= half && i + 1 < 2 * half) absl::StrAppend(&edges, " edges { a: ", i, " b: ", i - half + 1, " }");
+  }
+  return CompileText(
+      absl::StrCat("name: 'chain' bodies { name: 'chain' role: ROLE_DEFORMABLE mass: 2 fixed_vertices: 0 polyhedron {",
+                   vertices, edges, " } } forces { springs { bodies: 'chain' stiffness: 300 } }"));
+}
+
+// Rows then have an order of their own, and held vertices have none of them.
+TEST(ImplicitSystem, SolvesWhereSpringsJoinVerticesFarApartByNumber) {
+  const auto model = ChainOfTwoHalves(10000);
+  ASSERT_NE(model, nullptr);
+  State state = model->InitialState();
+  state.x += 1e-3 * RandomPoints(state.x.cols(), 1);
+  const Instant at = MakeInstant(*model, model->parameters, state);
+  const Points b = RandomPoints(state.x.cols(), 2);
+  ImplicitSystem system(*model);
+  system.Assemble(*model, at, 0.01);
+  Points y = Points::Zero(3, b.cols());
+  SolverEffort effort;
+  effort.Begin(0);
+  ASSERT_TRUE(system.Solve(*model, at, b, 1e-4, effort, y).ok());
+  EXPECT_GT(effort.iterations(), 0);
+  EXPECT_LT(Missing(*model, at, 0.01, b, y), 20 * 1e-4);
 }
 
 TEST(ImplicitSystem, GivesTheSameBitsOnEveryInstructionSet) {

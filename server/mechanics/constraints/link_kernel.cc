@@ -104,34 +104,29 @@ HWY_INLINE void MovePart(D d, hn::Vec<D> way, hn::Vec<D> rate, double* x, double
   hn::StoreU(hn::Add(hn::LoadU(d, v), hn::Mul(rate, way)), d, v);
 }
 
-// Of two pairs, one after the next but one: xyzx has (xa, ya, za, xb), yz (yb, zb).
-HWY_INLINE void MoveTwo(Vector xyzx, hn::Vec<hn::FixedTag<double, 4>> yz, double rate, const LinkPacket& packet,
-                        int first, int second, double* x, double* v) {
+// Both ends of one pair: xyzx has (xa, ya, za, xb), yz (yb, zb).
+HWY_INLINE void MovePair(hn::Vec<hn::FixedTag<double, 4>> xyzx, hn::Vec<hn::FixedTag<double, 2>> yz, double rate,
+                         const LinkPacket& packet, int link, double* x, double* v) {
+  if (link >= packet.count) return;
   const hn::FixedTag<double, 4> four;
   const hn::FixedTag<double, 2> two;
-  const auto rate4 = hn::Set(four, rate);
-  const auto rate2 = hn::Set(two, rate);
-  if (first < packet.count) {
-    const std::int32_t place = packet.a[first];
-    MovePart(four, hn::LowerHalf(four, xyzx), rate4, x + place, v + place);
-    MovePart(two, hn::LowerHalf(two, yz), rate2, x + place + 4, v + place + 4);
-  }
-  if (second < packet.count) {
-    const std::int32_t place = packet.a[second];
-    MovePart(four, hn::UpperHalf(four, xyzx), rate4, x + place, v + place);
-    MovePart(two, hn::UpperHalf(two, yz), rate2, x + place + 4, v + place + 4);
-  }
+  const std::int32_t place = packet.a[link];
+  MovePart(four, xyzx, hn::Set(four, rate), x + place, v + place);
+  MovePart(two, yz, hn::Set(two, rate), x + place + 4, v + place + 4);
 }
 
 // Every second pair from `first` on: p has their (xa, ya), q (za, xb), r (yb, zb), a block each.
 HWY_INLINE void MoveFour(Vector p, Vector q, Vector r, double rate, const LinkPacket& packet, int first, double* x,
                          double* v) {
   const hn::FixedTag<double, 4> four;
+  const hn::FixedTag<double, 2> two;
   const Vector even = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(q), p);
   const Vector odd = hn::OddEvenBlocks(q, hn::SwapAdjacentBlocks(p));
   const auto low = hn::LowerHalf(four, r), high = hn::UpperHalf(four, r);
-  MoveTwo(even, hn::ConcatLowerLower(four, high, low), rate, packet, first, first + 4, x, v);
-  MoveTwo(odd, hn::ConcatUpperUpper(four, high, low), rate, packet, first + 2, first + 6, x, v);
+  MovePair(hn::LowerHalf(four, even), hn::LowerHalf(two, low), rate, packet, first, x, v);
+  MovePair(hn::LowerHalf(four, odd), hn::UpperHalf(two, low), rate, packet, first + 2, x, v);
+  MovePair(hn::UpperHalf(four, even), hn::LowerHalf(two, high), rate, packet, first + 4, x, v);
+  MovePair(hn::UpperHalf(four, odd), hn::UpperHalf(two, high), rate, packet, first + 6, x, v);
 }
 
 // A packet of pairs: both ends of a link are fetched, moved and put back together.

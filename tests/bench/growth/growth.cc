@@ -149,7 +149,8 @@ double PrintSize(int side, int threads) {
   const double held = ResidentBytes() - resident;
   const auto shared = TimeSteps(**model, threads, steps);
   if (alone.empty() || !shared.has_value()) return 0;
-  const bool same = alone.front().hash == shared->hash && alone.back().hash == shared->hash;
+  const bool same =
+      std::all_of(alone.begin(), alone.end(), [&](const Timed& timed) { return timed.hash == shared->hash; });
   const auto vertices = static_cast<double>((*model)->rest.cols());
   std::printf("%9.0f %11.3f %11.0f %10.0f %10.1f %14.2f %10.0f %10.2f   %s\n", vertices, compiled, held / vertices,
               1e6 * alone.front().cpu, 1e9 * alone.front().cpu / vertices, alone.back().cpu / alone.front().cpu,
