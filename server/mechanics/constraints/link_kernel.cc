@@ -95,7 +95,7 @@ HWY_INLINE void Move(const LinkPacket& packet, int first, const LinkVectors& imp
   MoveEnds(hn::Neg(hn::Load(d, packet.inverse_b + first)), impulse, rate, packet.b + first, count, x, v);
 }
 
-#if HWY_TARGET <= HWY_AVX3
+#if HWY_TARGET <= HWY_AVX2
 // Numbers of a pair's ends += way, and those of their velocities by its rate. No more of them is written than that:
 // what is fetched beside it next need not wait.
 template <class D>
@@ -115,11 +115,13 @@ HWY_INLINE void MovePair(hn::Vec<hn::FixedTag<double, 4>> xyzx, hn::Vec<hn::Fixe
   MovePart(two, yz, hn::Set(two, rate), x + place + 4, v + place + 4);
 }
 
-// Every second pair from `first` on: p has their (xa, ya), q (za, xb), r (yb, zb), a block each.
-HWY_INLINE void MoveFour(Vector p, Vector q, Vector r, double rate, const LinkPacket& packet, int first, double* x,
-                         double* v) {
-  const hn::FixedTag<double, 4> four;
+// Every second pair from `first` on, of as many as a vector has: p has their (xa, ya), q (za, xb), r (yb, zb), a block
+// each.
+HWY_INLINE void MoveEverySecond(Vector p, Vector q, Vector r, double rate, const LinkPacket& packet, int first,
+                                double* x, double* v) {
   const hn::FixedTag<double, 2> two;
+#if HWY_TARGET <= HWY_AVX3
+  const hn::FixedTag<double, 4> four;
   const Vector even = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(q), p);
   const Vector odd = hn::OddEvenBlocks(q, hn::SwapAdjacentBlocks(p));
   const auto low = hn::LowerHalf(four, r), high = hn::UpperHalf(four, r);
@@ -127,26 +129,37 @@ HWY_INLINE void MoveFour(Vector p, Vector q, Vector r, double rate, const LinkPa
   MovePair(hn::LowerHalf(four, odd), hn::UpperHalf(two, low), rate, packet, first + 2, x, v);
   MovePair(hn::UpperHalf(four, even), hn::LowerHalf(two, high), rate, packet, first + 4, x, v);
   MovePair(hn::UpperHalf(four, odd), hn::UpperHalf(two, high), rate, packet, first + 6, x, v);
+#else
+  const Tag d;
+  MovePair(hn::ConcatLowerLower(d, q, p), hn::LowerHalf(two, r), rate, packet, first, x, v);
+  MovePair(hn::ConcatUpperUpper(d, q, p), hn::UpperHalf(two, r), rate, packet, first + 2, x, v);
+#endif
 }
 
-// A packet of pairs: both ends of a link are fetched, moved and put back together.
-HWY_INLINE void MovePairs(const LinkPacket& packet, const LinkVectors& impulses, double rate, double* x, double* v) {
+// Pairs from `first` on: both ends of a link are fetched, moved and put back together.
+HWY_INLINE void MovePairs(const LinkPacket& packet, int first, const LinkVectors& impulses, double rate, double* x,
+                          double* v) {
   const Tag d;
-  const Vectors impulse = Loaded(impulses, 0);
-  const Vectors a = Scaled(hn::Load(d, packet.inverse_a), impulse);
-  const Vectors b = Scaled(hn::Neg(hn::Load(d, packet.inverse_b)), impulse);
-  MoveFour(hn::InterleaveLower(d, a.x, a.y), hn::InterleaveLower(d, a.z, b.x), hn::InterleaveLower(d, b.y, b.z), rate,
-           packet, 0, x, v);
-  MoveFour(hn::InterleaveUpper(d, a.x, a.y), hn::InterleaveUpper(d, a.z, b.x), hn::InterleaveUpper(d, b.y, b.z), rate,
-           packet, 1, x, v);
+  const Vectors impulse = Loaded(impulses, first);
+  const Vectors a = Scaled(hn::Load(d, packet.inverse_a + first), impulse);
+  const Vectors b = Scaled(hn::Neg(hn::Load(d, packet.inverse_b + first)), impulse);
+  MoveEverySecond(hn::InterleaveLower(d, a.x, a.y), hn::InterleaveLower(d, a.z, b.x), hn::InterleaveLower(d, b.y, b.z),
+                  rate, packet, first, x, v);
+  MoveEverySecond(hn::InterleaveUpper(d, a.x, a.y), hn::InterleaveUpper(d, a.z, b.x), hn::InterleaveUpper(d, b.y, b.z),
+                  rate, packet, first + 1, x, v);
 }
 #endif
 
 HWY_INLINE void MoveAll(const LinkPacket& packet, const LinkVectors& impulses, double rate, double* x, double* v) {
-#if HWY_TARGET <= HWY_AVX3
-  if (packet.pairs) return MovePairs(packet, impulses, rate, x, v);
+  for (int first = 0; first < packet.count; first += kLanes) {
+#if HWY_TARGET <= HWY_AVX2
+    if (packet.pairs) {
+      MovePairs(packet, first, impulses, rate, x, v);
+      continue;
+    }
 #endif
-  for (int first = 0; first < packet.count; first += kLanes) Move(packet, first, impulses, rate, x, v);
+    Move(packet, first, impulses, rate, x, v);
+  }
 }
 
 // All roots and divisions first: what one packet waits for, the next does not.
