@@ -194,9 +194,8 @@ stage_asan() {
 # gRPC's library is not built for ThreadSanitizer, so only tests of folders below service/ run under it.
 stage_tsan() {
   local folder=$root/build/tsan options=ignore_noninstrumented_modules=1:halt_on_error=1
-  check sanitized "$folder" thread tsan_test stream_test session_test study_test
+  check sanitized "$folder" thread tsan_test stream_test session_test
   TSAN_OPTIONS=$options programs "$folder" -R '^(tsan|stream|session)$'
-  check env TSAN_OPTIONS="$options" "$folder/study_test" --gtest_brief=1 --gtest_filter='Jobs.*'
 }
 
 check_tidy() {

@@ -107,10 +107,7 @@ void Blender::Blend(const Eigen::Vector3d& point, int for_vertex, std::vector<Ri
   for (const auto& [squared, carrier, weight] : near_) {
     if (weight == 0) continue;
     const Track& track = tracks_[carrier];
-    for (RideShare share : carriers_.Shares({carrier, track.vertex, track.distance}, for_vertex)) {
-      share.weight *= weight;
-      shares.push_back(share);
-    }
+    carriers_.AppendShares({carrier, track.vertex, track.distance}, for_vertex, weight, shares);
   }
 }
 

@@ -6,18 +6,18 @@
 namespace phrenic {
 namespace {
 
-std::vector<RideShare> OfVertex(const Ride& ride, int vertex) {
+// What carries a vertex that rides itself carries what rides on it.
+void AppendOfVertex(const Ride& ride, int vertex, int for_vertex, double weight, std::vector<RideShare>& shares) {
   if (!ride.triangles.empty()) {
     const TriangleShare& place = ride.triangles[vertex];
-    std::vector<RideShare> shares;
-    shares.reserve(3);
-    for (int i = 0; i < 3; ++i) shares.push_back({vertex, -1, place.corners[i], place.weights[i]});
-    return shares;
+    for (int i = 0; i < 3; ++i) shares.push_back({for_vertex, -1, place.corners[i], weight * place.weights[i]});
+    return;
   }
   const auto before = [](const RideShare& share, int v) { return share.vertex < v; };
-  auto first = std::lower_bound(ride.shares.begin(), ride.shares.end(), vertex, before);
-  auto last = std::lower_bound(first, ride.shares.end(), vertex + 1, before);
-  return {first, last};
+  auto share = std::lower_bound(ride.shares.begin(), ride.shares.end(), vertex, before);
+  for (; share != ride.shares.end() && share->vertex == vertex; ++share) {
+    shares.push_back({for_vertex, share->pose, share->simulated_vertex, weight * share->weight});
+  }
 }
 
 bool Farther(const NearestBoxes::Box& a, const NearestBoxes::Box& b) {
@@ -47,14 +47,16 @@ Carriers::Contact Carriers::Nearest(const Eigen::Vector3d& point, double reach) 
   return nearest;
 }
 
-std::vector<RideShare> Carriers::Shares(const Contact& contact, int for_vertex) const {
+void Carriers::AppendShares(const Contact& contact, int for_vertex, double weight,
+                            std::vector<RideShare>& shares) const {
   const BodyModel& body = draft_.model.bodies[bodies_[contact.carrier]];
-  if (body.pose >= 0) return {{for_vertex, body.pose, -1, 1.0}};
-  if (body.first_vertex >= 0) return {{for_vertex, -1, body.first_vertex + contact.vertex, 1.0}};
-  if (body.ride < 0) return {};
-  std::vector<RideShare> shares = OfVertex(draft_.model.rides[body.ride], contact.vertex);
-  for (RideShare& share : shares) share.vertex = for_vertex;
-  return shares;
+  if (body.pose >= 0) {
+    shares.push_back({for_vertex, body.pose, -1, weight});
+  } else if (body.first_vertex >= 0) {
+    shares.push_back({for_vertex, -1, body.first_vertex + contact.vertex, weight});
+  } else if (body.ride >= 0) {
+    AppendOfVertex(draft_.model.rides[body.ride], contact.vertex, for_vertex, weight, shares);
+  }
 }
 
 NearestBoxes::NearestBoxes(const Carriers& carriers, const Eigen::Vector3d& point, double reach) {

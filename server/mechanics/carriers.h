@@ -25,8 +25,9 @@ class Carriers {
   };
   // At an infinite distance where none is nearer than `reach` [m]; the less it is, the sooner that is known.
   Contact Nearest(const Eigen::Vector3d& point, double reach = kAnywhere) const;
-  // What the carrier does to a point near one of its vertices; `vertex` of the shares is `for_vertex`.
-  std::vector<RideShare> Shares(const Contact& contact, int for_vertex) const;
+  // Appends what the carrier does to a point near one of its vertices, by `weight`; `vertex` of the shares is
+  // `for_vertex`.
+  void AppendShares(const Contact& contact, int for_vertex, double weight, std::vector<RideShare>& shares) const;
 
   int count() const { return static_cast<int>(bodies_.size()); }
   const NearestSearch& search(int carrier) const { return *searches_[carrier]; }

@@ -1,8 +1,8 @@
 // Before <hwy/foreach_target.h>: leaves out targets whose vectors have no size that the compiler knows; their machines
-// take NEON and the portable path.
+// take NEON and the portable path. And SSSE3: what has that and no SSE4 is of 2006.
 #ifndef PHRENIC_SERVER_MECHANICS_VECTOR_TARGETS_H_
 #define PHRENIC_SERVER_MECHANICS_VECTOR_TARGETS_H_
 
-#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_SSSE3)
 
 #endif  // PHRENIC_SERVER_MECHANICS_VECTOR_TARGETS_H_

@@ -50,7 +50,7 @@ class Limits : public testing::Test {
     const auto stub = v1::SessionService::NewStub(server_->NewChannel());
     grpc::ClientContext context;
     context.set_wait_for_ready(true);
-    context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(10));
+    context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(30));
     v1::ListSessionsResponse response;
     return stub->ListSessions(&context, {}, &response);
   }

@@ -78,7 +78,7 @@ void Attachment::AddHolds(const v1::Attachment& scene, const std::vector<int>& c
     const double stiffness = (1 - contact.distance / scene.radius()) * scene.stiffness();
     const double damping = 2 * scene.damping_ratio() * std::sqrt(stiffness * draft.model.mass[vertex]);
     holds_.push_back({vertex, stiffness, damping, body.mesh.vertices.col(i)});
-    for (const RideShare& share : search.Shares(contact, vertex)) shares.push_back(share);
+    search.AppendShares(contact, vertex, 1, shares);
     draft.model.attached_vertices.push_back(vertex);
   }
 }

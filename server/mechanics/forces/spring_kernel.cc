@@ -199,9 +199,10 @@ HWY_INLINE Coordinates<Number> SumPulls(const Part<Number>& part, bool at_end, c
   return at_end ? SumPulls<kAlike, true>(part, x) : SumPulls<kAlike, false>(part, x);
 }
 
+// By itself: as a part of who calls it, compilers had it twice.
 template <typename Number>
-HWY_INLINE void FillTile(const SpringSlices<Number>& slices, std::int64_t block, Number scale, const Number* x,
-                         Number* tile) {
+HWY_NOINLINE void FillTile(const SpringSlices<Number>& slices, std::int64_t block, Number scale, const Number* x,
+                           Number* tile) {
   const auto factor = hn::Set(SliceTag<Number>(), scale);
   const std::int64_t first = slices.blocks[block].first_slice, end = slices.blocks[block + 1].first_slice;
   for (std::int64_t s = first; s < end; ++s, tile += 4 * kSliceRows<Number>) {
