@@ -1,5 +1,5 @@
 // Before <hwy/foreach_target.h>: leaves out targets whose vectors have no size that the compiler knows; their machines
-// take NEON and the portable path. And SSSE3: what has that and no SSE4 is of 2006.
+// take NEON and the portable path, as do the few that have SSSE3 and no SSE4.
 #ifndef PHRENIC_SERVER_MECHANICS_VECTOR_TARGETS_H_
 #define PHRENIC_SERVER_MECHANICS_VECTOR_TARGETS_H_
 
