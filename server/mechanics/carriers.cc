@@ -20,9 +20,38 @@ void AppendOfVertex(const Ride& ride, int vertex, int for_vertex, double weight,
   }
 }
 
-bool Farther(const NearestBoxes::Box& a, const NearestBoxes::Box& b) {
-  return a.squared != b.squared ? a.squared > b.squared : a.carrier > b.carrier;
-}
+// Boxes by their distances from a point, nearest first; of equally near ones the first. Those that are nearer than
+// `reach` [m].
+class NearestBoxes {
+ public:
+  struct Box {
+    double squared;  // [m^2]
+    int carrier;
+  };
+
+  NearestBoxes(const std::vector<Eigen::AlignedBox3d>& boxes, const Eigen::Vector3d& point, double reach) {
+    heap_.reserve(boxes.size());
+    for (size_t c = 0; c < boxes.size(); ++c) {
+      const double squared = boxes[c].squaredExteriorDistance(point);
+      if (std::sqrt(squared) < reach) heap_.push_back({squared, static_cast<int>(c)});
+    }
+    std::make_heap(heap_.begin(), heap_.end(), Farther);
+  }
+  bool empty() const { return heap_.empty(); }
+  Box Take() {
+    std::pop_heap(heap_.begin(), heap_.end(), Farther);
+    const Box nearest = heap_.back();
+    heap_.pop_back();
+    return nearest;
+  }
+
+ private:
+  static bool Farther(const Box& a, const Box& b) {
+    return a.squared != b.squared ? a.squared > b.squared : a.carrier > b.carrier;
+  }
+
+  std::vector<Box> heap_;
+};
 
 }  // namespace
 
@@ -36,7 +65,7 @@ Carriers::Carriers(const Draft& draft, const std::vector<int>& bodies) : draft_(
 
 Carriers::Contact Carriers::Nearest(const Eigen::Vector3d& point, double reach) const {
   Contact nearest{.distance = kAnywhere};
-  for (NearestBoxes boxes(*this, point, reach); !boxes.empty();) {
+  for (NearestBoxes boxes(boxes_, point, reach); !boxes.empty();) {
     const auto [squared, carrier] = boxes.Take();
     if (std::sqrt(squared) >= reach) break;
     const Neighbour found = searches_[carrier]->Nearest(point, reach);
@@ -57,22 +86,6 @@ void Carriers::AppendShares(const Contact& contact, int for_vertex, double weigh
   } else if (body.ride >= 0) {
     AppendOfVertex(draft_.model.rides[body.ride], contact.vertex, for_vertex, weight, shares);
   }
-}
-
-NearestBoxes::NearestBoxes(const Carriers& carriers, const Eigen::Vector3d& point, double reach) {
-  heap_.reserve(static_cast<size_t>(carriers.count()));
-  for (int c = 0; c < carriers.count(); ++c) {
-    const double squared = carriers.SquaredToBox(c, point);
-    if (std::sqrt(squared) < reach) heap_.push_back({squared, c});
-  }
-  std::make_heap(heap_.begin(), heap_.end(), Farther);
-}
-
-NearestBoxes::Box NearestBoxes::Take() {
-  std::pop_heap(heap_.begin(), heap_.end(), Farther);
-  const Box nearest = heap_.back();
-  heap_.pop_back();
-  return nearest;
 }
 
 }  // namespace phrenic

@@ -31,10 +31,6 @@ class Carriers {
 
   int count() const { return static_cast<int>(bodies_.size()); }
   const NearestSearch& search(int carrier) const { return *searches_[carrier]; }
-  // To the box around the carrier's vertices, squared [m^2].
-  double SquaredToBox(int carrier, const Eigen::Vector3d& point) const {
-    return boxes_[carrier].squaredExteriorDistance(point);
-  }
   const Points& vertices(int carrier) const { return draft_.model.bodies[bodies_[carrier]].mesh.vertices; }
 
  private:
@@ -42,22 +38,6 @@ class Carriers {
   std::vector<int> bodies_;
   std::vector<const NearestSearch*> searches_;
   std::vector<Eigen::AlignedBox3d> boxes_;  // what is outside reach is not searched
-};
-
-// The carriers by their boxes' distances from a point, nearest first; of equally near ones the first. Those whose boxes
-// are nearer than `reach` [m].
-class NearestBoxes {
- public:
-  NearestBoxes(const Carriers& carriers, const Eigen::Vector3d& point, double reach = Carriers::kAnywhere);
-  bool empty() const { return heap_.empty(); }
-  struct Box {
-    double squared;  // [m^2]
-    int carrier;
-  };
-  Box Take();
-
- private:
-  std::vector<Box> heap_;
 };
 
 }  // namespace phrenic
