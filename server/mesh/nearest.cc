@@ -9,6 +9,8 @@
 namespace phrenic {
 namespace {
 
+constexpr int kLeafVertices = 32;  // to look at so many takes less time than to go down the tree further
+
 struct Cloud {
   Points points;
   size_t kdtree_get_point_count() const { return static_cast<size_t>(points.cols()); }
@@ -30,15 +32,16 @@ double LittleFarther(double squared) { return squared * (1 + 1e-9) + std::numeri
 // The nearest vertex; of equally near ones the lowest index.
 class NearestResult {
  public:
-  explicit NearestResult(double reach) : squared_(LittleFarther(reach * reach)) {}
+  explicit NearestResult(double reach) : squared_(LittleFarther(reach * reach)), worst_(LittleFarther(squared_)) {}
   bool addPoint(double squared, int vertex) {
     if (squared < squared_ || (squared == squared_ && vertex < vertex_)) {
       squared_ = squared;
+      worst_ = LittleFarther(squared);
       vertex_ = vertex;
     }
     return true;
   }
-  double worstDist() const { return LittleFarther(squared_); }
+  double worstDist() const { return worst_; }
   bool full() const { return vertex_ >= 0; }
   Neighbour Within(double reach) const {
     const double distance = std::sqrt(squared_);
@@ -47,7 +50,7 @@ class NearestResult {
   }
 
  private:
-  double squared_;
+  double squared_, worst_;
   int vertex_ = -1;
 };
 
@@ -72,7 +75,7 @@ class WithinResult {
 
 struct NearestSearch::Tree {
   explicit Tree(Points points)
-      : cloud{std::move(points)}, index(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(12)) {}
+      : cloud{std::move(points)}, index(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(kLeafVertices)) {}
   Cloud cloud;
   KdTree index;  // builds itself over the cloud
 };
