@@ -26,17 +26,6 @@ struct Vectors {
   Vector x, y, z;
 };
 
-// Points one by one: reads nothing beyond them.
-template <typename Place>
-HWY_INLINE Vectors Gathered(const double* x, const Place* place) {
-  const Tag d;
-  HWY_ALIGN double values[3][kLanes];
-  for (size_t i = 0; i < kLanes; ++i) {
-    for (int c = 0; c < 3; ++c) values[c][i] = x[place[i] + c];
-  }
-  return {hn::Load(d, values[0]), hn::Load(d, values[1]), hn::Load(d, values[2])};
-}
-
 #if HWY_TARGET <= HWY_AVX2
 // Points that `point` gives by their lanes, as x, y, z and anything, transposed: one vector of every x, one of every y,
 // one of every z.
@@ -65,18 +54,18 @@ HWY_INLINE Vectors Columns(const Point& point) {
 template <bool kAlone, typename Place>
 HWY_INLINE Vectors Transposed(const double* x, const Place* place) {
 #if HWY_TARGET == HWY_SCALAR
-  return Gathered(x, place);
+  const Tag d;
+  return {hn::Load(d, x + *place), hn::Load(d, x + *place + 1), hn::Load(d, x + *place + 2)};
 #elif HWY_TARGET <= HWY_AVX2
   const hn::FixedTag<double, 4> four;
   return Columns([&](int i) HWY_ATTR {
     return kAlone ? hn::MaskedLoad(hn::FirstN(four, 3), four, x + place[i]) : hn::LoadU(four, x + place[i]);
   });
 #else
-  if constexpr (kAlone) return Gathered(x, place);
   const Tag d;
   const auto a = hn::LoadU(d, x + place[0]), b = hn::LoadU(d, x + place[1]);
-  const auto az = hn::LoadU(d, x + place[0] + 2), bz = hn::LoadU(d, x + place[1] + 2);
-  return {hn::InterleaveLower(d, a, b), hn::InterleaveUpper(d, a, b), hn::InterleaveLower(d, az, bz)};
+  const auto a_yz = hn::LoadU(d, x + place[0] + 1), b_yz = hn::LoadU(d, x + place[1] + 1);
+  return {hn::InterleaveLower(d, a, b), hn::InterleaveUpper(d, a, b), hn::InterleaveUpper(d, a_yz, b_yz)};
 #endif
 }
 
