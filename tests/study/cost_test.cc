@@ -141,8 +141,22 @@ TEST(CostStudy, TimesArePositiveAndAgreeWithEachOther) {
   EXPECT_EQ(SheetTable().rows(0).share(), 1);
 }
 
-// Bending is by far the dearest of the sheet's parts: half of the step and more.
-TEST(CostStudy, SeesWhatTheDearestPartCosts) { EXPECT_LT(RowsOf(SheetTable())["without bending"].share(), 0.7); }
+// Of a step, by clocks inside.
+double InsideShare(const v1::CostTable& table, const std::string& element) {
+  double whole = 0, part = 0;
+  for (const v1::StageRow& row : table.stages()) {
+    if (row.stage() == "step") whole = row.us_per_step();
+    if (row.element().find(element) != std::string::npos) part += row.us_per_step();
+  }
+  return part / whole;
+}
+
+// By leaving it out and by clocks inside, within what other work on the machine blurs.
+TEST(CostStudy, SeesWhatTheDearestPartCosts) {
+  const double inside = InsideShare(SheetTable(), "bending");
+  EXPECT_GT(inside, 0.1);
+  EXPECT_NEAR(1 - RowsOf(SheetTable())["without bending"].share(), inside, 0.3);
+}
 
 TEST(CostStudy, StagesSumToTheStep) {
   double sum = 0, whole = 0;
