@@ -1,6 +1,5 @@
 #include "server/mechanics/blender.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace phrenic {
@@ -29,42 +28,43 @@ Blender::Blender(const Carriers& carriers)
       tracks_(static_cast<size_t>(carriers.count())),
       middle_(Eigen::Vector3d::Constant(Carriers::kAnywhere)) {}
 
-// How far a carrier is at least.
-double Blender::AtLeast(const Track& track, const Eigen::Vector3d& point) const {
-  const double moved = (point - track.from).norm();
-  return track.distance - moved - kSlack * (track.distance + moved);
+// How far the carrier is from a point at least.
+double Blender::Track::AtLeast(const Eigen::Vector3d& point) const {
+  const double moved = (point - from).norm();
+  return distance - moved - kSlack * (distance + moved);
 }
 
-// The vertex that was nearest from the last point bounds the search.
+// As far as the vertex that was nearest last.
+double Blender::AtMost(int carrier, const Eigen::Vector3d& point) const {
+  return (carriers_.vertices(carrier).col(tracks_[carrier].vertex) - point).norm() * (1 + kSlack);
+}
+
 void Blender::Find(int carrier, const Eigen::Vector3d& point) {
-  Track& track = tracks_[carrier];
-  const Eigen::Vector3d last = carriers_.vertices(carrier).col(track.vertex);
-  const Neighbour found = carriers_.search(carrier).Nearest(point, (last - point).norm() * (1 + kSlack));
-  track = {point, found.distance, found.vertex, Weight(found.distance)};
-  if (track.weight > tracks_[nearest_].weight) nearest_ = carrier;
+  const Neighbour found = carriers_.search(carrier).Nearest(point, AtMost(carrier, point));
+  tracks_[carrier] = {point, found.distance, found.vertex, Weight(found.distance)};
+  if (tracks_[carrier].weight > tracks_[nearest_].weight) nearest_ = carrier;
 }
 
-// Finds the carriers of points within kAround from this one.
+// Tells which may carry points within kAround from this one.
 void Blender::LookAround(const Eigen::Vector3d& point) {
   middle_ = point;
-  Find(nearest_, point);
-  const double reach = ReachOf(tracks_[nearest_].distance + kAround) + kAround;
+  const double reach = ReachOf(AtMost(nearest_, point) + kAround) + kAround;
   around_.clear();
   for (int c = 0; c < carriers_.count(); ++c) {
-    if (AtLeast(tracks_[c], point) <= reach) around_.push_back(c);
+    if (tracks_[c].AtLeast(point) <= reach) around_.push_back(c);
   }
 }
 
 // Weighs all carriers that may have a share; the others' weight is 0.
 void Blender::Weigh(const Eigen::Vector3d& point) {
   for (const int c : around_) tracks_[c].weight = 0;
-  Find(nearest_, point);
   const int first = nearest_;
+  Find(first, point);
   double reach = ReachOf(tracks_[first].distance);
   for (const int c : around_) {
-    if (c == first || AtLeast(tracks_[c], point) > reach) continue;
+    if (c == first || tracks_[c].AtLeast(point) > reach) continue;
     Find(c, point);
-    reach = std::min(reach, ReachOf(tracks_[c].distance));
+    reach = ReachOf(tracks_[nearest_].distance);
   }
 }
 

@@ -25,8 +25,10 @@ class Blender {
     double distance = 0;  // [m]
     int vertex = 0;       // nearest then
     double weight = 0;    // for the present point
+
+    double AtLeast(const Eigen::Vector3d& point) const;
   };
-  double AtLeast(const Track& track, const Eigen::Vector3d& point) const;
+  double AtMost(int carrier, const Eigen::Vector3d& point) const;
   void Find(int carrier, const Eigen::Vector3d& point);
   void LookAround(const Eigen::Vector3d& point);
   void Weigh(const Eigen::Vector3d& point);
