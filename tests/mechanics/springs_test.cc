@@ -82,40 +82,68 @@ Network ScatteredRing(int vertices) {
   return made;
 }
 
+// Two sheets, one vertex of the first and one of the second by turns, so that each pair of rows is of neighbours that
+// follow each other; with the springs from one sheet to the other that some `joints` are.
+Network DoubleSheet(int side, int joints) {
+  Network made = Random(2 * side * side, 2 * side * side);
+  std::vector<Spring> drawn;
+  drawn.swap(made.springs);
+  const auto join = [&](int sheet, int a, int b) {
+    const Spring& like = drawn[made.springs.size() % drawn.size()];
+    made.springs.push_back({2 * a + sheet, 2 * b + sheet, like.stiffness, like.rest_length});
+  };
+  for (int i = 0; i < 2 * side * side; ++i) {
+    const int sheet = i % 2, at = i / 2;
+    if (at % side + 1 < side) join(sheet, at + 1, at);
+    if (at / side + 1 < side) join(sheet, at, at + side);
+    if (at % side + 1 < side && at / side + 1 < side) join(sheet, at, at + side + 1);
+  }
+  for (int i = 0; i < joints; ++i) made.springs.push_back({2 * i, 2 * i + 1, 20, 0.01});
+  return made;
+}
+
+std::vector<Network> Several() {
+  std::vector<Network> networks;
+  for (const int vertices : {2, 3, 7, 8, 9, 16, 17, 64, 1000}) networks.push_back(Random(vertices, 4 * vertices));
+  for (const int side : {2, 3, 4, 16, 25}) networks.push_back(DoubleSheet(side, 0));
+  networks.push_back(DoubleSheet(25, 40));
+  return networks;
+}
+
 TEST(SpringRows, GiveWhatThePlainLoopGives) {
-  for (const int vertices : {2, 3, 7, 8, 9, 64, 1000}) {
-    const Network network = Random(vertices, 4 * vertices);
+  for (const Network& network : Several()) {
     const SpringRows rows = network.Rows();
     const Points plain = network.Plain(1.7);
     OnEveryTarget([&] {
-      EXPECT_LT((network.Ours(rows, 1.7) - plain).cwiseAbs().maxCoeff(), 1e-13 * 1.7 * network.Size()) << vertices;
+      EXPECT_LT((network.Ours(rows, 1.7) - plain).cwiseAbs().maxCoeff(), 1e-13 * 1.7 * network.Size())
+          << network.x.cols();
     });
   }
 }
 
 // Also far from where coordinates begin.
 TEST(SpringRows, InSinglePrecisionKeepWithinTheErrorTheyState) {
-  for (const int vertices : {2, 3, 7, 16, 17, 64, 1000}) {
+  for (Network& network : Several()) {
     for (const double shift : {0, 1000}) {
-      Network network = Random(vertices, 4 * vertices);
       network.x.array() += shift;
       const SpringRows rows = network.Rows(Precision::kSingle);
       const Points plain = network.Plain(1.7);
       const Eigen::VectorXd error = 1.7 * network.SingleError();
       OnEveryTarget([&] {
         const Points off = (network.Ours(rows, 1.7) - plain).cwiseAbs();
-        EXPECT_LE((off.colwise().maxCoeff().transpose() - error).maxCoeff(), 0) << vertices << ", " << shift;
+        EXPECT_LE((off.colwise().maxCoeff().transpose() - error).maxCoeff(), 0) << network.x.cols() << ", " << shift;
       });
     }
   }
 }
 
 TEST(SpringRows, GiveTheSameBitsOnEveryInstructionSet) {
-  const Network network = Random(1000, 4000);
-  for (const Precision precision : kPrecisions) {
-    const SpringRows rows = network.Rows(precision);
-    const Points here = network.Ours(rows, 0.3);
-    OnEveryTarget([&] { EXPECT_EQ(network.Ours(rows, 0.3), here); });
+  for (const Network& network : Several()) {
+    for (const Precision precision : kPrecisions) {
+      const SpringRows rows = network.Rows(precision);
+      const Points here = network.Ours(rows, 0.3);
+      OnEveryTarget([&] { EXPECT_EQ(network.Ours(rows, 0.3), here) << network.x.cols(); });
+    }
   }
 }
 

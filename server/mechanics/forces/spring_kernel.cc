@@ -30,24 +30,49 @@ struct Coordinates {
 template <typename Number>
 constexpr Number kShortestSquared = std::is_same_v<Number, float> ? 1e-36 : 1e-200;
 
-template <bool kAtEnd>
+#if HWY_TARGET <= HWY_AVX3
+// Four pairs of points, each of them one read.
+HWY_INLINE Coordinates<double> FetchPairs(const double* x, const std::int32_t* place) {
+  using V = hn::Vec<SliceTag<double>>;
+  const SliceTag<double> d;
+  const V a = hn::LoadU(d, x + place[0]), b = hn::LoadU(d, x + place[1]);
+  const V c = hn::LoadU(d, x + place[2]), e = hn::LoadU(d, x + place[3]);
+  const auto xy_ab = __builtin_shufflevector(a.raw, b.raw, 0, 8, 3, 11, 1, 9, 4, 12);
+  const auto xy_ce = __builtin_shufflevector(c.raw, e.raw, 0, 8, 3, 11, 1, 9, 4, 12);
+  const auto z_ab = __builtin_shufflevector(a.raw, b.raw, 2, 10, 5, 13, 2, 10, 5, 13);
+  const auto z_ce = __builtin_shufflevector(c.raw, e.raw, 2, 10, 5, 13, 2, 10, 5, 13);
+  return {V{__builtin_shufflevector(xy_ab, xy_ce, 0, 1, 8, 9, 2, 3, 10, 11)},
+          V{__builtin_shufflevector(xy_ab, xy_ce, 4, 5, 12, 13, 6, 7, 14, 15)},
+          V{__builtin_shufflevector(z_ab, z_ce, 0, 1, 8, 9, 2, 3, 10, 11)}};
+}
+#endif
+
+template <Fetching kFetching>
 HWY_INLINE Coordinates<double> Fetch(const double* x, const std::int32_t* place) {
-  const points::Vectors fetched = points::Transposed<kAtEnd>(x, place);
+#if HWY_TARGET <= HWY_AVX3
+  if constexpr (kFetching == Fetching::kInPairs) return FetchPairs(x, place);
+#endif
+  const points::Vectors fetched = points::Transposed<kFetching == Fetching::kAtEnd>(x, place);
   return {fetched.x, fetched.y, fetched.z};
 }
 
 // Points i, i + 4, ... , as many as a vector has.
+template <Fetching kFetching>
 HWY_INLINE hn::Vec<SliceTag<float>> EveryFourth(const float* x, const std::int32_t* place, int i) {
   const SliceTag<float> d;
 #if HWY_TARGET == HWY_SCALAR
   return hn::Load(d, x + place[i]);
 #elif HWY_TARGET <= HWY_AVX3
   const hn::FixedTag<float, 8> half;
+  if constexpr (kFetching == Fetching::kInPairs) {
+    return hn::Combine(d, hn::LoadU(half, x + place[i + 8]), hn::LoadU(half, x + place[i]));
+  }
   const hn::FixedTag<float, 4> one;
   const auto low = hn::Combine(half, hn::Load(one, x + place[i + 4]), hn::Load(one, x + place[i]));
   const auto high = hn::Combine(half, hn::Load(one, x + place[i + 12]), hn::Load(one, x + place[i + 8]));
   return hn::Combine(d, high, low);
 #elif HWY_TARGET == HWY_AVX2
+  if constexpr (kFetching == Fetching::kInPairs) return hn::LoadU(d, x + place[i]);
   const hn::FixedTag<float, 4> one;
   return hn::Combine(d, hn::Load(one, x + place[i + 4]), hn::Load(one, x + place[i]));
 #else
@@ -55,15 +80,15 @@ HWY_INLINE hn::Vec<SliceTag<float>> EveryFourth(const float* x, const std::int32
 #endif
 }
 
-template <bool kAtEnd>
+template <Fetching kFetching>
 HWY_INLINE Coordinates<float> Fetch(const float* x, const std::int32_t* place) {
   const SliceTag<float> d;
 #if HWY_TARGET == HWY_SCALAR
   return {hn::Load(d, x + *place), hn::Load(d, x + *place + 1), hn::Load(d, x + *place + 2)};
 #else
   const hn::RepartitionToWide<SliceTag<float>> pairs;
-  const auto a = EveryFourth(x, place, 0), b = EveryFourth(x, place, 1);
-  const auto c = EveryFourth(x, place, 2), e = EveryFourth(x, place, 3);
+  const auto a = EveryFourth<kFetching>(x, place, 0), b = EveryFourth<kFetching>(x, place, 1);
+  const auto c = EveryFourth<kFetching>(x, place, 2), e = EveryFourth<kFetching>(x, place, 3);
   const auto xy01 = hn::BitCast(pairs, hn::InterleaveLower(d, a, b));
   const auto xy23 = hn::BitCast(pairs, hn::InterleaveLower(d, c, e));
   const auto z01 = hn::BitCast(pairs, hn::InterleaveUpper(d, a, b));
@@ -98,7 +123,7 @@ HWY_INLINE Column<Number> ColumnAt(const Part<Number>& part, std::int64_t c) {
 }
 
 // Adds the pulls of kTogether columns, step by step: what one of them waits for, the others do not.
-template <bool kAlike, bool kAtEnd, int kTogether, typename Number>
+template <bool kAlike, Fetching kFetching, int kTogether, typename Number>
 HWY_INLINE void AddPulls(const Part<Number>& part, std::int64_t first, const Number* x, const Coordinates<Number>& own,
                          Coordinates<Number>& sum) {
   const SliceTag<Number> d;
@@ -107,7 +132,7 @@ HWY_INLINE void AddPulls(const Part<Number>& part, std::int64_t first, const Num
   hn::Vec<SliceTag<Number>> inverse[kTogether];  // of the length; before that, the length squared
 #pragma GCC unroll 3
   for (int i = 0; i < kTogether; ++i) {
-    const Coordinates<Number> other = Fetch<kAtEnd>(x, part.slices.neighbours[first + i].place + part.row);
+    const Coordinates<Number> other = Fetch<kFetching>(x, part.slices.neighbours[first + i].place + part.row);
     way[i] = {hn::Sub(other.x, own.x), hn::Sub(other.y, own.y), hn::Sub(other.z, own.z)};
     const auto& [dx, dy, dz] = way[i];
     inverse[i] = hn::Max(hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz)), shortest);
@@ -124,16 +149,16 @@ HWY_INLINE void AddPulls(const Part<Number>& part, std::int64_t first, const Num
 }
 
 // Sum of the pulls on the part's rows.
-template <bool kAlike, bool kAtEnd, typename Number>
+template <bool kAlike, Fetching kFetching, typename Number>
 HWY_INLINE Coordinates<Number> SumPulls(const Part<Number>& part, const Number* x) {
   const SliceTag<Number> d;
   std::int64_t c = part.slices.slices[part.slice].first_column;
   const std::int64_t end = part.slices.slices[part.slice + 1].first_column;
-  const Coordinates<Number> own = Fetch<kAtEnd>(x, part.slices.slices[part.slice].own + part.row);
+  const Coordinates<Number> own = Fetch<kFetching>(x, part.slices.slices[part.slice].own + part.row);
   Coordinates<Number> sum = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
-  for (; c + 3 <= end; c += 3) AddPulls<kAlike, kAtEnd, 3>(part, c, x, own, sum);
-  if (c + 2 == end) AddPulls<kAlike, kAtEnd, 2>(part, c, x, own, sum);
-  if (c + 1 == end) AddPulls<kAlike, kAtEnd, 1>(part, c, x, own, sum);
+  for (; c + 3 <= end; c += 3) AddPulls<kAlike, kFetching, 3>(part, c, x, own, sum);
+  if (c + 2 == end) AddPulls<kAlike, kFetching, 2>(part, c, x, own, sum);
+  if (c + 1 == end) AddPulls<kAlike, kFetching, 1>(part, c, x, own, sum);
   return sum;
 }
 
@@ -195,8 +220,16 @@ class Tile {
 };
 
 template <bool kAlike, typename Number>
-HWY_INLINE Coordinates<Number> SumPulls(const Part<Number>& part, bool at_end, const Number* x) {
-  return at_end ? SumPulls<kAlike, true>(part, x) : SumPulls<kAlike, false>(part, x);
+HWY_INLINE Coordinates<Number> SumPulls(const Part<Number>& part, const Number* x) {
+  switch (part.slices.slices[part.slice].fetching) {
+    case Fetching::kInPairs:
+      return SumPulls<kAlike, Fetching::kInPairs>(part, x);
+    case Fetching::kOneByOne:
+      return SumPulls<kAlike, Fetching::kOneByOne>(part, x);
+    case Fetching::kAtEnd:
+      break;
+  }
+  return SumPulls<kAlike, Fetching::kAtEnd>(part, x);
 }
 
 // By itself: as a part of who calls it, compilers had it twice.
@@ -209,8 +242,7 @@ HWY_NOINLINE void FillTile(const SpringSlices<Number>& slices, std::int64_t bloc
     const SpringSlice<Number>& slice = slices.slices[s];
     for (int row = 0; row < slice.rows; row += kWidth<Number>) {
       const Part<Number> part = {slices, s, row};
-      Coordinates<Number> sum =
-          slice.first_stiffness < 0 ? SumPulls<true>(part, slice.at_end, x) : SumPulls<false>(part, slice.at_end, x);
+      Coordinates<Number> sum = slice.first_stiffness < 0 ? SumPulls<true>(part, x) : SumPulls<false>(part, x);
       AddLoad(part, sum);
       ToSlots({hn::Mul(factor, sum.x), hn::Mul(factor, sum.y), hn::Mul(factor, sum.z)}, row, tile);
     }

@@ -23,11 +23,16 @@ inline constexpr int kSliceRows = 64 / sizeof(Number);
 template <typename Number>
 inline constexpr int kPointStride = std::is_same_v<Number, float> ? 4 : 3;
 
+// How the points that a vector's rows, or the neighbours of theirs, are at come out of x. Those one by one are read
+// with what follows; those at the end without, as one of them is the last. In pairs: row i + 4 of every eight follows
+// row i of them, and so do all its neighbours those of the other, so that a read has two.
+enum class Fetching { kOneByOne, kAtEnd, kInPairs };
+
 template <typename Number>
 struct SpringSlice {
   std::int32_t own[kSliceRows<Number>] = {};  // where the row's vertex lies in x [Numbers]
   int rows = 0;                               // the others are padding
-  bool at_end = false;                        // one of its springs, or rows, is of the last vertex of all
+  Fetching fetching = Fetching::kOneByOne;
   std::int64_t first_column = 0;
   std::int64_t first_stiffness = -1;  // of its columns; -1 where its springs are alike
   Number common_stiffness = 0;        // [N/m], where they are

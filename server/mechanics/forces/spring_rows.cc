@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <numeric>
+#include <span>
+#include <tuple>
 
 #include "server/mechanics/forces/packed_points.h"
 #include "server/mesh/locality.h"
@@ -49,55 +51,94 @@ Rows ByPlace(const std::vector<Spring>& springs, const std::vector<int>& order, 
     rows.of[next[a]++] = {b, spring.stiffness, spring.rest_length};
     rows.of[next[b]++] = {a, spring.stiffness, spring.rest_length};
   }
+  const auto key = [](const RowSpring& spring) {
+    return std::tuple(spring.other, spring.stiffness, spring.rest_length);
+  };
+  for (int i = 0; i < rows.count(); ++i) {
+    std::sort(rows.of.begin() + rows.first[i], rows.of.begin() + rows.first[i + 1],
+              [key](const RowSpring& a, const RowSpring& b) { return key(a) < key(b); });
+  }
   return rows;
 }
 
-// The block's rows that have springs, longest first.
-std::vector<int> SortedBlock(const Rows& rows, int first) {
-  std::vector<int> block;
+// A row of a block; of two that follow each other, as Fetching::kInPairs has it, either is `paired`.
+struct Member {
+  int row = 0;
+  bool paired = false;
+};
+
+bool Follows(const Rows& rows, int row) {
+  const int size = rows.Size(row);
+  if (rows.Size(row + 1) != size) return false;
+  return std::equal(&rows.At(row, 0), &rows.At(row, 0) + size, &rows.At(row + 1, 0),
+                    [](const RowSpring& a, const RowSpring& b) { return a.other + 1 == b.other; });
+}
+
+// The block's rows that have springs, longest first, and of one length pairs first.
+std::vector<Member> SortedBlock(const Rows& rows, int first) {
+  std::vector<Member> block;
   block.reserve(kVertexBlock);
-  for (int i = first; i < std::min(first + static_cast<int>(kVertexBlock), rows.count()); ++i) {
-    if (rows.Size(i) > 0) block.push_back(i);
+  const int end = std::min(first + static_cast<int>(kVertexBlock), rows.count());
+  for (int row = first; row < end; ++row) {
+    if (rows.Size(row) == 0) continue;
+    const bool paired = row + 1 < end && Follows(rows, row);
+    block.push_back({row, paired});
+    if (paired) block.push_back({++row, paired});
   }
-  std::stable_sort(block.begin(), block.end(), [&rows](int a, int b) { return rows.Size(a) > rows.Size(b); });
+  std::stable_sort(block.begin(), block.end(), [&rows](const Member& a, const Member& b) {
+    return std::pair(rows.Size(a.row), a.paired) > std::pair(rows.Size(b.row), b.paired);
+  });
   return block;
 }
 
+// Where a whole slice's rows are all of pairs, puts them as Fetching::kInPairs has it.
+bool PutInPairs(std::span<Member> members, size_t rows) {
+  const auto paired = [](const Member& member) { return member.paired; };
+  if (members.size() != rows || !std::all_of(members.begin(), members.end(), paired)) return false;
+  for (size_t first = 0; first < rows; first += 8) {
+    Member in_order[8];
+    std::copy_n(members.begin() + first, 8, in_order);
+    for (size_t i = 0; i < 8; ++i) members[first + i / 2 + i % 2 * 4] = in_order[i];
+  }
+  return true;
+}
+
 // Whether all springs of these rows have the stiffness of the first one's first.
-bool Alike(const Rows& rows, const int* members, int count) {
-  const double stiffness = rows.At(members[0], 0).stiffness;
-  return std::all_of(members, members + count, [&](int row) {
-    return std::all_of(&rows.At(row, 0), &rows.At(row, 0) + rows.Size(row),
+bool Alike(const Rows& rows, std::span<const Member> members) {
+  const double stiffness = rows.At(members.front().row, 0).stiffness;
+  return std::all_of(members.begin(), members.end(), [&](const Member& member) {
+    return std::all_of(&rows.At(member.row, 0), &rows.At(member.row, 0) + rows.Size(member.row),
                        [stiffness](const RowSpring& spring) { return spring.stiffness == stiffness; });
   });
 }
 
-// Appends the slice of `count` rows, the longest first. What they lack to a whole slice, and to the longest, is filled
-// up with springs to themselves.
+// Appends the slice of these rows, the first the longest. What they lack to a whole slice, and to the longest, is
+// filled up with springs to themselves.
 template <typename Number>
-void AppendSlice(const Rows& rows, const int* members, int count, SpringSlices<Number>& slices) {
+void AppendSlice(const Rows& rows, std::span<const Member> members, bool in_pairs, SpringSlices<Number>& slices) {
   constexpr int kStride = kPointStride<Number>;
   SpringSlice<Number>& slice = slices.slices.back();
-  slice.rows = count;
+  slice.rows = static_cast<int>(members.size());
   const size_t first = slices.at_rest.size();
-  const int width = rows.Size(members[0]);
+  const int width = rows.Size(members.front().row);
   slices.at_rest.resize(first + width);
   slices.neighbours.resize(first + width);
-  if (Alike(rows, members, count)) {
-    slice.common_stiffness = static_cast<Number>(rows.At(members[0], 0).stiffness);
+  if (Alike(rows, members)) {
+    slice.common_stiffness = static_cast<Number>(rows.At(members.front().row, 0).stiffness);
   } else {
     slice.first_stiffness = static_cast<std::int64_t>(slices.stiffness.size());
     slices.stiffness.resize(slices.stiffness.size() + width);
   }
   const int last = rows.count() - 1;
+  bool at_end = false;
   for (int i = 0; i < kSliceRows<Number>; ++i) {
-    const int own = members[i < count ? i : 0];
+    const int own = members[i < slice.rows ? i : 0].row;
     slice.own[i] = kStride * own;
-    slice.at_end = slice.at_end || own == last;
+    at_end = at_end || own == last;
     for (int c = 0; c < width; ++c) {
-      const bool padding = i >= count || c >= rows.Size(own);
+      const bool padding = i >= slice.rows || c >= rows.Size(own);
       const RowSpring spring = padding ? RowSpring{own, 0, 0} : rows.At(own, c);
-      slice.at_end = slice.at_end || spring.other == last;
+      at_end = at_end || spring.other == last;
       slices.neighbours[first + c].place[i] = kStride * spring.other;
       slices.at_rest[first + c].row[i] = static_cast<Number>(spring.stiffness * spring.rest_length);
       if (slice.first_stiffness >= 0) {
@@ -105,18 +146,23 @@ void AppendSlice(const Rows& rows, const int* members, int count, SpringSlices<N
       }
     }
   }
+  slice.fetching = at_end ? Fetching::kAtEnd : in_pairs ? Fetching::kInPairs : Fetching::kOneByOne;
   slices.slices.push_back({.first_column = static_cast<std::int64_t>(slices.at_rest.size())});
 }
 
 template <typename Number>
 void AppendBlock(const Rows& rows, int first, SpringSlices<Number>& slices) {
-  const std::vector<int> block = SortedBlock(rows, first);
+  std::vector<Member> block = SortedBlock(rows, first);
   const int vertices = std::min(static_cast<int>(kVertexBlock), rows.count() - first);
   slices.blocks.back().whole = slices.order.empty() && static_cast<double>(block.size()) > kNearlyAll * vertices;
-  for (size_t i = 0; i < block.size(); ++i) {
-    constexpr size_t kRows = kSliceRows<Number>;
-    if (i % kRows == 0) AppendSlice(rows, &block[i], static_cast<int>(std::min(kRows, block.size() - i)), slices);
-    slices.slot[block[i]] = static_cast<std::uint16_t>(SlotOf<Number>(i / kRows, static_cast<int>(i % kRows)));
+  constexpr size_t kRows = kSliceRows<Number>;
+  for (size_t i = 0; i < block.size(); i += kRows) {
+    const std::span<Member> members(&block[i], std::min(kRows, block.size() - i));
+    const bool in_pairs = PutInPairs(members, kRows);
+    AppendSlice<Number>(rows, members, in_pairs, slices);
+    for (size_t row = 0; row < members.size(); ++row) {
+      slices.slot[members[row].row] = static_cast<std::uint16_t>(SlotOf<Number>(i / kRows, static_cast<int>(row)));
+    }
   }
   slices.blocks.push_back({.first_slice = static_cast<std::int64_t>(slices.slices.size()) - 1});
 }

@@ -1,5 +1,7 @@
 // Springs laid out for the machine: each vertex lists its own, so that every spring is worked out twice and nothing is
-// scattered; vertices in blocks, sorted in each by the number of their springs, cut into slices (spring_kernel.h).
+// scattered; vertices in blocks, sorted in each by the number of their springs, cut into slices (spring_kernel.h). Two
+// that follow each other, and whose neighbours do, as in a sheet numbered row by row or in two sheets by turns, are
+// taken together: what they need of others is then half as many reads.
 #ifndef PHRENIC_SERVER_MECHANICS_FORCES_SPRING_ROWS_H_
 #define PHRENIC_SERVER_MECHANICS_FORCES_SPRING_ROWS_H_
 
@@ -28,7 +30,7 @@ class SpringRows {
 
   // On the vertices that have springs acts a steady force too: `load` is 3 x n [N], and nothing on others.
   void SetLoad(const Points& load);
-  // f += scale (pulls + load) [N], 3 x n. The sum of a vertex is taken in the springs' order, on every machine.
+  // f += scale (pulls + load) [N], 3 x n. The sum of a vertex is taken in its neighbours' order, on every machine.
   void AddForce(double scale, const ConstPoints& x, MutablePoints f) const;
 
   // Whether the same can be had range by range: not in an order of its own.
