@@ -65,7 +65,7 @@ HWY_INLINE hn::Vec<SliceTag<float>> EveryFourth(const float* x, const std::int32
 #elif HWY_TARGET <= HWY_AVX3
   const hn::FixedTag<float, 8> half;
   if constexpr (kFetching == Fetching::kInPairs) {
-    return hn::Combine(d, hn::LoadU(half, x + place[i + 8]), hn::LoadU(half, x + place[i]));
+    return hn::Combine(d, hn::LoadU(half, x + place[i + 4]), hn::LoadU(half, x + place[i]));
   }
   const hn::FixedTag<float, 4> one;
   const auto low = hn::Combine(half, hn::Load(one, x + place[i + 4]), hn::Load(one, x + place[i]));
@@ -98,6 +98,15 @@ HWY_INLINE Coordinates<float> Fetch(const float* x, const std::int32_t* place) {
 #endif
 }
 
+// The points of a column from `row` on, as many as a vector has.
+template <Fetching kFetching, typename Number>
+HWY_INLINE Coordinates<Number> FetchColumn(const Number* x, const std::int32_t* column, int row) {
+  if constexpr (kFetching == Fetching::kInPairs) {
+    return Fetch<kFetching>(x + PointOfPair(row) * kPointStride<Number>, column + PairOf(row));
+  }
+  return Fetch<kFetching>(x, column + row);
+}
+
 // The rows of a slice from `row` on, as many as a vector has.
 template <typename Number>
 struct Part {
@@ -122,17 +131,21 @@ HWY_INLINE Column<Number> ColumnAt(const Part<Number>& part, std::int64_t c) {
   return {hn::Load(d, slices.stiffness[c - slice.first_column + slice.first_stiffness].row + part.row), at_rest};
 }
 
+template <Fetching kFetching, typename Number>
+constexpr int kPlacesOf = SpringSlice<Number>{.fetching = kFetching}.places();
+
 // Adds the pulls of kTogether columns, step by step: what one of them waits for, the others do not.
 template <bool kAlike, Fetching kFetching, int kTogether, typename Number>
-HWY_INLINE void AddPulls(const Part<Number>& part, std::int64_t first, const Number* x, const Coordinates<Number>& own,
-                         Coordinates<Number>& sum) {
+HWY_INLINE void AddPulls(const Part<Number>& part, std::int64_t first, const std::int32_t* places, const Number* x,
+                         const Coordinates<Number>& own, Coordinates<Number>& sum) {
+  constexpr int kPlaces = kPlacesOf<kFetching, Number>;
   const SliceTag<Number> d;
   const auto shortest = hn::Set(d, kShortestSquared<Number>);
   Coordinates<Number> way[kTogether];
   hn::Vec<SliceTag<Number>> inverse[kTogether];  // of the length; before that, the length squared
 #pragma GCC unroll 3
   for (int i = 0; i < kTogether; ++i) {
-    const Coordinates<Number> other = Fetch<kFetching>(x, part.slices.neighbours[first + i].place + part.row);
+    const Coordinates<Number> other = FetchColumn<kFetching>(x, places + i * kPlaces, part.row);
     way[i] = {hn::Sub(other.x, own.x), hn::Sub(other.y, own.y), hn::Sub(other.z, own.z)};
     const auto& [dx, dy, dz] = way[i];
     inverse[i] = hn::Max(hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz)), shortest);
@@ -152,13 +165,17 @@ HWY_INLINE void AddPulls(const Part<Number>& part, std::int64_t first, const Num
 template <bool kAlike, Fetching kFetching, typename Number>
 HWY_INLINE Coordinates<Number> SumPulls(const Part<Number>& part, const Number* x) {
   const SliceTag<Number> d;
-  std::int64_t c = part.slices.slices[part.slice].first_column;
+  constexpr int kPlaces = kPlacesOf<kFetching, Number>;
+  const SpringSlice<Number>& slice = part.slices.slices[part.slice];
   const std::int64_t end = part.slices.slices[part.slice + 1].first_column;
-  const Coordinates<Number> own = Fetch<kFetching>(x, part.slices.slices[part.slice].own + part.row);
+  const std::int32_t* places = &part.slices.places[slice.first_place];
+  const Coordinates<Number> own = FetchColumn<kFetching>(x, places, part.row);
+  places += kPlaces;
   Coordinates<Number> sum = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
-  for (; c + 3 <= end; c += 3) AddPulls<kAlike, kFetching, 3>(part, c, x, own, sum);
-  if (c + 2 == end) AddPulls<kAlike, kFetching, 2>(part, c, x, own, sum);
-  if (c + 1 == end) AddPulls<kAlike, kFetching, 1>(part, c, x, own, sum);
+  std::int64_t c = slice.first_column;
+  for (; c + 3 <= end; c += 3, places += 3 * kPlaces) AddPulls<kAlike, kFetching, 3>(part, c, places, x, own, sum);
+  if (c + 2 == end) AddPulls<kAlike, kFetching, 2>(part, c, places, x, own, sum);
+  if (c + 1 == end) AddPulls<kAlike, kFetching, 1>(part, c, places, x, own, sum);
   return sum;
 }
 
@@ -300,7 +317,7 @@ HWY_INLINE void AddRowByRow(const SpringSlices<Number>& slices, std::int64_t blo
   for (std::int64_t s = first; s < end; ++s) {
     const SpringSlice<Number>& slice = slices.slices[s];
     for (int row = 0; row < slice.rows; ++row) {
-      const std::int64_t place = slice.own[row] / kPointStride<Number>;
+      const std::int64_t place = slices.VertexOf(s, row);
       const std::int64_t vertex = slices.order.empty() ? place - first_vertex : slices.order[place];
       AddSlot<false>(tile + SlotOf<Number>(s - first, row), f + 3 * vertex);
     }

@@ -23,29 +23,29 @@ inline constexpr int kSliceRows = 64 / sizeof(Number);
 template <typename Number>
 inline constexpr int kPointStride = std::is_same_v<Number, float> ? 4 : 3;
 
-// How the points that a vector's rows, or the neighbours of theirs, are at come out of x. Those one by one are read
-// with what follows; those at the end without, as one of them is the last. In pairs: row i + 4 of every eight follows
-// row i of them, and so do all its neighbours those of the other, so that a read has two.
+// How the points that a slice's rows are at, or a column of their neighbours, come out of x. One by one they are read
+// with what follows; at the end without, as one of them is the last. In pairs: of every eight rows, the last four and
+// all their neighbours follow the first four and theirs, whose places alone are noted, so that a read has two.
 enum class Fetching { kOneByOne, kAtEnd, kInPairs };
+// In pairs, which of a column's places is the row's, and how many points from there its own is.
+constexpr int PairOf(int row) { return row / 8 * 4 + row % 4; }
+constexpr int PointOfPair(int row) { return row % 8 / 4; }
 
 template <typename Number>
 struct SpringSlice {
-  std::int32_t own[kSliceRows<Number>] = {};  // where the row's vertex lies in x [Numbers]
-  int rows = 0;                               // the others are padding
+  int rows = 0;  // the others are padding
   Fetching fetching = Fetching::kOneByOne;
-  std::int64_t first_column = 0;
+  std::int64_t first_column = 0, first_place = 0;
   std::int64_t first_stiffness = -1;  // of its columns; -1 where its springs are alike
   Number common_stiffness = 0;        // [N/m], where they are
+
+  // Of a column.
+  constexpr int places() const { return fetching == Fetching::kInPairs ? kSliceRows<Number> / 2 : kSliceRows<Number>; }
 };
 // A number for each row of a slice: for one spring of each, k l0 [N] or k [N/m].
 template <typename Number>
 struct alignas(64) SliceNumbers {
   Number row[kSliceRows<Number>] = {};
-};
-// Where the other ends of a column's springs lie in x [Numbers].
-template <typename Number>
-struct SpringNeighbours {
-  std::int32_t place[kSliceRows<Number>] = {};
 };
 // A steady force on each row of a slice [N].
 template <typename Number>
@@ -62,14 +62,22 @@ struct SpringBlock {
 // spring to itself, of no force at rest.
 template <typename Number>
 struct SpringSlices {
-  std::vector<SpringBlock> blocks;                   // and one more, for the end of its slices
-  std::vector<SpringSlice<Number>> slices;           // and one more, for the end of its columns
-  LargeVector<SliceNumbers<Number>> at_rest;         // a column
-  LargeVector<SpringNeighbours<Number>> neighbours;  // a column
-  LargeVector<SliceNumbers<Number>> stiffness;       // a column of the slices with springs that are not alike
-  std::vector<SliceLoad<Number>> load;               // a slice, or none
-  std::vector<std::uint16_t> slot;                   // of each vertex in its block's tile
-  std::vector<int> order;                            // the vertices as the slices count them; none where they come so
+  std::vector<SpringBlock> blocks;              // and one more, for the end of its slices
+  std::vector<SpringSlice<Number>> slices;      // and one more, for the end of its columns
+  LargeVector<SliceNumbers<Number>> at_rest;    // a column
+  LargeVector<SliceNumbers<Number>> stiffness;  // a column of the slices with springs that are not alike
+  // Of each slice where its rows' vertices lie in x, then where each column's neighbours do [Numbers].
+  LargeVector<std::int32_t> places;
+  std::vector<SliceLoad<Number>> load;  // a slice, or none
+  std::vector<std::uint16_t> slot;      // of each vertex in its block's tile
+  std::vector<int> order;               // the vertices as the slices count them; none where they come so
+
+  // The vertex of a slice's row, as the slices count them.
+  int VertexOf(std::int64_t slice, int row) const {
+    const std::int32_t* const own = &places[slices[slice].first_place];
+    const bool in_pairs = slices[slice].fetching == Fetching::kInPairs;
+    return in_pairs ? own[PairOf(row)] / kPointStride<Number> + PointOfPair(row) : own[row] / kPointStride<Number>;
+  }
 };
 
 // Where the sum of a slice's row lies in a tile, so that one transposition of them all writes whole vectors.

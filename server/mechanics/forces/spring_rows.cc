@@ -112,42 +112,50 @@ bool Alike(const Rows& rows, std::span<const Member> members) {
   });
 }
 
+Fetching FetchingOf(const Rows& rows, std::span<const Member> members, bool in_pairs) {
+  const int last = rows.count() - 1;
+  const bool at_end = std::any_of(members.begin(), members.end(), [&](const Member& member) {
+    return member.row == last || rows.At(member.row, rows.Size(member.row) - 1).other == last;
+  });
+  if (at_end) return Fetching::kAtEnd;
+  return in_pairs ? Fetching::kInPairs : Fetching::kOneByOne;
+}
+
 // Appends the slice of these rows, the first the longest. What they lack to a whole slice, and to the longest, is
 // filled up with springs to themselves.
 template <typename Number>
 void AppendSlice(const Rows& rows, std::span<const Member> members, bool in_pairs, SpringSlices<Number>& slices) {
-  constexpr int kStride = kPointStride<Number>;
   SpringSlice<Number>& slice = slices.slices.back();
   slice.rows = static_cast<int>(members.size());
-  const size_t first = slices.at_rest.size();
-  const int width = rows.Size(members.front().row);
+  slice.fetching = FetchingOf(rows, members, in_pairs);
+  const size_t first = slices.at_rest.size(), first_place = slices.places.size();
+  const int width = rows.Size(members.front().row), places = slice.places();
   slices.at_rest.resize(first + width);
-  slices.neighbours.resize(first + width);
+  slices.places.resize(first_place + static_cast<size_t>((1 + width) * places));
   if (Alike(rows, members)) {
     slice.common_stiffness = static_cast<Number>(rows.At(members.front().row, 0).stiffness);
   } else {
     slice.first_stiffness = static_cast<std::int64_t>(slices.stiffness.size());
     slices.stiffness.resize(slices.stiffness.size() + width);
   }
-  const int last = rows.count() - 1;
-  bool at_end = false;
+  const bool paired = slice.fetching == Fetching::kInPairs;
   for (int i = 0; i < kSliceRows<Number>; ++i) {
     const int own = members[i < slice.rows ? i : 0].row;
-    slice.own[i] = kStride * own;
-    at_end = at_end || own == last;
+    std::int32_t* const place = &slices.places[first_place + (paired ? PairOf(i) : i)];
+    const int from = paired ? PointOfPair(i) : 0;
+    place[0] = kPointStride<Number> * (own - from);
     for (int c = 0; c < width; ++c) {
       const bool padding = i >= slice.rows || c >= rows.Size(own);
       const RowSpring spring = padding ? RowSpring{own, 0, 0} : rows.At(own, c);
-      at_end = at_end || spring.other == last;
-      slices.neighbours[first + c].place[i] = kStride * spring.other;
+      place[(1 + c) * places] = kPointStride<Number> * (spring.other - from);
       slices.at_rest[first + c].row[i] = static_cast<Number>(spring.stiffness * spring.rest_length);
       if (slice.first_stiffness >= 0) {
         slices.stiffness[slice.first_stiffness + c].row[i] = static_cast<Number>(spring.stiffness);
       }
     }
   }
-  slice.fetching = at_end ? Fetching::kAtEnd : in_pairs ? Fetching::kInPairs : Fetching::kOneByOne;
-  slices.slices.push_back({.first_column = static_cast<std::int64_t>(slices.at_rest.size())});
+  slices.slices.push_back({.first_column = static_cast<std::int64_t>(slices.at_rest.size()),
+                           .first_place = static_cast<std::int64_t>(slices.places.size())});
 }
 
 template <typename Number>
@@ -174,7 +182,7 @@ SpringSlices<Number> Lay(const std::vector<Spring>& springs, int vertices) {
   const Rows rows = ByPlace(springs, slices.order, vertices);
   slices.slot.assign(rows.count(), kNoSlot<Number>);
   const size_t columns = (rows.of.size() + rows.of.size() / 8) / kSliceRows<Number>;  // sorted rows need little padding
-  slices.at_rest.reserve(columns), slices.neighbours.reserve(columns);
+  slices.at_rest.reserve(columns), slices.places.reserve(columns * kSliceRows<Number>);
   slices.blocks.emplace_back();
   slices.slices.emplace_back();
   for (int first = 0; first < rows.count(); first += kVertexBlock) AppendBlock(rows, first, slices);
@@ -186,7 +194,7 @@ void LayLoad(const Points& load, SpringSlices<Number>& slices) {
   slices.load.assign(slices.slices.size() - 1, {});
   for (size_t s = 0; s < slices.load.size(); ++s) {
     for (int i = 0; i < slices.slices[s].rows; ++i) {
-      const int place = slices.slices[s].own[i] / kPointStride<Number>;
+      const int place = slices.VertexOf(static_cast<std::int64_t>(s), i);
       const Eigen::Vector3d force = load.col(slices.order.empty() ? place : slices.order[place]);
       SliceLoad<Number>& slice = slices.load[s];
       slice.x.row[i] = static_cast<Number>(force.x());
