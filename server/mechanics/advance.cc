@@ -95,15 +95,15 @@ void MakePlaces(Eigen::Index vertices, std::vector<StateReach>& blocks) {
   blocks.back() = {};
 }
 
-void NoteReach(const VertexRange& block, const Points& x, const Points& v, std::vector<StateReach>& blocks) {
-  blocks[block.first / kVertexBlock] = ReachOf(block, x, v);
+void NoteReach(const VertexRange& block, const StateReach& reach, std::vector<StateReach>& blocks) {
+  blocks[block.first / kVertexBlock] = reach;
 }
 
 void NoteReach(std::span<const int> vertices, const Points& x, const Points& v, std::vector<StateReach>& blocks) {
   StateReach& reach = blocks.back();
   for (const int vertex : vertices) {
     reach.furthest = Further(reach.furthest, x.col(vertex).cwiseAbs().maxCoeff<Eigen::PropagateNaN>());
-    reach.squares += v.col(vertex).squaredNorm();
+    reach.fastest = Further(reach.fastest, v.col(vertex).cwiseAbs().maxCoeff<Eigen::PropagateNaN>());
   }
 }
 

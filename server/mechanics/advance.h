@@ -36,7 +36,7 @@ void SumSharedDamping(const Model& model, const Instant& at, OuterProducts& shar
 // A place for each block of that many vertices, and one more; how far a block has got, noted at its place, and how far
 // some vertices have, wherever they lie, at the one more.
 void MakePlaces(Eigen::Index vertices, std::vector<StateReach>& blocks);
-void NoteReach(const VertexRange& block, const Points& x, const Points& v, std::vector<StateReach>& blocks);
+void NoteReach(const VertexRange& block, const StateReach& reach, std::vector<StateReach>& blocks);
 void NoteReach(std::span<const int> vertices, const Points& x, const Points& v, std::vector<StateReach>& blocks);
 
 // x += shift, but for fixed and driven vertices; shift 3 x n.

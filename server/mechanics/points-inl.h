@@ -9,6 +9,8 @@
 
 #include <hwy/highway.h>
 
+#include <algorithm>
+#include <bit>
 #include <cstdint>
 
 HWY_BEFORE_NAMESPACE();
@@ -108,6 +110,24 @@ HWY_INLINE void AddRows(const Rows& rows, const Place* place, int count, double*
     for (int i = 0; i < count; ++i) AddRow(rows, i, x + place[i]);
   }
 }
+
+// The largest magnitude of numbers. As whole numbers: without their signs numbers are in the order of their bits,
+// infinity above all, and what is no number above that.
+class Largest {
+ public:
+  Largest() : magnitude_(hn::Zero(Bits())) {}
+  HWY_INLINE void Note(Vector numbers) { magnitude_ = hn::Max(magnitude_, hn::BitCast(Bits(), hn::Abs(numbers))); }
+  HWY_INLINE void Note(const Vectors& v) { Note(v.x), Note(v.y), Note(v.z); }
+  double Whole() const {
+    HWY_ALIGN std::int64_t all[kLanes];
+    hn::Store(magnitude_, Bits(), all);
+    return std::bit_cast<double>(*std::max_element(all, all + kLanes));
+  }
+
+ private:
+  using Bits = hn::RebindToSigned<Tag>;
+  hn::Vec<Bits> magnitude_;
+};
 
 }  // namespace points
 }  // namespace phrenic::HWY_NAMESPACE

@@ -52,10 +52,10 @@ struct State {
   int halvings = 0;  // of an adaptive step, the last time
 };
 
-// How far vertices have got: of a block of them, or all.
+// The largest magnitudes of a coordinate and of a velocity's: of a block's vertices, or all; no number where one is
+// none.
 struct StateReach {
-  double furthest = 0;  // coordinate [m], no number where one is none
-  double squares = 0;   // sum over the velocities [m^2/s^2]
+  double furthest = 0, fastest = 0;  // [m], [m/s]
 };
 // The larger of two; no number where one is none.
 inline double Further(double a, double b) { return a > b || std::isnan(a) ? a : b; }

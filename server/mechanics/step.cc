@@ -25,23 +25,23 @@ double DistanceFromRest(const Model& model, const State& state, int vertex) {
 StateReach ReachOf(const State& state, std::vector<StateReach>& blocks) {
   if (blocks.empty()) {
     MakePlaces(state.x.cols(), blocks);
-    ForEachBlock({0, state.x.cols()}, [&](const VertexRange& block) { NoteReach(block, state.x, state.v, blocks); });
+    ForEachBlock({0, state.x.cols()},
+                 [&](const VertexRange& block) { NoteReach(block, ReachOf(block, state.x, state.v), blocks); });
   }
   StateReach whole;
   for (const StateReach& block : blocks) {
     whole.furthest = Further(block.furthest, whole.furthest);
-    whole.squares += block.squares;
+    whole.fastest = Further(block.fastest, whole.fastest);
   }
   return whole;
 }
 
-// True where every coordinate is a number within the bound, and the root mean square of the velocities one that takes
-// no longer than `dt` across it: constraints may hold positions back while velocities run away. What an integrator has
-// noted may be too much, where constraints have since brought vertices back.
+// True where every coordinate is a number within the bound, and no velocity one that takes less than `dt` across it:
+// constraints may hold positions back while velocities run away. What an integrator has noted may be too much, where
+// constraints have since brought vertices back.
 bool WithinBounds(const Model& model, double dt, const State& state, std::vector<StateReach>& blocks) {
-  const double fastest = 2 * model.bound / dt;
   const auto within = [&](const StateReach& reach) {
-    return reach.furthest <= model.bound && reach.squares <= static_cast<double>(state.v.cols()) * fastest * fastest;
+    return reach.furthest <= model.bound && reach.fastest <= 2 * model.bound / dt;
   };
   const bool noted = !blocks.empty();
   if (within(ReachOf(state, blocks))) return true;

@@ -1,9 +1,6 @@
 #include "server/mechanics/vertex_kernel.h"
 
-#include <algorithm>
-#include <bit>
 #include <cmath>
-#include <limits>
 
 #include "server/mechanics/vector_targets.h"
 #undef HWY_TARGET_INCLUDE
@@ -11,15 +8,16 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "server/mechanics/points-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace phrenic::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-using Tag = hn::CappedTag<double, 8>;
-using Vector = hn::Vec<Tag>;
-constexpr Eigen::Index kLanes = hn::MaxLanes(Tag());
+using points::Tag, points::Vector;
+constexpr Eigen::Index kLanes = points::kLanes;
 
 // Of kLanes vertices, whose coordinates fill three vectors: a number a vertex, as often as it has coordinates in vector
 // 0, 1, 2.
@@ -99,6 +97,19 @@ HWY_INLINE void WithLoads(const VertexRange& range, const VertexLoads& loads, Ar
   loads.c != nullptr ? ByCount<Do, true>(range, loads, arguments...) : ByCount<Do, false>(range, loads, arguments...);
 }
 
+// How far vertices have got.
+struct Reached {
+  points::Largest furthest, fastest;
+
+  HWY_INLINE void Note(Vector x, Vector v) { furthest.Note(x), fastest.Note(v); }
+  StateReach Whole() const { return {furthest.Whole(), fastest.Whole()}; }
+};
+
+void Note(double x, double v, StateReach& reach) {
+  reach.furthest = Further(reach.furthest, std::abs(x));
+  reach.fastest = Further(reach.fastest, std::abs(v));
+}
+
 HWY_INLINE void LoadThree(const double* from, Vector (&to)[3]) {
   for (int i = 0; i < 3; ++i) to[i] = hn::LoadU(Tag(), from + i * kLanes);
 }
@@ -134,20 +145,24 @@ struct Kick {
   double kick, drift;
   const double *f, *x, *v;
   double *x_next, *v_next;
+  StateReach* reach;
 };
 
 struct Kicking {
   template <typename Loads>
   static HWY_INLINE void In(const VertexRange& range, const Loads& loads, const Kick& with) {
     const Spread spread;
+    Reached reached;
     Eigen::Index vertex = range.first;
-    for (; vertex + kLanes <= range.end; vertex += kLanes) Eight(spread, range.first, vertex, loads, with);
+    for (; vertex + kLanes <= range.end; vertex += kLanes) Eight(spread, range.first, vertex, loads, with, reached);
+    StateReach& reach = *with.reach = reached.Whole();
     for (; vertex < range.end; ++vertex) {
       const double w = with.inverse_mass[vertex];
       for (Eigen::Index c = 0, i = 3 * vertex; c < 3; ++c, ++i) {
         const double f = loads.Sum(with.f[i - 3 * range.first], vertex, static_cast<int>(c), with.v[i]);
         with.v_next[i] = w > 0 ? with.v[i] + with.kick * w * f : with.v[i];
         with.x_next[i] = w > 0 ? with.x[i] + with.drift * with.v_next[i] : with.x[i];
+        Note(with.x_next[i], with.v_next[i], reach);
       }
     }
   }
@@ -155,7 +170,7 @@ struct Kicking {
   // kLanes of them.
   template <typename Loads>
   static HWY_INLINE void Eight(const Spread& spread, Eigen::Index first, Eigen::Index vertex, const Loads& loads,
-                               const Kick& with) {
+                               const Kick& with, Reached& reached) {
     const Tag d;
     const auto kicks = hn::Set(d, with.kick), drifts = hn::Set(d, with.drift);
     const Vector inverse_mass = hn::LoadU(d, with.inverse_mass + vertex);
@@ -167,77 +182,29 @@ struct Kicking {
       const Vector w = spread.Of(inverse_mass, i), at = hn::LoadU(d, with.x + place);
       const auto free = hn::Gt(w, hn::Zero(d));
       const auto now = hn::IfThenElse(free, hn::Add(before[i], hn::Mul(hn::Mul(kicks, w), f[i])), before[i]);
+      const auto there = hn::IfThenElse(free, hn::Add(at, hn::Mul(drifts, now)), at);
       hn::StoreU(now, d, with.v_next + place);
-      hn::StoreU(hn::IfThenElse(free, hn::Add(at, hn::Mul(drifts, now)), at), d, with.x_next + place);
+      hn::StoreU(there, d, with.x_next + place);
+      reached.Note(there, now);
     }
   }
 };
 
-void KickAndDriftHere(const VertexRange& range, const VertexLoads& loads, const double* inverse_mass, double kick,
-                      double drift, const double* f, const double* x, const double* v, double* x_next, double* v_next) {
-  WithLoads<Kicking>(range, loads, Kick{inverse_mass, kick, drift, f, x, v, x_next, v_next});
+StateReach KickAndDriftHere(const VertexRange& range, const VertexLoads& loads, const double* inverse_mass, double kick,
+                            double drift, const double* f, const double* x, const double* v, double* x_next,
+                            double* v_next) {
+  StateReach reach;
+  WithLoads<Kicking>(range, loads, Kick{inverse_mass, kick, drift, f, x, v, x_next, v_next, &reach});
+  return reach;
 }
 
-// Numbers are taken in groups of this many, one of each for a running result: whatever the vectors' length, and so many
-// that none waits for the one before.
-constexpr Eigen::Index kGroup = 32, kGroupVectors = kGroup / kLanes;
-
-// The running results folded into one by halves, first with sixteenth, and so on: in the same order whatever the
-// vectors' length.
-template <typename D, typename V, typename Join>
-HWY_INLINE hn::TFromD<D> Fold(D d, V (&results)[kGroupVectors], const Join& join) {
-  for (Eigen::Index half = kGroupVectors / 2; half > 0; half /= 2) {
-    for (Eigen::Index k = 0; k < half; ++k) results[k] = join(results[k], results[k + half]);
-  }
-  HWY_ALIGN hn::TFromD<D> all[kLanes];
-  hn::Store(results[0], d, all);
-  for (Eigen::Index half = kLanes / 2; half > 0; half /= 2) {
-    for (Eigen::Index k = 0; k < half; ++k) all[k] = join(all[k], all[k + half]);
-  }
-  return all[0];
-}
-
-// Larger and sum, of vectors and of numbers.
-struct Larger {
-  template <typename V>
-  HWY_INLINE V operator()(V a, V b) const {
-    return hn::Max(a, b);
-  }
-  std::int64_t operator()(std::int64_t a, std::int64_t b) const { return std::max(a, b); }
-};
-struct Plus {
-  template <typename V>
-  HWY_INLINE V operator()(V a, V b) const {
-    return hn::Add(a, b);
-  }
-  double operator()(double a, double b) const { return a + b; }
-};
-
-// As whole numbers: without their signs numbers are in the order of their bits, infinity above all, and what is no
-// number above that.
 StateReach ReachHere(const double* x, const double* v, Eigen::Index count) {
-  const Tag d;
-  const hn::RebindToSigned<Tag> bits;
-  const auto magnitude = hn::Set(bits, std::numeric_limits<std::int64_t>::max());
-  hn::Vec<decltype(bits)> most[kGroupVectors];
-  Vector squares[kGroupVectors];
-  for (Eigen::Index k = 0; k < kGroupVectors; ++k) most[k] = hn::Zero(bits), squares[k] = hn::Zero(d);
+  Reached reached;
   Eigen::Index i = 0;
-  for (; i + kGroup <= count; i += kGroup) {
-    for (Eigen::Index k = 0; k < kGroupVectors; ++k) {
-      const auto place = hn::BitCast(bits, hn::LoadU(d, x + i + k * kLanes));
-      const auto velocity = hn::LoadU(d, v + i + k * kLanes);
-      most[k] = hn::Max(most[k], hn::And(place, magnitude));
-      squares[k] = hn::Add(squares[k], hn::Mul(velocity, velocity));
-    }
-  }
-  std::int64_t furthest = Fold(bits, most, Larger());
-  double sum = Fold(d, squares, Plus());
-  for (; i < count; ++i) {
-    furthest = std::max(furthest, std::bit_cast<std::int64_t>(std::abs(x[i])));
-    sum += v[i] * v[i];
-  }
-  return {std::bit_cast<double>(furthest), sum};
+  for (; i + kLanes <= count; i += kLanes) reached.Note(hn::LoadU(Tag(), x + i), hn::LoadU(Tag(), v + i));
+  StateReach reach = reached.Whole();
+  for (; i < count; ++i) Note(x[i], v[i], reach);
+  return reach;
 }
 
 }  // namespace
@@ -255,10 +222,11 @@ void AddLoads(const VertexRange& range, const VertexLoads& loads, const ConstPoi
   HWY_DYNAMIC_DISPATCH(AddLoadsHere)(range, loads, v.data(), f.data());
 }
 
-void KickAndDrift(const VertexRange& range, const Eigen::VectorXd& w, double kick, double drift, const ConstPoints& f,
-                  const VertexLoads& loads, const Points& x, const Points& v, Points& x_next, Points& v_next) {
-  HWY_DYNAMIC_DISPATCH(KickAndDriftHere)
-  (range, loads, w.data(), kick, drift, f.data(), x.data(), v.data(), x_next.data(), v_next.data());
+StateReach KickAndDrift(const VertexRange& range, const Eigen::VectorXd& w, double kick, double drift,
+                        const ConstPoints& f, const VertexLoads& loads, const Points& x, const Points& v,
+                        Points& x_next, Points& v_next) {
+  return HWY_DYNAMIC_DISPATCH(KickAndDriftHere)(range, loads, w.data(), kick, drift, f.data(), x.data(), v.data(),
+                                                x_next.data(), v_next.data());
 }
 
 StateReach ReachOf(const VertexRange& range, const Points& x, const Points& v) {

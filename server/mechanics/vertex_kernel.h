@@ -33,11 +33,13 @@ struct VertexLoads {
 void AddLoads(const VertexRange& range, const VertexLoads& loads, const ConstPoints& v, MutablePoints f);
 
 // v_next = v + kick w (f + loads), then x_next = x + drift v_next, for the vertices with w = 1/m > 0 [1/kg]; the others
-// keep v and x. `kick` and `drift` are times [s]. x_next may be x, and v_next v.
-void KickAndDrift(const VertexRange& range, const Eigen::VectorXd& w, double kick, double drift, const ConstPoints& f,
-                  const VertexLoads& loads, const Points& x, const Points& v, Points& x_next, Points& v_next);
+// keep v and x. `kick` and `drift` are times [s]. x_next may be x, and v_next v. Returns how far the range then has
+// got.
+StateReach KickAndDrift(const VertexRange& range, const Eigen::VectorXd& w, double kick, double drift,
+                        const ConstPoints& f, const VertexLoads& loads, const Points& x, const Points& v,
+                        Points& x_next, Points& v_next);
 
-// How far the range has got; sums are taken in the same order by all instruction sets.
+// How far the range has got.
 StateReach ReachOf(const VertexRange& range, const Points& x, const Points& v);
 
 }  // namespace phrenic

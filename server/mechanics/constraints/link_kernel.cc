@@ -80,19 +80,20 @@ HWY_INLINE std::uint64_t Correct(const LinkPacket& packet, int first, const Link
 
 // Moves one end of links from `first` on, and their velocities.
 HWY_INLINE void MoveEnds(Vector inverse_mass, const Vectors& impulse, double rate, const std::int32_t* place, int count,
-                         double* x, double* v) {
+                         double* x, double* v, points::Largest& largest) {
   const Vectors way = Scaled(inverse_mass, impulse);
+  largest.Note(way);
   points::AddRows(points::ToRows(way), place, count, x);
   points::AddRows(points::ToRows(Scaled(hn::Set(Tag(), rate), way)), place, count, v);
 }
 
 HWY_INLINE void Move(const LinkPacket& packet, int first, const LinkVectors& impulses, double rate, double* x,
-                     double* v) {
+                     double* v, points::Largest& largest) {
   const Tag d;
   const Vectors impulse = Loaded(impulses, first);
   const int count = packet.count - first;
-  MoveEnds(hn::Load(d, packet.inverse_a + first), impulse, rate, packet.a + first, count, x, v);
-  MoveEnds(hn::Neg(hn::Load(d, packet.inverse_b + first)), impulse, rate, packet.b + first, count, x, v);
+  MoveEnds(hn::Load(d, packet.inverse_a + first), impulse, rate, packet.a + first, count, x, v, largest);
+  MoveEnds(hn::Neg(hn::Load(d, packet.inverse_b + first)), impulse, rate, packet.b + first, count, x, v, largest);
 }
 
 #if HWY_TARGET <= HWY_AVX2
@@ -138,11 +139,12 @@ HWY_INLINE void MoveEverySecond(Vector p, Vector q, Vector r, double rate, const
 
 // Pairs from `first` on: both ends of a link are fetched, moved and put back together.
 HWY_INLINE void MovePairs(const LinkPacket& packet, int first, const LinkVectors& impulses, double rate, double* x,
-                          double* v) {
+                          double* v, points::Largest& largest) {
   const Tag d;
   const Vectors impulse = Loaded(impulses, first);
   const Vectors a = Scaled(hn::Load(d, packet.inverse_a + first), impulse);
   const Vectors b = Scaled(hn::Neg(hn::Load(d, packet.inverse_b + first)), impulse);
+  largest.Note(a), largest.Note(b);
   MoveEverySecond(hn::InterleaveLower(d, a.x, a.y), hn::InterleaveLower(d, a.z, b.x), hn::InterleaveLower(d, b.y, b.z),
                   rate, packet, first, x, v);
   MoveEverySecond(hn::InterleaveUpper(d, a.x, a.y), hn::InterleaveUpper(d, a.z, b.x), hn::InterleaveUpper(d, b.y, b.z),
@@ -150,23 +152,25 @@ HWY_INLINE void MovePairs(const LinkPacket& packet, int first, const LinkVectors
 }
 #endif
 
-HWY_INLINE void MoveAll(const LinkPacket& packet, const LinkVectors& impulses, double rate, double* x, double* v) {
+HWY_INLINE void MoveAll(const LinkPacket& packet, const LinkVectors& impulses, double rate, double* x, double* v,
+                        points::Largest& largest) {
   for (int first = 0; first < packet.count; first += kLanes) {
 #if HWY_TARGET <= HWY_AVX2
     if (packet.pairs) {
-      MovePairs(packet, first, impulses, rate, x, v);
+      MovePairs(packet, first, impulses, rate, x, v, largest);
       continue;
     }
 #endif
-    Move(packet, first, impulses, rate, x, v);
+    Move(packet, first, impulses, rate, x, v, largest);
   }
 }
 
 // All roots and divisions first: what one packet waits for, the next does not.
-std::uint64_t RestorePacketsHere(const LinkPacket* packets, int count, const LinkVectors* directions, double dt,
-                                 double* x, double* v) {
+Restored RestorePacketsHere(const LinkPacket* packets, int count, const LinkVectors* directions, double dt, double* x,
+                            double* v) {
   LinkVectors impulses[kPacketsTogether];
   std::uint64_t missed = 0;
+  points::Largest way;
   for (int p = 0; p < count; ++p) {
     std::uint64_t of_packet = 0;
     for (int first = 0; first < packets[p].count; first += kLanes) {
@@ -174,8 +178,8 @@ std::uint64_t RestorePacketsHere(const LinkPacket* packets, int count, const Lin
     }
     missed |= (of_packet & ((1U << packets[p].count) - 1)) << (p * kPacketLinks);
   }
-  for (int p = 0; p < count; ++p) MoveAll(packets[p], impulses[p], 1 / dt, x, v);
-  return missed;
+  for (int p = 0; p < count; ++p) MoveAll(packets[p], impulses[p], 1 / dt, x, v, way);
+  return {missed, way.Whole()};
 }
 
 }  // namespace
@@ -214,8 +218,8 @@ void FindDirections(absl::Span<const LinkPacket> packets, const double* x, LinkV
   HWY_DYNAMIC_DISPATCH(FindDirectionsHere)(packets.data(), static_cast<int>(packets.size()), x, directions);
 }
 
-std::uint64_t RestorePackets(absl::Span<const LinkPacket> packets, const LinkVectors* directions, double dt, double* x,
-                             double* v) {
+Restored RestorePackets(absl::Span<const LinkPacket> packets, const LinkVectors* directions, double dt, double* x,
+                        double* v) {
   const auto count = static_cast<int>(packets.size());
   return HWY_DYNAMIC_DISPATCH(RestorePacketsHere)(packets.data(), count, directions, dt, x, v);
 }

@@ -39,12 +39,16 @@ std::vector<LinkPacket> PackLinks(absl::Span<const Link> links, int first, bool 
 // From a to b of the packets' links; x are points from where their places count.
 void FindDirections(absl::Span<const LinkPacket> packets, const double* x, LinkVectors* directions);
 
+struct Restored {
+  std::uint64_t missed = 0;  // bit kPacketLinks p + i for link i of packet p
+  double way = 0;            // by which a coordinate of an end has moved, at most; no number where one is none [m]
+};
+
 // Restores the links of up to kPacketsTogether packets that share no vertex that moves: x and v, points from where
-// their places count, change as by Restore over dt [s] along these directions.
-// Returns the links that have turned too far for that and are left as they were: bit kPacketLinks p + i for link i of
-// packet p. Threads may call at once for packets that share no vertex.
-std::uint64_t RestorePackets(absl::Span<const LinkPacket> packets, const LinkVectors* directions, double dt, double* x,
-                             double* v);
+// their places count, change as by Restore over dt [s] along these directions. Those that have turned too far for that
+// are missed: they are left as they were. Threads may call at once for packets that share no vertex.
+Restored RestorePackets(absl::Span<const LinkPacket> packets, const LinkVectors* directions, double dt, double* x,
+                        double* v);
 
 }  // namespace phrenic
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <tuple>
 
@@ -141,17 +142,20 @@ void RigidLinks::ProjectThesis(const ConstPoints& before, Points& x) const {
   }
 }
 
-void RigidLinks::RestoreAlone(absl::Span<const LinkPacket> packets, Eigen::Index from, const LinkVectors* directions,
-                              double dt, Points& x, Points& v) const {
+double RigidLinks::RestoreAlone(absl::Span<const LinkPacket> packets, Eigen::Index from, const LinkVectors* directions,
+                                double dt, Points& x, Points& v) const {
+  double way = 0;
   for (size_t p = 0; p < packets.size(); p += kPacketsTogether) {
     const absl::Span<const LinkPacket> some = packets.subspan(p, kPacketsTogether);
-    std::uint64_t missed = RestorePackets(some, directions + p, dt, x.data() + 3 * from, v.data() + 3 * from);
+    auto [missed, furthest] = RestorePackets(some, directions + p, dt, x.data() + 3 * from, v.data() + 3 * from);
+    way = Further(missed == 0 ? furthest : std::numeric_limits<double>::infinity(), way);
     for (; missed != 0; missed &= missed - 1) {
       const int bit = std::countr_zero(missed), lane = bit % kPacketLinks;
       const LinkVectors& of = directions[p + bit / kPacketLinks];
       Restore(alone_[some[bit / kPacketLinks].first + lane], {of.x[lane], of.y[lane], of.z[lane]}, dt, x, v);
     }
   }
+  return way;
 }
 
 void RigidLinks::RestoreAcross(const ConstPoints& before, double dt, State& state) const {
@@ -174,8 +178,8 @@ void RigidLinks::Remember(const VertexRange& block, const ConstPoints& x, double
   FindDirections(PacketsIn(block), x.data() + 3 * block.first, reinterpret_cast<LinkVectors*>(start));
 }
 
-void RigidLinks::ProjectIn(const VertexRange& block, const double* start, double dt, Points& x, Points& v) const {
-  RestoreAlone(PacketsIn(block), block.first, reinterpret_cast<const LinkVectors*>(start), dt, x, v);
+double RigidLinks::ProjectIn(const VertexRange& block, const double* start, double dt, Points& x, Points& v) const {
+  return RestoreAlone(PacketsIn(block), block.first, reinterpret_cast<const LinkVectors*>(start), dt, x, v);
 }
 
 void RigidLinks::ProjectAcross(const v1::Parameters& parameters, const ConstPoints& before, double dt,

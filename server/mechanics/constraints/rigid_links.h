@@ -29,7 +29,7 @@ class RigidLinks final : public Constraint {
     return parameters.apply_links() && !PacketsIn(block).empty();
   }
   void Remember(const VertexRange& block, const ConstPoints& x, double* start) const override;
-  void ProjectIn(const VertexRange& block, const double* start, double dt, Points& x, Points& v) const override;
+  double ProjectIn(const VertexRange& block, const double* start, double dt, Points& x, Points& v) const override;
   std::span<const int> across() const override { return across_; }
   void ProjectAcross(const v1::Parameters& parameters, const ConstPoints& before, double dt,
                      State& state) const override;
@@ -42,9 +42,9 @@ class RigidLinks final : public Constraint {
   void Sort(const std::vector<Link>& links, const Model& model);
   void PackAlone(Eigen::Index vertices);
   absl::Span<const LinkPacket> PacketsIn(const VertexRange& block) const;
-  // Their places count from vertex `from` on.
-  void RestoreAlone(absl::Span<const LinkPacket> packets, Eigen::Index from, const LinkVectors* directions, double dt,
-                    Points& x, Points& v) const;
+  // Their places count from vertex `from` on. Returns what ProjectIn does.
+  double RestoreAlone(absl::Span<const LinkPacket> packets, Eigen::Index from, const LinkVectors* directions, double dt,
+                      Points& x, Points& v) const;
   void RestoreAcross(const ConstPoints& before, double dt, State& state) const;
   void ProjectThesis(const ConstPoints& before, Points& x) const;
 

@@ -85,9 +85,12 @@ absl::Status SemiImplicitEuler::Advance(const Model& model, const v1::Parameters
     const VertexLoads loads = AddForcesButLoads(block, model, at, !whole, f);
     const bool constrained = in_blocks != nullptr && in_blocks->ActsIn(block, parameters);
     if (constrained) in_blocks->Remember(block, state.x, start);
-    KickAndDrift(block, model.inverse_mass, dt, dt, f, loads, state.x, state.v, x_next, v_next);
-    if (constrained) in_blocks->ProjectIn(block, start, dt, x_next, v_next);
-    if (!later) NoteReach(block, x_next, v_next, work.reach);
+    StateReach reach = KickAndDrift(block, model.inverse_mass, dt, dt, f, loads, state.x, state.v, x_next, v_next);
+    if (constrained) {
+      const double way = in_blocks->ProjectIn(block, start, dt, x_next, v_next);
+      reach = {reach.furthest + way, reach.fastest + way / dt};
+    }
+    if (!later) NoteReach(block, reach, work.reach);
   });
   if (held_back) HoldBack(model, dt, state, work.shared_damping, work.before, work.velocity_before);
   if (!over) state.x.swap(work.before);
