@@ -52,13 +52,14 @@ class Bench {
   }
 
   void PrintSums(const Table& table) const {
-    const double step = table.Microseconds(kThorax), few = table.Microseconds(kFew);
+    const double step = table.Microseconds(kThorax);
+    const double few = table.Microseconds(kFew), many = table.Microseconds(kMany);
     if (step > 0) {
       const double a_second = step / thorax_.parameters.time_step() + table.Microseconds(kMeasures) / kFrame;
       std::printf("thorax in real time at 60 frames a second: %.2f sessions a core\n", 1e6 / a_second);
     }
-    if (few > 0) {
-      const double exponent = std::log(table.Microseconds(kMany) / few) / std::log(Links(many_) / Links(few_));
+    if (few > 0 && many > 0) {
+      const double exponent = std::log(many / few) / std::log(Links(many_) / Links(few_));
       std::printf("rigid links: the cost grows as their number to the power of %.2f\n", exponent);
     }
   }
