@@ -181,8 +181,9 @@ SpringSlices<Number> Lay(const std::vector<Spring>& springs, int vertices) {
   slices.order = OrderOf(springs, vertices);
   const Rows rows = ByPlace(springs, slices.order, vertices);
   slices.slot.assign(rows.count(), kNoSlot<Number>);
-  const size_t columns = (rows.of.size() + rows.of.size() / 8) / kSliceRows<Number>;  // sorted rows need little padding
-  slices.at_rest.reserve(columns), slices.places.reserve(columns * kSliceRows<Number>);
+  const size_t ends = rows.of.size() + rows.of.size() / 8;  // sorted rows need little padding
+  slices.at_rest.reserve(ends / kSliceRows<Number>);
+  slices.places.reserve(ends + rows.first.size() + rows.first.size() / 8);
   slices.blocks.emplace_back();
   slices.slices.emplace_back();
   for (int first = 0; first < rows.count(); first += kVertexBlock) AppendBlock(rows, first, slices);
