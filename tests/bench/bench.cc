@@ -36,6 +36,8 @@ class Bench {
         single_(springs_, static_cast<int>(subjects.springs->rest.cols()), Precision::kSingle),
         x_(subjects.springs->rest * 1.05),
         f_(Points::Zero(3, x_.cols())),
+        renumbered_(springs_, x_),
+        renumbered_single_(renumbered_.springs, static_cast<int>(x_.cols()), Precision::kSingle),
         solver_(subjects.springs) {
     unlinked_.parameters.set_apply_links(false);
     implicit_.parameters.set_integrator(v1::INTEGRATOR_LINEAR_IMPLICIT_EULER);
@@ -87,6 +89,8 @@ class Bench {
     table.Register({kSprings, [this] { rows_.AddForce(1, x_, f_); }, many, "spring", kPlain, ends + points, flops});
     table.Register({"springs, single precision", [this] { single_.AddForce(1, x_, f_); }, many, "spring", kPlain,
                     single_ends + points + packed});
+    table.Register({"the same, vertices numbered otherwise",
+                    [this] { renumbered_single_.AddForce(1, renumbered_.x, f_); }, many, "spring", kPlain});
     // Position and velocity, read and written, and the mass.
     table.Register({kEuler, [this] { euler_.Step(); }, many, "spring", kPlain, ends + vertices * Doubles(12 + 1)});
     table.Register({kEulerSingle, [this] { euler_single_.Step(); }, many, "spring", kPlain,
@@ -143,6 +147,8 @@ class Bench {
   const SpringRows rows_, single_;
   const Points x_;
   Points f_;
+  const Renumbered renumbered_;
+  const SpringRows renumbered_single_;
   Solver solver_;
   Run euler_{subjects_.springs}, euler_single_{subjects_.single_springs}, implicit_{subjects_.springs},
       membrane_{subjects_.membrane};

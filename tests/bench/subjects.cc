@@ -5,6 +5,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/mechanics/step.h"
+#include "server/mesh/locality.h"
 #include "server/mesh/topology.h"
 #include "server/schema/schema.h"
 #include "server/session/meshes.h"
@@ -108,6 +109,16 @@ std::vector<Spring> SpringsOf(const Model& model) {
     springs.push_back({edge[0], edge[1], 40, 0.9 * length});
   }
   return springs;
+}
+
+Renumbered::Renumbered(const std::vector<Spring>& of, const Points& from) : springs(of), x(from) {
+  const std::vector<int> order = CurveOrder(from);
+  std::vector<int> place(order.size());
+  for (size_t i = 0; i < order.size(); ++i) {
+    place[order[i]] = static_cast<int>(i);
+    x.col(static_cast<Eigen::Index>(i)) = from.col(order[i]);
+  }
+  for (Spring& spring : springs) spring.a = place[spring.a], spring.b = place[spring.b];
 }
 
 }  // namespace phrenic::bench

@@ -53,6 +53,14 @@ absl::StatusOr<Subjects> MakeSubjects();
 // The springs of the first body, as an array.
 std::vector<Spring> SpringsOf(const Model& model);
 
+// The same springs of vertices that are numbered otherwise, along a curve through space, as one's own mesh may be: hardly
+// two follow each other whose neighbours do.
+struct Renumbered {
+  Renumbered(const std::vector<Spring>& springs, const Points& x);
+  std::vector<Spring> springs;
+  Points x;
+};
+
 }  // namespace phrenic::bench
 
 #endif  // PHRENIC_TESTS_BENCH_SUBJECTS_H_
