@@ -53,8 +53,8 @@ absl::StatusOr<Subjects> MakeSubjects();
 // The springs of the first body, as an array.
 std::vector<Spring> SpringsOf(const Model& model);
 
-// The same springs of vertices that are numbered otherwise, along a curve through space, as one's own mesh may be: hardly
-// two follow each other whose neighbours do.
+// The same springs of vertices that are numbered otherwise, along a curve through space, as one's own mesh may be:
+// hardly two follow each other whose neighbours do.
 struct Renumbered {
   Renumbered(const std::vector<Spring>& springs, const Points& x);
   std::vector<Spring> springs;
