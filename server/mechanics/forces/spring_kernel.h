@@ -25,7 +25,8 @@ inline constexpr int kPointStride = std::is_same_v<Number, float> ? 4 : 3;
 
 // How the points that a slice's rows are at, or a column of their neighbours, come out of x. One by one they are read
 // with what follows; at the end without, as one of them is the last. In pairs: of every eight rows, the last four and
-// all their neighbours follow the first four and theirs, whose places alone are noted, so that a read has two.
+// all their neighbours follow the first four and theirs, whose places alone are noted, so that a read has two, and what
+// follows.
 enum class Fetching { kOneByOne, kAtEnd, kInPairs };
 // In pairs, which of a column's places is the row's, and how many points from there its own is.
 constexpr int PairOf(int row) { return row / 8 * 4 + row % 4; }

@@ -19,7 +19,7 @@ struct RowSpring {
   int other = 0;
   double stiffness = 0, rest_length = 0;
 };
-// Those of place i: of[first[i]] to of[first[i + 1] - 1].
+// Those of place i, by the places of their other ends: of[first[i]] to of[first[i + 1] - 1].
 struct Rows {
   std::vector<int> first;
   LargeVector<RowSpring> of;
@@ -67,6 +67,7 @@ struct Member {
   bool paired = false;
 };
 
+// Whether the row after this one does.
 bool Follows(const Rows& rows, int row) {
   const int size = rows.Size(row);
   if (rows.Size(row + 1) != size) return false;
@@ -112,6 +113,7 @@ bool Alike(const Rows& rows, std::span<const Member> members) {
   });
 }
 
+// What reads beyond a point is not for the last.
 Fetching FetchingOf(const Rows& rows, std::span<const Member> members, bool in_pairs) {
   const int last = rows.count() - 1;
   const bool at_end = std::any_of(members.begin(), members.end(), [&](const Member& member) {
