@@ -50,7 +50,7 @@ std::vector<Value> OrOne(const List& list, Value own) {
   return all;
 }
 
-std::string NameOf(const CampaignCell& cell) {
+std::string CellName(const CampaignCell& cell) {
   std::string bytes = absl::StrCat(PHRENIC_VERSION, "\n", cell.row.preset(), "\n", cell.seconds, "\n");
   absl::StrAppend(&bytes, cell.source.SerializeAsString(), "\n", cell.parameters.SerializeAsString());
   return Sha256Hex(bytes).substr(0, kNameDigits);
@@ -70,7 +70,7 @@ absl::StatusOr<CampaignCell> CellOf(const v1::Campaign& campaign, const v1::Scen
   cell.row.set_resolution_mm(source.resolution_mm());
   cell.row.set_preset(preset);
   cell.row.set_settings(absl::StrJoin(settings, " "));
-  cell.row.set_cell(NameOf(cell));
+  cell.row.set_cell(CellName(cell));
   return cell;
 }
 

@@ -106,7 +106,7 @@ Grid Trimmed(const Grid& grid) {
   return kept;
 }
 
-std::string Escaped(const std::string& text) {
+std::string HtmlEscaped(const std::string& text) {
   return absl::StrReplaceAll(text, {{"&", "&amp;"}, {"<", "&lt;"}, {">", "&gt;"}, {"\"", "&quot;"}});
 }
 
@@ -129,7 +129,7 @@ std::vector<std::vector<double>> Shades(const Grid& grid) {
 std::string TableOf(const Grid& grid) {
   const auto shades = Shades(grid);
   std::string html = "<table><thead><tr>";
-  for (const std::string& name : grid.header) absl::StrAppend(&html, "<th scope=col>", Escaped(name), "</th>");
+  for (const std::string& name : grid.header) absl::StrAppend(&html, "<th scope=col>", HtmlEscaped(name), "</th>");
   absl::StrAppend(&html, "</tr></thead><tbody>\n");
   for (size_t r = 0; r < grid.rows.size(); ++r) {
     absl::StrAppend(&html, "<tr>");
@@ -137,7 +137,7 @@ std::string TableOf(const Grid& grid) {
       const double shade = shades[r][c];
       const std::string style =
           shade < 0 ? "" : absl::StrFormat(" style=\"background:rgb(31 119 180/%.2f)\"", 0.45 * shade);
-      absl::StrAppend(&html, "<td", style, ">", Escaped(grid.rows[r][c]), "</td>");
+      absl::StrAppend(&html, "<td", style, ">", HtmlEscaped(grid.rows[r][c]), "</td>");
     }
     absl::StrAppend(&html, "</tr>\n");
   }
@@ -165,13 +165,13 @@ std::string CampaignPage(const v1::Campaign& campaign, const v1::CampaignResult&
   std::map<std::string, int> outcomes;
   for (const v1::CampaignRow& row : result.rows()) ++outcomes[row.outcome()];
   const auto count = [](std::string* out, const auto& entry) { absl::StrAppend(out, entry.second, " ", entry.first); };
-  std::string html =
-      absl::StrCat(kHead, "<title>", Escaped(campaign.name()), "</title><h1>", Escaped(campaign.name()), "</h1><p>",
-                   result.rows_size(), " runs of ", campaign.seconds(), " s: ", absl::StrJoin(outcomes, ", ", count),
-                   "; ", campaign.limits_size() - static_cast<int>(passed_limits.size()), " of ",
-                   campaign.limits_size(), " limits kept. Shaded from a column's least to its most.</p>\n");
+  std::string html = absl::StrCat(
+      kHead, "<title>", HtmlEscaped(campaign.name()), "</title><h1>", HtmlEscaped(campaign.name()), "</h1><p>",
+      result.rows_size(), " runs of ", campaign.seconds(), " s: ", absl::StrJoin(outcomes, ", ", count), "; ",
+      campaign.limits_size() - static_cast<int>(passed_limits.size()), " of ", campaign.limits_size(),
+      " limits kept. Shaded from a column's least to its most.</p>\n");
   if (!passed_limits.empty()) absl::StrAppend(&html, "<h2>Limits that were passed</h2><ul>\n");
-  for (const std::string& sentence : passed_limits) absl::StrAppend(&html, "<li>", Escaped(sentence), "</li>\n");
+  for (const std::string& sentence : passed_limits) absl::StrAppend(&html, "<li>", HtmlEscaped(sentence), "</li>\n");
   if (!passed_limits.empty()) absl::StrAppend(&html, "</ul>\n");
   return html + TableOf(Trimmed(MakeGrid(result))) + "</html>\n";
 }
