@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <fstream>
+#include <sstream>
 #include <string>
 
 #include "tests/architecture/rules.h"
@@ -15,8 +16,18 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::StartsWith;
 
+std::string Readme() {
+  std::stringstream text;
+  text << std::ifstream(PHRENIC_SOURCE_DIR "/server/README.md").rdbuf();
+  return text.str();
+}
+
+Faults FaultsOf(const std::string& path, const std::string& text) {
+  return IncludeFaults(DirectionsOf(Readme()), path, text);
+}
+
 Faults Including(const std::string& path, const std::string& header) {
-  return IncludeFaults(path, "// A file.\n#include <vector>\n#include \"" + header + "\"\n");
+  return FaultsOf(path, "// A file.\n#include <vector>\n#include \"" + header + "\"\n");
 }
 
 TEST(Repository, KeepsEveryRule) { EXPECT_THAT(AllFaults(PHRENIC_SOURCE_DIR), IsEmpty()); }
@@ -43,7 +54,7 @@ TEST(Includes, AgainstADirectionAreFaults) {
   EXPECT_THAT(Including("server/mesh/mesh.h", "tests/mesh/solids.h"), Not(IsEmpty()));
 }
 
-TEST(Includes, TheFiveDoNotKnowEachOther) {
+TEST(Includes, OfTheFiveDomainsAreIndependent) {
   const char* five[] = {"meshio", "anatomy", "mechanics", "stream", "record"};
   for (const std::string from : five) {
     for (const std::string to : five) {
@@ -54,14 +65,63 @@ TEST(Includes, TheFiveDoNotKnowEachOther) {
   }
 }
 
-TEST(Includes, OfGrpcStandAtTheEdgeAlone) {
+TEST(Includes, OfGrpcAreOnlyAtTheEdge) {
   for (const std::string header : {"grpcpp/grpcpp.h", "grpc/grpc.h", "phrenic/v1/session.grpc.pb.h"}) {
     const std::string line = "#include <" + header + ">\n";
-    EXPECT_THAT(IncludeFaults("server/session/session.cc", line), ElementsAre(HasSubstr("gRPC belongs")));
-    EXPECT_THAT(IncludeFaults("server/service/x.cc", line), IsEmpty());
-    EXPECT_THAT(IncludeFaults("server/main.cc", line), IsEmpty());
-    EXPECT_THAT(IncludeFaults("client/connection.cc", line), IsEmpty());
+    EXPECT_THAT(FaultsOf("server/session/session.cc", line), ElementsAre(HasSubstr("include gRPC")));
+    EXPECT_THAT(FaultsOf("server/service/x.cc", line), IsEmpty());
+    EXPECT_THAT(FaultsOf("server/main.cc", line), IsEmpty());
+    EXPECT_THAT(FaultsOf("client/connection.cc", line), IsEmpty());
   }
+}
+
+TEST(Directions, AreReadFromATable) {
+  const Directions read = DirectionsOf(
+      "# Map\n\n| folder | what is in it | may include |\n|--|--|--|\n"
+      "| [`mesh/`](mesh/README.md) | `nearest` points | `schema` |\n"
+      "| `main.cc` | starts | `mesh`, `schema` |\n\n| `other/` | x | `y` |\n");
+  EXPECT_EQ(read, (Directions{{"mesh", {"schema"}}, {"main", {"mesh", "schema"}}}));
+}
+
+TEST(Directions, ThemselvesFormNoCycle) {
+  const Directions directions = DirectionsOf(Readme());
+  EXPECT_GE(directions.size(), 20U);
+  Texts texts;
+  for (const auto& [folder, allowed] : directions) {
+    std::string& text = texts["server/" + folder + "/x.h"];
+    for (const std::string& to : allowed) text += "#include \"server/" + to + "/x.h\"\n";
+  }
+  EXPECT_THAT(CycleFaults(texts), IsEmpty());
+}
+
+TEST(Cycles, BetweenFilesAreFaults) {
+  EXPECT_THAT(CycleFaults({{"server/a/x.cc", "#include \"server/a/y.h\"\n"},
+                           {"server/a/x.h", ""},
+                           {"server/a/y.h", "#include \"server/a/x.h\"\n"}}),
+              ElementsAre(HasSubstr("server/a/x -> server/a/y -> server/a/x")));
+  EXPECT_THAT(CycleFaults({{"server/a/x.cc", "#include \"server/a/x.h\"\n#include \"server/a/y.h\"\n"},
+                           {"server/a/x.h", ""},
+                           {"server/a/y.h", ""}}),
+              IsEmpty());
+}
+
+TEST(Cycles, BetweenFoldersAreFaults) {
+  EXPECT_THAT(CycleFaults({{"server/a/x.h", "#include \"server/a/b/y.h\"\n"},
+                           {"server/a/b/y.h", ""},
+                           {"server/a/b/z.h", "#include \"server/a/w.h\"\n"},
+                           {"server/a/w.h", ""}}),
+              ElementsAre(HasSubstr("between folders: server/a -> server/a/b -> server/a")));
+}
+
+TEST(Folders, HaveAtMostThirtyUnits) {
+  std::vector<std::string> paths;
+  for (size_t i = 0; i < kLargestFolder; ++i) {
+    paths.push_back("server/a/x" + std::to_string(i) + ".cc");
+    paths.push_back("server/a/x" + std::to_string(i) + ".h");
+  }
+  EXPECT_THAT(FolderSizeFaults(paths), IsEmpty());
+  paths.emplace_back("server/a/one_more.h");
+  EXPECT_THAT(FolderSizeFaults(paths), ElementsAre(StartsWith("server/a: 31 units")));
 }
 
 TEST(Includes, AreNamedFromTheRoot) {
@@ -69,10 +129,10 @@ TEST(Includes, AreNamedFromTheRoot) {
 }
 
 TEST(Includes, OfAnUnknownFolderAreAFault) {
-  EXPECT_THAT(Including("server/physics/x.cc", "server/mesh/mesh.h"), ElementsAre(HasSubstr("knows no folder")));
+  EXPECT_THAT(Including("server/physics/x.cc", "server/mesh/mesh.h"), ElementsAre(HasSubstr("has no row")));
 }
 
-TEST(Imports, OfThreeStandInTheViewerAlone) {
+TEST(Imports, OfThreeAreOnlyInTheViewer) {
   const std::string text = "// A file.\nimport { Mesh } from \"three\";\n";
   EXPECT_THAT(ImportFaults("web/src/viewer/rig.ts", text), IsEmpty());
   EXPECT_THAT(ImportFaults("web/src/panels/dom.ts", text), ElementsAre(StartsWith("web/src/panels/dom.ts:2: ")));
@@ -142,6 +202,8 @@ class Tree : public testing::Test {
     root_ = std::filesystem::path(testing::TempDir()) / ("phrenic_architecture_" + std::to_string(getpid()));
     std::filesystem::remove_all(root_);
     Write("CMakeLists.txt", "");
+    Write("server/README.md",
+          "| folder | what is in it | may include |\n|--|--|--|\n| `mesh/` | x | - |\n| `session/` | x | `mesh` |\n");
     Write("server/mesh/mesh.cc", "#include \"server/mesh/mesh.h\"\n");
     Write(".clang-format", "");
     Write("build/utils/made.cc", std::string(9999, '\n'));

@@ -1,33 +1,53 @@
-// The rules of server/README.md that a compiler does not hold: who may include whom, how long a file and a function may
-// be, what stands at the top. Every rule works on text, so that its tests can hand it text that breaks it.
+// The rules of server/README.md that a compiler does not check: which folder may include which, include cycles, the
+// sizes of files, functions and folders, and what is at the top of the repository. Every rule works on text, so that
+// its tests can pass text that breaks it.
 #ifndef PHRENIC_TESTS_ARCHITECTURE_RULES_H_
 #define PHRENIC_TESTS_ARCHITECTURE_RULES_H_
 
 #include <filesystem>
+#include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace phrenic::architecture {
 
-inline constexpr int kLongestFile = 500;     // [lines]
-inline constexpr int kLongestFunction = 60;  // [lines]
+inline constexpr int kLongestFile = 500;      // [lines]
+inline constexpr int kLongestFunction = 60;   // [lines]
+inline constexpr size_t kLargestFolder = 30;  // [units]
 
 // One line a fault, "server/mesh/x.cc:3: ...": what is wrong and what to do.
 using Faults = std::vector<std::string>;
 
-// `path` is relative to the repository's root. Includes of C++ files in server/ and client/ keep to the directions
-//   schema <- mesh <- { meshio, anatomy, mechanics, stream, record } <- study, session <- service <- main, client
-// in which the five do not know each other, but for stream, which makes its frames of mechanics' Model and State.
-// gRPC stands in service/, client/ and main.cc alone.
-Faults IncludeFaults(std::string_view path, std::string_view text);
+// Path relative to the repository's root -> content.
+using Texts = std::map<std::string, std::string>;
 
-// three.js is imported in web/src/viewer alone.
+// The folders of server/ (and `main`, `client`), and for each the folders that it may include besides itself.
+using Directions = std::map<std::string, std::set<std::string>>;
+
+// Reads the table "| folder | what is in it | may include |" of server/README.md.
+Directions DirectionsOf(std::string_view readme);
+
+// Checks the includes of a C++ file in server/ or client/ against `directions`, and that gRPC is included only in
+// service/, daemon/, client/ and main.cc. `path` is relative to the repository's root.
+Faults IncludeFaults(const Directions& directions, std::string_view path, std::string_view text);
+
+// The path without its ending: a source and its header are one unit.
+std::string UnitOf(std::string_view path);
+
+// Include cycles between units, and between folders, of the C++ files `texts`.
+Faults CycleFaults(const Texts& texts);
+
+// Folders with more units than kLargestFolder. `paths` are source files relative to the repository's root.
+Faults FolderSizeFaults(const std::vector<std::string>& paths);
+
+// three.js is imported only in web/src/viewer.
 Faults ImportFaults(std::string_view path, std::string_view text);
 
 Faults LengthFaults(std::string_view path, std::string_view text);
 
-// Functions of C++ text, from the first line of the head to the closing brace.
+// A function of C++ text, from the first line of its head to its closing brace.
 struct Function {
   int line = 0;  // of the head, from 1
   int lines = 0;
@@ -35,10 +55,10 @@ struct Function {
 std::vector<Function> FunctionsOf(std::string_view text);
 Faults FunctionFaults(std::string_view path, std::string_view text);
 
-// What stands at the top of the tree, and how its folders are called.
+// Files that do not belong at the top of the tree, and folders whose names do not say what is in them.
 Faults TreeFaults(const std::filesystem::path& root);
 
-// Every rule over every file of the tree that people write.
+// Every rule on every hand-written file of the tree.
 Faults AllFaults(const std::filesystem::path& root);
 
 }  // namespace phrenic::architecture

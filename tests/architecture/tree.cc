@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Folders that people do not write: dependencies, what is built, what is generated.
+// True for dependencies, build outputs and generated code.
 bool IsMade(const fs::path& folder) {
   static const std::set<std::string> made = {"node_modules", "dist", "gen", "out", ".git", ".cache"};
   return made.contains(folder.filename().string()) || folder.filename().string().starts_with("build");
@@ -73,15 +73,22 @@ Faults TreeFaults(const fs::path& root) {
 
 Faults AllFaults(const fs::path& root) {
   Faults faults = TreeFaults(root);
+  const Directions directions = DirectionsOf(Read(root / "server" / "README.md"));
+  Texts cpp;
+  std::vector<std::string> units;
   ForEachEntry(root, [&](const fs::directory_entry& entry, const std::string& path) {
     if (!entry.is_regular_file() || !IsCode(path)) return;
-    const std::string text = Read(entry.path());
+    std::string text = Read(entry.path());
     Append(faults, LengthFaults(path, text));
     Append(faults, ImportFaults(path, text));
+    if (IsCpp(path) || path.ends_with(".ts")) units.push_back(path);
     if (!IsCpp(path)) return;
-    Append(faults, IncludeFaults(path, text));
+    Append(faults, IncludeFaults(directions, path, text));
     Append(faults, FunctionFaults(path, text));
+    cpp.emplace(path, std::move(text));
   });
+  Append(faults, CycleFaults(cpp));
+  Append(faults, FolderSizeFaults(units));
   return faults;
 }
 
