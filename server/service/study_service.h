@@ -12,17 +12,17 @@
 #include "server/service/calls/access_guard.h"
 #include "server/session/models.h"
 #include "server/store/store.h"
-#include "server/study/jobs.h"
+#include "server/study/studies.h"
 
 namespace phrenic::service {
 
 // gRPC's threads call, any number at a time.
 class StudyService final : public v1::StudyService::Service {
  public:
-  // `web_root` has report.html, the page without a study. `store` is null where studies end with the server.
-  StudyService(session::Models& models, std::string web_root, AccessGuard& guard, store::Store* store);
-  // What an earlier server left: studies that ended are there again, the others run anew. Before any call. Why one
-  // could not be is in `lost`, by "study NAME"; it stays in the store.
+  // `web_root` has report.html, the page without a study. Without a store, studies end with the server. All outlive it.
+  StudyService(session::Models& models, std::string web_root, AccessGuard& guard, const Clock& clock,
+               store::Store* store);
+  // The same as study::Studies::Restore. Requires: no call came yet.
   void Restore(const std::vector<store::SavedRecord>& records, std::map<std::string, absl::Status>& lost);
 
   grpc::Status CreateStudy(grpc::ServerContext* context, const v1::CreateStudyRequest* request,
@@ -40,16 +40,10 @@ class StudyService final : public v1::StudyService::Service {
                                grpc::ServerWriter<v1::CheckPhysiologyResponse>* writer) override;
 
  private:
-  absl::StatusOr<v1::Study> Run(const v1::CreateStudyRequest& request);
-  void Save(const v1::Study& study, const v1::CreateStudyRequest* request) const;
-  absl::Status Watch(const std::string& id, grpc::ServerContext& context,
-                     grpc::ServerWriter<v1::WatchStudyResponse>& writer) const;
-
   session::Models& models_;
   const std::string web_root_;
   AccessGuard& guard_;
-  store::Store* const store_;
-  study::Jobs jobs_;
+  study::Studies studies_;
   std::atomic<int> watchers_ = 0;
 };
 
