@@ -1,5 +1,5 @@
 // The command line client.
-#include "client/command_line.h"
+#include "client/cli/command_line.h"
 
 int main(int argc, char** argv) {
   phrenic::client::Interruption interruption;

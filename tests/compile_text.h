@@ -8,8 +8,8 @@
 #include <memory>
 #include <string>
 
-#include "server/mechanics/compile.h"
-#include "server/mechanics/step.h"
+#include "server/mechanics/compile/compile.h"
+#include "server/mechanics/step/step.h"
 #include "server/schema/schema.h"
 
 namespace phrenic {

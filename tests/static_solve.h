@@ -8,7 +8,7 @@
 #include <functional>
 #include <vector>
 
-#include "server/mechanics/block_matrix.h"
+#include "server/mechanics/solve/block_matrix.h"
 #include "server/mechanics/model.h"
 
 namespace phrenic {

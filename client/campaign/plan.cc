@@ -8,7 +8,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
-#include "client/scene_argument.h"
+#include "client/cli/scene_argument.h"
 #include "server/schema/schema.h"
 #include "server/schema/sha256.h"
 

@@ -11,7 +11,7 @@
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_replace.h"
 #include "absl/strings/str_split.h"
-#include "client/readings.h"
+#include "client/print/readings.h"
 
 namespace phrenic::client {
 namespace {

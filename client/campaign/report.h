@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "client/table.h"
+#include "client/print/table.h"
 #include "phrenic/v1/campaign.pb.h"
 
 namespace phrenic::client {

@@ -8,8 +8,8 @@
 #include <sstream>
 
 #include "absl/strings/str_cat.h"
-#include "client/connection.h"
-#include "client/whole_file.h"
+#include "client/connection/connection.h"
+#include "client/files/whole_file.h"
 
 namespace phrenic::client {
 

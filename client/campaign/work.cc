@@ -3,7 +3,7 @@
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "client/campaign/worker.h"
-#include "client/local_run.h"
+#include "client/connection/local_run.h"
 #include "server/service/server.h"
 
 namespace phrenic::client {

@@ -8,7 +8,7 @@
 
 #include "absl/status/status.h"
 #include "client/campaign/results.h"
-#include "client/connection.h"
+#include "client/connection/connection.h"
 
 namespace phrenic::client {
 

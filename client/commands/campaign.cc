@@ -9,11 +9,11 @@
 #include "client/campaign/report.h"
 #include "client/campaign/results.h"
 #include "client/campaign/worker.h"
-#include "client/commands.h"
-#include "client/limits.h"
-#include "client/output.h"
-#include "client/progress.h"
-#include "client/whole_file.h"
+#include "client/commands/commands.h"
+#include "client/files/limits.h"
+#include "client/print/output.h"
+#include "client/terminal/progress.h"
+#include "client/files/whole_file.h"
 
 namespace phrenic::client {
 namespace {

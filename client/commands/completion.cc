@@ -1,7 +1,7 @@
 // `phrenic completion SHELL`: scripts that ask `phrenic __complete LINE` with every press of the tab key.
 #include <iostream>
 
-#include "client/commands.h"
+#include "client/commands/commands.h"
 
 namespace phrenic::client {
 namespace {

@@ -4,12 +4,12 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "client/commands.h"
-#include "client/whole_file.h"
+#include "client/commands/commands.h"
+#include "client/files/whole_file.h"
 #include "server/mesh/repair.h"
 #include "server/mesh/units.h"
 #include "server/meshio/meshio.h"
-#include "server/study/inspection.h"
+#include "server/compare/inspection.h"
 
 namespace phrenic::client {
 namespace {

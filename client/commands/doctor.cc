@@ -7,9 +7,9 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
-#include "client/commands.h"
-#include "client/reachable.h"
-#include "client/terminal.h"
+#include "client/commands/commands.h"
+#include "client/connection/reachable.h"
+#include "client/terminal/terminal.h"
 #include "phrenic/v1/server.grpc.pb.h"
 
 namespace phrenic::client {

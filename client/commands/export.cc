@@ -2,8 +2,8 @@
 #include <iostream>
 
 #include "absl/strings/str_format.h"
-#include "client/commands.h"
-#include "client/motion_file.h"
+#include "client/commands/commands.h"
+#include "client/files/motion_file.h"
 
 namespace phrenic::client {
 namespace {

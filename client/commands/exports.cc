@@ -3,9 +3,9 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "client/commands.h"
-#include "client/motion_file.h"
-#include "client/output.h"
+#include "client/commands/commands.h"
+#include "client/files/motion_file.h"
+#include "client/print/output.h"
 
 namespace phrenic::client {
 namespace {

@@ -1,11 +1,11 @@
 // `phrenic inspect`: what a surface file holds, read here as a scene would read it.
 #include <iostream>
 
-#include "client/commands.h"
-#include "client/surface_report.h"
+#include "client/commands/commands.h"
+#include "client/print/surface_report.h"
 #include "server/mesh/units.h"
 #include "server/meshio/meshio.h"
-#include "server/study/inspection.h"
+#include "server/compare/inspection.h"
 
 namespace phrenic::client {
 namespace {}  // namespace

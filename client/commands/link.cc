@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "absl/strings/str_cat.h"
-#include "client/commands.h"
+#include "client/commands/commands.h"
 #include "google/protobuf/util/time_util.h"
 #include "phrenic/v1/access.grpc.pb.h"
 #include "server/access/rules.h"

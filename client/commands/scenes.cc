@@ -1,5 +1,5 @@
-#include "client/commands.h"
-#include "client/output.h"
+#include "client/commands/commands.h"
+#include "client/print/output.h"
 #include "phrenic/v1/session.grpc.pb.h"
 
 namespace phrenic::client {

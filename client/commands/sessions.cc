@@ -1,8 +1,8 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "client/commands.h"
-#include "client/output.h"
-#include "client/print_session.h"
+#include "client/commands/commands.h"
+#include "client/print/output.h"
+#include "client/print/print_session.h"
 #include "phrenic/v1/session.grpc.pb.h"
 
 namespace phrenic::client {

@@ -4,8 +4,8 @@
 #include <chrono>
 
 #include "absl/strings/str_cat.h"
-#include "client/commands.h"
-#include "client/watch_printer.h"
+#include "client/commands/commands.h"
+#include "client/print/watch_printer.h"
 #include "phrenic/v1/frames.grpc.pb.h"
 #include "server/stream/codec.h"
 

@@ -3,9 +3,9 @@
 #include <iostream>
 
 #include "absl/strings/str_cat.h"
-#include "client/commands.h"
-#include "client/print_session.h"
-#include "client/tokens.h"
+#include "client/commands/commands.h"
+#include "client/print/print_session.h"
+#include "client/connection/tokens.h"
 #include "phrenic/v1/control.grpc.pb.h"
 #include "phrenic/v1/session.grpc.pb.h"
 

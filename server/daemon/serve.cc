@@ -12,8 +12,8 @@
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
 #include "phrenic/v1/session.grpc.pb.h"
-#include "server/service/address.h"
-#include "server/service/listen.h"
+#include "server/service/net/address.h"
+#include "server/service/net/listen.h"
 #include "server/service/server.h"
 
 namespace phrenic::daemon {

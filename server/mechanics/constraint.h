@@ -5,8 +5,8 @@
 #include <span>
 #include <string>
 
-#include "server/mechanics/instant.h"
-#include "server/mechanics/vertex_range.h"
+#include "server/mechanics/eval_context.h"
+#include "server/mechanics/parallel/vertex_range.h"
 
 namespace phrenic {
 

@@ -6,10 +6,10 @@
 #include <span>
 #include <string>
 
-#include "server/mechanics/instant.h"
-#include "server/mechanics/outer_products.h"
+#include "server/mechanics/eval_context.h"
+#include "server/mechanics/linalg/outer_products.h"
 #include "server/mechanics/stiffness.h"
-#include "server/mechanics/vertex_range.h"
+#include "server/mechanics/parallel/vertex_range.h"
 
 namespace phrenic {
 

@@ -1,8 +1,8 @@
 #include "server/mechanics/integrator.h"
 
-#include "server/mechanics/implicit_system.h"
-#include "server/mechanics/prefactored_system.h"
-#include "server/mechanics/quasi_newton.h"
+#include "server/mechanics/solve/implicit_system.h"
+#include "server/mechanics/solve/prefactored_system.h"
+#include "server/mechanics/solve/quasi_newton.h"
 
 namespace phrenic {
 

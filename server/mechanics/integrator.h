@@ -11,7 +11,7 @@
 
 #include "absl/status/status.h"
 #include "phrenic/v1/parameters.pb.h"
-#include "server/mechanics/outer_products.h"
+#include "server/mechanics/linalg/outer_products.h"
 #include "server/mechanics/solver_effort.h"
 #include "server/mechanics/state.h"
 

@@ -3,8 +3,8 @@
 #include <set>
 
 #include "absl/strings/str_cat.h"
-#include "server/mechanics/catalogue.h"
-#include "server/mechanics/chamber.h"
+#include "server/mechanics/compile/catalogue.h"
+#include "server/mechanics/breathing/chamber.h"
 
 namespace phrenic {
 

@@ -9,7 +9,7 @@
 
 #include "absl/status/status.h"
 #include "phrenic/v1/measures.pb.h"
-#include "server/mechanics/instant.h"
+#include "server/mechanics/eval_context.h"
 
 namespace phrenic {
 

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "server/mechanics/advance.h"
-#include "server/mechanics/body_points.h"
+#include "server/mechanics/step/advance.h"
+#include "server/mechanics/skinning/body_points.h"
 
 namespace phrenic {
 

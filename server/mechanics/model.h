@@ -14,7 +14,7 @@
 #include "server/mechanics/integrator.h"
 #include "server/mechanics/measure.h"
 #include "server/mechanics/motion.h"
-#include "server/mechanics/ride.h"
+#include "server/mechanics/skin.h"
 
 namespace phrenic {
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "server/mechanics/instant.h"
+#include "server/mechanics/eval_context.h"
 
 namespace phrenic {
 

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "server/mechanics/instant.h"
+#include "server/mechanics/eval_context.h"
 
 namespace phrenic {
 namespace {

@@ -4,7 +4,7 @@
 #include "google/protobuf/util/time_util.h"
 #include "server/schema/secret.h"
 #include "server/schema/sha256.h"
-#include "server/service/status.h"
+#include "server/service/calls/status.h"
 
 namespace phrenic::service {
 namespace {

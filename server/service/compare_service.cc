@@ -5,10 +5,10 @@
 
 #include "absl/cleanup/cleanup.h"
 #include "absl/strings/str_cat.h"
-#include "server/service/status.h"
+#include "server/service/calls/status.h"
 #include "server/session/present_body.h"
 #include "server/stream/wire.h"
-#include "server/study/comparison.h"
+#include "server/compare/comparison.h"
 
 namespace phrenic::service {
 namespace {

@@ -3,7 +3,7 @@
 #define PHRENIC_SERVER_SERVICE_CONTROL_SERVICE_H_
 
 #include "phrenic/v1/control.grpc.pb.h"
-#include "server/service/door.h"
+#include "server/service/calls/access_guard.h"
 #include "server/session/table.h"
 
 namespace phrenic::service {

@@ -5,8 +5,8 @@
 
 #include "absl/cleanup/cleanup.h"
 #include "absl/strings/str_cat.h"
-#include "server/service/status.h"
-#include "server/session/surface_recorder.h"
+#include "server/service/calls/status.h"
+#include "server/session/export/surface_recorder.h"
 
 namespace phrenic::service {
 namespace {

@@ -5,8 +5,8 @@
 #include <atomic>
 
 #include "phrenic/v1/export.grpc.pb.h"
-#include "server/service/door.h"
-#include "server/session/exports.h"
+#include "server/service/calls/access_guard.h"
+#include "server/session/export/exports.h"
 #include "server/session/table.h"
 
 namespace phrenic::service {

@@ -7,7 +7,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/schema/id.h"
-#include "server/service/status.h"
+#include "server/service/calls/status.h"
 #include "server/service/watch_reactor.h"
 #include "server/session/present_forces.h"
 #include "server/stream/geometry.h"

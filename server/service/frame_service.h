@@ -6,8 +6,8 @@
 #include <memory>
 
 #include "phrenic/v1/frames.grpc.pb.h"
-#include "server/service/door.h"
-#include "server/service/metrics.h"
+#include "server/service/calls/access_guard.h"
+#include "server/service/calls/metrics.h"
 #include "server/service/watch_reactor.h"
 #include "server/session/table.h"
 

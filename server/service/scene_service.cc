@@ -1,6 +1,6 @@
 #include "server/service/scene_service.h"
 
-#include "server/service/status.h"
+#include "server/service/calls/status.h"
 
 namespace phrenic::service {
 

@@ -3,7 +3,7 @@
 #define PHRENIC_SERVER_SERVICE_SCENE_SERVICE_H_
 
 #include "phrenic/v1/session.grpc.pb.h"
-#include "server/service/door.h"
+#include "server/service/calls/access_guard.h"
 #include "server/session/models.h"
 
 namespace phrenic::service {

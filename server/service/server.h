@@ -15,7 +15,7 @@
 #include "server/cluster/cluster.h"
 #include "server/record/spool_file.h"
 #include "server/schema/places.h"
-#include "server/service/tls.h"
+#include "server/service/net/tls.h"
 #include "server/session/limits.h"
 
 namespace phrenic::service {

@@ -5,7 +5,7 @@
 #include <atomic>
 
 #include "phrenic/v1/server.grpc.pb.h"
-#include "server/service/door.h"
+#include "server/service/calls/access_guard.h"
 
 namespace phrenic::service {
 

@@ -3,9 +3,9 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "server/mechanics/presets.h"
-#include "server/service/repeatable.h"
-#include "server/service/status.h"
+#include "server/mechanics/compile/presets.h"
+#include "server/service/calls/repeatable.h"
+#include "server/service/calls/status.h"
 
 namespace phrenic::service {
 namespace {

@@ -1,10 +1,10 @@
 #include "server/service/study_service.h"
 
 #include "phrenic/v1/saved.pb.h"
-#include "server/mechanics/presets.h"
-#include "server/service/status.h"
+#include "server/mechanics/compile/presets.h"
+#include "server/service/calls/status.h"
 #include "server/service/study_page.h"
-#include "server/study/physiology.h"
+#include "server/physiology/physiology.h"
 #include "server/study/run.h"
 
 namespace phrenic::service {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "phrenic/v1/study.grpc.pb.h"
-#include "server/service/door.h"
+#include "server/service/calls/access_guard.h"
 #include "server/session/models.h"
 #include "server/store/store.h"
 #include "server/study/jobs.h"

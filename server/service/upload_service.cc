@@ -1,8 +1,8 @@
 #include "server/service/upload_service.h"
 
 #include "server/meshio/formats.h"
-#include "server/service/status.h"
-#include "server/study/inspection.h"
+#include "server/service/calls/status.h"
+#include "server/compare/inspection.h"
 
 namespace phrenic::service {
 namespace {

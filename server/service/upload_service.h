@@ -3,7 +3,7 @@
 #define PHRENIC_SERVER_SERVICE_UPLOAD_SERVICE_H_
 
 #include "phrenic/v1/upload.grpc.pb.h"
-#include "server/service/door.h"
+#include "server/service/calls/access_guard.h"
 #include "server/session/uploads.h"
 
 namespace phrenic::service {

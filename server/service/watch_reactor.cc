@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "server/service/status.h"
+#include "server/service/calls/status.h"
 
 namespace phrenic::service {
 namespace {

@@ -6,9 +6,9 @@
 #include <optional>
 #include <string_view>
 
-#include "server/service/door.h"
-#include "server/service/metrics.h"
-#include "server/service/web_connection.h"
+#include "server/service/calls/access_guard.h"
+#include "server/service/calls/metrics.h"
+#include "server/service/web/web_connection.h"
 #include "server/session/table.h"
 
 namespace phrenic::service {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "absl/status/statusor.h"
-#include "server/mechanics/compile.h"
+#include "server/mechanics/compile/compile.h"
 #include "server/session/uploads.h"
 
 namespace phrenic::session {

@@ -13,7 +13,7 @@
 #include "absl/synchronization/mutex.h"
 #include "phrenic/v1/saved.pb.h"
 #include "phrenic/v1/session.pb.h"
-#include "server/mechanics/compile.h"
+#include "server/mechanics/compile/compile.h"
 #include "server/session/scene_catalogue.h"
 #include "server/session/uploads.h"
 

@@ -6,7 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
-#include "server/mechanics/force_reading.h"
+#include "server/mechanics/step/force_reading.h"
 
 namespace phrenic::session {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "absl/strings/str_format.h"
 #include "server/mechanics/pulls.h"
-#include "server/mechanics/step.h"
+#include "server/mechanics/step/step.h"
 
 namespace phrenic::session {
 

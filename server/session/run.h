@@ -10,7 +10,7 @@
 #include "absl/status/status.h"
 #include "phrenic/v1/session.pb.h"
 #include "server/mechanics/model.h"
-#include "server/mechanics/trail.h"
+#include "server/mechanics/step/step_checkpoint.h"
 
 namespace phrenic::session {
 

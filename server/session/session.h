@@ -23,7 +23,7 @@
 #include "phrenic/v1/saved.pb.h"
 #include "phrenic/v1/session.pb.h"
 #include "server/mechanics/pulls.h"
-#include "server/session/answers.h"
+#include "server/session/idempotency_cache.h"
 #include "server/session/control.h"
 #include "server/session/cpu_share.h"
 #include "server/session/limits.h"

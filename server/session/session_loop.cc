@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "server/mechanics/residual.h"
+#include "server/mechanics/constraint_residual.h"
 #include "server/session/run.h"
 #include "server/session/session.h"
 

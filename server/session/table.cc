@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "server/mechanics/compile.h"
-#include "server/mechanics/presets.h"
+#include "server/mechanics/compile/compile.h"
+#include "server/mechanics/compile/presets.h"
 #include "server/mechanics/pulls.h"
 #include "server/schema/id.h"
 #include "server/schema/names.h"

@@ -7,7 +7,7 @@
 #include <deque>
 
 #include "absl/time/time.h"
-#include "server/stream/form.h"
+#include "server/stream/frame_encoding.h"
 
 namespace phrenic::stream {
 

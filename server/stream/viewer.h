@@ -15,7 +15,7 @@
 #include "absl/status/status.h"
 #include "absl/synchronization/mutex.h"
 #include "server/stream/credit.h"
-#include "server/stream/form.h"
+#include "server/stream/frame_encoding.h"
 
 namespace phrenic::stream {
 

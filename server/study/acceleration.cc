@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "absl/strings/str_cat.h"
-#include "server/mechanics/advance.h"
+#include "server/mechanics/step/advance.h"
 
 namespace phrenic::study {
 namespace {

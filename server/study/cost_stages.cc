@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "server/mechanics/step.h"
+#include "server/mechanics/step/step.h"
 #include "server/study/cost_trials.h"
 #include "server/study/timed_model.h"
 

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "absl/strings/str_format.h"
-#include "server/mechanics/step.h"
+#include "server/mechanics/step/step.h"
 
 namespace phrenic::study {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "server/mechanics/residual.h"
+#include "server/mechanics/constraint_residual.h"
 #include "server/study/error_rows.h"
 #include "server/study/reference.h"
 #include "server/study/subject.h"

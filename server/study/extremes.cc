@@ -7,7 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
-#include "server/mechanics/compile.h"
+#include "server/mechanics/compile/compile.h"
 #include "server/schema/schema.h"
 #include "server/study/energy_balance.h"
 #include "server/study/reference.h"

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "absl/strings/str_format.h"
-#include "server/mechanics/catalogue.h"
-#include "server/mechanics/step.h"
+#include "server/mechanics/compile/catalogue.h"
+#include "server/mechanics/step/step.h"
 #include "server/study/trajectory.h"
 #include "server/study/watched_run.h"
 

@@ -3,7 +3,7 @@
 #define PHRENIC_SERVER_STUDY_STABILITY_LIMITS_H_
 
 #include "phrenic/v1/study_results.pb.h"
-#include "server/mechanics/spectrum.h"
+#include "server/mechanics/stability/spectrum.h"
 #include "server/study/context.h"
 
 namespace phrenic::study {

@@ -1,7 +1,7 @@
 #include "server/study/subject.h"
 
-#include "server/mechanics/compile.h"
-#include "server/mechanics/presets.h"
+#include "server/mechanics/compile/compile.h"
+#include "server/mechanics/compile/presets.h"
 #include "server/schema/fields.h"
 #include "server/schema/schema.h"
 

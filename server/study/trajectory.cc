@@ -5,7 +5,7 @@
 #include <ctime>
 
 #include "absl/strings/str_format.h"
-#include "server/mechanics/step.h"
+#include "server/mechanics/step/step.h"
 
 namespace phrenic::study {
 namespace {

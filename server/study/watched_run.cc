@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "absl/strings/str_format.h"
-#include "server/mechanics/step.h"
-#include "server/mechanics/trail.h"
+#include "server/mechanics/step/step.h"
+#include "server/mechanics/step/step_checkpoint.h"
 #include "server/study/trajectory.h"
 
 namespace phrenic::study {

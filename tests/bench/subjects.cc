@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "server/mechanics/step.h"
+#include "server/mechanics/step/step.h"
 #include "server/mesh/locality.h"
 #include "server/mesh/topology.h"
 #include "server/schema/schema.h"

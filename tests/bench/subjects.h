@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "server/mechanics/compile.h"
+#include "server/mechanics/compile/compile.h"
 #include "server/mechanics/forces/spring_rows.h"
-#include "server/mechanics/implicit_system.h"
+#include "server/mechanics/solve/implicit_system.h"
 
 namespace phrenic::bench {
 

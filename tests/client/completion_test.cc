@@ -1,5 +1,5 @@
 // Completion in the shells themselves: keys typed into bash and zsh in a terminal, and fish asked as it asks itself.
-#include "client/completion.h"
+#include "client/cli/completion.h"
 
 #include <gmock/gmock.h>
 

@@ -1,10 +1,10 @@
 // Bars, sparklines, text that fits, and the time that is left.
 #include <gmock/gmock.h>
 
-#include "client/live_view.h"
-#include "client/progress.h"
-#include "client/sparkline.h"
-#include "client/terminal.h"
+#include "client/print/live_view.h"
+#include "client/terminal/progress.h"
+#include "client/terminal/sparkline.h"
+#include "client/terminal/terminal.h"
 
 namespace phrenic::client {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "client/connection.h"
+#include "client/connection/connection.h"
 #include "tests/client/programs.h"
 
 namespace phrenic::client {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <random>
 
-#include "server/mechanics/advance.h"
-#include "server/mechanics/block_matrix.h"
+#include "server/mechanics/step/advance.h"
+#include "server/mechanics/solve/block_matrix.h"
 #include "tests/compile_text.h"
 #include "tests/contract/allocations.h"
 

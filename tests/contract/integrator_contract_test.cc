@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "absl/strings/str_format.h"
-#include "server/mechanics/catalogue.h"
-#include "server/mechanics/spectrum.h"
-#include "server/mechanics/trail.h"
+#include "server/mechanics/compile/catalogue.h"
+#include "server/mechanics/stability/spectrum.h"
+#include "server/mechanics/step/step_checkpoint.h"
 #include "tests/compile_text.h"
 #include "tests/contract/allocations.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "server/mechanics/spectrum.h"
+#include "server/mechanics/stability/spectrum.h"
 #include "tests/compile_text.h"
 
 namespace phrenic {

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "absl/strings/str_format.h"
-#include "server/mechanics/residual.h"
+#include "server/mechanics/constraint_residual.h"
 #include "tests/compile_text.h"
 
 namespace phrenic {

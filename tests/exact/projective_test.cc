@@ -4,9 +4,9 @@
 #include <cmath>
 #include <random>
 
-#include "server/mechanics/advance.h"
+#include "server/mechanics/step/advance.h"
 #include "server/mechanics/integrators/projective_dynamics.h"
-#include "server/mechanics/prefactored_system.h"
+#include "server/mechanics/solve/prefactored_system.h"
 #include "server/mesh/topology.h"
 #include "tests/compile_text.h"
 

@@ -1,6 +1,6 @@
 // Any bytes as the body of a gRPC-web request, as binary and as text, give the one message in it, framed as it came, or
 // an error; any text as a time-out or an address one that can be, or none.
-#include "server/service/grpc_web.h"
+#include "server/service/web/grpc_web.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -8,7 +8,7 @@
 #include <string>
 
 #include "absl/strings/escaping.h"
-#include "server/service/address.h"
+#include "server/service/net/address.h"
 
 namespace phrenic::service {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "server/mechanics/residual.h"
+#include "server/mechanics/constraint_residual.h"
 #include "tests/compile_text.h"
 
 namespace phrenic {

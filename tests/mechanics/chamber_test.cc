@@ -1,5 +1,5 @@
 // Pressures on open surfaces, what lungs and measures refuse, and matrices of low rank.
-#include "server/mechanics/chamber.h"
+#include "server/mechanics/breathing/chamber.h"
 
 #include <gmock/gmock.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "server/mechanics/implicit_system.h"
+#include "server/mechanics/solve/implicit_system.h"
 #include "tests/compile_text.h"
 #include "tests/mechanics/every_target.h"
 

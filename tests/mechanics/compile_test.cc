@@ -1,4 +1,4 @@
-#include "server/mechanics/compile.h"
+#include "server/mechanics/compile/compile.h"
 
 #include <gmock/gmock.h>
 

@@ -1,5 +1,5 @@
 // What people are told of the forces is what moves the vertices.
-#include "server/mechanics/force_reading.h"
+#include "server/mechanics/step/force_reading.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // The linear systems of implicit steps, and the steps that they carry.
-#include "server/mechanics/implicit_system.h"
+#include "server/mechanics/solve/implicit_system.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 #include "tests/mechanics/inverse_root_kernel.h"
 
-#include "server/mechanics/vector_targets.h"
+#include "server/mechanics/linalg/vector_targets.h"
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "tests/mechanics/inverse_root_kernel.cc"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "server/mechanics/inverse_root-inl.h"
+#include "server/mechanics/linalg/inverse_root-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace phrenic::HWY_NAMESPACE {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "server/mechanics/advance.h"
+#include "server/mechanics/step/advance.h"
 #include "tests/compile_text.h"
 
 namespace phrenic {

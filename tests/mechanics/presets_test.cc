@@ -1,5 +1,5 @@
 // Presets of a scene.
-#include "server/mechanics/presets.h"
+#include "server/mechanics/compile/presets.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "server/mechanics/spectrum.h"
+#include "server/mechanics/stability/spectrum.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "absl/strings/str_cat.h"
-#include "server/mechanics/catalogue.h"
+#include "server/mechanics/compile/catalogue.h"
 #include "tests/compile_text.h"
 
 namespace phrenic {

@@ -6,10 +6,10 @@
 #include <sstream>
 
 #include "server/anatomy/anatomy.h"
-#include "server/mechanics/compile.h"
-#include "server/mechanics/step.h"
+#include "server/mechanics/compile/compile.h"
+#include "server/mechanics/step/step.h"
 #include "server/schema/schema.h"
-#include "server/study/physiology.h"
+#include "server/physiology/physiology.h"
 
 namespace phrenic {
 namespace {

@@ -10,8 +10,8 @@
 #include <string>
 
 #include "server/anatomy/anatomy.h"
-#include "server/mechanics/compile.h"
-#include "server/mechanics/presets.h"
+#include "server/mechanics/compile/compile.h"
+#include "server/mechanics/compile/presets.h"
 #include "server/schema/schema.h"
 
 namespace phrenic {

@@ -3,8 +3,8 @@
 
 #include <cstdio>
 
-#include "server/mechanics/step.h"
-#include "server/study/thorax_metrics.h"
+#include "server/mechanics/step/step.h"
+#include "server/physiology/thorax_metrics.h"
 #include "tests/physiology/generated_thorax.h"
 
 namespace phrenic {

@@ -10,9 +10,9 @@
 #include "server/imaging/label_map.h"
 #include "server/imaging/patient.h"
 #include "server/imaging/phantom.h"
-#include "server/mechanics/compile.h"
+#include "server/mechanics/compile/compile.h"
 #include "server/schema/schema.h"
-#include "server/study/physiology.h"
+#include "server/physiology/physiology.h"
 
 namespace phrenic {
 namespace {

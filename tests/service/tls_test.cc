@@ -1,4 +1,4 @@
-#include "server/service/tls.h"
+#include "server/service/net/tls.h"
 
 #include <gmock/gmock.h>
 #include <grpcpp/create_channel.h>

@@ -1,10 +1,10 @@
-#include "server/session/exporter.h"
+#include "server/session/export/exporter.h"
 
 #include <gmock/gmock.h>
 
 #include "server/mechanics/state.h"
 #include "server/schema/sha256.h"
-#include "server/session/surface_recorder.h"
+#include "server/session/export/surface_recorder.h"
 #include "tests/compile_text.h"
 #include "tests/small_scenes.h"
 

@@ -1,5 +1,5 @@
 // Exports as jobs, and uploads: what is kept, for how long, and what is refused.
-#include "server/session/exports.h"
+#include "server/session/export/exports.h"
 
 #include <gmock/gmock.h>
 
@@ -7,7 +7,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/mechanics/state.h"
-#include "server/mechanics/step.h"
+#include "server/mechanics/step/step.h"
 #include "server/schema/sha256.h"
 #include "server/session/meshes.h"
 #include "server/session/uploads.h"

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <tuple>
 
-#include "server/mechanics/step.h"
+#include "server/mechanics/step/step.h"
 #include "server/session/models.h"
 
 namespace phrenic::session {

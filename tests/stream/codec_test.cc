@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-#include "server/mechanics/step.h"
+#include "server/mechanics/step/step.h"
 #include "server/session/models.h"
 #include "server/stream/basis.h"
 #include "server/stream/rest_shape.h"

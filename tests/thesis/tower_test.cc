@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "server/mechanics/residual.h"
+#include "server/mechanics/constraint_residual.h"
 #include "tests/compile_text.h"
 #include "tests/thesis/shipped.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "server/mechanics/draft.h"
+#include "server/mechanics/model_builder.h"
 
 namespace phrenic {
 

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <iterator>
 
-#include "server/mechanics/vector_targets.h"
+#include "server/mechanics/linalg/vector_targets.h"
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "server/mechanics/constraints/link_kernel.cc"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "server/mechanics/points-inl.h"
+#include "server/mechanics/linalg/points-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace phrenic::HWY_NAMESPACE {

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "server/mechanics/constraints/link.h"
-#include "server/mechanics/sparse_ldlt.h"
+#include "server/mechanics/linalg/sparse_ldlt.h"
 
 namespace phrenic {
 

@@ -8,7 +8,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "server/mechanics/carriers.h"
+#include "server/mechanics/skinning/skin_drivers.h"
 
 namespace phrenic {
 namespace {

@@ -8,7 +8,7 @@
 
 #include <vector>
 
-#include "server/mechanics/draft.h"
+#include "server/mechanics/model_builder.h"
 #include "server/mechanics/forces/attachment_kernel.h"
 
 namespace phrenic {

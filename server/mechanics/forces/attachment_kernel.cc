@@ -1,12 +1,12 @@
 #include "server/mechanics/forces/attachment_kernel.h"
 
-#include "server/mechanics/vector_targets.h"
+#include "server/mechanics/linalg/vector_targets.h"
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "server/mechanics/forces/attachment_kernel.cc"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "server/mechanics/points-inl.h"
+#include "server/mechanics/linalg/points-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace phrenic::HWY_NAMESPACE {

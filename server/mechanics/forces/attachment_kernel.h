@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "server/mechanics/pose_columns.h"
+#include "server/mechanics/skinning/pose_matrices.h"
 
 namespace phrenic {
 

@@ -10,7 +10,7 @@
 
 #include <vector>
 
-#include "server/mechanics/draft.h"
+#include "server/mechanics/model_builder.h"
 #include "server/mesh/triangle_tree.h"
 
 namespace phrenic {

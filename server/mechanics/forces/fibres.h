@@ -9,7 +9,7 @@
 
 #include <vector>
 
-#include "server/mechanics/draft.h"
+#include "server/mechanics/model_builder.h"
 #include "server/mechanics/forces/corotated.h"
 
 namespace phrenic {

@@ -2,7 +2,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "server/mechanics/vertex_kernel.h"
+#include "server/mechanics/linalg/vertex_kernel.h"
 
 namespace phrenic {
 

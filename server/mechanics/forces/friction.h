@@ -2,7 +2,7 @@
 #ifndef PHRENIC_SERVER_MECHANICS_FORCES_FRICTION_H_
 #define PHRENIC_SERVER_MECHANICS_FORCES_FRICTION_H_
 
-#include "server/mechanics/draft.h"
+#include "server/mechanics/model_builder.h"
 
 namespace phrenic {
 

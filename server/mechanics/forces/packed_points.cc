@@ -1,7 +1,7 @@
 #include "server/mechanics/forces/packed_points.h"
 
 #include "server/mechanics/forces/spring_kernel.h"
-#include "server/mechanics/vertex_range.h"
+#include "server/mechanics/parallel/vertex_range.h"
 
 namespace phrenic {
 

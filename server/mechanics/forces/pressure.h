@@ -7,7 +7,7 @@
 #ifndef PHRENIC_SERVER_MECHANICS_FORCES_PRESSURE_H_
 #define PHRENIC_SERVER_MECHANICS_FORCES_PRESSURE_H_
 
-#include "server/mechanics/chamber.h"
+#include "server/mechanics/breathing/chamber.h"
 
 namespace phrenic {
 

@@ -1,6 +1,6 @@
 #include "server/mechanics/forces/shared_force.h"
 
-#include "server/mechanics/vertex_kernel.h"
+#include "server/mechanics/linalg/vertex_kernel.h"
 
 namespace phrenic {
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "server/mechanics/draft.h"
+#include "server/mechanics/model_builder.h"
 
 namespace phrenic {
 

@@ -9,8 +9,8 @@
 #include <type_traits>
 #include <vector>
 
-#include "server/mechanics/large_pages.h"
-#include "server/mechanics/vertex_range.h"
+#include "server/mechanics/linalg/large_pages.h"
+#include "server/mechanics/parallel/vertex_range.h"
 
 namespace phrenic {
 

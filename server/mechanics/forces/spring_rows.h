@@ -10,7 +10,7 @@
 
 #include "server/mechanics/forces/spring_kernel.h"
 #include "server/mechanics/spring.h"
-#include "server/mechanics/vertex_range.h"
+#include "server/mechanics/parallel/vertex_range.h"
 #include "server/mesh/mesh.h"
 
 namespace phrenic {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "server/mechanics/advance.h"
-#include "server/mechanics/implicit_stage.h"
+#include "server/mechanics/step/advance.h"
+#include "server/mechanics/solve/implicit_stage.h"
 #include "server/mechanics/integrators/tr_bdf2.h"
 
 namespace phrenic {

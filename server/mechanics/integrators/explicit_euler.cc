@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "server/mechanics/advance.h"
+#include "server/mechanics/step/advance.h"
 
 namespace phrenic {
 

@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "absl/functional/function_ref.h"
-#include "server/mechanics/advance.h"
-#include "server/mechanics/implicit_stage.h"
-#include "server/mechanics/outer_products.h"
-#include "server/mechanics/quasi_newton.h"
+#include "server/mechanics/step/advance.h"
+#include "server/mechanics/solve/implicit_stage.h"
+#include "server/mechanics/linalg/outer_products.h"
+#include "server/mechanics/solve/quasi_newton.h"
 
 namespace phrenic {
 namespace {

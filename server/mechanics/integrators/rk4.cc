@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "server/mechanics/advance.h"
+#include "server/mechanics/step/advance.h"
 
 namespace phrenic {
 namespace {

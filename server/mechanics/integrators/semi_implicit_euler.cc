@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "server/mechanics/advance.h"
-#include "server/mechanics/vertex_kernel.h"
+#include "server/mechanics/step/advance.h"
+#include "server/mechanics/linalg/vertex_kernel.h"
 
 namespace phrenic {
 namespace {

@@ -4,8 +4,8 @@
 #include <limits>
 
 #include "absl/status/statusor.h"
-#include "server/mechanics/advance.h"
-#include "server/mechanics/implicit_system.h"
+#include "server/mechanics/step/advance.h"
+#include "server/mechanics/solve/implicit_system.h"
 
 namespace phrenic {
 namespace {

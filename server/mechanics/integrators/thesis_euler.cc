@@ -1,6 +1,6 @@
 #include "server/mechanics/integrators/thesis_euler.h"
 
-#include "server/mechanics/advance.h"
+#include "server/mechanics/step/advance.h"
 #include "server/mechanics/integrators/semi_implicit_euler.h"
 
 namespace phrenic {

@@ -4,8 +4,8 @@
 #include <limits>
 #include <numbers>
 
-#include "server/mechanics/advance.h"
-#include "server/mechanics/implicit_stage.h"
+#include "server/mechanics/step/advance.h"
+#include "server/mechanics/solve/implicit_stage.h"
 
 namespace phrenic {
 namespace {

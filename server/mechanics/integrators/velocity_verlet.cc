@@ -2,8 +2,8 @@
 
 #include <limits>
 
-#include "server/mechanics/advance.h"
-#include "server/mechanics/vertex_kernel.h"
+#include "server/mechanics/step/advance.h"
+#include "server/mechanics/linalg/vertex_kernel.h"
 
 namespace phrenic {
 namespace {

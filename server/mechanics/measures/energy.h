@@ -3,7 +3,7 @@
 #ifndef PHRENIC_SERVER_MECHANICS_MEASURES_ENERGY_H_
 #define PHRENIC_SERVER_MECHANICS_MEASURES_ENERGY_H_
 
-#include "server/mechanics/draft.h"
+#include "server/mechanics/model_builder.h"
 
 namespace phrenic {
 

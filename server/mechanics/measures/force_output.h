@@ -2,7 +2,7 @@
 #ifndef PHRENIC_SERVER_MECHANICS_MEASURES_FORCE_OUTPUT_H_
 #define PHRENIC_SERVER_MECHANICS_MEASURES_FORCE_OUTPUT_H_
 
-#include "server/mechanics/draft.h"
+#include "server/mechanics/model_builder.h"
 
 namespace phrenic {
 

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "absl/strings/str_cat.h"
-#include "server/mechanics/body_points.h"
+#include "server/mechanics/skinning/body_points.h"
 
 namespace phrenic {
 namespace {

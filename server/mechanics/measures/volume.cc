@@ -2,7 +2,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "server/mechanics/chamber.h"
+#include "server/mechanics/breathing/chamber.h"
 
 namespace phrenic {
 namespace {

@@ -2,7 +2,7 @@
 #ifndef PHRENIC_SERVER_MECHANICS_MEASURES_VOLUME_H_
 #define PHRENIC_SERVER_MECHANICS_MEASURES_VOLUME_H_
 
-#include "server/mechanics/draft.h"
+#include "server/mechanics/model_builder.h"
 
 namespace phrenic {
 

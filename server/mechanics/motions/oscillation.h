@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "server/mechanics/draft.h"
+#include "server/mechanics/model_builder.h"
 
 namespace phrenic {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "server/stream/codec.h"
-#include "server/stream/codecs/foretelling.h"
+#include "server/stream/codecs/neighbour_predictor.h"
 
 namespace phrenic::stream {
 

@@ -3,7 +3,7 @@
 #define PHRENIC_SERVER_STREAM_CODECS_PREDICTED_H_
 
 #include "server/stream/codec.h"
-#include "server/stream/codecs/foretelling.h"
+#include "server/stream/codecs/neighbour_predictor.h"
 
 namespace phrenic::stream {
 

@@ -17,9 +17,9 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "server/mechanics/compile.h"
-#include "server/mechanics/share_out.h"
-#include "server/mechanics/step.h"
+#include "server/mechanics/compile/compile.h"
+#include "server/mechanics/parallel/parallel_for.h"
+#include "server/mechanics/step/step.h"
 #include "server/schema/schema.h"
 
 namespace phrenic::bench {

@@ -1,0 +1,130 @@
+#include "client/cli/argument_kinds.h"
+
+#include <algorithm>
+
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
+#include "server/schema/fields.h"
+#include "server/schema/names.h"
+
+namespace phrenic::client {
+namespace {
+
+struct Row {
+  const char* name;  // of the argument, or of command and argument
+  Kind kind;
+  const char* placeholder;
+  const char* choices;
+};
+
+// The first that fits counts.
+constexpr Row kRows[] = {
+    {"--output", Kind::kChoice, "FORMAT", "table json jsonl csv"},
+    {"--server", Kind::kOther, "HOST:PORT", ""},
+    {"--viewer", Kind::kOther, "URL", ""},
+    {"--tls-ca", Kind::kFile, "FILE", ""},
+    {"--tls-cert", Kind::kFile, "FILE", ""},
+    {"--tls-key", Kind::kFile, "FILE", ""},
+    {"--token-file", Kind::kFile, "FILE", ""},
+    {"--role", Kind::kChoice, "ROLE", "viewer controller"},
+    {"SCENE", Kind::kScene, "", ""},
+    {"SESSION", Kind::kSession, "", ""},
+    {"--in-step-with", Kind::kSession, "SESSION", ""},
+    {"EXPORT", Kind::kExport, "", ""},
+    {"STUDY", Kind::kStudy, "", ""},
+    {"SETTING", Kind::kSetting, "", ""},
+    {"SHELL", Kind::kChoice, "", "bash zsh fish"},
+    {"--set", Kind::kSetting, "NAME=VALUE", ""},
+    {"--preset", Kind::kPreset, "PRESET", ""},
+    {"phantom --body", Kind::kChoice, "BODY", "adult small tall flat"},
+    {"--body", Kind::kOther, "BODY", ""},
+    {"--pull", Kind::kOther, "BODY:VERTEX:X,Y,Z", ""},
+    {"--force", Kind::kOther, "X,Y,Z", ""},
+    {"--id", Kind::kOther, "NAME", ""},
+    {"--name", Kind::kOther, "NAME", ""},
+    {"--web", Kind::kOther, "HOST:PORT", ""},
+    {"study --check", Kind::kFile, "FILE", ""},
+    {"physiology --check", Kind::kOther, "", ""},
+    {"--check", Kind::kOther, "MEASURE=LIMIT", ""},
+    {"--labels", Kind::kFile, "NAME or FILE", ""},
+    {"patient --out", Kind::kFolder, "DIR", ""},
+    {"campaign --out", Kind::kFolder, "DIR", ""},
+    {"--on", Kind::kChoice, "WHERE", "here slurm"},
+    {"--share", Kind::kOther, "I/N", ""},
+    {"--data", Kind::kFolder, "DIR", ""},
+    {"--spool", Kind::kFolder, "DIR", ""},
+    {"--out", Kind::kFile, "FILE", ""},
+    {"--export", Kind::kFile, "FILE", ""},
+    {"--page", Kind::kFile, "FILE", ""},
+    {"--junit", Kind::kFile, "FILE", ""},
+    {"--scene", Kind::kScene, "SCENE", ""},
+    {"--map", Kind::kFile, "FILE", ""},
+    {"FILE", Kind::kFile, "", ""},
+    {"VOLUME", Kind::kFile, "", ""},
+    {"IN", Kind::kFile, "", ""},
+    {"OUT", Kind::kFile, "", ""},
+    {"A", Kind::kFile, "", ""},
+    {"B", Kind::kFile, "", ""},
+};
+
+// A row's command is one of the path's words: "study --check" is of "study error" too.
+bool Fits(const Row& row, const std::string& path, const std::string& name) {
+  const std::vector<std::string> words = absl::StrSplit(row.name, ' ');
+  if (words.back() != name) return false;
+  const std::vector<std::string> commands = absl::StrSplit(path, ' ');
+  return words.size() == 1 || commands.front() == words.front();
+}
+
+void ApplyTo(const CLI::App& command, CLI::Option& option) {
+  const ArgumentKind kind = KindOf(command, option);
+  if (!kind.placeholder.empty()) option.type_name(kind.placeholder);
+  if (kind.kind != Kind::kChoice) return;
+  const auto check = [choices = kind.choices](const std::string& value) {
+    if (std::ranges::find(choices, value) != choices.end()) return std::string();
+    return absl::StrCat("there is no \"", value, "\"", schema::ThereAre(value, choices));
+  };
+  option.check(check, "");
+}
+
+}  // namespace
+
+CLI::Validator NumberIn(double low, double high) {
+  v1::Quantity quantity;
+  quantity.set_unit("1");
+  quantity.set_minimum(low);
+  quantity.set_maximum(high);
+  const std::string range = schema::FormatRange(quantity);
+  const auto check = [quantity, range](std::string& text) {
+    double value = 0;
+    if (!absl::SimpleAtod(text, &value)) return absl::StrCat("\"", text, "\" is not a number; allowed is ", range);
+    return schema::NumberProblem(value, &quantity).value_or("");
+  };
+  return CLI::Validator(check, absl::StrCat(" in [", range, "]"));
+}
+
+std::string NameOf(const CLI::Option& option) {
+  return option.get_positional() ? option.get_name(true) : option.get_name();
+}
+
+std::string PathOf(const CLI::App& command) {
+  if (command.get_parent() == nullptr) return "";
+  const std::string before = PathOf(*command.get_parent());
+  return before.empty() ? command.get_name() : absl::StrCat(before, " ", command.get_name());
+}
+
+ArgumentKind KindOf(const CLI::App& command, const CLI::Option& option) {
+  const std::string path = PathOf(command), name = NameOf(option);
+  for (const Row& row : kRows) {
+    if (!Fits(row, path, name)) continue;
+    return {row.kind, row.placeholder, absl::StrSplit(row.choices, ' ', absl::SkipEmpty())};
+  }
+  return {};
+}
+
+void ApplyKinds(CLI::App& command) {
+  for (CLI::Option* option : command.get_options()) ApplyTo(command, *option);
+  for (CLI::App* below : command.get_subcommands({})) ApplyKinds(*below);
+}
+
+}  // namespace phrenic::client

@@ -1,0 +1,48 @@
+#include "client/files/part_file.h"
+
+#include <cstdio>
+
+#include "absl/strings/str_cat.h"
+
+namespace phrenic::client {
+
+PartFile::PartFile(const std::string& file, bool keep) : file_(file), part_(file + ".part"), keep_(keep) {
+  if (keep_) TakeWhatIsThere();
+  out_.open(part_, bytes_ > 0 ? std::ios::binary | std::ios::app : std::ios::binary | std::ios::trunc);
+}
+
+PartFile::~PartFile() {
+  out_.close();
+  if (!keep_ || damaged_) std::remove(part_.c_str());
+}
+
+void PartFile::TakeWhatIsThere() {
+  std::ifstream in(part_, std::ios::binary);
+  std::string block(std::size_t{1} << 20, '\0');
+  while (in.read(block.data(), static_cast<std::streamsize>(block.size())) || in.gcount() > 0) {
+    hash_.Add({block.data(), static_cast<std::size_t>(in.gcount())});
+    bytes_ += in.gcount();
+  }
+}
+
+absl::Status PartFile::Write(const std::string& bytes) {
+  out_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  hash_.Add(bytes);
+  bytes_ += static_cast<std::int64_t>(bytes.size());
+  return out_ ? absl::OkStatus() : Error();
+}
+
+absl::Status PartFile::Error() const {
+  return absl::DataLossError(absl::StrCat("cannot write ", part_, ": is the folder there, and the disk not full?"));
+}
+
+absl::Status PartFile::PutInPlace(const std::string& sha256) {
+  out_.close();
+  if (!out_) return Error();
+  damaged_ = hash_.Hex() != sha256;
+  if (damaged_) return absl::DataLossError(absl::StrCat(file_, " arrived damaged: try again"));
+  if (std::rename(part_.c_str(), file_.c_str()) == 0) return absl::OkStatus();
+  return absl::DataLossError(absl::StrCat("cannot rename ", part_, " to ", file_));
+}
+
+}  // namespace phrenic::client

@@ -1,0 +1,47 @@
+// The breath of a session as it goes on, drawn over and over in a terminal.
+#ifndef PHRENIC_CLIENT_PRINT_LIVE_VIEW_H_
+#define PHRENIC_CLIENT_PRINT_LIVE_VIEW_H_
+
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "phrenic/v1/frames.pb.h"
+
+namespace phrenic::client {
+
+// What it is drawn on.
+struct Canvas {
+  int width = 80;
+  bool unicode = true;
+};
+
+// Keeps the last values of the breath, of each measure, and of how far each probe is from rest. Not thread-safe.
+class LiveView {
+ public:
+  void Add(const v1::Frame& frame);
+  void Add(const v1::Session& session) { session_ = session; }
+
+  // A heading, then a line each: name, value, a bar between the least and the greatest value seen, and a sparkline of
+  // the last frames as far as the width goes. No line is wider than the canvas.
+  std::vector<std::string> Lines(const Canvas& canvas) const;
+
+ private:
+  struct Row {
+    std::string name, unit;
+    double least, greatest;
+    std::deque<double> values;
+  };
+  void Put(size_t index, const std::string& name, const std::string& unit, double value);
+  std::string Heading() const;
+  std::string Line(const Row& row, int name_width, int value_width, const Canvas& canvas) const;
+
+  v1::Session session_;
+  double time_ = 0;
+  std::int64_t tick_ = 0;
+  std::vector<Row> rows_;
+};
+
+}  // namespace phrenic::client
+
+#endif  // PHRENIC_CLIENT_PRINT_LIVE_VIEW_H_

@@ -1,0 +1,104 @@
+#include "client/print/print_session.h"
+
+#include <google/protobuf/descriptor.h>
+#include <google/protobuf/util/time_util.h>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "server/schema/fields.h"
+
+namespace phrenic::client {
+
+std::string StateName(v1::SessionState state) {
+  switch (state) {
+    case v1::SESSION_STATE_PAUSED:
+      return "paused";
+    case v1::SESSION_STATE_PLAYING:
+      return "playing";
+    case v1::SESSION_STATE_DIVERGED:
+      return "diverged";
+    default:
+      return "unknown";
+  }
+}
+
+std::string ParameterValue(const v1::Parameters& parameters, const google::protobuf::FieldDescriptor& field) {
+  const google::protobuf::Reflection& reflection = *parameters.GetReflection();
+  switch (field.cpp_type()) {
+    case google::protobuf::FieldDescriptor::CPPTYPE_BOOL:
+      return reflection.GetBool(parameters, &field) ? "on" : "off";
+    case google::protobuf::FieldDescriptor::CPPTYPE_ENUM:
+      return schema::ChoiceName(*reflection.GetEnum(parameters, &field));
+    default:
+      return absl::StrFormat("%g", reflection.GetDouble(parameters, &field));
+  }
+}
+
+std::string ParametersLine(const v1::Parameters& parameters) {
+  std::string line;
+  for (int f = 0; f < v1::Parameters::descriptor()->field_count(); ++f) {
+    const google::protobuf::FieldDescriptor* field = v1::Parameters::descriptor()->field(f);
+    if (!parameters.GetReflection()->HasField(parameters, field)) continue;
+    absl::StrAppend(&line, line.empty() ? "" : " ", std::string(field->name()), "=",
+                    ParameterValue(parameters, *field));
+  }
+  return line;
+}
+
+std::string ResidualText(const v1::Session& session, const char* before, const char* after) {
+  if (!session.has_constraint_residual()) return "";
+  const std::string whose =
+      session.residual_constraint().empty() ? "" : absl::StrCat(" (", session.residual_constraint(), ")");
+  return absl::StrFormat("%s%.2g mm%s%s", before, 1e3 * session.constraint_residual(), whose, after);
+}
+
+std::string SolverText(const v1::Session& session, const char* before, const char* after) {
+  if (!session.has_solver_residual()) return "";
+  return absl::StrFormat("%s%.1e left after %d iterations%s", before, session.solver_residual(),
+                         session.solver_iterations(), after);
+}
+
+std::string ControlText(const v1::Control& control) {
+  std::string text = "  everybody controls it\n";
+  if (!control.controller().empty()) {
+    text = absl::StrCat("  controlled by ", control.controller());
+    if (control.has_expire_time()) {
+      google::protobuf::Timestamp second;
+      second.set_seconds(control.expire_time().seconds());
+      absl::StrAppend(&text, ", until ", google::protobuf::util::TimeUtil::ToString(second), " unless they go on");
+    }
+    text += "\n";
+  }
+  for (const v1::Participant& person : control.participants()) {
+    absl::StrAppend(&text, "  ", person.name(), person.owner() ? ", who owns it" : "",
+                    person.asks() ? ", asks for control" : "", "\n");
+  }
+  return text;
+}
+
+void PrintSession(const v1::Session& session, std::ostream& out) {
+  out << absl::StrFormat("%s: %s, %s, t = %.3f s, tick %d, revision %d, %d viewers\n", session.id(), session.scene(),
+                         StateName(session.state()), session.time(), session.tick(), session.revision(),
+                         session.viewers());
+  if (session.pace().steps_per_second() > 0) {
+    out << absl::StrFormat("  %.0f steps/s, %.2f times real time, %.3f CPU s per simulated s\n",
+                           session.pace().steps_per_second(), session.pace().times_real_time(),
+                           session.pace().cpu_per_simulated_second());
+  }
+  out << "  " << ParametersLine(session.parameters()) << "\n";
+  out << SolverText(session, "  solver: ", "\n");
+  out << ResidualText(session, "  constraints kept within ", "\n");
+  if (!session.control().controller().empty()) out << ControlText(session.control());
+  if (session.waiting_updates() > 0) out << "  " << session.waiting_updates() << " changes wait for their tick\n";
+  for (const v1::Pull& pull : session.pulls()) {
+    out << absl::StrFormat("  pulled by (%g, %g, %g) N at vertex %d of %s\n", pull.force().x(), pull.force().y(),
+                           pull.force().z(), pull.vertex(), pull.body());
+  }
+  if (!session.not_saved().empty()) out << "  not saved: " << session.not_saved() << "\n";
+  if (!session.has_divergence()) return;
+  const v1::Divergence& why = session.divergence();
+  out << absl::StrFormat("  diverged at t = %.4g s (tick %d): vertex %d of %s, by %s; %s\n", why.time(), why.tick(),
+                         why.vertex(), why.body(), why.force(), why.remedy());
+}
+
+}  // namespace phrenic::client

@@ -1,0 +1,85 @@
+#include "server/compare/compared.h"
+
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "server/mesh/units.h"
+#include "server/compare/moments.h"
+
+namespace phrenic::study {
+namespace {
+
+constexpr double kFarthest = 1e6;  // [m]; squares and sums of what is nearer keep their digits
+
+absl::StatusOr<Compared> ReadFile(const v1::ComparedSurface& file, const char* field) {
+  if (file.name().empty()) return absl::InvalidArgumentError(absl::StrCat(field, ".name: must be set for a file"));
+  const double unit = kMillimetre * (file.has_unit_mm() ? file.unit_mm() : 1);
+  auto motion = meshio::ParseMotion(file.name(), file.content(), unit);
+  if (!motion.ok()) return motion.status();
+  double largest = motion->mesh.vertices.cwiseAbs().maxCoeff();
+  for (const Points& displacement : motion->displacements) {
+    largest = std::max(largest, displacement.cwiseAbs().maxCoeff());
+  }
+  if (largest <= kFarthest) return Compared{file.name(), *std::move(motion), std::nullopt};
+  return absl::InvalidArgumentError(
+      absl::StrCat(file.name(), ":1: has a coordinate of ", largest, " m; is unit_mm right?"));
+}
+
+absl::StatusOr<Compared> ReadBody(const v1::ComparedSurface& surface, const char* field, BodySource bodies) {
+  for (const auto& [set, name] : {std::pair(surface.has_unit_mm(), "unit_mm"), std::pair(surface.has_time(), "time")}) {
+    if (!set) continue;
+    return absl::InvalidArgumentError(absl::StrCat(field, ".", name, ": is of files; leave it out with a body"));
+  }
+  Compared compared;
+  auto mesh = bodies(surface.body(), compared.state.emplace());
+  if (!mesh.ok()) return mesh.status();
+  compared.motion.mesh = *std::move(mesh);
+  compared.name = surface.name();
+  if (compared.name.empty()) {
+    compared.name = absl::StrCat("session:", compared.state->session_id(), "/", compared.state->body());
+  }
+  return compared;
+}
+
+absl::StatusOr<Compared> Read(const v1::ComparedSurface& surface, const char* field, BodySource bodies) {
+  switch (surface.source_case()) {
+    case v1::ComparedSurface::kBody:
+      return ReadBody(surface, field, bodies);
+    case v1::ComparedSurface::kContent:
+    case v1::ComparedSurface::SOURCE_NOT_SET:
+      break;
+  }
+  return ReadFile(surface, field);
+}
+
+// Leaves of a motion one state alone, where one is asked for.
+absl::Status ChooseState(const v1::ComparedSurface& asked, const std::optional<v1::ComparedState>& other,
+                         Compared& compared) {
+  if (!compared.motion.moves() || (!asked.has_time() && !other)) return absl::OkStatus();
+  const double time = asked.has_time() ? asked.time() : other->time();
+  const auto state = FindTime(compared.motion.times, time);
+  if (!state) {
+    return absl::FailedPreconditionError(absl::StrFormat(
+        "%s: has no state at %g s%s, but from %g to %g s; name one of these times", compared.name, time,
+        asked.has_time() ? "" : ", the session's time", compared.motion.times.front(), compared.motion.times.back()));
+  }
+  compared.motion.mesh.vertices = PositionsAt(compared.motion, *state);
+  compared.motion.times.clear();
+  compared.motion.displacements.clear();
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::StatusOr<ComparedPair> ReadPair(const v1::CompareRequest& request, BodySource bodies) {
+  auto a = Read(request.a(), "a", bodies);
+  if (!a.ok()) return a.status();
+  auto b = Read(request.b(), "b", bodies);
+  if (!b.ok()) return b.status();
+  if (absl::Status status = ChooseState(request.a(), b->state, *a); !status.ok()) return status;
+  if (absl::Status status = ChooseState(request.b(), a->state, *b); !status.ok()) return status;
+  return ComparedPair{*std::move(a), *std::move(b)};
+}
+
+}  // namespace phrenic::study

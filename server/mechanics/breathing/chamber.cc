@@ -1,0 +1,170 @@
+#include "server/mechanics/breathing/chamber.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "absl/strings/str_cat.h"
+#include "server/mesh/topology.h"
+
+namespace phrenic {
+namespace {
+
+using Vector = Eigen::Vector3d;
+
+Triangles Chosen(const Mesh& mesh, const Selection& selection, const v1::SurfacePatch& scene) {
+  const Vector facing = ToEigen(scene.facing());
+  std::vector<int> chosen;
+  for (int t = 0; t < mesh.triangles.cols(); ++t) {
+    const Eigen::Vector3i corners = mesh.triangles.col(t);
+    if (!selection.Takes(corners)) continue;
+    const Vector a = mesh.vertices.col(corners[0]), b = mesh.vertices.col(corners[1]),
+                 c = mesh.vertices.col(corners[2]);
+    if (!scene.has_facing() || (b - a).cross(c - a).dot(facing) > 0) chosen.push_back(t);
+  }
+  return mesh.triangles(Eigen::all, chosen);
+}
+
+// The points in axes of which the third is the plane's normal; valid until this thread turns others.
+ConstPoints Turned(const Eigen::Matrix3d& axes, const ConstPoints& y, Points& memory) {
+  if (axes.isIdentity(0)) return y;
+  if (memory.cols() < y.cols()) memory.resize(3, y.cols());
+  memory.leftCols(y.cols()).noalias() = axes * y;
+  return memory.leftCols(y.cols());
+}
+
+ConstPoints TurnedPositions(const Eigen::Matrix3d& axes, const ConstPoints& x) {
+  thread_local Points memory;
+  return Turned(axes, x, memory);
+}
+
+BodyPoints::Moving TurnedMoving(const Eigen::Matrix3d& axes, const BodyPoints::Moving& body) {
+  thread_local Points memory;
+  return {TurnedPositions(axes, body.x), Turned(axes, body.v, memory)};
+}
+
+// Right-handed.
+Eigen::Matrix3d AxesOf(const Vector& normal) {
+  if (normal == Vector::UnitZ()) return Eigen::Matrix3d::Identity();
+  const Vector p = normal.unitOrthogonal();
+  Eigen::Matrix3d axes;
+  axes << p.transpose(), normal.cross(p).transpose(), normal.transpose();
+  return axes;
+}
+
+}  // namespace
+
+const ChamberReading* ChamberReadings::Find(const std::string& key, What what) const {
+  for (const Kept& kept : kept_) {
+    if (kept.key == key && kept.what >= what) return &kept.reading;
+  }
+  return nullptr;
+}
+
+absl::Status Chamber::Add(const v1::SurfacePatch& scene, double side, std::string_view path, const Draft& draft) {
+  const std::string field(path);
+  const auto bodies = draft.Bodies(scene.bodies(), field + ".bodies");
+  if (!bodies.ok()) return bodies.status();
+  const int before = triangles();
+  absl::StrAppend(&key_, side > 0 ? "+" : "-", scene.SerializeAsString());
+  for (const int b : *bodies) {
+    const auto selection = draft.Select(b, scene.region(), scene.exclude_region(), field);
+    if (!selection.ok()) return selection.status();
+    Part part{BodyPoints(draft.model, b), Chosen(draft.model.bodies[b].mesh, *selection, scene), {}, {}, side};
+    if (part.triangles.cols() == 0) continue;
+    part.packets = PackTriangles(part.triangles);
+    const bool whole = part.triangles.cols() == draft.model.bodies[b].mesh.triangles.cols();
+    part.border = whole ? draft.BorderOf(b) : BorderVertices(part.triangles);
+    parts_.push_back(std::move(part));
+  }
+  if (triangles() > before) return absl::OkStatus();
+  return FieldError(path, "chooses no triangle: name bodies with a surface, and widen region and facing");
+}
+
+absl::Status Chamber::SetPlane(const v1::Plane* scene, std::string_view path) {
+  Vector sum = Vector::Zero(), normal = Vector::UnitZ();
+  double count = 0;
+  for (const Part& part : parts_) {
+    for (const int i : part.border) sum += part.points.rest().col(i), ++count;
+  }
+  Vector point =
+      count > 0 ? Vector(sum / count) : Vector(parts_.front().points.rest().col(parts_.front().triangles(0, 0)));
+  absl::StrAppend(&key_, "/", scene == nullptr ? "" : scene->SerializeAsString());
+  if (scene != nullptr) {
+    point = ToEigen(scene->point());
+    if (scene->has_normal()) normal = ToEigen(scene->normal());
+  }
+  if (!(normal.norm() > 0)) {
+    return FieldError(absl::StrCat(std::string(path), ".normal"), "has no direction: set x, y or z");
+  }
+  normal.normalize();
+  axes_ = AxesOf(normal);
+  height_ = normal.dot(point);
+  rest_volume_ = VolumeAtRest();
+  return absl::OkStatus();
+}
+
+double Chamber::VolumeAtRest() const {
+  double sum = 0;
+  for (const Part& part : parts_) {
+    sum += part.side * SumTriangles(part.packets, height_, TurnedPositions(axes_, part.points.rest()).data()).volume;
+  }
+  return sum;
+}
+
+ChamberReading Chamber::Sum(ChamberReadings::What what, const Instant& at) const {
+  const ChamberReading* const found = at.readings == nullptr ? nullptr : at.readings->Find(key_, what);
+  if (found != nullptr) return *found;
+  ChamberReading sum;
+  for (const Part& part : parts_) {
+    ChamberReading reading;
+    if (what == ChamberReadings::What::kVolume) {
+      reading = SumTriangles(part.packets, height_, TurnedPositions(axes_, part.points.Positions(at)).data());
+    } else {
+      const BodyPoints::Moving body = TurnedMoving(axes_, part.points.Locate(at));
+      reading = SumTriangles(part.packets, height_, body.x.data(), body.v.data());
+    }
+    sum.volume += part.side * reading.volume;
+    sum.flow += part.side * reading.flow;
+  }
+  if (at.readings != nullptr) at.readings->Add(key_, what, sum);
+  return sum;
+}
+
+double Chamber::Volume(const Instant& at) const { return Sum(ChamberReadings::What::kVolume, at).volume; }
+
+ChamberReading Chamber::Read(const Instant& at) const { return Sum(ChamberReadings::What::kFlowToo, at); }
+
+void Chamber::AddAreas(const Instant& at, double scale, MutablePoints f) const {
+  for (const Part& part : parts_) {
+    const int first = part.points.first_vertex();
+    if (first < 0) continue;
+    for (Eigen::Index t = 0; t < part.triangles.cols(); ++t) {
+      const int i = first + part.triangles(0, t), j = first + part.triangles(1, t), k = first + part.triangles(2, t);
+      const Vector ab = at.x.col(j) - at.x.col(i), ac = at.x.col(k) - at.x.col(i);
+      const Vector third = scale * part.side / 6 * ab.cross(ac);
+      f.col(i) += third;
+      f.col(j) += third;
+      f.col(k) += third;
+    }
+  }
+}
+
+int Chamber::triangles() const {
+  Eigen::Index count = 0;
+  for (const Part& part : parts_) count += part.triangles.cols();
+  return static_cast<int>(count);
+}
+
+bool Chamber::pushes() const {
+  return std::any_of(parts_.begin(), parts_.end(), [](const Part& part) { return part.points.first_vertex() >= 0; });
+}
+
+bool Chamber::conserves(const Model& model) const {
+  return std::all_of(parts_.begin(), parts_.end(), [&](const Part& part) {
+    const int first = part.points.first_vertex();
+    return first >= 0 && std::all_of(part.border.begin(), part.border.end(),
+                                     [&](int vertex) { return model.inverse_mass[first + vertex] == 0; });
+  });
+}
+
+}  // namespace phrenic

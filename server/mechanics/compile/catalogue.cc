@@ -1,0 +1,184 @@
+#include "server/mechanics/compile/catalogue.h"
+
+#include "absl/strings/str_cat.h"
+#include "server/mechanics/constraints/limits.h"
+#include "server/mechanics/constraints/rigid_links.h"
+#include "server/mechanics/forces/action_line.h"
+#include "server/mechanics/forces/attachment.h"
+#include "server/mechanics/forces/bending.h"
+#include "server/mechanics/forces/cables.h"
+#include "server/mechanics/forces/contact.h"
+#include "server/mechanics/forces/cross_layer.h"
+#include "server/mechanics/forces/target_spring.h"
+#include "server/mechanics/forces/fibres.h"
+#include "server/mechanics/forces/friction.h"
+#include "server/mechanics/forces/gravity.h"
+#include "server/mechanics/forces/lungs.h"
+#include "server/mechanics/forces/membrane.h"
+#include "server/mechanics/forces/point_load.h"
+#include "server/mechanics/forces/pressure.h"
+#include "server/mechanics/forces/solid.h"
+#include "server/mechanics/forces/springs.h"
+#include "server/mechanics/integrators/bdf2.h"
+#include "server/mechanics/integrators/explicit_euler.h"
+#include "server/mechanics/integrators/linear_implicit_euler.h"
+#include "server/mechanics/integrators/projective_dynamics.h"
+#include "server/mechanics/integrators/rk4.h"
+#include "server/mechanics/integrators/semi_implicit_euler.h"
+#include "server/mechanics/integrators/static_equilibrium.h"
+#include "server/mechanics/integrators/thesis_euler.h"
+#include "server/mechanics/integrators/tr_bdf2.h"
+#include "server/mechanics/integrators/velocity_verlet.h"
+#include "server/mechanics/measures/energy.h"
+#include "server/mechanics/measures/force_output.h"
+#include "server/mechanics/measures/highest.h"
+#include "server/mechanics/measures/volume.h"
+#include "server/mechanics/motions/oscillation.h"
+#include "server/mechanics/motions/ribs.h"
+#include "server/mechanics/skinning/make_skins.h"
+#include "server/mechanics/motions/sternum.h"
+
+namespace phrenic {
+namespace {
+
+std::string In(std::string_view path, const char* field) { return absl::StrCat(std::string(path), ".", field); }
+
+absl::Status NoKind(std::string_view path) { return FieldError(path, "says no kind: set one of its kinds"); }
+
+absl::Status Add(absl::StatusOr<std::unique_ptr<Motion>> motion, Draft& draft) {
+  if (!motion.ok()) return motion.status();
+  if (*motion != nullptr) draft.model.motions.push_back(*std::move(motion));
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<Force>> MakeForce(const v1::Force& scene, std::string_view path, Draft& draft) {
+  switch (scene.kind_case()) {
+    case v1::Force::kSprings:
+      return Springs::Make(scene.springs(), scene.name(), In(path, "springs"), draft);
+    case v1::Force::kFriction:
+      return Friction::Make(scene.friction(), scene.name(), In(path, "friction"), draft);
+    case v1::Force::kActionLine:
+      return ActionLine::Make(scene.action_line(), scene.name(), In(path, "action_line"), draft);
+    case v1::Force::kAttachment:
+      return Attachment::Make(scene.attachment(), scene.name(), In(path, "attachment"), draft);
+    case v1::Force::kGravity:
+      return Gravity::Make(scene.gravity(), scene.name(), In(path, "gravity"), draft);
+    case v1::Force::kContact:
+      return Contact::Make(scene.contact(), scene.name(), In(path, "contact"), draft);
+    case v1::Force::kCables:
+      return Cables::Make(scene.cables(), scene.name(), In(path, "cables"), draft);
+    case v1::Force::kMembrane:
+      return MakeMembrane(scene.membrane(), scene.name(), In(path, "membrane"), draft);
+    case v1::Force::kSolid:
+      return MakeSolid(scene.solid(), scene.name(), In(path, "solid"), draft);
+    case v1::Force::kFibres:
+      return Fibres::Make(scene.fibres(), scene.name(), In(path, "fibres"), draft);
+    case v1::Force::kBending:
+      return Bending::Make(scene.bending(), scene.name(), In(path, "bending"), draft);
+    case v1::Force::kCrossLayer:
+      return MakeCrossLayer(scene.cross_layer(), scene.name(), In(path, "cross_layer"), draft);
+    case v1::Force::kDrag:
+      return Drag::Make(scene.drag(), scene.name(), In(path, "drag"), draft);
+    case v1::Force::kPointLoad:
+      return PointLoad::Make(scene.point_load(), scene.name(), In(path, "point_load"), draft);
+    case v1::Force::kPressure:
+      return Pressure::Make(scene.pressure(), scene.name(), In(path, "pressure"), draft);
+    case v1::Force::kLungs:
+      return Lungs::Make(scene.lungs(), scene.name(), In(path, "lungs"), draft);
+    case v1::Force::KIND_NOT_SET:
+      break;
+  }
+  return NoKind(path);
+}
+
+absl::StatusOr<std::unique_ptr<Constraint>> MakeConstraint(const v1::Constraint& scene, std::string_view path,
+                                                           Draft& draft) {
+  switch (scene.kind_case()) {
+    case v1::Constraint::kRigidLinks:
+      return RigidLinks::Make(scene.rigid_links(), scene.name(), In(path, "rigid_links"), draft);
+    case v1::Constraint::kLimits:
+      return Limits::Make(scene.limits(), scene.name(), In(path, "limits"), draft);
+    case v1::Constraint::KIND_NOT_SET:
+      break;
+  }
+  return NoKind(path);
+}
+
+namespace {
+
+template <typename Kind>
+const Integrator& Only() {
+  static const Kind only;
+  return only;
+}
+
+}  // namespace
+
+const Integrator& FindIntegrator(v1::Integrator kind) {
+  switch (kind) {
+    case v1::INTEGRATOR_THESIS:
+      return Only<ThesisEuler>();
+    case v1::INTEGRATOR_EXPLICIT_EULER:
+      return Only<ExplicitEuler>();
+    case v1::INTEGRATOR_VELOCITY_VERLET:
+      return Only<VelocityVerlet>();
+    case v1::INTEGRATOR_RUNGE_KUTTA_4:
+      return Only<Rk4>();
+    case v1::INTEGRATOR_LINEAR_IMPLICIT_EULER:
+      return Only<LinearImplicitEuler>();
+    case v1::INTEGRATOR_BDF2:
+      return Only<Bdf2>();
+    case v1::INTEGRATOR_TR_BDF2:
+      return Only<TrBdf2>();
+    case v1::INTEGRATOR_PROJECTIVE_DYNAMICS:
+      return Only<ProjectiveDynamics>();
+    case v1::INTEGRATOR_STATIC:
+      return Only<StaticEquilibrium>();
+    case v1::INTEGRATOR_SEMI_IMPLICIT_EULER:
+    case v1::INTEGRATOR_UNSPECIFIED:
+    case v1::Integrator_INT_MIN_SENTINEL_DO_NOT_USE_:
+    case v1::Integrator_INT_MAX_SENTINEL_DO_NOT_USE_:
+      break;
+  }
+  return Only<SemiImplicitEuler>();
+}
+
+absl::Status AddMotion(const v1::Motion& scene, std::string_view path, Draft& draft) {
+  switch (scene.kind_case()) {
+    case v1::Motion::kRibs:
+      return Add(Ribs::Make(scene.ribs(), scene.name(), In(path, "ribs"), draft), draft);
+    case v1::Motion::kSternum:
+      return Add(Sternum::Make(scene.sternum(), scene.name(), In(path, "sternum"), draft), draft);
+    case v1::Motion::kOscillation:
+      return Add(Oscillation::Make(scene.oscillation(), scene.name(), In(path, "oscillation"), draft), draft);
+    case v1::Motion::kRide:
+      return AddRides(scene.ride(), scene.name(), In(path, "ride"), draft);
+    case v1::Motion::KIND_NOT_SET:
+      break;
+  }
+  return NoKind(path);
+}
+
+absl::StatusOr<std::unique_ptr<Measure>> MakeMeasure(const v1::Measure& scene, std::string_view path, Draft& draft) {
+  switch (scene.kind_case()) {
+    case v1::Measure::kVolume:
+      return MakeVolume(scene.volume(), scene.name(), In(path, "volume"), draft);
+    case v1::Measure::kFlow:
+      return MakeFlow(scene.flow(), scene.name(), In(path, "flow"), draft);
+    case v1::Measure::kKineticEnergy:
+      return MakeKineticEnergy(scene.kinetic_energy(), scene.name(), In(path, "kinetic_energy"), draft);
+    case v1::Measure::kElasticEnergy:
+      return MakeElasticEnergy(scene.elastic_energy(), scene.name(), In(path, "elastic_energy"), draft);
+    case v1::Measure::kHighest:
+      return MakeHighest(scene.highest(), scene.name(), In(path, "highest"), draft);
+    case v1::Measure::kForceOutput:
+      return MakeForceOutput(scene.force_output(), scene.name(), In(path, "force_output"), draft);
+    case v1::Measure::KIND_NOT_SET:
+      break;
+  }
+  return NoKind(path);
+}
+
+}  // namespace phrenic

@@ -1,0 +1,130 @@
+#include "server/mechanics/forces/target_spring.h"
+
+#include <cmath>
+#include <limits>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "server/mesh/triangle_tree.h"
+
+namespace phrenic {
+namespace {
+
+std::string FieldOf(std::string_view path, const char* field) { return absl::StrCat(std::string(path), ".", field); }
+
+// The body may be driven, but neither give way nor ride on others.
+absl::StatusOr<int> FirmSurface(const std::string& name, std::string_view path, const Draft& draft) {
+  auto found = draft.Body(name, path);
+  if (!found.ok()) return found;
+  const BodyModel& body = draft.model.bodies[*found];
+  if (body.first_vertex >= 0 || body.ride >= 0) {
+    return FieldError(path, absl::StrCat("body \"", name, "\" is deformable, or rides on others, and cannot be a ",
+                                         "target; name a body that is driven or at rest"));
+  }
+  if (body.mesh.triangles.cols() == 0) {
+    return FieldError(path, absl::StrCat("body \"", name, "\" has no triangles to draw to"));
+  }
+  return found;
+}
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<Force>> Drag::Make(const v1::Drag& scene, const std::string& given,
+                                                  std::string_view path, Draft& draft) {
+  const std::string name = ElementName(given, "drag", scene.bodies());
+  auto bodies = draft.DeformableBodies(scene.bodies(), FieldOf(path, "bodies"));
+  if (!bodies.ok()) return bodies.status();
+  if (!scene.vertices().empty() && bodies->size() != 1) {
+    return FieldError(FieldOf(path, "vertices"), "are of one body, and several are named: write one drag for each");
+  }
+  std::unique_ptr<Drag> force(new Drag(name));
+  force->stiffness_ = scene.stiffness();
+  force->damping_ratio_ = scene.damping_ratio();
+  force->breathes_ = scene.scaled_by_breath();
+  for (const int b : *bodies) {
+    if (absl::Status status = force->AddDraws(scene, b, path, draft); !status.ok()) return status;
+  }
+  if (absl::Status status = force->FindTargets(scene, path, draft); !status.ok()) return status;
+  if (force->draws_.empty() || scene.stiffness() == 0) {
+    draft.ReportLeftOut(name, force->draws_.empty() ? "none of its vertices is free" : "its stiffness is 0");
+    return nullptr;
+  }
+  draft.ReportElement("force", name, static_cast<std::int64_t>(force->draws_.size()), "vertices",
+                      absl::StrFormat("to their targets, k = %g N/m%s", scene.stiffness(),
+                                      force->breathes_ ? ", with the breath" : ""));
+  return force;
+}
+
+absl::Status Drag::AddDraws(const v1::Drag& scene, int body, std::string_view path, Draft& draft) {
+  const auto vertices = draft.FreeVertices(body, scene.region(), scene.vertices(), path);
+  if (!vertices.ok()) return vertices.status();
+  for (const int vertex : *vertices) {
+    const Eigen::Vector3d rest = draft.model.rest.col(vertex);
+    draws_.push_back({vertex, 2 * damping_ratio_ * std::sqrt(stiffness_ * draft.model.mass[vertex]), rest, rest});
+  }
+  return absl::OkStatus();
+}
+
+absl::Status Drag::FindTargets(const v1::Drag& scene, std::string_view path, const Draft& draft) {
+  switch (scene.target_case()) {
+    case v1::Drag::kDisplacement:
+      for (Draw& draw : draws_) draw.target = draw.rest + ToEigen(scene.displacement());
+      return absl::OkStatus();
+    case v1::Drag::kPoint:
+      for (Draw& draw : draws_) draw.target = ToEigen(scene.point());
+      return absl::OkStatus();
+    case v1::Drag::kSurface:
+      return FindSurfaceTargets(scene, path, draft);
+    case v1::Drag::TARGET_NOT_SET:
+      break;
+  }
+  return FieldError(path, "says no target: set displacement, point or surface");
+}
+
+absl::Status Drag::FindSurfaceTargets(const v1::Drag& scene, std::string_view path, const Draft& draft) {
+  const auto found = FirmSurface(scene.surface(), FieldOf(path, "surface"), draft);
+  if (!found.ok()) return found.status();
+  const BodyModel& surface = draft.model.bodies[*found];
+  pose_ = surface.pose;
+  const TriangleTree tree(surface.mesh.vertices, surface.mesh.triangles);
+  TriangleTree::Boxes boxes;
+  tree.Fit(surface.mesh.vertices, boxes);
+  const double reach = std::numeric_limits<double>::infinity();
+  for (Draw& draw : draws_) {
+    draw.target = draw.rest + tree.Nearest(surface.mesh.vertices, boxes, draw.rest, reach).offset;
+  }
+  return absl::OkStatus();
+}
+
+Drag::Aim Drag::AimOf(const Draw& draw, const Instant& at) const {
+  Aim aim{draw.target, Eigen::Vector3d::Zero()};
+  if (pose_ >= 0) aim = {at.poses[pose_].At(draw.target), at.poses[pose_].VelocityAt(draw.target)};
+  if (!breathes_) return aim;
+  const double signal = at.parameters.breath_force() * at.breath;
+  const Eigen::Vector3d way = aim.place - draw.rest;
+  return {draw.rest + signal * way, signal * aim.velocity + at.parameters.breath_force() * at.breath_rate * way};
+}
+
+void Drag::AddForce(const Instant& at, MutablePoints f) const {
+  for (const Draw& draw : draws_) {
+    const Aim aim = AimOf(draw, at);
+    f.col(draw.vertex) +=
+        stiffness_ * (aim.place - at.x.col(draw.vertex)) + draw.damping * (aim.velocity - at.v.col(draw.vertex));
+  }
+}
+
+void Drag::AddStiffness(const Instant&, StiffnessSink& sink) const {
+  for (const Draw& draw : draws_) sink.Add(draw.vertex, draw.vertex, stiffness_ * Eigen::Matrix3d::Identity());
+}
+
+void Drag::AddDamping(const Instant&, Eigen::VectorXd& c) const {
+  for (const Draw& draw : draws_) c[draw.vertex] += draw.damping;
+}
+
+double Drag::Energy(const Instant& at) const {
+  double energy = 0;
+  for (const Draw& draw : draws_) energy += (AimOf(draw, at).place - at.x.col(draw.vertex)).squaredNorm();
+  return stiffness_ / 2 * energy;
+}
+
+}  // namespace phrenic

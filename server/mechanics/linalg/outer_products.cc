@@ -1,0 +1,46 @@
+#include "server/mechanics/linalg/outer_products.h"
+
+namespace phrenic {
+namespace {}  // namespace
+
+void OuterProducts::Add(double scale, const Points& g) {
+  if (used_ == terms_.size()) terms_.emplace_back();
+  terms_[used_].scale = scale;
+  terms_[used_].g = g;
+  ++used_;
+}
+
+void OuterProducts::AddTimes(double factor, const ConstPoints& x, MutablePoints y) const {
+  for (size_t k = 0; k < used_; ++k) y += factor * terms_[k].scale * Dot(terms_[k].g, x) * terms_[k].g;
+}
+
+void OuterProducts::TakeOff(const Term& term, double factor, Points& y) {
+  const double scale = factor * term.scale;
+  y -= scale * Dot(term.g, y) / (1 + scale * Dot(term.g, term.solved)) * term.solved;
+}
+
+void OuterProducts::Prepare(double factor, absl::FunctionRef<void(const Points&, Points&)> inverse) {
+  for (size_t k = 0; k < used_; ++k) {
+    inverse(terms_[k].g, terms_[k].solved);
+    for (size_t j = 0; j < k; ++j) TakeOff(terms_[j], factor, terms_[k].solved);
+  }
+}
+
+void OuterProducts::CorrectPrepared(double factor, Points& y) const {
+  for (size_t k = 0; k < used_; ++k) TakeOff(terms_[k], factor, y);
+}
+
+void OuterProducts::Correct(double factor, absl::FunctionRef<void(const Points&, Points&)> inverse, Points& y) {
+  Prepare(factor, inverse);
+  CorrectPrepared(factor, y);
+}
+
+double OuterProducts::Bound(const Eigen::VectorXd& weights) const {
+  double sum = 0;
+  for (size_t k = 0; k < used_; ++k) {
+    sum += terms_[k].scale * terms_[k].g.colwise().squaredNorm().transpose().cwiseProduct(weights).sum();
+  }
+  return sum;
+}
+
+}  // namespace phrenic

@@ -1,0 +1,114 @@
+#include "server/mechanics/skinning/body_points.h"
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "server/mechanics/skinning/skin_kernel.h"
+
+namespace phrenic {
+namespace {
+
+// Memory that keeps its capacity from body to body.
+Eigen::Map<Points> Fit(std::vector<double>& memory, const Points& like) {
+  memory.resize(static_cast<size_t>(like.size()));
+  return {memory.data(), 3, like.cols()};
+}
+
+// x [m], and v [m/s] where kVelocities.
+struct Placed {
+  MutablePoints x, v;
+};
+
+template <bool kVelocities>
+void CarryAll(const Pose& pose, const Points& rest, Placed& out) {
+  const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
+  for (Eigen::Index i = 0; i < rest.cols(); ++i) {
+    const Eigen::Vector3d turned = rotation * rest.col(i);
+    out.x.col(i) = turned + pose.translation;
+    if (kVelocities) out.v.col(i) = pose.velocity + pose.angular_velocity.cross(turned);
+  }
+}
+
+// The corners of a triangle, or their velocities.
+struct Corners {
+  Eigen::Vector3d a, b, c;
+  Corners(const ConstPoints& of, const TriangleShare& share)
+      : a(of.col(share.corners[0])), b(of.col(share.corners[1])), c(of.col(share.corners[2])) {}
+  Eigen::Vector3d Weighted(const Eigen::Vector3d& weights) const {
+    return weights[0] * a + weights[1] * b + weights[2] * c;
+  }
+};
+
+// Of the area vector N = (b - a) x (c - a), n = N/|N| turns at dn/dt = (dN/dt - n (n . dN/dt))/|N|.
+template <bool kVelocities>
+void PlaceOnTriangle(const TriangleShare& share, const Instant& at, Eigen::Index i, Placed& out) {
+  const Corners x(at.x, share);
+  const Eigen::Vector3d area = (x.b - x.a).cross(x.c - x.a), normal = area.stableNormalized();
+  out.x.col(i) = x.Weighted(share.weights) + share.height * normal;
+  if constexpr (!kVelocities) return;
+  const Corners v(at.v, share);
+  out.v.col(i) = v.Weighted(share.weights);
+  const double size = area.stableNorm();
+  if (!(size > 0)) return;
+  const Eigen::Vector3d rate = (v.b - v.a).cross(x.c - x.a) + (x.b - x.a).cross(v.c - v.a);
+  out.v.col(i) += share.height / size * (rate - normal * normal.dot(rate));
+}
+
+template <bool kVelocities>
+void PlaceOnTriangles(std::span<const TriangleShare> shares, const Instant& at, Placed& out) {
+  for (size_t i = 0; i < shares.size(); ++i) {
+    PlaceOnTriangle<kVelocities>(shares[i], at, static_cast<Eigen::Index>(i), out);
+  }
+}
+
+}  // namespace
+
+BodyPoints::BodyPoints(const Model& model, int body)
+    : rest_(&model.bodies[body].mesh.vertices),
+      first_vertex_(model.bodies[body].first_vertex),
+      pose_(model.bodies[body].pose),
+      carriers_(model.rest.data()) {
+  const int ride = model.bodies[body].ride;
+  if (ride < 0) return;
+  shares_ = model.rides[ride].shares;
+  triangles_ = model.rides[ride].triangles;
+}
+
+// Without velocities, v is not written.
+template <bool kVelocities>
+void BodyPoints::Follow(const Instant& at, MutablePoints x, MutablePoints v) const {
+  Placed out{x, v};
+  if (!triangles_.empty()) return PlaceOnTriangles<kVelocities>(triangles_, at, out);
+  if (pose_ >= 0) return CarryAll<kVelocities>(at.poses[pose_], *rest_, out);
+  x = *rest_;
+  if (kVelocities) v.setZero();
+  const CarriersNow carriers = {ColumnsOf(at), carriers_, at.x.data(), at.v.data()};
+  CarryShares(shares_, carriers, rest_->data(), x.data(), kVelocities ? v.data() : nullptr);
+}
+
+void BodyPoints::Place(const Instant& at, MutablePoints x) const {
+  if (first_vertex_ >= 0) {
+    x = at.x.middleCols(first_vertex_, rest_->cols());
+  } else {
+    Follow<false>(at, x, x);
+  }
+}
+
+ConstPoints BodyPoints::Positions(const Instant& at) const {
+  if (first_vertex_ >= 0) return at.x.middleCols(first_vertex_, rest_->cols());
+  thread_local std::vector<double> memory;
+  Eigen::Map<Points> x = Fit(memory, *rest_);
+  Follow<false>(at, x, x);
+  return x;
+}
+
+BodyPoints::Moving BodyPoints::Locate(const Instant& at) const {
+  const Eigen::Index n = rest_->cols();
+  if (first_vertex_ >= 0) return {at.x.middleCols(first_vertex_, n), at.v.middleCols(first_vertex_, n)};
+  thread_local std::vector<double> positions, velocities;
+  Eigen::Map<Points> x = Fit(positions, *rest_), v = Fit(velocities, *rest_);
+  Follow<true>(at, x, v);
+  return {x, v};
+}
+
+}  // namespace phrenic

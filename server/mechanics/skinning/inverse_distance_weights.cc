@@ -1,0 +1,84 @@
+#include "server/mechanics/skinning/inverse_distance_weights.h"
+
+#include <cmath>
+
+namespace phrenic {
+namespace {
+
+constexpr double kNear = 5e-3;           // distances below this count alike [m]
+constexpr double kSmallestShare = 0.01;  // of the nearest's: smaller ones are dropped and the rest scaled to 1
+constexpr double kSlack = 1e-9;          // of distances that are bounds: more than they are rounded by
+constexpr double kAround = 0.01;         // how far points may lie from the last place that was looked around [m]
+
+double Weight(double distance) {
+  const double squared = distance * distance + kNear * kNear;
+  return 1 / (squared * squared);
+}
+
+// How near a carrier must be to have the smallest share of what the nearest has: w_c/w = ((d^2 + n^2)/(d_c^2 + n^2))^2.
+double ReachOf(double nearest) {
+  const double squared = (nearest * nearest + kNear * kNear) / std::sqrt(kSmallestShare);
+  return std::sqrt(squared - kNear * kNear) * (1 + kSlack);
+}
+
+}  // namespace
+
+Blender::Blender(const Carriers& carriers)
+    : carriers_(carriers),
+      tracks_(static_cast<size_t>(carriers.count())),
+      middle_(Eigen::Vector3d::Constant(Carriers::kAnywhere)) {}
+
+// How far the carrier is from a point at least.
+double Blender::Track::AtLeast(const Eigen::Vector3d& point) const {
+  const double moved = (point - from).norm();
+  return distance - moved - kSlack * (distance + moved);
+}
+
+// As far as the vertex that was nearest last.
+double Blender::AtMost(int carrier, const Eigen::Vector3d& point) const {
+  return (carriers_.vertices(carrier).col(tracks_[carrier].vertex) - point).norm() * (1 + kSlack);
+}
+
+void Blender::Find(int carrier, const Eigen::Vector3d& point) {
+  const Neighbour found = carriers_.search(carrier).Nearest(point, AtMost(carrier, point));
+  tracks_[carrier] = {point, found.distance, found.vertex, Weight(found.distance)};
+  if (tracks_[carrier].weight > tracks_[nearest_].weight) nearest_ = carrier;
+}
+
+// Tells which may carry points within kAround from this one.
+void Blender::LookAround(const Eigen::Vector3d& point) {
+  middle_ = point;
+  const double reach = ReachOf(AtMost(nearest_, point) + kAround) + kAround;
+  around_.clear();
+  for (int c = 0; c < carriers_.count(); ++c) {
+    if (tracks_[c].AtLeast(point) <= reach) around_.push_back(c);
+  }
+}
+
+// Weighs all carriers that may have a share; the others' weight is 0.
+void Blender::Weigh(const Eigen::Vector3d& point) {
+  for (const int c : around_) tracks_[c].weight = 0;
+  const int first = nearest_;
+  Find(first, point);
+  double reach = ReachOf(tracks_[first].distance);
+  for (const int c : around_) {
+    if (c == first || tracks_[c].AtLeast(point) > reach) continue;
+    Find(c, point);
+    reach = ReachOf(tracks_[nearest_].distance);
+  }
+}
+
+void Blender::Blend(const Eigen::Vector3d& point, int for_vertex, std::vector<RideShare>& shares) {
+  if (!((point - middle_).norm() <= kAround)) LookAround(point);
+  Weigh(point);
+  const double smallest = kSmallestShare * tracks_[nearest_].weight;
+  double sum = 0;
+  for (const int c : around_) sum += tracks_[c].weight >= smallest ? tracks_[c].weight : 0;
+  for (const int c : around_) {
+    const Track& track = tracks_[c];
+    if (track.weight < smallest) continue;
+    carriers_.AppendShares({c, track.vertex, track.distance}, for_vertex, track.weight / sum, shares);
+  }
+}
+
+}  // namespace phrenic

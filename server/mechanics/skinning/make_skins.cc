@@ -1,0 +1,91 @@
+#include "server/mechanics/skinning/make_skins.h"
+
+#include <numeric>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "server/mechanics/skinning/inverse_distance_weights.h"
+#include "server/mechanics/skinning/triangle_skin.h"
+#include "server/mesh/locality.h"
+
+namespace phrenic {
+namespace {
+
+absl::Status CheckRider(const BodyModel& body, std::string_view path) {
+  if (body.role != v1::ROLE_SEEN) {
+    return FieldError(path, absl::StrCat("body \"", body.name, "\" must have ROLE_SEEN to ride on others"));
+  }
+  if (body.ride >= 0) return FieldError(path, absl::StrCat("body \"", body.name, "\" rides already"));
+  return absl::OkStatus();
+}
+
+// Sorts by vertex what lies together for each.
+std::vector<RideShare> ByVertex(const std::vector<RideShare>& shares, Eigen::Index vertices) {
+  std::vector<int> next(static_cast<size_t>(vertices) + 1, 0);
+  for (const RideShare& share : shares) ++next[share.vertex + 1];
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  std::vector<RideShare> sorted(shares.size());
+  for (const RideShare& share : shares) sorted[next[share.vertex]++] = share;
+  return sorted;
+}
+
+Ride RideOnVertices(const Carriers& search, const BodyModel& body, int b) {
+  const Points& vertices = body.mesh.vertices;
+  Blender blender(search);
+  std::vector<RideShare> shares;
+  for (const int i : CurveOrder(vertices)) blender.Blend(vertices.col(i), i, shares);
+  return {.body = b, .shares = ByVertex(shares, vertices.cols()), .triangles = {}};
+}
+
+void Seat(Ride ride, Draft& draft) {
+  draft.model.bodies[ride.body].ride = static_cast<int>(draft.model.rides.size());
+  draft.model.rides.push_back(std::move(ride));
+}
+
+void RideAllOnVertices(const std::vector<int>& bodies, const std::vector<int>& carriers, const std::string& name,
+                       Draft& draft) {
+  const Carriers search(draft, carriers);
+  std::int64_t vertices = 0;
+  for (const int b : bodies) {
+    Seat(RideOnVertices(search, draft.model.bodies[b], b), draft);
+    vertices += draft.model.bodies[b].mesh.vertices.cols();
+  }
+  draft.ReportElement("seen", name, vertices, "vertices", "worked out with each frame, not with each step");
+}
+
+absl::Status RideAllOnTriangles(const std::vector<int>& bodies, const std::vector<int>& carriers,
+                                const std::string& name, const std::string& path, Draft& draft) {
+  const auto mapping = Mapping::Make(draft, carriers, path);
+  if (!mapping.ok()) return mapping.status();
+  for (const int b : bodies) {
+    v1::MappingReport& report = *draft.model.report.add_mappings();
+    Seat(mapping->Carry(b, report), draft);
+    draft.ReportElement(
+        "seen", name, draft.model.bodies[b].mesh.vertices.cols(), "vertices",
+        absl::StrFormat("mapped onto triangles with each frame: %.2g mm off them at rest, %.2g mm at most; an even "
+                        "stretch of 1 %% is carried within %.2g mm",
+                        report.mean_distance_mm(), report.largest_distance_mm(), report.largest_strain_error_mm()));
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::Status AddRides(const v1::Ride& scene, const std::string& given, std::string_view path, Draft& draft) {
+  const std::string name = ElementName(given, "ride", scene.bodies());
+  const std::string field = absl::StrCat(std::string(path), ".bodies");
+  const std::string carried = absl::StrCat(std::string(path), ".carriers");
+  auto bodies = draft.Bodies(scene.bodies(), field);
+  if (!bodies.ok()) return bodies.status();
+  auto carriers = draft.Bodies(scene.carriers(), carried);
+  if (!carriers.ok()) return carriers.status();
+  for (const int b : *bodies) {
+    if (absl::Status status = CheckRider(draft.model.bodies[b], field); !status.ok()) return status;
+  }
+  if (scene.mode() == v1::RIDE_MODE_TRIANGLES) return RideAllOnTriangles(*bodies, *carriers, name, carried, draft);
+  RideAllOnVertices(*bodies, *carriers, name, draft);
+  return absl::OkStatus();
+}
+
+}  // namespace phrenic

@@ -1,0 +1,229 @@
+#include "server/mechanics/stability/spectrum.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "server/mechanics/step/advance.h"
+#include "server/mechanics/compile/catalogue.h"
+#include "server/mechanics/linalg/large_pages.h"
+#include "server/mechanics/stability/scaled_stiffness.h"
+
+namespace phrenic {
+namespace {
+
+constexpr int kProducts = 20;
+constexpr int kRough = 8;        // products for a first guess of the step
+constexpr double kNearby = 0.1;  // of a step: a guess that is off by less is as good as the step itself
+constexpr int kGuesses = 4;
+constexpr double kMostlyLeft = 0.7;
+constexpr double kConverged = 1e-5;   // of the largest Ritz value: round-off over it is still small
+constexpr double kExhausted = 1e-11;  // a product that leaves less than this that is new leaves round-off
+
+// Deterministic and without a pattern that a mesh could share; zero where the scale is.
+Eigen::VectorXd Start(const Eigen::VectorXd& scale) {
+  Eigen::VectorXd x(3 * scale.size());
+  std::uint64_t bits = 0x9e3779b97f4a7c15;
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    bits ^= bits << 13, bits ^= bits >> 7, bits ^= bits << 17;
+    x[i] = scale[i / 3] > 0 ? static_cast<double>(bits >> 11) * 0x1p-53 - 0.5 : 0;
+  }
+  return x;
+}
+
+// Of the free vertices.
+void FindLeastMass(const Model& model, Spectrum& spectrum) {
+  for (Eigen::Index i = 0; i < model.mass.size(); ++i) {
+    if (model.inverse_mass[i] > 0) spectrum.least_mass = std::min(spectrum.least_mass, model.mass[i]);
+  }
+}
+
+void FindDampingRates(const Model& model, const Instant& at, Spectrum& spectrum) {
+  Eigen::VectorXd c(model.rest.cols());
+  SumDamping(model, at, c);
+  spectrum.least_damping_rate = std::numeric_limits<double>::infinity();
+  for (Eigen::Index i = 0; i < c.size(); ++i) {
+    if (model.inverse_mass[i] == 0) continue;
+    spectrum.damping_rate = std::max(spectrum.damping_rate, c[i] * model.inverse_mass[i]);
+    spectrum.least_damping_rate = std::min(spectrum.least_damping_rate, c[i] * model.inverse_mass[i]);
+  }
+  OuterProducts shared;
+  SumSharedDamping(model, at, shared);
+  spectrum.damping_rate += shared.Bound(model.inverse_mass);
+}
+
+// Vectors one after another; each begins at an even place, so that sums over them are taken alike.
+class Basis {
+ public:
+  using Column = Eigen::Map<const Eigen::VectorXd, Eigen::Aligned16>;
+  explicit Basis(Eigen::Index rows) : rows_(rows) { values_.reserve(static_cast<size_t>(kProducts * Stride())); }
+
+  // q / norm
+  void Append(const Eigen::VectorXd& q, double norm) {
+    values_.resize(static_cast<size_t>((size_ + 1) * Stride()));
+    Eigen::Map<Eigen::VectorXd, Eigen::Aligned16>(values_.data() + size_++ * Stride(), rows_) = q / norm;
+  }
+  Column operator[](int k) const { return {values_.data() + k * Stride(), rows_}; }
+  int size() const { return size_; }
+  Eigen::Index rows() const { return rows_; }
+
+ private:
+  Eigen::Index Stride() const { return rows_ + rows_ % 2; }
+
+  Eigen::Index rows_;
+  LargeVector<double> values_;
+  int size_ = 0;
+};
+
+struct Krylov {
+  Basis basis;
+  std::vector<double> diagonal, off_diagonal;  // of the tridiagonal matrix; one more off_diagonal than needed
+};
+
+using Ritz = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>;
+
+Ritz RitzPairs(const Krylov& krylov) {
+  const auto size = static_cast<Eigen::Index>(krylov.diagonal.size());
+  const Eigen::Map<const Eigen::VectorXd> diagonal(krylov.diagonal.data(), size);
+  const Eigen::Map<const Eigen::VectorXd> off(krylov.off_diagonal.data(), size - 1);
+  Ritz pairs;
+  pairs.computeFromTridiagonal(diagonal, off);
+  return pairs;
+}
+
+// Whether a Ritz vector has converged: only along those does the next vector lose its right angle to the basis (Paige,
+// J Inst Maths Applics 1976;18:341), by round-off over what is left of it.
+bool OneHasConverged(const Krylov& krylov) {
+  const Ritz pairs = RitzPairs(krylov);
+  const double left = krylov.off_diagonal.back() * pairs.eigenvectors().bottomRows<1>().cwiseAbs().minCoeff();
+  return left <= kConverged * pairs.eigenvalues().cwiseAbs().maxCoeff();
+}
+
+// Takes off q what of it lies along the basis, again where little is left, which may not be orthogonal (Daniel, Gragg,
+// Kaufman, Stewart 1976); what is left of its length.
+double Orthogonalise(const Basis& basis, Eigen::VectorXd& q) {
+  double norm = q.norm();
+  for (int pass = 0; pass < 2; ++pass) {
+    const double before = norm;
+    for (int k = 0; k < basis.size(); ++k) q -= q.dot(basis[k]) * basis[k];
+    norm = q.norm();
+    if (norm > kMostlyLeft * before) break;
+  }
+  return norm;
+}
+
+Krylov Lanczos(ScaledStiffness& matrix, Eigen::VectorXd q, int products) {
+  Krylov krylov{.basis = Basis(q.size()), .diagonal = {}, .off_diagonal = {}};
+  double norm = q.norm();
+  double largest = 0;  // product's length: what is left of one is measured by it, whatever the unit of stiffness
+  bool converged = false;
+  while (krylov.basis.size() < products && norm > kExhausted * largest) {
+    krylov.basis.Append(q, norm);
+    const int k = krylov.basis.size() - 1;
+    const Basis::Column last = krylov.basis[k];
+    matrix.Times(last, q);
+    const double along = q.dot(last);
+    if (k == 0) {
+      q -= along * last;
+    } else {
+      q = (q - along * last) - krylov.off_diagonal.back() * krylov.basis[k - 1];
+    }
+    krylov.diagonal.push_back(along);
+    const double back = k == 0 ? 0 : krylov.off_diagonal.back(), on = q.norm();
+    largest = std::max(largest, std::hypot(back, along, on));
+    krylov.off_diagonal.push_back(on);
+    converged = converged || OneHasConverged(krylov);
+    if (converged) krylov.off_diagonal.back() = Orthogonalise(krylov.basis, q);
+    norm = krylov.off_diagonal.back();
+  }
+  return krylov;
+}
+
+// What the basis comes to with these weights; part by part, each of which stays in the nearest cache.
+Eigen::VectorXd Combine(const Basis& basis, const Eigen::VectorXd& weights) {
+  constexpr Eigen::Index kPart = 1024;
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(basis.rows());
+  for (Eigen::Index first = 0; first < sum.size(); first += kPart) {
+    auto part = sum.segment(first, std::min(kPart, sum.size() - first));
+    for (int k = 0; k < basis.size(); ++k) part += weights[k] * basis[k].segment(first, part.size());
+  }
+  return sum;
+}
+
+// The largest of the matrix' eigenvalues.
+struct Largest {
+  double ritz = 0;         // at most the eigenvalue
+  double residual = 0;     // with it, at least
+  Eigen::VectorXd vector;  // of length 1; no rows where there is no eigenvalue above 0
+};
+
+Largest FindLargest(ScaledStiffness& matrix, const Eigen::VectorXd& start, int products) {
+  const Krylov krylov = Lanczos(matrix, start, products);
+  if (krylov.basis.size() == 0) return {};
+  const Ritz pairs = RitzPairs(krylov);
+  const Eigen::VectorXd combination = pairs.eigenvectors().rightCols<1>();
+  const double residual = krylov.off_diagonal.back() * std::abs(combination.tail<1>()[0]);
+  const double ritz = pairs.eigenvalues().tail<1>()[0];
+  if (ritz + residual <= 0) return {};
+  return {ritz, residual, Combine(krylov.basis, combination)};
+}
+
+// The mode that limits the integrator's step; the spectrum has its own damping rate then, in the largest one's place. A
+// search goes on from what the last one found, and from all directions, as another mode may be the one now.
+Largest FindLimiting(ScaledStiffness& matrix, const Integrator& integrator, Spectrum& spectrum) {
+  const Eigen::VectorXd start = Start(matrix.scale()).normalized();
+  Largest limiting = FindLargest(matrix, start, kRough);
+  if (limiting.vector.size() == 0) return limiting;
+  Eigen::VectorXd product(limiting.vector.size());
+  double step = 2 / std::sqrt(limiting.ritz + limiting.residual);
+  for (int guess = 0; guess < kGuesses; ++guess) {
+    matrix.WeighDamping(2 / step);
+    limiting = FindLargest(matrix, start + limiting.vector, kProducts - kRough);
+    matrix.WeighDamping(0);
+    matrix.Times(limiting.vector, product);
+    const double elastic = limiting.vector.dot(product);
+    spectrum.omega_max = std::sqrt(std::max(0.0, elastic) + limiting.residual);
+    spectrum.damping_rate = std::max(0.0, limiting.ritz - elastic) * step / 2;
+    const double guessed = std::exchange(step, integrator.MaxStep(spectrum));
+    if (std::abs(guessed / step - 1) < kNearby) break;
+  }
+  return limiting;
+}
+
+// The vector as displacements, of which the largest is of length 1.
+void TakeMode(const Model& model, const Eigen::VectorXd& vector, FastestMode& fastest) {
+  const Eigen::Map<const Points> mode(vector.data(), 3, vector.size() / 3);
+  Eigen::Index largest = 0;
+  mode.colwise().squaredNorm().maxCoeff(&largest);
+  fastest.vertex = static_cast<int>(largest);
+  fastest.mode = mode * model.inverse_mass.cwiseSqrt().asDiagonal();
+  fastest.mode /= fastest.mode.colwise().norm().maxCoeff();
+}
+
+}  // namespace
+
+FastestMode FindFastestMode(const Model& model, const v1::Parameters& parameters, const State& state) {
+  FastestMode fastest;
+  if (model.rest.cols() == 0 || model.inverse_mass.maxCoeff() == 0) return fastest;
+  const Instant at = MakeInstant(model, parameters, state);
+  const Integrator& integrator = FindIntegrator(parameters.integrator());
+  Spectrum& spectrum = fastest.spectrum;
+  FindLeastMass(model, spectrum);
+  FindDampingRates(model, at, spectrum);
+  ScaledStiffness matrix(model, at, integrator.counted_damping());
+  Largest largest;
+  if (integrator.counted_damping() != Integrator::Damping::kNone && spectrum.damping_rate > 0) {
+    largest = FindLimiting(matrix, integrator, spectrum);
+  } else {
+    largest = FindLargest(matrix, Start(matrix.scale()), kProducts);
+    spectrum.omega_max = std::sqrt(largest.ritz + largest.residual);
+  }
+  if (largest.vector.size() > 0) TakeMode(model, largest.vector, fastest);
+  return fastest;
+}
+
+}  // namespace phrenic

@@ -1,0 +1,191 @@
+#include "server/service/calls/access_guard.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
+#include "absl/time/clock.h"
+#include "server/schema/schema.h"
+#include "server/schema/secret.h"
+#include "server/schema/sha256.h"
+#include "server/service/calls/peer.h"
+
+namespace phrenic::service {
+namespace {
+
+using access::Caller;
+using access::Rule;
+
+constexpr std::string_view kBearer = "Bearer ";
+constexpr std::size_t kMostLinksOfCall = 8, kMostOwned = 4096;
+
+absl::Status NoSuchSession(const std::string& id) {
+  return absl::NotFoundError(absl::StrCat("session_id: there is no session \"", id.substr(0, 64),
+                                          "\", or none that is yours to see; its owner can give you a join link"));
+}
+
+absl::Status TooLow(std::string_view method, v1::AccessRole role, const char* where) {
+  return absl::PermissionDeniedError(absl::StrCat("authorization: ", std::string(method), " is for the role ",
+                                                  std::string(access::NameOf(role)), where, "; ask for it"));
+}
+
+// "session_id" of the request; empty where it has none.
+std::string SessionOf(const google::protobuf::Message& request) {
+  const auto* field = request.GetDescriptor()->FindFieldByName("session_id");
+  if (field == nullptr || field->cpp_type() != google::protobuf::FieldDescriptor::CPPTYPE_STRING) return "";
+  return request.GetReflection()->GetString(request, field);
+}
+
+std::string_view TokenOf(std::string_view authorization) {
+  if (!absl::StartsWithIgnoreCase({authorization.data(), authorization.size()}, "bearer ")) return {};
+  return authorization.substr(kBearer.size());
+}
+
+// Browsers send several in one field, with commas between them.
+void AddLinks(std::string_view secrets, std::vector<std::string>& links) {
+  for (absl::string_view secret : absl::StrSplit(absl::string_view(secrets.data(), secrets.size()), ',')) {
+    secret = absl::StripAsciiWhitespace(secret);
+    if (!secret.empty() && links.size() < kMostLinksOfCall) links.push_back(Sha256Hex({secret.data(), secret.size()}));
+  }
+}
+
+std::string_view TextOf(const grpc::string_ref& text) { return {text.data(), text.size()}; }
+
+}  // namespace
+
+absl::StatusOr<Caller> Door::Identify(const grpc::ServerContextBase& context) const {
+  Caller caller;
+  caller.peer = PeerOf(context);
+  if (!guarded() || caller.peer.empty()) {
+    caller.account.role = v1::ACCESS_ROLE_ADMIN;
+    return caller;
+  }
+  const auto [first, last] = context.client_metadata().equal_range("x-join");
+  for (auto given = first; given != last; ++given) AddLinks(TextOf(given->second), caller.links);
+  const auto given = context.client_metadata().find("authorization");
+  if (given == context.client_metadata().end()) return caller;
+  auto account = accounts_.Check(TokenOf(TextOf(given->second)));
+  if (!account.ok()) return account.status();
+  caller.account = *std::move(account);
+  return caller;
+}
+
+v1::AccessRole Door::RoleIn(const Caller& caller, const session::Session& session) const {
+  if (caller.admin()) return v1::ACCESS_ROLE_ADMIN;
+  const auto access = session.access();
+  if (caller.known() && access->account == caller.account.name) return v1::ACCESS_ROLE_OWNER;
+  v1::AccessRole role = access->account.empty() ? caller.account.role : v1::ACCESS_ROLE_UNSPECIFIED;
+  for (const session::ControlState::Link& link : access->links) {
+    const bool shown = std::any_of(caller.links.begin(), caller.links.end(),
+                                   [&link](const std::string& hash) { return SameToken(hash, link.secret_sha256); });
+    if (shown && absl::Now() < link.expires) role = std::max(role, link.role);
+  }
+  return role;
+}
+
+bool Door::MaySee(const Caller& caller, const session::Session& session) const {
+  return RoleIn(caller, session) >= v1::ACCESS_ROLE_VIEWER;
+}
+
+std::function<bool()> Door::StillMaySee(const Caller& caller, const session::Session& session) const {
+  if (!guarded()) return nullptr;
+  return [this, caller, &session] { return accounts_.StillHas(caller.account) && MaySee(caller, session); };
+}
+
+absl::StatusOr<std::shared_ptr<session::Session>> Door::Find(const Caller& caller, const std::string& id) const {
+  auto session = table_.Find(id);
+  if (!guarded() || (session.ok() && MaySee(caller, **session))) return session;
+  return NoSuchSession(id);
+}
+
+absl::Status Door::DecideInSession(const Rule& rule, const Caller& caller, const std::string& session) const {
+  if (caller.admin()) return absl::OkStatus();  // whether there is one, the service says
+  const auto found = table_.Find(session);
+  if (!found.ok() || !MaySee(caller, **found)) return NoSuchSession(session);
+  if (RoleIn(caller, **found) >= rule.in_session) return absl::OkStatus();
+  return TooLow(rule.method, rule.in_session, " in this session");
+}
+
+absl::Status Door::Decide(const Rule& rule, const Caller& caller, const std::string& session) const {
+  if (!guarded() || rule.anybody) return absl::OkStatus();
+  if (!caller.known() && !caller.admin() && caller.links.empty()) {
+    return absl::UnauthenticatedError(
+        "authorization: this server knows its users; call it with a token (phrenic --token-file FILE, PHRENIC_TOKEN, "
+        "or \"Sign in\" in the viewer), or open a join link");
+  }
+  if (caller.account.role < rule.role) return TooLow(rule.method, rule.role, "");
+  return rule.in_session == v1::ACCESS_ROLE_UNSPECIFIED ? absl::OkStatus() : DecideInSession(rule, caller, session);
+}
+
+// Callers of this machine without an account are whoever runs it.
+absl::Status Door::Count(const Rule& rule, const Caller& caller) {
+  if (rule.uncounted || (!caller.known() && IsThisMachine(caller.peer))) return absl::OkStatus();
+  return rate_.Take(caller.known() ? "account " + caller.account.name : caller.peer, absl::Now());
+}
+
+absl::StatusOr<Caller> Door::Admit(const grpc::ServerContextBase& context, const google::protobuf::Message& request) {
+  const Rule* rule = access::RuleOf(request.GetDescriptor()->full_name());
+  if (rule == nullptr)
+    return absl::InternalError(absl::StrCat(request.GetTypeName(), " has no rule in access/rules.cc"));
+  const std::string session = SessionOf(request);
+  auto caller = Identify(context);
+  Caller who;
+  who.peer = PeerOf(context);
+  if (caller.ok()) who = *caller;
+  absl::Status outcome = Count(*rule, who);
+  if (outcome.ok()) outcome = rule->anybody ? absl::OkStatus() : caller.status();
+  if (outcome.ok()) outcome = Decide(*rule, who, session);
+  metrics_.CountRequest(outcome);
+  if (outcome.ok() ? rule->changes : noted_refusals_.Take("", absl::Now()).ok()) {
+    audit_.Note(who, rule->method, session, outcome);
+  }
+  if (outcome.ok()) outcome = schema::Validate(request);
+  if (!outcome.ok()) return outcome;
+  return who;
+}
+
+bool Door::Owns(const Caller& caller, const std::string& session) const {
+  if (!guarded()) return false;
+  if (caller.admin()) return true;
+  const auto found = table_.Find(session);
+  return found.ok() && caller.known() && (*found)->access()->account == caller.account.name;
+}
+
+std::string Door::OwnerOf(Kind kind, const std::string& id) const {
+  absl::MutexLock lock(&mutex_);
+  const auto owner = owners_.find({kind, id});
+  return owner == owners_.end() ? "" : owner->second;
+}
+
+void Door::Give(Kind kind, const std::string& id, const std::string& caller_id) {
+  if (!guarded()) return;
+  absl::MutexLock lock(&mutex_);
+  if (owners_.size() >= kMostOwned) owners_.clear();  // nobody's but the administrators': they were long gone
+  owners_[{kind, id}] = caller_id;
+}
+
+bool Door::Owns(Kind kind, const std::string& id, const Caller& caller) const {
+  if (!guarded() || caller.admin()) return true;
+  absl::MutexLock lock(&mutex_);
+  const auto owner = owners_.find({kind, id});
+  return owner != owners_.end() && owner->second == caller.id();
+}
+
+absl::Status Door::CheckOwns(Kind kind, const std::string& id, const Caller& caller) const {
+  if (Owns(kind, id, caller)) return absl::OkStatus();
+  const char* what = kind == Kind::kExport  ? "export_id: there is no export \""
+                     : kind == Kind::kStudy ? "study_id: there is no study \""
+                                            : "path: there is no \"";
+  return absl::NotFoundError(absl::StrCat(what, id.substr(0, 80), "\", or none of yours"));
+}
+
+bool Door::IsAdmin(std::string_view authorization) const {
+  if (!guarded()) return true;
+  const auto account = accounts_.Check(TokenOf(authorization));
+  return account.ok() && account->role == v1::ACCESS_ROLE_ADMIN;
+}
+
+}  // namespace phrenic::service

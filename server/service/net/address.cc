@@ -1,0 +1,33 @@
+#include "server/service/net/address.h"
+
+#include "absl/strings/match.h"
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+
+namespace phrenic::service {
+
+absl::StatusOr<Address> ParseAddress(const std::string& text) {
+  const std::size_t colon = text.find_last_of(':');
+  Address address;
+  int port = -1;
+  if (colon != std::string::npos && colon > 0 && absl::SimpleAtoi(text.substr(colon + 1), &port) && port >= 0 &&
+      port <= 65535) {
+    address = {text.substr(0, colon), port};
+    const bool bracketed = address.host.front() == '[' && address.host.back() == ']';
+    if (bracketed) address.host = address.host.substr(1, address.host.size() - 2);
+    if (!address.host.empty() && (bracketed || !absl::StrContains(address.host, ":"))) return address;
+  }
+  return absl::InvalidArgumentError(
+      absl::StrCat("\"", text, "\" is no address: HOST:PORT, as 127.0.0.1:8080, or 127.0.0.1:0 for any free port"));
+}
+
+bool IsLoopback(const Address& address) {
+  return address.host == "localhost" || address.host == "::1" || absl::StartsWith(address.host, "127.");
+}
+
+absl::Status CannotListen(const std::string& address, const std::string& why) {
+  return absl::UnavailableError(
+      absl::StrCat("cannot listen on ", address, ": ", why, "; choose another port, or stop the program that uses it"));
+}
+
+}  // namespace phrenic::service

@@ -1,0 +1,70 @@
+#include "server/service/net/tls.h"
+
+#include <grpcpp/security/tls_certificate_provider.h>
+#include <grpcpp/security/tls_credentials_options.h>
+#include <openssl/err.h>
+#include <openssl/ssl.h>
+
+#include <filesystem>
+
+#include "absl/strings/str_cat.h"
+
+namespace phrenic::service {
+namespace {
+
+constexpr unsigned kLookSeconds = 10;
+
+absl::Status CheckFile(const char* flag, const std::string& file) {
+  std::error_code error;
+  if (std::filesystem::is_regular_file(file, error)) return absl::OkStatus();
+  return absl::NotFoundError(absl::StrCat(flag, ": there is no file ", file));
+}
+
+absl::Status Fault(const char* flag, const std::string& file, const char* remedy) {
+  char text[256];
+  ERR_error_string_n(ERR_get_error(), text, sizeof text);
+  ERR_clear_error();
+  return absl::InvalidArgumentError(absl::StrCat(flag, ": ", file, " ", remedy, " (", text, ")"));
+}
+
+}  // namespace
+
+absl::Status CheckTls(const TlsFiles& files) {
+  if (!files.used()) {
+    if (files.key.empty() && files.client_ca.empty()) return absl::OkStatus();
+    return absl::InvalidArgumentError("--tls-cert: must be given where --tls-key or --tls-client-ca is");
+  }
+  if (files.key.empty()) return absl::InvalidArgumentError("--tls-key: must be given where --tls-cert is");
+  if (absl::Status status = CheckFile("--tls-cert", files.certificate); !status.ok()) return status;
+  if (absl::Status status = CheckFile("--tls-key", files.key); !status.ok()) return status;
+  const std::unique_ptr<SSL_CTX, decltype(&SSL_CTX_free)> context(SSL_CTX_new(TLS_server_method()), &SSL_CTX_free);
+  if (SSL_CTX_use_certificate_chain_file(context.get(), files.certificate.c_str()) != 1) {
+    return Fault("--tls-cert", files.certificate, "holds no certificate in PEM");
+  }
+  if (SSL_CTX_use_PrivateKey_file(context.get(), files.key.c_str(), SSL_FILETYPE_PEM) != 1 ||
+      SSL_CTX_check_private_key(context.get()) != 1) {
+    return Fault("--tls-key", files.key, "is not the certificate's key in PEM");
+  }
+  if (files.client_ca.empty()) return absl::OkStatus();
+  if (absl::Status status = CheckFile("--tls-client-ca", files.client_ca); !status.ok()) return status;
+  if (SSL_CTX_load_verify_locations(context.get(), files.client_ca.c_str(), nullptr) == 1) return absl::OkStatus();
+  return Fault("--tls-client-ca", files.client_ca, "holds no certificate in PEM");
+}
+
+std::shared_ptr<grpc::ServerCredentials> MakeCredentials(const TlsFiles& files) {
+  if (!files.used()) return grpc::InsecureServerCredentials();
+  namespace tls = grpc::experimental;
+  const auto provider = std::make_shared<tls::FileWatcherCertificateProvider>(files.key, files.certificate,
+                                                                              files.client_ca, kLookSeconds);
+  tls::TlsServerCredentialsOptions options(provider);
+  options.watch_identity_key_cert_pairs();
+  if (files.client_ca.empty()) {
+    options.set_cert_request_type(GRPC_SSL_DONT_REQUEST_CLIENT_CERTIFICATE);
+  } else {
+    options.watch_root_certs();
+    options.set_cert_request_type(GRPC_SSL_REQUEST_AND_REQUIRE_CLIENT_CERTIFICATE_AND_VERIFY);
+  }
+  return tls::TlsServerCredentials(options);
+}
+
+}  // namespace phrenic::service

@@ -1,0 +1,35 @@
+// Does again and again what nobody asks for.
+#ifndef PHRENIC_SERVER_SERVICE_PERIODIC_TASK_H_
+#define PHRENIC_SERVER_SERVICE_PERIODIC_TASK_H_
+
+#include <functional>
+#include <thread>
+#include <utility>
+
+#include "absl/synchronization/notification.h"
+#include "absl/time/time.h"
+
+namespace phrenic::service {
+
+// A thread that calls `work` every so often, from one `pause` after now until it is destroyed.
+class Caretaker {
+ public:
+  Caretaker(absl::Duration pause, std::function<void()> work)
+      : thread_([this, pause, work = std::move(work)] {
+          while (!ended_.WaitForNotificationWithTimeout(pause)) work();
+        }) {}
+  ~Caretaker() {
+    ended_.Notify();
+    thread_.join();
+  }
+  Caretaker(const Caretaker&) = delete;
+  Caretaker& operator=(const Caretaker&) = delete;
+
+ private:
+  absl::Notification ended_;
+  std::thread thread_;
+};
+
+}  // namespace phrenic::service
+
+#endif  // PHRENIC_SERVER_SERVICE_PERIODIC_TASK_H_

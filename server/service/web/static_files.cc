@@ -1,0 +1,97 @@
+#include "server/service/web/static_files.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/escaping.h"
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+
+namespace phrenic::service {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Type {
+  std::string_view ending;
+  const char* content_type;
+};
+
+constexpr Type kTypes[] = {
+    {".html", "text/html; charset=utf-8"},
+    {".js", "text/javascript; charset=utf-8"},
+    {".mjs", "text/javascript; charset=utf-8"},
+    {".css", "text/css; charset=utf-8"},
+    {".svg", "image/svg+xml"},
+    {".png", "image/png"},
+    {".jpg", "image/jpeg"},
+    {".ico", "image/x-icon"},
+    {".webp", "image/webp"},
+    {".json", "application/json"},
+    {".map", "application/json"},
+    {".wasm", "application/wasm"},
+    {".woff2", "font/woff2"},
+    {".txt", "text/plain; charset=utf-8"},
+};
+
+// Nothing where an escape is broken or hides a NUL.
+absl::StatusOr<std::string> PercentDecode(std::string_view text) {
+  std::string decoded;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    char c = text[i];
+    if (c == '%') {
+      if (i + 2 >= text.size() || !absl::ascii_isxdigit(text[i + 1]) || !absl::ascii_isxdigit(text[i + 2])) {
+        return absl::InvalidArgumentError("a broken escape in the address");
+      }
+      c = absl::HexStringToBytes(absl::string_view(text.data() + i + 1, 2))[0];
+      i += 2;
+    }
+    if (c == '\0') return absl::InvalidArgumentError("a zero in the address");
+    decoded += c;
+  }
+  return decoded;
+}
+
+bool IsBelow(const fs::path& root, const fs::path& path) {
+  return std::mismatch(root.begin(), root.end(), path.begin(), path.end()).first == root.end();
+}
+
+std::string ETagOf(const fs::path& path) {
+  std::error_code ignored;
+  return absl::StrFormat("\"%x-%x\"", fs::file_size(path, ignored),
+                         fs::last_write_time(path, ignored).time_since_epoch().count());
+}
+
+}  // namespace
+
+std::string ContentTypeOf(std::string_view path) {
+  for (const Type& type : kTypes) {
+    if (path.ends_with(type.ending)) return type.content_type;
+  }
+  return "application/octet-stream";
+}
+
+absl::StatusOr<StaticFile> FindStaticFile(const std::string& root, std::string_view target) {
+  target = target.substr(0, target.find_first_of("?#"));
+  if (target.empty() || target[0] != '/') return absl::InvalidArgumentError("the address does not begin with /");
+  const absl::StatusOr<std::string> decoded = PercentDecode(target.substr(1));
+  if (!decoded.ok()) return decoded.status();
+  const absl::Status missing = absl::NotFoundError("there is no such page");
+  std::error_code error;
+  const fs::path folder = fs::canonical(root, error);
+  if (error) return absl::NotFoundError("the viewer is not built: run deploy/run, or give its folder with --web-root");
+  const fs::path relative(decoded->empty() ? "index.html" : *decoded);
+  if (relative.is_absolute() || std::find(relative.begin(), relative.end(), "..") != relative.end()) return missing;
+  const fs::path path = fs::canonical(folder / relative, error);
+  if (error || !IsBelow(folder, path) || !fs::is_regular_file(path, error)) return missing;
+  const bool hashed = absl::StartsWith(*decoded, "assets/");
+  return StaticFile{.path = path.string(),
+                    .content_type = ContentTypeOf(path.string()),
+                    .etag = ETagOf(path),
+                    .cache_control = hashed ? "public, max-age=31536000, immutable" : "no-cache"};
+}
+
+}  // namespace phrenic::service

@@ -1,0 +1,115 @@
+#include "server/service/web/web_gateway.h"
+
+#include <boost/asio/connect.hpp>
+#include <boost/asio/strand.hpp>
+
+#include "server/service/net/listen.h"
+
+namespace phrenic::service {
+namespace {
+
+namespace net = boost::asio;
+using net::ip::tcp;
+
+constexpr int kThreads = 2;
+
+}  // namespace
+
+WebGateway::WebGateway(const Options& options, std::shared_ptr<grpc::Channel> channel)
+    : options_(options),
+      stub_(std::move(channel)),
+      context_(kThreads),
+      acceptor_(context_),
+      pause_(context_),
+      tls_(options.tls) {}
+
+absl::StatusOr<std::unique_ptr<WebGateway>> WebGateway::Start(const Options& options,
+                                                              std::shared_ptr<grpc::Channel> channel) {
+  std::unique_ptr<WebGateway> gateway(new WebGateway(options, std::move(channel)));
+  if (absl::Status status = gateway->Listen(); !status.ok()) return status;
+  gateway->AcceptNext();
+  for (int i = 0; i < kThreads; ++i) {
+    gateway->threads_.emplace_back([context = &gateway->context_] { context->run(); });
+  }
+  return gateway;
+}
+
+WebGateway::~WebGateway() { Shutdown(); }
+
+absl::Status WebGateway::Listen() {
+  const auto port = ListenOn(options_.address, acceptor_);
+  if (port.ok()) port_ = *port;
+  return port.status();
+}
+
+void WebGateway::Accept() {
+  acceptor_.async_accept(net::make_strand(context_), [this](boost::system::error_code error, tcp::socket socket) {
+    OnAccept(error, std::move(socket));
+  });
+}
+
+void WebGateway::OnAccept(boost::system::error_code error, tcp::socket socket) {
+  if (error == net::error::operation_aborted) return;
+  if (!error) {
+    boost::system::error_code ignored;
+    socket.set_option(tcp::no_delay(true), ignored);
+    NoticeDeath(socket);
+    const auto connection =
+        std::make_shared<WebConnection>(std::move(socket), tls_.Current(), options_.settings, stub_);
+    if (Admit(connection)) {
+      connection->Run();
+    } else {
+      connection->Refuse();
+    }
+    return AcceptNext();
+  }
+  // Out of file descriptors, say: it will not be better at once.
+  pause_.expires_after(std::chrono::milliseconds(100));
+  pause_.async_wait([this](boost::system::error_code) { AcceptNext(); });
+}
+
+void WebGateway::AcceptNext() {
+  absl::MutexLock lock(&mutex_);
+  if (!closed_) Accept();
+}
+
+bool WebGateway::Admit(const std::shared_ptr<WebConnection>& connection) {
+  absl::MutexLock lock(&mutex_);
+  connections_.remove_if([](const std::weak_ptr<WebConnection>& other) { return other.expired(); });
+  if (closed_ || (connections_.size() >= options_.max_connections && !MakeRoom())) return false;
+  connections_.push_back(connection);
+  return true;
+}
+
+bool WebGateway::MakeRoom() {
+  auto longest = connections_.end();
+  auto since = std::chrono::steady_clock::time_point::max();
+  for (auto place = connections_.begin(); place != connections_.end(); ++place) {
+    const auto connection = place->lock();
+    if (connection == nullptr || connection->waiting_since() >= since) continue;
+    since = connection->waiting_since();
+    longest = place;
+  }
+  if (longest == connections_.end()) return false;
+  if (const auto connection = longest->lock()) connection->Close();
+  connections_.erase(longest);
+  return true;
+}
+
+void WebGateway::Shutdown() {
+  std::list<std::weak_ptr<WebConnection>> connections;
+  {
+    absl::MutexLock lock(&mutex_);
+    closed_ = true;
+    connections.swap(connections_);
+    boost::system::error_code ignored;
+    acceptor_.close(ignored);
+  }
+  for (const auto& weak : connections) {
+    if (const auto connection = weak.lock()) connection->Close();
+  }
+  for (std::thread& thread : threads_) thread.join();
+  threads_.clear();
+}
+
+}  // namespace phrenic::service

@@ -1,0 +1,56 @@
+// A connection's bytes, encrypted or not: a stream as Asio's and Beast's operations take it.
+#ifndef PHRENIC_SERVER_SERVICE_WEB_WEB_STREAM_H_
+#define PHRENIC_SERVER_SERVICE_WEB_WEB_STREAM_H_
+
+#include <utility>
+// Boost 1.74's Asio needs <utility> before it with C++20.
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/ssl/stream.hpp>
+#include <boost/beast/core.hpp>
+#include <memory>
+#include <optional>
+
+namespace phrenic::service {
+
+// Not thread-safe: all of it runs on the socket's strand.
+class WebStream {
+ public:
+  using executor_type = boost::beast::tcp_stream::executor_type;
+
+  // `tls` null: nothing is encrypted.
+  WebStream(boost::asio::ip::tcp::socket socket, const std::shared_ptr<boost::asio::ssl::context>& tls)
+      : tcp_(std::move(socket)) {
+    if (tls != nullptr) tls_.emplace(tcp_, *tls);
+  }
+
+  executor_type get_executor() { return tcp_.get_executor(); }
+  // With its deadlines.
+  boost::beast::tcp_stream& tcp() { return tcp_; }
+  bool encrypted() const { return tls_.has_value(); }
+
+  // Calls the handler at once where nothing is encrypted.
+  template <class Handler>
+  void AsyncHandshake(Handler handler) {
+    if (!tls_.has_value()) return handler(boost::system::error_code());
+    tls_->async_handshake(boost::asio::ssl::stream_base::server, std::move(handler));
+  }
+
+  template <class Buffers, class Handler>
+  auto async_read_some(const Buffers& buffers, Handler&& handler) {
+    if (tls_.has_value()) return tls_->async_read_some(buffers, std::forward<Handler>(handler));
+    return tcp_.async_read_some(buffers, std::forward<Handler>(handler));
+  }
+  template <class Buffers, class Handler>
+  auto async_write_some(const Buffers& buffers, Handler&& handler) {
+    if (tls_.has_value()) return tls_->async_write_some(buffers, std::forward<Handler>(handler));
+    return tcp_.async_write_some(buffers, std::forward<Handler>(handler));
+  }
+
+ private:
+  boost::beast::tcp_stream tcp_;
+  std::optional<boost::asio::ssl::stream<boost::beast::tcp_stream&>> tls_;
+};
+
+}  // namespace phrenic::service
+
+#endif  // PHRENIC_SERVER_SERVICE_WEB_WEB_STREAM_H_

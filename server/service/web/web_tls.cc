@@ -1,0 +1,52 @@
+#include "server/service/web/web_tls.h"
+
+#include <algorithm>
+
+namespace phrenic::service {
+namespace {
+
+namespace ssl = boost::asio::ssl;
+
+constexpr std::chrono::seconds kWebTlsLook(10);
+
+// Null where a file is not good.
+std::shared_ptr<ssl::context> MakeContext(const TlsFiles& files) {
+  if (!CheckTls(files).ok()) return nullptr;
+  auto context = std::make_shared<ssl::context>(ssl::context::tls_server);
+  boost::system::error_code error;
+  context->set_options(ssl::context::default_workarounds | ssl::context::no_tlsv1 | ssl::context::no_tlsv1_1, error);
+  context->use_certificate_chain_file(files.certificate, error);
+  if (!error) context->use_private_key_file(files.key, ssl::context::pem, error);
+  if (!error && !files.client_ca.empty()) {
+    context->load_verify_file(files.client_ca, error);
+    context->set_verify_mode(ssl::verify_peer | ssl::verify_fail_if_no_peer_cert);
+  }
+  return error ? nullptr : context;
+}
+
+}  // namespace
+
+std::filesystem::file_time_type WebTls::Changed() const {
+  std::filesystem::file_time_type newest = std::filesystem::file_time_type::min();
+  std::error_code ignored;
+  for (const std::string& file : {files_.certificate, files_.key, files_.client_ca}) {
+    if (!file.empty()) newest = std::max(newest, std::filesystem::last_write_time(file, ignored));
+  }
+  return newest;
+}
+
+std::shared_ptr<ssl::context> WebTls::Current() {
+  if (!files_.used()) return nullptr;
+  const auto now = std::chrono::steady_clock::now();
+  if (context_ != nullptr && now - looked_ < kWebTlsLook) return context_;
+  looked_ = now;
+  const auto changed = Changed();
+  if (context_ != nullptr && changed == changed_) return context_;
+  if (auto fresh = MakeContext(files_); fresh != nullptr) {
+    context_ = std::move(fresh);
+    changed_ = changed;
+  }
+  return context_;
+}
+
+}  // namespace phrenic::service

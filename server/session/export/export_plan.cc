@@ -1,0 +1,173 @@
+#include "server/session/export/export_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
+#include "phrenic/v1/options.pb.h"
+#include "server/mechanics/measure.h"
+#include "server/mesh/units.h"
+#include "server/record/spool_file.h"
+#include "server/session/run.h"
+#include "server/session/export/surface_recorder.h"
+
+namespace phrenic::session {
+namespace {
+
+constexpr std::int64_t kBytesANumber = 16;  // of text
+constexpr std::int64_t kBytesAShape = 60;   // of text, or in a .vtp
+constexpr std::size_t kLongestStem = 100;
+
+bool IsCalled(const BodyModel& body, const std::string& name) { return body.name == name || body.layer == name; }
+
+absl::StatusOr<std::vector<int>> Bodies(const Model& model, const v1::CreateExportRequest& request) {
+  std::vector<bool> chosen(model.bodies.size(), false);
+  std::vector<std::string> names;
+  for (const BodyModel& body : model.bodies) names.push_back(body.name);
+  for (int k = 0; k < request.bodies_size(); ++k) {
+    bool found = false;
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+      if (IsCalled(model.bodies[i], request.bodies(k))) found = chosen[i] = true;
+    }
+    if (found) continue;
+    return absl::InvalidArgumentError(absl::StrCat("bodies[", k, "]: there is no body or layer \"", request.bodies(k),
+                                                   "\"; there are ", absl::StrJoin(names, ", ")));
+  }
+  std::vector<int> bodies;
+  for (int i = 0; i < static_cast<int>(chosen.size()); ++i) {
+    const bool usual = request.bodies().empty() && model.bodies[i].role == v1::ROLE_DEFORMABLE;
+    if (chosen[i] || usual) bodies.push_back(i);
+  }
+  if (bodies.empty()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("bodies: the scene has no deformable body; name some of ", absl::StrJoin(names, ", ")));
+  }
+  return bodies;
+}
+
+// Bodies, or columns, as the format has the one or the other.
+absl::Status ChooseContent(const v1::CreateExportRequest& request, const Model& model, ExportPlan& plan) {
+  if (!plan.format.numbers_only) {
+    auto bodies = Bodies(model, request);
+    if (!bodies.ok()) return bodies.status();
+    plan.bodies = *std::move(bodies);
+    for (const int body : plan.bodies) plan.vertices += model.bodies[body].mesh.vertices.cols();
+    return absl::OkStatus();
+  }
+  if (!request.bodies().empty()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("bodies: ", plan.format.name, " has the probes and measures alone; choose no bodies"));
+  }
+  if (!model.probes.empty() || !model.measures.empty()) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat("format: the scene has neither probes nor measures, which is what ",
+                                                 plan.format.name, " holds; give it some, or take another format"));
+}
+
+absl::Status ChooseValues(const v1::CreateExportRequest& request, ExportPlan& plan) {
+  const std::vector<record::Values>& offered = plan.format.values;
+  if (!offered.empty()) plan.values = offered.front();
+  if (request.values() == v1::EXPORT_VALUES_UNSPECIFIED) return absl::OkStatus();
+  plan.values =
+      request.values() == v1::EXPORT_VALUES_DISPLACEMENTS ? record::Values::kDisplacements : record::Values::kPositions;
+  if (std::find(offered.begin(), offered.end(), plan.values) != offered.end()) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrCat("values: ", plan.format.name, " has one kind of values alone; leave them unsaid"));
+}
+
+absl::Status ChooseStem(const v1::CreateExportRequest& request, ExportPlan& plan) {
+  plan.file_stem = request.file_stem().empty() ? request.session_id() : request.file_stem();
+  const auto allowed = [](char c) {
+    return absl::ascii_isalnum(static_cast<unsigned char>(c)) || c == '.' || c == '_' || c == '-';
+  };
+  const bool plain = std::all_of(plan.file_stem.begin(), plan.file_stem.end(), allowed);
+  if (plain && plan.file_stem[0] != '.' && plan.file_stem.size() <= kLongestStem) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrCat("file_stem: the file's name has up to ", kLongestStem,
+                   " letters, digits, \".\", \"_\" and \"-\", and does not begin with a dot"));
+}
+
+absl::Status ChooseTimes(const v1::CreateExportRequest& request, const Session::Fork& fork, ExportPlan& plan) {
+  plan.start = request.has_start() ? request.start() : fork.state.time;
+  plan.seconds = request.seconds();
+  if (plan.start < fork.state.time - kTimeTolerance) {
+    return absl::InvalidArgumentError(absl::StrFormat(
+        "start: %g s is over, the session is at %g s; reset it, or choose a later time", plan.start, fork.state.time));
+  }
+  if (plan.format.instant && plan.seconds > 0) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "seconds: ", plan.format.name, " holds one instant; leave the length 0 and choose the time by start"));
+  }
+  if (request.has_steps_per_frame() && request.has_frames_per_second()) {
+    return absl::InvalidArgumentError("steps_per_frame: give either this or frames_per_second");
+  }
+  plan.steps_per_frame = request.steps_per_frame();
+  const auto* field = v1::CreateExportRequest::descriptor()->FindFieldByName("frames_per_second");
+  plan.frames_per_second = field->options().GetExtension(v1::quantity).default_value();
+  if (plan.format.frames_a_breath > 0) {
+    plan.frames_per_second = plan.format.frames_a_breath / fork.parameters.breath_length();
+  }
+  if (request.has_frames_per_second()) plan.frames_per_second = request.frames_per_second();
+  return absl::OkStatus();
+}
+
+// Of `model` at the step that `parameters` have.
+std::int64_t Estimate(const Model& model, const v1::Parameters& parameters, const ExportPlan& plan) {
+  const double rate = plan.steps_per_frame > 0
+                          ? 1 / (parameters.time_step() * static_cast<double>(plan.steps_per_frame))
+                          : plan.frames_per_second;
+  const auto frames = 1 + static_cast<std::int64_t>(plan.seconds * rate);
+  std::int64_t shapes = 0;
+  for (const int body : plan.bodies) {
+    shapes += model.bodies[body].mesh.triangles.cols() + model.bodies[body].mesh.edges.cols();
+  }
+  if (plan.format.numbers_only) return frames * kBytesANumber * static_cast<std::int64_t>(1 + ColumnsOf(model).size());
+  return kBytesAShape * (plan.vertices + shapes) +
+         frames * plan.vertices * (plan.format.file_bytes + plan.format.spool_bytes);
+}
+
+}  // namespace
+
+absl::StatusOr<ExportPlan> PlanExport(const v1::CreateExportRequest& request, const Model& model,
+                                      const Session::Fork& fork, const std::string& spool_folder) {
+  auto format = record::FindFormat(ExportFormats(), request.format());
+  if (!format.ok()) return format.status();
+  ExportPlan plan;
+  plan.format = *std::move(format);
+  plan.spool_folder = spool_folder;
+  if (absl::Status status = ChooseContent(request, model, plan); !status.ok()) return status;
+  if (absl::Status status = ChooseValues(request, plan); !status.ok()) return status;
+  if (absl::Status status = ChooseStem(request, plan); !status.ok()) return status;
+  if (absl::Status status = ChooseTimes(request, fork, plan); !status.ok()) return status;
+  plan.bytes = Estimate(model, fork.parameters, plan);
+  if (absl::Status status = record::CheckRoom(spool_folder, plan.bytes); !status.ok()) return status;
+  return plan;
+}
+
+std::vector<record::Column> ColumnsOf(const Model& model) {
+  std::vector<record::Column> columns;
+  for (const Probe& probe : model.probes) {
+    for (const char* axis : {" x", " y", " z"}) columns.push_back({probe.name + axis, "mm"});
+  }
+  for (const auto& measure : model.measures) columns.push_back({measure->name(), measure->unit()});
+  return columns;
+}
+
+std::vector<double> NumbersAt(const Model& model, const v1::Parameters& parameters, const State& state) {
+  std::vector<double> numbers;
+  Points placed;
+  for (const Probe& probe : model.probes) {
+    placed.resize(3, model.bodies[probe.body].mesh.vertices.cols());
+    PlaceBody(model, state, probe.body, placed);
+    for (const double coordinate : placed.col(probe.vertex)) numbers.push_back(kMillimetresAMetre * coordinate);
+  }
+  for (const v1::MeasureReading& reading : ReadMeasures(model, MakeInstant(model, parameters, state))) {
+    numbers.push_back(reading.value());
+  }
+  return numbers;
+}
+
+}  // namespace phrenic::session

@@ -1,0 +1,168 @@
+#include "server/session/export/exporter.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "server/record/recorder.h"
+#include "server/session/pace_meter.h"
+#include "server/session/run.h"
+
+namespace phrenic::session {
+namespace {
+
+using Wall = std::chrono::steady_clock;
+
+constexpr auto kBetweenWords = std::chrono::milliseconds(200);  // of progress
+constexpr double kRecordingShare = 0.5;                         // of a format that is written from a spool at the end
+
+// One export under way. Not thread-safe.
+class Export {
+ public:
+  Export(const ExportPlan& plan, const Model& model, Run& run, record::Recorder& recorder,
+         const ExportProgress& progress)
+      : plan_(plan), model_(model), run_(run), recorder_(recorder), progress_(progress), begin_(run.state().time) {
+    positions_.resize(3, plan.vertices);
+  }
+
+  absl::Status Record() {
+    if (absl::Status status = StepTo(plan_.start); !status.ok()) return status;
+    if (absl::Status status = Begin(); !status.ok()) return status;
+    absl::Status recorded = plan_.steps_per_frame > 0 ? RecordBySteps() : RecordByTime();
+    if (!recorded.ok()) return recorded;
+    return recorder_.End([this](double share) {
+      if (Wall::now() < last_word_ + kBetweenWords) return absl::OkStatus();
+      last_word_ = Wall::now();
+      return progress_(kRecordingShare + (1 - kRecordingShare) * share, plan_.seconds);
+    });
+  }
+
+  void FillSummary(v1::ExportSummary& summary) const {
+    summary.set_frames(frames_);
+    summary.set_vertices(positions_.cols());
+    summary.set_steps(steps_);
+    summary.set_simulated_seconds(run_.state().time - begin_);
+    summary.set_step_wall_seconds(step_wall_);
+    summary.set_step_cpu_seconds(step_cpu_);
+    summary.set_state_hash(HashText(run_.state()));
+  }
+
+ private:
+  double end() const { return plan_.start + plan_.seconds; }
+
+  absl::Status Begin() {
+    PlaceBodies();
+    record::Recording recording;
+    Eigen::Index first = 0;
+    for (const int body : plan_.bodies) {
+      recording.bodies.push_back({model_.bodies[body].name, model_.bodies[body].mesh});
+      Points& vertices = recording.bodies.back().mesh.vertices;
+      vertices = positions_.middleCols(first, vertices.cols());
+      first += vertices.cols();
+    }
+    if (plan_.format.numbers_only) recording.columns = ColumnsOf(model_);
+    if (absl::Status status = recorder_.Begin(recording); !status.ok()) return status;
+    return AddFrame();
+  }
+
+  void PlaceBodies() {
+    Eigen::Index first = 0;
+    for (const int body : plan_.bodies) {
+      const Eigen::Index count = model_.bodies[body].mesh.vertices.cols();
+      PlaceBody(model_, run_.state(), body, positions_.middleCols(first, count));
+      first += count;
+    }
+  }
+
+  absl::Status AddFrame() {
+    PlaceBodies();
+    ++frames_;
+    std::vector<double> numbers;
+    if (plan_.format.numbers_only) numbers = NumbersAt(model_, run_.parameters(), run_.state());
+    return recorder_.AddFrame({run_.state().time, positions_, numbers});
+  }
+
+  absl::Status RecordByTime() {
+    const auto frames = static_cast<std::int64_t>(std::floor(plan_.seconds * plan_.frames_per_second + 1e-6));
+    for (std::int64_t frame = 1; frame <= frames; ++frame) {
+      const double time = plan_.start + static_cast<double>(frame) / plan_.frames_per_second;
+      if (absl::Status status = StepTo(time); !status.ok()) return status;
+      if (absl::Status status = AddFrame(); !status.ok()) return status;
+    }
+    return StepTo(end());
+  }
+
+  absl::Status RecordBySteps() {
+    while (true) {
+      const std::int64_t next = steps_ + plan_.steps_per_frame;
+      if (absl::Status status = StepTo(end(), next); !status.ok()) return status;
+      if (steps_ < next) return absl::OkStatus();
+      if (absl::Status status = AddFrame(); !status.ok()) return status;
+    }
+  }
+
+  absl::Status StepTo(double time, std::int64_t most_steps = std::numeric_limits<std::int64_t>::max()) {
+    while (steps_ < most_steps && run_.state().time < time - kTimeTolerance) {
+      if (absl::Status status = StepForAWhile(time, most_steps); !status.ok()) return status;
+      if (Wall::now() < last_word_ + kBetweenWords) continue;
+      last_word_ = Wall::now();
+      if (absl::Status status = TellProgress(); !status.ok()) return status;
+    }
+    return absl::OkStatus();
+  }
+
+  absl::Status TellProgress() {
+    const double time = run_.state().time, all = end() - begin_;
+    const double share = all > 0 ? std::min(1.0, (time - begin_) / all) : 1;
+    return progress_(share * (plan_.format.spool_bytes > 0 ? kRecordingShare : 1), std::max(0.0, time - plan_.start));
+  }
+
+  // Until `time` or so many steps, or until a word is due.
+  absl::Status StepForAWhile(double time, std::int64_t most_steps) {
+    const Wall::time_point start = Wall::now();
+    const double cpu = ThreadCpuSeconds();
+    absl::Status status;
+    while (status.ok() && steps_ < most_steps && run_.state().time < time - kTimeTolerance &&
+           Wall::now() < last_word_ + kBetweenWords) {
+      status = run_.Step();
+      ++steps_;
+    }
+    step_wall_ += std::chrono::duration<double>(Wall::now() - start).count();
+    step_cpu_ += ThreadCpuSeconds() - cpu;
+    return status;
+  }
+
+  const ExportPlan& plan_;
+  const Model& model_;
+  Run& run_;
+  record::Recorder& recorder_;
+  const ExportProgress& progress_;
+  const double begin_;  // of the stepping [s]
+  Points positions_;
+  Wall::time_point last_word_ = Wall::now();
+  std::int64_t frames_ = 0, steps_ = 0;
+  double step_wall_ = 0, step_cpu_ = 0;
+};
+
+}  // namespace
+
+absl::StatusOr<v1::ExportSummary> ExportMotion(const ExportPlan& plan, const std::shared_ptr<const Model>& model,
+                                               Session::Fork fork, ExportFile& file, const ExportProgress& progress) {
+  const auto recorder = plan.format.make({.sink = [&file](std::string_view bytes) { return file.Append(bytes); },
+                                          .values = plan.values,
+                                          .stem = plan.file_stem,
+                                          .spool_folder = plan.spool_folder});
+  Run run(model, std::move(fork.parameters), std::move(fork.state));
+  Export work(plan, *model, run, *recorder, progress);
+  if (absl::Status status = work.Record(); !status.ok()) return status;
+  v1::ExportSummary summary;
+  work.FillSummary(summary);
+  summary.set_bytes(file.spool()->size());
+  summary.set_sha256(file.Sha256Digits());
+  return summary;
+}
+
+}  // namespace phrenic::session

@@ -1,0 +1,138 @@
+#include "server/stream/codecs/neighbour_predictor.h"
+
+#include <optional>
+
+#include "absl/strings/str_cat.h"
+#include "server/stream/wire.h"
+#include "server/stream/zstd.h"
+
+namespace phrenic::stream {
+namespace {
+
+constexpr std::uint32_t kEscape = 3;       // of two bits: the rest follows in the overflow
+constexpr std::size_t kLengths = 8;        // bytes of the first zstd frame, bytes of the overflow
+constexpr std::size_t kLongestNumber = 5;  // bytes of the overflow
+
+absl::Status Bad(const char* what) { return absl::InvalidArgumentError(absl::StrCat("remainders: ", what)); }
+
+// 0, -1, 1, -2, ... as 0, 1, 2, 3, ...
+std::uint32_t ZigZag(std::int32_t value) {
+  return (static_cast<std::uint32_t>(value) << 1) ^ static_cast<std::uint32_t>(value >> 31);
+}
+
+std::int32_t UnZigZag(std::uint32_t value) { return static_cast<std::int32_t>((value >> 1) ^ (0U - (value & 1))); }
+
+// Seven bits a byte, the low ones first, the eighth set where more follow.
+void AppendNumber(std::uint32_t value, std::string& bytes) {
+  for (; value >= 0x80; value >>= 7) bytes += static_cast<char>(value | 0x80);
+  bytes += static_cast<char>(value);
+}
+
+// None where the bytes end before the number does.
+std::optional<std::uint32_t> TakeNumber(std::string_view bytes, std::size_t& at) {
+  std::uint32_t value = 0;
+  for (int shift = 0; shift < 35 && at < bytes.size(); shift += 7) {
+    const auto byte = static_cast<unsigned char>(bytes[at++]);
+    value |= static_cast<std::uint32_t>(byte & 0x7f) << shift;
+    if (byte < 0x80) return value;
+  }
+  return std::nullopt;
+}
+
+// The remainders in two parts: two bits each, four a byte from the low bits, and what is left of those of kEscape.
+struct Parts {
+  explicit Parts(std::size_t count) : bits((count + 3) / 4, '\0') {}
+  void Add(std::int32_t remainder) {
+    const std::uint32_t value = ZigZag(remainder);
+    const std::uint32_t two = std::min(value, kEscape);
+    bits[next / 4] = static_cast<char>(static_cast<unsigned char>(bits[next / 4]) | two << 2 * (next % 4));
+    ++next;
+    if (two == kEscape) AppendNumber(value - kEscape, overflow);
+  }
+  std::string bits, overflow;
+  std::size_t next = 0;
+};
+
+// Three a place.
+std::optional<Steps> Join(std::string_view bits, std::string_view overflow, std::size_t places) {
+  Steps remainders(3 * places);
+  std::size_t at = 0, i = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t place = 0; place < places; ++place, ++i) {
+      std::uint32_t value = static_cast<unsigned char>(bits[i / 4]) >> 2 * (i % 4) & 3;
+      if (value == kEscape) {
+        const auto more = TakeNumber(overflow, at);
+        if (!more.has_value()) return std::nullopt;
+        value += *more;
+      }
+      remainders[3 * place + axis] = UnZigZag(value);
+    }
+  }
+  if (at != overflow.size()) return std::nullopt;
+  return remainders;
+}
+
+}  // namespace
+
+std::array<std::int64_t, 3> Foretelling::Foretell(const Steps& steps, int place) const {
+  static_assert(kUnit == 1 << 12);
+  std::int64_t x = kUnit / 2, y = kUnit / 2, z = kUnit / 2;
+  for (int i = neighbours_.first[place]; i < neighbours_.first[place + 1]; ++i) {
+    const std::int64_t weight = neighbours_.weights[i];
+    const std::int32_t* const other = &steps[3 * static_cast<std::size_t>(neighbours_.places[i])];
+    x += weight * other[0], y += weight * other[1], z += weight * other[2];
+  }
+  return {x >> 12, y >> 12, z >> 12};  // over kUnit, rounded down
+}
+
+Steps Foretelling::Remainders(const Steps& steps) const {
+  Steps remainders(steps.size());
+  for (int place = 0; 3 * static_cast<std::size_t>(place) < steps.size(); ++place) {
+    const auto foretold = Foretell(steps, place);
+    for (int axis = 0; axis < 3; ++axis) {
+      remainders[3 * place + axis] = static_cast<std::int32_t>(steps[3 * place + axis] - foretold[axis]);
+    }
+  }
+  return remainders;
+}
+
+Steps Foretelling::Sums(const Steps& remainders) const {
+  Steps steps(remainders.size());
+  for (int place = 0; 3 * static_cast<std::size_t>(place) < steps.size(); ++place) {
+    const auto foretold = Foretell(steps, place);
+    for (int axis = 0; axis < 3; ++axis) {
+      steps[3 * place + axis] = static_cast<std::int32_t>(foretold[axis] + remainders[3 * place + axis]);
+    }
+  }
+  return steps;
+}
+
+void AppendRemainders(const Steps& remainders, std::string& bytes) {
+  Parts parts(remainders.size());
+  for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = axis; i < remainders.size(); i += 3) parts.Add(remainders[i]);
+  }
+  std::string compressed;
+  const std::size_t first = AppendCompressed(parts.bits, compressed);
+  AppendCompressed(parts.overflow, compressed);
+  Append(static_cast<std::uint32_t>(first), bytes);
+  Append(static_cast<std::uint32_t>(parts.overflow.size()), bytes);
+  bytes += compressed;
+}
+
+absl::StatusOr<Steps> ReadRemainders(std::string_view bytes, std::size_t places) {
+  if (bytes.size() < kLengths) return Bad("the lengths are cut off");
+  const std::size_t first = Read<std::uint32_t>(bytes, 0), overflow_bytes = Read<std::uint32_t>(bytes, 4);
+  const std::size_t count = 3 * places;
+  if (first > bytes.size() - kLengths) return Bad("the two bits are cut off");
+  if (overflow_bytes > kLongestNumber * count) return Bad("there is more overflow than there are numbers");
+  const auto bits = Decompress(bytes.substr(kLengths, first), (count + 3) / 4);
+  if (!bits.ok()) return bits.status();
+  const auto overflow = Decompress(bytes.substr(kLengths + first), overflow_bytes);
+  if (!overflow.ok()) return overflow.status();
+  auto remainders = Join(*bits, *overflow, places);
+  if (!remainders.has_value()) return Bad("the overflow does not fit the two bits");
+  return *std::move(remainders);
+}
+
+}  // namespace phrenic::stream

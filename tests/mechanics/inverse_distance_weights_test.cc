@@ -1,0 +1,98 @@
+#include "server/mechanics/skinning/inverse_distance_weights.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <random>
+
+namespace phrenic {
+namespace {
+
+Points Cloud(int n, const Eigen::Vector3d& middle, double size, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(-size, size);
+  return Points::NullaryExpr(3, n, [&] { return uniform(random); }).colwise() + middle;
+}
+
+// Twelve clouds of vertices around a ring of 0.3 m; each has a pose.
+Draft Clouds() {
+  Draft draft;
+  for (int c = 0; c < 12; ++c) {
+    BodyModel body;
+    body.pose = c;
+    body.mesh.vertices = Cloud(200, {0.15 * std::cos(c * 0.52), 0.15 * std::sin(c * 0.52), 0}, 0.04, c + 1);
+    draft.model.bodies.push_back(std::move(body));
+  }
+  return draft;
+}
+
+std::vector<int> All(const Draft& draft) {
+  std::vector<int> bodies;
+  for (int b = 0; b < static_cast<int>(draft.model.bodies.size()); ++b) bodies.push_back(b);
+  return bodies;
+}
+
+// A path through the ring in small steps, with a leap now and then.
+Points Path() {
+  Points path = Cloud(2000, Eigen::Vector3d::Zero(), 0.25, 99);
+  for (Eigen::Index i = 1; i < path.cols(); ++i) {
+    if (i % 100 != 0) path.col(i) = path.col(i - 1) + 0.01 * path.col(i);
+  }
+  return path;
+}
+
+// By the definition.
+std::map<int, double> SharesOf(const Draft& draft, const Eigen::Vector3d& point) {
+  std::map<int, double> weights;
+  double largest = 0, kept = 0;
+  for (int b = 0; b < static_cast<int>(draft.model.bodies.size()); ++b) {
+    const double squared = (draft.model.bodies[b].mesh.vertices.colwise() - point).colwise().squaredNorm().minCoeff();
+    weights[b] = std::pow(squared + 25e-6, -2);
+    largest = std::max(largest, weights[b]);
+  }
+  for (auto& [body, weight] : weights) kept += weight = weight < 0.01 * largest ? 0 : weight;
+  for (auto& [body, weight] : weights) weight /= kept;
+  return weights;
+}
+
+class BlenderBetweenClouds : public testing::Test {
+ protected:
+  const Draft draft = Clouds();
+  const Carriers carriers{draft, All(draft)};
+  Blender blender{carriers};
+  const Points path = Path();
+};
+
+TEST_F(BlenderBetweenClouds, GivesSharesByInverseDistance) {
+  int shared = 0;
+  for (int i = 0; i < path.cols(); ++i) {
+    std::vector<RideShare> shares;
+    blender.Blend(path.col(i), i, shares);
+    std::map<int, double> expected = SharesOf(draft, path.col(i));
+    for (const RideShare& share : shares) {
+      EXPECT_NEAR(share.weight, expected[share.pose], 1e-9) << i;
+      expected[share.pose] = 0;
+    }
+    for (const auto& [body, weight] : expected) EXPECT_EQ(weight, 0) << "left out at " << i;
+    shared += shares.size() > 2 ? 1 : 0;
+  }
+  EXPECT_GT(shared, 500) << "the path is between carriers";
+}
+
+TEST_F(BlenderBetweenClouds, IsTheSameWhateverWasBlendedBefore) {
+  for (int i = 0; i < path.cols(); ++i) {
+    std::vector<RideShare> shares, alone;
+    blender.Blend(path.col(i), i, shares);
+    Blender(carriers).Blend(path.col(i), i, alone);
+    ASSERT_EQ(shares.size(), alone.size()) << i;
+    for (size_t s = 0; s < shares.size(); ++s) {
+      EXPECT_EQ(shares[s].pose, alone[s].pose) << i;
+      EXPECT_EQ(shares[s].weight, alone[s].weight) << i;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace phrenic
