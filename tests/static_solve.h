@@ -8,8 +8,8 @@
 #include <functional>
 #include <vector>
 
-#include "server/mechanics/solve/block_matrix.h"
 #include "server/mechanics/model.h"
+#include "server/mechanics/solve/block_matrix.h"
 
 namespace phrenic {
 
@@ -18,7 +18,7 @@ using Held = std::function<bool(int vertex, int axis)>;
 
 inline Points ForceOn(const Model& model, const State& state) {
   Points f = Points::Zero(3, state.x.cols());
-  for (const auto& force : model.forces) force->AddForce(MakeInstant(model, model.parameters, state), f);
+  for (const auto& force : model.forces) force->AddForce(MakeEvalContext(model, model.parameters, state), f);
   return f;
 }
 
@@ -35,7 +35,7 @@ inline Points SolveStatic(const Model& model, const Points& start, const Points&
   BlockMatrix stiffness(model);
   for (int iteration = 0; iteration < 100; ++iteration) {
     const Points f = ForceOn(model, state) + load;
-    stiffness.Assemble(model, MakeInstant(model, model.parameters, state));
+    stiffness.Assemble(model, MakeEvalContext(model, model.parameters, state));
     const Eigen::SparseMatrix<double> k = pick * stiffness.ToSparse() * pick.transpose();
     const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(k);
     if (solver.info() != Eigen::Success) break;

@@ -16,18 +16,18 @@
 namespace phrenic::client {
 namespace {
 
-using Cells = std::vector<std::string>;
+using Texts = std::vector<std::string>;
 
 struct Grid {
-  Cells header;
-  std::vector<Cells> rows;
+  Texts header;
+  std::vector<Texts> rows;
 };
 
 // The parameters that the runs set, in the order in which they first come.
-Cells ParametersOf(const v1::CampaignResult& result) {
-  Cells names;
+Texts ParametersOf(const v1::CampaignResult& result) {
+  Texts names;
   for (const v1::CampaignRow& row : result.rows()) {
-    for (const std::string& setting : Cells(absl::StrSplit(row.settings(), ' ', absl::SkipEmpty()))) {
+    for (const std::string& setting : Texts(absl::StrSplit(row.settings(), ' ', absl::SkipEmpty()))) {
       const std::string name = setting.substr(0, setting.find('='));
       if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
     }
@@ -36,7 +36,7 @@ Cells ParametersOf(const v1::CampaignResult& result) {
 }
 
 std::string SettingOf(const v1::CampaignRow& row, const std::string& name) {
-  for (const std::string& setting : Cells(absl::StrSplit(row.settings(), ' ', absl::SkipEmpty()))) {
+  for (const std::string& setting : Texts(absl::StrSplit(row.settings(), ' ', absl::SkipEmpty()))) {
     if (setting.substr(0, setting.find('=')) == name) return setting.substr(name.size() + 1);
   }
   return "";
@@ -44,8 +44,8 @@ std::string SettingOf(const v1::CampaignRow& row, const std::string& name) {
 
 using ReadingsOfCells = std::map<std::string, std::map<std::string, const v1::CampaignReading*>>;
 
-Cells MeasuresOf(const v1::CampaignResult& result) {
-  Cells names;
+Texts MeasuresOf(const v1::CampaignResult& result) {
+  Texts names;
   for (const v1::CampaignReading& reading : result.readings()) {
     if (std::find(names.begin(), names.end(), reading.measure()) == names.end()) names.push_back(reading.measure());
   }
@@ -64,7 +64,7 @@ std::string UnitOf(const v1::CampaignReading& reading) {
 }
 
 Grid MakeGrid(const v1::CampaignResult& result) {
-  const Cells parameters = ParametersOf(result), measures = MeasuresOf(result);
+  const Texts parameters = ParametersOf(result), measures = MeasuresOf(result);
   ReadingsOfCells readings;
   std::map<std::string, std::string> units;
   for (const v1::CampaignReading& reading : result.readings()) {
@@ -77,7 +77,7 @@ Grid MakeGrid(const v1::CampaignResult& result) {
   for (const std::string& measure : measures)
     grid.header.push_back(absl::StrCat(measure, ", most [", units[measure], "]"));
   for (const v1::CampaignRow& row : result.rows()) {
-    Cells cells = {row.scene(), row.resolution_mm() > 0 ? absl::StrFormat("%g", row.resolution_mm()) : "",
+    Texts cells = {row.scene(), row.resolution_mm() > 0 ? absl::StrFormat("%g", row.resolution_mm()) : "",
                    row.preset()};
     for (const std::string& name : parameters) cells.push_back(SettingOf(row, name));
     cells.push_back(row.outcome());
@@ -98,7 +98,7 @@ Grid Trimmed(const Grid& grid) {
   Grid kept;
   kept.rows.resize(grid.rows.size());
   for (size_t c = 0; c < grid.header.size(); ++c) {
-    const auto said = [c](const Cells& row) { return !row[c].empty(); };
+    const auto said = [c](const Texts& row) { return !row[c].empty(); };
     if (!std::any_of(grid.rows.begin(), grid.rows.end(), said)) continue;
     kept.header.push_back(grid.header[c]);
     for (size_t r = 0; r < grid.rows.size(); ++r) kept.rows[r].push_back(grid.rows[r][c]);
@@ -106,7 +106,7 @@ Grid Trimmed(const Grid& grid) {
   return kept;
 }
 
-std::string Escaped(const std::string& text) {
+std::string HtmlEscaped(const std::string& text) {
   return absl::StrReplaceAll(text, {{"&", "&amp;"}, {"<", "&lt;"}, {">", "&gt;"}, {"\"", "&quot;"}});
 }
 
@@ -115,7 +115,7 @@ std::vector<std::vector<double>> Shades(const Grid& grid) {
   std::vector<std::vector<double>> shades(grid.rows.size(), std::vector<double>(grid.header.size(), -1));
   for (size_t c = 0; c < grid.header.size(); ++c) {
     double least = HUGE_VAL, greatest = -HUGE_VAL, value = 0;
-    for (const Cells& row : grid.rows) {
+    for (const Texts& row : grid.rows) {
       if (!absl::SimpleAtod(row[c], &value)) continue;
       least = std::min(least, value), greatest = std::max(greatest, value);
     }
@@ -129,7 +129,7 @@ std::vector<std::vector<double>> Shades(const Grid& grid) {
 std::string TableOf(const Grid& grid) {
   const auto shades = Shades(grid);
   std::string html = "<table><thead><tr>";
-  for (const std::string& name : grid.header) absl::StrAppend(&html, "<th scope=col>", Escaped(name), "</th>");
+  for (const std::string& name : grid.header) absl::StrAppend(&html, "<th scope=col>", HtmlEscaped(name), "</th>");
   absl::StrAppend(&html, "</tr></thead><tbody>\n");
   for (size_t r = 0; r < grid.rows.size(); ++r) {
     absl::StrAppend(&html, "<tr>");
@@ -137,7 +137,7 @@ std::string TableOf(const Grid& grid) {
       const double shade = shades[r][c];
       const std::string style =
           shade < 0 ? "" : absl::StrFormat(" style=\"background:rgb(31 119 180/%.2f)\"", 0.45 * shade);
-      absl::StrAppend(&html, "<td", style, ">", Escaped(grid.rows[r][c]), "</td>");
+      absl::StrAppend(&html, "<td", style, ">", HtmlEscaped(grid.rows[r][c]), "</td>");
     }
     absl::StrAppend(&html, "</tr>\n");
   }
@@ -156,7 +156,7 @@ constexpr char kHead[] =
 Table CampaignTable(const v1::CampaignResult& result) {
   const Grid grid = Trimmed(MakeGrid(result));
   Table table(grid.header);
-  for (const Cells& row : grid.rows) table.Add(row);
+  for (const Texts& row : grid.rows) table.Add(row);
   return table;
 }
 
@@ -165,13 +165,13 @@ std::string CampaignPage(const v1::Campaign& campaign, const v1::CampaignResult&
   std::map<std::string, int> outcomes;
   for (const v1::CampaignRow& row : result.rows()) ++outcomes[row.outcome()];
   const auto count = [](std::string* out, const auto& entry) { absl::StrAppend(out, entry.second, " ", entry.first); };
-  std::string html =
-      absl::StrCat(kHead, "<title>", Escaped(campaign.name()), "</title><h1>", Escaped(campaign.name()), "</h1><p>",
-                   result.rows_size(), " runs of ", campaign.seconds(), " s: ", absl::StrJoin(outcomes, ", ", count),
-                   "; ", campaign.limits_size() - static_cast<int>(passed_limits.size()), " of ",
-                   campaign.limits_size(), " limits kept. Shaded from a column's least to its most.</p>\n");
+  std::string html = absl::StrCat(
+      kHead, "<title>", HtmlEscaped(campaign.name()), "</title><h1>", HtmlEscaped(campaign.name()), "</h1><p>",
+      result.rows_size(), " runs of ", campaign.seconds(), " s: ", absl::StrJoin(outcomes, ", ", count), "; ",
+      campaign.limits_size() - static_cast<int>(passed_limits.size()), " of ", campaign.limits_size(),
+      " limits kept. Shaded from a column's least to its most.</p>\n");
   if (!passed_limits.empty()) absl::StrAppend(&html, "<h2>Limits that were passed</h2><ul>\n");
-  for (const std::string& sentence : passed_limits) absl::StrAppend(&html, "<li>", Escaped(sentence), "</li>\n");
+  for (const std::string& sentence : passed_limits) absl::StrAppend(&html, "<li>", HtmlEscaped(sentence), "</li>\n");
   if (!passed_limits.empty()) absl::StrAppend(&html, "</ul>\n");
   return html + TableOf(Trimmed(MakeGrid(result))) + "</html>\n";
 }

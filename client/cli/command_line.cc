@@ -10,10 +10,10 @@
 #include "client/cli/argument_kinds.h"
 #include "client/cli/completion.h"
 #include "client/cli/help.h"
-#include "client/print/output.h"
 #include "client/cli/settings.h"
-#include "client/terminal/terminal.h"
 #include "client/cli/usage_error.h"
+#include "client/print/output.h"
+#include "client/terminal/terminal.h"
 
 namespace phrenic::client {
 namespace {

@@ -27,7 +27,7 @@ std::string Pair(const std::string& first, const std::string& second) {
   const int at = std::min(kMeaningAt, HelpWidth() / 3);
   std::string text = std::string(kIndent, ' ') + first;
   if (second.empty()) return text + "\n";
-  const int used = kIndent + ColumnsOf(first);
+  const int used = kIndent + PoseMatricesOf(first);
   text += used + 1 < at ? std::string(at - used, ' ') : "\n" + std::string(at, ' ');
   return text + Wrapped(second, HelpWidth(), at) + "\n";
 }

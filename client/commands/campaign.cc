@@ -11,9 +11,9 @@
 #include "client/campaign/worker.h"
 #include "client/commands/commands.h"
 #include "client/files/limits.h"
+#include "client/files/whole_file.h"
 #include "client/print/output.h"
 #include "client/terminal/progress.h"
-#include "client/files/whole_file.h"
 
 namespace phrenic::client {
 namespace {

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "client/cli/argument_kinds.h"
+#include "client/cli/schema_options.h"
 #include "client/commands/commands.h"
 #include "client/print/comparison.h"
-#include "client/cli/schema_options.h"
 #include "server/schema/fields.h"
 
 namespace phrenic::client {

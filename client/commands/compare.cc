@@ -12,11 +12,11 @@
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
 #include "client/commands/commands.h"
+#include "client/files/motion_file.h"
+#include "client/files/whole_file.h"
 #include "client/print/comparison.h"
 #include "client/print/junit.h"
-#include "client/files/motion_file.h"
 #include "client/terminal/progress.h"
-#include "client/files/whole_file.h"
 #include "phrenic/v1/compare.grpc.pb.h"
 #include "server/service/server.h"
 

@@ -2,11 +2,11 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "client/cli/scene_argument.h"
 #include "client/commands/commands.h"
+#include "client/connection/tokens.h"
 #include "client/print/print_session.h"
 #include "client/terminal/progress.h"
-#include "client/cli/scene_argument.h"
-#include "client/connection/tokens.h"
 #include "phrenic/v1/session.grpc.pb.h"
 
 namespace phrenic::client {

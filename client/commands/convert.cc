@@ -6,10 +6,10 @@
 #include "absl/strings/str_format.h"
 #include "client/commands/commands.h"
 #include "client/files/whole_file.h"
+#include "server/compare/inspection.h"
 #include "server/mesh/repair.h"
 #include "server/mesh/units.h"
 #include "server/meshio/meshio.h"
-#include "server/compare/inspection.h"
 
 namespace phrenic::client {
 namespace {
@@ -54,7 +54,7 @@ int Convert(const Context& context, const ConvertOptions& options) {
   if (const absl::Status status = WriteWhole(options.out, *bytes); !status.ok()) return Fail(status);
   TellLosses(*surface, written->mesh);
   written->mesh.vertices *= kMillimetre * options.out_unit_mm;
-  const v1::SurfaceReport report = study::Inspect(options.out, *written, options.out_unit_mm);
+  const v1::SurfaceReport report = compare::Inspect(options.out, *written, options.out_unit_mm);
   if (context.json()) {
     std::cout << Json(report) << "\n";
   } else {

@@ -3,11 +3,11 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
+#include "client/cli/scene_argument.h"
 #include "client/commands/commands.h"
 #include "client/print/print_session.h"
-#include "client/terminal/progress.h"
-#include "client/cli/scene_argument.h"
 #include "client/print/table.h"
+#include "client/terminal/progress.h"
 #include "phrenic/v1/session.grpc.pb.h"
 
 namespace phrenic::client {

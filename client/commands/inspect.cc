@@ -3,9 +3,9 @@
 
 #include "client/commands/commands.h"
 #include "client/print/surface_report.h"
+#include "server/compare/inspection.h"
 #include "server/mesh/units.h"
 #include "server/meshio/meshio.h"
-#include "server/compare/inspection.h"
 
 namespace phrenic::client {
 namespace {}  // namespace
@@ -13,7 +13,7 @@ namespace {}  // namespace
 int Inspect(const Context& context, const InspectOptions& options) {
   const auto surface = meshio::ReadSurface(options.file, kMillimetre * options.unit_mm);
   if (!surface.ok()) return Fail(surface.status());
-  const v1::SurfaceReport report = study::Inspect(options.file, *surface, options.unit_mm);
+  const v1::SurfaceReport report = compare::Inspect(options.file, *surface, options.unit_mm);
   if (context.json()) {
     std::cout << Json(report) << "\n";
   } else {

@@ -3,11 +3,11 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "client/cli/scene_argument.h"
 #include "client/commands/commands.h"
 #include "client/print/junit.h"
-#include "client/terminal/progress.h"
-#include "client/cli/scene_argument.h"
 #include "client/print/table.h"
+#include "client/terminal/progress.h"
 #include "phrenic/v1/study.grpc.pb.h"
 #include "server/service/server.h"
 

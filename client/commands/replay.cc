@@ -7,10 +7,10 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "client/cli/scene_argument.h"
 #include "client/commands/commands.h"
 #include "client/connection/local_run.h"
 #include "client/terminal/progress.h"
-#include "client/cli/scene_argument.h"
 #include "phrenic/v1/session.grpc.pb.h"
 #include "server/service/server.h"
 

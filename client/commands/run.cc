@@ -3,13 +3,13 @@
 #include <nlohmann/json.hpp>
 
 #include "absl/strings/str_format.h"
+#include "client/cli/scene_argument.h"
 #include "client/commands/commands.h"
 #include "client/connection/local_run.h"
 #include "client/files/motion_file.h"
 #include "client/print/print_session.h"
-#include "client/terminal/progress.h"
-#include "client/cli/scene_argument.h"
 #include "client/print/table.h"
+#include "client/terminal/progress.h"
 #include "phrenic/v1/session.grpc.pb.h"
 #include "server/service/server.h"
 #include "server/session/export/surface_recorder.h"

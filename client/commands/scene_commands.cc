@@ -1,6 +1,6 @@
+#include "client/cli/scene_argument.h"
 #include "client/commands/command_tree.h"
 #include "client/print/comparison.h"
-#include "client/cli/scene_argument.h"
 #include "phrenic/v1/compare.pb.h"
 #include "server/meshio/meshio.h"
 #include "server/schema/fields.h"

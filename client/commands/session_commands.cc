@@ -2,8 +2,8 @@
 #include <set>
 
 #include "client/cli/command_line.h"
-#include "client/commands/command_tree.h"
 #include "client/cli/manual.h"
+#include "client/commands/command_tree.h"
 #include "phrenic/v1/frames.pb.h"
 #include "server/stream/codec.h"
 

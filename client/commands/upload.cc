@@ -7,8 +7,8 @@
 
 #include "absl/strings/str_cat.h"
 #include "client/commands/commands.h"
-#include "client/terminal/progress.h"
 #include "client/print/surface_report.h"
+#include "client/terminal/progress.h"
 #include "phrenic/v1/upload.grpc.pb.h"
 #include "server/schema/sha256.h"
 #include "server/session/uploads.h"

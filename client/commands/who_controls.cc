@@ -4,8 +4,8 @@
 
 #include "absl/strings/str_cat.h"
 #include "client/commands/commands.h"
-#include "client/print/print_session.h"
 #include "client/connection/tokens.h"
+#include "client/print/print_session.h"
 #include "phrenic/v1/control.grpc.pb.h"
 #include "phrenic/v1/session.grpc.pb.h"
 

@@ -8,8 +8,8 @@
 
 #include "absl/strings/str_cat.h"
 #include "client/files/part_file.h"
-#include "client/terminal/progress.h"
 #include "client/files/unpack.h"
+#include "client/terminal/progress.h"
 #include "server/record/spool_file.h"
 #include "server/session/export/surface_recorder.h"
 

@@ -21,7 +21,7 @@ std::string ValueText(double value, const std::string& unit) {
 }
 
 std::string Filled(const std::string& text, int width) {
-  return text + std::string(std::max(0, width - ColumnsOf(text)), ' ');
+  return text + std::string(std::max(0, width - PoseMatricesOf(text)), ' ');
 }
 
 }  // namespace
@@ -62,7 +62,7 @@ std::string LiveView::Line(const Row& row, int name_width, int value_width, cons
   const double value = row.values.back();
   std::string line = Filled(row.name, name_width) + std::string(kSpace, ' ') +
                      Filled(ValueText(value, row.unit), value_width) + std::string(kSpace, ' ');
-  const int left = canvas.width - ColumnsOf(line);
+  const int left = canvas.width - PoseMatricesOf(line);
   if (left < kBar) return Clipped(line, canvas.width);
   line += Bar(value, row.least, row.greatest, kBar, canvas.unicode);
   const int room = left - kBar - kSpace;
@@ -75,9 +75,9 @@ std::string LiveView::Line(const Row& row, int name_width, int value_width, cons
 std::vector<std::string> LiveView::Lines(const Canvas& canvas) const {
   int name_width = 0, value_width = 0;
   for (const Row& row : rows_) {
-    name_width = std::max(name_width, ColumnsOf(row.name));
+    name_width = std::max(name_width, PoseMatricesOf(row.name));
     for (const double value : {row.least, row.greatest, row.values.back()}) {
-      value_width = std::max(value_width, ColumnsOf(ValueText(value, row.unit)));
+      value_width = std::max(value_width, PoseMatricesOf(ValueText(value, row.unit)));
     }
   }
   std::vector<std::string> lines = {Clipped(Heading(), canvas.width)};

@@ -18,15 +18,15 @@ bool IsNumber(const std::string& cell) {
 }
 
 std::string Padded(const std::string& cell, int width) {
-  const std::string space(std::max(0, width - ColumnsOf(cell)), ' ');
+  const std::string space(std::max(0, width - PoseMatricesOf(cell)), ' ');
   return IsNumber(cell) ? space + cell : cell + space;
 }
 
 std::string RowText(const std::vector<std::string>& row, const std::vector<int>& widths, int width) {
   std::string line;
   for (size_t c = 0; c + 1 < row.size(); ++c) line += Padded(row[c], widths[c]) + std::string(kGap, ' ');
-  const int at = ColumnsOf(line);
-  const bool broken = width - at >= kNarrowest && ColumnsOf(row.back()) > width - at;
+  const int at = PoseMatricesOf(line);
+  const bool broken = width - at >= kNarrowest && PoseMatricesOf(row.back()) > width - at;
   line += broken ? Wrapped(row.back(), width, at) : Padded(row.back(), widths.back());
   line.erase(line.find_last_not_of(' ') + 1);
   return line;
@@ -53,9 +53,9 @@ void Table::Print(std::ostream& out) const {
 
 void Table::Print(std::ostream& out, int width) const {
   std::vector<int> widths;
-  for (const std::string& cell : header_) widths.push_back(ColumnsOf(cell));
+  for (const std::string& cell : header_) widths.push_back(PoseMatricesOf(cell));
   for (const auto& row : rows_) {
-    for (size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], ColumnsOf(row[c]));
+    for (size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], PoseMatricesOf(row[c]));
   }
   const std::string header = RowText(header_, widths, 0);
   out << (&out == &std::cout ? Painted(header, Ink::kBold, STDOUT_FILENO) : header) << "\n";

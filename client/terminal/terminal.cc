@@ -77,7 +77,7 @@ std::string Painted(const std::string& text, Ink ink, int stream) {
   return HasColour(stream) ? absl::StrCat("\x1b[", CodeOf(ink), "m", text, "\x1b[0m") : text;
 }
 
-int ColumnsOf(std::string_view text) { return static_cast<int>(std::ranges::count_if(text, StartsCharacter)); }
+int PoseMatricesOf(std::string_view text) { return static_cast<int>(std::ranges::count_if(text, StartsCharacter)); }
 
 std::string Clipped(const std::string& text, int columns) {
   std::size_t end = 0;
@@ -91,7 +91,7 @@ std::string Wrapped(const std::string& text, int width, int indent) {
   std::string wrapped;
   int column = 0;
   for (const absl::string_view word : absl::StrSplit(text, ' ', absl::SkipEmpty())) {
-    const int length = ColumnsOf({word.data(), word.size()});
+    const int length = PoseMatricesOf({word.data(), word.size()});
     if (column > 0 && indent + column + 1 + length > width) {
       wrapped += "\n" + std::string(indent, ' ');
       column = 0;

@@ -25,7 +25,7 @@ enum class Ink { kBold, kDim, kRed, kGreen, kYellow, kCyan };
 std::string Painted(const std::string& text, Ink ink, int stream);
 
 // The characters of UTF-8 text, each counted as one column.
-int ColumnsOf(std::string_view text);
+int PoseMatricesOf(std::string_view text);
 // The first `columns` characters.
 std::string Clipped(const std::string& text, int columns);
 // Broken between words into lines of `width` columns, each after the first behind `indent` spaces, which count.

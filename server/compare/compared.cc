@@ -4,10 +4,10 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "server/mesh/units.h"
 #include "server/compare/moments.h"
+#include "server/mesh/units.h"
 
-namespace phrenic::study {
+namespace phrenic::compare {
 namespace {
 
 constexpr double kFarthest = 1e6;  // [m]; squares and sums of what is nearer keep their digits
@@ -82,4 +82,4 @@ absl::StatusOr<ComparedPair> ReadPair(const v1::CompareRequest& request, BodySou
   return ComparedPair{*std::move(a), *std::move(b)};
 }
 
-}  // namespace phrenic::study
+}  // namespace phrenic::compare

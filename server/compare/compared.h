@@ -10,7 +10,7 @@
 #include "phrenic/v1/compare.pb.h"
 #include "server/meshio/motion.h"
 
-namespace phrenic::study {
+namespace phrenic::compare {
 
 // Gives a body of a session as it is now [m] and fills in which state that is.
 using BodySource = absl::FunctionRef<absl::StatusOr<Mesh>(const v1::SessionBody& body, v1::ComparedState& state)>;
@@ -30,6 +30,6 @@ struct ComparedPair {
 // naming the field; FAILED_PRECONDITION for a motion that has no state at that time; `bodies`' own errors.
 absl::StatusOr<ComparedPair> ReadPair(const v1::CompareRequest& request, BodySource bodies);
 
-}  // namespace phrenic::study
+}  // namespace phrenic::compare
 
 #endif  // PHRENIC_SERVER_COMPARE_COMPARED_H_

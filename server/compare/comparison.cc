@@ -8,13 +8,13 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
-#include "server/mesh/units.h"
-#include "server/record/distance_map.h"
 #include "server/compare/domes.h"
 #include "server/compare/moments.h"
 #include "server/compare/surface_distance.h"
+#include "server/mesh/units.h"
+#include "server/record/distance_map.h"
 
-namespace phrenic::study {
+namespace phrenic::compare {
 namespace {
 
 Triangles TrianglesOf(const Mesh& mesh, const std::string& region) {
@@ -234,4 +234,4 @@ absl::StatusOr<v1::ComparisonTable> Compare(const v1::CompareRequest& request, B
   return comparer.Table();
 }
 
-}  // namespace phrenic::study
+}  // namespace phrenic::compare

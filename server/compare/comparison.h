@@ -7,10 +7,10 @@
 
 #include "absl/status/statusor.h"
 #include "phrenic/v1/compare.pb.h"
-#include "server/record/recorder.h"
 #include "server/compare/compared.h"
+#include "server/record/recorder.h"
 
-namespace phrenic::study {
+namespace phrenic::compare {
 
 // Where a comparison goes as it is made. An error of a call ends it and becomes its own.
 struct ComparisonSink {
@@ -29,6 +29,6 @@ absl::StatusOr<v1::ComparisonTable> Compare(const v1::CompareRequest& request, B
 // other measures the mean; samples are added up. NaN where one of them is NaN.
 v1::SurfaceDistance OverTimes(const std::vector<v1::SurfaceDistance>& distances);
 
-}  // namespace phrenic::study
+}  // namespace phrenic::compare
 
 #endif  // PHRENIC_SERVER_COMPARE_COMPARISON_H_

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace phrenic::study {
+namespace phrenic::compare {
 namespace {
 
 constexpr char kDiaphragm[] = "diaphragm";
@@ -92,4 +92,4 @@ void AddDomes(Mesh& a, Mesh& b) {
   for (Mesh* mesh : {&a, &b}) AddDomes(*mesh, *saddle);
 }
 
-}  // namespace phrenic::study
+}  // namespace phrenic::compare

@@ -6,7 +6,7 @@
 
 #include "server/mesh/mesh.h"
 
-namespace phrenic::study {
+namespace phrenic::compare {
 
 // In the coronal section of a region through its highest point, where the sheet is lowest between a summit on the left
 // (+x) and one on the right: that x [m]. None where there are not two summits that rise 2 mm and more above what lies
@@ -18,6 +18,6 @@ std::optional<double> FindSaddle(const Mesh& mesh, const std::vector<int>& verti
 // that a file has already stay as they are.
 void AddDomes(Mesh& a, Mesh& b);
 
-}  // namespace phrenic::study
+}  // namespace phrenic::compare
 
 #endif  // PHRENIC_SERVER_COMPARE_DOMES_H_

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <queue>
 
-namespace phrenic::study {
+namespace phrenic::compare {
 namespace {
 
 constexpr int kMostParts = 200'000;
@@ -88,4 +88,4 @@ Farthest FindFarthest(const MeasuredSurface& from, const MeasuredSurface& to, co
   return search.Run();
 }
 
-}  // namespace phrenic::study
+}  // namespace phrenic::compare

@@ -4,7 +4,7 @@
 
 #include "server/compare/measured_surface.h"
 
-namespace phrenic::study {
+namespace phrenic::compare {
 
 struct Farthest {
   double found = 0;  // the distance of a point that there is [m]
@@ -22,6 +22,6 @@ struct Farthest {
 Farthest FindFarthest(const MeasuredSurface& from, const MeasuredSurface& to, const Eigen::VectorXd& distances,
                       double found);
 
-}  // namespace phrenic::study
+}  // namespace phrenic::compare
 
 #endif  // PHRENIC_SERVER_COMPARE_FARTHEST_POINT_H_

@@ -11,7 +11,7 @@
 #include "server/mesh/topology.h"
 #include "server/mesh/units.h"
 
-namespace phrenic::study {
+namespace phrenic::compare {
 namespace {
 
 constexpr double kSquare = kMillimetresAMetre * kMillimetresAMetre;
@@ -179,4 +179,4 @@ v1::SurfaceReport Inspect(const std::string& name, const meshio::Surface& surfac
   return report;
 }
 
-}  // namespace phrenic::study
+}  // namespace phrenic::compare

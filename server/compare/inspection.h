@@ -7,7 +7,7 @@
 #include "phrenic/v1/inspect.pb.h"
 #include "server/meshio/meshio.h"
 
-namespace phrenic::study {
+namespace phrenic::compare {
 
 // Counts and measures `surface`, read in metres from a file of that name whose unit is `unit_mm` [mm].
 v1::SurfaceReport Inspect(const std::string& name, const meshio::Surface& surface, double unit_mm);
@@ -16,6 +16,6 @@ v1::SurfaceReport Inspect(const std::string& name, const meshio::Surface& surfac
 // unit and in no other of the three; else empty.
 std::string LikelyUnit(double extent);
 
-}  // namespace phrenic::study
+}  // namespace phrenic::compare
 
 #endif  // PHRENIC_SERVER_COMPARE_INSPECTION_H_

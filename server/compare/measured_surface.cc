@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
-namespace phrenic::study {
+namespace phrenic::compare {
 
 MeasuredSurface::MeasuredSurface(const ConstPoints& x, Triangles triangles)
     : x_(x),
@@ -45,4 +45,4 @@ double MeasuredSurface::DistanceTo(int triangle, const Eigen::Vector3d& point) c
   return (weights[0] * a + weights[1] * b + weights[2] * c - point).norm();
 }
 
-}  // namespace phrenic::study
+}  // namespace phrenic::compare

@@ -7,7 +7,7 @@
 
 #include "server/mesh/triangle_tree.h"
 
-namespace phrenic::study {
+namespace phrenic::compare {
 
 // May move, with the same triangles. Any number of threads may ask while none moves it.
 class MeasuredSurface {
@@ -39,6 +39,6 @@ class MeasuredSurface {
   TriangleTree::Boxes boxes_;
 };
 
-}  // namespace phrenic::study
+}  // namespace phrenic::compare
 
 #endif  // PHRENIC_SERVER_COMPARE_MEASURED_SURFACE_H_

@@ -5,7 +5,7 @@
 
 #include "absl/strings/str_format.h"
 
-namespace phrenic::study {
+namespace phrenic::compare {
 namespace {
 
 // Files write nine digits of a time.
@@ -60,4 +60,4 @@ Points PositionsAt(const meshio::Motion& motion, const Between& at) {
          at.weight * motion.displacements[step + 1];
 }
 
-}  // namespace phrenic::study
+}  // namespace phrenic::compare

@@ -8,7 +8,7 @@
 #include "absl/status/statusor.h"
 #include "server/meshio/motion.h"
 
-namespace phrenic::study {
+namespace phrenic::compare {
 
 // A state of a motion: between step `step` and the next one, `weight` of the way.
 struct Between {
@@ -38,6 +38,6 @@ absl::StatusOr<MatchedMoments> MatchTimes(const meshio::Motion& a, const meshio:
 // Where the vertices are, 3 x n [m]; a motion of no times stays as its file's nodes have it.
 Points PositionsAt(const meshio::Motion& motion, const Between& at);
 
-}  // namespace phrenic::study
+}  // namespace phrenic::compare
 
 #endif  // PHRENIC_SERVER_COMPARE_MOMENTS_H_

@@ -6,11 +6,11 @@
 #include <limits>
 #include <vector>
 
-#include "server/mesh/units.h"
 #include "server/compare/farthest_point.h"
 #include "server/compare/surface_samples.h"
+#include "server/mesh/units.h"
 
-namespace phrenic::study {
+namespace phrenic::compare {
 namespace {
 
 constexpr double kSquareMillimetres = 1e6;
@@ -176,4 +176,4 @@ absl::StatusOr<v1::SurfaceDistance> MeasureDistance(const MeasuredSurface& a, co
   return distance;
 }
 
-}  // namespace phrenic::study
+}  // namespace phrenic::compare

@@ -8,7 +8,7 @@
 #include "phrenic/v1/compare.pb.h"
 #include "server/compare/measured_surface.h"
 
-namespace phrenic::study {
+namespace phrenic::compare {
 
 // The name of what MeasureDistance measures; it changes when a number would.
 inline constexpr char kDefinition[] = "phrenic-surface-distance-1: point to surface, area-weighted, unsigned";
@@ -34,6 +34,6 @@ absl::StatusOr<v1::SurfaceDistance> MeasureDistance(const MeasuredSurface& a, co
                                                     const DistanceOptions& options,
                                                     Eigen::VectorXd* at_vertices = nullptr);
 
-}  // namespace phrenic::study
+}  // namespace phrenic::compare
 
 #endif  // PHRENIC_SERVER_COMPARE_SURFACE_DISTANCE_H_

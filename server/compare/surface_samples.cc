@@ -9,7 +9,7 @@
 #include "absl/strings/str_format.h"
 #include "server/mesh/units.h"
 
-namespace phrenic::study {
+namespace phrenic::compare {
 namespace {
 
 constexpr double kWanted = 5e4;
@@ -84,4 +84,4 @@ void ForEachSample(const ConstPoints& x, const Triangles& triangles, const Sampl
   }
 }
 
-}  // namespace phrenic::study
+}  // namespace phrenic::compare

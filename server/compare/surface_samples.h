@@ -9,7 +9,7 @@
 #include "absl/status/statusor.h"
 #include "server/mesh/mesh.h"
 
-namespace phrenic::study {
+namespace phrenic::compare {
 
 // Each triangle is parted into n^2 equal ones of its own shape, n the least for which none of their edges is longer
 // than `spacing`; a sample is the middle of a part (the midpoint rule: means converge with the square of the spacing).
@@ -27,6 +27,6 @@ absl::StatusOr<Sampling> PlanSampling(const ConstPoints& x, const Triangles& tri
 void ForEachSample(const ConstPoints& x, const Triangles& triangles, const Sampling& sampling,
                    absl::FunctionRef<void(const Eigen::Vector3d& point, double area)> visit);
 
-}  // namespace phrenic::study
+}  // namespace phrenic::compare
 
 #endif  // PHRENIC_SERVER_COMPARE_SURFACE_SAMPLES_H_

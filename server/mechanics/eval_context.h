@@ -10,10 +10,10 @@
 namespace phrenic {
 
 class ChamberReadings;
-struct PoseColumns;
+struct PoseMatrices;
 
 // References into the state of the caller: valid during the call only.
-struct Instant {
+struct EvalContext {
   double time;                       // [s]
   double breath;                     // the waveform's signal, -1 to 1; 0 at rest
   double breath_rate;                // its time derivative [1/s]
@@ -22,9 +22,9 @@ struct Instant {
   const ConstPoints v;               // [m/s]
   const std::vector<Pose>& poses;
   const std::vector<VertexPull>& pulls;
-  ChamberReadings* readings = nullptr;   // what measures of one moment share (chamber.h); null in a step
-  const float* packed = nullptr;         // x in single precision (PackPoints), where a step has packed it
-  const PoseColumns* columns = nullptr;  // one of each pose, where a step has made them
+  ChamberReadings* readings = nullptr;    // what measures of one moment share (chamber.h); null in a step
+  const float* packed = nullptr;          // x in single precision (PackPoints), where a step has packed it
+  const PoseMatrices* columns = nullptr;  // one of each pose, where a step has made them
 };
 
 }  // namespace phrenic

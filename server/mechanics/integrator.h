@@ -37,7 +37,7 @@ struct Workspace {
   std::vector<Points> stages;              // of the integrators that have stages; made when first needed
   std::vector<State> trials;               // of adaptive steps; made when first needed
   OuterProducts shared_damping;            // of the last step, where its integrator asks for it
-  std::vector<StateReach> reach;           // after the step, of each block or more, where its integrator notes it
+  std::vector<StateBounds> bounds;         // after the step, of each block or more, where its integrator notes it
   SolverEffort effort;                     // of the implicit integrators' linear systems, in the last step
   std::unique_ptr<ImplicitSystem> system;  // of the implicit integrators; made when first needed
   // Of projective dynamics; made when first needed.

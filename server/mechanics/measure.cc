@@ -3,31 +3,31 @@
 #include <set>
 
 #include "absl/strings/str_cat.h"
-#include "server/mechanics/compile/catalogue.h"
 #include "server/mechanics/breathing/chamber.h"
+#include "server/mechanics/compile/catalogue.h"
 
 namespace phrenic {
 
-absl::Status AddMeasures(Draft& draft) {
+absl::Status AddMeasures(ModelBuilder& builder) {
   std::set<std::string> names;
-  for (int i = 0; i < draft.model.scene.measures_size(); ++i) {
-    const v1::Measure& scene = draft.model.scene.measures(i);
+  for (int i = 0; i < builder.model.scene.measures_size(); ++i) {
+    const v1::Measure& scene = builder.model.scene.measures(i);
     const std::string path = absl::StrCat("measures[", i, "]");
     if (!names.insert(scene.name()).second) {
       return FieldError(path + ".name", absl::StrCat("there are two measures named \"", scene.name(), "\""));
     }
-    auto measure = MakeMeasure(scene, path, draft);
+    auto measure = MakeMeasure(scene, path, builder);
     if (!measure.ok()) return measure.status();
-    draft.model.measures.push_back(*std::move(measure));
+    builder.model.measures.push_back(*std::move(measure));
   }
   return absl::OkStatus();
 }
 
 // Volumes last: where a flow has been worked out, the volume is known.
-MeasureReadings ReadMeasures(const Model& model, const Instant& at) {
+MeasureReadings ReadMeasures(const Model& model, const EvalContext& at) {
   MeasureReadings readings;
   ChamberReadings shared;
-  Instant moment = at;
+  EvalContext moment = at;
   moment.readings = &shared;
   for (const auto& measure : model.measures) {
     v1::MeasureReading& reading = *readings.Add();

@@ -21,7 +21,7 @@ class Measure {
   const std::string& name() const { return name_; }
   const std::string& unit() const { return unit_; }  // SI, as in tables: "m^3/s"
 
-  virtual double Value(const Instant& at) const = 0;
+  virtual double Value(const EvalContext& at) const = 0;
 
  protected:
   Measure(std::string name, std::string unit) : name_(std::move(name)), unit_(std::move(unit)) {}
@@ -30,15 +30,15 @@ class Measure {
   std::string name_, unit_;
 };
 
-struct Draft;
+struct ModelBuilder;
 struct Model;
 
 // Fills the measures; bodies and forces are there.
-absl::Status AddMeasures(Draft& draft);
+absl::Status AddMeasures(ModelBuilder& builder);
 
 using MeasureReadings = google::protobuf::RepeatedPtrField<v1::MeasureReading>;
 // All measures of the model, in the scene's order.
-MeasureReadings ReadMeasures(const Model& model, const Instant& at);
+MeasureReadings ReadMeasures(const Model& model, const EvalContext& at);
 
 }  // namespace phrenic
 

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "server/mechanics/step/advance.h"
 #include "server/mechanics/skinning/body_points.h"
+#include "server/mechanics/step/advance.h"
 
 namespace phrenic {
 
@@ -15,7 +15,7 @@ State Model::InitialState() const {
   int poses = 0;
   for (const BodyModel& body : bodies) poses += body.pose >= 0 ? 1 : 0;
   state.poses.resize(poses);
-  const Instant start = MakeInstant(*this, parameters, state);
+  const EvalContext start = MakeEvalContext(*this, parameters, state);
   for (const auto& motion : motions) motion->Drive(start, state);
   return state;
 }
@@ -24,7 +24,7 @@ Workspace Model::MakeWorkspace() const {
   Workspace work;
   work.before = work.velocity_before = work.force = Points::Zero(3, rest.cols());
   work.damping = Eigen::VectorXd::Zero(rest.cols());
-  MakePlaces(rest.cols(), work.reach);
+  ResizeBounds(rest.cols(), work.bounds);
   return work;
 }
 
@@ -48,12 +48,12 @@ double BreathSlope(v1::Waveform waveform, double phase) {
   return 2 * std::numbers::pi * std::cos(angle);
 }
 
-Instant MakeInstant(const Model& model, const v1::Parameters& parameters, const State& state) {
-  return MakeInstant(model, parameters, state, state.time, state.phase);
+EvalContext MakeEvalContext(const Model& model, const v1::Parameters& parameters, const State& state) {
+  return MakeEvalContext(model, parameters, state, state.time, state.phase);
 }
 
-Instant MakeInstant(const Model& model, const v1::Parameters& parameters, const State& state, double time,
-                    double phase) {
+EvalContext MakeEvalContext(const Model& model, const v1::Parameters& parameters, const State& state, double time,
+                            double phase) {
   const v1::Waveform waveform = model.scene.breath().waveform();
   return {.time = time,
           .breath = BreathSignal(waveform, phase),
@@ -66,7 +66,7 @@ Instant MakeInstant(const Model& model, const v1::Parameters& parameters, const 
 }
 
 void PlaceBody(const Model& model, const State& state, int body, MutablePoints out) {
-  BodyPoints(model, body).Place(MakeInstant(model, model.parameters, state), out);
+  BodyPoints(model, body).Place(MakeEvalContext(model, model.parameters, state), out);
 }
 
 }  // namespace phrenic

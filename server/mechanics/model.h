@@ -28,7 +28,7 @@ struct BodyModel {
   Mesh mesh;              // at rest
   int first_vertex = -1;  // of its vertices in State::x; -1 when it has none there
   int pose = -1;          // its place in State::poses; -1 when it has none
-  int ride = -1;          // its place in Model::rides; -1 when it does not ride
+  int skin = -1;          // index into Model::skins; -1 if it is not skinned
 };
 
 struct Probe {
@@ -63,7 +63,7 @@ struct Model {
   int packed_from = -1;  // a step packs positions, from this vertex, for forces in single precision; -1 where none are
   std::vector<std::unique_ptr<Motion>> motions;
   std::vector<std::unique_ptr<Constraint>> constraints;
-  std::vector<Ride> rides;  // seen bodies; worked out with frames, not with steps
+  std::vector<Skin> skins;  // seen bodies; worked out with frames, not with steps
   std::vector<Probe> probes;
   std::vector<std::unique_ptr<Measure>> measures;  // worked out with frames, not with steps
   double size = 0;                                 // diagonal of the bounding box at rest [m]
@@ -85,10 +85,10 @@ struct Model {
 // The breath's signal at a phase [breaths] and its derivative by the phase.
 double BreathSignal(v1::Waveform waveform, double phase);
 double BreathSlope(v1::Waveform waveform, double phase);
-Instant MakeInstant(const Model& model, const v1::Parameters& parameters, const State& state);
+EvalContext MakeEvalContext(const Model& model, const v1::Parameters& parameters, const State& state);
 // The same positions at another time [s] and breath's phase [breaths].
-Instant MakeInstant(const Model& model, const v1::Parameters& parameters, const State& state, double time,
-                    double phase);
+EvalContext MakeEvalContext(const Model& model, const v1::Parameters& parameters, const State& state, double time,
+                            double phase);
 
 // Positions of all vertices of a body in a state [m]: simulated, carried by a pose, riding or still. `out` is 3 x
 // vertices of the body.

@@ -25,7 +25,7 @@ absl::Status FieldError(std::string_view path, std::string_view what) {
       absl::StrCat(absl::string_view(path.data(), path.size()), ": ", absl::string_view(what.data(), what.size())));
 }
 
-absl::StatusOr<std::vector<int>> Draft::Bodies(const Names& names, std::string_view path) const {
+absl::StatusOr<std::vector<int>> ModelBuilder::Bodies(const Names& names, std::string_view path) const {
   std::vector<int> found;
   for (int i = 0; i < names.size(); ++i) {
     const size_t before = found.size();
@@ -42,14 +42,14 @@ absl::StatusOr<std::vector<int>> Draft::Bodies(const Names& names, std::string_v
   return found;
 }
 
-absl::StatusOr<int> Draft::Body(const std::string& name, std::string_view path) const {
+absl::StatusOr<int> ModelBuilder::Body(const std::string& name, std::string_view path) const {
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
     if (model.bodies[b].name == name) return b;
   }
   return FieldError(path, absl::StrCat("there is no body \"", name, "\"; there are ", KnownNames(model)));
 }
 
-absl::StatusOr<std::vector<int>> Draft::DeformableBodies(const Names& names, std::string_view path) const {
+absl::StatusOr<std::vector<int>> ModelBuilder::DeformableBodies(const Names& names, std::string_view path) const {
   absl::StatusOr<std::vector<int>> bodies = Bodies(names, path);
   if (!bodies.ok()) return bodies;
   for (const int b : *bodies) {
@@ -61,7 +61,8 @@ absl::StatusOr<std::vector<int>> Draft::DeformableBodies(const Names& names, std
   return bodies;
 }
 
-absl::StatusOr<std::vector<bool>> Draft::Region(int body, const std::string& region, std::string_view path) const {
+absl::StatusOr<std::vector<bool>> ModelBuilder::Region(int body, const std::string& region,
+                                                       std::string_view path) const {
   const Mesh& mesh = model.bodies[body].mesh;
   if (region.empty()) return std::vector<bool>(mesh.vertices.cols(), true);
   const auto found = mesh.regions.find(region);
@@ -76,8 +77,8 @@ absl::StatusOr<std::vector<bool>> Draft::Region(int body, const std::string& reg
   return mask;
 }
 
-absl::StatusOr<Selection> Draft::Select(int body, const std::string& region, const std::string& exclude_region,
-                                        std::string_view path) const {
+absl::StatusOr<Selection> ModelBuilder::Select(int body, const std::string& region, const std::string& exclude_region,
+                                               std::string_view path) const {
   auto inside = Region(body, region, absl::StrCat(std::string(path), ".region"));
   if (!inside.ok()) return inside.status();
   if (exclude_region.empty()) return Selection{*inside, std::vector<bool>(inside->size(), false)};
@@ -86,8 +87,8 @@ absl::StatusOr<Selection> Draft::Select(int body, const std::string& region, con
   return Selection{*std::move(inside), *std::move(excluded)};
 }
 
-absl::StatusOr<std::vector<int>> Draft::FreeVertices(int body, const std::string& region, const Indices& vertices,
-                                                     std::string_view path) const {
+absl::StatusOr<std::vector<int>> ModelBuilder::FreeVertices(int body, const std::string& region,
+                                                            const Indices& vertices, std::string_view path) const {
   auto mask = Region(body, region, absl::StrCat(std::string(path), ".region"));
   if (!mask.ok()) return mask.status();
   std::vector<bool> listed(mask->size(), vertices.empty());
@@ -104,36 +105,36 @@ absl::StatusOr<std::vector<int>> Draft::FreeVertices(int body, const std::string
   return free;
 }
 
-absl::Status Draft::CheckVertex(int body, int vertex, std::string_view path) const {
+absl::Status ModelBuilder::CheckVertex(int body, int vertex, std::string_view path) const {
   const auto vertices = model.bodies[body].mesh.vertices.cols();
   if (vertex >= 0 && vertex < vertices) return absl::OkStatus();
   return FieldError(path, absl::StrCat("there is no vertex ", vertex, " in body \"", model.bodies[body].name,
                                        "\": its vertices are 0 to ", vertices - 1));
 }
 
-const NearestSearch& Draft::Search(int body) const {
+const NearestSearch& ModelBuilder::Search(int body) const {
   searches_.resize(model.bodies.size());
   std::unique_ptr<NearestSearch>& search = searches_[body];
   if (search == nullptr) search = std::make_unique<NearestSearch>(model.bodies[body].mesh.vertices);
   return *search;
 }
 
-const Edges& Draft::EdgesOf(int body) const {
+const Edges& ModelBuilder::EdgesOf(int body) const {
   edges_.resize(model.bodies.size());
   std::unique_ptr<Edges>& edges = edges_[body];
   if (edges == nullptr) edges = std::make_unique<Edges>(SpringEdges(model.bodies[body].mesh));
   return *edges;
 }
 
-const std::vector<int>& Draft::BorderOf(int body) const {
+const std::vector<int>& ModelBuilder::BorderOf(int body) const {
   borders_.resize(model.bodies.size());
   std::unique_ptr<std::vector<int>>& border = borders_[body];
   if (border == nullptr) border = std::make_unique<std::vector<int>>(BorderVertices(model.bodies[body].mesh.triangles));
   return *border;
 }
 
-void Draft::ReportElement(std::string_view family, std::string_view name, std::int64_t count, std::string_view counted,
-                          std::string_view detail) {
+void ModelBuilder::ReportElement(std::string_view family, std::string_view name, std::int64_t count,
+                                 std::string_view counted, std::string_view detail) {
   v1::ElementReport* element = model.report.add_elements();
   element->set_family(std::string(family));
   element->set_name(std::string(name));
@@ -142,7 +143,7 @@ void Draft::ReportElement(std::string_view family, std::string_view name, std::i
   element->set_detail(std::string(detail));
 }
 
-void Draft::ReportLeftOut(std::string_view what, std::string_view why) {
+void ModelBuilder::ReportLeftOut(std::string_view what, std::string_view why) {
   v1::LeftOut* left_out = model.report.add_left_out();
   left_out->set_what(std::string(what));
   left_out->set_why(std::string(why));

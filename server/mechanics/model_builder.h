@@ -35,7 +35,7 @@ struct Selection {
 };
 
 // The model in the making: bodies, rest positions and masses are there before the first element is made.
-struct Draft {
+struct ModelBuilder {
   Model model;
 
   // Bodies by the names of bodies or layers; INVALID_ARGUMENT with the field's path and the names there are.
@@ -53,7 +53,7 @@ struct Draft {
   absl::StatusOr<std::vector<int>> FreeVertices(int body, const std::string& region, const Indices& vertices,
                                                 std::string_view path) const;
   absl::Status CheckVertex(int body, int vertex, std::string_view path) const;
-  // Over the vertices of a body at rest; made when first asked for. Valid while the draft is.
+  // Over the vertices of a body at rest; made when first asked for. Valid while the builder is.
   const NearestSearch& Search(int body) const;
   // The same of a body's edges: its mesh's own, or else its triangles' (mesh/topology.h).
   const Edges& EdgesOf(int body) const;

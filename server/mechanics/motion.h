@@ -14,7 +14,7 @@ class Motion {
   virtual ~Motion() = default;
   const std::string& name() const { return name_; }
   // Sets the poses, or the positions and velocities of the vertices, that it drives, for the time of `at`.
-  virtual void Drive(const Instant& at, State& state) const = 0;
+  virtual void Drive(const EvalContext& at, State& state) const = 0;
 
  protected:
   explicit Motion(std::string name) : name_(std::move(name)) {}

@@ -11,7 +11,7 @@
 namespace phrenic {
 
 // One vertex's share of one carrier.
-struct RideShare {
+struct SkinWeight {
   int vertex = 0;             // of the riding body
   int pose = -1;              // the carrier: a pose, or ...
   int simulated_vertex = -1;  // ... a simulated vertex
@@ -19,17 +19,17 @@ struct RideShare {
 };
 
 // A vertex's place in a triangle of simulated vertices: x = sum_i weights_i x_i + height n, n the unit normal.
-struct TriangleShare {
+struct TriangleBinding {
   Eigen::Vector3i corners = Eigen::Vector3i::Zero();
   Eigen::Vector3d weights = Eigen::Vector3d::Zero();  // barycentric: their sum is 1
   double height = 0;                                  // [m]
 };
 
 // A body that is only seen and rides on others.
-struct Ride {
+struct Skin {
   int body = 0;
-  std::vector<RideShare> shares;         // sorted by vertex; or ...
-  std::vector<TriangleShare> triangles;  // ... one a vertex of the body
+  std::vector<SkinWeight> shares;          // sorted by vertex; or ...
+  std::vector<TriangleBinding> triangles;  // ... one a vertex of the body
 };
 
 }  // namespace phrenic

@@ -54,11 +54,11 @@ struct State {
 
 // The largest magnitudes of a coordinate and of a velocity's: of a block's vertices, or all; no number where one is
 // none.
-struct StateReach {
+struct StateBounds {
   double furthest = 0, fastest = 0;  // [m], [m/s]
 };
 // The larger of two; no number where one is none.
-inline double Further(double a, double b) { return a > b || std::isnan(a) ? a : b; }
+inline double LargerMagnitude(double a, double b) { return a > b || std::isnan(a) ? a : b; }
 
 // A word-wise FNV-1a, in four lanes, over the bits of time, phase, positions and velocities: equal states, equal
 // hashes.

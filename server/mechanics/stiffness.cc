@@ -45,7 +45,7 @@ class StiffnessBatch {
 
 }  // namespace
 
-void StiffnessSink::AddSpringsAt(std::span<const Spring> springs, const Instant& at) {
+void StiffnessSink::AddSpringsAt(std::span<const Spring> springs, const EvalContext& at) {
   const double elasticity = at.parameters.elasticity();
   const double* const x = at.x.data();
   StiffnessBatch batch;

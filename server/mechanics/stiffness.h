@@ -10,7 +10,7 @@
 
 namespace phrenic {
 
-struct Instant;
+struct EvalContext;
 
 // What a spring between two vertices adds: the force on a changes by (axial e e^T + transverse I)(dx_b - dx_a), that on
 // b by its opposite. `edge` is e = x_b - x_a at the instant [m]; axial [N/m^3] and transverse [N/m] are not negative.
@@ -37,7 +37,7 @@ class StiffnessSink {
   virtual void AddOuter(double scale, const Points& g) = 0;
 
   // All springs of a force at this instant. One without length is left out: it has no direction.
-  virtual void AddSpringsAt(std::span<const Spring> springs, const Instant& at);
+  virtual void AddSpringsAt(std::span<const Spring> springs, const EvalContext& at);
   // Many springs at a time, as they are worked out.
   virtual void AddSprings(std::span<const SpringStiffness> springs) {
     for (const SpringStiffness& spring : springs) {

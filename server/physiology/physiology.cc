@@ -9,7 +9,7 @@
 #include "server/mechanics/step/step.h"
 #include "server/physiology/thorax_metrics.h"
 
-namespace phrenic::study {
+namespace phrenic::physiology {
 namespace {
 
 constexpr double kSample = 0.1;  // between two looks at the dome [s]
@@ -163,4 +163,4 @@ absl::StatusOr<v1::PhysiologyTable> CheckPhysiology(const Model& model, absl::Fu
   return table;
 }
 
-}  // namespace phrenic::study
+}  // namespace phrenic::physiology

@@ -7,7 +7,7 @@
 #include "phrenic/v1/study.pb.h"
 #include "server/mechanics/model.h"
 
-namespace phrenic::study {
+namespace phrenic::physiology {
 
 // Breathes in once, from rest to the peak, by the scene's own parameters ("quiet") and by its presets "deep",
 // "diaphragmatic" and "chest", where it has them, and measures at each peak. Ranges: Boussuges 2009, Wilson 1987,
@@ -15,6 +15,6 @@ namespace phrenic::study {
 // false. FAILED_PRECONDITION for a scene without a diaphragm, OUT_OF_RANGE where a breath diverges.
 absl::StatusOr<v1::PhysiologyTable> CheckPhysiology(const Model& model, absl::FunctionRef<bool(double)> progress);
 
-}  // namespace phrenic::study
+}  // namespace phrenic::physiology
 
 #endif  // PHRENIC_SERVER_PHYSIOLOGY_PHYSIOLOGY_H_

@@ -8,7 +8,7 @@
 
 #include "server/mesh/topology.h"
 
-namespace phrenic::study {
+namespace phrenic::physiology {
 namespace {
 
 constexpr double kBesideMidline = 0.035;  // [m]
@@ -227,4 +227,4 @@ std::optional<double> ThoraxMetrics::LungVolumeChange(const State& state) const 
   return change;
 }
 
-}  // namespace phrenic::study
+}  // namespace phrenic::physiology

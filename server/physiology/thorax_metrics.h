@@ -8,7 +8,7 @@
 #include "absl/status/statusor.h"
 #include "server/mechanics/model.h"
 
-namespace phrenic::study {
+namespace phrenic::physiology {
 
 // Of one model, between rest and a state. Bodies are found by their anatomy, muscle and tendon by the diaphragm's
 // regions "tendon" and "rim". A measure is not there where the model lacks what it is taken on. Immutable; any number
@@ -56,6 +56,6 @@ class ThoraxMetrics {
   Edges fibres_;                      // edges of all ways from rim to tendon
 };
 
-}  // namespace phrenic::study
+}  // namespace phrenic::physiology
 
 #endif  // PHRENIC_SERVER_PHYSIOLOGY_THORAX_METRICS_H_

@@ -35,7 +35,7 @@ std::pair<ControlState::Link, std::string> NewLink(const v1::CreateLinkRequest& 
 }  // namespace
 
 absl::Status AccessService::CheckGuarded() const {
-  if (door_.guarded()) return absl::OkStatus();
+  if (guard_.guarded()) return absl::OkStatus();
   return absl::FailedPreconditionError(
       "the server has no accounts, and everybody sees every session: its address is the link (?session=ID); start it "
       "with --tokens FILE to have links that end");
@@ -43,9 +43,9 @@ absl::Status AccessService::CheckGuarded() const {
 
 grpc::Status AccessService::GetAccess(grpc::ServerContext* context, const v1::GetAccessRequest* request,
                                       v1::GetAccessResponse* response) {
-  const auto caller = door_.Admit(*context, *request);
+  const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
-  response->set_accounts(door_.guarded());
+  response->set_accounts(guard_.guarded());
   response->set_name(caller->account.name);
   response->set_role(caller->account.role);
   return grpc::Status::OK;
@@ -53,7 +53,7 @@ grpc::Status AccessService::GetAccess(grpc::ServerContext* context, const v1::Ge
 
 grpc::Status AccessService::CreateLink(grpc::ServerContext* context, const v1::CreateLinkRequest* request,
                                        v1::CreateLinkResponse* response) {
-  const auto caller = door_.Admit(*context, *request);
+  const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
   if (absl::Status status = CheckGuarded(); !status.ok()) return ToGrpc(status);
   if (request->role() > v1::ACCESS_ROLE_CONTROLLER) {
@@ -71,7 +71,7 @@ grpc::Status AccessService::CreateLink(grpc::ServerContext* context, const v1::C
 
 grpc::Status AccessService::ListLinks(grpc::ServerContext* context, const v1::ListLinksRequest* request,
                                       v1::ListLinksResponse* response) {
-  const auto caller = door_.Admit(*context, *request);
+  const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
   const auto session = table_.Find(request->session_id());
   if (!session.ok()) return ToGrpc(session.status());
@@ -84,7 +84,7 @@ grpc::Status AccessService::ListLinks(grpc::ServerContext* context, const v1::Li
 
 grpc::Status AccessService::RevokeLink(grpc::ServerContext* context, const v1::RevokeLinkRequest* request,
                                        v1::RevokeLinkResponse* /*response*/) {
-  const auto caller = door_.Admit(*context, *request);
+  const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
   const auto session = table_.Find(request->session_id());
   if (!session.ok()) return ToGrpc(session.status());

@@ -11,7 +11,7 @@ namespace phrenic::service {
 // gRPC's threads call, any number at a time.
 class AccessService final : public v1::AccessService::Service {
  public:
-  AccessService(Door& door, session::Table& table) : door_(door), table_(table) {}
+  AccessService(AccessGuard& guard, session::Table& table) : guard_(guard), table_(table) {}
 
   grpc::Status GetAccess(grpc::ServerContext* context, const v1::GetAccessRequest* request,
                          v1::GetAccessResponse* response) override;
@@ -25,7 +25,7 @@ class AccessService final : public v1::AccessService::Service {
  private:
   absl::Status CheckGuarded() const;
 
-  Door& door_;
+  AccessGuard& guard_;
   session::Table& table_;
 };
 

@@ -5,10 +5,10 @@
 
 #include "absl/cleanup/cleanup.h"
 #include "absl/strings/str_cat.h"
+#include "server/compare/comparison.h"
 #include "server/service/calls/status.h"
 #include "server/session/present_body.h"
 #include "server/stream/wire.h"
-#include "server/compare/comparison.h"
 
 namespace phrenic::service {
 namespace {
@@ -19,7 +19,7 @@ absl::Status Send(CompareWriter& writer, const v1::CompareResponse& response) {
   return writer.Write(response) ? absl::OkStatus() : absl::CancelledError("the receiver of the comparison went away");
 }
 
-study::ComparisonSink MakeSink(grpc::ServerContext& context, CompareWriter& writer) {
+compare::ComparisonSink MakeSink(grpc::ServerContext& context, CompareWriter& writer) {
   return {.progress =
               [&](double done) {
                 v1::CompareResponse response;
@@ -51,7 +51,7 @@ study::ComparisonSink MakeSink(grpc::ServerContext& context, CompareWriter& writ
 
 grpc::Status CompareService::Compare(grpc::ServerContext* context, const v1::CompareRequest* request,
                                      grpc::ServerWriter<v1::CompareResponse>* writer) {
-  const auto caller = door_.Admit(*context, *request);
+  const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
   const absl::Cleanup leave = [this] { --comparisons_; };
   if (++comparisons_ > max_comparisons_) {
@@ -60,10 +60,10 @@ grpc::Status CompareService::Compare(grpc::ServerContext* context, const v1::Com
         " comparisons are under way, and no more are allowed (--max-exports); try again when one is done")));
   }
   const auto bodies = [&](const v1::SessionBody& body, v1::ComparedState& state) -> absl::StatusOr<Mesh> {
-    if (const auto seen = door_.Find(*caller, body.session_id()); !seen.ok()) return seen.status();
+    if (const auto seen = guard_.Find(*caller, body.session_id()); !seen.ok()) return seen.status();
     return session::FindPresentBody(table_, body, state);
   };
-  const auto table = study::Compare(*request, bodies, MakeSink(*context, *writer));
+  const auto table = compare::Compare(*request, bodies, MakeSink(*context, *writer));
   if (!table.ok()) return ToGrpc(table.status());
   v1::CompareResponse response;
   *response.mutable_table() = *table;

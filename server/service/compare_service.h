@@ -14,8 +14,8 @@ namespace phrenic::service {
 // goes away.
 class CompareService final : public v1::CompareService::Service {
  public:
-  CompareService(const session::Table& table, int max_comparisons, Door& door)
-      : table_(table), max_comparisons_(max_comparisons), door_(door) {}
+  CompareService(const session::Table& table, int max_comparisons, AccessGuard& guard)
+      : table_(table), max_comparisons_(max_comparisons), guard_(guard) {}
 
   grpc::Status Compare(grpc::ServerContext* context, const v1::CompareRequest* request,
                        grpc::ServerWriter<v1::CompareResponse>* writer) override;
@@ -23,7 +23,7 @@ class CompareService final : public v1::CompareService::Service {
  private:
   const session::Table& table_;
   const int max_comparisons_;
-  Door& door_;
+  AccessGuard& guard_;
   std::atomic<int> comparisons_ = 0;
 };
 

@@ -14,7 +14,7 @@ constexpr double kUsualStay = 30;  // [s]
 template <class Request, class Response, class Act>
 grpc::Status ControlService::Change(const grpc::ServerContext& context, const Request& request, Response* response,
                                     Act act) {
-  const auto caller = door_.Admit(context, request);
+  const auto caller = guard_.Admit(context, request);
   if (!caller.ok()) return ToGrpc(caller.status());
   const auto session = table_.Find(request.session_id());
   if (!session.ok()) return ToGrpc(session.status());
@@ -61,7 +61,7 @@ grpc::Status ControlService::ReleaseControl(grpc::ServerContext* context, const 
 
 grpc::Status ControlService::ShowCamera(grpc::ServerContext* context, const v1::ShowCameraRequest* request,
                                         v1::ShowCameraResponse* /*response*/) {
-  const auto caller = door_.Admit(*context, *request);
+  const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
   const auto session = table_.Find(request->session_id());
   if (!session.ok()) return ToGrpc(session.status());

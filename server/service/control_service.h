@@ -11,7 +11,7 @@ namespace phrenic::service {
 // gRPC's threads call, any number at a time.
 class ControlService final : public v1::ControlService::Service {
  public:
-  explicit ControlService(session::Table& table, Door& door) : table_(table), door_(door) {}
+  explicit ControlService(session::Table& table, AccessGuard& guard) : table_(table), guard_(guard) {}
 
   grpc::Status EnterSession(grpc::ServerContext* context, const v1::EnterSessionRequest* request,
                             v1::EnterSessionResponse* response) override;
@@ -30,7 +30,7 @@ class ControlService final : public v1::ControlService::Service {
   grpc::Status Change(const grpc::ServerContext& context, const Request& request, Response* response, Act act);
 
   session::Table& table_;
-  Door& door_;
+  AccessGuard& guard_;
 };
 
 }  // namespace phrenic::service

@@ -29,7 +29,7 @@ v1::ExportValues ToProto(record::Values values) {
 
 grpc::Status ExportService::ListFormats(grpc::ServerContext* context, const v1::ListFormatsRequest* request,
                                         v1::ListFormatsResponse* response) {
-  const auto caller = door_.Admit(*context, *request);
+  const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
   for (const record::Format& format : session::ExportFormats()) {
     v1::FileFormat& listed = *response->add_formats();
@@ -46,7 +46,7 @@ grpc::Status ExportService::ListFormats(grpc::ServerContext* context, const v1::
 
 grpc::Status ExportService::CreateExport(grpc::ServerContext* context, const v1::CreateExportRequest* request,
                                          v1::CreateExportResponse* response) {
-  const auto caller = door_.Admit(*context, *request);
+  const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
   const auto session = table_.Find(request->session_id());
   if (!session.ok()) return ToGrpc(session.status());
@@ -55,7 +55,7 @@ grpc::Status ExportService::CreateExport(grpc::ServerContext* context, const v1:
   auto job =
       exports_.Add(*request, {(*session)->shared_model(), *std::move(fork), (*session)->surfaces(), caller->id()});
   if (!job.ok()) return ToGrpc(job.status());
-  door_.Give(Door::Kind::kExport, job->id(), caller->id());
+  guard_.Give(AccessGuard::Kind::kExport, job->id(), caller->id());
   *response->mutable_job() = *std::move(job);
   return grpc::Status::OK;
 }
@@ -78,9 +78,9 @@ absl::Status ExportService::Watch(const std::string& id, grpc::ServerContext& co
 
 grpc::Status ExportService::WatchExport(grpc::ServerContext* context, const v1::WatchExportRequest* request,
                                         grpc::ServerWriter<v1::WatchExportResponse>* writer) {
-  const auto caller = door_.Admit(*context, *request);
+  const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
-  if (absl::Status own = door_.CheckOwns(Door::Kind::kExport, request->export_id(), *caller); !own.ok())
+  if (absl::Status own = guard_.CheckOwns(AccessGuard::Kind::kExport, request->export_id(), *caller); !own.ok())
     return ToGrpc(own);
   const absl::Cleanup leave = [this] { --streams_; };
   if (++streams_ > kMostExportStreams) return ToGrpc(TooMany());
@@ -89,19 +89,19 @@ grpc::Status ExportService::WatchExport(grpc::ServerContext* context, const v1::
 
 grpc::Status ExportService::ListExports(grpc::ServerContext* context, const v1::ListExportsRequest* request,
                                         v1::ListExportsResponse* response) {
-  const auto caller = door_.Admit(*context, *request);
+  const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
   for (v1::Export& job : exports_.List()) {
-    if (door_.Owns(Door::Kind::kExport, job.id(), *caller)) *response->add_exports() = std::move(job);
+    if (guard_.Owns(AccessGuard::Kind::kExport, job.id(), *caller)) *response->add_exports() = std::move(job);
   }
   return grpc::Status::OK;
 }
 
 grpc::Status ExportService::DeleteExport(grpc::ServerContext* context, const v1::DeleteExportRequest* request,
                                          v1::DeleteExportResponse*) {
-  const auto caller = door_.Admit(*context, *request);
+  const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
-  if (absl::Status own = door_.CheckOwns(Door::Kind::kExport, request->export_id(), *caller); !own.ok())
+  if (absl::Status own = guard_.CheckOwns(AccessGuard::Kind::kExport, request->export_id(), *caller); !own.ok())
     return ToGrpc(own);
   return ToGrpc(exports_.Delete(request->export_id()));
 }
@@ -129,9 +129,9 @@ absl::Status ExportService::Download(const v1::DownloadExportRequest& request,
 
 grpc::Status ExportService::DownloadExport(grpc::ServerContext* context, const v1::DownloadExportRequest* request,
                                            grpc::ServerWriter<v1::DownloadExportResponse>* writer) {
-  const auto caller = door_.Admit(*context, *request);
+  const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
-  if (absl::Status own = door_.CheckOwns(Door::Kind::kExport, request->export_id(), *caller); !own.ok())
+  if (absl::Status own = guard_.CheckOwns(AccessGuard::Kind::kExport, request->export_id(), *caller); !own.ok())
     return ToGrpc(own);
   const absl::Cleanup leave = [this] { --streams_; };
   if (++streams_ > kMostExportStreams) return ToGrpc(TooMany());

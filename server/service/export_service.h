@@ -14,8 +14,8 @@ namespace phrenic::service {
 // gRPC's threads call, any number at a time; watchers and downloads have one each until they are done, 32 at most.
 class ExportService final : public v1::ExportService::Service {
  public:
-  ExportService(session::Table& table, session::Exports& exports, Door& door)
-      : table_(table), exports_(exports), door_(door) {}
+  ExportService(session::Table& table, session::Exports& exports, AccessGuard& guard)
+      : table_(table), exports_(exports), guard_(guard) {}
 
   grpc::Status ListFormats(grpc::ServerContext* context, const v1::ListFormatsRequest* request,
                            v1::ListFormatsResponse* response) override;
@@ -38,7 +38,7 @@ class ExportService final : public v1::ExportService::Service {
 
   session::Table& table_;
   session::Exports& exports_;
-  Door& door_;
+  AccessGuard& guard_;
   std::atomic<int> streams_ = 0;
 };
 

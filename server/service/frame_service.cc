@@ -79,7 +79,7 @@ absl::Status Acknowledge(const session::Table& table, const v1::AckFramesRequest
 
 grpc::Status FrameService::GetGeometry(grpc::ServerContext* context, const v1::GetGeometryRequest* request,
                                        grpc::ServerWriter<v1::GetGeometryResponse>* writer) {
-  const auto caller = door_.Admit(*context, *request);
+  const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
   const auto session = table_.Find(request->session_id());
   if (!session.ok()) return ToGrpc(session.status());
@@ -94,21 +94,21 @@ absl::Status FrameService::Watch(const grpc::CallbackServerContext& context, con
                                  WatchReactor& reactor) {
   v1::WatchFramesRequest request;
   if (absl::Status parsed = Parse(bytes, request); !parsed.ok()) return parsed;
-  const auto caller = door_.Admit(context, request);
+  const auto caller = guard_.Admit(context, request);
   if (!caller.ok()) return caller.status();
   auto session = table_.Find(request.session_id());
   if (!session.ok()) return session.status();
   const auto options = ReadOptions((*session)->model(), (*session)->publisher().layout(), request);
   if (!options.ok()) return options.status();
-  const std::shared_ptr<void> seat(nullptr, [viewers = viewers_](void*) { --*viewers; });
+  const std::shared_ptr<void> viewer_count(nullptr, [viewers = viewers_](void*) { --*viewers; });
   if (++*viewers_ > max_viewers_) {
     return absl::ResourceExhaustedError(absl::StrCat("there are ", max_viewers_,
                                                      " viewers on this server, and no more ",
                                                      "are allowed (--max-viewers-in-all); try again later"));
   }
-  auto may_see = door_.StillMaySee(*caller, **session);
+  auto may_see = guard_.StillMaySee(*caller, **session);
   reactor.Watch(*std::move(session), *options,
-                {seat, std::move(may_see), [this](std::size_t sent) { metrics_.CountFrame(sent); }});
+                {viewer_count, std::move(may_see), [this](std::size_t sent) { metrics_.CountFrame(sent); }});
   return absl::OkStatus();
 }
 
@@ -123,14 +123,14 @@ grpc::ServerUnaryReactor* FrameService::AckFrames(grpc::CallbackServerContext* c
                                                   const v1::AckFramesRequest* request,
                                                   v1::AckFramesResponse* response) {
   grpc::ServerUnaryReactor* const reactor = context->DefaultReactor();
-  const auto caller = door_.Admit(*context, *request);
+  const auto caller = guard_.Admit(*context, *request);
   reactor->Finish(ToGrpc(caller.ok() ? Acknowledge(table_, *request, *response) : caller.status()));
   return reactor;
 }
 
 grpc::Status FrameService::GetBasis(grpc::ServerContext* context, const v1::GetBasisRequest* request,
                                     v1::GetBasisResponse* response) {
-  const auto caller = door_.Admit(*context, *request);
+  const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
   const auto session = table_.Find(request->session_id());
   if (!session.ok()) return ToGrpc(session.status());
@@ -143,7 +143,7 @@ grpc::Status FrameService::GetBasis(grpc::ServerContext* context, const v1::GetB
 
 grpc::Status FrameService::GetForces(grpc::ServerContext* context, const v1::GetForcesRequest* request,
                                      v1::GetForcesResponse* response) {
-  const auto caller = door_.Admit(*context, *request);
+  const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
   auto read = session::ReadForces(table_, *request);
   if (!read.ok()) return ToGrpc(read.status());

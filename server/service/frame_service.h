@@ -18,8 +18,8 @@ namespace phrenic::service {
 class FrameService final : public v1::FrameService::WithRawCallbackMethod_WatchFrames<
                                v1::FrameService::WithCallbackMethod_AckFrames<v1::FrameService::Service>> {
  public:
-  FrameService(session::Table& table, Door& door, Metrics& metrics, int max_viewers)
-      : table_(table), door_(door), metrics_(metrics), max_viewers_(max_viewers) {}
+  FrameService(session::Table& table, AccessGuard& guard, Metrics& metrics, int max_viewers)
+      : table_(table), guard_(guard), metrics_(metrics), max_viewers_(max_viewers) {}
 
   grpc::Status GetGeometry(grpc::ServerContext* context, const v1::GetGeometryRequest* request,
                            grpc::ServerWriter<v1::GetGeometryResponse>* writer) override;
@@ -37,7 +37,7 @@ class FrameService final : public v1::FrameService::WithRawCallbackMethod_WatchF
   absl::Status Watch(const grpc::CallbackServerContext& context, const grpc::ByteBuffer& bytes, WatchReactor& reactor);
 
   session::Table& table_;
-  Door& door_;
+  AccessGuard& guard_;
   Metrics& metrics_;
   const int max_viewers_;  // of all sessions
   std::shared_ptr<std::atomic<int>> viewers_ = std::make_shared<std::atomic<int>>(0);

@@ -12,18 +12,18 @@
 namespace phrenic::service {
 
 // A thread that calls `work` every so often, from one `pause` after now until it is destroyed.
-class Caretaker {
+class PeriodicTask {
  public:
-  Caretaker(absl::Duration pause, std::function<void()> work)
+  PeriodicTask(absl::Duration pause, std::function<void()> work)
       : thread_([this, pause, work = std::move(work)] {
           while (!ended_.WaitForNotificationWithTimeout(pause)) work();
         }) {}
-  ~Caretaker() {
+  ~PeriodicTask() {
     ended_.Notify();
     thread_.join();
   }
-  Caretaker(const Caretaker&) = delete;
-  Caretaker& operator=(const Caretaker&) = delete;
+  PeriodicTask(const PeriodicTask&) = delete;
+  PeriodicTask& operator=(const PeriodicTask&) = delete;
 
  private:
   absl::Notification ended_;

@@ -6,7 +6,7 @@ namespace phrenic::service {
 
 grpc::Status SceneService::ListScenes(grpc::ServerContext* context, const v1::ListScenesRequest* request,
                                       v1::ListScenesResponse* response) {
-  const auto caller = door_.Admit(*context, *request);
+  const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
   for (v1::SceneSummary& summary : models_.catalogue().List()) *response->add_scenes() = std::move(summary);
   return grpc::Status::OK;
@@ -14,7 +14,7 @@ grpc::Status SceneService::ListScenes(grpc::ServerContext* context, const v1::Li
 
 grpc::Status SceneService::DescribeScene(grpc::ServerContext* context, const v1::DescribeSceneRequest* request,
                                          v1::DescribeSceneResponse* response) {
-  const auto caller = door_.Admit(*context, *request);
+  const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
   const auto model = models_.Get(request->source());
   if (!model.ok()) return ToGrpc(model.status());

@@ -11,7 +11,7 @@ namespace phrenic::service {
 // gRPC's threads call, any number at a time.
 class SceneService final : public v1::SceneService::Service {
  public:
-  SceneService(session::Models& models, Door& door) : models_(models), door_(door) {}
+  SceneService(session::Models& models, AccessGuard& guard) : models_(models), guard_(guard) {}
 
   grpc::Status ListScenes(grpc::ServerContext* context, const v1::ListScenesRequest* request,
                           v1::ListScenesResponse* response) override;
@@ -20,7 +20,7 @@ class SceneService final : public v1::SceneService::Service {
 
  private:
   session::Models& models_;
-  Door& door_;
+  AccessGuard& guard_;
 };
 
 }  // namespace phrenic::service

@@ -12,16 +12,16 @@
 #include "absl/strings/str_cat.h"
 #include "server/mechanics/parallel/parallel_for.h"
 #include "server/service/access_service.h"
-#include "server/service/net/address.h"
-#include "server/service/periodic_task.h"
+#include "server/service/calls/access_guard.h"
+#include "server/service/calls/metrics.h"
 #include "server/service/compare_service.h"
 #include "server/service/control_service.h"
-#include "server/service/calls/access_guard.h"
 #include "server/service/export_service.h"
 #include "server/service/frame_service.h"
-#include "server/service/routing/session_router.h"
+#include "server/service/net/address.h"
 #include "server/service/net/grpc_listener.h"
-#include "server/service/calls/metrics.h"
+#include "server/service/periodic_task.h"
+#include "server/service/routing/session_router.h"
 #include "server/service/scene_service.h"
 #include "server/service/server_service.h"
 #include "server/service/session_service.h"
@@ -121,21 +121,21 @@ struct Server::Parts {
         models(session::SceneCatalogue(SceneFolders(options)), options.data_dir, options.limits.models, &uploads,
                options.limits.vertices),
         table(models, clock, options.limits, store.get(), cluster.get()),
-        front(cluster == nullptr ? nullptr : std::make_unique<Front>(*cluster)),
-        door(*accounts, *audit, table, metrics, options.max_requests),
-        pages(door, metrics, table),
-        scene_service(models, door),
-        session_service(table, door),
-        control_service(table, door),
-        access_service(door, table),
-        frame_service(table, door, metrics, options.limits.viewers_in_all),
+        front(cluster == nullptr ? nullptr : std::make_unique<SessionRouter>(*cluster)),
+        guard(*accounts, *audit, table, metrics, options.max_requests),
+        pages(guard, metrics, table),
+        scene_service(models, guard),
+        session_service(table, guard),
+        control_service(table, guard),
+        access_service(guard, table),
+        frame_service(table, guard, metrics, options.limits.viewers_in_all),
         exports(options.limits, options.spool_dir, clock, store.get()),
-        export_service(table, exports, door),
-        upload_service(uploads, options.limits, door),
-        study_service(models, options.web_root, door, store.get()),
-        compare_service(table, options.limits.exports, door),
+        export_service(table, exports, guard),
+        upload_service(uploads, options.limits, guard),
+        study_service(models, options.web_root, guard, store.get()),
+        compare_service(table, options.limits.exports, guard),
         server_service(std::filesystem::exists(options.web_root + "/index.html"), !options.data_dir.empty(),
-                       options.tls.used(), door) {}
+                       options.tls.used(), guard) {}
 
   void JoinCluster();
   absl::Status Restore(const ServerOptions& options);
@@ -157,9 +157,9 @@ struct Server::Parts {
   session::Uploads uploads;
   session::Models models;
   session::Table table;
-  const std::unique_ptr<Front> front;  // of a cluster's server
+  const std::unique_ptr<SessionRouter> front;  // of a cluster's server
   Metrics metrics;
-  Door door;
+  AccessGuard guard;
   WebPages pages;
   SceneService scene_service;
   SessionService session_service;
@@ -175,7 +175,7 @@ struct Server::Parts {
   std::unique_ptr<GrpcListener> listener;
   std::unique_ptr<grpc::Server> grpc, front_grpc;
   std::unique_ptr<WebGateway> web;
-  std::unique_ptr<Caretaker> caretaker;
+  std::unique_ptr<PeriodicTask> caretaker;
   std::map<std::string, absl::Status> lost;
   absl::Status not_refreshed;  // of the accounts, the last time
 };
@@ -201,7 +201,7 @@ absl::Status Server::Parts::Restore(const ServerOptions& options) {
   lost = *std::move(restored);
   study_service.Restore(*records, lost);
   const auto take = [this](const std::string& id, const std::string& owner) {
-    door.Give(Door::Kind::kExport, id, owner);
+    guard.Give(AccessGuard::Kind::kExport, id, owner);
   };
   exports.Restore(*records, models, take, lost);
   return absl::OkStatus();
@@ -321,7 +321,7 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& optio
   if (absl::Status status = server->parts_->Serve(options); !status.ok()) return status;
   if (absl::Status status = server->parts_->ServeWeb(options); !status.ok()) return status;
   server->parts_->caretaker =
-      std::make_unique<Caretaker>(kTendPause, [parts = server->parts_.get()] { parts->Tend(); });
+      std::make_unique<PeriodicTask>(kTendPause, [parts = server->parts_.get()] { parts->Tend(); });
   if (server->parts_->cluster != nullptr) server->parts_->cluster->Watch();
   server->parts_->pages.set_ready(true);
   return server;

@@ -6,7 +6,7 @@ namespace phrenic::service {
 
 grpc::Status ServerService::GetServer(grpc::ServerContext* context, const v1::GetServerRequest* request,
                                       v1::GetServerResponse* response) {
-  const auto caller = door_.Admit(*context, *request);
+  const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
   response->set_version(PHRENIC_VERSION);
   response->set_web_port(web_port_);

@@ -12,8 +12,8 @@ namespace phrenic::service {
 // gRPC's threads call, any number at a time.
 class ServerService final : public v1::ServerService::Service {
  public:
-  ServerService(bool viewer_is_built, bool has_data_folder, bool encrypted, Door& door)
-      : viewer_is_built_(viewer_is_built), has_data_folder_(has_data_folder), encrypted_(encrypted), door_(door) {}
+  ServerService(bool viewer_is_built, bool has_data_folder, bool encrypted, AccessGuard& guard)
+      : viewer_is_built_(viewer_is_built), has_data_folder_(has_data_folder), encrypted_(encrypted), guard_(guard) {}
 
   // Known once the gateway listens, which is after the first calls may come.
   void set_web_port(int port) { web_port_ = port; }
@@ -23,7 +23,7 @@ class ServerService final : public v1::ServerService::Service {
 
  private:
   const bool viewer_is_built_, has_data_folder_, encrypted_;
-  Door& door_;
+  AccessGuard& guard_;
   std::atomic<int> web_port_ = 0;
 };
 

@@ -30,13 +30,14 @@ std::optional<Number> OptionalOf(bool has, Number value) {
 }
 
 // How far the session is that this one plays in step with; null where it plays by itself.
-absl::StatusOr<std::shared_ptr<const session::ReachedTime>> LeaderOf(const Door& door, const access::Caller& caller,
+absl::StatusOr<std::shared_ptr<const session::ReachedTime>> LeaderOf(const AccessGuard& guard,
+                                                                     const access::Caller& caller,
                                                                      const v1::PlaySessionRequest& request) {
   if (request.in_step_with().empty()) return nullptr;
   if (request.in_step_with() == request.session_id()) {
     return absl::InvalidArgumentError("in_step_with: is the session itself; name another one, or none");
   }
-  const auto leader = door.Find(caller, request.in_step_with());
+  const auto leader = guard.Find(caller, request.in_step_with());
   if (leader.ok()) return (*leader)->reached();
   return absl::NotFoundError(
       absl::StrCat("in_step_with: there is no session \"", request.in_step_with(), "\"; list the sessions there are"));
@@ -48,7 +49,7 @@ absl::StatusOr<std::shared_ptr<const session::ReachedTime>> LeaderOf(const Door&
 template <class Request, class Response, class Act>
 grpc::Status SessionService::Change(const grpc::ServerContext& context, const Request& request, Response* response,
                                     Act act) {
-  const auto caller = door_.Admit(context, request);
+  const auto caller = guard_.Admit(context, request);
   if (!caller.ok()) return ToGrpc(caller.status());
   const auto session = table_.Find(request.session_id());
   if (!session.ok()) return ToGrpc(session.status());
@@ -63,7 +64,7 @@ grpc::Status SessionService::Change(const grpc::ServerContext& context, const Re
 
 grpc::Status SessionService::CreateSession(grpc::ServerContext* context, const v1::CreateSessionRequest* request,
                                            v1::CreateSessionResponse* response) {
-  const auto caller = door_.Admit(*context, *request);
+  const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
   auto control = session::ControlBook::Make(request->control(), request->owner_name(), caller->account.name);
   if (!control.ok()) return ToGrpc(control.status());
@@ -75,7 +76,7 @@ grpc::Status SessionService::CreateSession(grpc::ServerContext* context, const v
 
 grpc::Status SessionService::GetSession(grpc::ServerContext* context, const v1::GetSessionRequest* request,
                                         v1::GetSessionResponse* response) {
-  const auto caller = door_.Admit(*context, *request);
+  const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
   const auto session = table_.Find(request->session_id());
   if (!session.ok()) return ToGrpc(session.status());
@@ -85,7 +86,7 @@ grpc::Status SessionService::GetSession(grpc::ServerContext* context, const v1::
 
 grpc::Status SessionService::ForkSession(grpc::ServerContext* context, const v1::ForkSessionRequest* request,
                                          v1::ForkSessionResponse* response) {
-  const auto caller = door_.Admit(*context, *request);
+  const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
   auto control = session::ControlBook::Make(request->control(), request->owner_name(), caller->account.name);
   if (!control.ok()) return ToGrpc(control.status());
@@ -97,7 +98,7 @@ grpc::Status SessionService::ForkSession(grpc::ServerContext* context, const v1:
 
 grpc::Status SessionService::ListSessions(grpc::ServerContext* context, const v1::ListSessionsRequest* request,
                                           v1::ListSessionsResponse* response) {
-  const auto caller = door_.Admit(*context, *request);
+  const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
   if (request->page_size() < 0 || request->page_size() > 1000) {
     return ToGrpc(
@@ -105,7 +106,7 @@ grpc::Status SessionService::ListSessions(grpc::ServerContext* context, const v1
   }
   session::Table::Page page = table_.List(request->page_size(), request->page_token());
   for (const auto& session : page.sessions) {
-    if (door_.MaySee(*caller, *session)) *response->add_sessions() = session->status();
+    if (guard_.MaySee(*caller, *session)) *response->add_sessions() = session->status();
   }
   response->set_next_page_token(std::move(page.next_token));
   return grpc::Status::OK;
@@ -113,9 +114,9 @@ grpc::Status SessionService::ListSessions(grpc::ServerContext* context, const v1
 
 grpc::Status SessionService::DeleteSession(grpc::ServerContext* context, const v1::DeleteSessionRequest* request,
                                            v1::DeleteSessionResponse* /*response*/) {
-  const auto caller = door_.Admit(*context, *request);
+  const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
-  if (door_.Owns(*caller, request->session_id())) return ToGrpc(table_.DeleteAnyway(request->session_id()));
+  if (guard_.Owns(*caller, request->session_id())) return ToGrpc(table_.DeleteAnyway(request->session_id()));
   return ToGrpc(table_.Delete(request->session_id(), request->control_token()));
 }
 
@@ -123,7 +124,7 @@ grpc::Status SessionService::PlaySession(grpc::ServerContext* context, const v1:
                                          v1::PlaySessionResponse* response) {
   return Change(*context, *request, response, [&](session::Session& session, const access::Caller& caller) {
     const auto speed = OptionalOf(request->has_speed(), request->speed());
-    const auto leader = LeaderOf(door_, caller, *request);
+    const auto leader = LeaderOf(guard_, caller, *request);
     if (!leader.ok()) return leader.status();
     return FillSession(
         session.Play(speed, request->as_fast_as_possible(), request->until_time(), request->control_token(), *leader),

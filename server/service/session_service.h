@@ -11,7 +11,7 @@ namespace phrenic::service {
 // gRPC's threads call, any number at a time.
 class SessionService final : public v1::SessionService::Service {
  public:
-  explicit SessionService(session::Table& table, Door& door) : table_(table), door_(door) {}
+  explicit SessionService(session::Table& table, AccessGuard& guard) : table_(table), guard_(guard) {}
 
   grpc::Status CreateSession(grpc::ServerContext* context, const v1::CreateSessionRequest* request,
                              v1::CreateSessionResponse* response) override;
@@ -41,7 +41,7 @@ class SessionService final : public v1::SessionService::Service {
   grpc::Status Change(const grpc::ServerContext& context, const Request& request, Response* response, Act act);
 
   session::Table& table_;
-  Door& door_;
+  AccessGuard& guard_;
 };
 
 }  // namespace phrenic::service

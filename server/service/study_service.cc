@@ -2,9 +2,9 @@
 
 #include "phrenic/v1/saved.pb.h"
 #include "server/mechanics/compile/presets.h"
+#include "server/physiology/physiology.h"
 #include "server/service/calls/status.h"
 #include "server/service/study_page.h"
-#include "server/physiology/physiology.h"
 #include "server/study/run.h"
 
 namespace phrenic::service {
@@ -33,10 +33,10 @@ const char* KindOf(const v1::CreateStudyRequest& request) {
 
 }  // namespace
 
-StudyService::StudyService(session::Models& models, std::string web_root, Door& door, store::Store* store)
+StudyService::StudyService(session::Models& models, std::string web_root, AccessGuard& guard, store::Store* store)
     : models_(models),
       web_root_(std::move(web_root)),
-      door_(door),
+      guard_(guard),
       store_(store),
       jobs_(kMostStudies, {[this](const v1::Study& study) { Save(study, nullptr); },
                            [this](const std::string& id) {
@@ -48,7 +48,7 @@ void StudyService::Save(const v1::Study& study, const v1::CreateStudyRequest* re
   v1::SavedStudy saved;
   if (request != nullptr) *saved.mutable_request() = *request;
   *saved.mutable_study() = study;
-  saved.set_owner(door_.OwnerOf(Door::Kind::kStudy, study.id()));
+  saved.set_owner(guard_.OwnerOf(AccessGuard::Kind::kStudy, study.id()));
   store_->Put(kRecord, study.id(), saved.SerializeAsString());
 }
 
@@ -61,7 +61,7 @@ void StudyService::Restore(const std::vector<store::SavedRecord>& records, std::
           record.problem.ok() ? absl::DataLossError("what is in the store is no study") : record.problem;
       continue;
     }
-    door_.Give(Door::Kind::kStudy, record.id, saved.owner());
+    guard_.Give(AccessGuard::Kind::kStudy, record.id, saved.owner());
     if (!saved.has_request()) {
       jobs_.Restore(saved.study());
     } else if (const auto again = Run(saved.request()); !again.ok()) {
@@ -88,11 +88,11 @@ absl::StatusOr<v1::Study> StudyService::Run(const v1::CreateStudyRequest& reques
 
 grpc::Status StudyService::CreateStudy(grpc::ServerContext* context, const v1::CreateStudyRequest* request,
                                        v1::CreateStudyResponse* response) {
-  const auto caller = door_.Admit(*context, *request);
+  const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
   auto study = Run(*request);
   if (!study.ok()) return ToGrpc(study.status());
-  door_.Give(Door::Kind::kStudy, study->id(), caller->id());
+  guard_.Give(AccessGuard::Kind::kStudy, study->id(), caller->id());
   v1::CreateStudyRequest again = *request;
   again.set_study_id(study->id());
   Save(*study, &again);
@@ -122,9 +122,9 @@ absl::Status StudyService::Watch(const std::string& id, grpc::ServerContext& con
 
 grpc::Status StudyService::WatchStudy(grpc::ServerContext* context, const v1::WatchStudyRequest* request,
                                       grpc::ServerWriter<v1::WatchStudyResponse>* writer) {
-  const auto caller = door_.Admit(*context, *request);
+  const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
-  if (absl::Status own = door_.CheckOwns(Door::Kind::kStudy, request->study_id(), *caller); !own.ok())
+  if (absl::Status own = guard_.CheckOwns(AccessGuard::Kind::kStudy, request->study_id(), *caller); !own.ok())
     return ToGrpc(own);
   absl::Status watched = absl::ResourceExhaustedError("16 callers watch studies, and no more are allowed: try later");
   if (watchers_.fetch_add(1) < kMostWatchers) watched = Watch(request->study_id(), *context, *writer);
@@ -134,28 +134,28 @@ grpc::Status StudyService::WatchStudy(grpc::ServerContext* context, const v1::Wa
 
 grpc::Status StudyService::ListStudies(grpc::ServerContext* context, const v1::ListStudiesRequest* request,
                                        v1::ListStudiesResponse* response) {
-  const auto caller = door_.Admit(*context, *request);
+  const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
   for (v1::Study& study : jobs_.List()) {
-    if (door_.Owns(Door::Kind::kStudy, study.id(), *caller)) *response->add_studies() = std::move(study);
+    if (guard_.Owns(AccessGuard::Kind::kStudy, study.id(), *caller)) *response->add_studies() = std::move(study);
   }
   return grpc::Status::OK;
 }
 
 grpc::Status StudyService::DeleteStudy(grpc::ServerContext* context, const v1::DeleteStudyRequest* request,
                                        v1::DeleteStudyResponse*) {
-  const auto caller = door_.Admit(*context, *request);
+  const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
-  if (absl::Status own = door_.CheckOwns(Door::Kind::kStudy, request->study_id(), *caller); !own.ok())
+  if (absl::Status own = guard_.CheckOwns(AccessGuard::Kind::kStudy, request->study_id(), *caller); !own.ok())
     return ToGrpc(own);
   return ToGrpc(jobs_.Delete(request->study_id()));
 }
 
 grpc::Status StudyService::GetStudyPage(grpc::ServerContext* context, const v1::GetStudyPageRequest* request,
                                         v1::GetStudyPageResponse* response) {
-  const auto caller = door_.Admit(*context, *request);
+  const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
-  if (absl::Status own = door_.CheckOwns(Door::Kind::kStudy, request->study_id(), *caller); !own.ok())
+  if (absl::Status own = guard_.CheckOwns(AccessGuard::Kind::kStudy, request->study_id(), *caller); !own.ok())
     return ToGrpc(own);
   const auto seen = jobs_.Wait(request->study_id(), 0, absl::ZeroDuration());
   if (!seen.ok()) return ToGrpc(seen.status());
@@ -167,12 +167,12 @@ grpc::Status StudyService::GetStudyPage(grpc::ServerContext* context, const v1::
 
 grpc::Status StudyService::CheckPhysiology(grpc::ServerContext* context, const v1::CheckPhysiologyRequest* request,
                                            grpc::ServerWriter<v1::CheckPhysiologyResponse>* writer) {
-  const auto caller = door_.Admit(*context, *request);
+  const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
   const auto model = models_.Get(request->source());
   if (!model.ok()) return ToGrpc(model.status());
   v1::CheckPhysiologyResponse response;
-  const auto table = study::CheckPhysiology(**model, [&](double done) {
+  const auto table = physiology::CheckPhysiology(**model, [&](double done) {
     response.set_progress(done);
     return writer->Write(response) && !context->IsCancelled();
   });

@@ -20,7 +20,7 @@ namespace phrenic::service {
 class StudyService final : public v1::StudyService::Service {
  public:
   // `web_root` has report.html, the page without a study. `store` is null where studies end with the server.
-  StudyService(session::Models& models, std::string web_root, Door& door, store::Store* store);
+  StudyService(session::Models& models, std::string web_root, AccessGuard& guard, store::Store* store);
   // What an earlier server left: studies that ended are there again, the others run anew. Before any call. Why one
   // could not be is in `lost`, by "study NAME"; it stays in the store.
   void Restore(const std::vector<store::SavedRecord>& records, std::map<std::string, absl::Status>& lost);
@@ -47,7 +47,7 @@ class StudyService final : public v1::StudyService::Service {
 
   session::Models& models_;
   const std::string web_root_;
-  Door& door_;
+  AccessGuard& guard_;
   store::Store* const store_;
   study::Jobs jobs_;
   std::atomic<int> watchers_ = 0;

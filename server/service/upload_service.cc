@@ -1,8 +1,8 @@
 #include "server/service/upload_service.h"
 
+#include "server/compare/inspection.h"
 #include "server/meshio/formats.h"
 #include "server/service/calls/status.h"
-#include "server/compare/inspection.h"
 
 namespace phrenic::service {
 namespace {
@@ -18,7 +18,7 @@ void Fill(const session::Uploads::File& file, v1::UploadedFile& filled) {
 grpc::Status UploadService::ListSurfaceFormats(grpc::ServerContext* context,
                                                const v1::ListSurfaceFormatsRequest* request,
                                                v1::ListSurfaceFormatsResponse* response) {
-  const auto caller = door_.Admit(*context, *request);
+  const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
   for (const meshio::Format& format : meshio::Formats()) {
     v1::SurfaceFormat& listed = *response->add_formats();
@@ -31,20 +31,20 @@ grpc::Status UploadService::ListSurfaceFormats(grpc::ServerContext* context,
 
 grpc::Status UploadService::BeginUpload(grpc::ServerContext* context, const v1::BeginUploadRequest* request,
                                         v1::BeginUploadResponse* response) {
-  const auto caller = door_.Admit(*context, *request);
+  const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
   const auto begun = uploads_.Begin(request->name(), request->size(), request->sha256());
   if (!begun.ok()) return ToGrpc(begun.status());
   response->set_upload_id(begun->id);
   response->set_received(begun->received);
   if (begun->id.empty()) Fill(begun->file, *response->mutable_file());
-  if (begun->id.empty()) door_.Give(Door::Kind::kUpload, begun->file.path(), caller->id());
+  if (begun->id.empty()) guard_.Give(AccessGuard::Kind::kUpload, begun->file.path(), caller->id());
   return grpc::Status::OK;
 }
 
 grpc::Status UploadService::AddUploadChunk(grpc::ServerContext* context, const v1::AddUploadChunkRequest* request,
                                            v1::AddUploadChunkResponse* response) {
-  const auto caller = door_.Admit(*context, *request);
+  const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
   const auto received = uploads_.Add(request->upload_id(), request->offset(), request->chunk());
   if (!received.ok()) return ToGrpc(received.status());
@@ -54,32 +54,33 @@ grpc::Status UploadService::AddUploadChunk(grpc::ServerContext* context, const v
 
 grpc::Status UploadService::FinishUpload(grpc::ServerContext* context, const v1::FinishUploadRequest* request,
                                          v1::FinishUploadResponse* response) {
-  const auto caller = door_.Admit(*context, *request);
+  const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
   const double unit_mm = request->has_unit_mm() ? request->unit_mm() : 1;
   const auto finished = uploads_.Finish(request->upload_id(), unit_mm);
   if (!finished.ok()) return ToGrpc(finished.status());
   Fill(finished->file, *response->mutable_file());
-  door_.Give(Door::Kind::kUpload, finished->file.path(), caller->id());
-  *response->mutable_report() = study::Inspect(finished->file.name, finished->surface, unit_mm);
+  guard_.Give(AccessGuard::Kind::kUpload, finished->file.path(), caller->id());
+  *response->mutable_report() = compare::Inspect(finished->file.name, finished->surface, unit_mm);
   return grpc::Status::OK;
 }
 
 grpc::Status UploadService::ListUploads(grpc::ServerContext* context, const v1::ListUploadsRequest* request,
                                         v1::ListUploadsResponse* response) {
-  const auto caller = door_.Admit(*context, *request);
+  const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
   for (const session::Uploads::File& file : uploads_.List()) {
-    if (door_.Owns(Door::Kind::kUpload, file.path(), *caller)) Fill(file, *response->add_files());
+    if (guard_.Owns(AccessGuard::Kind::kUpload, file.path(), *caller)) Fill(file, *response->add_files());
   }
   return grpc::Status::OK;
 }
 
 grpc::Status UploadService::DeleteUpload(grpc::ServerContext* context, const v1::DeleteUploadRequest* request,
                                          v1::DeleteUploadResponse*) {
-  const auto caller = door_.Admit(*context, *request);
+  const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
-  if (absl::Status own = door_.CheckOwns(Door::Kind::kUpload, request->path(), *caller); !own.ok()) return ToGrpc(own);
+  if (absl::Status own = guard_.CheckOwns(AccessGuard::Kind::kUpload, request->path(), *caller); !own.ok())
+    return ToGrpc(own);
   return ToGrpc(uploads_.Delete(request->path()));
 }
 

@@ -11,8 +11,8 @@ namespace phrenic::service {
 // gRPC's threads call, any number at a time.
 class UploadService final : public v1::UploadService::Service {
  public:
-  UploadService(session::Uploads& uploads, const session::Limits& limits, Door& door)
-      : uploads_(uploads), limits_(limits), door_(door) {}
+  UploadService(session::Uploads& uploads, const session::Limits& limits, AccessGuard& guard)
+      : uploads_(uploads), limits_(limits), guard_(guard) {}
 
   grpc::Status ListSurfaceFormats(grpc::ServerContext* context, const v1::ListSurfaceFormatsRequest* request,
                                   v1::ListSurfaceFormatsResponse* response) override;
@@ -30,7 +30,7 @@ class UploadService final : public v1::UploadService::Service {
  private:
   session::Uploads& uploads_;
   const session::Limits limits_;
-  Door& door_;
+  AccessGuard& guard_;
 };
 
 }  // namespace phrenic::service

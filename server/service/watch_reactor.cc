@@ -27,8 +27,9 @@ std::shared_ptr<WatchReactor> WatchReactor::Make() {
   return reactor;
 }
 
-void WatchReactor::Watch(std::shared_ptr<session::Session> session, const stream::ViewerOptions& options, Seat seat) {
-  seat_ = std::move(seat);
+void WatchReactor::Watch(std::shared_ptr<session::Session> session, const stream::ViewerOptions& options,
+                         Subscription seat) {
+  subscription_ = std::move(seat);
   auto viewer = session->publisher().Join(options, [weak = weak_from_this()] {
     if (const auto reactor = weak.lock()) reactor->Pump();
   });
@@ -53,7 +54,7 @@ WatchReactor::Next WatchReactor::TakeNext() {
   absl::MutexLock lock(&mutex_);
   if (viewer_ == nullptr || writing_ || finished_) return {};
   std::optional<absl::Status> ended = cancelled_ ? absl::CancelledError() : viewer_->ended();
-  if (!ended.has_value() && seat_.may_see && !seat_.may_see()) {
+  if (!ended.has_value() && subscription_.may_see && !subscription_.may_see()) {
     ended = absl::PermissionDeniedError("authorization: the session may no longer be watched; ask its owner");
   }
   if (ended.has_value()) {
@@ -73,7 +74,7 @@ void WatchReactor::Pump() {
   if (next.finish.has_value()) {
     Finish(*next.finish);
   } else if (next.write != nullptr) {
-    if (seat_.sent) seat_.sent(next.write->size());
+    if (subscription_.sent) subscription_.sent(next.write->size());
     buffer_ = Share(next.write);
     StartWrite(&buffer_);
   }

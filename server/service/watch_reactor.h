@@ -23,14 +23,14 @@ class WatchReactor final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
   static std::shared_ptr<WatchReactor> Make();
 
   // What a viewer is besides: held until they go.
-  struct Seat {
+  struct Subscription {
     std::shared_ptr<void> place;                  // among the viewers of all sessions
     std::function<bool()> may_see;                // asked before each message; null: for ever
     std::function<void(std::size_t bytes)> sent;  // hears of each message
   };
 
   // Either is called once, before gRPC gets the reactor.
-  void Watch(std::shared_ptr<session::Session> session, const stream::ViewerOptions& options, Seat seat);
+  void Watch(std::shared_ptr<session::Session> session, const stream::ViewerOptions& options, Subscription seat);
   void Refuse(const absl::Status& status);
 
   void OnWriteDone(bool ok) override;
@@ -53,7 +53,7 @@ class WatchReactor final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
   std::shared_ptr<WatchReactor> self_ ABSL_GUARDED_BY(mutex_);  // gRPC's hold on it
   std::shared_ptr<session::Session> session_ ABSL_GUARDED_BY(mutex_);
   std::shared_ptr<stream::Viewer> viewer_ ABSL_GUARDED_BY(mutex_);
-  Seat seat_;  // set before the viewer is
+  Subscription subscription_;  // set before the viewer is
   bool writing_ ABSL_GUARDED_BY(mutex_) = false;
   bool cancelled_ ABSL_GUARDED_BY(mutex_) = false;
   bool finished_ ABSL_GUARDED_BY(mutex_) = false;

@@ -14,7 +14,7 @@ std::optional<WebSettings::Page> WebPages::Find(std::string_view target, std::st
     return ready_ ? WebSettings::Page{kGood, kPlain, "ready\n"} : WebSettings::Page{kNotNow, kPlain, "not ready\n"};
   }
   if (target != "/metrics") return std::nullopt;
-  if (!door_.IsAdmin(authorization)) {
+  if (!guard_.IsAdmin(authorization)) {
     return WebSettings::Page{kWho, kPlain, "authorization: the numbers are for the role admin\n"};
   }
   return WebSettings::Page{kGood, "text/plain; version=0.0.4; charset=utf-8", metrics_.Text(table_)};

@@ -16,8 +16,8 @@ namespace phrenic::service {
 // Any thread may call.
 class WebPages {
  public:
-  WebPages(const Door& door, Metrics& metrics, const session::Table& table)
-      : door_(door), metrics_(metrics), table_(table) {}
+  WebPages(const AccessGuard& guard, Metrics& metrics, const session::Table& table)
+      : guard_(guard), metrics_(metrics), table_(table) {}
 
   // Before it is called, and once the server ends, /readyz answers 503.
   void set_ready(bool ready) { ready_ = ready; }
@@ -25,7 +25,7 @@ class WebPages {
   std::optional<WebSettings::Page> Find(std::string_view target, std::string_view authorization);
 
  private:
-  const Door& door_;
+  const AccessGuard& guard_;
   Metrics& metrics_;
   const session::Table& table_;
   std::atomic<bool> ready_ = false;

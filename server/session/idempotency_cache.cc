@@ -9,16 +9,16 @@
 
 namespace phrenic::session {
 
-Answers::Entries::iterator Answers::Find(const std::string& id) {
+IdempotencyCache::Entries::iterator IdempotencyCache::Find(const std::string& id) {
   return std::find_if(entries_.begin(), entries_.end(), [&id](const Entry& entry) { return entry.id == id; });
 }
 
-bool Answers::UnderWay(const std::string& id) {
+bool IdempotencyCache::UnderWay(const std::string& id) {
   const auto entry = Find(id);
   return entry != entries_.end() && !entry->answer.has_value();
 }
 
-absl::StatusOr<std::optional<Answer>> Answers::Begin(const std::string& id, const std::string& content) {
+absl::StatusOr<std::optional<Answer>> IdempotencyCache::Begin(const std::string& id, const std::string& content) {
   if (absl::Status status = schema::CheckId("request_id", id); !status.ok()) return status;
   const std::string digest = Sha256Hex(content);  // contents may be large
   const auto free = [this, &id] {
@@ -39,7 +39,7 @@ absl::StatusOr<std::optional<Answer>> Answers::Begin(const std::string& id, cons
                    "repeat one as it was"));
 }
 
-void Answers::Keep(const std::string& id, Answer answer) {
+void IdempotencyCache::Keep(const std::string& id, Answer answer) {
   absl::MutexLock lock(&mutex_);
   Find(id)->answer = std::move(answer);
   if (entries_.size() <= kMostAnswers) return;
@@ -48,7 +48,7 @@ void Answers::Keep(const std::string& id, Answer answer) {
   entries_.erase(oldest);
 }
 
-void Answers::Forget(const std::string& id) {
+void IdempotencyCache::Forget(const std::string& id) {
   absl::MutexLock lock(&mutex_);
   entries_.erase(Find(id));
 }

@@ -20,7 +20,7 @@ struct Answer {
 };
 
 // Any thread may call. Remembers the last kMostAnswers ids that were answered.
-class Answers {
+class IdempotencyCache {
  public:
   // Waits while the same request is under way. Its answer where it was given before; where not, the caller carries the
   // request out and calls Keep or Forget. INVALID_ARGUMENT where the id was that of another content, or is none

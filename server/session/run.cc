@@ -26,7 +26,7 @@ absl::Status Run::Step() {
   trail_.Note(parameters_, state_);
   absl::Status stepped = phrenic::Step(*model_, parameters_, dt, state_, work_);
   if (stepped.ok()) return stepped;
-  State before = trail_.StartOfLastStep(*model_, parameters_, dt, work_);
+  State before = trail_.StateBeforeLastStep(*model_, parameters_, dt, work_);
   divergence_ = Diagnose(*model_, parameters_, stepped, before, state_);
   state_ = std::move(before);
   trail_.Forget();

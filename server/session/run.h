@@ -46,7 +46,7 @@ class Run {
   v1::Parameters parameters_;
   State state_;
   Workspace work_;
-  Trail trail_;
+  StepCheckpoint trail_;
   std::optional<v1::Divergence> divergence_;
 };
 

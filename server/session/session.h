@@ -23,9 +23,9 @@
 #include "phrenic/v1/saved.pb.h"
 #include "phrenic/v1/session.pb.h"
 #include "server/mechanics/pulls.h"
-#include "server/session/idempotency_cache.h"
 #include "server/session/control.h"
 #include "server/session/cpu_share.h"
+#include "server/session/idempotency_cache.h"
 #include "server/session/limits.h"
 #include "server/session/pace_meter.h"
 #include "server/session/pacer.h"
@@ -87,7 +87,7 @@ class Session {
   const std::vector<Uploads::Held>& surfaces() const { return surfaces_; }
   stream::Publisher& publisher() { return publisher_; }
   // What was answered to requests that can be repeated.
-  Answers& answers() { return answers_; }
+  IdempotencyCache& answers() { return idempotency_cache_; }
 
   // `speed` not set keeps the present one, `until` 0 never pauses. It waits where it gets a frame ahead of `leader`
   // (PlaySessionRequest.in_step_with). FAILED_PRECONDITION when the session has diverged, INVALID_ARGUMENT when `until`
@@ -200,7 +200,7 @@ class Session {
   const std::vector<Uploads::Held> surfaces_;
   const stream::Clock& clock_;
   stream::Publisher publisher_;
-  Answers answers_;
+  IdempotencyCache idempotency_cache_;
 
   absl::Mutex update_mutex_;  // one update at a time; taken before mutex_
   mutable absl::Mutex mutex_;

@@ -176,7 +176,7 @@ void Session::EndJob(absl::Status status) {
   job_->status = std::move(status);
   job_->result.session = this->status();
   job_->result.state_hash = HashText(run_.state());
-  job_->result.measures = ReadMeasures(*model_, MakeInstant(*model_, run_.parameters(), run_.state()));
+  job_->result.measures = ReadMeasures(*model_, MakeEvalContext(*model_, run_.parameters(), run_.state()));
   const auto job = std::exchange(job_, nullptr);
   job->done.Notify();
 }

@@ -61,7 +61,7 @@ void Encoder::LookForBasis(absl::Time made) {
   if (maker_->newest() != bases_.front()) bases_ = {maker_->newest(), bases_.front()};
 }
 
-void Encoder::SetPositions(const Form& form, v1::Frame& frame) {
+void Encoder::SetPositions(const FrameEncoding& form, v1::Frame& frame) {
   const std::vector<int>& bodies = form.chosen ? form.bodies : streamed_;
   const Floats positions = Pick(*model_, layout_, bodies, positions_);
   const bool put_together = form.codec == v1::CODEC_BASIS && FindBasis(form.basis_epoch) != nullptr;
@@ -84,7 +84,7 @@ void Encoder::SetPositions(const Form& form, v1::Frame& frame) {
   ++encodings_;
 }
 
-Bytes Encoder::Encode(const Snapshot& snapshot, const Form& form) {
+Bytes Encoder::Encode(const Snapshot& snapshot, const FrameEncoding& form) {
   if (!Make(snapshot)) return nullptr;
   Bytes& bytes = made_[form];
   if (bytes != nullptr) return bytes;
@@ -96,7 +96,7 @@ Bytes Encoder::Encode(const Snapshot& snapshot, const Form& form) {
   return bytes;
 }
 
-News EncodeSession(const v1::Session& session) {
+StatusUpdate EncodeSession(const v1::Session& session) {
   v1::WatchFramesResponse response;
   *response.mutable_session() = session;
   return {.revision = session.revision(), .bytes = std::make_shared<const std::string>(response.SerializeAsString())};

@@ -26,7 +26,7 @@ class Encoder {
 
   // A WatchFramesResponse with the frame in that form; null where a number of it is not finite. What the form's codec
   // cannot hold within its bound goes out raw.
-  Bytes Encode(const Snapshot& snapshot, const Form& form);
+  Bytes Encode(const Snapshot& snapshot, const FrameEncoding& form);
   // How often positions were encoded.
   std::int64_t encodings() const { return encodings_; }
   // The newest; null where nobody asked for CODEC_BASIS, or too little was seen.
@@ -37,7 +37,7 @@ class Encoder {
 
   // Makes the frame unless it is the one made last; false where it may not be sent.
   bool Make(const Snapshot& snapshot);
-  void SetPositions(const Form& form, v1::Frame& frame);
+  void SetPositions(const FrameEncoding& form, v1::Frame& frame);
   std::shared_ptr<const Codec> FindCodec(const Chosen& chosen);
   // Shows the frame to who makes the basis, once.
   void LookForBasis(absl::Time made);
@@ -52,7 +52,7 @@ class Encoder {
   v1::Frame numbers_;  // without positions and poses
   std::string poses_;
   Floats positions_;  // of all streamed bodies
-  std::map<Form, Bytes> made_;
+  std::map<FrameEncoding, Bytes> made_;
   std::map<Chosen, std::shared_ptr<const Codec>> codecs_;
   std::unique_ptr<BasisMaker> maker_;                  // since somebody asked for CODEC_BASIS
   bool shown_ = false;                                 // the present frame, to maker_
@@ -60,7 +60,7 @@ class Encoder {
   std::int64_t encodings_ = 0;
 };
 
-News EncodeSession(const v1::Session& session);
+StatusUpdate EncodeSession(const v1::Session& session);
 Bytes EncodeCamera(const v1::Camera& camera);
 
 }  // namespace phrenic::stream

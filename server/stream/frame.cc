@@ -47,7 +47,7 @@ absl::Status AddProbe(const Model& model, const State& state, const Probe& probe
     x = state.x.col(body.first_vertex + probe.vertex);
   } else if (body.pose >= 0) {
     x = state.poses[body.pose].At(rest);
-  } else if (body.ride >= 0) {
+  } else if (body.skin >= 0) {
     Points placed(3, body.mesh.vertices.cols());
     PlaceBody(model, state, probe.body, placed);
     x = placed.col(probe.vertex);
@@ -73,7 +73,7 @@ absl::StatusOr<v1::Frame> MakeFrame(const Model& model, const Layout& layout, co
   frame.set_sequence(snapshot.sequence);
   frame.set_tick(state.tick);
   frame.set_time(state.time);
-  frame.set_breath(MakeInstant(model, snapshot.parameters, state).breath);
+  frame.set_breath(MakeEvalContext(model, snapshot.parameters, state).breath);
   frame.set_phase(state.phase - std::floor(state.phase));
   frame.set_unix_nanos(absl::ToUnixNanos(snapshot.made));
   if (!std::isfinite(frame.time()) || !std::isfinite(frame.breath())) return NotFinite("the time", state);
@@ -82,7 +82,7 @@ absl::StatusOr<v1::Frame> MakeFrame(const Model& model, const Layout& layout, co
   for (const Probe& probe : model.probes) {
     if (absl::Status status = AddProbe(model, state, probe, frame); !status.ok()) return status;
   }
-  *frame.mutable_measures() = ReadMeasures(model, MakeInstant(model, snapshot.parameters, state));
+  *frame.mutable_measures() = ReadMeasures(model, MakeEvalContext(model, snapshot.parameters, state));
   for (const v1::MeasureReading& reading : frame.measures()) {
     if (!std::isfinite(reading.value())) return NotFinite(absl::StrCat("measure ", reading.name()), state);
   }

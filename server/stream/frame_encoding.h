@@ -29,7 +29,7 @@ inline int RungWithin(double millimetres) {
   return rung;
 }
 
-struct Form {
+struct FrameEncoding {
   bool numbers_only = false;  // neither positions nor poses
   v1::Codec codec = v1::CODEC_RAW;
   int rung = kDefaultRung;
@@ -38,7 +38,7 @@ struct Form {
   std::int64_t basis_epoch = 0;  // of the basis that the viewer has; of CODEC_BASIS alone
 
   // clang-tidy takes the zero that a defaulted comparison is held against for a null pointer.
-  auto operator<=>(const Form&) const = default;  // NOLINT(modernize-use-nullptr)
+  auto operator<=>(const FrameEncoding&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
 }  // namespace phrenic::stream

@@ -48,26 +48,27 @@ void Publisher::ShowCamera(Bytes camera) {
 }
 
 void Publisher::SessionChanged() {
-  session_.set_viewers(static_cast<int>(seats_.size()));
-  if (seats_.empty()) return;  // who comes is told the newest
-  if (!news_.empty() && news_.back().revision() == session_.revision()) news_.pop_back();
-  news_.push_back(session_);
+  session_.set_viewers(static_cast<int>(subscriptions_.size()));
+  if (subscriptions_.empty()) return;  // who comes is told the newest
+  if (!updates_.empty() && updates_.back().revision() == session_.revision()) updates_.pop_back();
+  updates_.push_back(session_);
   stirred_ = true;
 }
 
 absl::StatusOr<std::shared_ptr<Viewer>> Publisher::Join(const ViewerOptions& options, std::function<void()> wake) {
   absl::MutexLock lock(&mutex_);
   if (closed_.has_value()) return *closed_;
-  if (static_cast<int>(seats_.size()) >= max_viewers_) {
-    return absl::ResourceExhaustedError(absl::StrCat(
-        "the session has ", seats_.size(), " viewers, and no more are allowed (--max-viewers); try again later"));
+  if (static_cast<int>(subscriptions_.size()) >= max_viewers_) {
+    return absl::ResourceExhaustedError(
+        absl::StrCat("the session has ", subscriptions_.size(),
+                     " viewers, and no more are allowed (--max-viewers); try again later"));
   }
   if (named_.count(options.watch_id) > 0) {
     return absl::AlreadyExistsError(absl::StrCat("watch_id: somebody watches as ", options.watch_id));
   }
   auto viewer = std::make_shared<Viewer>(options, std::move(wake));
   if (!options.watch_id.empty()) named_[options.watch_id] = viewer;
-  seats_.emplace_back().viewer = viewer;
+  subscriptions_.emplace_back().viewer = viewer;
   if (!thread_.joinable()) thread_ = std::thread([this] { Run(); });
   SessionChanged();
   return viewer;
@@ -75,7 +76,8 @@ absl::StatusOr<std::shared_ptr<Viewer>> Publisher::Join(const ViewerOptions& opt
 
 void Publisher::Leave(const std::shared_ptr<Viewer>& viewer) {
   absl::MutexLock lock(&mutex_);
-  const auto left = std::erase_if(seats_, [&](const Seat& seat) { return seat.viewer == viewer; });
+  const auto left =
+      std::erase_if(subscriptions_, [&](const Subscription& subscription) { return subscription.viewer == viewer; });
   if (left == 0) return;
   named_.erase(viewer->options().watch_id);
   SessionChanged();
@@ -87,7 +89,7 @@ void Publisher::Close(const absl::Status& reason) {
     absl::MutexLock lock(&mutex_);
     if (closed_.has_value()) return;
     closed_ = reason;
-    for (const Seat& seat : seats_) viewers.push_back(seat.viewer);
+    for (const Subscription& subscription : subscriptions_) viewers.push_back(subscription.viewer);
   }
   for (const auto& viewer : viewers) viewer->End(reason);
 }
@@ -119,7 +121,7 @@ std::shared_ptr<const Basis> Publisher::basis() const {
 
 int Publisher::viewers() const {
   absl::MutexLock lock(&mutex_);
-  return static_cast<int>(seats_.size());
+  return static_cast<int>(subscriptions_.size());
 }
 
 std::int64_t Publisher::encodings() const {
@@ -130,8 +132,9 @@ std::int64_t Publisher::encodings() const {
 absl::Time Publisher::NextDue() const {
   absl::Time next = absl::InfiniteFuture();
   if (newest_ == nullptr) return next;
-  for (const Seat& seat : seats_) {
-    if (std::max(seat.sequence, seat.passed) < newest_->sequence) next = std::min(next, seat.due);
+  for (const Subscription& subscription : subscriptions_) {
+    if (std::max(subscription.sequence, subscription.passed) < newest_->sequence)
+      next = std::min(next, subscription.due);
   }
   return next;
 }
@@ -139,14 +142,15 @@ absl::Time Publisher::NextDue() const {
 Publisher::Round Publisher::TakeRound(absl::Time now) {
   Round round;
   round.snapshot = newest_;
-  round.news.swap(news_);
+  round.updates.swap(updates_);
   round.camera = camera_;
   round.camera_moved = std::exchange(camera_moved_, false);
-  const bool newcomers = std::any_of(seats_.begin(), seats_.end(), [](const Seat& seat) { return !seat.greeted; });
-  if (newcomers && round.news.empty()) round.news.push_back(session_);
-  for (Seat& seat : seats_) {
-    (seat.greeted ? round.greeted : round.newcomers).push_back(seat.viewer);
-    seat.greeted = true;
+  const bool newcomers = std::any_of(subscriptions_.begin(), subscriptions_.end(),
+                                     [](const Subscription& subscription) { return !subscription.greeted; });
+  if (newcomers && round.updates.empty()) round.updates.push_back(session_);
+  for (Subscription& subscription : subscriptions_) {
+    (subscription.greeted ? round.greeted : round.newcomers).push_back(subscription.viewer);
+    subscription.greeted = true;
   }
   if (newest_ != nullptr) TakeFrames(now, round);
   return round;
@@ -154,31 +158,32 @@ Publisher::Round Publisher::TakeRound(absl::Time now) {
 
 void Publisher::TakeFrames(absl::Time now, Round& round) {
   const std::int64_t sequence = newest_->sequence;
-  std::map<Form, std::vector<Seat*>> wanted;
-  for (Seat& seat : seats_) {
-    if (seat.sequence < sequence && now >= seat.due) wanted[seat.viewer->form()].push_back(&seat);
+  std::map<FrameEncoding, std::vector<Subscription*>> wanted;
+  for (Subscription& subscription : subscriptions_) {
+    if (subscription.sequence < sequence && now >= subscription.due)
+      wanted[subscription.viewer->form()].push_back(&subscription);
   }
   for (const auto& [form, seats] : wanted) {
-    const bool taken = std::any_of(seats.begin(), seats.end(), [sequence, now](const Seat* seat) {
-      return !seat->viewer->PassOver(sequence, now);
+    const bool taken = std::any_of(seats.begin(), seats.end(), [sequence, now](const Subscription* subscription) {
+      return !subscription->viewer->PassOver(sequence, now);
     });
-    for (Seat* seat : seats) {
-      seat->passed = sequence;
+    for (Subscription* subscription : seats) {
+      subscription->passed = sequence;
       if (!taken) continue;
-      seat->sequence = sequence;
-      const double max_fps = seat->viewer->options().max_fps;
-      if (max_fps > 0) seat->due = now + absl::Seconds(1 / max_fps) - kEarly;
-      round.frames[form].push_back(seat->viewer);
+      subscription->sequence = sequence;
+      const double max_fps = subscription->viewer->options().max_fps;
+      if (max_fps > 0) subscription->due = now + absl::Seconds(1 / max_fps) - kEarly;
+      round.frames[form].push_back(subscription->viewer);
     }
   }
 }
 
 void Publisher::Deliver(const Round& round) {
-  for (std::size_t i = 0; i < round.news.size(); ++i) {
-    const News news = EncodeSession(round.news[i]);
-    for (const auto& viewer : round.greeted) viewer->PutSession(news);
-    if (i + 1 < round.news.size()) continue;
-    for (const auto& viewer : round.newcomers) viewer->PutSession(news);
+  for (std::size_t i = 0; i < round.updates.size(); ++i) {
+    const StatusUpdate updates = EncodeSession(round.updates[i]);
+    for (const auto& viewer : round.greeted) viewer->PutSession(updates);
+    if (i + 1 < round.updates.size()) continue;
+    for (const auto& viewer : round.newcomers) viewer->PutSession(updates);
   }
   DeliverCamera(round);
   DeliverFrames(round);

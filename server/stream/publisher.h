@@ -60,7 +60,7 @@ class Publisher {
 
  private:
   // What one viewer has had.
-  struct Seat {
+  struct Subscription {
     std::shared_ptr<Viewer> viewer;
     std::int64_t sequence = 0;              // of the newest frame
     bool greeted = false;                   // was told the session's state
@@ -71,11 +71,11 @@ class Publisher {
   // What is to be put into whose mailbox.
   struct Round {
     std::shared_ptr<const Snapshot> snapshot;
-    std::vector<v1::Session> news;
-    Viewers greeted, newcomers;  // newcomers hear the last of the news only
+    std::vector<v1::Session> updates;
+    Viewers greeted, newcomers;  // newcomers hear the last of the updates only
     Bytes camera;
     bool camera_moved = false;
-    std::map<Form, Viewers> frames;
+    std::map<FrameEncoding, Viewers> frames;
   };
 
   void Run() ABSL_LOCKS_EXCLUDED(mutex_);
@@ -96,12 +96,13 @@ class Publisher {
   mutable absl::Mutex mutex_;
   std::shared_ptr<const Snapshot> newest_ ABSL_GUARDED_BY(mutex_);
   v1::Session session_ ABSL_GUARDED_BY(mutex_);
-  std::vector<v1::Session> news_ ABSL_GUARDED_BY(mutex_);  // not told yet
+  std::vector<v1::Session> updates_ ABSL_GUARDED_BY(mutex_);  // not told yet
   Bytes camera_ ABSL_GUARDED_BY(mutex_);
   bool camera_moved_ ABSL_GUARDED_BY(mutex_) = false;  // not told yet
-  std::vector<Seat> seats_ ABSL_GUARDED_BY(mutex_);
-  std::map<std::string, std::shared_ptr<Viewer>> named_ ABSL_GUARDED_BY(mutex_);  // those of seats_ that have a name
-  bool stirred_ ABSL_GUARDED_BY(mutex_) = false;                                  // something came since the last round
+  std::vector<Subscription> subscriptions_ ABSL_GUARDED_BY(mutex_);
+  std::map<std::string, std::shared_ptr<Viewer>> named_
+      ABSL_GUARDED_BY(mutex_);                    // those of subscriptions_ that have a name
+  bool stirred_ ABSL_GUARDED_BY(mutex_) = false;  // something came since the last round
   std::optional<absl::Status> closed_ ABSL_GUARDED_BY(mutex_);
   std::int64_t encodings_ ABSL_GUARDED_BY(mutex_) = 0;
   std::shared_ptr<const Basis> basis_ ABSL_GUARDED_BY(mutex_);

@@ -6,9 +6,9 @@
 
 namespace phrenic::stream {
 
-Form Viewer::form() const {
+FrameEncoding Viewer::form() const {
   absl::MutexLock lock(&mutex_);
-  Form form = options_.form;
+  FrameEncoding form = options_.form;
   form.rung = credit_.rung();
   if (form.codec == v1::CODEC_BASIS) form.basis_epoch = basis_epoch_;
   return form;
@@ -47,16 +47,16 @@ void Viewer::PutFrame(std::int64_t sequence, Bytes frame, absl::Time now) {
   wake_();
 }
 
-void Viewer::PutSession(const News& news) {
+void Viewer::PutSession(const StatusUpdate& updates) {
   {
     absl::MutexLock lock(&mutex_);
     if (end_.has_value()) return;
-    if (!news_.empty() && news_.back().revision == news.revision) {
-      news_.back() = news;
-    } else if (news_.size() < kMostNews) {
-      news_.push_back(news);
+    if (!updates_.empty() && updates_.back().revision == updates.revision) {
+      updates_.back() = updates;
+    } else if (updates_.size() < kMostNews) {
+      updates_.push_back(updates);
     } else {
-      news_.clear();
+      updates_.clear();
       frame_ = nullptr;
       camera_ = nullptr;
       end_ = absl::ResourceExhaustedError(
@@ -87,9 +87,9 @@ void Viewer::End(absl::Status reason) {
 
 Bytes Viewer::Take(absl::Time now) {
   absl::MutexLock lock(&mutex_);
-  if (!news_.empty()) {
-    Bytes bytes = std::move(news_.front().bytes);
-    news_.pop_front();
+  if (!updates_.empty()) {
+    Bytes bytes = std::move(updates_.front().bytes);
+    updates_.pop_front();
     return bytes;
   }
   if (camera_ != nullptr) return std::exchange(camera_, nullptr);
@@ -115,7 +115,7 @@ v1::AckFramesResponse Viewer::Acknowledge(std::int64_t sequence, std::int64_t ba
 
 std::optional<absl::Status> Viewer::ended() const {
   absl::MutexLock lock(&mutex_);
-  if (!news_.empty() || camera_ != nullptr || frame_ != nullptr) return std::nullopt;
+  if (!updates_.empty() || camera_ != nullptr || frame_ != nullptr) return std::nullopt;
   return end_;
 }
 

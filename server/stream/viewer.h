@@ -23,14 +23,14 @@ namespace phrenic::stream {
 using Bytes = std::shared_ptr<const std::string>;
 
 // A state of the session as it travels; states of equal revision replace each other.
-struct News {
+struct StatusUpdate {
   std::int64_t revision = 0;
   Bytes bytes;
 };
 
 struct ViewerOptions {
   double max_fps = 0;  // 0: every frame there is
-  Form form = {};
+  FrameEncoding form = {};
   int max_unacked = 0;       // frames; 0: without bound
   bool may_coarsen = false;  // where the line takes too few frames
   std::string watch_id = {};
@@ -48,13 +48,13 @@ class Viewer {
 
   const ViewerOptions& options() const { return options_; }
   // That of the next frame.
-  Form form() const ABSL_LOCKS_EXCLUDED(mutex_);
+  FrameEncoding form() const ABSL_LOCKS_EXCLUDED(mutex_);
 
   void PutFrame(std::int64_t sequence, Bytes frame, absl::Time now) ABSL_LOCKS_EXCLUDED(mutex_);
   // False where a frame may be taken now; else this one waits without having been made, in the place of any other.
   bool PassOver(std::int64_t sequence, absl::Time now) ABSL_LOCKS_EXCLUDED(mutex_);
   // A viewer that leaves kMostNews changes untaken is ended with RESOURCE_EXHAUSTED.
-  void PutSession(const News& news) ABSL_LOCKS_EXCLUDED(mutex_);
+  void PutSession(const StatusUpdate& updates) ABSL_LOCKS_EXCLUDED(mutex_);
   void PutCamera(Bytes camera) ABSL_LOCKS_EXCLUDED(mutex_);
   // Nothing more comes; what was put before may still be taken.
   void End(absl::Status reason) ABSL_LOCKS_EXCLUDED(mutex_);
@@ -85,7 +85,7 @@ class Viewer {
   bool passed_over_ ABSL_GUARDED_BY(mutex_) = false;   // it is still to be made
   std::int64_t basis_epoch_ ABSL_GUARDED_BY(mutex_) = 0;
   Bytes camera_ ABSL_GUARDED_BY(mutex_);
-  std::deque<News> news_ ABSL_GUARDED_BY(mutex_);
+  std::deque<StatusUpdate> updates_ ABSL_GUARDED_BY(mutex_);
   std::optional<absl::Status> end_ ABSL_GUARDED_BY(mutex_);
   std::int64_t missed_ ABSL_GUARDED_BY(mutex_) = 0;
 };

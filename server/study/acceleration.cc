@@ -48,7 +48,7 @@ const State& Acceleration::Place(double time, const ConstPoints& x, const ConstP
 
 void Acceleration::Unconstrained(MutablePoints a) {
   const Model& model = *subject_.model;
-  SumForces(model, MakeInstant(model, subject_.parameters, state_), force_);
+  SumForces(model, MakeEvalContext(model, subject_.parameters, state_), force_);
   for (size_t i = 0; i < free_.size(); ++i) {
     a.col(static_cast<Eigen::Index>(i)) = model.inverse_mass[free_[i]] * force_.col(free_[i]);
   }

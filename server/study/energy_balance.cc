@@ -7,7 +7,7 @@
 
 namespace phrenic::study {
 
-void EnergyBalance::AddReleased(const Instant& at) {
+void EnergyBalance::AddReleased(const EvalContext& at) {
   const auto& forces = subject_.model->forces;
   potential_at_start_.resize(forces.size());
   released_.resize(forces.size());
@@ -20,7 +20,7 @@ void EnergyBalance::AddReleased(const Instant& at) {
 }
 
 // The trapezoidal rule along the way from the last state.
-void EnergyBalance::AddWork(const Instant& at, const State& state) {
+void EnergyBalance::AddWork(const EvalContext& at, const State& state) {
   const Model& model = *subject_.model;
   force_.setZero(3, state.x.cols());
   for (const auto& force : model.forces) {
@@ -37,7 +37,7 @@ void EnergyBalance::AddWork(const Instant& at, const State& state) {
 }
 
 void EnergyBalance::Add(const State& state) {
-  const Instant at = MakeInstant(*subject_.model, subject_.parameters, state);
+  const EvalContext at = MakeEvalContext(*subject_.model, subject_.parameters, state);
   AddWork(at, state);
   AddReleased(at);
   const double kinetic = KineticEnergy(*subject_.model, state.v);

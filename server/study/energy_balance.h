@@ -20,8 +20,8 @@ class EnergyBalance {
   double ratio() const;
 
  private:
-  void AddReleased(const Instant& at);
-  void AddWork(const Instant& at, const State& state);
+  void AddReleased(const EvalContext& at);
+  void AddWork(const EvalContext& at, const State& state);
 
   const Subject& subject_;
   bool started_ = false;

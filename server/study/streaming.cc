@@ -7,8 +7,8 @@
 #include "absl/strings/str_format.h"
 #include "server/mechanics/step/step.h"
 #include "server/stream/basis.h"
-#include "server/stream/frame_encoding.h"
 #include "server/stream/frame.h"
+#include "server/stream/frame_encoding.h"
 #include "server/stream/rest_shape.h"
 #include "server/study/trajectory.h"
 

@@ -45,29 +45,29 @@ class TimedForce final : public Force {
         adding_(NewStage("force", force.name(), stages)),
         stiffening_(NewStage("stiffness", force.name(), stages)),
         damping_(NewStage("damping", force.name(), stages)) {}
-  void AddForce(const Instant& at, MutablePoints f) const override {
+  void AddForce(const EvalContext& at, MutablePoints f) const override {
     const Span span(adding_);
     force_.AddForce(at, f);
   }
   bool by_range() const override { return force_.by_range(); }
   bool reads_others() const override { return force_.reads_others(); }
-  void AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const override {
+  void AddForceIn(const VertexRange& range, const EvalContext& at, MutablePoints f) const override {
     const Span span(adding_, range.first == 0);
     force_.AddForceIn(range, at, f);
   }
-  void AddStiffness(const Instant& at, StiffnessSink& sink) const override {
+  void AddStiffness(const EvalContext& at, StiffnessSink& sink) const override {
     const Span span(stiffening_);
     force_.AddStiffness(at, sink);
   }
-  void AddLatentStiffness(const Instant& at, StiffnessSink& sink) const override {
+  void AddLatentStiffness(const EvalContext& at, StiffnessSink& sink) const override {
     const Span span(stiffening_);
     force_.AddLatentStiffness(at, sink);
   }
-  void AddDamping(const Instant& at, Eigen::VectorXd& c) const override {
+  void AddDamping(const EvalContext& at, Eigen::VectorXd& c) const override {
     const Span span(damping_);
     force_.AddDamping(at, c);
   }
-  double Energy(const Instant& at) const override { return force_.Energy(at); }
+  double Energy(const EvalContext& at) const override { return force_.Energy(at); }
   bool conservative() const override { return force_.conservative(); }
 
  private:
@@ -79,7 +79,7 @@ class TimedMotion final : public Motion {
  public:
   TimedMotion(const Motion& motion, Stages& stages)
       : Motion(motion.name()), motion_(motion), driving_(NewStage("motion", motion.name(), stages)) {}
-  void Drive(const Instant& at, State& state) const override {
+  void Drive(const EvalContext& at, State& state) const override {
     const Span span(driving_);
     motion_.Drive(at, state);
   }

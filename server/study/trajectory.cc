@@ -120,7 +120,7 @@ double Energy(const Subject& subject, const State& state) {
   for (Eigen::Index i = 0; i < state.v.cols(); ++i) {
     if (model.inverse_mass[i] > 0) energy += 0.5 * model.mass[i] * state.v.col(i).squaredNorm();
   }
-  const Instant at = MakeInstant(model, subject.parameters, state);
+  const EvalContext at = MakeEvalContext(model, subject.parameters, state);
   for (const auto& force : model.forces) {
     if (force->conservative()) energy += force->Energy(at);
   }

@@ -31,7 +31,7 @@ absl::StatusOr<WatchedRun> Watch(const Subject& subject, const State& start, dou
   State& state = run.last;
   state = start;
   Workspace work = model.MakeWorkspace();
-  Trail trail;
+  StepCheckpoint trail;
   const long all = std::max(1L, std::lround(std::ceil(seconds / dt * (1 - 1e-9))));
   const double began = ThreadCpuSeconds();
   if (each) each(state);
@@ -44,7 +44,7 @@ absl::StatusOr<WatchedRun> Watch(const Subject& subject, const State& start, dou
     trail.Note(parameters, state);
     run.status = Step(model, parameters, dt, state, work);
     if (!run.status.ok()) {
-      const State before = trail.StartOfLastStep(model, parameters, dt, work);
+      const State before = trail.StateBeforeLastStep(model, parameters, dt, work);
       run.divergence = Diagnose(model, parameters, run.status, before, state);
       return run;
     }

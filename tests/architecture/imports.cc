@@ -14,8 +14,9 @@ using Folders = std::set<std::string>;
 // What each folder of server/ may include besides itself; "main" is server/main.cc.
 const std::map<std::string, Folders>& Allowed() {
   static const Folders below = {"schema", "mesh", "meshio", "anatomy", "mechanics", "stream", "record"};
-  static const Folders all = {"schema", "mesh",  "meshio",  "anatomy", "imaging", "mechanics", "stream", "record",
-                              "store",  "study", "session", "service", "access",  "settings",  "daemon", "cluster"};
+  static const Folders all = {"schema",  "mesh",   "meshio",   "anatomy", "imaging",    "mechanics", "stream",
+                              "record",  "store",  "study",    "compare", "physiology", "session",   "jobs",
+                              "service", "access", "settings", "daemon",  "cluster"};
   static const std::map<std::string, Folders> allowed = {
       {"schema", {}},
       {"mesh", {"schema"}},
@@ -27,6 +28,8 @@ const std::map<std::string, Folders>& Allowed() {
       {"record", {"schema", "mesh"}},
       {"store", {"schema", "mesh", "mechanics"}},
       {"cluster", {"schema", "mechanics", "store"}},
+      {"compare", {"schema", "mesh", "meshio", "record"}},
+      {"physiology", {"schema", "mesh", "mechanics"}},
       {"study", below},
       {"session", {"schema", "mesh", "meshio", "anatomy", "mechanics", "stream", "record", "store"}},
       {"settings", {"schema"}},

@@ -117,7 +117,7 @@ class Bench {
     table.Register({kThorax, [this] { thorax_.Step(); }, vertices, "vertex", kEulerSingle});
     table.Register({"thorax without its rigid links", [this] { unlinked_.Step(); }, vertices, "vertex", kThorax});
     const auto measure = [this] {
-      const Instant at = MakeInstant(*subjects_.thorax, thorax_.parameters, thorax_.state);
+      const EvalContext at = MakeEvalContext(*subjects_.thorax, thorax_.parameters, thorax_.state);
       benchmark::DoNotOptimize(ReadMeasures(*subjects_.thorax, at));
     };
     table.Register({kMeasures, measure, vertices, "vertex", kThorax});
@@ -131,7 +131,7 @@ class Bench {
     const auto vertices = static_cast<double>(x_.cols());
     const auto triangles = static_cast<double>(subjects_.membrane->bodies.front().mesh.triangles.cols());
     const auto pull = [this] {
-      const Instant at = MakeInstant(*subjects_.membrane, subjects_.membrane->parameters, membrane_.state);
+      const EvalContext at = MakeEvalContext(*subjects_.membrane, subjects_.membrane->parameters, membrane_.state);
       subjects_.membrane->forces.front()->AddForce(at, f_);
     };
     table.Register({"finite elements", pull, triangles, "triangle", ""});

@@ -71,7 +71,7 @@ Solver::Solver(ModelPointer model) : model_(std::move(model)), state_(model_->In
 }
 
 void Solver::Solve() {
-  const Instant at = MakeInstant(*model_, model_->parameters, state_);
+  const EvalContext at = MakeEvalContext(*model_, model_->parameters, state_);
   system_.Assemble(*model_, at, kFrame);
   y_.setZero();
   effort_.Begin(0, kIterations);

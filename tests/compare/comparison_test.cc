@@ -8,7 +8,7 @@
 #include "server/record/msh.h"
 #include "tests/compare/surfaces.h"
 
-namespace phrenic::study {
+namespace phrenic::compare {
 namespace {
 
 using ::testing::AllOf;
@@ -309,4 +309,4 @@ TEST(Comparison, ASessionsBodyHasNeitherUnitNorTimeOfAFile) {
 }
 
 }  // namespace
-}  // namespace phrenic::study
+}  // namespace phrenic::compare

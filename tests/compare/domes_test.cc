@@ -8,7 +8,7 @@
 
 #include "tests/compare/surfaces.h"
 
-namespace phrenic::study {
+namespace phrenic::compare {
 namespace {
 
 // Two summits over a sheet 200 mm wide: at -60 mm, 40 mm high, and at 60 mm, `left` high; between them the saddle.
@@ -81,4 +81,4 @@ TEST(Domes, AreOfDiaphragmsAloneAndLeaveAFilesOwnRegions) {
 }
 
 }  // namespace
-}  // namespace phrenic::study
+}  // namespace phrenic::compare

@@ -10,7 +10,7 @@
 
 #include "server/mesh/ellipsoid.h"
 
-namespace phrenic::study {
+namespace phrenic::compare {
 namespace {
 
 using ::testing::ElementsAre;
@@ -152,7 +152,7 @@ TEST(Inspection, VtkCountsTheSameOnRealLungs) {
   if (std::system((python + " -c 'import vtk' >/dev/null 2>&1").c_str()) != 0) {
     GTEST_SKIP() << "VTK is not installed (python3-vtk9)";
   }
-  const std::string script = std::string(PHRENIC_SOURCE_DIR) + "/tests/study/judges/vtk_topology.py";
+  const std::string script = std::string(PHRENIC_SOURCE_DIR) + "/tests/compare/judges/vtk_topology.py";
   const std::string log = testing::TempDir() + "phrenic_topology.txt";
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const auto surface = meshio::ReadSurface(entry.path().string(), 1e-3);
@@ -173,4 +173,4 @@ TEST(Inspection, VtkCountsTheSameOnRealLungs) {
 }
 
 }  // namespace
-}  // namespace phrenic::study
+}  // namespace phrenic::compare

@@ -9,7 +9,7 @@
 #include "server/mesh/ellipsoid.h"
 #include "tests/compare/surfaces.h"
 
-namespace phrenic::study {
+namespace phrenic::compare {
 namespace {
 
 using ::testing::HasSubstr;
@@ -167,4 +167,4 @@ TEST(SurfaceDistance, TooFineASpacingIsRefusedWithOneThatWorks) {
 }
 
 }  // namespace
-}  // namespace phrenic::study
+}  // namespace phrenic::compare

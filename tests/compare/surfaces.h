@@ -5,10 +5,10 @@
 #include <string>
 
 #include "absl/strings/str_format.h"
-#include "server/mesh/mesh.h"
 #include "server/compare/measured_surface.h"
+#include "server/mesh/mesh.h"
 
-namespace phrenic::study {
+namespace phrenic::compare {
 
 inline MeasuredSurface Measured(const Mesh& mesh) { return {mesh.vertices, mesh.triangles}; }
 
@@ -46,6 +46,6 @@ inline std::string ObjText(const Mesh& mesh) {
   return text;
 }
 
-}  // namespace phrenic::study
+}  // namespace phrenic::compare
 
 #endif  // PHRENIC_TESTS_COMPARE_SURFACES_H_

@@ -6,11 +6,11 @@
 #include <filesystem>
 #include <fstream>
 
-#include "server/meshio/meshio.h"
 #include "server/compare/surface_distance.h"
+#include "server/meshio/meshio.h"
 #include "tests/compare/surfaces.h"
 
-namespace phrenic::study {
+namespace phrenic::compare {
 namespace {
 
 // Debian's own interpreter: its VTK is for that one.
@@ -25,7 +25,7 @@ TEST(Vtk, AgreesOnTheLobesOfALung) {
     GTEST_SKIP() << "VTK is not installed (python3-vtk9)";
   }
   const std::string out = testing::TempDir() + "phrenic_vtk.txt";
-  const std::string script = std::string(PHRENIC_SOURCE_DIR) + "/tests/study/judges/vtk_distances.py";
+  const std::string script = std::string(PHRENIC_SOURCE_DIR) + "/tests/compare/judges/vtk_distances.py";
   ASSERT_EQ(std::system((std::string(kPython) + " " + script + " " + a + " " + b + " >" + out).c_str()), 0);
   double mean = 0, rms = 0, p95 = 0, largest = 0;
   ASSERT_TRUE(std::ifstream(out) >> mean >> rms >> p95 >> largest);
@@ -40,4 +40,4 @@ TEST(Vtk, AgreesOnTheLobesOfALung) {
 }
 
 }  // namespace
-}  // namespace phrenic::study
+}  // namespace phrenic::compare

@@ -4,8 +4,8 @@
 
 #include <random>
 
-#include "server/mechanics/step/advance.h"
 #include "server/mechanics/constraint_residual.h"
+#include "server/mechanics/step/advance.h"
 #include "tests/compile_text.h"
 
 namespace phrenic {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <random>
 
-#include "server/mechanics/step/advance.h"
 #include "server/mechanics/solve/block_matrix.h"
+#include "server/mechanics/step/advance.h"
 #include "tests/compile_text.h"
 #include "tests/contract/allocations.h"
 
@@ -103,7 +103,7 @@ class ForceContract : public testing::TestWithParam<ForceCase> {
     for (double& value : state_.v.reshaped()) value = shift(random);
   }
 
-  Instant At(const State& state) const { return MakeInstant(*model_, model_->parameters, state); }
+  EvalContext At(const State& state) const { return MakeEvalContext(*model_, model_->parameters, state); }
   const Force& force() const { return *model_->forces.front(); }
   // As a step sums it.
   Points ForceAt(const State& state) const {
@@ -182,7 +182,7 @@ TEST_P(ForceContract, DampingIsTheForcesPartInVelocity) {
 TEST_P(ForceContract, AllocatesNothing) {
   Points f = Points::Zero(3, state_.x.cols());
   Eigen::VectorXd c = Eigen::VectorXd::Zero(state_.x.cols());
-  const Instant at = At(state_);
+  const EvalContext at = At(state_);
   SumForces(*model_, at, f);
   const std::int64_t before = Allocations();
   SumForces(*model_, at, f);

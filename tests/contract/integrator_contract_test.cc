@@ -160,14 +160,14 @@ TEST_P(IntegratorContract, TheStartOfAStepIsFoundOnceMore) {
     parameters.set_step_tolerance(tolerance);
     State state = RunTo(*model, 0.1, 1e-3);
     Workspace work = model->MakeWorkspace(), other = model->MakeWorkspace();
-    Trail trail;
+    StepCheckpoint trail;
     for (int i = 0; i < 70; ++i) {
       if (i == 3) state.v *= 1.1, trail.Forget();
       const State start = state;
       trail.Note(parameters, state);
       ASSERT_TRUE(Step(*model, parameters, 1e-3, state, work).ok());
       EXPECT_NE(state.x, start.x);
-      const State found = trail.StartOfLastStep(*model, parameters, 1e-3, other);
+      const State found = trail.StateBeforeLastStep(*model, parameters, 1e-3, other);
       EXPECT_EQ(StateHash(found), StateHash(start)) << i;
       EXPECT_EQ(found.tick, start.tick);
     }

@@ -101,7 +101,7 @@ class MeasureContract : public testing::TestWithParam<MeasureCase> {
     return state;
   }
   static double ValueAt(const Model& model, const State& state) {
-    return model.measures.front()->Value(MakeInstant(model, model.parameters, state));
+    return model.measures.front()->Value(MakeEvalContext(model, model.parameters, state));
   }
 
   std::shared_ptr<const Model> model_;
@@ -109,7 +109,7 @@ class MeasureContract : public testing::TestWithParam<MeasureCase> {
 };
 
 TEST_P(MeasureContract, HasNameUnitAndReading) {
-  const MeasureReadings readings = ReadMeasures(*model_, MakeInstant(*model_, model_->parameters, state_));
+  const MeasureReadings readings = ReadMeasures(*model_, MakeEvalContext(*model_, model_->parameters, state_));
   ASSERT_EQ(readings.size(), 1);
   EXPECT_EQ(readings[0].name(), "it");
   EXPECT_EQ(readings[0].unit(), GetParam().unit);
@@ -158,7 +158,7 @@ TEST_P(MeasureContract, RigidMotionChangesItOnlyWhereItHasAPlace) {
 }
 
 TEST_P(MeasureContract, AllocatesNothing) {
-  const Instant at = MakeInstant(*model_, model_->parameters, state_);
+  const EvalContext at = MakeEvalContext(*model_, model_->parameters, state_);
   const Measure& measure = *model_->measures.front();
   const double value = measure.Value(at);
   const std::int64_t before = Allocations();
@@ -183,7 +183,7 @@ TEST(ReadMeasuresContract, TellsInTheScenesOrderWhatEachTellsAlone) {
   ASSERT_NE(model, nullptr);
   State state = model->InitialState();
   Shake(state);
-  const Instant at = MakeInstant(*model, model->parameters, state);
+  const EvalContext at = MakeEvalContext(*model, model->parameters, state);
   const MeasureReadings readings = ReadMeasures(*model, at);
   ASSERT_EQ(readings.size(), 12);
   for (int i = 0; i < readings.size(); ++i) {
@@ -205,7 +205,7 @@ TEST(VolumeContract, IsThatOfTheSurfaceWherePeopleSeeIt) {
     Points seen(3, mesh.vertices.cols());
     PlaceBody(*model, state, index, seen);
     EXPECT_GT((seen - mesh.vertices).cwiseAbs().maxCoeff(), 0.01) << body;
-    const double measured = model->measures.front()->Value(MakeInstant(*model, model->parameters, state));
+    const double measured = model->measures.front()->Value(MakeEvalContext(*model, model->parameters, state));
     EXPECT_NEAR(measured, SignedVolume(seen, mesh.triangles), 1e-12) << body;
   }
 }
@@ -230,7 +230,7 @@ TEST(FlowContract, IsTheRateOfTheVolume) {
     state.poses.front().velocity = {-0.2, 0.1, 0.4};
     constexpr double kStep = 1e-5;
     const auto read = [&](int measure, const State& at) {
-      return model->measures[measure]->Value(MakeInstant(*model, model->parameters, at));
+      return model->measures[measure]->Value(MakeEvalContext(*model, model->parameters, at));
     };
     const double difference = (read(0, Ahead(state, kStep)) - read(0, Ahead(state, -kStep))) / (2 * kStep);
     EXPECT_NEAR(read(1, state), difference, 1e-8) << surface;

@@ -11,7 +11,7 @@ namespace {
 
 double EnergyOf(const Model& model, const State& state) {
   double energy = 0;
-  for (const auto& force : model.forces) energy += force->Energy(MakeInstant(model, model.parameters, state));
+  for (const auto& force : model.forces) energy += force->Energy(MakeEvalContext(model, model.parameters, state));
   return energy;
 }
 

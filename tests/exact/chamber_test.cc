@@ -17,7 +17,7 @@ constexpr double kPi = std::numbers::pi;
 
 double Reading(const Model& model, const State& state, const std::string& name) {
   for (const auto& measure : model.measures) {
-    if (measure->name() == name) return measure->Value(MakeInstant(model, model.parameters, state));
+    if (measure->name() == name) return measure->Value(MakeEvalContext(model, model.parameters, state));
   }
   ADD_FAILURE() << "no measure " << name;
   return 0;

@@ -43,7 +43,7 @@ TEST(Fibres, PullByTheirActiveStressWhenHeld) {
   v1::Parameters parameters = model->parameters;
   const auto pull = [&] {
     Points f = Points::Zero(3, state.x.cols());
-    model->forces.front()->AddForce(MakeInstant(*model, parameters, state), f);
+    model->forces.front()->AddForce(MakeEvalContext(*model, parameters, state), f);
     double sum = 0;
     for (int i = 0; i < f.cols(); i += 9) sum += f(0, i);
     return sum;

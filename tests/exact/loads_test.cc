@@ -22,7 +22,7 @@ std::shared_ptr<const Model> Masses(const std::string& more, const std::string& 
 }
 
 // A damped oscillator let go off its target: x = d (1 - e^(-zeta w t) (cos w' t + zeta w/w' sin w' t)).
-TEST(Drag, IsADampedOscillatorAboutItsTarget) {
+TEST(TargetSpring, IsADampedOscillatorAboutItsTarget) {
   const auto model = Masses("drag { bodies: 'masses' displacement { z: 0.2 } stiffness: 60 damping_ratio: 0.3 }");
   const double omega = std::sqrt(60 / 1.5), t = 0.7, damped = omega * std::sqrt(1 - 0.3 * 0.3);
   const double exact =
@@ -33,7 +33,7 @@ TEST(Drag, IsADampedOscillatorAboutItsTarget) {
   EXPECT_LT(fine, 0.03 * coarse) << "second order";
 }
 
-TEST(Drag, EndsAtThePointOfASurfaceThatIsNearest) {
+TEST(TargetSpring, EndsAtThePointOfASurfaceThatIsNearest) {
   const auto model = Masses("drag { bodies: 'masses' vertices: 0 surface: 'slope' damping_ratio: 1 }");
   const State state = RunTo(*model, 10, 1e-2);
   // The plane z = x - 2 is nearest to the origin at (1, 0, -1).
@@ -41,7 +41,7 @@ TEST(Drag, EndsAtThePointOfASurfaceThatIsNearest) {
   EXPECT_EQ(state.x.col(1), model->rest.col(1));
 }
 
-TEST(Drag, WithTheBreathStandsWhereTheBreathIs) {
+TEST(TargetSpring, WithTheBreathStandsWhereTheBreathIs) {
   const auto model =
       Masses("drag { bodies: 'masses' point { z: 4 } damping_ratio: 0 scaled_by_breath: true }", "0.5", "STATIC");
   const State state = RunTo(*model, 1, 0.01);  // a quarter of 4 s: the signal is 1/2

@@ -49,7 +49,7 @@ TEST_P(MembraneStrain, StretchesByYoungsModulusAndThinsByPoissonsRatio) {
   state.x.row(1) *= 1 - kStrain / 3;
   const double volume = 4 * 3 * (0.1 * 0.12 - 0.01 * 0.03) * 0.01;
   double energy = 0;
-  for (const auto& force : model->forces) energy += force->Energy(MakeInstant(*model, model->parameters, state));
+  for (const auto& force : model->forces) energy += force->Energy(MakeEvalContext(*model, model->parameters, state));
   EXPECT_NEAR(energy, 0.5 * 1000 * kStrain * kStrain * volume, 1e-5 * energy);
 }
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <random>
 
-#include "server/mechanics/step/advance.h"
 #include "server/mechanics/integrators/projective_dynamics.h"
 #include "server/mechanics/solve/prefactored_system.h"
+#include "server/mechanics/step/advance.h"
 #include "server/mesh/topology.h"
 #include "tests/compile_text.h"
 
@@ -61,7 +61,7 @@ State StepBy(const Integrator& integrator, const Model& model, double dt, State 
 // What backward Euler's equation M (v' - v) = dt f(x') leaves, over dt times the largest force.
 double Residual(const Model& model, double dt, const State& before, const State& after) {
   Points f(3, after.x.cols());
-  SumForces(model, MakeInstant(model, model.parameters, after), f);
+  SumForces(model, MakeEvalContext(model, model.parameters, after), f);
   double left = 0;
   for (int i = 0; i < f.cols(); ++i) {
     if (model.inverse_mass[i] == 0) continue;
@@ -72,7 +72,7 @@ double Residual(const Model& model, double dt, const State& before, const State&
 
 double Energy(const Model& model, const State& state) {
   double energy = 0.5 * state.v.colwise().squaredNorm().dot(model.mass.transpose());
-  for (const auto& force : model.forces) energy += force->Energy(MakeInstant(model, model.parameters, state));
+  for (const auto& force : model.forces) energy += force->Energy(MakeEvalContext(model, model.parameters, state));
   return energy;
 }
 

@@ -74,7 +74,7 @@ TEST(SharedOutTissue, HasNeitherGapNorOverlap) {
     for (double& value : state.x.reshaped()) value += 0.002 * std::sin(1e4 * value);
     std::vector<double> energy;
     for (const auto& force : model->forces) {
-      energy.push_back(force->Energy(MakeInstant(*model, model->parameters, state)));
+      energy.push_back(force->Energy(MakeEvalContext(*model, model->parameters, state)));
     }
     ASSERT_EQ(energy.size(), 3u);
     EXPECT_NEAR(energy[1] + energy[2], energy[0], 1e-12 * energy[0]);

@@ -212,7 +212,7 @@ Tally LineCut(Oracle& oracle, const std::string& folder, int times) {
   return tally;
 }
 
-// Answers come late, some too late for the client, which asks again.
+// IdempotencyCache come late, some too late for the client, which asks again.
 Tally Delayed(Oracle& oracle, const std::string& folder, int times) {
   Tally tally;
   Rig rig(oracle, folder);

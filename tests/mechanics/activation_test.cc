@@ -21,7 +21,7 @@ std::shared_ptr<const Model> WithMuscle(const std::string& side) {
 double Upwards(const Model& model, const v1::Parameters& parameters) {
   const State state = model.InitialState();
   Points force = Points::Zero(3, state.x.cols());
-  model.forces.back()->AddForce(MakeInstant(model, parameters, state, 0, 0.5), force);
+  model.forces.back()->AddForce(MakeEvalContext(model, parameters, state, 0, 0.5), force);
   return force.row(2).sum();
 }
 

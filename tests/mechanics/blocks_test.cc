@@ -6,10 +6,10 @@
 #include <limits>
 
 #include "absl/strings/str_cat.h"
-#include "server/mechanics/step/advance.h"
 #include "server/mechanics/forces/attachment_kernel.h"
 #include "server/mechanics/forces/spring_kernel.h"
 #include "server/mechanics/linalg/vertex_kernel.h"
+#include "server/mechanics/step/advance.h"
 #include "tests/compile_text.h"
 #include "tests/mechanics/every_target.h"
 #include "tests/mechanics/mixed_sheet.h"
@@ -31,7 +31,7 @@ TEST(Ranges, GiveEachForceTheBitsOfTheWhole) {
   ASSERT_NE(model, nullptr);
   const State state = Disturbed(*model);
   ASSERT_GT(state.x.cols(), 2 * kVertexBlock);
-  const Instant at = Packed(*model, MakeInstant(*model, model->parameters, state));
+  const EvalContext at = Packed(*model, MakeEvalContext(*model, model->parameters, state));
   ASSERT_TRUE(model->whole_forces.empty());
   for (const Force* force : model->range_forces) {
     Points whole = Points::Zero(3, state.x.cols()), parts = whole;
@@ -53,7 +53,7 @@ TEST(Ranges, ReadNoPlacesOfOthersUnlessTheySaySo) {
   const auto model = CompileText(kMixedSheet);
   ASSERT_NE(model, nullptr);
   const State state = Disturbed(*model);
-  const Instant at = Packed(*model, MakeInstant(*model, model->parameters, state));
+  const EvalContext at = Packed(*model, MakeEvalContext(*model, model->parameters, state));
   int readers = 0;
   for (const Force* force : model->range_forces) {
     bool read = false;
@@ -62,7 +62,7 @@ TEST(Ranges, ReadNoPlacesOfOthersUnlessTheySaySo) {
       State others = state;
       others.x.setConstant(7);
       others.x.middleCols(block.first, vertices) = state.x.middleCols(block.first, vertices);
-      Instant moved = MakeInstant(*model, model->parameters, others);
+      EvalContext moved = MakeEvalContext(*model, model->parameters, others);
       moved.packed = at.packed;
       Points here = Points::Zero(3, vertices), there = here;
       force->AddForceIn(block, at, here);
@@ -85,7 +85,7 @@ TEST(Ranges, SumWhatTheElementsSayOneByOne) {
   const auto model = CompileText(scene);
   ASSERT_NE(model, nullptr);
   const State state = Disturbed(*model);
-  const Instant at = MakeInstant(*model, model->parameters, state);
+  const EvalContext at = MakeEvalContext(*model, model->parameters, state);
   Points apart = Points::Zero(3, state.x.cols()), together = apart;
   for (const auto& force : model->forces) force->AddForce(at, apart);
   SumForces(*model, at, together);
@@ -98,7 +98,7 @@ TEST(Ranges, SetTheForceThatTheyWouldAddToNothingOnEveryInstructionSet) {
   ASSERT_NE(model, nullptr);
   const State state = Disturbed(*model);
   OnEveryTarget([&] {
-    const Instant at = Packed(*model, MakeInstant(*model, model->parameters, state));
+    const EvalContext at = Packed(*model, MakeEvalContext(*model, model->parameters, state));
     for (const Force* force : model->range_forces) {
       ForEachBlock({0, state.x.cols()}, [&](const VertexRange& block) {
         Points added = Points::Zero(3, block.end - block.first);
@@ -111,7 +111,7 @@ TEST(Ranges, SetTheForceThatTheyWouldAddToNothingOnEveryInstructionSet) {
   });
 }
 
-void ExpectReach(const StateReach& reach, double furthest, double fastest) {
+void ExpectReach(const StateBounds& reach, double furthest, double fastest) {
   EXPECT_THAT(reach.furthest, testing::NanSensitiveDoubleEq(furthest));
   EXPECT_THAT(reach.fastest, testing::NanSensitiveDoubleEq(fastest));
 }
@@ -128,7 +128,7 @@ TEST(Ranges, ReachAsCoordinateByCoordinateOnEveryInstructionSet) {
   };
   const auto expect = [&](Points& there, Points& speed) {
     OnEveryTarget([&] {
-      ExpectReach(ReachOf(range, there, speed), largest(there), largest(speed));
+      ExpectReach(BoundsOf(range, there, speed), largest(there), largest(speed));
       ExpectReach(KickAndDrift(range, w, 0, 0, f, {}, there, speed, there, speed), largest(there), largest(speed));
     });
   };
@@ -183,7 +183,7 @@ TEST(Ranges, KickAndDriftAsVertexByVertexOnEveryInstructionSet) {
     OnEveryTarget([&] {
       Points v_here = v, x_here = x;
       const auto own = f.middleCols(range.first, range.end - range.first);
-      const StateReach reach = KickAndDrift(range, w, 0.3, 0.7, own, loads, x, v_here, x_here, v_here);
+      const StateBounds reach = KickAndDrift(range, w, 0.3, 0.7, own, loads, x, v_here, x_here, v_here);
       EXPECT_EQ(reach.furthest, x_here.middleCols(range.first, own.cols()).cwiseAbs().maxCoeff());
       EXPECT_EQ(reach.fastest, v_here.middleCols(range.first, own.cols()).cwiseAbs().maxCoeff());
       EXPECT_EQ(v_here, v_plain);
@@ -248,7 +248,7 @@ TEST(Ranges, WhatIsHeldAndWhatAPoseCarriesAsVertexByVertexOnEveryInstructionSet)
   Points first;
   OnEveryTarget([&] {
     Points here = Points::Zero(3, 24);
-    AddCarried(PoseColumns(pose), 0.5, packets.data(), packets.data() + packets.size(), here.data());
+    AddCarried(PoseMatrices(pose), 0.5, packets.data(), packets.data() + packets.size(), here.data());
     EXPECT_LT((here - plain).norm(), 1e-14 * plain.norm());
     if (first.size() == 0) first = here;
     EXPECT_EQ(here, first);

@@ -99,7 +99,7 @@ TEST(Ribs, VelocityIsTheRateOfThePosition) {
 TEST(Ribs, WholeHandlesChangeNoBit) {
   const auto model = CompileText(Thorax() + "parameters { pump_handle: 1 bucket_handle: 1 }");
   const State state = RunTo(*model, 1.3, 1e-3);
-  const double k = MakeInstant(*model, model->parameters, state).breath;
+  const double k = MakeEvalContext(*model, model->parameters, state).breath;
   const Eigen::Vector3d turn = Eigen::Vector3d(-10, 12, 0) * (std::numbers::pi / 180);
   const Eigen::Quaterniond whole(Eigen::AngleAxisd(k * turn.norm(), Eigen::Vector3d(turn / turn.norm())));
   ASSERT_EQ(model->bodies[4].name, "rib-3-r");
@@ -168,7 +168,7 @@ TEST(Sternum, FollowsTheRibsWithoutSidewaysDrift) {
   EXPECT_LT(moved(1, 0), -0.18);
 }
 
-TEST(Ride, JoinsItsCarriersAtItsEnds) {
+TEST(Skin, JoinsItsCarriersAtItsEnds) {
   const auto model = CompileText(Thorax());
   const State state = AtPeak(*model);
   const Points cartilage = Placed(*model, state, "cartilage");
@@ -182,9 +182,9 @@ TEST(Breath, SignalIsContinuousWhenItsLengthChanges) {
   Workspace work = model->MakeWorkspace();
   v1::Parameters slower = model->parameters;
   slower.set_breath_length(9);
-  const double before = MakeInstant(*model, model->parameters, state).breath;
+  const double before = MakeEvalContext(*model, model->parameters, state).breath;
   ASSERT_TRUE(Step(*model, slower, 1e-3, state, work).ok());
-  EXPECT_NEAR(MakeInstant(*model, slower, state).breath, before, 1e-3);
+  EXPECT_NEAR(MakeEvalContext(*model, slower, state).breath, before, 1e-3);
 }
 
 }  // namespace

@@ -20,11 +20,11 @@ TEST(Cable, IsNothingWhenSlackAndASpringWhenTaut) {
   const auto pull = [&](double length) {
     state.x(0, 1) = length;
     Points f = Points::Zero(3, 2);
-    model->forces.front()->AddForce(MakeInstant(*model, model->parameters, state), f);
+    model->forces.front()->AddForce(MakeEvalContext(*model, model->parameters, state), f);
     return f(0, 0);
   };
   EXPECT_EQ(pull(0.5), 0);
-  EXPECT_EQ(model->forces.front()->Energy(MakeInstant(*model, model->parameters, state)), 0);
+  EXPECT_EQ(model->forces.front()->Energy(MakeEvalContext(*model, model->parameters, state)), 0);
   EXPECT_NEAR(pull(1.25), 2.5, 1e-15);
 }
 

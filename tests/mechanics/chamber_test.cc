@@ -82,13 +82,13 @@ TEST(PressureOnADome, HasAnEnergyWhereTheRimIsHeld) {
   const Force& force = *model->forces.front();
   ASSERT_TRUE(force.conservative());
   State state = model->InitialState();
-  const auto energy = [&] { return force.Energy(MakeInstant(*model, model->parameters, state)); };
+  const auto energy = [&] { return force.Energy(MakeEvalContext(*model, model->parameters, state)); };
   const Points shift = 0.1 * RandomPoints(static_cast<int>(state.x.cols()), 3);
   for (Eigen::Index i = 0; i < state.x.cols(); ++i) {
     if (model->inverse_mass[i] > 0) state.x.col(i) += shift.col(i);
   }
   Points f = Points::Zero(3, state.x.cols());
-  force.AddForce(MakeInstant(*model, model->parameters, state), f);
+  force.AddForce(MakeEvalContext(*model, model->parameters, state), f);
   for (Eigen::Index i = 0; i < state.x.cols(); ++i) {
     if (model->inverse_mass[i] == 0) continue;
     double& z = state.x(2, i);
@@ -180,7 +180,7 @@ TEST(ImplicitSystemWithLungs, FactorisesToWhatIterationsFind) {
   const State state = model->InitialState();
   const Points b = RandomPoints(static_cast<int>(state.x.cols()), 5);
   ImplicitSystem system(*model);
-  const Instant at = MakeInstant(*model, model->parameters, state);
+  const EvalContext at = MakeEvalContext(*model, model->parameters, state);
   system.Assemble(*model, at, 0.1);
   Points iterated = Points::Zero(3, b.cols()), factorised = iterated;
   SolverEffort iterations, none;

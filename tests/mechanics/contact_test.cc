@@ -127,7 +127,7 @@ class SoftContact : public testing::Test {
     std::uniform_real_distribution<double> shift(-0.04, 0.04);
     for (double& value : state_.x.reshaped()) value += shift(random);
   }
-  Instant At(const State& state) const { return MakeInstant(*model_, model_->parameters, state); }
+  EvalContext At(const State& state) const { return MakeEvalContext(*model_, model_->parameters, state); }
   Points ForceAt(const State& state) const {
     Points f = Points::Zero(3, state.x.cols());
     ContactOf(*model_).AddForce(At(state), f);
@@ -169,7 +169,7 @@ TEST(Contact, NothingTouchesInFrontBesideOrBeyondTenDepths) {
   const auto largest = [&](const Eigen::Vector3d& shift) {
     state.x = model->rest.colwise() + shift;
     Points f = Points::Zero(3, 6);
-    ContactOf(*model).AddForce(MakeInstant(*model, model->parameters, state), f);
+    ContactOf(*model).AddForce(MakeEvalContext(*model, model->parameters, state), f);
     return f.cwiseAbs().maxCoeff();
   };
   EXPECT_EQ(largest({0, 0, 0}), 0);
@@ -189,7 +189,7 @@ TEST(Contact, ADrivenSurfacePushesWhereItsPoseHasIt) {
   State state = model->InitialState();
   const auto force = [&] {
     Points f = Points::Zero(3, 6);
-    ContactOf(*model).AddForce(MakeInstant(*model, model->parameters, state), f);
+    ContactOf(*model).AddForce(MakeEvalContext(*model, model->parameters, state), f);
     return f;
   };
   state.poses.front() = Pose{};

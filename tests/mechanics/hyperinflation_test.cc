@@ -21,7 +21,7 @@ std::shared_ptr<const Model> WithAir(const std::string& air) {
 double Upwards(const Model& model, const v1::Parameters& parameters, double phase) {
   const State state = model.InitialState();
   Points force = Points::Zero(3, state.x.cols());
-  model.forces.back()->AddForce(MakeInstant(model, parameters, state, 0, phase), force);
+  model.forces.back()->AddForce(MakeEvalContext(model, parameters, state, 0, phase), force);
   return force.row(2).sum();
 }
 

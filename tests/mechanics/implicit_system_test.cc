@@ -37,7 +37,7 @@ const char* const kTissues[] = {
 };
 
 // A y = b by the matrix in double precision.
-double Missing(const Model& model, const Instant& at, double g, const Points& b, const Points& y) {
+double Missing(const Model& model, const EvalContext& at, double g, const Points& b, const Points& y) {
   BlockMatrix stiffness(model);
   stiffness.Assemble(model, at);
   Points product = Points::Zero(3, b.cols());
@@ -60,7 +60,7 @@ TEST(ImplicitSystem, SolvesToItsTolerance) {
     State state = model->InitialState();
     state.x += 2e-3 * RandomPoints(state.x.cols(), 1);
     state.x.col(40) = state.x.col(41);  // an edge without length
-    const Instant at = MakeInstant(*model, model->parameters, state);
+    const EvalContext at = MakeEvalContext(*model, model->parameters, state);
     const Points b = RandomPoints(state.x.cols(), 2);
     ImplicitSystem system(*model);
     system.Assemble(*model, at, 0.01);
@@ -95,7 +95,7 @@ TEST(ImplicitSystem, SolvesWhereSpringsJoinVerticesFarApartByNumber) {
   ASSERT_NE(model, nullptr);
   State state = model->InitialState();
   state.x += 1e-3 * RandomPoints(state.x.cols(), 1);
-  const Instant at = MakeInstant(*model, model->parameters, state);
+  const EvalContext at = MakeEvalContext(*model, model->parameters, state);
   const Points b = RandomPoints(state.x.cols(), 2);
   ImplicitSystem system(*model);
   system.Assemble(*model, at, 0.01);
@@ -111,7 +111,7 @@ TEST(ImplicitSystem, GivesTheSameBitsOnEveryInstructionSet) {
   const auto model = Sheet(kTissues[2]);
   State state = model->InitialState();
   state.x += 2e-3 * RandomPoints(state.x.cols(), 1);
-  const Instant at = MakeInstant(*model, model->parameters, state);
+  const EvalContext at = MakeEvalContext(*model, model->parameters, state);
   const Points b = RandomPoints(state.x.cols(), 2);
   Points first;
   OnEveryTarget([&] {
@@ -129,7 +129,7 @@ TEST(ImplicitSystem, GivesTheSameBitsOnEveryInstructionSet) {
 TEST(ImplicitSystem, StartsWarm) {
   const auto model = Sheet(kTissues[0]);
   const State state = model->InitialState();
-  const Instant at = MakeInstant(*model, model->parameters, state);
+  const EvalContext at = MakeEvalContext(*model, model->parameters, state);
   const Points b = RandomPoints(state.x.cols(), 2);
   ImplicitSystem system(*model);
   system.Assemble(*model, at, 0.01);
@@ -175,7 +175,7 @@ TEST(LinearImplicitEuler, GainsNoEnergyInCompression) {
   state.x += 1e-5 * RandomPoints(state.x.cols(), 3);
   Workspace work = model->MakeWorkspace();
   const auto energy = [&] {
-    const Instant at = MakeInstant(*model, parameters, state);
+    const EvalContext at = MakeEvalContext(*model, parameters, state);
     return model->forces.front()->Energy(at) +
            (state.v.colwise().squaredNorm().transpose().cwiseProduct(model->mass)).sum() / 2;
   };

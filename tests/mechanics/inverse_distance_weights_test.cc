@@ -17,20 +17,20 @@ Points Cloud(int n, const Eigen::Vector3d& middle, double size, unsigned seed) {
 }
 
 // Twelve clouds of vertices around a ring of 0.3 m; each has a pose.
-Draft Clouds() {
-  Draft draft;
+ModelBuilder Clouds() {
+  ModelBuilder builder;
   for (int c = 0; c < 12; ++c) {
     BodyModel body;
     body.pose = c;
     body.mesh.vertices = Cloud(200, {0.15 * std::cos(c * 0.52), 0.15 * std::sin(c * 0.52), 0}, 0.04, c + 1);
-    draft.model.bodies.push_back(std::move(body));
+    builder.model.bodies.push_back(std::move(body));
   }
-  return draft;
+  return builder;
 }
 
-std::vector<int> All(const Draft& draft) {
+std::vector<int> All(const ModelBuilder& builder) {
   std::vector<int> bodies;
-  for (int b = 0; b < static_cast<int>(draft.model.bodies.size()); ++b) bodies.push_back(b);
+  for (int b = 0; b < static_cast<int>(builder.model.bodies.size()); ++b) bodies.push_back(b);
   return bodies;
 }
 
@@ -44,11 +44,11 @@ Points Path() {
 }
 
 // By the definition.
-std::map<int, double> SharesOf(const Draft& draft, const Eigen::Vector3d& point) {
+std::map<int, double> SharesOf(const ModelBuilder& builder, const Eigen::Vector3d& point) {
   std::map<int, double> weights;
   double largest = 0, kept = 0;
-  for (int b = 0; b < static_cast<int>(draft.model.bodies.size()); ++b) {
-    const double squared = (draft.model.bodies[b].mesh.vertices.colwise() - point).colwise().squaredNorm().minCoeff();
+  for (int b = 0; b < static_cast<int>(builder.model.bodies.size()); ++b) {
+    const double squared = (builder.model.bodies[b].mesh.vertices.colwise() - point).colwise().squaredNorm().minCoeff();
     weights[b] = std::pow(squared + 25e-6, -2);
     largest = std::max(largest, weights[b]);
   }
@@ -59,19 +59,19 @@ std::map<int, double> SharesOf(const Draft& draft, const Eigen::Vector3d& point)
 
 class BlenderBetweenClouds : public testing::Test {
  protected:
-  const Draft draft = Clouds();
-  const Carriers carriers{draft, All(draft)};
-  Blender blender{carriers};
+  const ModelBuilder builder = Clouds();
+  const SkinDrivers carriers{builder, All(builder)};
+  InverseDistanceWeights blender{carriers};
   const Points path = Path();
 };
 
 TEST_F(BlenderBetweenClouds, GivesSharesByInverseDistance) {
   int shared = 0;
   for (int i = 0; i < path.cols(); ++i) {
-    std::vector<RideShare> shares;
+    std::vector<SkinWeight> shares;
     blender.Blend(path.col(i), i, shares);
-    std::map<int, double> expected = SharesOf(draft, path.col(i));
-    for (const RideShare& share : shares) {
+    std::map<int, double> expected = SharesOf(builder, path.col(i));
+    for (const SkinWeight& share : shares) {
       EXPECT_NEAR(share.weight, expected[share.pose], 1e-9) << i;
       expected[share.pose] = 0;
     }
@@ -83,9 +83,9 @@ TEST_F(BlenderBetweenClouds, GivesSharesByInverseDistance) {
 
 TEST_F(BlenderBetweenClouds, IsTheSameWhateverWasBlendedBefore) {
   for (int i = 0; i < path.cols(); ++i) {
-    std::vector<RideShare> shares, alone;
+    std::vector<SkinWeight> shares, alone;
     blender.Blend(path.col(i), i, shares);
-    Blender(carriers).Blend(path.col(i), i, alone);
+    InverseDistanceWeights(carriers).Blend(path.col(i), i, alone);
     ASSERT_EQ(shares.size(), alone.size()) << i;
     for (size_t s = 0; s < shares.size(); ++s) {
       EXPECT_EQ(shares[s].pose, alone[s].pose) << i;

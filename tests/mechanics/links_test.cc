@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "absl/strings/str_format.h"
-#include "server/mechanics/constraints/link_kernel.h"
 #include "server/mechanics/constraint_residual.h"
+#include "server/mechanics/constraints/link_kernel.h"
 #include "server/mechanics/linalg/sparse_ldlt.h"
 #include "tests/compile_text.h"
 #include "tests/mechanics/every_target.h"

@@ -25,7 +25,7 @@ std::string WhyLeftOut(const std::string& force) {
   return "";
 }
 
-TEST(Drag, SaysWhatIsWrongWithIt) {
+TEST(TargetSpring, SaysWhatIsWrongWithIt) {
   EXPECT_EQ(Refusal("drag { bodies: 'sheet' }"), "forces[3].drag: says no target: set displacement, point or surface");
   EXPECT_THAT(Refusal("drag { bodies: 'sheet' vertices: 7 point {} }"), HasSubstr("forces[3].drag.vertices[0]: there"));
   EXPECT_THAT(Refusal("drag { bodies: 'sheet' region: 'rim' point {} }"), HasSubstr("forces[3].drag.region"));

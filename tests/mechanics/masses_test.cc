@@ -43,7 +43,8 @@ TEST(Masses, AreSpreadByTheLargestStiffnessDownToHalfAnEqualShare) {
   ASSERT_NE(model, nullptr);
   StiffnessAt stiffness(model->rest.cols());
   const State rest = model->InitialState();
-  for (const auto& force : model->forces) force->AddStiffness(MakeInstant(*model, model->parameters, rest), stiffness);
+  for (const auto& force : model->forces)
+    force->AddStiffness(MakeEvalContext(*model, model->parameters, rest), stiffness);
   Eigen::VectorXd largest(model->rest.cols());
   for (Eigen::Index i = 0; i < largest.size(); ++i) largest[i] = stiffness.own[i].operatorNorm();
   EXPECT_NEAR(model->mass.sum(), 2, 1e-12);
@@ -69,7 +70,7 @@ TEST(Masses, ByStiffnessLeaveWhatActsAsItIs) {
     state.phase = 0.25;
     state.v.setConstant(0.1);
     Points f(3, model.rest.cols());
-    SumForces(model, MakeInstant(model, model.parameters, state), f);
+    SumForces(model, MakeEvalContext(model, model.parameters, state), f);
     return f;
   };
   EXPECT_GT(force(*by_area).norm(), 0);

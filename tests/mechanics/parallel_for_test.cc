@@ -8,8 +8,8 @@
 #include <thread>
 
 #include "absl/strings/str_cat.h"
-#include "server/mechanics/forces/spring_rows.h"
 #include "server/mechanics/constraint_residual.h"
+#include "server/mechanics/forces/spring_rows.h"
 #include "tests/compile_text.h"
 #include "tests/mechanics/mixed_sheet.h"
 
@@ -64,7 +64,7 @@ void ExpectSameBits(const std::vector<std::string>& scenes) {
   EXPECT_EQ(hashes.size(), 1);
 }
 
-TEST(ShareOut, AnyNumberOfThreadsGivesTheSameBits) { ExpectSameBits({LargeSheet()}); }
+TEST(ParallelFor, AnyNumberOfThreadsGivesTheSameBits) { ExpectSameBits({LargeSheet()}); }
 
 // The last ones join blocks, some of them, or all. With a second constraint no step is written over its start.
 void ExpectSameBitsWithLinks(const std::string& sheet) {
@@ -77,11 +77,11 @@ void ExpectSameBitsWithLinks(const std::string& sheet) {
   }
 }
 
-TEST(ShareOut, RigidLinksToo) { ExpectSameBitsWithLinks(LargeSheet()); }
+TEST(ParallelFor, RigidLinksToo) { ExpectSameBitsWithLinks(LargeSheet()); }
 
-TEST(ShareOut, StepsWrittenOverTheirStartToo) { ExpectSameBitsWithLinks(LargeSheetInSingle()); }
+TEST(ParallelFor, StepsWrittenOverTheirStartToo) { ExpectSameBitsWithLinks(LargeSheetInSingle()); }
 
-TEST(ShareOut, SpringsInAnOrderOfTheirOwnToo) {
+TEST(ParallelFor, SpringsInAnOrderOfTheirOwnToo) {
   const OneThreadAgain again;
   const int vertices = 120 * kVertexBlock + 3;
   std::mt19937 random(2);
@@ -100,7 +100,7 @@ TEST(ShareOut, SpringsInAnOrderOfTheirOwnToo) {
   EXPECT_GT(alone.norm(), 0);
 }
 
-TEST(ShareOut, CallsOnceForEachPartFromManyCallersAtOnce) {
+TEST(ParallelFor, CallsOnceForEachPartFromManyCallersAtOnce) {
   const OneThreadAgain again;
   for (const int threads : {3, 20}) {
     SetStepThreads(threads);
@@ -109,7 +109,7 @@ TEST(ShareOut, CallsOnceForEachPartFromManyCallersAtOnce) {
       callers.emplace_back([] {
         for (int round = 0; round < 200; ++round) {
           std::vector<int> calls(100);
-          ShareOut(100, [&calls](std::int64_t part) { ++calls[static_cast<size_t>(part)]; });
+          ParallelFor(100, [&calls](std::int64_t part) { ++calls[static_cast<size_t>(part)]; });
           ASSERT_EQ(calls, std::vector<int>(100, 1));
         }
       });

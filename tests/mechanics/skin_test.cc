@@ -1,4 +1,4 @@
-// What carriers do to a riding body's vertices, against the definition of a share (ride.h), one by one.
+// What carriers do to a riding body's vertices, against the definition of a share (skin.h), one by one.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -14,8 +14,8 @@ constexpr int kSimulated = 20, kPoses = 5, kVertices = 50;
 struct Riding {
   Points rest_of_carriers, x, v, rest;
   std::vector<Pose> poses;
-  std::vector<PoseColumns> columns;
-  std::vector<RideShare> shares;
+  std::vector<PoseMatrices> columns;
+  std::vector<SkinWeight> shares;
 };
 
 struct Moved {
@@ -46,7 +46,7 @@ Riding RandomRiding() {
 
 Moved ByDefinition(const Riding& of) {
   Moved out{of.rest, Points::Zero(3, kVertices)};
-  for (const RideShare& share : of.shares) {
+  for (const SkinWeight& share : of.shares) {
     const Eigen::Vector3d rest = of.rest.col(share.vertex);
     if (share.pose >= 0) {
       out.x.col(share.vertex) += share.weight * (of.poses[share.pose].At(rest) - rest);
@@ -62,12 +62,12 @@ Moved ByDefinition(const Riding& of) {
 
 Moved Ours(const Riding& of, bool velocities) {
   Moved out{of.rest, Points::Zero(3, kVertices)};
-  const CarriersNow carriers = {of.columns, of.rest_of_carriers.data(), of.x.data(), of.v.data()};
-  CarryShares(of.shares, carriers, of.rest.data(), out.x.data(), velocities ? out.v.data() : nullptr);
+  const DriverState carriers = {of.columns, of.rest_of_carriers.data(), of.x.data(), of.v.data()};
+  ApplySkinWeights(of.shares, carriers, of.rest.data(), out.x.data(), velocities ? out.v.data() : nullptr);
   return out;
 }
 
-TEST(CarryShares, MovesEachVertexByItsSharesWithTheSameBitsOnEveryInstructionSet) {
+TEST(ApplySkinWeights, MovesEachVertexByItsSharesWithTheSameBitsOnEveryInstructionSet) {
   const Riding riding = RandomRiding();
   const Moved exact = ByDefinition(riding), here = Ours(riding, true);
   EXPECT_LT((here.x - exact.x).cwiseAbs().maxCoeff(), 1e-14);
@@ -78,7 +78,7 @@ TEST(CarryShares, MovesEachVertexByItsSharesWithTheSameBitsOnEveryInstructionSet
   });
 }
 
-TEST(CarryShares, PutsPositionsAloneWhereTheyAreWithVelocities) {
+TEST(ApplySkinWeights, PutsPositionsAloneWhereTheyAreWithVelocities) {
   const Riding riding = RandomRiding();
   const Moved both = Ours(riding, true);
   OnEveryTarget([&] {

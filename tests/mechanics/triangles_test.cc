@@ -40,7 +40,7 @@ class TriangleForce : public testing::Test {
   }
   Points Force() const {
     Points f = Points::Zero(3, state_.x.cols());
-    model_->forces.front()->AddForce(MakeInstant(*model_, model_->parameters, state_), f);
+    model_->forces.front()->AddForce(MakeEvalContext(*model_, model_->parameters, state_), f);
     return f;
   }
 

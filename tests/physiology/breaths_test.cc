@@ -8,8 +8,8 @@
 #include "server/anatomy/anatomy.h"
 #include "server/mechanics/compile/compile.h"
 #include "server/mechanics/step/step.h"
-#include "server/schema/schema.h"
 #include "server/physiology/physiology.h"
+#include "server/schema/schema.h"
 
 namespace phrenic {
 namespace {
@@ -41,7 +41,7 @@ std::shared_ptr<const Model> Thorax::model_;
 
 TEST_F(Thorax, BreathesInsideThePublishedRangesOrTheReadmeSaysWhereNot) {
   double told = 0;
-  const auto table = study::CheckPhysiology(*model_, [&](double done) {
+  const auto table = physiology::CheckPhysiology(*model_, [&](double done) {
     EXPECT_GE(done, told);
     told = done;
     return true;
@@ -61,7 +61,7 @@ TEST_F(Thorax, BreathesInsideThePublishedRangesOrTheReadmeSaysWhereNot) {
 }
 
 TEST_F(Thorax, StopsTheStudyWhenItsReaderGoes) {
-  EXPECT_EQ(study::CheckPhysiology(*model_, [](double) { return false; }).status().code(),
+  EXPECT_EQ(physiology::CheckPhysiology(*model_, [](double) { return false; }).status().code(),
             absl::StatusCode::kCancelled);
 }
 
@@ -85,7 +85,7 @@ TEST(Physiology, NeedsADiaphragm) {
   ASSERT_TRUE(scene.ok());
   const auto model = Compile(*scene, [](const v1::Body&) { return absl::NotFoundError(""); });
   ASSERT_TRUE(model.ok());
-  const auto table = study::CheckPhysiology(**model, [](double) { return true; });
+  const auto table = physiology::CheckPhysiology(**model, [](double) { return true; });
   EXPECT_EQ(table.status().code(), absl::StatusCode::kFailedPrecondition);
   EXPECT_NE(std::string(table.status().message()).find("STRUCTURE_DIAPHRAGM"), std::string::npos);
 }

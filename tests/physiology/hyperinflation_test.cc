@@ -23,7 +23,7 @@ struct Breath {
 class Hyperinflated : public GeneratedThorax {
  protected:
   static Extent Measure(const State& state) {
-    const auto metrics = study::ThoraxMetrics::Of(*model_);
+    const auto metrics = physiology::ThoraxMetrics::Of(*model_);
     return {1e3 * metrics->DomeDescent(state, v1::SIDE_RIGHT), 1e3 * metrics->DomeDescent(state, v1::SIDE_LEFT),
             1e3 * metrics->LungVolumeChange(state).value_or(0), 1e3 * metrics->SternumShift(state)->z()};
   }

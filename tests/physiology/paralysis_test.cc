@@ -24,7 +24,7 @@ class Paralysis : public GeneratedThorax {
     while (state.phase < 0.5) {
       EXPECT_TRUE(Step(*model_, parameters, parameters.time_step(), state, work).ok()) << preset;
     }
-    const auto metrics = study::ThoraxMetrics::Of(*model_);
+    const auto metrics = physiology::ThoraxMetrics::Of(*model_);
     EXPECT_TRUE(metrics.ok()) << metrics.status();
     const Descent descent{1e3 * metrics->DomeDescent(state, v1::SIDE_RIGHT),
                           1e3 * metrics->DomeDescent(state, v1::SIDE_LEFT)};

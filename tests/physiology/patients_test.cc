@@ -11,8 +11,8 @@
 #include "server/imaging/patient.h"
 #include "server/imaging/phantom.h"
 #include "server/mechanics/compile/compile.h"
-#include "server/schema/schema.h"
 #include "server/physiology/physiology.h"
+#include "server/schema/schema.h"
 
 namespace phrenic {
 namespace {
@@ -46,7 +46,7 @@ TEST_P(Patients, BreatheQuietlyInsideThePublishedRanges) {
   const auto model =
       Compile(patient->scene, [&](const v1::Body& body) -> absl::StatusOr<Mesh> { return *meshes.at(body.name()); });
   ASSERT_TRUE(model.ok()) << model.status();
-  const auto table = study::CheckPhysiology(**model, [](double) { return true; });
+  const auto table = physiology::CheckPhysiology(**model, [](double) { return true; });
   ASSERT_TRUE(table.ok()) << table.status();
   EXPECT_EQ(table->rows_size(), 11);
   for (const v1::PhysiologyRow& row : table->rows()) {

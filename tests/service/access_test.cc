@@ -271,7 +271,7 @@ TEST_F(GuardedServer, AnAccountThatIsRemovedIsUnknownWithinSecondsAndItsStreamsE
   EXPECT_EQ(Code({"owner"}, &Sessions::GetSession, "session_id: 'mine'"), grpc::UNAUTHENTICATED);
 }
 
-// The same door for browsers: nobody passes for the process itself, which needs no account.
+// The same guard for browsers: nobody passes for the process itself, which needs no account.
 class GuardedGateway : public GuardedServer {
  protected:
   std::string TrailersOf(const std::string& headers) {

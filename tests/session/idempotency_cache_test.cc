@@ -12,8 +12,8 @@
 namespace phrenic::session {
 namespace {
 
-TEST(Answers, ARepeatIsAnsweredAlike) {
-  Answers answers;
+TEST(IdempotencyCache, ARepeatIsAnsweredAlike) {
+  IdempotencyCache answers;
   const auto first = answers.Begin("a", "step 5");
   ASSERT_TRUE(first.ok());
   EXPECT_FALSE(first->has_value());
@@ -23,23 +23,23 @@ TEST(Answers, ARepeatIsAnsweredAlike) {
   EXPECT_EQ((*second)->bytes, "tick 5");
 }
 
-TEST(Answers, AnotherContentUnderTheSameIdIsRefused) {
-  Answers answers;
+TEST(IdempotencyCache, AnotherContentUnderTheSameIdIsRefused) {
+  IdempotencyCache answers;
   ASSERT_TRUE(answers.Begin("a", "step 5").ok());
   answers.Keep("a", {});
   EXPECT_TRUE(absl::IsInvalidArgument(answers.Begin("a", "step 6").status()));
   EXPECT_TRUE(absl::IsInvalidArgument(answers.Begin("A b", "step 6").status())) << "this is no id";
 }
 
-TEST(Answers, WhatChangedNothingBeginsAnew) {
-  Answers answers;
+TEST(IdempotencyCache, WhatChangedNothingBeginsAnew) {
+  IdempotencyCache answers;
   ASSERT_TRUE(answers.Begin("a", "step 5").ok());
   answers.Forget("a");
   EXPECT_FALSE(answers.Begin("a", "step 6")->has_value());
 }
 
-TEST(Answers, TheLastOnesAreRememberedAndNoMore) {
-  Answers answers;
+TEST(IdempotencyCache, TheLastOnesAreRememberedAndNoMore) {
+  IdempotencyCache answers;
   for (std::size_t i = 0; i <= kMostAnswers; ++i) {
     ASSERT_TRUE(answers.Begin(absl::StrCat(i), "").ok());
     answers.Keep(absl::StrCat(i), {});
@@ -48,8 +48,8 @@ TEST(Answers, TheLastOnesAreRememberedAndNoMore) {
   EXPECT_FALSE(answers.Begin("0", "")->has_value());
 }
 
-TEST(Answers, OfManyRepeatsAtOnceOneIsCarriedOutAndAllAreAnsweredByIt) {
-  Answers answers;
+TEST(IdempotencyCache, OfManyRepeatsAtOnceOneIsCarriedOutAndAllAreAnsweredByIt) {
+  IdempotencyCache answers;
   std::atomic<int> carried_out = 0, answered = 0;
   std::vector<std::thread> callers;
   for (int i = 0; i < 8; ++i) {

@@ -121,7 +121,7 @@ TEST(Credit, NothingGoesPastTheWindowUntilItIsAcknowledged) {
   credit.Acknowledged(1, absl::UnixEpoch());
 }
 
-TEST(Form, RungsAreOneTwoAndFive) {
+TEST(FrameEncoding, RungsAreOneTwoAndFive) {
   EXPECT_EQ(RungWithin(0.1), kDefaultRung);
   EXPECT_EQ(RungWithin(1), kCoarsestRung);
   EXPECT_EQ(RungWithin(0.001), 0);

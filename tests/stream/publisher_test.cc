@@ -162,7 +162,7 @@ TEST(Viewer, TakesNoMoreFramesThanItsWindowUntilItAcknowledges) {
 }
 
 TEST_F(PublisherTest, EachFormIsEncodedOnceAndHoldsWhatWasAskedFor) {
-  const Form predicted{.codec = v1::CODEC_PREDICTED}, nothing{.chosen = true};
+  const FrameEncoding predicted{.codec = v1::CODEC_PREDICTED}, nothing{.chosen = true};
   const auto raw = Join(), a = Join({.form = predicted}), b = Join({.form = predicted}), none = Join({.form = nothing});
   Offer(1);
   const Bytes frame = NextFrame(*a);
@@ -189,7 +189,7 @@ TEST_F(PublisherTest, NothingIsEncodedForThoseWhoMayNotTakeItAndTheNewestComesOn
 }
 
 TEST_F(PublisherTest, WhatOneMayTakeIsThereForAllOfItsForm) {
-  const Form form{.codec = v1::CODEC_PREDICTED};
+  const FrameEncoding form{.codec = v1::CODEC_PREDICTED};
   const auto full = Join({.form = form, .max_unacked = 1, .watch_id = "full"}), quick = Join({.form = form});
   for (int sequence = 1; sequence <= 3; ++sequence) {
     Offer(sequence);

@@ -33,7 +33,7 @@ TEST(Reference, IsTheClosedFormOfADampedOscillator) {
   const double m = subject.model->mass[1], k = 50;
   Eigen::VectorXd c = Eigen::VectorXd::Zero(2);
   for (const auto& force : subject.model->forces) {
-    force->AddDamping(MakeInstant(*subject.model, subject.parameters, subject.model->InitialState()), c);
+    force->AddDamping(MakeEvalContext(*subject.model, subject.parameters, subject.model->InitialState()), c);
   }
   const double g = c[1] / (2 * m), omega = std::sqrt(k / m - g * g), sag = m * 1 / k;
   for (size_t i = 0; i < moments.size(); ++i) {

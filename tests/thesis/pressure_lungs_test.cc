@@ -18,7 +18,7 @@ using Values = std::map<std::string, double>;
 Values Read(const Model& model, const State& state) {
   Values values;
   for (const auto& measure : model.measures) {
-    values[measure->name()] = measure->Value(MakeInstant(model, model.parameters, state));
+    values[measure->name()] = measure->Value(MakeEvalContext(model, model.parameters, state));
   }
   return values;
 }

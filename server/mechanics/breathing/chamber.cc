@@ -60,20 +60,21 @@ const ChamberReading* ChamberReadings::Find(const std::string& key, What what) c
   return nullptr;
 }
 
-absl::Status Chamber::Add(const v1::SurfacePatch& scene, double side, std::string_view path, const Draft& draft) {
+absl::Status Chamber::Add(const v1::SurfacePatch& scene, double side, std::string_view path,
+                          const ModelBuilder& builder) {
   const std::string field(path);
-  const auto bodies = draft.Bodies(scene.bodies(), field + ".bodies");
+  const auto bodies = builder.Bodies(scene.bodies(), field + ".bodies");
   if (!bodies.ok()) return bodies.status();
   const int before = triangles();
   absl::StrAppend(&key_, side > 0 ? "+" : "-", scene.SerializeAsString());
   for (const int b : *bodies) {
-    const auto selection = draft.Select(b, scene.region(), scene.exclude_region(), field);
+    const auto selection = builder.Select(b, scene.region(), scene.exclude_region(), field);
     if (!selection.ok()) return selection.status();
-    Part part{BodyPoints(draft.model, b), Chosen(draft.model.bodies[b].mesh, *selection, scene), {}, {}, side};
+    Part part{BodyPoints(builder.model, b), Chosen(builder.model.bodies[b].mesh, *selection, scene), {}, {}, side};
     if (part.triangles.cols() == 0) continue;
     part.packets = PackTriangles(part.triangles);
-    const bool whole = part.triangles.cols() == draft.model.bodies[b].mesh.triangles.cols();
-    part.border = whole ? draft.BorderOf(b) : BorderVertices(part.triangles);
+    const bool whole = part.triangles.cols() == builder.model.bodies[b].mesh.triangles.cols();
+    part.border = whole ? builder.BorderOf(b) : BorderVertices(part.triangles);
     parts_.push_back(std::move(part));
   }
   if (triangles() > before) return absl::OkStatus();
@@ -111,7 +112,7 @@ double Chamber::VolumeAtRest() const {
   return sum;
 }
 
-ChamberReading Chamber::Sum(ChamberReadings::What what, const Instant& at) const {
+ChamberReading Chamber::Sum(ChamberReadings::What what, const EvalContext& at) const {
   const ChamberReading* const found = at.readings == nullptr ? nullptr : at.readings->Find(key_, what);
   if (found != nullptr) return *found;
   ChamberReading sum;
@@ -130,11 +131,11 @@ ChamberReading Chamber::Sum(ChamberReadings::What what, const Instant& at) const
   return sum;
 }
 
-double Chamber::Volume(const Instant& at) const { return Sum(ChamberReadings::What::kVolume, at).volume; }
+double Chamber::Volume(const EvalContext& at) const { return Sum(ChamberReadings::What::kVolume, at).volume; }
 
-ChamberReading Chamber::Read(const Instant& at) const { return Sum(ChamberReadings::What::kFlowToo, at); }
+ChamberReading Chamber::Read(const EvalContext& at) const { return Sum(ChamberReadings::What::kFlowToo, at); }
 
-void Chamber::AddAreas(const Instant& at, double scale, MutablePoints f) const {
+void Chamber::AddAreas(const EvalContext& at, double scale, MutablePoints f) const {
   for (const Part& part : parts_) {
     const int first = part.points.first_vertex();
     if (first < 0) continue;

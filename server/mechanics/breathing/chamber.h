@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "server/mechanics/skinning/body_points.h"
 #include "server/mechanics/breathing/chamber_kernel.h"
 #include "server/mechanics/model_builder.h"
+#include "server/mechanics/skinning/body_points.h"
 
 namespace phrenic {
 
@@ -40,16 +40,16 @@ class Chamber {
  public:
   // Adds triangles whose normals point out of the chamber (side 1) or into it (side -1). INVALID_ARGUMENT where none is
   // chosen.
-  absl::Status Add(const v1::SurfacePatch& scene, double side, std::string_view path, const Draft& draft);
+  absl::Status Add(const v1::SurfacePatch& scene, double side, std::string_view path, const ModelBuilder& builder);
   // Every patch is there. INVALID_ARGUMENT where the normal has no direction.
   absl::Status SetPlane(const v1::Plane* scene, std::string_view path);
 
   // Of equal chambers once where the instant keeps readings. Volume and flow in one pass, for twice the price [m^3].
-  double Volume(const Instant& at) const;
-  ChamberReading Read(const Instant& at) const;
+  double Volume(const EvalContext& at) const;
+  ChamberReading Read(const EvalContext& at) const;
   double rest_volume() const { return rest_volume_; }
   // f += scale a, 3 x simulated vertices.
-  void AddAreas(const Instant& at, double scale, MutablePoints f) const;
+  void AddAreas(const EvalContext& at, double scale, MutablePoints f) const;
   // Visits the corners of every simulated triangle with their places among the simulated vertices.
   template <typename Visitor>
   void ForEachSimulated(const Visitor& visit) const {
@@ -76,7 +76,7 @@ class Chamber {
     double side;
   };
   double VolumeAtRest() const;
-  ChamberReading Sum(ChamberReadings::What what, const Instant& at) const;
+  ChamberReading Sum(ChamberReadings::What what, const EvalContext& at) const;
 
   std::string key_;  // the same for chambers that are the same
   std::vector<Part> parts_;

@@ -2,7 +2,7 @@
 
 #include "server/mechanics/linalg/vector_targets.h"
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "server/mechanics/chamber_kernel.cc"
+#define HWY_TARGET_INCLUDE "server/mechanics/breathing/chamber_kernel.cc"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 

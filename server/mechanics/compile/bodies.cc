@@ -112,30 +112,31 @@ void SetSize(Model& model) {
 
 // Part of a body's width from the middle within which a vertex belongs to no side: what is highest of the lower dome
 // would otherwise be where it leans on the higher one.
-constexpr double kMiddle = 1.0 / 6;
+constexpr double kMiddlePart = 1.0 / 6;
 
 int HighestOn(v1::Side side, const Points& vertices) {
   const double width = vertices.row(0).maxCoeff() - vertices.row(0).minCoeff();
   const double outward = side == v1::SIDE_LEFT ? 1 : -1;
   int highest = -1;
   for (int i = 0; i < vertices.cols(); ++i) {
-    if (outward * vertices(0, i) <= kMiddle * width) continue;
+    if (outward * vertices(0, i) <= kMiddlePart * width) continue;
     if (highest < 0 || vertices(2, i) > vertices(2, highest)) highest = i;
   }
   return highest;
 }
 
-absl::StatusOr<int> ProbeVertex(const v1::Probe& probe, int body, const std::string& path, const Draft& draft) {
-  const Points& vertices = draft.model.bodies[body].mesh.vertices;
+absl::StatusOr<int> ProbeVertex(const v1::Probe& probe, int body, const std::string& path,
+                                const ModelBuilder& builder) {
+  const Points& vertices = builder.model.bodies[body].mesh.vertices;
   int vertex = -1;
   switch (probe.where_case()) {
     case v1::Probe::kVertex: {
-      absl::Status status = draft.CheckVertex(body, probe.vertex(), path + ".vertex");
+      absl::Status status = builder.CheckVertex(body, probe.vertex(), path + ".vertex");
       if (!status.ok()) return status;
       return probe.vertex();
     }
     case v1::Probe::kNearestTo:
-      return draft.Search(body).Nearest(ToEigen(probe.nearest_to())).vertex;
+      return builder.Search(body).Nearest(ToEigen(probe.nearest_to())).vertex;
     case v1::Probe::kHighestOn:
       vertex = HighestOn(probe.highest_on(), vertices);
       if (vertex < 0) return FieldError(path + ".highest_on", "the body has no vertex on that side");
@@ -148,8 +149,8 @@ absl::StatusOr<int> ProbeVertex(const v1::Probe& probe, int body, const std::str
 
 }  // namespace
 
-absl::Status AddBodies(const MeshSource& source, Draft& draft) {
-  Model& model = draft.model;
+absl::Status AddBodies(const MeshSource& source, ModelBuilder& builder) {
+  Model& model = builder.model;
   std::set<std::string> names;
   int poses = 0;
   for (int b = 0; b < model.scene.bodies_size(); ++b) {
@@ -178,15 +179,15 @@ absl::Status AddBodies(const MeshSource& source, Draft& draft) {
   return absl::OkStatus();
 }
 
-absl::Status AddProbes(Draft& draft) {
-  for (int p = 0; p < draft.model.scene.probes_size(); ++p) {
-    const v1::Probe& probe = draft.model.scene.probes(p);
+absl::Status AddProbes(ModelBuilder& builder) {
+  for (int p = 0; p < builder.model.scene.probes_size(); ++p) {
+    const v1::Probe& probe = builder.model.scene.probes(p);
     const std::string path = absl::StrCat("probes[", p, "]");
-    auto body = draft.Body(probe.body(), path + ".body");
+    auto body = builder.Body(probe.body(), path + ".body");
     if (!body.ok()) return body.status();
-    auto vertex = ProbeVertex(probe, *body, path, draft);
+    auto vertex = ProbeVertex(probe, *body, path, builder);
     if (!vertex.ok()) return vertex.status();
-    draft.model.probes.push_back({probe.name(), *body, *vertex});
+    builder.model.probes.push_back({probe.name(), *body, *vertex});
   }
   return absl::OkStatus();
 }

@@ -7,11 +7,11 @@
 
 namespace phrenic {
 
-// Fills bodies, rest, mass, inverse_mass, fixed_vertices and size from draft.model.scene.
-absl::Status AddBodies(const MeshSource& source, Draft& draft);
+// Fills bodies, rest, mass, inverse_mass, fixed_vertices and size from builder.model.scene.
+absl::Status AddBodies(const MeshSource& source, ModelBuilder& builder);
 
 // Fills the probes; bodies are there.
-absl::Status AddProbes(Draft& draft);
+absl::Status AddProbes(ModelBuilder& builder);
 
 }  // namespace phrenic
 

@@ -9,7 +9,6 @@
 #include "server/mechanics/forces/cables.h"
 #include "server/mechanics/forces/contact.h"
 #include "server/mechanics/forces/cross_layer.h"
-#include "server/mechanics/forces/target_spring.h"
 #include "server/mechanics/forces/fibres.h"
 #include "server/mechanics/forces/friction.h"
 #include "server/mechanics/forces/gravity.h"
@@ -19,6 +18,7 @@
 #include "server/mechanics/forces/pressure.h"
 #include "server/mechanics/forces/solid.h"
 #include "server/mechanics/forces/springs.h"
+#include "server/mechanics/forces/target_spring.h"
 #include "server/mechanics/integrators/bdf2.h"
 #include "server/mechanics/integrators/explicit_euler.h"
 #include "server/mechanics/integrators/linear_implicit_euler.h"
@@ -35,8 +35,8 @@
 #include "server/mechanics/measures/volume.h"
 #include "server/mechanics/motions/oscillation.h"
 #include "server/mechanics/motions/ribs.h"
-#include "server/mechanics/skinning/make_skins.h"
 #include "server/mechanics/motions/sternum.h"
+#include "server/mechanics/skinning/make_skins.h"
 
 namespace phrenic {
 namespace {
@@ -45,48 +45,48 @@ std::string In(std::string_view path, const char* field) { return absl::StrCat(s
 
 absl::Status NoKind(std::string_view path) { return FieldError(path, "says no kind: set one of its kinds"); }
 
-absl::Status Add(absl::StatusOr<std::unique_ptr<Motion>> motion, Draft& draft) {
+absl::Status Add(absl::StatusOr<std::unique_ptr<Motion>> motion, ModelBuilder& builder) {
   if (!motion.ok()) return motion.status();
-  if (*motion != nullptr) draft.model.motions.push_back(*std::move(motion));
+  if (*motion != nullptr) builder.model.motions.push_back(*std::move(motion));
   return absl::OkStatus();
 }
 
 }  // namespace
 
-absl::StatusOr<std::unique_ptr<Force>> MakeForce(const v1::Force& scene, std::string_view path, Draft& draft) {
+absl::StatusOr<std::unique_ptr<Force>> MakeForce(const v1::Force& scene, std::string_view path, ModelBuilder& builder) {
   switch (scene.kind_case()) {
     case v1::Force::kSprings:
-      return Springs::Make(scene.springs(), scene.name(), In(path, "springs"), draft);
+      return Springs::Make(scene.springs(), scene.name(), In(path, "springs"), builder);
     case v1::Force::kFriction:
-      return Friction::Make(scene.friction(), scene.name(), In(path, "friction"), draft);
+      return Friction::Make(scene.friction(), scene.name(), In(path, "friction"), builder);
     case v1::Force::kActionLine:
-      return ActionLine::Make(scene.action_line(), scene.name(), In(path, "action_line"), draft);
+      return ActionLine::Make(scene.action_line(), scene.name(), In(path, "action_line"), builder);
     case v1::Force::kAttachment:
-      return Attachment::Make(scene.attachment(), scene.name(), In(path, "attachment"), draft);
+      return Attachment::Make(scene.attachment(), scene.name(), In(path, "attachment"), builder);
     case v1::Force::kGravity:
-      return Gravity::Make(scene.gravity(), scene.name(), In(path, "gravity"), draft);
+      return Gravity::Make(scene.gravity(), scene.name(), In(path, "gravity"), builder);
     case v1::Force::kContact:
-      return Contact::Make(scene.contact(), scene.name(), In(path, "contact"), draft);
+      return Contact::Make(scene.contact(), scene.name(), In(path, "contact"), builder);
     case v1::Force::kCables:
-      return Cables::Make(scene.cables(), scene.name(), In(path, "cables"), draft);
+      return Cables::Make(scene.cables(), scene.name(), In(path, "cables"), builder);
     case v1::Force::kMembrane:
-      return MakeMembrane(scene.membrane(), scene.name(), In(path, "membrane"), draft);
+      return MakeMembrane(scene.membrane(), scene.name(), In(path, "membrane"), builder);
     case v1::Force::kSolid:
-      return MakeSolid(scene.solid(), scene.name(), In(path, "solid"), draft);
+      return MakeSolid(scene.solid(), scene.name(), In(path, "solid"), builder);
     case v1::Force::kFibres:
-      return Fibres::Make(scene.fibres(), scene.name(), In(path, "fibres"), draft);
+      return Fibres::Make(scene.fibres(), scene.name(), In(path, "fibres"), builder);
     case v1::Force::kBending:
-      return Bending::Make(scene.bending(), scene.name(), In(path, "bending"), draft);
+      return Bending::Make(scene.bending(), scene.name(), In(path, "bending"), builder);
     case v1::Force::kCrossLayer:
-      return MakeCrossLayer(scene.cross_layer(), scene.name(), In(path, "cross_layer"), draft);
+      return MakeCrossLayer(scene.cross_layer(), scene.name(), In(path, "cross_layer"), builder);
     case v1::Force::kDrag:
-      return Drag::Make(scene.drag(), scene.name(), In(path, "drag"), draft);
+      return TargetSpring::Make(scene.drag(), scene.name(), In(path, "drag"), builder);
     case v1::Force::kPointLoad:
-      return PointLoad::Make(scene.point_load(), scene.name(), In(path, "point_load"), draft);
+      return PointLoad::Make(scene.point_load(), scene.name(), In(path, "point_load"), builder);
     case v1::Force::kPressure:
-      return Pressure::Make(scene.pressure(), scene.name(), In(path, "pressure"), draft);
+      return Pressure::Make(scene.pressure(), scene.name(), In(path, "pressure"), builder);
     case v1::Force::kLungs:
-      return Lungs::Make(scene.lungs(), scene.name(), In(path, "lungs"), draft);
+      return Lungs::Make(scene.lungs(), scene.name(), In(path, "lungs"), builder);
     case v1::Force::KIND_NOT_SET:
       break;
   }
@@ -94,12 +94,12 @@ absl::StatusOr<std::unique_ptr<Force>> MakeForce(const v1::Force& scene, std::st
 }
 
 absl::StatusOr<std::unique_ptr<Constraint>> MakeConstraint(const v1::Constraint& scene, std::string_view path,
-                                                           Draft& draft) {
+                                                           ModelBuilder& builder) {
   switch (scene.kind_case()) {
     case v1::Constraint::kRigidLinks:
-      return RigidLinks::Make(scene.rigid_links(), scene.name(), In(path, "rigid_links"), draft);
+      return RigidLinks::Make(scene.rigid_links(), scene.name(), In(path, "rigid_links"), builder);
     case v1::Constraint::kLimits:
-      return Limits::Make(scene.limits(), scene.name(), In(path, "limits"), draft);
+      return Limits::Make(scene.limits(), scene.name(), In(path, "limits"), builder);
     case v1::Constraint::KIND_NOT_SET:
       break;
   }
@@ -145,36 +145,37 @@ const Integrator& FindIntegrator(v1::Integrator kind) {
   return Only<SemiImplicitEuler>();
 }
 
-absl::Status AddMotion(const v1::Motion& scene, std::string_view path, Draft& draft) {
+absl::Status AddMotion(const v1::Motion& scene, std::string_view path, ModelBuilder& builder) {
   switch (scene.kind_case()) {
     case v1::Motion::kRibs:
-      return Add(Ribs::Make(scene.ribs(), scene.name(), In(path, "ribs"), draft), draft);
+      return Add(Ribs::Make(scene.ribs(), scene.name(), In(path, "ribs"), builder), builder);
     case v1::Motion::kSternum:
-      return Add(Sternum::Make(scene.sternum(), scene.name(), In(path, "sternum"), draft), draft);
+      return Add(Sternum::Make(scene.sternum(), scene.name(), In(path, "sternum"), builder), builder);
     case v1::Motion::kOscillation:
-      return Add(Oscillation::Make(scene.oscillation(), scene.name(), In(path, "oscillation"), draft), draft);
+      return Add(Oscillation::Make(scene.oscillation(), scene.name(), In(path, "oscillation"), builder), builder);
     case v1::Motion::kRide:
-      return AddRides(scene.ride(), scene.name(), In(path, "ride"), draft);
+      return AddSkins(scene.ride(), scene.name(), In(path, "ride"), builder);
     case v1::Motion::KIND_NOT_SET:
       break;
   }
   return NoKind(path);
 }
 
-absl::StatusOr<std::unique_ptr<Measure>> MakeMeasure(const v1::Measure& scene, std::string_view path, Draft& draft) {
+absl::StatusOr<std::unique_ptr<Measure>> MakeMeasure(const v1::Measure& scene, std::string_view path,
+                                                     ModelBuilder& builder) {
   switch (scene.kind_case()) {
     case v1::Measure::kVolume:
-      return MakeVolume(scene.volume(), scene.name(), In(path, "volume"), draft);
+      return MakeVolume(scene.volume(), scene.name(), In(path, "volume"), builder);
     case v1::Measure::kFlow:
-      return MakeFlow(scene.flow(), scene.name(), In(path, "flow"), draft);
+      return MakeFlow(scene.flow(), scene.name(), In(path, "flow"), builder);
     case v1::Measure::kKineticEnergy:
-      return MakeKineticEnergy(scene.kinetic_energy(), scene.name(), In(path, "kinetic_energy"), draft);
+      return MakeKineticEnergy(scene.kinetic_energy(), scene.name(), In(path, "kinetic_energy"), builder);
     case v1::Measure::kElasticEnergy:
-      return MakeElasticEnergy(scene.elastic_energy(), scene.name(), In(path, "elastic_energy"), draft);
+      return MakeElasticEnergy(scene.elastic_energy(), scene.name(), In(path, "elastic_energy"), builder);
     case v1::Measure::kHighest:
-      return MakeHighest(scene.highest(), scene.name(), In(path, "highest"), draft);
+      return MakeHighest(scene.highest(), scene.name(), In(path, "highest"), builder);
     case v1::Measure::kForceOutput:
-      return MakeForceOutput(scene.force_output(), scene.name(), In(path, "force_output"), draft);
+      return MakeForceOutput(scene.force_output(), scene.name(), In(path, "force_output"), builder);
     case v1::Measure::KIND_NOT_SET:
       break;
   }

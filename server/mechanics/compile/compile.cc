@@ -10,11 +10,11 @@
 #include "absl/strings/str_format.h"
 #include "server/mechanics/compile/bodies.h"
 #include "server/mechanics/compile/catalogue.h"
-#include "server/mechanics/step/step_forces.h"
 #include "server/mechanics/compile/masses.h"
 #include "server/mechanics/compile/presets.h"
 #include "server/mechanics/compile/scene_hash.h"
 #include "server/mechanics/stability/spectrum.h"
+#include "server/mechanics/step/step_forces.h"
 #include "server/schema/schema.h"
 
 namespace phrenic {
@@ -49,46 +49,46 @@ std::string KindOf(const v1::Force& force) {
   return v1::Force::descriptor()->FindFieldByNumber(force.kind_case())->name();
 }
 
-absl::Status AddElements(Draft& draft) {
-  const v1::Scene& scene = draft.model.scene;
+absl::Status AddElements(ModelBuilder& builder) {
+  const v1::Scene& scene = builder.model.scene;
   for (int i = 0; i < scene.motions_size(); ++i) {
-    if (absl::Status s = AddMotion(scene.motions(i), absl::StrCat("motions[", i, "]"), draft); !s.ok()) return s;
+    if (absl::Status s = AddMotion(scene.motions(i), absl::StrCat("motions[", i, "]"), builder); !s.ok()) return s;
   }
   for (int i = 0; i < scene.forces_size(); ++i) {
-    auto force = MakeForce(scene.forces(i), absl::StrCat("forces[", i, "]"), draft);
+    auto force = MakeForce(scene.forces(i), absl::StrCat("forces[", i, "]"), builder);
     if (!force.ok()) return force.status();
     if (*force == nullptr) continue;
-    draft.model.forces.push_back(*std::move(force));
-    draft.model.force_kinds.push_back(KindOf(scene.forces(i)));
+    builder.model.forces.push_back(*std::move(force));
+    builder.model.force_kinds.push_back(KindOf(scene.forces(i)));
   }
-  ChooseStepForces(draft.model);
-  if (absl::Status s = SpreadMassByStiffness(draft.model); !s.ok()) return s;
+  ChooseStepForces(builder.model);
+  if (absl::Status s = SpreadMassByStiffness(builder.model); !s.ok()) return s;
   for (int i = 0; i < scene.constraints_size(); ++i) {
-    auto constraint = MakeConstraint(scene.constraints(i), absl::StrCat("constraints[", i, "]"), draft);
+    auto constraint = MakeConstraint(scene.constraints(i), absl::StrCat("constraints[", i, "]"), builder);
     if (!constraint.ok()) return constraint.status();
-    if (*constraint != nullptr) draft.model.constraints.push_back(*std::move(constraint));
+    if (*constraint != nullptr) builder.model.constraints.push_back(*std::move(constraint));
   }
-  const Integrator& integrator = FindIntegrator(draft.model.parameters.integrator());
-  draft.ReportElement("integrator", integrator.name(), draft.model.rest.cols(), "vertices",
-                      absl::StrFormat("order %d", integrator.order()));
+  const Integrator& integrator = FindIntegrator(builder.model.parameters.integrator());
+  builder.ReportElement("integrator", integrator.name(), builder.model.rest.cols(), "vertices",
+                        absl::StrFormat("order %d", integrator.order()));
   return absl::OkStatus();
 }
 
 // What the scene has no need of, beside what the elements themselves said.
-void ReportUnused(Draft& draft) {
-  const Model& model = draft.model;
-  if (model.rest.cols() == 0) draft.ReportLeftOut("integration", "no body is deformable");
-  if (model.constraints.empty()) draft.ReportLeftOut("constraints", "the scene has no rigid links");
-  if (model.motions.empty()) draft.ReportLeftOut("motions", "nothing in the scene moves by a law of its own");
+void ReportUnused(ModelBuilder& builder) {
+  const Model& model = builder.model;
+  if (model.rest.cols() == 0) builder.ReportLeftOut("integration", "no body is deformable");
+  if (model.constraints.empty()) builder.ReportLeftOut("constraints", "the scene has no rigid links");
+  if (model.motions.empty()) builder.ReportLeftOut("motions", "nothing in the scene moves by a law of its own");
   std::int64_t still = 0, vertices = 0;
   for (const BodyModel& body : model.bodies) {
-    if (body.first_vertex >= 0 || body.pose >= 0 || body.ride >= 0) continue;
+    if (body.first_vertex >= 0 || body.pose >= 0 || body.skin >= 0) continue;
     ++still;
     vertices += body.mesh.vertices.cols();
   }
   if (still > 0) {
-    draft.ReportLeftOut(absl::StrCat("motion of ", still, " bodies at rest"),
-                        absl::StrCat(vertices, " vertices never move: they are sent once"));
+    builder.ReportLeftOut(absl::StrCat("motion of ", still, " bodies at rest"),
+                          absl::StrCat(vertices, " vertices never move: they are sent once"));
   }
 }
 
@@ -135,7 +135,7 @@ class VertexStiffness final : public StiffnessSink {
   Eigen::Matrix3d sum_ = Eigen::Matrix3d::Zero();
 };
 
-std::string StiffestElementAt(const Model& model, const Instant& at, int vertex) {
+std::string StiffestElementAt(const Model& model, const EvalContext& at, int vertex) {
   std::string name = "nothing";
   double largest = 0;
   for (const auto& force : model.forces) {
@@ -181,8 +181,8 @@ void ChooseStep(Model& model) {
 
 absl::StatusOr<std::shared_ptr<const Model>> Compile(const v1::Scene& scene, const MeshSource& source) {
   if (absl::Status status = schema::Validate(scene); !status.ok()) return status;
-  Draft draft;
-  Model& model = draft.model;
+  ModelBuilder builder;
+  Model& model = builder.model;
   model.scene = scene;
   schema::FillDefaults(&model.scene);
   // What these leave open has a meaning of its own.
@@ -191,14 +191,14 @@ absl::StatusOr<std::shared_ptr<const Model>> Compile(const v1::Scene& scene, con
   ResolveParameters(model);
   CompletePresets(model.scene);
   StageClock clock(model.report);
-  if (absl::Status status = AddBodies(source, draft); !status.ok()) return status;
+  if (absl::Status status = AddBodies(source, builder); !status.ok()) return status;
   clock.End("bodies");
-  if (absl::Status status = AddElements(draft); !status.ok()) return status;
+  if (absl::Status status = AddElements(builder); !status.ok()) return status;
   clock.End("elements");
-  if (absl::Status status = AddProbes(draft); !status.ok()) return status;
-  if (absl::Status status = AddMeasures(draft); !status.ok()) return status;
+  if (absl::Status status = AddProbes(builder); !status.ok()) return status;
+  if (absl::Status status = AddMeasures(builder); !status.ok()) return status;
   clock.End("measures");
-  ReportUnused(draft);
+  ReportUnused(builder);
   ReportIdleParameters(model.scene, model.report);
   model.report.set_scene(scene.name());
   model.report.set_scene_hash(SceneHash(model));
@@ -230,7 +230,7 @@ v1::StableStep LargestStableStep(const Model& model, const v1::Parameters& param
     return report;
   }
   const BodyModel& body = model.BodyOf(fastest.vertex);
-  const std::string stiffest = StiffestElementAt(model, MakeInstant(model, parameters, state), fastest.vertex);
+  const std::string stiffest = StiffestElementAt(model, MakeEvalContext(model, parameters, state), fastest.vertex);
   report.set_reason(absl::StrFormat("fastest vibration %.3g rad/s at vertex %d of %s, by %s; damping %.3g 1/s%s",
                                     fastest.spectrum.omega_max, fastest.vertex - body.first_vertex, body.name, stiffest,
                                     fastest.spectrum.damping_rate, Verdict(integrator, fastest.spectrum, limit)));

@@ -68,7 +68,7 @@ class OwnStiffness final : public StiffnessSink {
 OwnStiffness StiffnessAtRest(const Model& model) {
   OwnStiffness stiffness(model.rest.cols());
   const State rest = model.InitialState();
-  const Instant at = MakeInstant(model, model.parameters, rest);
+  const EvalContext at = MakeEvalContext(model, model.parameters, rest);
   for (const auto& force : model.forces) {
     force->AddStiffness(at, stiffness);
     force->AddLatentStiffness(at, stiffness);

@@ -36,22 +36,22 @@ std::vector<Link> MakeLimits(const v1::Limits& scene, const std::vector<Link>& l
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<Constraint>> Limits::Make(const v1::Limits& scene, const std::string& given,
-                                                         std::string_view path, Draft& draft) {
+                                                         std::string_view path, ModelBuilder& builder) {
   const std::string name = given.empty() ? absl::StrCat("limits:", scene.body()) : given;
   if (absl::Status status = CheckRatios(scene, path); !status.ok()) return status;
-  auto body = DeformableBody(scene.body(), absl::StrCat(std::string(path), ".body"), draft);
+  auto body = DeformableBody(scene.body(), absl::StrCat(std::string(path), ".body"), builder);
   if (!body.ok()) return body.status();
-  auto links = ListedOrEdges(scene.has_list(), scene.list(), scene.region(), *body, path, draft);
+  auto links = ListedOrEdges(scene.has_list(), scene.list(), scene.region(), *body, path, builder);
   if (!links.ok()) return links.status();
   const std::vector<Link> limits = MakeLimits(scene, *links);
   if (limits.empty()) {
-    draft.ReportLeftOut(name, "no edge that can move has both its vertices in the region");
+    builder.ReportLeftOut(name, "no edge that can move has both its vertices in the region");
     return nullptr;
   }
   std::unique_ptr<Limits> constraint(new Limits(name));
   constraint->network_ = LinkNetwork(limits);
-  draft.ReportElement("constraint", name, static_cast<std::int64_t>(limits.size()), "limits",
-                      "mass-weighted where they are violated, velocities corrected");
+  builder.ReportElement("constraint", name, static_cast<std::int64_t>(limits.size()), "limits",
+                        "mass-weighted where they are violated, velocities corrected");
   return constraint;
 }
 

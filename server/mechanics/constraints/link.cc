@@ -25,16 +25,16 @@ Link MakeLink(const Model& model, int a, int b) {
 }
 
 absl::StatusOr<std::vector<Link>> ListedLinks(const v1::LinkList& list, int body, std::string_view path,
-                                              const Draft& draft) {
+                                              const ModelBuilder& builder) {
   std::vector<Link> links;
-  const int first = draft.model.bodies[body].first_vertex;
+  const int first = builder.model.bodies[body].first_vertex;
   for (int i = 0; i < list.links_size(); ++i) {
     const std::string where = absl::StrCat(std::string(path), ".links[", i, "]");
     const int a = list.links(i).a(), b = list.links(i).b();
-    if (absl::Status status = draft.CheckVertex(body, a, where); !status.ok()) return status;
-    if (absl::Status status = draft.CheckVertex(body, b, where); !status.ok()) return status;
+    if (absl::Status status = builder.CheckVertex(body, a, where); !status.ok()) return status;
+    if (absl::Status status = builder.CheckVertex(body, b, where); !status.ok()) return status;
     if (a == b) return FieldError(where, absl::StrCat("joins vertex ", a, " to itself"));
-    links.push_back(MakeLink(draft.model, first + a, first + b));
+    links.push_back(MakeLink(builder.model, first + a, first + b));
     if (links.back().length > 0) continue;
     return FieldError(where, absl::StrCat("vertices ", a, " and ", b, " are in one point: move one of them"));
   }
@@ -42,24 +42,24 @@ absl::StatusOr<std::vector<Link>> ListedLinks(const v1::LinkList& list, int body
 }
 
 absl::StatusOr<std::vector<Link>> ListedOrEdges(bool listed, const v1::LinkList& list, const std::string& region,
-                                                int body, std::string_view path, const Draft& draft) {
-  if (listed) return ListedLinks(list, body, absl::StrCat(std::string(path), ".list"), draft);
-  auto inside = draft.Region(body, region, absl::StrCat(std::string(path), ".region"));
+                                                int body, std::string_view path, const ModelBuilder& builder) {
+  if (listed) return ListedLinks(list, body, absl::StrCat(std::string(path), ".list"), builder);
+  auto inside = builder.Region(body, region, absl::StrCat(std::string(path), ".region"));
   if (!inside.ok()) return inside.status();
-  const BodyModel& model = draft.model.bodies[body];
+  const BodyModel& model = builder.model.bodies[body];
   std::vector<Link> links;
-  const Edges& edges = draft.EdgesOf(body);
+  const Edges& edges = builder.EdgesOf(body);
   for (const auto edge : edges.colwise()) {
     if (!(*inside)[edge[0]] || !(*inside)[edge[1]]) continue;
-    const Link link = MakeLink(draft.model, model.first_vertex + edge[0], model.first_vertex + edge[1]);
+    const Link link = MakeLink(builder.model, model.first_vertex + edge[0], model.first_vertex + edge[1]);
     if (link.length > 0) links.push_back(link);
   }
   return links;
 }
 
-absl::StatusOr<int> DeformableBody(const std::string& name, std::string_view path, const Draft& draft) {
-  auto body = draft.Body(name, path);
-  if (!body.ok() || draft.model.bodies[*body].first_vertex >= 0) return body;
+absl::StatusOr<int> DeformableBody(const std::string& name, std::string_view path, const ModelBuilder& builder) {
+  auto body = builder.Body(name, path);
+  if (!body.ok() || builder.model.bodies[*body].first_vertex >= 0) return body;
   return FieldError(path, absl::StrCat("body \"", name, "\" must be ROLE_DEFORMABLE"));
 }
 

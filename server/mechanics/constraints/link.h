@@ -39,13 +39,13 @@ struct Link {
 // The vertices of a list, as links of the body as long as they are at rest. Errors name the entry: a vertex that is
 // not there, one joined to itself, two in one point.
 absl::StatusOr<std::vector<Link>> ListedLinks(const v1::LinkList& list, int body, std::string_view path,
-                                              const Draft& draft);
+                                              const ModelBuilder& builder);
 // The listed ones, or, where nothing is listed, the edges of the body with both vertices in the region (all where it is
 // empty) and some length.
 absl::StatusOr<std::vector<Link>> ListedOrEdges(bool listed, const v1::LinkList& list, const std::string& region,
-                                                int body, std::string_view path, const Draft& draft);
+                                                int body, std::string_view path, const ModelBuilder& builder);
 // The body of this name, which must be deformable.
-absl::StatusOr<int> DeformableBody(const std::string& name, std::string_view path, const Draft& draft);
+absl::StatusOr<int> DeformableBody(const std::string& name, std::string_view path, const ModelBuilder& builder);
 Link MakeLink(const Model& model, int a, int b);
 
 // Moves both ends by `impulse` [kg m] along the link, against its stretch, and the velocities by the same over dt.

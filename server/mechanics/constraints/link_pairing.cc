@@ -15,13 +15,13 @@ struct Plane {
 };
 
 absl::StatusOr<Plane> PlaneOfVertices(const v1::LinkPairing& scene, int body, std::string_view path,
-                                      const Draft& draft) {
+                                      const ModelBuilder& builder) {
   const std::string field = absl::StrCat(std::string(path), ".plane_vertices");
   if (scene.plane_vertices_size() != 3) return FieldError(field, "a plane takes three vertices");
   for (const int vertex : scene.plane_vertices()) {
-    if (absl::Status status = draft.CheckVertex(body, vertex, field); !status.ok()) return status;
+    if (absl::Status status = builder.CheckVertex(body, vertex, field); !status.ok()) return status;
   }
-  const Points& x = draft.model.bodies[body].mesh.vertices;
+  const Points& x = builder.model.bodies[body].mesh.vertices;
   const Eigen::Vector3d a = x.col(scene.plane_vertices(0));
   const Eigen::Vector3d b = x.col(scene.plane_vertices(1)), c = x.col(scene.plane_vertices(2));
   Eigen::Vector3d normal = (b - a).cross(c - a);
@@ -30,8 +30,9 @@ absl::StatusOr<Plane> PlaneOfVertices(const v1::LinkPairing& scene, int body, st
   return Plane{a, normal.normalized()};
 }
 
-absl::StatusOr<Plane> MakePlane(const v1::LinkPairing& scene, int body, std::string_view path, const Draft& draft) {
-  if (scene.plane_vertices_size() > 0) return PlaneOfVertices(scene, body, path, draft);
+absl::StatusOr<Plane> MakePlane(const v1::LinkPairing& scene, int body, std::string_view path,
+                                const ModelBuilder& builder) {
+  if (scene.plane_vertices_size() > 0) return PlaneOfVertices(scene, body, path, builder);
   if (!scene.has_plane_normal()) return Plane{};
   const Eigen::Vector3d normal = ToEigen(scene.plane_normal());
   if (normal.isZero()) return FieldError(absl::StrCat(std::string(path), ".plane_normal"), "must not be zero");
@@ -40,14 +41,15 @@ absl::StatusOr<Plane> MakePlane(const v1::LinkPairing& scene, int body, std::str
 
 }  // namespace
 
-absl::StatusOr<Edges> PairLinks(const v1::LinkPairing& scene, int b, std::string_view path, const Draft& draft) {
-  const Mesh& mesh = draft.model.bodies[b].mesh;
-  const auto plane = MakePlane(scene, b, path, draft);
+absl::StatusOr<Edges> PairLinks(const v1::LinkPairing& scene, int b, std::string_view path,
+                                const ModelBuilder& builder) {
+  const Mesh& mesh = builder.model.bodies[b].mesh;
+  const auto plane = MakePlane(scene, b, path, builder);
   if (!plane.ok()) return plane.status();
-  const auto region = draft.Region(b, scene.region(), absl::StrCat(std::string(path), ".region"));
+  const auto region = builder.Region(b, scene.region(), absl::StrCat(std::string(path), ".region"));
   if (!region.ok()) return region.status();
   const Points normals = VertexNormals(mesh.vertices, mesh.triangles);
-  const NearestSearch& search = draft.Search(b);
+  const NearestSearch& search = builder.Search(b);
   std::vector<bool> free = *region;
   for (size_t i = 0; i < free.size(); ++i) {
     free[i] = free[i] && plane->Above(mesh.vertices.col(static_cast<Eigen::Index>(i)));

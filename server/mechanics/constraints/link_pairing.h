@@ -9,7 +9,8 @@ namespace phrenic {
 // Pairs of vertices of the body, 2 x n. Each vertex, in index order, takes the nearest vertex within the distance that
 // is free, whose normal makes no acute angle with its own, and that lies above the plane as it does itself. At most one
 // link a vertex. The result depends on the order of the vertices, which is the mesh's.
-absl::StatusOr<Edges> PairLinks(const v1::LinkPairing& scene, int body, std::string_view path, const Draft& draft);
+absl::StatusOr<Edges> PairLinks(const v1::LinkPairing& scene, int body, std::string_view path,
+                                const ModelBuilder& builder);
 
 }  // namespace phrenic
 

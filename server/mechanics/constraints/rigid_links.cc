@@ -14,22 +14,22 @@ namespace phrenic {
 namespace {
 
 absl::StatusOr<std::vector<Link>> PairedLinks(const v1::LinkPairing& scene, int body, const std::string& path,
-                                              const Draft& draft) {
-  auto pairs = PairLinks(scene, body, path, draft);
+                                              const ModelBuilder& builder) {
+  auto pairs = PairLinks(scene, body, path, builder);
   if (!pairs.ok()) return pairs.status();
-  const int first = draft.model.bodies[body].first_vertex;
+  const int first = builder.model.bodies[body].first_vertex;
   std::vector<Link> links;
-  for (const auto pair : pairs->colwise()) links.push_back(MakeLink(draft.model, first + pair[0], first + pair[1]));
+  for (const auto pair : pairs->colwise()) links.push_back(MakeLink(builder.model, first + pair[0], first + pair[1]));
   return links;
 }
 
 absl::StatusOr<std::vector<Link>> FindLinks(const v1::RigidLinks& scene, int body, const std::string& path,
-                                            const Draft& draft) {
+                                            const ModelBuilder& builder) {
   switch (scene.which_case()) {
     case v1::RigidLinks::kPairing:
-      return PairedLinks(scene.pairing(), body, path + ".pairing", draft);
+      return PairedLinks(scene.pairing(), body, path + ".pairing", builder);
     case v1::RigidLinks::kList:
-      return ListedLinks(scene.list(), body, path + ".list", draft);
+      return ListedLinks(scene.list(), body, path + ".list", builder);
     case v1::RigidLinks::WHICH_NOT_SET:
       break;
   }
@@ -70,27 +70,27 @@ void Show(const std::vector<Link>& links, Model& model) {
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<Constraint>> RigidLinks::Make(const v1::RigidLinks& scene, const std::string& given,
-                                                             std::string_view path, Draft& draft) {
+                                                             std::string_view path, ModelBuilder& builder) {
   const std::string name = given.empty() ? absl::StrCat("rigid-links:", scene.body()) : given;
   const std::string field(path);
-  auto b = DeformableBody(scene.body(), absl::StrCat(field, ".body"), draft);
+  auto b = DeformableBody(scene.body(), absl::StrCat(field, ".body"), builder);
   if (!b.ok()) return b.status();
-  auto links = FindLinks(scene, *b, field, draft);
+  auto links = FindLinks(scene, *b, field, builder);
   if (!links.ok()) return links.status();
   if (links->empty()) {
-    draft.ReportLeftOut(name, "no two vertices fit the pairing");
+    builder.ReportLeftOut(name, "no two vertices fit the pairing");
     return nullptr;
   }
   std::unique_ptr<RigidLinks> constraint(new RigidLinks(name));
   constraint->thesis_ = scene.projection() == v1::PROJECTION_THESIS;
-  constraint->Sort(*links, draft.model);
-  Show(*links, draft.model);
+  constraint->Sort(*links, builder.model);
+  Show(*links, builder.model);
   const auto count = static_cast<std::int64_t>(links->size());
-  draft.model.report.set_rigid_links(draft.model.report.rigid_links() + count);
-  draft.ReportElement("constraint", name, count, "links",
-                      constraint->thesis_ ? "split by distance moved (thesis 2.10-2.11)"
-                                          : absl::StrCat("mass-weighted, velocities corrected; ",
-                                                         constraint->network_.links().size(), " solved together"));
+  builder.model.report.set_rigid_links(builder.model.report.rigid_links() + count);
+  builder.ReportElement("constraint", name, count, "links",
+                        constraint->thesis_ ? "split by distance moved (thesis 2.10-2.11)"
+                                            : absl::StrCat("mass-weighted, velocities corrected; ",
+                                                           constraint->network_.links().size(), " solved together"));
   return constraint;
 }
 
@@ -148,7 +148,7 @@ double RigidLinks::RestoreAlone(absl::Span<const LinkPacket> packets, Eigen::Ind
   for (size_t p = 0; p < packets.size(); p += kPacketsTogether) {
     const absl::Span<const LinkPacket> some = packets.subspan(p, kPacketsTogether);
     auto [missed, furthest] = RestorePackets(some, directions + p, dt, x.data() + 3 * from, v.data() + 3 * from);
-    way = Further(missed == 0 ? furthest : std::numeric_limits<double>::infinity(), way);
+    way = LargerMagnitude(missed == 0 ? furthest : std::numeric_limits<double>::infinity(), way);
     for (; missed != 0; missed &= missed - 1) {
       const int bit = std::countr_zero(missed), lane = bit % kPacketLinks;
       const LinkVectors& of = directions[p + bit / kPacketLinks];

@@ -21,7 +21,7 @@ class RigidLinks final : public Constraint {
  public:
   // Null where the pairing finds no pair.
   static absl::StatusOr<std::unique_ptr<Constraint>> Make(const v1::RigidLinks& scene, const std::string& name,
-                                                          std::string_view path, Draft& draft);
+                                                          std::string_view path, ModelBuilder& builder);
 
   void Project(const v1::Parameters& parameters, const ConstPoints& before, double dt, State& state) const override;
   bool by_range() const override { return !thesis_; }

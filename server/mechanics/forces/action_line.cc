@@ -15,7 +15,7 @@ double FallOff(const v1::ActionLine& line, const Eigen::Vector3d& direction, con
   return std::max(0.0, 1 - (offset - height * direction).norm() / line.radius());
 }
 
-double Signal(const Instant& at) {
+double Signal(const EvalContext& at) {
   return at.parameters.apply_muscles() ? at.parameters.breath_force() * at.breath : 0.0;
 }
 
@@ -27,34 +27,34 @@ double Activation(v1::Side side, const v1::Parameters& parameters) {
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<Force>> ActionLine::Make(const v1::ActionLine& scene, const std::string& given,
-                                                        std::string_view path, Draft& draft) {
+                                                        std::string_view path, ModelBuilder& builder) {
   const std::string name = ElementName(given, "action-line", scene.bodies());
-  auto bodies = draft.DeformableBodies(scene.bodies(), absl::StrCat(std::string(path), ".bodies"));
+  auto bodies = builder.DeformableBodies(scene.bodies(), absl::StrCat(std::string(path), ".bodies"));
   if (!bodies.ok()) return bodies.status();
   const Eigen::Vector3d along = ToEigen(scene.direction());
   if (along.norm() == 0) return FieldError(absl::StrCat(std::string(path), ".direction"), "must not be zero");
   const Eigen::Vector3d direction = along.normalized();
   std::unique_ptr<ActionLine> force(new ActionLine(name, scene, direction));
-  Eigen::VectorXd share = Eigen::VectorXd::Zero(draft.model.rest.cols());
+  Eigen::VectorXd share = Eigen::VectorXd::Zero(builder.model.rest.cols());
   std::int64_t count = 0;
   for (const int b : *bodies) {
-    const BodyModel& body = draft.model.bodies[b];
+    const BodyModel& body = builder.model.bodies[b];
     for (int i = 0; i < body.mesh.vertices.cols(); ++i) {
       const int vertex = body.first_vertex + i;
-      const double weight = FallOff(scene, direction, body.mesh.vertices.col(i)) * draft.model.mass[vertex];
-      if (weight == 0 || draft.model.inverse_mass[vertex] == 0) continue;
+      const double weight = FallOff(scene, direction, body.mesh.vertices.col(i)) * builder.model.mass[vertex];
+      if (weight == 0 || builder.model.inverse_mass[vertex] == 0) continue;
       share[vertex] = weight;
       ++count;
     }
   }
   if (count == 0 || (scene.force() == 0 && scene.air_load() == 0)) {
-    draft.ReportLeftOut(name, count == 0 ? "no free vertex is within its reach" : "its force is 0");
+    builder.ReportLeftOut(name, count == 0 ? "no free vertex is within its reach" : "its force is 0");
     return nullptr;
   }
   force->SetShare(share / share.sum());
-  draft.model.action_lines.push_back({name, bodies->front(), ToEigen(scene.origin()), direction, scene.radius()});
-  draft.ReportElement("force", name, count, "vertices",
-                      absl::StrFormat("%g N at the peak of a quiet breath", scene.force()));
+  builder.model.action_lines.push_back({name, bodies->front(), ToEigen(scene.origin()), direction, scene.radius()});
+  builder.ReportElement("force", name, count, "vertices",
+                        absl::StrFormat("%g N at the peak of a quiet breath", scene.force()));
   return force;
 }
 
@@ -65,7 +65,7 @@ ActionLine::ActionLine(std::string name, const v1::ActionLine& scene, const Eige
       muscle_((scene.force() + scene.lung_load()) * direction),
       air_(scene.air_load() * direction) {}
 
-Eigen::Vector3d ActionLine::Whole(const Instant& at) const {
+Eigen::Vector3d ActionLine::Whole(const EvalContext& at) const {
   const Eigen::Vector3d breath = force_ - (1 - Activation(side_, at.parameters)) * muscle_;
   return Signal(at) * breath + at.parameters.hyperinflation() * air_;
 }

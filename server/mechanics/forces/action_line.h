@@ -14,9 +14,9 @@ class ActionLine final : public SharedForce {
  public:
   // Null where no vertex is within reach or the force is 0.
   static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::ActionLine& scene, const std::string& name,
-                                                     std::string_view path, Draft& draft);
+                                                     std::string_view path, ModelBuilder& builder);
 
-  Eigen::Vector3d Whole(const Instant& at) const override;
+  Eigen::Vector3d Whole(const EvalContext& at) const override;
 
  private:
   ActionLine(std::string name, const v1::ActionLine& scene, const Eigen::Vector3d& direction);

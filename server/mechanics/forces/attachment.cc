@@ -15,20 +15,21 @@ namespace {
 
 bool CarriedByTissue(const Model& model, const BodyModel& body) {
   if (body.first_vertex >= 0) return true;
-  if (body.ride < 0) return false;
-  if (!model.rides[body.ride].triangles.empty()) return true;
-  const std::vector<RideShare>& shares = model.rides[body.ride].shares;
-  return std::any_of(shares.begin(), shares.end(), [](const RideShare& share) { return share.pose < 0; });
+  if (body.skin < 0) return false;
+  if (!model.skins[body.skin].triangles.empty()) return true;
+  const std::vector<SkinWeight>& shares = model.skins[body.skin].shares;
+  return std::any_of(shares.begin(), shares.end(), [](const SkinWeight& share) { return share.pose < 0; });
 }
 
-absl::StatusOr<std::vector<int>> CarrierBodies(const v1::Attachment& scene, std::string_view path, const Draft& draft) {
+absl::StatusOr<std::vector<int>> CarrierBodies(const v1::Attachment& scene, std::string_view path,
+                                               const ModelBuilder& builder) {
   const std::string field = absl::StrCat(std::string(path), ".carriers");
-  auto carriers = draft.Bodies(scene.carriers(), field);
+  auto carriers = builder.Bodies(scene.carriers(), field);
   if (!carriers.ok()) return carriers;
   for (const int c : *carriers) {
-    if (CarriedByTissue(draft.model, draft.model.bodies[c])) {
+    if (CarriedByTissue(builder.model, builder.model.bodies[c])) {
       return FieldError(field,
-                        absl::StrCat("body \"", draft.model.bodies[c].name,
+                        absl::StrCat("body \"", builder.model.bodies[c].name,
                                      "\" is deformable, or rides on what is, and cannot carry; name driven bodies or "
                                      "ones at rest"));
     }
@@ -39,62 +40,63 @@ absl::StatusOr<std::vector<int>> CarrierBodies(const v1::Attachment& scene, std:
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<Force>> Attachment::Make(const v1::Attachment& scene, const std::string& given,
-                                                        std::string_view path, Draft& draft) {
+                                                        std::string_view path, ModelBuilder& builder) {
   const std::string name = ElementName(given, "attachment", scene.bodies());
-  auto bodies = draft.DeformableBodies(scene.bodies(), absl::StrCat(std::string(path), ".bodies"));
+  auto bodies = builder.DeformableBodies(scene.bodies(), absl::StrCat(std::string(path), ".bodies"));
   if (!bodies.ok()) return bodies.status();
-  auto carriers = CarrierBodies(scene, path, draft);
+  auto carriers = CarrierBodies(scene, path, builder);
   if (!carriers.ok()) return carriers.status();
   std::unique_ptr<Attachment> force(new Attachment(name));
   force->thesis_ = scene.mode() == v1::ATTACHMENT_MODE_THESIS;
-  std::vector<RideShare> shares;
+  std::vector<SkinWeight> shares;
   for (const int b : *bodies) {
-    auto region = draft.Region(b, scene.region(), absl::StrCat(std::string(path), ".region"));
+    auto region = builder.Region(b, scene.region(), absl::StrCat(std::string(path), ".region"));
     if (!region.ok()) return region.status();
-    force->AddHolds(scene, *carriers, *region, b, shares, draft);
+    force->AddHolds(scene, *carriers, *region, b, shares, builder);
   }
-  force->Pack(std::move(shares), draft.model.mass.size());
+  force->Pack(std::move(shares), builder.model.mass.size());
   if (force->holds_.empty()) {
-    draft.ReportLeftOut(name, absl::StrFormat("no vertex is within %g m of a carrier", scene.radius()));
+    builder.ReportLeftOut(name, absl::StrFormat("no vertex is within %g m of a carrier", scene.radius()));
     return nullptr;
   }
   const auto count = static_cast<std::int64_t>(force->holds_.size());
-  draft.model.report.set_attachments(draft.model.report.attachments() + count);
-  draft.ReportElement("force", name, count, "vertices",
-                      absl::StrFormat("within %g mm, k = %g N/m%s", 1e3 * scene.radius(), scene.stiffness(),
-                                      force->thesis_ ? " of the carrier's step (thesis)" : ""));
+  builder.model.report.set_attachments(builder.model.report.attachments() + count);
+  builder.ReportElement("force", name, count, "vertices",
+                        absl::StrFormat("within %g mm, k = %g N/m%s", 1e3 * scene.radius(), scene.stiffness(),
+                                        force->thesis_ ? " of the carrier's step (thesis)" : ""));
   return force;
 }
 
 void Attachment::AddHolds(const v1::Attachment& scene, const std::vector<int>& carriers,
-                          const std::vector<bool>& region, int b, std::vector<RideShare>& shares, Draft& draft) {
-  const BodyModel& body = draft.model.bodies[b];
-  const Carriers search(draft, carriers);
+                          const std::vector<bool>& region, int b, std::vector<SkinWeight>& shares,
+                          ModelBuilder& builder) {
+  const BodyModel& body = builder.model.bodies[b];
+  const SkinDrivers search(builder, carriers);
   for (int i = 0; i < body.mesh.vertices.cols(); ++i) {
     const int vertex = body.first_vertex + i;
     if (!region[i]) continue;
-    const Carriers::Contact contact = search.Nearest(body.mesh.vertices.col(i), scene.radius());
-    if (contact.distance >= scene.radius() || draft.model.inverse_mass[vertex] == 0) continue;
+    const SkinDrivers::Contact contact = search.Nearest(body.mesh.vertices.col(i), scene.radius());
+    if (contact.distance >= scene.radius() || builder.model.inverse_mass[vertex] == 0) continue;
     const double stiffness = (1 - contact.distance / scene.radius()) * scene.stiffness();
-    const double damping = 2 * scene.damping_ratio() * std::sqrt(stiffness * draft.model.mass[vertex]);
+    const double damping = 2 * scene.damping_ratio() * std::sqrt(stiffness * builder.model.mass[vertex]);
     holds_.push_back({vertex, stiffness, damping, body.mesh.vertices.col(i)});
-    search.AppendShares(contact, vertex, 1, shares);
-    draft.model.attached_vertices.push_back(vertex);
+    search.AppendWeights(contact, vertex, 1, shares);
+    builder.model.attached_vertices.push_back(vertex);
   }
 }
 
 // In packets by block and, of what is carried, by pose.
-void Attachment::Pack(std::vector<RideShare> shares, Eigen::Index vertices) {
+void Attachment::Pack(std::vector<SkinWeight> shares, Eigen::Index vertices) {
   const auto by_vertex = [](const Hold& hold, int vertex) { return hold.vertex < vertex; };
   std::sort(holds_.begin(), holds_.end(), [](const Hold& a, const Hold& b) { return a.vertex < b.vertex; });
   for (const Hold& hold : holds_) {
     if (!thesis_) PackInto(held_.of, -1, hold, hold.stiffness, hold.damping);
   }
-  const auto place = [](const RideShare& share) {
+  const auto place = [](const SkinWeight& share) {
     return std::tuple(share.vertex / kVertexBlock, share.pose, share.vertex);
   };
   std::sort(shares.begin(), shares.end(), [&](const auto& a, const auto& b) { return place(a) < place(b); });
-  for (const RideShare& share : shares) {
+  for (const SkinWeight& share : shares) {
     const Hold& hold = *std::lower_bound(holds_.begin(), holds_.end(), share.vertex, by_vertex);
     const double stiffness = thesis_ ? 0 : share.weight * hold.stiffness;
     PackInto(carried_.of, share.pose, hold, stiffness, share.weight * (thesis_ ? hold.stiffness : hold.damping));
@@ -127,7 +129,7 @@ void Attachment::PackInto(std::vector<Group>& groups, int pose, const Hold& hold
   groups.back().end_packet = packets_.size();
 }
 
-void Attachment::AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const {
+void Attachment::AddForceIn(const VertexRange& range, const EvalContext& at, MutablePoints f) const {
   const double scale = thesis_ ? at.parameters.time_step() : 1;
   const HoldPacket* const packets = packets_.data();
   const auto for_each = [&range](const Groups& groups, const auto& add) {
@@ -141,19 +143,19 @@ void Attachment::AddForceIn(const VertexRange& range, const Instant& at, Mutable
             f.data() + (block - 3 * range.first));
   });
   if (carried_.of.empty()) return;
-  const auto poses = ColumnsOf(at);
+  const auto poses = PoseMatricesOf(at);
   for_each(carried_, [&](const Group& group, Eigen::Index block) {
     AddCarried(poses[group.pose], scale, packets + group.first_packet, packets + group.end_packet,
                f.data() + (block - 3 * range.first));
   });
 }
 
-void Attachment::AddStiffness(const Instant&, StiffnessSink& sink) const {
+void Attachment::AddStiffness(const EvalContext&, StiffnessSink& sink) const {
   if (thesis_) return;
   for (const Hold& hold : holds_) sink.Add(hold.vertex, hold.vertex, hold.stiffness * Eigen::Matrix3d::Identity());
 }
 
-void Attachment::AddDamping(const Instant&, Eigen::VectorXd& c) const {
+void Attachment::AddDamping(const EvalContext&, Eigen::VectorXd& c) const {
   if (thesis_) return;
   for (const Hold& hold : holds_) c[hold.vertex] += hold.damping;
 }

@@ -8,21 +8,21 @@
 
 #include <vector>
 
-#include "server/mechanics/model_builder.h"
 #include "server/mechanics/forces/attachment_kernel.h"
+#include "server/mechanics/model_builder.h"
 
 namespace phrenic {
 
 class Attachment final : public Force {
  public:
-  // Null where no vertex is within the radius. Carriers are driven, at rest, or riding on such bodies.
+  // Null where no vertex is within the radius. SkinDrivers are driven, at rest, or riding on such bodies.
   static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::Attachment& scene, const std::string& name,
-                                                     std::string_view path, Draft& draft);
+                                                     std::string_view path, ModelBuilder& builder);
 
   bool by_range() const override { return true; }
-  void AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const override;
-  void AddStiffness(const Instant& at, StiffnessSink& sink) const override;
-  void AddDamping(const Instant& at, Eigen::VectorXd& c) const override;
+  void AddForceIn(const VertexRange& range, const EvalContext& at, MutablePoints f) const override;
+  void AddStiffness(const EvalContext& at, StiffnessSink& sink) const override;
+  void AddDamping(const EvalContext& at, Eigen::VectorXd& c) const override;
 
  private:
   struct Hold {
@@ -43,8 +43,8 @@ class Attachment final : public Force {
   };
   explicit Attachment(std::string name) : Force(std::move(name)) {}
   void AddHolds(const v1::Attachment& scene, const std::vector<int>& carriers, const std::vector<bool>& region,
-                int body, std::vector<RideShare>& shares, Draft& draft);
-  void Pack(std::vector<RideShare> shares, Eigen::Index vertices);
+                int body, std::vector<SkinWeight>& shares, ModelBuilder& builder);
+  void Pack(std::vector<SkinWeight> shares, Eigen::Index vertices);
   void PackInto(std::vector<Group>& groups, int pose, const Hold& hold, double stiffness, double damping);
 
   bool thesis_ = false;

@@ -48,14 +48,15 @@ void AddHeldHere(const HoldPacket* packet, const HoldPacket* end, const double* 
 }
 
 // What the pose gives points, by a row of its columns.
-HWY_INLINE Vector Mapped(const PoseColumns& pose, int row, const Vectors& p) {
+HWY_INLINE Vector Mapped(const PoseMatrices& pose, int row, const Vectors& p) {
   const Tag d;
   const auto of = [&](int c) HWY_ATTR { return hn::Set(d, pose.column[c][row]); };
   const auto xy = hn::Add(hn::Mul(of(0), p.x), hn::Mul(of(1), p.y));
   return hn::Add(hn::Add(xy, hn::Mul(of(2), p.z)), of(3));
 }
 
-void AddCarriedHere(const PoseColumns& pose, double scale, const HoldPacket* packet, const HoldPacket* end, double* f) {
+void AddCarriedHere(const PoseMatrices& pose, double scale, const HoldPacket* packet, const HoldPacket* end,
+                    double* f) {
   const auto pull = [&](const HoldPacket& of, int first, Vector stiffness, Vector damping) HWY_ATTR {
     const Vectors rest = AtRest(of, first);
     const auto along = [&](int k) HWY_ATTR {
@@ -81,7 +82,7 @@ void AddHeld(const HoldPacket* first, const HoldPacket* end, const double* x, co
   HWY_DYNAMIC_DISPATCH(AddHeldHere)(first, end, x, v, f);
 }
 
-void AddCarried(const PoseColumns& pose, double scale, const HoldPacket* first, const HoldPacket* end, double* f) {
+void AddCarried(const PoseMatrices& pose, double scale, const HoldPacket* first, const HoldPacket* end, double* f) {
   HWY_DYNAMIC_DISPATCH(AddCarriedHere)(pose, scale, first, end, f);
 }
 

@@ -28,7 +28,7 @@ void AddHeld(const HoldPacket* first, const HoldPacket* end, const double* x, co
 
 // f += scale (stiffness u + damping u') [N] for each vertex, u the way that the pose carries its point at rest [m];
 // stiffness and damping are times the pose's share in it.
-void AddCarried(const PoseColumns& pose, double scale, const HoldPacket* first, const HoldPacket* end, double* f);
+void AddCarried(const PoseMatrices& pose, double scale, const HoldPacket* first, const HoldPacket* end, double* f);
 
 }  // namespace phrenic
 

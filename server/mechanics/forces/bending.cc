@@ -12,24 +12,24 @@
 namespace phrenic {
 
 absl::StatusOr<std::unique_ptr<Force>> Bending::Make(const v1::Bending& scene, const std::string& given,
-                                                     std::string_view path, Draft& draft) {
+                                                     std::string_view path, ModelBuilder& builder) {
   const std::string name = ElementName(given, "bending", scene.bodies());
-  const auto bodies = draft.DeformableBodies(scene.bodies(), absl::StrCat(std::string(path), ".bodies"));
+  const auto bodies = builder.DeformableBodies(scene.bodies(), absl::StrCat(std::string(path), ".bodies"));
   if (!bodies.ok()) return bodies.status();
   const double rigidity = scene.youngs_modulus() * std::pow(scene.thickness(), 3) /
                           (12 * (1 - scene.poissons_ratio() * scene.poissons_ratio()));
   std::unique_ptr<Bending> force(new Bending(name));
   for (const int b : *bodies) {
-    const auto selection = draft.Select(b, scene.region(), scene.exclude_region(), path);
+    const auto selection = builder.Select(b, scene.region(), scene.exclude_region(), path);
     if (!selection.ok()) return selection.status();
-    force->AddBody(draft.model.bodies[b], *selection, rigidity);
+    force->AddBody(builder.model.bodies[b], *selection, rigidity);
   }
   if (force->hinges_.empty()) {
-    draft.ReportLeftOut(name, "no edge lies between two triangles of the region");
+    builder.ReportLeftOut(name, "no edge lies between two triangles of the region");
     return nullptr;
   }
-  draft.ReportElement("force", name, static_cast<std::int64_t>(force->hinges_.size()), "edges",
-                      absl::StrFormat("flexural rigidity %g N m", rigidity));
+  builder.ReportElement("force", name, static_cast<std::int64_t>(force->hinges_.size()), "edges",
+                        absl::StrFormat("flexural rigidity %g N m", rigidity));
   return force;
 }
 
@@ -76,7 +76,7 @@ Bending::Bend Bending::BendOf(const Hinge& hinge, const ConstPoints& x) {
   return bend;
 }
 
-void Bending::AddForce(const Instant& at, MutablePoints f) const {
+void Bending::AddForce(const EvalContext& at, MutablePoints f) const {
   const double elasticity = at.parameters.elasticity();
   for (const Hinge& hinge : hinges_) {
     const Bend bend = BendOf(hinge, at.x);
@@ -86,7 +86,7 @@ void Bending::AddForce(const Instant& at, MutablePoints f) const {
   }
 }
 
-void Bending::AddStiffness(const Instant& at, StiffnessSink& sink) const {
+void Bending::AddStiffness(const EvalContext& at, StiffnessSink& sink) const {
   for (const Hinge& hinge : hinges_) {
     const Bend bend = BendOf(hinge, at.x);
     const double stiffness = at.parameters.elasticity() * hinge.stiffness;
@@ -99,7 +99,7 @@ void Bending::AddStiffness(const Instant& at, StiffnessSink& sink) const {
   }
 }
 
-double Bending::Energy(const Instant& at) const {
+double Bending::Energy(const EvalContext& at) const {
   double energy = 0;
   for (const Hinge& hinge : hinges_) {
     const double angle = BendOf(hinge, at.x).angle;

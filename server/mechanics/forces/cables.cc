@@ -9,25 +9,25 @@
 namespace phrenic {
 
 absl::StatusOr<std::unique_ptr<Force>> Cables::Make(const v1::Cables& scene, const std::string& given,
-                                                    std::string_view path, Draft& draft) {
+                                                    std::string_view path, ModelBuilder& builder) {
   const std::string name = given.empty() ? absl::StrCat("cables:", scene.body()) : given;
-  auto body = DeformableBody(scene.body(), absl::StrCat(std::string(path), ".body"), draft);
+  auto body = DeformableBody(scene.body(), absl::StrCat(std::string(path), ".body"), builder);
   if (!body.ok()) return body.status();
-  auto links = ListedOrEdges(scene.has_list(), scene.list(), scene.region(), *body, path, draft);
+  auto links = ListedOrEdges(scene.has_list(), scene.list(), scene.region(), *body, path, builder);
   if (!links.ok()) return links.status();
   if (links->empty()) {
-    draft.ReportLeftOut(name, "no edge has both its vertices in the region");
+    builder.ReportLeftOut(name, "no edge has both its vertices in the region");
     return nullptr;
   }
   std::unique_ptr<Cables> force(new Cables(name));
   force->stiffness_ = scene.stiffness();
   for (const Link& link : *links) force->cables_.push_back({link.a, link.b, link.length * scene.rest_length_ratio()});
-  draft.ReportElement("force", name, static_cast<std::int64_t>(links->size()), "cables",
-                      absl::StrFormat("k = %g N/m, pull only", scene.stiffness()));
+  builder.ReportElement("force", name, static_cast<std::int64_t>(links->size()), "cables",
+                        absl::StrFormat("k = %g N/m, pull only", scene.stiffness()));
   return force;
 }
 
-void Cables::AddForce(const Instant& at, MutablePoints f) const {
+void Cables::AddForce(const EvalContext& at, MutablePoints f) const {
   const double stiffness = at.parameters.elasticity() * stiffness_;
   for (const Cable& cable : cables_) {
     const Eigen::Vector3d between = at.x.col(cable.b) - at.x.col(cable.a);
@@ -39,7 +39,7 @@ void Cables::AddForce(const Instant& at, MutablePoints f) const {
   }
 }
 
-void Cables::AddStiffness(const Instant& at, StiffnessSink& sink) const {
+void Cables::AddStiffness(const EvalContext& at, StiffnessSink& sink) const {
   const double stiffness = at.parameters.elasticity() * stiffness_;
   for (const Cable& cable : cables_) {
     const Eigen::Vector3d between = at.x.col(cable.b) - at.x.col(cable.a);
@@ -52,7 +52,7 @@ void Cables::AddStiffness(const Instant& at, StiffnessSink& sink) const {
   }
 }
 
-void Cables::AddLatentStiffness(const Instant& at, StiffnessSink& sink) const {
+void Cables::AddLatentStiffness(const EvalContext& at, StiffnessSink& sink) const {
   const double stiffness = at.parameters.elasticity() * stiffness_;
   for (const Cable& cable : cables_) {
     const Eigen::Vector3d between = at.x.col(cable.b) - at.x.col(cable.a);
@@ -62,7 +62,7 @@ void Cables::AddLatentStiffness(const Instant& at, StiffnessSink& sink) const {
   }
 }
 
-double Cables::Energy(const Instant& at) const {
+double Cables::Energy(const EvalContext& at) const {
   double energy = 0;
   for (const Cable& cable : cables_) {
     const double stretch = std::max(0.0, (at.x.col(cable.b) - at.x.col(cable.a)).norm() - cable.rest_length);

@@ -12,15 +12,15 @@ constexpr double kReach = 10;      // depths
 constexpr double kGravity = 9.81;  // [m/s^2]
 
 absl::StatusOr<std::vector<int>> SurfaceBodies(const v1::Contact& scene, const std::vector<int>& bodies,
-                                               std::string_view path, const Draft& draft) {
+                                               std::string_view path, const ModelBuilder& builder) {
   const std::string field = absl::StrCat(std::string(path), ".surfaces");
-  auto surfaces = draft.Bodies(scene.surfaces(), field);
+  auto surfaces = builder.Bodies(scene.surfaces(), field);
   if (!surfaces.ok()) return surfaces;
   for (const int s : *surfaces) {
-    const BodyModel& body = draft.model.bodies[s];
+    const BodyModel& body = builder.model.bodies[s];
     const auto error = [&](const char* what) { return FieldError(field, absl::StrCat("body \"", body.name, what)); };
     if (body.mesh.triangles.cols() == 0) return error("\" has no triangles to slide on");
-    if (body.ride >= 0) return error("\" rides on others and is only seen: name a deformable, driven or resting body");
+    if (body.skin >= 0) return error("\" rides on others and is only seen: name a deformable, driven or resting body");
     if (std::find(bodies.begin(), bodies.end(), s) != bodies.end()) {
       return error("\" is among the bodies that slide: a body does not slide on itself");
     }
@@ -41,23 +41,23 @@ double Load(const v1::Contact& scene, const std::vector<int>& bodies, const Mode
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<Force>> Contact::Make(const v1::Contact& scene, const std::string& given,
-                                                     std::string_view path, Draft& draft) {
+                                                     std::string_view path, ModelBuilder& builder) {
   const std::string name = ElementName(given, "contact", scene.bodies());
-  auto bodies = draft.DeformableBodies(scene.bodies(), absl::StrCat(std::string(path), ".bodies"));
+  auto bodies = builder.DeformableBodies(scene.bodies(), absl::StrCat(std::string(path), ".bodies"));
   if (!bodies.ok()) return bodies.status();
-  auto surfaces = SurfaceBodies(scene, *bodies, path, draft);
+  auto surfaces = SurfaceBodies(scene, *bodies, path, builder);
   if (!surfaces.ok()) return surfaces.status();
   std::unique_ptr<Contact> force(new Contact(name));
   for (const int b : *bodies) {
-    const BodyModel& body = draft.model.bodies[b];
+    const BodyModel& body = builder.model.bodies[b];
     for (int i = 0; i < body.mesh.vertices.cols(); ++i) force->vertices_.push_back(body.first_vertex + i);
   }
-  for (const int s : *surfaces) force->surfaces_.push_back(MakeSurface(draft.model.bodies[s]));
-  force->stiffness_ = Load(scene, *bodies, draft.model) / scene.depth();
+  for (const int s : *surfaces) force->surfaces_.push_back(MakeSurface(builder.model.bodies[s]));
+  force->stiffness_ = Load(scene, *bodies, builder.model) / scene.depth();
   force->reach_ = kReach * scene.depth();
-  draft.ReportElement("force", name, static_cast<std::int64_t>(force->vertices_.size()), "vertices",
-                      absl::StrFormat("on %d surfaces, %g mm deep, k = %g N/m", surfaces->size(), 1e3 * scene.depth(),
-                                      force->stiffness_));
+  builder.ReportElement("force", name, static_cast<std::int64_t>(force->vertices_.size()), "vertices",
+                        absl::StrFormat("on %d surfaces, %g mm deep, k = %g N/m", surfaces->size(), 1e3 * scene.depth(),
+                                        force->stiffness_));
   return force;
 }
 
@@ -71,7 +71,7 @@ Contact::Surface Contact::MakeSurface(const BodyModel& body) {
 }
 
 template <typename Visitor>
-void Contact::ForEachTouch(const Instant& at, const Visitor& visit) const {
+void Contact::ForEachTouch(const EvalContext& at, const Visitor& visit) const {
   thread_local TriangleTree::Boxes fitted;
   for (const Surface& surface : surfaces_) {
     const bool deformable = surface.deformable();
@@ -91,7 +91,7 @@ void Contact::ForEachTouch(const Instant& at, const Visitor& visit) const {
   }
 }
 
-void Contact::AddForce(const Instant& at, MutablePoints f) const {
+void Contact::AddForce(const EvalContext& at, MutablePoints f) const {
   ForEachTouch(at, [&](const Touch& touch) {
     const Eigen::Vector3d push = stiffness_ * touch.offset;
     f.col(touch.vertex) += push;
@@ -101,7 +101,7 @@ void Contact::AddForce(const Instant& at, MutablePoints f) const {
 }
 
 // k g g^T, g the normal times 1 at the vertex and times the weights at the triangle.
-void Contact::AddStiffness(const Instant& at, StiffnessSink& sink) const {
+void Contact::AddStiffness(const EvalContext& at, StiffnessSink& sink) const {
   ForEachTouch(at, [&](const Touch& touch) {
     const Eigen::Vector3d normal = touch.offset.normalized();
     const Eigen::Matrix3d block = stiffness_ * normal * normal.transpose();
@@ -117,7 +117,7 @@ void Contact::AddStiffness(const Instant& at, StiffnessSink& sink) const {
 }
 
 // One touch at each vertex of the bodies and each of a deformable surface, both of which move in it.
-void Contact::AddLatentStiffness(const Instant&, StiffnessSink& sink) const {
+void Contact::AddLatentStiffness(const EvalContext&, StiffnessSink& sink) const {
   const bool deformable =
       std::any_of(surfaces_.begin(), surfaces_.end(), [](const Surface& surface) { return surface.deformable(); });
   const Eigen::Matrix3d block = (deformable ? 2 : 1) * stiffness_ * Eigen::Matrix3d::Identity();
@@ -129,7 +129,7 @@ void Contact::AddLatentStiffness(const Instant&, StiffnessSink& sink) const {
   }
 }
 
-double Contact::Energy(const Instant& at) const {
+double Contact::Energy(const EvalContext& at) const {
   double energy = 0;
   ForEachTouch(at, [&](const Touch& touch) { energy += 0.5 * stiffness_ * touch.offset.squaredNorm(); });
   return energy;

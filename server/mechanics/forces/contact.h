@@ -19,12 +19,12 @@ class Contact final : public Force {
  public:
   // Surfaces are deformable, driven or at rest.
   static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::Contact& scene, const std::string& name,
-                                                     std::string_view path, Draft& draft);
+                                                     std::string_view path, ModelBuilder& builder);
 
-  void AddForce(const Instant& at, MutablePoints f) const override;
-  void AddStiffness(const Instant& at, StiffnessSink& sink) const override;
-  void AddLatentStiffness(const Instant& at, StiffnessSink& sink) const override;
-  double Energy(const Instant& at) const override;
+  void AddForce(const EvalContext& at, MutablePoints f) const override;
+  void AddStiffness(const EvalContext& at, StiffnessSink& sink) const override;
+  void AddLatentStiffness(const EvalContext& at, StiffnessSink& sink) const override;
+  double Energy(const EvalContext& at) const override;
   bool conservative() const override { return true; }
 
  private:
@@ -47,7 +47,7 @@ class Contact final : public Force {
   explicit Contact(std::string name) : Force(std::move(name)) {}
   static Surface MakeSurface(const BodyModel& body);
   template <typename Visitor>
-  void ForEachTouch(const Instant& at, const Visitor& visit) const;
+  void ForEachTouch(const EvalContext& at, const Visitor& visit) const;
 
   std::vector<int> vertices_;
   std::vector<Surface> surfaces_;

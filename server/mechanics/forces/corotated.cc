@@ -139,7 +139,7 @@ void Corotated<N>::AddForceOf(const FiniteElement<N>& element, double elasticity
 }
 
 template <int N>
-void Corotated<N>::AddForce(const Instant& at, MutablePoints f) const {
+void Corotated<N>::AddForce(const EvalContext& at, MutablePoints f) const {
   const double elasticity = at.parameters.elasticity();
   if (batches_.empty()) {
     for (const FiniteElement<N>& element : elements_) AddForceOf(element, elasticity, at.x, f);
@@ -152,7 +152,7 @@ void Corotated<N>::AddForce(const Instant& at, MutablePoints f) const {
 }
 
 template <int N>
-void Corotated<N>::AddStiffness(const Instant& at, StiffnessSink& sink) const {
+void Corotated<N>::AddStiffness(const EvalContext& at, StiffnessSink& sink) const {
   const double elasticity = at.parameters.elasticity();
   for (const FiniteElement<N>& element : elements_) {
     const Gradient<N> gradient = DeformationOf(element, at.x);
@@ -167,7 +167,7 @@ void Corotated<N>::AddStiffness(const Instant& at, StiffnessSink& sink) const {
 }
 
 template <int N>
-double Corotated<N>::Energy(const Instant& at) const {
+double Corotated<N>::Energy(const EvalContext& at) const {
   double energy = 0;
   for (const FiniteElement<N>& element : elements_) {
     const Gradient<N> gradient = DeformationOf(element, at.x);

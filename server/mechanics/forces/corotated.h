@@ -67,9 +67,9 @@ class Corotated final : public Force {
         turns_(strain != v1::STRAIN_LINEAR),
         batches_(turns_ ? InBatches(elements_) : std::vector<TriangleBatch>()) {}
 
-  void AddForce(const Instant& at, MutablePoints f) const override;
-  void AddStiffness(const Instant& at, StiffnessSink& sink) const override;
-  double Energy(const Instant& at) const override;
+  void AddForce(const EvalContext& at, MutablePoints f) const override;
+  void AddStiffness(const EvalContext& at, StiffnessSink& sink) const override;
+  double Energy(const EvalContext& at) const override;
   bool conservative() const override { return true; }
 
  private:

@@ -17,10 +17,11 @@ namespace {
 using Pairs = std::set<std::pair<int, int>>;  // of simulated vertices
 
 // The nearest vertices of the opposite layer for each vertex that takes part.
-void PairLayers(const Draft& draft, int b, const Selection& selection, const v1::CrossLayer& scene, Pairs& pairs) {
-  const BodyModel& body = draft.model.bodies[b];
+void PairLayers(const ModelBuilder& builder, int b, const Selection& selection, const v1::CrossLayer& scene,
+                Pairs& pairs) {
+  const BodyModel& body = builder.model.bodies[b];
   const Points normals = VertexNormals(body.mesh.vertices, body.mesh.triangles);
-  const NearestSearch& search = draft.Search(b);
+  const NearestSearch& search = builder.Search(b);
   for (int i = 0; i < body.mesh.vertices.cols(); ++i) {
     int wanted = scene.neighbours();
     for (const Neighbour& other : search.Within(body.mesh.vertices.col(i), scene.distance())) {
@@ -34,10 +35,10 @@ void PairLayers(const Draft& draft, int b, const Selection& selection, const v1:
 }
 
 // The nearest vertices of another body for each vertex that takes part.
-void PairBodies(const Draft& draft, int b, int to, const Selection& selection, const v1::CrossLayer& scene,
+void PairBodies(const ModelBuilder& builder, int b, int to, const Selection& selection, const v1::CrossLayer& scene,
                 Pairs& pairs) {
-  const BodyModel &body = draft.model.bodies[b], &other = draft.model.bodies[to];
-  const NearestSearch& search = draft.Search(to);
+  const BodyModel &body = builder.model.bodies[b], &other = builder.model.bodies[to];
+  const NearestSearch& search = builder.Search(to);
   for (int i = 0; i < body.mesh.vertices.cols(); ++i) {
     if (!selection.Takes(std::array{i})) continue;
     int wanted = scene.neighbours();
@@ -49,38 +50,38 @@ void PairBodies(const Draft& draft, int b, int to, const Selection& selection, c
   }
 }
 
-std::unique_ptr<Force> Join(const Pairs& pairs, const std::string& name, double stiffness, Draft& draft) {
+std::unique_ptr<Force> Join(const Pairs& pairs, const std::string& name, double stiffness, ModelBuilder& builder) {
   std::vector<Spring> springs;
   springs.reserve(pairs.size());
   for (const auto& [a, b] : pairs) {
-    springs.push_back({a, b, stiffness, (draft.model.rest.col(a) - draft.model.rest.col(b)).norm()});
+    springs.push_back({a, b, stiffness, (builder.model.rest.col(a) - builder.model.rest.col(b)).norm()});
   }
   const auto count = static_cast<std::int64_t>(springs.size());
-  draft.model.report.set_springs(draft.model.report.springs() + count);
-  draft.ReportElement("force", name, count, "springs", absl::StrFormat("k = %g N/m", stiffness));
+  builder.model.report.set_springs(builder.model.report.springs() + count);
+  builder.ReportElement("force", name, count, "springs", absl::StrFormat("k = %g N/m", stiffness));
   return std::make_unique<Springs>(name, std::move(springs));
 }
 
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<Force>> MakeCrossLayer(const v1::CrossLayer& scene, const std::string& given,
-                                                      std::string_view path, Draft& draft) {
+                                                      std::string_view path, ModelBuilder& builder) {
   const std::string name = ElementName(given, "cross-layer", scene.bodies());
-  const auto bodies = draft.DeformableBodies(scene.bodies(), absl::StrCat(std::string(path), ".bodies"));
+  const auto bodies = builder.DeformableBodies(scene.bodies(), absl::StrCat(std::string(path), ".bodies"));
   if (!bodies.ok()) return bodies.status();
-  const auto others = draft.DeformableBodies(scene.other_bodies(), absl::StrCat(std::string(path), ".other_bodies"));
+  const auto others = builder.DeformableBodies(scene.other_bodies(), absl::StrCat(std::string(path), ".other_bodies"));
   if (!others.ok()) return others.status();
   Pairs pairs;
   for (const int b : *bodies) {
-    const auto selection = draft.Select(b, scene.region(), scene.exclude_region(), path);
+    const auto selection = builder.Select(b, scene.region(), scene.exclude_region(), path);
     if (!selection.ok()) return selection.status();
-    if (others->empty()) PairLayers(draft, b, *selection, scene, pairs);
+    if (others->empty()) PairLayers(builder, b, *selection, scene, pairs);
     for (const int other : *others) {
-      if (other != b) PairBodies(draft, b, other, *selection, scene, pairs);
+      if (other != b) PairBodies(builder, b, other, *selection, scene, pairs);
     }
   }
-  if (!pairs.empty()) return Join(pairs, name, scene.stiffness(), draft);
-  draft.ReportLeftOut(name, absl::StrFormat("no vertex has an opposite one within %g m", scene.distance()));
+  if (!pairs.empty()) return Join(pairs, name, scene.stiffness(), builder);
+  builder.ReportLeftOut(name, absl::StrFormat("no vertex has an opposite one within %g m", scene.distance()));
   return nullptr;
 }
 

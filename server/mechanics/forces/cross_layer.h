@@ -9,7 +9,7 @@ namespace phrenic {
 
 // Null where no vertex has an opposite one. Each pair is joined once; vertices at the same place are not joined.
 absl::StatusOr<std::unique_ptr<Force>> MakeCrossLayer(const v1::CrossLayer& scene, const std::string& name,
-                                                      std::string_view path, Draft& draft);
+                                                      std::string_view path, ModelBuilder& builder);
 
 }  // namespace phrenic
 

@@ -18,32 +18,32 @@ Eigen::Vector2d Across(const Eigen::Vector2d& along) { return {-along[1], along[
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<Force>> Fibres::Make(const v1::Fibres& scene, const std::string& given,
-                                                    std::string_view path, Draft& draft) {
+                                                    std::string_view path, ModelBuilder& builder) {
   const std::string name = ElementName(given, "fibres", scene.bodies());
-  const auto bodies = draft.DeformableBodies(scene.bodies(), absl::StrCat(std::string(path), ".bodies"));
+  const auto bodies = builder.DeformableBodies(scene.bodies(), absl::StrCat(std::string(path), ".bodies"));
   if (!bodies.ok()) return bodies.status();
   std::unique_ptr<Fibres> force(new Fibres(name, scene));
   for (const int b : *bodies) {
-    if (absl::Status status = force->AddBody(scene, b, path, draft); !status.ok()) return status;
+    if (absl::Status status = force->AddBody(scene, b, path, builder); !status.ok()) return status;
   }
   if (force->strips_.empty()) {
-    draft.ReportLeftOut(name, "no triangle of the region lies between the two regions");
+    builder.ReportLeftOut(name, "no triangle of the region lies between the two regions");
     return nullptr;
   }
-  draft.ReportElement("force", name, static_cast<std::int64_t>(force->strips_.size()), "triangles",
-                      absl::StrFormat("%g Pa along, %g Pa across, %g Pa active", scene.modulus_along(),
-                                      scene.modulus_across(), scene.active_stress()));
+  builder.ReportElement("force", name, static_cast<std::int64_t>(force->strips_.size()), "triangles",
+                        absl::StrFormat("%g Pa along, %g Pa across, %g Pa active", scene.modulus_along(),
+                                        scene.modulus_across(), scene.active_stress()));
   return force;
 }
 
-absl::Status Fibres::AddBody(const v1::Fibres& scene, int b, std::string_view path, const Draft& draft) {
-  const BodyModel& body = draft.model.bodies[b];
+absl::Status Fibres::AddBody(const v1::Fibres& scene, int b, std::string_view path, const ModelBuilder& builder) {
+  const BodyModel& body = builder.model.bodies[b];
   const std::string field(path);
-  const auto from = draft.Region(b, scene.from_region(), field + ".from_region");
+  const auto from = builder.Region(b, scene.from_region(), field + ".from_region");
   if (!from.ok()) return from.status();
-  const auto to = draft.Region(b, scene.to_region(), field + ".to_region");
+  const auto to = builder.Region(b, scene.to_region(), field + ".to_region");
   if (!to.ok()) return to.status();
-  const auto selection = draft.Select(b, scene.region(), scene.exclude_region(), path);
+  const auto selection = builder.Select(b, scene.region(), scene.exclude_region(), path);
   if (!selection.ok()) return selection.status();
   const auto harmonic = HarmonicBetween(body.mesh, *from, *to);
   if (!harmonic.ok()) return FieldError(path, std::string(harmonic.status().message()));
@@ -51,7 +51,7 @@ absl::Status Fibres::AddBody(const v1::Fibres& scene, int b, std::string_view pa
     const Eigen::Vector3i corners = body.mesh.triangles.col(t);
     if (!selection->Takes(corners)) continue;
     const Eigen::Vector3i vertices = corners.array() + body.first_vertex;
-    const FiniteElement<2> element = MakeTriangle(draft.model.rest, vertices, scene.thickness());
+    const FiniteElement<2> element = MakeTriangle(builder.model.rest, vertices, scene.thickness());
     const Eigen::Vector3d value((*harmonic)[corners[0]], (*harmonic)[corners[1]], (*harmonic)[corners[2]]);
     if (element.volume == 0 || value.maxCoeff() - value.minCoeff() < kLevel) continue;
     strips_.push_back({element, (element.gradient * value).normalized()});
@@ -67,7 +67,7 @@ Points Fibres::Directions() const {
   return directions;
 }
 
-double Fibres::ActiveStress(const Instant& at) const {
+double Fibres::ActiveStress(const EvalContext& at) const {
   if (!at.parameters.apply_muscles()) return 0;
   return active_stress_ * at.parameters.breath_force() * std::max(0.0, at.breath);
 }
@@ -78,7 +78,7 @@ Fibres::Pull Fibres::PullOf(const Eigen::Vector3d& stretched, double modulus, do
   return {stretch, modulus * (stretch - 1) + active, stretched / stretch};
 }
 
-void Fibres::AddForce(const Instant& at, MutablePoints f) const {
+void Fibres::AddForce(const EvalContext& at, MutablePoints f) const {
   const double active = ActiveStress(at), elasticity = at.parameters.elasticity();
   for (const Strip& strip : strips_) {
     const Gradient<2> gradient = DeformationOf(strip.element, at.x);
@@ -92,7 +92,7 @@ void Fibres::AddForce(const Instant& at, MutablePoints f) const {
   }
 }
 
-void Fibres::AddStiffness(const Instant& at, StiffnessSink& sink) const {
+void Fibres::AddStiffness(const EvalContext& at, StiffnessSink& sink) const {
   const double active = ActiveStress(at), elasticity = at.parameters.elasticity();
   const auto add = [&sink](const Strip& strip, const Eigen::Vector2d& direction, const Pull& pull, double modulus) {
     const Eigen::Matrix3d lengthwise = pull.unit * pull.unit.transpose();
@@ -113,7 +113,7 @@ void Fibres::AddStiffness(const Instant& at, StiffnessSink& sink) const {
   }
 }
 
-double Fibres::Energy(const Instant& at) const {
+double Fibres::Energy(const EvalContext& at) const {
   const double active = ActiveStress(at), elasticity = at.parameters.elasticity();
   double energy = 0;
   for (const Strip& strip : strips_) {

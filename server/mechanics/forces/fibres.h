@@ -9,8 +9,8 @@
 
 #include <vector>
 
-#include "server/mechanics/model_builder.h"
 #include "server/mechanics/forces/corotated.h"
+#include "server/mechanics/model_builder.h"
 
 namespace phrenic {
 
@@ -19,11 +19,11 @@ class Fibres final : public Force {
   // Null where no triangle takes part. A triangle in which the harmonic function is level (the whole of it in one of
   // the two regions) has no fibres.
   static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::Fibres& scene, const std::string& name,
-                                                     std::string_view path, Draft& draft);
+                                                     std::string_view path, ModelBuilder& builder);
 
-  void AddForce(const Instant& at, MutablePoints f) const override;
-  void AddStiffness(const Instant& at, StiffnessSink& sink) const override;
-  double Energy(const Instant& at) const override;
+  void AddForce(const EvalContext& at, MutablePoints f) const override;
+  void AddStiffness(const EvalContext& at, StiffnessSink& sink) const override;
+  double Energy(const EvalContext& at) const override;
   bool conservative() const override { return true; }
   // Unit directions of the fibres at rest, by triangle that has them, 3 x n.
   Points Directions() const;
@@ -43,8 +43,8 @@ class Fibres final : public Force {
         along_(scene.modulus_along()),
         across_(scene.modulus_across()),
         active_stress_(scene.active_stress()) {}
-  absl::Status AddBody(const v1::Fibres& scene, int body, std::string_view path, const Draft& draft);
-  double ActiveStress(const Instant& at) const;
+  absl::Status AddBody(const v1::Fibres& scene, int body, std::string_view path, const ModelBuilder& builder);
+  double ActiveStress(const EvalContext& at) const;
   static Pull PullOf(const Eigen::Vector3d& stretched, double modulus, double active);
 
   std::vector<Strip> strips_;

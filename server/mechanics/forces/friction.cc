@@ -7,29 +7,29 @@
 namespace phrenic {
 
 absl::StatusOr<std::unique_ptr<Force>> Friction::Make(const v1::Friction& scene, const std::string& given,
-                                                      std::string_view path, Draft& draft) {
+                                                      std::string_view path, ModelBuilder& builder) {
   const std::string name = ElementName(given, "friction", scene.bodies());
-  auto bodies = draft.DeformableBodies(scene.bodies(), absl::StrCat(std::string(path), ".bodies"));
+  auto bodies = builder.DeformableBodies(scene.bodies(), absl::StrCat(std::string(path), ".bodies"));
   if (!bodies.ok()) return bodies.status();
   if (scene.rate() == 0) {
-    draft.ReportLeftOut(name, "its rate is 0");
+    builder.ReportLeftOut(name, "its rate is 0");
     return nullptr;
   }
   std::unique_ptr<Friction> force(new Friction(name));
-  force->coefficient_ = Eigen::VectorXd::Zero(draft.model.rest.cols());
+  force->coefficient_ = Eigen::VectorXd::Zero(builder.model.rest.cols());
   std::int64_t count = 0;
   for (const int b : *bodies) {
-    const BodyModel& body = draft.model.bodies[b];
+    const BodyModel& body = builder.model.bodies[b];
     const auto vertices = body.mesh.vertices.cols();
     force->coefficient_.segment(body.first_vertex, vertices) =
-        scene.rate() * draft.model.mass.segment(body.first_vertex, vertices);
+        scene.rate() * builder.model.mass.segment(body.first_vertex, vertices);
     count += vertices;
   }
-  draft.ReportElement("force", name, count, "vertices", absl::StrFormat("rate %g 1/s", scene.rate()));
+  builder.ReportElement("force", name, count, "vertices", absl::StrFormat("rate %g 1/s", scene.rate()));
   return force;
 }
 
-void Friction::AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const {
+void Friction::AddForceIn(const VertexRange& range, const EvalContext& at, MutablePoints f) const {
   VertexLoads loads;
   loads.c = coefficient_.data();
   AddLoads(range, loads, at.v, f);

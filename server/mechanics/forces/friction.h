@@ -10,11 +10,11 @@ class Friction final : public Force {
  public:
   // Null where the rate is 0.
   static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::Friction& scene, const std::string& name,
-                                                     std::string_view path, Draft& draft);
+                                                     std::string_view path, ModelBuilder& builder);
 
   bool by_range() const override { return true; }
-  void AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const override;
-  void AddDamping(const Instant&, Eigen::VectorXd& c) const override { c += coefficient_; }
+  void AddForceIn(const VertexRange& range, const EvalContext& at, MutablePoints f) const override;
+  void AddDamping(const EvalContext&, Eigen::VectorXd& c) const override { c += coefficient_; }
   // g of each simulated vertex [N s/m].
   const Eigen::VectorXd& coefficient() const { return coefficient_; }
 

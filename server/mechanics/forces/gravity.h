@@ -9,9 +9,9 @@ namespace phrenic {
 class Gravity final : public SharedForce {
  public:
   static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::Gravity& scene, const std::string& name,
-                                                     std::string_view path, Draft& draft);
+                                                     std::string_view path, ModelBuilder& builder);
 
-  Eigen::Vector3d Whole(const Instant&) const override { return acceleration_; }  // for each kilogram
+  Eigen::Vector3d Whole(const EvalContext&) const override { return acceleration_; }  // for each kilogram
 
  private:
   explicit Gravity(std::string name) : SharedForce(std::move(name)) {}

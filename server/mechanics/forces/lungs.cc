@@ -11,13 +11,14 @@ namespace {
 constexpr std::array<Force::Output, 4> kLungOutputs = {
     {{"volume", "m^3"}, {"flow", "m^3/s"}, {"alveolar_pressure", "Pa"}, {"pleural_pressure", "Pa"}}};
 
-absl::Status AddSurfaces(const v1::Lungs& scene, const std::string& path, const Draft& draft, Chamber& chamber) {
+absl::Status AddSurfaces(const v1::Lungs& scene, const std::string& path, const ModelBuilder& builder,
+                         Chamber& chamber) {
   if (!scene.has_floor() && !scene.has_walls()) return FieldError(path, "bounds no thorax: set floor, walls or both");
   if (scene.has_floor()) {
-    if (absl::Status s = chamber.Add(scene.floor(), -1, path + ".floor", draft); !s.ok()) return s;
+    if (absl::Status s = chamber.Add(scene.floor(), -1, path + ".floor", builder); !s.ok()) return s;
   }
   if (scene.has_walls()) {
-    if (absl::Status s = chamber.Add(scene.walls(), 1, path + ".walls", draft); !s.ok()) return s;
+    if (absl::Status s = chamber.Add(scene.walls(), 1, path + ".walls", builder); !s.ok()) return s;
   }
   return chamber.SetPlane(nullptr, path);
 }
@@ -25,50 +26,50 @@ absl::Status AddSurfaces(const v1::Lungs& scene, const std::string& path, const 
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<Force>> Lungs::Make(const v1::Lungs& scene, const std::string& given,
-                                                   std::string_view path, Draft& draft) {
+                                                   std::string_view path, ModelBuilder& builder) {
   Names bodies = scene.floor().bodies();
   bodies.MergeFrom(scene.walls().bodies());
   const std::string name = ElementName(given, "lungs", bodies);
   std::unique_ptr<Lungs> force(new Lungs(name));
-  if (absl::Status s = AddSurfaces(scene, std::string(path), draft, force->chamber_); !s.ok()) return s;
+  if (absl::Status s = AddSurfaces(scene, std::string(path), builder, force->chamber_); !s.ok()) return s;
   force->pushes_ = force->chamber_.pushes();
   force->compliance_ = scene.compliance();
   force->resistance_ = scene.resistance();
   force->rest_pressure_ = scene.rest_pressure();
   force->rest_volume_ = scene.rest_volume();
-  draft.ReportElement("force", name, force->chamber_.triangles(), "triangles",
-                      absl::StrFormat("%g m^3/Pa, %g Pa s/m^3%s", scene.compliance(), scene.resistance(),
-                                      force->pushes_ ? "" : ", driven: pulls at nothing"));
+  builder.ReportElement("force", name, force->chamber_.triangles(), "triangles",
+                        absl::StrFormat("%g m^3/Pa, %g Pa s/m^3%s", scene.compliance(), scene.resistance(),
+                                        force->pushes_ ? "" : ", driven: pulls at nothing"));
   return force;
 }
 
-void Lungs::AddForce(const Instant& at, MutablePoints f) const {
+void Lungs::AddForce(const EvalContext& at, MutablePoints f) const {
   if (pushes_) chamber_.AddAreas(at, PressureChange(chamber_.Read(at)), f);
 }
 
-const Points& Lungs::Areas(const Instant& at) const {
+const Points& Lungs::Areas(const EvalContext& at) const {
   thread_local Points areas;
   areas.setZero(3, at.x.cols());
   chamber_.AddAreas(at, 1, areas);
   return areas;
 }
 
-void Lungs::AddStiffness(const Instant& at, StiffnessSink& sink) const {
+void Lungs::AddStiffness(const EvalContext& at, StiffnessSink& sink) const {
   if (pushes_) sink.AddOuter(1 / compliance_, Areas(at));
 }
 
-void Lungs::AddSharedDamping(const Instant& at, OuterProducts& shared) const {
+void Lungs::AddSharedDamping(const EvalContext& at, OuterProducts& shared) const {
   if (pushes_ && resistance_ > 0) shared.Add(resistance_, Areas(at));
 }
 
-double Lungs::Energy(const Instant& at) const {
+double Lungs::Energy(const EvalContext& at) const {
   const double change = Change(chamber_.Volume(at));
   return change * change / (2 * compliance_);
 }
 
 std::span<const Force::Output> Lungs::outputs() const { return kLungOutputs; }
 
-double Lungs::Read(size_t output, const Instant& at) const {
+double Lungs::Read(size_t output, const EvalContext& at) const {
   const ChamberReading read = chamber_.Read(at);
   switch (output) {
     case 0:

@@ -17,16 +17,16 @@ namespace phrenic {
 class Lungs final : public Force {
  public:
   static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::Lungs& scene, const std::string& name,
-                                                     std::string_view path, Draft& draft);
+                                                     std::string_view path, ModelBuilder& builder);
 
-  void AddForce(const Instant& at, MutablePoints f) const override;
+  void AddForce(const EvalContext& at, MutablePoints f) const override;
   bool by_range() const override { return !pushes_; }  // nothing, in every range
-  void AddStiffness(const Instant& at, StiffnessSink& sink) const override;
-  void AddSharedDamping(const Instant& at, OuterProducts& shared) const override;
-  double Energy(const Instant& at) const override;
+  void AddStiffness(const EvalContext& at, StiffnessSink& sink) const override;
+  void AddSharedDamping(const EvalContext& at, OuterProducts& shared) const override;
+  double Energy(const EvalContext& at) const override;
   // Volume, flow (inwards positive), alveolar and pleural pressure.
   std::span<const Output> outputs() const override;
-  double Read(size_t output, const Instant& at) const override;
+  double Read(size_t output, const EvalContext& at) const override;
 
  private:
   explicit Lungs(std::string name) : Force(std::move(name)) {}
@@ -35,7 +35,7 @@ class Lungs final : public Force {
   double PressureChange(const ChamberReading& read) const {
     return AlveolarPressure(read) - Change(read.volume) / compliance_;
   }
-  const Points& Areas(const Instant& at) const;
+  const Points& Areas(const EvalContext& at) const;
 
   Chamber chamber_;
   bool pushes_ = false;

@@ -7,28 +7,28 @@
 namespace phrenic {
 
 absl::StatusOr<std::unique_ptr<Force>> MakeMembrane(const v1::Membrane& scene, const std::string& given,
-                                                    std::string_view path, Draft& draft) {
+                                                    std::string_view path, ModelBuilder& builder) {
   const std::string name = ElementName(given, "membrane", scene.bodies());
-  const auto bodies = draft.DeformableBodies(scene.bodies(), absl::StrCat(std::string(path), ".bodies"));
+  const auto bodies = builder.DeformableBodies(scene.bodies(), absl::StrCat(std::string(path), ".bodies"));
   if (!bodies.ok()) return bodies.status();
   std::vector<FiniteElement<2>> elements;
   for (const int b : *bodies) {
-    const BodyModel& body = draft.model.bodies[b];
-    const auto selection = draft.Select(b, scene.region(), scene.exclude_region(), path);
+    const BodyModel& body = builder.model.bodies[b];
+    const auto selection = builder.Select(b, scene.region(), scene.exclude_region(), path);
     if (!selection.ok()) return selection.status();
     for (Eigen::Index t = 0; t < body.mesh.triangles.cols(); ++t) {
       const Eigen::Vector3i corners = body.mesh.triangles.col(t);
       if (!selection->Takes(corners)) continue;
       const Eigen::Vector3i vertices = corners.array() + body.first_vertex;
-      FiniteElement<2> element = MakeTriangle(draft.model.rest, vertices, scene.thickness());
+      FiniteElement<2> element = MakeTriangle(builder.model.rest, vertices, scene.thickness());
       if (element.volume > 0) elements.push_back(std::move(element));
     }
   }
   if (elements.empty()) {
-    draft.ReportLeftOut(name, "no triangle with area has all its vertices in the region");
+    builder.ReportLeftOut(name, "no triangle with area has all its vertices in the region");
     return nullptr;
   }
-  draft.ReportElement(
+  builder.ReportElement(
       "force", name, static_cast<std::int64_t>(elements.size()), "triangles",
       absl::StrFormat("E = %g Pa, nu = %g, %g mm thick%s", scene.youngs_modulus(), scene.poissons_ratio(),
                       1e3 * scene.thickness(), scene.strain() == v1::STRAIN_LINEAR ? ", linear strain" : ""));

@@ -8,7 +8,7 @@ namespace phrenic {
 
 // Null where no triangle takes part; triangles without area are left out.
 absl::StatusOr<std::unique_ptr<Force>> MakeMembrane(const v1::Membrane& scene, const std::string& name,
-                                                    std::string_view path, Draft& draft);
+                                                    std::string_view path, ModelBuilder& builder);
 
 }  // namespace phrenic
 

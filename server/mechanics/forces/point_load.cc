@@ -21,15 +21,15 @@ absl::Status CheckPlace(const v1::PointLoad& scene, std::string_view path) {
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<Force>> PointLoad::Make(const v1::PointLoad& scene, const std::string& given,
-                                                       std::string_view path, Draft& draft) {
+                                                       std::string_view path, ModelBuilder& builder) {
   const std::string name = given.empty() ? absl::StrCat("point-load:", scene.body()) : given;
   Names body;
   *body.Add() = scene.body();
-  auto bodies = draft.DeformableBodies(body, absl::StrCat(std::string(path), ".body"));
+  auto bodies = builder.DeformableBodies(body, absl::StrCat(std::string(path), ".body"));
   if (!bodies.ok()) return bodies.status();
   if (bodies->size() != 1) return FieldError(absl::StrCat(std::string(path), ".body"), "names several bodies");
   if (absl::Status status = CheckPlace(scene, path); !status.ok()) return status;
-  auto vertices = draft.FreeVertices(bodies->front(), scene.region(), scene.vertices(), path);
+  auto vertices = builder.FreeVertices(bodies->front(), scene.region(), scene.vertices(), path);
   if (!vertices.ok()) return vertices.status();
   std::unique_ptr<PointLoad> force(new PointLoad(name));
   force->vertices_ = *std::move(vertices);
@@ -37,26 +37,26 @@ absl::StatusOr<std::unique_ptr<Force>> PointLoad::Make(const v1::PointLoad& scen
   force->breathes_ = scene.scaled_by_breath();
   const Eigen::Vector3d whole = ToEigen(scene.force());
   if (force->vertices_.empty() || whole.isZero(0)) {
-    draft.ReportLeftOut(name, force->vertices_.empty() ? "none of its vertices is free" : "its force is 0");
+    builder.ReportLeftOut(name, force->vertices_.empty() ? "none of its vertices is free" : "its force is 0");
     return nullptr;
   }
   force->load_ = whole / static_cast<double>(force->vertices_.size());
-  draft.ReportElement("force", name, static_cast<std::int64_t>(force->vertices_.size()), "vertices",
-                      absl::StrFormat("%g N in all%s", whole.norm(), force->breathes_ ? ", with the breath" : ""));
+  builder.ReportElement("force", name, static_cast<std::int64_t>(force->vertices_.size()), "vertices",
+                        absl::StrFormat("%g N in all%s", whole.norm(), force->breathes_ ? ", with the breath" : ""));
   return force;
 }
 
-Eigen::Vector3d PointLoad::LoadAt(const Instant& at) const {
+Eigen::Vector3d PointLoad::LoadAt(const EvalContext& at) const {
   return (breathes_ ? at.parameters.breath_force() * at.breath : 1.0) * load_;
 }
 
-void PointLoad::AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const {
+void PointLoad::AddForceIn(const VertexRange& range, const EvalContext& at, MutablePoints f) const {
   const Eigen::Vector3d load = LoadAt(at);
   auto vertex = std::lower_bound(vertices_.begin(), vertices_.end(), range.first);
   for (; vertex != vertices_.end() && *vertex < range.end; ++vertex) f.col(*vertex - range.first) += load;
 }
 
-double PointLoad::Energy(const Instant& at) const {
+double PointLoad::Energy(const EvalContext& at) const {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const int vertex : vertices_) sum += at.x.col(vertex);
   return -LoadAt(at).dot(sum);

@@ -13,16 +13,16 @@ class PointLoad final : public Force {
  public:
   // Null where no vertex is free or the force is 0.
   static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::PointLoad& scene, const std::string& name,
-                                                     std::string_view path, Draft& draft);
+                                                     std::string_view path, ModelBuilder& builder);
 
   bool by_range() const override { return true; }
-  void AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const override;
-  double Energy(const Instant& at) const override;
+  void AddForceIn(const VertexRange& range, const EvalContext& at, MutablePoints f) const override;
+  double Energy(const EvalContext& at) const override;
   bool conservative() const override { return true; }
 
  private:
   explicit PointLoad(std::string name) : Force(std::move(name)) {}
-  Eigen::Vector3d LoadAt(const Instant& at) const;
+  Eigen::Vector3d LoadAt(const EvalContext& at) const;
 
   std::vector<int> vertices_;  // ascending
   Eigen::Vector3d load_;       // on each vertex [N]

@@ -21,42 +21,42 @@ std::string Detail(const v1::Pressure& scene) {
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<Force>> Pressure::Make(const v1::Pressure& scene, const std::string& given,
-                                                      std::string_view path, Draft& draft) {
+                                                      std::string_view path, ModelBuilder& builder) {
   const std::string name = ElementName(given, "pressure", scene.surface().bodies());
   const std::string field = absl::StrCat(std::string(path), ".surface");
-  if (auto bodies = draft.DeformableBodies(scene.surface().bodies(), field + ".bodies"); !bodies.ok()) {
+  if (auto bodies = builder.DeformableBodies(scene.surface().bodies(), field + ".bodies"); !bodies.ok()) {
     return bodies.status();
   }
   if (scene.pressure() == 0 && scene.breath_pressure() == 0 && !scene.has_compliance()) {
-    draft.ReportLeftOut(name, "its pressure is 0");
+    builder.ReportLeftOut(name, "its pressure is 0");
     return nullptr;
   }
   std::unique_ptr<Pressure> force(new Pressure(name));
   Chamber& chamber = force->chamber_;
-  if (absl::Status s = chamber.Add(scene.surface(), 1, field, draft); !s.ok()) return s;
+  if (absl::Status s = chamber.Add(scene.surface(), 1, field, builder); !s.ok()) return s;
   const std::string plane = absl::StrCat(std::string(path), ".plane");
   if (absl::Status s = chamber.SetPlane(scene.has_plane() ? &scene.plane() : nullptr, plane); !s.ok()) return s;
   force->constant_ = scene.pressure();
   force->breath_ = scene.breath_pressure();
   force->stiffness_ = scene.has_compliance() ? 1 / scene.compliance() : 0;
   force->rest_volume_ = scene.has_rest_volume() ? scene.rest_volume() : chamber.rest_volume();
-  force->conserves_ = chamber.conserves(draft.model);
-  draft.ReportElement("force", name, chamber.triangles(), "triangles", Detail(scene));
+  force->conserves_ = chamber.conserves(builder.model);
+  builder.ReportElement("force", name, chamber.triangles(), "triangles", Detail(scene));
   return force;
 }
 
-double Pressure::Given(const Instant& at) const {
+double Pressure::Given(const EvalContext& at) const {
   return constant_ + breath_ * at.parameters.breath_force() * at.breath;
 }
 
-double Pressure::PressureAt(const Instant& at) const {
+double Pressure::PressureAt(const EvalContext& at) const {
   const double given = Given(at);
   return stiffness_ == 0 ? given : given - stiffness_ * (chamber_.Volume(at) - rest_volume_);
 }
 
-void Pressure::AddForce(const Instant& at, MutablePoints f) const { chamber_.AddAreas(at, PressureAt(at), f); }
+void Pressure::AddForce(const EvalContext& at, MutablePoints f) const { chamber_.AddAreas(at, PressureAt(at), f); }
 
-void Pressure::AddStiffness(const Instant& at, StiffnessSink& sink) const {
+void Pressure::AddStiffness(const EvalContext& at, StiffnessSink& sink) const {
   if (stiffness_ == 0) return;
   thread_local Points areas;
   areas.setZero(3, at.x.cols());
@@ -66,7 +66,7 @@ void Pressure::AddStiffness(const Instant& at, StiffnessSink& sink) const {
 
 // Of what is left out above, a bound: corner a of a triangle abc has the blocks p/6 [b - c]x, p/6 [c - a]x and
 // p/6 [a - b]x in its row, whose norms are the edges' lengths.
-void Pressure::AddLatentStiffness(const Instant& at, StiffnessSink& sink) const {
+void Pressure::AddLatentStiffness(const EvalContext& at, StiffnessSink& sink) const {
   const double p =
       std::abs(PressureAt(at) - Given(at)) + std::abs(constant_) + std::abs(breath_) * at.parameters.breath_force();
   chamber_.ForEachSimulated([&](const Eigen::Vector3i& corners) {
@@ -76,14 +76,14 @@ void Pressure::AddLatentStiffness(const Instant& at, StiffnessSink& sink) const 
   });
 }
 
-double Pressure::Energy(const Instant& at) const {
+double Pressure::Energy(const EvalContext& at) const {
   const double volume = chamber_.Volume(at), more = volume - rest_volume_;
   return -Given(at) * volume + 0.5 * stiffness_ * more * more;
 }
 
 std::span<const Force::Output> Pressure::outputs() const { return kPressureOutputs; }
 
-double Pressure::Read(size_t output, const Instant& at) const {
+double Pressure::Read(size_t output, const EvalContext& at) const {
   return output == 0 ? PressureAt(at) : chamber_.Volume(at);
 }
 

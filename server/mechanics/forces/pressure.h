@@ -15,21 +15,21 @@ class Pressure final : public Force {
  public:
   // Null where no pressure can ever act.
   static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::Pressure& scene, const std::string& name,
-                                                     std::string_view path, Draft& draft);
+                                                     std::string_view path, ModelBuilder& builder);
 
-  void AddForce(const Instant& at, MutablePoints f) const override;
-  void AddStiffness(const Instant& at, StiffnessSink& sink) const override;
-  void AddLatentStiffness(const Instant& at, StiffnessSink& sink) const override;
-  double Energy(const Instant& at) const override;
+  void AddForce(const EvalContext& at, MutablePoints f) const override;
+  void AddStiffness(const EvalContext& at, StiffnessSink& sink) const override;
+  void AddLatentStiffness(const EvalContext& at, StiffnessSink& sink) const override;
+  double Energy(const EvalContext& at) const override;
   bool conservative() const override { return conserves_; }
   // Pressure and volume.
   std::span<const Output> outputs() const override;
-  double Read(size_t output, const Instant& at) const override;
+  double Read(size_t output, const EvalContext& at) const override;
 
  private:
   explicit Pressure(std::string name) : Force(std::move(name)) {}
-  double Given(const Instant& at) const;  // what does not answer to the volume [Pa]
-  double PressureAt(const Instant& at) const;
+  double Given(const EvalContext& at) const;  // what does not answer to the volume [Pa]
+  double PressureAt(const EvalContext& at) const;
 
   Chamber chamber_;
   double constant_ = 0, breath_ = 0;  // [Pa]

@@ -12,12 +12,12 @@ void SharedForce::SetShare(Eigen::VectorXd share) {
   }
 }
 
-void SharedForce::AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const {
+void SharedForce::AddForceIn(const VertexRange& range, const EvalContext& at, MutablePoints f) const {
   VertexLoads loads;
   loads.shared[loads.count++] = {share_.data(), Whole(at)};
   AddLoads(range, loads, at.v, f);
 }
 
-double SharedForce::Energy(const Instant& at) const { return -Whole(at).dot(at.x * share_); }
+double SharedForce::Energy(const EvalContext& at) const { return -Whole(at).dot(at.x * share_); }
 
 }  // namespace phrenic

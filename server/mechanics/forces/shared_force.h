@@ -13,14 +13,14 @@ namespace phrenic {
 class SharedForce : public Force {
  public:
   // F at this moment.
-  virtual Eigen::Vector3d Whole(const Instant& at) const = 0;
+  virtual Eigen::Vector3d Whole(const EvalContext& at) const = 0;
   // s, one a simulated vertex; and whether any of a block (kVertexBlock) is not 0.
   const Eigen::VectorXd& share() const { return share_; }
   bool ActsOn(Eigen::Index block) const { return acts_[static_cast<size_t>(block)]; }
 
   bool by_range() const override { return true; }
-  void AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const override;
-  double Energy(const Instant& at) const override;
+  void AddForceIn(const VertexRange& range, const EvalContext& at, MutablePoints f) const override;
+  double Energy(const EvalContext& at) const override;
   bool conservative() const override { return true; }
 
  protected:

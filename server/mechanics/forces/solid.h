@@ -8,7 +8,7 @@ namespace phrenic {
 
 // Null where no tetrahedron takes part; those without volume are left out.
 absl::StatusOr<std::unique_ptr<Force>> MakeSolid(const v1::Solid& scene, const std::string& name, std::string_view path,
-                                                 Draft& draft);
+                                                 ModelBuilder& builder);
 
 }  // namespace phrenic
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "server/mechanics/forces/spring_kernel.h"
-#include "server/mechanics/spring.h"
 #include "server/mechanics/parallel/vertex_range.h"
+#include "server/mechanics/spring.h"
 #include "server/mesh/mesh.h"
 
 namespace phrenic {

@@ -40,12 +40,12 @@ std::string Detail(const v1::Springs& scene) {
                          1e3 * scene.material().thickness(), precision);
 }
 
-void AppendSprings(const v1::Springs& scene, int b, const Selection& selection, const Draft& draft,
+void AppendSprings(const v1::Springs& scene, int b, const Selection& selection, const ModelBuilder& builder,
                    std::vector<Spring>& springs) {
-  const BodyModel& body = draft.model.bodies[b];
+  const BodyModel& body = builder.model.bodies[b];
   const bool others = scene.has_material() && body.mesh.edges.cols() > 0;
   const Edges of_triangles = others ? TriangleEdges(body.mesh.triangles) : Edges();
-  const Edges& edges = others ? of_triangles : draft.EdgesOf(b);
+  const Edges& edges = others ? of_triangles : builder.EdgesOf(b);
   Eigen::VectorXd stiffness = Eigen::VectorXd::Constant(edges.cols(), scene.stiffness());
   if (scene.has_material()) {
     stiffness =
@@ -60,14 +60,15 @@ void AppendSprings(const v1::Springs& scene, int b, const Selection& selection, 
   }
 }
 
-absl::StatusOr<std::vector<Spring>> FindSprings(const v1::Springs& scene, std::string_view path, const Draft& draft) {
-  auto bodies = draft.DeformableBodies(scene.bodies(), absl::StrCat(std::string(path), ".bodies"));
+absl::StatusOr<std::vector<Spring>> FindSprings(const v1::Springs& scene, std::string_view path,
+                                                const ModelBuilder& builder) {
+  auto bodies = builder.DeformableBodies(scene.bodies(), absl::StrCat(std::string(path), ".bodies"));
   if (!bodies.ok()) return bodies.status();
   std::vector<Spring> springs;
   for (const int b : *bodies) {
-    const auto selection = draft.Select(b, scene.region(), scene.exclude_region(), path);
+    const auto selection = builder.Select(b, scene.region(), scene.exclude_region(), path);
     if (!selection.ok()) return selection.status();
-    AppendSprings(scene, b, *selection, draft, springs);
+    AppendSprings(scene, b, *selection, builder, springs);
   }
   return springs;
 }
@@ -87,21 +88,21 @@ void AddPulls(const std::vector<Spring>& springs, double scale, const ConstPoint
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<Force>> Springs::Make(const v1::Springs& scene, const std::string& given,
-                                                     std::string_view path, Draft& draft) {
+                                                     std::string_view path, ModelBuilder& builder) {
   const std::string name = ElementName(given, "springs", scene.bodies());
-  auto springs = FindSprings(scene, path, draft);
+  auto springs = FindSprings(scene, path, builder);
   if (!springs.ok()) return springs.status();
   if (springs->empty()) {
-    draft.ReportLeftOut(name, "no edge has both its vertices in the region");
+    builder.ReportLeftOut(name, "no edge has both its vertices in the region");
     return nullptr;
   }
   const auto count = static_cast<std::int64_t>(springs->size());
-  const Points& rest = draft.model.rest;
+  const Points& rest = builder.model.rest;
   const Precision precision = scene.precision() == v1::PRECISION_SINGLE ? Precision::kSingle : Precision::kDouble;
   auto force = std::make_unique<Springs>(name, *std::move(springs), precision);
   if (scene.balanced_at_rest() && scene.rest_length_ratio() != 1) force->Balance(rest);
-  draft.model.report.set_springs(draft.model.report.springs() + count);
-  draft.ReportElement("force", name, count, "springs", Detail(scene));
+  builder.model.report.set_springs(builder.model.report.springs() + count);
+  builder.ReportElement("force", name, count, "springs", Detail(scene));
   return force;
 }
 
@@ -113,14 +114,14 @@ void Springs::Balance(const Points& rest) {
   AddPulls(springs_, -1, rest, rest_load_);
 }
 
-void Springs::AddForce(const Instant& at, MutablePoints f) const {
+void Springs::AddForce(const EvalContext& at, MutablePoints f) const {
   AddPulls(springs_, at.parameters.elasticity(), at.x, f);
   if (balanced()) f += at.parameters.elasticity() * rest_load_;
 }
 
-void Springs::AddStiffness(const Instant& at, StiffnessSink& sink) const { sink.AddSpringsAt(springs_, at); }
+void Springs::AddStiffness(const EvalContext& at, StiffnessSink& sink) const { sink.AddSpringsAt(springs_, at); }
 
-double Springs::Energy(const Instant& at) const {
+double Springs::Energy(const EvalContext& at) const {
   double energy = 0;
   for (const Spring& spring : springs_) {
     const double stretch = (at.x.col(spring.b) - at.x.col(spring.a)).norm() - spring.rest_length;

@@ -8,8 +8,8 @@
 
 #include <vector>
 
-#include "server/mechanics/model_builder.h"
 #include "server/mechanics/forces/spring_rows.h"
+#include "server/mechanics/model_builder.h"
 
 namespace phrenic {
 
@@ -17,7 +17,7 @@ class Springs final : public Force {
  public:
   // Null where no edge lies in the region.
   static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::Springs& scene, const std::string& name,
-                                                     std::string_view path, Draft& draft);
+                                                     std::string_view path, ModelBuilder& builder);
 
   Springs(std::string name, std::vector<Spring> springs, Precision precision = Precision::kDouble);
 
@@ -27,9 +27,9 @@ class Springs final : public Force {
   bool balanced() const { return rest_load_.cols() > 0; }
 
   // As one would write it down, in double precision.
-  void AddForce(const Instant& at, MutablePoints f) const override;
-  void AddStiffness(const Instant& at, StiffnessSink& sink) const override;
-  double Energy(const Instant& at) const override;
+  void AddForce(const EvalContext& at, MutablePoints f) const override;
+  void AddStiffness(const EvalContext& at, StiffnessSink& sink) const override;
+  double Energy(const EvalContext& at) const override;
   bool conservative() const override { return true; }
 
  private:

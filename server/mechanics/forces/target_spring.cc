@@ -13,11 +13,11 @@ namespace {
 std::string FieldOf(std::string_view path, const char* field) { return absl::StrCat(std::string(path), ".", field); }
 
 // The body may be driven, but neither give way nor ride on others.
-absl::StatusOr<int> FirmSurface(const std::string& name, std::string_view path, const Draft& draft) {
-  auto found = draft.Body(name, path);
+absl::StatusOr<int> FirmSurface(const std::string& name, std::string_view path, const ModelBuilder& builder) {
+  auto found = builder.Body(name, path);
   if (!found.ok()) return found;
-  const BodyModel& body = draft.model.bodies[*found];
-  if (body.first_vertex >= 0 || body.ride >= 0) {
+  const BodyModel& body = builder.model.bodies[*found];
+  if (body.first_vertex >= 0 || body.skin >= 0) {
     return FieldError(path, absl::StrCat("body \"", name, "\" is deformable, or rides on others, and cannot be a ",
                                          "target; name a body that is driven or at rest"));
   }
@@ -29,43 +29,43 @@ absl::StatusOr<int> FirmSurface(const std::string& name, std::string_view path, 
 
 }  // namespace
 
-absl::StatusOr<std::unique_ptr<Force>> Drag::Make(const v1::Drag& scene, const std::string& given,
-                                                  std::string_view path, Draft& draft) {
+absl::StatusOr<std::unique_ptr<Force>> TargetSpring::Make(const v1::Drag& scene, const std::string& given,
+                                                          std::string_view path, ModelBuilder& builder) {
   const std::string name = ElementName(given, "drag", scene.bodies());
-  auto bodies = draft.DeformableBodies(scene.bodies(), FieldOf(path, "bodies"));
+  auto bodies = builder.DeformableBodies(scene.bodies(), FieldOf(path, "bodies"));
   if (!bodies.ok()) return bodies.status();
   if (!scene.vertices().empty() && bodies->size() != 1) {
     return FieldError(FieldOf(path, "vertices"), "are of one body, and several are named: write one drag for each");
   }
-  std::unique_ptr<Drag> force(new Drag(name));
+  std::unique_ptr<TargetSpring> force(new TargetSpring(name));
   force->stiffness_ = scene.stiffness();
   force->damping_ratio_ = scene.damping_ratio();
   force->breathes_ = scene.scaled_by_breath();
   for (const int b : *bodies) {
-    if (absl::Status status = force->AddDraws(scene, b, path, draft); !status.ok()) return status;
+    if (absl::Status status = force->AddDraws(scene, b, path, builder); !status.ok()) return status;
   }
-  if (absl::Status status = force->FindTargets(scene, path, draft); !status.ok()) return status;
+  if (absl::Status status = force->FindTargets(scene, path, builder); !status.ok()) return status;
   if (force->draws_.empty() || scene.stiffness() == 0) {
-    draft.ReportLeftOut(name, force->draws_.empty() ? "none of its vertices is free" : "its stiffness is 0");
+    builder.ReportLeftOut(name, force->draws_.empty() ? "none of its vertices is free" : "its stiffness is 0");
     return nullptr;
   }
-  draft.ReportElement("force", name, static_cast<std::int64_t>(force->draws_.size()), "vertices",
-                      absl::StrFormat("to their targets, k = %g N/m%s", scene.stiffness(),
-                                      force->breathes_ ? ", with the breath" : ""));
+  builder.ReportElement("force", name, static_cast<std::int64_t>(force->draws_.size()), "vertices",
+                        absl::StrFormat("to their targets, k = %g N/m%s", scene.stiffness(),
+                                        force->breathes_ ? ", with the breath" : ""));
   return force;
 }
 
-absl::Status Drag::AddDraws(const v1::Drag& scene, int body, std::string_view path, Draft& draft) {
-  const auto vertices = draft.FreeVertices(body, scene.region(), scene.vertices(), path);
+absl::Status TargetSpring::AddDraws(const v1::Drag& scene, int body, std::string_view path, ModelBuilder& builder) {
+  const auto vertices = builder.FreeVertices(body, scene.region(), scene.vertices(), path);
   if (!vertices.ok()) return vertices.status();
   for (const int vertex : *vertices) {
-    const Eigen::Vector3d rest = draft.model.rest.col(vertex);
-    draws_.push_back({vertex, 2 * damping_ratio_ * std::sqrt(stiffness_ * draft.model.mass[vertex]), rest, rest});
+    const Eigen::Vector3d rest = builder.model.rest.col(vertex);
+    draws_.push_back({vertex, 2 * damping_ratio_ * std::sqrt(stiffness_ * builder.model.mass[vertex]), rest, rest});
   }
   return absl::OkStatus();
 }
 
-absl::Status Drag::FindTargets(const v1::Drag& scene, std::string_view path, const Draft& draft) {
+absl::Status TargetSpring::FindTargets(const v1::Drag& scene, std::string_view path, const ModelBuilder& builder) {
   switch (scene.target_case()) {
     case v1::Drag::kDisplacement:
       for (Draw& draw : draws_) draw.target = draw.rest + ToEigen(scene.displacement());
@@ -74,17 +74,18 @@ absl::Status Drag::FindTargets(const v1::Drag& scene, std::string_view path, con
       for (Draw& draw : draws_) draw.target = ToEigen(scene.point());
       return absl::OkStatus();
     case v1::Drag::kSurface:
-      return FindSurfaceTargets(scene, path, draft);
+      return FindSurfaceTargets(scene, path, builder);
     case v1::Drag::TARGET_NOT_SET:
       break;
   }
   return FieldError(path, "says no target: set displacement, point or surface");
 }
 
-absl::Status Drag::FindSurfaceTargets(const v1::Drag& scene, std::string_view path, const Draft& draft) {
-  const auto found = FirmSurface(scene.surface(), FieldOf(path, "surface"), draft);
+absl::Status TargetSpring::FindSurfaceTargets(const v1::Drag& scene, std::string_view path,
+                                              const ModelBuilder& builder) {
+  const auto found = FirmSurface(scene.surface(), FieldOf(path, "surface"), builder);
   if (!found.ok()) return found.status();
-  const BodyModel& surface = draft.model.bodies[*found];
+  const BodyModel& surface = builder.model.bodies[*found];
   pose_ = surface.pose;
   const TriangleTree tree(surface.mesh.vertices, surface.mesh.triangles);
   TriangleTree::Boxes boxes;
@@ -96,7 +97,7 @@ absl::Status Drag::FindSurfaceTargets(const v1::Drag& scene, std::string_view pa
   return absl::OkStatus();
 }
 
-Drag::Aim Drag::AimOf(const Draw& draw, const Instant& at) const {
+TargetSpring::Aim TargetSpring::AimOf(const Draw& draw, const EvalContext& at) const {
   Aim aim{draw.target, Eigen::Vector3d::Zero()};
   if (pose_ >= 0) aim = {at.poses[pose_].At(draw.target), at.poses[pose_].VelocityAt(draw.target)};
   if (!breathes_) return aim;
@@ -105,7 +106,7 @@ Drag::Aim Drag::AimOf(const Draw& draw, const Instant& at) const {
   return {draw.rest + signal * way, signal * aim.velocity + at.parameters.breath_force() * at.breath_rate * way};
 }
 
-void Drag::AddForce(const Instant& at, MutablePoints f) const {
+void TargetSpring::AddForce(const EvalContext& at, MutablePoints f) const {
   for (const Draw& draw : draws_) {
     const Aim aim = AimOf(draw, at);
     f.col(draw.vertex) +=
@@ -113,15 +114,15 @@ void Drag::AddForce(const Instant& at, MutablePoints f) const {
   }
 }
 
-void Drag::AddStiffness(const Instant&, StiffnessSink& sink) const {
+void TargetSpring::AddStiffness(const EvalContext&, StiffnessSink& sink) const {
   for (const Draw& draw : draws_) sink.Add(draw.vertex, draw.vertex, stiffness_ * Eigen::Matrix3d::Identity());
 }
 
-void Drag::AddDamping(const Instant&, Eigen::VectorXd& c) const {
+void TargetSpring::AddDamping(const EvalContext&, Eigen::VectorXd& c) const {
   for (const Draw& draw : draws_) c[draw.vertex] += draw.damping;
 }
 
-double Drag::Energy(const Instant& at) const {
+double TargetSpring::Energy(const EvalContext& at) const {
   double energy = 0;
   for (const Draw& draw : draws_) energy += (AimOf(draw, at).place - at.x.col(draw.vertex)).squaredNorm();
   return stiffness_ / 2 * energy;

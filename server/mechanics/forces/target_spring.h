@@ -11,16 +11,16 @@
 
 namespace phrenic {
 
-class Drag final : public Force {
+class TargetSpring final : public Force {
  public:
   // Null where no vertex is free or the stiffness is 0.
   static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::Drag& scene, const std::string& name,
-                                                     std::string_view path, Draft& draft);
+                                                     std::string_view path, ModelBuilder& builder);
 
-  void AddForce(const Instant& at, MutablePoints f) const override;
-  void AddStiffness(const Instant& at, StiffnessSink& sink) const override;
-  void AddDamping(const Instant& at, Eigen::VectorXd& c) const override;
-  double Energy(const Instant& at) const override;
+  void AddForce(const EvalContext& at, MutablePoints f) const override;
+  void AddStiffness(const EvalContext& at, StiffnessSink& sink) const override;
+  void AddDamping(const EvalContext& at, Eigen::VectorXd& c) const override;
+  double Energy(const EvalContext& at) const override;
   bool conservative() const override { return damping_ratio_ == 0; }
 
  private:
@@ -33,11 +33,11 @@ class Drag final : public Force {
   struct Aim {
     Eigen::Vector3d place, velocity;  // [m], [m/s]
   };
-  explicit Drag(std::string name) : Force(std::move(name)) {}
-  absl::Status AddDraws(const v1::Drag& scene, int body, std::string_view path, Draft& draft);
-  absl::Status FindTargets(const v1::Drag& scene, std::string_view path, const Draft& draft);
-  absl::Status FindSurfaceTargets(const v1::Drag& scene, std::string_view path, const Draft& draft);
-  Aim AimOf(const Draw& draw, const Instant& at) const;
+  explicit TargetSpring(std::string name) : Force(std::move(name)) {}
+  absl::Status AddDraws(const v1::Drag& scene, int body, std::string_view path, ModelBuilder& builder);
+  absl::Status FindTargets(const v1::Drag& scene, std::string_view path, const ModelBuilder& builder);
+  absl::Status FindSurfaceTargets(const v1::Drag& scene, std::string_view path, const ModelBuilder& builder);
+  Aim AimOf(const Draw& draw, const EvalContext& at) const;
 
   std::vector<Draw> draws_;
   double stiffness_ = 0;  // [N/m]

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <limits>
 
-#include "server/mechanics/step/advance.h"
-#include "server/mechanics/solve/implicit_stage.h"
 #include "server/mechanics/integrators/tr_bdf2.h"
+#include "server/mechanics/solve/implicit_stage.h"
+#include "server/mechanics/step/advance.h"
 
 namespace phrenic {
 namespace {

@@ -16,7 +16,7 @@ double ExplicitEuler::MaxStep(const Spectrum& spectrum) const {
 
 absl::Status ExplicitEuler::Advance(const Model& model, const v1::Parameters& parameters, double dt, State& state,
                                     Workspace& work) const {
-  SumForces(model, MakeInstant(model, parameters, state), work.force);
+  SumForces(model, MakeEvalContext(model, parameters, state), work.force);
   for (Eigen::Index i = 0; i < state.x.cols(); ++i) {
     if (model.inverse_mass[i] == 0) continue;  // fixed, or set by a motion
     state.x.col(i) += dt * state.v.col(i);

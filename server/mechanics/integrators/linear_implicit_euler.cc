@@ -2,8 +2,8 @@
 
 #include <limits>
 
-#include "server/mechanics/step/advance.h"
 #include "server/mechanics/solve/implicit_stage.h"
+#include "server/mechanics/step/advance.h"
 
 namespace phrenic {
 

@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "absl/functional/function_ref.h"
-#include "server/mechanics/step/advance.h"
-#include "server/mechanics/solve/implicit_stage.h"
 #include "server/mechanics/linalg/outer_products.h"
+#include "server/mechanics/solve/implicit_stage.h"
 #include "server/mechanics/solve/quasi_newton.h"
+#include "server/mechanics/step/advance.h"
 
 namespace phrenic {
 namespace {
@@ -64,7 +64,7 @@ class Search {
   // What is missing to the equation [N s]; 0 for fixed and driven vertices.
   void Evaluate(Points& residual) {
     PlaceStage(model_, parameters_, stage_, state_);
-    StageResidual(model_, stage_, InstantAhead(model_, parameters_, stage_.ahead, state_), residual);
+    StageResidual(model_, stage_, EvalContextAhead(model_, parameters_, stage_.ahead, state_), residual);
     for (Eigen::Index i = 0; i < residual.cols(); ++i) {
       if (model_.inverse_mass[i] == 0) residual.col(i).setZero();
     }

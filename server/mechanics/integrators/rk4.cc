@@ -46,7 +46,7 @@ absl::Status Rk4::Advance(const Model& model, const v1::Parameters& parameters, 
   accelerations.setZero(3, state.x.cols());
   for (const Stage& stage : kStages) {
     if (stage.at > 0) MoveBy(model, parameters, stage.at * dt, velocity, acceleration, work, state);
-    SumForces(model, InstantAhead(model, parameters, stage.at * dt, state), work.force);
+    SumForces(model, EvalContextAhead(model, parameters, stage.at * dt, state), work.force);
     velocity = state.v;
     acceleration = work.force * model.inverse_mass.asDiagonal();
     velocities += stage.weight * velocity;

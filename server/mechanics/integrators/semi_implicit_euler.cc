@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "server/mechanics/step/advance.h"
 #include "server/mechanics/linalg/vertex_kernel.h"
+#include "server/mechanics/step/advance.h"
 
 namespace phrenic {
 namespace {
@@ -67,13 +67,13 @@ absl::Status SemiImplicitEuler::Advance(const Model& model, const v1::Parameters
   const Constraint* const only = InBlocks(model);
   if (only != nullptr) TakeAcross(*only, state.x, work.before);
   DriveMotions(model, parameters, dt, state);
-  const Instant at = Packed(model, MakeInstant(model, parameters, state));
+  const EvalContext at = Packed(model, MakeEvalContext(model, parameters, state));
   SumSharedDamping(model, at, work.shared_damping);
   const bool held_back = !work.shared_damping.empty();
   const Constraint* const in_blocks = held_back ? nullptr : only;
   // How far a block gets is noted while it is at hand, unless vertices are moved yet.
   const bool later = held_back || (!model.constraints.empty() && in_blocks == nullptr);
-  if (!later) MakePlaces(state.x.cols(), work.reach);
+  if (!later) ResizeBounds(state.x.cols(), work.bounds);
   const bool over = !later && MoveOneByOne(model);
   Points &x_next = over ? state.x : work.before, &v_next = held_back ? work.velocity_before : state.v;
   const bool whole = SumWholeForces(model, at, work.force);
@@ -85,12 +85,12 @@ absl::Status SemiImplicitEuler::Advance(const Model& model, const v1::Parameters
     const VertexLoads loads = AddForcesButLoads(block, model, at, !whole, f);
     const bool constrained = in_blocks != nullptr && in_blocks->ActsIn(block, parameters);
     if (constrained) in_blocks->Remember(block, state.x, start);
-    StateReach reach = KickAndDrift(block, model.inverse_mass, dt, dt, f, loads, state.x, state.v, x_next, v_next);
+    StateBounds reach = KickAndDrift(block, model.inverse_mass, dt, dt, f, loads, state.x, state.v, x_next, v_next);
     if (constrained) {
       const double way = in_blocks->ProjectIn(block, start, dt, x_next, v_next);
       reach = {reach.furthest + way, reach.fastest + way / dt};
     }
-    if (!later) NoteReach(block, reach, work.reach);
+    if (!later) RecordBounds(block, reach, work.bounds);
   });
   if (held_back) HoldBack(model, dt, state, work.shared_damping, work.before, work.velocity_before);
   if (!over) state.x.swap(work.before);
@@ -98,7 +98,7 @@ absl::Status SemiImplicitEuler::Advance(const Model& model, const v1::Parameters
   PutDriven(model, work.driven, work.before);
   if (in_blocks) {
     in_blocks->ProjectAcross(parameters, work.before, dt, state);
-    NoteReach(in_blocks->across(), state.x, state.v, work.reach);
+    RecordBounds(in_blocks->across(), state.x, state.v, work.bounds);
   }
   if (later) ProjectPositions(model, parameters, work.before, dt, state);
   return absl::OkStatus();

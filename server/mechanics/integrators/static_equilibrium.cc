@@ -4,8 +4,8 @@
 #include <limits>
 
 #include "absl/status/statusor.h"
-#include "server/mechanics/step/advance.h"
 #include "server/mechanics/solve/implicit_system.h"
+#include "server/mechanics/step/advance.h"
 
 namespace phrenic {
 namespace {
@@ -22,7 +22,7 @@ absl::StatusOr<double> Relax(const Model& model, const v1::Parameters& parameter
                              Workspace& work) {
   Points &change = work.stages[0], &start = work.stages[1];
   start = state.x;
-  const Instant at = InstantAhead(model, parameters, dt, state);
+  const EvalContext at = EvalContextAhead(model, parameters, dt, state);
   SumForces(model, at, work.force);
   work.force *= h;
   work.system->Assemble(model, at, h);

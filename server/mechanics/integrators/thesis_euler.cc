@@ -1,7 +1,7 @@
 #include "server/mechanics/integrators/thesis_euler.h"
 
-#include "server/mechanics/step/advance.h"
 #include "server/mechanics/integrators/semi_implicit_euler.h"
+#include "server/mechanics/step/advance.h"
 
 namespace phrenic {
 namespace {
@@ -20,7 +20,7 @@ double ThesisEuler::MaxStep(const Spectrum& spectrum) const {
 absl::Status ThesisEuler::Advance(const Model& model, const v1::Parameters& parameters, double dt, State& state,
                                   Workspace& work) const {
   DriveMotions(model, parameters, dt, state);
-  SumForces(model, MakeInstant(model, parameters, state), work.force);
+  SumForces(model, MakeEvalContext(model, parameters, state), work.force);
   for (Eigen::Index i = 0; i < state.x.cols(); ++i) {
     if (model.inverse_mass[i] == 0) continue;  // fixed, or set by a motion
     state.v.col(i) += dt * model.inverse_mass[i] * work.force.col(i);

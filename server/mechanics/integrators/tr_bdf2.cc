@@ -4,8 +4,8 @@
 #include <limits>
 #include <numbers>
 
-#include "server/mechanics/step/advance.h"
 #include "server/mechanics/solve/implicit_stage.h"
+#include "server/mechanics/step/advance.h"
 
 namespace phrenic {
 namespace {
@@ -25,7 +25,7 @@ absl::Status TrBdf2::Advance(const Model& model, const v1::Parameters& parameter
   work.stages.resize(std::max<size_t>(work.stages.size(), 3));
   Points &position = work.stages[1], &velocity = work.stages[2];
   const double g = kWeight * dt;
-  SumForces(model, MakeInstant(model, parameters, state), work.force);
+  SumForces(model, MakeEvalContext(model, parameters, state), work.force);
   position = work.before + g * work.velocity_before;
   velocity = work.velocity_before + g * work.force * model.inverse_mass.asDiagonal();
   const ImplicitStage trapezoid{kGamma * dt, g, position, velocity, kNewtonSteps};

@@ -2,8 +2,8 @@
 
 #include <limits>
 
-#include "server/mechanics/step/advance.h"
 #include "server/mechanics/linalg/vertex_kernel.h"
+#include "server/mechanics/step/advance.h"
 
 namespace phrenic {
 namespace {
@@ -14,7 +14,7 @@ void RecallForce(const Model& model, const v1::Parameters& parameters, const Sta
   if (history.integrator == v1::INTEGRATOR_VELOCITY_VERLET && history.tick == state.tick) {
     force = history.force;
   } else {
-    SumForces(model, MakeInstant(model, parameters, state), force);
+    SumForces(model, MakeEvalContext(model, parameters, state), force);
   }
 }
 
@@ -46,7 +46,7 @@ absl::Status VelocityVerlet::Advance(const Model& model, const v1::Parameters& p
   KickAndDrift({0, state.x.cols()}, model.inverse_mass, dt / 2, dt, work.force, {}, state.x, state.v, state.x, state.v);
   DriveMotions(model, parameters, dt, state);
   ProjectPositions(model, parameters, work.before, dt, state);
-  const Instant end = InstantAhead(model, parameters, dt, state);
+  const EvalContext end = EvalContextAhead(model, parameters, dt, state);
   SumForces(model, end, work.force);
   SumDamping(model, end, work.damping);
   Points& half = state.history.v;

@@ -4,7 +4,7 @@
 
 #include "server/mechanics/linalg/vector_targets.h"
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "server/mechanics/block_kernel.cc"
+#define HWY_TARGET_INCLUDE "server/mechanics/linalg/block_kernel.cc"
 #include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>

@@ -4,7 +4,7 @@
 
 #include "server/mechanics/linalg/vector_targets.h"
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "server/mechanics/vertex_kernel.cc"
+#define HWY_TARGET_INCLUDE "server/mechanics/linalg/vertex_kernel.cc"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -102,12 +102,12 @@ struct Reached {
   points::Largest furthest, fastest;
 
   HWY_INLINE void Note(Vector x, Vector v) { furthest.Note(x), fastest.Note(v); }
-  StateReach Whole() const { return {furthest.Whole(), fastest.Whole()}; }
+  StateBounds Whole() const { return {furthest.Whole(), fastest.Whole()}; }
 };
 
-void Note(double x, double v, StateReach& reach) {
-  reach.furthest = Further(reach.furthest, std::abs(x));
-  reach.fastest = Further(reach.fastest, std::abs(v));
+void Note(double x, double v, StateBounds& reach) {
+  reach.furthest = LargerMagnitude(reach.furthest, std::abs(x));
+  reach.fastest = LargerMagnitude(reach.fastest, std::abs(v));
 }
 
 HWY_INLINE void LoadThree(const double* from, Vector (&to)[3]) {
@@ -145,7 +145,7 @@ struct Kick {
   double kick, drift;
   const double *f, *x, *v;
   double *x_next, *v_next;
-  StateReach* reach;
+  StateBounds* reach;
 };
 
 struct Kicking {
@@ -155,7 +155,7 @@ struct Kicking {
     Reached reached;
     Eigen::Index vertex = range.first;
     for (; vertex + kLanes <= range.end; vertex += kLanes) Eight(spread, range.first, vertex, loads, with, reached);
-    StateReach& reach = *with.reach = reached.Whole();
+    StateBounds& reach = *with.reach = reached.Whole();
     for (; vertex < range.end; ++vertex) {
       const double w = with.inverse_mass[vertex];
       for (Eigen::Index c = 0, i = 3 * vertex; c < 3; ++c, ++i) {
@@ -190,19 +190,19 @@ struct Kicking {
   }
 };
 
-StateReach KickAndDriftHere(const VertexRange& range, const VertexLoads& loads, const double* inverse_mass, double kick,
-                            double drift, const double* f, const double* x, const double* v, double* x_next,
-                            double* v_next) {
-  StateReach reach;
+StateBounds KickAndDriftHere(const VertexRange& range, const VertexLoads& loads, const double* inverse_mass,
+                             double kick, double drift, const double* f, const double* x, const double* v,
+                             double* x_next, double* v_next) {
+  StateBounds reach;
   WithLoads<Kicking>(range, loads, Kick{inverse_mass, kick, drift, f, x, v, x_next, v_next, &reach});
   return reach;
 }
 
-StateReach ReachHere(const double* x, const double* v, Eigen::Index count) {
+StateBounds ReachHere(const double* x, const double* v, Eigen::Index count) {
   Reached reached;
   Eigen::Index i = 0;
   for (; i + kLanes <= count; i += kLanes) reached.Note(hn::LoadU(Tag(), x + i), hn::LoadU(Tag(), v + i));
-  StateReach reach = reached.Whole();
+  StateBounds reach = reached.Whole();
   for (; i < count; ++i) Note(x[i], v[i], reach);
   return reach;
 }
@@ -222,14 +222,14 @@ void AddLoads(const VertexRange& range, const VertexLoads& loads, const ConstPoi
   HWY_DYNAMIC_DISPATCH(AddLoadsHere)(range, loads, v.data(), f.data());
 }
 
-StateReach KickAndDrift(const VertexRange& range, const Eigen::VectorXd& w, double kick, double drift,
-                        const ConstPoints& f, const VertexLoads& loads, const Points& x, const Points& v,
-                        Points& x_next, Points& v_next) {
+StateBounds KickAndDrift(const VertexRange& range, const Eigen::VectorXd& w, double kick, double drift,
+                         const ConstPoints& f, const VertexLoads& loads, const Points& x, const Points& v,
+                         Points& x_next, Points& v_next) {
   return HWY_DYNAMIC_DISPATCH(KickAndDriftHere)(range, loads, w.data(), kick, drift, f.data(), x.data(), v.data(),
                                                 x_next.data(), v_next.data());
 }
 
-StateReach ReachOf(const VertexRange& range, const Points& x, const Points& v) {
+StateBounds BoundsOf(const VertexRange& range, const Points& x, const Points& v) {
   const Eigen::Index first = 3 * range.first;
   return HWY_DYNAMIC_DISPATCH(ReachHere)(x.data() + first, v.data() + first, 3 * range.end - first);
 }

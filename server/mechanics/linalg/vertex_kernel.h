@@ -7,8 +7,8 @@
 #include <array>
 #include <cstddef>
 
-#include "server/mechanics/state.h"
 #include "server/mechanics/parallel/vertex_range.h"
+#include "server/mechanics/state.h"
 #include "server/mesh/mesh.h"
 
 namespace phrenic {
@@ -35,12 +35,12 @@ void AddLoads(const VertexRange& range, const VertexLoads& loads, const ConstPoi
 // v_next = v + kick w (f + loads), then x_next = x + drift v_next, for the vertices with w = 1/m > 0 [1/kg]; the others
 // keep v and x. `kick` and `drift` are times [s]. x_next may be x, and v_next v. Returns how far the range then has
 // got.
-StateReach KickAndDrift(const VertexRange& range, const Eigen::VectorXd& w, double kick, double drift,
-                        const ConstPoints& f, const VertexLoads& loads, const Points& x, const Points& v,
-                        Points& x_next, Points& v_next);
+StateBounds KickAndDrift(const VertexRange& range, const Eigen::VectorXd& w, double kick, double drift,
+                         const ConstPoints& f, const VertexLoads& loads, const Points& x, const Points& v,
+                         Points& x_next, Points& v_next);
 
 // How far the range has got.
-StateReach ReachOf(const VertexRange& range, const Points& x, const Points& v);
+StateBounds BoundsOf(const VertexRange& range, const Points& x, const Points& v);
 
 }  // namespace phrenic
 

@@ -15,7 +15,7 @@ class KineticMeasure final : public Measure {
   };
   KineticMeasure(std::string name, std::vector<Part> parts) : Measure(std::move(name), "J"), parts_(std::move(parts)) {}
 
-  double Value(const Instant& at) const override {
+  double Value(const EvalContext& at) const override {
     double twice = 0;
     for (const Part& part : parts_) {
       for (Eigen::Index i = 0; i < part.masses.size(); ++i) {
@@ -34,7 +34,7 @@ class ElasticMeasure final : public Measure {
   ElasticMeasure(std::string name, std::vector<const Force*> forces)
       : Measure(std::move(name), "J"), forces_(std::move(forces)) {}
 
-  double Value(const Instant& at) const override {
+  double Value(const EvalContext& at) const override {
     double sum = 0;
     for (const Force* force : forces_) sum += force->Energy(at);
     return sum;
@@ -45,17 +45,17 @@ class ElasticMeasure final : public Measure {
 };
 
 absl::StatusOr<std::vector<const Force*>> ForcesWithEnergy(const v1::ElasticEnergy& scene, std::string_view path,
-                                                           const Draft& draft) {
+                                                           const ModelBuilder& builder) {
   std::vector<const Force*> forces;
   for (int i = 0; i < scene.forces_size(); ++i) {
     const std::string field = absl::StrCat(std::string(path), ".forces[", i, "]");
-    const auto force = FindForce(scene.forces(i), field, draft);
+    const auto force = FindForce(scene.forces(i), field, builder);
     if (!force.ok()) return force.status();
     if (!(*force)->conservative()) return FieldError(field, absl::StrCat("\"", scene.forces(i), "\" has no energy"));
     forces.push_back(*force);
   }
   if (scene.forces_size() > 0) return forces;
-  for (const auto& force : draft.model.forces) {
+  for (const auto& force : builder.model.forces) {
     if (force->conservative()) forces.push_back(force.get());
   }
   return forces;
@@ -64,25 +64,25 @@ absl::StatusOr<std::vector<const Force*>> ForcesWithEnergy(const v1::ElasticEner
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<Measure>> MakeKineticEnergy(const v1::KineticEnergy& scene, const std::string& name,
-                                                           std::string_view path, Draft& draft) {
-  const auto bodies = draft.DeformableBodies(scene.bodies(), absl::StrCat(std::string(path), ".bodies"));
+                                                           std::string_view path, ModelBuilder& builder) {
+  const auto bodies = builder.DeformableBodies(scene.bodies(), absl::StrCat(std::string(path), ".bodies"));
   if (!bodies.ok()) return bodies.status();
   std::vector<KineticMeasure::Part> parts;
   std::int64_t vertices = 0;
   for (const int b : *bodies) {
-    const BodyModel& body = draft.model.bodies[b];
-    parts.push_back({body.first_vertex, draft.model.mass.segment(body.first_vertex, body.mesh.vertices.cols())});
+    const BodyModel& body = builder.model.bodies[b];
+    parts.push_back({body.first_vertex, builder.model.mass.segment(body.first_vertex, body.mesh.vertices.cols())});
     vertices += body.mesh.vertices.cols();
   }
-  draft.ReportElement("measure", name, vertices, "vertices", "kinetic energy");
+  builder.ReportElement("measure", name, vertices, "vertices", "kinetic energy");
   return std::make_unique<KineticMeasure>(name, std::move(parts));
 }
 
 absl::StatusOr<std::unique_ptr<Measure>> MakeElasticEnergy(const v1::ElasticEnergy& scene, const std::string& name,
-                                                           std::string_view path, Draft& draft) {
-  auto forces = ForcesWithEnergy(scene, path, draft);
+                                                           std::string_view path, ModelBuilder& builder) {
+  auto forces = ForcesWithEnergy(scene, path, builder);
   if (!forces.ok()) return forces.status();
-  draft.ReportElement("measure", name, static_cast<std::int64_t>(forces->size()), "forces", "energy of forces");
+  builder.ReportElement("measure", name, static_cast<std::int64_t>(forces->size()), "forces", "energy of forces");
   return std::make_unique<ElasticMeasure>(name, *std::move(forces));
 }
 

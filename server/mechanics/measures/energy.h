@@ -8,10 +8,10 @@
 namespace phrenic {
 
 absl::StatusOr<std::unique_ptr<Measure>> MakeKineticEnergy(const v1::KineticEnergy& scene, const std::string& name,
-                                                           std::string_view path, Draft& draft);
+                                                           std::string_view path, ModelBuilder& builder);
 // A force that is named must be there and have an energy. A force that the compile step left out has none.
 absl::StatusOr<std::unique_ptr<Measure>> MakeElasticEnergy(const v1::ElasticEnergy& scene, const std::string& name,
-                                                           std::string_view path, Draft& draft);
+                                                           std::string_view path, ModelBuilder& builder);
 
 }  // namespace phrenic
 

@@ -10,7 +10,7 @@ class OutputMeasure final : public Measure {
  public:
   OutputMeasure(std::string name, const Force& force, size_t output)
       : Measure(std::move(name), force.outputs()[output].unit), force_(force), output_(output) {}
-  double Value(const Instant& at) const override { return force_.Read(output_, at); }
+  double Value(const EvalContext& at) const override { return force_.Read(output_, at); }
 
  private:
   const Force& force_;  // of the same model
@@ -24,9 +24,9 @@ std::string NamesOf(std::span<const Force::Output> outputs) {
 
 }  // namespace
 
-absl::StatusOr<const Force*> FindForce(const std::string& name, std::string_view path, const Draft& draft) {
+absl::StatusOr<const Force*> FindForce(const std::string& name, std::string_view path, const ModelBuilder& builder) {
   std::vector<std::string> names;
-  for (const auto& force : draft.model.forces) {
+  for (const auto& force : builder.model.forces) {
     if (force->name() == name) return force.get();
     names.push_back(force->name());
   }
@@ -35,13 +35,13 @@ absl::StatusOr<const Force*> FindForce(const std::string& name, std::string_view
 }
 
 absl::StatusOr<std::unique_ptr<Measure>> MakeForceOutput(const v1::ForceOutput& scene, const std::string& name,
-                                                         std::string_view path, Draft& draft) {
-  const auto force = FindForce(scene.force(), absl::StrCat(std::string(path), ".force"), draft);
+                                                         std::string_view path, ModelBuilder& builder) {
+  const auto force = FindForce(scene.force(), absl::StrCat(std::string(path), ".force"), builder);
   if (!force.ok()) return force.status();
   const std::span<const Force::Output> outputs = (*force)->outputs();
   for (size_t i = 0; i < outputs.size(); ++i) {
     if (scene.output() != outputs[i].name) continue;
-    draft.ReportElement("measure", name, 1, "force", absl::StrCat(outputs[i].name, " of ", (*force)->name()));
+    builder.ReportElement("measure", name, 1, "force", absl::StrCat(outputs[i].name, " of ", (*force)->name()));
     return std::make_unique<OutputMeasure>(name, **force, i);
   }
   return FieldError(absl::StrCat(std::string(path), ".output"),

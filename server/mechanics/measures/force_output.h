@@ -7,10 +7,10 @@
 namespace phrenic {
 
 absl::StatusOr<std::unique_ptr<Measure>> MakeForceOutput(const v1::ForceOutput& scene, const std::string& name,
-                                                         std::string_view path, Draft& draft);
+                                                         std::string_view path, ModelBuilder& builder);
 
 // The force of that name; INVALID_ARGUMENT with the names of those that run.
-absl::StatusOr<const Force*> FindForce(const std::string& name, std::string_view path, const Draft& draft);
+absl::StatusOr<const Force*> FindForce(const std::string& name, std::string_view path, const ModelBuilder& builder);
 
 }  // namespace phrenic
 

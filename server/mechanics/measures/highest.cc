@@ -19,7 +19,7 @@ class HighestMeasure final : public Measure {
         direction_(direction),
         zero_(zero) {}
 
-  double Value(const Instant& at) const override { return Furthest(body_.Positions(at)) - zero_; }
+  double Value(const EvalContext& at) const override { return Furthest(body_.Positions(at)) - zero_; }
   // Counted from rest instead.
   void CountFromRest() { zero_ = Furthest(body_.rest()); }
 
@@ -39,11 +39,11 @@ class HighestMeasure final : public Measure {
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<Measure>> MakeHighest(const v1::Highest& scene, const std::string& name,
-                                                     std::string_view path, Draft& draft) {
+                                                     std::string_view path, ModelBuilder& builder) {
   const std::string field(path);
-  const auto body = draft.Body(scene.body(), field + ".body");
+  const auto body = builder.Body(scene.body(), field + ".body");
   if (!body.ok()) return body.status();
-  const auto mask = draft.Region(*body, scene.region(), field + ".region");
+  const auto mask = builder.Region(*body, scene.region(), field + ".region");
   if (!mask.ok()) return mask.status();
   std::vector<int> vertices;
   for (int i = 0; i < static_cast<int>(mask->size()); ++i) {
@@ -53,9 +53,9 @@ absl::StatusOr<std::unique_ptr<Measure>> MakeHighest(const v1::Highest& scene, c
   const Eigen::Vector3d direction = scene.has_direction() ? ToEigen(scene.direction()) : Eigen::Vector3d::UnitZ();
   if (!(direction.norm() > 0)) return FieldError(field + ".direction", "has no direction: set x, y or z");
   const Eigen::Vector3d unit = direction.normalized();
-  draft.ReportElement("measure", name, static_cast<std::int64_t>(vertices.size()), "vertices",
-                      absl::StrCat("the highest point", scene.from_rest() ? " since rest" : ""));
-  auto measure = std::make_unique<HighestMeasure>(name, BodyPoints(draft.model, *body), std::move(vertices), unit,
+  builder.ReportElement("measure", name, static_cast<std::int64_t>(vertices.size()), "vertices",
+                        absl::StrCat("the highest point", scene.from_rest() ? " since rest" : ""));
+  auto measure = std::make_unique<HighestMeasure>(name, BodyPoints(builder.model, *body), std::move(vertices), unit,
                                                   unit.dot(ToEigen(scene.point())));
   if (scene.from_rest()) measure->CountFromRest();
   return measure;

@@ -8,7 +8,7 @@
 namespace phrenic {
 
 absl::StatusOr<std::unique_ptr<Measure>> MakeHighest(const v1::Highest& scene, const std::string& name,
-                                                     std::string_view path, Draft& draft);
+                                                     std::string_view path, ModelBuilder& builder);
 
 }  // namespace phrenic
 

@@ -7,9 +7,9 @@
 namespace phrenic {
 
 absl::StatusOr<std::unique_ptr<Measure>> MakeVolume(const v1::Volume& scene, const std::string& name,
-                                                    std::string_view path, Draft& draft);
+                                                    std::string_view path, ModelBuilder& builder);
 absl::StatusOr<std::unique_ptr<Measure>> MakeFlow(const v1::Flow& scene, const std::string& name, std::string_view path,
-                                                  Draft& draft);
+                                                  ModelBuilder& builder);
 
 }  // namespace phrenic
 

@@ -12,9 +12,9 @@ class Oscillation final : public Motion {
  public:
   // Takes its vertices out of the free ones: their inverse mass becomes 0.
   static absl::StatusOr<std::unique_ptr<Motion>> Make(const v1::Oscillation& scene, const std::string& name,
-                                                      std::string_view path, Draft& draft);
+                                                      std::string_view path, ModelBuilder& builder);
 
-  void Drive(const Instant& at, State& state) const override;
+  void Drive(const EvalContext& at, State& state) const override;
 
  private:
   explicit Oscillation(std::string name) : Motion(std::move(name)) {}

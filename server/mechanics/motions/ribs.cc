@@ -50,14 +50,14 @@ absl::Status CheckRib(const BodyModel& body, const v1::Ribs& scene, std::string_
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<Motion>> Ribs::Make(const v1::Ribs& scene, const std::string& given,
-                                                   std::string_view path, Draft& draft) {
+                                                   std::string_view path, ModelBuilder& builder) {
   const std::string name = ElementName(given, "ribs", scene.bodies());
   const std::string field = absl::StrCat(std::string(path), ".bodies");
-  auto bodies = draft.Bodies(scene.bodies(), field);
+  auto bodies = builder.Bodies(scene.bodies(), field);
   if (!bodies.ok()) return bodies.status();
   std::unique_ptr<Ribs> motion(new Ribs(name, scene.quiet_state()));
   for (const int b : *bodies) {
-    const BodyModel& body = draft.model.bodies[b];
+    const BodyModel& body = builder.model.bodies[b];
     if (absl::Status status = CheckRib(body, scene, field); !status.ok()) return status;
     const v1::RibEndState& end = *EndState(scene, body.anatomy.number());
     const double mirror = body.anatomy.side() == v1::SIDE_RIGHT ? 1 : -1;
@@ -66,12 +66,12 @@ absl::StatusOr<std::unique_ptr<Motion>> Ribs::Make(const v1::Ribs& scene, const 
     motion->ribs_.push_back({body.pose, Head(body.mesh.vertices), degrees * (std::numbers::pi / 180),
                              Eigen::Vector3d(mirror * t.x(), t.y(), t.z())});
   }
-  draft.ReportElement("motion", name, static_cast<std::int64_t>(motion->ribs_.size()), "bodies",
-                      absl::StrFormat("k = %g at the peak of a quiet breath", scene.quiet_state()));
+  builder.ReportElement("motion", name, static_cast<std::int64_t>(motion->ribs_.size()), "bodies",
+                        absl::StrFormat("k = %g at the peak of a quiet breath", scene.quiet_state()));
   return motion;
 }
 
-void Ribs::Drive(const Instant& at, State& state) const {
+void Ribs::Drive(const EvalContext& at, State& state) const {
   const double kept = std::min(1.0, quiet_state_ * at.parameters.hyperinflation());
   const double scale = (1 - kept) * (quiet_state_ * at.parameters.rib_motion());
   const double k = kept + scale * at.breath, k_rate = scale * at.breath_rate;

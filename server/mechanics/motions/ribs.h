@@ -16,9 +16,9 @@ namespace phrenic {
 class Ribs final : public Motion {
  public:
   static absl::StatusOr<std::unique_ptr<Motion>> Make(const v1::Ribs& scene, const std::string& name,
-                                                      std::string_view path, Draft& draft);
+                                                      std::string_view path, ModelBuilder& builder);
 
-  void Drive(const Instant& at, State& state) const override;
+  void Drive(const EvalContext& at, State& state) const override;
 
  private:
   struct Rib {

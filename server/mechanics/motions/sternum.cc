@@ -36,22 +36,22 @@ Pose SagittalPose(double angle, const Eigen::Vector3d& from, const Eigen::Vector
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<Motion>> Sternum::Make(const v1::Sternum& scene, const std::string& given,
-                                                      std::string_view path, Draft& draft) {
+                                                      std::string_view path, ModelBuilder& builder) {
   const std::string name = ElementName(given, "sternum", scene.bodies());
   const std::string field(path);
-  auto bodies = draft.Bodies(scene.bodies(), absl::StrCat(field, ".bodies"));
+  auto bodies = builder.Bodies(scene.bodies(), absl::StrCat(field, ".bodies"));
   if (!bodies.ok()) return bodies.status();
-  auto ribs = draft.Bodies(scene.ribs(), absl::StrCat(field, ".ribs"));
+  auto ribs = builder.Bodies(scene.ribs(), absl::StrCat(field, ".ribs"));
   if (!ribs.ok()) return ribs.status();
   std::unique_ptr<Sternum> motion(new Sternum(name));
   for (const int b : *bodies) {
-    const BodyModel& body = draft.model.bodies[b];
+    const BodyModel& body = builder.model.bodies[b];
     if (body.pose < 0)
       return FieldError(absl::StrCat(field, ".bodies"), "body \"" + body.name + "\" is not ROLE_DRIVEN");
     motion->poses_.push_back(body.pose);
   }
   for (const int b : *ribs) {
-    const BodyModel& rib = draft.model.bodies[b];
+    const BodyModel& rib = builder.model.bodies[b];
     if (rib.pose < 0 || rib.anatomy.structure() != v1::STRUCTURE_RIB) continue;
     if (rib.anatomy.number() > scene.last_rib()) continue;
     motion->ends_.push_back({rib.pose, AnteriorEnd(rib.mesh.vertices)});
@@ -59,12 +59,12 @@ absl::StatusOr<std::unique_ptr<Motion>> Sternum::Make(const v1::Sternum& scene, 
   if (motion->ends_.size() < 2) {
     return FieldError(absl::StrCat(field, ".ribs"), "at least two driven ribs must carry the sternum");
   }
-  draft.ReportElement("motion", name, static_cast<std::int64_t>(motion->poses_.size()), "bodies",
-                      absl::StrCat("carried by the ends of ", motion->ends_.size(), " ribs, no sideways drift"));
+  builder.ReportElement("motion", name, static_cast<std::int64_t>(motion->poses_.size()), "bodies",
+                        absl::StrCat("carried by the ends of ", motion->ends_.size(), " ribs, no sideways drift"));
   return motion;
 }
 
-void Sternum::Drive(const Instant&, State& state) const {
+void Sternum::Drive(const EvalContext&, State& state) const {
   const double count = static_cast<double>(ends_.size());
   Eigen::Vector3d from = Eigen::Vector3d::Zero(), to = from, drift = from;
   for (const RibEnd& end : ends_) {

@@ -13,10 +13,10 @@ namespace phrenic {
 class Sternum final : public Motion {
  public:
   static absl::StatusOr<std::unique_ptr<Motion>> Make(const v1::Sternum& scene, const std::string& name,
-                                                      std::string_view path, Draft& draft);
+                                                      std::string_view path, ModelBuilder& builder);
 
   // Reads the poses that the ribs' motion has set before.
-  void Drive(const Instant& at, State& state) const override;
+  void Drive(const EvalContext& at, State& state) const override;
 
  private:
   struct RibEnd {

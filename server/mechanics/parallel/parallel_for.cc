@@ -115,7 +115,7 @@ void SetStepThreads(int threads) {
 
 int StepThreads() { return TheHelpers().threads; }
 
-void ShareOut(std::int64_t parts, absl::FunctionRef<void(std::int64_t)> work) {
+void ParallelFor(std::int64_t parts, absl::FunctionRef<void(std::int64_t)> work) {
   const Helpers& helpers = TheHelpers();
   if (helpers.threads == 1 || parts < kLeastParts) {
     for (std::int64_t part = 0; part < parts; ++part) work(part);

@@ -18,7 +18,7 @@ int StepThreads();
 // any order; few parts on the caller alone. Each thread begins with parts of its own, the same in every call of as
 // many: what it wrote there last is still in its core's cache. Returns when all are done, and never waits for a thread
 // that has not begun. Any number of threads may call.
-void ShareOut(std::int64_t parts, absl::FunctionRef<void(std::int64_t)> work);
+void ParallelFor(std::int64_t parts, absl::FunctionRef<void(std::int64_t)> work);
 
 }  // namespace phrenic
 

@@ -22,7 +22,7 @@ inline constexpr Eigen::Index kVertexBlock = 256;
 template <typename Work>
 void ForEachBlock(const VertexRange& range, const Work& work) {
   const Eigen::Index blocks = (range.end - range.first + kVertexBlock - 1) / kVertexBlock;
-  ShareOut(blocks, [&](std::int64_t block) {
+  ParallelFor(blocks, [&](std::int64_t block) {
     const Eigen::Index first = range.first + block * kVertexBlock;
     work(VertexRange{first, std::min(first + kVertexBlock, range.end)});
   });

@@ -32,7 +32,7 @@ void CarryAll(const Pose& pose, const Points& rest, Placed& out) {
 // The corners of a triangle, or their velocities.
 struct Corners {
   Eigen::Vector3d a, b, c;
-  Corners(const ConstPoints& of, const TriangleShare& share)
+  Corners(const ConstPoints& of, const TriangleBinding& share)
       : a(of.col(share.corners[0])), b(of.col(share.corners[1])), c(of.col(share.corners[2])) {}
   Eigen::Vector3d Weighted(const Eigen::Vector3d& weights) const {
     return weights[0] * a + weights[1] * b + weights[2] * c;
@@ -41,7 +41,7 @@ struct Corners {
 
 // Of the area vector N = (b - a) x (c - a), n = N/|N| turns at dn/dt = (dN/dt - n (n . dN/dt))/|N|.
 template <bool kVelocities>
-void PlaceOnTriangle(const TriangleShare& share, const Instant& at, Eigen::Index i, Placed& out) {
+void PlaceOnTriangle(const TriangleBinding& share, const EvalContext& at, Eigen::Index i, Placed& out) {
   const Corners x(at.x, share);
   const Eigen::Vector3d area = (x.b - x.a).cross(x.c - x.a), normal = area.stableNormalized();
   out.x.col(i) = x.Weighted(share.weights) + share.height * normal;
@@ -55,7 +55,7 @@ void PlaceOnTriangle(const TriangleShare& share, const Instant& at, Eigen::Index
 }
 
 template <bool kVelocities>
-void PlaceOnTriangles(std::span<const TriangleShare> shares, const Instant& at, Placed& out) {
+void PlaceOnTriangles(std::span<const TriangleBinding> shares, const EvalContext& at, Placed& out) {
   for (size_t i = 0; i < shares.size(); ++i) {
     PlaceOnTriangle<kVelocities>(shares[i], at, static_cast<Eigen::Index>(i), out);
   }
@@ -68,25 +68,25 @@ BodyPoints::BodyPoints(const Model& model, int body)
       first_vertex_(model.bodies[body].first_vertex),
       pose_(model.bodies[body].pose),
       carriers_(model.rest.data()) {
-  const int ride = model.bodies[body].ride;
+  const int ride = model.bodies[body].skin;
   if (ride < 0) return;
-  shares_ = model.rides[ride].shares;
-  triangles_ = model.rides[ride].triangles;
+  shares_ = model.skins[ride].shares;
+  triangles_ = model.skins[ride].triangles;
 }
 
 // Without velocities, v is not written.
 template <bool kVelocities>
-void BodyPoints::Follow(const Instant& at, MutablePoints x, MutablePoints v) const {
+void BodyPoints::Follow(const EvalContext& at, MutablePoints x, MutablePoints v) const {
   Placed out{x, v};
   if (!triangles_.empty()) return PlaceOnTriangles<kVelocities>(triangles_, at, out);
   if (pose_ >= 0) return CarryAll<kVelocities>(at.poses[pose_], *rest_, out);
   x = *rest_;
   if (kVelocities) v.setZero();
-  const CarriersNow carriers = {ColumnsOf(at), carriers_, at.x.data(), at.v.data()};
-  CarryShares(shares_, carriers, rest_->data(), x.data(), kVelocities ? v.data() : nullptr);
+  const DriverState carriers = {PoseMatricesOf(at), carriers_, at.x.data(), at.v.data()};
+  ApplySkinWeights(shares_, carriers, rest_->data(), x.data(), kVelocities ? v.data() : nullptr);
 }
 
-void BodyPoints::Place(const Instant& at, MutablePoints x) const {
+void BodyPoints::Place(const EvalContext& at, MutablePoints x) const {
   if (first_vertex_ >= 0) {
     x = at.x.middleCols(first_vertex_, rest_->cols());
   } else {
@@ -94,7 +94,7 @@ void BodyPoints::Place(const Instant& at, MutablePoints x) const {
   }
 }
 
-ConstPoints BodyPoints::Positions(const Instant& at) const {
+ConstPoints BodyPoints::Positions(const EvalContext& at) const {
   if (first_vertex_ >= 0) return at.x.middleCols(first_vertex_, rest_->cols());
   thread_local std::vector<double> memory;
   Eigen::Map<Points> x = Fit(memory, *rest_);
@@ -102,7 +102,7 @@ ConstPoints BodyPoints::Positions(const Instant& at) const {
   return x;
 }
 
-BodyPoints::Moving BodyPoints::Locate(const Instant& at) const {
+BodyPoints::Moving BodyPoints::Locate(const EvalContext& at) const {
   const Eigen::Index n = rest_->cols();
   if (first_vertex_ >= 0) return {at.x.middleCols(first_vertex_, n), at.v.middleCols(first_vertex_, n)};
   thread_local std::vector<double> positions, velocities;

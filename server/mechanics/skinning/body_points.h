@@ -22,11 +22,11 @@ class BodyPoints {
   };
   // Valid while the instant is, and until this thread locates another body. Allocates only while the largest body that
   // this thread has located grows.
-  Moving Locate(const Instant& at) const;
+  Moving Locate(const EvalContext& at) const;
   // The same for x alone, at half the price.
-  ConstPoints Positions(const Instant& at) const;
+  ConstPoints Positions(const EvalContext& at) const;
   // Into memory of one's own.
-  void Place(const Instant& at, MutablePoints x) const;
+  void Place(const EvalContext& at, MutablePoints x) const;
 
   const Points& rest() const { return *rest_; }  // [m]
   // Place of its first vertex among the simulated ones; -1 where it is not simulated.
@@ -34,13 +34,13 @@ class BodyPoints {
 
  private:
   template <bool kVelocities>
-  void Follow(const Instant& at, MutablePoints x, MutablePoints v) const;
+  void Follow(const EvalContext& at, MutablePoints x, MutablePoints v) const;
 
   const Points* rest_;
   int first_vertex_ = -1;
   int pose_ = -1;
-  std::span<const RideShare> shares_;
-  std::span<const TriangleShare> triangles_;
+  std::span<const SkinWeight> shares_;
+  std::span<const TriangleBinding> triangles_;
   const double* carriers_;  // the simulated vertices at rest [m]
 };
 

@@ -16,39 +16,39 @@ double Weight(double distance) {
 }
 
 // How near a carrier must be to have the smallest share of what the nearest has: w_c/w = ((d^2 + n^2)/(d_c^2 + n^2))^2.
-double ReachOf(double nearest) {
+double BoundsOf(double nearest) {
   const double squared = (nearest * nearest + kNear * kNear) / std::sqrt(kSmallestShare);
   return std::sqrt(squared - kNear * kNear) * (1 + kSlack);
 }
 
 }  // namespace
 
-Blender::Blender(const Carriers& carriers)
+InverseDistanceWeights::InverseDistanceWeights(const SkinDrivers& carriers)
     : carriers_(carriers),
       tracks_(static_cast<size_t>(carriers.count())),
-      middle_(Eigen::Vector3d::Constant(Carriers::kAnywhere)) {}
+      middle_(Eigen::Vector3d::Constant(SkinDrivers::kAnywhere)) {}
 
 // How far the carrier is from a point at least.
-double Blender::Track::AtLeast(const Eigen::Vector3d& point) const {
+double InverseDistanceWeights::Track::AtLeast(const Eigen::Vector3d& point) const {
   const double moved = (point - from).norm();
   return distance - moved - kSlack * (distance + moved);
 }
 
 // As far as the vertex that was nearest last.
-double Blender::AtMost(int carrier, const Eigen::Vector3d& point) const {
+double InverseDistanceWeights::AtMost(int carrier, const Eigen::Vector3d& point) const {
   return (carriers_.vertices(carrier).col(tracks_[carrier].vertex) - point).norm() * (1 + kSlack);
 }
 
-void Blender::Find(int carrier, const Eigen::Vector3d& point) {
+void InverseDistanceWeights::Find(int carrier, const Eigen::Vector3d& point) {
   const Neighbour found = carriers_.search(carrier).Nearest(point, AtMost(carrier, point));
   tracks_[carrier] = {point, found.distance, found.vertex, Weight(found.distance)};
   if (tracks_[carrier].weight > tracks_[nearest_].weight) nearest_ = carrier;
 }
 
 // Tells which may carry points within kAround from this one.
-void Blender::LookAround(const Eigen::Vector3d& point) {
+void InverseDistanceWeights::LookAround(const Eigen::Vector3d& point) {
   middle_ = point;
-  const double reach = ReachOf(AtMost(nearest_, point) + kAround) + kAround;
+  const double reach = BoundsOf(AtMost(nearest_, point) + kAround) + kAround;
   around_.clear();
   for (int c = 0; c < carriers_.count(); ++c) {
     if (tracks_[c].AtLeast(point) <= reach) around_.push_back(c);
@@ -56,19 +56,19 @@ void Blender::LookAround(const Eigen::Vector3d& point) {
 }
 
 // Weighs all carriers that may have a share; the others' weight is 0.
-void Blender::Weigh(const Eigen::Vector3d& point) {
+void InverseDistanceWeights::Weigh(const Eigen::Vector3d& point) {
   for (const int c : around_) tracks_[c].weight = 0;
   const int first = nearest_;
   Find(first, point);
-  double reach = ReachOf(tracks_[first].distance);
+  double reach = BoundsOf(tracks_[first].distance);
   for (const int c : around_) {
     if (c == first || tracks_[c].AtLeast(point) > reach) continue;
     Find(c, point);
-    reach = ReachOf(tracks_[nearest_].distance);
+    reach = BoundsOf(tracks_[nearest_].distance);
   }
 }
 
-void Blender::Blend(const Eigen::Vector3d& point, int for_vertex, std::vector<RideShare>& shares) {
+void InverseDistanceWeights::Blend(const Eigen::Vector3d& point, int for_vertex, std::vector<SkinWeight>& shares) {
   if (!((point - middle_).norm() <= kAround)) LookAround(point);
   Weigh(point);
   const double smallest = kSmallestShare * tracks_[nearest_].weight;
@@ -77,7 +77,7 @@ void Blender::Blend(const Eigen::Vector3d& point, int for_vertex, std::vector<Ri
   for (const int c : around_) {
     const Track& track = tracks_[c];
     if (track.weight < smallest) continue;
-    carriers_.AppendShares({c, track.vertex, track.distance}, for_vertex, track.weight / sum, shares);
+    carriers_.AppendWeights({c, track.vertex, track.distance}, for_vertex, track.weight / sum, shares);
   }
 }
 

@@ -12,11 +12,11 @@ namespace phrenic {
 // below 1 % of the nearest's are dropped and the rest scaled to 1. What is found for one point bounds the search for
 // the next, so that points close together are soon done; it changes no result. Not thread-safe; use it while the
 // carriers last.
-class Blender {
+class InverseDistanceWeights {
  public:
-  explicit Blender(const Carriers& carriers);
+  explicit InverseDistanceWeights(const SkinDrivers& carriers);
   // Appends the shares of a point, by carrier; `vertex` of them is `for_vertex`.
-  void Blend(const Eigen::Vector3d& point, int for_vertex, std::vector<RideShare>& shares);
+  void Blend(const Eigen::Vector3d& point, int for_vertex, std::vector<SkinWeight>& shares);
 
  private:
   // What is known of a carrier: how far it was from the point it was last sought from.
@@ -33,7 +33,7 @@ class Blender {
   void LookAround(const Eigen::Vector3d& point);
   void Weigh(const Eigen::Vector3d& point);
 
-  const Carriers& carriers_;
+  const SkinDrivers& carriers_;
   std::vector<Track> tracks_;
   int nearest_ = 0;
   Eigen::Vector3d middle_;   // points around it ...

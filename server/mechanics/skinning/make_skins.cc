@@ -16,53 +16,53 @@ absl::Status CheckRider(const BodyModel& body, std::string_view path) {
   if (body.role != v1::ROLE_SEEN) {
     return FieldError(path, absl::StrCat("body \"", body.name, "\" must have ROLE_SEEN to ride on others"));
   }
-  if (body.ride >= 0) return FieldError(path, absl::StrCat("body \"", body.name, "\" rides already"));
+  if (body.skin >= 0) return FieldError(path, absl::StrCat("body \"", body.name, "\" rides already"));
   return absl::OkStatus();
 }
 
 // Sorts by vertex what lies together for each.
-std::vector<RideShare> ByVertex(const std::vector<RideShare>& shares, Eigen::Index vertices) {
+std::vector<SkinWeight> ByVertex(const std::vector<SkinWeight>& shares, Eigen::Index vertices) {
   std::vector<int> next(static_cast<size_t>(vertices) + 1, 0);
-  for (const RideShare& share : shares) ++next[share.vertex + 1];
+  for (const SkinWeight& share : shares) ++next[share.vertex + 1];
   std::partial_sum(next.begin(), next.end(), next.begin());
-  std::vector<RideShare> sorted(shares.size());
-  for (const RideShare& share : shares) sorted[next[share.vertex]++] = share;
+  std::vector<SkinWeight> sorted(shares.size());
+  for (const SkinWeight& share : shares) sorted[next[share.vertex]++] = share;
   return sorted;
 }
 
-Ride RideOnVertices(const Carriers& search, const BodyModel& body, int b) {
+Skin RideOnVertices(const SkinDrivers& search, const BodyModel& body, int b) {
   const Points& vertices = body.mesh.vertices;
-  Blender blender(search);
-  std::vector<RideShare> shares;
+  InverseDistanceWeights blender(search);
+  std::vector<SkinWeight> shares;
   for (const int i : CurveOrder(vertices)) blender.Blend(vertices.col(i), i, shares);
   return {.body = b, .shares = ByVertex(shares, vertices.cols()), .triangles = {}};
 }
 
-void Seat(Ride ride, Draft& draft) {
-  draft.model.bodies[ride.body].ride = static_cast<int>(draft.model.rides.size());
-  draft.model.rides.push_back(std::move(ride));
+void AddSkin(Skin skin, ModelBuilder& builder) {
+  builder.model.bodies[skin.body].skin = static_cast<int>(builder.model.skins.size());
+  builder.model.skins.push_back(std::move(skin));
 }
 
 void RideAllOnVertices(const std::vector<int>& bodies, const std::vector<int>& carriers, const std::string& name,
-                       Draft& draft) {
-  const Carriers search(draft, carriers);
+                       ModelBuilder& builder) {
+  const SkinDrivers search(builder, carriers);
   std::int64_t vertices = 0;
   for (const int b : bodies) {
-    Seat(RideOnVertices(search, draft.model.bodies[b], b), draft);
-    vertices += draft.model.bodies[b].mesh.vertices.cols();
+    AddSkin(RideOnVertices(search, builder.model.bodies[b], b), builder);
+    vertices += builder.model.bodies[b].mesh.vertices.cols();
   }
-  draft.ReportElement("seen", name, vertices, "vertices", "worked out with each frame, not with each step");
+  builder.ReportElement("seen", name, vertices, "vertices", "worked out with each frame, not with each step");
 }
 
 absl::Status RideAllOnTriangles(const std::vector<int>& bodies, const std::vector<int>& carriers,
-                                const std::string& name, const std::string& path, Draft& draft) {
-  const auto mapping = Mapping::Make(draft, carriers, path);
+                                const std::string& name, const std::string& path, ModelBuilder& builder) {
+  const auto mapping = Mapping::Make(builder, carriers, path);
   if (!mapping.ok()) return mapping.status();
   for (const int b : bodies) {
-    v1::MappingReport& report = *draft.model.report.add_mappings();
-    Seat(mapping->Carry(b, report), draft);
-    draft.ReportElement(
-        "seen", name, draft.model.bodies[b].mesh.vertices.cols(), "vertices",
+    v1::MappingReport& report = *builder.model.report.add_mappings();
+    AddSkin(mapping->Carry(b, report), builder);
+    builder.ReportElement(
+        "seen", name, builder.model.bodies[b].mesh.vertices.cols(), "vertices",
         absl::StrFormat("mapped onto triangles with each frame: %.2g mm off them at rest, %.2g mm at most; an even "
                         "stretch of 1 %% is carried within %.2g mm",
                         report.mean_distance_mm(), report.largest_distance_mm(), report.largest_strain_error_mm()));
@@ -72,19 +72,19 @@ absl::Status RideAllOnTriangles(const std::vector<int>& bodies, const std::vecto
 
 }  // namespace
 
-absl::Status AddRides(const v1::Ride& scene, const std::string& given, std::string_view path, Draft& draft) {
+absl::Status AddSkins(const v1::Ride& scene, const std::string& given, std::string_view path, ModelBuilder& builder) {
   const std::string name = ElementName(given, "ride", scene.bodies());
   const std::string field = absl::StrCat(std::string(path), ".bodies");
   const std::string carried = absl::StrCat(std::string(path), ".carriers");
-  auto bodies = draft.Bodies(scene.bodies(), field);
+  auto bodies = builder.Bodies(scene.bodies(), field);
   if (!bodies.ok()) return bodies.status();
-  auto carriers = draft.Bodies(scene.carriers(), carried);
+  auto carriers = builder.Bodies(scene.carriers(), carried);
   if (!carriers.ok()) return carriers.status();
   for (const int b : *bodies) {
-    if (absl::Status status = CheckRider(draft.model.bodies[b], field); !status.ok()) return status;
+    if (absl::Status status = CheckRider(builder.model.bodies[b], field); !status.ok()) return status;
   }
-  if (scene.mode() == v1::RIDE_MODE_TRIANGLES) return RideAllOnTriangles(*bodies, *carriers, name, carried, draft);
-  RideAllOnVertices(*bodies, *carriers, name, draft);
+  if (scene.mode() == v1::RIDE_MODE_TRIANGLES) return RideAllOnTriangles(*bodies, *carriers, name, carried, builder);
+  RideAllOnVertices(*bodies, *carriers, name, builder);
   return absl::OkStatus();
 }
 

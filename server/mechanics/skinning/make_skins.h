@@ -1,6 +1,6 @@
 // Makes the rides of bodies that are only seen: cartilages between ribs and sternum, lungs between ribs and diaphragm.
 // Each vertex moves by its carriers' displacements, weighted by inverse distance at rest, or keeps its place in its
-// nearest triangle (mapping.h). Costs frames, not steps.
+// nearest triangle (triangle_skin.h). Costs frames, not steps.
 #ifndef PHRENIC_SERVER_MECHANICS_SKINNING_MAKE_SKINS_H_
 #define PHRENIC_SERVER_MECHANICS_SKINNING_MAKE_SKINS_H_
 
@@ -8,8 +8,8 @@
 
 namespace phrenic {
 
-// Adds a Ride to the draft for each of the bodies. A carrier may ride itself when its ride was made before.
-absl::Status AddRides(const v1::Ride& scene, const std::string& name, std::string_view path, Draft& draft);
+// Adds a Skin to the builder for each of the bodies. A carrier may ride itself when its ride was made before.
+absl::Status AddSkins(const v1::Ride& scene, const std::string& name, std::string_view path, ModelBuilder& builder);
 
 }  // namespace phrenic
 

@@ -4,7 +4,7 @@
 
 namespace phrenic {
 
-PoseColumns::PoseColumns(const Pose& pose) {
+PoseMatrices::PoseMatrices(const Pose& pose) {
   const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
   const Eigen::Vector3d& w = pose.angular_velocity;
   Eigen::Map<Eigen::Matrix<double, 8, 4>, Eigen::Aligned64> columns(column[0]);
@@ -15,16 +15,16 @@ PoseColumns::PoseColumns(const Pose& pose) {
   columns.block<3, 1>(4, 3) = pose.velocity;
 }
 
-std::span<const PoseColumns> MakeColumns(const std::vector<Pose>& poses, std::vector<PoseColumns>& memory) {
+std::span<const PoseMatrices> MakePoseMatrices(const std::vector<Pose>& poses, std::vector<PoseMatrices>& memory) {
   memory.clear();
   for (const Pose& pose : poses) memory.emplace_back(pose);
   return memory;
 }
 
-std::span<const PoseColumns> ColumnsOf(const Instant& at) {
+std::span<const PoseMatrices> PoseMatricesOf(const EvalContext& at) {
   if (at.columns != nullptr) return {at.columns, at.poses.size()};
-  thread_local std::vector<PoseColumns> memory;
-  return MakeColumns(at.poses, memory);
+  thread_local std::vector<PoseMatrices> memory;
+  return MakePoseMatrices(at.poses, memory);
 }
 
 }  // namespace phrenic

@@ -7,13 +7,13 @@ namespace phrenic {
 namespace {
 
 // What carries a vertex that rides itself carries what rides on it.
-void AppendOfVertex(const Ride& ride, int vertex, int for_vertex, double weight, std::vector<RideShare>& shares) {
+void AppendOfVertex(const Skin& ride, int vertex, int for_vertex, double weight, std::vector<SkinWeight>& shares) {
   if (!ride.triangles.empty()) {
-    const TriangleShare& place = ride.triangles[vertex];
+    const TriangleBinding& place = ride.triangles[vertex];
     for (int i = 0; i < 3; ++i) shares.push_back({for_vertex, -1, place.corners[i], weight * place.weights[i]});
     return;
   }
-  const auto before = [](const RideShare& share, int v) { return share.vertex < v; };
+  const auto before = [](const SkinWeight& share, int v) { return share.vertex < v; };
   auto share = std::lower_bound(ride.shares.begin(), ride.shares.end(), vertex, before);
   for (; share != ride.shares.end() && share->vertex == vertex; ++share) {
     shares.push_back({for_vertex, share->pose, share->simulated_vertex, weight * share->weight});
@@ -55,15 +55,16 @@ class NearestBoxes {
 
 }  // namespace
 
-Carriers::Carriers(const Draft& draft, const std::vector<int>& bodies) : draft_(draft), bodies_(bodies) {
+SkinDrivers::SkinDrivers(const ModelBuilder& builder, const std::vector<int>& bodies)
+    : builder_(builder), bodies_(bodies) {
   for (const int b : bodies) {
-    const Points& vertices = draft.model.bodies[b].mesh.vertices;
-    searches_.push_back(&draft.Search(b));
+    const Points& vertices = builder.model.bodies[b].mesh.vertices;
+    searches_.push_back(&builder.Search(b));
     boxes_.emplace_back(vertices.rowwise().minCoeff(), vertices.rowwise().maxCoeff());
   }
 }
 
-Carriers::Contact Carriers::Nearest(const Eigen::Vector3d& point, double reach) const {
+SkinDrivers::Contact SkinDrivers::Nearest(const Eigen::Vector3d& point, double reach) const {
   Contact nearest{.distance = kAnywhere};
   for (NearestBoxes boxes(boxes_, point, reach); !boxes.empty();) {
     const auto [squared, carrier] = boxes.Take();
@@ -76,15 +77,15 @@ Carriers::Contact Carriers::Nearest(const Eigen::Vector3d& point, double reach) 
   return nearest;
 }
 
-void Carriers::AppendShares(const Contact& contact, int for_vertex, double weight,
-                            std::vector<RideShare>& shares) const {
-  const BodyModel& body = draft_.model.bodies[bodies_[contact.carrier]];
+void SkinDrivers::AppendWeights(const Contact& contact, int for_vertex, double weight,
+                                std::vector<SkinWeight>& shares) const {
+  const BodyModel& body = builder_.model.bodies[bodies_[contact.carrier]];
   if (body.pose >= 0) {
     shares.push_back({for_vertex, body.pose, -1, weight});
   } else if (body.first_vertex >= 0) {
     shares.push_back({for_vertex, -1, body.first_vertex + contact.vertex, weight});
-  } else if (body.ride >= 0) {
-    AppendOfVertex(draft_.model.rides[body.ride], contact.vertex, for_vertex, weight, shares);
+  } else if (body.skin >= 0) {
+    AppendOfVertex(builder_.model.skins[body.skin], contact.vertex, for_vertex, weight, shares);
   }
 }
 

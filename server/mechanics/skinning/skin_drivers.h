@@ -11,12 +11,12 @@
 
 namespace phrenic {
 
-// Nearest-vertex search over each of several carriers. Keeps references into the draft: use it while it lasts.
-class Carriers {
+// Nearest-vertex search over each of several carriers. Keeps references into the builder: use it while it lasts.
+class SkinDrivers {
  public:
   static constexpr double kAnywhere = std::numeric_limits<double>::infinity();
 
-  Carriers(const Draft& draft, const std::vector<int>& bodies);
+  SkinDrivers(const ModelBuilder& builder, const std::vector<int>& bodies);
 
   struct Contact {
     int carrier = 0;  // place in the list of bodies
@@ -27,14 +27,14 @@ class Carriers {
   Contact Nearest(const Eigen::Vector3d& point, double reach = kAnywhere) const;
   // Appends what the carrier does to a point near one of its vertices, by `weight`; `vertex` of the shares is
   // `for_vertex`.
-  void AppendShares(const Contact& contact, int for_vertex, double weight, std::vector<RideShare>& shares) const;
+  void AppendWeights(const Contact& contact, int for_vertex, double weight, std::vector<SkinWeight>& shares) const;
 
   int count() const { return static_cast<int>(bodies_.size()); }
   const NearestSearch& search(int carrier) const { return *searches_[carrier]; }
-  const Points& vertices(int carrier) const { return draft_.model.bodies[bodies_[carrier]].mesh.vertices; }
+  const Points& vertices(int carrier) const { return builder_.model.bodies[bodies_[carrier]].mesh.vertices; }
 
  private:
-  const Draft& draft_;
+  const ModelBuilder& builder_;
   std::vector<int> bodies_;
   std::vector<const NearestSearch*> searches_;
   std::vector<Eigen::AlignedBox3d> boxes_;  // what is outside reach is not searched

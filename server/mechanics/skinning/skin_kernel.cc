@@ -4,7 +4,7 @@
 
 #include "server/mechanics/linalg/vector_targets.h"
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "server/mechanics/carry_kernel.cc"
+#define HWY_TARGET_INCLUDE "server/mechanics/skinning/skin_kernel.cc"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -30,7 +30,7 @@ class Posed {
       : x_(hn::Set(d_, rest[0])), y_(hn::Set(d_, rest[1])), z_(hn::Set(d_, rest[2])) {
     for (auto& part : sum_) part = hn::Zero(d_);
   }
-  HWY_INLINE void Add(double weight, const PoseColumns& pose) {
+  HWY_INLINE void Add(double weight, const PoseMatrices& pose) {
     const auto w = hn::Set(d_, weight);
     for (int p = 0; p < kParts; ++p) {
       const auto column = [&](int k) { return hn::Load(d_, pose.column[k] + p * kLanes); };
@@ -49,7 +49,7 @@ class Posed {
 };
 
 template <bool kVelocities>
-void Carry(std::span<const RideShare> shares, const CarriersNow& carriers, const double* rest, double* x, double* v) {
+void Carry(std::span<const SkinWeight> shares, const DriverState& carriers, const double* rest, double* x, double* v) {
   for (auto share = shares.begin(); share != shares.end();) {
     const int vertex = share->vertex;
     const std::ptrdiff_t first = 3 * static_cast<std::ptrdiff_t>(vertex);
@@ -75,7 +75,7 @@ void Carry(std::span<const RideShare> shares, const CarriersNow& carriers, const
   }
 }
 
-void CarryHere(std::span<const RideShare> shares, const CarriersNow& carriers, const double* rest, double* x,
+void CarryHere(std::span<const SkinWeight> shares, const DriverState& carriers, const double* rest, double* x,
                double* v) {
   if (v == nullptr) {
     Carry<false>(shares, carriers, rest, x, v);
@@ -93,8 +93,8 @@ namespace phrenic {
 
 HWY_EXPORT(CarryHere);
 
-void CarryShares(std::span<const RideShare> shares, const CarriersNow& carriers, const double* rest, double* x,
-                 double* v) {
+void ApplySkinWeights(std::span<const SkinWeight> shares, const DriverState& carriers, const double* rest, double* x,
+                      double* v) {
   HWY_DYNAMIC_DISPATCH(CarryHere)(shares, carriers, rest, x, v);
 }
 

@@ -25,15 +25,15 @@ bool HasArea(const ConstPoints& x, const Eigen::Vector3i& t) {
   return AreaVector(x, t).norm() > kNoArea * longest;
 }
 
-void AddTriangles(const Draft& draft, const BodyModel& body, std::vector<Eigen::Vector3i>& triangles) {
+void AddTriangles(const ModelBuilder& builder, const BodyModel& body, std::vector<Eigen::Vector3i>& triangles) {
   for (Eigen::Index t = 0; t < body.mesh.triangles.cols(); ++t) {
     const Eigen::Vector3i corners = body.mesh.triangles.col(t).array() + body.first_vertex;
-    if (HasArea(draft.model.rest, corners)) triangles.push_back(corners);
+    if (HasArea(builder.model.rest, corners)) triangles.push_back(corners);
   }
 }
 
 // Where `point` is in the triangle's own coordinates; exact for every point, inside or not.
-TriangleShare PlaceIn(const ConstPoints& x, const Eigen::Vector3i& t, const Eigen::Vector3d& point) {
+TriangleBinding PlaceIn(const ConstPoints& x, const Eigen::Vector3i& t, const Eigen::Vector3d& point) {
   const Eigen::Vector3d area = AreaVector(x, t);
   const Eigen::Vector3d a = x.col(t[0]), b = x.col(t[1]), c = x.col(t[2]);
   const double squared = area.squaredNorm();
@@ -47,12 +47,13 @@ double LargestStretchError(double height) { return 2 / std::sqrt(3.0) * kStretch
 
 }  // namespace
 
-absl::StatusOr<Mapping> Mapping::Make(const Draft& draft, const std::vector<int>& carriers, std::string_view path) {
+absl::StatusOr<Mapping> Mapping::Make(const ModelBuilder& builder, const std::vector<int>& carriers,
+                                      std::string_view path) {
   std::vector<Eigen::Vector3i> triangles;
   for (const int c : carriers) {
-    const BodyModel& body = draft.model.bodies[c];
+    const BodyModel& body = builder.model.bodies[c];
     const size_t before = triangles.size();
-    if (body.first_vertex >= 0) AddTriangles(draft, body, triangles);
+    if (body.first_vertex >= 0) AddTriangles(builder, body, triangles);
     if (triangles.size() == before) {
       return FieldError(path, absl::StrCat("body \"", body.name, "\" is not ROLE_DEFORMABLE, or has no triangles, and ",
                                            "cannot carry by them; leave mode out, or name another body"));
@@ -60,17 +61,18 @@ absl::StatusOr<Mapping> Mapping::Make(const Draft& draft, const std::vector<int>
   }
   Triangles columns(3, static_cast<Eigen::Index>(triangles.size()));
   for (size_t t = 0; t < triangles.size(); ++t) columns.col(static_cast<Eigen::Index>(t)) = triangles[t];
-  return Mapping(draft, columns);
+  return Mapping(builder, columns);
 }
 
-Mapping::Mapping(const Draft& draft, const Triangles& triangles) : draft_(draft), tree_(draft.model.rest, triangles) {
-  tree_.Fit(draft.model.rest, boxes_);
+Mapping::Mapping(const ModelBuilder& builder, const Triangles& triangles)
+    : builder_(builder), tree_(builder.model.rest, triangles) {
+  tree_.Fit(builder.model.rest, boxes_);
 }
 
-Ride Mapping::Carry(int body, v1::MappingReport& report) const {
-  const BodyModel& seen = draft_.model.bodies[body];
-  const ConstPoints x = draft_.model.rest;
-  Ride ride{.body = body, .shares = {}, .triangles = {}};
+Skin Mapping::Carry(int body, v1::MappingReport& report) const {
+  const BodyModel& seen = builder_.model.bodies[body];
+  const ConstPoints x = builder_.model.rest;
+  Skin ride{.body = body, .shares = {}, .triangles = {}};
   double sum = 0, furthest = 0, highest = 0;
   for (Eigen::Index i = 0; i < seen.mesh.vertices.cols(); ++i) {
     const Eigen::Vector3d point = seen.mesh.vertices.col(i);

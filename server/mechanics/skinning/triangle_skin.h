@@ -14,19 +14,20 @@
 
 namespace phrenic {
 
-// All triangles of some deformable bodies at rest. Keeps a reference into the draft: use it while it lasts.
+// All triangles of some deformable bodies at rest. Keeps a reference into the builder: use it while it lasts.
 class Mapping {
  public:
   // INVALID_ARGUMENT where one of the bodies is not deformable or has no triangles with an area.
-  static absl::StatusOr<Mapping> Make(const Draft& draft, const std::vector<int>& carriers, std::string_view path);
+  static absl::StatusOr<Mapping> Make(const ModelBuilder& builder, const std::vector<int>& carriers,
+                                      std::string_view path);
 
   // The ride of a body on those triangles, and how well it lies on them.
-  Ride Carry(int body, v1::MappingReport& report) const;
+  Skin Carry(int body, v1::MappingReport& report) const;
 
  private:
-  Mapping(const Draft& draft, const Triangles& triangles);
+  Mapping(const ModelBuilder& builder, const Triangles& triangles);
 
-  const Draft& draft_;
+  const ModelBuilder& builder_;
   TriangleTree tree_;
   TriangleTree::Boxes boxes_;
 };

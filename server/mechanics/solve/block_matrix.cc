@@ -36,7 +36,7 @@ BlockMatrix::BlockMatrix(const Model& model, Springs springs) {
   const int n = static_cast<int>(model.rest.cols());
   for (int i = 0; springs == Springs::kWithin && i < n; ++i) pattern.places.emplace_back(i, i);
   const State rest = model.InitialState();
-  const Instant at = MakeInstant(model, model.parameters, rest);
+  const EvalContext at = MakeEvalContext(model, model.parameters, rest);
   for (const auto& force : model.forces) {
     force->AddStiffness(at, pattern);
     if (springs == Springs::kElsewhere) force->AddLatentStiffness(at, pattern);
@@ -54,7 +54,7 @@ BlockMatrix::BlockMatrix(const Model& model, Springs springs) {
   blocks_.assign(columns_.size(), Eigen::Matrix3d::Zero());
 }
 
-void BlockMatrix::Assemble(const Model& model, const Instant& at) {
+void BlockMatrix::Assemble(const Model& model, const EvalContext& at) {
   std::fill(blocks_.begin(), blocks_.end(), Eigen::Matrix3d::Zero());
   extra_.clear();
   outer_.Clear();

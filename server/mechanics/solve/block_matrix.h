@@ -5,8 +5,8 @@
 #include <Eigen/SparseCore>
 #include <vector>
 
-#include "server/mechanics/model.h"
 #include "server/mechanics/linalg/outer_products.h"
+#include "server/mechanics/model.h"
 
 namespace phrenic {
 
@@ -20,7 +20,7 @@ class BlockMatrix final : public StiffnessSink {
   explicit BlockMatrix(const Model& model, Springs springs = Springs::kWithin);
 
   // K = the stiffness of the model's forces at this instant. Allocates only for blocks that are new to the pattern.
-  void Assemble(const Model& model, const Instant& at);
+  void Assemble(const Model& model, const EvalContext& at);
 
   void Add(int i, int j, const Eigen::Matrix3d& block) override;
   void AddOuter(double scale, const Points& g) override { outer_.Add(scale, g); }

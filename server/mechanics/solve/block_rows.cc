@@ -24,7 +24,7 @@ class Recorder final : public StiffnessSink {
   void Add(int i, int j, const Eigen::Matrix3d&) override {
     if (i < j) pairs.emplace_back(i, j);
   }
-  void AddSpringsAt(std::span<const Spring> list, const Instant&) override { springs.push_back(list); }
+  void AddSpringsAt(std::span<const Spring> list, const EvalContext&) override { springs.push_back(list); }
   void AddOuter(double, const Points&) override {}
 
   CallPairs pairs;
@@ -110,7 +110,7 @@ BlockRows::BlockRows(const Model& model) : row_(model.rest.cols(), -1) {
 void BlockRows::NoteCalls(const Model& model) {
   Recorder recorder;
   const State rest = model.InitialState();
-  const Instant at = MakeInstant(model, model.parameters, rest);
+  const EvalContext at = MakeEvalContext(model, model.parameters, rest);
   for (const auto& force : model.forces) {
     first_call_.push_back(calls_.size());
     recorder.pairs.clear();
@@ -211,7 +211,7 @@ void BlockRows::MakeRoom() {
   direction_.resize(rows + held_.size());
 }
 
-void BlockRows::Assemble(const Model& model, const Instant& at, double g, const Eigen::VectorXd& inertia) {
+void BlockRows::Assemble(const Model& model, const EvalContext& at, double g, const Eigen::VectorXd& inertia) {
   g_ = g;
   PlaceAll(at.x);
   std::fill(entries_.begin(), entries_.end(), Quad());
@@ -265,7 +265,7 @@ void BlockRows::Add(int i, int j, const Eigen::Matrix3d& block) {
   AddTurning(block, entry);
 }
 
-void BlockRows::AddSpringsAt(std::span<const Spring> springs, const Instant& at) {
+void BlockRows::AddSpringsAt(std::span<const Spring> springs, const EvalContext& at) {
   const auto same = [springs](const auto& list) { return list.data() == springs.data(); };
   if (std::none_of(springs_.begin(), springs_.end(), same)) StiffnessSink::AddSpringsAt(springs, at);
 }

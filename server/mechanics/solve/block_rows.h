@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "server/mechanics/linalg/block_kernel.h"
-#include "server/mechanics/model.h"
 #include "server/mechanics/linalg/outer_products.h"
+#include "server/mechanics/model.h"
 
 namespace phrenic {
 
@@ -21,10 +21,10 @@ class BlockRows final : public StiffnessSink {
   explicit BlockRows(const Model& model);
 
   // A at this instant; `inertia` [kg] one a vertex, g [s]. Allocates only for blocks that are new to the pattern.
-  void Assemble(const Model& model, const Instant& at, double g, const Eigen::VectorXd& inertia);
+  void Assemble(const Model& model, const EvalContext& at, double g, const Eigen::VectorXd& inertia);
 
   void Add(int i, int j, const Eigen::Matrix3d& block) override;
-  void AddSpringsAt(std::span<const Spring> springs, const Instant& at) override;
+  void AddSpringsAt(std::span<const Spring> springs, const EvalContext& at) override;
   void AddOuter(double scale, const Points& g) override { outer_.Add(scale, g); }
 
   // The direction p of a search, scaled (BlockSlices): z to begin with, then as block_kernel.h turns it.

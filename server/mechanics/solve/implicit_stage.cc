@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "server/mechanics/step/advance.h"
 #include "server/mechanics/solve/implicit_system.h"
+#include "server/mechanics/step/advance.h"
 
 namespace phrenic {
 namespace {
@@ -49,7 +49,7 @@ void PlaceStage(const Model& model, const v1::Parameters& parameters, const Impl
   DriveMotions(model, parameters, stage.ahead, state);
 }
 
-void StageResidual(const Model& model, const ImplicitStage& stage, const Instant& at, Points& residual) {
+void StageResidual(const Model& model, const ImplicitStage& stage, const EvalContext& at, Points& residual) {
   SumForces(model, at, residual);
   residual = stage.g * residual - (at.v - stage.velocity) * model.mass.asDiagonal();
 }
@@ -67,7 +67,7 @@ absl::Status SolveStage(const Model& model, const v1::Parameters& parameters, co
   const auto moved = [&] { return stage.g * last.change.cwiseAbs().maxCoeff(); };
   for (int step = 0; step < stage.newton_steps; ++step) {
     PlaceStage(model, parameters, stage, state);
-    const Instant at = InstantAhead(model, parameters, stage.ahead, state);
+    const EvalContext at = EvalContextAhead(model, parameters, stage.ahead, state);
     StageResidual(model, stage, at, work.force);
     if (last.Overshot(work.force)) {
       const double part = last.Shorten(work.force);

@@ -24,7 +24,7 @@ struct ImplicitStage {
 // x = position + g v for free vertices; driven ones and poses where the motions have them at that time.
 void PlaceStage(const Model& model, const v1::Parameters& parameters, const ImplicitStage& stage, State& state);
 // g f - m (v - velocity), with `at` the stage's moment: what is missing to the stage's equation [N s].
-void StageResidual(const Model& model, const ImplicitStage& stage, const Instant& at, Points& residual);
+void StageResidual(const Model& model, const ImplicitStage& stage, const EvalContext& at, Points& residual);
 
 // Solves the stage by Newton's method from the velocities that `state` has, and leaves x' and v' there, driven vertices
 // and poses where the motions have them. ABORTED where Newton's method does not settle within its steps (a single

@@ -34,7 +34,7 @@ ImplicitSystem::ImplicitSystem(const Model& model) : rows_(model), inertia_(mode
   for (RowVector* each : {&change_, &residual_, &product_}) each->resize(rows_.row_lanes());
 }
 
-void ImplicitSystem::Assemble(const Model& model, const Instant& at, double g) {
+void ImplicitSystem::Assemble(const Model& model, const EvalContext& at, double g) {
   g_ = g;
   factorised_ = false;
   SumDamping(model, at, inertia_);
@@ -44,7 +44,7 @@ void ImplicitSystem::Assemble(const Model& model, const Instant& at, double g) {
   rows_.Assemble(model, at, g, inertia_);
 }
 
-absl::Status ImplicitSystem::Solve(const Model& model, const Instant& at, const Points& b, double tolerance,
+absl::Status ImplicitSystem::Solve(const Model& model, const EvalContext& at, const Points& b, double tolerance,
                                    SolverEffort& effort, Points& y) {
   if (!b.allFinite()) return absl::AbortedError("a force is not finite: lower time_step");
   if (factorised_) return Factorise(model, at, b, y);
@@ -109,7 +109,7 @@ ImplicitSystem::End ImplicitSystem::Iterate(const SolverEffort& effort, Progress
   return End::kTooLong;
 }
 
-absl::Status ImplicitSystem::Factorise(const Model& model, const Instant& at, const Points& b, Points& y) {
+absl::Status ImplicitSystem::Factorise(const Model& model, const EvalContext& at, const Points& b, Points& y) {
   const Eigen::Index n = b.cols();
   if (stiffness_ == nullptr) stiffness_ = std::make_unique<BlockMatrix>(model);
   if (!factorised_) {

@@ -25,12 +25,12 @@ class ImplicitSystem {
   explicit ImplicitSystem(const Model& model);
 
   // Takes M, C and K from the model at this instant.
-  void Assemble(const Model& model, const Instant& at, double g);
+  void Assemble(const Model& model, const EvalContext& at, double g);
   // y becomes A^-1 b, from what it is as a first guess, until what is missing, in the preconditioner's norm, is
   // `tolerance` of what it was, or kFinest of b; 0 for fixed and driven vertices. At the instant of Assemble. Where the
   // effort is spent y is the best there is by then, after one iteration at least; it notes what was reached. ABORTED
   // where b is not finite or the matrix cannot be factorised.
-  absl::Status Solve(const Model& model, const Instant& at, const Points& b, double tolerance, SolverEffort& effort,
+  absl::Status Solve(const Model& model, const EvalContext& at, const Points& b, double tolerance, SolverEffort& effort,
                      Points& y);
 
  private:
@@ -42,7 +42,7 @@ class ImplicitSystem {
   double StartFrom(const Points& b, Points& y);
   void Begin(double tolerance, Progress& progress);
   End Iterate(const SolverEffort& effort, Progress& progress);
-  absl::Status Factorise(const Model& model, const Instant& at, const Points& b, Points& y);
+  absl::Status Factorise(const Model& model, const EvalContext& at, const Points& b, Points& y);
   void SolveFactored(const Points& b, Points& y) const;
 
   BlockRows rows_;

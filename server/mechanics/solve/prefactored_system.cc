@@ -58,7 +58,7 @@ void PrefactoredSystem::Prepare(const Model& model, const v1::Parameters& parame
   const Eigen::VectorXd diagonal = diagonal_;
   const std::vector<double> values = values_;
   const State rest = model.InitialState();
-  const Instant at = MakeInstant(model, parameters, rest);
+  const EvalContext at = MakeEvalContext(model, parameters, rest);
   Assemble(model, at);
   if (factors_.lower.empty() || diagonal != diagonal_ || values != values_) {
     pattern_.Factorise(diagonal_, values_, factors_);
@@ -66,7 +66,7 @@ void PrefactoredSystem::Prepare(const Model& model, const v1::Parameters& parame
   PrepareShared(model, at);
 }
 
-void PrefactoredSystem::Assemble(const Model& model, const Instant& at) {
+void PrefactoredSystem::Assemble(const Model& model, const EvalContext& at) {
   stiffness_.Assemble(model, at);
   Eigen::VectorXd diagonal(diagonal_.size());
   SumDamping(model, at, diagonal);
@@ -89,7 +89,7 @@ void PrefactoredSystem::Assemble(const Model& model, const Instant& at) {
 }
 
 // What damps comes on top of what the stiffness' products have made of the matrix.
-void PrefactoredSystem::PrepareShared(const Model& model, const Instant& at) {
+void PrefactoredSystem::PrepareShared(const Model& model, const EvalContext& at) {
   SumSharedDamping(model, at, shared_damping_);
   stiffness_.outer().Prepare(g_ * g_, [this](const Points& b, Points& y) { SolvePlain(b, y); });
   shared_damping_.Prepare(g_, [this](const Points& b, Points& y) {

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "server/mechanics/solve/block_matrix.h"
 #include "server/mechanics/linalg/sparse_ldlt.h"
+#include "server/mechanics/solve/block_matrix.h"
 
 namespace phrenic {
 
@@ -30,8 +30,8 @@ class PrefactoredSystem {
 
  private:
   bool IsFor(const v1::Parameters& parameters, double g);
-  void Assemble(const Model& model, const Instant& at);
-  void PrepareShared(const Model& model, const Instant& at);
+  void Assemble(const Model& model, const EvalContext& at);
+  void PrepareShared(const Model& model, const EvalContext& at);
   void SolvePlain(const Points& b, Points& y);
 
   double g_ = 0;

@@ -6,7 +6,7 @@
 
 namespace phrenic {
 
-ScaledStiffness::ScaledStiffness(const Model& model, const Instant& at, Integrator::Damping counted)
+ScaledStiffness::ScaledStiffness(const Model& model, const EvalContext& at, Integrator::Damping counted)
     : blocks_(model, BlockMatrix::Springs::kElsewhere),
       damping_(model.rest.cols()),
       scale_(model.inverse_mass.cwiseSqrt()) {

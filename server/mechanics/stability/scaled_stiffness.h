@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include "server/mechanics/solve/block_matrix.h"
 #include "server/mechanics/linalg/large_pages.h"
+#include "server/mechanics/solve/block_matrix.h"
 
 namespace phrenic {
 
@@ -15,7 +15,7 @@ namespace phrenic {
 // thread-safe.
 class ScaledStiffness final : public StiffnessSink {
  public:
-  ScaledStiffness(const Model& model, const Instant& at, Integrator::Damping counted);
+  ScaledStiffness(const Model& model, const EvalContext& at, Integrator::Damping counted);
 
   void Add(int i, int j, const Eigen::Matrix3d& block) override { blocks_.Add(i, j, block); }
   void AddSprings(std::span<const SpringStiffness> springs) override;

@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "server/mechanics/step/advance.h"
 #include "server/mechanics/compile/catalogue.h"
 #include "server/mechanics/linalg/large_pages.h"
 #include "server/mechanics/stability/scaled_stiffness.h"
+#include "server/mechanics/step/advance.h"
 
 namespace phrenic {
 namespace {
@@ -42,7 +42,7 @@ void FindLeastMass(const Model& model, Spectrum& spectrum) {
   }
 }
 
-void FindDampingRates(const Model& model, const Instant& at, Spectrum& spectrum) {
+void FindDampingRates(const Model& model, const EvalContext& at, Spectrum& spectrum) {
   Eigen::VectorXd c(model.rest.cols());
   SumDamping(model, at, c);
   spectrum.least_damping_rate = std::numeric_limits<double>::infinity();
@@ -209,7 +209,7 @@ void TakeMode(const Model& model, const Eigen::VectorXd& vector, FastestMode& fa
 FastestMode FindFastestMode(const Model& model, const v1::Parameters& parameters, const State& state) {
   FastestMode fastest;
   if (model.rest.cols() == 0 || model.inverse_mass.maxCoeff() == 0) return fastest;
-  const Instant at = MakeInstant(model, parameters, state);
+  const EvalContext at = MakeEvalContext(model, parameters, state);
   const Integrator& integrator = FindIntegrator(parameters.integrator());
   Spectrum& spectrum = fastest.spectrum;
   FindLeastMass(model, spectrum);

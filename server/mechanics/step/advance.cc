@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <limits>
 
-#include "server/mechanics/step/load_batch.h"
-#include "server/mechanics/forces/packed_points.h"
-#include "server/mechanics/skinning/pose_matrices.h"
 #include "server/mechanics/constraint_residual.h"
+#include "server/mechanics/forces/packed_points.h"
 #include "server/mechanics/linalg/vertex_kernel.h"
+#include "server/mechanics/skinning/pose_matrices.h"
+#include "server/mechanics/step/load_batch.h"
 
 namespace phrenic {
 namespace {
@@ -20,33 +20,34 @@ constexpr double kStill = 1e-12;  // of the largest velocity: a round that chang
 
 }  // namespace
 
-Instant InstantAhead(const Model& model, const v1::Parameters& parameters, double ahead, const State& state) {
-  return MakeInstant(model, parameters, state, state.time + ahead, state.phase + ahead / parameters.breath_length());
+EvalContext EvalContextAhead(const Model& model, const v1::Parameters& parameters, double ahead, const State& state) {
+  return MakeEvalContext(model, parameters, state, state.time + ahead,
+                         state.phase + ahead / parameters.breath_length());
 }
 
 void DriveMotions(const Model& model, const v1::Parameters& parameters, double ahead, State& state) {
   if (model.motions.empty()) return;
-  const Instant at = InstantAhead(model, parameters, ahead, state);
+  const EvalContext at = EvalContextAhead(model, parameters, ahead, state);
   for (const auto& motion : model.motions) motion->Drive(at, state);
 }
 
-Instant Packed(const Model& model, const Instant& at) {
-  thread_local std::vector<PoseColumns> columns;
-  Instant packed = at;
+EvalContext Packed(const Model& model, const EvalContext& at) {
+  thread_local std::vector<PoseMatrices> columns;
+  EvalContext packed = at;
   if (model.packed_from >= 0) packed.packed = PackAll(at.x, model.packed_from);
-  if (!model.attached_vertices.empty()) packed.columns = MakeColumns(at.poses, columns).data();
+  if (!model.attached_vertices.empty()) packed.columns = MakePoseMatrices(at.poses, columns).data();
   return packed;
 }
 
-void SumForces(const Model& model, const Instant& at, Points& f) {
-  const Instant packed = Packed(model, at);
+void SumForces(const Model& model, const EvalContext& at, Points& f) {
+  const EvalContext packed = Packed(model, at);
   const bool fresh = !SumWholeForces(model, packed, f);
   ForEachBlock({0, f.cols()}, [&](const VertexRange& block) {
     AddForcesIn(block, model, packed, fresh, f.middleCols(block.first, block.end - block.first));
   });
 }
 
-bool SumWholeForces(const Model& model, const Instant& at, Points& f) {
+bool SumWholeForces(const Model& model, const EvalContext& at, Points& f) {
   if (model.whole_forces.empty()) return false;
   f.setZero();
   for (const Force* force : model.whole_forces) force->AddForce(at, f);
@@ -55,7 +56,7 @@ bool SumWholeForces(const Model& model, const Instant& at, Points& f) {
 
 namespace {
 
-void AddForcesBut(const Force* left, const VertexRange& range, const Model& model, const Instant& at, bool fresh,
+void AddForcesBut(const Force* left, const VertexRange& range, const Model& model, const EvalContext& at, bool fresh,
                   MutablePoints f) {
   for (const Force* force : model.range_forces) {
     if (force == left) continue;
@@ -70,40 +71,40 @@ void AddForcesBut(const Force* left, const VertexRange& range, const Model& mode
 
 }  // namespace
 
-void AddForcesIn(const VertexRange& range, const Model& model, const Instant& at, bool fresh, MutablePoints f) {
+void AddForcesIn(const VertexRange& range, const Model& model, const EvalContext& at, bool fresh, MutablePoints f) {
   AddForcesBut(nullptr, range, model, at, fresh, f);
 }
 
-VertexLoads AddForcesButLoads(const VertexRange& block, const Model& model, const Instant& at, bool fresh,
+VertexLoads AddForcesButLoads(const VertexRange& block, const Model& model, const EvalContext& at, bool fresh,
                               MutablePoints f) {
   AddForcesBut(model.loads, block, model, at, fresh, f);
   return model.loads == nullptr ? VertexLoads() : model.loads->InBlock(block, at, f);
 }
 
-void SumDamping(const Model& model, const Instant& at, Eigen::VectorXd& c) {
+void SumDamping(const Model& model, const EvalContext& at, Eigen::VectorXd& c) {
   c.setZero();
   for (const auto& force : model.forces) force->AddDamping(at, c);
 }
 
-void SumSharedDamping(const Model& model, const Instant& at, OuterProducts& shared) {
+void SumSharedDamping(const Model& model, const EvalContext& at, OuterProducts& shared) {
   shared.Clear();
   for (const auto& force : model.forces) force->AddSharedDamping(at, shared);
 }
 
-void MakePlaces(Eigen::Index vertices, std::vector<StateReach>& blocks) {
+void ResizeBounds(Eigen::Index vertices, std::vector<StateBounds>& blocks) {
   blocks.resize((vertices + kVertexBlock - 1) / kVertexBlock + 1);
   blocks.back() = {};
 }
 
-void NoteReach(const VertexRange& block, const StateReach& reach, std::vector<StateReach>& blocks) {
+void RecordBounds(const VertexRange& block, const StateBounds& reach, std::vector<StateBounds>& blocks) {
   blocks[block.first / kVertexBlock] = reach;
 }
 
-void NoteReach(std::span<const int> vertices, const Points& x, const Points& v, std::vector<StateReach>& blocks) {
-  StateReach& reach = blocks.back();
+void RecordBounds(std::span<const int> vertices, const Points& x, const Points& v, std::vector<StateBounds>& blocks) {
+  StateBounds& reach = blocks.back();
   for (const int vertex : vertices) {
-    reach.furthest = Further(reach.furthest, x.col(vertex).cwiseAbs().maxCoeff<Eigen::PropagateNaN>());
-    reach.fastest = Further(reach.fastest, v.col(vertex).cwiseAbs().maxCoeff<Eigen::PropagateNaN>());
+    reach.furthest = LargerMagnitude(reach.furthest, x.col(vertex).cwiseAbs().maxCoeff<Eigen::PropagateNaN>());
+    reach.fastest = LargerMagnitude(reach.fastest, v.col(vertex).cwiseAbs().maxCoeff<Eigen::PropagateNaN>());
   }
 }
 

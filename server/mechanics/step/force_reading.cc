@@ -30,7 +30,7 @@ Points ForceReading::Of(const std::string& kind) const {
 
 Points ForceReading::Elements(const std::string& kind) const {
   Points force = Points::Zero(3, state_.x.cols());
-  const Instant at = MakeInstant(model_, parameters_, state_);
+  const EvalContext at = MakeEvalContext(model_, parameters_, state_);
   for (std::size_t i = 0; i < model_.forces.size(); ++i) {
     if (model_.force_kinds[i] == kind) model_.forces[i]->AddForce(at, force);
   }
@@ -45,7 +45,7 @@ Points ForceReading::Pulls() const {
 
 Points ForceReading::Loads() const {
   Points force(3, state_.x.cols());
-  SumForces(model_, MakeInstant(model_, parameters_, state_), force);
+  SumForces(model_, MakeEvalContext(model_, parameters_, state_), force);
   return force;
 }
 

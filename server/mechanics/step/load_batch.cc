@@ -24,7 +24,7 @@ LoadBatch::LoadBatch(std::span<const Friction* const> friction, std::span<const 
   }
 }
 
-VertexLoads LoadBatch::InBlock(const VertexRange& block, const Instant& at, MutablePoints f) const {
+VertexLoads LoadBatch::InBlock(const VertexRange& block, const EvalContext& at, MutablePoints f) const {
   VertexLoads loads;
   if (coefficient_.size() > 0) loads.c = coefficient_.data();
   for (const SharedForce* force : shared_) {
@@ -40,7 +40,7 @@ VertexLoads LoadBatch::InBlock(const VertexRange& block, const Instant& at, Muta
   return loads;
 }
 
-void LoadBatch::AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const {
+void LoadBatch::AddForceIn(const VertexRange& range, const EvalContext& at, MutablePoints f) const {
   for (Eigen::Index first = range.first; first < range.end; first += kVertexBlock) {
     const VertexRange block = {first, std::min(first + kVertexBlock, range.end)};
     const MutablePoints own = f.middleCols(first - range.first, block.end - first);

@@ -18,10 +18,10 @@ class LoadBatch final : public Force {
   LoadBatch(std::span<const Friction* const> friction, std::span<const SharedForce* const> shared);
 
   bool by_range() const override { return true; }
-  void AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const override;
+  void AddForceIn(const VertexRange& range, const EvalContext& at, MutablePoints f) const override;
   // What is to be added to the forces on a block (kVertexBlock), for a pass over it that has more to do; of more loads
   // than VertexLoads holds the first are added to f.
-  VertexLoads InBlock(const VertexRange& block, const Instant& at, MutablePoints f) const;
+  VertexLoads InBlock(const VertexRange& block, const EvalContext& at, MutablePoints f) const;
 
  private:
   Eigen::VectorXd coefficient_;  // c of all friction, one a simulated vertex [N s/m]; none where there is none

@@ -33,15 +33,15 @@ SpringBatch::SpringBatch(std::span<const Springs* const> members, const Points& 
   rows_.SetLoad(load);
 }
 
-void SpringBatch::AddForce(const Instant& at, MutablePoints f) const {
+void SpringBatch::AddForce(const EvalContext& at, MutablePoints f) const {
   rows_.AddForce(at.parameters.elasticity(), at.x, f);
 }
 
-void SpringBatch::AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const {
+void SpringBatch::AddForceIn(const VertexRange& range, const EvalContext& at, MutablePoints f) const {
   rows_.AddForce(range, at.parameters.elasticity(), at.x, at.packed, false, f);
 }
 
-void SpringBatch::SetForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const {
+void SpringBatch::SetForceIn(const VertexRange& range, const EvalContext& at, MutablePoints f) const {
   rows_.AddForce(range, at.parameters.elasticity(), at.x, at.packed, true, f);
 }
 

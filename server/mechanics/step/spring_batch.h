@@ -15,12 +15,12 @@ class SpringBatch final : public Force {
   // Members of one precision, all balanced at rest or none; `rest` is 3 x n [m].
   SpringBatch(std::span<const Springs* const> members, const Points& rest);
 
-  void AddForce(const Instant& at, MutablePoints f) const override;
+  void AddForce(const EvalContext& at, MutablePoints f) const override;
   // In single precision from `at.packed`, which is to be there (Packed, advance.h).
   bool by_range() const override { return rows_.InRanges(); }
   bool reads_others() const override { return !packs_; }
-  void AddForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const override;
-  void SetForceIn(const VertexRange& range, const Instant& at, MutablePoints f) const override;
+  void AddForceIn(const VertexRange& range, const EvalContext& at, MutablePoints f) const override;
+  void SetForceIn(const VertexRange& range, const EvalContext& at, MutablePoints f) const override;
 
   const SpringRows& rows() const { return rows_; }
   bool packs() const { return packs_; }

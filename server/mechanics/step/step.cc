@@ -4,11 +4,11 @@
 #include <cmath>
 
 #include "absl/strings/str_format.h"
-#include "server/mechanics/step/adaptive_step.h"
-#include "server/mechanics/step/advance.h"
 #include "server/mechanics/compile/catalogue.h"
 #include "server/mechanics/compile/compile.h"
 #include "server/mechanics/constraint_residual.h"
+#include "server/mechanics/step/adaptive_step.h"
+#include "server/mechanics/step/advance.h"
 
 namespace phrenic {
 namespace {
@@ -22,16 +22,16 @@ double DistanceFromRest(const Model& model, const State& state, int vertex) {
 }
 
 // Of all blocks, in their order; notes those that the integrator has not.
-StateReach ReachOf(const State& state, std::vector<StateReach>& blocks) {
+StateBounds BoundsOf(const State& state, std::vector<StateBounds>& blocks) {
   if (blocks.empty()) {
-    MakePlaces(state.x.cols(), blocks);
+    ResizeBounds(state.x.cols(), blocks);
     ForEachBlock({0, state.x.cols()},
-                 [&](const VertexRange& block) { NoteReach(block, ReachOf(block, state.x, state.v), blocks); });
+                 [&](const VertexRange& block) { RecordBounds(block, BoundsOf(block, state.x, state.v), blocks); });
   }
-  StateReach whole;
-  for (const StateReach& block : blocks) {
-    whole.furthest = Further(block.furthest, whole.furthest);
-    whole.fastest = Further(block.fastest, whole.fastest);
+  StateBounds whole;
+  for (const StateBounds& block : blocks) {
+    whole.furthest = LargerMagnitude(block.furthest, whole.furthest);
+    whole.fastest = LargerMagnitude(block.fastest, whole.fastest);
   }
   return whole;
 }
@@ -39,14 +39,14 @@ StateReach ReachOf(const State& state, std::vector<StateReach>& blocks) {
 // True where every coordinate is a number within the bound, and no velocity one that takes less than `dt` across it:
 // constraints may hold positions back while velocities run away. What an integrator has noted may be too much, where
 // constraints have since brought vertices back.
-bool WithinBounds(const Model& model, double dt, const State& state, std::vector<StateReach>& blocks) {
-  const auto within = [&](const StateReach& reach) {
+bool WithinBounds(const Model& model, double dt, const State& state, std::vector<StateBounds>& blocks) {
+  const auto within = [&](const StateBounds& reach) {
     return reach.furthest <= model.bound && reach.fastest <= 2 * model.bound / dt;
   };
   const bool noted = !blocks.empty();
-  if (within(ReachOf(state, blocks))) return true;
+  if (within(BoundsOf(state, blocks))) return true;
   blocks.clear();
-  return noted && within(ReachOf(state, blocks));
+  return noted && within(BoundsOf(state, blocks));
 }
 
 void KeepBefore(const State& state, Workspace& work) {
@@ -71,7 +71,7 @@ int FurthestVertex(const Model& model, const State& state) {
 }
 
 std::string LargestForceOn(const Model& model, const v1::Parameters& parameters, const State& state, int vertex) {
-  const Instant at = MakeInstant(model, parameters, state);
+  const EvalContext at = MakeEvalContext(model, parameters, state);
   Points force(3, state.x.cols());
   std::string name = "no force";
   double largest = -1;
@@ -120,15 +120,15 @@ absl::Status Step(const Model& model, const v1::Parameters& parameters, double d
   const bool adaptive = parameters.step_tolerance() > 0 && integrator.order() > 0;
   if (!adaptive && integrator.needs_start()) KeepBefore(state, work);
   work.effort.Begin(parameters.solver_budget());
-  work.reach.clear();
+  work.bounds.clear();
   absl::Status advanced = adaptive ? AdvanceAdaptively(model, parameters, integrator, dt, state, work)
                                    : integrator.Advance(model, parameters, dt, state, work);
   state.time += dt;
   state.phase += dt / parameters.breath_length();
   ++state.tick;
   if (!advanced.ok()) return advanced;
-  if (adaptive) work.reach.clear();  // of a part of the step, or a trial
-  if (!WithinBounds(model, dt, state, work.reach)) return absl::OutOfRangeError("the step diverged");
+  if (adaptive) work.bounds.clear();  // of a part of the step, or a trial
+  if (!WithinBounds(model, dt, state, work.bounds)) return absl::OutOfRangeError("the step diverged");
   return absl::OkStatus();
 }
 

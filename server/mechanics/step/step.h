@@ -11,8 +11,8 @@ namespace phrenic {
 // The state becomes the state at t + dt, by the integrator that the parameters name. OUT_OF_RANGE when the
 // step diverged (a position that is not finite, or ten times the scene's size outside its box at rest; velocities that
 // are not finite, or that would cross all that in one step); `state` is then
-// not to be shown to anyone, and Diagnose says why; Trail (trail.h) finds the state before. ABORTED when the integrator
-// found no next state. Allocates nothing.
+// not to be shown to anyone, and Diagnose says why; StepCheckpoint (step_checkpoint.h) finds the state before. ABORTED
+// when the integrator found no next state. Allocates nothing.
 absl::Status Step(const Model& model, const v1::Parameters& parameters, double dt, State& state, Workspace& work);
 
 // Names the vertex that went furthest in a diverged state, the force with the largest pull on it before, and a remedy.

@@ -15,7 +15,7 @@ int StepsOf(const v1::Parameters& parameters) {
 
 }  // namespace
 
-void Trail::Note(const v1::Parameters& parameters, const State& state) {
+void StepCheckpoint::Note(const v1::Parameters& parameters, const State& state) {
   if (!known_ || steps_ >= StepsOf(parameters)) {
     kept_ = state;
     known_ = true;
@@ -24,7 +24,8 @@ void Trail::Note(const v1::Parameters& parameters, const State& state) {
   ++steps_;
 }
 
-State Trail::StartOfLastStep(const Model& model, const v1::Parameters& parameters, double dt, Workspace& work) const {
+State StepCheckpoint::StateBeforeLastStep(const Model& model, const v1::Parameters& parameters, double dt,
+                                          Workspace& work) const {
   State state = kept_;
   for (int step = 1; step < steps_; ++step) Step(model, parameters, dt, state, work).IgnoreError();  // it was good
   return state;

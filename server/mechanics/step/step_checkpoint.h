@@ -7,14 +7,14 @@
 namespace phrenic {
 
 // A copy of the state every so many steps, from which the steps are taken again. Not thread-safe; one for a run.
-class Trail {
+class StepCheckpoint {
  public:
   // To be told of the state before each step that is taken from it. Allocates the first time.
   void Note(const v1::Parameters& parameters, const State& state);
   // State or parameters are changed otherwise than by a step.
   void Forget() { known_ = false; }
   // The state before the last step, bit for bit; the parameters, and dt [s], are those of the steps.
-  State StartOfLastStep(const Model& model, const v1::Parameters& parameters, double dt, Workspace& work) const;
+  State StateBeforeLastStep(const Model& model, const v1::Parameters& parameters, double dt, Workspace& work) const;
 
  private:
   State kept_;

@@ -56,7 +56,7 @@ std::string_view TextOf(const grpc::string_ref& text) { return {text.data(), tex
 
 }  // namespace
 
-absl::StatusOr<Caller> Door::Identify(const grpc::ServerContextBase& context) const {
+absl::StatusOr<Caller> AccessGuard::Identify(const grpc::ServerContextBase& context) const {
   Caller caller;
   caller.peer = PeerOf(context);
   if (!guarded() || caller.peer.empty()) {
@@ -73,7 +73,7 @@ absl::StatusOr<Caller> Door::Identify(const grpc::ServerContextBase& context) co
   return caller;
 }
 
-v1::AccessRole Door::RoleIn(const Caller& caller, const session::Session& session) const {
+v1::AccessRole AccessGuard::RoleIn(const Caller& caller, const session::Session& session) const {
   if (caller.admin()) return v1::ACCESS_ROLE_ADMIN;
   const auto access = session.access();
   if (caller.known() && access->account == caller.account.name) return v1::ACCESS_ROLE_OWNER;
@@ -86,22 +86,22 @@ v1::AccessRole Door::RoleIn(const Caller& caller, const session::Session& sessio
   return role;
 }
 
-bool Door::MaySee(const Caller& caller, const session::Session& session) const {
+bool AccessGuard::MaySee(const Caller& caller, const session::Session& session) const {
   return RoleIn(caller, session) >= v1::ACCESS_ROLE_VIEWER;
 }
 
-std::function<bool()> Door::StillMaySee(const Caller& caller, const session::Session& session) const {
+std::function<bool()> AccessGuard::StillMaySee(const Caller& caller, const session::Session& session) const {
   if (!guarded()) return nullptr;
   return [this, caller, &session] { return accounts_.StillHas(caller.account) && MaySee(caller, session); };
 }
 
-absl::StatusOr<std::shared_ptr<session::Session>> Door::Find(const Caller& caller, const std::string& id) const {
+absl::StatusOr<std::shared_ptr<session::Session>> AccessGuard::Find(const Caller& caller, const std::string& id) const {
   auto session = table_.Find(id);
   if (!guarded() || (session.ok() && MaySee(caller, **session))) return session;
   return NoSuchSession(id);
 }
 
-absl::Status Door::DecideInSession(const Rule& rule, const Caller& caller, const std::string& session) const {
+absl::Status AccessGuard::DecideInSession(const Rule& rule, const Caller& caller, const std::string& session) const {
   if (caller.admin()) return absl::OkStatus();  // whether there is one, the service says
   const auto found = table_.Find(session);
   if (!found.ok() || !MaySee(caller, **found)) return NoSuchSession(session);
@@ -109,7 +109,7 @@ absl::Status Door::DecideInSession(const Rule& rule, const Caller& caller, const
   return TooLow(rule.method, rule.in_session, " in this session");
 }
 
-absl::Status Door::Decide(const Rule& rule, const Caller& caller, const std::string& session) const {
+absl::Status AccessGuard::Decide(const Rule& rule, const Caller& caller, const std::string& session) const {
   if (!guarded() || rule.anybody) return absl::OkStatus();
   if (!caller.known() && !caller.admin() && caller.links.empty()) {
     return absl::UnauthenticatedError(
@@ -121,12 +121,13 @@ absl::Status Door::Decide(const Rule& rule, const Caller& caller, const std::str
 }
 
 // Callers of this machine without an account are whoever runs it.
-absl::Status Door::Count(const Rule& rule, const Caller& caller) {
+absl::Status AccessGuard::Count(const Rule& rule, const Caller& caller) {
   if (rule.uncounted || (!caller.known() && IsThisMachine(caller.peer))) return absl::OkStatus();
   return rate_.Take(caller.known() ? "account " + caller.account.name : caller.peer, absl::Now());
 }
 
-absl::StatusOr<Caller> Door::Admit(const grpc::ServerContextBase& context, const google::protobuf::Message& request) {
+absl::StatusOr<Caller> AccessGuard::Admit(const grpc::ServerContextBase& context,
+                                          const google::protobuf::Message& request) {
   const Rule* rule = access::RuleOf(request.GetDescriptor()->full_name());
   if (rule == nullptr)
     return absl::InternalError(absl::StrCat(request.GetTypeName(), " has no rule in access/rules.cc"));
@@ -147,34 +148,34 @@ absl::StatusOr<Caller> Door::Admit(const grpc::ServerContextBase& context, const
   return who;
 }
 
-bool Door::Owns(const Caller& caller, const std::string& session) const {
+bool AccessGuard::Owns(const Caller& caller, const std::string& session) const {
   if (!guarded()) return false;
   if (caller.admin()) return true;
   const auto found = table_.Find(session);
   return found.ok() && caller.known() && (*found)->access()->account == caller.account.name;
 }
 
-std::string Door::OwnerOf(Kind kind, const std::string& id) const {
+std::string AccessGuard::OwnerOf(Kind kind, const std::string& id) const {
   absl::MutexLock lock(&mutex_);
   const auto owner = owners_.find({kind, id});
   return owner == owners_.end() ? "" : owner->second;
 }
 
-void Door::Give(Kind kind, const std::string& id, const std::string& caller_id) {
+void AccessGuard::Give(Kind kind, const std::string& id, const std::string& caller_id) {
   if (!guarded()) return;
   absl::MutexLock lock(&mutex_);
   if (owners_.size() >= kMostOwned) owners_.clear();  // nobody's but the administrators': they were long gone
   owners_[{kind, id}] = caller_id;
 }
 
-bool Door::Owns(Kind kind, const std::string& id, const Caller& caller) const {
+bool AccessGuard::Owns(Kind kind, const std::string& id, const Caller& caller) const {
   if (!guarded() || caller.admin()) return true;
   absl::MutexLock lock(&mutex_);
   const auto owner = owners_.find({kind, id});
   return owner != owners_.end() && owner->second == caller.id();
 }
 
-absl::Status Door::CheckOwns(Kind kind, const std::string& id, const Caller& caller) const {
+absl::Status AccessGuard::CheckOwns(Kind kind, const std::string& id, const Caller& caller) const {
   if (Owns(kind, id, caller)) return absl::OkStatus();
   const char* what = kind == Kind::kExport  ? "export_id: there is no export \""
                      : kind == Kind::kStudy ? "study_id: there is no study \""
@@ -182,7 +183,7 @@ absl::Status Door::CheckOwns(Kind kind, const std::string& id, const Caller& cal
   return absl::NotFoundError(absl::StrCat(what, id.substr(0, 80), "\", or none of yours"));
 }
 
-bool Door::IsAdmin(std::string_view authorization) const {
+bool AccessGuard::IsAdmin(std::string_view authorization) const {
   if (!guarded()) return true;
   const auto account = accounts_.Check(TokenOf(authorization));
   return account.ok() && account->role == v1::ACCESS_ROLE_ADMIN;

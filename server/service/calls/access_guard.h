@@ -24,14 +24,14 @@ namespace phrenic::service {
 
 // Services ask it first of all, as gRPC's own means see no call within the process, which every browser's is. Any
 // thread may call.
-class Door {
+class AccessGuard {
  public:
   // What is not a session and belongs to whoever made it.
   enum class Kind { kExport, kStudy, kUpload };
 
-  // All outlive the door.
-  Door(const access::Accounts& accounts, access::AuditLog& audit, const session::Table& table, Metrics& metrics,
-       double max_requests)
+  // All outlive the guard.
+  AccessGuard(const access::Accounts& accounts, access::AuditLog& audit, const session::Table& table, Metrics& metrics,
+              double max_requests)
       : accounts_(accounts), audit_(audit), table_(table), metrics_(metrics), rate_(max_requests) {}
 
   // Who calls, where the rule of the request's method (access::Rules) lets them in and the request keeps its own

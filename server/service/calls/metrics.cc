@@ -30,7 +30,7 @@ double StepSeconds(const v1::Pace& pace) {
 Metrics::Metrics()
     : requests_(prometheus::BuildCounter()
                     .Name("phrenic_requests_total")
-                    .Help("Calls by what came of them at the door: OK, or why they were refused")
+                    .Help("Calls by what came of them at the guard: OK, or why they were refused")
                     .Register(registry_)),
       admitted_(requests_.Add({{"outcome", "OK"}})),
       frames_(NewCounter(registry_, "phrenic_frames_total", "Messages sent to viewers")),

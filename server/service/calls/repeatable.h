@@ -18,7 +18,7 @@ inline bool MayHaveChanged(const absl::Status& status) {
 
 // `act` fills the response. The token is part of what is repeated: nobody reads another's answer by its id.
 template <class Request, class Response, class Act>
-absl::Status Once(session::Answers& answers, const Request& request, Response* response, Act act) {
+absl::Status Once(session::IdempotencyCache& answers, const Request& request, Response* response, Act act) {
   const std::string& id = request.request_id();
   if (id.empty()) return act();
   const auto before = answers.Begin(id, absl::StrCat(Request::descriptor()->full_name(), request.SerializeAsString()));

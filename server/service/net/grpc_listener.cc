@@ -74,7 +74,7 @@ void GrpcListener::HandOver(tcp::socket socket) {
   boost::system::error_code ignored;
   socket.set_option(tcp::no_delay(true), ignored);
   socket.non_blocking(true, ignored);
-  NoticeDeath(socket);
+  EnableKeepalive(socket);
   grpc::experimental::ExternalConnectionAcceptor::NewConnectionParameters connection;
   connection.listener_fd = acceptor_.native_handle();
   connection.fd = socket.release(ignored);

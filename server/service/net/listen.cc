@@ -38,7 +38,7 @@ absl::StatusOr<int> ListenOn(const std::string& address, tcp::acceptor& acceptor
   return acceptor.local_endpoint(error).port();
 }
 
-void NoticeDeath(tcp::socket& socket) {
+void EnableKeepalive(tcp::socket& socket) {
   constexpr int kOn = 1, kQuiet = 9, kBetween = 3, kProbes = 2;  // [s], [s]
   constexpr unsigned kUnanswered = 15'000;                       // [ms]
   const int handle = socket.native_handle();

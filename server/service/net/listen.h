@@ -17,7 +17,7 @@ namespace phrenic::service {
 absl::StatusOr<int> ListenOn(const std::string& address, boost::asio::ip::tcp::acceptor& acceptor);
 
 // A peer that no longer answers is given up within 15 s, whether bytes are on their way to it or not.
-void NoticeDeath(boost::asio::ip::tcp::socket& socket);
+void EnableKeepalive(boost::asio::ip::tcp::socket& socket);
 
 // As many open files as the system lets this process have: each connection is one.
 void AllowManyFiles();

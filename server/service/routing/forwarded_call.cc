@@ -15,15 +15,15 @@ constexpr std::chrono::seconds kListPatience(2);
 
 }  // namespace
 
-ForwardedCall::ForwardedCall(Front& front, grpc::GenericCallbackServerContext& context)
-    : front_(front),
+ForwardedCall::ForwardedCall(SessionRouter& router, grpc::GenericCallbackServerContext& context)
+    : router_(router),
       context_(context),
       method_(context.method()),
       peer_(PeerOf(context).empty() ? "unknown" : PeerOf(context)),
-      metadata_(Front::MetadataOf(context)) {}
+      metadata_(SessionRouter::MetadataOf(context)) {}
 
-ForwardedCall* ForwardedCall::Make(Front& front, grpc::GenericCallbackServerContext& context) {
-  std::shared_ptr<ForwardedCall> call(new ForwardedCall(front, context));
+ForwardedCall* ForwardedCall::Make(SessionRouter& router, grpc::GenericCallbackServerContext& context) {
+  std::shared_ptr<ForwardedCall> call(new ForwardedCall(router, context));
   call->self_ = call;
   call->StartRead(&call->request_);
   return call.get();
@@ -31,33 +31,33 @@ ForwardedCall* ForwardedCall::Make(Front& front, grpc::GenericCallbackServerCont
 
 void ForwardedCall::OnReadDone(bool ok) {
   if (!ok) return Finish({grpc::StatusCode::INVALID_ARGUMENT, "the call has no request"});
-  auto route = front_.Find(method_, metadata_, request_);
+  auto route = router_.Find(method_, metadata_, request_);
   if (!route.ok()) return Finish(ToGrpc(route.status()));
   route_ = *std::move(route);
   if (route_.all) return Gather();
   Try();
 }
 
-Leg::Request ForwardedCall::RequestTo(const Front::Target& target) const {
-  return {method_, request_, front_.MetadataFor(target, metadata_, peer_), context_.deadline()};
+UpstreamCall::Request ForwardedCall::RequestTo(const SessionRouter::Target& target) const {
+  return {method_, request_, router_.MetadataFor(target, metadata_, peer_), context_.deadline()};
 }
 
-std::shared_ptr<Leg> ForwardedCall::leg() const {
+std::shared_ptr<UpstreamCall> ForwardedCall::upstream() const {
   absl::MutexLock lock(&mutex_);
-  return leg_;
+  return upstream_;
 }
 
 void ForwardedCall::Try() {
-  const Front::Target& target = route_.targets[tried_];
-  if (!target.address.empty()) front_.CountForwarded();
-  const auto way = Leg::Make(
+  const SessionRouter::Target& target = route_.targets[tried_];
+  if (!target.address.empty()) router_.CountForwarded();
+  const auto way = UpstreamCall::Make(
       RequestTo(target),
       {.message = [self = shared_from_this()](const grpc::ByteBuffer& message) { return self->Pass(message); },
        .done = [self = shared_from_this()](const grpc::Status& status) { self->Ended(status); }});
   {
     absl::MutexLock lock(&mutex_);
-    leg_ = way;
-    if (cancelled_) leg_->Cancel();
+    upstream_ = way;
+    if (cancelled_) upstream_->Cancel();
   }
   way->Start(*target.stub);
 }
@@ -70,17 +70,17 @@ bool ForwardedCall::Pass(const grpc::ByteBuffer& message) {
 }
 
 void ForwardedCall::OnWriteDone(bool ok) {
-  const auto way = leg();
+  const auto way = upstream();
   if (way == nullptr) return;  // lists, which end with their answer
   if (!ok) way->Cancel();
   way->ReadNext();
 }
 
 void ForwardedCall::Ended(const grpc::Status& status) {
-  const Front::Target& target = route_.targets[tried_];
+  const SessionRouter::Target& target = route_.targets[tried_];
   const bool missing = !passed_ && status.error_code() == grpc::StatusCode::NOT_FOUND;
   const bool silent = !passed_ && status.error_code() == grpc::StatusCode::UNAVAILABLE && !target.address.empty();
-  if (silent) front_.NoteGone(route_);
+  if (silent) router_.NoteGone(route_);
   if (tried_ == 0) first_ = status;
   if ((missing || (silent && tried_ > 0)) && tried_ + 1 < route_.targets.size()) {
     ++tried_;
@@ -95,11 +95,11 @@ void ForwardedCall::Ended(const grpc::Status& status) {
 }
 
 void ForwardedCall::OnCancel() {
-  std::shared_ptr<Leg> way;
+  std::shared_ptr<UpstreamCall> way;
   {
     absl::MutexLock lock(&mutex_);
     cancelled_ = true;
-    way = leg_;
+    way = upstream_;
   }
   if (way != nullptr) way->Cancel();
 }
@@ -107,7 +107,7 @@ void ForwardedCall::OnCancel() {
 void ForwardedCall::OnDone() {
   std::shared_ptr<ForwardedCall> self = std::move(self_);
   absl::MutexLock lock(&mutex_);
-  leg_ = nullptr;
+  upstream_ = nullptr;
 }
 
 void ForwardedCall::Gather() {
@@ -117,16 +117,16 @@ void ForwardedCall::Gather() {
     answers_.resize(awaited_);
   }
   for (std::size_t i = 0; i < route_.targets.size(); ++i) {
-    Leg::Request request = RequestTo(route_.targets[i]);
+    UpstreamCall::Request request = RequestTo(route_.targets[i]);
     if (i > 0) request.deadline = std::min(request.deadline, std::chrono::system_clock::now() + kListPatience);
-    Leg::Make(std::move(request),
-              {.message =
-                   [self = shared_from_this(), i](const grpc::ByteBuffer& message) {
-                     absl::MutexLock lock(&self->mutex_);
-                     self->answers_[i] = message;
-                     return true;
-                   },
-               .done = [self = shared_from_this(), i](const grpc::Status& status) { self->Gathered(i, status); }})
+    UpstreamCall::Make(std::move(request), {.message =
+                                                [self = shared_from_this(), i](const grpc::ByteBuffer& message) {
+                                                  absl::MutexLock lock(&self->mutex_);
+                                                  self->answers_[i] = message;
+                                                  return true;
+                                                },
+                                            .done = [self = shared_from_this(),
+                                                     i](const grpc::Status& status) { self->Gathered(i, status); }})
         ->Start(*route_.targets[i].stub);
   }
 }

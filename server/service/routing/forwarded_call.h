@@ -19,7 +19,7 @@ namespace phrenic::service {
 // gRPC's threads call. One message comes in: no method of Phrenic's has a stream of requests.
 class ForwardedCall final : public grpc::ServerGenericBidiReactor, public std::enable_shared_from_this<ForwardedCall> {
  public:
-  static ForwardedCall* Make(Front& front, grpc::GenericCallbackServerContext& context);
+  static ForwardedCall* Make(SessionRouter& router, grpc::GenericCallbackServerContext& context);
 
   void OnReadDone(bool ok) override;
   void OnWriteDone(bool ok) override;
@@ -27,9 +27,9 @@ class ForwardedCall final : public grpc::ServerGenericBidiReactor, public std::e
   void OnDone() override;
 
  private:
-  ForwardedCall(Front& front, grpc::GenericCallbackServerContext& context);
-  Leg::Request RequestTo(const Front::Target& target) const;
-  std::shared_ptr<Leg> leg() const ABSL_LOCKS_EXCLUDED(mutex_);
+  ForwardedCall(SessionRouter& router, grpc::GenericCallbackServerContext& context);
+  UpstreamCall::Request RequestTo(const SessionRouter::Target& target) const;
+  std::shared_ptr<UpstreamCall> upstream() const ABSL_LOCKS_EXCLUDED(mutex_);
   // The next server that may have it.
   void Try() ABSL_LOCKS_EXCLUDED(mutex_);
   bool Pass(const grpc::ByteBuffer& message);
@@ -39,19 +39,19 @@ class ForwardedCall final : public grpc::ServerGenericBidiReactor, public std::e
   void Gathered(std::size_t index, const grpc::Status& status) ABSL_LOCKS_EXCLUDED(mutex_);
   void AnswerTogether(const grpc::Status& own);
 
-  Front& front_;
+  SessionRouter& router_;
   grpc::GenericCallbackServerContext& context_;
   const std::string method_, peer_;
-  const Front::Metadata metadata_;
+  const SessionRouter::Metadata metadata_;
   std::shared_ptr<ForwardedCall> self_;  // gRPC's hold on it
   grpc::ByteBuffer request_, outgoing_;
-  Front::Route route_;
+  SessionRouter::Route route_;
   std::size_t tried_ = 0;  // of the route's targets
   bool passed_ = false;    // an answer
   grpc::Status first_;     // of the targets that did not find it
 
   mutable absl::Mutex mutex_;
-  std::shared_ptr<Leg> leg_ ABSL_GUARDED_BY(mutex_);
+  std::shared_ptr<UpstreamCall> upstream_ ABSL_GUARDED_BY(mutex_);
   bool cancelled_ ABSL_GUARDED_BY(mutex_) = false;
   std::vector<grpc::ByteBuffer> answers_ ABSL_GUARDED_BY(mutex_);  // of each target
   std::size_t awaited_ ABSL_GUARDED_BY(mutex_) = 0;

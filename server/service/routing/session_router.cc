@@ -13,8 +13,8 @@
 #include "absl/strings/str_replace.h"
 #include "phrenic/v1/compare.pb.h"
 #include "phrenic/v1/session.pb.h"
-#include "server/service/routing/forwarded_call.h"
 #include "server/service/calls/peer.h"
+#include "server/service/routing/forwarded_call.h"
 #include "server/service/web/web_headers.h"
 
 namespace phrenic::service {
@@ -54,7 +54,7 @@ std::string ComparedSession(const std::string& method, const grpc::ByteBuffer& r
   return compare.a().has_body() ? compare.a().body().session_id() : compare.b().body().session_id();
 }
 
-std::string HeaderOf(const Front::Metadata& metadata, const char* name) {
+std::string HeaderOf(const SessionRouter::Metadata& metadata, const char* name) {
   const auto found = metadata.find(name);
   return found == metadata.end() ? "" : found->second;
 }
@@ -115,26 +115,26 @@ grpc::ByteBuffer OnePage(const grpc::ByteBuffer& request, const std::vector<grpc
 
 }  // namespace
 
-void Front::set_here(std::shared_ptr<grpc::Channel> channel) {
+void SessionRouter::set_here(std::shared_ptr<grpc::Channel> channel) {
   here_ = std::make_shared<grpc::GenericStub>(std::move(channel));
 }
 
-grpc::ServerGenericBidiReactor* Front::CreateReactor(grpc::GenericCallbackServerContext* context) {
+grpc::ServerGenericBidiReactor* SessionRouter::CreateReactor(grpc::GenericCallbackServerContext* context) {
   return ForwardedCall::Make(*this, *context);
 }
 
-std::shared_ptr<grpc::GenericStub> Front::StubOf(const std::string& address) {
+std::shared_ptr<grpc::GenericStub> SessionRouter::StubOf(const std::string& address) {
   absl::MutexLock lock(&mutex_);
   auto& stub = stubs_[address];
   if (stub == nullptr) stub = std::make_shared<grpc::GenericStub>(ChannelTo(address));
   return stub;
 }
 
-void Front::AddOthers(Route& route) {
+void SessionRouter::AddOthers(Route& route) {
   for (const std::string& address : cluster_.Others()) route.targets.push_back({StubOf(address), address});
 }
 
-absl::StatusOr<Front::Route> Front::FindSession(const std::string& id) {
+absl::StatusOr<SessionRouter::Route> SessionRouter::FindSession(const std::string& id) {
   const Place place = cluster_.Where(id);
   switch (place.kind) {
     case Place::Kind::kHere:
@@ -152,8 +152,8 @@ absl::StatusOr<Front::Route> Front::FindSession(const std::string& id) {
                                              "is cannot be known: Redis does not answer; start it"));
 }
 
-absl::StatusOr<Front::Route> Front::Find(const std::string& method, const Metadata& metadata,
-                                         const grpc::ByteBuffer& request) {
+absl::StatusOr<SessionRouter::Route> SessionRouter::Find(const std::string& method, const Metadata& metadata,
+                                                         const grpc::ByteBuffer& request) {
   const MethodDescriptor* known = MethodOf(method);
   if (!HeaderOf(metadata, kViaHeader).empty()) {
     Route route{SessionOf(known, request), {{here_, ""}}};
@@ -173,11 +173,11 @@ absl::StatusOr<Front::Route> Front::Find(const std::string& method, const Metada
   return route;
 }
 
-void Front::NoteGone(const Route& route) {
+void SessionRouter::NoteGone(const Route& route) {
   if (!route.session.empty()) cluster_.Forget(route.session);
 }
 
-Front::Metadata Front::MetadataOf(const grpc::GenericCallbackServerContext& context) {
+SessionRouter::Metadata SessionRouter::MetadataOf(const grpc::GenericCallbackServerContext& context) {
   Metadata metadata;
   for (const auto& [key, value] : context.client_metadata()) {
     const std::string name(key.data(), key.size());
@@ -188,7 +188,8 @@ Front::Metadata Front::MetadataOf(const grpc::GenericCallbackServerContext& cont
   return metadata;
 }
 
-Front::Metadata Front::MetadataFor(const Target& target, Metadata metadata, const std::string& peer) const {
+SessionRouter::Metadata SessionRouter::MetadataFor(const Target& target, Metadata metadata,
+                                                   const std::string& peer) const {
   if (target.address.empty()) {
     metadata.emplace(kPeerHeader, peer);
   } else {

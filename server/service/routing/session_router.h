@@ -23,7 +23,7 @@ namespace phrenic::service {
 // Any thread may call. A call names its session by its request's session_id, else by "x-session-id" in its metadata.
 // Calls of no session are this server's own; what it does not find (an export, a study) it asks the others for, and
 // lists are those of all of them together. Who was passed a call by another server does not pass it on.
-class Front final : public grpc::CallbackGenericService {
+class SessionRouter final : public grpc::CallbackGenericService {
  public:
   using Metadata = std::multimap<std::string, std::string>;
 
@@ -38,7 +38,7 @@ class Front final : public grpc::CallbackGenericService {
     bool all = false;             // of each, put together
   };
 
-  explicit Front(cluster::Cluster& cluster) : cluster_(cluster) {}
+  explicit SessionRouter(cluster::Cluster& cluster) : cluster_(cluster) {}
   // Where this server's own calls go; before any call comes.
   void set_here(std::shared_ptr<grpc::Channel> channel);
 

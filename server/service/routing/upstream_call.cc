@@ -4,18 +4,19 @@
 
 namespace phrenic::service {
 
-Leg::Leg(Request request, Handlers handlers) : request_(std::move(request)), handlers_(std::move(handlers)) {
+UpstreamCall::UpstreamCall(Request request, Handlers handlers)
+    : request_(std::move(request)), handlers_(std::move(handlers)) {
   for (const auto& [name, value] : request_.metadata) context_.AddMetadata(name, value);
   context_.set_deadline(request_.deadline);
 }
 
-std::shared_ptr<Leg> Leg::Make(Request request, Handlers handlers) {
-  std::shared_ptr<Leg> leg(new Leg(std::move(request), std::move(handlers)));
+std::shared_ptr<UpstreamCall> UpstreamCall::Make(Request request, Handlers handlers) {
+  std::shared_ptr<UpstreamCall> leg(new UpstreamCall(std::move(request), std::move(handlers)));
   leg->self_ = leg;
   return leg;
 }
 
-void Leg::Start(grpc::GenericStub& stub) {
+void UpstreamCall::Start(grpc::GenericStub& stub) {
   stub.PrepareBidiStreamingCall(&context_, request_.method, {}, this);
   AddHold();  // reads are started outside reactions, until one says that there are no more
   StartWriteLast(&request_.message, {});
@@ -23,13 +24,13 @@ void Leg::Start(grpc::GenericStub& stub) {
   StartCall();
 }
 
-void Leg::OnReadDone(bool ok) {
+void UpstreamCall::OnReadDone(bool ok) {
   if (!ok) return RemoveHold();
   if (handlers_.message(incoming_)) ReadNext();
 }
 
-void Leg::OnDone(const grpc::Status& status) {
-  const std::shared_ptr<Leg> self = std::move(self_);
+void UpstreamCall::OnDone(const grpc::Status& status) {
+  const std::shared_ptr<UpstreamCall> self = std::move(self_);
   const Handlers handlers = std::move(handlers_);
   handlers.done(status);
 }

@@ -16,7 +16,7 @@
 namespace phrenic::service {
 
 // Any thread may call. The handlers are called by gRPC's threads, never two at once.
-class Leg final : public grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer> {
+class UpstreamCall final : public grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer> {
  public:
   struct Request {
     std::string method;  // "/phrenic.v1.SessionService/GetSession"
@@ -31,7 +31,7 @@ class Leg final : public grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::ByteBuf
     std::function<void(const grpc::Status& status)> done;
   };
 
-  static std::shared_ptr<Leg> Make(Request request, Handlers handlers);
+  static std::shared_ptr<UpstreamCall> Make(Request request, Handlers handlers);
   // Once.
   void Start(grpc::GenericStub& stub);
   void ReadNext() { StartRead(&incoming_); }
@@ -41,11 +41,11 @@ class Leg final : public grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::ByteBuf
   void OnDone(const grpc::Status& status) override;
 
  private:
-  Leg(Request request, Handlers handlers);
+  UpstreamCall(Request request, Handlers handlers);
 
   Request request_;
   Handlers handlers_;
-  std::shared_ptr<Leg> self_;  // gRPC's hold on it
+  std::shared_ptr<UpstreamCall> self_;  // gRPC's hold on it
   grpc::ClientContext context_;
   grpc::ByteBuffer incoming_;
 };

@@ -32,7 +32,8 @@ struct WebSettings {
   std::size_t max_body_bytes = 0;
   std::chrono::milliseconds head_time{10'000};  // for a request's head to come, and for a handshake
   std::chrono::milliseconds idle_time{60'000};  // for its rest, and for a client to take what it is sent
-  // Answers what is no file, "/healthz" say, with what the request has in "authorization"; nothing where it is a file.
+  // IdempotencyCache what is no file, "/healthz" say, with what the request has in "authorization"; nothing where it is
+  // a file.
   struct Page {
     unsigned status = 200;
     std::string type, text;

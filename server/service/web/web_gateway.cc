@@ -53,7 +53,7 @@ void WebGateway::OnAccept(boost::system::error_code error, tcp::socket socket) {
   if (!error) {
     boost::system::error_code ignored;
     socket.set_option(tcp::no_delay(true), ignored);
-    NoticeDeath(socket);
+    EnableKeepalive(socket);
     const auto connection =
         std::make_shared<WebConnection>(std::move(socket), tls_.Current(), options_.settings, stub_);
     if (Admit(connection)) {

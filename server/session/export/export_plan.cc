@@ -12,8 +12,8 @@
 #include "server/mechanics/measure.h"
 #include "server/mesh/units.h"
 #include "server/record/spool_file.h"
-#include "server/session/run.h"
 #include "server/session/export/surface_recorder.h"
+#include "server/session/run.h"
 
 namespace phrenic::session {
 namespace {
@@ -124,7 +124,8 @@ std::int64_t Estimate(const Model& model, const v1::Parameters& parameters, cons
   for (const int body : plan.bodies) {
     shapes += model.bodies[body].mesh.triangles.cols() + model.bodies[body].mesh.edges.cols();
   }
-  if (plan.format.numbers_only) return frames * kBytesANumber * static_cast<std::int64_t>(1 + ColumnsOf(model).size());
+  if (plan.format.numbers_only)
+    return frames * kBytesANumber * static_cast<std::int64_t>(1 + PoseMatricesOf(model).size());
   return kBytesAShape * (plan.vertices + shapes) +
          frames * plan.vertices * (plan.format.file_bytes + plan.format.spool_bytes);
 }
@@ -147,7 +148,7 @@ absl::StatusOr<ExportPlan> PlanExport(const v1::CreateExportRequest& request, co
   return plan;
 }
 
-std::vector<record::Column> ColumnsOf(const Model& model) {
+std::vector<record::Column> PoseMatricesOf(const Model& model) {
   std::vector<record::Column> columns;
   for (const Probe& probe : model.probes) {
     for (const char* axis : {" x", " y", " z"}) columns.push_back({probe.name + axis, "mm"});
@@ -164,7 +165,7 @@ std::vector<double> NumbersAt(const Model& model, const v1::Parameters& paramete
     PlaceBody(model, state, probe.body, placed);
     for (const double coordinate : placed.col(probe.vertex)) numbers.push_back(kMillimetresAMetre * coordinate);
   }
-  for (const v1::MeasureReading& reading : ReadMeasures(model, MakeInstant(model, parameters, state))) {
+  for (const v1::MeasureReading& reading : ReadMeasures(model, MakeEvalContext(model, parameters, state))) {
     numbers.push_back(reading.value());
   }
   return numbers;

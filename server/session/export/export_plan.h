@@ -33,7 +33,7 @@ absl::StatusOr<ExportPlan> PlanExport(const v1::CreateExportRequest& request, co
                                       const Session::Fork& fork, const std::string& spool_folder);
 
 // The columns beside the positions: the probes' places [mm], then the measures.
-std::vector<record::Column> ColumnsOf(const Model& model);
+std::vector<record::Column> PoseMatricesOf(const Model& model);
 std::vector<double> NumbersAt(const Model& model, const v1::Parameters& parameters, const State& state);
 
 }  // namespace phrenic::session

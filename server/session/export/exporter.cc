@@ -63,7 +63,7 @@ class Export {
       vertices = positions_.middleCols(first, vertices.cols());
       first += vertices.cols();
     }
-    if (plan_.format.numbers_only) recording.columns = ColumnsOf(model_);
+    if (plan_.format.numbers_only) recording.columns = PoseMatricesOf(model_);
     if (absl::Status status = recorder_.Begin(recording); !status.ok()) return status;
     return AddFrame();
   }

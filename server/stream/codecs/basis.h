@@ -27,7 +27,7 @@ class BasisCodec final : public Codec {
   Doubles Sum(const Parts& parts) const;
 
   const RestShape shape_;
-  const Foretelling foretelling_;
+  const NeighbourPredictor foretelling_;
   Eigen::LDLT<Eigen::MatrixXd> gram_;  // of the shapes
 };
 

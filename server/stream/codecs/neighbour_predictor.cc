@@ -74,7 +74,7 @@ std::optional<Steps> Join(std::string_view bits, std::string_view overflow, std:
 
 }  // namespace
 
-std::array<std::int64_t, 3> Foretelling::Foretell(const Steps& steps, int place) const {
+std::array<std::int64_t, 3> NeighbourPredictor::Foretell(const Steps& steps, int place) const {
   static_assert(kUnit == 1 << 12);
   std::int64_t x = kUnit / 2, y = kUnit / 2, z = kUnit / 2;
   for (int i = neighbours_.first[place]; i < neighbours_.first[place + 1]; ++i) {
@@ -85,7 +85,7 @@ std::array<std::int64_t, 3> Foretelling::Foretell(const Steps& steps, int place)
   return {x >> 12, y >> 12, z >> 12};  // over kUnit, rounded down
 }
 
-Steps Foretelling::Remainders(const Steps& steps) const {
+Steps NeighbourPredictor::Remainders(const Steps& steps) const {
   Steps remainders(steps.size());
   for (int place = 0; 3 * static_cast<std::size_t>(place) < steps.size(); ++place) {
     const auto foretold = Foretell(steps, place);
@@ -96,7 +96,7 @@ Steps Foretelling::Remainders(const Steps& steps) const {
   return remainders;
 }
 
-Steps Foretelling::Sums(const Steps& remainders) const {
+Steps NeighbourPredictor::Sums(const Steps& remainders) const {
   Steps steps(remainders.size());
   for (int place = 0; 3 * static_cast<std::size_t>(place) < steps.size(); ++place) {
     const auto foretold = Foretell(steps, place);

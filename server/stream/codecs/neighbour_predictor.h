@@ -21,9 +21,9 @@ inline constexpr double kFurthest = 1 << 30;  // [steps] that are encoded
 
 // d_i - round(sum w_j d_j) is small where neighbours are alike. Two bits each and the larger ones' rest are compressed
 // apart; proto/README.md has the bytes. Immutable; any thread may call.
-class Foretelling {
+class NeighbourPredictor {
  public:
-  explicit Foretelling(const RestShape& shape) : neighbours_(MakeNeighbourWeights(shape)) {}
+  explicit NeighbourPredictor(const RestShape& shape) : neighbours_(MakeNeighbourWeights(shape)) {}
 
   // The vertex at each place.
   const std::vector<int>& order() const { return neighbours_.order; }

@@ -15,7 +15,7 @@ class PredictedCodec final : public Codec {
   absl::StatusOr<Floats> Decode(std::string_view bytes) const override;
 
  private:
-  const Foretelling foretelling_;
+  const NeighbourPredictor foretelling_;
   const Floats rest_;  // in the order of places
 };
 

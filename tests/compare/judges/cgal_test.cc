@@ -7,11 +7,11 @@
 #include <cmath>
 #include <filesystem>
 
-#include "server/meshio/meshio.h"
 #include "server/compare/surface_distance.h"
+#include "server/meshio/meshio.h"
 #include "tests/compare/surfaces.h"
 
-namespace phrenic::study {
+namespace phrenic::compare {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
@@ -85,4 +85,4 @@ TEST_F(Cgal, AgreesOnTheDiaphragmAndTheSameBent) {
 }
 
 }  // namespace
-}  // namespace phrenic::study
+}  // namespace phrenic::compare
