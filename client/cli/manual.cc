@@ -15,14 +15,14 @@ namespace phrenic::client {
 namespace {
 
 // A line of text may not begin as a request does.
-std::string Escaped(const std::string& text) {
+std::string RoffEscaped(const std::string& text) {
   std::string safe = absl::StrReplaceAll(text, {{"\\", "\\e"}, {"-", "\\-"}, {"\n.", "\n\\&."}, {"\n'", "\n\\&'"}});
   if (safe.starts_with('.') || safe.starts_with('\'')) safe = "\\&" + safe;
   return safe;
 }
 
 std::string Item(const std::string& label, const std::string& meaning) {
-  return absl::StrCat(".TP\n.B ", Escaped(label), "\n", meaning.empty() ? "\\&" : Escaped(meaning), "\n");
+  return absl::StrCat(".TP\n.B ", RoffEscaped(label), "\n", meaning.empty() ? "\\&" : RoffEscaped(meaning), "\n");
 }
 
 std::string ExampleItems(std::span<const Example> examples) {
@@ -53,8 +53,8 @@ std::string ParameterItems() {
 void AddCommand(const CLI::App& command, std::string& text) {
   const bool leaf = command.get_require_subcommand_min() == 0;
   if (leaf) {
-    absl::StrAppend(&text, ".SS \"", Escaped(UsageOf(command)), "\"\n", Escaped(command.get_description()), ".\n",
-                    ArgumentItems(command));
+    absl::StrAppend(&text, ".SS \"", RoffEscaped(UsageOf(command)), "\"\n", RoffEscaped(command.get_description()),
+                    ".\n", ArgumentItems(command));
     const CommandGuide* guide = GuideOf(PathOf(command));
     if (guide != nullptr) absl::StrAppend(&text, ".PP\nExamples:\n", ExampleItems(guide->examples));
   }
@@ -67,11 +67,11 @@ std::string ManualOf(const CLI::App& app) {
   std::string text = ".TH PHRENIC 1 \"2026-11-22\" \"phrenic " PHRENIC_VERSION "\" \"User commands\"\n";
   absl::StrAppend(&text, ".SH NAME\nphrenic \\- the breathing diaphragm, simulated\n",
                   ".SH SYNOPSIS\n.B phrenic\n.I COMMAND\n[options]\n", ".SH DESCRIPTION\n",
-                  Escaped(app.get_description()), "\n.SH EXAMPLES\n", ExampleItems(FirstExamples()));
+                  RoffEscaped(app.get_description()), "\n.SH EXAMPLES\n", ExampleItems(FirstExamples()));
   absl::StrAppend(&text, ".SH OPTIONS\nOf every command:\n", ArgumentItems(app), ".SH COMMANDS\n");
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) AddCommand(*command, text);
   absl::StrAppend(&text, ".SH PARAMETERS\nOf \\-\\-set, and of `phrenic set`:\n", ParameterItems(), ".SH SETTINGS\n",
-                  Escaped(SettingsText()), "\n.SH ENVIRONMENT\n", NamedItems(EnvironmentVariables()),
+                  RoffEscaped(SettingsText()), "\n.SH ENVIRONMENT\n", NamedItems(EnvironmentVariables()),
                   ".SH EXIT STATUS\n", NamedItems(ExitCodes()));
   return text;
 }
