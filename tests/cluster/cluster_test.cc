@@ -20,7 +20,7 @@ class Member {
     auto joined = Cluster::Join({.redis = redis.url(), .advertise = std::move(address)});
     EXPECT_TRUE(joined.ok()) << joined.status();
     cluster_ = *std::move(joined);
-    cluster_->Begin({.lost =
+    cluster_->Start({.lost =
                          [this](const std::string& id) {
                            absl::MutexLock lock(&mutex_);
                            lost_.insert(id);
@@ -119,33 +119,33 @@ TEST_F(ClusterTest, ASessionHasOneServer) {
   Member a(*redis_, "a:1"), b(*redis_, "b:1");
   EXPECT_EQ(*a->Claim("s"), 1);
   EXPECT_EQ(b->Claim("s").status().code(), absl::StatusCode::kAlreadyExists);
-  EXPECT_EQ(a->Where("s").kind, Place::Kind::kHere);
-  const Place seen = b->Where("s");
-  EXPECT_EQ(seen.kind, Place::Kind::kElsewhere);
+  EXPECT_EQ(a->Locate("s").kind, Location::Kind::kLocal);
+  const Location seen = b->Locate("s");
+  EXPECT_EQ(seen.kind, Location::Kind::kRemote);
   EXPECT_EQ(seen.address, "a:1");
-  EXPECT_EQ(b->Where("t").kind, Place::Kind::kNowhere);
+  EXPECT_EQ(b->Locate("t").kind, Location::Kind::kNone);
   a->Abandon("s");
   EXPECT_EQ(*b->Claim("s"), 2) << "epochs are not used again";
 }
 
 TEST_F(ClusterTest, WhoWasOnlySlowWritesNothingOverItsSuccessor) {
   Member b(*redis_, "b:1");
-  b->Watch();
+  b->StartTakeovers();
   Member a(*redis_, "a:1");
   ASSERT_TRUE(a->Claim("s").ok());
   ASSERT_TRUE(a->Copy(StateAt("s", 1)));
   ASSERT_TRUE(a->Copy(MomentOf("s", 2)));
   ASSERT_TRUE(a->Copy(MomentOf("s", 3)));
   a->Leave();  // it renews no more, as if it were stopped
-  ASSERT_TRUE(Within(absl::Seconds(6), [&] { return !b.taken().empty(); }));
-  const Member::Taken taken = b.taken()[0];
+  ASSERT_TRUE(Within(absl::Seconds(6), [&] { return !b.taken_over().empty(); }));
+  const Member::Taken taken = b.taken_over()[0];
   EXPECT_EQ(taken.epoch, 2);
   EXPECT_EQ(taken.saved.state.tick(), 1);
   EXPECT_EQ(taken.saved.sequence, 3);
   ASSERT_EQ(taken.saved.later.size(), 2U);
   EXPECT_EQ(taken.saved.later[1].session().tick(), 3);
   EXPECT_FALSE(a->Copy(MomentOf("s", 4))) << "its epoch is over";
-  EXPECT_EQ(a->Where("s").address, "b:1") << "by its own clock its lease was over: it asked";
+  EXPECT_EQ(a->Locate("s").address, "b:1") << "by its own clock its lease was over: it asked";
   EXPECT_TRUE(a.Lost("s"));
   EXPECT_TRUE(b->Copy(StateAt("s", 1)));
 }
@@ -153,15 +153,15 @@ TEST_F(ClusterTest, WhoWasOnlySlowWritesNothingOverItsSuccessor) {
 // The median of three: a machine that starves Redis for one of them says nothing of the others.
 TEST_F(ClusterTest, WhatIsReleasedGoesOnAtOnce) {
   Member b(*redis_, "b:1");
-  b->Watch();
+  b->StartTakeovers();
   Member a(*redis_, "a:1");
   const auto time_to_go_on = [&](const std::string& id) {
-    const std::size_t before = b.taken().size();
+    const std::size_t before = b.taken_over().size();
     EXPECT_TRUE(a->Claim(id).ok());
     EXPECT_TRUE(a->Copy(StateAt(id, 1)));
     const absl::Time released = absl::Now();
     a->Release(id);
-    EXPECT_TRUE(Within(absl::Seconds(10), [&] { return b.taken().size() > before; })) << id;
+    EXPECT_TRUE(Within(absl::Seconds(10), [&] { return b.taken_over().size() > before; })) << id;
     return absl::Now() - released;
   };
   time_to_go_on("first");  // it takes over nothing for 3 s
@@ -174,24 +174,24 @@ TEST_F(ClusterTest, SessionsGoOnWithoutRedisAndAreCopiedAnewWhenItComesBackEmpty
   Member a(*redis_, "a:1");
   ASSERT_TRUE(a->Claim("s").ok());
   redis_->Kill();
-  EXPECT_TRUE(Within(absl::Seconds(3), [&] { return !a->counts().reached; }));
+  EXPECT_TRUE(Within(absl::Seconds(3), [&] { return !a->counts().redis_reachable; }));
   absl::SleepFor(absl::Seconds(3.2));  // its lease is over
   const absl::Time asked = absl::Now();
-  EXPECT_EQ(a->Where("s").kind, Place::Kind::kHere);
-  EXPECT_EQ(a->Where("t").kind, Place::Kind::kUnknown);
+  EXPECT_EQ(a->Locate("s").kind, Location::Kind::kLocal);
+  EXPECT_EQ(a->Locate("t").kind, Location::Kind::kUnknown);
   EXPECT_TRUE(a->Copy(StateAt("s", 1))) << "a copy that is late is no reason to stop";
   EXPECT_LT(absl::Now() - asked, absl::Seconds(1));
   EXPECT_EQ(a->Claim("u").status().code(), absl::StatusCode::kUnavailable);
   redis_->Start();
   EXPECT_TRUE(Within(absl::Seconds(4), [&] { return a.AskedFor("s"); }));
-  EXPECT_TRUE(a->counts().reached);
+  EXPECT_TRUE(a->counts().redis_reachable);
   EXPECT_FALSE(a.Lost("s"));
 }
 
 // Its heir would go on from an old state otherwise.
 TEST_F(ClusterTest, WhatIsBehindIsCopiedWholeBeforeItIsReleased) {
   Member a(*redis_, "a:1"), b(*redis_, "b:1");
-  b->Watch();
+  b->StartTakeovers();
   ASSERT_TRUE(a->Claim("s").ok());
   ASSERT_TRUE(a->Copy(StateAt("s", 1)));
   redis_->Kill();
@@ -205,8 +205,8 @@ TEST_F(ClusterTest, WhatIsBehindIsCopiedWholeBeforeItIsReleased) {
   a->Release("s");
   EXPECT_EQ(a->counts().owned, 0) << "it was not released";
   store.join();
-  ASSERT_TRUE(Within(absl::Seconds(6), [&] { return !b.taken().empty(); }));
-  EXPECT_EQ(b.taken()[0].saved.sequence, 7);
+  ASSERT_TRUE(Within(absl::Seconds(6), [&] { return !b.taken_over().empty(); }));
+  EXPECT_EQ(b.taken_over()[0].saved.sequence, 7);
 }
 
 TEST_F(ClusterTest, AStoresOwnSessionComesBackUnlessOthersHadItSince) {
