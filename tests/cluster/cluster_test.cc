@@ -1,4 +1,4 @@
-// A session has one server at a time, and nobody else writes its copy.
+// A session has one server at a time, and only that server writes its copy.
 #include "server/cluster/cluster.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 namespace phrenic::cluster {
 namespace {
 
-// A server of the cluster without sessions of its own: what it was told.
+// A cluster member without a session table: records what its hooks are called with.
 class Member {
  public:
   Member(const RedisServer& redis, std::string address) {
@@ -59,7 +59,7 @@ class Member {
   absl::Mutex mutex_;
   std::set<std::string> lost_ ABSL_GUARDED_BY(mutex_), asked_ ABSL_GUARDED_BY(mutex_);
   std::vector<Taken> taken_ ABSL_GUARDED_BY(mutex_);
-  std::unique_ptr<Cluster> cluster_;  // the first to go
+  std::unique_ptr<Cluster> cluster_;  // destroyed first, since its threads use the other members
 };
 
 v1::SavedMoment MomentAt(std::int64_t tick) {
@@ -96,7 +96,7 @@ store::SavedSession SavedAt(const std::string& id, std::int64_t epoch, std::int6
   return saved;
 }
 
-// False where it has not come true within the time.
+// Returns true once the condition is true; false after the timeout.
 template <class Wanted>
 bool Within(absl::Duration time, Wanted wanted) {
   for (const absl::Time end = absl::Now() + time; absl::Now() < end; absl::SleepFor(absl::Milliseconds(10))) {
@@ -125,10 +125,10 @@ TEST_F(ClusterTest, ASessionHasOneServer) {
   EXPECT_EQ(seen.address, "a:1");
   EXPECT_EQ(b->Locate("t").kind, Location::Kind::kNone);
   a->Abandon("s");
-  EXPECT_EQ(*b->Claim("s"), 2) << "epochs are not used again";
+  EXPECT_EQ(*b->Claim("s"), 2) << "an epoch was reused";
 }
 
-TEST_F(ClusterTest, WhoWasOnlySlowWritesNothingOverItsSuccessor) {
+TEST_F(ClusterTest, ASlowServerCannotOverwriteItsSuccessor) {
   Member b(*redis_, "b:1");
   b->StartTakeovers();
   Member a(*redis_, "a:1");
@@ -136,7 +136,7 @@ TEST_F(ClusterTest, WhoWasOnlySlowWritesNothingOverItsSuccessor) {
   ASSERT_TRUE(a->Copy(StateAt("s", 1)));
   ASSERT_TRUE(a->Copy(MomentOf("s", 2)));
   ASSERT_TRUE(a->Copy(MomentOf("s", 3)));
-  a->Leave();  // it renews no more, as if it were stopped
+  a->Leave();  // stops renewing, as a suspended process does
   ASSERT_TRUE(Within(absl::Seconds(6), [&] { return !b.taken_over().empty(); }));
   const Member::Taken taken = b.taken_over()[0];
   EXPECT_EQ(taken.epoch, 2);
@@ -144,14 +144,14 @@ TEST_F(ClusterTest, WhoWasOnlySlowWritesNothingOverItsSuccessor) {
   EXPECT_EQ(taken.saved.sequence, 3);
   ASSERT_EQ(taken.saved.later.size(), 2U);
   EXPECT_EQ(taken.saved.later[1].session().tick(), 3);
-  EXPECT_FALSE(a->Copy(MomentOf("s", 4))) << "its epoch is over";
-  EXPECT_EQ(a->Locate("s").address, "b:1") << "by its own clock its lease was over: it asked";
+  EXPECT_FALSE(a->Copy(MomentOf("s", 4))) << "a later epoch exists";
+  EXPECT_EQ(a->Locate("s").address, "b:1") << "its lease had expired by its own clock, so it asked Redis";
   EXPECT_TRUE(a.Lost("s"));
   EXPECT_TRUE(b->Copy(StateAt("s", 1)));
 }
 
-// The median of three: a machine that starves Redis for one of them says nothing of the others.
-TEST_F(ClusterTest, WhatIsReleasedGoesOnAtOnce) {
+// The median of three, because a loaded machine may delay one of them.
+TEST_F(ClusterTest, AReleasedSessionIsTakenOverAtOnce) {
   Member b(*redis_, "b:1");
   b->StartTakeovers();
   Member a(*redis_, "a:1");
@@ -164,22 +164,22 @@ TEST_F(ClusterTest, WhatIsReleasedGoesOnAtOnce) {
     EXPECT_TRUE(Within(absl::Seconds(10), [&] { return b.taken_over().size() > before; })) << id;
     return absl::Now() - released;
   };
-  time_to_go_on("first");  // it takes over nothing for 3 s
+  time_to_go_on("first");  // nothing is taken over in the first 3 s
   std::array times = {time_to_go_on("s"), time_to_go_on("t"), time_to_go_on("u")};
   std::ranges::sort(times);
   EXPECT_LE(times[1], absl::Milliseconds(600));
 }
 
-TEST_F(ClusterTest, SessionsGoOnWithoutRedisAndAreCopiedAnewWhenItComesBackEmpty) {
+TEST_F(ClusterTest, SessionsContinueWithoutRedisAndAreCopiedAgainWhenItReturnsEmpty) {
   Member a(*redis_, "a:1");
   ASSERT_TRUE(a->Claim("s").ok());
   redis_->Kill();
   EXPECT_TRUE(Within(absl::Seconds(3), [&] { return !a->counts().redis_reachable; }));
-  absl::SleepFor(absl::Seconds(3.2));  // its lease is over
+  absl::SleepFor(absl::Seconds(3.2));  // its lease has expired
   const absl::Time asked = absl::Now();
   EXPECT_EQ(a->Locate("s").kind, Location::Kind::kLocal);
   EXPECT_EQ(a->Locate("t").kind, Location::Kind::kUnknown);
-  EXPECT_TRUE(a->Copy(StateAt("s", 1))) << "a copy that is late is no reason to stop";
+  EXPECT_TRUE(a->Copy(StateAt("s", 1))) << "an incomplete copy must not end the session";
   EXPECT_LT(absl::Now() - asked, absl::Seconds(1));
   EXPECT_EQ(a->Claim("u").status().code(), absl::StatusCode::kUnavailable);
   redis_->Start();
@@ -188,14 +188,14 @@ TEST_F(ClusterTest, SessionsGoOnWithoutRedisAndAreCopiedAnewWhenItComesBackEmpty
   EXPECT_FALSE(a.Lost("s"));
 }
 
-// Its heir would go on from an old state otherwise.
-TEST_F(ClusterTest, WhatIsBehindIsCopiedWholeBeforeItIsReleased) {
+// Otherwise its successor would resume an old state.
+TEST_F(ClusterTest, AnIncompleteCopyIsCompletedBeforeARelease) {
   Member a(*redis_, "a:1"), b(*redis_, "b:1");
   b->StartTakeovers();
   ASSERT_TRUE(a->Claim("s").ok());
   ASSERT_TRUE(a->Copy(StateAt("s", 1)));
   redis_->Kill();
-  ASSERT_TRUE(a->Copy(MomentOf("s", 2)));  // late
+  ASSERT_TRUE(a->Copy(MomentOf("s", 2)));  // the copy is incomplete
   redis_->Start();
   ASSERT_TRUE(Within(absl::Seconds(4), [&] { return a.AskedFor("s"); }));
   std::thread store([&] {
@@ -203,16 +203,16 @@ TEST_F(ClusterTest, WhatIsBehindIsCopiedWholeBeforeItIsReleased) {
     a->CopyWhole(SavedAt("s", 1, 7));
   });
   a->Release("s");
-  EXPECT_EQ(a->counts().owned, 0) << "it was not released";
+  EXPECT_EQ(a->counts().owned, 0) << "the lease was not released";
   store.join();
   ASSERT_TRUE(Within(absl::Seconds(6), [&] { return !b.taken_over().empty(); }));
   EXPECT_EQ(b.taken_over()[0].saved.sequence, 7);
 }
 
-TEST_F(ClusterTest, AStoresOwnSessionComesBackUnlessOthersHadItSince) {
+TEST_F(ClusterTest, AStoredSessionIsReclaimedUnlessOthersHadItSince) {
   Member a(*redis_, "a:1"), b(*redis_, "b:1");
-  EXPECT_EQ(*a->Reclaim(SavedAt("alone", 0, 5)), 1) << "of before there was a cluster";
-  EXPECT_FALSE(b->Reclaim(SavedAt("alone", 0, 5)).ok()) << "another server has one of that name";
+  EXPECT_EQ(*a->Reclaim(SavedAt("alone", 0, 5)), 1) << "saved before the server joined a cluster";
+  EXPECT_FALSE(b->Reclaim(SavedAt("alone", 0, 5)).ok()) << "another server has a session of that id";
   ASSERT_EQ(*b->Reclaim(SavedAt("newer", 3, 9)), 4);
   b->Abandon("newer");
   EXPECT_FALSE(a->Reclaim(SavedAt("newer", 2, 20)).ok());
@@ -221,10 +221,10 @@ TEST_F(ClusterTest, AStoresOwnSessionComesBackUnlessOthersHadItSince) {
   gone.id = "newer";
   gone.forgotten = true;
   EXPECT_TRUE(a->Copy(gone));
-  EXPECT_FALSE(b->Reclaim(SavedAt("newer", 5, 10)).ok()) << "it was deleted";
+  EXPECT_FALSE(b->Reclaim(SavedAt("newer", 5, 10)).ok()) << "a deleted session was reclaimed";
 }
 
-TEST(RedisAddress, SaysWhatIsWrongWithoutThePassword) {
+TEST(RedisAddress, ReportsErrorsWithoutThePassword) {
   const auto good = ParseRedisAddress("redis://:secret@10.0.0.1:7000");
   ASSERT_TRUE(good.ok());
   EXPECT_EQ(good->host, "10.0.0.1");
