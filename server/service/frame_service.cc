@@ -73,7 +73,7 @@ grpc::Status FrameService::GetGeometry(grpc::ServerContext* context, const v1::G
                                        grpc::ServerWriter<v1::GetGeometryResponse>* writer) {
   const auto call = AdmitToSession(guard_, table_, *context, *request);
   if (!call.ok()) return ToGrpc(call.status());
-  const session::Session& session = *call->session;
+  session::Session& session = *call->session;
   const Model& model = session.model();
   for (int body = 0; body < static_cast<int>(model.bodies.size()); ++body) {
     if (!writer->Write(stream::MakeGeometry(model, session.publisher().layout(), body)))

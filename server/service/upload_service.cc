@@ -37,8 +37,10 @@ grpc::Status UploadService::BeginUpload(grpc::ServerContext* context, const v1::
   if (!begun.ok()) return ToGrpc(begun.status());
   response->set_upload_id(begun->id);
   response->set_received(begun->received);
-  if (begun->id.empty()) Fill(begun->file, *response->mutable_file());
-  if (begun->id.empty()) guard_.SetOwner(AccessGuard::Kind::kUpload, begun->file.path(), caller->id());
+  if (!begun->id.empty()) return grpc::Status::OK;
+  // The server already has a file with this hash.
+  Fill(begun->file, *response->mutable_file());
+  guard_.SetOwner(AccessGuard::Kind::kUpload, begun->file.path(), caller->id());
   return grpc::Status::OK;
 }
 

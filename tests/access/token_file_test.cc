@@ -56,10 +56,10 @@ TEST_F(TokenFile, IsRefusedWithLineAndReason) {
   const std::string hash(64, 'a');
   const struct {
     std::string text, words;
-  } cases[] = {{"\nnonsense\n", "f:2: a line is SHA256 ROLE NAME"},
+  } cases[] = {{"\nnonsense\n", "f:2: a line must be SHA256 ROLE NAME"},
                {hash + " king anna\n", "f:1: there is no role \"king\""},
-               {hash + " viewer a/b\n", "f:1: a name has"},
-               {hash + " viewer anna\n" + hash + " viewer bert\n", "f:2: the same token twice"}};
+               {hash + " viewer a/b\n", "f:1: a name must have"},
+               {hash + " viewer anna\n" + hash + " viewer bert\n", "f:2: the token is listed twice"}};
   for (const auto& one : cases) {
     const auto parsed = ParseTokens("f", one.text);
     EXPECT_TRUE(absl::IsInvalidArgument(parsed.status())) << one.text;

@@ -28,7 +28,7 @@ class Member {
                      .take_over =
                          [this](const store::SavedSession& saved, std::int64_t epoch) {
                            absl::MutexLock lock(&mutex_);
-                           taken_.push_back({saved, epoch});
+                           taken_over_.push_back({saved, epoch});
                            return absl::OkStatus();
                          },
                      .copy_whole =
@@ -46,19 +46,19 @@ class Member {
     absl::MutexLock lock(&mutex_);
     return asked_.contains(id);
   }
-  struct Taken {
+  struct TakenOver {
     store::SavedSession saved;
     std::int64_t epoch = 0;
   };
-  std::vector<Taken> taken() {
+  std::vector<TakenOver> taken_over() {
     absl::MutexLock lock(&mutex_);
-    return taken_;
+    return taken_over_;
   }
 
  private:
   absl::Mutex mutex_;
   std::set<std::string> lost_ ABSL_GUARDED_BY(mutex_), asked_ ABSL_GUARDED_BY(mutex_);
-  std::vector<Taken> taken_ ABSL_GUARDED_BY(mutex_);
+  std::vector<TakenOver> taken_over_ ABSL_GUARDED_BY(mutex_);
   std::unique_ptr<Cluster> cluster_;  // destroyed first, since its threads use the other members
 };
 
@@ -138,7 +138,7 @@ TEST_F(ClusterTest, ASlowServerCannotOverwriteItsSuccessor) {
   ASSERT_TRUE(a->Copy(MomentOf("s", 3)));
   a->Leave();  // stops renewing, as a suspended process does
   ASSERT_TRUE(Within(absl::Seconds(6), [&] { return !b.taken_over().empty(); }));
-  const Member::Taken taken = b.taken_over()[0];
+  const Member::TakenOver taken = b.taken_over()[0];
   EXPECT_EQ(taken.epoch, 2);
   EXPECT_EQ(taken.saved.state.tick(), 1);
   EXPECT_EQ(taken.saved.sequence, 3);

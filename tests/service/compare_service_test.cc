@@ -110,7 +110,7 @@ class NoComparisons : public CompareServiceTest {
 TEST_F(NoComparisons, AreRefusedAboveTheLimit) {
   const grpc::Status status = Compare(Request(kObj, kObj));
   EXPECT_EQ(status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
-  EXPECT_THAT(status.error_message(), HasSubstr("0 comparisons are under way"));
+  EXPECT_THAT(status.error_message(), HasSubstr("0 comparisons are running"));
 }
 
 }  // namespace
