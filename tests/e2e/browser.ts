@@ -2,7 +2,7 @@ import { existsSync, mkdirSync } from "node:fs";
 import { join } from "node:path";
 import axe from "axe-core";
 import { type Browser, chromium, type Page } from "playwright-core";
-import type { TestHook } from "../../web/src/test_hook";
+import type { TestHook } from "../../web/src/app/test_hook";
 import { outFolder } from "./server";
 
 declare global {

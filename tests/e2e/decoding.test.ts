@@ -1,9 +1,9 @@
 import { setTimeout as sleep } from "node:timers/promises";
 import { afterAll, beforeAll, expect, test } from "vitest";
-import { systemClock } from "../../web/src/clock";
-import { type Body, type FrameArrays } from "../../web/src/codec";
-import { Connection } from "../../web/src/connection";
-import { FrameDecoder } from "../../web/src/frame_decoder";
+import { systemClock } from "../../web/src/timing/clock";
+import { type Body, type FrameArrays } from "../../web/src/geometry/bodies";
+import { Connection } from "../../web/src/connection/session_connection";
+import { FrameDecoder } from "../../web/src/decoders/frame_decoder";
 import { Codec, type Frame } from "../../web/src/gen/phrenic/v1/frames_pb";
 import { nodeApi } from "./node_api";
 import { Server } from "./server";

@@ -1,5 +1,5 @@
 import { createGrpcWebTransport } from "@connectrpc/connect-web";
-import { type Api, createApi } from "../../web/src/api";
+import { type Api, createApi } from "../../web/src/connection/api";
 
 /**
  * The viewer's calls from Node.js, over its fetch. Connect asks for `redirect: "error"`, with which the fetch of

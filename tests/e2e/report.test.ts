@@ -4,7 +4,7 @@ import { join } from "node:path";
 import { pathToFileURL } from "node:url";
 import type { Browser, Page } from "playwright-core";
 import { afterAll, beforeAll, describe, expect, test } from "vitest";
-import { costStudy, errorStudy, pageOf, stabilityStudy } from "../web/study_samples";
+import { costStudy, errorStudy, pageOf, stabilityStudy } from "../web/report/study_samples";
 import { launchBrowser } from "./browser";
 import { outFolder } from "./server";
 

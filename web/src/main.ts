@@ -1,15 +1,15 @@
 import { createGrpcWebTransport } from "@connectrpc/connect-web";
-import { Access, identifying, takeLink } from "./access";
-import { createApi, errorText } from "./api";
-import { App } from "./app";
-import { chooseSession } from "./choose_session";
-import { systemClock } from "./clock";
-import { Chooser } from "./panels/chooser";
-import { Identity, signing } from "./identity";
-import { make, place } from "./panels/dom";
-import { signIn } from "./panels/sign_in";
-import { recipeOf, rerun } from "./permalink";
-import { routing } from "./routing";
+import { Access, identifying, takeLink } from "./connection/credentials";
+import { createApi, errorText } from "./connection/api";
+import { App } from "./app/app";
+import { chooseSession } from "./session/choose_session";
+import { systemClock } from "./timing/clock";
+import { Chooser } from "./panels/session/session_chooser";
+import { Identity, signing } from "./connection/identity";
+import { make, place } from "./dom/elements";
+import { signIn } from "./panels/session/sign_in";
+import { recipeOf, rerun } from "./session/permalink";
+import { routing } from "./connection/routing";
 
 // What is sent while the page goes outlives it: a vertex that is let go of.
 let leaving = false;

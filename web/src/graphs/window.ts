@@ -1,4 +1,4 @@
-import type { History } from "../history";
+import type { History } from "../state/time_series";
 import type { GraphSpec } from "./catalogue";
 
 /** A stretch of simulated time [s]. */

@@ -7,7 +7,7 @@ import {
   type StageRow,
   StageRowSchema,
 } from "../gen/phrenic/v1/study_results_pb";
-import { make } from "../panels/dom";
+import { make } from "../dom/elements";
 import { stageBars, variantBars } from "./cost_bars";
 import { formatDigits } from "./format";
 import { growth } from "./growth";

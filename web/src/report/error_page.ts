@@ -5,7 +5,7 @@ import {
   ResidualRowSchema,
   ResolutionRowSchema,
 } from "../gen/phrenic/v1/study_results_pb";
-import { make } from "../panels/dom";
+import { make } from "../dom/elements";
 import { convergence } from "./convergence";
 import { beside } from "./figure";
 import { formatDigits } from "./format";

@@ -1,4 +1,4 @@
-import { make } from "../panels/dom";
+import { make } from "../dom/elements";
 
 /** A plot with the sentence that says what to see. */
 export function figure(title: string, sentence: string, ...content: (Node | string)[]): HTMLElement {

@@ -1,8 +1,8 @@
 import type { Study } from "../gen/phrenic/v1/study_pb";
 import type { Parameters } from "../gen/phrenic/v1/parameters_pb";
 import type { StudyResult } from "../gen/phrenic/v1/study_results_pb";
-import { make } from "../panels/dom";
-import { type Control, parameterControls } from "../schema";
+import { make } from "../dom/elements";
+import { type Control, parameterControls } from "../parameters/controls";
 import { formatDigits } from "./format";
 import { nameOf } from "./names";
 

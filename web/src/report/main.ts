@@ -1,4 +1,4 @@
-import { place } from "../panels/dom";
+import { place } from "../dom/elements";
 import { showStudy } from "./page";
 
 showStudy(place("page"), place("study").textContent ?? "");

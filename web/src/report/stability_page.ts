@@ -7,7 +7,7 @@ import {
   StabilityRowSchema,
   type StabilityTable,
 } from "../gen/phrenic/v1/study_results_pb";
-import { make } from "../panels/dom";
+import { make } from "../dom/elements";
 import { figure } from "./figure";
 import { count, formatDigits, formatTicks } from "./format";
 import { nameOf } from "./names";

@@ -1,6 +1,6 @@
 import type { DescField, DescMessage, Message } from "@bufbuild/protobuf";
 import { isFieldSet, ScalarType } from "@bufbuild/protobuf";
-import { make } from "../panels/dom";
+import { make } from "../dom/elements";
 import { formatDigits } from "./format";
 import { headingOf } from "./headings";
 import { nameOf } from "./names";

@@ -1,9 +1,9 @@
 import { scaleLinear } from "d3-scale";
 import * as THREE from "three";
-import type { Look } from "../looks";
+import type { Look } from "../appearance/layer_styles";
 import type { BodyView } from "./body_view";
 import type { Viewer } from "./viewer";
-import { planeAxes } from "./views";
+import { planeAxes } from "./named_views";
 
 /** Names stand so far beside what they name, and at least so far apart [CSS pixels]. */
 const aside = 36;

@@ -1,12 +1,12 @@
 import * as THREE from "three";
-import { type Body, floatsPerPose, type FrameArrays, positionsOf } from "../codec";
+import { type Body, floatsPerPose, type FrameArrays, positionsOf } from "../geometry/bodies";
 import { Placement } from "../gen/phrenic/v1/frames_pb";
-import { edgesOf } from "./edges";
+import { edgesOf } from "../geometry/edges";
 import { pointMaterial, setOpacity, surfaceMaterial } from "./materials";
-import { computeNormals } from "./normals";
+import { computeNormals } from "../geometry/normals";
 import { addOverlays, type Overlay } from "./overlays";
-import { Paint } from "./paint";
-import { tendonWeights } from "./tendon";
+import { Paint } from "./vertex_colors";
+import { tendonWeights } from "../geometry/tendon";
 import { ThickLines } from "./thick_lines";
 
 /** What can be drawn over a body. */

@@ -1,5 +1,5 @@
 import * as THREE from "three";
-import type { ActionLine } from "../codec";
+import type { ActionLine } from "../geometry/bodies";
 import type { BodyView, OverlayKind } from "./body_view";
 import { lineMaterial, pointMaterial } from "./materials";
 import { ThickLines } from "./thick_lines";

@@ -1,16 +1,16 @@
 import * as THREE from "three";
-import type { Body, FrameArrays } from "../codec";
+import type { Body, FrameArrays } from "../geometry/bodies";
 import { BodyView, type OverlayKind, overlayKinds } from "./body_view";
-import { letClick, type VertexRef } from "./clicking";
-import { type Cut, placeOf, planeOf } from "./cut";
+import { letClick, type VertexRef } from "./click_picking";
+import { type Cut, placeOf, planeOf } from "./clipping";
 import { Ghost } from "./ghost";
 import { addLights } from "./lights";
 import { type Marker, Markers } from "./markers";
 import type { Surface } from "./nearest_surface";
 import { type Pull, Pulling } from "./pulling";
-import { type Compass, type Covered, Rig } from "./rig";
-import { Sharpness } from "./sharpness";
-import type { ViewName } from "./views";
+import { type Compass, type Covered, Rig } from "./camera_rig";
+import { Sharpness } from "./adaptive_resolution";
+import type { ViewName } from "./named_views";
 
 /** Scenes of at most so many vertices are diagrams rather than anatomy. */
 const mostOfADiagram = 2000;

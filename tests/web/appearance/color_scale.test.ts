@@ -1,0 +1,82 @@
+import { create } from "@bufbuild/protobuf";
+import { describe, expect, test } from "vitest";
+import { ColorScale, topFor } from "../../../web/src/appearance/color_scale";
+import { SurfaceDistanceSchema } from "../../../web/src/gen/phrenic/v1/compare_pb";
+import { figuresTable, millimetres } from "../../../web/src/panels/comparison/distance_table";
+import { Legend } from "../../../web/src/panels/view/legend";
+
+/** CIE 1976 lightness, 0 to 100, of a colour in sRGB. */
+function lightnessOf(rgb: [number, number, number]): number {
+  const [r, g, b] = rgb.map((byte) => (byte > 10 ? ((byte / 255 + 0.055) / 1.055) ** 2.4 : byte / 255 / 12.92));
+  const y = 0.2126 * r + 0.7152 * g + 0.0722 * b;
+  return y > 0.008856 ? 116 * Math.cbrt(y) - 16 : 903.3 * y;
+}
+
+describe("the scale", () => {
+  test("EndsAtARoundNumberThatNoDistanceIsBeyond", () => {
+    expect(topFor([0.2, 11.3, NaN, 4])).toBe(12);
+    expect(topFor([0.0234])).toBe(0.025);
+    expect(topFor([7])).toBe(7);
+  });
+
+  test("OfEqualSurfacesIsNotOfRoundOff", () => {
+    expect(topFor([])).toBe(0.001);
+    expect(topFor([1e-13, NaN])).toBe(0.001);
+  });
+
+  test("GrowsLighterByEqualStepsForEqualDistances", () => {
+    const scale = new ColorScale(10);
+    const lightness = Array.from({ length: 11 }, (_, i) => lightnessOf(scale.color(i)));
+    const steps = lightness.slice(1).map((l, i) => l - lightness[i]);
+    const mean = (lightness[10] - lightness[0]) / 10;
+    for (const step of steps) expect(Math.abs(step - mean)).toBeLessThan(0.2 * mean);
+  });
+
+  test("HasItsEndsForWhatIsBeyondAndGreyForWhatIsUnknown", () => {
+    const scale = new ColorScale(10);
+    expect(scale.color(11)).toEqual(scale.color(10));
+    expect(scale.color(-1)).toEqual(scale.color(0));
+    const [red, green, blue] = scale.color(NaN);
+    expect(Math.max(red, green, blue) - Math.min(red, green, blue)).toBeLessThan(20);
+  });
+
+  test("PaintsThreeBytesAVertex", () => {
+    const scale = new ColorScale(10);
+    expect([...scale.paint([0, 10])]).toEqual([...scale.color(0), ...scale.color(10)]);
+  });
+
+  test("IsMarkedFromNothingToItsEnd", () => {
+    const ticks = new ColorScale(12).ticks();
+    expect(ticks[0]).toEqual({ part: 0, text: "0" });
+    expect(ticks.at(-1)).toEqual({ part: 1, text: "12" });
+    expect(new ColorScale(0.025).ticks().at(-1)).toEqual({ part: 1, text: "0.025" });
+  });
+});
+
+test("TheLegendSaysItsRangeAndUnit", () => {
+  const legend = new Legend();
+  legend.show(new ColorScale(12));
+  expect(legend.element.querySelector("canvas")!.ariaLabel).toBe("Colours from 0 to 12 mm");
+  expect(legend.element.textContent).toMatch(/^mm0.*12$/);
+});
+
+describe("the figures", () => {
+  const table = figuresTable(create(SurfaceDistanceSchema, { meanAToB: 1.23456, hdMax: 150.04, rmsBToA: NaN }));
+  const shown = (name: string) => table.querySelector(`[data-measure="${name}"]`)!;
+
+  test("StandUnderTheirNamesInTheSchema", () => {
+    expect(shown("mean_a_to_b").textContent).toBe("1.235");
+    expect(shown("hd_max").textContent).toBe("150.0");
+    expect(shown("mean_a_to_b").nextElementSibling!.textContent).toBe("mean_a_to_b");
+    expect(table.querySelectorAll("[data-measure]").length).toBe(11);
+  });
+
+  test("SayWhatTheyMeanInTheSchemasWords", () => {
+    expect(shown("hd95_max").closest("td")!.title).toContain("Larger of p95_a_to_b and p95_b_to_a");
+  });
+
+  test("ThatDoNotExistSaySo", () => {
+    expect(shown("rms_b_to_a").textContent).toBe("none");
+    expect(millimetres(0)).toBe("0.000");
+  });
+});

@@ -1,0 +1,85 @@
+import { createRouterTransport } from "@connectrpc/connect";
+import { expect, test } from "vitest";
+import { Access, identifying, takeLink } from "../../../web/src/connection/credentials";
+import { createApi } from "../../../web/src/connection/api";
+import { AccessService } from "../../../web/src/gen/phrenic/v1/access_pb";
+import { signIn } from "../../../web/src/panels/session/sign_in";
+
+class Remembered {
+  private readonly items = new Map<string, string>();
+  getItem(key: string): string | null {
+    return this.items.get(key) ?? null;
+  }
+  setItem(key: string, value: string): void {
+    this.items.set(key, value);
+  }
+}
+
+/** A server that knows one token, and what it was shown. */
+function server(access: Access) {
+  const shown: Headers[] = [];
+  const transport = createRouterTransport(
+    ({ service }) => {
+      service(AccessService, {
+        getAccess(_, context) {
+          shown.push(context.requestHeader);
+          const name = context.requestHeader.get("authorization") === "Bearer good" ? "anna" : "";
+          return { accounts: true, name };
+        },
+      });
+    },
+    { transport: { interceptors: [identifying(access)] } },
+  );
+  return { api: createApi(transport), shown };
+}
+
+const secret = "00112233445566778899aabbccddeeff";
+
+test("a link's secret is taken from behind the #, and from nowhere else", () => {
+  const access = new Access(new Remembered());
+  takeLink(new URL(`https://x/?session=a&join=${secret}`), access);
+  takeLink(new URL("https://x/?session=a#join=<script>"), access);
+  expect(access.links).toEqual([]);
+  takeLink(new URL(`https://x/?session=a#join=${secret}`), access);
+  takeLink(new URL(`https://x/?session=a#join=${secret}`), access);
+  expect(access.links).toEqual([secret]);
+});
+
+test("every call says who calls, and nothing where there is nothing to say", async () => {
+  const access = new Access(new Remembered());
+  const { api, shown } = server(access);
+  await api.access.getAccess({});
+  expect(shown[0]!.has("authorization") || shown[0]!.has("x-join")).toBe(false);
+  access.token = "good";
+  access.keepLink(secret);
+  await api.access.getAccess({});
+  expect(shown[1]!.get("authorization")).toBe("Bearer good");
+  expect(shown[1]!.get("x-join")).toBe(secret);
+});
+
+test("the page asks until the server knows the token, which stands nowhere in it", async () => {
+  const access = new Access(new Remembered());
+  const { api } = server(access);
+  const place = document.createElement("div");
+  const done = signIn(api, access, place);
+  for (const [words, token] of [
+    ["knows its users", "bad"],
+    ["Nobody has that token", "good"],
+  ] as const) {
+    await expect.poll(() => place.textContent).toContain(words);
+    const entry = place.querySelector("input")!;
+    expect(entry.type).toBe("password");
+    entry.value = token;
+    place.querySelector("form")!.requestSubmit();
+  }
+  await done;
+  expect(access.token).toBe("good");
+});
+
+test("a join link alone lets in without a question", async () => {
+  const access = new Access(new Remembered());
+  access.keepLink(secret);
+  const place = document.createElement("div");
+  await signIn(server(access).api, access, place);
+  expect(place.childElementCount).toBe(0);
+});

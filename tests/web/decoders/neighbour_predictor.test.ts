@@ -1,0 +1,53 @@
+import { expect, test } from "vitest";
+import { foretelling } from "../../../web/src/decoders/neighbour_predictor";
+import { neighbourWeights, unit } from "../../../web/src/decoders/neighbour_weights";
+import type { RestShape } from "../../../web/src/decoders/rest_shape";
+
+let seed = 1;
+const random = () => (seed = (seed * 16807) % 2147483647) / 2147483647;
+
+/** A crumpled grid of so many vertices a side. */
+function grid(side: number): RestShape {
+  const rest = Float32Array.from({ length: 3 * side * side }, (_, i) => {
+    const [column, row] = [Math.floor(i / 3) % side, Math.floor(i / 3 / side)];
+    return [column, row, 0][i % 3] + 0.4 * random();
+  });
+  const beside = Array.from({ length: side * side }, (_, i) => {
+    const all = [i - side, i % side > 0 ? i - 1 : -1, (i + 1) % side > 0 ? i + 1 : -1, i + side];
+    return all.filter((other) => other >= 0 && other < side * side);
+  });
+  return { rest, beside, shapes: [] };
+}
+
+/** What proto/README.md says, word for word, in numbers of any size. */
+function asDefined(shape: RestShape, remainders: Int32Array): Int32Array {
+  const { first, places, weights } = neighbourWeights(shape);
+  const values = remainders.slice();
+  for (let place = 0; place + 1 < first.length; place++) {
+    for (let axis = 0; axis < 3; axis++) {
+      let sum = BigInt(unit / 2);
+      for (let i = first[place]; i < first[place + 1]; i++)
+        sum += BigInt(weights[i]) * BigInt(values[3 * places[i] + axis]);
+      const told = sum >> BigInt(Math.log2(unit));
+      values[3 * place + axis] = Number(BigInt.asIntN(32, BigInt(values[3 * place + axis]) + told));
+    }
+  }
+  return values;
+}
+
+test.each([3, 3000, 2 ** 20, 2 ** 31 - 1])("NumbersUpTo %i AreForetoldAsDefined", (largest) => {
+  const shape = grid(12);
+  const remainders = Int32Array.from({ length: shape.rest.length }, () => Math.round((2 * random() - 1) * largest));
+  const values = remainders.slice();
+  foretelling(shape).add(values);
+  expect(values).toEqual(asDefined(shape, remainders));
+});
+
+test("OneLargeNumberAmongSmallOnesChangesNothingOfTheRule", () => {
+  const shape = grid(9);
+  const remainders = Int32Array.from({ length: shape.rest.length }, () => Math.round(4 * random()) - 2);
+  remainders[3 * 40 + 1] = 2 ** 30;
+  const values = remainders.slice();
+  foretelling(shape).add(values);
+  expect(values).toEqual(asDefined(shape, remainders));
+});

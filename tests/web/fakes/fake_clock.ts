@@ -1,0 +1,37 @@
+import type { Clock } from "../../../web/src/timing/clock";
+
+/** A clock that stands still until a test moves it. */
+export class FakeClock implements Clock {
+  private time = 0;
+  private sleepers: { until: number; wake: () => void }[] = [];
+  /** Every time somebody asked to sleep [ms]. */
+  readonly naps: number[] = [];
+
+  now(): number {
+    return this.time;
+  }
+
+  sleep(milliseconds: number, signal?: AbortSignal): Promise<void> {
+    this.naps.push(milliseconds);
+    return new Promise((resolve) => {
+      if (signal?.aborted) return resolve();
+      this.sleepers.push({ until: this.time + milliseconds, wake: resolve });
+      signal?.addEventListener("abort", () => resolve());
+    });
+  }
+
+  /** Moves on by `milliseconds` and lets everything that was due happen. */
+  async advance(milliseconds: number): Promise<void> {
+    await settle();
+    this.time += milliseconds;
+    const due = this.sleepers.filter(({ until }) => until <= this.time);
+    this.sleepers = this.sleepers.filter(({ until }) => until > this.time);
+    for (const { wake } of due) wake();
+    await settle();
+  }
+}
+
+/** Lets promises and streams that need no time run until they wait. */
+export async function settle(): Promise<void> {
+  for (let i = 0; i < 20; i++) await new Promise((resolve) => setImmediate(resolve));
+}

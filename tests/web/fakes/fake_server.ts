@@ -1,0 +1,237 @@
+import { create, type MessageInitShape } from "@bufbuild/protobuf";
+import { Code, ConnectError, createRouterTransport } from "@connectrpc/connect";
+import { createApi } from "../../../web/src/connection/api";
+import {
+  type CompareRequest,
+  type CompareResponseSchema,
+  CompareService,
+} from "../../../web/src/gen/phrenic/v1/compare_pb";
+import {
+  type Codec,
+  FrameService,
+  GetBasisResponseSchema,
+  type GetForcesRequest,
+  GetGeometryResponseSchema,
+  Placement,
+  type WatchFramesResponseSchema,
+} from "../../../web/src/gen/phrenic/v1/frames_pb";
+import type { PresetSchema } from "../../../web/src/gen/phrenic/v1/scene_pb";
+import {
+  type CreateSessionRequest,
+  type Pull,
+  type SceneSource,
+  SceneService,
+  SessionSchema,
+  SessionService,
+  SessionState,
+} from "../../../web/src/gen/phrenic/v1/session_pb";
+import { StudyService, StudyState } from "../../../web/src/gen/phrenic/v1/study_pb";
+
+type ComparisonEvent = MessageInitShape<typeof CompareResponseSchema>["event"];
+type Event = MessageInitShape<typeof WatchFramesResponseSchema>["event"];
+
+export function bytesOf(numbers: Float32Array | Uint32Array): Uint8Array<ArrayBuffer> {
+  return new Uint8Array(numbers.buffer.slice(0) as ArrayBuffer);
+}
+
+/** One triangle with corners at 0, x and y. */
+export function triangleBody(fields: MessageInitShape<typeof GetGeometryResponseSchema>) {
+  return create(GetGeometryResponseSchema, {
+    bodyCount: 1,
+    name: "triangle",
+    placement: Placement.STREAMED,
+    restPositions: bytesOf(new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0])),
+    triangles: bytesOf(new Uint32Array([0, 1, 2])),
+    ...fields,
+  });
+}
+
+/** A server of one session in this very process. Tests break it, mend it and look at what it was asked. */
+export class FakeServer {
+  session = create(SessionSchema, {
+    id: "thorax",
+    scene: "thorax",
+    state: SessionState.PLAYING,
+    revision: 1n,
+  });
+  sessions = [this.session];
+  sceneHash = "abc";
+  down = false;
+  geometryCalls = 0;
+  /** The frames that watchers said had come. */
+  readonly acknowledged: bigint[] = [];
+  readonly updates: object[] = [];
+  readonly pulls: Pull[] = [];
+  /** What sessions were made from, the steps that were asked for (from which tick, how many), and what was deleted. */
+  readonly created: CreateSessionRequest[] = [];
+  readonly steps: [bigint | undefined, bigint][] = [];
+  readonly deleted: string[] = [];
+  /** What was played, and in step with what; paused; stepped, by how many ticks. */
+  readonly played: [string, string][] = [];
+  readonly paused: string[] = [];
+  readonly stepped: [string, bigint][] = [];
+  /** Where sessions stand once they are paused. */
+  readonly resting = new Map<string, typeof this.session>();
+  /** How near to the truth frames were asked to be [mm], by each watch. */
+  readonly errorBounds: (number | undefined)[] = [];
+  readonly codecs: Codec[] = [];
+  /** What it would have frames put together from, and the epochs that viewers said they had. */
+  basis = create(GetBasisResponseSchema, {});
+  readonly basesTold: bigint[] = [];
+  /** What was asked of the forces. */
+  readonly forceQuestions: object[] = [];
+  /** Of which moment [s] forces are told, and how large those of a kind are. */
+  forcesTold = { time: 0, sizes: [0.5, 0.25] };
+  readonly comparisons: CompareRequest[] = [];
+  /** What a comparison brings, one after the other; one that is a promise is waited for. */
+  found: (ComparisonEvent | Promise<ComparisonEvent>)[] = [];
+  /** Of the scene. */
+  presets: MessageInitShape<typeof PresetSchema>[] = [];
+  private emitters = new Set<(event: Event | "end") => void>();
+
+  readonly api = createApi(
+    createRouterTransport(({ service }) => {
+      service(SessionService, {
+        getSession: () =>
+          this.answer({
+            session: this.session,
+            report: { sceneHash: this.sceneHash },
+          }),
+        listSessions: () => this.answer({ sessions: this.sessions }),
+        createSession: (request) => {
+          this.created.push(request);
+          return this.answer({ session: { id: "thorax-2", scene: "thorax" } });
+        },
+        forkSession: () => this.answer({ session: { id: "thorax-2", scene: "thorax" } }),
+        deleteSession: ({ sessionId }) => {
+          this.deleted.push(sessionId);
+          return this.answer({});
+        },
+        stepSession: ({ sessionId, ticks, expectedTick }) => {
+          this.steps.push([expectedTick, ticks]);
+          this.stepped.push([sessionId, ticks]);
+          return this.answer({});
+        },
+        playSession: ({ sessionId, inStepWith }) => {
+          this.played.push([sessionId, inStepWith]);
+          return this.answer({ session: this.session });
+        },
+        pauseSession: ({ sessionId }) => {
+          this.paused.push(sessionId);
+          return this.answer({ session: this.resting.get(sessionId) ?? this.session });
+        },
+        updateParameters: ({ parameters, preset }) => {
+          this.updates.push(preset === "" ? parameters! : { preset });
+          return this.answer({ session: this.session });
+        },
+        pullSession: ({ pulls }) => {
+          this.pulls.push(...pulls);
+          return this.answer({ session: this.session });
+        },
+      });
+      service(SceneService, {
+        describeScene: () => this.answer({ scene: { name: "thorax", presets: this.presets } }),
+      });
+      service(FrameService, this.streams());
+      service(CompareService, this.comparing());
+      service(StudyService, this.studying());
+    }),
+  );
+
+  /** Sends an event to every watcher. */
+  send(event: Event): void {
+    for (const emit of this.emitters) emit(event);
+  }
+
+  /** As a server that is killed: streams end, and nothing is answered until `down` is false again. */
+  kill(): void {
+    this.down = true;
+    for (const emit of this.emitters) emit("end");
+  }
+
+  private streams() {
+    const server = this;
+    return {
+      ackFrames({ sequence, basisEpoch }: { sequence: bigint; basisEpoch: bigint }) {
+        server.acknowledged.push(sequence);
+        server.basesTold.push(basisEpoch);
+        return server.answer({ unixNanos: 1_000_000_000n, framesPerSecond: 30, basisEpoch: server.basis.epoch });
+      },
+      getBasis() {
+        return server.answer(server.basis);
+      },
+      getForces({ body, vertex, kind }: GetForcesRequest) {
+        server.forceQuestions.push({
+          body,
+          ...(vertex === undefined ? {} : { vertex }),
+          ...(kind === "" ? {} : { kind }),
+        });
+        const forces = vertex === undefined ? [] : [1, 2].map(() => ({ x: 1, y: 2, z: 3 }));
+        const sizes = kind === "" ? new Uint8Array() : bytesOf(new Float32Array(server.forcesTold.sizes));
+        return server.answer({ kinds: ["springs", "net"], time: server.forcesTold.time, forces, sizes });
+      },
+      async *getGeometry() {
+        server.geometryCalls++;
+        yield server.answer(triangleBody({}));
+      },
+      async *watchFrames(
+        { maxErrorMm, codec }: { maxErrorMm?: number; codec: Codec },
+        { signal }: { signal: AbortSignal },
+      ) {
+        server.errorBounds.push(maxErrorMm);
+        server.codecs.push(codec);
+        yield server.answer({
+          event: { case: "session" as const, value: server.session },
+        });
+        for (;;) {
+          const event = await server.next(signal);
+          if (event === "end") throw new ConnectError("connection reset", Code.Unavailable);
+          yield { event };
+        }
+      },
+    };
+  }
+
+  private studying() {
+    const server = this;
+    const id = "cost-thorax";
+    return {
+      createStudy({ source }: { source?: SceneSource }) {
+        if (source?.source.value === "") throw new ConnectError("source.name: there is no scene", Code.InvalidArgument);
+        return server.answer({ study: { id, state: StudyState.RUNNING } });
+      },
+      async *watchStudy() {
+        yield server.answer({ study: { id, state: StudyState.RUNNING, progress: 0.5 } });
+        yield server.answer({ study: { id, state: StudyState.DONE, progress: 1, result: { tookS: 2 } } });
+      },
+      listStudies: () => server.answer({ studies: [] }),
+      deleteStudy: () => server.answer({}),
+    };
+  }
+
+  private comparing() {
+    const server = this;
+    return {
+      async *compare(request: CompareRequest) {
+        server.comparisons.push(request);
+        for (const event of server.found) yield server.answer({ event: await event });
+      },
+    };
+  }
+
+  private next(signal: AbortSignal): Promise<Event | "end"> {
+    return new Promise((resolve) => {
+      const emit = (event: Event | "end") => {
+        this.emitters.delete(emit);
+        resolve(event);
+      };
+      this.emitters.add(emit);
+      signal.addEventListener("abort", () => emit("end"));
+    });
+  }
+
+  private answer<T>(value: T): T {
+    if (this.down) throw new ConnectError("connection refused", Code.Unavailable);
+    return value;
+  }
+}

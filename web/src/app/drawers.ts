@@ -1,0 +1,42 @@
+import { place } from "../dom/elements";
+
+/** Where there is room for them, graphs and controls are open at first. */
+const roomForControls = "(min-width: 761px) and (min-height: 480px)";
+const roomForGraphs = "(min-width: 1100px) and (min-height: 560px)";
+const roomForGraphsBesideTwo = "(min-width: 1600px) and (min-height: 560px)";
+/** Else one takes the place of the other. */
+const roomForBoth = "(min-width: 761px)";
+
+/**
+ * The controls and the graphs fold away by their buttons; the result folds each. `folded` hears of it. Two pictures need
+ * more room than one.
+ */
+export function drawers(folded: () => void, two: boolean): { graphs(): void; panel(): void } {
+  const alone = document.body.classList.contains("embedded");
+  const open = (room: string) => !alone && matchMedia(room).matches;
+  const panel = drawer("panel", open(roomForControls), folded);
+  const graphs = drawer("graphs", open(two ? roomForGraphsBesideTwo : roomForGraphs), folded);
+  panel.opened = () => matchMedia(roomForBoth).matches || graphs.fold(false);
+  graphs.opened = () => matchMedia(roomForBoth).matches || panel.fold(false);
+  return { graphs: () => graphs.turn(), panel: () => panel.turn() };
+}
+
+function drawer(name: string, open: boolean, folded: () => void) {
+  const toggle = place(`${name}-toggle`) as HTMLButtonElement;
+  const self = {
+    opened: (): unknown => undefined,
+    fold(wanted: boolean): void {
+      document.body.classList.toggle(`${name}-open`, wanted);
+      toggle.setAttribute("aria-expanded", String(wanted));
+      folded();
+    },
+    turn(): void {
+      const wanted = !document.body.classList.contains(`${name}-open`);
+      self.fold(wanted);
+      if (wanted) self.opened();
+    },
+  };
+  toggle.onclick = () => self.turn();
+  self.fold(open);
+  return self;
+}

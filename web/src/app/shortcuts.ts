@@ -1,0 +1,49 @@
+import { make } from "../dom/elements";
+
+/** A key, what it does in words, and the doing. */
+export interface Shortcut {
+  key: string;
+  words: string;
+  act(): void;
+}
+
+const ofThePicture: [key: string, words: string][] = [
+  ["Drag, arrow keys", "Turn the picture"],
+  ["Wheel, + and −", "Come nearer, go away"],
+  ["Right drag", "Move the picture"],
+  ["Click", "Pick a vertex"],
+  ["Shift and drag", "Pull the tissue"],
+  ["Ctrl Z, Ctrl Shift Z", "Take a change back, do it again"],
+];
+
+/** Keys that act anywhere but in a control or a dialog, and a dialog that lists them. */
+export function shortcuts(all: Shortcut[], undo: () => void, redo: () => void): HTMLDialogElement {
+  const dialog = make("dialog", { className: "chooser", id: "help", ariaLabel: "Keys and gestures" });
+  const close = make("button", { type: "button", onclick: () => dialog.close() }, "Close");
+  const help: Shortcut = { key: "?", words: "Show this list", act: () => dialog.showModal() };
+  const keys = [...all, help];
+  const rows = [...keys.map(({ key, words }) => [key === " " ? "Space" : key.toUpperCase(), words]), ...ofThePicture];
+  const list = rows.flatMap(([key, words]) => [make("dt", {}, make("kbd", {}, key)), make("dd", {}, words)]);
+  dialog.append(
+    make("header", {}, make("h2", {}, "Keys and gestures"), close),
+    make("dl", { className: "keys-list" }, ...list),
+  );
+  document.addEventListener("keydown", (event) => {
+    if ((event.target as Element | null)?.closest("dialog, input, select, textarea") || event.altKey) return;
+    if (event.ctrlKey || event.metaKey) return onUndoKey(event, undo, redo);
+    // A button keeps what presses it.
+    if (event.key === " " && (event.target as Element | null)?.closest("button, summary, a")) return;
+    const shortcut = keys.find(({ key }) => key === event.key);
+    if (shortcut === undefined) return;
+    event.preventDefault();
+    shortcut.act();
+  });
+  return dialog;
+}
+
+function onUndoKey(event: KeyboardEvent, undo: () => void, redo: () => void): void {
+  if (event.key.toLowerCase() !== "z") return;
+  event.preventDefault();
+  if (event.shiftKey) redo();
+  else undo();
+}

@@ -1,0 +1,138 @@
+import { type Body, type FrameArrays, positionsOf } from "../geometry/bodies";
+import { wordsOf } from "../session/force_queries";
+import { strains } from "../geometry/strain";
+
+/** What a body's surface can be coloured by: what its shape tells, or a kind of force that the server tells. */
+export type FieldKind = ShapeKind | `force:${string}`;
+export type ShapeKind = "displacement" | "speed" | "area" | "largest" | "smallest";
+
+export interface FieldInfo {
+  kind: FieldKind;
+  label: string;
+  unit: string;
+  help: string;
+  /** Both signs mean something: more or less than at rest. */
+  diverging: boolean;
+  /** The least end of a scale, in the unit. */
+  least: number;
+}
+
+export const fields: FieldInfo[] = [
+  {
+    kind: "displacement",
+    label: "Displacement",
+    unit: "mm",
+    help: "How far each vertex is from where it rests",
+    diverging: false,
+    least: 10,
+  },
+  { kind: "speed", label: "Speed", unit: "mm/s", help: "How fast each vertex moves", diverging: false, least: 10 },
+  {
+    kind: "area",
+    label: "Area change",
+    unit: "%",
+    help: "How much larger than at rest the triangles around each vertex are",
+    diverging: true,
+    least: 5,
+  },
+  {
+    kind: "largest",
+    label: "Strain, largest",
+    unit: "%",
+    help: "How much the surface is stretched where it is stretched most: the larger principal strain",
+    diverging: true,
+    least: 5,
+  },
+  {
+    kind: "smallest",
+    label: "Strain, smallest",
+    unit: "%",
+    help: "How much the surface is stretched, or shortened, the other way: the smaller principal strain",
+    diverging: true,
+    least: 5,
+  },
+];
+
+/** Whether neighbours' distances count in a field, so that an error of 0.1 mm would show. */
+export function needsExact(kind: FieldKind | undefined): boolean {
+  return kind === "area" || kind === "largest" || kind === "smallest";
+}
+
+/** The kind of force that a field is, if it is one. */
+export function forceOf(kind: FieldKind | undefined): string | undefined {
+  return kind?.startsWith("force:") ? kind.slice("force:".length) : undefined;
+}
+
+export function infoOf(kind: FieldKind | undefined): FieldInfo | undefined {
+  const force = forceOf(kind);
+  if (kind === undefined || force === undefined) return fields.find((each) => each.kind === kind);
+  const label = `Force: ${wordsOf(force)}`;
+  return { kind, label, unit: "N", help: "How large it is on each vertex", diverging: false, least: 1e-4 };
+}
+
+/** |x - x_rest| of each vertex [mm]. */
+export function displacements(rest: Float32Array, now: Float32Array): Float32Array {
+  return ways(rest, now, 1000);
+}
+
+/** Between two moments `seconds` apart [mm/s]; nothing moves where they are one. */
+export function speeds(before: Float32Array, now: Float32Array, seconds: number): Float32Array {
+  return ways(before, now, seconds > 0 ? 1000 / seconds : 0);
+}
+
+function ways(from: Float32Array, to: Float32Array, factor: number): Float32Array {
+  const result = new Float32Array(from.length / 3);
+  for (let i = 0; i < result.length; i++) {
+    const x = to[3 * i] - from[3 * i];
+    const y = to[3 * i + 1] - from[3 * i + 1];
+    const z = to[3 * i + 2] - from[3 * i + 2];
+    result[i] = factor * Math.sqrt(x * x + y * y + z * z);
+  }
+  return result;
+}
+
+/** Area of the triangles around each vertex over that at rest, less one [%]; NaN where there is none. */
+export function areaChanges(rest: Float32Array, now: Float32Array, triangles: Uint32Array): Float32Array {
+  const before = areas(rest, triangles);
+  return areas(now, triangles).map((area, i) => (before[i] > 0 ? 100 * (area / before[i] - 1) : NaN));
+}
+
+function areas(x: Float32Array, triangles: Uint32Array): Float32Array {
+  const result = new Float32Array(x.length / 3);
+  for (let t = 0; t < triangles.length; t += 3) {
+    const [a, b, c] = [3 * triangles[t], 3 * triangles[t + 1], 3 * triangles[t + 2]];
+    const [ux, uy, uz] = [x[b] - x[a], x[b + 1] - x[a + 1], x[b + 2] - x[a + 2]];
+    const [vx, vy, vz] = [x[c] - x[a], x[c + 1] - x[a + 1], x[c + 2] - x[a + 2]];
+    const [nx, ny, nz] = [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx];
+    const area = Math.sqrt(nx * nx + ny * ny + nz * nz) / 2;
+    for (let k = 0; k < 3; k++) result[triangles[t + k]] += area;
+  }
+  return result;
+}
+
+/** The fields of bodies as they move; of speed it remembers the moment before. */
+export class Fields {
+  private last: { time: number; arrays: FrameArrays } | undefined;
+  private before: { time: number; arrays: FrameArrays } | undefined;
+
+  /** Takes note of a moment [s]. */
+  receive(time: number, arrays: FrameArrays): void {
+    if (this.last?.arrays === arrays) return;
+    this.before = this.last !== undefined && this.last.time < time ? this.last : undefined;
+    this.last = { time, arrays };
+  }
+
+  of(kind: ShapeKind, body: Body): Float32Array | undefined {
+    if (this.last === undefined) return undefined;
+    const now = positionsOf(body, this.last.arrays);
+    if (kind === "displacement") return displacements(body.rest, now);
+    if (kind === "largest" || kind === "smallest") return strains(body.rest, now, body.triangles, kind);
+    if (kind === "area") return areaChanges(body.rest, now, body.triangles);
+    if (this.before === undefined) return new Float32Array(body.rest.length / 3);
+    return speeds(positionsOf(body, this.before.arrays), now, this.last.time - this.before.time);
+  }
+
+  clear(): void {
+    this.last = this.before = undefined;
+  }
+}

@@ -1,0 +1,198 @@
+import { Code, ConnectError } from "@connectrpc/connect";
+import { Acknowledger } from "./frame_acknowledger";
+import { type Api, errorText } from "./api";
+import { Backoff } from "../timing/backoff";
+import type { Clock } from "../timing/clock";
+import { type Body, decodeBody } from "../geometry/bodies";
+import type { Camera } from "../gen/phrenic/v1/control_pb";
+import { type AckFramesResponse, Codec, type Frame, type GetBasisResponse } from "../gen/phrenic/v1/frames_pb";
+import type { CompileReport } from "../gen/phrenic/v1/report_pb";
+import type { Session } from "../gen/phrenic/v1/session_pb";
+import { Learner } from "./basis_fetcher";
+
+/** The state of the connection, as people see it. */
+export type Link =
+  { kind: "connecting" } | { kind: "live" } | { kind: "lost"; reason: string; missing: boolean; retryAt: number };
+
+/** Who wants to know what comes from the server. */
+export interface Sink {
+  link(link: Link): void;
+  /** Another scene than before: what stands in it, and what the compile step made of it. */
+  scene(bodies: Body[], report: CompileReport): void;
+  /** `fresh` is the first word of a connection: a restarted server counts revisions from the start again. */
+  session(session: Session, fresh: boolean): void;
+  frame(frame: Frame): void;
+  /** Shapes that later frames are put together from. */
+  basis(basis: GetBasisResponse): void;
+  /** Where the one who controls looks from. */
+  camera?(camera: Camera): void;
+  /** What the server said to an acknowledgement, which was sent and answered at these times [ms]. */
+  acknowledged(response: AckFramesResponse, sent: number, answered: number): void;
+}
+
+/** Time to wait for an answer to a question [ms], and between two questions whether the server is still there. */
+const patience = 8000;
+const heartbeat = 2000;
+/** Frames on their way at most; the server lets fewer go where they come late. */
+const maxUnackedFrames = 6;
+/** How far a vertex may be from its own where its neighbours' distances count, some millimetres [mm]. */
+const exactError = 0.01;
+
+/** A name under which no other page watches. */
+const newWatchId = () => `page-${Math.random().toString(36).slice(2)}`;
+
+/**
+ * Follows one session for as long as the page lives: fetches the scene, watches its frames, and when the connection
+ * breaks or goes silent says so, waits, and comes back by itself.
+ */
+export class Connection {
+  private readonly stopped = new AbortController();
+  private wake = new AbortController();
+  private sceneHash: string | undefined;
+  private epoch = 0n;
+  private anew = new AbortController();
+  private exact = false;
+  private codec = Codec.PREDICTED;
+
+  constructor(
+    private readonly api: Api,
+    readonly sessionId: string,
+    private readonly sink: Sink,
+    private readonly clock: Clock,
+    private readonly backoff = new Backoff(),
+  ) {}
+
+  /** Resolves after `stop`. */
+  async run(): Promise<void> {
+    this.sink.link({ kind: "connecting" });
+    while (!this.stopped.signal.aborted) {
+      const error = await this.follow().catch((reason: unknown) => reason);
+      if (!this.stopped.signal.aborted) await this.rest(error);
+    }
+  }
+
+  stop(): void {
+    this.stopped.abort();
+    this.wake.abort();
+  }
+
+  /** Ends the wait before the next attempt. */
+  retryNow(): void {
+    this.wake.abort();
+  }
+
+  /** Asks for frames that are near enough to tell strain from, or for those that a thin line takes. */
+  setExact(exact: boolean): void {
+    if (exact === this.exact) return;
+    this.exact = exact;
+    this.anew.abort();
+  }
+
+  /** Asks for frames in this form. */
+  setCodec(codec: Codec): void {
+    if (codec === this.codec) return;
+    this.codec = codec;
+    this.anew.abort();
+  }
+
+  private async rest(error: unknown): Promise<void> {
+    const wait = this.backoff.next();
+    const missing = ConnectError.from(error).code === Code.NotFound;
+    this.sink.link({ kind: "lost", reason: errorText(error), missing, retryAt: this.clock.now() + wait });
+    this.wake = new AbortController();
+    await this.clock.sleep(wait, this.wake.signal);
+  }
+
+  /** One connection, from the first question to the error that ends it. */
+  private async follow(): Promise<never> {
+    const attempt = new AbortController();
+    const signal = AbortSignal.any([attempt.signal, this.stopped.signal]);
+    const beats = this.beat(attempt, signal);
+    try {
+      await this.loadScene(signal);
+      return await this.watch(signal);
+    } catch (error) {
+      throw attempt.signal.aborted ? attempt.signal.reason : error;
+    } finally {
+      attempt.abort();
+      await beats;
+    }
+  }
+
+  private async loadScene(signal: AbortSignal): Promise<void> {
+    const { session, report } = await this.ask(signal);
+    const hash = report?.sceneHash;
+    if (report !== undefined && (hash === "" || hash !== this.sceneHash)) {
+      const bodies: Body[] = [];
+      for await (const message of this.api.frames.getGeometry({ sessionId: this.sessionId }, { signal })) {
+        bodies[message.bodyIndex] = decodeBody(message);
+      }
+      this.sink.scene(bodies, report);
+      this.sceneHash = hash;
+    }
+    if (session === undefined) return;
+    this.epoch = session.epoch;
+    this.sink.session(session, true);
+  }
+
+  private async watch(signal: AbortSignal): Promise<never> {
+    for (;;) {
+      this.anew = new AbortController();
+      const { signal: changed } = this.anew;
+      await this.watchOnce(AbortSignal.any([signal, changed])).catch((error: unknown) => {
+        if (!changed.aborted || signal.aborted) throw error;
+      });
+    }
+  }
+
+  private async watchOnce(signal: AbortSignal): Promise<never> {
+    const names = { sessionId: this.sessionId, watchId: newWatchId() };
+    const learner = new Learner(
+      () => this.api.frames.getBasis({ sessionId: this.sessionId }, { signal, timeoutMs: patience }),
+      (basis) => this.sink.basis(basis),
+    );
+    const acknowledger = new Acknowledger(
+      (sequence) =>
+        this.api.frames.ackFrames({ ...names, sequence, basisEpoch: learner.epoch }, { signal, timeoutMs: patience }),
+      this.clock,
+      signal,
+      (response, sent, at) => {
+        this.sink.acknowledged(response, sent, at);
+        learner.offered(response.basisEpoch);
+      },
+    );
+    const maxErrorMm = this.exact ? exactError : undefined;
+    const request = { ...names, codec: this.codec, maxUnackedFrames, maxErrorMm };
+    for await (const { event } of this.api.frames.watchFrames(request, { signal })) {
+      this.backoff.reset();
+      this.sink.link({ kind: "live" });
+      if (event.case === "session") this.sink.session(event.value, false);
+      if (event.case === "camera") this.sink.camera?.(event.value);
+      if (event.case !== "frame") continue;
+      this.sink.frame(event.value);
+      acknowledger.received(event.value.sequence);
+    }
+    throw new ConnectError("The server closed the connection.", Code.Unavailable);
+  }
+
+  /** A paused session sends no frames, so that only an answer tells a quiet server from one that is gone. */
+  private async beat(attempt: AbortController, signal: AbortSignal): Promise<void> {
+    for (;;) {
+      await this.clock.sleep(heartbeat, signal);
+      if (signal.aborted) return;
+      try {
+        const { session } = await this.ask(signal);
+        if (session === undefined) continue;
+        // Where another server has it, what still streams is of one that was cut off.
+        if (session.epoch !== this.epoch) throw new ConnectError("The session has moved.", Code.Unavailable);
+        this.sink.session(session, false);
+      } catch (error) {
+        attempt.abort(error);
+      }
+    }
+  }
+
+  private ask(signal: AbortSignal) {
+    return this.api.sessions.getSession({ sessionId: this.sessionId }, { signal, timeoutMs: patience });
+  }
+}

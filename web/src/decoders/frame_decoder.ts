@@ -1,0 +1,82 @@
+import { type Body, floats, floatsPerPose, type FrameArrays } from "../geometry/bodies";
+import { decodeShapes } from "./basis";
+import { type Decoder, makeDecoder } from "./decoder_table";
+import { restShapeOf } from "./rest_shape";
+import { Codec, type Frame, type GetBasisResponse, Placement } from "../gen/phrenic/v1/frames_pb";
+
+/** Bases that are kept: frames of the one before may still be on their way. */
+const mostBases = 2;
+
+/** Shapes of all streamed bodies [m]. */
+interface Basis {
+  epoch: bigint;
+  shapes: Float32Array[];
+}
+
+/** Turns the frames of one scene into arrays. */
+export class FrameDecoder {
+  private readonly decoders = new Map<string, Decoder>();
+  private bases: Basis[] = [];
+
+  /** `bodies` by their `body_index`. */
+  constructor(private readonly bodies: Body[]) {}
+
+  /** Frames that are put together from these shapes can be decoded from now on. */
+  learn({ epoch, shapes }: GetBasisResponse): void {
+    const { rest, ...shape } = restShapeOf(this.streamed());
+    const predicted = makeDecoder(Codec.PREDICTED, { rest, ...shape });
+    this.bases = [{ epoch, shapes: decodeShapes(rest, predicted, shapes) }, ...this.bases].slice(0, mostBases);
+    this.decoders.clear();
+  }
+
+  /** RangeError where the frame does not fit the scene. Bodies that are not in it stay at rest. */
+  decode(frame: Frame): FrameArrays {
+    const present = frame.bodies.map((index) => this.bodies[index]);
+    if (present.includes(undefined as never)) throw new RangeError(`bodies: there are only ${this.bodies.length}.`);
+    const positions = this.decoderOf(frame, present)(frame.positions);
+    return {
+      positions: this.spread(positions, present),
+      poses: floats(frame.poses, floatsPerPose, "poses"),
+    };
+  }
+
+  private decoderOf({ codec, bodies, basisEpoch }: Frame, present: Body[]): Decoder {
+    const key = `${codec}:${basisEpoch}:${bodies.join()}`;
+    const known = this.decoders.get(key);
+    if (known !== undefined) return known;
+    const shapes = codec === Codec.BASIS ? this.shapesOf(present, basisEpoch) : [];
+    const decoder = makeDecoder(codec, restShapeOf(present, shapes));
+    this.decoders.set(key, decoder);
+    return decoder;
+  }
+
+  /** The part of each shape that is these bodies'. */
+  private shapesOf(present: Body[], epoch: bigint): Float32Array[] {
+    const basis = this.bases.find((each) => each.epoch === epoch);
+    if (basis === undefined) throw new RangeError(`basis_epoch: the shapes of ${epoch} have not come.`);
+    return basis.shapes.map((shape) => {
+      const parts = present.map(({ firstVertex, rest }) =>
+        shape.subarray(3 * firstVertex, 3 * firstVertex + rest.length),
+      );
+      return Float32Array.from(parts.flatMap((part) => [...part]));
+    });
+  }
+
+  private streamed(): Body[] {
+    return this.bodies.filter((body) => body.placement === Placement.STREAMED);
+  }
+
+  /** Each body's part to where its `firstVertex` is among all streamed ones. */
+  private spread(positions: Float32Array<ArrayBuffer>, present: Body[]): Float32Array<ArrayBuffer> {
+    const streamed = this.streamed();
+    if (present.length === streamed.length) return positions;
+    const all = new Float32Array(streamed.reduce((count, body) => count + body.rest.length, 0));
+    for (const body of streamed) all.set(body.rest, 3 * body.firstVertex);
+    let first = 0;
+    for (const { rest, firstVertex } of present) {
+      all.set(positions.subarray(first, first + rest.length), 3 * firstVertex);
+      first += rest.length;
+    }
+    return all;
+  }
+}

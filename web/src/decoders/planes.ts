@@ -1,0 +1,25 @@
+import type { Decoder } from "./decoder_table";
+import type { RestShape } from "./rest_shape";
+import { checkStep, unpack, viewOf } from "./zstd";
+
+const headBytes = 20;
+
+/** 16 bits a coordinate, low and high bytes apart, compressed (proto/README.md). */
+export function planesDecoder({ rest }: RestShape): Decoder {
+  const count = rest.length;
+  return (bytes) => {
+    const head = viewOf(bytes, headBytes);
+    const step = checkStep(head.getFloat64(0, true));
+    const planes = unpack(bytes.subarray(headBytes), 2 * count);
+    const positions = new Float32Array(count);
+    const vertices = count / 3;
+    for (let axis = 0, place = 0; axis < 3; axis++) {
+      const corner = head.getFloat32(8 + 4 * axis, true);
+      if (!Number.isFinite(corner)) throw new RangeError("positions: the corner is not finite.");
+      for (let i = 0; i < vertices; i++, place++) {
+        positions[3 * i + axis] = corner + step * (planes[place] + 256 * planes[place + count]);
+      }
+    }
+    return positions;
+  };
+}

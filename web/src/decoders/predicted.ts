@@ -1,0 +1,29 @@
+import type { Decoder } from "./decoder_table";
+import { foretelling, readRemainders } from "./neighbour_predictor";
+import type { RestShape } from "./rest_shape";
+import { checkStep, viewOf } from "./zstd";
+
+const headBytes = 8;
+
+/** What is left of displacements after they are foretold from their neighbours' (proto/README.md). */
+export function predictedDecoder(shape: RestShape): Decoder {
+  const { order, add } = foretelling(shape);
+  const displacements = new Int32Array(shape.rest.length); // three a place; kept, as it is written anew each time
+  return (bytes) => {
+    const step = checkStep(viewOf(bytes, headBytes).getFloat64(0, true));
+    readRemainders(bytes.subarray(headBytes), displacements);
+    add(displacements);
+    return place(shape.rest, order, displacements, step);
+  };
+}
+
+function place(rest: Float32Array, order: Int32Array, displacements: Int32Array, step: number) {
+  const positions = new Float32Array(rest.length);
+  for (let i = 0, from = 0; i < order.length; i++, from += 3) {
+    const to = 3 * order[i];
+    positions[to] = rest[to] + step * displacements[from];
+    positions[to + 1] = rest[to + 1] + step * displacements[from + 1];
+    positions[to + 2] = rest[to + 2] + step * displacements[from + 2];
+  }
+  return positions;
+}

@@ -1,0 +1,13 @@
+import { floats } from "../geometry/bodies";
+import type { Decoder } from "./decoder_table";
+import type { RestShape } from "./rest_shape";
+
+/** float32 as it is. */
+export function rawDecoder({ rest }: RestShape): Decoder {
+  return (bytes) => {
+    const positions = floats(bytes, 3, "positions");
+    if (positions.length !== rest.length)
+      throw new RangeError(`positions: ${positions.length} numbers instead of ${rest.length}.`);
+    return positions;
+  };
+}

@@ -1,0 +1,61 @@
+import type { Frame } from "../gen/phrenic/v1/frames_pb";
+
+/** How long frames are kept [simulated s], and how many at most: some megabytes as they came. */
+const longest = 20;
+const most = 900;
+
+/** The frames of the last seconds, as they came, and the one that is looked at again. */
+export class Past {
+  private frames: Frame[] = [];
+  /** The time that is looked back to [s]; nothing in the present. */
+  private back: number | undefined;
+
+  add(frame: Frame): void {
+    if (frame.time < (this.frames.at(-1)?.time ?? 0)) this.clear();
+    this.frames.push(frame);
+    while (this.frames.length > most || this.frames[0].time < frame.time - longest) this.frames.shift();
+  }
+
+  clear(): void {
+    this.frames = [];
+    this.back = undefined;
+  }
+
+  /** From the oldest frame to the newest [s]. */
+  get span(): { start: number; end: number } {
+    return { start: this.frames[0]?.time ?? 0, end: this.frames.at(-1)?.time ?? 0 };
+  }
+
+  look(time: number | undefined): void {
+    this.back = time;
+  }
+
+  /** The last frame up to the time that is looked back to, or the oldest that is left. */
+  get lookedAt(): Frame | undefined {
+    return this.frames[this.place()];
+  }
+
+  /** The frame nearest to a time [s]. */
+  nearest(time: number): Frame | undefined {
+    const away = ({ time: each }: Frame) => Math.abs(each - time);
+    const after = this.frames.findIndex((each) => each.time >= time);
+    const [a, b] = [this.frames.at(after - 1), this.frames.at(after)];
+    return a !== undefined && b !== undefined && after > 0 && away(a) < away(b) ? a : b;
+  }
+
+  /** The time of the frame before, or after, the one that is looked at; nothing at the newest. */
+  neighbour(by: -1 | 1): number | undefined {
+    const from = this.back === undefined ? this.frames.length - 1 : this.place();
+    const to = Math.max(0, from + by);
+    return to < this.frames.length - 1 ? this.frames[to]?.time : undefined;
+  }
+
+  private place(): number {
+    const { back } = this;
+    if (back === undefined) return -1;
+    return Math.max(
+      0,
+      this.frames.findLastIndex(({ time }) => time <= back),
+    );
+  }
+}

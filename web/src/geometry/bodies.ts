@@ -1,0 +1,133 @@
+import { type GetGeometryResponse, Placement } from "../gen/phrenic/v1/frames_pb";
+
+/** An action line as drawn [m]; `direction` is a unit vector. */
+export interface ActionLine {
+  name: string;
+  origin: [number, number, number];
+  direction: [number, number, number];
+  radius: number;
+  length: number;
+}
+
+/** What never changes of one body. Vertex indices are the body's own. */
+export interface Body {
+  name: string;
+  layer: string;
+  layerTitle: string;
+  color: string;
+  opacity: number;
+  placement: Placement;
+  pose: number;
+  firstVertex: number;
+  /** x y z a vertex [m]. */
+  rest: Float32Array<ArrayBuffer>;
+  triangles: Uint32Array<ArrayBuffer>;
+  edges: Uint32Array<ArrayBuffer>;
+  rigidLinks: Uint32Array<ArrayBuffer>;
+  attached: Uint32Array<ArrayBuffer>;
+  fixed: Uint32Array<ArrayBuffer>;
+  actionLines: ActionLine[];
+}
+
+/** The numbers of a frame that move bodies. */
+export interface FrameArrays {
+  /** x y z a streamed vertex [m]. */
+  positions: Float32Array<ArrayBuffer>;
+  /** qx qy qz qw tx ty tz a rigid body [1, m]. */
+  poses: Float32Array<ArrayBuffer>;
+}
+
+export const floatsPerPose = 7;
+
+// Numbers on the wire are little-endian (proto/README.md), and typed arrays have the machine's order.
+const machineIsLittleEndian = new Uint8Array(new Uint16Array([1]).buffer)[0] === 1;
+
+/** Bytes of 4-byte numbers, copied so that they are aligned; `what` names them in errors. */
+function aligned(bytes: Uint8Array, group: number, what: string): ArrayBuffer {
+  if (bytes.byteLength % (4 * group) !== 0) {
+    throw new RangeError(`${what}: ${bytes.byteLength} bytes are no multiple of ${4 * group}.`);
+  }
+  const copy = bytes.slice();
+  if (!machineIsLittleEndian) {
+    const view = new DataView(copy.buffer);
+    for (let i = 0; i < copy.byteLength; i += 4) view.setUint32(i, view.getUint32(i, false), true);
+  }
+  return copy.buffer;
+}
+
+/** float32 in groups of `group`. */
+export function floats(bytes: Uint8Array, group: number, what: string): Float32Array<ArrayBuffer> {
+  return new Float32Array(aligned(bytes, group, what));
+}
+
+/** uint32 in groups of `group`, each below `count`. */
+export function indices(bytes: Uint8Array, group: number, count: number, what: string): Uint32Array<ArrayBuffer> {
+  const result = new Uint32Array(aligned(bytes, group, what));
+  const bad = result.findIndex((index) => index >= count);
+  if (bad >= 0) throw new RangeError(`${what}: index ${result[bad]} at ${bad}, but there are ${count} vertices.`);
+  return result;
+}
+
+export function decodeBody(message: GetGeometryResponse): Body {
+  const of = (field: string) => `${message.name}.${field}`;
+  const rest = floats(message.restPositions, 3, of("rest_positions"));
+  const count = rest.length / 3;
+  return {
+    name: message.name,
+    layer: message.layer || message.name,
+    layerTitle: message.layerTitle || message.layer || message.name,
+    color: message.color || "#c8c8c8",
+    opacity: message.opacity,
+    placement: message.placement,
+    pose: message.pose,
+    firstVertex: message.firstVertex,
+    rest,
+    triangles: indices(message.triangles, 3, count, of("triangles")),
+    edges: indices(message.edges, 2, count, of("edges")),
+    rigidLinks: indices(message.rigidLinks, 2, count, of("rigid_links")),
+    attached: indices(message.attachedVertices, 1, count, of("attached_vertices")),
+    fixed: indices(message.fixedVertices, 1, count, of("fixed_vertices")),
+    actionLines: message.actionLines.map((line) => ({
+      name: line.name,
+      origin: triple(line.origin, of("action_lines.origin")),
+      direction: triple(line.direction, of("action_lines.direction")),
+      radius: line.radius,
+      length: line.length,
+    })),
+  };
+}
+
+function triple(values: number[], what: string): [number, number, number] {
+  if (values.length !== 3) throw new RangeError(`${what}: ${values.length} numbers instead of 3.`);
+  return [values[0], values[1], values[2]];
+}
+
+/** The part of `frame` that is `body`'s; RangeError where the frame is too short for it. */
+export function positionsOf(body: Body, frame: FrameArrays): Float32Array<ArrayBuffer> {
+  const first = 3 * body.firstVertex;
+  const part = frame.positions.subarray(first, first + body.rest.length);
+  if (part.length !== body.rest.length) throw new RangeError(`The frame ends before the vertices of ${body.name}.`);
+  return part;
+}
+
+/** Where vertex `index` of `body` is in `frame` [m]. */
+export function vertexAt(body: Body, frame: FrameArrays, index: number): [number, number, number] {
+  const source = body.placement === Placement.STREAMED ? positionsOf(body, frame) : body.rest;
+  const point: [number, number, number] = [source[3 * index], source[3 * index + 1], source[3 * index + 2]];
+  if (body.placement !== Placement.RIGID) return point;
+  const pose = frame.poses.subarray(floatsPerPose * body.pose, floatsPerPose * (body.pose + 1));
+  return transform(pose, point);
+}
+
+/** x = R(q) p + t. */
+function transform(pose: Float32Array, [x, y, z]: [number, number, number]): [number, number, number] {
+  const [qx, qy, qz, qw, tx, ty, tz] = pose;
+  const ux = 2 * (qy * z - qz * y);
+  const uy = 2 * (qz * x - qx * z);
+  const uz = 2 * (qx * y - qy * x);
+  return [
+    x + qw * ux + (qy * uz - qz * uy) + tx,
+    y + qw * uy + (qz * ux - qx * uz) + ty,
+    z + qw * uz + (qx * uy - qy * ux) + tz,
+  ];
+}

@@ -1,0 +1,58 @@
+import type { Body } from "../../geometry/bodies";
+import type { Comparisons } from "../../session/comparisons";
+import type { Signal } from "../../state/signal";
+import { make, section } from "../../dom/elements";
+
+const units: [label: string, millimetres: number][] = [
+  ["millimetres", 1],
+  ["centimetres", 10],
+  ["metres", 1000],
+];
+
+/** Chooses a file to compare with, its unit, and the body that is compared; files may be dropped as well. */
+export function comparePanel(comparisons: Comparisons, bodies: Signal<Body[]>, endings: Signal<string[]>): HTMLElement {
+  const file = make("input", { type: "file", id: "compare-file", hidden: true });
+  file.ariaLabel = "File to compare with";
+  file.onchange = () => {
+    const [chosen] = file.files ?? [];
+    // The same file may be chosen again, changed meanwhile.
+    if (chosen !== undefined) void comparisons.compare(chosen).finally(() => (file.value = ""));
+  };
+  const open = make("button", { type: "button", id: "compare", onclick: () => file.click() }, "Compare with a file…");
+  const hint = make("p", { className: "faint" });
+  endings.subscribe((all) => {
+    file.accept = all.join(",");
+    hint.textContent = `A surface (${all.join(", ")}) or motion (.msh); or drop one on the picture.`;
+  });
+  const rows = [bodyRow(comparisons, bodies), unitRow(comparisons), timeRow(comparisons)];
+  return section("Distance to a surface", true, ...rows, open, file, hint);
+}
+
+function bodyRow(comparisons: Comparisons, bodies: Signal<Body[]>): HTMLElement {
+  const list = make("select", { id: "compare-body" });
+  list.onchange = () => comparisons.choose({ body: list.value });
+  bodies.subscribe((all) => {
+    const solid = all.filter(({ triangles }) => triangles.length > 0);
+    list.replaceChildren(...solid.map(({ name }) => make("option", { value: name }, name)));
+  });
+  comparisons.choices.subscribe(({ body }) => (list.value = body));
+  return row("compare-body", "Body", list);
+}
+
+function unitRow(comparisons: Comparisons): HTMLElement {
+  const list = make("select", { id: "compare-unit" });
+  list.append(...units.map(([label, millimetres]) => make("option", { value: String(millimetres) }, label)));
+  list.onchange = () => comparisons.choose({ unitMm: Number(list.value) });
+  return row("compare-unit", "The file is in", list);
+}
+
+function timeRow(comparisons: Comparisons): HTMLElement {
+  const help = "Of a motion, the state at this time in seconds; empty: at the session's time";
+  const entry = make("input", { type: "number", step: "any", id: "compare-time", placeholder: "as now", title: help });
+  entry.onchange = () => comparisons.choose({ time: entry.value === "" ? undefined : entry.valueAsNumber });
+  return row("compare-time", "Time in a motion [s]", entry);
+}
+
+function row(id: string, label: string, control: HTMLElement): HTMLElement {
+  return make("div", { className: "compare-row" }, make("label", { htmlFor: id }, label), control);
+}

@@ -1,0 +1,121 @@
+import type { Controller } from "../../session/session_controller";
+import type { Frame } from "../../gen/phrenic/v1/frames_pb";
+import type { Parameters } from "../../gen/phrenic/v1/parameters_pb";
+import type { Preset } from "../../gen/phrenic/v1/scene_pb";
+import { domeHelp, domesOf } from "../../graphs/catalogue";
+import { formatNumber } from "../../parameters/numbers";
+import { parameterControls } from "../../parameters/controls";
+import type { Signal } from "../../state/signal";
+import { make } from "../../dom/elements";
+import { labelOf, presetOf } from "../parameters/preset_row";
+
+/** Two pictures may be so far apart before it is said [s]. */
+const together = 0.05;
+
+interface Actions {
+  swap(): void;
+  close(): void;
+}
+
+/** What stands above two pictures: how each breathes, when, how far its domes are, and what the second has otherwise. */
+export class PaneHeads {
+  readonly element: HTMLElement;
+  /** Each is named by how it breathes, where a preset says that; else by its session. */
+  private readonly names = [make("b"), make("b")];
+  private readonly times = [make("span", { className: "time" }), make("span", { className: "time" })];
+  private readonly domes = [0, 1].map(() => make("span", { className: "domes", title: domeHelp }));
+  private readonly differences = make("span", { className: "differences" });
+
+  constructor(
+    private readonly pair: [Controller, Controller],
+    private readonly presets: Signal<Preset[]>,
+    actions: Actions,
+  ) {
+    const steered = make("span", { className: "faint", title: "Controls act on this one" }, "steered");
+    const heads = [[steered], buttons(pair[1].sessionId, actions)].map((extra, i) =>
+      make("div", { className: "pane-head", title: pair[i].sessionId }, this.names[i], this.times[i], ...extra),
+    );
+    this.domes.forEach((domes, i) => heads[i].append(domes));
+    heads[1].append(this.differences);
+    this.element = make("div", { id: "pane-heads" }, ...heads);
+    for (const { session } of pair) session.subscribe(() => this.compare());
+    presets.subscribe(() => this.compare());
+  }
+
+  /** Where both stand by now. */
+  tell(frames: [Frame | undefined, Frame | undefined]): void {
+    const [here, there] = frames.map((frame) => frame?.time ?? 0);
+    frames.forEach((frame, i) => (this.domes[i].textContent = domeWords(frame)));
+    this.times[0].textContent = `${here.toFixed(2)} s`;
+    const apart = there - here;
+    const words =
+      Math.abs(apart) < together ? "" : `, ${Math.abs(apart).toFixed(1)} s ${apart > 0 ? "ahead" : "behind"}`;
+    this.times[1].textContent = `${there.toFixed(2)} s${words}`;
+  }
+
+  private compare(): void {
+    const [here, there] = this.pair.map(({ session }) => session.value?.parameters);
+    this.pair.forEach(({ session, sessionId }, i) => {
+      const preset = presetOf(this.presets.value, session.value?.parameters);
+      this.names[i].textContent = preset === undefined ? sessionId : labelOf(preset);
+    });
+    this.differences.textContent = shortDifferences(here, there) || "The same parameters";
+    this.differences.title = differences(here, there);
+  }
+}
+
+function buttons(sessionId: string, { swap, close }: Actions): HTMLElement[] {
+  const button = (words: string, title: string, onclick: () => void) =>
+    make("button", { type: "button", className: "small", title, onclick }, words);
+  return [
+    button("Steer", "Controls act on this one then", swap),
+    button("Close", `Close ${sessionId}; it stays on the server`, close),
+  ];
+}
+
+/** "right dome 19.5 mm down, left dome 2.1 mm up"; empty where the scene tells of no dome. */
+export function domeWords(frame: Frame | undefined): string {
+  if (frame === undefined) return "";
+  return domesOf(frame)
+    .map(({ name, height }) => {
+      const way = (1000 * Math.abs(height)).toFixed(1);
+      return `${name} ${way} mm${way === "0.0" ? "" : height > 0 ? " up" : " down"}`;
+    })
+    .join(", ");
+}
+
+interface Difference {
+  label: string;
+  here: string;
+  there: string;
+}
+
+function differing(here: Parameters | undefined, there: Parameters | undefined): Difference[] {
+  if (here === undefined || there === undefined) return [];
+  const values = (of: Parameters) => of as unknown as Record<string, number | boolean>;
+  return parameterControls()
+    .filter(({ field }) => values(here)[field] !== values(there)[field])
+    .map((control) => {
+      const words = (value: number | boolean) => {
+        if (typeof value === "boolean") return value ? "on" : "off";
+        const named = control.kind === "choice" ? control.options.find((each) => each.value === value) : undefined;
+        return named?.label ?? formatNumber(value);
+      };
+      const { field, label } = control;
+      return { label, here: words(values(here)[field]), there: words(values(there)[field]) };
+    });
+}
+
+/** What is set otherwise in `there`: "Breath force 2 instead of 1". */
+export function differences(here: Parameters | undefined, there: Parameters | undefined): string {
+  return differing(here, there)
+    .map(({ label, here, there }) => `${label} ${there} instead of ${here}`)
+    .join(", ");
+}
+
+/** The same, and of more than two "With breath force 0.45, breath length 3, rib motion 1.5". */
+export function shortDifferences(here: Parameters | undefined, there: Parameters | undefined): string {
+  const all = differing(here, there);
+  if (all.length < 3) return differences(here, there);
+  return `With ${all.map(({ label, there }) => `${label.toLowerCase()} ${there}`).join(", ")}`;
+}

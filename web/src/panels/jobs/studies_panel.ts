@@ -1,0 +1,91 @@
+import type { Controller } from "../../session/session_controller";
+import { type Study, StudyState } from "../../gen/phrenic/v1/study_pb";
+import { ended, type Studies, type StudyKind } from "../../session/studies";
+import { download, make, section } from "../../dom/elements";
+
+const kinds: [StudyKind, string, string][] = [
+  ["error", "Error against run time", "Every integrator over a ladder of time steps, against an independent reference"],
+  ["stability", "Stability", "A map over stiffness and time step, and a suite of extreme cases"],
+  ["cost", "Cost", "What each part of the scene costs, and what leaving it out saves"],
+  [
+    "streaming",
+    "Error against bandwidth",
+    "What a frame of the scene takes on the line, by every codec and error bound",
+  ],
+];
+
+/** Studies of the session's scene with its parameters: started, followed, cancelled and shown from here. */
+export function studiesPanel(studies: Studies, controller: Controller): HTMLElement {
+  const kind = make("select", { id: "study-kind" });
+  kind.append(...kinds.map(([value, label, title]) => make("option", { value, title }, label)));
+  const start = make("button", { type: "button", id: "study-start" }, "Start");
+  start.onclick = () => {
+    const session = controller.session.value;
+    if (session !== undefined) void studies.start(kind.value as StudyKind, session.scene, session.parameters);
+  };
+  const fault = make("p", { className: "fault", id: "study-fault" });
+  fault.setAttribute("role", "alert");
+  studies.fault.subscribe((words) => (fault.textContent = words));
+  const list = make("div", { className: "studies", id: "studies" });
+  const view = new StudyView();
+  studies.all.subscribe((all) => list.replaceChildren(...all.map((study) => studyRow(study, studies, view)).reverse()));
+  const hint = make("p", { className: "faint" }, "Of this scene, with its present parameters. One runs at a time.");
+  const row = make("div", { className: "study-start" }, kind, start);
+  kind.ariaLabel = "Study";
+  const panel = section("Studies", false, row, hint, fault, list, view.element);
+  panel.ontoggle = () => {
+    if (panel.open) void studies.load();
+  };
+  return panel;
+}
+
+function studyRow(study: Study, studies: Studies, view: StudyView): HTMLElement {
+  const { id, doing, state, problem } = study;
+  const words = make("div", { className: "words" }, make("b", {}, id), make("span", { className: "faint" }));
+  const standing = words.lastElementChild as HTMLElement;
+  standing.textContent =
+    state === StudyState.FAILED
+      ? problem
+      : state === StudyState.DONE
+        ? "done"
+        : state === StudyState.QUEUED
+          ? "waiting"
+          : doing;
+  const buttons = make("div", { className: "row" });
+  if (state === StudyState.DONE) buttons.append(...doneButtons(study, studies, view));
+  const remove = make("button", { type: "button", className: "small" }, ended(study) ? "Forget" : "Cancel");
+  remove.ariaLabel = `${remove.textContent} ${id}`;
+  remove.onclick = () => void studies.remove(id);
+  buttons.append(remove);
+  const bar = make("progress", { max: 1, value: study.progress, ariaLabel: `Progress of ${id}` });
+  const row = make("div", { className: "study" }, words, buttons, ...(ended(study) ? [] : [bar]));
+  row.dataset.study = id;
+  return row;
+}
+
+function doneButtons({ id }: Study, studies: Studies, view: StudyView): HTMLElement[] {
+  const open = make("button", { type: "button", className: "small", ariaLabel: `Open ${id}` }, "Open");
+  open.onclick = async () => view.show(await studies.result(id));
+  const save = make("button", { type: "button", className: "small", ariaLabel: `Save ${id}` }, "Save");
+  save.onclick = async () => download(`${id}.html`, new Blob([await studies.page(id)], { type: "text/html" }));
+  return [open, save];
+}
+
+/** A study over the whole page, in place. */
+class StudyView {
+  readonly element = make("dialog", { className: "study-view", ariaLabel: "Study" });
+  private readonly paper = make("div");
+
+  constructor() {
+    const close = make("button", { type: "button", onclick: () => this.element.close() }, "Close");
+    this.element.append(make("header", {}, close), this.paper);
+  }
+
+  async show(study: Study | undefined): Promise<void> {
+    if (study === undefined) return;
+    // Plots come when the first study is looked at.
+    const { embed } = await import("../../report/embedded");
+    embed(this.paper, study);
+    this.element.showModal();
+  }
+}

@@ -1,0 +1,47 @@
+import type { SurfaceReport } from "../../gen/phrenic/v1/inspect_pb";
+import type { Uploads, UploadWork } from "../../session/uploads";
+import { make, section } from "../../dom/elements";
+
+/** Chooses a surface file for the server, and says how scenes name it and whether it will do. */
+export function uploadPanel(uploads: Uploads): HTMLElement {
+  const file = make("input", { type: "file", id: "upload-file", hidden: true });
+  file.ariaLabel = "Surface file to upload";
+  file.onchange = () => {
+    const [chosen] = file.files ?? [];
+    if (chosen !== undefined) void uploads.upload(chosen).finally(() => (file.value = ""));
+  };
+  const hint = make("p", { className: "faint" });
+  uploads.endings.subscribe((endings) => {
+    file.accept = endings.join(",");
+    hint.textContent = `A surface (${endings.join(", ")}) in millimetres, for scenes of any session.`;
+  });
+  const open = make("button", { type: "button", id: "upload", onclick: () => file.click() }, "Upload a surface…");
+  const place = make("div", { id: "upload-work" });
+  uploads.work.subscribe((work) => place.replaceChildren(...shown(work)));
+  void uploads.learn();
+  return section("Surface files", false, open, file, hint, place);
+}
+
+function shown(work: UploadWork): HTMLElement[] {
+  if (work.kind === "idle") return [];
+  if (work.kind === "failed") {
+    const words = make("p", { className: "fault" }, work.words);
+    words.setAttribute("role", "alert");
+    return [words];
+  }
+  if (work.kind === "sending") {
+    const bar = make("progress", { max: 1, value: work.done, ariaLabel: "Progress of the upload" });
+    return [make("p", { className: "faint" }, `Sending ${work.file}…`), bar];
+  }
+  const path = make("input", { type: "text", readOnly: true, value: work.path, id: "upload-path" });
+  path.ariaLabel = "How scenes name the file";
+  path.onfocus = () => path.select();
+  return [make("p", {}, `${work.file} is there. Scenes name it:`), path, ...reported(work.report)];
+}
+
+function reported(report: SurfaceReport | undefined): HTMLElement[] {
+  if (report === undefined) return [];
+  const counts = `${report.vertices} vertices, ${report.triangles} triangles`;
+  const repairs = report.repairs.map((words) => make("li", {}, words));
+  return [make("p", { className: "faint" }, counts), make("ul", { className: "faint" }, ...repairs)];
+}

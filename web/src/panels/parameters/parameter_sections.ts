@@ -1,0 +1,91 @@
+import type { Controller } from "../../session/session_controller";
+import { ParametersSchema } from "../../gen/phrenic/v1/parameters_pb";
+import type { Preset } from "../../gen/phrenic/v1/scene_pb";
+import type { CompileReport } from "../../gen/phrenic/v1/report_pb";
+import { type Control, parameterControls, type ParameterName, type SwitchControl } from "../../parameters/controls";
+import { Signal } from "../../state/signal";
+import { ChoiceRow } from "./choice_row";
+import { button, icon, make, section, switchRow } from "../../dom/elements";
+import { NumberRow } from "./number_row";
+import { PresetRow } from "./preset_row";
+import { pullRow } from "./pull_row";
+
+/** What a parameter of the solver has in its name; all others are the breath's. */
+const ofTheSolver = /integrator|step|solver/i;
+
+/**
+ * The live parameters, one row for each field of the schema, but for those that nothing in the scene answers to. Another
+ * viewer's changes move the rows.
+ */
+export function parameterSections(
+  controller: Controller,
+  report?: Signal<CompileReport | undefined>,
+  presets = new Signal<Preset[]>([]),
+): HTMLElement[] {
+  const rows = parameterControls().map((control) => parameterRow(control, controller));
+  controller.session.subscribe((session) => {
+    if (session?.parameters === undefined) return;
+    for (const { name, show } of rows) if (!controller.pending(name)) show(session.parameters[name]);
+  });
+  report?.subscribe((value) => {
+    const idle = new Set(value?.idleParameters.map((name) => localNameOf(name)));
+    for (const { name, element } of rows) element.hidden = idle.has(name);
+  });
+  const elements = (solver: boolean) =>
+    rows.filter(({ name }) => ofTheSolver.test(name) === solver).map(({ element }) => element);
+  const ways = new PresetRow(controller, presets).element;
+  return [
+    section("Breathing", true, ways, changesRow(controller), pullRow(controller), ...elements(false)),
+    section("Solver", true, ...elements(true)),
+  ];
+}
+
+/** Takes changes back, does them again, and takes everything back to the start. */
+function changesRow(controller: Controller): HTMLElement {
+  const undo = button("Undo", () => controller.undo(), icon("undo"), "Undo");
+  const redo = button("Redo", () => controller.redo(), icon("redo"), "Redo");
+  const all = button("Reset all parameters", () => void controller.resetAll(), "Reset all");
+  [undo.id, redo.id, all.id] = ["undo", "redo", "reset-all"];
+  controller.changes.state.subscribe((state) => {
+    undo.disabled = !state.undo;
+    redo.disabled = !state.redo;
+  });
+  return make("div", { className: "changes" }, undo, redo, all);
+}
+
+function localNameOf(name: string): string | undefined {
+  return ParametersSchema.fields.find((field) => field.name === name)?.localName;
+}
+
+interface Row {
+  name: ParameterName;
+  element: HTMLElement;
+  show(value: number | boolean | undefined): void;
+}
+
+function parameterRow(control: Control, controller: Controller): Row {
+  const name = control.field as ParameterName;
+  if (control.kind === "switch") return parameterSwitch(control, name, controller);
+  const events = {
+    set: (value: number) => controller.set(name, value),
+    reset: () => void reset(controller, name),
+  };
+  const row = control.kind === "choice" ? new ChoiceRow(control, events) : new NumberRow(control, events);
+  return { name, element: row.element, show: (value) => typeof value === "number" && row.show(value) };
+}
+
+function parameterSwitch(control: SwitchControl, name: ParameterName, controller: Controller): Row {
+  const { row, input } = switchRow(control.label, control.help, (on) => controller.set(name, on));
+  input.id = `parameter-${name}`;
+  return {
+    name,
+    element: row,
+    show: (value) => (input.checked = value === undefined ? input.checked : value === true),
+  };
+}
+
+/** Back to what a session of this scene starts with. */
+async function reset(controller: Controller, name: ParameterName): Promise<void> {
+  const value = (await controller.startValues())?.[name];
+  if (typeof value === "number" || typeof value === "boolean") controller.set(name, value);
+}

@@ -1,0 +1,67 @@
+import type { Controller } from "../../session/session_controller";
+import { type Parameters, ParametersSchema } from "../../gen/phrenic/v1/parameters_pb";
+import type { Preset } from "../../gen/phrenic/v1/scene_pb";
+import type { ParameterName } from "../../parameters/controls";
+import { Signal } from "../../state/signal";
+import { make } from "../../dom/elements";
+
+/** The scene's ways to breathe, a button each; hidden where it has none. The one that holds is pressed. */
+export class PresetRow {
+  readonly element = make("div", { className: "presets", id: "presets", role: "group", hidden: true });
+  private scene = "";
+  private buttons: { preset: Preset; element: HTMLButtonElement }[] = [];
+
+  constructor(
+    private readonly controller: Controller,
+    private readonly presets = new Signal<Preset[]>([]),
+  ) {
+    this.element.ariaLabel = "Ways to breathe";
+    controller.session.subscribe((session) => {
+      if (session === undefined) return;
+      if (session.scene !== this.scene) void this.fill(session.scene);
+      this.press(session.parameters);
+    });
+  }
+
+  private async fill(scene: string): Promise<void> {
+    this.scene = scene;
+    const presets = await this.controller.presets();
+    if (scene !== this.scene) return;
+    this.buttons = presets.map((preset) => ({ preset, element: this.button(preset) }));
+    this.element.replaceChildren(...this.buttons.map(({ element }) => element));
+    this.element.hidden = presets.length === 0;
+    this.presets.set(presets);
+    this.press(this.controller.session.value?.parameters);
+  }
+
+  private button(preset: Preset): HTMLButtonElement {
+    const onclick = () => void this.controller.usePreset(preset.name);
+    const words = labelOf(preset);
+    return make("button", { type: "button", title: preset.title || words, onclick }, words);
+  }
+
+  private press(parameters: Parameters | undefined): void {
+    for (const { preset, element } of this.buttons) {
+      element.ariaPressed = String(parameters !== undefined && holds(preset, parameters));
+    }
+  }
+}
+
+/** "paralysis-right" is "Paralysis right". */
+export function labelOf({ name }: Preset): string {
+  return name.charAt(0).toUpperCase() + name.slice(1).replaceAll("-", " ");
+}
+
+/** The preset that holds; of several the first. */
+export function presetOf(presets: Preset[], parameters: Parameters | undefined): Preset | undefined {
+  return parameters === undefined ? undefined : presets.find((preset) => holds(preset, parameters));
+}
+
+/** Whether all that the preset sets is as it says. */
+export function holds(preset: Preset, parameters: Parameters): boolean {
+  return ParametersSchema.fields.every((field) => {
+    const name = field.localName as ParameterName;
+    const wanted = preset.parameters?.[name];
+    return wanted === undefined || wanted === parameters[name];
+  });
+}

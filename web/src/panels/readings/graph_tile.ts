@@ -1,0 +1,79 @@
+import type { GraphSpec } from "../../graphs/catalogue";
+import { curveColor } from "../../graphs/colors";
+import { csvOf, svgOf } from "../../graphs/files";
+import { Plot, type PlotEvents } from "../../graphs/plot";
+import { dataOf, type GraphData, type Span } from "../../graphs/window";
+import type { History } from "../../state/time_series";
+import { download, make } from "../../dom/elements";
+
+/** One graph with its name, what its curves are and stand at, and buttons that save it. */
+export class GraphTile {
+  readonly element: HTMLElement;
+  private readonly plot: Plot;
+  private readonly readings: HTMLElement[];
+  private data: GraphData = { times: [], across: undefined, curves: [] };
+
+  constructor(
+    private readonly spec: GraphSpec,
+    private readonly history: History,
+    private readonly fileName: () => string,
+    events: PlotEvents,
+  ) {
+    this.plot = new Plot(spec, events);
+    this.readings = spec.curves.map(() => make("b"));
+    const keys = spec.curves.map(({ name }, i) => this.key(name, i));
+    const save = ["SVG", "CSV"].map((kind) => this.saveButton(kind as "SVG" | "CSV"));
+    // The one curve of a graph needs no name beside the graph's own.
+    const alone = keys.length === 1;
+    const title = make("h3", { title: spec.help ?? "" }, this.title(), ...(alone ? this.readings : []));
+    const head = make("header", {}, title, make("div", { className: "save" }, ...save));
+    this.element = make("section", { className: "tile", ariaLabel: spec.title }, head, this.plot.element);
+    if (!alone) this.element.append(make("div", { className: "keys" }, ...keys));
+    this.element.dataset.graph = spec.id;
+  }
+
+  /** Shows a stretch of time; what is read off is at `place` of it, or at its end. */
+  show(span: Span, place: number | undefined): void {
+    this.data = dataOf(this.spec, this.history, span);
+    this.plot.show(this.data, span);
+    this.read(place);
+  }
+
+  read(place: number | undefined): void {
+    this.data.curves.forEach((values, i) => {
+      const value = values[place ?? values.length - 1] as number | undefined;
+      const words = value === undefined ? "" : readable(value);
+      if (this.readings[i].textContent !== words) this.readings[i].textContent = words;
+    });
+  }
+
+  private title(): string {
+    const { title, unit, across } = this.spec;
+    if (across !== undefined) return `${title} [${unit}, ${across.unit}]`;
+    return unit === "" ? title : `${title} [${unit}]`;
+  }
+
+  private key(name: string, order: number): HTMLElement {
+    const swatch = make("span", { className: "swatch" });
+    swatch.style.backgroundColor = curveColor(order);
+    return make("span", { className: "key" }, swatch, make("span", {}, name), this.readings[order]);
+  }
+
+  private saveButton(kind: "SVG" | "CSV"): HTMLElement {
+    const save = () => {
+      const content = kind === "SVG" ? svgOf(this.spec, this.data) : csvOf(this.spec, this.data);
+      const type = kind === "SVG" ? "image/svg+xml" : "text/csv";
+      const file = `${this.fileName()}-${this.spec.id.replaceAll(/[^a-z0-9]+/g, "-")}.${kind.toLowerCase()}`;
+      download(file, new Blob([content], { type }));
+    };
+    const title = `Save ${this.spec.title} as ${kind}`;
+    return make("button", { type: "button", className: "small", title, ariaLabel: title, onclick: save }, kind);
+  }
+}
+
+/** Three digits, and no zero before which a minus stands. */
+function readable(value: number): string {
+  const size = Math.abs(value);
+  const text = value.toFixed(size >= 100 ? 0 : size >= 10 ? 1 : size >= 1 ? 2 : 3);
+  return Number(text) === 0 ? text.replace("-", "") : text.replace("-", "−");
+}

@@ -1,0 +1,112 @@
+import type { Frame } from "../../gen/phrenic/v1/frames_pb";
+import { type GraphSpec, graphsOf, valuesOf } from "../../graphs/catalogue";
+import type { Span } from "../../graphs/window";
+import { History } from "../../state/time_series";
+import { button, icon, make } from "../../dom/elements";
+import { GraphTile } from "./graph_tile";
+
+/** How much is kept, and how much may be shown at once [simulated s]. */
+const kept = 120;
+const lengths = [6, 12, 30, 60, 120];
+
+/** What is drawn beside what comes with the frames: the vertices that this viewer follows. */
+export interface Followed {
+  spec: GraphSpec | undefined;
+  history: History;
+}
+
+/** Graphs of everything that comes with the frames, on one clock: they stand still, zoom and move on together. */
+export class Graphs {
+  readonly element = make("div", { className: "graphs" });
+  private readonly history = new History(kept);
+  private readonly list = make("div", { className: "tiles" });
+  private readonly pause: HTMLButtonElement;
+  private readonly words = make("span", { className: "faint", id: "graphs-span" });
+  private readonly length = make("select", { id: "graphs-length", ariaLabel: "Time shown", title: "Time shown" });
+  private tiles: GraphTile[] = [];
+  private offered = "";
+  private held: Span | undefined;
+  private drawn = -1;
+
+  constructor(
+    private readonly fileName: () => string,
+    private readonly followed: Followed,
+  ) {
+    this.length.append(...lengths.map((each) => make("option", { value: String(each) }, `${each} s`)));
+    this.length.value = "12";
+    this.length.onchange = () => this.live();
+    this.pause = button("Hold the graphs", () => (this.held ? this.live() : this.hold(this.newest())), icon("pause"));
+    this.pause.id = "graphs-pause";
+    this.pause.className = "quiet";
+    const title = make("h2", {}, "Graphs");
+    this.element.append(make("header", { className: "bar" }, title, this.words, this.length, this.pause), this.list);
+  }
+
+  /** Every frame counts, however seldom graphs are drawn. */
+  receive(frame: Frame): void {
+    this.history.add(frame.time, valuesOf(frame));
+    const { spec } = this.followed;
+    const specs = [...graphsOf(frame), ...(spec === undefined ? [] : [spec])];
+    const offered = JSON.stringify(specs);
+    if (offered === this.offered) return;
+    this.offered = offered;
+    this.furnish(specs);
+  }
+
+  clear(): void {
+    this.history.clear();
+    this.live();
+  }
+
+  /** Draws what is new; cheap where nothing is. */
+  draw(): void {
+    const { times } = this.history;
+    const last = times.at(-1) ?? 0;
+    if (last === this.drawn || this.held !== undefined || this.element.clientWidth === 0) return;
+    this.drawn = last;
+    this.show(this.newest());
+  }
+
+  private furnish(specs: GraphSpec[]): void {
+    const events = {
+      zoom: (span: Span) => this.hold(span),
+      live: () => this.live(),
+      point: (place: number | undefined) => this.tiles.forEach((tile) => tile.read(place)),
+    };
+    this.tiles = specs.map((spec) => {
+      const history = spec === this.followed.spec ? this.followed.history : this.history;
+      return new GraphTile(spec, history, this.fileName, events);
+    });
+    this.list.replaceChildren(...this.tiles.map(({ element }) => element));
+    this.drawn = -1;
+  }
+
+  private newest(): Span {
+    const end = Math.max(this.history.times.at(-1) ?? 0, Number(this.length.value));
+    return { start: end - Number(this.length.value), end };
+  }
+
+  private hold(span: Span): void {
+    this.held = span;
+    this.words.textContent = `held, ${span.start.toFixed(1)} to ${span.end.toFixed(1)} s`;
+    this.label("Let the graphs go on", "play");
+    this.show(span);
+  }
+
+  private live(): void {
+    this.held = undefined;
+    this.drawn = -1;
+    this.words.textContent = "";
+    this.label("Hold the graphs", "pause");
+    this.draw();
+  }
+
+  private label(words: string, name: "play" | "pause"): void {
+    this.pause.ariaLabel = this.pause.title = words;
+    this.pause.replaceChildren(icon(name));
+  }
+
+  private show(span: Span): void {
+    for (const tile of this.tiles) tile.show(span, undefined);
+  }
+}

@@ -1,0 +1,95 @@
+import type { Link } from "../../connection/session_connection";
+import type { Controller } from "../../session/session_controller";
+import type { Session } from "../../gen/phrenic/v1/session_pb";
+import { formatNumber } from "../../parameters/numbers";
+import type { Signal } from "../../state/signal";
+import { make } from "../../dom/elements";
+
+/** Words over the picture when something is wrong: diverged, lost, refused; with the remedy where there is one. */
+export function banners(controller: Controller, link: Signal<Link>, chooseSession: () => void): HTMLElement[] {
+  const diverged = banner("alert", "diverged");
+  let told: bigint | undefined;
+  controller.session.subscribe((session) => {
+    // An alert is read aloud when it changes: once for each divergence, not with every word from the server.
+    const tick = session?.divergence?.tick;
+    if (tick === told) return;
+    told = tick;
+    diverged.hidden = tick === undefined;
+    if (session !== undefined) diverged.replaceChildren(...divergence(session, controller));
+  });
+  const lost = banner("status", "lost");
+  link.subscribe((value) => {
+    lost.hidden = value.kind !== "lost";
+    if (value.kind === "lost") lost.replaceChildren(...loss(value.reason, value.missing, chooseSession));
+  });
+  const unsaved = banner("status", "unsaved");
+  controller.session.subscribe((session) => {
+    const why = session?.notSaved ?? "";
+    if (unsaved.textContent === unsavedText(why)) return;
+    unsaved.hidden = why === "";
+    unsaved.replaceChildren(make("p", {}, unsavedText(why)));
+  });
+  const notice = banner("status", "notice");
+  controller.notice.subscribe((text) => {
+    notice.hidden = text === "";
+    const dismiss = make("button", { type: "button", onclick: () => controller.notice.set("") }, "Dismiss");
+    notice.replaceChildren(make("p", {}, sentence(text)), dismiss);
+  });
+  return [diverged, lost, unsaved, notice];
+}
+
+function unsavedText(why: string): string {
+  return why === ""
+    ? ""
+    : `The last changes are not saved: ${why}. The session runs on, and is saved once that is mended.`;
+}
+
+function banner(role: string, name: string): HTMLElement {
+  const element = make("div", { className: `banner ${name}`, id: `banner-${name}`, hidden: true });
+  element.setAttribute("role", role);
+  return element;
+}
+
+function divergence({ divergence, largestStableStep }: Session, controller: Controller): HTMLElement[] {
+  if (divergence === undefined) return [];
+  const { time, body, vertex, force, remedy } = divergence;
+  const where = `The simulation diverged at ${formatNumber(time)} s, at vertex ${vertex} of ${body} (${force}).`;
+  const restart = make("button", { type: "button", className: "primary" }, "Use a stable step and start again");
+  restart.onclick = () => void restartStable(controller, largestStableStep);
+  const halve = make("button", { type: "button", title: halvingHelp }, "Let steps be halved and start again");
+  halve.onclick = () => void restartHalving(controller);
+  return [make("p", {}, make("b", {}, where), " ", sentence(remedy)), restart, halve];
+}
+
+/** What one step may err by where steps are halved [m]. */
+const tolerance = 1e-5;
+const halvingHelp =
+  "Sets the step tolerance: a step that errs by more than 0.01 mm is taken in halves, which takes longer";
+
+async function restartHalving(controller: Controller): Promise<void> {
+  await controller.reset();
+  await controller.apply({ stepTolerance: tolerance });
+  await controller.play(controller.session.value?.speed || "fastest");
+}
+
+/** The server's words as a sentence; words with an underscore are names and stay as they are. */
+function sentence(words: string): string {
+  const named = /^\w*_/.test(words);
+  return (named ? words : words.slice(0, 1).toUpperCase() + words.slice(1)).replace(/([^.!?])$/, "$1.");
+}
+
+/** The chosen part of the largest stable step, as the server itself chooses where a scene names no step. */
+const stablePart = 0.9;
+
+async function restartStable(controller: Controller, largest: number): Promise<void> {
+  await controller.reset();
+  const now = controller.session.value?.parameters?.timeStep ?? 0;
+  if (largest > 0 && now > stablePart * largest) await controller.apply({ timeStep: stablePart * largest });
+  await controller.play(controller.session.value?.speed || "fastest");
+}
+
+function loss(reason: string, missing: boolean, chooseSession: () => void): HTMLElement[] {
+  const words = missing ? sentence(reason) : `The connection is lost: ${sentence(reason)} It comes back by itself.`;
+  const choose = make("button", { type: "button", onclick: chooseSession }, "Choose a session");
+  return [make("p", {}, words), ...(missing ? [choose] : [])];
+}

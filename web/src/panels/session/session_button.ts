@@ -1,0 +1,13 @@
+import type { Controller } from "../../session/session_controller";
+import { make } from "../../dom/elements";
+
+/** Names the session and its scene, and opens the others. */
+export function sessionButton(controller: Controller, open: () => void): HTMLElement {
+  const title = make("b");
+  const id = make("span");
+  controller.session.subscribe((session) => {
+    title.textContent = session?.sceneTitle || session?.scene || "";
+    id.textContent = session?.id ?? "";
+  });
+  return make("button", { type: "button", id: "session", title: "Sessions and scenes", onclick: open }, title, id);
+}

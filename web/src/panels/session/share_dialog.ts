@@ -1,0 +1,100 @@
+import type { Controller } from "../../session/session_controller";
+import type { CompileReport } from "../../gen/phrenic/v1/report_pb";
+import { permalinkOf } from "../../session/permalink";
+import type { Signal } from "../../state/signal";
+import { make } from "../../dom/elements";
+
+/** What the dialog can have done. */
+export interface Sharing {
+  controller: Controller;
+  report: Signal<CompileReport | undefined>;
+  /** Opens the page at this query. */
+  open(query: string): void;
+  photograph(): void;
+}
+
+/** A dialog with the links of this session, a copy of one's own, and a picture. */
+export class ShareDialog {
+  readonly element = make("dialog", { className: "chooser", id: "share", ariaLabel: "Share and copy" });
+  private readonly session = linkRow("share-session", "This session, for others to join");
+  private readonly frame = linkRow("share-embed", "For the page of a course, as HTML");
+  private readonly permalink = linkRow("share-permalink", "This moment, run again by whoever opens it");
+
+  constructor(private readonly sharing: Sharing) {
+    const close = make("button", { type: "button", onclick: () => this.element.close() }, "Close");
+    const rerunWords =
+      "Names scene, parameters and tick: the same state to the last bit where the parameters stayed as they are now since the start.";
+    this.element.append(
+      make("header", {}, make("h2", {}, "Share"), close),
+      this.session.row,
+      this.permalink.row,
+      make("p", { className: "faint" }, rerunWords),
+      this.frame.row,
+      make("p", { className: "faint" }, "The server lets pages of an origin show it that --allow-origin names."),
+      make("h2", {}, "Copy"),
+      make("ul", {}, ...this.copies()),
+    );
+  }
+
+  show(): void {
+    const { controller, report } = this.sharing;
+    const session = controller.session.value;
+    const base = `${location.origin}${location.pathname}`;
+    this.session.entry.value = `${base}?${new URLSearchParams({ session: controller.sessionId })}`;
+    const embedded = `${base}?${new URLSearchParams({ session: controller.sessionId })}&amp;embed`;
+    this.frame.entry.value = `<iframe src="${embedded}" width="720" height="540" title="Phrenic"></iframe>`;
+    if (session !== undefined) this.permalink.entry.value = base + permalinkOf(session, report.value?.sceneHash ?? "");
+    this.element.showModal();
+  }
+
+  private copies(): HTMLElement[] {
+    const { controller, open, photograph } = this.sharing;
+    const here = controller.sessionId;
+    return [
+      action(
+        "share-fork",
+        "A session of your own",
+        "From the present instant; nobody else steers it.",
+        "Fork",
+        async () => {
+          const id = await controller.fork();
+          if (id !== undefined) open(`?${new URLSearchParams({ session: id })}`);
+        },
+      ),
+      action(
+        "share-beside",
+        "Side by side",
+        "A copy beside this one, to set differently; one camera.",
+        "Compare",
+        async () => {
+          const id = await controller.forkBeside();
+          if (id !== undefined) open(`?${new URLSearchParams({ session: id, beside: here })}`);
+        },
+      ),
+      action("share-picture", "A picture", "What is seen now, as PNG.", "Save", async () => photograph()),
+    ];
+  }
+}
+
+function linkRow(id: string, label: string) {
+  const entry = make("input", { type: "text", id, readOnly: true });
+  entry.onfocus = () => entry.select();
+  const copy = make("button", { type: "button", ariaLabel: `Copy the link: ${label}` }, "Copy");
+  copy.onclick = async () => {
+    // Not every page may use the clipboard; what is selected can always be copied.
+    await navigator.clipboard?.writeText(entry.value).catch(() => entry.select());
+    copy.textContent = "Copied";
+    setTimeout(() => (copy.textContent = "Copy"), 1500);
+  };
+  return { row: make("div", { className: "link-row" }, make("label", { htmlFor: id }, label), entry, copy), entry };
+}
+
+function action(id: string, title: string, detail: string, verb: string, act: () => Promise<void>): HTMLElement {
+  const go = make("button", { type: "button", id, ariaLabel: `${verb}: ${title}` }, verb);
+  go.onclick = async () => {
+    go.disabled = true;
+    await act();
+    go.disabled = false;
+  };
+  return make("li", {}, make("div", {}, make("b", {}, title), make("span", {}, detail)), go);
+}

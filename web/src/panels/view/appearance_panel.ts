@@ -1,0 +1,155 @@
+import type { Coloring } from "../../appearance/coloring";
+import { type FieldKind, fields } from "../../appearance/fields";
+import type { GhostKind } from "../../appearance/ghosts";
+import { wordsOf } from "../../session/force_queries";
+import type { Look, Looks } from "../../appearance/layer_styles";
+import type { Signal } from "../../state/signal";
+import type { OverlayKind } from "../../viewer/body_view";
+import type { Cut } from "../../viewer/clipping";
+import { cutRows } from "./cut_rows";
+import { make, section, switchRow } from "../../dom/elements";
+import { projectorRow } from "./projector_row";
+
+/** What the view can be told. */
+export interface Appearance {
+  looks: Looks;
+  overlays: Signal<ReadonlySet<OverlayKind>>;
+  coloring: Coloring;
+  labels: Signal<boolean>;
+  forceKinds: Signal<string[]>;
+  setCut(cut: Cut): number;
+  ghost: Signal<GhostKind>;
+}
+
+const overlayRows: [OverlayKind, string, string][] = [
+  ["wireframe", "Show wireframe", "The edges of every surface."],
+  ["links", "Show rigid links", "The links of constant length: the tensegrity."],
+  ["lines", "Show action lines", "The lines along which the muscle pulls."],
+  ["attachments", "Show attachments", "Vertices that follow a bone, and fixed ones."],
+];
+
+const ghosts: [GhostKind, string][] = [
+  ["none", "None"],
+  ["rest", "At rest"],
+  ["expiration", "At the end of expiration"],
+  ["now", "As it is now"],
+];
+
+/** How this viewer sees the scene: colours, transparency, cut, ghost and what is drawn over it. */
+export function appearancePanel(view: Appearance): HTMLElement {
+  const ghost = choice("ghost", "Ghost", "The moving tissue as it was at another moment", ghosts, (kind) =>
+    view.ghost.set(kind),
+  );
+  view.ghost.subscribe((kind) => (ghost.querySelector("select")!.value = kind));
+  const labels = switchRow("Show names", "Names of the layers beside them.", (on) => view.labels.set(on));
+  labels.input.id = "show-labels";
+  const rows = overlayRows.map(([kind, label, help]) => overlayRow(kind, label, help, view.overlays));
+  const cut = cutRows((value) => view.setCut(value));
+  return section(
+    "View",
+    true,
+    coloringRow(view.coloring, view.forceKinds),
+    transparencyRow(view.looks),
+    ghost,
+    ...cut,
+    ...rows,
+    labels.row,
+    projectorRow(),
+  );
+}
+
+function coloringRow(coloring: Coloring, kinds: Signal<string[]>): HTMLElement {
+  const options: [FieldKind | "own", string][] = [
+    ["own", "Own colours"],
+    ...fields.map(({ kind, label }): [FieldKind, string] => [kind, label]),
+  ];
+  const help = "What the colours of the moving tissue mean";
+  const row = choice("coloring-kind", "Colour by", help, options, (kind) =>
+    coloring.choose(kind === "own" ? undefined : kind),
+  );
+  // Which forces there are is known later, and changes where somebody pulls.
+  const group = make("optgroup", { label: "Force" });
+  row.querySelector("select")?.append(group);
+  kinds.subscribe((all) => {
+    const wanted = all.map((kind) => make("option", { value: `force:${kind}` }, upper(wordsOf(kind))));
+    group.hidden = all.length === 0;
+    group.replaceChildren(...wanted);
+    row.querySelector("select")!.value = coloring.kind.value ?? "own";
+  });
+  return row;
+}
+
+const upper = (words: string) => words.charAt(0).toUpperCase() + words.slice(1);
+
+function choice<T extends string>(
+  id: string,
+  label: string,
+  title: string,
+  options: [T, string][],
+  chosen: (value: T) => void,
+): HTMLElement {
+  const list = make("select", { id, title });
+  list.append(...options.map(([value, words]) => make("option", { value }, words)));
+  list.onchange = () => chosen(list.value as T);
+  return make("div", { className: "compare-row" }, make("label", { htmlFor: id }, label), list);
+}
+
+function overlayRow(
+  kind: OverlayKind,
+  label: string,
+  help: string,
+  overlays: Signal<ReadonlySet<OverlayKind>>,
+): HTMLElement {
+  const { row, input } = switchRow(label, help, (on) => {
+    const rest = [...overlays.value].filter((each) => each !== kind);
+    overlays.set(new Set(on ? [...rest, kind] : rest));
+  });
+  input.id = `show-${kind}`;
+  overlays.subscribe((shown) => (input.checked = shown.has(kind)));
+  return row;
+}
+
+function transparencyRow(looks: Looks): HTMLElement {
+  const slider = make("input", { type: "range", id: "transparency", min: "0", max: "100", step: "1" });
+  const output = make("output", { className: "unit" });
+  slider.oninput = () => looks.change(looks.main, { opacity: 1 - slider.valueAsNumber / 100 });
+  looks.all.subscribe(() => {
+    const percent = Math.round(100 * (1 - (looks.get(looks.main)?.opacity ?? 1)));
+    slider.value = String(percent);
+    slider.style.setProperty("--filled", `${percent}%`);
+    output.textContent = `${percent} %`;
+  });
+  const label = make("label", { htmlFor: "transparency" }, "Transparency");
+  return make("div", { className: "number-row plain" }, label, output, slider);
+}
+
+/** Visibility and opacity of every layer. */
+export function layersPanel(looks: Looks): HTMLElement {
+  const list = make("div", { className: "layers" });
+  let shown = "";
+  looks.all.subscribe((all) => {
+    const names = all.map((look) => look.layer).join("\n");
+    if (names !== shown) list.replaceChildren(...all.map((look) => layerRow(look, looks)));
+    shown = names;
+  });
+  return section("Layers", true, list);
+}
+
+function layerRow({ layer, title, color }: Look, looks: Looks): HTMLElement {
+  const swatch = make("span", { className: "swatch" });
+  swatch.style.backgroundColor = color;
+  const visible = make("input", { type: "checkbox", ariaLabel: `Show ${title}` });
+  const opacity = make("input", { type: "range", min: "5", max: "100", step: "1", ariaLabel: `Opacity of ${title}` });
+  visible.onchange = () => looks.change(layer, { visible: visible.checked });
+  opacity.oninput = () => looks.change(layer, { opacity: opacity.valueAsNumber / 100, visible: true });
+  looks.all.subscribe(() => {
+    const look = looks.get(layer);
+    if (look === undefined) return;
+    visible.checked = look.visible;
+    opacity.value = String(Math.round(100 * look.opacity));
+    opacity.setAttribute("aria-valuetext", `${opacity.value} %`);
+    opacity.style.setProperty("--filled", `${((100 * look.opacity - 5) / 95) * 100}%`);
+  });
+  const name = make("label", { className: "layer-name" }, visible, swatch, make("span", {}, title));
+  return make("div", { className: "layer-row" }, name, opacity);
+}

@@ -1,0 +1,38 @@
+import { type ForceOnVertex, wordsOf } from "../../session/force_queries";
+import type { Signal } from "../../state/signal";
+import { make } from "../../dom/elements";
+
+/** The forces on a vertex by kind, a row each, and their sum last; hidden where they are not known. */
+export function forceTable(forces: Signal<ForceOnVertex[]>): HTMLElement {
+  const unit = make("th", { scope: "col" });
+  const heads = ["Left", "Back", "Up"].map((text) => make("th", { scope: "col" }, text));
+  const rows = make("tbody");
+  const head = make("thead", {}, make("tr", {}, unit, ...heads));
+  const table = make("table", { className: "figures", id: "forces", ariaLabel: "Forces on it" }, head, rows);
+  forces.subscribe((all) => {
+    table.hidden = all.length === 0;
+    const { name, factor } = unitFor(all);
+    unit.textContent = name;
+    rows.replaceChildren(...all.map((each) => row(each, factor)));
+  });
+  return table;
+}
+
+/** Newtons where one of them is large, else thousandths. */
+export function unitFor(all: ForceOnVertex[]): { name: string; factor: number } {
+  const largest = Math.max(0, ...all.map(({ force }) => Math.hypot(...force)));
+  return largest >= 1 ? { name: "N", factor: 1 } : { name: "mN", factor: 1000 };
+}
+
+function row({ kind, force }: ForceOnVertex, factor: number): HTMLElement {
+  const cells = force.map((each) => make("td", {}, words(factor * each)));
+  return make("tr", {}, make("th", { scope: "row" }, wordsOf(kind)), ...cells);
+}
+
+/** Two decimals, and no sign before a zero. */
+function words(value: number): string {
+  return value
+    .toFixed(2)
+    .replace(/^-(0\.00)$/, "$1")
+    .replace("-", "−");
+}

@@ -1,0 +1,71 @@
+import type { Controller, Speed } from "../../session/session_controller";
+import { SessionState } from "../../gen/phrenic/v1/session_pb";
+import { button, icon, make } from "../../dom/elements";
+
+const speeds: [string, Speed][] = [
+  ["0.1×", 0.1],
+  ["0.25×", 0.25],
+  ["0.5×", 0.5],
+  ["1×", 1],
+  ["2×", 2],
+  ["4×", 4],
+  ["fastest", "fastest"],
+];
+const strides = [1, 10, 100, 1000];
+
+/** Play or pause, step, reset, and how fast. */
+export function playbackPanel(controller: Controller): HTMLElement {
+  const speed = speedSelect(controller);
+  const stride = make("select", { id: "stride", ariaLabel: "Ticks a step", title: "Ticks a step" });
+  stride.append(...strides.map((ticks) => option(ticks === 1 ? "1 tick" : `${ticks} ticks`, String(ticks))));
+  stride.value = "10";
+  const toggle = button("Play", () => void togglePlay(controller, chosenSpeed(speed)), icon("play"));
+  toggle.id = "play";
+  toggle.className = "primary";
+  const step = button("Step", () => void controller.step(Number(stride.value)), icon("step"));
+  step.id = "step";
+  const reset = button("Reset to the start", () => void controller.reset(), icon("rewind"));
+  reset.id = "reset";
+  controller.session.subscribe((session) => {
+    const playing = session?.state === SessionState.PLAYING;
+    toggle.ariaLabel = toggle.title = playing ? "Pause" : "Play";
+    toggle.replaceChildren(icon(playing ? "pause" : "play"));
+    toggle.disabled = step.disabled = session === undefined || session.state === SessionState.DIVERGED;
+    reset.disabled = session === undefined;
+  });
+  return make("div", { className: "playback" }, reset, toggle, step, stride, speed);
+}
+
+function togglePlay(controller: Controller, speed: Speed): Promise<void> {
+  return controller.session.value?.state === SessionState.PLAYING ? controller.pause() : controller.play(speed);
+}
+
+function option(label: string, value: string): HTMLOptionElement {
+  return make("option", { value }, label);
+}
+
+function speedSelect(controller: Controller): HTMLSelectElement {
+  const select = make("select", { id: "speed", ariaLabel: "Speed", title: "Simulated seconds a second" });
+  select.append(...speeds.map(([label, value]) => option(label, String(value))));
+  select.onchange = () => {
+    if (controller.session.value?.state === SessionState.PLAYING) void controller.play(chosenSpeed(select));
+  };
+  let known: number | undefined;
+  controller.session.subscribe((session) => {
+    if (session === undefined || session.speed === known) return;
+    known = session.speed;
+    show(select, known === 0 ? "fastest" : known);
+  });
+  return select;
+}
+
+/** A speed that another client chose may not be in the list yet. */
+function show(select: HTMLSelectElement, speed: Speed): void {
+  const value = String(speed);
+  if (![...select.options].some((option) => option.value === value)) select.append(option(`${value}×`, value));
+  select.value = value;
+}
+
+function chosenSpeed(select: HTMLSelectElement): Speed {
+  return select.value === "fastest" ? "fastest" : Number(select.value);
+}

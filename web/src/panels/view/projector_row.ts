@@ -1,0 +1,16 @@
+import { switchRow } from "../../dom/elements";
+
+const key = "phrenic-projector";
+
+/** A switch for large type and strong contrast, for a room that reads from afar; the browser remembers it. */
+export function projectorRow(memory: Pick<Storage, "getItem" | "setItem"> = localStorage): HTMLElement {
+  const turn = (on: boolean) => {
+    document.documentElement.classList.toggle("projector", on);
+    memory.setItem(key, on ? "on" : "off");
+  };
+  const { row, input } = switchRow("For a projector", "Large type and strong contrast, to be read from afar.", turn);
+  input.id = "projector";
+  input.checked = memory.getItem(key) === "on";
+  turn(input.checked);
+  return row;
+}

@@ -1,0 +1,151 @@
+import { type Api, errorText } from "../connection/api";
+import { floats, indices } from "../geometry/bodies";
+import type { ComparedMesh, CompareResponse, ComparisonTable, SurfaceDistance } from "../gen/phrenic/v1/compare_pb";
+import { Signal } from "../state/signal";
+import type { Surface } from "../viewer/nearest_surface";
+
+/** How a file is compared. */
+export interface Choices {
+  /** The body that is compared with it. */
+  body: string;
+  /** Millimetres in one unit of the file. */
+  unitMm: number;
+  /** Of a motion, the state at this time [s]; not set: at the session's. */
+  time: number | undefined;
+}
+
+/** A file as browsers hand it over. */
+export type SurfaceFile = Pick<File, "name" | "size" | "arrayBuffer">;
+
+/** How far each vertex of a body was from a file's surface, and when. */
+export interface Comparison {
+  file: string;
+  body: string;
+  /** Simulated time [s] and steps of the state that was compared. */
+  time: number;
+  tick: bigint;
+  distance: SurfaceDistance;
+  /** Of each vertex of the body [mm]; NaN for one that is in no triangle. */
+  distances: number[];
+  /** The file's surface, to be drawn and measured on. */
+  surface: Surface | undefined;
+}
+
+export type Work =
+  { kind: "idle" } | { kind: "running"; file: string; done: number } | { kind: "failed"; words: string };
+
+/** The server takes messages of at most 16 MiB; some of it is for the words around the file. */
+const mostBytes = (16 << 20) - 4096;
+
+/** Compares a body of one session, as it is when asked, with a file; one comparison at a time. */
+export class Comparisons {
+  readonly result = new Signal<Comparison | undefined>(undefined);
+  readonly work = new Signal<Work>({ kind: "idle" });
+  /** Whether the file's surface is drawn. */
+  readonly drawn = new Signal(true);
+  readonly choices = new Signal<Choices>({ body: "", unitMm: 1, time: undefined });
+  private file: { name: string; content: Uint8Array } | undefined;
+  private running = new AbortController();
+
+  constructor(
+    private readonly api: Api,
+    private readonly sessionId: string,
+  ) {}
+
+  choose(choices: Partial<Choices>): void {
+    this.choices.set({ ...this.choices.value, ...choices });
+  }
+
+  /** Ends what runs and compares with `file`; what was found before stays until there is something new. */
+  async compare(file: SurfaceFile): Promise<void> {
+    this.running.abort();
+    if (file.size > mostBytes) {
+      const size = (file.size / (1 << 20)).toFixed(1);
+      const remedy = "record fewer times or fewer bodies, or compare on the command line (phrenic compare)";
+      return this.fail(`${file.name} has ${size} MiB, and the server takes less than 16: ${remedy}`);
+    }
+    const { signal } = this.begin(file.name);
+    const content = await file.arrayBuffer().catch(() => undefined);
+    if (signal.aborted) return;
+    if (content === undefined) return this.fail(`${file.name} cannot be read: is it a file, and still there?`);
+    this.file = { name: file.name, content: new Uint8Array(content) };
+    return this.again();
+  }
+
+  /** The same file once more, with the session as it is now. */
+  async again(): Promise<void> {
+    if (this.file === undefined) return;
+    const { name } = this.file;
+    const { signal } = this.begin(name);
+    try {
+      const found = await this.ask(signal, (done) => this.work.set({ kind: "running", file: name, done }));
+      if (signal.aborted) return;
+      this.work.set({ kind: "idle" });
+      this.result.set(found);
+    } catch (error) {
+      if (!signal.aborted) this.fail(errorText(error));
+    }
+  }
+
+  /** Ends what runs; what was found before stays. */
+  stop(): void {
+    this.running.abort();
+    this.work.set({ kind: "idle" });
+  }
+
+  /** As if nothing had been compared. */
+  clear(): void {
+    this.stop();
+    this.file = undefined;
+    this.result.set(undefined);
+  }
+
+  /** Ends what runs in favour of something new. */
+  private begin(file: string): AbortController {
+    this.running.abort();
+    this.running = new AbortController();
+    this.work.set({ kind: "running", file, done: 0 });
+    return this.running;
+  }
+
+  private fail(words: string): void {
+    this.work.set({ kind: "failed", words });
+  }
+
+  private async ask(signal: AbortSignal, progress: (done: number) => void): Promise<Comparison> {
+    let distances: number[] | undefined;
+    let surface: Surface | undefined;
+    for await (const { event } of this.call(signal)) {
+      if (event.case === "progress" && !signal.aborted) progress(event.value);
+      if (event.case === "vertices") distances = event.value.distances;
+      if (event.case === "mesh") surface = surfaceOf(event.value);
+      if (event.case === "table" && distances !== undefined) return { ...resultOf(event.value, distances), surface };
+    }
+    throw new Error("the server ended the comparison without a result");
+  }
+
+  private call(signal: AbortSignal): AsyncIterable<CompareResponse> {
+    const { body, unitMm, time } = this.choices.value;
+    const { name, content } = this.file!;
+    return this.api.comparisons.compare(
+      {
+        a: { source: { case: "body", value: { sessionId: this.sessionId, body } } },
+        b: { name, source: { case: "content", value: content }, unitMm, time },
+        vertexDistances: true,
+        meshOfB: true,
+      },
+      { signal },
+    );
+  }
+}
+
+function resultOf({ b, stateA, rows }: ComparisonTable, distances: number[]): Omit<Comparison, "surface"> {
+  const distance = rows[0]?.distance;
+  if (stateA === undefined || distance === undefined) throw new Error("the server sent a comparison of nothing");
+  return { file: b, body: stateA.body, time: stateA.time, tick: stateA.tick, distance, distances };
+}
+
+function surfaceOf(mesh: ComparedMesh): Surface {
+  const positions = floats(mesh.positions, 3, "mesh.positions");
+  return { positions, triangles: indices(mesh.triangles, 3, positions.length / 3, "mesh.triangles") };
+}

@@ -1,0 +1,98 @@
+import { type Api, errorText } from "../connection/api";
+import type { Clock } from "../timing/clock";
+import { type Study, StudyState } from "../gen/phrenic/v1/study_pb";
+import type { Parameters } from "../gen/phrenic/v1/parameters_pb";
+import { Signal } from "../state/signal";
+
+export type StudyKind = "error" | "stability" | "cost" | "streaming";
+
+/** The studies of the server: asks for them, follows those that are not done, cancels. */
+export class Studies {
+  readonly all = new Signal<Study[]>([]);
+  /** Why the last thing asked for was not done. */
+  readonly fault = new Signal("");
+  private readonly followed = new Set<string>();
+
+  constructor(
+    private readonly api: Api,
+    private readonly clock: Clock,
+  ) {}
+
+  async load(): Promise<void> {
+    await this.ask(async () => {
+      const { studies } = await this.api.studies.listStudies({});
+      this.all.set(studies);
+      for (const study of studies) if (!ended(study)) void this.follow(study.id);
+    });
+  }
+
+  /** Has a catalogue scene studied with these parameters. */
+  async start(kind: StudyKind, scene: string, parameters: Parameters | undefined): Promise<void> {
+    await this.ask(async () => {
+      const { study } = await this.api.studies.createStudy({
+        source: { source: { case: "name", value: scene } },
+        parameters,
+        // The meshes of the thesis' sizes take minutes to make, and have nothing of this scene.
+        what: kind === "cost" ? { case: kind, value: { leaveOutSizes: true } } : { case: kind, value: {} },
+      });
+      if (study === undefined) return;
+      this.put(study);
+      void this.follow(study.id);
+    });
+  }
+
+  /** Cancels it where it has not ended, and forgets it. */
+  async remove(studyId: string): Promise<void> {
+    await this.ask(() => this.api.studies.deleteStudy({ studyId }));
+    this.all.set(this.all.value.filter(({ id }) => id !== studyId));
+  }
+
+  /** A study with its result, once it is done. */
+  async result(studyId: string): Promise<Study | undefined> {
+    for await (const { study } of this.api.studies.watchStudy({ studyId })) if (study && ended(study)) return study;
+    return undefined;
+  }
+
+  /** Its tables and plots as one HTML file. */
+  async page(studyId: string): Promise<string> {
+    return (await this.api.studies.getStudyPage({ studyId })).html;
+  }
+
+  private async follow(studyId: string): Promise<void> {
+    if (this.followed.has(studyId)) return;
+    this.followed.add(studyId);
+    const known = () => this.all.value.some(({ id }) => id === studyId);
+    while (known()) {
+      try {
+        for await (const { study } of this.api.studies.watchStudy({ studyId })) {
+          if (study !== undefined && known()) this.put(study);
+        }
+        break;
+      } catch {
+        // The server may come back, with the study or without it.
+        await this.clock.sleep(3000);
+        await this.load();
+      }
+    }
+    this.followed.delete(studyId);
+  }
+
+  private put(study: Study): void {
+    const rest = this.all.value.filter(({ id }) => id !== study.id);
+    const order = this.all.value.findIndex(({ id }) => id === study.id);
+    this.all.set(order < 0 ? [...rest, study] : this.all.value.with(order, study));
+  }
+
+  private async ask(call: () => Promise<unknown>): Promise<void> {
+    try {
+      await call();
+      this.fault.set("");
+    } catch (error) {
+      this.fault.set(errorText(error));
+    }
+  }
+}
+
+export function ended({ state }: Study): boolean {
+  return state === StudyState.DONE || state === StudyState.FAILED;
+}

@@ -1,0 +1,66 @@
+import { type Api, errorText } from "../connection/api";
+import type { SurfaceReport } from "../gen/phrenic/v1/inspect_pb";
+import { Signal } from "../state/signal";
+
+/** A file as browsers hand it over. */
+export type LocalFile = Pick<File, "name" | "size" | "arrayBuffer">;
+
+export type UploadWork =
+  | { kind: "idle" }
+  | { kind: "sending"; file: string; done: number }
+  | { kind: "there"; file: string; path: string; report: SurfaceReport | undefined }
+  | { kind: "failed"; words: string };
+
+const chunkBytes = 1 << 20;
+
+/** Gives the server surface files, one at a time; a file that it has already is not sent again. */
+export class Uploads {
+  /** Endings of the files that the server reads, with their dots. */
+  readonly endings = new Signal<string[]>([]);
+  readonly work = new Signal<UploadWork>({ kind: "idle" });
+  private latest = 0;
+
+  constructor(private readonly api: Api) {}
+
+  /** Asks the server what it reads. */
+  async learn(): Promise<void> {
+    const answer = await this.api.uploads.listSurfaceFormats({}).catch(() => undefined);
+    if (answer !== undefined) this.endings.set(answer.formats.map(({ ending }) => ending));
+  }
+
+  async upload(file: LocalFile): Promise<void> {
+    const turn = ++this.latest;
+    const show = (work: UploadWork) => {
+      if (turn === this.latest) this.work.set(work);
+    };
+    show({ kind: "sending", file: file.name, done: 0 });
+    try {
+      show(await this.send(file, (done) => show({ kind: "sending", file: file.name, done })));
+    } catch (error) {
+      show({ kind: "failed", words: errorText(error) });
+    }
+  }
+
+  private async send(file: LocalFile, progress: (done: number) => void): Promise<UploadWork> {
+    const content = new Uint8Array(await file.arrayBuffer());
+    const { name } = file;
+    const begin = { name, size: BigInt(content.length), sha256: await sha256(content) };
+    const begun = await this.api.uploads.beginUpload(begin);
+    const { uploadId } = begun;
+    if (uploadId === "") return { kind: "there", file: name, path: begun.file!.path, report: undefined };
+    for (let at = Number(begun.received); at < content.length;) {
+      const chunk = content.subarray(at, at + chunkBytes);
+      at = Number((await this.api.uploads.addUploadChunk({ uploadId, offset: BigInt(at), chunk })).received);
+      progress(at / content.length);
+    }
+    const finished = await this.api.uploads.finishUpload({ uploadId });
+    return { kind: "there", file: name, path: finished.file!.path, report: finished.report };
+  }
+}
+
+/** In hexadecimal; empty where the page's address does not let browsers work it out (neither https nor this machine). */
+async function sha256(content: Uint8Array<ArrayBuffer>): Promise<string> {
+  if (globalThis.crypto?.subtle === undefined) return "";
+  const digest = new Uint8Array(await crypto.subtle.digest("SHA-256", content));
+  return [...digest].map((byte) => byte.toString(16).padStart(2, "0")).join("");
+}

@@ -1,0 +1,194 @@
+import * as THREE from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { type Free, letterOf, openingView, planeAxes, standpoint, type ViewName } from "./named_views";
+
+/** What the margins of the picture say about it. */
+export interface Compass {
+  left: string;
+  right: string;
+  top: string;
+  bottom: string;
+  /** CSS pixels a metre at the centre of the scene. */
+  pixelsPerMetre: number;
+  /** The directions to the right, up and towards the eye. */
+  axes: [THREE.Vector3, THREE.Vector3, THREE.Vector3];
+}
+
+/** How much of the picture panels hide at its edges [CSS pixels]. */
+export interface Covered {
+  left: number;
+  top: number;
+  bottom: number;
+}
+
+/** Where a camera is, and what it looks at [m]. */
+export interface Pose {
+  eye: { x: number; y: number; z: number };
+  target: { x: number; y: number; z: number };
+}
+
+const glide = 350;
+/** What part of the way to where somebody else looks from is left after one picture. */
+const lag = 0.7;
+
+/** The camera and its controls: orbit, zoom, pan, and gliding to named views. */
+export class Rig {
+  readonly camera = new THREE.PerspectiveCamera(26, 1, 0.01, 100);
+  private readonly controls: OrbitControls;
+  private points: THREE.Vector3[] = [];
+  private center = new THREE.Vector3();
+  private opening: ViewName = "home";
+  private free: Free = { width: 1, height: 1 };
+  /** The named view that the camera stands at or glides to, until a person moves it. */
+  private held: ViewName | undefined;
+  private extent = 1;
+  private flat = false;
+  private chased: Pose | undefined;
+  private flight: { from: THREE.Vector3; to: THREE.Vector3; start: number } | undefined;
+
+  constructor(
+    private readonly canvas: HTMLCanvasElement,
+    private readonly changed: () => void,
+    private readonly calm: () => boolean,
+  ) {
+    this.camera.up.set(0, 0, 1);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.enableDamping = !calm();
+    this.controls.dampingFactor = 0.12;
+    this.controls.addEventListener("change", changed);
+    this.controls.addEventListener("start", () => (this.flight = this.held = this.chased = undefined));
+  }
+
+  /** Fits the camera to a new scene, of which `points` are a fair sample. */
+  frame(points: THREE.Vector3[]): void {
+    const box = new THREE.Box3().setFromPoints(points);
+    this.points = points;
+    this.center = box.getCenter(new THREE.Vector3());
+    const size = box.getSize(new THREE.Vector3()).length() || 1;
+    this.extent = size;
+    this.camera.near = size / 100;
+    this.camera.far = size * 20;
+    this.controls.minDistance = size / 20;
+    this.controls.maxDistance = size * 8;
+    this.opening = openingView(box);
+    this.flat = planeAxes(box) !== undefined;
+    this.go("home", true);
+  }
+
+  go(view: ViewName, atOnce = this.calm()): void {
+    this.held = view;
+    this.chased = undefined;
+    this.controls.target.copy(this.center);
+    const side = view === "home" ? this.opening : view;
+    // A flat scene has its axes beside it.
+    const air = this.flat ? 0.84 : 1;
+    const free = { width: air * this.free.width, height: air * this.free.height };
+    const to = standpoint(side, this.points, this.center, this.camera, free);
+    this.flight = undefined;
+    if (atOnce) this.camera.position.copy(to);
+    else this.flight = { from: this.camera.position.clone(), to, start: performance.now() };
+    this.changed();
+  }
+
+  /** The scene keeps to the middle of what panels leave of the picture. */
+  resize({ left, top, bottom }: Covered): void {
+    const width = Math.max(this.canvas.clientWidth, 1);
+    const height = Math.max(this.canvas.clientHeight, 1);
+    this.free = { width: Math.max(0.3, 1 - left / width), height: Math.max(0.3, 1 - (top + bottom) / height) };
+    this.camera.aspect = width / height;
+    this.camera.setViewOffset(width, height, -left / 2, (bottom - top) / 2, width, height);
+    this.camera.updateProjectionMatrix();
+    if (this.held !== undefined) this.go(this.held, true);
+  }
+
+  /** From the camera to what it looks at, and the extent of the scene [m]. */
+  get depth(): { distance: number; extent: number } {
+    return { distance: this.camera.position.distanceTo(this.controls.target), extent: this.extent };
+  }
+
+  /** Where a place is on the picture [CSS pixels]. */
+  project(place: THREE.Vector3): [x: number, y: number] {
+    const { x, y } = place.clone().project(this.camera);
+    return [((x + 1) / 2) * this.canvas.clientWidth, ((1 - y) / 2) * this.canvas.clientHeight];
+  }
+
+  /** Stands where another rig stands that shows the same scene. */
+  follow({ camera, controls }: Rig): void {
+    const apart = this.camera.position.distanceTo(camera.position) + this.controls.target.distanceTo(controls.target);
+    if (apart < 1e-5 * this.extent) return;
+    this.flight = this.held = undefined;
+    this.camera.position.copy(camera.position);
+    this.controls.target.copy(controls.target);
+    this.changed();
+  }
+
+  get pose(): Pose {
+    const plain = ({ x, y, z }: THREE.Vector3) => ({ x, y, z });
+    return { eye: plain(this.camera.position), target: plain(this.controls.target) };
+  }
+
+  /** Goes where somebody else looks from; smoothly, as their places come a few times a second. */
+  place(pose: Pose): void {
+    this.flight = this.held = undefined;
+    this.chased = pose;
+    this.changed();
+  }
+
+  private chase({ eye, target }: Pose): void {
+    const part = this.calm() ? 1 : 1 - lag;
+    this.camera.position.lerp(eye, part);
+    this.controls.target.lerp(target, part);
+    if (this.camera.position.distanceTo(eye) < 1e-5 * this.extent) this.chased = undefined;
+    this.changed();
+  }
+
+  /** Moves what moves by itself. */
+  update(now: number): void {
+    if (this.chased !== undefined) this.chase(this.chased);
+    if (this.flight !== undefined) this.fly(this.flight, now);
+    this.controls.update();
+  }
+
+  private fly({ from, to, start }: { from: THREE.Vector3; to: THREE.Vector3; start: number }, now: number): void {
+    const { target } = this.controls;
+    const part = THREE.MathUtils.smootherstep((now - start) / glide, 0, 1);
+    // Along the sphere, not through the patient.
+    const distance = THREE.MathUtils.lerp(from.distanceTo(target), to.distanceTo(target), part);
+    const away = from.clone().sub(target).lerp(to.clone().sub(target), part);
+    if (away.lengthSq() < 1e-12) away.copy(to).sub(target);
+    this.camera.position.copy(target).addScaledVector(away.normalize(), distance);
+    if (part >= 1) this.flight = undefined;
+    this.changed();
+  }
+
+  /** Orbits by so many radians, and comes nearer by the factor `zoom`: for the keyboard. */
+  nudge(azimuth: number, polar: number, zoom: number): void {
+    this.flight = this.held = undefined;
+    const { target } = this.controls;
+    const away = this.camera.position.clone().sub(target);
+    const radius = away.length() / zoom;
+    const phi = Math.acos(THREE.MathUtils.clamp(away.z / away.length(), -1, 1)) + polar;
+    const theta = Math.atan2(away.y, away.x) + azimuth;
+    const level = THREE.MathUtils.clamp(phi, 0.01, Math.PI - 0.01);
+    const ring = Math.sin(level);
+    away.set(ring * Math.cos(theta), ring * Math.sin(theta), Math.cos(level)).multiplyScalar(radius);
+    this.camera.position.copy(target).add(away);
+    this.changed();
+  }
+
+  compass(): Compass {
+    this.camera.updateMatrixWorld(); // not only when the next picture is drawn
+    const axis = (i: number) => new THREE.Vector3().setFromMatrixColumn(this.camera.matrixWorld, i);
+    const [right, up, back] = [axis(0), axis(1), axis(2)];
+    const { distance } = this.depth;
+    const slope = Math.tan(THREE.MathUtils.degToRad(this.camera.fov / 2));
+    return {
+      right: letterOf(right),
+      left: letterOf(right.clone().negate()),
+      top: letterOf(up),
+      bottom: letterOf(up.clone().negate()),
+      pixelsPerMetre: this.canvas.clientHeight / (2 * slope * distance),
+      axes: [right, up, back],
+    };
+  }
+}
