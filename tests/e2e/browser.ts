@@ -1,6 +1,6 @@
+import axe from "axe-core";
 import { existsSync, mkdirSync } from "node:fs";
 import { join } from "node:path";
-import axe from "axe-core";
 import { type Browser, chromium, type Page } from "playwright-core";
 import type { TestHook } from "../../web/src/app/test_hook";
 import { outFolder } from "./server";

@@ -1,10 +1,10 @@
 import { setTimeout as sleep } from "node:timers/promises";
 import { afterAll, beforeAll, expect, test } from "vitest";
-import { systemClock } from "../../web/src/timing/clock";
-import { type Body, type FrameArrays } from "../../web/src/geometry/bodies";
 import { Connection } from "../../web/src/connection/session_connection";
 import { FrameDecoder } from "../../web/src/decoders/frame_decoder";
 import { Codec, type Frame } from "../../web/src/gen/phrenic/v1/frames_pb";
+import { type Body, type FrameArrays } from "../../web/src/geometry/bodies";
+import { systemClock } from "../../web/src/timing/clock";
 import { nodeApi } from "./node_api";
 import { Server } from "./server";
 

@@ -1,8 +1,8 @@
+import { validateBytes } from "gltf-validator";
 import { createHash } from "node:crypto";
 import { mkdirSync } from "node:fs";
 import { readFile } from "node:fs/promises";
 import { join } from "node:path";
-import { validateBytes } from "gltf-validator";
 import type { Browser } from "playwright-core";
 import { afterAll, beforeAll, expect, test } from "vitest";
 import { launchBrowser, ViewerPage } from "./browser";

@@ -1,8 +1,8 @@
 // Clients that nobody here wrote: buf curl, which asks the server for its schema, and @grpc/grpc-js, which reads the
 // .proto files. @connectrpc/connect-web in Chromium is what the viewer itself calls with: viewer.test.ts.
 import {
-  credentials,
   type ClientReadableStream,
+  credentials,
   loadPackageDefinition,
   type ServiceError,
   status,

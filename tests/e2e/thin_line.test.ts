@@ -1,9 +1,9 @@
 import { connect, createServer } from "node:net";
 import { setTimeout as sleep } from "node:timers/promises";
 import { afterAll, beforeAll, expect, test } from "vitest";
-import { systemClock } from "../../web/src/timing/clock";
 import { Connection } from "../../web/src/connection/session_connection";
 import { Frames } from "../../web/src/frames/frame_buffer";
+import { systemClock } from "../../web/src/timing/clock";
 import { nodeApi } from "./node_api";
 import { Server } from "./server";
 

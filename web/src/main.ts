@@ -1,15 +1,15 @@
 import { createGrpcWebTransport } from "@connectrpc/connect-web";
-import { Access, identifying, takeLink } from "./connection/credentials";
-import { createApi, errorText } from "./connection/api";
 import { App } from "./app/app";
-import { chooseSession } from "./session/choose_session";
-import { systemClock } from "./timing/clock";
-import { Chooser } from "./panels/session/session_chooser";
+import { createApi, errorText } from "./connection/api";
+import { Access, identifying, takeLink } from "./connection/credentials";
 import { Identity, signing } from "./connection/identity";
-import { make, place } from "./dom/elements";
-import { signIn } from "./panels/session/sign_in";
-import { recipeOf, rerun } from "./session/permalink";
 import { routing } from "./connection/routing";
+import { make, place } from "./dom/elements";
+import { Chooser } from "./panels/session/session_chooser";
+import { signIn } from "./panels/session/sign_in";
+import { chooseSession } from "./session/choose_session";
+import { recipeOf, rerun } from "./session/permalink";
+import { systemClock } from "./timing/clock";
 
 // What is sent while the page goes outlives it: a vertex that is let go of.
 let leaving = false;

@@ -1,6 +1,6 @@
 import { beforeEach, expect, test } from "vitest";
-import { make } from "../../../web/src/dom/elements";
 import { shortcuts } from "../../../web/src/app/shortcuts";
+import { make } from "../../../web/src/dom/elements";
 
 let heard: string[];
 const press = (target: Element, key: string, more: KeyboardEventInit = {}) =>

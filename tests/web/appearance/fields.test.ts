@@ -1,7 +1,8 @@
 import { describe, expect, test } from "vitest";
-import { decodeBody } from "../../../web/src/geometry/bodies";
 import { Coloring } from "../../../web/src/appearance/coloring";
-import { areaChanges, displacements, Fields, speeds } from "../../../web/src/appearance/fields";
+import { Fields } from "../../../web/src/appearance/fields";
+import { decodeBody } from "../../../web/src/geometry/bodies";
+import { areaChanges, displacements, speeds } from "../../../web/src/geometry/deformation";
 import { Forces } from "../../../web/src/session/force_queries";
 import { FakeServer, triangleBody } from "../fakes/fake_server";
 

@@ -1,11 +1,12 @@
 import { create } from "@bufbuild/protobuf";
 import { expect, test } from "vitest";
-import { decodeBody } from "../../../web/src/geometry/bodies";
-import type { Comparison } from "../../../web/src/session/comparisons";
-import { Placement } from "../../../web/src/gen/phrenic/v1/frames_pb";
-import { SurfaceDistanceSchema } from "../../../web/src/gen/phrenic/v1/compare_pb";
 import { LiveDistance } from "../../../web/src/appearance/live_distance";
-import { NearestSurface, type Surface } from "../../../web/src/viewer/nearest_surface";
+import { SurfaceDistanceSchema } from "../../../web/src/gen/phrenic/v1/compare_pb";
+import { Placement } from "../../../web/src/gen/phrenic/v1/frames_pb";
+import { decodeBody } from "../../../web/src/geometry/bodies";
+import { type Surface } from "../../../web/src/geometry/surface";
+import type { Comparison } from "../../../web/src/session/comparisons";
+import { NearestSurface } from "../../../web/src/viewer/nearest_surface";
 import { triangleBody } from "../fakes/fake_server";
 
 /** A square of two triangles from 0 to 1 m in x and y, at `z` [m]. */

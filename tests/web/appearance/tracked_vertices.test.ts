@@ -1,7 +1,7 @@
 import { expect, test } from "vitest";
-import { decodeBody } from "../../../web/src/geometry/bodies";
-import { Expiration } from "../../../web/src/frames/end_expiration";
 import { Following } from "../../../web/src/appearance/tracked_vertices";
+import { Expiration } from "../../../web/src/frames/end_expiration";
+import { decodeBody } from "../../../web/src/geometry/bodies";
 import { triangleBody } from "../fakes/fake_server";
 
 const body = decodeBody(triangleBody({}));

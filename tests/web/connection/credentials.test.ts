@@ -1,7 +1,7 @@
 import { createRouterTransport } from "@connectrpc/connect";
 import { expect, test } from "vitest";
-import { Access, identifying, takeLink } from "../../../web/src/connection/credentials";
 import { createApi } from "../../../web/src/connection/api";
+import { Access, identifying, takeLink } from "../../../web/src/connection/credentials";
 import { AccessService } from "../../../web/src/gen/phrenic/v1/access_pb";
 import { signIn } from "../../../web/src/panels/session/sign_in";
 

@@ -1,9 +1,9 @@
 import { createRouterTransport } from "@connectrpc/connect";
 import { expect, test } from "vitest";
 import { createApi } from "../../../web/src/connection/api";
+import { routing } from "../../../web/src/connection/routing";
 import { FrameService } from "../../../web/src/gen/phrenic/v1/frames_pb";
 import { SessionService } from "../../../web/src/gen/phrenic/v1/session_pb";
-import { routing } from "../../../web/src/connection/routing";
 
 test("every call that is about a session names it in its head, and no other does", async () => {
   const named: (string | null)[] = [];

@@ -1,7 +1,7 @@
 import { afterEach, beforeEach, expect, test } from "vitest";
-import { Backoff } from "../../../web/src/timing/backoff";
 import { Connection, type Link, type Sink } from "../../../web/src/connection/session_connection";
 import { Codec } from "../../../web/src/gen/phrenic/v1/frames_pb";
+import { Backoff } from "../../../web/src/timing/backoff";
 import { FakeClock, settle } from "../fakes/fake_clock";
 import { FakeServer } from "../fakes/fake_server";
 

@@ -2,12 +2,10 @@ import { create } from "@bufbuild/protobuf";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { describe, expect, test } from "vitest";
-import type { Body } from "../../../web/src/geometry/bodies";
-import { decodeBody } from "../../../web/src/geometry/bodies";
 import { decodeShapes } from "../../../web/src/decoders/basis";
 import { makeDecoder } from "../../../web/src/decoders/decoder_table";
-import { restShapeOf } from "../../../web/src/decoders/rest_shape";
 import { FrameDecoder } from "../../../web/src/decoders/frame_decoder";
+import { restShapeOf } from "../../../web/src/decoders/rest_shape";
 import {
   Codec,
   FrameSchema,
@@ -15,6 +13,8 @@ import {
   GetGeometryResponseSchema,
   Placement,
 } from "../../../web/src/gen/phrenic/v1/frames_pb";
+import type { Body } from "../../../web/src/geometry/bodies";
+import { decodeBody } from "../../../web/src/geometry/bodies";
 import { bytesOf, triangleBody } from "../fakes/fake_server";
 
 interface Golden {

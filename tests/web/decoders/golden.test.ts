@@ -2,14 +2,14 @@ import { fromBinary, toBinary } from "@bufbuild/protobuf";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { expect, test } from "vitest";
-import { decodeBody } from "../../../web/src/geometry/bodies";
 import { FrameDecoder } from "../../../web/src/decoders/frame_decoder";
 import {
   type Frame,
-  Placement,
   GetGeometryResponseSchema,
+  Placement,
   WatchFramesResponseSchema,
 } from "../../../web/src/gen/phrenic/v1/frames_pb";
+import { decodeBody } from "../../../web/src/geometry/bodies";
 
 import { triangleBody } from "../fakes/fake_server";
 

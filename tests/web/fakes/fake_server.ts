@@ -19,8 +19,8 @@ import type { PresetSchema } from "../../../web/src/gen/phrenic/v1/scene_pb";
 import {
   type CreateSessionRequest,
   type Pull,
-  type SceneSource,
   SceneService,
+  type SceneSource,
   SessionSchema,
   SessionService,
   SessionState,

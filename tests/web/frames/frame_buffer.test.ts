@@ -1,8 +1,8 @@
 import { create } from "@bufbuild/protobuf";
 import { expect, test } from "vitest";
 import { Frames } from "../../../web/src/frames/frame_buffer";
-import { decodeBody } from "../../../web/src/geometry/bodies";
 import { AckFramesResponseSchema, Codec, FrameSchema } from "../../../web/src/gen/phrenic/v1/frames_pb";
+import { decodeBody } from "../../../web/src/geometry/bodies";
 
 import { triangleBody } from "../fakes/fake_server";
 

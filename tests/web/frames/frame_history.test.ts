@@ -1,7 +1,7 @@
 import { create } from "@bufbuild/protobuf";
 import { expect, test } from "vitest";
-import { FrameSchema } from "../../../web/src/gen/phrenic/v1/frames_pb";
 import { Past } from "../../../web/src/frames/frame_history";
+import { FrameSchema } from "../../../web/src/gen/phrenic/v1/frames_pb";
 
 const at = (time: number) => create(FrameSchema, { time });
 function past(...times: number[]): Past {

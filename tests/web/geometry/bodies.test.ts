@@ -1,15 +1,8 @@
 import { create } from "@bufbuild/protobuf";
 import { describe, expect, test } from "vitest";
-import {
-  decodeBody,
-  floats,
-  floatsPerPose,
-  type FrameArrays,
-  indices,
-  positionsOf,
-  vertexAt,
-} from "../../../web/src/geometry/bodies";
 import { GetGeometryResponseSchema, Placement } from "../../../web/src/gen/phrenic/v1/frames_pb";
+import { decodeBody, floatsPerPose, type FrameArrays, positionsOf, vertexAt } from "../../../web/src/geometry/bodies";
+import { floats, indices } from "../../../web/src/geometry/wire_arrays";
 import { bytesOf, triangleBody } from "../fakes/fake_server";
 
 describe("numbers on the wire", () => {

@@ -1,12 +1,12 @@
 import { describe, expect, test } from "vitest";
 import { ParametersSchema } from "../../../web/src/gen/phrenic/v1/parameters_pb";
-import { faultOf, formatNumber, positionOf, valueAt } from "../../../web/src/parameters/numbers";
 import {
   type ChoiceControl,
   choiceLabel,
   type NumberControl,
   parameterControls,
 } from "../../../web/src/parameters/controls";
+import { faultOf, formatNumber, positionOf, valueAt } from "../../../web/src/parameters/numbers";
 
 const controls = parameterControls();
 const numbers = controls.filter((control): control is NumberControl => control.kind === "number");

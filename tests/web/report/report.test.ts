@@ -1,6 +1,6 @@
 import { beforeEach, describe, expect, test } from "vitest";
-import { showStudy } from "../../../web/src/report/page";
 import { make } from "../../../web/src/dom/elements";
+import { showStudy } from "../../../web/src/report/page";
 import { costStudy, errorStudy, pageOf, stabilityStudy, streamingStudy } from "./study_samples";
 
 let page: HTMLElement;

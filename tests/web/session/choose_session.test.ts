@@ -1,7 +1,7 @@
 import { create } from "@bufbuild/protobuf";
 import { expect, test } from "vitest";
-import { chooseSession, preferred } from "../../../web/src/session/choose_session";
 import { SessionSchema, SessionState } from "../../../web/src/gen/phrenic/v1/session_pb";
+import { chooseSession, preferred } from "../../../web/src/session/choose_session";
 import { FakeClock, settle } from "../fakes/fake_clock";
 import { FakeServer } from "../fakes/fake_server";
 

@@ -2,8 +2,6 @@ import { create } from "@bufbuild/protobuf";
 import { Code, ConnectError, createRouterTransport } from "@connectrpc/connect";
 import { beforeEach, expect, test } from "vitest";
 import { createApi } from "../../../web/src/connection/api";
-import type { Body } from "../../../web/src/geometry/bodies";
-import { Exports } from "../../../web/src/session/exports";
 import {
   type CreateExportRequest,
   ExportService,
@@ -12,10 +10,12 @@ import {
   FileFormatSchema,
 } from "../../../web/src/gen/phrenic/v1/export_pb";
 import { UploadService } from "../../../web/src/gen/phrenic/v1/upload_pb";
+import type { Body } from "../../../web/src/geometry/bodies";
 import { exportPanel } from "../../../web/src/panels/jobs/export_panel";
 import { uploadPanel } from "../../../web/src/panels/jobs/upload_panel";
-import { Signal } from "../../../web/src/state/signal";
+import { Exports } from "../../../web/src/session/exports";
 import { Uploads } from "../../../web/src/session/uploads";
+import { Signal } from "../../../web/src/state/signal";
 
 const file = new Uint8Array([1, 2, 3, 4, 5, 6, 7]);
 let asked: CreateExportRequest[], deleted: string[], offsets: number[], breaks: number, problem: string;

@@ -1,6 +1,6 @@
 import { beforeEach, expect, test } from "vitest";
-import { Forces } from "../../../web/src/session/force_queries";
 import { unitFor } from "../../../web/src/panels/view/force_table";
+import { Forces } from "../../../web/src/session/force_queries";
 import { FakeServer } from "../fakes/fake_server";
 
 let server: FakeServer;

@@ -1,13 +1,13 @@
 import { create } from "@bufbuild/protobuf";
 import { createClient, createRouterTransport } from "@connectrpc/connect";
 import { beforeEach, expect, test } from "vitest";
-import { CameraLead } from "../../../web/src/session/camera_sharing";
-import { Controller } from "../../../web/src/session/session_controller";
+import { Identity, signing } from "../../../web/src/connection/identity";
 import { type Control, ControlPolicy, ControlSchema, ControlService } from "../../../web/src/gen/phrenic/v1/control_pb";
 import { SessionSchema, SessionService } from "../../../web/src/gen/phrenic/v1/session_pb";
-import { Identity, signing } from "../../../web/src/connection/identity";
+import type { Pose } from "../../../web/src/geometry/camera_pose";
+import { CameraLead } from "../../../web/src/session/camera_sharing";
 import { controlWords, refusalWords, rolesOf, Standing } from "../../../web/src/session/participation";
-import type { Pose } from "../../../web/src/viewer/camera_rig";
+import { Controller } from "../../../web/src/session/session_controller";
 import { FakeClock, settle } from "../fakes/fake_clock";
 import { FakeServer } from "../fakes/fake_server";
 

@@ -1,8 +1,8 @@
 import { create } from "@bufbuild/protobuf";
 import { expect, test } from "vitest";
-import { differences, shortDifferences } from "../../../web/src/panels/comparison/view_headers";
 import { ParametersSchema } from "../../../web/src/gen/phrenic/v1/parameters_pb";
 import { SessionSchema } from "../../../web/src/gen/phrenic/v1/session_pb";
+import { differences, shortDifferences } from "../../../web/src/parameters/differences";
 import { permalinkOf, recipeOf, rerun } from "../../../web/src/session/permalink";
 import { FakeServer } from "../fakes/fake_server";
 

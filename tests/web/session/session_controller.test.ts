@@ -1,9 +1,9 @@
 import { create } from "@bufbuild/protobuf";
 import { Code, ConnectError } from "@connectrpc/connect";
 import { beforeEach, expect, test } from "vitest";
-import { Controller } from "../../../web/src/session/session_controller";
 import { ParametersSchema } from "../../../web/src/gen/phrenic/v1/parameters_pb";
 import { SessionSchema, SessionState } from "../../../web/src/gen/phrenic/v1/session_pb";
+import { Controller } from "../../../web/src/session/session_controller";
 import { FakeClock, settle } from "../fakes/fake_clock";
 import { FakeServer } from "../fakes/fake_server";
 

@@ -1,9 +1,9 @@
 import { create } from "@bufbuild/protobuf";
 import * as THREE from "three";
 import { describe, expect, test } from "vitest";
-import { Controller } from "../../../web/src/session/session_controller";
 import { SessionSchema } from "../../../web/src/gen/phrenic/v1/session_pb";
 import { pullRow } from "../../../web/src/panels/parameters/pull_row";
+import { Controller } from "../../../web/src/session/session_controller";
 import { acrossFrom, pickVertex } from "../../../web/src/viewer/picking";
 import { FakeClock, settle } from "../fakes/fake_clock";
 import { FakeServer } from "../fakes/fake_server";

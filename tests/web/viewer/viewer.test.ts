@@ -1,14 +1,14 @@
 import * as THREE from "three";
 import { mergeVertices } from "three/addons/utils/BufferGeometryUtils.js";
 import { describe, expect, test } from "vitest";
-import { OrientationCube } from "../../../web/src/panels/view/orientation_cube";
-import { placeOf, planeOf } from "../../../web/src/viewer/clipping";
 import { edgesOf } from "../../../web/src/geometry/edges";
 import { computeNormals } from "../../../web/src/geometry/normals";
-import { pickVertex } from "../../../web/src/viewer/picking";
 import { tendonWeights } from "../../../web/src/geometry/tendon";
+import { OrientationCube } from "../../../web/src/panels/view/orientation_cube";
 import { Sharpness } from "../../../web/src/viewer/adaptive_resolution";
+import { placeOf, planeOf } from "../../../web/src/viewer/clipping";
 import { letterOf, openingView, standpoint, type ViewName } from "../../../web/src/viewer/named_views";
+import { pickVertex } from "../../../web/src/viewer/picking";
 
 const loose = new THREE.IcosahedronGeometry(1, 4).deleteAttribute("normal").deleteAttribute("uv");
 const sphere = mergeVertices(loose);

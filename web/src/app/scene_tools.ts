@@ -1,24 +1,24 @@
-import type { Body, FrameArrays } from "../geometry/bodies";
 import { ColorScale, topFor } from "../appearance/color_scale";
 import { Coloring } from "../appearance/coloring";
-import type { Comparisons } from "../session/comparisons";
-import { Following } from "../appearance/tracked_vertices";
 import { forceOf } from "../appearance/fields";
-import type { Forces, Wanted } from "../session/force_queries";
-import type { Frame } from "../gen/phrenic/v1/frames_pb";
 import { type GhostKind, Ghosts } from "../appearance/ghosts";
-import { LiveDistance } from "../appearance/live_distance";
 import type { Looks } from "../appearance/layer_styles";
-import { Annotations } from "../viewer/annotations";
+import { LiveDistance } from "../appearance/live_distance";
+import { Following } from "../appearance/tracked_vertices";
+import { make } from "../dom/elements";
+import type { Frame } from "../gen/phrenic/v1/frames_pb";
+import type { Body, FrameArrays } from "../geometry/bodies";
 import { appearancePanel } from "../panels/view/appearance_panel";
 import { coloringCard } from "../panels/view/coloring_card";
-import { make } from "../dom/elements";
 import { OrientationCube } from "../panels/view/orientation_cube";
 import { PickCard } from "../panels/view/pick_card";
+import type { Comparisons } from "../session/comparisons";
+import type { Forces, Wanted } from "../session/force_queries";
 import { Signal } from "../state/signal";
-import type { OverlayKind } from "../viewer/body_view";
-import type { Cut } from "../viewer/clipping";
+import { Annotations } from "../viewer/annotations";
 import type { Compass } from "../viewer/camera_rig";
+import type { Cut } from "../viewer/clipping";
+import type { OverlayKind } from "../viewer/overlays";
 import type { Viewer } from "../viewer/viewer";
 
 /** What a viewer does with the picture for itself: colours, ghost, names, axes, and vertices that are picked. */

@@ -1,23 +1,23 @@
-import type { Api } from "../connection/api";
-import type { Clock } from "../timing/clock";
-import type { Body } from "../geometry/bodies";
-import { Connection, type Sink } from "../connection/session_connection";
-import { Controller } from "../session/session_controller";
 import { forceOf, needsExact } from "../appearance/fields";
-import { Forces, type Wanted } from "../session/force_queries";
+import { Ghosts } from "../appearance/ghosts";
+import type { Looks } from "../appearance/layer_styles";
+import { Painter } from "../appearance/vertex_colorizer";
+import type { Api } from "../connection/api";
+import { Connection, type Sink } from "../connection/session_connection";
+import { make } from "../dom/elements";
 import { Frames, longestWait } from "../frames/frame_buffer";
 import type { Frame } from "../gen/phrenic/v1/frames_pb";
 import { type Preset } from "../gen/phrenic/v1/scene_pb";
 import { SessionState } from "../gen/phrenic/v1/session_pb";
-import { Ghosts } from "../appearance/ghosts";
-import type { Looks } from "../appearance/layer_styles";
-import { make } from "../dom/elements";
+import type { Body } from "../geometry/bodies";
 import { PaneHeads } from "../panels/comparison/view_headers";
-import { Painter } from "../appearance/vertex_colorizer";
-import type { SceneTools } from "./scene_tools";
+import { Forces, type Wanted } from "../session/force_queries";
+import { Controller } from "../session/session_controller";
 import type { Signal } from "../state/signal";
+import type { Clock } from "../timing/clock";
 import { Annotations } from "../viewer/annotations";
 import { type Surroundings, Viewer } from "../viewer/viewer";
+import type { SceneTools } from "./scene_tools";
 
 /** Two that play and are this far apart or more [s] are brought together, after so many looks. */
 const leastApart = 0.2;

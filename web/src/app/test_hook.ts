@@ -1,5 +1,5 @@
-import { type Body, vertexAt } from "../geometry/bodies";
 import type { Frames } from "../frames/frame_buffer";
+import { type Body, vertexAt } from "../geometry/bodies";
 import type { Viewer } from "../viewer/viewer";
 
 /** What end-to-end tests read from the page as `window.phrenic`: numbers that pixels cannot give. Nothing acts on it. */

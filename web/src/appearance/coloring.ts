@@ -1,9 +1,9 @@
 import type { Body, FrameArrays } from "../geometry/bodies";
+import type { Forces } from "../session/force_queries";
+import { Signal } from "../state/signal";
 import { ColorScale, topFor } from "./color_scale";
 import { type FieldKind, forceOf, infoOf } from "./fields";
-import type { Forces } from "../session/force_queries";
 import { Painter } from "./vertex_colorizer";
-import { Signal } from "../state/signal";
 
 /** Colours the moving tissue by a field of it, on a scale that stays as it is until somebody changes it. */
 export class Coloring {

@@ -1,6 +1,6 @@
-import type { Body, FrameArrays } from "../geometry/bodies";
 import { Expiration } from "../frames/end_expiration";
 import type { Frame } from "../gen/phrenic/v1/frames_pb";
+import type { Body, FrameArrays } from "../geometry/bodies";
 import type { Signal } from "../state/signal";
 import type { Viewer } from "../viewer/viewer";
 

@@ -1,5 +1,5 @@
-import type { Body } from "../geometry/bodies";
 import type { CompileReport } from "../gen/phrenic/v1/report_pb";
+import type { Body } from "../geometry/bodies";
 import { Signal } from "../state/signal";
 
 /** How a layer is shown in this viewer; nobody else sees it. */

@@ -1,6 +1,6 @@
+import { Placement } from "../gen/phrenic/v1/frames_pb";
 import { type Body, type FrameArrays, positionsOf } from "../geometry/bodies";
 import type { Comparison } from "../session/comparisons";
-import { Placement } from "../gen/phrenic/v1/frames_pb";
 import { NearestSurface } from "../viewer/nearest_surface";
 
 /** At most one part in so many of the time goes into distances. */

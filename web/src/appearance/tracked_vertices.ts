@@ -1,10 +1,9 @@
 import { type Body, type FrameArrays, vertexAt } from "../geometry/bodies";
+import type { Marker, VertexRef } from "../geometry/vertices";
 import type { GraphSpec } from "../graphs/catalogue";
 import { curveColor } from "../graphs/colors";
-import { History } from "../state/time_series";
 import { Signal } from "../state/signal";
-import type { VertexRef } from "../viewer/click_picking";
-import type { Marker } from "../viewer/markers";
+import { History } from "../state/time_series";
 
 const mostFollowed = 6;
 const pickedColor = "#ffffff";

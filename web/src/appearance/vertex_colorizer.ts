@@ -1,8 +1,8 @@
+import { Placement } from "../gen/phrenic/v1/frames_pb";
 import type { Body, FrameArrays } from "../geometry/bodies";
+import type { Forces } from "../session/force_queries";
 import type { ColorScale } from "./color_scale";
 import { type FieldKind, Fields, forceOf, type ShapeKind } from "./fields";
-import type { Forces } from "../session/force_queries";
-import { Placement } from "../gen/phrenic/v1/frames_pb";
 
 /** The colours of one picture's moving tissue, by the field and on the scale that somebody chose. */
 export class Painter {

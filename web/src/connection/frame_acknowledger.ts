@@ -1,5 +1,5 @@
-import type { Clock } from "../timing/clock";
 import type { AckFramesResponse } from "../gen/phrenic/v1/frames_pb";
+import type { Clock } from "../timing/clock";
 
 /** How long to wait after an acknowledgement that failed [ms]: without one no more frames come. */
 const pause = 500;

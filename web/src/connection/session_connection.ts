@@ -1,14 +1,14 @@
 import { Code, ConnectError } from "@connectrpc/connect";
-import { Acknowledger } from "./frame_acknowledger";
-import { type Api, errorText } from "./api";
-import { Backoff } from "../timing/backoff";
-import type { Clock } from "../timing/clock";
-import { type Body, decodeBody } from "../geometry/bodies";
 import type { Camera } from "../gen/phrenic/v1/control_pb";
 import { type AckFramesResponse, Codec, type Frame, type GetBasisResponse } from "../gen/phrenic/v1/frames_pb";
 import type { CompileReport } from "../gen/phrenic/v1/report_pb";
 import type { Session } from "../gen/phrenic/v1/session_pb";
+import { type Body, decodeBody } from "../geometry/bodies";
+import { Backoff } from "../timing/backoff";
+import type { Clock } from "../timing/clock";
+import { type Api, errorText } from "./api";
 import { Learner } from "./basis_fetcher";
+import { Acknowledger } from "./frame_acknowledger";
 
 /** The state of the connection, as people see it. */
 export type Link =

@@ -1,5 +1,5 @@
-import type { Decoder } from "./decoder_table";
 import { foretelling, readRemainders } from "./neighbour_predictor";
+import type { Decoder } from "./position_decoder";
 import type { RestShape } from "./rest_shape";
 import { checkStep, viewOf } from "./zstd";
 

@@ -1,12 +1,10 @@
 import { Codec } from "../gen/phrenic/v1/frames_pb";
 import { basisDecoder } from "./basis";
 import { planesDecoder } from "./planes";
+import type { Decoder } from "./position_decoder";
 import { predictedDecoder } from "./predicted";
 import { rawDecoder } from "./raw";
 import type { RestShape } from "./rest_shape";
-
-/** Positions, x y z a vertex [m], from a frame's bytes; RangeError where they are no encoding of so many vertices. */
-export type Decoder = (bytes: Uint8Array) => Float32Array<ArrayBuffer>;
 
 const decoders = new Map<Codec, (shape: RestShape) => Decoder>([
   [Codec.UNSPECIFIED, rawDecoder],

@@ -1,8 +1,10 @@
-import { type Body, floats, floatsPerPose, type FrameArrays } from "../geometry/bodies";
-import { decodeShapes } from "./basis";
-import { type Decoder, makeDecoder } from "./decoder_table";
-import { restShapeOf } from "./rest_shape";
 import { Codec, type Frame, type GetBasisResponse, Placement } from "../gen/phrenic/v1/frames_pb";
+import { type Body, floatsPerPose, type FrameArrays } from "../geometry/bodies";
+import { floats } from "../geometry/wire_arrays";
+import { decodeShapes } from "./basis";
+import { makeDecoder } from "./decoder_table";
+import type { Decoder } from "./position_decoder";
+import { restShapeOf } from "./rest_shape";
 
 /** Bases that are kept: frames of the one before may still be on their way. */
 const mostBases = 2;

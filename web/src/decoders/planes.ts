@@ -1,4 +1,4 @@
-import type { Decoder } from "./decoder_table";
+import type { Decoder } from "./position_decoder";
 import type { RestShape } from "./rest_shape";
 import { checkStep, unpack, viewOf } from "./zstd";
 

@@ -1,5 +1,5 @@
-import { floats } from "../geometry/bodies";
-import type { Decoder } from "./decoder_table";
+import { floats } from "../geometry/wire_arrays";
+import type { Decoder } from "./position_decoder";
 import type { RestShape } from "./rest_shape";
 
 /** float32 as it is. */

@@ -1,10 +1,10 @@
-import { blend } from "./interpolation";
-import type { Body, FrameArrays } from "../geometry/bodies";
 import { FrameDecoder } from "../decoders/frame_decoder";
 import type { AckFramesResponse, Frame, GetBasisResponse } from "../gen/phrenic/v1/frames_pb";
-import { Past } from "./frame_history";
-import { Playout } from "./playout";
+import type { Body, FrameArrays } from "../geometry/bodies";
 import { SteadyBeat } from "../timing/draw_rate";
+import { Past } from "./frame_history";
+import { blend } from "./interpolation";
+import { Playout } from "./playout";
 
 /** How frames arrive. */
 export interface FrameRate {

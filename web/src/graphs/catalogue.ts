@@ -1,5 +1,5 @@
 import type { Frame } from "../gen/phrenic/v1/frames_pb";
-import { familiarUnit } from "../panels/readings/measures";
+import { familiarUnit } from "./units";
 
 /** One line of a graph: where its values are kept, and what they are multiplied by to be in the graph's unit. */
 export interface Curve {

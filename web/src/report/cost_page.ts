@@ -1,3 +1,4 @@
+import { make } from "../dom/elements";
 import {
   type CostRow,
   CostRowSchema,
@@ -7,7 +8,6 @@ import {
   type StageRow,
   StageRowSchema,
 } from "../gen/phrenic/v1/study_results_pb";
-import { make } from "../dom/elements";
 import { stageBars, variantBars } from "./cost_bars";
 import { formatDigits } from "./format";
 import { growth } from "./growth";

@@ -1,4 +1,4 @@
-import { initializer, text, type Markish } from "@observablehq/plot";
+import { initializer, type Markish, text } from "@observablehq/plot";
 
 /** A line of a plot that is to bear its name. */
 export interface LabelledLine {

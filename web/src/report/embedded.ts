@@ -1,5 +1,5 @@
-import type { Study } from "../gen/phrenic/v1/study_pb";
 import { make } from "../dom/elements";
+import type { Study } from "../gen/phrenic/v1/study_pb";
 import { contentsOf } from "./page";
 import css from "./report.css?inline";
 

@@ -1,11 +1,11 @@
+import { make } from "../dom/elements";
 import {
-  type ErrorTable,
   ErrorRowSchema,
+  type ErrorTable,
   type Reference,
   ResidualRowSchema,
   ResolutionRowSchema,
 } from "../gen/phrenic/v1/study_results_pb";
-import { make } from "../dom/elements";
 import { convergence } from "./convergence";
 import { beside } from "./figure";
 import { formatDigits } from "./format";

@@ -1,7 +1,7 @@
-import type { Study } from "../gen/phrenic/v1/study_pb";
-import type { Parameters } from "../gen/phrenic/v1/parameters_pb";
-import type { StudyResult } from "../gen/phrenic/v1/study_results_pb";
 import { make } from "../dom/elements";
+import type { Parameters } from "../gen/phrenic/v1/parameters_pb";
+import type { Study } from "../gen/phrenic/v1/study_pb";
+import type { StudyResult } from "../gen/phrenic/v1/study_results_pb";
 import { type Control, parameterControls } from "../parameters/controls";
 import { formatDigits } from "./format";
 import { nameOf } from "./names";

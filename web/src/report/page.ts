@@ -1,7 +1,7 @@
 import { fromJsonString } from "@bufbuild/protobuf";
+import { make } from "../dom/elements";
 import { type Study, StudySchema } from "../gen/phrenic/v1/study_pb";
 import type { StudyResult } from "../gen/phrenic/v1/study_results_pb";
-import { make } from "../dom/elements";
 import { costParts } from "./cost_page";
 import { errorParts } from "./error_page";
 import { header, titleOf } from "./header";

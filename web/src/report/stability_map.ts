@@ -1,6 +1,6 @@
 import { dot, frame, line, type Markish, pointer, rect, text, tip } from "@observablehq/plot";
-import type { StabilityRow, StabilityTable } from "../gen/phrenic/v1/study_results_pb";
 import { make } from "../dom/elements";
+import type { StabilityRow, StabilityTable } from "../gen/phrenic/v1/study_results_pb";
 import { draw, half, ink, isPositive, logScale } from "./axes";
 import { type Cell, cellsOf, edgesOf } from "./cells";
 import { formatDigits } from "./format";

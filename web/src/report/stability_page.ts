@@ -1,3 +1,4 @@
+import { make } from "../dom/elements";
 import {
   type ExtremeRow,
   ExtremeRowSchema,
@@ -7,7 +8,6 @@ import {
   StabilityRowSchema,
   type StabilityTable,
 } from "../gen/phrenic/v1/study_results_pb";
-import { make } from "../dom/elements";
 import { figure } from "./figure";
 import { count, formatDigits, formatTicks } from "./format";
 import { nameOf } from "./names";

@@ -1,5 +1,5 @@
-import { type StreamingTable, StreamingRowSchema } from "../gen/phrenic/v1/study_results_pb";
 import { make } from "../dom/elements";
+import { StreamingRowSchema, type StreamingTable } from "../gen/phrenic/v1/study_results_pb";
 import { bandwidth } from "./bandwidth";
 import { formatDigits } from "./format";
 import { tableOf } from "./table";

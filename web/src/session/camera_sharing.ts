@@ -1,9 +1,9 @@
 import type { Api } from "../connection/api";
-import type { Clock } from "../timing/clock";
 import type { Camera } from "../gen/phrenic/v1/control_pb";
+import type { Pose } from "../geometry/camera_pose";
+import type { Clock } from "../timing/clock";
 import { NewestWins } from "../timing/coalescing_sender";
 import type { Standing } from "./participation";
-import type { Pose } from "../viewer/camera_rig";
 
 /** A picture whose camera may be read and placed. */
 export interface Staged {

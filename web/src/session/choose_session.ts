@@ -1,7 +1,7 @@
 import type { Api } from "../connection/api";
+import { type Session, SessionState } from "../gen/phrenic/v1/session_pb";
 import { Backoff } from "../timing/backoff";
 import type { Clock } from "../timing/clock";
-import { type Session, SessionState } from "../gen/phrenic/v1/session_pb";
 
 /** The session that a page with no session in its address opens: the first that plays, or else the first. */
 export function preferred(sessions: Session[]): Session | undefined {

@@ -1,8 +1,8 @@
 import { type Api, errorText } from "../connection/api";
-import { floats, indices } from "../geometry/bodies";
 import type { ComparedMesh, CompareResponse, ComparisonTable, SurfaceDistance } from "../gen/phrenic/v1/compare_pb";
+import type { Surface } from "../geometry/surface";
+import { floats, indices } from "../geometry/wire_arrays";
 import { Signal } from "../state/signal";
-import type { Surface } from "../viewer/nearest_surface";
 
 /** How a file is compared. */
 export interface Choices {

@@ -1,7 +1,7 @@
 import type { Api } from "../connection/api";
-import { floats } from "../geometry/bodies";
+import type { VertexRef } from "../geometry/vertices";
+import { floats } from "../geometry/wire_arrays";
 import { Signal } from "../state/signal";
-import type { VertexRef } from "../viewer/click_picking";
 
 /** A force on a vertex [N]. */
 export interface ForceOnVertex {

@@ -1,10 +1,10 @@
 import { toJsonString } from "@bufbuild/protobuf";
 import { type Api, errorText } from "../connection/api";
+import type { Identity } from "../connection/identity";
+import { type Control, ControlPolicy, ControlSchema } from "../gen/phrenic/v1/control_pb";
+import { Signal } from "../state/signal";
 import type { Clock } from "../timing/clock";
 import type { Controller } from "./session_controller";
-import { type Control, ControlPolicy, ControlSchema } from "../gen/phrenic/v1/control_pb";
-import type { Identity } from "../connection/identity";
-import { Signal } from "../state/signal";
 
 /** How often to say that one is still there [ms]; the server forgets who does not, after `stay` [s]. */
 const renewal = 10_000;

@@ -1,4 +1,4 @@
-import { type JsonObject, fromJsonString, toJson } from "@bufbuild/protobuf";
+import { fromJsonString, type JsonObject, toJson } from "@bufbuild/protobuf";
 import type { Api } from "../connection/api";
 import { type Parameters, ParametersSchema } from "../gen/phrenic/v1/parameters_pb";
 import type { Session } from "../gen/phrenic/v1/session_pb";

@@ -1,14 +1,14 @@
 import type { MessageInitShape } from "@bufbuild/protobuf";
 import { type Api, errorText, unreachable } from "../connection/api";
-import type { Clock } from "../timing/clock";
 import type { Control } from "../gen/phrenic/v1/control_pb";
 import type { ParametersSchema } from "../gen/phrenic/v1/parameters_pb";
 import type { Preset } from "../gen/phrenic/v1/scene_pb";
 import { type PullSchema, type Session, SessionState } from "../gen/phrenic/v1/session_pb";
-import { NewestWins } from "../timing/coalescing_sender";
 import { parameterControls, type ParameterName } from "../parameters/controls";
 import { Signal } from "../state/signal";
 import { Undo, type Values } from "../state/undo_history";
+import type { Clock } from "../timing/clock";
+import { NewestWins } from "../timing/coalescing_sender";
 
 type PullValues = MessageInitShape<typeof PullSchema>;
 type ParameterValues = Omit<MessageInitShape<typeof ParametersSchema>, "$typeName">;

@@ -1,8 +1,8 @@
 import { type Api, errorText } from "../connection/api";
-import type { Clock } from "../timing/clock";
-import { type Study, StudyState } from "../gen/phrenic/v1/study_pb";
 import type { Parameters } from "../gen/phrenic/v1/parameters_pb";
+import { type Study, StudyState } from "../gen/phrenic/v1/study_pb";
 import { Signal } from "../state/signal";
+import type { Clock } from "../timing/clock";
 
 export type StudyKind = "error" | "stability" | "cost" | "streaming";
 

@@ -1,9 +1,8 @@
 import { scaleLinear } from "d3-scale";
 import * as THREE from "three";
-import type { Look } from "../appearance/layer_styles";
 import type { BodyView } from "./body_view";
-import type { Viewer } from "./viewer";
 import { planeAxes } from "./named_views";
+import type { Viewer } from "./viewer";
 
 /** Names stand so far beside what they name, and at least so far apart [CSS pixels]. */
 const aside = 36;
@@ -11,12 +10,19 @@ const apart = 20;
 /** About the width of a letter [CSS pixels]. */
 const letter = 7.5;
 
+/** A layer as annotations see it. */
+export interface LabelledLayer {
+  layer: string;
+  title: string;
+  visible: boolean;
+}
+
 /** What is written over the picture: names of the layers, and of a flat scene the axes of its plane. */
 export class Annotations {
   readonly element = svg("svg", { class: "annotations" });
   private readonly names = svg("g", { class: "names" });
   private readonly axes = svg("g", { class: "axes" });
-  private anchors: { view: BodyView; vertex: number; look: Look }[] = [];
+  private anchors: { view: BodyView; vertex: number; look: LabelledLayer }[] = [];
   private labels = false;
 
   constructor(private readonly viewer: Viewer) {
@@ -25,7 +31,7 @@ export class Annotations {
   }
 
   /** Another scene, or other layers that are seen. */
-  start(looks: Look[]): void {
+  start(looks: LabelledLayer[]): void {
     this.anchors = looks.flatMap((look) => (look.visible ? (outermost(this.viewer, look) ?? []) : []));
     this.draw();
   }
@@ -110,8 +116,11 @@ function ruler(
 }
 
 /** Of a layer the vertex that rests farthest to the patient's left, of those that no cut takes away. */
-function outermost(viewer: Viewer, look: Look): { view: BodyView; vertex: number; look: Look } | undefined {
-  let found: { view: BodyView; vertex: number; look: Look } | undefined;
+function outermost(
+  viewer: Viewer,
+  look: LabelledLayer,
+): { view: BodyView; vertex: number; look: LabelledLayer } | undefined {
+  let found: { view: BodyView; vertex: number; look: LabelledLayer } | undefined;
   let farthest = -Infinity;
   const place = new THREE.Vector3();
   for (const view of viewer.bodies) {

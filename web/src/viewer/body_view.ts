@@ -1,23 +1,19 @@
 import * as THREE from "three";
-import { type Body, floatsPerPose, type FrameArrays, positionsOf } from "../geometry/bodies";
 import { Placement } from "../gen/phrenic/v1/frames_pb";
+import { type Body, floatsPerPose, type FrameArrays, positionsOf } from "../geometry/bodies";
 import { edgesOf } from "../geometry/edges";
-import { pointMaterial, setOpacity, surfaceMaterial } from "./materials";
 import { computeNormals } from "../geometry/normals";
-import { addOverlays, type Overlay } from "./overlays";
-import { Paint } from "./vertex_colors";
 import { tendonWeights } from "../geometry/tendon";
+import { pointMaterial, setOpacity, surfaceMaterial } from "./materials";
+import { addOverlays, type Overlay, type OverlayHost, type OverlayKind } from "./overlays";
 import { ThickLines } from "./thick_lines";
-
-/** What can be drawn over a body. */
-export const overlayKinds = ["wireframe", "links", "lines", "attachments"] as const;
-export type OverlayKind = (typeof overlayKinds)[number];
+import { Paint } from "./vertex_colors";
 
 /**
  * One body on the screen. Everything that lies on its vertices shares one position buffer, so that a frame is one copy
  * and one upload however many overlays are on.
  */
-export class BodyView {
+export class BodyView implements OverlayHost {
   readonly group = new THREE.Group();
   readonly positions: THREE.BufferAttribute;
   private knownEdges: Uint32Array<ArrayBuffer> | undefined;

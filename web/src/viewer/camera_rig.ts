@@ -1,5 +1,6 @@
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import type { Pose } from "../geometry/camera_pose";
 import { type Free, letterOf, openingView, planeAxes, standpoint, type ViewName } from "./named_views";
 
 /** What the margins of the picture say about it. */
@@ -19,12 +20,6 @@ export interface Covered {
   left: number;
   top: number;
   bottom: number;
-}
-
-/** Where a camera is, and what it looks at [m]. */
-export interface Pose {
-  eye: { x: number; y: number; z: number };
-  target: { x: number; y: number; z: number };
 }
 
 const glide = 350;

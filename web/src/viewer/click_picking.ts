@@ -1,12 +1,7 @@
 import * as THREE from "three";
+import type { VertexRef } from "../geometry/vertices";
 import type { BodyView } from "./body_view";
 import { pickVertex, pointerOf } from "./picking";
-
-/** A vertex of a body. */
-export interface VertexRef {
-  body: string;
-  vertex: number;
-}
 
 /** A pointer that goes farther [CSS pixels] or stays down longer [ms] than this turns the picture. */
 const still = 5;

@@ -1,8 +1,8 @@
 import * as THREE from "three";
-import { type Body, type FrameArrays, positionsOf } from "../geometry/bodies";
 import { Placement } from "../gen/phrenic/v1/frames_pb";
-import type { Surface } from "./nearest_surface";
+import { type Body, type FrameArrays, positionsOf } from "../geometry/bodies";
 import { computeNormals } from "../geometry/normals";
+import type { Surface } from "../geometry/surface";
 
 interface Colors {
   color: string;

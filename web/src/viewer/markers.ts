@@ -1,10 +1,5 @@
 import * as THREE from "three";
-
-/** A place to be marked, in a colour. */
-export interface Marker {
-  place: [number, number, number];
-  color: string;
-}
+import type { Marker } from "../geometry/vertices";
 
 /** Balls of one size on the screen, over everything. */
 export class Markers {

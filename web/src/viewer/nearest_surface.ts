@@ -1,11 +1,6 @@
 import * as THREE from "three";
 import { MeshBVH } from "three-mesh-bvh";
-
-/** A surface as bytes on the wire have it: x y z a vertex [m], three indices a triangle. */
-export interface Surface {
-  positions: Float32Array<ArrayBuffer>;
-  triangles: Uint32Array<ArrayBuffer>;
-}
+import type { Surface } from "../geometry/surface";
 
 /** A surface that tells soon how far a point is from it: from its triangles, not from its vertices. */
 export class NearestSurface {

@@ -1,8 +1,25 @@
 import * as THREE from "three";
-import type { ActionLine } from "../geometry/bodies";
-import type { BodyView, OverlayKind } from "./body_view";
+import type { ActionLine, Body } from "../geometry/bodies";
 import { lineMaterial, pointMaterial } from "./materials";
 import { ThickLines } from "./thick_lines";
+
+/** What can be drawn over a body. */
+export const overlayKinds = ["wireframe", "links", "lines", "attachments"] as const;
+export type OverlayKind = (typeof overlayKinds)[number];
+
+/** What an overlay needs of the body that it lies on. */
+export interface OverlayHost {
+  readonly body: Body;
+  readonly group: THREE.Group;
+  /** x y z a vertex [m], updated with every frame. */
+  readonly positions: THREE.BufferAttribute;
+  /** Pairs of vertex indices. */
+  readonly edges: Uint32Array<ArrayBuffer>;
+  /** Geometry over the body's vertices; `index` picks some of them. */
+  geometry(index?: Uint32Array<ArrayBuffer>): THREE.BufferGeometry;
+  /** Adds lines that are updated with every frame. */
+  addThick(lines: ThickLines): void;
+}
 
 /** Something drawn over a body that can be switched on; made the first time it is. */
 export interface Overlay {
@@ -17,7 +34,7 @@ const fixedColor = "#b99bff";
 /** More lines than this are drawn one pixel wide. */
 const mostThickLines = 3000;
 
-export function addOverlays(view: BodyView): Overlay[] {
+export function addOverlays(view: OverlayHost): Overlay[] {
   const { body } = view;
   const overlays: Overlay[] = [];
   const add = (kind: OverlayKind, make: () => THREE.Object3D) => overlays.push(new Lazy(kind, view.group, make));
@@ -48,13 +65,13 @@ class Lazy implements Overlay {
   }
 }
 
-function segments(view: BodyView, pairs: Uint32Array<ArrayBuffer>, material: THREE.Material): THREE.LineSegments {
+function segments(view: OverlayHost, pairs: Uint32Array<ArrayBuffer>, material: THREE.Material): THREE.LineSegments {
   const lines = new THREE.LineSegments(view.geometry(pairs), material);
   lines.frustumCulled = false;
   return lines;
 }
 
-function links(view: BodyView): THREE.Object3D {
+function links(view: OverlayHost): THREE.Object3D {
   const pairs = view.body.rigidLinks;
   if (pairs.length / 2 > mostThickLines) return segments(view, pairs, lineMaterial(linkColor, 0.75, true));
   const lines = new ThickLines(pairs, view.positions, linkColor, 2.5);
@@ -64,7 +81,7 @@ function links(view: BodyView): THREE.Object3D {
   return lines.object;
 }
 
-function points(view: BodyView, index: Uint32Array<ArrayBuffer>, color: string): THREE.Points {
+function points(view: OverlayHost, index: Uint32Array<ArrayBuffer>, color: string): THREE.Points {
   const result = new THREE.Points(view.geometry(index), pointMaterial(color, 5));
   result.frustumCulled = false;
   return result;

@@ -1,16 +1,18 @@
 import * as THREE from "three";
 import type { Body, FrameArrays } from "../geometry/bodies";
-import { BodyView, type OverlayKind, overlayKinds } from "./body_view";
-import { letClick, type VertexRef } from "./click_picking";
+import type { Surface } from "../geometry/surface";
+import { type Marker, type VertexRef } from "../geometry/vertices";
+import { Sharpness } from "./adaptive_resolution";
+import { BodyView } from "./body_view";
+import { type Compass, type Covered, Rig } from "./camera_rig";
+import { letClick } from "./click_picking";
 import { type Cut, placeOf, planeOf } from "./clipping";
 import { Ghost } from "./ghost";
 import { addLights } from "./lights";
-import { type Marker, Markers } from "./markers";
-import type { Surface } from "./nearest_surface";
-import { type Pull, Pulling } from "./pulling";
-import { type Compass, type Covered, Rig } from "./camera_rig";
-import { Sharpness } from "./adaptive_resolution";
+import { Markers } from "./markers";
 import type { ViewName } from "./named_views";
+import { type OverlayKind, overlayKinds } from "./overlays";
+import { type Pull, Pulling } from "./pulling";
 
 /** Scenes of at most so many vertices are diagrams rather than anatomy. */
 const mostOfADiagram = 2000;

@@ -1,10 +1,10 @@
 import { beforeEach, describe, expect, test } from "vitest";
-import { decodeBody } from "../../../../web/src/geometry/bodies";
-import { Comparisons } from "../../../../web/src/session/comparisons";
-import { comparePanel } from "../../../../web/src/panels/comparison/distance_panel";
-import { ComparisonCard } from "../../../../web/src/panels/comparison/comparison_card";
-import { make } from "../../../../web/src/dom/elements";
 import { dropZone } from "../../../../web/src/app/drop_zone";
+import { make } from "../../../../web/src/dom/elements";
+import { decodeBody } from "../../../../web/src/geometry/bodies";
+import { ComparisonCard } from "../../../../web/src/panels/comparison/comparison_card";
+import { comparePanel } from "../../../../web/src/panels/comparison/distance_panel";
+import { Comparisons } from "../../../../web/src/session/comparisons";
 import { Signal } from "../../../../web/src/state/signal";
 import { settle } from "../../fakes/fake_clock";
 import { FakeServer, triangleBody } from "../../fakes/fake_server";

@@ -1,12 +1,12 @@
 import { create } from "@bufbuild/protobuf";
 import { beforeEach, expect, test } from "vitest";
-import { Controller } from "../../../../web/src/session/session_controller";
 import { FrameSchema } from "../../../../web/src/gen/phrenic/v1/frames_pb";
 import { ParametersSchema } from "../../../../web/src/gen/phrenic/v1/parameters_pb";
 import { PresetSchema } from "../../../../web/src/gen/phrenic/v1/scene_pb";
 import { SessionSchema } from "../../../../web/src/gen/phrenic/v1/session_pb";
 import { compareWith } from "../../../../web/src/panels/comparison/preset_comparison";
 import { domeWords } from "../../../../web/src/panels/comparison/view_headers";
+import { Controller } from "../../../../web/src/session/session_controller";
 import { Signal } from "../../../../web/src/state/signal";
 import { FakeClock, settle } from "../../fakes/fake_clock";
 import { FakeServer } from "../../fakes/fake_server";

@@ -1,15 +1,15 @@
 import { create } from "@bufbuild/protobuf";
 import { Code, ConnectError } from "@connectrpc/connect";
 import { beforeEach, describe, expect, test } from "vitest";
-import { Controller } from "../../../../web/src/session/session_controller";
+import { make } from "../../../../web/src/dom/elements";
 import { Integrator, ParametersSchema } from "../../../../web/src/gen/phrenic/v1/parameters_pb";
 import {
   DescribeSceneResponseSchema,
   type Session,
   SessionSchema,
 } from "../../../../web/src/gen/phrenic/v1/session_pb";
-import { make } from "../../../../web/src/dom/elements";
 import { parameterSections } from "../../../../web/src/panels/parameters/parameter_sections";
+import { Controller } from "../../../../web/src/session/session_controller";
 import { FakeClock, settle } from "../../fakes/fake_clock";
 import { FakeServer } from "../../fakes/fake_server";
 

@@ -1,14 +1,15 @@
 import { create } from "@bufbuild/protobuf";
 import { beforeEach, describe, expect, test } from "vitest";
-import { Controller } from "../../../../web/src/session/session_controller";
+import { make } from "../../../../web/src/dom/elements";
 import { FrameSchema } from "../../../../web/src/gen/phrenic/v1/frames_pb";
 import { ParametersSchema } from "../../../../web/src/gen/phrenic/v1/parameters_pb";
 import { type CompileReport, CompileReportSchema } from "../../../../web/src/gen/phrenic/v1/report_pb";
 import { type Session, SessionSchema, SessionState } from "../../../../web/src/gen/phrenic/v1/session_pb";
-import { make } from "../../../../web/src/dom/elements";
 import { parameterSections } from "../../../../web/src/panels/parameters/parameter_sections";
+import { linkWords } from "../../../../web/src/panels/session/connection_badge";
 import { playbackPanel } from "../../../../web/src/panels/view/playback";
-import { linkWords, Readout, residualWords } from "../../../../web/src/panels/session/status";
+import { Readout, residualWords } from "../../../../web/src/panels/view/readout";
+import { Controller } from "../../../../web/src/session/session_controller";
 import { Signal } from "../../../../web/src/state/signal";
 import { FakeClock, settle } from "../../fakes/fake_clock";
 import { FakeServer } from "../../fakes/fake_server";

@@ -1,8 +1,9 @@
-import type { Comparison, Comparisons, Work } from "../../session/comparisons";
 import { ColorScale, topFor } from "../../appearance/color_scale";
-import { make, switchRow } from "../../dom/elements";
-import { figuresTable } from "./distance_table";
+import { make } from "../../dom/elements";
+import { switchRow } from "../../dom/rows";
+import type { Comparison, Comparisons, Work } from "../../session/comparisons";
 import { Legend } from "../view/legend";
+import { figuresTable } from "./distance_table";
 
 /** Over the picture: how a comparison goes on, and what came of it, with the scale of its colours. */
 export class ComparisonCard {

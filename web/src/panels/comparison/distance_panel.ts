@@ -1,7 +1,8 @@
+import { make } from "../../dom/elements";
+import { section } from "../../dom/rows";
 import type { Body } from "../../geometry/bodies";
 import type { Comparisons } from "../../session/comparisons";
 import type { Signal } from "../../state/signal";
-import { make, section } from "../../dom/elements";
 
 const units: [label: string, millimetres: number][] = [
   ["millimetres", 1],

@@ -1,7 +1,7 @@
 import { getOption } from "@bufbuild/protobuf";
+import { make } from "../../dom/elements";
 import { type SurfaceDistance, SurfaceDistanceSchema } from "../../gen/phrenic/v1/compare_pb";
 import { quantity } from "../../gen/phrenic/v1/options_pb";
-import { make } from "../../dom/elements";
 
 /** Rows of measures by their names in the schema: from the body, from the file, and of both. */
 const rows: [label: string, names: (string | undefined)[]][] = [

@@ -1,8 +1,8 @@
-import type { Controller } from "../../session/session_controller";
-import type { Preset } from "../../gen/phrenic/v1/scene_pb";
-import type { Signal } from "../../state/signal";
 import { make } from "../../dom/elements";
-import { labelOf, presetOf } from "../parameters/preset_row";
+import type { Preset } from "../../gen/phrenic/v1/scene_pb";
+import { labelOf, presetOf } from "../../parameters/presets";
+import type { Controller } from "../../session/session_controller";
+import type { Signal } from "../../state/signal";
 
 /**
  * A list of the scene's ways to breathe: the chosen one is shown beside this session, in a copy of it from the present

@@ -1,13 +1,11 @@
-import type { Controller } from "../../session/session_controller";
+import { make } from "../../dom/elements";
 import type { Frame } from "../../gen/phrenic/v1/frames_pb";
-import type { Parameters } from "../../gen/phrenic/v1/parameters_pb";
 import type { Preset } from "../../gen/phrenic/v1/scene_pb";
 import { domeHelp, domesOf } from "../../graphs/catalogue";
-import { formatNumber } from "../../parameters/numbers";
-import { parameterControls } from "../../parameters/controls";
+import { differences, shortDifferences } from "../../parameters/differences";
+import { labelOf, presetOf } from "../../parameters/presets";
+import type { Controller } from "../../session/session_controller";
 import type { Signal } from "../../state/signal";
-import { make } from "../../dom/elements";
-import { labelOf, presetOf } from "../parameters/preset_row";
 
 /** Two pictures may be so far apart before it is said [s]. */
 const together = 0.05;
@@ -82,40 +80,4 @@ export function domeWords(frame: Frame | undefined): string {
       return `${name} ${way} mm${way === "0.0" ? "" : height > 0 ? " up" : " down"}`;
     })
     .join(", ");
-}
-
-interface Difference {
-  label: string;
-  here: string;
-  there: string;
-}
-
-function differing(here: Parameters | undefined, there: Parameters | undefined): Difference[] {
-  if (here === undefined || there === undefined) return [];
-  const values = (of: Parameters) => of as unknown as Record<string, number | boolean>;
-  return parameterControls()
-    .filter(({ field }) => values(here)[field] !== values(there)[field])
-    .map((control) => {
-      const words = (value: number | boolean) => {
-        if (typeof value === "boolean") return value ? "on" : "off";
-        const named = control.kind === "choice" ? control.options.find((each) => each.value === value) : undefined;
-        return named?.label ?? formatNumber(value);
-      };
-      const { field, label } = control;
-      return { label, here: words(values(here)[field]), there: words(values(there)[field]) };
-    });
-}
-
-/** What is set otherwise in `there`: "Breath force 2 instead of 1". */
-export function differences(here: Parameters | undefined, there: Parameters | undefined): string {
-  return differing(here, there)
-    .map(({ label, here, there }) => `${label} ${there} instead of ${here}`)
-    .join(", ");
-}
-
-/** The same, and of more than two "With breath force 0.45, breath length 3, rib motion 1.5". */
-export function shortDifferences(here: Parameters | undefined, there: Parameters | undefined): string {
-  const all = differing(here, there);
-  if (all.length < 3) return differences(here, there);
-  return `With ${all.map(({ label, there }) => `${label.toLowerCase()} ${there}`).join(", ")}`;
 }

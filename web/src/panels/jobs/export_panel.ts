@@ -1,8 +1,9 @@
+import { make } from "../../dom/elements";
+import { section } from "../../dom/rows";
+import { ExportValues } from "../../gen/phrenic/v1/export_pb";
 import type { Body } from "../../geometry/bodies";
 import type { Exports, ExportWork } from "../../session/exports";
-import { ExportValues } from "../../gen/phrenic/v1/export_pb";
 import type { Signal } from "../../state/signal";
-import { make, section } from "../../dom/elements";
 
 const valueNames: [ExportValues, string][] = [
   [ExportValues.UNSPECIFIED, "as usual"],

@@ -1,7 +1,9 @@
-import type { Controller } from "../../session/session_controller";
+import { download } from "../../dom/download";
+import { make } from "../../dom/elements";
+import { section } from "../../dom/rows";
 import { type Study, StudyState } from "../../gen/phrenic/v1/study_pb";
+import type { Controller } from "../../session/session_controller";
 import { ended, type Studies, type StudyKind } from "../../session/studies";
-import { download, make, section } from "../../dom/elements";
 
 const kinds: [StudyKind, string, string][] = [
   ["error", "Error against run time", "Every integrator over a ladder of time steps, against an independent reference"],

@@ -1,6 +1,7 @@
+import { make } from "../../dom/elements";
+import { section } from "../../dom/rows";
 import type { SurfaceReport } from "../../gen/phrenic/v1/inspect_pb";
 import type { Uploads, UploadWork } from "../../session/uploads";
-import { make, section } from "../../dom/elements";
 
 /** Chooses a surface file for the server, and says how scenes name it and whether it will do. */
 export function uploadPanel(uploads: Uploads): HTMLElement {

@@ -1,5 +1,6 @@
+import { make } from "../../dom/elements";
+import { resetButton } from "../../dom/rows";
 import type { ChoiceControl } from "../../parameters/controls";
-import { make, resetButton } from "../../dom/elements";
 import type { RowEvents } from "./number_row";
 
 /** One of several values as a person chooses it: label, list, reset. */

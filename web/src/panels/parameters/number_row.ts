@@ -1,6 +1,7 @@
-import { faultOf, formatNumber, positionOf, valueAt } from "../../parameters/numbers";
+import { make } from "../../dom/elements";
+import { resetButton } from "../../dom/rows";
 import type { NumberControl } from "../../parameters/controls";
-import { make, resetButton } from "../../dom/elements";
+import { faultOf, formatNumber, positionOf, valueAt } from "../../parameters/numbers";
 
 /** What a row tells its owner. */
 export interface RowEvents {

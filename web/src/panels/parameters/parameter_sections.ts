@@ -1,11 +1,13 @@
-import type { Controller } from "../../session/session_controller";
+import { button, make } from "../../dom/elements";
+import { icon } from "../../dom/icons";
+import { section, switchRow } from "../../dom/rows";
 import { ParametersSchema } from "../../gen/phrenic/v1/parameters_pb";
-import type { Preset } from "../../gen/phrenic/v1/scene_pb";
 import type { CompileReport } from "../../gen/phrenic/v1/report_pb";
+import type { Preset } from "../../gen/phrenic/v1/scene_pb";
 import { type Control, parameterControls, type ParameterName, type SwitchControl } from "../../parameters/controls";
+import type { Controller } from "../../session/session_controller";
 import { Signal } from "../../state/signal";
 import { ChoiceRow } from "./choice_row";
-import { button, icon, make, section, switchRow } from "../../dom/elements";
 import { NumberRow } from "./number_row";
 import { PresetRow } from "./preset_row";
 import { pullRow } from "./pull_row";

@@ -1,9 +1,9 @@
-import type { Controller } from "../../session/session_controller";
-import { type Parameters, ParametersSchema } from "../../gen/phrenic/v1/parameters_pb";
-import type { Preset } from "../../gen/phrenic/v1/scene_pb";
-import type { ParameterName } from "../../parameters/controls";
-import { Signal } from "../../state/signal";
 import { make } from "../../dom/elements";
+import type { Parameters } from "../../gen/phrenic/v1/parameters_pb";
+import type { Preset } from "../../gen/phrenic/v1/scene_pb";
+import { holds, labelOf } from "../../parameters/presets";
+import type { Controller } from "../../session/session_controller";
+import { Signal } from "../../state/signal";
 
 /** The scene's ways to breathe, a button each; hidden where it has none. The one that holds is pressed. */
 export class PresetRow {
@@ -45,23 +45,4 @@ export class PresetRow {
       element.ariaPressed = String(parameters !== undefined && holds(preset, parameters));
     }
   }
-}
-
-/** "paralysis-right" is "Paralysis right". */
-export function labelOf({ name }: Preset): string {
-  return name.charAt(0).toUpperCase() + name.slice(1).replaceAll("-", " ");
-}
-
-/** The preset that holds; of several the first. */
-export function presetOf(presets: Preset[], parameters: Parameters | undefined): Preset | undefined {
-  return parameters === undefined ? undefined : presets.find((preset) => holds(preset, parameters));
-}
-
-/** Whether all that the preset sets is as it says. */
-export function holds(preset: Preset, parameters: Parameters): boolean {
-  return ParametersSchema.fields.every((field) => {
-    const name = field.localName as ParameterName;
-    const wanted = preset.parameters?.[name];
-    return wanted === undefined || wanted === parameters[name];
-  });
 }

@@ -1,5 +1,5 @@
-import type { Controller } from "../../session/session_controller";
 import { make } from "../../dom/elements";
+import type { Controller } from "../../session/session_controller";
 
 /** How many pulls act on the session, whoever's they are, and a button that lets go of them; hidden where there are none. */
 export function pullRow(controller: Controller): HTMLElement {

@@ -1,10 +1,11 @@
+import { download } from "../../dom/download";
+import { make } from "../../dom/elements";
 import type { GraphSpec } from "../../graphs/catalogue";
 import { curveColor } from "../../graphs/colors";
 import { csvOf, svgOf } from "../../graphs/files";
 import { Plot, type PlotEvents } from "../../graphs/plot";
 import { dataOf, type GraphData, type Span } from "../../graphs/window";
 import type { History } from "../../state/time_series";
-import { download, make } from "../../dom/elements";
 
 /** One graph with its name, what its curves are and stand at, and buttons that save it. */
 export class GraphTile {

@@ -1,8 +1,9 @@
+import { button, make } from "../../dom/elements";
+import { icon } from "../../dom/icons";
 import type { Frame } from "../../gen/phrenic/v1/frames_pb";
-import { type GraphSpec, graphsOf, valuesOf } from "../../graphs/catalogue";
+import { graphsOf, type GraphSpec, valuesOf } from "../../graphs/catalogue";
 import type { Span } from "../../graphs/window";
 import { History } from "../../state/time_series";
-import { button, icon, make } from "../../dom/elements";
 import { GraphTile } from "./graph_tile";
 
 /** How much is kept, and how much may be shown at once [simulated s]. */

@@ -1,17 +1,7 @@
+import { make } from "../../dom/elements";
+import { section } from "../../dom/rows";
 import type { Frame } from "../../gen/phrenic/v1/frames_pb";
-import { make, section } from "../../dom/elements";
-
-/** Units that people use, by the one on the wire. */
-const familiar: Record<string, [name: string, factor: number]> = {
-  m: ["mm", 1000],
-  "m^3": ["l", 1000],
-  "m^3/s": ["l/s", 1000],
-};
-
-/** The unit that people use for one of the wire, and how many of it that one is. */
-export function familiarUnit(unit: string): [name: string, factor: number] {
-  return familiar[unit] ?? [unit, 1];
-}
+import { familiarUnit } from "../../graphs/units";
 
 /** Four significant digits in the unit that people use: "2.513 l". */
 export function readingText(value: number, unit: string): string {

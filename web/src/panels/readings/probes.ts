@@ -1,5 +1,6 @@
+import { make } from "../../dom/elements";
+import { section } from "../../dom/rows";
 import type { Frame } from "../../gen/phrenic/v1/frames_pb";
-import { make, section } from "../../dom/elements";
 
 /** Probes: displacement from rest in the patient's directions [mm]. */
 export class Probes {

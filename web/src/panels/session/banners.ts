@@ -1,9 +1,9 @@
 import type { Link } from "../../connection/session_connection";
-import type { Controller } from "../../session/session_controller";
+import { make } from "../../dom/elements";
 import type { Session } from "../../gen/phrenic/v1/session_pb";
 import { formatNumber } from "../../parameters/numbers";
+import type { Controller } from "../../session/session_controller";
 import type { Signal } from "../../state/signal";
-import { make } from "../../dom/elements";
 
 /** Words over the picture when something is wrong: diverged, lost, refused; with the remedy where there is one. */
 export function banners(controller: Controller, link: Signal<Link>, chooseSession: () => void): HTMLElement[] {

@@ -1,7 +1,8 @@
+import { make } from "../../dom/elements";
+import { section } from "../../dom/rows";
 import type { CompileReport } from "../../gen/phrenic/v1/report_pb";
 import { formatNumber } from "../../parameters/numbers";
 import type { Signal } from "../../state/signal";
-import { make, section } from "../../dom/elements";
 
 const count = new Intl.NumberFormat("en");
 

@@ -1,6 +1,7 @@
+import { make } from "../../dom/elements";
+import { switchRow } from "../../dom/rows";
 import type { Participant } from "../../gen/phrenic/v1/control_pb";
 import { controlWords, everybodys, refusalWords, type Roles, type Standing } from "../../session/participation";
-import { make, switchRow } from "../../dom/elements";
 
 /** Says in the header who controls the session; opens the dialog about it. */
 export function controlBadge(standing: Standing, open: () => void): HTMLButtonElement {

@@ -1,5 +1,6 @@
+import { make } from "../../dom/elements";
+import { section } from "../../dom/rows";
 import { Codec } from "../../gen/phrenic/v1/frames_pb";
-import { make, section } from "../../dom/elements";
 
 const forms: [Codec, string, string][] = [
   [Codec.PREDICTED, "Foretold from neighbours", "About 13 kB a frame of the thorax; needs nothing but the scene."],

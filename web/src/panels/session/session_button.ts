@@ -1,5 +1,5 @@
-import type { Controller } from "../../session/session_controller";
 import { make } from "../../dom/elements";
+import type { Controller } from "../../session/session_controller";
 
 /** Names the session and its scene, and opens the others. */
 export function sessionButton(controller: Controller, open: () => void): HTMLElement {

@@ -1,6 +1,6 @@
 import { type Api, errorText } from "../../connection/api";
-import { type SceneSummary, type Session, SessionState } from "../../gen/phrenic/v1/session_pb";
 import { make } from "../../dom/elements";
+import { type SceneSummary, type Session, SessionState } from "../../gen/phrenic/v1/session_pb";
 
 /** A dialog that opens a session which runs already, or starts one of any scene that the server knows. */
 export class Chooser {

@@ -1,8 +1,8 @@
-import type { Controller } from "../../session/session_controller";
+import { make } from "../../dom/elements";
 import type { CompileReport } from "../../gen/phrenic/v1/report_pb";
 import { permalinkOf } from "../../session/permalink";
+import type { Controller } from "../../session/session_controller";
 import type { Signal } from "../../state/signal";
-import { make } from "../../dom/elements";
 
 /** What the dialog can have done. */
 export interface Sharing {

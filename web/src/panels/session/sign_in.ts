@@ -1,5 +1,5 @@
-import type { Access } from "../../connection/credentials";
 import type { Api } from "../../connection/api";
+import type { Access } from "../../connection/credentials";
 import { make } from "../../dom/elements";
 
 /** Whether the server takes this browser as it is: it knows no users, knows this one, or a join link may do. */

@@ -1,13 +1,14 @@
 import type { Coloring } from "../../appearance/coloring";
 import { type FieldKind, fields } from "../../appearance/fields";
 import type { GhostKind } from "../../appearance/ghosts";
+import type { Looks } from "../../appearance/layer_styles";
+import { make } from "../../dom/elements";
+import { section, switchRow } from "../../dom/rows";
 import { wordsOf } from "../../session/force_queries";
-import type { Look, Looks } from "../../appearance/layer_styles";
 import type { Signal } from "../../state/signal";
-import type { OverlayKind } from "../../viewer/body_view";
 import type { Cut } from "../../viewer/clipping";
+import type { OverlayKind } from "../../viewer/overlays";
 import { cutRows } from "./cut_rows";
-import { make, section, switchRow } from "../../dom/elements";
 import { projectorRow } from "./projector_row";
 
 /** What the view can be told. */
@@ -121,35 +122,4 @@ function transparencyRow(looks: Looks): HTMLElement {
   });
   const label = make("label", { htmlFor: "transparency" }, "Transparency");
   return make("div", { className: "number-row plain" }, label, output, slider);
-}
-
-/** Visibility and opacity of every layer. */
-export function layersPanel(looks: Looks): HTMLElement {
-  const list = make("div", { className: "layers" });
-  let shown = "";
-  looks.all.subscribe((all) => {
-    const names = all.map((look) => look.layer).join("\n");
-    if (names !== shown) list.replaceChildren(...all.map((look) => layerRow(look, looks)));
-    shown = names;
-  });
-  return section("Layers", true, list);
-}
-
-function layerRow({ layer, title, color }: Look, looks: Looks): HTMLElement {
-  const swatch = make("span", { className: "swatch" });
-  swatch.style.backgroundColor = color;
-  const visible = make("input", { type: "checkbox", ariaLabel: `Show ${title}` });
-  const opacity = make("input", { type: "range", min: "5", max: "100", step: "1", ariaLabel: `Opacity of ${title}` });
-  visible.onchange = () => looks.change(layer, { visible: visible.checked });
-  opacity.oninput = () => looks.change(layer, { opacity: opacity.valueAsNumber / 100, visible: true });
-  looks.all.subscribe(() => {
-    const look = looks.get(layer);
-    if (look === undefined) return;
-    visible.checked = look.visible;
-    opacity.value = String(Math.round(100 * look.opacity));
-    opacity.setAttribute("aria-valuetext", `${opacity.value} %`);
-    opacity.style.setProperty("--filled", `${((100 * look.opacity - 5) / 95) * 100}%`);
-  });
-  const name = make("label", { className: "layer-name" }, visible, swatch, make("span", {}, title));
-  return make("div", { className: "layer-row" }, name, opacity);
 }

@@ -1,6 +1,7 @@
+import { make } from "../../dom/elements";
+import { switchRow } from "../../dom/rows";
 import { Signal } from "../../state/signal";
 import type { Cut, CutKind } from "../../viewer/clipping";
-import { make, switchRow } from "../../dom/elements";
 
 const kinds: [CutKind, string][] = [
   ["none", "No cut"],

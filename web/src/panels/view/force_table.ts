@@ -1,6 +1,6 @@
+import { make } from "../../dom/elements";
 import { type ForceOnVertex, wordsOf } from "../../session/force_queries";
 import type { Signal } from "../../state/signal";
-import { make } from "../../dom/elements";
 
 /** The forces on a vertex by kind, a row each, and their sum last; hidden where they are not known. */
 export function forceTable(forces: Signal<ForceOnVertex[]>): HTMLElement {

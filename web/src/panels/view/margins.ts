@@ -1,5 +1,5 @@
-import type { Compass } from "../../viewer/camera_rig";
 import { make } from "../../dom/elements";
+import type { Compass } from "../../viewer/camera_rig";
 
 const lengths = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50];
 const longest = 120;

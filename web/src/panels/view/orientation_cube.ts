@@ -1,6 +1,6 @@
+import { make } from "../../dom/elements";
 import type { Compass } from "../../viewer/camera_rig";
 import type { ViewName } from "../../viewer/named_views";
-import { make } from "../../dom/elements";
 
 type Triple = [number, number, number];
 

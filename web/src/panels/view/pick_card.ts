@@ -1,11 +1,11 @@
-import type { FrameArrays } from "../../geometry/bodies";
 import { type Following, nameOf, type Standing } from "../../appearance/tracked_vertices";
-import type { ForceOnVertex } from "../../session/force_queries";
-import { curveColor } from "../../graphs/colors";
-import type { Signal } from "../../state/signal";
-import type { VertexRef } from "../../viewer/click_picking";
-import { forceTable } from "./force_table";
 import { make } from "../../dom/elements";
+import type { FrameArrays } from "../../geometry/bodies";
+import type { VertexRef } from "../../geometry/vertices";
+import { curveColor } from "../../graphs/colors";
+import type { ForceOnVertex } from "../../session/force_queries";
+import type { Signal } from "../../state/signal";
+import { forceTable } from "./force_table";
 
 /** Over the picture: the vertex that was picked, where it is, and those that are followed. */
 export class PickCard {

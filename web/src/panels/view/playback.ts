@@ -1,6 +1,7 @@
-import type { Controller, Speed } from "../../session/session_controller";
+import { button, make } from "../../dom/elements";
+import { icon } from "../../dom/icons";
 import { SessionState } from "../../gen/phrenic/v1/session_pb";
-import { button, icon, make } from "../../dom/elements";
+import type { Controller, Speed } from "../../session/session_controller";
 
 const speeds: [string, Speed][] = [
   ["0.1×", 0.1],

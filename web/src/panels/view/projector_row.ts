@@ -1,4 +1,4 @@
-import { switchRow } from "../../dom/elements";
+import { switchRow } from "../../dom/rows";
 
 const key = "phrenic-projector";
 

@@ -1,5 +1,6 @@
+import { button, make } from "../../dom/elements";
+import { icon } from "../../dom/icons";
 import type { Frames } from "../../frames/frame_buffer";
-import { button, icon, make } from "../../dom/elements";
 
 /** Less than this is not worth looking back on [s]. */
 const shortest = 0.5;

@@ -1,6 +1,6 @@
-import type { Viewer } from "../../viewer/viewer";
-import type { ViewName } from "../../viewer/named_views";
 import { make } from "../../dom/elements";
+import type { ViewName } from "../../viewer/named_views";
+import type { Viewer } from "../../viewer/viewer";
 
 const views: [ViewName, string][] = [
   ["home", "Home"],

@@ -1,0 +1,22 @@
+import { type Parameters, ParametersSchema } from "../gen/phrenic/v1/parameters_pb";
+import type { Preset } from "../gen/phrenic/v1/scene_pb";
+import type { ParameterName } from "./controls";
+
+/** "paralysis-right" is "Paralysis right". */
+export function labelOf({ name }: Preset): string {
+  return name.charAt(0).toUpperCase() + name.slice(1).replaceAll("-", " ");
+}
+
+/** The preset that holds; of several the first. */
+export function presetOf(presets: Preset[], parameters: Parameters | undefined): Preset | undefined {
+  return parameters === undefined ? undefined : presets.find((preset) => holds(preset, parameters));
+}
+
+/** Whether all that the preset sets is as it says. */
+export function holds(preset: Preset, parameters: Parameters): boolean {
+  return ParametersSchema.fields.every((field) => {
+    const name = field.localName as ParameterName;
+    const wanted = preset.parameters?.[name];
+    return wanted === undefined || wanted === parameters[name];
+  });
+}
