@@ -39,7 +39,7 @@ test("the page asks who one is, and shows the session to whom the server knows",
   await sign("00112233445566778899aabbccddeeff");
   await page.waitForSelector("text=Nobody has that token");
   await sign(anna);
-  await page.waitForFunction(() => (window.phrenic?.pictures() ?? 0) > 1, null, { timeout: 60_000 });
+  await page.waitForFunction(() => (window.phrenic?.drawCount() ?? 0) > 1, null, { timeout: 60_000 });
   expect(page.url()).not.toContain(anna);
   expect(complaints).toEqual([]);
   await page.context().close();

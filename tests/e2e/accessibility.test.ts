@@ -86,7 +86,7 @@ test("LargeTypeLeavesNothingOfTheHeaderOutOfReach", async () => {
   const { page } = viewer;
   await page.setViewportSize({ width: 1024, height: 768 });
   await page.check("#projector");
-  await viewer.leave("projector");
+  await viewer.saveScreenshot("projector");
   for (const button of await page.locator("#header button:visible").all()) {
     const box = (await button.boundingBox())!;
     expect(box.x + box.width).toBeLessThanOrEqual(1024);
@@ -102,9 +102,9 @@ test("TheKeyboardAlonePlaysStepsTurnsAndSlides", async () => {
   const held = await viewer.tick();
   await viewer.page.keyboard.press(".");
   await viewer.waitForTick(held);
-  const pictures = await viewer.page.evaluate(() => window.phrenic!.pictures());
+  const pictures = await viewer.page.evaluate(() => window.phrenic!.drawCount());
   await viewer.page.keyboard.press("ArrowLeft");
-  await viewer.page.waitForFunction((before) => window.phrenic!.pictures() > before, pictures);
+  await viewer.page.waitForFunction((before) => window.phrenic!.drawCount() > before, pictures);
   await viewer.page.focus("#parameter-ribMotion");
   await viewer.page.keyboard.press("ArrowRight");
   expect(Number(await viewer.value("ribMotion"))).toBeCloseTo(1.05, 6);

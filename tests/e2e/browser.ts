@@ -11,11 +11,11 @@ declare global {
   }
 }
 
-const places = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
+const chromiumPaths = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
 
 /** Headless Chromium with a profile of its own, WebGL by software. */
 export async function launchBrowser(): Promise<Browser> {
-  const executablePath = [process.env.PHRENIC_CHROMIUM ?? "", ...places].find(
+  const executablePath = [process.env.PHRENIC_CHROMIUM ?? "", ...chromiumPaths].find(
     (path) => path !== "" && existsSync(path),
   );
   if (executablePath === undefined) {
@@ -40,14 +40,14 @@ export async function launchBrowser(): Promise<Browser> {
 
 /** A viewer as a person has it, and what it complained about. */
 export class ViewerPage {
-  readonly complaints: string[] = [];
+  readonly consoleErrors: string[] = [];
   readonly origins = new Set<string>();
 
   private constructor(readonly page: Page) {
     page.on("console", (message) => {
-      if (["error", "warning"].includes(message.type())) this.complaints.push(message.text());
+      if (["error", "warning"].includes(message.type())) this.consoleErrors.push(message.text());
     });
-    page.on("pageerror", (error) => this.complaints.push(String(error)));
+    page.on("pageerror", (error) => this.consoleErrors.push(String(error)));
     page.on("request", (request) => this.origins.add(new URL(request.url()).origin));
   }
 
@@ -61,7 +61,7 @@ export class ViewerPage {
   }
 
   async waitForPicture(): Promise<void> {
-    const drawn = () => (window.phrenic?.tick() ?? -1) >= 0 && (window.phrenic?.pictures() ?? 0) > 1;
+    const drawn = () => (window.phrenic?.tick() ?? -1) >= 0 && (window.phrenic?.drawCount() ?? 0) > 1;
     await this.page.waitForFunction(drawn, null, { timeout: 60_000 });
   }
 
@@ -92,7 +92,7 @@ export class ViewerPage {
   }
 
   /** Waits until the newest frame is that of this tick. */
-  async atTick(tick: number): Promise<void> {
+  async waitForExactTick(tick: number): Promise<void> {
     await this.page.waitForFunction((wanted) => window.phrenic!.tick() === wanted, tick, { timeout: 30_000 });
   }
 
@@ -109,7 +109,7 @@ export class ViewerPage {
   }
 
   /** Leaves a picture of the page in tests/e2e/out. */
-  async leave(name: string): Promise<void> {
+  async saveScreenshot(name: string): Promise<void> {
     mkdirSync(outFolder, { recursive: true });
     await this.page.screenshot({ path: join(outFolder, `${name}.png`) });
   }

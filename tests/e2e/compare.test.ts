@@ -4,7 +4,7 @@ import { join } from "node:path";
 import type { Browser } from "playwright-core";
 import { afterAll, beforeAll, describe, expect, test } from "vitest";
 import { launchBrowser, ViewerPage } from "./browser";
-import { canvasPicture, shareOfChangedPixels } from "./pixels";
+import { canvasPicture, changedFraction } from "./pixels";
 import { outFolder, Server } from "./server";
 
 let server: Server;
@@ -58,13 +58,13 @@ describe("a cube beside a file of itself, 3 mm higher", () => {
     expect(await viewer.page.textContent("#comparison-when")).toBe("cube at 0.000 s, tick 0");
     expect(await viewer.page.textContent("#comparison .legend-ticks")).toMatch(/^0.*3/);
     await viewer.page.waitForTimeout(1500);
-    await viewer.leave("compare-cube");
-    expect(await shareOfChangedPixels(browser, before, await canvasPicture(viewer))).toBeGreaterThan(0.02);
+    await viewer.saveScreenshot("compare-cube");
+    expect(await changedFraction(browser, before, await canvasPicture(viewer))).toBeGreaterThan(0.02);
   });
 
   test("AgainFollowsTheSession", async () => {
     await server.phrenic("step", "cube", "200");
-    await viewer.atTick(200);
+    await viewer.waitForExactTick(200);
     await viewer.page.waitForFunction(() => document.querySelector("#comparison-moved")?.textContent !== "");
     expect(await viewer.page.textContent("#comparison-moved")).toMatch(/^Colours follow the body, at \d/);
     const before = await measure("rms_a_to_b");
@@ -77,14 +77,14 @@ describe("a cube beside a file of itself, 3 mm higher", () => {
   test("TheFilesSurfaceIsSeenUntilItIsSwitchedOff", async () => {
     const before = await canvasPicture(viewer);
     await viewer.page.uncheck("#compare-drawn");
-    const changed = async () => shareOfChangedPixels(browser, before, await canvasPicture(viewer));
+    const changed = async () => changedFraction(browser, before, await canvasPicture(viewer));
     await expect.poll(changed, { timeout: 20_000 }).toBeGreaterThan(0.005);
     await viewer.page.check("#compare-drawn");
   });
 
   test("AFileInMetresIsReadInMetres", async () => {
     await server.phrenic("reset", "cube");
-    await viewer.atTick(0);
+    await viewer.waitForExactTick(0);
     const text = (await exported("cube", "cube", () => 3)).toString();
     const metres = text.replace(/(\$Nodes\n\d+\n)([^$]*)/, (_, head: string, lines: string) => {
       const scaled = lines
@@ -108,7 +108,7 @@ describe("a cube beside a file of itself, 3 mm higher", () => {
     const alert = viewer.page.locator('#comparison [role="alert"]');
     await alert.waitFor();
     expect(await alert.textContent()).toMatch(/^bad\.obj:3: /);
-    await viewer.leave("compare-bad");
+    await viewer.saveScreenshot("compare-bad");
     await viewer.page.click('#comparison button:has-text("Dismiss")');
     await alert.waitFor({ state: "hidden" });
   });
@@ -122,7 +122,7 @@ describe("a cube beside a file of itself, 3 mm higher", () => {
     }, text);
     await viewer.page.dispatchEvent("#view", "dragover", { dataTransfer: transfer });
     await viewer.page.waitForSelector(".drop-zone:not([hidden])");
-    await viewer.leave("compare-drop");
+    await viewer.saveScreenshot("compare-drop");
     await viewer.page.dispatchEvent("#view", "drop", { dataTransfer: transfer });
     await viewer.page.waitForSelector('#comparison h2:has-text("dropped.msh")');
     expect(await measure("hd_max")).toBe(1);
@@ -141,8 +141,8 @@ describe("a cube beside a file of itself, 3 mm higher", () => {
     await viewer.page.keyboard.press("Enter");
     await viewer.page.waitForSelector("#comparison", { state: "hidden" });
     await viewer.page.waitForTimeout(1500);
-    expect(await shareOfChangedPixels(browser, coloured, await canvasPicture(viewer))).toBeGreaterThan(0.02);
-    expect(viewer.complaints).toEqual([]);
+    expect(await changedFraction(browser, coloured, await canvasPicture(viewer))).toBeGreaterThan(0.02);
+    expect(viewer.consoleErrors).toEqual([]);
   });
 });
 
@@ -151,7 +151,7 @@ test("OnAPhoneTheScaleLeavesThePicture", async () => {
   await choose("higher.msh", await exported("cube", "cube", () => 3));
   await found();
   await viewer.page.waitForTimeout(1500);
-  await viewer.leave("compare-phone");
+  await viewer.saveScreenshot("compare-phone");
   const card = (await viewer.page.locator("#comparison").boundingBox())!;
   const stage = (await viewer.page.locator("#stage").boundingBox())!;
   expect(card.x + card.width).toBeLessThanOrEqual(stage.width);
@@ -169,14 +169,14 @@ describe("the thorax beside a file of its diaphragm, its left side higher", () =
     expect(await measure("hd_max")).toBeGreaterThan(5);
     expect(await measure("mean_a_to_b")).toBeLessThan(5);
     await viewer.page.waitForTimeout(4000);
-    await viewer.leave("compare-thorax");
+    await viewer.saveScreenshot("compare-thorax");
     for (const name of ["Ribs", "Sternum", "Costal cartilages", "Lungs"]) {
       const box = viewer.page.locator(".layer-name", { hasText: name }).locator("input");
       if ((await box.count()) === 1) await box.uncheck();
     }
     await viewer.page.waitForTimeout(4000);
-    await viewer.leave("compare-diaphragm");
-    expect(viewer.complaints).toEqual([]);
+    await viewer.saveScreenshot("compare-diaphragm");
+    expect(viewer.consoleErrors).toEqual([]);
     await viewer.close();
   }, 240_000);
 });

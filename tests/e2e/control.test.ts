@@ -65,7 +65,7 @@ test("ControlsOfWhoDoesNotControlAreDisabledWithTheReason", async () => {
   expect(await pupil.page.isDisabled("#parameter-breathForce")).toBe(true);
   expect(await pupil.page.getAttribute("fieldset.controlled", "title")).toContain("Anna controls this session");
   expect(await teacher.page.isDisabled("#play")).toBe(false);
-  await pupil.leave("controlled");
+  await pupil.saveScreenshot("controlled");
 });
 
 test("TheServerRefusesWhatAPageWouldNotAsk", async () => {
@@ -77,7 +77,7 @@ test("WhoAsksIsSeenAndIsHandedControl", async () => {
   await press(pupil, "take");
   await badge(teacher, "Ben asks");
   await teacher.page.click("#control-badge");
-  await teacher.leave("control-dialog");
+  await teacher.saveScreenshot("control-dialog");
   await teacher.page.click('[data-person="Ben"] button');
   await teacher.page.keyboard.press("Escape");
   await badge(pupil, "You control");
@@ -129,5 +129,5 @@ test("LentToAllItIsEverybodysAgain", async () => {
 });
 
 test("NothingWasWorthAComplaint", () => {
-  expect([...teacher.complaints, ...pupil.complaints]).toEqual([]);
+  expect([...teacher.consoleErrors, ...pupil.consoleErrors]).toEqual([]);
 });

@@ -1,6 +1,6 @@
 import { setTimeout as sleep } from "node:timers/promises";
 import { afterAll, beforeAll, expect, test } from "vitest";
-import { Connection } from "../../web/src/connection/session_connection";
+import { SessionConnection } from "../../web/src/connection/session_connection";
 import { FrameDecoder } from "../../web/src/decoders/frame_decoder";
 import { Codec, type Frame } from "../../web/src/gen/phrenic/v1/frames_pb";
 import { type Body, type FrameArrays } from "../../web/src/geometry/bodies";
@@ -29,15 +29,15 @@ async function follow(codec: Codec, until: (frame: Frame, decoder: FrameDecoder)
   const api = nodeApi(server.url);
   let decoder = new FrameDecoder([]);
   let done = false;
-  const sink = {
-    link: () => {},
+  const listener = {
+    state: () => {},
     session: () => {},
     acknowledged: () => {},
     scene: (bodies: Body[]) => void (decoder = new FrameDecoder(bodies)),
-    basis: (basis: Parameters<FrameDecoder["learn"]>[0]) => decoder.learn(basis),
+    basis: (basis: Parameters<FrameDecoder["addBasis"]>[0]) => decoder.addBasis(basis),
     frame: (frame: Frame) => void (done ||= until(frame, decoder)),
   };
-  const connection = new Connection(api, "thorax", sink, systemClock);
+  const connection = new SessionConnection(api, "thorax", listener, systemClock);
   connection.setCodec(codec);
   const running = connection.run();
   for (const deadline = Date.now() + 60_000; !done && Date.now() < deadline;) await sleep(20);

@@ -44,7 +44,7 @@ test("ThePanelRecordsAndGivesTheFileThatTheCommandLineGets", async () => {
   const link = viewer.page.locator("#export-link");
   await link.waitFor();
   expect(await viewer.violations()).toEqual([]);
-  await viewer.leave("export");
+  await viewer.saveScreenshot("export");
   const [download] = await Promise.all([viewer.page.waitForEvent("download"), link.click()]);
   expect(download.suggestedFilename()).toBe("cube.depl");
   const path = join(outFolder, "cube.depl");
@@ -77,6 +77,6 @@ test("AnUploadedSurfaceIsReportedAndABadOneIsRefusedWithItsLine", async () => {
   await choose("v 0 0 0\nv 30 0 0\nv 0 30 0\nf 1 2 3\n");
   await viewer.page.waitForSelector("#upload-path");
   expect(await viewer.page.inputValue("#upload-path")).toMatch(/^upload:[0-9a-f]{64}$/);
-  await viewer.leave("upload");
-  expect(viewer.complaints).toEqual([]);
+  await viewer.saveScreenshot("upload");
+  expect(viewer.consoleErrors).toEqual([]);
 });

@@ -7,6 +7,6 @@ import { type Api, createApi } from "../../web/src/connection/api";
  * (https://github.com/nodejs/undici/issues/4627). Chromium's does not.
  */
 export function nodeApi(baseUrl: string): Api {
-  const heeding: typeof fetch = (input, init) => fetch(input, { ...init, redirect: "follow" });
-  return createApi(createGrpcWebTransport({ baseUrl, fetch: heeding }));
+  const followRedirects: typeof fetch = (input, init) => fetch(input, { ...init, redirect: "follow" });
+  return createApi(createGrpcWebTransport({ baseUrl, fetch: followRedirects }));
 }

@@ -40,8 +40,8 @@ test("FromTheAddressToAParalysedHemidiaphragmBesideAHealthyOneInUnderAMinute", a
   // The list is now of the second picture.
   await page.getByLabel("Compare with", { exact: true }).selectOption({ label: "Paralysis left" });
   await page.locator("#pane-heads").getByText("Paralysis left").waitFor();
-  expect(viewer.complaints).toEqual([]);
-  await viewer.leave("paralysis");
+  expect(viewer.consoleErrors).toEqual([]);
+  await viewer.saveScreenshot("paralysis");
 });
 
 /** The times [s] of both pictures, as their heads say them. */
@@ -77,7 +77,7 @@ test("BothBreatheInStepStopAtOneInstantAndHaveTheSameColours", async () => {
   const dome = measures.find(({ name }: { name: string }) => name === "right dome");
   const words = `right dome ${(1000 * Math.abs(dome.value)).toFixed(1)} mm`;
   await page.locator(".pane-head").first().getByText(words).waitFor({ timeout: 20_000 });
-  expect(viewer.complaints).toEqual([]);
+  expect(viewer.consoleErrors).toEqual([]);
 });
 
 test("TheLastSecondsAreLookedAtAgainWithoutTheSimulationGoingBack", async () => {
@@ -119,7 +119,7 @@ test("TheForcesOfAMomentAgoAreSeenAgain", async () => {
   expect(await note()).toContain("Not known of this moment");
   await page.click("#look-live");
   await expect.poll(note).toBe("");
-  expect(viewer.complaints).toEqual([]);
+  expect(viewer.consoleErrors).toEqual([]);
 });
 
 test("ForThePageOfACourseThereIsThePictureAndItsPlaybackAlone", async () => {
@@ -129,5 +129,5 @@ test("ForThePageOfACourseThereIsThePictureAndItsPlaybackAlone", async () => {
   for (const id of ["play", "disclaimer", "whole"]) expect(await page.locator(`#${id}`).isVisible()).toBe(true);
   expect(await page.getAttribute("#whole", "href")).toBe("?session=thorax");
   expect(await viewer.violations()).toEqual([]);
-  await viewer.leave("embedded");
+  await viewer.saveScreenshot("embedded");
 });

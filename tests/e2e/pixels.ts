@@ -15,7 +15,7 @@ async function middle(page: Page) {
 }
 
 /** The share of pixels, 0 to 1, that differ by more than 16 of 255 in a colour. */
-export async function shareOfChangedPixels(browser: Browser, a: string, b: string): Promise<number> {
+export async function changedFraction(browser: Browser, a: string, b: string): Promise<number> {
   const page = await browser.newPage();
   const share = await page.evaluate(
     async (pictures) => {

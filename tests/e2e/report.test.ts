@@ -8,7 +8,7 @@ import { costStudy, errorStudy, pageOf, stabilityStudy } from "../web/report/stu
 import { launchBrowser } from "./browser";
 import { outFolder } from "./server";
 
-const empty = readFileSync(join(import.meta.dirname, "../../web/dist/report.html"), "utf8");
+const template = readFileSync(join(import.meta.dirname, "../../web/dist/report.html"), "utf8");
 const studies = { error: errorStudy, stability: stabilityStudy, cost: costStudy };
 let browser: Browser;
 
@@ -22,7 +22,7 @@ afterAll(() => browser?.close());
 /** The page of a study, opened as the file that a reviewer gets. */
 async function open(name: string, study: object) {
   const path = join(outFolder, `report-${name}.html`);
-  writeFileSync(path, pageOf(empty, study));
+  writeFileSync(path, pageOf(template, study));
   const page = await browser.newPage({ viewport: { width: 1280, height: 900 } });
   const complaints: string[] = [];
   const requests: string[] = [];
@@ -36,7 +36,7 @@ async function open(name: string, study: object) {
 }
 
 /** Texts of the plots that stick out of them or cover another. */
-function spoiltTexts(page: Page): Promise<string[]> {
+function misplacedTexts(page: Page): Promise<string[]> {
   return page.evaluate(() =>
     [...document.querySelectorAll("svg.plot")].flatMap((svg) => {
       const frame = svg.getBoundingClientRect();
@@ -70,7 +70,7 @@ describe.each(Object.entries(studies))("the page of the %s study", (name, study)
     expect(others()).toEqual([]);
     expect(await page.locator("figure svg[role=img][aria-label]").count()).toBeGreaterThan(2);
     expect(await page.locator("tbody tr").count()).toBeGreaterThan(5);
-    expect(await spoiltTexts(page)).toEqual([]);
+    expect(await misplacedTexts(page)).toEqual([]);
     await page.close();
   });
 

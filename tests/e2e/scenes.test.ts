@@ -34,8 +34,8 @@ describe("a session made in the browser", () => {
       await viewer.page.waitForTimeout(1000);
       expect((await viewer.sample(body, 1)).points).not.toEqual(before.points);
       await viewer.page.check("#show-links");
-      await viewer.leave(scene);
-      expect(viewer.complaints).toEqual([]);
+      await viewer.saveScreenshot(scene);
+      expect(viewer.consoleErrors).toEqual([]);
       await viewer.close();
     });
   }
@@ -59,7 +59,7 @@ test("ADivergedSessionSaysSoAndItsRemedyHelps", async () => {
   await viewer.type("timeStep", 0.1);
   await viewer.page.waitForSelector("#banner-diverged:not([hidden])", { timeout: 60_000 });
   expect(await viewer.page.textContent("#banner-diverged")).toMatch(/diverged at .* s, at vertex \d+ of cube/);
-  await viewer.leave("diverged");
+  await viewer.saveScreenshot("diverged");
   await viewer.page.click('button:has-text("Use a stable step and start again")');
   await viewer.page.waitForSelector("#banner-diverged", { state: "hidden" });
   await viewer.waitForTick(10);
@@ -82,10 +82,10 @@ test("AMissingSessionIsSaidAndOthersAreOffered", async () => {
 test("APhoneGetsThePictureFirst", async () => {
   const viewer = await ViewerPage.open(browser, server.url, { width: 390, height: 780 });
   expect(await viewer.page.isVisible("#panel")).toBe(false);
-  await viewer.leave("phone");
+  await viewer.saveScreenshot("phone");
   await viewer.page.click("#panel-toggle");
   expect(await viewer.page.isVisible("#parameter-breathForce")).toBe(true);
-  await viewer.leave("phone-panel");
+  await viewer.saveScreenshot("phone-panel");
   const wider = await viewer.page.evaluate(() => document.documentElement.scrollWidth > innerWidth);
   expect(wider).toBe(false);
   await viewer.close();

@@ -1,8 +1,8 @@
 import { connect, createServer } from "node:net";
 import { setTimeout as sleep } from "node:timers/promises";
 import { afterAll, beforeAll, expect, test } from "vitest";
-import { Connection } from "../../web/src/connection/session_connection";
-import { Frames } from "../../web/src/frames/frame_buffer";
+import { SessionConnection } from "../../web/src/connection/session_connection";
+import { FrameBuffer } from "../../web/src/frames/frame_buffer";
 import { systemClock } from "../../web/src/timing/clock";
 import { nodeApi } from "./node_api";
 import { Server } from "./server";
@@ -12,7 +12,7 @@ beforeAll(async () => void (server = await Server.start()));
 afterAll(() => server.end());
 
 /** A line to the server that carries so many bytes a second to the viewer, and as much as there is the other way. */
-async function thinLine(url: string, bytesPerSecond: number): Promise<{ url: string; close: () => void }> {
+async function slowLine(url: string, bytesPerSecond: number): Promise<{ url: string; close: () => void }> {
   const { port } = new URL(url);
   let free = 0; // when the line has carried everything
   const line = createServer((viewer) => {
@@ -38,14 +38,14 @@ async function thinLine(url: string, bytesPerSecond: number): Promise<{ url: str
 // The viewer's own connection, without the picture: what a viewer on a line sees for `seconds`.
 async function watch(url: string, seconds: number) {
   const api = nodeApi(url);
-  const frames = new Frames();
+  const frames = new FrameBuffer();
   const ages: number[] = [];
   let last = 0;
-  const connection = new Connection(
+  const connection = new SessionConnection(
     api,
     "thorax",
     {
-      link: () => {},
+      state: () => {},
       session: () => {},
       scene: (bodies) => frames.start(bodies),
       frame: (frame) => {
@@ -55,7 +55,7 @@ async function watch(url: string, seconds: number) {
         ages.push(Date.now() - Number(frame.unixNanos / 1_000_000n));
         last = Date.now();
       },
-      basis: (basis) => frames.learn(basis),
+      basis: (basis) => frames.addBasis(basis),
       acknowledged: (response, sent, answered) => frames.acknowledged(response, sent, answered),
     },
     systemClock,
@@ -75,7 +75,7 @@ async function watch(url: string, seconds: number) {
 }
 
 test("OverFourMegabitsABreathIsSeenLessThan400MillisecondsOld", async () => {
-  const line = await thinLine(server.url, 500_000);
+  const line = await slowLine(server.url, 500_000);
   const seen = await watch(line.url, 8);
   line.close();
   expect(seen.median).toBeLessThan(400);

@@ -30,7 +30,7 @@ test("TwoBrowsersSeeTheSameVerticesAtTheSameTick", async () => {
   await here.page.click('#play[aria-label="Pause"]');
   await there.page.waitForSelector('#play[aria-label="Play"]');
   const held = await server.restingTick();
-  await Promise.all([here.atTick(held), there.atTick(held)]);
+  await Promise.all([here.waitForExactTick(held), there.waitForExactTick(held)]);
   const [a, b] = await Promise.all([here.sample("diaphragm", 50), there.sample("diaphragm", 50)]);
   expect([a.tick, b.tick]).toEqual([held, held]);
   const off = a.points.flatMap((point, i) => point.map((value, axis) => Math.abs(value - b.points[i][axis])));
@@ -61,7 +61,7 @@ test("ALostServerIsShownAndComesBackWithTheSessionAsItWas", async () => {
   expect(await here.page.innerText("#link")).toContain("retrying");
   expect(await here.page.isVisible("#banner-lost")).toBe(true);
   expect(await here.violations()).toEqual([]);
-  await here.leave("lost");
+  await here.saveScreenshot("lost");
   await server.restart();
   await here.waitForLink("live");
   await there.waitForLink("live");
@@ -75,5 +75,5 @@ test("ALostServerIsShownAndComesBackWithTheSessionAsItWas", async () => {
 
 test("OnlyTheLossWasWorthAComplaint", () => {
   const expected = /net::ERR_/;
-  expect([...here.complaints, ...there.complaints].filter((text) => !expected.test(text))).toEqual([]);
+  expect([...here.consoleErrors, ...there.consoleErrors].filter((text) => !expected.test(text))).toEqual([]);
 });

@@ -4,7 +4,7 @@ import { gzipSync } from "node:zlib";
 import type { Browser, Download } from "playwright-core";
 import { afterAll, beforeAll, describe, expect, test } from "vitest";
 import { launchBrowser, ViewerPage } from "./browser";
-import { canvasPicture, shareOfChangedPixels } from "./pixels";
+import { canvasPicture, changedFraction } from "./pixels";
 import { Server } from "./server";
 
 let server: Server;
@@ -33,13 +33,13 @@ async function changed(act: () => Promise<unknown>): Promise<number> {
   const before = await canvasPicture(viewer);
   await act();
   await viewer.page.waitForTimeout(1000);
-  return shareOfChangedPixels(browser, before, await canvasPicture(viewer));
+  return changedFraction(browser, before, await canvasPicture(viewer));
 }
 
 describe("the graphs", () => {
   test("AreThereAndSaveWhatTheyShow", async () => {
     await server.phrenic("step", "lungs", "200");
-    await viewer.atTick(800);
+    await viewer.waitForExactTick(800);
     const loop = viewer.page.locator('.tile[data-graph="loop"]');
     await loop.waitFor();
     const [csv] = await Promise.all([viewer.page.waitForEvent("download"), loop.getByText("CSV").click()]);
@@ -70,7 +70,7 @@ describe("the picture", () => {
     expect(await viewer.page.inputValue("#coloring-top")).toBe(fitted);
     expect(await changed(() => viewer.page.selectOption("#ghost", "rest"))).toBeGreaterThan(0.002);
     expect(await changed(() => viewer.page.selectOption("#cut", "coronal"))).toBeGreaterThan(0.02);
-    await viewer.leave("tools");
+    await viewer.saveScreenshot("tools");
     await viewer.page.selectOption("#cut", "none");
     await viewer.page.selectOption("#ghost", "none");
   });
@@ -105,11 +105,11 @@ test("APermalinkRunsAgainToTheSameVertices", async () => {
   await server.phrenic("create", "cube-tensegrity", "--id", "cube", "--set", "breath_force=1.5");
   await server.phrenic("step", "cube", "120");
   const cube = await ViewerPage.open(browser, `${server.url}?session=cube`);
-  await cube.atTick(120);
+  await cube.waitForExactTick(120);
   await cube.page.click("#share-open");
   const link = await cube.page.inputValue("#share-permalink");
   const again = await ViewerPage.open(browser, link);
-  await again.atTick(120);
+  await again.waitForExactTick(120);
   expect(new URL(again.page.url()).search).not.toBe("?session=cube");
   expect((await again.sample("cube", 1)).points).toEqual((await cube.sample("cube", 1)).points);
   await again.close();
@@ -120,8 +120,8 @@ test("APermalinkRunsAgainToTheSameVertices", async () => {
   await cube.page.waitForSelector('.differences:text-is("The same parameters")');
   await cube.type("breathForce", 3);
   await cube.page.waitForSelector('.differences:text-is("Breath force 1.5 instead of 3")');
-  await cube.leave("beside");
-  expect([...cube.complaints, ...again.complaints]).toEqual([]);
+  await cube.saveScreenshot("beside");
+  expect([...cube.consoleErrors, ...again.consoleErrors]).toEqual([]);
   await cube.close();
 });
 
@@ -135,8 +135,8 @@ test("AStudyIsRunAndShownInPlace", async () => {
   await expect.poll(() => page.page.locator(".study-view h1").textContent()).toMatch(/^Cost: /);
   expect(await page.page.locator(".study-view svg.plot").count()).toBeGreaterThan(0);
   expect(await page.violations()).toEqual([]);
-  await page.leave("study");
-  expect(page.complaints).toEqual([]);
+  await page.saveScreenshot("study");
+  expect(page.consoleErrors).toEqual([]);
   await page.close();
 });
 
@@ -155,8 +155,8 @@ test("ThePageIsSmallAndSoonThere", async () => {
     const asked: string[] = [];
     page.on("request", (request) => asked.push(new URL(request.url()).pathname));
     await page.goto(`${server.url}?session=lungs`);
-    await page.waitForFunction(() => (window.phrenic?.firstPicture() ?? -1) >= 0);
-    times.push(Math.round(await page.evaluate(() => window.phrenic!.firstPicture())));
+    await page.waitForFunction(() => (window.phrenic?.firstDrawTime() ?? -1) >= 0);
+    times.push(Math.round(await page.evaluate(() => window.phrenic!.firstDrawTime())));
     expect(asked.length, asked.join(" ")).toBeLessThanOrEqual(15);
     await context.close();
   }
@@ -164,5 +164,5 @@ test("ThePageIsSmallAndSoonThere", async () => {
 });
 
 test("ThePageHadNothingToComplainAbout", () => {
-  expect(viewer.complaints).toEqual([]);
+  expect(viewer.consoleErrors).toEqual([]);
 });

@@ -1,7 +1,7 @@
 import type { Browser } from "playwright-core";
 import { afterAll, beforeAll, beforeEach, describe, expect, test } from "vitest";
 import { launchBrowser, ViewerPage } from "./browser";
-import { canvasPicture, shareOfChangedPixels } from "./pixels";
+import { canvasPicture, changedFraction } from "./pixels";
 import { Server } from "./server";
 
 let server: Server;
@@ -84,9 +84,9 @@ describe("the thorax in the browser", () => {
     for (const box of await others.all()) await box.uncheck();
     // The picture follows the frames as fast as the machine draws: until something that moves is seen, however long.
     const first = await canvasPicture(viewer);
-    const changed = async () => shareOfChangedPixels(browser, first, await canvasPicture(viewer));
+    const changed = async () => changedFraction(browser, first, await canvasPicture(viewer));
     await expect.poll(changed, { timeout: 90_000, interval: 1000 }).toBeGreaterThan(0.005);
-    await viewer.leave("diaphragm");
+    await viewer.saveScreenshot("diaphragm");
     for (const box of await others.all()) await box.check();
   });
 
@@ -123,7 +123,7 @@ describe("the buttons", () => {
     await pause().click();
     await play().waitFor();
     const held = await server.restingTick();
-    await viewer.atTick(held);
+    await viewer.waitForExactTick(held);
     await viewer.page.waitForTimeout(700);
     expect(await viewer.tick()).toBe(held);
     await play().click();
@@ -136,7 +136,7 @@ describe("the buttons", () => {
     const held = await server.restingTick();
     await viewer.page.selectOption("#stride", "10");
     await viewer.page.click("#step");
-    await viewer.atTick(held + 10);
+    await viewer.waitForExactTick(held + 10);
     expect(await server.restingTick()).toBe(held + 10);
   });
 
@@ -144,7 +144,7 @@ describe("the buttons", () => {
     await pause().click();
     await play().waitFor();
     await viewer.page.click("#reset");
-    await viewer.atTick(0);
+    await viewer.waitForExactTick(0);
     expect(await viewer.page.evaluate(() => window.phrenic!.time())).toBe(0);
   });
 
@@ -182,7 +182,7 @@ describe("the buttons", () => {
       })
       .toBe(2.5);
     await viewer.page.waitForSelector('#presets button[aria-pressed="true"]:text-is("Chest")');
-    await viewer.leave("presets");
+    await viewer.saveScreenshot("presets");
     await preset("Quiet").click();
     await viewer.page.waitForSelector('#presets button[aria-pressed="true"]:text-is("Quiet")');
     expect(await viewer.value("breathForce")).toBe("1");
@@ -203,7 +203,7 @@ describe("the buttons", () => {
       .toEqual(["diaphragm"]);
     await viewer.page.waitForSelector("#pulls:not([hidden])");
     expect(await viewer.page.textContent("#force:not([hidden])")).toMatch(/^\d+\.\d\d N$/);
-    await viewer.leave("pull");
+    await viewer.saveScreenshot("pull");
     await viewer.page.mouse.up();
     await viewer.page.keyboard.up("Shift");
     await expect.poll(async () => (await pulls()).length, { timeout: 10_000 }).toBe(0);
@@ -234,8 +234,8 @@ describe("the buttons", () => {
     for (const kind of ["wireframe", "links", "lines", "attachments"]) {
       await viewer.page.check(`#show-${kind}`);
       await viewer.page.waitForTimeout(1500);
-      expect(await shareOfChangedPixels(browser, plain, await canvasPicture(viewer)), kind).toBeGreaterThan(0.0005);
-      await viewer.leave(`overlay-${kind}`);
+      expect(await changedFraction(browser, plain, await canvasPicture(viewer)), kind).toBeGreaterThan(0.0005);
+      await viewer.saveScreenshot(`overlay-${kind}`);
       await viewer.page.uncheck(`#show-${kind}`);
     }
     await viewer.page.locator("#transparency").fill("0");
@@ -248,14 +248,14 @@ describe("the report", () => {
     const text = await viewer.page.textContent(".report");
     expect(text).toContain("rigid links");
     expect(text).toMatch(/Largest stable step [0-9.]+ ms/);
-    await viewer.leave("report");
+    await viewer.saveScreenshot("report");
     await viewer.page.click('summary:has-text("What runs")');
   });
 });
 
 test("ThePageKeepsToItsOwnServerAndHasNothingToComplainAbout", () => {
   expect([...viewer.origins]).toEqual([new URL(server.url).origin]);
-  expect(viewer.complaints).toEqual([]);
+  expect(viewer.consoleErrors).toEqual([]);
 });
 
 // The last: there is no page after it.

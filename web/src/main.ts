@@ -1,11 +1,11 @@
 import { createGrpcWebTransport } from "@connectrpc/connect-web";
 import { App } from "./app/app";
 import { createApi, errorText } from "./connection/api";
-import { Access, identifying, takeLink } from "./connection/credentials";
-import { Identity, signing } from "./connection/identity";
-import { routing } from "./connection/routing";
-import { make, place } from "./dom/elements";
-import { Chooser } from "./panels/session/session_chooser";
+import { Credentials, credentialsInterceptor, storeJoinLink } from "./connection/credentials";
+import { Identity, identityInterceptor } from "./connection/identity";
+import { routingInterceptor } from "./connection/routing";
+import { elementById, make } from "./dom/elements";
+import { SessionChooser } from "./panels/session/session_chooser";
 import { signIn } from "./panels/session/sign_in";
 import { chooseSession } from "./session/choose_session";
 import { recipeOf, rerun } from "./session/permalink";
@@ -19,18 +19,18 @@ const carry: typeof fetch = (input, init) => fetch(input, { ...init, keepalive: 
 
 // The page and the services come from one address.
 const identity = new Identity(localStorage);
-const access = new Access(localStorage);
-const interceptors = [signing(identity), identifying(access), routing()];
+const access = new Credentials(localStorage);
+const interceptors = [identityInterceptor(identity), credentialsInterceptor(access), routingInterceptor()];
 const api = createApi(createGrpcWebTransport({ baseUrl: location.origin, fetch: carry, interceptors }));
 
 function address(sessionId: string): string {
   return `?${new URLSearchParams({ session: sessionId })}`;
 }
 
-const chooser = new Chooser(api, (sessionId) => location.assign(address(sessionId)));
+const chooser = new SessionChooser(api, (sessionId) => location.assign(address(sessionId)));
 document.body.append(chooser.element);
 
-const loading = place("loading");
+const loading = elementById("loading");
 const start = make("button", { type: "button", onclick: () => void chooser.show() }, "Start one");
 
 function say(error?: unknown): void {
@@ -39,7 +39,7 @@ function say(error?: unknown): void {
 }
 
 const here = new URL(location.href);
-takeLink(here, access);
+storeJoinLink(here, access);
 
 /** The session that the address names, or runs again what it tells how to. */
 async function find(): Promise<string> {
@@ -55,15 +55,15 @@ const sessionId = await find().catch((error: unknown) => {
   loading.replaceChildren(`This link cannot be run again: ${errorText(error)}. `, start);
   throw error;
 });
-const beside = here.searchParams.get("beside") ?? undefined;
+const secondSessionId = here.searchParams.get("beside") ?? undefined;
 // Within the page of a course there is the picture and its playback alone.
 const embedded = here.searchParams.has("embed");
 document.body.classList.toggle("embedded", embedded);
 loading.replaceChildren("Loading the scene…");
-history.replaceState(null, "", beside === undefined && !embedded ? address(sessionId) : here.search);
-place("whole").setAttribute("href", address(sessionId));
+history.replaceState(null, "", secondSessionId === undefined && !embedded ? address(sessionId) : here.search);
+elementById("whole").setAttribute("href", address(sessionId));
 try {
-  const subject = { sessionId, beside, open: (query: string) => location.assign(query) };
+  const subject = { sessionId, secondSessionId, open: (query: string) => location.assign(query) };
   new App(api, subject, chooser, identity, systemClock).start();
 } catch (error) {
   loading.replaceChildren(

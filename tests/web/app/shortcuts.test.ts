@@ -9,8 +9,8 @@ const press = (target: Element, key: string, more: KeyboardEventInit = {}) =>
 beforeEach(() => {
   heard = [];
   const keys = [
-    { key: " ", words: "Play, pause", act: () => heard.push("play") },
-    { key: "g", words: "Graphs", act: () => heard.push("graphs") },
+    { key: " ", description: "Play, pause", run: () => heard.push("play") },
+    { key: "g", description: "Graphs", run: () => heard.push("graphs") },
   ];
   const dialog = shortcuts(
     keys,

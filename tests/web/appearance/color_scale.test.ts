@@ -1,8 +1,8 @@
 import { create } from "@bufbuild/protobuf";
 import { describe, expect, test } from "vitest";
-import { ColorScale, topFor } from "../../../web/src/appearance/color_scale";
+import { ColorScale, niceTop } from "../../../web/src/appearance/color_scale";
 import { SurfaceDistanceSchema } from "../../../web/src/gen/phrenic/v1/compare_pb";
-import { figuresTable, millimetres } from "../../../web/src/panels/comparison/distance_table";
+import { distanceTable, formatMillimetres } from "../../../web/src/panels/comparison/distance_table";
 import { Legend } from "../../../web/src/panels/view/legend";
 
 /** CIE 1976 lightness, 0 to 100, of a colour in sRGB. */
@@ -14,14 +14,14 @@ function lightnessOf(rgb: [number, number, number]): number {
 
 describe("the scale", () => {
   test("EndsAtARoundNumberThatNoDistanceIsBeyond", () => {
-    expect(topFor([0.2, 11.3, NaN, 4])).toBe(12);
-    expect(topFor([0.0234])).toBe(0.025);
-    expect(topFor([7])).toBe(7);
+    expect(niceTop([0.2, 11.3, NaN, 4])).toBe(12);
+    expect(niceTop([0.0234])).toBe(0.025);
+    expect(niceTop([7])).toBe(7);
   });
 
   test("OfEqualSurfacesIsNotOfRoundOff", () => {
-    expect(topFor([])).toBe(0.001);
-    expect(topFor([1e-13, NaN])).toBe(0.001);
+    expect(niceTop([])).toBe(0.001);
+    expect(niceTop([1e-13, NaN])).toBe(0.001);
   });
 
   test("GrowsLighterByEqualStepsForEqualDistances", () => {
@@ -42,14 +42,14 @@ describe("the scale", () => {
 
   test("PaintsThreeBytesAVertex", () => {
     const scale = new ColorScale(10);
-    expect([...scale.paint([0, 10])]).toEqual([...scale.color(0), ...scale.color(10)]);
+    expect([...scale.colors([0, 10])]).toEqual([...scale.color(0), ...scale.color(10)]);
   });
 
   test("IsMarkedFromNothingToItsEnd", () => {
     const ticks = new ColorScale(12).ticks();
-    expect(ticks[0]).toEqual({ part: 0, text: "0" });
-    expect(ticks.at(-1)).toEqual({ part: 1, text: "12" });
-    expect(new ColorScale(0.025).ticks().at(-1)).toEqual({ part: 1, text: "0.025" });
+    expect(ticks[0]).toEqual({ fraction: 0, text: "0" });
+    expect(ticks.at(-1)).toEqual({ fraction: 1, text: "12" });
+    expect(new ColorScale(0.025).ticks().at(-1)).toEqual({ fraction: 1, text: "0.025" });
   });
 });
 
@@ -61,7 +61,7 @@ test("TheLegendSaysItsRangeAndUnit", () => {
 });
 
 describe("the figures", () => {
-  const table = figuresTable(create(SurfaceDistanceSchema, { meanAToB: 1.23456, hdMax: 150.04, rmsBToA: NaN }));
+  const table = distanceTable(create(SurfaceDistanceSchema, { meanAToB: 1.23456, hdMax: 150.04, rmsBToA: NaN }));
   const shown = (name: string) => table.querySelector(`[data-measure="${name}"]`)!;
 
   test("StandUnderTheirNamesInTheSchema", () => {
@@ -77,6 +77,6 @@ describe("the figures", () => {
 
   test("ThatDoNotExistSaySo", () => {
     expect(shown("rms_b_to_a").textContent).toBe("none");
-    expect(millimetres(0)).toBe("0.000");
+    expect(formatMillimetres(0)).toBe("0.000");
   });
 });

@@ -1,9 +1,9 @@
 import { describe, expect, test } from "vitest";
 import { Coloring } from "../../../web/src/appearance/coloring";
-import { Fields } from "../../../web/src/appearance/fields";
+import { SurfaceFields } from "../../../web/src/appearance/fields";
 import { decodeBody } from "../../../web/src/geometry/bodies";
 import { areaChanges, displacements, speeds } from "../../../web/src/geometry/deformation";
-import { Forces } from "../../../web/src/session/force_queries";
+import { ForceQueries } from "../../../web/src/session/force_queries";
 import { FakeServer, triangleBody } from "../fakes/fake_server";
 
 const body = decodeBody(triangleBody({}));
@@ -43,7 +43,7 @@ describe("the fields of a body", () => {
   });
 
   test("HaveNoSpeedBeforeThereAreTwoMoments", () => {
-    const fields = new Fields();
+    const fields = new SurfaceFields();
     expect(fields.of("speed", body)).toBeUndefined();
     const poses = new Float32Array();
     fields.receive(1, { positions: rest, poses });
@@ -57,19 +57,19 @@ describe("the fields of a body", () => {
 });
 
 test("TheScaleStaysUntilItIsFittedOrSet", () => {
-  const coloring = new Coloring(new Forces(new FakeServer().api, "cube"));
+  const coloring = new Coloring(new ForceQueries(new FakeServer().api, "cube"));
   coloring.start([body]);
   const lift = (time: number, metres: number) =>
     coloring.receive(time, { positions: moved((x, y, z) => [x, y, z + metres]), poses: new Float32Array() });
-  expect(coloring.paint().size).toBe(0);
+  expect(coloring.colors().size).toBe(0);
   coloring.choose("displacement");
   expect(coloring.scale.value!.top).toBe(10);
   lift(1, 0.0305);
   expect(coloring.scale.value!.top).toBe(10);
-  const beyond = coloring.paint().get("triangle");
+  const beyond = coloring.colors().get("triangle");
   coloring.fit();
   expect(coloring.scale.value!.top).toBe(35);
-  expect(coloring.paint().get("triangle")).not.toEqual(beyond);
+  expect(coloring.colors().get("triangle")).not.toEqual(beyond);
   coloring.setTop(12);
   coloring.setTop(NaN);
   expect(coloring.scale.value!.top).toBe(12);

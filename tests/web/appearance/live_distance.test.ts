@@ -50,7 +50,7 @@ const raised = (z: number) => ({
 test("ItFollowsTheMomentThatIsShownAndLeavesOutWhatIsInNoTriangle", () => {
   const live = new LiveDistance(comparison);
   expect([...Array.from(live.values)]).toEqual([0, 0, NaN]);
-  expect(live.follow([body], raised(0.25), () => 0)).toBe(true);
+  expect(live.update([body], raised(0.25), () => 0)).toBe(true);
   expect([...Array.from(live.values)]).toEqual([250, 250, NaN]);
 });
 
@@ -58,13 +58,13 @@ test("ASlowMachineIsAskedLessOften", () => {
   const live = new LiveDistance(comparison);
   let now = 0;
   // Every look at the clock is 10 ms later than the one before.
-  expect(live.follow([body], raised(0.1), () => (now += 10))).toBe(true);
-  expect(live.follow([body], raised(0.2), () => now)).toBe(false);
-  expect(live.follow([body], raised(0.2), () => now + 1000)).toBe(true);
+  expect(live.update([body], raised(0.1), () => (now += 10))).toBe(true);
+  expect(live.update([body], raised(0.2), () => now)).toBe(false);
+  expect(live.update([body], raised(0.2), () => now + 1000)).toBe(true);
 });
 
 test("WithoutTheFilesSurfaceTheColoursStayWhatWasMeasured", () => {
   const live = new LiveDistance({ ...comparison, surface: undefined });
-  expect(live.follow([body], raised(0.25), () => 0)).toBe(false);
+  expect(live.update([body], raised(0.25), () => 0)).toBe(false);
   expect(live.values).toBe(comparison.distances);
 });

@@ -1,11 +1,11 @@
 import { createRouterTransport } from "@connectrpc/connect";
 import { expect, test } from "vitest";
 import { createApi } from "../../../web/src/connection/api";
-import { Access, identifying, takeLink } from "../../../web/src/connection/credentials";
+import { Credentials, credentialsInterceptor, storeJoinLink } from "../../../web/src/connection/credentials";
 import { AccessService } from "../../../web/src/gen/phrenic/v1/access_pb";
 import { signIn } from "../../../web/src/panels/session/sign_in";
 
-class Remembered {
+class FakeStorage {
   private readonly items = new Map<string, string>();
   getItem(key: string): string | null {
     return this.items.get(key) ?? null;
@@ -16,7 +16,7 @@ class Remembered {
 }
 
 /** A server that knows one token, and what it was shown. */
-function server(access: Access) {
+function server(credentials: Credentials) {
   const shown: Headers[] = [];
   const transport = createRouterTransport(
     ({ service }) => {
@@ -28,7 +28,7 @@ function server(access: Access) {
         },
       });
     },
-    { transport: { interceptors: [identifying(access)] } },
+    { transport: { interceptors: [credentialsInterceptor(credentials)] } },
   );
   return { api: createApi(transport), shown };
 }
@@ -36,29 +36,29 @@ function server(access: Access) {
 const secret = "00112233445566778899aabbccddeeff";
 
 test("a link's secret is taken from behind the #, and from nowhere else", () => {
-  const access = new Access(new Remembered());
-  takeLink(new URL(`https://x/?session=a&join=${secret}`), access);
-  takeLink(new URL("https://x/?session=a#join=<script>"), access);
-  expect(access.links).toEqual([]);
-  takeLink(new URL(`https://x/?session=a#join=${secret}`), access);
-  takeLink(new URL(`https://x/?session=a#join=${secret}`), access);
-  expect(access.links).toEqual([secret]);
+  const access = new Credentials(new FakeStorage());
+  storeJoinLink(new URL(`https://x/?session=a&join=${secret}`), access);
+  storeJoinLink(new URL("https://x/?session=a#join=<script>"), access);
+  expect(access.joinLinks).toEqual([]);
+  storeJoinLink(new URL(`https://x/?session=a#join=${secret}`), access);
+  storeJoinLink(new URL(`https://x/?session=a#join=${secret}`), access);
+  expect(access.joinLinks).toEqual([secret]);
 });
 
 test("every call says who calls, and nothing where there is nothing to say", async () => {
-  const access = new Access(new Remembered());
+  const access = new Credentials(new FakeStorage());
   const { api, shown } = server(access);
   await api.access.getAccess({});
   expect(shown[0]!.has("authorization") || shown[0]!.has("x-join")).toBe(false);
   access.token = "good";
-  access.keepLink(secret);
+  access.addJoinLink(secret);
   await api.access.getAccess({});
   expect(shown[1]!.get("authorization")).toBe("Bearer good");
   expect(shown[1]!.get("x-join")).toBe(secret);
 });
 
 test("the page asks until the server knows the token, which stands nowhere in it", async () => {
-  const access = new Access(new Remembered());
+  const access = new Credentials(new FakeStorage());
   const { api } = server(access);
   const place = document.createElement("div");
   const done = signIn(api, access, place);
@@ -77,8 +77,8 @@ test("the page asks until the server knows the token, which stands nowhere in it
 });
 
 test("a join link alone lets in without a question", async () => {
-  const access = new Access(new Remembered());
-  access.keepLink(secret);
+  const access = new Credentials(new FakeStorage());
+  access.addJoinLink(secret);
   const place = document.createElement("div");
   await signIn(server(access).api, access, place);
   expect(place.childElementCount).toBe(0);

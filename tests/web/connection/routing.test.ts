@@ -1,7 +1,7 @@
 import { createRouterTransport } from "@connectrpc/connect";
 import { expect, test } from "vitest";
 import { createApi } from "../../../web/src/connection/api";
-import { routing } from "../../../web/src/connection/routing";
+import { routingInterceptor } from "../../../web/src/connection/routing";
 import { FrameService } from "../../../web/src/gen/phrenic/v1/frames_pb";
 import { SessionService } from "../../../web/src/gen/phrenic/v1/session_pb";
 
@@ -27,7 +27,7 @@ test("every call that is about a session names it in its head, and no other does
         },
       });
     },
-    { transport: { interceptors: [routing()] } },
+    { transport: { interceptors: [routingInterceptor()] } },
   );
   const api = createApi(transport);
   await api.sessions.getSession({ sessionId: "a" });

@@ -1,5 +1,9 @@
 import { afterEach, beforeEach, expect, test } from "vitest";
-import { Connection, type Link, type Sink } from "../../../web/src/connection/session_connection";
+import {
+  type ConnectionListener,
+  type ConnectionState,
+  SessionConnection,
+} from "../../../web/src/connection/session_connection";
 import { Codec } from "../../../web/src/gen/phrenic/v1/frames_pb";
 import { Backoff } from "../../../web/src/timing/backoff";
 import { FakeClock, settle } from "../fakes/fake_clock";
@@ -7,14 +11,14 @@ import { FakeServer } from "../fakes/fake_server";
 
 let server: FakeServer;
 let clock: FakeClock;
-let links: Link[];
+let states: ConnectionState[];
 let ticks: bigint[];
 let epochs: bigint[];
 let freshSessions: number;
-let connection: Connection;
+let connection: SessionConnection;
 
-const sink: Sink = {
-  link: (link) => (links.at(-1)?.kind === link.kind && link.kind === "live" ? undefined : links.push(link)),
+const listener: ConnectionListener = {
+  state: (link) => (states.at(-1)?.kind === link.kind && link.kind === "live" ? undefined : states.push(link)),
   scene: () => {},
   session: (_session, fresh) => (freshSessions += fresh ? 1 : 0),
   frame: (frame) => ticks.push(frame.tick),
@@ -22,12 +26,12 @@ const sink: Sink = {
   acknowledged: () => {},
 };
 
-const kinds = () => links.map((link) => link.kind);
+const kinds = () => states.map((link) => link.kind);
 const frame = (tick: bigint) => ({ case: "frame" as const, value: { tick } });
 
 beforeEach(() => {
-  [server, clock, links, ticks, epochs, freshSessions] = [new FakeServer(), new FakeClock(), [], [], [], 0];
-  connection = new Connection(server.api, "thorax", sink, clock, new Backoff(500, 10_000, () => 0));
+  [server, clock, states, ticks, epochs, freshSessions] = [new FakeServer(), new FakeClock(), [], [], [], 0];
+  connection = new SessionConnection(server.api, "thorax", listener, clock, new Backoff(500, 10_000, () => 0));
   void connection.run();
 });
 
@@ -52,20 +56,20 @@ test("ALostServerIsSaidAndRetriedLaterAndLater", async () => {
   await settle();
   server.kill();
   await settle();
-  expect(links.at(-1)).toMatchObject({
+  expect(states.at(-1)).toMatchObject({
     kind: "lost",
     reason: "connection reset",
     missing: false,
     retryAt: 500,
   });
   await clock.advance(500);
-  expect(links.at(-1)).toMatchObject({
+  expect(states.at(-1)).toMatchObject({
     kind: "lost",
     reason: "connection refused",
     retryAt: 500 + 1000,
   });
   await clock.advance(1000);
-  expect(links.at(-1)).toMatchObject({ kind: "lost", retryAt: 1500 + 2000 });
+  expect(states.at(-1)).toMatchObject({ kind: "lost", retryAt: 1500 + 2000 });
 });
 
 test("ItComesBackByItselfAndForgetsTheLongWait", async () => {
@@ -74,11 +78,11 @@ test("ItComesBackByItselfAndForgetsTheLongWait", async () => {
   await clock.advance(500);
   server.down = false;
   await clock.advance(1000);
-  expect(links.at(-1)).toEqual({ kind: "live" });
+  expect(states.at(-1)).toEqual({ kind: "live" });
   expect(freshSessions).toBe(2);
   server.kill();
   await settle();
-  expect(links.at(-1)).toMatchObject({
+  expect(states.at(-1)).toMatchObject({
     kind: "lost",
     retryAt: clock.now() + 500,
   });
@@ -89,7 +93,7 @@ test("TheSameSceneIsFetchedOnce", async () => {
   server.kill();
   server.down = false;
   await clock.advance(500);
-  expect(links.at(-1)).toEqual({ kind: "live" });
+  expect(states.at(-1)).toEqual({ kind: "live" });
   expect(server.geometryCalls).toBe(1);
 });
 
@@ -106,7 +110,7 @@ test("AServerThatGoesSilentIsFoundOut", async () => {
   // The stream stays open, but questions are answered no more.
   server.down = true;
   await clock.advance(2000);
-  expect(links.at(-1)).toMatchObject({
+  expect(states.at(-1)).toMatchObject({
     kind: "lost",
     reason: "connection refused",
   });
@@ -117,9 +121,9 @@ test("ASessionThatGoesOnOnAnotherServerIsFollowedAnew", async () => {
   // The stream of a server that was cut off stays open.
   server.session.epoch = 2n;
   await clock.advance(2000);
-  expect(links.at(-1)).toMatchObject({ kind: "lost", reason: "The session has moved." });
+  expect(states.at(-1)).toMatchObject({ kind: "lost", reason: "The session has moved." });
   await clock.advance(500);
-  expect(links.at(-1)).toEqual({ kind: "live" });
+  expect(states.at(-1)).toEqual({ kind: "live" });
   expect(freshSessions).toBe(2);
 });
 
@@ -130,7 +134,7 @@ test("RetryNowEndsTheWait", async () => {
   server.down = false;
   connection.retryNow();
   await settle();
-  expect(links.at(-1)).toEqual({ kind: "live" });
+  expect(states.at(-1)).toEqual({ kind: "live" });
 });
 
 test("FramesAreAcknowledgedAndAFailureIsTriedAgain", async () => {
@@ -149,9 +153,9 @@ test("FramesAreAcknowledgedAndAFailureIsTriedAgain", async () => {
 test("NothingIsAskedAfterStop", async () => {
   await settle();
   connection.stop();
-  const before = links.length;
+  const before = states.length;
   await clock.advance(60_000);
-  expect(links.length).toBe(before);
+  expect(states.length).toBe(before);
 });
 
 test("FramesThatStrainCanBeToldFromAreWatchedAnewWithoutALoss", async () => {
@@ -178,5 +182,5 @@ test("ShapesAreFetchedOnceTheServerHasThemAndItIsToldSo", async () => {
     await settle();
   }
   expect(epochs).toEqual([4n]);
-  expect(server.basesTold).toEqual([0n, 4n, 4n]);
+  expect(server.reportedBasisEpochs).toEqual([0n, 4n, 4n]);
 });

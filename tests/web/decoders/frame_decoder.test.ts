@@ -42,7 +42,7 @@ const basis = create(GetBasisResponseSchema, { epoch: 1n, shapes: golden.shapes.
 
 function decode(codec: Codec, positions: Uint8Array) {
   const decoder = new FrameDecoder([sheet]);
-  decoder.learn(basis);
+  decoder.addBasis(basis);
   const basisEpoch = codec === Codec.BASIS ? 1n : 0n;
   return decoder.decode(create(FrameSchema, { codec, positions, bodies: [0], basisEpoch })).positions;
 }
@@ -106,7 +106,7 @@ test("ABodyOfABasisHasItsOwnPartOfTheShapes", () => {
     decodeBody(triangleBody({ placement: Placement.STREAMED, firstVertex })),
   );
   const decoder = new FrameDecoder([one, other]);
-  decoder.learn(create(GetBasisResponseSchema, { epoch: 3n, shapes: [allUp()] }));
+  decoder.addBasis(create(GetBasisResponseSchema, { epoch: 3n, shapes: [allUp()] }));
   const head = new DataView(new ArrayBuffer(20));
   head.setFloat64(0, 1, true);
   head.setUint32(8, 1, true);

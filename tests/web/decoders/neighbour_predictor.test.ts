@@ -1,6 +1,6 @@
 import { expect, test } from "vitest";
-import { foretelling } from "../../../web/src/decoders/neighbour_predictor";
-import { neighbourWeights, unit } from "../../../web/src/decoders/neighbour_weights";
+import { neighbourPredictor } from "../../../web/src/decoders/neighbour_predictor";
+import { neighbourWeights, weightUnit } from "../../../web/src/decoders/neighbour_weights";
 import type { RestShape } from "../../../web/src/decoders/rest_shape";
 
 let seed = 1;
@@ -12,24 +12,24 @@ function grid(side: number): RestShape {
     const [column, row] = [Math.floor(i / 3) % side, Math.floor(i / 3 / side)];
     return [column, row, 0][i % 3] + 0.4 * random();
   });
-  const beside = Array.from({ length: side * side }, (_, i) => {
+  const neighbours = Array.from({ length: side * side }, (_, i) => {
     const all = [i - side, i % side > 0 ? i - 1 : -1, (i + 1) % side > 0 ? i + 1 : -1, i + side];
     return all.filter((other) => other >= 0 && other < side * side);
   });
-  return { rest, beside, shapes: [] };
+  return { rest, neighbours, basisShapes: [] };
 }
 
 /** What proto/README.md says, word for word, in numbers of any size. */
-function asDefined(shape: RestShape, remainders: Int32Array): Int32Array {
-  const { first, places, weights } = neighbourWeights(shape);
-  const values = remainders.slice();
+function asDefined(shape: RestShape, residuals: Int32Array): Int32Array {
+  const { first, neighbours, weights } = neighbourWeights(shape);
+  const values = residuals.slice();
   for (let place = 0; place + 1 < first.length; place++) {
     for (let axis = 0; axis < 3; axis++) {
-      let sum = BigInt(unit / 2);
+      let sum = BigInt(weightUnit / 2);
       for (let i = first[place]; i < first[place + 1]; i++)
-        sum += BigInt(weights[i]) * BigInt(values[3 * places[i] + axis]);
-      const told = sum >> BigInt(Math.log2(unit));
-      values[3 * place + axis] = Number(BigInt.asIntN(32, BigInt(values[3 * place + axis]) + told));
+        sum += BigInt(weights[i]) * BigInt(values[3 * neighbours[i] + axis]);
+      const predicted = sum >> BigInt(Math.log2(weightUnit));
+      values[3 * place + axis] = Number(BigInt.asIntN(32, BigInt(values[3 * place + axis]) + predicted));
     }
   }
   return values;
@@ -39,15 +39,15 @@ test.each([3, 3000, 2 ** 20, 2 ** 31 - 1])("NumbersUpTo %i AreForetoldAsDefined"
   const shape = grid(12);
   const remainders = Int32Array.from({ length: shape.rest.length }, () => Math.round((2 * random() - 1) * largest));
   const values = remainders.slice();
-  foretelling(shape).add(values);
+  neighbourPredictor(shape).addPredictions(values);
   expect(values).toEqual(asDefined(shape, remainders));
 });
 
 test("OneLargeNumberAmongSmallOnesChangesNothingOfTheRule", () => {
   const shape = grid(9);
-  const remainders = Int32Array.from({ length: shape.rest.length }, () => Math.round(4 * random()) - 2);
-  remainders[3 * 40 + 1] = 2 ** 30;
-  const values = remainders.slice();
-  foretelling(shape).add(values);
-  expect(values).toEqual(asDefined(shape, remainders));
+  const residuals = Int32Array.from({ length: shape.rest.length }, () => Math.round(4 * random()) - 2);
+  residuals[3 * 40 + 1] = 2 ** 30;
+  const values = residuals.slice();
+  neighbourPredictor(shape).addPredictions(values);
+  expect(values).toEqual(asDefined(shape, residuals));
 });

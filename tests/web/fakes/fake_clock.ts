@@ -5,14 +5,14 @@ export class FakeClock implements Clock {
   private time = 0;
   private sleepers: { until: number; wake: () => void }[] = [];
   /** Every time somebody asked to sleep [ms]. */
-  readonly naps: number[] = [];
+  readonly sleeps: number[] = [];
 
   now(): number {
     return this.time;
   }
 
   sleep(milliseconds: number, signal?: AbortSignal): Promise<void> {
-    this.naps.push(milliseconds);
+    this.sleeps.push(milliseconds);
     return new Promise((resolve) => {
       if (signal?.aborted) return resolve();
       this.sleepers.push({ until: this.time + milliseconds, wake: resolve });

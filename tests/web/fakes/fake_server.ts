@@ -64,27 +64,27 @@ export class FakeServer {
   readonly pulls: Pull[] = [];
   /** What sessions were made from, the steps that were asked for (from which tick, how many), and what was deleted. */
   readonly created: CreateSessionRequest[] = [];
-  readonly steps: [bigint | undefined, bigint][] = [];
+  readonly stepRequests: [bigint | undefined, bigint][] = [];
   readonly deleted: string[] = [];
   /** What was played, and in step with what; paused; stepped, by how many ticks. */
   readonly played: [string, string][] = [];
   readonly paused: string[] = [];
   readonly stepped: [string, bigint][] = [];
   /** Where sessions stand once they are paused. */
-  readonly resting = new Map<string, typeof this.session>();
+  readonly pausedSessions = new Map<string, typeof this.session>();
   /** How near to the truth frames were asked to be [mm], by each watch. */
   readonly errorBounds: (number | undefined)[] = [];
   readonly codecs: Codec[] = [];
   /** What it would have frames put together from, and the epochs that viewers said they had. */
   basis = create(GetBasisResponseSchema, {});
-  readonly basesTold: bigint[] = [];
+  readonly reportedBasisEpochs: bigint[] = [];
   /** What was asked of the forces. */
-  readonly forceQuestions: object[] = [];
+  readonly forceRequests: object[] = [];
   /** Of which moment [s] forces are told, and how large those of a kind are. */
-  forcesTold = { time: 0, sizes: [0.5, 0.25] };
+  forceResponse = { time: 0, sizes: [0.5, 0.25] };
   readonly comparisons: CompareRequest[] = [];
   /** What a comparison brings, one after the other; one that is a promise is waited for. */
-  found: (ComparisonEvent | Promise<ComparisonEvent>)[] = [];
+  comparisonEvents: (ComparisonEvent | Promise<ComparisonEvent>)[] = [];
   /** Of the scene. */
   presets: MessageInitShape<typeof PresetSchema>[] = [];
   private emitters = new Set<(event: Event | "end") => void>();
@@ -108,7 +108,7 @@ export class FakeServer {
           return this.answer({});
         },
         stepSession: ({ sessionId, ticks, expectedTick }) => {
-          this.steps.push([expectedTick, ticks]);
+          this.stepRequests.push([expectedTick, ticks]);
           this.stepped.push([sessionId, ticks]);
           return this.answer({});
         },
@@ -118,7 +118,7 @@ export class FakeServer {
         },
         pauseSession: ({ sessionId }) => {
           this.paused.push(sessionId);
-          return this.answer({ session: this.resting.get(sessionId) ?? this.session });
+          return this.answer({ session: this.pausedSessions.get(sessionId) ?? this.session });
         },
         updateParameters: ({ parameters, preset }) => {
           this.updates.push(preset === "" ? parameters! : { preset });
@@ -154,21 +154,21 @@ export class FakeServer {
     return {
       ackFrames({ sequence, basisEpoch }: { sequence: bigint; basisEpoch: bigint }) {
         server.acknowledged.push(sequence);
-        server.basesTold.push(basisEpoch);
+        server.reportedBasisEpochs.push(basisEpoch);
         return server.answer({ unixNanos: 1_000_000_000n, framesPerSecond: 30, basisEpoch: server.basis.epoch });
       },
       getBasis() {
         return server.answer(server.basis);
       },
       getForces({ body, vertex, kind }: GetForcesRequest) {
-        server.forceQuestions.push({
+        server.forceRequests.push({
           body,
           ...(vertex === undefined ? {} : { vertex }),
           ...(kind === "" ? {} : { kind }),
         });
         const forces = vertex === undefined ? [] : [1, 2].map(() => ({ x: 1, y: 2, z: 3 }));
-        const sizes = kind === "" ? new Uint8Array() : bytesOf(new Float32Array(server.forcesTold.sizes));
-        return server.answer({ kinds: ["springs", "net"], time: server.forcesTold.time, forces, sizes });
+        const sizes = kind === "" ? new Uint8Array() : bytesOf(new Float32Array(server.forceResponse.sizes));
+        return server.answer({ kinds: ["springs", "net"], time: server.forceResponse.time, forces, sizes });
       },
       async *getGeometry() {
         server.geometryCalls++;
@@ -214,7 +214,7 @@ export class FakeServer {
     return {
       async *compare(request: CompareRequest) {
         server.comparisons.push(request);
-        for (const event of server.found) yield server.answer({ event: await event });
+        for (const event of server.comparisonEvents) yield server.answer({ event: await event });
       },
     };
   }

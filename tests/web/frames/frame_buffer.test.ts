@@ -1,6 +1,6 @@
 import { create } from "@bufbuild/protobuf";
 import { expect, test } from "vitest";
-import { Frames } from "../../../web/src/frames/frame_buffer";
+import { FrameBuffer } from "../../../web/src/frames/frame_buffer";
 import { AckFramesResponseSchema, Codec, FrameSchema } from "../../../web/src/gen/phrenic/v1/frames_pb";
 import { decodeBody } from "../../../web/src/geometry/bodies";
 
@@ -10,7 +10,7 @@ const nanos = (milliseconds: number) => BigInt(milliseconds) * 1_000_000n;
 const answer = (milliseconds: number) => create(AckFramesResponseSchema, { unixNanos: nanos(milliseconds) });
 
 test("AgeIsTakenByTheServersClockFromTheQuickestAnswer", () => {
-  const frames = new Frames();
+  const frames = new FrameBuffer();
   expect(frames.rate(0).age).toBeUndefined();
   frames.receive(create(FrameSchema, { unixNanos: nanos(50_000), maxErrorMm: 0.2 }), 1040);
   expect(frames.rate(1040).age).toBeUndefined();
@@ -21,7 +21,7 @@ test("AgeIsTakenByTheServersClockFromTheQuickestAnswer", () => {
 });
 
 test("FramesOlderThanASecondDoNotCount", () => {
-  const frames = new Frames();
+  const frames = new FrameBuffer();
   for (const now of [0, 500, 1200]) frames.receive(create(FrameSchema, {}), now);
   expect(frames.rate(1300).framesPerSecond).toBe(2);
 });
@@ -32,8 +32,8 @@ function frameAt(made: number, time: number) {
   return create(FrameSchema, { unixNanos: nanos(made), time, positions, codec: Codec.RAW, bodies: [0] });
 }
 
-function watched(): Frames {
-  const frames = new Frames();
+function watched(): FrameBuffer {
+  const frames = new FrameBuffer();
   const point = triangleBody({ restPositions: new Uint8Array(12), triangles: new Uint8Array() });
   frames.start([decodeBody(point)]);
   frames.receive(frameAt(50_000, 1), 1000);
@@ -45,20 +45,20 @@ test("ThePictureStandsBetweenTwoFramesAndTheNewestIsKnownNonetheless", () => {
   const frames = watched();
   frames.advance(1040, false);
   expect(frames.advance(1060, false)).toBe(true);
-  expect(frames.moment!.time).toBeCloseTo(1.5, 9);
-  expect(frames.moment!.arrays.positions[0]).toBeCloseTo(1.5, 6);
+  expect(frames.displayed!.time).toBeCloseTo(1.5, 9);
+  expect(frames.displayed!.arrays.positions[0]).toBeCloseTo(1.5, 6);
   expect(frames.arrays!.positions[0]).toBe(2);
   expect(frames.rate(1060).delay).toBe(40);
   // Nothing more comes: it ends at the newest frame, and is not drawn again.
   frames.advance(1100, false);
-  expect(frames.moment!.arrays).toBe(frames.arrays);
+  expect(frames.displayed!.arrays).toBe(frames.arrays);
   expect(frames.advance(1200, false)).toBe(false);
 });
 
 test("WhoAsksForCalmSeesTheNewestFrame", () => {
   const frames = watched();
   frames.advance(1050, true);
-  expect(frames.moment!.arrays).toBe(frames.arrays);
+  expect(frames.displayed!.arrays).toBe(frames.arrays);
   expect(frames.rate(1050).delay).toBe(0);
 });
 
@@ -68,7 +68,7 @@ test("AWeakMachineDrawsOnlyFramesThatCame", () => {
     frames.receive(frameAt(50_040 + 100 * i, 2 + i), 1040 + 100 * i);
     frames.advance(1045 + 100 * i, false);
   }
-  expect(frames.moment!.arrays).toBe(frames.arrays);
+  expect(frames.displayed!.arrays).toBe(frames.arrays);
 });
 
 test("BackToTheStartIsShownAtOnce", () => {
@@ -76,13 +76,13 @@ test("BackToTheStartIsShownAtOnce", () => {
   frames.advance(1040, false);
   frames.receive(frameAt(50_080, 0), 1080);
   frames.advance(1080, false);
-  expect(frames.moment!.time).toBe(0);
+  expect(frames.displayed!.time).toBe(0);
 });
 
 /** Two in step: of the first, frames up to 1.4 s have come, of the second up to 1.1 s, all just before 1400 ms. */
-function pair(): [Frames, Frames] {
+function pair(): [FrameBuffer, FrameBuffer] {
   const [ahead, behind] = [watched(), watched()];
-  ahead.goInStepWith(behind);
+  ahead.synchroniseWith(behind);
   for (const time of [1, 1.1, 1.2, 1.3, 1.4]) ahead.receive(frameAt(50_000 + 1000 * time, time), 1000 * time);
   for (const time of [1, 1.1]) behind.receive(frameAt(50_000 + 1000 * time, time), 1000 * time);
   return [ahead, behind];
@@ -90,30 +90,30 @@ function pair(): [Frames, Frames] {
 
 test("OfTwoInStepNeitherIsShownAheadOfTheOther", () => {
   const [ahead, behind] = pair();
-  expect(ahead.present(1400)?.time).toBeCloseTo(1.1, 9);
-  expect(behind.present(1400)?.time).toBeCloseTo(1.1, 9);
+  expect(ahead.liveFrame(1400)?.time).toBeCloseTo(1.1, 9);
+  expect(behind.liveFrame(1400)?.time).toBeCloseTo(1.1, 9);
   expect(ahead.frame?.time).toBeCloseTo(1.4, 9);
   ahead.advance(1400, true);
-  expect(ahead.moment?.time).toBeCloseTo(1.1, 9);
-  expect(ahead.moment?.arrays.positions[0]).toBeCloseTo(1.1, 6);
+  expect(ahead.displayed?.time).toBeCloseTo(1.1, 9);
+  expect(ahead.displayed?.arrays.positions[0]).toBeCloseTo(1.1, 6);
   behind.receive(frameAt(51_420, 1.3), 1420);
   ahead.advance(1420, true);
-  expect(ahead.moment?.time).toBeCloseTo(1.3, 9);
+  expect(ahead.displayed?.time).toBeCloseTo(1.3, 9);
 });
 
 test("APictureThatNothingComesToIsNotWaitedFor", () => {
   const [ahead, behind] = pair();
   ahead.receive(frameAt(52_000, 1.5), 3200);
-  expect(ahead.present(3200)?.time).toBeCloseTo(1.5, 9);
+  expect(ahead.liveFrame(3200)?.time).toBeCloseTo(1.5, 9);
   // Nor does the picture go back to it when frames come again.
   ahead.advance(3200, true);
   behind.receive(frameAt(52_200, 1.2), 3201);
   ahead.advance(3201, true);
-  expect(ahead.moment?.time).toBeCloseTo(1.5, 9);
+  expect(ahead.displayed?.time).toBeCloseTo(1.5, 9);
 });
 
 test("APictureFarBehindIsNotWaitedFor", () => {
   const [ahead] = pair();
   ahead.receive(frameAt(51_500, 3.2), 1500);
-  expect(ahead.present(1500)?.time).toBeCloseTo(3.2, 9);
+  expect(ahead.liveFrame(1500)?.time).toBeCloseTo(3.2, 9);
 });

@@ -1,5 +1,5 @@
 import { expect, test } from "vitest";
-import { blend } from "../../../web/src/frames/interpolation";
+import { interpolate } from "../../../web/src/frames/interpolation";
 
 const frame = (places: number[], pose: number[]) => ({
   positions: new Float32Array(places),
@@ -15,17 +15,17 @@ const a = frame([0, 1, 2], turned(10));
 const b = frame([4, 1, -2], turned(14));
 
 test("ItsEndsAreTheFramesThemselves", () => {
-  expect(blend(a, b, 0)).toBe(a);
-  expect(blend(a, b, 1)).toBe(b);
-  expect(blend(a, a, 0.3)).toBe(a);
+  expect(interpolate(a, b, 0)).toBe(a);
+  expect(interpolate(a, b, 1)).toBe(b);
+  expect(interpolate(a, a, 0.3)).toBe(a);
 });
 
 test("PlacesGoStraight", () => {
-  expect([...blend(a, b, 0.25).positions]).toEqual([1, 1, 1]);
+  expect([...interpolate(a, b, 0.25).positions]).toEqual([1, 1, 1]);
 });
 
 test.each([1, -1])("BodiesTurnTheShorterWayAndStayRigid, whichever sign the quaternion has: %d", (sign) => {
-  const { poses } = blend(a, frame([4, 1, -2], turned(14, sign)), 0.5);
+  const { poses } = interpolate(a, frame([4, 1, -2], turned(14, sign)), 0.5);
   turned(12).forEach((value, k) => expect(poses[k]).toBeCloseTo(value, 6));
   expect(Math.hypot(poses[0], poses[1], poses[2], poses[3])).toBeCloseTo(1, 6);
 });

@@ -1,5 +1,5 @@
 import { expect, test } from "vitest";
-import { longestHold, Playout } from "../../../web/src/frames/playout";
+import { maxHold, PlayoutBuffer } from "../../../web/src/frames/playout";
 
 /** A server whose clock is so far ahead of one's own [ms]. */
 const ahead = 49_000;
@@ -16,7 +16,7 @@ function arrivals(count: number, gap: number, late: (i: number) => number): Arri
 
 /** Plays them at `beat` [ms] and tells what was seen: when, which moment, and the newest that had come by then. */
 function play(frames: Arrival[], beat = 1000 / 60) {
-  const playout = new Playout<number>();
+  const playout = new PlayoutBuffer<number>();
   const seen: { now: number; moment: number; newest: number; delay: number }[] = [];
   let next = 0;
   for (let now = 0; now < frames[frames.length - 1].arrived + 500; now += beat) {
@@ -47,7 +47,7 @@ test.each(cases)("TimeNeverGoesBackAndNeverPassesWhatHasCome: %s", (_, frames) =
 });
 
 test.each(cases)("TheDelayIsBounded: %s", (_, frames) => {
-  for (const { delay } of play(frames)) expect(delay).toBeLessThanOrEqual(longestHold + 100);
+  for (const { delay } of play(frames)) expect(delay).toBeLessThanOrEqual(maxHold + 100);
 });
 
 test("EvenFramesMoveThePictureEvenlyOneFrameLate", () => {
@@ -57,7 +57,7 @@ test("EvenFramesMoveThePictureEvenlyOneFrameLate", () => {
 });
 
 test("ItPassesThroughTheFramesThemselves", () => {
-  const playout = new Playout<string>();
+  const playout = new PlayoutBuffer<string>();
   playout.receive("a", ahead, 0);
   playout.receive("b", ahead + 30, 30);
   expect(playout.at(30)).toEqual({ before: "a", after: "b", part: 0 });
@@ -73,7 +73,7 @@ test("WhatStopsEndsAtItsNewestFrameAndStays", () => {
 });
 
 test("AfterALongGapTheNextFrameIsShownAtOnce", () => {
-  const playout = new Playout<string>();
+  const playout = new PlayoutBuffer<string>();
   playout.receive("a", ahead, 0);
   playout.receive("b", ahead + 30, 30);
   playout.at(30);

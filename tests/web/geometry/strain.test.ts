@@ -1,5 +1,5 @@
 import { expect, test } from "vitest";
-import { strains } from "../../../web/src/geometry/strain";
+import { principalStrains } from "../../../web/src/geometry/strain";
 
 /** Two triangles that share an edge, in the plane z = 0. */
 const rest = new Float32Array([0, 0, 0, 2, 0, 0, 0.5, 1.5, 0, 2, 2, 0]);
@@ -12,7 +12,7 @@ function moved(move: (x: number, y: number, z: number) => number[]): Float32Arra
 }
 
 const both = (now: Float32Array) =>
-  (["largest", "smallest"] as const).map((which) => [...strains(rest, now, triangles, which)]);
+  (["largest", "smallest"] as const).map((which) => [...principalStrains(rest, now, triangles, which)]);
 
 function expectAll(now: Float32Array, largest: number, smallest: number): void {
   const [large, small] = both(now);
@@ -58,5 +58,5 @@ test("AShearStretchesOneWayAndShortensTheOther", () => {
 
 test("AVertexOfNoTriangleHasNone", () => {
   const lonely = new Float32Array([...rest, 9, 9, 9]);
-  expect(strains(lonely, lonely, triangles, "largest")[4]).toBeNaN();
+  expect(principalStrains(lonely, lonely, triangles, "largest")[4]).toBeNaN();
 });

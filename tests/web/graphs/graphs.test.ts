@@ -2,9 +2,9 @@ import { create } from "@bufbuild/protobuf";
 import { describe, expect, test } from "vitest";
 import { FrameSchema } from "../../../web/src/gen/phrenic/v1/frames_pb";
 import { graphsOf, valuesOf } from "../../../web/src/graphs/catalogue";
-import { csvOf, svgOf } from "../../../web/src/graphs/files";
-import { dataOf, rangeOf } from "../../../web/src/graphs/window";
-import { History } from "../../../web/src/state/time_series";
+import { toCsv, toSvg } from "../../../web/src/graphs/files";
+import { graphData, valueRange } from "../../../web/src/graphs/window";
+import { TimeSeries } from "../../../web/src/state/time_series";
 
 const frameAt = (time: number) =>
   create(FrameSchema, {
@@ -23,7 +23,7 @@ const frameAt = (time: number) =>
   });
 const graphs = graphsOf(frameAt(0));
 const graph = (id: string) => graphs.find((each) => each.id === id)!;
-const history = new History(100);
+const history = new TimeSeries(100);
 for (let time = 0; time <= 10; time++) history.add(time, valuesOf(frameAt(time)));
 
 describe("what a scene measures", () => {
@@ -41,27 +41,27 @@ describe("what a scene measures", () => {
   });
 
   test("MakesALoopOfThePressureAroundTheLungs", () => {
-    expect(graph("loop").across).toMatchObject({ name: "pleural pressure", unit: "Pa" });
+    expect(graph("loop").abscissa).toMatchObject({ name: "pleural pressure", unit: "Pa" });
     expect(graphsOf(create(FrameSchema, {})).map(({ id }) => id)).toEqual(["breath"]);
   });
 });
 
 describe("the data of a graph", () => {
   test("AreThoseOfTheSpanInItsUnitWithOnePointAtEitherSide", () => {
-    const data = dataOf(graph("domes"), history, { start: 3, end: 5 });
+    const data = graphData(graph("domes"), history, { start: 3, end: 5 });
     expect(data.times).toEqual([2, 3, 4, 5]);
     expect(data.curves[0].map((value) => Math.round(value))).toEqual([20, 30, 40, 50]);
   });
 
   test("FillTheGraphWithSomeRoom", () => {
-    const [low, high] = rangeOf([[1, 2], [3]], 0);
+    const [low, high] = valueRange([[1, 2], [3]], 0);
     expect([low, high]).toEqual([1 - 0.16, 3 + 0.16]);
-    expect(rangeOf([[5, 5]], 2)).toEqual([4, 6]);
-    expect(rangeOf([[]], 2)).toEqual([-1, 1]);
+    expect(valueRange([[5, 5]], 2)).toEqual([4, 6]);
+    expect(valueRange([[]], 2)).toEqual([-1, 1]);
   });
 
   test("AreSavedWithEveryDigit", () => {
-    const rows = csvOf(graph("loop"), dataOf(graph("loop"), history, { start: 0, end: 10 }))
+    const rows = toCsv(graph("loop"), graphData(graph("loop"), history, { start: 0, end: 10 }))
       .trimEnd()
       .split("\n");
     expect(rows[0]).toBe("time [s],pleural pressure [Pa],lung volume [l]");
@@ -71,7 +71,7 @@ describe("the data of a graph", () => {
 
   test("AreDrawnAsAPictureOfTheirOwn", () => {
     const spec = { ...graph("pressure"), title: "Pressure < 0 & more" };
-    const text = svgOf(spec, dataOf(spec, history, { start: 0, end: 10 }));
+    const text = toSvg(spec, graphData(spec, history, { start: 0, end: 10 }));
     const svg = new DOMParser().parseFromString(text, "image/svg+xml");
     const lines = [...svg.querySelectorAll("polyline")];
     expect(lines).toHaveLength(2);

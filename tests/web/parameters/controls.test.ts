@@ -6,7 +6,7 @@ import {
   type NumberControl,
   parameterControls,
 } from "../../../web/src/parameters/controls";
-import { faultOf, formatNumber, positionOf, valueAt } from "../../../web/src/parameters/numbers";
+import { formatNumber, rangeError, sliderPosition, sliderValue } from "../../../web/src/parameters/numbers";
 
 const controls = parameterControls();
 const numbers = controls.filter((control): control is NumberControl => control.kind === "number");
@@ -73,26 +73,26 @@ describe("a slider", () => {
   test("KeepsTheValueThatItShows", () => {
     for (const control of numbers) {
       for (const value of [control.minimum, control.maximum, control.defaultValue || control.minimum]) {
-        expect(valueAt(control, positionOf(control, value))).toBeCloseTo(value, 9);
+        expect(sliderValue(control, sliderPosition(control, value))).toBeCloseTo(value, 9);
       }
     }
   });
 
   test("NeverLeavesTheRange", () => {
     for (const control of numbers) {
-      for (const position of [-1e3, 1e3]) expect(faultOf(control, valueAt(control, position))).toBeUndefined();
+      for (const position of [-1e3, 1e3]) expect(rangeError(control, sliderValue(control, position))).toBeUndefined();
     }
   });
 });
 
 describe("a typed number", () => {
   test("PastTheRangeIsRefusedWithTheRange", () => {
-    expect(faultOf(find("breathLength"), 31)).toBe("Breath length goes from 0.5 to 30 s.");
-    expect(faultOf(find("breathForce"), -0.1)).toBe("Breath force goes from 0 to 20.");
+    expect(rangeError(find("breathLength"), 31)).toBe("Breath length goes from 0.5 to 30 s.");
+    expect(rangeError(find("breathForce"), -0.1)).toBe("Breath force goes from 0 to 20.");
   });
 
   test("ThatIsNoneIsRefused", () => {
-    expect(faultOf(find("breathLength"), NaN)).toBeDefined();
+    expect(rangeError(find("breathLength"), NaN)).toBeDefined();
   });
 
   test("IsShownWithFourDigits", () => {

@@ -7,7 +7,7 @@ import { guidesIn } from "../../../web/src/report/convergence";
 import { placeLabels } from "../../../web/src/report/direct_labels";
 import { formatDigits, formatTicks } from "../../../web/src/report/format";
 import { headingOf } from "../../../web/src/report/headings";
-import { looksOf, nameOf } from "../../../web/src/report/names";
+import { seriesName, seriesStyles } from "../../../web/src/report/names";
 import { tableOf } from "../../../web/src/report/table";
 
 describe("numbers", () => {
@@ -67,10 +67,10 @@ test.each([
 describe("looks", () => {
   test("NoTwoSeriesShareAColourOrASymbol", () => {
     const ids = ["thesis", "bdf2", "one", "two", "velocity_verlet"];
-    const looks = [...looksOf(ids).values()];
-    expect(new Set(looks.map(({ color }) => color)).size).toBe(ids.length);
-    expect(new Set(looks.map(({ symbol }) => symbol)).size).toBe(ids.length);
-    expect(nameOf("some_new_one")).toBe("Some new one");
+    const styles = [...seriesStyles(ids).values()];
+    expect(new Set(styles.map(({ color }) => color)).size).toBe(ids.length);
+    expect(new Set(styles.map(({ symbol }) => symbol)).size).toBe(ids.length);
+    expect(seriesName("some_new_one")).toBe("Some new one");
   });
 });
 

@@ -1,7 +1,7 @@
 import { create } from "@bufbuild/protobuf";
 import { expect, test } from "vitest";
 import { SessionSchema, SessionState } from "../../../web/src/gen/phrenic/v1/session_pb";
-import { chooseSession, preferred } from "../../../web/src/session/choose_session";
+import { chooseSession, preferredSession } from "../../../web/src/session/choose_session";
 import { FakeClock, settle } from "../fakes/fake_clock";
 import { FakeServer } from "../fakes/fake_server";
 
@@ -10,9 +10,9 @@ const plain = new URL("http://127.0.0.1:8080/");
 
 test("TheFirstThatPlaysIsPreferred", () => {
   const [a, b] = [session("a", SessionState.PAUSED), session("b", SessionState.PLAYING)];
-  expect(preferred([a, b])).toBe(b);
-  expect(preferred([a])).toBe(a);
-  expect(preferred([])).toBeUndefined();
+  expect(preferredSession([a, b])).toBe(b);
+  expect(preferredSession([a])).toBe(a);
+  expect(preferredSession([])).toBeUndefined();
 });
 
 test("TheAddressHasTheFirstWord", async () => {

@@ -22,11 +22,11 @@ const table = (time: number) => ({
     rows: [{ distance: { hdMax: 2, meanAToB: 1.5 } }],
   },
 });
-const words = () => (comparisons.work.value.kind === "failed" ? comparisons.work.value.words : "");
+const words = () => (comparisons.progress.value.kind === "failed" ? comparisons.progress.value.message : "");
 
 beforeEach(() => {
   server = new FakeServer();
-  server.found = [{ case: "progress", value: 0.5 }, vertices, table(1.2)];
+  server.comparisonEvents = [{ case: "progress", value: 0.5 }, vertices, table(1.2)];
   comparisons = new Comparisons(server.api, "thorax");
   comparisons.choose({ body: "diaphragm" });
 });
@@ -42,7 +42,7 @@ test("TheBodyAsTheServerHasItIsComparedWithTheFile", async () => {
     },
   ]);
   expect(new TextDecoder().decode(server.comparisons[0].b!.source.value as Uint8Array)).toBe(text);
-  expect(comparisons.work.value.kind).toBe("idle");
+  expect(comparisons.progress.value.kind).toBe("idle");
   expect(comparisons.result.value).toMatchObject({
     file: "b.obj",
     body: "diaphragm",
@@ -55,31 +55,33 @@ test("TheBodyAsTheServerHasItIsComparedWithTheFile", async () => {
 
 test("ProgressIsToldWhileItRuns", async () => {
   const told: unknown[] = [];
-  comparisons.work.subscribe((work) => told.push(work));
+  comparisons.progress.subscribe((work) => told.push(work));
   await comparisons.compare(fileOf("b.obj"));
   expect(told).toContainEqual({ kind: "running", file: "b.obj", done: 0.5 });
 });
 
 test("AgainSendsTheSameFileAndReplacesTheResult", async () => {
-  await comparisons.again();
+  await comparisons.repeat();
   expect(server.comparisons).toEqual([]);
   await comparisons.compare(fileOf("b.obj"));
-  server.found = [vertices, table(3.4)];
-  await comparisons.again();
+  server.comparisonEvents = [vertices, table(3.4)];
+  await comparisons.repeat();
   expect(server.comparisons[1].b).toEqual(server.comparisons[0].b);
   expect(comparisons.result.value?.time).toBe(3.4);
 });
 
 test("ARefusalIsToldInTheServersWordsAndLeavesWhatWasFound", async () => {
   await comparisons.compare(fileOf("b.obj"));
-  server.found = [Promise.reject(new ConnectError("bad.obj:1: a vertex has three numbers", Code.InvalidArgument))];
+  server.comparisonEvents = [
+    Promise.reject(new ConnectError("bad.obj:1: a vertex has three numbers", Code.InvalidArgument)),
+  ];
   await comparisons.compare(fileOf("bad.obj"));
   expect(words()).toBe("bad.obj:1: a vertex has three numbers");
   expect(comparisons.result.value?.file).toBe("b.obj");
 });
 
 test("AStreamThatEndsEarlyIsAFailure", async () => {
-  server.found = [vertices];
+  server.comparisonEvents = [vertices];
   await comparisons.compare(fileOf("b.obj"));
   expect(words()).toContain("without a result");
 });
@@ -97,14 +99,14 @@ test("AFileThatCannotBeReadIsSaid", async () => {
 
 test("WhatIsStoppedChangesNothingWhenItsAnswerComes", async () => {
   let answer = (_: ReturnType<typeof table>) => {};
-  server.found = [vertices, new Promise<ReturnType<typeof table>>((resolve) => (answer = resolve))];
+  server.comparisonEvents = [vertices, new Promise<ReturnType<typeof table>>((resolve) => (answer = resolve))];
   void comparisons.compare(fileOf("b.obj"));
   await settle();
-  expect(comparisons.work.value.kind).toBe("running");
+  expect(comparisons.progress.value.kind).toBe("running");
   comparisons.stop();
   answer(table(1));
   await settle();
-  expect(comparisons.work.value.kind).toBe("idle");
+  expect(comparisons.progress.value.kind).toBe("idle");
   expect(comparisons.result.value).toBeUndefined();
 });
 
@@ -115,13 +117,13 @@ test("ANewerFileWinsOverOneThatIsStillRead", async () => {
   read(new ArrayBuffer(0));
   await settle();
   expect(server.comparisons.map(({ b }) => b?.name)).toEqual(["b.obj"]);
-  expect(comparisons.work.value.kind).toBe("idle");
+  expect(comparisons.progress.value.kind).toBe("idle");
 });
 
 test("ClearForgetsFileAndResult", async () => {
   await comparisons.compare(fileOf("b.obj"));
   comparisons.clear();
   expect(comparisons.result.value).toBeUndefined();
-  await comparisons.again();
+  await comparisons.repeat();
   expect(server.comparisons.length).toBe(1);
 });

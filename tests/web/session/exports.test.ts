@@ -80,13 +80,13 @@ beforeEach(() => {
 
 test("AnExportIsRecordedFetchedAndForgotten", async () => {
   const exports = new Exports(api, "class");
-  await exports.learn();
+  await exports.loadFormats();
   document.body.replaceChildren(exportPanel(exports, new Signal<Body[]>([])));
   pick("export-values", String(ExportValues.POSITIONS));
   pick("export-seconds", "4");
   await exports.start();
   expect(asked[0]).toMatchObject({ sessionId: "class", format: "msh", seconds: 4, values: ExportValues.POSITIONS });
-  expect(exports.work.value).toMatchObject({ kind: "ready", file: "class.msh", size: 7 });
+  expect(exports.progress.value).toMatchObject({ kind: "ready", file: "class.msh", size: 7 });
   expect(byId<HTMLAnchorElement>("export-link").download).toBe("class.msh");
   expect(deleted).toEqual(["e"]);
   exports.choose({ format: "stl" });
@@ -102,7 +102,7 @@ test("ADownloadThatBreaksOffGoesOnWhereItWas", async () => {
   const exports = new Exports(api, "class", 0);
   await exports.start();
   expect(offsets).toEqual([0, 3]);
-  expect(exports.work.value).toMatchObject({ kind: "ready", size: 7 });
+  expect(exports.progress.value).toMatchObject({ kind: "ready", size: 7 });
 });
 
 test("AFailureIsSaidInTheServersWords", async () => {
@@ -116,7 +116,7 @@ test("AFailureIsSaidInTheServersWords", async () => {
 test("AnUploadGoesOnWhereItWasAndSaysHowScenesNameIt", async () => {
   const uploads = new Uploads(api);
   document.body.replaceChildren(uploadPanel(uploads));
-  await uploads.learn();
+  await uploads.loadFormats();
   expect(byId<HTMLInputElement>("upload-file").accept).toBe(".obj,.vtp");
   const local = { name: "a.obj", size: 7, arrayBuffer: async () => file.slice().buffer as ArrayBuffer };
   await uploads.upload(local);

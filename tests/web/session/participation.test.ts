@@ -1,17 +1,17 @@
 import { create } from "@bufbuild/protobuf";
 import { createClient, createRouterTransport } from "@connectrpc/connect";
 import { beforeEach, expect, test } from "vitest";
-import { Identity, signing } from "../../../web/src/connection/identity";
+import { Identity, identityInterceptor } from "../../../web/src/connection/identity";
 import { type Control, ControlPolicy, ControlSchema, ControlService } from "../../../web/src/gen/phrenic/v1/control_pb";
 import { SessionSchema, SessionService } from "../../../web/src/gen/phrenic/v1/session_pb";
-import type { Pose } from "../../../web/src/geometry/camera_pose";
-import { CameraLead } from "../../../web/src/session/camera_sharing";
-import { controlWords, refusalWords, rolesOf, Standing } from "../../../web/src/session/participation";
-import { Controller } from "../../../web/src/session/session_controller";
+import type { CameraPose } from "../../../web/src/geometry/camera_pose";
+import { CameraSharing } from "../../../web/src/session/camera_sharing";
+import { controlLabel, Participation, refusalReason, rolesOf } from "../../../web/src/session/participation";
+import { SessionController } from "../../../web/src/session/session_controller";
 import { FakeClock, settle } from "../fakes/fake_clock";
 import { FakeServer } from "../fakes/fake_server";
 
-class FakeMemory {
+class FakeStorage {
   private readonly values = new Map<string, string>();
   getItem = (key: string) => this.values.get(key) ?? null;
   setItem = (key: string, value: string) => void this.values.set(key, value);
@@ -29,15 +29,15 @@ const people = (controller: string, revision = 1n): Control =>
 let identity: Identity;
 let clock: FakeClock;
 let server: FakeServer;
-let controller: Controller;
-let standing: Standing;
+let controller: SessionController;
+let participation: Participation;
 
 beforeEach(() => {
-  identity = new Identity(new FakeMemory());
+  identity = new Identity(new FakeStorage());
   clock = new FakeClock();
   server = new FakeServer();
-  controller = new Controller(server.api, "thorax", clock);
-  standing = new Standing(server.api, controller, identity, clock);
+  controller = new SessionController(server.api, "thorax", clock);
+  participation = new Participation(server.api, controller, identity, clock);
 });
 
 const receive = (controls: string, revision = 1n) =>
@@ -45,23 +45,23 @@ const receive = (controls: string, revision = 1n) =>
 
 async function enterAs(name: string) {
   server.api.control.enterSession = () => Promise.resolve({ controlToken: "t" } as never);
-  await standing.enter(name);
+  await participation.enter(name);
 }
 
 test("EverybodyMayChangeWhatNobodyControls", () => {
   const roles = rolesOf(people(""), "");
-  expect([roles.mayChange, controlWords(roles), refusalWords(roles)]).toEqual([true, "Everybody controls", ""]);
+  expect([roles.mayChange, controlLabel(roles), refusalReason(roles)]).toEqual([true, "Everybody controls", ""]);
 });
 
 test("OnlyWhoControlsMayChange", () => {
-  expect(rolesOf(people("Anna"), "Anna")).toMatchObject({ alone: true, mayChange: true, mayHand: true });
-  expect(rolesOf(people("Anna"), "Ben")).toMatchObject({ alone: false, mayChange: false, mayHand: false });
-  expect(rolesOf(people("Ben"), "Anna")).toMatchObject({ mayChange: false, mayHand: true });
-  expect(refusalWords(rolesOf(people("Anna"), ""))).toContain("Anna controls");
+  expect(rolesOf(people("Anna"), "Anna")).toMatchObject({ hasControl: true, mayChange: true, mayHandOver: true });
+  expect(rolesOf(people("Anna"), "Ben")).toMatchObject({ hasControl: false, mayChange: false, mayHandOver: false });
+  expect(rolesOf(people("Ben"), "Anna")).toMatchObject({ mayChange: false, mayHandOver: true });
+  expect(refusalReason(rolesOf(people("Anna"), ""))).toContain("Anna controls");
 });
 
 test("ANameThatTheServerDoesNotListIsNobodys", () => {
-  expect(rolesOf(people("Zoe"), "Zoe")).toMatchObject({ me: "", alone: false });
+  expect(rolesOf(people("Zoe"), "Zoe")).toMatchObject({ name: "", hasControl: false });
 });
 
 test("AnOlderWordAboutControlNeverReplacesANewerOne", () => {
@@ -74,7 +74,7 @@ test("AnOlderWordAboutControlNeverReplacesANewerOne", () => {
 
 test("NothingIsShownAnewWhereNothingChanged", () => {
   let shown = 0;
-  standing.roles.subscribe(() => shown++);
+  participation.roles.subscribe(() => shown++);
   receive("Anna");
   receive("Anna");
   expect(shown).toBe(2);
@@ -92,7 +92,7 @@ test("CallsAreSignedAndAnsweredTokensAreKept", async () => {
       });
       service(ControlService, {});
     },
-    { transport: { interceptors: [signing(identity)] } },
+    { transport: { interceptors: [identityInterceptor(identity)] } },
   );
   const sessions = createClient(SessionService, transport);
   identity.name = "Anna";
@@ -103,36 +103,36 @@ test("CallsAreSignedAndAnsweredTokensAreKept", async () => {
 });
 
 test("TokensOfTheLastSessionsAreKeptAndNoMore", () => {
-  for (let i = 0; i <= 200; i++) identity.keepToken(`s-${i}`, `t-${i}`);
+  for (let i = 0; i <= 200; i++) identity.storeToken(`s-${i}`, `t-${i}`);
   expect([identity.tokenOf("s-0"), identity.tokenOf("s-1"), identity.tokenOf("s-200")]).toEqual(["", "t-1", "t-200"]);
 });
 
 test("TheCameraIsShownByWhoControlsAndFollowedByWhoWantsTo", async () => {
-  const shown: Pose[] = [];
-  const placed: Pose[] = [];
-  server.api.control.showCamera = (({ camera }: { camera: Pose }) => {
-    shown.push(camera);
+  const shown: CameraPose[] = [];
+  const moved: CameraPose[] = [];
+  server.api.control.showCamera = ((request: { camera: CameraPose }) => {
+    shown.push(request.camera);
     return Promise.resolve({});
   }) as never;
-  const stage = {
+  const camera = {
     pose: { eye: { x: 1, y: 0, z: 0 }, target: { x: 0, y: 0, z: 0 } },
-    place: (p: Pose) => placed.push(p),
+    moveTo: (p: CameraPose) => moved.push(p),
   };
   await enterAs("Ben");
   receive("Anna");
-  const lead = new CameraLead(server.api, "thorax", standing, stage, clock);
-  const theirs = { eye: { x: 9, y: 0, z: 0 }, target: { x: 0, y: 0, z: 0 } };
-  lead.drawn();
-  lead.receive(theirs as never);
-  expect([shown.length, placed.length]).toEqual([0, 0]);
-  identity.follows = true;
-  lead.follow();
-  expect(placed).toMatchObject([theirs]);
+  const sharing = new CameraSharing(server.api, "thorax", participation, camera, clock);
+  const remotePose = { eye: { x: 9, y: 0, z: 0 }, target: { x: 0, y: 0, z: 0 } };
+  sharing.sendIfMoved();
+  sharing.receive(remotePose as never);
+  expect([shown.length, moved.length]).toEqual([0, 0]);
+  identity.followsCamera = true;
+  sharing.follow();
+  expect(moved).toMatchObject([remotePose]);
   receive("Ben", 2n);
   await settle();
-  lead.receive(theirs as never);
-  lead.drawn();
+  sharing.receive(remotePose as never);
+  sharing.sendIfMoved();
   await settle();
-  expect(shown).toEqual([stage.pose]);
-  expect(placed.length).toBe(1);
+  expect(shown).toEqual([camera.pose]);
+  expect(moved.length).toBe(1);
 });

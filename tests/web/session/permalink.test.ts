@@ -21,7 +21,7 @@ test("ItIsRunAgainStepForStepToItsTick", async () => {
   const heard: number[] = [];
   expect(await rerun(server.api, recipe(), (part) => heard.push(part))).toBe("thorax-2");
   expect(server.created).toMatchObject([{ parameters }]);
-  expect(server.steps).toEqual([
+  expect(server.stepRequests).toEqual([
     [0n, 1000n],
     [1000n, 1000n],
     [2000n, 500n],
@@ -34,7 +34,7 @@ test("AnotherSceneOfThatNameIsRefusedAndLeavesNoSession", async () => {
   server.sceneHash = "def";
   await expect(rerun(server.api, recipe(), () => undefined)).rejects.toThrow("its hash is def");
   expect(server.deleted).toEqual(["thorax-2"]);
-  expect(server.steps).toEqual([]);
+  expect(server.stepRequests).toEqual([]);
 });
 
 test("WhatIsSetOtherwiseBesideIsPutInWords", () => {

@@ -3,20 +3,20 @@ import { Code, ConnectError } from "@connectrpc/connect";
 import { beforeEach, expect, test } from "vitest";
 import { ParametersSchema } from "../../../web/src/gen/phrenic/v1/parameters_pb";
 import { SessionSchema, SessionState } from "../../../web/src/gen/phrenic/v1/session_pb";
-import { Controller } from "../../../web/src/session/session_controller";
+import { SessionController } from "../../../web/src/session/session_controller";
 import { FakeClock, settle } from "../fakes/fake_clock";
 import { FakeServer } from "../fakes/fake_server";
 
 let server: FakeServer;
 let clock: FakeClock;
-let controller: Controller;
+let controller: SessionController;
 
 const at = (revision: bigint) => create(SessionSchema, { id: "thorax", revision });
 
 beforeEach(() => {
   server = new FakeServer();
   clock = new FakeClock();
-  controller = new Controller(server.api, "thorax", clock);
+  controller = new SessionController(server.api, "thorax", clock);
 });
 
 test("AnOlderStateNeverReplacesANewerOne", () => {
@@ -64,7 +64,7 @@ test("AForkOfAPlayingSessionPlaysAndTheSessionGoesOn", async () => {
 
 test("AForkToBeShownBesideStartsAtOneInstantWithItsOriginalAndTheyPlayInStep", async () => {
   controller.receive(create(SessionSchema, { state: SessionState.PLAYING, speed: 0.5 }));
-  expect(await controller.forkBeside("deep")).toBe("thorax-2");
+  expect(await controller.forkForComparison("deep")).toBe("thorax-2");
   await settle();
   expect(server.paused).toEqual(["thorax"]);
   expect(server.updates).toEqual([{ preset: "deep" }]);
@@ -78,18 +78,18 @@ test("AForkToBeShownBesideStartsAtOneInstantWithItsOriginalAndTheyPlayInStep", a
 
 test("AForkOfAPausedSessionLeavesBothPaused", async () => {
   controller.receive(create(SessionSchema, { state: SessionState.PAUSED }));
-  expect(await controller.forkBeside()).toBe("thorax-2");
+  expect(await controller.forkForComparison()).toBe("thorax-2");
   expect([server.paused, server.played]).toEqual([[], []]);
 });
 
 test("TwoThatArePausedStandAtOneInstant", async () => {
   const parameters = create(ParametersSchema, { timeStep: 0.001 });
   const standing = (time: number) => create(SessionSchema, { revision: 2n, time, parameters });
-  server.resting.set("thorax", standing(1)).set("other", standing(1.012));
-  controller.companion = new Controller(server.api, "other", clock);
+  server.pausedSessions.set("thorax", standing(1)).set("other", standing(1.012));
+  controller.companion = new SessionController(server.api, "other", clock);
   await controller.pause();
   expect(server.stepped).toEqual([["thorax", 12n]]);
-  server.resting.set("thorax", standing(9));
+  server.pausedSessions.set("thorax", standing(9));
   await controller.pause();
   expect(server.stepped).toHaveLength(1);
 });

@@ -22,6 +22,6 @@ test("ARefusalIsShownInTheServersWords", async () => {
   const server = new FakeServer();
   const studies = new Studies(server.api, new FakeClock());
   await studies.start("cost", "", undefined);
-  expect(studies.fault.value).toBe("source.name: there is no scene");
+  expect(studies.errorMessage.value).toBe("source.name: there is no scene");
   expect(studies.all.value).toEqual([]);
 });

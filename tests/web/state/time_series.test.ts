@@ -1,35 +1,35 @@
 import { expect, test } from "vitest";
-import { History } from "../../../web/src/state/time_series";
+import { TimeSeries } from "../../../web/src/state/time_series";
 
 test("OnlyTheLastSecondsAreKept", () => {
-  const history = new History(2);
+  const history = new TimeSeries(2);
   for (let time = 0; time <= 10; time++) history.add(time, [["dome", -time]]);
   expect(history.times).toEqual([8, 9, 10]);
   expect(history.series.get("dome")).toEqual([-8, -9, -10]);
 });
 
 test("ATimeIsFoundAmongThoseKept", () => {
-  const history = new History(20);
+  const history = new TimeSeries(20);
   for (let time = 0; time <= 10; time += 2) history.add(time, [["dome", -time]]);
-  expect([-1, 0, 1, 4, 9.9, 11].map((time) => history.from(time))).toEqual([0, 0, 1, 2, 5, 6]);
+  expect([-1, 0, 1, 4, 9.9, 11].map((time) => history.indexAt(time))).toEqual([0, 0, 1, 2, 5, 6]);
 });
 
 test("TimeThatGoesBackStartsAfresh", () => {
-  const history = new History(10);
+  const history = new TimeSeries(10);
   history.add(5, [["dome", 1]]);
   history.add(0, [["dome", 2]]);
   expect(history.series.get("dome")).toEqual([2]);
 });
 
 test("OtherProbesStartAfresh", () => {
-  const history = new History(10);
+  const history = new TimeSeries(10);
   history.add(1, [["dome", 1]]);
   history.add(2, [["mass", 2]]);
   expect([...history.series.keys()]).toEqual(["mass"]);
 });
 
 test("AFrameThatIsSentTwiceCountsOnce", () => {
-  const history = new History(10);
+  const history = new TimeSeries(10);
   history.add(1, [["dome", 1]]);
   history.add(1, [["dome", 1]]);
   expect(history.times).toEqual([1]);

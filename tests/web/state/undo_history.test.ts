@@ -1,11 +1,11 @@
 import { expect, test } from "vitest";
-import { Undo } from "../../../web/src/state/undo_history";
+import { UndoHistory } from "../../../web/src/state/undo_history";
 
 test("ADragIsOneChangeAndIsTakenBackAsOne", () => {
-  const changes = new Undo();
-  changes.note({ breathForce: 1 }, { breathForce: 1.1 }, 0);
-  changes.note({ breathForce: 1.1 }, { breathForce: 1.5 }, 200);
-  changes.note({ breathForce: 1.5 }, { breathForce: 3 }, 5000);
+  const changes = new UndoHistory();
+  changes.record({ breathForce: 1 }, { breathForce: 1.1 }, 0);
+  changes.record({ breathForce: 1.1 }, { breathForce: 1.5 }, 200);
+  changes.record({ breathForce: 1.5 }, { breathForce: 3 }, 5000);
   expect(changes.undo()).toEqual({ breathForce: 1.5 });
   expect(changes.undo()).toEqual({ breathForce: 1 });
   expect(changes.undo()).toBeUndefined();
@@ -15,10 +15,10 @@ test("ADragIsOneChangeAndIsTakenBackAsOne", () => {
 });
 
 test("AChangeAfterUndoEndsWhatCouldBeDoneAgain", () => {
-  const changes = new Undo();
-  changes.note({ breathForce: 1 }, { breathForce: 2 }, 0);
+  const changes = new UndoHistory();
+  changes.record({ breathForce: 1 }, { breathForce: 2 }, 0);
   changes.undo();
-  changes.note({ elasticity: 1 }, { elasticity: 2 }, 10);
+  changes.record({ elasticity: 1 }, { elasticity: 2 }, 10);
   expect(changes.redo()).toBeUndefined();
   expect(changes.undo()).toEqual({ elasticity: 1 });
 });

@@ -1,5 +1,5 @@
 import { expect, test } from "vitest";
-import { NewestWins } from "../../../web/src/timing/coalescing_sender";
+import { CoalescingSender } from "../../../web/src/timing/coalescing_sender";
 import { FakeClock, settle } from "../fakes/fake_clock";
 
 interface Values {
@@ -15,7 +15,9 @@ function sender(answer: () => Promise<void> = async () => {}) {
     sent.push(change);
     await answer();
   };
-  const queue: NewestWins<Values> = new NewestWins(send, clock, () => settled.push(!queue.pending("force")));
+  const queue: CoalescingSender<Values> = new CoalescingSender(send, clock, () =>
+    settled.push(!queue.pending("force")),
+  );
   return { sent, clock, queue, settled };
 }
 

@@ -3,8 +3,8 @@ import * as THREE from "three";
 import { describe, expect, test } from "vitest";
 import { SessionSchema } from "../../../web/src/gen/phrenic/v1/session_pb";
 import { pullRow } from "../../../web/src/panels/parameters/pull_row";
-import { Controller } from "../../../web/src/session/session_controller";
-import { acrossFrom, pickVertex } from "../../../web/src/viewer/picking";
+import { SessionController } from "../../../web/src/session/session_controller";
+import { dragPoint, pickVertex } from "../../../web/src/viewer/picking";
 import { FakeClock, settle } from "../fakes/fake_clock";
 import { FakeServer } from "../fakes/fake_server";
 
@@ -23,7 +23,7 @@ describe("picking", () => {
   test("FindsTheNearestCornerOfTheTriangleThatIsSeen", () => {
     const picked = pickVertex(pointAt(0.3, -0.4, 1), camera, [triangle(0), triangle(1)]);
     expect(picked).toMatchObject({ body: 1, vertex: 1 });
-    expect(picked!.place.toArray()).toEqual([0.5, -0.5, 1]);
+    expect(picked!.position.toArray()).toEqual([0.5, -0.5, 1]);
   });
 
   test("FindsAVertexBesideTheSurface", () => {
@@ -38,7 +38,7 @@ describe("picking", () => {
   });
 
   test("ADragMovesAcrossTheLineOfSight", () => {
-    const to = acrossFrom(pointAt(0.2, 0.3, 1), camera, new THREE.Vector3(-0.5, 0.1, 1));
+    const to = dragPoint(pointAt(0.2, 0.3, 1), camera, new THREE.Vector3(-0.5, 0.1, 1));
     expect(to.distanceTo(new THREE.Vector3(0.2, 0.3, 1))).toBeLessThan(1e-9);
   });
 });
@@ -46,7 +46,7 @@ describe("picking", () => {
 test("OnlyTheNewestPullOnAVertexIsSent", async () => {
   const server = new FakeServer();
   const clock = new FakeClock();
-  const controller = new Controller(server.api, "thorax", clock);
+  const controller = new SessionController(server.api, "thorax", clock);
   controller.pull("sheet", 3, [1, 0, 0]);
   await settle();
   for (let i = 2; i <= 9; i++) controller.pull("sheet", 3, [i, 0, 0]);
@@ -60,7 +60,7 @@ test("OnlyTheNewestPullOnAVertexIsSent", async () => {
 });
 
 test("PullsAreCountedAndLetGo", async () => {
-  const controller = new Controller(new FakeServer().api, "thorax", new FakeClock());
+  const controller = new SessionController(new FakeServer().api, "thorax", new FakeClock());
   const row = pullRow(controller);
   expect(row.hidden).toBe(true);
   const pull = { body: "sheet", vertex: 1, force: { x: 1 } };

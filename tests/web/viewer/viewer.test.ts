@@ -5,9 +5,9 @@ import { edgesOf } from "../../../web/src/geometry/edges";
 import { computeNormals } from "../../../web/src/geometry/normals";
 import { tendonWeights } from "../../../web/src/geometry/tendon";
 import { OrientationCube } from "../../../web/src/panels/view/orientation_cube";
-import { Sharpness } from "../../../web/src/viewer/adaptive_resolution";
-import { placeOf, planeOf } from "../../../web/src/viewer/clipping";
-import { letterOf, openingView, standpoint, type ViewName } from "../../../web/src/viewer/named_views";
+import { AdaptiveResolution } from "../../../web/src/viewer/adaptive_resolution";
+import { clippingPlane, planeCoordinate } from "../../../web/src/viewer/clipping";
+import { cameraPosition, directionLetter, openingView, type ViewName } from "../../../web/src/viewer/named_views";
 import { pickVertex } from "../../../web/src/viewer/picking";
 
 const loose = new THREE.IcosahedronGeometry(1, 4).deleteAttribute("normal").deleteAttribute("uv");
@@ -50,22 +50,22 @@ describe("views", () => {
     { length: 8 },
     (_, i) => new THREE.Vector3(i & 1 ? 0.15 : -0.15, i & 2 ? 0.1 : -0.1, i & 4 ? 1.4 : 1),
   );
-  const look = (view: ViewName, free = { width: 1, height: 1 }) => {
+  const lookFrom = (view: ViewName, free = { width: 1, height: 1 }) => {
     camera.up.set(0, 0, 1);
-    camera.position.copy(standpoint(view, corners, center, camera, free));
+    camera.position.copy(cameraPosition(view, corners, center, camera, free));
     camera.lookAt(center);
     camera.updateMatrixWorld();
   };
 
   test("FromTheFrontThePatientsLeftIsOnTheRight", () => {
-    look("front");
-    expect(letterOf(new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, 0))).toBe("L");
-    expect(letterOf(new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, 1))).toBe("S");
+    lookFrom("front");
+    expect(directionLetter(new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, 0))).toBe("L");
+    expect(directionLetter(new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, 1))).toBe("S");
   });
 
   test("EachShowsTheWholeInTheFreePartOfThePicture", () => {
     for (const view of ["home", "front", "left", "top"] as const) {
-      look(view, { width: 0.6, height: 0.8 });
+      lookFrom(view, { width: 0.6, height: 0.8 });
       for (const corner of corners) {
         const { x, y } = corner.clone().project(camera);
         expect(Math.abs(x), view).toBeLessThanOrEqual(0.6);
@@ -90,14 +90,14 @@ describe("a cut", () => {
   const box = new THREE.Box3(new THREE.Vector3(-1, -2, 0), new THREE.Vector3(1, 2, 4));
 
   test("LiesWhereItIsSaidToAndTakesAwayOneSide", () => {
-    const cut = { kind: "coronal" as const, part: 0.25, flipped: false };
-    const plane = planeOf(cut, box)!;
-    expect(placeOf(cut, box)).toBe(-1);
+    const cut = { kind: "coronal" as const, fraction: 0.25, flipped: false };
+    const plane = clippingPlane(cut, box)!;
+    expect(planeCoordinate(cut, box)).toBe(-1);
     expect(plane.distanceToPoint(new THREE.Vector3(0, -1.5, 0))).toBeLessThan(0);
     expect(plane.distanceToPoint(new THREE.Vector3(0, 1.5, 0))).toBeGreaterThan(0);
-    const other = planeOf({ ...cut, flipped: true }, box)!;
+    const other = clippingPlane({ ...cut, flipped: true }, box)!;
     expect(other.distanceToPoint(new THREE.Vector3(0, 1.5, 0))).toBeLessThan(0);
-    expect(planeOf({ ...cut, kind: "none" }, box)).toBeUndefined();
+    expect(clippingPlane({ ...cut, kind: "none" }, box)).toBeUndefined();
   });
 
   test("HidesWhatItTakesAwayFromTheHand", () => {
@@ -131,22 +131,22 @@ test("TheCubeShowsTheSideThatIsSeen", () => {
 
 describe("sharpness", () => {
   /** Beats every `interval` ms for `time` ms, all of them drawing. */
-  const run = (sharpness: Sharpness, start: number, interval: number, time: number, drawing = true) => {
-    for (let now = start; now < start + time; now += interval) sharpness.beat(now, drawing);
+  const run = (resolution: AdaptiveResolution, start: number, interval: number, time: number, drawing = true) => {
+    for (let now = start; now < start + time; now += interval) resolution.recordFrame(now, drawing);
     return start + time;
   };
 
   test("StaysFullOnAQuickMachine", () => {
-    const sharpness = new Sharpness(2);
+    const sharpness = new AdaptiveResolution(2);
     run(sharpness, 0, 16, 10_000);
     expect(sharpness.ratio).toBe(2);
   });
 
   test("GivesWayInMotionOnASlowMachineAndComesBackAtRest", () => {
-    const sharpness = new Sharpness(2);
-    const now = run(sharpness, 0, 200, 10_000);
-    expect(sharpness.ratio).toBeLessThan(1);
-    run(sharpness, now, 16, 1000, false);
-    expect(sharpness.ratio).toBe(2);
+    const resolution = new AdaptiveResolution(2);
+    const now = run(resolution, 0, 200, 10_000);
+    expect(resolution.ratio).toBeLessThan(1);
+    run(resolution, now, 16, 1000, false);
+    expect(resolution.ratio).toBe(2);
   });
 });

@@ -1,4 +1,4 @@
-import { place } from "../dom/elements";
+import { elementById } from "../dom/elements";
 
 /** Where there is room for them, graphs and controls are open at first. */
 const roomForControls = "(min-width: 761px) and (min-height: 480px)";
@@ -11,32 +11,32 @@ const roomForBoth = "(min-width: 761px)";
  * The controls and the graphs fold away by their buttons; the result folds each. `folded` hears of it. Two pictures need
  * more room than one.
  */
-export function drawers(folded: () => void, two: boolean): { graphs(): void; panel(): void } {
+export function drawers(onChange: () => void, two: boolean): { graphs(): void; panel(): void } {
   const alone = document.body.classList.contains("embedded");
   const open = (room: string) => !alone && matchMedia(room).matches;
-  const panel = drawer("panel", open(roomForControls), folded);
-  const graphs = drawer("graphs", open(two ? roomForGraphsBesideTwo : roomForGraphs), folded);
-  panel.opened = () => matchMedia(roomForBoth).matches || graphs.fold(false);
-  graphs.opened = () => matchMedia(roomForBoth).matches || panel.fold(false);
-  return { graphs: () => graphs.turn(), panel: () => panel.turn() };
+  const panel = drawer("panel", open(roomForControls), onChange);
+  const graphs = drawer("graphs", open(two ? roomForGraphsBesideTwo : roomForGraphs), onChange);
+  panel.opened = () => matchMedia(roomForBoth).matches || graphs.setOpen(false);
+  graphs.opened = () => matchMedia(roomForBoth).matches || panel.setOpen(false);
+  return { graphs: () => graphs.toggle(), panel: () => panel.toggle() };
 }
 
 function drawer(name: string, open: boolean, folded: () => void) {
-  const toggle = place(`${name}-toggle`) as HTMLButtonElement;
+  const toggle = elementById(`${name}-toggle`) as HTMLButtonElement;
   const self = {
     opened: (): unknown => undefined,
-    fold(wanted: boolean): void {
+    setOpen(wanted: boolean): void {
       document.body.classList.toggle(`${name}-open`, wanted);
       toggle.setAttribute("aria-expanded", String(wanted));
       folded();
     },
-    turn(): void {
+    toggle(): void {
       const wanted = !document.body.classList.contains(`${name}-open`);
-      self.fold(wanted);
+      self.setOpen(wanted);
       if (wanted) self.opened();
     },
   };
-  toggle.onclick = () => self.turn();
-  self.fold(open);
+  toggle.onclick = () => self.toggle();
+  self.setOpen(open);
   return self;
 }

@@ -1,12 +1,12 @@
-import { place } from "../dom/elements";
-import type { Covered } from "../viewer/camera_rig";
+import { elementById } from "../dom/elements";
+import type { Insets } from "../viewer/camera_rig";
 
 /** How much of the picture lies under view buttons, heads, dock and cards [CSS pixels]; the style sheet hears of it too. */
-export function covered(): Covered {
-  const stage = place("stage");
-  const width = place("view").clientWidth;
-  const bottom = stage.clientHeight - place("dock").offsetTop;
-  const { offsetLeft, offsetWidth, offsetHeight } = place("cards");
+export function stageInsets(): Insets {
+  const stage = elementById("stage");
+  const width = elementById("view").clientWidth;
+  const bottom = stage.clientHeight - elementById("dock").offsetTop;
+  const { offsetLeft, offsetWidth, offsetHeight } = elementById("cards");
   const right = offsetHeight > 0 ? offsetLeft + offsetWidth : 0;
   const heads = document.getElementById("pane-heads")?.offsetHeight ?? 0;
   // Where a card takes most of a narrow picture, or would push aside both of two, the scene stays behind it.

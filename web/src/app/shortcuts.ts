@@ -3,11 +3,11 @@ import { make } from "../dom/elements";
 /** A key, what it does in words, and the doing. */
 export interface Shortcut {
   key: string;
-  words: string;
-  act(): void;
+  description: string;
+  run(): void;
 }
 
-const ofThePicture: [key: string, words: string][] = [
+const pointerGestures: [key: string, words: string][] = [
   ["Drag, arrow keys", "Turn the picture"],
   ["Wheel, + and −", "Come nearer, go away"],
   ["Right drag", "Move the picture"],
@@ -20,9 +20,12 @@ const ofThePicture: [key: string, words: string][] = [
 export function shortcuts(all: Shortcut[], undo: () => void, redo: () => void): HTMLDialogElement {
   const dialog = make("dialog", { className: "chooser", id: "help", ariaLabel: "Keys and gestures" });
   const close = make("button", { type: "button", onclick: () => dialog.close() }, "Close");
-  const help: Shortcut = { key: "?", words: "Show this list", act: () => dialog.showModal() };
+  const help: Shortcut = { key: "?", description: "Show this list", run: () => dialog.showModal() };
   const keys = [...all, help];
-  const rows = [...keys.map(({ key, words }) => [key === " " ? "Space" : key.toUpperCase(), words]), ...ofThePicture];
+  const rows = [
+    ...keys.map(({ key, description }) => [key === " " ? "Space" : key.toUpperCase(), description]),
+    ...pointerGestures,
+  ];
   const list = rows.flatMap(([key, words]) => [make("dt", {}, make("kbd", {}, key)), make("dd", {}, words)]);
   dialog.append(
     make("header", {}, make("h2", {}, "Keys and gestures"), close),
@@ -36,7 +39,7 @@ export function shortcuts(all: Shortcut[], undo: () => void, redo: () => void): 
     const shortcut = keys.find(({ key }) => key === event.key);
     if (shortcut === undefined) return;
     event.preventDefault();
-    shortcut.act();
+    shortcut.run();
   });
   return dialog;
 }

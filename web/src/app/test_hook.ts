@@ -1,4 +1,4 @@
-import type { Frames } from "../frames/frame_buffer";
+import type { FrameBuffer } from "../frames/frame_buffer";
 import { type Body, vertexAt } from "../geometry/bodies";
 import type { Viewer } from "../viewer/viewer";
 
@@ -8,9 +8,9 @@ export interface TestHook {
   tick(): number;
   time(): number;
   /** Pictures drawn since the page was opened. */
-  pictures(): number;
+  drawCount(): number;
   /** When the first picture with a frame was drawn, since the page was asked for [ms]; -1 before. */
-  firstPicture(): number;
+  firstDrawTime(): number;
   /** Names of the bodies, and a body's number of vertices. */
   bodies(): string[];
   vertices(body: string): number;
@@ -26,7 +26,7 @@ declare global {
   }
 }
 
-export function testHook(bodies: () => Body[], frames: Frames, viewer: Viewer): TestHook {
+export function testHook(bodies: () => Body[], frames: FrameBuffer, viewer: Viewer): TestHook {
   const find = (name: string) => {
     const body = bodies().find((each) => each.name === name);
     if (body === undefined) throw new RangeError(`There is no body "${name}".`);
@@ -35,8 +35,8 @@ export function testHook(bodies: () => Body[], frames: Frames, viewer: Viewer): 
   return {
     tick: () => Number(frames.frame?.tick ?? -1),
     time: () => frames.frame?.time ?? -1,
-    pictures: () => viewer.count,
-    firstPicture: () => viewer.firstPicture,
+    drawCount: () => viewer.drawCount,
+    firstDrawTime: () => viewer.firstDrawTime,
     bodies: () => bodies().map((body) => body.name),
     eye: () => {
       const { x, y, z } = viewer.rig.pose.eye;

@@ -3,20 +3,20 @@ import { interpolatePuOr, interpolateViridis } from "d3-scale-chromatic";
 
 /** A mark beside the scale: how far along it, 0 to 1, and its words. */
 export interface Tick {
-  part: number;
+  fraction: number;
   text: string;
 }
 
 /** The least length that a scale ends at [mm]: below it surfaces are the same. */
-const leastTop = 0.001;
-const steps = 256;
+const smallestTop = 0.001;
+const tableSize = 256;
 /** Where the colour map is entered: its first colours are lost on a dark ground. */
-const start = 0.12;
+const mapStart = 0.12;
 /** The colour of a vertex that has no value. */
-const unknown: [number, number, number] = [128, 136, 146];
+const missingColor: [number, number, number] = [128, 136, 146];
 
 /** The end of a scale that shows all of these values: their largest, rounded up; `least` where they are smaller. */
-export function topFor(values: ArrayLike<number>, least = leastTop): number {
+export function niceTop(values: ArrayLike<number>, least = smallestTop): number {
   let largest = least;
   for (let i = 0; i < values.length; i++) if (values[i] > largest) largest = values[i];
   return scaleLinear([0, largest], [0, 1]).nice(5).domain()[1];
@@ -38,26 +38,26 @@ export class ColorScale {
     this.low = diverging ? -top : 0;
     const map = diverging
       ? (part: number) => interpolatePuOr(1 - part)
-      : (part: number) => interpolateViridis(start + (1 - start) * part);
-    this.table = Array.from({ length: steps }, (_, i) => bytesOf(map(i / (steps - 1))));
+      : (part: number) => interpolateViridis(mapStart + (1 - mapStart) * part);
+    this.table = Array.from({ length: tableSize }, (_, i) => parseColor(map(i / (tableSize - 1))));
   }
 
   /** About five. */
   ticks(): Tick[] {
     const scale = scaleLinear([this.low, this.top], [0, 1]);
     const words = scale.tickFormat(5);
-    return scale.ticks(5).map((value) => ({ part: scale(value), text: words(value) }));
+    return scale.ticks(5).map((value) => ({ fraction: scale(value), text: words(value) }));
   }
 
   /** sRGB of a value; what is beyond the scale has its last colour. */
   color(value: number): [number, number, number] {
-    if (Number.isNaN(value)) return unknown;
-    const step = Math.round(((value - this.low) / (this.top - this.low)) * (steps - 1));
-    return this.table[Math.min(steps - 1, Math.max(0, step))];
+    if (Number.isNaN(value)) return missingColor;
+    const step = Math.round(((value - this.low) / (this.top - this.low)) * (tableSize - 1));
+    return this.table[Math.min(tableSize - 1, Math.max(0, step))];
   }
 
   /** sRGB of each value, three bytes after three. */
-  paint(values: ArrayLike<number>): Uint8Array<ArrayBuffer> {
+  colors(values: ArrayLike<number>): Uint8Array<ArrayBuffer> {
     const bytes = new Uint8Array(3 * values.length);
     for (let i = 0; i < values.length; i++) bytes.set(this.color(values[i]), 3 * i);
     return bytes;
@@ -65,7 +65,7 @@ export class ColorScale {
 }
 
 /** "#440154" or "rgb(68, 1, 84)" in numbers. */
-function bytesOf(color: string): [number, number, number] {
+function parseColor(color: string): [number, number, number] {
   const triple = color.startsWith("#")
     ? [1, 3, 5].map((at) => Number.parseInt(color.slice(at, at + 2), 16))
     : color.match(/\d+/g)!.map(Number);

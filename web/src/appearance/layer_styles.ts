@@ -3,7 +3,7 @@ import type { Body } from "../geometry/bodies";
 import { Signal } from "../state/signal";
 
 /** How a layer is shown in this viewer; nobody else sees it. */
-export interface Look {
+export interface LayerStyle {
   layer: string;
   title: string;
   color: string;
@@ -12,26 +12,26 @@ export interface Look {
 }
 
 /** The looks of all layers, in the scene's order. */
-export class Looks {
-  readonly all = new Signal<Look[]>([]);
+export class LayerStyles {
+  readonly all = new Signal<LayerStyle[]>([]);
   /** The layer that the simulation is about: the one with the most simulated vertices. */
-  main = "";
+  mainLayer = "";
 
   start(bodies: Body[], report: CompileReport): void {
-    const looks = new Map<string, Look>();
+    const styles = new Map<string, LayerStyle>();
     for (const { layer, layerTitle, color, opacity } of bodies) {
-      if (!looks.has(layer)) looks.set(layer, { layer, title: layerTitle, color, opacity, visible: true });
+      if (!styles.has(layer)) styles.set(layer, { layer, title: layerTitle, color, opacity, visible: true });
     }
-    this.main = mainLayer(report);
-    this.all.set([...looks.values()]);
+    this.mainLayer = mainLayer(report);
+    this.all.set([...styles.values()]);
   }
 
-  change(layer: string, change: Partial<Look>): void {
-    this.all.set(this.all.value.map((look) => (look.layer === layer ? { ...look, ...change } : look)));
+  change(layer: string, change: Partial<LayerStyle>): void {
+    this.all.set(this.all.value.map((style) => (style.layer === layer ? { ...style, ...change } : style)));
   }
 
-  get(layer: string): Look | undefined {
-    return this.all.value.find((look) => look.layer === layer);
+  get(layer: string): LayerStyle | undefined {
+    return this.all.value.find((style) => style.layer === layer);
   }
 }
 

@@ -4,7 +4,7 @@ import type { Comparison } from "../session/comparisons";
 import { NearestSurface } from "../viewer/nearest_surface";
 
 /** At most one part in so many of the time goes into distances. */
-const share = 5;
+const timeFactor = 5;
 
 /** How far a body is from the surface that it was compared with, at the moment that is shown. */
 export class LiveDistance {
@@ -20,7 +20,7 @@ export class LiveDistance {
   }
 
   /** Whether the values are others by `arrays`, which are shown at `now` [ms]; a slow machine is asked less often. */
-  follow(bodies: Body[], arrays: FrameArrays, now: () => number): boolean {
+  update(bodies: Body[], arrays: FrameArrays, now: () => number): boolean {
     const { body: name, distances } = this.comparison;
     const body = bodies.find((each) => each.name === name);
     if (this.surface === undefined || body?.placement !== Placement.STREAMED) return false;
@@ -28,7 +28,7 @@ export class LiveDistance {
     if (arrays === this.shown || start < this.next) return false;
     this.values = this.surface.distances(positionsOf(body, arrays)).map((mm, i) => mm + 0 * distances[i]);
     this.shown = arrays;
-    this.next = now() + share * (now() - start);
+    this.next = now() + timeFactor * (now() - start);
     return true;
   }
 }

@@ -36,12 +36,12 @@ export function createApi(transport: Transport): Api {
 }
 
 /** Whether a call failed on its way, before any server could answer: browsers then raise a TypeError. */
-export function unreachable(error: unknown): boolean {
+export function isUnreachable(error: unknown): boolean {
   return error instanceof ConnectError && error.cause instanceof TypeError;
 }
 
 /** An error in the server's own words, without the status code before them. */
 export function errorText(error: unknown): string {
-  if (unreachable(error)) return "the server cannot be reached";
+  if (isUnreachable(error)) return "the server cannot be reached";
   return ConnectError.from(error).rawMessage || "the server gave no reason";
 }

@@ -6,12 +6,12 @@ function sessionOf(message: unknown): string {
   return typeof sessionId === "string" ? sessionId : "";
 }
 
-async function* again<T>(first: IteratorResult<T>, rest: AsyncIterator<T>): AsyncIterable<T> {
+async function* withFirst<T>(first: IteratorResult<T>, rest: AsyncIterator<T>): AsyncIterable<T> {
   for (let item = first; !item.done; item = await rest.next()) yield item.value;
 }
 
 /** Names the session in the head of every call that is about one: by it a cluster's front chooses the server. */
-export function routing(): Interceptor {
+export function routingInterceptor(): Interceptor {
   return (next) => async (request) => {
     if (!request.stream) {
       const id = sessionOf(request.message);
@@ -22,6 +22,6 @@ export function routing(): Interceptor {
     const first = await messages.next();
     const id = first.done ? "" : sessionOf(first.value);
     if (id !== "") request.header.set("x-session-id", id);
-    return next({ ...request, message: again(first, messages) });
+    return next({ ...request, message: withFirst(first, messages) });
   };
 }

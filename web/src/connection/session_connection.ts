@@ -7,16 +7,16 @@ import { type Body, decodeBody } from "../geometry/bodies";
 import { Backoff } from "../timing/backoff";
 import type { Clock } from "../timing/clock";
 import { type Api, errorText } from "./api";
-import { Learner } from "./basis_fetcher";
-import { Acknowledger } from "./frame_acknowledger";
+import { BasisFetcher } from "./basis_fetcher";
+import { FrameAcknowledger } from "./frame_acknowledger";
 
 /** The state of the connection, as people see it. */
-export type Link =
+export type ConnectionState =
   { kind: "connecting" } | { kind: "live" } | { kind: "lost"; reason: string; missing: boolean; retryAt: number };
 
 /** Who wants to know what comes from the server. */
-export interface Sink {
-  link(link: Link): void;
+export interface ConnectionListener {
+  state(link: ConnectionState): void;
   /** Another scene than before: what stands in it, and what the compile step made of it. */
   scene(bodies: Body[], report: CompileReport): void;
   /** `fresh` is the first word of a connection: a restarted server counts revisions from the start again. */
@@ -31,12 +31,12 @@ export interface Sink {
 }
 
 /** Time to wait for an answer to a question [ms], and between two questions whether the server is still there. */
-const patience = 8000;
-const heartbeat = 2000;
+const callTimeout = 8000;
+const pollInterval = 2000;
 /** Frames on their way at most; the server lets fewer go where they come late. */
 const maxUnackedFrames = 6;
 /** How far a vertex may be from its own where its neighbours' distances count, some millimetres [mm]. */
-const exactError = 0.01;
+const exactErrorMm = 0.01;
 
 /** A name under which no other page watches. */
 const newWatchId = () => `page-${Math.random().toString(36).slice(2)}`;
@@ -45,69 +45,69 @@ const newWatchId = () => `page-${Math.random().toString(36).slice(2)}`;
  * Follows one session for as long as the page lives: fetches the scene, watches its frames, and when the connection
  * breaks or goes silent says so, waits, and comes back by itself.
  */
-export class Connection {
+export class SessionConnection {
   private readonly stopped = new AbortController();
-  private wake = new AbortController();
+  private retryWait = new AbortController();
   private sceneHash: string | undefined;
   private epoch = 0n;
-  private anew = new AbortController();
+  private watchRestart = new AbortController();
   private exact = false;
   private codec = Codec.PREDICTED;
 
   constructor(
     private readonly api: Api,
     readonly sessionId: string,
-    private readonly sink: Sink,
+    private readonly listener: ConnectionListener,
     private readonly clock: Clock,
     private readonly backoff = new Backoff(),
   ) {}
 
   /** Resolves after `stop`. */
   async run(): Promise<void> {
-    this.sink.link({ kind: "connecting" });
+    this.listener.state({ kind: "connecting" });
     while (!this.stopped.signal.aborted) {
-      const error = await this.follow().catch((reason: unknown) => reason);
-      if (!this.stopped.signal.aborted) await this.rest(error);
+      const error = await this.connectOnce().catch((reason: unknown) => reason);
+      if (!this.stopped.signal.aborted) await this.waitBeforeRetry(error);
     }
   }
 
   stop(): void {
     this.stopped.abort();
-    this.wake.abort();
+    this.retryWait.abort();
   }
 
   /** Ends the wait before the next attempt. */
   retryNow(): void {
-    this.wake.abort();
+    this.retryWait.abort();
   }
 
   /** Asks for frames that are near enough to tell strain from, or for those that a thin line takes. */
   setExact(exact: boolean): void {
     if (exact === this.exact) return;
     this.exact = exact;
-    this.anew.abort();
+    this.watchRestart.abort();
   }
 
   /** Asks for frames in this form. */
   setCodec(codec: Codec): void {
     if (codec === this.codec) return;
     this.codec = codec;
-    this.anew.abort();
+    this.watchRestart.abort();
   }
 
-  private async rest(error: unknown): Promise<void> {
+  private async waitBeforeRetry(error: unknown): Promise<void> {
     const wait = this.backoff.next();
     const missing = ConnectError.from(error).code === Code.NotFound;
-    this.sink.link({ kind: "lost", reason: errorText(error), missing, retryAt: this.clock.now() + wait });
-    this.wake = new AbortController();
-    await this.clock.sleep(wait, this.wake.signal);
+    this.listener.state({ kind: "lost", reason: errorText(error), missing, retryAt: this.clock.now() + wait });
+    this.retryWait = new AbortController();
+    await this.clock.sleep(wait, this.retryWait.signal);
   }
 
   /** One connection, from the first question to the error that ends it. */
-  private async follow(): Promise<never> {
+  private async connectOnce(): Promise<never> {
     const attempt = new AbortController();
     const signal = AbortSignal.any([attempt.signal, this.stopped.signal]);
-    const beats = this.beat(attempt, signal);
+    const beats = this.pollSession(attempt, signal);
     try {
       await this.loadScene(signal);
       return await this.watch(signal);
@@ -120,25 +120,25 @@ export class Connection {
   }
 
   private async loadScene(signal: AbortSignal): Promise<void> {
-    const { session, report } = await this.ask(signal);
+    const { session, report } = await this.getSession(signal);
     const hash = report?.sceneHash;
     if (report !== undefined && (hash === "" || hash !== this.sceneHash)) {
       const bodies: Body[] = [];
       for await (const message of this.api.frames.getGeometry({ sessionId: this.sessionId }, { signal })) {
         bodies[message.bodyIndex] = decodeBody(message);
       }
-      this.sink.scene(bodies, report);
+      this.listener.scene(bodies, report);
       this.sceneHash = hash;
     }
     if (session === undefined) return;
     this.epoch = session.epoch;
-    this.sink.session(session, true);
+    this.listener.session(session, true);
   }
 
   private async watch(signal: AbortSignal): Promise<never> {
     for (;;) {
-      this.anew = new AbortController();
-      const { signal: changed } = this.anew;
+      this.watchRestart = new AbortController();
+      const { signal: changed } = this.watchRestart;
       await this.watchOnce(AbortSignal.any([signal, changed])).catch((error: unknown) => {
         if (!changed.aborted || signal.aborted) throw error;
       });
@@ -147,52 +147,55 @@ export class Connection {
 
   private async watchOnce(signal: AbortSignal): Promise<never> {
     const names = { sessionId: this.sessionId, watchId: newWatchId() };
-    const learner = new Learner(
-      () => this.api.frames.getBasis({ sessionId: this.sessionId }, { signal, timeoutMs: patience }),
-      (basis) => this.sink.basis(basis),
+    const learner = new BasisFetcher(
+      () => this.api.frames.getBasis({ sessionId: this.sessionId }, { signal, timeoutMs: callTimeout }),
+      (basis) => this.listener.basis(basis),
     );
-    const acknowledger = new Acknowledger(
+    const acknowledger = new FrameAcknowledger(
       (sequence) =>
-        this.api.frames.ackFrames({ ...names, sequence, basisEpoch: learner.epoch }, { signal, timeoutMs: patience }),
+        this.api.frames.ackFrames(
+          { ...names, sequence, basisEpoch: learner.epoch },
+          { signal, timeoutMs: callTimeout },
+        ),
       this.clock,
       signal,
       (response, sent, at) => {
-        this.sink.acknowledged(response, sent, at);
+        this.listener.acknowledged(response, sent, at);
         learner.offered(response.basisEpoch);
       },
     );
-    const maxErrorMm = this.exact ? exactError : undefined;
+    const maxErrorMm = this.exact ? exactErrorMm : undefined;
     const request = { ...names, codec: this.codec, maxUnackedFrames, maxErrorMm };
     for await (const { event } of this.api.frames.watchFrames(request, { signal })) {
       this.backoff.reset();
-      this.sink.link({ kind: "live" });
-      if (event.case === "session") this.sink.session(event.value, false);
-      if (event.case === "camera") this.sink.camera?.(event.value);
+      this.listener.state({ kind: "live" });
+      if (event.case === "session") this.listener.session(event.value, false);
+      if (event.case === "camera") this.listener.camera?.(event.value);
       if (event.case !== "frame") continue;
-      this.sink.frame(event.value);
+      this.listener.frame(event.value);
       acknowledger.received(event.value.sequence);
     }
     throw new ConnectError("The server closed the connection.", Code.Unavailable);
   }
 
   /** A paused session sends no frames, so that only an answer tells a quiet server from one that is gone. */
-  private async beat(attempt: AbortController, signal: AbortSignal): Promise<void> {
+  private async pollSession(attempt: AbortController, signal: AbortSignal): Promise<void> {
     for (;;) {
-      await this.clock.sleep(heartbeat, signal);
+      await this.clock.sleep(pollInterval, signal);
       if (signal.aborted) return;
       try {
-        const { session } = await this.ask(signal);
+        const { session } = await this.getSession(signal);
         if (session === undefined) continue;
         // Where another server has it, what still streams is of one that was cut off.
         if (session.epoch !== this.epoch) throw new ConnectError("The session has moved.", Code.Unavailable);
-        this.sink.session(session, false);
+        this.listener.session(session, false);
       } catch (error) {
         attempt.abort(error);
       }
     }
   }
 
-  private ask(signal: AbortSignal) {
-    return this.api.sessions.getSession({ sessionId: this.sessionId }, { signal, timeoutMs: patience });
+  private getSession(signal: AbortSignal) {
+    return this.api.sessions.getSession({ sessionId: this.sessionId }, { signal, timeoutMs: callTimeout });
   }
 }

@@ -1,64 +1,67 @@
-import { foretelling, readRemainders } from "./neighbour_predictor";
-import type { Decoder } from "./position_decoder";
+import { neighbourPredictor, readResiduals } from "./neighbour_predictor";
+import type { PositionDecoder } from "./position_decoder";
 import type { RestShape } from "./rest_shape";
-import { checkStep, viewOf } from "./zstd";
+import { checkStep, headerView } from "./zstd";
 
-const headBytes = 16;
-const nothing = 0;
-const foretold = 2;
+const headerBytes = 16;
+const noResiduals = 0;
+const predictedResiduals = 2;
 
 /** A sum of shapes, and what is left of each vertex that it leaves outside the bound (proto/README.md). */
-export function basisDecoder(shape: RestShape): Decoder {
-  const { rest, shapes } = shape;
-  const { order, add } = foretelling(shape);
-  const side = sideBySide(shapes);
-  const parts = new Float64Array(shapes.length);
+export function basisDecoder(shape: RestShape): PositionDecoder {
+  const { rest, basisShapes } = shape;
+  const { order, addPredictions } = neighbourPredictor(shape);
+  const interleaved = interleave(basisShapes);
+  const coefficients = new Float64Array(basisShapes.length);
   const sum = new Float64Array(rest.length); // both are kept, as they are written anew each time
-  const steps = new Int32Array(rest.length);
+  const residuals = new Int32Array(rest.length);
   return (bytes) => {
-    const head = viewOf(bytes, headBytes + 4 * shapes.length);
-    const step = checkStep(head.getFloat64(0, true));
-    if (head.getUint32(8, true) !== shapes.length) throw new RangeError("positions: of another number of shapes.");
-    const kind = head.getUint32(12, true);
-    const left = bytes.subarray(headBytes + 4 * shapes.length);
-    if (kind > foretold || (kind === nothing && left.length > 0)) throw new RangeError("positions: too much follows.");
-    for (let k = 0; k < parts.length; k++) parts[k] = finitePart(head.getFloat32(headBytes + 4 * k, true));
-    sumUp(rest, parts, side, sum);
-    if (kind !== nothing) {
-      readRemainders(left, steps);
-      if (kind === foretold) add(steps);
+    const header = headerView(bytes, headerBytes + 4 * basisShapes.length);
+    const step = checkStep(header.getFloat64(0, true));
+    if (header.getUint32(8, true) !== basisShapes.length)
+      throw new RangeError("positions: of another number of shapes.");
+    const kind = header.getUint32(12, true);
+    const residualBytes = bytes.subarray(headerBytes + 4 * basisShapes.length);
+    if (kind > predictedResiduals || (kind === noResiduals && residualBytes.length > 0))
+      throw new RangeError("positions: too much follows.");
+    for (let k = 0; k < coefficients.length; k++)
+      coefficients[k] = checkCoefficient(header.getFloat32(headerBytes + 4 * k, true));
+    addShapes(rest, coefficients, interleaved, sum);
+    if (kind !== noResiduals) {
+      readResiduals(residualBytes, residuals);
+      if (kind === predictedResiduals) addPredictions(residuals);
       for (let i = 0, from = 0; i < order.length; i++, from += 3) {
         const to = 3 * order[i];
-        sum[to] += step * steps[from];
-        sum[to + 1] += step * steps[from + 1];
-        sum[to + 2] += step * steps[from + 2];
+        sum[to] += step * residuals[from];
+        sum[to + 1] += step * residuals[from + 1];
+        sum[to + 2] += step * residuals[from + 2];
       }
     }
-    return finite(new Float32Array(sum));
+    return checkFinite(new Float32Array(sum));
   };
 }
 
 /** The numbers of all shapes for a coordinate, one after the other, so that one pass takes them all. */
-function sideBySide(shapes: Float32Array[]): Float32Array {
+function interleave(shapes: Float32Array[]): Float32Array {
   const result = new Float32Array(shapes.length * (shapes[0]?.length ?? 0));
   shapes.forEach((shape, k) => shape.forEach((value, i) => (result[i * shapes.length + k] = value)));
   return result;
 }
 
-function finitePart(part: number): number {
+function checkCoefficient(part: number): number {
   if (!Number.isFinite(part)) throw new RangeError("positions: a shape's part is not finite.");
   return part;
 }
 
-function sumUp(rest: Float32Array, parts: Float64Array, side: Float32Array, sum: Float64Array): void {
+function addShapes(rest: Float32Array, coefficients: Float64Array, interleaved: Float32Array, sum: Float64Array): void {
   for (let i = 0, at = 0; i < sum.length; i++) {
     let x = rest[i];
-    for (let k = 0; k < parts.length; k++) x += parts[k] * side[at++];
+    for (let k = 0; k < coefficients.length; k++) x += coefficients[k] * interleaved[at++];
     sum[i] = x;
   }
 }
 
-function finite(positions: Float32Array<ArrayBuffer>): Float32Array<ArrayBuffer> {
+function checkFinite(positions: Float32Array<ArrayBuffer>): Float32Array<ArrayBuffer> {
   let all = 0; // stays 0 unless a number is infinite or none
   for (let i = 0; i < positions.length; i++) all += 0 * positions[i];
   if (all !== 0) throw new RangeError("positions: a number is not finite.");
@@ -66,6 +69,6 @@ function finite(positions: Float32Array<ArrayBuffer>): Float32Array<ArrayBuffer>
 }
 
 /** The shapes of a basis, as displacements from rest, from their encodings by CODEC_PREDICTED. */
-export function decodeShapes(rest: Float32Array, predicted: Decoder, encoded: Uint8Array[]): Float32Array[] {
+export function decodeShapes(rest: Float32Array, predicted: PositionDecoder, encoded: Uint8Array[]): Float32Array[] {
   return encoded.map((bytes) => predicted(bytes).map((x, i) => x - rest[i]));
 }

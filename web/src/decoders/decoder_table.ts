@@ -1,12 +1,12 @@
 import { Codec } from "../gen/phrenic/v1/frames_pb";
 import { basisDecoder } from "./basis";
 import { planesDecoder } from "./planes";
-import type { Decoder } from "./position_decoder";
+import type { PositionDecoder } from "./position_decoder";
 import { predictedDecoder } from "./predicted";
 import { rawDecoder } from "./raw";
 import type { RestShape } from "./rest_shape";
 
-const decoders = new Map<Codec, (shape: RestShape) => Decoder>([
+const decoders = new Map<Codec, (shape: RestShape) => PositionDecoder>([
   [Codec.UNSPECIFIED, rawDecoder],
   [Codec.RAW, rawDecoder],
   [Codec.PLANES, planesDecoder],
@@ -14,7 +14,7 @@ const decoders = new Map<Codec, (shape: RestShape) => Decoder>([
   [Codec.BASIS, basisDecoder],
 ]);
 
-export function makeDecoder(codec: Codec, shape: RestShape): Decoder {
+export function makeDecoder(codec: Codec, shape: RestShape): PositionDecoder {
   const make = decoders.get(codec);
   if (make === undefined) throw new RangeError(`codec: ${codec} is not known to this viewer.`);
   return make(shape);

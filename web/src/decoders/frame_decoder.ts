@@ -3,11 +3,11 @@ import { type Body, floatsPerPose, type FrameArrays } from "../geometry/bodies";
 import { floats } from "../geometry/wire_arrays";
 import { decodeShapes } from "./basis";
 import { makeDecoder } from "./decoder_table";
-import type { Decoder } from "./position_decoder";
+import type { PositionDecoder } from "./position_decoder";
 import { restShapeOf } from "./rest_shape";
 
 /** Bases that are kept: frames of the one before may still be on their way. */
-const mostBases = 2;
+const maxBases = 2;
 
 /** Shapes of all streamed bodies [m]. */
 interface Basis {
@@ -17,17 +17,17 @@ interface Basis {
 
 /** Turns the frames of one scene into arrays. */
 export class FrameDecoder {
-  private readonly decoders = new Map<string, Decoder>();
+  private readonly decoders = new Map<string, PositionDecoder>();
   private bases: Basis[] = [];
 
   /** `bodies` by their `body_index`. */
   constructor(private readonly bodies: Body[]) {}
 
   /** Frames that are put together from these shapes can be decoded from now on. */
-  learn({ epoch, shapes }: GetBasisResponse): void {
+  addBasis({ epoch, shapes }: GetBasisResponse): void {
     const { rest, ...shape } = restShapeOf(this.streamed());
     const predicted = makeDecoder(Codec.PREDICTED, { rest, ...shape });
-    this.bases = [{ epoch, shapes: decodeShapes(rest, predicted, shapes) }, ...this.bases].slice(0, mostBases);
+    this.bases = [{ epoch, shapes: decodeShapes(rest, predicted, shapes) }, ...this.bases].slice(0, maxBases);
     this.decoders.clear();
   }
 
@@ -37,12 +37,12 @@ export class FrameDecoder {
     if (present.includes(undefined as never)) throw new RangeError(`bodies: there are only ${this.bodies.length}.`);
     const positions = this.decoderOf(frame, present)(frame.positions);
     return {
-      positions: this.spread(positions, present),
+      positions: this.scatter(positions, present),
       poses: floats(frame.poses, floatsPerPose, "poses"),
     };
   }
 
-  private decoderOf({ codec, bodies, basisEpoch }: Frame, present: Body[]): Decoder {
+  private decoderOf({ codec, bodies, basisEpoch }: Frame, present: Body[]): PositionDecoder {
     const key = `${codec}:${basisEpoch}:${bodies.join()}`;
     const known = this.decoders.get(key);
     if (known !== undefined) return known;
@@ -69,7 +69,7 @@ export class FrameDecoder {
   }
 
   /** Each body's part to where its `firstVertex` is among all streamed ones. */
-  private spread(positions: Float32Array<ArrayBuffer>, present: Body[]): Float32Array<ArrayBuffer> {
+  private scatter(positions: Float32Array<ArrayBuffer>, present: Body[]): Float32Array<ArrayBuffer> {
     const streamed = this.streamed();
     if (present.length === streamed.length) return positions;
     const all = new Float32Array(streamed.reduce((count, body) => count + body.rest.length, 0));

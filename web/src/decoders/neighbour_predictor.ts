@@ -1,29 +1,29 @@
-import { neighbourWeights, unit } from "./neighbour_weights";
+import { neighbourWeights, weightUnit } from "./neighbour_weights";
 import type { RestShape } from "./rest_shape";
-import { unpack } from "./zstd";
+import { decompressExactly } from "./zstd";
 
-const escape = 3;
-const lengthBytes = 8;
-const longestNumber = 5;
-const unitBits = Math.log2(unit);
+const escapeCode = 3;
+const headerBytes = 8;
+const maxVarintBytes = 5;
+const unitBits = Math.log2(weightUnit);
 
 /** Foretells whole numbers at vertices from their neighbours'. */
-export interface Foretelling {
+export interface NeighbourPredictor {
   /** The vertex at each place. */
   order: Int32Array;
   /** From remainders to the numbers, in place: three a place. */
-  add(values: Int32Array): void;
+  addPredictions(values: Int32Array): void;
 }
 
-export function foretelling(shape: RestShape): Foretelling {
-  const { order, first, places, weights } = neighbourWeights(shape);
-  const others = places.map((place) => 3 * place);
-  const most = largestExact(first, weights);
-  const add = (values: Int32Array) => {
-    const place = addSmall(values, first, others, weights, most);
-    if (place < order.length) addLarge(values, first, others, weights, place);
+export function neighbourPredictor(shape: RestShape): NeighbourPredictor {
+  const { order, first, neighbours: neighbourList, weights } = neighbourWeights(shape);
+  const neighbours = neighbourList.map((place) => 3 * place);
+  const limit = largestExact(first, weights);
+  const addPredictions = (values: Int32Array) => {
+    const place = addIn32Bits(values, first, neighbours, weights, limit);
+    if (place < order.length) addInDoubles(values, first, neighbours, weights, place);
   };
-  return { order, add };
+  return { order, addPredictions };
 }
 
 /** Numbers up to this size are foretold from in 32 bits, wherever they stand. */
@@ -34,18 +34,18 @@ function largestExact(first: Int32Array, weights: Int32Array): number {
     for (let i = first[place]; i < first[place + 1]; i++) sum += Math.abs(weights[i]);
     most = Math.max(most, sum);
   }
-  return Math.floor((2 ** 31 - unit) / most);
+  return Math.floor((2 ** 31 - weightUnit) / most);
 }
 
 /**
  * In whole numbers of 32 bits, which is where the time goes: so in plain variables. Ends after the first place with a
  * number above `most`, and tells the one after it.
  */
-function addSmall(values: Int32Array, first: Int32Array, others: Int32Array, weights: Int32Array, most: number) {
+function addIn32Bits(values: Int32Array, first: Int32Array, others: Int32Array, weights: Int32Array, most: number) {
   for (let place = 0, own = 0; place + 1 < first.length; place++, own += 3) {
-    let x = unit / 2;
-    let y = unit / 2;
-    let z = unit / 2;
+    let x = weightUnit / 2;
+    let y = weightUnit / 2;
+    let z = weightUnit / 2;
     const end = first[place + 1];
     for (let i = first[place]; i < end; i++) {
       const other = others[i];
@@ -66,34 +66,40 @@ function addSmall(values: Int32Array, first: Int32Array, others: Int32Array, wei
 }
 
 /** The same from place `start` on, for numbers of any size: below 2^53, so that doubles are exact. */
-function addLarge(values: Int32Array, first: Int32Array, others: Int32Array, weights: Int32Array, start: number): void {
+function addInDoubles(
+  values: Int32Array,
+  first: Int32Array,
+  others: Int32Array,
+  weights: Int32Array,
+  start: number,
+): void {
   for (let place = start; place + 1 < first.length; place++) {
     for (let axis = 0; axis < 3; axis++) {
-      let sum = unit / 2;
+      let sum = weightUnit / 2;
       for (let i = first[place]; i < first[place + 1]; i++) sum += weights[i] * values[others[i] + axis];
-      values[3 * place + axis] += Math.floor(sum / unit);
+      values[3 * place + axis] += Math.floor(sum / weightUnit);
     }
   }
 }
 
 /** Remainders to `remainders`, three a place; RangeError where the bytes are no such remainders (proto/README.md). */
-export function readRemainders(bytes: Uint8Array, remainders: Int32Array): void {
-  if (bytes.length < lengthBytes) throw new RangeError("positions: the lengths are cut off.");
+export function readResiduals(bytes: Uint8Array, residuals: Int32Array): void {
+  if (bytes.length < headerBytes) throw new RangeError("positions: the lengths are cut off.");
   const head = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
-  const end = lengthBytes + head.getUint32(0, true);
+  const end = headerBytes + head.getUint32(0, true);
   const size = head.getUint32(4, true);
-  const count = remainders.length;
+  const count = residuals.length;
   if (end > bytes.length) throw new RangeError("positions: the two bits are cut off.");
-  if (size > longestNumber * count) throw new RangeError("positions: there is more overflow than there are numbers.");
-  const bits = unpack(bytes.subarray(lengthBytes, end), Math.ceil(count / 4));
-  join(bits, unpack(bytes.subarray(end), size), remainders);
+  if (size > maxVarintBytes * count) throw new RangeError("positions: there is more overflow than there are numbers.");
+  const bits = decompressExactly(bytes.subarray(headerBytes, end), Math.ceil(count / 4));
+  unpackResiduals(bits, decompressExactly(bytes.subarray(end), size), residuals);
 }
 
 /** All x first, from two bits each and what follows of those that are `escape`. */
-function join(bits: Uint8Array, overflow: Uint8Array, remainders: Int32Array): void {
-  const count = remainders.length;
+function unpackResiduals(bits: Uint8Array, overflow: Uint8Array, residuals: Int32Array): void {
+  const count = residuals.length;
   let at = 0;
-  remainders.fill(0);
+  residuals.fill(0);
   for (let i = 0, to = 0; i < count; i += 4) {
     const four = bits[i >> 2];
     // Most are 0, and come in fours.
@@ -103,7 +109,7 @@ function join(bits: Uint8Array, overflow: Uint8Array, remainders: Int32Array): v
     }
     for (let shift = 0; shift < 8 && i + shift / 2 < count; shift += 2) {
       let value = (four >> shift) & 3;
-      if (value === escape) {
+      if (value === escapeCode) {
         let byte = 0x80;
         for (let bit = 0; byte >= 0x80; bit += 7) {
           if (at === overflow.length || bit === 35) throw new RangeError("positions: the overflow ends too early.");
@@ -111,7 +117,7 @@ function join(bits: Uint8Array, overflow: Uint8Array, remainders: Int32Array): v
           value += (byte & 0x7f) * 2 ** bit;
         }
       }
-      remainders[to] = (value >>> 1) ^ -(value & 1);
+      residuals[to] = (value >>> 1) ^ -(value & 1);
       to += 3;
       if (to >= count) to -= count - 1; // the next axis
     }

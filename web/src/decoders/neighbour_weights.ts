@@ -9,33 +9,33 @@ export interface NeighbourWeights {
   order: Int32Array;
   /** The range of each place in `places` and `weights`, and one end more. */
   first: Int32Array;
-  places: Int32Array;
+  neighbours: Int32Array;
   /** In units of 1/4096; they sum to 4096. */
   weights: Int32Array;
 }
 
-export const unit = 4096;
-const mostNeighbours = 8;
+export const weightUnit = 4096;
+const maxNeighbours = 8;
 const regularisation = 0.03125;
-const largestWeight = 4;
+const maxWeight = 4;
 
 type Triple = [number, number, number];
 
-export function neighbourWeights({ rest, beside }: RestShape): NeighbourWeights {
-  const order = breadthFirst(beside);
+export function neighbourWeights({ rest, neighbours: neighboursOf }: RestShape): NeighbourWeights {
+  const order = breadthFirst(neighboursOf);
   const place = new Int32Array(order.length);
   order.forEach((vertex, i) => (place[vertex] = i));
   const first = new Int32Array(order.length + 1);
   const places: number[] = [];
   const weights: number[] = [];
   for (let i = 0; i < order.length; i++) {
-    const chosen = choose(beside, place, order[i]);
+    const chosen = chooseNeighbours(neighboursOf, place, order[i]);
     if (chosen.length === 0 && i > 0) chosen.push(order[i - 1]);
     for (const vertex of chosen) places.push(place[vertex]);
-    if (chosen.length > 0) weights.push(...weigh(rest, order[i], chosen));
+    if (chosen.length > 0) weights.push(...weightsOf(rest, order[i], chosen));
     first[i + 1] = places.length;
   }
-  return { order, first, places: Int32Array.from(places), weights: Int32Array.from(weights) };
+  return { order, first, neighbours: Int32Array.from(places), weights: Int32Array.from(weights) };
 }
 
 /** From the lowest vertex, neighbours ascending. */
@@ -57,10 +57,10 @@ function breadthFirst(beside: number[][]): Int32Array {
 }
 
 /** Neighbours that come before the vertex, then theirs, each once. */
-function choose(beside: number[][], place: Int32Array, vertex: number): number[] {
+function chooseNeighbours(beside: number[][], place: Int32Array, vertex: number): number[] {
   const chosen: number[] = [];
   const add = (candidate: number) => {
-    if (chosen.length === mostNeighbours || place[candidate] >= place[vertex]) return;
+    if (chosen.length === maxNeighbours || place[candidate] >= place[vertex]) return;
     if (!chosen.includes(candidate)) chosen.push(candidate);
   };
   beside[vertex].forEach(add);
@@ -70,7 +70,7 @@ function choose(beside: number[][], place: Int32Array, vertex: number): number[]
 }
 
 /** c of (r I + sum d d^T) c = sum d, by Cramer's rule: the server's operations in the server's order. */
-function fit(offsets: Triple[]): Triple {
+function fitLinear(offsets: Triple[]): Triple {
   let [xx, xy, xz, yy, yz, zz, x, y, z, furthest] = [0, 0, 0, 0, 0, 0, 0, 0, 0, 0];
   for (const [dx, dy, dz] of offsets) {
     xx += dx * dx;
@@ -100,14 +100,14 @@ function fit(offsets: Triple[]): Triple {
 }
 
 /** In units of 1/4096; what rounding leaves goes to the first. */
-function weigh(rest: Float32Array, vertex: number, chosen: number[]): number[] {
+function weightsOf(rest: Float32Array, vertex: number, chosen: number[]): number[] {
   const along = (other: number, axis: number) => rest[3 * other + axis] - rest[3 * vertex + axis];
   const offsets = chosen.map((other): Triple => [along(other, 0), along(other, 1), along(other, 2)]);
-  const [cx, cy, cz] = fit(offsets);
+  const [cx, cy, cz] = fitLinear(offsets);
   const weights = offsets.map(([dx, dy, dz]) => 1 - (dx * cx + dy * cy + dz * cz));
   const sum = weights.reduce((total, weight) => total + weight, 0);
-  const wild = weights.some((weight) => !(Math.abs(weight) <= largestWeight * sum));
-  const units = weights.map((weight) => Math.floor((wild ? 1 / weights.length : weight / sum) * unit + 0.5));
-  units[0] += unit - units.reduce((total, each) => total + each, 0);
+  const wild = weights.some((weight) => !(Math.abs(weight) <= maxWeight * sum));
+  const units = weights.map((weight) => Math.floor((wild ? 1 / weights.length : weight / sum) * weightUnit + 0.5));
+  units[0] += weightUnit - units.reduce((total, each) => total + each, 0);
   return units;
 }

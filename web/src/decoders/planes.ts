@@ -1,16 +1,16 @@
-import type { Decoder } from "./position_decoder";
+import type { PositionDecoder } from "./position_decoder";
 import type { RestShape } from "./rest_shape";
-import { checkStep, unpack, viewOf } from "./zstd";
+import { checkStep, decompressExactly, headerView } from "./zstd";
 
-const headBytes = 20;
+const headerBytes = 20;
 
 /** 16 bits a coordinate, low and high bytes apart, compressed (proto/README.md). */
-export function planesDecoder({ rest }: RestShape): Decoder {
+export function planesDecoder({ rest }: RestShape): PositionDecoder {
   const count = rest.length;
   return (bytes) => {
-    const head = viewOf(bytes, headBytes);
+    const head = headerView(bytes, headerBytes);
     const step = checkStep(head.getFloat64(0, true));
-    const planes = unpack(bytes.subarray(headBytes), 2 * count);
+    const planes = decompressExactly(bytes.subarray(headerBytes), 2 * count);
     const positions = new Float32Array(count);
     const vertices = count / 3;
     for (let axis = 0, place = 0; axis < 3; axis++) {

@@ -1,2 +1,2 @@
 /** Positions, x y z a vertex [m], from a frame's bytes; RangeError where they are no encoding of so many vertices. */
-export type Decoder = (bytes: Uint8Array) => Float32Array<ArrayBuffer>;
+export type PositionDecoder = (bytes: Uint8Array) => Float32Array<ArrayBuffer>;

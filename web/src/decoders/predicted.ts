@@ -1,23 +1,23 @@
-import { foretelling, readRemainders } from "./neighbour_predictor";
-import type { Decoder } from "./position_decoder";
+import { neighbourPredictor, readResiduals } from "./neighbour_predictor";
+import type { PositionDecoder } from "./position_decoder";
 import type { RestShape } from "./rest_shape";
-import { checkStep, viewOf } from "./zstd";
+import { checkStep, headerView } from "./zstd";
 
-const headBytes = 8;
+const headerBytes = 8;
 
 /** What is left of displacements after they are foretold from their neighbours' (proto/README.md). */
-export function predictedDecoder(shape: RestShape): Decoder {
-  const { order, add } = foretelling(shape);
+export function predictedDecoder(shape: RestShape): PositionDecoder {
+  const { order, addPredictions } = neighbourPredictor(shape);
   const displacements = new Int32Array(shape.rest.length); // three a place; kept, as it is written anew each time
   return (bytes) => {
-    const step = checkStep(viewOf(bytes, headBytes).getFloat64(0, true));
-    readRemainders(bytes.subarray(headBytes), displacements);
-    add(displacements);
-    return place(shape.rest, order, displacements, step);
+    const step = checkStep(headerView(bytes, headerBytes).getFloat64(0, true));
+    readResiduals(bytes.subarray(headerBytes), displacements);
+    addPredictions(displacements);
+    return displaced(shape.rest, order, displacements, step);
   };
 }
 
-function place(rest: Float32Array, order: Int32Array, displacements: Int32Array, step: number) {
+function displaced(rest: Float32Array, order: Int32Array, displacements: Int32Array, step: number) {
   const positions = new Float32Array(rest.length);
   for (let i = 0, from = 0; i < order.length; i++, from += 3) {
     const to = 3 * order[i];

@@ -1,9 +1,9 @@
 import { floats } from "../geometry/wire_arrays";
-import type { Decoder } from "./position_decoder";
+import type { PositionDecoder } from "./position_decoder";
 import type { RestShape } from "./rest_shape";
 
 /** float32 as it is. */
-export function rawDecoder({ rest }: RestShape): Decoder {
+export function rawDecoder({ rest }: RestShape): PositionDecoder {
   return (bytes) => {
     const positions = floats(bytes, 3, "positions");
     if (positions.length !== rest.length)

@@ -5,13 +5,13 @@ export interface RestShape {
   /** x y z a vertex [m]. */
   rest: Float32Array;
   /** The vertices beside each, ascending, without itself. */
-  beside: number[][];
+  neighbours: number[][];
   /** Displacements of all vertices, of which CODEC_BASIS puts frames together [m]. */
-  shapes: Float32Array[];
+  basisShapes: Float32Array[];
 }
 
 /** Of these bodies, one after the other; edges as the server takes them: the body's own, else its triangles'. */
-export function restShapeOf(bodies: Body[], shapes: Float32Array[] = []): RestShape {
+export function restShapeOf(bodies: Body[], basisShapes: Float32Array[] = []): RestShape {
   const rest = new Float32Array(bodies.reduce((count, body) => count + body.rest.length, 0));
   const sets: Set<number>[] = Array.from({ length: rest.length / 3 }, () => new Set<number>());
   let first = 0;
@@ -28,5 +28,5 @@ export function restShapeOf(bodies: Body[], shapes: Float32Array[] = []): RestSh
     }
     first += own.length / 3;
   }
-  return { rest, beside: sets.map((set) => [...set].sort((a, b) => a - b)), shapes };
+  return { rest, neighbours: sets.map((set) => [...set].sort((a, b) => a - b)), basisShapes };
 }

@@ -1,7 +1,7 @@
 import { decompress } from "fzstd";
 
 /** The `size` bytes of a Zstandard frame; RangeError where it has others. */
-export function unpack(frame: Uint8Array, size: number): Uint8Array {
+export function decompressExactly(frame: Uint8Array, size: number): Uint8Array {
   if (size === 0) return new Uint8Array(0);
   let bytes: Uint8Array;
   try {
@@ -19,7 +19,7 @@ export function checkStep(step: number): number {
   return step;
 }
 
-export function viewOf(bytes: Uint8Array, head: number): DataView {
+export function headerView(bytes: Uint8Array, head: number): DataView {
   if (bytes.length < head) throw new RangeError(`positions: ${bytes.length} bytes, less than the head's ${head}.`);
   return new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
 }

@@ -11,7 +11,7 @@ export function make<K extends keyof HTMLElementTagNameMap>(
 }
 
 /** The element of index.html with this id. */
-export function place(id: string): HTMLElement {
+export function elementById(id: string): HTMLElement {
   const element = document.getElementById(id);
   if (element === null) throw new Error(`index.html has no element "${id}".`);
   return element;

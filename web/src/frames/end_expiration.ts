@@ -1,5 +1,5 @@
 /** Notices the end of each expiration: where the breath signal stops falling. */
-export class Expiration {
+export class EndExpirationDetector {
   private falling = false;
   private last: number | undefined;
 

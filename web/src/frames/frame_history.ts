@@ -1,24 +1,24 @@
 import type { Frame } from "../gen/phrenic/v1/frames_pb";
 
 /** How long frames are kept [simulated s], and how many at most: some megabytes as they came. */
-const longest = 20;
-const most = 900;
+const maxDuration = 20;
+const maxFrames = 900;
 
 /** The frames of the last seconds, as they came, and the one that is looked at again. */
-export class Past {
+export class FrameHistory {
   private frames: Frame[] = [];
   /** The time that is looked back to [s]; nothing in the present. */
-  private back: number | undefined;
+  private replayTime: number | undefined;
 
   add(frame: Frame): void {
     if (frame.time < (this.frames.at(-1)?.time ?? 0)) this.clear();
     this.frames.push(frame);
-    while (this.frames.length > most || this.frames[0].time < frame.time - longest) this.frames.shift();
+    while (this.frames.length > maxFrames || this.frames[0].time < frame.time - maxDuration) this.frames.shift();
   }
 
   clear(): void {
     this.frames = [];
-    this.back = undefined;
+    this.replayTime = undefined;
   }
 
   /** From the oldest frame to the newest [s]. */
@@ -26,13 +26,13 @@ export class Past {
     return { start: this.frames[0]?.time ?? 0, end: this.frames.at(-1)?.time ?? 0 };
   }
 
-  look(time: number | undefined): void {
-    this.back = time;
+  replayAt(time: number | undefined): void {
+    this.replayTime = time;
   }
 
   /** The last frame up to the time that is looked back to, or the oldest that is left. */
-  get lookedAt(): Frame | undefined {
-    return this.frames[this.place()];
+  get replayed(): Frame | undefined {
+    return this.frames[this.replayIndex()];
   }
 
   /** The frame nearest to a time [s]. */
@@ -44,18 +44,18 @@ export class Past {
   }
 
   /** The time of the frame before, or after, the one that is looked at; nothing at the newest. */
-  neighbour(by: -1 | 1): number | undefined {
-    const from = this.back === undefined ? this.frames.length - 1 : this.place();
+  adjacentTime(by: -1 | 1): number | undefined {
+    const from = this.replayTime === undefined ? this.frames.length - 1 : this.replayIndex();
     const to = Math.max(0, from + by);
     return to < this.frames.length - 1 ? this.frames[to]?.time : undefined;
   }
 
-  private place(): number {
-    const { back } = this;
-    if (back === undefined) return -1;
+  private replayIndex(): number {
+    const { replayTime } = this;
+    if (replayTime === undefined) return -1;
     return Math.max(
       0,
-      this.frames.findLastIndex(({ time }) => time <= back),
+      this.frames.findLastIndex(({ time }) => time <= replayTime),
     );
   }
 }

@@ -1,22 +1,22 @@
 import { floatsPerPose, type FrameArrays } from "../geometry/bodies";
 
 /** The moment `part` of the way from `a` to `b`: places go straight, rigid bodies turn the shorter way. */
-export function blend(a: FrameArrays, b: FrameArrays, part: number): FrameArrays {
+export function interpolate(a: FrameArrays, b: FrameArrays, part: number): FrameArrays {
   if (part <= 0 || a === b) return a;
   if (part >= 1) return b;
-  const poses = mix(a.poses, b.poses, part);
-  for (let at = 0; at < poses.length; at += floatsPerPose) turn(a.poses, b.poses, part, at, poses);
-  return { positions: mix(a.positions, b.positions, part), poses };
+  const poses = lerp(a.poses, b.poses, part);
+  for (let at = 0; at < poses.length; at += floatsPerPose) nlerp(a.poses, b.poses, part, at, poses);
+  return { positions: lerp(a.positions, b.positions, part), poses };
 }
 
-function mix(a: Float32Array, b: Float32Array, part: number): Float32Array<ArrayBuffer> {
+function lerp(a: Float32Array, b: Float32Array, part: number): Float32Array<ArrayBuffer> {
   const result = new Float32Array(a.length);
   for (let i = 0; i < a.length; i++) result[i] = a[i] + part * (b[i] - a[i]);
   return result;
 }
 
 /** The quaternion at `at`: between two frames a body turns so little that the straight way, made unit, is the round one. */
-function turn(a: Float32Array, b: Float32Array, part: number, at: number, out: Float32Array): void {
+function nlerp(a: Float32Array, b: Float32Array, part: number, at: number, out: Float32Array): void {
   let dot = 0;
   for (let k = at; k < at + 4; k++) dot += a[k] * b[k];
   const sign = dot < 0 ? -1 : 1;

@@ -1,5 +1,5 @@
 /** Where a camera is, and what it looks at [m]. */
-export interface Pose {
+export interface CameraPose {
   eye: { x: number; y: number; z: number };
   target: { x: number; y: number; z: number };
 }

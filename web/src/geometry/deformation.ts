@@ -1,14 +1,14 @@
 /** |x - x_rest| of each vertex [mm]. */
 export function displacements(rest: Float32Array, now: Float32Array): Float32Array {
-  return ways(rest, now, 1000);
+  return distances(rest, now, 1000);
 }
 
 /** Between two moments `seconds` apart [mm/s]; nothing moves where they are one. */
 export function speeds(before: Float32Array, now: Float32Array, seconds: number): Float32Array {
-  return ways(before, now, seconds > 0 ? 1000 / seconds : 0);
+  return distances(before, now, seconds > 0 ? 1000 / seconds : 0);
 }
 
-function ways(from: Float32Array, to: Float32Array, factor: number): Float32Array {
+function distances(from: Float32Array, to: Float32Array, factor: number): Float32Array {
   const result = new Float32Array(from.length / 3);
   for (let i = 0; i < result.length; i++) {
     const x = to[3 * i] - from[3 * i];

@@ -5,7 +5,7 @@
  * With the edges u, v of a triangle, G their products at rest and g now, stretches are the roots of the eigenvalues of
  * g x = l G x: l^2 - l (g11 G22 - 2 g12 G12 + g22 G11)/det G + det g/det G = 0.
  */
-export function strains(
+export function principalStrains(
   rest: Float32Array,
   now: Float32Array,
   triangles: Uint32Array,

@@ -6,6 +6,6 @@ export interface VertexRef {
 
 /** A place to be marked, in a colour. */
 export interface Marker {
-  place: [number, number, number];
+  position: [number, number, number];
   color: string;
 }

@@ -1,5 +1,5 @@
 import type { Frame } from "../gen/phrenic/v1/frames_pb";
-import { familiarUnit } from "./units";
+import { displayUnit } from "./units";
 
 /** One line of a graph: where its values are kept, and what they are multiplied by to be in the graph's unit. */
 export interface Curve {
@@ -17,7 +17,7 @@ export interface GraphSpec {
   unit: string;
   curves: Curve[];
   /** Of a loop: what runs to the right, and its unit. */
-  across?: Curve & { unit: string };
+  abscissa?: Curve & { unit: string };
 }
 
 /** The values of a frame by the keys of curves, SI. */
@@ -59,7 +59,7 @@ function others(frame: Frame): GraphSpec[] {
 
 /** Measures of one unit in one graph, or in one each where they have little in common but the unit. */
 function byUnit({ measures }: Frame, unit: string, title: string, together: boolean): GraphSpec[] {
-  const [familiar, factor] = familiarUnit(unit);
+  const [familiar, factor] = displayUnit(unit);
   const curves = measures
     .filter((each) => each.unit === unit && !isDomeHeight(each))
     .map(({ name }) => curve(measureKey(name), name, factor));
@@ -75,15 +75,15 @@ function loop({ measures }: Frame): GraphSpec[] {
   const pressure = pressures.find(({ name }) => name.includes("pleural")) ?? pressures[0];
   const volume = measures.find(({ unit }) => unit === "m^3");
   if (pressure === undefined || volume === undefined) return [];
-  const [unit, factor] = familiarUnit("m^3");
-  const across = { ...curve(measureKey(pressure.name), pressure.name, 1), unit: "Pa" };
+  const [unit, factor] = displayUnit("m^3");
+  const abscissa = { ...curve(measureKey(pressure.name), pressure.name, 1), unit: "Pa" };
   const curves = [curve(measureKey(volume.name), volume.name, factor)];
-  return [{ id: "loop", title: "P–V loop", unit, curves, across }];
+  return [{ id: "loop", title: "P–V loop", unit, curves, abscissa }];
 }
 
 /** What M-mode ultrasound shows: how far each dome has come down. */
 function domes(frame: Frame): GraphSpec[] {
-  const curves = domesOf(frame).map(({ key, name }) => curve(key, name, -1000));
+  const curves = domeHeights(frame).map(({ key, name }) => curve(key, name, -1000));
   return curves.length === 0 ? [] : [{ id: "domes", title: "M-mode: descent", help: domeHelp, unit: "mm", curves }];
 }
 
@@ -98,7 +98,7 @@ export const domeHelp =
 export const probeHelp = "How far one vertex each, always the same, is above where it rests";
 
 /** How high each dome is above its rest [m], by the scene's measures or, where it has none, its probes of that name. */
-export function domesOf({ measures, probes }: Frame): { key: string; name: string; height: number }[] {
+export function domeHeights({ measures, probes }: Frame): { key: string; name: string; height: number }[] {
   return [
     ...measures.filter(isDomeHeight).map(({ name, value }) => ({ key: measureKey(name), name, height: value })),
     ...probes.filter(isDome).map(({ name, dz }) => ({ key: probeKey(name), name, height: dz })),

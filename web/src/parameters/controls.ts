@@ -50,12 +50,15 @@ export function controlsOf(message: DescMessage): Control[] {
 
 function controlOf(field: DescField): Control | undefined {
   if (hasOption(field, quantity)) return numberControl(field.localName, getOption(field, quantity));
-  if (hasOption(field, toggle)) return { kind: "switch", ...inWords(field, getOption(field, toggle)) };
+  if (hasOption(field, toggle)) return { kind: "switch", ...descriptionOf(field, getOption(field, toggle)) };
   if (field.fieldKind !== "enum" || !hasOption(field, choice)) return undefined;
-  return { kind: "choice", ...inWords(field, getOption(field, choice)), options: optionsOf(field.enum) };
+  return { kind: "choice", ...descriptionOf(field, getOption(field, choice)), options: optionsOf(field.enum) };
 }
 
-function inWords<T>(field: DescField, { label, help, defaultValue }: { label: string; help: string; defaultValue: T }) {
+function descriptionOf<T>(
+  field: DescField,
+  { label, help, defaultValue }: { label: string; help: string; defaultValue: T },
+) {
   return { field: field.localName, label: label || field.localName, help, defaultValue };
 }
 

@@ -8,7 +8,7 @@ interface Difference {
   there: string;
 }
 
-function differing(here: Parameters | undefined, there: Parameters | undefined): Difference[] {
+function differingParameters(here: Parameters | undefined, there: Parameters | undefined): Difference[] {
   if (here === undefined || there === undefined) return [];
   const values = (of: Parameters) => of as unknown as Record<string, number | boolean>;
   return parameterControls()
@@ -26,14 +26,14 @@ function differing(here: Parameters | undefined, there: Parameters | undefined):
 
 /** What is set otherwise in `there`: "Breath force 2 instead of 1". */
 export function differences(here: Parameters | undefined, there: Parameters | undefined): string {
-  return differing(here, there)
+  return differingParameters(here, there)
     .map(({ label, here, there }) => `${label} ${there} instead of ${here}`)
     .join(", ");
 }
 
 /** The same, and of more than two "With breath force 0.45, breath length 3, rib motion 1.5". */
 export function shortDifferences(here: Parameters | undefined, there: Parameters | undefined): string {
-  const all = differing(here, there);
+  const all = differingParameters(here, there);
   if (all.length < 3) return differences(here, there);
   return `With ${all.map(({ label, there }) => `${label.toLowerCase()} ${there}`).join(", ")}`;
 }

@@ -1,12 +1,12 @@
 import type { NumberControl } from "./controls";
 
 /** Where the slider stands for `value`. */
-export function positionOf(control: NumberControl, value: number): number {
+export function sliderPosition(control: NumberControl, value: number): number {
   return control.logarithmic ? Math.log10(value) : value;
 }
 
 /** The value for a slider's position, rounded to what the slider can tell apart, inside the range. */
-export function valueAt(control: NumberControl, position: number): number {
+export function sliderValue(control: NumberControl, position: number): number {
   const raw = control.logarithmic ? 10 ** position : position;
   const value = control.logarithmic ? Number(raw.toPrecision(3)) : Number(raw.toFixed(decimalsOf(control.step)));
   return Math.min(control.maximum, Math.max(control.minimum, value));
@@ -17,7 +17,7 @@ function decimalsOf(step: number): number {
 }
 
 /** Why `value` may not be sent, or nothing. */
-export function faultOf(control: NumberControl, value: number): string | undefined {
+export function rangeError(control: NumberControl, value: number): string | undefined {
   if (Number.isFinite(value) && value >= control.minimum && value <= control.maximum) return undefined;
   return `${control.label} goes from ${formatNumber(control.minimum)} to ${formatNumber(control.maximum)}${
     control.unit ? " " + control.unit : ""

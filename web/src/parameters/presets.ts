@@ -3,17 +3,17 @@ import type { Preset } from "../gen/phrenic/v1/scene_pb";
 import type { ParameterName } from "./controls";
 
 /** "paralysis-right" is "Paralysis right". */
-export function labelOf({ name }: Preset): string {
+export function presetLabel({ name }: Preset): string {
   return name.charAt(0).toUpperCase() + name.slice(1).replaceAll("-", " ");
 }
 
 /** The preset that holds; of several the first. */
-export function presetOf(presets: Preset[], parameters: Parameters | undefined): Preset | undefined {
-  return parameters === undefined ? undefined : presets.find((preset) => holds(preset, parameters));
+export function activePreset(presets: Preset[], parameters: Parameters | undefined): Preset | undefined {
+  return parameters === undefined ? undefined : presets.find((preset) => isActive(preset, parameters));
 }
 
 /** Whether all that the preset sets is as it says. */
-export function holds(preset: Preset, parameters: Parameters): boolean {
+export function isActive(preset: Preset, parameters: Parameters): boolean {
   return ParametersSchema.fields.every((field) => {
     const name = field.localName as ParameterName;
     const wanted = preset.parameters?.[name];

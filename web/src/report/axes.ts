@@ -47,7 +47,7 @@ export function logScale(label: string, domain: [number, number]): ScaleOptions 
 }
 
 /** A plot as all of them look; `label` says in words what it shows. */
-export function draw(label: string, { x, y, ...options }: PlotOptions): SVGSVGElement | HTMLElement {
+export function drawPlot(label: string, { x, y, ...options }: PlotOptions): SVGSVGElement | HTMLElement {
   const drawn = plot({
     width: wide,
     height: 560,

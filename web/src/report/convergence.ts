@@ -1,11 +1,11 @@
 import { frame, line, type Markish, text } from "@observablehq/plot";
 import type { ErrorTable } from "../gen/phrenic/v1/study_results_pb";
-import { draw, faint, logDomain, logScale, seriesScales } from "./axes";
+import { drawPlot, faint, logDomain, logScale, seriesScales } from "./axes";
 import { directLabels } from "./direct_labels";
 import { figure } from "./figure";
 import { formatDigits } from "./format";
-import { looksOf, nameOf } from "./names";
-import { leftOut, linesOf, type Run, runsOf, seriesMarks } from "./work_precision";
+import { seriesName, seriesStyles } from "./names";
+import { linesOf, omittedRuns, type Run, runsOf, seriesMarks } from "./work_precision";
 
 interface Guide {
   order: number;
@@ -23,8 +23,8 @@ export function convergence(table: ErrorTable): HTMLElement | undefined {
   const end = high * 10 ** Math.max(0.3, 0.18 * Math.log10(high / low));
   const guides = guidesIn(high, end, y);
   const title = "RMS error against time step.";
-  const drawn = draw(`${title} ${ordersInWords(runs)}`, {
-    ...seriesScales(looksOf(table.rows.map(({ integrator }) => integrator))),
+  const drawn = drawPlot(`${title} ${measuredOrders(runs)}`, {
+    ...seriesScales(seriesStyles(table.rows.map(({ integrator }) => integrator))),
     height: 560,
     marginRight: 84,
     x: logScale("Time step [ms]", [low, end]),
@@ -38,7 +38,7 @@ export function convergence(table: ErrorTable): HTMLElement | undefined {
   });
   const sentence =
     `Half the step, and the error of order p falls to 1/2^p: dashed guides have the slopes 1, 2 and 4. ` +
-    [ordersInWords(runs), leftOut(table.rows, runs)].filter(Boolean).join(" ");
+    [measuredOrders(runs), omittedRuns(table.rows, runs)].filter(Boolean).join(" ");
   return figure(title, sentence.replace("1/2^p", "1/2ᵖ"), drawn);
 }
 
@@ -68,9 +68,9 @@ function guideMarks({ order, points }: Guide): Markish[] {
 }
 
 /** "Orders measured at the smallest steps: BDF2: 1.4; Velocity Verlet: 2." */
-function ordersInWords(runs: Run[]): string {
+function measuredOrders(runs: Run[]): string {
   const last = new Map(runs.flatMap(({ id, row }) => (row.order === undefined ? [] : [[id, row.order]])));
   if (last.size === 0) return "";
-  const words = [...last].map(([id, order]) => `${nameOf(id)}: ${formatDigits(order, 2)}`);
+  const words = [...last].map(([id, order]) => `${seriesName(id)}: ${formatDigits(order, 2)}`);
   return `Orders measured at the smallest steps: ${words.join("; ")}.`;
 }

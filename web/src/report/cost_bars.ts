@@ -1,6 +1,6 @@
 import { barX, type Markish, ruleX, text, tickX } from "@observablehq/plot";
 import type { CostRow, StageRow } from "../gen/phrenic/v1/study_results_pb";
-import { draw, ink, isPositive } from "./axes";
+import { drawPlot, ink, isPositive } from "./axes";
 import { figure } from "./figure";
 import { formatDigits } from "./format";
 
@@ -26,7 +26,7 @@ export function variantBars(rows: CostRow[]): HTMLElement {
   const bars = known.map((row, i): Bar => {
     const thesis = isPositive(row.thesisStepsPerS) ? 1e6 / row.thesisStepsPerS : undefined;
     const color = i === 0 ? blue : pale;
-    return { name: row.variant, value: row.cpuUsPerStep, words: wordsOf(row, thesis), color, thesis };
+    return { name: row.variant, value: row.cpuUsPerStep, words: barLabel(row, thesis), color, thesis };
   });
   const spread = Math.max(...known.map((row) => row.spread));
   const sentences = [
@@ -36,7 +36,7 @@ export function variantBars(rows: CostRow[]): HTMLElement {
   return figure(title, sentences.filter(Boolean).join(" "), drawBars(title, "CPU time [µs per step]", bars));
 }
 
-function wordsOf(row: CostRow, thesis: number | undefined): string {
+function barLabel(row: CostRow, thesis: number | undefined): string {
   const share = isPositive(row.share) ? `, ${formatDigits(100 * row.share, 3)} %` : "";
   const own = `${formatDigits(row.cpuUsPerStep, 3)} µs${share}`;
   if (thesis === undefined) return own;
@@ -82,7 +82,7 @@ function drawBars(title: string, label: string, bars: Bar[]): HTMLElement | SVGS
     ),
     text(places, { x: "end", y: "at", text: "words", dx: 9, textAnchor: "start", fill: ink, fontSize: 14 }),
   ];
-  return draw(`${title} ${bars.map(({ name, words }) => `${name}: ${words}`).join("; ")}.`, {
+  return drawPlot(`${title} ${bars.map(({ name, words }) => `${name}: ${words}`).join("; ")}.`, {
     height: 80 + 36 * bars.length,
     marginTop: 12,
     marginLeft,

@@ -15,7 +15,7 @@ import { tableOf } from "./table";
 
 export function costParts(table: CostTable): HTMLElement[] {
   const parts: (HTMLElement | undefined)[] = [
-    make("div", { className: "advice" }, ...adviceOf(table).map((sentence) => make("p", {}, sentence))),
+    make("div", { className: "advice" }, ...summaryOf(table).map((sentence) => make("p", {}, sentence))),
     make("h2", {}, "What a step costs"),
     variantBars(table.rows),
     stageBars(table.stages),
@@ -32,7 +32,7 @@ export function costParts(table: CostTable): HTMLElement[] {
 }
 
 /** What a reader takes away: what a step takes, where it goes, and whether leaving out is free. */
-function adviceOf({ rows, stages }: CostTable): string[] {
+function summaryOf({ rows, stages }: CostTable): string[] {
   const full = rows.find(({ variant }) => variant === "full");
   const parts = stages.filter(({ stage }) => stage !== "step").sort((a, b) => b.usPerStep - a.usPerStep);
   return [full && paceOf(full), parts[0] && mostTo(parts[0]), leavingOut(rows)].filter(

@@ -7,19 +7,19 @@ import {
   ResolutionRowSchema,
 } from "../gen/phrenic/v1/study_results_pb";
 import { convergence } from "./convergence";
-import { beside } from "./figure";
+import { sideBySide } from "./figure";
 import { formatDigits } from "./format";
-import { spelled } from "./names";
+import { withSeriesNames } from "./names";
 import { positionErrors, residuals, resolutions } from "./residuals";
 import { tableOf } from "./table";
 import { type Measure, workPrecision } from "./work_precision";
 
 export function errorParts(table: ErrorTable): HTMLElement[] {
   const parts: (HTMLElement | undefined)[] = [
-    table.advice === "" ? undefined : make("p", { className: "advice" }, spelled(table.advice)),
+    table.advice === "" ? undefined : make("p", { className: "advice" }, withSeriesNames(table.advice)),
     switched(table),
     convergence(table),
-    beside(residuals(table), positionErrors(table), resolutions(table)),
+    sideBySide(residuals(table), positionErrors(table), resolutions(table)),
     table.reference === undefined ? undefined : referenceWords(table.reference),
     make("h2", {}, "Tables"),
     tableOf("Runs", ErrorRowSchema, table.rows),

@@ -7,6 +7,6 @@ export function figure(title: string, sentence: string, ...content: (Node | stri
 }
 
 /** Figures side by side where there is room. */
-export function beside(...figures: (HTMLElement | undefined)[]): HTMLElement {
+export function sideBySide(...figures: (HTMLElement | undefined)[]): HTMLElement {
   return make("div", { className: "beside" }, ...figures.filter((each) => each !== undefined));
 }

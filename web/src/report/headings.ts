@@ -1,4 +1,4 @@
-import { inWords } from "./names";
+import { sentenceCase } from "./names";
 
 const units: Record<string, string> = { mm: "mm", m: "m", s: "s", ms: "ms", us: "µs", ns: "ns", j: "J" };
 const words: Record<string, string> = { cpu: "CPU", rms: "RMS" };
@@ -18,8 +18,8 @@ export function headingOf(field: string): string {
   if (known !== undefined) return known;
   const parts = field.split("_");
   const at = parts.findIndex((part, i) => part in units && (i + 1 === parts.length || parts[i + 1] === "per"));
-  if (at < 0 || parts[at - 1] === "per") return inWords(spell(parts));
-  const name = inWords(spell(parts.slice(0, at))) || "Time";
+  if (at < 0 || parts[at - 1] === "per") return sentenceCase(spell(parts));
+  const name = sentenceCase(spell(parts.slice(0, at))) || "Time";
   return `${name} [${[units[parts[at]], ...parts.slice(at + 1)].join(" ")}]`;
 }
 

@@ -24,7 +24,7 @@ export function showStudy(page: HTMLElement, json: string): void {
 /** What there is to say of a study: plots, tables, and what they are of. */
 export function contentsOf(study: Study): HTMLElement[] {
   const { result } = study;
-  const parts = result?.result.case === undefined ? [nothing(study)] : partsOf(result);
+  const parts = result?.result.case === undefined ? [noResult(study)] : partsOf(result);
   return [header(study), ...parts, disclaimer()];
 }
 
@@ -36,7 +36,7 @@ function partsOf({ result }: StudyResult): HTMLElement[] {
   return result.case === "streaming" ? streamingParts(result.value) : [];
 }
 
-function nothing({ problem }: Study): HTMLElement {
+function noResult({ problem }: Study): HTMLElement {
   return make("p", { className: "none" }, problem === "" ? "This study has no result." : `No result: ${problem}`);
 }
 

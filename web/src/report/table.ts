@@ -3,7 +3,7 @@ import { isFieldSet, ScalarType } from "@bufbuild/protobuf";
 import { make } from "../dom/elements";
 import { formatDigits } from "./format";
 import { headingOf } from "./headings";
-import { nameOf } from "./names";
+import { seriesName } from "./names";
 
 const marks: Record<string, [string, string]> = {
   pass: ["✔", "good"],
@@ -17,7 +17,7 @@ const marks: Record<string, [string, string]> = {
 export function tableOf(title: string, schema: DescMessage, rows: readonly Message[]): HTMLElement {
   const heading = make("h3", {}, title);
   if (rows.length === 0) return make("section", {}, heading, make("p", { className: "none" }, "No rows."));
-  const fields = schema.fields.filter((field) => rows.some((row) => worthAColumn(row, field)));
+  const fields = schema.fields.filter((field) => rows.some((row) => isShown(row, field)));
   const head = make("tr", {}, ...fields.map((field) => headCell(field)));
   const body = rows.map((row) => make("tr", {}, ...fields.map((field) => cell(row, field))));
   const table = make("table", {}, make("thead", {}, head), make("tbody", {}, ...body));
@@ -26,7 +26,7 @@ export function tableOf(title: string, schema: DescMessage, rows: readonly Messa
 }
 
 // A number that is 0 and a switch that is off are worth showing; a text that no row has is not.
-function worthAColumn(row: Message, field: DescField): boolean {
+function isShown(row: Message, field: DescField): boolean {
   if (field.fieldKind !== "scalar") return false;
   const value = valueOf(row, field);
   return value !== undefined && value !== "";
@@ -56,7 +56,11 @@ function cell(row: Message, field: DescField): HTMLElement {
   if (typeof value === "number") return make("td", { className: "number" }, shortDigits(value));
   const text = String(value);
   if (field.name === "verdict") return verdictCell(text);
-  return make("td", { className: text.length > 30 ? "words" : "" }, field.name === "integrator" ? nameOf(text) : text);
+  return make(
+    "td",
+    { className: text.length > 30 ? "words" : "" },
+    field.name === "integrator" ? seriesName(text) : text,
+  );
 }
 
 /** Four digits, three where a power takes the room of one. */

@@ -4,12 +4,12 @@ import { Backoff } from "../timing/backoff";
 import type { Clock } from "../timing/clock";
 
 /** The session that a page with no session in its address opens: the first that plays, or else the first. */
-export function preferred(sessions: Session[]): Session | undefined {
+export function preferredSession(sessions: Session[]): Session | undefined {
   return sessions.find((session) => session.state === SessionState.PLAYING) ?? sessions[0];
 }
 
 /** How often to look again where the server has no session yet [ms]. */
-const lookAgain = 1500;
+const pollInterval = 1500;
 
 /**
  * The id in the page's address, or the preferred session's, asked for until there is one: a server that has just been
@@ -20,7 +20,7 @@ export async function chooseSession(
   address: URL,
   api: Api,
   clock: Clock,
-  waiting: (error?: unknown) => void,
+  onWaiting: (error?: unknown) => void,
 ): Promise<string> {
   const named = address.searchParams.get("session");
   if (named !== null && named !== "") return named;
@@ -28,12 +28,12 @@ export async function chooseSession(
   for (;;) {
     try {
       const { sessions } = await api.sessions.listSessions({}, { timeoutMs: 8000 });
-      const found = preferred(sessions);
+      const found = preferredSession(sessions);
       if (found !== undefined) return found.id;
-      waiting();
-      await clock.sleep(lookAgain);
+      onWaiting();
+      await clock.sleep(pollInterval);
     } catch (error) {
-      waiting(error);
+      onWaiting(error);
       await clock.sleep(backoff.next());
     }
   }

@@ -5,7 +5,7 @@ import { floats, indices } from "../geometry/wire_arrays";
 import { Signal } from "../state/signal";
 
 /** How a file is compared. */
-export interface Choices {
+export interface ComparisonChoices {
   /** The body that is compared with it. */
   body: string;
   /** Millimetres in one unit of the file. */
@@ -31,19 +31,19 @@ export interface Comparison {
   surface: Surface | undefined;
 }
 
-export type Work =
-  { kind: "idle" } | { kind: "running"; file: string; done: number } | { kind: "failed"; words: string };
+export type ComparisonProgress =
+  { kind: "idle" } | { kind: "running"; file: string; done: number } | { kind: "failed"; message: string };
 
 /** The server takes messages of at most 16 MiB; some of it is for the words around the file. */
-const mostBytes = (16 << 20) - 4096;
+const maxBytes = (16 << 20) - 4096;
 
 /** Compares a body of one session, as it is when asked, with a file; one comparison at a time. */
 export class Comparisons {
   readonly result = new Signal<Comparison | undefined>(undefined);
-  readonly work = new Signal<Work>({ kind: "idle" });
+  readonly progress = new Signal<ComparisonProgress>({ kind: "idle" });
   /** Whether the file's surface is drawn. */
-  readonly drawn = new Signal(true);
-  readonly choices = new Signal<Choices>({ body: "", unitMm: 1, time: undefined });
+  readonly surfaceVisible = new Signal(true);
+  readonly choices = new Signal<ComparisonChoices>({ body: "", unitMm: 1, time: undefined });
   private file: { name: string; content: Uint8Array } | undefined;
   private running = new AbortController();
 
@@ -52,14 +52,14 @@ export class Comparisons {
     private readonly sessionId: string,
   ) {}
 
-  choose(choices: Partial<Choices>): void {
+  choose(choices: Partial<ComparisonChoices>): void {
     this.choices.set({ ...this.choices.value, ...choices });
   }
 
   /** Ends what runs and compares with `file`; what was found before stays until there is something new. */
   async compare(file: SurfaceFile): Promise<void> {
     this.running.abort();
-    if (file.size > mostBytes) {
+    if (file.size > maxBytes) {
       const size = (file.size / (1 << 20)).toFixed(1);
       const remedy = "record fewer times or fewer bodies, or compare on the command line (phrenic compare)";
       return this.fail(`${file.name} has ${size} MiB, and the server takes less than 16: ${remedy}`);
@@ -69,18 +69,20 @@ export class Comparisons {
     if (signal.aborted) return;
     if (content === undefined) return this.fail(`${file.name} cannot be read: is it a file, and still there?`);
     this.file = { name: file.name, content: new Uint8Array(content) };
-    return this.again();
+    return this.repeat();
   }
 
   /** The same file once more, with the session as it is now. */
-  async again(): Promise<void> {
+  async repeat(): Promise<void> {
     if (this.file === undefined) return;
     const { name } = this.file;
     const { signal } = this.begin(name);
     try {
-      const found = await this.ask(signal, (done) => this.work.set({ kind: "running", file: name, done }));
+      const found = await this.runComparison(signal, (done) =>
+        this.progress.set({ kind: "running", file: name, done }),
+      );
       if (signal.aborted) return;
-      this.work.set({ kind: "idle" });
+      this.progress.set({ kind: "idle" });
       this.result.set(found);
     } catch (error) {
       if (!signal.aborted) this.fail(errorText(error));
@@ -90,7 +92,7 @@ export class Comparisons {
   /** Ends what runs; what was found before stays. */
   stop(): void {
     this.running.abort();
-    this.work.set({ kind: "idle" });
+    this.progress.set({ kind: "idle" });
   }
 
   /** As if nothing had been compared. */
@@ -104,15 +106,15 @@ export class Comparisons {
   private begin(file: string): AbortController {
     this.running.abort();
     this.running = new AbortController();
-    this.work.set({ kind: "running", file, done: 0 });
+    this.progress.set({ kind: "running", file, done: 0 });
     return this.running;
   }
 
-  private fail(words: string): void {
-    this.work.set({ kind: "failed", words });
+  private fail(message: string): void {
+    this.progress.set({ kind: "failed", message });
   }
 
-  private async ask(signal: AbortSignal, progress: (done: number) => void): Promise<Comparison> {
+  private async runComparison(signal: AbortSignal, progress: (done: number) => void): Promise<Comparison> {
     let distances: number[] | undefined;
     let surface: Surface | undefined;
     for await (const { event } of this.call(signal)) {

@@ -1,6 +1,6 @@
 import type { MessageInitShape } from "@bufbuild/protobuf";
 import { Code, ConnectError } from "@connectrpc/connect";
-import { type Api, errorText, unreachable } from "../connection/api";
+import { type Api, errorText, isUnreachable } from "../connection/api";
 import {
   type CreateExportRequestSchema,
   type Export,
@@ -22,19 +22,19 @@ export interface ExportChoices {
   bodies: string[];
 }
 
-export type ExportWork =
+export type ExportProgress =
   | { kind: "idle" }
   | { kind: "recording"; file: string; done: number; secondsLeft: number | undefined }
   | { kind: "fetching"; file: string; done: number }
   | { kind: "ready"; file: string; size: number; url: string }
-  | { kind: "failed"; words: string };
+  | { kind: "failed"; message: string };
 
-const attempts = 5;
+const maxAttempts = 5;
 
 /** Records a session's motion on the server and fetches the file; one export at a time. */
 export class Exports {
   readonly formats = new Signal<FileFormat[]>([]);
-  readonly work = new Signal<ExportWork>({ kind: "idle" });
+  readonly progress = new Signal<ExportProgress>({ kind: "idle" });
   readonly choices = new Signal<ExportChoices>({
     format: "msh",
     seconds: 8,
@@ -43,7 +43,7 @@ export class Exports {
     bodies: [],
   });
   private running = new AbortController();
-  private job = "";
+  private jobId = "";
 
   constructor(
     private readonly api: Api,
@@ -60,7 +60,7 @@ export class Exports {
   }
 
   /** Asks the server what it writes. */
-  async learn(): Promise<void> {
+  async loadFormats(): Promise<void> {
     const answer = await this.api.exports.listFormats({}).catch(() => undefined);
     if (answer !== undefined) this.formats.set(answer.formats);
   }
@@ -69,30 +69,30 @@ export class Exports {
   async start(): Promise<void> {
     this.stop();
     const { signal } = (this.running = new AbortController());
-    this.work.set({ kind: "recording", file: "", done: 0, secondsLeft: undefined });
+    this.progress.set({ kind: "recording", file: "", done: 0, secondsLeft: undefined });
     try {
       const job = await this.record(signal);
       const file = await this.fetch(job, signal);
       if (signal.aborted) return;
-      this.work.set({ kind: "ready", file: job.fileName, size: file.size, url: URL.createObjectURL(file) });
+      this.progress.set({ kind: "ready", file: job.fileName, size: file.size, url: URL.createObjectURL(file) });
     } catch (error) {
-      if (!signal.aborted) this.work.set({ kind: "failed", words: errorText(error) });
+      if (!signal.aborted) this.progress.set({ kind: "failed", message: errorText(error) });
     } finally {
-      await this.forget();
+      await this.deleteJob();
     }
   }
 
   /** Ends what runs, here and on the server, and lets go of a file that is ready. */
   stop(): void {
     this.running.abort();
-    void this.forget();
-    if (this.work.value.kind === "ready") URL.revokeObjectURL(this.work.value.url);
-    this.work.set({ kind: "idle" });
+    void this.deleteJob();
+    if (this.progress.value.kind === "ready") URL.revokeObjectURL(this.progress.value.url);
+    this.progress.set({ kind: "idle" });
   }
 
-  private async forget(): Promise<void> {
-    const exportId = this.job;
-    this.job = "";
+  private async deleteJob(): Promise<void> {
+    const exportId = this.jobId;
+    this.jobId = "";
     if (exportId !== "") await this.api.exports.deleteExport({ exportId }).catch(() => undefined);
   }
 
@@ -111,13 +111,13 @@ export class Exports {
 
   private async record(signal: AbortSignal): Promise<Export> {
     const created = await this.api.exports.createExport(this.request(), { signal });
-    this.job = created.job!.id;
-    for await (const { job } of this.api.exports.watchExport({ exportId: this.job }, { signal })) {
+    this.jobId = created.job!.id;
+    for await (const { job } of this.api.exports.watchExport({ exportId: this.jobId }, { signal })) {
       if (job?.state === ExportState.DONE) return job;
       if (job?.state === ExportState.FAILED) throw new Error(job.problem);
       if (job === undefined || signal.aborted) continue;
       const { fileName: file, progress: done, secondsLeft } = job;
-      this.work.set({ kind: "recording", file, done, secondsLeft });
+      this.progress.set({ kind: "recording", file, done, secondsLeft });
     }
     throw new Error("the server ended the export without a file");
   }
@@ -133,11 +133,11 @@ export class Exports {
           chunks.push(chunk as Uint8Array<ArrayBuffer>);
           offset += chunk.length;
           const done = offset / Math.max(1, Number(job.bytes));
-          if (!signal.aborted) this.work.set({ kind: "fetching", file: job.fileName, done });
+          if (!signal.aborted) this.progress.set({ kind: "fetching", file: job.fileName, done });
         }
         return new Blob(chunks);
       } catch (error) {
-        if (attempt >= attempts || signal.aborted || !brokeOff(error)) throw error;
+        if (attempt >= maxAttempts || signal.aborted || !isInterrupted(error)) throw error;
         await new Promise((resume) => setTimeout(resume, this.pause));
       }
     }
@@ -145,6 +145,6 @@ export class Exports {
 }
 
 /** Whether a stream ended on its way, rather than by the server's word. */
-function brokeOff(error: unknown): boolean {
-  return unreachable(error) || [Code.Unavailable, Code.Unknown].includes(ConnectError.from(error).code);
+function isInterrupted(error: unknown): boolean {
+  return isUnreachable(error) || [Code.Unavailable, Code.Unknown].includes(ConnectError.from(error).code);
 }

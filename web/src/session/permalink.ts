@@ -4,7 +4,7 @@ import { type Parameters, ParametersSchema } from "../gen/phrenic/v1/parameters_
 import type { Session } from "../gen/phrenic/v1/session_pb";
 
 /** What a simulation can be run again from: the same scene with the same parameters comes to the same state, bit for bit. */
-export interface Recipe {
+export interface RunRecipe {
   scene: string;
   hash: string;
   parameters: Parameters;
@@ -23,7 +23,7 @@ export function permalinkOf({ scene, parameters, tick }: Session, hash: string):
 }
 
 /** What an address asks to be run again; nothing where it names no scene. Error where it makes no sense. */
-export function recipeOf(address: URL): Recipe | undefined {
+export function recipeOf(address: URL): RunRecipe | undefined {
   const get = (name: string) => address.searchParams.get(name) ?? "";
   if (get("scene") === "") return undefined;
   const tick = Number(get("tick") || "0");
@@ -33,7 +33,7 @@ export function recipeOf(address: URL): Recipe | undefined {
 }
 
 /** Runs a recipe: the id of a paused session at its tick. `progress` hears how far it is, 0 to 1. */
-export async function rerun(api: Api, recipe: Recipe, progress: (part: number) => void): Promise<string> {
+export async function rerun(api: Api, recipe: RunRecipe, progress: (part: number) => void): Promise<string> {
   const source = { source: { case: "name" as const, value: recipe.scene } };
   const { session } = await api.sessions.createSession({ source, parameters: recipe.parameters });
   const sessionId = session?.id ?? "";

@@ -1,14 +1,14 @@
 import type { MessageInitShape } from "@bufbuild/protobuf";
-import { type Api, errorText, unreachable } from "../connection/api";
+import { type Api, errorText, isUnreachable } from "../connection/api";
 import type { Control } from "../gen/phrenic/v1/control_pb";
 import type { ParametersSchema } from "../gen/phrenic/v1/parameters_pb";
 import type { Preset } from "../gen/phrenic/v1/scene_pb";
 import { type PullSchema, type Session, SessionState } from "../gen/phrenic/v1/session_pb";
 import { parameterControls, type ParameterName } from "../parameters/controls";
 import { Signal } from "../state/signal";
-import { Undo, type Values } from "../state/undo_history";
+import { UndoHistory, type Values } from "../state/undo_history";
 import type { Clock } from "../timing/clock";
-import { NewestWins } from "../timing/coalescing_sender";
+import { CoalescingSender } from "../timing/coalescing_sender";
 
 type PullValues = MessageInitShape<typeof PullSchema>;
 type ParameterValues = Omit<MessageInitShape<typeof ParametersSchema>, "$typeName">;
@@ -17,19 +17,19 @@ type ParameterValues = Omit<MessageInitShape<typeof ParametersSchema>, "$typeNam
 export type Speed = number | "fastest";
 
 /** Farther apart two sessions do not find together by themselves [s]: the server's limit, too. */
-const mostApart = 2;
+const maxTimeDifference = 2;
 
 /** What a viewer asks of one session; each answer is shown at once, each refusal in the server's words. */
-export class Controller {
+export class SessionController {
   readonly session = new Signal<Session | undefined>(undefined);
   /** What the server last had to say against or about what was asked; empty when all is well. */
   readonly notice = new Signal("");
-  private readonly updates: NewestWins<ParameterValues>;
-  private readonly pulls: NewestWins<Record<string, PullValues>>;
+  private readonly updates: CoalescingSender<ParameterValues>;
+  private readonly pulls: CoalescingSender<Record<string, PullValues>>;
   /** What this viewer changed. */
-  readonly changes = new Undo();
+  readonly changes = new UndoHistory();
   /** Another session that plays, pauses, steps and is reset with this one. */
-  companion: Controller | undefined;
+  companion: SessionController | undefined;
 
   constructor(
     private readonly api: Api,
@@ -38,8 +38,8 @@ export class Controller {
   ) {
     // Whatever became of a change, the controls show what holds.
     const showAll = () => this.session.set(this.session.value);
-    this.updates = new NewestWins<ParameterValues>((change) => this.send(change), clock, showAll);
-    this.pulls = new NewestWins(
+    this.updates = new CoalescingSender<ParameterValues>((change) => this.send(change), clock, showAll);
+    this.pulls = new CoalescingSender(
       (change) => this.sendPulls(Object.values(change).filter((pull) => pull !== undefined)),
       clock,
       () => undefined,
@@ -68,38 +68,38 @@ export class Controller {
 
   /** With a companion each waits for the other where it gets ahead. */
   play(speed: Speed): Promise<void> {
-    void this.companion?.playInStep(speed, this.sessionId);
-    return this.playInStep(speed, this.companion?.sessionId);
+    void this.companion?.playSynchronised(speed, this.sessionId);
+    return this.playSynchronised(speed, this.companion?.sessionId);
   }
 
   /** With a companion both come to rest at the same instant. */
   async pause(): Promise<void> {
-    await Promise.all([this.pauseAlone(), this.companion?.pauseAlone()]);
-    await this.meet();
+    await Promise.all([this.pauseThis(), this.companion?.pauseThis()]);
+    await this.alignTimes();
   }
 
   /** Two that play and have come apart stand still where the one behind has caught up, and go on in step. */
-  async gather(): Promise<void> {
-    const speed = this.pace;
+  async resynchronise(): Promise<void> {
+    const speed = this.currentSpeed;
     await this.pause();
     await this.play(speed);
   }
 
   /** With a companion both have stepped as far in the end, also where one was still at its last steps. */
   async step(ticks: number): Promise<void> {
-    await Promise.all([this.stepAlone(ticks), this.companion?.stepAlone(ticks)]);
-    await this.meet();
+    await Promise.all([this.stepThis(ticks), this.companion?.stepThis(ticks)]);
+    await this.alignTimes();
   }
 
   reset(): Promise<void> {
     void this.companion?.reset();
-    return this.ask(() => this.api.sessions.resetSession({ sessionId: this.sessionId }));
+    return this.call(() => this.api.sessions.resetSession({ sessionId: this.sessionId }));
   }
 
   set(name: ParameterName, value: number | boolean): void {
     const before = this.session.value?.parameters?.[name];
     if (before !== undefined && before !== value)
-      this.changes.note({ [name]: before }, { [name]: value }, this.clock.now());
+      this.changes.record({ [name]: before }, { [name]: value }, this.clock.now());
     this.updates.push({ [name]: value });
   }
 
@@ -115,7 +115,7 @@ export class Controller {
   /** Every parameter back to what a session of this scene starts with. */
   async resetAll(): Promise<void> {
     const start = await this.startValues();
-    if (start !== undefined) await this.noted(() => this.send(start));
+    if (start !== undefined) await this.recordChange(() => this.send(start));
   }
 
   /** Pulls a vertex by a force [N] from now on; zero lets go of it. */
@@ -124,14 +124,14 @@ export class Controller {
   }
 
   /** The page goes: what waits to be sent goes now. */
-  leave(): void {
+  flush(): void {
     this.updates.flush();
     this.pulls.flush();
   }
 
   /** Lets go of every vertex, whoever pulls it. */
-  letGo(): Promise<void> {
-    return this.ask(() => this.api.sessions.pullSession({ sessionId: this.sessionId, releaseOthers: true }));
+  releasePulls(): Promise<void> {
+    return this.call(() => this.api.sessions.pullSession({ sessionId: this.sessionId, releaseOthers: true }));
   }
 
   /** Sets at once and resolves when it holds: for what must come before something else. */
@@ -146,28 +146,28 @@ export class Controller {
 
   /** Sets what belongs to one of the scene's presets. */
   usePreset(preset: string): Promise<void> {
-    return this.noted(() => this.send({}, preset));
+    return this.recordChange(() => this.send({}, preset));
   }
 
   /** Another session that stands where this one stands, playing where this one plays; nothing where there is none. */
   async fork(): Promise<string | undefined> {
-    const copy = await this.copy();
-    if (copy !== undefined && this.playing) await copy.play(this.pace);
-    return copy?.sessionId;
+    const fork = await this.createFork();
+    if (fork !== undefined && this.playing) await fork.play(this.currentSpeed);
+    return fork?.sessionId;
   }
 
   /**
    * A fork to be shown beside this session, by a preset where one is named: both start from one instant, and play in step
    * where this one plays.
    */
-  async forkBeside(preset = ""): Promise<string | undefined> {
-    const [playing, speed] = [this.playing, this.pace];
+  async forkForComparison(preset = ""): Promise<string | undefined> {
+    const [playing, speed] = [this.playing, this.currentSpeed];
     if (playing) await this.pause();
-    const copy = await this.copy();
-    if (copy !== undefined && preset !== "") await copy.usePreset(preset);
-    this.companion = copy;
+    const fork = await this.createFork();
+    if (fork !== undefined && preset !== "") await fork.usePreset(preset);
+    this.companion = fork;
     if (playing) await this.play(speed);
-    return copy?.sessionId;
+    return fork?.sessionId;
   }
 
   private get playing(): boolean {
@@ -175,41 +175,41 @@ export class Controller {
   }
 
   /** How fast it plays, or would. */
-  private get pace(): Speed {
+  private get currentSpeed(): Speed {
     return this.session.value?.speed || "fastest";
   }
 
-  private async copy(): Promise<Controller | undefined> {
+  private async createFork(): Promise<SessionController | undefined> {
     try {
       const { session } = await this.api.sessions.forkSession({ sessionId: this.sessionId });
-      return session === undefined ? undefined : new Controller(this.api, session.id, this.clock);
+      return session === undefined ? undefined : new SessionController(this.api, session.id, this.clock);
     } catch (error) {
       this.notice.set(errorText(error));
       return undefined;
     }
   }
 
-  private playInStep(speed: Speed, inStepWith = ""): Promise<void> {
+  private playSynchronised(speed: Speed, inStepWith = ""): Promise<void> {
     const pace = speed === "fastest" ? { asFastAsPossible: true } : { speed };
-    return this.ask(() => this.api.sessions.playSession({ sessionId: this.sessionId, inStepWith, ...pace }));
+    return this.call(() => this.api.sessions.playSession({ sessionId: this.sessionId, inStepWith, ...pace }));
   }
 
-  private pauseAlone(): Promise<void> {
-    return this.ask(() => this.api.sessions.pauseSession({ sessionId: this.sessionId }));
+  private pauseThis(): Promise<void> {
+    return this.call(() => this.api.sessions.pauseSession({ sessionId: this.sessionId }));
   }
 
-  private stepAlone(ticks: number): Promise<void> {
-    return this.ask(() => this.api.sessions.stepSession({ sessionId: this.sessionId, ticks: BigInt(ticks) }));
+  private stepThis(ticks: number): Promise<void> {
+    return this.call(() => this.api.sessions.stepSession({ sessionId: this.sessionId, ticks: BigInt(ticks) }));
   }
 
   /** Of two that stand the one behind goes on to where the other is, where that is near. */
-  private async meet(): Promise<void> {
+  private async alignTimes(): Promise<void> {
     const { companion } = this;
     const apart = (companion?.session.value?.time ?? 0) - (this.session.value?.time ?? 0);
-    if (companion === undefined || Math.abs(apart) > mostApart) return;
+    if (companion === undefined || Math.abs(apart) > maxTimeDifference) return;
     const behind = apart > 0 ? this : companion;
     const ticks = Math.round(Math.abs(apart) / (behind.session.value?.parameters?.timeStep ?? Infinity));
-    if (ticks > 0) await behind.stepAlone(ticks);
+    if (ticks > 0) await behind.stepThis(ticks);
   }
 
   private setAll(values: Values | undefined): void {
@@ -217,20 +217,20 @@ export class Controller {
   }
 
   /** Takes note of what `change` makes of the parameters. */
-  private async noted(change: () => Promise<void>): Promise<void> {
+  private async recordChange(change: () => Promise<void>): Promise<void> {
     const before = { ...this.session.value?.parameters } as unknown as Values;
     await change();
     const after = { ...this.session.value?.parameters } as unknown as Values;
     const names = parameterControls().map(({ field }) => field);
     const changed = names.filter((name) => before[name] !== undefined && before[name] !== after[name]);
     const part = (values: Values) => Object.fromEntries(changed.map((name) => [name, values[name]]));
-    if (changed.length > 0) this.changes.note(part(before), part(after), this.clock.now());
+    if (changed.length > 0) this.changes.record(part(before), part(after), this.clock.now());
   }
 
   /** The values that a session of this scene starts with. */
   async startValues(): Promise<ParameterValues | undefined> {
     try {
-      return (await this.describe()).parameters;
+      return (await this.describeScene()).parameters;
     } catch (error) {
       this.notice.set(errorText(error));
       return undefined;
@@ -240,36 +240,36 @@ export class Controller {
   /** The scene's ways to breathe; none for a scene that is not in the server's catalogue. */
   async presets(): Promise<Preset[]> {
     try {
-      return (await this.describe()).scene?.presets ?? [];
+      return (await this.describeScene()).scene?.presets ?? [];
     } catch {
       return [];
     }
   }
 
-  private describe() {
+  private describeScene() {
     const name = this.session.value?.scene ?? "";
     return this.api.scenes.describeScene({ source: { source: { case: "name", value: name } } });
   }
 
   private send(parameters: ParameterValues, preset = ""): Promise<void> {
-    return this.ask(async () => {
+    return this.call(async () => {
       const answer = await this.api.sessions.updateParameters({ sessionId: this.sessionId, parameters, preset });
       return { session: answer.session, notice: answer.warnings.join(" ") };
     });
   }
 
   private sendPulls(pulls: PullValues[]): Promise<void> {
-    return this.ask(() => this.api.sessions.pullSession({ sessionId: this.sessionId, pulls }));
+    return this.call(() => this.api.sessions.pullSession({ sessionId: this.sessionId, pulls }));
   }
 
-  private async ask(call: () => Promise<{ session?: Session; notice?: string }>): Promise<void> {
+  private async call(call: () => Promise<{ session?: Session; notice?: string }>): Promise<void> {
     try {
       const { session, notice } = await call();
       this.receive(session);
       this.notice.set(notice ?? "");
     } catch (error) {
       // That the server is gone is said by the connection.
-      if (!unreachable(error)) this.notice.set(errorText(error));
+      if (!isUnreachable(error)) this.notice.set(errorText(error));
     }
   }
 }

@@ -10,8 +10,8 @@ export type StudyKind = "error" | "stability" | "cost" | "streaming";
 export class Studies {
   readonly all = new Signal<Study[]>([]);
   /** Why the last thing asked for was not done. */
-  readonly fault = new Signal("");
-  private readonly followed = new Set<string>();
+  readonly errorMessage = new Signal("");
+  private readonly watched = new Set<string>();
 
   constructor(
     private readonly api: Api,
@@ -19,16 +19,16 @@ export class Studies {
   ) {}
 
   async load(): Promise<void> {
-    await this.ask(async () => {
+    await this.call(async () => {
       const { studies } = await this.api.studies.listStudies({});
       this.all.set(studies);
-      for (const study of studies) if (!ended(study)) void this.follow(study.id);
+      for (const study of studies) if (!isFinished(study)) void this.watch(study.id);
     });
   }
 
   /** Has a catalogue scene studied with these parameters. */
   async start(kind: StudyKind, scene: string, parameters: Parameters | undefined): Promise<void> {
-    await this.ask(async () => {
+    await this.call(async () => {
       const { study } = await this.api.studies.createStudy({
         source: { source: { case: "name", value: scene } },
         parameters,
@@ -36,20 +36,21 @@ export class Studies {
         what: kind === "cost" ? { case: kind, value: { leaveOutSizes: true } } : { case: kind, value: {} },
       });
       if (study === undefined) return;
-      this.put(study);
-      void this.follow(study.id);
+      this.replaceOrAdd(study);
+      void this.watch(study.id);
     });
   }
 
   /** Cancels it where it has not ended, and forgets it. */
   async remove(studyId: string): Promise<void> {
-    await this.ask(() => this.api.studies.deleteStudy({ studyId }));
+    await this.call(() => this.api.studies.deleteStudy({ studyId }));
     this.all.set(this.all.value.filter(({ id }) => id !== studyId));
   }
 
   /** A study with its result, once it is done. */
   async result(studyId: string): Promise<Study | undefined> {
-    for await (const { study } of this.api.studies.watchStudy({ studyId })) if (study && ended(study)) return study;
+    for await (const { study } of this.api.studies.watchStudy({ studyId }))
+      if (study && isFinished(study)) return study;
     return undefined;
   }
 
@@ -58,14 +59,14 @@ export class Studies {
     return (await this.api.studies.getStudyPage({ studyId })).html;
   }
 
-  private async follow(studyId: string): Promise<void> {
-    if (this.followed.has(studyId)) return;
-    this.followed.add(studyId);
+  private async watch(studyId: string): Promise<void> {
+    if (this.watched.has(studyId)) return;
+    this.watched.add(studyId);
     const known = () => this.all.value.some(({ id }) => id === studyId);
     while (known()) {
       try {
         for await (const { study } of this.api.studies.watchStudy({ studyId })) {
-          if (study !== undefined && known()) this.put(study);
+          if (study !== undefined && known()) this.replaceOrAdd(study);
         }
         break;
       } catch {
@@ -74,25 +75,25 @@ export class Studies {
         await this.load();
       }
     }
-    this.followed.delete(studyId);
+    this.watched.delete(studyId);
   }
 
-  private put(study: Study): void {
+  private replaceOrAdd(study: Study): void {
     const rest = this.all.value.filter(({ id }) => id !== study.id);
     const order = this.all.value.findIndex(({ id }) => id === study.id);
     this.all.set(order < 0 ? [...rest, study] : this.all.value.with(order, study));
   }
 
-  private async ask(call: () => Promise<unknown>): Promise<void> {
+  private async call(call: () => Promise<unknown>): Promise<void> {
     try {
       await call();
-      this.fault.set("");
+      this.errorMessage.set("");
     } catch (error) {
-      this.fault.set(errorText(error));
+      this.errorMessage.set(errorText(error));
     }
   }
 }
 
-export function ended({ state }: Study): boolean {
+export function isFinished({ state }: Study): boolean {
   return state === StudyState.DONE || state === StudyState.FAILED;
 }

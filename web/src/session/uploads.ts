@@ -5,43 +5,43 @@ import { Signal } from "../state/signal";
 /** A file as browsers hand it over. */
 export type LocalFile = Pick<File, "name" | "size" | "arrayBuffer">;
 
-export type UploadWork =
+export type UploadProgress =
   | { kind: "idle" }
   | { kind: "sending"; file: string; done: number }
   | { kind: "there"; file: string; path: string; report: SurfaceReport | undefined }
-  | { kind: "failed"; words: string };
+  | { kind: "failed"; message: string };
 
 const chunkBytes = 1 << 20;
 
 /** Gives the server surface files, one at a time; a file that it has already is not sent again. */
 export class Uploads {
   /** Endings of the files that the server reads, with their dots. */
-  readonly endings = new Signal<string[]>([]);
-  readonly work = new Signal<UploadWork>({ kind: "idle" });
-  private latest = 0;
+  readonly extensions = new Signal<string[]>([]);
+  readonly progress = new Signal<UploadProgress>({ kind: "idle" });
+  private latestUpload = 0;
 
   constructor(private readonly api: Api) {}
 
   /** Asks the server what it reads. */
-  async learn(): Promise<void> {
+  async loadFormats(): Promise<void> {
     const answer = await this.api.uploads.listSurfaceFormats({}).catch(() => undefined);
-    if (answer !== undefined) this.endings.set(answer.formats.map(({ ending }) => ending));
+    if (answer !== undefined) this.extensions.set(answer.formats.map(({ ending }) => ending));
   }
 
   async upload(file: LocalFile): Promise<void> {
-    const turn = ++this.latest;
-    const show = (work: UploadWork) => {
-      if (turn === this.latest) this.work.set(work);
+    const turn = ++this.latestUpload;
+    const show = (work: UploadProgress) => {
+      if (turn === this.latestUpload) this.progress.set(work);
     };
     show({ kind: "sending", file: file.name, done: 0 });
     try {
       show(await this.send(file, (done) => show({ kind: "sending", file: file.name, done })));
     } catch (error) {
-      show({ kind: "failed", words: errorText(error) });
+      show({ kind: "failed", message: errorText(error) });
     }
   }
 
-  private async send(file: LocalFile, progress: (done: number) => void): Promise<UploadWork> {
+  private async send(file: LocalFile, progress: (done: number) => void): Promise<UploadProgress> {
     const content = new Uint8Array(await file.arrayBuffer());
     const { name } = file;
     const begin = { name, size: BigInt(content.length), sha256: await sha256(content) };

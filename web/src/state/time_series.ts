@@ -1,5 +1,5 @@
 /** Values over simulated time, the last `span` seconds of them: what graphs show. */
-export class History {
+export class TimeSeries {
   readonly times: number[] = [];
   readonly series = new Map<string, number[]>();
 
@@ -14,11 +14,11 @@ export class History {
     if (!same || (last !== undefined && time < last)) this.restart(values.map(([name]) => name));
     this.times.push(time);
     for (const [name, value] of values) this.series.get(name)?.push(value);
-    if (this.times[0] < time - this.span) this.drop(this.from(time - this.span));
+    if (this.times[0] < time - this.span) this.discard(this.indexAt(time - this.span));
   }
 
   /** The first place whose time is `time` [s] or later. */
-  from(time: number): number {
+  indexAt(time: number): number {
     let [low, high] = [0, this.times.length];
     while (low < high) {
       const middle = (low + high) >> 1;
@@ -38,7 +38,7 @@ export class History {
     for (const name of names) this.series.set(name, []);
   }
 
-  private drop(count: number): void {
+  private discard(count: number): void {
     this.times.splice(0, count);
     for (const values of this.series.values()) values.splice(0, count);
   }

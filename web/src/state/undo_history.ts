@@ -10,32 +10,32 @@ interface Change {
 }
 
 /** Changes of one parameter that follow each other so closely are one change: a drag over a slider [ms]. */
-const together = 1000;
-const mostChanges = 100;
+const mergeInterval = 1000;
+const maxChanges = 100;
 
 /** What this viewer changed, so that it can be taken back and done again; others' changes are theirs. */
-export class Undo {
+export class UndoHistory {
   /** Whether there is something to take back, and something to do again. */
   readonly state = new Signal({ undo: false, redo: false });
   private readonly done: Change[] = [];
   private undone: Change[] = [];
 
   /** Takes note of a change at `now` [ms] from `before` to `after`, of which the same names count. */
-  note(before: Values, after: Values, now: number): void {
+  record(before: Values, after: Values, now: number): void {
     const last = this.done.at(-1);
-    const same = last !== undefined && sameNames(last.after, after) && now - last.at < together;
+    const same = last !== undefined && sameNames(last.after, after) && now - last.at < mergeInterval;
     if (same) Object.assign(last, { after, at: now });
     else this.done.push({ before, after, at: now });
-    if (this.done.length > mostChanges) this.done.shift();
+    if (this.done.length > maxChanges) this.done.shift();
     this.undone = [];
-    this.tell();
+    this.notify();
   }
 
   /** What to set to take the last change back. */
   undo(): Values | undefined {
     const change = this.done.pop();
     if (change !== undefined) this.undone.push({ ...change, at: -Infinity });
-    this.tell();
+    this.notify();
     return change?.before;
   }
 
@@ -43,11 +43,11 @@ export class Undo {
   redo(): Values | undefined {
     const change = this.undone.pop();
     if (change !== undefined) this.done.push(change);
-    this.tell();
+    this.notify();
     return change?.after;
   }
 
-  private tell(): void {
+  private notify(): void {
     this.state.set({ undo: this.done.length > 0, redo: this.undone.length > 0 });
   }
 }

@@ -5,10 +5,10 @@ import { planeAxes } from "./named_views";
 import type { Viewer } from "./viewer";
 
 /** Names stand so far beside what they name, and at least so far apart [CSS pixels]. */
-const aside = 36;
-const apart = 20;
+const labelOffset = 36;
+const labelSpacing = 20;
 /** About the width of a letter [CSS pixels]. */
-const letter = 7.5;
+const letterWidth = 7.5;
 
 /** A layer as annotations see it. */
 export interface LabelledLayer {
@@ -22,7 +22,7 @@ export class Annotations {
   readonly element = svg("svg", { class: "annotations" });
   private readonly names = svg("g", { class: "names" });
   private readonly axes = svg("g", { class: "axes" });
-  private anchors: { view: BodyView; vertex: number; look: LabelledLayer }[] = [];
+  private anchors: { view: BodyView; vertex: number; layer: LabelledLayer }[] = [];
   private labels = false;
 
   constructor(private readonly viewer: Viewer) {
@@ -31,8 +31,8 @@ export class Annotations {
   }
 
   /** Another scene, or other layers that are seen. */
-  start(looks: LabelledLayer[]): void {
-    this.anchors = looks.flatMap((look) => (look.visible ? (outermost(this.viewer, look) ?? []) : []));
+  setLayers(layers: LabelledLayer[]): void {
+    this.anchors = layers.flatMap((layer) => (layer.visible ? (labelAnchor(this.viewer, layer) ?? []) : []));
     this.draw();
   }
 
@@ -47,25 +47,25 @@ export class Annotations {
   }
 
   private drawNames(): SVGElement[] {
-    const places = this.anchors.map(({ view, vertex, look }) => {
+    const places = this.anchors.map(({ view, vertex, layer }) => {
       const place = new THREE.Vector3().fromBufferAttribute(view.positions, vertex);
       place.applyMatrix4(view.group.matrixWorld);
       const [x, y] = this.viewer.rig.project(place);
-      return { x, y, look, gone: this.viewer.cutAway(place) };
+      return { x, y, layer, clipped: this.viewer.isClipped(place) };
     });
     const width = this.element.clientWidth;
     let last = -Infinity;
     return places
-      .filter(({ gone }) => !gone)
+      .filter(({ clipped: gone }) => !gone)
       .sort((a, b) => a.y - b.y)
-      .flatMap(({ x, y, look }) => {
-        last = Math.max(y, last + apart);
+      .flatMap(({ x, y, layer }) => {
+        last = Math.max(y, last + labelSpacing);
         // Where it would leave the picture, it stands on the other side.
-        const side = x + aside + letter * look.title.length > width ? -1 : 1;
-        const [toX, toY] = [x + side * aside, last];
+        const side = x + labelOffset + letterWidth * layer.title.length > width ? -1 : 1;
+        const [toX, toY] = [x + side * labelOffset, last];
         const line = svg("polyline", { points: `${x},${y} ${toX - 4 * side},${toY}` });
         const dot = svg("circle", { cx: x, cy: y, r: 2.5 });
-        return [line, dot, words(toX, toY + 4, look.title, side > 0 ? "start" : "end")];
+        return [line, dot, svgText(toX, toY + 4, layer.title, side > 0 ? "start" : "end")];
       });
   }
 
@@ -75,7 +75,7 @@ export class Annotations {
     const plane = bounds.isEmpty() ? undefined : planeAxes(bounds);
     if (plane === undefined) return [];
     const [right, up] = plane;
-    const [across, along] = rig.compass().axes;
+    const [across, along] = rig.orientation().axes;
     if (across[right] < 0.9995 || along[up] < 0.9995) return [];
     const at = (x: number, y: number) => {
       const place = bounds.min.clone();
@@ -108,28 +108,28 @@ function ruler(
     const [x, y] = beside(tick);
     parts.push(line([x, y], [x + dx, y + dy]));
     const text = scale.tickFormat(6)(tick).replace("-", "−");
-    parts.push(across ? words(x, y + 22, text, "middle") : words(x - 12, y + 4, text, "end"));
+    parts.push(across ? svgText(x, y + 22, text, "middle") : svgText(x - 12, y + 4, text, "end"));
   }
   const [x, y] = beside(max[axis]);
-  parts.push(across ? words(x + 14, y + 5, `${axis} [m]`, "start") : words(x, y - 10, `${axis} [m]`, "middle"));
+  parts.push(across ? svgText(x + 14, y + 5, `${axis} [m]`, "start") : svgText(x, y - 10, `${axis} [m]`, "middle"));
   return parts;
 }
 
 /** Of a layer the vertex that rests farthest to the patient's left, of those that no cut takes away. */
-function outermost(
+function labelAnchor(
   viewer: Viewer,
-  look: LabelledLayer,
-): { view: BodyView; vertex: number; look: LabelledLayer } | undefined {
-  let found: { view: BodyView; vertex: number; look: LabelledLayer } | undefined;
+  layer: LabelledLayer,
+): { view: BodyView; vertex: number; layer: LabelledLayer } | undefined {
+  let found: { view: BodyView; vertex: number; layer: LabelledLayer } | undefined;
   let farthest = -Infinity;
   const place = new THREE.Vector3();
   for (const view of viewer.bodies) {
-    if (view.body.layer !== look.layer) continue;
+    if (view.body.layer !== layer.layer) continue;
     const { rest } = view.body;
     for (let i = 0; i < rest.length; i += 3) {
-      if (rest[i] <= farthest || viewer.cutAway(place.fromArray(rest, i))) continue;
+      if (rest[i] <= farthest || viewer.isClipped(place.fromArray(rest, i))) continue;
       farthest = rest[i];
-      found = { view, vertex: i / 3, look };
+      found = { view, vertex: i / 3, layer };
     }
   }
   return found;
@@ -145,7 +145,7 @@ function line([x1, y1]: [number, number], [x2, y2]: [number, number]): SVGElemen
   return svg("line", { x1, y1, x2, y2 });
 }
 
-function words(x: number, y: number, text: string, anchor: string): SVGElement {
+function svgText(x: number, y: number, text: string, anchor: string): SVGElement {
   const element = svg("text", { x, y, "text-anchor": anchor });
   element.textContent = text;
   return element;

@@ -7,7 +7,7 @@ import { tendonWeights } from "../geometry/tendon";
 import { pointMaterial, setOpacity, surfaceMaterial } from "./materials";
 import { addOverlays, type Overlay, type OverlayHost, type OverlayKind } from "./overlays";
 import { ThickLines } from "./thick_lines";
-import { Paint } from "./vertex_colors";
+import { VertexColors } from "./vertex_colors";
 
 /**
  * One body on the screen. Everything that lies on its vertices shares one position buffer, so that a frame is one copy
@@ -19,7 +19,7 @@ export class BodyView implements OverlayHost {
   private knownEdges: Uint32Array<ArrayBuffer> | undefined;
   private readonly normals: THREE.BufferAttribute | undefined;
   private readonly surface: THREE.MeshStandardMaterial | undefined;
-  private readonly colors: Paint | undefined;
+  private readonly vertexColors: VertexColors | undefined;
   private opacity: number;
   private readonly overlays: Overlay[];
   private readonly thick: ThickLines[] = [];
@@ -40,9 +40,9 @@ export class BodyView implements OverlayHost {
       const { geometry, material } = this.addSurface(this.normals);
       const own = body.rigidLinks.length > 0 ? this.tendonColors() : undefined;
       this.surface = material;
-      this.colors = new Paint(geometry, material, body.color, own);
+      this.vertexColors = new VertexColors(geometry, material, body.color, own);
     }
-    if (!solid || diagram) this.addNetwork(solid ? lighter(body.color) : body.color);
+    if (!solid || diagram) this.addPointsAndLines(solid ? lighter(body.color) : body.color);
     this.overlays = addOverlays(this);
   }
 
@@ -54,7 +54,7 @@ export class BodyView implements OverlayHost {
   }
 
   /** Lines of some width, redrawn with every frame: only for few. */
-  addThick(lines: ThickLines): void {
+  addThickLines(lines: ThickLines): void {
     this.thick.push(lines);
     this.group.add(lines.object);
   }
@@ -87,9 +87,9 @@ export class BodyView implements OverlayHost {
     return new THREE.BufferAttribute(colors, 3);
   }
 
-  private addNetwork(color: string): void {
+  private addPointsAndLines(color: string): void {
     const many = this.edges.length > 2000;
-    this.addThick(new ThickLines(this.edges, this.positions, color, many ? 1.5 : 3));
+    this.addThickLines(new ThickLines(this.edges, this.positions, color, many ? 1.5 : 3));
     const points = new THREE.Points(this.geometry(), pointMaterial(color, many ? 4 : 10));
     points.frustumCulled = false;
     this.group.add(points);
@@ -108,7 +108,7 @@ export class BodyView implements OverlayHost {
   }
 
   /** Where the vertices are: x y z each. */
-  placed(): ArrayLike<number> {
+  worldPositions(): ArrayLike<number> {
     if (this.body.placement !== Placement.RIGID) return this.positions.array;
     this.group.updateMatrixWorld();
     return this.positions.clone().applyMatrix4(this.group.matrixWorld).array;
@@ -124,12 +124,12 @@ export class BodyView implements OverlayHost {
     this.opacity = opacity;
     this.group.visible = opacity > 0;
     // Paint is solid: through a clear one its scale could not be read.
-    if (this.surface !== undefined) setOpacity(this.surface, this.colors?.covers ? 1 : opacity);
+    if (this.surface !== undefined) setOpacity(this.surface, this.vertexColors?.active ? 1 : opacity);
   }
 
   /** Colours of the vertices over the body's own: sRGB, three bytes each; undefined takes them away. */
-  paint(rgb: Uint8Array | undefined): void {
-    this.colors?.show(rgb);
+  setColors(rgb: Uint8Array | undefined): void {
+    this.vertexColors?.set(rgb);
     this.setOpacity(this.opacity);
   }
 

@@ -1,10 +1,10 @@
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import type { Pose } from "../geometry/camera_pose";
-import { type Free, letterOf, openingView, planeAxes, standpoint, type ViewName } from "./named_views";
+import type { CameraPose } from "../geometry/camera_pose";
+import { cameraPosition, directionLetter, type FreeArea, openingView, planeAxes, type ViewName } from "./named_views";
 
 /** What the margins of the picture say about it. */
-export interface Compass {
+export interface ViewOrientation {
   left: string;
   right: string;
   top: string;
@@ -16,42 +16,42 @@ export interface Compass {
 }
 
 /** How much of the picture panels hide at its edges [CSS pixels]. */
-export interface Covered {
+export interface Insets {
   left: number;
   top: number;
   bottom: number;
 }
 
-const glide = 350;
+const flightDuration = 350;
 /** What part of the way to where somebody else looks from is left after one picture. */
-const lag = 0.7;
+const chaseRemainder = 0.7;
 
 /** The camera and its controls: orbit, zoom, pan, and gliding to named views. */
-export class Rig {
+export class CameraRig {
   readonly camera = new THREE.PerspectiveCamera(26, 1, 0.01, 100);
   private readonly controls: OrbitControls;
   private points: THREE.Vector3[] = [];
   private center = new THREE.Vector3();
-  private opening: ViewName = "home";
-  private free: Free = { width: 1, height: 1 };
+  private homeView: ViewName = "home";
+  private freeArea: FreeArea = { width: 1, height: 1 };
   /** The named view that the camera stands at or glides to, until a person moves it. */
-  private held: ViewName | undefined;
+  private namedView: ViewName | undefined;
   private extent = 1;
   private flat = false;
-  private chased: Pose | undefined;
+  private remotePose: CameraPose | undefined;
   private flight: { from: THREE.Vector3; to: THREE.Vector3; start: number } | undefined;
 
   constructor(
     private readonly canvas: HTMLCanvasElement,
-    private readonly changed: () => void,
-    private readonly calm: () => boolean,
+    private readonly onChange: () => void,
+    private readonly reducedMotion: () => boolean,
   ) {
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
-    this.controls.enableDamping = !calm();
+    this.controls.enableDamping = !reducedMotion();
     this.controls.dampingFactor = 0.12;
-    this.controls.addEventListener("change", changed);
-    this.controls.addEventListener("start", () => (this.flight = this.held = this.chased = undefined));
+    this.controls.addEventListener("change", onChange);
+    this.controls.addEventListener("start", () => (this.flight = this.namedView = this.remotePose = undefined));
   }
 
   /** Fits the camera to a new scene, of which `points` are a fair sample. */
@@ -65,35 +65,35 @@ export class Rig {
     this.camera.far = size * 20;
     this.controls.minDistance = size / 20;
     this.controls.maxDistance = size * 8;
-    this.opening = openingView(box);
+    this.homeView = openingView(box);
     this.flat = planeAxes(box) !== undefined;
-    this.go("home", true);
+    this.goTo("home", true);
   }
 
-  go(view: ViewName, atOnce = this.calm()): void {
-    this.held = view;
-    this.chased = undefined;
+  goTo(view: ViewName, atOnce = this.reducedMotion()): void {
+    this.namedView = view;
+    this.remotePose = undefined;
     this.controls.target.copy(this.center);
-    const side = view === "home" ? this.opening : view;
+    const side = view === "home" ? this.homeView : view;
     // A flat scene has its axes beside it.
     const air = this.flat ? 0.84 : 1;
-    const free = { width: air * this.free.width, height: air * this.free.height };
-    const to = standpoint(side, this.points, this.center, this.camera, free);
+    const free = { width: air * this.freeArea.width, height: air * this.freeArea.height };
+    const to = cameraPosition(side, this.points, this.center, this.camera, free);
     this.flight = undefined;
     if (atOnce) this.camera.position.copy(to);
     else this.flight = { from: this.camera.position.clone(), to, start: performance.now() };
-    this.changed();
+    this.onChange();
   }
 
   /** The scene keeps to the middle of what panels leave of the picture. */
-  resize({ left, top, bottom }: Covered): void {
+  resize({ left, top, bottom }: Insets): void {
     const width = Math.max(this.canvas.clientWidth, 1);
     const height = Math.max(this.canvas.clientHeight, 1);
-    this.free = { width: Math.max(0.3, 1 - left / width), height: Math.max(0.3, 1 - (top + bottom) / height) };
+    this.freeArea = { width: Math.max(0.3, 1 - left / width), height: Math.max(0.3, 1 - (top + bottom) / height) };
     this.camera.aspect = width / height;
     this.camera.setViewOffset(width, height, -left / 2, (bottom - top) / 2, width, height);
     this.camera.updateProjectionMatrix();
-    if (this.held !== undefined) this.go(this.held, true);
+    if (this.namedView !== undefined) this.goTo(this.namedView, true);
   }
 
   /** From the camera to what it looks at, and the extent of the scene [m]. */
@@ -102,63 +102,63 @@ export class Rig {
   }
 
   /** Where a place is on the picture [CSS pixels]. */
-  project(place: THREE.Vector3): [x: number, y: number] {
-    const { x, y } = place.clone().project(this.camera);
+  project(point: THREE.Vector3): [x: number, y: number] {
+    const { x, y } = point.clone().project(this.camera);
     return [((x + 1) / 2) * this.canvas.clientWidth, ((1 - y) / 2) * this.canvas.clientHeight];
   }
 
   /** Stands where another rig stands that shows the same scene. */
-  follow({ camera, controls }: Rig): void {
+  copyFrom({ camera, controls }: CameraRig): void {
     const apart = this.camera.position.distanceTo(camera.position) + this.controls.target.distanceTo(controls.target);
     if (apart < 1e-5 * this.extent) return;
-    this.flight = this.held = undefined;
+    this.flight = this.namedView = undefined;
     this.camera.position.copy(camera.position);
     this.controls.target.copy(controls.target);
-    this.changed();
+    this.onChange();
   }
 
-  get pose(): Pose {
+  get pose(): CameraPose {
     const plain = ({ x, y, z }: THREE.Vector3) => ({ x, y, z });
     return { eye: plain(this.camera.position), target: plain(this.controls.target) };
   }
 
   /** Goes where somebody else looks from; smoothly, as their places come a few times a second. */
-  place(pose: Pose): void {
-    this.flight = this.held = undefined;
-    this.chased = pose;
-    this.changed();
+  moveTo(pose: CameraPose): void {
+    this.flight = this.namedView = undefined;
+    this.remotePose = pose;
+    this.onChange();
   }
 
-  private chase({ eye, target }: Pose): void {
-    const part = this.calm() ? 1 : 1 - lag;
+  private chase({ eye, target }: CameraPose): void {
+    const part = this.reducedMotion() ? 1 : 1 - chaseRemainder;
     this.camera.position.lerp(eye, part);
     this.controls.target.lerp(target, part);
-    if (this.camera.position.distanceTo(eye) < 1e-5 * this.extent) this.chased = undefined;
-    this.changed();
+    if (this.camera.position.distanceTo(eye) < 1e-5 * this.extent) this.remotePose = undefined;
+    this.onChange();
   }
 
   /** Moves what moves by itself. */
   update(now: number): void {
-    if (this.chased !== undefined) this.chase(this.chased);
+    if (this.remotePose !== undefined) this.chase(this.remotePose);
     if (this.flight !== undefined) this.fly(this.flight, now);
     this.controls.update();
   }
 
   private fly({ from, to, start }: { from: THREE.Vector3; to: THREE.Vector3; start: number }, now: number): void {
     const { target } = this.controls;
-    const part = THREE.MathUtils.smootherstep((now - start) / glide, 0, 1);
+    const part = THREE.MathUtils.smootherstep((now - start) / flightDuration, 0, 1);
     // Along the sphere, not through the patient.
     const distance = THREE.MathUtils.lerp(from.distanceTo(target), to.distanceTo(target), part);
     const away = from.clone().sub(target).lerp(to.clone().sub(target), part);
     if (away.lengthSq() < 1e-12) away.copy(to).sub(target);
     this.camera.position.copy(target).addScaledVector(away.normalize(), distance);
     if (part >= 1) this.flight = undefined;
-    this.changed();
+    this.onChange();
   }
 
   /** Orbits by so many radians, and comes nearer by the factor `zoom`: for the keyboard. */
   nudge(azimuth: number, polar: number, zoom: number): void {
-    this.flight = this.held = undefined;
+    this.flight = this.namedView = undefined;
     const { target } = this.controls;
     const away = this.camera.position.clone().sub(target);
     const radius = away.length() / zoom;
@@ -168,20 +168,20 @@ export class Rig {
     const ring = Math.sin(level);
     away.set(ring * Math.cos(theta), ring * Math.sin(theta), Math.cos(level)).multiplyScalar(radius);
     this.camera.position.copy(target).add(away);
-    this.changed();
+    this.onChange();
   }
 
-  compass(): Compass {
+  orientation(): ViewOrientation {
     this.camera.updateMatrixWorld(); // not only when the next picture is drawn
     const axis = (i: number) => new THREE.Vector3().setFromMatrixColumn(this.camera.matrixWorld, i);
     const [right, up, back] = [axis(0), axis(1), axis(2)];
     const { distance } = this.depth;
     const slope = Math.tan(THREE.MathUtils.degToRad(this.camera.fov / 2));
     return {
-      right: letterOf(right),
-      left: letterOf(right.clone().negate()),
-      top: letterOf(up),
-      bottom: letterOf(up.clone().negate()),
+      right: directionLetter(right),
+      left: directionLetter(right.clone().negate()),
+      top: directionLetter(up),
+      bottom: directionLetter(up.clone().negate()),
       pixelsPerMetre: this.canvas.clientHeight / (2 * slope * distance),
       axes: [right, up, back],
     };

@@ -4,11 +4,11 @@ import type { BodyView } from "./body_view";
 import { pickVertex, pointerOf } from "./picking";
 
 /** A pointer that goes farther [CSS pixels] or stays down longer [ms] than this turns the picture. */
-const still = 5;
-const brief = 500;
+const maxMovement = 5;
+const maxDuration = 500;
 
 /** Clicks on what is seen pick a vertex; one beside everything picks none. */
-export function letClick(
+export function enablePicking(
   canvas: HTMLCanvasElement,
   camera: THREE.Camera,
   views: () => BodyView[],
@@ -20,10 +20,10 @@ export function letClick(
     down = event.button === 0 && !event.shiftKey ? event : undefined;
   });
   canvas.addEventListener("pointerup", (event) => {
-    if (down === undefined || event.timeStamp - down.timeStamp > brief) return;
-    if (Math.hypot(event.offsetX - down.offsetX, event.offsetY - down.offsetY) > still) return;
+    if (down === undefined || event.timeStamp - down.timeStamp > maxDuration) return;
+    if (Math.hypot(event.offsetX - down.offsetX, event.offsetY - down.offsetY) > maxMovement) return;
     const visible = views().filter(({ group }) => group.visible);
-    const bodies = visible.map((view) => ({ positions: view.placed(), triangles: view.body.triangles }));
+    const bodies = visible.map((view) => ({ positions: view.worldPositions(), triangles: view.body.triangles }));
     const found = pickVertex(pointerOf(event, canvas), camera, bodies, cut());
     picked(found && { body: visible[found.body].body.name, vertex: found.vertex });
   });

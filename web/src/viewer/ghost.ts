@@ -10,7 +10,7 @@ interface Colors {
 }
 
 /** Surfaces that are seen through: the moving tissue as it was at another moment, or what it is compared with. */
-export class Ghost {
+export class TranslucentSurfaces {
   readonly object = new THREE.Group();
 
   constructor(private readonly colors: Colors) {
@@ -20,7 +20,7 @@ export class Ghost {
   /** A surface that stands still. */
   showSurface({ positions, triangles }: Surface): void {
     this.clear();
-    this.object.add(shell(positions, triangles, this.colors));
+    this.object.add(translucentMesh(positions, triangles, this.colors));
   }
 
   /** Those of `bodies` that move by themselves; at rest where `arrays` is undefined. */
@@ -29,7 +29,7 @@ export class Ghost {
     for (const body of bodies) {
       if (body.placement !== Placement.STREAMED || body.triangles.length === 0) continue;
       const positions = arrays === undefined ? body.rest : positionsOf(body, arrays).slice();
-      this.object.add(shell(positions, body.triangles, this.colors));
+      this.object.add(translucentMesh(positions, body.triangles, this.colors));
     }
   }
 
@@ -44,7 +44,7 @@ export class Ghost {
 }
 
 /** A surface that is dense at its outline and clear where it faces the eye. */
-function shell(positions: Float32Array, triangles: Uint32Array, colors: Colors): THREE.Mesh {
+function translucentMesh(positions: Float32Array, triangles: Uint32Array, colors: Colors): THREE.Mesh {
   const normals = new Float32Array(positions.length);
   computeNormals(positions, triangles, normals);
   const geometry = new THREE.BufferGeometry()

@@ -9,9 +9,9 @@ export class Markers {
   show(markers: Marker[]): void {
     while (this.object.children.length > markers.length) this.object.remove(this.object.children.at(-1)!);
     while (this.object.children.length < markers.length) this.object.add(this.make());
-    markers.forEach(({ place, color }, i) => {
+    markers.forEach(({ position, color }, i) => {
       const mesh = this.object.children[i] as THREE.Mesh<THREE.SphereGeometry, THREE.MeshBasicMaterial>;
-      mesh.position.fromArray(place);
+      mesh.position.fromArray(position);
       mesh.material.color.set(color);
     });
   }

@@ -32,18 +32,18 @@ export function planeAxes(box: THREE.Box3): ["x" | "y", "y" | "z"] | undefined {
 }
 
 /** How much of the picture's width and height there is to fill, 0 to 1. */
-export interface Free {
+export interface FreeArea {
   width: number;
   height: number;
 }
 
 /** Where the camera stands to see all of `points`, looking at `center` from the view's side. */
-export function standpoint(
+export function cameraPosition(
   view: ViewName,
   points: THREE.Vector3[],
   center: THREE.Vector3,
   camera: THREE.PerspectiveCamera,
-  free: Free = { width: 1, height: 1 },
+  free: FreeArea = { width: 1, height: 1 },
 ): THREE.Vector3 {
   const away = new THREE.Vector3(...directions[view]).normalize();
   const right = new THREE.Vector3(-away.y, away.x, 0).normalize();
@@ -65,7 +65,7 @@ const margin = 1.04;
 const letters = { x: ["R", "L"], y: ["A", "P"], z: ["I", "S"] };
 
 /** The anatomical letter for the way `direction` points, as on a radiologist's screen: L, R, A, P, S or I. */
-export function letterOf(direction: THREE.Vector3): string {
+export function directionLetter(direction: THREE.Vector3): string {
   const axes = ["x", "y", "z"] as const;
   const axis = axes.reduce((best, each) => (Math.abs(direction[each]) > Math.abs(direction[best]) ? each : best));
   return letters[axis][direction[axis] > 0 ? 1 : 0];

@@ -18,7 +18,7 @@ export interface OverlayHost {
   /** Geometry over the body's vertices; `index` picks some of them. */
   geometry(index?: Uint32Array<ArrayBuffer>): THREE.BufferGeometry;
   /** Adds lines that are updated with every frame. */
-  addThick(lines: ThickLines): void;
+  addThickLines(lines: ThickLines): void;
 }
 
 /** Something drawn over a body that can be switched on; made the first time it is. */
@@ -32,7 +32,7 @@ const lineColor = "#ffd166";
 const attachedColor = "#7be495";
 const fixedColor = "#b99bff";
 /** More lines than this are drawn one pixel wide. */
-const mostThickLines = 3000;
+const maxThickLines = 3000;
 
 export function addOverlays(view: OverlayHost): Overlay[] {
   const { body } = view;
@@ -73,11 +73,11 @@ function segments(view: OverlayHost, pairs: Uint32Array<ArrayBuffer>, material: 
 
 function links(view: OverlayHost): THREE.Object3D {
   const pairs = view.body.rigidLinks;
-  if (pairs.length / 2 > mostThickLines) return segments(view, pairs, lineMaterial(linkColor, 0.75, true));
+  if (pairs.length / 2 > maxThickLines) return segments(view, pairs, lineMaterial(linkColor, 0.75, true));
   const lines = new ThickLines(pairs, view.positions, linkColor, 2.5);
   Object.assign(lines.object.material, { depthTest: false, transparent: true, opacity: 0.8 });
   lines.object.renderOrder = 1;
-  view.addThick(lines);
+  view.addThickLines(lines);
   return lines.object;
 }
 

@@ -17,18 +17,18 @@ export class ThickLines {
     this.ends = new Float32Array(3 * pairs.length);
     this.object = new LineSegments2(new LineSegmentsGeometry(), new LineMaterial({ color, linewidth: width }));
     this.object.frustumCulled = false;
-    this.gather();
+    this.copyEnds();
     this.object.geometry.setPositions(this.ends);
   }
 
   update(): void {
-    this.gather();
+    this.copyEnds();
     const start = this.object.geometry.getAttribute("instanceStart") as THREE.InterleavedBufferAttribute;
     start.data.set(this.ends);
     start.data.needsUpdate = true;
   }
 
-  private gather(): void {
+  private copyEnds(): void {
     const source = this.positions.array;
     this.pairs.forEach((vertex, i) => {
       for (let k = 0; k < 3; k++) this.ends[3 * i + k] = source[3 * vertex + k];

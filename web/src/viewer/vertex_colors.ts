@@ -1,46 +1,46 @@
 import * as THREE from "three";
 
 /** The colours of a surface: its own, one for all or one a vertex, until others are painted over them. */
-export class Paint {
-  private painted: THREE.BufferAttribute | undefined;
+export class VertexColors {
+  private field: THREE.BufferAttribute | undefined;
 
   constructor(
     private readonly geometry: THREE.BufferGeometry,
     private readonly material: THREE.MeshStandardMaterial,
     private readonly color: string,
-    private readonly own: THREE.BufferAttribute | undefined,
+    private readonly ownColors: THREE.BufferAttribute | undefined,
   ) {
-    this.show(undefined);
+    this.set(undefined);
   }
 
-  get covers(): boolean {
-    return this.painted !== undefined;
+  get active(): boolean {
+    return this.field !== undefined;
   }
 
   /** sRGB, three bytes a vertex; undefined for the surface's own colours. */
-  show(rgb: Uint8Array | undefined): void {
-    if (rgb !== undefined && this.painted?.array.length === rgb.length) return this.renew(rgb, this.painted);
-    this.painted = rgb && new THREE.BufferAttribute(new Float32Array(rgb.length), 3);
-    if (rgb !== undefined) this.renew(rgb, this.painted!);
-    const colors = this.painted ?? this.own;
+  set(rgb: Uint8Array | undefined): void {
+    if (rgb !== undefined && this.field?.array.length === rgb.length) return this.write(rgb, this.field);
+    this.field = rgb && new THREE.BufferAttribute(new Float32Array(rgb.length), 3);
+    if (rgb !== undefined) this.write(rgb, this.field!);
+    const colors = this.field ?? this.ownColors;
     if (colors === undefined) this.geometry.deleteAttribute("color");
     else this.geometry.setAttribute("color", colors);
     this.material.vertexColors = colors !== undefined;
     this.material.color.set(colors === undefined ? this.color : "white");
-    if (this.covers) this.material.defines = { ...this.material.defines, PAINTED: "" };
+    if (this.active) this.material.defines = { ...this.material.defines, PAINTED: "" };
     else delete this.material.defines?.PAINTED;
     this.material.needsUpdate = true;
   }
 
-  private renew(rgb: Uint8Array, attribute: THREE.BufferAttribute): void {
+  private write(rgb: Uint8Array, attribute: THREE.BufferAttribute): void {
     const values = attribute.array;
-    for (let i = 0; i < rgb.length; i++) values[i] = linear[rgb[i]];
+    for (let i = 0; i < rgb.length; i++) values[i] = linearLight[rgb[i]];
     attribute.needsUpdate = true;
   }
 }
 
 /** Light for each byte of sRGB. */
-const linear = Float32Array.from(
+const linearLight = Float32Array.from(
   { length: 256 },
   (_, byte) => new THREE.Color().setRGB(byte / 255, 0, 0, THREE.SRGBColorSpace).r,
 );

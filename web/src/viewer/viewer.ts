@@ -2,12 +2,12 @@ import * as THREE from "three";
 import type { Body, FrameArrays } from "../geometry/bodies";
 import type { Surface } from "../geometry/surface";
 import { type Marker, type VertexRef } from "../geometry/vertices";
-import { Sharpness } from "./adaptive_resolution";
+import { AdaptiveResolution } from "./adaptive_resolution";
 import { BodyView } from "./body_view";
-import { type Compass, type Covered, Rig } from "./camera_rig";
-import { letClick } from "./click_picking";
-import { type Cut, placeOf, planeOf } from "./clipping";
-import { Ghost } from "./ghost";
+import { CameraRig, type Insets, type ViewOrientation } from "./camera_rig";
+import { enablePicking } from "./click_picking";
+import { clippingPlane, type Cut, planeCoordinate } from "./clipping";
+import { TranslucentSurfaces } from "./ghost";
 import { addLights } from "./lights";
 import { Markers } from "./markers";
 import type { ViewName } from "./named_views";
@@ -15,24 +15,24 @@ import { type OverlayKind, overlayKinds } from "./overlays";
 import { type Pull, Pulling } from "./pulling";
 
 /** Scenes of at most so many vertices are diagrams rather than anatomy. */
-const mostOfADiagram = 2000;
+const maxDiagramVertices = 2000;
 /** Radius of a marker [CSS pixels]. */
 const markerSize = 5;
 
 /** What a picture asks of its page. */
-export interface Surroundings {
+export interface ViewerHost {
   /** Goes on to the moment that is due; whether the picture changes by it. */
   advance(): boolean;
   /** That moment. */
-  source(): FrameArrays | undefined;
+  frame(): FrameArrays | undefined;
   /** Hears of a frame before it is drawn for the first time. */
-  update?(frame: FrameArrays): void;
+  beforeDraw?(frame: FrameArrays): void;
   /** Hears of every picture. */
-  drawn(compass: Compass): void;
+  afterDraw(compass: ViewOrientation): void;
   /** How much of the canvas panels hide. */
-  covered(): Covered;
+  insets(): Insets;
   /** Whether the person asked for less motion. */
-  calm(): boolean;
+  reducedMotion(): boolean;
 }
 
 /**
@@ -40,28 +40,28 @@ export interface Surroundings {
  * number of frames between two beats cost one drawing.
  */
 export class Viewer {
-  readonly rig: Rig;
+  readonly rig: CameraRig;
   private readonly scene = new THREE.Scene();
   /** Depth by haze: what lies behind fades a little into the background. */
-  private readonly haze = new THREE.Fog("#1f262d");
+  private readonly fog = new THREE.Fog("#1f262d");
   private readonly renderer: THREE.WebGLRenderer;
   private views: BodyView[] = [];
   private overlays: ReadonlySet<OverlayKind> = new Set();
-  private readonly sharpness = new Sharpness(Math.min(devicePixelRatio, 2));
-  private readonly ghost = new Ghost({ color: "#8fd0ff", emissive: "#2d5f86" });
-  private readonly target = new Ghost({ color: "#ffd166", emissive: "#7a5a12" });
+  private readonly resolution = new AdaptiveResolution(Math.min(devicePixelRatio, 2));
+  private readonly ghost = new TranslucentSurfaces({ color: "#8fd0ff", emissive: "#2d5f86" });
+  private readonly comparedSurface = new TranslucentSurfaces({ color: "#ffd166", emissive: "#7a5a12" });
   private readonly markers = new Markers();
-  private cut: Cut = { kind: "none", part: 0.5, flipped: false };
+  private cut: Cut = { kind: "none", fraction: 0.5, flipped: false };
   private box = new THREE.Box3();
-  private stale = true;
-  private drawings = 0;
+  private dirty = true;
+  private drawn = 0;
   /** When the first picture with a frame was drawn, since the page was asked for [ms]; -1 before. */
-  firstPicture = -1;
+  firstDrawTime = -1;
   private shown: FrameArrays | undefined;
 
   constructor(
     private readonly canvas: HTMLCanvasElement,
-    private readonly around: Surroundings,
+    private readonly host: ViewerHost,
   ) {
     this.renderer = new THREE.WebGLRenderer({
       canvas,
@@ -71,18 +71,18 @@ export class Viewer {
     });
     // No tone mapping: a layer has the colour that its swatch shows.
     this.renderer.toneMapping = THREE.NoToneMapping;
-    this.renderer.setPixelRatio(this.sharpness.ratio);
-    this.rig = new Rig(canvas, () => this.refresh(), around.calm);
-    this.scene.fog = this.haze;
+    this.renderer.setPixelRatio(this.resolution.ratio);
+    this.rig = new CameraRig(canvas, () => this.refresh(), host.reducedMotion);
+    this.scene.fog = this.fog;
     addLights(this.scene, this.rig.camera);
-    this.scene.add(this.ghost.object, this.target.object, this.markers.object);
+    this.scene.add(this.ghost.object, this.comparedSurface.object, this.markers.object);
     new ResizeObserver(() => this.resize()).observe(canvas);
-    this.renderer.setAnimationLoop((now) => this.beat(now));
+    this.renderer.setAnimationLoop((now) => this.onAnimationFrame(now));
   }
 
   /** Pictures drawn so far. */
-  get count(): number {
-    return this.drawings;
+  get drawCount(): number {
+    return this.drawn;
   }
 
   /** Whether the scene is shown as a diagram, with every vertex and edge. */
@@ -93,12 +93,12 @@ export class Viewer {
     }
     this.shown = undefined;
     this.ghost.clear();
-    this.target.clear();
-    const diagram = verticesOf(bodies) <= mostOfADiagram;
+    this.comparedSurface.clear();
+    const diagram = verticesOf(bodies) <= maxDiagramVertices;
     this.views = bodies.map((body) => new BodyView(body, diagram));
     for (const view of this.views) this.scene.add(view.group);
     this.showOverlays(this.overlays);
-    const sample = sampleOf(bodies);
+    const sample = sampleVertices(bodies);
     this.box = new THREE.Box3().setFromPoints(sample);
     this.setCut(this.cut);
     this.resize();
@@ -117,13 +117,13 @@ export class Viewer {
   }
 
   /** Whether a cut has taken this place away. */
-  cutAway(place: THREE.Vector3): boolean {
+  isClipped(place: THREE.Vector3): boolean {
     return this.renderer.clippingPlanes.some((plane) => plane.distanceToPoint(place) < 0);
   }
 
   /** Draws at the next beat. */
   refresh(): void {
-    this.stale = true;
+    this.dirty = true;
   }
 
   setLayerOpacity(layer: string, opacity: number): void {
@@ -140,10 +140,10 @@ export class Viewer {
   /** Takes away what lies on one side of a plane; where that lies along its axis [m]. */
   setCut(cut: Cut): number {
     this.cut = cut;
-    const plane = this.plane();
+    const plane = this.currentPlane();
     this.renderer.clippingPlanes = plane === undefined ? [] : [plane];
     this.refresh();
-    return placeOf(cut, this.box);
+    return planeCoordinate(cut, this.box);
   }
 
   /** Shows bodies as they were in `arrays`, at rest, or not at all, as a ghost. */
@@ -154,51 +154,51 @@ export class Viewer {
   }
 
   /** Shows what bodies are compared with, or nothing. */
-  setTarget(surface: Surface | undefined): void {
-    if (surface === undefined) this.target.clear();
-    else this.target.showSurface(surface);
+  setComparedSurface(surface: Surface | undefined): void {
+    if (surface === undefined) this.comparedSurface.clear();
+    else this.comparedSurface.showSurface(surface);
     this.refresh();
   }
 
-  mark(markers: Marker[]): void {
+  setMarkers(markers: Marker[]): void {
     this.markers.show(markers);
     this.refresh();
   }
 
   /** Paints bodies by name, sRGB, three bytes a vertex, and no other. */
-  paint(painted: ReadonlyMap<string, Uint8Array>): void {
-    for (const view of this.views) view.paint(painted.get(view.body.name));
+  setVertexColors(painted: ReadonlyMap<string, Uint8Array>): void {
+    for (const view of this.views) view.setColors(painted.get(view.body.name));
     this.refresh();
   }
 
   /** Dragging with the shift key pulls at the visible ones among the bodies of these names from now on. */
-  letPull(
+  enablePulling(
     names: () => ReadonlySet<string>,
     pull: Pull,
     told: (newtons: number | undefined, x: number, y: number) => void,
   ): void {
     const views = () => this.views.filter(({ body, group }) => group.visible && names().has(body.name));
-    const [changed, plane] = [() => this.refresh(), () => this.plane()];
+    const [changed, plane] = [() => this.refresh(), () => this.currentPlane()];
     new Pulling(this.canvas, this.rig.camera, this.scene, views, pull, changed, plane, told);
   }
 
   /** A click tells the vertex that is seen there from now on. */
-  letClick(picked: (vertex: VertexRef | undefined) => void): void {
-    letClick(
+  enablePicking(picked: (vertex: VertexRef | undefined) => void): void {
+    enablePicking(
       this.canvas,
       this.rig.camera,
       () => this.views,
-      () => this.plane(),
+      () => this.currentPlane(),
       picked,
     );
   }
 
-  go(view: ViewName): void {
-    this.rig.go(view);
+  goTo(view: ViewName): void {
+    this.rig.goTo(view);
   }
 
   /** The picture as it stands, without what lies over it. */
-  photograph(): Promise<Blob | null> {
+  capture(): Promise<Blob | null> {
     this.renderer.render(this.scene, this.rig.camera);
     const { width, height } = this.canvas;
     const copy = Object.assign(document.createElement("canvas"), { width, height });
@@ -216,38 +216,38 @@ export class Viewer {
     const { clientWidth, clientHeight } = this.canvas;
     if (clientWidth === 0 || clientHeight === 0) return;
     this.renderer.setSize(clientWidth, clientHeight, false);
-    this.rig.resize(this.around.covered());
+    this.rig.resize(this.host.insets());
     this.refresh();
   }
 
-  private plane(): THREE.Plane | undefined {
-    return planeOf(this.cut, this.box);
+  private currentPlane(): THREE.Plane | undefined {
+    return clippingPlane(this.cut, this.box);
   }
 
-  private beat(now: number): void {
+  private onAnimationFrame(now: number): void {
     this.rig.update(now);
-    if (this.around.advance()) this.stale = true;
-    if (this.sharpness.beat(now, this.stale)) {
-      this.renderer.setPixelRatio(this.sharpness.ratio);
-      this.stale = true;
+    if (this.host.advance()) this.dirty = true;
+    if (this.resolution.recordFrame(now, this.dirty)) {
+      this.renderer.setPixelRatio(this.resolution.ratio);
+      this.dirty = true;
     }
-    if (!this.stale) return;
-    this.stale = false;
-    const frame = this.around.source();
+    if (!this.dirty) return;
+    this.dirty = false;
+    const frame = this.host.frame();
     if (frame !== undefined && frame !== this.shown) {
       for (const view of this.views) view.update(frame);
-      this.around.update?.(frame);
-      this.stale = false;
+      this.host.beforeDraw?.(frame);
+      this.dirty = false;
     }
     this.shown = frame;
     const { distance, extent } = this.rig.depth;
-    [this.haze.near, this.haze.far] = [distance - 0.1 * extent, distance + 0.75 * extent];
-    const compass = this.rig.compass();
+    [this.fog.near, this.fog.far] = [distance - 0.1 * extent, distance + 0.75 * extent];
+    const compass = this.rig.orientation();
     this.markers.scale(markerSize / compass.pixelsPerMetre);
     this.renderer.render(this.scene, this.rig.camera);
-    this.drawings++;
-    if (frame !== undefined && this.firstPicture < 0) this.firstPicture = performance.now();
-    this.around.drawn(compass);
+    this.drawn++;
+    if (frame !== undefined && this.firstDrawTime < 0) this.firstDrawTime = performance.now();
+    this.host.afterDraw(compass);
   }
 }
 
@@ -256,7 +256,7 @@ function verticesOf(bodies: Body[]): number {
 }
 
 /** Some thousands of vertices at rest, a fair sample of where the bodies are. */
-function sampleOf(bodies: Body[]): THREE.Vector3[] {
+function sampleVertices(bodies: Body[]): THREE.Vector3[] {
   const stride = Math.max(1, Math.floor(verticesOf(bodies) / 4000));
   return bodies.flatMap(({ rest }) => {
     const points: THREE.Vector3[] = [];

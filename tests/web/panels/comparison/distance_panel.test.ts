@@ -3,7 +3,7 @@ import { dropZone } from "../../../../web/src/app/drop_zone";
 import { make } from "../../../../web/src/dom/elements";
 import { decodeBody } from "../../../../web/src/geometry/bodies";
 import { ComparisonCard } from "../../../../web/src/panels/comparison/comparison_card";
-import { comparePanel } from "../../../../web/src/panels/comparison/distance_panel";
+import { distancePanel } from "../../../../web/src/panels/comparison/distance_panel";
 import { Comparisons } from "../../../../web/src/session/comparisons";
 import { Signal } from "../../../../web/src/state/signal";
 import { settle } from "../../fakes/fake_clock";
@@ -19,7 +19,7 @@ const byId = <T extends HTMLElement>(id: string) => document.getElementById(id) 
 
 beforeEach(() => {
   server = new FakeServer();
-  server.found = [
+  server.comparisonEvents = [
     { case: "vertices", value: { distances: [0, 1, 4] } },
     {
       case: "table",
@@ -30,7 +30,7 @@ beforeEach(() => {
 });
 
 describe("the panel", () => {
-  beforeEach(() => document.body.replaceChildren(comparePanel(comparisons, bodies, new Signal([".obj", ".vtp"]))));
+  beforeEach(() => document.body.replaceChildren(distancePanel(comparisons, bodies, new Signal([".obj", ".vtp"]))));
 
   test("HasALabelForEveryInput", () => {
     for (const each of document.querySelectorAll<HTMLInputElement | HTMLSelectElement>("input, select")) {
@@ -81,18 +81,18 @@ describe("the card", () => {
   });
 
   test("ShowsProgressAndStops", async () => {
-    server.found = [{ case: "progress", value: 0.4 }, new Promise(() => {})];
+    server.comparisonEvents = [{ case: "progress", value: 0.4 }, new Promise(() => {})];
     void comparisons.compare(new File(["v 0 0 0"], "b.obj"));
     await settle();
     const bar = card.element.querySelector("progress")!;
     expect([bar.value, Boolean(bar.ariaLabel)]).toEqual([0.4, true]);
     expect(card.element.querySelector('[role="status"]')!.textContent).toContain("b.obj");
     card.element.querySelector("button")!.click();
-    expect([card.element.hidden, comparisons.work.value.kind]).toEqual([true, "idle"]);
+    expect([card.element.hidden, comparisons.progress.value.kind]).toEqual([true, "idle"]);
   });
 
   test("TellsAFailureAsAnAlertThatCanBeDismissed", async () => {
-    server.found = [];
+    server.comparisonEvents = [];
     await comparisons.compare(new File(["v 0 0 0"], "b.obj"));
     expect(card.element.querySelector('[role="alert"]')!.textContent).toContain("without a result");
     card.element.querySelector("button")!.click();

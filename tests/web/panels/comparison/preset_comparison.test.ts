@@ -4,9 +4,9 @@ import { FrameSchema } from "../../../../web/src/gen/phrenic/v1/frames_pb";
 import { ParametersSchema } from "../../../../web/src/gen/phrenic/v1/parameters_pb";
 import { PresetSchema } from "../../../../web/src/gen/phrenic/v1/scene_pb";
 import { SessionSchema } from "../../../../web/src/gen/phrenic/v1/session_pb";
-import { compareWith } from "../../../../web/src/panels/comparison/preset_comparison";
-import { domeWords } from "../../../../web/src/panels/comparison/view_headers";
-import { Controller } from "../../../../web/src/session/session_controller";
+import { presetComparison } from "../../../../web/src/panels/comparison/preset_comparison";
+import { domeLabel } from "../../../../web/src/panels/comparison/view_headers";
+import { SessionController } from "../../../../web/src/session/session_controller";
 import { Signal } from "../../../../web/src/state/signal";
 import { FakeClock, settle } from "../../fakes/fake_clock";
 import { FakeServer } from "../../fakes/fake_server";
@@ -16,19 +16,19 @@ const presets = new Signal([
   create(PresetSchema, { name: "paralysis-right", parameters: { rightActivation: 0 } }),
 ]);
 let server: FakeServer;
-let controller: Controller;
+let controller: SessionController;
 let opened: string[];
 
 const listOf = (row: HTMLElement) => row.querySelector("select")!;
 function choose(name: string): void {
-  const list = listOf(compareWith(controller, presets, (query) => opened.push(query)));
+  const list = listOf(presetComparison(controller, presets, (query) => opened.push(query)));
   list.value = name;
   list.dispatchEvent(new Event("change"));
 }
 
 beforeEach(() => {
   server = new FakeServer();
-  controller = new Controller(server.api, "thorax", new FakeClock());
+  controller = new SessionController(server.api, "thorax", new FakeClock());
   opened = [];
 });
 
@@ -40,7 +40,7 @@ test("ACopyThatBreathesTheChosenWayOpensBesideThisSession", async () => {
 });
 
 test("WithTwoPicturesTheSecondOneChangesAndNothingOpens", async () => {
-  controller.companion = new Controller(server.api, "other", new FakeClock());
+  controller.companion = new SessionController(server.api, "other", new FakeClock());
   choose("paralysis-right");
   await settle();
   expect(server.updates).toEqual([{ preset: "paralysis-right" }]);
@@ -48,8 +48,8 @@ test("WithTwoPicturesTheSecondOneChangesAndNothingOpens", async () => {
 });
 
 test("TheListTellsHowTheSecondOneBreathes", () => {
-  controller.companion = new Controller(server.api, "other", new FakeClock());
-  const list = listOf(compareWith(controller, presets, () => undefined));
+  controller.companion = new SessionController(server.api, "other", new FakeClock());
+  const list = listOf(presetComparison(controller, presets, () => undefined));
   expect(list.value).toBe("");
   const parameters = create(ParametersSchema, { rightActivation: 0 });
   controller.companion.receive(create(SessionSchema, { revision: 2n, parameters }));
@@ -57,7 +57,7 @@ test("TheListTellsHowTheSecondOneBreathes", () => {
 });
 
 test("ASceneWithoutPresetsHasNothingToCompareWith", () => {
-  expect(compareWith(controller, new Signal(presets.value.slice(0, 0)), () => undefined).hidden).toBe(true);
+  expect(presetComparison(controller, new Signal(presets.value.slice(0, 0)), () => undefined).hidden).toBe(true);
 });
 
 test("WhereASceneMeasuresItsDomesTheirHeightCountsAndNoVertex", () => {
@@ -68,7 +68,7 @@ test("WhereASceneMeasuresItsDomesTheirHeightCountsAndNoVertex", () => {
     ],
     probes: [{ name: "right summit", dz: -0.0622 }],
   });
-  expect(domeWords(frame)).toBe("right dome 24.3 mm down");
+  expect(domeLabel(frame)).toBe("right dome 24.3 mm down");
 });
 
 test("WhereTheDomesAreIsPutInWords", () => {
@@ -76,6 +76,6 @@ test("WhereTheDomesAreIsPutInWords", () => {
   const frame = create(FrameSchema, {
     probes: [probe("right dome", 0.0021), probe("rib", 1), probe("left dome", -0.0143)],
   });
-  expect(domeWords(frame)).toBe("right dome 2.1 mm up, left dome 14.3 mm down");
-  expect(domeWords(undefined)).toBe("");
+  expect(domeLabel(frame)).toBe("right dome 2.1 mm up, left dome 14.3 mm down");
+  expect(domeLabel(undefined)).toBe("");
 });

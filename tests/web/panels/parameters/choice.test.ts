@@ -9,13 +9,13 @@ import {
   SessionSchema,
 } from "../../../../web/src/gen/phrenic/v1/session_pb";
 import { parameterSections } from "../../../../web/src/panels/parameters/parameter_sections";
-import { Controller } from "../../../../web/src/session/session_controller";
+import { SessionController } from "../../../../web/src/session/session_controller";
 import { FakeClock, settle } from "../../fakes/fake_clock";
 import { FakeServer } from "../../fakes/fake_server";
 
 let server: FakeServer;
 let clock: FakeClock;
-let controller: Controller;
+let controller: SessionController;
 let panel: HTMLElement;
 
 const list = () => panel.querySelector<HTMLSelectElement>("#parameter-integrator")!;
@@ -25,7 +25,7 @@ const using = (integrator: number): Session =>
 beforeEach(() => {
   server = new FakeServer();
   clock = new FakeClock();
-  controller = new Controller(server.api, "thorax", clock);
+  controller = new SessionController(server.api, "thorax", clock);
   panel = make("div", {}, ...parameterSections(controller));
   document.body.replaceChildren(panel);
   controller.receive(using(Integrator.SEMI_IMPLICIT_EULER));

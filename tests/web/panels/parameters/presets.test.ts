@@ -3,12 +3,12 @@ import { beforeEach, expect, test } from "vitest";
 import { ParametersSchema } from "../../../../web/src/gen/phrenic/v1/parameters_pb";
 import { SessionSchema } from "../../../../web/src/gen/phrenic/v1/session_pb";
 import { PresetRow } from "../../../../web/src/panels/parameters/preset_row";
-import { Controller } from "../../../../web/src/session/session_controller";
+import { SessionController } from "../../../../web/src/session/session_controller";
 import { FakeClock, settle } from "../../fakes/fake_clock";
 import { FakeServer } from "../../fakes/fake_server";
 
 let server: FakeServer;
-let controller: Controller;
+let controller: SessionController;
 let row: PresetRow;
 
 const session = (revision: bigint, parameters: { breathForce?: number; ribMotion?: number }, scene = "thorax") =>
@@ -25,7 +25,7 @@ beforeEach(async () => {
     { name: "quiet", title: "Quiet breath", parameters: { breathForce: 1, ribMotion: 1 } },
     { name: "deep", title: "Deep breath", parameters: { breathForce: 2, ribMotion: 3.3 } },
   ];
-  controller = new Controller(server.api, "thorax", new FakeClock());
+  controller = new SessionController(server.api, "thorax", new FakeClock());
   row = new PresetRow(controller);
   controller.receive(session(1n, { breathForce: 1, ribMotion: 1 }));
   await settle();

@@ -6,16 +6,16 @@ import { ParametersSchema } from "../../../../web/src/gen/phrenic/v1/parameters_
 import { type CompileReport, CompileReportSchema } from "../../../../web/src/gen/phrenic/v1/report_pb";
 import { type Session, SessionSchema, SessionState } from "../../../../web/src/gen/phrenic/v1/session_pb";
 import { parameterSections } from "../../../../web/src/panels/parameters/parameter_sections";
-import { linkWords } from "../../../../web/src/panels/session/connection_badge";
+import { connectionLabels } from "../../../../web/src/panels/session/connection_badge";
 import { playbackPanel } from "../../../../web/src/panels/view/playback";
-import { Readout, residualWords } from "../../../../web/src/panels/view/readout";
-import { Controller } from "../../../../web/src/session/session_controller";
+import { Readout, residualLabel } from "../../../../web/src/panels/view/readout";
+import { SessionController } from "../../../../web/src/session/session_controller";
 import { Signal } from "../../../../web/src/state/signal";
 import { FakeClock, settle } from "../../fakes/fake_clock";
 import { FakeServer } from "../../fakes/fake_server";
 
 let server: FakeServer;
-let controller: Controller;
+let controller: SessionController;
 let panel: HTMLElement;
 
 const session = (breathForce: number, revision: bigint, state = SessionState.PLAYING): Session =>
@@ -33,7 +33,7 @@ const input = (id: string) => panel.querySelector<HTMLInputElement>(`#${id}`)!;
 
 beforeEach(() => {
   server = new FakeServer();
-  controller = new Controller(server.api, "thorax", new FakeClock());
+  controller = new SessionController(server.api, "thorax", new FakeClock());
   panel = make("div", {}, ...parameterSections(controller));
   document.body.replaceChildren(panel);
   controller.receive(session(1, 1n));
@@ -100,7 +100,7 @@ test("ThePlayButtonSaysWhatItDoes", () => {
 });
 
 test("HowWellConstraintsAreKeptIsPutInWords", () => {
-  expect([undefined, 3e-12, 4.2e-4].map(residualWords)).toEqual(["", "kept", "0.42 mm off"]);
+  expect([undefined, 3e-12, 4.2e-4].map(residualLabel)).toEqual(["", "kept", "0.42 mm off"]);
 });
 
 test("TheReadoutSpeaksOfConstraintsWhereThereAreAny", () => {
@@ -131,7 +131,7 @@ test("TheReadoutSaysHowFarTheBreathIsAndWhichWayLookedBackAtToo", () => {
 test("TheLinkIsPutInWords", () => {
   const rate = { framesPerSecond: 30, age: 4.4, delay: 0, errorBound: 0.1 };
   const status = { session: session(1, 1n), frame: undefined, rate, now: 1000 };
-  expect(linkWords({ ...status, link: { kind: "live" } })).toMatchObject({
+  expect(connectionLabels({ ...status, connection: { kind: "live" } })).toMatchObject({
     text: "Live",
     detail: "30 fps, 4 ms, ±0.1 mm",
   });
@@ -141,5 +141,5 @@ test("TheLinkIsPutInWords", () => {
     missing: false,
     retryAt: 3500,
   };
-  expect(linkWords({ ...status, link: lost })).toMatchObject({ text: "Lost", detail: "retrying in 3 s" });
+  expect(connectionLabels({ ...status, connection: lost })).toMatchObject({ text: "Lost", detail: "retrying in 3 s" });
 });

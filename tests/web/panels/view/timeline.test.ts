@@ -1,13 +1,13 @@
 import { create } from "@bufbuild/protobuf";
 import { expect, test } from "vitest";
-import { Frames } from "../../../../web/src/frames/frame_buffer";
+import { FrameBuffer } from "../../../../web/src/frames/frame_buffer";
 import { FrameSchema } from "../../../../web/src/gen/phrenic/v1/frames_pb";
 import { projectorRow } from "../../../../web/src/panels/view/projector_row";
 import { Timeline } from "../../../../web/src/panels/view/timeline";
 
 function watched() {
-  const frames = new Frames();
-  const timeline = new Timeline(frames, (time) => frames.lookBack(time));
+  const frames = new FrameBuffer();
+  const timeline = new Timeline(frames, (time) => frames.replayAt(time));
   for (const time of [0, 1, 2]) frames.receive(create(FrameSchema, { time }), 1000 * time);
   timeline.show();
   const words = () => timeline.element.querySelector("output")!.textContent;
@@ -19,19 +19,19 @@ test("TheSliderLooksBackAndSaysHowFar", () => {
   expect(words()).toBe("now");
   slider.value = "1";
   slider.dispatchEvent(new Event("input"));
-  expect(frames.lookedAt?.time).toBe(1);
+  expect(frames.replayedFrame?.time).toBe(1);
   expect(words()).toBe("1.00 s ago");
   expect(slider.getAttribute("aria-valuetext")).toBe("1.00 s ago");
 });
 
 test("PictureByPictureItGoesBackAndForwardToThePresent", () => {
   const { frames, timeline } = watched();
-  timeline.turn(1);
-  expect(timeline.back).toBe(false);
-  timeline.turn(-1);
-  expect(frames.lookedAt?.time).toBe(1);
-  timeline.turn(1);
-  expect(timeline.back).toBe(false);
+  timeline.stepFrame(1);
+  expect(timeline.replaying).toBe(false);
+  timeline.stepFrame(-1);
+  expect(frames.replayedFrame?.time).toBe(1);
+  timeline.stepFrame(1);
+  expect(timeline.replaying).toBe(false);
 });
 
 test("TheBrowserRemembersThatItIsForAProjector", () => {

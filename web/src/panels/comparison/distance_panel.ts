@@ -11,7 +11,11 @@ const units: [label: string, millimetres: number][] = [
 ];
 
 /** Chooses a file to compare with, its unit, and the body that is compared; files may be dropped as well. */
-export function comparePanel(comparisons: Comparisons, bodies: Signal<Body[]>, endings: Signal<string[]>): HTMLElement {
+export function distancePanel(
+  comparisons: Comparisons,
+  bodies: Signal<Body[]>,
+  endings: Signal<string[]>,
+): HTMLElement {
   const file = make("input", { type: "file", id: "compare-file", hidden: true });
   file.ariaLabel = "File to compare with";
   file.onchange = () => {

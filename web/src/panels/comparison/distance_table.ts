@@ -17,13 +17,13 @@ const heads: [head: string, title: string][] = [
 ];
 
 /** Three decimals, or fewer of large numbers; what is not a number does not exist. */
-export function millimetres(value: number): string {
+export function formatMillimetres(value: number): string {
   if (Number.isNaN(value)) return "none";
   return value.toFixed(value < 100 ? 3 : 1);
 }
 
 /** The measures of a comparison in mm, each with its name in the schema. */
-export function figuresTable(distance: SurfaceDistance): HTMLTableElement {
+export function distanceTable(distance: SurfaceDistance): HTMLTableElement {
   const titles = heads.map(([head, title]) => make("th", { scope: "col", title }, head));
   const head = make("tr", {}, make("th", { scope: "col" }, "mm"), ...titles);
   const body = rows.map(([label, names]) => {
@@ -38,7 +38,7 @@ function cell(name: string, distance: SurfaceDistance): HTMLTableCellElement {
   if (field === undefined) throw new Error(`SurfaceDistance has no ${name}.`);
   const { label, help } = getOption(field, quantity);
   const value = distance[field.localName as keyof SurfaceDistance] as number;
-  const number = make("b", {}, millimetres(value));
+  const number = make("b", {}, formatMillimetres(value));
   number.dataset.measure = name;
   return make("td", { title: help ? `${label}: ${help}` : label }, number, make("span", {}, name));
 }

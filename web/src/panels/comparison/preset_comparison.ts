@@ -1,15 +1,15 @@
 import { make } from "../../dom/elements";
 import type { Preset } from "../../gen/phrenic/v1/scene_pb";
-import { labelOf, presetOf } from "../../parameters/presets";
-import type { Controller } from "../../session/session_controller";
+import { activePreset, presetLabel } from "../../parameters/presets";
+import type { SessionController } from "../../session/session_controller";
 import type { Signal } from "../../state/signal";
 
 /**
  * A list of the scene's ways to breathe: the chosen one is shown beside this session, in a copy of it from the present
  * instant. Where there are two pictures already, it is the second one's.
  */
-export function compareWith(
-  controller: Controller,
+export function presetComparison(
+  controller: SessionController,
   presets: Signal<Preset[]>,
   open: (query: string) => void,
 ): HTMLElement {
@@ -20,20 +20,20 @@ export function compareWith(
   list.onchange = async () => {
     if (companion !== undefined) return companion.usePreset(list.value);
     list.disabled = true;
-    const beside = await controller.forkBeside(list.value);
+    const secondSessionId = await controller.forkForComparison(list.value);
     list.disabled = false;
-    if (beside !== undefined) open(`?${new URLSearchParams({ session: sessionId, beside })}`);
+    if (secondSessionId !== undefined) open(`?${new URLSearchParams({ session: sessionId, beside: secondSessionId })}`);
     list.value = "";
   };
   const mark = () => {
-    list.value = presetOf(presets.value, companion?.session.value?.parameters)?.name ?? "";
+    list.value = activePreset(presets.value, companion?.session.value?.parameters)?.name ?? "";
   };
   presets.subscribe((all) => {
     row.hidden = all.length === 0;
     const none = make("option", { value: "", disabled: true }, companion === undefined ? "Choose…" : "As it is set");
     list.replaceChildren(
       none,
-      ...all.map((each) => make("option", { value: each.name, title: each.title }, labelOf(each))),
+      ...all.map((each) => make("option", { value: each.name, title: each.title }, presetLabel(each))),
     );
     mark();
   });

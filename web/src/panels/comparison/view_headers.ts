@@ -1,14 +1,14 @@
 import { make } from "../../dom/elements";
 import type { Frame } from "../../gen/phrenic/v1/frames_pb";
 import type { Preset } from "../../gen/phrenic/v1/scene_pb";
-import { domeHelp, domesOf } from "../../graphs/catalogue";
+import { domeHeights, domeHelp } from "../../graphs/catalogue";
 import { differences, shortDifferences } from "../../parameters/differences";
-import { labelOf, presetOf } from "../../parameters/presets";
-import type { Controller } from "../../session/session_controller";
+import { activePreset, presetLabel } from "../../parameters/presets";
+import type { SessionController } from "../../session/session_controller";
 import type { Signal } from "../../state/signal";
 
 /** Two pictures may be so far apart before it is said [s]. */
-const together = 0.05;
+const maxTimeDifference = 0.05;
 
 interface Actions {
   swap(): void;
@@ -16,7 +16,7 @@ interface Actions {
 }
 
 /** What stands above two pictures: how each breathes, when, how far its domes are, and what the second has otherwise. */
-export class PaneHeads {
+export class ViewHeaders {
   readonly element: HTMLElement;
   /** Each is named by how it breathes, where a preset says that; else by its session. */
   private readonly names = [make("b"), make("b")];
@@ -25,37 +25,37 @@ export class PaneHeads {
   private readonly differences = make("span", { className: "differences" });
 
   constructor(
-    private readonly pair: [Controller, Controller],
+    private readonly pair: [SessionController, SessionController],
     private readonly presets: Signal<Preset[]>,
     actions: Actions,
   ) {
     const steered = make("span", { className: "faint", title: "Controls act on this one" }, "steered");
-    const heads = [[steered], buttons(pair[1].sessionId, actions)].map((extra, i) =>
+    const viewHeaders = [[steered], buttons(pair[1].sessionId, actions)].map((extra, i) =>
       make("div", { className: "pane-head", title: pair[i].sessionId }, this.names[i], this.times[i], ...extra),
     );
-    this.domes.forEach((domes, i) => heads[i].append(domes));
-    heads[1].append(this.differences);
-    this.element = make("div", { id: "pane-heads" }, ...heads);
+    this.domes.forEach((domes, i) => viewHeaders[i].append(domes));
+    viewHeaders[1].append(this.differences);
+    this.element = make("div", { id: "pane-heads" }, ...viewHeaders);
     for (const { session } of pair) session.subscribe(() => this.compare());
     presets.subscribe(() => this.compare());
   }
 
   /** Where both stand by now. */
-  tell(frames: [Frame | undefined, Frame | undefined]): void {
+  update(frames: [Frame | undefined, Frame | undefined]): void {
     const [here, there] = frames.map((frame) => frame?.time ?? 0);
-    frames.forEach((frame, i) => (this.domes[i].textContent = domeWords(frame)));
+    frames.forEach((frame, i) => (this.domes[i].textContent = domeLabel(frame)));
     this.times[0].textContent = `${here.toFixed(2)} s`;
     const apart = there - here;
     const words =
-      Math.abs(apart) < together ? "" : `, ${Math.abs(apart).toFixed(1)} s ${apart > 0 ? "ahead" : "behind"}`;
+      Math.abs(apart) < maxTimeDifference ? "" : `, ${Math.abs(apart).toFixed(1)} s ${apart > 0 ? "ahead" : "behind"}`;
     this.times[1].textContent = `${there.toFixed(2)} s${words}`;
   }
 
   private compare(): void {
     const [here, there] = this.pair.map(({ session }) => session.value?.parameters);
     this.pair.forEach(({ session, sessionId }, i) => {
-      const preset = presetOf(this.presets.value, session.value?.parameters);
-      this.names[i].textContent = preset === undefined ? sessionId : labelOf(preset);
+      const preset = activePreset(this.presets.value, session.value?.parameters);
+      this.names[i].textContent = preset === undefined ? sessionId : presetLabel(preset);
     });
     this.differences.textContent = shortDifferences(here, there) || "The same parameters";
     this.differences.title = differences(here, there);
@@ -72,9 +72,9 @@ function buttons(sessionId: string, { swap, close }: Actions): HTMLElement[] {
 }
 
 /** "right dome 19.5 mm down, left dome 2.1 mm up"; empty where the scene tells of no dome. */
-export function domeWords(frame: Frame | undefined): string {
+export function domeLabel(frame: Frame | undefined): string {
   if (frame === undefined) return "";
-  return domesOf(frame)
+  return domeHeights(frame)
     .map(({ name, height }) => {
       const way = (1000 * Math.abs(height)).toFixed(1);
       return `${name} ${way} mm${way === "0.0" ? "" : height > 0 ? " up" : " down"}`;

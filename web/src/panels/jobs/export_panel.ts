@@ -2,7 +2,7 @@ import { make } from "../../dom/elements";
 import { section } from "../../dom/rows";
 import { ExportValues } from "../../gen/phrenic/v1/export_pb";
 import type { Body } from "../../geometry/bodies";
-import type { Exports, ExportWork } from "../../session/exports";
+import type { ExportProgress, Exports } from "../../session/exports";
 import type { Signal } from "../../state/signal";
 
 const valueNames: [ExportValues, string][] = [
@@ -30,7 +30,7 @@ export function exportPanel(exports: Exports, bodies: Signal<Body[]>): HTMLEleme
     bodyChoice!.hidden = format?.numbersOnly ?? false;
     values!.hidden = (format?.values.length ?? 0) < 2;
   });
-  void exports.learn();
+  void exports.loadFormats();
   return section("Export the motion", false, ...rows, hint, start, progress(exports, start));
 }
 
@@ -81,18 +81,18 @@ function numberRow(id: string, label: string, placeholder: string, choose: (valu
 /** How far it is, and the file when it is there. */
 function progress(exports: Exports, start: HTMLElement): HTMLElement {
   const place = make("div", { id: "export-work" });
-  exports.work.subscribe((work) => {
+  exports.progress.subscribe((work) => {
     const running = work.kind === "recording" || work.kind === "fetching";
     (start as HTMLButtonElement).disabled = running;
-    place.replaceChildren(...shown(work, () => exports.stop()));
+    place.replaceChildren(...progressElements(work, () => exports.stop()));
   });
   return place;
 }
 
-function shown(work: ExportWork, stop: () => void): HTMLElement[] {
+function progressElements(work: ExportProgress, stop: () => void): HTMLElement[] {
   if (work.kind === "idle") return [];
   if (work.kind === "failed") {
-    const words = make("p", { className: "fault" }, work.words);
+    const words = make("p", { className: "fault" }, work.message);
     words.setAttribute("role", "alert");
     return [words];
   }

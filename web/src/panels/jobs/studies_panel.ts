@@ -2,8 +2,8 @@ import { download } from "../../dom/download";
 import { make } from "../../dom/elements";
 import { section } from "../../dom/rows";
 import { type Study, StudyState } from "../../gen/phrenic/v1/study_pb";
-import type { Controller } from "../../session/session_controller";
-import { ended, type Studies, type StudyKind } from "../../session/studies";
+import type { SessionController } from "../../session/session_controller";
+import { isFinished, type Studies, type StudyKind } from "../../session/studies";
 
 const kinds: [StudyKind, string, string][] = [
   ["error", "Error against run time", "Every integrator over a ladder of time steps, against an independent reference"],
@@ -17,7 +17,7 @@ const kinds: [StudyKind, string, string][] = [
 ];
 
 /** Studies of the session's scene with its parameters: started, followed, cancelled and shown from here. */
-export function studiesPanel(studies: Studies, controller: Controller): HTMLElement {
+export function studiesPanel(studies: Studies, controller: SessionController): HTMLElement {
   const kind = make("select", { id: "study-kind" });
   kind.append(...kinds.map(([value, label, title]) => make("option", { value, title }, label)));
   const start = make("button", { type: "button", id: "study-start" }, "Start");
@@ -27,7 +27,7 @@ export function studiesPanel(studies: Studies, controller: Controller): HTMLElem
   };
   const fault = make("p", { className: "fault", id: "study-fault" });
   fault.setAttribute("role", "alert");
-  studies.fault.subscribe((words) => (fault.textContent = words));
+  studies.errorMessage.subscribe((words) => (fault.textContent = words));
   const list = make("div", { className: "studies", id: "studies" });
   const view = new StudyView();
   studies.all.subscribe((all) => list.replaceChildren(...all.map((study) => studyRow(study, studies, view)).reverse()));
@@ -44,8 +44,8 @@ export function studiesPanel(studies: Studies, controller: Controller): HTMLElem
 function studyRow(study: Study, studies: Studies, view: StudyView): HTMLElement {
   const { id, doing, state, problem } = study;
   const words = make("div", { className: "words" }, make("b", {}, id), make("span", { className: "faint" }));
-  const standing = words.lastElementChild as HTMLElement;
-  standing.textContent =
+  const stateLabel = words.lastElementChild as HTMLElement;
+  stateLabel.textContent =
     state === StudyState.FAILED
       ? problem
       : state === StudyState.DONE
@@ -55,12 +55,12 @@ function studyRow(study: Study, studies: Studies, view: StudyView): HTMLElement 
           : doing;
   const buttons = make("div", { className: "row" });
   if (state === StudyState.DONE) buttons.append(...doneButtons(study, studies, view));
-  const remove = make("button", { type: "button", className: "small" }, ended(study) ? "Forget" : "Cancel");
+  const remove = make("button", { type: "button", className: "small" }, isFinished(study) ? "Forget" : "Cancel");
   remove.ariaLabel = `${remove.textContent} ${id}`;
   remove.onclick = () => void studies.remove(id);
   buttons.append(remove);
   const bar = make("progress", { max: 1, value: study.progress, ariaLabel: `Progress of ${id}` });
-  const row = make("div", { className: "study" }, words, buttons, ...(ended(study) ? [] : [bar]));
+  const row = make("div", { className: "study" }, words, buttons, ...(isFinished(study) ? [] : [bar]));
   row.dataset.study = id;
   return row;
 }

@@ -1,7 +1,7 @@
 import { make } from "../../dom/elements";
 import { section } from "../../dom/rows";
 import type { SurfaceReport } from "../../gen/phrenic/v1/inspect_pb";
-import type { Uploads, UploadWork } from "../../session/uploads";
+import type { UploadProgress, Uploads } from "../../session/uploads";
 
 /** Chooses a surface file for the server, and says how scenes name it and whether it will do. */
 export function uploadPanel(uploads: Uploads): HTMLElement {
@@ -12,21 +12,21 @@ export function uploadPanel(uploads: Uploads): HTMLElement {
     if (chosen !== undefined) void uploads.upload(chosen).finally(() => (file.value = ""));
   };
   const hint = make("p", { className: "faint" });
-  uploads.endings.subscribe((endings) => {
+  uploads.extensions.subscribe((endings) => {
     file.accept = endings.join(",");
     hint.textContent = `A surface (${endings.join(", ")}) in millimetres, for scenes of any session.`;
   });
   const open = make("button", { type: "button", id: "upload", onclick: () => file.click() }, "Upload a surface…");
   const place = make("div", { id: "upload-work" });
-  uploads.work.subscribe((work) => place.replaceChildren(...shown(work)));
-  void uploads.learn();
+  uploads.progress.subscribe((work) => place.replaceChildren(...progressElements(work)));
+  void uploads.loadFormats();
   return section("Surface files", false, open, file, hint, place);
 }
 
-function shown(work: UploadWork): HTMLElement[] {
+function progressElements(work: UploadProgress): HTMLElement[] {
   if (work.kind === "idle") return [];
   if (work.kind === "failed") {
-    const words = make("p", { className: "fault" }, work.words);
+    const words = make("p", { className: "fault" }, work.message);
     words.setAttribute("role", "alert");
     return [words];
   }

@@ -1,7 +1,7 @@
 import { make } from "../../dom/elements";
 import { resetButton } from "../../dom/rows";
 import type { NumberControl } from "../../parameters/controls";
-import { faultOf, formatNumber, positionOf, valueAt } from "../../parameters/numbers";
+import { formatNumber, rangeError, sliderPosition, sliderValue } from "../../parameters/numbers";
 
 /** What a row tells its owner. */
 export interface RowEvents {
@@ -16,7 +16,7 @@ export class NumberRow {
   private readonly slider: HTMLInputElement;
   private readonly entry: HTMLInputElement;
   private readonly fault: HTMLElement;
-  private held = false;
+  private dragging = false;
 
   constructor(
     private readonly control: NumberControl,
@@ -26,7 +26,7 @@ export class NumberRow {
     this.slider = this.makeSlider(id);
     this.entry = make("input", { type: "number", step: "any", id: `${id}-entry` });
     this.entry.ariaLabel = `${control.label}${control.unit ? ` in ${control.unit}` : ""}`;
-    this.entry.onchange = () => this.typed();
+    this.entry.onchange = () => this.onEntry();
     this.fault = make("p", { className: "fault", id: `${id}-fault` });
     this.fault.setAttribute("role", "alert");
     this.element = make(
@@ -43,23 +43,23 @@ export class NumberRow {
   private makeSlider(id: string): HTMLInputElement {
     const { control } = this;
     const slider = make("input", { type: "range", id, title: control.help });
-    slider.min = String(positionOf(control, control.minimum));
-    slider.max = String(positionOf(control, control.maximum));
+    slider.min = String(sliderPosition(control, control.minimum));
+    slider.max = String(sliderPosition(control, control.maximum));
     slider.step = String(control.step);
     slider.oninput = () => {
-      const value = valueAt(control, slider.valueAsNumber);
+      const value = sliderValue(control, slider.valueAsNumber);
       this.write(value);
       this.events.set(value);
     };
-    slider.onpointerdown = () => (this.held = true);
-    slider.onpointerup = slider.onpointercancel = slider.onblur = () => (this.held = false);
+    slider.onpointerdown = () => (this.dragging = true);
+    slider.onpointerup = slider.onpointercancel = slider.onblur = () => (this.dragging = false);
     return slider;
   }
 
   /** Shows the session's value, unless the person has this very row in hand. */
   show(value: number): void {
-    if (this.held || document.activeElement === this.entry) return;
-    this.slider.value = String(positionOf(this.control, value));
+    if (this.dragging || document.activeElement === this.entry) return;
+    this.slider.value = String(sliderPosition(this.control, value));
     this.write(value);
   }
 
@@ -68,24 +68,24 @@ export class NumberRow {
     const unit = this.control.unit ? ` ${this.control.unit}` : "";
     this.slider.setAttribute("aria-valuetext", formatNumber(value) + unit);
     this.slider.style.setProperty("--filled", `${(100 * this.filled(value)).toFixed(1)}%`);
-    this.complain(undefined);
+    this.showError(undefined);
   }
 
   private filled(value: number): number {
-    const [low, high] = [this.control.minimum, this.control.maximum].map((end) => positionOf(this.control, end));
-    return (positionOf(this.control, value) - low) / (high - low);
+    const [low, high] = [this.control.minimum, this.control.maximum].map((end) => sliderPosition(this.control, end));
+    return (sliderPosition(this.control, value) - low) / (high - low);
   }
 
-  private typed(): void {
+  private onEntry(): void {
     const value = this.entry.valueAsNumber;
-    const fault = faultOf(this.control, value);
-    this.complain(fault);
+    const fault = rangeError(this.control, value);
+    this.showError(fault);
     if (fault !== undefined) return;
-    this.slider.value = String(positionOf(this.control, value));
+    this.slider.value = String(sliderPosition(this.control, value));
     this.events.set(value);
   }
 
-  private complain(fault: string | undefined): void {
+  private showError(fault: string | undefined): void {
     this.fault.textContent = fault ?? "";
     this.entry.setAttribute("aria-invalid", String(fault !== undefined));
   }

@@ -5,7 +5,7 @@ import { ParametersSchema } from "../../gen/phrenic/v1/parameters_pb";
 import type { CompileReport } from "../../gen/phrenic/v1/report_pb";
 import type { Preset } from "../../gen/phrenic/v1/scene_pb";
 import { type Control, parameterControls, type ParameterName, type SwitchControl } from "../../parameters/controls";
-import type { Controller } from "../../session/session_controller";
+import type { SessionController } from "../../session/session_controller";
 import { Signal } from "../../state/signal";
 import { ChoiceRow } from "./choice_row";
 import { NumberRow } from "./number_row";
@@ -13,14 +13,14 @@ import { PresetRow } from "./preset_row";
 import { pullRow } from "./pull_row";
 
 /** What a parameter of the solver has in its name; all others are the breath's. */
-const ofTheSolver = /integrator|step|solver/i;
+const solverParameter = /integrator|step|solver/i;
 
 /**
  * The live parameters, one row for each field of the schema, but for those that nothing in the scene answers to. Another
  * viewer's changes move the rows.
  */
 export function parameterSections(
-  controller: Controller,
+  controller: SessionController,
   report?: Signal<CompileReport | undefined>,
   presets = new Signal<Preset[]>([]),
 ): HTMLElement[] {
@@ -34,7 +34,7 @@ export function parameterSections(
     for (const { name, element } of rows) element.hidden = idle.has(name);
   });
   const elements = (solver: boolean) =>
-    rows.filter(({ name }) => ofTheSolver.test(name) === solver).map(({ element }) => element);
+    rows.filter(({ name }) => solverParameter.test(name) === solver).map(({ element }) => element);
   const ways = new PresetRow(controller, presets).element;
   return [
     section("Breathing", true, ways, changesRow(controller), pullRow(controller), ...elements(false)),
@@ -43,7 +43,7 @@ export function parameterSections(
 }
 
 /** Takes changes back, does them again, and takes everything back to the start. */
-function changesRow(controller: Controller): HTMLElement {
+function changesRow(controller: SessionController): HTMLElement {
   const undo = button("Undo", () => controller.undo(), icon("undo"), "Undo");
   const redo = button("Redo", () => controller.redo(), icon("redo"), "Redo");
   const all = button("Reset all parameters", () => void controller.resetAll(), "Reset all");
@@ -65,7 +65,7 @@ interface Row {
   show(value: number | boolean | undefined): void;
 }
 
-function parameterRow(control: Control, controller: Controller): Row {
+function parameterRow(control: Control, controller: SessionController): Row {
   const name = control.field as ParameterName;
   if (control.kind === "switch") return parameterSwitch(control, name, controller);
   const events = {
@@ -76,7 +76,7 @@ function parameterRow(control: Control, controller: Controller): Row {
   return { name, element: row.element, show: (value) => typeof value === "number" && row.show(value) };
 }
 
-function parameterSwitch(control: SwitchControl, name: ParameterName, controller: Controller): Row {
+function parameterSwitch(control: SwitchControl, name: ParameterName, controller: SessionController): Row {
   const { row, input } = switchRow(control.label, control.help, (on) => controller.set(name, on));
   input.id = `parameter-${name}`;
   return {
@@ -87,7 +87,7 @@ function parameterSwitch(control: SwitchControl, name: ParameterName, controller
 }
 
 /** Back to what a session of this scene starts with. */
-async function reset(controller: Controller, name: ParameterName): Promise<void> {
+async function reset(controller: SessionController, name: ParameterName): Promise<void> {
   const value = (await controller.startValues())?.[name];
   if (typeof value === "number" || typeof value === "boolean") controller.set(name, value);
 }

@@ -1,8 +1,8 @@
 import { make } from "../../dom/elements";
 import type { Parameters } from "../../gen/phrenic/v1/parameters_pb";
 import type { Preset } from "../../gen/phrenic/v1/scene_pb";
-import { holds, labelOf } from "../../parameters/presets";
-import type { Controller } from "../../session/session_controller";
+import { isActive, presetLabel } from "../../parameters/presets";
+import type { SessionController } from "../../session/session_controller";
 import { Signal } from "../../state/signal";
 
 /** The scene's ways to breathe, a button each; hidden where it has none. The one that holds is pressed. */
@@ -12,7 +12,7 @@ export class PresetRow {
   private buttons: { preset: Preset; element: HTMLButtonElement }[] = [];
 
   constructor(
-    private readonly controller: Controller,
+    private readonly controller: SessionController,
     private readonly presets = new Signal<Preset[]>([]),
   ) {
     this.element.ariaLabel = "Ways to breathe";
@@ -36,13 +36,13 @@ export class PresetRow {
 
   private button(preset: Preset): HTMLButtonElement {
     const onclick = () => void this.controller.usePreset(preset.name);
-    const words = labelOf(preset);
+    const words = presetLabel(preset);
     return make("button", { type: "button", title: preset.title || words, onclick }, words);
   }
 
   private press(parameters: Parameters | undefined): void {
     for (const { preset, element } of this.buttons) {
-      element.ariaPressed = String(parameters !== undefined && holds(preset, parameters));
+      element.ariaPressed = String(parameters !== undefined && isActive(preset, parameters));
     }
   }
 }

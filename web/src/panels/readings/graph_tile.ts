@@ -2,21 +2,21 @@ import { download } from "../../dom/download";
 import { make } from "../../dom/elements";
 import type { GraphSpec } from "../../graphs/catalogue";
 import { curveColor } from "../../graphs/colors";
-import { csvOf, svgOf } from "../../graphs/files";
+import { toCsv, toSvg } from "../../graphs/files";
 import { Plot, type PlotEvents } from "../../graphs/plot";
-import { dataOf, type GraphData, type Span } from "../../graphs/window";
-import type { History } from "../../state/time_series";
+import { graphData, type GraphData, type TimeSpan } from "../../graphs/window";
+import type { TimeSeries } from "../../state/time_series";
 
 /** One graph with its name, what its curves are and stand at, and buttons that save it. */
 export class GraphTile {
   readonly element: HTMLElement;
   private readonly plot: Plot;
   private readonly readings: HTMLElement[];
-  private data: GraphData = { times: [], across: undefined, curves: [] };
+  private data: GraphData = { times: [], abscissa: undefined, curves: [] };
 
   constructor(
     private readonly spec: GraphSpec,
-    private readonly history: History,
+    private readonly history: TimeSeries,
     private readonly fileName: () => string,
     events: PlotEvents,
   ) {
@@ -34,23 +34,23 @@ export class GraphTile {
   }
 
   /** Shows a stretch of time; what is read off is at `place` of it, or at its end. */
-  show(span: Span, place: number | undefined): void {
-    this.data = dataOf(this.spec, this.history, span);
+  show(span: TimeSpan, place: number | undefined): void {
+    this.data = graphData(this.spec, this.history, span);
     this.plot.show(this.data, span);
-    this.read(place);
+    this.showValues(place);
   }
 
-  read(place: number | undefined): void {
+  showValues(place: number | undefined): void {
     this.data.curves.forEach((values, i) => {
       const value = values[place ?? values.length - 1] as number | undefined;
-      const words = value === undefined ? "" : readable(value);
+      const words = value === undefined ? "" : formatReading(value);
       if (this.readings[i].textContent !== words) this.readings[i].textContent = words;
     });
   }
 
   private title(): string {
-    const { title, unit, across } = this.spec;
-    if (across !== undefined) return `${title} [${unit}, ${across.unit}]`;
+    const { title, unit, abscissa } = this.spec;
+    if (abscissa !== undefined) return `${title} [${unit}, ${abscissa.unit}]`;
     return unit === "" ? title : `${title} [${unit}]`;
   }
 
@@ -62,7 +62,7 @@ export class GraphTile {
 
   private saveButton(kind: "SVG" | "CSV"): HTMLElement {
     const save = () => {
-      const content = kind === "SVG" ? svgOf(this.spec, this.data) : csvOf(this.spec, this.data);
+      const content = kind === "SVG" ? toSvg(this.spec, this.data) : toCsv(this.spec, this.data);
       const type = kind === "SVG" ? "image/svg+xml" : "text/csv";
       const file = `${this.fileName()}-${this.spec.id.replaceAll(/[^a-z0-9]+/g, "-")}.${kind.toLowerCase()}`;
       download(file, new Blob([content], { type }));
@@ -73,7 +73,7 @@ export class GraphTile {
 }
 
 /** Three digits, and no zero before which a minus stands. */
-function readable(value: number): string {
+function formatReading(value: number): string {
   const size = Math.abs(value);
   const text = value.toFixed(size >= 100 ? 0 : size >= 10 ? 1 : size >= 1 ? 2 : 3);
   return Number(text) === 0 ? text.replace("-", "") : text.replace("-", "−");

@@ -2,8 +2,8 @@ import { button, make } from "../../dom/elements";
 import { icon } from "../../dom/icons";
 import type { Frame } from "../../gen/phrenic/v1/frames_pb";
 import { graphsOf, type GraphSpec, valuesOf } from "../../graphs/catalogue";
-import type { Span } from "../../graphs/window";
-import { History } from "../../state/time_series";
+import type { TimeSpan } from "../../graphs/window";
+import { TimeSeries } from "../../state/time_series";
 import { GraphTile } from "./graph_tile";
 
 /** How much is kept, and how much may be shown at once [simulated s]. */
@@ -11,32 +11,32 @@ const kept = 120;
 const lengths = [6, 12, 30, 60, 120];
 
 /** What is drawn beside what comes with the frames: the vertices that this viewer follows. */
-export interface Followed {
+export interface TrackedSeries {
   spec: GraphSpec | undefined;
-  history: History;
+  history: TimeSeries;
 }
 
 /** Graphs of everything that comes with the frames, on one clock: they stand still, zoom and move on together. */
-export class Graphs {
+export class GraphsPanel {
   readonly element = make("div", { className: "graphs" });
-  private readonly history = new History(kept);
+  private readonly history = new TimeSeries(kept);
   private readonly list = make("div", { className: "tiles" });
   private readonly pause: HTMLButtonElement;
   private readonly words = make("span", { className: "faint", id: "graphs-span" });
   private readonly length = make("select", { id: "graphs-length", ariaLabel: "Time shown", title: "Time shown" });
   private tiles: GraphTile[] = [];
-  private offered = "";
-  private held: Span | undefined;
+  private specsKey = "";
+  private held: TimeSpan | undefined;
   private drawn = -1;
 
   constructor(
     private readonly fileName: () => string,
-    private readonly followed: Followed,
+    private readonly tracked: TrackedSeries,
   ) {
     this.length.append(...lengths.map((each) => make("option", { value: String(each) }, `${each} s`)));
     this.length.value = "12";
-    this.length.onchange = () => this.live();
-    this.pause = button("Hold the graphs", () => (this.held ? this.live() : this.hold(this.newest())), icon("pause"));
+    this.length.onchange = () => this.resume();
+    this.pause = button("Hold the graphs", () => (this.held ? this.resume() : this.hold(this.newest())), icon("pause"));
     this.pause.id = "graphs-pause";
     this.pause.className = "quiet";
     const title = make("h2", {}, "Graphs");
@@ -46,17 +46,17 @@ export class Graphs {
   /** Every frame counts, however seldom graphs are drawn. */
   receive(frame: Frame): void {
     this.history.add(frame.time, valuesOf(frame));
-    const { spec } = this.followed;
+    const { spec } = this.tracked;
     const specs = [...graphsOf(frame), ...(spec === undefined ? [] : [spec])];
     const offered = JSON.stringify(specs);
-    if (offered === this.offered) return;
-    this.offered = offered;
-    this.furnish(specs);
+    if (offered === this.specsKey) return;
+    this.specsKey = offered;
+    this.rebuild(specs);
   }
 
   clear(): void {
     this.history.clear();
-    this.live();
+    this.resume();
   }
 
   /** Draws what is new; cheap where nothing is. */
@@ -68,33 +68,33 @@ export class Graphs {
     this.show(this.newest());
   }
 
-  private furnish(specs: GraphSpec[]): void {
+  private rebuild(specs: GraphSpec[]): void {
     const events = {
-      zoom: (span: Span) => this.hold(span),
-      live: () => this.live(),
-      point: (place: number | undefined) => this.tiles.forEach((tile) => tile.read(place)),
+      zoom: (span: TimeSpan) => this.hold(span),
+      resume: () => this.resume(),
+      cursor: (place: number | undefined) => this.tiles.forEach((tile) => tile.showValues(place)),
     };
     this.tiles = specs.map((spec) => {
-      const history = spec === this.followed.spec ? this.followed.history : this.history;
+      const history = spec === this.tracked.spec ? this.tracked.history : this.history;
       return new GraphTile(spec, history, this.fileName, events);
     });
     this.list.replaceChildren(...this.tiles.map(({ element }) => element));
     this.drawn = -1;
   }
 
-  private newest(): Span {
+  private newest(): TimeSpan {
     const end = Math.max(this.history.times.at(-1) ?? 0, Number(this.length.value));
     return { start: end - Number(this.length.value), end };
   }
 
-  private hold(span: Span): void {
+  private hold(span: TimeSpan): void {
     this.held = span;
     this.words.textContent = `held, ${span.start.toFixed(1)} to ${span.end.toFixed(1)} s`;
     this.label("Let the graphs go on", "play");
     this.show(span);
   }
 
-  private live(): void {
+  private resume(): void {
     this.held = undefined;
     this.drawn = -1;
     this.words.textContent = "";
@@ -107,7 +107,7 @@ export class Graphs {
     this.pause.replaceChildren(icon(name));
   }
 
-  private show(span: Span): void {
+  private show(span: TimeSpan): void {
     for (const tile of this.tiles) tile.show(span, undefined);
   }
 }

@@ -1,11 +1,11 @@
 import { make } from "../../dom/elements";
 import { section } from "../../dom/rows";
 import type { Frame } from "../../gen/phrenic/v1/frames_pb";
-import { familiarUnit } from "../../graphs/units";
+import { displayUnit } from "../../graphs/units";
 
 /** Four significant digits in the unit that people use: "2.513 l". */
 export function readingText(value: number, unit: string): string {
-  const [name, factor] = familiarUnit(unit);
+  const [name, factor] = displayUnit(unit);
   return `${Number((factor * value).toPrecision(4))} ${name}`;
 }
 

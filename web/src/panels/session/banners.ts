@@ -1,12 +1,16 @@
-import type { Link } from "../../connection/session_connection";
+import type { ConnectionState } from "../../connection/session_connection";
 import { make } from "../../dom/elements";
 import type { Session } from "../../gen/phrenic/v1/session_pb";
 import { formatNumber } from "../../parameters/numbers";
-import type { Controller } from "../../session/session_controller";
+import type { SessionController } from "../../session/session_controller";
 import type { Signal } from "../../state/signal";
 
 /** Words over the picture when something is wrong: diverged, lost, refused; with the remedy where there is one. */
-export function banners(controller: Controller, link: Signal<Link>, chooseSession: () => void): HTMLElement[] {
+export function banners(
+  controller: SessionController,
+  link: Signal<ConnectionState>,
+  chooseSession: () => void,
+): HTMLElement[] {
   const diverged = banner("alert", "diverged");
   let told: bigint | undefined;
   controller.session.subscribe((session) => {
@@ -15,12 +19,12 @@ export function banners(controller: Controller, link: Signal<Link>, chooseSessio
     if (tick === told) return;
     told = tick;
     diverged.hidden = tick === undefined;
-    if (session !== undefined) diverged.replaceChildren(...divergence(session, controller));
+    if (session !== undefined) diverged.replaceChildren(...divergenceMessage(session, controller));
   });
   const lost = banner("status", "lost");
   link.subscribe((value) => {
     lost.hidden = value.kind !== "lost";
-    if (value.kind === "lost") lost.replaceChildren(...loss(value.reason, value.missing, chooseSession));
+    if (value.kind === "lost") lost.replaceChildren(...lossMessage(value.reason, value.missing, chooseSession));
   });
   const unsaved = banner("status", "unsaved");
   controller.session.subscribe((session) => {
@@ -50,7 +54,7 @@ function banner(role: string, name: string): HTMLElement {
   return element;
 }
 
-function divergence({ divergence, largestStableStep }: Session, controller: Controller): HTMLElement[] {
+function divergenceMessage({ divergence, largestStableStep }: Session, controller: SessionController): HTMLElement[] {
   if (divergence === undefined) return [];
   const { time, body, vertex, force, remedy } = divergence;
   const where = `The simulation diverged at ${formatNumber(time)} s, at vertex ${vertex} of ${body} (${force}).`;
@@ -66,7 +70,7 @@ const tolerance = 1e-5;
 const halvingHelp =
   "Sets the step tolerance: a step that errs by more than 0.01 mm is taken in halves, which takes longer";
 
-async function restartHalving(controller: Controller): Promise<void> {
+async function restartHalving(controller: SessionController): Promise<void> {
   await controller.reset();
   await controller.apply({ stepTolerance: tolerance });
   await controller.play(controller.session.value?.speed || "fastest");
@@ -81,14 +85,14 @@ function sentence(words: string): string {
 /** The chosen part of the largest stable step, as the server itself chooses where a scene names no step. */
 const stablePart = 0.9;
 
-async function restartStable(controller: Controller, largest: number): Promise<void> {
+async function restartStable(controller: SessionController, largest: number): Promise<void> {
   await controller.reset();
   const now = controller.session.value?.parameters?.timeStep ?? 0;
   if (largest > 0 && now > stablePart * largest) await controller.apply({ timeStep: stablePart * largest });
   await controller.play(controller.session.value?.speed || "fastest");
 }
 
-function loss(reason: string, missing: boolean, chooseSession: () => void): HTMLElement[] {
+function lossMessage(reason: string, missing: boolean, chooseSession: () => void): HTMLElement[] {
   const words = missing ? sentence(reason) : `The connection is lost: ${sentence(reason)} It comes back by itself.`;
   const choose = make("button", { type: "button", onclick: chooseSession }, "Choose a session");
   return [make("p", {}, words), ...(missing ? [choose] : [])];

@@ -7,7 +7,7 @@ import type { Signal } from "../../state/signal";
 const count = new Intl.NumberFormat("en");
 
 /** What the compile step made of the scene: what runs, what was left out and why, how large a step may be. */
-export function reportPanel(report: Signal<CompileReport | undefined>): HTMLElement {
+export function compileReportPanel(report: Signal<CompileReport | undefined>): HTMLElement {
   const body = make("div", { className: "report" });
   report.subscribe((value) => body.replaceChildren(...(value === undefined ? [] : contents(value))));
   return section("What runs", false, body);

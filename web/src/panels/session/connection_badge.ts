@@ -1,4 +1,4 @@
-import type { Link } from "../../connection/session_connection";
+import type { ConnectionState } from "../../connection/session_connection";
 import { make } from "../../dom/elements";
 import type { FrameRate } from "../../frames/frame_buffer";
 import type { Frame } from "../../gen/phrenic/v1/frames_pb";
@@ -6,7 +6,7 @@ import { type Session, SessionState } from "../../gen/phrenic/v1/session_pb";
 
 /** Everything that the status shows, gathered a few times a second. */
 export interface Status {
-  link: Link;
+  connection: ConnectionState;
   session: Session | undefined;
   frame: Frame | undefined;
   rate: FrameRate;
@@ -14,7 +14,7 @@ export interface Status {
 }
 
 /** The state of the connection in a pill: connecting, live with frames a second, age and error bound, or lost and retrying. */
-export class LinkPill {
+export class ConnectionBadge {
   readonly element = make("button", { type: "button", id: "link", className: "pill" });
   private readonly words = make("span");
   private readonly detail = make("span", { className: "detail" });
@@ -25,22 +25,26 @@ export class LinkPill {
   }
 
   show(status: Status): void {
-    const { text, detail, title } = linkWords(status);
-    this.element.dataset.link = status.link.kind;
+    const { text, detail, title } = connectionLabels(status);
+    this.element.dataset.link = status.connection.kind;
     this.element.title = title;
     if (this.words.textContent !== text) this.words.textContent = text;
     if (this.detail.textContent !== detail) this.detail.textContent = detail;
   }
 }
 
-export function linkWords({ link, session, rate, now }: Status): { text: string; detail: string; title: string } {
-  if (link.kind === "connecting") return { text: "Connecting", detail: "", title: "Waiting for the server." };
-  if (link.kind === "lost") {
-    const seconds = Math.max(0, Math.ceil((link.retryAt - now) / 1000));
+export function connectionLabels({ connection, session, rate, now }: Status): {
+  text: string;
+  detail: string;
+  title: string;
+} {
+  if (connection.kind === "connecting") return { text: "Connecting", detail: "", title: "Waiting for the server." };
+  if (connection.kind === "lost") {
+    const seconds = Math.max(0, Math.ceil((connection.retryAt - now) / 1000));
     const detail = seconds > 0 ? `retrying in ${seconds} s` : "retrying";
-    return { text: "Lost", detail, title: `${link.reason} Click to retry now.` };
+    return { text: "Lost", detail, title: `${connection.reason} Click to retry now.` };
   }
-  const fast = rateWords(rate);
+  const fast = rateLabel(rate);
   const stopped = session?.state === SessionState.DIVERGED ? "diverged" : "paused";
   const detail = session?.state === SessionState.PLAYING ? fast : stopped;
   return { text: "Live", detail, title: rateTitle };
@@ -52,7 +56,7 @@ const rateTitle =
   "On a thin line there are fewer frames, then coarser ones.";
 
 /** "30 fps, 12+35 ms, ±0.1 mm". */
-export function rateWords({ framesPerSecond, age, delay, errorBound }: FrameRate): string {
+export function rateLabel({ framesPerSecond, age, delay, errorBound }: FrameRate): string {
   const words = [`${framesPerSecond} fps`];
   const held = Math.round(delay);
   if (age !== undefined) words.push(`${Math.max(0, Math.round(age))}${held > 0 ? `+${held}` : ""} ms`);

@@ -1,15 +1,21 @@
 import { make } from "../../dom/elements";
 import { switchRow } from "../../dom/rows";
 import type { Participant } from "../../gen/phrenic/v1/control_pb";
-import { controlWords, everybodys, refusalWords, type Roles, type Standing } from "../../session/participation";
+import {
+  controlLabel,
+  isOpenToEveryone,
+  type Participation,
+  refusalReason,
+  type Roles,
+} from "../../session/participation";
 
 /** Says in the header who controls the session; opens the dialog about it. */
-export function controlBadge(standing: Standing, open: () => void): HTMLButtonElement {
+export function controlBadge(participation: Participation, open: () => void): HTMLButtonElement {
   const words = make("span");
   const badge = make("button", { type: "button", id: "control-badge", className: "pill", onclick: open }, words);
-  standing.roles.subscribe((roles) => {
-    const asking = roles.mayHand ? (roles.control?.participants ?? []).filter(({ asks }) => asks) : [];
-    words.textContent = asking.length > 0 ? `${controlWords(roles)} · ${asking[0].name} asks` : controlWords(roles);
+  participation.roles.subscribe((roles) => {
+    const asking = roles.mayHandOver ? (roles.control?.participants ?? []).filter(({ asks }) => asks) : [];
+    words.textContent = asking.length > 0 ? `${controlLabel(roles)} · ${asking[0].name} asks` : controlLabel(roles);
     badge.dataset.asked = String(asking.length > 0);
     badge.title = "Who may change this session: ask for control, hand it over, follow the camera";
   });
@@ -17,11 +23,11 @@ export function controlBadge(standing: Standing, open: () => void): HTMLButtonEl
 }
 
 /** Groups controls that change the session: disabled, with the reason, while somebody else controls it. */
-export function controlled(standing: Standing, ...children: (Node | string)[]): HTMLFieldSetElement {
+export function controlledGroup(participation: Participation, ...children: (Node | string)[]): HTMLFieldSetElement {
   const group = make("fieldset", { className: "controlled" }, ...children);
-  standing.roles.subscribe((roles) => {
+  participation.roles.subscribe((roles) => {
     group.disabled = !roles.mayChange;
-    group.title = refusalWords(roles);
+    group.title = refusalReason(roles);
   });
   return group;
 }
@@ -31,12 +37,12 @@ export class ControlDialog {
   readonly element = make("dialog", { className: "chooser", id: "control", ariaLabel: "Who controls" });
   private readonly state = make("p", { id: "control-state" });
   private readonly name = make("input", { type: "text", id: "control-name", maxLength: 40, placeholder: "Your name" });
-  private readonly acts = make("div", { className: "acts" });
+  private readonly actions = make("div", { className: "acts" });
   private readonly people = make("ul", { id: "control-people" });
-  private readonly fault = make("p", { className: "fault", id: "control-fault" });
+  private readonly errorMessage = make("p", { className: "fault", id: "control-fault" });
 
   constructor(
-    private readonly standing: Standing,
+    private readonly participation: Participation,
     followed: () => void,
   ) {
     const close = make("button", { type: "button", onclick: () => this.element.close() }, "Close");
@@ -44,25 +50,25 @@ export class ControlDialog {
       "Follow the camera of who controls",
       "The picture turns with theirs",
       (on) => {
-        standing.identity.follows = on;
+        participation.identity.followsCamera = on;
         followed();
       },
     );
     input.id = "control-follow";
-    input.checked = standing.identity.follows;
-    this.name.value = standing.identity.name;
-    this.fault.setAttribute("role", "alert");
+    input.checked = participation.identity.followsCamera;
+    this.name.value = participation.identity.name;
+    this.errorMessage.setAttribute("role", "alert");
     this.element.append(
       make("header", {}, make("h2", {}, "Who controls"), close),
       this.state,
       this.nameRow(),
-      this.acts,
-      this.fault,
+      this.actions,
+      this.errorMessage,
       this.people,
       follow,
     );
-    standing.roles.subscribe((roles) => this.tell(roles));
-    standing.fault.subscribe((words) => (this.fault.textContent = words));
+    participation.roles.subscribe((roles) => this.update(roles));
+    participation.errorMessage.subscribe((words) => (this.errorMessage.textContent = words));
   }
 
   show(): void {
@@ -75,46 +81,48 @@ export class ControlDialog {
     form.append(this.name, enter);
     form.onsubmit = (event) => {
       event.preventDefault();
-      void this.standing.enter(this.name.value.trim());
+      void this.participation.enter(this.name.value.trim());
     };
     return form;
   }
 
-  private tell(roles: Roles): void {
-    this.state.textContent = `${controlWords(roles)}.${roles.me === "" ? " Enter with your name to take part." : ""}`;
-    this.acts.replaceChildren(...this.actsOf(roles));
+  private update(roles: Roles): void {
+    this.state.textContent = `${controlLabel(roles)}.${roles.name === "" ? " Enter with your name to take part." : ""}`;
+    this.actions.replaceChildren(...this.actionsFor(roles));
     this.people.replaceChildren(...(roles.control?.participants ?? []).map((person) => this.personRow(person, roles)));
   }
 
-  private actsOf(roles: Roles): HTMLElement[] {
-    const { standing } = this;
-    const act = (id: string, words: string, onclick: () => unknown) =>
+  private actionsFor(roles: Roles): HTMLElement[] {
+    const { participation } = this;
+    const button = (id: string, words: string, onclick: () => unknown) =>
       make("button", { type: "button", id: `control-${id}`, onclick: () => void onclick() }, words);
     const acts: HTMLElement[] = [];
-    if (roles.me === "") return acts;
-    if (!roles.alone && !roles.asks) acts.push(act("take", takeWords(roles), () => standing.take()));
-    if (roles.asks) acts.push(act("withdraw", "Ask no more", () => standing.release()));
-    if (roles.alone && !roles.owner) acts.push(act("release", "Give control back", () => standing.release()));
-    if (roles.owner && (roles.control?.controller !== "" || !everybodys(roles)))
-      acts.push(act("lend", "Let everybody control", () => standing.lend()));
+    if (roles.name === "") return acts;
+    if (!roles.hasControl && !roles.hasRequested)
+      acts.push(button("take", takeLabel(roles), () => participation.requestControl()));
+    if (roles.hasRequested) acts.push(button("withdraw", "Ask no more", () => participation.release()));
+    if (roles.hasControl && !roles.isOwner)
+      acts.push(button("release", "Give control back", () => participation.release()));
+    if (roles.isOwner && (roles.control?.controller !== "" || !isOpenToEveryone(roles)))
+      acts.push(button("lend", "Let everybody control", () => participation.openToEveryone()));
     return acts;
   }
 
   private personRow({ name, owner, asks }: Participant, roles: Roles): HTMLElement {
-    const parts = [name === roles.me && "you", owner && "owner", asks && "asks for control"].filter(Boolean);
+    const parts = [name === roles.name && "you", owner && "owner", asks && "asks for control"].filter(Boolean);
     if (name === roles.control?.controller) parts.push("controls");
     const row = make("li", {}, make("div", {}, make("b", {}, name), make("span", {}, parts.join(", "))));
     row.dataset.person = name;
-    if (roles.mayHand && name !== roles.control?.controller && !(owner && name === roles.me)) {
+    if (roles.mayHandOver && name !== roles.control?.controller && !(owner && name === roles.name)) {
       const hand = make("button", { type: "button", ariaLabel: `Hand control to ${name}` }, "Hand over");
-      hand.onclick = () => void this.standing.hand(name);
+      hand.onclick = () => void this.participation.handOver(name);
       row.append(hand);
     }
     return row;
   }
 }
 
-function takeWords(roles: Roles): string {
-  if (roles.owner) return roles.control?.controller ? "Take control back" : "Only I control";
+function takeLabel(roles: Roles): string {
+  if (roles.isOwner) return roles.control?.controller ? "Take control back" : "Only I control";
   return roles.control?.controller ? "Ask for control" : "Take control";
 }

@@ -1,8 +1,8 @@
 import { make } from "../../dom/elements";
-import type { Controller } from "../../session/session_controller";
+import type { SessionController } from "../../session/session_controller";
 
 /** Names the session and its scene, and opens the others. */
-export function sessionButton(controller: Controller, open: () => void): HTMLElement {
+export function sessionButton(controller: SessionController, open: () => void): HTMLElement {
   const title = make("b");
   const id = make("span");
   controller.session.subscribe((session) => {

@@ -3,7 +3,7 @@ import { make } from "../../dom/elements";
 import { type SceneSummary, type Session, SessionState } from "../../gen/phrenic/v1/session_pb";
 
 /** A dialog that opens a session which runs already, or starts one of any scene that the server knows. */
-export class Chooser {
+export class SessionChooser {
   readonly element = make("dialog", { className: "chooser", ariaLabel: "Sessions and scenes" });
   private readonly sessions = make("ul");
   private readonly scenes = make("ul");

@@ -1,12 +1,12 @@
 import { make } from "../../dom/elements";
 import type { CompileReport } from "../../gen/phrenic/v1/report_pb";
 import { permalinkOf } from "../../session/permalink";
-import type { Controller } from "../../session/session_controller";
+import type { SessionController } from "../../session/session_controller";
 import type { Signal } from "../../state/signal";
 
 /** What the dialog can have done. */
 export interface Sharing {
-  controller: Controller;
+  controller: SessionController;
   report: Signal<CompileReport | undefined>;
   /** Opens the page at this query. */
   open(query: string): void;
@@ -67,7 +67,7 @@ export class ShareDialog {
         "A copy beside this one, to set differently; one camera.",
         "Compare",
         async () => {
-          const id = await controller.forkBeside();
+          const id = await controller.forkForComparison();
           if (id !== undefined) open(`?${new URLSearchParams({ session: id, beside: here })}`);
         },
       ),

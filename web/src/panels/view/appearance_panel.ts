@@ -1,10 +1,10 @@
 import type { Coloring } from "../../appearance/coloring";
 import { type FieldKind, fields } from "../../appearance/fields";
 import type { GhostKind } from "../../appearance/ghosts";
-import type { Looks } from "../../appearance/layer_styles";
+import type { LayerStyles } from "../../appearance/layer_styles";
 import { make } from "../../dom/elements";
 import { section, switchRow } from "../../dom/rows";
-import { wordsOf } from "../../session/force_queries";
+import { forceKindLabel } from "../../session/force_queries";
 import type { Signal } from "../../state/signal";
 import type { Cut } from "../../viewer/clipping";
 import type { OverlayKind } from "../../viewer/overlays";
@@ -12,8 +12,8 @@ import { cutRows } from "./cut_rows";
 import { projectorRow } from "./projector_row";
 
 /** What the view can be told. */
-export interface Appearance {
-  looks: Looks;
+export interface AppearanceSettings {
+  layerStyles: LayerStyles;
   overlays: Signal<ReadonlySet<OverlayKind>>;
   coloring: Coloring;
   labels: Signal<boolean>;
@@ -37,7 +37,7 @@ const ghosts: [GhostKind, string][] = [
 ];
 
 /** How this viewer sees the scene: colours, transparency, cut, ghost and what is drawn over it. */
-export function appearancePanel(view: Appearance): HTMLElement {
+export function appearancePanel(view: AppearanceSettings): HTMLElement {
   const ghost = choice("ghost", "Ghost", "The moving tissue as it was at another moment", ghosts, (kind) =>
     view.ghost.set(kind),
   );
@@ -50,7 +50,7 @@ export function appearancePanel(view: Appearance): HTMLElement {
     "View",
     true,
     coloringRow(view.coloring, view.forceKinds),
-    transparencyRow(view.looks),
+    transparencyRow(view.layerStyles),
     ghost,
     ...cut,
     ...rows,
@@ -72,10 +72,10 @@ function coloringRow(coloring: Coloring, kinds: Signal<string[]>): HTMLElement {
   const group = make("optgroup", { label: "Force" });
   row.querySelector("select")?.append(group);
   kinds.subscribe((all) => {
-    const wanted = all.map((kind) => make("option", { value: `force:${kind}` }, upper(wordsOf(kind))));
+    const wanted = all.map((kind) => make("option", { value: `force:${kind}` }, upper(forceKindLabel(kind))));
     group.hidden = all.length === 0;
     group.replaceChildren(...wanted);
-    row.querySelector("select")!.value = coloring.kind.value ?? "own";
+    row.querySelector("select")!.value = coloring.field.value ?? "own";
   });
   return row;
 }
@@ -110,12 +110,12 @@ function overlayRow(
   return row;
 }
 
-function transparencyRow(looks: Looks): HTMLElement {
+function transparencyRow(layerStyles: LayerStyles): HTMLElement {
   const slider = make("input", { type: "range", id: "transparency", min: "0", max: "100", step: "1" });
   const output = make("output", { className: "unit" });
-  slider.oninput = () => looks.change(looks.main, { opacity: 1 - slider.valueAsNumber / 100 });
-  looks.all.subscribe(() => {
-    const percent = Math.round(100 * (1 - (looks.get(looks.main)?.opacity ?? 1)));
+  slider.oninput = () => layerStyles.change(layerStyles.mainLayer, { opacity: 1 - slider.valueAsNumber / 100 });
+  layerStyles.all.subscribe(() => {
+    const percent = Math.round(100 * (1 - (layerStyles.get(layerStyles.mainLayer)?.opacity ?? 1)));
     slider.value = String(percent);
     slider.style.setProperty("--filled", `${percent}%`);
     output.textContent = `${percent} %`;

@@ -1,5 +1,5 @@
 import type { Coloring } from "../../appearance/coloring";
-import { infoOf } from "../../appearance/fields";
+import { fieldInfo } from "../../appearance/fields";
 import { make } from "../../dom/elements";
 import { Legend } from "./legend";
 
@@ -24,12 +24,12 @@ export function coloringCard(coloring: Coloring): HTMLElement {
   const row = make("div", { className: "row" }, make("label", { htmlFor: "coloring-top" }, "Scale to"), top, fit);
   const note = make("p", { className: "faint", id: "coloring-note" });
   note.setAttribute("role", "status");
-  coloring.note.subscribe((words) => (note.textContent = words));
+  coloring.message.subscribe((words) => (note.textContent = words));
   const card = make("section", { id: "coloring", className: "card", hidden: true }, title, legend.element, row, note);
   card.ariaLabel = "Colours of the surface";
   coloring.scale.subscribe((scale) => {
     card.hidden = scale === undefined;
-    const info = infoOf(coloring.kind.value);
+    const info = fieldInfo(coloring.field.value);
     if (scale === undefined || info === undefined) return;
     title.textContent = info.label;
     title.title = info.help;

@@ -12,12 +12,12 @@ const kinds: [CutKind, string][] = [
 
 /** A plane that takes away one side of the scene: which, where, and which side. `cutAt` tells where it lies [m]. */
 export function cutRows(cutAt: (cut: Cut) => number): HTMLElement[] {
-  const cut = new Signal<Cut>({ kind: "none", part: 0.5, flipped: false });
+  const cut = new Signal<Cut>({ kind: "none", fraction: 0.5, flipped: false });
   const list = make("select", { id: "cut", title: "Take away what lies on one side of a plane" });
   list.append(...kinds.map(([value, label]) => make("option", { value }, label)));
   list.onchange = () => cut.set({ ...cut.value, kind: list.value as CutKind });
   const slider = make("input", { type: "range", id: "cut-place", min: "0", max: "1", step: "0.005" });
-  slider.oninput = () => cut.set({ ...cut.value, part: slider.valueAsNumber });
+  slider.oninput = () => cut.set({ ...cut.value, fraction: slider.valueAsNumber });
   const output = make("output", { className: "unit" });
   const flip = switchRow("Keep the other side", "", (flipped) => cut.set({ ...cut.value, flipped }));
   flip.input.id = "cut-flip";
@@ -25,8 +25,8 @@ export function cutRows(cutAt: (cut: Cut) => number): HTMLElement[] {
   const place = make("div", { className: "number-row plain" }, label, output, slider);
   cut.subscribe((value) => {
     place.hidden = flip.row.hidden = value.kind === "none";
-    slider.value = String(value.part);
-    slider.style.setProperty("--filled", `${100 * value.part}%`);
+    slider.value = String(value.fraction);
+    slider.style.setProperty("--filled", `${100 * value.fraction}%`);
     output.textContent = `${Math.round(1000 * cutAt(value))} mm`;
     slider.setAttribute("aria-valuetext", output.textContent);
   });

@@ -1,9 +1,9 @@
 import { make } from "../../dom/elements";
-import { type ForceOnVertex, wordsOf } from "../../session/force_queries";
+import { forceKindLabel, type VertexForce } from "../../session/force_queries";
 import type { Signal } from "../../state/signal";
 
 /** The forces on a vertex by kind, a row each, and their sum last; hidden where they are not known. */
-export function forceTable(forces: Signal<ForceOnVertex[]>): HTMLElement {
+export function forceTable(forces: Signal<VertexForce[]>): HTMLElement {
   const unit = make("th", { scope: "col" });
   const heads = ["Left", "Back", "Up"].map((text) => make("th", { scope: "col" }, text));
   const rows = make("tbody");
@@ -11,7 +11,7 @@ export function forceTable(forces: Signal<ForceOnVertex[]>): HTMLElement {
   const table = make("table", { className: "figures", id: "forces", ariaLabel: "Forces on it" }, head, rows);
   forces.subscribe((all) => {
     table.hidden = all.length === 0;
-    const { name, factor } = unitFor(all);
+    const { name, factor } = forceUnit(all);
     unit.textContent = name;
     rows.replaceChildren(...all.map((each) => row(each, factor)));
   });
@@ -19,18 +19,18 @@ export function forceTable(forces: Signal<ForceOnVertex[]>): HTMLElement {
 }
 
 /** Newtons where one of them is large, else thousandths. */
-export function unitFor(all: ForceOnVertex[]): { name: string; factor: number } {
+export function forceUnit(all: VertexForce[]): { name: string; factor: number } {
   const largest = Math.max(0, ...all.map(({ force }) => Math.hypot(...force)));
   return largest >= 1 ? { name: "N", factor: 1 } : { name: "mN", factor: 1000 };
 }
 
-function row({ kind, force }: ForceOnVertex, factor: number): HTMLElement {
-  const cells = force.map((each) => make("td", {}, words(factor * each)));
-  return make("tr", {}, make("th", { scope: "row" }, wordsOf(kind)), ...cells);
+function row({ kind, force }: VertexForce, factor: number): HTMLElement {
+  const cells = force.map((each) => make("td", {}, formatForce(factor * each)));
+  return make("tr", {}, make("th", { scope: "row" }, forceKindLabel(kind)), ...cells);
 }
 
 /** Two decimals, and no sign before a zero. */
-function words(value: number): string {
+function formatForce(value: number): string {
   return value
     .toFixed(2)
     .replace(/^-(0\.00)$/, "$1")

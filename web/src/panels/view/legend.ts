@@ -17,9 +17,9 @@ export class Legend {
     this.unit.textContent = scale.unit;
     this.draw(scale);
     this.ticks.replaceChildren(
-      ...scale.ticks().map(({ part, text }) => {
+      ...scale.ticks().map(({ fraction, text }) => {
         const tick = make("span", {}, text);
-        tick.style.left = `${100 * part}%`;
+        tick.style.left = `${100 * fraction}%`;
         return tick;
       }),
     );

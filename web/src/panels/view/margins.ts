@@ -1,5 +1,5 @@
 import { make } from "../../dom/elements";
-import type { Compass } from "../../viewer/camera_rig";
+import type { ViewOrientation } from "../../viewer/camera_rig";
 
 const lengths = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50];
 const longest = 120;
@@ -21,7 +21,7 @@ export class Margins {
     this.elements = [...Object.values(this.letters), scale];
   }
 
-  show(compass: Compass): void {
+  show(compass: ViewOrientation): void {
     for (const side of ["left", "right", "top", "bottom"] as const) {
       if (this.letters[side].textContent !== compass[side]) this.letters[side].textContent = compass[side];
     }

@@ -1,5 +1,5 @@
 import { make } from "../../dom/elements";
-import type { Compass } from "../../viewer/camera_rig";
+import type { ViewOrientation } from "../../viewer/camera_rig";
 import type { ViewName } from "../../viewer/named_views";
 
 type Triple = [number, number, number];
@@ -34,7 +34,7 @@ export class OrientationCube {
     }
   }
 
-  show({ axes: [right, up, back] }: Compass): void {
+  show({ axes: [right, up, back] }: ViewOrientation): void {
     // Columns are where the patient's axes point on the screen, whose y runs downwards.
     const column = (axis: "x" | "y" | "z"): Triple => [right[axis], -up[axis], back[axis]];
     const transform = matrix(column("x"), column("y"), column("z"), [0, 0, 0]);

@@ -1,7 +1,7 @@
 import { button, make } from "../../dom/elements";
 import { icon } from "../../dom/icons";
 import { SessionState } from "../../gen/phrenic/v1/session_pb";
-import type { Controller, Speed } from "../../session/session_controller";
+import type { SessionController, Speed } from "../../session/session_controller";
 
 const speeds: [string, Speed][] = [
   ["0.1×", 0.1],
@@ -15,7 +15,7 @@ const speeds: [string, Speed][] = [
 const strides = [1, 10, 100, 1000];
 
 /** Play or pause, step, reset, and how fast. */
-export function playbackPanel(controller: Controller): HTMLElement {
+export function playbackPanel(controller: SessionController): HTMLElement {
   const speed = speedSelect(controller);
   const stride = make("select", { id: "stride", ariaLabel: "Ticks a step", title: "Ticks a step" });
   stride.append(...strides.map((ticks) => option(ticks === 1 ? "1 tick" : `${ticks} ticks`, String(ticks))));
@@ -37,7 +37,7 @@ export function playbackPanel(controller: Controller): HTMLElement {
   return make("div", { className: "playback" }, reset, toggle, step, stride, speed);
 }
 
-function togglePlay(controller: Controller, speed: Speed): Promise<void> {
+function togglePlay(controller: SessionController, speed: Speed): Promise<void> {
   return controller.session.value?.state === SessionState.PLAYING ? controller.pause() : controller.play(speed);
 }
 
@@ -45,7 +45,7 @@ function option(label: string, value: string): HTMLOptionElement {
   return make("option", { value }, label);
 }
 
-function speedSelect(controller: Controller): HTMLSelectElement {
+function speedSelect(controller: SessionController): HTMLSelectElement {
   const select = make("select", { id: "speed", ariaLabel: "Speed", title: "Simulated seconds a second" });
   select.append(...speeds.map(([label, value]) => option(label, String(value))));
   select.onchange = () => {

@@ -24,16 +24,16 @@ export class Readout {
     this.write("time", `${(frame?.time ?? session?.time ?? 0).toFixed(digits)} s`);
     this.write("tick", String(frame?.tick ?? session?.tick ?? 0));
     const { breath, phase } = frame ?? { breath: 0, phase: 0 };
-    this.write("breath", `${this.way(phase, breath)} ${Math.floor(100 * phase)} %`);
+    this.write("breath", `${this.breathDirection(phase, breath)} ${Math.floor(100 * phase)} %`);
     this.bar.style.transform = `translateX(${50 * breath}%)`;
     const pace = session?.state === SessionState.PLAYING ? (session.pace?.timesRealTime ?? 0) : 0;
     this.write("pace", `${pace.toFixed(2)}×`);
-    this.write("links", residualWords(session?.constraintResidual));
+    this.write("links", residualLabel(session?.constraintResidual));
     this.element.querySelector<HTMLElement>(".links")!.hidden = session?.constraintResidual === undefined;
   }
 
   /** Whether the breath goes in or out, by what was shown last; whoever looks back sees it the other way round. */
-  private way(phase: number, breath: number): string {
+  private breathDirection(phase: number, breath: number): string {
     const gone = phase - this.last.phase;
     const later = gone - Math.round(gone) > 0;
     if (breath !== this.last.breath) this.inwards = breath > this.last.breath === later;
@@ -48,7 +48,7 @@ export class Readout {
 }
 
 /** The largest violation of a constraint [m] in words; below a micrometre it is as good as kept. */
-export function residualWords(metres: number | undefined): string {
+export function residualLabel(metres: number | undefined): string {
   if (metres === undefined) return "";
   return metres < 1e-6 ? "kept" : `${(1000 * metres).toPrecision(2)} mm off`;
 }

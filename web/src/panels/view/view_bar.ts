@@ -18,7 +18,7 @@ export function viewBar(viewer: Viewer, canvas: HTMLElement): HTMLElement[] {
     event.preventDefault();
   });
   return views.map(([view, label]) => {
-    const element = make("button", { type: "button", onclick: () => viewer.go(view) }, label);
+    const element = make("button", { type: "button", onclick: () => viewer.goTo(view) }, label);
     element.dataset.view = view;
     return element;
   });
