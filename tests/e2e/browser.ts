@@ -13,7 +13,7 @@ declare global {
 
 const chromiumPaths = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
 
-/** Headless Chromium with a profile of its own, WebGL by software. */
+/** Starts headless Chromium with a new profile and software WebGL. */
 export async function launchBrowser(): Promise<Browser> {
   const executablePath = [process.env.PHRENIC_CHROMIUM ?? "", ...chromiumPaths].find(
     (path) => path !== "" && existsSync(path),
@@ -38,7 +38,7 @@ export async function launchBrowser(): Promise<Browser> {
   });
 }
 
-/** A viewer as a person has it, and what it complained about. */
+/** A page with the viewer, and the console errors and requests that it causes. */
 export class ViewerPage {
   readonly consoleErrors: string[] = [];
   readonly origins = new Set<string>();
@@ -51,7 +51,7 @@ export class ViewerPage {
     page.on("request", (request) => this.origins.add(new URL(request.url()).origin));
   }
 
-  /** Opens the viewer in a new browser context and waits for the picture. */
+  /** Opens the viewer in a new browser context and waits until a frame is drawn. */
   static async open(browser: Browser, url: string, size = { width: 900, height: 620 }): Promise<ViewerPage> {
     const context = await browser.newContext({ viewport: size });
     const viewer = new ViewerPage(await context.newPage());
@@ -69,7 +69,7 @@ export class ViewerPage {
     return this.page.evaluate(() => window.phrenic!.tick());
   }
 
-  /** Every `stride`-th vertex of a body now [m], and the tick they belong to. */
+  /** Returns every `stride`-th vertex of a body in the newest frame [m] and the frame's tick. */
   sample(body: string, stride = 200): Promise<{ tick: number; points: [number, number, number][] }> {
     return this.page.evaluate(
       ([name, step]) => {
@@ -82,7 +82,7 @@ export class ViewerPage {
     );
   }
 
-  /** Waits until the link is in this state. */
+  /** Waits until the connection has this state. */
   async waitForLink(kind: string): Promise<void> {
     await this.page.waitForSelector(`#link[data-link="${kind}"]`, { timeout: 60_000 });
   }
@@ -91,7 +91,7 @@ export class ViewerPage {
     await this.page.waitForFunction((least) => window.phrenic!.tick() > least, above, { timeout: 30_000 });
   }
 
-  /** Waits until the newest frame is that of this tick. */
+  /** Waits until the newest frame has this tick. */
   async waitForExactTick(tick: number): Promise<void> {
     await this.page.waitForFunction((wanted) => window.phrenic!.tick() === wanted, tick, { timeout: 30_000 });
   }
@@ -108,13 +108,13 @@ export class ViewerPage {
     return this.page.inputValue(`#parameter-${parameter}-entry`);
   }
 
-  /** Leaves a picture of the page in tests/e2e/out. */
+  /** Saves a screenshot of the page in tests/e2e/out. */
   async saveScreenshot(name: string): Promise<void> {
     mkdirSync(outFolder, { recursive: true });
     await this.page.screenshot({ path: join(outFolder, `${name}.png`) });
   }
 
-  /** What axe finds against the page as it stands, in words. */
+  /** Returns the accessibility violations that axe finds in the current page. */
   async violations(): Promise<string[]> {
     await this.page.evaluate(axe.source);
     return this.page.evaluate(async () => {

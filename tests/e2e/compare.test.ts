@@ -22,7 +22,9 @@ afterAll(async () => {
   await server?.end();
 });
 
-/** A session as it is now, in a file of `phrenic export` whose nodes are moved up by `up` millimetres. */
+/**
+ * Returns the current state of a session as a file of `phrenic export`, with its nodes raised by `up(x)` millimetres.
+ */
 async function exported(session: string, body: string, up: (x: number) => number): Promise<Buffer> {
   const path = join(outFolder, `${session}.msh`);
   await server.phrenic("export", session, path, "--seconds", "0", "--body", body);

@@ -8,7 +8,7 @@ let browsers: Browser[];
 let teacher: ViewerPage;
 let pupil: ViewerPage;
 
-/** Opens the dialog, acts in it, and closes it. */
+/** Opens the dialog, runs `act`, and closes it. */
 async function inDialog(viewer: ViewerPage, act: () => Promise<void>): Promise<void> {
   await viewer.page.click("#control-badge");
   await act();
@@ -27,7 +27,7 @@ const press = (viewer: ViewerPage, id: string) => inDialog(viewer, () => viewer.
 const badge = (viewer: ViewerPage, words: string) =>
   viewer.page.waitForSelector(`#control-badge:has-text("${words}")`, { timeout: 30_000 });
 
-/** Where the camera is [m]. */
+/** Returns the camera position [m]. */
 const eye = (viewer: ViewerPage) => viewer.page.evaluate(() => window.phrenic!.eye());
 
 const apart = (a: number[], b: number[]) => Math.hypot(...a.map((value, i) => value - b[i]));
@@ -36,7 +36,7 @@ beforeAll(async () => {
   server = await Server.start("cube-tensegrity");
   browsers = [await launchBrowser(), await launchBrowser()];
   teacher = await ViewerPage.open(browsers[0], server.url);
-  // A session of the teacher's own, as anybody makes one; its link is for the class.
+  // The teacher creates and owns this session; the class joins by its link.
   await teacher.page.click("#share-open");
   const opened = teacher.page.waitForURL(/cube-tensegrity-2/, { waitUntil: "commit", timeout: 60_000 });
   await Promise.all([opened, teacher.page.click("#share-fork")]);

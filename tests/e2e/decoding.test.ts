@@ -15,7 +15,7 @@ afterAll(() => server?.end());
 const names = { [Codec.PLANES]: "planes", [Codec.PREDICTED]: "predicted", [Codec.BASIS]: "basis" };
 type Coded = keyof typeof names;
 
-/** Largest distance of a vertex from its own [mm]. */
+/** Returns the largest distance of a vertex from its exact position [mm]. */
 function worst({ positions: a }: FrameArrays, { positions: b }: FrameArrays): number {
   let largest = 0;
   for (let i = 0; i < a.length; i += 3) {
@@ -24,7 +24,7 @@ function worst({ positions: a }: FrameArrays, { positions: b }: FrameArrays): nu
   return 1000 * largest;
 }
 
-/** Follows the thorax by one codec until `until` has seen what it wants. */
+/** Watches the thorax with one codec until `until` returns true. */
 async function follow(codec: Codec, until: (frame: Frame, decoder: FrameDecoder) => boolean): Promise<void> {
   const api = nodeApi(server.url);
   let decoder = new FrameDecoder([]);
@@ -46,7 +46,7 @@ async function follow(codec: Codec, until: (frame: Frame, decoder: FrameDecoder)
   expect(done, "the frames did not come within a minute").toBe(true);
 }
 
-/** CPU time of decoding a frame of that codec [ms], once the engine knows the code. */
+/** Returns the CPU time to decode one frame of this codec [ms], after warm-up. */
 async function decodingTime(codec: Coded): Promise<number> {
   const frames: Frame[] = [];
   let decoder = new FrameDecoder([]);
@@ -63,7 +63,8 @@ async function decodingTime(codec: Coded): Promise<number> {
   return (process.cpuUsage().user - start) / 1000 / passes / frames.length;
 }
 
-// The engine is the browser's. CPU time, as the machine may be shared; frames come sixty times a second.
+// Node.js has the same JavaScript engine as Chromium. CPU time is measured because the machine may be shared; the limit
+// is the interval of 60 frames per second.
 test.each([Codec.PLANES, Codec.PREDICTED, Codec.BASIS] as Coded[])("AFrameIsDecodedInTime (%d)", async (codec) => {
   const time = await decodingTime(codec);
   console.log(`decoding a frame of thorax, ${names[codec]}: ${time.toFixed(2)} ms of CPU`);
@@ -72,7 +73,7 @@ test.each([Codec.PLANES, Codec.PREDICTED, Codec.BASIS] as Coded[])("AFrameIsDeco
 
 test("WhatIsDecodedLiesWithinItsBoundOfTheRawFrame", async () => {
   const api = nodeApi(server.url);
-  // Shapes are known by now; a frame stands still to be compared.
+  // The server has computed the basis by now. The session is paused so that all codecs encode the same frame.
   await api.sessions.pauseSession({ sessionId: "thorax" });
   const at = async (codec: Codec) => {
     let seen: { frame: Frame; arrays: FrameArrays } | undefined;

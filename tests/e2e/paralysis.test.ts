@@ -11,7 +11,7 @@ beforeAll(async () => {
   server = await Server.start();
 });
 
-// What a test leaves open or playing would take the processor from the next one's pictures.
+// Contexts and sessions that a test leaves open would slow down the next test.
 afterEach(async () => {
   for (const context of browser.contexts()) await context.close();
   const { sessions } = JSON.parse(await server.phrenic("sessions", "-o", "json"));
@@ -37,14 +37,14 @@ test("FromTheAddressToAParalysedHemidiaphragmBesideAHealthyOneInUnderAMinute", a
   expect(ways.toSorted()).toEqual(["Paralysis right", "Quiet"]);
   expect(Date.now() - start).toBeLessThan(60_000);
   expect(await page.textContent(".differences")).toBe("Right muscle 0 instead of 1");
-  // The list is now of the second picture.
+  // The list now applies to the second view.
   await page.getByLabel("Compare with", { exact: true }).selectOption({ label: "Paralysis left" });
   await page.locator("#pane-heads").getByText("Paralysis left").waitFor();
   expect(viewer.consoleErrors).toEqual([]);
   await viewer.saveScreenshot("paralysis");
 });
 
-/** The times [s] of both pictures, as their heads say them. */
+/** Returns the times of both views from their headers [s]. */
 async function times(viewer: ViewerPage): Promise<number[]> {
   const words = await viewer.page.locator(".pane-head .time").allTextContents();
   return words.map((each) => Number.parseFloat(each));
@@ -72,7 +72,7 @@ test("BothBreatheInStepStopAtOneInstantAndHaveTheSameColours", async () => {
   await page.selectOption("#coloring-kind", "displacement");
   await page.waitForSelector("#coloring:not([hidden])");
   await expect.poll(async () => (await picture()).equals(before), { timeout: 20_000 }).toBe(false);
-  // The descent in the head is what the command line reads.
+  // The dome descent in the header equals the one that the command line prints.
   const { measures } = JSON.parse(await server.phrenic("step", "thorax", "1", "-o", "json"));
   const dome = measures.find(({ name }: { name: string }) => name === "right dome");
   const words = `right dome ${(1000 * Math.abs(dome.value)).toFixed(1)} mm`;
@@ -114,7 +114,7 @@ test("TheForcesOfAMomentAgoAreSeenAgain", async () => {
   await page.keyboard.press(",");
   await page.waitForSelector("#timeline.back");
   expect(await note()).toBe("");
-  // Of another kind nothing was asked then.
+  // Forces of another kind were not queried at that time.
   await page.selectOption("#coloring-kind", "force:springs");
   expect(await note()).toContain("Not known of this moment");
   await page.click("#look-live");

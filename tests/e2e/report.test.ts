@@ -19,7 +19,7 @@ beforeAll(async () => {
 
 afterAll(() => browser?.close());
 
-/** The page of a study, opened as the file that a reviewer gets. */
+/** Writes the page of a study to a file and opens it. */
 async function open(name: string, study: object) {
   const path = join(outFolder, `report-${name}.html`);
   writeFileSync(path, pageOf(template, study));
@@ -35,7 +35,7 @@ async function open(name: string, study: object) {
   return { page, complaints, others: () => requests.filter((each) => each !== url && !each.startsWith("data:")) };
 }
 
-/** Texts of the plots that stick out of them or cover another. */
+/** Returns a message for each text of a plot that leaves the plot or overlaps another text. */
 function misplacedTexts(page: Page): Promise<string[]> {
   return page.evaluate(() =>
     [...document.querySelectorAll("svg.plot")].flatMap((svg) => {

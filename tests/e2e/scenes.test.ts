@@ -40,7 +40,7 @@ describe("a session made in the browser", () => {
     });
   }
 
-  /** What the dialog calls a scene: the n-th row is the n-th that the server lists. */
+  /** Returns the title of a scene in the dialog. */
   async function titleOf(viewer: ViewerPage, scene: string): Promise<string> {
     const row = viewer.page.locator(`.chooser li[data-scene="${scene}"] b`);
     await row.waitFor();

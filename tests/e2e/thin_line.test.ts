@@ -11,10 +11,10 @@ let server: Server;
 beforeAll(async () => void (server = await Server.start()));
 afterAll(() => server.end());
 
-/** A line to the server that carries so many bytes a second to the viewer, and as much as there is the other way. */
+/** Creates a proxy that limits the bandwidth from the server to the viewer; the other direction is not limited. */
 async function slowLine(url: string, bytesPerSecond: number): Promise<{ url: string; close: () => void }> {
   const { port } = new URL(url);
-  let free = 0; // when the line has carried everything
+  let free = 0; // time at which the line is free again [ms]
   const line = createServer((viewer) => {
     const upstream = connect(Number(port), "127.0.0.1");
     viewer.pipe(upstream);
@@ -35,7 +35,7 @@ async function slowLine(url: string, bytesPerSecond: number): Promise<{ url: str
   return { url: `http://127.0.0.1:${address.port}`, close: () => line.close() };
 }
 
-// The viewer's own connection, without the picture: what a viewer on a line sees for `seconds`.
+// Watches the session for `seconds` with the viewer's connection but without drawing.
 async function watch(url: string, seconds: number) {
   const api = nodeApi(url);
   const frames = new FrameBuffer();
@@ -51,7 +51,7 @@ async function watch(url: string, seconds: number) {
       frame: (frame) => {
         frames.receive(frame, Date.now());
         expect(frames.arrays?.positions.every(Number.isFinite)).toBe(true);
-        // One machine, one clock.
+        // Server and test run on one machine and share its clock.
         ages.push(Date.now() - Number(frame.unixNanos / 1_000_000n));
         last = Date.now();
       },
@@ -62,7 +62,7 @@ async function watch(url: string, seconds: number) {
   );
   const running = connection.run();
   for (const deadline = Date.now() + 90_000; ages.length === 0 && Date.now() < deadline;) await sleep(50);
-  // As many frames of a slower breath: what is measured is the line, not what is left of the processor.
+  // The same frame rate at a tenth of the simulation speed, so that the test measures the line and not the CPU.
   await api.sessions.playSession({ sessionId: "thorax", speed: 0.1 });
   await sleep(2000);
   ages.length = 0;

@@ -34,7 +34,7 @@ test("TwoBrowsersSeeTheSameVerticesAtTheSameTick", async () => {
   const [a, b] = await Promise.all([here.sample("diaphragm", 50), there.sample("diaphragm", 50)]);
   expect([a.tick, b.tick]).toEqual([held, held]);
   const off = a.points.flatMap((point, i) => point.map((value, axis) => Math.abs(value - b.points[i][axis])));
-  expect(Math.max(...off)).toBeLessThanOrEqual(2e-3); // each within its bound, which grows to 1 mm on a busy machine
+  expect(Math.max(...off)).toBeLessThanOrEqual(2e-3); // each is within its error bound, which grows to 1 mm on a busy machine
 });
 
 test("ASliderMovedHereMovesThere", async () => {

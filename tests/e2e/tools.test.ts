@@ -28,7 +28,7 @@ async function textOf(download: Download): Promise<string> {
   return readFile(await download.path(), "utf8");
 }
 
-/** How much the picture changes by `act`. */
+/** Returns the fraction of pixels that `act` changes. */
 async function changed(act: () => Promise<unknown>): Promise<number> {
   const before = await canvasPicture(viewer);
   await act();
@@ -147,7 +147,8 @@ test("ThePageIsSmallAndSoonThere", async () => {
   const bytes = sizes.reduce((sum, size) => sum + size);
   console.log(`all scripts, compressed: ${(bytes / 1000).toFixed(0)} kB`);
   expect(bytes).toBeLessThan(400_000);
-  // Soon: nothing is asked for that the first picture can do without. Times are printed; people judge them.
+  // The number of requests before the first drawing is bounded. Times are only printed, since they depend on the
+  // machine.
   const times: number[] = [];
   for (let i = 0; i < 5; i++) {
     const context = await browser.newContext({ viewport: { width: 900, height: 620 } });

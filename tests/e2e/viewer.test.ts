@@ -22,13 +22,13 @@ afterAll(async () => {
 const play = () => viewer.page.locator('#play[aria-label="Play"]');
 const pause = () => viewer.page.locator('#play[aria-label="Pause"]');
 
-/** Waits for so much simulated time [s]. */
+/** Waits for this much simulated time [s]. */
 async function pass(seconds: number): Promise<void> {
   const until = seconds + (await viewer.page.evaluate(() => window.phrenic!.time()));
   await viewer.page.waitForFunction((time) => window.phrenic!.time() >= time, until, { timeout: 60_000 });
 }
 
-/** The vertex of the diaphragm that is highest now. */
+/** Returns the highest vertex of the diaphragm in the newest frame. */
 async function highestVertex(): Promise<number> {
   return viewer.page.evaluate(() => {
     const hook = window.phrenic!;
@@ -39,7 +39,7 @@ async function highestVertex(): Promise<number> {
   });
 }
 
-/** Height that a vertex of the diaphragm goes through in `seconds` of simulated time [m]. */
+/** Returns the range of height of a vertex of the diaphragm during `seconds` of simulated time [m]. */
 async function travel(vertex: number, seconds: number): Promise<number> {
   return viewer.page.evaluate(
     async ({ vertex, seconds }) => {
@@ -56,7 +56,7 @@ async function travel(vertex: number, seconds: number): Promise<number> {
   );
 }
 
-/** Greatest way between two samples [m]. */
+/** Returns the largest distance between corresponding points [m]. */
 function greatestMove(a: [number, number, number][], b: [number, number, number][]): number {
   return Math.max(...a.map((p, i) => Math.hypot(p[0] - b[i][0], p[1] - b[i][1], p[2] - b[i][2])));
 }
@@ -72,7 +72,7 @@ describe("the thorax in the browser", () => {
 
   test("ItsDiaphragmsVerticesMove", async () => {
     const before = await viewer.sample("diaphragm");
-    // Wherever in a breath it began, some part of it later the dome is elsewhere.
+    // The dome moves within some part of a breath, whatever the phase at the start.
     const moved = async () => greatestMove(before.points, (await viewer.sample("diaphragm")).points);
     await expect.poll(moved, { timeout: 90_000, interval: 500 }).toBeGreaterThan(0.002);
   });
@@ -82,7 +82,7 @@ describe("the thorax in the browser", () => {
     const others = viewer.page.locator(".layer-name", { hasNotText: "Diaphragm" }).locator("input");
     expect(await boxes.count()).toBeGreaterThan(3);
     for (const box of await others.all()) await box.uncheck();
-    // The picture follows the frames as fast as the machine draws: until something that moves is seen, however long.
+    // Frames are drawn as fast as the machine allows, so the test polls until a change is visible.
     const first = await canvasPicture(viewer);
     const changed = async () => changedFraction(browser, first, await canvasPicture(viewer));
     await expect.poll(changed, { timeout: 90_000, interval: 1000 }).toBeGreaterThan(0.005);
@@ -94,11 +94,11 @@ describe("the thorax in the browser", () => {
     // Short breaths, since a loaded machine may simulate slower than real time.
     await viewer.type("breathLength", 2);
     await pass(1);
-    // The same vertex both times: which one is highest depends on the moment.
+    // The same vertex is used for both measurements, since the highest vertex changes during a breath.
     const dome = await highestVertex();
     const quiet = await travel(dome, 2.1);
     await viewer.type("breathForce", 2);
-    // One breath to grow into the new force.
+    // One breath until the new force has its full effect.
     await pass(2);
     const strong = await travel(dome, 2.1);
     await viewer.page.click('[aria-label="Reset breath force"]');
@@ -258,7 +258,7 @@ test("ThePageKeepsToItsOwnServerAndHasNothingToComplainAbout", () => {
   expect(viewer.consoleErrors).toEqual([]);
 });
 
-// The last: there is no page after it.
+// Must be the last test, since it leaves the page.
 test("APageThatGoesInMidPullLetsGo", async () => {
   const pulls = async () => ((await server.session()).pulls ?? []) as { body: string }[];
   const box = (await viewer.page.locator("#view").boundingBox())!;

@@ -11,13 +11,13 @@ import { chooseSession } from "./session/choose_session";
 import { recipeOf, rerun } from "./session/permalink";
 import { systemClock } from "./timing/clock";
 
-// What is sent while the page goes outlives it: a vertex that is let go of.
+// Requests while the page is closed must outlive it, such as the release of a pulled vertex.
 let leaving = false;
 window.addEventListener("pagehide", () => (leaving = true), { capture: true });
 window.addEventListener("pageshow", () => (leaving = false));
 const carry: typeof fetch = (input, init) => fetch(input, { ...init, keepalive: leaving });
 
-// The page and the services come from one address.
+// The page and the services have the same origin.
 const identity = new Identity(localStorage);
 const access = new Credentials(localStorage);
 const interceptors = [identityInterceptor(identity), credentialsInterceptor(access), routingInterceptor()];
@@ -41,7 +41,7 @@ function say(error?: unknown): void {
 const here = new URL(location.href);
 storeJoinLink(here, access);
 
-/** The session that the address names, or runs again what it tells how to. */
+/** Returns the session of the address, or runs the simulation that the address describes. */
 async function find(): Promise<string> {
   const recipe = recipeOf(here);
   if (recipe === undefined) return chooseSession(here, api, systemClock, say);
@@ -56,7 +56,7 @@ const sessionId = await find().catch((error: unknown) => {
   throw error;
 });
 const secondSessionId = here.searchParams.get("beside") ?? undefined;
-// Within the page of a course there is the picture and its playback alone.
+// An embedded page shows only the scene and the playback controls.
 const embedded = here.searchParams.has("embed");
 document.body.classList.toggle("embedded", embedded);
 loading.replaceChildren("Loading the scene…");

@@ -5,7 +5,7 @@ import { SurfaceDistanceSchema } from "../../../web/src/gen/phrenic/v1/compare_p
 import { distanceTable, formatMillimetres } from "../../../web/src/panels/comparison/distance_table";
 import { Legend } from "../../../web/src/panels/view/legend";
 
-/** CIE 1976 lightness, 0 to 100, of a colour in sRGB. */
+/** Returns the CIE 1976 lightness, 0 to 100, of an sRGB colour. */
 function lightnessOf(rgb: [number, number, number]): number {
   const [r, g, b] = rgb.map((byte) => (byte > 10 ? ((byte / 255 + 0.055) / 1.055) ** 2.4 : byte / 255 / 12.92));
   const y = 0.2126 * r + 0.7152 * g + 0.0722 * b;

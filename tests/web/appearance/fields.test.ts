@@ -50,7 +50,7 @@ describe("the fields of a body", () => {
     close(fields.of("speed", body)!, 0);
     fields.receive(1.5, { positions: moved((x, y, z) => [x, y, z + 0.01]), poses });
     close(fields.of("speed", body)!, 20);
-    // Back to the start is no motion.
+    // Time that goes back is a restart, not motion.
     fields.receive(0, { positions: rest, poses });
     close(fields.of("speed", body)!, 0);
   });

@@ -9,7 +9,7 @@ import type { Comparison } from "../../../web/src/session/comparisons";
 import { NearestSurface } from "../../../web/src/viewer/nearest_surface";
 import { triangleBody } from "../fakes/fake_server";
 
-/** A square of two triangles from 0 to 1 m in x and y, at `z` [m]. */
+/** A square of two triangles from 0 to 1 m in x and y, at height `z` [m]. */
 const square = (z: number): Surface => ({
   positions: Float32Array.from([0, 0, z, 1, 0, z, 1, 1, z, 0, 1, z]),
   triangles: Uint32Array.from([0, 1, 2, 0, 2, 3]),
@@ -57,7 +57,7 @@ test("ItFollowsTheMomentThatIsShownAndLeavesOutWhatIsInNoTriangle", () => {
 test("ASlowMachineIsAskedLessOften", () => {
   const live = new LiveDistance(comparison);
   let now = 0;
-  // Every look at the clock is 10 ms later than the one before.
+  // Each call of the clock returns 10 ms more.
   expect(live.update([body], raised(0.1), () => (now += 10))).toBe(true);
   expect(live.update([body], raised(0.2), () => now)).toBe(false);
   expect(live.update([body], raised(0.2), () => now + 1000)).toBe(true);

@@ -15,7 +15,7 @@ class FakeStorage {
   }
 }
 
-/** A server that knows one token, and what it was shown. */
+/** A server that accepts one token and records the request headers. */
 function server(credentials: Credentials) {
   const shown: Headers[] = [];
   const transport = createRouterTransport(

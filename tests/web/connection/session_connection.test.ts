@@ -107,7 +107,7 @@ test("AnotherSceneUnderTheSameIdIsFetchedAgain", async () => {
 
 test("AServerThatGoesSilentIsFoundOut", async () => {
   await settle();
-  // The stream stays open, but questions are answered no more.
+  // The stream stays open, but calls fail.
   server.down = true;
   await clock.advance(2000);
   expect(states.at(-1)).toMatchObject({
@@ -118,7 +118,7 @@ test("AServerThatGoesSilentIsFoundOut", async () => {
 
 test("ASessionThatGoesOnOnAnotherServerIsFollowedAnew", async () => {
   await settle();
-  // The stream of a server that was cut off stays open.
+  // The stream of a disconnected server stays open.
   server.session.epoch = 2n;
   await clock.advance(2000);
   expect(states.at(-1)).toMatchObject({ kind: "lost", reason: "The session has moved." });

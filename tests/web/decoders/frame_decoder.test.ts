@@ -91,9 +91,9 @@ test("AFrameOfShapesThatHaveNotComeIsRefused", () => {
   expect(() => new FrameDecoder([sheet]).decode(frame)).toThrow("basis_epoch: the shapes of 2 have not come");
 });
 
-/** CODEC_PREDICTED of two triangles, all vertices a metre above rest: the first one's remainder, and no other. */
+/** CODEC_PREDICTED of two triangles, all vertices 1 m above rest: only the residual of the first vertex is not zero. */
 function allUp(): Uint8Array {
-  const pairs = [0, 0, 0, 2, 0]; // of 18 numbers: the 13th is 1
+  const pairs = [0, 0, 0, 2, 0]; // of 18 numbers the 13th is 1
   const frame = [0x28, 0xb5, 0x2f, 0xfd, 0x20, pairs.length, (pairs.length << 3) | 1, 0, 0, ...pairs];
   const head = new DataView(new ArrayBuffer(16));
   head.setFloat64(0, 1, true);

@@ -6,7 +6,7 @@ import type { RestShape } from "../../../web/src/decoders/rest_shape";
 let seed = 1;
 const random = () => (seed = (seed * 16807) % 2147483647) / 2147483647;
 
-/** A crumpled grid of so many vertices a side. */
+/** An irregular grid with this number of vertices per side. */
 function grid(side: number): RestShape {
   const rest = Float32Array.from({ length: 3 * side * side }, (_, i) => {
     const [column, row] = [Math.floor(i / 3) % side, Math.floor(i / 3 / side)];
@@ -19,7 +19,7 @@ function grid(side: number): RestShape {
   return { rest, neighbours, basisShapes: [] };
 }
 
-/** What proto/README.md says, word for word, in numbers of any size. */
+/** The definition in proto/README.md, in integers of arbitrary size. */
 function asDefined(shape: RestShape, residuals: Int32Array): Int32Array {
   const { first, neighbours, weights } = neighbourWeights(shape);
   const values = residuals.slice();

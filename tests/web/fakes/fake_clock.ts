@@ -1,10 +1,10 @@
 import type { Clock } from "../../../web/src/timing/clock";
 
-/** A clock that stands still until a test moves it. */
+/** A clock that only advances when a test calls `advance`. */
 export class FakeClock implements Clock {
   private time = 0;
   private sleepers: { until: number; wake: () => void }[] = [];
-  /** Every time somebody asked to sleep [ms]. */
+  /** Durations of all calls of `sleep` [ms]. */
   readonly sleeps: number[] = [];
 
   now(): number {
@@ -20,7 +20,7 @@ export class FakeClock implements Clock {
     });
   }
 
-  /** Moves on by `milliseconds` and lets everything that was due happen. */
+  /** Advances the time and runs everything that is due. */
   async advance(milliseconds: number): Promise<void> {
     await settle();
     this.time += milliseconds;
@@ -31,7 +31,7 @@ export class FakeClock implements Clock {
   }
 }
 
-/** Lets promises and streams that need no time run until they wait. */
+/** Lets pending promises and streams run until they wait for time or input. */
 export async function settle(): Promise<void> {
   for (let i = 0; i < 20; i++) await new Promise((resolve) => setImmediate(resolve));
 }

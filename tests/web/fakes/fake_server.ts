@@ -46,7 +46,7 @@ export function triangleBody(fields: MessageInitShape<typeof GetGeometryResponse
   });
 }
 
-/** A server of one session in this very process. Tests break it, mend it and look at what it was asked. */
+/** An in-process server with one session. Tests control its answers and read the requests that it received. */
 export class FakeServer {
   session = create(SessionSchema, {
     id: "thorax",
@@ -58,34 +58,36 @@ export class FakeServer {
   sceneHash = "abc";
   down = false;
   geometryCalls = 0;
-  /** The frames that watchers said had come. */
+  /** Sequence numbers of acknowledged frames. */
   readonly acknowledged: bigint[] = [];
   readonly updates: object[] = [];
   readonly pulls: Pull[] = [];
-  /** What sessions were made from, the steps that were asked for (from which tick, how many), and what was deleted. */
+  /** Requests to create sessions, steps (expected tick, number of ticks) and deleted sessions. */
   readonly created: CreateSessionRequest[] = [];
   readonly stepRequests: [bigint | undefined, bigint][] = [];
   readonly deleted: string[] = [];
-  /** What was played, and in step with what; paused; stepped, by how many ticks. */
+  /**
+   * Played sessions with the session they are synchronised with; paused sessions; stepped sessions with their ticks.
+   */
   readonly played: [string, string][] = [];
   readonly paused: string[] = [];
   readonly stepped: [string, bigint][] = [];
-  /** Where sessions stand once they are paused. */
+  /** State that a pause returns, by session. */
   readonly pausedSessions = new Map<string, typeof this.session>();
-  /** How near to the truth frames were asked to be [mm], by each watch. */
+  /** Requested error bound of each watch [mm]. */
   readonly errorBounds: (number | undefined)[] = [];
   readonly codecs: Codec[] = [];
-  /** What it would have frames put together from, and the epochs that viewers said they had. */
+  /** The current basis, and the basis epochs that viewers reported. */
   basis = create(GetBasisResponseSchema, {});
   readonly reportedBasisEpochs: bigint[] = [];
-  /** What was asked of the forces. */
+  /** Requests for forces. */
   readonly forceRequests: object[] = [];
-  /** Of which moment [s] forces are told, and how large those of a kind are. */
+  /** Time [s] and force magnitudes [N] of the answers to force requests. */
   forceResponse = { time: 0, sizes: [0.5, 0.25] };
   readonly comparisons: CompareRequest[] = [];
-  /** What a comparison brings, one after the other; one that is a promise is waited for. */
+  /** Events that a comparison sends in this order; promises are awaited. */
   comparisonEvents: (ComparisonEvent | Promise<ComparisonEvent>)[] = [];
-  /** Of the scene. */
+  /** Presets of the scene. */
   presets: MessageInitShape<typeof PresetSchema>[] = [];
   private emitters = new Set<(event: Event | "end") => void>();
 
@@ -143,7 +145,7 @@ export class FakeServer {
     for (const emit of this.emitters) emit(event);
   }
 
-  /** As a server that is killed: streams end, and nothing is answered until `down` is false again. */
+  /** Behaves like a killed server: streams end and calls fail until `down` is false again. */
   kill(): void {
     this.down = true;
     for (const emit of this.emitters) emit("end");

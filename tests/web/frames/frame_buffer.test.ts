@@ -14,7 +14,7 @@ test("AgeIsTakenByTheServersClockFromTheQuickestAnswer", () => {
   expect(frames.rate(0).age).toBeUndefined();
   frames.receive(create(FrameSchema, { unixNanos: nanos(50_000), maxErrorMm: 0.2 }), 1040);
   expect(frames.rate(1040).age).toBeUndefined();
-  // The server's clock is 49 s ahead: 51,000 there is 2000 here, and the slow answer that says otherwise does not count.
+  // The server's clock is 49 s ahead: 51,000 ms there is 2,000 ms here. The slow answer with another offset is ignored.
   frames.acknowledged(answer(51_000), 1995, 2005);
   frames.acknowledged(answer(53_000), 2000, 2900);
   expect(frames.rate(1040)).toEqual({ framesPerSecond: 1, age: 40, delay: 0, errorBound: 0.2 });
@@ -26,7 +26,7 @@ test("FramesOlderThanASecondDoNotCount", () => {
   expect(frames.rate(1300).framesPerSecond).toBe(2);
 });
 
-/** A frame of one vertex at x = time, made at this moment of the server's [ms]. */
+/** A frame with one vertex at x = time, created at this time of the server [ms]. */
 function frameAt(made: number, time: number) {
   const positions = new Uint8Array(new Float32Array([time, 0, 0]).buffer);
   return create(FrameSchema, { unixNanos: nanos(made), time, positions, codec: Codec.RAW, bodies: [0] });
@@ -49,7 +49,7 @@ test("ThePictureStandsBetweenTwoFramesAndTheNewestIsKnownNonetheless", () => {
   expect(frames.displayed!.arrays.positions[0]).toBeCloseTo(1.5, 6);
   expect(frames.arrays!.positions[0]).toBe(2);
   expect(frames.rate(1060).delay).toBe(40);
-  // Nothing more comes: it ends at the newest frame, and is not drawn again.
+  // No more frames arrive: the display ends at the newest frame and is not drawn again.
   frames.advance(1100, false);
   expect(frames.displayed!.arrays).toBe(frames.arrays);
   expect(frames.advance(1200, false)).toBe(false);
@@ -79,7 +79,7 @@ test("BackToTheStartIsShownAtOnce", () => {
   expect(frames.displayed!.time).toBe(0);
 });
 
-/** Two in step: of the first, frames up to 1.4 s have come, of the second up to 1.1 s, all just before 1400 ms. */
+/** Two synchronised buffers: the first has frames up to 1.4 s, the second up to 1.1 s, all received before 1400 ms. */
 function pair(): [FrameBuffer, FrameBuffer] {
   const [ahead, behind] = [watched(), watched()];
   ahead.synchroniseWith(behind);
@@ -105,7 +105,7 @@ test("APictureThatNothingComesToIsNotWaitedFor", () => {
   const [ahead, behind] = pair();
   ahead.receive(frameAt(52_000, 1.5), 3200);
   expect(ahead.liveFrame(3200)?.time).toBeCloseTo(1.5, 9);
-  // Nor does the picture go back to it when frames come again.
+  // The display does not go back when frames arrive again.
   ahead.advance(3200, true);
   behind.receive(frameAt(52_200, 1.2), 3201);
   ahead.advance(3201, true);

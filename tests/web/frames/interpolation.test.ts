@@ -5,7 +5,7 @@ const frame = (places: number[], pose: number[]) => ({
   positions: new Float32Array(places),
   poses: new Float32Array(pose),
 });
-/** Turned about z by so many degrees. */
+/** A rotation about z by this angle [degrees]. */
 const turned = (degrees: number, sign = 1) => {
   const half = (degrees * Math.PI) / 360;
   return [0, 0, sign * Math.sin(half), sign * Math.cos(half), degrees, 0, 0];

@@ -1,7 +1,7 @@
 import { expect, test } from "vitest";
 import { maxHold, PlayoutBuffer } from "../../../web/src/frames/playout";
 
-/** A server whose clock is so far ahead of one's own [ms]. */
+/** Offset of the server's clock [ms]. */
 const ahead = 49_000;
 
 interface Arrival {
@@ -9,12 +9,12 @@ interface Arrival {
   arrived: number;
 }
 
-/** Frames `gap` apart, each so late as `late` says; what was made at t is worth t. */
+/** Frames at intervals of `gap` [ms], each delayed by `late` [ms]. The content of a frame is its creation time. */
 function arrivals(count: number, gap: number, late: (i: number) => number): Arrival[] {
   return Array.from({ length: count }, (_, i) => ({ made: ahead + i * gap, arrived: i * gap + late(i) }));
 }
 
-/** Plays them at `beat` [ms] and tells what was seen: when, which moment, and the newest that had come by then. */
+/** Plays the frames at display intervals of `beat` [ms] and returns what is displayed at each time. */
 function play(frames: Arrival[], beat = 1000 / 60) {
   const playout = new PlayoutBuffer<number>();
   const seen: { now: number; moment: number; newest: number; delay: number }[] = [];

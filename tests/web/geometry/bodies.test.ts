@@ -42,7 +42,7 @@ describe("a vertex in a frame", () => {
   test("OfARigidBodyIsItsRestTurnedAndMoved", () => {
     const body = decodeBody(triangleBody({ placement: Placement.RIGID, pose: 1 }));
     const half = Math.SQRT1_2;
-    // A quarter turn about +z, then 10 m along +x: (1, 0, 0) goes to (10, 1, 0).
+    // A quarter turn about +z, then 10 m along +x: (1, 0, 0) maps to (10, 1, 0).
     const poses = bytesOf(new Float32Array([0, 0, 0, 1, 0, 0, 0, 0, 0, half, half, 10, 0, 0]));
     const [x, y, z] = vertexAt(body, frame({ poses }), 1);
     expect([x, y, z].map((value) => Math.round(1e6 * value) / 1e6)).toEqual([10, 1, 0]);

@@ -47,7 +47,7 @@ test("TheyDoNotDependOnHowTheStretchedSurfaceIsTurned", () => {
 });
 
 test("AShearStretchesOneWayAndShortensTheOther", () => {
-  // The stretches of a simple shear g are g/2 + sqrt(1 + g^2/4) and its inverse.
+  // The principal stretches of a simple shear g are g/2 + sqrt(1 + g^2/4) and its inverse.
   const stretch = 0.25 + Math.sqrt(1 + 0.0625);
   expectAll(
     moved((x, y, z) => [x + 0.5 * y, y, z]),

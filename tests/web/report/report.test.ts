@@ -15,7 +15,7 @@ const captions = () => [...page.querySelectorAll("figcaption")].map((each) => ea
 const all = (selector: string) => [...page.querySelectorAll(selector)];
 const advice = () => all(".advice p").map((each) => each.textContent ?? "");
 const done = { id: "x", scene: "cube", state: "STUDY_STATE_DONE" };
-/** The study with other rows in place of those of its table. */
+/** Returns the study with another table. */
 const withTable = (study: typeof errorStudy, kind: string, table: object) => ({
   ...study,
   result: { ...study.result, [kind]: table },

@@ -1,4 +1,4 @@
-// Studies as the server puts them into their page: proto3 JSON, made up but of realistic size.
+// Studies in the format in which the server embeds them into their page (proto3 JSON), invented but of realistic size.
 
 const parameters = {
   timeStep: 0.00079,
@@ -156,7 +156,7 @@ export const stabilityStudy = study("stability", {
   ],
 });
 
-// Variant, links, CPU time of a step [us], steps/s in the thesis, cost against a scene that never had the part.
+// Variant, links, CPU time per step [us], steps/s in the thesis, cost relative to a scene that never had the part.
 const variants: [string, number, number, number?, number?][] = [
   ["full", 2310, 812, 410],
   ["without rigid links", 0, 497, undefined, 1.004],
@@ -200,7 +200,7 @@ function growthRow(what: string, vertices: number, each: number) {
   return { what, vertices: String(vertices), cpuUsPerStep, nsPerVertexStep: (1e3 * cpuUsPerStep) / vertices };
 }
 
-// Bytes a frame within 0.01, 0.1 and 1 mm.
+// Bytes per frame for error bounds of 0.01, 0.1 and 1 mm.
 const codecs: [string, number[]][] = [
   ["planes", [170_300, 117_700, 93_900]],
   ["predicted", [32_600, 12_900, 5400]],
@@ -226,7 +226,7 @@ export const streamingStudy = study("streaming", {
   advice: "Within 0.1 mm a frame takes 118 kB by planes (28.3 Mbit/s) at 30 frames a second.",
 });
 
-/** A page as the server makes it (server/service/study_page.cc). */
+/** Returns the page as the server generates it (server/service/study_page.cc). */
 export function pageOf(page: string, study: object): string {
   const json = JSON.stringify(study).replaceAll("<", "\\u003c");
   return page.replace("__PHRENIC_STUDY__", () => json);

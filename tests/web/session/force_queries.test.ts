@@ -66,7 +66,7 @@ test("WhatWasToldOfAMomentIsShownToWhoLooksBackAtIt", async () => {
   expect(shown()).toBeUndefined();
   forces.replayAt(1, { ...wanted, kind: "springs" });
   expect(shown()).toBeUndefined();
-  // What comes meanwhile is of the present.
+  // An answer that arrives during replay belongs to the live state and is not shown.
   forces.replayAt(1, wanted);
   await tell(3, 0.75);
   expect(shown()).toBe(0.25);

@@ -30,7 +30,7 @@ test("TheFirstChangeGoesAtOnce", async () => {
 
 test("ADragBecomesFewCallsAndItsLastValueArrives", async () => {
   const { sent, clock, queue } = sender();
-  // One second of dragging at 100 moves a second.
+  // A drag of one second with 100 events per second.
   for (let i = 1; i <= 100; i++) {
     queue.push({ force: i });
     await clock.advance(10);

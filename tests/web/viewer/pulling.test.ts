@@ -12,7 +12,7 @@ const camera = new THREE.PerspectiveCamera(30, 1);
 camera.position.set(0, 0, 5);
 camera.updateMatrixWorld();
 
-/** A triangle about the z axis at this height; the camera looks down on it. */
+/** A triangle around the z axis at this height; the camera looks down on it. */
 const triangle = (z: number) => ({ positions: [-0.5, -0.5, z, 0.5, -0.5, z, 0, 0.5, z], triangles: [0, 1, 2] });
 const pointAt = (x: number, y: number, z: number) => {
   const { x: right, y: up } = new THREE.Vector3(x, y, z).project(camera);

@@ -122,7 +122,7 @@ test("TheCubeShowsTheSideThatIsSeen", () => {
   const turn = new THREE.Matrix4().fromArray(numbers(cube.element.firstElementChild!));
   for (const side of cube.element.querySelectorAll("button")) {
     const face = new THREE.Matrix4().fromArray(numbers(side)).premultiply(turn);
-    // On a page x runs to the right, y down and z out of it.
+    // On a page, x points right, y down and z out of it.
     const out = new THREE.Vector3(0, 0, 1).transformDirection(face);
     expect(out.z > 0.9, side.textContent!).toBe(side.textContent === "A");
     if (side.textContent === "A") expect(new THREE.Vector3(0, 1, 0).transformDirection(face).y).toBeCloseTo(1, 3);
@@ -130,7 +130,7 @@ test("TheCubeShowsTheSideThatIsSeen", () => {
 });
 
 describe("sharpness", () => {
-  /** Beats every `interval` ms for `time` ms, all of them drawing. */
+  /** Records frames every `interval` ms for `time` ms. */
   const run = (resolution: AdaptiveResolution, start: number, interval: number, time: number, drawing = true) => {
     for (let now = start; now < start + time; now += interval) resolution.recordFrame(now, drawing);
     return start + time;

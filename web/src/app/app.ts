@@ -53,20 +53,20 @@ import { SecondView } from "./second_view";
 import { shortcuts } from "./shortcuts";
 import { testHook } from "./test_hook";
 
-/** How often words and numbers follow the picture, and how often graphs do [ms]. */
+/** Update intervals of texts and numbers, and of graphs [ms]. */
 const statusInterval = 200;
 const graphInterval = 100;
 
-/** What the page is about, as its address names it. */
+/** What the page shows, from its address. */
 export interface PageTarget {
   sessionId: string;
-  /** A second session in a picture beside the first. */
+  /** Id of a session that is shown in a second view beside the first. */
   secondSessionId: string | undefined;
-  /** Opens the page anew with this query. */
+  /** Reloads the page with this query string. */
   open(query: string): void;
 }
 
-/** One session on one page: ties the connection, the picture and the panels together. */
+/** One session on one page: connects the connection, the viewer and the panels. */
 export class App {
   private readonly frames = new FrameBuffer();
   private readonly layerStyles = new LayerStyles();
@@ -93,9 +93,9 @@ export class App {
   private readonly uploads: Uploads;
   private readonly comparisonCard: ComparisonCard;
   private readonly bodies = new Signal<Body[]>([]);
-  /** Where the dock began when that was looked at last [CSS pixels]. */
+  /** Last known top of the dock [CSS pixels]. */
   private dockTop = 0;
-  /** Names of the bodies that have mass and move by forces. */
+  /** Names of the bodies that have mass and are moved by forces. */
   private deformable: ReadonlySet<string> = new Set();
 
   constructor(
@@ -135,7 +135,7 @@ export class App {
     this.layerStyles.all.subscribe((styles) => {
       for (const { layer, opacity, visible } of styles) this.viewer.setLayerOpacity(layer, visible ? opacity : 0);
     });
-    // Who plays on has looked back enough.
+    // Playing ends the replay.
     let playing = true;
     this.controller.session.subscribe((session) => {
       const [before, now] = [playing, session?.state === SessionState.PLAYING];
@@ -269,7 +269,7 @@ export class App {
     elementById("session-place").append(sessionButton(controller, () => void this.chooser.show()));
   }
 
-  /** What the connection brings. */
+  /** Distributes what the connection receives. */
   private connectionListener(): ConnectionListener {
     return {
       state: (link) => this.connectionState.set(link),
@@ -300,7 +300,7 @@ export class App {
     elementById("loading").hidden = true;
   }
 
-  /** What the simulation is about: of the deformable bodies the one with the most triangles. */
+  /** Returns the deformable body with the most triangles. */
   private mainBody(bodies: Body[]): string {
     const moving = bodies.filter(({ name, triangles }) => this.deformable.has(name) && triangles.length > 0);
     return moving.sort((a, b) => b.triangles.length - a.triangles.length)[0]?.name ?? "";
@@ -342,7 +342,7 @@ export class App {
     this.readout.show(status);
     this.probes.show(status.frame);
     this.timeline.show();
-    // Words that take another line make the dock higher.
+    // Texts that need another line change the height of the dock.
     if (elementById("dock").offsetTop !== this.dockTop) this.resize();
     this.dockTop = elementById("dock").offsetTop;
     this.secondView?.updateStatus(status.frame, now);

@@ -1,15 +1,15 @@
 import { elementById } from "../dom/elements";
 
-/** Where there is room for them, graphs and controls are open at first. */
+/** Window sizes at which graphs and controls are open initially. */
 const roomForControls = "(min-width: 761px) and (min-height: 480px)";
 const roomForGraphs = "(min-width: 1100px) and (min-height: 560px)";
 const roomForGraphsBesideTwo = "(min-width: 1600px) and (min-height: 560px)";
-/** Else one takes the place of the other. */
+/** On smaller windows only one of the two is open at a time. */
 const roomForBoth = "(min-width: 761px)";
 
 /**
- * The controls and the graphs fold away by their buttons; the result folds each. `folded` hears of it. Two pictures need
- * more room than one.
+ * Opens and closes the controls and the graphs by their buttons. Returns functions that toggle each; calls `onChange`
+ * after each change. Two views need more room than one.
  */
 export function drawers(onChange: () => void, two: boolean): { graphs(): void; panel(): void } {
   const alone = document.body.classList.contains("embedded");

@@ -1,6 +1,6 @@
 import { make } from "../dom/elements";
 
-/** Lets a file be dropped anywhere on the page, and says so while one is held over it. */
+/** Accepts files that are dropped anywhere on the page, and shows a hint while a file is dragged over it. */
 export function dropZone(page: HTMLElement, take: (file: File) => void): HTMLElement {
   const words = make("div", { className: "drop-zone", hidden: true }, make("p", {}, "Drop it to compare with it"));
   words.setAttribute("aria-hidden", "true");
@@ -10,7 +10,7 @@ export function dropZone(page: HTMLElement, take: (file: File) => void): HTMLEle
     words.hidden = false;
   });
   page.addEventListener("dragleave", (event) => {
-    // Into an element of the page it is no leaving.
+    // The pointer moved to another element of the page.
     if (event.relatedTarget === null) words.hidden = true;
   });
   page.addEventListener("drop", (event) => {
@@ -23,7 +23,7 @@ export function dropZone(page: HTMLElement, take: (file: File) => void): HTMLEle
   return words;
 }
 
-/** Text and links that are dragged are none of ours. */
+/** True if the event drags files and not text or links. */
 function holdsFiles(event: DragEvent): boolean {
   return event.dataTransfer?.types.includes("Files") ?? false;
 }

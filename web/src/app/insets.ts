@@ -1,7 +1,10 @@
 import { elementById } from "../dom/elements";
 import type { Insets } from "../viewer/camera_rig";
 
-/** How much of the picture lies under view buttons, heads, dock and cards [CSS pixels]; the style sheet hears of it too. */
+/**
+ * Returns the parts of the stage that view buttons, headers, dock and cards cover [CSS pixels], and passes them to the
+ * style sheet as custom properties.
+ */
 export function stageInsets(): Insets {
   const stage = elementById("stage");
   const width = elementById("view").clientWidth;
@@ -9,7 +12,7 @@ export function stageInsets(): Insets {
   const { offsetLeft, offsetWidth, offsetHeight } = elementById("cards");
   const right = offsetHeight > 0 ? offsetLeft + offsetWidth : 0;
   const heads = document.getElementById("pane-heads")?.offsetHeight ?? 0;
-  // Where a card takes most of a narrow picture, or would push aside both of two, the scene stays behind it.
+  // A card that takes most of a narrow stage, or that lies over two views, does not shift the scene.
   const left = heads === 0 && right < 0.6 * width ? right : 0;
   stage.style.setProperty("--covered", `${bottom}px`);
   stage.style.setProperty("--covered-left", `${left}px`);

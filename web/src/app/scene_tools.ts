@@ -21,17 +21,17 @@ import type { Cut } from "../viewer/clipping";
 import type { OverlayKind } from "../viewer/overlays";
 import type { Viewer } from "../viewer/viewer";
 
-/** What a viewer does with the picture for itself: colours, ghost, names, axes, and vertices that are picked. */
+/** The viewer's local tools: colours, ghost, labels, orientation cube, clipping, and picked and tracked vertices. */
 export class SceneTools {
   readonly trackedVertices = new TrackedVertices(() => this.bodies);
   readonly panel: HTMLElement;
-  /** Cards over the picture. */
+  /** Cards over the stage. */
   readonly cards: HTMLElement[];
   readonly cube: OrientationCube;
   readonly annotations: Annotations;
   readonly forceLabel = make("output", { id: "force", hidden: true });
   readonly coloring: Coloring;
-  /** What is shown of every picture, also of one beside. */
+  /** Settings that a second view shares. */
   readonly overlays = new Signal<ReadonlySet<OverlayKind>>(new Set());
   readonly labels = new Signal(false);
   readonly cut = new Signal<Cut>({ kind: "none", fraction: 0.5, flipped: false });
@@ -42,7 +42,7 @@ export class SceneTools {
   private deformable: Body[] = [];
   private liveDistance: LiveDistance | undefined;
   private time = 0;
-  /** The earlier moment that is shown [s]. */
+  /** The replayed time [s]; undefined when live. */
   private replayTime: number | undefined;
 
   constructor(
@@ -96,7 +96,7 @@ export class SceneTools {
     this.trackedVertices.tracked.subscribe(() => this.updateMarkers());
   }
 
-  /** Another scene, which the viewer shows already. */
+  /** Starts another scene, which the viewer shows already. `diagram` is true for scenes of few vertices. */
   start(bodies: Body[], deformable: ReadonlySet<string>, diagram: boolean): void {
     this.bodies = bodies;
     this.deformable = bodies.filter(({ name }) => deformable.has(name));
@@ -105,7 +105,7 @@ export class SceneTools {
     this.trackedVertices.clear();
     if (this.ghost.value === "now") this.ghost.set("none");
     this.ghosts.start(this.deformable);
-    // Which edges are rigid is what a diagram is about.
+    // A diagram shows which of its edges are rigid.
     if (diagram && bodies.some(({ rigidLinks }) => rigidLinks.length > 0))
       this.overlays.set(new Set([...this.overlays.value, "links"]));
   }
@@ -114,7 +114,7 @@ export class SceneTools {
     this.ghosts.receive(frame);
   }
 
-  /** A picture of the moment `time` [s] is about to be drawn from `arrays`. */
+  /** Updates colours, tracks and markers before a frame of this time [s] is drawn. */
   beforeDraw(time: number, arrays: FrameArrays): void {
     this.time = time;
     this.updateFields();
@@ -123,7 +123,7 @@ export class SceneTools {
     this.updateMarkers();
   }
 
-  /** The colours follow the moment that is shown. */
+  /** Passes the displayed frame to the coloring. */
   private updateFields(): void {
     const arrays = this.arrays();
     if (arrays !== undefined) this.coloring.receive(this.time, arrays);
@@ -134,12 +134,12 @@ export class SceneTools {
     this.annotations.draw();
   }
 
-  /** Has the server tell the forces of the state that was seen last, where they are shown. */
+  /** Queries the forces that are shown. `seen` identifies the state that the viewer received last. */
   queryForces(seen: string): void {
     void this.forces.query(this.forceRequest(), seen);
   }
 
-  /** An earlier moment is shown [s], or the present: with the forces that were told of it. */
+  /** Shows the forces of an earlier time [s], or live ones if `time` is undefined. */
   replayAt(time: number | undefined): void {
     this.replayTime = time;
     this.replayForces();
@@ -161,7 +161,7 @@ export class SceneTools {
     this.coloring.message.set(unknown ? "Not known of this moment: forces are kept while they are shown." : "");
   }
 
-  /** Words, and the colours of a comparison, follow the picture a few times a second. */
+  /** Updates the readings and the colours of a comparison; called a few times per second. */
   updateReadings(): void {
     const arrays = this.arrays();
     this.pickCard.show(arrays);
@@ -169,7 +169,7 @@ export class SceneTools {
       this.updateColors();
   }
 
-  /** How hard the pointer pulls [N], beside it. */
+  /** Shows the pulling force [N] beside the pointer; hides it if undefined. */
   showForce(newtons: number | undefined, x: number, y: number): void {
     this.forceLabel.hidden = newtons === undefined;
     if (newtons === undefined) return;
@@ -177,7 +177,7 @@ export class SceneTools {
     this.forceLabel.style.transform = `translate(${x + 14}px, ${y + 14}px)`;
   }
 
-  /** A comparison's colours come before those of a field. */
+  /** Colours of a comparison take precedence over those of a field. */
   private updateColors(): void {
     const comparison = this.comparisons.result.value;
     if (comparison === undefined) return this.viewer.setVertexColors(this.coloring.colors());

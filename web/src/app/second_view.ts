@@ -19,11 +19,11 @@ import { Annotations } from "../viewer/annotations";
 import { Viewer, type ViewerHost } from "../viewer/viewer";
 import type { SceneTools } from "./scene_tools";
 
-/** Two that play and are this far apart or more [s] are brought together, after so many looks. */
+/** Two playing sessions that differ by more than this [s] for this many checks are synchronised again. */
 const maxTimeDifference = 0.2;
 const checksBeforeResync = 10;
 
-/** What the picture beside shares with the first. */
+/** What the second view shares with the primary one. */
 export interface PrimaryView {
   viewer: Viewer;
   frames: FrameBuffer;
@@ -32,13 +32,13 @@ export interface PrimaryView {
   controller: SessionController;
   presets: Signal<Preset[]>;
   host: Pick<ViewerHost, "insets" | "reducedMotion">;
-  /** Whether this viewer may play and pause it. */
+  /** True if this viewer may play and pause the session. */
   mayChange(): boolean;
 }
 
 /**
- * A second session in a picture of its own, with the first one's camera and looks: layers, colours and their scale, cut,
- * ghost and names. It plays and pauses with the first, in step.
+ * A view of a second session that shares camera, layers, colours and their scale, clipping, ghost and labels with the
+ * primary view. It plays and pauses in step with the primary session.
  */
 export class SecondView {
   readonly element: HTMLElement;
@@ -78,7 +78,7 @@ export class SecondView {
     void this.connection.run();
   }
 
-  /** The first picture's camera has moved. */
+  /** Copies the camera of the primary view. */
   followCamera(): void {
     if (!this.leadsCamera) this.viewer.rig.copyFrom(this.primary.viewer.rig);
   }
@@ -87,20 +87,20 @@ export class SecondView {
     this.viewer.resize();
   }
 
-  /** What both show at `now` [ms]. */
+  /** Updates the headers; `now` is in ms. */
   updateStatus(first: Frame | undefined, now: number): void {
     this.headers.update([first, this.frames.replayedFrame ?? this.frames.liveFrame(now)]);
     const [here, there] = [this.primary.frames, this.frames].map(({ frame }) => frame?.time ?? 0);
     this.resynchronise(Math.abs(here - there));
   }
 
-  /** Shows an earlier moment as the first does, or the present. */
+  /** Shows an earlier time [s] like the primary view, or live frames if undefined. */
   replayAt(time: number | undefined): void {
     this.frames.replayAt(time);
     this.forces.replayAt(time, this.forceRequest());
   }
 
-  /** Has the server tell the forces that this picture is coloured by. */
+  /** Queries the forces that this view is coloured by. */
   queryForces(): void {
     const seen = `${this.frames.frame?.tick} ${this.controller.session.value?.revision}`;
     void this.forces.query(this.forceRequest(), seen);
@@ -111,14 +111,14 @@ export class SecondView {
     return { vertex: undefined, kind, bodies: kind === undefined ? [] : this.colorizer.bodyNames };
   }
 
-  /** The camera is that of the picture that a person turned last. */
+  /** The view that the user turned last determines the camera. */
   private trackCameraLeader(canvas: HTMLCanvasElement): void {
     const lead = (event: Event) => (this.leadsCamera = event.target === canvas);
     for (const kind of ["pointerdown", "wheel", "keydown"])
       document.addEventListener(kind, lead, { capture: true, passive: true });
   }
 
-  /** Shows what the first picture shows, and how. */
+  /** Applies the settings of the primary view whenever they change. */
   private followAppearance(): void {
     const { layerStyles, tools } = this.primary;
     const { coloring } = tools;
@@ -199,7 +199,7 @@ export class SecondView {
     this.viewer.setVertexColors(this.colorizer.colors(field.value, scale.value));
   }
 
-  /** Where others played them one by one, or the server began anew, two that play are not in step. */
+  /** Synchronises the sessions again if others played them separately or the server restarted. */
   private resynchronise(apart: number): void {
     const { controller, mayChange } = this.primary;
     const playing = [controller, this.controller].every(({ session }) => session.value?.state === SessionState.PLAYING);

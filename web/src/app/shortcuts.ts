@@ -1,6 +1,6 @@
 import { make } from "../dom/elements";
 
-/** A key, what it does in words, and the doing. */
+/** A key, its description, and its action. */
 export interface Shortcut {
   key: string;
   description: string;
@@ -16,7 +16,7 @@ const pointerGestures: [key: string, words: string][] = [
   ["Ctrl Z, Ctrl Shift Z", "Take a change back, do it again"],
 ];
 
-/** Keys that act anywhere but in a control or a dialog, and a dialog that lists them. */
+/** Handles keys outside of inputs and dialogs. Returns the dialog that lists them. */
 export function shortcuts(all: Shortcut[], undo: () => void, redo: () => void): HTMLDialogElement {
   const dialog = make("dialog", { className: "chooser", id: "help", ariaLabel: "Keys and gestures" });
   const close = make("button", { type: "button", onclick: () => dialog.close() }, "Close");
@@ -34,7 +34,7 @@ export function shortcuts(all: Shortcut[], undo: () => void, redo: () => void): 
   document.addEventListener("keydown", (event) => {
     if ((event.target as Element | null)?.closest("dialog, input, select, textarea") || event.altKey) return;
     if (event.ctrlKey || event.metaKey) return onUndoKey(event, undo, redo);
-    // A button keeps what presses it.
+    // A focused button is pressed by the space bar.
     if (event.key === " " && (event.target as Element | null)?.closest("button, summary, a")) return;
     const shortcut = keys.find(({ key }) => key === event.key);
     if (shortcut === undefined) return;

@@ -2,21 +2,21 @@ import type { FrameBuffer } from "../frames/frame_buffer";
 import { type Body, vertexAt } from "../geometry/bodies";
 import type { Viewer } from "../viewer/viewer";
 
-/** What end-to-end tests read from the page as `window.phrenic`: numbers that pixels cannot give. Nothing acts on it. */
+/** Read-only values that end-to-end tests read from `window.phrenic`, since pixels do not show them. */
 export interface TestHook {
-  /** Tick and simulated time [s] of the newest frame; -1 before there is one. */
+  /** Tick and simulated time [s] of the newest frame; -1 before the first one. */
   tick(): number;
   time(): number;
-  /** Pictures drawn since the page was opened. */
+  /** Number of drawings since the page was opened. */
   drawCount(): number;
-  /** When the first picture with a frame was drawn, since the page was asked for [ms]; -1 before. */
+  /** Time of the first drawing that shows a frame, since navigation start [ms]; -1 before. */
   firstDrawTime(): number;
-  /** Names of the bodies, and a body's number of vertices. */
+  /** Names of the bodies, and the number of vertices of a body. Throws RangeError for an unknown body. */
   bodies(): string[];
   vertices(body: string): number;
-  /** Where a vertex is in the newest frame [m]. */
+  /** Position of a vertex in the newest frame [m]. */
   vertex(body: string, index: number): [number, number, number];
-  /** Where the camera is [m]. */
+  /** Camera position [m]. */
   eye(): [number, number, number];
 }
 

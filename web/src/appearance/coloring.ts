@@ -5,15 +5,15 @@ import { ColorScale, niceTop } from "./color_scale";
 import { fieldInfo, type FieldKind, forceKindOf } from "./fields";
 import { VertexColorizer } from "./vertex_colorizer";
 
-/** Colours the moving tissue by a field of it, on a scale that stays as it is until somebody changes it. */
+/** Colours deformable bodies by a field. The scale stays fixed until it is fitted or set. */
 export class Coloring {
-  /** What is coloured by; nothing where bodies have their own colours. */
+  /** The field; undefined if bodies have their own colours. */
   readonly field = new Signal<FieldKind | undefined>(undefined);
   readonly scale = new Signal<ColorScale | undefined>(undefined);
-  /** Why there are no colours, where there are none. */
+  /** Explains why there are no colours; otherwise empty. */
   readonly message = new Signal("");
   private readonly colorizer: VertexColorizer;
-  /** The scale is to be fitted once there are values. */
+  /** True until the scale has been fitted to values, which arrive later for forces. */
   private needsFit = false;
 
   constructor(forces: ForceQueries) {
@@ -23,12 +23,12 @@ export class Coloring {
     });
   }
 
-  /** Names of the bodies that are coloured. */
+  /** Names of the coloured bodies. */
   get bodyNames(): string[] {
     return this.colorizer.bodyNames;
   }
 
-  /** Another scene: its deformable bodies. */
+  /** Starts another scene with these deformable bodies. */
   start(bodies: Body[]): void {
     this.colorizer.start(bodies);
   }
@@ -43,7 +43,7 @@ export class Coloring {
     this.needsFit = forceKindOf(kind) !== undefined;
   }
 
-  /** A scale that ends at the largest value there is now, but for one vertex in a hundred. */
+  /** Ends the scale at the 99th percentile of the current values. */
   fit(): void {
     const info = fieldInfo(this.field.value);
     if (info === undefined) return this.scale.set(undefined);
@@ -56,7 +56,7 @@ export class Coloring {
     if (info !== undefined && top > 0) this.scale.set(new ColorScale(top, info.unit, info.diverging));
   }
 
-  /** Colours of the vertices of each body that is coloured, sRGB. */
+  /** Returns the vertex colours of each coloured body as sRGB bytes. */
   colors(): Map<string, Uint8Array> {
     return this.colorizer.colors(this.field.value, this.scale.value);
   }

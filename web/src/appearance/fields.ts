@@ -3,7 +3,10 @@ import { areaChanges, displacements, speeds } from "../geometry/deformation";
 import { principalStrains } from "../geometry/strain";
 import { forceKindLabel } from "../session/force_queries";
 
-/** What a body's surface can be coloured by: what its shape tells, or a kind of force that the server tells. */
+/**
+ * A field that a surface can be coloured by: computed from its shape, or the magnitude of one kind of force from the
+ * server.
+ */
 export type FieldKind = ShapeKind | `force:${string}`;
 export type ShapeKind = "displacement" | "speed" | "area" | "largest" | "smallest";
 
@@ -12,9 +15,9 @@ export interface FieldInfo {
   label: string;
   unit: string;
   help: string;
-  /** Both signs mean something: more or less than at rest. */
+  /** True if the field is signed: more or less than at rest. */
   diverging: boolean;
-  /** The least end of a scale, in the unit. */
+  /** Smallest end of the scale, in `unit`. */
   smallestTop: number;
 }
 
@@ -61,12 +64,12 @@ export const fields: FieldInfo[] = [
   },
 ];
 
-/** Whether neighbours' distances count in a field, so that an error of 0.1 mm would show. */
+/** True if the field depends on distances between neighbours, where a position error of 0.1 mm would be visible. */
 export function needsExactPositions(kind: FieldKind | undefined): boolean {
   return kind === "area" || kind === "largest" || kind === "smallest";
 }
 
-/** The kind of force that a field is, if it is one. */
+/** Returns the kind of force of a force field; undefined for other fields. */
 export function forceKindOf(kind: FieldKind | undefined): string | undefined {
   return kind?.startsWith("force:") ? kind.slice("force:".length) : undefined;
 }
@@ -78,12 +81,12 @@ export function fieldInfo(kind: FieldKind | undefined): FieldInfo | undefined {
   return { kind, label, unit: "N", help: "How large it is on each vertex", diverging: false, smallestTop: 1e-4 };
 }
 
-/** The fields of bodies as they move; of speed it remembers the moment before. */
+/** Computes fields of the displayed frame; speed uses the frame displayed before. */
 export class SurfaceFields {
   private last: { time: number; arrays: FrameArrays } | undefined;
   private before: { time: number; arrays: FrameArrays } | undefined;
 
-  /** Takes note of a moment [s]. */
+  /** Sets the displayed frame at `time` [s]. */
   receive(time: number, arrays: FrameArrays): void {
     if (this.last?.arrays === arrays) return;
     this.before = this.last !== undefined && this.last.time < time ? this.last : undefined;

@@ -4,10 +4,10 @@ import type { Body, FrameArrays } from "../geometry/bodies";
 import type { Signal } from "../state/signal";
 import type { Viewer } from "../viewer/viewer";
 
-/** What else is shown, as it was at another moment. */
+/** The state that is drawn as a translucent ghost beside the current one. */
 export type GhostKind = "none" | "rest" | "expiration" | "now";
 
-/** The ghost of one picture, of the kind that somebody chose. */
+/** Shows the ghost of one view, of the selected kind. */
 export class GhostSelector {
   private readonly endExpiration = new EndExpirationDetector();
   private deformable: Body[] = [];
@@ -20,7 +20,7 @@ export class GhostSelector {
     kind.subscribe(() => this.show());
   }
 
-  /** Another scene: its deformable bodies. What was is of another matter. */
+  /** Starts another scene with these deformable bodies; keeps only a ghost at rest. */
   start(moving: Body[]): void {
     this.deformable = moving;
     this.show(this.kind.value === "rest");

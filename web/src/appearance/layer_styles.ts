@@ -2,7 +2,7 @@ import type { CompileReport } from "../gen/phrenic/v1/report_pb";
 import type { Body } from "../geometry/bodies";
 import { Signal } from "../state/signal";
 
-/** How a layer is shown in this viewer; nobody else sees it. */
+/** How this viewer shows a layer; not shared with other viewers. */
 export interface LayerStyle {
   layer: string;
   title: string;
@@ -11,10 +11,10 @@ export interface LayerStyle {
   visible: boolean;
 }
 
-/** The looks of all layers, in the scene's order. */
+/** The styles of all layers in the order of the scene. */
 export class LayerStyles {
   readonly all = new Signal<LayerStyle[]>([]);
-  /** The layer that the simulation is about: the one with the most simulated vertices. */
+  /** The layer with the most simulated vertices. */
   mainLayer = "";
 
   start(bodies: Body[], report: CompileReport): void {

@@ -3,12 +3,12 @@ import { type Body, type FrameArrays, positionsOf } from "../geometry/bodies";
 import type { Comparison } from "../session/comparisons";
 import { NearestSurface } from "../viewer/nearest_surface";
 
-/** At most one part in so many of the time goes into distances. */
+/** Pause after a computation, relative to its duration, so that distances take at most a sixth of the time. */
 const timeFactor = 5;
 
-/** How far a body is from the surface that it was compared with, at the moment that is shown. */
+/** The distance of a body from the surface that it was compared with, for the displayed frame. */
 export class LiveDistance {
-  /** [mm] a vertex; NaN for one of no triangle. */
+  /** Distance of each vertex [mm]; NaN for a vertex without a triangle. */
   values: ArrayLike<number>;
   private readonly surface: NearestSurface | undefined;
   private shown: FrameArrays | undefined;
@@ -19,7 +19,7 @@ export class LiveDistance {
     if (comparison.surface !== undefined) this.surface = new NearestSurface(comparison.surface);
   }
 
-  /** Whether the values are others by `arrays`, which are shown at `now` [ms]; a slow machine is asked less often. */
+  /** Computes the distances for `arrays` unless it is too early on a slow machine. Returns true if `values` changed. */
   update(bodies: Body[], arrays: FrameArrays, now: () => number): boolean {
     const { body: name, distances } = this.comparison;
     const body = bodies.find((each) => each.name === name);

@@ -8,13 +8,13 @@ import { TimeSeries } from "../state/time_series";
 const maxTracked = 6;
 const pickedColor = "#ffffff";
 
-/** Where a vertex is, and how far from its rest [m]. */
+/** Position of a vertex and displacement from rest [m]. */
 export interface VertexState {
   position: [number, number, number];
   displacement: [number, number, number];
 }
 
-/** The vertex that was picked last, and those that this viewer follows: probes of its own. */
+/** The picked vertex, and the vertices that this viewer tracks and plots. */
 export class TrackedVertices {
   readonly picked = new Signal<VertexRef | undefined>(undefined);
   readonly tracked = new Signal<VertexRef[]>([]);
@@ -36,18 +36,18 @@ export class TrackedVertices {
     this.change(this.tracked.value.filter((each) => vertexLabel(each) !== vertexLabel(ref)));
   }
 
-  /** Another scene. */
+  /** Forgets all vertices, for another scene. */
   clear(): void {
     this.picked.set(undefined);
     this.change([]);
   }
 
-  /** The place of a vertex among those that are followed; -1 where it is not. */
+  /** Returns the index among the tracked vertices; -1 if the vertex is not tracked. */
   indexOf(ref: VertexRef): number {
     return this.tracked.value.findIndex((each) => vertexLabel(each) === vertexLabel(ref));
   }
 
-  /** Takes note of where they are at `time` [s]. */
+  /** Records the displacements at `time` [s]. */
   receive(time: number, arrays: FrameArrays): void {
     if (this.tracked.value.length === 0) return;
     this.history.add(

@@ -4,19 +4,19 @@ import type { ForceQueries } from "../session/force_queries";
 import type { ColorScale } from "./color_scale";
 import { type FieldKind, forceKindOf, type ShapeKind, SurfaceFields } from "./fields";
 
-/** The colours of one picture's moving tissue, by the field and on the scale that somebody chose. */
+/** Computes the vertex colours of the deformable bodies of one view. */
 export class VertexColorizer {
   private readonly fields = new SurfaceFields();
   private bodies: Body[] = [];
 
   constructor(private readonly forces: ForceQueries) {}
 
-  /** Names of the bodies that are coloured. */
+  /** Names of the coloured bodies. */
   get bodyNames(): string[] {
     return this.bodies.map(({ name }) => name);
   }
 
-  /** Another scene: its deformable bodies. */
+  /** Starts another scene with these deformable bodies. */
   start(bodies: Body[]): void {
     this.bodies = bodies.filter(({ placement, triangles }) => placement === Placement.STREAMED && triangles.length > 0);
     this.fields.clear();
@@ -26,12 +26,12 @@ export class VertexColorizer {
     this.fields.receive(time, arrays);
   }
 
-  /** Of each body the largest size there is now, but for one vertex in a hundred. */
+  /** Returns the 99th percentile of the magnitudes of each body, in the unit of the field. */
   upperBounds(kind: FieldKind): number[] {
     return this.bodies.map((body) => percentile99(this.values(kind, body)));
   }
 
-  /** Colours of the vertices of each body that is coloured, sRGB; none where nothing is chosen. */
+  /** Returns the vertex colours of each coloured body as sRGB bytes; empty without a field. */
   colors(kind: FieldKind | undefined, scale: ColorScale | undefined): Map<string, Uint8Array> {
     const result = new Map<string, Uint8Array>();
     if (kind === undefined || scale === undefined) return result;

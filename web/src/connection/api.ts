@@ -8,7 +8,7 @@ import { SceneService, SessionService } from "../gen/phrenic/v1/session_pb";
 import { StudyService } from "../gen/phrenic/v1/study_pb";
 import { UploadService } from "../gen/phrenic/v1/upload_pb";
 
-/** The server's services over one transport: gRPC-web in the page, a router in tests. */
+/** Clients of the server's services over one transport: gRPC-web in the page, a router in tests. */
 export interface Api {
   access: Client<typeof AccessService>;
   scenes: Client<typeof SceneService>;
@@ -35,12 +35,12 @@ export function createApi(transport: Transport): Api {
   };
 }
 
-/** Whether a call failed on its way, before any server could answer: browsers then raise a TypeError. */
+/** True if a call failed before a server could answer; browsers then throw a TypeError. */
 export function isUnreachable(error: unknown): boolean {
   return error instanceof ConnectError && error.cause instanceof TypeError;
 }
 
-/** An error in the server's own words, without the status code before them. */
+/** Returns the message of an error without its status code. */
 export function errorText(error: unknown): string {
   if (isUnreachable(error)) return "the server cannot be reached";
   return ConnectError.from(error).rawMessage || "the server gave no reason";

@@ -1,6 +1,6 @@
 import type { GetBasisResponse } from "../gen/phrenic/v1/frames_pb";
 
-/** Fetches the shapes that frames are put together from, beside the frames, when there are newer ones. */
+/** Fetches the basis of CODEC_BASIS whenever the server has a newer one. */
 export class BasisFetcher {
   private knownEpoch = 0n;
   private fetching = false;
@@ -10,12 +10,12 @@ export class BasisFetcher {
     private readonly onBasis: (basis: GetBasisResponse) => void,
   ) {}
 
-  /** Of the basis that this viewer has; 0 where it has none. */
+  /** Epoch of the received basis; 0 without one. */
   get epoch(): bigint {
     return this.knownEpoch;
   }
 
-  /** The server has a basis of that epoch. */
+  /** Fetches the basis if this epoch is newer than the known one. */
   offered(epoch: bigint): void {
     if (epoch > this.knownEpoch && !this.fetching) void this.fetch();
   }

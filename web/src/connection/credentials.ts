@@ -3,7 +3,7 @@ import type { KeyValueStorage } from "./identity";
 
 const maxLinks = 8;
 
-/** What this browser may show a server that knows its users: an account's token, and the secrets of join links. */
+/** Credentials that this browser stores for servers with accounts: an account token and the secrets of join links. */
 export class Credentials {
   constructor(private readonly storage: KeyValueStorage) {}
 
@@ -15,7 +15,7 @@ export class Credentials {
     this.storage.setItem("phrenic-account", token);
   }
 
-  /** The newest ones. */
+  /** Secrets of the most recent join links. */
   get joinLinks(): string[] {
     return (this.storage.getItem("phrenic-links") ?? "").split(",").filter((secret) => secret !== "");
   }
@@ -26,13 +26,13 @@ export class Credentials {
   }
 }
 
-/** Keeps the secret of a join link, "#join=SECRET": what follows # is sent to no server. */
+/** Stores the secret of a join link, "#join=SECRET". Browsers do not send the fragment to a server. */
 export function storeJoinLink(address: URL, access: Credentials): void {
   const secret = new URLSearchParams(address.hash.slice(1)).get("join") ?? "";
   if (/^[0-9a-f]{32}$/.test(secret)) access.addJoinLink(secret);
 }
 
-/** Says with every call who calls. */
+/** Adds the credentials to the header of each call. */
 export function credentialsInterceptor(access: Credentials): Interceptor {
   return (next) => (request) => {
     if (access.token !== "") request.header.set("authorization", `Bearer ${access.token}`);

@@ -1,18 +1,18 @@
 import type { AckFramesResponse } from "../gen/phrenic/v1/frames_pb";
 import type { Clock } from "../timing/clock";
 
-/** How long to wait after an acknowledgement that failed [ms]: without one no more frames come. */
+/** Delay after a failed acknowledgement [ms]; without acknowledgements the server sends no more frames. */
 const retryDelay = 500;
 
 /**
- * Tells the server which frames have come, the newest alone and one call at a time: what a slow machine or line leaves
- * waiting is not sent on top, so that what is shown is never old. One call for half of the frames that may be on their
- * way is enough to keep them coming.
+ * Acknowledges received frames to the server: only the newest one, one call at a time. The server sends no more than a
+ * few unacknowledged frames, so that frames do not queue up on a slow machine or line. One call for half of this number
+ * keeps the stream going.
  */
 export class FrameAcknowledger {
   private newestSequence = 0n;
   private unacknowledged = 0; // since the last call
-  private batchSize = 1; // for a call
+  private batchSize = 1; // frames per call
   private running = false;
 
   constructor(
@@ -43,7 +43,7 @@ export class FrameAcknowledger {
       this.batchSize = Math.max(1, Math.floor(response.maxUnackedFrames / 2));
       this.onAnswer(response, sent, this.clock.now());
     } catch {
-      await this.clock.sleep(retryDelay, this.signal); // a line that is lost is noticed by who watches
+      await this.clock.sleep(retryDelay, this.signal); // the connection detects a lost server
     }
   }
 }

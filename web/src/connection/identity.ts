@@ -1,9 +1,9 @@
 import type { Interceptor } from "@connectrpc/connect";
 
-/** What a browser remembers under a key; the page's localStorage, or a map in tests. */
+/** A persistent key-value store: localStorage in the page, a map in tests. */
 export type KeyValueStorage = Pick<Storage, "getItem" | "setItem">;
 
-/** This person's name, and the tokens by which each session knows them; remembered by the browser, shown to nobody. */
+/** The user's name and the control token for each session, stored in the browser. */
 export class Identity {
   constructor(private readonly storage: KeyValueStorage) {}
 
@@ -15,7 +15,7 @@ export class Identity {
     this.storage.setItem("phrenic-name", name);
   }
 
-  /** Whether the picture follows whoever controls. */
+  /** True if the camera follows that of the participant in control. */
   get followsCamera(): boolean {
     return this.storage.getItem("phrenic-follow") === "on";
   }
@@ -45,7 +45,7 @@ export class Identity {
 
 const maxTokens = 200;
 
-/** The fields of requests and answers that are about who calls. */
+/** Fields of requests and responses that identify the caller. */
 interface IdentityFields {
   sessionId?: string;
   controlToken?: string;
@@ -53,7 +53,7 @@ interface IdentityFields {
   session?: { id: string };
 }
 
-/** Signs every call that asks for it with this person's token or name, and keeps the tokens that are answered. */
+/** Fills in the control token or name of requests that have such a field, and stores the tokens in responses. */
 export function identityInterceptor(identity: Identity): Interceptor {
   return (next) => async (request) => {
     const asked = request.message as IdentityFields;

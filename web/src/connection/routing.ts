@@ -1,6 +1,6 @@
 import type { Interceptor } from "@connectrpc/connect";
 
-/** The session that a request is about; empty where there is none. */
+/** Returns the session id of a request; empty if it has none. */
 function sessionOf(message: unknown): string {
   const { sessionId } = message as { sessionId?: unknown };
   return typeof sessionId === "string" ? sessionId : "";
@@ -10,7 +10,9 @@ async function* withFirst<T>(first: IteratorResult<T>, rest: AsyncIterator<T>): 
   for (let item = first; !item.done; item = await rest.next()) yield item.value;
 }
 
-/** Names the session in the head of every call that is about one: by it a cluster's front chooses the server. */
+/**
+ * Adds the session id to the header of each call about a session, by which the router of a cluster selects the server.
+ */
 export function routingInterceptor(): Interceptor {
   return (next) => async (request) => {
     if (!request.stream) {

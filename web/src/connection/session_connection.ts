@@ -10,40 +10,43 @@ import { type Api, errorText } from "./api";
 import { BasisFetcher } from "./basis_fetcher";
 import { FrameAcknowledger } from "./frame_acknowledger";
 
-/** The state of the connection, as people see it. */
+/**
+ * The state of the connection that the page shows. `retryAt` is in ms since 1970; `missing` means that the session does
+ * not exist.
+ */
 export type ConnectionState =
   { kind: "connecting" } | { kind: "live" } | { kind: "lost"; reason: string; missing: boolean; retryAt: number };
 
-/** Who wants to know what comes from the server. */
+/** Receives what the connection reads from the server. */
 export interface ConnectionListener {
   state(link: ConnectionState): void;
-  /** Another scene than before: what stands in it, and what the compile step made of it. */
+  /** Called for a new scene with its bodies and the report of its compilation. */
   scene(bodies: Body[], report: CompileReport): void;
-  /** `fresh` is the first word of a connection: a restarted server counts revisions from the start again. */
+  /** `fresh` is true for the first state of a connection: a restarted server counts revisions from the start. */
   session(session: Session, fresh: boolean): void;
   frame(frame: Frame): void;
-  /** Shapes that later frames are put together from. */
+  /** Called for a new basis, which later frames refer to. */
   basis(basis: GetBasisResponse): void;
-  /** Where the one who controls looks from. */
+  /** Called with the camera of the participant in control. */
   camera?(camera: Camera): void;
-  /** What the server said to an acknowledgement, which was sent and answered at these times [ms]. */
+  /** Called with the response to an acknowledgement and the times of request and response [ms]. */
   acknowledged(response: AckFramesResponse, sent: number, answered: number): void;
 }
 
-/** Time to wait for an answer to a question [ms], and between two questions whether the server is still there. */
+/** Timeout of calls, and interval of the calls that check that the server is alive [ms]. */
 const callTimeout = 8000;
 const pollInterval = 2000;
-/** Frames on their way at most; the server lets fewer go where they come late. */
+/** Maximum number of unacknowledged frames; the server uses fewer on slow lines. */
 const maxUnackedFrames = 6;
-/** How far a vertex may be from its own where its neighbours' distances count, some millimetres [mm]. */
+/** Error bound of positions for fields that depend on distances between neighbours [mm]. */
 const exactErrorMm = 0.01;
 
-/** A name under which no other page watches. */
+/** Returns an id that no other page uses. */
 const newWatchId = () => `page-${Math.random().toString(36).slice(2)}`;
 
 /**
- * Follows one session for as long as the page lives: fetches the scene, watches its frames, and when the connection
- * breaks or goes silent says so, waits, and comes back by itself.
+ * Follows one session while the page is open: fetches the scene, watches frames, and reconnects with backoff after an
+ * error or when the server stops answering.
  */
 export class SessionConnection {
   private readonly stopped = new AbortController();
@@ -81,14 +84,14 @@ export class SessionConnection {
     this.retryWait.abort();
   }
 
-  /** Asks for frames that are near enough to tell strain from, or for those that a thin line takes. */
+  /** Requests frames that are exact enough for strains, or frames for the available bandwidth. */
   setExact(exact: boolean): void {
     if (exact === this.exact) return;
     this.exact = exact;
     this.watchRestart.abort();
   }
 
-  /** Asks for frames in this form. */
+  /** Requests frames in this encoding. */
   setCodec(codec: Codec): void {
     if (codec === this.codec) return;
     this.codec = codec;
@@ -103,7 +106,7 @@ export class SessionConnection {
     await this.clock.sleep(wait, this.retryWait.signal);
   }
 
-  /** One connection, from the first question to the error that ends it. */
+  /** Runs one connection until an error ends it. */
   private async connectOnce(): Promise<never> {
     const attempt = new AbortController();
     const signal = AbortSignal.any([attempt.signal, this.stopped.signal]);
@@ -178,7 +181,7 @@ export class SessionConnection {
     throw new ConnectError("The server closed the connection.", Code.Unavailable);
   }
 
-  /** A paused session sends no frames, so that only an answer tells a quiet server from one that is gone. */
+  /** A paused session sends no frames, so polling tells a quiet server from a dead one. */
   private async pollSession(attempt: AbortController, signal: AbortSignal): Promise<void> {
     for (;;) {
       await this.clock.sleep(pollInterval, signal);
@@ -186,7 +189,7 @@ export class SessionConnection {
       try {
         const { session } = await this.getSession(signal);
         if (session === undefined) continue;
-        // Where another server has it, what still streams is of one that was cut off.
+        // After a failover, the open stream belongs to the previous server.
         if (session.epoch !== this.epoch) throw new ConnectError("The session has moved.", Code.Unavailable);
         this.listener.session(session, false);
       } catch (error) {

@@ -7,13 +7,16 @@ const headerBytes = 16;
 const noResiduals = 0;
 const predictedResiduals = 2;
 
-/** A sum of shapes, and what is left of each vertex that it leaves outside the bound (proto/README.md). */
+/**
+ * Decodes CODEC_BASIS: a linear combination of basis shapes plus residuals of the vertices outside of the error bound
+ * (proto/README.md).
+ */
 export function basisDecoder(shape: RestShape): PositionDecoder {
   const { rest, basisShapes } = shape;
   const { order, addPredictions } = neighbourPredictor(shape);
   const interleaved = interleave(basisShapes);
   const coefficients = new Float64Array(basisShapes.length);
-  const sum = new Float64Array(rest.length); // both are kept, as they are written anew each time
+  const sum = new Float64Array(rest.length); // both buffers are reused; every frame overwrites them
   const residuals = new Int32Array(rest.length);
   return (bytes) => {
     const header = headerView(bytes, headerBytes + 4 * basisShapes.length);
@@ -41,7 +44,7 @@ export function basisDecoder(shape: RestShape): PositionDecoder {
   };
 }
 
-/** The numbers of all shapes for a coordinate, one after the other, so that one pass takes them all. */
+/** Interleaves the shapes by coordinate, so that one pass over memory adds all of them. */
 function interleave(shapes: Float32Array[]): Float32Array {
   const result = new Float32Array(shapes.length * (shapes[0]?.length ?? 0));
   shapes.forEach((shape, k) => shape.forEach((value, i) => (result[i * shapes.length + k] = value)));
@@ -62,13 +65,13 @@ function addShapes(rest: Float32Array, coefficients: Float64Array, interleaved: 
 }
 
 function checkFinite(positions: Float32Array<ArrayBuffer>): Float32Array<ArrayBuffer> {
-  let all = 0; // stays 0 unless a number is infinite or none
+  let all = 0; // stays 0 unless a number is infinite or NaN
   for (let i = 0; i < positions.length; i++) all += 0 * positions[i];
   if (all !== 0) throw new RangeError("positions: a number is not finite.");
   return positions;
 }
 
-/** The shapes of a basis, as displacements from rest, from their encodings by CODEC_PREDICTED. */
+/** Decodes the shapes of a basis, encoded as CODEC_PREDICTED, into displacements from rest [m]. */
 export function decodeShapes(rest: Float32Array, predicted: PositionDecoder, encoded: Uint8Array[]): Float32Array[] {
   return encoded.map((bytes) => predicted(bytes).map((x, i) => x - rest[i]));
 }

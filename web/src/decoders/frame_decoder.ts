@@ -6,24 +6,24 @@ import { makeDecoder } from "./decoder_table";
 import type { PositionDecoder } from "./position_decoder";
 import { restShapeOf } from "./rest_shape";
 
-/** Bases that are kept: frames of the one before may still be on their way. */
+/** Number of bases that are kept, since frames of the previous one may still arrive. */
 const maxBases = 2;
 
-/** Shapes of all streamed bodies [m]. */
+/** Displacement shapes of all streamed bodies [m]. */
 interface Basis {
   epoch: bigint;
   shapes: Float32Array[];
 }
 
-/** Turns the frames of one scene into arrays. */
+/** Decodes the frames of one scene into arrays. */
 export class FrameDecoder {
   private readonly decoders = new Map<string, PositionDecoder>();
   private bases: Basis[] = [];
 
-  /** `bodies` by their `body_index`. */
+  /** `bodies` are indexed by their `body_index`. */
   constructor(private readonly bodies: Body[]) {}
 
-  /** Frames that are put together from these shapes can be decoded from now on. */
+  /** Adds a basis that later frames refer to. */
   addBasis({ epoch, shapes }: GetBasisResponse): void {
     const { rest, ...shape } = restShapeOf(this.streamed());
     const predicted = makeDecoder(Codec.PREDICTED, { rest, ...shape });
@@ -31,7 +31,9 @@ export class FrameDecoder {
     this.decoders.clear();
   }
 
-  /** RangeError where the frame does not fit the scene. Bodies that are not in it stay at rest. */
+  /**
+   * Decodes a frame; bodies that it does not contain stay at rest. Throws RangeError if it does not match the scene.
+   */
   decode(frame: Frame): FrameArrays {
     const present = frame.bodies.map((index) => this.bodies[index]);
     if (present.includes(undefined as never)) throw new RangeError(`bodies: there are only ${this.bodies.length}.`);
@@ -52,7 +54,7 @@ export class FrameDecoder {
     return decoder;
   }
 
-  /** The part of each shape that is these bodies'. */
+  /** Returns the parts of the basis shapes that belong to these bodies. */
   private shapesOf(present: Body[], epoch: bigint): Float32Array[] {
     const basis = this.bases.find((each) => each.epoch === epoch);
     if (basis === undefined) throw new RangeError(`basis_epoch: the shapes of ${epoch} have not come.`);
@@ -68,7 +70,7 @@ export class FrameDecoder {
     return this.bodies.filter((body) => body.placement === Placement.STREAMED);
   }
 
-  /** Each body's part to where its `firstVertex` is among all streamed ones. */
+  /** Copies the positions of each body to its `firstVertex` among all streamed bodies. */
   private scatter(positions: Float32Array<ArrayBuffer>, present: Body[]): Float32Array<ArrayBuffer> {
     const streamed = this.streamed();
     if (present.length === streamed.length) return positions;

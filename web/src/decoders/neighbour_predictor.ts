@@ -7,11 +7,11 @@ const headerBytes = 8;
 const maxVarintBytes = 5;
 const unitBits = Math.log2(weightUnit);
 
-/** Foretells whole numbers at vertices from their neighbours'. */
+/** Predicts integers at vertices from the values of their neighbours. */
 export interface NeighbourPredictor {
-  /** The vertex at each place. */
+  /** The vertex at each position of the prediction order. */
   order: Int32Array;
-  /** From remainders to the numbers, in place: three a place. */
+  /** Replaces residuals by values in place: three per vertex, in prediction order. */
   addPredictions(values: Int32Array): void;
 }
 
@@ -26,7 +26,7 @@ export function neighbourPredictor(shape: RestShape): NeighbourPredictor {
   return { order, addPredictions };
 }
 
-/** Numbers up to this size are foretold from in 32 bits, wherever they stand. */
+/** Returns the largest magnitude for which predictions cannot overflow 32 bits. */
 function largestExact(first: Int32Array, weights: Int32Array): number {
   let most = 1;
   for (let place = 0; place + 1 < first.length; place++) {
@@ -38,8 +38,8 @@ function largestExact(first: Int32Array, weights: Int32Array): number {
 }
 
 /**
- * In whole numbers of 32 bits, which is where the time goes: so in plain variables. Ends after the first place with a
- * number above `most`, and tells the one after it.
+ * Predicts in 32-bit integers with local variables, since most of the decoding time is spent here. Stops after the
+ * first vertex with a value above `most`, and returns the next position in the order.
  */
 function addIn32Bits(values: Int32Array, first: Int32Array, others: Int32Array, weights: Int32Array, most: number) {
   for (let place = 0, own = 0; place + 1 < first.length; place++, own += 3) {
@@ -65,7 +65,7 @@ function addIn32Bits(values: Int32Array, first: Int32Array, others: Int32Array, 
   return first.length - 1;
 }
 
-/** The same from place `start` on, for numbers of any size: below 2^53, so that doubles are exact. */
+/** Continues from position `start` for values of any size: sums stay below 2^53, so that doubles are exact. */
 function addInDoubles(
   values: Int32Array,
   first: Int32Array,
@@ -82,7 +82,7 @@ function addInDoubles(
   }
 }
 
-/** Remainders to `remainders`, three a place; RangeError where the bytes are no such remainders (proto/README.md). */
+/** Decodes residuals, three per vertex. Throws RangeError if the bytes are not valid residuals (proto/README.md). */
 export function readResiduals(bytes: Uint8Array, residuals: Int32Array): void {
   if (bytes.length < headerBytes) throw new RangeError("positions: the lengths are cut off.");
   const head = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
@@ -95,14 +95,14 @@ export function readResiduals(bytes: Uint8Array, residuals: Int32Array): void {
   unpackResiduals(bits, decompressExactly(bytes.subarray(end), size), residuals);
 }
 
-/** All x first, from two bits each and what follows of those that are `escape`. */
+/** Unpacks all x, then y, then z: two bits each, and a varint for values of `escapeCode`. */
 function unpackResiduals(bits: Uint8Array, overflow: Uint8Array, residuals: Int32Array): void {
   const count = residuals.length;
   let at = 0;
   residuals.fill(0);
   for (let i = 0, to = 0; i < count; i += 4) {
     const four = bits[i >> 2];
-    // Most are 0, and come in fours.
+    // Most values are 0; four of them share a byte.
     if (four === 0 && to + 12 < count) {
       to += 12;
       continue;

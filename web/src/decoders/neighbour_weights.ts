@@ -1,16 +1,16 @@
 import type { RestShape } from "./rest_shape";
 
 /**
- * An order of the vertices in which each can be foretold from those before it, and the weights to do so: bit for bit
- * those of server/stream/neighbour_weights.h.
+ * An order of the vertices in which each is predicted from previous ones, and the weights of this prediction, bit for
+ * bit equal to server/stream/neighbour_weights.h.
  */
 export interface NeighbourWeights {
-  /** The vertex at each place. */
+  /** The vertex at each position of the order. */
   order: Int32Array;
-  /** The range of each place in `places` and `weights`, and one end more. */
+  /** Start of each position's range in `neighbours` and `weights`, and the end of the last one. */
   first: Int32Array;
   neighbours: Int32Array;
-  /** In units of 1/4096; they sum to 4096. */
+  /** Fixed-point weights in units of 1/4096; they sum to 4096. */
   weights: Int32Array;
 }
 
@@ -38,7 +38,7 @@ export function neighbourWeights({ rest, neighbours: neighboursOf }: RestShape):
   return { order, first, neighbours: Int32Array.from(places), weights: Int32Array.from(weights) };
 }
 
-/** From the lowest vertex, neighbours ascending. */
+/** Breadth-first order from the lowest vertex, with ascending neighbours. */
 function breadthFirst(beside: number[][]): Int32Array {
   const order = new Int32Array(beside.length);
   const seen = new Uint8Array(beside.length);
@@ -56,7 +56,7 @@ function breadthFirst(beside: number[][]): Int32Array {
   return order;
 }
 
-/** Neighbours that come before the vertex, then theirs, each once. */
+/** Returns neighbours that precede the vertex, then their neighbours, each once. */
 function chooseNeighbours(beside: number[][], place: Int32Array, vertex: number): number[] {
   const chosen: number[] = [];
   const add = (candidate: number) => {
@@ -69,7 +69,7 @@ function chooseNeighbours(beside: number[][], place: Int32Array, vertex: number)
   return chosen;
 }
 
-/** c of (r I + sum d d^T) c = sum d, by Cramer's rule: the server's operations in the server's order. */
+/** Solves (r I + sum d d^T) c = sum d for c by Cramer's rule, in the order of operations of the server. */
 function fitLinear(offsets: Triple[]): Triple {
   let [xx, xy, xz, yy, yz, zz, x, y, z, furthest] = [0, 0, 0, 0, 0, 0, 0, 0, 0, 0];
   for (const [dx, dy, dz] of offsets) {
@@ -99,7 +99,7 @@ function fitLinear(offsets: Triple[]): Triple {
   ];
 }
 
-/** In units of 1/4096; what rounding leaves goes to the first. */
+/** Returns weights in units of 1/4096; the first weight takes the rounding error. */
 function weightsOf(rest: Float32Array, vertex: number, chosen: number[]): number[] {
   const along = (other: number, axis: number) => rest[3 * other + axis] - rest[3 * vertex + axis];
   const offsets = chosen.map((other): Triple => [along(other, 0), along(other, 1), along(other, 2)]);

@@ -4,7 +4,7 @@ import { checkStep, decompressExactly, headerView } from "./zstd";
 
 const headerBytes = 20;
 
-/** 16 bits a coordinate, low and high bytes apart, compressed (proto/README.md). */
+/** Decodes CODEC_PLANES: 16 bits per coordinate, low and high bytes in separate compressed planes (proto/README.md). */
 export function planesDecoder({ rest }: RestShape): PositionDecoder {
   const count = rest.length;
   return (bytes) => {

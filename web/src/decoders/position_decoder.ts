@@ -1,2 +1,5 @@
-/** Positions, x y z a vertex [m], from a frame's bytes; RangeError where they are no encoding of so many vertices. */
+/**
+ * Decodes the bytes of a frame into positions, x y z per vertex [m]. Throws RangeError if the bytes are not a valid
+ * encoding.
+ */
 export type PositionDecoder = (bytes: Uint8Array) => Float32Array<ArrayBuffer>;

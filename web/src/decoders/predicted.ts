@@ -5,10 +5,10 @@ import { checkStep, headerView } from "./zstd";
 
 const headerBytes = 8;
 
-/** What is left of displacements after they are foretold from their neighbours' (proto/README.md). */
+/** Decodes CODEC_PREDICTED: residuals of displacements that are predicted from neighbours (proto/README.md). */
 export function predictedDecoder(shape: RestShape): PositionDecoder {
   const { order, addPredictions } = neighbourPredictor(shape);
-  const displacements = new Int32Array(shape.rest.length); // three a place; kept, as it is written anew each time
+  const displacements = new Int32Array(shape.rest.length); // three per vertex; the buffer is reused, every frame overwrites it
   return (bytes) => {
     const step = checkStep(headerView(bytes, headerBytes).getFloat64(0, true));
     readResiduals(bytes.subarray(headerBytes), displacements);

@@ -2,7 +2,7 @@ import { floats } from "../geometry/wire_arrays";
 import type { PositionDecoder } from "./position_decoder";
 import type { RestShape } from "./rest_shape";
 
-/** float32 as it is. */
+/** Decodes CODEC_RAW: float32 positions. */
 export function rawDecoder({ rest }: RestShape): PositionDecoder {
   return (bytes) => {
     const positions = floats(bytes, 3, "positions");

@@ -1,16 +1,16 @@
 import type { Body } from "../geometry/bodies";
 
-/** What server and viewer both know of the vertices that travel. */
+/** The mesh data that server and viewer share, which encodings refer to. */
 export interface RestShape {
-  /** x y z a vertex [m]. */
+  /** Rest positions, x y z per vertex [m]. */
   rest: Float32Array;
-  /** The vertices beside each, ascending, without itself. */
+  /** Neighbours of each vertex, ascending. */
   neighbours: number[][];
-  /** Displacements of all vertices, of which CODEC_BASIS puts frames together [m]. */
+  /** Displacement shapes of CODEC_BASIS for all vertices [m]. */
   basisShapes: Float32Array[];
 }
 
-/** Of these bodies, one after the other; edges as the server takes them: the body's own, else its triangles'. */
+/** Concatenates the bodies. Edges are those of the body or, if it has none, of its triangles, as on the server. */
 export function restShapeOf(bodies: Body[], basisShapes: Float32Array[] = []): RestShape {
   const rest = new Float32Array(bodies.reduce((count, body) => count + body.rest.length, 0));
   const sets: Set<number>[] = Array.from({ length: rest.length / 3 }, () => new Set<number>());

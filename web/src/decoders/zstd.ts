@@ -1,6 +1,6 @@
 import { decompress } from "fzstd";
 
-/** The `size` bytes of a Zstandard frame; RangeError where it has others. */
+/** Decompresses a Zstandard frame. Throws RangeError if it does not contain exactly `size` bytes. */
 export function decompressExactly(frame: Uint8Array, size: number): Uint8Array {
   if (size === 0) return new Uint8Array(0);
   let bytes: Uint8Array;
@@ -13,7 +13,7 @@ export function decompressExactly(frame: Uint8Array, size: number): Uint8Array {
   return bytes;
 }
 
-/** A step of the grid on which positions lie [m]: above 0 and not above 1. */
+/** Returns the quantisation step [m]. Throws RangeError unless it is above 0 and at most 1 m. */
 export function checkStep(step: number): number {
   if (!(step > 0 && step <= 1)) throw new RangeError(`positions: the step, ${step} m, is not within 0 to 1 m.`);
   return step;

@@ -1,6 +1,6 @@
 import { make } from "./elements";
 
-/** Hands over a file that the page made. */
+/** Offers a file that the page created as a download. */
 export function download(name: string, content: Blob): void {
   const url = URL.createObjectURL(content);
   make("a", { href: url, download: name }).click();

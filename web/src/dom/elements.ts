@@ -1,4 +1,4 @@
-/** Makes an element with properties (ARIA ones included) and children. */
+/** Creates an element with properties (including ARIA ones) and children. */
 export function make<K extends keyof HTMLElementTagNameMap>(
   tag: K,
   properties: Partial<Omit<HTMLElementTagNameMap[K], "style">> = {},
@@ -10,7 +10,7 @@ export function make<K extends keyof HTMLElementTagNameMap>(
   return element;
 }
 
-/** The element of index.html with this id. */
+/** Returns the element of index.html with this id. Throws Error if there is none. */
 export function elementById(id: string): HTMLElement {
   const element = document.getElementById(id);
   if (element === null) throw new Error(`index.html has no element "${id}".`);

@@ -1,19 +1,19 @@
 import { button, make } from "./elements";
 import { icon } from "./icons";
 
-/** The button beside a control called `label` that takes it back to where it started. */
+/** Returns a button that resets the control with this label. */
 export function resetButton(label: string, onclick: () => void): HTMLButtonElement {
   const reset = button(`Reset ${label.toLowerCase()}`, onclick, icon("undo"));
   reset.className = "quiet";
   return reset;
 }
 
-/** A section of the panel that folds away. */
+/** Returns a collapsible section of the panel. */
 export function section(title: string, open: boolean, ...children: (Node | string)[]): HTMLDetailsElement {
   return make("details", { open, className: "section" }, make("summary", {}, title), ...children);
 }
 
-/** A checkbox that looks like a switch, with its words. */
+/** Returns a labelled checkbox that looks like a switch. */
 export function switchRow(label: string, help: string, onchange: (on: boolean) => void) {
   const input = make("input", { type: "checkbox", className: "switch" });
   input.setAttribute("role", "switch");

@@ -1,9 +1,9 @@
-/** Notices the end of each expiration: where the breath signal stops falling. */
+/** Detects the end of expiration: the minimum of the breath signal. */
 export class EndExpirationDetector {
   private falling = false;
   private last: number | undefined;
 
-  /** True where the signal has just turned upwards. */
+  /** Returns true if the signal has just started to rise. */
   receive(breath: number): boolean {
     const last = this.last;
     this.last = breath;

@@ -6,37 +6,40 @@ import { FrameHistory } from "./frame_history";
 import { interpolate } from "./interpolation";
 import { PlayoutBuffer } from "./playout";
 
-/** How frames arrive. */
+/** Rate, age and accuracy of the received frames. */
 export interface FrameRate {
   framesPerSecond: number;
-  /** How old the newest frame was when it came [ms], by the server's clock; undefined until that is known. */
+  /** Age of the newest frame at arrival by the server's clock [ms]; undefined until the clock offset is known. */
   age: number | undefined;
-  /** How much later than it came it is shown, so that the picture moves evenly [ms]. */
+  /** Delay between arrival and display that smooths the motion [ms]. */
   delay: number;
-  /** How far a vertex may be from its own [mm]. */
+  /** Largest position error of a vertex [mm]. */
   errorBound: number;
 }
 
-/** Measurements of the server's clock that are kept: the quickest of them counts. */
+/** Number of clock offset measurements that are kept; the one with the shortest round trip is used. */
 const maxMeasurements = 30;
 
-/** How far behind a picture may be to be waited for [simulated s], and how long ago its last frame [ms]. */
+/**
+ * A synchronised partner is not waited for if it is further behind than this [simulated s], or if its last frame is
+ * older than this [ms].
+ */
 export const maxWait = 2;
 const maxSilence = 2000;
 
-/** A frame, decoded when somebody draws it. */
+/** A frame that is decoded when it is drawn first. */
 interface BufferedFrame {
   frame: Frame;
   arrays: FrameArrays | undefined;
 }
 
-/** What the picture shows: a frame, or a moment between two [s]. */
+/** What the viewer displays: a frame, or an interpolation between two, at `time` [s]. */
 export interface DisplayedFrame {
   time: number;
   arrays: FrameArrays;
 }
 
-/** The newest frame, the moment that the picture shows, and the rate over the last second. */
+/** Holds the received frames: the newest one, those of the last seconds, and the one that is displayed. */
 export class FrameBuffer {
   private newest: BufferedFrame | undefined;
   private readonly history = new FrameHistory();
@@ -52,13 +55,13 @@ export class FrameBuffer {
   private clock: { offset: number; tripTime: number }[] = [];
   private partner: FrameBuffer | undefined;
 
-  /** Both show one moment from now on: frames of one may come later than those of the other. */
+  /** Both buffers display the same simulated time from now on, although the frames of one may arrive later. */
   synchroniseWith(other: FrameBuffer): void {
     this.partner = other;
     other.partner = this;
   }
 
-  /** Forgets everything: another scene, or another server. */
+  /** Clears everything, for another scene or server. */
   start(bodies: Body[]): void {
     this.newest = this.displayedFrame = this.replayedEntry = undefined;
     this.history.clear();
@@ -72,7 +75,7 @@ export class FrameBuffer {
     const before = this.newest?.frame;
     this.newest = { frame, arrays: undefined };
     this.history.add(frame);
-    // Another run of the session does not go on from the one before.
+    // A restarted run does not continue the previous one.
     if (before !== undefined && frame.time < before.time) this.playout.clear();
     this.playout.receive(this.newest, milliseconds(frame.unixNanos), now);
     this.arrived = now;
@@ -80,12 +83,12 @@ export class FrameBuffer {
     this.dropOldArrivals(now);
   }
 
-  /** Frames that are put together from these shapes may come from now on. */
+  /** Adds a basis that later frames refer to. */
   addBasis(basis: GetBasisResponse): void {
     this.decoder.addBasis(basis);
   }
 
-  /** An acknowledgement, sent and answered at these times [ms], tells the server's clock half way between. */
+  /** Estimates the offset of the server's clock from an acknowledgement and the times of request and response [ms]. */
   acknowledged({ unixNanos }: AckFramesResponse, sent: number, answered: number): void {
     const offset = milliseconds(unixNanos) - (sent + answered) / 2;
     this.clock.push({ offset, tripTime: answered - sent });
@@ -96,7 +99,7 @@ export class FrameBuffer {
     return this.newest?.frame;
   }
 
-  /** The frame of the present that is shown at `now` [ms]: the newest, or what the picture beside has come to. */
+  /** Returns the live frame to display at `now` [ms]: the newest one, or an earlier one if the partner is behind. */
   liveFrame(now: number): Frame | undefined {
     const [newest, there] = [this.frame, this.partner?.recentFrame(now)];
     if (newest === undefined || there === undefined) return newest;
@@ -105,44 +108,44 @@ export class FrameBuffer {
     return this.history.nearest(Math.max(there.time, this.displayedFrame?.time ?? 0));
   }
 
-  /** The newest frame, where some have come of late. */
+  /** Returns the newest frame if frames arrived recently. */
   private recentFrame(now: number): Frame | undefined {
     return now - this.arrived < maxSilence ? this.frame : undefined;
   }
 
-  /** From the oldest frame that can be looked back to, to the newest [s]. */
+  /** Time range of the frames that can be replayed [s]. */
   get span(): { start: number; end: number } {
     return this.history.span;
   }
 
-  /** The earlier frame that the picture shows; nothing where it shows the present. */
+  /** The replayed frame; undefined when live. */
   get replayedFrame(): Frame | undefined {
     return this.history.replayed;
   }
 
-  /** Shows the moment `time` [s] again from now on, or the present. */
+  /** Displays an earlier time [s] from now on, or live frames if undefined. */
   replayAt(time: number | undefined): void {
     this.history.replayAt(time);
   }
 
-  /** The time of the frame before, or after, the one that is shown; nothing where that is the present. */
+  /** Returns the time of the frame before or after the displayed one [s]; undefined if that is the live one. */
   adjacentTime(by: -1 | 1): number | undefined {
     return this.history.adjacentTime(by);
   }
 
-  /** Of the newest frame. */
+  /** Arrays of the newest frame. */
   get arrays(): FrameArrays | undefined {
     return this.newest === undefined ? undefined : this.decode(this.newest);
   }
 
-  /** What `advance` came to last. */
+  /** The result of the last call of `advance`. */
   get displayed(): DisplayedFrame | undefined {
     return this.displayedFrame;
   }
 
   /**
-   * Goes on to the moment that is due at `now` [ms]; whether the picture changes by it. Where a person asked for calm, or
-   * the machine is slow, that is the newest frame.
+   * Advances to the frame that is due at `now` [ms]; returns true if the display changes. Without smoothing, because of
+   * reduced motion or a slow machine, this is the newest frame.
    */
   advance(now: number, reducedMotion: boolean): boolean {
     this.drawRate.recordFrame(now, this.changed);
@@ -165,7 +168,7 @@ export class FrameBuffer {
     return { time, arrays: interpolate(this.decode(before), this.decode(after), part) };
   }
 
-  /** A frame that is looked at again is decoded again. */
+  /** Decodes a replayed frame again and caches it. */
   private replayed(frame: Frame): DisplayedFrame {
     if (this.replayedEntry?.frame !== frame) this.replayedEntry = { frame, arrays: undefined };
     return { time: frame.time, arrays: this.decode(this.replayedEntry) };

@@ -1,13 +1,13 @@
 import type { Frame } from "../gen/phrenic/v1/frames_pb";
 
-/** How long frames are kept [simulated s], and how many at most: some megabytes as they came. */
+/** Duration that frames are kept [simulated s], and their maximum number: some megabytes of encoded frames. */
 const maxDuration = 20;
 const maxFrames = 900;
 
-/** The frames of the last seconds, as they came, and the one that is looked at again. */
+/** The encoded frames of the last seconds, and the one that is replayed. */
 export class FrameHistory {
   private frames: Frame[] = [];
-  /** The time that is looked back to [s]; nothing in the present. */
+  /** The replayed time [s]; undefined when live. */
   private replayTime: number | undefined;
 
   add(frame: Frame): void {
@@ -21,7 +21,7 @@ export class FrameHistory {
     this.replayTime = undefined;
   }
 
-  /** From the oldest frame to the newest [s]. */
+  /** Times of the oldest and the newest frame [s]. */
   get span(): { start: number; end: number } {
     return { start: this.frames[0]?.time ?? 0, end: this.frames.at(-1)?.time ?? 0 };
   }
@@ -30,12 +30,12 @@ export class FrameHistory {
     this.replayTime = time;
   }
 
-  /** The last frame up to the time that is looked back to, or the oldest that is left. */
+  /** The last frame up to the replayed time, or the oldest one; undefined when live. */
   get replayed(): Frame | undefined {
     return this.frames[this.replayIndex()];
   }
 
-  /** The frame nearest to a time [s]. */
+  /** Returns the frame nearest to a time [s]. */
   nearest(time: number): Frame | undefined {
     const away = ({ time: each }: Frame) => Math.abs(each - time);
     const after = this.frames.findIndex((each) => each.time >= time);
@@ -43,7 +43,7 @@ export class FrameHistory {
     return a !== undefined && b !== undefined && after > 0 && away(a) < away(b) ? a : b;
   }
 
-  /** The time of the frame before, or after, the one that is looked at; nothing at the newest. */
+  /** Returns the time of the frame before or after the replayed one [s]; undefined for the newest. */
   adjacentTime(by: -1 | 1): number | undefined {
     const from = this.replayTime === undefined ? this.frames.length - 1 : this.replayIndex();
     const to = Math.max(0, from + by);

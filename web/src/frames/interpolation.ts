@@ -1,6 +1,6 @@
 import { floatsPerPose, type FrameArrays } from "../geometry/bodies";
 
-/** The moment `part` of the way from `a` to `b`: places go straight, rigid bodies turn the shorter way. */
+/** Interpolates between two frames, `part` from 0 to 1: positions linearly, orientations along the shorter arc. */
 export function interpolate(a: FrameArrays, b: FrameArrays, part: number): FrameArrays {
   if (part <= 0 || a === b) return a;
   if (part >= 1) return b;
@@ -15,7 +15,7 @@ function lerp(a: Float32Array, b: Float32Array, part: number): Float32Array<Arra
   return result;
 }
 
-/** The quaternion at `at`: between two frames a body turns so little that the straight way, made unit, is the round one. */
+/** Normalised linear interpolation of the quaternion at `at`; accurate since rotations between two frames are small. */
 function nlerp(a: Float32Array, b: Float32Array, part: number, at: number, out: Float32Array): void {
   let dot = 0;
   for (let k = at; k < at + 4; k++) dot += a[k] * b[k];

@@ -1,43 +1,43 @@
-/** Two frames between which the picture stands, and how far along, 0 to 1. */
+/** Two successive frames and the interpolation parameter between them, 0 to 1. */
 export interface FramePair<T> {
   before: T;
   after: T;
   part: number;
 }
 
-/** The longest that a frame is held back, and the longest gap that is bridged [ms]. */
+/** Longest delay of a frame, and longest gap that is interpolated [ms]. */
 export const maxHold = 150;
-/** How long an arrival counts [ms]. */
+/** Window over which arrivals are observed [ms]. */
 const windowLength = 1000;
-/** How fast the hold may shrink and grow [ms a ms]: the picture goes at 0.5 to 1.1 times the true pace meanwhile. */
+/** Rates at which the delay may shrink and grow [ms/ms]; playback then runs at 0.5 to 1.1 times real speed. */
 const [shrinking, growing] = [0.1, 0.5];
 
 interface BufferedItem<T> {
   item: T;
-  /** By the server's clock [ms]. */
+  /** Creation time by the server's clock [ms]. */
   made: number;
 }
 
 /**
- * Frames come when they come; the picture moves evenly. It shows the moment `hold` ago, by the server's clock: so long
- * that the next frame is there before the picture gets to the last, about one frame and what their delays vary by. It
- * only ever stands between frames that have come, and never goes back.
+ * A playout (jitter) buffer: frames arrive irregularly, the display moves evenly. It displays the time `hold` ago by
+ * the server's clock, which is about one frame interval plus the variation of the delays, so that the next frame has
+ * usually arrived. It only interpolates between received frames and never goes back.
  */
 export class PlayoutBuffer<T> {
   private frames: BufferedItem<T>[] = [];
-  /** Of the last second: what the hold should have been for each frame [ms]; both clocks' difference is part of it. */
+  /** Required delay of each frame in the window [ms]; includes the offset between the clocks. */
   private needs: { arrived: number; need: number }[] = [];
   private newestLag = 0;
   private hold: number | undefined;
   private shown = -Infinity;
   private asked = -Infinity;
 
-  /** `made` by the server's clock and `arrived` by one's own [ms]. */
+  /** Adds a frame with its creation time by the server's clock and its arrival time by the local clock [ms]. */
   receive(item: T, made: number, arrived: number): void {
     const gap = made - (this.frames.at(-1)?.made ?? -Infinity);
     if (gap <= 0 || gap > maxHold) this.clear();
     this.frames.push({ item, made });
-    // A page that nobody looks at asks for nothing; what is older than any hold is never shown.
+    // A hidden page requests no frames; older ones than any delay are never displayed.
     while (this.frames[1]?.made < made - 2 * maxHold) this.frames.shift();
     this.newestLag = arrived - made;
     if (this.frames.length === 1) return;
@@ -45,7 +45,7 @@ export class PlayoutBuffer<T> {
     this.needs = this.needs.filter((each) => each.arrived > arrived - windowLength);
   }
 
-  /** What to show at `now` [ms]; nothing before the first frame. */
+  /** Returns what to display at `now` [ms]; undefined before the first frame. */
   at(now: number): FramePair<T> | undefined {
     const newest = this.frames.at(-1);
     if (newest === undefined) return undefined;
@@ -58,12 +58,12 @@ export class PlayoutBuffer<T> {
     return { before: before.item, after: after.item, part: gap > 0 ? (this.shown - before.made) / gap : 0 };
   }
 
-  /** How much later than it came the newest frame is shown [ms]. */
+  /** Delay between arrival and display of the newest frame [ms]. */
   get delay(): number {
     return this.hold === undefined ? 0 : Math.max(0, this.hold - this.newestLag);
   }
 
-  /** Forgets everything: what comes next is shown at once. */
+  /** Clears everything; the next frame is displayed immediately. */
   clear(): void {
     this.frames = [];
     this.needs = [];

@@ -1,7 +1,7 @@
 import { type GetGeometryResponse, Placement } from "../gen/phrenic/v1/frames_pb";
 import { floats, indices } from "./wire_arrays";
 
-/** An action line as drawn [m]; `direction` is a unit vector. */
+/** An action line [m]; `direction` is a unit vector. */
 export interface ActionLine {
   name: string;
   origin: [number, number, number];
@@ -10,7 +10,7 @@ export interface ActionLine {
   length: number;
 }
 
-/** What never changes of one body. Vertex indices are the body's own. */
+/** The constant data of one body. Vertex indices are relative to the body. */
 export interface Body {
   name: string;
   layer: string;
@@ -20,7 +20,7 @@ export interface Body {
   placement: Placement;
   pose: number;
   firstVertex: number;
-  /** x y z a vertex [m]. */
+  /** Rest positions, x y z per vertex [m]. */
   rest: Float32Array<ArrayBuffer>;
   triangles: Uint32Array<ArrayBuffer>;
   edges: Uint32Array<ArrayBuffer>;
@@ -30,11 +30,11 @@ export interface Body {
   actionLines: ActionLine[];
 }
 
-/** The numbers of a frame that move bodies. */
+/** The arrays of a frame that move bodies. */
 export interface FrameArrays {
-  /** x y z a streamed vertex [m]. */
+  /** x y z per streamed vertex [m]. */
   positions: Float32Array<ArrayBuffer>;
-  /** qx qy qz qw tx ty tz a rigid body [1, m]. */
+  /** qx qy qz qw tx ty tz per rigid body [1, m]. */
   poses: Float32Array<ArrayBuffer>;
 }
 
@@ -74,7 +74,7 @@ function triple(values: number[], what: string): [number, number, number] {
   return [values[0], values[1], values[2]];
 }
 
-/** The part of `frame` that is `body`'s; RangeError where the frame is too short for it. */
+/** Returns the positions of `body` in `frame` [m]. Throws RangeError if the frame is too short. */
 export function positionsOf(body: Body, frame: FrameArrays): Float32Array<ArrayBuffer> {
   const first = 3 * body.firstVertex;
   const part = frame.positions.subarray(first, first + body.rest.length);
@@ -82,7 +82,7 @@ export function positionsOf(body: Body, frame: FrameArrays): Float32Array<ArrayB
   return part;
 }
 
-/** Where vertex `index` of `body` is in `frame` [m]. */
+/** Returns the position of vertex `index` of `body` in `frame` [m]. */
 export function vertexAt(body: Body, frame: FrameArrays, index: number): [number, number, number] {
   const source = body.placement === Placement.STREAMED ? positionsOf(body, frame) : body.rest;
   const point: [number, number, number] = [source[3 * index], source[3 * index + 1], source[3 * index + 2]];

@@ -1,9 +1,9 @@
-/** |x - x_rest| of each vertex [mm]. */
+/** Returns |x - x_rest| of each vertex [mm]. */
 export function displacements(rest: Float32Array, now: Float32Array): Float32Array {
   return distances(rest, now, 1000);
 }
 
-/** Between two moments `seconds` apart [mm/s]; nothing moves where they are one. */
+/** Returns the speed of each vertex between two frames [mm/s]; 0 if `seconds` is 0. */
 export function speeds(before: Float32Array, now: Float32Array, seconds: number): Float32Array {
   return distances(before, now, seconds > 0 ? 1000 / seconds : 0);
 }
@@ -19,7 +19,7 @@ function distances(from: Float32Array, to: Float32Array, factor: number): Float3
   return result;
 }
 
-/** Area of the triangles around each vertex over that at rest, less one [%]; NaN where there is none. */
+/** Returns the relative area change of the triangles around each vertex [%]; NaN for a vertex without a triangle. */
 export function areaChanges(rest: Float32Array, now: Float32Array, triangles: Uint32Array): Float32Array {
   const before = areas(rest, triangles);
   return areas(now, triangles).map((area, i) => (before[i] > 0 ? 100 * (area / before[i] - 1) : NaN));

@@ -1,4 +1,4 @@
-/** Each edge of the triangles once, as pairs of vertex indices, the smaller first. */
+/** Returns each edge of the triangles once, as pairs of vertex indices with the smaller one first. */
 export function edgesOf(triangles: Uint32Array, vertexCount: number): Uint32Array<ArrayBuffer> {
   const keys = new Float64Array(triangles.length);
   for (let i = 0; i < triangles.length; i++) {

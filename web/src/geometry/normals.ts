@@ -1,6 +1,6 @@
 /**
- * Vertex normals of a closed or open triangle surface, weighted by area: the sum of the triangles' cross products,
- * normalised. Written for one pass over plain arrays, since it runs with every frame.
+ * Computes area-weighted vertex normals of a triangle surface: the normalised sum of the triangles' cross products.
+ * Works on plain arrays in one pass, since it runs for every frame.
  */
 export function computeNormals(positions: Float32Array, triangles: Uint32Array, normals: Float32Array): void {
   normals.fill(0);

@@ -1,9 +1,8 @@
 /**
- * Principal strains of a surface: its triangles' largest and smallest stretch over that at rest, less one [%], averaged
- * over those around each vertex by their area at rest; NaN where there is none.
- *
- * With the edges u, v of a triangle, G their products at rest and g now, stretches are the roots of the eigenvalues of
- * g x = l G x: l^2 - l (g11 G22 - 2 g12 G12 + g22 G11)/det G + det g/det G = 0.
+ * Principal strains of a surface: the largest or smallest stretch of each triangle minus one [%], averaged over the
+ * triangles around each vertex by rest area; NaN for a vertex without a triangle. With the edges u, v of a triangle and
+ * their metric G at rest and g now, the stretches are the square roots of the eigenvalues l of g x = l G x: l^2 - l
+ * (g11 G22 - 2 g12 G12 + g22 G11)/det G + det g/det G = 0.
  */
 export function principalStrains(
   rest: Float32Array,
@@ -32,7 +31,7 @@ export function principalStrains(
   return sums.map((sum, i) => (areas[i] > 0 ? (100 * sum) / areas[i] : NaN));
 }
 
-/** u.u, u.v and v.v of the edges from the first corner. */
+/** Writes u.u, u.v and v.v of the edges from the first corner: the metric of the triangle. */
 function products(x: Float32Array, triangles: Uint32Array, t: number, out: Float64Array): void {
   const [a, b, c] = [3 * triangles[t], 3 * triangles[t + 1], 3 * triangles[t + 2]];
   const [ux, uy, uz] = [x[b] - x[a], x[b + 1] - x[a + 1], x[b + 2] - x[a + 2]];

@@ -1,4 +1,4 @@
-/** A surface as bytes on the wire have it: x y z a vertex [m], three indices a triangle. */
+/** A triangle surface: x y z per vertex [m], three vertex indices per triangle. */
 export interface Surface {
   positions: Float32Array<ArrayBuffer>;
   triangles: Uint32Array<ArrayBuffer>;

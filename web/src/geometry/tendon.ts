@@ -1,6 +1,6 @@
 /**
- * How much of each vertex is tendon, 0 to 1: the vertices of rigid links are (the links hold the central tendon), and
- * the weight fades into its neighbours over `rounds` edges so that colours run into each other as muscle does.
+ * Returns the tendon fraction of each vertex, 0 to 1: 1 at the vertices of rigid links, which model the central tendon,
+ * smoothed over `rounds` rings of neighbours.
  */
 export function tendonWeights(
   rigidLinks: Uint32Array,

@@ -4,7 +4,7 @@ export interface VertexRef {
   vertex: number;
 }
 
-/** A place to be marked, in a colour. */
+/** A coloured marker at a position [m]. */
 export interface Marker {
   position: [number, number, number];
   color: string;

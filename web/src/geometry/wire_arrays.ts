@@ -1,7 +1,10 @@
-// Numbers on the wire are little-endian (proto/README.md), and typed arrays have the machine's order.
+// Numbers on the wire are little-endian (proto/README.md); typed arrays have the byte order of the machine.
 const machineIsLittleEndian = new Uint8Array(new Uint16Array([1]).buffer)[0] === 1;
 
-/** Bytes of 4-byte numbers, copied so that they are aligned; `what` names them in errors. */
+/**
+ * Returns an aligned copy of 4-byte numbers in machine order. Throws RangeError, naming `what`, if the length is not a
+ * multiple of `group` numbers.
+ */
 function aligned(bytes: Uint8Array, group: number, what: string): ArrayBuffer {
   if (bytes.byteLength % (4 * group) !== 0) {
     throw new RangeError(`${what}: ${bytes.byteLength} bytes are no multiple of ${4 * group}.`);
@@ -14,12 +17,12 @@ function aligned(bytes: Uint8Array, group: number, what: string): ArrayBuffer {
   return copy.buffer;
 }
 
-/** float32 in groups of `group`. */
+/** Reads float32 in groups of `group`. Throws RangeError for incomplete groups. */
 export function floats(bytes: Uint8Array, group: number, what: string): Float32Array<ArrayBuffer> {
   return new Float32Array(aligned(bytes, group, what));
 }
 
-/** uint32 in groups of `group`, each below `count`. */
+/** Reads uint32 in groups of `group`. Throws RangeError for incomplete groups and for values of `count` or more. */
 export function indices(bytes: Uint8Array, group: number, count: number, what: string): Uint32Array<ArrayBuffer> {
   const result = new Uint32Array(aligned(bytes, group, what));
   const bad = result.findIndex((index) => index >= count);

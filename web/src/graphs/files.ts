@@ -3,7 +3,7 @@ import type { GraphSpec } from "./catalogue";
 import { paperColor } from "./colors";
 import { type GraphData, valueRange } from "./window";
 
-/** Times and values, one moment a row; every digit is kept. */
+/** Returns the data as CSV, one row per time, with all digits. */
 export function toCsv(spec: GraphSpec, data: GraphData): string {
   const named = (name: string, unit: string) => quoted(unit === "" ? name : `${name} [${unit}]`);
   const across = spec.abscissa === undefined ? [] : [named(spec.abscissa.name, spec.abscissa.unit)];
@@ -21,7 +21,7 @@ const width = 720;
 const height = 360;
 const [left, right, top, bottom] = [64, 16, 40, 48];
 
-/** The graph as it would be printed. */
+/** Returns the graph as SVG for print. */
 export function toSvg(spec: GraphSpec, data: GraphData): string {
   const xs = data.abscissa ?? data.times;
   const x = scaleLinear(data.abscissa === undefined ? [xs[0] ?? 0, xs.at(-1) ?? 1] : valueRange([xs], 0), [
@@ -48,7 +48,7 @@ export function toSvg(spec: GraphSpec, data: GraphData): string {
   ].join("\n");
 }
 
-/** A line of the grid with its number. */
+/** A grid line with its number. */
 function gridLine(at: number, words: string, upright: boolean): string {
   const [x1, y1, x2, y2] = upright ? [at, top, at, height - bottom] : [left, at, width - right, at];
   const line = `<line x1="${x1}" y1="${y1}" x2="${x2}" y2="${y2}" stroke="#ddd"/>`;
@@ -58,7 +58,7 @@ function gridLine(at: number, words: string, upright: boolean): string {
   return line + label;
 }
 
-/** Which colour is which curve, where there are several. */
+/** The legend, if there are several curves. */
 function curveKey({ curves }: GraphSpec): string[] {
   if (curves.length < 2) return [];
   let at = width - right;

@@ -4,13 +4,13 @@ import type { GraphSpec } from "./catalogue";
 import { curveColor } from "./colors";
 import { type GraphData, type TimeSpan, valueRange } from "./window";
 
-/** What a plot tells its owner. */
+/** Events of a plot. */
 export interface PlotEvents {
-  /** A stretch of time was chosen by dragging over it. */
+  /** A time span was selected by dragging. */
   zoom(span: TimeSpan): void;
-  /** A double click: back to what comes. */
+  /** A double click: shows live data again. */
   resume(): void;
-  /** The place in the data under the pointer, in every plot over time at once. */
+  /** Index of the data point under the pointer, shared by all plots over time. */
   cursor(place: number | undefined): void;
 }
 
@@ -19,7 +19,7 @@ const grid = { stroke: "#2a323b", width: 1 };
 const font = "11px system-ui, sans-serif";
 const plotHeight = 104;
 
-/** One graph on the screen. */
+/** One graph, drawn by uPlot. */
 export class Plot {
   readonly element = document.createElement("div");
   private readonly plot: uPlot;
@@ -88,7 +88,7 @@ export class Plot {
     this.events.zoom({ start, end });
   }
 
-  /** uPlot draws lines from left to right only; a loop is drawn by hand into its axes. */
+  /** uPlot draws curves only from left to right, so a loop is drawn by hand into its axes. */
   private loop(): uPlot.Options {
     return {
       ...this.frame(
@@ -101,7 +101,7 @@ export class Plot {
     };
   }
 
-  /** The last stretch bright, what came before it fading, and a dot where it is now. */
+  /** Draws the loop with older parts fading and a dot at the current point. */
   private drawLoop({ ctx, valToPos }: uPlot): void {
     const { abscissa = [], curves } = this.data;
     const pixelAt = (i: number): [number, number] => [
@@ -127,7 +127,7 @@ export class Plot {
   }
 }
 
-/** The least height of a graph: below it, what moves is rounding. */
+/** Smallest vertical range of a graph: smaller changes are rounding errors. */
 function minimumRange(unit: string): number {
   return { l: 0.01, "l/s": 0.01, Pa: 1, mm: 0.1, "": 0.1 }[unit] ?? 1e-9;
 }

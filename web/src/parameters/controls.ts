@@ -2,7 +2,7 @@ import { type DescEnum, type DescField, type DescMessage, getOption, hasOption }
 import { choice, quantity, type Quantity, toggle } from "../gen/phrenic/v1/options_pb";
 import { type Parameters, ParametersSchema } from "../gen/phrenic/v1/parameters_pb";
 
-/** A number of a message as a person sets it; everything in it comes from the field's options. */
+/** A control for a number; all properties come from the options of the field. */
 export interface NumberControl {
   kind: "number";
   field: string;
@@ -13,13 +13,13 @@ export interface NumberControl {
   maximum: number;
   defaultValue: number;
   automatic: boolean;
-  /** Slider positions are the value itself, or its logarithm where the range spans three decades or more. */
+  /** True if slider positions are logarithms, for ranges of three decades or more. */
   logarithmic: boolean;
-  /** The smallest change offered, in slider positions. */
+  /** Smallest change, in slider positions. */
   step: number;
 }
 
-/** A switch of a message as a person sets it. */
+/** A control for a boolean. */
 export interface SwitchControl {
   kind: "switch";
   field: string;
@@ -28,7 +28,7 @@ export interface SwitchControl {
   defaultValue: boolean;
 }
 
-/** One of an enum's values as a person chooses it. */
+/** A control for an enum value. */
 export interface ChoiceControl {
   kind: "choice";
   field: string;
@@ -40,10 +40,12 @@ export interface ChoiceControl {
 
 export type Control = NumberControl | SwitchControl | ChoiceControl;
 
-/** Names of the live parameters as they stand in the message. */
+/** Names of the live parameters in the message. */
 export type ParameterName = Exclude<keyof Parameters, "$typeName" | "$unknown">;
 
-/** One control for each field of `message` that carries a quantity, a toggle or a choice, in the schema's order. */
+/**
+ * Returns a control for each field of `message` with a quantity, toggle or choice option, in the order of the schema.
+ */
 export function controlsOf(message: DescMessage): Control[] {
   return message.fields.flatMap((field) => controlOf(field) ?? []);
 }
@@ -62,14 +64,14 @@ function descriptionOf<T>(
   return { field: field.localName, label: label || field.localName, help, defaultValue };
 }
 
-/** What there is to choose from: every value but the unspecified one. */
+/** Returns all values except the unspecified one. */
 function optionsOf(type: DescEnum): ChoiceControl["options"] {
   return type.values
     .filter(({ number }) => number !== 0)
     .map(({ number, localName }) => ({ value: number, label: choiceLabel(localName) }));
 }
 
-/** "VELOCITY_VERLET" is "Velocity Verlet"; words without a vowel are abbreviations: "TR_BDF2" is "TR BDF2". */
+/** Formats "VELOCITY_VERLET" as "Velocity Verlet"; words without a vowel are abbreviations: "TR BDF2". */
 export function choiceLabel(name: string): string {
   const spelled = (word: string) => (/[AEIOUY]/.test(word) ? word[0] + word.slice(1).toLowerCase() : word);
   return name.split("_").map(spelled).join(" ");

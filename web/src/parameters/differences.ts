@@ -24,14 +24,14 @@ function differingParameters(here: Parameters | undefined, there: Parameters | u
     });
 }
 
-/** What is set otherwise in `there`: "Breath force 2 instead of 1". */
+/** Returns how the parameters `there` differ from those `here`: "Breath force 2 instead of 1". */
 export function differences(here: Parameters | undefined, there: Parameters | undefined): string {
   return differingParameters(here, there)
     .map(({ label, here, there }) => `${label} ${there} instead of ${here}`)
     .join(", ");
 }
 
-/** The same, and of more than two "With breath force 0.45, breath length 3, rib motion 1.5". */
+/** Returns the same, or "With breath force 0.45, breath length 3, rib motion 1.5" for more than two differences. */
 export function shortDifferences(here: Parameters | undefined, there: Parameters | undefined): string {
   const all = differingParameters(here, there);
   if (all.length < 3) return differences(here, there);

@@ -13,10 +13,10 @@ interface Point {
   row: StreamingRow;
 }
 
-/** Lines that people have [Mbit/s]. */
+/** Bandwidth of a slow line [Mbit/s]. */
 const thin = 4;
 
-/** The largest error against bandwidth: who is low and to the left is good. */
+/** Plots the largest error against bandwidth; lower left is better. */
 export function bandwidth({ rows }: StreamingTable): HTMLElement {
   const title = "Largest error against bandwidth.";
   const points = rows.flatMap((row): Point[] =>

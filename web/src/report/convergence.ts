@@ -12,14 +12,14 @@ interface Guide {
   points: { x: number; y: number }[];
 }
 
-/** Error against time step: the slope is the order. */
+/** Plots the error against the time step; the slope is the order of convergence. */
 export function convergence(table: ErrorTable): HTMLElement | undefined {
   const runs = runsOf(table.rows, ({ timeStepS }) => 1e3 * timeStepS, "errorRmsMm");
   if (runs.length === 0) return undefined;
   const xs = runs.map(({ x }) => x);
   const y = logDomain(runs.map((run) => run.y));
   const [low, high] = logDomain(xs);
-  // Guides have a strip of their own, to the right of all runs.
+  // The slope guides are drawn to the right of all runs.
   const end = high * 10 ** Math.max(0.3, 0.18 * Math.log10(high / low));
   const guides = guidesIn(high, end, y);
   const title = "RMS error against time step.";
@@ -42,7 +42,7 @@ export function convergence(table: ErrorTable): HTMLElement | undefined {
   return figure(title, sentence.replace("1/2^p", "1/2ᵖ"), drawn);
 }
 
-/** Lines of slope 1, 2 and 4 from one point, as far as the frame goes. */
+/** Returns lines of slope 1, 2 and 4 from one point to the edge of the frame. */
 export function guidesIn(from: number, to: number, [low, high]: [number, number]): Guide[] {
   const bottom = low * (high / low) ** 0.06;
   const rise = (high / low) ** 0.88;
@@ -67,7 +67,7 @@ function guideMarks({ order, points }: Guide): Markish[] {
   ];
 }
 
-/** "Orders measured at the smallest steps: BDF2: 1.4; Velocity Verlet: 2." */
+/** Returns "Orders measured at the smallest steps: BDF2: 1.4; Velocity Verlet: 2." */
 function measuredOrders(runs: Run[]): string {
   const last = new Map(runs.flatMap(({ id, row }) => (row.order === undefined ? [] : [[id, row.order]])));
   if (last.size === 0) return "";

@@ -7,7 +7,7 @@ import { formatDigits } from "./format";
 interface Bar {
   name: string;
   value: number;
-  /** Beside the bar. */
+  /** Label beside the bar. */
   words: string;
   color: string;
   thesis?: number;
@@ -17,7 +17,7 @@ const blue = "#00609f";
 const pale = "#7fb2d8";
 const thesisColor = "#b23a12";
 
-/** Each variant's step, the thesis' figure beside it where there is one. */
+/** Bars of the CPU time per step of each variant, with the values of the thesis if there are any. */
 export function variantBars(rows: CostRow[]): HTMLElement {
   const title = "CPU time of a step, by variant.";
   const known = rows.filter(({ cpuUsPerStep }) => isPositive(cpuUsPerStep));
@@ -45,12 +45,12 @@ function barLabel(row: CostRow, thesis: number | undefined): string {
   return `${own} (thesis ${formatDigits(thesis, 3)} µs${pace})`;
 }
 
-/** Those of the thesis' figures that do not make every bar short. */
+/** Returns the bars whose thesis value fits into the axis. */
 function drawnThesis(bars: Bar[], longest: number): Bar[] {
   return bars.filter(({ thesis }) => thesis !== undefined && thesis <= 2.5 * longest);
 }
 
-/** Where a step's time goes. */
+/** Bars of the time per step of each stage, or undefined without data. */
 export function stageBars(rows: StageRow[]): HTMLElement | undefined {
   const known = rows.filter(({ usPerStep }) => isPositive(usPerStep));
   if (known.length === 0) return undefined;
@@ -102,7 +102,7 @@ function drawBars(title: string, label: string, bars: Bar[]): HTMLElement | SVGS
 const barEnd = (bar: Bar, thesis: Bar[]) => (thesis.some(({ name }) => name === bar.name) ? (bar.thesis ?? 0) : 0);
 const clipped = (name: string) => (name.length > 42 ? `${name.slice(0, 41)}…` : name);
 
-/** How much longer than the longest bar the axis must be, for the words beside it. */
+/** Returns the length of the axis relative to the longest bar that leaves room for the labels. */
 function roomFor(letters: number, marginLeft: number): number {
   const inner = 1080 - marginLeft - 28;
   return 1 / Math.max(0.35, 1 - (7.6 * letters + 16) / inner);

@@ -31,7 +31,7 @@ export function costParts(table: CostTable): HTMLElement[] {
   return parts.filter((part) => part !== undefined);
 }
 
-/** What a reader takes away: what a step takes, where it goes, and whether leaving out is free. */
+/** Summary: the cost of a step, its largest part, and whether parts that are left out cost nothing. */
 function summaryOf({ rows, stages }: CostTable): string[] {
   const full = rows.find(({ variant }) => variant === "full");
   const parts = stages.filter(({ stage }) => stage !== "step").sort((a, b) => b.usPerStep - a.usPerStep);

@@ -1,6 +1,6 @@
 import { initializer, type Markish, text } from "@observablehq/plot";
 
-/** A line of a plot that is to bear its name. */
+/** A curve of a plot with its label. */
 export interface LabelledLine {
   id: string;
   name: string;
@@ -22,10 +22,10 @@ interface Placed {
   cost: number;
 }
 
-const letterWidth = 7.7; // width of a letter [px]
-const labelHeight = 18; // height of a label [px]
+const letterWidth = 7.7; // mean character width [px]
+const labelHeight = 18; // label height [px]
 
-/** The lines' names beside them, in their colours, where they hide least. */
+/** Labels beside their curves, in the colours of the curves, where they cover the least. */
 export function directLabels(lines: LabelledLine[], keepFree: { x: number; y: number }[] = []): Markish {
   const placeAll = initializer<{ frameAnchor: "middle" }>(
     { frameAnchor: "middle" },
@@ -62,7 +62,7 @@ export function directLabels(lines: LabelledLine[], keepFree: { x: number; y: nu
   });
 }
 
-/** One box for each line, in pixels: beside one of its points, over as little as can be. */
+/** Returns one box per curve [px], beside one of its points, where it covers the least. */
 export function placeLabels(lines: { name: string; points: Point[] }[], keepFree: Point[], frame: Box): Box[] {
   const own = lines.map(({ points }) => samplePoints(points));
   const placed: Box[] = [];
@@ -80,7 +80,7 @@ export function placeLabels(lines: { name: string; points: Point[] }[], keepFree
   return placed;
 }
 
-/** Points of a line and between them, close together. */
+/** Returns points along a curve at small distances. */
 function samplePoints(points: Point[]): Point[] {
   return points.flatMap((point, i) => {
     const next = points[i + 1];

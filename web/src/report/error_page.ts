@@ -34,7 +34,7 @@ const measures: [Measure, string][] = [
   ["errorMaxMm", "Largest error"],
 ];
 
-/** The work-precision diagram, of one measure of error or the other. */
+/** The work-precision diagram, with a choice of the error measure. */
 function switched(table: ErrorTable): HTMLElement {
   const frame = make("div", {});
   const show = (measure: Measure) => frame.replaceChildren(workPrecision(table, measure));

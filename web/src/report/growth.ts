@@ -12,7 +12,7 @@ interface Point {
   y: number;
 }
 
-/** The cost of a step against the number of vertices, and the power that fits it. */
+/** Plots the cost of a step against the number of vertices, with the fitted power law. */
 export function growth({ growth: rows, growthExponent }: CostTable): HTMLElement | undefined {
   const points = rows.flatMap(({ what, vertices, cpuUsPerStep }) =>
     isPositive(cpuUsPerStep) && vertices > 0n ? [{ id: what, x: Number(vertices), y: cpuUsPerStep }] : [],
@@ -62,7 +62,7 @@ export function growth({ growth: rows, growthExponent }: CostTable): HTMLElement
 const tooltip = ({ id, x, y }: Point) => `${seriesName(id)}
 ${formatDigits(x, 9)} vertices: ${formatDigits(y, 3)} µs per step`;
 
-/** For each series the power through its middle, a little longer than the series. */
+/** Returns the power law through the geometric mean of each series, a little longer than the series. */
 function fitted(points: Point[], exponent: number): Point[] {
   const mean = (values: number[]) => Math.exp(values.reduce((sum, each) => sum + Math.log(each), 0) / values.length);
   return [...new Set(points.map(({ id }) => id))].flatMap((id) => {

@@ -13,7 +13,7 @@ const kinds = {
   streaming: "Error against bandwidth",
 };
 
-/** "Cost: thorax – Phrenic" */
+/** Returns "Cost: thorax – Phrenic". */
 export function titleOf(study: Study): string {
   const { title, scene } = studyNames(study);
   return `${title}: ${scene} – Phrenic`;
@@ -24,7 +24,7 @@ function studyNames({ result, scene }: Study): { title: string; scene: string } 
   return { title: kind === undefined ? "Study" : kinds[kind], scene: result?.scene || scene || "unnamed scene" };
 }
 
-/** What was studied, of which scene, with which parameters. */
+/** The page header: kind of study, scene and parameters. */
 export function header(study: Study): HTMLElement {
   const { result } = study;
   const { title, scene } = studyNames(study);
@@ -55,7 +55,7 @@ function factsOf({ sceneHash, parameters, tookS, result }: StudyResult): [string
   return facts;
 }
 
-/** "Time step 0.005 s · Breath force 1 · ..." */
+/** Returns "time step 0.005 s · breath force 1 · ...". */
 export function parameterSummary(parameters: Parameters): string {
   const values = parameters as unknown as Record<string, unknown>;
   return parameterControls()

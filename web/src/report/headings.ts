@@ -12,7 +12,7 @@ const whole: Record<string, string> = {
   case: "Case",
 };
 
-/** What stands over a column: the words of the field's name, and the unit at its end: "Error RMS [mm]". */
+/** Returns the heading of a column from the name of its field, with the unit at its end: "Error RMS [mm]". */
 export function headingOf(field: string): string {
   const known = whole[field];
   if (known !== undefined) return known;

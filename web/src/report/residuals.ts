@@ -19,7 +19,7 @@ const styles: [string, SeriesStyle["symbol"]][] = [
   ["#6f3fa0", "triangle"],
 ];
 
-/** How far rigid links are from their length, for each way of keeping them. */
+/** Plots the length error of rigid links over time for each projection method; undefined without data. */
 export function residuals(table: ErrorTable): HTMLElement | undefined {
   const points = table.residuals.flatMap(({ projection, timeS, residualMm }) =>
     isPositive(residualMm) ? [{ id: projection, x: timeS, y: residualMm }] : [],
@@ -31,7 +31,7 @@ export function residuals(table: ErrorTable): HTMLElement | undefined {
   return overTime("Residual of rigid links.", "Residual [mm]", sentence, points);
 }
 
-/** What the way of keeping links costs in the motion. */
+/** Plots the position error that each projection method causes; undefined without data. */
 export function positionErrors(table: ErrorTable): HTMLElement | undefined {
   const points = table.residuals.flatMap(({ projection, timeS, errorRmsMm }) =>
     isPositive(errorRmsMm) ? [{ id: projection, x: timeS, y: errorRmsMm }] : [],
@@ -58,7 +58,7 @@ function overTime(title: string, label: string, sentence: string, points: Point[
     y: logScale(label, logDomain(values, 0.15)),
     marks: [
       frame({ stroke: "#8b949e" }),
-      // Thinner one over another: series that agree are both seen.
+      // Later curves are thinner, so that coinciding curves remain visible.
       ...lines.flatMap(({ id, points: own }, i) => [
         line(own, { x: "x", y: "y", stroke: looks.get(id)!.color, strokeWidth: Math.max(2, 5 - 3 * i) }),
         dot(own, { x: "x", y: "y", fill: () => id, symbol: () => id, r: Math.max(3, 7 - 3 * i), stroke: "white" }),
@@ -72,7 +72,7 @@ function overTime(title: string, label: string, sentence: string, points: Point[
 
 const tooltip = ({ id, x, y }: Point) => `${sentenceCase(id)}: ${formatDigits(y, 3)} mm at ${formatDigits(x, 3)} s`;
 
-/** The probes' error against the size of elements. */
+/** Plots the probes' error against the element size; undefined without data. */
 export function resolutions(table: ErrorTable): HTMLElement | undefined {
   const rows = table.resolutions.flatMap(({ resolutionMm, errorProbeMm, vertices }) =>
     isPositive(errorProbeMm) && isPositive(resolutionMm)

@@ -6,10 +6,10 @@ import { type Cell, cellsOf, edgesOf } from "./cells";
 import { formatDigits } from "./format";
 import { seriesName } from "./names";
 
-/** What one integrator's map is drawn from. */
+/** The data of the map of one integrator. */
 export interface StabilityMapData {
   integrator: string;
-  /** Steps are drawn over the predicted limit, or in milliseconds where there is none. */
+  /** True if time steps are relative to the predicted limit; otherwise in milliseconds. */
   relative: boolean;
   cells: Cell[];
   predicted: { x: number; y: number }[];
@@ -27,7 +27,7 @@ const verdicts: Record<string, { color: string; letter: string }> = {
 const unknown = { color: "#ffffff", letter: "?" };
 const verdictOf = (verdict: string) => verdicts[verdict] ?? unknown;
 
-/** One map for each integrator that the table has points of. */
+/** Returns one map for each integrator with data. */
 export function stabilityMaps({ map, limits }: StabilityTable): StabilityMapData[] {
   return [...new Set(map.map(({ integrator }) => integrator))].flatMap((integrator) => {
     const own = limits.filter((limit) => limit.integrator === integrator);
@@ -90,13 +90,13 @@ function mapMarks({ cells, predicted, measured }: StabilityMapData, y: [number, 
   ];
 }
 
-/** Where a cell's letter stands: in the middle, or beside it where a limit is drawn. */
+/** Returns the x position of a cell's letter: the centre, or beside a limit that is drawn there. */
 function letterX({ x1, x2, y1, y2, x }: Cell, limits: { x: number; y: number }[]): number {
   const over = limits.some((limit) => limit.x > x1 && limit.x < x2 && limit.y > y1 && limit.y < y2);
   return over ? x1 ** 0.55 * x ** 0.45 : Math.sqrt(x1 * x2);
 }
 
-/** The predicted limit through all rows of the map, to its lower and upper edge. */
+/** Returns the predicted limit through all rows, extended to the edges of the map. */
 function limitLine(points: { x: number; y: number }[], [low, high]: [number, number]): { x: number; y: number }[] {
   if (points.length === 0) return [];
   const sorted = [...points].sort((a, b) => a.y - b.y);
@@ -118,7 +118,7 @@ function tooltip(row: StabilityRow): string {
   return lines.filter(Boolean).join("\n");
 }
 
-/** What colours, letters and lines mean: of verdicts, those that occur. */
+/** The legend of the colours, letters and lines that occur. */
 export function verdictKey({ map, limits }: StabilityTable): HTMLElement {
   const present = new Set(map.map(({ verdict }) => verdict));
   const order = [...new Set([...Object.keys(verdicts), ...present])].filter((verdict) => present.has(verdict));

@@ -34,13 +34,13 @@ export function stabilityParts(table: StabilityTable): HTMLElement[] {
   ];
 }
 
-/** What a reader takes away: how long a step may be, what is stable at any, and how the extreme cases ended. */
+/** Summary: largest stable steps, unconditionally stable integrators, and results of the extreme cases. */
 function summaryOf(table: StabilityTable): string[] {
   const extremes = table.extremes.length === 0 ? [] : [extremeCaseSummary(table.extremes)];
   return [longestSteps(table.limits), alwaysStable(table.map), ...extremes].filter(Boolean);
 }
 
-/** "Longest stable step: Velocity Verlet 24.6 ms, at 10⁶ times the stiffness 0.0246 ms." */
+/** Returns "Longest stable step: Velocity Verlet 24.6 ms, at 10⁶ times the stiffness 0.0246 ms." */
 function longestSteps(limits: LimitRow[]): string {
   const steps = [...new Set(limits.map(({ integrator }) => integrator))].flatMap((integrator) => {
     const own = limits.filter((row) => row.integrator === integrator && row.measuredS !== undefined);
@@ -65,7 +65,7 @@ function alwaysStable(map: StabilityRow[]): string {
     : `Stable at every stiffness and step of the map: ${always.map(seriesName).join(", ")}.`;
 }
 
-/** "12 extreme cases: 9 pass, 3 are stopped with a reason, none FAILED." */
+/** Returns "12 extreme cases: 9 pass, 3 stopped with a reason, none FAILED." */
 function extremeCaseSummary(rows: ExtremeRow[]): string {
   const of = (verdict: string) => rows.filter((row) => row.verdict === verdict).length;
   const [failed, stopped] = [of("FAILED"), of("stopped")];

@@ -13,7 +13,7 @@ const marks: Record<string, [string, string]> = {
   FAILED: ["✖", "bad"],
 };
 
-/** Every row of one message type, a column for each field that some row has. */
+/** A table of messages of one type, with a column for each field that is set in some row. */
 export function tableOf(title: string, schema: DescMessage, rows: readonly Message[]): HTMLElement {
   const heading = make("h3", {}, title);
   if (rows.length === 0) return make("section", {}, heading, make("p", { className: "none" }, "No rows."));
@@ -25,7 +25,7 @@ export function tableOf(title: string, schema: DescMessage, rows: readonly Messa
   return make("section", { className: "table" }, heading, scroller);
 }
 
-// A number that is 0 and a switch that is off are worth showing; a text that no row has is not.
+// Shows zeros and false, but no text column that is empty in all rows.
 function isShown(row: Message, field: DescField): boolean {
   if (field.fieldKind !== "scalar") return false;
   const value = valueOf(row, field);
@@ -63,7 +63,7 @@ function cell(row: Message, field: DescField): HTMLElement {
   );
 }
 
-/** Four digits, three where a power takes the room of one. */
+/** Formats four digits, or three with a power of ten. */
 function shortDigits(value: number): string {
   const size = Math.abs(value);
   return formatDigits(value, size !== 0 && (size < 1e-3 || size >= 1e6) ? 3 : 4);

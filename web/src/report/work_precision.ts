@@ -8,7 +8,7 @@ import { seriesName, seriesStyles } from "./names";
 
 export type Measure = "errorRmsMm" | "errorMaxMm";
 
-/** A run that both ran to its end and erred by more than the reference. */
+/** A completed run with an error above that of the reference. */
 export interface Run {
   id: string;
   x: number;
@@ -30,7 +30,7 @@ export function linesOf(runs: Run[]): LabelledLine[] {
   });
 }
 
-/** Lines, dots with a symbol each, and names: one series for each integrator. */
+/** Returns curves, a symbol per point and tooltips: one series per integrator. */
 export function seriesMarks(runs: Run[]): Markish[] {
   return [
     line(runs, { x: "x", y: "y", z: "id", stroke: "id", strokeWidth: 2.5 }),
@@ -48,7 +48,7 @@ RMS error ${rms} mm, largest ${most} mm
 ${cpu} CPU s per simulated s`;
 }
 
-/** Error against run time: who is low and to the left is good. */
+/** Plots the error against run time; lower left is better. */
 export function workPrecision(table: ErrorTable, measure: Measure): HTMLElement {
   const runs = runsOf(table.rows, (row) => row.cpuPerSecond, measure);
   const what = measure === "errorRmsMm" ? "RMS error" : "Largest error";
@@ -105,7 +105,7 @@ function referenceRule(own: number, onTheRight: boolean): Markish[] {
   ];
 }
 
-/** What is not drawn, and why. */
+/** Returns which runs are not drawn, and why. */
 export function omittedRuns(rows: ErrorRow[], runs: Run[]): string {
   const drawn = new Set(runs.map(({ row }) => row));
   const missing = rows.filter((row) => !drawn.has(row));

@@ -5,13 +5,16 @@ import type { Clock } from "../timing/clock";
 import { CoalescingSender } from "../timing/coalescing_sender";
 import type { Participation } from "./participation";
 
-/** A picture whose camera may be read and placed. */
+/** A camera whose pose can be read and set. */
 export interface SharedCamera {
   readonly pose: CameraPose;
   moveTo(pose: CameraPose): void;
 }
 
-/** Shows the others where who controls looks from, ten times a second at most, and follows where this viewer wants to. */
+/**
+ * Sends this viewer's camera to others while it has control, at most ten times per second, and follows the camera of
+ * the participant in control if the user wants to.
+ */
 export class CameraSharing {
   private readonly sender: CoalescingSender<{ camera: CameraPose }>;
   private lastSent = "";
@@ -25,7 +28,7 @@ export class CameraSharing {
     clock: Clock,
   ) {
     const send = async ({ camera }: { camera?: CameraPose }) => {
-      // What is refused here is shown by the controls: somebody else has control now.
+      // Refusals are shown by the controls, since another participant has control now.
       if (camera !== undefined) await api.control.showCamera({ sessionId, camera }).catch(() => undefined);
     };
     this.sender = new CoalescingSender<{ camera: CameraPose }>(send, clock, () => undefined);
@@ -35,7 +38,7 @@ export class CameraSharing {
     });
   }
 
-  /** The picture was drawn: its camera may have moved. */
+  /** Sends the camera if it moved since the last call; called after each drawing. */
   sendIfMoved(): void {
     if (!this.participation.roles.value.hasControl) return;
     const camera = this.camera.pose;
@@ -45,13 +48,13 @@ export class CameraSharing {
     this.sender.push({ camera });
   }
 
-  /** Who controls looks from there. */
+  /** Receives the camera of the participant in control. */
   receive(camera: Camera): void {
     this.remoteCamera = camera;
     this.follow();
   }
 
-  /** Goes where they look from, where this viewer follows. */
+  /** Moves to the received camera if this viewer follows it. */
   follow(): void {
     const { eye, target } = this.remoteCamera ?? {};
     if (!this.participation.identity.followsCamera || this.participation.roles.value.hasControl) return;

@@ -3,18 +3,18 @@ import { type Session, SessionState } from "../gen/phrenic/v1/session_pb";
 import { Backoff } from "../timing/backoff";
 import type { Clock } from "../timing/clock";
 
-/** The session that a page with no session in its address opens: the first that plays, or else the first. */
+/** Returns the session that a page without a session in its address opens: the first playing one, or the first. */
 export function preferredSession(sessions: Session[]): Session | undefined {
   return sessions.find((session) => session.state === SessionState.PLAYING) ?? sessions[0];
 }
 
-/** How often to look again where the server has no session yet [ms]. */
+/** Polling interval while the server has no session [ms]. */
 const pollInterval = 1500;
 
 /**
- * The id in the page's address, or the preferred session's, asked for until there is one: a server that has just been
- * started may still be building its first scene. `waiting` hears what went wrong, or nothing where there is just no
- * session.
+ * Returns the session id of the page's address, or that of the preferred session, and waits until there is one: a
+ * server that has just started may still compile its first scene. Calls `onWaiting` with the error, or without one if
+ * there is no session.
  */
 export async function chooseSession(
   address: URL,

@@ -4,44 +4,44 @@ import type { Surface } from "../geometry/surface";
 import { floats, indices } from "../geometry/wire_arrays";
 import { Signal } from "../state/signal";
 
-/** How a file is compared. */
+/** Settings of a comparison with a file. */
 export interface ComparisonChoices {
-  /** The body that is compared with it. */
+  /** The body to compare. */
   body: string;
-  /** Millimetres in one unit of the file. */
+  /** Millimetres per unit of the file. */
   unitMm: number;
-  /** Of a motion, the state at this time [s]; not set: at the session's. */
+  /** Time of the state in a motion file [s]; undefined for the time of the session. */
   time: number | undefined;
 }
 
-/** A file as browsers hand it over. */
+/** A file from the browser. */
 export type SurfaceFile = Pick<File, "name" | "size" | "arrayBuffer">;
 
-/** How far each vertex of a body was from a file's surface, and when. */
+/** The distances between a body and the surface of a file. */
 export interface Comparison {
   file: string;
   body: string;
-  /** Simulated time [s] and steps of the state that was compared. */
+  /** Simulated time [s] and tick of the compared state. */
   time: number;
   tick: bigint;
   distance: SurfaceDistance;
-  /** Of each vertex of the body [mm]; NaN for one that is in no triangle. */
+  /** Distance of each vertex of the body [mm]; NaN for a vertex without a triangle. */
   distances: number[];
-  /** The file's surface, to be drawn and measured on. */
+  /** The surface of the file. */
   surface: Surface | undefined;
 }
 
 export type ComparisonProgress =
   { kind: "idle" } | { kind: "running"; file: string; done: number } | { kind: "failed"; message: string };
 
-/** The server takes messages of at most 16 MiB; some of it is for the words around the file. */
+/** The server accepts messages of at most 16 MiB, including the other fields of the request. */
 const maxBytes = (16 << 20) - 4096;
 
-/** Compares a body of one session, as it is when asked, with a file; one comparison at a time. */
+/** Compares a body of one session in its current state with a file; one comparison at a time. */
 export class Comparisons {
   readonly result = new Signal<Comparison | undefined>(undefined);
   readonly progress = new Signal<ComparisonProgress>({ kind: "idle" });
-  /** Whether the file's surface is drawn. */
+  /** True if the surface of the file is drawn. */
   readonly surfaceVisible = new Signal(true);
   readonly choices = new Signal<ComparisonChoices>({ body: "", unitMm: 1, time: undefined });
   private file: { name: string; content: Uint8Array } | undefined;
@@ -56,7 +56,7 @@ export class Comparisons {
     this.choices.set({ ...this.choices.value, ...choices });
   }
 
-  /** Ends what runs and compares with `file`; what was found before stays until there is something new. */
+  /** Cancels a running comparison and compares with `file`; the previous result stays until then. */
   async compare(file: SurfaceFile): Promise<void> {
     this.running.abort();
     if (file.size > maxBytes) {
@@ -72,7 +72,7 @@ export class Comparisons {
     return this.repeat();
   }
 
-  /** The same file once more, with the session as it is now. */
+  /** Compares the same file with the current state. */
   async repeat(): Promise<void> {
     if (this.file === undefined) return;
     const { name } = this.file;
@@ -89,20 +89,20 @@ export class Comparisons {
     }
   }
 
-  /** Ends what runs; what was found before stays. */
+  /** Cancels the running comparison; keeps the previous result. */
   stop(): void {
     this.running.abort();
     this.progress.set({ kind: "idle" });
   }
 
-  /** As if nothing had been compared. */
+  /** Removes the file and the result. */
   clear(): void {
     this.stop();
     this.file = undefined;
     this.result.set(undefined);
   }
 
-  /** Ends what runs in favour of something new. */
+  /** Cancels the running comparison and starts another one. */
   private begin(file: string): AbortController {
     this.running.abort();
     this.running = new AbortController();

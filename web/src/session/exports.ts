@@ -10,15 +10,15 @@ import {
 } from "../gen/phrenic/v1/export_pb";
 import { Signal } from "../state/signal";
 
-/** What is exported, and how. */
+/** Settings of an export. */
 export interface ExportChoices {
   format: string;
-  /** Simulated time of the motion [s]. */
+  /** Simulated duration [s]. */
   seconds: number;
-  /** Not set: the format's own. */
+  /** Undefined for the default of the format. */
   framesPerSecond: number | undefined;
   values: ExportValues;
-  /** Names; none: every deformable body. */
+  /** Names of the bodies; empty for all deformable bodies. */
   bodies: string[];
 }
 
@@ -31,7 +31,7 @@ export type ExportProgress =
 
 const maxAttempts = 5;
 
-/** Records a session's motion on the server and fetches the file; one export at a time. */
+/** Records a session's motion on the server and downloads the file; one export at a time. */
 export class Exports {
   readonly formats = new Signal<FileFormat[]>([]);
   readonly progress = new Signal<ExportProgress>({ kind: "idle" });
@@ -59,13 +59,13 @@ export class Exports {
     return this.formats.value.find(({ name }) => name === this.choices.value.format);
   }
 
-  /** Asks the server what it writes. */
+  /** Loads the list of file formats from the server. */
   async loadFormats(): Promise<void> {
     const answer = await this.api.exports.listFormats({}).catch(() => undefined);
     if (answer !== undefined) this.formats.set(answer.formats);
   }
 
-  /** Records, and fetches the file; what ran or was there before is let go. */
+  /** Records and downloads the file; cancels a running export and releases a previous file. */
   async start(): Promise<void> {
     this.stop();
     const { signal } = (this.running = new AbortController());
@@ -82,7 +82,7 @@ export class Exports {
     }
   }
 
-  /** Ends what runs, here and on the server, and lets go of a file that is ready. */
+  /** Cancels the export here and on the server, and releases the file. */
   stop(): void {
     this.running.abort();
     void this.deleteJob();
@@ -122,7 +122,7 @@ export class Exports {
     throw new Error("the server ended the export without a file");
   }
 
-  /** The file's bytes; a download that breaks off goes on where it was. */
+  /** Downloads the file; resumes an interrupted download. */
   private async fetch(job: Export, signal: AbortSignal): Promise<Blob> {
     const chunks: Uint8Array<ArrayBuffer>[] = [];
     let offset = 0;
@@ -144,7 +144,7 @@ export class Exports {
   }
 }
 
-/** Whether a stream ended on its way, rather than by the server's word. */
+/** True if the stream was interrupted rather than refused by the server. */
 function isInterrupted(error: unknown): boolean {
   return isUnreachable(error) || [Code.Unavailable, Code.Unknown].includes(ConnectError.from(error).code);
 }

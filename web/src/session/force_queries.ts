@@ -9,7 +9,7 @@ export interface VertexForce {
   force: [number, number, number];
 }
 
-/** What is to be known of the forces: those on a vertex, how large one kind is everywhere, or nothing. */
+/** The forces to query: those on a vertex, the magnitude of one kind on all vertices, or none. */
 export interface ForceRequest {
   vertex: VertexRef | undefined;
   kind: string | undefined;
@@ -17,37 +17,34 @@ export interface ForceRequest {
   bodies: string[];
 }
 
-/** What the server told of one moment [s], of a vertex and of a kind. */
+/** Forces at one time [s]. */
 interface ForceSample {
   time: number;
   vertex: VertexRef | undefined;
   kind: string | undefined;
   onVertex: VertexForce[];
-  /** [N] a vertex of each body. */
+  /** Magnitude on each vertex of each body [N]. */
   magnitudes: ReadonlyMap<string, Float32Array>;
 }
 
-/** So many moments are kept: the last 20 s, asked for ten times a second. */
+/** Number of stored samples: 20 s at ten queries per second. */
 const maxSamples = 200;
-/** What was told of a moment is shown for moments this near [s]. */
+/** Largest time difference between a replayed frame and its sample [s]. */
 const maxTimeDistance = 0.15;
 
-/** "action_line" is "action line". */
+/** Formats "action_line" as "action line". */
 export const forceKindLabel = (kind: string) => kind.replaceAll("_", " ");
 
-/**
- * The forces that act, as the server works them out while somebody wants to know: one question at a time. What was told
- * is kept for who looks back.
- */
+/** Queries the forces of the displayed state, one query at a time, and stores the answers for replay. */
 export class ForceQueries {
   readonly kinds = new Signal<string[]>([]);
   readonly onVertex = new Signal<VertexForce[]>([]);
-  /** How large the wanted kind is on each vertex of each body [N]. */
+  /** Magnitude of the requested kind on each vertex of each body [N]. */
   readonly magnitudes = new Signal<ReadonlyMap<string, Float32Array>>(new Map());
   private querying = false;
   private answered = "";
   private samples: ForceSample[] = [];
-  /** The earlier moment that is looked at [s]. */
+  /** The replayed time [s]; undefined when live. */
   private replayTime: number | undefined;
 
   constructor(
@@ -55,7 +52,7 @@ export class ForceQueries {
     private readonly sessionId: string,
   ) {}
 
-  /** Learns which kinds there are on a body of another scene. */
+  /** Loads the kinds of force on a body of another scene. */
   async start(body: string | undefined): Promise<void> {
     this.samples = [];
     this.replayTime = undefined;
@@ -64,7 +61,7 @@ export class ForceQueries {
     if (body !== undefined) await this.getForces({ body });
   }
 
-  /** Asks for what is wanted of the state that a viewer saw last, unless that is known or being asked for. */
+  /** Queries the forces unless those of this state are known or a query is running. `stateKey` identifies the state. */
   async query(request: ForceRequest, stateKey: string): Promise<void> {
     const question = `${stateKey} ${JSON.stringify(request)}`;
     if (this.querying || question === this.answered) return;
@@ -79,7 +76,7 @@ export class ForceQueries {
     this.magnitudes.set(sample.magnitudes);
   }
 
-  /** Shows what was told of the moment `time` [s], where that is known; for the present, what is told next. */
+  /** Shows the stored forces near `time` [s], if there are any; undefined returns to live forces. */
   replayAt(time: number | undefined, { vertex, kind }: ForceRequest): void {
     this.replayTime = time;
     this.clear();
@@ -102,7 +99,7 @@ export class ForceQueries {
     this.magnitudes.set(new Map());
   }
 
-  /** Time that goes back is another run. */
+  /** Time that goes back means that the session was reset. */
   private storeSample(sample: ForceSample): void {
     if (sample.magnitudes.size === 0 && sample.onVertex.length === 0) return;
     if (sample.time < (this.samples.at(-1)?.time ?? 0)) this.samples = [];
@@ -123,7 +120,7 @@ export class ForceQueries {
     return { time: (ofVertex ?? ofBodies[0])?.time ?? 0, vertex, kind, onVertex, magnitudes };
   }
 
-  /** Nothing where the server does not say: the session has diverged, or the vertex is not a deformable body's. */
+  /** Returns undefined if the session has diverged or the body is not deformable. */
   private async getForces(question: { body: string; vertex?: number; kind?: string }) {
     try {
       const answer = await this.api.frames.getForces({ sessionId: this.sessionId, ...question });

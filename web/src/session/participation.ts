@@ -6,20 +6,20 @@ import { Signal } from "../state/signal";
 import type { Clock } from "../timing/clock";
 import type { SessionController } from "./session_controller";
 
-/** How often to say that one is still there [ms]; the server forgets who does not, after `stay` [s]. */
+/** Renewal interval of the participation [ms]; the server removes participants after `timeToLive` [s]. */
 const renewalInterval = 10_000;
 const timeToLive = 30;
 
-/** Who controls the session, and what this viewer is in it. */
+/** Who controls the session, and the role of this viewer. */
 export interface Roles {
   control: Control | undefined;
-  /** The name under which this viewer has entered; empty: they watch. */
+  /** The name of this viewer among the participants; empty for a spectator. */
   name: string;
   isOwner: boolean;
-  /** Whether this viewer is the only one who may change the session. */
+  /** True if only this viewer may change the session. */
   hasControl: boolean;
   mayChange: boolean;
-  /** Whether they may hand control on. */
+  /** True if this viewer may hand control to others. */
   mayHandOver: boolean;
   hasRequested: boolean;
 }
@@ -40,21 +40,23 @@ export function rolesOf(control: Control | undefined, ownName: string): Roles {
   };
 }
 
-/** Who controls, in words: "You control", "Anna controls", "Everybody controls". */
+/** Returns "You control", "Anna controls" or "Everybody controls". */
 export function controlLabel({ control, hasControl }: Roles): string {
   if (hasControl) return "You control";
   return control?.controller ? `${control.controller} controls` : "Everybody controls";
 }
 
-/** Why this viewer's controls are disabled; empty where they are not. */
+/** Returns why this viewer's controls are disabled; empty if they are enabled. */
 export function refusalReason({ control, mayChange }: Roles): string {
   return mayChange ? "" : `${control?.controller} controls this session: ask for control, or fork it under "Share".`;
 }
 
-/** This viewer's part in a session: enters it under their name, stays, and asks for what roles allow. */
+/**
+ * This viewer's participation in a session: joins with the user's name, renews it, and requests and hands over control.
+ */
 export class Participation {
   readonly roles = new Signal<Roles>(rolesOf(undefined, ""));
-  /** What the server last had against it; empty when all is well. */
+  /** The last refusal of the server; empty after a successful call. */
   readonly errorMessage = new Signal("");
   private name = "";
   private lastState = "";
@@ -68,7 +70,10 @@ export class Participation {
     controller.session.subscribe((session) => this.update(session?.control));
   }
 
-  /** A session's state comes every second: buttons are not made anew under somebody's finger when nothing changed. */
+  /**
+   * Session states arrive every second; roles are only set if something changed, so that buttons are not replaced while
+   * they are pressed.
+   */
   private update(control: Control | undefined): void {
     const controlJson = control && toJsonString(ControlSchema, { ...control, expireTime: undefined });
     const state = `${this.name} ${controlJson}`;
@@ -77,7 +82,7 @@ export class Participation {
     this.roles.set(rolesOf(control, this.name));
   }
 
-  /** Enters where this person has a name, and says again and again that they are there. */
+  /** Joins the session if the user has a name, and renews the participation. */
   async run(): Promise<void> {
     for (;;) {
       if (this.name !== "" || this.identity.name !== "") await this.enter(this.identity.name);
@@ -85,7 +90,7 @@ export class Participation {
     }
   }
 
-  /** Whether the others see this viewer under that name from now on. */
+  /** Joins the session under this name; returns true on success. */
   async enter(name: string): Promise<boolean> {
     return this.call(async () => {
       const answer = await this.api.control.enterSession({ ...this.session, name, timeToLive });

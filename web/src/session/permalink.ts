@@ -3,7 +3,7 @@ import type { Api } from "../connection/api";
 import { type Parameters, ParametersSchema } from "../gen/phrenic/v1/parameters_pb";
 import type { Session } from "../gen/phrenic/v1/session_pb";
 
-/** What a simulation can be run again from: the same scene with the same parameters comes to the same state, bit for bit. */
+/** The inputs of a simulation: the same scene with the same parameters reaches the same state, bit for bit. */
 export interface RunRecipe {
   scene: string;
   hash: string;
@@ -11,10 +11,10 @@ export interface RunRecipe {
   tick: number;
 }
 
-/** Steps taken in one call, so that progress can be told. */
+/** Steps per call, between which progress is reported. */
 const stride = 1000;
 
-/** The query of an address that runs this session again from its start, with its present parameters, to its tick. */
+/** Returns the query string that runs this session again from its start, with its current parameters, to its tick. */
 export function permalinkOf({ scene, parameters, tick }: Session, hash: string): string {
   const json =
     parameters === undefined ? {} : (toJson(ParametersSchema, parameters, { useProtoFieldName: true }) as JsonObject);
@@ -22,7 +22,7 @@ export function permalinkOf({ scene, parameters, tick }: Session, hash: string):
   return `?${query}`;
 }
 
-/** What an address asks to be run again; nothing where it names no scene. Error where it makes no sense. */
+/** Parses an address; undefined if it names no scene. Throws Error for invalid values. */
 export function recipeOf(address: URL): RunRecipe | undefined {
   const get = (name: string) => address.searchParams.get(name) ?? "";
   if (get("scene") === "") return undefined;
@@ -32,7 +32,10 @@ export function recipeOf(address: URL): RunRecipe | undefined {
   return { scene: get("scene"), hash: get("hash"), parameters, tick };
 }
 
-/** Runs a recipe: the id of a paused session at its tick. `progress` hears how far it is, 0 to 1. */
+/**
+ * Runs a recipe and returns the id of the paused session. `progress` is called with a fraction from 0 to 1. Throws
+ * Error if the scene has another hash.
+ */
 export async function rerun(api: Api, recipe: RunRecipe, progress: (part: number) => void): Promise<string> {
   const source = { source: { case: "name" as const, value: recipe.scene } };
   const { session } = await api.sessions.createSession({ source, parameters: recipe.parameters });

@@ -13,22 +13,25 @@ import { CoalescingSender } from "../timing/coalescing_sender";
 type PullValues = MessageInitShape<typeof PullSchema>;
 type ParameterValues = Omit<MessageInitShape<typeof ParametersSchema>, "$typeName">;
 
-/** How fast to play: simulated seconds a second, or as fast as the machine can. */
+/** Playback speed: simulated seconds per second, or as fast as possible. */
 export type Speed = number | "fastest";
 
-/** Farther apart two sessions do not find together by themselves [s]: the server's limit, too. */
+/** Largest time difference that is caught up by steps [s]; the server has the same limit. */
 const maxTimeDifference = 2;
 
-/** What a viewer asks of one session; each answer is shown at once, each refusal in the server's words. */
+/**
+ * Controls one session: playback, parameters, pulls and copies. Each response updates `session`; each refusal sets
+ * `notice`.
+ */
 export class SessionController {
   readonly session = new Signal<Session | undefined>(undefined);
-  /** What the server last had to say against or about what was asked; empty when all is well. */
+  /** The last refusal or warning of the server; empty after a successful call. */
   readonly notice = new Signal("");
   private readonly updates: CoalescingSender<ParameterValues>;
   private readonly pulls: CoalescingSender<Record<string, PullValues>>;
-  /** What this viewer changed. */
+  /** The parameter changes of this viewer. */
   readonly changes = new UndoHistory();
-  /** Another session that plays, pauses, steps and is reset with this one. */
+  /** Another session that plays, pauses, steps and resets with this one. */
   companion: SessionController | undefined;
 
   constructor(
@@ -36,7 +39,7 @@ export class SessionController {
     readonly sessionId: string,
     private readonly clock: Clock,
   ) {
-    // Whatever became of a change, the controls show what holds.
+    // The controls show the actual values after each change, also after a refused one.
     const showAll = () => this.session.set(this.session.value);
     this.updates = new CoalescingSender<ParameterValues>((change) => this.send(change), clock, showAll);
     this.pulls = new CoalescingSender(
@@ -46,46 +49,46 @@ export class SessionController {
     );
   }
 
-  /** Takes in the state of the session, unless it is older than what is known and `fresh` is not said. */
+  /** Sets the session state unless it is older than the known one. `fresh` accepts any state, for a new connection. */
   receive(session: Session | undefined, fresh = false): void {
     const known = this.session.value;
     if (session === undefined) return;
     if (fresh) this.notice.set("");
     if (!fresh && known !== undefined) {
       if (session.revision < known.revision) return;
-      // Control changes beside all else: a state may be new and still be older in this.
+      // Control has its own revision: a newer state may contain older control information.
       if ((session.control?.revision ?? 0n) < (known.control?.revision ?? 0n)) session.control = known.control;
     }
     this.session.set(session);
   }
 
-  /** Takes in who controls the session, unless that is older than what is known. */
+  /** Sets who controls the session unless it is older than the known state. */
   receiveControl(control: Control): void {
     const known = this.session.value;
     if (known === undefined || control.revision < (known.control?.revision ?? 0n)) return;
     this.session.set({ ...known, control });
   }
 
-  /** With a companion each waits for the other where it gets ahead. */
+  /** Plays; with a companion, each session waits for the other. */
   play(speed: Speed): Promise<void> {
     void this.companion?.playSynchronised(speed, this.sessionId);
     return this.playSynchronised(speed, this.companion?.sessionId);
   }
 
-  /** With a companion both come to rest at the same instant. */
+  /** Pauses; with a companion, both stop at the same simulated time. */
   async pause(): Promise<void> {
     await Promise.all([this.pauseThis(), this.companion?.pauseThis()]);
     await this.alignTimes();
   }
 
-  /** Two that play and have come apart stand still where the one behind has caught up, and go on in step. */
+  /** Pauses both sessions, lets the one behind catch up, and plays on in step. */
   async resynchronise(): Promise<void> {
     const speed = this.currentSpeed;
     await this.pause();
     await this.play(speed);
   }
 
-  /** With a companion both have stepped as far in the end, also where one was still at its last steps. */
+  /** Steps; with a companion, both end at the same simulated time. */
   async step(ticks: number): Promise<void> {
     await Promise.all([this.stepThis(ticks), this.companion?.stepThis(ticks)]);
     await this.alignTimes();
@@ -103,7 +106,7 @@ export class SessionController {
     this.updates.push({ [name]: value });
   }
 
-  /** Takes this viewer's last change back, or does again what was taken back. */
+  /** Reverts the last change of this viewer. */
   undo(): void {
     this.setAll(this.changes.undo());
   }
@@ -112,44 +115,47 @@ export class SessionController {
     this.setAll(this.changes.redo());
   }
 
-  /** Every parameter back to what a session of this scene starts with. */
+  /** Sets all parameters to the initial values of the scene. */
   async resetAll(): Promise<void> {
     const start = await this.startValues();
     if (start !== undefined) await this.recordChange(() => this.send(start));
   }
 
-  /** Pulls a vertex by a force [N] from now on; zero lets go of it. */
+  /** Pulls a vertex with a constant force [N]; zero releases it. */
   pull(body: string, vertex: number, [x, y, z]: [number, number, number]): void {
     this.pulls.push({ [`${body}:${vertex}`]: { body, vertex, force: { x, y, z } } });
   }
 
-  /** The page goes: what waits to be sent goes now. */
+  /** Sends pending changes immediately, before the page is closed. */
   flush(): void {
     this.updates.flush();
     this.pulls.flush();
   }
 
-  /** Lets go of every vertex, whoever pulls it. */
+  /** Releases all pulled vertices, also those of other viewers. */
   releasePulls(): Promise<void> {
     return this.call(() => this.api.sessions.pullSession({ sessionId: this.sessionId, releaseOthers: true }));
   }
 
-  /** Sets at once and resolves when it holds: for what must come before something else. */
+  /** Sets parameters immediately and resolves when they are applied. */
   apply(parameters: ParameterValues): Promise<void> {
     return this.send(parameters);
   }
 
-  /** Whether this viewer's own change of `name` is still on its way. */
+  /** True if this viewer's change of `name` is not answered yet. */
   pending(name: ParameterName): boolean {
     return this.updates.pending(name);
   }
 
-  /** Sets what belongs to one of the scene's presets. */
+  /** Sets the parameters of one of the scene's presets. */
   usePreset(preset: string): Promise<void> {
     return this.recordChange(() => this.send({}, preset));
   }
 
-  /** Another session that stands where this one stands, playing where this one plays; nothing where there is none. */
+  /**
+   * Creates a copy of this session in its current state, playing if this one plays. Returns its id, or undefined on
+   * failure.
+   */
   async fork(): Promise<string | undefined> {
     const fork = await this.createFork();
     if (fork !== undefined && this.playing) await fork.play(this.currentSpeed);
@@ -157,8 +163,8 @@ export class SessionController {
   }
 
   /**
-   * A fork to be shown beside this session, by a preset where one is named: both start from one instant, and play in step
-   * where this one plays.
+   * Creates a copy to compare with, with a preset if one is named: both start at the same time and play in step if this
+   * session plays. Returns its id, or undefined on failure.
    */
   async forkForComparison(preset = ""): Promise<string | undefined> {
     const [playing, speed] = [this.playing, this.currentSpeed];
@@ -174,7 +180,7 @@ export class SessionController {
     return this.session.value?.state === SessionState.PLAYING;
   }
 
-  /** How fast it plays, or would. */
+  /** The current or last playback speed. */
   private get currentSpeed(): Speed {
     return this.session.value?.speed || "fastest";
   }
@@ -202,7 +208,7 @@ export class SessionController {
     return this.call(() => this.api.sessions.stepSession({ sessionId: this.sessionId, ticks: BigInt(ticks) }));
   }
 
-  /** Of two that stand the one behind goes on to where the other is, where that is near. */
+  /** Lets the paused session that is behind step to the time of the other, if the difference is small. */
   private async alignTimes(): Promise<void> {
     const { companion } = this;
     const apart = (companion?.session.value?.time ?? 0) - (this.session.value?.time ?? 0);
@@ -216,7 +222,7 @@ export class SessionController {
     if (values !== undefined) this.updates.push(values);
   }
 
-  /** Takes note of what `change` makes of the parameters. */
+  /** Records the parameter changes that `change` causes for undo. */
   private async recordChange(change: () => Promise<void>): Promise<void> {
     const before = { ...this.session.value?.parameters } as unknown as Values;
     await change();
@@ -227,7 +233,7 @@ export class SessionController {
     if (changed.length > 0) this.changes.record(part(before), part(after), this.clock.now());
   }
 
-  /** The values that a session of this scene starts with. */
+  /** Returns the initial parameters of the scene. */
   async startValues(): Promise<ParameterValues | undefined> {
     try {
       return (await this.describeScene()).parameters;
@@ -237,7 +243,7 @@ export class SessionController {
     }
   }
 
-  /** The scene's ways to breathe; none for a scene that is not in the server's catalogue. */
+  /** Returns the scene's presets; empty for a scene that is not in the server's catalogue. */
   async presets(): Promise<Preset[]> {
     try {
       return (await this.describeScene()).scene?.presets ?? [];
@@ -268,7 +274,7 @@ export class SessionController {
       this.receive(session);
       this.notice.set(notice ?? "");
     } catch (error) {
-      // That the server is gone is said by the connection.
+      // The connection reports an unreachable server.
       if (!isUnreachable(error)) this.notice.set(errorText(error));
     }
   }

@@ -6,10 +6,10 @@ import type { Clock } from "../timing/clock";
 
 export type StudyKind = "error" | "stability" | "cost" | "streaming";
 
-/** The studies of the server: asks for them, follows those that are not done, cancels. */
+/** The studies on the server: lists, starts, watches and cancels them. */
 export class Studies {
   readonly all = new Signal<Study[]>([]);
-  /** Why the last thing asked for was not done. */
+  /** The error of the last call; empty on success. */
   readonly errorMessage = new Signal("");
   private readonly watched = new Set<string>();
 
@@ -26,13 +26,13 @@ export class Studies {
     });
   }
 
-  /** Has a catalogue scene studied with these parameters. */
+  /** Starts a study of a catalogue scene with these parameters. */
   async start(kind: StudyKind, scene: string, parameters: Parameters | undefined): Promise<void> {
     await this.call(async () => {
       const { study } = await this.api.studies.createStudy({
         source: { source: { case: "name", value: scene } },
         parameters,
-        // The meshes of the thesis' sizes take minutes to make, and have nothing of this scene.
+        // The meshes of the thesis' sizes take minutes to generate and are independent of this scene.
         what: kind === "cost" ? { case: kind, value: { leaveOutSizes: true } } : { case: kind, value: {} },
       });
       if (study === undefined) return;
@@ -41,20 +41,20 @@ export class Studies {
     });
   }
 
-  /** Cancels it where it has not ended, and forgets it. */
+  /** Cancels a running study and deletes it. */
   async remove(studyId: string): Promise<void> {
     await this.call(() => this.api.studies.deleteStudy({ studyId }));
     this.all.set(this.all.value.filter(({ id }) => id !== studyId));
   }
 
-  /** A study with its result, once it is done. */
+  /** Returns a study with its result when it is finished. */
   async result(studyId: string): Promise<Study | undefined> {
     for await (const { study } of this.api.studies.watchStudy({ studyId }))
       if (study && isFinished(study)) return study;
     return undefined;
   }
 
-  /** Its tables and plots as one HTML file. */
+  /** Returns its tables and plots as one HTML file. */
   async page(studyId: string): Promise<string> {
     return (await this.api.studies.getStudyPage({ studyId })).html;
   }

@@ -2,7 +2,7 @@ import { type Api, errorText } from "../connection/api";
 import type { SurfaceReport } from "../gen/phrenic/v1/inspect_pb";
 import { Signal } from "../state/signal";
 
-/** A file as browsers hand it over. */
+/** A file from the browser. */
 export type LocalFile = Pick<File, "name" | "size" | "arrayBuffer">;
 
 export type UploadProgress =
@@ -13,16 +13,16 @@ export type UploadProgress =
 
 const chunkBytes = 1 << 20;
 
-/** Gives the server surface files, one at a time; a file that it has already is not sent again. */
+/** Uploads surface files, one at a time; files that the server has already are not sent again. */
 export class Uploads {
-  /** Endings of the files that the server reads, with their dots. */
+  /** Extensions of the file formats that the server reads, with dots. */
   readonly extensions = new Signal<string[]>([]);
   readonly progress = new Signal<UploadProgress>({ kind: "idle" });
   private latestUpload = 0;
 
   constructor(private readonly api: Api) {}
 
-  /** Asks the server what it reads. */
+  /** Loads the list of file formats from the server. */
   async loadFormats(): Promise<void> {
     const answer = await this.api.uploads.listSurfaceFormats({}).catch(() => undefined);
     if (answer !== undefined) this.extensions.set(answer.formats.map(({ ending }) => ending));
@@ -58,7 +58,7 @@ export class Uploads {
   }
 }
 
-/** In hexadecimal; empty where the page's address does not let browsers work it out (neither https nor this machine). */
+/** Returns the digest in hexadecimal; empty if the page is not in a secure context (https or localhost). */
 async function sha256(content: Uint8Array<ArrayBuffer>): Promise<string> {
   if (globalThis.crypto?.subtle === undefined) return "";
   const digest = new Uint8Array(await crypto.subtle.digest("SHA-256", content));

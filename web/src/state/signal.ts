@@ -1,4 +1,4 @@
-/** A value that tells its listeners when it changes. */
+/** An observable value. */
 export class Signal<T> {
   private readonly listeners = new Set<(value: T) => void>();
 
@@ -13,7 +13,7 @@ export class Signal<T> {
     for (const listener of [...this.listeners]) listener(value);
   }
 
-  /** Calls `listener` now and with every change; the result stops that. */
+  /** Calls `listener` now and after each change. Returns a function that unsubscribes. */
   subscribe(listener: (value: T) => void): () => void {
     this.listeners.add(listener);
     listener(this.current);

@@ -1,11 +1,11 @@
-/** Values over simulated time, the last `span` seconds of them: what graphs show. */
+/** Values over the last `span` seconds of simulated time. */
 export class TimeSeries {
   readonly times: number[] = [];
   readonly series = new Map<string, number[]>();
 
   constructor(readonly span: number) {}
 
-  /** Adds the values at `time` [s]. Time that goes back, or other names, start afresh. */
+  /** Adds values at `time` [s]. Starts again if time goes back or the names change. */
   add(time: number, values: [name: string, value: number][]): void {
     const last = this.times.at(-1);
     if (last !== undefined && time === last) return;
@@ -17,7 +17,7 @@ export class TimeSeries {
     if (this.times[0] < time - this.span) this.discard(this.indexAt(time - this.span));
   }
 
-  /** The first place whose time is `time` [s] or later. */
+  /** Returns the first index with a time of `time` [s] or later. */
   indexAt(time: number): number {
     let [low, high] = [0, this.times.length];
     while (low < high) {

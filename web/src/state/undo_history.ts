@@ -1,6 +1,6 @@
 import { Signal } from "./signal";
 
-/** Some parameters by name. */
+/** Parameter values by name. */
 export type Values = Record<string, number | boolean>;
 
 interface Change {
@@ -9,18 +9,18 @@ interface Change {
   at: number;
 }
 
-/** Changes of one parameter that follow each other so closely are one change: a drag over a slider [ms]. */
+/** Changes of the same parameters within this interval are merged, such as a drag of a slider [ms]. */
 const mergeInterval = 1000;
 const maxChanges = 100;
 
-/** What this viewer changed, so that it can be taken back and done again; others' changes are theirs. */
+/** The undo history of this viewer's changes; those of others are not included. */
 export class UndoHistory {
-  /** Whether there is something to take back, and something to do again. */
+  /** Whether undo and redo are possible. */
   readonly state = new Signal({ undo: false, redo: false });
   private readonly done: Change[] = [];
   private undone: Change[] = [];
 
-  /** Takes note of a change at `now` [ms] from `before` to `after`, of which the same names count. */
+  /** Records a change at `now` [ms]; `before` and `after` have the same names. */
   record(before: Values, after: Values, now: number): void {
     const last = this.done.at(-1);
     const same = last !== undefined && sameNames(last.after, after) && now - last.at < mergeInterval;
@@ -31,7 +31,7 @@ export class UndoHistory {
     this.notify();
   }
 
-  /** What to set to take the last change back. */
+  /** Returns the values that undo the last change. */
   undo(): Values | undefined {
     const change = this.done.pop();
     if (change !== undefined) this.undone.push({ ...change, at: -Infinity });
@@ -39,7 +39,7 @@ export class UndoHistory {
     return change?.before;
   }
 
-  /** What to set to do again what was taken back last. */
+  /** Returns the values that redo the last undone change. */
   redo(): Values | undefined {
     const change = this.undone.pop();
     if (change !== undefined) this.done.push(change);

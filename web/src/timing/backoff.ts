@@ -1,4 +1,4 @@
-/** Waiting times between attempts: they double from `first` to `longest`, each shortened by up to half at random. */
+/** Exponential backoff with jitter: delays double from `first` to `maximum`, each reduced by up to half at random. */
 export class Backoff {
   private attempt = 0;
 
@@ -8,7 +8,7 @@ export class Backoff {
     private readonly random: () => number = Math.random,
   ) {}
 
-  /** The next wait [ms]. The jitter keeps a class of viewers from returning to a restarted server in one instant. */
+  /** Returns the next delay [ms]. Jitter prevents that all viewers of a class reconnect at the same moment. */
   next(): number {
     const whole = Math.min(this.maximum, this.first * 2 ** this.attempt);
     this.attempt = Math.min(this.attempt + 1, 30);

@@ -1,8 +1,8 @@
-/** The outside world's time, passed in so that tests need not wait. */
+/** An injectable clock, so that tests do not wait. */
 export interface Clock {
   /** Milliseconds since 1970. */
   now(): number;
-  /** Resolves after `milliseconds`, or at once when `signal` is aborted. */
+  /** Resolves after `milliseconds`, or immediately when `signal` is aborted. */
   sleep(milliseconds: number, signal?: AbortSignal): Promise<void>;
 }
 

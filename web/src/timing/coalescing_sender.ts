@@ -1,15 +1,15 @@
 import type { Clock } from "./clock";
 
 /**
- * Sends changes of named values at most once an interval and one at a time; what waits is overwritten by what is newer.
- * A drag over a slider thus becomes a few calls, and the last value always arrives.
+ * Sends changes of named values at most once per interval and one call at a time; newer values replace queued ones. A
+ * drag of a slider thus causes few calls, and the last value is always sent.
  */
 export class CoalescingSender<T extends object> {
   private queued: Partial<T> = {};
   private inFlight: Partial<T> = {};
   private running = false;
 
-  /** `send` handles its own errors; `settled` hears when what was sent is no longer pending. */
+  /** `send` handles its own errors; `onSettled` is called when a call has ended. */
   constructor(
     private readonly send: (change: Partial<T>) => Promise<void>,
     private readonly clock: Clock,
@@ -22,14 +22,14 @@ export class CoalescingSender<T extends object> {
     if (!this.running) void this.run();
   }
 
-  /** Sends at once what waits, also beside what is underway: there is no later. */
+  /** Sends queued changes immediately, also during another call, before the page is closed. */
   flush(): void {
     const last = this.queued;
     this.queued = {};
     if (Object.keys(last).length > 0) void this.send(last);
   }
 
-  /** Whether a change of `name` has not been answered yet. */
+  /** True if a change of `name` is queued or not answered yet. */
   pending(name: keyof T): boolean {
     return name in this.queued || name in this.inFlight;
   }

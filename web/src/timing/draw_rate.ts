@@ -1,15 +1,15 @@
-/** Beats after a drawing that are further apart than this are a weak machine's [ms]. */
+/** Mean interval after a drawing above which a machine counts as slow [ms]. */
 const slowInterval = 42;
-/** What one beat counts for. */
+/** Weight of one interval in the moving average. */
 const smoothing = 0.1;
 const maxInterval = 200;
 
-/** Whether the machine draws fast enough for pictures between frames: a weak one draws only those that came. */
+/** Measures whether the machine draws fast enough for interpolated frames; a slow one draws only received frames. */
 export class DrawRate {
   private average = 1000 / 60;
   private last: number | undefined;
 
-  /** Takes note of a beat at `now` [ms] if the one before it drew. */
+  /** Records an animation frame at `now` [ms]; `drew` tells whether the previous one was drawn. */
   recordFrame(now: number, drew: boolean): void {
     if (drew && this.last !== undefined)
       this.average += smoothing * (Math.min(now - this.last, maxInterval) - this.average);

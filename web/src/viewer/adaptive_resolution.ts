@@ -1,13 +1,13 @@
-/** Beats further apart than this are slow [ms]. */
+/** Interval above which an animation frame is slow [ms]. */
 const slowInterval = 70;
-/** Slow beats in a row before the picture gets coarser, and time at rest before it is drawn once in full [ms]. */
+/** Slow frames in a row before the resolution is reduced, and idle time before one drawing in full resolution [ms]. */
 const maxSlowFrames = 6;
 const restDelay = 400;
 const minRatio = 0.5;
 
 /**
- * Pixels drawn for each CSS pixel. A machine that cannot keep up gets fewer of them while things move, so that the page
- * stays alive, and the full number as soon as the picture stands still.
+ * Device pixels per CSS pixel. A slow machine draws fewer pixels during motion, so that the page stays responsive, and
+ * the full number when the scene is at rest.
  */
 export class AdaptiveResolution {
   private movingRatio: number;
@@ -25,7 +25,7 @@ export class AdaptiveResolution {
     return this.currentRatio;
   }
 
-  /** Takes note of a beat at `now` [ms] and whether it draws; true where `ratio` changes with it. */
+  /** Records an animation frame at `now` [ms] and whether it is drawn. Returns true if `ratio` changes. */
   recordFrame(now: number, draws: boolean): boolean {
     const steady = draws && this.lastDrawn === this.lastFrame;
     if (steady) this.judge(now - this.lastFrame);

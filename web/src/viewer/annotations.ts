@@ -4,20 +4,20 @@ import type { BodyView } from "./body_view";
 import { planeAxes } from "./named_views";
 import type { Viewer } from "./viewer";
 
-/** Names stand so far beside what they name, and at least so far apart [CSS pixels]. */
+/** Distance of a label from its anchor, and between labels [CSS pixels]. */
 const labelOffset = 36;
 const labelSpacing = 20;
-/** About the width of a letter [CSS pixels]. */
+/** Mean character width [CSS pixels]. */
 const letterWidth = 7.5;
 
-/** A layer as annotations see it. */
+/** The properties of a layer that annotations use. */
 export interface LabelledLayer {
   layer: string;
   title: string;
   visible: boolean;
 }
 
-/** What is written over the picture: names of the layers, and of a flat scene the axes of its plane. */
+/** An SVG over the canvas with the names of the layers and, for planar scenes, axes. */
 export class Annotations {
   readonly element = svg("svg", { class: "annotations" });
   private readonly names = svg("g", { class: "names" });
@@ -30,7 +30,7 @@ export class Annotations {
     this.element.append(this.axes, this.names);
   }
 
-  /** Another scene, or other layers that are seen. */
+  /** Sets the layers, for another scene or another visibility. */
   setLayers(layers: LabelledLayer[]): void {
     this.anchors = layers.flatMap((layer) => (layer.visible ? (labelAnchor(this.viewer, layer) ?? []) : []));
     this.draw();
@@ -60,7 +60,7 @@ export class Annotations {
       .sort((a, b) => a.y - b.y)
       .flatMap(({ x, y, layer }) => {
         last = Math.max(y, last + labelSpacing);
-        // Where it would leave the picture, it stands on the other side.
+        // A label that would leave the canvas is placed on the other side.
         const side = x + labelOffset + letterWidth * layer.title.length > width ? -1 : 1;
         const [toX, toY] = [x + side * labelOffset, last];
         const line = svg("polyline", { points: `${x},${y} ${toX - 4 * side},${toY}` });
@@ -69,7 +69,7 @@ export class Annotations {
       });
   }
 
-  /** Only where the camera looks straight at the plane, so that lengths in it are true. */
+  /** Axes are drawn only if the camera looks perpendicularly at the plane, so that lengths are true. */
   private drawAxes(): SVGElement[] {
     const { bounds, rig } = this.viewer;
     const plane = bounds.isEmpty() ? undefined : planeAxes(bounds);
@@ -90,7 +90,7 @@ export class Annotations {
   }
 }
 
-/** A side of the scene's box with its numbers [m]. */
+/** An axis along the bounding box with ticks [m]. */
 function ruler(
   { min, max }: THREE.Box3,
   axis: "x" | "y" | "z",
@@ -115,7 +115,7 @@ function ruler(
   return parts;
 }
 
-/** Of a layer the vertex that rests farthest to the patient's left, of those that no cut takes away. */
+/** Returns the vertex of a layer that is farthest to the patient's left at rest and not clipped. */
 function labelAnchor(
   viewer: Viewer,
   layer: LabelledLayer,

@@ -10,8 +10,8 @@ import { ThickLines } from "./thick_lines";
 import { VertexColors } from "./vertex_colors";
 
 /**
- * One body on the screen. Everything that lies on its vertices shares one position buffer, so that a frame is one copy
- * and one upload however many overlays are on.
+ * The three.js objects of one body. All objects share one position buffer, so that a frame needs one copy and one
+ * upload regardless of the overlays.
  */
 export class BodyView implements OverlayHost {
   readonly group = new THREE.Group();
@@ -24,7 +24,7 @@ export class BodyView implements OverlayHost {
   private readonly overlays: Overlay[];
   private readonly thick: ThickLines[] = [];
 
-  /** `diagram` is for scenes of few vertices: every vertex and edge is drawn as well. */
+  /** `diagram` also draws every vertex and edge, for scenes of few vertices. */
   constructor(
     readonly body: Body,
     diagram: boolean,
@@ -46,20 +46,20 @@ export class BodyView implements OverlayHost {
     this.overlays = addOverlays(this);
   }
 
-  /** Pairs of vertex indices; found when somebody first asks, since few bodies show their edges. */
+  /** Pairs of vertex indices; computed on first use, since few bodies show their edges. */
   get edges(): Uint32Array<ArrayBuffer> {
     const { triangles, edges, rest } = this.body;
     this.knownEdges ??= triangles.length > 0 ? edgesOf(triangles, rest.length / 3) : edges;
     return this.knownEdges;
   }
 
-  /** Lines of some width, redrawn with every frame: only for few. */
+  /** Adds lines that are updated with every frame; only for few lines. */
   addThickLines(lines: ThickLines): void {
     this.thick.push(lines);
     this.group.add(lines.object);
   }
 
-  /** Geometry over this body's vertices; `index` picks some of them. */
+  /** Returns a geometry over this body's vertices; `index` selects some of them. */
   geometry(index?: Uint32Array<ArrayBuffer>): THREE.BufferGeometry {
     const geometry = new THREE.BufferGeometry().setAttribute("position", this.positions);
     if (index !== undefined) geometry.setIndex(new THREE.BufferAttribute(index, 1));
@@ -107,7 +107,7 @@ export class BodyView implements OverlayHost {
     this.normals.needsUpdate = true;
   }
 
-  /** Where the vertices are: x y z each. */
+  /** Returns the current positions, x y z per vertex [m]. */
   worldPositions(): ArrayLike<number> {
     if (this.body.placement !== Placement.RIGID) return this.positions.array;
     this.group.updateMatrixWorld();
@@ -123,11 +123,11 @@ export class BodyView implements OverlayHost {
   setOpacity(opacity: number): void {
     this.opacity = opacity;
     this.group.visible = opacity > 0;
-    // Paint is solid: through a clear one its scale could not be read.
+    // Field colours are opaque, since their scale could not be read through a transparent surface.
     if (this.surface !== undefined) setOpacity(this.surface, this.vertexColors?.active ? 1 : opacity);
   }
 
-  /** Colours of the vertices over the body's own: sRGB, three bytes each; undefined takes them away. */
+  /** Sets vertex colours, three sRGB bytes per vertex; undefined restores the body's own colours. */
   setColors(rgb: Uint8Array | undefined): void {
     this.vertexColors?.set(rgb);
     this.setOpacity(this.opacity);

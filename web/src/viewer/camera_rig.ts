@@ -3,19 +3,19 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { CameraPose } from "../geometry/camera_pose";
 import { cameraPosition, directionLetter, type FreeArea, openingView, planeAxes, type ViewName } from "./named_views";
 
-/** What the margins of the picture say about it. */
+/** The orientation and scale of a view. */
 export interface ViewOrientation {
   left: string;
   right: string;
   top: string;
   bottom: string;
-  /** CSS pixels a metre at the centre of the scene. */
+  /** CSS pixels per metre at the centre of the scene. */
   pixelsPerMetre: number;
-  /** The directions to the right, up and towards the eye. */
+  /** Unit vectors to the right, up and towards the camera. */
   axes: [THREE.Vector3, THREE.Vector3, THREE.Vector3];
 }
 
-/** How much of the picture panels hide at its edges [CSS pixels]. */
+/** Parts of the canvas that panels cover at its edges [CSS pixels]. */
 export interface Insets {
   left: number;
   top: number;
@@ -23,10 +23,10 @@ export interface Insets {
 }
 
 const flightDuration = 350;
-/** What part of the way to where somebody else looks from is left after one picture. */
+/** Fraction of the distance to the remote camera that remains after one frame. */
 const chaseRemainder = 0.7;
 
-/** The camera and its controls: orbit, zoom, pan, and gliding to named views. */
+/** The camera and its controls: orbit, zoom, pan, and transitions to named views. */
 export class CameraRig {
   readonly camera = new THREE.PerspectiveCamera(26, 1, 0.01, 100);
   private readonly controls: OrbitControls;
@@ -34,7 +34,7 @@ export class CameraRig {
   private center = new THREE.Vector3();
   private homeView: ViewName = "home";
   private freeArea: FreeArea = { width: 1, height: 1 };
-  /** The named view that the camera stands at or glides to, until a person moves it. */
+  /** The named view that the camera shows or moves to; undefined after the user moved it. */
   private namedView: ViewName | undefined;
   private extent = 1;
   private flat = false;
@@ -54,7 +54,7 @@ export class CameraRig {
     this.controls.addEventListener("start", () => (this.flight = this.namedView = this.remotePose = undefined));
   }
 
-  /** Fits the camera to a new scene, of which `points` are a fair sample. */
+  /** Fits the camera to a new scene; `points` is a sample of its vertices. */
   frame(points: THREE.Vector3[]): void {
     const box = new THREE.Box3().setFromPoints(points);
     this.points = points;
@@ -75,7 +75,7 @@ export class CameraRig {
     this.remotePose = undefined;
     this.controls.target.copy(this.center);
     const side = view === "home" ? this.homeView : view;
-    // A flat scene has its axes beside it.
+    // A planar scene needs room for its axes.
     const air = this.flat ? 0.84 : 1;
     const free = { width: air * this.freeArea.width, height: air * this.freeArea.height };
     const to = cameraPosition(side, this.points, this.center, this.camera, free);
@@ -85,7 +85,7 @@ export class CameraRig {
     this.onChange();
   }
 
-  /** The scene keeps to the middle of what panels leave of the picture. */
+  /** Centres the scene in the part of the canvas that panels do not cover. */
   resize({ left, top, bottom }: Insets): void {
     const width = Math.max(this.canvas.clientWidth, 1);
     const height = Math.max(this.canvas.clientHeight, 1);
@@ -96,18 +96,18 @@ export class CameraRig {
     if (this.namedView !== undefined) this.goTo(this.namedView, true);
   }
 
-  /** From the camera to what it looks at, and the extent of the scene [m]. */
+  /** Distance from the camera to its target, and the extent of the scene [m]. */
   get depth(): { distance: number; extent: number } {
     return { distance: this.camera.position.distanceTo(this.controls.target), extent: this.extent };
   }
 
-  /** Where a place is on the picture [CSS pixels]. */
+  /** Projects a point [m] to the canvas [CSS pixels]. */
   project(point: THREE.Vector3): [x: number, y: number] {
     const { x, y } = point.clone().project(this.camera);
     return [((x + 1) / 2) * this.canvas.clientWidth, ((1 - y) / 2) * this.canvas.clientHeight];
   }
 
-  /** Stands where another rig stands that shows the same scene. */
+  /** Copies the camera of another view of the same scene. */
   copyFrom({ camera, controls }: CameraRig): void {
     const apart = this.camera.position.distanceTo(camera.position) + this.controls.target.distanceTo(controls.target);
     if (apart < 1e-5 * this.extent) return;
@@ -122,7 +122,7 @@ export class CameraRig {
     return { eye: plain(this.camera.position), target: plain(this.controls.target) };
   }
 
-  /** Goes where somebody else looks from; smoothly, as their places come a few times a second. */
+  /** Moves smoothly to a remote camera, whose poses arrive a few times per second. */
   moveTo(pose: CameraPose): void {
     this.flight = this.namedView = undefined;
     this.remotePose = pose;
@@ -137,7 +137,7 @@ export class CameraRig {
     this.onChange();
   }
 
-  /** Moves what moves by itself. */
+  /** Advances transitions and damping to `now` [ms]. */
   update(now: number): void {
     if (this.remotePose !== undefined) this.chase(this.remotePose);
     if (this.flight !== undefined) this.fly(this.flight, now);
@@ -147,7 +147,7 @@ export class CameraRig {
   private fly({ from, to, start }: { from: THREE.Vector3; to: THREE.Vector3; start: number }, now: number): void {
     const { target } = this.controls;
     const part = THREE.MathUtils.smootherstep((now - start) / flightDuration, 0, 1);
-    // Along the sphere, not through the patient.
+    // Moves along a sphere and not through the patient.
     const distance = THREE.MathUtils.lerp(from.distanceTo(target), to.distanceTo(target), part);
     const away = from.clone().sub(target).lerp(to.clone().sub(target), part);
     if (away.lengthSq() < 1e-12) away.copy(to).sub(target);
@@ -156,7 +156,7 @@ export class CameraRig {
     this.onChange();
   }
 
-  /** Orbits by so many radians, and comes nearer by the factor `zoom`: for the keyboard. */
+  /** Orbits by these angles [rad] and zooms by a factor, for the keyboard. */
   nudge(azimuth: number, polar: number, zoom: number): void {
     this.flight = this.namedView = undefined;
     const { target } = this.controls;
@@ -172,7 +172,7 @@ export class CameraRig {
   }
 
   orientation(): ViewOrientation {
-    this.camera.updateMatrixWorld(); // not only when the next picture is drawn
+    this.camera.updateMatrixWorld(); // also before the next drawing
     const axis = (i: number) => new THREE.Vector3().setFromMatrixColumn(this.camera.matrixWorld, i);
     const [right, up, back] = [axis(0), axis(1), axis(2)];
     const { distance } = this.depth;

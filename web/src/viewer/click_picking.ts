@@ -3,11 +3,11 @@ import type { VertexRef } from "../geometry/vertices";
 import type { BodyView } from "./body_view";
 import { pickVertex, pointerOf } from "./picking";
 
-/** A pointer that goes farther [CSS pixels] or stays down longer [ms] than this turns the picture. */
+/** A pointer that moves farther [CSS pixels] or stays down longer [ms] than this turns the view. */
 const maxMovement = 5;
 const maxDuration = 500;
 
-/** Clicks on what is seen pick a vertex; one beside everything picks none. */
+/** Calls `picked` with the vertex under each click; undefined if there is none. */
 export function enablePicking(
   canvas: HTMLCanvasElement,
   camera: THREE.Camera,

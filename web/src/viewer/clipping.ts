@@ -1,13 +1,13 @@
 import * as THREE from "three";
 
-/** The planes of anatomy, and no cut. */
+/** The anatomical planes, or no clipping. */
 export type CutKind = "none" | "sagittal" | "coronal" | "transverse";
 
 export interface Cut {
   kind: CutKind;
-  /** Where it lies, 0 to 1 from one end of the scene to the other. */
+  /** Position of the plane, 0 to 1 across the scene. */
   fraction: number;
-  /** Which side is taken away. */
+  /** Selects the side that is clipped. */
   flipped: boolean;
 }
 
@@ -17,7 +17,7 @@ const normals: Record<Exclude<CutKind, "none">, THREE.Vector3> = {
   transverse: new THREE.Vector3(0, 0, -1),
 };
 
-/** The plane of a cut through a scene within `box`: what it looks away from is taken away. */
+/** Returns the clipping plane through a scene within `box`; its negative side is clipped. */
 export function clippingPlane({ kind, fraction, flipped }: Cut, box: THREE.Box3): THREE.Plane | undefined {
   if (kind === "none") return undefined;
   const normal = normals[kind].clone();
@@ -26,7 +26,7 @@ export function clippingPlane({ kind, fraction, flipped }: Cut, box: THREE.Box3)
   return new THREE.Plane().setFromNormalAndCoplanarPoint(normal, at);
 }
 
-/** Where it lies along its axis [m]. */
+/** Returns the coordinate of the plane along its axis [m]. */
 export function planeCoordinate({ kind, fraction }: Cut, box: THREE.Box3): number {
   const axis = ({ sagittal: "x", coronal: "y", transverse: "z", none: "x" } as const)[kind];
   return THREE.MathUtils.lerp(box.min[axis], box.max[axis], fraction);

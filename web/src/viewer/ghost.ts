@@ -9,7 +9,7 @@ interface Colors {
   emissive: string;
 }
 
-/** Surfaces that are seen through: the moving tissue as it was at another moment, or what it is compared with. */
+/** Translucent surfaces: the deformable bodies in another state, or a compared surface. */
 export class TranslucentSurfaces {
   readonly object = new THREE.Group();
 
@@ -17,13 +17,13 @@ export class TranslucentSurfaces {
     this.object.renderOrder = 3;
   }
 
-  /** A surface that stands still. */
+  /** Shows a fixed surface. */
   showSurface({ positions, triangles }: Surface): void {
     this.clear();
     this.object.add(translucentMesh(positions, triangles, this.colors));
   }
 
-  /** Those of `bodies` that move by themselves; at rest where `arrays` is undefined. */
+  /** Shows the streamed ones of `bodies`; at rest if `arrays` is undefined. */
   show(bodies: Body[], arrays: FrameArrays | undefined): void {
     this.clear();
     for (const body of bodies) {
@@ -43,7 +43,7 @@ export class TranslucentSurfaces {
   }
 }
 
-/** A surface that is dense at its outline and clear where it faces the eye. */
+/** A mesh that is denser at its silhouette and clearer where it faces the camera. */
 function translucentMesh(positions: Float32Array, triangles: Uint32Array, colors: Colors): THREE.Mesh {
   const normals = new Float32Array(positions.length);
   computeNormals(positions, triangles, normals);

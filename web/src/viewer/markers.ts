@@ -1,7 +1,7 @@
 import * as THREE from "three";
 import type { Marker } from "../geometry/vertices";
 
-/** Balls of one size on the screen, over everything. */
+/** Spheres of constant size on the screen, drawn over everything. */
 export class Markers {
   readonly object = new THREE.Group();
   private readonly ball = new THREE.SphereGeometry(1, 16, 12);
@@ -16,7 +16,7 @@ export class Markers {
     });
   }
 
-  /** `size` is the radius at the centre of the scene [m]. */
+  /** Sets the radius at the centre of the scene [m]. */
   scale(size: number): void {
     for (const child of this.object.children) child.scale.setScalar(size);
   }

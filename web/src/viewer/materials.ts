@@ -1,6 +1,6 @@
 import * as THREE from "three";
 
-/** A lit surface. Where it is see-through it gets denser towards its outline, as glass and wet membranes do. */
+/** A lit surface material. Transparent surfaces are denser towards their silhouette, like glass and wet membranes. */
 export function surfaceMaterial(color: string, opacity: number): THREE.MeshStandardMaterial {
   const material = new THREE.MeshStandardMaterial({
     color,

@@ -1,6 +1,9 @@
 import * as THREE from "three";
 
-/** Views by name. The frame is the patient's: +x left, +y posterior, +z up, so that "front" has the left on the right. */
+/**
+ * Named views in the patient frame: +x left, +y posterior, +z superior. The "front" view has the patient's left on the
+ * right.
+ */
 export type ViewName = "home" | "front" | "back" | "left" | "right" | "top" | "bottom";
 
 const directions: Record<ViewName, [number, number, number]> = {
@@ -9,12 +12,15 @@ const directions: Record<ViewName, [number, number, number]> = {
   back: [0, 1, 0],
   left: [1, 0, 0],
   right: [-1, 0, 0],
-  // Not quite vertical: the camera must know which way is up.
+  // Not exactly vertical, since the camera needs an up direction.
   top: [0, -0.001, 1],
   bottom: [0, -0.001, -1],
 };
 
-/** The view that a scene opens with: a flat one is seen face on, everything else from the front, a little aside. */
+/**
+ * Returns the initial view of a scene: perpendicular to the plane of a planar scene, otherwise from the front and
+ * slightly to the side.
+ */
 export function openingView(box: THREE.Box3): ViewName {
   const size = box.getSize(new THREE.Vector3());
   const thin = 0.02 * Math.max(size.x, size.y, size.z);
@@ -23,7 +29,7 @@ export function openingView(box: THREE.Box3): ViewName {
   return size.x < thin ? "left" : "home";
 }
 
-/** The two axes of the plane that a flat scene lies in, to the right and up as it opens; nothing for any other. */
+/** Returns the horizontal and vertical axis of a planar scene; undefined for other scenes. */
 export function planeAxes(box: THREE.Box3): ["x" | "y", "y" | "z"] | undefined {
   const view = openingView(box);
   if (view === "top") return ["x", "y"];
@@ -31,13 +37,13 @@ export function planeAxes(box: THREE.Box3): ["x" | "y", "y" | "z"] | undefined {
   return view === "left" ? ["y", "z"] : undefined;
 }
 
-/** How much of the picture's width and height there is to fill, 0 to 1. */
+/** Fraction of the canvas' width and height that the scene may fill, 0 to 1. */
 export interface FreeArea {
   width: number;
   height: number;
 }
 
-/** Where the camera stands to see all of `points`, looking at `center` from the view's side. */
+/** Returns the camera position that shows all of `points`, looking at `center` from the view's side. */
 export function cameraPosition(
   view: ViewName,
   points: THREE.Vector3[],
@@ -64,7 +70,7 @@ const margin = 1.04;
 
 const letters = { x: ["R", "L"], y: ["A", "P"], z: ["I", "S"] };
 
-/** The anatomical letter for the way `direction` points, as on a radiologist's screen: L, R, A, P, S or I. */
+/** Returns the anatomical letter of a direction: L, R, A, P, S or I. */
 export function directionLetter(direction: THREE.Vector3): string {
   const axes = ["x", "y", "z"] as const;
   const axis = axes.reduce((best, each) => (Math.abs(direction[each]) > Math.abs(direction[best]) ? each : best));

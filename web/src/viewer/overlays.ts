@@ -3,25 +3,25 @@ import type { ActionLine, Body } from "../geometry/bodies";
 import { lineMaterial, pointMaterial } from "./materials";
 import { ThickLines } from "./thick_lines";
 
-/** What can be drawn over a body. */
+/** The kinds of overlay. */
 export const overlayKinds = ["wireframe", "links", "lines", "attachments"] as const;
 export type OverlayKind = (typeof overlayKinds)[number];
 
-/** What an overlay needs of the body that it lies on. */
+/** What an overlay uses of its body. */
 export interface OverlayHost {
   readonly body: Body;
   readonly group: THREE.Group;
-  /** x y z a vertex [m], updated with every frame. */
+  /** x y z per vertex [m], updated with every frame. */
   readonly positions: THREE.BufferAttribute;
   /** Pairs of vertex indices. */
   readonly edges: Uint32Array<ArrayBuffer>;
-  /** Geometry over the body's vertices; `index` picks some of them. */
+  /** Returns a geometry over the body's vertices; `index` selects some of them. */
   geometry(index?: Uint32Array<ArrayBuffer>): THREE.BufferGeometry;
   /** Adds lines that are updated with every frame. */
   addThickLines(lines: ThickLines): void;
 }
 
-/** Something drawn over a body that can be switched on; made the first time it is. */
+/** An overlay that can be switched; created when it is shown first. */
 export interface Overlay {
   kind: OverlayKind;
   show(on: boolean): void;
@@ -87,7 +87,7 @@ function points(view: OverlayHost, index: Uint32Array<ArrayBuffer>, color: strin
   return result;
 }
 
-/** Arrows from the origin of each line along its pull. */
+/** Arrows from the origin of each line in the direction of its force. */
 function arrows(lines: ActionLine[]): THREE.Group {
   const group = new THREE.Group();
   const material = new THREE.MeshBasicMaterial({ color: lineColor, depthTest: false, transparent: true, opacity: 0.9 });

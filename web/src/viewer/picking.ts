@@ -1,24 +1,24 @@
 import * as THREE from "three";
 
-/** A surface or a network as it stands: x y z a vertex and three vertices a triangle. */
+/** Current positions, x y z per vertex [m], and triangles of a body; a network has no triangles. */
 export interface Pickable {
   positions: ArrayLike<number>;
   triangles: ArrayLike<number>;
 }
 
-/** A vertex of the n-th of several bodies. */
+/** A vertex of one of several bodies. */
 export interface Picked {
   body: number;
   vertex: number;
   position: THREE.Vector3;
 }
 
-/** Beside a body, a vertex so near to the pointer still counts, in parts of the picture's height. */
+/** Picking radius beside a surface, as a fraction of the view's height. */
 const pickRadius = 0.03;
 
 /**
- * The vertex under the pointer (-1 to 1 from left to right and from bottom to top): of the triangle that is seen there
- * the corner nearest to the ray; where there is none, the nearest vertex within reach. Behind `cut` there is nothing.
+ * Returns the vertex under the pointer (-1 to 1 from left to right and from bottom to top): the corner nearest to the
+ * hit point of the front triangle, or the nearest vertex within the picking radius. Clipped parts are ignored.
  */
 export function pickVertex(
   pointer: THREE.Vector2,
@@ -31,7 +31,7 @@ export function pickVertex(
   return onSurface(caster.ray, bodies, cut) ?? nearestToPointer(pointer, camera, bodies, cut);
 }
 
-/** Whether a cut has taken this place away. */
+/** True if the position is clipped. */
 function isClipped(place: THREE.Vector3, cut: THREE.Plane | undefined): boolean {
   return cut !== undefined && cut.distanceToPoint(place) < 0;
 }
@@ -79,7 +79,7 @@ function nearestToPointer(
   return found;
 }
 
-/** Where the ray through the pointer meets the plane through `place` that faces the camera. */
+/** Returns the intersection of the pointer ray with the plane through `place` that is parallel to the screen. */
 export function dragPoint(pointer: THREE.Vector2, camera: THREE.Camera, place: THREE.Vector3): THREE.Vector3 {
   const caster = new THREE.Raycaster();
   caster.setFromCamera(pointer, camera);
@@ -87,7 +87,7 @@ export function dragPoint(pointer: THREE.Vector2, camera: THREE.Camera, place: T
   return caster.ray.intersectPlane(plane, new THREE.Vector3()) ?? place.clone();
 }
 
-/** Where an event is on the picture: -1 to 1 from left to right and from bottom to top. */
+/** Returns the pointer position of an event: -1 to 1 from left to right and from bottom to top. */
 export function pointerOf({ offsetX, offsetY }: PointerEvent, canvas: HTMLElement): THREE.Vector2 {
   const { clientWidth, clientHeight } = canvas;
   return new THREE.Vector2((2 * offsetX) / clientWidth - 1, 1 - (2 * offsetY) / clientHeight);

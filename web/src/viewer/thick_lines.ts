@@ -3,7 +3,7 @@ import { LineMaterial } from "three/addons/lines/LineMaterial.js";
 import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
 import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
 
-/** Lines some pixels wide between pairs of vertices (WebGL's own are one pixel wide everywhere). */
+/** Lines several pixels wide between pairs of vertices; native WebGL lines are one pixel wide. */
 export class ThickLines {
   readonly object: LineSegments2;
   private readonly ends: Float32Array;

@@ -1,6 +1,6 @@
 import * as THREE from "three";
 
-/** The colours of a surface: its own, one for all or one a vertex, until others are painted over them. */
+/** The colours of a surface: its own, uniform or per vertex, or those of a field. */
 export class VertexColors {
   private field: THREE.BufferAttribute | undefined;
 
@@ -17,7 +17,7 @@ export class VertexColors {
     return this.field !== undefined;
   }
 
-  /** sRGB, three bytes a vertex; undefined for the surface's own colours. */
+  /** Sets field colours, three sRGB bytes per vertex; undefined restores the surface's own colours. */
   set(rgb: Uint8Array | undefined): void {
     if (rgb !== undefined && this.field?.array.length === rgb.length) return this.write(rgb, this.field);
     this.field = rgb && new THREE.BufferAttribute(new Float32Array(rgb.length), 3);
@@ -39,7 +39,7 @@ export class VertexColors {
   }
 }
 
-/** Light for each byte of sRGB. */
+/** Linear light for each sRGB byte. */
 const linearLight = Float32Array.from(
   { length: 256 },
   (_, byte) => new THREE.Color().setRGB(byte / 255, 0, 0, THREE.SRGBColorSpace).r,

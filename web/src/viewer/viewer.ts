@@ -14,35 +14,35 @@ import type { ViewName } from "./named_views";
 import { type OverlayKind, overlayKinds } from "./overlays";
 import { type Pull, Pulling } from "./pulling";
 
-/** Scenes of at most so many vertices are diagrams rather than anatomy. */
+/** Scenes with at most this many vertices are drawn as diagrams. */
 const maxDiagramVertices = 2000;
 /** Radius of a marker [CSS pixels]. */
 const markerSize = 5;
 
-/** What a picture asks of its page. */
+/** What the viewer needs from its page. */
 export interface ViewerHost {
-  /** Goes on to the moment that is due; whether the picture changes by it. */
+  /** Advances to the frame that is due; returns true if the display changes. */
   advance(): boolean;
-  /** That moment. */
+  /** Returns the frame to display. */
   frame(): FrameArrays | undefined;
-  /** Hears of a frame before it is drawn for the first time. */
+  /** Called before a frame is drawn for the first time. */
   beforeDraw?(frame: FrameArrays): void;
-  /** Hears of every picture. */
+  /** Called after each drawing. */
   afterDraw(compass: ViewOrientation): void;
-  /** How much of the canvas panels hide. */
+  /** Returns the parts of the canvas that panels cover. */
   insets(): Insets;
-  /** Whether the person asked for less motion. */
+  /** True if the user prefers reduced motion. */
   reducedMotion(): boolean;
 }
 
 /**
- * The picture. It draws only when something changed, on the browser's own beat, so a hidden tab draws nothing and any
- * number of frames between two beats cost one drawing.
+ * Draws the scene with three.js. Draws only after changes and in animation frames, so that a hidden tab draws nothing
+ * and several received frames cause one drawing.
  */
 export class Viewer {
   readonly rig: CameraRig;
   private readonly scene = new THREE.Scene();
-  /** Depth by haze: what lies behind fades a little into the background. */
+  /** Depth cue: distant parts fade slightly into the background. */
   private readonly fog = new THREE.Fog("#1f262d");
   private readonly renderer: THREE.WebGLRenderer;
   private views: BodyView[] = [];
@@ -55,7 +55,7 @@ export class Viewer {
   private box = new THREE.Box3();
   private dirty = true;
   private drawn = 0;
-  /** When the first picture with a frame was drawn, since the page was asked for [ms]; -1 before. */
+  /** Time of the first drawing that shows a frame, since navigation start [ms]; -1 before. */
   firstDrawTime = -1;
   private shown: FrameArrays | undefined;
 
@@ -69,7 +69,7 @@ export class Viewer {
       alpha: true,
       powerPreference: "high-performance",
     });
-    // No tone mapping: a layer has the colour that its swatch shows.
+    // No tone mapping, so that layers have the colours of their swatches.
     this.renderer.toneMapping = THREE.NoToneMapping;
     this.renderer.setPixelRatio(this.resolution.ratio);
     this.rig = new CameraRig(canvas, () => this.refresh(), host.reducedMotion);
@@ -80,12 +80,12 @@ export class Viewer {
     this.renderer.setAnimationLoop((now) => this.onAnimationFrame(now));
   }
 
-  /** Pictures drawn so far. */
+  /** Number of drawings so far. */
   get drawCount(): number {
     return this.drawn;
   }
 
-  /** Whether the scene is shown as a diagram, with every vertex and edge. */
+  /** Shows another scene. Returns true if it is drawn as a diagram, with every vertex and edge. */
   show(bodies: Body[]): boolean {
     for (const view of this.views) {
       this.scene.remove(view.group);
@@ -107,7 +107,7 @@ export class Viewer {
     return diagram;
   }
 
-  /** The bodies as they stand, and the box they rest in. */
+  /** The views of the bodies. */
   get bodies(): readonly BodyView[] {
     return this.views;
   }
@@ -116,12 +116,12 @@ export class Viewer {
     return this.box;
   }
 
-  /** Whether a cut has taken this place away. */
+  /** True if the current cut clips this position. */
   isClipped(place: THREE.Vector3): boolean {
     return this.renderer.clippingPlanes.some((plane) => plane.distanceToPoint(place) < 0);
   }
 
-  /** Draws at the next beat. */
+  /** Draws in the next animation frame. */
   refresh(): void {
     this.dirty = true;
   }
@@ -137,7 +137,7 @@ export class Viewer {
     this.refresh();
   }
 
-  /** Takes away what lies on one side of a plane; where that lies along its axis [m]. */
+  /** Clips one side of a plane. Returns its coordinate along its axis [m]. */
   setCut(cut: Cut): number {
     this.cut = cut;
     const plane = this.currentPlane();
@@ -146,14 +146,14 @@ export class Viewer {
     return planeCoordinate(cut, this.box);
   }
 
-  /** Shows bodies as they were in `arrays`, at rest, or not at all, as a ghost. */
+  /** Shows bodies as a ghost, in the state of `arrays` or at rest; undefined removes it. */
   setGhost(of: FrameArrays | "rest" | undefined, bodies: Body[]): void {
     if (of === undefined) this.ghost.clear();
     else this.ghost.show(bodies, of === "rest" ? undefined : of);
     this.refresh();
   }
 
-  /** Shows what bodies are compared with, or nothing. */
+  /** Shows the surface that a body is compared with; undefined removes it. */
   setComparedSurface(surface: Surface | undefined): void {
     if (surface === undefined) this.comparedSurface.clear();
     else this.comparedSurface.showSurface(surface);
@@ -165,13 +165,13 @@ export class Viewer {
     this.refresh();
   }
 
-  /** Paints bodies by name, sRGB, three bytes a vertex, and no other. */
+  /** Sets the vertex colours of bodies by name, three sRGB bytes per vertex; other bodies get their own colours. */
   setVertexColors(painted: ReadonlyMap<string, Uint8Array>): void {
     for (const view of this.views) view.setColors(painted.get(view.body.name));
     this.refresh();
   }
 
-  /** Dragging with the shift key pulls at the visible ones among the bodies of these names from now on. */
+  /** Enables pulling of visible bodies with these names by dragging with the shift key. */
   enablePulling(
     names: () => ReadonlySet<string>,
     pull: Pull,
@@ -182,7 +182,7 @@ export class Viewer {
     new Pulling(this.canvas, this.rig.camera, this.scene, views, pull, changed, plane, told);
   }
 
-  /** A click tells the vertex that is seen there from now on. */
+  /** Enables picking of vertices by clicks. */
   enablePicking(picked: (vertex: VertexRef | undefined) => void): void {
     enablePicking(
       this.canvas,
@@ -197,7 +197,7 @@ export class Viewer {
     this.rig.goTo(view);
   }
 
-  /** The picture as it stands, without what lies over it. */
+  /** Returns the current view as PNG, without annotations. */
   capture(): Promise<Blob | null> {
     this.renderer.render(this.scene, this.rig.camera);
     const { width, height } = this.canvas;
@@ -206,12 +206,12 @@ export class Viewer {
     if (pen === null) return Promise.resolve(null);
     pen.fillStyle = "#1f262d";
     pen.fillRect(0, 0, width, height);
-    // Before the browser takes the picture off the canvas.
+    // The drawing buffer is valid only until the browser composes the page.
     pen.drawImage(this.canvas, 0, 0);
     return new Promise((done) => copy.toBlob(done, "image/png"));
   }
 
-  /** Takes the canvas as it is now, and what panels leave of it. */
+  /** Adapts to the current size of the canvas and of the covered parts. */
   resize(): void {
     const { clientWidth, clientHeight } = this.canvas;
     if (clientWidth === 0 || clientHeight === 0) return;
@@ -255,7 +255,7 @@ function verticesOf(bodies: Body[]): number {
   return bodies.reduce((sum, { rest }) => sum + rest.length / 3, 0);
 }
 
-/** Some thousands of vertices at rest, a fair sample of where the bodies are. */
+/** Returns some thousands of rest positions as a sample of the scene. */
 function sampleVertices(bodies: Body[]): THREE.Vector3[] {
   const stride = Math.max(1, Math.floor(verticesOf(bodies) / 4000));
   return bodies.flatMap(({ rest }) => {

@@ -5,7 +5,7 @@ import type { Comparison, ComparisonProgress, Comparisons } from "../../session/
 import { Legend } from "../view/legend";
 import { distanceTable } from "./distance_table";
 
-/** Over the picture: how a comparison goes on, and what came of it, with the scale of its colours. */
+/** A card with the progress and the result of a comparison, and its colour scale. */
 export class ComparisonCard {
   readonly element = make("section", { id: "comparison", className: "card", ariaLabel: "Distance to a surface" });
   private readonly progressElement = make("div", { className: "work" });
@@ -20,7 +20,7 @@ export class ComparisonCard {
     comparisons.result.subscribe((result) => this.showResult(result));
   }
 
-  /** Says where the session is meanwhile [s]. */
+  /** Shows the current time of the session [s] if it differs from the compared one. */
   show(time: number | undefined): void {
     const result = this.comparisons.result.value;
     const elsewhere = result !== undefined && time !== undefined && time !== result.time;
@@ -39,7 +39,7 @@ export class ComparisonCard {
 
   private showRunning(file: string, done: number): void {
     const bar = make("progress", { max: 1, ariaLabel: "Progress of the comparison" });
-    // A bar without a value says that nobody knows how long it takes.
+    // A progress bar without a value is indeterminate.
     if (done > 0) bar.value = done;
     const stop = make("button", { type: "button", onclick: () => this.comparisons.stop() }, "Stop");
     const words = make("p", {}, "Comparing with ", make("b", {}, file), "…");

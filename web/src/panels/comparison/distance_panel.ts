@@ -10,7 +10,7 @@ const units: [label: string, millimetres: number][] = [
   ["metres", 1000],
 ];
 
-/** Chooses a file to compare with, its unit, and the body that is compared; files may be dropped as well. */
+/** Selects a file, its unit, and the body that is compared with it. Files may also be dropped on the page. */
 export function distancePanel(
   comparisons: Comparisons,
   bodies: Signal<Body[]>,
@@ -20,7 +20,7 @@ export function distancePanel(
   file.ariaLabel = "File to compare with";
   file.onchange = () => {
     const [chosen] = file.files ?? [];
-    // The same file may be chosen again, changed meanwhile.
+    // Allows to select the same file again after it changed.
     if (chosen !== undefined) void comparisons.compare(chosen).finally(() => (file.value = ""));
   };
   const open = make("button", { type: "button", id: "compare", onclick: () => file.click() }, "Compare with a file…");

@@ -3,7 +3,7 @@ import { make } from "../../dom/elements";
 import { type SurfaceDistance, SurfaceDistanceSchema } from "../../gen/phrenic/v1/compare_pb";
 import { quantity } from "../../gen/phrenic/v1/options_pb";
 
-/** Rows of measures by their names in the schema: from the body, from the file, and of both. */
+/** Measures by their names in the schema: body to file, file to body, and both. */
 const rows: [label: string, names: (string | undefined)[]][] = [
   ["Mean", ["mean_a_to_b", "mean_b_to_a", "assd"]],
   ["RMS", ["rms_a_to_b", "rms_b_to_a", undefined]],
@@ -16,13 +16,13 @@ const heads: [head: string, title: string][] = [
   ["Both", "Of both directions together"],
 ];
 
-/** Three decimals, or fewer of large numbers; what is not a number does not exist. */
+/** Formats three decimals, one for 100 mm and more; "none" for NaN. */
 export function formatMillimetres(value: number): string {
   if (Number.isNaN(value)) return "none";
   return value.toFixed(value < 100 ? 3 : 1);
 }
 
-/** The measures of a comparison in mm, each with its name in the schema. */
+/** Returns a table of the measures of a comparison [mm] with their names in the schema. */
 export function distanceTable(distance: SurfaceDistance): HTMLTableElement {
   const titles = heads.map(([head, title]) => make("th", { scope: "col", title }, head));
   const head = make("tr", {}, make("th", { scope: "col" }, "mm"), ...titles);

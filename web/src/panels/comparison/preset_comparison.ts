@@ -5,8 +5,8 @@ import type { SessionController } from "../../session/session_controller";
 import type { Signal } from "../../state/signal";
 
 /**
- * A list of the scene's ways to breathe: the chosen one is shown beside this session, in a copy of it from the present
- * instant. Where there are two pictures already, it is the second one's.
+ * A list of the scene's presets. Selecting one opens a copy of the session with this preset in a second view, or sets
+ * the preset of the second view if there is one.
  */
 export function presetComparison(
   controller: SessionController,

@@ -7,7 +7,7 @@ import { activePreset, presetLabel } from "../../parameters/presets";
 import type { SessionController } from "../../session/session_controller";
 import type { Signal } from "../../state/signal";
 
-/** Two pictures may be so far apart before it is said [s]. */
+/** Smallest time difference between the views that is shown [s]. */
 const maxTimeDifference = 0.05;
 
 interface Actions {
@@ -15,10 +15,10 @@ interface Actions {
   close(): void;
 }
 
-/** What stands above two pictures: how each breathes, when, how far its domes are, and what the second has otherwise. */
+/** Headers of two views: preset, time, dome descent, and how the parameters of the second session differ. */
 export class ViewHeaders {
   readonly element: HTMLElement;
-  /** Each is named by how it breathes, where a preset says that; else by its session. */
+  /** The names of the active presets; otherwise the session ids. */
   private readonly names = [make("b"), make("b")];
   private readonly times = [make("span", { className: "time" }), make("span", { className: "time" })];
   private readonly domes = [0, 1].map(() => make("span", { className: "domes", title: domeHelp }));
@@ -40,7 +40,7 @@ export class ViewHeaders {
     presets.subscribe(() => this.compare());
   }
 
-  /** Where both stand by now. */
+  /** Shows the times and dome heights of both frames. */
   update(frames: [Frame | undefined, Frame | undefined]): void {
     const [here, there] = frames.map((frame) => frame?.time ?? 0);
     frames.forEach((frame, i) => (this.domes[i].textContent = domeLabel(frame)));
@@ -71,7 +71,7 @@ function buttons(sessionId: string, { swap, close }: Actions): HTMLElement[] {
   ];
 }
 
-/** "right dome 19.5 mm down, left dome 2.1 mm up"; empty where the scene tells of no dome. */
+/** Returns "right dome 19.5 mm down, left dome 2.1 mm up"; empty if the scene has no dome. */
 export function domeLabel(frame: Frame | undefined): string {
   if (frame === undefined) return "";
   return domeHeights(frame)

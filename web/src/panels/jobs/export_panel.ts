@@ -11,7 +11,7 @@ const valueNames: [ExportValues, string][] = [
   [ExportValues.DISPLACEMENTS, "displacements"],
 ];
 
-/** Chooses a format, a length and the bodies, and records the motion from now on into a file. */
+/** Selects format, duration and bodies, and records the motion into a file. */
 export function exportPanel(exports: Exports, bodies: Signal<Body[]>): HTMLElement {
   const start = make("button", { type: "button", id: "export", onclick: () => void exports.start() }, "Export…");
   const rows = [
@@ -78,7 +78,7 @@ function numberRow(id: string, label: string, placeholder: string, choose: (valu
   return row(id, label, entry);
 }
 
-/** How far it is, and the file when it is there. */
+/** Shows the progress and a link to the finished file. */
 function progress(exports: Exports, start: HTMLElement): HTMLElement {
   const place = make("div", { id: "export-work" });
   exports.progress.subscribe((work) => {

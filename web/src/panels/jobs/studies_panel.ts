@@ -16,7 +16,7 @@ const kinds: [StudyKind, string, string][] = [
   ],
 ];
 
-/** Studies of the session's scene with its parameters: started, followed, cancelled and shown from here. */
+/** Starts, lists, cancels and shows studies of the session's scene with its current parameters. */
 export function studiesPanel(studies: Studies, controller: SessionController): HTMLElement {
   const kind = make("select", { id: "study-kind" });
   kind.append(...kinds.map(([value, label, title]) => make("option", { value, title }, label)));
@@ -73,7 +73,7 @@ function doneButtons({ id }: Study, studies: Studies, view: StudyView): HTMLElem
   return [open, save];
 }
 
-/** A study over the whole page, in place. */
+/** A dialog that shows a study. */
 class StudyView {
   readonly element = make("dialog", { className: "study-view", ariaLabel: "Study" });
   private readonly paper = make("div");
@@ -85,7 +85,7 @@ class StudyView {
 
   async show(study: Study | undefined): Promise<void> {
     if (study === undefined) return;
-    // Plots come when the first study is looked at.
+    // The plotting code is loaded when the first study is opened.
     const { embed } = await import("../../report/embedded");
     embed(this.paper, study);
     this.element.showModal();

@@ -3,7 +3,7 @@ import { section } from "../../dom/rows";
 import type { SurfaceReport } from "../../gen/phrenic/v1/inspect_pb";
 import type { UploadProgress, Uploads } from "../../session/uploads";
 
-/** Chooses a surface file for the server, and says how scenes name it and whether it will do. */
+/** Uploads a surface file to the server, and shows its name for scenes and the report on the surface. */
 export function uploadPanel(uploads: Uploads): HTMLElement {
   const file = make("input", { type: "file", id: "upload-file", hidden: true });
   file.ariaLabel = "Surface file to upload";

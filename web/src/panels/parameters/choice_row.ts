@@ -3,7 +3,7 @@ import { resetButton } from "../../dom/rows";
 import type { ChoiceControl } from "../../parameters/controls";
 import type { RowEvents } from "./number_row";
 
-/** One of several values as a person chooses it: label, list, reset. */
+/** A row to select one of several values: label, list, reset. */
 export class ChoiceRow {
   readonly element: HTMLElement;
   private readonly list: HTMLSelectElement;
@@ -19,7 +19,7 @@ export class ChoiceRow {
     this.element = make("div", { className: "choice-row" }, name, this.list, reset);
   }
 
-  /** Shows the session's value; a list that is open stays as it is where nothing changed. */
+  /** Shows the session's value; does not disturb an open list if the value is unchanged. */
   show(value: number): void {
     if (this.list.value !== String(value)) this.list.value = String(value);
   }

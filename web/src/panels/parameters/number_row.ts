@@ -3,14 +3,14 @@ import { resetButton } from "../../dom/rows";
 import type { NumberControl } from "../../parameters/controls";
 import { formatNumber, rangeError, sliderPosition, sliderValue } from "../../parameters/numbers";
 
-/** What a row tells its owner. */
+/** Events of a row. */
 export interface RowEvents {
-  /** The person set `value`. */
+  /** The user set `value`. */
   set(value: number): void;
   reset(): void;
 }
 
-/** A number as a person sets it: label, slider, typed entry, unit, reset, and a word where the entry is refused. */
+/** A row to set a number: label, slider, entry, unit, reset, and an error message for invalid entries. */
 export class NumberRow {
   readonly element: HTMLElement;
   private readonly slider: HTMLInputElement;
@@ -56,7 +56,7 @@ export class NumberRow {
     return slider;
   }
 
-  /** Shows the session's value, unless the person has this very row in hand. */
+  /** Shows the session's value unless the user is editing this row. */
   show(value: number): void {
     if (this.dragging || document.activeElement === this.entry) return;
     this.slider.value = String(sliderPosition(this.control, value));

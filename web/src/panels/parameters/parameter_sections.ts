@@ -12,12 +12,12 @@ import { NumberRow } from "./number_row";
 import { PresetRow } from "./preset_row";
 import { pullRow } from "./pull_row";
 
-/** What a parameter of the solver has in its name; all others are the breath's. */
+/** Matches the names of the solver's parameters; all others belong to breathing. */
 const solverParameter = /integrator|step|solver/i;
 
 /**
- * The live parameters, one row for each field of the schema, but for those that nothing in the scene answers to. Another
- * viewer's changes move the rows.
+ * Sections with the live parameters, one row per field of the schema. Rows of parameters without effect in this scene
+ * are hidden. Rows follow the changes of other viewers.
  */
 export function parameterSections(
   controller: SessionController,
@@ -42,7 +42,7 @@ export function parameterSections(
   ];
 }
 
-/** Takes changes back, does them again, and takes everything back to the start. */
+/** Buttons to undo, redo and reset all parameters. */
 function changesRow(controller: SessionController): HTMLElement {
   const undo = button("Undo", () => controller.undo(), icon("undo"), "Undo");
   const redo = button("Redo", () => controller.redo(), icon("redo"), "Redo");
@@ -86,7 +86,7 @@ function parameterSwitch(control: SwitchControl, name: ParameterName, controller
   };
 }
 
-/** Back to what a session of this scene starts with. */
+/** Sets the parameter to the initial value of the scene. */
 async function reset(controller: SessionController, name: ParameterName): Promise<void> {
   const value = (await controller.startValues())?.[name];
   if (typeof value === "number" || typeof value === "boolean") controller.set(name, value);

@@ -5,7 +5,7 @@ import { isActive, presetLabel } from "../../parameters/presets";
 import type { SessionController } from "../../session/session_controller";
 import { Signal } from "../../state/signal";
 
-/** The scene's ways to breathe, a button each; hidden where it has none. The one that holds is pressed. */
+/** A button for each preset of the scene; hidden if there are none. The active preset is pressed. */
 export class PresetRow {
   readonly element = make("div", { className: "presets", id: "presets", role: "group", hidden: true });
   private scene = "";

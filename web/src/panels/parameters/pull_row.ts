@@ -1,7 +1,7 @@
 import { make } from "../../dom/elements";
 import type { SessionController } from "../../session/session_controller";
 
-/** How many pulls act on the session, whoever's they are, and a button that lets go of them; hidden where there are none. */
+/** The number of pulled vertices, by any viewer, and a button to release them; hidden if there are none. */
 export function pullRow(controller: SessionController): HTMLElement {
   const words = make("span");
   const letGo = make(

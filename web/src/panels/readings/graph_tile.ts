@@ -7,7 +7,7 @@ import { Plot, type PlotEvents } from "../../graphs/plot";
 import { graphData, type GraphData, type TimeSpan } from "../../graphs/window";
 import type { TimeSeries } from "../../state/time_series";
 
-/** One graph with its name, what its curves are and stand at, and buttons that save it. */
+/** One graph with its title, legend, current values, and buttons to save it. */
 export class GraphTile {
   readonly element: HTMLElement;
   private readonly plot: Plot;
@@ -24,7 +24,7 @@ export class GraphTile {
     this.readings = spec.curves.map(() => make("b"));
     const keys = spec.curves.map(({ name }, i) => this.key(name, i));
     const save = ["SVG", "CSV"].map((kind) => this.saveButton(kind as "SVG" | "CSV"));
-    // The one curve of a graph needs no name beside the graph's own.
+    // A single curve needs no legend.
     const alone = keys.length === 1;
     const title = make("h3", { title: spec.help ?? "" }, this.title(), ...(alone ? this.readings : []));
     const head = make("header", {}, title, make("div", { className: "save" }, ...save));
@@ -33,7 +33,7 @@ export class GraphTile {
     this.element.dataset.graph = spec.id;
   }
 
-  /** Shows a stretch of time; what is read off is at `place` of it, or at its end. */
+  /** Shows a time span with the values at index `place`, or at its end. */
   show(span: TimeSpan, place: number | undefined): void {
     this.data = graphData(this.spec, this.history, span);
     this.plot.show(this.data, span);
@@ -72,7 +72,7 @@ export class GraphTile {
   }
 }
 
-/** Three digits, and no zero before which a minus stands. */
+/** Formats three significant digits, with a minus sign only for numbers that are not zero. */
 function formatReading(value: number): string {
   const size = Math.abs(value);
   const text = value.toFixed(size >= 100 ? 0 : size >= 10 ? 1 : size >= 1 ? 2 : 3);

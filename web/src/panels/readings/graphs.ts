@@ -6,17 +6,17 @@ import type { TimeSpan } from "../../graphs/window";
 import { TimeSeries } from "../../state/time_series";
 import { GraphTile } from "./graph_tile";
 
-/** How much is kept, and how much may be shown at once [simulated s]. */
+/** Duration that is kept, and the durations that can be shown [simulated s]. */
 const kept = 120;
 const lengths = [6, 12, 30, 60, 120];
 
-/** What is drawn beside what comes with the frames: the vertices that this viewer follows. */
+/** The series of the vertices that this viewer tracks. */
 export interface TrackedSeries {
   spec: GraphSpec | undefined;
   history: TimeSeries;
 }
 
-/** Graphs of everything that comes with the frames, on one clock: they stand still, zoom and move on together. */
+/** Graphs of all values in the frames on a common time axis; they hold, zoom and resume together. */
 export class GraphsPanel {
   readonly element = make("div", { className: "graphs" });
   private readonly history = new TimeSeries(kept);
@@ -43,7 +43,7 @@ export class GraphsPanel {
     this.element.append(make("header", { className: "bar" }, title, this.words, this.length, this.pause), this.list);
   }
 
-  /** Every frame counts, however seldom graphs are drawn. */
+  /** Records every frame, also those between two drawings. */
   receive(frame: Frame): void {
     this.history.add(frame.time, valuesOf(frame));
     const { spec } = this.tracked;
@@ -59,7 +59,7 @@ export class GraphsPanel {
     this.resume();
   }
 
-  /** Draws what is new; cheap where nothing is. */
+  /** Draws new data; returns early if there is none. */
   draw(): void {
     const { times } = this.history;
     const last = times.at(-1) ?? 0;

@@ -3,13 +3,13 @@ import { section } from "../../dom/rows";
 import type { Frame } from "../../gen/phrenic/v1/frames_pb";
 import { displayUnit } from "../../graphs/units";
 
-/** Four significant digits in the unit that people use: "2.513 l". */
+/** Formats four significant digits in the unit of the user interface: "2.513 l". */
 export function readingText(value: number, unit: string): string {
   const [name, factor] = displayUnit(unit);
   return `${Number((factor * value).toPrecision(4))} ${name}`;
 }
 
-/** What the scene measures, one line each. */
+/** The scene's measures, one row each. */
 export class Measures {
   readonly element: HTMLElement;
   private readonly rows = make("tbody");

@@ -2,7 +2,7 @@ import { make } from "../../dom/elements";
 import { section } from "../../dom/rows";
 import type { Frame } from "../../gen/phrenic/v1/frames_pb";
 
-/** Probes: displacement from rest in the patient's directions [mm]. */
+/** The probes' displacements from rest in anatomical directions [mm]. */
 export class Probes {
   readonly element: HTMLElement;
   private readonly rows = make("tbody");

@@ -5,7 +5,7 @@ import { formatNumber } from "../../parameters/numbers";
 import type { SessionController } from "../../session/session_controller";
 import type { Signal } from "../../state/signal";
 
-/** Words over the picture when something is wrong: diverged, lost, refused; with the remedy where there is one. */
+/** Banners for a diverged session, a lost connection, a failed save and a refused call, with their remedies. */
 export function banners(
   controller: SessionController,
   link: Signal<ConnectionState>,
@@ -14,7 +14,7 @@ export function banners(
   const diverged = banner("alert", "diverged");
   let told: bigint | undefined;
   controller.session.subscribe((session) => {
-    // An alert is read aloud when it changes: once for each divergence, not with every word from the server.
+    // Screen readers read an alert whenever it changes, so it changes once per divergence.
     const tick = session?.divergence?.tick;
     if (tick === told) return;
     told = tick;
@@ -65,7 +65,7 @@ function divergenceMessage({ divergence, largestStableStep }: Session, controlle
   return [make("p", {}, make("b", {}, where), " ", sentence(remedy)), restart, halve];
 }
 
-/** What one step may err by where steps are halved [m]. */
+/** Error tolerance per step for adaptive step halving [m]. */
 const tolerance = 1e-5;
 const halvingHelp =
   "Sets the step tolerance: a step that errs by more than 0.01 mm is taken in halves, which takes longer";
@@ -76,13 +76,13 @@ async function restartHalving(controller: SessionController): Promise<void> {
   await controller.play(controller.session.value?.speed || "fastest");
 }
 
-/** The server's words as a sentence; words with an underscore are names and stay as they are. */
+/** Formats a server message as a sentence; names with an underscore keep their case. */
 function sentence(words: string): string {
   const named = /^\w*_/.test(words);
   return (named ? words : words.slice(0, 1).toUpperCase() + words.slice(1)).replace(/([^.!?])$/, "$1.");
 }
 
-/** The chosen part of the largest stable step, as the server itself chooses where a scene names no step. */
+/** Fraction of the largest stable step; the server's own default. */
 const stablePart = 0.9;
 
 async function restartStable(controller: SessionController, largest: number): Promise<void> {

@@ -6,7 +6,7 @@ import type { Signal } from "../../state/signal";
 
 const count = new Intl.NumberFormat("en");
 
-/** What the compile step made of the scene: what runs, what was left out and why, how large a step may be. */
+/** The report of the scene's compilation: what runs, what was left out and why, and the largest stable step. */
 export function compileReportPanel(report: Signal<CompileReport | undefined>): HTMLElement {
   const body = make("div", { className: "report" });
   report.subscribe((value) => body.replaceChildren(...(value === undefined ? [] : contents(value))));
@@ -58,7 +58,7 @@ function leftOut(report: CompileReport): HTMLElement {
   );
 }
 
-/** Where the time of the compile step went. */
+/** Duration of each compilation stage. */
 function times({ stages, compileSeconds }: CompileReport): HTMLElement {
   const part = (seconds: number) => Math.round((100 * seconds) / (compileSeconds || 1));
   const items = stages.map(({ name, seconds }): [string, string] => [

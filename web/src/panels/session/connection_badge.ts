@@ -4,7 +4,7 @@ import type { FrameRate } from "../../frames/frame_buffer";
 import type { Frame } from "../../gen/phrenic/v1/frames_pb";
 import { type Session, SessionState } from "../../gen/phrenic/v1/session_pb";
 
-/** Everything that the status shows, gathered a few times a second. */
+/** The values that the status displays show, collected a few times per second. */
 export interface Status {
   connection: ConnectionState;
   session: Session | undefined;
@@ -13,7 +13,7 @@ export interface Status {
   now: number;
 }
 
-/** The state of the connection in a pill: connecting, live with frames a second, age and error bound, or lost and retrying. */
+/** The connection state: connecting, live with frame rate, age and error bound, or lost and retrying. */
 export class ConnectionBadge {
   readonly element = make("button", { type: "button", id: "link", className: "pill" });
   private readonly words = make("span");
@@ -55,7 +55,7 @@ const rateTitle =
   "evenly between them, and how far a vertex may be from its place. " +
   "On a thin line there are fewer frames, then coarser ones.";
 
-/** "30 fps, 12+35 ms, ±0.1 mm". */
+/** Returns "30 fps, 12+35 ms, ±0.1 mm": rate, age plus display delay, error bound. */
 export function rateLabel({ framesPerSecond, age, delay, errorBound }: FrameRate): string {
   const words = [`${framesPerSecond} fps`];
   const held = Math.round(delay);
@@ -64,7 +64,7 @@ export function rateLabel({ framesPerSecond, age, delay, errorBound }: FrameRate
   return words.join(", ");
 }
 
-/** How many watch the session. */
+/** The number of viewers of the session. */
 export class ViewerCount {
   private readonly count = make("b", { id: "status-viewers" });
   private readonly noun = make("span");

@@ -9,7 +9,7 @@ import {
   type Roles,
 } from "../../session/participation";
 
-/** Says in the header who controls the session; opens the dialog about it. */
+/** A button in the header that shows who controls the session and opens the dialog. */
 export function controlBadge(participation: Participation, open: () => void): HTMLButtonElement {
   const words = make("span");
   const badge = make("button", { type: "button", id: "control-badge", className: "pill", onclick: open }, words);
@@ -22,7 +22,7 @@ export function controlBadge(participation: Participation, open: () => void): HT
   return badge;
 }
 
-/** Groups controls that change the session: disabled, with the reason, while somebody else controls it. */
+/** Groups controls that change the session; they are disabled with a reason while another participant has control. */
 export function controlledGroup(participation: Participation, ...children: (Node | string)[]): HTMLFieldSetElement {
   const group = make("fieldset", { className: "controlled" }, ...children);
   participation.roles.subscribe((roles) => {
@@ -32,7 +32,7 @@ export function controlledGroup(participation: Participation, ...children: (Node
   return group;
 }
 
-/** A dialog with one's name, who is there, and what one's role allows. */
+/** A dialog with the user's name, the participants, and the actions that the user's role allows. */
 export class ControlDialog {
   readonly element = make("dialog", { className: "chooser", id: "control", ariaLabel: "Who controls" });
   private readonly state = make("p", { id: "control-state" });

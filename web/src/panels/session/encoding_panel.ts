@@ -9,7 +9,7 @@ const encodings: [Codec, string, string][] = [
   [Codec.RAW, "As they are", "Every bit of float32: for comparing, on a good line."],
 ];
 
-/** How frames come over the line to this viewer. */
+/** Selects the encoding of frames for this viewer. */
 export function encodingPanel(choose: (codec: Codec) => void): HTMLElement {
   const list = make("select", { id: "stream-codec", title: "How frames come over the line" });
   list.append(...encodings.map(([codec, label, title]) => make("option", { value: String(codec), title }, label)));

@@ -1,7 +1,7 @@
 import { make } from "../../dom/elements";
 import type { SessionController } from "../../session/session_controller";
 
-/** Names the session and its scene, and opens the others. */
+/** A button with the title of the scene and the session id that opens the session chooser. */
 export function sessionButton(controller: SessionController, open: () => void): HTMLElement {
   const title = make("b");
   const id = make("span");

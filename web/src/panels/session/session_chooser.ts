@@ -2,7 +2,7 @@ import { type Api, errorText } from "../../connection/api";
 import { make } from "../../dom/elements";
 import { type SceneSummary, type Session, SessionState } from "../../gen/phrenic/v1/session_pb";
 
-/** A dialog that opens a session which runs already, or starts one of any scene that the server knows. */
+/** A dialog that opens a running session or starts a session of any scene in the server's catalogue. */
 export class SessionChooser {
   readonly element = make("dialog", { className: "chooser", ariaLabel: "Sessions and scenes" });
   private readonly sessions = make("ul");
@@ -33,7 +33,7 @@ export class SessionChooser {
         this.api.scenes.listScenes({}),
       ]);
       this.sessions.replaceChildren(...sessions.map((session) => this.sessionRow(session)));
-      // What breathes in several ways comes first.
+      // Scenes with several presets come first.
       const sorted = scenes.toSorted((a, b) => b.presets.length - a.presets.length);
       this.scenes.replaceChildren(...sorted.map((scene) => this.sceneRow(scene)));
     } catch (error) {

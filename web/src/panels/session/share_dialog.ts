@@ -4,16 +4,16 @@ import { permalinkOf } from "../../session/permalink";
 import type { SessionController } from "../../session/session_controller";
 import type { Signal } from "../../state/signal";
 
-/** What the dialog can have done. */
+/** What the dialog acts on. */
 export interface Sharing {
   controller: SessionController;
   report: Signal<CompileReport | undefined>;
-  /** Opens the page at this query. */
+  /** Opens the page with this query string. */
   open(query: string): void;
   photograph(): void;
 }
 
-/** A dialog with the links of this session, a copy of one's own, and a picture. */
+/** A dialog with links to this session, copies of it, and a screenshot. */
 export class ShareDialog {
   readonly element = make("dialog", { className: "chooser", id: "share", ariaLabel: "Share and copy" });
   private readonly session = linkRow("share-session", "This session, for others to join");
@@ -81,7 +81,7 @@ function linkRow(id: string, label: string) {
   entry.onfocus = () => entry.select();
   const copy = make("button", { type: "button", ariaLabel: `Copy the link: ${label}` }, "Copy");
   copy.onclick = async () => {
-    // Not every page may use the clipboard; what is selected can always be copied.
+    // The clipboard may be unavailable; selected text can always be copied.
     await navigator.clipboard?.writeText(entry.value).catch(() => entry.select());
     copy.textContent = "Copied";
     setTimeout(() => (copy.textContent = "Copy"), 1500);

@@ -2,15 +2,15 @@ import type { Api } from "../../connection/api";
 import type { Credentials } from "../../connection/credentials";
 import { make } from "../../dom/elements";
 
-/** Whether the server takes this browser as it is: it knows no users, knows this one, or a join link may do. */
+/** True if the server has no accounts, knows the user, or a join link may be sufficient. */
 async function isAdmitted(api: Api, access: Credentials): Promise<boolean> {
   const { accounts, name } = await api.access.getAccess({}, { timeoutMs: 8000 });
   return !accounts || name !== "" || (access.token === "" && access.joinLinks.length > 0);
 }
 
-/** Asks for the account's token, in `place`, until the server knows it; at once where none is needed. */
+/** Asks for the account token, in `place`, until the server accepts it. Returns immediately if none is needed. */
 export async function signIn(api: Api, access: Credentials, place: HTMLElement): Promise<void> {
-  // A server that does not answer is told of by whoever asks next.
+  // Errors of an unreachable server are reported by the next call.
   for (let first = true; !(await isAdmitted(api, access).catch(() => true)); first = false) {
     const entry = make("input", { type: "password", autocomplete: "current-password", required: true });
     const label = make("label", {}, "Your token ", entry);

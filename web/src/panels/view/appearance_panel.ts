@@ -11,7 +11,7 @@ import type { OverlayKind } from "../../viewer/overlays";
 import { cutRows } from "./cut_rows";
 import { projectorRow } from "./projector_row";
 
-/** What the view can be told. */
+/** The settings that the panel changes. */
 export interface AppearanceSettings {
   layerStyles: LayerStyles;
   overlays: Signal<ReadonlySet<OverlayKind>>;
@@ -36,7 +36,7 @@ const ghosts: [GhostKind, string][] = [
   ["now", "As it is now"],
 ];
 
-/** How this viewer sees the scene: colours, transparency, cut, ghost and what is drawn over it. */
+/** A panel for colours, transparency, clipping, ghost, overlays and labels. */
 export function appearancePanel(view: AppearanceSettings): HTMLElement {
   const ghost = choice("ghost", "Ghost", "The moving tissue as it was at another moment", ghosts, (kind) =>
     view.ghost.set(kind),
@@ -68,7 +68,7 @@ function coloringRow(coloring: Coloring, kinds: Signal<string[]>): HTMLElement {
   const row = choice("coloring-kind", "Colour by", help, options, (kind) =>
     coloring.choose(kind === "own" ? undefined : kind),
   );
-  // Which forces there are is known later, and changes where somebody pulls.
+  // The available kinds of force are known later, and change when a vertex is pulled.
   const group = make("optgroup", { label: "Force" });
   row.querySelector("select")?.append(group);
   kinds.subscribe((all) => {

@@ -3,7 +3,7 @@ import { fieldInfo } from "../../appearance/fields";
 import { make } from "../../dom/elements";
 import { Legend } from "./legend";
 
-/** Over the picture: what colours mean, and how far their scale goes. */
+/** A card with the colour scale of the selected field. */
 export function coloringCard(coloring: Coloring): HTMLElement {
   const legend = new Legend();
   const title = make("h2");

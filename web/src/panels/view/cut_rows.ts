@@ -10,7 +10,7 @@ const kinds: [CutKind, string][] = [
   ["transverse", "Transverse"],
 ];
 
-/** A plane that takes away one side of the scene: which, where, and which side. `cutAt` tells where it lies [m]. */
+/** Rows for a clipping plane: orientation, position and side. `cutAt` applies it and returns its position [m]. */
 export function cutRows(cutAt: (cut: Cut) => number): HTMLElement[] {
   const cut = new Signal<Cut>({ kind: "none", fraction: 0.5, flipped: false });
   const list = make("select", { id: "cut", title: "Take away what lies on one side of a plane" });

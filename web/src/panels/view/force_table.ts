@@ -2,7 +2,7 @@ import { make } from "../../dom/elements";
 import { forceKindLabel, type VertexForce } from "../../session/force_queries";
 import type { Signal } from "../../state/signal";
 
-/** The forces on a vertex by kind, a row each, and their sum last; hidden where they are not known. */
+/** A table of the forces on a vertex by kind, with the net force last; hidden if they are unknown. */
 export function forceTable(forces: Signal<VertexForce[]>): HTMLElement {
   const unit = make("th", { scope: "col" });
   const heads = ["Left", "Back", "Up"].map((text) => make("th", { scope: "col" }, text));
@@ -18,7 +18,7 @@ export function forceTable(forces: Signal<VertexForce[]>): HTMLElement {
   return table;
 }
 
-/** Newtons where one of them is large, else thousandths. */
+/** Returns newtons if a force is 1 N or more, otherwise millinewtons. */
 export function forceUnit(all: VertexForce[]): { name: string; factor: number } {
   const largest = Math.max(0, ...all.map(({ force }) => Math.hypot(...force)));
   return largest >= 1 ? { name: "N", factor: 1 } : { name: "mN", factor: 1000 };
@@ -29,7 +29,7 @@ function row({ kind, force }: VertexForce, factor: number): HTMLElement {
   return make("tr", {}, make("th", { scope: "row" }, forceKindLabel(kind)), ...cells);
 }
 
-/** Two decimals, and no sign before a zero. */
+/** Formats two decimals, without a minus sign for zero. */
 function formatForce(value: number): string {
   return value
     .toFixed(2)

@@ -2,7 +2,7 @@ import type { LayerStyle, LayerStyles } from "../../appearance/layer_styles";
 import { make } from "../../dom/elements";
 import { section } from "../../dom/rows";
 
-/** Visibility and opacity of every layer. */
+/** A panel for visibility and opacity of each layer. */
 export function layersPanel(layerStyles: LayerStyles): HTMLElement {
   const list = make("div", { className: "layers" });
   let shown = "";

@@ -1,7 +1,7 @@
 import type { ColorScale } from "../../appearance/color_scale";
 import { make } from "../../dom/elements";
 
-/** The colours of a scale beside their values. */
+/** The colours of a scale with its ticks. */
 export class Legend {
   readonly element: HTMLElement;
   private readonly bar = make("canvas", { width: 256, height: 1, role: "img" });

@@ -4,7 +4,7 @@ import type { ViewOrientation } from "../../viewer/camera_rig";
 const lengths = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50];
 const longest = 120;
 
-/** Anatomical letters at the edges of the picture, and a bar of known length. */
+/** Anatomical letters at the edges of the view, and a scale bar. */
 export class Margins {
   readonly elements: HTMLElement[];
   private readonly letters = {

@@ -4,7 +4,7 @@ import type { ViewName } from "../../viewer/named_views";
 
 type Triple = [number, number, number];
 
-/** Each side with its letter, its view, the way it faces and the way its letter stands. */
+/** Letter, view, normal and upward direction of each side. */
 const sides: [letter: string, name: string, view: ViewName, face: Triple, up: Triple][] = [
   ["A", "the front", "front", [0, -1, 0], [0, 0, 1]],
   ["P", "the back", "back", [0, 1, 0], [0, 0, 1]],
@@ -13,10 +13,10 @@ const sides: [letter: string, name: string, view: ViewName, face: Triple, up: Tr
   ["S", "above", "top", [0, 0, 1], [0, 1, 0]],
   ["I", "below", "bottom", [0, 0, -1], [0, -1, 0]],
 ];
-/** Half of its edge [CSS pixels]. */
+/** Half the edge length [CSS pixels]. */
 const half = 18;
 
-/** A cube that turns with the patient, lettered as radiologists do; each side leads to its view. */
+/** A cube that shows the patient's orientation with radiological letters; each side selects its view. */
 export class OrientationCube {
   readonly element = make("div", { id: "cube", role: "group", ariaLabel: "Sides" });
   private readonly cube = make("div", { className: "cube" });
@@ -35,7 +35,7 @@ export class OrientationCube {
   }
 
   show({ axes: [right, up, back] }: ViewOrientation): void {
-    // Columns are where the patient's axes point on the screen, whose y runs downwards.
+    // The columns are the patient's axes on the screen, where y points down.
     const column = (axis: "x" | "y" | "z"): Triple => [right[axis], -up[axis], back[axis]];
     const transform = matrix(column("x"), column("y"), column("z"), [0, 0, 0]);
     if (transform !== this.shown) this.cube.style.transform = this.shown = transform;

@@ -7,7 +7,7 @@ import type { VertexForce } from "../../session/force_queries";
 import type { Signal } from "../../state/signal";
 import { forceTable } from "./force_table";
 
-/** Over the picture: the vertex that was picked, where it is, and those that are followed. */
+/** A card with position, displacement and forces of the picked vertex, and the list of tracked vertices. */
 export class PickCard {
   readonly element = make("section", { id: "picked", className: "card", hidden: true, ariaLabel: "Picked vertex" });
   private readonly title = make("h2");

@@ -14,7 +14,7 @@ const speeds: [string, Speed][] = [
 ];
 const strides = [1, 10, 100, 1000];
 
-/** Play or pause, step, reset, and how fast. */
+/** Buttons to play, pause, step and reset, and the speed. */
 export function playbackPanel(controller: SessionController): HTMLElement {
   const speed = speedSelect(controller);
   const stride = make("select", { id: "stride", ariaLabel: "Ticks a step", title: "Ticks a step" });
@@ -60,7 +60,7 @@ function speedSelect(controller: SessionController): HTMLSelectElement {
   return select;
 }
 
-/** A speed that another client chose may not be in the list yet. */
+/** Adds a speed that another client selected if the list does not have it. */
 function show(select: HTMLSelectElement, speed: Speed): void {
   const value = String(speed);
   if (![...select.options].some((option) => option.value === value)) select.append(option(`${value}×`, value));

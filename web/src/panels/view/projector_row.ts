@@ -2,7 +2,7 @@ import { switchRow } from "../../dom/rows";
 
 const key = "phrenic-projector";
 
-/** A switch for large type and strong contrast, for a room that reads from afar; the browser remembers it. */
+/** A switch for large type and strong contrast, stored in the browser. */
 export function projectorRow(memory: Pick<Storage, "getItem" | "setItem"> = localStorage): HTMLElement {
   const turn = (on: boolean) => {
     document.documentElement.classList.toggle("projector", on);

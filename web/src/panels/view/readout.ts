@@ -32,7 +32,7 @@ export class Readout {
     this.element.querySelector<HTMLElement>(".links")!.hidden = session?.constraintResidual === undefined;
   }
 
-  /** Whether the breath goes in or out, by what was shown last; whoever looks back sees it the other way round. */
+  /** Returns whether the breath goes in or out, from the change since the last call; replay may go backwards. */
   private breathDirection(phase: number, breath: number): string {
     const gone = phase - this.last.phase;
     const later = gone - Math.round(gone) > 0;
@@ -47,7 +47,7 @@ export class Readout {
   }
 }
 
-/** The largest violation of a constraint [m] in words; below a micrometre it is as good as kept. */
+/** Returns the largest constraint violation [m] as text; "kept" below a micrometre. */
 export function residualLabel(metres: number | undefined): string {
   if (metres === undefined) return "";
   return metres < 1e-6 ? "kept" : `${(1000 * metres).toPrecision(2)} mm off`;

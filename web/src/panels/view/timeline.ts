@@ -2,10 +2,10 @@ import { button, make } from "../../dom/elements";
 import { icon } from "../../dom/icons";
 import type { FrameBuffer } from "../../frames/frame_buffer";
 
-/** Less than this is not worth looking back on [s]. */
+/** Shortest recording that can be replayed [s]. */
 const minSpan = 0.5;
 
-/** The last seconds as a slider: the picture stands where it is put, while the simulation does what it does. */
+/** A slider over the last seconds that replays earlier frames while the simulation continues. */
 export class Timeline {
   readonly element = make("div", { id: "timeline" });
   private readonly slider = make("input", { type: "range", id: "look-back", step: "any", ariaLabel: "Look back" });
@@ -24,7 +24,7 @@ export class Timeline {
     this.element.append(this.slider, this.words, this.live);
   }
 
-  /** One frame earlier, or later. */
+  /** Goes one frame back or forward. */
   stepFrame(by: -1 | 1): void {
     const { replayedFrame } = this.frames;
     if (by > 0 && replayedFrame === undefined) return;
@@ -38,7 +38,7 @@ export class Timeline {
   show(): void {
     const { span, replayedFrame } = this.frames;
     this.slider.disabled = span.end - span.start < minSpan;
-    // Where there is nothing to look back on, the knob stands at the end.
+    // Without a recording the slider is at its end.
     [this.slider.min, this.slider.max] = [String(Math.min(span.start, span.end - minSpan)), String(span.end)];
     const ago = replayedFrame === undefined ? 0 : span.end - replayedFrame.time;
     if (document.activeElement !== this.slider || replayedFrame === undefined)

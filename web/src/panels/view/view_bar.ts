@@ -9,7 +9,7 @@ const views: [ViewName, string][] = [
   ["top", "Top"],
 ];
 
-/** Buttons for the named views, and the keyboard's way around the picture. */
+/** Buttons for the named views, and the keys that move the camera. */
 export function viewBar(viewer: Viewer, canvas: HTMLElement): HTMLElement[] {
   canvas.addEventListener("keydown", (event) => {
     const nudge = nudges[event.key];
