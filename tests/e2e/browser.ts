@@ -60,11 +60,13 @@ export class ViewerPage {
     return viewer;
   }
 
+  /** Waits until a frame is drawn. */
   async waitForPicture(): Promise<void> {
     const drawn = () => (window.phrenic?.tick() ?? -1) >= 0 && (window.phrenic?.drawCount() ?? 0) > 1;
     await this.page.waitForFunction(drawn, null, { timeout: 60_000 });
   }
 
+  /** Returns the tick of the newest frame. */
   tick(): Promise<number> {
     return this.page.evaluate(() => window.phrenic!.tick());
   }
@@ -87,6 +89,7 @@ export class ViewerPage {
     await this.page.waitForSelector(`#link[data-link="${kind}"]`, { timeout: 60_000 });
   }
 
+  /** Waits for a frame with a tick above this one. */
   async waitForTick(above: number): Promise<void> {
     await this.page.waitForFunction((least) => window.phrenic!.tick() > least, above, { timeout: 30_000 });
   }
@@ -104,6 +107,7 @@ export class ViewerPage {
     await entry.blur();
   }
 
+  /** Returns the text of a parameter's entry. */
   value(parameter: string): Promise<string> {
     return this.page.inputValue(`#parameter-${parameter}-entry`);
   }
@@ -123,6 +127,7 @@ export class ViewerPage {
     });
   }
 
+  /** Closes the browser context of the page. */
   close(): Promise<void> {
     return this.page.context().close();
   }

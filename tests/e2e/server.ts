@@ -7,6 +7,7 @@ import { setTimeout as sleep } from "node:timers/promises";
 import { promisify } from "node:util";
 
 const here = import.meta.dirname;
+/** Folder for screenshots, logs and files of the tests. */
 export const outFolder = join(here, "out");
 
 /** A phrenicd process on free ports; its log is in tests/e2e/out. */
@@ -28,6 +29,7 @@ export class Server {
     return server;
   }
 
+  /** The address of the page. */
   get url(): string {
     return `http://127.0.0.1:${this.web}/`;
   }

@@ -30,6 +30,7 @@ import { StudyService, StudyState } from "../../../web/src/gen/phrenic/v1/study_
 type ComparisonEvent = MessageInitShape<typeof CompareResponseSchema>["event"];
 type Event = MessageInitShape<typeof WatchFramesResponseSchema>["event"];
 
+/** Returns the bytes of numbers in machine order. */
 export function bytesOf(numbers: Float32Array | Uint32Array): Uint8Array<ArrayBuffer> {
   return new Uint8Array(numbers.buffer.slice(0) as ArrayBuffer);
 }

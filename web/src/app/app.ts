@@ -128,6 +128,7 @@ export class App {
     window.phrenic = testHook(() => this.bodies.value, this.frames, this.viewer);
   }
 
+  /** Builds the page and connects to the server. */
   start(): void {
     this.buildStage();
     this.buildPanel();

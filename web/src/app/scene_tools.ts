@@ -110,6 +110,7 @@ export class SceneTools {
       this.overlays.set(new Set([...this.overlays.value, "links"]));
   }
 
+  /** Receives every frame, also those that are not displayed. */
   receive(frame: Frame): void {
     this.ghosts.receive(frame);
   }
@@ -129,6 +130,7 @@ export class SceneTools {
     if (arrays !== undefined) this.coloring.receive(this.time, arrays);
   }
 
+  /** Updates what depends on the camera. */
   afterDraw(compass: ViewOrientation): void {
     this.cube.show(compass);
     this.annotations.draw();

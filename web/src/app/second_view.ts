@@ -83,6 +83,7 @@ export class SecondView {
     if (!this.leadsCamera) this.viewer.rig.copyFrom(this.primary.viewer.rig);
   }
 
+  /** Adapts to the current size of the canvas. */
   resize(): void {
     this.viewer.resize();
   }

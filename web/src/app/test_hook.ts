@@ -26,6 +26,7 @@ declare global {
   }
 }
 
+/** Returns the hook of a page. */
 export function testHook(bodies: () => Body[], frames: FrameBuffer, viewer: Viewer): TestHook {
   const find = (name: string) => {
     const body = bodies().find((each) => each.name === name);

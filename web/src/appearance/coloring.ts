@@ -33,10 +33,12 @@ export class Coloring {
     this.colorizer.start(bodies);
   }
 
+  /** Sets the displayed frame at `time` [s]. */
   receive(time: number, arrays: FrameArrays): void {
     if (this.field.value !== undefined) this.colorizer.receive(time, arrays);
   }
 
+  /** Selects a field and fits the scale to it; undefined restores the bodies' own colours. */
   choose(kind: FieldKind | undefined): void {
     this.field.set(kind);
     this.fit();
@@ -51,6 +53,7 @@ export class Coloring {
     this.setTop(niceTop(this.colorizer.upperBounds(info.kind), info.smallestTop));
   }
 
+  /** Ends the scale at `top`, in the unit of the field; ignores values that are not positive. */
   setTop(top: number): void {
     const info = fieldInfo(this.field.value);
     if (info !== undefined && top > 0) this.scale.set(new ColorScale(top, info.unit, info.diverging));

@@ -8,8 +8,10 @@ import { forceKindLabel } from "../session/force_queries";
  * server.
  */
 export type FieldKind = ShapeKind | `force:${string}`;
+/** Fields that are computed from the shape of a surface. */
 export type ShapeKind = "displacement" | "speed" | "area" | "largest" | "smallest";
 
+/** Name, unit and scale of a field. */
 export interface FieldInfo {
   kind: FieldKind;
   label: string;
@@ -21,6 +23,7 @@ export interface FieldInfo {
   smallestTop: number;
 }
 
+/** The catalogue of shape fields. */
 export const fields: FieldInfo[] = [
   {
     kind: "displacement",
@@ -74,6 +77,7 @@ export function forceKindOf(kind: FieldKind | undefined): string | undefined {
   return kind?.startsWith("force:") ? kind.slice("force:".length) : undefined;
 }
 
+/** Returns the description of a shape or force field; undefined without a field. */
 export function fieldInfo(kind: FieldKind | undefined): FieldInfo | undefined {
   const force = forceKindOf(kind);
   if (kind === undefined || force === undefined) return fields.find((each) => each.kind === kind);
@@ -93,6 +97,7 @@ export class SurfaceFields {
     this.last = { time, arrays };
   }
 
+  /** Returns the field on each vertex of a body in its unit; undefined before the first frame. */
   of(kind: ShapeKind, body: Body): Float32Array | undefined {
     if (this.last === undefined) return undefined;
     const now = positionsOf(body, this.last.arrays);
@@ -103,6 +108,7 @@ export class SurfaceFields {
     return speeds(positionsOf(body, this.before.arrays), now, this.last.time - this.before.time);
   }
 
+  /** Forgets the frames, for another scene. */
   clear(): void {
     this.last = this.before = undefined;
   }

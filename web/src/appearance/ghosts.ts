@@ -26,6 +26,7 @@ export class GhostSelector {
     this.show(this.kind.value === "rest");
   }
 
+  /** Receives every frame, to detect the end of expiration. */
   receive({ breath }: Frame): void {
     const turned = this.endExpiration.receive(breath);
     if (turned && this.kind.value === "expiration") this.viewer.setGhost(this.arrays(), this.deformable);

@@ -17,6 +17,7 @@ export class LayerStyles {
   /** The layer with the most simulated vertices. */
   mainLayer = "";
 
+  /** Starts another scene with the styles that it defines. */
   start(bodies: Body[], report: CompileReport): void {
     const styles = new Map<string, LayerStyle>();
     for (const { layer, layerTitle, color, opacity } of bodies) {
@@ -26,10 +27,12 @@ export class LayerStyles {
     this.all.set([...styles.values()]);
   }
 
+  /** Changes some properties of a layer's style. */
   change(layer: string, change: Partial<LayerStyle>): void {
     this.all.set(this.all.value.map((style) => (style.layer === layer ? { ...style, ...change } : style)));
   }
 
+  /** Returns the style of a layer; undefined for an unknown layer. */
   get(layer: string): LayerStyle | undefined {
     return this.all.value.find((style) => style.layer === layer);
   }

@@ -23,15 +23,18 @@ export class TrackedVertices {
 
   constructor(private readonly bodies: () => Body[]) {}
 
+  /** The graph of the tracked vertices; undefined if there are none. */
   get spec(): GraphSpec | undefined {
     return this.graph;
   }
 
+  /** Tracks a vertex; the oldest of more than six is dropped. */
   track(ref: VertexRef): void {
     if (this.indexOf(ref) >= 0) return;
     this.change([...this.tracked.value, ref].slice(-maxTracked));
   }
 
+  /** Stops tracking a vertex. */
   untrack(ref: VertexRef): void {
     this.change(this.tracked.value.filter((each) => vertexLabel(each) !== vertexLabel(ref)));
   }
@@ -59,6 +62,7 @@ export class TrackedVertices {
     );
   }
 
+  /** Returns position and displacement of a vertex; undefined for an unknown body. */
   stateOf(ref: VertexRef, arrays: FrameArrays): VertexState | undefined {
     const body = this.bodies().find(({ name }) => name === ref.body);
     if (body === undefined) return undefined;
@@ -67,6 +71,7 @@ export class TrackedVertices {
     return { position, displacement: [offset[0], offset[1], offset[2]] };
   }
 
+  /** Returns markers of the picked and the tracked vertices. */
   markers(arrays: FrameArrays): Marker[] {
     const picked = this.picked.value;
     const own = picked !== undefined && this.indexOf(picked) < 0 ? [{ ref: picked, color: pickedColor }] : [];
@@ -86,6 +91,7 @@ export class TrackedVertices {
   }
 }
 
+/** Formats "diaphragm 12". */
 export function vertexLabel({ body, vertex }: VertexRef): string {
   return `${body} ${vertex}`;
 }

@@ -22,6 +22,7 @@ export class VertexColorizer {
     this.fields.clear();
   }
 
+  /** Sets the displayed frame at `time` [s]. */
   receive(time: number, arrays: FrameArrays): void {
     this.fields.receive(time, arrays);
   }

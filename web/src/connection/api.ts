@@ -21,6 +21,7 @@ export interface Api {
   studies: Client<typeof StudyService>;
 }
 
+/** Creates the clients of all services over one transport. */
 export function createApi(transport: Transport): Api {
   return {
     access: createClient(AccessService, transport),

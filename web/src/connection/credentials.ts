@@ -7,6 +7,7 @@ const maxLinks = 8;
 export class Credentials {
   constructor(private readonly storage: KeyValueStorage) {}
 
+  /** The account token; empty without one. */
   get token(): string {
     return this.storage.getItem("phrenic-account") ?? "";
   }
@@ -20,6 +21,7 @@ export class Credentials {
     return (this.storage.getItem("phrenic-links") ?? "").split(",").filter((secret) => secret !== "");
   }
 
+  /** Adds a secret; keeps the eight most recent ones. */
   addJoinLink(secret: string): void {
     const others = this.joinLinks.filter((other) => other !== secret);
     this.storage.setItem("phrenic-links", [...others, secret].slice(-maxLinks).join(","));

@@ -22,6 +22,7 @@ export class FrameAcknowledger {
     private readonly onAnswer: (response: AckFramesResponse, sent: number, at: number) => void,
   ) {}
 
+  /** Records a received frame and acknowledges it when enough frames have arrived. */
   received(sequence: bigint): void {
     this.newestSequence = sequence;
     this.unacknowledged++;

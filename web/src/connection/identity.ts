@@ -7,6 +7,7 @@ export type KeyValueStorage = Pick<Storage, "getItem" | "setItem">;
 export class Identity {
   constructor(private readonly storage: KeyValueStorage) {}
 
+  /** The user's name; empty until it is set. */
   get name(): string {
     return this.storage.getItem("phrenic-name") ?? "";
   }
@@ -24,10 +25,12 @@ export class Identity {
     this.storage.setItem("phrenic-follow", on ? "on" : "off");
   }
 
+  /** Returns the control token for a session; empty without one. */
   tokenOf(sessionId: string): string {
     return this.tokens()[sessionId] ?? "";
   }
 
+  /** Stores the control token for a session; keeps the 200 most recent ones. */
   storeToken(sessionId: string, token: string): void {
     const { [sessionId]: _, ...others } = this.tokens();
     const kept = [...Object.entries(others), [sessionId, token]].slice(-maxTokens);

@@ -74,6 +74,7 @@ export class SessionConnection {
     }
   }
 
+  /** Ends the connection for good. */
   stop(): void {
     this.stopped.abort();
     this.retryWait.abort();

@@ -14,6 +14,7 @@ const decoders = new Map<Codec, (shape: RestShape) => PositionDecoder>([
   [Codec.BASIS, basisDecoder],
 ]);
 
+/** Creates a decoder of positions. Throws RangeError for an unknown codec. */
 export function makeDecoder(codec: Codec, shape: RestShape): PositionDecoder {
   const make = decoders.get(codec);
   if (make === undefined) throw new RangeError(`codec: ${codec} is not known to this viewer.`);

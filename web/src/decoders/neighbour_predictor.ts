@@ -15,6 +15,7 @@ export interface NeighbourPredictor {
   addPredictions(values: Int32Array): void;
 }
 
+/** Creates the predictor of a mesh. */
 export function neighbourPredictor(shape: RestShape): NeighbourPredictor {
   const { order, first, neighbours: neighbourList, weights } = neighbourWeights(shape);
   const neighbours = neighbourList.map((place) => 3 * place);

@@ -14,6 +14,7 @@ export interface NeighbourWeights {
   weights: Int32Array;
 }
 
+/** The weight 1 in fixed-point numbers. */
 export const weightUnit = 4096;
 const maxNeighbours = 8;
 const regularisation = 0.03125;
@@ -21,6 +22,7 @@ const maxWeight = 4;
 
 type Triple = [number, number, number];
 
+/** Computes prediction order and weights of a mesh from its rest shape. */
 export function neighbourWeights({ rest, neighbours: neighboursOf }: RestShape): NeighbourWeights {
   const order = breadthFirst(neighboursOf);
   const place = new Int32Array(order.length);

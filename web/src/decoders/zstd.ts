@@ -19,6 +19,7 @@ export function checkStep(step: number): number {
   return step;
 }
 
+/** Returns a view of the bytes. Throws RangeError if they are shorter than the header of `head` bytes. */
 export function headerView(bytes: Uint8Array, head: number): DataView {
   if (bytes.length < head) throw new RangeError(`positions: ${bytes.length} bytes, less than the head's ${head}.`);
   return new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);

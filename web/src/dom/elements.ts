@@ -17,6 +17,7 @@ export function elementById(id: string): HTMLElement {
   return element;
 }
 
+/** Creates a button with a label for tooltip and screen readers. */
 export function button(label: string, onclick: () => void, ...children: (Node | string)[]): HTMLButtonElement {
   return make("button", { type: "button", ariaLabel: label, title: label, onclick }, ...children);
 }

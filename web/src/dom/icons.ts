@@ -7,8 +7,10 @@ const shapes = {
   undo: "M9 5 4 10l5 5v-3.600h5.500a3 3 0 0 1 0 6H9V20h5.500a5 5 0 0 0 0-11H9z",
 };
 
+/** Names of the icons. */
 export type IconName = keyof typeof shapes;
 
+/** Creates an icon. */
 export function icon(name: IconName): SVGSVGElement {
   const space = "http://www.w3.org/2000/svg";
   const svg = document.createElementNS(space, "svg");

@@ -71,6 +71,7 @@ export class FrameBuffer {
     this.clock = [];
   }
 
+  /** Adds a frame that arrived at `now` [ms]. */
   receive(frame: Frame, now: number): void {
     const before = this.newest?.frame;
     this.newest = { frame, arrays: undefined };
@@ -95,6 +96,7 @@ export class FrameBuffer {
     if (this.clock.length > maxMeasurements) this.clock.shift();
   }
 
+  /** The newest frame. */
   get frame(): Frame | undefined {
     return this.newest?.frame;
   }
@@ -178,6 +180,7 @@ export class FrameBuffer {
     return (taken.arrays ??= this.decoder.decode(taken.frame));
   }
 
+  /** Returns rate, age and accuracy over the last second before `now` [ms]. */
   rate(now: number): FrameRate {
     this.dropOldArrivals(now);
     return {

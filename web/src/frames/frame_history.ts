@@ -10,12 +10,14 @@ export class FrameHistory {
   /** The replayed time [s]; undefined when live. */
   private replayTime: number | undefined;
 
+  /** Adds a frame; clears the history first if time goes back. */
   add(frame: Frame): void {
     if (frame.time < (this.frames.at(-1)?.time ?? 0)) this.clear();
     this.frames.push(frame);
     while (this.frames.length > maxFrames || this.frames[0].time < frame.time - maxDuration) this.frames.shift();
   }
 
+  /** Removes all frames and ends the replay. */
   clear(): void {
     this.frames = [];
     this.replayTime = undefined;
@@ -26,6 +28,7 @@ export class FrameHistory {
     return { start: this.frames[0]?.time ?? 0, end: this.frames.at(-1)?.time ?? 0 };
   }
 
+  /** Replays at this time [s]; undefined returns to live frames. */
   replayAt(time: number | undefined): void {
     this.replayTime = time;
   }

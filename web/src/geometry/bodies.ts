@@ -38,8 +38,10 @@ export interface FrameArrays {
   poses: Float32Array<ArrayBuffer>;
 }
 
+/** Numbers per pose: a quaternion and a translation. */
 export const floatsPerPose = 7;
 
+/** Decodes a body. Throws RangeError, naming the field, for arrays of wrong length or indices out of range. */
 export function decodeBody(message: GetGeometryResponse): Body {
   const of = (field: string) => `${message.name}.${field}`;
   const rest = floats(message.restPositions, 3, of("rest_positions"));

@@ -95,6 +95,7 @@ function probes({ probes }: Frame): GraphSpec[] {
 /** The descent is defined as in `phrenic physiology`. */
 export const domeHelp =
   "How far the highest point of each side is below where it was at rest, whichever point that is now";
+/** Explanation of the probes' graph. */
 export const probeHelp = "How far one vertex each, always the same, is above where it rests";
 
 /**

@@ -36,6 +36,7 @@ export class Plot {
     new ResizeObserver(() => this.fit()).observe(this.element);
   }
 
+  /** Draws the data within the span. */
   show(data: GraphData, span: TimeSpan): void {
     [this.data, this.span] = [data, span];
     if (data.abscissa === undefined) this.plot.setData([data.times, ...data.curves], true);

@@ -15,6 +15,7 @@ export interface GraphData {
   curves: number[][];
 }
 
+/** Returns the data of a graph within a span, in its units. */
 export function graphData(spec: GraphSpec, history: TimeSeries, { start, end }: TimeSpan): GraphData {
   // One more point on either side, so that curves extend to the edge.
   const first = Math.max(0, history.indexAt(start) - 1);

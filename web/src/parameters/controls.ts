@@ -38,6 +38,7 @@ export interface ChoiceControl {
   options: { value: number; label: string }[];
 }
 
+/** A control of a field. */
 export type Control = NumberControl | SwitchControl | ChoiceControl;
 
 /** Names of the live parameters in the message. */
@@ -77,6 +78,7 @@ export function choiceLabel(name: string): string {
   return name.split("_").map(spelled).join(" ");
 }
 
+/** Returns the controls of the live parameters. */
 export function parameterControls(): Control[] {
   return controlsOf(ParametersSchema);
 }

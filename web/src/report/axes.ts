@@ -1,11 +1,16 @@
 import { plot, type PlotOptions, type ScaleOptions } from "@observablehq/plot";
 import { formatTicks } from "./format";
 
+/** Text colour. */
 export const ink = "#1b1f24";
+/** Colour of secondary texts and lines. */
 export const faint = "#59626d";
+/** Width of a plot [px]. */
 export const wide = 1080;
+/** Width of one of two plots side by side [px]. */
 export const half = 530;
 
+/** True for finite numbers above 0, which a logarithmic axis can show. */
 export const isPositive = (value: number | undefined): value is number =>
   value !== undefined && Number.isFinite(value) && value > 0;
 
@@ -41,6 +46,7 @@ export function logTicks([low, high]: [number, number]): number[] {
   return ticks.filter((tick) => tick >= low * 0.999 && tick <= high * 1.001);
 }
 
+/** Returns a logarithmic scale with label, ticks and grid. */
 export function logScale(label: string, domain: [number, number]): ScaleOptions {
   const ticks = logTicks(domain);
   return { type: "log", domain, ticks, tickFormat: formatTicks(ticks), label, grid: true };

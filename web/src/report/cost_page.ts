@@ -13,6 +13,7 @@ import { formatDigits } from "./format";
 import { growth } from "./growth";
 import { tableOf } from "./table";
 
+/** Returns summary, plots and tables of a cost study. */
 export function costParts(table: CostTable): HTMLElement[] {
   const parts: (HTMLElement | undefined)[] = [
     make("div", { className: "advice" }, ...summaryOf(table).map((sentence) => make("p", {}, sentence))),

@@ -14,6 +14,7 @@ import { positionErrors, residuals, resolutions } from "./residuals";
 import { tableOf } from "./table";
 import { type Measure, workPrecision } from "./work_precision";
 
+/** Returns advice, plots and tables of an error study. */
 export function errorParts(table: ErrorTable): HTMLElement[] {
   const parts: (HTMLElement | undefined)[] = [
     table.advice === "" ? undefined : make("p", { className: "advice" }, withSeriesNames(table.advice)),

@@ -53,6 +53,7 @@ export function stabilityMaps({ map, limits }: StabilityTable): StabilityMapData
   });
 }
 
+/** Draws the stability map of one integrator. */
 export function stabilityMap(data: StabilityMapData): HTMLElement {
   const { integrator, relative, cells } = data;
   const x: [number, number] = [Math.min(...cells.map(({ x1 }) => x1)), Math.max(...cells.map(({ x2 }) => x2))];

@@ -14,6 +14,7 @@ import { seriesName } from "./names";
 import { stabilityMap, stabilityMaps, verdictKey } from "./stability_map";
 import { tableOf } from "./table";
 
+/** Returns summary, maps and tables of a stability study. */
 export function stabilityParts(table: StabilityTable): HTMLElement[] {
   const maps = stabilityMaps(table);
   return [

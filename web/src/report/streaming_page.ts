@@ -4,6 +4,7 @@ import { bandwidth } from "./bandwidth";
 import { formatDigits } from "./format";
 import { tableOf } from "./table";
 
+/** Returns advice, plot and table of a streaming study. */
 export function streamingParts(table: StreamingTable): HTMLElement[] {
   return [
     make("p", { className: "advice" }, table.advice),

@@ -6,6 +6,7 @@ import { figure } from "./figure";
 import { count, formatDigits } from "./format";
 import { seriesName, seriesStyles } from "./names";
 
+/** The error measure of a diagram. */
 export type Measure = "errorRmsMm" | "errorMaxMm";
 
 /** A completed run with an error above that of the reference. */
@@ -16,6 +17,7 @@ export interface Run {
   row: ErrorRow;
 }
 
+/** Returns the runs that have both an error and a value `x`. */
 export function runsOf(rows: ErrorRow[], x: (row: ErrorRow) => number | undefined, measure: Measure): Run[] {
   return rows.flatMap((row) => {
     const [at, error] = [x(row), row[measure]];
@@ -23,6 +25,7 @@ export function runsOf(rows: ErrorRow[], x: (row: ErrorRow) => number | undefine
   });
 }
 
+/** Returns one labelled curve per integrator. */
 export function linesOf(runs: Run[]): LabelledLine[] {
   return [...new Set(runs.map(({ id }) => id))].map((id) => {
     const points = runs.filter((run) => run.id === id).map(({ x, y }) => ({ x, y }));

@@ -31,6 +31,7 @@ export interface Comparison {
   surface: Surface | undefined;
 }
 
+/** State of the comparison; `done` is a fraction from 0 to 1. */
 export type ComparisonProgress =
   { kind: "idle" } | { kind: "running"; file: string; done: number } | { kind: "failed"; message: string };
 
@@ -52,6 +53,7 @@ export class Comparisons {
     private readonly sessionId: string,
   ) {}
 
+  /** Changes some settings of the next comparison. */
   choose(choices: Partial<ComparisonChoices>): void {
     this.choices.set({ ...this.choices.value, ...choices });
   }

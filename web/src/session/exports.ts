@@ -22,6 +22,7 @@ export interface ExportChoices {
   bodies: string[];
 }
 
+/** State of the export; `done` is a fraction from 0 to 1, `size` in bytes. */
 export type ExportProgress =
   | { kind: "idle" }
   | { kind: "recording"; file: string; done: number; secondsLeft: number | undefined }
@@ -51,10 +52,12 @@ export class Exports {
     private readonly pause = 1000,
   ) {}
 
+  /** Changes some settings of the next export. */
   choose(choices: Partial<ExportChoices>): void {
     this.choices.set({ ...this.choices.value, ...choices });
   }
 
+  /** The selected format; undefined until the formats are loaded. */
   get format(): FileFormat | undefined {
     return this.formats.value.find(({ name }) => name === this.choices.value.format);
   }

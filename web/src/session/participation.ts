@@ -24,6 +24,7 @@ export interface Roles {
   hasRequested: boolean;
 }
 
+/** Returns the role of the participant `ownName`; an empty or unknown name is a spectator. */
 export function rolesOf(control: Control | undefined, ownName: string): Roles {
   const self = control?.participants.find(({ name }) => name === ownName && name !== "");
   const hasControl = self !== undefined && control?.controller === self.name;
@@ -100,18 +101,22 @@ export class Participation {
     });
   }
 
+  /** Takes control if this is allowed, or asks for it; returns true on success. */
   requestControl(): Promise<boolean> {
     return this.call(() => this.api.control.takeControl(this.session));
   }
 
+  /** Hands control to another participant; returns true on success. */
   handOver(name: string): Promise<boolean> {
     return this.call(() => this.api.control.handControl({ ...this.session, to: { case: "name", value: name } }));
   }
 
+  /** Lets everyone control the session; returns true on success. */
   openToEveryone(): Promise<boolean> {
     return this.call(() => this.api.control.handControl({ ...this.session, to: { case: "everybody", value: true } }));
   }
 
+  /** Gives control back, or withdraws the request; returns true on success. */
   release(): Promise<boolean> {
     return this.call(() => this.api.control.releaseControl(this.session));
   }
@@ -133,4 +138,5 @@ export class Participation {
   }
 }
 
+/** True unless the owner decides who controls the session. */
 export const isOpenToEveryone = (roles: Roles) => roles.control?.policy !== ControlPolicy.OWNER;

@@ -94,11 +94,13 @@ export class SessionController {
     await this.alignTimes();
   }
 
+  /** Resets the session to its initial state; with a companion, both. */
   reset(): Promise<void> {
     void this.companion?.reset();
     return this.call(() => this.api.sessions.resetSession({ sessionId: this.sessionId }));
   }
 
+  /** Sets a parameter and records the change for undo; rapid changes are merged. */
   set(name: ParameterName, value: number | boolean): void {
     const before = this.session.value?.parameters?.[name];
     if (before !== undefined && before !== value)
@@ -111,6 +113,7 @@ export class SessionController {
     this.setAll(this.changes.undo());
   }
 
+  /** Repeats the last change that was undone. */
   redo(): void {
     this.setAll(this.changes.redo());
   }

@@ -4,6 +4,7 @@ import { type Study, StudyState } from "../gen/phrenic/v1/study_pb";
 import { Signal } from "../state/signal";
 import type { Clock } from "../timing/clock";
 
+/** The kinds of study. */
 export type StudyKind = "error" | "stability" | "cost" | "streaming";
 
 /** The studies on the server: lists, starts, watches and cancels them. */
@@ -18,6 +19,7 @@ export class Studies {
     private readonly clock: Clock,
   ) {}
 
+  /** Loads the studies and watches those that are not finished. */
   async load(): Promise<void> {
     await this.call(async () => {
       const { studies } = await this.api.studies.listStudies({});
@@ -94,6 +96,7 @@ export class Studies {
   }
 }
 
+/** True if a study is done or failed. */
 export function isFinished({ state }: Study): boolean {
   return state === StudyState.DONE || state === StudyState.FAILED;
 }

@@ -5,6 +5,7 @@ import { Signal } from "../state/signal";
 /** A file from the browser. */
 export type LocalFile = Pick<File, "name" | "size" | "arrayBuffer">;
 
+/** State of the upload; `done` is a fraction from 0 to 1, `path` names the file in scenes. */
 export type UploadProgress =
   | { kind: "idle" }
   | { kind: "sending"; file: string; done: number }
@@ -28,6 +29,7 @@ export class Uploads {
     if (answer !== undefined) this.extensions.set(answer.formats.map(({ ending }) => ending));
   }
 
+  /** Uploads a file; `progress` shows its state and the result. */
   async upload(file: LocalFile): Promise<void> {
     const turn = ++this.latestUpload;
     const show = (work: UploadProgress) => {

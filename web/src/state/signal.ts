@@ -4,10 +4,12 @@ export class Signal<T> {
 
   constructor(private current: T) {}
 
+  /** The current value. */
   get value(): T {
     return this.current;
   }
 
+  /** Sets the value and calls all listeners. */
   set(value: T): void {
     this.current = value;
     for (const listener of [...this.listeners]) listener(value);

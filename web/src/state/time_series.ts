@@ -28,6 +28,7 @@ export class TimeSeries {
     return low;
   }
 
+  /** Removes all values and names. */
   clear(): void {
     this.restart([]);
   }

@@ -15,6 +15,7 @@ export class Backoff {
     return whole * (1 - this.random() / 2);
   }
 
+  /** Starts again with the first delay. */
   reset(): void {
     this.attempt = 0;
   }

@@ -17,6 +17,7 @@ export class CoalescingSender<T extends object> {
     private readonly interval = 100,
   ) {}
 
+  /** Queues a change and sends it as soon as possible. */
   push(change: Partial<T>): void {
     Object.assign(this.queued, change);
     if (!this.running) void this.run();

@@ -16,6 +16,7 @@ export class DrawRate {
     this.last = now;
   }
 
+  /** True if drawings take less than 42 ms on average. */
   get isFast(): boolean {
     return this.average < slowInterval;
   }

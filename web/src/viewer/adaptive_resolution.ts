@@ -21,6 +21,7 @@ export class AdaptiveResolution {
     this.currentRatio = fullRatio;
   }
 
+  /** Current number of device pixels per CSS pixel. */
   get ratio(): number {
     return this.currentRatio;
   }

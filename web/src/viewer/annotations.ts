@@ -36,11 +36,13 @@ export class Annotations {
     this.draw();
   }
 
+  /** Shows or hides the names of the layers. */
   setLabels(on: boolean): void {
     this.labels = on;
     this.draw();
   }
 
+  /** Updates the annotations to the current camera. */
   draw(): void {
     this.names.replaceChildren(...(this.labels ? this.drawNames() : []));
     this.axes.replaceChildren(...this.drawAxes());

@@ -95,6 +95,7 @@ export class BodyView implements OverlayHost {
     this.group.add(points);
   }
 
+  /** Moves the body to its state in a frame. */
   update(frame: FrameArrays): void {
     if (this.body.placement === Placement.RIGID) this.pose(frame);
     if (this.body.placement !== Placement.STREAMED) return;
@@ -120,6 +121,7 @@ export class BodyView implements OverlayHost {
     this.group.position.fromArray(frame.poses, at + 4);
   }
 
+  /** Sets the opacity, 0 to 1; 0 hides the body. */
   setOpacity(opacity: number): void {
     this.opacity = opacity;
     this.group.visible = opacity > 0;
@@ -133,10 +135,12 @@ export class BodyView implements OverlayHost {
     this.setOpacity(this.opacity);
   }
 
+  /** Shows or hides an overlay. */
   setOverlay(kind: OverlayKind, on: boolean): void {
     for (const overlay of this.overlays) if (overlay.kind === kind) overlay.show(on);
   }
 
+  /** Releases GPU resources. */
   dispose(): void {
     this.group.traverse((object) => {
       if (object instanceof THREE.Mesh || object instanceof THREE.Line || object instanceof THREE.Points) {

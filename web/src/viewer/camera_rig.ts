@@ -70,6 +70,7 @@ export class CameraRig {
     this.goTo("home", true);
   }
 
+  /** Moves to a named view. */
   goTo(view: ViewName, atOnce = this.reducedMotion()): void {
     this.namedView = view;
     this.remotePose = undefined;
@@ -117,6 +118,7 @@ export class CameraRig {
     this.onChange();
   }
 
+  /** The current camera pose [m]. */
   get pose(): CameraPose {
     const plain = ({ x, y, z }: THREE.Vector3) => ({ x, y, z });
     return { eye: plain(this.camera.position), target: plain(this.controls.target) };
@@ -171,6 +173,7 @@ export class CameraRig {
     this.onChange();
   }
 
+  /** Returns the orientation and scale of the view. */
   orientation(): ViewOrientation {
     this.camera.updateMatrixWorld(); // also before the next drawing
     const axis = (i: number) => new THREE.Vector3().setFromMatrixColumn(this.camera.matrixWorld, i);

@@ -3,6 +3,7 @@ import * as THREE from "three";
 /** The anatomical planes, or no clipping. */
 export type CutKind = "none" | "sagittal" | "coronal" | "transverse";
 
+/** A cut through the scene by an anatomical plane. */
 export interface Cut {
   kind: CutKind;
   /** Position of the plane, 0 to 1 across the scene. */

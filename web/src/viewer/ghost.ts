@@ -33,6 +33,7 @@ export class TranslucentSurfaces {
     }
   }
 
+  /** Removes all surfaces and releases GPU resources. */
   clear(): void {
     for (const child of this.object.children) {
       if (!(child instanceof THREE.Mesh)) continue;

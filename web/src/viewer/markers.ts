@@ -6,6 +6,7 @@ export class Markers {
   readonly object = new THREE.Group();
   private readonly ball = new THREE.SphereGeometry(1, 16, 12);
 
+  /** Replaces all markers. */
   show(markers: Marker[]): void {
     while (this.object.children.length > markers.length) this.object.remove(this.object.children.at(-1)!);
     while (this.object.children.length < markers.length) this.object.add(this.make());

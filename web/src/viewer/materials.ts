@@ -29,6 +29,7 @@ export function surfaceMaterial(color: string, opacity: number): THREE.MeshStand
   return material;
 }
 
+/** Sets the opacity, 0 to 1; transparent materials do not write depth. */
 export function setOpacity(material: THREE.Material, opacity: number): void {
   const transparent = opacity < 1;
   if (material.transparent !== transparent) material.needsUpdate = true;
@@ -37,6 +38,7 @@ export function setOpacity(material: THREE.Material, opacity: number): void {
   material.depthWrite = !transparent;
 }
 
+/** Lines of one pixel; `onTop` disables the depth test. */
 export function lineMaterial(color: string, opacity: number, onTop: boolean): THREE.LineBasicMaterial {
   return new THREE.LineBasicMaterial({ color, opacity, transparent: true, depthTest: !onTop, depthWrite: false });
 }

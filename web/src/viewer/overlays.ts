@@ -5,6 +5,7 @@ import { ThickLines } from "./thick_lines";
 
 /** The kinds of overlay. */
 export const overlayKinds = ["wireframe", "links", "lines", "attachments"] as const;
+/** A kind of overlay. */
 export type OverlayKind = (typeof overlayKinds)[number];
 
 /** What an overlay uses of its body. */
@@ -34,6 +35,7 @@ const fixedColor = "#b99bff";
 /** More lines than this are drawn one pixel wide. */
 const maxThickLines = 3000;
 
+/** Returns the overlays that the data of a body allows. */
 export function addOverlays(view: OverlayHost): Overlay[] {
   const { body } = view;
   const overlays: Overlay[] = [];

@@ -21,6 +21,7 @@ export class ThickLines {
     this.object.geometry.setPositions(this.ends);
   }
 
+  /** Copies the current positions to the lines. */
   update(): void {
     this.copyEnds();
     const start = this.object.geometry.getAttribute("instanceStart") as THREE.InterleavedBufferAttribute;

@@ -13,6 +13,7 @@ export class VertexColors {
     this.set(undefined);
   }
 
+  /** True if field colours are shown. */
   get active(): boolean {
     return this.field !== undefined;
   }

@@ -112,6 +112,7 @@ export class Viewer {
     return this.views;
   }
 
+  /** Bounding box of the scene at rest [m]. */
   get bounds(): THREE.Box3 {
     return this.box;
   }
@@ -126,11 +127,13 @@ export class Viewer {
     this.dirty = true;
   }
 
+  /** Sets the opacity of all bodies of a layer, 0 to 1. */
   setLayerOpacity(layer: string, opacity: number): void {
     for (const view of this.views) if (view.body.layer === layer) view.setOpacity(opacity);
     this.refresh();
   }
 
+  /** Shows these overlays and hides all others. */
   showOverlays(shown: ReadonlySet<OverlayKind>): void {
     this.overlays = shown;
     for (const view of this.views) for (const kind of overlayKinds) view.setOverlay(kind, shown.has(kind));
@@ -160,6 +163,7 @@ export class Viewer {
     this.refresh();
   }
 
+  /** Replaces all markers. */
   setMarkers(markers: Marker[]): void {
     this.markers.show(markers);
     this.refresh();
@@ -193,6 +197,7 @@ export class Viewer {
     );
   }
 
+  /** Moves the camera to a named view. */
   goTo(view: ViewName): void {
     this.rig.goTo(view);
   }

@@ -40,6 +40,7 @@ export class GraphTile {
     this.showValues(place);
   }
 
+  /** Shows the values at an index of the data, or the last ones if undefined. */
   showValues(place: number | undefined): void {
     this.data.curves.forEach((values, i) => {
       const value = values[place ?? values.length - 1] as number | undefined;

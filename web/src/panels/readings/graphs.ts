@@ -54,6 +54,7 @@ export class GraphsPanel {
     this.rebuild(specs);
   }
 
+  /** Removes all data, for another scene. */
   clear(): void {
     this.history.clear();
     this.resume();

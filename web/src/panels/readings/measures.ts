@@ -19,6 +19,7 @@ export class Measures {
     this.element.hidden = true;
   }
 
+  /** Shows the measures of a frame; hides the section if there are none. */
   show(frame: Frame | undefined): void {
     const measures = frame?.measures ?? [];
     this.element.hidden = measures.length === 0;

@@ -15,6 +15,7 @@ export class Probes {
     this.element.hidden = true;
   }
 
+  /** Shows the probes of a frame; hides the section if there are none. */
   show(frame: Frame | undefined): void {
     const probes = frame?.probes ?? [];
     this.element.hidden = probes.length === 0;

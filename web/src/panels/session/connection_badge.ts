@@ -24,6 +24,7 @@ export class ConnectionBadge {
     this.element.onclick = retry;
   }
 
+  /** Shows the state of the connection. */
   show(status: Status): void {
     const { text, detail, title } = connectionLabels(status);
     this.element.dataset.link = status.connection.kind;
@@ -33,6 +34,7 @@ export class ConnectionBadge {
   }
 }
 
+/** Returns text, detail and tooltip of the badge. */
 export function connectionLabels({ connection, session, rate, now }: Status): {
   text: string;
   detail: string;
@@ -75,6 +77,7 @@ export class ViewerCount {
     this.noun,
   );
 
+  /** Shows the number of viewers. */
   show({ session }: Status): void {
     const viewers = String(session?.viewers ?? 0);
     if (this.count.textContent === viewers) return;

@@ -71,6 +71,7 @@ export class ControlDialog {
     participation.errorMessage.subscribe((words) => (this.errorMessage.textContent = words));
   }
 
+  /** Opens the dialog. */
   show(): void {
     if (!this.element.open) this.element.showModal();
   }

@@ -24,6 +24,7 @@ export class SessionChooser {
     );
   }
 
+  /** Opens the dialog and loads sessions and scenes. */
   async show(): Promise<void> {
     this.words.textContent = "";
     if (!this.element.open) this.element.showModal();

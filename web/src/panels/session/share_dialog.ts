@@ -36,6 +36,7 @@ export class ShareDialog {
     );
   }
 
+  /** Opens the dialog with links to the current state. */
   show(): void {
     const { controller, report } = this.sharing;
     const session = controller.session.value;

@@ -12,6 +12,7 @@ export class Legend {
     this.element = make("div", { className: "legend" }, this.bar, this.unit, this.ticks);
   }
 
+  /** Shows a scale. */
   show(scale: ColorScale): void {
     this.bar.ariaLabel = `Colours from ${scale.low} to ${scale.top} ${scale.unit}`;
     this.unit.textContent = scale.unit;

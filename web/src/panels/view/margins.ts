@@ -21,6 +21,7 @@ export class Margins {
     this.elements = [...Object.values(this.letters), scale];
   }
 
+  /** Shows the orientation and scale of a view. */
   show(compass: ViewOrientation): void {
     for (const side of ["left", "right", "top", "bottom"] as const) {
       if (this.letters[side].textContent !== compass[side]) this.letters[side].textContent = compass[side];

@@ -34,6 +34,7 @@ export class OrientationCube {
     }
   }
 
+  /** Rotates the cube to the orientation of a view. */
   show({ axes: [right, up, back] }: ViewOrientation): void {
     // The columns are the patient's axes on the screen, where y points down.
     const column = (axis: "x" | "y" | "z"): Triple => [right[axis], -up[axis], back[axis]];

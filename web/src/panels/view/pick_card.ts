@@ -41,6 +41,7 @@ export class PickCard {
     });
   }
 
+  /** Shows the state of the picked vertex in a frame. */
   show(arrays: FrameArrays | undefined): void {
     const ref = this.trackedVertices.picked.value;
     if (ref === undefined || arrays === undefined) return;

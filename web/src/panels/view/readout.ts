@@ -19,6 +19,7 @@ export class Readout {
     this.values.get("breath")?.before(make("span", { className: "breath-track", ariaHidden: "true" }, this.bar));
   }
 
+  /** Shows a frame or, without one, the state of the session. */
   show({ session, frame }: { session: Session | undefined; frame: Frame | undefined }): void {
     const digits = session?.state === SessionState.PLAYING ? 2 : 3;
     this.write("time", `${(frame?.time ?? session?.time ?? 0).toFixed(digits)} s`);

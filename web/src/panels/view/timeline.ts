@@ -31,10 +31,12 @@ export class Timeline {
     this.replayAt(this.frames.adjacentTime(by) ?? Infinity);
   }
 
+  /** True if an earlier frame is displayed. */
   get replaying(): boolean {
     return this.frames.replayedFrame !== undefined;
   }
 
+  /** Updates the slider to the recorded frames. */
   show(): void {
     const { span, replayedFrame } = this.frames;
     this.slider.disabled = span.end - span.start < minSpan;
