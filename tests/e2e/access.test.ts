@@ -37,7 +37,7 @@ test("the page asks who one is, and shows the session to whom the server knows",
     await page.click("#sign-in button");
   };
   await sign("00112233445566778899aabbccddeeff");
-  await page.waitForSelector("text=Nobody has that token");
+  await page.waitForSelector("text=No account has this token");
   await sign(anna);
   await page.waitForFunction(() => (window.phrenic?.drawCount() ?? 0) > 1, null, { timeout: 60_000 });
   expect(page.url()).not.toContain(anna);

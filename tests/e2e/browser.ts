@@ -86,7 +86,7 @@ export class ViewerPage {
 
   /** Waits until the connection has this state. */
   async waitForLink(kind: string): Promise<void> {
-    await this.page.waitForSelector(`#link[data-link="${kind}"]`, { timeout: 60_000 });
+    await this.page.waitForSelector(`#connection[data-state="${kind}"]`, { timeout: 60_000 });
   }
 
   /** Waits for a frame with a tick above this one. */

@@ -40,7 +40,7 @@ async function exported(session: string, body: string, up: (x: number) => number
 const choose = (name: string, buffer: Buffer) =>
   viewer.page.setInputFiles("#compare-file", { name, mimeType: "text/plain", buffer });
 const measure = async (name: string) => Number(await viewer.page.textContent(`[data-measure="${name}"]`));
-const found = () => viewer.page.waitForSelector("#comparison .found:not([hidden])", { timeout: 60_000 });
+const found = () => viewer.page.waitForSelector("#comparison .result:not([hidden])", { timeout: 60_000 });
 
 describe("a cube beside a file of itself, 3 mm higher", () => {
   beforeAll(async () => {
@@ -67,13 +67,13 @@ describe("a cube beside a file of itself, 3 mm higher", () => {
   test("AgainFollowsTheSession", async () => {
     await server.phrenic("step", "cube", "200");
     await viewer.waitForExactTick(200);
-    await viewer.page.waitForFunction(() => document.querySelector("#comparison-moved")?.textContent !== "");
-    expect(await viewer.page.textContent("#comparison-moved")).toMatch(/^Colours follow the body, at \d/);
+    await viewer.page.waitForFunction(() => document.querySelector("#comparison-time")?.textContent !== "");
+    expect(await viewer.page.textContent("#comparison-time")).toMatch(/^Colours show the session at \d/);
     const before = await measure("rms_a_to_b");
-    await viewer.page.click("#compare-again");
+    await viewer.page.click("#compare-repeat");
     await viewer.page.waitForSelector('#comparison-when:has-text("tick 200")');
     expect(await measure("rms_a_to_b")).not.toBe(before);
-    expect(await viewer.page.textContent("#comparison-moved")).toBe("");
+    expect(await viewer.page.textContent("#comparison-time")).toBe("");
   });
 
   test("TheFilesSurfaceIsSeenUntilItIsSwitchedOff", async () => {
@@ -135,7 +135,7 @@ describe("a cube beside a file of itself, 3 mm higher", () => {
   });
 
   test("TheKeyboardAloneRepeatsAndClears", async () => {
-    await viewer.page.focus("#compare-again");
+    await viewer.page.focus("#compare-repeat");
     await viewer.page.keyboard.press("Enter");
     await found();
     const coloured = await canvasPicture(viewer);

@@ -50,7 +50,7 @@ afterAll(async () => {
 });
 
 test("BothMayChangeTheSessionUntilItsOwnerTakesControl", async () => {
-  await badge(pupil, "Everybody controls");
+  await badge(pupil, "Everyone controls");
   await pupil.page.click('#play[aria-label="Pause"]');
   await teacher.page.waitForSelector('#play[aria-label="Play"]');
   await enter(teacher, "Anna");
@@ -123,8 +123,8 @@ test("AReloadedPageIsStillTheOwners", async () => {
 });
 
 test("LentToAllItIsEverybodysAgain", async () => {
-  await press(teacher, "lend");
-  await badge(pupil, "Everybody controls");
+  await press(teacher, "open");
+  await badge(pupil, "Everyone controls");
   expect(await pupil.page.isDisabled("#play")).toBe(false);
 });
 

@@ -73,7 +73,7 @@ test("AnUploadedSurfaceIsReportedAndABadOneIsRefusedWithItsLine", async () => {
     viewer.page.setInputFiles("#upload-file", { name: "a.obj", mimeType: "text/plain", buffer: Buffer.from(text) });
   await viewer.page.click('summary:has-text("Surface files")');
   await choose("v 0 0 0\nv 1 0\nf 1 2 3\n");
-  await viewer.page.waitForSelector('#upload-work [role="alert"]:has-text("a.obj:2:")');
+  await viewer.page.waitForSelector('#upload-progress [role="alert"]:has-text("a.obj:2:")');
   await choose("v 0 0 0\nv 30 0 0\nv 0 30 0\nf 1 2 3\n");
   await viewer.page.waitForSelector("#upload-path");
   expect(await viewer.page.inputValue("#upload-path")).toMatch(/^upload:[0-9a-f]{64}$/);

@@ -32,21 +32,21 @@ test("FromTheAddressToAParalysedHemidiaphragmBesideAHealthyOneInUnderAMinute", a
   await list.selectOption({ label: "Paralysis right" });
   await page.waitForURL(/beside=/);
   await viewer.waitForPicture();
-  await page.locator("#pane-heads").getByText("Paralysis right").waitFor();
-  const ways = await page.locator(".pane-head b").allTextContents();
+  await page.locator("#view-headers").getByText("Paralysis right").waitFor();
+  const ways = await page.locator(".view-header b").allTextContents();
   expect(ways.toSorted()).toEqual(["Paralysis right", "Quiet"]);
   expect(Date.now() - start).toBeLessThan(60_000);
   expect(await page.textContent(".differences")).toBe("Right muscle 0 instead of 1");
   // The list now applies to the second view.
   await page.getByLabel("Compare with", { exact: true }).selectOption({ label: "Paralysis left" });
-  await page.locator("#pane-heads").getByText("Paralysis left").waitFor();
+  await page.locator("#view-headers").getByText("Paralysis left").waitFor();
   expect(viewer.consoleErrors).toEqual([]);
   await viewer.saveScreenshot("paralysis");
 });
 
 /** Returns the times of both views from their headers [s]. */
 async function times(viewer: ViewerPage): Promise<number[]> {
-  const words = await viewer.page.locator(".pane-head .time").allTextContents();
+  const words = await viewer.page.locator(".view-header .time").allTextContents();
   return words.map((each) => Number.parseFloat(each));
 }
 
@@ -56,7 +56,7 @@ test("BothBreatheInStepStopAtOneInstantAndHaveTheSameColours", async () => {
   await page.getByLabel("Compare with", { exact: true }).selectOption({ label: "Deep" });
   await page.waitForURL(/beside=/);
   await viewer.waitForPicture();
-  await page.locator("#pane-heads").getByText("Deep").waitFor();
+  await page.locator("#view-headers").getByText("Deep").waitFor();
   const start = await viewer.tick();
   await viewer.waitForTick(start + 400);
   const [here, there] = await times(viewer);
@@ -64,10 +64,10 @@ test("BothBreatheInStepStopAtOneInstantAndHaveTheSameColours", async () => {
   await page.click('#play[aria-label="Pause"]');
   await page.waitForSelector('#play[aria-label="Play"]');
   await page.waitForFunction(() => {
-    const [first, second] = [...document.querySelectorAll(".pane-head .time")].map((each) => each.textContent);
+    const [first, second] = [...document.querySelectorAll(".view-header .time")].map((each) => each.textContent);
     return first === second;
   });
-  const picture = () => page.locator("#beside canvas").screenshot();
+  const picture = () => page.locator("#second-view canvas").screenshot();
   const before = await picture();
   await page.selectOption("#coloring-kind", "displacement");
   await page.waitForSelector("#coloring:not([hidden])");
@@ -76,7 +76,7 @@ test("BothBreatheInStepStopAtOneInstantAndHaveTheSameColours", async () => {
   const { measures } = JSON.parse(await server.phrenic("step", "thorax", "1", "-o", "json"));
   const dome = measures.find(({ name }: { name: string }) => name === "right dome");
   const words = `right dome ${(1000 * Math.abs(dome.value)).toFixed(1)} mm`;
-  await page.locator(".pane-head").first().getByText(words).waitFor({ timeout: 20_000 });
+  await page.locator(".view-header").first().getByText(words).waitFor({ timeout: 20_000 });
   expect(viewer.consoleErrors).toEqual([]);
 });
 
@@ -92,12 +92,12 @@ test("TheLastSecondsAreLookedAtAgainWithoutTheSimulationGoingBack", async () => 
   await page.focus("#view");
   await page.keyboard.press(",");
   await page.keyboard.press(",");
-  await page.waitForSelector("#timeline.back");
+  await page.waitForSelector("#timeline.replaying");
   await expect.poll(() => page.textContent("#status-time")).not.toBe(time);
   expect(await viewer.tick()).toBe(tick);
-  await page.click("#look-live");
+  await page.click("#replay-live");
   await expect.poll(() => page.textContent("#status-time")).toBe(time);
-  expect(await page.locator("#timeline.back").count()).toBe(0);
+  expect(await page.locator("#timeline.replaying").count()).toBe(0);
 });
 
 test("TheForcesOfAMomentAgoAreSeenAgain", async () => {
@@ -112,12 +112,12 @@ test("TheForcesOfAMomentAgoAreSeenAgain", async () => {
   await page.waitForSelector('#play[aria-label="Play"]');
   await page.focus("#view");
   await page.keyboard.press(",");
-  await page.waitForSelector("#timeline.back");
+  await page.waitForSelector("#timeline.replaying");
   expect(await note()).toBe("");
   // Forces of another kind were not queried at that time.
   await page.selectOption("#coloring-kind", "force:springs");
-  expect(await note()).toContain("Not known of this moment");
-  await page.click("#look-live");
+  expect(await note()).toContain("Forces are unknown at this time");
+  await page.click("#replay-live");
   await expect.poll(note).toBe("");
   expect(viewer.consoleErrors).toEqual([]);
 });
@@ -126,8 +126,8 @@ test("ForThePageOfACourseThereIsThePictureAndItsPlaybackAlone", async () => {
   const viewer = await ViewerPage.open(browser, `${server.url}?session=thorax&embed`, { width: 720, height: 540 });
   const { page } = viewer;
   for (const id of ["header", "panel", "graphs"]) expect(await page.locator(`#${id}`).isVisible()).toBe(false);
-  for (const id of ["play", "disclaimer", "whole"]) expect(await page.locator(`#${id}`).isVisible()).toBe(true);
-  expect(await page.getAttribute("#whole", "href")).toBe("?session=thorax");
+  for (const id of ["play", "disclaimer", "open-full"]) expect(await page.locator(`#${id}`).isVisible()).toBe(true);
+  expect(await page.getAttribute("#open-full", "href")).toBe("?session=thorax");
   expect(await viewer.violations()).toEqual([]);
   await viewer.saveScreenshot("embedded");
 });

@@ -60,7 +60,7 @@ test("ADivergedSessionSaysSoAndItsRemedyHelps", async () => {
   await viewer.page.waitForSelector("#banner-diverged:not([hidden])", { timeout: 60_000 });
   expect(await viewer.page.textContent("#banner-diverged")).toMatch(/diverged at .* s, at vertex \d+ of cube/);
   await viewer.saveScreenshot("diverged");
-  await viewer.page.click('button:has-text("Use a stable step and start again")');
+  await viewer.page.click('button:has-text("Restart with a stable time step")');
   await viewer.page.waitForSelector("#banner-diverged", { state: "hidden" });
   await viewer.waitForTick(10);
   expect(await viewer.page.isHidden("#banner-diverged")).toBe(true);
@@ -71,11 +71,11 @@ test("AMissingSessionIsSaidAndOthersAreOffered", async () => {
   const context = await browser.newContext();
   const page = await context.newPage();
   await page.goto(`${server.url}?session=nobody`);
-  await page.waitForSelector('#link[data-link="lost"]');
+  await page.waitForSelector('#connection[data-state="lost"]');
   expect(await page.textContent("#banner-lost")).toContain("nobody");
   await page.click('button:has-text("Choose a session")');
   await page.click('.chooser button:has-text("Open")');
-  await page.waitForSelector('#link[data-link="live"]');
+  await page.waitForSelector('#connection[data-state="live"]');
   await context.close();
 });
 

@@ -29,7 +29,7 @@ test("Screenshot", async () => {
     await page.screenshot({ path: join(web, "screenshot.png") });
     // The same state compared with the diaphragm at rest.
     await page.setInputFiles("#compare-file", rest);
-    await page.waitForSelector("#comparison .found:not([hidden])");
+    await page.waitForSelector("#comparison .result:not([hidden])");
     for (const layer of ["Ribs", "Sternum", "Costal cartilages", "Lungs"])
       await page.uncheck(`[aria-label="Show ${layer}"]`);
     await page.mouse.move(0, 0);

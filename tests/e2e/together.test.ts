@@ -58,7 +58,7 @@ test("ALostServerIsShownAndComesBackWithTheSessionAsItWas", async () => {
   const { tick } = await server.session();
   await server.kill();
   await here.waitForLink("lost");
-  expect(await here.page.innerText("#link")).toContain("retrying");
+  expect(await here.page.innerText("#connection")).toContain("retrying");
   expect(await here.page.isVisible("#banner-lost")).toBe(true);
   expect(await here.violations()).toEqual([]);
   await here.saveScreenshot("lost");

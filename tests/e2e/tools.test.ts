@@ -80,10 +80,10 @@ describe("the picture", () => {
     await viewer.page.mouse.click(box.x + 0.62 * box.width, box.y + 0.5 * box.height);
     await viewer.page.waitForSelector("#picked:not([hidden])");
     expect(await viewer.page.textContent("#picked h2")).toMatch(/^Vertex \d+ of (diaphragm|balloon)$/);
-    await viewer.page.click("#follow");
+    await viewer.page.click("#track");
     await viewer.page.click("#parameter-applyMuscles");
     await server.phrenic("step", "lungs", "20");
-    await viewer.page.waitForSelector('.tile[data-graph="followed"]');
+    await viewer.page.waitForSelector('.tile[data-graph="tracked"]');
   });
 
   test("AxeFindsNothingAgainstItsCardsAndGraphs", async () => {
@@ -115,12 +115,12 @@ test("APermalinkRunsAgainToTheSameVertices", async () => {
   await again.close();
 
   // The dialog is still open.
-  await cube.page.click("#share-beside");
-  await cube.page.waitForSelector("#beside canvas");
-  await cube.page.waitForSelector('.differences:text-is("The same parameters")');
+  await cube.page.click("#share-compare");
+  await cube.page.waitForSelector("#second-view canvas");
+  await cube.page.waitForSelector('.differences:text-is("Same parameters")');
   await cube.type("breathForce", 3);
   await cube.page.waitForSelector('.differences:text-is("Breath force 1.5 instead of 3")');
-  await cube.saveScreenshot("beside");
+  await cube.saveScreenshot("second-view");
   expect([...cube.consoleErrors, ...again.consoleErrors]).toEqual([]);
   await cube.close();
 });

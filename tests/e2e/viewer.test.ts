@@ -244,12 +244,12 @@ describe("the buttons", () => {
 
 describe("the report", () => {
   test("SaysWhatRunsAndHowLargeAStepMayBe", async () => {
-    await viewer.page.click('summary:has-text("What runs")');
+    await viewer.page.click('summary:has-text("Scene report")');
     const text = await viewer.page.textContent(".report");
     expect(text).toContain("rigid links");
     expect(text).toMatch(/Largest stable step [0-9.]+ ms/);
     await viewer.saveScreenshot("report");
-    await viewer.page.click('summary:has-text("What runs")');
+    await viewer.page.click('summary:has-text("Scene report")');
   });
 });
 

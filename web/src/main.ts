@@ -31,7 +31,7 @@ const chooser = new SessionChooser(api, (sessionId) => location.assign(address(s
 document.body.append(chooser.element);
 
 const loading = elementById("loading");
-const start = make("button", { type: "button", onclick: () => void chooser.show() }, "Start one");
+const start = make("button", { type: "button", onclick: () => void chooser.show() }, "Start a session");
 
 function say(error?: unknown): void {
   if (error === undefined) loading.replaceChildren("The server has no session yet. ", start);
@@ -52,7 +52,7 @@ async function find(): Promise<string> {
 
 await signIn(api, access, loading);
 const sessionId = await find().catch((error: unknown) => {
-  loading.replaceChildren(`This link cannot be run again: ${errorText(error)}. `, start);
+  loading.replaceChildren(`The simulation of this link cannot be repeated: ${errorText(error)}. `, start);
   throw error;
 });
 const secondSessionId = here.searchParams.get("beside") ?? undefined;
@@ -61,13 +61,13 @@ const embedded = here.searchParams.has("embed");
 document.body.classList.toggle("embedded", embedded);
 loading.replaceChildren("Loading the scene…");
 history.replaceState(null, "", secondSessionId === undefined && !embedded ? address(sessionId) : here.search);
-elementById("whole").setAttribute("href", address(sessionId));
+elementById("open-full").setAttribute("href", address(sessionId));
 try {
   const subject = { sessionId, secondSessionId, open: (query: string) => location.assign(query) };
   new App(api, subject, chooser, identity, systemClock).start();
 } catch (error) {
   loading.replaceChildren(
-    "This browser cannot draw: Phrenic needs WebGL 2. Switch hardware acceleration on, or update it.",
+    "This browser cannot draw the scene: Phrenic needs WebGL 2. Enable hardware acceleration or update the browser.",
   );
   throw error;
 }

@@ -63,8 +63,8 @@ test("the page asks until the server knows the token, which stands nowhere in it
   const place = document.createElement("div");
   const done = signIn(api, access, place);
   for (const [words, token] of [
-    ["knows its users", "bad"],
-    ["Nobody has that token", "good"],
+    ["requires an account", "bad"],
+    ["No account has this token", "good"],
   ] as const) {
     await expect.poll(() => place.textContent).toContain(words);
     const entry = place.querySelector("input")!;

@@ -88,7 +88,9 @@ test("ShapesAreThoseInTheFileBitForBit", () => {
 
 test("AFrameOfShapesThatHaveNotComeIsRefused", () => {
   const frame = create(FrameSchema, { codec: Codec.BASIS, bodies: [0], basisEpoch: 2n });
-  expect(() => new FrameDecoder([sheet]).decode(frame)).toThrow("basis_epoch: the shapes of 2 have not come");
+  expect(() => new FrameDecoder([sheet]).decode(frame)).toThrow(
+    "basis_epoch: the basis of epoch 2 has not been received",
+  );
 });
 
 /** CODEC_PREDICTED of two triangles, all vertices 1 m above rest: only the residual of the first vertex is not zero. */
@@ -127,5 +129,7 @@ test("BodiesThatAreNotInAFrameStayAtRest", () => {
 });
 
 test("ABodyThatIsNotInTheSceneIsRefused", () => {
-  expect(() => new FrameDecoder([]).decode(create(FrameSchema, { bodies: [3] }))).toThrow("bodies: there are only 0");
+  expect(() => new FrameDecoder([]).decode(create(FrameSchema, { bodies: [3] }))).toThrow(
+    "bodies: an index is out of range, there are 0 bodies",
+  );
 });

@@ -16,7 +16,7 @@ describe("numbers on the wire", () => {
   });
 
   test("AnIncompleteGroupIsRefusedByName", () => {
-    expect(() => floats(new Uint8Array(16), 3, "positions")).toThrow("positions: 16 bytes are no multiple of 12");
+    expect(() => floats(new Uint8Array(16), 3, "positions")).toThrow("positions: 16 bytes are not a multiple of 12");
   });
 
   test("AnIndexPastTheEndIsRefusedByName", () => {

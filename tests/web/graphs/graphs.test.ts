@@ -34,7 +34,7 @@ describe("what a scene measures", () => {
       "M-mode: descent [mm]: right dome",
       "Pressures [Pa]: alveolar pressure,pleural pressure",
       "P–V loop [l]: lung volume",
-      "Probes: upward [mm]: sternum",
+      "Probes: upward displacement [mm]: sternum",
       "Below [l]: below",
       "Breath wave []: breath",
     ]);

@@ -87,8 +87,8 @@ describe("a slider", () => {
 
 describe("a typed number", () => {
   test("PastTheRangeIsRefusedWithTheRange", () => {
-    expect(rangeError(find("breathLength"), 31)).toBe("Breath length goes from 0.5 to 30 s.");
-    expect(rangeError(find("breathForce"), -0.1)).toBe("Breath force goes from 0 to 20.");
+    expect(rangeError(find("breathLength"), 31)).toBe("Breath length must be between 0.5 and 30 s.");
+    expect(rangeError(find("breathForce"), -0.1)).toBe("Breath force must be between 0 and 20.");
   });
 
   test("ThatIsNoneIsRefused", () => {

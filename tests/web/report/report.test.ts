@@ -154,7 +154,7 @@ describe("the error study", () => {
       verdict: "ok",
     };
     show(withTable(errorStudy, "error", { rows: [row] }));
-    expect(captions()[0]).toContain("Every run is faster than real time by far.");
+    expect(captions()[0]).toContain("All runs are much faster than real time.");
   });
 });
 
@@ -204,7 +204,7 @@ describe("the streaming study", () => {
     const [drawn] = all("figure svg[role=img]");
     expect(drawn.outerHTML).not.toMatch(/NaN|Infinity|undefined/);
     for (const name of ["Planes", "Predicted", "Basis"]) expect(drawn.textContent).toContain(name);
-    expect(captions()[0]).toContain("Raw frames err by nothing and take 91.5 Mbit/s.");
+    expect(captions()[0]).toContain("Raw frames are exact and take 91.5 Mbit/s.");
     expect(page.textContent).toContain("31\u202f772 vertices, 16 frames");
     expect(all("tbody tr")).toHaveLength(10);
   });
@@ -218,13 +218,13 @@ describe("the streaming study", () => {
 describe("the cost study", () => {
   test("WritesTheThesisFigureBesideTheBar", () => {
     show(costStudy);
-    expect(page.querySelector("figure svg")!.textContent).toContain("214 µs, 26.4 % (thesis 625 µs, 2.92 × its pace)");
+    expect(page.querySelector("figure svg")!.textContent).toContain("214 µs, 26.4 % (thesis 625 µs, 2.92 × its speed)");
     expect(captions()[2]).toContain("to the power of 1.04");
   });
 
   test("SaysWhatAStepTakesAndWhetherLeavingOutIsFree", () => {
     show(costStudy);
-    expect(advice()[0]).toBe("A step takes 812 µs, 3 times the thesis' pace.");
+    expect(advice()[0]).toBe("A step takes 812 µs, 3 times the speed of the thesis.");
     expect(advice()[1]).toBe("Most of it goes to springs.");
     const rows = [0.99, 1.02].map((overNeverHad) => ({
       variant: "links left out",
@@ -232,7 +232,7 @@ describe("the cost study", () => {
       overNeverHad,
     }));
     show(withTable(costStudy as never, "cost", { rows }));
-    expect(advice()).toEqual(["What a scene leaves out: 0.99 to 1.02 of the time of a scene that never had it."]);
+    expect(advice()).toEqual(["Time with a part left out, relative to a scene without it: 0.99 to 1.02."]);
   });
 
   test("StandsVariantsWithoutStagesAndGrowth", () => {

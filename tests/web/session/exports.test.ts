@@ -110,7 +110,7 @@ test("AFailureIsSaidInTheServersWords", async () => {
   const exports = new Exports(api, "class");
   document.body.replaceChildren(exportPanel(exports, new Signal<Body[]>([])));
   await exports.start();
-  expect(document.querySelector("#export-work [role=alert]")?.textContent).toBe("time_step: too long");
+  expect(document.querySelector("#export-progress [role=alert]")?.textContent).toBe("time_step: too long");
 });
 
 test("AnUploadGoesOnWhereItWasAndSaysHowScenesNameIt", async () => {
@@ -125,5 +125,5 @@ test("AnUploadGoesOnWhereItWasAndSaysHowScenesNameIt", async () => {
   expect(document.body.textContent).toContain("weld them");
   refused = "a.obj:2: the vertex's z is missing";
   await uploads.upload(local);
-  expect(document.querySelector("#upload-work [role=alert]")?.textContent).toBe(refused);
+  expect(document.querySelector("#upload-progress [role=alert]")?.textContent).toBe(refused);
 });

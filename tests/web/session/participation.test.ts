@@ -50,7 +50,7 @@ async function enterAs(name: string) {
 
 test("EverybodyMayChangeWhatNobodyControls", () => {
   const roles = rolesOf(people(""), "");
-  expect([roles.mayChange, controlLabel(roles), refusalReason(roles)]).toEqual([true, "Everybody controls", ""]);
+  expect([roles.mayChange, controlLabel(roles), refusalReason(roles)]).toEqual([true, "Everyone controls", ""]);
 });
 
 test("OnlyWhoControlsMayChange", () => {

@@ -202,10 +202,10 @@ export class App {
       elementById("stage").append(this.secondView.headers.element);
       new ResizeObserver(() => this.resize()).observe(this.secondView.headers.element);
     }
-    elementById("annotations-place").append(tools.annotations.element);
-    elementById("cube-place").append(tools.cube.element);
-    elementById("playback-place").append(controlledGroup(this.participation, playbackPanel(controller)));
-    elementById("readout-place").append(this.timeline.element, this.readout.element);
+    elementById("annotations-slot").append(tools.annotations.element);
+    elementById("cube-slot").append(tools.cube.element);
+    elementById("playback-slot").append(controlledGroup(this.participation, playbackPanel(controller)));
+    elementById("readout-slot").append(this.timeline.element, this.readout.element);
     elementById("margins").append(...this.margins.elements);
     elementById("views").append(...viewBar(viewer, elementById("view")));
     elementById("banners").append(...banners(controller, this.connectionState, () => void this.chooser.show()));
@@ -245,14 +245,14 @@ export class App {
     const keys = shortcuts(
       [
         { key: " ", description: "Play, pause", run: press("play") },
-        { key: ".", description: "Take some steps; one picture on where you look back", run: () => this.stepForward() },
-        { key: ",", description: "Look back, one picture a time", run: () => this.timeline.stepFrame(-1) },
-        { key: "r", description: "Back to the start", run: press("reset") },
+        { key: ".", description: "Step; next frame during replay", run: () => this.stepForward() },
+        { key: ",", description: "Replay, one frame back", run: () => this.timeline.stepFrame(-1) },
+        { key: "r", description: "Reset", run: press("reset") },
         { key: "g", description: "Graphs", run: graphs },
         { key: "c", description: "Controls", run: panel },
-        { key: "h", description: "The whole scene", run: () => viewer.goTo("home") },
-        { key: "f", description: "From the front", run: () => viewer.goTo("front") },
-        { key: "p", description: "Save a picture", run: () => void photograph() },
+        { key: "h", description: "Whole scene", run: () => viewer.goTo("home") },
+        { key: "f", description: "Front view", run: () => viewer.goTo("front") },
+        { key: "p", description: "Save a screenshot", run: () => void photograph() },
         { key: "s", description: "Share, copy, compare", run: () => share.show() },
       ],
       () => controller.undo(),
@@ -262,12 +262,12 @@ export class App {
     document.body.append(share.element, keys, control.element);
     elementById("share-open").onclick = () => share.show();
     elementById("help-open").onclick = () => keys.showModal();
-    elementById("link-place").append(
+    elementById("status-slot").append(
       controlBadge(this.participation, () => control.show()),
       this.viewers.element,
       this.connectionBadge.element,
     );
-    elementById("session-place").append(sessionButton(controller, () => void this.chooser.show()));
+    elementById("session-slot").append(sessionButton(controller, () => void this.chooser.show()));
   }
 
   /** Distributes what the connection receives. */

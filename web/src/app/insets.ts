@@ -11,7 +11,7 @@ export function stageInsets(): Insets {
   const bottom = stage.clientHeight - elementById("dock").offsetTop;
   const { offsetLeft, offsetWidth, offsetHeight } = elementById("cards");
   const right = offsetHeight > 0 ? offsetLeft + offsetWidth : 0;
-  const heads = document.getElementById("pane-heads")?.offsetHeight ?? 0;
+  const heads = document.getElementById("view-headers")?.offsetHeight ?? 0;
   // A card that takes most of a narrow stage, or that lies over two views, does not shift the scene.
   const left = heads === 0 && right < 0.6 * width ? right : 0;
   stage.style.setProperty("--covered", `${bottom}px`);

@@ -160,7 +160,7 @@ export class SceneTools {
       this.replayTime !== undefined &&
       this.forceRequest().kind !== undefined &&
       this.forces.magnitudes.value.size === 0;
-    this.coloring.message.set(unknown ? "Not known of this moment: forces are kept while they are shown." : "");
+    this.coloring.message.set(unknown ? "Forces are unknown at this time: only displayed forces are recorded." : "");
   }
 
   /** Updates the readings and the colours of a comparison; called a few times per second. */

@@ -61,14 +61,14 @@ export class SecondView {
     private readonly clock: Clock,
     actions: { swap(): void; close(): void },
   ) {
-    const canvas = make("canvas", { role: "img", ariaLabel: `The session ${sessionId}, in three dimensions` });
+    const canvas = make("canvas", { role: "img", ariaLabel: `3D view of the session ${sessionId}` });
     this.controller = new SessionController(api, sessionId, clock);
     primary.controller.companion = this.controller;
     primary.frames.synchroniseWith(this.frames);
     this.headers = new ViewHeaders([primary.controller, this.controller], primary.presets, actions);
     this.viewer = new Viewer(canvas, this.viewerHost());
     this.annotations = new Annotations(this.viewer);
-    this.element = make("div", { id: "beside" }, canvas, this.annotations.element);
+    this.element = make("div", { id: "second-view" }, canvas, this.annotations.element);
     this.forces = new ForceQueries(api, sessionId);
     this.colorizer = new VertexColorizer(this.forces);
     this.ghosts = new GhostSelector(this.viewer, () => this.frames.displayed?.arrays, primary.tools.ghost);

@@ -8,12 +8,12 @@ export interface Shortcut {
 }
 
 const pointerGestures: [key: string, words: string][] = [
-  ["Drag, arrow keys", "Turn the picture"],
-  ["Wheel, + and −", "Come nearer, go away"],
-  ["Right drag", "Move the picture"],
+  ["Drag, arrow keys", "Rotate the view"],
+  ["Wheel, + and −", "Zoom in and out"],
+  ["Right drag", "Move the view"],
   ["Click", "Pick a vertex"],
   ["Shift and drag", "Pull the tissue"],
-  ["Ctrl Z, Ctrl Shift Z", "Take a change back, do it again"],
+  ["Ctrl Z, Ctrl Shift Z", "Undo, redo"],
 ];
 
 /** Handles keys outside of inputs and dialogs. Returns the dialog that lists them. */

@@ -29,7 +29,7 @@ export const fields: FieldInfo[] = [
     kind: "displacement",
     label: "Displacement",
     unit: "mm",
-    help: "How far each vertex is from where it rests",
+    help: "Distance of each vertex from its rest position",
     diverging: false,
     smallestTop: 10,
   },
@@ -37,7 +37,7 @@ export const fields: FieldInfo[] = [
     kind: "speed",
     label: "Speed",
     unit: "mm/s",
-    help: "How fast each vertex moves",
+    help: "Speed of each vertex",
     diverging: false,
     smallestTop: 10,
   },
@@ -45,23 +45,23 @@ export const fields: FieldInfo[] = [
     kind: "area",
     label: "Area change",
     unit: "%",
-    help: "How much larger than at rest the triangles around each vertex are",
+    help: "Area change of the triangles around each vertex, relative to rest",
     diverging: true,
     smallestTop: 5,
   },
   {
     kind: "largest",
-    label: "Strain, largest",
+    label: "Largest principal strain",
     unit: "%",
-    help: "How much the surface is stretched where it is stretched most: the larger principal strain",
+    help: "Larger principal strain of the surface, relative to rest",
     diverging: true,
     smallestTop: 5,
   },
   {
     kind: "smallest",
-    label: "Strain, smallest",
+    label: "Smallest principal strain",
     unit: "%",
-    help: "How much the surface is stretched, or shortened, the other way: the smaller principal strain",
+    help: "Smaller principal strain of the surface, relative to rest",
     diverging: true,
     smallestTop: 5,
   },
@@ -82,7 +82,7 @@ export function fieldInfo(kind: FieldKind | undefined): FieldInfo | undefined {
   const force = forceKindOf(kind);
   if (kind === undefined || force === undefined) return fields.find((each) => each.kind === kind);
   const label = `Force: ${forceKindLabel(force)}`;
-  return { kind, label, unit: "N", help: "How large it is on each vertex", diverging: false, smallestTop: 1e-4 };
+  return { kind, label, unit: "N", help: "Magnitude of the force on each vertex", diverging: false, smallestTop: 1e-4 };
 }
 
 /** Computes fields of the displayed frame; speed uses the frame displayed before. */

@@ -85,7 +85,7 @@ export class TrackedVertices {
   private change(refs: VertexRef[]): void {
     const curves = refs.map((ref) => ({ key: vertexLabel(ref), name: vertexLabel(ref), factor: 1000 }));
     this.graph =
-      refs.length === 0 ? undefined : { id: "followed", title: "Followed vertices: from rest", unit: "mm", curves };
+      refs.length === 0 ? undefined : { id: "tracked", title: "Tracked vertices: displacement", unit: "mm", curves };
     this.history.clear();
     this.tracked.set(refs);
   }

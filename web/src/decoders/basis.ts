@@ -22,11 +22,11 @@ export function basisDecoder(shape: RestShape): PositionDecoder {
     const header = headerView(bytes, headerBytes + 4 * basisShapes.length);
     const step = checkStep(header.getFloat64(0, true));
     if (header.getUint32(8, true) !== basisShapes.length)
-      throw new RangeError("positions: of another number of shapes.");
+      throw new RangeError("positions: the number of shapes does not match the basis.");
     const kind = header.getUint32(12, true);
     const residualBytes = bytes.subarray(headerBytes + 4 * basisShapes.length);
     if (kind > predictedResiduals || (kind === noResiduals && residualBytes.length > 0))
-      throw new RangeError("positions: too much follows.");
+      throw new RangeError("positions: there are unexpected bytes after the coefficients.");
     for (let k = 0; k < coefficients.length; k++)
       coefficients[k] = checkCoefficient(header.getFloat32(headerBytes + 4 * k, true));
     addShapes(rest, coefficients, interleaved, sum);
@@ -52,7 +52,7 @@ function interleave(shapes: Float32Array[]): Float32Array {
 }
 
 function checkCoefficient(part: number): number {
-  if (!Number.isFinite(part)) throw new RangeError("positions: a shape's part is not finite.");
+  if (!Number.isFinite(part)) throw new RangeError("positions: a coefficient is not finite.");
   return part;
 }
 

@@ -36,7 +36,8 @@ export class FrameDecoder {
    */
   decode(frame: Frame): FrameArrays {
     const present = frame.bodies.map((index) => this.bodies[index]);
-    if (present.includes(undefined as never)) throw new RangeError(`bodies: there are only ${this.bodies.length}.`);
+    if (present.includes(undefined as never))
+      throw new RangeError(`bodies: an index is out of range, there are ${this.bodies.length} bodies.`);
     const positions = this.decoderOf(frame, present)(frame.positions);
     return {
       positions: this.scatter(positions, present),
@@ -57,7 +58,7 @@ export class FrameDecoder {
   /** Returns the parts of the basis shapes that belong to these bodies. */
   private shapesOf(present: Body[], epoch: bigint): Float32Array[] {
     const basis = this.bases.find((each) => each.epoch === epoch);
-    if (basis === undefined) throw new RangeError(`basis_epoch: the shapes of ${epoch} have not come.`);
+    if (basis === undefined) throw new RangeError(`basis_epoch: the basis of epoch ${epoch} has not been received.`);
     return basis.shapes.map((shape) => {
       const parts = present.map(({ firstVertex, rest }) =>
         shape.subarray(3 * firstVertex, 3 * firstVertex + rest.length),

@@ -85,13 +85,13 @@ function addInDoubles(
 
 /** Decodes residuals, three per vertex. Throws RangeError if the bytes are not valid residuals (proto/README.md). */
 export function readResiduals(bytes: Uint8Array, residuals: Int32Array): void {
-  if (bytes.length < headerBytes) throw new RangeError("positions: the lengths are cut off.");
+  if (bytes.length < headerBytes) throw new RangeError("positions: the header is truncated.");
   const head = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   const end = headerBytes + head.getUint32(0, true);
   const size = head.getUint32(4, true);
   const count = residuals.length;
-  if (end > bytes.length) throw new RangeError("positions: the two bits are cut off.");
-  if (size > maxVarintBytes * count) throw new RangeError("positions: there is more overflow than there are numbers.");
+  if (end > bytes.length) throw new RangeError("positions: the packed residuals are truncated.");
+  if (size > maxVarintBytes * count) throw new RangeError("positions: the overflow exceeds its maximum size.");
   const bits = decompressExactly(bytes.subarray(headerBytes, end), Math.ceil(count / 4));
   unpackResiduals(bits, decompressExactly(bytes.subarray(end), size), residuals);
 }
@@ -113,7 +113,7 @@ function unpackResiduals(bits: Uint8Array, overflow: Uint8Array, residuals: Int3
       if (value === escapeCode) {
         let byte = 0x80;
         for (let bit = 0; byte >= 0x80; bit += 7) {
-          if (at === overflow.length || bit === 35) throw new RangeError("positions: the overflow ends too early.");
+          if (at === overflow.length || bit === 35) throw new RangeError("positions: the overflow is truncated.");
           byte = overflow[at++];
           value += (byte & 0x7f) * 2 ** bit;
         }
@@ -123,5 +123,5 @@ function unpackResiduals(bits: Uint8Array, overflow: Uint8Array, residuals: Int3
       if (to >= count) to -= count - 1; // the next axis
     }
   }
-  if (at !== overflow.length) throw new RangeError("positions: the overflow is too long.");
+  if (at !== overflow.length) throw new RangeError("positions: there are unexpected bytes after the overflow.");
 }

@@ -15,12 +15,14 @@ export function decompressExactly(frame: Uint8Array, size: number): Uint8Array {
 
 /** Returns the quantisation step [m]. Throws RangeError unless it is above 0 and at most 1 m. */
 export function checkStep(step: number): number {
-  if (!(step > 0 && step <= 1)) throw new RangeError(`positions: the step, ${step} m, is not within 0 to 1 m.`);
+  if (!(step > 0 && step <= 1))
+    throw new RangeError(`positions: the quantisation step ${step} m is not between 0 and 1 m.`);
   return step;
 }
 
 /** Returns a view of the bytes. Throws RangeError if they are shorter than the header of `head` bytes. */
 export function headerView(bytes: Uint8Array, head: number): DataView {
-  if (bytes.length < head) throw new RangeError(`positions: ${bytes.length} bytes, less than the head's ${head}.`);
+  if (bytes.length < head)
+    throw new RangeError(`positions: ${bytes.length} bytes are fewer than the header of ${head}.`);
   return new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
 }

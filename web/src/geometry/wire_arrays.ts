@@ -7,7 +7,7 @@ const machineIsLittleEndian = new Uint8Array(new Uint16Array([1]).buffer)[0] ===
  */
 function aligned(bytes: Uint8Array, group: number, what: string): ArrayBuffer {
   if (bytes.byteLength % (4 * group) !== 0) {
-    throw new RangeError(`${what}: ${bytes.byteLength} bytes are no multiple of ${4 * group}.`);
+    throw new RangeError(`${what}: ${bytes.byteLength} bytes are not a multiple of ${4 * group}.`);
   }
   const copy = bytes.slice();
   if (!machineIsLittleEndian) {

@@ -89,14 +89,16 @@ function domes(frame: Frame): GraphSpec[] {
 
 function probes({ probes }: Frame): GraphSpec[] {
   const curves = probes.filter((probe) => !isDome(probe)).map(({ name }) => curve(probeKey(name), name, 1000));
-  return curves.length === 0 ? [] : [{ id: "probes", title: "Probes: upward", help: probeHelp, unit: "mm", curves }];
+  return curves.length === 0
+    ? []
+    : [{ id: "probes", title: "Probes: upward displacement", help: probeHelp, unit: "mm", curves }];
 }
 
 /** The descent is defined as in `phrenic physiology`. */
 export const domeHelp =
-  "How far the highest point of each side is below where it was at rest, whichever point that is now";
+  "Descent of the highest point of each side from its height at rest; the highest point may change";
 /** Explanation of the probes' graph. */
-export const probeHelp = "How far one vertex each, always the same, is above where it rests";
+export const probeHelp = "Upward displacement of a fixed vertex from rest";
 
 /**
  * Returns the height of each dome above rest [m], from the scene's measures or, without these, from probes of that

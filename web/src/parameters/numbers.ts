@@ -19,7 +19,7 @@ function decimalsOf(step: number): number {
 /** Returns an error message if `value` is out of range; otherwise undefined. */
 export function rangeError(control: NumberControl, value: number): string | undefined {
   if (Number.isFinite(value) && value >= control.minimum && value <= control.maximum) return undefined;
-  return `${control.label} goes from ${formatNumber(control.minimum)} to ${formatNumber(control.maximum)}${
+  return `${control.label} must be between ${formatNumber(control.minimum)} and ${formatNumber(control.maximum)}${
     control.unit ? " " + control.unit : ""
   }.`;
 }

@@ -33,7 +33,7 @@ export function bandwidth({ rows }: StreamingTable): HTMLElement {
     ...seriesScales(seriesStyles(ids)),
     height: 560,
     marginTop: 44,
-    x: logScale("Mbit/s at 30 frames a second", logDomain(thinShown ? [...xs, thin] : xs)),
+    x: logScale("Mbit/s at 30 frames per second", logDomain(thinShown ? [...xs, thin] : xs)),
     y: logScale("Largest error [mm]", logDomain(ys)),
     marks: [
       frame({ stroke: "#8b949e" }),
@@ -54,20 +54,19 @@ export function bandwidth({ rows }: StreamingTable): HTMLElement {
 function thinLine() {
   return [
     ruleX([thin], { stroke: faint, strokeWidth: 1.5, strokeDasharray: "7 4" }),
-    text(["a line of 4 Mbit/s"], { x: [thin], frameAnchor: "top", dy: -11, fill: ink, fontSize: 14 }),
+    text(["a connection of 4 Mbit/s"], { x: [thin], frameAnchor: "top", dy: -11, fill: ink, fontSize: 14 }),
   ];
 }
 
 function captionOf(rows: StreamingRow[]): string {
   const raw = rows.find(({ codec }) => codec === "raw");
-  const exact =
-    raw === undefined ? "" : ` Raw frames err by nothing and take ${formatDigits(raw.mbitPerSecond, 3)} Mbit/s.`;
-  return `Lower errs less, further left takes less; each dot is one error bound, rings mark the front.${exact}`;
+  const exact = raw === undefined ? "" : ` Raw frames are exact and take ${formatDigits(raw.mbitPerSecond, 3)} Mbit/s.`;
+  return `Lower is more accurate, further left needs less bandwidth; each dot is one error bound, rings mark the Pareto front.${exact}`;
 }
 
 function tooltip({ row }: Point): string {
   return `${seriesName(row.codec)} within ${formatDigits(row.boundMm ?? 0, 3)} mm
 largest error ${formatDigits(row.errorMaxMm, 3)} mm, RMS ${formatDigits(row.errorRmsMm, 3)} mm
-${formatDigits(row.bytesPerFrame, 6)} bytes a frame, ${formatDigits(row.mbitPerSecond, 3)} Mbit/s
+${formatDigits(row.bytesPerFrame, 6)} bytes per frame, ${formatDigits(row.mbitPerSecond, 3)} Mbit/s
 encode ${formatDigits(row.encodeUs, 3)} µs, decode ${formatDigits(row.decodeUs, 3)} µs`;
 }

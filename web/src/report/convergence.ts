@@ -37,7 +37,7 @@ export function convergence(table: ErrorTable): HTMLElement | undefined {
     ],
   });
   const sentence =
-    `Half the step, and the error of order p falls to 1/2^p: dashed guides have the slopes 1, 2 and 4. ` +
+    `Halving the step reduces an error of order p to 1/2^p: dashed guides have slopes 1, 2 and 4. ` +
     [measuredOrders(runs), omittedRuns(table.rows, runs)].filter(Boolean).join(" ");
   return figure(title, sentence.replace("1/2^p", "1/2ᵖ"), drawn);
 }

@@ -31,7 +31,7 @@ export function variantBars(rows: CostRow[]): HTMLElement {
   const spread = Math.max(...known.map((row) => row.spread));
   const sentences = [
     `Medians over the trials, which differ by up to ${formatDigits(100 * spread, 2)} %; percentages are of the full scene.`,
-    drawnThesis(bars, longest).length > 0 ? "Upright strokes are the thesis' figures." : "",
+    drawnThesis(bars, longest).length > 0 ? "Vertical strokes are values of the thesis." : "",
   ];
   return figure(title, sentences.filter(Boolean).join(" "), drawBars(title, "CPU time [µs per step]", bars));
 }
@@ -41,7 +41,7 @@ function barLabel(row: CostRow, thesis: number | undefined): string {
   const own = `${formatDigits(row.cpuUsPerStep, 3)} µs${share}`;
   if (thesis === undefined) return own;
   const ratio = row.timesThesis;
-  const pace = ratio === undefined ? "" : `, ${formatDigits(ratio, 3)} × its pace`;
+  const pace = ratio === undefined ? "" : `, ${formatDigits(ratio, 3)} × its speed`;
   return `${own} (thesis ${formatDigits(thesis, 3)} µs${pace})`;
 }
 
@@ -63,7 +63,7 @@ export function stageBars(rows: StageRow[]): HTMLElement | undefined {
     });
   const title = "Time of a step, by stage.";
   const most = bars.find(({ name }) => !name.startsWith("step"));
-  const sentence = `Measured from inside${most === undefined ? "" : `; most goes to ${most.name}: ${most.words}`}.`;
+  const sentence = `Measured inside the process${most === undefined ? "" : `; the largest part is ${most.name}: ${most.words}`}.`;
   return figure(title, sentence, drawBars(title, "Time [µs per step]", bars));
 }
 

@@ -46,7 +46,7 @@ function mostTo({ stage, element }: StageRow): string {
 }
 
 function paceOf({ cpuUsPerStep, timesThesis }: CostRow): string {
-  const beside = timesThesis === undefined ? "" : `, ${formatDigits(timesThesis, 3)} times the thesis' pace`;
+  const beside = timesThesis === undefined ? "" : `, ${formatDigits(timesThesis, 3)} times the speed of the thesis`;
   return `A step takes ${formatDigits(cpuUsPerStep, 3)} µs${beside}.`;
 }
 
@@ -56,5 +56,5 @@ function leavingOut(rows: CostRow[]): string | undefined {
   );
   if (ratios.length === 0) return undefined;
   const [least, most] = [Math.min(...ratios), Math.max(...ratios)].map((ratio) => formatDigits(ratio, 3));
-  return `What a scene leaves out: ${least} to ${most} of the time of a scene that never had it.`;
+  return `Time with a part left out, relative to a scene without it: ${least} to ${most}.`;
 }

@@ -46,7 +46,7 @@ function switched(table: ErrorTable): HTMLElement {
   });
   show("errorRmsMm");
   const choice = make("fieldset", { className: "choice" }, make("legend", {}, "Error shown"), ...choices);
-  return make("section", {}, make("h2", {}, "What precision costs"), choice, frame);
+  return make("section", {}, make("h2", {}, "Work and precision"), choice, frame);
 }
 
 function referenceWords(reference: Reference): HTMLElement {
@@ -54,8 +54,8 @@ function referenceWords(reference: Reference): HTMLElement {
   const sentence =
     `${method || "An independent solution"} at a tolerance of ${formatDigits(toleranceM)} m, with ` +
     `${formatDigits(Number(evaluations), 9)} evaluations in ${formatDigits(cpuS, 3)} s of CPU time. Against the same ` +
-    `solution at a tenth of the tolerance it errs by ${formatDigits(errorRmsMm, 3)} mm RMS and ` +
-    `${formatDigits(errorMaxMm, 3)} mm at most, while vertices move by up to ` +
+    `solution at a tenth of the tolerance its error is ${formatDigits(errorRmsMm, 3)} mm RMS and ` +
+    `${formatDigits(errorMaxMm, 3)} mm at most; vertices move by up to ` +
     `${formatDigits(largestDisplacementMm, 3)} mm.`;
   return make("section", {}, make("h2", {}, "The reference"), make("p", {}, sentence));
 }

@@ -8,5 +8,5 @@ export function figure(title: string, sentence: string, ...content: (Node | stri
 
 /** Figures side by side if there is room. */
 export function sideBySide(...figures: (HTMLElement | undefined)[]): HTMLElement {
-  return make("div", { className: "beside" }, ...figures.filter((each) => each !== undefined));
+  return make("div", { className: "side-by-side" }, ...figures.filter((each) => each !== undefined));
 }

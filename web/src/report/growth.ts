@@ -24,8 +24,8 @@ export function growth({ growth: rows, growthExponent }: CostTable): HTMLElement
   const title = "CPU time of a step against the number of vertices.";
   const sentence =
     growthExponent === undefined
-      ? "Straight lines are powers; slope 1 is a cost in proportion."
-      : `The cost grows as vertices to the power of ${formatDigits(growthExponent, 3)} (dashed); 1 is in proportion.`;
+      ? "Straight lines are power laws; slope 1 is proportional cost."
+      : `The cost grows as vertices to the power of ${formatDigits(growthExponent, 3)} (dashed); 1 is proportional.`;
   const drawn = drawPlot(`${title} ${sentence}`, {
     ...seriesScales(seriesStyles(ids)),
     height: 480,

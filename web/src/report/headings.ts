@@ -5,7 +5,7 @@ const words: Record<string, string> = { cpu: "CPU", rms: "RMS" };
 const whole: Record<string, string> = {
   cpu_per_second: "CPU [s per s]",
   real_time: "Faster than real time",
-  pareto: "On front",
+  pareto: "Pareto front",
   bytes_per_frame: "Bytes per frame",
   mbit_per_second: "Mbit/s at 30 fps",
   order: "Measured order",

@@ -40,7 +40,7 @@ export function positionErrors(table: ErrorTable): HTMLElement | undefined {
   const ids = [...new Set(points.map(({ id }) => id))];
   const last = ids.map((id) => ({ id, y: points.findLast((point) => point.id === id)!.y }));
   const words = last.map(({ id, y }) => `${formatDigits(y, 2)} mm (${id})`).join(", ");
-  const sentence = `How links are kept shows in the motion: at the end the RMS error is ${words}.`;
+  const sentence = `The projection method affects the motion: at the end the RMS error is ${words}.`;
   return overTime("Error by projection.", "RMS error of positions [mm]", sentence, points);
 }
 

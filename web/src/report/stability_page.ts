@@ -19,7 +19,7 @@ export function stabilityParts(table: StabilityTable): HTMLElement[] {
   const maps = stabilityMaps(table);
   return [
     make("div", { className: "advice" }, ...summaryOf(table).map((sentence) => make("p", {}, sentence))),
-    make("h2", {}, "Where it is stable"),
+    make("h2", {}, "Stability maps"),
     maps.length === 0
       ? make("p", { className: "none" }, "There is no map.")
       : figure(

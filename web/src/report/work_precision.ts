@@ -80,10 +80,14 @@ export function workPrecision(table: ErrorTable, measure: Measure): HTMLElement 
     ],
   });
   const sentences = [
-    "Lower errs less, further left is faster; each dot is half the time step of the one before.",
-    front.length > 0 ? "Rings on the grey band mark the front: no other run is both faster and better." : "",
-    paceShown ? "" : `Every run is ${xs[0] < 1 ? "faster" : "slower"} than real time by far.`,
-    ownShown || !isPositive(own) ? "" : `The reference's own error, ${formatDigits(own, 3)} mm, lies off the plot.`,
+    "Lower is more accurate, further left is faster; each dot has half the time step of the previous one.",
+    front.length > 0
+      ? "Rings on the grey band mark the Pareto front: no other run is both faster and more accurate."
+      : "",
+    paceShown ? "" : `All runs are much ${xs[0] < 1 ? "faster" : "slower"} than real time.`,
+    ownShown || !isPositive(own)
+      ? ""
+      : `The reference's own error, ${formatDigits(own, 3)} mm, is outside of the plot.`,
     omittedRuns(table.rows, runs),
   ];
   return figure(title, sentences.filter(Boolean).join(" "), drawn);
@@ -119,7 +123,7 @@ export function omittedRuns(rows: ErrorRow[], runs: Run[]): string {
   ];
   const belowWho = [...new Set(below.map(({ integrator }) => seriesName(integrator)))].join(", ");
   const sentences = [
-    below.length === 0 ? "" : `${count(below.length, "run")} (${belowWho}) too near the reference to be measured.`,
+    below.length === 0 ? "" : `${count(below.length, "run")} (${belowWho}) too close to the reference to be measured.`,
     rest.length === 0 ? "" : `${count(missing.length - below.length, "run")} (${rest.join(", ")}) without a result.`,
   ];
   return `Not drawn: ${sentences.filter(Boolean).join(" ")}`;

@@ -64,7 +64,7 @@ export class Comparisons {
     if (file.size > maxBytes) {
       const size = (file.size / (1 << 20)).toFixed(1);
       const remedy = "record fewer times or fewer bodies, or compare on the command line (phrenic compare)";
-      return this.fail(`${file.name} has ${size} MiB, and the server takes less than 16: ${remedy}`);
+      return this.fail(`${file.name} has ${size} MiB, but the server accepts less than 16: ${remedy}`);
     }
     const { signal } = this.begin(file.name);
     const content = await file.arrayBuffer().catch(() => undefined);
@@ -145,7 +145,7 @@ export class Comparisons {
 
 function resultOf({ b, stateA, rows }: ComparisonTable, distances: number[]): Omit<Comparison, "surface"> {
   const distance = rows[0]?.distance;
-  if (stateA === undefined || distance === undefined) throw new Error("the server sent a comparison of nothing");
+  if (stateA === undefined || distance === undefined) throw new Error("the server sent an empty comparison");
   return { file: b, body: stateA.body, time: stateA.time, tick: stateA.tick, distance, distances };
 }
 

@@ -41,10 +41,10 @@ export function rolesOf(control: Control | undefined, ownName: string): Roles {
   };
 }
 
-/** Returns "You control", "Anna controls" or "Everybody controls". */
+/** Returns "You control", "Anna controls" or "Everyone controls". */
 export function controlLabel({ control, hasControl }: Roles): string {
   if (hasControl) return "You control";
-  return control?.controller ? `${control.controller} controls` : "Everybody controls";
+  return control?.controller ? `${control.controller} controls` : "Everyone controls";
 }
 
 /** Returns why this viewer's controls are disabled; empty if they are enabled. */

@@ -27,7 +27,7 @@ export function recipeOf(address: URL): RunRecipe | undefined {
   const get = (name: string) => address.searchParams.get(name) ?? "";
   if (get("scene") === "") return undefined;
   const tick = Number(get("tick") || "0");
-  if (!Number.isInteger(tick) || tick < 0) throw new Error(`tick: ${get("tick")} is no number of steps`);
+  if (!Number.isInteger(tick) || tick < 0) throw new Error(`tick: ${get("tick")} is not a number of steps`);
   const parameters = fromJsonString(ParametersSchema, get("parameters") || "{}");
   return { scene: get("scene"), hash: get("hash"), parameters, tick };
 }
@@ -44,7 +44,7 @@ export async function rerun(api: Api, recipe: RunRecipe, progress: (part: number
   if (recipe.hash !== "" && report?.sceneHash !== recipe.hash) {
     await api.sessions.deleteSession({ sessionId });
     throw new Error(
-      `the scene "${recipe.scene}" is another one here: its hash is ${report?.sceneHash.slice(0, 12)}…, not ${recipe.hash.slice(0, 12)}…`,
+      `the scene "${recipe.scene}" differs on this server: its hash is ${report?.sceneHash.slice(0, 12)}…, not ${recipe.hash.slice(0, 12)}…`,
     );
   }
   for (let tick = 0; tick < recipe.tick;) {

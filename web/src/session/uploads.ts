@@ -9,7 +9,7 @@ export type LocalFile = Pick<File, "name" | "size" | "arrayBuffer">;
 export type UploadProgress =
   | { kind: "idle" }
   | { kind: "sending"; file: string; done: number }
-  | { kind: "there"; file: string; path: string; report: SurfaceReport | undefined }
+  | { kind: "ready"; file: string; path: string; report: SurfaceReport | undefined }
   | { kind: "failed"; message: string };
 
 const chunkBytes = 1 << 20;
@@ -49,14 +49,14 @@ export class Uploads {
     const begin = { name, size: BigInt(content.length), sha256: await sha256(content) };
     const begun = await this.api.uploads.beginUpload(begin);
     const { uploadId } = begun;
-    if (uploadId === "") return { kind: "there", file: name, path: begun.file!.path, report: undefined };
+    if (uploadId === "") return { kind: "ready", file: name, path: begun.file!.path, report: undefined };
     for (let at = Number(begun.received); at < content.length;) {
       const chunk = content.subarray(at, at + chunkBytes);
       at = Number((await this.api.uploads.addUploadChunk({ uploadId, offset: BigInt(at), chunk })).received);
       progress(at / content.length);
     }
     const finished = await this.api.uploads.finishUpload({ uploadId });
-    return { kind: "there", file: name, path: finished.file!.path, report: finished.report };
+    return { kind: "ready", file: name, path: finished.file!.path, report: finished.report };
   }
 }
 

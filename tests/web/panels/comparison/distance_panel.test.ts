@@ -75,9 +75,9 @@ describe("the card", () => {
     await comparisons.compare(new File(["v 0 0 0"], "b.obj"));
     expect(byId("comparison-when").textContent).toBe("ball at 1.200 s, tick 1200");
     card.show(1.2);
-    expect(byId("comparison-moved").textContent).toBe("");
+    expect(byId("comparison-time").textContent).toBe("");
     card.show(2.5);
-    expect(byId("comparison-moved").textContent).toBe("The session is at 2.50 s now.");
+    expect(byId("comparison-time").textContent).toBe("The session is at 2.50 s now.");
   });
 
   test("ShowsProgressAndStops", async () => {

@@ -74,7 +74,7 @@ describe("the control panel", () => {
     entry.onchange?.(new Event("change"));
     await settle();
     expect(server.updates).toEqual([]);
-    expect(panel.textContent).toContain("Breath force goes from 0 to 20.");
+    expect(panel.textContent).toContain("Breath force must be between 0 and 20.");
     expect(entry.getAttribute("aria-invalid")).toBe("true");
   });
 });

@@ -16,7 +16,7 @@ function watched() {
 
 test("TheSliderLooksBackAndSaysHowFar", () => {
   const { frames, words, slider } = watched();
-  expect(words()).toBe("now");
+  expect(words()).toBe("live");
   slider.value = "1";
   slider.dispatchEvent(new Event("input"));
   expect(frames.replayedFrame?.time).toBe(1);

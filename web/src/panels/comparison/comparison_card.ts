@@ -8,9 +8,9 @@ import { distanceTable } from "./distance_table";
 /** A card with the progress and the result of a comparison, and its colour scale. */
 export class ComparisonCard {
   readonly element = make("section", { id: "comparison", className: "card", ariaLabel: "Distance to a surface" });
-  private readonly progressElement = make("div", { className: "work" });
-  private readonly resultElement = make("div", { className: "found" });
-  private readonly timeNote = make("p", { className: "faint", id: "comparison-moved" });
+  private readonly progressElement = make("div", { className: "job" });
+  private readonly resultElement = make("div", { className: "result" });
+  private readonly timeNote = make("p", { className: "faint", id: "comparison-time" });
   private readonly legend = new Legend();
   private tableOpen = !matchMedia("(max-width: 760px)").matches;
 
@@ -25,7 +25,7 @@ export class ComparisonCard {
     const result = this.comparisons.result.value;
     const elsewhere = result !== undefined && time !== undefined && time !== result.time;
     const now = `at ${time?.toFixed(2)} s now`;
-    const follows = `Colours follow the body, ${now}; “Again” measures there.`;
+    const follows = `Colours show the session ${now}; “Repeat” updates the table.`;
     const words = elsewhere ? (result.surface === undefined ? `The session is ${now}.` : follows) : "";
     if (this.timeNote.textContent !== words) this.timeNote.textContent = words;
   }
@@ -63,7 +63,7 @@ export class ComparisonCard {
     const figures = make(
       "details",
       { open: this.tableOpen },
-      make("summary", {}, "Figures"),
+      make("summary", {}, "Distances"),
       distanceTable(result.distance),
     );
     figures.ontoggle = () => (this.tableOpen = figures.open);
@@ -74,7 +74,7 @@ export class ComparisonCard {
   private drawnRow({ file, surface }: Comparison): HTMLElement[] {
     if (surface === undefined) return [];
     const { surfaceVisible } = this.comparisons;
-    const { row, input } = switchRow("Show the surface", `${file}, yellow and seen through`, (on) =>
+    const { row, input } = switchRow("Show the surface", `${file}, yellow and translucent`, (on) =>
       surfaceVisible.set(on),
     );
     input.id = "compare-drawn";
@@ -89,8 +89,8 @@ export class ComparisonCard {
   }
 
   private buttons(): HTMLElement {
-    const title = "Compare with the same file as the session is now";
-    const again = make("button", { type: "button", id: "compare-again", title }, "Again");
+    const title = "Compare the current state with the same file";
+    const again = make("button", { type: "button", id: "compare-repeat", title }, "Repeat");
     again.onclick = () => void this.comparisons.repeat();
     const clear = make("button", { type: "button", id: "compare-clear" }, "Clear");
     clear.onclick = () => this.comparisons.clear();

@@ -27,7 +27,7 @@ export function distancePanel(
   const hint = make("p", { className: "faint" });
   endings.subscribe((all) => {
     file.accept = all.join(",");
-    hint.textContent = `A surface (${all.join(", ")}) or motion (.msh); or drop one on the picture.`;
+    hint.textContent = `A surface (${all.join(", ")}) or motion (.msh); files can also be dropped on the page.`;
   });
   const rows = [bodyRow(comparisons, bodies), unitRow(comparisons), timeRow(comparisons)];
   return section("Distance to a surface", true, ...rows, open, file, hint);
@@ -48,14 +48,14 @@ function unitRow(comparisons: Comparisons): HTMLElement {
   const list = make("select", { id: "compare-unit" });
   list.append(...units.map(([label, millimetres]) => make("option", { value: String(millimetres) }, label)));
   list.onchange = () => comparisons.choose({ unitMm: Number(list.value) });
-  return row("compare-unit", "The file is in", list);
+  return row("compare-unit", "Unit of the file", list);
 }
 
 function timeRow(comparisons: Comparisons): HTMLElement {
-  const help = "Of a motion, the state at this time in seconds; empty: at the session's time";
-  const entry = make("input", { type: "number", step: "any", id: "compare-time", placeholder: "as now", title: help });
+  const help = "For a motion file: time of the compared state in seconds; empty for the session's time";
+  const entry = make("input", { type: "number", step: "any", id: "compare-time", placeholder: "current", title: help });
   entry.onchange = () => comparisons.choose({ time: entry.value === "" ? undefined : entry.valueAsNumber });
-  return row("compare-time", "Time in a motion [s]", entry);
+  return row("compare-time", "Time in the motion [s]", entry);
 }
 
 function row(id: string, label: string, control: HTMLElement): HTMLElement {

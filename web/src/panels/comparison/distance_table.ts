@@ -13,7 +13,7 @@ const rows: [label: string, names: (string | undefined)[]][] = [
 const heads: [head: string, title: string][] = [
   ["Body → file", "From the body to the nearest point of the file's surface"],
   ["File → body", "From the file's surface to the nearest point of the body"],
-  ["Both", "Of both directions together"],
+  ["Both", "Both directions combined"],
 ];
 
 /** Formats three decimals, one for 100 mm and more; "none" for NaN. */

@@ -13,7 +13,7 @@ export function presetComparison(
   presets: Signal<Preset[]>,
   open: (query: string) => void,
 ): HTMLElement {
-  const list = make("select", { id: "compare-with", title: "Opens a second picture that breathes this way" });
+  const list = make("select", { id: "compare-with", title: "Opens a second view with this preset" });
   const label = make("label", { htmlFor: "compare-with" }, "Compare with");
   const row = make("div", { className: "compare-row", id: "compare-with-row" }, label, list);
   const { companion, sessionId } = controller;
@@ -30,7 +30,7 @@ export function presetComparison(
   };
   presets.subscribe((all) => {
     row.hidden = all.length === 0;
-    const none = make("option", { value: "", disabled: true }, companion === undefined ? "Choose…" : "As it is set");
+    const none = make("option", { value: "", disabled: true }, companion === undefined ? "Choose…" : "Custom");
     list.replaceChildren(
       none,
       ...all.map((each) => make("option", { value: each.name, title: each.title }, presetLabel(each))),

@@ -29,13 +29,13 @@ export class ViewHeaders {
     private readonly presets: Signal<Preset[]>,
     actions: Actions,
   ) {
-    const steered = make("span", { className: "faint", title: "Controls act on this one" }, "steered");
+    const steered = make("span", { className: "faint", title: "The controls act on this session" }, "active");
     const viewHeaders = [[steered], buttons(pair[1].sessionId, actions)].map((extra, i) =>
-      make("div", { className: "pane-head", title: pair[i].sessionId }, this.names[i], this.times[i], ...extra),
+      make("div", { className: "view-header", title: pair[i].sessionId }, this.names[i], this.times[i], ...extra),
     );
     this.domes.forEach((domes, i) => viewHeaders[i].append(domes));
     viewHeaders[1].append(this.differences);
-    this.element = make("div", { id: "pane-heads" }, ...viewHeaders);
+    this.element = make("div", { id: "view-headers" }, ...viewHeaders);
     for (const { session } of pair) session.subscribe(() => this.compare());
     presets.subscribe(() => this.compare());
   }
@@ -57,7 +57,7 @@ export class ViewHeaders {
       const preset = activePreset(this.presets.value, session.value?.parameters);
       this.names[i].textContent = preset === undefined ? sessionId : presetLabel(preset);
     });
-    this.differences.textContent = shortDifferences(here, there) || "The same parameters";
+    this.differences.textContent = shortDifferences(here, there) || "Same parameters";
     this.differences.title = differences(here, there);
   }
 }
@@ -66,8 +66,8 @@ function buttons(sessionId: string, { swap, close }: Actions): HTMLElement[] {
   const button = (words: string, title: string, onclick: () => void) =>
     make("button", { type: "button", className: "small", title, onclick }, words);
   return [
-    button("Steer", "Controls act on this one then", swap),
-    button("Close", `Close ${sessionId}; it stays on the server`, close),
+    button("Activate", "Let the controls act on this session", swap),
+    button("Close", `Close this view; ${sessionId} stays on the server`, close),
   ];
 }
 

@@ -6,7 +6,7 @@ import type { ExportProgress, Exports } from "../../session/exports";
 import type { Signal } from "../../state/signal";
 
 const valueNames: [ExportValues, string][] = [
-  [ExportValues.UNSPECIFIED, "as usual"],
+  [ExportValues.UNSPECIFIED, "default"],
   [ExportValues.POSITIONS, "positions"],
   [ExportValues.DISPLACEMENTS, "displacements"],
 ];
@@ -17,8 +17,8 @@ export function exportPanel(exports: Exports, bodies: Signal<Body[]>): HTMLEleme
   const rows = [
     formatRow(exports),
     bodyRow(exports, bodies),
-    numberRow("export-seconds", "Length [s]", "8", (value) => exports.choose({ seconds: value ?? 8 })),
-    numberRow("export-fps", "Frames a second", "as usual", (value) => exports.choose({ framesPerSecond: value })),
+    numberRow("export-seconds", "Duration [s]", "8", (value) => exports.choose({ seconds: value ?? 8 })),
+    numberRow("export-fps", "Frames per second", "default", (value) => exports.choose({ framesPerSecond: value })),
     valuesRow(exports),
   ];
   const [, bodyChoice, length, rate, values] = rows as [HTMLElement, ...HTMLElement[]];
@@ -40,7 +40,7 @@ function formatRow(exports: Exports): HTMLElement {
   exports.formats.subscribe((formats) => {
     list.replaceChildren(
       ...formats.map(({ name, instant }) =>
-        make("option", { value: name }, instant ? `.${name}, as it is now` : `.${name}`),
+        make("option", { value: name }, instant ? `.${name}, current state` : `.${name}`),
       ),
     );
     list.value = exports.choices.value.format;
@@ -56,8 +56,8 @@ function bodyRow(exports: Exports, bodies: Signal<Body[]>): HTMLElement {
   bodies.subscribe((present) => {
     const names = present.map(({ name }) => make("option", { value: name }, name));
     list.replaceChildren(
-      make("option", { value: "" }, "what deforms"),
-      make("option", { value: "*" }, "everything"),
+      make("option", { value: "" }, "deformable bodies"),
+      make("option", { value: "*" }, "all bodies"),
       ...names,
     );
     exports.choose({ bodies: [] });
@@ -80,7 +80,7 @@ function numberRow(id: string, label: string, placeholder: string, choose: (valu
 
 /** Shows the progress and a link to the finished file. */
 function progress(exports: Exports, start: HTMLElement): HTMLElement {
-  const place = make("div", { id: "export-work" });
+  const place = make("div", { id: "export-progress" });
   exports.progress.subscribe((work) => {
     const running = work.kind === "recording" || work.kind === "fetching";
     (start as HTMLButtonElement).disabled = running;

@@ -6,14 +6,14 @@ import type { SessionController } from "../../session/session_controller";
 import { isFinished, type Studies, type StudyKind } from "../../session/studies";
 
 const kinds: [StudyKind, string, string][] = [
-  ["error", "Error against run time", "Every integrator over a ladder of time steps, against an independent reference"],
-  ["stability", "Stability", "A map over stiffness and time step, and a suite of extreme cases"],
-  ["cost", "Cost", "What each part of the scene costs, and what leaving it out saves"],
   [
-    "streaming",
-    "Error against bandwidth",
-    "What a frame of the scene takes on the line, by every codec and error bound",
+    "error",
+    "Error against run time",
+    "All integrators with a series of time steps, compared with an independent reference",
   ],
+  ["stability", "Stability", "A map over stiffness and time step, and a suite of extreme cases"],
+  ["cost", "Cost", "Cost of each part of the scene, and what omitting it saves"],
+  ["streaming", "Error against bandwidth", "Bandwidth and error of every codec and error bound"],
 ];
 
 /** Starts, lists, cancels and shows studies of the session's scene with its current parameters. */
@@ -31,7 +31,11 @@ export function studiesPanel(studies: Studies, controller: SessionController): H
   const list = make("div", { className: "studies", id: "studies" });
   const view = new StudyView();
   studies.all.subscribe((all) => list.replaceChildren(...all.map((study) => studyRow(study, studies, view)).reverse()));
-  const hint = make("p", { className: "faint" }, "Of this scene, with its present parameters. One runs at a time.");
+  const hint = make(
+    "p",
+    { className: "faint" },
+    "Studies of this scene with its current parameters. One study runs at a time.",
+  );
   const row = make("div", { className: "study-start" }, kind, start);
   kind.ariaLabel = "Study";
   const panel = section("Studies", false, row, hint, fault, list, view.element);
@@ -55,7 +59,7 @@ function studyRow(study: Study, studies: Studies, view: StudyView): HTMLElement 
           : doing;
   const buttons = make("div", { className: "row" });
   if (state === StudyState.DONE) buttons.append(...doneButtons(study, studies, view));
-  const remove = make("button", { type: "button", className: "small" }, isFinished(study) ? "Forget" : "Cancel");
+  const remove = make("button", { type: "button", className: "small" }, isFinished(study) ? "Delete" : "Cancel");
   remove.ariaLabel = `${remove.textContent} ${id}`;
   remove.onclick = () => void studies.remove(id);
   buttons.append(remove);

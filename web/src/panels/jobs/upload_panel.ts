@@ -17,7 +17,7 @@ export function uploadPanel(uploads: Uploads): HTMLElement {
     hint.textContent = `A surface (${endings.join(", ")}) in millimetres, for scenes of any session.`;
   });
   const open = make("button", { type: "button", id: "upload", onclick: () => file.click() }, "Upload a surface…");
-  const place = make("div", { id: "upload-work" });
+  const place = make("div", { id: "upload-progress" });
   uploads.progress.subscribe((work) => place.replaceChildren(...progressElements(work)));
   void uploads.loadFormats();
   return section("Surface files", false, open, file, hint, place);
@@ -35,9 +35,9 @@ function progressElements(work: UploadProgress): HTMLElement[] {
     return [make("p", { className: "faint" }, `Sending ${work.file}…`), bar];
   }
   const path = make("input", { type: "text", readOnly: true, value: work.path, id: "upload-path" });
-  path.ariaLabel = "How scenes name the file";
+  path.ariaLabel = "Name of the file in scenes";
   path.onfocus = () => path.select();
-  return [make("p", {}, `${work.file} is there. Scenes name it:`), path, ...reported(work.report)];
+  return [make("p", {}, `${work.file} is uploaded. Its name in scenes:`), path, ...reported(work.report)];
 }
 
 function reported(report: SurfaceReport | undefined): HTMLElement[] {

@@ -15,7 +15,7 @@ export class PresetRow {
     private readonly controller: SessionController,
     private readonly presets = new Signal<Preset[]>([]),
   ) {
-    this.element.ariaLabel = "Ways to breathe";
+    this.element.ariaLabel = "Presets";
     controller.session.subscribe((session) => {
       if (session === undefined) return;
       if (session.scene !== this.scene) void this.fill(session.scene);

@@ -6,8 +6,8 @@ export function pullRow(controller: SessionController): HTMLElement {
   const words = make("span");
   const letGo = make(
     "button",
-    { type: "button", id: "let-go", onclick: () => void controller.releasePulls() },
-    "Let go",
+    { type: "button", id: "release-pulls", onclick: () => void controller.releasePulls() },
+    "Release",
   );
   const row = make("div", { className: "pull-row", id: "pulls", hidden: true }, words, letGo);
   controller.session.subscribe((session) => {

@@ -91,7 +91,7 @@ export class GraphsPanel {
   private hold(span: TimeSpan): void {
     this.held = span;
     this.words.textContent = `held, ${span.start.toFixed(1)} to ${span.end.toFixed(1)} s`;
-    this.label("Let the graphs go on", "play");
+    this.label("Resume the graphs", "play");
     this.show(span);
   }
 

@@ -10,7 +10,7 @@ export class Probes {
   constructor() {
     const heads = ["Probe", "Left", "Back", "Up"].map((text) => make("th", { scope: "col" }, text));
     const table = make("table", { className: "probes" }, make("thead", {}, make("tr", {}, ...heads)), this.rows);
-    const unit = make("p", { className: "faint" }, "How far a vertex each is from where it rests, in mm");
+    const unit = make("p", { className: "faint" }, "Displacement of one vertex each from rest, in mm");
     this.element = section("Probes", true, table, unit);
     this.element.hidden = true;
   }

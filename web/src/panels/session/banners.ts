@@ -45,7 +45,7 @@ export function banners(
 function unsavedText(why: string): string {
   return why === ""
     ? ""
-    : `The last changes are not saved: ${why}. The session runs on, and is saved once that is mended.`;
+    : `The last changes are not saved: ${why}. The session continues and is saved when the problem is solved.`;
 }
 
 function banner(role: string, name: string): HTMLElement {
@@ -58,17 +58,16 @@ function divergenceMessage({ divergence, largestStableStep }: Session, controlle
   if (divergence === undefined) return [];
   const { time, body, vertex, force, remedy } = divergence;
   const where = `The simulation diverged at ${formatNumber(time)} s, at vertex ${vertex} of ${body} (${force}).`;
-  const restart = make("button", { type: "button", className: "primary" }, "Use a stable step and start again");
+  const restart = make("button", { type: "button", className: "primary" }, "Restart with a stable time step");
   restart.onclick = () => void restartStable(controller, largestStableStep);
-  const halve = make("button", { type: "button", title: halvingHelp }, "Let steps be halved and start again");
+  const halve = make("button", { type: "button", title: halvingHelp }, "Restart with adaptive steps");
   halve.onclick = () => void restartHalving(controller);
   return [make("p", {}, make("b", {}, where), " ", sentence(remedy)), restart, halve];
 }
 
 /** Error tolerance per step for adaptive step halving [m]. */
 const tolerance = 1e-5;
-const halvingHelp =
-  "Sets the step tolerance: a step that errs by more than 0.01 mm is taken in halves, which takes longer";
+const halvingHelp = "Sets the step tolerance: steps with an error above 0.01 mm are halved, which takes longer";
 
 async function restartHalving(controller: SessionController): Promise<void> {
   await controller.reset();
@@ -93,7 +92,7 @@ async function restartStable(controller: SessionController, largest: number): Pr
 }
 
 function lossMessage(reason: string, missing: boolean, chooseSession: () => void): HTMLElement[] {
-  const words = missing ? sentence(reason) : `The connection is lost: ${sentence(reason)} It comes back by itself.`;
+  const words = missing ? sentence(reason) : `The connection is lost: ${sentence(reason)} Reconnecting automatically.`;
   const choose = make("button", { type: "button", onclick: chooseSession }, "Choose a session");
   return [make("p", {}, words), ...(missing ? [choose] : [])];
 }

@@ -10,7 +10,7 @@ const count = new Intl.NumberFormat("en");
 export function compileReportPanel(report: Signal<CompileReport | undefined>): HTMLElement {
   const body = make("div", { className: "report" });
   report.subscribe((value) => body.replaceChildren(...(value === undefined ? [] : contents(value))));
-  return section("What runs", false, body);
+  return section("Scene report", false, body);
 }
 
 function contents(report: CompileReport): HTMLElement[] {
@@ -48,7 +48,7 @@ function runs({ elements }: CompileReport): HTMLElement {
     element.name || element.family,
     [`${count.format(element.count)} ${element.counted}`, element.detail].filter(Boolean).join("; "),
   ]);
-  return list("In every step", items);
+  return list("Computed in every step", items);
 }
 
 function leftOut(report: CompileReport): HTMLElement {
@@ -65,7 +65,7 @@ function times({ stages, compileSeconds }: CompileReport): HTMLElement {
     name,
     `${formatNumber(1000 * seconds)} ms, ${part(seconds)} %`,
   ]);
-  return list("Compiling took", items);
+  return list("Compile time by stage", items);
 }
 
 function bodies(report: CompileReport): HTMLElement {

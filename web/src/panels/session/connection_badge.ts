@@ -15,7 +15,7 @@ export interface Status {
 
 /** The connection state: connecting, live with frame rate, age and error bound, or lost and retrying. */
 export class ConnectionBadge {
-  readonly element = make("button", { type: "button", id: "link", className: "pill" });
+  readonly element = make("button", { type: "button", id: "connection", className: "pill" });
   private readonly words = make("span");
   private readonly detail = make("span", { className: "detail" });
 
@@ -27,7 +27,7 @@ export class ConnectionBadge {
   /** Shows the state of the connection. */
   show(status: Status): void {
     const { text, detail, title } = connectionLabels(status);
-    this.element.dataset.link = status.connection.kind;
+    this.element.dataset.state = status.connection.kind;
     this.element.title = title;
     if (this.words.textContent !== text) this.words.textContent = text;
     if (this.detail.textContent !== detail) this.detail.textContent = detail;
@@ -53,9 +53,9 @@ export function connectionLabels({ connection, session, rate, now }: Status): {
 }
 
 const rateTitle =
-  "Frames received a second, how old they are when they come, how much later they are shown so that the picture moves " +
-  "evenly between them, and how far a vertex may be from its place. " +
-  "On a thin line there are fewer frames, then coarser ones.";
+  "Frames per second, their age at arrival plus the display delay that smooths the motion, and the largest position " +
+  "error. " +
+  "On a slow connection there are fewer frames, then less accurate ones.";
 
 /** Returns "30 fps, 12+35 ms, ±0.1 mm": rate, age plus display delay, error bound. */
 export function rateLabel({ framesPerSecond, age, delay, errorBound }: FrameRate): string {
@@ -72,7 +72,7 @@ export class ViewerCount {
   private readonly noun = make("span");
   readonly element = make(
     "span",
-    { className: "viewer-count", title: "How many watch this session" },
+    { className: "viewer-count", title: "Number of viewers of this session" },
     this.count,
     this.noun,
   );

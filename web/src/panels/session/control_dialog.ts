@@ -47,8 +47,8 @@ export class ControlDialog {
   ) {
     const close = make("button", { type: "button", onclick: () => this.element.close() }, "Close");
     const { row: follow, input } = switchRow(
-      "Follow the camera of who controls",
-      "The picture turns with theirs",
+      "Follow the camera of the participant in control",
+      "Your view moves with theirs",
       (on) => {
         participation.identity.followsCamera = on;
         followed();
@@ -77,7 +77,7 @@ export class ControlDialog {
   }
 
   private nameRow(): HTMLElement {
-    const enter = make("button", { type: "submit", id: "control-enter" }, "Enter");
+    const enter = make("button", { type: "submit", id: "control-enter" }, "Join");
     const form = make("form", { className: "link-row" }, make("label", { htmlFor: this.name.id }, "Your name"));
     form.append(this.name, enter);
     form.onsubmit = (event) => {
@@ -88,7 +88,7 @@ export class ControlDialog {
   }
 
   private update(roles: Roles): void {
-    this.state.textContent = `${controlLabel(roles)}.${roles.name === "" ? " Enter with your name to take part." : ""}`;
+    this.state.textContent = `${controlLabel(roles)}.${roles.name === "" ? " Join with your name to take part." : ""}`;
     this.actions.replaceChildren(...this.actionsFor(roles));
     this.people.replaceChildren(...(roles.control?.participants ?? []).map((person) => this.personRow(person, roles)));
   }
@@ -101,11 +101,11 @@ export class ControlDialog {
     if (roles.name === "") return acts;
     if (!roles.hasControl && !roles.hasRequested)
       acts.push(button("take", takeLabel(roles), () => participation.requestControl()));
-    if (roles.hasRequested) acts.push(button("withdraw", "Ask no more", () => participation.release()));
+    if (roles.hasRequested) acts.push(button("withdraw", "Withdraw the request", () => participation.release()));
     if (roles.hasControl && !roles.isOwner)
       acts.push(button("release", "Give control back", () => participation.release()));
     if (roles.isOwner && (roles.control?.controller !== "" || !isOpenToEveryone(roles)))
-      acts.push(button("lend", "Let everybody control", () => participation.openToEveryone()));
+      acts.push(button("open", "Let everyone control", () => participation.openToEveryone()));
     return acts;
   }
 
@@ -124,6 +124,6 @@ export class ControlDialog {
 }
 
 function takeLabel(roles: Roles): string {
-  if (roles.isOwner) return roles.control?.controller ? "Take control back" : "Only I control";
+  if (roles.isOwner) return roles.control?.controller ? "Take control back" : "Take exclusive control";
   return roles.control?.controller ? "Ask for control" : "Take control";
 }

@@ -3,15 +3,15 @@ import { section } from "../../dom/rows";
 import { Codec } from "../../gen/phrenic/v1/frames_pb";
 
 const encodings: [Codec, string, string][] = [
-  [Codec.PREDICTED, "Foretold from neighbours", "About 13 kB a frame of the thorax; needs nothing but the scene."],
-  [Codec.BASIS, "Shapes that were seen", "Some 100 bytes a frame once a breath was seen; the shapes are fetched once."],
-  [Codec.PLANES, "16 bits a coordinate", "Needs no knowledge of the mesh to decode."],
-  [Codec.RAW, "As they are", "Every bit of float32: for comparing, on a good line."],
+  [Codec.PREDICTED, "Predicted from neighbours", "About 13 kB per frame of the thorax; needs only the scene."],
+  [Codec.BASIS, "Basis of shapes", "About 100 bytes per frame after one breath; the basis is downloaded once."],
+  [Codec.PLANES, "16 bits per coordinate", "Can be decoded without the mesh."],
+  [Codec.RAW, "Uncompressed", "Exact float32, for comparisons on a fast connection."],
 ];
 
 /** Selects the encoding of frames for this viewer. */
 export function encodingPanel(choose: (codec: Codec) => void): HTMLElement {
-  const list = make("select", { id: "stream-codec", title: "How frames come over the line" });
+  const list = make("select", { id: "stream-codec", title: "Encoding of frames on the network" });
   list.append(...encodings.map(([codec, label, title]) => make("option", { value: String(codec), title }, label)));
   const hint = make("p", { className: "faint", id: "stream-hint" });
   const show = () => (hint.textContent = encodings.find(([codec]) => codec === Number(list.value))?.[2] ?? "");
@@ -23,8 +23,8 @@ export function encodingPanel(choose: (codec: Codec) => void): HTMLElement {
   const row = make(
     "div",
     { className: "compare-row wide" },
-    make("label", { htmlFor: "stream-codec" }, "Frames"),
+    make("label", { htmlFor: "stream-codec" }, "Frame encoding"),
     list,
   );
-  return section("Stream", false, row, hint);
+  return section("Streaming", false, row, hint);
 }

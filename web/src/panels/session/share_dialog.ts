@@ -17,20 +17,20 @@ export interface Sharing {
 export class ShareDialog {
   readonly element = make("dialog", { className: "chooser", id: "share", ariaLabel: "Share and copy" });
   private readonly session = linkRow("share-session", "This session, for others to join");
-  private readonly frame = linkRow("share-embed", "For the page of a course, as HTML");
-  private readonly permalink = linkRow("share-permalink", "This moment, run again by whoever opens it");
+  private readonly frame = linkRow("share-embed", "HTML to embed the view in another page");
+  private readonly permalink = linkRow("share-permalink", "This state, simulated again when the link is opened");
 
   constructor(private readonly sharing: Sharing) {
     const close = make("button", { type: "button", onclick: () => this.element.close() }, "Close");
     const rerunWords =
-      "Names scene, parameters and tick: the same state to the last bit where the parameters stayed as they are now since the start.";
+      "Contains scene, parameters and tick. The state is identical, bit for bit, if the parameters have not changed since the start.";
     this.element.append(
       make("header", {}, make("h2", {}, "Share"), close),
       this.session.row,
       this.permalink.row,
       make("p", { className: "faint" }, rerunWords),
       this.frame.row,
-      make("p", { className: "faint" }, "The server lets pages of an origin show it that --allow-origin names."),
+      make("p", { className: "faint" }, "Pages of other origins need phrenicd --allow-origin."),
       make("h2", {}, "Copy"),
       make("ul", {}, ...this.copies()),
     );
@@ -52,27 +52,21 @@ export class ShareDialog {
     const { controller, open, photograph } = this.sharing;
     const here = controller.sessionId;
     return [
+      action("share-fork", "Your own copy", "A copy in the current state that you own.", "Fork", async () => {
+        const id = await controller.fork();
+        if (id !== undefined) open(`?${new URLSearchParams({ session: id })}`);
+      }),
       action(
-        "share-fork",
-        "A session of your own",
-        "From the present instant; nobody else steers it.",
-        "Fork",
-        async () => {
-          const id = await controller.fork();
-          if (id !== undefined) open(`?${new URLSearchParams({ session: id })}`);
-        },
-      ),
-      action(
-        "share-beside",
+        "share-compare",
         "Side by side",
-        "A copy beside this one, to set differently; one camera.",
+        "A copy beside this session, with its own parameters and a common camera.",
         "Compare",
         async () => {
           const id = await controller.forkForComparison();
           if (id !== undefined) open(`?${new URLSearchParams({ session: id, beside: here })}`);
         },
       ),
-      action("share-picture", "A picture", "What is seen now, as PNG.", "Save", async () => photograph()),
+      action("share-picture", "Screenshot", "The current view as PNG.", "Save", async () => photograph()),
     ];
   }
 }

@@ -16,7 +16,7 @@ export async function signIn(api: Api, access: Credentials, place: HTMLElement):
     const label = make("label", {}, "Your token ", entry);
     const button = make("button", { type: "submit" }, "Sign in");
     const form = make("form", { id: "sign-in" }, label, " ", button);
-    const words = first ? "This server knows its users. " : "Nobody has that token. ";
+    const words = first ? "This server requires an account. " : "No account has this token. ";
     place.replaceChildren(words, form);
     entry.focus();
     access.token = await new Promise<string>((done) => {

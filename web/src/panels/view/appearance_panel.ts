@@ -26,23 +26,21 @@ const overlayRows: [OverlayKind, string, string][] = [
   ["wireframe", "Show wireframe", "The edges of every surface."],
   ["links", "Show rigid links", "The links of constant length: the tensegrity."],
   ["lines", "Show action lines", "The lines along which the muscle pulls."],
-  ["attachments", "Show attachments", "Vertices that follow a bone, and fixed ones."],
+  ["attachments", "Show attachments", "Vertices attached to bones, and fixed vertices."],
 ];
 
 const ghosts: [GhostKind, string][] = [
   ["none", "None"],
   ["rest", "At rest"],
   ["expiration", "At the end of expiration"],
-  ["now", "As it is now"],
+  ["now", "Current state"],
 ];
 
 /** A panel for colours, transparency, clipping, ghost, overlays and labels. */
 export function appearancePanel(view: AppearanceSettings): HTMLElement {
-  const ghost = choice("ghost", "Ghost", "The moving tissue as it was at another moment", ghosts, (kind) =>
-    view.ghost.set(kind),
-  );
+  const ghost = choice("ghost", "Ghost", "Deformable bodies in another state", ghosts, (kind) => view.ghost.set(kind));
   view.ghost.subscribe((kind) => (ghost.querySelector("select")!.value = kind));
-  const labels = switchRow("Show names", "Names of the layers beside them.", (on) => view.labels.set(on));
+  const labels = switchRow("Show names", "Names of the layers.", (on) => view.labels.set(on));
   labels.input.id = "show-labels";
   const rows = overlayRows.map(([kind, label, help]) => overlayRow(kind, label, help, view.overlays));
   const cut = cutRows((value) => view.setCut(value));
@@ -61,10 +59,10 @@ export function appearancePanel(view: AppearanceSettings): HTMLElement {
 
 function coloringRow(coloring: Coloring, kinds: Signal<string[]>): HTMLElement {
   const options: [FieldKind | "own", string][] = [
-    ["own", "Own colours"],
+    ["own", "Layer colours"],
     ...fields.map(({ kind, label }): [FieldKind, string] => [kind, label]),
   ];
-  const help = "What the colours of the moving tissue mean";
+  const help = "Field that colours the deformable bodies";
   const row = choice("coloring-kind", "Colour by", help, options, (kind) =>
     coloring.choose(kind === "own" ? undefined : kind),
   );

@@ -17,11 +17,11 @@ export function coloringCard(coloring: Coloring): HTMLElement {
   top.onchange = () => coloring.setTop(top.valueAsNumber);
   const fit = make(
     "button",
-    { type: "button", id: "coloring-fit", title: "End the scale at what there is now" },
+    { type: "button", id: "coloring-fit", title: "Fit the scale to the current values" },
     "Fit",
   );
   fit.onclick = () => coloring.fit();
-  const row = make("div", { className: "row" }, make("label", { htmlFor: "coloring-top" }, "Scale to"), top, fit);
+  const row = make("div", { className: "row" }, make("label", { htmlFor: "coloring-top" }, "End of scale"), top, fit);
   const note = make("p", { className: "faint", id: "coloring-note" });
   note.setAttribute("role", "status");
   coloring.message.subscribe((words) => (note.textContent = words));

@@ -13,15 +13,15 @@ const kinds: [CutKind, string][] = [
 /** Rows for a clipping plane: orientation, position and side. `cutAt` applies it and returns its position [m]. */
 export function cutRows(cutAt: (cut: Cut) => number): HTMLElement[] {
   const cut = new Signal<Cut>({ kind: "none", fraction: 0.5, flipped: false });
-  const list = make("select", { id: "cut", title: "Take away what lies on one side of a plane" });
+  const list = make("select", { id: "cut", title: "Clip one side of a plane" });
   list.append(...kinds.map(([value, label]) => make("option", { value }, label)));
   list.onchange = () => cut.set({ ...cut.value, kind: list.value as CutKind });
-  const slider = make("input", { type: "range", id: "cut-place", min: "0", max: "1", step: "0.005" });
+  const slider = make("input", { type: "range", id: "cut-position", min: "0", max: "1", step: "0.005" });
   slider.oninput = () => cut.set({ ...cut.value, fraction: slider.valueAsNumber });
   const output = make("output", { className: "unit" });
   const flip = switchRow("Keep the other side", "", (flipped) => cut.set({ ...cut.value, flipped }));
   flip.input.id = "cut-flip";
-  const label = make("label", { htmlFor: "cut-place" }, "Place of the cut");
+  const label = make("label", { htmlFor: "cut-position" }, "Position of the cut");
   const place = make("div", { className: "number-row plain" }, label, output, slider);
   cut.subscribe((value) => {
     place.hidden = flip.row.hidden = value.kind === "none";

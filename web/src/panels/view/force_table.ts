@@ -8,7 +8,7 @@ export function forceTable(forces: Signal<VertexForce[]>): HTMLElement {
   const heads = ["Left", "Back", "Up"].map((text) => make("th", { scope: "col" }, text));
   const rows = make("tbody");
   const head = make("thead", {}, make("tr", {}, unit, ...heads));
-  const table = make("table", { className: "figures", id: "forces", ariaLabel: "Forces on it" }, head, rows);
+  const table = make("table", { className: "figures", id: "forces", ariaLabel: "Forces on the vertex" }, head, rows);
   forces.subscribe((all) => {
     table.hidden = all.length === 0;
     const { name, factor } = forceUnit(all);

@@ -12,22 +12,22 @@ export class PickCard {
   readonly element = make("section", { id: "picked", className: "card", hidden: true, ariaLabel: "Picked vertex" });
   private readonly title = make("h2");
   private readonly rows = make("tbody");
-  private readonly trackedList = make("div", { className: "followed" });
-  private readonly trackButton = make("button", { type: "button", id: "follow" }, "Follow it");
+  private readonly trackedList = make("div", { className: "tracked" });
+  private readonly trackButton = make("button", { type: "button", id: "track" }, "Track");
 
   constructor(
     private readonly trackedVertices: TrackedVertices,
     forces: Signal<VertexForce[]>,
   ) {
     const close = make("button", { type: "button", onclick: () => trackedVertices.picked.set(undefined) }, "Close");
-    this.trackButton.title = "Mark it and draw a graph of it";
+    this.trackButton.title = "Mark the vertex and plot its displacement";
     this.trackButton.onclick = () => {
       if (trackedVertices.picked.value !== undefined) trackedVertices.track(trackedVertices.picked.value);
     };
     const heads = ["mm", "Left", "Back", "Up"].map((text) => make("th", { scope: "col" }, text));
     const table = make("table", { className: "figures" }, make("thead", {}, make("tr", {}, ...heads)), this.rows);
     const buttons = make("div", { className: "row" }, this.trackButton, close);
-    const own = make("div", { className: "found" }, this.title, table, forceTable(forces), buttons);
+    const own = make("div", { className: "result" }, this.title, table, forceTable(forces), buttons);
     this.element.append(own, this.trackedList);
     trackedVertices.picked.subscribe((ref) => {
       own.hidden = ref === undefined;
@@ -56,7 +56,7 @@ export class PickCard {
     const swatch = make("span", { className: "swatch" });
     swatch.style.backgroundColor = curveColor(order);
     const name = vertexLabel(ref);
-    const leave = make("button", { type: "button", className: "small", ariaLabel: `Leave ${name}` }, "Leave");
+    const leave = make("button", { type: "button", className: "small", ariaLabel: `Stop tracking ${name}` }, "Stop");
     leave.onclick = () => this.trackedVertices.untrack(ref);
     return make("div", { className: "key" }, swatch, make("span", {}, name), leave);
   }
@@ -72,8 +72,8 @@ export class PickCard {
 function rowsOf({ position, displacement }: VertexState): string[][] {
   const words = (metres: number[]) => metres.map((each) => (1000 * each).toFixed(1).replace("-", "−"));
   return [
-    ["Place", ...words(position)],
-    ["From rest", ...words(displacement)],
+    ["Position", ...words(position)],
+    ["Displacement", ...words(displacement)],
   ];
 }
 

@@ -17,7 +17,7 @@ const strides = [1, 10, 100, 1000];
 /** Buttons to play, pause, step and reset, and the speed. */
 export function playbackPanel(controller: SessionController): HTMLElement {
   const speed = speedSelect(controller);
-  const stride = make("select", { id: "stride", ariaLabel: "Ticks a step", title: "Ticks a step" });
+  const stride = make("select", { id: "stride", ariaLabel: "Ticks per step", title: "Ticks per step" });
   stride.append(...strides.map((ticks) => option(ticks === 1 ? "1 tick" : `${ticks} ticks`, String(ticks))));
   stride.value = "10";
   const toggle = button("Play", () => void togglePlay(controller, chosenSpeed(speed)), icon("play"));
@@ -46,7 +46,7 @@ function option(label: string, value: string): HTMLOptionElement {
 }
 
 function speedSelect(controller: SessionController): HTMLSelectElement {
-  const select = make("select", { id: "speed", ariaLabel: "Speed", title: "Simulated seconds a second" });
+  const select = make("select", { id: "speed", ariaLabel: "Speed", title: "Simulated seconds per second" });
   select.append(...speeds.map(([label, value]) => option(label, String(value))));
   select.onchange = () => {
     if (controller.session.value?.state === SessionState.PLAYING) void controller.play(chosenSpeed(select));

@@ -8,7 +8,7 @@ export function projectorRow(memory: Pick<Storage, "getItem" | "setItem"> = loca
     document.documentElement.classList.toggle("projector", on);
     memory.setItem(key, on ? "on" : "off");
   };
-  const { row, input } = switchRow("For a projector", "Large type and strong contrast, to be read from afar.", turn);
+  const { row, input } = switchRow("Projector mode", "Large type and strong contrast.", turn);
   input.id = "projector";
   input.checked = memory.getItem(key) === "on";
   turn(input.checked);

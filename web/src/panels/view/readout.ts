@@ -57,7 +57,7 @@ export function residualLabel(metres: number | undefined): string {
 const fields: [string, string][] = [
   ["time", "Simulated time"],
   ["tick", "Steps since the start"],
-  ["breath", "Whether the breath goes in or out, and how much of the whole breath has gone"],
-  ["pace", "Simulated seconds a second"],
-  ["links", "By how much the worst rigid link or limit is off; kept: less than a micrometre"],
+  ["breath", "Inspiration or expiration, and the phase of the breath"],
+  ["pace", "Simulated seconds per second"],
+  ["links", "Largest violation of a rigid link or limit; kept: below 1 µm"],
 ];

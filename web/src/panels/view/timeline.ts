@@ -8,7 +8,7 @@ const minSpan = 0.5;
 /** A slider over the last seconds that replays earlier frames while the simulation continues. */
 export class Timeline {
   readonly element = make("div", { id: "timeline" });
-  private readonly slider = make("input", { type: "range", id: "look-back", step: "any", ariaLabel: "Look back" });
+  private readonly slider = make("input", { type: "range", id: "replay", step: "any", ariaLabel: "Replay" });
   private readonly words = make("output");
   private readonly live: HTMLButtonElement;
 
@@ -16,10 +16,10 @@ export class Timeline {
     private readonly frames: FrameBuffer,
     private readonly onReplay: (time: number | undefined) => void,
   ) {
-    this.slider.title = "Look back at the last seconds";
+    this.slider.title = "Replay the last seconds";
     this.slider.oninput = () => this.replayAt(this.slider.valueAsNumber);
-    this.live = button("Back to the present", () => this.replayAt(Infinity), icon("play"));
-    this.live.id = "look-live";
+    this.live = button("Back to live", () => this.replayAt(Infinity), icon("play"));
+    this.live.id = "replay-live";
     this.live.className = "quiet";
     this.element.append(this.slider, this.words, this.live);
   }
@@ -45,12 +45,12 @@ export class Timeline {
     const ago = replayedFrame === undefined ? 0 : span.end - replayedFrame.time;
     if (document.activeElement !== this.slider || replayedFrame === undefined)
       this.slider.value = String(span.end - ago);
-    const words = replayedFrame === undefined ? "now" : `${ago.toFixed(2)} s ago`;
+    const words = replayedFrame === undefined ? "live" : `${ago.toFixed(2)} s ago`;
     if (this.words.textContent !== words) this.words.textContent = words;
     this.slider.setAttribute("aria-valuetext", words);
     const part = span.end > span.start ? 1 - ago / (span.end - span.start) : 1;
     this.slider.style.setProperty("--filled", `${100 * part}%`);
-    this.element.classList.toggle("back", replayedFrame !== undefined);
+    this.element.classList.toggle("replaying", replayedFrame !== undefined);
     this.live.disabled = replayedFrame === undefined;
   }
 
