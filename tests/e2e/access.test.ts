@@ -25,7 +25,7 @@ afterAll(async () => {
   rmSync(folder, { recursive: true });
 });
 
-test("the page asks who one is, and shows the session to whom the server knows", async () => {
+test("the page asks for a token and shows the session after sign-in", async () => {
   const page = await (await browser.newContext()).newPage();
   const complaints: string[] = [];
   page.on("console", (message) => {
@@ -45,7 +45,7 @@ test("the page asks who one is, and shows the session to whom the server knows",
   await page.context().close();
 });
 
-test("a link lets in without an account, into its session alone, and its secret leaves the address", async () => {
+test("a join link opens its session without an account, and its secret is removed from the address", async () => {
   const token = ["--token-file", join(folder, "anna")];
   await server.phrenic(...token, "create", "cube-tensegrity", "--id", "mine", "--play");
   const { secret } = JSON.parse(await server.phrenic(...token, "link", "create", "mine", "-o", "json"));

@@ -18,12 +18,12 @@ afterAll(async () => {
   await server?.end();
 });
 
-test("AxeFindsNothingAgainstThePage", async () => {
+test("ThePageHasNoAxeViolations", async () => {
   await viewer.page.click('summary:has-text("Scene report")');
   expect(await viewer.violations()).toEqual([]);
 });
 
-test("AxeFindsNothingAgainstWhoControls", async () => {
+test("TheControlDialogHasNoAxeViolations", async () => {
   await viewer.page.click("#control-badge");
   await viewer.page.fill("#control-name", "Anna");
   await viewer.page.click("#control-enter");
@@ -32,14 +32,14 @@ test("AxeFindsNothingAgainstWhoControls", async () => {
   await viewer.page.keyboard.press("Escape");
 });
 
-test("AxeFindsNothingAgainstTheChooser", async () => {
+test("TheSessionChooserHasNoAxeViolations", async () => {
   await viewer.page.click("#session");
   await viewer.page.waitForSelector(".chooser li");
   expect(await viewer.violations()).toEqual([]);
   await viewer.page.keyboard.press("Escape");
 });
 
-test("AxeFindsNothingAgainstColoursForcesAndDialogs", async () => {
+test("ColoursAndDialogsHaveNoAxeViolations", async () => {
   const { page } = viewer;
   await page.selectOption("#coloring-kind", "largest");
   await page.waitForSelector("#coloring:not([hidden])");
@@ -52,7 +52,7 @@ test("AxeFindsNothingAgainstColoursForcesAndDialogs", async () => {
   }
 });
 
-test("AxeFindsNothingAgainstLargeTypeForAProjectorOrTwoPictures", async () => {
+test("ProjectorModeAndTwoViewsHaveNoAxeViolations", async () => {
   const { page } = viewer;
   await page.check("#projector");
   expect(await viewer.violations()).toEqual([]);
@@ -68,10 +68,10 @@ test("AxeFindsNothingAgainstLargeTypeForAProjectorOrTwoPictures", async () => {
 });
 
 test.each([
-  ["twice the size, as at 200 %", 600, 360],
+  ["a page zoomed to 200 %", 600, 360],
   ["a phone", 390, 780],
   ["a projector", 1280, 800],
-])("NothingOfTheHeaderIsOutOfReachAndAxeFindsNothingOn %s", async (_, width, height) => {
+])("TheHeaderFitsAndHasNoAxeViolationsOn %s", async (_, width, height) => {
   await viewer.page.setViewportSize({ width, height });
   for (const button of await viewer.page.locator("#header button:visible").all()) {
     const box = (await button.boundingBox())!;
@@ -82,7 +82,7 @@ test.each([
   await viewer.page.setViewportSize({ width: 900, height: 620 });
 });
 
-test("LargeTypeLeavesNothingOfTheHeaderOutOfReach", async () => {
+test("TheHeaderFitsInProjectorMode", async () => {
   const { page } = viewer;
   await page.setViewportSize({ width: 1024, height: 768 });
   await page.check("#projector");
@@ -95,7 +95,7 @@ test("LargeTypeLeavesNothingOfTheHeaderOutOfReach", async () => {
   await page.setViewportSize({ width: 900, height: 620 });
 });
 
-test("TheKeyboardAlonePlaysStepsTurnsAndSlides", async () => {
+test("TheKeyboardPlaysStepsRotatesAndMovesSliders", async () => {
   await viewer.page.focus("#view");
   await viewer.page.keyboard.press("Space");
   await viewer.page.waitForSelector('#play[aria-label="Play"]');

@@ -42,14 +42,14 @@ const choose = (name: string, buffer: Buffer) =>
 const measure = async (name: string) => Number(await viewer.page.textContent(`[data-measure="${name}"]`));
 const found = () => viewer.page.waitForSelector("#comparison .result:not([hidden])", { timeout: 60_000 });
 
-describe("a cube beside a file of itself, 3 mm higher", () => {
+describe("a cube compared with itself, 3 mm higher", () => {
   beforeAll(async () => {
     await server.phrenic("create", "cube-tensegrity", "--id", "cube");
     viewer = await ViewerPage.open(browser, `${server.url}?session=cube`);
   });
   afterAll(() => viewer.close());
 
-  test("IsColouredByItsDistanceWithFiguresBeside", async () => {
+  test("IsColouredByItsDistanceWithATable", async () => {
     const before = await canvasPicture(viewer);
     await choose("higher.msh", await exported("cube", "cube", () => 3));
     await found();
@@ -64,7 +64,7 @@ describe("a cube beside a file of itself, 3 mm higher", () => {
     expect(await changedFraction(browser, before, await canvasPicture(viewer))).toBeGreaterThan(0.02);
   });
 
-  test("AgainFollowsTheSession", async () => {
+  test("RepeatComparesTheCurrentState", async () => {
     await server.phrenic("step", "cube", "200");
     await viewer.waitForExactTick(200);
     await viewer.page.waitForFunction(() => document.querySelector("#comparison-time")?.textContent !== "");
@@ -76,7 +76,7 @@ describe("a cube beside a file of itself, 3 mm higher", () => {
     expect(await viewer.page.textContent("#comparison-time")).toBe("");
   });
 
-  test("TheFilesSurfaceIsSeenUntilItIsSwitchedOff", async () => {
+  test("TheSurfaceCanBeHidden", async () => {
     const before = await canvasPicture(viewer);
     await viewer.page.uncheck("#compare-drawn");
     const changed = async () => changedFraction(browser, before, await canvasPicture(viewer));
@@ -105,7 +105,7 @@ describe("a cube beside a file of itself, 3 mm higher", () => {
     await viewer.page.selectOption("#compare-unit", "1");
   });
 
-  test("ABadFileIsRefusedWithItsLineAndARemedy", async () => {
+  test("AnInvalidFileIsRefusedWithItsLine", async () => {
     await choose("bad.obj", Buffer.from("v 0 0 0\nv 1 0 0\nv 0 1\nf 1 2 3\n"));
     const alert = viewer.page.locator('#comparison [role="alert"]');
     await alert.waitFor();
@@ -115,7 +115,7 @@ describe("a cube beside a file of itself, 3 mm higher", () => {
     await alert.waitFor({ state: "hidden" });
   });
 
-  test("ADroppedFileIsTaken", async () => {
+  test("ADroppedFileIsCompared", async () => {
     const text = (await exported("cube", "cube", () => 1)).toString();
     const transfer = await viewer.page.evaluateHandle((content) => {
       const data = new DataTransfer();
@@ -130,11 +130,11 @@ describe("a cube beside a file of itself, 3 mm higher", () => {
     expect(await measure("hd_max")).toBe(1);
   });
 
-  test("AxeFindsNothingAgainstIt", async () => {
+  test("HasNoAxeViolations", async () => {
     expect(await viewer.violations()).toEqual([]);
   });
 
-  test("TheKeyboardAloneRepeatsAndClears", async () => {
+  test("TheKeyboardRepeatsAndClears", async () => {
     await viewer.page.focus("#compare-repeat");
     await viewer.page.keyboard.press("Enter");
     await found();
@@ -148,7 +148,7 @@ describe("a cube beside a file of itself, 3 mm higher", () => {
   });
 });
 
-test("OnAPhoneTheScaleLeavesThePicture", async () => {
+test("OnAPhoneTheCardIsSmall", async () => {
   viewer = await ViewerPage.open(browser, `${server.url}?session=cube`, { width: 390, height: 780 });
   await choose("higher.msh", await exported("cube", "cube", () => 3));
   await found();
@@ -161,7 +161,7 @@ test("OnAPhoneTheScaleLeavesThePicture", async () => {
   await viewer.close();
 });
 
-describe("the thorax beside a file of its diaphragm, its left side higher", () => {
+describe("the thorax compared with its diaphragm, its left side higher", () => {
   test("IsColouredOnThatSide", async () => {
     viewer = await ViewerPage.open(browser, `${server.url}?session=thorax`, { width: 1200, height: 720 });
     await server.phrenic("pause", "thorax");

@@ -49,7 +49,7 @@ afterAll(async () => {
   await server?.end();
 });
 
-test("BothMayChangeTheSessionUntilItsOwnerTakesControl", async () => {
+test("EveryoneMayChangeTheSessionUntilItsOwnerTakesControl", async () => {
   await badge(pupil, "Everyone controls");
   await pupil.page.click('#play[aria-label="Pause"]');
   await teacher.page.waitForSelector('#play[aria-label="Play"]');
@@ -60,7 +60,7 @@ test("BothMayChangeTheSessionUntilItsOwnerTakesControl", async () => {
   await badge(pupil, "Anna controls");
 });
 
-test("ControlsOfWhoDoesNotControlAreDisabledWithTheReason", async () => {
+test("ControlsOfOthersAreDisabledWithAReason", async () => {
   expect(await pupil.page.isDisabled("#play")).toBe(true);
   expect(await pupil.page.isDisabled("#parameter-breathForce")).toBe(true);
   expect(await pupil.page.getAttribute("fieldset.controlled", "title")).toContain("Anna controls this session");
@@ -68,12 +68,12 @@ test("ControlsOfWhoDoesNotControlAreDisabledWithTheReason", async () => {
   await pupil.saveScreenshot("controlled");
 });
 
-test("TheServerRefusesWhatAPageWouldNotAsk", async () => {
+test("TheServerRefusesChangesByOthers", async () => {
   const id = "cube-tensegrity-2";
   await expect(server.phrenic("set", id, "breath_force=2")).rejects.toThrow(/controlled by Anna/);
 });
 
-test("WhoAsksIsSeenAndIsHandedControl", async () => {
+test("ARequestIsShownAndControlHandedOver", async () => {
   await press(pupil, "take");
   await badge(teacher, "Ben asks");
   await teacher.page.click("#control-badge");
@@ -93,7 +93,7 @@ test("TheOwnerTakesControlBack", async () => {
   expect(await pupil.page.isDisabled("#play")).toBe(true);
 });
 
-test("ThePupilsPictureFollowsTheTeachers", async () => {
+test("TheViewOfThePupilFollowsTheTeachers", async () => {
   await teacher.page.focus("#view");
   for (let i = 0; i < 6; i++) await teacher.page.keyboard.press("ArrowLeft");
   const moved = await eye(teacher);
@@ -110,24 +110,24 @@ test("ThePupilsPictureFollowsTheTeachers", async () => {
   await wait(await eye(teacher));
 });
 
-test("ALateComerSeesWhoControlsAtOnce", async () => {
+test("ALaterViewerSeesWhoControls", async () => {
   const late = await ViewerPage.open(browsers[1], teacher.page.url());
   await badge(late, "Anna controls");
   await late.close();
 });
 
-test("AReloadedPageIsStillTheOwners", async () => {
+test("AReloadedPageKeepsControl", async () => {
   await teacher.page.reload();
   await teacher.waitForPicture();
   await badge(teacher, "You control");
 });
 
-test("LentToAllItIsEverybodysAgain", async () => {
+test("TheOwnerMayLetEveryoneControl", async () => {
   await press(teacher, "open");
   await badge(pupil, "Everyone controls");
   expect(await pupil.page.isDisabled("#play")).toBe(false);
 });
 
-test("NothingWasWorthAComplaint", () => {
+test("ThereWereNoConsoleErrors", () => {
   expect([...teacher.consoleErrors, ...pupil.consoleErrors]).toEqual([]);
 });

@@ -26,7 +26,7 @@ afterAll(async () => {
   await server?.end();
 });
 
-test("AMotionAsGltfIsWhatTheValidatorOfGltfsMakersTakes", async () => {
+test("AGltfMotionPassesTheKhronosValidator", async () => {
   for (const [session, ...bodies] of [["cube"], ["thorax", "--body", "ribs", "--body", "diaphragm"]]) {
     const path = join(outFolder, `${session}.glb`);
     await server.phrenic("export", session!, path, "--seconds", "2", "--fps", "3", ...bodies);
@@ -36,7 +36,7 @@ test("AMotionAsGltfIsWhatTheValidatorOfGltfsMakersTakes", async () => {
   }
 });
 
-test("ThePanelRecordsAndGivesTheFileThatTheCommandLineGets", async () => {
+test("ThePanelExportsTheSameFileAsTheCommandLine", async () => {
   await viewer.page.click('summary:has-text("Export the motion")');
   await viewer.page.selectOption("#export-format", "depl");
   await viewer.page.fill("#export-seconds", "0.5");
@@ -57,7 +57,7 @@ test("ThePanelRecordsAndGivesTheFileThatTheCommandLineGets", async () => {
   expect(JSON.parse(await server.phrenic("exports", "list", "-o", "json")).exports).toEqual([]);
 });
 
-test("AMotionThatIsDownloadedFromThePanelOpens", async () => {
+test("AMotionDownloadedFromThePanelIsValid", async () => {
   await viewer.page.selectOption("#export-format", "glb");
   await viewer.page.click("#export");
   const link = viewer.page.locator("#export-link");
@@ -68,7 +68,7 @@ test("AMotionThatIsDownloadedFromThePanelOpens", async () => {
   expect(info).toMatchObject({ animationCount: 1 });
 });
 
-test("AnUploadedSurfaceIsReportedAndABadOneIsRefusedWithItsLine", async () => {
+test("AnUploadedSurfaceIsReportedAndAnInvalidOneRefusedWithItsLine", async () => {
   const choose = (text: string) =>
     viewer.page.setInputFiles("#upload-file", { name: "a.obj", mimeType: "text/plain", buffer: Buffer.from(text) });
   await viewer.page.click('summary:has-text("Surface files")');

@@ -45,7 +45,7 @@ async function curl(url: string, method: string, request: object, ...flags: stri
 const overGrpc = () => [`http://${server.address}`, "--protocol", "grpc", "--http2-prior-knowledge"] as const;
 const overWeb = () => [server.url.replace(/\/$/, ""), "--protocol", "grpcweb", "--schema", proto] as const;
 
-test("BufCurlLearnsTheSchemaByReflectionAndCalls", async () => {
+test("BufCurlCallsByReflection", async () => {
   const [url, ...flags] = overGrpc();
   const [{ sessions }] = await curl(url, "SessionService/ListSessions", {}, ...flags);
   expect(sessions.map(({ id }: Answer) => id)).toEqual(["cube-springs"]);
@@ -55,7 +55,7 @@ test("BufCurlLearnsTheSchemaByReflectionAndCalls", async () => {
   expect(session.parameters.breathForce).toBe(1.5);
 });
 
-test("BufCurlIsToldInTheServersWordsWhatIsWrong", async () => {
+test("BufCurlReceivesErrorMessages", async () => {
   const [url, ...flags] = overGrpc();
   const asked = curl(url, "SessionService/GetSession", { sessionId: "nobody" }, ...flags);
   await expect(asked).rejects.toMatchObject({ stderr: expect.stringContaining("there is no session") });
@@ -70,7 +70,7 @@ test("BufCurlReadsAStreamOverTheGateway", async () => {
   expect(session.id).toBe("cube-springs");
 });
 
-test("GrpcJsMakesStepsWatchesAndAcknowledges", async () => {
+test("GrpcJsCreatesStepsWatchesAndAcknowledges", async () => {
   const sessions = serviceOf("session", "SessionService");
   const frames = serviceOf("frames", "FrameService");
   await call(sessions, "createSession", { sessionId: "node", source: { name: "cube-tensegrity" } });

@@ -23,7 +23,7 @@ afterAll(async () => {
   await server?.end();
 });
 
-test("FromTheAddressToAParalysedHemidiaphragmBesideAHealthyOneInUnderAMinute", async () => {
+test("AParalysedHemidiaphragmBesideAHealthyOneTakesLessThanAMinute", async () => {
   const start = Date.now();
   const viewer = await ViewerPage.open(browser, server.url, { width: 1200, height: 720 });
   const { page } = viewer;
@@ -50,7 +50,7 @@ async function times(viewer: ViewerPage): Promise<number[]> {
   return words.map((each) => Number.parseFloat(each));
 }
 
-test("BothBreatheInStepStopAtOneInstantAndHaveTheSameColours", async () => {
+test("BothViewsBreatheInStepPauseTogetherAndShareColours", async () => {
   const viewer = await ViewerPage.open(browser, server.url, { width: 1200, height: 720 });
   const { page } = viewer;
   await page.getByLabel("Compare with", { exact: true }).selectOption({ label: "Deep" });
@@ -80,7 +80,7 @@ test("BothBreatheInStepStopAtOneInstantAndHaveTheSameColours", async () => {
   expect(viewer.consoleErrors).toEqual([]);
 });
 
-test("TheLastSecondsAreLookedAtAgainWithoutTheSimulationGoingBack", async () => {
+test("ReplayDoesNotChangeTheSimulation", async () => {
   const viewer = await ViewerPage.open(browser, server.url, { width: 1200, height: 720 });
   const { page } = viewer;
   if ((await page.locator('#play[aria-label="Play"]').count()) > 0) await page.click("#play");
@@ -100,7 +100,7 @@ test("TheLastSecondsAreLookedAtAgainWithoutTheSimulationGoingBack", async () => 
   expect(await page.locator("#timeline.replaying").count()).toBe(0);
 });
 
-test("TheForcesOfAMomentAgoAreSeenAgain", async () => {
+test("ForcesAreReplayed", async () => {
   const viewer = await ViewerPage.open(browser, server.url, { width: 1200, height: 720 });
   const { page } = viewer;
   const note = () => page.textContent("#coloring-note");
@@ -122,7 +122,7 @@ test("TheForcesOfAMomentAgoAreSeenAgain", async () => {
   expect(viewer.consoleErrors).toEqual([]);
 });
 
-test("ForThePageOfACourseThereIsThePictureAndItsPlaybackAlone", async () => {
+test("AnEmbeddedPageShowsOnlyViewAndPlayback", async () => {
   const viewer = await ViewerPage.open(browser, `${server.url}?session=thorax&embed`, { width: 720, height: 540 });
   const { page } = viewer;
   for (const id of ["header", "panel", "graphs"]) expect(await page.locator(`#${id}`).isVisible()).toBe(false);

@@ -63,7 +63,7 @@ function misplacedTexts(page: Page): Promise<string[]> {
 }
 
 describe.each(Object.entries(studies))("the page of the %s study", (name, study) => {
-  test("DrawsWithoutComplaintsAndAsksForNothing", async () => {
+  test("HasNoConsoleErrorsAndNoRequests", async () => {
     const { page, complaints, others } = await open(name, study);
     await page.screenshot({ path: join(outFolder, `report-${name}.png`), fullPage: true });
     expect(complaints).toEqual([]);
@@ -74,7 +74,7 @@ describe.each(Object.entries(studies))("the page of the %s study", (name, study)
     await page.close();
   });
 
-  test("AxeFindsNothingAgainstIt", async () => {
+  test("HasNoAxeViolations", async () => {
     const { page } = await open(name, study);
     await page.evaluate(axe.source);
     const found = await page.evaluate(async () => {
@@ -86,7 +86,7 @@ describe.each(Object.entries(studies))("the page of the %s study", (name, study)
   });
 });
 
-test("ThePolicyStopsScriptsThatAreNotThePages", async () => {
+test("TheSecurityPolicyBlocksOtherScripts", async () => {
   const { page } = await open("error", errorStudy);
   const ran = await page.evaluate(async () => {
     const script = document.createElement("script");
@@ -98,7 +98,7 @@ test("ThePolicyStopsScriptsThatAreNotThePages", async () => {
   await page.close();
 });
 
-test("TheLargestErrorIsShownOnDemand", async () => {
+test("TheLargestErrorCanBeSelected", async () => {
   const { page, complaints } = await open("error", errorStudy);
   await page.getByLabel("Largest error").check();
   await page.waitForSelector('figure svg[aria-label^="Largest error"]');

@@ -48,7 +48,7 @@ describe("a session made in the browser", () => {
   }
 });
 
-test("ADivergedSessionSaysSoAndItsRemedyHelps", async () => {
+test("ADivergedSessionShowsARemedyThatHelps", async () => {
   const viewer = await ViewerPage.open(browser, server.url);
   await viewer.page.click("#session");
   const before = viewer.page.url();
@@ -67,7 +67,7 @@ test("ADivergedSessionSaysSoAndItsRemedyHelps", async () => {
   await viewer.close();
 });
 
-test("AMissingSessionIsSaidAndOthersAreOffered", async () => {
+test("AMissingSessionOffersOthers", async () => {
   const context = await browser.newContext();
   const page = await context.newPage();
   await page.goto(`${server.url}?session=nobody`);
@@ -79,7 +79,7 @@ test("AMissingSessionIsSaidAndOthersAreOffered", async () => {
   await context.close();
 });
 
-test("APhoneGetsThePictureFirst", async () => {
+test("OnAPhoneTheViewComesFirst", async () => {
   const viewer = await ViewerPage.open(browser, server.url, { width: 390, height: 780 });
   expect(await viewer.page.isVisible("#panel")).toBe(false);
   await viewer.saveScreenshot("phone");

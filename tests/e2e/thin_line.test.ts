@@ -74,7 +74,7 @@ async function watch(url: string, seconds: number) {
   return { rate, frames: ages.length / seconds, median: ages[Math.floor(ages.length / 2)] };
 }
 
-test("OverFourMegabitsABreathIsSeenLessThan400MillisecondsOld", async () => {
+test("OverFourMegabitsFramesAreLessThan400MillisecondsOld", async () => {
   const line = await slowLine(server.url, 500_000);
   const seen = await watch(line.url, 8);
   line.close();

@@ -20,7 +20,7 @@ afterAll(async () => {
   await server?.end();
 });
 
-test("TwoBrowsersPlayTogether", async () => {
+test("TwoBrowsersPlayOneSession", async () => {
   const [a, b] = await Promise.all([here.tick(), there.tick()]);
   await Promise.all([here.waitForTick(a), there.waitForTick(b)]);
   await here.page.waitForFunction(() => Number(document.querySelector("#status-viewers")?.textContent) === 2);
@@ -37,7 +37,7 @@ test("TwoBrowsersSeeTheSameVerticesAtTheSameTick", async () => {
   expect(Math.max(...off)).toBeLessThanOrEqual(2e-3); // each is within its error bound, which grows to 1 mm on a busy machine
 });
 
-test("ASliderMovedHereMovesThere", async () => {
+test("ASliderMovesInBothBrowsers", async () => {
   await here.page.focus("#parameter-breathLength");
   for (let i = 0; i < 5; i++) await here.page.keyboard.press("ArrowRight");
   const set = await here.value("breathLength");
@@ -51,7 +51,7 @@ test("ASliderMovedHereMovesThere", async () => {
   await there.page.check("#parameter-applyMuscles");
 });
 
-test("ALostServerIsShownAndComesBackWithTheSessionAsItWas", async () => {
+test("ALostServerIsShownAndTheSessionIsRestored", async () => {
   await here.page.click("#play");
   await server.phrenic("set", "thorax", "breath_force=1.5");
   await here.waitForTick(await here.tick());
@@ -73,7 +73,7 @@ test("ALostServerIsShownAndComesBackWithTheSessionAsItWas", async () => {
   expect(Number(session.tick)).toBeGreaterThan(Number(tick) - 1 / session.parameters.time_step);
 });
 
-test("OnlyTheLossWasWorthAComplaint", () => {
+test("OnlyTheLossCausedConsoleErrors", () => {
   const expected = /net::ERR_/;
   expect([...here.consoleErrors, ...there.consoleErrors].filter((text) => !expected.test(text))).toEqual([]);
 });

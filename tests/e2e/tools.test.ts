@@ -37,7 +37,7 @@ async function changed(act: () => Promise<unknown>): Promise<number> {
 }
 
 describe("the graphs", () => {
-  test("AreThereAndSaveWhatTheyShow", async () => {
+  test("AreShownAndSaved", async () => {
     await server.phrenic("step", "lungs", "200");
     await viewer.waitForExactTick(800);
     const loop = viewer.page.locator('.tile[data-graph="loop"]');
@@ -51,7 +51,7 @@ describe("the graphs", () => {
     expect(await textOf(svg)).toContain("<polyline");
   });
 
-  test("StandStillWhenTheyAreHeld", async () => {
+  test("CanBeHeld", async () => {
     await viewer.page.click("#graphs-pause");
     expect(await viewer.page.textContent("#graphs-span")).toMatch(/^held, 0\.0 to 12\.0 s$/);
     await viewer.page.click("#graphs-pause");
@@ -60,7 +60,7 @@ describe("the graphs", () => {
 });
 
 describe("the picture", () => {
-  test("IsColouredCutAndHauntedAsIsAsked", async () => {
+  test("ShowsFieldsCutsAndGhosts", async () => {
     expect(await changed(() => viewer.page.selectOption("#coloring-kind", "displacement"))).toBeGreaterThan(0.02);
     expect(await viewer.page.textContent("#coloring")).toMatch(/Displacement.*mm/);
     const fitted = await viewer.page.inputValue("#coloring-top");
@@ -75,7 +75,7 @@ describe("the picture", () => {
     await viewer.page.selectOption("#ghost", "none");
   });
 
-  test("TellsWhichVertexWasClickedAndFollowsIt", async () => {
+  test("PicksAndTracksAVertex", async () => {
     const box = (await viewer.page.locator("#view").boundingBox())!;
     await viewer.page.mouse.click(box.x + 0.62 * box.width, box.y + 0.5 * box.height);
     await viewer.page.waitForSelector("#picked:not([hidden])");
@@ -86,12 +86,12 @@ describe("the picture", () => {
     await viewer.page.waitForSelector('.tile[data-graph="tracked"]');
   });
 
-  test("AxeFindsNothingAgainstItsCardsAndGraphs", async () => {
+  test("HasNoAxeViolationssCardsAndGraphs", async () => {
     expect(await viewer.violations()).toEqual([]);
   });
 });
 
-test("AChangeIsTakenBackByTheKeyboard", async () => {
+test("TheKeyboardUndoesAChange", async () => {
   await viewer.type("breathForce", 2);
   await expect.poll(() => viewer.page.isEnabled("#undo")).toBe(true);
   await viewer.page.focus("#view");
@@ -101,7 +101,7 @@ test("AChangeIsTakenBackByTheKeyboard", async () => {
   );
 });
 
-test("APermalinkRunsAgainToTheSameVertices", async () => {
+test("APermalinkReproducesTheVertices", async () => {
   await server.phrenic("create", "cube-tensegrity", "--id", "cube", "--set", "breath_force=1.5");
   await server.phrenic("step", "cube", "120");
   const cube = await ViewerPage.open(browser, `${server.url}?session=cube`);
@@ -125,7 +125,7 @@ test("APermalinkRunsAgainToTheSameVertices", async () => {
   await cube.close();
 });
 
-test("AStudyIsRunAndShownInPlace", async () => {
+test("AStudyRunsAndIsShown", async () => {
   const page = await ViewerPage.open(browser, `${server.url}?session=cube`);
   await page.page.click('summary:has-text("Studies")');
   await page.page.selectOption("#study-kind", "cost");
@@ -140,7 +140,7 @@ test("AStudyIsRunAndShownInPlace", async () => {
   await page.close();
 });
 
-test("ThePageIsSmallAndSoonThere", async () => {
+test("ThePageLoadsQuickly", async () => {
   const folder = join(import.meta.dirname, "../../web/dist/assets");
   const scripts = (await readdir(folder)).filter((name) => name.endsWith(".js"));
   const sizes = await Promise.all(scripts.map(async (name) => gzipSync(await readFile(join(folder, name))).length));
@@ -164,6 +164,6 @@ test("ThePageIsSmallAndSoonThere", async () => {
   console.log(`first picture after the address, five times [ms]: ${times.join(" ")}`);
 });
 
-test("ThePageHadNothingToComplainAbout", () => {
+test("ThereWereNoConsoleErrors", () => {
   expect(viewer.consoleErrors).toEqual([]);
 });

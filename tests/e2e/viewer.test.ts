@@ -62,7 +62,7 @@ function greatestMove(a: [number, number, number][], b: [number, number, number]
 }
 
 describe("the thorax in the browser", () => {
-  test("IsThereAndLive", async () => {
+  test("IsLive", async () => {
     await viewer.waitForLink("live");
     const bodies = await viewer.page.evaluate(() => window.phrenic!.bodies());
     expect(bodies).toContain("diaphragm");
@@ -70,14 +70,14 @@ describe("the thorax in the browser", () => {
     expect(await viewer.page.textContent("#disclaimer")).toBe("Research and teaching; not for clinical use");
   });
 
-  test("ItsDiaphragmsVerticesMove", async () => {
+  test("MovesTheVerticesOfTheDiaphragm", async () => {
     const before = await viewer.sample("diaphragm");
     // The dome moves within some part of a breath, whatever the phase at the start.
     const moved = async () => greatestMove(before.points, (await viewer.sample("diaphragm")).points);
     await expect.poll(moved, { timeout: 90_000, interval: 500 }).toBeGreaterThan(0.002);
   });
 
-  test("ItsDiaphragmsPixelsMove", async () => {
+  test("MovesThePixelsOfTheDiaphragm", async () => {
     const boxes = viewer.page.locator('.layer-name input[type="checkbox"]');
     const others = viewer.page.locator(".layer-name", { hasNotText: "Diaphragm" }).locator("input");
     expect(await boxes.count()).toBeGreaterThan(3);
@@ -119,7 +119,7 @@ describe("the buttons", () => {
     await pause().waitFor();
   });
 
-  test("PauseHoldsTheTickAndPlayGoesOn", async () => {
+  test("PauseHoldsTheTickAndPlayContinues", async () => {
     await pause().click();
     await play().waitFor();
     const held = await server.restingTick();
@@ -130,7 +130,7 @@ describe("the buttons", () => {
     await viewer.waitForTick(held);
   });
 
-  test("StepTakesTheChosenTicks", async () => {
+  test("StepAdvancesByTheChosenTicks", async () => {
     await pause().click();
     await play().waitFor();
     const held = await server.restingTick();
@@ -161,7 +161,7 @@ describe("the buttons", () => {
     expect(pace).toBeLessThan(0.2);
   });
 
-  test("APresetIsTakenAndShownAsPressed", async () => {
+  test("APresetIsAppliedAndShownAsPressed", async () => {
     const preset = (name: string) => viewer.page.locator(`#presets button:text-is("${name}")`);
     expect(await viewer.page.locator("#presets button").allTextContents()).toEqual([
       "Quiet",
@@ -188,7 +188,7 @@ describe("the buttons", () => {
     expect(await viewer.value("breathForce")).toBe("1");
   });
 
-  test("ShiftDragPullsTheTissueUntilItIsLetGo", async () => {
+  test("ShiftDragPullsTheTissueUntilItIsReleased", async () => {
     const box = (await viewer.page.locator("#view").boundingBox())!;
     const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
     const pulls = async () => ((await server.session()).pulls ?? []) as { body: string }[];
@@ -209,7 +209,7 @@ describe("the buttons", () => {
     await expect.poll(async () => (await pulls()).length, { timeout: 10_000 }).toBe(0);
   });
 
-  test("AnotherIntegratorIsTakenWhileItPlays", async () => {
+  test("TheIntegratorChangesDuringPlayback", async () => {
     await viewer.page.selectOption("#parameter-integrator", {
       label: "Velocity Verlet",
     });
@@ -243,7 +243,7 @@ describe("the buttons", () => {
 });
 
 describe("the report", () => {
-  test("SaysWhatRunsAndHowLargeAStepMayBe", async () => {
+  test("ShowsWhatRunsAndTheLargestStableStep", async () => {
     await viewer.page.click('summary:has-text("Scene report")');
     const text = await viewer.page.textContent(".report");
     expect(text).toContain("rigid links");
@@ -253,13 +253,13 @@ describe("the report", () => {
   });
 });
 
-test("ThePageKeepsToItsOwnServerAndHasNothingToComplainAbout", () => {
+test("ThePageOnlyContactsItsServerWithoutConsoleErrors", () => {
   expect([...viewer.origins]).toEqual([new URL(server.url).origin]);
   expect(viewer.consoleErrors).toEqual([]);
 });
 
 // Must be the last test, since it leaves the page.
-test("APageThatGoesInMidPullLetsGo", async () => {
+test("ClosingThePageReleasesAPull", async () => {
   const pulls = async () => ((await server.session()).pulls ?? []) as { body: string }[];
   const box = (await viewer.page.locator("#view").boundingBox())!;
   const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];

@@ -20,7 +20,7 @@ beforeEach(() => {
   document.body.replaceChildren(dialog, make("input"), make("button"), make("main"));
 });
 
-test("KeysActUnlessAControlHasThem", () => {
+test("KeysWorkUnlessAnInputHasFocus", () => {
   const [input, button, page] = ["input", "button:last-of-type", "main"].map((name) => document.querySelector(name)!);
   press(page, " ");
   press(page, "g");
@@ -33,7 +33,7 @@ test("KeysActUnlessAControlHasThem", () => {
   expect(heard.filter((each) => each === "graphs")).toHaveLength(1);
 });
 
-test("EveryKeyIsInTheList", () => {
+test("TheDialogListsEveryKey", () => {
   const keys = [...document.querySelectorAll("kbd")].map((each) => each.textContent);
   expect(keys).toEqual(expect.arrayContaining(["Space", "G", "?", "Ctrl Z, Ctrl Shift Z"]));
 });

@@ -12,19 +12,19 @@ function lightnessOf(rgb: [number, number, number]): number {
   return y > 0.008856 ? 116 * Math.cbrt(y) - 16 : 903.3 * y;
 }
 
-describe("the scale", () => {
-  test("EndsAtARoundNumberThatNoDistanceIsBeyond", () => {
+describe("the colour scale", () => {
+  test("EndsAtARoundNumberAboveAllValues", () => {
     expect(niceTop([0.2, 11.3, NaN, 4])).toBe(12);
     expect(niceTop([0.0234])).toBe(0.025);
     expect(niceTop([7])).toBe(7);
   });
 
-  test("OfEqualSurfacesIsNotOfRoundOff", () => {
+  test("HasAMinimumForEqualSurfaces", () => {
     expect(niceTop([])).toBe(0.001);
     expect(niceTop([1e-13, NaN])).toBe(0.001);
   });
 
-  test("GrowsLighterByEqualStepsForEqualDistances", () => {
+  test("LightnessIsLinearInTheValue", () => {
     const scale = new ColorScale(10);
     const lightness = Array.from({ length: 11 }, (_, i) => lightnessOf(scale.color(i)));
     const steps = lightness.slice(1).map((l, i) => l - lightness[i]);
@@ -32,7 +32,7 @@ describe("the scale", () => {
     for (const step of steps) expect(Math.abs(step - mean)).toBeLessThan(0.2 * mean);
   });
 
-  test("HasItsEndsForWhatIsBeyondAndGreyForWhatIsUnknown", () => {
+  test("ClampsValuesAndShowsNaNInGrey", () => {
     const scale = new ColorScale(10);
     expect(scale.color(11)).toEqual(scale.color(10));
     expect(scale.color(-1)).toEqual(scale.color(0));
@@ -40,12 +40,12 @@ describe("the scale", () => {
     expect(Math.max(red, green, blue) - Math.min(red, green, blue)).toBeLessThan(20);
   });
 
-  test("PaintsThreeBytesAVertex", () => {
+  test("ReturnsThreeBytesPerVertex", () => {
     const scale = new ColorScale(10);
     expect([...scale.colors([0, 10])]).toEqual([...scale.color(0), ...scale.color(10)]);
   });
 
-  test("IsMarkedFromNothingToItsEnd", () => {
+  test("HasTicksFromZeroToItsEnd", () => {
     const ticks = new ColorScale(12).ticks();
     expect(ticks[0]).toEqual({ fraction: 0, text: "0" });
     expect(ticks.at(-1)).toEqual({ fraction: 1, text: "12" });
@@ -53,29 +53,29 @@ describe("the scale", () => {
   });
 });
 
-test("TheLegendSaysItsRangeAndUnit", () => {
+test("TheLegendShowsRangeAndUnit", () => {
   const legend = new Legend();
   legend.show(new ColorScale(12));
   expect(legend.element.querySelector("canvas")!.ariaLabel).toBe("Colours from 0 to 12 mm");
   expect(legend.element.textContent).toMatch(/^mm0.*12$/);
 });
 
-describe("the figures", () => {
+describe("the table of distances", () => {
   const table = distanceTable(create(SurfaceDistanceSchema, { meanAToB: 1.23456, hdMax: 150.04, rmsBToA: NaN }));
   const shown = (name: string) => table.querySelector(`[data-measure="${name}"]`)!;
 
-  test("StandUnderTheirNamesInTheSchema", () => {
+  test("ShowsValuesWithTheirNamesInTheSchema", () => {
     expect(shown("mean_a_to_b").textContent).toBe("1.235");
     expect(shown("hd_max").textContent).toBe("150.0");
     expect(shown("mean_a_to_b").nextElementSibling!.textContent).toBe("mean_a_to_b");
     expect(table.querySelectorAll("[data-measure]").length).toBe(11);
   });
 
-  test("SayWhatTheyMeanInTheSchemasWords", () => {
+  test("ExplainsValuesByTheHelpOfTheSchema", () => {
     expect(shown("hd95_max").closest("td")!.title).toContain("Larger of p95_a_to_b and p95_b_to_a");
   });
 
-  test("ThatDoNotExistSaySo", () => {
+  test("ShowsNaNAsNone", () => {
     expect(shown("rms_b_to_a").textContent).toBe("none");
     expect(formatMillimetres(0)).toBe("0.000");
   });

@@ -15,7 +15,7 @@ const close = (values: ArrayLike<number>, wanted: number) => {
 };
 
 describe("the fields of a body", () => {
-  test("OfARigidMotionAreItsLengthAndNoStrain", () => {
+  test("RigidMotionHasDisplacementButNoStrain", () => {
     const shifted = moved((x, y, z) => [x + 0.003, y, z + 0.004]);
     close(displacements(rest, shifted), 5);
     close(speeds(rest, shifted, 0.5), 10);
@@ -23,7 +23,7 @@ describe("the fields of a body", () => {
     close(areaChanges(rest, turned, triangles), 0);
   });
 
-  test("OfAStretchedSheetAreTheGrowthOfItsArea", () => {
+  test("AreaChangeOfAStretchedSheet", () => {
     close(
       areaChanges(
         rest,
@@ -42,7 +42,7 @@ describe("the fields of a body", () => {
     );
   });
 
-  test("HaveNoSpeedBeforeThereAreTwoMoments", () => {
+  test("SpeedNeedsTwoFrames", () => {
     const fields = new SurfaceFields();
     expect(fields.of("speed", body)).toBeUndefined();
     const poses = new Float32Array();
@@ -56,7 +56,7 @@ describe("the fields of a body", () => {
   });
 });
 
-test("TheScaleStaysUntilItIsFittedOrSet", () => {
+test("TheScaleIsConstantUntilItIsFittedOrSet", () => {
   const coloring = new Coloring(new ForceQueries(new FakeServer().api, "cube"));
   coloring.start([body]);
   const lift = (time: number, metres: number) =>

@@ -15,7 +15,7 @@ const square = (z: number): Surface => ({
   triangles: Uint32Array.from([0, 1, 2, 0, 2, 3]),
 });
 
-test("ADistanceIsToTheSurfaceAndNotToItsVertices", () => {
+test("DistancesAreToTrianglesNotVertices", () => {
   const points = Float32Array.from([0.5, 0.5, 0.003, 0.2, 0.7, -0.25, 4, 5, 0, -1, 0.5, 0]);
   const distances = new NearestSurface(square(0)).distances(points);
   [3, 250, 5000, 1000].forEach((mm, i) => expect(distances[i]).toBeCloseTo(mm, 3));
@@ -47,14 +47,14 @@ const raised = (z: number) => ({
   poses: new Float32Array(),
 });
 
-test("ItFollowsTheMomentThatIsShownAndLeavesOutWhatIsInNoTriangle", () => {
+test("DistancesFollowTheFrameAndAreNaNWithoutATriangle", () => {
   const live = new LiveDistance(comparison);
   expect([...Array.from(live.values)]).toEqual([0, 0, NaN]);
   expect(live.update([body], raised(0.25), () => 0)).toBe(true);
   expect([...Array.from(live.values)]).toEqual([250, 250, NaN]);
 });
 
-test("ASlowMachineIsAskedLessOften", () => {
+test("ASlowMachineComputesLessOften", () => {
   const live = new LiveDistance(comparison);
   let now = 0;
   // Each call of the clock returns 10 ms more.
@@ -63,7 +63,7 @@ test("ASlowMachineIsAskedLessOften", () => {
   expect(live.update([body], raised(0.2), () => now + 1000)).toBe(true);
 });
 
-test("WithoutTheFilesSurfaceTheColoursStayWhatWasMeasured", () => {
+test("WithoutASurfaceTheMeasuredDistancesStay", () => {
   const live = new LiveDistance({ ...comparison, surface: undefined });
   expect(live.update([body], raised(0.25), () => 0)).toBe(false);
   expect(live.values).toBe(comparison.distances);

@@ -10,7 +10,7 @@ const raised = (up: number) => ({
   poses: new Float32Array(),
 });
 
-test("AFollowedVertexIsMarkedDrawnAndLeft", () => {
+test("ATrackedVertexIsMarkedPlottedAndUntracked", () => {
   const trackedVertices = new TrackedVertices(() => [body]);
   const ref = { body: "triangle", vertex: 1 };
   trackedVertices.picked.set(ref);
@@ -26,7 +26,7 @@ test("AFollowedVertexIsMarkedDrawnAndLeft", () => {
   expect([trackedVertices.spec, trackedVertices.tracked.value.length]).toEqual([undefined, 0]);
 });
 
-test("ExpirationEndsWhereTheBreathTurnsUpwards", () => {
+test("ExpirationEndsAtTheMinimumOfTheSignal", () => {
   const detector = new EndExpirationDetector();
   const breath = [0, 0.5, 1, 0.5, 0, -0.2, -0.2, 0.1, 0.5, 0.2, 0.3];
   expect(breath.map((value) => detector.receive(value)).flatMap((turned, i) => (turned ? [i] : []))).toEqual([7, 10]);

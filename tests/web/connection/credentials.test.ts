@@ -35,7 +35,7 @@ function server(credentials: Credentials) {
 
 const secret = "00112233445566778899aabbccddeeff";
 
-test("a link's secret is taken from behind the #, and from nowhere else", () => {
+test("the secret of a join link is read from the fragment only", () => {
   const access = new Credentials(new FakeStorage());
   storeJoinLink(new URL(`https://x/?session=a&join=${secret}`), access);
   storeJoinLink(new URL("https://x/?session=a#join=<script>"), access);
@@ -45,7 +45,7 @@ test("a link's secret is taken from behind the #, and from nowhere else", () => 
   expect(access.joinLinks).toEqual([secret]);
 });
 
-test("every call says who calls, and nothing where there is nothing to say", async () => {
+test("every call carries the credentials, if there are any", async () => {
   const access = new Credentials(new FakeStorage());
   const { api, shown } = server(access);
   await api.access.getAccess({});
@@ -57,7 +57,7 @@ test("every call says who calls, and nothing where there is nothing to say", asy
   expect(shown[1]!.get("x-join")).toBe(secret);
 });
 
-test("the page asks until the server knows the token, which stands nowhere in it", async () => {
+test("the page asks until the server accepts the token", async () => {
   const access = new Credentials(new FakeStorage());
   const { api } = server(access);
   const place = document.createElement("div");
@@ -76,7 +76,7 @@ test("the page asks until the server knows the token, which stands nowhere in it
   expect(access.token).toBe("good");
 });
 
-test("a join link alone lets in without a question", async () => {
+test("a join link is sufficient without an account", async () => {
   const access = new Credentials(new FakeStorage());
   access.addJoinLink(secret);
   const place = document.createElement("div");

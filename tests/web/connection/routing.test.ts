@@ -5,7 +5,7 @@ import { routingInterceptor } from "../../../web/src/connection/routing";
 import { FrameService } from "../../../web/src/gen/phrenic/v1/frames_pb";
 import { SessionService } from "../../../web/src/gen/phrenic/v1/session_pb";
 
-test("every call that is about a session names it in its head, and no other does", async () => {
+test("calls about a session carry its id in the header, others do not", async () => {
   const named: (string | null)[] = [];
   const transport = createRouterTransport(
     ({ service }) => {

@@ -37,7 +37,7 @@ beforeEach(() => {
 
 afterEach(() => connection.stop());
 
-test("ItIsLiveOnceTheServerSpeaks", async () => {
+test("TheConnectionIsLiveAfterTheFirstMessage", async () => {
   expect(kinds()).toEqual(["connecting"]);
   await settle();
   expect(kinds()).toEqual(["connecting", "live"]);
@@ -52,7 +52,7 @@ test("FramesArriveInOrder", async () => {
   expect(ticks).toEqual([1n, 2n, 3n]);
 });
 
-test("ALostServerIsSaidAndRetriedLaterAndLater", async () => {
+test("ALostServerIsReportedAndRetriedWithBackoff", async () => {
   await settle();
   server.kill();
   await settle();
@@ -72,7 +72,7 @@ test("ALostServerIsSaidAndRetriedLaterAndLater", async () => {
   expect(states.at(-1)).toMatchObject({ kind: "lost", retryAt: 1500 + 2000 });
 });
 
-test("ItComesBackByItselfAndForgetsTheLongWait", async () => {
+test("ReconnectingResetsTheBackoff", async () => {
   await settle();
   server.kill();
   await clock.advance(500);
@@ -97,7 +97,7 @@ test("TheSameSceneIsFetchedOnce", async () => {
   expect(server.geometryCalls).toBe(1);
 });
 
-test("AnotherSceneUnderTheSameIdIsFetchedAgain", async () => {
+test("ASceneWithAnotherHashIsFetchedAgain", async () => {
   await settle();
   server.kill();
   [server.down, server.sceneHash] = [false, "other"];
@@ -105,7 +105,7 @@ test("AnotherSceneUnderTheSameIdIsFetchedAgain", async () => {
   expect(server.geometryCalls).toBe(2);
 });
 
-test("AServerThatGoesSilentIsFoundOut", async () => {
+test("AServerThatStopsAnsweringIsDetected", async () => {
   await settle();
   // The stream stays open, but calls fail.
   server.down = true;
@@ -116,7 +116,7 @@ test("AServerThatGoesSilentIsFoundOut", async () => {
   });
 });
 
-test("ASessionThatGoesOnOnAnotherServerIsFollowedAnew", async () => {
+test("ASessionOnAnotherServerIsReconnected", async () => {
   await settle();
   // The stream of a disconnected server stays open.
   server.session.epoch = 2n;
@@ -137,7 +137,7 @@ test("RetryNowEndsTheWait", async () => {
   expect(states.at(-1)).toEqual({ kind: "live" });
 });
 
-test("FramesAreAcknowledgedAndAFailureIsTriedAgain", async () => {
+test("FramesAreAcknowledgedAndFailuresRetried", async () => {
   await settle();
   server.send({ case: "frame" as const, value: { sequence: 7n } });
   await settle();
@@ -150,7 +150,7 @@ test("FramesAreAcknowledgedAndAFailureIsTriedAgain", async () => {
   expect(server.acknowledged).toEqual([7n, 9n, 9n]);
 });
 
-test("NothingIsAskedAfterStop", async () => {
+test("NoCallsAfterStop", async () => {
   await settle();
   connection.stop();
   const before = states.length;
@@ -158,7 +158,7 @@ test("NothingIsAskedAfterStop", async () => {
   expect(states.length).toBe(before);
 });
 
-test("FramesThatStrainCanBeToldFromAreWatchedAnewWithoutALoss", async () => {
+test("ExactFramesRestartTheWatchWithoutReportingALoss", async () => {
   await settle();
   connection.setExact(true);
   await settle();
@@ -171,7 +171,7 @@ test("FramesThatStrainCanBeToldFromAreWatchedAnewWithoutALoss", async () => {
   expect(kinds()).toEqual(["connecting", "live"]);
 });
 
-test("ShapesAreFetchedOnceTheServerHasThemAndItIsToldSo", async () => {
+test("ABasisIsFetchedOnceAndReportedToTheServer", async () => {
   server.basis.epoch = 4n;
   await settle();
   connection.setCodec(Codec.BASIS);

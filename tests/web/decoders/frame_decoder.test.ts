@@ -52,7 +52,7 @@ describe.each(golden.encodings)("$codec", ({ codec, bytes, positions }) => {
     expect([...decode(codecOf(codec), bytesIn(bytes))]).toEqual([...Float32Array.from(positions)]);
   });
 
-  test("NoBytesDoHarm", () => {
+  test("InvalidBytesThrowRangeError", () => {
     const whole = bytesIn(bytes);
     const outcome = (changed: Uint8Array) => {
       try {
@@ -73,7 +73,7 @@ describe.each(golden.encodings)("$codec", ({ codec, bytes, positions }) => {
   });
 });
 
-test("EveryCodecOfTheWireIsInTheFile", () => {
+test("TheFileContainsEveryCodec", () => {
   const named = golden.encodings.map(({ codec }) => codecOf(codec));
   expect([...new Set(named)].sort()).toEqual([Codec.RAW, Codec.PLANES, Codec.PREDICTED, Codec.BASIS]);
 });
@@ -86,7 +86,7 @@ test("ShapesAreThoseInTheFileBitForBit", () => {
   );
 });
 
-test("AFrameOfShapesThatHaveNotComeIsRefused", () => {
+test("AFrameOfAnUnknownBasisIsRefused", () => {
   const frame = create(FrameSchema, { codec: Codec.BASIS, bodies: [0], basisEpoch: 2n });
   expect(() => new FrameDecoder([sheet]).decode(frame)).toThrow(
     "basis_epoch: the basis of epoch 2 has not been received",
@@ -103,7 +103,7 @@ function allUp(): Uint8Array {
   return Uint8Array.from([...new Uint8Array(head.buffer), ...frame]);
 }
 
-test("ABodyOfABasisHasItsOwnPartOfTheShapes", () => {
+test("ABodyUsesItsPartOfTheBasis", () => {
   const [one, other] = [0, 3].map((firstVertex) =>
     decodeBody(triangleBody({ placement: Placement.STREAMED, firstVertex })),
   );
@@ -119,7 +119,7 @@ test("ABodyOfABasisHasItsOwnPartOfTheShapes", () => {
   expect([...decoder.decode(frame).positions]).toEqual([...one.rest, ...raised]);
 });
 
-test("BodiesThatAreNotInAFrameStayAtRest", () => {
+test("BodiesMissingInAFrameStayAtRest", () => {
   const one = decodeBody(triangleBody({ placement: Placement.STREAMED, firstVertex: 0 }));
   const other = decodeBody(triangleBody({ placement: Placement.STREAMED, firstVertex: 3 }));
   const moved = bytesOf(new Float32Array([9, 9, 9, 8, 8, 8, 7, 7, 7]));
@@ -128,7 +128,7 @@ test("BodiesThatAreNotInAFrameStayAtRest", () => {
   expect([...positions]).toEqual([...one.rest, 9, 9, 9, 8, 8, 8, 7, 7, 7]);
 });
 
-test("ABodyThatIsNotInTheSceneIsRefused", () => {
+test("AnUnknownBodyIsRefused", () => {
   expect(() => new FrameDecoder([]).decode(create(FrameSchema, { bodies: [3] }))).toThrow(
     "bodies: an index is out of range, there are 0 bodies",
   );

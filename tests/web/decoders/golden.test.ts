@@ -25,7 +25,7 @@ function frameInTheFile(): Frame {
   return event.value;
 }
 
-test("BytesInTheFileAreTheFrameInTheFile", () => {
+test("GoldenFrameDecodes", () => {
   const frame = frameInTheFile();
   const scene = [triangleBody({ placement: Placement.STILL }), triangleBody({})].map(decodeBody);
   const { positions, poses } = new FrameDecoder(scene).decode(frame);
@@ -43,7 +43,7 @@ test("BytesInTheFileAreTheFrameInTheFile", () => {
   }).toEqual(json("frame.json"));
 });
 
-test("BytesInTheFileAreTheBodyInTheFile", () => {
+test("GoldenGeometryDecodes", () => {
   const message = fromBinary(GetGeometryResponseSchema, bytes("geometry.hex"));
   const body = decodeBody(message);
   const { name, layer, layerTitle, color, opacity, placement, pose, firstVertex } = body;
@@ -57,7 +57,7 @@ test("BytesInTheFileAreTheBodyInTheFile", () => {
   }).toEqual(json("geometry.json"));
 });
 
-test("NothingInTheBytesIsUnknownToTheViewer", () => {
+test("GoldenBytesHaveNoUnknownFields", () => {
   for (const [name, schema] of [
     ["frame.hex", WatchFramesResponseSchema],
     ["geometry.hex", GetGeometryResponseSchema],

@@ -35,7 +35,7 @@ function asDefined(shape: RestShape, residuals: Int32Array): Int32Array {
   return values;
 }
 
-test.each([3, 3000, 2 ** 20, 2 ** 31 - 1])("NumbersUpTo %i AreForetoldAsDefined", (largest) => {
+test.each([3, 3000, 2 ** 20, 2 ** 31 - 1])("ValuesUpTo %i ArePredictedAsDefined", (largest) => {
   const shape = grid(12);
   const remainders = Int32Array.from({ length: shape.rest.length }, () => Math.round((2 * random() - 1) * largest));
   const values = remainders.slice();
@@ -43,7 +43,7 @@ test.each([3, 3000, 2 ** 20, 2 ** 31 - 1])("NumbersUpTo %i AreForetoldAsDefined"
   expect(values).toEqual(asDefined(shape, remainders));
 });
 
-test("OneLargeNumberAmongSmallOnesChangesNothingOfTheRule", () => {
+test("OneLargeResidualAmongSmallOnesIsPredictedAsDefined", () => {
   const shape = grid(9);
   const residuals = Int32Array.from({ length: shape.rest.length }, () => Math.round(4 * random()) - 2);
   residuals[3 * 40 + 1] = 2 ** 30;

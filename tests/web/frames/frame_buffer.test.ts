@@ -9,7 +9,7 @@ import { triangleBody } from "../fakes/fake_server";
 const nanos = (milliseconds: number) => BigInt(milliseconds) * 1_000_000n;
 const answer = (milliseconds: number) => create(AckFramesResponseSchema, { unixNanos: nanos(milliseconds) });
 
-test("AgeIsTakenByTheServersClockFromTheQuickestAnswer", () => {
+test("AgeUsesTheClockOffsetOfTheShortestRoundTrip", () => {
   const frames = new FrameBuffer();
   expect(frames.rate(0).age).toBeUndefined();
   frames.receive(create(FrameSchema, { unixNanos: nanos(50_000), maxErrorMm: 0.2 }), 1040);
@@ -41,7 +41,7 @@ function watched(): FrameBuffer {
   return frames;
 }
 
-test("ThePictureStandsBetweenTwoFramesAndTheNewestIsKnownNonetheless", () => {
+test("TheDisplayInterpolatesBetweenTwoFrames", () => {
   const frames = watched();
   frames.advance(1040, false);
   expect(frames.advance(1060, false)).toBe(true);
@@ -55,14 +55,14 @@ test("ThePictureStandsBetweenTwoFramesAndTheNewestIsKnownNonetheless", () => {
   expect(frames.advance(1200, false)).toBe(false);
 });
 
-test("WhoAsksForCalmSeesTheNewestFrame", () => {
+test("ReducedMotionDisplaysTheNewestFrame", () => {
   const frames = watched();
   frames.advance(1050, true);
   expect(frames.displayed!.arrays).toBe(frames.arrays);
   expect(frames.rate(1050).delay).toBe(0);
 });
 
-test("AWeakMachineDrawsOnlyFramesThatCame", () => {
+test("ASlowMachineDoesNotInterpolate", () => {
   const frames = watched();
   for (let i = 1; i < 40; i++) {
     frames.receive(frameAt(50_040 + 100 * i, 2 + i), 1040 + 100 * i);
@@ -71,7 +71,7 @@ test("AWeakMachineDrawsOnlyFramesThatCame", () => {
   expect(frames.displayed!.arrays).toBe(frames.arrays);
 });
 
-test("BackToTheStartIsShownAtOnce", () => {
+test("AResetIsDisplayedImmediately", () => {
   const frames = watched();
   frames.advance(1040, false);
   frames.receive(frameAt(50_080, 0), 1080);
@@ -88,7 +88,7 @@ function pair(): [FrameBuffer, FrameBuffer] {
   return [ahead, behind];
 }
 
-test("OfTwoInStepNeitherIsShownAheadOfTheOther", () => {
+test("SynchronisedBuffersDisplayTheSameTime", () => {
   const [ahead, behind] = pair();
   expect(ahead.liveFrame(1400)?.time).toBeCloseTo(1.1, 9);
   expect(behind.liveFrame(1400)?.time).toBeCloseTo(1.1, 9);
@@ -101,7 +101,7 @@ test("OfTwoInStepNeitherIsShownAheadOfTheOther", () => {
   expect(ahead.displayed?.time).toBeCloseTo(1.3, 9);
 });
 
-test("APictureThatNothingComesToIsNotWaitedFor", () => {
+test("APartnerWithoutFramesIsNotWaitedFor", () => {
   const [ahead, behind] = pair();
   ahead.receive(frameAt(52_000, 1.5), 3200);
   expect(ahead.liveFrame(3200)?.time).toBeCloseTo(1.5, 9);
@@ -112,7 +112,7 @@ test("APictureThatNothingComesToIsNotWaitedFor", () => {
   expect(ahead.displayed?.time).toBeCloseTo(1.5, 9);
 });
 
-test("APictureFarBehindIsNotWaitedFor", () => {
+test("APartnerFarBehindIsNotWaitedFor", () => {
   const [ahead] = pair();
   ahead.receive(frameAt(51_500, 3.2), 1500);
   expect(ahead.liveFrame(1500)?.time).toBeCloseTo(3.2, 9);

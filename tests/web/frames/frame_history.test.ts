@@ -10,11 +10,11 @@ function historyOf(...times: number[]): FrameHistory {
   return result;
 }
 
-test("InThePresentNothingIsLookedAt", () => {
+test("LiveThereIsNoReplayedFrame", () => {
   expect(historyOf(0, 1, 2).replayed).toBeUndefined();
 });
 
-test("TheFrameAtOrBeforeATimeIsLookedAt", () => {
+test("TheLastFrameUpToATimeIsReplayed", () => {
   const frames = historyOf(0, 1, 2);
   frames.replayAt(1.7);
   expect(frames.replayed?.time).toBe(1);
@@ -22,7 +22,7 @@ test("TheFrameAtOrBeforeATimeIsLookedAt", () => {
   expect(frames.replayed?.time).toBe(0);
 });
 
-test("FrameByFrameItGoesBackToTheOldestAndForwardToThePresent", () => {
+test("SteppingGoesBackToTheOldestAndForwardToLive", () => {
   const frames = historyOf(0, 1, 2);
   const seen: (number | undefined)[] = [];
   for (const by of [-1, -1, -1, 1, 1] as const) {
@@ -33,7 +33,7 @@ test("FrameByFrameItGoesBackToTheOldestAndForwardToThePresent", () => {
   expect(seen).toEqual([1, 0, 0, 1, undefined]);
 });
 
-test("WhatIsTooLongAgoIsForgottenAndTheOldestLeftIsShown", () => {
+test("OldFramesAreDroppedAndTheOldestLeftIsReplayed", () => {
   const frames = historyOf(0, 1, 2);
   frames.replayAt(1);
   frames.add(at(21.5));
@@ -41,7 +41,7 @@ test("WhatIsTooLongAgoIsForgottenAndTheOldestLeftIsShown", () => {
   expect(frames.replayed?.time).toBe(2);
 });
 
-test("ANewRunHasNoPast", () => {
+test("AResetClearsTheHistory", () => {
   const frames = historyOf(3, 4);
   frames.replayAt(3);
   frames.add(at(0));
@@ -49,7 +49,7 @@ test("ANewRunHasNoPast", () => {
   expect(frames.replayed).toBeUndefined();
 });
 
-test("TheNearestFrameIsOnEitherSide", () => {
+test("NearestFindsEarlierAndLaterFrames", () => {
   const frames = historyOf(0, 1, 2);
   expect([-3, 0.4, 0.6, 1, 1.7, 9].map((time) => frames.nearest(time)?.time)).toEqual([0, 0, 1, 1, 2, 2]);
   expect(historyOf().nearest(1)).toBeUndefined();

@@ -38,7 +38,7 @@ const cases: [string, Arrival[]][] = [
   ["twice the screen's rate", arrivals(200, 8, uneven)],
 ];
 
-test.each(cases)("TimeNeverGoesBackAndNeverPassesWhatHasCome: %s", (_, frames) => {
+test.each(cases)("TimeIsMonotonicAndNeverAheadOfReceivedFrames: %s", (_, frames) => {
   const seen = play(frames);
   seen.forEach(({ moment, newest }, i) => {
     expect(moment).toBeLessThanOrEqual(newest);
@@ -50,13 +50,13 @@ test.each(cases)("TheDelayIsBounded: %s", (_, frames) => {
   for (const { delay } of play(frames)) expect(delay).toBeLessThanOrEqual(maxHold + 100);
 });
 
-test("EvenFramesMoveThePictureEvenlyOneFrameLate", () => {
+test("RegularFramesAreDisplayedEvenlyOneFrameLate", () => {
   const seen = play(arrivals(90, 33, () => 10)).filter(({ now }) => now > 500 && now < 2500);
   for (let i = 1; i < seen.length; i++) expect(seen[i].moment - seen[i - 1].moment).toBeCloseTo(1000 / 60, 6);
   for (const { delay } of seen) expect(delay).toBeCloseTo(33, 6);
 });
 
-test("ItPassesThroughTheFramesThemselves", () => {
+test("ReceivedFramesAreDisplayedExactly", () => {
   const playout = new PlayoutBuffer<string>();
   playout.receive("a", ahead, 0);
   playout.receive("b", ahead + 30, 30);
@@ -65,14 +65,14 @@ test("ItPassesThroughTheFramesThemselves", () => {
   expect(playout.at(60)).toEqual({ before: "b", after: "b", part: 0 });
 });
 
-test("WhatStopsEndsAtItsNewestFrameAndStays", () => {
+test("WithoutNewFramesTheNewestStays", () => {
   const seen = play(arrivals(30, 33, uneven));
   const last = ahead + 29 * 33;
   expect(seen.at(-1)!.moment).toBe(last);
   expect(seen.filter(({ moment }) => moment === last).length).toBeGreaterThan(10);
 });
 
-test("AfterALongGapTheNextFrameIsShownAtOnce", () => {
+test("AfterALongGapTheNextFrameIsDisplayedImmediately", () => {
   const playout = new PlayoutBuffer<string>();
   playout.receive("a", ahead, 0);
   playout.receive("b", ahead + 30, 30);

@@ -33,13 +33,13 @@ describe("a vertex in a frame", () => {
     poses: floats(fields.poses ?? new Uint8Array(), floatsPerPose, "poses"),
   });
 
-  test("OfAStreamedBodyComesFromItsPartOfThePositions", () => {
+  test("OfAStreamedBodyIsReadFromThePositions", () => {
     const body = decodeBody(triangleBody({ placement: Placement.STREAMED, firstVertex: 1 }));
     const positions = bytesOf(new Float32Array([9, 9, 9, 1, 2, 3, 4, 5, 6, 7, 8, 9]));
     expect(vertexAt(body, frame({ positions }), 1)).toEqual([4, 5, 6]);
   });
 
-  test("OfARigidBodyIsItsRestTurnedAndMoved", () => {
+  test("OfARigidBodyIsItsTransformedRestPosition", () => {
     const body = decodeBody(triangleBody({ placement: Placement.RIGID, pose: 1 }));
     const half = Math.SQRT1_2;
     // A quarter turn about +z, then 10 m along +x: (1, 0, 0) maps to (10, 1, 0).
@@ -48,12 +48,12 @@ describe("a vertex in a frame", () => {
     expect([x, y, z].map((value) => Math.round(1e6 * value) / 1e6)).toEqual([10, 1, 0]);
   });
 
-  test("OfAStillBodyIsItsRest", () => {
+  test("OfAStillBodyIsItsRestPosition", () => {
     const body = decodeBody(triangleBody({ placement: Placement.STILL }));
     expect(vertexAt(body, frame({}), 2)).toEqual([0, 1, 0]);
   });
 
-  test("IsRefusedWhereTheFrameIsTooShort", () => {
+  test("IsRefusedIfTheFrameIsTooShort", () => {
     const body = decodeBody(triangleBody({ placement: Placement.STREAMED }));
     expect(() => positionsOf(body, frame({ positions: new Uint8Array(12) }))).toThrow(
       "before the vertices of triangle",
@@ -62,12 +62,12 @@ describe("a vertex in a frame", () => {
 });
 
 describe("a body", () => {
-  test("WithNoLayerMakesItsOwn", () => {
+  test("WithoutALayerHasItsOwn", () => {
     const body = decodeBody(create(GetGeometryResponseSchema, { name: "sheet" }));
     expect([body.layer, body.layerTitle]).toEqual(["sheet", "sheet"]);
   });
 
-  test("WithAnActionLineThatHasNoDirectionIsRefused", () => {
+  test("WithAnActionLineWithoutADirectionIsRefused", () => {
     const message = triangleBody({
       actionLines: [{ name: "a", origin: [0, 0, 0], direction: [] }],
     });

@@ -20,7 +20,7 @@ function expectAll(now: Float32Array, largest: number, smallest: number): void {
   for (const value of small) expect(value).toBeCloseTo(smallest, 3);
 }
 
-test("WhatMovesAndTurnsIsNotStrained", () => {
+test("RigidMotionHasNoStrain", () => {
   const [c, s] = [Math.cos(0.7), Math.sin(0.7)];
   expectAll(
     moved((x, y, z) => [c * x - s * z + 4, y - 1, s * x + c * z]),
@@ -29,7 +29,7 @@ test("WhatMovesAndTurnsIsNotStrained", () => {
   );
 });
 
-test("StretchesAlongTwoAxesAreThePrincipalStrains", () => {
+test("AxialStretchesArePrincipalStrains", () => {
   expectAll(
     moved((x, y, z) => [1.3 * x, 0.9 * y, z]),
     30,
@@ -37,7 +37,7 @@ test("StretchesAlongTwoAxesAreThePrincipalStrains", () => {
   );
 });
 
-test("TheyDoNotDependOnHowTheStretchedSurfaceIsTurned", () => {
+test("PrincipalStrainsAreInvariantUnderRotation", () => {
   const [c, s] = [Math.cos(0.4), Math.sin(0.4)];
   expectAll(
     moved((x, y) => [1.2 * x, c * 1.1 * y, s * 1.1 * y]),
@@ -46,7 +46,7 @@ test("TheyDoNotDependOnHowTheStretchedSurfaceIsTurned", () => {
   );
 });
 
-test("AShearStretchesOneWayAndShortensTheOther", () => {
+test("SimpleShearHasItsPrincipalStretches", () => {
   // The principal stretches of a simple shear g are g/2 + sqrt(1 + g^2/4) and its inverse.
   const stretch = 0.25 + Math.sqrt(1 + 0.0625);
   expectAll(
@@ -56,7 +56,7 @@ test("AShearStretchesOneWayAndShortensTheOther", () => {
   );
 });
 
-test("AVertexOfNoTriangleHasNone", () => {
+test("AVertexWithoutATriangleIsNaN", () => {
   const lonely = new Float32Array([...rest, 9, 9, 9]);
   expect(principalStrains(lonely, lonely, triangles, "largest")[4]).toBeNaN();
 });

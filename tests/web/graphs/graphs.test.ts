@@ -26,8 +26,8 @@ const graph = (id: string) => graphs.find((each) => each.id === id)!;
 const history = new TimeSeries(100);
 for (let time = 0; time <= 10; time++) history.add(time, valuesOf(frameAt(time)));
 
-describe("what a scene measures", () => {
-  test("IsShownByWhatBelongsTogether", () => {
+describe("the graphs of a scene", () => {
+  test("GroupMeasuresByUnit", () => {
     const words = graphs.map(({ title, unit, curves }) => `${title} [${unit}]: ${curves.map(({ name }) => name)}`);
     expect(words).toEqual([
       "Lung volume [l]: lung volume",
@@ -40,27 +40,27 @@ describe("what a scene measures", () => {
     ]);
   });
 
-  test("MakesALoopOfThePressureAroundTheLungs", () => {
+  test("IncludeALoopOfThePleuralPressure", () => {
     expect(graph("loop").abscissa).toMatchObject({ name: "pleural pressure", unit: "Pa" });
     expect(graphsOf(create(FrameSchema, {})).map(({ id }) => id)).toEqual(["breath"]);
   });
 });
 
 describe("the data of a graph", () => {
-  test("AreThoseOfTheSpanInItsUnitWithOnePointAtEitherSide", () => {
+  test("CoverTheSpanWithOnePointOnEitherSide", () => {
     const data = graphData(graph("domes"), history, { start: 3, end: 5 });
     expect(data.times).toEqual([2, 3, 4, 5]);
     expect(data.curves[0].map((value) => Math.round(value))).toEqual([20, 30, 40, 50]);
   });
 
-  test("FillTheGraphWithSomeRoom", () => {
+  test("HaveARangeWithAMargin", () => {
     const [low, high] = valueRange([[1, 2], [3]], 0);
     expect([low, high]).toEqual([1 - 0.16, 3 + 0.16]);
     expect(valueRange([[5, 5]], 2)).toEqual([4, 6]);
     expect(valueRange([[]], 2)).toEqual([-1, 1]);
   });
 
-  test("AreSavedWithEveryDigit", () => {
+  test("AreSavedAsCsvWithAllDigits", () => {
     const rows = toCsv(graph("loop"), graphData(graph("loop"), history, { start: 0, end: 10 }))
       .trimEnd()
       .split("\n");
@@ -69,7 +69,7 @@ describe("the data of a graph", () => {
     expect(rows[4].split(",").map(Number)).toEqual([3, -503, 1000 * (0.003 + 0.0001 * 3)]);
   });
 
-  test("AreDrawnAsAPictureOfTheirOwn", () => {
+  test("AreSavedAsSvg", () => {
     const spec = { ...graph("pressure"), title: "Pressure < 0 & more" };
     const text = toSvg(spec, graphData(spec, history, { start: 0, end: 10 }));
     const svg = new DOMParser().parseFromString(text, "image/svg+xml");

@@ -13,15 +13,15 @@ const numbers = controls.filter((control): control is NumberControl => control.k
 const find = (field: string) => numbers.find((control) => control.field === field)!;
 
 describe("controls from the schema", () => {
-  test("EveryLiveParameterHasOneInTheSchemasOrder", () => {
+  test("EveryParameterHasAControlInTheOrderOfTheSchema", () => {
     expect(controls.map((control) => control.field)).toEqual(ParametersSchema.fields.map((field) => field.localName));
   });
 
-  test("EachIsLabelledAndExplained", () => {
+  test("EachHasALabelAndHelp", () => {
     for (const { label, help } of controls) expect([label.length > 0, help.length > 0]).toEqual([true, true]);
   });
 
-  test("RangesUnitsAndDefaultsAreTheFieldOptions", () => {
+  test("RangesUnitsAndDefaultsAreFieldOptions", () => {
     expect(find("breathLength")).toMatchObject({
       unit: "s",
       minimum: 0.5,
@@ -47,7 +47,7 @@ describe("controls from the schema", () => {
 describe("a choice", () => {
   const choices = controls.filter((control): control is ChoiceControl => control.kind === "choice");
 
-  test("HasEveryValueOfTheEnumButTheUnspecifiedOne", () => {
+  test("OffersEveryValueExceptTheUnspecifiedOne", () => {
     for (const { field, options } of choices) {
       const { values } = ParametersSchema.field[field as "integrator"].enum!;
       expect(options.map(({ value }) => value)).toEqual(values.map(({ number }) => number).filter(Boolean));
@@ -55,11 +55,11 @@ describe("a choice", () => {
     expect(choices.map(({ field }) => field)).toContain("integrator");
   });
 
-  test("StartsAtOneOfItsValues", () => {
+  test("HasADefaultAmongItsValues", () => {
     for (const { options, defaultValue } of choices) expect(options.map(({ value }) => value)).toContain(defaultValue);
   });
 
-  test("IsCalledByWhatIsParticularInTheValuesName", () => {
+  test("FormatsTheNamesOfItsValues", () => {
     expect(choices.find(({ field }) => field === "integrator")!.options[0]).toEqual({
       value: 1,
       label: "Semi Implicit Euler",
@@ -70,7 +70,7 @@ describe("a choice", () => {
 });
 
 describe("a slider", () => {
-  test("KeepsTheValueThatItShows", () => {
+  test("RoundTripsItsValues", () => {
     for (const control of numbers) {
       for (const value of [control.minimum, control.maximum, control.defaultValue || control.minimum]) {
         expect(sliderValue(control, sliderPosition(control, value))).toBeCloseTo(value, 9);
@@ -78,7 +78,7 @@ describe("a slider", () => {
     }
   });
 
-  test("NeverLeavesTheRange", () => {
+  test("StaysInTheRange", () => {
     for (const control of numbers) {
       for (const position of [-1e3, 1e3]) expect(rangeError(control, sliderValue(control, position))).toBeUndefined();
     }
@@ -86,16 +86,16 @@ describe("a slider", () => {
 });
 
 describe("a typed number", () => {
-  test("PastTheRangeIsRefusedWithTheRange", () => {
+  test("OutOfRangeIsRefusedWithTheRange", () => {
     expect(rangeError(find("breathLength"), 31)).toBe("Breath length must be between 0.5 and 30 s.");
     expect(rangeError(find("breathForce"), -0.1)).toBe("Breath force must be between 0 and 20.");
   });
 
-  test("ThatIsNoneIsRefused", () => {
+  test("ThatIsNaNIsRefused", () => {
     expect(rangeError(find("breathLength"), NaN)).toBeDefined();
   });
 
-  test("IsShownWithFourDigits", () => {
+  test("IsFormattedWithFourDigits", () => {
     expect([0.1 + 0.2, 1234.56, 1.5e-5].map(formatNumber)).toEqual(["0.3", "1235", "0.000015"]);
   });
 });

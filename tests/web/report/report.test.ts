@@ -22,7 +22,7 @@ const withTable = (study: typeof errorStudy, kind: string, table: object) => ({
 });
 
 describe("the page of a study", () => {
-  test.each([errorStudy, stabilityStudy, costStudy])("NamesEveryPictureAndSaysWhatToSee", (study) => {
+  test.each([errorStudy, stabilityStudy, costStudy])("LabelsAndCaptionsEveryPlot", (study) => {
     show(study);
     expect(all("figure svg[role=img]").length).toBeGreaterThan(2);
     for (const svg of all("figure svg")) expect(svg.getAttribute("aria-label")?.length).toBeGreaterThan(20);
@@ -31,7 +31,7 @@ describe("the page of a study", () => {
     expect(page.textContent).toContain("Research and teaching; not for clinical use");
   });
 
-  test.each([errorStudy, stabilityStudy, costStudy])("DrawsNothingThatIsNotANumber", (study) => {
+  test.each([errorStudy, stabilityStudy, costStudy])("DrawsOnlyNumbers", (study) => {
     show(study);
     expect(
       all("figure svg")
@@ -40,7 +40,7 @@ describe("the page of a study", () => {
     ).not.toMatch(/NaN|Infinity|undefined/);
   });
 
-  test("SaysWhatWasStudiedAndWithWhat", () => {
+  test("ShowsSceneAndParameters", () => {
     show(errorStudy);
     const header = page.querySelector("header")!.textContent!;
     expect(page.querySelector("h1")!.textContent).toBe("Error against run time: thorax");
@@ -51,7 +51,7 @@ describe("the page of a study", () => {
     expect(document.title).toBe("Error against run time: thorax – Phrenic");
   });
 
-  test("TakesNamesOfTheProtoFilesToo", () => {
+  test("AcceptsProtoFieldNames", () => {
     show({
       ...done,
       result: {
@@ -63,7 +63,7 @@ describe("the page of a study", () => {
     expect(page.querySelector(".advice")!.textContent).toBe("Use Velocity Verlet.");
   });
 
-  test("ShowsHostileTextAsText", () => {
+  test("EscapesHostileText", () => {
     const scene = `</script><img src=x onerror="alert(1)"><svg onload=alert(1)>`;
     const row = {
       integrator: scene,
@@ -79,13 +79,13 @@ describe("the page of a study", () => {
     expect(pageOf("<script>__PHRENIC_STUDY__</script>", { scene }).match(/<\/script>/g)).toHaveLength(1);
   });
 
-  test.each(["error", "stability", "cost"])("StandsAnEmptyTable", (kind) => {
+  test.each(["error", "stability", "cost"])("AcceptsAnEmptyTable", (kind) => {
     show({ ...done, result: { [kind]: {} } });
     expect(page.querySelector("h1")!.textContent).toContain("cube");
     expect(page.textContent).toContain("No rows.");
   });
 
-  test("SaysWhyThereIsNothing", () => {
+  test("ShowsWhyThereIsNoResult", () => {
     show({
       ...done,
       state: "STUDY_STATE_FAILED",
@@ -98,12 +98,12 @@ describe("the page of a study", () => {
 });
 
 describe("the error study", () => {
-  test("SaysWhichRunsItDoesNotDraw", () => {
+  test("ListsTheRunsThatAreNotDrawn", () => {
     show(errorStudy);
     expect(captions()[0]).toContain("Not drawn: 5 runs (Thesis) without a result.");
   });
 
-  test("ShowsTheLargestErrorOnDemand", () => {
+  test("SwitchesToTheLargestError", () => {
     show(errorStudy);
     const [, largest] = page.querySelectorAll<HTMLInputElement>("input[type=radio]");
     largest.checked = true;
@@ -111,7 +111,7 @@ describe("the error study", () => {
     expect(captions()[0]).toContain("Largest error against run time.");
   });
 
-  test("NamesEveryDrawnIntegratorInThePlotItself", () => {
+  test("LabelsEveryIntegratorInThePlot", () => {
     show(errorStudy);
     const words = [...page.querySelector("figure svg")!.querySelectorAll("text")].map((each) => each.textContent);
     for (const name of ["Semi-implicit Euler", "Velocity Verlet", "Runge-Kutta 4", "BDF2", "TR-BDF2", "real time"]) {
@@ -119,7 +119,7 @@ describe("the error study", () => {
     }
   });
 
-  test("StandsRowsWithoutAnyError", () => {
+  test("AcceptsRowsWithoutErrors", () => {
     const rows = [
       {
         integrator: "thesis",
@@ -145,7 +145,7 @@ describe("the error study", () => {
     expect(all("tbody tr").length).toBe(3);
   });
 
-  test("SaysHowFarRealTimeIsWhereItIsOffThePlot", () => {
+  test("MentionsRealTimeOutsideOfThePlot", () => {
     const row = {
       integrator: "bdf2",
       timeStepS: 0.1,
@@ -173,13 +173,13 @@ describe("the stability study", () => {
     expect(captions()[0]).toContain("Velocity Verlet 1 to 1.06");
   });
 
-  test("CountsExtremeCasesAndMarksThemInWords", () => {
+  test("CountsAndMarksExtremeCases", () => {
     show(stabilityStudy);
     expect(advice()).toContain("3 extreme cases: 1 pass, 1 stopped with a reason, 1 FAILED.");
     expect(page.querySelector(".verdict.bad")!.textContent).toBe("✖ FAILED");
   });
 
-  test("SaysHowLongAStepMayBeAndWhatIsAlwaysStable", () => {
+  test("ShowsLargestStepsAndUnconditionalStability", () => {
     show(stabilityStudy);
     expect(advice()[0]).toMatch(/^Longest stable step: Semi-implicit Euler .* ms \(10⁶ times as stiff: .* ms\)/);
     expect(advice().some((line) => line.startsWith("Stable at every stiffness"))).toBe(false);
@@ -188,7 +188,7 @@ describe("the stability study", () => {
     expect(advice()).toEqual(["Stable at every stiffness and step of the map: BDF2."]);
   });
 
-  test("StandsASingleRunWithoutALimit", () => {
+  test("AcceptsASingleRunWithoutALimit", () => {
     const map = [{ integrator: "bdf2", stiffness: 1, timeStepS: 0.01, verdict: "stable" }];
     show(withTable(stabilityStudy as never, "stability", { map }));
     expect(all(".tiles svg").length).toBe(1);
@@ -197,7 +197,7 @@ describe("the stability study", () => {
 });
 
 describe("the streaming study", () => {
-  test("DrawsEachCodecThatErrsAndSaysWhatTheExactOneTakes", () => {
+  test("DrawsLossyCodecsAndMentionsTheExactOne", () => {
     show(streamingStudy as never);
     expect(page.querySelector("h1")!.textContent).toBe("Error against bandwidth: thorax");
     expect(advice().join() || page.querySelector(".advice")!.textContent).toContain("28.3 Mbit/s");
@@ -209,20 +209,20 @@ describe("the streaming study", () => {
     expect(all("tbody tr")).toHaveLength(10);
   });
 
-  test("StandsAnEmptyTable", () => {
+  test("AcceptsAnEmptyTable", () => {
     show(withTable(streamingStudy as never, "streaming", {}));
     expect(captions()[0]).toContain("No codec has an error to show.");
   });
 });
 
 describe("the cost study", () => {
-  test("WritesTheThesisFigureBesideTheBar", () => {
+  test("ShowsTheValueOfTheThesisBesideTheBar", () => {
     show(costStudy);
     expect(page.querySelector("figure svg")!.textContent).toContain("214 µs, 26.4 % (thesis 625 µs, 2.92 × its speed)");
     expect(captions()[2]).toContain("to the power of 1.04");
   });
 
-  test("SaysWhatAStepTakesAndWhetherLeavingOutIsFree", () => {
+  test("SummarisesTheCostOfAStepAndOfOmittedParts", () => {
     show(costStudy);
     expect(advice()[0]).toBe("A step takes 812 µs, 3 times the speed of the thesis.");
     expect(advice()[1]).toBe("Most of it goes to springs.");
@@ -235,7 +235,7 @@ describe("the cost study", () => {
     expect(advice()).toEqual(["Time with a part left out, relative to a scene without it: 0.99 to 1.02."]);
   });
 
-  test("StandsVariantsWithoutStagesAndGrowth", () => {
+  test("AcceptsVariantsWithoutStagesAndGrowth", () => {
     const rows = [{ variant: "full", cpuUsPerStep: 12 }, { variant: "springs alone" }];
     show(withTable(costStudy as never, "cost", { rows }));
     expect(captions().length).toBe(1);

@@ -20,16 +20,16 @@ describe("numbers", () => {
     [-2.0004e12, "−2 × 10¹²"],
     [Infinity, "∞"],
     [NaN, "not a number"],
-  ])("%d reads %s", (value, words) => expect(formatDigits(value)).toBe(words));
+  ])("%d is formatted as %s", (value, words) => expect(formatDigits(value)).toBe(words));
 
-  test("TicksOfOneAxisAreWrittenAlike", () => {
+  test("TicksOfOneAxisHaveOneFormat", () => {
     expect([0.001, 0.1, 10].map(formatTicks([0.001, 0.1, 10]))).toEqual(["0.001", "0.1", "10"]);
     expect([1e-5, 1e-3, 0.1, 20_000].map(formatTicks([1e-5]))).toEqual(["10⁻⁵", "10⁻³", "0.1", "2·10⁴"]);
   });
 });
 
 describe("axes", () => {
-  test("HoldAllValuesAndNothingElse", () => {
+  test("CoverThePositiveValues", () => {
     const [low, high] = logDomain([0.01, 5, Number.NaN, 0, -1]);
     expect(low).toBeLessThan(0.01);
     expect(low).toBeGreaterThan(0.001);
@@ -62,10 +62,10 @@ test.each([
   ["steps_per_s", "Steps per s"],
   ["diverged_at_s", "Diverged at [s]"],
   ["over_never_had", "Over never had"],
-])("the field %s is headed %s", (field, heading) => expect(headingOf(field)).toBe(heading));
+])("the heading of the field %s is %s", (field, heading) => expect(headingOf(field)).toBe(heading));
 
-describe("looks", () => {
-  test("NoTwoSeriesShareAColourOrASymbol", () => {
+describe("series styles", () => {
+  test("SeriesHaveDifferentColoursAndSymbols", () => {
     const ids = ["thesis", "bdf2", "one", "two", "velocity_verlet"];
     const styles = [...seriesStyles(ids).values()];
     expect(new Set(styles.map(({ color }) => color)).size).toBe(ids.length);
@@ -77,7 +77,7 @@ describe("looks", () => {
 describe("tables", () => {
   const headings = (table: HTMLElement) => [...table.querySelectorAll("th")].map((each) => each.textContent);
 
-  test("LeaveOutColumnsThatNoRowHasAndKeepNoughts", () => {
+  test("OmitEmptyColumnsAndKeepZeros", () => {
     const rows = [create(CostRowSchema, { variant: "full", vertices: 120_000n, timesThesis: 3 })];
     const table = tableOf("Cost", CostRowSchema, rows);
     expect(headings(table)).toContain("Times thesis");
@@ -87,7 +87,7 @@ describe("tables", () => {
     expect(cells.slice(0, 4)).toEqual(["full", "120\u202f000", "0", "0"]);
   });
 
-  test("ShowWhatIsNotSetAsADash", () => {
+  test("ShowUnsetValuesAsADash", () => {
     const rows = [create(ErrorRowSchema, { order: 0 }), create(ErrorRowSchema, { realTime: false })];
     const table = tableOf("Runs", ErrorRowSchema, rows);
     const column = headings(table).indexOf("Measured order");
@@ -97,7 +97,7 @@ describe("tables", () => {
 });
 
 describe("the map's cells", () => {
-  test("MeetHalfWayInPowers", () => {
+  test("MeetAtGeometricMeans", () => {
     expect(edgesOf([1, 4, 16])).toEqual([0.5, 2, 8, 32]);
     expect(edgesOf([2])[0]).toBeCloseTo(Math.SQRT2);
     expect(edgesOf([2])[1]).toBeCloseTo(2 * Math.SQRT2);
@@ -112,7 +112,7 @@ describe("the map's cells", () => {
   });
 });
 
-test("GuidesHaveTheirSlopesAndStayInside", () => {
+test("GuidesHaveTheirSlopesWithinTheFrame", () => {
   for (const { order, points } of guidesIn(10, 1000, [0.01, 10])) {
     const [from, to] = points;
     expect(Math.log(to.y / from.y) / Math.log(to.x / from.x)).toBeCloseTo(order, 9);
@@ -121,7 +121,7 @@ test("GuidesHaveTheirSlopesAndStayInside", () => {
   }
 });
 
-test("LabelsOfLinesThatMeetDoNotCoverEachOther", () => {
+test("LabelsOfMeetingCurvesDoNotOverlap", () => {
   const lines = [0, 1, 2, 3, 4].map((i) => ({
     name: `integrator ${i}`,
     points: [0, 1, 2].map((k) => ({ x: 200 + 100 * k, y: 300 - 60 * k + 4 * i })),

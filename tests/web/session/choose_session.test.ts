@@ -8,19 +8,19 @@ import { FakeServer } from "../fakes/fake_server";
 const session = (id: string, state: SessionState) => create(SessionSchema, { id, state });
 const plain = new URL("http://127.0.0.1:8080/");
 
-test("TheFirstThatPlaysIsPreferred", () => {
+test("TheFirstPlayingSessionIsPreferred", () => {
   const [a, b] = [session("a", SessionState.PAUSED), session("b", SessionState.PLAYING)];
   expect(preferredSession([a, b])).toBe(b);
   expect(preferredSession([a])).toBe(a);
   expect(preferredSession([])).toBeUndefined();
 });
 
-test("TheAddressHasTheFirstWord", async () => {
+test("TheSessionInTheAddressIsUsed", async () => {
   const named = new URL("?session=mine", plain);
   expect(await chooseSession(named, new FakeServer().api, new FakeClock(), () => {})).toBe("mine");
 });
 
-test("AServerWithoutASessionIsAskedAgain", async () => {
+test("AServerWithoutASessionIsPolled", async () => {
   const [server, clock, heard] = [new FakeServer(), new FakeClock(), [] as unknown[]];
   server.sessions = [];
   const chosen = chooseSession(plain, server.api, clock, (error) => heard.push(error));
@@ -31,7 +31,7 @@ test("AServerWithoutASessionIsAskedAgain", async () => {
   expect(await chosen).toBe("thorax");
 });
 
-test("AServerThatDoesNotAnswerIsAskedAgain", async () => {
+test("AnUnreachableServerIsPolled", async () => {
   const [server, clock, heard] = [new FakeServer(), new FakeClock(), [] as unknown[]];
   server.down = true;
   const chosen = chooseSession(plain, server.api, clock, (error) => heard.push(error));

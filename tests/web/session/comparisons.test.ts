@@ -31,7 +31,7 @@ beforeEach(() => {
   comparisons.choose({ body: "diaphragm" });
 });
 
-test("TheBodyAsTheServerHasItIsComparedWithTheFile", async () => {
+test("TheCurrentBodyIsComparedWithTheFile", async () => {
   comparisons.choose({ unitMm: 10, time: 0.5 });
   await comparisons.compare(fileOf("b.obj"));
   expect(server.comparisons).toMatchObject([
@@ -53,14 +53,14 @@ test("TheBodyAsTheServerHasItIsComparedWithTheFile", async () => {
   });
 });
 
-test("ProgressIsToldWhileItRuns", async () => {
+test("ProgressIsReported", async () => {
   const told: unknown[] = [];
   comparisons.progress.subscribe((work) => told.push(work));
   await comparisons.compare(fileOf("b.obj"));
   expect(told).toContainEqual({ kind: "running", file: "b.obj", done: 0.5 });
 });
 
-test("AgainSendsTheSameFileAndReplacesTheResult", async () => {
+test("RepeatSendsTheSameFileAndReplacesTheResult", async () => {
   await comparisons.repeat();
   expect(server.comparisons).toEqual([]);
   await comparisons.compare(fileOf("b.obj"));
@@ -70,7 +70,7 @@ test("AgainSendsTheSameFileAndReplacesTheResult", async () => {
   expect(comparisons.result.value?.time).toBe(3.4);
 });
 
-test("ARefusalIsToldInTheServersWordsAndLeavesWhatWasFound", async () => {
+test("ARefusalShowsTheServersMessageAndKeepsTheResult", async () => {
   await comparisons.compare(fileOf("b.obj"));
   server.comparisonEvents = [
     Promise.reject(new ConnectError("bad.obj:1: a vertex has three numbers", Code.InvalidArgument)),
@@ -86,18 +86,18 @@ test("AStreamThatEndsEarlyIsAFailure", async () => {
   expect(words()).toContain("without a result");
 });
 
-test("AFileThatNoMessageHoldsIsRefusedUnread", async () => {
+test("ATooLargeFileIsRefusedUnread", async () => {
   await comparisons.compare({ ...fileOf("big.msh", 16 << 20), arrayBuffer: () => Promise.reject(new Error("read")) });
   expect(words()).toContain("big.msh has 16.0 MiB");
   expect(server.comparisons).toEqual([]);
 });
 
-test("AFileThatCannotBeReadIsSaid", async () => {
+test("AnUnreadableFileIsReported", async () => {
   await comparisons.compare({ ...fileOf("gone.obj"), arrayBuffer: () => Promise.reject(new Error("gone")) });
   expect(words()).toContain("gone.obj cannot be read");
 });
 
-test("WhatIsStoppedChangesNothingWhenItsAnswerComes", async () => {
+test("AnAnswerAfterStopIsIgnored", async () => {
   let answer = (_: ReturnType<typeof table>) => {};
   server.comparisonEvents = [vertices, new Promise<ReturnType<typeof table>>((resolve) => (answer = resolve))];
   void comparisons.compare(fileOf("b.obj"));
@@ -110,7 +110,7 @@ test("WhatIsStoppedChangesNothingWhenItsAnswerComes", async () => {
   expect(comparisons.result.value).toBeUndefined();
 });
 
-test("ANewerFileWinsOverOneThatIsStillRead", async () => {
+test("ANewerFileReplacesOneThatIsStillRead", async () => {
   let read = (_: ArrayBuffer) => {};
   void comparisons.compare({ ...fileOf("slow.obj"), arrayBuffer: () => new Promise((resolve) => (read = resolve)) });
   await comparisons.compare(fileOf("b.obj"));
@@ -120,7 +120,7 @@ test("ANewerFileWinsOverOneThatIsStillRead", async () => {
   expect(comparisons.progress.value.kind).toBe("idle");
 });
 
-test("ClearForgetsFileAndResult", async () => {
+test("ClearRemovesFileAndResult", async () => {
   await comparisons.compare(fileOf("b.obj"));
   comparisons.clear();
   expect(comparisons.result.value).toBeUndefined();

@@ -78,7 +78,7 @@ beforeEach(() => {
   URL.revokeObjectURL = () => undefined;
 });
 
-test("AnExportIsRecordedFetchedAndForgotten", async () => {
+test("AnExportIsRecordedDownloadedAndDeleted", async () => {
   const exports = new Exports(api, "class");
   await exports.loadFormats();
   document.body.replaceChildren(exportPanel(exports, new Signal<Body[]>([])));
@@ -97,7 +97,7 @@ test("AnExportIsRecordedFetchedAndForgotten", async () => {
   }
 });
 
-test("ADownloadThatBreaksOffGoesOnWhereItWas", async () => {
+test("AnInterruptedDownloadResumes", async () => {
   breaks = 1;
   const exports = new Exports(api, "class", 0);
   await exports.start();
@@ -105,7 +105,7 @@ test("ADownloadThatBreaksOffGoesOnWhereItWas", async () => {
   expect(exports.progress.value).toMatchObject({ kind: "ready", size: 7 });
 });
 
-test("AFailureIsSaidInTheServersWords", async () => {
+test("AFailureShowsTheServersMessage", async () => {
   problem = "time_step: too long";
   const exports = new Exports(api, "class");
   document.body.replaceChildren(exportPanel(exports, new Signal<Body[]>([])));
@@ -113,7 +113,7 @@ test("AFailureIsSaidInTheServersWords", async () => {
   expect(document.querySelector("#export-progress [role=alert]")?.textContent).toBe("time_step: too long");
 });
 
-test("AnUploadGoesOnWhereItWasAndSaysHowScenesNameIt", async () => {
+test("AnUploadResumesAndShowsItsNameForScenes", async () => {
   const uploads = new Uploads(api);
   document.body.replaceChildren(uploadPanel(uploads));
   await uploads.loadFormats();

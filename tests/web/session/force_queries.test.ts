@@ -12,12 +12,12 @@ beforeEach(() => {
   forces = new ForceQueries(server.api, "thorax");
 });
 
-test("NothingIsAskedThatNobodyWantsToKnow", async () => {
+test("NoQueryWithoutARequest", async () => {
   await forces.query({ vertex: undefined, kind: undefined, bodies: ["sheet"] }, "1");
   expect(server.forceRequests).toEqual([]);
 });
 
-test("OneStateIsAskedForOnceHoweverOftenItIsWanted", async () => {
+test("EachStateIsQueriedOnce", async () => {
   const wanted = { vertex, kind: undefined, bodies: [] };
   await Promise.all([forces.query(wanted, "1"), forces.query(wanted, "1")]);
   await forces.query(wanted, "1");
@@ -30,7 +30,7 @@ test("OneStateIsAskedForOnceHoweverOftenItIsWanted", async () => {
   ]);
 });
 
-test("AKindComesForEveryVertexOfEachBody", async () => {
+test("MagnitudesCoverEveryVertexOfEachBody", async () => {
   await forces.query({ vertex: undefined, kind: "net", bodies: ["sheet", "ball"] }, "1");
   expect(server.forceRequests).toEqual([
     { body: "sheet", kind: "net" },
@@ -39,19 +39,19 @@ test("AKindComesForEveryVertexOfEachBody", async () => {
   expect([...forces.magnitudes.value.get("ball")!]).toEqual([0.5, 0.25]);
 });
 
-test("WhereTheServerDoesNotSayNothingIsShown", async () => {
+test("AFailedQueryShowsNoForces", async () => {
   await forces.query({ vertex, kind: "net", bodies: ["sheet"] }, "1");
   server.down = true;
   await forces.query({ vertex, kind: "net", bodies: ["sheet"] }, "2");
   expect([forces.onVertex.value, forces.magnitudes.value.size]).toEqual([[], 0]);
 });
 
-test("SmallForcesAreToldInThousandths", () => {
+test("SmallForcesAreInMillinewtons", () => {
   expect(forceUnit([{ kind: "net", force: [0, 0.6, 0.79] }])).toEqual({ name: "mN", factor: 1000 });
   expect(forceUnit([{ kind: "net", force: [0, 0.6, 0.81] }])).toEqual({ name: "N", factor: 1 });
 });
 
-test("WhatWasToldOfAMomentIsShownToWhoLooksBackAtIt", async () => {
+test("StoredForcesAreShownDuringReplay", async () => {
   const wanted = { vertex: undefined, kind: "net", bodies: ["sheet"] };
   const tell = async (time: number, size: number) => {
     server.forceResponse = { time, sizes: [size, size] };
@@ -75,7 +75,7 @@ test("WhatWasToldOfAMomentIsShownToWhoLooksBackAtIt", async () => {
   expect(shown()).toBe(1);
 });
 
-test("AnotherRunOfTheSessionHasForcesOfItsOwn", async () => {
+test("AResetClearsTheStoredForces", async () => {
   const wanted = { vertex, kind: undefined, bodies: [] };
   server.forceResponse = { time: 5, sizes: [] };
   await forces.query(wanted, "1");

@@ -48,23 +48,23 @@ async function enterAs(name: string) {
   await participation.enter(name);
 }
 
-test("EverybodyMayChangeWhatNobodyControls", () => {
+test("WithoutAControllerEveryoneMayChange", () => {
   const roles = rolesOf(people(""), "");
   expect([roles.mayChange, controlLabel(roles), refusalReason(roles)]).toEqual([true, "Everyone controls", ""]);
 });
 
-test("OnlyWhoControlsMayChange", () => {
+test("OnlyTheControllerMayChange", () => {
   expect(rolesOf(people("Anna"), "Anna")).toMatchObject({ hasControl: true, mayChange: true, mayHandOver: true });
   expect(rolesOf(people("Anna"), "Ben")).toMatchObject({ hasControl: false, mayChange: false, mayHandOver: false });
   expect(rolesOf(people("Ben"), "Anna")).toMatchObject({ mayChange: false, mayHandOver: true });
   expect(refusalReason(rolesOf(people("Anna"), ""))).toContain("Anna controls");
 });
 
-test("ANameThatTheServerDoesNotListIsNobodys", () => {
+test("AnUnlistedNameIsASpectator", () => {
   expect(rolesOf(people("Zoe"), "Zoe")).toMatchObject({ name: "", hasControl: false });
 });
 
-test("AnOlderWordAboutControlNeverReplacesANewerOne", () => {
+test("OlderControlNeverReplacesNewer", () => {
   receive("Ben", 5n);
   receive("Anna", 4n);
   expect(controller.session.value?.control?.controller).toBe("Ben");
@@ -72,7 +72,7 @@ test("AnOlderWordAboutControlNeverReplacesANewerOne", () => {
   expect(controller.session.value?.control?.controller).toBe("Anna");
 });
 
-test("NothingIsShownAnewWhereNothingChanged", () => {
+test("UnchangedRolesAreNotSetAgain", () => {
   let shown = 0;
   participation.roles.subscribe(() => shown++);
   receive("Anna");
@@ -82,7 +82,7 @@ test("NothingIsShownAnewWhereNothingChanged", () => {
   expect(shown).toBe(3);
 });
 
-test("CallsAreSignedAndAnsweredTokensAreKept", async () => {
+test("CallsCarryTokensAndResponsesStoreThem", async () => {
   const asked: string[] = [];
   const transport = createRouterTransport(
     ({ service }) => {
@@ -102,12 +102,12 @@ test("CallsAreSignedAndAnsweredTokensAreKept", async () => {
   expect(asked).toEqual(["Anna", "secret", ""]);
 });
 
-test("TokensOfTheLastSessionsAreKeptAndNoMore", () => {
+test("OnlyRecentTokensAreKept", () => {
   for (let i = 0; i <= 200; i++) identity.storeToken(`s-${i}`, `t-${i}`);
   expect([identity.tokenOf("s-0"), identity.tokenOf("s-1"), identity.tokenOf("s-200")]).toEqual(["", "t-1", "t-200"]);
 });
 
-test("TheCameraIsShownByWhoControlsAndFollowedByWhoWantsTo", async () => {
+test("TheControllerSendsItsCameraAndOthersMayFollow", async () => {
   const shown: CameraPose[] = [];
   const moved: CameraPose[] = [];
   server.api.control.showCamera = ((request: { camera: CameraPose }) => {

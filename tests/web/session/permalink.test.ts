@@ -10,13 +10,13 @@ const parameters = create(ParametersSchema, { breathForce: 1 / 3, applyLinks: fa
 const session = create(SessionSchema, { scene: "thorax", tick: 2500n, parameters });
 const recipe = () => recipeOf(new URL(permalinkOf(session, "abc"), "http://here/"))!;
 
-test("ALinkBringsBackSceneHashTickAndEveryBitOfTheParameters", () => {
+test("ALinkRestoresSceneHashTickAndExactParameters", () => {
   expect(recipe()).toEqual({ scene: "thorax", hash: "abc", tick: 2500, parameters });
   expect(recipeOf(new URL("http://here/?session=thorax"))).toBeUndefined();
   expect(() => recipeOf(new URL("http://here/?scene=thorax&tick=-1"))).toThrow("tick");
 });
 
-test("ItIsRunAgainStepForStepToItsTick", async () => {
+test("ARecipeIsRunToItsTick", async () => {
   const server = new FakeServer();
   const heard: number[] = [];
   expect(await rerun(server.api, recipe(), (part) => heard.push(part))).toBe("thorax-2");
@@ -29,7 +29,7 @@ test("ItIsRunAgainStepForStepToItsTick", async () => {
   expect(heard).toEqual([0.4, 0.8, 1]);
 });
 
-test("AnotherSceneOfThatNameIsRefusedAndLeavesNoSession", async () => {
+test("ASceneWithAnotherHashIsRefusedAndItsSessionDeleted", async () => {
   const server = new FakeServer();
   server.sceneHash = "def";
   await expect(rerun(server.api, recipe(), () => undefined)).rejects.toThrow("its hash is def");
@@ -37,7 +37,7 @@ test("AnotherSceneOfThatNameIsRefusedAndLeavesNoSession", async () => {
   expect(server.stepRequests).toEqual([]);
 });
 
-test("WhatIsSetOtherwiseBesideIsPutInWords", () => {
+test("ParameterDifferencesAreFormatted", () => {
   const other = create(ParametersSchema, { breathForce: 2, applyLinks: true, integrator: 4 });
   expect(differences(parameters, other)).toBe("Breath force 2 instead of 0.3333, Apply rigid links on instead of off");
   expect(differences(parameters, parameters)).toBe("");

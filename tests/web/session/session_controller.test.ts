@@ -19,13 +19,13 @@ beforeEach(() => {
   controller = new SessionController(server.api, "thorax", clock);
 });
 
-test("AnOlderStateNeverReplacesANewerOne", () => {
+test("OlderStatesNeverReplaceNewer", () => {
   controller.receive(at(5n));
   controller.receive(at(4n));
   expect(controller.session.value?.revision).toBe(5n);
 });
 
-test("AFreshConnectionMayStartOver", () => {
+test("AFreshConnectionAcceptsAnyRevision", () => {
   controller.receive(at(5n));
   controller.receive(at(1n), true);
   expect(controller.session.value?.revision).toBe(1n);
@@ -38,14 +38,14 @@ test("OnlyTheChangedParameterIsSent", async () => {
   expect(server.updates[0]).not.toHaveProperty("ribMotion");
 });
 
-test("ARefusalIsShownInTheServersWords", async () => {
+test("ARefusalShowsTheServersMessage", async () => {
   server.api.sessions.playSession = () =>
     Promise.reject(new ConnectError("speed: 1000 is above 100", Code.InvalidArgument));
   await controller.play(1000);
   expect(controller.notice.value).toBe("speed: 1000 is above 100");
 });
 
-test("AChangeIsTakenBackToWhatHeldBefore", async () => {
+test("UndoRestoresThePreviousValue", async () => {
   controller.receive(create(SessionSchema, { revision: 1n, parameters: create(ParametersSchema, { breathForce: 1 }) }));
   controller.set("breathForce", 1.5);
   await clock.advance(100);
@@ -55,14 +55,14 @@ test("AChangeIsTakenBackToWhatHeldBefore", async () => {
   expect(controller.changes.state.value).toEqual({ undo: false, redo: true });
 });
 
-test("AForkOfAPlayingSessionPlaysAndTheSessionGoesOn", async () => {
+test("AForkOfAPlayingSessionPlaysAndTheOriginalContinues", async () => {
   controller.receive(create(SessionSchema, { state: SessionState.PLAYING }));
   expect(await controller.fork()).toBe("thorax-2");
   expect(server.played).toEqual([["thorax-2", ""]]);
   expect(server.paused).toEqual([]);
 });
 
-test("AForkToBeShownBesideStartsAtOneInstantWithItsOriginalAndTheyPlayInStep", async () => {
+test("AForkForComparisonStartsAtTheSameTimeAndPlaysInStep", async () => {
   controller.receive(create(SessionSchema, { state: SessionState.PLAYING, speed: 0.5 }));
   expect(await controller.forkForComparison("deep")).toBe("thorax-2");
   await settle();
@@ -82,7 +82,7 @@ test("AForkOfAPausedSessionLeavesBothPaused", async () => {
   expect([server.paused, server.played]).toEqual([[], []]);
 });
 
-test("TwoThatArePausedStandAtOneInstant", async () => {
+test("PausedCompanionsAreAtTheSameTime", async () => {
   const parameters = create(ParametersSchema, { timeStep: 0.001 });
   const standing = (time: number) => create(SessionSchema, { revision: 2n, time, parameters });
   server.pausedSessions.set("thorax", standing(1)).set("other", standing(1.012));

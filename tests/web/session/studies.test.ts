@@ -4,7 +4,7 @@ import { Studies } from "../../../web/src/session/studies";
 import { FakeClock, settle } from "../fakes/fake_clock";
 import { FakeServer } from "../fakes/fake_server";
 
-test("AStudyIsFollowedToItsEnd", async () => {
+test("AStudyIsWatchedToItsEnd", async () => {
   const server = new FakeServer();
   const studies = new Studies(server.api, new FakeClock());
   const seen: number[] = [];
@@ -18,7 +18,7 @@ test("AStudyIsFollowedToItsEnd", async () => {
   expect(studies.all.value).toEqual([]);
 });
 
-test("ARefusalIsShownInTheServersWords", async () => {
+test("ARefusalShowsTheServersMessage", async () => {
   const server = new FakeServer();
   const studies = new Studies(server.api, new FakeClock());
   await studies.start("cost", "", undefined);

@@ -1,7 +1,7 @@
 import { expect, test } from "vitest";
 import { UndoHistory } from "../../../web/src/state/undo_history";
 
-test("ADragIsOneChangeAndIsTakenBackAsOne", () => {
+test("ADragIsUndoneAsOneChange", () => {
   const changes = new UndoHistory();
   changes.record({ breathForce: 1 }, { breathForce: 1.1 }, 0);
   changes.record({ breathForce: 1.1 }, { breathForce: 1.5 }, 200);
@@ -14,7 +14,7 @@ test("ADragIsOneChangeAndIsTakenBackAsOne", () => {
   expect(changes.redo()).toEqual({ breathForce: 3 });
 });
 
-test("AChangeAfterUndoEndsWhatCouldBeDoneAgain", () => {
+test("AChangeAfterUndoClearsRedo", () => {
   const changes = new UndoHistory();
   changes.record({ breathForce: 1 }, { breathForce: 2 }, 0);
   changes.undo();

@@ -1,12 +1,12 @@
 import { expect, test } from "vitest";
 import { Backoff } from "../../../web/src/timing/backoff";
 
-test("WaitsDoubleUpToTheLongest", () => {
+test("DelaysDoubleUpToTheMaximum", () => {
   const backoff = new Backoff(500, 3000, () => 0);
   expect([1, 2, 3, 4, 5].map(() => backoff.next())).toEqual([500, 1000, 2000, 3000, 3000]);
 });
 
-test("JitterTakesAtMostHalf", () => {
+test("JitterReducesDelaysByAtMostHalf", () => {
   expect(new Backoff(500, 3000, () => 0.999999).next()).toBeCloseTo(250, 2);
 });
 

@@ -21,14 +21,14 @@ function sender(answer: () => Promise<void> = async () => {}) {
   return { sent, clock, queue, settled };
 }
 
-test("TheFirstChangeGoesAtOnce", async () => {
+test("TheFirstChangeIsSentImmediately", async () => {
   const { sent, queue } = sender();
   queue.push({ force: 1 });
   await settle();
   expect(sent).toEqual([{ force: 1 }]);
 });
 
-test("ADragBecomesFewCallsAndItsLastValueArrives", async () => {
+test("ADragCausesFewCallsAndItsLastValueIsSent", async () => {
   const { sent, clock, queue } = sender();
   // A drag of one second with 100 events per second.
   for (let i = 1; i <= 100; i++) {
@@ -40,7 +40,7 @@ test("ADragBecomesFewCallsAndItsLastValueArrives", async () => {
   expect(sent.at(-1)).toEqual({ force: 100 });
 });
 
-test("ChangesOfDifferentValuesTravelTogether", async () => {
+test("ChangesOfDifferentValuesAreSentTogether", async () => {
   const { sent, clock, queue } = sender();
   queue.push({ force: 1 });
   queue.push({ force: 2 });
@@ -61,7 +61,7 @@ test("OneCallAtATime", async () => {
   expect(sent).toEqual([{ force: 1 }, { force: 2 }]);
 });
 
-test("FlushSendsWhatWaitsBesideWhatIsUnderway", async () => {
+test("FlushSendsQueuedChangesDuringACall", async () => {
   const { sent, clock, queue } = sender(() => new Promise(() => {}));
   queue.push({ force: 1 });
   queue.push({ force: 2 });
@@ -71,7 +71,7 @@ test("FlushSendsWhatWaitsBesideWhatIsUnderway", async () => {
   expect(sent).toEqual([{ force: 1 }, { force: 2 }]);
 });
 
-test("AValueIsPendingUntilItIsAnswered", async () => {
+test("AValueIsPendingUntilItsCallEnds", async () => {
   const { clock, queue } = sender();
   queue.push({ force: 1 });
   expect([queue.pending("force"), queue.pending("length")]).toEqual([true, false]);
@@ -79,7 +79,7 @@ test("AValueIsPendingUntilItIsAnswered", async () => {
   expect(queue.pending("force")).toBe(false);
 });
 
-test("ItIsToldWhenNothingIsPendingAnyMore", async () => {
+test("OnSettledIsCalledAfterTheCall", async () => {
   const { clock, queue, settled } = sender();
   queue.push({ force: 1 });
   await settle();

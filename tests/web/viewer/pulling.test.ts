@@ -20,7 +20,7 @@ const pointAt = (x: number, y: number, z: number) => {
 };
 
 describe("picking", () => {
-  test("FindsTheNearestCornerOfTheTriangleThatIsSeen", () => {
+  test("FindsTheNearestCornerOfTheFrontTriangle", () => {
     const picked = pickVertex(pointAt(0.3, -0.4, 1), camera, [triangle(0), triangle(1)]);
     expect(picked).toMatchObject({ body: 1, vertex: 1 });
     expect(picked!.position.toArray()).toEqual([0.5, -0.5, 1]);
@@ -33,11 +33,11 @@ describe("picking", () => {
     });
   });
 
-  test("FindsNothingFarOff", () => {
+  test("FindsNothingFarAway", () => {
     expect(pickVertex(pointAt(0.9, 0.9, 0), camera, [triangle(0)])).toBeUndefined();
   });
 
-  test("ADragMovesAcrossTheLineOfSight", () => {
+  test("ADragMovesParallelToTheScreen", () => {
     const to = dragPoint(pointAt(0.2, 0.3, 1), camera, new THREE.Vector3(-0.5, 0.1, 1));
     expect(to.distanceTo(new THREE.Vector3(0.2, 0.3, 1))).toBeLessThan(1e-9);
   });
@@ -59,7 +59,7 @@ test("OnlyTheNewestPullOnAVertexIsSent", async () => {
   ]);
 });
 
-test("PullsAreCountedAndLetGo", async () => {
+test("PullsAreCounted", async () => {
   const controller = new SessionController(new FakeServer().api, "thorax", new FakeClock());
   const row = pullRow(controller);
   expect(row.hidden).toBe(true);

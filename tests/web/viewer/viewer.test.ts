@@ -30,12 +30,12 @@ test("AVertexWithoutATriangleHasNoNormalButIsFinite", () => {
   expect([...normals]).toEqual([0, 0, 0]);
 });
 
-test("EachEdgeOfATetrahedronComesOnce", () => {
+test("EdgesOfATetrahedronAreUnique", () => {
   const edges = edgesOf(new Uint32Array([0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2]), 4);
   expect([...edges]).toEqual([0, 1, 0, 2, 0, 3, 1, 2, 1, 3, 2, 3]);
 });
 
-test("TendonFadesFromItsLinksOutward", () => {
+test("TendonWeightsDecreaseWithDistance", () => {
   const chain = new Uint32Array([0, 1, 1, 2, 2, 3, 3, 4]);
   const weights = tendonWeights(new Uint32Array([0, 1]), chain, 5, 2);
   expect(weights[0]).toBeGreaterThan(weights[2]);
@@ -63,7 +63,7 @@ describe("views", () => {
     expect(directionLetter(new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, 1))).toBe("S");
   });
 
-  test("EachShowsTheWholeInTheFreePartOfThePicture", () => {
+  test("EachFitsTheSceneIntoTheFreeArea", () => {
     for (const view of ["home", "front", "left", "top"] as const) {
       lookFrom(view, { width: 0.6, height: 0.8 });
       for (const corner of corners) {
@@ -74,7 +74,7 @@ describe("views", () => {
     }
   });
 
-  test("AFlatSceneOpensFaceOn", () => {
+  test("APlanarSceneOpensPerpendicularly", () => {
     const flat = (size: [number, number, number]) =>
       openingView(new THREE.Box3(new THREE.Vector3(), new THREE.Vector3(...size)));
     expect([flat([1, 1, 0]), flat([1, 0, 1]), flat([0, 1, 1]), flat([1, 1, 1])]).toEqual([
@@ -89,7 +89,7 @@ describe("views", () => {
 describe("a cut", () => {
   const box = new THREE.Box3(new THREE.Vector3(-1, -2, 0), new THREE.Vector3(1, 2, 4));
 
-  test("LiesWhereItIsSaidToAndTakesAwayOneSide", () => {
+  test("ClipsOneSideOfItsPlane", () => {
     const cut = { kind: "coronal" as const, fraction: 0.25, flipped: false };
     const plane = clippingPlane(cut, box)!;
     expect(planeCoordinate(cut, box)).toBe(-1);
@@ -100,7 +100,7 @@ describe("a cut", () => {
     expect(clippingPlane({ ...cut, kind: "none" }, box)).toBeUndefined();
   });
 
-  test("HidesWhatItTakesAwayFromTheHand", () => {
+  test("PreventsPickingOfClippedParts", () => {
     const camera = new THREE.PerspectiveCamera(26, 1);
     camera.position.set(0, 0, 5);
     camera.updateMatrixWorld();
@@ -113,7 +113,7 @@ describe("a cut", () => {
   });
 });
 
-test("TheCubeShowsTheSideThatIsSeen", () => {
+test("TheCubeShowsTheVisibleSide", () => {
   const cube = new OrientationCube(() => undefined);
   const axes = [new THREE.Vector3(1, 0, 0), new THREE.Vector3(0, 0, 1), new THREE.Vector3(0, -1, 0)] as const;
   cube.show({ left: "R", right: "L", top: "S", bottom: "I", pixelsPerMetre: 1, axes: [...axes] });
@@ -129,20 +129,20 @@ test("TheCubeShowsTheSideThatIsSeen", () => {
   }
 });
 
-describe("sharpness", () => {
+describe("the adaptive resolution", () => {
   /** Records frames every `interval` ms for `time` ms. */
   const run = (resolution: AdaptiveResolution, start: number, interval: number, time: number, drawing = true) => {
     for (let now = start; now < start + time; now += interval) resolution.recordFrame(now, drawing);
     return start + time;
   };
 
-  test("StaysFullOnAQuickMachine", () => {
+  test("IsFullOnAFastMachine", () => {
     const sharpness = new AdaptiveResolution(2);
     run(sharpness, 0, 16, 10_000);
     expect(sharpness.ratio).toBe(2);
   });
 
-  test("GivesWayInMotionOnASlowMachineAndComesBackAtRest", () => {
+  test("IsReducedDuringMotionOnASlowMachine", () => {
     const resolution = new AdaptiveResolution(2);
     const now = run(resolution, 0, 200, 10_000);
     expect(resolution.ratio).toBeLessThan(1);

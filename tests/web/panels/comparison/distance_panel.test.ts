@@ -38,11 +38,11 @@ describe("the panel", () => {
     }
   });
 
-  test("OffersTheBodiesThatHaveASurface", () => {
+  test("OffersBodiesWithASurface", () => {
     expect([...byId<HTMLSelectElement>("compare-body").options].map(({ value }) => value)).toEqual(["ball"]);
   });
 
-  test("TakesUnitAndTime", () => {
+  test("SetsUnitAndTime", () => {
     const change = (id: string, value: string) => {
       const input = byId<HTMLInputElement>(id);
       input.value = value;
@@ -63,7 +63,7 @@ describe("the card", () => {
     document.body.replaceChildren(card.element);
   });
 
-  test("IsHiddenUntilThereIsSomethingToSay", async () => {
+  test("IsHiddenWithoutAComparison", async () => {
     expect(card.element.hidden).toBe(true);
     await comparisons.compare(new File(["v 0 0 0"], "b.obj"));
     expect(card.element.hidden).toBe(false);
@@ -71,7 +71,7 @@ describe("the card", () => {
     expect(card.element.hidden).toBe(true);
   });
 
-  test("SaysWhenItWasAndThatTheSessionHasMovedOn", async () => {
+  test("ShowsTheComparedTimeAndTheCurrentOne", async () => {
     await comparisons.compare(new File(["v 0 0 0"], "b.obj"));
     expect(byId("comparison-when").textContent).toBe("ball at 1.200 s, tick 1200");
     card.show(1.2);
@@ -91,7 +91,7 @@ describe("the card", () => {
     expect([card.element.hidden, comparisons.progress.value.kind]).toEqual([true, "idle"]);
   });
 
-  test("TellsAFailureAsAnAlertThatCanBeDismissed", async () => {
+  test("ShowsAFailureAsAnAlertThatCanBeDismissed", async () => {
     server.comparisonEvents = [];
     await comparisons.compare(new File(["v 0 0 0"], "b.obj"));
     expect(card.element.querySelector('[role="alert"]')!.textContent).toContain("without a result");
@@ -104,7 +104,7 @@ describe("dropping", () => {
   const drag = (type: string, transfer: object) =>
     Object.assign(new Event(type, { bubbles: true, cancelable: true }), { dataTransfer: transfer });
 
-  test("TakesAFileAndSaysSoBefore", () => {
+  test("AcceptsAFileAndShowsAHint", () => {
     const page = make("div");
     const taken: File[] = [];
     const zone = dropZone(page, (file) => taken.push(file));
@@ -117,7 +117,7 @@ describe("dropping", () => {
     expect(taken).toEqual([file]);
   });
 
-  test("LeavesDraggedTextAlone", () => {
+  test("IgnoresDraggedText", () => {
     const page = make("div");
     const zone = dropZone(page, () => expect.unreachable());
     const over = drag("dragover", { types: ["text/plain"], files: [] });

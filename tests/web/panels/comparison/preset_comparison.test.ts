@@ -32,14 +32,14 @@ beforeEach(() => {
   opened = [];
 });
 
-test("ACopyThatBreathesTheChosenWayOpensBesideThisSession", async () => {
+test("ACopyWithTheChosenPresetOpensBesideThisSession", async () => {
   choose("paralysis-right");
   await settle();
   expect(server.updates).toEqual([{ preset: "paralysis-right" }]);
   expect(opened).toEqual(["?session=thorax&beside=thorax-2"]);
 });
 
-test("WithTwoPicturesTheSecondOneChangesAndNothingOpens", async () => {
+test("WithTwoViewsTheSecondOneChanges", async () => {
   controller.companion = new SessionController(server.api, "other", new FakeClock());
   choose("paralysis-right");
   await settle();
@@ -47,7 +47,7 @@ test("WithTwoPicturesTheSecondOneChangesAndNothingOpens", async () => {
   expect(opened).toEqual([]);
 });
 
-test("TheListTellsHowTheSecondOneBreathes", () => {
+test("TheListShowsThePresetOfTheSecondSession", () => {
   controller.companion = new SessionController(server.api, "other", new FakeClock());
   const list = listOf(presetComparison(controller, presets, () => undefined));
   expect(list.value).toBe("");
@@ -56,11 +56,11 @@ test("TheListTellsHowTheSecondOneBreathes", () => {
   expect(list.value).toBe("paralysis-right");
 });
 
-test("ASceneWithoutPresetsHasNothingToCompareWith", () => {
+test("ASceneWithoutPresetsHidesTheList", () => {
   expect(presetComparison(controller, new Signal(presets.value.slice(0, 0)), () => undefined).hidden).toBe(true);
 });
 
-test("WhereASceneMeasuresItsDomesTheirHeightCountsAndNoVertex", () => {
+test("DomeHeightsComeFromMeasuresFirst", () => {
   const frame = create(FrameSchema, {
     measures: [
       { name: "right dome", value: -0.0243, unit: "m" },
@@ -71,7 +71,7 @@ test("WhereASceneMeasuresItsDomesTheirHeightCountsAndNoVertex", () => {
   expect(domeLabel(frame)).toBe("right dome 24.3 mm down");
 });
 
-test("WhereTheDomesAreIsPutInWords", () => {
+test("DomeHeightsAreFormatted", () => {
   const probe = (name: string, dz: number) => ({ name, dz });
   const frame = create(FrameSchema, {
     probes: [probe("right dome", 0.0021), probe("rib", 1), probe("left dome", -0.0143)],

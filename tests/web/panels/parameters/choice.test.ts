@@ -32,21 +32,21 @@ beforeEach(() => {
 });
 
 describe("a choice in the control panel", () => {
-  test("IsOneOfTheNamedValuesAndExplained", () => {
+  test("OffersTheNamedValuesWithHelp", () => {
     const values = Object.values(Integrator).filter((value) => typeof value === "number" && value !== 0);
     expect([...list().options].map(({ value }) => Number(value))).toEqual(values);
     expect(list().selectedOptions[0].textContent).toBe("Semi Implicit Euler");
     expect(list().title).toContain("How a step is taken");
   });
 
-  test("StandsWithTheTimeStepApartFromTheBreath", () => {
+  test("IsInTheSolverSection", () => {
     const fold = list().closest("details")!;
     expect(fold.querySelector("summary")!.textContent).toBe("Solver");
     expect(fold.querySelector("#parameter-timeStep")).not.toBeNull();
     expect(fold.querySelector("#parameter-breathForce")).toBeNull();
   });
 
-  test("IsSentAsTheChosenValueAlone", async () => {
+  test("SendsOnlyTheChosenValue", async () => {
     list().value = String(Integrator.SEMI_IMPLICIT_EULER);
     list().dispatchEvent(new Event("change"));
     await settle();
@@ -54,7 +54,7 @@ describe("a choice in the control panel", () => {
     expect(server.updates[0]).not.toHaveProperty("timeStep");
   });
 
-  test("ShowsWhatAnotherViewerChose", () => {
+  test("ShowsTheChoiceOfAnotherViewer", () => {
     list().append(make("option", { value: "99" }, "Another"));
     controller.receive(using(99));
     expect(list().value).toBe("99");
@@ -62,7 +62,7 @@ describe("a choice in the control panel", () => {
     expect(list().value).toBe(String(Integrator.SEMI_IMPLICIT_EULER));
   });
 
-  test("GoesBackToTheScenesValue", async () => {
+  test("ResetsToTheValueOfTheScene", async () => {
     server.api.scenes.describeScene = () =>
       Promise.resolve(create(DescribeSceneResponseSchema, { parameters: using(99).parameters }));
     panel.querySelector<HTMLButtonElement>('[title="Reset integrator"]')!.click();
@@ -70,7 +70,7 @@ describe("a choice in the control panel", () => {
     expect(server.updates).toMatchObject([{ integrator: 99 }]);
   });
 
-  test("ThatIsRefusedGoesBackToWhatHolds", async () => {
+  test("ShowsTheActualValueAfterARefusal", async () => {
     server.api.sessions.updateParameters = () => Promise.reject(new ConnectError("no", Code.InvalidArgument));
     list().append(make("option", { value: "99" }, "Another"));
     list().value = "99";

@@ -31,7 +31,7 @@ beforeEach(async () => {
   await settle();
 });
 
-test("ThereIsAButtonForEachOfTheScenesPresets", () => {
+test("EachPresetHasAButton", () => {
   expect(buttons().map((each) => each.textContent)).toEqual(["Quiet", "Deep"]);
   expect(buttons().map((each) => each.title)).toEqual(["Quiet breath", "Deep breath"]);
   expect(row.element.hidden).toBe(false);
@@ -43,7 +43,7 @@ test("AButtonSendsItsPresetByName", async () => {
   expect(server.updates).toEqual([{ preset: "deep" }]);
 });
 
-test("TheOneThatHoldsIsPressed", () => {
+test("TheActivePresetIsPressed", () => {
   expect(pressed()).toEqual(["Quiet"]);
   controller.receive(session(2n, { breathForce: 2, ribMotion: 3.3 }));
   expect(pressed()).toEqual(["Deep"]);
@@ -58,7 +58,7 @@ test("ASceneWithoutPresetsHasNoRow", async () => {
   expect(row.element.hidden).toBe(true);
 });
 
-test("ASceneThatTheServerDoesNotKnowHasNoneAndNothingToComplainAbout", async () => {
+test("AnUnknownSceneHasNoPresetsAndNoError", async () => {
   server.down = true;
   controller.receive(session(2n, {}, "of-my-own"));
   await settle();

@@ -3,14 +3,14 @@ import { expect, test } from "vitest";
 import { FrameSchema } from "../../../../web/src/gen/phrenic/v1/frames_pb";
 import { Measures, readingText } from "../../../../web/src/panels/readings/measures";
 
-test("ReadingsAreInTheUnitsThatPeopleUse", () => {
+test("ReadingsAreInTheUnitsOfTheInterface", () => {
   expect(readingText(0.00251349, "m^3")).toBe("2.513 l");
   expect(readingText(-0.0004, "m^3/s")).toBe("-0.4 l/s");
   expect(readingText(0.0123, "m")).toBe("12.3 mm");
   expect(readingText(-530, "Pa")).toBe("-530 Pa");
 });
 
-test("TheListFollowsTheFrameAndGoesWhereThereIsNothingToRead", () => {
+test("TheListFollowsTheFrameAndIsHiddenWithoutMeasures", () => {
   const panel = new Measures();
   const frame = (...readings: { name: string; value: number; unit: string }[]) =>
     create(FrameSchema, { measures: readings });

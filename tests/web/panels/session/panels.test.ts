@@ -46,13 +46,13 @@ describe("the control panel", () => {
     }
   });
 
-  test("ShowsWhatAnotherViewerSet", () => {
+  test("ShowsTheValueOfAnotherViewer", () => {
     controller.receive(session(2.5, 2n));
     expect(input("parameter-breathForce").value).toBe("2.5");
     expect(input("parameter-breathForce-entry").value).toBe("2.5");
   });
 
-  test("LeavesASliderAloneThatIsBeingDragged", () => {
+  test("DoesNotMoveASliderDuringADrag", () => {
     const slider = input("parameter-breathForce");
     slider.onpointerdown?.(new Event("pointerdown") as PointerEvent);
     slider.value = "7";
@@ -68,7 +68,7 @@ describe("the control panel", () => {
     expect(server.updates).toMatchObject([{ breathForce: 1.5 }]);
   });
 
-  test("RefusesANumberOutOfRangeInWordsAndSendsNothing", async () => {
+  test("RefusesANumberOutOfRangeWithAMessage", async () => {
     const entry = input("parameter-breathForce-entry");
     entry.value = "21";
     entry.onchange?.(new Event("change"));
@@ -79,7 +79,7 @@ describe("the control panel", () => {
   });
 });
 
-test("AParameterThatNothingAnswersToIsHidden", () => {
+test("AParameterWithoutEffectIsHidden", () => {
   const report = new Signal<CompileReport | undefined>(undefined);
   document.body.replaceChildren(...parameterSections(controller, report));
   const hidden = (id: string) => document.querySelector(`#parameter-${id}`)!.closest("[hidden]") !== null;
@@ -90,7 +90,7 @@ test("AParameterThatNothingAnswersToIsHidden", () => {
   expect(hidden("pumpHandle")).toBe(false);
 });
 
-test("ThePlayButtonSaysWhatItDoes", () => {
+test("ThePlayButtonIsLabelledByItsAction", () => {
   const play = playbackPanel(controller).querySelector("#play")!;
   expect(play.ariaLabel).toBe("Pause");
   controller.receive(session(1, 2n, SessionState.PAUSED));
@@ -99,11 +99,11 @@ test("ThePlayButtonSaysWhatItDoes", () => {
   expect((play as HTMLButtonElement).disabled).toBe(true);
 });
 
-test("HowWellConstraintsAreKeptIsPutInWords", () => {
+test("TheConstraintResidualIsFormatted", () => {
   expect([undefined, 3e-12, 4.2e-4].map(residualLabel)).toEqual(["", "kept", "0.42 mm off"]);
 });
 
-test("TheReadoutSpeaksOfConstraintsWhereThereAreAny", () => {
+test("TheReadoutShowsConstraintsIfThereAreAny", () => {
   const readout = new Readout();
   const shown = () => !readout.element.querySelector<HTMLElement>(".links")!.hidden;
   const rate = { framesPerSecond: 30, age: 4, delay: 0, errorBound: 0.1 };
@@ -114,7 +114,7 @@ test("TheReadoutSpeaksOfConstraintsWhereThereAreAny", () => {
   expect(shown()).toBe(true);
 });
 
-test("TheReadoutSaysHowFarTheBreathIsAndWhichWayLookedBackAtToo", () => {
+test("TheReadoutShowsPhaseAndDirectionOfTheBreathAlsoBackwards", () => {
   const readout = new Readout();
   const rate = { framesPerSecond: 30, age: 4, delay: 0, errorBound: 0.1 };
   const status = { session: undefined, rate, now: 0, link: { kind: "live" as const } };
@@ -128,7 +128,7 @@ test("TheReadoutSaysHowFarTheBreathIsAndWhichWayLookedBackAtToo", () => {
   expect(words).toEqual([...forwards, "out 97 %", "out 60 %"]);
 });
 
-test("TheLinkIsPutInWords", () => {
+test("TheConnectionStateIsFormatted", () => {
   const rate = { framesPerSecond: 30, age: 4.4, delay: 0, errorBound: 0.1 };
   const status = { session: session(1, 1n), frame: undefined, rate, now: 1000 };
   expect(connectionLabels({ ...status, connection: { kind: "live" } })).toMatchObject({

@@ -14,7 +14,7 @@ function watched() {
   return { frames, timeline, words, slider: timeline.element.querySelector("input")! };
 }
 
-test("TheSliderLooksBackAndSaysHowFar", () => {
+test("TheSliderReplaysAndShowsTheAge", () => {
   const { frames, words, slider } = watched();
   expect(words()).toBe("live");
   slider.value = "1";
@@ -24,7 +24,7 @@ test("TheSliderLooksBackAndSaysHowFar", () => {
   expect(slider.getAttribute("aria-valuetext")).toBe("1.00 s ago");
 });
 
-test("PictureByPictureItGoesBackAndForwardToThePresent", () => {
+test("SteppingGoesBackAndForwardToLive", () => {
   const { frames, timeline } = watched();
   timeline.stepFrame(1);
   expect(timeline.replaying).toBe(false);
@@ -34,7 +34,7 @@ test("PictureByPictureItGoesBackAndForwardToThePresent", () => {
   expect(timeline.replaying).toBe(false);
 });
 
-test("TheBrowserRemembersThatItIsForAProjector", () => {
+test("TheProjectorModeIsStored", () => {
   const kept = new Map<string, string>();
   const memory = {
     getItem: (key: string) => kept.get(key) ?? null,
