@@ -1,22 +1,18 @@
 import type { Browser } from "playwright-core";
 import { afterAll, beforeAll, expect, test } from "vitest";
-import { launchBrowser, ViewerPage } from "./browser";
-import { Server } from "./server";
+import { endAll, startAll, ViewerPage } from "./browser";
+import type { Server } from "./server";
 
 let server: Server;
 let browser: Browser;
 let viewer: ViewerPage;
 
 beforeAll(async () => {
-  browser = await launchBrowser();
-  server = await Server.start();
+  [browser, server] = await startAll();
   viewer = await ViewerPage.open(browser, server.url);
 });
 
-afterAll(async () => {
-  await browser?.close();
-  await server?.end();
-});
+afterAll(() => endAll(browser, server));
 
 test("ThePageHasNoAxeViolations", async () => {
   await viewer.page.click('summary:has-text("Scene report")');

@@ -3,7 +3,7 @@ import { existsSync, mkdirSync } from "node:fs";
 import { join } from "node:path";
 import { type Browser, chromium, type Page } from "playwright-core";
 import type { TestHook } from "../../web/src/app/test_hook";
-import { outFolder } from "./server";
+import { outFolder, Server } from "./server";
 
 declare global {
   interface Window {
@@ -36,6 +36,18 @@ export async function launchBrowser(): Promise<Browser> {
       "--enable-unsafe-swiftshader",
     ],
   });
+}
+
+/** Starts a browser and a server with a playing session of `scene`; "none" for no session. */
+export async function startAll(scene = "thorax"): Promise<[Browser, Server]> {
+  mkdirSync(outFolder, { recursive: true });
+  return [await launchBrowser(), await Server.start(scene)];
+}
+
+/** Closes what `startAll` started, also if it failed. */
+export async function endAll(browser: Browser | undefined, server: Server | undefined): Promise<void> {
+  await browser?.close();
+  await server?.end();
 }
 
 /** A page with the viewer, and the console errors and requests that it causes. */

@@ -1,26 +1,20 @@
-import { mkdirSync } from "node:fs";
 import { readFile } from "node:fs/promises";
 import { join } from "node:path";
 import type { Browser } from "playwright-core";
 import { afterAll, beforeAll, describe, expect, test } from "vitest";
-import { launchBrowser, ViewerPage } from "./browser";
+import { endAll, startAll, ViewerPage } from "./browser";
 import { canvasPicture, changedFraction } from "./pixels";
-import { outFolder, Server } from "./server";
+import { outFolder, type Server } from "./server";
 
 let server: Server;
 let browser: Browser;
 let viewer: ViewerPage;
 
 beforeAll(async () => {
-  browser = await launchBrowser();
-  server = await Server.start();
-  mkdirSync(outFolder, { recursive: true });
+  [browser, server] = await startAll();
 });
 
-afterAll(async () => {
-  await browser?.close();
-  await server?.end();
-});
+afterAll(() => endAll(browser, server));
 
 /**
  * Returns the current state of a session as a file of `phrenic export`, with its nodes raised by `up(x)` millimetres.

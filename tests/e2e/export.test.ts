@@ -1,29 +1,25 @@
 import { validateBytes } from "gltf-validator";
 import { createHash } from "node:crypto";
-import { mkdirSync } from "node:fs";
 import { readFile } from "node:fs/promises";
 import { join } from "node:path";
 import type { Browser } from "playwright-core";
 import { afterAll, beforeAll, expect, test } from "vitest";
-import { launchBrowser, ViewerPage } from "./browser";
-import { outFolder, Server } from "./server";
+import { endAll, startAll, ViewerPage } from "./browser";
+import { outFolder, type Server } from "./server";
 
 let server: Server;
 let browser: Browser;
 let viewer: ViewerPage;
 
 beforeAll(async () => {
-  browser = await launchBrowser();
-  server = await Server.start();
-  mkdirSync(outFolder, { recursive: true });
+  [browser, server] = await startAll();
   await server.phrenic("create", "cube-tensegrity", "--id", "cube");
   viewer = await ViewerPage.open(browser, `${server.url}?session=cube`);
 });
 
 afterAll(async () => {
   await viewer?.close();
-  await browser?.close();
-  await server?.end();
+  await endAll(browser, server);
 });
 
 test("AGltfMotionPassesTheKhronosValidator", async () => {

@@ -1,14 +1,13 @@
 import type { Browser } from "playwright-core";
 import { afterAll, afterEach, beforeAll, expect, test } from "vitest";
-import { launchBrowser, ViewerPage } from "./browser";
-import { Server } from "./server";
+import { endAll, startAll, ViewerPage } from "./browser";
+import type { Server } from "./server";
 
 let server: Server;
 let browser: Browser;
 
 beforeAll(async () => {
-  browser = await launchBrowser();
-  server = await Server.start();
+  [browser, server] = await startAll();
 });
 
 // Contexts and sessions that a test leaves open would slow down the next test.
@@ -18,10 +17,7 @@ afterEach(async () => {
   for (const { id } of sessions) if (id !== "thorax") await server.phrenic("delete", id);
 });
 
-afterAll(async () => {
-  await browser?.close();
-  await server?.end();
-});
+afterAll(() => endAll(browser, server));
 
 test("AParalysedHemidiaphragmBesideAHealthyOneTakesLessThanAMinute", async () => {
   const start = Date.now();

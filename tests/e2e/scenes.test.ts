@@ -1,20 +1,16 @@
 import type { Browser } from "playwright-core";
 import { afterAll, beforeAll, describe, expect, test } from "vitest";
-import { launchBrowser, ViewerPage } from "./browser";
-import { Server } from "./server";
+import { endAll, startAll, ViewerPage } from "./browser";
+import type { Server } from "./server";
 
 let server: Server;
 let browser: Browser;
 
 beforeAll(async () => {
-  browser = await launchBrowser();
-  server = await Server.start();
+  [browser, server] = await startAll();
 });
 
-afterAll(async () => {
-  await browser?.close();
-  await server?.end();
-});
+afterAll(() => endAll(browser, server));
 
 describe("a session made in the browser", () => {
   for (const [scene, body] of [

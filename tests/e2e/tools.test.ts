@@ -3,26 +3,22 @@ import { join } from "node:path";
 import { gzipSync } from "node:zlib";
 import type { Browser, Download } from "playwright-core";
 import { afterAll, beforeAll, describe, expect, test } from "vitest";
-import { launchBrowser, ViewerPage } from "./browser";
+import { endAll, startAll, ViewerPage } from "./browser";
 import { canvasPicture, changedFraction } from "./pixels";
-import { Server } from "./server";
+import type { Server } from "./server";
 
 let server: Server;
 let browser: Browser;
 let viewer: ViewerPage;
 
 beforeAll(async () => {
-  browser = await launchBrowser();
-  server = await Server.start("none");
+  [browser, server] = await startAll("none");
   await server.phrenic("create", "pressure-lungs", "--id", "lungs");
   await server.phrenic("step", "lungs", "600");
   viewer = await ViewerPage.open(browser, `${server.url}?session=lungs`, { width: 1200, height: 720 });
 });
 
-afterAll(async () => {
-  await browser?.close();
-  await server?.end();
-});
+afterAll(() => endAll(browser, server));
 
 async function textOf(download: Download): Promise<string> {
   return readFile(await download.path(), "utf8");

@@ -1,23 +1,19 @@
 import type { Browser } from "playwright-core";
 import { afterAll, beforeAll, beforeEach, describe, expect, test } from "vitest";
-import { launchBrowser, ViewerPage } from "./browser";
+import { endAll, startAll, ViewerPage } from "./browser";
 import { canvasPicture, changedFraction } from "./pixels";
-import { Server } from "./server";
+import type { Server } from "./server";
 
 let server: Server;
 let browser: Browser;
 let viewer: ViewerPage;
 
 beforeAll(async () => {
-  browser = await launchBrowser();
-  server = await Server.start();
+  [browser, server] = await startAll();
   viewer = await ViewerPage.open(browser, server.url);
 });
 
-afterAll(async () => {
-  await browser?.close();
-  await server?.end();
-});
+afterAll(() => endAll(browser, server));
 
 const play = () => viewer.page.locator('#play[aria-label="Play"]');
 const pause = () => viewer.page.locator('#play[aria-label="Pause"]');

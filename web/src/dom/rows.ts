@@ -21,3 +21,15 @@ export function switchRow(label: string, help: string, onchange: (on: boolean) =
   const row = make("label", { className: "switch-row", title: help }, make("span", {}, label), input);
   return { row, input };
 }
+
+/** Returns a row with a label and the control that has this id. */
+export function labelledRow(id: string, label: string, control: HTMLElement): HTMLDivElement {
+  return make("div", { className: "labelled-row" }, make("label", { htmlFor: id }, label), control);
+}
+
+/** Returns a paragraph that screen readers announce as an error. */
+export function alertMessage(message: string): HTMLParagraphElement {
+  const element = make("p", { className: "fault" }, message);
+  element.setAttribute("role", "alert");
+  return element;
+}

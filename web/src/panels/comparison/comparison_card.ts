@@ -1,6 +1,6 @@
 import { ColorScale, niceTop } from "../../appearance/color_scale";
 import { make } from "../../dom/elements";
-import { switchRow } from "../../dom/rows";
+import { alertMessage, switchRow } from "../../dom/rows";
 import type { Comparison, ComparisonProgress, Comparisons } from "../../session/comparisons";
 import { Legend } from "../view/legend";
 import { distanceTable } from "./distance_table";
@@ -48,8 +48,7 @@ export class ComparisonCard {
   }
 
   private showFailure(failure: string): void {
-    const words = make("p", { className: "fault" }, failure);
-    words.setAttribute("role", "alert");
+    const words = alertMessage(failure);
     const dismiss = make("button", { type: "button", onclick: () => this.comparisons.stop() }, "Dismiss");
     this.progressElement.replaceChildren(words, make("div", { className: "row" }, dismiss));
   }

@@ -1,5 +1,5 @@
 import { make } from "../../dom/elements";
-import { section } from "../../dom/rows";
+import { labelledRow, section } from "../../dom/rows";
 import type { Body } from "../../geometry/bodies";
 import type { Comparisons } from "../../session/comparisons";
 import type { Signal } from "../../state/signal";
@@ -41,23 +41,19 @@ function bodyRow(comparisons: Comparisons, bodies: Signal<Body[]>): HTMLElement 
     list.replaceChildren(...solid.map(({ name }) => make("option", { value: name }, name)));
   });
   comparisons.choices.subscribe(({ body }) => (list.value = body));
-  return row("compare-body", "Body", list);
+  return labelledRow("compare-body", "Body", list);
 }
 
 function unitRow(comparisons: Comparisons): HTMLElement {
   const list = make("select", { id: "compare-unit" });
   list.append(...units.map(([label, millimetres]) => make("option", { value: String(millimetres) }, label)));
   list.onchange = () => comparisons.choose({ unitMm: Number(list.value) });
-  return row("compare-unit", "Unit of the file", list);
+  return labelledRow("compare-unit", "Unit of the file", list);
 }
 
 function timeRow(comparisons: Comparisons): HTMLElement {
   const help = "For a motion file: time of the compared state in seconds; empty for the session's time";
   const entry = make("input", { type: "number", step: "any", id: "compare-time", placeholder: "current", title: help });
   entry.onchange = () => comparisons.choose({ time: entry.value === "" ? undefined : entry.valueAsNumber });
-  return row("compare-time", "Time in the motion [s]", entry);
-}
-
-function row(id: string, label: string, control: HTMLElement): HTMLElement {
-  return make("div", { className: "compare-row" }, make("label", { htmlFor: id }, label), control);
+  return labelledRow("compare-time", "Time in the motion [s]", entry);
 }

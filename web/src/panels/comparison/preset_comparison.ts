@@ -1,4 +1,5 @@
 import { make } from "../../dom/elements";
+import { labelledRow } from "../../dom/rows";
 import type { Preset } from "../../gen/phrenic/v1/scene_pb";
 import { activePreset, presetLabel } from "../../parameters/presets";
 import type { SessionController } from "../../session/session_controller";
@@ -14,8 +15,8 @@ export function presetComparison(
   open: (query: string) => void,
 ): HTMLElement {
   const list = make("select", { id: "compare-with", title: "Opens a second view with this preset" });
-  const label = make("label", { htmlFor: "compare-with" }, "Compare with");
-  const row = make("div", { className: "compare-row", id: "compare-with-row" }, label, list);
+  const row = labelledRow("compare-with", "Compare with", list);
+  row.id = "compare-with-row";
   const { companion, sessionId } = controller;
   list.onchange = async () => {
     if (companion !== undefined) return companion.usePreset(list.value);

@@ -1,5 +1,5 @@
 import { make } from "../../dom/elements";
-import { section } from "../../dom/rows";
+import { alertMessage, labelledRow, section } from "../../dom/rows";
 import { ExportValues } from "../../gen/phrenic/v1/export_pb";
 import type { Body } from "../../geometry/bodies";
 import type { ExportProgress, Exports } from "../../session/exports";
@@ -46,7 +46,7 @@ function formatRow(exports: Exports): HTMLElement {
     list.value = exports.choices.value.format;
     exports.choose({});
   });
-  return row("export-format", "Format", list);
+  return labelledRow("export-format", "Format", list);
 }
 
 function bodyRow(exports: Exports, bodies: Signal<Body[]>): HTMLElement {
@@ -62,20 +62,20 @@ function bodyRow(exports: Exports, bodies: Signal<Body[]>): HTMLElement {
     );
     exports.choose({ bodies: [] });
   });
-  return row("export-body", "Bodies", list);
+  return labelledRow("export-body", "Bodies", list);
 }
 
 function valuesRow(exports: Exports): HTMLElement {
   const list = make("select", { id: "export-values" });
   list.append(...valueNames.map(([value, label]) => make("option", { value: String(value) }, label)));
   list.onchange = () => exports.choose({ values: Number(list.value) });
-  return row("export-values", "Values", list);
+  return labelledRow("export-values", "Values", list);
 }
 
 function numberRow(id: string, label: string, placeholder: string, choose: (value: number | undefined) => void) {
   const entry = make("input", { type: "number", step: "any", min: "0", id, placeholder });
   entry.onchange = () => choose(entry.value === "" ? undefined : entry.valueAsNumber);
-  return row(id, label, entry);
+  return labelledRow(id, label, entry);
 }
 
 /** Shows the progress and a link to the finished file. */
@@ -91,11 +91,7 @@ function progress(exports: Exports, start: HTMLElement): HTMLElement {
 
 function progressElements(work: ExportProgress, stop: () => void): HTMLElement[] {
   if (work.kind === "idle") return [];
-  if (work.kind === "failed") {
-    const words = make("p", { className: "fault" }, work.message);
-    words.setAttribute("role", "alert");
-    return [words];
-  }
+  if (work.kind === "failed") return [alertMessage(work.message)];
   if (work.kind === "ready") {
     const size = (work.size / 1e6).toFixed(1);
     return [make("a", { href: work.url, download: work.file, id: "export-link" }, `Save ${work.file} (${size} MB)`)];
@@ -106,8 +102,4 @@ function progressElements(work: ExportProgress, stop: () => void): HTMLElement[]
     work.kind === "recording" && work.secondsLeft !== undefined ? `, ${work.secondsLeft.toFixed(0)} s left` : "";
   const words = make("p", { className: "faint" }, `${work.kind === "recording" ? "Recording" : "Fetching"}${left}…`);
   return [words, make("div", { className: "row" }, bar, make("button", { type: "button", onclick: stop }, "Stop"))];
-}
-
-function row(id: string, label: string, control: HTMLElement): HTMLElement {
-  return make("div", { className: "compare-row" }, make("label", { htmlFor: id }, label), control);
 }

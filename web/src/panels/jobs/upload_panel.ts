@@ -1,5 +1,5 @@
 import { make } from "../../dom/elements";
-import { section } from "../../dom/rows";
+import { alertMessage, section } from "../../dom/rows";
 import type { SurfaceReport } from "../../gen/phrenic/v1/inspect_pb";
 import type { UploadProgress, Uploads } from "../../session/uploads";
 
@@ -25,11 +25,7 @@ export function uploadPanel(uploads: Uploads): HTMLElement {
 
 function progressElements(work: UploadProgress): HTMLElement[] {
   if (work.kind === "idle") return [];
-  if (work.kind === "failed") {
-    const words = make("p", { className: "fault" }, work.message);
-    words.setAttribute("role", "alert");
-    return [words];
-  }
+  if (work.kind === "failed") return [alertMessage(work.message)];
   if (work.kind === "sending") {
     const bar = make("progress", { max: 1, value: work.done, ariaLabel: "Progress of the upload" });
     return [make("p", { className: "faint" }, `Sending ${work.file}…`), bar];

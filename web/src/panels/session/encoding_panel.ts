@@ -1,5 +1,5 @@
 import { make } from "../../dom/elements";
-import { section } from "../../dom/rows";
+import { labelledRow, section } from "../../dom/rows";
 import { Codec } from "../../gen/phrenic/v1/frames_pb";
 
 const encodings: [Codec, string, string][] = [
@@ -20,11 +20,7 @@ export function encodingPanel(choose: (codec: Codec) => void): HTMLElement {
     choose(Number(list.value));
   };
   show();
-  const row = make(
-    "div",
-    { className: "compare-row wide" },
-    make("label", { htmlFor: "stream-codec" }, "Frame encoding"),
-    list,
-  );
+  const row = labelledRow("stream-codec", "Frame encoding", list);
+  row.classList.add("wide");
   return section("Streaming", false, row, hint);
 }

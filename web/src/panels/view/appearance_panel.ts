@@ -3,7 +3,7 @@ import { type FieldKind, fields } from "../../appearance/fields";
 import type { GhostKind } from "../../appearance/ghosts";
 import type { LayerStyles } from "../../appearance/layer_styles";
 import { make } from "../../dom/elements";
-import { section, switchRow } from "../../dom/rows";
+import { labelledRow, section, switchRow } from "../../dom/rows";
 import { forceKindLabel } from "../../session/force_queries";
 import type { Signal } from "../../state/signal";
 import type { Cut } from "../../viewer/clipping";
@@ -90,7 +90,7 @@ function choice<T extends string>(
   const list = make("select", { id, title });
   list.append(...options.map(([value, words]) => make("option", { value }, words)));
   list.onchange = () => chosen(list.value as T);
-  return make("div", { className: "compare-row" }, make("label", { htmlFor: id }, label), list);
+  return labelledRow(id, label, list);
 }
 
 function overlayRow(

@@ -1,5 +1,5 @@
 import { make } from "../../dom/elements";
-import { switchRow } from "../../dom/rows";
+import { labelledRow, switchRow } from "../../dom/rows";
 import { Signal } from "../../state/signal";
 import type { Cut, CutKind } from "../../viewer/clipping";
 
@@ -22,14 +22,14 @@ export function cutRows(cutAt: (cut: Cut) => number): HTMLElement[] {
   const flip = switchRow("Keep the other side", "", (flipped) => cut.set({ ...cut.value, flipped }));
   flip.input.id = "cut-flip";
   const label = make("label", { htmlFor: "cut-position" }, "Position of the cut");
-  const place = make("div", { className: "number-row plain" }, label, output, slider);
+  const position = make("div", { className: "number-row plain" }, label, output, slider);
   cut.subscribe((value) => {
-    place.hidden = flip.row.hidden = value.kind === "none";
+    position.hidden = flip.row.hidden = value.kind === "none";
     slider.value = String(value.fraction);
     slider.style.setProperty("--filled", `${100 * value.fraction}%`);
     output.textContent = `${Math.round(1000 * cutAt(value))} mm`;
     slider.setAttribute("aria-valuetext", output.textContent);
   });
-  const row = make("div", { className: "compare-row" }, make("label", { htmlFor: "cut" }, "Cut"), list);
-  return [row, place, flip.row];
+  const row = labelledRow("cut", "Cut", list);
+  return [row, position, flip.row];
 }
