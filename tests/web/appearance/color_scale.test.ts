@@ -1,9 +1,5 @@
-import { create } from "@bufbuild/protobuf";
 import { describe, expect, test } from "vitest";
 import { ColorScale, niceTop } from "../../../web/src/appearance/color_scale";
-import { SurfaceDistanceSchema } from "../../../web/src/gen/phrenic/v1/compare_pb";
-import { distanceTable, formatMillimetres } from "../../../web/src/panels/comparison/distance_table";
-import { Legend } from "../../../web/src/panels/view/legend";
 
 /** Returns the CIE 1976 lightness, 0 to 100, of an sRGB colour. */
 function lightnessOf(rgb: [number, number, number]): number {
@@ -50,33 +46,5 @@ describe("the colour scale", () => {
     expect(ticks[0]).toEqual({ fraction: 0, text: "0" });
     expect(ticks.at(-1)).toEqual({ fraction: 1, text: "12" });
     expect(new ColorScale(0.025).ticks().at(-1)).toEqual({ fraction: 1, text: "0.025" });
-  });
-});
-
-test("TheLegendShowsRangeAndUnit", () => {
-  const legend = new Legend();
-  legend.show(new ColorScale(12));
-  expect(legend.element.querySelector("canvas")!.ariaLabel).toBe("Colours from 0 to 12 mm");
-  expect(legend.element.textContent).toMatch(/^mm0.*12$/);
-});
-
-describe("the table of distances", () => {
-  const table = distanceTable(create(SurfaceDistanceSchema, { meanAToB: 1.23456, hdMax: 150.04, rmsBToA: NaN }));
-  const shown = (name: string) => table.querySelector(`[data-measure="${name}"]`)!;
-
-  test("ShowsValuesWithTheirNamesInTheSchema", () => {
-    expect(shown("mean_a_to_b").textContent).toBe("1.235");
-    expect(shown("hd_max").textContent).toBe("150.0");
-    expect(shown("mean_a_to_b").nextElementSibling!.textContent).toBe("mean_a_to_b");
-    expect(table.querySelectorAll("[data-measure]").length).toBe(11);
-  });
-
-  test("ExplainsValuesByTheHelpOfTheSchema", () => {
-    expect(shown("hd95_max").closest("td")!.title).toContain("Larger of p95_a_to_b and p95_b_to_a");
-  });
-
-  test("ShowsNaNAsNone", () => {
-    expect(shown("rms_b_to_a").textContent).toBe("none");
-    expect(formatMillimetres(0)).toBe("0.000");
   });
 });

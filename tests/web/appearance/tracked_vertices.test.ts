@@ -1,6 +1,5 @@
 import { expect, test } from "vitest";
 import { TrackedVertices } from "../../../web/src/appearance/tracked_vertices";
-import { EndExpirationDetector } from "../../../web/src/frames/end_expiration";
 import { decodeBody } from "../../../web/src/geometry/bodies";
 import { triangleBody } from "../fakes/fake_server";
 
@@ -24,10 +23,4 @@ test("ATrackedVertexIsMarkedPlottedAndUntracked", () => {
   expect(trackedVertices.stateOf(ref, raised(0.5))).toEqual({ position: [1, 0, 0.5], displacement: [0, 0, 0.5] });
   trackedVertices.untrack(ref);
   expect([trackedVertices.spec, trackedVertices.tracked.value.length]).toEqual([undefined, 0]);
-});
-
-test("ExpirationEndsAtTheMinimumOfTheSignal", () => {
-  const detector = new EndExpirationDetector();
-  const breath = [0, 0.5, 1, 0.5, 0, -0.2, -0.2, 0.1, 0.5, 0.2, 0.3];
-  expect(breath.map((value) => detector.receive(value)).flatMap((turned, i) => (turned ? [i] : []))).toEqual([7, 10]);
 });
