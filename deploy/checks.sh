@@ -1,53 +1,145 @@
-# The stages of deploy/test, and their sum. Sourced, not run.
+# The stages of deploy/test and their results. Sourced, not run.
 # shellcheck shell=bash
+
+# NAME, seconds on two cores with nothing built or cached, what the stage checks; in the order in which they run.
+stage_table() {
+  cat <<'TEXT'
+format     20 clang-format and prettier
+scripts    40 shellcheck, and the tests of deploy/
+proto       5 buf's lint
+web        40 type check, unit tests and build of the viewer
+build     560 the Release build by gcc, warnings as errors
+tests     150 what depends on that build: laws of mechanics, formats, physiology, judges, benches, trials
+e2e       560 the viewer in headless Chromium
+asan      900 all other tests under ASan and UBSan, built by clang
+tsan      220 the tests of threads under ThreadSanitizer
+tidy       60 clang-tidy; gcc's warnings in the tests that only clang compiles
+quick_build 480 the Release build of the server and of the laws
+laws       60 the laws of the tree and of mechanics, and the golden files
+browser    40 one end-to-end test
+TEXT
+}
+# shellcheck disable=SC2034  # used by deploy/test
+full_stages=(format scripts proto web build tests e2e asan tsan tidy)
+# shellcheck disable=SC2034
+quick_stages=(format quick_build laws browser)
 
 passed=0
 failed=0
 declare -a summary=() broken=() failures=()
 results=${root:?}/build/test-results
+times=$root/build/test-times
 
-# Adds to the sum: count PASSED FAILED.
+# about NAME prints what a stage checks.
+about() {
+  stage_table | sed -n "s/^$1 *[0-9]* //p"
+}
+
+# seconds_of NAME prints how long a stage took when it last passed, or by the table.
+seconds_of() {
+  { stage_table && { cat "$times" 2>/dev/null || true; }; } | awk -v name="$1" '$1 == name { s = $2 } END { print s + 0 }'
+}
+
+# time_left NAME... prints how long the named stages take together.
+time_left() {
+  local sum=0 name
+  for name in "$@"; do sum=$((sum + $(seconds_of "$name"))); done
+  if [[ $sum -lt 60 ]]; then echo "$sum s"; else echo "$(((sum + 30) / 60)) min"; fi
+}
+
+# count PASSED FAILED adds to the results.
 count() {
   passed=$((passed + $1))
   failed=$((failed + $2))
 }
 
-# Remembers the failed tests that a stage names, one a line of the input: what the last lines of a long log must say.
+# Keeps the names of failed tests, one a line of the input: the last lines of a long log must name them.
 remember() {
   local -a named
   mapfile -t named
   failures+=("${named[@]}")
 }
 
-# A stage that is one check: it passes or it does not.
+# check COMMAND... is a stage, or part of one, that counts as one test.
 check() {
   if "$@"; then count 1 0; else count 0 1; fi
 }
 
-# run_stage NAME runs stage_NAME, times it, and remembers whether anything in it failed.
-run_stage() {
-  local name=$1 before=$failed start=$SECONDS outcome=passed
-  say "Stage $name"
+# run_stages NAME... runs the stages, and says before each how long is left.
+run_stages() {
+  local -a left=("$@")
+  local name
   mkdir -p "$results"
+  for name in "$@"; do
+    say "Stage $name ($(($# - ${#left[@]} + 1)) of $#): $(about "$name"). About $(time_left "${left[@]}") left."
+    if [[ $name == tests && " ${left[*]} " == *" tidy "* ]]; then begin_beside tidy warnings; fi
+    run_stage "$name"
+    left=("${left[@]:1}")
+  done
+}
+
+# run_stage NAME runs stage_NAME, times it, and keeps whether anything in it failed.
+run_stage() {
+  local name=$1 before=$failed start=$SECONDS outcome=passed seconds
   "stage_$name"
+  seconds=$((SECONDS - start))
   if [[ $failed -gt $before ]]; then
     outcome=FAILED
     broken+=("$name")
+  else
+    echo "$name $seconds" >>"$times"
   fi
-  summary+=("$(printf '%-8s %-7s %5d s' "$name" "$outcome" $((SECONDS - start)))")
+  note_time "$name" "$outcome" "$seconds"
 }
 
-# The end of deploy/test, however it comes to it: a run that did not reach its last stage has failed.
+note_time() {
+  summary+=("$(printf '%-12s %-7s %5d s' "$1" "$2" "$3")")
+}
+
+# --- beside: checks that are all computation run at the lowest priority while tests wait for clocks and browsers ---
+beside=
+# begin_beside NAME... starts check_NAME of each, one after the other.
+begin_beside() {
+  set -m # a process group of its own, which finish can end
+  (
+    trap - EXIT
+    renice -n 19 -p "$BASHPID" >/dev/null
+    for name in "$@"; do
+      rm -f "$results/$name.status"
+      status=0
+      "check_$name" >"$results/$name.log" 2>&1 || status=$?
+      echo "$status" >"$results/$name.status"
+    done
+  ) &
+  beside=$!
+  set +m
+}
+
+# beside NAME runs check_NAME, or waits for begin_beside if that has started it.
+beside() {
+  local name=$1
+  if [[ -z $beside ]]; then
+    "check_$name"
+    return
+  fi
+  until [[ -f $results/$name.status ]] || ! kill -0 "$beside" 2>/dev/null; do sleep 1; done
+  cat "$results/$name.log"
+  [[ $(cat "$results/$name.status") == 0 ]]
+}
+
+# Ends deploy/test, for whatever reason: a run that did not reach its last stage has failed.
 finish() {
   local status=$?
   trap - EXIT
+  if [[ -n $beside ]]; then kill -- "-$beside" 2>/dev/null || true; fi
   if [[ $status -ne 0 ]]; then count 0 1; fi
+  note_time "all" "" "$SECONDS"
   report
 }
 
 report() {
   printf '\n'
-  if [[ ${#summary[@]} -gt 0 ]]; then printf '%s\n' "${summary[@]}"; fi
+  printf '%s\n' "${summary[@]}"
   if [[ ${#failures[@]} -gt 0 ]]; then printf 'failed: %s\n' "${failures[@]}"; fi
   if [[ ${#broken[@]} -gt 0 ]]; then
     printf 'phrenic: repair what the stages name above; "deploy/test %s" runs them alone.\n' "${broken[*]}"
@@ -56,16 +148,16 @@ report() {
   [[ $failed -eq 0 ]]
 }
 
-# The files that people write: those that git knows, or all but what is made where there is no git.
+# Prints the source files: those that git knows, or if there is no git, those that are not generated.
 sources() {
   (cd "$root" && { git ls-files -z --cached --others --exclude-standard "$@" 2>/dev/null ||
     find server client tests -regextype posix-extended -regex '.*\.(cc|h)' -not -path '*/node_modules/*' -print0; })
 }
 
-# --- form ---
+# --- format, scripts, proto ---
 check_clang_format() {
   (cd "$root" && sources 'server/*.cc' 'server/*.h' 'client/*.cc' 'client/*.h' 'tests/*.cc' 'tests/*.h' |
-    xargs -0 -r clang-format --dry-run -Werror)
+    xargs -0 -r -P "$(nproc)" -n 50 clang-format --dry-run -Werror)
 }
 
 check_prettier() {
@@ -78,7 +170,8 @@ stage_format() {
 }
 
 check_shellcheck() {
-  (cd "$root" && shellcheck -x deploy/run deploy/test deploy/report deploy/faults deploy/cluster deploy/*.sh client/examples/*.sh tests/client/slurm/* .ci/run tests/deploy/*.sh)
+  (cd "$root" && shellcheck -x deploy/run deploy/test deploy/report deploy/faults deploy/cluster deploy/package deploy/*.sh \
+    client/examples/*.sh tests/client/slurm/* .ci/run tests/deploy/*.sh)
 }
 
 stage_scripts() {
@@ -94,12 +187,15 @@ stage_proto() {
   check check_buf
 }
 
-# --- the web ---
-# vitest NAME SCRIPT runs the npm script and counts its tests; a run that breaks without a failed test counts as one.
+# --- the viewer ---
+# vitest NAME SCRIPT [OPTION...] runs the npm script and counts its tests; a run that breaks without a failed test counts
+# as one failed.
 vitest() {
-  local json=$results/$1.json status=0 good=0 bad=0
+  local name=$1 script=$2 json=$results/$1.json status=0 good=0 bad=0
+  shift 2
   rm -f "$json"
-  (cd "$root/web" && npm run --silent "$2" -- --reporter=default --reporter=json --outputFile.json="$json") || status=$?
+  (cd "$root/web" && npm run --silent "$script" -- --reporter=default --reporter=json --outputFile.json="$json" "$@") ||
+    status=$?
   if [[ -f $json ]]; then
     read -r good bad < <(node -e 'const r = require(process.argv[1]); console.log(r.numPassedTests, r.numFailedTests)' "$json")
     remember < <(failed_of "$json")
@@ -108,9 +204,9 @@ vitest() {
   count "$good" "$bad"
 }
 
-# The failed tests of vitest's JSON, each with the first line of its message.
+# failed_of JSON prints the failed tests of vitest's report, each with the first line of its message.
 failed_of() {
-  # shellcheck disable=SC2016  # the template is JavaScript's own
+  # shellcheck disable=SC2016  # the template is JavaScript's
   node -e '
     for (const { assertionResults } of require(process.argv[1]).testResults)
       for (const { status, fullName, failureMessages } of assertionResults)
@@ -126,15 +222,26 @@ stage_e2e() {
   vitest e2e e2e
 }
 
-# --- C++ ---
-# As deploy/run builds it, and all else.
+stage_browser() {
+  check build_web
+  vitest browser e2e viewer.test.ts -t 'IsThereAndLive|ItsDiaphragmsPixelsMove'
+}
+
+# --- C++: Release ---
+# check_build TARGET...
 check_build() {
-  # shellcheck disable=SC2154  # unity is lib.sh's
-  configure "$root/build" -DCMAKE_BUILD_TYPE=Release "${unity[@]}" && build "$root/build"
+  configure_release && build "$root/build" "$@"
 }
 
 stage_build() {
-  check check_build
+  check check_build phrenicd phrenic package_words release_tests
+}
+
+# The laws: tests of ctest whose names begin so.
+laws='^(architecture|contract|exact|golden|mechanics)/'
+
+stage_quick_build() {
+  check check_build phrenicd architecture_test contract_test exact_test golden_test mechanics_test
 }
 
 # ctests FOLDER [OPTION...] runs the tests built there and counts them; a run that breaks counts as one failed.
@@ -153,26 +260,28 @@ ctests() {
   fi
 }
 
-# Campaigns run on a Slurm of this machine alone where one can be started; their test says where it cannot.
+# What the Release build alone can show (tests/CMakeLists.txt): the same bits by gcc and at -O3, allocations, times.
 stage_tests() {
-  local slurm=$root/build/slurm
-  if [[ $(id -u) == 0 ]] && "$root/tests/client/slurm/start" "$slurm" > /dev/null; then
-    export SLURM_CONF=$slurm/slurm.conf
-  fi
-  ctests "$root/build"
-  if [[ -n ${SLURM_CONF:-} ]]; then "$root/tests/client/slurm/stop" "$slurm"; fi
+  ctests "$root/build" -L '^release$'
 }
 
+stage_laws() {
+  ctests "$root/build" -R "$laws"
+}
+
+# --- C++: sanitizers ---
 # sanitized FOLDER SANITIZERS TARGET... builds the targets with the sanitizers.
 sanitized() {
   local folder=$1 sanitizers=$2
   shift 2
-  configure "$folder" -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=RelWithDebInfo \
-    -DCMAKE_CXX_FLAGS_RELWITHDEBINFO='-O1 -g1' "${unity[@]}" -DPHRENIC_SANITIZE="$sanitizers" && build "$folder" "$@"
+  # shellcheck disable=SC2154  # whole is set by lib.sh
+  configure "$folder" -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_EXE_LINKER_FLAGS=-fuse-ld=lld \
+    -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_FLAGS_RELWITHDEBINFO='-O1 -g1' "${whole[@]}" \
+    -DPHRENIC_SANITIZE="$sanitizers" && build "$folder" "$@"
 }
 
 # programs FOLDER [OPTION...] runs the test programs there, each once, and counts the tests in them by the XML that they
-# write: instead of a program that wrote one, its tests.
+# write; a program that writes none counts as one.
 programs() {
   local xml good bad
   xml=$results/$(basename "$1")
@@ -184,11 +293,15 @@ programs() {
   count "$good" "$bad"
 }
 
-# The physiology tests simulate a whole breath of 20,000 vertices: too long here, and the same code runs in the others.
+# Campaigns run on a Slurm of this machine alone if it can be started; if not, their test says so.
 stage_asan() {
-  local folder=$root/build/asan
+  local folder=$root/build/asan slurm=$root/build/slurm
   check sanitized "$folder" address,undefined tests
-  ASAN_OPTIONS=detect_leaks=1:strict_string_checks=1 UBSAN_OPTIONS=print_stacktrace=1 programs "$folder" -E '^physiology$'
+  if [[ $(id -u) == 0 ]] && "$root/tests/client/slurm/start" "$slurm" >/dev/null; then
+    export SLURM_CONF=$slurm/slurm.conf
+  fi
+  ASAN_OPTIONS=detect_leaks=1:strict_string_checks=1 UBSAN_OPTIONS=print_stacktrace=1 programs "$folder"
+  if [[ -n ${SLURM_CONF:-} ]]; then "$root/tests/client/slurm/stop" "$slurm"; fi
 }
 
 # gRPC's library is not built for ThreadSanitizer, so only tests of folders below service/ run under it.
@@ -198,16 +311,21 @@ stage_tsan() {
   TSAN_OPTIONS=$options programs "$folder" -R '^(tsan|stream|session)$'
 }
 
+# --- C++: without running it ---
 check_tidy() {
   local folder=$root/build/tidy
-  configure "$folder" "${unity[@]}" && build "$folder" generated_headers || return
-  # Options of gcc's are in the commands that it reads.
-  run-clang-tidy -p "$folder" -quiet -j "$(nproc)" -extra-arg=-Wno-unknown-warning-option '/phrenic(_[a-z]*|d|)\.dir/Unity/' '_kernel\.cc$' \
-    >"$results/tidy.log" 2>&1 && return
-  grep -E -A3 '(error|warning):' "$results/tidy.log" || cat "$results/tidy.log"
-  return 1
+  configure "$folder" "${whole[@]}" && build "$folder" generated_headers &&
+    "$root/deploy/units.py" "$folder" '/phrenic(_(?!grpc|proto)[a-z]*|d|)\.dir/Unity/|/server/.*_kernel\.cc$' tidy
+}
+
+# gcc compiles no test program for the asan stage: it reads them all here.
+check_warnings() {
+  local folder=$root/build/tidy
+  configure "$folder" "${whole[@]}" && build "$folder" generated_headers &&
+    "$root/deploy/units.py" "$folder" '/tests/.*_test\.dir/Unity/|/tests/fuzz/' gcc
 }
 
 stage_tidy() {
-  check check_tidy
+  check beside tidy
+  check beside warnings
 }

@@ -1,4 +1,4 @@
-# Steps that deploy/run and deploy/test share: packages, Node.js, the viewer, the build. Sourced, not run.
+# Steps that the scripts of deploy/ share: packages, Node.js, the viewer, the build. Sourced, not run.
 # shellcheck shell=bash
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -19,7 +19,7 @@ fail() {
   exit 1
 }
 
-# Debian's packages of the sections of packages.txt named by the arguments.
+# Prints Debian's packages of the sections of packages.txt named by the arguments.
 packages_of() {
   local section
   for section in "$@"; do
@@ -27,7 +27,7 @@ packages_of() {
   done
 }
 
-# Those of the packages named by the arguments that are not installed.
+# Prints those of the named packages that are not installed.
 missing_packages() {
   local installed
   installed=$(dpkg-query -W -f '${db:Status-Status} ${Package}\n' 2>/dev/null | sed -n 's/^installed //p')
@@ -45,7 +45,7 @@ as_root() {
 
 install_packages() {
   local -a missing
-  command -v dpkg-query >/dev/null || fail "this is no Debian: install the packages of deploy/packages.txt by hand."
+  command -v dpkg-query >/dev/null || fail "this is not Debian: install the packages of deploy/packages.txt by hand."
   mapfile -t missing < <(missing_packages "$@")
   [[ ${#missing[@]} -gt 0 ]] || return 0
   say "Installing Debian packages: ${missing[*]}"
@@ -55,7 +55,7 @@ install_packages() {
     fail "apt-get could not install ${missing[*]} (above): repair that, 'apt-get -f install' often does, then run this again."
 }
 
-# Whether the `node` that the PATH finds is new enough and has npm beside it.
+# True if the `node` on the PATH is new enough and npm is there.
 node_suffices() {
   local version
   version=$(node --version 2>/dev/null) || return 1
@@ -71,7 +71,7 @@ node_package() {
   esac
 }
 
-# Node.js from the npm registry, below $node_dir; Debian's npm, however old, can fetch it.
+# Installs Node.js from the npm registry below $node_dir; Debian's npm is old, but can do this.
 fetch_node() {
   local package=$1
   say "Fetching Node.js $fetched_node from the npm registry into $node_dir"
@@ -97,7 +97,7 @@ ensure_node() {
     fail "Node.js in $node_dir does not run: delete that folder, or install Node.js $oldest_node or newer, then run this again."
 }
 
-# The web's dependencies, as package-lock.json has them; nothing to do where they are there.
+# Installs the viewer's dependencies by package-lock.json, unless they are installed.
 install_web() {
   local lock=$root/web/package-lock.json stamp=$root/web/node_modules/.phrenic-lock
   cmp -s "$lock" "$stamp" && return
@@ -107,7 +107,7 @@ install_web() {
   cp "$lock" "$stamp"
 }
 
-# The viewer, web/dist; nothing to do where it is newer than all it is made of.
+# Builds the viewer (web/dist), unless it is newer than its sources.
 build_web() {
   local page=$root/web/dist/index.html
   install_web
@@ -120,7 +120,7 @@ build_web() {
     fail "the viewer did not build (above): correct what it names; if it names a tool, delete web/node_modules and run this again."
 }
 
-# One compiler for a core, and no more than the memory holds at 1.5 GB each.
+# Prints how many compilers to run: one a core, at most what the memory holds at 1.5 GB each.
 jobs() {
   local cores memory
   cores=$(nproc)
@@ -128,7 +128,7 @@ jobs() {
   echo $((memory < 1 ? 1 : memory < cores ? memory : cores))
 }
 
-# configure FOLDER [CMAKE OPTION...]; a configured folder keeps its options, and ninja configures again when it must.
+# configure FOLDER [CMAKE OPTION...] runs CMake, unless the folder is configured: then ninja runs it when it must.
 configure() {
   local folder=$1
   shift
@@ -140,9 +140,12 @@ configure() {
   }
 }
 
-# A folder's files are compiled sixteen at a time: that takes far less time, and finds what a folder names twice.
-# shellcheck disable=SC2034  # for who sources this
+# Unity builds compile several files of a library as one, which takes far less time: sixteen where people edit and
+# rebuild, all of them in builds that only check. So any two files of a library must not define the same name.
+# shellcheck disable=SC2034  # used by the scripts that source this
 unity=(-DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=16)
+# shellcheck disable=SC2034
+whole=(-DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=0)
 
 # build FOLDER TARGET...
 build() {
@@ -151,4 +154,33 @@ build() {
   local -a quiet=(--quiet)
   if [[ -t 1 ]]; then quiet=(); fi
   ninja -C "$folder" -j "$(jobs)" "${quiet[@]}" "$@"
+}
+
+# Configures build/: the Release build of deploy/run.
+configure_release() {
+  configure "$root/build" -DCMAKE_BUILD_TYPE=Release "${unity[@]}"
+}
+
+# install_for_build [PACKAGE...] installs what building needs, and the named packages.
+install_for_build() {
+  local -a packages
+  mapfile -t packages < <(packages_of build)
+  install_packages "${packages[@]}" "$@"
+  ensure_node
+}
+
+# build_programs TARGET... builds the viewer, and the targets of build/.
+build_programs() {
+  build_web
+  say "Building $* (build/)"
+  configure_release
+  build "$root/build" "$@" ||
+    fail "the build failed (above): correct what it names; if it names none of your files, delete build/ and run this again."
+}
+
+# True if a program accepts connections at HOST:PORT.
+answers() {
+  local host=${1%:*} port=${1##*:}
+  if [[ $host == 0.0.0.0 || $host == "[::]" ]]; then host=127.0.0.1; fi
+  (exec 3<>"/dev/tcp/${host//[\[\]]/}/$port") 2>/dev/null
 }

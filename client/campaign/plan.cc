@@ -56,8 +56,8 @@ std::string CellName(const CampaignCell& cell) {
   return Sha256Hex(bytes).substr(0, kNameDigits);
 }
 
-absl::StatusOr<CampaignCell> CellOf(const v1::Campaign& campaign, const v1::SceneSource& source,
-                                    const std::string& scene, const std::string& preset, const Settings& settings) {
+absl::StatusOr<CampaignCell> MakeCell(const v1::Campaign& campaign, const v1::SceneSource& source,
+                                      const std::string& scene, const std::string& preset, const Settings& settings) {
   CampaignCell cell;
   const absl::StatusOr<v1::Parameters> parameters = ReadSettings(settings);
   if (!parameters.ok()) {
@@ -98,7 +98,7 @@ absl::StatusOr<std::vector<CampaignCell>> CellsOf(const v1::Campaign& campaign, 
       if (!source.ok()) return source.status();
       for (const std::string& preset : OrOne(campaign.presets(), std::string())) {
         for (const Settings& chosen : *settings) {
-          auto cell = CellOf(campaign, *source, scene, preset, chosen);
+          auto cell = MakeCell(campaign, *source, scene, preset, chosen);
           if (!cell.ok()) return cell.status();
           if (names.insert(cell->row.cell()).second) cells.push_back(*std::move(cell));
         }

@@ -16,18 +16,18 @@
 namespace phrenic::client {
 namespace {
 
-using Cells = std::vector<std::string>;
+using Texts = std::vector<std::string>;
 
 struct Grid {
-  Cells header;
-  std::vector<Cells> rows;
+  Texts header;
+  std::vector<Texts> rows;
 };
 
 // The parameters that the runs set, in the order in which they first come.
-Cells ParametersOf(const v1::CampaignResult& result) {
-  Cells names;
+Texts ParametersOf(const v1::CampaignResult& result) {
+  Texts names;
   for (const v1::CampaignRow& row : result.rows()) {
-    for (const std::string& setting : Cells(absl::StrSplit(row.settings(), ' ', absl::SkipEmpty()))) {
+    for (const std::string& setting : Texts(absl::StrSplit(row.settings(), ' ', absl::SkipEmpty()))) {
       const std::string name = setting.substr(0, setting.find('='));
       if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
     }
@@ -36,7 +36,7 @@ Cells ParametersOf(const v1::CampaignResult& result) {
 }
 
 std::string SettingOf(const v1::CampaignRow& row, const std::string& name) {
-  for (const std::string& setting : Cells(absl::StrSplit(row.settings(), ' ', absl::SkipEmpty()))) {
+  for (const std::string& setting : Texts(absl::StrSplit(row.settings(), ' ', absl::SkipEmpty()))) {
     if (setting.substr(0, setting.find('=')) == name) return setting.substr(name.size() + 1);
   }
   return "";
@@ -44,8 +44,8 @@ std::string SettingOf(const v1::CampaignRow& row, const std::string& name) {
 
 using ReadingsOfCells = std::map<std::string, std::map<std::string, const v1::CampaignReading*>>;
 
-Cells MeasuresOf(const v1::CampaignResult& result) {
-  Cells names;
+Texts MeasuresOf(const v1::CampaignResult& result) {
+  Texts names;
   for (const v1::CampaignReading& reading : result.readings()) {
     if (std::find(names.begin(), names.end(), reading.measure()) == names.end()) names.push_back(reading.measure());
   }
@@ -64,7 +64,7 @@ std::string UnitOf(const v1::CampaignReading& reading) {
 }
 
 Grid MakeGrid(const v1::CampaignResult& result) {
-  const Cells parameters = ParametersOf(result), measures = MeasuresOf(result);
+  const Texts parameters = ParametersOf(result), measures = MeasuresOf(result);
   ReadingsOfCells readings;
   std::map<std::string, std::string> units;
   for (const v1::CampaignReading& reading : result.readings()) {
@@ -77,7 +77,7 @@ Grid MakeGrid(const v1::CampaignResult& result) {
   for (const std::string& measure : measures)
     grid.header.push_back(absl::StrCat(measure, ", most [", units[measure], "]"));
   for (const v1::CampaignRow& row : result.rows()) {
-    Cells cells = {row.scene(), row.resolution_mm() > 0 ? absl::StrFormat("%g", row.resolution_mm()) : "",
+    Texts cells = {row.scene(), row.resolution_mm() > 0 ? absl::StrFormat("%g", row.resolution_mm()) : "",
                    row.preset()};
     for (const std::string& name : parameters) cells.push_back(SettingOf(row, name));
     cells.push_back(row.outcome());
@@ -98,7 +98,7 @@ Grid Trimmed(const Grid& grid) {
   Grid kept;
   kept.rows.resize(grid.rows.size());
   for (size_t c = 0; c < grid.header.size(); ++c) {
-    const auto said = [c](const Cells& row) { return !row[c].empty(); };
+    const auto said = [c](const Texts& row) { return !row[c].empty(); };
     if (!std::any_of(grid.rows.begin(), grid.rows.end(), said)) continue;
     kept.header.push_back(grid.header[c]);
     for (size_t r = 0; r < grid.rows.size(); ++r) kept.rows[r].push_back(grid.rows[r][c]);
@@ -115,7 +115,7 @@ std::vector<std::vector<double>> Shades(const Grid& grid) {
   std::vector<std::vector<double>> shades(grid.rows.size(), std::vector<double>(grid.header.size(), -1));
   for (size_t c = 0; c < grid.header.size(); ++c) {
     double least = HUGE_VAL, greatest = -HUGE_VAL, value = 0;
-    for (const Cells& row : grid.rows) {
+    for (const Texts& row : grid.rows) {
       if (!absl::SimpleAtod(row[c], &value)) continue;
       least = std::min(least, value), greatest = std::max(greatest, value);
     }
@@ -156,7 +156,7 @@ constexpr char kHead[] =
 Table CampaignTable(const v1::CampaignResult& result) {
   const Grid grid = Trimmed(MakeGrid(result));
   Table table(grid.header);
-  for (const Cells& row : grid.rows) table.Add(row);
+  for (const Texts& row : grid.rows) table.Add(row);
   return table;
 }
 

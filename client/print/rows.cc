@@ -51,7 +51,7 @@ std::vector<std::string> Header(const FieldDescriptor& table) {
   return names;
 }
 
-std::vector<std::string> Cells(const Message& row, bool every_digit) {
+std::vector<std::string> CellsOf(const Message& row, bool every_digit) {
   std::vector<std::string> cells;
   const auto& type = *row.GetDescriptor();
   cells.reserve(static_cast<size_t>(type.field_count()));
@@ -68,7 +68,7 @@ void PrintTables(const Message& message, std::ostream& out) {
   for (const FieldDescriptor* field : TablesOf(message)) {
     Table table(Header(*field));
     for (int i = 0; i < reflection.FieldSize(message, field); ++i) {
-      table.Add(Cells(reflection.GetRepeatedMessage(message, field, i), false));
+      table.Add(CellsOf(reflection.GetRepeatedMessage(message, field, i), false));
     }
     out << "\n" << field->name() << "\n";
     table.Print(out);
@@ -83,7 +83,7 @@ void PrintCsv(const Message& message, std::ostream& out) {
     first = false;
     PrintCsvLine(Header(*field), out);
     for (int i = 0; i < reflection.FieldSize(message, field); ++i) {
-      PrintCsvLine(Cells(reflection.GetRepeatedMessage(message, field, i), true), out);
+      PrintCsvLine(CellsOf(reflection.GetRepeatedMessage(message, field, i), true), out);
     }
   }
 }

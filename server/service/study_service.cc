@@ -10,7 +10,7 @@
 namespace phrenic::service {
 namespace {
 
-constexpr int kMostWatchers = 16;  // each occupies a thread of gRPC
+constexpr int kMaxWatchers = 16;  // each occupies a thread
 
 }  // namespace
 
@@ -31,7 +31,7 @@ StudyService::StudyService(session::Models& models, std::string web_root, Access
 
 void StudyService::Restore(const std::vector<store::SavedRecord>& records, std::map<std::string, absl::Status>& lost) {
   const auto found = [this](const std::string& id, const std::string& owner) {
-    guard_.Give(AccessGuard::Kind::kStudy, id, owner);
+    guard_.SetOwner(AccessGuard::Kind::kStudy, id, owner);
   };
   studies_.Restore(records, found, lost);
 }
@@ -42,7 +42,7 @@ grpc::Status StudyService::CreateStudy(grpc::ServerContext* context, const v1::C
   if (!caller.ok()) return ToGrpc(caller.status());
   auto study = studies_.Add(*request, caller->id());
   if (!study.ok()) return ToGrpc(study.status());
-  guard_.Give(AccessGuard::Kind::kStudy, study->id(), caller->id());
+  guard_.SetOwner(AccessGuard::Kind::kStudy, study->id(), caller->id());
   *response->mutable_study() = *std::move(study);
   return grpc::Status::OK;
 }
@@ -54,7 +54,7 @@ grpc::Status StudyService::WatchStudy(grpc::ServerContext* context, const v1::Wa
   if (absl::Status own = guard_.CheckOwns(AccessGuard::Kind::kStudy, request->study_id(), *caller); !own.ok())
     return ToGrpc(own);
   absl::Status watched = absl::ResourceExhaustedError("16 callers watch studies, and no more are allowed: try later");
-  if (watchers_.fetch_add(1) < kMostWatchers) {
+  if (watchers_.fetch_add(1) < kMaxWatchers) {
     v1::WatchStudyResponse response;
     watched = studies_.Watch(
         request->study_id(), [&] { return context->IsCancelled(); },

@@ -1,7 +1,7 @@
 #!/bin/bash
-# Laws of deploy/: each failure is a sentence that says what to do, and nothing is done twice. Touches no system state:
-# the programs that would are replaced by doubles in a folder of the test's own.
-# shellcheck disable=SC2016  # what stands in single quotes is for the doubles' own shells
+# Laws of deploy/: each failure is a sentence that says what to do, and nothing is done twice. Changes nothing on the
+# system: programs that would are replaced by doubles in a scratch folder.
+# shellcheck disable=SC2016  # single quotes hold text for other shells
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 scratch=$(mktemp -d)
@@ -76,7 +76,7 @@ node() {
 run_flags() {
   expect HelpIsGiven "$("$root/deploy/run" --help)" --listen --web --data "Ctrl-C"
   expect BadAddressIsSaid "$("$root/deploy/run" --web nonsense 2>&1 || echo "status $?")" \
-    "--web nonsense is no HOST:PORT" "127.0.0.1:8080" "status 1"
+    "--web nonsense is not HOST:PORT" "127.0.0.1:8080" "status 1"
   expect MissingValueIsSaid "$("$root/deploy/run" --data 2>&1 || echo "status $?")" "--data needs a value" "status 1"
   expect MissingDataIsSaid "$("$root/deploy/run" --data /nowhere 2>&1 || echo "status $?")" \
     "there is no folder /nowhere" "status 1"
@@ -85,12 +85,38 @@ run_flags() {
 stages() {
   expect UnknownStageIsSaid "$("$root/deploy/test" nonsense 2>&1 || echo "status $?")" \
     "there is no stage nonsense" "format scripts" "status 1"
+  expect HelpNamesTheStages "$("$root/deploy/test" --help)" "clang-tidy" "format quick_build laws browser, in about" " min"
 }
 
-# in_checks COMMAND... runs functions of checks.sh as deploy/test does.
+# in_checks COMMAND... runs functions of checks.sh as deploy/test does, with stages of the test's own; results go to the
+# scratch folder.
 in_checks() {
-  bash -c 'set -euo pipefail; source "$0/deploy/lib.sh"; source "$0/deploy/checks.sh"; "$@"' "$root" "$@" 2>&1 ||
-    echo "status $?"
+  bash -c 'set -euo pipefail; source "$0/deploy/lib.sh"; source "$0/deploy/checks.sh"
+    results=$1/results times=$1/times
+    stage_proto() { check true; }
+    stage_web() { check false; }
+    check_tidy() { echo "tidy at priority $(nice)"; }
+    check_warnings() { false; }
+    stage_tests() { check true; }
+    shift; "$@"' "$root" "$scratch" "$@" 2>&1 || echo "status $?"
+}
+
+stages_are_counted_and_timed() {
+  rm -f "$scratch/times"
+  expect StagesSayHowLongIsLeft "$(in_checks run_stages proto web)" "==> Stage proto (1 of 2): buf's lint. About 45 s left." \
+    "==> Stage web (2 of 2)" "About 40 s left."
+  expect_equal TimesOfPassedStagesAreKept "$(sed 's/ [01]$//' "$scratch/times")" proto
+  echo "web 400" >>"$scratch/times"
+  expect_equal TheLastRunTellsTheTime "$(in_checks time_left proto web)" "7 min"
+  expect TheLastLineCounts "$(in_checks eval 'trap finish EXIT; run_stages proto web' | tail -6)" "proto        passed" \
+    "web          FAILED" '"deploy/test web" runs them alone' "1 passed, 1 failed"
+}
+
+checks_run_beside_tests() {
+  local output
+  output=$(in_checks eval 'trap finish EXIT; run_stages tests tidy')
+  expect ChecksBesideTestsCount "$output" "tidy at priority 19" "2 passed, 1 failed"
+  expect_equal WithoutTestsTheyRunAlone "$(in_checks run_stages tidy | grep -c 'priority 19')" 0
 }
 
 failed_tests_are_named() {
@@ -100,7 +126,22 @@ failed_tests_are_named() {
   expect_equal FailedBrowserTestsAreNamed "$(in_checks failed_of "$json")" "Breaks: expected 1 to be 2"
 }
 
-# What systemd itself thinks of how little the service may do, in tenths: 0 is nothing, 100 everything.
+# units.py on a build folder of one file.
+units_are_checked_once() {
+  local folder=$scratch/units
+  mkdir -p "$folder"
+  echo 'int main() { return 0; }' >"$folder/a.cc"
+  printf '[{"directory": "%s", "file": "%s/a.cc", "command": "ccache g++ -Wall -Werror -o a.o -c %s/a.cc"}]' \
+    "$folder" "$folder" "$folder" >"$folder/compile_commands.json"
+  expect_equal AGoodUnitPasses "$(CI='' "$root/deploy/units.py" "$folder" 'a\.cc$' gcc 2>&1 || echo "status $?")" ""
+  expect_equal AGoodUnitIsKnown "$(find "$folder/good" -type f | wc -l)" 1
+  echo 'int main() { int unused; }' >"$folder/a.cc"
+  expect ABadUnitIsNamed "$(CI='' "$root/deploy/units.py" "$folder" 'a\.cc$' gcc 2>&1 || echo "status $?")" \
+    "unused variable" "status 1"
+  expect NoUnitIsAFault "$("$root/deploy/units.py" "$folder" nothing gcc 2>&1 || echo "status $?")" "no file of" "status 1"
+}
+
+# systemd's measure of what the service may do, in tenths: 0 is nothing, 100 everything.
 service_is_confined() {
   command -v systemd-analyze >/dev/null || return 0
   expect ServiceIsConfined \
@@ -114,4 +155,7 @@ run_flags
 service_is_confined
 stages
 failed_tests_are_named
+stages_are_counted_and_timed
+checks_run_beside_tests
+units_are_checked_once
 [[ $failures -eq 0 ]]

@@ -112,14 +112,14 @@ void SetSize(Model& model) {
 
 // Part of a body's width from the middle within which a vertex belongs to no side: what is highest of the lower dome
 // would otherwise be where it leans on the higher one.
-constexpr double kMiddle = 1.0 / 6;
+constexpr double kMiddlePart = 1.0 / 6;
 
 int HighestOn(v1::Side side, const Points& vertices) {
   const double width = vertices.row(0).maxCoeff() - vertices.row(0).minCoeff();
   const double outward = side == v1::SIDE_LEFT ? 1 : -1;
   int highest = -1;
   for (int i = 0; i < vertices.cols(); ++i) {
-    if (outward * vertices(0, i) <= kMiddle * width) continue;
+    if (outward * vertices(0, i) <= kMiddlePart * width) continue;
     if (highest < 0 || vertices(2, i) > vertices(2, highest)) highest = i;
   }
   return highest;
