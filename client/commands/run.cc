@@ -100,7 +100,7 @@ void PrintCostJson(const RunOptions& options, const v1::GetSessionResponse& sess
 }
 
 // What a run would do, once its scene is compiled.
-int Foretell(const Context& context, const RunOptions& options, const v1::GetSessionResponse& session) {
+int Predict(const Context& context, const RunOptions& options, const v1::GetSessionResponse& session) {
   const double step = session.session().parameters().time_step();
   const auto steps = static_cast<std::int64_t>(std::ceil(options.seconds / step - 1e-9));
   if (context.json()) {
@@ -132,7 +132,7 @@ int RunOn(const Context& context, const RunOptions& options, const v1::SceneSour
   const auto scenes = v1::SceneService::NewStub(server.InProcessChannel());
   status = Call(context, *scenes, &v1::SceneService::Stub::DescribeScene, describe, &described);
   if (!status.ok()) return Fail(context, status);
-  if (options.dry) return Foretell(context, options, session);
+  if (options.dry) return Predict(context, options, session);
   Cost cost;
   if (!options.motion.file.empty()) {
     const int code = ExportHere(context, options, server, &cost);

@@ -1,4 +1,4 @@
-// Time and waiting, passed in so that tests can make both.
+// Time and waiting, passed in so that tests control both.
 #ifndef PHRENIC_SERVER_STREAM_CLOCK_H_
 #define PHRENIC_SERVER_STREAM_CLOCK_H_
 
@@ -8,12 +8,13 @@
 
 namespace phrenic::stream {
 
-// Any thread may call.
+// Thread-safe.
 class Clock {
  public:
   virtual ~Clock() = default;
   virtual absl::Time Now() const = 0;
-  // Returns when `condition` holds or `deadline` has come; `mutex` is held before and after, as in absl::Mutex::Await.
+  // Waits until `condition` is true or `deadline` is reached, like absl::Mutex::AwaitWithDeadline. Requires: `mutex` is
+  // held.
   virtual void Await(absl::Mutex& mutex, const absl::Condition& condition, absl::Time deadline) const = 0;
 };
 

@@ -1,4 +1,4 @@
-// How the positions of vertices become bytes and come back: one codec a file in codecs/, one row a codec in codecs.cc.
+// Codecs: vertex positions to bytes and back. One codec a file in codecs/, one row a codec in codecs.cc.
 #ifndef PHRENIC_SERVER_STREAM_CODEC_H_
 #define PHRENIC_SERVER_STREAM_CODEC_H_
 
@@ -16,21 +16,22 @@ namespace phrenic::stream {
 
 using Floats = Eigen::Matrix3Xf;  // 3 x n [m], one column per vertex
 
-// What both ends know of the vertices that travel, from the geometry.
+// What server and viewer know of the streamed vertices from the geometry.
 struct RestShape {
   Floats rest;
-  Edges edges;                      // which vertices are beside each other
-  std::vector<Floats> shapes = {};  // displacements of all vertices, of which codecs may put frames together
+  Edges edges;                      // pairs of neighbouring vertices
+  std::vector<Floats> shapes = {};  // displacement shapes of CODEC_BASIS [m]
 };
 
-// Every encoding stands by itself: given the rest shape, no other frame is needed. Immutable; any thread may call.
+// An encoding needs only the rest shape, no other frame. Immutable; thread-safe.
 class Codec {
  public:
   virtual ~Codec() = default;
-  // `positions` are finite and as many as at rest. No decoded vertex lies further than `max_error` [m] from its own.
-  // OUT_OF_RANGE where the codec cannot keep that: they lie too far apart, or the bound is finer than float32.
+  // Encodes positions so that every decoded vertex lies within `max_error` [m] of the original. Requires: `positions`
+  // are finite, 3 x the vertices at rest. OUT_OF_RANGE if the codec cannot meet the bound: the positions span too large
+  // a range, or the bound is finer than float32.
   virtual absl::StatusOr<std::string> Encode(const Floats& positions, double max_error) const = 0;
-  // INVALID_ARGUMENT for bytes that are no encoding of so many vertices; whatever the bytes, what comes out is finite.
+  // Returns finite positions for any bytes, or INVALID_ARGUMENT if they do not encode that number of vertices.
   virtual absl::StatusOr<Floats> Decode(std::string_view bytes) const = 0;
 };
 
@@ -42,7 +43,7 @@ struct CodecRow {
 
 // One row a codec, CODEC_RAW first.
 std::span<const CodecRow> Codecs();
-// The codec of that row; CODEC_UNSPECIFIED and what has no row is CODEC_RAW.
+// Returns the codec; CODEC_RAW for CODEC_UNSPECIFIED and unknown values.
 std::unique_ptr<Codec> MakeCodec(v1::Codec codec, const RestShape& shape);
 
 }  // namespace phrenic::stream

@@ -8,12 +8,12 @@ namespace phrenic::stream {
 namespace {
 
 constexpr double kRegularisation = 0.03125;  // 1/32
-constexpr double kLargestWeight = 4;         // beyond it the neighbours say too little of where the vertex is
+constexpr double kLargestWeight = 4;         // above it the fit is ill-conditioned
 
 using Offset = std::array<double, 3>;
 using Chosen = std::vector<int>;  // vertices
 
-// The vertices beside each, ascending, without itself.
+// The neighbours of each vertex, ascending.
 std::vector<std::vector<int>> Beside(const RestShape& shape) {
   std::vector<std::vector<int>> beside(shape.rest.cols());
   for (const auto& edge : shape.edges.colwise()) {
@@ -47,7 +47,7 @@ std::vector<int> BreadthFirst(const std::vector<std::vector<int>>& beside) {
   return order;
 }
 
-// Neighbours that come before the vertex, then theirs, each once.
+// Neighbours earlier in the order, then their neighbours, each once.
 Chosen Choose(const std::vector<std::vector<int>>& beside, const std::vector<int>& place, int vertex) {
   Chosen chosen;
   const auto add = [&](int candidate) {
@@ -62,7 +62,7 @@ Chosen Choose(const std::vector<std::vector<int>>& beside, const std::vector<int
   return chosen;
 }
 
-// c of (r I + sum d d^T) c = sum d, by Cramer's rule: only sums, products and one division a number, in this order.
+// Solves (r I + sum d d^T) c = sum d by Cramer's rule: sums, products and one division each, in this order.
 Offset Fit(const std::vector<Offset>& offsets) {
   double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0, x = 0, y = 0, z = 0, furthest = 0;
   for (const auto& [dx, dy, dz] : offsets) {
@@ -80,7 +80,7 @@ Offset Fit(const std::vector<Offset>& offsets) {
           (cz * x + ez * y + ff * z) / determinant};
 }
 
-// In units of 1/kUnit; what rounding leaves goes to the first.
+// Rounds to units of 1/kUnit; adds the rounding error to the first.
 std::vector<std::int32_t> Weigh(const Floats& rest, int vertex, const Chosen& chosen) {
   std::vector<Offset> offsets;
   for (const int other : chosen) {

@@ -1,4 +1,4 @@
-// Numbers as they travel: little-endian (proto/README.md).
+// Little-endian numbers of the wire format (proto/README.md).
 #ifndef PHRENIC_SERVER_STREAM_WIRE_H_
 #define PHRENIC_SERVER_STREAM_WIRE_H_
 
@@ -13,15 +13,15 @@
 
 namespace phrenic::stream {
 
-// Numbers are copied as the machine has them, so the machine must have them as the wire does.
+// Numbers are copied without conversion.
 static_assert(std::endian::native == std::endian::little, "the wire is little-endian: swap the bytes here");
 
-// float32 x y z a column.
+// Appends x, y, z of each column as float32.
 inline void AppendFloats(const Eigen::Ref<const Eigen::MatrixXf>& values, std::string& bytes) {
   bytes.append(reinterpret_cast<const char*>(values.data()), sizeof(float) * values.size());
 }
 
-// uint32 an index, column after column.
+// Appends indices as uint32, column by column.
 inline void AppendIndices(const Eigen::Ref<const Eigen::MatrixXi>& indices, std::string& bytes) {
   static_assert(sizeof(int) == sizeof(std::uint32_t));
   bytes.append(reinterpret_cast<const char*>(indices.data()), sizeof(int) * indices.size());
@@ -34,7 +34,7 @@ void Append(Number value, std::string& bytes) {
 
 inline void AppendIndex(int index, std::string& bytes) { Append(static_cast<std::uint32_t>(index), bytes); }
 
-// The number that begins at `offset`; the bytes do not end before it does.
+// Returns the number at `offset`. Requires: offset + sizeof(Number) <= bytes.size().
 template <class Number>
 Number Read(std::string_view bytes, std::size_t offset) {
   Number value;

@@ -9,7 +9,7 @@
 namespace phrenic::stream {
 namespace {
 
-constexpr int kLevel = 1;  // what it leaves is noise: higher levels take longer and win nothing
+constexpr int kLevel = 1;  // the residuals are noise: higher levels compress no better
 
 struct Free {
   void operator()(ZSTD_CCtx* context) const { ZSTD_freeCCtx(context); }
@@ -18,13 +18,13 @@ struct Free {
 }  // namespace
 
 std::size_t AppendCompressed(std::string_view bytes, std::string& compressed) {
-  // A context is 0.5 MB: each thread that compresses keeps its own.
+  // A context has 0.5 MB: one per compressing thread.
   thread_local const std::unique_ptr<ZSTD_CCtx, Free> context(ZSTD_createCCtx());
   const std::size_t before = compressed.size();
   compressed.resize(before + ZSTD_compressBound(bytes.size()));
   const std::size_t size = ZSTD_compressCCtx(context.get(), compressed.data() + before, compressed.size() - before,
                                              bytes.data(), bytes.size(), kLevel);
-  compressed.resize(before + size);  // never an error: there is room, and the level exists
+  compressed.resize(before + size);  // cannot fail: the buffer and the level are valid
   return size;
 }
 

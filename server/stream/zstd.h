@@ -1,4 +1,4 @@
-// Zstandard (RFC 8878), as quick as it gets: one frame a string.
+// Zstandard compression (RFC 8878) at the fastest level: one frame per string.
 #ifndef PHRENIC_SERVER_STREAM_ZSTD_H_
 #define PHRENIC_SERVER_STREAM_ZSTD_H_
 
@@ -9,10 +9,10 @@
 
 namespace phrenic::stream {
 
-// Appends a frame to `compressed` and returns its number of bytes. Any thread may call.
+// Appends a frame to `compressed` and returns its number of bytes. Thread-safe.
 std::size_t AppendCompressed(std::string_view bytes, std::string& compressed);
 
-// INVALID_ARGUMENT unless `compressed` is a frame of exactly `size` bytes; never allocates more.
+// INVALID_ARGUMENT unless `compressed` decompresses to exactly `size` bytes; allocates no more than that.
 absl::StatusOr<std::string> Decompress(std::string_view compressed, std::size_t size);
 
 }  // namespace phrenic::stream

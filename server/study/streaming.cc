@@ -104,10 +104,10 @@ std::string VerdictOf(const Sending& sums, double bound, std::size_t frames) {
   return absl::StrCat("holds ", sums.held, " of ", frames, " frames");
 }
 
-// `rung` of the ladder of bounds; -1: the codec has none. Nothing is added where no frame is held.
-absl::Status AddCodecRow(std::string_view name, const stream::Codec& codec, int rung, const std::vector<Floats>& frames,
-                         v1::StreamingTable& table) {
-  const double bound = rung < 0 ? 0 : 1e-3 * stream::RungMillimetres(rung);
+// `bound_level`; -1 for a codec without one. Adds nothing if there are no frames.
+absl::Status AddCodecRow(std::string_view name, const stream::Codec& codec, int bound_level,
+                         const std::vector<Floats>& frames, v1::StreamingTable& table) {
+  const double bound = bound_level < 0 ? 0 : 1e-3 * stream::BoundMillimetres(bound_level);
   Sending sums;
   for (const Floats& frame : frames) {
     if (absl::Status status = Send(codec, frame, bound, sums); !status.ok()) return status;
@@ -115,7 +115,7 @@ absl::Status AddCodecRow(std::string_view name, const stream::Codec& codec, int 
   if (sums.held == 0) return absl::OkStatus();
   v1::StreamingRow& row = *table.add_rows();
   row.set_codec(std::string(name));
-  if (rung >= 0) row.set_bound_mm(1e3 * bound);
+  if (bound_level >= 0) row.set_bound_mm(1e3 * bound);
   row.set_bytes_per_frame(sums.bytes / sums.held);
   row.set_mbit_per_second(8e-6 * kFramesPerSecond * row.bytes_per_frame());
   row.set_error_max_mm(1e3 * sums.worst);
@@ -137,7 +137,7 @@ void MarkFront(v1::StreamingTable& table) {
 
 // Of what viewers get who ask for nothing else.
 std::string AdviceOf(const v1::StreamingTable& table) {
-  const double bound = stream::RungMillimetres(stream::kDefaultRung);
+  const double bound = stream::BoundMillimetres(stream::kDefaultBoundLevel);
   std::string advice;
   for (const v1::StreamingRow& row : table.rows()) {
     if (!row.has_bound_mm() || std::abs(row.bound_mm() - bound) > 1e-9) continue;
@@ -165,10 +165,11 @@ absl::StatusOr<v1::StreamingTable> StudyStreaming(const v1::CreateStudyRequest& 
     const stream::CodecRow& each = stream::Codecs()[i];
     const auto codec = each.make(frames->shape);
     const bool bounded = each.codec != v1::CODEC_RAW;
-    for (int rung = bounded ? 0 : -1; rung <= (bounded ? stream::kCoarsestRung : -1); ++rung) {
+    for (int bound_level = bounded ? 0 : -1; bound_level <= (bounded ? stream::kCoarsestBoundLevel : -1);
+         ++bound_level) {
       const double done = kRunEnd + (1 - kRunEnd) * static_cast<double>(i) / static_cast<double>(codecs);
       if (!progress(done, absl::StrCat("sending by ", std::string(each.name)))) return Cancelled();
-      if (absl::Status status = AddCodecRow(each.name, *codec, rung, frames->measured, table); !status.ok())
+      if (absl::Status status = AddCodecRow(each.name, *codec, bound_level, frames->measured, table); !status.ok())
         return status;
     }
   }
