@@ -3,12 +3,12 @@
 #define PHRENIC_TESTS_FAKE_CLOCK_H_
 
 #include "absl/base/thread_annotations.h"
-#include "server/stream/clock.h"
+#include "server/schema/clock.h"
 
 namespace phrenic {
 
 // Any thread may call.
-class FakeClock final : public stream::Clock {
+class FakeClock final : public Clock {
  public:
   absl::Time Now() const override {
     absl::MutexLock lock(&mutex_);

@@ -2,7 +2,7 @@
 
 #include "phrenic/v1/export.pb.h"
 #include "server/schema/fields.h"
-#include "server/session/export/surface_recorder.h"
+#include "server/session/export/export_catalogue.h"
 
 namespace phrenic::client {
 

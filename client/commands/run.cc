@@ -12,7 +12,7 @@
 #include "client/terminal/progress.h"
 #include "phrenic/v1/session.grpc.pb.h"
 #include "server/service/server.h"
-#include "server/session/export/surface_recorder.h"
+#include "server/session/export/export_catalogue.h"
 #include "server/study/thesis_tables.h"
 
 namespace phrenic::client {

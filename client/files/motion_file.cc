@@ -11,7 +11,7 @@
 #include "client/files/unpack.h"
 #include "client/terminal/progress.h"
 #include "server/record/spool_file.h"
-#include "server/session/export/surface_recorder.h"
+#include "server/session/export/export_catalogue.h"
 
 namespace phrenic::client {
 namespace {

@@ -6,14 +6,13 @@
 #include "absl/cleanup/cleanup.h"
 #include "absl/strings/str_cat.h"
 #include "server/service/calls/status.h"
-#include "server/session/export/surface_recorder.h"
+#include "server/session/export/export_catalogue.h"
 
 namespace phrenic::service {
 namespace {
 
-constexpr int kMaxExportStreams = 32;                            // each occupies a thread
-constexpr absl::Duration kExportLook = absl::Milliseconds(200);  // period of the check whether the watcher disconnected
-constexpr std::int64_t kChunk = 128 << 10;                       // [bytes]
+constexpr int kMaxExportStreams = 32;       // each occupies a thread
+constexpr std::int64_t kChunk = 128 << 10;  // [bytes]
 
 absl::Status TooMany() {
   return absl::ResourceExhaustedError(
@@ -59,22 +58,6 @@ grpc::Status ExportService::CreateExport(grpc::ServerContext* context, const v1:
   return grpc::Status::OK;
 }
 
-absl::Status ExportService::Watch(const std::string& id, grpc::ServerContext& context,
-                                  grpc::ServerWriter<v1::WatchExportResponse>& writer) const {
-  std::int64_t version = 0;
-  while (!context.IsCancelled()) {
-    auto seen = exports_.Wait(id, version, kExportLook);
-    if (!seen.ok()) return seen.status();
-    if (seen->version == version) continue;
-    version = seen->version;
-    v1::WatchExportResponse response;
-    *response.mutable_job() = std::move(seen->job);
-    if (!writer.Write(response)) break;
-    if (seen->ended) return absl::OkStatus();
-  }
-  return absl::UnavailableError("the server is shutting down");  // or the client disconnected
-}
-
 grpc::Status ExportService::WatchExport(grpc::ServerContext* context, const v1::WatchExportRequest* request,
                                         grpc::ServerWriter<v1::WatchExportResponse>* writer) {
   const auto caller = guard_.Admit(*context, *request);
@@ -83,7 +66,13 @@ grpc::Status ExportService::WatchExport(grpc::ServerContext* context, const v1::
     return ToGrpc(own);
   const absl::Cleanup release = [this] { --streams_; };
   if (++streams_ > kMaxExportStreams) return ToGrpc(TooMany());
-  return ToGrpc(Watch(request->export_id(), *context, *writer));
+  v1::WatchExportResponse response;
+  return ToGrpc(exports_.Watch(
+      request->export_id(), [&] { return context->IsCancelled(); },
+      [&](v1::Export job) {
+        *response.mutable_job() = std::move(job);
+        return writer->Write(response);
+      }));
 }
 
 grpc::Status ExportService::ListExports(grpc::ServerContext* context, const v1::ListExportsRequest* request,

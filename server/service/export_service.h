@@ -32,8 +32,6 @@ class ExportService final : public v1::ExportService::Service {
                               grpc::ServerWriter<v1::DownloadExportResponse>* writer) override;
 
  private:
-  absl::Status Watch(const std::string& id, grpc::ServerContext& context,
-                     grpc::ServerWriter<v1::WatchExportResponse>& writer) const;
   absl::Status Download(const v1::DownloadExportRequest& request,
                         grpc::ServerWriter<v1::DownloadExportResponse>& writer) const;
 

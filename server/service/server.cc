@@ -105,7 +105,7 @@ struct Server::Parts {
         exports(options.limits, options.spool_dir, clock, store.get()),
         export_service(table, exports, guard),
         upload_service(uploads, options.limits, guard),
-        study_service(models, options.web_root, guard, store.get()),
+        study_service(models, options.web_root, guard, clock, store.get()),
         compare_service(table, options.limits.exports, guard),
         server_service(std::filesystem::exists(options.web_root + "/index.html"), !options.data_dir.empty(),
                        options.tls.used(), guard) {}
@@ -126,7 +126,7 @@ struct Server::Parts {
   const std::unique_ptr<store::Store> store;        // null: sessions are not saved
   const std::unique_ptr<access::Accounts> accounts;
   const std::unique_ptr<access::AuditLog> audit;
-  stream::SystemClock clock;
+  SystemClock clock;
   session::Uploads uploads;
   session::Models models;
   session::Table table;

@@ -12,17 +12,17 @@
 #include "server/service/calls/access_guard.h"
 #include "server/session/models.h"
 #include "server/store/store.h"
-#include "server/study/jobs.h"
+#include "server/study/studies.h"
 
 namespace phrenic::service {
 
 // Thread-safe: gRPC calls the methods on its own threads. Errors as in the proto of each method.
 class StudyService final : public v1::StudyService::Service {
  public:
-  // `web_root` contains report.html. `store` is null if studies are not saved.
-  StudyService(session::Models& models, std::string web_root, AccessGuard& guard, store::Store* store);
-  // Restores the studies that an earlier server saved: finished ones as they are, the others run again. Call it before
-  // the first RPC. Adds an error to `lost`, by "study ID", for each that cannot be restored; it stays in the store.
+  // `web_root` contains report.html. `store` is null if studies are not saved. All outlive the service.
+  StudyService(session::Models& models, std::string web_root, AccessGuard& guard, const Clock& clock,
+               store::Store* store);
+  // The same as study::Studies::Restore. Call it before the first RPC.
   void Restore(const std::vector<store::SavedRecord>& records, std::map<std::string, absl::Status>& lost);
 
   grpc::Status CreateStudy(grpc::ServerContext* context, const v1::CreateStudyRequest* request,
@@ -40,16 +40,10 @@ class StudyService final : public v1::StudyService::Service {
                                grpc::ServerWriter<v1::CheckPhysiologyResponse>* writer) override;
 
  private:
-  absl::StatusOr<v1::Study> Run(const v1::CreateStudyRequest& request);
-  void Save(const v1::Study& study, const v1::CreateStudyRequest* request) const;
-  absl::Status Watch(const std::string& id, grpc::ServerContext& context,
-                     grpc::ServerWriter<v1::WatchStudyResponse>& writer) const;
-
   session::Models& models_;
   const std::string web_root_;
   AccessGuard& guard_;
-  store::Store* const store_;
-  study::Jobs jobs_;
+  study::Studies studies_;
   std::atomic<int> watchers_ = 0;
 };
 

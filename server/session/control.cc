@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::int64_t kLongestName = 40;
 
-bool IsContinuation(char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; }  // of a character in UTF-8
+bool IsContinuation(char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; }  // byte of a character in UTF-8
 
 std::string ClockTime(absl::Time time) { return absl::FormatTime("%H:%M:%S UTC", time, absl::UTCTimeZone()); }
 
@@ -113,8 +113,9 @@ v1::Control ControlBook::Describe(absl::Time now) const {
 absl::Status ControlBook::Refuse(absl::Time now) const {
   const v1::Control control = Describe(now);
   const Person* const holder = Holder();
-  const std::string until =
-      holder == nullptr ? ", who owns it" : absl::StrCat(", until ", ClockTime(holder->expires), " unless they go on");
+  const std::string until = holder == nullptr
+                                ? ", who owns it"
+                                : absl::StrCat(", until ", ClockTime(holder->expires), " unless they renew it");
   return absl::PermissionDeniedError(
       absl::StrCat("control_token: the session is controlled by ", control.controller(), until,
                    "; ask for control with \"Ask\" in the viewer, `phrenic control take` or TakeControl, or fork the "
@@ -139,12 +140,12 @@ absl::Status ControlBook::CheckAlone(std::string_view token, absl::Time now) {
 
 absl::Status ControlBook::CheckFree(const std::string& name, const Person* self, absl::Time now) const {
   const auto is_other = [&](const Person& person) { return &person != self && person.name == name; };
-  // An owner's name stays theirs while they are away and nobody may take their part.
+  // An owner keeps the name while away, so that no one else can pass for the owner.
   if (!is_other(state_.owner) && std::none_of(state_.people.begin(), state_.people.end(), is_other)) {
     return absl::OkStatus();
   }
   return absl::AlreadyExistsError(
-      absl::StrCat("name: somebody else is ", name, " in this session, as ",
+      absl::StrCat("name: another person is ", name, " in this session, as ",
                    is_other(state_.owner) && now >= state_.owner.expires ? "its owner, who is away" : "others see",
                    "; enter under another name"));
 }
@@ -180,7 +181,7 @@ absl::StatusOr<ControlBook::Person*> ControlBook::Known(std::string_view token, 
   Person* const person = Find(token);
   if (person == nullptr) {
     return absl::PermissionDeniedError(
-        "control_token: nobody is in the session with this token, or their time is over; enter it first "
+        "control_token: no one is in the session with this token, or their time is over; enter it first "
         "(EnterSession)");
   }
   if (person != &state_.owner) Renew(*person, now);
@@ -212,7 +213,7 @@ absl::StatusOr<bool> ControlBook::Take(std::string_view token, absl::Time now) {
 absl::Status ControlBook::Hand(std::string_view token, const std::string& name, absl::Time now) {
   const absl::StatusOr<Person*> by = KnownToDecide(token, now);
   if (!by.ok()) return by.status();
-  if (state_.owner.name == name && now < state_.owner.expires) {  // as if they took it back
+  if (state_.owner.name == name && now < state_.owner.expires) {  // the same as if the owner took it
     state_.policy = v1::CONTROL_POLICY_OWNER;
     GiveTo("");
     return absl::OkStatus();
@@ -221,8 +222,8 @@ absl::Status ControlBook::Hand(std::string_view token, const std::string& name, 
                                [&name](const Person& person) { return person.name == name; });
   if (to == state_.people.end()) {
     return absl::FailedPreconditionError(
-        absl::StrCat("name: nobody has entered the session as ", name,
-                     "; they do so with their name in the viewer, or `phrenic control take`"));
+        absl::StrCat("name: no one has entered the session as ", name,
+                     "; people enter with their name in the viewer, or by `phrenic control take`"));
   }
   to->asks = false;
   GiveTo(to->token);
@@ -235,7 +236,7 @@ absl::Status ControlBook::HandToEverybody(std::string_view token, absl::Time now
   if (*by != &state_.owner && state_.policy == v1::CONTROL_POLICY_OWNER) {
     return absl::PermissionDeniedError(absl::StrCat("control_token: only ", state_.owner.name,
                                                     ", who owns the session, lends it to everybody; hand control "
-                                                    "to somebody, or release it"));
+                                                    "to one person, or release it"));
   }
   state_.policy = v1::CONTROL_POLICY_EVERYBODY;
   GiveTo("");
@@ -247,7 +248,7 @@ absl::Status ControlBook::Release(std::string_view token, absl::Time now) {
   if (!known.ok()) return known.status();
   if (*known == &state_.owner) {
     return absl::FailedPreconditionError(
-        "control_token: an owner's control does not end; hand it to somebody, or to everybody");
+        "control_token: an owner's control does not end; hand it to one person, or to everybody");
   }
   (*known)->asks = false;
   GiveTo(*known == Holder() ? "" : state_.holder);

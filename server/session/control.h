@@ -1,4 +1,4 @@
-// Who may change a session: one at a time by a token with a time to live, or everybody.
+// Who may change a session: everybody, or one person at a time, by a token with a time to live.
 #ifndef PHRENIC_SERVER_SESSION_CONTROL_H_
 #define PHRENIC_SERVER_SESSION_CONTROL_H_
 
@@ -16,74 +16,75 @@
 
 namespace phrenic::session {
 
-// All that there is to know about control, so that it can be kept and given back.
+// The whole of a session's control, as it is saved and restored.
 struct ControlState {
   struct Person {
     std::string name;
     std::string token;
     absl::Duration time_to_live;
-    absl::Time expires = absl::InfinitePast();  // is forgotten then; of the owner: counts as away, and stays the owner
-    bool asks = false;
+    absl::Time expires = absl::InfinitePast();  // removed then; the owner is away then, and stays the owner
+    bool asks = false;                          // for control
   };
-  // Of a join link; whoever has its secret may do as its role says.
+  // A join link: its secret gives its role to any bearer.
   struct Link {
     std::string id;
     std::string secret_sha256;
     v1::AccessRole role = v1::ACCESS_ROLE_VIEWER;
     absl::Time expires;
-    std::string made_by;  // an account
+    std::string made_by;  // account
   };
   v1::ControlPolicy policy = v1::CONTROL_POLICY_EVERYBODY;  // while `holder` is empty
   Person owner;
-  std::vector<Person> people;  // who entered, but the owner
-  std::string holder;          // the token of the one of them who has control; empty: none
+  std::vector<Person> people;  // who have entered, without the owner
+  std::string holder;          // token of the person of `people` who controls; empty: none of them
   std::int64_t revision = 1;
-  // On a server with accounts: whom the session belongs to; empty: everybody who has an account may see it.
+  // On a server with accounts: the account that owns the session; empty: every account may see it.
   std::string account;
   std::vector<Link> links;
 };
 
-// At any moment one person controls, or everybody does: the holder while they stay, else as the policy says. The owner
-// may take control from any holder. Not thread-safe: the stepping thread has it. `now` never goes back.
+// At any time one person controls, or everybody does: the holder until they expire, otherwise as the policy says. The
+// owner may take control from any holder. Not thread-safe: the stepping thread owns it. Requires: `now` never decreases
+// between calls.
 class ControlBook {
  public:
-  // Everybody controls, and nobody owns it.
+  // Everybody controls; there is no owner.
   ControlBook() = default;
-  // As it was kept.
+  // Restores saved control.
   explicit ControlBook(ControlState state) : state_(std::move(state)) {}
-  // A new session's: the owner has not entered. INVALID_ARGUMENT for a name that is none (CheckName).
+  // Makes the control of a new session, whose owner has not entered yet. The errors of CheckName.
   static absl::StatusOr<ControlBook> Make(v1::ControlPolicy policy, const std::string& owner,
                                           const std::string& account = "");
 
   const ControlState& state() const { return state_; }
-  // For everybody: nothing of it is secret.
+  // Returns what every client may know: no tokens.
   v1::Control Describe(absl::Time now) const;
 
-  // OK where whoever has this token may change the session, which keeps them there; else PERMISSION_DENIED says who
-  // controls it, until when, and what to do.
+  // Returns OK if the token's bearer may change the session, and renews their time; otherwise PERMISSION_DENIED says
+  // who controls it, until when, and what to do.
   absl::Status Check(std::string_view token, absl::Time now);
-  // OK where this token's bearer, and nobody else, controls.
+  // Returns OK if the token's bearer alone controls the session.
   absl::Status CheckAlone(std::string_view token, absl::Time now);
 
-  // The token of whoever has entered: the given one where it is known. INVALID_ARGUMENT, ALREADY_EXISTS of the name,
-  // RESOURCE_EXHAUSTED where too many have.
+  // Enters a person and returns their token: the given one if it is known, else a new one. INVALID_ARGUMENT for a bad
+  // name, ALREADY_EXISTS for a taken one, RESOURCE_EXHAUSTED past kMostPeople.
   absl::StatusOr<std::string> Enter(const std::string& name, std::string_view token, absl::Duration time_to_live,
                                     absl::Time now);
-  // Whether control was granted; the bearer asks for it otherwise.
+  // Returns true if control was granted; otherwise notes that the bearer asks for it.
   absl::StatusOr<bool> Take(std::string_view token, absl::Time now);
-  // FAILED_PRECONDITION where nobody has entered under that name.
+  // Gives control to the person of that name; FAILED_PRECONDITION if no one has entered under it.
   absl::Status Hand(std::string_view token, const std::string& name, absl::Time now);
   absl::Status HandToEverybody(std::string_view token, absl::Time now);
   absl::Status Release(std::string_view token, absl::Time now);
 
-  // A link for as long as it says, and none that has ended is kept. RESOURCE_EXHAUSTED past 64.
+  // Adds a link, and removes expired ones. RESOURCE_EXHAUSTED past kMostLinks.
   absl::Status AddLink(ControlState::Link link, absl::Time now);
-  // NOT_FOUND where there is no such link.
+  // NOT_FOUND if there is no such link.
   absl::Status RemoveLink(const std::string& id);
 
-  // Forgets whose time is over; whether there was one.
+  // Removes the people whose time is over. Returns true if there were any.
   bool Expire(absl::Time now);
-  // When the next one's will be.
+  // Returns when the next person expires; the infinite future if none will.
   absl::Time next_expiry() const;
 
  private:
@@ -92,11 +93,11 @@ class ControlBook {
   bool IsOwner(std::string_view token) const;
   Person* Find(std::string_view token);
   const Person* Holder() const;
-  // Control is this token's bearer's, or as the policy says; something of it changed in any case.
+  // Gives control to this token's bearer; empty: as the policy says. Counts a revision in any case.
   void GiveTo(std::string holder);
-  // Who has entered with this token, or PERMISSION_DENIED; their time begins anew.
+  // Returns the person who has entered with this token and renews their time, or PERMISSION_DENIED.
   absl::StatusOr<Person*> Known(std::string_view token, absl::Time now);
-  // The same, and they control alone or own the session.
+  // The same for a person who controls alone or owns the session.
   absl::StatusOr<Person*> KnownToDecide(std::string_view token, absl::Time now);
   absl::Status CheckFree(const std::string& name, const Person* self, absl::Time now) const;
   absl::Status Refuse(absl::Time now) const;
@@ -104,7 +105,7 @@ class ControlBook {
   ControlState state_;
 };
 
-// INVALID_ARGUMENT unless it is 1 to 40 characters, none of them a control character or at the ends a space.
+// Returns INVALID_ARGUMENT unless the name has 1 to 40 characters, no control characters, and no space at its ends.
 absl::Status CheckName(const std::string& field, const std::string& name);
 
 inline constexpr std::size_t kMostPeople = 256;

@@ -1,4 +1,4 @@
-// How much of a processor core a session's stepping may have.
+// Limits a session's stepping to a share of a processor core.
 #ifndef PHRENIC_SERVER_SESSION_CPU_SHARE_H_
 #define PHRENIC_SERVER_SESSION_CPU_SHARE_H_
 
@@ -6,17 +6,18 @@
 
 namespace phrenic::session {
 
-// Work that began at t0 and took the processor for c seconds earns a rest until max(t0, the last rest's end) + c /
-// share: over any longer time the thread has had no more than its share. Not thread-safe.
+// After work that began at t0 and used c seconds of CPU time, the thread rests until max(t0, end of the last rest) +
+// c / share, so that over any longer time it uses no more than its share. Not thread-safe.
 class CpuShare {
  public:
-  // `share` of a core, above 0; 1 or more is no limit.
+  // `share` of a core is above 0; 1 or more is no limit.
   explicit CpuShare(double share) : share_(share) {}
 
-  // Work begins: `cpu` is what the thread has had of the processor so far.
+  // Notes that work begins. `cpu` is the thread's CPU time so far (ThreadCpuSeconds).
   void Begin(absl::Time now, absl::Duration cpu);
+  // Notes that it ends.
   void End(absl::Duration cpu);
-  // Until then no work is to begin; at once where the clock was set back.
+  // Returns the time before which no work may begin; the infinite past if the clock was set back.
   absl::Time RestsUntil(absl::Time now) const { return now < began_ ? absl::InfinitePast() : rests_until_; }
 
  private:
@@ -25,9 +26,6 @@ class CpuShare {
   absl::Duration cpu_;
   absl::Time rests_until_ = absl::InfinitePast();
 };
-
-// What the calling thread has had of the processor so far.
-absl::Duration ThreadCpu();
 
 }  // namespace phrenic::session
 

@@ -13,7 +13,7 @@ IdempotencyCache::Entries::iterator IdempotencyCache::Find(const std::string& id
   return std::find_if(entries_.begin(), entries_.end(), [&id](const Entry& entry) { return entry.id == id; });
 }
 
-bool IdempotencyCache::UnderWay(const std::string& id) {
+bool IdempotencyCache::InProgress(const std::string& id) {
   const auto entry = Find(id);
   return entry != entries_.end() && !entry->answer.has_value();
 }
@@ -23,7 +23,7 @@ absl::StatusOr<std::optional<Answer>> IdempotencyCache::Begin(const std::string&
   const std::string digest = Sha256Hex(content);  // contents may be large
   const auto free = [this, &id] {
     mutex_.AssertHeld();
-    return !UnderWay(id);
+    return !InProgress(id);
   };
   absl::MutexLock lock(&mutex_);
   mutex_.Await(absl::Condition(&free));
@@ -35,8 +35,8 @@ absl::StatusOr<std::optional<Answer>> IdempotencyCache::Begin(const std::string&
   if (entry->digest == digest) return entry->answer;
   return absl::InvalidArgumentError(
       absl::StrCat("request_id: ", id,
-                   " was another request's of this session; name each request differently, and "
-                   "repeat one as it was"));
+                   " belongs to another request of this session; give each request its own id, and "
+                   "repeat a request unchanged"));
 }
 
 void IdempotencyCache::Keep(const std::string& id, Answer answer) {

@@ -1,4 +1,4 @@
-// What a session answered to requests that named an id, so that a repeat of one is answered alike and done once.
+// The answers to requests that have an id, so that a repeated request is executed once and answered the same.
 #ifndef PHRENIC_SERVER_SESSION_IDEMPOTENCY_CACHE_H_
 #define PHRENIC_SERVER_SESSION_IDEMPOTENCY_CACHE_H_
 
@@ -19,31 +19,32 @@ struct Answer {
   std::string bytes;  // of the response, where the status is OK
 };
 
-// Any thread may call. Remembers the last kMostAnswers ids that were answered.
+// Keeps the last kMostAnswers answers. Thread-safe.
 class IdempotencyCache {
  public:
-  // Waits while the same request is under way. Its answer where it was given before; where not, the caller carries the
-  // request out and calls Keep or Forget. INVALID_ARGUMENT where the id was that of another content, or is none
-  // (schema::CheckId).
+  // Waits while a request with this id is in progress, then returns its answer. Returns nullopt if the id is new: the
+  // caller executes the request and calls Keep or Forget. INVALID_ARGUMENT if the id had another content, or is not
+  // valid (schema::CheckId).
   absl::StatusOr<std::optional<Answer>> Begin(const std::string& id, const std::string& content)
       ABSL_LOCKS_EXCLUDED(mutex_);
+  // Keeps the answer to the request in progress.
   void Keep(const std::string& id, Answer answer) ABSL_LOCKS_EXCLUDED(mutex_);
-  // Nothing was changed: a repeat begins anew.
+  // Forgets the request in progress, which has changed nothing: a repeat is executed.
   void Forget(const std::string& id) ABSL_LOCKS_EXCLUDED(mutex_);
 
  private:
   struct Entry {
     std::string id;
     std::string digest;            // of the content
-    std::optional<Answer> answer;  // none: under way
+    std::optional<Answer> answer;  // nullopt: in progress
   };
   using Entries = std::deque<Entry>;
 
   Entries::iterator Find(const std::string& id) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  bool UnderWay(const std::string& id) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  bool InProgress(const std::string& id) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
   absl::Mutex mutex_;
-  Entries entries_ ABSL_GUARDED_BY(mutex_);  // the oldest first
+  Entries entries_ ABSL_GUARDED_BY(mutex_);  // oldest first
 };
 
 inline constexpr std::size_t kMostAnswers = 64;

@@ -1,4 +1,4 @@
-// How much a server takes on: every list, buffer and queue of it ends somewhere.
+// Resource limits of a server: every list, buffer and queue is bounded.
 #ifndef PHRENIC_SERVER_SESSION_LIMITS_H_
 #define PHRENIC_SERVER_SESSION_LIMITS_H_
 
@@ -11,17 +11,17 @@ struct Limits {
   int sessions_of_user = 8;  // on a server with accounts
   int viewers = 64;          // of one session
   int viewers_in_all = 256;
-  double session_cpu = 1;                               // of a core, for stepping one session; 1: no limit
-  int exports = 2;                                      // at once; comparisons as well
+  double session_cpu = 1;                               // share of a core for stepping one session; 1: no limit
+  int exports = 2;                                      // running at the same time; comparisons as well
   int models = 4;                                       // compiled scenes kept for the next session
   std::int64_t vertices = 4'000'000;                    // of one scene
-  int kept_exports = 16;                                // waiting, running and ended
-  int export_minutes = 60;                              // that a file is kept for download
+  int kept_exports = 16;                                // that wait, run or have ended
+  int export_minutes = 60;                              // how long a file is kept for download
   std::int64_t upload_bytes = std::int64_t{256} << 20;  // of one file
   std::int64_t uploads_bytes = std::int64_t{1} << 30;   // of all of them
   int uploads = 256;                                    // kept
-  double pause_minutes = 60;                            // a session plays on without anybody; 0: for ever
-  double delete_minutes = 0;                            // a session is kept without anybody; 0: for ever
+  double pause_minutes = 60;                            // a session without viewers or calls plays on; 0: forever
+  double delete_minutes = 0;                            // a session without viewers or calls is kept; 0: forever
 };
 
 }  // namespace phrenic::session

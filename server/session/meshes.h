@@ -1,4 +1,4 @@
-// Where the compile step gets its meshes: the generated thorax, surface files below the data folder, and uploads.
+// The sources of meshes for compiling a scene: generated parts, surface files below the data folder, and uploads.
 #ifndef PHRENIC_SERVER_SESSION_MESHES_H_
 #define PHRENIC_SERVER_SESSION_MESHES_H_
 
@@ -10,11 +10,12 @@
 
 namespace phrenic::session {
 
-// The place of `path` below `data_dir`, both made canonical. INVALID_ARGUMENT for an absolute path or one that leaves
-// the folder (by ".." or a symbolic link), NOT_FOUND where there is no such file or no data folder.
+// Returns the canonical path of the file `path` below `data_dir`. INVALID_ARGUMENT for an absolute path or one that
+// leaves the folder (by ".." or a symbolic link), NOT_FOUND if there is no such file or no data folder.
 absl::StatusOr<std::string> ResolveBelow(const std::string& data_dir, const std::string& path);
 
-// Any thread may call it. "upload:SHA256" is one of `uploads`, which outlives the source; null: there are none.
+// Returns a thread-safe source, for which the path "upload:SHA256" names one of `uploads`. `uploads` outlives it; null:
+// there are none.
 MeshSource MakeMeshSource(std::string data_dir, Uploads* uploads = nullptr);
 
 }  // namespace phrenic::session

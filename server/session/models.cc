@@ -14,7 +14,7 @@
 namespace phrenic::session {
 namespace {
 
-std::string SerializedAlike(const v1::Scene& scene) {
+std::string DeterministicBytes(const v1::Scene& scene) {
   std::string bytes;
   google::protobuf::io::StringOutputStream out(&bytes);
   google::protobuf::io::CodedOutputStream coded(&out);
@@ -90,7 +90,7 @@ absl::StatusOr<v1::Scene> Models::Resolve(const v1::SceneSource& source) const {
     if (!found.ok()) return found.status();
     scene = *std::move(found);
   } else {
-    return absl::InvalidArgumentError("source: neither a scene's name nor a scene is given");
+    return absl::InvalidArgumentError("source: is empty; give the name of a scene, or a scene");
   }
   if (source.has_resolution_mm()) {
     for (v1::Body& body : *scene.mutable_bodies()) {
@@ -100,9 +100,9 @@ absl::StatusOr<v1::Scene> Models::Resolve(const v1::SceneSource& source) const {
   return scene;
 }
 
-// The scene, and size and time of change of each file that it names.
+// The scene, with the size and the modification time of each file that it names.
 std::string Models::Key(const v1::Scene& scene) const {
-  std::string key = SerializedAlike(scene);
+  std::string key = DeterministicBytes(scene);
   for (const v1::Body& body : scene.bodies()) {
     if (!body.has_file()) continue;
     const absl::StatusOr<std::string> path = ResolveBelow(data_dir_, body.file().path());

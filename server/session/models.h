@@ -1,4 +1,4 @@
-// Scenes compiled, and kept for the next session of the same scene.
+// Compiles scenes, and keeps the models for the next session of the same scene.
 #ifndef PHRENIC_SERVER_SESSION_MODELS_H_
 #define PHRENIC_SERVER_SESSION_MODELS_H_
 
@@ -19,22 +19,22 @@
 
 namespace phrenic::session {
 
-// Any thread may call; scenes are compiled one at a time, so that memory and cores are for one.
+// Thread-safe. Compiles one scene at a time, which has all memory and cores for itself.
 class Models {
  public:
-  // Keeps the `capacity` models that were asked for last. `uploads` outlives it; null: scenes name none.
+  // Keeps the `capacity` models that were used last. `uploads` outlives it; null: scenes cannot name uploaded files.
   Models(SceneCatalogue catalogue, std::string data_dir, int capacity, Uploads* uploads = nullptr,
          std::int64_t most_vertices = Limits().vertices);
 
   const SceneCatalogue& catalogue() const { return catalogue_; }
-  // The scene that `source` names or holds, with its resolution; INVALID_ARGUMENT "source: ..." where it is empty.
+  // Returns the scene that `source` names or holds, at its resolution; INVALID_ARGUMENT "source: ..." if it is empty.
   absl::StatusOr<v1::Scene> Resolve(const v1::SceneSource& source) const;
-  // The same scene gives the same model as long as its surface files stay as they are. A model with no more
-  // vertices in all than are allowed, else RESOURCE_EXHAUSTED.
+  // Returns the compiled scene. The same scene gives the same model while its surface files are unchanged.
+  // RESOURCE_EXHAUSTED if the model has more vertices than allowed; the errors of Compile.
   absl::StatusOr<std::shared_ptr<const Model>> Get(const v1::SceneSource& source) ABSL_LOCKS_EXCLUDED(mutex_);
-  // The files that clients gave which the scene names; Uploads::Hold.
+  // Returns the uploaded files that the scene names. The errors of Uploads::Hold.
   absl::StatusOr<std::vector<Uploads::Held>> HoldSurfaces(const v1::Scene& scene) const;
-  // Those of a scene that was saved, before it is compiled.
+  // Uploads the files of a saved scene again, before it is compiled.
   absl::StatusOr<std::vector<Uploads::Held>> AdoptSurfaces(const v1::SavedScene& saved) const;
 
  private:
@@ -43,7 +43,7 @@ class Models {
     std::shared_ptr<const Model> model;
   };
   std::string Key(const v1::Scene& scene) const;
-  // Refuses a scene whose shapes would not fit before they are made, and what was made of one.
+  // Check the number of vertices: of grids before they are generated, and of the compiled model.
   absl::Status CheckSize(const v1::Scene& scene) const;
   absl::Status CheckSize(const Model& model) const;
 
@@ -54,7 +54,7 @@ class Models {
   const std::size_t capacity_;
   const std::int64_t most_vertices_;
   absl::Mutex mutex_;
-  std::list<Entry> entries_ ABSL_GUARDED_BY(mutex_);  // the last one asked for first
+  std::list<Entry> entries_ ABSL_GUARDED_BY(mutex_);  // last used first
 };
 
 }  // namespace phrenic::session

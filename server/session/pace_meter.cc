@@ -1,6 +1,6 @@
 #include "server/session/pace_meter.h"
 
-#include <ctime>
+#include "server/schema/thread_cpu.h"
 
 namespace phrenic::session {
 namespace {
@@ -8,12 +8,6 @@ namespace {
 constexpr absl::Duration kWindow = absl::Seconds(1);
 
 }  // namespace
-
-double ThreadCpuSeconds() {
-  timespec used{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used);
-  return static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
-}
 
 void PaceMeter::Start(absl::Time now, std::int64_t tick, double time) {
   start_ = now;

@@ -9,22 +9,21 @@
 
 namespace phrenic::session {
 
-// CPU time of the calling thread so far [s].
-double ThreadCpuSeconds();
-
-// Over windows of about a second. Not thread-safe: the stepping thread has it.
+// Steps, simulated time and CPU time over windows of about a second. Not thread-safe: the stepping thread owns it,
+// whose CPU time it reads.
 class PaceMeter {
  public:
+  // Begins a window at simulated time `time` [s].
   void Start(absl::Time now, std::int64_t tick, double time);
-  // True when a window has just ended, so that pace() is new; `last` ends the window however short it is.
+  // Returns true if a window has just ended, so that pace() is new. `last` ends the window however short it is.
   bool Update(absl::Time now, std::int64_t tick, double time, bool last = false);
   const v1::Pace& pace() const { return pace_; }
 
  private:
   absl::Time start_;
   std::int64_t start_tick_ = 0;
-  double start_time_ = 0;
-  double start_cpu_ = 0;
+  double start_time_ = 0;  // simulated [s]
+  double start_cpu_ = 0;   // [s]
   v1::Pace pace_;
 };
 

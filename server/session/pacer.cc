@@ -6,7 +6,7 @@
 namespace phrenic::session {
 namespace {
 
-constexpr double kCatchUp = 0.1;  // [s] on the wall
+constexpr double kCatchUp = 0.1;  // of wall-clock time [s]
 const absl::Duration kFrameInterval = absl::Seconds(1 / kFramesPerSecond);
 
 }  // namespace
@@ -22,8 +22,8 @@ double Pacer::Target(absl::Time now, double time) {
   if (speed_ == 0) return std::numeric_limits<double>::infinity();
   const double target = start_time_ + speed_ * absl::ToDoubleSeconds(now - start_);
   const double furthest = time + speed_ * kCatchUp;
-  // The clock may have been set back, too.
   if (target <= furthest && now >= start_) return target;
+  // Starts again here: the session is too slow, or the clock was set back.
   start_ = now;
   start_time_ = std::clamp(target, time, furthest);
   return start_time_;

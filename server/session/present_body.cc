@@ -12,7 +12,7 @@ namespace {
 
 bool HasSurface(const BodyModel& body) { return body.mesh.triangles.cols() > 0; }
 
-// Of the deformable bodies the one with the most triangles; none where no body has any.
+// Returns the deformable body with the most triangles; null if none has any.
 const BodyModel* Largest(const Model& model) {
   const BodyModel* largest = nullptr;
   for (const BodyModel& body : model.bodies) {

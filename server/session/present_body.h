@@ -1,4 +1,4 @@
-// A body of a session as it is now.
+// The present surface of a session's body.
 #ifndef PHRENIC_SERVER_SESSION_PRESENT_BODY_H_
 #define PHRENIC_SERVER_SESSION_PRESENT_BODY_H_
 
@@ -8,9 +8,10 @@
 
 namespace phrenic::session {
 
-// The surface of a body between two steps [m], with the body's regions and one more of its name that has every vertex;
-// `state` gets session, body, tick and time. INVALID_ARGUMENT lists the bodies that have a surface where there is no
-// such one; NOT_FOUND, FAILED_PRECONDITION of Table::Find and Session::MakeFork. Any thread may call.
+// Returns the surface of a body between two steps [m], with the body's regions and one more, named like the body, of
+// all vertices. An empty body name means the largest deformable body. Fills session, body, tick and time of `state`.
+// INVALID_ARGUMENT if there is no such body with a surface, and lists those that there are; the errors of Table::Find
+// and Session::MakeFork. Thread-safe.
 absl::StatusOr<Mesh> FindPresentBody(const Table& table, const v1::SessionBody& body, v1::ComparedState& state);
 
 }  // namespace phrenic::session

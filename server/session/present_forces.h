@@ -1,4 +1,4 @@
-// The forces on a body of a session as it is now.
+// The present forces on a session's body.
 #ifndef PHRENIC_SERVER_SESSION_PRESENT_FORCES_H_
 #define PHRENIC_SERVER_SESSION_PRESENT_FORCES_H_
 
@@ -8,9 +8,9 @@
 
 namespace phrenic::session {
 
-// Takes a copy of the state between two steps and works them out in the calling thread. INVALID_ARGUMENT with what
-// there is where there is no such deformable body, vertex or kind; NOT_FOUND, FAILED_PRECONDITION of Table::Find and
-// Session::MakeFork. Any thread may call.
+// Evaluates the forces [N], by kind, on a copy of the state between two steps, in the calling thread. INVALID_ARGUMENT
+// if there is no such deformable body, vertex or kind, and lists those that there are; the errors of Table::Find and
+// Session::MakeFork. Thread-safe.
 absl::StatusOr<v1::GetForcesResponse> ReadForces(const Table& table, const v1::GetForcesRequest& request);
 
 }  // namespace phrenic::session

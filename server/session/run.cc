@@ -23,19 +23,19 @@ Run::Run(std::shared_ptr<const Model> model, v1::Parameters parameters, State st
 absl::Status Run::Step() {
   if (divergence_.has_value()) return absl::FailedPreconditionError(Describe(*divergence_));
   const double dt = parameters_.time_step();
-  trail_.Note(parameters_, state_);
+  checkpoint_.Note(parameters_, state_);
   absl::Status stepped = phrenic::Step(*model_, parameters_, dt, state_, work_);
   if (stepped.ok()) return stepped;
-  State before = trail_.StateBeforeLastStep(*model_, parameters_, dt, work_);
+  State before = checkpoint_.StateBeforeLastStep(*model_, parameters_, dt, work_);
   divergence_ = Diagnose(*model_, parameters_, stepped, before, state_);
   state_ = std::move(before);
-  trail_.Forget();
+  checkpoint_.Forget();
   return absl::OutOfRangeError(Describe(*divergence_));
 }
 
 void Run::set_parameters(const v1::Parameters& parameters) {
   parameters_ = parameters;
-  trail_.Forget();
+  checkpoint_.Forget();
 }
 
 void Run::Reset() {
@@ -43,11 +43,11 @@ void Run::Reset() {
   state_ = model_->InitialState();
   state_.pulls = std::move(pulls);
   divergence_.reset();
-  trail_.Forget();
+  checkpoint_.Forget();
 }
 
 absl::Status Run::ChangePulls(const std::vector<VertexPull>& changes, bool alone) {
-  trail_.Forget();
+  checkpoint_.Forget();
   return phrenic::ChangePulls(changes, alone, state_.pulls);
 }
 

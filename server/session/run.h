@@ -1,4 +1,4 @@
-// A State with its parameters that is stepped, and what became of it.
+// A model's state that is stepped, with its parameters.
 #ifndef PHRENIC_SERVER_SESSION_RUN_H_
 #define PHRENIC_SERVER_SESSION_RUN_H_
 
@@ -16,29 +16,38 @@ namespace phrenic::session {
 
 inline constexpr double kTimeTolerance = 1e-9;  // rounding of a long sum of steps [s]
 
-// Not thread-safe; a copy of `state` and `parameters` is a fork. No step allocates.
+// A moment of a run, from which another run may continue.
+struct Fork {
+  v1::Parameters parameters;  // every field set and in range
+  State state;
+  double stable_step = 0;  // the largest stable step for the parameters [s]
+};
+
+// Equal models, parameters and states have equal futures, bit for bit. Not thread-safe. No step allocates.
 class Run {
  public:
+  // Starts at t = 0.
   Run(std::shared_ptr<const Model> model, v1::Parameters parameters);
+  // Starts from `state`, which is a state of the model.
   Run(std::shared_ptr<const Model> model, v1::Parameters parameters, State state);
 
-  // One step of parameters.time_step. OUT_OF_RANGE when it diverged: divergence() tells where and why then, the state
-  // stays the last good one, and every later step is refused with FAILED_PRECONDITION until Reset.
+  // Takes one step of parameters.time_step. Returns OUT_OF_RANGE if it diverges: divergence() then says where and why,
+  // the state stays the last good one, and every later step returns FAILED_PRECONDITION until Reset.
   absl::Status Step();
-  // Back to t = 0; parameters and pulls stay.
+  // Returns to t = 0 and keeps parameters and pulls.
   void Reset();
 
   const Model& model() const { return *model_; }
   const State& state() const { return state_; }
   const v1::Parameters& parameters() const { return parameters_; }
-  // Of the last step.
+  // Returns the solver effort of the last step.
   const SolverEffort& effort() const { return work_.effort; }
-  // Every field must be set.
+  // Requires: every field of `parameters` is set.
   void set_parameters(const v1::Parameters& parameters);
-  // As phrenic::ChangePulls: RESOURCE_EXHAUSTED where they become too many.
+  // Same as phrenic::ChangePulls: RESOURCE_EXHAUSTED if there are too many.
   absl::Status ChangePulls(const std::vector<VertexPull>& changes, bool alone);
   const std::optional<v1::Divergence>& divergence() const { return divergence_; }
-  // It had diverged before it was saved.
+  // Restores the divergence of a saved run.
   void set_divergence(const v1::Divergence& divergence) { divergence_ = divergence; }
 
  private:
@@ -46,14 +55,14 @@ class Run {
   v1::Parameters parameters_;
   State state_;
   Workspace work_;
-  StepCheckpoint trail_;
+  StepCheckpoint checkpoint_;
   std::optional<v1::Divergence> divergence_;
 };
 
-// "diverged at t = 1.2 s ... by springs:lung: set time_step to ... or less".
+// Returns "the session diverged at t = 1.2 s ... at vertex 7 of lung, pulled most by springs:lung: ...".
 std::string Describe(const v1::Divergence& divergence);
 
-// StateHash in hexadecimal, 16 digits.
+// Returns StateHash in hexadecimal, 16 digits.
 std::string HashText(const State& state);
 
 }  // namespace phrenic::session

@@ -48,15 +48,15 @@ ControlState::Link RestoreLink(const v1::SavedLink& saved) {
           absl::FromUnixNanos(TimeUtil::TimestampToNanoseconds(saved.expires())), saved.made_by()};
 }
 
-// What the session was told: `run` stands at its tick.
-absl::Status Take(const v1::SavedMoment& moment, Run& run) {
+// Applies a moment to the run. Requires: the run is at the moment's tick.
+absl::Status Apply(const v1::SavedMoment& moment, Run& run) {
   run.set_parameters(moment.session().parameters());
   const auto pulls = FindPulls(run.model(), moment.session().pulls(), "pulls");
   if (!pulls.ok()) return absl::DataLossError(pulls.status().message());
   return run.ChangePulls(*pulls, true);
 }
 
-absl::Status StepAgainTo(std::int64_t tick, Run& run) {
+absl::Status StepTo(std::int64_t tick, Run& run) {
   while (run.state().tick < tick) {
     if (absl::Status stepped = run.Step(); !stepped.ok()) return absl::DataLossError(stepped.message());
   }
@@ -86,10 +86,10 @@ absl::StatusOr<Compiled> RestoreScene(const v1::SavedScene& saved, const std::st
   auto model = models.Get(saved.source());
   if (!model.ok()) return model.status();
   if ((*model)->report.scene_hash() == saved.scene_hash()) return Compiled{*std::move(model), *std::move(surfaces)};
-  return absl::FailedPreconditionError(
-      absl::StrCat(what, ": the surface files of its scene \"", (*model)->scene.name(),
-                   "\", or the version of Phrenic, are not those that it was made with: put the files back and start "
-                   "anew"));
+  return absl::FailedPreconditionError(absl::StrCat(
+      what, ": the surface files of its scene \"", (*model)->scene.name(),
+      "\", or the version of Phrenic, differ from those that it was made with: restore the files and restart "
+      "the server"));
 }
 
 v1::SavedControl SaveControl(const ControlState& state) {
@@ -124,8 +124,8 @@ absl::StatusOr<Replayed> Replay(std::shared_ptr<const Model> model, const store:
   for (const v1::SavedMoment& moment : saved.later) {
     last = &moment;
     if (moment.from_start()) run.Reset();
-    if (absl::Status status = StepAgainTo(moment.session().tick(), run); !status.ok()) return status;
-    if (absl::Status status = Take(moment, run); !status.ok()) return status;
+    if (absl::Status status = StepTo(moment.session().tick(), run); !status.ok()) return status;
+    if (absl::Status status = Apply(moment, run); !status.ok()) return status;
   }
   return Replayed{run.state(), *last};
 }

@@ -1,4 +1,4 @@
-// A session as its store has it, and back.
+// Converts a session to what its store keeps, and back.
 #ifndef PHRENIC_SERVER_SESSION_SAVING_H_
 #define PHRENIC_SERVER_SESSION_SAVING_H_
 
@@ -18,25 +18,26 @@ namespace phrenic::session {
 v1::SavedControl SaveControl(const ControlState& state);
 ControlState RestoreControl(const v1::SavedControl& saved);
 
-// What is compiled of a scene, and the files that clients gave for it.
+// A compiled scene, with the uploaded files that it uses.
 struct Compiled {
   std::shared_ptr<const Model> model;
   std::vector<Uploads::Held> surfaces;
 };
 
-// Complete in itself. The errors of reading the files.
+// Returns the scene with the content of its uploaded files. The errors of reading the files.
 absl::StatusOr<v1::SavedScene> SaveScene(const Model& model, const std::vector<Uploads::Held>& surfaces);
-// FAILED_PRECONDITION, which begins with `what`, where the scene does not come out as it was.
+// Compiles a saved scene. FAILED_PRECONDITION, which begins with `what`, if the model differs from the saved one.
 absl::StatusOr<Compiled> RestoreScene(const v1::SavedScene& saved, const std::string& what, Models& models);
 
-// Where a saved session stands.
+// The last moment of a saved session.
 struct Replayed {
   State state;
-  v1::SavedMoment moment;  // the last that it was told
+  v1::SavedMoment moment;  // the last in its journal
 };
 
-// Takes the state from disk, and steps and changes it as it was then: bit for bit the state that the session had, where
-// the model is the same. DATA_LOSS where the state is none of the model, or stops short.
+// Replays a saved session: starts from its saved state, and takes the steps and changes of its journal. The result
+// equals the session's last state bit for bit. Requires: `model` is the model of the session. DATA_LOSS if the state
+// does not fit the model, or if the journal cannot be replayed.
 absl::StatusOr<Replayed> Replay(std::shared_ptr<const Model> model, const store::SavedSession& saved);
 
 }  // namespace phrenic::session

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 constexpr std::uintmax_t kLargestScene = 64 << 20;  // [bytes]
 
-// Name -> file, the first folder's first.
+// Returns name -> file; of two files with the same name, the first folder's.
 std::map<std::string, fs::path> Files(const std::vector<std::string>& folders) {
   std::map<std::string, fs::path> files;
   for (const std::string& folder : folders) {

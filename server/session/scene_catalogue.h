@@ -1,4 +1,4 @@
-// The scenes that a server knows: the *.textproto files of its folders.
+// The scenes that a server offers: the *.textproto files of its folders.
 #ifndef PHRENIC_SERVER_SESSION_SCENE_CATALOGUE_H_
 #define PHRENIC_SERVER_SESSION_SCENE_CATALOGUE_H_
 
@@ -10,15 +10,16 @@
 
 namespace phrenic::session {
 
-// Reads the folders anew with every call, so that a scene that is edited is seen at once. Any thread may call.
+// Reads the folders at every call, so that an edited scene takes effect at once. Thread-safe.
 class SceneCatalogue {
  public:
-  // Where two folders have a scene of the same name, the first one's counts. A folder that is missing is empty.
+  // If two folders have a scene of the same name, the first folder's is used. A missing folder counts as empty.
   explicit SceneCatalogue(std::vector<std::string> folders) : folders_(std::move(folders)) {}
 
-  // In the order of their names. A scene that cannot be read is listed with the error as its description.
+  // Returns all scenes, sorted by name. A scene that cannot be read is listed with the error as its description.
   std::vector<v1::SceneSummary> List() const;
-  // The scene in NAME.textproto; NOT_FOUND lists the names there are, INVALID_ARGUMENT tells file, line and column.
+  // Returns the scene in NAME.textproto. NOT_FOUND lists the names that there are; INVALID_ARGUMENT gives file, line
+  // and column.
   absl::StatusOr<v1::Scene> Find(const std::string& name) const;
   std::vector<std::string> Names() const;
 

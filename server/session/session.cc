@@ -3,167 +3,164 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "google/protobuf/util/time_util.h"
 
 namespace phrenic::session {
 namespace {
 
-// How long a waiting call goes on before it looks again whether its caller is still there.
+// Between two looks of a waiting call at whether its caller is still there.
 constexpr absl::Duration kLook = absl::Milliseconds(50);
+
+v1::Session FirstStatus(const std::string& id, const Model& model, const SessionOrigin& origin, absl::Time now) {
+  v1::Session status;
+  status.set_id(id);
+  status.set_epoch(origin.epoch);
+  status.set_scene(model.scene.name());
+  status.set_scene_title(model.scene.title());
+  *status.mutable_create_time() =
+      origin.saved_moment.has_value()
+          ? origin.saved_moment->session().create_time()
+          : google::protobuf::util::TimeUtil::NanosecondsToTimestamp(absl::ToUnixNanos(now));
+  return status;
+}
+
+RunningSession StartOf(const std::shared_ptr<const Model>& model, Fork start, SessionOrigin origin) {
+  RunningSession session{.run = Run(model, std::move(start.parameters), std::move(start.state)),
+                         .control = std::move(origin.control),
+                         .stable_step = start.stable_step};
+  if (origin.saved_moment.has_value()) session.Restore(*origin.saved_moment);
+  return session;
+}
+
+std::vector<std::string> Warnings(const v1::Parameters& parameters, double stable_step) {
+  if (parameters.time_step() <= stable_step) return {};
+  return {
+      absl::StrFormat("time_step: %.3g s is above %.3g s, the largest stable step at the present stiffness, and "
+                      "the session will probably diverge; set it to %.2g s or less",
+                      parameters.time_step(), stable_step, 0.9 * stable_step)};
+}
 
 }  // namespace
 
-Session::Session(std::string id, std::shared_ptr<const Model> model, Fork start, const stream::Clock& clock,
+Session::Session(std::string id, std::shared_ptr<const Model> model, Fork start, const Clock& clock,
                  const Limits& limits, Origin origin)
     : id_(std::move(id)),
-      epoch_(origin.epoch),
       model_(std::move(model)),
       surfaces_(std::move(origin.surfaces)),
       clock_(clock),
       publisher_(model_, clock, limits.viewers),
       attended_(absl::ToUnixNanos(clock.Now())),
-      run_(model_, std::move(start.parameters), std::move(start.state)),
-      share_(limits.session_cpu),
-      stable_step_(start.stable_step),
-      control_(std::move(origin.control)),
-      journal_(std::move(origin.journal)) {
-  {
-    absl::MutexLock lock(&mutex_);
-    status_.set_id(id_);
-    status_.set_epoch(epoch_);
-    status_.set_scene(model_->scene.name());
-    status_.set_scene_title(model_->scene.title());
-    *status_.mutable_create_time() =
-        google::protobuf::util::TimeUtil::NanosecondsToTimestamp(absl::ToUnixNanos(clock.Now()));
-  }
-  if (origin.told.has_value()) GoOn(*origin.told);
-  if (state_ == v1::SESSION_STATE_PLAYING) *reached_ = run_.state().time;
-  pacer_.Start(clock.Now(), run_.state().time, speed_);
-  meter_.Start(clock.Now(), run_.state().tick, run_.state().time);
-  Tell();
-  OfferFrame(clock.Now());
-  thread_ = std::thread([this] { Loop(); });
+      board_(FirstStatus(id_, *model_, origin, clock.Now())),
+      saver_(std::move(origin.journal), clock, origin.epoch > 0),
+      reporter_(clock, board_, saver_, publisher_),
+      loop_(StartOf(model_, std::move(start), std::move(origin)), limits.session_cpu, clock, reporter_) {}
+
+Session::~Session() { Stop(absl::UnavailableError(absl::StrCat("session ", id_, " has ended"))); }
+
+absl::StatusOr<v1::Session> Session::Saved() {
+  const absl::Status saved = Flush();
+  if (absl::IsAborted(saved)) return saved;
+  v1::Session now = status();
+  if (!saved.ok()) publisher_.Announce(now);  // viewers got the status before the store failed
+  return now;
 }
 
-Session::~Session() {
-  Stop(absl::UnavailableError(absl::StrCat("session ", id_, " has ended")));
-  thread_.join();
-}
-
-v1::Session Session::status() const {
-  v1::Session status;
-  {
-    absl::MutexLock lock(&mutex_);
-    status = status_;
-  }
-  status.set_viewers(publisher_.viewers());
-  WriteNotSaved(status);
-  return status;
-}
-
-absl::Status Session::Ask(absl::FunctionRef<void()> act) {
-  bool ran = false;
-  auto done = std::make_shared<absl::Notification>();
-  {
-    absl::MutexLock lock(&mutex_);
-    if (stopped_.has_value()) return *stopped_;
-    commands_.push_back({.act =
-                             [&] {
-                               act();
-                               ran = true;
-                             },
-                         .done = done});
-    called_ = true;
-  }
-  done->WaitForNotification();
-  if (ran) return absl::OkStatus();
-  absl::MutexLock lock(&mutex_);
-  return stopped_.value_or(absl::InternalError("the stepping thread refused a call"));
+absl::StatusOr<v1::Session> Session::Change(std::string_view token, absl::FunctionRef<absl::Status()> act) {
+  if (absl::Status changed = loop_.CallAs(token, act); !changed.ok()) return changed;
+  return Saved();
 }
 
 absl::StatusOr<v1::Session> Session::Play(std::optional<double> speed, bool as_fast_as_possible, double until,
                                           std::string_view token, std::weak_ptr<const ReachedTime> leader) {
-  auto played = AskAs(token, [&] { return StartPlaying(speed, as_fast_as_possible, until, leader); });
-  if (!played.ok()) return played;
-  return Saved();
+  const PlayRequest request{speed, as_fast_as_possible, until, std::move(leader)};
+  return Change(token, [&] { return loop_.Play(request); });
 }
 
 absl::StatusOr<v1::Session> Session::Pause(std::string_view token) {
-  auto paused = AskAs(token, [&] {
-    EndJob(absl::AbortedError("the session was paused while it was being stepped"));
-    if (state_ == v1::SESSION_STATE_PLAYING) Halt(v1::SESSION_STATE_PAUSED);
+  return Change(token, [this] {
+    loop_.Pause("the session was paused while it was being stepped");
     return absl::OkStatus();
   });
-  if (!paused.ok()) return paused;
-  return Saved();
 }
 
 absl::StatusOr<Session::Stepped> Session::Step(std::int64_t ticks, std::optional<std::int64_t> expected_tick,
                                                absl::FunctionRef<bool()> cancelled, std::string_view token) {
   auto job = std::make_shared<StepJob>();
   job->left = ticks;
-  if (auto started = AskAs(token, [&] { return StartJob(job, expected_tick); }); !started.ok()) return started;
+  absl::Status started = loop_.CallAs(token, [&] { return loop_.StartJob(job, expected_tick); });
+  if (!started.ok()) return started;
   while (!job->done.WaitForNotificationWithTimeout(kLook)) {
     if (!cancelled()) continue;
-    auto asked = Ask([&] {
-      if (job_ == job) EndJob(absl::CancelledError("the caller went away while the session was being stepped"));
+    absl::Status called = loop_.Call([&] {
+      loop_.CancelJob(*job, absl::CancelledError("the caller went away while the session was being stepped"));
     });
-    if (!asked.ok()) return asked;
+    if (!called.ok()) return called;
   }
   if (!job->status.ok()) return std::move(job->status);
   return std::move(job->result);
 }
 
 absl::StatusOr<v1::Session> Session::Reset(std::string_view token) {
-  auto reset = AskAs(token, [&] {
-    EndJob(absl::AbortedError("the session was reset while it was being stepped"));
-    run_.Reset();
-    from_start_ = true;
-    waiting_updates_.clear();
-    framed_tick_ = -1;
-    state_ = v1::SESSION_STATE_PAUSED;
-    ++revision_;
-    Halt(v1::SESSION_STATE_PAUSED);
+  return Change(token, [this] {
+    loop_.Reset();
     return absl::OkStatus();
   });
-  if (!reset.ok()) return reset;
-  return Saved();
+}
+
+absl::StatusOr<Session::Updated> Session::Update(const v1::Parameters& changes,
+                                                 std::optional<std::int64_t> expected_revision,
+                                                 std::optional<std::int64_t> at_tick, std::string_view token) {
+  absl::MutexLock one_at_a_time(&update_mutex_);
+  const v1::Session before = status();
+  v1::Parameters parameters = before.parameters();
+  parameters.MergeFrom(changes);
+  // On this thread, as it takes a while.
+  const double stable_step = StableStepFor(*model_, parameters, before.parameters(), before.largest_stable_step());
+  auto saved = Change(token, [&] { return loop_.Update(changes, stable_step, expected_revision, at_tick); });
+  if (!saved.ok()) return saved.status();
+  return Updated{*std::move(saved), Warnings(parameters, stable_step)};
 }
 
 absl::StatusOr<v1::Session> Session::Pull(const PullList& pulls, bool release_others, std::string_view token) {
   const auto changes = FindPulls(*model_, pulls, "pulls");
   if (!changes.ok()) return changes.status();
-  auto pulled = AskAs(token, [&] {
-    absl::Status changed = run_.ChangePulls(*changes, release_others);
-    if (changed.ok()) Changed();
-    return changed;
-  });
-  if (!pulled.ok()) return pulled;
-  return Saved();
+  return Change(token, [&] { return loop_.ChangePulls(*changes, release_others); });
 }
 
-absl::StatusOr<Session::Fork> Session::MakeFork() {
-  absl::StatusOr<Fork> fork = absl::UnknownError("");
-  auto asked = Ask([&] {
-    const absl::Status good = CheckNotDiverged();
-    if (good.ok()) {
-      fork = Fork{run_.parameters(), run_.state(), stable_step_};
-    } else {
-      fork = good;
-    }
-  });
-  if (!asked.ok()) return asked;
+void Session::Rest() {
+  (void)loop_.Call([this] { loop_.Pause("the session was paused, as it had no viewer for too long"); });
+}
+
+absl::Status Session::CheckControl(std::string_view token) {
+  return loop_.CallAs(token, [] { return absl::OkStatus(); });
+}
+
+absl::StatusOr<v1::Control> Session::ChangeControl(
+    absl::FunctionRef<absl::Status(ControlBook& book, absl::Time now)> act) {
+  absl::StatusOr<v1::Control> control;
+  absl::Status called = loop_.Call([&] { control = loop_.ChangeControl(act); });
+  if (!called.ok()) return called;
+  if (!control.ok()) return control;
+  if (const auto saved = Saved(); !saved.ok()) return saved.status();
+  return control;
+}
+
+absl::Status Session::ShowCamera(const v1::Camera& camera, std::string_view token) {
+  absl::Status shown;
+  absl::Status called = loop_.Call([&] { shown = loop_.ShowCamera(camera, token); });
+  return called.ok() ? shown : called;
+}
+
+absl::StatusOr<Fork> Session::MakeFork() {
+  absl::StatusOr<Fork> fork;
+  absl::Status called = loop_.Call([&] { fork = loop_.MakeFork(); });
+  if (!called.ok()) return called;
   return fork;
 }
 
 void Session::Stop(const absl::Status& reason) {
-  {
-    absl::MutexLock lock(&mutex_);
-    if (stopped_.has_value()) return;
-    stopped_ = reason;
-    called_ = true;
-  }
-  publisher_.Close(reason);
+  if (loop_.Stop(reason)) publisher_.Close(reason);
 }
 
 }  // namespace phrenic::session

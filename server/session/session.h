@@ -1,81 +1,62 @@
-// One running simulation: a Run, the thread that steps it, and its viewers.
+// One running simulation and its viewers, as callers see it.
 #ifndef PHRENIC_SERVER_SESSION_SESSION_H_
 #define PHRENIC_SERVER_SESSION_SESSION_H_
 
 #include <atomic>
 #include <cstdint>
-#include <deque>
-#include <functional>
-#include <limits>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <thread>
 #include <vector>
 
 #include "absl/base/thread_annotations.h"
 #include "absl/functional/function_ref.h"
 #include "absl/status/statusor.h"
 #include "absl/synchronization/mutex.h"
-#include "absl/synchronization/notification.h"
 #include "phrenic/v1/saved.pb.h"
 #include "phrenic/v1/session.pb.h"
 #include "server/mechanics/pulls.h"
 #include "server/session/control.h"
-#include "server/session/cpu_share.h"
 #include "server/session/idempotency_cache.h"
 #include "server/session/limits.h"
-#include "server/session/pace_meter.h"
-#include "server/session/pacer.h"
-#include "server/session/run.h"
+#include "server/session/session_reporter.h"
+#include "server/session/session_saver.h"
+#include "server/session/status_board.h"
+#include "server/session/stepping_loop.h"
 #include "server/session/uploads.h"
 #include "server/store/store.h"
 #include "server/stream/publisher.h"
 
 namespace phrenic::session {
 
-// The simulated time that a session has come to [s], for one that plays in step with it; infinity where it does not
-// play: nobody waits for one that stands. Any thread may call.
-using ReachedTime = std::atomic<double>;
-
-// Who has it, where it is saved, and what it was told last where it goes on after the server ended.
+// What a session starts with beside its model and state.
 struct SessionOrigin {
   ControlBook control;
-  std::shared_ptr<store::Journal> journal = nullptr;  // null: it is not saved
-  std::optional<v1::SavedMoment> told = std::nullopt;
-  std::int64_t epoch = 0;                    // in a cluster
-  std::vector<Uploads::Held> surfaces = {};  // that clients gave, of which its scene is made
+  std::shared_ptr<store::Journal> journal = nullptr;           // null: the session is not saved
+  std::optional<v1::SavedMoment> saved_moment = std::nullopt;  // the last one of a session that continues
+  std::int64_t epoch = 0;                                      // in a cluster
+  std::vector<Uploads::Held> surfaces = {};                    // uploaded files that the scene uses
 };
 
-// Any thread may call. Calls that change something are carried out by the stepping thread between two steps, so that
-// they take effect at once and never in the middle of one; they return when that is done. `token` says who calls: those
-// of who may not change the session are refused with PERMISSION_DENIED (ControlBook::Check).
+// Thread-safe. The stepping thread (SteppingLoop) makes every change between two steps, so that it takes effect at once
+// and never in the middle of a step; the call returns when that is done and saved. `token` identifies the caller, who
+// gets PERMISSION_DENIED unless they control the session (ControlBook::Check).
 class Session {
  public:
-  // Where a run stands, and from where another may go on.
-  struct Fork {
-    v1::Parameters parameters;
-    State state;
-    double stable_step = 0;  // the largest one for the parameters [s]
-  };
-  struct Stepped {
-    v1::Session session;
-    std::string state_hash;
-    MeasureReadings measures;
-  };
+  using Fork = session::Fork;
+  using Origin = SessionOrigin;
+  using Stepped = StepResult;
+  using Access = SessionAccess;
   struct Updated {
     v1::Session session;
     std::vector<std::string> warnings;
   };
 
-  using Origin = SessionOrigin;
-
-  // Paused where `start` stands, which is a state of the model; one that goes on is as it was. Every field of its
-  // parameters is set and in range.
-  Session(std::string id, std::shared_ptr<const Model> model, Fork start, const stream::Clock& clock,
-          const Limits& limits, Origin origin = {});
+  // Starts paused at `start`, which is a state of the model, or continues as `origin.saved_moment` says. Every field of
+  // the parameters is set and in range. `clock` outlives the session.
+  Session(std::string id, std::shared_ptr<const Model> model, Fork start, const Clock& clock, const Limits& limits,
+          Origin origin = {});
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -83,165 +64,81 @@ class Session {
   const std::string& id() const { return id_; }
   const Model& model() const { return *model_; }
   std::shared_ptr<const Model> shared_model() const { return model_; }
-  v1::Session status() const ABSL_LOCKS_EXCLUDED(mutex_);
+  v1::Session status() const { return reporter_.status(); }
   const std::vector<Uploads::Held>& surfaces() const { return surfaces_; }
   stream::Publisher& publisher() { return publisher_; }
-  // What was answered to requests that can be repeated.
+  // The answers to requests that have an id.
   IdempotencyCache& answers() { return idempotency_cache_; }
 
-  // `speed` not set keeps the present one, `until` 0 never pauses. It waits where it gets a frame ahead of `leader`
-  // (PlaySessionRequest.in_step_with). FAILED_PRECONDITION when the session has diverged, INVALID_ARGUMENT when `until`
-  // lies behind.
+  // Plays. A speed that is not set keeps the present one; `until` 0 never pauses. The session waits while it is a frame
+  // ahead of `leader` (PlaySessionRequest.in_step_with). Returns FAILED_PRECONDITION if the session has diverged,
+  // INVALID_ARGUMENT if `until` is in the past.
   absl::StatusOr<v1::Session> Play(std::optional<double> speed, bool as_fast_as_possible, double until,
                                    std::string_view token = {}, std::weak_ptr<const ReachedTime> leader = {});
-  std::shared_ptr<const ReachedTime> reached() const { return reached_; }
+  // The time that followers of this session read.
+  std::shared_ptr<const ReachedTime> reached() const { return loop_.reached(); }
   absl::StatusOr<v1::Session> Pause(std::string_view token = {});
-  // Pauses, takes `ticks` steps and pauses again. ABORTED when the session is at another tick than expected, when
-  // somebody else steps it, or when it is played, paused or reset meanwhile; CANCELLED as soon as `cancelled` says so.
+  // Pauses, takes `ticks` steps and pauses again. Returns ABORTED if the session is not at `expected_tick`, if another
+  // caller steps it, or if it is played, paused or reset meanwhile; CANCELLED as soon as `cancelled` returns true.
   absl::StatusOr<Stepped> Step(std::int64_t ticks, std::optional<std::int64_t> expected_tick,
                                absl::FunctionRef<bool()> cancelled, std::string_view token = {});
-  // Forgets updates that wait.
+  // Returns to t = 0 and discards waiting updates.
   absl::StatusOr<v1::Session> Reset(std::string_view token = {});
-  // Fields that are set change; they are in range. ABORTED when the session's revision is another than expected. Waits
-  // for `at_tick`: FAILED_PRECONDITION where that is past, RESOURCE_EXHAUSTED where kMostWaiting wait already.
+  // Changes the fields that are set in `changes`, which are in range, at `at_tick` or now. Returns ABORTED if the
+  // session is not at `expected_revision`, FAILED_PRECONDITION if `at_tick` is past, RESOURCE_EXHAUSTED if kMostWaiting
+  // updates wait.
   absl::StatusOr<Updated> Update(const v1::Parameters& changes, std::optional<std::int64_t> expected_revision,
                                  std::optional<std::int64_t> at_tick = std::nullopt, std::string_view token = {})
       ABSL_LOCKS_EXCLUDED(update_mutex_);
-  // Pulls vertices, or lets go of them (phrenic::ChangePulls). INVALID_ARGUMENT names what cannot be pulled.
+  // Pulls vertices, or releases them (phrenic::ChangePulls). INVALID_ARGUMENT names a vertex that cannot be pulled.
   absl::StatusOr<v1::Session> Pull(const PullList& pulls, bool release_others, std::string_view token = {});
-  // Who may see the session, on a server with accounts.
-  struct Access {
-    std::string account;  // whom it belongs to; empty: everybody
-    std::vector<ControlState::Link> links;
-  };
-  std::shared_ptr<const Access> access() const ABSL_LOCKS_EXCLUDED(mutex_);
-  // Somebody asked for it now; since when nobody has, or watched.
+
+  // Who may see the session.
+  std::shared_ptr<const Access> access() const { return board_.access(); }
+  // Notes that a caller asked for the session now.
   void NoteAttention() { attended_ = absl::ToUnixNanos(clock_.Now()); }
+  // Returns the time of the last NoteAttention.
   absl::Time attended() const { return absl::FromUnixNanos(attended_); }
-  // Pauses it, whoever controls.
+  // Pauses the session without regard to control.
   void Rest();
-  // Whether this token's bearer may change the session.
+  // Returns OK if the token's bearer may change the session.
   absl::Status CheckControl(std::string_view token);
-  // What `act` does with control, or why it did not. Viewers are told.
+  // Changes control by `act`, tells viewers, and returns the errors of `act`.
   absl::StatusOr<v1::Control> ChangeControl(absl::FunctionRef<absl::Status(ControlBook& book, absl::Time now)> act);
-  // Shows viewers where the one who controls looks from.
+  // Shows viewers the camera of the one who controls.
   absl::Status ShowCamera(const v1::Camera& camera, std::string_view token);
-  // Waits until what was answered is in the store; why it is not, where it cannot be.
-  absl::Status Flush() const;
-  // Removes it from the store; before Stop.
-  void Forget();
-  // A copy of the present state, from which another run may go on. FAILED_PRECONDITION when the session has diverged.
+
+  // Waits until everything that calls have returned is in the store. Returns the errors of store::Journal::Flush.
+  absl::Status Flush() const { return saver_.Flush(); }
+  // Removes the session from the store. Requires: Stop was not called yet.
+  void Forget() { saver_.Forget(); }
+  // Copies the present state, from which another run may continue. FAILED_PRECONDITION if the session has diverged.
   absl::StatusOr<Fork> MakeFork();
-  // Waits until the stepping thread has ended, after Stop: what it came to is handed to the store.
-  void AwaitEnd() const { ended_.WaitForNotification(); }
-  // Ends the stepping thread at once and all viewers with `reason`; later calls return it.
-  void Stop(const absl::Status& reason) ABSL_LOCKS_EXCLUDED(mutex_);
+  // Waits until the stepping thread has handed its last state to the store. Requires: Stop was called.
+  void AwaitEnd() const { loop_.AwaitEnd(); }
+  // Ends the stepping thread soon and all viewers with `reason`, which later calls return.
+  void Stop(const absl::Status& reason);
 
  private:
-  // A call of Step under way.
-  struct StepJob {
-    std::int64_t left = 0;
-    absl::Status status;
-    Stepped result;
-    absl::Notification done;
-  };
-  struct Command {
-    std::function<void()> act;  // null: refused
-    std::shared_ptr<absl::Notification> done;
-  };
-
-  // Has the stepping thread run `act` between two steps and waits for it; the reason of Stop when it did not.
-  absl::Status Ask(absl::FunctionRef<void()> act) ABSL_LOCKS_EXCLUDED(mutex_);
-  // The same where the token's bearer may change the session; what came of it.
-  absl::Status AskAs(std::string_view token, absl::FunctionRef<absl::Status()> act) ABSL_LOCKS_EXCLUDED(mutex_);
-
-  // Of the stepping thread.
-  void Loop() ABSL_LOCKS_EXCLUDED(mutex_);
-  bool ServeCommands() ABSL_LOCKS_EXCLUDED(mutex_);
-  bool Called() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) { return !commands_.empty() || stopped_.has_value(); }
-  absl::Time NextBurst() const;
-  void Burst();
-  bool StepOnce();
-  bool Finished() const;
-  double FurthestInStep() const;
-  bool WaitsInStep() const;
-  bool Steps() const;
-  absl::Status StartPlaying(std::optional<double> speed, bool as_fast_as_possible, double until,
-                            std::weak_ptr<const ReachedTime> leader);
-  absl::Status StartJob(std::shared_ptr<StepJob> job, std::optional<std::int64_t> expected_tick);
-  absl::Status CheckRevision(std::optional<std::int64_t> expected) const;
-  absl::Status UpdateAt(const v1::Parameters& changes, double stable_step, std::optional<std::int64_t> at_tick);
-  void Merge(const v1::Parameters& changes, double stable_step);
-  void ApplyDueUpdates();
-  // Tells of control where it changed since that was told.
-  void NoteControl() ABSL_LOCKS_EXCLUDED(mutex_);
-  void Halt(v1::SessionState state);
-  void EndJob(absl::Status status);
-  void OfferFrame(absl::Time now);
-  // The status once it is in the store, or cannot be (not_saved). ABORTED where another server has the session by now.
+  // Returns the status once it is in the store, with `not_saved` if it cannot be. ABORTED if another server has taken
+  // the session.
   absl::StatusOr<v1::Session> Saved();
-  // Of session_saving.cc.
-  void GoOn(const v1::SavedMoment& told);
-  v1::SavedMoment Moment() const;
-  absl::Duration StatePause() const;
-  void SaveChange(v1::Session status);
-  void SaveProgress(absl::Time now);
-  void SaveState(v1::SavedMoment moment);
-  void Changed() ABSL_LOCKS_EXCLUDED(mutex_);
-  void Tell() ABSL_LOCKS_EXCLUDED(mutex_);
-  void WriteResiduals(v1::Session& status) const;
-  void WriteNotSaved(v1::Session& status) const;
-  void NoteProgress() ABSL_LOCKS_EXCLUDED(mutex_);
-  absl::Status CheckNotDiverged() const;
+  // Runs `act` on the stepping thread for the token's bearer; the errors of both, else Saved().
+  absl::StatusOr<v1::Session> Change(std::string_view token, absl::FunctionRef<absl::Status()> act);
 
   const std::string id_;
-  const std::int64_t epoch_;
   const std::shared_ptr<const Model> model_;
   const std::vector<Uploads::Held> surfaces_;
-  const stream::Clock& clock_;
+  const Clock& clock_;
   stream::Publisher publisher_;
   IdempotencyCache idempotency_cache_;
-
-  absl::Mutex update_mutex_;  // one update at a time; taken before mutex_
-  mutable absl::Mutex mutex_;
-  v1::Session status_ ABSL_GUARDED_BY(mutex_);
-  std::deque<Command> commands_ ABSL_GUARDED_BY(mutex_);  // as many as there are callers waiting
-  std::optional<absl::Status> stopped_ ABSL_GUARDED_BY(mutex_);
-  std::shared_ptr<const Access> access_ ABSL_GUARDED_BY(mutex_);
+  absl::Mutex update_mutex_;            // held by one call of Update at a time
   std::atomic<std::int64_t> attended_;  // [ns] since 1970
-  std::atomic<bool> called_ = false;    // a hint to end a burst early
-  const std::shared_ptr<ReachedTime> reached_ = std::make_shared<ReachedTime>(std::numeric_limits<double>::infinity());
-
-  // Of the stepping thread alone.
-  Run run_;
-  Pacer pacer_;
-  CpuShare share_;
-  PaceMeter meter_;
-  v1::SessionState state_ = v1::SESSION_STATE_PAUSED;
-  double speed_ = 1;  // simulated seconds per second
-  bool as_fast_as_possible_ = false;
-  double until_ = 0;  // [s]; 0 never pauses
-  std::weak_ptr<const ReachedTime> leader_;
-  double stable_step_ = 0;  // [s]
-  std::int64_t revision_ = 1;
-  std::int64_t frames_ = 0;
-  std::int64_t framed_tick_ = -1;  // of the newest frame
-  std::shared_ptr<StepJob> job_;
-  std::multimap<std::int64_t, v1::Parameters> waiting_updates_;  // by the tick that they wait for
-  ControlBook control_;
-  std::int64_t told_control_ = 0;  // its revision
-  std::string camera_of_;          // who controlled when a camera was shown
-  const std::shared_ptr<store::Journal> journal_;
-  absl::Time state_saved_ = absl::InfinitePast(), progress_saved_ = absl::InfinitePast();
-  std::int64_t saved_tick_ = -1;                         // of the last state that was saved
-  std::int64_t saved_revision_ = 0, saved_control_ = 0;  // of the last change
-  bool from_start_ = false;                              // reset since the last change was saved
-  absl::Notification ended_;
-
-  std::thread thread_;
+  StatusBoard board_;
+  SessionSaver saver_;
+  SessionReporter reporter_;
+  SteppingLoop loop_;  // the last: its thread uses the others
 };
-
-inline constexpr std::size_t kMostWaiting = 256;  // updates
 
 }  // namespace phrenic::session
 

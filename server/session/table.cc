@@ -19,8 +19,7 @@ constexpr int kLargestPage = 1000;
 
 }  // namespace
 
-Table::Table(Models& models, const stream::Clock& clock, const Limits& limits, store::Store* store,
-             store::Ownership* ownership)
+Table::Table(Models& models, const Clock& clock, const Limits& limits, store::Store* store, store::Ownership* ownership)
     : models_(models), clock_(clock), limits_(limits), store_(store), ownership_(ownership) {}
 
 Table::~Table() { Close(absl::UnavailableError("the server is shutting down")); }
@@ -43,9 +42,10 @@ absl::Status Table::CheckRoom(const std::string& account) const {
     return each.second != nullptr && each.second->access()->account == account;
   });
   if (own < limits_.sessions_of_user) return absl::OkStatus();
-  return absl::ResourceExhaustedError(absl::StrCat(account, " has ", own,
-                                                   " sessions, and nobody may have more; delete one first, or start "
-                                                   "the server with a larger --max-sessions-of-user"));
+  return absl::ResourceExhaustedError(
+      absl::StrCat(account, " has ", own,
+                   " sessions, the most that an account may have; delete one first, or start "
+                   "the server with a larger --max-sessions-of-user"));
 }
 
 absl::StatusOr<std::string> Table::Reserve(const char* field, const std::string& wanted, const std::string& scene,
@@ -184,13 +184,13 @@ Table::Page Table::List(int page_size, const std::string& token) const {
   const int limit = page_size <= 0 ? kUsualPage : std::min(page_size, kLargestPage);
   Page page;
   absl::MutexLock lock(&mutex_);
-  for (auto place = sessions_.upper_bound(token); place != sessions_.end(); ++place) {
-    if (place->second == nullptr) continue;
+  for (auto next = sessions_.upper_bound(token); next != sessions_.end(); ++next) {
+    if (next->second == nullptr) continue;
     if (static_cast<int>(page.sessions.size()) == limit) {
       page.next_token = page.sessions.back()->id();
       break;
     }
-    page.sessions.push_back(place->second);
+    page.sessions.push_back(next->second);
   }
   return page;
 }
@@ -233,7 +233,7 @@ void Table::Drop(const std::string& id) {
     sessions_.erase(found);
   }
   session->Forget();
-  session->Stop(absl::UnavailableError(absl::StrCat("session ", id, " goes on on another server; ask again")));
+  session->Stop(absl::UnavailableError(absl::StrCat("session ", id, " continues on another server; call again")));
 }
 
 void Table::Tend() {
@@ -264,7 +264,7 @@ void Table::Close(const absl::Status& reason) {
   for (const auto& [id, session] : sessions) {
     if (session != nullptr) session->Stop(reason);
   }
-  // Whoever else holds one may hold it longer than there is a store.
+  // Other holders may keep a session longer than the store exists.
   for (const auto& [id, session] : sessions) {
     if (session == nullptr) continue;
     session->AwaitEnd();

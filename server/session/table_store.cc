@@ -1,4 +1,4 @@
-// The table's sessions in a store, and back.
+// The table's sessions in the store.
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -24,8 +24,8 @@ absl::StatusOr<std::shared_ptr<Session>> Table::Restored(const store::SavedSessi
   if (!compiled.ok()) return compiled.status();
   absl::StatusOr<Replayed> replayed = Replay(compiled->model, saved);
   if (!replayed.ok()) return replayed.status();
-  const v1::Session& told = replayed->moment.session();
-  Session::Fork start{told.parameters(), std::move(replayed->state), told.largest_stable_step()};
+  const v1::Session& last = replayed->moment.session();
+  Session::Fork start{last.parameters(), std::move(replayed->state), last.largest_stable_step()};
   Session::Origin origin{ControlBook(RestoreControl(replayed->moment.control())),
                          taken ? store_->Begin(saved.id, saved.scene) : store_->Continue(saved), replayed->moment,
                          epoch, std::move(compiled->surfaces)};
@@ -61,7 +61,7 @@ absl::StatusOr<std::int64_t> Table::Reclaim(const store::SavedSession& saved) {
   if (ownership_ == nullptr || !saved.problem.ok()) return before;
   absl::StatusOr<std::int64_t> epoch = ownership_->Reclaim(saved);
   if (!absl::IsFailedPrecondition(epoch.status())) return epoch;
-  // One that was never the cluster's stays, under a name that another server's session has.
+  // A session that was never the cluster's stays, although another server has a session of its id.
   if (before == 0) return absl::AlreadyExistsError(epoch.status().message());
   const auto journal = store_->Continue(saved);
   journal->Forget();
@@ -79,7 +79,7 @@ absl::Status Table::TakeOver(const store::SavedSession& saved, std::int64_t epoc
   return absl::OkStatus();
 }
 
-// Who might have deleted it while it ran may delete it now.
+// A caller who could delete the session while it ran can delete it now.
 absl::Status Table::DeleteLost(const std::string& id, std::optional<std::string_view> token) {
   const auto lost = lost_.find(id);
   const store::SavedSession& saved = lost->second;

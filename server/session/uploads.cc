@@ -36,7 +36,7 @@ Uploads::Uploads(const Limits& limits, std::string spool_folder)
 absl::Status Uploads::CheckFile(const std::string& name, std::int64_t size) const {
   if (!IsSurfaceName(name)) {
     return absl::InvalidArgumentError(
-        absl::StrCat("name: the ending of \"", name, "\" tells no known format; there are ", meshio::Endings()));
+        absl::StrCat("name: the ending of \"", name, "\" is no known format; there are ", meshio::Endings()));
   }
   if (size <= 0) return absl::InvalidArgumentError(absl::StrCat("size: ", name, " is empty"));
   if (size <= limits_.upload_bytes) return absl::OkStatus();
@@ -77,7 +77,8 @@ absl::StatusOr<std::int64_t> Uploads::Add(const std::string& id, std::int64_t of
     return absl::InvalidArgumentError(absl::StrCat("chunk: ", chunk.size(), " bytes; ", kMostChunk, " are the most"));
   }
   if (offset + static_cast<std::int64_t>(chunk.size()) > pending->file.size) {
-    return absl::OutOfRangeError(absl::StrCat("chunk: more bytes than the ", pending->file.size, " that were said"));
+    return absl::OutOfRangeError(
+        absl::StrCat("chunk: more bytes than the ", pending->file.size, " that were announced"));
   }
   const std::size_t known = std::min(chunk.size(), static_cast<std::size_t>(received - offset));
   if (absl::Status status = pending->spool->Append(chunk.substr(known)); !status.ok()) return status;
@@ -92,7 +93,7 @@ absl::StatusOr<Uploads::Finished> Uploads::Finish(const std::string& id, double 
     if (found == pending_.end()) return FinishedBefore(id, unit_mm);
     if (found->spool->size() < found->file.size) {
       return absl::FailedPreconditionError(absl::StrCat("upload_id: ", found->spool->size(), " of ", found->file.size,
-                                                        " bytes are there; send the others first"));
+                                                        " bytes have arrived; send the others first"));
     }
     pending = std::move(*found);
     pending_.erase(found);
@@ -137,7 +138,7 @@ void Uploads::Keep(Held kept) {
 
 absl::Status Uploads::NoUpload(const std::string& id) const {
   return absl::NotFoundError(
-      absl::StrCat("upload_id: there is no upload \"", id.substr(0, 64), "\" under way; begin it anew"));
+      absl::StrCat("upload_id: there is no upload \"", id.substr(0, 64), "\" in progress; begin it again"));
 }
 
 std::list<Uploads::Held>::iterator Uploads::FindKept(std::string_view sha256) {
@@ -167,8 +168,9 @@ absl::StatusOr<Uploads::Held> Uploads::Hold(const std::string& path) {
   absl::MutexLock lock(&mutex_);
   const auto kept = FindKept(std::string_view(path).substr(std::min(path.size(), kPrefix.size())));
   if (kept == kept_.end()) {
-    return absl::NotFoundError(absl::StrCat(
-        path.substr(0, 80), ": the server has no such file, or no longer; upload it again (phrenic upload FILE)"));
+    return absl::NotFoundError(
+        absl::StrCat(path.substr(0, 80),
+                     ": the server does not have this file, or has dropped it; upload it again (phrenic upload FILE)"));
   }
   kept_.splice(kept_.begin(), kept_, kept);
   return *kept;

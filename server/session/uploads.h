@@ -1,4 +1,4 @@
-// Surface files that clients gave: kept by content, the last used ones as long as there is room.
+// Surface files that clients upload, identified by their content.
 #ifndef PHRENIC_SERVER_SESSION_UPLOADS_H_
 #define PHRENIC_SERVER_SESSION_UPLOADS_H_
 
@@ -19,7 +19,7 @@
 
 namespace phrenic::session {
 
-// Any thread may call. Bytes lie in files without a name: nothing is left when the server ends.
+// Keeps the most recently used files within the limits, in unnamed files that vanish when the server ends. Thread-safe.
 class Uploads {
  public:
   struct File {
@@ -28,17 +28,17 @@ class Uploads {
     std::string path() const { return std::string(kPrefix) + sha256; }
   };
   struct Begun {
-    std::string id;             // empty where the file is there
+    std::string id;             // empty if the server has the file already
     std::int64_t received = 0;  // [bytes]
     File file;
   };
   struct Finished {
     File file;
-    meshio::Surface surface;  // in metres
+    meshio::Surface surface;  // [m]
   };
-  // A file that is there as long as this is, whatever becomes of the others.
+  // Keeps a file as long as this object exists, even if Uploads drops it.
   struct Held {
-    std::string id;  // under which it came
+    std::string id;  // of its upload
     File file;
     std::shared_ptr<record::SpoolFile> spool;
     absl::StatusOr<std::string> Bytes() const;
@@ -48,9 +48,9 @@ class Uploads {
 
   Uploads(const Limits& limits, std::string spool_folder);
 
-  // The errors of upload.proto. The oldest file that waits for its bytes makes room for another one past 16. Who brings
-  // a file that another one is bringing shares its upload: bytes that are there are passed over, and each may finish
-  // it.
+  // Begin, Add and Finish an upload, with the errors of upload.proto. The oldest unfinished upload makes room for the
+  // 17th. Clients that upload the same file at the same time share one upload: Add skips the bytes that it has, and
+  // each client may finish it.
   absl::StatusOr<Begun> Begin(const std::string& name, std::int64_t size, const std::string& sha256)
       ABSL_LOCKS_EXCLUDED(mutex_);
   absl::StatusOr<std::int64_t> Add(const std::string& id, std::int64_t offset, std::string_view chunk)
@@ -59,11 +59,12 @@ class Uploads {
   std::vector<File> List() const ABSL_LOCKS_EXCLUDED(mutex_);
   absl::Status Delete(const std::string& path) ABSL_LOCKS_EXCLUDED(mutex_);
 
-  // NOT_FOUND says to upload it again.
+  // Returns the file of "upload:SHA256"; NOT_FOUND says to upload it again.
   absl::StatusOr<Held> Hold(const std::string& path) ABSL_LOCKS_EXCLUDED(mutex_);
-  // A file that an earlier server had is there again, as if it had just come.
+  // Takes over a file of an earlier server, as if it had just been uploaded.
   absl::StatusOr<Held> Adopt(const std::string& name, std::string_view bytes) ABSL_LOCKS_EXCLUDED(mutex_);
-  // The surface of "upload:SHA256" in metres. NOT_FOUND says to upload it again; the parser's errors.
+  // Returns the surface of "upload:SHA256" [m]; `unit` is the length of the file's unit [m]. The errors of Hold and of
+  // the parser.
   absl::StatusOr<Mesh> Read(const std::string& path, double unit) ABSL_LOCKS_EXCLUDED(mutex_);
 
  private:

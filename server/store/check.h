@@ -1,4 +1,4 @@
-// What is in a store, and whether it is whole; nothing in it is changed.
+// Reads a store without changing it, and checks that it is whole.
 #ifndef PHRENIC_SERVER_STORE_CHECK_H_
 #define PHRENIC_SERVER_STORE_CHECK_H_
 
@@ -11,17 +11,18 @@
 namespace phrenic::store {
 
 struct CheckedStore {
-  absl::Status problem;                // of the file as a whole, where sessions can be read all the same
+  absl::Status problem;                // of the file as a whole, if sessions can be read nevertheless
   std::vector<SavedSession> sessions;  // each with its own problem
-  std::vector<SavedRecord> records;    // studies and the like; as with sessions
+  std::vector<SavedRecord> records;    // of studies and exports, each with its own problem
+  // True if there is no problem.
   bool whole() const;
 };
 
-// NOT_FOUND where there is no store, FAILED_PRECONDITION while a server uses it, or where it is of a newer format,
-// DATA_LOSS where nothing of it can be read.
+// NOT_FOUND if there is no store, FAILED_PRECONDITION while a server uses it or if its format is newer, DATA_LOSS if
+// nothing of it can be read.
 absl::StatusOr<CheckedStore> CheckStore(const std::string& folder);
 
-// A line a session, one for each other thing that is damaged, and one for the whole, as people read it.
+// Returns a text for people: one line per session, one for everything else that is damaged, and one for the whole.
 std::string Describe(const std::string& folder, const CheckedStore& store);
 
 }  // namespace phrenic::store

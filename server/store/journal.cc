@@ -5,7 +5,7 @@
 namespace phrenic::store {
 namespace {
 
-// Moments that may wait while the disk takes none.
+// Moments that may wait while nothing can be written.
 constexpr std::size_t kMostMoments = 1000;
 
 }  // namespace
@@ -22,7 +22,7 @@ void Journal::Append(v1::SavedMoment moment, bool time_alone) {
   } else if (moments.size() < kMostMoments) {
     moments.emplace_back(sequence_, std::move(moment));
   }
-  store_.Told(*this);
+  store_.Enqueue(*this);
 }
 
 void Journal::Keep(v1::SavedMoment moment, std::shared_ptr<const State> state) {
@@ -31,7 +31,7 @@ void Journal::Keep(v1::SavedMoment moment, std::shared_ptr<const State> state) {
   time_alone_ = false;
   pending_.moments.clear();
   pending_.kept = Kept{++sequence_, std::move(moment), std::move(state)};
-  store_.Told(*this);
+  store_.Enqueue(*this);
 }
 
 void Journal::Forget() {
@@ -39,20 +39,20 @@ void Journal::Forget() {
   forgotten_ = true;
   pending_ = {};
   pending_.forgotten = true;
-  store_.Told(*this);
+  store_.Enqueue(*this);
 }
 
 absl::Status Journal::Flush() {
   struct Wait {
     const Journal* journal;
-    std::int64_t told;
+    std::int64_t requested;
   } wait{this, 0};
   absl::MutexLock lock(&store_.mutex_);
-  wait.told = told_;
+  wait.requested = requested_;
   const auto settled =
-      +[](Wait* waits) { return waits->journal->written_ >= waits->told || !waits->journal->problem_.ok(); };
+      +[](Wait* waits) { return waits->journal->written_ >= waits->requested || !waits->journal->problem_.ok(); };
   store_.mutex_.Await(absl::Condition(settled, &wait));
-  return written_ >= wait.told ? absl::OkStatus() : problem_;
+  return written_ >= wait.requested ? absl::OkStatus() : problem_;
 }
 
 absl::Status Journal::problem() const {

@@ -25,7 +25,7 @@ absl::Status Damaged(const std::string& id, const char* what) {
   return absl::DataLossError(absl::StrCat("session ", id, ": its ", what, " is damaged in the store"));
 }
 
-// A message that is what was written.
+// Parses a message. Returns false if its checksum does not match.
 template <typename Message>
 bool Parse(std::string_view bytes, std::string_view sha256, Message& message) {
   return Sha256Hex(bytes) == sha256 && message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()));
@@ -68,22 +68,22 @@ absl::Status Examine(const std::string& folder, Database& database) {
   if (!format.ok()) return format.status();
   if (*application != kApplication) {
     return absl::FailedPreconditionError(
-        absl::StrCat(StoreFile(folder), " is another program's: name another folder by --store"));
+        absl::StrCat(StoreFile(folder), " belongs to another program: name another folder with --store"));
   }
   if (*format > kFormat) {
     return absl::FailedPreconditionError(absl::StrCat(StoreFile(folder), " is of format ", *format,
                                                       ", written by a newer Phrenic; this one reads ", kFormat,
                                                       ". Nothing was changed: run the newer one, or name another "
-                                                      "folder by --store"));
+                                                      "folder with --store"));
   }
   const absl::StatusOr<std::string> found = database.Text("PRAGMA quick_check(1)");
   if (!found.ok()) return found.status();
   if (*found == "ok") return absl::OkStatus();
   return absl::DataLossError(absl::StrCat(StoreFile(folder), " is damaged (", *found,
-                                          "): nothing was changed; phrenicd check says what is left of it"));
+                                          "): nothing was changed; phrenicd check lists what can be read"));
 }
 
-// Of an earlier format that was examined: it lacks tables, and has nothing else otherwise.
+// Adds the tables that an earlier format lacks. Requires: Examine has accepted the file.
 absl::Status Upgrade(Database& database) {
   const absl::StatusOr<std::int64_t> format = database.Number("PRAGMA user_version");
   if (!format.ok() || *format == kFormat) return format.status();
@@ -104,7 +104,7 @@ absl::Status Prepare(const std::string& folder, Database& database) {
     database.Run("ROLLBACK").IgnoreError();
     return status;
   }
-  // FULL: what was answered for is on the disk, also after the power fails.
+  // FULL: what callers were told is saved is on the disk even after a power failure.
   return database.Run("COMMIT; PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL");
 }
 

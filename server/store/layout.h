@@ -1,4 +1,4 @@
-// The tables of a store, and whether a file is one.
+// The tables of a store's SQLite file, and checks of a file.
 #ifndef PHRENIC_SERVER_STORE_LAYOUT_H_
 #define PHRENIC_SERVER_STORE_LAYOUT_H_
 
@@ -10,39 +10,40 @@
 
 namespace phrenic::store {
 
-inline constexpr int kFormat = 2;  // of the tables; grows when they change
+inline constexpr int kFormat = 2;  // version of the tables
 
-// What the store has of one session.
+// What a store has of one session.
 struct SavedSession {
   std::string id;
   v1::SavedScene scene;
   v1::SavedMoment moment;  // at `state`
   v1::SavedState state;
-  std::vector<v1::SavedMoment> later;  // since then, in their order
-  std::int64_t sequence = 0;           // of the last one
+  std::vector<v1::SavedMoment> later;  // the journal since then, in order
+  std::int64_t sequence = 0;           // of the last moment
   std::int64_t bytes = 0;
-  absl::Status problem;  // DATA_LOSS: what was read is not what was written
+  absl::Status problem;  // DATA_LOSS if a checksum does not match
 };
 
-// What the store has of something else: a message, by its kind ("study") and name.
+// What a store has of a job: a message, by its kind ("study", "export") and id.
 struct SavedRecord {
   std::string kind, id, bytes;
   absl::Status problem;  // DATA_LOSS, as above
 };
 
-// FOLDER/phrenic.db
+// Returns FOLDER/phrenic.db.
 std::string StoreFile(const std::string& folder);
 
-// Makes the tables in an empty file, and what a file of an earlier format lacks. Else FAILED_PRECONDITION where another
-// program wrote it or a newer Phrenic, and DATA_LOSS where SQLite finds it damaged; nothing is changed then.
+// Creates the tables in an empty file, and those that a file of an earlier format lacks. FAILED_PRECONDITION if another
+// program or a newer Phrenic wrote the file, DATA_LOSS if SQLite finds it damaged; the file is then left unchanged.
 absl::Status Prepare(const std::string& folder, Database& database);
-// The same checks, and nothing is made.
+// Makes the same checks, and creates nothing.
 absl::Status Examine(const std::string& folder, Database& database);
 
-// Every session, in the order of the ids; one with a `problem` does not keep the others from being read.
-// `only` names the one to read; empty: all.
+// Reads all sessions, sorted by id, or only the session `only`. A damaged session has a `problem`, and the others are
+// read nevertheless.
 absl::StatusOr<std::vector<SavedSession>> ReadSessions(Database& database, const std::string& only = "");
-// Every record, in the order in which they were first saved; as with sessions. A store of format 1 has none.
+// Reads all records, in the order in which they were first saved; a damaged one has a `problem`. A store of format 1
+// has none.
 absl::StatusOr<std::vector<SavedRecord>> ReadRecords(Database& database);
 
 }  // namespace phrenic::store

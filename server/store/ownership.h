@@ -1,5 +1,5 @@
-// Several servers that share their sessions: which of them has which, and a second copy of what each saves, from which
-// another one goes on. A server by itself has none of this.
+// Which server of a cluster owns which session, and a second copy of what each server saves, from which another server
+// continues. A single server has no Ownership.
 #ifndef PHRENIC_SERVER_STORE_OWNERSHIP_H_
 #define PHRENIC_SERVER_STORE_OWNERSHIP_H_
 
@@ -24,31 +24,31 @@ struct Written {
   std::optional<v1::SavedScene> scene;  // of a new session
   std::int64_t sequence = 0;            // of `state`
   v1::SavedMoment moment;               // at `state`
-  std::shared_ptr<const State> state;   // null: none
+  std::shared_ptr<const State> state;   // null: unchanged
   std::vector<std::pair<std::int64_t, v1::SavedMoment>> moments;
 };
 
-// Any thread may call, but for Copy and CopyWhole.
+// Any thread may call the methods, except Copy and CopyWhole, which the store's thread calls.
 class Ownership {
  public:
   virtual ~Ownership() = default;
 
-  // Of a session that nobody has: its epoch. ALREADY_EXISTS where another server has it, UNAVAILABLE where it cannot be
-  // known now.
+  // Claims a session that no server owns, and returns its epoch. ALREADY_EXISTS if another server owns it, UNAVAILABLE
+  // if that cannot be found out now.
   virtual absl::StatusOr<std::int64_t> Claim(const std::string& id) = 0;
-  // Of one that this server's own store has: its next epoch. FAILED_PRECONDITION where another server has had it since,
-  // or it was deleted; UNAVAILABLE as above.
+  // Claims a session of this server's own store again, and returns its next epoch. FAILED_PRECONDITION if another
+  // server has owned it since, or if it was deleted; UNAVAILABLE as above.
   virtual absl::StatusOr<std::int64_t> Reclaim(const SavedSession& saved) = 0;
-  // Of one that could not be made after all.
+  // Gives up the claim of a session that could not be created.
   virtual void Abandon(const std::string& id) = 0;
-  // Of one that has ended here and is saved: another server may go on with it at once. Waits, for a bounded time, until
-  // its copy is whole.
+  // Releases a session that has ended here and is saved, so that another server can continue it at once. Waits, for a
+  // bounded time, until its copy is complete.
   virtual void Release(const std::string& id) = 0;
 
-  // Whether this server still had the session when the copy was made; where it did not, nothing was copied. A copy that
-  // cannot be made now is asked for again (Store::CopyWhole). The store's thread calls, and waits for a bounded time.
+  // Copies what was written. Returns false, and copies nothing, if this server no longer owns the session. A copy that
+  // fails is requested again (Store::CopyWhole). Waits for a bounded time.
   virtual bool Copy(const Written& written) = 0;
-  // All that the store has of it.
+  // Copies everything that the store has of a session.
   virtual void CopyWhole(const SavedSession& saved) = 0;
 };
 

@@ -17,10 +17,10 @@ std::string BytesOf(const Points& points) {
   return {reinterpret_cast<const char*>(points.data()), sizeof(double) * static_cast<size_t>(points.size())};
 }
 
-// Points of as many vertices as `like`, or none where there are no bytes and `optional` holds.
+// Reads the coordinates of `vertices` vertices, 3 x n. DATA_LOSS names the field if there are more or fewer bytes.
 absl::Status PointsOf(const char* field, const std::string& bytes, Eigen::Index vertices, Points& points) {
   if (bytes.size() != sizeof(double) * 3 * static_cast<size_t>(vertices)) {
-    return absl::DataLossError(absl::StrCat(field, ": ", bytes.size(), " bytes are not of ", vertices, " vertices"));
+    return absl::DataLossError(absl::StrCat(field, ": ", bytes.size(), " bytes do not hold ", vertices, " vertices"));
   }
   points.resize(3, vertices);
   std::memcpy(points.data(), bytes.data(), bytes.size());

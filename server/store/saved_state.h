@@ -1,4 +1,4 @@
-// A State as bytes and back, bit for bit.
+// Converts a State to bytes and back, bit for bit.
 #ifndef PHRENIC_SERVER_STORE_SAVED_STATE_H_
 #define PHRENIC_SERVER_STORE_SAVED_STATE_H_
 
@@ -10,7 +10,8 @@ namespace phrenic::store {
 
 v1::SavedState Save(const State& state);
 
-// DATA_LOSS where `saved` is not a state of the model: other numbers of vertices or poses, or a vertex that is none.
+// DATA_LOSS if `saved` is not a state of the model: other numbers of vertices or poses, or a vertex that does not
+// exist.
 absl::StatusOr<State> Restore(const Model& model, const v1::SavedState& saved);
 
 }  // namespace phrenic::store

@@ -12,7 +12,7 @@ absl::StatusOr<Database> Database::Open(const std::string& file, Access access) 
   const int code = sqlite3_open_v2(file.c_str(), &handle, flags, nullptr);
   Database database(file, handle);
   if (code == SQLITE_CANTOPEN) {
-    return absl::NotFoundError(absl::StrCat("cannot open ", file, ": is the folder there, and may it be written?"));
+    return absl::NotFoundError(absl::StrCat("cannot open ", file, ": does the folder exist, and is it writable?"));
   }
   if (code != SQLITE_OK) return database.Status(code);
   sqlite3_extended_result_codes(handle, 0);
@@ -30,11 +30,11 @@ absl::Status Database::Status(int code) const {
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
       return absl::FailedPreconditionError(
-          absl::StrCat(file_, " is in use by another server: end it, or name another folder by --store"));
+          absl::StrCat(file_, " is in use by another server: stop it, or name another folder with --store"));
     case SQLITE_NOTADB:
     case SQLITE_CORRUPT:
-      return absl::DataLossError(absl::StrCat(file_, " is damaged, or no store (", sqlite3_errmsg(handle_.get()),
-                                              "): nothing was changed; phrenicd check says what is left of it"));
+      return absl::DataLossError(absl::StrCat(file_, " is damaged, or is not a store (", sqlite3_errmsg(handle_.get()),
+                                              "): nothing was changed; phrenicd check lists what can be read"));
     default:
       return absl::UnavailableError(absl::StrCat(file_, ": ", sqlite3_errmsg(handle_.get())));
   }
@@ -68,18 +68,18 @@ absl::StatusOr<Statement> Statement::Prepare(const Database& database, const std
   return statement;
 }
 
-Statement& Statement::Bind(int place, std::string_view text) {
-  sqlite3_bind_text(handle_.get(), place, text.data(), static_cast<int>(text.size()), SQLITE_TRANSIENT);
+Statement& Statement::Bind(int parameter, std::string_view text) {
+  sqlite3_bind_text(handle_.get(), parameter, text.data(), static_cast<int>(text.size()), SQLITE_TRANSIENT);
   return *this;
 }
 
-Statement& Statement::BindBytes(int place, std::string_view bytes) {
-  sqlite3_bind_blob64(handle_.get(), place, bytes.data(), bytes.size(), SQLITE_TRANSIENT);
+Statement& Statement::BindBytes(int parameter, std::string_view bytes) {
+  sqlite3_bind_blob64(handle_.get(), parameter, bytes.data(), bytes.size(), SQLITE_TRANSIENT);
   return *this;
 }
 
-Statement& Statement::Bind(int place, std::int64_t number) {
-  sqlite3_bind_int64(handle_.get(), place, number);
+Statement& Statement::Bind(int parameter, std::int64_t number) {
+  sqlite3_bind_int64(handle_.get(), parameter, number);
   return *this;
 }
 

@@ -1,4 +1,4 @@
-// SQLite's C interface as values: a database, a statement, errors as absl::Status.
+// SQLite's C interface as C++ classes, with errors as absl::Status.
 #ifndef PHRENIC_SERVER_STORE_SQLITE_H_
 #define PHRENIC_SERVER_STORE_SQLITE_H_
 
@@ -16,17 +16,19 @@ namespace phrenic::store {
 
 enum class Access { kRead, kWrite };
 
-// Of one thread at a time.
+// An open file. Not thread-safe.
 class Database {
  public:
-  // kWrite makes the file where there is none. Errors name the file: NOT_FOUND, DATA_LOSS where it is no database,
-  // FAILED_PRECONDITION where another program has it open for itself.
+  // Opens a file; kWrite creates it if it is missing. Errors name the file: NOT_FOUND, DATA_LOSS if it is no database,
+  // FAILED_PRECONDITION if another process has locked it.
   static absl::StatusOr<Database> Open(const std::string& file, Access access);
 
+  // Runs statements that return no rows.
   absl::Status Run(const std::string& sql);
+  // Return the first column of the first row; 0 or empty without a row.
   absl::StatusOr<std::int64_t> Number(const std::string& sql);
   absl::StatusOr<std::string> Text(const std::string& sql);
-  // OK, or RESOURCE_EXHAUSTED for a full disk, else as Open.
+  // Converts a result code of SQLite: RESOURCE_EXHAUSTED for a full disk, the errors of Open, otherwise UNAVAILABLE.
   absl::Status Status(int code) const;
   sqlite3* get() const { return handle_.get(); }
 
@@ -37,17 +39,17 @@ class Database {
   std::unique_ptr<sqlite3, decltype(&sqlite3_close)> handle_;
 };
 
-// A prepared statement; its places are numbered from 1, a row's columns from 0.
+// A prepared statement. Parameters are numbered from 1, the columns of a row from 0. Not thread-safe.
 class Statement {
  public:
   static absl::StatusOr<Statement> Prepare(const Database& database, const std::string& sql);
 
-  Statement& Bind(int place, std::string_view text);
-  Statement& BindBytes(int place, std::string_view bytes);
-  Statement& Bind(int place, std::int64_t number);
-  // Runs it to its end, and makes it ready to be bound anew.
+  Statement& Bind(int parameter, std::string_view text);
+  Statement& BindBytes(int parameter, std::string_view bytes);
+  Statement& Bind(int parameter, std::int64_t number);
+  // Runs a statement that returns no rows, and resets it so that it can be bound again.
   absl::Status Run();
-  // The next row; false when there is none.
+  // Steps to the next row. Returns false if there is none.
   absl::StatusOr<bool> Next();
   std::string_view Bytes(int column) const;
   std::int64_t Number(int column) const { return sqlite3_column_int64(handle_.get(), column); }

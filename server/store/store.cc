@@ -13,7 +13,7 @@
 namespace phrenic::store {
 namespace {
 
-constexpr absl::Duration kAgain = absl::Seconds(1);  // after the disk refused
+constexpr absl::Duration kAgain = absl::Seconds(1);  // after a failed attempt
 
 // The statements of one transaction.
 struct Writer {
@@ -75,7 +75,7 @@ Store::Store(Database database) : database_(std::move(database)), thread_([this]
 absl::StatusOr<std::unique_ptr<Store>> Store::Open(const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (error) return absl::NotFoundError(absl::StrCat("cannot make the folder ", folder, ": ", error.message()));
+  if (error) return absl::NotFoundError(absl::StrCat("cannot create the folder ", folder, ": ", error.message()));
   std::filesystem::permissions(folder, std::filesystem::perms::owner_all, error);
   auto database = Database::Open(StoreFile(folder), Access::kWrite);
   if (!database.ok()) return database.status();
@@ -97,28 +97,28 @@ absl::StatusOr<std::vector<SavedRecord>> Store::LoadRecords() { return ReadRecor
 
 void Store::Put(const std::string& kind, const std::string& id, std::string bytes) {
   absl::MutexLock lock(&mutex_);
-  ++progress_.told;
-  Tell({kind, id, std::move(bytes)});
+  ++progress_.requested;
+  Enqueue({kind, id, std::move(bytes)});
 }
 
 void Store::Remove(const std::string& kind, const std::string& id) {
   absl::MutexLock lock(&mutex_);
-  ++progress_.told;
-  Tell({kind, id, std::nullopt});
+  ++progress_.requested;
+  Enqueue({kind, id, std::nullopt});
 }
 
 absl::Status Store::FlushRecords() const {
   absl::MutexLock lock(&mutex_);
-  const std::int64_t told = progress_.told;
-  const auto settled = [this, told] {
+  const std::int64_t requested = progress_.requested;
+  const auto settled = [this, requested] {
     mutex_.AssertReaderHeld();
-    return progress_.written >= told || !progress_.problem.ok();
+    return progress_.written >= requested || !progress_.problem.ok();
   };
   mutex_.Await(absl::Condition(&settled));
-  return progress_.written >= told ? absl::OkStatus() : progress_.problem;
+  return progress_.written >= requested ? absl::OkStatus() : progress_.problem;
 }
 
-void Store::Tell(Record record) {
+void Store::Enqueue(Record record) {
   const auto same = std::ranges::find_if(
       records_, [&](const Record& other) { return other.kind == record.kind && other.id == record.id; });
   if (same == records_.end()) {
@@ -145,9 +145,9 @@ std::shared_ptr<Journal> Store::Continue(const SavedSession& saved) {
   return std::shared_ptr<Journal>(new Journal(*this, saved.id, saved.sequence));
 }
 
-void Store::Told(Journal& journal) {
-  ++journal.told_;
-  journal.pending_.told = journal.told_;
+void Store::Enqueue(Journal& journal) {
+  ++journal.requested_;
+  journal.pending_.requested = journal.requested_;
   if (journal.waiting_) return;
   journal.waiting_ = true;
   waiting_.push_back(journal.shared_from_this());
@@ -163,12 +163,12 @@ Store::Batch Store::TakeBatch() {
   return batch;
 }
 
-// What could not be written goes before what came meanwhile, unless a state has made it superfluous.
+// Puts what could not be written before what came meanwhile, unless a newer state makes it unnecessary.
 void Store::PutBack(Batch& batch) {
   std::vector<std::shared_ptr<Journal>> waiting;
   for (auto& [journal, before] : batch) {
     Journal::Pending& now = journal->pending_;
-    now.told = journal->told_;
+    now.requested = journal->requested_;
     if (before.scene.has_value() && !now.forgotten) now.scene = std::move(before.scene);
     now.forgotten = now.forgotten || before.forgotten;
     if (!now.kept.has_value() && !now.forgotten) {
@@ -232,8 +232,8 @@ std::vector<absl::Status> Store::Copy(Ownership* ownership, Batch& batch, const 
     }
     written.moments = std::move(pending.moments);
     if (ownership->Copy(written)) continue;
-    results[i] = absl::AbortedError(
-        absl::StrCat("session ", journal->id_, " goes on on another server, without this change; repeat it there"));
+    results[i] = absl::AbortedError(absl::StrCat(
+        "session ", journal->id_, " continues on another server, without this change; repeat the change there"));
   }
   for (const std::string& id : whole) {
     const auto sessions = ReadSessions(database_, id);
@@ -246,12 +246,12 @@ void Store::Run() {
   pthread_setname_np(pthread_self(), "saving");
   absl::MutexLock lock(&mutex_);
   for (;;) {
-    mutex_.Await(absl::Condition(this, &Store::Stirred));
-    if (!Waits()) return;
+    mutex_.Await(absl::Condition(this, &Store::Awake));
+    if (!HasWork()) return;
     const bool last = closing_;
     Batch batch = TakeBatch();
     Records records = std::exchange(records_, {});
-    const std::int64_t records_told = progress_.told;
+    const std::int64_t records_requested = progress_.requested;
     const std::set<std::string> whole = std::exchange(whole_, {});
     Ownership* const ownership = ownership_;
     mutex_.Unlock();
@@ -260,17 +260,17 @@ void Store::Run() {
     if (status.ok()) results = Copy(ownership, batch, whole);
     mutex_.Lock();
     progress_.problem = status;
-    if (status.ok()) progress_.written = records_told;
+    if (status.ok()) progress_.written = records_requested;
     for (std::size_t i = 0; i < batch.size(); ++i) {
       Journal& journal = *batch[i].first;
       journal.problem_ = results[i];
-      if (results[i].ok()) journal.written_ = batch[i].second.told;
+      if (results[i].ok()) journal.written_ = batch[i].second.requested;
     }
     if (status.ok()) continue;
     if (last) return;
     PutBack(batch);
     records_.swap(records);
-    for (Record& newer : records) Tell(std::move(newer));
+    for (Record& newer : records) Enqueue(std::move(newer));
     mutex_.AwaitWithTimeout(absl::Condition(this, &Store::Closing), kAgain);
   }
 }

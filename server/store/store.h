@@ -1,5 +1,6 @@
-// Sessions on disk: an SQLite file in which each has its scene, a state now and then, and what it was told since. A
-// thread of the store writes; whoever has something to save hands it over and goes on, or waits for it.
+// Sessions and jobs on disk, in an SQLite file: of each session its scene, its last saved state, and a journal of its
+// changes since; of each job one record. A thread of the store writes; callers hand over what to save and continue, or
+// wait for it to be on the disk.
 #ifndef PHRENIC_SERVER_STORE_STORE_H_
 #define PHRENIC_SERVER_STORE_STORE_H_
 
@@ -23,21 +24,22 @@ namespace phrenic::store {
 
 class Store;
 
-// One session's part of a store, which outlives it. Any thread may call.
+// The part of a store that belongs to one session. The store outlives it. Thread-safe.
 class Journal : public std::enable_shared_from_this<Journal> {
  public:
-  // What the session was told, at its present tick. One that tells of time alone takes the place of another such one.
+  // Appends a moment: what has changed, at the session's present tick. A moment in which only time has changed
+  // (`time_alone`) replaces a previous one of the same kind.
   void Append(v1::SavedMoment moment, bool time_alone);
-  // A state; what was appended before is not needed any more.
+  // Saves a state with its moment; the journal so far is no longer needed and is removed.
   void Keep(v1::SavedMoment moment, std::shared_ptr<const State> state);
-  // Removes the session from the store; what is saved afterwards is not.
+  // Removes the session from the store. Later calls save nothing.
   void Forget();
-  // Waits until all this is on the disk. RESOURCE_EXHAUSTED where that is full, UNAVAILABLE with what else is wrong:
-  // the store tries again every second.
+  // Waits until the effects of all earlier calls are on the disk. RESOURCE_EXHAUSTED if it is full, ABORTED if another
+  // server has taken the session, UNAVAILABLE for any other failure; the store tries again every second.
   absl::Status Flush();
-  // The last attempt's result.
+  // Returns the result of the last attempt to write.
   absl::Status problem() const;
-  // More waits to be written than should: a state would replace it.
+  // True if too many moments wait to be written; a state would replace them.
   bool wants_state() const;
 
  private:
@@ -47,13 +49,13 @@ class Journal : public std::enable_shared_from_this<Journal> {
     v1::SavedMoment moment;
     std::shared_ptr<const State> state;
   };
-  // What is not on the disk yet.
+  // What is still to be written.
   struct Pending {
     std::optional<v1::SavedScene> scene;
     std::optional<Kept> kept;
     std::vector<std::pair<std::int64_t, v1::SavedMoment>> moments;
     bool forgotten = false;
-    std::int64_t told = 0;
+    std::int64_t requested = 0;
   };
 
   Journal(Store& store, std::string id, std::int64_t sequence)
@@ -64,41 +66,42 @@ class Journal : public std::enable_shared_from_this<Journal> {
   // Guarded by the store's mutex.
   Pending pending_;
   std::int64_t sequence_;
-  bool time_alone_ = false;  // the last moment told of time alone
+  bool time_alone_ = false;  // only time had changed in the last moment
   bool forgotten_ = false;
-  bool waiting_ = false;  // in the store's list
-  std::int64_t told_ = 0, written_ = 0;
+  bool waiting_ = false;                      // in the store's list of journals to write
+  std::int64_t requested_ = 0, written_ = 0;  // changes
   absl::Status problem_;
 };
 
+// Thread-safe, except that Load, LoadRecords and LimitSize come before anything is saved.
 class Store {
  public:
-  // FOLDER/phrenic.db, made where it is missing. The errors of Database::Open and Prepare.
+  // Opens FOLDER/phrenic.db, and creates it if it is missing. The errors of Database::Open and Prepare.
   static absl::StatusOr<std::unique_ptr<Store>> Open(const std::string& folder);
-  // Writes what waits, once.
+  // Tries once to write what waits.
   ~Store();
   Store(const Store&) = delete;
   Store& operator=(const Store&) = delete;
 
-  // What an earlier server left; before anything is saved.
+  // Return what an earlier server saved. Requires: nothing has been saved yet.
   absl::StatusOr<std::vector<SavedSession>> Load();
   absl::StatusOr<std::vector<SavedRecord>> LoadRecords();
-  // Saves a message by its kind and name, in the place of an earlier one, or removes it; on the disk within
-  // milliseconds, or once that has room.
+  // Saves a record by its kind and id, and replaces an earlier one; Remove removes it. The disk has it within
+  // milliseconds, or once it has room.
   void Put(const std::string& kind, const std::string& id, std::string bytes) ABSL_LOCKS_EXCLUDED(mutex_);
   void Remove(const std::string& kind, const std::string& id) ABSL_LOCKS_EXCLUDED(mutex_);
-  // Waits until all that Put and Remove were told is on the disk. The errors of Journal::Flush.
+  // Waits until the effects of all earlier Put and Remove are on the disk. The errors of Journal::Flush.
   absl::Status FlushRecords() const ABSL_LOCKS_EXCLUDED(mutex_);
-  // Has every session's part copied there as well, once it is on the disk; before anything is saved. `ownership`
-  // outlives the store.
+  // Makes the store copy every session's part to `ownership` as well, once it is on the disk. Requires: nothing has
+  // been saved yet. `ownership` outlives the store.
   void set_ownership(Ownership* ownership) ABSL_LOCKS_EXCLUDED(mutex_);
-  // Has all that the disk has of these copied there.
+  // Makes the store copy everything that it has of these sessions to the ownership.
   void CopyWhole(const std::vector<std::string>& ids) ABSL_LOCKS_EXCLUDED(mutex_);
-  // The file may grow no larger [bytes]: past that the disk counts as full.
+  // Limits the size of the file [bytes]; beyond it the disk counts as full.
   absl::Status LimitSize(std::int64_t bytes);
-  // Of a new session, which is in the store with its first state.
+  // Returns the journal of a new session. The store has the session once its first state is kept.
   std::shared_ptr<Journal> Begin(const std::string& id, v1::SavedScene scene) ABSL_LOCKS_EXCLUDED(mutex_);
-  // Of one that was loaded.
+  // Returns the journal of a session that was loaded.
   std::shared_ptr<Journal> Continue(const SavedSession& saved) ABSL_LOCKS_EXCLUDED(mutex_);
 
  private:
@@ -106,35 +109,36 @@ class Store {
   using Batch = std::vector<std::pair<std::shared_ptr<Journal>, Journal::Pending>>;
   struct Record {
     std::string kind, id;
-    std::optional<std::string> bytes;  // nothing: remove it
+    std::optional<std::string> bytes;  // nullopt: to be removed
   };
-  using Records = std::vector<Record>;  // in the order in which they were first told
+  using Records = std::vector<Record>;  // in the order of the first call for each
 
-  // How far the disk has what records were told.
+  // How many changes of records were requested, and how many are on the disk.
   struct RecordsProgress {
-    std::int64_t told = 0, written = 0;
-    absl::Status problem;  // the last attempt's
+    std::int64_t requested = 0, written = 0;
+    absl::Status problem;  // of the last attempt
   };
 
   explicit Store(Database database);
-  void Tell(Record record) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  void Told(Journal& journal) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void Enqueue(Record record) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void Enqueue(Journal& journal) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   bool Closing() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) { return closing_; }
-  bool Stirred() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) { return closing_ || Waits(); }
-  bool Waits() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) {
+  bool Awake() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) { return closing_ || HasWork(); }
+  bool HasWork() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) {
     return !waiting_.empty() || !records_.empty() || !whole_.empty();
   }
   void Run() ABSL_LOCKS_EXCLUDED(mutex_);
   Batch TakeBatch() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void PutBack(Batch& batch) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   absl::Status Write(const Batch& batch, const Records& records);
-  // What came of each of the batch: ABORTED for a session that is another server's by now.
+  // Copies the batch to the ownership. Returns one status per journal: ABORTED if another server has the session.
   std::vector<absl::Status> Copy(Ownership* ownership, Batch& batch, const std::set<std::string>& whole);
 
-  Database database_;  // of one thread at a time
+  Database database_;  // used by the caller of Load first, and then by thread_ alone
   mutable absl::Mutex mutex_;
-  std::vector<std::shared_ptr<Journal>> waiting_ ABSL_GUARDED_BY(mutex_);  // in the order in which they were told
-  Records records_ ABSL_GUARDED_BY(mutex_);                                // that wait, each name once
+  std::vector<std::shared_ptr<Journal>> waiting_
+      ABSL_GUARDED_BY(mutex_);               // journals to write, in the order of their calls
+  Records records_ ABSL_GUARDED_BY(mutex_);  // to write, each id once
   RecordsProgress progress_ ABSL_GUARDED_BY(mutex_);
   std::set<std::string> whole_ ABSL_GUARDED_BY(mutex_);  // to be copied
   Ownership* ownership_ ABSL_GUARDED_BY(mutex_) = nullptr;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "absl/strings/str_cat.h"
+#include "server/mechanics/skinning/probe_position.h"
 #include "server/stream/wire.h"
 
 namespace phrenic::stream {
@@ -40,20 +41,9 @@ absl::Status AddPoses(const State& state, v1::Frame& frame) {
 }
 
 absl::Status AddProbe(const Model& model, const State& state, const Probe& probe, v1::Frame& frame) {
-  const BodyModel& body = model.bodies[probe.body];
-  const Eigen::Vector3d rest = body.mesh.vertices.col(probe.vertex);
-  Eigen::Vector3d x = rest;
-  if (body.first_vertex >= 0) {
-    x = state.x.col(body.first_vertex + probe.vertex);
-  } else if (body.pose >= 0) {
-    x = state.poses[body.pose].At(rest);
-  } else if (body.skin >= 0) {
-    Points placed(3, body.mesh.vertices.cols());
-    PlaceBody(model, state, probe.body, placed);
-    x = placed.col(probe.vertex);
-  }
+  const Eigen::Vector3d x = ProbePosition(model, state, probe);
   if (!x.allFinite()) return NotFinite(absl::StrCat("probe ", probe.name), state);
-  const Eigen::Vector3d moved = x - rest;
+  const Eigen::Vector3d moved = x - model.bodies[probe.body].mesh.vertices.col(probe.vertex);
   v1::ProbeReading& reading = *frame.add_probes();
   reading.set_name(probe.name);
   reading.set_x(x.x());

@@ -15,7 +15,7 @@
 #include "absl/status/statusor.h"
 #include "absl/synchronization/mutex.h"
 #include "phrenic/v1/session.pb.h"
-#include "server/stream/clock.h"
+#include "server/schema/clock.h"
 #include "server/stream/encoder.h"
 #include "server/stream/frame.h"
 #include "server/stream/viewer.h"

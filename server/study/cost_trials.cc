@@ -9,6 +9,7 @@
 
 #include "absl/strings/str_format.h"
 #include "server/mechanics/step/step.h"
+#include "server/schema/thread_cpu.h"
 
 namespace phrenic::study {
 namespace {

@@ -7,7 +7,7 @@
 #include "absl/strings/str_format.h"
 #include "server/mechanics/compile/catalogue.h"
 #include "server/mechanics/step/step.h"
-#include "server/study/trajectory.h"
+#include "server/schema/thread_cpu.h"
 #include "server/study/watched_run.h"
 
 namespace phrenic::study {

@@ -6,11 +6,11 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "server/mechanics/step/step.h"
+#include "server/schema/thread_cpu.h"
 #include "server/stream/basis.h"
 #include "server/stream/frame.h"
 #include "server/stream/frame_encoding.h"
 #include "server/stream/rest_shape.h"
-#include "server/study/trajectory.h"
 
 namespace phrenic::study {
 namespace {

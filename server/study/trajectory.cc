@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 
 #include "absl/strings/str_format.h"
 #include "server/mechanics/step/step.h"
+#include "server/schema/thread_cpu.h"
 
 namespace phrenic::study {
 namespace {
@@ -38,12 +38,6 @@ double ProbesApart(const Model& model, const State& a, const State& b) {
 }
 
 }  // namespace
-
-double ThreadCpuSeconds() {
-  timespec now = {};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 std::vector<double> Moments(double seconds, int count) {
   std::vector<double> moments(static_cast<size_t>(count));

@@ -46,9 +46,6 @@ double RmsApart(const Model& model, const Points& a, const Points& b);
 // Kinetic energy and that of every force that has one [J].
 double Energy(const Subject& subject, const State& state);
 
-// CPU time of the calling thread [s].
-double ThreadCpuSeconds();
-
 }  // namespace phrenic::study
 
 #endif  // PHRENIC_SERVER_STUDY_TRAJECTORY_H_

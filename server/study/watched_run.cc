@@ -6,7 +6,7 @@
 #include "absl/strings/str_format.h"
 #include "server/mechanics/step/step.h"
 #include "server/mechanics/step/step_checkpoint.h"
-#include "server/study/trajectory.h"
+#include "server/schema/thread_cpu.h"
 
 namespace phrenic::study {
 

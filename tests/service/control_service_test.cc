@@ -108,7 +108,7 @@ TEST_F(ControlServiceTest, BadRequestsNameTheirFieldAndTheRemedy) {
   expect(Control(&Controls::EnterSession, "", "name: 'Ben'"), grpc::ALREADY_EXISTS, "enter under another name");
   expect(Control(&Controls::TakeControl, "made-up"), grpc::PERMISSION_DENIED, "EnterSession");
   expect(Control(&Controls::HandControl, anna_), grpc::INVALID_ARGUMENT, "to: name who gets control");
-  expect(Control(&Controls::HandControl, anna_, "name: 'Cleo'"), grpc::FAILED_PRECONDITION, "nobody has entered");
+  expect(Control(&Controls::HandControl, anna_, "name: 'Cleo'"), grpc::FAILED_PRECONDITION, "no one has entered");
   expect(Control(&Controls::ShowCamera, anna_, "camera { eye { x: nan } target { } }"), grpc::INVALID_ARGUMENT,
          "camera.eye.x");
   expect(Session(&Sessions::CreateSession, "source { name: 'cube-springs' } owner_name: ' Anna'"),
@@ -125,7 +125,7 @@ TEST_F(ControlServiceTest, ARepeatedRequestTakesEffectOnce) {
   EXPECT_EQ(stepped_.session().tick(), 10);
   const grpc::Status other = Step(anna_, "request_id: 'first' expected_tick: 10");
   EXPECT_EQ(other.error_code(), grpc::INVALID_ARGUMENT);
-  EXPECT_THAT(other.error_message(), HasSubstr("request_id: first was another request's"));
+  EXPECT_THAT(other.error_message(), HasSubstr("request_id: first belongs to another request"));
   EXPECT_EQ(Step(ben_, "request_id: 'second'").error_code(), grpc::INVALID_ARGUMENT)
       << "another client's response was returned";
 }

@@ -35,14 +35,14 @@ class ControlTest : public testing::Test {
   absl::Time now_ = absl::FromUnixSeconds(1'700'000'000);
 };
 
-TEST(Token, IsOfAHundredAndTwentyEightBitsAndNeverTheSame) {
+TEST(Token, HasAHundredAndTwentyEightBitsAndIsNeverRepeated) {
   std::set<std::string> tokens;
   for (int i = 0; i < 1000; ++i) tokens.insert(NewToken());
   EXPECT_EQ(tokens.size(), 1000u);
   for (const std::string& token : tokens) EXPECT_EQ(token.size(), 32u);
 }
 
-TEST(Token, IsTheSameOnlyAsItself) {
+TEST(Token, EqualsOnlyItself) {
   const std::string token = NewToken();
   EXPECT_TRUE(SameToken(token, std::string(token)));
   EXPECT_FALSE(SameToken(token, token.substr(1)));
@@ -54,7 +54,7 @@ TEST(Token, IsTheSameOnlyAsItself) {
   }
 }
 
-TEST_F(ControlTest, EverybodyMayChangeASessionUnlessItIsMadeTheOwners) {
+TEST_F(ControlTest, EverybodyMayChangeASessionUnlessTheOwnerControlsIt) {
   EXPECT_TRUE(MayChange(everybodys_, ""));
   EXPECT_TRUE(MayChange(everybodys_, "made up"));
   EXPECT_EQ(Controller(everybodys_), "");
@@ -74,7 +74,7 @@ TEST_F(ControlTest, ARefusalSaysWhoControlsUntilWhenAndWhatToDo) {
   EXPECT_THAT(std::string(refused.message()), testing::Not(HasSubstr(ben)));
 }
 
-TEST_F(ControlTest, HandedOverControlComesBackWhenTheTimeIsOver) {
+TEST_F(ControlTest, HandedControlReturnsWhenItsTimeIsOver) {
   const std::string ben = Enter(owners_, "Ben");
   ASSERT_TRUE(owners_.Hand(anna_, "Ben", now_).ok());
   EXPECT_TRUE(MayChange(owners_, ben));
@@ -89,7 +89,7 @@ TEST_F(ControlTest, HandedOverControlComesBackWhenTheTimeIsOver) {
   EXPECT_FALSE(MayChange(owners_, ben));
 }
 
-TEST_F(ControlTest, WhoGoesOnKeepsControl) {
+TEST_F(ControlTest, AHolderWhoStaysActiveKeepsControl) {
   const std::string ben = Enter(everybodys_, "Ben"), cleo = Enter(everybodys_, "Cleo");
   ASSERT_TRUE(*everybodys_.Take(ben, now_));
   for (int i = 0; i < 10; ++i) {
@@ -102,7 +102,7 @@ TEST_F(ControlTest, WhoGoesOnKeepsControl) {
   EXPECT_TRUE(MayChange(everybodys_, "")) << "what was everybody's is everybody's again";
 }
 
-TEST_F(ControlTest, OfTwoWhoTakeControlTheFirstHasItAndTheOtherAsks) {
+TEST_F(ControlTest, TheFirstToTakeControlHasItAndTheSecondAsks) {
   const std::string ben = Enter(everybodys_, "Ben"), cleo = Enter(everybodys_, "Cleo");
   EXPECT_TRUE(*everybodys_.Take(ben, now_));
   EXPECT_FALSE(*everybodys_.Take(cleo, now_));
@@ -114,7 +114,7 @@ TEST_F(ControlTest, OfTwoWhoTakeControlTheFirstHasItAndTheOtherAsks) {
   EXPECT_FALSE(everybodys_.Describe(now_).participants(1).asks());
 }
 
-TEST_F(ControlTest, TheOwnerTakesControlFromAnybodyAndLendsItToAll) {
+TEST_F(ControlTest, TheOwnerTakesControlFromAnyoneAndGivesItToAll) {
   const std::string ben = Enter(owners_, "Ben");
   ASSERT_TRUE(owners_.HandToEverybody(anna_, now_).ok());
   EXPECT_TRUE(MayChange(owners_, ""));
@@ -125,7 +125,7 @@ TEST_F(ControlTest, TheOwnerTakesControlFromAnybodyAndLendsItToAll) {
   EXPECT_FALSE(MayChange(owners_, ben));
 }
 
-TEST_F(ControlTest, WhoDoesNotControlHandsNothingOn) {
+TEST_F(ControlTest, OnlyTheOneWhoControlsCanHandControl) {
   const std::string ben = Enter(owners_, "Ben");
   EXPECT_TRUE(absl::IsPermissionDenied(owners_.Hand(ben, "Ben", now_)));
   EXPECT_TRUE(absl::IsPermissionDenied(owners_.HandToEverybody(ben, now_)));
@@ -138,13 +138,13 @@ TEST_F(ControlTest, WhoDoesNotControlHandsNothingOn) {
   EXPECT_TRUE(absl::IsFailedPrecondition(owners_.Release(anna_, now_)));
 }
 
-TEST_F(ControlTest, ACameraIsShownOnlyByWhoControlsAlone) {
+TEST_F(ControlTest, OnlyTheOneWhoControlsAloneShowsACamera) {
   EXPECT_TRUE(owners_.CheckAlone(anna_, now_).ok());
   EXPECT_TRUE(absl::IsPermissionDenied(owners_.CheckAlone("", now_)));
   EXPECT_TRUE(absl::IsPermissionDenied(everybodys_.CheckAlone("", now_)));
 }
 
-TEST_F(ControlTest, NamesAreOnePersonsEach) {
+TEST_F(ControlTest, EachNameBelongsToOnePerson) {
   const std::string ben = Enter(owners_, "Ben");
   EXPECT_TRUE(absl::IsAlreadyExists(owners_.Enter("Ben", "", kStay, now_).status()));
   EXPECT_TRUE(absl::IsAlreadyExists(owners_.Enter("Anna", "", kStay, now_).status())) << "the owner's, away or not";
@@ -156,16 +156,16 @@ TEST_F(ControlTest, NamesAreOnePersonsEach) {
   EXPECT_TRUE(owners_.Enter("Zoë Ångström-Σωκράτης", "", kStay, now_).ok());
 }
 
-TEST_F(ControlTest, NoMoreEnterThanThereIsRoomFor) {
+TEST_F(ControlTest, TheNumberOfPeopleIsBounded) {
   for (std::size_t i = 0; i < kMostPeople; ++i) Enter(owners_, std::to_string(i));
   EXPECT_TRUE(absl::IsResourceExhausted(owners_.Enter("one more", "", kStay, now_).status()));
   now_ += kStay;
   EXPECT_TRUE(owners_.Enter("one more", "", kStay, now_).ok());
 }
 
-// Whatever is asked for by whomever, in any order: one person may change the session, or everybody may, and it is they
-// whom the others see.
-TEST_F(ControlTest, AtAnyMomentOneControlsOrEverybodyDoes) {
+// After any sequence of calls by any persons, either one person may change the session or everybody may, and Describe
+// says which.
+TEST_F(ControlTest, AtAnyTimeOnePersonControlsOrEverybodyDoes) {
   std::mt19937 random(1);
   const auto pick = [&random](int n) { return std::uniform_int_distribution(0, n - 1)(random); };
   for (int run = 0; run < 50; ++run) {
@@ -197,7 +197,7 @@ TEST_F(ControlTest, AtAnyMomentOneControlsOrEverybodyDoes) {
           break;
       }
       book.Expire(now_);
-      ControlBook copy = book;  // looking changes nothing of it
+      ControlBook copy = book;  // Check may change the copy
       const std::string controller = Controller(copy);
       for (int i = 0; i < 4; ++i) {
         EXPECT_EQ(copy.Check(tokens[i], now_).ok(), controller.empty() || controller == names[i]) << names[i];

@@ -7,7 +7,7 @@
 namespace phrenic::session {
 namespace {
 
-TEST(CpuShare, OverAnyLongTimeTheThreadHasHadNoMoreThanItsShare) {
+TEST(CpuShare, OverALongTimeTheThreadUsesNoMoreThanItsShare) {
   std::mt19937 random(1);
   std::exponential_distribution<double> work(50), pause(20);  // [1/s]
   for (const double share : {0.05, 0.3, 0.9}) {
@@ -27,7 +27,7 @@ TEST(CpuShare, OverAnyLongTimeTheThreadHasHadNoMoreThanItsShare) {
   }
 }
 
-TEST(CpuShare, AClockThatWasSetBackHoldsNothingUp) {
+TEST(CpuShare, AClockThatIsSetBackDoesNotDelayWork) {
   CpuShare limit(0.01);
   limit.Begin(absl::UnixEpoch(), absl::ZeroDuration());
   limit.End(absl::Seconds(5));

@@ -4,7 +4,7 @@
 
 #include "server/mechanics/state.h"
 #include "server/schema/sha256.h"
-#include "server/session/export/surface_recorder.h"
+#include "server/session/export/export_catalogue.h"
 #include "tests/compile_text.h"
 #include "tests/small_scenes.h"
 
@@ -22,7 +22,7 @@ class ExporterTest : public testing::Test {
   }
 
   absl::StatusOr<v1::ExportSummary> Export() {
-    const Session::Fork fork = {model_->parameters, model_->InitialState()};
+    const Fork fork = {model_->parameters, model_->InitialState()};
     const auto plan = PlanExport(request_, *model_, fork, testing::TempDir());
     if (!plan.ok()) return plan.status();
     auto spool = record::SpoolFile::Open(testing::TempDir());
@@ -46,7 +46,7 @@ class ExporterTest : public testing::Test {
   ExportProgress progress_ = [](double, double) { return absl::OkStatus(); };
 };
 
-TEST_F(ExporterTest, TheSummaryTellsWhatTheFileHolds) {
+TEST_F(ExporterTest, TheSummaryDescribesTheFile) {
   for (const record::Format& format : ExportFormats()) {
     request_.set_format(format.name);
     request_.clear_start();
@@ -67,13 +67,13 @@ TEST_F(ExporterTest, TheSummaryTellsWhatTheFileHolds) {
   }
 }
 
-TEST_F(ExporterTest, TheMotionIsThatOfTheMechanicsBitForBit) {
+TEST_F(ExporterTest, TheMotionEqualsTheMechanicsBitForBit) {
   const auto summary = Export();
   ASSERT_TRUE(summary.ok()) << summary.status();
   EXPECT_EQ(summary->state_hash(), HashText(RunTo(*model_, 1, 0.01)));
 }
 
-TEST_F(ExporterTest, WhatCannotBeIsRefusedWithItsFieldAndARemedy) {
+TEST_F(ExporterTest, AnImpossibleRequestIsRefusedWithItsFieldAndARemedy) {
   request_.set_format("avi");
   EXPECT_THAT(Refusal(), HasSubstr("msh"));
   request_.set_format("stl");
@@ -94,16 +94,16 @@ TEST_F(ExporterTest, WhatCannotBeIsRefusedWithItsFieldAndARemedy) {
   EXPECT_TRUE(file_.empty());
 }
 
-TEST_F(ExporterTest, WhatTheDiskHasNoRoomForIsRefusedBeforeItBegins) {
+TEST_F(ExporterTest, AnExportLargerThanTheDiskIsRefusedBeforeItBegins) {
   request_.set_seconds(3600);
   request_.set_frames_per_second(1000);
-  const Session::Fork fork = {model_->parameters, model_->InitialState()};
+  const Fork fork = {model_->parameters, model_->InitialState()};
   const auto plan = PlanExport(request_, *model_, fork, testing::TempDir());
   ASSERT_TRUE(plan.ok()) << plan.status();
   EXPECT_NEAR(static_cast<double>(plan->bytes), 3'600'000.0 * 3 * 40, 1e6) << "rows of about 40 bytes";
 }
 
-TEST_F(ExporterTest, EveryNthStepIsAFrameFromTheTimeOn) {
+TEST_F(ExporterTest, EveryNthStepFromTheStartIsAFrame) {
   request_.set_start(0.5);
   request_.set_seconds(0.3);
   request_.set_steps_per_frame(3);
@@ -115,7 +115,7 @@ TEST_F(ExporterTest, EveryNthStepIsAFrameFromTheTimeOn) {
   EXPECT_THAT(file_, HasSubstr("\"displacement\"\n1\n0.8\n3\n10\n"));
 }
 
-TEST_F(ExporterTest, ProgressGrowsToItsEndAndAnErrorOfItEndsTheExport) {
+TEST_F(ExporterTest, ProgressGrowsToItsEndAndAnErrorOfItsReceiverEndsTheExport) {
   request_.set_seconds(36'000);
   progress_ = [](double share, double seconds) {
     EXPECT_NEAR(share, seconds / 36'000, 1e-9);
@@ -132,7 +132,7 @@ TEST_F(ExporterTest, BodiesAreChosenByNameOrLayer) {
   EXPECT_EQ(summary->vertices(), 5);
 }
 
-TEST_F(ExporterTest, ADivergenceEndsItWithItsReason) {
+TEST_F(ExporterTest, ADivergenceEndsTheExportWithItsReason) {
   model_ = CompileText(Retimed("time_step: 0.1 elasticity: 100"));
   request_.set_seconds(1000);
   const auto diverged = Export();

@@ -1,4 +1,4 @@
-// Exports as jobs, and uploads: what is kept, for how long, and what is refused.
+// Exports and uploads: what is kept, for how long, and what is refused.
 #include "server/session/export/exports.h"
 
 #include <gmock/gmock.h>
@@ -40,7 +40,7 @@ class ExportsTest : public testing::Test {
       seen = exports_.Wait(id, 0, absl::ZeroDuration());
       return !seen.ok() || seen->ended;
     }));
-    return seen.ok() ? seen->job : v1::Export();
+    return seen.ok() ? seen->message : v1::Export();
   }
 
   FakeClock clock_;
@@ -49,8 +49,8 @@ class ExportsTest : public testing::Test {
   Exports exports_{{.exports = 1, .kept_exports = 3, .export_minutes = 60}, testing::TempDir(), clock_};
 };
 
-// Killed in the middle of one, and with another that had ended: both come to the files that they were.
-TEST_F(ExportsTest, OutliveTheirServerAndComeToTheSameFiles) {
+// The server ends during one export and after another: both make the same files again.
+TEST_F(ExportsTest, OutliveTheirServerAndMakeTheSameFiles) {
   const std::string folder = testing::TempDir() + "phrenic_exports_" + std::to_string(getpid());
   Models models(SceneCatalogue({}), "", 1);
   const auto begin = [&](store::Store& store) {
@@ -62,7 +62,7 @@ TEST_F(ExportsTest, OutliveTheirServerAndComeToTheSameFiles) {
       seen = exports.Wait(id, 0, absl::ZeroDuration());
       return !seen.ok() || seen->ended;
     }));
-    return seen.ok() ? seen->job.summary().sha256() : std::string(seen.status().message());
+    return seen.ok() ? seen->message.summary().sha256() : std::string(seen.status().message());
   };
   State start = model_->InitialState();
   Workspace work = model_->MakeWorkspace();
@@ -92,7 +92,7 @@ TEST_F(ExportsTest, OutliveTheirServerAndComeToTheSameFiles) {
   std::filesystem::remove_all(folder);
 }
 
-TEST_F(ExportsTest, RunToTheirEndAndAreReadFromAnyPlace) {
+TEST_F(ExportsTest, RunToTheirEndAndAreReadFromAnyOffset) {
   const auto added = Add();
   ASSERT_TRUE(added.ok()) << added.status();
   EXPECT_EQ(added->id(), "class");
@@ -197,7 +197,7 @@ TEST_F(UploadsTest, AFileIsKeptByItsContentAndScenesNameIt) {
   EXPECT_THAT(std::string(MakeMeshSource("", &uploads_)(body).status().message()), HasSubstr("upload it again"));
 }
 
-TEST_F(UploadsTest, WhatBrokeOffGoesOnWhereItWas) {
+TEST_F(UploadsTest, AnInterruptedUploadContinuesWhereItWas) {
   const std::string hash = Sha256Hex(kSurface);
   const auto first = uploads_.Begin("a.obj", sizeof kSurface - 1, hash);
   ASSERT_TRUE(uploads_.Add(first->id, 0, "v 0 0").ok());
@@ -206,7 +206,7 @@ TEST_F(UploadsTest, WhatBrokeOffGoesOnWhereItWas) {
   EXPECT_EQ(second->received, 5);
 }
 
-TEST_F(UploadsTest, TwoWhoBringTheSameFileAtOnceShareIt) {
+TEST_F(UploadsTest, TwoClientsThatUploadTheSameFileShareOneUpload) {
   const std::string bytes = kSurface, hash = Sha256Hex(bytes);
   const auto size = static_cast<std::int64_t>(bytes.size());
   const std::string mine = uploads_.Begin("a.obj", size, hash)->id, other = uploads_.Begin("b.obj", size, hash)->id;
@@ -229,11 +229,11 @@ TEST_F(UploadsTest, EachKindOfBadFileIsRefusedWithItsReason) {
   EXPECT_THAT(words(uploads_.Begin("a.obj", 101, "")), HasSubstr("a file may have 100"));
   EXPECT_THAT(words(Upload("a.obj", "v 0 0 0\nv 1 0\nf 1 2 2\n")), HasSubstr("a.obj:2: "));
   EXPECT_THAT(words(Upload("a.obj", kSurface, Sha256Hex("another"))), HasSubstr("arrived damaged"));
-  EXPECT_THAT(words(uploads_.Add("u99", 0, "x")), HasSubstr("begin it anew"));
+  EXPECT_THAT(words(uploads_.Add("u99", 0, "x")), HasSubstr("begin it again"));
   EXPECT_THAT(uploads_.List(), SizeIs(0));
 }
 
-TEST_F(UploadsTest, TheOneThatWasUsedLongestAgoMakesRoom) {
+TEST_F(UploadsTest, TheLeastRecentlyUsedFileMakesRoom) {
   std::vector<std::string> paths;
   for (const std::string more : {"", "\n", "\n\n"}) {
     const auto finished = Upload("a.obj", kSurface + more);

@@ -12,7 +12,7 @@
 namespace phrenic::session {
 namespace {
 
-TEST(IdempotencyCache, ARepeatIsAnsweredAlike) {
+TEST(IdempotencyCache, ARepeatGetsTheSameAnswer) {
   IdempotencyCache answers;
   const auto first = answers.Begin("a", "step 5");
   ASSERT_TRUE(first.ok());
@@ -31,14 +31,14 @@ TEST(IdempotencyCache, AnotherContentUnderTheSameIdIsRefused) {
   EXPECT_TRUE(absl::IsInvalidArgument(answers.Begin("A b", "step 6").status())) << "this is no id";
 }
 
-TEST(IdempotencyCache, WhatChangedNothingBeginsAnew) {
+TEST(IdempotencyCache, AForgottenRequestIsExecutedAgain) {
   IdempotencyCache answers;
   ASSERT_TRUE(answers.Begin("a", "step 5").ok());
   answers.Forget("a");
   EXPECT_FALSE(answers.Begin("a", "step 6")->has_value());
 }
 
-TEST(IdempotencyCache, TheLastOnesAreRememberedAndNoMore) {
+TEST(IdempotencyCache, TheNumberOfAnswersIsBounded) {
   IdempotencyCache answers;
   for (std::size_t i = 0; i <= kMostAnswers; ++i) {
     ASSERT_TRUE(answers.Begin(absl::StrCat(i), "").ok());
@@ -48,7 +48,7 @@ TEST(IdempotencyCache, TheLastOnesAreRememberedAndNoMore) {
   EXPECT_FALSE(answers.Begin("0", "")->has_value());
 }
 
-TEST(IdempotencyCache, OfManyRepeatsAtOnceOneIsCarriedOutAndAllAreAnsweredByIt) {
+TEST(IdempotencyCache, ConcurrentRepeatsAreExecutedOnceAndGetOneAnswer) {
   IdempotencyCache answers;
   std::atomic<int> carried_out = 0, answered = 0;
   std::vector<std::thread> callers;

@@ -8,7 +8,7 @@
 namespace phrenic::session {
 namespace {
 
-// Two sessions of one scene, on a clock that only the test moves.
+// Two sessions of one scene, on a fake clock.
 class InStepTest : public testing::Test {
  protected:
   std::unique_ptr<Session> Start(const char* id) {
@@ -29,7 +29,7 @@ class InStepTest : public testing::Test {
   const std::unique_ptr<Session> behind_ = Start("behind"), ahead_ = Start("ahead");
 };
 
-TEST_F(InStepTest, TheOneAheadWaitsForASlowerOne) {
+TEST_F(InStepTest, TheFasterSessionWaitsForTheSlowerOne) {
   ASSERT_TRUE(ahead_->Play(1, false, 0, {}, behind_->reached()).ok());
   ASSERT_TRUE(behind_->Play(0.25, false, 0, {}, ahead_->reached()).ok());
   PassTenths(10);
@@ -38,7 +38,7 @@ TEST_F(InStepTest, TheOneAheadWaitsForASlowerOne) {
   EXPECT_LE(Apart(), kFrame + 1e-6);
 }
 
-TEST_F(InStepTest, AsFastAsPossibleItWaitsToo) {
+TEST_F(InStepTest, ASessionAsFastAsPossibleWaitsToo) {
   ASSERT_TRUE(behind_->Play(0.25, false, 0).ok());
   ASSERT_TRUE(ahead_->Play(1, true, 0, {}, behind_->reached()).ok());
   PassTenths(4);
@@ -46,14 +46,14 @@ TEST_F(InStepTest, AsFastAsPossibleItWaitsToo) {
   EXPECT_LE(Apart(), kFrame + 1e-6);
 }
 
-TEST_F(InStepTest, WithoutItTheyPart) {
+TEST_F(InStepTest, WithoutALeaderSessionsDriftApart) {
   ASSERT_TRUE(ahead_->Play(1, false, 0).ok());
   ASSERT_TRUE(behind_->Play(0.25, false, 0).ok());
   PassTenths(4);
   EXPECT_TRUE(Eventually([&] { return Apart() > 0.1; }));
 }
 
-TEST_F(InStepTest, NobodyWaitsForOneThatStands) {
+TEST_F(InStepTest, APausedLeaderDelaysNoFollower) {
   ASSERT_TRUE(behind_->Play(1, false, 0).ok());
   ASSERT_TRUE(ahead_->Play(1, false, 0, {}, behind_->reached()).ok());
   ASSERT_TRUE(behind_->Pause().ok());
@@ -61,7 +61,7 @@ TEST_F(InStepTest, NobodyWaitsForOneThatStands) {
   EXPECT_TRUE(Eventually([&] { return Apart() > 0.2; }));
 }
 
-TEST_F(InStepTest, OneThatIsFarAheadOrWhoseOtherIsGoneGoesOn) {
+TEST_F(InStepTest, AFollowerFarAheadOrWithoutItsLeaderContinues) {
   ASSERT_TRUE(ahead_->Step(500, std::nullopt, [] { return false; }).ok());
   ASSERT_GT(Apart(), 2);
   ASSERT_TRUE(behind_->Play(0.01, false, 0).ok());

@@ -15,14 +15,14 @@ TEST(Pacer, TargetIsSpeedTimesElapsed) {
   EXPECT_NEAR(pacer.Target(kStart + absl::Milliseconds(50), 3), 3.1, 1e-12);
 }
 
-TEST(Pacer, LostTimeIsGivenUpBeyondATenthOfASecond) {
+TEST(Pacer, LostTimeBeyondATenthOfASecondIsNotMadeUp) {
   Pacer pacer;
   pacer.Start(kStart, 0, 2);
   EXPECT_NEAR(pacer.Target(kStart + absl::Seconds(5), 0), 0.2, 1e-12);
   EXPECT_NEAR(pacer.Target(kStart + absl::Milliseconds(5050), 0.2), 0.3, 1e-9) << "the clock starts anew from there";
 }
 
-TEST(Pacer, AClockSetBackStopsNothing) {
+TEST(Pacer, AClockThatIsSetBackStopsNothing) {
   Pacer pacer;
   pacer.Start(kStart, 0, 1);
   EXPECT_GE(pacer.Target(kStart - absl::Hours(1), 1), 1);

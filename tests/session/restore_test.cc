@@ -1,4 +1,4 @@
-// A session that was saved goes on as if nothing had happened.
+// A saved session continues as if it had never been interrupted.
 #include <gmock/gmock.h>
 #include <google/protobuf/text_format.h>
 #include <unistd.h>
@@ -20,7 +20,7 @@ using testing::IsEmpty;
 
 bool Nobody() { return false; }
 
-// A server's models, table and store, ended and begun anew.
+// A server's models, table and store, which the test ends and starts again.
 class RestoreTest : public testing::Test {
  protected:
   RestoreTest() {
@@ -96,8 +96,8 @@ class RestoreTest : public testing::Test {
   std::map<std::string, absl::Status> lost_;
 };
 
-// `whole` has the same history, no store and no interruption.
-TEST_F(RestoreTest, ItIsBitForBitTheSessionThatWasNeverInterrupted) {
+// `whole` has the same history, without a store and without an interruption.
+TEST_F(RestoreTest, ARestoredSessionEqualsTheUninterruptedOneBitForBit) {
   std::mt19937 random(11);
   const auto model = Create("saved")->shared_model();
   Session whole("whole", model, {model->parameters, model->InitialState(), 0.01}, clock_, Limits{});
@@ -127,7 +127,7 @@ TEST_F(RestoreTest, ItIsBitForBitTheSessionThatWasNeverInterrupted) {
   EXPECT_THAT(lost_, IsEmpty());
 }
 
-TEST_F(RestoreTest, OneOfAFileThatAClientGaveIsCompleteInItself) {
+TEST_F(RestoreTest, ASessionWithAnUploadedFileIsSavedWithTheFile) {
   const auto given = uploads_->Adopt("tent.obj", "v 0 0 0\nv 100 0 0\nv 0 100 0\nv 0 0 100\nf 1 2 3\nf 1 3 4\n");
   ASSERT_TRUE(given.ok()) << given.status();
   v1::CreateSessionRequest request;
@@ -154,7 +154,7 @@ TEST_F(RestoreTest, OneOfAFileThatAClientGaveIsCompleteInItself) {
   EXPECT_EQ(uploads_->List().size(), 1u);
 }
 
-TEST_F(RestoreTest, OneThatPlayedGoesOn) {
+TEST_F(RestoreTest, APlayingSessionContinuesToPlay) {
   ASSERT_TRUE(Create("a")->Play(0.5, false, 7).ok());
   Again();
   EXPECT_EQ(Find("a")->status().state(), v1::SESSION_STATE_PLAYING);
@@ -163,7 +163,7 @@ TEST_F(RestoreTest, OneThatPlayedGoesOn) {
   EXPECT_TRUE(Eventually([&] { return Find("a")->status().tick() > 0; }));
 }
 
-TEST_F(RestoreTest, ItEndsWithTheTableWhoeverHoldsIt) {
+TEST_F(RestoreTest, ASessionEndsWithTheTableEvenIfACallerHoldsIt) {
   Create("held");
   for (int round = 0; round < 50; ++round) {
     ASSERT_TRUE(Find("held")->Play(1, true, 0).ok());
@@ -175,7 +175,7 @@ TEST_F(RestoreTest, ItEndsWithTheTableWhoeverHoldsIt) {
   }
 }
 
-TEST_F(RestoreTest, WhoOwnsItAndWhatWaitsForItsTickAreKept) {
+TEST_F(RestoreTest, OwnerAndWaitingUpdatesAreRestored) {
   auto session = Create("a");
   std::string token;
   const auto entered = session->ChangeControl([&](ControlBook& book, absl::Time now) {
@@ -196,7 +196,7 @@ TEST_F(RestoreTest, WhoOwnsItAndWhatWaitsForItsTickAreKept) {
   EXPECT_EQ(Find("a")->status().parameters().breath_force(), 2);
 }
 
-TEST_F(RestoreTest, WhatWasDeletedStaysDeleted) {
+TEST_F(RestoreTest, ADeletedSessionStaysDeleted) {
   Create("a");
   Create("b");
   ASSERT_TRUE(table_->Delete("a", "").ok());
@@ -214,7 +214,7 @@ TEST_F(RestoreTest, AnEditedSceneOfTheCatalogueDoesNotChangeASession) {
   EXPECT_EQ(HashText(Find("a")->MakeFork()->state), hash);
 }
 
-TEST_F(RestoreTest, OneThatDivergedHasDiverged) {
+TEST_F(RestoreTest, ADivergedSessionIsRestoredAsDiverged) {
   v1::Parameters wild;
   wild.set_time_step(1);
   wild.set_elasticity(10);
@@ -229,7 +229,7 @@ TEST_F(RestoreTest, OneThatDivergedHasDiverged) {
   EXPECT_TRUE(Find("a")->Reset().ok());
 }
 
-TEST_F(RestoreTest, WhatCannotBeRestoredStaysUntilItIsDeleted) {
+TEST_F(RestoreTest, ASessionThatCannotBeRestoredStaysUntilItIsDeleted) {
   {
     v1::SavedScene scene;
     *scene.mutable_source()->mutable_scene() = (*models_->Resolve([] {
@@ -260,7 +260,7 @@ TEST_F(RestoreTest, WhatCannotBeRestoredStaysUntilItIsDeleted) {
   EXPECT_TRUE(table_->Create(request).ok());
 }
 
-TEST_F(RestoreTest, AFullDiskIsToldAndNothingStops) {
+TEST_F(RestoreTest, AFullDiskIsReportedAndStopsNothing) {
   auto session = Create("a");
   ASSERT_TRUE(store_->LimitSize(4096).ok());
   for (int i = 1; i < 50 && session->status().not_saved().empty(); ++i) Set(*session, 0.1 * i);
@@ -277,7 +277,7 @@ TEST_F(RestoreTest, AFullDiskIsToldAndNothingStops) {
   EXPECT_EQ(Find("a")->status().tick(), 10);
 }
 
-TEST_F(RestoreTest, WhomASessionBelongsToAndItsLinksGoOn) {
+TEST_F(RestoreTest, AccountAndJoinLinksAreRestored) {
   v1::CreateSessionRequest request;
   request.set_session_id("mine");
   request.mutable_source()->set_name("triangle");

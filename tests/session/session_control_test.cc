@@ -49,7 +49,8 @@ class SessionControlTest : public testing::Test {
   const std::string anna_ = book_.state().owner.token;
 };
 
-// By hand between steps, bound to ticks in another order, stepped at once or in parts, or played: one run.
+// Updates made between steps, or for later ticks in another order, stepped at once, in parts, or played: all runs are
+// equal.
 TEST_F(SessionControlTest, UpdatesBoundToTicksGiveTheSameRunTwice) {
   const auto by_hand = Make(), bound = Make(), played = Make();
   HashAt(*by_hand, 20);
@@ -73,14 +74,14 @@ TEST_F(SessionControlTest, UpdatesBoundToTicksGiveTheSameRunTwice) {
   EXPECT_NE(HashAt(*Make(), 60), wanted);
 }
 
-TEST_F(SessionControlTest, UpdatesOfOneTickAreMadeInTheOrderInWhichTheyCame) {
+TEST_F(SessionControlTest, UpdatesForOneTickAreAppliedInTheirOrder) {
   const auto session = Make();
   for (const double value : {2.0, 5.0, 3.0}) ASSERT_TRUE(session->Update(Elasticity(value), std::nullopt, 4).ok());
   HashAt(*session, 4);
   EXPECT_EQ(session->status().parameters().elasticity(), 3);
 }
 
-TEST_F(SessionControlTest, ATickThatIsPastIsRefusedAndResetForgetsWhatWaits) {
+TEST_F(SessionControlTest, APastTickIsRefusedAndResetDiscardsWaitingUpdates) {
   const auto session = Make();
   HashAt(*session, 10);
   const auto past = session->Update(Elasticity(2), std::nullopt, 9);
@@ -94,7 +95,7 @@ TEST_F(SessionControlTest, ATickThatIsPastIsRefusedAndResetForgetsWhatWaits) {
   EXPECT_EQ(session->status().parameters().elasticity(), 2);
 }
 
-TEST_F(SessionControlTest, NoMoreUpdatesWaitThanThereIsRoomFor) {
+TEST_F(SessionControlTest, TheNumberOfWaitingUpdatesIsBounded) {
   const auto session = Make();
   for (std::size_t i = 0; i < kMostWaiting; ++i) {
     ASSERT_TRUE(session->Update(Elasticity(2), std::nullopt, 5).ok());
@@ -102,7 +103,7 @@ TEST_F(SessionControlTest, NoMoreUpdatesWaitThanThereIsRoomFor) {
   EXPECT_TRUE(absl::IsResourceExhausted(session->Update(Elasticity(2), std::nullopt, 5).status()));
 }
 
-TEST_F(SessionControlTest, EveryChangeIsRefusedToWhoDoesNotControl) {
+TEST_F(SessionControlTest, EveryChangeRequiresControl) {
   const auto session = Make(book_);
   for (const std::string& token : {std::string(), Enter(*session, "Ben")}) {
     EXPECT_TRUE(absl::IsPermissionDenied(session->Play(1, false, 0, token).status()));
@@ -121,7 +122,7 @@ TEST_F(SessionControlTest, EveryChangeIsRefusedToWhoDoesNotControl) {
   EXPECT_TRUE(session->Update(Elasticity(2), 1, {}, anna_).ok());
 }
 
-// What the viewer is told last about control.
+// Returns the last control that the viewer got.
 std::string ToldController(stream::Viewer& viewer, std::string told) {
   for (stream::Bytes bytes = viewer.Take(absl::Now()); bytes != nullptr; bytes = viewer.Take(absl::Now())) {
     v1::WatchFramesResponse response;
@@ -131,7 +132,7 @@ std::string ToldController(stream::Viewer& viewer, std::string told) {
   return told;
 }
 
-TEST_F(SessionControlTest, ViewersOfAPausedSessionHearWhoControlsAndThatItIsOver) {
+TEST_F(SessionControlTest, ViewersOfAPausedSessionGetEachChangeOfControl) {
   const auto session = Make(book_);
   const auto viewer = session->publisher().Join({}, [] {});
   ASSERT_TRUE(viewer.ok());
@@ -148,7 +149,7 @@ TEST_F(SessionControlTest, ViewersOfAPausedSessionHearWhoControlsAndThatItIsOver
   EXPECT_EQ(session->status().control().participants_size(), 0);
 }
 
-TEST_F(SessionControlTest, ALateComerIsShownTheCameraOfWhoControlsNow) {
+TEST_F(SessionControlTest, ALateViewerGetsTheCameraOfTheOneWhoControls) {
   const auto session = Make(book_);
   v1::Camera camera;
   camera.mutable_eye()->set_x(2);

@@ -22,7 +22,7 @@ class SessionTest : public testing::Test {
     return std::make_unique<Session>("test", model, std::move(start), clock_, Limits{.viewers = 8});
   }
 
-  // Lets `seconds` pass on the wall, frame by frame, the session keeping up with each.
+  // Advances the clock by `seconds`, frame by frame, and waits for the session at each.
   void Pass(Session& session, double seconds, double speed = 1) {
     const double start = session.status().time();
     for (double passed = kFrame; passed < seconds + kFrame / 2; passed += kFrame) {
@@ -59,7 +59,7 @@ TEST_F(SessionTest, StartsPausedAtZeroWithEveryParameterSet) {
   }
 }
 
-TEST_F(SessionTest, StepsAreThoseOfTheMechanicsBitForBit) {
+TEST_F(SessionTest, StepsEqualTheMechanicsBitForBit) {
   const auto session = Make();
   const std::string hash = HashAfter(*session, 50);
   const State state = RunTo(session->model(), 0.5, 0.01);
@@ -68,7 +68,7 @@ TEST_F(SessionTest, StepsAreThoseOfTheMechanicsBitForBit) {
   EXPECT_EQ(session->status().time(), state.time);
 }
 
-TEST_F(SessionTest, StepsInPartsOrAtOnceWatchedOrNotGiveTheSameState) {
+TEST_F(SessionTest, StateIsIndependentOfViewersAndOfHowStepsAreGrouped) {
   const auto whole = Make(), parts = Make();
   const auto viewer = parts->publisher().Join({}, [] {});
   ASSERT_TRUE(viewer.ok());
@@ -106,7 +106,7 @@ TEST_F(SessionTest, AStaleRevisionIsRefusedAndChangesNothing) {
   EXPECT_EQ(session->status().parameters().breath_force(), 2);
 }
 
-TEST_F(SessionTest, RealTimeFollowsTheClockAtTheSpeedAskedFor) {
+TEST_F(SessionTest, SimulatedTimeFollowsTheClockAtTheRequestedSpeed) {
   for (const double speed : {1.0, 0.5, 4.0}) {
     const auto session = Make();
     ASSERT_TRUE(session->Play(speed, false, 0).ok());
@@ -148,7 +148,7 @@ TEST_F(SessionTest, AViewerSeesSixtyFramesASimulatedSecond) {
   EXPECT_LE(last - first, 61);
 }
 
-TEST_F(SessionTest, AsFastAsPossiblePausesAtTheTimeAskedFor) {
+TEST_F(SessionTest, AsFastAsPossiblePausesAtTheRequestedTime) {
   const auto session = Make();
   const auto played = session->Play(std::nullopt, true, 5);
   ASSERT_TRUE(played.ok());
@@ -180,7 +180,7 @@ TEST_F(SessionTest, ParametersTakeEffectWhileItPlaysAndChangeTheMotion) {
   EXPECT_NE(HashAfter(*plain, 50), HashAfter(*stiff, 50));
 }
 
-TEST_F(SessionTest, ATimeStepAboveTheStableOneIsWarnedOf) {
+TEST_F(SessionTest, ATimeStepAboveTheStableOneGivesAWarning) {
   const auto session = Make();
   v1::Parameters change;
   change.set_elasticity(25);
@@ -204,7 +204,7 @@ class DivergedTest : public SessionTest {
   std::unique_ptr<Session> session_ = Make(Retimed("time_step: 0.1 elasticity: 100"));
 };
 
-TEST_F(DivergedTest, StopsAndTellsTimeVertexForceAndRemedy) {
+TEST_F(DivergedTest, StopsAndReportsTimeVertexForceAndRemedy) {
   const auto stepped = session_->Step(100000, std::nullopt, Never);
   EXPECT_EQ(stepped.status().code(), absl::StatusCode::kOutOfRange) << stepped.status();
   const v1::Session status = session_->status();
@@ -216,7 +216,7 @@ TEST_F(DivergedTest, StopsAndTellsTimeVertexForceAndRemedy) {
   EXPECT_THAT(std::string(stepped.status().message()), testing::HasSubstr(status.divergence().remedy()));
 }
 
-TEST_F(DivergedTest, NoFrameEverHasANumberThatIsNotFinite) {
+TEST_F(DivergedTest, EveryFrameIsFinite) {
   const auto viewer = session_->publisher().Join({}, [] {});
   ASSERT_TRUE(viewer.ok());
   ASSERT_TRUE(session_->Play(1, true, 0).ok());
@@ -238,7 +238,7 @@ TEST_F(DivergedTest, NoFrameEverHasANumberThatIsNotFinite) {
   EXPECT_TRUE(Eventually(all_finite)) << "the viewer never hears of the divergence";
 }
 
-TEST_F(DivergedTest, RefusesToGoOnUntilItIsReset) {
+TEST_F(DivergedTest, RefusesToContinueUntilItIsReset) {
   EXPECT_FALSE(session_->Step(100000, std::nullopt, Never).ok());
   EXPECT_TRUE(absl::IsFailedPrecondition(session_->Play(1, false, 0).status()));
   EXPECT_TRUE(absl::IsFailedPrecondition(session_->Step(1, std::nullopt, Never).status()));
@@ -253,7 +253,7 @@ TEST_F(DivergedTest, RefusesToGoOnUntilItIsReset) {
   EXPECT_TRUE(session_->Step(100, std::nullopt, Never).ok());
 }
 
-TEST_F(SessionTest, ResetGoesBackToTheStartAndKeepsParameters) {
+TEST_F(SessionTest, ResetReturnsToTheStartAndKeepsParameters) {
   const auto session = Make();
   v1::Parameters change;
   change.set_elasticity(2);
@@ -274,7 +274,7 @@ PullList PullOn(const std::string& body, int vertex, double z) {
   return list;
 }
 
-TEST_F(SessionTest, APullChangesTheMotionUntilItIsLetGo) {
+TEST_F(SessionTest, APullChangesTheMotionUntilItIsReleased) {
   const auto session = Make(), other = Make();
   const auto pulled = session->Pull(PullOn("sheet", 2, 1), false);
   ASSERT_TRUE(pulled.ok()) << pulled.status();
@@ -287,7 +287,7 @@ TEST_F(SessionTest, APullChangesTheMotionUntilItIsLetGo) {
   EXPECT_EQ(let_go->pulls_size(), 0);
 }
 
-// A session that is reset, forked or made anew with the same pulls moves the same, bit for bit.
+// A session that is reset, forked or created with the same pulls moves the same, bit for bit.
 TEST_F(SessionTest, PullsAreReproduced) {
   const auto session = Make(), again = Make();
   ASSERT_TRUE(session->Pull(PullOn("sheet", 2, 1), false).ok());
@@ -304,13 +304,13 @@ TEST_F(SessionTest, PullsAreReproduced) {
   EXPECT_EQ(HashText(run.state()), first);
 }
 
-TEST_F(SessionTest, APullOnNothingIsRefusedAndChangesNothing) {
+TEST_F(SessionTest, APullOnAMissingVertexIsRefusedAndChangesNothing) {
   const auto session = Make();
   EXPECT_EQ(session->Pull(PullOn("post", 0, 1), false).status().code(), absl::StatusCode::kInvalidArgument);
   EXPECT_EQ(session->status().revision(), 1);
 }
 
-TEST_F(SessionTest, TellsHowWellConstraintsAreKeptWhereThereAreAny) {
+TEST_F(SessionTest, ReportsTheConstraintResidualIfThereAreConstraints) {
   EXPECT_FALSE(Make()->status().has_constraint_residual());
   const auto session = Make(Triangle("constraints { rigid_links { body: 'sheet' list { links { a: 1 b: 2 } } } }"));
   EXPECT_TRUE(session->status().has_constraint_residual());
@@ -325,7 +325,7 @@ TEST_F(SessionTest, TellsHowWellConstraintsAreKeptWhereThereAreAny) {
   EXPECT_EQ(session->status().residual_constraint(), "rigid-links:sheet");
 }
 
-TEST_F(SessionTest, AForkIsACopyAndTheSessionGoesOnUndisturbed) {
+TEST_F(SessionTest, AForkIsACopyAndLeavesTheSessionUndisturbed) {
   const auto session = Make(), other = Make();
   HashAfter(*session, 10);
   auto fork = session->MakeFork();
@@ -337,7 +337,7 @@ TEST_F(SessionTest, AForkIsACopyAndTheSessionGoesOnUndisturbed) {
   EXPECT_EQ(HashAfter(*session, 5), expected);
 }
 
-TEST_F(SessionTest, ACallerThatGoesAwayEndsItsSteps) {
+TEST_F(SessionTest, ACancelledCallEndsItsSteps) {
   const auto session = Make();
   const auto stepped = session->Step(1'000'000'000'000, std::nullopt, [] { return true; });
   EXPECT_TRUE(absl::IsCancelled(stepped.status()));

@@ -1,4 +1,4 @@
-// Every scene that ships compiles, moves, stays within its bounds and repeats itself: none explodes unnoticed.
+// Every shipped scene compiles, moves, stays within its bounds, and gives the same state when it is repeated.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -55,9 +55,9 @@ INSTANTIATE_TEST_SUITE_P(All, ShippedScene, testing::ValuesIn(SceneNames()), [](
 
 class MixedScene : public testing::TestWithParam<std::tuple<v1::Integrator, double>> {};
 
-// Its tendon is pushed together as it is pulled down: Newton's steps, by a stiffness without what is negative in it,
-// come to an end none the less.
-TEST_P(MixedScene, LongStiffStepsFindTheirEnd) {
+// The tendon is compressed while it is pulled down, where the stiffness is indefinite. Newton's method, with the
+// positive semi-definite part of the stiffness, converges nevertheless.
+TEST_P(MixedScene, LongStiffStepsConverge) {
   Models models(SceneCatalogue({kScenes}), "", 1);
   v1::SceneSource source;
   source.set_name("mixed-methods");

@@ -18,7 +18,7 @@ using testing::HasSubstr;
 
 std::string Message(const absl::Status& status) { return std::string(status.message()); }
 
-// A folder of its own for each test, with scenes and surface files.
+// Each test has its own folder with scenes and surface files.
 class FolderTest : public testing::Test {
  protected:
   FolderTest() {
@@ -49,7 +49,7 @@ TEST_F(CatalogueTest, TheFolderIsTheCatalogue) {
   EXPECT_EQ(scenes[1].title(), "Triangle");
 }
 
-TEST_F(CatalogueTest, AnUnknownSceneIsNotFoundAndTheOthersAreNamed) {
+TEST_F(CatalogueTest, AnUnknownSceneIsNotFoundAndTheErrorListsTheOthers) {
   for (const char* name : {"thorux", "../scenes/triangle", "/etc/passwd", ""}) {
     const auto missing = Catalogue().Find(name);
     EXPECT_TRUE(absl::IsNotFound(missing.status())) << name;
@@ -57,7 +57,7 @@ TEST_F(CatalogueTest, AnUnknownSceneIsNotFoundAndTheOthersAreNamed) {
   }
 }
 
-TEST_F(CatalogueTest, AMalformedSceneIsListedWithItsErrorAndRefusedByLine) {
+TEST_F(CatalogueTest, AMalformedSceneIsListedWithItsErrorAndRefusedWithItsLine) {
   Write("scenes/broken.textproto", "name: \"broken\"\nbodise { }\n");
   const auto broken = Catalogue().Find("broken");
   EXPECT_TRUE(absl::IsInvalidArgument(broken.status()));
@@ -96,7 +96,7 @@ TEST_F(ModelsTest, TheSameSceneIsCompiledOnce) {
   EXPECT_EQ((*edited)->parameters.time_step(), 0.02) << "an edited scene is not seen";
 }
 
-TEST_F(ModelsTest, ASceneThatIsTooLargeIsRefusedBeforeItIsMade) {
+TEST_F(ModelsTest, ASceneThatIsTooLargeIsRefusedBeforeItIsGenerated) {
   Models models(Catalogue(), "", 2);
   v1::SceneSource source;
   source.mutable_scene()->set_name("large");
@@ -126,7 +126,7 @@ class TableTest : public FolderTest {
   Table table_{models_, clock_, {.sessions = 4}};
 };
 
-TEST_F(TableTest, IdsAreTheClientsOrComeFromTheScene) {
+TEST_F(TableTest, IdsAreChosenByTheClientOrFromTheScene) {
   EXPECT_EQ((*Create("mine"))->id(), "mine");
   EXPECT_EQ((*Create(""))->id(), "triangle");
   EXPECT_EQ((*Create(""))->id(), "triangle-2");
@@ -144,12 +144,12 @@ TEST_F(TableTest, MoreSessionsThanAllowedAreRefused) {
   EXPECT_EQ((*Create(""))->id(), "triangle-3");
 }
 
-TEST_F(TableTest, ASessionThatCannotBeMadeTakesNoPlace) {
+TEST_F(TableTest, ASessionThatCannotBeCreatedLeavesItsIdFree) {
   for (int i = 0; i < 10; ++i) EXPECT_TRUE(absl::IsNotFound(Create("x", "thorux").status()));
   EXPECT_TRUE(Create("x").ok());
 }
 
-TEST_F(TableTest, AnUnknownSessionIsNotFoundAndTheOthersAreNamed) {
+TEST_F(TableTest, AnUnknownSessionIsNotFoundAndTheErrorListsTheOthers) {
   ASSERT_TRUE(Create("mine").ok());
   const auto missing = table_.Find("yours");
   EXPECT_TRUE(absl::IsNotFound(missing.status()));
@@ -157,7 +157,7 @@ TEST_F(TableTest, AnUnknownSessionIsNotFoundAndTheOthersAreNamed) {
   EXPECT_TRUE(absl::IsNotFound(table_.Delete("yours")));
 }
 
-TEST_F(TableTest, PagesHaveEverySessionOnce) {
+TEST_F(TableTest, PagesListEverySessionOnce) {
   for (const char* id : {"c", "a", "d", "b"}) ASSERT_TRUE(Create(id).ok());
   std::string seen, token;
   do {
@@ -168,7 +168,7 @@ TEST_F(TableTest, PagesHaveEverySessionOnce) {
   EXPECT_EQ(seen, "abcd");
 }
 
-TEST_F(TableTest, ParametersOfTheRequestGoOverThoseOfTheScene) {
+TEST_F(TableTest, ParametersOfTheRequestOverrideThoseOfTheScene) {
   v1::CreateSessionRequest request;
   *request.mutable_source() = Named("triangle");
   request.mutable_parameters()->set_breath_force(2);
@@ -178,7 +178,7 @@ TEST_F(TableTest, ParametersOfTheRequestGoOverThoseOfTheScene) {
   EXPECT_EQ((*session)->status().parameters().time_step(), 0.01);
 }
 
-TEST_F(TableTest, AForkStandsWhereTheOtherStandsAndGoesItsOwnWay) {
+TEST_F(TableTest, AForkStartsAtTheOtherSessionsStateAndIsIndependentOfIt) {
   const auto session = *Create("mine");
   const auto step = [](Session& which) { return which.Step(5, std::nullopt, [] { return false; })->state_hash; };
   step(*session);
@@ -211,7 +211,7 @@ TEST_F(TableTest, DeleteEndsTheViewers) {
   EXPECT_TRUE(absl::IsNotFound(*(*viewer)->ended()));
 }
 
-TEST_F(TableTest, NothingIsMadeAfterClose) {
+TEST_F(TableTest, NoSessionIsCreatedAfterClose) {
   ASSERT_TRUE(Create("mine").ok());
   table_.Close(absl::UnavailableError("the server is shutting down"));
   EXPECT_TRUE(absl::IsUnavailable(Create("yours").status()));
@@ -236,7 +236,7 @@ class TendedTable : public FolderTest {
   Table table_{models_, clock_, {.pause_minutes = 10, .delete_minutes = 30}};
 };
 
-TEST_F(TendedTable, WhatNobodyAsksForIsPausedAndThenDeleted) {
+TEST_F(TendedTable, ASessionWithoutViewersOrCallsIsPausedAndThenDeleted) {
   const auto left = Play("left"), asked = Play("asked");
   clock_.Advance(absl::Minutes(9));
   ASSERT_TRUE(table_.Find("asked").ok());
@@ -252,7 +252,7 @@ TEST_F(TendedTable, WhatNobodyAsksForIsPausedAndThenDeleted) {
   EXPECT_TRUE(table_.Find("asked").ok());
 }
 
-TEST_F(TendedTable, WhatIsWatchedGoesOn) {
+TEST_F(TendedTable, AWatchedSessionContinues) {
   const auto watched = Play("watched");
   const auto viewer = watched->publisher().Join({}, [] {});
   ASSERT_TRUE(viewer.ok());
@@ -267,7 +267,7 @@ TEST_F(TendedTable, WhatIsWatchedGoesOn) {
   EXPECT_FALSE(Plays(*watched));
 }
 
-TEST_F(TendedTable, AnAccountHasSoManySessions) {
+TEST_F(TendedTable, TheNumberOfSessionsOfAnAccountIsBounded) {
   Table table(models_, clock_, {.sessions_of_user = 1});
   const auto make = [&](const std::string& account) {
     v1::CreateSessionRequest request;

@@ -1,4 +1,4 @@
-// What is saved is there after the store was opened anew, whole or not at all.
+// Saved data is read back after the store is opened again, complete or reported as damaged.
 #include "server/store/store.h"
 
 #include <gmock/gmock.h>
@@ -53,7 +53,7 @@ class StoreTest : public testing::Test {
     for (const v1::SavedMoment& moment : session.later) ticks.push_back(moment.session().tick());
     return ticks;
   }
-  // Has the file's bytes changed by `change`.
+  // Changes the file's bytes by `change`.
   void Damage(const std::function<void(std::string&)>& change) const {
     std::ifstream in(StoreFile(folder_), std::ios::binary);
     std::string bytes((std::istreambuf_iterator<char>(in)), {});
@@ -64,7 +64,7 @@ class StoreTest : public testing::Test {
   const std::string folder_ = testing::TempDir() + "phrenic_store_" + std::to_string(getpid());
 };
 
-TEST_F(StoreTest, ASessionIsItsLastStateAndWhatItWasToldSince) {
+TEST_F(StoreTest, ASessionIsItsLastStateAndTheJournalSince) {
   {
     const auto store = Open();
     const auto journal = store->Begin("a", Scene("cube"));
@@ -85,7 +85,7 @@ TEST_F(StoreTest, ASessionIsItsLastStateAndWhatItWasToldSince) {
   EXPECT_EQ((*sessions)[0].moment.session().tick(), 7);
 }
 
-TEST_F(StoreTest, MomentsOfTimeAloneReplaceEachOther) {
+TEST_F(StoreTest, MomentsInWhichOnlyTimeChangesReplaceEachOther) {
   {
     const auto store = Open();
     const auto journal = store->Begin("a", Scene("cube"));
@@ -100,7 +100,7 @@ TEST_F(StoreTest, MomentsOfTimeAloneReplaceEachOther) {
   EXPECT_THAT(Ticks(Open()->Load()->at(0)), ElementsAre(0, 3, 4, 5));
 }
 
-TEST_F(StoreTest, ASessionGoesOnWhereItWasLoaded) {
+TEST_F(StoreTest, ALoadedSessionContinuesItsJournal) {
   {
     const auto store = Open();
     const auto journal = store->Begin("a", Scene("cube"));
@@ -114,7 +114,7 @@ TEST_F(StoreTest, ASessionGoesOnWhereItWasLoaded) {
   EXPECT_THAT(Ticks(Open()->Load()->at(0)), ElementsAre(0, 1, 2));
 }
 
-TEST_F(StoreTest, WhatIsForgottenIsGoneAndItsNameIsFree) {
+TEST_F(StoreTest, AForgottenSessionIsGoneAndItsIdIsFree) {
   {
     const auto store = Open();
     const auto old = store->Begin("a", Scene("cube"));
@@ -133,14 +133,14 @@ TEST_F(StoreTest, WhatIsForgottenIsGoneAndItsNameIsFree) {
   EXPECT_THAT(Ticks((*sessions)[0]), ElementsAre(5));
 }
 
-TEST_F(StoreTest, TwoServersDoNotShareOne) {
+TEST_F(StoreTest, TwoServersCannotUseOneStore) {
   const auto first = Open();
   const auto second = Store::Open(folder_);
   EXPECT_TRUE(absl::IsFailedPrecondition(second.status())) << second.status();
   EXPECT_THAT(std::string(second.status().message()), HasSubstr("in use by another server"));
 }
 
-TEST_F(StoreTest, ANewerFormatIsRefusedAndLeftAsItIs) {
+TEST_F(StoreTest, ANewerFormatIsRefusedAndLeftUnchanged) {
   { Open(); }
   {
     auto database = Database::Open(StoreFile(folder_), Access::kWrite);
@@ -152,16 +152,16 @@ TEST_F(StoreTest, ANewerFormatIsRefusedAndLeftAsItIs) {
   EXPECT_EQ(*Database::Open(StoreFile(folder_), Access::kRead)->Number("PRAGMA user_version"), 99);
 }
 
-TEST_F(StoreTest, WhatIsNoStoreIsRefused) {
+TEST_F(StoreTest, AFileThatIsNoStoreIsRefused) {
   std::filesystem::create_directories(folder_);
   Damage([](std::string& bytes) { bytes = std::string(5000, 'x'); });
   EXPECT_TRUE(absl::IsDataLoss(Store::Open(folder_).status())) << Store::Open(folder_).status();
   std::filesystem::remove(StoreFile(folder_));
   ASSERT_TRUE(Database::Open(StoreFile(folder_), Access::kWrite)->Run("CREATE TABLE t (a)").ok());
-  EXPECT_THAT(std::string(Store::Open(folder_).status().message()), HasSubstr("another program's"));
+  EXPECT_THAT(std::string(Store::Open(folder_).status().message()), HasSubstr("belongs to another program"));
 }
 
-TEST_F(StoreTest, EveryFlippedByteOfASessionIsFound) {
+TEST_F(StoreTest, EveryFlippedByteOfASessionIsDetected) {
   {
     const auto store = Open();
     for (const char* id : {"a", "b"}) {
@@ -192,7 +192,7 @@ TEST_F(StoreTest, EveryFlippedByteOfASessionIsFound) {
   EXPECT_EQ(found, static_cast<int>((saved.size() + 6) / 7));
 }
 
-TEST_F(StoreTest, CheckSaysWhatIsThereAndWhatIsDamaged) {
+TEST_F(StoreTest, CheckReportsContentAndDamage) {
   EXPECT_TRUE(absl::IsNotFound(CheckStore(folder_).status()));
   {
     const auto store = Open();
@@ -217,7 +217,7 @@ TEST_F(StoreTest, CheckSaysWhatIsThereAndWhatIsDamaged) {
   EXPECT_FALSE(CheckStore(folder_).ok() && CheckStore(folder_)->whole());
 }
 
-TEST_F(StoreTest, AFullDiskIsToldAndEverythingIsSavedWhenThereIsRoomAgain) {
+TEST_F(StoreTest, AFullDiskIsReportedAndEverythingIsSavedOnceThereIsRoom) {
   {
     const auto store = Open();
     const auto journal = store->Begin("a", Scene("cube"));
@@ -263,8 +263,8 @@ TEST_F(StoreTest, RecordsAreTheNewestOfEachKindAndName) {
                                  ElementsAre("other", "a", "3")));
 }
 
-// What a power cut would leave: the files as they are, though their store still has them open.
-TEST_F(StoreTest, ARecordIsOnTheDiskOnceItWasWaitedFor) {
+// Copies the files while the store has them open, which is what remains after a power failure.
+TEST_F(StoreTest, ARecordIsOnTheDiskAfterFlush) {
   const auto store = Open();
   store->Put("study", "a", "1");
   ASSERT_TRUE(store->FlushRecords().ok());
@@ -278,7 +278,7 @@ TEST_F(StoreTest, ARecordIsOnTheDiskOnceItWasWaitedFor) {
   EXPECT_TRUE(absl::IsResourceExhausted(full)) << full;
 }
 
-TEST_F(StoreTest, ADamagedRecordIsNamedAndKeepsNoOtherFromBeingRead) {
+TEST_F(StoreTest, ADamagedRecordIsReportedAndTheOthersAreRead) {
   {
     const auto store = Open();
     store->Put("study", "bad", "what was written");

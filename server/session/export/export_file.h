@@ -1,4 +1,4 @@
-// The bytes of an export on their way to the spool, counted and hashed.
+// The spool file of an export, with its hash.
 #ifndef PHRENIC_SERVER_SESSION_EXPORT_EXPORT_FILE_H_
 #define PHRENIC_SERVER_SESSION_EXPORT_EXPORT_FILE_H_
 
@@ -11,13 +11,13 @@
 
 namespace phrenic::session {
 
-// One thread appends; any number may read from `spool`.
+// Appends to a spool file and hashes what it appends. Not thread-safe; any number of threads may read spool().
 class ExportFile {
  public:
   explicit ExportFile(std::shared_ptr<record::SpoolFile> spool);
 
   absl::Status Append(std::string_view bytes);
-  // Of everything, in hexadecimal; ends the hash, so call it once, at the end.
+  // Returns the SHA-256 of everything appended, in hexadecimal. Ends the hash: call it once, at the end.
   std::string Sha256Digits() { return hash_.Hex(); }
   const std::shared_ptr<record::SpoolFile>& spool() const { return spool_; }
 

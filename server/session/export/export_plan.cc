@@ -10,19 +10,20 @@
 #include "absl/strings/str_join.h"
 #include "phrenic/v1/options.pb.h"
 #include "server/mechanics/measure.h"
+#include "server/mechanics/skinning/probe_position.h"
 #include "server/mesh/units.h"
 #include "server/record/spool_file.h"
-#include "server/session/export/surface_recorder.h"
+#include "server/session/export/export_catalogue.h"
 #include "server/session/run.h"
 
 namespace phrenic::session {
 namespace {
 
-constexpr std::int64_t kBytesANumber = 16;  // of text
-constexpr std::int64_t kBytesAShape = 60;   // of text, or in a .vtp
+constexpr std::int64_t kBytesPerNumber = 16;  // of text
+constexpr std::int64_t kBytesPerShape = 60;   // a triangle or an edge, in text or a .vtp
 constexpr std::size_t kLongestStem = 100;
 
-bool IsCalled(const BodyModel& body, const std::string& name) { return body.name == name || body.layer == name; }
+bool HasName(const BodyModel& body, const std::string& name) { return body.name == name || body.layer == name; }
 
 absl::StatusOr<std::vector<int>> Bodies(const Model& model, const v1::CreateExportRequest& request) {
   std::vector<bool> chosen(model.bodies.size(), false);
@@ -31,7 +32,7 @@ absl::StatusOr<std::vector<int>> Bodies(const Model& model, const v1::CreateExpo
   for (int k = 0; k < request.bodies_size(); ++k) {
     bool found = false;
     for (std::size_t i = 0; i < chosen.size(); ++i) {
-      if (IsCalled(model.bodies[i], request.bodies(k))) found = chosen[i] = true;
+      if (HasName(model.bodies[i], request.bodies(k))) found = chosen[i] = true;
     }
     if (found) continue;
     return absl::InvalidArgumentError(absl::StrCat("bodies[", k, "]: there is no body or layer \"", request.bodies(k),
@@ -39,8 +40,8 @@ absl::StatusOr<std::vector<int>> Bodies(const Model& model, const v1::CreateExpo
   }
   std::vector<int> bodies;
   for (int i = 0; i < static_cast<int>(chosen.size()); ++i) {
-    const bool usual = request.bodies().empty() && model.bodies[i].role == v1::ROLE_DEFORMABLE;
-    if (chosen[i] || usual) bodies.push_back(i);
+    const bool by_default = request.bodies().empty() && model.bodies[i].role == v1::ROLE_DEFORMABLE;
+    if (chosen[i] || by_default) bodies.push_back(i);
   }
   if (bodies.empty()) {
     return absl::InvalidArgumentError(
@@ -49,7 +50,7 @@ absl::StatusOr<std::vector<int>> Bodies(const Model& model, const v1::CreateExpo
   return bodies;
 }
 
-// Bodies, or columns, as the format has the one or the other.
+// Chooses bodies, or columns of numbers, whichever the format holds.
 absl::Status ChooseContent(const v1::CreateExportRequest& request, const Model& model, ExportPlan& plan) {
   if (!plan.format.numbers_only) {
     auto bodies = Bodies(model, request);
@@ -60,11 +61,11 @@ absl::Status ChooseContent(const v1::CreateExportRequest& request, const Model& 
   }
   if (!request.bodies().empty()) {
     return absl::InvalidArgumentError(
-        absl::StrCat("bodies: ", plan.format.name, " has the probes and measures alone; choose no bodies"));
+        absl::StrCat("bodies: ", plan.format.name, " holds probes and measures only; leave the field out"));
   }
   if (!model.probes.empty() || !model.measures.empty()) return absl::OkStatus();
-  return absl::InvalidArgumentError(absl::StrCat("format: the scene has neither probes nor measures, which is what ",
-                                                 plan.format.name, " holds; give it some, or take another format"));
+  return absl::InvalidArgumentError(absl::StrCat("format: the scene has neither probes nor measures, which are what ",
+                                                 plan.format.name, " holds; add some, or choose another format"));
 }
 
 absl::Status ChooseValues(const v1::CreateExportRequest& request, ExportPlan& plan) {
@@ -75,7 +76,7 @@ absl::Status ChooseValues(const v1::CreateExportRequest& request, ExportPlan& pl
       request.values() == v1::EXPORT_VALUES_DISPLACEMENTS ? record::Values::kDisplacements : record::Values::kPositions;
   if (std::find(offered.begin(), offered.end(), plan.values) != offered.end()) return absl::OkStatus();
   return absl::InvalidArgumentError(
-      absl::StrCat("values: ", plan.format.name, " has one kind of values alone; leave them unsaid"));
+      absl::StrCat("values: ", plan.format.name, " has one kind of values; leave the field out"));
 }
 
 absl::Status ChooseStem(const v1::CreateExportRequest& request, ExportPlan& plan) {
@@ -90,12 +91,12 @@ absl::Status ChooseStem(const v1::CreateExportRequest& request, ExportPlan& plan
                    " letters, digits, \".\", \"_\" and \"-\", and does not begin with a dot"));
 }
 
-absl::Status ChooseTimes(const v1::CreateExportRequest& request, const Session::Fork& fork, ExportPlan& plan) {
+absl::Status ChooseTimes(const v1::CreateExportRequest& request, const Fork& fork, ExportPlan& plan) {
   plan.start = request.has_start() ? request.start() : fork.state.time;
   plan.seconds = request.seconds();
   if (plan.start < fork.state.time - kTimeTolerance) {
     return absl::InvalidArgumentError(absl::StrFormat(
-        "start: %g s is over, the session is at %g s; reset it, or choose a later time", plan.start, fork.state.time));
+        "start: %g s is past, the session is at %g s; reset it, or choose a later time", plan.start, fork.state.time));
   }
   if (plan.format.instant && plan.seconds > 0) {
     return absl::InvalidArgumentError(absl::StrCat(
@@ -114,7 +115,7 @@ absl::Status ChooseTimes(const v1::CreateExportRequest& request, const Session::
   return absl::OkStatus();
 }
 
-// Of `model` at the step that `parameters` have.
+// Estimates the bytes of file and spool, at the time step of `parameters`.
 std::int64_t Estimate(const Model& model, const v1::Parameters& parameters, const ExportPlan& plan) {
   const double rate = plan.steps_per_frame > 0
                           ? 1 / (parameters.time_step() * static_cast<double>(plan.steps_per_frame))
@@ -125,15 +126,15 @@ std::int64_t Estimate(const Model& model, const v1::Parameters& parameters, cons
     shapes += model.bodies[body].mesh.triangles.cols() + model.bodies[body].mesh.edges.cols();
   }
   if (plan.format.numbers_only)
-    return frames * kBytesANumber * static_cast<std::int64_t>(1 + PoseMatricesOf(model).size());
-  return kBytesAShape * (plan.vertices + shapes) +
+    return frames * kBytesPerNumber * static_cast<std::int64_t>(1 + ColumnsOf(model).size());
+  return kBytesPerShape * (plan.vertices + shapes) +
          frames * plan.vertices * (plan.format.file_bytes + plan.format.spool_bytes);
 }
 
 }  // namespace
 
-absl::StatusOr<ExportPlan> PlanExport(const v1::CreateExportRequest& request, const Model& model,
-                                      const Session::Fork& fork, const std::string& spool_folder) {
+absl::StatusOr<ExportPlan> PlanExport(const v1::CreateExportRequest& request, const Model& model, const Fork& fork,
+                                      const std::string& spool_folder) {
   auto format = record::FindFormat(ExportFormats(), request.format());
   if (!format.ok()) return format.status();
   ExportPlan plan;
@@ -148,7 +149,7 @@ absl::StatusOr<ExportPlan> PlanExport(const v1::CreateExportRequest& request, co
   return plan;
 }
 
-std::vector<record::Column> PoseMatricesOf(const Model& model) {
+std::vector<record::Column> ColumnsOf(const Model& model) {
   std::vector<record::Column> columns;
   for (const Probe& probe : model.probes) {
     for (const char* axis : {" x", " y", " z"}) columns.push_back({probe.name + axis, "mm"});
@@ -159,11 +160,8 @@ std::vector<record::Column> PoseMatricesOf(const Model& model) {
 
 std::vector<double> NumbersAt(const Model& model, const v1::Parameters& parameters, const State& state) {
   std::vector<double> numbers;
-  Points placed;
   for (const Probe& probe : model.probes) {
-    placed.resize(3, model.bodies[probe.body].mesh.vertices.cols());
-    PlaceBody(model, state, probe.body, placed);
-    for (const double coordinate : placed.col(probe.vertex)) numbers.push_back(kMillimetresAMetre * coordinate);
+    for (const double x : ProbePosition(model, state, probe)) numbers.push_back(kMillimetresAMetre * x);
   }
   for (const v1::MeasureReading& reading : ReadMeasures(model, MakeEvalContext(model, parameters, state))) {
     numbers.push_back(reading.value());

@@ -1,4 +1,4 @@
-// An export's request made definite: what is recorded, when and how, and the room that it takes.
+// What an export records, when and how, and how much disk space it needs.
 #ifndef PHRENIC_SERVER_SESSION_EXPORT_EXPORT_PLAN_H_
 #define PHRENIC_SERVER_SESSION_EXPORT_EXPORT_PLAN_H_
 
@@ -10,7 +10,7 @@
 #include "phrenic/v1/export.pb.h"
 #include "server/mechanics/model.h"
 #include "server/record/recorder.h"
-#include "server/session/session.h"
+#include "server/session/run.h"
 
 namespace phrenic::session {
 
@@ -19,21 +19,23 @@ struct ExportPlan {
   record::Values values = record::Values::kPositions;
   std::string file_stem;
   std::string spool_folder;
-  std::vector<int> bodies;           // of the model
+  std::vector<int> bodies;           // indices into the model's bodies
   double start = 0, seconds = 0;     // [s]
-  double frames_per_second = 0;      // where steps_per_frame is 0
-  std::int64_t steps_per_frame = 0;  // 0: by time
+  double frames_per_second = 0;      // if steps_per_frame is 0
+  std::int64_t steps_per_frame = 0;  // 0: frames_per_second counts
   std::int64_t vertices = 0;
-  std::int64_t bytes = 0;  // an estimate of what file and spool take together
+  std::int64_t bytes = 0;  // estimate for file and spool together
 };
 
-// The request is in range. INVALID_ARGUMENT names the field where there is no such format or body, or where the format
-// cannot do what is asked; RESOURCE_EXHAUSTED where the spool folder's disk has no room for the plan's bytes.
-absl::StatusOr<ExportPlan> PlanExport(const v1::CreateExportRequest& request, const Model& model,
-                                      const Session::Fork& fork, const std::string& spool_folder);
+// Makes the plan of a request whose fields are in range, for a run that starts at `fork`. INVALID_ARGUMENT names the
+// field if there is no such format or body, or if the format cannot do what is requested; RESOURCE_EXHAUSTED if the
+// disk of the spool folder has no room for plan.bytes.
+absl::StatusOr<ExportPlan> PlanExport(const v1::CreateExportRequest& request, const Model& model, const Fork& fork,
+                                      const std::string& spool_folder);
 
-// The columns beside the positions: the probes' places [mm], then the measures.
-std::vector<record::Column> PoseMatricesOf(const Model& model);
+// Returns the columns of a format of numbers: the coordinates of the probes [mm], then the measures.
+std::vector<record::Column> ColumnsOf(const Model& model);
+// Returns their values, one per column.
 std::vector<double> NumbersAt(const Model& model, const v1::Parameters& parameters, const State& state);
 
 }  // namespace phrenic::session

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "server/record/recorder.h"
-#include "server/session/pace_meter.h"
+#include "server/schema/thread_cpu.h"
 #include "server/session/run.h"
 
 namespace phrenic::session {
@@ -16,14 +16,14 @@ namespace {
 
 using Wall = std::chrono::steady_clock;
 
-constexpr auto kBetweenWords = std::chrono::milliseconds(200);  // of progress
-constexpr double kRecordingShare = 0.5;                         // of a format that is written from a spool at the end
+constexpr auto kBetweenReports = std::chrono::milliseconds(200);  // of progress
+constexpr double kRecordingShare = 0.5;  // of the work, for a format that writes its file from a spool at the end
 
-// One export under way. Not thread-safe.
-class Export {
+// One export in progress. Not thread-safe.
+class MotionExport {
  public:
-  Export(const ExportPlan& plan, const Model& model, Run& run, record::Recorder& recorder,
-         const ExportProgress& progress)
+  MotionExport(const ExportPlan& plan, const Model& model, Run& run, record::Recorder& recorder,
+               const ExportProgress& progress)
       : plan_(plan), model_(model), run_(run), recorder_(recorder), progress_(progress), begin_(run.state().time) {
     positions_.resize(3, plan.vertices);
   }
@@ -34,8 +34,8 @@ class Export {
     absl::Status recorded = plan_.steps_per_frame > 0 ? RecordBySteps() : RecordByTime();
     if (!recorded.ok()) return recorded;
     return recorder_.End([this](double share) {
-      if (Wall::now() < last_word_ + kBetweenWords) return absl::OkStatus();
-      last_word_ = Wall::now();
+      if (Wall::now() < last_report_ + kBetweenReports) return absl::OkStatus();
+      last_report_ = Wall::now();
       return progress_(kRecordingShare + (1 - kRecordingShare) * share, plan_.seconds);
     });
   }
@@ -63,7 +63,7 @@ class Export {
       vertices = positions_.middleCols(first, vertices.cols());
       first += vertices.cols();
     }
-    if (plan_.format.numbers_only) recording.columns = PoseMatricesOf(model_);
+    if (plan_.format.numbers_only) recording.columns = ColumnsOf(model_);
     if (absl::Status status = recorder_.Begin(recording); !status.ok()) return status;
     return AddFrame();
   }
@@ -106,27 +106,27 @@ class Export {
 
   absl::Status StepTo(double time, std::int64_t most_steps = std::numeric_limits<std::int64_t>::max()) {
     while (steps_ < most_steps && run_.state().time < time - kTimeTolerance) {
-      if (absl::Status status = StepForAWhile(time, most_steps); !status.ok()) return status;
-      if (Wall::now() < last_word_ + kBetweenWords) continue;
-      last_word_ = Wall::now();
-      if (absl::Status status = TellProgress(); !status.ok()) return status;
+      if (absl::Status status = StepUntilReport(time, most_steps); !status.ok()) return status;
+      if (Wall::now() < last_report_ + kBetweenReports) continue;
+      last_report_ = Wall::now();
+      if (absl::Status status = Report(); !status.ok()) return status;
     }
     return absl::OkStatus();
   }
 
-  absl::Status TellProgress() {
+  absl::Status Report() {
     const double time = run_.state().time, all = end() - begin_;
     const double share = all > 0 ? std::min(1.0, (time - begin_) / all) : 1;
     return progress_(share * (plan_.format.spool_bytes > 0 ? kRecordingShare : 1), std::max(0.0, time - plan_.start));
   }
 
-  // Until `time` or so many steps, or until a word is due.
-  absl::Status StepForAWhile(double time, std::int64_t most_steps) {
+  // Steps until `time`, `most_steps` steps in all, or until a report is due.
+  absl::Status StepUntilReport(double time, std::int64_t most_steps) {
     const Wall::time_point start = Wall::now();
     const double cpu = ThreadCpuSeconds();
     absl::Status status;
     while (status.ok() && steps_ < most_steps && run_.state().time < time - kTimeTolerance &&
-           Wall::now() < last_word_ + kBetweenWords) {
+           Wall::now() < last_report_ + kBetweenReports) {
       status = run_.Step();
       ++steps_;
     }
@@ -140,9 +140,9 @@ class Export {
   Run& run_;
   record::Recorder& recorder_;
   const ExportProgress& progress_;
-  const double begin_;  // of the stepping [s]
+  const double begin_;  // simulated time at which stepping began [s]
   Points positions_;
-  Wall::time_point last_word_ = Wall::now();
+  Wall::time_point last_report_ = Wall::now();
   std::int64_t frames_ = 0, steps_ = 0;
   double step_wall_ = 0, step_cpu_ = 0;
 };
@@ -150,13 +150,13 @@ class Export {
 }  // namespace
 
 absl::StatusOr<v1::ExportSummary> ExportMotion(const ExportPlan& plan, const std::shared_ptr<const Model>& model,
-                                               Session::Fork fork, ExportFile& file, const ExportProgress& progress) {
+                                               Fork fork, ExportFile& file, const ExportProgress& progress) {
   const auto recorder = plan.format.make({.sink = [&file](std::string_view bytes) { return file.Append(bytes); },
                                           .values = plan.values,
                                           .stem = plan.file_stem,
                                           .spool_folder = plan.spool_folder});
   Run run(model, std::move(fork.parameters), std::move(fork.state));
-  Export work(plan, *model, run, *recorder, progress);
+  MotionExport work(plan, *model, run, *recorder, progress);
   if (absl::Status status = work.Record(); !status.ok()) return status;
   v1::ExportSummary summary;
   work.FillSummary(summary);

@@ -1,15 +1,32 @@
-// What can be exported: record's motions, and the surface formats of meshio for one instant.
+// Writes one instant of the exported bodies as one surface file.
 #ifndef PHRENIC_SERVER_SESSION_EXPORT_SURFACE_RECORDER_H_
 #define PHRENIC_SERVER_SESSION_EXPORT_SURFACE_RECORDER_H_
 
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "server/record/recorder.h"
 
 namespace phrenic::session {
 
-// The catalogue: a row a format of record/formats.cc, then one for each other format that meshio writes.
-const std::vector<record::Format>& ExportFormats();
+// Keeps the last frame, and writes it at the end in a format of meshio [mm]. Bodies without triangles (networks of
+// edges) are in the file only if no body has triangles, as the formats hold either. Not thread-safe.
+class SurfaceRecorder final : public record::Recorder {
+ public:
+  // `ending` names the format: ".stl".
+  SurfaceRecorder(std::string ending, record::Sink sink) : ending_(std::move(ending)), sink_(std::move(sink)) {}
+
+  absl::Status Begin(const record::Recording& recording) override;
+  absl::Status AddFrame(const record::RecordedFrame& frame) override;
+  absl::Status End(const std::function<absl::Status(double share)>& report) override;
+
+ private:
+  const std::string ending_;
+  const record::Sink sink_;
+  std::vector<record::RecordedBody> bodies_;
+  Points positions_;  // 3 x n [m]
+};
 
 }  // namespace phrenic::session
 

@@ -1,23 +1,24 @@
-// Time and waiting, passed in so that tests control both.
-#ifndef PHRENIC_SERVER_STREAM_CLOCK_H_
-#define PHRENIC_SERVER_STREAM_CLOCK_H_
+// Wall-clock time and timed waits behind an interface, so that tests control both.
+#ifndef PHRENIC_SERVER_SCHEMA_CLOCK_H_
+#define PHRENIC_SERVER_SCHEMA_CLOCK_H_
 
 #include "absl/synchronization/mutex.h"
 #include "absl/time/clock.h"
 #include "absl/time/time.h"
 
-namespace phrenic::stream {
+namespace phrenic {
 
 // Thread-safe.
 class Clock {
  public:
   virtual ~Clock() = default;
   virtual absl::Time Now() const = 0;
-  // Waits until `condition` is true or `deadline` is reached, like absl::Mutex::AwaitWithDeadline. Requires: `mutex` is
-  // held.
+  // Returns when `condition` holds or `deadline` has passed. Requires: the caller holds `mutex`, as for
+  // absl::Mutex::Await.
   virtual void Await(absl::Mutex& mutex, const absl::Condition& condition, absl::Time deadline) const = 0;
 };
 
+// The machine's clock.
 class SystemClock final : public Clock {
  public:
   absl::Time Now() const override { return absl::Now(); }
@@ -26,6 +27,6 @@ class SystemClock final : public Clock {
   }
 };
 
-}  // namespace phrenic::stream
+}  // namespace phrenic
 
-#endif  // PHRENIC_SERVER_STREAM_CLOCK_H_
+#endif  // PHRENIC_SERVER_SCHEMA_CLOCK_H_

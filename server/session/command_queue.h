@@ -1,0 +1,59 @@
+// Calls that other threads make to a session's stepping thread.
+#ifndef PHRENIC_SERVER_SESSION_COMMAND_QUEUE_H_
+#define PHRENIC_SERVER_SESSION_COMMAND_QUEUE_H_
+
+#include <atomic>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "absl/base/thread_annotations.h"
+#include "absl/functional/function_ref.h"
+#include "absl/status/status.h"
+#include "absl/synchronization/mutex.h"
+#include "absl/synchronization/notification.h"
+#include "server/schema/clock.h"
+
+namespace phrenic::session {
+
+// Any thread calls Call, Close and called; only the stepping thread calls Await and Finish.
+class CommandQueue {
+ public:
+  struct Command {
+    std::function<void()> act;
+    std::shared_ptr<absl::Notification> done;
+  };
+  struct Batch {
+    std::deque<Command> commands;  // in the order of the calls
+    bool closed = false;           // then none of them runs
+  };
+
+  explicit CommandQueue(const Clock& clock) : clock_(clock) {}
+
+  // Has the stepping thread run `act` between two steps, and waits for it. Returns the reason of Close if `act` did not
+  // run. The queue holds as many commands as there are callers waiting.
+  absl::Status Call(absl::FunctionRef<void()> act) ABSL_LOCKS_EXCLUDED(mutex_);
+  // Refuses waiting and later calls with `reason`. Returns false if the queue was closed before.
+  bool Close(const absl::Status& reason) ABSL_LOCKS_EXCLUDED(mutex_);
+  // True if a call or Close waits for the stepping thread. A hint, which ends a burst of steps early.
+  bool called() const { return called_; }
+
+  // Waits for a call, Close or `deadline`, and takes all commands.
+  Batch Await(absl::Time deadline) ABSL_LOCKS_EXCLUDED(mutex_);
+  // Runs the commands, unless the queue is closed, and wakes their callers.
+  static void Finish(const Batch& batch);
+
+ private:
+  bool Pending() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) { return !commands_.empty() || closed_.has_value(); }
+
+  const Clock& clock_;
+  absl::Mutex mutex_;
+  std::deque<Command> commands_ ABSL_GUARDED_BY(mutex_);
+  std::optional<absl::Status> closed_ ABSL_GUARDED_BY(mutex_);
+  std::atomic<bool> called_ = false;
+};
+
+}  // namespace phrenic::session
+
+#endif  // PHRENIC_SERVER_SESSION_COMMAND_QUEUE_H_

@@ -1,0 +1,16 @@
+// The catalogue of what can be exported: record's motion formats, and meshio's surface formats for one instant.
+#ifndef PHRENIC_SERVER_SESSION_EXPORT_EXPORT_CATALOGUE_H_
+#define PHRENIC_SERVER_SESSION_EXPORT_EXPORT_CATALOGUE_H_
+
+#include <vector>
+
+#include "server/record/recorder.h"
+
+namespace phrenic::session {
+
+// Returns one row for each format of record/formats.cc, then one for each other format that meshio writes. Thread-safe.
+const std::vector<record::Format>& ExportFormats();
+
+}  // namespace phrenic::session
+
+#endif  // PHRENIC_SERVER_SESSION_EXPORT_EXPORT_CATALOGUE_H_

@@ -1,0 +1,54 @@
+// How fast and how far a playing session steps.
+#ifndef PHRENIC_SERVER_SESSION_PLAYBACK_H_
+#define PHRENIC_SERVER_SESSION_PLAYBACK_H_
+
+#include <atomic>
+#include <memory>
+#include <optional>
+
+#include "phrenic/v1/saved.pb.h"
+
+namespace phrenic::session {
+
+// The simulated time of a playing session [s], for sessions that play in step with it; infinity while it is not
+// playing, so that followers never wait. Any thread may read it.
+using ReachedTime = std::atomic<double>;
+
+// What PlaySession asks for.
+struct PlayRequest {
+  std::optional<double> speed = std::nullopt;  // simulated seconds per second; nullopt keeps the present speed
+  bool as_fast_as_possible = false;
+  double until = 0;                              // simulated time at which the session pauses [s]; 0 never pauses
+  std::weak_ptr<const ReachedTime> leader = {};  // of the session that this one plays in step with
+};
+
+// The speed, the end and the leader of a playing session. Not thread-safe: the stepping thread owns it.
+class Playback {
+ public:
+  void Start(PlayRequest request);
+  // Forgets the end time.
+  void Stop() { until_ = 0; }
+
+  double speed() const { return speed_; }  // simulated seconds per second, also while as fast as possible
+  bool as_fast_as_possible() const { return as_fast_as_possible_; }
+  // Returns the speed that clients see: 0 means as fast as possible.
+  double shown_speed() const { return as_fast_as_possible_ ? 0 : speed_; }
+  // True if `time` [s] has reached the end.
+  bool EndsAt(double time) const;
+  // Returns the time up to which the session at `time` need not wait for its leader [s]: a frame ahead of it; infinity
+  // without a leader, or if the leader is too far behind to wait for.
+  double FurthestInStep(double time) const;
+
+  void Save(v1::SavedMoment& moment) const;
+  void Restore(const v1::SavedMoment& moment);
+
+ private:
+  double speed_ = 1;
+  bool as_fast_as_possible_ = false;
+  double until_ = 0;  // [s]
+  std::weak_ptr<const ReachedTime> leader_;
+};
+
+}  // namespace phrenic::session
+
+#endif  // PHRENIC_SERVER_SESSION_PLAYBACK_H_

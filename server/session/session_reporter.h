@@ -1,0 +1,80 @@
+// Reports what the stepping thread does: the status to callers and viewers, frames to viewers, moments to the store.
+#ifndef PHRENIC_SERVER_SESSION_SESSION_REPORTER_H_
+#define PHRENIC_SERVER_SESSION_SESSION_REPORTER_H_
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "absl/time/time.h"
+#include "phrenic/v1/saved.pb.h"
+#include "phrenic/v1/session.pb.h"
+#include "server/schema/clock.h"
+#include "server/session/control.h"
+#include "server/session/pace_meter.h"
+#include "server/session/playback.h"
+#include "server/session/run.h"
+#include "server/session/session_saver.h"
+#include "server/session/status_board.h"
+#include "server/session/update_schedule.h"
+#include "server/stream/publisher.h"
+
+namespace phrenic::session {
+
+// Everything that changes in a session, apart from its viewers. The stepping thread owns it.
+struct RunningSession {
+  Run run;
+  ControlBook control;
+  double stable_step = 0;  // the largest one for the run's parameters [s]
+  v1::SessionState phase = v1::SESSION_STATE_PAUSED;
+  std::int64_t revision = 1;  // grows with every change of parameters, pulls or phase
+  Playback playback = {};
+  UpdateSchedule updates = {};
+  PaceMeter meter = {};
+
+  // Takes over what a saved moment says, apart from the run, which is at that moment already, and control.
+  void Restore(const v1::SavedMoment& saved);
+};
+
+// The stepping thread calls it, except for status(), which any thread may call.
+class SessionReporter {
+ public:
+  // All outlive the reporter.
+  SessionReporter(const Clock& clock, StatusBoard& board, SessionSaver& saver, stream::Publisher& publisher)
+      : clock_(clock), board_(board), saver_(saver), publisher_(publisher) {}
+
+  // Returns the status with the number of viewers, and why it is not saved.
+  v1::Session status() const;
+
+  // Writes the whole status, announces it to viewers, and saves the session.
+  void Report(const RunningSession& session);
+  // Reports control if it has changed since the last report.
+  void ReportControl(const RunningSession& session);
+  // Reports the time of a running session: to viewers if `measured`, when its pace is new; to the store when it is due.
+  void ReportProgress(const RunningSession& session, bool measured, absl::Time now);
+  // Saves the last state of a session that ends.
+  void ReportEnd(const RunningSession& session);
+  // Offers a frame of the present state to viewers, unless the newest frame has the same tick.
+  void OfferFrame(const RunningSession& session, absl::Time now);
+  // Makes the next OfferFrame offer a frame in any case, and the next save begin at t = 0.
+  void NoteReset();
+  // Shows viewers a camera, until another person controls than now.
+  void ShowCamera(const RunningSession& session, const v1::Camera& camera);
+
+ private:
+  void WriteStatus(const RunningSession& session, v1::Session& status) const;
+  static v1::SavedMoment MomentOf(const RunningSession& session, v1::Session status);
+
+  const Clock& clock_;
+  StatusBoard& board_;
+  SessionSaver& saver_;
+  stream::Publisher& publisher_;
+  std::int64_t frames_ = 0;
+  std::int64_t framed_tick_ = -1;      // of the newest frame
+  std::int64_t reported_control_ = 0;  // the revision of the control that was reported last
+  std::string camera_of_;              // the controller who shows a camera; empty: none is shown
+};
+
+}  // namespace phrenic::session
+
+#endif  // PHRENIC_SERVER_SESSION_SESSION_REPORTER_H_

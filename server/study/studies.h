@@ -1,0 +1,92 @@
+// The studies of a server: queued, run one at a time, kept with their results.
+#ifndef PHRENIC_SERVER_STUDY_STUDIES_H_
+#define PHRENIC_SERVER_STUDY_STUDIES_H_
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/functional/function_ref.h"
+#include "absl/status/statusor.h"
+#include "absl/time/time.h"
+#include "phrenic/v1/study.pb.h"
+#include "server/jobs/queue.h"
+#include "server/schema/clock.h"
+#include "server/study/context.h"
+
+namespace phrenic::study {
+
+// One study as a job of a queue (jobs::Queue).
+class StudyJob {
+ public:
+  using Message = v1::Study;
+  using Work = std::function<absl::StatusOr<v1::StudyResult>(const Progress& progress)>;
+
+  // `owner` on a server with accounts.
+  StudyJob(v1::CreateStudyRequest request, std::string owner, Work work)
+      : request_(std::move(request)), owner_(std::move(owner)), work_(std::move(work)) {}
+
+  absl::Status Run(jobs::Progress<v1::Study> progress);
+  void Finish(const absl::Status& status, absl::Time expires, v1::Study& message);
+  void Save(const v1::Study& message, const jobs::Records& records) const;
+
+ private:
+  const v1::CreateStudyRequest request_;
+  const std::string owner_;
+  const Work work_;
+  v1::StudyResult result_;  // of a study that succeeded
+};
+
+// Thread-safe. A thread of its own runs the studies, at most 16 of which are kept.
+class Studies {
+ public:
+  using Seen = jobs::Queue<StudyJob>::Seen;
+  // Returns the name of the scene that a request studies, or why it cannot be studied.
+  using SceneName = std::function<absl::StatusOr<std::string>(const v1::CreateStudyRequest& request)>;
+
+  // `clock` and `store` outlive it. A null store keeps nothing.
+  Studies(SceneName scene_name, Compiler compile, const Clock& clock, store::Store* store);
+
+  // Restores the studies of an earlier server: ended ones with their results; the others run again from their start and
+  // come to the same results. Calls `found` with each and its owner. `lost` gets the reason why one could not be
+  // restored, by "study ID". Requires: no other call was made yet.
+  void Restore(const std::vector<store::SavedRecord>& records,
+               absl::FunctionRef<void(const std::string& id, const std::string& owner)> found,
+               std::map<std::string, absl::Status>& lost);
+
+  // Queues a study and returns once the store has it on the disk. An empty id is chosen from its kind and its scene.
+  // INVALID_ARGUMENT if the request names no kind; the errors of SceneName and jobs::Queue::Add.
+  absl::StatusOr<v1::Study> Add(const v1::CreateStudyRequest& request, const std::string& owner);
+  // The same as the methods of jobs::Queue; List leaves out the results.
+  absl::StatusOr<Seen> Wait(const std::string& id, std::int64_t seen, absl::Duration longest) const {
+    return queue_.Wait(id, seen, longest);
+  }
+  absl::Status Watch(const std::string& id, absl::FunctionRef<bool()> gone,
+                     absl::FunctionRef<bool(v1::Study message)> write) const {
+    return queue_.Watch(id, gone, write);
+  }
+  std::vector<v1::Study> List() const;
+  absl::Status Delete(const std::string& id) { return queue_.Delete(id); }
+
+ private:
+  // A job that is ready for the queue.
+  struct Draft {
+    std::string id_base;  // "error-thorax"
+    v1::Study message;
+    std::shared_ptr<StudyJob> job;
+  };
+  absl::StatusOr<Draft> MakeDraft(const v1::CreateStudyRequest& request, const std::string& owner) const;
+  absl::Status RestoreOne(const store::SavedRecord& record,
+                          absl::FunctionRef<void(const std::string& id, const std::string& owner)> found);
+
+  const SceneName scene_name_;
+  const Compiler compile_;
+  jobs::Queue<StudyJob> queue_;
+};
+
+}  // namespace phrenic::study
+
+#endif  // PHRENIC_SERVER_STUDY_STUDIES_H_

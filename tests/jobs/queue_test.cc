@@ -1,0 +1,217 @@
+#include "server/jobs/queue.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <functional>
+
+#include "phrenic/v1/study.pb.h"
+
+namespace phrenic::jobs {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Pair;
+using testing::SizeIs;
+
+using StudyProgress = Progress<v1::Study>;
+using Work = std::function<absl::Status(StudyProgress progress)>;
+
+// A job whose work is a function.
+class TestJob {
+ public:
+  using Message = v1::Study;
+
+  explicit TestJob(Work work) : work_(std::move(work)) {}
+  absl::Status Run(StudyProgress progress) { return work_(progress); }
+  void Finish(const absl::Status& status, absl::Time /*expires*/, v1::Study& message) {
+    if (status.ok()) message.mutable_result()->set_scene(message.scene());
+  }
+  void Save(const v1::Study& message, const Records& records) const {
+    records.Put(message.id(), message.SerializeAsString());
+  }
+
+ private:
+  const Work work_;
+};
+
+using TestQueue = Queue<TestJob>;
+
+bool Tell(StudyProgress progress, double done) {
+  return progress(done, [](v1::Study&) { return true; });
+}
+
+// Reports half of the work, and ends.
+absl::Status Quick(StudyProgress progress) {
+  Tell(progress, 0.5);
+  return absl::OkStatus();
+}
+
+// Runs until it is cancelled.
+absl::Status Endless(StudyProgress progress) {
+  while (Tell(progress, 0.1)) absl::SleepFor(absl::Milliseconds(1));
+  return absl::CancelledError("cancelled");
+}
+
+class QueueTest : public testing::Test {
+ protected:
+  std::unique_ptr<TestQueue> Make(int kept, store::Store* store = nullptr) const {
+    return std::make_unique<TestQueue>(QueueOptions{.noun = {"study", "studies", "a"}, .kept = kept}, clock_,
+                                       Records("study", store));
+  }
+
+  static absl::StatusOr<v1::Study> Add(TestQueue& queue, const std::string& id, const Work& work) {
+    v1::Study message;
+    message.set_scene("thorax");
+    return queue.Add(id, "error-thorax", message, std::make_shared<TestJob>(work));
+  }
+
+  static TestQueue::Seen WaitForEnd(const TestQueue& queue, const std::string& id) {
+    TestQueue::Seen seen;
+    while (!seen.ended) {
+      auto next = queue.Wait(id, seen.version, absl::Seconds(10));
+      EXPECT_TRUE(next.ok()) << next.status();
+      if (!next.ok()) break;
+      seen = *std::move(next);
+    }
+    return seen;
+  }
+
+  const SystemClock clock_;
+};
+
+TEST_F(QueueTest, JobsRunAndKeepTheirResults) {
+  const auto queue = Make(4);
+  const auto added = Add(*queue, "", &Quick);
+  ASSERT_TRUE(added.ok()) << added.status();
+  EXPECT_EQ(added->id(), "error-thorax");
+  const TestQueue::Seen seen = WaitForEnd(*queue, added->id());
+  EXPECT_EQ(seen.message.state(), v1::STUDY_STATE_DONE);
+  EXPECT_EQ(seen.message.progress(), 1);
+  EXPECT_EQ(seen.message.result().scene(), "thorax");
+  EXPECT_THAT(queue->List(), SizeIs(1));
+}
+
+TEST_F(QueueTest, AFailedJobSaysWhy) {
+  const auto queue = Make(4);
+  ASSERT_TRUE(Add(*queue, "a", [](StudyProgress) { return absl::OutOfRangeError("the breath diverged"); }).ok());
+  const TestQueue::Seen seen = WaitForEnd(*queue, "a");
+  EXPECT_EQ(seen.message.state(), v1::STUDY_STATE_FAILED);
+  EXPECT_EQ(seen.message.problem(), "the breath diverged");
+}
+
+TEST_F(QueueTest, OneThreadRunsJobsOneAfterTheOther) {
+  const auto queue = Make(4);
+  std::atomic<int> running = 0, most = 0;
+  const auto counts = [&](StudyProgress) {
+    most = std::max(most.load(), ++running);
+    absl::SleepFor(absl::Milliseconds(5));
+    --running;
+    return absl::OkStatus();
+  };
+  for (int i = 0; i < 4; ++i) ASSERT_TRUE(Add(*queue, "", counts).ok());
+  WaitForEnd(*queue, "error-thorax-4");
+  EXPECT_EQ(most, 1);
+}
+
+TEST_F(QueueTest, ADeletedJobEndsAndTheNextOneRuns) {
+  const auto queue = Make(4);
+  ASSERT_TRUE(Add(*queue, "long", &Endless).ok());
+  ASSERT_TRUE(queue->Delete("long").ok());
+  EXPECT_EQ(queue->Wait("long", 0, absl::ZeroDuration()).status().code(), absl::StatusCode::kNotFound);
+  ASSERT_TRUE(Add(*queue, "next", &Quick).ok());
+  EXPECT_EQ(WaitForEnd(*queue, "next").message.state(), v1::STUDY_STATE_DONE);
+}
+
+TEST_F(QueueTest, AWatcherSeesEachChangeUntilTheEnd) {
+  const auto queue = Make(4);
+  ASSERT_TRUE(Add(*queue, "a", &Quick).ok());
+  std::vector<double> progress;
+  const absl::Status watched = queue->Watch(
+      "a", [] { return false; },
+      [&](const v1::Study& study) {
+        progress.push_back(study.progress());
+        return true;
+      });
+  EXPECT_TRUE(watched.ok()) << watched;
+  EXPECT_TRUE(std::is_sorted(progress.begin(), progress.end()));
+  EXPECT_EQ(progress.back(), 1);
+}
+
+TEST_F(QueueTest, AWatcherThatIsGoneDoesNotWait) {
+  const auto queue = Make(4);
+  ASSERT_TRUE(Add(*queue, "a", &Endless).ok());
+  const auto writes = [](const v1::Study&) { return true; };
+  EXPECT_TRUE(absl::IsUnavailable(queue->Watch(
+      "a", [] { return true; }, writes)));
+  EXPECT_TRUE(absl::IsUnavailable(queue->Watch(
+      "a", [] { return false; }, [](const v1::Study&) { return false; })));
+  EXPECT_TRUE(absl::IsNotFound(queue->Watch(
+      "b", [] { return false; }, writes)));
+}
+
+TEST_F(QueueTest, IsBounded) {
+  const auto queue = Make(2);
+  ASSERT_TRUE(Add(*queue, "a", &Endless).ok());
+  ASSERT_TRUE(Add(*queue, "b", &Endless).ok());
+  const auto refused = Add(*queue, "c", &Endless);
+  EXPECT_EQ(refused.status().code(), absl::StatusCode::kResourceExhausted);
+  EXPECT_THAT(std::string(refused.status().message()), HasSubstr("delete one"));
+}
+
+TEST_F(QueueTest, TheOldestEndedJobMakesRoom) {
+  const auto queue = Make(1);
+  ASSERT_TRUE(Add(*queue, "a", &Quick).ok());
+  WaitForEnd(*queue, "a");
+  ASSERT_TRUE(Add(*queue, "b", &Quick).ok());
+  EXPECT_EQ(queue->Wait("a", 0, absl::ZeroDuration()).status().code(), absl::StatusCode::kNotFound);
+}
+
+TEST_F(QueueTest, RefusesBadAndTakenIds) {
+  const auto queue = Make(4);
+  EXPECT_EQ(Add(*queue, "No Good", &Quick).status().code(), absl::StatusCode::kInvalidArgument);
+  ASSERT_TRUE(Add(*queue, "a", &Quick).ok());
+  EXPECT_EQ(Add(*queue, "a", &Quick).status().code(), absl::StatusCode::kAlreadyExists);
+  EXPECT_THAT(std::string(queue->Delete("b").message()), HasSubstr("there are a"));
+}
+
+TEST_F(QueueTest, ItsDestructorEndsRunningAndWaitingJobs) {
+  const auto queue = Make(4);
+  ASSERT_TRUE(Add(*queue, "a", &Endless).ok());
+  ASSERT_TRUE(Add(*queue, "b", &Endless).ok());
+}
+
+TEST_F(QueueTest, UnfinishedJobsStayInTheStoreAndDeletedOnesDoNot) {
+  const std::string folder = testing::TempDir() + "phrenic_jobs_" + std::to_string(getpid());
+  {
+    const auto store = *store::Store::Open(folder);
+    const auto queue = Make(4, store.get());
+    ASSERT_TRUE(Add(*queue, "done", &Quick).ok());
+    WaitForEnd(*queue, "done");
+    for (const char* id : {"running", "deleted", "waiting"}) ASSERT_TRUE(Add(*queue, id, &Endless).ok());
+    ASSERT_TRUE(queue->Delete("deleted").ok());
+  }
+  const auto store = *store::Store::Open(folder);
+  std::vector<std::pair<std::string, v1::StudyState>> found;
+  std::map<std::string, absl::Status> lost;
+  const auto restore = [&](const store::SavedRecord& record) -> absl::Status {
+    v1::Study saved;
+    if (!saved.ParseFromString(record.bytes)) return absl::DataLossError("damaged");
+    found.emplace_back(record.id, saved.state());
+    return record.id == "waiting" ? absl::NotFoundError("its scene is gone") : absl::OkStatus();
+  };
+  Records("study", store.get()).Restore(*store->LoadRecords(), restore, lost);
+  EXPECT_THAT(found, ElementsAre(Pair("done", v1::STUDY_STATE_DONE), Pair("running", v1::STUDY_STATE_QUEUED),
+                                 Pair("waiting", v1::STUDY_STATE_QUEUED)));
+  EXPECT_THAT(lost, ElementsAre(Pair("study waiting", absl::NotFoundError("its scene is gone"))));
+  lost.clear();
+  Records("export", store.get()).Restore(*store->LoadRecords(), restore, lost);
+  EXPECT_THAT(lost, IsEmpty()) << "records of another kind";
+  std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace phrenic::jobs
