@@ -1,4 +1,4 @@
-// phrenicd: settings -> options -> serve until a signal comes, or one of its commands.
+// phrenicd: reads settings, then serves until a signal arrives or runs one of its commands.
 #include <cstdlib>
 #include <iostream>
 
@@ -19,17 +19,17 @@ int Refuse(const absl::Status& status) {
 }
 
 int Main(int argc, char** argv) {
-  setenv("GRPC_VERBOSITY", "NONE", 0);  // what matters of it comes as a status
-  // Debian's Abseil looks for deadlocks at every lock, a twentieth of what sending costs; the tests have it look.
+  setenv("GRPC_VERBOSITY", "NONE", 0);  // errors are returned as statuses
+  // Debian's Abseil checks every lock for deadlocks, which costs 5 % of streaming; the tests keep the check.
   absl::SetMutexDeadlockDetectionMode(absl::OnDeadlockCycle::kIgnore);
   CLI::App app("phrenicd: simulates the breathing diaphragm and serves it to viewers and programs.", "phrenicd");
   Flags flags;
   std::function<int()> chosen;
   AddFlags(app, flags);
   AddCommands(app, flags, chosen);
-  bool with_meanings = false;
-  CLI::App* config = app.add_subcommand("config", "Say what settings hold, and where each comes from");
-  config->add_flag("--template", with_meanings, "a file of all settings with their meanings and defaults instead");
+  bool template_only = false;
+  CLI::App* config = app.add_subcommand("config", "Print the settings in use and the origin of each");
+  config->add_flag("--template", template_only, "print a settings file with all settings, their meanings and defaults");
   config->fallthrough();
   CLI::App* manual = app.add_subcommand("man", "Print the manual page");
   const std::string defaults = Template(app), page = ManualOf(app);
@@ -44,7 +44,7 @@ int Main(int argc, char** argv) {
     return app.exit(error) == 0 ? kOk : kUsage;
   }
   if (config->parsed()) {
-    std::cout << (with_meanings ? defaults : Describe(settings::SettingsOf(app, words, file, *in_file)));
+    std::cout << (template_only ? defaults : Describe(settings::SettingsOf(app, words, file, *in_file)));
     return kOk;
   }
   if (manual->parsed()) {

@@ -10,7 +10,7 @@ const policy = [
   "form-action 'none'",
 ].join("; ");
 
-// The built page carries its own content security policy; the development server needs inline styles.
+// The built page has a content security policy in its HTML; the development server needs inline styles.
 function contentSecurityPolicy(): Plugin {
   return {
     name: "content-security-policy",
@@ -24,6 +24,6 @@ function contentSecurityPolicy(): Plugin {
 export default defineConfig({
   plugins: [contentSecurityPolicy()],
   build: { target: "es2022", modulePreload: { polyfill: false }, assetsInlineLimit: 0 },
-  // `npx vite` serves the sources and passes calls on to a phrenicd that listens here.
+  // `npx vite` serves the sources and forwards calls to a phrenicd at this address.
   server: { proxy: { "^/(phrenic|grpc)\\.": process.env.PHRENIC_WEB ?? "http://127.0.0.1:8080" } },
 });

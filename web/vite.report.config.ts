@@ -3,7 +3,7 @@ import { defineConfig, type Plugin } from "vite";
 
 const place = "__PHRENIC_STUDY__";
 
-// Runs this page's one script and nothing else; plots bring their styles with them.
+// Allows only this page's script; plots need inline styles.
 const policy = (hash: string) =>
   [
     "default-src 'none'",
@@ -14,7 +14,7 @@ const policy = (hash: string) =>
     "form-action 'none'",
   ].join("; ");
 
-// Moves the script and the styles into the page, which then needs no other file.
+// Inlines the script and the styles, so that the page is a single file.
 function oneFile(): Plugin {
   return {
     name: "one-file",

@@ -9,11 +9,11 @@
 namespace phrenic::access {
 namespace {
 
-constexpr absl::Duration kKeysAge = absl::Minutes(1);  // after which an address is asked again
+constexpr absl::Duration kKeysAge = absl::Minutes(1);  // before keys are fetched from an address again
 
-std::filesystem::file_time_type ChangeOf(const std::string& file) {
-  std::error_code gone;
-  return std::filesystem::last_write_time(file, gone);
+std::filesystem::file_time_type ModifiedAt(const std::string& file) {
+  std::error_code missing;
+  return std::filesystem::last_write_time(file, missing);
 }
 
 }  // namespace
@@ -27,7 +27,7 @@ absl::StatusOr<std::unique_ptr<Accounts>> Accounts::Open(AccountOptions options)
 
 absl::Status Accounts::ReadTokenFile() {
   if (options_.tokens_file.empty()) return absl::OkStatus();
-  tokens_changed_ = ChangeOf(options_.tokens_file);
+  tokens_changed_ = ModifiedAt(options_.tokens_file);
   auto tokens = ReadTokens(options_.tokens_file);
   if (!tokens.ok()) return tokens.status();
   absl::MutexLock lock(&mutex_);
@@ -37,7 +37,7 @@ absl::Status Accounts::ReadTokenFile() {
 
 absl::Status Accounts::ReadKeys() {
   if (options_.jwt.keys.empty()) return absl::OkStatus();
-  keys_changed_ = ChangeOf(options_.jwt.keys);
+  keys_changed_ = ModifiedAt(options_.jwt.keys);
   keys_due_ = absl::Now() + kKeysAge;
   auto keys = JwtKeys::Read(options_.jwt);
   if (!keys.ok()) return keys.status();
@@ -47,12 +47,12 @@ absl::Status Accounts::ReadKeys() {
 }
 
 absl::Status Accounts::Refresh() {
-  if (!options_.tokens_file.empty() && ChangeOf(options_.tokens_file) != tokens_changed_) {
+  if (!options_.tokens_file.empty() && ModifiedAt(options_.tokens_file) != tokens_changed_) {
     if (absl::Status status = ReadTokenFile(); !status.ok()) return status;
   }
   if (options_.jwt.keys.empty()) return absl::OkStatus();
   const bool due =
-      IsAddress(options_.jwt.keys) ? absl::Now() >= keys_due_ : ChangeOf(options_.jwt.keys) != keys_changed_;
+      IsAddress(options_.jwt.keys) ? absl::Now() >= keys_due_ : ModifiedAt(options_.jwt.keys) != keys_changed_;
   return due ? ReadKeys() : absl::OkStatus();
 }
 
@@ -71,12 +71,12 @@ absl::StatusOr<Account> Accounts::Check(std::string_view token) const {
     keys = keys_;
   }
   if (tokens != nullptr) {
-    // By its hash: how long this takes tells nothing of a token.
+    // The lookup compares hashes, so its duration reveals nothing about a token.
     if (const auto found = tokens->find(Sha256Hex(token)); found != tokens->end()) return found->second;
   }
   if (keys != nullptr) return keys->Check(token, absl::Now());
   return absl::UnauthenticatedError(
-      "authorization: no account has this token; ask for a new one (phrenicd token add), and see that it is whole");
+      "authorization: no account has this token; check that it is complete, or ask for a new one (phrenicd token add)");
 }
 
 }  // namespace phrenic::access

@@ -1,4 +1,4 @@
-// Who has an account: by a file of tokens, and by an identity provider's signed ones.
+// The accounts of a server: tokens from a file, and signed tokens of an OpenID Connect identity provider.
 #ifndef PHRENIC_SERVER_ACCESS_ACCOUNTS_H_
 #define PHRENIC_SERVER_ACCESS_ACCOUNTS_H_
 
@@ -16,26 +16,26 @@
 namespace phrenic::access {
 
 struct AccountOptions {
-  std::string tokens_file;  // empty: none
+  std::string tokens_file;  // empty: no token file
   JwtOptions jwt;
 
   bool used() const { return !tokens_file.empty() || !jwt.keys.empty(); }
 };
 
-// Any thread may call. Files that change, and keys of an address after a while, are read again by Refresh; where they
-// are not good, what they held before stays.
+// Thread-safe, except that one thread at a time calls Refresh. Refresh reloads changed files, and keys from an address
+// every minute; if the new content is not valid, the previous content stays in use.
 class Accounts {
  public:
-  // What is wrong with a file.
+  // Reads the token file and the keys. Errors: those of ReadTokens and JwtKeys::Read.
   static absl::StatusOr<std::unique_ptr<Accounts>> Open(AccountOptions options);
 
-  // Whether calls need one.
+  // True if calls need an account.
   bool required() const { return options_.used(); }
-  // UNAUTHENTICATED where the token is nobody's.
+  // Returns the account of a token. UNAUTHENTICATED if no account has it.
   absl::StatusOr<Account> Check(std::string_view token) const ABSL_LOCKS_EXCLUDED(mutex_);
-  // Whether its file has it still; true for one that no file has.
+  // True if the token file still has the account; always true for accounts of the identity provider.
   bool StillHas(const Account& account) const ABSL_LOCKS_EXCLUDED(mutex_);
-  // To be called now and then; what is wrong with a file that changed, or with an address.
+  // Call it periodically. Returns the error of a changed file or of an address that cannot be read.
   absl::Status Refresh() ABSL_LOCKS_EXCLUDED(mutex_);
 
  private:
@@ -44,9 +44,9 @@ class Accounts {
   absl::Status ReadKeys() ABSL_LOCKS_EXCLUDED(mutex_);
 
   const AccountOptions options_;
-  // Of who calls Refresh.
+  // Used by the thread that calls Refresh.
   std::filesystem::file_time_type tokens_changed_, keys_changed_;
-  absl::Time keys_due_;  // of an address
+  absl::Time keys_due_;  // when keys from an address are fetched again
   mutable absl::Mutex mutex_;
   std::shared_ptr<const TokenTable> tokens_ ABSL_GUARDED_BY(mutex_);
   std::shared_ptr<const JwtKeys> keys_ ABSL_GUARDED_BY(mutex_);

@@ -13,7 +13,7 @@
 namespace phrenic::access {
 namespace {
 
-constexpr std::size_t kLargest = 16 << 20, kKept = 4;  // [bytes], files
+constexpr std::size_t kMaxBytes = 16 << 20, kRotatedFiles = 4;
 
 }  // namespace
 
@@ -22,7 +22,7 @@ absl::StatusOr<std::unique_ptr<AuditLog>> AuditLog::Open(const std::string& file
   if (file.empty()) return audit;
   const mode_t before = umask(0077);
   try {
-    auto sink = std::make_shared<spdlog::sinks::rotating_file_sink_mt>(file, kLargest, kKept);
+    auto sink = std::make_shared<spdlog::sinks::rotating_file_sink_mt>(file, kMaxBytes, kRotatedFiles);
     audit->log_ = std::make_shared<spdlog::logger>("audit", std::move(sink));
   } catch (const spdlog::spdlog_ex& fault) {
     umask(before);

@@ -1,4 +1,4 @@
-// Who did what: an object of JSON a line, of each call that changes something and of each that was refused.
+// The audit log: one JSON object per line for each admitted call that changes something and each refused call.
 #ifndef PHRENIC_SERVER_ACCESS_AUDIT_H_
 #define PHRENIC_SERVER_ACCESS_AUDIT_H_
 
@@ -15,14 +15,14 @@ class logger;
 
 namespace phrenic::access {
 
-// Any thread may call. The file is its owner's alone; past 16 MiB it goes to FILE.1, and so on up to FILE.4. It names
-// callers, machines and sessions, and holds no token, no secret and nothing of what a session simulates.
+// Thread-safe. The file has mode 0600 and is rotated at 16 MiB, to FILE.1 up to FILE.4. It contains the names of
+// callers, machines and sessions, but no token, no secret and no simulated data.
 class AuditLog {
  public:
-  // Empty: nothing is written. PERMISSION_DENIED where the file cannot be.
+  // Writes nothing if `file` is empty. PERMISSION_DENIED if the file cannot be written.
   static absl::StatusOr<std::unique_ptr<AuditLog>> Open(const std::string& file);
 
-  // `outcome` OK: the call went on to its service.
+  // Appends a line. `outcome` is OK for an admitted call, else the refusal.
   void Note(const Caller& caller, std::string_view method, const std::string& session, const absl::Status& outcome);
 
  private:

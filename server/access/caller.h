@@ -1,4 +1,4 @@
-// Who calls, and what they may do.
+// The identity of a caller. Plain data.
 #ifndef PHRENIC_SERVER_ACCESS_CALLER_H_
 #define PHRENIC_SERVER_ACCESS_CALLER_H_
 
@@ -11,18 +11,18 @@ namespace phrenic::access {
 
 struct Account {
   std::string name;
-  v1::AccessRole role = v1::ACCESS_ROLE_UNSPECIFIED;  // the most that it may do anywhere but in its own sessions
-  std::string token_sha256 = "";                      // by which a file has it; empty: another gave it
+  v1::AccessRole role = v1::ACCESS_ROLE_UNSPECIFIED;  // the highest role outside of the account's own sessions
+  std::string token_sha256 = "";                      // key in the token file; empty: from the identity provider
 };
 
 struct Caller {
-  Account account;                 // without a name: unknown
-  std::vector<std::string> links;  // the SHA-256 of each join link's secret that came with the call
-  std::string peer;                // "192.0.2.1"; empty: this process
+  Account account;                 // without a name if the caller is not authenticated
+  std::vector<std::string> links;  // SHA-256 of the secret of each join link sent with the call
+  std::string peer;                // IP address; empty: this process
 
   bool known() const { return !account.name.empty(); }
   bool admin() const { return account.role == v1::ACCESS_ROLE_ADMIN; }
-  // By which what they made is theirs; guests are told apart by their links.
+  // Returns the name under which the caller owns resources. Guests are distinguished by their first link.
   std::string id() const {
     constexpr std::size_t kShort = 12;
     return known() || links.empty() ? account.name : "guest " + links.front().substr(0, kShort);

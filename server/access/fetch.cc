@@ -12,18 +12,18 @@
 namespace phrenic::access {
 namespace {
 
-constexpr std::size_t kLargestDocument = 1 << 20;  // [bytes]
-constexpr long kLongestWait = 10;                  // [s]
+constexpr std::size_t kMaxDocument = 1 << 20;  // [bytes]
+constexpr long kTimeout = 10;                  // [s]
 
 std::size_t Append(const char* bytes, std::size_t, std::size_t count, void* text) {
-  auto& whole = *static_cast<std::string*>(text);
-  if (whole.size() + count > kLargestDocument) return 0;
-  whole.append(bytes, count);
+  auto& document = *static_cast<std::string*>(text);
+  if (document.size() + count > kMaxDocument) return 0;
+  document.append(bytes, count);
   return count;
 }
 
-// Nobody is between this machine and itself.
-bool IsOfThisMachine(const std::string& address) {
+// True if the host is loopback, where traffic cannot be intercepted on a network.
+bool IsLoopbackUrl(const std::string& address) {
   std::unique_ptr<CURLU, decltype(&curl_url_cleanup)> parts(curl_url(), &curl_url_cleanup);
   char* host = nullptr;
   if (curl_url_set(parts.get(), CURLUPART_URL, address.c_str(), 0) != CURLUE_OK) return false;
@@ -40,19 +40,19 @@ bool IsAddress(const std::string& text) {
 }
 
 absl::StatusOr<std::string> Fetch(const std::string& address) {
-  const bool open = absl::StartsWith(address, "http://");
-  if (open && !IsOfThisMachine(address)) {
-    return absl::InvalidArgumentError(absl::StrCat(address, ": anybody on the way could change it; use https://"));
+  const bool plain = absl::StartsWith(address, "http://");
+  if (plain && !IsLoopbackUrl(address)) {
+    return absl::InvalidArgumentError(absl::StrCat(address, ": http:// can be modified on the network; use https://"));
   }
   static const CURLcode ready = curl_global_init(CURL_GLOBAL_DEFAULT);
   const std::unique_ptr<CURL, decltype(&curl_easy_cleanup)> curl(curl_easy_init(), &curl_easy_cleanup);
-  if (ready != CURLE_OK || curl == nullptr) return absl::UnavailableError("libcurl does not start");
+  if (ready != CURLE_OK || curl == nullptr) return absl::UnavailableError("libcurl cannot be initialised");
   std::string text;
   std::array<char, CURL_ERROR_SIZE> why{};
   curl_easy_setopt(curl.get(), CURLOPT_URL, address.c_str());
-  curl_easy_setopt(curl.get(), CURLOPT_PROTOCOLS_STR, open ? "http" : "https");
+  curl_easy_setopt(curl.get(), CURLOPT_PROTOCOLS_STR, plain ? "http" : "https");
   curl_easy_setopt(curl.get(), CURLOPT_NOSIGNAL, 1L);
-  curl_easy_setopt(curl.get(), CURLOPT_TIMEOUT, kLongestWait);
+  curl_easy_setopt(curl.get(), CURLOPT_TIMEOUT, kTimeout);
   curl_easy_setopt(curl.get(), CURLOPT_ERRORBUFFER, why.data());
   curl_easy_setopt(curl.get(), CURLOPT_WRITEFUNCTION, Append);
   curl_easy_setopt(curl.get(), CURLOPT_WRITEDATA, &text);
@@ -65,7 +65,7 @@ absl::StatusOr<std::string> Fetch(const std::string& address) {
   long status = 0;
   curl_easy_getinfo(curl.get(), CURLINFO_RESPONSE_CODE, &status);
   if (status == 200) return text;
-  return absl::UnavailableError(absl::StrCat(address, ": answers ", status, " where the document should be"));
+  return absl::UnavailableError(absl::StrCat(address, ": returns HTTP status ", status, " instead of the document"));
 }
 
 }  // namespace phrenic::access

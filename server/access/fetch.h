@@ -1,4 +1,4 @@
-// Reads a public document, a set of keys say, from an address, by libcurl.
+// Fetches a public document, such as a key set, by HTTP (libcurl).
 #ifndef PHRENIC_SERVER_ACCESS_FETCH_H_
 #define PHRENIC_SERVER_ACCESS_FETCH_H_
 
@@ -8,12 +8,12 @@
 
 namespace phrenic::access {
 
-// Whether the text is an address, and no file.
+// True if the text begins with "https://" or "http://"; otherwise it is a file.
 bool IsAddress(const std::string& text);
 
-// The document. Encrypted, by a server whose certificate the system trusts: INVALID_ARGUMENT for http:// but of this
-// machine itself. UNAVAILABLE, with the address and why, where it does not come within ten seconds, is larger than a
-// megabyte, or somewhere else. Any thread may call.
+// Returns the document. Does not follow redirects; the server's certificate must be trusted by the system. Thread-safe.
+// Errors: INVALID_ARGUMENT for http:// except on loopback; UNAVAILABLE, with the address and the reason, if the
+// document takes longer than 10 s, is larger than 1 MiB, or has a status other than 200.
 absl::StatusOr<std::string> Fetch(const std::string& address);
 
 }  // namespace phrenic::access

@@ -16,8 +16,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kLongestToken = 16 << 10;
-constexpr absl::Duration kClocksDiffer = absl::Seconds(60);
+constexpr std::size_t kMaxTokenBytes = 16 << 10;
+constexpr absl::Duration kClockSkew = absl::Seconds(60);
 constexpr std::string_view kAlgorithms[] = {"RS256", "RS384", "RS512", "PS256", "PS384",
                                             "PS512", "ES256", "ES384", "ES512"};
 
@@ -37,7 +37,7 @@ bool HasText(const json& claims, const std::string& name, const std::string& wan
   return found->is_string() && found->get<std::string>() == wanted;
 }
 
-// Nothing where it is no time.
+// Returns a NumericDate claim (RFC 7519 section 2), `otherwise` if it is missing or not a number.
 absl::Time TimeOf(const json& claims, const char* name, absl::Time otherwise) {
   const auto found = claims.find(name);
   if (found == claims.end() || !found->is_number()) return otherwise;
@@ -45,38 +45,39 @@ absl::Time TimeOf(const json& claims, const char* name, absl::Time otherwise) {
 }
 
 absl::Status CheckTimes(const json& claims, absl::Time now) {
-  if (TimeOf(claims, "exp", absl::InfinitePast()) + kClocksDiffer <= now) return Refused("has no end, or has ended");
-  if (TimeOf(claims, "nbf", absl::InfinitePast()) - kClocksDiffer > now) return Refused("is not good yet");
+  if (TimeOf(claims, "exp", absl::InfinitePast()) + kClockSkew <= now)
+    return Refused("has no expiry time (exp) or has expired");
+  if (TimeOf(claims, "nbf", absl::InfinitePast()) - kClockSkew > now) return Refused("is not valid yet (nbf)");
   return absl::OkStatus();
 }
 
-// The highest one that the claim names.
+// Returns the highest role that the claim names.
 v1::AccessRole RoleIn(const json& claims, const std::string& claim) {
   for (int role = v1::ACCESS_ROLE_ADMIN; role > v1::ACCESS_ROLE_UNSPECIFIED; --role) {
-    const auto one = static_cast<v1::AccessRole>(role);
-    if (HasText(claims, claim, std::string(NameOf(one)))) return one;
+    const auto candidate = static_cast<v1::AccessRole>(role);
+    if (HasText(claims, claim, std::string(NameOf(candidate)))) return candidate;
   }
   return v1::ACCESS_ROLE_UNSPECIFIED;
 }
 
-absl::StatusOr<std::string> ReadText(const std::string& place) {
-  if (IsAddress(place)) return Fetch(place);
-  std::ifstream in(place);
+absl::StatusOr<std::string> ReadText(const std::string& source) {
+  if (IsAddress(source)) return Fetch(source);
+  std::ifstream in(source);
   return std::string(std::istreambuf_iterator<char>(in), {});
 }
 
-absl::StatusOr<json> ReadKeySet(std::string place) {
+absl::StatusOr<json> ReadKeySet(std::string source) {
   for (int documents = 0; documents < 2; ++documents) {
-    const auto text = ReadText(place);
+    const auto text = ReadText(source);
     if (!text.ok()) return absl::Status(text.status().code(), absl::StrCat("--jwt-keys: ", text.status().message()));
     json set = json::parse(*text, nullptr, false);
     if (set.is_object() && set.contains("keys") && set["keys"].is_array()) return set;
     if (!set.is_object() || !set.contains("jwks_uri") || !set["jwks_uri"].is_string()) break;
-    place = set["jwks_uri"].get<std::string>();
-    if (!IsAddress(place)) break;
+    source = set["jwks_uri"].get<std::string>();
+    if (!IsAddress(source)) break;
   }
-  return absl::InvalidArgumentError(
-      absl::StrCat("--jwt-keys: ", place, " is no JSON Web Key Set, {\"keys\": [...]}, and names none as jwks_uri"));
+  return absl::InvalidArgumentError(absl::StrCat(
+      "--jwt-keys: ", source, " is not a JSON Web Key Set, {\"keys\": [...]}, and has no jwks_uri that names one"));
 }
 
 }  // namespace
@@ -95,7 +96,7 @@ JwtKeys::~JwtKeys() = default;
 
 absl::StatusOr<std::shared_ptr<const JwtKeys>> JwtKeys::Read(const JwtOptions& options) {
   if (options.issuer.empty() || options.audience.empty()) {
-    return absl::InvalidArgumentError("--jwt-issuer, --jwt-audience: must be given where --jwt-keys is");
+    return absl::InvalidArgumentError("--jwt-issuer, --jwt-audience: required with --jwt-keys");
   }
   const absl::StatusOr<json> set = ReadKeySet(options.keys);
   if (!set.ok()) return set.status();
@@ -104,10 +105,10 @@ absl::StatusOr<std::shared_ptr<const JwtKeys>> JwtKeys::Read(const JwtOptions& o
     const std::string text = key.dump();
     cjose_err error;
     cjose_jwk_t* jwk = cjose_jwk_import(text.data(), text.size(), &error);
-    if (jwk == nullptr) continue;  // of a kind that is not known
+    if (jwk == nullptr) continue;  // an unknown key type
     auto held = std::make_unique<Key>(jwk);
     const cjose_jwk_kty_t kind = cjose_jwk_get_kty(jwk, &error);
-    // A shared secret in a file of public keys would let whoever reads them sign.
+    // Ignores symmetric keys: anyone who can read a public key set could sign with them.
     if (kind == CJOSE_JWK_KTY_RSA || kind == CJOSE_JWK_KTY_EC) keys->keys_.push_back(std::move(held));
   }
   if (!keys->keys_.empty()) return keys;
@@ -115,21 +116,21 @@ absl::StatusOr<std::shared_ptr<const JwtKeys>> JwtKeys::Read(const JwtOptions& o
 }
 
 absl::StatusOr<std::string> JwtKeys::VerifiedClaims(std::string_view token) const {
-  if (token.size() > kLongestToken) return Refused("is too long");
+  if (token.size() > kMaxTokenBytes) return Refused("is too long");
   cjose_err error;
   const std::unique_ptr<cjose_jws_t, decltype(&cjose_jws_release)> jws(
       cjose_jws_import(token.data(), token.size(), &error), &cjose_jws_release);
-  if (jws == nullptr) return Refused("is none of this server's, and no JWT");
+  if (jws == nullptr) return Refused("is not a token of this server and not a JWT");
   const char* algorithm = cjose_header_get(cjose_jws_get_protected(jws.get()), CJOSE_HDR_ALG, &error);
   if (algorithm == nullptr ||
       std::find(std::begin(kAlgorithms), std::end(kAlgorithms), algorithm) == std::end(kAlgorithms)) {
-    return Refused("is not signed by RS, PS or ES");
+    return Refused("is not signed with an RS, PS or ES algorithm");
   }
-  const bool good = std::any_of(keys_.begin(), keys_.end(), [&](const std::unique_ptr<Key>& key) {
+  const bool verified = std::any_of(keys_.begin(), keys_.end(), [&](const std::unique_ptr<Key>& key) {
     const bool elliptic = cjose_jwk_get_kty(key->jwk, &error) == CJOSE_JWK_KTY_EC;
     return elliptic == (algorithm[0] == 'E') && cjose_jws_verify(jws.get(), key->jwk, &error);
   });
-  if (!good) return Refused("is signed by none of the keys");
+  if (!verified) return Refused("is not signed by a key of the identity provider");
   std::uint8_t* bytes = nullptr;
   std::size_t size = 0;
   if (!cjose_jws_get_plaintext(jws.get(), &bytes, &size, &error)) return Refused("is empty");
@@ -140,12 +141,12 @@ absl::StatusOr<Account> JwtKeys::Check(std::string_view token, absl::Time now) c
   const auto text = VerifiedClaims(token);
   if (!text.ok()) return text.status();
   const json claims = json::parse(*text, nullptr, false);
-  if (!claims.is_object()) return Refused("holds no claims");
+  if (!claims.is_object()) return Refused("has no claims");
   if (TextOf(claims, "iss") != options_.issuer) return Refused("comes from another issuer");
-  if (!HasText(claims, "aud", options_.audience)) return Refused("is meant for somebody else");
+  if (!HasText(claims, "aud", options_.audience)) return Refused("is for another audience");
   if (absl::Status status = CheckTimes(claims, now); !status.ok()) return status;
   const Account account{TextOf(claims, options_.name_claim), RoleIn(claims, options_.role_claim)};
-  if (account.name.empty()) return Refused(absl::StrCat("names nobody in \"", options_.name_claim, "\""));
+  if (account.name.empty()) return Refused(absl::StrCat("has no name in \"", options_.name_claim, "\""));
   if (account.role == v1::ACCESS_ROLE_UNSPECIFIED) {
     return Refused(absl::StrCat("has no role in \"", options_.role_claim, "\": viewer, controller, owner, admin"));
   }

@@ -1,4 +1,4 @@
-// Tokens of an identity provider (OpenID Connect): signed JSON (RFC 7519), checked by cjose with the provider's keys.
+// Verifies the signed tokens (JWT, RFC 7519) of an OpenID Connect identity provider with the provider's keys, by cjose.
 #ifndef PHRENIC_SERVER_ACCESS_JWT_H_
 #define PHRENIC_SERVER_ACCESS_JWT_H_
 
@@ -14,26 +14,28 @@
 namespace phrenic::access {
 
 struct JwtOptions {
-  // A file, or an address, of a JSON Web Key Set (RFC 7517), or of an OpenID Connect configuration, whose "jwks_uri"
-  // has one; empty: none are taken.
+  // File or address of a JSON Web Key Set (RFC 7517), or of an OpenID Connect configuration (Discovery 1.0 section 3)
+  // whose "jwks_uri" names one; empty: no tokens are accepted.
   std::string keys;
-  std::string issuer;    // "iss" must be this
-  std::string audience;  // "aud" must be, or hold, this
+  std::string issuer;    // required value of "iss"
+  std::string audience;  // required value of "aud", or of one of its elements
   std::string name_claim = "sub";
-  std::string role_claim = "phrenic_role";  // "viewer" .. "admin", or a list with one of them
+  std::string role_claim = "phrenic_role";  // "viewer" to "admin", or a list that contains one
 };
 
-// Immutable: any thread may call.
+// Immutable and thread-safe.
 class JwtKeys {
  public:
-  // INVALID_ARGUMENT with the file and what is wrong: no JSON, no key that signs. The errors of Fetch.
+  // Reads the key set. INVALID_ARGUMENT, with the file and the reason, if it is not JSON or has no RSA or EC key; the
+  // errors of Fetch.
   static absl::StatusOr<std::shared_ptr<const JwtKeys>> Read(const JwtOptions& options);
   JwtKeys(const JwtKeys&) = delete;
   JwtKeys& operator=(const JwtKeys&) = delete;
   ~JwtKeys();
 
-  // The account that a token names. UNAUTHENTICATED says what is wrong with it: its signature, by a key of the set and
-  // RS, PS or ES alone; issuer, audience, times ("exp" must be there), name or role.
+  // Returns the account that a token names. UNAUTHENTICATED, with the reason, if the signature is not by a key of the
+  // set with RS, PS or ES (RFC 7518 section 3.1), or if issuer, audience, time ("exp" is required; clocks may differ by
+  // 60 s), name or role are not accepted (RFC 7519 section 4.1).
   absl::StatusOr<Account> Check(std::string_view token, absl::Time now) const;
 
  private:

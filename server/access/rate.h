@@ -1,4 +1,4 @@
-// How many requests a caller may make: so many a second, and twice as many at once.
+// Limits the requests of each caller to a rate, with bursts of two seconds' requests.
 #ifndef PHRENIC_SERVER_ACCESS_RATE_H_
 #define PHRENIC_SERVER_ACCESS_RATE_H_
 
@@ -13,26 +13,27 @@
 
 namespace phrenic::access {
 
-// A bucket a caller that fills as time goes by (a token bucket). Any thread may call.
+// One token bucket per caller. Keeps the 10,000 most recent callers. Thread-safe.
 class RateLimit {
  public:
-  // 0: any number.
-  explicit RateLimit(double a_second) : a_second_(a_second) {}
+  // `rate` [1/s]; 0 means no limit.
+  explicit RateLimit(double rate) : rate_(rate) {}
 
-  // RESOURCE_EXHAUSTED names the limit. `now` of one clock.
+  // Takes one token of the caller's bucket. RESOURCE_EXHAUSTED, with the limit, if it is empty. `now` must come from
+  // the same clock in all calls.
   absl::Status Take(const std::string& caller, absl::Time now) ABSL_LOCKS_EXCLUDED(mutex_);
 
  private:
   struct Bucket {
     std::string caller;
-    double left;
-    absl::Time at;
+    double tokens;
+    absl::Time updated;
   };
 
-  const double a_second_;
+  const double rate_;
   absl::Mutex mutex_;
-  std::list<Bucket> buckets_ ABSL_GUARDED_BY(mutex_);  // the last caller first; the longest silent ones go
-  std::map<std::string, std::list<Bucket>::iterator> places_ ABSL_GUARDED_BY(mutex_);
+  std::list<Bucket> buckets_ ABSL_GUARDED_BY(mutex_);  // most recent caller first; the last one is evicted
+  std::map<std::string, std::list<Bucket>::iterator> by_caller_ ABSL_GUARDED_BY(mutex_);
 };
 
 }  // namespace phrenic::access

@@ -11,13 +11,13 @@ constexpr auto kNone = v1::ACCESS_ROLE_UNSPECIFIED;
 constexpr auto kViewer = v1::ACCESS_ROLE_VIEWER;
 constexpr auto kController = v1::ACCESS_ROLE_CONTROLLER;
 constexpr auto kOwner = v1::ACCESS_ROLE_OWNER;
-constexpr bool kChanges = true, kReads = false, kAnybody = true;
+constexpr bool kChanges = true, kReads = false, kOpen = true;
 
-// Method, role of the account, role in the session, whether it changes anything. What has no session and belongs to who
-// made it, an export or a study, is looked up by its service besides.
+// Columns as in Rule. The services also check that exports, studies and uploads belong to the caller
+// (AccessGuard::CheckOwns).
 constexpr Rule kRules[] = {
-    {"ServerService.GetServer", kNone, kNone, kReads, kAnybody},
-    {"AccessService.GetAccess", kNone, kNone, kReads, kAnybody},
+    {"ServerService.GetServer", kNone, kNone, kReads, kOpen},
+    {"AccessService.GetAccess", kNone, kNone, kReads, kOpen},
     {"AccessService.CreateLink", kNone, kOwner, kChanges},
     {"AccessService.ListLinks", kNone, kOwner, kReads},
     {"AccessService.RevokeLink", kNone, kOwner, kChanges},
@@ -34,7 +34,7 @@ constexpr Rule kRules[] = {
     {"SessionService.ResetSession", kNone, kController, kChanges},
     {"SessionService.UpdateParameters", kNone, kController, kChanges},
     {"SessionService.PullSession", kNone, kController, kChanges},
-    {"ControlService.EnterSession", kNone, kController, kReads},  // again and again
+    {"ControlService.EnterSession", kNone, kController, kReads},  // repeated as a heartbeat
     {"ControlService.TakeControl", kNone, kController, kChanges},
     {"ControlService.HandControl", kNone, kController, kChanges},
     {"ControlService.ReleaseControl", kNone, kController, kChanges},
@@ -42,7 +42,7 @@ constexpr Rule kRules[] = {
     {"FrameService.GetGeometry", kNone, kViewer, kReads},
     {"FrameService.GetBasis", kNone, kViewer, kReads},
     {"FrameService.WatchFrames", kNone, kViewer, kReads},
-    {"FrameService.AckFrames", kNone, kViewer, kReads, !kAnybody, true},
+    {"FrameService.AckFrames", kNone, kViewer, kReads, !kOpen, true},
     {"FrameService.GetForces", kNone, kViewer, kReads},
     {"CompareService.Compare", kViewer, kNone, kReads},
     {"ExportService.ListFormats", kNone, kNone, kReads},
@@ -53,7 +53,7 @@ constexpr Rule kRules[] = {
     {"ExportService.DownloadExport", kNone, kNone, kChanges},
     {"UploadService.ListSurfaceFormats", kNone, kNone, kReads},
     {"UploadService.BeginUpload", kOwner, kNone, kChanges},
-    {"UploadService.AddUploadChunk", kOwner, kNone, kReads},  // of what BeginUpload wrote down
+    {"UploadService.AddUploadChunk", kOwner, kNone, kReads},  // BeginUpload is audited
     {"UploadService.FinishUpload", kOwner, kNone, kChanges},
     {"UploadService.ListUploads", kOwner, kNone, kReads},
     {"UploadService.DeleteUpload", kOwner, kNone, kChanges},

@@ -1,4 +1,4 @@
-// What a call needs: the one table that decides, for every method.
+// The permissions of every method, in one table.
 #ifndef PHRENIC_SERVER_ACCESS_RULES_H_
 #define PHRENIC_SERVER_ACCESS_RULES_H_
 
@@ -10,22 +10,24 @@
 namespace phrenic::access {
 
 struct Rule {
-  std::string_view method;                                  // "SessionService.GetSession"
-  v1::AccessRole role = v1::ACCESS_ROLE_UNSPECIFIED;        // of the account; unspecified: any, or a join link
-  v1::AccessRole in_session = v1::ACCESS_ROLE_UNSPECIFIED;  // in the session that session_id names
-  bool changes = false;                                     // goes into the audit log
-  bool anybody = false;                                     // needs neither account nor link
-  bool uncounted = false;  // in no limit of requests: there are many, and they are cheap
+  std::string_view method;                            // "SessionService.GetSession"
+  v1::AccessRole role = v1::ACCESS_ROLE_UNSPECIFIED;  // required of the account; unspecified: any account or join link
+  v1::AccessRole in_session = v1::ACCESS_ROLE_UNSPECIFIED;  // required in the session of session_id
+  bool changes = false;                                     // admitted calls are written to the audit log
+  bool open = false;                                        // needs neither account nor link
+  bool uncounted = false;  // exempt from the rate limit, because it is frequent and cheap
 };
 
+// Returns all rules. All functions are thread-safe.
 std::span<const Rule> Rules();
 
-// Of the method that takes this message, "phrenic.v1.GetSessionRequest": each has one of its own. Null: there is none.
+// Returns the rule of the method with this request type, such as "phrenic.v1.GetSessionRequest"; no two methods share
+// one. Null if there is none.
 const Rule* RuleOf(std::string_view request_type);
 
-// "viewer", "controller", "owner", "admin"; empty for none.
+// Returns "viewer", "controller", "owner" or "admin"; empty for ACCESS_ROLE_UNSPECIFIED.
 std::string_view NameOf(v1::AccessRole role);
-// Unspecified where there is no such role.
+// Returns ACCESS_ROLE_UNSPECIFIED if there is no such role.
 v1::AccessRole RoleOf(std::string_view name);
 
 }  // namespace phrenic::access

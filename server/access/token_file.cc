@@ -18,7 +18,7 @@
 namespace phrenic::access {
 namespace {
 
-constexpr std::size_t kHashLength = 64, kLongestAccount = 64;
+constexpr std::size_t kHashLength = 64, kMaxNameLength = 64;
 
 bool IsHash(std::string_view text) {
   return text.size() == kHashLength && std::all_of(text.begin(), text.end(), absl::ascii_isxdigit);
@@ -28,35 +28,35 @@ bool IsAccountName(std::string_view name) {
   const auto good = [](char c) {
     return absl::ascii_isalnum(static_cast<unsigned char>(c)) || std::string_view("-_.@").find(c) != std::string::npos;
   };
-  return !name.empty() && name.size() <= kLongestAccount && std::all_of(name.begin(), name.end(), good);
+  return !name.empty() && name.size() <= kMaxNameLength && std::all_of(name.begin(), name.end(), good);
 }
 
-absl::Status FaultOf(const std::vector<std::string>& words, const TokenTable& before) {
-  if (words.size() != 3 || !IsHash(words[0])) return absl::InvalidArgumentError("a line is SHA256 ROLE NAME");
+absl::Status CheckLine(const std::vector<std::string>& words, const TokenTable& before) {
+  if (words.size() != 3 || !IsHash(words[0])) return absl::InvalidArgumentError("a line must be SHA256 ROLE NAME");
   if (RoleOf(words[1]) == v1::ACCESS_ROLE_UNSPECIFIED) {
     return absl::InvalidArgumentError(
         absl::StrCat("there is no role \"", words[1], "\": viewer, controller, owner, admin"));
   }
   if (!IsAccountName(words[2])) {
-    return absl::InvalidArgumentError("a name has 1 to 64 letters, digits and -_.@");
+    return absl::InvalidArgumentError("a name must have 1 to 64 letters, digits and -_.@");
   }
-  if (before.contains(words[0])) return absl::InvalidArgumentError("the same token twice");
+  if (before.contains(words[0])) return absl::InvalidArgumentError("the token is listed twice");
   return absl::OkStatus();
 }
 
-// In its place at once, or not at all; for its owner's eyes.
+// Replaces the file atomically, with mode 0600.
 absl::Status WriteTokens(const std::string& file, const TokenTable& tokens) {
-  const std::string beside = file + ".new";
+  const std::string temporary = file + ".new";
   const mode_t before = umask(0077);
   {
-    std::ofstream out(beside);
+    std::ofstream out(temporary);
     out << "# Accounts of phrenicd: SHA-256 of the token, role, name. `phrenicd token` writes it.\n";
     for (const auto& [hash, account] : tokens)
       out << hash << " " << NameOf(account.role) << " " << account.name << "\n";
   }
   umask(before);
   std::error_code error;
-  std::filesystem::rename(beside, file, error);
+  std::filesystem::rename(temporary, file, error);
   if (!error) return absl::OkStatus();
   return absl::PermissionDeniedError(absl::StrCat(file, " cannot be written: ", error.message()));
 }
@@ -72,8 +72,8 @@ absl::StatusOr<TokenTable> ParseTokens(std::string_view file, std::string_view t
     if (line.empty() || line.front() == '#') continue;
     std::vector<std::string> words = absl::StrSplit(line, absl::ByAnyChar(" \t"), absl::SkipEmpty());
     if (!words.empty()) absl::AsciiStrToLower(&words[0]);
-    if (const absl::Status fault = FaultOf(words, tokens); !fault.ok()) {
-      return absl::InvalidArgumentError(absl::StrCat(std::string(file), ":", number, ": ", fault.message()));
+    if (const absl::Status checked = CheckLine(words, tokens); !checked.ok()) {
+      return absl::InvalidArgumentError(absl::StrCat(std::string(file), ":", number, ": ", checked.message()));
     }
     tokens[words[0]] = {words[2], RoleOf(words[1]), words[0]};
   }
@@ -88,7 +88,7 @@ absl::StatusOr<TokenTable> ReadTokens(const std::string& file) {
 
 absl::StatusOr<std::string> AddToken(const std::string& file, const Account& account) {
   if (!IsAccountName(account.name)) {
-    return absl::InvalidArgumentError("--name: a name has 1 to 64 letters, digits and -_.@");
+    return absl::InvalidArgumentError("--name: must have 1 to 64 letters, digits and -_.@");
   }
   TokenTable tokens;
   if (std::error_code error; std::filesystem::exists(file, error)) {
@@ -99,7 +99,7 @@ absl::StatusOr<std::string> AddToken(const std::string& file, const Account& acc
   for (const auto& [hash, other] : tokens) {
     if (other.name != account.name) continue;
     return absl::AlreadyExistsError(
-        absl::StrCat("--name: there is a token of ", account.name, "; remove it first: phrenicd token remove"));
+        absl::StrCat("--name: ", account.name, " already has a token; remove it first: phrenicd token remove"));
   }
   std::string token = NewToken();
   tokens[Sha256Hex(token)] = account;

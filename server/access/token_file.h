@@ -1,5 +1,5 @@
-// Accounts in a file: the hash of each one's token, a name and a role. The tokens themselves are told once and kept
-// nowhere.
+// The token file: the hash of each account's token, its role and its name. The token itself is shown once, when it is
+// made, and not stored.
 #ifndef PHRENIC_SERVER_ACCESS_TOKEN_FILE_H_
 #define PHRENIC_SERVER_ACCESS_TOKEN_FILE_H_
 
@@ -12,18 +12,20 @@
 
 namespace phrenic::access {
 
-// By the SHA-256 of the token, in hexadecimal: tokens are 128 random bits, so that nobody finds one by trying.
+// Accounts by the SHA-256 of the token in hexadecimal. A token has 128 random bits, so hashing needs no salt.
 using TokenTable = std::map<std::string, Account, std::less<>>;
 
-// Lines "SHA256 ROLE NAME"; empty ones and those that begin with # say nothing. INVALID_ARGUMENT "FILE:LINE: ...".
+// Parses lines "SHA256 ROLE NAME"; ignores empty lines and lines that begin with #. INVALID_ARGUMENT "FILE:LINE: ..."
+// for a bad line.
 absl::StatusOr<TokenTable> ParseTokens(std::string_view file, std::string_view text);
-// NOT_FOUND where there is no such file.
+// NOT_FOUND if the file cannot be read; the errors of ParseTokens.
 absl::StatusOr<TokenTable> ReadTokens(const std::string& file);
 
-// A new account's token. The file is made where there is none, for its owner's eyes; ALREADY_EXISTS for a name that is
-// there, INVALID_ARGUMENT for one that is none: 1 to 64 letters, digits and -_.@.
+// Adds an account and returns its new token. Creates the file, with mode 0600, if there is none. Errors: ALREADY_EXISTS
+// if the name has an account; INVALID_ARGUMENT if the name is not 1 to 64 letters, digits and -_.@; PERMISSION_DENIED
+// if the file cannot be written. Not safe against another writer at the same time.
 absl::StatusOr<std::string> AddToken(const std::string& file, const Account& account);
-// NOT_FOUND where there is no such account.
+// NOT_FOUND if there is no such account.
 absl::Status RemoveToken(const std::string& file, const std::string& name);
 
 }  // namespace phrenic::access

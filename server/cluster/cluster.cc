@@ -8,17 +8,16 @@
 namespace phrenic::cluster {
 namespace {
 
-// For how long it is believed where another server's session is.
-constexpr std::chrono::milliseconds kBelieved(500);
-constexpr absl::Duration kWholePatience = absl::Seconds(2);  // for a copy that is behind
-constexpr std::size_t kMostSeen = 100'000;
+constexpr std::chrono::milliseconds kCacheTime(500);       // of another server's session
+constexpr absl::Duration kCopyTimeout = absl::Seconds(2);  // to complete a copy before a release
+constexpr std::size_t kMaxCached = 100'000;
 
 absl::Status Unreachable(const std::string& id, const absl::Status& why) {
-  return absl::UnavailableError(absl::StrCat("session \"", id, "\": the cluster cannot be asked whose it is; ",
+  return absl::UnavailableError(absl::StrCat("session \"", id, "\": Redis cannot be asked which server has it; ",
                                              std::string(why.message()), ", and try again"));
 }
 
-// "EPOCH ADDRESS"
+// Returns ADDRESS of a lease "EPOCH ADDRESS".
 std::string AddressOf(const std::string& lease) { return lease.substr(lease.find(' ') + 1); }
 
 }  // namespace
@@ -27,7 +26,7 @@ Cluster::Cluster(const RedisAddress& redis, std::string address)
     : address_(std::move(address)),
       lease_(std::to_string(kLease.count())),
       calls_(redis),
-      saving_(redis),
+      copies_(redis),
       redis_(redis) {}
 
 absl::StatusOr<std::unique_ptr<Cluster>> Cluster::Join(const ClusterOptions& options) {
@@ -44,123 +43,129 @@ absl::StatusOr<std::unique_ptr<Cluster>> Cluster::Join(const ClusterOptions& opt
 }
 
 Cluster::~Cluster() {
-  Rest();
+  Drain();
   Leave();
 }
 
-absl::StatusOr<Reply> Cluster::Ask(const char* script, const std::vector<std::string>& arguments) {
+absl::StatusOr<Reply> Cluster::Run(const char* script, const std::vector<std::string>& arguments) {
   absl::MutexLock lock(&calls_mutex_);
   return calls_.Run(script, arguments);
 }
 
-std::int64_t Cluster::Hold(const std::string& id, std::int64_t epoch, Clock::time_point asked, bool ready) {
+std::int64_t Cluster::AddLease(const std::string& id, std::int64_t epoch, Clock::time_point requested, bool ready) {
   absl::MutexLock lock(&mutex_);
-  own_[id] = {.epoch = epoch, .until = asked + kLease, .ready = ready};
-  seen_.erase(id);
+  owned_[id] = {.epoch = epoch, .expires = requested + kLease, .ready = ready};
+  cache_.erase(id);
   return epoch;
 }
 
 std::optional<std::int64_t> Cluster::EpochOf(const std::string& id) const {
   absl::MutexLock lock(&mutex_);
-  const auto own = own_.find(id);
-  return own == own_.end() ? std::nullopt : std::optional(own->second.epoch);
+  const auto own = owned_.find(id);
+  return own == owned_.end() ? std::nullopt : std::optional(own->second.epoch);
 }
 
 absl::StatusOr<std::int64_t> Cluster::Claim(const std::string& id) {
-  const Clock::time_point asked = Clock::now();
-  const auto epoch = Ask(kClaim, {id, address_, lease_});
+  const Clock::time_point requested = Clock::now();
+  const auto epoch = Run(kClaim, {id, address_, lease_});
   if (!epoch.ok()) return Unreachable(id, epoch.status());
-  if (epoch->number > 0) return Hold(id, epoch->number, asked);
+  if (epoch->number > 0) return AddLease(id, epoch->number, requested);
   return absl::AlreadyExistsError(
-      absl::StrCat("there is a session \"", id, "\" already, on another server of the cluster"));
+      absl::StrCat("session \"", id, "\" exists already, on another server of the cluster"));
 }
 
 absl::StatusOr<std::int64_t> Cluster::Reclaim(const store::SavedSession& saved) {
   const v1::SavedMoment& last = saved.later.empty() ? saved.moment : saved.later.back();
-  const Clock::time_point asked = Clock::now();
-  const auto epoch = Ask(
+  const Clock::time_point requested = Clock::now();
+  const auto epoch = Run(
       kReclaim, {saved.id, address_, lease_, std::to_string(last.session().epoch()), std::to_string(saved.sequence)});
   if (!epoch.ok()) return Unreachable(saved.id, epoch.status());
   if (epoch->number <= 0) {
-    return absl::FailedPreconditionError(absl::StrCat(
-        "session ", saved.id, ": another server of the cluster has it, or had it last, or it was deleted"));
+    return absl::FailedPreconditionError(
+        absl::StrCat("session ", saved.id, ": another server of the cluster has or had it since, or it was deleted"));
   }
-  Hold(saved.id, epoch->number, asked);
-  SetBehind(saved.id, true);
+  AddLease(saved.id, epoch->number, requested);
+  SetCopyIncomplete(saved.id, true);
   return epoch->number;
 }
 
 void Cluster::Release(const std::string& id) {
   const auto epoch = EpochOf(id);
   if (!epoch.has_value()) return;
-  if (!AwaitWhole(id)) return;  // nobody could go on from where it stands: the lease stays until it ends
+  if (!AwaitCompleteCopy(id)) return;  // another server could not resume the last state: lets the lease expire
   {
     absl::MutexLock lock(&mutex_);
-    own_.erase(id);
+    owned_.erase(id);
   }
-  Ask(kRelease, {id, std::to_string(*epoch)}).IgnoreError();
+  Run(kRelease, {id, std::to_string(*epoch)}).IgnoreError();
 }
 
-bool Cluster::AwaitWhole(const std::string& id) {
-  const auto whole = [this, &id] {
+bool Cluster::AwaitCompleteCopy(const std::string& id) {
+  const auto complete = [this, &id] {
     mutex_.AssertReaderHeld();
-    const auto own = own_.find(id);
-    return own == own_.end() || !own->second.behind;
+    const auto own = owned_.find(id);
+    return own == owned_.end() || !own->second.copy_incomplete;
   };
   {
     absl::MutexLock lock(&mutex_);
-    if (whole()) return true;
+    if (complete()) return true;
   }
   hooks_.copy_whole({id});
   absl::MutexLock lock(&mutex_);
-  return mutex_.AwaitWithTimeout(absl::Condition(&whole), kWholePatience);
+  return mutex_.AwaitWithTimeout(absl::Condition(&complete), kCopyTimeout);
 }
 
 void Cluster::Abandon(const std::string& id) {
-  SetBehind(id, false);
+  SetCopyIncomplete(id, false);
   Release(id);
 }
 
-bool Cluster::KnownGone() const { return !reached_ && Clock::now() < tried_ + kLease / 2; }
+bool Cluster::RedisKnownDown() const { return !redis_reachable_ && Clock::now() < last_renewal_ + kLease / 2; }
 
-Place Cluster::Where(const std::string& id) {
-  bool late = false;
-  {
-    absl::MutexLock lock(&mutex_);
-    const auto own = own_.find(id);
-    if (own != own_.end() && (resting_ || !own->second.ready)) return {Place::Kind::kBetween};
-    late = own != own_.end() && own->second.until <= Clock::now();
-    if (own != own_.end() && (!late || KnownGone())) return {Place::Kind::kHere};
-    const auto seen = seen_.find(id);
-    const bool believed = seen != seen_.end() && (Clock::now() < seen->second.until || !reached_);
-    if (own == own_.end() && believed) return seen->second.place;
-    if (KnownGone()) return {Place::Kind::kUnknown};
+std::optional<Location> Cluster::LocateFromCache(const std::string& id, bool& expired) const {
+  absl::MutexLock lock(&mutex_);
+  if (const auto own = owned_.find(id); own != owned_.end()) {
+    if (draining_ || !own->second.ready) return Location{Location::Kind::kMoving};
+    expired = own->second.expires <= Clock::now();
+    if (!expired || RedisKnownDown()) return Location{Location::Kind::kLocal};
+    return std::nullopt;
   }
-  if (late) {
+  const auto cached = cache_.find(id);
+  const bool valid = cached != cache_.end() && (Clock::now() < cached->second.expires || !redis_reachable_);
+  if (valid) return cached->second.location;
+  if (RedisKnownDown()) return Location{Location::Kind::kUnknown};
+  return std::nullopt;
+}
+
+Location Cluster::Locate(const std::string& id) {
+  bool expired = false;
+  if (const auto known = LocateFromCache(id, expired); known.has_value()) return *known;
+  if (expired) {
     absl::MutexLock lock(&calls_mutex_);
     Renew(calls_);
-    if (EpochOf(id).has_value()) return {Place::Kind::kHere};
+    if (EpochOf(id).has_value()) return {Location::Kind::kLocal};
   }
-  const auto answer = Ask(kWhere, {id});
-  if (!answer.ok() || answer->list.size() != 2) return {Place::Kind::kUnknown};
-  Place place;
+  return LocateInRedis(id);
+}
+
+Location Cluster::LocateInRedis(const std::string& id) {
+  const auto answer = Run(kLocate, {id});
+  if (!answer.ok() || answer->list.size() != 2) return {Location::Kind::kUnknown};
   const std::string& lease = answer->list[0].text;
-  if (!lease.empty()) {
-    place = {Place::Kind::kElsewhere, AddressOf(lease)};
-    // Its own of before a restart, which it has not come to yet.
-    if (place.address == address_) place = {Place::Kind::kBetween};
-  } else if (answer->list[1].number == 1) {
-    place.kind = Place::Kind::kBetween;
-  }
+  const bool has_copy = answer->list[1].number == 1;
+  if (lease.empty()) return {has_copy ? Location::Kind::kMoving : Location::Kind::kNone};
+  const Location location = {Location::Kind::kRemote, AddressOf(lease)};
+  // A lease of this server from before a restart: it has not reclaimed the session yet.
+  if (location.address == address_) return {Location::Kind::kMoving};
   absl::MutexLock lock(&mutex_);
-  if (seen_.size() >= kMostSeen) seen_.clear();
-  if (place.kind == Place::Kind::kElsewhere) seen_[id] = {place, Clock::now() + kBelieved};
-  return place;
+  if (cache_.size() >= kMaxCached) cache_.clear();
+  cache_[id] = {location, Clock::now() + kCacheTime};
+  return location;
 }
 
 void Cluster::Forget(const std::string& id) {
   absl::MutexLock lock(&mutex_);
-  if (reached_) seen_.erase(id);
+  if (redis_reachable_) cache_.erase(id);
 }
 
 std::vector<std::string> Cluster::Others() const {
@@ -174,7 +179,7 @@ std::vector<std::string> Cluster::Others() const {
 
 ClusterCounts Cluster::counts() const {
   absl::MutexLock lock(&mutex_);
-  return {static_cast<int>(own_.size()), static_cast<int>(servers_.size()), reached_, taken_, lost_};
+  return {static_cast<int>(owned_.size()), static_cast<int>(servers_.size()), redis_reachable_, taken_over_, lost_};
 }
 
 }  // namespace phrenic::cluster

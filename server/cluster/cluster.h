@@ -1,5 +1,5 @@
-// A server's part in a cluster: the leases that it holds in Redis, the copies of its sessions there, and what it takes
-// over of servers that are gone.
+// This server's part in a cluster: the leases that it holds in Redis, the copies of its sessions there, and the
+// sessions that it takes over from servers that are gone. README.md describes the protocol.
 #ifndef PHRENIC_SERVER_CLUSTER_CLUSTER_H_
 #define PHRENIC_SERVER_CLUSTER_CLUSTER_H_
 
@@ -21,55 +21,58 @@
 namespace phrenic::cluster {
 
 struct ClusterOptions {
-  std::string redis;      // "redis://HOST:PORT"; empty: a server by itself
-  std::string advertise;  // "HOST:PORT" at which the others reach this server's gRPC
+  std::string redis;      // "redis://HOST:PORT"; empty: not in a cluster
+  std::string advertise;  // "HOST:PORT" at which the other servers reach this server's gRPC
 };
 
 // Where a session is.
-struct Place {
+struct Location {
   enum class Kind {
-    kHere,       // this server has it
-    kElsewhere,  // another one has it, at `address`
-    kBetween,    // its server is gone, and another one will go on with it
-    kNowhere,    // there is none
-    kUnknown,    // Redis cannot be asked, and it is not here
+    kLocal,    // this server holds the lease
+    kRemote,   // another server holds the lease, at `address`
+    kMoving,   // no server holds the lease; one will take the session over
+    kNone,     // there is no such session
+    kUnknown,  // not here, and Redis does not answer
   };
-  Kind kind = Kind::kNowhere;
+  Kind kind = Kind::kNone;
   std::string address = {};
 };
 
-// What goes on, for /metrics.
+// Counts for /metrics, of this server since it started.
 struct ClusterCounts {
   int owned = 0, servers = 0;
-  bool reached = false;  // Redis, at the last attempt
-  std::int64_t taken = 0, lost = 0;
+  bool redis_reachable = false;  // at the last attempt
+  std::int64_t taken_over = 0, lost = 0;
 };
 
-// Any thread may call, but where store::Ownership says otherwise. A lease of kLease is renewed by a thread that does
-// nothing else; another one looks for sessions that nobody has. Nothing waits for Redis longer than Redis::kPatience,
-// and where that is gone sessions go on as they are: leases change hands only through it.
+// Holds a lease of kLease on each of this server's sessions. One thread only renews leases, another finds sessions
+// without a lease and takes them over. No call waits for Redis longer than Redis::kTimeout. While Redis does not
+// answer, sessions stay where they are, because leases change only in Redis. Thread-safe, except where store::Ownership
+// says otherwise.
 class Cluster final : public store::Ownership {
  public:
   struct Hooks {
-    // Another server has the session: it ends here. Must not wait.
+    // Another server has the session now; it must end here. Must not block.
     std::function<void(const std::string& id)> lost;
-    // Goes on with a session; the thread that looks for them calls. Refused ones stay for others.
+    // Resumes a session from its copy; called by the thread that takes over. After an error the lease is released, for
+    // another server to try.
     std::function<absl::Status(const store::SavedSession& saved, std::int64_t epoch)> take_over;
-    // Has the store copy these whole.
+    // Has the store write complete copies of these sessions (CopyWhole).
     std::function<void(const std::vector<std::string>& ids)> copy_whole;
   };
 
-  // INVALID_ARGUMENT for an address that is none, UNAVAILABLE where Redis cannot be reached.
+  // Connects to Redis. INVALID_ARGUMENT for a bad address, UNAVAILABLE if Redis cannot be reached.
   static absl::StatusOr<std::unique_ptr<Cluster>> Join(const ClusterOptions& options);
   ~Cluster() override;
 
-  // Renews leases from now on; before any are asked for. The hooks outlive Leave.
-  void Begin(Hooks hooks);
-  // Takes over what nobody has, from now on: this server can be called.
-  void Watch();
-  // Takes over nothing more, and no session is here for callers; the leases stay until Leave or Release.
-  void Rest();
-  // Renews no more leases.
+  // Starts to renew leases. Call it before the first Claim. The hooks stay valid until Leave returns.
+  void Start(Hooks hooks);
+  // Starts to take over sessions without a lease. Call it when this server accepts calls.
+  void StartTakeovers();
+  // Stops taking over; Locate returns kMoving for this server's sessions. Leases stay until Release or Leave.
+  // Idempotent.
+  void Drain();
+  // Stops renewing leases; those that are left expire. Idempotent.
   void Leave();
 
   absl::StatusOr<std::int64_t> Claim(const std::string& id) override ABSL_LOCKS_EXCLUDED(mutex_, calls_mutex_);
@@ -80,11 +83,12 @@ class Cluster final : public store::Ownership {
   bool Copy(const store::Written& written) override ABSL_LOCKS_EXCLUDED(mutex_);
   void CopyWhole(const store::SavedSession& saved) override ABSL_LOCKS_EXCLUDED(mutex_);
 
-  // A lease that is over by this server's own clock is renewed first: who was stopped for a while may have lost it.
-  Place Where(const std::string& id) ABSL_LOCKS_EXCLUDED(mutex_, calls_mutex_);
-  // Nobody answered there: the next call asks Redis again.
+  // Returns where a session is. Renews a lease first if it has expired by this server's clock, because a server that
+  // was suspended may have lost it. Caches other servers' sessions for 0.5 s.
+  Location Locate(const std::string& id) ABSL_LOCKS_EXCLUDED(mutex_, calls_mutex_);
+  // Drops the cached location of a session whose server did not answer.
   void Forget(const std::string& id) ABSL_LOCKS_EXCLUDED(mutex_);
-  // The addresses of the others that take sessions.
+  // Returns the addresses of the other servers that accept sessions.
   std::vector<std::string> Others() const ABSL_LOCKS_EXCLUDED(mutex_);
   ClusterCounts counts() const ABSL_LOCKS_EXCLUDED(mutex_);
   const std::string& address() const { return address_; }
@@ -93,59 +97,69 @@ class Cluster final : public store::Ownership {
 
  private:
   using Clock = std::chrono::steady_clock;
-  struct Own {
+  // A session of this server.
+  struct Owned {
     std::int64_t epoch = 0;
-    Clock::time_point until;  // of the lease
-    bool behind = false;      // its copy is not whole
-    bool ready = true;        // it can be called
+    Clock::time_point expires;     // of the lease
+    bool copy_incomplete = false;  // its copy in Redis must be written whole
+    bool ready = true;             // accepts calls
   };
-  struct Seen {
-    Place place;
-    Clock::time_point until;
+  struct CachedLocation {
+    Location location;
+    Clock::time_point expires;
   };
 
   Cluster(const RedisAddress& redis, std::string address);
-  // Redis does not answer, and that is no news.
-  bool KnownGone() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  std::int64_t Hold(const std::string& id, std::int64_t epoch, Clock::time_point asked, bool ready = true)
+  // True if Redis did not answer recently, so that asking again would only wait.
+  bool RedisKnownDown() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // Records a lease that was requested at `requested`. Returns its epoch.
+  std::int64_t AddLease(const std::string& id, std::int64_t epoch, Clock::time_point requested, bool ready = true)
       ABSL_LOCKS_EXCLUDED(mutex_);
   std::optional<std::int64_t> EpochOf(const std::string& id) const ABSL_LOCKS_EXCLUDED(mutex_);
-  absl::StatusOr<Reply> Ask(const char* script, const std::vector<std::string>& arguments)
+  absl::StatusOr<Reply> Run(const char* script, const std::vector<std::string>& arguments)
       ABSL_LOCKS_EXCLUDED(calls_mutex_);
-  // The same for one session of this server: 1, 0 where it is another's by now, or UNAVAILABLE.
-  absl::StatusOr<std::int64_t> Save(const std::string& id, std::vector<std::string> words);
-  void SetBehind(const std::string& id, bool behind) ABSL_LOCKS_EXCLUDED(mutex_);
-  // Has the session's copy made whole where it is behind; false where that takes too long.
-  bool AwaitWhole(const std::string& id) ABSL_LOCKS_EXCLUDED(mutex_);
+  // Returns the location that is known without Redis; nullopt if Redis must be asked. Sets `expired` if this server has
+  // the session but its lease has expired.
+  std::optional<Location> LocateFromCache(const std::string& id, bool& expired) const ABSL_LOCKS_EXCLUDED(mutex_);
+  Location LocateInRedis(const std::string& id) ABSL_LOCKS_EXCLUDED(mutex_, calls_mutex_);
+  // Runs kSave for a session of this server. Returns 1 if it was written, 0 if another server has the session;
+  // UNAVAILABLE if Redis does not answer.
+  absl::StatusOr<std::int64_t> WriteCopy(const std::string& id, std::vector<std::string> arguments);
+  void SetCopyIncomplete(const std::string& id, bool incomplete) ABSL_LOCKS_EXCLUDED(mutex_);
+  // Has an incomplete copy written whole and waits for it. False after 2 s.
+  bool AwaitCompleteCopy(const std::string& id) ABSL_LOCKS_EXCLUDED(mutex_);
+  // Renews all leases in one script call; reports lost sessions and incomplete copies to the hooks.
   void Renew(Redis& redis) ABSL_LOCKS_EXCLUDED(mutex_);
-  std::vector<std::string> NoteRenewed(const std::vector<std::pair<std::string, std::int64_t>>& own,
-                                       const Reply& answers, Clock::time_point asked, bool anew)
+  // Applies the answers of kRenew. Returns the ids of lost sessions.
+  std::vector<std::string> ApplyRenewal(const std::vector<std::pair<std::string, std::int64_t>>& leases,
+                                        const Reply& answers, Clock::time_point requested, bool reconnected)
       ABSL_LOCKS_EXCLUDED(mutex_);
-  void KeepRenewing();
-  void KeepLooking();
-  void Look(Redis& redis, std::map<std::string, Clock::time_point>& free);
-  // False where it cannot be gone on with here.
-  bool Take(Redis& redis, const std::string& id);
+  void RenewalLoop();
+  void TakeoverLoop();
+  // Takes over sessions without a lease; `free_since` has when each was first seen without one.
+  void TakeOverFreeSessions(Redis& redis, std::map<std::string, Clock::time_point>& free_since);
+  // False if the session could not be resumed here.
+  bool TakeOver(Redis& redis, const std::string& id);
 
   const std::string address_;
   const std::string lease_;  // [ms]
   Hooks hooks_;
   absl::Mutex calls_mutex_;
   Redis calls_ ABSL_GUARDED_BY(calls_mutex_);
-  Redis saving_;  // of the store's thread
+  Redis copies_;  // used by the store's thread
   const RedisAddress redis_;
 
   mutable absl::Mutex mutex_;
-  std::map<std::string, Own> own_ ABSL_GUARDED_BY(mutex_);
-  std::map<std::string, Seen> seen_ ABSL_GUARDED_BY(mutex_);  // where others' are, for a moment
+  std::map<std::string, Owned> owned_ ABSL_GUARDED_BY(mutex_);
+  std::map<std::string, CachedLocation> cache_ ABSL_GUARDED_BY(mutex_);
   std::vector<std::string> servers_ ABSL_GUARDED_BY(mutex_);
-  bool resting_ ABSL_GUARDED_BY(mutex_) = false;  // sessions are on their way elsewhere
-  bool takes_ ABSL_GUARDED_BY(mutex_) = false, leaving_ ABSL_GUARDED_BY(mutex_) = false;
-  bool hurry_ ABSL_GUARDED_BY(mutex_) = false;  // renew at once
-  bool reached_ ABSL_GUARDED_BY(mutex_) = false;
-  Clock::time_point reached_since_ ABSL_GUARDED_BY(mutex_), tried_ ABSL_GUARDED_BY(mutex_);
-  std::int64_t taken_ ABSL_GUARDED_BY(mutex_) = 0, lost_ ABSL_GUARDED_BY(mutex_) = 0;
-  std::thread renewing_, looking_;
+  bool draining_ ABSL_GUARDED_BY(mutex_) = false;  // this server's sessions accept no calls
+  bool takes_over_ ABSL_GUARDED_BY(mutex_) = false, leaving_ ABSL_GUARDED_BY(mutex_) = false;
+  bool renew_now_ ABSL_GUARDED_BY(mutex_) = false;
+  bool redis_reachable_ ABSL_GUARDED_BY(mutex_) = false;
+  Clock::time_point reachable_since_ ABSL_GUARDED_BY(mutex_), last_renewal_ ABSL_GUARDED_BY(mutex_);
+  std::int64_t taken_over_ ABSL_GUARDED_BY(mutex_) = 0, lost_ ABSL_GUARDED_BY(mutex_) = 0;
+  std::thread renewal_thread_, takeover_thread_;
 };
 
 }  // namespace phrenic::cluster

@@ -1,4 +1,4 @@
-// Keeping leases, and taking over what nobody has a lease on.
+// Cluster's methods that renew leases and take over sessions without a lease.
 #include <pthread.h>
 
 #include <algorithm>
@@ -13,23 +13,24 @@
 namespace phrenic::cluster {
 namespace {
 
-constexpr absl::Duration kRenewPause = absl::Milliseconds(700), kLookPause = absl::Milliseconds(150);
-// How much longer than the server that a free session falls to the others wait for it.
-constexpr std::chrono::milliseconds kCourtesy(1000);
-// Until a session that could not be gone on with here is tried again.
-constexpr std::chrono::milliseconds kAgain(10'000);
+constexpr absl::Duration kRenewalPeriod = absl::Milliseconds(700), kTakeoverPeriod = absl::Milliseconds(150);
+// How long servers other than the preferred one wait before they take over a session.
+constexpr std::chrono::milliseconds kSecondChoiceDelay(1000);
+// The pause after a session could not be resumed here.
+constexpr std::chrono::milliseconds kRetryPause(10'000);
 
-// Which of the servers a session falls to, where nobody has it: each its share, and whoever asks comes to the same.
-std::string HeirOf(const std::string& id, const std::vector<std::string>& servers) {
-  std::string heir, most;
+// Returns the server that should take over a session, by rendezvous hashing: every server computes the same one, and
+// sessions spread evenly over the servers.
+std::string PreferredServer(const std::string& id, const std::vector<std::string>& servers) {
+  std::string preferred, highest;
   for (const std::string& server : servers) {
     std::string weight = Sha256Hex(absl::StrCat(id, " ", server));
-    if (weight > most) {
-      most = std::move(weight);
-      heir = server;
+    if (weight > highest) {
+      highest = std::move(weight);
+      preferred = server;
     }
   }
-  return heir;
+  return preferred;
 }
 
 std::vector<std::string> Texts(const Reply& reply) {
@@ -39,6 +40,7 @@ std::vector<std::string> Texts(const Reply& reply) {
   return texts;
 }
 
+// Parses the reply of kTakeOver. DATA_LOSS if the copy is damaged.
 absl::StatusOr<store::SavedSession> ReadSaved(const std::string& id, const Reply& reply) {
   constexpr std::size_t kParts = 6;
   const absl::Status damaged = absl::DataLossError(absl::StrCat("session ", id, ": its copy in Redis is damaged"));
@@ -67,28 +69,28 @@ absl::StatusOr<store::SavedSession> ReadSaved(const std::string& id, const Reply
 
 }  // namespace
 
-void Cluster::Begin(Hooks hooks) {
+void Cluster::Start(Hooks hooks) {
   hooks_ = std::move(hooks);
-  renewing_ = std::thread([this] { KeepRenewing(); });
+  renewal_thread_ = std::thread([this] { RenewalLoop(); });
 }
 
-void Cluster::Watch() {
+void Cluster::StartTakeovers() {
   {
     absl::MutexLock lock(&mutex_);
-    takes_ = hurry_ = true;
+    takes_over_ = renew_now_ = true;
   }
-  looking_ = std::thread([this] { KeepLooking(); });
+  takeover_thread_ = std::thread([this] { TakeoverLoop(); });
 }
 
-void Cluster::Rest() {
+void Cluster::Drain() {
   {
     absl::MutexLock lock(&mutex_);
-    takes_ = false;
-    hurry_ = true;
+    takes_over_ = false;
+    renew_now_ = true;
   }
-  if (looking_.joinable()) looking_.join();
+  if (takeover_thread_.joinable()) takeover_thread_.join();
   absl::MutexLock lock(&mutex_);
-  resting_ = true;
+  draining_ = true;
 }
 
 void Cluster::Leave() {
@@ -96,138 +98,139 @@ void Cluster::Leave() {
     absl::MutexLock lock(&mutex_);
     leaving_ = true;
   }
-  if (renewing_.joinable()) renewing_.join();
+  if (renewal_thread_.joinable()) renewal_thread_.join();
 }
 
-void Cluster::KeepRenewing() {
+void Cluster::RenewalLoop() {
   pthread_setname_np(pthread_self(), "leases");
   Redis redis(redis_);
-  const auto stirred = [this] {
+  const auto woken = [this] {
     mutex_.AssertReaderHeld();
-    return leaving_ || hurry_;
+    return leaving_ || renew_now_;
   };
   for (;;) {
     Renew(redis);
     absl::MutexLock lock(&mutex_);
-    tried_ = Clock::now();
-    mutex_.AwaitWithTimeout(absl::Condition(&stirred), kRenewPause);
-    hurry_ = false;
+    last_renewal_ = Clock::now();
+    mutex_.AwaitWithTimeout(absl::Condition(&woken), kRenewalPeriod);
+    renew_now_ = false;
     if (leaving_) return;
   }
 }
 
 void Cluster::Renew(Redis& redis) {
-  std::vector<std::pair<std::string, std::int64_t>> own;
-  bool takes = false;
+  std::vector<std::pair<std::string, std::int64_t>> leases;
+  bool takes_over = false;
   {
     absl::MutexLock lock(&mutex_);
-    takes = takes_;
-    own.reserve(own_.size());
-    for (const auto& [id, mine] : own_) own.emplace_back(id, mine.epoch);
+    takes_over = takes_over_;
+    leases.reserve(owned_.size());
+    for (const auto& [id, mine] : owned_) leases.emplace_back(id, mine.epoch);
   }
-  std::vector<std::string> words = {address_, lease_, takes ? "1" : "0"};
-  words.reserve(words.size() + 2 * own.size());
-  for (const auto& [id, epoch] : own) {
-    words.push_back(id);
-    words.push_back(std::to_string(epoch));
+  std::vector<std::string> arguments = {address_, lease_, takes_over ? "1" : "0"};
+  arguments.reserve(arguments.size() + 2 * leases.size());
+  for (const auto& [id, epoch] : leases) {
+    arguments.push_back(id);
+    arguments.push_back(std::to_string(epoch));
   }
-  const Clock::time_point asked = Clock::now();
-  const int before = redis.connections();
-  const auto answers = redis.Run(kRenew, words);
-  if (!answers.ok() || answers->list.size() != own.size()) {
+  const Clock::time_point requested = Clock::now();
+  const int connections = redis.connections();
+  const auto answers = redis.Run(kRenew, arguments);
+  if (!answers.ok() || answers->list.size() != leases.size()) {
     absl::MutexLock lock(&mutex_);
-    reached_ = false;
+    redis_reachable_ = false;
     return;
   }
-  const bool anew = before > 0 && redis.connections() != before;
-  const std::vector<std::string> lost = NoteRenewed(own, *answers, asked, anew);
+  const bool reconnected = connections > 0 && redis.connections() != connections;
+  const std::vector<std::string> lost = ApplyRenewal(leases, *answers, requested, reconnected);
   for (const std::string& id : lost) hooks_.lost(id);
-  std::vector<std::string> behind;
+  std::vector<std::string> incomplete;
   {
     absl::MutexLock lock(&mutex_);
-    for (const auto& [id, mine] : own_) {
-      if (mine.behind) behind.push_back(id);
+    for (const auto& [id, mine] : owned_) {
+      if (mine.copy_incomplete) incomplete.push_back(id);
     }
   }
-  if (!behind.empty()) hooks_.copy_whole(behind);
+  if (!incomplete.empty()) hooks_.copy_whole(incomplete);
 }
 
-std::vector<std::string> Cluster::NoteRenewed(const std::vector<std::pair<std::string, std::int64_t>>& own,
-                                              const Reply& answers, Clock::time_point asked, bool anew) {
+std::vector<std::string> Cluster::ApplyRenewal(const std::vector<std::pair<std::string, std::int64_t>>& leases,
+                                               const Reply& answers, Clock::time_point requested, bool reconnected) {
   std::vector<std::string> lost;
   absl::MutexLock lock(&mutex_);
-  if (!reached_) reached_since_ = Clock::now();
-  reached_ = true;
-  for (std::size_t i = 0; i < own.size(); ++i) {
-    const auto mine = own_.find(own[i].first);
-    if (mine == own_.end() || mine->second.epoch != own[i].second) continue;
+  if (!redis_reachable_) reachable_since_ = Clock::now();
+  redis_reachable_ = true;
+  for (std::size_t i = 0; i < leases.size(); ++i) {
+    const auto mine = owned_.find(leases[i].first);
+    if (mine == owned_.end() || mine->second.epoch != leases[i].second) continue;
     const std::int64_t answer = answers.list[i].number;
     if (answer == 0) {
       lost.push_back(mine->first);
-      own_.erase(mine);
+      owned_.erase(mine);
       ++lost_;
       continue;
     }
-    mine->second.until = std::max(mine->second.until, asked + kLease);
-    if (anew || answer == 2) mine->second.behind = true;  // what it had may be gone
+    mine->second.expires = std::max(mine->second.expires, requested + kLease);
+    if (reconnected || answer == 2) mine->second.copy_incomplete = true;  // Redis may have lost the copy
   }
   return lost;
 }
 
-void Cluster::KeepLooking() {
+void Cluster::TakeoverLoop() {
   pthread_setname_np(pthread_self(), "taking-over");
   Redis redis(redis_);
-  std::map<std::string, Clock::time_point> free;
+  std::map<std::string, Clock::time_point> free_since;
   const auto ended = [this] {
     mutex_.AssertReaderHeld();
-    return !takes_;
+    return !takes_over_;
   };
   for (;;) {
     {
       absl::MutexLock lock(&mutex_);
-      if (mutex_.AwaitWithTimeout(absl::Condition(&ended), kLookPause)) return;
-      // After Redis was gone every lease is over: their servers renew them first.
-      if (!reached_ || Clock::now() < reached_since_ + kLease) continue;
+      if (mutex_.AwaitWithTimeout(absl::Condition(&ended), kTakeoverPeriod)) return;
+      // After an outage of Redis all leases have expired; gives their servers time to renew them first.
+      if (!redis_reachable_ || Clock::now() < reachable_since_ + kLease) continue;
     }
-    Look(redis, free);
+    TakeOverFreeSessions(redis, free_since);
   }
 }
 
-void Cluster::Look(Redis& redis, std::map<std::string, Clock::time_point>& free) {
-  const auto look = redis.Run(kLook, {});
-  if (!look.ok() || look->list.size() != 2) return;
-  const std::vector<std::string> servers = Texts(look->list[1]);
+void Cluster::TakeOverFreeSessions(Redis& redis, std::map<std::string, Clock::time_point>& free_since) {
+  const auto found = redis.Run(kFindFree, {});
+  if (!found.ok() || found->list.size() != 2) return;
+  const std::vector<std::string> servers = Texts(found->list[1]);
   {
     absl::MutexLock lock(&mutex_);
     servers_ = servers;
   }
-  std::map<std::string, Clock::time_point> still;
-  for (const std::string& id : Texts(look->list[0])) {
+  std::map<std::string, Clock::time_point> still_free;
+  for (const std::string& id : Texts(found->list[0])) {
     const Clock::time_point now = Clock::now();
-    const auto since = free.find(id);
-    still[id] = since == free.end() ? now : since->second;
-    if (now < still[id] + (HeirOf(id, servers) == address_ ? std::chrono::milliseconds(0) : kCourtesy)) continue;
-    if (!Take(redis, id)) still[id] = now + kAgain;
+    const auto since = free_since.find(id);
+    still_free[id] = since == free_since.end() ? now : since->second;
+    const bool preferred = PreferredServer(id, servers) == address_;
+    if (now < still_free[id] + (preferred ? std::chrono::milliseconds(0) : kSecondChoiceDelay)) continue;
+    if (!TakeOver(redis, id)) still_free[id] = now + kRetryPause;
     absl::MutexLock lock(&mutex_);
-    if (!takes_) return;
+    if (!takes_over_) return;
   }
-  free = std::move(still);
+  free_since = std::move(still_free);
 }
 
-bool Cluster::Take(Redis& redis, const std::string& id) {
-  const Clock::time_point asked = Clock::now();
-  const auto taken = redis.Run(kTake, {id, address_, lease_});
-  if (!taken.ok() || taken->list.empty() || taken->list[0].number <= 0) return true;  // another one was first
-  const std::int64_t epoch = Hold(id, taken->list[0].number, asked, false);
-  const auto saved = ReadSaved(id, *taken);
-  const absl::Status gone_on = saved.ok() ? hooks_.take_over(*saved, epoch) : saved.status();
-  if (!gone_on.ok()) {
+bool Cluster::TakeOver(Redis& redis, const std::string& id) {
+  const Clock::time_point requested = Clock::now();
+  const auto lease = redis.Run(kTakeOver, {id, address_, lease_});
+  if (!lease.ok() || lease->list.empty() || lease->list[0].number <= 0) return true;  // another server was first
+  const std::int64_t epoch = AddLease(id, lease->list[0].number, requested, false);
+  const auto saved = ReadSaved(id, *lease);
+  const absl::Status resumed = saved.ok() ? hooks_.take_over(*saved, epoch) : saved.status();
+  if (!resumed.ok()) {
     Abandon(id);
     return false;
   }
   absl::MutexLock lock(&mutex_);
-  own_[id].ready = true;
-  ++taken_;
+  owned_[id].ready = true;
+  ++taken_over_;
   return true;
 }
 

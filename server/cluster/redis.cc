@@ -13,7 +13,7 @@ namespace phrenic::cluster {
 namespace {
 
 constexpr char kScheme[] = "redis://";
-constexpr int kLargestPort = 65535;
+constexpr int kMaxPort = 65535;
 
 absl::Status BadAddress(const char* what) {
   return absl::InvalidArgumentError(
@@ -22,7 +22,7 @@ absl::Status BadAddress(const char* what) {
 
 Reply Read(const redisReply& from) {
   Reply reply;
-  reply.nothing = from.type == REDIS_REPLY_NIL;
+  reply.nil = from.type == REDIS_REPLY_NIL;
   reply.number = from.type == REDIS_REPLY_INTEGER ? from.integer : 0;
   if (from.str != nullptr) reply.text.assign(from.str, from.len);
   if (from.type != REDIS_REPLY_ARRAY) return reply;
@@ -34,21 +34,21 @@ Reply Read(const redisReply& from) {
 }  // namespace
 
 absl::StatusOr<RedisAddress> ParseRedisAddress(const std::string& url) {
-  if (!absl::StartsWith(url, kScheme)) return BadAddress("the address begins otherwise than redis://");
+  if (!absl::StartsWith(url, kScheme)) return BadAddress("the address does not begin with redis://");
   std::string rest = url.substr(sizeof kScheme - 1);
   RedisAddress address;
   if (const std::size_t at = rest.rfind('@'); at != std::string::npos) {
-    if (rest.empty() || rest[0] != ':') return BadAddress("a password stands between \":\" and \"@\"");
+    if (rest.empty() || rest[0] != ':') return BadAddress("a password must be between \":\" and \"@\"");
     address.password = rest.substr(1, at - 1);
     rest = rest.substr(at + 1);
   }
   const std::size_t colon = rest.rfind(':');
   address.host = rest.substr(0, colon);
-  if (address.host.empty()) return BadAddress("there is no host");
+  if (address.host.empty()) return BadAddress("the host is missing");
   if (colon == std::string::npos) return address;
-  const bool good =
-      absl::SimpleAtoi(rest.substr(colon + 1), &address.port) && address.port > 0 && address.port <= kLargestPort;
-  return good ? absl::StatusOr<RedisAddress>(address) : BadAddress("the port is not 1 to 65535");
+  const bool valid =
+      absl::SimpleAtoi(rest.substr(colon + 1), &address.port) && address.port > 0 && address.port <= kMaxPort;
+  return valid ? absl::StatusOr<RedisAddress>(address) : BadAddress("the port must be 1 to 65535");
 }
 
 void Redis::Free::operator()(redisContext* context) const { redisFree(context); }
@@ -57,29 +57,29 @@ Redis::Redis(RedisAddress address) : address_(std::move(address)) {}
 
 Redis::~Redis() = default;
 
-absl::Status Redis::GiveUp(const std::string& why) {
+absl::Status Redis::Disconnect(const std::string& why) {
   context_.reset();
-  loaded_.clear();
-  again_ = absl::Now() + kPause;
+  script_sha1_.clear();
+  retry_at_ = absl::Now() + kReconnectPause;
   return absl::UnavailableError(
-      absl::StrCat("Redis at ", address_.host, ":", address_.port, " cannot be reached (", why, "); start it"));
+      absl::StrCat("Redis at ", address_.host, ":", address_.port, " cannot be reached (", why, "); start Redis"));
 }
 
 absl::Status Redis::Connect() {
   if (context_ != nullptr) return absl::OkStatus();
-  if (absl::Now() < again_) {
-    return absl::UnavailableError(
-        absl::StrCat("Redis at ", address_.host, ":", address_.port, " could not be reached a moment ago; start it"));
+  if (absl::Now() < retry_at_) {
+    return absl::UnavailableError(absl::StrCat("Redis at ", address_.host, ":", address_.port,
+                                               " could not be reached a moment ago; start Redis"));
   }
-  const timeval patience = absl::ToTimeval(kPatience);
-  context_.reset(redisConnectWithTimeout(address_.host.c_str(), address_.port, patience));
-  if (context_ == nullptr) return GiveUp("no memory");
-  if (context_->err != 0) return GiveUp(std::string(context_->errstr));
-  redisSetTimeout(context_.get(), patience);
+  const timeval timeout = absl::ToTimeval(kTimeout);
+  context_.reset(redisConnectWithTimeout(address_.host.c_str(), address_.port, timeout));
+  if (context_ == nullptr) return Disconnect("no memory");
+  if (context_->err != 0) return Disconnect(std::string(context_->errstr));
+  redisSetTimeout(context_.get(), timeout);
   redisEnableKeepAlive(context_.get());
   if (!address_.password.empty()) {
-    const auto good = Send({"AUTH", address_.password});
-    if (!good.ok()) return GiveUp(std::string(good.status().message()));
+    const auto authenticated = Send({"AUTH", address_.password});
+    if (!authenticated.ok()) return Disconnect(std::string(authenticated.status().message()));
   }
   ++connections_;
   return absl::OkStatus();
@@ -98,7 +98,7 @@ absl::StatusOr<Reply> Redis::Send(const std::vector<std::string>& words) {
       static_cast<redisReply*>(
           redisCommandArgv(context_.get(), static_cast<int>(words.size()), texts.data(), sizes.data())),
       &freeReplyObject);
-  if (reply == nullptr) return GiveUp(std::string(context_->errstr));
+  if (reply == nullptr) return Disconnect(std::string(context_->errstr));
   if (reply->type == REDIS_REPLY_ERROR) return absl::InternalError(std::string(reply->str, reply->len));
   return Read(*reply);
 }
@@ -106,14 +106,15 @@ absl::StatusOr<Reply> Redis::Send(const std::vector<std::string>& words) {
 absl::StatusOr<Reply> Redis::Run(const std::vector<std::string>& words) {
   if (absl::Status status = Connect(); !status.ok()) return status;
   auto reply = Send(words);
-  // One that is reading its files in after a start says so.
-  if (!reply.ok() && absl::StrContains(reply.status().message(), "LOADING")) return GiveUp("it is starting");
+  // Redis answers LOADING while it reads its data after a start.
+  if (!reply.ok() && absl::StrContains(reply.status().message(), "LOADING"))
+    return Disconnect("it is loading its data");
   return reply;
 }
 
 absl::StatusOr<Reply> Redis::Run(const char* script, const std::vector<std::string>& arguments) {
   if (absl::Status status = Connect(); !status.ok()) return status;
-  std::string& sha1 = loaded_[script];
+  std::string& sha1 = script_sha1_[script];
   if (sha1.empty()) {
     auto loaded = Run({"SCRIPT", "LOAD", script});
     if (!loaded.ok()) return loaded;

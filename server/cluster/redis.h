@@ -1,4 +1,4 @@
-// Redis, as far as it is needed: commands one after the other over one connection, each within a time.
+// A Redis client for one connection, with a timeout on every command (hiredis, protocol RESP2).
 #ifndef PHRENIC_SERVER_CLUSTER_REDIS_H_
 #define PHRENIC_SERVER_CLUSTER_REDIS_H_
 
@@ -16,56 +16,59 @@ struct redisReply;
 
 namespace phrenic::cluster {
 
-// Where Redis is.
 struct RedisAddress {
   std::string host;
   int port = 6379;
-  std::string password;  // empty: none
+  std::string password;  // empty: no AUTH
 };
 
-// "redis://HOST:PORT" or "redis://:PASSWORD@HOST:PORT". INVALID_ARGUMENT names what is wrong, without the password.
+// Parses "redis://HOST:PORT" or "redis://:PASSWORD@HOST:PORT". INVALID_ARGUMENT, without the password, if it is not
+// valid.
 absl::StatusOr<RedisAddress> ParseRedisAddress(const std::string& url);
 
-// What Redis answered: nothing, a number, text, or a list of these.
+// A reply of Redis: nil, an integer, a string, or a list of replies.
 struct Reply {
-  bool nothing = false;
+  bool nil = false;
   std::int64_t number = 0;
   std::string text;
   std::vector<Reply> list;
 };
 
-// Of one thread at a time.
+// Not thread-safe.
 class Redis {
  public:
-  // Nothing is sent yet.
+  // Connects at the first Run.
   explicit Redis(RedisAddress address);
   ~Redis();
   Redis(const Redis&) = delete;
   Redis& operator=(const Redis&) = delete;
 
-  // Connects first where there is no connection. UNAVAILABLE where Redis cannot be reached or does not answer within
-  // kPatience: the connection is given up then, and for kPause every call fails at once. INTERNAL for what it refused.
+  // Sends a command and returns the reply. Errors: UNAVAILABLE if Redis cannot be reached, does not answer within
+  // kTimeout or is loading its data, after which the connection is closed and calls fail at once for kReconnectPause;
+  // INTERNAL for an error reply.
   absl::StatusOr<Reply> Run(const std::vector<std::string>& words);
-  // A script of Lua, a constant, whose text is sent once a connection.
+  // Runs a Lua script by EVALSHA; the text is sent once per connection. `script` must be a constant with static
+  // storage.
   absl::StatusOr<Reply> Run(const char* script, const std::vector<std::string>& arguments);
-  // Grows with every connection that was made.
+  // Returns the number of connections made so far; a change means that Redis may have restarted.
   int connections() const { return connections_; }
 
-  static constexpr absl::Duration kPatience = absl::Milliseconds(400);
-  static constexpr absl::Duration kPause = absl::Milliseconds(500);
+  static constexpr absl::Duration kTimeout = absl::Milliseconds(400);
+  static constexpr absl::Duration kReconnectPause = absl::Milliseconds(500);
 
  private:
   struct Free {
     void operator()(redisContext* context) const;
   };
   absl::Status Connect();
-  absl::Status GiveUp(const std::string& why);
+  // Closes the connection and returns UNAVAILABLE.
+  absl::Status Disconnect(const std::string& why);
   absl::StatusOr<Reply> Send(const std::vector<std::string>& words);
 
   const RedisAddress address_;
   std::unique_ptr<redisContext, Free> context_;
-  std::map<const char*, std::string> loaded_;  // of this connection: the name that Redis gave to a script
-  absl::Time again_ = absl::InfinitePast();
+  std::map<const char*, std::string> script_sha1_;  // of the scripts loaded on this connection
+  absl::Time retry_at_ = absl::InfinitePast();
   int connections_ = 0;
 };
 

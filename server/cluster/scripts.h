@@ -1,22 +1,22 @@
-// What Redis has of a cluster's sessions, and the scripts that change it, each at once or not at all.
+// The keys of a cluster's sessions in Redis, and the Lua scripts that change them. Redis runs each script atomically.
 //
-//   phrenic:sessions        set      the ids of the sessions that there are
-//   phrenic:session:ID      hash     epoch: of its last owner; scene, moment, state: SavedScene, SavedMoment,
-//   SavedState;
-//                                    sequence: of the state; last: of the last entry. Of a deleted one: epoch and
-//                                    deleted
-//   phrenic:journal:ID      hash     sequence -> SavedMoment, since the state
-//   phrenic:lease:ID        string   "EPOCH ADDRESS" of the server that has it; gone once its time is over
+//   phrenic:sessions        set      the ids of all sessions
+//   phrenic:session:ID      hash     epoch: of its last owner
+//                                    scene, moment, state: SavedScene, SavedMoment, SavedState
+//                                    sequence: of the state; last: of the last journal entry
+//                                    a deleted session has epoch and deleted only
+//   phrenic:journal:ID      hash     sequence -> SavedMoment, the entries since the state
+//   phrenic:lease:ID        string   "EPOCH ADDRESS" of the server that has the session; expires
 //   phrenic:servers         set      addresses
-//   phrenic:server:ADDRESS  string   the sessions that it has; gone once its time is over
+//   phrenic:server:ADDRESS  string   the number of its sessions; expires
 //
-// The epoch is the fence: who writes names the epoch that it was given, and writes nothing once there is a later one.
+// The epoch is a fencing token: every write names its epoch and has no effect once there is a later one.
 #ifndef PHRENIC_SERVER_CLUSTER_SCRIPTS_H_
 #define PHRENIC_SERVER_CLUSTER_SCRIPTS_H_
 
 namespace phrenic::cluster {
 
-// Arguments: id, address, lease [ms]. The epoch of a new session, or 0 where there is one already.
+// Arguments: id, address, lease [ms]. Returns the epoch of a new session, or 0 if the session exists.
 inline constexpr char kClaim[] = R"(
 local id, address, lease = ARGV[1], ARGV[2], ARGV[3]
 local session = 'phrenic:session:' .. id
@@ -28,8 +28,8 @@ redis.call('SADD', 'phrenic:sessions', id)
 redis.call('SET', 'phrenic:lease:' .. id, epoch .. ' ' .. address, 'PX', lease)
 return epoch)";
 
-// Arguments: id, address, lease [ms], the epoch and the sequence of one's own copy. The next epoch; 0 where another
-// server has the session, or has had it since, or it was deleted.
+// Arguments: id, address, lease [ms], the epoch and the sequence in the server's own store. Returns the next epoch; 0
+// if another server has or had the session since, or if it was deleted.
 inline constexpr char kReclaim[] = R"(
 local id, address, lease = ARGV[1], ARGV[2], ARGV[3]
 local own, sequence = tonumber(ARGV[4]), tonumber(ARGV[5])
@@ -48,9 +48,9 @@ redis.call('SADD', 'phrenic:sessions', id)
 redis.call('SET', 'phrenic:lease:' .. id, epoch .. ' ' .. address, 'PX', lease)
 return epoch)";
 
-// Arguments: id, address, lease [ms]. Of a session without an owner: epoch, scene, sequence, moment, state, and its
-// journal, a sequence and a moment each. {0} where it has an owner, {-1} where there is nothing to go on from.
-inline constexpr char kTake[] = R"(
+// Arguments: id, address, lease [ms]. Takes the lease of a session without one. Returns epoch, scene, sequence, moment,
+// state, and the journal as pairs of sequence and moment; {0} if the session has a lease, {-1} if it has no copy.
+inline constexpr char kTakeOver[] = R"(
 local id, address, lease = ARGV[1], ARGV[2], ARGV[3]
 local session = 'phrenic:session:' .. id
 if redis.call('EXISTS', 'phrenic:lease:' .. id) == 1 then return {0} end
@@ -63,8 +63,9 @@ redis.call('SET', 'phrenic:lease:' .. id, epoch .. ' ' .. address, 'PX', lease)
 local saved = redis.call('HMGET', session, 'scene', 'sequence', 'moment', 'state')
 return {epoch, saved[1], saved[2], saved[3], saved[4], redis.call('HGETALL', 'phrenic:journal:' .. id)})";
 
-// Arguments: address, lease [ms], whether this server takes sessions ("1"), and an id and an epoch each. A number each:
-// 1 its own for another lease, 2 the same, but Redis has lost it, 0 another server's now.
+// Arguments: address, lease [ms], "1" if this server takes sessions over, and pairs of id and epoch. Returns a number
+// for each pair: 1 if the lease is renewed, 2 if it is renewed but Redis had lost the session, 0 if another server has
+// it.
 inline constexpr char kRenew[] = R"(
 local address, lease = ARGV[1], ARGV[2]
 if ARGV[3] == '1' then
@@ -92,8 +93,8 @@ for i = 4, #ARGV, 2 do
 end
 return answers)";
 
-// Arguments: id, epoch, scene or "", the state's sequence or "", its moment, the state, and a sequence and a moment
-// each. 1, or 0 where the epoch is over.
+// Arguments: id, epoch, scene or "", the state's sequence or "", its moment, the state, and pairs of sequence and
+// moment. Returns 1, or 0 if there is a later epoch.
 inline constexpr char kSave[] = R"(
 local id, own = ARGV[1], ARGV[2]
 local session, journal = 'phrenic:session:' .. id, 'phrenic:journal:' .. id
@@ -109,8 +110,8 @@ for i = 7, #ARGV, 2 do
 end
 return 1)";
 
-// Arguments: id, epoch, how long it is remembered that there was one [s]. 1, or 0 where the epoch is over.
-inline constexpr char kForget[] = R"(
+// Arguments: id, epoch, time that the deletion is remembered [s]. Returns 1, or 0 if there is a later epoch.
+inline constexpr char kDelete[] = R"(
 local id, own = ARGV[1], ARGV[2]
 local session = 'phrenic:session:' .. id
 if redis.call('HGET', session, 'epoch') ~= own then return 0 end
@@ -120,13 +121,13 @@ redis.call('HSET', session, 'epoch', own, 'deleted', 1)
 redis.call('EXPIRE', session, ARGV[3])
 return 1)";
 
-// Arguments: id, epoch. Ends the lease.
+// Arguments: id, epoch. Deletes the lease. Returns 0 if there is a later epoch or no lease.
 inline constexpr char kRelease[] = R"(
 if redis.call('HGET', 'phrenic:session:' .. ARGV[1], 'epoch') ~= ARGV[2] then return 0 end
 return redis.call('DEL', 'phrenic:lease:' .. ARGV[1]))";
 
-// The ids of sessions without an owner, and the addresses of the servers that take sessions.
-inline constexpr char kLook[] = R"(
+// Returns the ids of sessions without a lease, and the addresses of the servers that take sessions over.
+inline constexpr char kFindFree[] = R"(
 local free, servers = {}, {}
 for _, id in ipairs(redis.call('SMEMBERS', 'phrenic:sessions')) do
   if redis.call('EXISTS', 'phrenic:lease:' .. id) == 0 then free[#free + 1] = id end
@@ -137,8 +138,8 @@ for _, address in ipairs(redis.call('SMEMBERS', 'phrenic:servers')) do
 end
 return {free, servers})";
 
-// Argument: id. {"EPOCH ADDRESS" or "", whether there is one to go on from}.
-inline constexpr char kWhere[] = R"(
+// Argument: id. Returns {"EPOCH ADDRESS" or "", 1 if there is a copy to resume from}.
+inline constexpr char kLocate[] = R"(
 return {redis.call('GET', 'phrenic:lease:' .. ARGV[1]) or '',
         redis.call('HEXISTS', 'phrenic:session:' .. ARGV[1], 'state')})";
 

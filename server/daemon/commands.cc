@@ -31,14 +31,14 @@ struct TokenWords {
 
 absl::Status NeedsFile(const std::string& file) {
   if (!file.empty()) return absl::OkStatus();
-  return absl::InvalidArgumentError("--tokens: name the file of accounts, as the server is given it");
+  return absl::InvalidArgumentError("--tokens: pass the token file that the server uses");
 }
 
 int TokenAdd(const std::string& file, const TokenWords& words) {
   if (const absl::Status status = NeedsFile(file); !status.ok()) return Fail(status);
   const auto token = access::AddToken(file, {words.name, access::RoleOf(words.role)});
   if (!token.ok()) return Fail(token.status());
-  std::fprintf(stderr, "phrenicd: the token of %s, told this once; phrenic --token-file reads it from a file\n",
+  std::fprintf(stderr, "phrenicd: the token of %s is shown only once; save it to a file for phrenic --token-file\n",
                words.name.c_str());
   std::printf("%s\n", token->c_str());
   return kOk;
@@ -63,18 +63,19 @@ int TokenRemove(const std::string& file, const TokenWords& words) {
 void AddTokenCommands(CLI::App& app, Flags& flags, std::function<int()>& chosen) {
   const auto words = std::make_shared<TokenWords>();
   const std::string& file = flags.options.accounts.tokens_file;
-  CLI::App* token = app.add_subcommand("token", "Accounts in the file of --tokens; a running server reads them anew");
+  CLI::App* token =
+      app.add_subcommand("token", "Manage the accounts in the file of --tokens; a running server reloads it");
   token->require_subcommand(1)->fallthrough();
-  CLI::App* add = token->add_subcommand("add", "A new account; prints its token, this once");
-  add->add_option("--name", words->name, "who: 1 to 64 letters, digits and -_.@")->required();
+  CLI::App* add = token->add_subcommand("add", "Add an account and print its token, which is shown only once");
+  add->add_option("--name", words->name, "name of the account: 1 to 64 letters, digits and -_.@")->required();
   add->add_option("--role", words->role, "viewer, controller, owner or admin")
       ->check(CLI::IsMember({"viewer", "controller", "owner", "admin"}))
       ->capture_default_str();
   add->fallthrough()->callback([&chosen, &file, words] { chosen = [&file, words] { return TokenAdd(file, *words); }; });
-  CLI::App* list = token->add_subcommand("list", "Roles and names");
+  CLI::App* list = token->add_subcommand("list", "List roles and names");
   list->fallthrough()->callback([&chosen, &file] { chosen = [&file] { return TokenList(file); }; });
-  CLI::App* remove = token->add_subcommand("remove", "Takes an account away");
-  remove->add_option("--name", words->name, "who")->required();
+  CLI::App* remove = token->add_subcommand("remove", "Remove an account");
+  remove->add_option("--name", words->name, "name of the account")->required();
   remove->fallthrough()->callback(
       [&chosen, &file, words] { chosen = [&file, words] { return TokenRemove(file, *words); }; });
 }
@@ -83,8 +84,8 @@ void AddTokenCommands(CLI::App& app, Flags& flags, std::function<int()>& chosen)
 
 void AddCommands(CLI::App& app, Flags& flags, std::function<int()>& chosen) {
   const auto folder = std::make_shared<std::string>();
-  CLI::App* check = app.add_subcommand("check", "Say what is in a store, and whether it is whole; changes nothing");
-  check->add_option("DIR", *folder, "the store's folder")->required();
+  CLI::App* check = app.add_subcommand("check", "Check a store and print its contents; changes nothing");
+  check->add_option("DIR", *folder, "folder of the store")->required();
   check->callback([&chosen, folder] { chosen = [folder] { return Check(*folder); }; });
   AddTokenCommands(app, flags, chosen);
 }

@@ -1,4 +1,4 @@
-// What phrenicd does besides serving: each gives the exit code.
+// The commands of phrenicd other than serving. Each returns the exit code.
 #ifndef PHRENIC_SERVER_DAEMON_COMMANDS_H_
 #define PHRENIC_SERVER_DAEMON_COMMANDS_H_
 
@@ -9,8 +9,8 @@
 
 namespace phrenic::daemon {
 
-// Adds check, config and token to the app; parsing it sets `chosen` where one of them is typed. `flags` and `chosen`
-// outlive the app.
+// Adds the commands check and token to `app`. Parsing sets `chosen` to the function of the command that is named; it
+// stays empty if there is none. `flags` and `chosen` outlive the app.
 void AddCommands(CLI::App& app, Flags& flags, std::function<int()>& chosen);
 
 }  // namespace phrenic::daemon

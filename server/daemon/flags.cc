@@ -12,9 +12,9 @@ namespace phrenic::daemon {
 namespace {
 
 constexpr char kSystemFile[] = "/etc/phrenic/phrenicd.toml";
-constexpr double kLargestCount = 1e6;
+constexpr double kMaxCount = 1e6;
 
-// systemd's StateDirectory, else the user's.
+// Returns systemd's StateDirectory, else the XDG state folder of the user, else "none".
 std::string DefaultStore() {
   const auto from = [](const char* variable, const char* below) {
     const char* folder = std::getenv(variable);
@@ -27,7 +27,7 @@ std::string DefaultStore() {
   return "none";
 }
 
-// Options of one group, each with its variable.
+// Adds options to one group of the help text, each with its environment variable.
 class Group {
  public:
   Group(CLI::App& app, std::string name) : app_(app), name_(std::move(name)) {}
@@ -53,23 +53,23 @@ class Group {
   const std::string name_;
 };
 
-void AddPlaces(CLI::App& app, Flags& flags) {
+void AddAddresses(CLI::App& app, Flags& flags) {
   service::ServerOptions& options = flags.options;
   options.listen = "127.0.0.1:50051";
   options.web = "127.0.0.1:8080";
   options.store_dir = DefaultStore();
-  Group group(app, "Places");
-  group.Add("config", flags.config, "File of settings, in TOML: a line NAME = VALUE each");
-  group.Add("listen", options.listen, "HOST:PORT of gRPC");
-  group.Add("web", options.web, "HOST:PORT of the viewer and gRPC-web");
-  group.Add("data", options.data_dir, "Folder of surface files; scenes of your own in its folder scenes/");
+  Group group(app, "Addresses and folders");
+  group.Add("config", flags.config, "Settings file in TOML, with lines NAME = VALUE");
+  group.Add("listen", options.listen, "HOST:PORT for gRPC");
+  group.Add("web", options.web, "HOST:PORT for the viewer and gRPC-web");
+  group.Add("data", options.data_dir, "Folder of surface files, with your own scenes in its subfolder scenes/");
   group.Add("scenes", options.scenes_dir, "Folder of the shipped scenes");
-  group.Add("spool", options.spool_dir, "Folder on a disk with room, for exports and uploads; nothing stays in it");
+  group.Add("spool", options.spool_dir, "Folder for temporary files of exports and uploads");
   group.Add("store", options.store_dir,
-            "Folder that sessions are saved in, so that they go on after the server ended; none: nowhere");
+            "Folder in which sessions are saved, to resume them after a restart; none: not saved");
   group.Add("web-root", options.web_root, "Folder of the built viewer");
   group.Add("start", flags.start, "Scene to start and play, or none");
-  group.Add("log", flags.log, "How the log is written on standard error: text, or json, an object a line")
+  group.Add("log", flags.log, "Format of the log on standard error: text, or json with one object per line")
       ->check(CLI::IsMember({"text", "json"}));
 }
 
@@ -77,31 +77,34 @@ void AddLimits(CLI::App& app, Flags& flags) {
   service::ServerOptions& options = flags.options;
   session::Limits& limits = options.limits;
   Group group(app, "Limits");
-  group.Add("max-sessions", limits.sessions, "Sessions at once", 1, 1000);
-  group.Add("max-sessions-of-user", limits.sessions_of_user, "Sessions of one account at once", 1, 1000);
-  group.Add("max-viewers", limits.viewers, "Viewers of one session", 1, 10000);
-  group.Add("max-viewers-in-all", limits.viewers_in_all, "Viewers of all sessions", 1, kLargestCount);
-  group.Add("max-vertices", limits.vertices, "Vertices of one scene", 1, 1e8);
-  group.Add("max-message-mb", flags.message_mb, "Size of a request, uncompressed [MiB]", 1, 1024);
-  group.Add("max-upload-mb", flags.upload_mb, "Size of an uploaded file [MiB]", 1, 65536);
+  group.Add("max-sessions", limits.sessions, "Maximum number of sessions", 1, 1000);
+  group.Add("max-sessions-of-user", limits.sessions_of_user, "Maximum number of sessions per account", 1, 1000);
+  group.Add("max-viewers", limits.viewers, "Maximum number of viewers per session", 1, 10000);
+  group.Add("max-viewers-in-all", limits.viewers_in_all, "Maximum number of viewers over all sessions", 1, kMaxCount);
+  group.Add("max-vertices", limits.vertices, "Maximum number of vertices per scene", 1, 1e8);
+  group.Add("max-message-mb", flags.message_mb, "Maximum size of a request, uncompressed [MiB]", 1, 1024);
+  group.Add("max-upload-mb", flags.upload_mb, "Maximum size of an uploaded file [MiB]", 1, 65536);
   group.Add("max-uploads-mb", flags.uploads_mb,
-            "Size of all uploaded files [MiB]; past it the one used longest ago goes", 1, 1048576);
-  group.Add("session-cpu", limits.session_cpu, "Share of a processor core that stepping one session may have", 0.01, 1);
-  group.Add("max-exports", limits.exports, "Exports at once; comparisons as well", 1, 64);
+            "Maximum size of all uploaded files [MiB]; above it the least recently used one is deleted", 1, 1048576);
+  group.Add("session-cpu", limits.session_cpu, "Fraction of a processor core that stepping one session may use", 0.01,
+            1);
+  group.Add("max-exports", limits.exports, "Maximum number of exports at a time, and of comparisons", 1, 64);
   group.Add("max-requests", options.max_requests,
-            "Requests a second of one caller, an account or another machine, twice as many in a burst; 0: any number",
-            0, kLargestCount);
-  group.Add("max-connections", options.max_connections, "Connections to each of --web and --listen", 4, kLargestCount);
-  group.Add("step-threads", options.step_threads, "Threads that a step of a large session may have", 1, 256);
-  group.Add("keep-exports", limits.export_minutes, "Minutes that an export waits to be downloaded", 1, 10080);
-  group.Add("head-seconds", options.head_seconds, "Time for the head of a request to come [s]", 1, 3600);
-  group.Add("idle-seconds", options.idle_seconds,
-            "Time for the rest of a request, and for a connection without one until it is closed [s]", 1, 86400);
+            "Maximum requests per second of an account or another machine, with bursts of twice as many; 0: no limit",
+            0, kMaxCount);
+  group.Add("max-connections", options.max_connections, "Maximum number of connections to --web and to --listen, each",
+            4, kMaxCount);
+  group.Add("step-threads", options.step_threads, "Maximum number of threads for a step of a large session", 1, 256);
+  group.Add("keep-exports", limits.export_minutes, "Time that a finished export is kept [min]", 1, 10080);
+  group.Add("head-seconds", options.head_seconds, "Timeout for the header of a request [s]", 1, 3600);
+  group.Add("idle-seconds", options.idle_seconds, "Timeout for the body of a request and for an idle connection [s]", 1,
+            86400);
   group.Add("pause-minutes", limits.pause_minutes,
-            "Minutes that a session plays on while nobody watches or asks for it; 0: for ever", 0, kLargestCount);
+            "Time after which a session without viewers and calls is paused [min]; 0: never", 0, kMaxCount);
   group.Add("delete-minutes", limits.delete_minutes,
-            "Minutes that a session is kept while nobody watches or asks for it; 0: for ever", 0, kLargestCount);
-  group.Add("stop-seconds", flags.stop_seconds, "Time to end in, when told to, before work is broken off [s]", 1, 600);
+            "Time after which a session without viewers and calls is deleted [min]; 0: never", 0, kMaxCount);
+  group.Add("stop-seconds", flags.stop_seconds, "Timeout for a clean shutdown, after which work is aborted [s]", 1,
+            600);
 }
 
 void AddAccess(CLI::App& app, Flags& flags) {
@@ -109,40 +112,38 @@ void AddAccess(CLI::App& app, Flags& flags) {
   Group group(app, "Access");
   group
       .Add("allow-origin", options.allowed_origins,
-           "Web pages that may call, and show the viewer in a frame, as https://example.org")
+           "Origins whose pages may call the server and frame the viewer, such as https://example.org")
       ->delimiter(',');
-  group.Add("tls-cert", options.tls.certificate, "File of the certificate chain, PEM: encrypts gRPC and web");
-  group.Add("tls-key", options.tls.key, "File of its private key, PEM");
+  group.Add("tls-cert", options.tls.certificate, "Certificate chain in PEM; enables TLS for gRPC and web");
+  group.Add("tls-key", options.tls.key, "Private key of the certificate in PEM");
   group.Add("tls-client-ca", options.tls.client_ca,
-            "File of the authorities, PEM, one of which every client's own "
-            "certificate must come from");
+            "CA certificates in PEM; every client must have a certificate of one of them");
   group.AddFlag("insecure-listen", options.insecure_listen,
-                "Listen to other machines without TLS: anybody on the way can read and change everything");
+                "Allow connections from other machines without TLS, which can be read and modified on the network");
   access::AccountOptions& accounts = options.accounts;
-  group.Add("tokens", accounts.tokens_file, "File of accounts (phrenicd token add); with it every call needs one");
+  group.Add("tokens", accounts.tokens_file, "Token file (phrenicd token add); with it every call requires an account");
   group.Add(
       "jwt-keys", accounts.jwt.keys,
-      "File or https:// address of an identity provider's keys, a JSON Web Key Set or an OpenID configuration: its "
-      "signed tokens are accounts too");
-  group.Add("jwt-issuer", accounts.jwt.issuer, "What \"iss\" of such a token must be");
-  group.Add("jwt-audience", accounts.jwt.audience, "What \"aud\" must be, or hold");
-  group.Add("jwt-name-claim", accounts.jwt.name_claim, "Which claim names the account");
-  group.Add("jwt-role-claim", accounts.jwt.role_claim, "Which claim has its role: viewer, controller, owner, admin");
-  group.Add("audit", options.audit_file, "File that is told who did what; rotated past 16 MiB");
+      "File or https:// address of an identity provider's JSON Web Key Set or OpenID configuration; its signed tokens "
+      "are accepted as accounts");
+  group.Add("jwt-issuer", accounts.jwt.issuer, "Required value of the claim \"iss\"");
+  group.Add("jwt-audience", accounts.jwt.audience, "Required value of the claim \"aud\", or of one of its elements");
+  group.Add("jwt-name-claim", accounts.jwt.name_claim, "Claim with the name of the account");
+  group.Add("jwt-role-claim", accounts.jwt.role_claim, "Claim with its role: viewer, controller, owner or admin");
+  group.Add("audit", options.audit_file, "Audit log file, rotated at 16 MiB");
 }
 
 void AddCluster(CLI::App& app, Flags& flags) {
   cluster::ClusterOptions& cluster = flags.options.cluster;
-  Group group(app, "More than one machine");
-  group.Add("cluster", cluster.redis,
-            "redis://[:PASSWORD@]HOST:PORT that the servers of a cluster share; none: a server by itself");
-  group.Add("advertise", cluster.advertise, "HOST:PORT at which the cluster's other servers reach --listen");
+  Group group(app, "Cluster");
+  group.Add("cluster", cluster.redis, "redis://[:PASSWORD@]HOST:PORT of the cluster's Redis; empty: not in a cluster");
+  group.Add("advertise", cluster.advertise, "HOST:PORT at which the other servers of the cluster reach --listen");
 }
 
 }  // namespace
 
 void AddFlags(CLI::App& app, Flags& flags) {
-  AddPlaces(app, flags);
+  AddAddresses(app, flags);
   AddAccess(app, flags);
   AddLimits(app, flags);
   AddCluster(app, flags);

@@ -1,4 +1,4 @@
-// The settings of phrenicd: flags, the environment, a file.
+// The settings of phrenicd, from flags, environment variables and a settings file.
 #ifndef PHRENIC_SERVER_DAEMON_FLAGS_H_
 #define PHRENIC_SERVER_DAEMON_FLAGS_H_
 
@@ -11,21 +11,22 @@
 namespace phrenic::daemon {
 
 struct Flags {
-  service::ServerOptions options;                           // but for the sizes below
+  service::ServerOptions options;                           // except the sizes below; OptionsOf adds them
   int message_mb = 16, upload_mb = 256, uploads_mb = 1024;  // [MiB]
   std::string start = "thorax";
-  std::string config;        // the settings file; empty: none
+  std::string config;        // settings file; empty: none
   std::string log = "text";  // or "json"
-  double stop_seconds = 10;  // from the signal to the end
+  double stop_seconds = 10;  // from the signal until the process is aborted [s]
 };
 
-// One option a setting, each with its variable PHRENICD_NAME; `flags` outlives the app.
+// Adds one option per setting, each with an environment variable PHRENICD_NAME. `flags` outlives the app.
 void AddFlags(CLI::App& app, Flags& flags);
 
-// What the server is started with.
+// Returns the options that the server is started with.
 service::ServerOptions OptionsOf(const Flags& flags);
 
-// --config of the words, else $PHRENICD_CONFIG, else /etc/phrenic/phrenicd.toml where it is; else empty.
+// Returns the value of --config in the command line, else $PHRENICD_CONFIG, else /etc/phrenic/phrenicd.toml if it
+// exists, else an empty string.
 std::string ConfigFile(const std::vector<std::string>& words);
 
 }  // namespace phrenic::daemon

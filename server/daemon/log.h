@@ -1,4 +1,4 @@
-// The log on standard error.
+// The server's log on standard error.
 #ifndef PHRENIC_SERVER_DAEMON_LOG_H_
 #define PHRENIC_SERVER_DAEMON_LOG_H_
 
@@ -6,9 +6,10 @@
 
 namespace phrenic::daemon {
 
-// "text" for people, "json" an object a line: time, level, message. It names no session, no caller and no scene of
-// anybody's own: what people call them may say who the patient is.
-void StartLog(const std::string& form);
+// Starts the log in the format "text", or "json" with one object per line: time, level, message. Messages contain no
+// names that users give (sessions, callers, own scenes), because those may identify a patient. Call it once, before any
+// log message; logging itself is thread-safe.
+void StartLog(const std::string& format);
 
 }  // namespace phrenic::daemon
 

@@ -15,8 +15,8 @@ std::vector<const CLI::Option*> Settings(const CLI::App& app) {
   });
 }
 
-// A folder of this machine is another one elsewhere.
-std::string AnyPlace(const std::string& value) { return absl::StartsWith(value, "/") ? "/..." : value; }
+// Replaces absolute paths, which vary by machine.
+std::string WithoutPath(const std::string& value) { return absl::StartsWith(value, "/") ? "/..." : value; }
 
 bool IsNumber(const std::string& value) {
   double number = 0;
@@ -24,7 +24,7 @@ bool IsNumber(const std::string& value) {
 }
 
 std::string Toml(const std::string& value) {
-  if (value == "[]") return "\"\"";  // CLI11's word for a list with nothing in it
+  if (value == "[]") return "\"\"";  // CLI11's text for an empty list
   if (IsNumber(value)) return value;
   return "\"" + absl::StrReplaceAll(value, {{"\\", "\\\\"}, {"\"", "\\\""}}) + "\"";
 }
@@ -48,45 +48,45 @@ std::string CommandItems(const CLI::App& app, const std::string& before) {
 
 std::string Describe(const std::vector<settings::Setting>& settings) {
   std::string text;
-  for (const settings::Setting& one : settings) {
-    if (one.name == "config") continue;
-    std::string line = absl::StrCat(one.name, " = ", Toml(one.value));
+  for (const settings::Setting& setting : settings) {
+    if (setting.name == "config") continue;
+    std::string line = absl::StrCat(setting.name, " = ", Toml(setting.value));
     constexpr std::size_t kColumn = 48;
     line.resize(std::max(line.size() + 1, kColumn), ' ');
-    absl::StrAppend(&text, line, "# ", one.origin, "\n");
+    absl::StrAppend(&text, line, "# ", setting.origin, "\n");
   }
   return text;
 }
 
 std::string Template(const CLI::App& app) {
   std::string text =
-      "# Settings of phrenicd. Flags go before the environment (PHRENICD_MAX_SESSIONS), that before this file, that\n"
-      "# before the default; \"phrenicd config\" says what holds, and where from. Each line below is a default.\n";
+      "# Settings of phrenicd. Precedence: flags, environment variables (PHRENICD_MAX_SESSIONS), this file, defaults.\n"
+      "# \"phrenicd config\" prints the settings in use and their origins. Each line below is a default.\n";
   std::string group;
   for (const CLI::Option* option : Settings(app)) {
     if (option->get_group() != group) absl::StrAppend(&text, "\n# --- ", group = option->get_group(), " ---\n");
     absl::StrAppend(&text, "\n# ", option->get_description(), "\n# ", option->get_lnames().front(), " = ",
-                    Toml(AnyPlace(option->get_default_str())), "\n");
+                    Toml(WithoutPath(option->get_default_str())), "\n");
   }
   return text;
 }
 
 std::string ManualOf(const CLI::App& app) {
-  std::string text =
-      absl::StrCat(".TH PHRENICD 1 \"2026-11-22\" \"phrenicd " PHRENIC_VERSION "\" \"User commands\"\n",
-                   ".SH NAME\nphrenicd \\- simulates the breathing diaphragm and serves it\n",
-                   ".SH SYNOPSIS\n.B phrenicd\n[settings]\n.SH DESCRIPTION\n", Escaped(app.get_description()),
-                   " A setting is a flag, else a variable (PHRENICD_MAX_SESSIONS for \\-\\-max\\-sessions), else a "
-                   "line of the settings file, else its default.\n");
+  std::string text = absl::StrCat(
+      ".TH PHRENICD 1 \"2026-11-22\" \"phrenicd " PHRENIC_VERSION "\" \"User commands\"\n",
+      ".SH NAME\nphrenicd \\- simulates the breathing diaphragm and serves it\n",
+      ".SH SYNOPSIS\n.B phrenicd\n[settings]\n.SH DESCRIPTION\n", Escaped(app.get_description()),
+      " A setting is a flag, else an environment variable (PHRENICD_MAX_SESSIONS for \\-\\-max\\-sessions), else a "
+      "line of the settings file, else its default.\n");
   std::string group;
   for (const CLI::Option* option : Settings(app)) {
     if (option->get_group() != group) absl::StrAppend(&text, ".SH ", group = option->get_group(), "\n");
     absl::StrAppend(
-        &text, Item(absl::StrCat("--", option->get_lnames().front(), " ", Toml(AnyPlace(option->get_default_str()))),
+        &text, Item(absl::StrCat("--", option->get_lnames().front(), " ", Toml(WithoutPath(option->get_default_str()))),
                     option->get_description()));
   }
   return absl::StrCat(text, ".SH Commands\n", CommandItems(app, "phrenicd"), ".SH FILES\n",
-                      Item("/etc/phrenic/phrenicd.toml", "Settings, read where no --config is given."));
+                      Item("/etc/phrenic/phrenicd.toml", "Settings file, read if --config is not set."));
 }
 
 }  // namespace phrenic::daemon

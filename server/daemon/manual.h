@@ -1,4 +1,4 @@
-// Settings in words: those that hold, a file of them all, the manual page.
+// Texts about the settings: the values in use, a template file, the manual page. Pure functions.
 #ifndef PHRENIC_SERVER_DAEMON_MANUAL_H_
 #define PHRENIC_SERVER_DAEMON_MANUAL_H_
 
@@ -10,11 +10,11 @@
 
 namespace phrenic::daemon {
 
-// "name = value  # origin" a line, which is a settings file again.
+// Returns one line "name = value  # origin" per setting. The text is a valid settings file.
 std::string Describe(const std::vector<settings::Setting>& settings);
-// A settings file with every setting, what it means and its default, each commented out.
+// Returns a settings file with the meaning and the default of every setting, all commented out.
 std::string Template(const CLI::App& app);
-// For `man`: every setting and command.
+// Returns the manual page in roff (man(7)), with all settings and commands.
 std::string ManualOf(const CLI::App& app);
 
 }  // namespace phrenic::daemon

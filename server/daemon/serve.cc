@@ -19,20 +19,22 @@
 namespace phrenic::daemon {
 namespace {
 
-constexpr int kMostToRestoreOne = 60'000'000;  // [us] that a service manager waits for a session to be restored
+constexpr int kRestoreTimeout = 60'000'000;  // [us] for one session, told to the service manager
 
-// Of what others can reach: that nothing is encrypted, and that nobody is asked who they are.
-void WarnOfReach(const service::ServerOptions& options) {
-  const bool asked = options.accounts.used() || !options.tls.client_ca.empty();
+// Logs a warning for each address that other machines reach without TLS or without authentication.
+void WarnIfExposed(const service::ServerOptions& options) {
+  const bool authenticated = options.accounts.used() || !options.tls.client_ca.empty();
   for (const std::string& address : {options.listen, options.web}) {
     const auto parts = service::ParseAddress(address);
     if (!parts.ok() || service::IsLoopback(*parts)) continue;
-    if (!options.tls.used()) spdlog::warn("{}: anybody on the way can read and change everything", address);
-    if (!asked) spdlog::warn("{}: whoever reaches it may do everything; give --tokens FILE", address);
+    if (!options.tls.used())
+      spdlog::warn("{}: not encrypted; traffic can be read and modified on the network", address);
+    if (!authenticated)
+      spdlog::warn("{}: no authentication; every client may do everything; pass --tokens FILE", address);
   }
 }
 
-// The address as it can be called from this machine: with the port that was chosen.
+// Returns the address at which this machine reaches a listen address, with the actual port.
 std::string Reachable(const std::string& address, int port) {
   std::string host = service::ParseAddress(address)->host;
   if (host == "0.0.0.0" || host == "::") host = "127.0.0.1";
@@ -40,14 +42,14 @@ std::string Reachable(const std::string& address, int port) {
   return absl::StrCat(host, ":", port);
 }
 
-// The scene's name, or with the next number where a session of that name could not be restored.
+// Returns the scene's name, with a number if a session of that name could not be restored.
 std::string FirstSession(const service::Server& server, const std::string& scene) {
   std::string id = scene;
   for (int i = 2; server.lost().contains(id); ++i) id = absl::StrCat(scene, "-", i);
   return id;
 }
 
-// A session of the scene, playing.
+// Creates a session of the scene and plays it. Keeps a restored session of that name as it is.
 grpc::Status StartScene(service::Server& server, const std::string& scene) {
   const std::string id = FirstSession(server, scene);
   spdlog::info("building the first scene: session {}", id);
@@ -58,7 +60,7 @@ grpc::Status StartScene(service::Server& server, const std::string& scene) {
   v1::CreateSessionResponse created;
   grpc::ClientContext creating, playing;
   grpc::Status status = stub->CreateSession(&creating, request, &created);
-  if (status.error_code() == grpc::StatusCode::ALREADY_EXISTS) return grpc::Status::OK;  // it goes on as it was
+  if (status.error_code() == grpc::StatusCode::ALREADY_EXISTS) return grpc::Status::OK;  // restored from the store
   if (!status.ok()) return status;
   v1::PlaySessionRequest play;
   play.set_session_id(id);
@@ -66,8 +68,9 @@ grpc::Status StartScene(service::Server& server, const std::string& scene) {
   return stub->PlaySession(&playing, play, &played);
 }
 
-// Signals that end the server, held back from every thread that is started after this.
-sigset_t HoldSignals() {
+// Blocks SIGINT and SIGTERM in this thread and in the threads that it starts, so that sigwait receives them. Ignores
+// SIGPIPE.
+sigset_t BlockSignals() {
   sigset_t signals;
   sigemptyset(&signals);
   sigaddset(&signals, SIGINT);
@@ -77,31 +80,31 @@ sigset_t HoldSignals() {
   return signals;
 }
 
-// Tells a service manager that has started this program; without one, nothing (sd_notify(3)).
-void TellManager(const std::string& state) { sd_notify(0, state.c_str()); }
+// Notifies the service manager, if there is one (sd_notify(3)).
+void NotifyManager(const std::string& state) { sd_notify(0, state.c_str()); }
 
-// Null: why is in the log.
+// Returns null after an error, which is logged.
 std::unique_ptr<service::Server> Start(const Flags& flags) {
   service::ServerOptions options = OptionsOf(flags);
   int restored = 0;
   options.restoring = [&restored](const std::string&) {
     spdlog::info("restoring session {}", ++restored);
-    TellManager(absl::StrCat("STATUS=restoring session ", restored, "\nEXTEND_TIMEOUT_USEC=", kMostToRestoreOne));
+    NotifyManager(absl::StrCat("STATUS=restoring session ", restored, "\nEXTEND_TIMEOUT_USEC=", kRestoreTimeout));
   };
   auto server = service::Server::Start(options);
   if (!server.ok()) {
     spdlog::error("{}", std::string(server.status().message()));
     return nullptr;
   }
-  for (const auto& [what, why] : (*server)->lost()) {
-    spdlog::warn("{} could not be restored and stays in the store until it is deleted: {}", what,
-                 std::string(why.message()));
+  for (const auto& [name, error] : (*server)->lost()) {
+    spdlog::warn("{} could not be restored and stays in the store until it is deleted: {}", name,
+                 std::string(error.message()));
   }
-  WarnOfReach(options);
+  WarnIfExposed(options);
   return *std::move(server);
 }
 
-void SayWhere(const service::ServerOptions& options, const service::Server& server) {
+void PrintAddresses(const service::ServerOptions& options, const service::Server& server) {
   const char* scheme = options.tls.used() ? "https" : "http";
   if (!options.listen.empty()) std::printf("gRPC:   %s\n", Reachable(options.listen, server.port()).c_str());
   if (!options.web.empty()) {
@@ -110,12 +113,12 @@ void SayWhere(const service::ServerOptions& options, const service::Server& serv
   std::fflush(stdout);
 }
 
-// Work that does not end, a scene of millions of vertices that is being built, say, is broken off: what was saved is on
+// Aborts the process after a time, because work such as compiling a large scene cannot be cancelled. Saved state is on
 // disk.
-void EndWithin(double seconds) {
+void ExitAfter(double seconds) {
   std::thread([seconds] {
     absl::SleepFor(absl::Seconds(seconds));
-    spdlog::error("work did not end within {} s (--stop-seconds) and was broken off", seconds);
+    spdlog::error("shutdown did not finish within {} s (--stop-seconds); the process is aborted", seconds);
     std::_Exit(kFailed);
   }).detach();
 }
@@ -123,12 +126,13 @@ void EndWithin(double seconds) {
 }  // namespace
 
 int Serve(const Flags& flags) {
-  const sigset_t signals = HoldSignals();
-  service::AllowManyFiles();
+  const sigset_t signals = BlockSignals();
+  service::RaiseFileLimit();
   const auto server = Start(flags);
   if (server == nullptr) return kFailed;
   if (flags.start != "none") {
-    pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);  // nothing to lose yet: a signal ends the program at once
+    pthread_sigmask(SIG_UNBLOCK, &signals,
+                    nullptr);  // there is no state to save yet, so a signal ends the process at once
     const grpc::Status status = StartScene(*server, flags.start);
     pthread_sigmask(SIG_BLOCK, &signals, nullptr);
     if (!status.ok()) {
@@ -136,15 +140,15 @@ int Serve(const Flags& flags) {
       return kFailed;
     }
   }
-  SayWhere(flags.options, *server);
-  TellManager("READY=1\nSTATUS=");
+  PrintAddresses(flags.options, *server);
+  NotifyManager("READY=1\nSTATUS=");
   int signal_number = 0;
   sigwait(&signals, &signal_number);
   spdlog::info("stopping");
-  TellManager("STOPPING=1");
-  pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);  // a second one ends the program at once
+  NotifyManager("STOPPING=1");
+  pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);  // a second signal ends the process at once
   signal(signal_number == SIGTERM ? SIGINT : SIGTERM, SIG_DFL);
-  EndWithin(flags.stop_seconds);
+  ExitAfter(flags.stop_seconds);
   server->Shutdown();
   return kOk;
 }

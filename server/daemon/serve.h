@@ -1,4 +1,4 @@
-// Serves until a signal comes.
+// Runs the server until SIGINT or SIGTERM.
 #ifndef PHRENIC_SERVER_DAEMON_SERVE_H_
 #define PHRENIC_SERVER_DAEMON_SERVE_H_
 
@@ -6,9 +6,11 @@
 
 namespace phrenic::daemon {
 
+// Exit codes.
 inline constexpr int kOk = 0, kFailed = 1, kUsage = 2;
 
-// The exit code: 1 where it cannot serve, and says why on standard error.
+// Returns the exit code: kFailed, with an error in the log, if the server cannot start. Blocks the signals in the
+// calling thread; call it from main only.
 int Serve(const Flags& flags);
 
 }  // namespace phrenic::daemon

@@ -4,6 +4,7 @@
 #include "google/protobuf/util/time_util.h"
 #include "server/schema/secret.h"
 #include "server/schema/sha256.h"
+#include "server/service/calls/session_call.h"
 #include "server/service/calls/status.h"
 
 namespace phrenic::service {
@@ -11,8 +12,8 @@ namespace {
 
 using session::ControlState;
 
-constexpr double kUsualStayOfLink = 7 * 24 * 3600;  // [s]
-constexpr std::size_t kShownId = 8;
+constexpr double kDefaultLinkTime = 7 * 24 * 3600;  // [s]
+constexpr std::size_t kIdLength = 8;
 
 void FillLink(const ControlState::Link& link, v1::JoinLink& filled) {
   filled.set_id(link.id);
@@ -22,13 +23,13 @@ void FillLink(const ControlState::Link& link, v1::JoinLink& filled) {
       google::protobuf::util::TimeUtil::NanosecondsToTimestamp(absl::ToUnixNanos(link.expires));
 }
 
-// A link to a session and the secret that opens it.
+// Returns a new join link and its secret, of which the link has only the hash.
 std::pair<ControlState::Link, std::string> NewLink(const v1::CreateLinkRequest& request, const access::Caller& caller) {
   std::string secret = NewToken();
-  const double stay = request.has_time_to_live() ? request.time_to_live() : kUsualStayOfLink;
+  const double lifetime = request.has_time_to_live() ? request.time_to_live() : kDefaultLinkTime;
   const auto role = request.role() == v1::ACCESS_ROLE_UNSPECIFIED ? v1::ACCESS_ROLE_VIEWER : request.role();
-  ControlState::Link link{NewToken().substr(0, kShownId), Sha256Hex(secret), role, absl::Now() + absl::Seconds(stay),
-                          caller.id()};
+  ControlState::Link link{NewToken().substr(0, kIdLength), Sha256Hex(secret), role,
+                          absl::Now() + absl::Seconds(lifetime), caller.id()};
   return {std::move(link), std::move(secret)};
 }
 
@@ -37,8 +38,8 @@ std::pair<ControlState::Link, std::string> NewLink(const v1::CreateLinkRequest& 
 absl::Status AccessService::CheckGuarded() const {
   if (guard_.guarded()) return absl::OkStatus();
   return absl::FailedPreconditionError(
-      "the server has no accounts, and everybody sees every session: its address is the link (?session=ID); start it "
-      "with --tokens FILE to have links that end");
+      "the server has no accounts, and every caller sees every session: share the address with ?session=ID, or start "
+      "the server with --tokens FILE to have links that expire");
 }
 
 grpc::Status AccessService::GetAccess(grpc::ServerContext* context, const v1::GetAccessRequest* request,
@@ -57,7 +58,7 @@ grpc::Status AccessService::CreateLink(grpc::ServerContext* context, const v1::C
   if (!caller.ok()) return ToGrpc(caller.status());
   if (absl::Status status = CheckGuarded(); !status.ok()) return ToGrpc(status);
   if (request->role() > v1::ACCESS_ROLE_CONTROLLER) {
-    return ToGrpc(absl::InvalidArgumentError("role: a link is for a viewer or a controller"));
+    return ToGrpc(absl::InvalidArgumentError("role: must be viewer or controller for a link"));
   }
   const auto session = table_.Find(request->session_id());
   if (!session.ok()) return ToGrpc(session.status());
@@ -71,11 +72,9 @@ grpc::Status AccessService::CreateLink(grpc::ServerContext* context, const v1::C
 
 grpc::Status AccessService::ListLinks(grpc::ServerContext* context, const v1::ListLinksRequest* request,
                                       v1::ListLinksResponse* response) {
-  const auto caller = guard_.Admit(*context, *request);
-  if (!caller.ok()) return ToGrpc(caller.status());
-  const auto session = table_.Find(request->session_id());
-  if (!session.ok()) return ToGrpc(session.status());
-  const auto access = (*session)->access();
+  const auto call = AdmitToSession(guard_, table_, *context, *request);
+  if (!call.ok()) return ToGrpc(call.status());
+  const auto access = call->session->access();
   for (const ControlState::Link& link : access->links) {
     if (absl::Now() < link.expires) FillLink(link, *response->add_links());
   }
@@ -84,11 +83,9 @@ grpc::Status AccessService::ListLinks(grpc::ServerContext* context, const v1::Li
 
 grpc::Status AccessService::RevokeLink(grpc::ServerContext* context, const v1::RevokeLinkRequest* request,
                                        v1::RevokeLinkResponse* /*response*/) {
-  const auto caller = guard_.Admit(*context, *request);
-  if (!caller.ok()) return ToGrpc(caller.status());
-  const auto session = table_.Find(request->session_id());
-  if (!session.ok()) return ToGrpc(session.status());
-  const auto changed = (*session)->ChangeControl(
+  const auto call = AdmitToSession(guard_, table_, *context, *request);
+  if (!call.ok()) return ToGrpc(call.status());
+  const auto changed = call->session->ChangeControl(
       [&](session::ControlBook& book, absl::Time) { return book.RemoveLink(request->link_id()); });
   return ToGrpc(changed.status());
 }

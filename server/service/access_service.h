@@ -1,4 +1,4 @@
-// Who calls, and join links, over gRPC.
+// v1.AccessService: who the caller is, and join links to sessions.
 #ifndef PHRENIC_SERVER_SERVICE_ACCESS_SERVICE_H_
 #define PHRENIC_SERVER_SERVICE_ACCESS_SERVICE_H_
 
@@ -8,7 +8,7 @@
 
 namespace phrenic::service {
 
-// gRPC's threads call, any number at a time.
+// Thread-safe: gRPC calls the methods on its own threads. Errors as in the proto of each method.
 class AccessService final : public v1::AccessService::Service {
  public:
   AccessService(AccessGuard& guard, session::Table& table) : guard_(guard), table_(table) {}
@@ -23,6 +23,7 @@ class AccessService final : public v1::AccessService::Service {
                           v1::RevokeLinkResponse* response) override;
 
  private:
+  // Returns FAILED_PRECONDITION if the server has no accounts, because links have no effect then.
   absl::Status CheckGuarded() const;
 
   AccessGuard& guard_;

@@ -16,7 +16,8 @@ namespace {
 using CompareWriter = grpc::ServerWriter<v1::CompareResponse>;
 
 absl::Status Send(CompareWriter& writer, const v1::CompareResponse& response) {
-  return writer.Write(response) ? absl::OkStatus() : absl::CancelledError("the receiver of the comparison went away");
+  return writer.Write(response) ? absl::OkStatus()
+                                : absl::CancelledError("the client disconnected during the comparison");
 }
 
 compare::ComparisonSink MakeSink(grpc::ServerContext& context, CompareWriter& writer) {
@@ -53,11 +54,10 @@ grpc::Status CompareService::Compare(grpc::ServerContext* context, const v1::Com
                                      grpc::ServerWriter<v1::CompareResponse>* writer) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
-  const absl::Cleanup leave = [this] { --comparisons_; };
+  const absl::Cleanup release = [this] { --comparisons_; };
   if (++comparisons_ > max_comparisons_) {
     return ToGrpc(absl::ResourceExhaustedError(absl::StrCat(
-        max_comparisons_,
-        " comparisons are under way, and no more are allowed (--max-exports); try again when one is done")));
+        max_comparisons_, " comparisons are running, which is the limit (--max-exports); try again when one is done")));
   }
   const auto bodies = [&](const v1::SessionBody& body, v1::ComparedState& state) -> absl::StatusOr<Mesh> {
     if (const auto seen = guard_.Find(*caller, body.session_id()); !seen.ok()) return seen.status();

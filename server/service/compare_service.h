@@ -1,4 +1,4 @@
-// Comparisons of surfaces and motions over gRPC.
+// v1.CompareService: compares surfaces and motions.
 #ifndef PHRENIC_SERVER_SERVICE_COMPARE_SERVICE_H_
 #define PHRENIC_SERVER_SERVICE_COMPARE_SERVICE_H_
 
@@ -10,8 +10,8 @@
 
 namespace phrenic::service {
 
-// gRPC's threads call, any number at a time; each comparison has one of them until it is done, and ends when its caller
-// goes away.
+// Thread-safe: gRPC calls the methods on its own threads. A comparison occupies a thread until it is done or its caller
+// disconnects; RESOURCE_EXHAUSTED above `max_comparisons` at a time.
 class CompareService final : public v1::CompareService::Service {
  public:
   CompareService(const session::Table& table, int max_comparisons, AccessGuard& guard)

@@ -1,4 +1,4 @@
-// Who may change a session, over gRPC.
+// v1.ControlService: who may change a session.
 #ifndef PHRENIC_SERVER_SERVICE_CONTROL_SERVICE_H_
 #define PHRENIC_SERVER_SERVICE_CONTROL_SERVICE_H_
 
@@ -8,7 +8,7 @@
 
 namespace phrenic::service {
 
-// gRPC's threads call, any number at a time.
+// Thread-safe: gRPC calls the methods on its own threads. Errors as in the proto of each method.
 class ControlService final : public v1::ControlService::Service {
  public:
   explicit ControlService(session::Table& table, AccessGuard& guard) : table_(table), guard_(guard) {}
@@ -25,7 +25,7 @@ class ControlService final : public v1::ControlService::Service {
                           v1::ShowCameraResponse* response) override;
 
  private:
-  // Has `act` change who controls the session that the request names, and writes down who does then.
+  // Admits the call, applies `act` to the session's ControlBook, and returns the new control state.
   template <class Request, class Response, class Act>
   grpc::Status Change(const grpc::ServerContext& context, const Request& request, Response* response, Act act);
 

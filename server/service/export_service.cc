@@ -11,14 +11,13 @@
 namespace phrenic::service {
 namespace {
 
-constexpr int kMostExportStreams = 32;  // each has a thread of its own
-constexpr absl::Duration kExportLook =
-    absl::Milliseconds(200);                // between two looks at whether the watcher is still there
-constexpr std::int64_t kChunk = 128 << 10;  // [bytes]
+constexpr int kMaxExportStreams = 32;                            // each occupies a thread
+constexpr absl::Duration kExportLook = absl::Milliseconds(200);  // period of the check whether the watcher disconnected
+constexpr std::int64_t kChunk = 128 << 10;                       // [bytes]
 
 absl::Status TooMany() {
   return absl::ResourceExhaustedError(
-      absl::StrCat(kMostExportStreams, " exports are watched or downloaded, and no more are allowed: try later"));
+      absl::StrCat(kMaxExportStreams, " exports are being watched or downloaded, which is the limit; try again later"));
 }
 
 v1::ExportValues ToProto(record::Values values) {
@@ -55,7 +54,7 @@ grpc::Status ExportService::CreateExport(grpc::ServerContext* context, const v1:
   auto job =
       exports_.Add(*request, {(*session)->shared_model(), *std::move(fork), (*session)->surfaces(), caller->id()});
   if (!job.ok()) return ToGrpc(job.status());
-  guard_.Give(AccessGuard::Kind::kExport, job->id(), caller->id());
+  guard_.SetOwner(AccessGuard::Kind::kExport, job->id(), caller->id());
   *response->mutable_job() = *std::move(job);
   return grpc::Status::OK;
 }
@@ -73,7 +72,7 @@ absl::Status ExportService::Watch(const std::string& id, grpc::ServerContext& co
     if (!writer.Write(response)) break;
     if (seen->ended) return absl::OkStatus();
   }
-  return absl::UnavailableError("the server is shutting down");  // or nobody hears it
+  return absl::UnavailableError("the server is shutting down");  // or the client disconnected
 }
 
 grpc::Status ExportService::WatchExport(grpc::ServerContext* context, const v1::WatchExportRequest* request,
@@ -82,8 +81,8 @@ grpc::Status ExportService::WatchExport(grpc::ServerContext* context, const v1::
   if (!caller.ok()) return ToGrpc(caller.status());
   if (absl::Status own = guard_.CheckOwns(AccessGuard::Kind::kExport, request->export_id(), *caller); !own.ok())
     return ToGrpc(own);
-  const absl::Cleanup leave = [this] { --streams_; };
-  if (++streams_ > kMostExportStreams) return ToGrpc(TooMany());
+  const absl::Cleanup release = [this] { --streams_; };
+  if (++streams_ > kMaxExportStreams) return ToGrpc(TooMany());
   return ToGrpc(Watch(request->export_id(), *context, *writer));
 }
 
@@ -113,7 +112,7 @@ absl::Status ExportService::Download(const v1::DownloadExportRequest& request,
   const std::int64_t size = (*file)->size();
   if (request.offset() < 0 || request.offset() > size) {
     return absl::OutOfRangeError(
-        absl::StrCat("offset: ", request.offset(), " is not within the file's ", size, " bytes"));
+        absl::StrCat("offset: ", request.offset(), " is outside the file of ", size, " bytes"));
   }
   v1::DownloadExportResponse response;
   for (std::int64_t at = request.offset(); at < size;) {
@@ -121,7 +120,7 @@ absl::Status ExportService::Download(const v1::DownloadExportRequest& request,
     response.mutable_chunk()->resize(static_cast<std::size_t>(count));
     absl::Status status = (*file)->Read(at, response.mutable_chunk()->data(), static_cast<std::size_t>(count));
     if (!status.ok()) return status;
-    if (!writer.Write(response)) return absl::CancelledError("the receiver of the export went away");
+    if (!writer.Write(response)) return absl::CancelledError("the client disconnected during the download");
     at += count;
   }
   return absl::OkStatus();
@@ -133,8 +132,8 @@ grpc::Status ExportService::DownloadExport(grpc::ServerContext* context, const v
   if (!caller.ok()) return ToGrpc(caller.status());
   if (absl::Status own = guard_.CheckOwns(AccessGuard::Kind::kExport, request->export_id(), *caller); !own.ok())
     return ToGrpc(own);
-  const absl::Cleanup leave = [this] { --streams_; };
-  if (++streams_ > kMostExportStreams) return ToGrpc(TooMany());
+  const absl::Cleanup release = [this] { --streams_; };
+  if (++streams_ > kMaxExportStreams) return ToGrpc(TooMany());
   return ToGrpc(Download(*request, *writer));
 }
 

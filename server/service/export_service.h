@@ -1,4 +1,4 @@
-// Motions as files over gRPC.
+// v1.ExportService: records motions to files, for download.
 #ifndef PHRENIC_SERVER_SERVICE_EXPORT_SERVICE_H_
 #define PHRENIC_SERVER_SERVICE_EXPORT_SERVICE_H_
 
@@ -11,7 +11,8 @@
 
 namespace phrenic::service {
 
-// gRPC's threads call, any number at a time; watchers and downloads have one each until they are done, 32 at most.
+// Thread-safe: gRPC calls the methods on its own threads. A watcher or a download occupies a thread until it ends;
+// RESOURCE_EXHAUSTED above 32 of them.
 class ExportService final : public v1::ExportService::Service {
  public:
   ExportService(session::Table& table, session::Exports& exports, AccessGuard& guard)

@@ -1,12 +1,12 @@
 #include "server/service/frame_service.h"
 
-#include <grpcpp/support/proto_buffer_reader.h>
-
 #include <algorithm>
 #include <set>
 
 #include "absl/strings/str_cat.h"
 #include "server/schema/id.h"
+#include "server/service/calls/messages.h"
+#include "server/service/calls/session_call.h"
 #include "server/service/calls/status.h"
 #include "server/service/watch_reactor.h"
 #include "server/session/present_forces.h"
@@ -15,14 +15,7 @@
 namespace phrenic::service {
 namespace {
 
-absl::Status Parse(const grpc::ByteBuffer& bytes, v1::WatchFramesRequest& request) {
-  grpc::ByteBuffer copy = bytes;  // shares the bytes
-  grpc::ProtoBufferReader reader(&copy);
-  if (request.ParseFromZeroCopyStream(&reader)) return absl::OkStatus();
-  return absl::InvalidArgumentError("the bytes are no phrenic.v1.WatchFramesRequest");
-}
-
-// The streamed bodies among those that are named, ascending.
+// Returns the indices of the named bodies that are streamed, ascending. INVALID_ARGUMENT for an unknown name.
 absl::StatusOr<std::vector<int>> FindBodies(const Model& model, const stream::Layout& layout,
                                             const google::protobuf::RepeatedPtrField<std::string>& names) {
   std::set<int> found;
@@ -40,8 +33,7 @@ absl::StatusOr<stream::ViewerOptions> ReadOptions(const Model& model, const stre
                                                   const v1::WatchFramesRequest& request) {
   if (absl::Status status = schema::CheckId("watch_id", request.watch_id()); !status.ok()) return status;
   if (request.max_unacked_frames() > 0 && request.watch_id().empty()) {
-    return absl::InvalidArgumentError(
-        "watch_id: must be set where max_unacked_frames is: frames are acknowledged by it");
+    return absl::InvalidArgumentError("watch_id: required with max_unacked_frames, because acknowledgements name it");
   }
   auto bodies = FindBodies(model, layout, request.bodies());
   if (!bodies.ok()) return bodies.status();
@@ -79,13 +71,13 @@ absl::Status Acknowledge(const session::Table& table, const v1::AckFramesRequest
 
 grpc::Status FrameService::GetGeometry(grpc::ServerContext* context, const v1::GetGeometryRequest* request,
                                        grpc::ServerWriter<v1::GetGeometryResponse>* writer) {
-  const auto caller = guard_.Admit(*context, *request);
-  if (!caller.ok()) return ToGrpc(caller.status());
-  const auto session = table_.Find(request->session_id());
-  if (!session.ok()) return ToGrpc(session.status());
-  const Model& model = (*session)->model();
+  const auto call = AdmitToSession(guard_, table_, *context, *request);
+  if (!call.ok()) return ToGrpc(call.status());
+  session::Session& session = *call->session;
+  const Model& model = session.model();
   for (int body = 0; body < static_cast<int>(model.bodies.size()); ++body) {
-    if (!writer->Write(stream::MakeGeometry(model, (*session)->publisher().layout(), body))) break;  // they went away
+    if (!writer->Write(stream::MakeGeometry(model, session.publisher().layout(), body)))
+      break;  // the client disconnected
   }
   return grpc::Status::OK;
 }
@@ -93,7 +85,7 @@ grpc::Status FrameService::GetGeometry(grpc::ServerContext* context, const v1::G
 absl::Status FrameService::Watch(const grpc::CallbackServerContext& context, const grpc::ByteBuffer& bytes,
                                  WatchReactor& reactor) {
   v1::WatchFramesRequest request;
-  if (absl::Status parsed = Parse(bytes, request); !parsed.ok()) return parsed;
+  if (!Parse(bytes, request)) return absl::InvalidArgumentError("the message is not a phrenic.v1.WatchFramesRequest");
   const auto caller = guard_.Admit(context, request);
   if (!caller.ok()) return caller.status();
   auto session = table_.Find(request.session_id());
@@ -102,9 +94,8 @@ absl::Status FrameService::Watch(const grpc::CallbackServerContext& context, con
   if (!options.ok()) return options.status();
   const std::shared_ptr<void> viewer_count(nullptr, [viewers = viewers_](void*) { --*viewers; });
   if (++*viewers_ > max_viewers_) {
-    return absl::ResourceExhaustedError(absl::StrCat("there are ", max_viewers_,
-                                                     " viewers on this server, and no more ",
-                                                     "are allowed (--max-viewers-in-all); try again later"));
+    return absl::ResourceExhaustedError(absl::StrCat(
+        "the server has ", max_viewers_, " viewers, which is the limit (--max-viewers-in-all); try again later"));
   }
   auto may_see = guard_.StillMaySee(*caller, **session);
   reactor.Watch(*std::move(session), *options,
@@ -130,11 +121,9 @@ grpc::ServerUnaryReactor* FrameService::AckFrames(grpc::CallbackServerContext* c
 
 grpc::Status FrameService::GetBasis(grpc::ServerContext* context, const v1::GetBasisRequest* request,
                                     v1::GetBasisResponse* response) {
-  const auto caller = guard_.Admit(*context, *request);
-  if (!caller.ok()) return ToGrpc(caller.status());
-  const auto session = table_.Find(request->session_id());
-  if (!session.ok()) return ToGrpc(session.status());
-  const auto basis = (*session)->publisher().basis();
+  const auto call = AdmitToSession(guard_, table_, *context, *request);
+  if (!call.ok()) return ToGrpc(call.status());
+  const auto basis = call->session->publisher().basis();
   if (basis == nullptr) return grpc::Status::OK;
   response->set_epoch(basis->epoch);
   for (const std::string& shape : basis->encoded) response->add_shapes(shape);

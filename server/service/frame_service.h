@@ -1,4 +1,4 @@
-// Geometry and frames over gRPC: bytes that are encoded once and shared by everybody who is sent them.
+// v1.FrameService: geometry and frames. A frame is encoded once and its bytes are shared by all viewers.
 #ifndef PHRENIC_SERVER_SERVICE_FRAME_SERVICE_H_
 #define PHRENIC_SERVER_SERVICE_FRAME_SERVICE_H_
 
@@ -13,8 +13,8 @@
 
 namespace phrenic::service {
 
-// gRPC's threads call, any number at a time. Neither WatchFrames nor AckFrames keeps a thread waiting: viewers are
-// served by callbacks.
+// Thread-safe: gRPC calls the methods on its own threads. WatchFrames and AckFrames use the callback API, so that
+// viewers occupy no threads.
 class FrameService final : public v1::FrameService::WithRawCallbackMethod_WatchFrames<
                                v1::FrameService::WithCallbackMethod_AckFrames<v1::FrameService::Service>> {
  public:
@@ -33,13 +33,13 @@ class FrameService final : public v1::FrameService::WithRawCallbackMethod_WatchF
                          v1::GetForcesResponse* response) override;
 
  private:
-  // Watches on the reactor, or says why not.
+  // Starts the stream on the reactor. Returns an error, with which the caller refuses it, if the request is not valid.
   absl::Status Watch(const grpc::CallbackServerContext& context, const grpc::ByteBuffer& bytes, WatchReactor& reactor);
 
   session::Table& table_;
   AccessGuard& guard_;
   Metrics& metrics_;
-  const int max_viewers_;  // of all sessions
+  const int max_viewers_;  // over all sessions
   std::shared_ptr<std::atomic<int>> viewers_ = std::make_shared<std::atomic<int>>(0);
 };
 

@@ -1,4 +1,4 @@
-// Does again and again what nobody asks for.
+// Calls a function periodically.
 #ifndef PHRENIC_SERVER_SERVICE_PERIODIC_TASK_H_
 #define PHRENIC_SERVER_SERVICE_PERIODIC_TASK_H_
 
@@ -11,7 +11,8 @@
 
 namespace phrenic::service {
 
-// A thread that calls `work` every so often, from one `pause` after now until it is destroyed.
+// Calls `work` on its own thread, first one `pause` after construction and then one `pause` after each call returns.
+// The destructor waits for a call in progress.
 class PeriodicTask {
  public:
   PeriodicTask(absl::Duration pause, std::function<void()> work)

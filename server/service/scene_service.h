@@ -1,4 +1,4 @@
-// Scenes: what there is, and what the compile step makes of one.
+// v1.SceneService: the scene catalogue, and the report of compiling a scene.
 #ifndef PHRENIC_SERVER_SERVICE_SCENE_SERVICE_H_
 #define PHRENIC_SERVER_SERVICE_SCENE_SERVICE_H_
 
@@ -8,7 +8,7 @@
 
 namespace phrenic::service {
 
-// gRPC's threads call, any number at a time.
+// Thread-safe: gRPC calls the methods on its own threads. Errors as in the proto of each method.
 class SceneService final : public v1::SceneService::Service {
  public:
   SceneService(session::Models& models, AccessGuard& guard) : models_(models), guard_(guard) {}

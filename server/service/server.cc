@@ -18,9 +18,9 @@
 #include "server/service/control_service.h"
 #include "server/service/export_service.h"
 #include "server/service/frame_service.h"
-#include "server/service/net/address.h"
 #include "server/service/net/grpc_listener.h"
 #include "server/service/periodic_task.h"
+#include "server/service/routing/forwarding_service.h"
 #include "server/service/routing/session_router.h"
 #include "server/service/scene_service.h"
 #include "server/service/server_service.h"
@@ -36,16 +36,10 @@
 namespace phrenic::service {
 namespace {
 
-constexpr int kMostThreads = 128;                 // of unary calls and exports; viewers need none of their own
-constexpr int kMostStreams = 1000;                // of one connection
-constexpr std::chrono::milliseconds kGrace(500);  // for calls to end by themselves
-constexpr absl::Duration kTendPause = absl::Seconds(2);
-
-absl::Status CheckFolder(const std::string& folder, const char* option) {
-  std::error_code error;
-  if (folder.empty() || std::filesystem::is_directory(folder, error)) return absl::OkStatus();
-  return absl::NotFoundError(absl::StrCat(option, ": there is no folder ", folder));
-}
+constexpr int kMaxThreads = 128;                      // of unary calls, watchers and downloads; viewers need none
+constexpr int kMaxStreams = 1000;                     // of one HTTP/2 connection
+constexpr std::chrono::milliseconds kDrainTime(500);  // for calls to end before they are cancelled
+constexpr absl::Duration kMaintenancePeriod = absl::Seconds(2);
 
 std::vector<std::string> SceneFolders(const ServerOptions& options) {
   std::vector<std::string> folders = {options.scenes_dir};
@@ -53,75 +47,54 @@ std::vector<std::string> SceneFolders(const ServerOptions& options) {
   return folders;
 }
 
-// What may be read and changed on its way is for this machine alone, unless somebody says so.
-absl::Status CheckReach(const ServerOptions& options) {
-  if (options.tls.used() || options.insecure_listen) return absl::OkStatus();
-  for (const auto& [flag, address] : {std::pair("--listen", options.listen), {"--web", options.web}}) {
-    const auto parts = ParseAddress(address);
-    if (!parts.ok() || IsLoopback(*parts)) continue;
-    return absl::FailedPreconditionError(
-        absl::StrCat(flag, ": ", address, " can be reached from other machines, and nothing is encrypted: give ",
-                     "--tls-cert and --tls-key, listen to 127.0.0.1 behind a proxy that has them, or say ",
-                     "--insecure-listen in a network that you trust"));
-  }
-  return absl::OkStatus();
-}
-
-// What a server of a cluster must have, and may not.
-absl::Status CheckCluster(const ServerOptions& options) {
-  if (options.cluster.redis.empty()) return absl::OkStatus();
-  if (options.store_dir.empty()) {
-    return absl::InvalidArgumentError("--cluster: a server of a cluster saves on its own disk first: give --store DIR");
-  }
-  if (options.tls.used()) {
-    return absl::InvalidArgumentError(
-        "--cluster: servers of a cluster call each other unencrypted: leave --tls-cert to nginx in front of them, and "
-        "listen in a network of their own");
-  }
-  const auto parts = ParseAddress(options.cluster.advertise);
-  if (parts.ok() && parts->port != 0 && parts->host != "0.0.0.0" && parts->host != "::") return absl::OkStatus();
-  return absl::InvalidArgumentError(
-      "--advertise: name the HOST:PORT at which the cluster's other servers reach --listen");
-}
-
 int Milliseconds(double seconds) { return static_cast<int>(seconds * 1000); }
 
-// A dead peer is noticed within 15 s, and two servers never share a port.
+// Sets keepalive (a dead peer is detected within 13 s), timeouts and limits. Two servers cannot share a port.
 void Configure(const ServerOptions& options, grpc::ServerBuilder& builder) {
   builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, 10'000);
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, 3'000);
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, 5'000);
-  builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, kMostStreams);
+  builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, kMaxStreams);
   builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, Milliseconds(options.head_seconds));
   builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_IDLE_MS, Milliseconds(options.idle_seconds));
-  // gRPC unpacks a compressed message of whatever size before it looks how long it is: none are taken.
+  // gRPC checks a compressed message's size only after decompressing it, so compression is refused.
   builder.SetCompressionAlgorithmSupportStatus(GRPC_COMPRESS_GZIP, false);
   builder.SetCompressionAlgorithmSupportStatus(GRPC_COMPRESS_DEFLATE, false);
   builder.AddChannelArgument(GRPC_ARG_ENABLE_PER_MESSAGE_DECOMPRESSION, 0);
   builder.SetMaxReceiveMessageSize(options.max_message_bytes);
-  builder.SetMaxSendMessageSize(-1);  // ours: bounded by the scenes that are taken on
+  builder.SetMaxSendMessageSize(-1);  // bounded by --max-vertices
   grpc::ResourceQuota quota("phrenicd");
-  quota.SetMaxThreads(kMostThreads);
+  quota.SetMaxThreads(kMaxThreads);
   builder.SetResourceQuota(quota);
 }
 
 }  // namespace
 
-// In the order in which they depend on each other.
+// The members, in the order of their dependencies.
 struct Server::Parts {
-  Parts(const ServerOptions& options, std::unique_ptr<cluster::Cluster> others, std::unique_ptr<store::Store> kept,
-        std::unique_ptr<access::Accounts> who, std::unique_ptr<access::AuditLog> log)
-      : cluster(std::move(others)),
-        store(std::move(kept)),
-        accounts(std::move(who)),
-        audit(std::move(log)),
+  // What Parts takes over from Open.
+  struct Opened {
+    std::unique_ptr<access::Accounts> accounts;
+    std::unique_ptr<access::AuditLog> audit;
+    std::unique_ptr<store::Store> store;
+    std::unique_ptr<cluster::Cluster> cluster;
+  };
+
+  // Opens accounts and audit log, the store and the connection to Redis.
+  static absl::StatusOr<Opened> Open(const ServerOptions& options);
+
+  Parts(const ServerOptions& options, Opened opened)
+      : cluster(std::move(opened.cluster)),
+        store(std::move(opened.store)),
+        accounts(std::move(opened.accounts)),
+        audit(std::move(opened.audit)),
         uploads(options.limits, options.spool_dir),
         models(session::SceneCatalogue(SceneFolders(options)), options.data_dir, options.limits.models, &uploads,
                options.limits.vertices),
         table(models, clock, options.limits, store.get(), cluster.get()),
-        front(cluster == nullptr ? nullptr : std::make_unique<SessionRouter>(*cluster)),
+        router(cluster == nullptr ? nullptr : std::make_unique<SessionRouter>(*cluster)),
         guard(*accounts, *audit, table, metrics, options.max_requests),
         pages(guard, metrics, table),
         scene_service(models, guard),
@@ -139,25 +112,25 @@ struct Server::Parts {
 
   void JoinCluster();
   absl::Status Restore(const ServerOptions& options);
-  // Now and then.
-  void Tend();
+  // Deletes idle sessions and reloads accounts.
+  void Maintain();
   absl::Status Serve(const ServerOptions& options);
   absl::Status ServeWeb(const ServerOptions& options);
 
   absl::Status Listen(const ServerOptions& options, grpc::ServerBuilder& builder);
-  absl::Status ServeFront(const ServerOptions& options);
-  // Where calls come in that may be another server's.
-  grpc::Server& outer() { return front_grpc == nullptr ? *grpc : *front_grpc; }
+  absl::Status ServeForwarding(const ServerOptions& options);
+  // Returns the gRPC server that accepts calls from outside the process.
+  grpc::Server& entry_server() { return forwarding_server == nullptr ? *grpc : *forwarding_server; }
 
-  const std::unique_ptr<cluster::Cluster> cluster;  // null: a server by itself
-  const std::unique_ptr<store::Store> store;        // null: there is none
+  const std::unique_ptr<cluster::Cluster> cluster;  // null: not in a cluster
+  const std::unique_ptr<store::Store> store;        // null: sessions are not saved
   const std::unique_ptr<access::Accounts> accounts;
   const std::unique_ptr<access::AuditLog> audit;
   stream::SystemClock clock;
   session::Uploads uploads;
   session::Models models;
   session::Table table;
-  const std::unique_ptr<SessionRouter> front;  // of a cluster's server
+  const std::unique_ptr<SessionRouter> router;  // null: not in a cluster
   Metrics metrics;
   AccessGuard guard;
   WebPages pages;
@@ -173,26 +146,49 @@ struct Server::Parts {
   CompareService compare_service;
   ServerService server_service;
   std::unique_ptr<GrpcListener> listener;
-  std::unique_ptr<grpc::Server> grpc, front_grpc;
+  std::unique_ptr<grpc::Server> grpc;
+  std::unique_ptr<ForwardingService> forwarding_service;  // in a cluster: listens in front of `grpc`
+  std::unique_ptr<grpc::Server> forwarding_server;
   std::unique_ptr<WebGateway> web;
-  std::unique_ptr<PeriodicTask> caretaker;
+  std::unique_ptr<PeriodicTask> maintenance;
   std::map<std::string, absl::Status> lost;
-  absl::Status not_refreshed;  // of the accounts, the last time
+  absl::Status refresh_error;  // of the accounts; logged when it changes
 };
+
+absl::StatusOr<Server::Parts::Opened> Server::Parts::Open(const ServerOptions& options) {
+  Opened opened;
+  auto accounts = access::Accounts::Open(options.accounts);
+  if (!accounts.ok()) return accounts.status();
+  opened.accounts = *std::move(accounts);
+  auto audit = access::AuditLog::Open(options.audit_file);
+  if (!audit.ok()) return audit.status();
+  opened.audit = *std::move(audit);
+  if (!options.store_dir.empty()) {
+    auto store = store::Store::Open(options.store_dir);
+    if (!store.ok()) return store.status();
+    opened.store = *std::move(store);
+  }
+  if (!options.cluster.redis.empty()) {
+    auto cluster = cluster::Cluster::Join(options.cluster);
+    if (!cluster.ok()) return cluster.status();
+    opened.cluster = *std::move(cluster);
+  }
+  return opened;
+}
 
 void Server::Parts::JoinCluster() {
   if (cluster == nullptr) return;
   store->set_ownership(cluster.get());
-  cluster->Begin({.lost = [this](const std::string& id) { table.Drop(id); },
+  cluster->Start({.lost = [this](const std::string& id) { table.Drop(id); },
                   .take_over = [this](const store::SavedSession& saved,
                                       std::int64_t epoch) { return table.TakeOver(saved, epoch); },
                   .copy_whole = [this](const std::vector<std::string>& ids) { store->CopyWhole(ids); }});
-  metrics.Follow([this] { return std::pair(cluster->counts(), front->forwarded()); });
+  metrics.AddCluster([this] { return std::pair(cluster->counts(), router->forwarded()); });
 }
 
 absl::Status Server::Parts::Restore(const ServerOptions& options) {
   if (store == nullptr) return absl::OkStatus();
-  const auto records = store->LoadRecords();  // before sessions go on, and are saved
+  const auto records = store->LoadRecords();  // before restored sessions save again
   if (!records.ok()) return records.status();
   auto restored = table.Restore([&options](const std::string& id) {
     if (options.restoring) options.restoring(id);
@@ -200,42 +196,43 @@ absl::Status Server::Parts::Restore(const ServerOptions& options) {
   if (!restored.ok()) return restored.status();
   lost = *std::move(restored);
   study_service.Restore(*records, lost);
-  const auto take = [this](const std::string& id, const std::string& owner) {
-    guard.Give(AccessGuard::Kind::kExport, id, owner);
+  const auto set_owner = [this](const std::string& id, const std::string& owner) {
+    guard.SetOwner(AccessGuard::Kind::kExport, id, owner);
   };
-  exports.Restore(*records, models, take, lost);
+  exports.Restore(*records, models, set_owner, lost);
   return absl::OkStatus();
 }
 
-void Server::Parts::Tend() {
+void Server::Parts::Maintain() {
   table.Tend();
   const absl::Status refreshed = accounts->Refresh();
-  if (!refreshed.ok() && refreshed != not_refreshed) {
-    spdlog::warn("{}; what was good before stays", std::string(refreshed.message()));
+  if (!refreshed.ok() && refreshed != refresh_error) {
+    spdlog::warn("{}; the previous accounts stay in use", std::string(refreshed.message()));
   }
-  not_refreshed = refreshed;
+  refresh_error = refreshed;
 }
 
 absl::Status Server::Parts::Listen(const ServerOptions& options, grpc::ServerBuilder& builder) {
   if (options.listen.empty()) return absl::OkStatus();
-  auto listening = GrpcListener::Make(options.listen, static_cast<std::size_t>(options.max_connections),
-                                      MakeCredentials(options.tls), builder);
-  if (!listening.ok()) return listening.status();
-  listener = *std::move(listening);
+  auto made = GrpcListener::Make(options.listen, static_cast<std::size_t>(options.max_connections),
+                                 MakeCredentials(options.tls), builder);
+  if (!made.ok()) return made.status();
+  listener = *std::move(made);
   return absl::OkStatus();
 }
 
-// Calls come in at the front, and those that are this server's go on within the process.
-absl::Status Server::Parts::ServeFront(const ServerOptions& options) {
+// The forwarding server accepts all calls and passes this server's own ones to `grpc` in process.
+absl::Status Server::Parts::ServeForwarding(const ServerOptions& options) {
   grpc::ChannelArguments arguments;
   arguments.SetMaxReceiveMessageSize(-1);
-  front->set_here(grpc->InProcessChannel(arguments));
+  router->set_local_channel(grpc->InProcessChannel(arguments));
+  forwarding_service = std::make_unique<ForwardingService>(*router);
   grpc::ServerBuilder builder;
   Configure(options, builder);
   if (absl::Status status = Listen(options, builder); !status.ok()) return status;
-  builder.RegisterCallbackGenericService(front.get());
-  front_grpc = builder.BuildAndStart();
-  return front_grpc == nullptr ? absl::InternalError("gRPC could not be started") : absl::OkStatus();
+  builder.RegisterCallbackGenericService(forwarding_service.get());
+  forwarding_server = builder.BuildAndStart();
+  return forwarding_server == nullptr ? absl::InternalError("gRPC could not be started") : absl::OkStatus();
 }
 
 absl::Status Server::Parts::Serve(const ServerOptions& options) {
@@ -243,7 +240,7 @@ absl::Status Server::Parts::Serve(const ServerOptions& options) {
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
   grpc::ServerBuilder builder;
   Configure(options, builder);
-  if (front == nullptr) {
+  if (router == nullptr) {
     if (absl::Status status = Listen(options, builder); !status.ok()) return status;
   }
   builder.RegisterService(&scene_service);
@@ -258,8 +255,8 @@ absl::Status Server::Parts::Serve(const ServerOptions& options) {
   builder.RegisterService(&server_service);
   grpc = builder.BuildAndStart();
   if (grpc == nullptr) return absl::InternalError("gRPC could not be started");
-  if (front != nullptr) {
-    if (absl::Status status = ServeFront(options); !status.ok()) return status;
+  if (router != nullptr) {
+    if (absl::Status status = ServeForwarding(options); !status.ok()) return status;
   }
   if (listener != nullptr) listener->Start();
   return absl::OkStatus();
@@ -267,7 +264,7 @@ absl::Status Server::Parts::Serve(const ServerOptions& options) {
 
 absl::Status Server::Parts::ServeWeb(const ServerOptions& options) {
   if (options.web.empty()) return absl::OkStatus();
-  constexpr std::size_t kBase64 = 2;  // a text call's body is a third longer than its message
+  constexpr std::size_t kBase64 = 2;  // base64 makes a body a third longer; rounded up
   const WebGateway::Options web_options = {
       .address = options.web,
       .settings = {.root = options.web_root,
@@ -281,7 +278,7 @@ absl::Status Server::Parts::ServeWeb(const ServerOptions& options) {
       .tls = options.tls};
   grpc::ChannelArguments arguments;
   arguments.SetMaxReceiveMessageSize(-1);
-  auto gateway = WebGateway::Start(web_options, outer().InProcessChannel(arguments));
+  auto gateway = WebGateway::Start(web_options, entry_server().InProcessChannel(arguments));
   if (!gateway.ok()) return gateway.status();
   web = *std::move(gateway);
   server_service.set_web_port(web->port());
@@ -291,39 +288,19 @@ absl::Status Server::Parts::ServeWeb(const ServerOptions& options) {
 Server::Server(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 
 absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& options) {
-  if (absl::Status status = CheckTls(options.tls); !status.ok()) return status;
-  if (absl::Status status = CheckReach(options); !status.ok()) return status;
-  if (absl::Status status = CheckCluster(options); !status.ok()) return status;
-  auto accounts = access::Accounts::Open(options.accounts);
-  if (!accounts.ok()) return accounts.status();
-  auto audit = access::AuditLog::Open(options.audit_file);
-  if (!audit.ok()) return audit.status();
-  if (absl::Status status = CheckFolder(options.data_dir, "--data"); !status.ok()) return status;
-  if (absl::Status status = CheckFolder(options.scenes_dir, "--scenes"); !status.ok()) return status;
-  if (absl::Status status = CheckFolder(options.spool_dir, "--spool"); !status.ok()) return status;
+  if (absl::Status status = CheckOptions(options); !status.ok()) return status;
+  auto opened = Parts::Open(options);
+  if (!opened.ok()) return opened.status();
   if (options.step_threads != StepThreads()) SetStepThreads(options.step_threads);
-  std::unique_ptr<store::Store> store;
-  if (!options.store_dir.empty()) {
-    auto opened = store::Store::Open(options.store_dir);
-    if (!opened.ok()) return opened.status();
-    store = *std::move(opened);
-  }
-  std::unique_ptr<cluster::Cluster> cluster;
-  if (!options.cluster.redis.empty()) {
-    auto joined = cluster::Cluster::Join(options.cluster);
-    if (!joined.ok()) return joined.status();
-    cluster = *std::move(joined);
-  }
-  std::unique_ptr<Server> server(new Server(
-      std::make_unique<Parts>(options, std::move(cluster), std::move(store), *std::move(accounts), *std::move(audit))));
-  server->parts_->JoinCluster();
-  if (absl::Status status = server->parts_->Restore(options); !status.ok()) return status;
-  if (absl::Status status = server->parts_->Serve(options); !status.ok()) return status;
-  if (absl::Status status = server->parts_->ServeWeb(options); !status.ok()) return status;
-  server->parts_->caretaker =
-      std::make_unique<PeriodicTask>(kTendPause, [parts = server->parts_.get()] { parts->Tend(); });
-  if (server->parts_->cluster != nullptr) server->parts_->cluster->Watch();
-  server->parts_->pages.set_ready(true);
+  std::unique_ptr<Server> server(new Server(std::make_unique<Parts>(options, *std::move(opened))));
+  Parts& parts = *server->parts_;
+  parts.JoinCluster();
+  if (absl::Status status = parts.Restore(options); !status.ok()) return status;
+  if (absl::Status status = parts.Serve(options); !status.ok()) return status;
+  if (absl::Status status = parts.ServeWeb(options); !status.ok()) return status;
+  parts.maintenance = std::make_unique<PeriodicTask>(kMaintenancePeriod, [&parts] { parts.Maintain(); });
+  if (parts.cluster != nullptr) parts.cluster->StartTakeovers();
+  parts.pages.set_ready(true);
   return server;
 }
 
@@ -344,14 +321,16 @@ const std::map<std::string, absl::Status>& Server::lost() const { return parts_-
 void Server::Shutdown() {
   parts_->pages.set_ready(false);
   if (parts_->grpc != nullptr) parts_->grpc->GetHealthCheckService()->SetServingStatus(false);
-  parts_->caretaker.reset();
-  if (parts_->cluster != nullptr) parts_->cluster->Rest();
+  parts_->maintenance.reset();
+  if (parts_->cluster != nullptr) parts_->cluster->Drain();
   if (parts_->listener != nullptr) parts_->listener->Shutdown();
   parts_->table.Close(absl::UnavailableError("the server is shutting down"));
   if (parts_->cluster != nullptr) parts_->cluster->Leave();
   if (parts_->web != nullptr) parts_->web->Shutdown();
-  if (parts_->front_grpc != nullptr) parts_->front_grpc->Shutdown(std::chrono::system_clock::now() + kGrace);
-  if (parts_->grpc != nullptr) parts_->grpc->Shutdown(std::chrono::system_clock::now() + kGrace);
+  if (parts_->forwarding_server != nullptr) {
+    parts_->forwarding_server->Shutdown(std::chrono::system_clock::now() + kDrainTime);
+  }
+  if (parts_->grpc != nullptr) parts_->grpc->Shutdown(std::chrono::system_clock::now() + kDrainTime);
 }
 
 }  // namespace phrenic::service

@@ -1,4 +1,4 @@
-// What a server tells of itself.
+// v1.ServerService: version and features of the server.
 #ifndef PHRENIC_SERVER_SERVICE_SERVER_SERVICE_H_
 #define PHRENIC_SERVER_SERVICE_SERVER_SERVICE_H_
 
@@ -9,13 +9,13 @@
 
 namespace phrenic::service {
 
-// gRPC's threads call, any number at a time.
+// Thread-safe: gRPC calls the methods on its own threads. Errors as in the proto of each method.
 class ServerService final : public v1::ServerService::Service {
  public:
   ServerService(bool viewer_is_built, bool has_data_folder, bool encrypted, AccessGuard& guard)
       : viewer_is_built_(viewer_is_built), has_data_folder_(has_data_folder), encrypted_(encrypted), guard_(guard) {}
 
-  // Known once the gateway listens, which is after the first calls may come.
+  // Sets the gateway's port, which is known only after the first calls may arrive.
   void set_web_port(int port) { web_port_ = port; }
 
   grpc::Status GetServer(grpc::ServerContext* context, const v1::GetServerRequest* request,

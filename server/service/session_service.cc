@@ -4,19 +4,14 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/mechanics/compile/presets.h"
-#include "server/service/calls/repeatable.h"
+#include "server/service/calls/idempotent_call.h"
+#include "server/service/calls/session_call.h"
 #include "server/service/calls/status.h"
 
 namespace phrenic::service {
 namespace {
 
-template <class Response>
-grpc::Status Answer(const v1::Session& session, Response* response) {
-  *response->mutable_session() = session;
-  return grpc::Status::OK;
-}
-
-// What came of a change.
+// Sets the response's session, or returns why the change failed.
 template <class Response>
 absl::Status FillSession(absl::StatusOr<v1::Session> session, Response* response) {
   if (!session.ok()) return session.status();
@@ -29,71 +24,70 @@ std::optional<Number> OptionalOf(bool has, Number value) {
   return has ? std::optional(value) : std::nullopt;
 }
 
-// How far the session is that this one plays in step with; null where it plays by itself.
+// Returns the simulated time reached by the session that this one follows; null if it follows none.
 absl::StatusOr<std::shared_ptr<const session::ReachedTime>> LeaderOf(const AccessGuard& guard,
                                                                      const access::Caller& caller,
                                                                      const v1::PlaySessionRequest& request) {
   if (request.in_step_with().empty()) return nullptr;
   if (request.in_step_with() == request.session_id()) {
-    return absl::InvalidArgumentError("in_step_with: is the session itself; name another one, or none");
+    return absl::InvalidArgumentError(
+        "in_step_with: names the session itself; name another session, or leave it empty");
   }
   const auto leader = guard.Find(caller, request.in_step_with());
   if (leader.ok()) return (*leader)->reached();
   return absl::NotFoundError(
-      absl::StrCat("in_step_with: there is no session \"", request.in_step_with(), "\"; list the sessions there are"));
+      absl::StrCat("in_step_with: there is no session \"", request.in_step_with(), "\"; see ListSessions"));
 }
 
 }  // namespace
 
-// Has `act` change the session that the request names, once however often the request is repeated.
+template <class Request, class Response, class Make>
+grpc::Status SessionService::Add(const grpc::ServerContext& context, const Request& request, Response* response,
+                                 Make make) {
+  const auto caller = guard_.Admit(context, request);
+  if (!caller.ok()) return ToGrpc(caller.status());
+  auto control = session::ControlBook::Make(request.control(), request.owner_name(), caller->account.name);
+  if (!control.ok()) return ToGrpc(control.status());
+  response->set_control_token(control->state().owner.token);
+  const auto session = make(*std::move(control));
+  if (!session.ok()) return ToGrpc(session.status());
+  *response->mutable_session() = (*session)->status();
+  return grpc::Status::OK;
+}
+
 template <class Request, class Response, class Act>
 grpc::Status SessionService::Change(const grpc::ServerContext& context, const Request& request, Response* response,
                                     Act act) {
-  const auto caller = guard_.Admit(context, request);
-  if (!caller.ok()) return ToGrpc(caller.status());
-  const auto session = table_.Find(request.session_id());
-  if (!session.ok()) return ToGrpc(session.status());
-  return ToGrpc(Once((*session)->answers(), request, response, [&] {
+  const auto call = AdmitToSession(guard_, table_, context, request);
+  if (!call.ok()) return ToGrpc(call.status());
+  return ToGrpc(RunOnce(call->session->answers(), request, response, [&] {
     if constexpr (std::is_invocable_v<Act, session::Session&, const access::Caller&>) {
-      return act(**session, *caller);
+      return act(*call->session, call->caller);
     } else {
-      return act(**session);
+      return act(*call->session);
     }
   }));
 }
 
 grpc::Status SessionService::CreateSession(grpc::ServerContext* context, const v1::CreateSessionRequest* request,
                                            v1::CreateSessionResponse* response) {
-  const auto caller = guard_.Admit(*context, *request);
-  if (!caller.ok()) return ToGrpc(caller.status());
-  auto control = session::ControlBook::Make(request->control(), request->owner_name(), caller->account.name);
-  if (!control.ok()) return ToGrpc(control.status());
-  response->set_control_token(control->state().owner.token);
-  const auto session = table_.Create(*request, *std::move(control));
-  if (!session.ok()) return ToGrpc(session.status());
-  return Answer((*session)->status(), response);
-}
-
-grpc::Status SessionService::GetSession(grpc::ServerContext* context, const v1::GetSessionRequest* request,
-                                        v1::GetSessionResponse* response) {
-  const auto caller = guard_.Admit(*context, *request);
-  if (!caller.ok()) return ToGrpc(caller.status());
-  const auto session = table_.Find(request->session_id());
-  if (!session.ok()) return ToGrpc(session.status());
-  *response->mutable_report() = (*session)->model().report;
-  return Answer((*session)->status(), response);
+  return Add(*context, *request, response,
+             [&](session::ControlBook control) { return table_.Create(*request, std::move(control)); });
 }
 
 grpc::Status SessionService::ForkSession(grpc::ServerContext* context, const v1::ForkSessionRequest* request,
                                          v1::ForkSessionResponse* response) {
-  const auto caller = guard_.Admit(*context, *request);
-  if (!caller.ok()) return ToGrpc(caller.status());
-  auto control = session::ControlBook::Make(request->control(), request->owner_name(), caller->account.name);
-  if (!control.ok()) return ToGrpc(control.status());
-  response->set_control_token(control->state().owner.token);
-  const auto fork = table_.Fork(*request, *std::move(control));
-  if (!fork.ok()) return ToGrpc(fork.status());
-  return Answer((*fork)->status(), response);
+  return Add(*context, *request, response,
+             [&](session::ControlBook control) { return table_.Fork(*request, std::move(control)); });
+}
+
+grpc::Status SessionService::GetSession(grpc::ServerContext* context, const v1::GetSessionRequest* request,
+                                        v1::GetSessionResponse* response) {
+  const auto call = AdmitToSession(guard_, table_, *context, *request);
+  if (!call.ok()) return ToGrpc(call.status());
+  *response->mutable_report() = call->session->model().report;
+  *response->mutable_session() = call->session->status();
+  return grpc::Status::OK;
 }
 
 grpc::Status SessionService::ListSessions(grpc::ServerContext* context, const v1::ListSessionsRequest* request,
@@ -143,9 +137,9 @@ grpc::Status SessionService::StepSession(grpc::ServerContext* context, const v1:
                                          v1::StepSessionResponse* response) {
   return Change(*context, *request, response, [&](session::Session& session) {
     const auto tick = OptionalOf(request->has_expected_tick(), request->expected_tick());
-    const bool repeatable = !request->request_id().empty();
+    const bool idempotent = !request->request_id().empty();  // a repeat expects the result
     auto stepped = session.Step(
-        request->ticks(), tick, [&] { return !repeatable && context->IsCancelled(); }, request->control_token());
+        request->ticks(), tick, [&] { return !idempotent && context->IsCancelled(); }, request->control_token());
     if (!stepped.ok()) return stepped.status();
     response->set_state_hash(std::move(stepped->state_hash));
     *response->mutable_measures() = std::move(stepped->measures);
@@ -179,7 +173,7 @@ grpc::Status SessionService::PullSession(grpc::ServerContext* context, const v1:
                                          v1::PullSessionResponse* response) {
   return Change(*context, *request, response, [&](session::Session& session) {
     if (request->pulls().empty() && !request->release_others()) {
-      return absl::InvalidArgumentError("pulls: there is none; name one, or set release_others to let go of all");
+      return absl::InvalidArgumentError("pulls: is empty; name a pull, or set release_others to end all pulls");
     }
     return FillSession(session.Pull(request->pulls(), request->release_others(), request->control_token()), response);
   });

@@ -1,4 +1,4 @@
-// Sessions over gRPC: validates, finds the session, and has it do what was asked.
+// v1.SessionService: creates sessions, lists them and changes their state.
 #ifndef PHRENIC_SERVER_SERVICE_SESSION_SERVICE_H_
 #define PHRENIC_SERVER_SERVICE_SESSION_SERVICE_H_
 
@@ -8,7 +8,7 @@
 
 namespace phrenic::service {
 
-// gRPC's threads call, any number at a time.
+// Thread-safe: gRPC calls the methods on its own threads. Errors as in the proto of each method.
 class SessionService final : public v1::SessionService::Service {
  public:
   explicit SessionService(session::Table& table, AccessGuard& guard) : table_(table), guard_(guard) {}
@@ -37,6 +37,10 @@ class SessionService final : public v1::SessionService::Service {
                            v1::PullSessionResponse* response) override;
 
  private:
+  // Admits the call, has `make` add a session with its ControlBook to the table, and returns the session's status.
+  template <class Request, class Response, class Make>
+  grpc::Status Add(const grpc::ServerContext& context, const Request& request, Response* response, Make make);
+  // Admits the call and applies `act` to its session, once per request_id.
   template <class Request, class Response, class Act>
   grpc::Status Change(const grpc::ServerContext& context, const Request& request, Response* response, Act act);
 

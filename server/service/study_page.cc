@@ -11,29 +11,29 @@
 namespace phrenic::service {
 namespace {
 
-constexpr const char* kPlace = "__PHRENIC_STUDY__";
+constexpr const char* kPlaceholder = "__PHRENIC_STUDY__";
 
 }  // namespace
 
 absl::StatusOr<std::string> StudyPage(const v1::Study& study, const std::string& web_root) {
   if (study.state() != v1::STUDY_STATE_DONE) {
     return absl::FailedPreconditionError(
-        absl::StrCat("study_id: the study \"", study.id(), "\" has no page before it is done"));
+        absl::StrCat("study_id: the study \"", study.id(), "\" has no page until it is done"));
   }
   std::ifstream file(web_root + "/report.html", std::ios::binary);
   std::stringstream page;
   page << file.rdbuf();
   const std::string html = page.str();
-  const size_t at = html.find(kPlace);
+  const size_t at = html.find(kPlaceholder);
   if (!file || at == std::string::npos) {
     return absl::NotFoundError(
-        absl::StrCat("there is no page for studies in ", web_root, ": build the viewer (npm run build in web/)"));
+        absl::StrCat("there is no report.html in ", web_root, ": build the viewer (npm run build in web/)"));
   }
   std::string json;
   (void)google::protobuf::util::MessageToJsonString(study, &json);
-  // No text of a scene may end the script that it stands in.
+  // Escapes "<", so that text from a scene cannot close the script element.
   json = absl::StrReplaceAll(json, {{"<", "\\u003c"}});
-  return html.substr(0, at) + json + html.substr(at + std::string(kPlace).size());
+  return html.substr(0, at) + json + html.substr(at + std::string(kPlaceholder).size());
 }
 
 }  // namespace phrenic::service

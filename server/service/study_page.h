@@ -1,4 +1,4 @@
-// A study as one HTML file.
+// Renders a study as one HTML file.
 #ifndef PHRENIC_SERVER_SERVICE_STUDY_PAGE_H_
 #define PHRENIC_SERVER_SERVICE_STUDY_PAGE_H_
 
@@ -9,8 +9,8 @@
 
 namespace phrenic::service {
 
-// WEB_ROOT/report.html, which draws what stands in its <script id="study">, with the study's JSON in there.
-// FAILED_PRECONDITION for a study that is not done, NOT_FOUND where the viewer was not built.
+// Returns WEB_ROOT/report.html with the study's JSON in its <script id="study"> element, from which the page draws.
+// Errors: FAILED_PRECONDITION if the study is not done; NOT_FOUND if the viewer is not built. Thread-safe.
 absl::StatusOr<std::string> StudyPage(const v1::Study& study, const std::string& web_root);
 
 }  // namespace phrenic::service

@@ -11,9 +11,9 @@ namespace phrenic::service {
 namespace {
 
 constexpr char kRecord[] = "study";
-constexpr int kMostStudies = 16;
-constexpr int kMostWatchers = 16;                          // each has a thread of its own
-constexpr absl::Duration kLook = absl::Milliseconds(200);  // between two looks at whether the watcher is still there
+constexpr int kMaxStudies = 16;
+constexpr int kMaxWatchers = 16;                           // each occupies a thread
+constexpr absl::Duration kLook = absl::Milliseconds(200);  // period of the check whether the watcher disconnected
 
 const char* KindOf(const v1::CreateStudyRequest& request) {
   switch (request.what_case()) {
@@ -38,10 +38,10 @@ StudyService::StudyService(session::Models& models, std::string web_root, Access
       web_root_(std::move(web_root)),
       guard_(guard),
       store_(store),
-      jobs_(kMostStudies, {[this](const v1::Study& study) { Save(study, nullptr); },
-                           [this](const std::string& id) {
-                             if (store_ != nullptr) store_->Remove(kRecord, id);
-                           }}) {}
+      jobs_(kMaxStudies, {[this](const v1::Study& study) { Save(study, nullptr); },
+                          [this](const std::string& id) {
+                            if (store_ != nullptr) store_->Remove(kRecord, id);
+                          }}) {}
 
 void StudyService::Save(const v1::Study& study, const v1::CreateStudyRequest* request) const {
   if (store_ == nullptr) return;
@@ -58,10 +58,10 @@ void StudyService::Restore(const std::vector<store::SavedRecord>& records, std::
     v1::SavedStudy saved;
     if (!record.problem.ok() || !saved.ParseFromString(record.bytes)) {
       lost[absl::StrCat(kRecord, " ", record.id)] =
-          record.problem.ok() ? absl::DataLossError("what is in the store is no study") : record.problem;
+          record.problem.ok() ? absl::DataLossError("the record in the store is not a study") : record.problem;
       continue;
     }
-    guard_.Give(AccessGuard::Kind::kStudy, record.id, saved.owner());
+    guard_.SetOwner(AccessGuard::Kind::kStudy, record.id, saved.owner());
     if (!saved.has_request()) {
       jobs_.Restore(saved.study());
     } else if (const auto again = Run(saved.request()); !again.ok()) {
@@ -92,7 +92,7 @@ grpc::Status StudyService::CreateStudy(grpc::ServerContext* context, const v1::C
   if (!caller.ok()) return ToGrpc(caller.status());
   auto study = Run(*request);
   if (!study.ok()) return ToGrpc(study.status());
-  guard_.Give(AccessGuard::Kind::kStudy, study->id(), caller->id());
+  guard_.SetOwner(AccessGuard::Kind::kStudy, study->id(), caller->id());
   v1::CreateStudyRequest again = *request;
   again.set_study_id(study->id());
   Save(*study, &again);
@@ -117,7 +117,7 @@ absl::Status StudyService::Watch(const std::string& id, grpc::ServerContext& con
     if (!writer.Write(response)) break;
     if (seen->ended) return absl::OkStatus();
   }
-  return absl::UnavailableError("the server is shutting down");  // or nobody hears it
+  return absl::UnavailableError("the server is shutting down");  // or the client disconnected
 }
 
 grpc::Status StudyService::WatchStudy(grpc::ServerContext* context, const v1::WatchStudyRequest* request,
@@ -126,8 +126,9 @@ grpc::Status StudyService::WatchStudy(grpc::ServerContext* context, const v1::Wa
   if (!caller.ok()) return ToGrpc(caller.status());
   if (absl::Status own = guard_.CheckOwns(AccessGuard::Kind::kStudy, request->study_id(), *caller); !own.ok())
     return ToGrpc(own);
-  absl::Status watched = absl::ResourceExhaustedError("16 callers watch studies, and no more are allowed: try later");
-  if (watchers_.fetch_add(1) < kMostWatchers) watched = Watch(request->study_id(), *context, *writer);
+  absl::Status watched =
+      absl::ResourceExhaustedError("16 clients are watching studies, which is the limit; try again later");
+  if (watchers_.fetch_add(1) < kMaxWatchers) watched = Watch(request->study_id(), *context, *writer);
   watchers_.fetch_sub(1);
   return ToGrpc(watched);
 }

@@ -1,4 +1,4 @@
-// Studies: what reviewers read.
+// v1.StudyService: numerical studies, and checks of a breath against published physiology.
 #ifndef PHRENIC_SERVER_SERVICE_STUDY_SERVICE_H_
 #define PHRENIC_SERVER_SERVICE_STUDY_SERVICE_H_
 
@@ -16,18 +16,18 @@
 
 namespace phrenic::service {
 
-// gRPC's threads call, any number at a time.
+// Thread-safe: gRPC calls the methods on its own threads. Errors as in the proto of each method.
 class StudyService final : public v1::StudyService::Service {
  public:
-  // `web_root` has report.html, the page without a study. `store` is null where studies end with the server.
+  // `web_root` contains report.html. `store` is null if studies are not saved.
   StudyService(session::Models& models, std::string web_root, AccessGuard& guard, store::Store* store);
-  // What an earlier server left: studies that ended are there again, the others run anew. Before any call. Why one
-  // could not be is in `lost`, by "study NAME"; it stays in the store.
+  // Restores the studies that an earlier server saved: finished ones as they are, the others run again. Call it before
+  // the first RPC. Adds an error to `lost`, by "study ID", for each that cannot be restored; it stays in the store.
   void Restore(const std::vector<store::SavedRecord>& records, std::map<std::string, absl::Status>& lost);
 
   grpc::Status CreateStudy(grpc::ServerContext* context, const v1::CreateStudyRequest* request,
                            v1::CreateStudyResponse* response) override;
-  // At most 16 watch at a time: RESOURCE_EXHAUSTED for one more.
+  // RESOURCE_EXHAUSTED above 16 watchers, each of which occupies a thread.
   grpc::Status WatchStudy(grpc::ServerContext* context, const v1::WatchStudyRequest* request,
                           grpc::ServerWriter<v1::WatchStudyResponse>* writer) override;
   grpc::Status ListStudies(grpc::ServerContext* context, const v1::ListStudiesRequest* request,

@@ -37,8 +37,10 @@ grpc::Status UploadService::BeginUpload(grpc::ServerContext* context, const v1::
   if (!begun.ok()) return ToGrpc(begun.status());
   response->set_upload_id(begun->id);
   response->set_received(begun->received);
-  if (begun->id.empty()) Fill(begun->file, *response->mutable_file());
-  if (begun->id.empty()) guard_.Give(AccessGuard::Kind::kUpload, begun->file.path(), caller->id());
+  if (!begun->id.empty()) return grpc::Status::OK;
+  // The server already has a file with this hash.
+  Fill(begun->file, *response->mutable_file());
+  guard_.SetOwner(AccessGuard::Kind::kUpload, begun->file.path(), caller->id());
   return grpc::Status::OK;
 }
 
@@ -60,7 +62,7 @@ grpc::Status UploadService::FinishUpload(grpc::ServerContext* context, const v1:
   const auto finished = uploads_.Finish(request->upload_id(), unit_mm);
   if (!finished.ok()) return ToGrpc(finished.status());
   Fill(finished->file, *response->mutable_file());
-  guard_.Give(AccessGuard::Kind::kUpload, finished->file.path(), caller->id());
+  guard_.SetOwner(AccessGuard::Kind::kUpload, finished->file.path(), caller->id());
   *response->mutable_report() = compare::Inspect(finished->file.name, finished->surface, unit_mm);
   return grpc::Status::OK;
 }

@@ -1,4 +1,4 @@
-// Surface files from clients over gRPC.
+// v1.UploadService: surface files from clients, in chunks that can be resumed.
 #ifndef PHRENIC_SERVER_SERVICE_UPLOAD_SERVICE_H_
 #define PHRENIC_SERVER_SERVICE_UPLOAD_SERVICE_H_
 
@@ -8,7 +8,7 @@
 
 namespace phrenic::service {
 
-// gRPC's threads call, any number at a time.
+// Thread-safe: gRPC calls the methods on its own threads. Errors as in the proto of each method.
 class UploadService final : public v1::UploadService::Service {
  public:
   UploadService(session::Uploads& uploads, const session::Limits& limits, AccessGuard& guard)

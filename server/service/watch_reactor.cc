@@ -9,12 +9,12 @@
 namespace phrenic::service {
 namespace {
 
-// A buffer that shares the bytes.
+// Returns a buffer that shares the bytes and keeps a reference to them.
 grpc::ByteBuffer Share(const stream::Bytes& bytes) {
-  auto* hold = new stream::Bytes(bytes);
+  auto* reference = new stream::Bytes(bytes);
   const grpc::Slice slice(
-      const_cast<char*>(bytes->data()), bytes->size(), [](void* held) { delete static_cast<stream::Bytes*>(held); },
-      hold);
+      const_cast<char*>(bytes->data()), bytes->size(),
+      [](void* bytes_reference) { delete static_cast<stream::Bytes*>(bytes_reference); }, reference);
   return grpc::ByteBuffer(&slice, 1);
 }
 
@@ -28,8 +28,8 @@ std::shared_ptr<WatchReactor> WatchReactor::Make() {
 }
 
 void WatchReactor::Watch(std::shared_ptr<session::Session> session, const stream::ViewerOptions& options,
-                         Subscription seat) {
-  subscription_ = std::move(seat);
+                         Subscription subscription) {
+  subscription_ = std::move(subscription);
   auto viewer = session->publisher().Join(options, [weak = weak_from_this()] {
     if (const auto reactor = weak.lock()) reactor->Pump();
   });
@@ -55,7 +55,7 @@ WatchReactor::Next WatchReactor::TakeNext() {
   if (viewer_ == nullptr || writing_ || finished_) return {};
   std::optional<absl::Status> ended = cancelled_ ? absl::CancelledError() : viewer_->ended();
   if (!ended.has_value() && subscription_.may_see && !subscription_.may_see()) {
-    ended = absl::PermissionDeniedError("authorization: the session may no longer be watched; ask its owner");
+    ended = absl::PermissionDeniedError("authorization: you may no longer watch this session; ask its owner");
   }
   if (ended.has_value()) {
     finished_ = true;
@@ -67,8 +67,8 @@ WatchReactor::Next WatchReactor::TakeNext() {
   return next;
 }
 
-// Neither StartWrite nor Finish is called with the lock held: they may react at once. Whoever was given something by
-// TakeNext, and nobody else, has the right to call them.
+// Calls StartWrite and Finish without the lock, because gRPC may run the reaction at once. TakeNext gives each
+// operation to one thread only.
 void WatchReactor::Pump() {
   const Next next = TakeNext();
   if (next.finish.has_value()) {
@@ -98,7 +98,7 @@ void WatchReactor::OnCancel() {
 }
 
 void WatchReactor::OnDone() {
-  // The last hold on a session may not be let go by its own publisher, which may be about to wake us.
+  // Releases the session here: a publisher that wakes this reactor must not destroy its own session.
   std::shared_ptr<WatchReactor> self;
   std::shared_ptr<session::Session> session;
   std::shared_ptr<stream::Viewer> viewer;

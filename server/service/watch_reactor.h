@@ -1,4 +1,4 @@
-// Serves one viewer: writes what is in its mailbox, one message at a time, and never waits.
+// The server side of one WatchFrames stream: writes the viewer's newest message, one at a time, without blocking.
 #ifndef PHRENIC_SERVER_SERVICE_WATCH_REACTOR_H_
 #define PHRENIC_SERVER_SERVICE_WATCH_REACTOR_H_
 
@@ -16,21 +16,24 @@
 
 namespace phrenic::service {
 
-// gRPC's threads and the publisher's call. Lives until gRPC is done with it and nobody is about to wake it.
+// Thread-safe: gRPC's threads and the publisher's thread call it. It keeps itself alive until OnDone; a publisher that
+// wakes it at that moment holds a reference of its own.
 class WatchReactor final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
                            public std::enable_shared_from_this<WatchReactor> {
  public:
   static std::shared_ptr<WatchReactor> Make();
 
-  // What a viewer is besides: held until they go.
+  // What FrameService attaches to a stream; released when it ends.
   struct Subscription {
-    std::shared_ptr<void> place;                  // among the viewers of all sessions
-    std::function<bool()> may_see;                // asked before each message; null: for ever
-    std::function<void(std::size_t bytes)> sent;  // hears of each message
+    std::shared_ptr<void> count;                  // decrements the number of viewers when it is destroyed
+    std::function<bool()> may_see;                // checked before each message; null: always allowed
+    std::function<void(std::size_t bytes)> sent;  // called with the size of each message
   };
 
-  // Either is called once, before gRPC gets the reactor.
-  void Watch(std::shared_ptr<session::Session> session, const stream::ViewerOptions& options, Subscription seat);
+  // Exactly one of Watch and Refuse is called, once, before gRPC gets the reactor. Watch refuses the stream itself if
+  // the publisher does not accept the viewer. The stream ends with PERMISSION_DENIED when may_see becomes false.
+  void Watch(std::shared_ptr<session::Session> session, const stream::ViewerOptions& options,
+             Subscription subscription);
   void Refuse(const absl::Status& status);
 
   void OnWriteDone(bool ok) override;
@@ -38,7 +41,7 @@ class WatchReactor final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
   void OnDone() override;
 
  private:
-  // What is to be done now: at most one of the two.
+  // The next operation: a write, a finish, or none.
   struct Next {
     stream::Bytes write = nullptr;
     std::optional<grpc::Status> finish = std::nullopt;
@@ -46,18 +49,18 @@ class WatchReactor final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
 
   WatchReactor() = default;
   Next TakeNext() ABSL_LOCKS_EXCLUDED(mutex_);
-  // Starts the next write, or finishes, unless a write is under way.
+  // Starts the next write or finishes the stream, unless a write is in progress.
   void Pump() ABSL_LOCKS_EXCLUDED(mutex_);
 
   absl::Mutex mutex_;
-  std::shared_ptr<WatchReactor> self_ ABSL_GUARDED_BY(mutex_);  // gRPC's hold on it
+  std::shared_ptr<WatchReactor> self_ ABSL_GUARDED_BY(mutex_);  // keeps the reactor alive until OnDone
   std::shared_ptr<session::Session> session_ ABSL_GUARDED_BY(mutex_);
   std::shared_ptr<stream::Viewer> viewer_ ABSL_GUARDED_BY(mutex_);
-  Subscription subscription_;  // set before the viewer is
+  Subscription subscription_;  // set before viewer_
   bool writing_ ABSL_GUARDED_BY(mutex_) = false;
   bool cancelled_ ABSL_GUARDED_BY(mutex_) = false;
   bool finished_ ABSL_GUARDED_BY(mutex_) = false;
-  grpc::ByteBuffer buffer_;  // of whoever set writing_, until the write is done
+  grpc::ByteBuffer buffer_;  // owned by the thread that set writing_, until the write is done
 };
 
 }  // namespace phrenic::service

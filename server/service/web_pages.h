@@ -1,4 +1,4 @@
-// The gateway's pages that are no files: whether the server lives, whether it serves, and its numbers.
+// The gateway's generated pages: liveness, readiness and metrics.
 #ifndef PHRENIC_SERVER_SERVICE_WEB_PAGES_H_
 #define PHRENIC_SERVER_SERVICE_WEB_PAGES_H_
 
@@ -13,15 +13,16 @@
 
 namespace phrenic::service {
 
-// Any thread may call.
+// Thread-safe.
 class WebPages {
  public:
   WebPages(const AccessGuard& guard, Metrics& metrics, const session::Table& table)
       : guard_(guard), metrics_(metrics), table_(table) {}
 
-  // Before it is called, and once the server ends, /readyz answers 503.
+  // /readyz answers 503 until it is set, and again during shutdown.
   void set_ready(bool ready) { ready_ = ready; }
-  // "/healthz" and "/readyz" for everybody; "/metrics" for an administrator, or everybody where there are no accounts.
+  // Returns "/healthz", "/readyz" or, for an administrator's Authorization header, "/metrics" (401 for others); every
+  // caller may read it if the server has no accounts. Returns nullopt for other targets.
   std::optional<WebSettings::Page> Find(std::string_view target, std::string_view authorization);
 
  private:

@@ -1,4 +1,4 @@
-// One setting of a program, and where it comes from.
+// One setting of a program and its origin. Plain data.
 #ifndef PHRENIC_SERVER_SETTINGS_SETTING_H_
 #define PHRENIC_SERVER_SETTINGS_SETTING_H_
 

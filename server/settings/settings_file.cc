@@ -11,9 +11,9 @@
 namespace phrenic::settings {
 namespace {
 
-constexpr char kSectionBegins[] = "++", kSectionEnds[] = "--";  // CLI11's names of what is no setting
+constexpr char kSectionBegins[] = "++", kSectionEnds[] = "--";  // CLI11's names for the start and end of a section
 
-// CLI11 tells no lines: the first one that begins with the name, below its command's.
+// Returns the first line in the item's section that begins with its name, because CLI11 reports no line numbers.
 int LineOf(const std::string& file, const CLI::ConfigItem& item) {
   std::ifstream in(file);
   const std::string section = "[" + absl::StrJoin(item.parents, ".") + "]";
@@ -28,13 +28,13 @@ int LineOf(const std::string& file, const CLI::ConfigItem& item) {
   return 1;
 }
 
-// Null where there is none.
+// Returns the item's command; null if there is none.
 CLI::App* CommandOf(CLI::App& app, const CLI::ConfigItem& item) {
   CLI::App* command = &app;
   for (const std::string& name : item.parents) {
-    const auto below = command->get_subcommands([&](const CLI::App* one) { return one->get_name() == name; });
-    if (below.empty()) return nullptr;
-    command = below.front();
+    const auto found = command->get_subcommands([&](const CLI::App* each) { return each->get_name() == name; });
+    if (found.empty()) return nullptr;
+    command = found.front();
   }
   return command;
 }
@@ -43,7 +43,7 @@ std::string LongName(const CLI::Option& option) {
   return option.get_lnames().empty() ? "" : option.get_lnames().front();
 }
 
-// Those that have a long name, but for --help.
+// Returns the options with a long name, except --help and --version.
 std::vector<const CLI::Option*> OptionsOf(const CLI::App& app) {
   return app.get_options([](const CLI::Option* option) {
     const std::string name = LongName(*option);
@@ -54,7 +54,7 @@ std::vector<const CLI::Option*> OptionsOf(const CLI::App& app) {
 absl::Status SetDefault(CLI::Option& option, const CLI::ConfigItem& item) {
   const bool list = option.get_delimiter() != '\0';
   if (!list && (item.inputs.size() != 1 || option.get_expected_max() > 1)) {
-    return absl::InvalidArgumentError(absl::StrCat(item.name, " takes several values: give it on the command line"));
+    return absl::InvalidArgumentError(absl::StrCat(item.name, " takes several values: set it on the command line"));
   }
   const std::string value = absl::StrJoin(item.inputs, ",");
   if (list && value.empty()) return absl::OkStatus();
@@ -75,7 +75,7 @@ absl::Status Apply(const CLI::ConfigItem& item, CLI::App& app) {
   CLI::Option* option = command->get_option_no_throw("--" + item.name);
   if (option != nullptr) return SetDefault(*option, item);
   std::vector<std::string> names;
-  for (const CLI::Option* one : OptionsOf(*command)) names.push_back(LongName(*one));
+  for (const CLI::Option* each : OptionsOf(*command)) names.push_back(LongName(*each));
   return absl::InvalidArgumentError(
       absl::StrCat("there is no setting \"", item.name, "\"", schema::ThereAre(item.name, names)));
 }
@@ -98,8 +98,8 @@ absl::StatusOr<std::set<std::string>> ReadFile(const std::string& file, CLI::App
   std::vector<CLI::ConfigItem> items;
   try {
     items = CLI::ConfigTOML().from_file(file);
-  } catch (const CLI::Error& fault) {
-    return absl::InvalidArgumentError(absl::StrCat(file, ": cannot be read as TOML: ", fault.what()));
+  } catch (const CLI::Error& error) {
+    return absl::InvalidArgumentError(absl::StrCat(file, ": is not valid TOML: ", error.what()));
   }
   std::set<std::string> names;
   for (const CLI::ConfigItem& item : items) {

@@ -1,5 +1,5 @@
-// A program's settings: the command line before the environment, that before a file, that before the default. Each
-// option of the command line is a setting of the same name.
+// Settings of a program. Precedence: command line, environment, settings file, default. Every command-line option is a
+// setting of the same name.
 #ifndef PHRENIC_SERVER_SETTINGS_SETTINGS_FILE_H_
 #define PHRENIC_SERVER_SETTINGS_SETTINGS_FILE_H_
 
@@ -13,12 +13,14 @@
 
 namespace phrenic::settings {
 
-// Makes the values of a TOML file the defaults of the tree's options; an option with a delimiter takes an array. To be
-// called before the command line is parsed. Gives the settings of every command that the file has; INVALID_ARGUMENT
-// "FILE:LINE: ..." names the setting and those there are. Not thread-safe, as CLI11.
+// Reads a TOML file and makes its values the defaults of the options of `app` and its subcommands; an option with a
+// delimiter takes an array. Call it before the command line is parsed. Returns the names of the settings in the file
+// that belong to no subcommand. INVALID_ARGUMENT "FILE:LINE: ..." for an unknown setting or a bad value. Not
+// thread-safe, as CLI11 is not.
 absl::StatusOr<std::set<std::string>> ReadFile(const std::string& file, CLI::App& app);
 
-// Of the parsed root, without flags that have no value; `in_file` as ReadFile gave it.
+// Returns the settings of a parsed root command with their origins, without flags that take no value. `words` is the
+// command line; `in_file` is the result of ReadFile.
 std::vector<Setting> SettingsOf(const CLI::App& app, const std::vector<std::string>& words, const std::string& file,
                                 const std::set<std::string>& in_file);
 

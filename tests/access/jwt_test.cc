@@ -34,7 +34,7 @@ class Jwt : public testing::Test {
     return {{"iss", "https://id.example.org"}, {"aud", {"other", "phrenic"}}, {"sub", "anna"},
             {"phrenic_role", "controller"},    {"exp", 1'800'000'600},        {"nbf", 1'799'999'000}};
   }
-  // Of Claims() with one of them another, or none.
+  // Checks a token of Claims() with one claim changed or removed.
   absl::Status With(const char* claim, const json& value) {
     json claims = Claims();
     claims.erase(claim);
@@ -55,7 +55,7 @@ TEST_F(Jwt, OfTheProviderIsAnAccount) {
   EXPECT_TRUE(With("phrenic_role", json{"staff", "admin"}).ok());
 }
 
-TEST_F(Jwt, WithAnyClaimWrongIsRefused) {
+TEST_F(Jwt, WithAWrongClaimIsRefused) {
   for (const auto& [claim, value] : {std::pair<const char*, json>("iss", "https://evil.example.org"),
                                      {"iss", nullptr},
                                      {"aud", "other"},
@@ -72,9 +72,10 @@ TEST_F(Jwt, WithAnyClaimWrongIsRefused) {
   }
 }
 
-TEST_F(Jwt, OfAnotherKeyOrChangedOnItsWayIsRefused) {
+TEST_F(Jwt, WithAnotherKeyOrModifiedIsRefused) {
   Provider other;
-  EXPECT_THAT(std::string(keys_->Check(other.Sign(Claims()), kNow).status().message()), HasSubstr("none of the keys"));
+  EXPECT_THAT(std::string(keys_->Check(other.Sign(Claims()), kNow).status().message()),
+              HasSubstr("is not signed by a key of the identity provider"));
   const std::string token = provider_.Sign(Claims());
   for (std::size_t i = 0; i < token.size(); i += 7) {
     std::string changed = token;
@@ -84,8 +85,8 @@ TEST_F(Jwt, OfAnotherKeyOrChangedOnItsWayIsRefused) {
   for (std::size_t cut = 0; cut < token.size(); cut += 13) EXPECT_FALSE(keys_->Check(token.substr(0, cut), kNow).ok());
 }
 
-// Two classics: "alg": "none", and the public key taken for a shared secret.
-TEST_F(Jwt, WithoutASignatureOrSignedByThePublicKeyIsRefused) {
+// Two known attacks: "alg": "none", and an HMAC with the public key as the secret (RFC 8725 section 2.1).
+TEST_F(Jwt, UnsignedOrSignedWithThePublicKeyIsRefused) {
   std::string payload, header;
   absl::WebSafeBase64Escape(Claims().dump(), &payload);
   absl::WebSafeBase64Escape(R"({"alg":"none"})", &header);
@@ -96,14 +97,15 @@ TEST_F(Jwt, WithoutASignatureOrSignedByThePublicKeyIsRefused) {
       cjose_jwk_create_oct_spec(reinterpret_cast<const std::uint8_t*>(secret.data()), secret.size(), &error);
   const std::string token = Provider::SignWith(shared, "HS256", Claims());
   cjose_jwk_release(shared);
-  EXPECT_THAT(std::string(keys_->Check(token, kNow).status().message()), HasSubstr("not signed by RS, PS or ES"));
+  EXPECT_THAT(std::string(keys_->Check(token, kNow).status().message()),
+              HasSubstr("not signed with an RS, PS or ES algorithm"));
 }
 
-TEST_F(Jwt, KeysThatAreNoneAreAnErrorThatNamesTheFile) {
+TEST_F(Jwt, BadKeysAreAnErrorThatNamesTheFile) {
   std::ofstream(options_.keys) << "{\"keys\": [{\"kty\": \"oct\", \"k\": \"c2VjcmV0\"}]}";
   EXPECT_THAT(std::string(JwtKeys::Read(options_).status().message()), HasSubstr("has no RSA or EC key"));
   std::ofstream(options_.keys) << "nonsense";
-  EXPECT_THAT(std::string(JwtKeys::Read(options_).status().message()), HasSubstr("is no JSON Web Key Set"));
+  EXPECT_THAT(std::string(JwtKeys::Read(options_).status().message()), HasSubstr("is not a JSON Web Key Set"));
   options_.audience.clear();
   EXPECT_THAT(std::string(JwtKeys::Read(options_).status().message()), HasSubstr("--jwt-audience"));
 }

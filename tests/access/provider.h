@@ -1,4 +1,4 @@
-// An identity provider: a key of its own, and what it signs.
+// An identity provider with its own RSA key, which signs tokens.
 #ifndef PHRENIC_TESTS_ACCESS_PROVIDER_H_
 #define PHRENIC_TESTS_ACCESS_PROVIDER_H_
 

@@ -15,28 +15,28 @@ int Taken(RateLimit& limit, const std::string& caller, absl::Time now, int tries
   return taken;
 }
 
-TEST(RateLimit, GivesABurstAndThenSoManyASecond) {
+TEST(RateLimit, AllowsABurstAndThenTheRate) {
   RateLimit limit(10);
   EXPECT_EQ(Taken(limit, "anna", kStart, 100), 20);
   EXPECT_EQ(Taken(limit, "anna", kStart + absl::Seconds(1), 100), 10);
-  EXPECT_EQ(Taken(limit, "anna", kStart + absl::Hours(1), 100), 20) << "more was saved up than a burst";
+  EXPECT_EQ(Taken(limit, "anna", kStart + absl::Hours(1), 100), 20) << "the bucket holds more than a burst";
   EXPECT_TRUE(absl::IsResourceExhausted(limit.Take("anna", kStart + absl::Hours(1))));
 }
 
-TEST(RateLimit, OfOneCallerHurtsNoOther) {
+TEST(RateLimit, IsPerCaller) {
   RateLimit limit(10);
   EXPECT_EQ(Taken(limit, "anna", kStart, 1000), 20);
   EXPECT_EQ(Taken(limit, "bert", kStart, 1000), 20);
 }
 
-TEST(RateLimit, ForgetsTheLongestSilentAlone) {
+TEST(RateLimit, EvictsTheLeastRecentCaller) {
   RateLimit limit(10);
   EXPECT_EQ(Taken(limit, "anna", kStart, 1000), 20);
   for (int i = 0; i < 9'000; ++i) EXPECT_TRUE(limit.Take(absl::StrCat("caller ", i), kStart).ok());
-  EXPECT_FALSE(limit.Take("anna", kStart).ok()) << "whoever has many names gets their bucket filled anew";
+  EXPECT_FALSE(limit.Take("anna", kStart).ok()) << "eviction refilled the bucket";
 }
 
-TEST(RateLimit, OfZeroIsNone) {
+TEST(RateLimit, OfZeroIsUnlimited) {
   RateLimit limit(0);
   EXPECT_EQ(Taken(limit, "anna", kStart, 10'000), 10'000);
 }

@@ -10,7 +10,7 @@
 namespace phrenic::access {
 namespace {
 
-// "SessionService.GetSession" of every service in the protos, as they are written.
+// Returns "SessionService.GetSession" and so on for every method in the proto files.
 std::set<std::string> MethodsOfProtos() {
   std::set<std::string> methods;
   for (const auto& entry : std::filesystem::directory_iterator(PHRENIC_SOURCE_DIR "/proto/phrenic/v1")) {
@@ -28,19 +28,19 @@ std::set<std::string> MethodsOfProtos() {
   return methods;
 }
 
-TEST(Rules, ThereIsOneOfEveryMethodAndOfNoOther) {
+TEST(Rules, EveryMethodHasOneAndNoOtherHas) {
   std::set<std::string> ruled;
   for (const Rule& rule : Rules()) EXPECT_TRUE(ruled.insert(std::string(rule.method)).second) << rule.method;
   EXPECT_EQ(ruled, MethodsOfProtos());
 }
 
-TEST(Rules, AreFoundByTheRequest) {
+TEST(Rules, AreFoundByTheRequestType) {
   ASSERT_NE(RuleOf("phrenic.v1.DeleteSessionRequest"), nullptr);
   EXPECT_EQ(RuleOf("phrenic.v1.DeleteSessionRequest")->method, "SessionService.DeleteSession");
   EXPECT_EQ(RuleOf("phrenic.v1.NonsenseRequest"), nullptr);
 }
 
-TEST(Rules, WhatChangesASessionIsForControllersOrMore) {
+TEST(Rules, MethodsThatChangeASessionRequireAController) {
   for (const Rule& rule : Rules()) {
     if (!rule.changes || rule.in_session == v1::ACCESS_ROLE_UNSPECIFIED) continue;
     const bool makes_another = rule.method == "SessionService.ForkSession";
@@ -48,7 +48,7 @@ TEST(Rules, WhatChangesASessionIsForControllersOrMore) {
   }
 }
 
-TEST(Rules, RolesHaveNamesAndBack) {
+TEST(Rules, RoleNamesRoundTrip) {
   for (const auto role :
        {v1::ACCESS_ROLE_VIEWER, v1::ACCESS_ROLE_CONTROLLER, v1::ACCESS_ROLE_OWNER, v1::ACCESS_ROLE_ADMIN}) {
     EXPECT_EQ(RoleOf(NameOf(role)), role);

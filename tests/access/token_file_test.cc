@@ -24,7 +24,7 @@ class TokenFile : public testing::Test {
   const std::string file_;
 };
 
-TEST_F(TokenFile, HoldsHashesAndNoToken) {
+TEST_F(TokenFile, ContainsHashesAndNoToken) {
   const auto token = AddToken(file_, {"anna", v1::ACCESS_ROLE_VIEWER});
   ASSERT_TRUE(token.ok()) << token.status();
   EXPECT_EQ(token->size(), 32u) << "128 bits";
@@ -41,7 +41,7 @@ TEST_F(TokenFile, HoldsHashesAndNoToken) {
   EXPECT_EQ(found.st_mode & 0777, 0600u);
 }
 
-TEST_F(TokenFile, LosesTheAccountThatIsRemovedAndNoOther) {
+TEST_F(TokenFile, LosesOnlyTheRemovedAccount) {
   ASSERT_TRUE(AddToken(file_, {"anna", v1::ACCESS_ROLE_OWNER}).ok());
   ASSERT_TRUE(AddToken(file_, {"bert@example.org", v1::ACCESS_ROLE_ADMIN}).ok());
   EXPECT_TRUE(absl::IsAlreadyExists(AddToken(file_, {"anna", v1::ACCESS_ROLE_ADMIN}).status()));
@@ -52,14 +52,14 @@ TEST_F(TokenFile, LosesTheAccountThatIsRemovedAndNoOther) {
   EXPECT_EQ(tokens->begin()->second.name, "bert@example.org");
 }
 
-TEST_F(TokenFile, IsRefusedWithLineAndFault) {
+TEST_F(TokenFile, IsRefusedWithLineAndReason) {
   const std::string hash(64, 'a');
   const struct {
     std::string text, words;
-  } cases[] = {{"\nnonsense\n", "f:2: a line is SHA256 ROLE NAME"},
+  } cases[] = {{"\nnonsense\n", "f:2: a line must be SHA256 ROLE NAME"},
                {hash + " king anna\n", "f:1: there is no role \"king\""},
-               {hash + " viewer a/b\n", "f:1: a name has"},
-               {hash + " viewer anna\n" + hash + " viewer bert\n", "f:2: the same token twice"}};
+               {hash + " viewer a/b\n", "f:1: a name must have"},
+               {hash + " viewer anna\n" + hash + " viewer bert\n", "f:2: the token is listed twice"}};
   for (const auto& one : cases) {
     const auto parsed = ParseTokens("f", one.text);
     EXPECT_TRUE(absl::IsInvalidArgument(parsed.status())) << one.text;

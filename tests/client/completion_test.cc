@@ -63,7 +63,7 @@ struct Typed {
 class Shells : public testing::Test {
  protected:
   void SetUp() override {
-    ASSERT_NE(server_.port(), 0) << server_.said();
+    ASSERT_NE(server_.port(), 0) << server_.output();
     ASSERT_EQ(Phrenic({"create", "cube-springs", "--id", "lesson-one", "--server", server_.address()}).code, 0);
     const std::string file = WriteScratch("surface_file.stl", "");
     cases_.push_back({"phrenic inspect " + file.substr(0, file.size() - 8), "file.stl"});

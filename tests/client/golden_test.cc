@@ -85,7 +85,7 @@ TEST(Golden, ErrorsOfTheCommandLine) {
 
 TEST(Golden, AnswersOfAServer) {
   RunningServer server;
-  ASSERT_NE(server.port(), 0) << server.said();
+  ASSERT_NE(server.port(), 0) << server.output();
   const std::pair<const char*, Words> cases[] = {
       {"scenes", {"scenes"}},
       {"create", {"create", "cube-springs", "--id", "class"}},

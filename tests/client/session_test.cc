@@ -14,7 +14,7 @@ using ::testing::Not;
 
 class Sessions : public ::testing::Test {
  protected:
-  void SetUp() override { ASSERT_NE(server_.port(), 0) << server_.said(); }
+  void SetUp() override { ASSERT_NE(server_.port(), 0) << server_.output(); }
 
   Outcome Ask(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), {"--server", server_.address()});

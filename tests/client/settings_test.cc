@@ -87,7 +87,7 @@ TEST(Doctor, GivesEveryLineThatIsNotWellARemedy) {
     EXPECT_NE(finding["verdict"] == "good", !finding["remedy"].get<std::string>().empty()) << finding;
   }
   RunningServer server;
-  ASSERT_NE(server.port(), 0) << server.said();
+  ASSERT_NE(server.port(), 0) << server.output();
   const Outcome table = Phrenic({"doctor", "--server", server.address()});
   EXPECT_THAT(table.out, HasSubstr("server: answers at " + server.address()));
   EXPECT_THAT(table.out, HasSubstr("versions: both "));

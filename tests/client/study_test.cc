@@ -89,7 +89,7 @@ TEST(StudyError, BadOptionsAreWrongUsage) {
 
 TEST(Study, OnAServerGoesOnWithoutItsClient) {
   const RunningServer server;
-  ASSERT_NE(server.port(), 0) << server.said();
+  ASSERT_NE(server.port(), 0) << server.output();
   const auto ask = [&](std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), {"--server", server.address()});
     return Phrenic(arguments);

@@ -45,7 +45,7 @@ TEST(Progress, TellsTheTimeLeftInATerminalAlone) {
 
 TEST(Watch, DrawsLiveBarsInATerminal) {
   RunningServer server;
-  ASSERT_NE(server.port(), 0) << server.said();
+  ASSERT_NE(server.port(), 0) << server.output();
   ASSERT_EQ(Phrenic({"create", "cube-springs", "--id", "seen", "--play", "--server", server.address()}).code, 0);
   const std::vector<std::string> words = {"watch", "seen", "--count", "5", "--fps", "20", "--server", server.address()};
   const std::string drawn = Seen(words, 60, {{"LC_ALL", "C.UTF-8"}});

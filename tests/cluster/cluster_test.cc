@@ -1,4 +1,4 @@
-// A session has one server at a time, and nobody else writes its copy.
+// A session has one server at a time, and only that server writes its copy.
 #include "server/cluster/cluster.h"
 
 #include <gtest/gtest.h>
@@ -13,14 +13,14 @@
 namespace phrenic::cluster {
 namespace {
 
-// A server of the cluster without sessions of its own: what it was told.
+// A cluster member without a session table: records what its hooks are called with.
 class Member {
  public:
   Member(const RedisServer& redis, std::string address) {
     auto joined = Cluster::Join({.redis = redis.url(), .advertise = std::move(address)});
     EXPECT_TRUE(joined.ok()) << joined.status();
     cluster_ = *std::move(joined);
-    cluster_->Begin({.lost =
+    cluster_->Start({.lost =
                          [this](const std::string& id) {
                            absl::MutexLock lock(&mutex_);
                            lost_.insert(id);
@@ -28,7 +28,7 @@ class Member {
                      .take_over =
                          [this](const store::SavedSession& saved, std::int64_t epoch) {
                            absl::MutexLock lock(&mutex_);
-                           taken_.push_back({saved, epoch});
+                           taken_over_.push_back({saved, epoch});
                            return absl::OkStatus();
                          },
                      .copy_whole =
@@ -46,20 +46,20 @@ class Member {
     absl::MutexLock lock(&mutex_);
     return asked_.contains(id);
   }
-  struct Taken {
+  struct TakenOver {
     store::SavedSession saved;
     std::int64_t epoch = 0;
   };
-  std::vector<Taken> taken() {
+  std::vector<TakenOver> taken_over() {
     absl::MutexLock lock(&mutex_);
-    return taken_;
+    return taken_over_;
   }
 
  private:
   absl::Mutex mutex_;
   std::set<std::string> lost_ ABSL_GUARDED_BY(mutex_), asked_ ABSL_GUARDED_BY(mutex_);
-  std::vector<Taken> taken_ ABSL_GUARDED_BY(mutex_);
-  std::unique_ptr<Cluster> cluster_;  // the first to go
+  std::vector<TakenOver> taken_over_ ABSL_GUARDED_BY(mutex_);
+  std::unique_ptr<Cluster> cluster_;  // destroyed first, since its threads use the other members
 };
 
 v1::SavedMoment MomentAt(std::int64_t tick) {
@@ -96,7 +96,7 @@ store::SavedSession SavedAt(const std::string& id, std::int64_t epoch, std::int6
   return saved;
 }
 
-// False where it has not come true within the time.
+// Returns true once the condition is true; false after the timeout.
 template <class Wanted>
 bool Within(absl::Duration time, Wanted wanted) {
   for (const absl::Time end = absl::Now() + time; absl::Now() < end; absl::SleepFor(absl::Milliseconds(10))) {
@@ -119,83 +119,83 @@ TEST_F(ClusterTest, ASessionHasOneServer) {
   Member a(*redis_, "a:1"), b(*redis_, "b:1");
   EXPECT_EQ(*a->Claim("s"), 1);
   EXPECT_EQ(b->Claim("s").status().code(), absl::StatusCode::kAlreadyExists);
-  EXPECT_EQ(a->Where("s").kind, Place::Kind::kHere);
-  const Place seen = b->Where("s");
-  EXPECT_EQ(seen.kind, Place::Kind::kElsewhere);
+  EXPECT_EQ(a->Locate("s").kind, Location::Kind::kLocal);
+  const Location seen = b->Locate("s");
+  EXPECT_EQ(seen.kind, Location::Kind::kRemote);
   EXPECT_EQ(seen.address, "a:1");
-  EXPECT_EQ(b->Where("t").kind, Place::Kind::kNowhere);
+  EXPECT_EQ(b->Locate("t").kind, Location::Kind::kNone);
   a->Abandon("s");
-  EXPECT_EQ(*b->Claim("s"), 2) << "epochs are not used again";
+  EXPECT_EQ(*b->Claim("s"), 2) << "an epoch was reused";
 }
 
-TEST_F(ClusterTest, WhoWasOnlySlowWritesNothingOverItsSuccessor) {
+TEST_F(ClusterTest, ASlowServerCannotOverwriteItsSuccessor) {
   Member b(*redis_, "b:1");
-  b->Watch();
+  b->StartTakeovers();
   Member a(*redis_, "a:1");
   ASSERT_TRUE(a->Claim("s").ok());
   ASSERT_TRUE(a->Copy(StateAt("s", 1)));
   ASSERT_TRUE(a->Copy(MomentOf("s", 2)));
   ASSERT_TRUE(a->Copy(MomentOf("s", 3)));
-  a->Leave();  // it renews no more, as if it were stopped
-  ASSERT_TRUE(Within(absl::Seconds(6), [&] { return !b.taken().empty(); }));
-  const Member::Taken taken = b.taken()[0];
+  a->Leave();  // stops renewing, as a suspended process does
+  ASSERT_TRUE(Within(absl::Seconds(6), [&] { return !b.taken_over().empty(); }));
+  const Member::TakenOver taken = b.taken_over()[0];
   EXPECT_EQ(taken.epoch, 2);
   EXPECT_EQ(taken.saved.state.tick(), 1);
   EXPECT_EQ(taken.saved.sequence, 3);
   ASSERT_EQ(taken.saved.later.size(), 2U);
   EXPECT_EQ(taken.saved.later[1].session().tick(), 3);
-  EXPECT_FALSE(a->Copy(MomentOf("s", 4))) << "its epoch is over";
-  EXPECT_EQ(a->Where("s").address, "b:1") << "by its own clock its lease was over: it asked";
+  EXPECT_FALSE(a->Copy(MomentOf("s", 4))) << "a later epoch exists";
+  EXPECT_EQ(a->Locate("s").address, "b:1") << "its lease had expired by its own clock, so it asked Redis";
   EXPECT_TRUE(a.Lost("s"));
   EXPECT_TRUE(b->Copy(StateAt("s", 1)));
 }
 
-// The median of three: a machine that starves Redis for one of them says nothing of the others.
-TEST_F(ClusterTest, WhatIsReleasedGoesOnAtOnce) {
+// The median of three, because a loaded machine may delay one of them.
+TEST_F(ClusterTest, AReleasedSessionIsTakenOverAtOnce) {
   Member b(*redis_, "b:1");
-  b->Watch();
+  b->StartTakeovers();
   Member a(*redis_, "a:1");
   const auto time_to_go_on = [&](const std::string& id) {
-    const std::size_t before = b.taken().size();
+    const std::size_t before = b.taken_over().size();
     EXPECT_TRUE(a->Claim(id).ok());
     EXPECT_TRUE(a->Copy(StateAt(id, 1)));
     const absl::Time released = absl::Now();
     a->Release(id);
-    EXPECT_TRUE(Within(absl::Seconds(10), [&] { return b.taken().size() > before; })) << id;
+    EXPECT_TRUE(Within(absl::Seconds(10), [&] { return b.taken_over().size() > before; })) << id;
     return absl::Now() - released;
   };
-  time_to_go_on("first");  // it takes over nothing for 3 s
+  time_to_go_on("first");  // nothing is taken over in the first 3 s
   std::array times = {time_to_go_on("s"), time_to_go_on("t"), time_to_go_on("u")};
   std::ranges::sort(times);
   EXPECT_LE(times[1], absl::Milliseconds(600));
 }
 
-TEST_F(ClusterTest, SessionsGoOnWithoutRedisAndAreCopiedAnewWhenItComesBackEmpty) {
+TEST_F(ClusterTest, SessionsContinueWithoutRedisAndAreCopiedAgainWhenItReturnsEmpty) {
   Member a(*redis_, "a:1");
   ASSERT_TRUE(a->Claim("s").ok());
   redis_->Kill();
-  EXPECT_TRUE(Within(absl::Seconds(3), [&] { return !a->counts().reached; }));
-  absl::SleepFor(absl::Seconds(3.2));  // its lease is over
+  EXPECT_TRUE(Within(absl::Seconds(3), [&] { return !a->counts().redis_reachable; }));
+  absl::SleepFor(absl::Seconds(3.2));  // its lease has expired
   const absl::Time asked = absl::Now();
-  EXPECT_EQ(a->Where("s").kind, Place::Kind::kHere);
-  EXPECT_EQ(a->Where("t").kind, Place::Kind::kUnknown);
-  EXPECT_TRUE(a->Copy(StateAt("s", 1))) << "a copy that is late is no reason to stop";
+  EXPECT_EQ(a->Locate("s").kind, Location::Kind::kLocal);
+  EXPECT_EQ(a->Locate("t").kind, Location::Kind::kUnknown);
+  EXPECT_TRUE(a->Copy(StateAt("s", 1))) << "an incomplete copy must not end the session";
   EXPECT_LT(absl::Now() - asked, absl::Seconds(1));
   EXPECT_EQ(a->Claim("u").status().code(), absl::StatusCode::kUnavailable);
   redis_->Start();
   EXPECT_TRUE(Within(absl::Seconds(4), [&] { return a.AskedFor("s"); }));
-  EXPECT_TRUE(a->counts().reached);
+  EXPECT_TRUE(a->counts().redis_reachable);
   EXPECT_FALSE(a.Lost("s"));
 }
 
-// Its heir would go on from an old state otherwise.
-TEST_F(ClusterTest, WhatIsBehindIsCopiedWholeBeforeItIsReleased) {
+// Otherwise its successor would resume an old state.
+TEST_F(ClusterTest, AnIncompleteCopyIsCompletedBeforeARelease) {
   Member a(*redis_, "a:1"), b(*redis_, "b:1");
-  b->Watch();
+  b->StartTakeovers();
   ASSERT_TRUE(a->Claim("s").ok());
   ASSERT_TRUE(a->Copy(StateAt("s", 1)));
   redis_->Kill();
-  ASSERT_TRUE(a->Copy(MomentOf("s", 2)));  // late
+  ASSERT_TRUE(a->Copy(MomentOf("s", 2)));  // the copy is incomplete
   redis_->Start();
   ASSERT_TRUE(Within(absl::Seconds(4), [&] { return a.AskedFor("s"); }));
   std::thread store([&] {
@@ -203,16 +203,16 @@ TEST_F(ClusterTest, WhatIsBehindIsCopiedWholeBeforeItIsReleased) {
     a->CopyWhole(SavedAt("s", 1, 7));
   });
   a->Release("s");
-  EXPECT_EQ(a->counts().owned, 0) << "it was not released";
+  EXPECT_EQ(a->counts().owned, 0) << "the lease was not released";
   store.join();
-  ASSERT_TRUE(Within(absl::Seconds(6), [&] { return !b.taken().empty(); }));
-  EXPECT_EQ(b.taken()[0].saved.sequence, 7);
+  ASSERT_TRUE(Within(absl::Seconds(6), [&] { return !b.taken_over().empty(); }));
+  EXPECT_EQ(b.taken_over()[0].saved.sequence, 7);
 }
 
-TEST_F(ClusterTest, AStoresOwnSessionComesBackUnlessOthersHadItSince) {
+TEST_F(ClusterTest, AStoredSessionIsReclaimedUnlessOthersHadItSince) {
   Member a(*redis_, "a:1"), b(*redis_, "b:1");
-  EXPECT_EQ(*a->Reclaim(SavedAt("alone", 0, 5)), 1) << "of before there was a cluster";
-  EXPECT_FALSE(b->Reclaim(SavedAt("alone", 0, 5)).ok()) << "another server has one of that name";
+  EXPECT_EQ(*a->Reclaim(SavedAt("alone", 0, 5)), 1) << "saved before the server joined a cluster";
+  EXPECT_FALSE(b->Reclaim(SavedAt("alone", 0, 5)).ok()) << "another server has a session of that id";
   ASSERT_EQ(*b->Reclaim(SavedAt("newer", 3, 9)), 4);
   b->Abandon("newer");
   EXPECT_FALSE(a->Reclaim(SavedAt("newer", 2, 20)).ok());
@@ -221,10 +221,10 @@ TEST_F(ClusterTest, AStoresOwnSessionComesBackUnlessOthersHadItSince) {
   gone.id = "newer";
   gone.forgotten = true;
   EXPECT_TRUE(a->Copy(gone));
-  EXPECT_FALSE(b->Reclaim(SavedAt("newer", 5, 10)).ok()) << "it was deleted";
+  EXPECT_FALSE(b->Reclaim(SavedAt("newer", 5, 10)).ok()) << "a deleted session was reclaimed";
 }
 
-TEST(RedisAddress, SaysWhatIsWrongWithoutThePassword) {
+TEST(RedisAddress, ReportsErrorsWithoutThePassword) {
   const auto good = ParseRedisAddress("redis://:secret@10.0.0.1:7000");
   ASSERT_TRUE(good.ok());
   EXPECT_EQ(good->host, "10.0.0.1");

@@ -1,4 +1,4 @@
-// A Redis of a test's own, on a free port, in memory alone.
+// A Redis server for one test, on a free port, without persistence.
 #ifndef PHRENIC_TESTS_CLUSTER_REDIS_SERVER_H_
 #define PHRENIC_TESTS_CLUSTER_REDIS_SERVER_H_
 
@@ -25,7 +25,7 @@ class RedisServer {
   RedisServer(const RedisServer&) = delete;
   RedisServer& operator=(const RedisServer&) = delete;
 
-  // With nothing in it; returns once it answers.
+  // Starts it empty and returns once it answers.
   void Start() {
     pid_ = fork();
     if (pid_ == 0) {

@@ -25,7 +25,7 @@ afterAll(async () => {
   rmSync(folder, { recursive: true });
 });
 
-test("the page asks who one is, and shows the session to whom the server knows", async () => {
+test("the page asks for a token and shows the session after sign-in", async () => {
   const page = await (await browser.newContext()).newPage();
   const complaints: string[] = [];
   page.on("console", (message) => {
@@ -37,15 +37,15 @@ test("the page asks who one is, and shows the session to whom the server knows",
     await page.click("#sign-in button");
   };
   await sign("00112233445566778899aabbccddeeff");
-  await page.waitForSelector("text=Nobody has that token");
+  await page.waitForSelector("text=No account has this token");
   await sign(anna);
-  await page.waitForFunction(() => (window.phrenic?.pictures() ?? 0) > 1, null, { timeout: 60_000 });
+  await page.waitForFunction(() => (window.phrenic?.drawCount() ?? 0) > 1, null, { timeout: 60_000 });
   expect(page.url()).not.toContain(anna);
   expect(complaints).toEqual([]);
   await page.context().close();
 });
 
-test("a link lets in without an account, into its session alone, and its secret leaves the address", async () => {
+test("a join link opens its session without an account, and its secret is removed from the address", async () => {
   const token = ["--token-file", join(folder, "anna")];
   await server.phrenic(...token, "create", "cube-tensegrity", "--id", "mine", "--play");
   const { secret } = JSON.parse(await server.phrenic(...token, "link", "create", "mine", "-o", "json"));

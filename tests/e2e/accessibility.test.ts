@@ -1,29 +1,25 @@
 import type { Browser } from "playwright-core";
 import { afterAll, beforeAll, expect, test } from "vitest";
-import { launchBrowser, ViewerPage } from "./browser";
-import { Server } from "./server";
+import { endAll, startAll, ViewerPage } from "./browser";
+import type { Server } from "./server";
 
 let server: Server;
 let browser: Browser;
 let viewer: ViewerPage;
 
 beforeAll(async () => {
-  browser = await launchBrowser();
-  server = await Server.start();
+  [browser, server] = await startAll();
   viewer = await ViewerPage.open(browser, server.url);
 });
 
-afterAll(async () => {
-  await browser?.close();
-  await server?.end();
-});
+afterAll(() => endAll(browser, server));
 
-test("AxeFindsNothingAgainstThePage", async () => {
-  await viewer.page.click('summary:has-text("What runs")');
+test("ThePageHasNoAxeViolations", async () => {
+  await viewer.page.click('summary:has-text("Scene report")');
   expect(await viewer.violations()).toEqual([]);
 });
 
-test("AxeFindsNothingAgainstWhoControls", async () => {
+test("TheControlDialogHasNoAxeViolations", async () => {
   await viewer.page.click("#control-badge");
   await viewer.page.fill("#control-name", "Anna");
   await viewer.page.click("#control-enter");
@@ -32,14 +28,14 @@ test("AxeFindsNothingAgainstWhoControls", async () => {
   await viewer.page.keyboard.press("Escape");
 });
 
-test("AxeFindsNothingAgainstTheChooser", async () => {
+test("TheSessionChooserHasNoAxeViolations", async () => {
   await viewer.page.click("#session");
   await viewer.page.waitForSelector(".chooser li");
   expect(await viewer.violations()).toEqual([]);
   await viewer.page.keyboard.press("Escape");
 });
 
-test("AxeFindsNothingAgainstColoursForcesAndDialogs", async () => {
+test("ColoursAndDialogsHaveNoAxeViolations", async () => {
   const { page } = viewer;
   await page.selectOption("#coloring-kind", "largest");
   await page.waitForSelector("#coloring:not([hidden])");
@@ -52,7 +48,7 @@ test("AxeFindsNothingAgainstColoursForcesAndDialogs", async () => {
   }
 });
 
-test("AxeFindsNothingAgainstLargeTypeForAProjectorOrTwoPictures", async () => {
+test("ProjectorModeAndTwoViewsHaveNoAxeViolations", async () => {
   const { page } = viewer;
   await page.check("#projector");
   expect(await viewer.violations()).toEqual([]);
@@ -68,10 +64,10 @@ test("AxeFindsNothingAgainstLargeTypeForAProjectorOrTwoPictures", async () => {
 });
 
 test.each([
-  ["twice the size, as at 200 %", 600, 360],
+  ["a page zoomed to 200 %", 600, 360],
   ["a phone", 390, 780],
   ["a projector", 1280, 800],
-])("NothingOfTheHeaderIsOutOfReachAndAxeFindsNothingOn %s", async (_, width, height) => {
+])("TheHeaderFitsAndHasNoAxeViolationsOn %s", async (_, width, height) => {
   await viewer.page.setViewportSize({ width, height });
   for (const button of await viewer.page.locator("#header button:visible").all()) {
     const box = (await button.boundingBox())!;
@@ -82,11 +78,11 @@ test.each([
   await viewer.page.setViewportSize({ width: 900, height: 620 });
 });
 
-test("LargeTypeLeavesNothingOfTheHeaderOutOfReach", async () => {
+test("TheHeaderFitsInProjectorMode", async () => {
   const { page } = viewer;
   await page.setViewportSize({ width: 1024, height: 768 });
   await page.check("#projector");
-  await viewer.leave("projector");
+  await viewer.saveScreenshot("projector");
   for (const button of await page.locator("#header button:visible").all()) {
     const box = (await button.boundingBox())!;
     expect(box.x + box.width).toBeLessThanOrEqual(1024);
@@ -95,16 +91,16 @@ test("LargeTypeLeavesNothingOfTheHeaderOutOfReach", async () => {
   await page.setViewportSize({ width: 900, height: 620 });
 });
 
-test("TheKeyboardAlonePlaysStepsTurnsAndSlides", async () => {
+test("TheKeyboardPlaysStepsRotatesAndMovesSliders", async () => {
   await viewer.page.focus("#view");
   await viewer.page.keyboard.press("Space");
   await viewer.page.waitForSelector('#play[aria-label="Play"]');
   const held = await viewer.tick();
   await viewer.page.keyboard.press(".");
   await viewer.waitForTick(held);
-  const pictures = await viewer.page.evaluate(() => window.phrenic!.pictures());
+  const pictures = await viewer.page.evaluate(() => window.phrenic!.drawCount());
   await viewer.page.keyboard.press("ArrowLeft");
-  await viewer.page.waitForFunction((before) => window.phrenic!.pictures() > before, pictures);
+  await viewer.page.waitForFunction((before) => window.phrenic!.drawCount() > before, pictures);
   await viewer.page.focus("#parameter-ribMotion");
   await viewer.page.keyboard.press("ArrowRight");
   expect(Number(await viewer.value("ribMotion"))).toBeCloseTo(1.05, 6);

@@ -1,9 +1,9 @@
+import axe from "axe-core";
 import { existsSync, mkdirSync } from "node:fs";
 import { join } from "node:path";
-import axe from "axe-core";
 import { type Browser, chromium, type Page } from "playwright-core";
-import type { TestHook } from "../../web/src/test_hook";
-import { outFolder } from "./server";
+import type { TestHook } from "../../web/src/app/test_hook";
+import { outFolder, Server } from "./server";
 
 declare global {
   interface Window {
@@ -11,11 +11,11 @@ declare global {
   }
 }
 
-const places = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
+const chromiumPaths = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
 
-/** Headless Chromium with a profile of its own, WebGL by software. */
+/** Starts headless Chromium with a new profile and software WebGL. */
 export async function launchBrowser(): Promise<Browser> {
-  const executablePath = [process.env.PHRENIC_CHROMIUM ?? "", ...places].find(
+  const executablePath = [process.env.PHRENIC_CHROMIUM ?? "", ...chromiumPaths].find(
     (path) => path !== "" && existsSync(path),
   );
   if (executablePath === undefined) {
@@ -38,20 +38,32 @@ export async function launchBrowser(): Promise<Browser> {
   });
 }
 
-/** A viewer as a person has it, and what it complained about. */
+/** Starts a browser and a server with a playing session of `scene`; "none" for no session. */
+export async function startAll(scene = "thorax"): Promise<[Browser, Server]> {
+  mkdirSync(outFolder, { recursive: true });
+  return [await launchBrowser(), await Server.start(scene)];
+}
+
+/** Closes what `startAll` started, also if it failed. */
+export async function endAll(browser: Browser | undefined, server: Server | undefined): Promise<void> {
+  await browser?.close();
+  await server?.end();
+}
+
+/** A page with the viewer, and the console errors and requests that it causes. */
 export class ViewerPage {
-  readonly complaints: string[] = [];
+  readonly consoleErrors: string[] = [];
   readonly origins = new Set<string>();
 
   private constructor(readonly page: Page) {
     page.on("console", (message) => {
-      if (["error", "warning"].includes(message.type())) this.complaints.push(message.text());
+      if (["error", "warning"].includes(message.type())) this.consoleErrors.push(message.text());
     });
-    page.on("pageerror", (error) => this.complaints.push(String(error)));
+    page.on("pageerror", (error) => this.consoleErrors.push(String(error)));
     page.on("request", (request) => this.origins.add(new URL(request.url()).origin));
   }
 
-  /** Opens the viewer in a new browser context and waits for the picture. */
+  /** Opens the viewer in a new browser context and waits until a frame is drawn. */
   static async open(browser: Browser, url: string, size = { width: 900, height: 620 }): Promise<ViewerPage> {
     const context = await browser.newContext({ viewport: size });
     const viewer = new ViewerPage(await context.newPage());
@@ -60,16 +72,18 @@ export class ViewerPage {
     return viewer;
   }
 
+  /** Waits until a frame is drawn. */
   async waitForPicture(): Promise<void> {
-    const drawn = () => (window.phrenic?.tick() ?? -1) >= 0 && (window.phrenic?.pictures() ?? 0) > 1;
+    const drawn = () => (window.phrenic?.tick() ?? -1) >= 0 && (window.phrenic?.drawCount() ?? 0) > 1;
     await this.page.waitForFunction(drawn, null, { timeout: 60_000 });
   }
 
+  /** Returns the tick of the newest frame. */
   tick(): Promise<number> {
     return this.page.evaluate(() => window.phrenic!.tick());
   }
 
-  /** Every `stride`-th vertex of a body now [m], and the tick they belong to. */
+  /** Returns every `stride`-th vertex of a body in the newest frame [m] and the frame's tick. */
   sample(body: string, stride = 200): Promise<{ tick: number; points: [number, number, number][] }> {
     return this.page.evaluate(
       ([name, step]) => {
@@ -82,17 +96,18 @@ export class ViewerPage {
     );
   }
 
-  /** Waits until the link is in this state. */
+  /** Waits until the connection has this state. */
   async waitForLink(kind: string): Promise<void> {
-    await this.page.waitForSelector(`#link[data-link="${kind}"]`, { timeout: 60_000 });
+    await this.page.waitForSelector(`#connection[data-state="${kind}"]`, { timeout: 60_000 });
   }
 
+  /** Waits for a frame with a tick above this one. */
   async waitForTick(above: number): Promise<void> {
     await this.page.waitForFunction((least) => window.phrenic!.tick() > least, above, { timeout: 30_000 });
   }
 
-  /** Waits until the newest frame is that of this tick. */
-  async atTick(tick: number): Promise<void> {
+  /** Waits until the newest frame has this tick. */
+  async waitForExactTick(tick: number): Promise<void> {
     await this.page.waitForFunction((wanted) => window.phrenic!.tick() === wanted, tick, { timeout: 30_000 });
   }
 
@@ -104,17 +119,18 @@ export class ViewerPage {
     await entry.blur();
   }
 
+  /** Returns the text of a parameter's entry. */
   value(parameter: string): Promise<string> {
     return this.page.inputValue(`#parameter-${parameter}-entry`);
   }
 
-  /** Leaves a picture of the page in tests/e2e/out. */
-  async leave(name: string): Promise<void> {
+  /** Saves a screenshot of the page in tests/e2e/out. */
+  async saveScreenshot(name: string): Promise<void> {
     mkdirSync(outFolder, { recursive: true });
     await this.page.screenshot({ path: join(outFolder, `${name}.png`) });
   }
 
-  /** What axe finds against the page as it stands, in words. */
+  /** Returns the accessibility violations that axe finds in the current page. */
   async violations(): Promise<string[]> {
     await this.page.evaluate(axe.source);
     return this.page.evaluate(async () => {
@@ -123,6 +139,7 @@ export class ViewerPage {
     });
   }
 
+  /** Closes the browser context of the page. */
   close(): Promise<void> {
     return this.page.context().close();
   }

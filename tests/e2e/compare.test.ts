@@ -1,28 +1,24 @@
-import { mkdirSync } from "node:fs";
 import { readFile } from "node:fs/promises";
 import { join } from "node:path";
 import type { Browser } from "playwright-core";
 import { afterAll, beforeAll, describe, expect, test } from "vitest";
-import { launchBrowser, ViewerPage } from "./browser";
-import { canvasPicture, shareOfChangedPixels } from "./pixels";
-import { outFolder, Server } from "./server";
+import { endAll, startAll, ViewerPage } from "./browser";
+import { canvasPicture, changedFraction } from "./pixels";
+import { outFolder, type Server } from "./server";
 
 let server: Server;
 let browser: Browser;
 let viewer: ViewerPage;
 
 beforeAll(async () => {
-  browser = await launchBrowser();
-  server = await Server.start();
-  mkdirSync(outFolder, { recursive: true });
+  [browser, server] = await startAll();
 });
 
-afterAll(async () => {
-  await browser?.close();
-  await server?.end();
-});
+afterAll(() => endAll(browser, server));
 
-/** A session as it is now, in a file of `phrenic export` whose nodes are moved up by `up` millimetres. */
+/**
+ * Returns the current state of a session as a file of `phrenic export`, with its nodes raised by `up(x)` millimetres.
+ */
 async function exported(session: string, body: string, up: (x: number) => number): Promise<Buffer> {
   const path = join(outFolder, `${session}.msh`);
   await server.phrenic("export", session, path, "--seconds", "0", "--body", body);
@@ -38,16 +34,16 @@ async function exported(session: string, body: string, up: (x: number) => number
 const choose = (name: string, buffer: Buffer) =>
   viewer.page.setInputFiles("#compare-file", { name, mimeType: "text/plain", buffer });
 const measure = async (name: string) => Number(await viewer.page.textContent(`[data-measure="${name}"]`));
-const found = () => viewer.page.waitForSelector("#comparison .found:not([hidden])", { timeout: 60_000 });
+const found = () => viewer.page.waitForSelector("#comparison .result:not([hidden])", { timeout: 60_000 });
 
-describe("a cube beside a file of itself, 3 mm higher", () => {
+describe("a cube compared with itself, 3 mm higher", () => {
   beforeAll(async () => {
     await server.phrenic("create", "cube-tensegrity", "--id", "cube");
     viewer = await ViewerPage.open(browser, `${server.url}?session=cube`);
   });
   afterAll(() => viewer.close());
 
-  test("IsColouredByItsDistanceWithFiguresBeside", async () => {
+  test("IsColouredByItsDistanceWithATable", async () => {
     const before = await canvasPicture(viewer);
     await choose("higher.msh", await exported("cube", "cube", () => 3));
     await found();
@@ -58,33 +54,33 @@ describe("a cube beside a file of itself, 3 mm higher", () => {
     expect(await viewer.page.textContent("#comparison-when")).toBe("cube at 0.000 s, tick 0");
     expect(await viewer.page.textContent("#comparison .legend-ticks")).toMatch(/^0.*3/);
     await viewer.page.waitForTimeout(1500);
-    await viewer.leave("compare-cube");
-    expect(await shareOfChangedPixels(browser, before, await canvasPicture(viewer))).toBeGreaterThan(0.02);
+    await viewer.saveScreenshot("compare-cube");
+    expect(await changedFraction(browser, before, await canvasPicture(viewer))).toBeGreaterThan(0.02);
   });
 
-  test("AgainFollowsTheSession", async () => {
+  test("RepeatComparesTheCurrentState", async () => {
     await server.phrenic("step", "cube", "200");
-    await viewer.atTick(200);
-    await viewer.page.waitForFunction(() => document.querySelector("#comparison-moved")?.textContent !== "");
-    expect(await viewer.page.textContent("#comparison-moved")).toMatch(/^Colours follow the body, at \d/);
+    await viewer.waitForExactTick(200);
+    await viewer.page.waitForFunction(() => document.querySelector("#comparison-time")?.textContent !== "");
+    expect(await viewer.page.textContent("#comparison-time")).toMatch(/^Colours show the session at \d/);
     const before = await measure("rms_a_to_b");
-    await viewer.page.click("#compare-again");
+    await viewer.page.click("#compare-repeat");
     await viewer.page.waitForSelector('#comparison-when:has-text("tick 200")');
     expect(await measure("rms_a_to_b")).not.toBe(before);
-    expect(await viewer.page.textContent("#comparison-moved")).toBe("");
+    expect(await viewer.page.textContent("#comparison-time")).toBe("");
   });
 
-  test("TheFilesSurfaceIsSeenUntilItIsSwitchedOff", async () => {
+  test("TheSurfaceCanBeHidden", async () => {
     const before = await canvasPicture(viewer);
     await viewer.page.uncheck("#compare-drawn");
-    const changed = async () => shareOfChangedPixels(browser, before, await canvasPicture(viewer));
+    const changed = async () => changedFraction(browser, before, await canvasPicture(viewer));
     await expect.poll(changed, { timeout: 20_000 }).toBeGreaterThan(0.005);
     await viewer.page.check("#compare-drawn");
   });
 
   test("AFileInMetresIsReadInMetres", async () => {
     await server.phrenic("reset", "cube");
-    await viewer.atTick(0);
+    await viewer.waitForExactTick(0);
     const text = (await exported("cube", "cube", () => 3)).toString();
     const metres = text.replace(/(\$Nodes\n\d+\n)([^$]*)/, (_, head: string, lines: string) => {
       const scaled = lines
@@ -103,17 +99,17 @@ describe("a cube beside a file of itself, 3 mm higher", () => {
     await viewer.page.selectOption("#compare-unit", "1");
   });
 
-  test("ABadFileIsRefusedWithItsLineAndARemedy", async () => {
+  test("AnInvalidFileIsRefusedWithItsLine", async () => {
     await choose("bad.obj", Buffer.from("v 0 0 0\nv 1 0 0\nv 0 1\nf 1 2 3\n"));
     const alert = viewer.page.locator('#comparison [role="alert"]');
     await alert.waitFor();
     expect(await alert.textContent()).toMatch(/^bad\.obj:3: /);
-    await viewer.leave("compare-bad");
+    await viewer.saveScreenshot("compare-bad");
     await viewer.page.click('#comparison button:has-text("Dismiss")');
     await alert.waitFor({ state: "hidden" });
   });
 
-  test("ADroppedFileIsTaken", async () => {
+  test("ADroppedFileIsCompared", async () => {
     const text = (await exported("cube", "cube", () => 1)).toString();
     const transfer = await viewer.page.evaluateHandle((content) => {
       const data = new DataTransfer();
@@ -122,18 +118,18 @@ describe("a cube beside a file of itself, 3 mm higher", () => {
     }, text);
     await viewer.page.dispatchEvent("#view", "dragover", { dataTransfer: transfer });
     await viewer.page.waitForSelector(".drop-zone:not([hidden])");
-    await viewer.leave("compare-drop");
+    await viewer.saveScreenshot("compare-drop");
     await viewer.page.dispatchEvent("#view", "drop", { dataTransfer: transfer });
     await viewer.page.waitForSelector('#comparison h2:has-text("dropped.msh")');
     expect(await measure("hd_max")).toBe(1);
   });
 
-  test("AxeFindsNothingAgainstIt", async () => {
+  test("HasNoAxeViolations", async () => {
     expect(await viewer.violations()).toEqual([]);
   });
 
-  test("TheKeyboardAloneRepeatsAndClears", async () => {
-    await viewer.page.focus("#compare-again");
+  test("TheKeyboardRepeatsAndClears", async () => {
+    await viewer.page.focus("#compare-repeat");
     await viewer.page.keyboard.press("Enter");
     await found();
     const coloured = await canvasPicture(viewer);
@@ -141,17 +137,17 @@ describe("a cube beside a file of itself, 3 mm higher", () => {
     await viewer.page.keyboard.press("Enter");
     await viewer.page.waitForSelector("#comparison", { state: "hidden" });
     await viewer.page.waitForTimeout(1500);
-    expect(await shareOfChangedPixels(browser, coloured, await canvasPicture(viewer))).toBeGreaterThan(0.02);
-    expect(viewer.complaints).toEqual([]);
+    expect(await changedFraction(browser, coloured, await canvasPicture(viewer))).toBeGreaterThan(0.02);
+    expect(viewer.consoleErrors).toEqual([]);
   });
 });
 
-test("OnAPhoneTheScaleLeavesThePicture", async () => {
+test("OnAPhoneTheCardIsSmall", async () => {
   viewer = await ViewerPage.open(browser, `${server.url}?session=cube`, { width: 390, height: 780 });
   await choose("higher.msh", await exported("cube", "cube", () => 3));
   await found();
   await viewer.page.waitForTimeout(1500);
-  await viewer.leave("compare-phone");
+  await viewer.saveScreenshot("compare-phone");
   const card = (await viewer.page.locator("#comparison").boundingBox())!;
   const stage = (await viewer.page.locator("#stage").boundingBox())!;
   expect(card.x + card.width).toBeLessThanOrEqual(stage.width);
@@ -159,7 +155,7 @@ test("OnAPhoneTheScaleLeavesThePicture", async () => {
   await viewer.close();
 });
 
-describe("the thorax beside a file of its diaphragm, its left side higher", () => {
+describe("the thorax compared with its diaphragm, its left side higher", () => {
   test("IsColouredOnThatSide", async () => {
     viewer = await ViewerPage.open(browser, `${server.url}?session=thorax`, { width: 1200, height: 720 });
     await server.phrenic("pause", "thorax");
@@ -169,14 +165,14 @@ describe("the thorax beside a file of its diaphragm, its left side higher", () =
     expect(await measure("hd_max")).toBeGreaterThan(5);
     expect(await measure("mean_a_to_b")).toBeLessThan(5);
     await viewer.page.waitForTimeout(4000);
-    await viewer.leave("compare-thorax");
+    await viewer.saveScreenshot("compare-thorax");
     for (const name of ["Ribs", "Sternum", "Costal cartilages", "Lungs"]) {
       const box = viewer.page.locator(".layer-name", { hasText: name }).locator("input");
       if ((await box.count()) === 1) await box.uncheck();
     }
     await viewer.page.waitForTimeout(4000);
-    await viewer.leave("compare-diaphragm");
-    expect(viewer.complaints).toEqual([]);
+    await viewer.saveScreenshot("compare-diaphragm");
+    expect(viewer.consoleErrors).toEqual([]);
     await viewer.close();
   }, 240_000);
 });

@@ -8,7 +8,7 @@ let browsers: Browser[];
 let teacher: ViewerPage;
 let pupil: ViewerPage;
 
-/** Opens the dialog, acts in it, and closes it. */
+/** Opens the dialog, runs `act`, and closes it. */
 async function inDialog(viewer: ViewerPage, act: () => Promise<void>): Promise<void> {
   await viewer.page.click("#control-badge");
   await act();
@@ -27,7 +27,7 @@ const press = (viewer: ViewerPage, id: string) => inDialog(viewer, () => viewer.
 const badge = (viewer: ViewerPage, words: string) =>
   viewer.page.waitForSelector(`#control-badge:has-text("${words}")`, { timeout: 30_000 });
 
-/** Where the camera is [m]. */
+/** Returns the camera position [m]. */
 const eye = (viewer: ViewerPage) => viewer.page.evaluate(() => window.phrenic!.eye());
 
 const apart = (a: number[], b: number[]) => Math.hypot(...a.map((value, i) => value - b[i]));
@@ -36,7 +36,7 @@ beforeAll(async () => {
   server = await Server.start("cube-tensegrity");
   browsers = [await launchBrowser(), await launchBrowser()];
   teacher = await ViewerPage.open(browsers[0], server.url);
-  // A session of the teacher's own, as anybody makes one; its link is for the class.
+  // The teacher creates and owns this session; the class joins by its link.
   await teacher.page.click("#share-open");
   const opened = teacher.page.waitForURL(/cube-tensegrity-2/, { waitUntil: "commit", timeout: 60_000 });
   await Promise.all([opened, teacher.page.click("#share-fork")]);
@@ -49,8 +49,8 @@ afterAll(async () => {
   await server?.end();
 });
 
-test("BothMayChangeTheSessionUntilItsOwnerTakesControl", async () => {
-  await badge(pupil, "Everybody controls");
+test("EveryoneMayChangeTheSessionUntilItsOwnerTakesControl", async () => {
+  await badge(pupil, "Everyone controls");
   await pupil.page.click('#play[aria-label="Pause"]');
   await teacher.page.waitForSelector('#play[aria-label="Play"]');
   await enter(teacher, "Anna");
@@ -60,24 +60,24 @@ test("BothMayChangeTheSessionUntilItsOwnerTakesControl", async () => {
   await badge(pupil, "Anna controls");
 });
 
-test("ControlsOfWhoDoesNotControlAreDisabledWithTheReason", async () => {
+test("ControlsOfOthersAreDisabledWithAReason", async () => {
   expect(await pupil.page.isDisabled("#play")).toBe(true);
   expect(await pupil.page.isDisabled("#parameter-breathForce")).toBe(true);
   expect(await pupil.page.getAttribute("fieldset.controlled", "title")).toContain("Anna controls this session");
   expect(await teacher.page.isDisabled("#play")).toBe(false);
-  await pupil.leave("controlled");
+  await pupil.saveScreenshot("controlled");
 });
 
-test("TheServerRefusesWhatAPageWouldNotAsk", async () => {
+test("TheServerRefusesChangesByOthers", async () => {
   const id = "cube-tensegrity-2";
   await expect(server.phrenic("set", id, "breath_force=2")).rejects.toThrow(/controlled by Anna/);
 });
 
-test("WhoAsksIsSeenAndIsHandedControl", async () => {
+test("ARequestIsShownAndControlHandedOver", async () => {
   await press(pupil, "take");
   await badge(teacher, "Ben asks");
   await teacher.page.click("#control-badge");
-  await teacher.leave("control-dialog");
+  await teacher.saveScreenshot("control-dialog");
   await teacher.page.click('[data-person="Ben"] button');
   await teacher.page.keyboard.press("Escape");
   await badge(pupil, "You control");
@@ -93,7 +93,7 @@ test("TheOwnerTakesControlBack", async () => {
   expect(await pupil.page.isDisabled("#play")).toBe(true);
 });
 
-test("ThePupilsPictureFollowsTheTeachers", async () => {
+test("TheViewOfThePupilFollowsTheTeachers", async () => {
   await teacher.page.focus("#view");
   for (let i = 0; i < 6; i++) await teacher.page.keyboard.press("ArrowLeft");
   const moved = await eye(teacher);
@@ -110,24 +110,24 @@ test("ThePupilsPictureFollowsTheTeachers", async () => {
   await wait(await eye(teacher));
 });
 
-test("ALateComerSeesWhoControlsAtOnce", async () => {
+test("ALaterViewerSeesWhoControls", async () => {
   const late = await ViewerPage.open(browsers[1], teacher.page.url());
   await badge(late, "Anna controls");
   await late.close();
 });
 
-test("AReloadedPageIsStillTheOwners", async () => {
+test("AReloadedPageKeepsControl", async () => {
   await teacher.page.reload();
   await teacher.waitForPicture();
   await badge(teacher, "You control");
 });
 
-test("LentToAllItIsEverybodysAgain", async () => {
-  await press(teacher, "lend");
-  await badge(pupil, "Everybody controls");
+test("TheOwnerMayLetEveryoneControl", async () => {
+  await press(teacher, "open");
+  await badge(pupil, "Everyone controls");
   expect(await pupil.page.isDisabled("#play")).toBe(false);
 });
 
-test("NothingWasWorthAComplaint", () => {
-  expect([...teacher.complaints, ...pupil.complaints]).toEqual([]);
+test("ThereWereNoConsoleErrors", () => {
+  expect([...teacher.consoleErrors, ...pupil.consoleErrors]).toEqual([]);
 });

@@ -1,32 +1,28 @@
+import { validateBytes } from "gltf-validator";
 import { createHash } from "node:crypto";
-import { mkdirSync } from "node:fs";
 import { readFile } from "node:fs/promises";
 import { join } from "node:path";
-import { validateBytes } from "gltf-validator";
 import type { Browser } from "playwright-core";
 import { afterAll, beforeAll, expect, test } from "vitest";
-import { launchBrowser, ViewerPage } from "./browser";
-import { outFolder, Server } from "./server";
+import { endAll, startAll, ViewerPage } from "./browser";
+import { outFolder, type Server } from "./server";
 
 let server: Server;
 let browser: Browser;
 let viewer: ViewerPage;
 
 beforeAll(async () => {
-  browser = await launchBrowser();
-  server = await Server.start();
-  mkdirSync(outFolder, { recursive: true });
+  [browser, server] = await startAll();
   await server.phrenic("create", "cube-tensegrity", "--id", "cube");
   viewer = await ViewerPage.open(browser, `${server.url}?session=cube`);
 });
 
 afterAll(async () => {
   await viewer?.close();
-  await browser?.close();
-  await server?.end();
+  await endAll(browser, server);
 });
 
-test("AMotionAsGltfIsWhatTheValidatorOfGltfsMakersTakes", async () => {
+test("AGltfMotionPassesTheKhronosValidator", async () => {
   for (const [session, ...bodies] of [["cube"], ["thorax", "--body", "ribs", "--body", "diaphragm"]]) {
     const path = join(outFolder, `${session}.glb`);
     await server.phrenic("export", session!, path, "--seconds", "2", "--fps", "3", ...bodies);
@@ -36,7 +32,7 @@ test("AMotionAsGltfIsWhatTheValidatorOfGltfsMakersTakes", async () => {
   }
 });
 
-test("ThePanelRecordsAndGivesTheFileThatTheCommandLineGets", async () => {
+test("ThePanelExportsTheSameFileAsTheCommandLine", async () => {
   await viewer.page.click('summary:has-text("Export the motion")');
   await viewer.page.selectOption("#export-format", "depl");
   await viewer.page.fill("#export-seconds", "0.5");
@@ -44,7 +40,7 @@ test("ThePanelRecordsAndGivesTheFileThatTheCommandLineGets", async () => {
   const link = viewer.page.locator("#export-link");
   await link.waitFor();
   expect(await viewer.violations()).toEqual([]);
-  await viewer.leave("export");
+  await viewer.saveScreenshot("export");
   const [download] = await Promise.all([viewer.page.waitForEvent("download"), link.click()]);
   expect(download.suggestedFilename()).toBe("cube.depl");
   const path = join(outFolder, "cube.depl");
@@ -57,7 +53,7 @@ test("ThePanelRecordsAndGivesTheFileThatTheCommandLineGets", async () => {
   expect(JSON.parse(await server.phrenic("exports", "list", "-o", "json")).exports).toEqual([]);
 });
 
-test("AMotionThatIsDownloadedFromThePanelOpens", async () => {
+test("AMotionDownloadedFromThePanelIsValid", async () => {
   await viewer.page.selectOption("#export-format", "glb");
   await viewer.page.click("#export");
   const link = viewer.page.locator("#export-link");
@@ -68,15 +64,15 @@ test("AMotionThatIsDownloadedFromThePanelOpens", async () => {
   expect(info).toMatchObject({ animationCount: 1 });
 });
 
-test("AnUploadedSurfaceIsReportedAndABadOneIsRefusedWithItsLine", async () => {
+test("AnUploadedSurfaceIsReportedAndAnInvalidOneRefusedWithItsLine", async () => {
   const choose = (text: string) =>
     viewer.page.setInputFiles("#upload-file", { name: "a.obj", mimeType: "text/plain", buffer: Buffer.from(text) });
   await viewer.page.click('summary:has-text("Surface files")');
   await choose("v 0 0 0\nv 1 0\nf 1 2 3\n");
-  await viewer.page.waitForSelector('#upload-work [role="alert"]:has-text("a.obj:2:")');
+  await viewer.page.waitForSelector('#upload-progress [role="alert"]:has-text("a.obj:2:")');
   await choose("v 0 0 0\nv 30 0 0\nv 0 30 0\nf 1 2 3\n");
   await viewer.page.waitForSelector("#upload-path");
   expect(await viewer.page.inputValue("#upload-path")).toMatch(/^upload:[0-9a-f]{64}$/);
-  await viewer.leave("upload");
-  expect(viewer.complaints).toEqual([]);
+  await viewer.saveScreenshot("upload");
+  expect(viewer.consoleErrors).toEqual([]);
 });

@@ -1,8 +1,9 @@
-// Clients that nobody here wrote: buf curl, which asks the server for its schema, and @grpc/grpc-js, which reads the
-// .proto files. @connectrpc/connect-web in Chromium is what the viewer itself calls with: viewer.test.ts.
+// Clients that are not part of this project: buf curl, which reads the schema by server reflection, and @grpc/grpc-js,
+// which reads the .proto files. The viewer's own client, @connectrpc/connect-web in Chromium, is tested in
+// viewer.test.ts.
 import {
-  credentials,
   type ClientReadableStream,
+  credentials,
   loadPackageDefinition,
   type ServiceError,
   status,
@@ -24,7 +25,7 @@ afterAll(() => server?.end());
 type Answer = Record<string, any>;
 type Call = (request: object, answered: (error: ServiceError | null, answer: Answer) => void) => void;
 
-/** A service as grpc-js makes it of the .proto files. */
+/** Creates a client of one service with grpc-js from the .proto files. */
 function serviceOf(file: string, name: string): Record<string, any> {
   const options = { includeDirs: [proto], longs: Number, enums: String, defaults: true };
   const definition = loadPackageDefinition(loadSync(`phrenic/v1/${file}.proto`, options)) as any;
@@ -37,14 +38,14 @@ const call = (service: Record<string, any>, method: string, request: object) =>
 async function curl(url: string, method: string, request: object, ...flags: string[]): Promise<Answer[]> {
   const words = ["curl", ...flags, "--data", JSON.stringify(request), `${url}/phrenic.v1.${method}`];
   const { stdout } = await promisify(execFile)(buf, words, { maxBuffer: 1 << 26 });
-  // Of a stream one object after the other.
+  // A stream prints one JSON object after the other.
   return JSON.parse(`[${stdout.replaceAll(/^\}\s*\{/gm, "},{")}]`);
 }
 
 const overGrpc = () => [`http://${server.address}`, "--protocol", "grpc", "--http2-prior-knowledge"] as const;
 const overWeb = () => [server.url.replace(/\/$/, ""), "--protocol", "grpcweb", "--schema", proto] as const;
 
-test("BufCurlLearnsTheSchemaByReflectionAndCalls", async () => {
+test("BufCurlCallsByReflection", async () => {
   const [url, ...flags] = overGrpc();
   const [{ sessions }] = await curl(url, "SessionService/ListSessions", {}, ...flags);
   expect(sessions.map(({ id }: Answer) => id)).toEqual(["cube-springs"]);
@@ -54,7 +55,7 @@ test("BufCurlLearnsTheSchemaByReflectionAndCalls", async () => {
   expect(session.parameters.breathForce).toBe(1.5);
 });
 
-test("BufCurlIsToldInTheServersWordsWhatIsWrong", async () => {
+test("BufCurlReceivesErrorMessages", async () => {
   const [url, ...flags] = overGrpc();
   const asked = curl(url, "SessionService/GetSession", { sessionId: "nobody" }, ...flags);
   await expect(asked).rejects.toMatchObject({ stderr: expect.stringContaining("there is no session") });
@@ -69,7 +70,7 @@ test("BufCurlReadsAStreamOverTheGateway", async () => {
   expect(session.id).toBe("cube-springs");
 });
 
-test("GrpcJsMakesStepsWatchesAndAcknowledges", async () => {
+test("GrpcJsCreatesStepsWatchesAndAcknowledges", async () => {
   const sessions = serviceOf("session", "SessionService");
   const frames = serviceOf("frames", "FrameService");
   await call(sessions, "createSession", { sessionId: "node", source: { name: "cube-tensegrity" } });

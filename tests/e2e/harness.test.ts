@@ -15,7 +15,7 @@ afterAll(async () => {
   await server?.end();
 });
 
-test("TheHarnessOverConnectRunsAStudyToItsEnd", async () => {
+test("TheConnectHarnessRunsAStudyToItsEnd", async () => {
   const progress: number[] = [];
   const study = await studyError(server.url.replace(/\/$/, ""), "cube-tensegrity", (seen) =>
     progress.push(seen.progress),
@@ -28,7 +28,7 @@ test("TheHarnessOverConnectRunsAStudyToItsEnd", async () => {
   expect(advice).toContain("For an error of 0.1 mm");
 });
 
-test("TheHarnessInTheShellKeepsItsLimits", async () => {
+test("TheShellHarnessKeepsItsLimits", async () => {
   const script = join(import.meta.dirname, "../../client/examples/harness.sh");
   const env = { ...process.env, OUT: join(outFolder, "harness") };
   const { stdout } = await promisify(execFile)(script, ["cube-tensegrity"], { env });

@@ -1,29 +1,25 @@
 import type { Browser } from "playwright-core";
 import { afterAll, afterEach, beforeAll, expect, test } from "vitest";
-import { launchBrowser, ViewerPage } from "./browser";
-import { Server } from "./server";
+import { endAll, startAll, ViewerPage } from "./browser";
+import type { Server } from "./server";
 
 let server: Server;
 let browser: Browser;
 
 beforeAll(async () => {
-  browser = await launchBrowser();
-  server = await Server.start();
+  [browser, server] = await startAll();
 });
 
-// What a test leaves open or playing would take the processor from the next one's pictures.
+// Contexts and sessions that a test leaves open would slow down the next test.
 afterEach(async () => {
   for (const context of browser.contexts()) await context.close();
   const { sessions } = JSON.parse(await server.phrenic("sessions", "-o", "json"));
   for (const { id } of sessions) if (id !== "thorax") await server.phrenic("delete", id);
 });
 
-afterAll(async () => {
-  await browser?.close();
-  await server?.end();
-});
+afterAll(() => endAll(browser, server));
 
-test("FromTheAddressToAParalysedHemidiaphragmBesideAHealthyOneInUnderAMinute", async () => {
+test("AParalysedHemidiaphragmBesideAHealthyOneTakesLessThanAMinute", async () => {
   const start = Date.now();
   const viewer = await ViewerPage.open(browser, server.url, { width: 1200, height: 720 });
   const { page } = viewer;
@@ -32,31 +28,31 @@ test("FromTheAddressToAParalysedHemidiaphragmBesideAHealthyOneInUnderAMinute", a
   await list.selectOption({ label: "Paralysis right" });
   await page.waitForURL(/beside=/);
   await viewer.waitForPicture();
-  await page.locator("#pane-heads").getByText("Paralysis right").waitFor();
-  const ways = await page.locator(".pane-head b").allTextContents();
+  await page.locator("#view-headers").getByText("Paralysis right").waitFor();
+  const ways = await page.locator(".view-header b").allTextContents();
   expect(ways.toSorted()).toEqual(["Paralysis right", "Quiet"]);
   expect(Date.now() - start).toBeLessThan(60_000);
   expect(await page.textContent(".differences")).toBe("Right muscle 0 instead of 1");
-  // The list is now of the second picture.
+  // The list now applies to the second view.
   await page.getByLabel("Compare with", { exact: true }).selectOption({ label: "Paralysis left" });
-  await page.locator("#pane-heads").getByText("Paralysis left").waitFor();
-  expect(viewer.complaints).toEqual([]);
-  await viewer.leave("paralysis");
+  await page.locator("#view-headers").getByText("Paralysis left").waitFor();
+  expect(viewer.consoleErrors).toEqual([]);
+  await viewer.saveScreenshot("paralysis");
 });
 
-/** The times [s] of both pictures, as their heads say them. */
+/** Returns the times of both views from their headers [s]. */
 async function times(viewer: ViewerPage): Promise<number[]> {
-  const words = await viewer.page.locator(".pane-head .time").allTextContents();
+  const words = await viewer.page.locator(".view-header .time").allTextContents();
   return words.map((each) => Number.parseFloat(each));
 }
 
-test("BothBreatheInStepStopAtOneInstantAndHaveTheSameColours", async () => {
+test("BothViewsBreatheInStepPauseTogetherAndShareColours", async () => {
   const viewer = await ViewerPage.open(browser, server.url, { width: 1200, height: 720 });
   const { page } = viewer;
   await page.getByLabel("Compare with", { exact: true }).selectOption({ label: "Deep" });
   await page.waitForURL(/beside=/);
   await viewer.waitForPicture();
-  await page.locator("#pane-heads").getByText("Deep").waitFor();
+  await page.locator("#view-headers").getByText("Deep").waitFor();
   const start = await viewer.tick();
   await viewer.waitForTick(start + 400);
   const [here, there] = await times(viewer);
@@ -64,23 +60,23 @@ test("BothBreatheInStepStopAtOneInstantAndHaveTheSameColours", async () => {
   await page.click('#play[aria-label="Pause"]');
   await page.waitForSelector('#play[aria-label="Play"]');
   await page.waitForFunction(() => {
-    const [first, second] = [...document.querySelectorAll(".pane-head .time")].map((each) => each.textContent);
+    const [first, second] = [...document.querySelectorAll(".view-header .time")].map((each) => each.textContent);
     return first === second;
   });
-  const picture = () => page.locator("#beside canvas").screenshot();
+  const picture = () => page.locator("#second-view canvas").screenshot();
   const before = await picture();
   await page.selectOption("#coloring-kind", "displacement");
   await page.waitForSelector("#coloring:not([hidden])");
   await expect.poll(async () => (await picture()).equals(before), { timeout: 20_000 }).toBe(false);
-  // The descent in the head is what the command line reads.
+  // The dome descent in the header equals the one that the command line prints.
   const { measures } = JSON.parse(await server.phrenic("step", "thorax", "1", "-o", "json"));
   const dome = measures.find(({ name }: { name: string }) => name === "right dome");
   const words = `right dome ${(1000 * Math.abs(dome.value)).toFixed(1)} mm`;
-  await page.locator(".pane-head").first().getByText(words).waitFor({ timeout: 20_000 });
-  expect(viewer.complaints).toEqual([]);
+  await page.locator(".view-header").first().getByText(words).waitFor({ timeout: 20_000 });
+  expect(viewer.consoleErrors).toEqual([]);
 });
 
-test("TheLastSecondsAreLookedAtAgainWithoutTheSimulationGoingBack", async () => {
+test("ReplayDoesNotChangeTheSimulation", async () => {
   const viewer = await ViewerPage.open(browser, server.url, { width: 1200, height: 720 });
   const { page } = viewer;
   if ((await page.locator('#play[aria-label="Play"]').count()) > 0) await page.click("#play");
@@ -92,15 +88,15 @@ test("TheLastSecondsAreLookedAtAgainWithoutTheSimulationGoingBack", async () => 
   await page.focus("#view");
   await page.keyboard.press(",");
   await page.keyboard.press(",");
-  await page.waitForSelector("#timeline.back");
+  await page.waitForSelector("#timeline.replaying");
   await expect.poll(() => page.textContent("#status-time")).not.toBe(time);
   expect(await viewer.tick()).toBe(tick);
-  await page.click("#look-live");
+  await page.click("#replay-live");
   await expect.poll(() => page.textContent("#status-time")).toBe(time);
-  expect(await page.locator("#timeline.back").count()).toBe(0);
+  expect(await page.locator("#timeline.replaying").count()).toBe(0);
 });
 
-test("TheForcesOfAMomentAgoAreSeenAgain", async () => {
+test("ForcesAreReplayed", async () => {
   const viewer = await ViewerPage.open(browser, server.url, { width: 1200, height: 720 });
   const { page } = viewer;
   const note = () => page.textContent("#coloring-note");
@@ -112,22 +108,22 @@ test("TheForcesOfAMomentAgoAreSeenAgain", async () => {
   await page.waitForSelector('#play[aria-label="Play"]');
   await page.focus("#view");
   await page.keyboard.press(",");
-  await page.waitForSelector("#timeline.back");
+  await page.waitForSelector("#timeline.replaying");
   expect(await note()).toBe("");
-  // Of another kind nothing was asked then.
+  // Forces of another kind were not queried at that time.
   await page.selectOption("#coloring-kind", "force:springs");
-  expect(await note()).toContain("Not known of this moment");
-  await page.click("#look-live");
+  expect(await note()).toContain("Forces are unknown at this time");
+  await page.click("#replay-live");
   await expect.poll(note).toBe("");
-  expect(viewer.complaints).toEqual([]);
+  expect(viewer.consoleErrors).toEqual([]);
 });
 
-test("ForThePageOfACourseThereIsThePictureAndItsPlaybackAlone", async () => {
+test("AnEmbeddedPageShowsOnlyViewAndPlayback", async () => {
   const viewer = await ViewerPage.open(browser, `${server.url}?session=thorax&embed`, { width: 720, height: 540 });
   const { page } = viewer;
   for (const id of ["header", "panel", "graphs"]) expect(await page.locator(`#${id}`).isVisible()).toBe(false);
-  for (const id of ["play", "disclaimer", "whole"]) expect(await page.locator(`#${id}`).isVisible()).toBe(true);
-  expect(await page.getAttribute("#whole", "href")).toBe("?session=thorax");
+  for (const id of ["play", "disclaimer", "open-full"]) expect(await page.locator(`#${id}`).isVisible()).toBe(true);
+  expect(await page.getAttribute("#open-full", "href")).toBe("?session=thorax");
   expect(await viewer.violations()).toEqual([]);
-  await viewer.leave("embedded");
+  await viewer.saveScreenshot("embedded");
 });

@@ -1,21 +1,21 @@
 import type { Browser, Page } from "playwright-core";
 import type { ViewerPage } from "./browser";
 
-/** A picture of the canvas alone, as PNG in base64. */
+/** Returns a screenshot of the canvas as PNG in base64. */
 export async function canvasPicture(viewer: ViewerPage): Promise<string> {
   const png = await viewer.page.screenshot({ clip: await middle(viewer.page) });
   return png.toString("base64");
 }
 
-/** The middle of the canvas, where no panel lies over it. */
+/** Returns the central part of the canvas that no panel covers. */
 async function middle(page: Page) {
   const box = await page.locator("#view").boundingBox();
   if (box === null) throw new Error("The canvas is not on the page.");
   return { x: box.x + 40, y: box.y + 60, width: box.width - 80, height: box.height - 190 };
 }
 
-/** The share of pixels, 0 to 1, that differ by more than 16 of 255 in a colour. */
-export async function shareOfChangedPixels(browser: Browser, a: string, b: string): Promise<number> {
+/** Returns the fraction of pixels, 0 to 1, that differ by more than 16 of 255 in a colour channel. */
+export async function changedFraction(browser: Browser, a: string, b: string): Promise<number> {
   const page = await browser.newPage();
   const share = await page.evaluate(
     async (pictures) => {

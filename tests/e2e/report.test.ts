@@ -4,11 +4,11 @@ import { join } from "node:path";
 import { pathToFileURL } from "node:url";
 import type { Browser, Page } from "playwright-core";
 import { afterAll, beforeAll, describe, expect, test } from "vitest";
-import { costStudy, errorStudy, pageOf, stabilityStudy } from "../web/study_samples";
+import { costStudy, errorStudy, pageOf, stabilityStudy } from "../web/report/study_samples";
 import { launchBrowser } from "./browser";
 import { outFolder } from "./server";
 
-const empty = readFileSync(join(import.meta.dirname, "../../web/dist/report.html"), "utf8");
+const template = readFileSync(join(import.meta.dirname, "../../web/dist/report.html"), "utf8");
 const studies = { error: errorStudy, stability: stabilityStudy, cost: costStudy };
 let browser: Browser;
 
@@ -19,10 +19,10 @@ beforeAll(async () => {
 
 afterAll(() => browser?.close());
 
-/** The page of a study, opened as the file that a reviewer gets. */
+/** Writes the page of a study to a file and opens it. */
 async function open(name: string, study: object) {
   const path = join(outFolder, `report-${name}.html`);
-  writeFileSync(path, pageOf(empty, study));
+  writeFileSync(path, pageOf(template, study));
   const page = await browser.newPage({ viewport: { width: 1280, height: 900 } });
   const complaints: string[] = [];
   const requests: string[] = [];
@@ -35,8 +35,8 @@ async function open(name: string, study: object) {
   return { page, complaints, others: () => requests.filter((each) => each !== url && !each.startsWith("data:")) };
 }
 
-/** Texts of the plots that stick out of them or cover another. */
-function spoiltTexts(page: Page): Promise<string[]> {
+/** Returns a message for each text of a plot that leaves the plot or overlaps another text. */
+function misplacedTexts(page: Page): Promise<string[]> {
   return page.evaluate(() =>
     [...document.querySelectorAll("svg.plot")].flatMap((svg) => {
       const frame = svg.getBoundingClientRect();
@@ -63,18 +63,18 @@ function spoiltTexts(page: Page): Promise<string[]> {
 }
 
 describe.each(Object.entries(studies))("the page of the %s study", (name, study) => {
-  test("DrawsWithoutComplaintsAndAsksForNothing", async () => {
+  test("HasNoConsoleErrorsAndNoRequests", async () => {
     const { page, complaints, others } = await open(name, study);
     await page.screenshot({ path: join(outFolder, `report-${name}.png`), fullPage: true });
     expect(complaints).toEqual([]);
     expect(others()).toEqual([]);
     expect(await page.locator("figure svg[role=img][aria-label]").count()).toBeGreaterThan(2);
     expect(await page.locator("tbody tr").count()).toBeGreaterThan(5);
-    expect(await spoiltTexts(page)).toEqual([]);
+    expect(await misplacedTexts(page)).toEqual([]);
     await page.close();
   });
 
-  test("AxeFindsNothingAgainstIt", async () => {
+  test("HasNoAxeViolations", async () => {
     const { page } = await open(name, study);
     await page.evaluate(axe.source);
     const found = await page.evaluate(async () => {
@@ -86,7 +86,7 @@ describe.each(Object.entries(studies))("the page of the %s study", (name, study)
   });
 });
 
-test("ThePolicyStopsScriptsThatAreNotThePages", async () => {
+test("TheSecurityPolicyBlocksOtherScripts", async () => {
   const { page } = await open("error", errorStudy);
   const ran = await page.evaluate(async () => {
     const script = document.createElement("script");
@@ -98,7 +98,7 @@ test("ThePolicyStopsScriptsThatAreNotThePages", async () => {
   await page.close();
 });
 
-test("TheLargestErrorIsShownOnDemand", async () => {
+test("TheLargestErrorCanBeSelected", async () => {
   const { page, complaints } = await open("error", errorStudy);
   await page.getByLabel("Largest error").check();
   await page.waitForSelector('figure svg[aria-label^="Largest error"]');

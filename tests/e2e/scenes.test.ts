@@ -1,20 +1,16 @@
 import type { Browser } from "playwright-core";
 import { afterAll, beforeAll, describe, expect, test } from "vitest";
-import { launchBrowser, ViewerPage } from "./browser";
-import { Server } from "./server";
+import { endAll, startAll, ViewerPage } from "./browser";
+import type { Server } from "./server";
 
 let server: Server;
 let browser: Browser;
 
 beforeAll(async () => {
-  browser = await launchBrowser();
-  server = await Server.start();
+  [browser, server] = await startAll();
 });
 
-afterAll(async () => {
-  await browser?.close();
-  await server?.end();
-});
+afterAll(() => endAll(browser, server));
 
 describe("a session made in the browser", () => {
   for (const [scene, body] of [
@@ -34,13 +30,13 @@ describe("a session made in the browser", () => {
       await viewer.page.waitForTimeout(1000);
       expect((await viewer.sample(body, 1)).points).not.toEqual(before.points);
       await viewer.page.check("#show-links");
-      await viewer.leave(scene);
-      expect(viewer.complaints).toEqual([]);
+      await viewer.saveScreenshot(scene);
+      expect(viewer.consoleErrors).toEqual([]);
       await viewer.close();
     });
   }
 
-  /** What the dialog calls a scene: the n-th row is the n-th that the server lists. */
+  /** Returns the title of a scene in the dialog. */
   async function titleOf(viewer: ViewerPage, scene: string): Promise<string> {
     const row = viewer.page.locator(`.chooser li[data-scene="${scene}"] b`);
     await row.waitFor();
@@ -48,7 +44,7 @@ describe("a session made in the browser", () => {
   }
 });
 
-test("ADivergedSessionSaysSoAndItsRemedyHelps", async () => {
+test("ADivergedSessionShowsARemedyThatHelps", async () => {
   const viewer = await ViewerPage.open(browser, server.url);
   await viewer.page.click("#session");
   const before = viewer.page.url();
@@ -59,33 +55,33 @@ test("ADivergedSessionSaysSoAndItsRemedyHelps", async () => {
   await viewer.type("timeStep", 0.1);
   await viewer.page.waitForSelector("#banner-diverged:not([hidden])", { timeout: 60_000 });
   expect(await viewer.page.textContent("#banner-diverged")).toMatch(/diverged at .* s, at vertex \d+ of cube/);
-  await viewer.leave("diverged");
-  await viewer.page.click('button:has-text("Use a stable step and start again")');
+  await viewer.saveScreenshot("diverged");
+  await viewer.page.click('button:has-text("Restart with a stable time step")');
   await viewer.page.waitForSelector("#banner-diverged", { state: "hidden" });
   await viewer.waitForTick(10);
   expect(await viewer.page.isHidden("#banner-diverged")).toBe(true);
   await viewer.close();
 });
 
-test("AMissingSessionIsSaidAndOthersAreOffered", async () => {
+test("AMissingSessionOffersOthers", async () => {
   const context = await browser.newContext();
   const page = await context.newPage();
   await page.goto(`${server.url}?session=nobody`);
-  await page.waitForSelector('#link[data-link="lost"]');
+  await page.waitForSelector('#connection[data-state="lost"]');
   expect(await page.textContent("#banner-lost")).toContain("nobody");
   await page.click('button:has-text("Choose a session")');
   await page.click('.chooser button:has-text("Open")');
-  await page.waitForSelector('#link[data-link="live"]');
+  await page.waitForSelector('#connection[data-state="live"]');
   await context.close();
 });
 
-test("APhoneGetsThePictureFirst", async () => {
+test("OnAPhoneTheViewComesFirst", async () => {
   const viewer = await ViewerPage.open(browser, server.url, { width: 390, height: 780 });
   expect(await viewer.page.isVisible("#panel")).toBe(false);
-  await viewer.leave("phone");
+  await viewer.saveScreenshot("phone");
   await viewer.page.click("#panel-toggle");
   expect(await viewer.page.isVisible("#parameter-breathForce")).toBe(true);
-  await viewer.leave("phone-panel");
+  await viewer.saveScreenshot("phone-panel");
   const wider = await viewer.page.evaluate(() => document.documentElement.scrollWidth > innerWidth);
   expect(wider).toBe(false);
   await viewer.close();

@@ -6,7 +6,7 @@ import { outFolder, Server } from "./server";
 const web = join(import.meta.dirname, "../../web");
 const rest = join(outFolder, "rest.msh");
 
-// Not a test: `npm run screenshot` makes the pictures that the README shows, breathing in.
+// Not a test: `npm run screenshot` takes the screenshots of the README, during inspiration.
 test("Screenshot", async () => {
   const browser = await launchBrowser();
   const server = await Server.start();
@@ -23,19 +23,19 @@ test("Screenshot", async () => {
       await page.click("#step");
       await viewer.waitForTick(before);
     }
-    // At rest the picture is drawn in full.
+    // The canvas is drawn at full resolution when nothing moves.
     await page.mouse.move(0, 0);
     await page.waitForTimeout(4000);
     await page.screenshot({ path: join(web, "screenshot.png") });
-    // The same state beside the diaphragm at rest.
+    // The same state compared with the diaphragm at rest.
     await page.setInputFiles("#compare-file", rest);
-    await page.waitForSelector("#comparison .found:not([hidden])");
+    await page.waitForSelector("#comparison .result:not([hidden])");
     for (const layer of ["Ribs", "Sternum", "Costal cartilages", "Lungs"])
       await page.uncheck(`[aria-label="Show ${layer}"]`);
     await page.mouse.move(0, 0);
     await page.waitForTimeout(4000);
     await page.screenshot({ path: join(web, "comparison.png") });
-    // A paralysed right hemidiaphragm beside a healthy one, both as far into a breath.
+    // A paralysed right hemidiaphragm and a healthy one side by side, at the same phase of the breath.
     await page.goto(server.url);
     await viewer.waitForPicture();
     await page.getByLabel("Compare with", { exact: true }).selectOption({ label: "Paralysis right" });

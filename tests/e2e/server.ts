@@ -7,9 +7,10 @@ import { setTimeout as sleep } from "node:timers/promises";
 import { promisify } from "node:util";
 
 const here = import.meta.dirname;
+/** Folder for screenshots, logs and files of the tests. */
 export const outFolder = join(here, "out");
 
-/** A phrenicd of the test's own, on ports that were free, with its log in tests/e2e/out. */
+/** A phrenicd process on free ports; its log is in tests/e2e/out. */
 export class Server {
   private process: ChildProcess | undefined;
   private readonly store = mkdtempSync(join(tmpdir(), "phrenic-e2e-"));
@@ -21,23 +22,24 @@ export class Server {
     private readonly flags: string[],
   ) {}
 
-  /** With a session of `scene` that plays; "none" for no session. */
+  /** Starts a server with a playing session of `scene`; "none" for no session. */
   static async start(scene = "thorax", flags: string[] = []): Promise<Server> {
     const server = new Server(await freePort(), await freePort(), scene, flags);
     await server.restart();
     return server;
   }
 
+  /** The address of the page. */
   get url(): string {
     return `http://127.0.0.1:${this.web}/`;
   }
 
-  /** Of gRPC. */
+  /** The gRPC address. */
   get address(): string {
     return `127.0.0.1:${this.listen}`;
   }
 
-  /** Starts the program again on the same ports; resolves when it serves the page. */
+  /** Starts the process again on the same ports. Resolves when it serves the page; throws Error after a minute. */
   async restart(): Promise<void> {
     mkdirSync(outFolder, { recursive: true });
     const log = createWriteStream(join(outFolder, "phrenicd.log"), { flags: "a" });
@@ -55,27 +57,27 @@ export class Server {
     throw new Error(`phrenicd did not serve ${this.url} within a minute: see ${outFolder}/phrenicd.log.`);
   }
 
-  /** The thorax' session as the command line, a second client, has it in JSON. */
+  /** Returns the session "thorax" as the command line prints it in JSON. */
   async session() {
     const { sessions } = JSON.parse(await this.phrenic("sessions", "-o", "json"));
     return sessions.find(({ id }: { id: string }) => id === "thorax");
   }
 
-  /** A new account in a file of accounts: its token. */
+  /** Adds an account to an account file and returns its token. */
   static async addAccount(file: string, name: string, role: string): Promise<string> {
     const words = ["token", "add", "--tokens", file, "--name", name, "--role", role];
     return (await promisify(execFile)(program("phrenicd"), words)).stdout.trim();
   }
 
-  /** What the command line says to these words about this server. */
+  /** Runs the command line against this server and returns its output. */
   async phrenic(...words: string[]): Promise<string> {
     const flags = ["--server", `127.0.0.1:${this.listen}`, ...words];
-    // Its tokens stay in the tests' folder.
+    // Keeps the command line's tokens in the tests' folder.
     const env = { ...process.env, XDG_STATE_HOME: join(outFolder, "state") };
     return (await promisify(execFile)(program("phrenic"), flags, { env })).stdout;
   }
 
-  /** The tick at which the session stands once it is paused. */
+  /** Waits until the session is paused and returns its tick. */
   async restingTick(): Promise<number> {
     for (const deadline = Date.now() + 30_000; Date.now() < deadline; await sleep(100)) {
       const { state, tick } = await this.session();
@@ -84,7 +86,7 @@ export class Server {
     throw new Error("The session did not come to rest within 30 s.");
   }
 
-  /** Ends it at once, as a crash would. */
+  /** Kills the process like a crash. */
   async kill(): Promise<void> {
     const child = this.process;
     if (child === undefined || child.exitCode !== null || child.signalCode !== null) return;
@@ -93,7 +95,7 @@ export class Server {
     await ended;
   }
 
-  /** The last of it: what it has stored goes too. */
+  /** Kills the process and deletes its store. */
   async end(): Promise<void> {
     await this.kill();
     rmSync(this.store, { recursive: true, force: true });

@@ -20,7 +20,7 @@ afterAll(async () => {
   await server?.end();
 });
 
-test("TwoBrowsersPlayTogether", async () => {
+test("TwoBrowsersPlayOneSession", async () => {
   const [a, b] = await Promise.all([here.tick(), there.tick()]);
   await Promise.all([here.waitForTick(a), there.waitForTick(b)]);
   await here.page.waitForFunction(() => Number(document.querySelector("#status-viewers")?.textContent) === 2);
@@ -30,14 +30,14 @@ test("TwoBrowsersSeeTheSameVerticesAtTheSameTick", async () => {
   await here.page.click('#play[aria-label="Pause"]');
   await there.page.waitForSelector('#play[aria-label="Play"]');
   const held = await server.restingTick();
-  await Promise.all([here.atTick(held), there.atTick(held)]);
+  await Promise.all([here.waitForExactTick(held), there.waitForExactTick(held)]);
   const [a, b] = await Promise.all([here.sample("diaphragm", 50), there.sample("diaphragm", 50)]);
   expect([a.tick, b.tick]).toEqual([held, held]);
   const off = a.points.flatMap((point, i) => point.map((value, axis) => Math.abs(value - b.points[i][axis])));
-  expect(Math.max(...off)).toBeLessThanOrEqual(2e-3); // each within its bound, which grows to 1 mm on a busy machine
+  expect(Math.max(...off)).toBeLessThanOrEqual(2e-3); // each is within its error bound, which grows to 1 mm on a busy machine
 });
 
-test("ASliderMovedHereMovesThere", async () => {
+test("ASliderMovesInBothBrowsers", async () => {
   await here.page.focus("#parameter-breathLength");
   for (let i = 0; i < 5; i++) await here.page.keyboard.press("ArrowRight");
   const set = await here.value("breathLength");
@@ -51,17 +51,17 @@ test("ASliderMovedHereMovesThere", async () => {
   await there.page.check("#parameter-applyMuscles");
 });
 
-test("ALostServerIsShownAndComesBackWithTheSessionAsItWas", async () => {
+test("ALostServerIsShownAndTheSessionIsRestored", async () => {
   await here.page.click("#play");
   await server.phrenic("set", "thorax", "breath_force=1.5");
   await here.waitForTick(await here.tick());
   const { tick } = await server.session();
   await server.kill();
   await here.waitForLink("lost");
-  expect(await here.page.innerText("#link")).toContain("retrying");
+  expect(await here.page.innerText("#connection")).toContain("retrying");
   expect(await here.page.isVisible("#banner-lost")).toBe(true);
   expect(await here.violations()).toEqual([]);
-  await here.leave("lost");
+  await here.saveScreenshot("lost");
   await server.restart();
   await here.waitForLink("live");
   await there.waitForLink("live");
@@ -73,7 +73,7 @@ test("ALostServerIsShownAndComesBackWithTheSessionAsItWas", async () => {
   expect(Number(session.tick)).toBeGreaterThan(Number(tick) - 1 / session.parameters.time_step);
 });
 
-test("OnlyTheLossWasWorthAComplaint", () => {
+test("OnlyTheLossCausedConsoleErrors", () => {
   const expected = /net::ERR_/;
-  expect([...here.complaints, ...there.complaints].filter((text) => !expected.test(text))).toEqual([]);
+  expect([...here.consoleErrors, ...there.consoleErrors].filter((text) => !expected.test(text))).toEqual([]);
 });

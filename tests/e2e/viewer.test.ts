@@ -1,34 +1,30 @@
 import type { Browser } from "playwright-core";
 import { afterAll, beforeAll, beforeEach, describe, expect, test } from "vitest";
-import { launchBrowser, ViewerPage } from "./browser";
-import { canvasPicture, shareOfChangedPixels } from "./pixels";
-import { Server } from "./server";
+import { endAll, startAll, ViewerPage } from "./browser";
+import { canvasPicture, changedFraction } from "./pixels";
+import type { Server } from "./server";
 
 let server: Server;
 let browser: Browser;
 let viewer: ViewerPage;
 
 beforeAll(async () => {
-  browser = await launchBrowser();
-  server = await Server.start();
+  [browser, server] = await startAll();
   viewer = await ViewerPage.open(browser, server.url);
 });
 
-afterAll(async () => {
-  await browser?.close();
-  await server?.end();
-});
+afterAll(() => endAll(browser, server));
 
 const play = () => viewer.page.locator('#play[aria-label="Play"]');
 const pause = () => viewer.page.locator('#play[aria-label="Pause"]');
 
-/** Waits for so much simulated time [s]. */
+/** Waits for this much simulated time [s]. */
 async function pass(seconds: number): Promise<void> {
   const until = seconds + (await viewer.page.evaluate(() => window.phrenic!.time()));
   await viewer.page.waitForFunction((time) => window.phrenic!.time() >= time, until, { timeout: 60_000 });
 }
 
-/** The vertex of the diaphragm that is highest now. */
+/** Returns the highest vertex of the diaphragm in the newest frame. */
 async function highestVertex(): Promise<number> {
   return viewer.page.evaluate(() => {
     const hook = window.phrenic!;
@@ -39,7 +35,7 @@ async function highestVertex(): Promise<number> {
   });
 }
 
-/** Height that a vertex of the diaphragm goes through in `seconds` of simulated time [m]. */
+/** Returns the range of height of a vertex of the diaphragm during `seconds` of simulated time [m]. */
 async function travel(vertex: number, seconds: number): Promise<number> {
   return viewer.page.evaluate(
     async ({ vertex, seconds }) => {
@@ -56,13 +52,13 @@ async function travel(vertex: number, seconds: number): Promise<number> {
   );
 }
 
-/** Greatest way between two samples [m]. */
+/** Returns the largest distance between corresponding points [m]. */
 function greatestMove(a: [number, number, number][], b: [number, number, number][]): number {
   return Math.max(...a.map((p, i) => Math.hypot(p[0] - b[i][0], p[1] - b[i][1], p[2] - b[i][2])));
 }
 
 describe("the thorax in the browser", () => {
-  test("IsThereAndLive", async () => {
+  test("IsLive", async () => {
     await viewer.waitForLink("live");
     const bodies = await viewer.page.evaluate(() => window.phrenic!.bodies());
     expect(bodies).toContain("diaphragm");
@@ -70,23 +66,23 @@ describe("the thorax in the browser", () => {
     expect(await viewer.page.textContent("#disclaimer")).toBe("Research and teaching; not for clinical use");
   });
 
-  test("ItsDiaphragmsVerticesMove", async () => {
+  test("MovesTheVerticesOfTheDiaphragm", async () => {
     const before = await viewer.sample("diaphragm");
-    // Wherever in a breath it began, some part of it later the dome is elsewhere.
+    // The dome moves within some part of a breath, whatever the phase at the start.
     const moved = async () => greatestMove(before.points, (await viewer.sample("diaphragm")).points);
     await expect.poll(moved, { timeout: 90_000, interval: 500 }).toBeGreaterThan(0.002);
   });
 
-  test("ItsDiaphragmsPixelsMove", async () => {
+  test("MovesThePixelsOfTheDiaphragm", async () => {
     const boxes = viewer.page.locator('.layer-name input[type="checkbox"]');
     const others = viewer.page.locator(".layer-name", { hasNotText: "Diaphragm" }).locator("input");
     expect(await boxes.count()).toBeGreaterThan(3);
     for (const box of await others.all()) await box.uncheck();
-    // The picture follows the frames as fast as the machine draws: until something that moves is seen, however long.
+    // Frames are drawn as fast as the machine allows, so the test polls until a change is visible.
     const first = await canvasPicture(viewer);
-    const changed = async () => shareOfChangedPixels(browser, first, await canvasPicture(viewer));
+    const changed = async () => changedFraction(browser, first, await canvasPicture(viewer));
     await expect.poll(changed, { timeout: 90_000, interval: 1000 }).toBeGreaterThan(0.005);
-    await viewer.leave("diaphragm");
+    await viewer.saveScreenshot("diaphragm");
     for (const box of await others.all()) await box.check();
   });
 
@@ -94,11 +90,11 @@ describe("the thorax in the browser", () => {
     // Short breaths, since a loaded machine may simulate slower than real time.
     await viewer.type("breathLength", 2);
     await pass(1);
-    // The same vertex both times: which one is highest depends on the moment.
+    // The same vertex is used for both measurements, since the highest vertex changes during a breath.
     const dome = await highestVertex();
     const quiet = await travel(dome, 2.1);
     await viewer.type("breathForce", 2);
-    // One breath to grow into the new force.
+    // One breath until the new force has its full effect.
     await pass(2);
     const strong = await travel(dome, 2.1);
     await viewer.page.click('[aria-label="Reset breath force"]');
@@ -119,24 +115,24 @@ describe("the buttons", () => {
     await pause().waitFor();
   });
 
-  test("PauseHoldsTheTickAndPlayGoesOn", async () => {
+  test("PauseHoldsTheTickAndPlayContinues", async () => {
     await pause().click();
     await play().waitFor();
     const held = await server.restingTick();
-    await viewer.atTick(held);
+    await viewer.waitForExactTick(held);
     await viewer.page.waitForTimeout(700);
     expect(await viewer.tick()).toBe(held);
     await play().click();
     await viewer.waitForTick(held);
   });
 
-  test("StepTakesTheChosenTicks", async () => {
+  test("StepAdvancesByTheChosenTicks", async () => {
     await pause().click();
     await play().waitFor();
     const held = await server.restingTick();
     await viewer.page.selectOption("#stride", "10");
     await viewer.page.click("#step");
-    await viewer.atTick(held + 10);
+    await viewer.waitForExactTick(held + 10);
     expect(await server.restingTick()).toBe(held + 10);
   });
 
@@ -144,7 +140,7 @@ describe("the buttons", () => {
     await pause().click();
     await play().waitFor();
     await viewer.page.click("#reset");
-    await viewer.atTick(0);
+    await viewer.waitForExactTick(0);
     expect(await viewer.page.evaluate(() => window.phrenic!.time())).toBe(0);
   });
 
@@ -161,7 +157,7 @@ describe("the buttons", () => {
     expect(pace).toBeLessThan(0.2);
   });
 
-  test("APresetIsTakenAndShownAsPressed", async () => {
+  test("APresetIsAppliedAndShownAsPressed", async () => {
     const preset = (name: string) => viewer.page.locator(`#presets button:text-is("${name}")`);
     expect(await viewer.page.locator("#presets button").allTextContents()).toEqual([
       "Quiet",
@@ -182,13 +178,13 @@ describe("the buttons", () => {
       })
       .toBe(2.5);
     await viewer.page.waitForSelector('#presets button[aria-pressed="true"]:text-is("Chest")');
-    await viewer.leave("presets");
+    await viewer.saveScreenshot("presets");
     await preset("Quiet").click();
     await viewer.page.waitForSelector('#presets button[aria-pressed="true"]:text-is("Quiet")');
     expect(await viewer.value("breathForce")).toBe("1");
   });
 
-  test("ShiftDragPullsTheTissueUntilItIsLetGo", async () => {
+  test("ShiftDragPullsTheTissueUntilItIsReleased", async () => {
     const box = (await viewer.page.locator("#view").boundingBox())!;
     const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
     const pulls = async () => ((await server.session()).pulls ?? []) as { body: string }[];
@@ -203,13 +199,13 @@ describe("the buttons", () => {
       .toEqual(["diaphragm"]);
     await viewer.page.waitForSelector("#pulls:not([hidden])");
     expect(await viewer.page.textContent("#force:not([hidden])")).toMatch(/^\d+\.\d\d N$/);
-    await viewer.leave("pull");
+    await viewer.saveScreenshot("pull");
     await viewer.page.mouse.up();
     await viewer.page.keyboard.up("Shift");
     await expect.poll(async () => (await pulls()).length, { timeout: 10_000 }).toBe(0);
   });
 
-  test("AnotherIntegratorIsTakenWhileItPlays", async () => {
+  test("TheIntegratorChangesDuringPlayback", async () => {
     await viewer.page.selectOption("#parameter-integrator", {
       label: "Velocity Verlet",
     });
@@ -234,8 +230,8 @@ describe("the buttons", () => {
     for (const kind of ["wireframe", "links", "lines", "attachments"]) {
       await viewer.page.check(`#show-${kind}`);
       await viewer.page.waitForTimeout(1500);
-      expect(await shareOfChangedPixels(browser, plain, await canvasPicture(viewer)), kind).toBeGreaterThan(0.0005);
-      await viewer.leave(`overlay-${kind}`);
+      expect(await changedFraction(browser, plain, await canvasPicture(viewer)), kind).toBeGreaterThan(0.0005);
+      await viewer.saveScreenshot(`overlay-${kind}`);
       await viewer.page.uncheck(`#show-${kind}`);
     }
     await viewer.page.locator("#transparency").fill("0");
@@ -243,23 +239,23 @@ describe("the buttons", () => {
 });
 
 describe("the report", () => {
-  test("SaysWhatRunsAndHowLargeAStepMayBe", async () => {
-    await viewer.page.click('summary:has-text("What runs")');
+  test("ShowsWhatRunsAndTheLargestStableStep", async () => {
+    await viewer.page.click('summary:has-text("Scene report")');
     const text = await viewer.page.textContent(".report");
     expect(text).toContain("rigid links");
     expect(text).toMatch(/Largest stable step [0-9.]+ ms/);
-    await viewer.leave("report");
-    await viewer.page.click('summary:has-text("What runs")');
+    await viewer.saveScreenshot("report");
+    await viewer.page.click('summary:has-text("Scene report")');
   });
 });
 
-test("ThePageKeepsToItsOwnServerAndHasNothingToComplainAbout", () => {
+test("ThePageOnlyContactsItsServerWithoutConsoleErrors", () => {
   expect([...viewer.origins]).toEqual([new URL(server.url).origin]);
-  expect(viewer.complaints).toEqual([]);
+  expect(viewer.consoleErrors).toEqual([]);
 });
 
-// The last: there is no page after it.
-test("APageThatGoesInMidPullLetsGo", async () => {
+// Must be the last test, since it leaves the page.
+test("ClosingThePageReleasesAPull", async () => {
   const pulls = async () => ((await server.session()).pulls ?? []) as { body: string }[];
   const box = (await viewer.page.locator("#view").boundingBox())!;
   const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];

@@ -1,4 +1,4 @@
-// Long life: many come, watch and go, most without a word; what the server holds must not grow.
+// Soak test: clients connect, watch and disconnect, most without cancelling; the server's resources must not grow.
 #include <grpcpp/create_channel.h>
 
 #include <algorithm>
@@ -17,22 +17,22 @@
 namespace phrenic::faults {
 namespace {
 
-constexpr int kSessions = 6, kWatchers = 3;  // of a round; of a session
-constexpr int kFrames = 10;                  // that a viewer stays for
+constexpr int kSessions = 6, kWatchers = 3;  // per round; per session
+constexpr int kFrames = 10;                  // that a viewer reads
 constexpr char kScenes[][16] = {"cube-springs", "cube-tensegrity", "sheet-2d"};
 
-// What a server holds.
-struct Held {
+// Resources of a server process.
+struct Resources {
   double memory = 0, threads = 0, files = 0;  // resident [MB]
 };
 
-Held HeldBy(const ServerProcess& server) {
+Resources ResourcesOf(const ServerProcess& server) {
   return {1e-6 * static_cast<double>(server.Memory()), static_cast<double>(server.Threads()),
           static_cast<double>(server.Files())};
 }
 
-// Sees some frames and goes: every other one by closing its connection under the stream.
-void Watch(const ServerProcess& server, const std::string& session, bool politely) {
+// Reads some frames, then cancels the stream, or closes the connection without cancelling it.
+void Watch(const ServerProcess& server, const std::string& session, bool cancel) {
   grpc::ClientContext context;
   const auto stub = v1::FrameService::NewStub(server.NewChannel());
   v1::WatchFramesRequest request;
@@ -40,13 +40,13 @@ void Watch(const ServerProcess& server, const std::string& session, bool politel
   const auto reader = stub->WatchFrames(&context, request);
   v1::WatchFramesResponse response;
   for (int frames = 0; frames < kFrames && reader->Read(&response);) frames += response.has_frame() ? 1 : 0;
-  if (!politely) return;
+  if (!cancel) return;
   context.TryCancel();
   reader->Finish();
 }
 
-// Asks for a page and does not wait for it.
-void AskTheWeb(const ServerProcess& server) {
+// Requests a page and disconnects without reading the response.
+void RequestPage(const ServerProcess& server) {
   boost::asio::io_context io;
   boost::asio::ip::tcp::socket socket(io);
   boost::system::error_code error;
@@ -72,7 +72,7 @@ bool Round(const ServerProcess& server) {
     ids.push_back(created.session().id());
     for (int k = 0; k < kWatchers; ++k)
       watchers.emplace_back([&server, id = ids.back(), k] { Watch(server, id, k == 0); });
-    AskTheWeb(server);
+    RequestPage(server);
   }
   for (std::thread& watcher : watchers) watcher.join();
   for (const std::string& id : ids) {
@@ -85,21 +85,21 @@ bool Round(const ServerProcess& server) {
   return good;
 }
 
-// The middle one of each amount.
-Held MiddleOf(std::vector<Held> all) {
-  const auto middle = [&](double Held::*amount) {
-    std::ranges::sort(all, {}, amount);
-    return all[all.size() / 2].*amount;
+// Returns the median of each resource.
+Resources MedianOf(std::vector<Resources> all) {
+  const auto median = [&](double Resources::*resource) {
+    std::ranges::sort(all, {}, resource);
+    return all[all.size() / 2].*resource;
   };
-  return {middle(&Held::memory), middle(&Held::threads), middle(&Held::files)};
+  return {median(&Resources::memory), median(&Resources::threads), median(&Resources::files)};
 }
 
-// Whether the last third of the rounds holds no more than the one before it; the first third fills pools and caches.
-bool Flat(const std::vector<Held>& rounds, std::string& told) {
+// True if the last third of the rounds uses no more than the second third; the first one fills pools and caches.
+bool Flat(const std::vector<Resources>& rounds, std::string& note) {
   const auto third = static_cast<std::ptrdiff_t>(rounds.size() / 3);
-  const Held before = MiddleOf({rounds.end() - 2 * third, rounds.end() - third});
-  const Held after = MiddleOf({rounds.end() - third, rounds.end()});
-  told = absl::StrFormat("memory %.1f -> %.1f MB, threads %.0f -> %.0f, files %.0f -> %.0f", before.memory,
+  const Resources before = MedianOf({rounds.end() - 2 * third, rounds.end() - third});
+  const Resources after = MedianOf({rounds.end() - third, rounds.end()});
+  note = absl::StrFormat("memory %.1f -> %.1f MB, threads %.0f -> %.0f, files %.0f -> %.0f", before.memory,
                          after.memory, before.threads, after.threads, before.files, after.files);
   return after.memory <= 1.02 * before.memory + 2 && after.threads <= before.threads + 2 &&
          after.files <= before.files + 2;
@@ -110,14 +110,14 @@ bool Flat(const std::vector<Held>& rounds, std::string& told) {
 Tally ComingAndGoing(Oracle& oracle, const std::string& folder, int times) {
   Tally tally;
   Rig rig(oracle, folder);
-  std::vector<Held> rounds;
+  std::vector<Resources> rounds;
   for (int i = 0; i < std::max(6, times); ++i) {
     rig.Disturb([&] { tally.lost += Round(rig.server()) ? 0 : 1; });
     rig.Recover(tally);
     absl::SleepFor(absl::Milliseconds(200));
-    rounds.push_back(HeldBy(rig.server()));
+    rounds.push_back(ResourcesOf(rig.server()));
   }
-  if (!Flat(rounds, tally.told)) ++tally.wrong;
+  if (!Flat(rounds, tally.note)) ++tally.wrong;
   return tally;
 }
 

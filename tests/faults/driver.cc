@@ -9,10 +9,10 @@
 namespace phrenic::faults {
 namespace {
 
-constexpr char kOwn[] = "undisturbed";
-constexpr int kStepsAChange = 5;
+constexpr char kSession[] = "undisturbed";
+constexpr int kStepsPerChange = 5;
 
-// Each call ends within two seconds, so that a server that is gone is noticed.
+// A call with a timeout of two seconds, to detect a server that is gone.
 struct Call : grpc::ClientContext {
   explicit Call(const std::string& session, double seconds = 2) {
     AddMetadata("x-session-id", session);
@@ -48,7 +48,7 @@ grpc::Status StepTo(v1::SessionService::Stub& stub, const std::string& session, 
   return stub.StepSession(&call, step, &stepped);
 }
 
-bool ChangesAt(std::int64_t tick) { return tick % (kStepsAChange * kTicksAStep) == 0; }
+bool ChangesAt(std::int64_t tick) { return tick % (kStepsPerChange * kTicksPerStep) == 0; }
 
 }  // namespace
 
@@ -57,7 +57,7 @@ Oracle::Oracle() {
   if (!server.ok()) return;
   server_ = *std::move(server);
   stub_ = v1::SessionService::NewStub(server_->InProcessChannel());
-  if (!Create(*stub_, kOwn).ok()) stub_ = nullptr;
+  if (!Create(*stub_, kSession).ok()) stub_ = nullptr;
   absl::MutexLock lock(&mutex_);
   hashes_[0] = "";
 }
@@ -67,9 +67,9 @@ std::string Oracle::HashAt(std::int64_t tick) {
   while (stub_ != nullptr && hashes_.rbegin()->first < tick) {
     const std::int64_t at = hashes_.rbegin()->first;
     v1::StepSessionResponse stepped;
-    if (ChangesAt(at) && !ChangeAt(*stub_, kOwn, at).ok()) break;
-    if (!StepTo(*stub_, kOwn, at, at + kTicksAStep, stepped).ok()) break;
-    hashes_[at + kTicksAStep] = stepped.state_hash();
+    if (ChangesAt(at) && !ChangeAt(*stub_, kSession, at).ok()) break;
+    if (!StepTo(*stub_, kSession, at, at + kTicksPerStep, stepped).ok()) break;
+    hashes_[at + kTicksPerStep] = stepped.state_hash();
   }
   const auto found = hashes_.find(tick);
   return found == hashes_.end() ? "no undisturbed run" : found->second;
@@ -77,7 +77,7 @@ std::string Oracle::HashAt(std::int64_t tick) {
 
 bool Driver::Connect(const std::string& address, bool create) {
   grpc::ChannelArguments arguments;
-  arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);  // no connection of an earlier server is taken up again
+  arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);  // does not reuse the connection to an earlier server
   arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 20);
   arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 100);
   arguments.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS, 20);
@@ -114,18 +114,18 @@ std::optional<std::int64_t> Driver::FindTick(double seconds) {
 
 bool Driver::Step() {
   if (tick_ < 0 && !FindTick(0).has_value()) return false;
-  // Where it stands within a call's steps, those are finished first.
-  const std::int64_t end = (tick_ / kTicksAStep + 1) * kTicksAStep;
+  // Completes a partly executed call first.
+  const std::int64_t end = (tick_ / kTicksPerStep + 1) * kTicksPerStep;
   v1::StepSessionResponse stepped;
   grpc::Status status = ChangesAt(tick_) ? ChangeAt(*stub_, session_, tick_) : grpc::Status::OK;
   if (status.ok()) status = StepTo(*stub_, session_, tick_, end, stepped);
   error_ = status.error_message();
-  tick_ = status.ok() ? end : -1;  // it may have been done all the same: ask
+  tick_ = status.ok() ? end : -1;  // the call may have taken effect: FindTick asks
   if (!status.ok()) return false;
   seen_ = stepped.session();
   if (stepped.session().tick() == end && stepped.state_hash() == oracle_.HashAt(end)) return true;
   ++wrong_;
-  std::fprintf(stderr, "wrong answer at tick %lld: %s, not %s\n", static_cast<long long>(end),
+  std::fprintf(stderr, "wrong hash at tick %lld: %s instead of %s\n", static_cast<long long>(end),
                stepped.state_hash().c_str(), oracle_.HashAt(end).c_str());
   return true;
 }

@@ -1,4 +1,4 @@
-// A client that steps one session and knows what every answer has to be: an undisturbed run in this process says so.
+// A client that steps one session and compares every response with an undisturbed run in this process.
 #ifndef PHRENIC_TESTS_FAULTS_DRIVER_H_
 #define PHRENIC_TESTS_FAULTS_DRIVER_H_
 
@@ -15,13 +15,13 @@
 
 namespace phrenic::faults {
 
-inline constexpr std::int64_t kTicksAStep = 7;
+inline constexpr std::int64_t kTicksPerStep = 7;
 
-// The undisturbed run. Any thread may call.
+// The undisturbed run. Thread-safe.
 class Oracle {
  public:
   Oracle();
-  // The hash after this many ticks, a multiple of kTicksAStep.
+  // Returns the state's hash after `tick` ticks, a multiple of kTicksPerStep.
   std::string HashAt(std::int64_t tick);
 
  private:
@@ -31,20 +31,21 @@ class Oracle {
   std::map<std::int64_t, std::string> hashes_ ABSL_GUARDED_BY(mutex_);
 };
 
+// Not thread-safe.
 class Driver {
  public:
   explicit Driver(Oracle& oracle, std::string session = "driven") : oracle_(oracle), session_(std::move(session)) {}
-  // Where the server is now; makes the session where `create` says so. False where it cannot be had.
+  // Connects to a server and creates the session if `create` is true. False if that fails; error() says why.
   bool Connect(const std::string& address, bool create = false);
   bool Connect(const std::shared_ptr<grpc::Channel>& channel, bool create);
-  // What the session's tick is, once the server answers; nothing where it does not have it, or not within `seconds`.
+  // Returns the session's tick. Retries for `seconds`; nullopt if the server has no such session or does not answer.
   std::optional<std::int64_t> FindTick(double seconds);
-  // One call of kTicksAStep, with a change of a parameter now and then that is a function of the tick, so that whoever
-  // repeats it makes the same one. Goes on where the session stands. False where there is no answer; a hash that is not
-  // the undisturbed run's is counted.
+  // Steps the session by kTicksPerStep. Some ticks also change a parameter to a value that depends on the tick only, so
+  // that a repeat makes the same change. False without a response; a hash that differs from the undisturbed run is
+  // counted.
   bool Step();
   int wrong() const { return wrong_; }
-  // As it was answered last, and whether it still stands there as far as is known.
+  // The session of the last response, and whether its tick is known to be current.
   const v1::Session& seen() const { return seen_; }
   bool knows() const { return tick_ >= 0; }
   const std::string& error() const { return error_; }
@@ -54,7 +55,7 @@ class Driver {
   const std::string session_;
   v1::Session seen_;
   std::unique_ptr<v1::SessionService::Stub> stub_;
-  std::int64_t tick_ = -1;  // -1: not known
+  std::int64_t tick_ = -1;  // -1: unknown
   int wrong_ = 0;
   std::string error_;
 };

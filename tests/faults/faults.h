@@ -1,4 +1,4 @@
-// The faults: each is tried many times on a server that is at work. To add one, a function here and its line in
+// The faults, each injected many times into a server under load. To add one, declare its function and add a row to
 // kFaults.
 #ifndef PHRENIC_TESTS_FAULTS_FAULTS_H_
 #define PHRENIC_TESTS_FAULTS_FAULTS_H_
@@ -12,43 +12,43 @@ namespace phrenic::faults {
 
 struct Fault {
   const char* name;
-  const char* what;  // for people
+  const char* description;
   int times;
   Tally (*run)(Oracle& oracle, const std::string& folder, int times);
 };
 
-// Of processes (process_faults.cc).
+// Process faults (process_faults.cc).
 Tally Killed(Oracle& oracle, const std::string& folder, int times);
 Tally Ended(Oracle& oracle, const std::string& folder, int times);
 Tally Frozen(Oracle& oracle, const std::string& folder, int times);
 Tally ClockJumps(Oracle& oracle, const std::string& folder, int times);
 Tally OutOfMemory(Oracle& oracle, const std::string& folder, int times);
-// Of the store (store_faults.cc).
+// Store faults (store_faults.cc).
 Tally DiskFull(Oracle& oracle, const std::string& folder, int times);
 Tally Flipped(Oracle& oracle, const std::string& folder, int times);
 Tally TwoServers(Oracle& oracle, const std::string& folder, int times);
-// Of clients and the network (wire_faults.cc).
+// Client and network faults (wire_faults.cc).
 Tally LineCut(Oracle& oracle, const std::string& folder, int times);
 Tally Delayed(Oracle& oracle, const std::string& folder, int times);
 Tally RandomRequests(Oracle& oracle, const std::string& folder, int times);
 Tally RandomBytes(Oracle& oracle, const std::string& folder, int times);
-// Of time (crowd.cc).
+// Resource leaks (crowd.cc).
 Tally ComingAndGoing(Oracle& oracle, const std::string& folder, int times);
 
 inline constexpr Fault kFaults[] = {
     {"killed", "SIGKILL at a random moment", 100, &Killed},
     {"ended", "SIGTERM at a random moment", 30, &Ended},
-    {"frozen", "stopped for up to half a second", 20, &Frozen},
-    {"clock", "the clock jumps by up to a year, both ways", 20, &ClockJumps},
-    {"memory", "no memory for the next big scene", 5, &OutOfMemory},
-    {"disk", "the store's disk is full, and has room again", 10, &DiskFull},
-    {"flipped", "a byte of the store is flipped", 30, &Flipped},
+    {"frozen", "suspended for up to 0.5 s", 20, &Frozen},
+    {"clock", "the wall clock jumps by up to a year", 20, &ClockJumps},
+    {"memory", "no memory for the next large scene", 5, &OutOfMemory},
+    {"disk", "the store's disk is full for a while", 10, &DiskFull},
+    {"flipped", "a bit of the store is flipped", 30, &Flipped},
     {"twice", "a second server on the same store", 10, &TwoServers},
-    {"cut", "the line is cut in a call", 50, &LineCut},
-    {"delayed", "bytes that come up to 0.4 s late", 10, &Delayed},
+    {"cut", "the connection is cut during a call", 50, &LineCut},
+    {"delayed", "bytes are delayed by up to 0.4 s", 10, &Delayed},
     {"requests", "every method with random requests", 2000, &RandomRequests},
     {"bytes", "random bytes on both ports", 200, &RandomBytes},
-    {"crowd", "six sessions, eighteen viewers come and go", 60, &ComingAndGoing},
+    {"crowd", "6 sessions and 18 viewers connect and leave", 60, &ComingAndGoing},
 };
 
 }  // namespace phrenic::faults

@@ -1,5 +1,5 @@
-// Tries faults on a server at work, and prints what they cost: build/faults [--share S] [FAULT ...]. Exit code 1 where
-// a session was lost or an answer was wrong.
+// Injects faults into a server under load and prints losses and recovery times: build/faults [--share S] [FAULT ...].
+// Exit code 1 if a session was lost or a response was wrong.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -12,25 +12,25 @@
 namespace phrenic::faults {
 namespace {
 
-double Quantile(std::vector<double> values, double share) {
+double Quantile(std::vector<double> values, double fraction) {
   if (values.empty()) return 0;
   std::sort(values.begin(), values.end());
-  return values[static_cast<size_t>(share * static_cast<double>(values.size() - 1))];
+  return values[static_cast<size_t>(fraction * static_cast<double>(values.size() - 1))];
 }
 
 void PrintLine(const Fault& fault, const Tally& tally) {
   if (!tally.skipped.empty()) {
-    std::printf("%-9s %-46s not tried: %s\n", fault.name, fault.what, tally.skipped.c_str());
+    std::printf("%-9s %-46s skipped: %s\n", fault.name, fault.description, tally.skipped.c_str());
   } else {
-    std::printf("%-9s %-46s %6d %6d %6d %9.0f %9.0f\n", fault.name, fault.what, tally.tried, tally.lost, tally.wrong,
-                1e3 * Quantile(tally.recovered, 0.5), 1e3 * Quantile(tally.recovered, 1));
+    std::printf("%-9s %-46s %6d %6d %6d %9.0f %9.0f\n", fault.name, fault.description, tally.tried, tally.lost,
+                tally.wrong, 1e3 * Quantile(tally.recovered, 0.5), 1e3 * Quantile(tally.recovered, 1));
   }
-  if (!tally.told.empty()) std::printf("%-9s %s\n", "", tally.told.c_str());
+  if (!tally.note.empty()) std::printf("%-9s %s\n", "", tally.note.c_str());
   std::fflush(stdout);
 }
 
 int Run(const std::vector<std::string>& chosen, double share) {
-  std::printf("%-9s %-46s %6s %6s %6s %9s %9s\n", "fault", "", "tried", "lost", "wrong", "back: p50", "most [ms]");
+  std::printf("%-9s %-46s %6s %6s %6s %9s %9s\n", "fault", "", "tried", "lost", "wrong", "recovery", "max [ms]");
   Oracle oracle;
   int bad = 0;
   for (const Fault& fault : kFaults) {
@@ -51,12 +51,12 @@ int Run(const std::vector<std::string>& chosen, double share) {
 }  // namespace phrenic::faults
 
 int main(int argc, char** argv) {
-  CLI::App app("Tries faults on a server at work");
+  CLI::App app("Injects faults into a server under load");
   std::vector<std::string> names, chosen;
   for (const auto& fault : phrenic::faults::kFaults) names.emplace_back(fault.name);
   double share = 1;
-  app.add_option("FAULT", chosen, "which (all)")->check(CLI::IsMember(names));
-  app.add_option("--share", share, "of the usual times")->check(CLI::Range(0.001, 100.0));
+  app.add_option("FAULT", chosen, "faults to inject; default: all")->check(CLI::IsMember(names));
+  app.add_option("--share", share, "fraction of the usual number of injections")->check(CLI::Range(0.001, 100.0));
   CLI11_PARSE(app, argc, argv);
   return phrenic::faults::Run(chosen, share);
 }

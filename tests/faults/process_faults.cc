@@ -17,7 +17,7 @@ namespace {
 
 constexpr char kClockLibrary[] = "/usr/lib/x86_64-linux-gnu/faketime/libfaketimeMT.so.1";
 
-// Of a process' address space [bytes].
+// Returns the size of a process' address space [bytes].
 rlim_t SizeOf(pid_t pid) {
   std::ifstream file(absl::StrCat("/proc/", pid, "/statm"));
   rlim_t pages = 0;
@@ -25,8 +25,8 @@ rlim_t SizeOf(pid_t pid) {
   return pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE));
 }
 
-// Asks for sessions of the thorax until one is refused, or nobody answers.
-void AskForTooMuch(const std::string& address) {
+// Creates sessions of the thorax until one is refused or the server does not answer.
+void ExhaustMemory(const std::string& address) {
   const auto stub = v1::SessionService::NewStub(grpc::CreateChannel(address, grpc::InsecureChannelCredentials()));
   for (int i = 0; i < 8; ++i) {
     v1::CreateSessionRequest request;
@@ -50,7 +50,7 @@ Tally Killed(Oracle& oracle, const std::string& folder, int times) {
   return tally;
 }
 
-// It has to end by itself, in time, and with 0.
+// The server must exit by itself within 15 s with code 0.
 Tally Ended(Oracle& oracle, const std::string& folder, int times) {
   Tally tally;
   Rig rig(oracle, folder);
@@ -58,7 +58,7 @@ Tally Ended(Oracle& oracle, const std::string& folder, int times) {
     int code = -1;
     rig.Disturb([&] { code = rig.server().Stop(15); });
     if (code != 0) {
-      std::fprintf(stderr, "told to end, it gave %d\n", code);
+      std::fprintf(stderr, "exit code %d after SIGTERM\n", code);
       ++tally.lost;
     }
     rig.Recover(tally);
@@ -80,7 +80,7 @@ Tally Frozen(Oracle& oracle, const std::string& folder, int times) {
   return tally;
 }
 
-// libfaketime's: the wall clock, not the one that only goes forward.
+// libfaketime changes the wall clock but not the monotonic clock.
 Tally ClockJumps(Oracle& oracle, const std::string& folder, int times) {
   Tally tally;
   if (!std::filesystem::exists(kClockLibrary)) {
@@ -103,7 +103,7 @@ Tally ClockJumps(Oracle& oracle, const std::string& folder, int times) {
   return tally;
 }
 
-// What the system does not give, or ends the server for, costs no session: it comes back with all of them.
+// No session may be lost if an allocation fails or the kernel ends the server.
 Tally OutOfMemory(Oracle& oracle, const std::string& folder, int times) {
   Tally tally;
   Rig rig(oracle, folder);
@@ -112,7 +112,7 @@ Tally OutOfMemory(Oracle& oracle, const std::string& folder, int times) {
       const rlim_t most = SizeOf(rig.server().pid()) + (rlim_t{20} << 20);
       const rlimit limit = {most, RLIM_INFINITY}, none = {RLIM_INFINITY, RLIM_INFINITY};
       prlimit(rig.server().pid(), RLIMIT_AS, &limit, nullptr);
-      AskForTooMuch(rig.server().address());
+      ExhaustMemory(rig.server().address());
       prlimit(rig.server().pid(), RLIMIT_AS, &none, nullptr);
     });
     rig.Recover(tally);

@@ -18,10 +18,10 @@ Rig::Rig(Oracle& oracle, const std::string& folder, std::vector<std::string> env
     : store_(folder + "/store"), driver_(oracle) {
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
-  server_ = std::make_unique<ServerProcess>(folder + "/said", std::vector<std::string>{"--store", store_},
+  server_ = std::make_unique<ServerProcess>(folder + "/log", std::vector<std::string>{"--store", store_},
                                             std::move(environment));
   if (absl::Status status = server_->Start(); !status.ok()) std::fprintf(stderr, "%s\n", status.ToString().c_str());
-  if (!driver_.Connect(server_->address(), true)) std::fprintf(stderr, "no session could be made\n");
+  if (!driver_.Connect(server_->address(), true)) std::fprintf(stderr, "the session could not be created\n");
 }
 
 void Rig::StepSome(int steps) {
@@ -29,14 +29,14 @@ void Rig::StepSome(int steps) {
 }
 
 void Rig::Disturb(const std::function<void()>& fault) {
-  std::atomic<bool> enough = false;
+  std::atomic<bool> stop = false;
   std::thread client([&] {
-    while (!enough) driver_.Step();
+    while (!stop) driver_.Step();
   });
   absl::SleepFor(absl::Seconds(Wait(0.06)));
   disturbed_ = Now();
   fault();
-  enough = true;
+  stop = true;
   client.join();
 }
 
@@ -44,7 +44,7 @@ void Rig::Recover(Tally& tally) {
   ++tally.tried;
   if (!server_->running()) {
     if (absl::Status status = server_->Start(); !status.ok()) {
-      std::fprintf(stderr, "it does not start again: %s\n", status.ToString().c_str());
+      std::fprintf(stderr, "the server does not restart: %s\n", status.ToString().c_str());
       ++tally.lost;
       return;
     }
@@ -53,7 +53,7 @@ void Rig::Recover(Tally& tally) {
   const bool found = driver_.FindTick(30).has_value();
   tally.recovered.push_back(Now() - disturbed_);
   if (!found || !driver_.Step()) {
-    std::fprintf(stderr, "the session is gone: %s\n", driver_.error().c_str());
+    std::fprintf(stderr, "the session is lost: %s\n", driver_.error().c_str());
     ++tally.lost;
   }
   tally.wrong += driver_.wrong() - wrong_before_;

@@ -1,4 +1,4 @@
-// What every fault is tried on: a server on a store, a client that works with it all the while, and what is counted.
+// The test rig of all faults: a server with a store, a client that steps a session, and the counts.
 #ifndef PHRENIC_TESTS_FAULTS_RIG_H_
 #define PHRENIC_TESTS_FAULTS_RIG_H_
 
@@ -13,32 +13,33 @@
 
 namespace phrenic::faults {
 
-// Of all tries of one fault.
+// The counts of one fault.
 struct Tally {
   int tried = 0, lost = 0, wrong = 0;
-  std::vector<double> recovered;  // from the fault to the next answer [s]
-  std::string skipped;            // why it could not be tried
-  std::string told;               // what else there is to say
+  std::vector<double> recovered;  // time from the fault to the next response [s]
+  std::string skipped;            // reason why it was not injected; empty if it was
+  std::string note;               // more results, for the report
 };
 
+// Not thread-safe.
 class Rig {
  public:
-  // Starts the server and makes the session. `folder` is emptied first.
+  // Starts the server and creates the session. Empties `folder` first.
   Rig(Oracle& oracle, const std::string& folder, std::vector<std::string> environment = {});
 
-  // The client steps until a random moment within 60 ms, `fault` happens while it goes on, and it stops.
+  // Injects `fault` at a random moment within 60 ms while the client steps; stops the client afterwards.
   void Disturb(const std::function<void()>& fault);
-  // Starts the server where it has ended, and counts whether the session answers, how soon, and whether a step is
-  // right. `tally` counts a try.
+  // Restarts the server if it has ended. Adds to `tally` whether the session responds, after how long, and whether its
+  // steps are right.
   void Recover(Tally& tally);
   void StepSome(int steps);
 
   ServerProcess& server() { return *server_; }
-  const std::string& store() const { return store_; }  // its folder
+  const std::string& store() const { return store_; }  // folder
   Driver& driver() { return driver_; }
   std::mt19937& random() { return random_; }
-  // Between 0 and `most` seconds.
-  double Wait(double most) { return std::uniform_real_distribution<double>(0, most)(random_); }
+  // Returns a random time from 0 to `max` [s].
+  double Wait(double max) { return std::uniform_real_distribution<double>(0, max)(random_); }
 
  private:
   std::mt19937 random_{3};

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A disk of a few megabytes, for as long as it lives.
+// A tmpfs of 8 MiB, mounted for the lifetime of the object.
 class SmallDisk {
  public:
   explicit SmallDisk(std::string folder) : folder_(std::move(folder)) {
@@ -60,12 +60,12 @@ fs::path LargestFile(const fs::path& folder) {
 
 }  // namespace
 
-// While it is full the session goes on; once there is room it is saved, and outlives a kill.
+// The session continues while the disk is full. Once there is room it is saved and survives SIGKILL.
 Tally DiskFull(Oracle& oracle, const std::string& folder, int times) {
   Tally tally;
   const SmallDisk disk(folder + ".disk");
   if (!disk.mounted()) {
-    tally.skipped = "no small disk can be mounted: run as root";
+    tally.skipped = "a tmpfs cannot be mounted: run as root";
     return tally;
   }
   Rig rig(oracle, folder + ".disk/run");
@@ -82,7 +82,8 @@ Tally DiskFull(Oracle& oracle, const std::string& folder, int times) {
   return tally;
 }
 
-// It is either refused, and nothing is overwritten, so that all is back with the right byte, or does not matter.
+// Either the server refuses the store and does not write to it, so that restoring the byte restores the sessions, or
+// the bit has no effect.
 Tally Flipped(Oracle& oracle, const std::string& folder, int times) {
   Tally tally;
   Rig rig(oracle, folder);
@@ -95,12 +96,12 @@ Tally Flipped(Oracle& oracle, const std::string& folder, int times) {
     WriteFile(file, wrong);
     if (!rig.server().Start().ok()) {
       if (ReadFile(file) != wrong) {
-        std::fprintf(stderr, "a store that was refused was written to\n");
+        std::fprintf(stderr, "the server wrote to a store that it refused\n");
         ++tally.lost;
       }
       WriteFile(file, right);
     } else if (rig.driver().Connect(rig.server().address()) && !rig.driver().FindTick(5).has_value()) {
-      // It runs without the session, says so, and keeps it.
+      // The server runs without the session and keeps its record.
       rig.server().Stop(15);
       WriteFile(file, right);
     }
@@ -116,7 +117,7 @@ Tally TwoServers(Oracle& oracle, const std::string& folder, int times) {
   for (int i = 0; i < times; ++i) {
     rig.Disturb([&] {
       if (!second.Start().ok()) return;
-      std::fprintf(stderr, "a second server took the store\n");
+      std::fprintf(stderr, "a second server opened the store\n");
       ++tally.lost;
       second.Signal(SIGKILL);
       second.Await(60);

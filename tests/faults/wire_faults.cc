@@ -28,14 +28,14 @@ using boost::asio::ip::tcp;
 using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 
-// Hands bytes on between a client and the server, every time after up to so many seconds, until it is cut.
-class Line {
+// A proxy between a client and the server that delays bytes by up to `max_delay` [s], until it is cut.
+class Proxy {
  public:
-  explicit Line(const std::string& address, double slowest = 2e-4)
-      : slowest_(slowest), thread_([this, address] { Run(address); }) {
+  explicit Proxy(const std::string& address, double max_delay = 2e-4)
+      : max_delay_(max_delay), thread_([this, address] { Run(address); }) {
     while (port_ == 0) std::this_thread::yield();
   }
-  ~Line() {
+  ~Proxy() {
     cut_ = true;
     thread_.join();
   }
@@ -43,7 +43,7 @@ class Line {
   void Cut() { cut_ = true; }
 
  private:
-  // One connection at a time is all the client makes.
+  // Serves one connection at a time, as the client opens no more.
   void Run(const std::string& address) {
     boost::asio::io_context io;
     tcp::acceptor acceptor(io, {boost::asio::ip::address_v4::loopback(), 0});
@@ -60,11 +60,11 @@ class Line {
       }
       server.connect({boost::asio::ip::address_v4::loopback(), server_port}, error);
       client.non_blocking(true), server.non_blocking(true);
-      std::uniform_real_distribution<double> delay(0, slowest_);
-      while (!cut_ && HandOn(client, server) && HandOn(server, client)) absl::SleepFor(absl::Seconds(delay(random_)));
+      std::uniform_real_distribution<double> delay(0, max_delay_);
+      while (!cut_ && Forward(client, server) && Forward(server, client)) absl::SleepFor(absl::Seconds(delay(random_)));
     }
   }
-  static bool HandOn(tcp::socket& from, tcp::socket& to) {
+  static bool Forward(tcp::socket& from, tcp::socket& to) {
     char bytes[4096];
     boost::system::error_code error;
     const std::size_t read = from.read_some(boost::asio::buffer(bytes), error);
@@ -76,7 +76,7 @@ class Line {
     return !error;
   }
 
-  const double slowest_;  // [s]
+  const double max_delay_;  // [s]
   std::mt19937 random_{5};
   std::atomic<bool> cut_ = false;
   std::atomic<unsigned short> port_ = 0;
@@ -153,7 +153,7 @@ void Fill(std::mt19937& random, int depth, Message& message) {
   }
 }
 
-// Every method of every service.
+// Returns every method of every service.
 std::vector<const google::protobuf::MethodDescriptor*> Methods() {
   std::vector<const google::protobuf::MethodDescriptor*> methods;
   for (const google::protobuf::Descriptor* message :
@@ -169,7 +169,7 @@ std::vector<const google::protobuf::MethodDescriptor*> Methods() {
   return methods;
 }
 
-// One call, whatever comes of it within half a second.
+// Makes one call with a timeout of 0.5 s and ignores its result.
 void CallOnce(grpc::GenericStub& stub, const google::protobuf::MethodDescriptor& method, const Message& request) {
   grpc::ClientContext context;
   context.set_deadline(std::chrono::system_clock::now() + std::chrono::milliseconds(500));
@@ -204,28 +204,28 @@ Tally LineCut(Oracle& oracle, const std::string& folder, int times) {
   Tally tally;
   Rig rig(oracle, folder);
   for (int i = 0; i < times; ++i) {
-    Line line(rig.server().address());
-    rig.driver().Connect(line.address());
-    rig.Disturb([&line] { line.Cut(); });
+    Proxy proxy(rig.server().address());
+    rig.driver().Connect(proxy.address());
+    rig.Disturb([&proxy] { proxy.Cut(); });
     rig.Recover(tally);
   }
   return tally;
 }
 
-// IdempotencyCache come late, some too late for the client, which asks again.
+// Responses are late, some later than the client's timeout, so that it repeats the call.
 Tally Delayed(Oracle& oracle, const std::string& folder, int times) {
   Tally tally;
   Rig rig(oracle, folder);
   for (int i = 0; i < times; ++i) {
-    Line line(rig.server().address(), 0.4);
-    rig.driver().Connect(line.address());
+    Proxy proxy(rig.server().address(), 0.4);
+    rig.driver().Connect(proxy.address());
     rig.Disturb([] { absl::SleepFor(absl::Seconds(1)); });
     rig.Recover(tally);
   }
   return tally;
 }
 
-// They may do anything to any session but the driven one, whose name they do not know.
+// Random requests may affect all sessions but the driven one, whose id they do not use.
 Tally RandomRequests(Oracle& oracle, const std::string& folder, int times) {
   Tally tally;
   Rig rig(oracle, folder);

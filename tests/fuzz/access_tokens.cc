@@ -1,4 +1,4 @@
-// Any bytes as a file of accounts give accounts with names and roles, or an error with the file and the line.
+// Any bytes as a token file give accounts with names and roles, or an error with file and line.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

@@ -1,5 +1,4 @@
-// Any bytes as positions of any codec give finite positions or an error, and nothing else. The first byte chooses the
-// codec.
+// Any bytes decoded by any codec give finite positions or an error. The first byte selects the codec.
 #include "server/stream/codec.h"
 
 #include <cstddef>
@@ -8,7 +7,7 @@
 
 namespace {
 
-// A strip of triangles, long enough for every kind of neighbour.
+// A triangle strip with every kind of neighbour.
 phrenic::stream::RestShape Strip() {
   constexpr int kVertices = 31;
   phrenic::stream::RestShape shape{.rest = phrenic::stream::Floats(3, kVertices), .edges = phrenic::Edges(2, 0)};

@@ -1,5 +1,5 @@
-// Any bytes as the body of a gRPC-web request, as binary and as text, give the one message in it, framed as it came, or
-// an error; any text as a time-out or an address one that can be, or none.
+// Any bytes as a gRPC-web request body, binary or base64, give one message or an error. Any text as a timeout or an
+// address gives a valid one or an error.
 #include "server/service/web/grpc_web.h"
 
 #include <cstddef>

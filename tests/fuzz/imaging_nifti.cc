@@ -1,4 +1,4 @@
-// Any bytes as a NIfTI file give a label volume with as many voxels as it says, or an error, and nothing else.
+// Any bytes as a NIfTI file give a label volume with the stated number of voxels, or an error.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

@@ -1,4 +1,4 @@
-// Any bytes as a VTK file (.vtk) give a valid mesh or an error, and nothing else.
+// Any bytes as a VTK file (.vtk) give a valid mesh or an error.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

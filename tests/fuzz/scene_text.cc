@@ -1,4 +1,4 @@
-// Any bytes as a scene give a scene that is valid and stays so with its defaults and on the wire, or an error.
+// Any bytes as scene text give a scene that stays valid with defaults and after serialization, or an error.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

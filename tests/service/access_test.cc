@@ -20,7 +20,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-// A server that knows five people, each by a token.
+// A server with five accounts.
 class GuardedServer : public ServerFixture {
  protected:
   GuardedServer() {
@@ -40,7 +40,7 @@ class GuardedServer : public ServerFixture {
     tokens_[name] = *access::AddToken(options_.accounts.tokens_file, {name, role});
   }
 
-  // Metadata of a call: who, "" for nobody, and the secret of a join link.
+  // Metadata of a call: the account, "" for none, and the secret of a join link.
   struct As {
     std::string name;
     std::string link = "";
@@ -60,7 +60,7 @@ class GuardedServer : public ServerFixture {
     if (!who.name.empty()) context.AddMetadata("authorization", "Bearer " + tokens_.at(who.name));
     if (!who.link.empty()) context.AddMetadata("x-join", who.link);
   }
-  // The code alone of a call to the session service.
+  // Returns the status code of a call to SessionService.
   template <class Request, class Response>
   grpc::StatusCode Code(const As& who,
                         grpc::Status (v1::SessionService::Stub::*method)(grpc::ClientContext*, const Request&,
@@ -94,7 +94,7 @@ class GuardedServer : public ServerFixture {
   std::map<std::string, std::string> tokens_;
 };
 
-// By the bytes of an empty request, so that no method is left out.
+// Calls a method by its path with an empty request, so that the test covers every method.
 grpc::StatusCode CodeOfEmptyCall(grpc::GenericStub& stub, const std::string& method) {
   grpc::ClientContext context;
   context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(10));
@@ -112,17 +112,17 @@ grpc::StatusCode CodeOfEmptyCall(grpc::GenericStub& stub, const std::string& met
   return status.error_code();
 }
 
-TEST_F(GuardedServer, NoMethodAnswersSomebodyUnknown) {
+TEST_F(GuardedServer, NoMethodAnswersAnUnauthenticatedCaller) {
   grpc::GenericStub stub(channel_);
   for (const access::Rule& rule : access::Rules()) {
     const std::size_t dot = rule.method.find('.');
     const std::string path = absl::StrCat("/phrenic.v1.", std::string(rule.method.substr(0, dot)), "/",
                                           std::string(rule.method.substr(dot + 1)));
-    EXPECT_EQ(CodeOfEmptyCall(stub, path), rule.anybody ? grpc::OK : grpc::UNAUTHENTICATED) << path;
+    EXPECT_EQ(CodeOfEmptyCall(stub, path), rule.open ? grpc::OK : grpc::UNAUTHENTICATED) << path;
   }
 }
 
-TEST_F(GuardedServer, ATokenThatIsNobodysIsRefusedAndNotRepeated) {
+TEST_F(GuardedServer, AnUnknownTokenIsRefusedAndNotEchoed) {
   grpc::ClientContext context;
   context.AddMetadata("authorization", "Bearer 00112233445566778899aabbccddeeff");
   v1::ListSessionsResponse response;
@@ -138,7 +138,7 @@ TEST_F(GuardedServer, RolesDecideWhatAnAccountMayDo) {
   EXPECT_EQ(Create("admin", "b"), grpc::OK);
 }
 
-TEST_F(GuardedServer, SessionsOfOthersAreAsIfTheyWereNot) {
+TEST_F(GuardedServer, SessionsOfOtherAccountsAreNotFound) {
   ASSERT_EQ(Create("owner", "mine"), grpc::OK);
   EXPECT_THAT(Listed({"owner"}), ElementsAre("mine"));
   EXPECT_THAT(Listed({"admin"}), ElementsAre("mine"));
@@ -159,7 +159,7 @@ TEST_F(GuardedServer, SessionsOfOthersAreAsIfTheyWereNot) {
   EXPECT_EQ(Code({"owner"}, &Sessions::DeleteSession, "session_id: 'mine'"), grpc::OK) << "without a control token";
 }
 
-TEST_F(GuardedServer, ALinkLetsInAsFarAsItsRoleUntilItIsRevoked) {
+TEST_F(GuardedServer, ALinkGrantsItsRoleUntilItIsRevoked) {
   ASSERT_EQ(Create("owner", "mine"), grpc::OK);
   ASSERT_EQ(Create("owner", "private"), grpc::OK);
   const auto watching = Link(""), controlling = Link("role: ACCESS_ROLE_CONTROLLER");
@@ -180,7 +180,7 @@ TEST_F(GuardedServer, ALinkLetsInAsFarAsItsRoleUntilItIsRevoked) {
   EXPECT_EQ(Code(colleague, &Sessions::GetSession, "session_id: 'mine'"), grpc::OK) << "the other link";
 }
 
-TEST_F(GuardedServer, ALinkEnds) {
+TEST_F(GuardedServer, ALinkExpires) {
   ASSERT_EQ(Create("owner", "mine"), grpc::OK);
   const As guest{"", Link("time_to_live: 1").secret()};
   EXPECT_EQ(Code(guest, &Sessions::GetSession, "session_id: 'mine'"), grpc::OK);
@@ -192,7 +192,7 @@ TEST_F(GuardedServer, ALinkEnds) {
   EXPECT_EQ(code, grpc::NOT_FOUND);
 }
 
-TEST_F(GuardedServer, WhoWatchesByARevokedLinkIsSentAway) {
+TEST_F(GuardedServer, RevokingALinkEndsItsStreams) {
   ASSERT_EQ(Create("owner", "mine"), grpc::OK);
   const auto made = Link("");
   grpc::ClientContext context;
@@ -212,7 +212,7 @@ TEST_F(GuardedServer, WhoWatchesByARevokedLinkIsSentAway) {
   EXPECT_EQ(reader->Finish().error_code(), grpc::PERMISSION_DENIED);
 }
 
-TEST_F(GuardedServer, ExportsAreSeenByWhoMadeThem) {
+TEST_F(GuardedServer, ExportsAreVisibleToTheirOwnersOnly) {
   ASSERT_EQ(Create("owner", "mine"), grpc::OK);
   using Exports = v1::ExportService::Stub;
   v1::CreateExportResponse made;
@@ -229,14 +229,14 @@ TEST_F(GuardedServer, ExportsAreSeenByWhoMadeThem) {
             grpc::NOT_FOUND);
 }
 
-TEST_F(GuardedServer, AnAccountHasSoManySessionsAndOthersHaveTheirs) {
+TEST_F(GuardedServer, TheSessionLimitIsPerAccount) {
   ASSERT_EQ(Create("owner", "a"), grpc::OK);
   ASSERT_EQ(Create("owner", "b"), grpc::OK);
   EXPECT_EQ(Create("owner", "c"), grpc::RESOURCE_EXHAUSTED);
   EXPECT_EQ(Create("other", "c"), grpc::OK);
 }
 
-TEST_F(GuardedServer, TheAuditSaysWhoDidWhatAndNoSecret) {
+TEST_F(GuardedServer, TheAuditLogNamesCallersAndContainsNoSecret) {
   ASSERT_EQ(Create("owner", "mine"), grpc::OK);
   EXPECT_EQ(Code({"other"}, &Sessions::DeleteSession, "session_id: 'mine'"), grpc::NOT_FOUND);
   std::ifstream in(options_.audit_file);
@@ -254,7 +254,7 @@ TEST_F(GuardedServer, TheAuditSaysWhoDidWhatAndNoSecret) {
   EXPECT_EQ(lines[1]["outcome"], "NOT_FOUND");
 }
 
-TEST_F(GuardedServer, AnAccountThatIsRemovedIsUnknownWithinSecondsAndItsStreamsEnd) {
+TEST_F(GuardedServer, ARemovedAccountIsRefusedWithinSecondsAndItsStreamsEnd) {
   ASSERT_EQ(Create("owner", "mine"), grpc::OK);
   ASSERT_EQ(Code({"owner"}, &Sessions::PlaySession, "session_id: 'mine'"), grpc::OK);
   grpc::ClientContext context;
@@ -271,7 +271,7 @@ TEST_F(GuardedServer, AnAccountThatIsRemovedIsUnknownWithinSecondsAndItsStreamsE
   EXPECT_EQ(Code({"owner"}, &Sessions::GetSession, "session_id: 'mine'"), grpc::UNAUTHENTICATED);
 }
 
-// The same guard for browsers: nobody passes for the process itself, which needs no account.
+// Browsers pass the same guard: they are not mistaken for calls of the process itself, which need no account.
 class GuardedGateway : public GuardedServer {
  protected:
   std::string TrailersOf(const std::string& headers) {
@@ -287,14 +287,14 @@ class GuardedGateway : public GuardedServer {
   }
 };
 
-TEST_F(GuardedGateway, TheHeadersSayWhoCalls) {
+TEST_F(GuardedGateway, TheHeadersIdentifyTheCaller) {
   EXPECT_THAT(TrailersOf(""), HasSubstr("grpc-status: 16"));
   EXPECT_THAT(TrailersOf("X-Phrenic-Peer: \r\n"), HasSubstr("grpc-status: 16"));
   EXPECT_THAT(TrailersOf("Authorization: Bearer nonsense\r\n"), HasSubstr("grpc-status: 16"));
   EXPECT_THAT(TrailersOf("Authorization: Bearer " + tokens_["viewer"] + "\r\n"), HasSubstr("grpc-status: 0"));
 }
 
-TEST_F(GuardedGateway, NumbersAreForAdministrators) {
+TEST_F(GuardedGateway, MetricsRequireAnAdministrator) {
   const auto ask = [&](const std::string& page, const std::string& headers) {
     RawSocket socket(server_->web_port());
     return socket.Ask("GET " + page + " HTTP/1.1\r\nHost: x\r\n" + headers + "\r\n").value_or(RawSocket::Response());
@@ -310,10 +310,10 @@ TEST_F(GuardedGateway, NumbersAreForAdministrators) {
   EXPECT_EQ(ask("/readyz", "").result_int(), 200u);
 }
 
-// What is asked of links where there are no accounts.
+// A server without accounts.
 class OpenServer : public ServerFixture {};
 
-TEST_F(OpenServer, EverybodyMayDoEverythingAndLinksAreRefusedWithTheReason) {
+TEST_F(OpenServer, EveryCallIsAllowedAndLinksAreRefusedWithTheReason) {
   CreateCube("cube");
   const auto access = v1::AccessService::NewStub(channel_);
   v1::GetAccessResponse who;

@@ -1,4 +1,4 @@
-// Certificates made for one test, by the openssl command.
+// Certificates for one test, made by the openssl command.
 #ifndef PHRENIC_TESTS_SERVICE_CERTIFICATES_H_
 #define PHRENIC_TESTS_SERVICE_CERTIFICATES_H_
 
@@ -13,7 +13,7 @@
 
 namespace phrenic::service {
 
-// A folder with two authorities, "good" and "evil", until it is destroyed.
+// A temporary folder with two CAs, "good" and "evil". Not thread-safe.
 class Certificates {
  public:
   Certificates() : folder_(testing::TempDir() + "/phrenic-certificates-" + std::to_string(getpid())) {
@@ -29,7 +29,7 @@ class Certificates {
 
   std::string File(const std::string& name) const { return folder_ + "/" + name + ".pem"; }
   std::string Key(const std::string& name) const { return folder_ + "/" + name + ".key"; }
-  // NAME.pem and NAME.key of localhost and 127.0.0.1, signed by the authority.
+  // Creates NAME.pem and NAME.key for localhost and 127.0.0.1, signed by a CA.
   void Sign(const std::string& name, const std::string& authority = "good") const {
     std::ofstream(folder_ + "/names") << "subjectAltName=DNS:localhost,IP:127.0.0.1\n";
     Run("req -newkey ec -pkeyopt ec_paramgen_curve:prime256v1 -nodes -subj /CN=" + name + " -keyout " + Key(name) +

@@ -1,4 +1,4 @@
-// Comparisons over a socket.
+// CompareService over a socket.
 #include "phrenic/v1/compare.grpc.pb.h"
 #include "tests/service/server_fixture.h"
 
@@ -33,7 +33,7 @@ class CompareServiceTest : public ServerFixture {
   }
 };
 
-TEST_F(CompareServiceTest, ProgressThenTheMapThenTheTable) {
+TEST_F(CompareServiceTest, SendsProgressThenTheMapThenTheTable) {
   v1::CompareRequest request = Request(kObj, "v 0 0 2\nv 100 0 2\nv 0 100 2\nf 1 2 3\n");
   request.set_map_format("vtp");
   std::vector<v1::CompareResponse> responses;
@@ -55,8 +55,8 @@ TEST_F(CompareServiceTest, BadRequestsNameTheFieldOrTheFile) {
   EXPECT_THAT(Compare(Request(kObj, "")).error_message(), HasSubstr("b.obj:"));
 }
 
-// A triangle 1 m above the origin: every vertex of the cube at rest is as far from it as geometry says.
-TEST_F(CompareServiceTest, ABodyOfASessionIsComparedAsItIsNow) {
+// A triangle 1 m above the origin, whose distance to the resting cube is known.
+TEST_F(CompareServiceTest, ASessionsBodyIsComparedInItsCurrentState) {
   CreateCube("cube");
   v1::CompareRequest request = Request("", kObj);
   request.mutable_a()->clear_name();
@@ -82,7 +82,7 @@ TEST_F(CompareServiceTest, ABodyOfASessionIsComparedAsItIsNow) {
   EXPECT_EQ(responses.back().table().state_a().time(), stepped.session().time());
 }
 
-TEST_F(CompareServiceTest, ABodyThatIsNotThereIsNamed) {
+TEST_F(CompareServiceTest, AMissingBodyIsNamed) {
   CreateCube("cube");
   v1::CompareRequest request = Request("", kObj);
   request.mutable_a()->clear_name();
@@ -107,10 +107,10 @@ class NoComparisons : public CompareServiceTest {
   NoComparisons() { options_.limits.exports = 0; }
 };
 
-TEST_F(NoComparisons, AreRefusedPastTheLimit) {
+TEST_F(NoComparisons, AreRefusedAboveTheLimit) {
   const grpc::Status status = Compare(Request(kObj, kObj));
   EXPECT_EQ(status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
-  EXPECT_THAT(status.error_message(), HasSubstr("0 comparisons are under way"));
+  EXPECT_THAT(status.error_message(), HasSubstr("0 comparisons are running"));
 }
 
 }  // namespace

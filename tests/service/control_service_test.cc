@@ -63,16 +63,16 @@ TEST_F(ControlServiceTest, EveryCallThatChangesTheSessionIsRefusedToOthers) {
               grpc::PERMISSION_DENIED);
     EXPECT_EQ(Session(&Sessions::PullSession, who + "release_others: true").error_code(), grpc::PERMISSION_DENIED);
     EXPECT_EQ(Session(&Sessions::DeleteSession, who).error_code(), grpc::PERMISSION_DENIED);
-    if (token.empty()) continue;  // a camera is nobody's who does not say who they are
+    if (token.empty()) continue;  // a caller without a token has no camera
     EXPECT_EQ(Control(&Controls::ShowCamera, token, "camera { eye { x: 1 } target { } }").error_code(),
               grpc::PERMISSION_DENIED);
   }
-  EXPECT_TRUE(Session(&Sessions::ForkSession, "session_id: 'class' fork_id: 'own'").ok()) << "everybody may fork";
+  EXPECT_TRUE(Session(&Sessions::ForkSession, "session_id: 'class' fork_id: 'own'").ok()) << "every caller may fork";
   EXPECT_TRUE(Session(&Sessions::StepSession, "session_id: 'own' ticks: 1").ok());
   EXPECT_TRUE(Session(&Sessions::DeleteSession, absl::StrCat("session_id: 'class' control_token: '", anna_, "'")).ok());
 }
 
-TEST_F(ControlServiceTest, AnswersAndStreamsTellNobodysToken) {
+TEST_F(ControlServiceTest, ResponsesAndStreamsContainNoToken) {
   ASSERT_TRUE(Control(&Controls::HandControl, anna_, "name: 'Ben'").ok());
   v1::GetSessionResponse got;
   ASSERT_TRUE(Call(*sessions_, &Sessions::GetSession, "session_id: 'class'", &got).ok());
@@ -87,7 +87,7 @@ TEST_F(ControlServiceTest, AnswersAndStreamsTellNobodysToken) {
   }
 }
 
-TEST_F(ControlServiceTest, WatchersAreToldOfAHandOverAndOfTheCamera) {
+TEST_F(ControlServiceTest, ViewersReceiveHandOversAndTheCamera) {
   Watch watch(NewChannel(), "class");
   v1::WatchFramesResponse told;
   ASSERT_TRUE(Control(&Controls::ShowCamera, anna_, "camera { eye { x: 1 y: 2 } target { z: 3 } }").ok());
@@ -107,7 +107,7 @@ TEST_F(ControlServiceTest, BadRequestsNameTheirFieldAndTheRemedy) {
   expect(Control(&Controls::EnterSession, "", "name: 'x' time_to_live: 4000"), grpc::INVALID_ARGUMENT, "time_to_live");
   expect(Control(&Controls::EnterSession, "", "name: 'Ben'"), grpc::ALREADY_EXISTS, "enter under another name");
   expect(Control(&Controls::TakeControl, "made-up"), grpc::PERMISSION_DENIED, "EnterSession");
-  expect(Control(&Controls::HandControl, anna_), grpc::INVALID_ARGUMENT, "to: say to whom");
+  expect(Control(&Controls::HandControl, anna_), grpc::INVALID_ARGUMENT, "to: name who gets control");
   expect(Control(&Controls::HandControl, anna_, "name: 'Cleo'"), grpc::FAILED_PRECONDITION, "nobody has entered");
   expect(Control(&Controls::ShowCamera, anna_, "camera { eye { x: nan } target { } }"), grpc::INVALID_ARGUMENT,
          "camera.eye.x");
@@ -115,7 +115,7 @@ TEST_F(ControlServiceTest, BadRequestsNameTheirFieldAndTheRemedy) {
          grpc::INVALID_ARGUMENT, "owner_name");
 }
 
-TEST_F(ControlServiceTest, ARequestThatIsRepeatedIsCarriedOutOnce) {
+TEST_F(ControlServiceTest, ARepeatedRequestTakesEffectOnce) {
   ASSERT_TRUE(Step(anna_, "request_id: 'first'").ok());
   const std::string once = stepped_.SerializeAsString();
   ASSERT_TRUE(Step(anna_, "request_id: 'first'").ok());
@@ -126,17 +126,18 @@ TEST_F(ControlServiceTest, ARequestThatIsRepeatedIsCarriedOutOnce) {
   const grpc::Status other = Step(anna_, "request_id: 'first' expected_tick: 10");
   EXPECT_EQ(other.error_code(), grpc::INVALID_ARGUMENT);
   EXPECT_THAT(other.error_message(), HasSubstr("request_id: first was another request's"));
-  EXPECT_EQ(Step(ben_, "request_id: 'second'").error_code(), grpc::INVALID_ARGUMENT) << "another's answer is read";
+  EXPECT_EQ(Step(ben_, "request_id: 'second'").error_code(), grpc::INVALID_ARGUMENT)
+      << "another client's response was returned";
 }
 
-TEST_F(ControlServiceTest, ARefusalMayBeRepeatedOnceItIsAllowed) {
+TEST_F(ControlServiceTest, ARefusedRequestCanBeRepeatedOnceItIsAllowed) {
   EXPECT_EQ(Step(ben_, "request_id: 'mine'").error_code(), grpc::PERMISSION_DENIED);
   ASSERT_TRUE(Control(&Controls::HandControl, anna_, "name: 'Ben'").ok());
   EXPECT_TRUE(Step(ben_, "request_id: 'mine'").ok());
   EXPECT_EQ(stepped_.session().tick(), 5);
 }
 
-TEST_F(ControlServiceTest, StepsGoOnWithoutTheirCallerAndTheRepeatFindsThemDone) {
+TEST_F(ControlServiceTest, StepsContinueWithoutTheirCallerAndARepeatGetsTheResult) {
   v1::StepSessionRequest request;
   request.set_session_id("class");
   request.set_ticks(200'000);
@@ -151,7 +152,7 @@ TEST_F(ControlServiceTest, StepsGoOnWithoutTheirCallerAndTheRepeatFindsThemDone)
   EXPECT_EQ(response.session().tick(), 200'000);
 }
 
-TEST_F(ControlServiceTest, UpdatesBoundToATickAreRefusedOnceItIsPast) {
+TEST_F(ControlServiceTest, UpdatesForAPastTickAreRefused) {
   const auto update = [&](int tick) {
     return Session(&Sessions::UpdateParameters,
                    absl::StrCat("session_id: 'class' control_token: '", anna_, "' parameters { elasticity: 2 } ",
@@ -171,7 +172,7 @@ class ManySessionsTest : public ServerFixture {
   ManySessionsTest() { options_.limits.sessions = 1000; }
 };
 
-// A harness' thousand, side by side and stepped by one client: all come to the state that one comes to alone.
+// One client steps a thousand sessions in parallel: each reaches the state of a single session.
 TEST_F(ManySessionsTest, AThousandSmallSessionsAreSteppedByOneClient) {
   constexpr int kSessions = 1000, kRounds = 3;
   for (int i = 0; i < kSessions; ++i) CreateCube(absl::StrCat("cube-", i));

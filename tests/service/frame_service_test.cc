@@ -22,7 +22,7 @@ class FrameServiceTest : public ServerFixture {
   }
 };
 
-TEST_F(FrameServiceTest, GeometryTellsEveryBodyOnce) {
+TEST_F(FrameServiceTest, GeometryHasEveryBodyOnce) {
   v1::GetGeometryRequest request;
   request.set_session_id("cube");
   grpc::ClientContext context;
@@ -36,7 +36,7 @@ TEST_F(FrameServiceTest, GeometryTellsEveryBodyOnce) {
   EXPECT_TRUE(reader->Finish().ok());
 }
 
-TEST_F(FrameServiceTest, AViewerHearsOfTheSessionAndThenSeesAFrameAtOnce) {
+TEST_F(FrameServiceTest, AViewerGetsTheSessionAndThenAFrameAtOnce) {
   Watch watch(channel_, "cube");
   v1::WatchFramesResponse response;
   ASSERT_TRUE(watch.Read(&response));
@@ -68,7 +68,7 @@ TEST_F(FrameServiceTest, TwoViewersSeeTheSameFramesAndEachOthersChanges) {
   EXPECT_TRUE(other.ReadUntil(changed, &b));
 }
 
-TEST_F(FrameServiceTest, FramesOfAPlayingSessionMoveOnAndNeverGoBack) {
+TEST_F(FrameServiceTest, FramesOfAPlayingSessionAreInOrder) {
   ASSERT_TRUE(Session(&Sessions::PlaySession, "session_id: 'cube'").ok());
   Watch watch(channel_, "cube");
   v1::WatchFramesResponse response;
@@ -83,7 +83,7 @@ TEST_F(FrameServiceTest, FramesOfAPlayingSessionMoveOnAndNeverGoBack) {
   }
 }
 
-TEST_F(FrameServiceTest, ASlowViewerMissesFramesHoldsNobodyUpAndGetsTheNewest) {
+TEST_F(FrameServiceTest, ASlowViewerSkipsFramesDelaysNoOtherAndGetsTheNewest) {
   Watch slow(NewChannel(), "cube"), quick(NewChannel(), "cube");
   ASSERT_TRUE(Session(&Sessions::PlaySession, "session_id: 'cube' as_fast_as_possible: true until_time: 30").ok());
   const auto paused = [](const v1::WatchFramesResponse& response) {
@@ -94,10 +94,10 @@ TEST_F(FrameServiceTest, ASlowViewerMissesFramesHoldsNobodyUpAndGetsTheNewest) {
   const std::int64_t end = response.session().tick();
   const auto last = [&](const v1::WatchFramesResponse& newest) { return newest.frame().tick() == end; };
   ASSERT_TRUE(quick.ReadUntil(last, &response));
-  EXPECT_TRUE(slow.ReadUntil(last, &response)) << "the newest frame never comes";
+  EXPECT_TRUE(slow.ReadUntil(last, &response)) << "the newest frame was not sent";
 }
 
-TEST_F(FrameServiceTest, NumbersOnlyLeavesTheArraysOut) {
+TEST_F(FrameServiceTest, NumbersOnlyOmitsTheArrays) {
   v1::WatchFramesRequest request;
   request.set_session_id("cube");
   request.set_numbers_only(true);
@@ -113,8 +113,8 @@ TEST_F(FrameServiceTest, NumbersOnlyLeavesTheArraysOut) {
   EXPECT_EQ(reader->Finish().error_code(), grpc::CANCELLED);
 }
 
-// Positions and answers over a socket: no more frames than the window, until they are acknowledged.
-TEST_F(FrameServiceTest, AViewerThatAcknowledgesGetsOnAndOneThatDoesNotWaits) {
+// The server sends no more than max_unacked_frames frames before they are acknowledged.
+TEST_F(FrameServiceTest, FramesWaitForAcknowledgements) {
   v1::WatchFramesRequest request;
   request.set_session_id("cube");
   request.set_codec(v1::CODEC_PREDICTED);
@@ -155,7 +155,7 @@ TEST_F(FrameServiceTest, AViewerThatAcknowledgesGetsOnAndOneThatDoesNotWaits) {
   reader->Finish();
 }
 
-TEST_F(FrameServiceTest, ARequestThatDoesNotFitIsRefusedByName) {
+TEST_F(FrameServiceTest, AnInvalidRequestIsRefusedWithItsField) {
   const auto refusal = [&](const std::string& text) {
     v1::WatchFramesRequest request;
     EXPECT_TRUE(google::protobuf::TextFormat::ParseFromString("session_id: 'cube' " + text, &request));
@@ -182,7 +182,7 @@ TEST_F(FrameServiceTest, DeletingASessionEndsItsViewers) {
   EXPECT_EQ(status.error_message(), "session cube was deleted");
 }
 
-TEST_F(FrameServiceTest, MoreViewersThanAllowedAreRefusedAndOnesThatLeaveMakeRoom) {
+TEST_F(FrameServiceTest, ViewersAboveTheLimitAreRefusedUntilOthersLeave) {
   v1::WatchFramesResponse response;
   Watch first(NewChannel(), "cube"), second(NewChannel(), "cube");
   ASSERT_TRUE(first.Read(&response));
@@ -195,10 +195,10 @@ TEST_F(FrameServiceTest, MoreViewersThanAllowedAreRefusedAndOnesThatLeaveMakeRoo
     EXPECT_EQ(fourth.Finish().error_code(), grpc::RESOURCE_EXHAUSTED);
   }
   const auto alone = [](const v1::WatchFramesResponse& news) { return news.session().viewers() == 2; };
-  EXPECT_TRUE(first.ReadUntil(alone, &response)) << "the one that left is still counted";
+  EXPECT_TRUE(first.ReadUntil(alone, &response)) << "a viewer that left is still counted";
 }
 
-TEST_F(FrameServiceTest, ADivergedSessionSaysSoAndSendsNoNaN) {
+TEST_F(FrameServiceTest, ADivergedSessionReportsItAndSendsNoNaN) {
   ASSERT_TRUE(
       Session(&Sessions::UpdateParameters, "session_id: 'cube' parameters { time_step: 0.1 elasticity: 100 }").ok());
   Watch watch(channel_, "cube");
@@ -219,7 +219,7 @@ TEST_F(FrameServiceTest, ADivergedSessionSaysSoAndSendsNoNaN) {
   EXPECT_FALSE(response.session().divergence().remedy().empty());
 }
 
-TEST_F(FrameServiceTest, BytesThatAreNoRequestAreRefused) {
+TEST_F(FrameServiceTest, BytesThatAreNotARequestAreRefused) {
   grpc::GenericStub stub(channel_);
   const grpc::Slice slice(std::string("\x0a\xff\xff\xff\xff\x0f", 6));
   const grpc::ByteBuffer request(&slice, 1);
@@ -236,7 +236,7 @@ TEST_F(FrameServiceTest, BytesThatAreNoRequestAreRefused) {
   EXPECT_EQ(status.error_code(), grpc::INVALID_ARGUMENT) << status.error_message();
 }
 
-TEST_F(FrameServiceTest, ForcesOfAVertexComeByKindAndThoseOfAKindForEveryVertex) {
+TEST_F(FrameServiceTest, ForcesAreReadByKindAtAVertexOrOfAKindAtEveryVertex) {
   v1::GetForcesRequest request;
   request.set_session_id("cube");
   request.set_body("cube");
@@ -258,7 +258,7 @@ TEST_F(FrameServiceTest, ForcesOfAVertexComeByKindAndThoseOfAKindForEveryVertex)
   }
 }
 
-TEST_F(FrameServiceTest, ForcesOfWhatIsNotThereAreRefusedWithWhatIs) {
+TEST_F(FrameServiceTest, ForcesOfUnknownNamesAreRefusedWithTheKnownOnes) {
   const auto refusal = [this](const std::string& body, int vertex, const std::string& kind) {
     v1::GetForcesRequest request;
     request.set_session_id("cube");

@@ -1,4 +1,4 @@
-// Keys of an identity provider that are read from its address.
+// An identity provider's keys, fetched from its address.
 #include <gmock/gmock.h>
 
 #include <filesystem>
@@ -16,7 +16,7 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-// A server whose pages are the provider's documents, and one that asks for them.
+// One server publishes the provider's documents, another one fetches them.
 class KeysByAddress : public testing::Test {
  protected:
   KeysByAddress() {
@@ -58,37 +58,37 @@ class KeysByAddress : public testing::Test {
   std::unique_ptr<ServerProcess> server_;
 };
 
-TEST_F(KeysByAddress, LetWhomTheProviderSignedForIn) {
+TEST_F(KeysByAddress, AdmitCallersWithTokensOfTheProvider) {
   const absl::Status started = Start(At("keys.json"));
   ASSERT_TRUE(started.ok()) << started;
   access::Provider other;
   EXPECT_EQ(ListAs(provider_), grpc::OK);
   EXPECT_EQ(ListAs(other), grpc::UNAUTHENTICATED);
   site_.Kill();
-  EXPECT_EQ(ListAs(provider_), grpc::OK) << "it asks the provider at every call";
+  EXPECT_EQ(ListAs(provider_), grpc::OK) << "the provider is asked at every call";
 }
 
-TEST_F(KeysByAddress, AreFoundByTheConfigurationOfOpenId) {
+TEST_F(KeysByAddress, AreFoundByTheOpenIdConfiguration) {
   Publish("configuration.json", {{"issuer", "https://id"}, {"jwks_uri", At("keys.json")}});
   const absl::Status started = Start(At("configuration.json"));
   ASSERT_TRUE(started.ok()) << started;
   EXPECT_EQ(ListAs(provider_), grpc::OK);
 }
 
-TEST_F(KeysByAddress, ThatCannotBeHadKeepTheServerFromStartingAndSayWhy) {
+TEST_F(KeysByAddress, ThatCannotBeReadPreventTheStartWithTheReason) {
   EXPECT_THAT(std::string(Start(At("other.json")).message()), HasSubstr("other.json: answers 404"));
   Publish("none.json", {{"keys", 3}});
-  EXPECT_THAT(std::string(Start(At("none.json")).message()), HasSubstr("none.json is no JSON Web Key Set"));
+  EXPECT_THAT(std::string(Start(At("none.json")).message()), HasSubstr("none.json is not a JSON Web Key Set"));
   EXPECT_THAT(std::string(Start("http://id.example.org/keys").message()), HasSubstr("use https://"));
   EXPECT_THAT(std::string(Start("https://127.0.0.1:1/keys").message()),
               HasSubstr("https://127.0.0.1:1/keys: cannot be"));
   Publish("loop.json", {{"jwks_uri", At("loop.json")}});
-  EXPECT_THAT(std::string(Start(At("loop.json")).message()), HasSubstr("loop.json is no JSON Web Key Set"));
+  EXPECT_THAT(std::string(Start(At("loop.json")).message()), HasSubstr("loop.json is not a JSON Web Key Set"));
   Publish("elsewhere.json", {{"jwks_uri", "/etc/passwd"}});
-  EXPECT_THAT(std::string(Start(At("elsewhere.json")).message()), HasSubstr("is no JSON Web Key Set"));
+  EXPECT_THAT(std::string(Start(At("elsewhere.json")).message()), HasSubstr("is not a JSON Web Key Set"));
 }
 
-TEST_F(KeysByAddress, AreNotTakenWithoutAnEnd) {
+TEST_F(KeysByAddress, AreLimitedInSize) {
   std::ofstream(folder_ + "/endless.json") << std::string(2 << 20, ' ');
   EXPECT_TRUE(absl::IsUnavailable(access::Fetch(At("endless.json")).status()));
 }

@@ -1,4 +1,4 @@
-// Callers who want more than their share: they are refused with the limit's name, and nobody else is hurt.
+// Callers above a limit are refused with the name of its setting, and do not affect other callers.
 #include "tests/service/raw_socket.h"
 // After Boost, which needs <utility> first.
 #include <gmock/gmock.h>
@@ -20,11 +20,11 @@ namespace {
 
 using testing::HasSubstr;
 
-// To answer in [s], whatever else a server has to do.
+// Within this time a loaded server must answer [s].
 #ifdef PHRENIC_SANITIZED
-constexpr int kPatience = 30;
+constexpr int kAnswerTime = 30;
 #else
-constexpr int kPatience = 10;
+constexpr int kAnswerTime = 10;
 #endif
 
 class Limits : public testing::Test {
@@ -38,14 +38,13 @@ class Limits : public testing::Test {
   }
   void Start(std::vector<std::string> flags = {}) {
     flags.insert(flags.end(), {"--store", "none", "--web-root", folder_});
-    // What AddressSanitizer would hold back of freed memory, where the server is built with it, is none of the
-    // server's.
+    // A small quarantine, so that AddressSanitizer's freed memory does not count as the server's.
     server_ = std::make_unique<ServerProcess>(folder_ + "/said", flags,
                                               std::vector<std::string>{"ASAN_OPTIONS=quarantine_size_mb=1"});
     const absl::Status status = server_->Start();
     ASSERT_TRUE(status.ok()) << status;
   }
-  // How long a good client waits for its answer; nothing where it gets none.
+  // Returns how long a well-behaved client waits for its response; nullopt if it gets none.
   std::optional<absl::Duration> WebAnswer() const {
     const absl::Time start = absl::Now();
     RawSocket socket(server_->web_port());
@@ -57,7 +56,7 @@ class Limits : public testing::Test {
     const auto stub = v1::SessionService::NewStub(server_->NewChannel());
     grpc::ClientContext context;
     context.set_wait_for_ready(true);
-    context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(kPatience));
+    context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(kAnswerTime));
     v1::ListSessionsResponse response;
     return stub->ListSessions(&context, {}, &response);
   }
@@ -66,7 +65,7 @@ class Limits : public testing::Test {
   std::unique_ptr<ServerProcess> server_;
 };
 
-TEST_F(Limits, AHeadThatComesSlowlyIsCutOffThoughEachByteComesInTime) {
+TEST_F(Limits, ASlowHeaderTimesOutAlthoughEachByteIsInTime) {
   Start({"--head-seconds", "1"});
   RawSocket slow(server_->web_port());
   slow.Send("GET / HTTP/1.1\r\nHost: x\r\n");
@@ -80,7 +79,7 @@ TEST_F(Limits, AHeadThatComesSlowlyIsCutOffThoughEachByteComesInTime) {
   EXPECT_LT(absl::Now() - start, absl::Seconds(4));
 }
 
-TEST_F(Limits, SlowHeadsInEveryPlaceKeepNobodyOut) {
+TEST_F(Limits, SlowHeadersOnAllConnectionsBlockNoOther) {
   Start({"--head-seconds", "60", "--max-connections", "16"});
   std::vector<std::unique_ptr<RawSocket>> slow;
   for (int i = 0; i < 64; ++i) {
@@ -92,7 +91,7 @@ TEST_F(Limits, SlowHeadsInEveryPlaceKeepNobodyOut) {
   }
 }
 
-TEST_F(Limits, ABodyWithoutAnEndIsRefusedWithTheLimit) {
+TEST_F(Limits, AnEndlessBodyIsRefusedWithTheLimit) {
   Start({"--max-message-mb", "1"});
   const std::int64_t before = server_->PeakMemory();
   RawSocket socket(server_->web_port());
@@ -103,7 +102,7 @@ TEST_F(Limits, ABodyWithoutAnEndIsRefusedWithTheLimit) {
   const std::string chunk = "10000\r\n" + std::string(0x10000, 'x') + "\r\n";
   int sent = 0;
   while (sent < 4096 && socket.Send(chunk)) ++sent;
-  EXPECT_LT(sent, 4096) << "256 MiB were taken";
+  EXPECT_LT(sent, 4096) << "256 MiB were accepted";
   EXPECT_LT(server_->PeakMemory() - before, 100 << 20);
   EXPECT_TRUE(WebAnswer().has_value());
 }
@@ -120,8 +119,8 @@ TEST_F(Limits, AMessageThatIsTooLongIsRefused) {
   EXPECT_TRUE(GrpcAnswer().ok());
 }
 
-// 256 MiB of zeros in 256 kB: gRPC unpacks first and looks how long it is afterwards.
-TEST_F(Limits, AMessageThatUnpacksToFarMoreIsNotUnpacked) {
+// 256 MiB of zeros in 256 kB: gRPC would check the size only after decompression.
+TEST_F(Limits, ACompressedMessageIsNotDecompressed) {
   Start();
   const std::int64_t before = server_->PeakMemory();
   const auto stub = v1::UploadService::NewStub(server_->NewChannel());
@@ -134,12 +133,12 @@ TEST_F(Limits, AMessageThatUnpacksToFarMoreIsNotUnpacked) {
     context.set_compression_algorithm(algorithm);
     EXPECT_FALSE(stub->AddUploadChunk(&context, request, &response).ok());
   }
-  EXPECT_LT(server_->PeakMemory() - before, 64 << 20) << "it was unpacked";
+  EXPECT_LT(server_->PeakMemory() - before, 64 << 20) << "the message was decompressed";
   EXPECT_TRUE(GrpcAnswer().ok());
 }
 
-// A surface file whose compressed array says that it holds 64 GiB, and one that does hold 1 GiB of zeros.
-TEST_F(Limits, AnUploadThatUnpacksToFarMoreIsRefused) {
+// A surface file whose compressed array claims 64 GiB, and one that contains 1 GiB of zeros.
+TEST_F(Limits, AnUploadThatExpandsBeyondTheLimitIsRefused) {
   Start();
   const auto stub = v1::UploadService::NewStub(server_->NewChannel());
   const std::int64_t before = server_->PeakMemory();
@@ -179,7 +178,7 @@ TEST_F(Limits, AnUploadThatUnpacksToFarMoreIsRefused) {
   EXPECT_LT(server_->PeakMemory() - before, 128 << 20);
 }
 
-// Connections, each with nothing sent, as many as this process may open.
+// Idle connections, up to this process' limit on open files.
 class Connections {
  public:
   Connections(int port, int count) {
@@ -212,12 +211,12 @@ class Connections {
   std::vector<int> files_;
 };
 
-TEST_F(Limits, TenThousandConnectionsToEachPortKeepNobodyOut) {
+TEST_F(Limits, TenThousandConnectionsToEachPortBlockNoOther) {
   Start();
   const std::int64_t before = server_->PeakMemory();
   {
     const Connections web(server_->web_port(), 10'000);
-    EXPECT_GE(web.size(), 9'000u) << "ulimit -n lets a test open no more";
+    EXPECT_GE(web.size(), 9'000u) << "ulimit -n is too low for this test";
     for (int i = 0; i < 5; ++i) {
       const auto waited = WebAnswer();
       ASSERT_TRUE(waited.has_value());
@@ -230,7 +229,7 @@ TEST_F(Limits, TenThousandConnectionsToEachPortKeepNobodyOut) {
   EXPECT_LT(server_->PeakMemory() - before, 256 << 20);
 }
 
-TEST_F(Limits, ASessionHasNoMoreOfAProcessorThanItsShare) {
+TEST_F(Limits, ASessionUsesNoMoreThanItsFractionOfACore) {
   Start({"--session-cpu", "0.1"});
   const auto sessions = v1::SessionService::NewStub(server_->NewChannel());
   v1::CreateSessionRequest create;
@@ -249,7 +248,7 @@ TEST_F(Limits, ASessionHasNoMoreOfAProcessorThanItsShare) {
   absl::SleepFor(absl::Seconds(2));
   const double share = (server_->Cpu("stepping") - before) / absl::ToDoubleSeconds(absl::Now() - start);
   EXPECT_LT(share, 0.15);
-  EXPECT_GT(share, 0.01) << "it does not play";
+  EXPECT_GT(share, 0.01) << "the session does not play";
 }
 
 TEST_F(Limits, ASilentConnectionIsClosed) {
@@ -262,7 +261,7 @@ TEST_F(Limits, ASilentConnectionIsClosed) {
   EXPECT_LT(absl::Now() - start, absl::Seconds(6));
 }
 
-TEST_F(Limits, EachHasItsSettingAndItsRefusalNamesIt) {
+TEST_F(Limits, EachHasASettingThatItsErrorNames) {
   Start({"--max-sessions", "1", "--max-vertices", "10", "--max-upload-mb", "1"});
   const auto sessions = v1::SessionService::NewStub(server_->NewChannel());
   const auto create = [&](const char* scene) {

@@ -1,4 +1,4 @@
-// phrenicd as a program: its words and its exit codes.
+// phrenicd as a program: its output and its exit codes.
 #include <sys/wait.h>
 
 #include <array>
@@ -20,10 +20,10 @@ using testing::HasSubstr;
 
 struct Outcome {
   int code = -1;
-  std::string words;  // of both streams
+  std::string words;  // standard output and standard error
 };
 
-// Runs phrenicd for at most three seconds, then asks it to stop, once.
+// Runs phrenicd and sends SIGTERM once after three seconds.
 Outcome RunPhrenicd(const std::string& arguments, const std::string& store = "none") {
   Outcome outcome;
   const std::string command = absl::StrCat("timeout --foreground --preserve-status -k 10 3 ", PHRENIC_BINARY_DIR,
@@ -35,16 +35,16 @@ Outcome RunPhrenicd(const std::string& arguments, const std::string& store = "no
   return outcome;
 }
 
-TEST(Phrenicd, SaysWhatItServesAndStopsWhenAsked) {
+TEST(Phrenicd, PrintsItsAddressesAndStopsOnASignal) {
   const Outcome outcome = RunPhrenicd("--listen 127.0.0.1:0 --web 127.0.0.1:0 --start cube-springs");
   EXPECT_EQ(outcome.code, 0) << outcome.words;
   EXPECT_THAT(outcome.words, HasSubstr("Viewer: http://127.0.0.1:"));
   EXPECT_THAT(outcome.words, HasSubstr("gRPC:   127.0.0.1:"));
-  EXPECT_EQ(outcome.words.find("127.0.0.1:0"), std::string::npos) << "the ports that were chosen are not told";
+  EXPECT_EQ(outcome.words.find("127.0.0.1:0"), std::string::npos) << "the actual ports are not printed";
 }
 
-// As after a new version of Phrenic, of which a scene's parts are made otherwise.
-TEST(Phrenicd, StartsAnewBesideASessionThatCannotBeRestored) {
+// A changed surface stands for a new version of Phrenic that generates other meshes.
+TEST(Phrenicd, StartsANewSessionBesideOneThatCannotBeRestored) {
   const std::string folder = testing::TempDir() + "phrenic_anew_" + std::to_string(getpid());
   std::filesystem::create_directories(folder + "/scenes");
   std::ofstream(folder + "/scenes/patch.textproto")
@@ -63,14 +63,14 @@ TEST(Phrenicd, StartsAnewBesideASessionThatCannotBeRestored) {
   std::filesystem::remove_all(folder);
 }
 
-TEST(Phrenicd, WrongUsageIsTwo) {
+TEST(Phrenicd, ExitsWithTwoOnWrongUsage) {
   for (const char* arguments : {"--nonsense", "--max-sessions 0", "--max-viewers many"}) {
     EXPECT_EQ(RunPhrenicd(arguments).code, 2) << arguments;
   }
   EXPECT_EQ(RunPhrenicd("--help").code, 0);
 }
 
-TEST(Phrenicd, WhatCannotBeServedIsOneAndSaysWhy) {
+TEST(Phrenicd, ExitsWithOneAndTheReasonIfItCannotServe) {
   const std::string free_ports = "--listen 127.0.0.1:0 --web 127.0.0.1:0 ";
   const Outcome scene = RunPhrenicd(free_ports + "--start thorux");
   EXPECT_EQ(scene.code, 1);
@@ -83,7 +83,7 @@ TEST(Phrenicd, WhatCannotBeServedIsOneAndSaysWhy) {
 
 class PhrenicdBesideAnother : public ServerFixture {};
 
-TEST_F(PhrenicdBesideAnother, APortInUseIsOneAndNamed) {
+TEST_F(PhrenicdBesideAnother, ExitsWithOneAndNamesAPortInUse) {
   const std::string grpc = absl::StrCat("127.0.0.1:", server_->port());
   const Outcome first = RunPhrenicd(absl::StrCat("--start none --web 127.0.0.1:0 --listen ", grpc));
   EXPECT_EQ(first.code, 1);
@@ -94,19 +94,19 @@ TEST_F(PhrenicdBesideAnother, APortInUseIsOneAndNamed) {
   EXPECT_THAT(second.words, HasSubstr("cannot listen on " + web));
 }
 
-TEST(Phrenicd, ListensToOtherMachinesUnencryptedWhenToldSoAlone) {
+TEST(Phrenicd, ListensToOtherMachinesWithoutTlsOnlyOnRequest) {
   const std::string reachable = "--start none --listen 127.0.0.1:0 --web 0.0.0.0:0 ";
   const Outcome refused = RunPhrenicd(reachable);
   EXPECT_EQ(refused.code, 1);
-  EXPECT_THAT(refused.words, HasSubstr("--web: 0.0.0.0:0 can be reached from other machines"));
+  EXPECT_THAT(refused.words, HasSubstr("--web: 0.0.0.0:0 is reachable from other machines"));
   EXPECT_THAT(refused.words, HasSubstr("--tls-cert"));
   const Outcome told = RunPhrenicd(reachable + "--insecure-listen");
   EXPECT_EQ(told.code, 0);
-  EXPECT_THAT(told.words, HasSubstr("anybody on the way can read"));
+  EXPECT_THAT(told.words, HasSubstr("can be read and modified on the network"));
   EXPECT_THAT(told.words, HasSubstr("--tokens"));
 }
 
-// The settings file of a test.
+// Writes a settings file for each test.
 class PhrenicdConfig : public testing::Test {
  protected:
   PhrenicdConfig() : file_(absl::StrCat(testing::TempDir(), "/phrenicd-", getpid(), ".toml")) {}
@@ -125,7 +125,7 @@ class PhrenicdConfig : public testing::Test {
   const std::string file_;
 };
 
-TEST_F(PhrenicdConfig, FlagsComeBeforeTheEnvironmentBeforeTheFileBeforeTheDefault) {
+TEST_F(PhrenicdConfig, FlagsOverrideTheEnvironmentTheFileAndTheDefault) {
   const std::string text = "max-sessions = 3\nmax-viewers = 4\nmax-exports = 5\n";
   const Outcome said = Run(text, "PHRENICD_MAX_SESSIONS=6 PHRENICD_MAX_VIEWERS=7", "config --max-sessions 8");
   EXPECT_EQ(said.code, 0) << said.words;
@@ -135,7 +135,7 @@ TEST_F(PhrenicdConfig, FlagsComeBeforeTheEnvironmentBeforeTheFileBeforeTheDefaul
   EXPECT_THAT(said.words, testing::ContainsRegex("max-uploads-mb = 1024 +# default\n"));
 }
 
-TEST_F(PhrenicdConfig, WhatItSaysIsASettingsFileAgain) {
+TEST_F(PhrenicdConfig, ItsOutputIsAValidSettingsFile) {
   const std::string text = "allow-origin = [\"https://a.example\", \"https://b.example\"]\nlisten = \"127.0.0.1:0\"\n";
   const auto without_origins = [](const std::string& words) {
     std::string values;
@@ -150,7 +150,7 @@ TEST_F(PhrenicdConfig, WhatItSaysIsASettingsFileAgain) {
   EXPECT_EQ(without_origins(Run(first.words, "", "config").words), without_origins(first.words));
 }
 
-TEST_F(PhrenicdConfig, ASettingThatIsWrongIsTwoAndNamedWithItsLine) {
+TEST_F(PhrenicdConfig, ExitsWithTwoAndTheLineOfABadSetting) {
   const Outcome unknown = Run("\nmax-sesions = 3\n", "", "config");
   EXPECT_EQ(unknown.code, 2);
   EXPECT_THAT(unknown.words, HasSubstr(":2: there is no setting \"max-sesions\"; did you mean max-sessions?"));
@@ -165,7 +165,7 @@ TEST_F(PhrenicdConfig, TheShippedFileHasEverySettingWithItsMeaningAndDefault) {
   EXPECT_EQ(told.words, shipped) << "build/phrenicd config --template > deploy/phrenicd.toml";
 }
 
-TEST(PhrenicdToken, IsToldOnceAndTakenBack) {
+TEST(PhrenicdToken, IsShownOnceAndRemoved) {
   const std::string file = absl::StrCat(testing::TempDir(), "/phrenicd-accounts-", getpid());
   const std::string words = " --tokens " + file;
   unlink(file.c_str());
@@ -179,7 +179,7 @@ TEST(PhrenicdToken, IsToldOnceAndTakenBack) {
   unlink(file.c_str());
 }
 
-TEST(Phrenicd, WritesItsLogAsJsonWhenAsked) {
+TEST(Phrenicd, WritesItsLogAsJson) {
   const Outcome outcome =
       RunPhrenicd("--log json --listen 127.0.0.1:0 --web 127.0.0.1:0 --start cube-springs --web-root /");
   std::istringstream lines(outcome.words);

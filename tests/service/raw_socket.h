@@ -1,4 +1,4 @@
-// HTTP as a browser, or somebody worse, would send it: bytes over a socket.
+// A raw HTTP client for valid, slow and malicious requests.
 #ifndef PHRENIC_TESTS_SERVICE_RAW_SOCKET_H_
 #define PHRENIC_TESTS_SERVICE_RAW_SOCKET_H_
 
@@ -18,7 +18,7 @@ namespace phrenic::service {
 
 namespace http = boost::beast::http;
 
-// Not thread-safe. Every wait ends after ten seconds.
+// Not thread-safe. Every operation times out after 10 s.
 class RawSocket {
  public:
   using Response = http::response<http::string_body>;
@@ -27,27 +27,27 @@ class RawSocket {
     stream_.connect({boost::asio::ip::make_address("127.0.0.1"), static_cast<unsigned short>(port)});
   }
 
-  // False when the server has closed the connection.
+  // False if the server has closed the connection.
   bool Send(const std::string& bytes) {
     boost::system::error_code error;
     boost::asio::write(stream_.socket(), boost::asio::buffer(bytes), error);
     return !error;
   }
 
-  // The next whole response; nothing when the connection ends before.
+  // Reads one response; nullopt if the connection ends before.
   std::optional<Response> Read() {
     http::response_parser<http::string_body> parser;
     if (!Run([&](auto handler) { http::async_read(stream_, buffer_, parser, handler); })) return std::nullopt;
     return parser.release();
   }
 
-  // At least `count` bytes of whatever comes; fewer when the connection ends before.
+  // Reads at least `count` bytes, fewer if the connection ends before.
   std::string ReadSome(std::size_t count) {
     std::string bytes;
     while (bytes.size() < count) {
       char piece[4096];
       std::size_t got = 0;
-      stream_.expires_after(kPatience);
+      stream_.expires_after(kTimeout);
       stream_.async_read_some(boost::asio::buffer(piece), [&](boost::system::error_code, std::size_t n) { got = n; });
       context_.restart();
       context_.run();
@@ -63,12 +63,12 @@ class RawSocket {
   }
 
  private:
-  static constexpr std::chrono::seconds kPatience{10};
+  static constexpr std::chrono::seconds kTimeout{10};
 
   template <class Start>
   bool Run(const Start& start) {
     bool ok = false;
-    stream_.expires_after(kPatience);
+    stream_.expires_after(kTimeout);
     start([&](boost::system::error_code error, std::size_t) { ok = !error; });
     context_.restart();
     context_.run();
@@ -86,7 +86,7 @@ struct WebFrame {
   std::string bytes;
 };
 
-// The whole frames at the front of a body.
+// Returns the complete frames at the start of a body.
 inline std::vector<WebFrame> WebFrames(std::string_view body) {
   std::vector<WebFrame> frames;
   while (body.size() >= 5) {
@@ -99,7 +99,7 @@ inline std::vector<WebFrame> WebFrames(std::string_view body) {
   return frames;
 }
 
-// The frame of one message.
+// Returns the frame of one message.
 inline std::string WebMessage(const std::string& message) {
   std::string frame(1, '\0');
   for (int shift = 24; shift >= 0; shift -= 8) frame += static_cast<char>(message.size() >> shift);

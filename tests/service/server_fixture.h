@@ -1,4 +1,4 @@
-// A server on free ports of this machine, and calls to it over its sockets.
+// A server on free loopback ports, and stubs that call it over its sockets.
 #ifndef PHRENIC_TESTS_SERVICE_SERVER_FIXTURE_H_
 #define PHRENIC_TESTS_SERVICE_SERVER_FIXTURE_H_
 
@@ -28,7 +28,7 @@ class ServerFixture : public testing::Test {
     options_.limits.viewers = 3;
   }
 
-  // A channel of its own: a connection of its own.
+  // Returns a channel with its own connection.
   std::shared_ptr<grpc::Channel> NewChannel() {
     grpc::ChannelArguments arguments;
     arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
@@ -49,7 +49,7 @@ class ServerFixture : public testing::Test {
     exports_ = v1::ExportService::NewStub(channel_);
   }
 
-  // Calls a method of a stub with a request written as text.
+  // Calls a method with a request in protobuf text format; the deadline is 30 s.
   template <class Stub, class Request, class Response>
   grpc::Status Call(Stub& stub, grpc::Status (Stub::*method)(grpc::ClientContext*, const Request&, Response*),
                     const std::string& text, Response* response) {
@@ -60,7 +60,7 @@ class ServerFixture : public testing::Test {
     return (stub.*method)(&context, request, response);
   }
 
-  // The same for the errors: code and message.
+  // Calls a method of SessionService and returns its status only.
   template <class Request, class Response>
   grpc::Status Session(grpc::Status (v1::SessionService::Stub::*method)(grpc::ClientContext*, const Request&,
                                                                         Response*),
@@ -87,7 +87,7 @@ class ServerFixture : public testing::Test {
   std::unique_ptr<v1::ExportService::Stub> exports_;
 };
 
-// A watching of a session over a connection; reads one message after the other.
+// A WatchFrames stream that is read message by message.
 class Watch {
  public:
   Watch(const std::shared_ptr<grpc::Channel>& channel, const std::string& id)
@@ -105,7 +105,7 @@ class Watch {
   }
 
   bool Read(v1::WatchFramesResponse* response) { return reader_->Read(response); }
-  // The next message for which `wanted` holds; false when the stream ended before.
+  // Reads up to the next message for which `wanted` is true. False if the stream ends before.
   template <class Wanted>
   bool ReadUntil(const Wanted& wanted, v1::WatchFramesResponse* response) {
     while (Read(response)) {

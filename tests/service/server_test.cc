@@ -26,7 +26,7 @@ TEST_F(ServerTest, APortInUseIsAnErrorThatNamesIt) {
   }
 }
 
-TEST_F(ServerTest, AnAddressThatIsNoneOrAFolderThatIsMissingIsAnError) {
+TEST_F(ServerTest, ABadAddressOrAMissingFolderIsAnError) {
   for (const char* bad : {"nonsense", "127.0.0.1", ":80", "127.0.0.1:99999", "::1:80", "127.0.0.1:http"}) {
     ServerOptions options;
     options.listen = bad;
@@ -40,7 +40,7 @@ TEST_F(ServerTest, AnAddressThatIsNoneOrAFolderThatIsMissingIsAnError) {
   EXPECT_TRUE(absl::IsNotFound(Server::Start(options).status()));
 }
 
-TEST(Address, HostsAreNamesOrNumbersAndBracketsGo) {
+TEST(Address, HostsAreNamesOrNumbersWithoutBrackets) {
   EXPECT_EQ(ParseAddress("[::1]:8080")->host, "::1");
   EXPECT_EQ(ParseAddress("localhost:0")->port, 0);
   EXPECT_TRUE(IsLoopback(*ParseAddress("127.0.0.1:1")));
@@ -77,7 +77,7 @@ TEST_F(ServerTest, ShutdownEndsPlayingSessionsViewersAndStepsWithinSeconds) {
   EXPECT_EQ(watch.Finish().error_code(), grpc::UNAVAILABLE);
 }
 
-// Health checking and reflection by their wire, which is fixed: neither has a stub here.
+// Health checking and reflection with hand-written messages, because the tests have no stubs for them.
 TEST_F(ServerTest, HealthIsServing) {
   grpc::GenericStub stub(channel_);
   grpc::ClientContext context;
@@ -130,7 +130,7 @@ class ExportTest : public ServerFixture {
   }
 };
 
-TEST_F(ExportTest, TheFileThatArrivesInTwoPartsIsTheOneInTheSummary) {
+TEST_F(ExportTest, AFileDownloadedInTwoPartsMatchesItsHash) {
   CreateCube("cube");
   v1::ListFormatsResponse formats;
   ASSERT_TRUE(Call(*exports_, &Stub::ListFormats, "", &formats).ok());
@@ -152,10 +152,10 @@ TEST_F(ExportTest, TheFileThatArrivesInTwoPartsIsTheOneInTheSummary) {
   }
   v1::GetSessionResponse got;
   ASSERT_TRUE(Call(*sessions_, &v1::SessionService::Stub::GetSession, "session_id: 'cube'", &got).ok());
-  EXPECT_EQ(got.session().tick(), 0) << "the session itself went on";
+  EXPECT_EQ(got.session().tick(), 0) << "the export stepped the session itself";
 }
 
-TEST_F(ExportTest, WhatCannotBeIsRefusedAtOnce) {
+TEST_F(ExportTest, ImpossibleExportsAreRefusedAtOnce) {
   CreateCube("cube");
   v1::CreateExportResponse created;
   const grpc::Status status = Create("session_id: 'cube' format: 'avi' seconds: 1", &created);

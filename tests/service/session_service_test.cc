@@ -57,14 +57,14 @@ TEST_F(SessionServiceTest, EveryCallForASessionThatDoesNotExistIsNotFound) {
   ExpectError(watch.Finish(), grpc::NOT_FOUND, hint);
 }
 
-TEST_F(SessionServiceTest, OneInStepWithNoneOrItselfIsRefused) {
+TEST_F(SessionServiceTest, FollowingItselfOrAnUnknownSessionIsRefused) {
   CreateCube("cube");
   CreateCube("other");
   EXPECT_TRUE(Session(&Sessions::PlaySession, "session_id: 'cube' in_step_with: 'other'").ok());
   ExpectError(Session(&Sessions::PlaySession, "session_id: 'cube' in_step_with: 'x'"), grpc::NOT_FOUND,
               "in_step_with: there is no session \"x\"");
   ExpectError(Session(&Sessions::PlaySession, "session_id: 'cube' in_step_with: 'cube'"), grpc::INVALID_ARGUMENT,
-              "in_step_with: is the session itself");
+              "in_step_with: names the session itself");
 }
 
 TEST_F(SessionServiceTest, AParameterOutOfRangeIsRefusedWithItsFieldAndRange) {
@@ -80,7 +80,7 @@ TEST_F(SessionServiceTest, AParameterOutOfRangeIsRefusedWithItsFieldAndRange) {
               grpc::INVALID_ARGUMENT, "parameters.breath_length");
 }
 
-TEST_F(SessionServiceTest, PullsAreSetReplacedAndLetGo) {
+TEST_F(SessionServiceTest, PullsAreSetReplacedAndReleased) {
   CreateCube("cube");
   v1::PullSessionResponse pulled;
   ASSERT_TRUE(Call(*sessions_, &Sessions::PullSession,
@@ -96,7 +96,7 @@ TEST_F(SessionServiceTest, PullsAreSetReplacedAndLetGo) {
   EXPECT_EQ(created.session().pulls(0).force().x(), 2);
 }
 
-TEST_F(SessionServiceTest, APullThatFitsNothingIsRefused) {
+TEST_F(SessionServiceTest, AnInvalidPullIsRefused) {
   CreateCube("cube");
   ExpectError(Session(&Sessions::PullSession, "session_id: 'x' release_others: true"), grpc::NOT_FOUND, "no session");
   ExpectError(Session(&Sessions::PullSession, "session_id: 'cube'"), grpc::INVALID_ARGUMENT, "release_others");
@@ -117,7 +117,7 @@ TEST_F(SessionServiceTest, AnUnknownSceneIsNotFoundAndTheOthersAreNamed) {
   ExpectError(Session(&Sessions::CreateSession, ""), grpc::INVALID_ARGUMENT, "source");
 }
 
-TEST_F(SessionServiceTest, AMalformedSceneSentAlongIsRefusedWithItsField) {
+TEST_F(SessionServiceTest, AMalformedSceneInTheRequestIsRefusedWithItsField) {
   const auto create = [&](const std::string& scene) {
     return Session(&Sessions::CreateSession, "source { scene { name: 'mine' " + scene + " } }");
   };
@@ -130,7 +130,7 @@ TEST_F(SessionServiceTest, AMalformedSceneSentAlongIsRefusedWithItsField) {
   ExpectError(create(body + "file { path: '../../etc/passwd' } }"), grpc::NOT_FOUND, "--data");
   v1::ListSessionsResponse listed;
   ASSERT_TRUE(Call(*sessions_, &Sessions::ListSessions, "", &listed).ok());
-  EXPECT_EQ(listed.sessions_size(), 0) << "a session that could not be made is listed";
+  EXPECT_EQ(listed.sessions_size(), 0) << "a session that could not be created is listed";
 }
 
 TEST_F(SessionServiceTest, StaleRevisionsAndTicksAreAborted) {
@@ -148,7 +148,7 @@ TEST_F(SessionServiceTest, MoreSessionsThanAllowedAreRefused) {
               "no more are allowed");
 }
 
-TEST_F(SessionServiceTest, SessionsOfOneSceneTakeTheSameSteps) {
+TEST_F(SessionServiceTest, SessionsOfOneSceneGiveEqualSteps) {
   CreateCube("a");
   CreateCube("b");
   Watch watch(NewChannel(), "b");
@@ -159,7 +159,7 @@ TEST_F(SessionServiceTest, SessionsOfOneSceneTakeTheSameSteps) {
   EXPECT_FALSE(a.state_hash().empty());
 }
 
-TEST_F(SessionServiceTest, ACallerThatGivesUpEndsItsSteps) {
+TEST_F(SessionServiceTest, CancellingACallEndsItsSteps) {
   CreateCube("cube");
   v1::StepSessionRequest request;
   request.set_session_id("cube");
@@ -179,7 +179,7 @@ TEST_F(SessionServiceTest, ACallerThatGivesUpEndsItsSteps) {
     free = Session(&Sessions::StepSession, "session_id: 'cube' ticks: 1").ok();
     if (!free) std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
-  EXPECT_TRUE(free) << "the steps go on without a caller";
+  EXPECT_TRUE(free) << "the steps continue without a caller";
 }
 
 TEST_F(SessionServiceTest, SessionsArePaged) {

@@ -1,4 +1,4 @@
-// SIGTERM: sessions are saved, viewers told, exports ended, and the program is gone in time.
+// SIGTERM: sessions are saved, streams end with UNAVAILABLE, exports end, and the process exits in time.
 #include <gmock/gmock.h>
 
 #include <filesystem>
@@ -39,7 +39,7 @@ class StopTest : public testing::Test {
     v1::CreateSessionRequest create;
     create.set_session_id("sheet");
     create.mutable_source()->set_name("sheet-2d");
-    create.mutable_parameters()->set_time_step(1e-5);  // an hour of it takes a minute
+    create.mutable_parameters()->set_time_step(1e-5);  // slow enough to be running at the signal
     v1::CreateSessionResponse created;
     Call(*sessions, &v1::SessionService::Stub::CreateSession, create, &created);
     v1::PlaySessionRequest play;
@@ -60,7 +60,7 @@ class StopTest : public testing::Test {
   ServerProcess server_{folder_ + "/said", {"--store", folder_ + "/store", "--stop-seconds", "8"}};
 };
 
-TEST_F(StopTest, TellsViewersAndKeepsWhatTheyLastSaw) {
+TEST_F(StopTest, EndsStreamsAndKeepsTheLastState) {
   CreateAndPlay();
   const auto frames = v1::FrameService::NewStub(server_.NewChannel());
   grpc::ClientContext context;
@@ -78,18 +78,18 @@ TEST_F(StopTest, TellsViewersAndKeepsWhatTheyLastSaw) {
       if (response.has_frame()) seen = response.frame().tick();
     }
   });
-  EXPECT_EQ(server_.Stop(10), 0) << server_.said();
+  EXPECT_EQ(server_.Stop(10), 0) << server_.output();
   rest.join();
   const grpc::Status told = reader->Finish();
   EXPECT_EQ(told.error_code(), grpc::UNAVAILABLE);
   EXPECT_THAT(told.error_message(), HasSubstr("the server is shutting down"));
-  ASSERT_TRUE(server_.Start().ok()) << server_.said();
+  ASSERT_TRUE(server_.Start().ok()) << server_.output();
   const v1::Session session = Get();
-  EXPECT_GE(session.tick(), seen) << "what somebody saw is lost";
+  EXPECT_GE(session.tick(), seen) << "a tick that was sent to a viewer is lost";
   EXPECT_EQ(session.state(), v1::SESSION_STATE_PLAYING);
 }
 
-TEST_F(StopTest, BreaksExportsOffAndTellsWhoWaits) {
+TEST_F(StopTest, AbortsExportsAndEndsTheirWatchers) {
   CreateAndPlay();
   const auto exports = v1::ExportService::NewStub(server_.NewChannel());
   v1::CreateExportRequest create;
@@ -109,7 +109,7 @@ TEST_F(StopTest, BreaksExportsOffAndTellsWhoWaits) {
     while (reader->Read(&response)) continue;
   });
   const absl::Time start = absl::Now();
-  EXPECT_EQ(server_.Stop(10), 0) << server_.said();
+  EXPECT_EQ(server_.Stop(10), 0) << server_.output();
   EXPECT_LT(absl::Now() - start, absl::Seconds(5));
   rest.join();
   EXPECT_FALSE(reader->Finish().ok());

@@ -1,4 +1,4 @@
-// Studies outlive their server: what had ended is there, what had not is run again and comes to the same.
+// Studies survive a restart: finished ones are restored, others run again with equal results.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -16,10 +16,10 @@ class StudyRestartTest : public testing::Test {
     std::filesystem::create_directories(folder_);
   }
   void SetUp() override { Restart(); }
-  // It has written what waited.
+  // Restarts the server; a server that is stopped by SIGTERM writes pending records.
   void Restart() {
     if (server_.running()) {
-      ASSERT_EQ(server_.Stop(20), 0) << server_.said();
+      ASSERT_EQ(server_.Stop(20), 0) << server_.output();
     }
     const absl::Status status = server_.Start();
     ASSERT_TRUE(status.ok()) << status;
@@ -51,7 +51,7 @@ class StudyRestartTest : public testing::Test {
     while (reader->Read(&response)) continue;
     return response.study();
   }
-  // What a study of the same scene must come to, whenever it runs: errors, and not times.
+  // Returns the part of a result that repeats: the errors, without the run times.
   static std::vector<double> Errors(const v1::Study& study) {
     std::vector<double> errors;
     for (const auto& row : study.result().error().rows()) errors.push_back(row.error_rms_mm());
@@ -62,7 +62,7 @@ class StudyRestartTest : public testing::Test {
   ServerProcess server_{folder_ + "/said", {"--store", folder_ + "/store"}};
 };
 
-TEST_F(StudyRestartTest, WhatHadEndedIsThereAndWhatHadNotIsRunAgain) {
+TEST_F(StudyRestartTest, FinishedStudiesAreRestoredAndOthersRunAgain) {
   const v1::Study ended = Await(Create("ended"));
   ASSERT_EQ(ended.state(), v1::STUDY_STATE_DONE) << ended.problem();
   Create("killed");
@@ -86,9 +86,9 @@ TEST_F(StudyRestartTest, WhatHadEndedIsThereAndWhatHadNotIsRunAgain) {
   EXPECT_EQ(list.studies_size(), 2);
 }
 
-TEST_F(StudyRestartTest, ADamagedOneIsLeftOutAndTheOthersAreThere) {
+TEST_F(StudyRestartTest, ADamagedStudyIsSkippedAndTheOthersAreRestored) {
   for (const char* id : {"damaged", "good"}) ASSERT_EQ(Await(Create(id)).state(), v1::STUDY_STATE_DONE);
-  ASSERT_EQ(server_.Stop(20), 0) << server_.said();
+  ASSERT_EQ(server_.Stop(20), 0) << server_.output();
   {
     auto database = store::Database::Open(store::StoreFile(folder_ + "/store"), store::Access::kWrite);
     ASSERT_TRUE(database.ok()) << database.status();

@@ -1,4 +1,4 @@
-// Studies over a real socket.
+// StudyService over a socket.
 #include "phrenic/v1/study.grpc.pb.h"
 #include "tests/service/server_fixture.h"
 
@@ -18,7 +18,7 @@ class Studies : public ServerFixture {
     return Call(*stub_, &v1::StudyService::Stub::CreateStudy, text, response);
   }
 
-  // The last answer of WatchStudy.
+  // Returns the last message of WatchStudy.
   v1::Study WatchToTheEnd(const std::string& id, grpc::Status* status) {
     v1::WatchStudyRequest request;
     request.set_study_id(id);
@@ -68,7 +68,7 @@ TEST_F(Studies, AreCancelledWhenDeleted) {
   EXPECT_EQ(list.studies_size(), 1);
 }
 
-TEST_F(Studies, ThatCannotBeAreRefusedAtOnce) {
+TEST_F(Studies, ThatAreInvalidAreRefusedAtOnce) {
   v1::CreateStudyResponse created;
   EXPECT_THAT(Create(R"(source { name: "cube-springs" })", &created).error_message(), HasSubstr("what: must be set"));
   EXPECT_THAT(Create(R"(error { })", &created).error_message(), HasSubstr("source: must be set"));

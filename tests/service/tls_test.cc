@@ -26,7 +26,7 @@ class Tls : public testing::Test {
     ASSERT_TRUE(server.ok()) << server.status();
     server_ = *std::move(server);
   }
-  // What a call comes to by these credentials.
+  // Returns the status of a call with these credentials.
   grpc::Status CallWith(const std::shared_ptr<grpc::ChannelCredentials>& credentials) const {
     grpc::ChannelArguments arguments;
     arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
@@ -38,7 +38,7 @@ class Tls : public testing::Test {
     v1::ListSessionsResponse response;
     return stub->ListSessions(&context, {}, &response);
   }
-  // Of a client that trusts this authority and, where it has a name, has a certificate of its own.
+  // Returns credentials of a client that trusts a CA and, if `name` is set, has a certificate.
   std::shared_ptr<grpc::ChannelCredentials> Trusting(const std::string& authority, const std::string& own = "") const {
     grpc::SslCredentialsOptions options;
     options.pem_root_certs = Certificates::Read(certificates_.File(authority));
@@ -48,7 +48,7 @@ class Tls : public testing::Test {
     }
     return grpc::SslCredentials(options);
   }
-  // What curl gets of the web port, as "CODE" or "000" where there is no connection.
+  // Returns curl's HTTP status from the web port; "000" if the connection fails.
   std::string Curl(const std::string& words) const {
     const std::string command = "curl -s -m 10 -o /dev/null -w '%{http_code}' " + words +
                                 " https://127.0.0.1:" + std::to_string(server_->web_port()) + "/healthz 2>/dev/null";
@@ -64,7 +64,7 @@ class Tls : public testing::Test {
   std::unique_ptr<Server> server_;
 };
 
-TEST_F(Tls, WhoTrustsTheAuthorityIsServedAndNobodyElse) {
+TEST_F(Tls, OnlyClientsThatTrustTheCaConnect) {
   Start();
   const grpc::Status trusted = CallWith(Trusting("good"));
   EXPECT_TRUE(trusted.ok()) << trusted.error_message();
@@ -75,7 +75,7 @@ TEST_F(Tls, WhoTrustsTheAuthorityIsServedAndNobodyElse) {
   EXPECT_EQ(Curl("--tls-max 1.1 --cacert " + certificates_.File("good")), "000");
 }
 
-TEST_F(Tls, WithAnAuthorityOfClientsEachNeedsACertificateOfIt) {
+TEST_F(Tls, WithAClientCaEveryClientNeedsItsCertificate) {
   options_.tls.client_ca = certificates_.File("good");
   certificates_.Sign("client");
   certificates_.Sign("forged", "evil");
@@ -93,7 +93,7 @@ TEST_F(Tls, WithAnAuthorityOfClientsEachNeedsACertificateOfIt) {
   EXPECT_EQ(Curl(as("forged")), "000");
 }
 
-TEST_F(Tls, CertificatesThatAreRenewedAreUsedWithoutAStart) {
+TEST_F(Tls, RenewedCertificatesAreUsedWithoutARestart) {
   Start();
   ASSERT_EQ(Curl("--cacert " + certificates_.File("good")), "200");
   certificates_.Sign("server", "evil");
@@ -109,17 +109,17 @@ TEST_F(Tls, CertificatesThatAreRenewedAreUsedWithoutAStart) {
   EXPECT_EQ(CallWith(Trusting("good")).error_code(), grpc::UNAVAILABLE);
 }
 
-TEST_F(Tls, FilesThatAreWrongAreNamedWithTheirFlag) {
+TEST_F(Tls, BadFilesAreNamedWithTheirFlag) {
   certificates_.Sign("another");
   const std::string good = certificates_.File("server"), key = certificates_.Key("server");
   const struct {
     TlsFiles files;
     const char* words;
-  } cases[] = {{{"", key, ""}, "--tls-cert: must be given"},
-               {{good, "", ""}, "--tls-key: must be given"},
+  } cases[] = {{{"", key, ""}, "--tls-cert: required with"},
+               {{good, "", ""}, "--tls-key: required with"},
                {{"/nowhere", key, ""}, "--tls-cert: there is no file /nowhere"},
                {{key, key, ""}, "--tls-cert"},
-               {{good, certificates_.Key("another"), ""}, "is not the certificate's key"},
+               {{good, certificates_.Key("another"), ""}, "is not the private key of the certificate"},
                {{good, key, key}, "--tls-client-ca"}};
   for (const auto& one : cases) {
     options_.tls = one.files;

@@ -45,7 +45,7 @@ class WebGatewayTest : public ServerFixture {
   RawSocket::Response Ask(const std::string& request) {
     RawSocket socket(server_->web_port());
     auto response = socket.Ask(request);
-    EXPECT_TRUE(response.has_value()) << "the server hung up on " << request.substr(0, 60);
+    EXPECT_TRUE(response.has_value()) << "the server disconnected after " << request.substr(0, 60);
     return response.value_or(RawSocket::Response());
   }
   RawSocket::Response Get(const std::string& target, const std::string& headers = "") {
@@ -85,7 +85,7 @@ TEST_F(WebGatewayTest, TextIsBase64BothWays) {
   const std::string body = absl::Base64Escape(Text<v1::GetSessionRequest>("session_id: 'cube'"));
   const auto response = Ask(Post("SessionService/GetSession", body, "", "application/grpc-web-text"));
   EXPECT_EQ(response[http::field::content_type], "application/grpc-web-text+proto");
-  // Each frame is padded by itself.
+  // Each frame is base64 with its own padding.
   std::string bytes, decoded, rest = response.body();
   while (!rest.empty()) {
     const std::size_t padding = rest.find('=');
@@ -113,7 +113,7 @@ TEST_F(WebGatewayTest, CallsFollowEachOtherOnOneConnection) {
   EXPECT_EQ(page->result(), http::status::ok);
 }
 
-TEST_F(WebGatewayTest, AServerStreamFlowsAndABrowserThatLeavesEndsIt) {
+TEST_F(WebGatewayTest, AServerStreamEndsWhenTheBrowserDisconnects) {
   CreateCube("cube");
   v1::PlaySessionResponse played;
   ASSERT_TRUE(Call(*sessions_, &v1::SessionService::Stub::PlaySession, "session_id: 'cube'", &played).ok());
@@ -135,10 +135,10 @@ TEST_F(WebGatewayTest, AServerStreamFlowsAndABrowserThatLeavesEndsIt) {
     left = viewers() == 0;
     if (!left) std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
-  EXPECT_TRUE(left) << "the call goes on without a browser";
+  EXPECT_TRUE(left) << "the call continues without a browser";
 }
 
-TEST_F(WebGatewayTest, AStreamThatEndsHasItsStatusInTrailers) {
+TEST_F(WebGatewayTest, AStreamEndsWithItsStatusInTrailers) {
   CreateCube("cube");
   RawSocket socket = Connect();
   socket.Send(Post("FrameService/WatchFrames", Text<v1::WatchFramesRequest>("session_id: 'cube'")));
@@ -193,7 +193,7 @@ TEST_F(WebGatewayTest, OnlyPagesOfAllowedOriginsMayCall) {
   }
 }
 
-TEST_F(WebGatewayTest, APreflightAllowsWhatTheBrowserAsksFor) {
+TEST_F(WebGatewayTest, APreflightAllowsTheRequestedHeaders) {
   const auto response =
       Ask("OPTIONS /phrenic.v1.SessionService/ListSessions HTTP/1.1\r\nHost: phrenic.test\r\nOrigin: "
           "http://localhost:5173\r\n"
@@ -204,7 +204,7 @@ TEST_F(WebGatewayTest, APreflightAllowsWhatTheBrowserAsksFor) {
   EXPECT_THAT(std::string(response[http::field::access_control_allow_methods]), HasSubstr("POST"));
 }
 
-TEST_F(WebGatewayTest, FilesComeWithTypeCachingAndPolicy) {
+TEST_F(WebGatewayTest, FilesHaveTypeCachingAndPolicy) {
   const auto page = Get("/?session=thorax");
   EXPECT_EQ(page.result(), http::status::ok);
   EXPECT_THAT(page.body(), HasSubstr("<title>Phrenic</title>"));
@@ -216,7 +216,7 @@ TEST_F(WebGatewayTest, FilesComeWithTypeCachingAndPolicy) {
   EXPECT_EQ(page["X-Frame-Options"], "DENY");
   EXPECT_EQ(page["Referrer-Policy"], "no-referrer");
   EXPECT_EQ(page["Cross-Origin-Opener-Policy"], "same-origin");
-  EXPECT_EQ(page.count("Strict-Transport-Security"), 0u) << "the page is not encrypted";
+  EXPECT_EQ(page.count("Strict-Transport-Security"), 0u) << "HSTS without TLS";
   const auto script = Get("/assets/main-1a2b.js");
   EXPECT_EQ(script[http::field::content_type], "text/javascript; charset=utf-8");
   EXPECT_THAT(std::string(script[http::field::cache_control]), HasSubstr("immutable"));
@@ -230,7 +230,7 @@ class FramedGatewayTest : public WebGatewayTest {
   FramedGatewayTest() { options_.allowed_origins = {"https://course.example"}; }
 };
 
-TEST_F(FramedGatewayTest, APageThatMayCallMayShowTheViewerInAFrame) {
+TEST_F(FramedGatewayTest, AnAllowedOriginMayFrameTheViewer) {
   const auto page = Get("/?session=thorax&embed");
   EXPECT_THAT(std::string(page["Content-Security-Policy"]), HasSubstr("frame-ancestors https://course.example"));
 }
@@ -246,7 +246,7 @@ TEST_F(WebGatewayTest, NoFileOutsideTheFolderIsServed) {
   for (const char* target : {"/%00", "/%zz", "*"}) EXPECT_EQ(Get(target).result(), http::status::bad_request) << target;
 }
 
-TEST_F(WebGatewayTest, GarbageDoesNotHurt) {
+TEST_F(WebGatewayTest, RandomBytesDoNoHarm) {
   const std::string large_header = "GET / HTTP/1.1\r\nHost: x\r\nX-Long: " + std::string(40'000, 'x') + "\r\n\r\n";
   for (const std::string& garbage :
        {std::string("\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03", 11), std::string("GET\r\n\r\n"),
@@ -256,20 +256,21 @@ TEST_F(WebGatewayTest, GarbageDoesNotHurt) {
         std::string("POST / HTTP/1.1\r\nHost: x\r\nTransfer-Encoding: chunked\r\n\r\nzz\r\n")}) {
     RawSocket socket = Connect();
     const auto response = socket.Ask(garbage);
-    if (!response.has_value()) continue;  // hung up: that is an answer, too
+    if (!response.has_value()) continue;  // closing the connection is allowed, too
     EXPECT_GE(response->result_int(), 400u) << garbage.substr(0, 40);
-    EXPECT_FALSE(socket.Ask("GET / HTTP/1.1\r\nHost: x\r\n\r\n").has_value()) << "goes on after garbage";
+    EXPECT_FALSE(socket.Ask("GET / HTTP/1.1\r\nHost: x\r\n\r\n").has_value())
+        << "the connection stays open after garbage";
   }
   EXPECT_EQ(Get("/").result(), http::status::ok);
 }
 
-TEST_F(WebGatewayTest, MethodsAndTypesThatAreNotServedAreRefused) {
+TEST_F(WebGatewayTest, UnsupportedMethodsAndTypesAreRefused) {
   EXPECT_EQ(Ask("PUT / HTTP/1.1\r\nHost: x\r\nContent-Length: 0\r\n\r\n").result(), http::status::method_not_allowed);
   EXPECT_EQ(Ask(Post("SessionService/ListSessions", "{}", "", "application/json")).result(),
             http::status::unsupported_media_type);
 }
 
-TEST_F(WebGatewayTest, MoreConnectionsThanAllowedAreRefusedWhileAllAreAnswered) {
+TEST_F(WebGatewayTest, ConnectionsAboveTheLimitAreRefusedWhileAllAreBusy) {
   CreateCube("cube");
   std::vector<std::unique_ptr<RawSocket>> sockets;
   for (int i = 0; i < 8; ++i) {
@@ -290,12 +291,12 @@ TEST_F(WebGatewayTest, MoreConnectionsThanAllowedAreRefusedWhileAllAreAnswered) 
   EXPECT_TRUE(room);
 }
 
-TEST_F(WebGatewayTest, AConnectionThatWaitsMakesRoomForANewOneAndTheLongestWaitingFirst) {
+TEST_F(WebGatewayTest, ANewConnectionReplacesTheOneThatWaitedLongest) {
   std::vector<std::unique_ptr<RawSocket>> sockets;
   for (int i = 0; i < 8; ++i) {
     sockets.push_back(std::make_unique<RawSocket>(server_->web_port()));
     ASSERT_TRUE(sockets.back()->Ask("GET / HTTP/1.1\r\nHost: x\r\n\r\n").has_value());
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));  // it waits by now
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));  // until it waits for a request
   }
   EXPECT_EQ(Get("/").result(), http::status::ok);
   const auto start = std::chrono::steady_clock::now();

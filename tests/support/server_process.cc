@@ -20,8 +20,8 @@
 namespace phrenic {
 namespace {
 
-// What stands behind the word to the line's end, without a slash; empty while there is no such whole line.
-std::string LineBehind(const std::string& text, const std::string& word) {
+// Returns the text after `word` up to a slash or the end of the line; empty if there is no complete line.
+std::string TextAfter(const std::string& text, const std::string& word) {
   const std::size_t at = text.find(word), end = text.find('\n', at);
   if (at == std::string::npos || end == std::string::npos) return "";
   const std::string line = text.substr(at + word.size(), end - at - word.size());
@@ -35,12 +35,12 @@ std::string FirstLine(const std::filesystem::path& path) {
   return line;
 }
 
-// The child's part; does not return.
-[[noreturn]] void Become(const std::string& said, std::vector<std::string> words,
-                         const std::vector<std::string>& environment) {
+// Runs in the child.
+[[noreturn]] void Exec(const std::string& log, std::vector<std::string> words,
+                       const std::vector<std::string>& environment) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   for (const std::string& variable : environment) putenv(const_cast<char*>(variable.c_str()));
-  const int file = open(said.c_str(), O_CREAT | O_WRONLY, 0600);
+  const int file = open(log.c_str(), O_CREAT | O_WRONLY, 0600);
   dup2(file, STDOUT_FILENO);
   dup2(file, STDERR_FILENO);
   std::vector<char*> arguments(words.size() + 1, nullptr);
@@ -51,26 +51,26 @@ std::string FirstLine(const std::filesystem::path& path) {
 
 }  // namespace
 
-ServerProcess::ServerProcess(std::string said, std::vector<std::string> flags, std::vector<std::string> environment)
-    : said_(std::move(said)), flags_(std::move(flags)), environment_(std::move(environment)) {}
+ServerProcess::ServerProcess(std::string log, std::vector<std::string> flags, std::vector<std::string> environment)
+    : log_(std::move(log)), flags_(std::move(flags)), environment_(std::move(environment)) {}
 
 absl::Status ServerProcess::StartOn(const std::string& address, const std::string& web_address) {
   std::vector<std::string> words = {"phrenicd", "--listen", address, "--web", web_address, "--start", "none"};
   words.insert(words.end(), flags_.begin(), flags_.end());
-  std::filesystem::remove(said_);
+  std::filesystem::remove(log_);
   ended_ = -1;
   address_ = web_address_ = "";
   pid_ = fork();
-  if (pid_ < 0) return absl::UnavailableError("no process for the server");
-  if (pid_ == 0) Become(said_, words, environment_);
+  if (pid_ < 0) return absl::UnavailableError("fork failed");
+  if (pid_ == 0) Exec(log_, words, environment_);
   for (int tries = 0; tries < 12'000 && running(); ++tries) {
-    const std::string text = said();
-    address_ = LineBehind(text, "gRPC:   ");
-    web_address_ = LineBehind(text, "://");
+    const std::string text = output();
+    address_ = TextAfter(text, "gRPC:   ");
+    web_address_ = TextAfter(text, "://");
     if (!address_.empty() && !web_address_.empty()) return absl::OkStatus();
     absl::SleepFor(absl::Milliseconds(5));
   }
-  return absl::UnavailableError(said());
+  return absl::UnavailableError(output());
 }
 
 int ServerProcess::Await(double seconds) {
@@ -96,8 +96,8 @@ void ServerProcess::Kill() {
   Await(60);
 }
 
-std::string ServerProcess::said() const {
-  std::ifstream in(said_);
+std::string ServerProcess::output() const {
+  std::ifstream in(log_);
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
@@ -121,7 +121,7 @@ double ServerProcess::Cpu(const std::string& thread) const {
   std::error_code error;
   for (const auto& task : std::filesystem::directory_iterator(absl::StrCat("/proc/", pid_, "/task"), error)) {
     if (FirstLine(task.path() / "comm") != thread) continue;
-    seconds += 1e-9 * std::strtod(FirstLine(task.path() / "schedstat").c_str(), nullptr);  // on the processor [ns]
+    seconds += 1e-9 * std::strtod(FirstLine(task.path() / "schedstat").c_str(), nullptr);  // run time [ns]
   }
   return seconds;
 }
@@ -141,8 +141,8 @@ std::int64_t ServerProcess::Status(const std::string& name) const {
 }
 
 std::int64_t ServerProcess::Files() const {
-  std::error_code gone;
-  return std::distance(std::filesystem::directory_iterator(absl::StrCat("/proc/", pid_, "/fd"), gone), {});
+  std::error_code ignored;
+  return std::distance(std::filesystem::directory_iterator(absl::StrCat("/proc/", pid_, "/fd"), ignored), {});
 }
 
 }  // namespace phrenic

@@ -1,7 +1,6 @@
-// Tells ThreadSanitizer what Abseil's locks order. Debian's Abseil is not built with the sanitizer, which therefore
-// sees no lock in it and would report every use of a guarded member. The linker's --wrap (CMakeLists.txt) sends the
-// calls of our code here; what is not named here (CondVar, reader locks' tries) is not used, and would show as false
-// alarms.
+// Annotates Abseil's mutexes for ThreadSanitizer. Debian's Abseil is not instrumented, so the sanitizer would report
+// every access to a guarded member. The linker's --wrap (CMakeLists.txt) redirects the calls of Phrenic's code to this
+// file. Functions that are not wrapped (CondVar, TryLock of readers) are not used; they would cause false reports.
 #include <sanitizer/tsan_interface.h>
 
 #include "absl/synchronization/mutex.h"
@@ -19,8 +18,8 @@ using absl::Condition;
 using absl::Mutex;
 using absl::Notification;
 
-// Another thread may evaluate a condition inside Unlock, where the lock is held in truth and released already in the
-// sanitizer's eyes; the thread that waits takes the condition off its stack only after that.
+// Another thread may evaluate a condition inside Unlock, when the lock is held although the sanitizer regards it as
+// released. The waiting thread removes the condition from its stack only afterwards.
 bool EvalQuietly(Condition* condition) {
   AnnotateIgnoreReadsBegin(__FILE__, __LINE__);
   const bool holds = condition->Eval();
@@ -29,7 +28,7 @@ bool EvalQuietly(Condition* condition) {
   return holds;
 }
 
-// Waits with a condition that is evaluated quietly.
+// Waits for a condition that is evaluated without reports.
 template <typename Wait>
 bool Waiting(Mutex* mutex, const Condition& condition, const Wait& wait) {
   Condition waited_for = condition;

@@ -1,4 +1,4 @@
-// The sanitizer's view of Abseil's locks: what they order is no race, and what they do not order still is one.
+// ThreadSanitizer reports no race between accesses ordered by Abseil's mutexes, and still reports unordered ones.
 #include <gtest/gtest.h>
 
 #include <thread>

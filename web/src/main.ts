@@ -1,37 +1,37 @@
 import { createGrpcWebTransport } from "@connectrpc/connect-web";
-import { Access, identifying, takeLink } from "./access";
-import { createApi, errorText } from "./api";
-import { App } from "./app";
-import { chooseSession } from "./choose_session";
-import { systemClock } from "./clock";
-import { Chooser } from "./panels/chooser";
-import { Identity, signing } from "./identity";
-import { make, place } from "./panels/dom";
-import { signIn } from "./panels/sign_in";
-import { recipeOf, rerun } from "./permalink";
-import { routing } from "./routing";
+import { App } from "./app/app";
+import { createApi, errorText } from "./connection/api";
+import { Credentials, credentialsInterceptor, storeJoinLink } from "./connection/credentials";
+import { Identity, identityInterceptor } from "./connection/identity";
+import { routingInterceptor } from "./connection/routing";
+import { elementById, make } from "./dom/elements";
+import { SessionChooser } from "./panels/session/session_chooser";
+import { signIn } from "./panels/session/sign_in";
+import { chooseSession } from "./session/choose_session";
+import { recipeOf, rerun } from "./session/permalink";
+import { systemClock } from "./timing/clock";
 
-// What is sent while the page goes outlives it: a vertex that is let go of.
+// Requests while the page is closed must outlive it, such as the release of a pulled vertex.
 let leaving = false;
 window.addEventListener("pagehide", () => (leaving = true), { capture: true });
 window.addEventListener("pageshow", () => (leaving = false));
 const carry: typeof fetch = (input, init) => fetch(input, { ...init, keepalive: leaving });
 
-// The page and the services come from one address.
+// The page and the services have the same origin.
 const identity = new Identity(localStorage);
-const access = new Access(localStorage);
-const interceptors = [signing(identity), identifying(access), routing()];
+const access = new Credentials(localStorage);
+const interceptors = [identityInterceptor(identity), credentialsInterceptor(access), routingInterceptor()];
 const api = createApi(createGrpcWebTransport({ baseUrl: location.origin, fetch: carry, interceptors }));
 
 function address(sessionId: string): string {
   return `?${new URLSearchParams({ session: sessionId })}`;
 }
 
-const chooser = new Chooser(api, (sessionId) => location.assign(address(sessionId)));
+const chooser = new SessionChooser(api, (sessionId) => location.assign(address(sessionId)));
 document.body.append(chooser.element);
 
-const loading = place("loading");
-const start = make("button", { type: "button", onclick: () => void chooser.show() }, "Start one");
+const loading = elementById("loading");
+const start = make("button", { type: "button", onclick: () => void chooser.show() }, "Start a session");
 
 function say(error?: unknown): void {
   if (error === undefined) loading.replaceChildren("The server has no session yet. ", start);
@@ -39,9 +39,9 @@ function say(error?: unknown): void {
 }
 
 const here = new URL(location.href);
-takeLink(here, access);
+storeJoinLink(here, access);
 
-/** The session that the address names, or runs again what it tells how to. */
+/** Returns the session of the address, or runs the simulation that the address describes. */
 async function find(): Promise<string> {
   const recipe = recipeOf(here);
   if (recipe === undefined) return chooseSession(here, api, systemClock, say);
@@ -52,22 +52,22 @@ async function find(): Promise<string> {
 
 await signIn(api, access, loading);
 const sessionId = await find().catch((error: unknown) => {
-  loading.replaceChildren(`This link cannot be run again: ${errorText(error)}. `, start);
+  loading.replaceChildren(`The simulation of this link cannot be repeated: ${errorText(error)}. `, start);
   throw error;
 });
-const beside = here.searchParams.get("beside") ?? undefined;
-// Within the page of a course there is the picture and its playback alone.
+const secondSessionId = here.searchParams.get("beside") ?? undefined;
+// An embedded page shows only the scene and the playback controls.
 const embedded = here.searchParams.has("embed");
 document.body.classList.toggle("embedded", embedded);
 loading.replaceChildren("Loading the scene…");
-history.replaceState(null, "", beside === undefined && !embedded ? address(sessionId) : here.search);
-place("whole").setAttribute("href", address(sessionId));
+history.replaceState(null, "", secondSessionId === undefined && !embedded ? address(sessionId) : here.search);
+elementById("open-full").setAttribute("href", address(sessionId));
 try {
-  const subject = { sessionId, beside, open: (query: string) => location.assign(query) };
+  const subject = { sessionId, secondSessionId, open: (query: string) => location.assign(query) };
   new App(api, subject, chooser, identity, systemClock).start();
 } catch (error) {
   loading.replaceChildren(
-    "This browser cannot draw: Phrenic needs WebGL 2. Switch hardware acceleration on, or update it.",
+    "This browser cannot draw the scene: Phrenic needs WebGL 2. Enable hardware acceleration or update the browser.",
   );
   throw error;
 }

@@ -11,6 +11,7 @@
 #include "server/schema/schema.h"
 #include "server/schema/secret.h"
 #include "server/schema/sha256.h"
+#include "server/service/calls/messages.h"
 #include "server/service/calls/peer.h"
 
 namespace phrenic::service {
@@ -20,35 +21,36 @@ using access::Caller;
 using access::Rule;
 
 constexpr std::string_view kBearer = "Bearer ";
-constexpr std::size_t kMostLinksOfCall = 8, kMostOwned = 4096;
+constexpr std::size_t kMaxLinksPerCall = 8, kMaxOwners = 4096;
 
-absl::Status NoSuchSession(const std::string& id) {
+absl::Status SessionNotVisible(const std::string& id) {
   return absl::NotFoundError(absl::StrCat("session_id: there is no session \"", id.substr(0, 64),
-                                          "\", or none that is yours to see; its owner can give you a join link"));
+                                          "\" that you may see; its owner can send you a join link"));
 }
 
-absl::Status TooLow(std::string_view method, v1::AccessRole role, const char* where) {
-  return absl::PermissionDeniedError(absl::StrCat("authorization: ", std::string(method), " is for the role ",
-                                                  std::string(access::NameOf(role)), where, "; ask for it"));
+absl::Status NeedsRole(std::string_view method, v1::AccessRole role, const char* scope) {
+  return absl::PermissionDeniedError(absl::StrCat("authorization: ", std::string(method), " requires the role ",
+                                                  std::string(access::NameOf(role)), scope,
+                                                  "; ask an administrator or the session's owner for it"));
 }
 
-// "session_id" of the request; empty where it has none.
+// Returns the request's session_id; empty if it has none.
 std::string SessionOf(const google::protobuf::Message& request) {
-  const auto* field = request.GetDescriptor()->FindFieldByName("session_id");
-  if (field == nullptr || field->cpp_type() != google::protobuf::FieldDescriptor::CPPTYPE_STRING) return "";
-  return request.GetReflection()->GetString(request, field);
+  const auto* field = SessionIdField(*request.GetDescriptor());
+  return field == nullptr ? "" : request.GetReflection()->GetString(request, field);
 }
 
+// Returns the token of a "Bearer TOKEN" header (RFC 6750 section 2.1); empty for another scheme.
 std::string_view TokenOf(std::string_view authorization) {
   if (!absl::StartsWithIgnoreCase({authorization.data(), authorization.size()}, "bearer ")) return {};
   return authorization.substr(kBearer.size());
 }
 
-// Browsers send several in one field, with commas between them.
+// Adds the hashes of a comma-separated list of link secrets (browsers join repeated headers with commas).
 void AddLinks(std::string_view secrets, std::vector<std::string>& links) {
   for (absl::string_view secret : absl::StrSplit(absl::string_view(secrets.data(), secrets.size()), ',')) {
     secret = absl::StripAsciiWhitespace(secret);
-    if (!secret.empty() && links.size() < kMostLinksOfCall) links.push_back(Sha256Hex({secret.data(), secret.size()}));
+    if (!secret.empty() && links.size() < kMaxLinksPerCall) links.push_back(Sha256Hex({secret.data(), secret.size()}));
   }
 }
 
@@ -79,9 +81,9 @@ v1::AccessRole AccessGuard::RoleIn(const Caller& caller, const session::Session&
   if (caller.known() && access->account == caller.account.name) return v1::ACCESS_ROLE_OWNER;
   v1::AccessRole role = access->account.empty() ? caller.account.role : v1::ACCESS_ROLE_UNSPECIFIED;
   for (const session::ControlState::Link& link : access->links) {
-    const bool shown = std::any_of(caller.links.begin(), caller.links.end(),
-                                   [&link](const std::string& hash) { return SameToken(hash, link.secret_sha256); });
-    if (shown && absl::Now() < link.expires) role = std::max(role, link.role);
+    const bool held = std::any_of(caller.links.begin(), caller.links.end(),
+                                  [&link](const std::string& hash) { return SameToken(hash, link.secret_sha256); });
+    if (held && absl::Now() < link.expires) role = std::max(role, link.role);
   }
   return role;
 }
@@ -98,30 +100,30 @@ std::function<bool()> AccessGuard::StillMaySee(const Caller& caller, const sessi
 absl::StatusOr<std::shared_ptr<session::Session>> AccessGuard::Find(const Caller& caller, const std::string& id) const {
   auto session = table_.Find(id);
   if (!guarded() || (session.ok() && MaySee(caller, **session))) return session;
-  return NoSuchSession(id);
+  return SessionNotVisible(id);
 }
 
-absl::Status AccessGuard::DecideInSession(const Rule& rule, const Caller& caller, const std::string& session) const {
-  if (caller.admin()) return absl::OkStatus();  // whether there is one, the service says
+absl::Status AccessGuard::CheckSessionRole(const Rule& rule, const Caller& caller, const std::string& session) const {
+  if (caller.admin()) return absl::OkStatus();  // the service reports a missing session
   const auto found = table_.Find(session);
-  if (!found.ok() || !MaySee(caller, **found)) return NoSuchSession(session);
+  if (!found.ok() || !MaySee(caller, **found)) return SessionNotVisible(session);
   if (RoleIn(caller, **found) >= rule.in_session) return absl::OkStatus();
-  return TooLow(rule.method, rule.in_session, " in this session");
+  return NeedsRole(rule.method, rule.in_session, " in this session");
 }
 
-absl::Status AccessGuard::Decide(const Rule& rule, const Caller& caller, const std::string& session) const {
-  if (!guarded() || rule.anybody) return absl::OkStatus();
+absl::Status AccessGuard::CheckRule(const Rule& rule, const Caller& caller, const std::string& session) const {
+  if (!guarded() || rule.open) return absl::OkStatus();
   if (!caller.known() && !caller.admin() && caller.links.empty()) {
     return absl::UnauthenticatedError(
-        "authorization: this server knows its users; call it with a token (phrenic --token-file FILE, PHRENIC_TOKEN, "
+        "authorization: this server requires an account; send a token (phrenic --token-file FILE, PHRENIC_TOKEN, "
         "or \"Sign in\" in the viewer), or open a join link");
   }
-  if (caller.account.role < rule.role) return TooLow(rule.method, rule.role, "");
-  return rule.in_session == v1::ACCESS_ROLE_UNSPECIFIED ? absl::OkStatus() : DecideInSession(rule, caller, session);
+  if (caller.account.role < rule.role) return NeedsRole(rule.method, rule.role, "");
+  return rule.in_session == v1::ACCESS_ROLE_UNSPECIFIED ? absl::OkStatus() : CheckSessionRole(rule, caller, session);
 }
 
-// Callers of this machine without an account are whoever runs it.
-absl::Status AccessGuard::Count(const Rule& rule, const Caller& caller) {
+// Calls from this machine without an account come from its operator and are not limited.
+absl::Status AccessGuard::CheckRate(const Rule& rule, const Caller& caller) {
   if (rule.uncounted || (!caller.known() && IsThisMachine(caller.peer))) return absl::OkStatus();
   return rate_.Take(caller.known() ? "account " + caller.account.name : caller.peer, absl::Now());
 }
@@ -136,11 +138,11 @@ absl::StatusOr<Caller> AccessGuard::Admit(const grpc::ServerContextBase& context
   Caller who;
   who.peer = PeerOf(context);
   if (caller.ok()) who = *caller;
-  absl::Status outcome = Count(*rule, who);
-  if (outcome.ok()) outcome = rule->anybody ? absl::OkStatus() : caller.status();
-  if (outcome.ok()) outcome = Decide(*rule, who, session);
+  absl::Status outcome = CheckRate(*rule, who);
+  if (outcome.ok()) outcome = rule->open ? absl::OkStatus() : caller.status();
+  if (outcome.ok()) outcome = CheckRule(*rule, who, session);
   metrics_.CountRequest(outcome);
-  if (outcome.ok() ? rule->changes : noted_refusals_.Take("", absl::Now()).ok()) {
+  if (outcome.ok() ? rule->changes : logged_refusals_.Take("", absl::Now()).ok()) {
     audit_.Note(who, rule->method, session, outcome);
   }
   if (outcome.ok()) outcome = schema::Validate(request);
@@ -161,10 +163,11 @@ std::string AccessGuard::OwnerOf(Kind kind, const std::string& id) const {
   return owner == owners_.end() ? "" : owner->second;
 }
 
-void AccessGuard::Give(Kind kind, const std::string& id, const std::string& caller_id) {
+void AccessGuard::SetOwner(Kind kind, const std::string& id, const std::string& caller_id) {
   if (!guarded()) return;
   absl::MutexLock lock(&mutex_);
-  if (owners_.size() >= kMostOwned) owners_.clear();  // nobody's but the administrators': they were long gone
+  if (owners_.size() >= kMaxOwners)
+    owners_.clear();  // bounds the map; the resources then belong to administrators only
   owners_[{kind, id}] = caller_id;
 }
 
@@ -180,7 +183,7 @@ absl::Status AccessGuard::CheckOwns(Kind kind, const std::string& id, const Call
   const char* what = kind == Kind::kExport  ? "export_id: there is no export \""
                      : kind == Kind::kStudy ? "study_id: there is no study \""
                                             : "path: there is no \"";
-  return absl::NotFoundError(absl::StrCat(what, id.substr(0, 80), "\", or none of yours"));
+  return absl::NotFoundError(absl::StrCat(what, id.substr(0, 80), "\" that belongs to you"));
 }
 
 bool AccessGuard::IsAdmin(std::string_view authorization) const {

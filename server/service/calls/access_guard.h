@@ -1,4 +1,4 @@
-// Every call's way in: who calls, whether they may, whether the request is in order.
+// Admits or refuses every call: identity, permission, request rate, and validation of the request.
 #ifndef PHRENIC_SERVER_SERVICE_CALLS_ACCESS_GUARD_H_
 #define PHRENIC_SERVER_SERVICE_CALLS_ACCESS_GUARD_H_
 
@@ -22,51 +22,54 @@
 
 namespace phrenic::service {
 
-// Services ask it first of all, as gRPC's own means see no call within the process, which every browser's is. Any
-// thread may call.
+// Every service method calls Admit first. gRPC's auth processors and interceptors do not serve here, because the calls
+// of browsers arrive in process, through the gateway. Thread-safe.
 class AccessGuard {
  public:
-  // What is not a session and belongs to whoever made it.
+  // Resources outside of sessions that belong to the caller who made them.
   enum class Kind { kExport, kStudy, kUpload };
 
-  // All outlive the guard.
+  // All references outlive the guard. `max_requests` is per caller [1/s]; 0 means no limit.
   AccessGuard(const access::Accounts& accounts, access::AuditLog& audit, const session::Table& table, Metrics& metrics,
               double max_requests)
       : accounts_(accounts), audit_(audit), table_(table), metrics_(metrics), rate_(max_requests) {}
 
-  // Who calls, where the rule of the request's method (access::Rules) lets them in and the request keeps its own
-  // (schema::Validate). Else UNAUTHENTICATED, PERMISSION_DENIED, RESOURCE_EXHAUSTED, INVALID_ARGUMENT, or NOT_FOUND for
-  // a session that they may not see.
+  // Returns the caller if the rule of the method (access::Rules) allows the call and schema::Validate accepts the
+  // request. Writes to the audit log and counts the outcome.
+  // Errors: UNAUTHENTICATED without an account or with a bad token; PERMISSION_DENIED if the role is too low;
+  // RESOURCE_EXHAUSTED above the rate limit; NOT_FOUND if the session does not exist or is not visible to the caller;
+  // INVALID_ARGUMENT for a bad field.
   absl::StatusOr<access::Caller> Admit(const grpc::ServerContextBase& context,
                                        const google::protobuf::Message& request);
 
-  // Whether calls need an account.
+  // True if calls need an account.
   bool guarded() const { return accounts_.required(); }
   bool MaySee(const access::Caller& caller, const session::Session& session) const;
-  // The same, asked again and again while somebody watches: an account or a link may be taken away.
+  // Returns a predicate that re-evaluates MaySee during a stream, since accounts and links can be revoked; null if the
+  // server has no accounts. The guard and the session outlive it.
   std::function<bool()> StillMaySee(const access::Caller& caller, const session::Session& session) const;
-  // The session that somebody names inside a request, where they may see it.
+  // Returns a session that a request names beside its session_id. NOT_FOUND if the caller may not see it.
   absl::StatusOr<std::shared_ptr<session::Session>> Find(const access::Caller& caller, const std::string& id) const;
 
-  // Whether the session is this account's own, or anything is as an administrator's: no control token is needed then.
+  // True if the caller's account owns the session or is an administrator; no control token is needed then.
   bool Owns(const access::Caller& caller, const std::string& session) const;
-  // What they made is theirs from now on.
-  void Give(Kind kind, const std::string& id, const std::string& caller_id) ABSL_LOCKS_EXCLUDED(mutex_);
-  // Caller::id() of whom it is; empty: nobody's.
+  // Makes access::Caller::id() `caller_id` the owner of a resource.
+  void SetOwner(Kind kind, const std::string& id, const std::string& caller_id) ABSL_LOCKS_EXCLUDED(mutex_);
+  // Returns the id() of the resource's owner; empty if it has none.
   std::string OwnerOf(Kind kind, const std::string& id) const ABSL_LOCKS_EXCLUDED(mutex_);
   bool Owns(Kind kind, const std::string& id, const access::Caller& caller) const ABSL_LOCKS_EXCLUDED(mutex_);
-  // NOT_FOUND, as if there were none.
+  // Returns NOT_FOUND if the caller does not own the resource, so that its existence is not revealed.
   absl::Status CheckOwns(Kind kind, const std::string& id, const access::Caller& caller) const;
 
-  // Who asks for a page with this in "authorization".
+  // True if an HTTP Authorization header has an administrator's token, or if the server has no accounts.
   bool IsAdmin(std::string_view authorization) const;
 
  private:
   absl::StatusOr<access::Caller> Identify(const grpc::ServerContextBase& context) const;
-  absl::Status Decide(const access::Rule& rule, const access::Caller& caller, const std::string& session) const;
-  absl::Status DecideInSession(const access::Rule& rule, const access::Caller& caller,
-                               const std::string& session) const;
-  absl::Status Count(const access::Rule& rule, const access::Caller& caller);
+  absl::Status CheckRule(const access::Rule& rule, const access::Caller& caller, const std::string& session) const;
+  absl::Status CheckSessionRole(const access::Rule& rule, const access::Caller& caller,
+                                const std::string& session) const;
+  absl::Status CheckRate(const access::Rule& rule, const access::Caller& caller);
   v1::AccessRole RoleIn(const access::Caller& caller, const session::Session& session) const;
 
   const access::Accounts& accounts_;
@@ -74,7 +77,7 @@ class AccessGuard {
   const session::Table& table_;
   Metrics& metrics_;
   access::RateLimit rate_;
-  access::RateLimit noted_refusals_{10};  // a second: nobody fills the disk with them
+  access::RateLimit logged_refusals_{10};  // [1/s], so that refused calls cannot fill the disk
   mutable absl::Mutex mutex_;
   std::map<std::pair<Kind, std::string>, std::string> owners_ ABSL_GUARDED_BY(mutex_);
 };

@@ -18,7 +18,7 @@ prometheus::Gauge& NewGauge(prometheus::Registry& registry, const char* name, co
   return prometheus::BuildGauge().Name(name).Help(help).Register(registry).Add({});
 }
 
-// CPU time of one step [s]; 0 where none was measured.
+// Returns the CPU time of one step [s]; 0 if it has not been measured.
 double StepSeconds(const v1::Pace& pace) {
   return pace.steps_per_second() > 0
              ? pace.cpu_per_simulated_second() * pace.times_real_time() / pace.steps_per_second()
@@ -30,18 +30,18 @@ double StepSeconds(const v1::Pace& pace) {
 Metrics::Metrics()
     : requests_(prometheus::BuildCounter()
                     .Name("phrenic_requests_total")
-                    .Help("Calls by what came of them at the guard: OK, or why they were refused")
+                    .Help("Calls by outcome at the access guard: OK, or the status code of the refusal")
                     .Register(registry_)),
       admitted_(requests_.Add({{"outcome", "OK"}})),
-      frames_(NewCounter(registry_, "phrenic_frames_total", "Messages sent to viewers")),
-      bytes_(NewCounter(registry_, "phrenic_frame_bytes_total", "Their bytes")),
-      sessions_(NewGauge(registry_, "phrenic_sessions", "Sessions there are")),
-      playing_(NewGauge(registry_, "phrenic_sessions_playing", "Sessions that play")),
+      frames_(NewCounter(registry_, "phrenic_frames_total", "Frame messages sent to viewers")),
+      bytes_(NewCounter(registry_, "phrenic_frame_bytes_total", "Bytes of frame messages sent to viewers")),
+      sessions_(NewGauge(registry_, "phrenic_sessions", "Sessions on this server")),
+      playing_(NewGauge(registry_, "phrenic_sessions_playing", "Sessions that are playing")),
       viewers_(NewGauge(registry_, "phrenic_viewers", "Viewers of all sessions")),
       step_seconds_(
-          NewGauge(registry_, "phrenic_step_cpu_seconds", "CPU time of a step, the dearest playing session's")),
+          NewGauge(registry_, "phrenic_step_cpu_seconds", "CPU time of one step [s], maximum over playing sessions")),
       slowest_(NewGauge(registry_, "phrenic_times_real_time",
-                        "Simulated seconds a second, the slowest playing session's")) {}
+                        "Simulated seconds per second, minimum over playing sessions")) {}
 
 void Metrics::CountRequest(const absl::Status& outcome) {
   if (outcome.ok()) return admitted_.Increment();
@@ -53,16 +53,16 @@ void Metrics::CountFrame(std::size_t bytes) {
   bytes_.Increment(static_cast<double>(bytes));
 }
 
-void Metrics::Follow(std::function<std::pair<cluster::ClusterCounts, std::int64_t>()> counts) {
-  cluster_ = std::move(counts);
+void Metrics::AddCluster(ClusterSource source) {
+  cluster_ = std::move(source);
   for (const auto& [name, help] :
-       {std::pair("phrenic_cluster_sessions", "Sessions that this server of the cluster has"),
-        {"phrenic_cluster_servers", "Servers of the cluster that take sessions"},
-        {"phrenic_cluster_reached", "Whether Redis answered at the last attempt: 1 or 0"},
-        {"phrenic_cluster_taken", "Sessions of other servers that this one went on with, since it started"},
-        {"phrenic_cluster_lost", "Sessions that other servers went on with, while this one was slow or cut off"},
-        {"phrenic_cluster_forwarded", "Calls that were passed on to other servers"}}) {
-    of_cluster_[name] = &NewGauge(registry_, name, help);
+       {std::pair("phrenic_cluster_sessions", "Sessions whose lease this server holds"),
+        {"phrenic_cluster_servers", "Servers of the cluster that accept sessions"},
+        {"phrenic_cluster_reached", "1 if Redis answered the last request, 0 if not"},
+        {"phrenic_cluster_taken", "Sessions that this server took over from others since it started"},
+        {"phrenic_cluster_lost", "Sessions whose lease this server lost to another server since it started"},
+        {"phrenic_cluster_forwarded", "Calls forwarded to other servers since this one started"}}) {
+    cluster_gauges_[name] = &NewGauge(registry_, name, help);
   }
 }
 
@@ -71,19 +71,19 @@ void Metrics::CollectCluster() {
   const auto [counts, forwarded] = cluster_();
   for (const auto& [name, value] : {std::pair("sessions", static_cast<double>(counts.owned)),
                                     {"servers", static_cast<double>(counts.servers)},
-                                    {"reached", counts.reached ? 1.0 : 0.0},
-                                    {"taken", static_cast<double>(counts.taken)},
+                                    {"reached", counts.redis_reachable ? 1.0 : 0.0},
+                                    {"taken", static_cast<double>(counts.taken_over)},
                                     {"lost", static_cast<double>(counts.lost)},
                                     {"forwarded", static_cast<double>(forwarded)}}) {
-    of_cluster_.at(std::string("phrenic_cluster_") + name)->Set(value);
+    cluster_gauges_.at(std::string("phrenic_cluster_") + name)->Set(value);
   }
 }
 
 std::string Metrics::Text(const session::Table& table) {
-  constexpr int kAll = 1000;
+  constexpr int kMaxListed = 1000;
   int sessions = 0, playing = 0, viewers = 0;
   double step = 0, slowest = std::numeric_limits<double>::infinity();
-  for (const auto& session : table.List(kAll, "").sessions) {
+  for (const auto& session : table.List(kMaxListed, "").sessions) {
     const v1::Session status = session->status();
     ++sessions;
     viewers += status.viewers();

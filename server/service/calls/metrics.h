@@ -1,4 +1,4 @@
-// Numbers of the running server, for Prometheus.
+// The metrics of the running server in Prometheus' text format.
 #ifndef PHRENIC_SERVER_SERVICE_CALLS_METRICS_H_
 #define PHRENIC_SERVER_SERVICE_CALLS_METRICS_H_
 
@@ -16,30 +16,33 @@
 
 namespace phrenic::service {
 
-// Any thread may call. No number has the name of a session, a scene or a person.
+// Thread-safe. No metric or label contains the name of a session, a scene or a person.
 class Metrics {
  public:
+  // A server's counts in its cluster, and the calls that it forwarded to other servers.
+  using ClusterSource = std::function<std::pair<cluster::ClusterCounts, std::int64_t>()>;
+
   Metrics();
 
-  // A call that was let in, or refused with this.
+  // Counts a call that AccessGuard admitted (OK) or refused.
   void CountRequest(const absl::Status& outcome);
-  // A message that was sent to a viewer [bytes].
+  // Counts a message to a viewer [bytes].
   void CountFrame(std::size_t bytes);
-  // Numbers of a cluster's server: what it counts, and the calls that went to others. Before anybody asks for the text.
-  void Follow(std::function<std::pair<cluster::ClusterCounts, std::int64_t>()> counts);
-  // The text that Prometheus reads, with what the table's sessions do now.
+  // Adds the cluster's metrics. Requires: Text has not been called yet.
+  void AddCluster(ClusterSource source);
+  // Returns all metrics (text format 0.0.4), with gauges that are read from the sessions of `table` now.
   std::string Text(const session::Table& table);
 
  private:
+  void CollectCluster();
+
   prometheus::Registry registry_;
   prometheus::Family<prometheus::Counter>& requests_;
   prometheus::Counter& admitted_;
   prometheus::Counter &frames_, &bytes_;
-  void CollectCluster();
-
-  std::function<std::pair<cluster::ClusterCounts, std::int64_t>()> cluster_;  // null: a server by itself
-  std::map<std::string, prometheus::Gauge*> of_cluster_;
   prometheus::Gauge &sessions_, &playing_, &viewers_, &step_seconds_, &slowest_;
+  ClusterSource cluster_;  // null: not in a cluster
+  std::map<std::string, prometheus::Gauge*> cluster_gauges_;
 };
 
 }  // namespace phrenic::service

@@ -1,4 +1,4 @@
-// The one place where errors become gRPC statuses.
+// Converts absl::Status to grpc::Status. Services convert here and nowhere else.
 #ifndef PHRENIC_SERVER_SERVICE_CALLS_STATUS_H_
 #define PHRENIC_SERVER_SERVICE_CALLS_STATUS_H_
 
@@ -10,7 +10,7 @@
 
 namespace phrenic::service {
 
-// The codes of both have the same numbers.
+// Keeps code and message; the codes of both have equal numbers.
 inline grpc::Status ToGrpc(const absl::Status& status) {
   if (status.ok()) return grpc::Status::OK;
   return {static_cast<grpc::StatusCode>(status.code()), std::string(status.message())};

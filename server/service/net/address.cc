@@ -17,8 +17,8 @@ absl::StatusOr<Address> ParseAddress(const std::string& text) {
     if (bracketed) address.host = address.host.substr(1, address.host.size() - 2);
     if (!address.host.empty() && (bracketed || !absl::StrContains(address.host, ":"))) return address;
   }
-  return absl::InvalidArgumentError(
-      absl::StrCat("\"", text, "\" is no address: HOST:PORT, as 127.0.0.1:8080, or 127.0.0.1:0 for any free port"));
+  return absl::InvalidArgumentError(absl::StrCat(
+      "\"", text, "\" is not an address: use HOST:PORT, such as 127.0.0.1:8080, or port 0 for any free port"));
 }
 
 bool IsLoopback(const Address& address) {

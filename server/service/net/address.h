@@ -1,4 +1,4 @@
-// "HOST:PORT" as people write it.
+// Parses listen addresses of the form "HOST:PORT" (IPv6 hosts in brackets, RFC 3986 section 3.2.2).
 #ifndef PHRENIC_SERVER_SERVICE_NET_ADDRESS_H_
 #define PHRENIC_SERVER_SERVICE_NET_ADDRESS_H_
 
@@ -10,16 +10,16 @@ namespace phrenic::service {
 
 struct Address {
   std::string host;  // without the brackets of "[::1]:8080"
-  int port = 0;
+  int port = 0;      // 0 lets the system choose a free port
 };
 
-// INVALID_ARGUMENT tells what an address looks like.
+// Returns INVALID_ARGUMENT, with the expected form, if `text` is not "HOST:PORT" with a port from 0 to 65535.
 absl::StatusOr<Address> ParseAddress(const std::string& text);
 
-// Whether only this machine can reach it: "127.0.0.1", "::1", "localhost".
+// True if only processes on this machine can connect: "localhost", "::1" and 127.0.0.0/8 (RFC 1122 section 3.2.1.3).
 bool IsLoopback(const Address& address);
 
-// UNAVAILABLE "cannot listen on 127.0.0.1:8080: Address already in use; choose another port, or stop what uses it".
+// Returns UNAVAILABLE with the address, the system's reason and a remedy.
 absl::Status CannotListen(const std::string& address, const std::string& why);
 
 }  // namespace phrenic::service

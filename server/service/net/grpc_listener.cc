@@ -11,17 +11,17 @@ namespace {
 using boost::asio::ip::tcp;
 using ConnectionType = grpc::ServerBuilder::experimental_type::ExternalConnectionType;
 
-// Which socket is behind a file; 0 where there is none. Numbers of files are used again, those of sockets are not.
-unsigned long SocketOf(int file) {
+// Returns the inode of the socket behind a file descriptor; 0 if it is not a socket.
+unsigned long SocketInode(int file_descriptor) {
   struct stat found {};
-  return fstat(file, &found) == 0 && S_ISSOCK(found.st_mode) ? found.st_ino : 0;
+  return fstat(file_descriptor, &found) == 0 && S_ISSOCK(found.st_mode) ? found.st_ino : 0;
 }
 
 }  // namespace
 
 GrpcListener::GrpcListener(std::size_t max_connections,
-                           std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor> server)
-    : max_connections_(max_connections), server_(std::move(server)), acceptor_(context_), pause_(context_) {}
+                           std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor> grpc)
+    : max_connections_(max_connections), grpc_(std::move(grpc)), acceptor_(context_), retry_timer_(context_) {}
 
 absl::StatusOr<std::unique_ptr<GrpcListener>> GrpcListener::Make(const std::string& address,
                                                                  std::size_t max_connections,
@@ -54,23 +54,22 @@ void GrpcListener::Accept() {
   acceptor_.async_accept([this](boost::system::error_code error, tcp::socket socket) {
     if (error == boost::asio::error::operation_aborted) return;
     if (!error) {
-      HandOver(std::move(socket));
+      PassToGrpc(std::move(socket));
       return Accept();
     }
-    // Out of files, say: it will not be better at once.
-    pause_.expires_after(std::chrono::milliseconds(100));
-    pause_.async_wait([this](boost::system::error_code) { Accept(); });
+    retry_timer_.expires_after(kAcceptRetry);
+    retry_timer_.async_wait([this](boost::system::error_code) { Accept(); });
   });
 }
 
 bool GrpcListener::HasRoom() {
-  if (handed_.size() < max_connections_) return true;
-  handed_.remove_if([](const Handed& each) { return SocketOf(each.file) != each.socket; });
-  return handed_.size() < max_connections_;
+  if (open_.size() < max_connections_) return true;
+  open_.remove_if([](const OpenConnection& each) { return SocketInode(each.file_descriptor) != each.inode; });
+  return open_.size() < max_connections_;
 }
 
-void GrpcListener::HandOver(tcp::socket socket) {
-  if (!HasRoom()) return;  // closes it
+void GrpcListener::PassToGrpc(tcp::socket socket) {
+  if (!HasRoom()) return;  // the destructor closes the socket
   boost::system::error_code ignored;
   socket.set_option(tcp::no_delay(true), ignored);
   socket.non_blocking(true, ignored);
@@ -78,8 +77,8 @@ void GrpcListener::HandOver(tcp::socket socket) {
   grpc::experimental::ExternalConnectionAcceptor::NewConnectionParameters connection;
   connection.listener_fd = acceptor_.native_handle();
   connection.fd = socket.release(ignored);
-  handed_.push_back({connection.fd, SocketOf(connection.fd)});
-  server_->HandleNewConnection(&connection);
+  open_.push_back({connection.fd, SocketInode(connection.fd)});
+  grpc_->HandleNewConnection(&connection);
 }
 
 }  // namespace phrenic::service

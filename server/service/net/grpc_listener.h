@@ -1,5 +1,5 @@
-// Accepts connections for gRPC, no more than are allowed: gRPC itself takes any number, and where the process runs out
-// of files it stops listening for good.
+// Accepts TCP connections for gRPC up to a limit. gRPC's own listener has no limit on connections and stops accepting
+// for good when the process runs out of file descriptors.
 #ifndef PHRENIC_SERVER_SERVICE_NET_GRPC_LISTENER_H_
 #define PHRENIC_SERVER_SERVICE_NET_GRPC_LISTENER_H_
 
@@ -19,40 +19,42 @@
 
 namespace phrenic::service {
 
-// Not thread-safe; a thread of its own accepts.
+// Not thread-safe. Accepts on its own thread.
 class GrpcListener {
  public:
-  // Before the server is built: connections are handed to it once it is. The errors of ListenOn.
+  // Listens and registers with `builder`. Call before the server is built; connections reach gRPC after Start.
+  // Errors: those of ListenOn.
   static absl::StatusOr<std::unique_ptr<GrpcListener>> Make(const std::string& address, std::size_t max_connections,
                                                             std::shared_ptr<grpc::ServerCredentials> credentials,
                                                             grpc::ServerBuilder& builder);
   ~GrpcListener();
 
   int port() const { return port_; }
-  // Once the server is built.
+  // Starts accepting. Requires: the server is built.
   void Start();
-  // Accepts no more; a second call does nothing.
+  // Stops accepting and joins the thread; open connections stay with gRPC. Idempotent.
   void Shutdown();
 
  private:
-  // A connection that gRPC has: its file, and which socket that was.
-  struct Handed {
-    int file;
-    unsigned long socket;
+  // A connection that gRPC owns. File descriptors are reused, so the socket's inode tells whether it is still open.
+  struct OpenConnection {
+    int file_descriptor;
+    unsigned long inode;
   };
 
-  GrpcListener(std::size_t max_connections, std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor> server);
+  GrpcListener(std::size_t max_connections, std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor> grpc);
   void Accept();
-  void HandOver(boost::asio::ip::tcp::socket socket);
+  void PassToGrpc(boost::asio::ip::tcp::socket socket);
+  // Forgets closed connections if the limit is reached. True if one more connection is allowed.
   bool HasRoom();
 
   const std::size_t max_connections_;
-  const std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor> server_;
+  const std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor> grpc_;
   boost::asio::io_context context_;
   boost::asio::ip::tcp::acceptor acceptor_;
-  boost::asio::steady_timer pause_;
+  boost::asio::steady_timer retry_timer_;
   int port_ = 0;
-  std::list<Handed> handed_;
+  std::list<OpenConnection> open_;
   std::thread thread_;
 };
 

@@ -19,7 +19,7 @@ absl::StatusOr<tcp::endpoint> Resolve(const std::string& address, tcp::acceptor&
   boost::system::error_code error;
   const auto found = resolver.resolve(parts->host, absl::StrCat(parts->port), tcp::resolver::passive, error);
   if (error || found.empty()) {
-    return absl::UnavailableError(absl::StrCat(address, ": there is no such address on this machine"));
+    return absl::UnavailableError(absl::StrCat(address, ": the host does not resolve to an address of this machine"));
   }
   return found.begin()->endpoint();
 }
@@ -31,7 +31,8 @@ absl::StatusOr<int> ListenOn(const std::string& address, tcp::acceptor& acceptor
   if (!endpoint.ok()) return endpoint.status();
   boost::system::error_code error;
   acceptor.open(endpoint->protocol(), error);
-  if (!error) acceptor.set_option(boost::asio::socket_base::reuse_address(true), error);  // not while another listens
+  if (!error)
+    acceptor.set_option(boost::asio::socket_base::reuse_address(true), error);  // fails while another process listens
   if (!error) acceptor.bind(*endpoint, error);
   if (!error) acceptor.listen(boost::asio::socket_base::max_listen_connections, error);
   if (error) return CannotListen(address, error.message());
@@ -39,17 +40,18 @@ absl::StatusOr<int> ListenOn(const std::string& address, tcp::acceptor& acceptor
 }
 
 void EnableKeepalive(tcp::socket& socket) {
-  constexpr int kOn = 1, kQuiet = 9, kBetween = 3, kProbes = 2;  // [s], [s]
-  constexpr unsigned kUnanswered = 15'000;                       // [ms]
+  constexpr int kOn = 1, kProbes = 2;
+  constexpr int kIdle = 9, kInterval = 3;    // [s]
+  constexpr unsigned kUserTimeout = 15'000;  // [ms]
   const int handle = socket.native_handle();
   setsockopt(handle, SOL_SOCKET, SO_KEEPALIVE, &kOn, sizeof kOn);
-  setsockopt(handle, IPPROTO_TCP, TCP_KEEPIDLE, &kQuiet, sizeof kQuiet);
-  setsockopt(handle, IPPROTO_TCP, TCP_KEEPINTVL, &kBetween, sizeof kBetween);
+  setsockopt(handle, IPPROTO_TCP, TCP_KEEPIDLE, &kIdle, sizeof kIdle);
+  setsockopt(handle, IPPROTO_TCP, TCP_KEEPINTVL, &kInterval, sizeof kInterval);
   setsockopt(handle, IPPROTO_TCP, TCP_KEEPCNT, &kProbes, sizeof kProbes);
-  setsockopt(handle, IPPROTO_TCP, TCP_USER_TIMEOUT, &kUnanswered, sizeof kUnanswered);
+  setsockopt(handle, IPPROTO_TCP, TCP_USER_TIMEOUT, &kUserTimeout, sizeof kUserTimeout);
 }
 
-void AllowManyFiles() {
+void RaiseFileLimit() {
   rlimit files{};
   if (getrlimit(RLIMIT_NOFILE, &files) != 0) return;
   files.rlim_cur = files.rlim_max;

@@ -1,4 +1,4 @@
-// Listening on an address, and what every connection is given.
+// Sockets that accept connections, and the options of each accepted connection.
 #ifndef PHRENIC_SERVER_SERVICE_NET_LISTEN_H_
 #define PHRENIC_SERVER_SERVICE_NET_LISTEN_H_
 
@@ -6,21 +6,27 @@
 // Boost 1.74's Asio needs <utility> before it with C++20.
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <chrono>
 #include <string>
 
 #include "absl/status/statusor.h"
 
 namespace phrenic::service {
 
-// Opens the acceptor at "HOST:PORT" and gives the port that it has, where 0 chose one. UNAVAILABLE names the address
-// that could not be listened on, INVALID_ARGUMENT one that is none.
+// Opens, binds and listens on "HOST:PORT". Returns the port in use, which the system chooses if PORT is 0.
+// Errors: INVALID_ARGUMENT if the address cannot be parsed; UNAVAILABLE if the host does not resolve or the port is
+// taken.
 absl::StatusOr<int> ListenOn(const std::string& address, boost::asio::ip::tcp::acceptor& acceptor);
 
-// A peer that no longer answers is given up within 15 s, whether bytes are on their way to it or not.
+// The pause before accepting again after an error, such as running out of file descriptors.
+inline constexpr std::chrono::milliseconds kAcceptRetry(100);
+
+// Enables TCP keepalive (RFC 1122 section 4.2.3.6) and TCP_USER_TIMEOUT (RFC 5482), so that a peer that does not
+// answer is detected within 15 s, whether the connection is idle or has unacknowledged data.
 void EnableKeepalive(boost::asio::ip::tcp::socket& socket);
 
-// As many open files as the system lets this process have: each connection is one.
-void AllowManyFiles();
+// Raises the soft limit on open file descriptors to the hard limit, because each connection needs one.
+void RaiseFileLimit();
 
 }  // namespace phrenic::service
 

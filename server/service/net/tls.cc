@@ -12,19 +12,19 @@
 namespace phrenic::service {
 namespace {
 
-constexpr unsigned kLookSeconds = 10;
+constexpr unsigned kReloadSeconds = 10;
 
 absl::Status CheckFile(const char* flag, const std::string& file) {
   std::error_code error;
   if (std::filesystem::is_regular_file(file, error)) return absl::OkStatus();
-  return absl::NotFoundError(absl::StrCat(flag, ": there is no file ", file));
+  return absl::NotFoundError(absl::StrCat(flag, ": no such file: ", file));
 }
 
-absl::Status Fault(const char* flag, const std::string& file, const char* remedy) {
+absl::Status OpenSslError(const char* flag, const std::string& file, const char* problem) {
   char text[256];
   ERR_error_string_n(ERR_get_error(), text, sizeof text);
   ERR_clear_error();
-  return absl::InvalidArgumentError(absl::StrCat(flag, ": ", file, " ", remedy, " (", text, ")"));
+  return absl::InvalidArgumentError(absl::StrCat(flag, ": ", file, " ", problem, " (", text, ")"));
 }
 
 }  // namespace
@@ -32,30 +32,30 @@ absl::Status Fault(const char* flag, const std::string& file, const char* remedy
 absl::Status CheckTls(const TlsFiles& files) {
   if (!files.used()) {
     if (files.key.empty() && files.client_ca.empty()) return absl::OkStatus();
-    return absl::InvalidArgumentError("--tls-cert: must be given where --tls-key or --tls-client-ca is");
+    return absl::InvalidArgumentError("--tls-cert: required with --tls-key or --tls-client-ca");
   }
-  if (files.key.empty()) return absl::InvalidArgumentError("--tls-key: must be given where --tls-cert is");
+  if (files.key.empty()) return absl::InvalidArgumentError("--tls-key: required with --tls-cert");
   if (absl::Status status = CheckFile("--tls-cert", files.certificate); !status.ok()) return status;
   if (absl::Status status = CheckFile("--tls-key", files.key); !status.ok()) return status;
   const std::unique_ptr<SSL_CTX, decltype(&SSL_CTX_free)> context(SSL_CTX_new(TLS_server_method()), &SSL_CTX_free);
   if (SSL_CTX_use_certificate_chain_file(context.get(), files.certificate.c_str()) != 1) {
-    return Fault("--tls-cert", files.certificate, "holds no certificate in PEM");
+    return OpenSslError("--tls-cert", files.certificate, "contains no certificate in PEM");
   }
   if (SSL_CTX_use_PrivateKey_file(context.get(), files.key.c_str(), SSL_FILETYPE_PEM) != 1 ||
       SSL_CTX_check_private_key(context.get()) != 1) {
-    return Fault("--tls-key", files.key, "is not the certificate's key in PEM");
+    return OpenSslError("--tls-key", files.key, "is not the private key of the certificate in PEM");
   }
   if (files.client_ca.empty()) return absl::OkStatus();
   if (absl::Status status = CheckFile("--tls-client-ca", files.client_ca); !status.ok()) return status;
   if (SSL_CTX_load_verify_locations(context.get(), files.client_ca.c_str(), nullptr) == 1) return absl::OkStatus();
-  return Fault("--tls-client-ca", files.client_ca, "holds no certificate in PEM");
+  return OpenSslError("--tls-client-ca", files.client_ca, "contains no certificate in PEM");
 }
 
 std::shared_ptr<grpc::ServerCredentials> MakeCredentials(const TlsFiles& files) {
   if (!files.used()) return grpc::InsecureServerCredentials();
   namespace tls = grpc::experimental;
   const auto provider = std::make_shared<tls::FileWatcherCertificateProvider>(files.key, files.certificate,
-                                                                              files.client_ca, kLookSeconds);
+                                                                              files.client_ca, kReloadSeconds);
   tls::TlsServerCredentialsOptions options(provider);
   options.watch_identity_key_cert_pairs();
   if (files.client_ca.empty()) {

@@ -1,4 +1,4 @@
-// Certificates: of the server, and of those who may call it.
+// TLS certificates of the server and of its clients.
 #ifndef PHRENIC_SERVER_SERVICE_NET_TLS_H_
 #define PHRENIC_SERVER_SERVICE_NET_TLS_H_
 
@@ -11,20 +11,20 @@
 
 namespace phrenic::service {
 
-// Files in PEM.
+// Paths of PEM files (RFC 7468).
 struct TlsFiles {
-  std::string certificate;  // the chain, the server's own first; empty: nothing is encrypted
-  std::string key;
-  std::string client_ca;  // every client must have a certificate of one of these; empty: none needs one
+  std::string certificate;  // the chain, leaf certificate first; empty: no TLS
+  std::string key;          // private key of the leaf certificate
+  std::string client_ca;    // CAs that client certificates must chain to (mutual TLS); empty: no client certificate
 
   bool used() const { return !certificate.empty(); }
 };
 
-// Reads the files and says what is wrong with them: NOT_FOUND or INVALID_ARGUMENT with the flag that names the file,
-// and that the key does not belong to the certificate.
+// Reads and checks the files. Errors name the flag and the file: NOT_FOUND if a file is missing, INVALID_ARGUMENT if it
+// is not PEM, if the key does not match the certificate, or if the flags are incomplete.
 absl::Status CheckTls(const TlsFiles& files);
 
-// For gRPC; those of files that change are read again within ten seconds.
+// Returns gRPC server credentials, insecure ones if TLS is not used. gRPC reloads changed files every 10 s.
 std::shared_ptr<grpc::ServerCredentials> MakeCredentials(const TlsFiles& files);
 
 }  // namespace phrenic::service

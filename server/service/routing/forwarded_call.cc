@@ -6,12 +6,13 @@
 #include "absl/strings/str_cat.h"
 #include "server/service/calls/peer.h"
 #include "server/service/calls/status.h"
+#include "server/service/routing/merge_responses.h"
 
 namespace phrenic::service {
 namespace {
 
-// For the others' parts of a list: whoever takes longer is left out.
-constexpr std::chrono::seconds kListPatience(2);
+// Deadline of the other servers in a fan-out; a list is returned without those that miss it.
+constexpr std::chrono::seconds kFanOutTimeout(2);
 
 }  // namespace
 
@@ -20,7 +21,7 @@ ForwardedCall::ForwardedCall(SessionRouter& router, grpc::GenericCallbackServerC
       context_(context),
       method_(context.method()),
       peer_(PeerOf(context).empty() ? "unknown" : PeerOf(context)),
-      metadata_(SessionRouter::MetadataOf(context)) {}
+      metadata_(SessionRouter::ForwardedMetadata(context)) {}
 
 ForwardedCall* ForwardedCall::Make(SessionRouter& router, grpc::GenericCallbackServerContext& context) {
   std::shared_ptr<ForwardedCall> call(new ForwardedCall(router, context));
@@ -34,8 +35,8 @@ void ForwardedCall::OnReadDone(bool ok) {
   auto route = router_.Find(method_, metadata_, request_);
   if (!route.ok()) return Finish(ToGrpc(route.status()));
   route_ = *std::move(route);
-  if (route_.all) return Gather();
-  Try();
+  if (route_.fan_out) return FanOut();
+  CallTarget();
 }
 
 UpstreamCall::Request ForwardedCall::RequestTo(const SessionRouter::Target& target) const {
@@ -47,61 +48,62 @@ std::shared_ptr<UpstreamCall> ForwardedCall::upstream() const {
   return upstream_;
 }
 
-void ForwardedCall::Try() {
-  const SessionRouter::Target& target = route_.targets[tried_];
+void ForwardedCall::CallTarget() {
+  const SessionRouter::Target& target = route_.targets[target_];
   if (!target.address.empty()) router_.CountForwarded();
-  const auto way = UpstreamCall::Make(
+  const auto call = UpstreamCall::Make(
       RequestTo(target),
-      {.message = [self = shared_from_this()](const grpc::ByteBuffer& message) { return self->Pass(message); },
-       .done = [self = shared_from_this()](const grpc::Status& status) { self->Ended(status); }});
+      {.message = [self = shared_from_this()](const grpc::ByteBuffer& message) { return self->WriteResponse(message); },
+       .done = [self = shared_from_this()](const grpc::Status& status) { self->OnUpstreamDone(status); }});
   {
     absl::MutexLock lock(&mutex_);
-    upstream_ = way;
+    upstream_ = call;
     if (cancelled_) upstream_->Cancel();
   }
-  way->Start(*target.stub);
+  call->Start(*target.stub);
 }
 
-bool ForwardedCall::Pass(const grpc::ByteBuffer& message) {
-  passed_ = true;
+bool ForwardedCall::WriteResponse(const grpc::ByteBuffer& message) {
+  responded_ = true;
   outgoing_ = message;
   StartWrite(&outgoing_);
   return false;
 }
 
 void ForwardedCall::OnWriteDone(bool ok) {
-  const auto way = upstream();
-  if (way == nullptr) return;  // lists, which end with their answer
-  if (!ok) way->Cancel();
-  way->ReadNext();
+  const auto call = upstream();
+  if (call == nullptr) return;  // a fan-out ends with its only write
+  if (!ok) call->Cancel();
+  call->ReadNext();
 }
 
-void ForwardedCall::Ended(const grpc::Status& status) {
-  const SessionRouter::Target& target = route_.targets[tried_];
-  const bool missing = !passed_ && status.error_code() == grpc::StatusCode::NOT_FOUND;
-  const bool silent = !passed_ && status.error_code() == grpc::StatusCode::UNAVAILABLE && !target.address.empty();
-  if (silent) router_.NoteGone(route_);
-  if (tried_ == 0) first_ = status;
-  if ((missing || (silent && tried_ > 0)) && tried_ + 1 < route_.targets.size()) {
-    ++tried_;
-    return Try();
-  }
-  if (silent && tried_ == 0) {
+void ForwardedCall::OnUpstreamDone(const grpc::Status& status) {
+  const SessionRouter::Target& target = route_.targets[target_];
+  const bool first = target_ == 0;
+  const bool missing = !responded_ && status.error_code() == grpc::StatusCode::NOT_FOUND;
+  const bool unreachable =
+      !responded_ && status.error_code() == grpc::StatusCode::UNAVAILABLE && !target.address.empty();
+  if (unreachable) router_.ReportUnreachable(route_);
+  if (first) first_status_ = status;
+  if (first && unreachable) {
     return Finish({grpc::StatusCode::UNAVAILABLE,
-                   absl::StrCat("the server at ", target.address, " that has the session does not answer (",
-                                status.error_message(), "); ask again in a moment")});
+                   absl::StrCat("the server at ", target.address, ", which has the session, does not answer (",
+                                status.error_message(), "); try again in a moment")});
   }
-  Finish(missing || (silent && tried_ > 0) ? first_ : status);
+  if (!missing && !unreachable) return Finish(status);
+  if (target_ + 1 == route_.targets.size()) return Finish(first_status_);
+  ++target_;
+  CallTarget();
 }
 
 void ForwardedCall::OnCancel() {
-  std::shared_ptr<UpstreamCall> way;
+  std::shared_ptr<UpstreamCall> call;
   {
     absl::MutexLock lock(&mutex_);
     cancelled_ = true;
-    way = upstream_;
+    call = upstream_;
   }
-  if (way != nullptr) way->Cancel();
+  if (call != nullptr) call->Cancel();
 }
 
 void ForwardedCall::OnDone() {
@@ -110,47 +112,38 @@ void ForwardedCall::OnDone() {
   upstream_ = nullptr;
 }
 
-void ForwardedCall::Gather() {
+void ForwardedCall::FanOut() {
   {
     absl::MutexLock lock(&mutex_);
-    awaited_ = route_.targets.size();
-    answers_.resize(awaited_);
+    pending_ = route_.targets.size();
+    responses_.resize(pending_);
   }
   for (std::size_t i = 0; i < route_.targets.size(); ++i) {
     UpstreamCall::Request request = RequestTo(route_.targets[i]);
-    if (i > 0) request.deadline = std::min(request.deadline, std::chrono::system_clock::now() + kListPatience);
-    UpstreamCall::Make(std::move(request), {.message =
-                                                [self = shared_from_this(), i](const grpc::ByteBuffer& message) {
-                                                  absl::MutexLock lock(&self->mutex_);
-                                                  self->answers_[i] = message;
-                                                  return true;
-                                                },
-                                            .done = [self = shared_from_this(),
-                                                     i](const grpc::Status& status) { self->Gathered(i, status); }})
-        ->Start(*route_.targets[i].stub);
+    if (i > 0) request.deadline = std::min(request.deadline, std::chrono::system_clock::now() + kFanOutTimeout);
+    const auto keep = [self = shared_from_this(), i](const grpc::ByteBuffer& message) {
+      absl::MutexLock lock(&self->mutex_);
+      self->responses_[i] = message;
+      return true;
+    };
+    const auto done = [self = shared_from_this(), i](const grpc::Status& status) { self->OnFanOutDone(i, status); };
+    UpstreamCall::Make(std::move(request), {.message = keep, .done = done})->Start(*route_.targets[i].stub);
   }
 }
 
-void ForwardedCall::Gathered(std::size_t index, const grpc::Status& status) {
-  grpc::Status own;
+void ForwardedCall::OnFanOutDone(std::size_t index, const grpc::Status& status) {
+  grpc::Status local_status;
+  std::vector<grpc::ByteBuffer> responses;
   {
     absl::MutexLock lock(&mutex_);
-    if (index == 0) own_ = status;
-    if (!status.ok()) answers_[index].Clear();
-    if (--awaited_ > 0) return;
-    own = own_;
+    if (index == 0) local_status_ = status;
+    if (!status.ok()) responses_[index].Clear();
+    if (--pending_ > 0) return;
+    local_status = local_status_;
+    responses.swap(responses_);
   }
-  AnswerTogether(own);
-}
-
-void ForwardedCall::AnswerTogether(const grpc::Status& own) {
-  if (!own.ok()) return Finish(own);
-  std::vector<grpc::ByteBuffer> answers;
-  {
-    absl::MutexLock lock(&mutex_);
-    answers.swap(answers_);
-  }
-  outgoing_ = Together(method_, request_, answers);
+  if (!local_status.ok()) return Finish(local_status);
+  outgoing_ = MergeResponses(method_, request_, responses);
   StartWriteAndFinish(&outgoing_, {}, grpc::Status::OK);
 }
 

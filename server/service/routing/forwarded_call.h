@@ -1,4 +1,4 @@
-// A call at a cluster's front, passed on to where its session is.
+// One client call to a cluster's server, forwarded to the targets that SessionRouter chooses.
 #ifndef PHRENIC_SERVER_SERVICE_ROUTING_FORWARDED_CALL_H_
 #define PHRENIC_SERVER_SERVICE_ROUTING_FORWARDED_CALL_H_
 
@@ -16,7 +16,11 @@
 
 namespace phrenic::service {
 
-// gRPC's threads call. One message comes in: no method of Phrenic's has a stream of requests.
+// Reads one request message, since Phrenic has no client-streaming methods, and writes any number of responses. Reads
+// the next response from upstream after the previous one is written, so that a slow client exerts back-pressure.
+//
+// Errors: INVALID_ARGUMENT without a request; UNAVAILABLE if the session's server does not answer; else the status of
+// the target. gRPC's threads call it; it deletes itself after OnDone.
 class ForwardedCall final : public grpc::ServerGenericBidiReactor, public std::enable_shared_from_this<ForwardedCall> {
  public:
   static ForwardedCall* Make(SessionRouter& router, grpc::GenericCallbackServerContext& context);
@@ -30,32 +34,34 @@ class ForwardedCall final : public grpc::ServerGenericBidiReactor, public std::e
   ForwardedCall(SessionRouter& router, grpc::GenericCallbackServerContext& context);
   UpstreamCall::Request RequestTo(const SessionRouter::Target& target) const;
   std::shared_ptr<UpstreamCall> upstream() const ABSL_LOCKS_EXCLUDED(mutex_);
-  // The next server that may have it.
-  void Try() ABSL_LOCKS_EXCLUDED(mutex_);
-  bool Pass(const grpc::ByteBuffer& message);
-  void Ended(const grpc::Status& status);
-  // All of them at once.
-  void Gather();
-  void Gathered(std::size_t index, const grpc::Status& status) ABSL_LOCKS_EXCLUDED(mutex_);
-  void AnswerTogether(const grpc::Status& own);
+
+  // Calls the target with index target_.
+  void CallTarget() ABSL_LOCKS_EXCLUDED(mutex_);
+  bool WriteResponse(const grpc::ByteBuffer& message);
+  // Finishes with the target's status, or tries the next target after NOT_FOUND.
+  void OnUpstreamDone(const grpc::Status& status);
+
+  // Calls all targets at once; OnFanOutDone merges the responses when all have ended.
+  void FanOut() ABSL_LOCKS_EXCLUDED(mutex_);
+  void OnFanOutDone(std::size_t index, const grpc::Status& status) ABSL_LOCKS_EXCLUDED(mutex_);
 
   SessionRouter& router_;
   grpc::GenericCallbackServerContext& context_;
   const std::string method_, peer_;
   const SessionRouter::Metadata metadata_;
-  std::shared_ptr<ForwardedCall> self_;  // gRPC's hold on it
+  std::shared_ptr<ForwardedCall> self_;  // keeps the reactor alive until OnDone
   grpc::ByteBuffer request_, outgoing_;
   SessionRouter::Route route_;
-  std::size_t tried_ = 0;  // of the route's targets
-  bool passed_ = false;    // an answer
-  grpc::Status first_;     // of the targets that did not find it
+  std::size_t target_ = 0;     // index of the route's current target
+  bool responded_ = false;     // a response was forwarded to the client
+  grpc::Status first_status_;  // of the first target; returned if no target finds the resource
 
   mutable absl::Mutex mutex_;
   std::shared_ptr<UpstreamCall> upstream_ ABSL_GUARDED_BY(mutex_);
   bool cancelled_ ABSL_GUARDED_BY(mutex_) = false;
-  std::vector<grpc::ByteBuffer> answers_ ABSL_GUARDED_BY(mutex_);  // of each target
-  std::size_t awaited_ ABSL_GUARDED_BY(mutex_) = 0;
-  grpc::Status own_ ABSL_GUARDED_BY(mutex_);  // of this server's answer
+  std::vector<grpc::ByteBuffer> responses_ ABSL_GUARDED_BY(mutex_);  // of a fan-out, one per target
+  std::size_t pending_ ABSL_GUARDED_BY(mutex_) = 0;                  // targets of a fan-out that have not ended
+  grpc::Status local_status_ ABSL_GUARDED_BY(mutex_);                // of a fan-out's first target, this server
 };
 
 }  // namespace phrenic::service

@@ -1,10 +1,10 @@
-// What a cluster's servers listen with: each call goes to the server that has its session, this one or another.
+// Decides which servers of a cluster handle a call: the one that has the call's session, this one, or all of them.
 #ifndef PHRENIC_SERVER_SERVICE_ROUTING_SESSION_ROUTER_H_
 #define PHRENIC_SERVER_SERVICE_ROUTING_SESSION_ROUTER_H_
 
 #include <grpcpp/channel.h>
-#include <grpcpp/generic/async_generic_service.h>
 #include <grpcpp/generic/generic_stub.h>
+#include <grpcpp/server_context.h>
 #include <grpcpp/support/byte_buffer.h>
 
 #include <atomic>
@@ -20,58 +20,52 @@
 
 namespace phrenic::service {
 
-// Any thread may call. A call names its session by its request's session_id, else by "x-session-id" in its metadata.
-// Calls of no session are this server's own; what it does not find (an export, a study) it asks the others for, and
-// lists are those of all of them together. Who was passed a call by another server does not pass it on.
-class SessionRouter final : public grpc::CallbackGenericService {
+// A call names its session by the session_id of its request, or else by kSessionKey in its metadata. A call without a
+// session goes to this server; if it names an export, study or upload that this server does not find, it goes to the
+// others in turn. List methods go to all servers. A forwarded call is never forwarded again. Thread-safe.
+class SessionRouter {
  public:
   using Metadata = std::multimap<std::string, std::string>;
 
-  // A server, and what it is told of the caller.
   struct Target {
     std::shared_ptr<grpc::GenericStub> stub;
-    std::string address;  // empty: this one
+    std::string address;  // "HOST:PORT"; empty: this server
   };
   struct Route {
-    std::string session;          // empty: none
-    std::vector<Target> targets;  // one after the other, while they do not find it
-    bool all = false;             // of each, put together
+    std::string session;          // empty: the call has none
+    std::vector<Target> targets;  // tried in order until one does not return NOT_FOUND
+    bool fan_out = false;         // calls all targets at once and merges the responses
   };
 
   explicit SessionRouter(cluster::Cluster& cluster) : cluster_(cluster) {}
-  // Where this server's own calls go; before any call comes.
-  void set_here(std::shared_ptr<grpc::Channel> channel);
+  // Sets the channel to this server's own services. Call it before Find.
+  void set_local_channel(std::shared_ptr<grpc::Channel> channel);
 
-  grpc::ServerGenericBidiReactor* CreateReactor(grpc::GenericCallbackServerContext* context) override;
-
-  // UNAVAILABLE where the session is with nobody for the moment, or nobody can tell.
+  // Returns UNAVAILABLE, which clients retry, if no server has the session at the moment or if Redis cannot be asked.
   absl::StatusOr<Route> Find(const std::string& method, const Metadata& metadata, const grpc::ByteBuffer& request);
-  // That server did not answer.
-  void NoteGone(const Route& route);
-  // A call went to another server.
+  // Reports that the server of the route's session did not answer; the next Find asks Redis again.
+  void ReportUnreachable(const Route& route);
   void CountForwarded() { ++forwarded_; }
+  // Returns the number of calls forwarded to other servers.
   std::int64_t forwarded() const { return forwarded_; }
 
-  // What a call may carry to another server, of what its caller sent.
-  static Metadata MetadataOf(const grpc::GenericCallbackServerContext& context);
-  // The same, with what the servers tell each other.
+  // Returns the metadata of a call that are forwarded: "x-..." and "authorization", without kPeerKey.
+  static Metadata ForwardedMetadata(const grpc::ServerContextBase& context);
+  // Adds what the target needs to know: kPeerKey for this server, kForwardedByKey for another one.
   Metadata MetadataFor(const Target& target, Metadata metadata, const std::string& peer) const;
 
  private:
   std::shared_ptr<grpc::GenericStub> StubOf(const std::string& address) ABSL_LOCKS_EXCLUDED(mutex_);
+  absl::StatusOr<Route> FindForwarded(const std::string& session);
   absl::StatusOr<Route> FindSession(const std::string& id);
-  void AddOthers(Route& route);
+  void AddOtherServers(Route& route);
 
   cluster::Cluster& cluster_;
-  std::shared_ptr<grpc::GenericStub> here_;
+  std::shared_ptr<grpc::GenericStub> local_;
   std::atomic<std::int64_t> forwarded_ = 0;
   absl::Mutex mutex_;
-  std::map<std::string, std::shared_ptr<grpc::GenericStub>> stubs_ ABSL_GUARDED_BY(mutex_);
+  std::map<std::string, std::shared_ptr<grpc::GenericStub>> stubs_ ABSL_GUARDED_BY(mutex_);  // by address
 };
-
-// The answers of several servers to one method as one; `request` is what each was asked.
-grpc::ByteBuffer Together(const std::string& method, const grpc::ByteBuffer& request,
-                          const std::vector<grpc::ByteBuffer>& answers);
 
 }  // namespace phrenic::service
 

@@ -11,14 +11,14 @@ UpstreamCall::UpstreamCall(Request request, Handlers handlers)
 }
 
 std::shared_ptr<UpstreamCall> UpstreamCall::Make(Request request, Handlers handlers) {
-  std::shared_ptr<UpstreamCall> leg(new UpstreamCall(std::move(request), std::move(handlers)));
-  leg->self_ = leg;
-  return leg;
+  std::shared_ptr<UpstreamCall> call(new UpstreamCall(std::move(request), std::move(handlers)));
+  call->self_ = call;
+  return call;
 }
 
 void UpstreamCall::Start(grpc::GenericStub& stub) {
   stub.PrepareBidiStreamingCall(&context_, request_.method, {}, this);
-  AddHold();  // reads are started outside reactions, until one says that there are no more
+  AddHold();  // ReadNext starts reads outside of reactions; the read that fails releases the hold
   StartWriteLast(&request_.message, {});
   StartRead(&incoming_);
   StartCall();

@@ -1,4 +1,5 @@
-// A call that is passed on to a server, bytes in, bytes out, whatever the method: one request, any number of answers.
+// A gRPC call to the server that handles a forwarded call, for any method: one serialized request, any number of
+// serialized responses.
 #ifndef PHRENIC_SERVER_SERVICE_ROUTING_UPSTREAM_CALL_H_
 #define PHRENIC_SERVER_SERVICE_ROUTING_UPSTREAM_CALL_H_
 
@@ -15,7 +16,7 @@
 
 namespace phrenic::service {
 
-// Any thread may call. The handlers are called by gRPC's threads, never two at once.
+// Thread-safe. gRPC's threads call the handlers, one at a time.
 class UpstreamCall final : public grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer> {
  public:
   struct Request {
@@ -25,14 +26,14 @@ class UpstreamCall final : public grpc::ClientBidiReactor<grpc::ByteBuffer, grpc
     std::chrono::system_clock::time_point deadline;
   };
   struct Handlers {
-    // Whether the next one is asked for at once; else by ReadNext.
+    // Returns true to read the next message at once; after false the owner calls ReadNext.
     std::function<bool(const grpc::ByteBuffer& message)> message;
-    // The last: nobody may call the leg afterwards.
+    // Called last. No method may be called afterwards.
     std::function<void(const grpc::Status& status)> done;
   };
 
   static std::shared_ptr<UpstreamCall> Make(Request request, Handlers handlers);
-  // Once.
+  // Call once.
   void Start(grpc::GenericStub& stub);
   void ReadNext() { StartRead(&incoming_); }
   void Cancel() { context_.TryCancel(); }
@@ -45,7 +46,7 @@ class UpstreamCall final : public grpc::ClientBidiReactor<grpc::ByteBuffer, grpc
 
   Request request_;
   Handlers handlers_;
-  std::shared_ptr<UpstreamCall> self_;  // gRPC's hold on it
+  std::shared_ptr<UpstreamCall> self_;  // keeps the reactor alive until OnDone
   grpc::ClientContext context_;
   grpc::ByteBuffer incoming_;
 };

@@ -23,7 +23,7 @@ std::uint32_t Length(std::string_view frame) {
   return length;
 }
 
-// As gRPC escapes its messages: what is not printable ASCII, and "%".
+// Percent-encodes "%" and all bytes outside printable ASCII, as gRPC does for grpc-message.
 std::string PercentEncode(std::string_view text) {
   std::string encoded;
   for (const char c : text) {
@@ -80,8 +80,8 @@ std::string TrailersFrame(const grpc::Status& status, const std::multimap<std::s
 }
 
 std::optional<std::chrono::nanoseconds> ParseTimeout(std::string_view text) {
-  constexpr std::size_t kMostDigits = 8;
-  if (text.size() < 2 || text.size() > kMostDigits + 1) return std::nullopt;
+  constexpr std::size_t kMaxDigits = 8;
+  if (text.size() < 2 || text.size() > kMaxDigits + 1) return std::nullopt;
   std::int64_t count = 0;
   const std::string_view digits = text.substr(0, text.size() - 1);
   if (!std::all_of(digits.begin(), digits.end(), absl::ascii_isdigit)) return std::nullopt;

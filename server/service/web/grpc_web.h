@@ -1,5 +1,5 @@
-// The gRPC-web wire: messages and trailers as frames in an HTTP/1.1 body. Pure functions on bytes.
-// Source: github.com/grpc/grpc/blob/master/doc/PROTOCOL-WEB.md
+// Encodes and decodes gRPC-web: messages and trailers as length-prefixed frames in an HTTP/1.1 body.
+// Pure functions; any thread may call them. Protocol: github.com/grpc/grpc/blob/master/doc/PROTOCOL-WEB.md
 #ifndef PHRENIC_SERVER_SERVICE_WEB_GRPC_WEB_H_
 #define PHRENIC_SERVER_SERVICE_WEB_GRPC_WEB_H_
 
@@ -17,22 +17,24 @@
 
 namespace phrenic::service {
 
-// "application/grpc-web+proto" and its kin.
+// True for "application/grpc-web", "application/grpc-web+proto" and the -text variants.
 bool IsGrpcWeb(std::string_view content_type);
-// "application/grpc-web-text+proto": frames in base64.
+// True for "application/grpc-web-text" and "-text+proto", whose frames are base64 (RFC 4648 section 4).
 bool IsGrpcWebText(std::string_view content_type);
 
-// The only message in a request's body; INVALID_ARGUMENT when the body is not exactly one uncompressed frame.
+// Returns the message in a request body; `text` means base64. INVALID_ARGUMENT if the body is not exactly one
+// uncompressed frame.
 absl::StatusOr<std::string> ParseRequestBody(std::string body, bool text);
 
-// A frame's first five bytes: 0 for a message, then the length, big-endian.
+// Returns a message frame's header: flags 0, then the length [bytes], big-endian.
 std::array<char, 5> MessagePrefix(std::uint32_t length);
 
-// The frame that ends a response: 0x80, length, "grpc-status: 5\r\ngrpc-message: there%20is%20no ...\r\n" and the
-// server's own trailing metadata.
+// Returns the frame that ends a response: flags 0x80, length, then "grpc-status: 5\r\ngrpc-message: ...\r\n" with the
+// message percent-encoded, and the trailing metadata.
 std::string TrailersFrame(const grpc::Status& status, const std::multimap<std::string, std::string>& metadata);
 
-// "8000m" is eight seconds; nothing where it is no gRPC time-out.
+// Parses a grpc-timeout header such as "8000m" (8 s): 1 to 8 digits and a unit H, M, S, m, u or n. Returns nullopt if
+// it is not valid.
 std::optional<std::chrono::nanoseconds> ParseTimeout(std::string_view text);
 
 }  // namespace phrenic::service

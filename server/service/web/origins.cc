@@ -13,22 +13,22 @@ std::string_view WithoutPort(std::string_view host) {
   return host.substr(0, colon);
 }
 
-bool IsLoopback(std::string_view host) {
+bool IsLoopbackHost(std::string_view host) {
   const std::string_view name = WithoutPort(host);
   return name == "localhost" || name == "127.0.0.1" || name == "[::1]";
 }
 
 }  // namespace
 
-bool MayCall(std::string_view origin, std::string_view host, const std::vector<std::string>& allowed) {
+bool IsAllowedOrigin(std::string_view origin, std::string_view host, const std::vector<std::string>& allowed) {
   if (origin.empty()) return true;
   if (std::find(allowed.begin(), allowed.end(), origin) != allowed.end()) return true;
-  const std::size_t scheme = origin.find("://");
-  if (scheme == std::string_view::npos) return false;
-  const std::string_view name = origin.substr(0, scheme);
-  if (name != "http" && name != "https") return false;
-  const std::string_view page = origin.substr(scheme + 3);
-  return page == host || IsLoopback(page);
+  const std::size_t scheme_end = origin.find("://");
+  if (scheme_end == std::string_view::npos) return false;
+  const std::string_view scheme_name = origin.substr(0, scheme_end);
+  if (scheme_name != "http" && scheme_name != "https") return false;
+  const std::string_view origin_host = origin.substr(scheme_end + 3);
+  return origin_host == host || IsLoopbackHost(origin_host);
 }
 
 }  // namespace phrenic::service

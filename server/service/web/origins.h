@@ -1,4 +1,4 @@
-// Which web pages may call.
+// Decides which web origins (RFC 6454) may call the server.
 #ifndef PHRENIC_SERVER_SERVICE_WEB_ORIGINS_H_
 #define PHRENIC_SERVER_SERVICE_WEB_ORIGINS_H_
 
@@ -8,9 +8,10 @@
 
 namespace phrenic::service {
 
-// Pages of the server itself ("http://HOST" or "https://HOST", HOST as the request has it), pages served by this
-// machine ("http://localhost:5173"), and those in the list. A request without an origin comes from no page.
-bool MayCall(std::string_view origin, std::string_view host, const std::vector<std::string>& allowed);
+// True if a request with this Origin header may be answered: the server's own origin (`host` is the Host header), a
+// loopback origin such as "http://localhost:5173", an origin in `allowed`, or no origin, as programs send none.
+// Thread-safe.
+bool IsAllowedOrigin(std::string_view origin, std::string_view host, const std::vector<std::string>& allowed);
 
 }  // namespace phrenic::service
 

@@ -15,12 +15,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Type {
-  std::string_view ending;
+struct MediaType {
+  std::string_view extension;
   const char* content_type;
 };
 
-constexpr Type kTypes[] = {
+constexpr MediaType kMediaTypes[] = {
     {".html", "text/html; charset=utf-8"},
     {".js", "text/javascript; charset=utf-8"},
     {".mjs", "text/javascript; charset=utf-8"},
@@ -37,19 +37,19 @@ constexpr Type kTypes[] = {
     {".txt", "text/plain; charset=utf-8"},
 };
 
-// Nothing where an escape is broken or hides a NUL.
+// Decodes percent-encoding (RFC 3986 section 2.1). INVALID_ARGUMENT for an incomplete escape or a NUL character.
 absl::StatusOr<std::string> PercentDecode(std::string_view text) {
   std::string decoded;
   for (std::size_t i = 0; i < text.size(); ++i) {
     char c = text[i];
     if (c == '%') {
       if (i + 2 >= text.size() || !absl::ascii_isxdigit(text[i + 1]) || !absl::ascii_isxdigit(text[i + 2])) {
-        return absl::InvalidArgumentError("a broken escape in the address");
+        return absl::InvalidArgumentError("the address has an incomplete % escape");
       }
       c = absl::HexStringToBytes(absl::string_view(text.data() + i + 1, 2))[0];
       i += 2;
     }
-    if (c == '\0') return absl::InvalidArgumentError("a zero in the address");
+    if (c == '\0') return absl::InvalidArgumentError("the address contains a NUL character");
     decoded += c;
   }
   return decoded;
@@ -68,8 +68,8 @@ std::string ETagOf(const fs::path& path) {
 }  // namespace
 
 std::string ContentTypeOf(std::string_view path) {
-  for (const Type& type : kTypes) {
-    if (path.ends_with(type.ending)) return type.content_type;
+  for (const MediaType& type : kMediaTypes) {
+    if (path.ends_with(type.extension)) return type.content_type;
   }
   return "application/octet-stream";
 }
@@ -82,7 +82,7 @@ absl::StatusOr<StaticFile> FindStaticFile(const std::string& root, std::string_v
   const absl::Status missing = absl::NotFoundError("there is no such page");
   std::error_code error;
   const fs::path folder = fs::canonical(root, error);
-  if (error) return absl::NotFoundError("the viewer is not built: run deploy/run, or give its folder with --web-root");
+  if (error) return absl::NotFoundError("the viewer is not built: run deploy/run, or pass its folder with --web-root");
   const fs::path relative(decoded->empty() ? "index.html" : *decoded);
   if (relative.is_absolute() || std::find(relative.begin(), relative.end(), "..") != relative.end()) return missing;
   const fs::path path = fs::canonical(folder / relative, error);

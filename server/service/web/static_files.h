@@ -1,4 +1,4 @@
-// The viewer's files below one folder.
+// Finds the viewer's files below one folder.
 #ifndef PHRENIC_SERVER_SERVICE_WEB_STATIC_FILES_H_
 #define PHRENIC_SERVER_SERVICE_WEB_STATIC_FILES_H_
 
@@ -13,16 +13,16 @@ namespace phrenic::service {
 struct StaticFile {
   std::string path;
   std::string content_type;
-  std::string etag;           // of size and time of change, in quotes
-  std::string cache_control;  // files below assets/ have a hash in their names and never change
+  std::string etag;           // strong validator from size and modification time, in quotes (RFC 9110 section 8.8.3)
+  std::string cache_control;  // files in assets/ have a content hash in their name and are cached as immutable
 };
 
-// The file that an HTTP request's target names; "/" is index.html. NOT_FOUND where there is none, or where the target
-// leads out of `root`, by ".." or by a link; INVALID_ARGUMENT for a target that is not well formed. Any thread may
-// call.
+// Returns the file that a request target names; "/" is index.html. Thread-safe.
+// Errors: NOT_FOUND if there is no such file or if it is outside `root`, by ".." or a symbolic link; INVALID_ARGUMENT
+// if the target is malformed.
 absl::StatusOr<StaticFile> FindStaticFile(const std::string& root, std::string_view target);
 
-// By the file's ending; "application/octet-stream" for one that is not known.
+// Returns the media type for a file extension; "application/octet-stream" if it is unknown.
 std::string ContentTypeOf(std::string_view path);
 
 }  // namespace phrenic::service

@@ -30,7 +30,7 @@ std::shared_ptr<WebCall> WebCall::Start(grpc::GenericStub& stub, Request request
   std::shared_ptr<WebCall> call(new WebCall(std::move(request), strand, std::move(handlers)));
   call->self_ = call;
   stub.PrepareBidiStreamingCall(&call->context_, call->request_.method, {}, call.get());
-  call->AddHold();  // reads are started outside reactions
+  call->AddHold();  // ReadNext starts reads outside of reactions
   call->held_ = true;
   call->reading_ = true;
   call->StartWriteLast(&call->outgoing_, {});
@@ -40,38 +40,38 @@ std::shared_ptr<WebCall> WebCall::Start(grpc::GenericStub& stub, Request request
 }
 
 void WebCall::ReadNext() {
-  if (abandoned_ || reading_ || !held_) return;
+  if (cancelled_ || reading_ || !held_) return;
   reading_ = true;
   StartRead(&incoming_);
 }
 
-void WebCall::Abandon() {
-  if (abandoned_) return;
-  abandoned_ = true;
+void WebCall::Cancel() {
+  if (cancelled_) return;
+  cancelled_ = true;
   handlers_ = {};
   if (!held_) return;
   context_.TryCancel();
-  if (!reading_) LetGo();
+  if (!reading_) ReleaseHold();
 }
 
 void WebCall::OnReadDone(bool ok) {
-  boost::asio::post(strand_, [self = shared_from_this(), ok, message = incoming_] { self->ReadDone(ok, message); });
+  boost::asio::post(strand_, [self = shared_from_this(), ok, message = incoming_] { self->HandleRead(ok, message); });
 }
 
-void WebCall::ReadDone(bool ok, const grpc::ByteBuffer& message) {
+void WebCall::HandleRead(bool ok, const grpc::ByteBuffer& message) {
   reading_ = false;
-  if (!ok || abandoned_) return LetGo();
+  if (!ok || cancelled_) return ReleaseHold();
   handlers_.message(message);
 }
 
-void WebCall::LetGo() {
+void WebCall::ReleaseHold() {
   held_ = false;
   RemoveHold();
 }
 
 void WebCall::OnDone(const grpc::Status& status) {
   boost::asio::post(strand_, [self = std::move(self_), status] {
-    if (!self->abandoned_) self->handlers_.done(status, Copy(self->context_.GetServerTrailingMetadata()));
+    if (!self->cancelled_) self->handlers_.done(status, Copy(self->context_.GetServerTrailingMetadata()));
     self->handlers_ = {};
     self->work_.reset();
   });

@@ -1,4 +1,4 @@
-// One gRPC call made for a browser: bytes in, bytes out, whatever the method.
+// One gRPC call on behalf of a browser, for any method: serialized messages in and out.
 #ifndef PHRENIC_SERVER_SERVICE_WEB_WEB_CALL_H_
 #define PHRENIC_SERVER_SERVICE_WEB_WEB_CALL_H_
 
@@ -20,7 +20,8 @@
 
 namespace phrenic::service {
 
-// All of its functions are called on `strand`, and so are the two handlers. Unary calls are streams of one message.
+// Not thread-safe: call its methods on `strand`, which also runs the handlers; gRPC's threads call the reactor's
+// overrides. A unary call is handled as a stream of one message.
 class WebCall final : public grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>,
                       public std::enable_shared_from_this<WebCall> {
  public:
@@ -35,35 +36,36 @@ class WebCall final : public grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::Byt
     std::function<void(const grpc::Status& status, const std::multimap<std::string, std::string>& trailers)> done;
   };
 
+  // Starts the call and reads the first message.
   static std::shared_ptr<WebCall> Start(grpc::GenericStub& stub, Request request,
                                         const boost::asio::any_io_executor& strand, Handlers handlers);
 
-  // Asks for the next message; the first one is asked for by Start. No message is read before it is asked for, so that
-  // a slow browser holds up its own call only.
+  // Reads the next message. Call it after the previous message is written to the browser: HTTP/2 flow control then
+  // limits what a slow browser can queue, and only its own call waits.
   void ReadNext();
-  // Nobody listens any more: the call is cancelled, and neither handler is called again.
-  void Abandon();
+  // Cancels the call. No handler is called afterwards.
+  void Cancel();
 
   void OnReadDone(bool ok) override;
   void OnDone(const grpc::Status& status) override;
 
  private:
   WebCall(Request request, const boost::asio::any_io_executor& strand, Handlers handlers);
-  void ReadDone(bool ok, const grpc::ByteBuffer& message);
-  // Lets the call end once no read is to come.
-  void LetGo();
+  void HandleRead(bool ok, const grpc::ByteBuffer& message);
+  // Allows gRPC to call OnDone. Requires: no read is started afterwards.
+  void ReleaseHold();
 
   Request request_;
   boost::asio::any_io_executor strand_;
-  // Keeps the gateway's threads until the call is over.
+  // Keeps the gateway's threads running until the call ends.
   std::optional<boost::asio::executor_work_guard<boost::asio::any_io_executor>> work_;
   Handlers handlers_;
-  std::shared_ptr<WebCall> self_;  // gRPC's hold on it
+  std::shared_ptr<WebCall> self_;  // keeps the reactor alive until OnDone
   grpc::ClientContext context_;
   grpc::ByteBuffer outgoing_, incoming_;
   bool reading_ = false;
   bool held_ = false;
-  bool abandoned_ = false;
+  bool cancelled_ = false;
 };
 
 }  // namespace phrenic::service

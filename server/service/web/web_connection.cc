@@ -19,9 +19,9 @@ namespace beast = boost::beast;
 namespace http = beast::http;
 namespace net = boost::asio;
 
-constexpr std::uint32_t kMostHeaderBytes = 16 << 10;
-constexpr std::size_t kHearAtOnce = 4 << 10;  // [bytes]
-constexpr std::size_t kMostHeard = 64 << 10;  // of requests sent ahead [bytes]
+constexpr std::uint32_t kMaxHeaderBytes = 16 << 10;
+constexpr std::size_t kReadBytes = 4 << 10;
+constexpr std::size_t kMaxPipelinedBytes = 64 << 10;  // of requests sent before the current one is answered
 
 std::string_view View(beast::string_view text) { return {text.data(), text.size()}; }
 
@@ -29,10 +29,10 @@ std::string_view View(beast::string_view text) { return {text.data(), text.size(
 
 WebConnection::WebConnection(net::ip::tcp::socket socket, const std::shared_ptr<net::ssl::context>& tls,
                              const WebSettings& settings, grpc::GenericStub& stub)
-    : stream_(std::move(socket), tls), buffer_(kMostHeaderBytes + kMostHeard), settings_(settings), stub_(stub) {
-  beast::error_code gone;
-  const auto peer = stream_.tcp().socket().remote_endpoint(gone);
-  peer_ = gone ? "unknown" : peer.address().to_string();  // never empty: that is the process itself
+    : stream_(std::move(socket), tls), buffer_(kMaxHeaderBytes + kMaxPipelinedBytes), settings_(settings), stub_(stub) {
+  beast::error_code error;
+  const auto peer = stream_.tcp().socket().remote_endpoint(error);
+  peer_ = error ? "unknown" : peer.address().to_string();  // an empty peer would be a call from within the process
   waiting_since_ = std::chrono::steady_clock::now().time_since_epoch().count();
 }
 
@@ -44,7 +44,7 @@ void WebConnection::Run() {
   net::dispatch(stream_.get_executor(), [self = shared_from_this()] {
     self->stream_.tcp().expires_after(self->settings_.head_time);
     self->stream_.AsyncHandshake([self](beast::error_code error) {
-      if (error) return self->Hang();
+      if (error) return self->Disconnect();
       self->AwaitRequest(self->settings_.head_time);
     });
   });
@@ -52,27 +52,27 @@ void WebConnection::Run() {
 
 void WebConnection::Refuse() {
   net::dispatch(stream_.get_executor(), [self = shared_from_this()] {
-    if (self->stream_.encrypted()) return self->Hang();  // a handshake is too much work
-    self->RefuseWith(http::status::service_unavailable,
-                     "there are too many connections (--max-connections); try again later");
+    if (self->stream_.encrypted()) return self->Disconnect();  // a handshake would cost too much
+    self->SendError(http::status::service_unavailable,
+                    "the server has reached its connection limit (--max-connections); try again later");
   });
 }
 
 void WebConnection::Close() {
-  net::dispatch(stream_.get_executor(), [self = shared_from_this()] { self->Hang(); });
+  net::dispatch(stream_.get_executor(), [self = shared_from_this()] { self->Disconnect(); });
 }
 
-// A connection may be silent for longer than the head of a request may take once it has begun.
-void WebConnection::AwaitRequest(std::chrono::milliseconds patience) {
+// The first byte of a request may take `timeout`, the rest of its header head_time.
+void WebConnection::AwaitRequest(std::chrono::milliseconds timeout) {
   waiting_since_ = std::chrono::steady_clock::now().time_since_epoch().count();
   parser_.emplace();
-  parser_->header_limit(kMostHeaderBytes);
+  parser_->header_limit(kMaxHeaderBytes);
   parser_->body_limit(settings_.max_body_bytes);
   if (buffer_.size() > 0) return ReadHead();
-  stream_.tcp().expires_after(patience);
-  stream_.async_read_some(buffer_.prepare(kHearAtOnce),
+  stream_.tcp().expires_after(timeout);
+  stream_.async_read_some(buffer_.prepare(kReadBytes),
                           [self = shared_from_this()](beast::error_code error, std::size_t bytes) {
-                            if (error) return self->Hang();
+                            if (error) return self->Disconnect();
                             self->buffer_.commit(bytes);
                             self->ReadHead();
                           });
@@ -99,43 +99,47 @@ void WebConnection::OnRequest(beast::error_code error) {
     Handle(parser_->get());
   } else if (error == http::error::body_limit || error == http::error::header_limit ||
              error.category() == http::make_error_code(http::error::bad_method).category()) {
-    RefuseUnreadable(error);
+    RejectUnreadable(error);
   } else {
-    Hang();
+    Disconnect();
   }
 }
 
-// After a request that is no HTTP, or too large, nobody knows where the next one begins.
-void WebConnection::RefuseUnreadable(beast::error_code error) {
+// The start of the next request is unknown after a malformed or oversized one, so the connection is closed.
+void WebConnection::RejectUnreadable(beast::error_code error) {
   origin_.clear();
   keep_alive_ = false;
-  if (error == http::error::end_of_stream || error == http::error::partial_message) return Hang();
+  if (error == http::error::end_of_stream || error == http::error::partial_message) return Disconnect();
   if (error == http::error::body_limit) {
-    return RefuseWith(http::status::payload_too_large,
-                      absl::StrCat("a request has at most ", settings_.max_body_bytes, " bytes (--max-message-mb)"));
+    return SendError(
+        http::status::payload_too_large,
+        absl::StrCat("the request body exceeds the limit of ", settings_.max_body_bytes, " bytes (--max-message-mb)"));
   }
   if (error == http::error::header_limit) {
-    return RefuseWith(http::status::request_header_fields_too_large,
-                      absl::StrCat("a request's header has at most ", kMostHeaderBytes, " bytes"));
+    return SendError(http::status::request_header_fields_too_large,
+                     absl::StrCat("the request header exceeds the limit of ", kMaxHeaderBytes, " bytes"));
   }
-  RefuseWith(http::status::bad_request, "the request is not HTTP/1.1");
+  SendError(http::status::bad_request, "the request is not HTTP/1.1");
 }
 
 void WebConnection::Handle(const Request& request) {
   keep_alive_ = request.keep_alive();
   origin_.clear();
   const std::string_view origin = View(request[http::field::origin]);
-  if (!MayCall(origin, View(request[http::field::host]), settings_.allowed_origins)) {
-    return RefuseWith(http::status::forbidden, "pages of this origin may not call; allow it with --allow-origin");
+  if (!IsAllowedOrigin(origin, View(request[http::field::host]), settings_.allowed_origins)) {
+    return SendError(http::status::forbidden,
+                     "this origin is not allowed to call the server; allow it with --allow-origin");
   }
   origin_ = std::string(origin);
   if (request.method() == http::verb::options) return Preflight(request);
-  if (request.method() == http::verb::get || request.method() == http::verb::head) return ServeFile(request);
-  if (request.method() != http::verb::post) return RefuseWith(http::status::method_not_allowed, "GET, HEAD or POST");
+  if (request.method() == http::verb::get || request.method() == http::verb::head) return HandleGet(request);
+  if (request.method() != http::verb::post)
+    return SendError(http::status::method_not_allowed, "the method must be GET, HEAD or POST");
   if (!IsGrpcWeb(View(request[http::field::content_type]))) {
-    return RefuseWith(http::status::unsupported_media_type, "a POST is a gRPC-web call, application/grpc-web+proto");
+    return SendError(http::status::unsupported_media_type,
+                     "a POST must be a gRPC-web call: Content-Type application/grpc-web+proto");
   }
-  if (request.version() < 11) return RefuseWith(http::status::http_version_not_supported, "gRPC-web needs HTTP/1.1");
+  if (request.version() < 11) return SendError(http::status::http_version_not_supported, "gRPC-web needs HTTP/1.1");
   StartCall(parser_->release());
 }
 
@@ -148,7 +152,7 @@ void WebConnection::Preflight(const Request& request) {
   Send(std::move(response));
 }
 
-void WebConnection::ServePage(const Request& request, const WebSettings::Page& page) {
+void WebConnection::SendPage(const Request& request, const WebSettings::Page& page) {
   http::response<http::string_body> response(http::int_to_status(page.status), request.version(), page.text);
   response.set(http::field::content_type, page.type);
   response.set(http::field::cache_control, "no-store");
@@ -157,40 +161,44 @@ void WebConnection::ServePage(const Request& request, const WebSettings::Page& p
   Send(std::move(response));
 }
 
-void WebConnection::ServeFile(const Request& request) {
+void WebConnection::HandleGet(const Request& request) {
   if (settings_.page) {
     const auto page = settings_.page(View(request.target()), View(request[http::field::authorization]));
-    if (page.has_value()) return ServePage(request, *page);
+    if (page.has_value()) return SendPage(request, *page);
   }
   const auto file = FindStaticFile(settings_.root, View(request.target()));
   if (!file.ok()) {
     const auto status = absl::IsNotFound(file.status()) ? http::status::not_found : http::status::bad_request;
-    return RefuseWith(status, std::string(file.status().message()));
+    return SendError(status, std::string(file.status().message()));
   }
-  if (View(request[http::field::if_none_match]) == file->etag) {
+  SendFile(request, *file);
+}
+
+void WebConnection::SendFile(const Request& request, const StaticFile& file) {
+  if (View(request[http::field::if_none_match]) == file.etag) {
     http::response<http::empty_body> response(http::status::not_modified, request.version());
-    SetFileHeaders(*file, settings_.allowed_origins, response);
+    SetFileHeaders(file, settings_.allowed_origins, response);
     return Send(std::move(response));
   }
   beast::error_code error;
   http::file_body::value_type body;
-  body.open(file->path.c_str(), beast::file_mode::scan, error);
-  if (error) return RefuseWith(http::status::not_found, "the page cannot be read");
+  body.open(file.path.c_str(), beast::file_mode::scan, error);
+  if (error) return SendError(http::status::not_found, "the file cannot be read");
   const std::uint64_t size = body.size();
   if (request.method() == http::verb::head) {
     http::response<http::empty_body> response(http::status::ok, request.version());
-    SetFileHeaders(*file, settings_.allowed_origins, response);
+    SetFileHeaders(file, settings_.allowed_origins, response);
     response.content_length(size);
     return Send(std::move(response));
   }
   http::response<http::file_body> response(std::piecewise_construct, std::make_tuple(std::move(body)),
                                            std::make_tuple(http::status::ok, request.version()));
-  SetFileHeaders(*file, settings_.allowed_origins, response);
+  SetFileHeaders(file, settings_.allowed_origins, response);
   response.content_length(size);
   Send(std::move(response));
 }
 
-void WebConnection::RefuseWith(http::status status, const std::string& text) {
+void WebConnection::SendError(http::status status, const std::string& text) {
   http::response<http::string_body> response(status, 11, text + "\n");
   response.set(http::field::content_type, "text/plain; charset=utf-8");
   AllowOrigin(origin_, response);
@@ -202,16 +210,16 @@ template <class Body>
 void WebConnection::Send(http::response<Body> response) {
   SetCommonHeaders(stream_.encrypted(), response);
   response.keep_alive(keep_alive_);
-  auto kept = std::make_shared<http::response<Body>>(std::move(response));
+  auto owned = std::make_shared<http::response<Body>>(std::move(response));
   stream_.tcp().expires_after(settings_.idle_time);
-  http::async_write(stream_, *kept, [self = shared_from_this(), kept](beast::error_code error, std::size_t) {
-    if (error || !self->keep_alive_) return self->Hang();
+  http::async_write(stream_, *owned, [self = shared_from_this(), owned](beast::error_code error, std::size_t) {
+    if (error || !self->keep_alive_) return self->Disconnect();
     self->AwaitRequest(self->settings_.idle_time);
   });
 }
 
-void WebConnection::Hang() {
-  if (call_ != nullptr) std::exchange(call_, nullptr)->Abandon();
+void WebConnection::Disconnect() {
+  if (call_ != nullptr) std::exchange(call_, nullptr)->Cancel();
   beast::error_code ignored;
   stream_.tcp().socket().shutdown(net::ip::tcp::socket::shutdown_both, ignored);
   stream_.tcp().close();
@@ -219,10 +227,10 @@ void WebConnection::Hang() {
 
 void WebConnection::StartCall(Request request) {
   const std::string_view content_type = View(request[http::field::content_type]);
-  text_ = IsGrpcWebText(content_type);
-  answered_ = false;
-  head_ = CallHead(text_, stream_.encrypted(), origin_, keep_alive_);
-  auto message = ParseRequestBody(std::move(request.body()), text_);
+  base64_ = IsGrpcWebText(content_type);
+  call_ended_ = false;
+  head_ = CallHead(base64_, stream_.encrypted(), origin_, keep_alive_);
+  auto message = ParseRequestBody(std::move(request.body()), base64_);
   if (!message.ok()) {
     return SendTrailers({grpc::StatusCode::INVALID_ARGUMENT, std::string(message.status().message())}, {});
   }
@@ -238,14 +246,14 @@ void WebConnection::StartCall(Request request) {
                           [self](const grpc::Status& status, const std::multimap<std::string, std::string>& trailers) {
                             self->SendTrailers(status, trailers);
                           }});
-  Listen();
+  WatchForDisconnect();
 }
 
 void WebConnection::SendMessage(const grpc::ByteBuffer& message) {
   message.Dump(&slices_);
   const std::array<char, 5> prefix = MessagePrefix(static_cast<std::uint32_t>(message.Length()));
   std::string frame(prefix.data(), prefix.size());
-  if (text_) {
+  if (base64_) {
     for (const grpc::Slice& slice : slices_) frame.append(reinterpret_cast<const char*>(slice.begin()), slice.size());
     slices_.clear();
   }
@@ -257,55 +265,55 @@ void WebConnection::SendTrailers(const grpc::Status& status, const std::multimap
   SendChunk(TrailersFrame(status, trailers), true);
 }
 
-// Writes `frame` and then slices_ as one chunk of the body.
 void WebConnection::SendChunk(const std::string& frame, bool last) {
-  const std::string encoded = text_ ? absl::Base64Escape(frame) : frame;
+  const std::string encoded = base64_ ? absl::Base64Escape(frame) : frame;
   std::size_t size = encoded.size();
   for (const grpc::Slice& slice : slices_) size += slice.size();
-  lead_ = absl::StrCat(std::exchange(head_, {}), absl::Hex(size), "\r\n", encoded);
-  tail_ = last ? "\r\n0\r\n\r\n" : "\r\n";
-  std::vector<net::const_buffer> buffers = {net::buffer(lead_)};
+  chunk_head_ = absl::StrCat(std::exchange(head_, {}), absl::Hex(size), "\r\n", encoded);
+  chunk_tail_ = last ? "\r\n0\r\n\r\n" : "\r\n";
+  std::vector<net::const_buffer> buffers = {net::buffer(chunk_head_)};
   for (const grpc::Slice& slice : slices_) buffers.emplace_back(slice.begin(), slice.size());
-  buffers.push_back(net::buffer(tail_));
+  buffers.push_back(net::buffer(chunk_tail_));
   stream_.tcp().expires_after(settings_.idle_time);
   net::async_write(stream_, buffers, [self = shared_from_this(), last](beast::error_code error, std::size_t) {
-    self->OnChunk(error, last);
+    self->OnChunkSent(error, last);
   });
 }
 
-void WebConnection::OnChunk(beast::error_code error, bool last) {
+void WebConnection::OnChunkSent(beast::error_code error, bool last) {
   slices_.clear();
-  if (error) return Hang();
+  if (error) return Disconnect();
   if (!last) {
     if (call_ != nullptr) call_->ReadNext();
     return;
   }
   call_ = nullptr;
-  answered_ = true;
-  if (!keep_alive_) return Hang();
-  if (!listening_) return NextRequest();
-  stream_.tcp().cancel();  // OnHeard goes on with the next request
+  call_ended_ = true;
+  if (!keep_alive_) return Disconnect();
+  if (!reading_during_call_) return NextRequest();
+  stream_.tcp().cancel();  // OnReadDuringCall then calls NextRequest
 }
 
-void WebConnection::Listen() {
-  if (buffer_.size() >= kMostHeard) return;
-  listening_ = true;
+void WebConnection::WatchForDisconnect() {
+  if (buffer_.size() >= kMaxPipelinedBytes) return;
+  reading_during_call_ = true;
   stream_.tcp().expires_never();
-  stream_.async_read_some(
-      buffer_.prepare(kHearAtOnce),
-      [self = shared_from_this()](beast::error_code error, std::size_t bytes) { self->OnHeard(error, bytes); });
+  stream_.async_read_some(buffer_.prepare(kReadBytes),
+                          [self = shared_from_this()](beast::error_code error, std::size_t bytes) {
+                            self->OnReadDuringCall(error, bytes);
+                          });
 }
 
-void WebConnection::OnHeard(beast::error_code error, std::size_t bytes) {
-  listening_ = false;
+void WebConnection::OnReadDuringCall(beast::error_code error, std::size_t bytes) {
+  reading_during_call_ = false;
   buffer_.commit(bytes);
-  if (answered_ && (!error || error == net::error::operation_aborted)) return NextRequest();
-  if (error) return Hang();
-  Listen();
+  if (call_ended_ && (!error || error == net::error::operation_aborted)) return NextRequest();
+  if (error) return Disconnect();
+  WatchForDisconnect();
 }
 
 void WebConnection::NextRequest() {
-  answered_ = false;
+  call_ended_ = false;
   AwaitRequest(settings_.idle_time);
 }
 

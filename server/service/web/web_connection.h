@@ -1,4 +1,5 @@
-// One browser's connection: HTTP/1.1, requests one after the other, each answered by a file or by a gRPC call.
+// One browser connection over HTTP/1.1 (RFC 9112). Requests are handled in sequence; each is answered by a static file,
+// by a generated page or by a gRPC-web call.
 #ifndef PHRENIC_SERVER_SERVICE_WEB_WEB_CONNECTION_H_
 #define PHRENIC_SERVER_SERVICE_WEB_WEB_CONNECTION_H_
 
@@ -20,89 +21,94 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "server/service/web/static_files.h"
 #include "server/service/web/web_call.h"
 #include "server/service/web/web_stream.h"
 
 namespace phrenic::service {
 
-// What all connections share; outlives them.
+// Settings shared by all connections, which they outlive.
 struct WebSettings {
-  std::string root;
-  std::vector<std::string> allowed_origins;
+  std::string root;                          // folder of the viewer's files
+  std::vector<std::string> allowed_origins;  // beside the server's own and loopback origins
   std::size_t max_body_bytes = 0;
-  std::chrono::milliseconds head_time{10'000};  // for a request's head to come, and for a handshake
-  std::chrono::milliseconds idle_time{60'000};  // for its rest, and for a client to take what it is sent
-  // IdempotencyCache what is no file, "/healthz" say, with what the request has in "authorization"; nothing where it is
-  // a file.
+  std::chrono::milliseconds head_time{10'000};  // timeout of a request's header, and of the TLS handshake
+  std::chrono::milliseconds idle_time{60'000};  // timeout of a body, of each write, and between requests
   struct Page {
-    unsigned status = 200;
+    unsigned status = 200;  // HTTP status code
     std::string type, text;
   };
+  // Returns the generated page of a target such as "/healthz", given the request's Authorization header; nullopt if the
+  // target is a static file. Thread-safe.
   std::function<std::optional<Page>(std::string_view target, std::string_view authorization)> page;
 };
 
-// Its functions run on its own strand; only Run, Refuse, Close and waiting_since may be called from elsewhere.
+// Runs on its own strand. Run, Refuse, Close and waiting_since are thread-safe.
 class WebConnection final : public std::enable_shared_from_this<WebConnection> {
  public:
-  // `tls` null: nothing is encrypted.
+  // Without encryption if `tls` is null.
   WebConnection(boost::asio::ip::tcp::socket socket, const std::shared_ptr<boost::asio::ssl::context>& tls,
                 const WebSettings& settings, grpc::GenericStub& stub);
 
+  // Serves requests until the client disconnects or a timeout expires.
   void Run();
-  // Since when it waits for a request to come whole; time_point::max() while it answers one.
-  std::chrono::steady_clock::time_point waiting_since() const;
-  // Instead of Run: answers that there are too many connections.
+  // Answers 503 Service Unavailable and disconnects. Call it instead of Run if the connection limit is reached.
   void Refuse();
-  // Breaks the connection off, and its call.
+  // Disconnects and cancels the current call.
   void Close();
+  // Returns when the connection began to wait for its current request; time_point::max() while it answers one.
+  std::chrono::steady_clock::time_point waiting_since() const;
 
  private:
   using Request = boost::beast::http::request<boost::beast::http::string_body>;
   using Parser = boost::beast::http::request_parser<boost::beast::http::string_body>;
 
-  void AwaitRequest(std::chrono::milliseconds patience);
+  void AwaitRequest(std::chrono::milliseconds timeout);
   void ReadHead();
   void ReadBody();
   void OnRequest(boost::beast::error_code error);
-  void RefuseUnreadable(boost::beast::error_code error);
+  void RejectUnreadable(boost::beast::error_code error);
   void Handle(const Request& request);
-  void ServeFile(const Request& request);
-  void ServePage(const Request& request, const WebSettings::Page& page);
+  void HandleGet(const Request& request);
+  void SendPage(const Request& request, const WebSettings::Page& page);
+  void SendFile(const Request& request, const StaticFile& file);
+  // Answers a CORS preflight request (Fetch standard section 3.3.6).
   void Preflight(const Request& request);
-  void RefuseWith(boost::beast::http::status status, const std::string& text);
+  void SendError(boost::beast::http::status status, const std::string& text);
   template <class Body>
   void Send(boost::beast::http::response<Body> response);
-  void Hang();
+  void Disconnect();
 
   void StartCall(Request request);
   void SendMessage(const grpc::ByteBuffer& message);
   void SendTrailers(const grpc::Status& status, const std::multimap<std::string, std::string>& trailers);
+  // Writes `frame` and then slices_ as one chunk of the body (RFC 9112 section 7.1).
   void SendChunk(const std::string& frame, bool last);
-  void OnChunk(boost::beast::error_code error, bool last);
-  // Notices while a call is under way that the browser has gone.
-  void Listen();
-  void OnHeard(boost::beast::error_code error, std::size_t bytes);
+  void OnChunkSent(boost::beast::error_code error, bool last);
+  // Reads during a call, to detect that the browser disconnected. Keeps pipelined requests in buffer_.
+  void WatchForDisconnect();
+  void OnReadDuringCall(boost::beast::error_code error, std::size_t bytes);
   void NextRequest();
 
   WebStream stream_;
-  std::string peer_;  // "192.0.2.1"
+  std::string peer_;  // IP address; "unknown" if the client disconnected early
   std::atomic<std::chrono::steady_clock::rep> waiting_since_;
   boost::beast::flat_buffer buffer_;
   const WebSettings& settings_;
   grpc::GenericStub& stub_;
   std::optional<Parser> parser_;
 
-  // Of the present request.
-  std::string origin_;  // a page's that may call; empty where there is none
+  // State of the current request.
+  std::string origin_;  // an allowed one; empty if the request has none
   bool keep_alive_ = false;
-  // Of the present call.
+  // State of the current call.
   std::shared_ptr<WebCall> call_;
-  std::string head_;                 // of the response; sent with its first chunk
-  bool text_ = false;                // frames in base64
-  std::string lead_, tail_;          // of the chunk being written, before and after ...
-  std::vector<grpc::Slice> slices_;  // ... the message's bytes
-  bool listening_ = false;
-  bool answered_ = false;
+  std::string head_;                     // of the response; sent with its first chunk
+  bool base64_ = false;                  // frames are base64
+  std::string chunk_head_, chunk_tail_;  // around the message bytes of the chunk being written
+  std::vector<grpc::Slice> slices_;      // the message bytes
+  bool reading_during_call_ = false;
+  bool call_ended_ = false;
 };
 
 }  // namespace phrenic::service

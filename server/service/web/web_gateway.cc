@@ -20,7 +20,7 @@ WebGateway::WebGateway(const Options& options, std::shared_ptr<grpc::Channel> ch
       stub_(std::move(channel)),
       context_(kThreads),
       acceptor_(context_),
-      pause_(context_),
+      retry_timer_(context_),
       tls_(options.tls) {}
 
 absl::StatusOr<std::unique_ptr<WebGateway>> WebGateway::Start(const Options& options,
@@ -63,9 +63,8 @@ void WebGateway::OnAccept(boost::system::error_code error, tcp::socket socket) {
     }
     return AcceptNext();
   }
-  // Out of file descriptors, say: it will not be better at once.
-  pause_.expires_after(std::chrono::milliseconds(100));
-  pause_.async_wait([this](boost::system::error_code) { AcceptNext(); });
+  retry_timer_.expires_after(kAcceptRetry);
+  retry_timer_.async_wait([this](boost::system::error_code) { AcceptNext(); });
 }
 
 void WebGateway::AcceptNext() {
@@ -76,19 +75,19 @@ void WebGateway::AcceptNext() {
 bool WebGateway::Admit(const std::shared_ptr<WebConnection>& connection) {
   absl::MutexLock lock(&mutex_);
   connections_.remove_if([](const std::weak_ptr<WebConnection>& other) { return other.expired(); });
-  if (closed_ || (connections_.size() >= options_.max_connections && !MakeRoom())) return false;
+  if (closed_ || (connections_.size() >= options_.max_connections && !CloseLongestIdle())) return false;
   connections_.push_back(connection);
   return true;
 }
 
-bool WebGateway::MakeRoom() {
+bool WebGateway::CloseLongestIdle() {
   auto longest = connections_.end();
   auto since = std::chrono::steady_clock::time_point::max();
-  for (auto place = connections_.begin(); place != connections_.end(); ++place) {
-    const auto connection = place->lock();
+  for (auto each = connections_.begin(); each != connections_.end(); ++each) {
+    const auto connection = each->lock();
     if (connection == nullptr || connection->waiting_since() >= since) continue;
     since = connection->waiting_since();
-    longest = place;
+    longest = each;
   }
   if (longest == connections_.end()) return false;
   if (const auto connection = longest->lock()) connection->Close();

@@ -1,4 +1,4 @@
-// The viewer's files and gRPC-web over HTTP/1.1, inside the server: no second process, no proxy.
+// Serves the viewer's files and gRPC-web over HTTP/1.1 inside the server process, without a proxy.
 #ifndef PHRENIC_SERVER_SERVICE_WEB_WEB_GATEWAY_H_
 #define PHRENIC_SERVER_SERVICE_WEB_WEB_GATEWAY_H_
 
@@ -23,23 +23,23 @@
 
 namespace phrenic::service {
 
-// Any thread may call. Two threads of its own serve all connections.
+// Thread-safe. Two threads of its own serve all connections, each connection on its own strand.
 class WebGateway {
  public:
   struct Options {
-    std::string address;  // "127.0.0.1:8080", "[::1]:8080"; port 0 chooses one
+    std::string address;  // "127.0.0.1:8080", "[::1]:8080"; the system chooses the port if it is 0
     WebSettings settings;
     std::size_t max_connections = 0;
     TlsFiles tls;
   };
 
-  // UNAVAILABLE names the address that could not be listened on, INVALID_ARGUMENT one that is none.
+  // Listens and serves; gRPC-web calls go to `channel`. Errors: those of ListenOn.
   static absl::StatusOr<std::unique_ptr<WebGateway>> Start(const Options& options,
                                                            std::shared_ptr<grpc::Channel> channel);
   ~WebGateway();
 
   int port() const { return port_; }
-  // Ends every connection and every call of theirs; a second call does nothing.
+  // Closes all connections, cancels their calls and joins the threads. Idempotent.
   void Shutdown() ABSL_LOCKS_EXCLUDED(mutex_);
 
  private:
@@ -48,16 +48,16 @@ class WebGateway {
   void Accept() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void AcceptNext() ABSL_LOCKS_EXCLUDED(mutex_);
   void OnAccept(boost::system::error_code error, boost::asio::ip::tcp::socket socket);
-  // False when there are too many connections already: the one that has waited longest for a request makes room, but
-  // none that is being answered.
+  // Adds a connection. False if the limit is reached and CloseLongestIdle finds none to close.
   bool Admit(const std::shared_ptr<WebConnection>& connection) ABSL_LOCKS_EXCLUDED(mutex_);
-  bool MakeRoom() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // Closes the connection that has waited longest for a request. False if all are being answered.
+  bool CloseLongestIdle() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
   const Options options_;
   grpc::GenericStub stub_;
   boost::asio::io_context context_;
   boost::asio::ip::tcp::acceptor acceptor_;  // used by one thread at a time, or with mutex_ held
-  boost::asio::steady_timer pause_;
+  boost::asio::steady_timer retry_timer_;
   int port_ = 0;
   WebTls tls_;  // used by one thread at a time, as acceptor_
   absl::Mutex mutex_;

@@ -6,19 +6,20 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "server/service/net/metadata_keys.h"
 
 namespace phrenic::service {
 namespace {
 
 namespace http = boost::beast::http;
 
-// The same as in the page itself (web/vite.config.ts); which pages may frame it follows.
+// The policy in the page itself (web/vite.config.ts) and, appended, the origins that may frame it.
 constexpr char kPolicy[] =
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; connect-src 'self'; "
     "base-uri 'none'; form-action 'none'; frame-ancestors ";
 
-bool IsCallersOwn(const std::string& name) {
-  if (name == "x-grpc-web" || name == "x-user-agent" || name == kPeerHeader) return false;
+bool IsForwarded(const std::string& name) {
+  if (name == "x-grpc-web" || name == "x-user-agent" || name == kPeerKey) return false;
   return absl::StartsWith(name, "x-") || name == "authorization";
 }
 
@@ -40,7 +41,7 @@ void SetFileHeaders(const StaticFile& file, const std::vector<std::string>& fram
   response.set("Referrer-Policy", "no-referrer");
   response.set("Cross-Origin-Opener-Policy", "same-origin");
   response.set("Permissions-Policy", "camera=(), microphone=(), geolocation=(), payment=(), usb=()");
-  if (framers.empty()) response.set("X-Frame-Options", "DENY");  // browsers that know no frame-ancestors
+  if (framers.empty()) response.set("X-Frame-Options", "DENY");  // for browsers without frame-ancestors
 }
 
 void AllowOrigin(const std::string& origin, HttpHeader& response) {
@@ -64,10 +65,10 @@ std::string CallHead(bool text, bool encrypted, const std::string& origin, bool 
 }
 
 std::multimap<std::string, std::string> CallMetadata(const http::fields& request, const std::string& peer) {
-  std::multimap<std::string, std::string> metadata = {{kPeerHeader, peer}};
+  std::multimap<std::string, std::string> metadata = {{kPeerKey, peer}};
   for (const auto& field : request) {
     const std::string name = absl::AsciiStrToLower(std::string(field.name_string()));
-    if (IsCallersOwn(name)) metadata.emplace(name, std::string(field.value()));
+    if (IsForwarded(name)) metadata.emplace(name, std::string(field.value()));
   }
   return metadata;
 }

@@ -1,4 +1,4 @@
-// Headers of the gateway's answers.
+// HTTP headers of the gateway's responses, and gRPC metadata from request headers. Pure functions, thread-safe.
 #ifndef PHRENIC_SERVER_SERVICE_WEB_WEB_HEADERS_H_
 #define PHRENIC_SERVER_SERVICE_WEB_WEB_HEADERS_H_
 
@@ -16,18 +16,17 @@ namespace phrenic::service {
 
 using HttpHeader = boost::beast::http::header<false, boost::beast::http::fields>;
 
-// Of every answer: nothing is guessed from bytes, no other page may use it; and where it is encrypted, browsers come
-// back encrypted for a year (RFC 6797).
+// Sets the headers of every response: no MIME sniffing, same-origin resource policy and, with TLS, HSTS for one year
+// (RFC 6797).
 void SetCommonHeaders(bool encrypted, HttpHeader& response);
-// Of a file: type, caching, what the page may load, and which origins' pages may show it in a frame.
+// Sets the headers of a file: type, caching, Content Security Policy, and the origins that may frame it.
 void SetFileHeaders(const StaticFile& file, const std::vector<std::string>& framers, HttpHeader& response);
-// Lets a page of `origin` read the answer; does nothing where it is empty.
+// Sets the CORS headers that let a page of `origin` read the response; does nothing if `origin` is empty.
 void AllowOrigin(const std::string& origin, HttpHeader& response);
-// The head of the answer to a gRPC-web call, up to the empty line.
+// Returns the status line and headers of a gRPC-web response, with the empty line that ends them.
 std::string CallHead(bool text, bool encrypted, const std::string& origin, bool keep_alive);
-// Where the gateway names the machine that a call comes from; nobody else can.
-inline constexpr char kPeerHeader[] = "x-phrenic-peer";
-// The headers of a request that are the caller's own: "x-session-id" and the like, and "authorization"; and its peer.
+// Returns the metadata for a gRPC call: "x-..." and "authorization" headers of the request, and the caller's IP address
+// as kPeerKey, which replaces one that the client sent.
 std::multimap<std::string, std::string> CallMetadata(const boost::beast::http::fields& request,
                                                      const std::string& peer);
 

@@ -1,4 +1,4 @@
-// A connection's bytes, encrypted or not: a stream as Asio's and Beast's operations take it.
+// A TCP stream with optional TLS that meets Asio's AsyncReadStream and AsyncWriteStream requirements.
 #ifndef PHRENIC_SERVER_SERVICE_WEB_WEB_STREAM_H_
 #define PHRENIC_SERVER_SERVICE_WEB_WEB_STREAM_H_
 
@@ -12,23 +12,23 @@
 
 namespace phrenic::service {
 
-// Not thread-safe: all of it runs on the socket's strand.
+// Not thread-safe: use it on the socket's strand. Errors reach the handlers as boost::system::error_code.
 class WebStream {
  public:
   using executor_type = boost::beast::tcp_stream::executor_type;
 
-  // `tls` null: nothing is encrypted.
+  // Plain TCP if `tls` is null.
   WebStream(boost::asio::ip::tcp::socket socket, const std::shared_ptr<boost::asio::ssl::context>& tls)
       : tcp_(std::move(socket)) {
     if (tls != nullptr) tls_.emplace(tcp_, *tls);
   }
 
   executor_type get_executor() { return tcp_.get_executor(); }
-  // With its deadlines.
+  // Returns the layer below TLS, which has the deadlines.
   boost::beast::tcp_stream& tcp() { return tcp_; }
   bool encrypted() const { return tls_.has_value(); }
 
-  // Calls the handler at once where nothing is encrypted.
+  // Performs the TLS handshake; without TLS it calls the handler at once.
   template <class Handler>
   void AsyncHandshake(Handler handler) {
     if (!tls_.has_value()) return handler(boost::system::error_code());

@@ -7,9 +7,9 @@ namespace {
 
 namespace ssl = boost::asio::ssl;
 
-constexpr std::chrono::seconds kWebTlsLook(10);
+constexpr std::chrono::seconds kReloadInterval(10);
 
-// Null where a file is not good.
+// Returns null if a file is not valid.
 std::shared_ptr<ssl::context> MakeContext(const TlsFiles& files) {
   if (!CheckTls(files).ok()) return nullptr;
   auto context = std::make_shared<ssl::context>(ssl::context::tls_server);
@@ -26,7 +26,7 @@ std::shared_ptr<ssl::context> MakeContext(const TlsFiles& files) {
 
 }  // namespace
 
-std::filesystem::file_time_type WebTls::Changed() const {
+std::filesystem::file_time_type WebTls::LastModified() const {
   std::filesystem::file_time_type newest = std::filesystem::file_time_type::min();
   std::error_code ignored;
   for (const std::string& file : {files_.certificate, files_.key, files_.client_ca}) {
@@ -38,13 +38,13 @@ std::filesystem::file_time_type WebTls::Changed() const {
 std::shared_ptr<ssl::context> WebTls::Current() {
   if (!files_.used()) return nullptr;
   const auto now = std::chrono::steady_clock::now();
-  if (context_ != nullptr && now - looked_ < kWebTlsLook) return context_;
-  looked_ = now;
-  const auto changed = Changed();
-  if (context_ != nullptr && changed == changed_) return context_;
-  if (auto fresh = MakeContext(files_); fresh != nullptr) {
-    context_ = std::move(fresh);
-    changed_ = changed;
+  if (context_ != nullptr && now - last_checked_ < kReloadInterval) return context_;
+  last_checked_ = now;
+  const auto modified = LastModified();
+  if (context_ != nullptr && modified == loaded_version_) return context_;
+  if (auto reloaded = MakeContext(files_); reloaded != nullptr) {
+    context_ = std::move(reloaded);
+    loaded_version_ = modified;
   }
   return context_;
 }

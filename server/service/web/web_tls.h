@@ -1,4 +1,4 @@
-// TLS of the web gateway, with certificates that may change while it runs.
+// The TLS context of the web gateway, reloaded when its certificate files change.
 #ifndef PHRENIC_SERVER_SERVICE_WEB_WEB_TLS_H_
 #define PHRENIC_SERVER_SERVICE_WEB_WEB_TLS_H_
 
@@ -13,22 +13,22 @@
 
 namespace phrenic::service {
 
-// Not thread-safe.
+// Not thread-safe. TLS 1.2 is the minimum version (RFC 8996).
 class WebTls {
  public:
   explicit WebTls(TlsFiles files) : files_(std::move(files)) {}
 
-  // What a new connection uses; null: it is not encrypted. Files that changed are read again, at most every ten
-  // seconds; where they are not good, the ones before stay.
+  // Returns the context for a new connection, null if TLS is not used. Checks the files for changes at most every 10 s;
+  // keeps the previous context if the new files are not valid.
   std::shared_ptr<boost::asio::ssl::context> Current();
 
  private:
-  std::filesystem::file_time_type Changed() const;
+  std::filesystem::file_time_type LastModified() const;
 
   const TlsFiles files_;
   std::shared_ptr<boost::asio::ssl::context> context_;
-  std::filesystem::file_time_type changed_;
-  std::chrono::steady_clock::time_point looked_;
+  std::filesystem::file_time_type loaded_version_;  // modification time of the loaded files
+  std::chrono::steady_clock::time_point last_checked_;
 };
 
 }  // namespace phrenic::service

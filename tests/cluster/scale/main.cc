@@ -1,5 +1,5 @@
-// A cluster on this machine with many small sessions and many viewers: how evenly sessions are spread over its servers,
-// how fast one client steps them all, and what a viewer's frame costs, directly and through nginx.
+// Measures a cluster on this machine with many small sessions and viewers: how evenly sessions are distributed over the
+// servers, how fast one client steps them all, and what a viewer's frame costs, directly and through nginx.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -15,9 +15,9 @@ namespace phrenic::cluster {
 namespace {
 
 constexpr char kScene[] = "sheet-2d";
-constexpr int kCallers = 32;  // calls that one client has under way
-constexpr int kTicksACall = 10;
-constexpr int kViewersASession = 25;
+constexpr int kCallers = 32;  // concurrent calls of the client
+constexpr int kTicksPerCall = 10;
+constexpr int kViewersPerSession = 25;
 
 struct Options {
   int servers = 4, sessions = 1000, viewers = 500;
@@ -31,15 +31,15 @@ struct Call : grpc::ClientContext {
   }
 };
 
-// CPU time [s] that the parts of a cluster took in a while.
+// CPU time of the parts of a cluster [s].
 struct Cpu {
   double servers = 0, nginx = 0, redis = 0;
 };
 
-double Quantile(std::vector<double> values, double part) {
+double Quantile(std::vector<double> values, double fraction) {
   if (values.empty()) return 0;
   std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1))];
+  return values[static_cast<std::size_t>(fraction * static_cast<double>(values.size() - 1))];
 }
 
 class Scale {
@@ -49,17 +49,18 @@ class Scale {
   bool Run() {
     const absl::Status started =
         deployment_.Start(options_.servers, {"--max-sessions-of-user", "1000", "--max-requests", "1000000"});
-    if (!started.ok()) return Say(std::string(started.message()));
+    if (!started.ok()) return Fail(std::string(started.message()));
     return MakeSessions() && CountSessions() && Step() && WatchBothWays();
   }
 
  private:
-  static bool Say(const std::string& problem) {
+  static bool Fail(const std::string& problem) {
     std::fprintf(stderr, "cluster_scale: %s\n", problem.c_str());
     return false;
   }
 
-  // Calls act(stub, i) for every i below `count`, from kCallers threads with connections of their own; the first error.
+  // Calls act(stub, i) for every i below `count` from kCallers threads, each with its own connection. Returns the first
+  // error.
   template <typename Act>
   grpc::Status ForEach(int count, const Act& act) {
     std::vector<grpc::Status> errors(kCallers);
@@ -99,8 +100,8 @@ class Scale {
     const absl::Time begin = absl::Now();
     const grpc::Status made =
         ForEach(options_.sessions, [](v1::SessionService::Stub& stub, int i) { return Make(stub, NameOf(i)); });
-    if (!made.ok()) return Say(absl::StrCat("the sessions could not be made: ", made.error_message()));
-    std::printf("%d sessions of %s on %d servers, made in %.1f s\n", options_.sessions, kScene, options_.servers,
+    if (!made.ok()) return Fail(absl::StrCat("the sessions could not be created: ", made.error_message()));
+    std::printf("%d sessions of %s on %d servers, created in %.1f s\n", options_.sessions, kScene, options_.servers,
                 absl::ToDoubleSeconds(absl::Now() - begin));
     return true;
   }
@@ -108,13 +109,13 @@ class Scale {
   bool CountSessions() {
     const double even = static_cast<double>(options_.sessions) / options_.servers;
     double most = 0;
-    std::printf("of them on each server:");
+    std::printf("sessions per server:");
     for (int server = 1; server <= options_.servers; ++server) {
       const double held = deployment_.Metric(server, "phrenic_sessions");
       most = std::max(most, held);
       std::printf(" %.0f", held);
     }
-    std::printf(" (the fullest has %.2f of an even share)\n\n", most / even);
+    std::printf(" (the maximum is %.2f times the mean)\n\n", most / even);
     return most > 0;
   }
 
@@ -134,7 +135,7 @@ class Scale {
            i = i + kCallers < options_.sessions ? i + kCallers : caller) {
         v1::StepSessionRequest request;
         request.set_session_id(NameOf(i));
-        request.set_ticks(kTicksACall);
+        request.set_ticks(kTicksPerCall);
         v1::StepSessionResponse stepped;
         Call call(NameOf(i));
         const absl::Time asked = absl::Now();
@@ -144,16 +145,16 @@ class Scale {
       return status;
     };
     const grpc::Status stepped = ForEach(kCallers, step);
-    if (!stepped.ok()) return Say(absl::StrCat("a session could not be stepped: ", stepped.error_message()));
+    if (!stepped.ok()) return Fail(absl::StrCat("a session could not be stepped: ", stepped.error_message()));
     const double wall = absl::ToDoubleSeconds(absl::Now() - begin);
     const Cpu after = Spent();
     std::vector<double> all;
     for (const auto& each : took) all.insert(all.end(), each.begin(), each.end());
     const auto calls = static_cast<double>(all.size());
-    std::printf("stepped by one client, %d calls at a time through nginx: %.0f calls, %.0f steps a second\n", kCallers,
-                calls / wall, kTicksACall * calls / wall);
+    std::printf("stepped by one client, %d concurrent calls through nginx: %.0f calls/s, %.0f steps/s\n", kCallers,
+                calls / wall, kTicksPerCall * calls / wall);
     std::printf(
-        "  a call takes %.1f ms (p50), %.1f ms (p99); CPU a call: %.0f us servers, %.0f us nginx, %.0f us Redis\n\n",
+        "  latency %.1f ms (p50), %.1f ms (p99); CPU per call: %.0f us servers, %.0f us nginx, %.0f us Redis\n\n",
         Quantile(all, 0.5), Quantile(all, 0.99), 1e6 * (after.servers - before.servers) / calls,
         1e6 * (after.nginx - before.nginx) / calls, 1e6 * (after.redis - before.redis) / calls);
     return true;
@@ -161,23 +162,23 @@ class Scale {
 
   bool WatchBothWays() {
     std::printf("%-24s %9s %8s %8s %8s %8s %22s %22s\n", "viewers", "sessions", "fps", "p50 ms", "p99 ms", "bytes",
-                "us of servers a frame", "us of nginx a frame");
+                "us of servers/frame", "us of nginx/frame");
     return Watched("through nginx, TLS", true) && Watched("directly, no TLS", false);
   }
 
-  // Sessions of one server each, where they are watched directly: made there.
-  bool Watched(const char* way, bool through) {
-    const int sessions = std::max(1, options_.viewers / kViewersASession);
+  // Measures viewers through nginx, or directly of sessions that are created on each server.
+  bool Watched(const char* label, bool through_nginx) {
+    const int sessions = std::max(1, options_.viewers / kViewersPerSession);
     std::vector<std::shared_ptr<grpc::Channel>> channels;
     const auto channel = [&](int session) {
-      return through ? deployment_.NewChannel() : deployment_.NewChannelTo(1 + session % options_.servers);
+      return through_nginx ? deployment_.NewChannel() : deployment_.NewChannelTo(1 + session % options_.servers);
     };
-    const auto name = [&](int session) { return through ? NameOf(session) : absl::StrCat("direct-", session); };
+    const auto name = [&](int session) { return through_nginx ? NameOf(session) : absl::StrCat("direct-", session); };
     for (int i = 0; i < sessions; ++i) {
       const auto stub = v1::SessionService::NewStub(channel(i));
-      grpc::Status ready = through ? grpc::Status::OK : Make(*stub, name(i));
+      grpc::Status ready = through_nginx ? grpc::Status::OK : Make(*stub, name(i));
       if (ready.ok()) ready = Play(*stub, name(i));
-      if (!ready.ok()) return Say(absl::StrCat("a session does not play: ", ready.error_message()));
+      if (!ready.ok()) return Fail(absl::StrCat("a session does not play: ", ready.error_message()));
     }
     bench::Seen seen;
     std::vector<std::unique_ptr<Viewer>> viewers;
@@ -192,8 +193,8 @@ class Scale {
     const bench::Sight sight = seen.Take();
     const Cpu after = Spent();
     const auto frames = static_cast<double>(sight.frames);
-    if (frames == 0) return Say("no frame came");
-    std::printf("%4d %-19s %9d %8.1f %8.1f %8.1f %8.0f %22.0f %22.0f\n", options_.viewers, way, sessions,
+    if (frames == 0) return Fail("no frame arrived");
+    std::printf("%4d %-19s %9d %8.1f %8.1f %8.1f %8.0f %22.0f %22.0f\n", options_.viewers, label, sessions,
                 frames / options_.viewers / options_.seconds, 1e3 * sight.Age(0.5), 1e3 * sight.Age(0.99),
                 static_cast<double>(sight.bytes) / frames, 1e6 * (after.servers - before.servers) / frames,
                 1e6 * (after.nginx - before.nginx) / frames);
@@ -210,7 +211,7 @@ class Scale {
       v1::PauseSessionResponse paused;
       Call call(name(i));
       const grpc::Status status = v1::SessionService::NewStub(channel(i))->PauseSession(&call, pause, &paused);
-      if (!status.ok()) return Say(absl::StrCat(name(i), ": ", status.error_message()));
+      if (!status.ok()) return Fail(absl::StrCat(name(i), ": ", status.error_message()));
     }
     return true;
   }
@@ -221,13 +222,13 @@ class Scale {
 
 int Main(int argc, char** argv) {
   Options options;
-  CLI::App app("cluster_scale: many sessions and viewers on a cluster of this machine.");
+  CLI::App app("cluster_scale: measures many sessions and viewers on a local cluster.");
   app.add_option("--servers", options.servers, "servers")->check(CLI::Range(1, 16))->capture_default_str();
   app.add_option("--sessions", options.sessions, "small sessions")->check(CLI::Range(80, 1000))->capture_default_str();
-  app.add_option("--viewers", options.viewers, "viewers, 25 a session")
+  app.add_option("--viewers", options.viewers, "viewers, 25 per session")
       ->check(CLI::Range(1, 2000))
       ->capture_default_str();
-  app.add_option("--seconds", options.seconds, "that each is measured")
+  app.add_option("--seconds", options.seconds, "duration of each measurement [s]")
       ->check(CLI::Range(0.5, 600.0))
       ->capture_default_str();
   CLI11_PARSE(app, argc, argv);

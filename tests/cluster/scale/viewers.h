@@ -1,4 +1,4 @@
-// Viewers of a cluster's sessions, each with a connection of its own, as on machines of their own.
+// Viewers of a cluster's sessions, each with its own connection.
 #ifndef PHRENIC_TESTS_CLUSTER_SCALE_VIEWERS_H_
 #define PHRENIC_TESTS_CLUSTER_SCALE_VIEWERS_H_
 
@@ -11,7 +11,7 @@
 
 namespace phrenic::cluster {
 
-// Watches the session, thirty frames a second, until it is destroyed; `seen` outlives it.
+// Watches a session at 30 frames per second until it is destroyed. `seen` outlives it.
 class Viewer {
  public:
   virtual ~Viewer() = default;

@@ -26,7 +26,7 @@
 namespace phrenic::cluster {
 namespace {
 
-// Nothing of one that cannot be read: what /proc has of a process may go while it is read.
+// Returns a file's text; empty if it cannot be read, as files in /proc disappear with their process.
 std::string TextOf(const std::string& file) {
   std::ostringstream text;
   text << std::ifstream(file).rdbuf();
@@ -44,18 +44,18 @@ bool IsFree(int port) {
   return is_free;
 }
 
-// The first of so many free ports in a row, below those that the system gives out.
+// Returns the first of `count` consecutive free ports below the ephemeral range.
 int FreePorts(int count) {
   for (int first = 21'000 + getpid() % 100 * 100; first < 32'000; first += count) {
-    bool good = true;
-    for (int port = first; port < first + count && good; ++port) good = IsFree(port);
-    if (good) return first;
+    bool all_free = true;
+    for (int port = first; port < first + count && all_free; ++port) all_free = IsFree(port);
+    if (all_free) return first;
   }
   return 0;
 }
 
-[[noreturn]] void Become(const std::vector<std::string>& words, const std::string& log) {
-  prctl(PR_SET_PDEATHSIG, SIGTERM);  // it ends with this process, however that ends
+[[noreturn]] void Exec(const std::vector<std::string>& words, const std::string& log) {
+  prctl(PR_SET_PDEATHSIG, SIGTERM);  // ends with this process, also after a crash
   const int file = open(log.c_str(), O_CREAT | O_APPEND | O_WRONLY, 0600);
   dup2(file, 1);
   dup2(file, 2);
@@ -72,8 +72,8 @@ bool Runs(pid_t pid) {
   return kill(pid, 0) == 0 && !state.empty() && !absl::StrContains(state, ") Z ");
 }
 
-// What a program prints.
-std::string Printed(const std::string& command) {
+// Returns the standard output of a command.
+std::string OutputOf(const std::string& command) {
   std::string text;
   FILE* const pipe = popen(command.c_str(), "r");
   if (pipe == nullptr) return text;
@@ -88,17 +88,17 @@ std::string Printed(const std::string& command) {
 bool HasTools() {
   for (const char* tool : {"nginx", "redis-server", "openssl"}) {
     if (std::system(absl::StrCat("PATH=$PATH:/usr/sbin command -v ", tool, " > /dev/null").c_str()) == 0) continue;
-    std::printf("not tried: there is no %s here (deploy/packages.txt)\n", tool);
+    std::printf("skipped: %s is not installed (deploy/packages.txt)\n", tool);
     return false;
   }
   return true;
 }
 
-std::string Deployment::Said() const { return TextOf(folder_ + "/said"); }
+std::string Deployment::Output() const { return TextOf(folder_ + "/said"); }
 
 absl::Status Deployment::Start(int servers, const std::vector<std::string>& flags) {
   std::string name = std::filesystem::temp_directory_path() / "phrenic-cluster-XXXXXX";
-  if (mkdtemp(name.data()) == nullptr) return absl::UnavailableError("no folder for it could be made");
+  if (mkdtemp(name.data()) == nullptr) return absl::UnavailableError("the temporary folder could not be created");
   folder_ = name;
   std::filesystem::permissions(folder_, static_cast<std::filesystem::perms>(0755));
   base_ = FreePorts(2 * servers + 2);
@@ -117,13 +117,13 @@ absl::Status Deployment::Start(int servers, const std::vector<std::string>& flag
                                       "--start",
                                       "none"};
     words.insert(words.end(), flags.begin(), flags.end());
-    Become(words, folder_ + "/said");
+    Exec(words, folder_ + "/said");
   }
-  for (int tries = 0; tries < 600 && !absl::StrContains(Said(), "Ctrl-C"); ++tries) {
+  for (int tries = 0; tries < 600 && !absl::StrContains(Output(), "Ctrl-C"); ++tries) {
     absl::SleepFor(absl::Milliseconds(100));
     if (!Runs(script_)) break;
   }
-  if (!absl::StrContains(Said(), "Ctrl-C")) return absl::UnavailableError(Said());
+  if (!absl::StrContains(Output(), "Ctrl-C")) return absl::UnavailableError(Output());
   trust_ = TextOf(folder_ + "/phrenic/cert.pem");
   std::vector<std::string> names = {"redis"};
   for (int i = 1; i <= servers; ++i) names.push_back(absl::StrCat("server-", i));
@@ -131,7 +131,7 @@ absl::Status Deployment::Start(int servers, const std::vector<std::string>& flag
     const pid_t pid = std::atoi(TextOf(absl::StrCat(folder_, "/", each, ".pid")).c_str());
     std::vector<std::string> words =
         absl::StrSplit(TextOf(absl::StrCat("/proc/", pid, "/cmdline")), '\0', absl::SkipEmpty());
-    // Redis writes its address behind its name.
+    // Redis replaces its command line with its name and address.
     if (each == "redis") {
       words = {"redis-server", "--bind", "127.0.0.1", "--port", std::to_string(base_), "--dir", folder_,
                "--appendonly", "yes",    "--save",    ""};
@@ -175,7 +175,7 @@ std::shared_ptr<grpc::Channel> Deployment::NewChannelTo(int server) const {
 }
 
 double Deployment::Metric(int server, const std::string& name) const {
-  const std::string all = Printed(absl::StrCat("curl -sf http://127.0.0.1:", base_ + 2 * server, "/metrics"));
+  const std::string all = OutputOf(absl::StrCat("curl -sf http://127.0.0.1:", base_ + 2 * server, "/metrics"));
   for (const absl::string_view line : absl::StrSplit(all, '\n')) {
     if (absl::StartsWith(line, absl::StrCat(name, " ")))
       return std::atof(std::string(line.substr(name.size())).c_str());
@@ -187,11 +187,11 @@ double Deployment::Cpu(const std::string& name) const {
   const std::string pid = std::to_string(std::atoi(TextOf(absl::StrCat(folder_, "/", name, ".pid")).c_str()));
   double ticks = 0;
   for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
-    if (std::atoi(entry.path().filename().c_str()) == 0) continue;  // no process
+    if (std::atoi(entry.path().filename().c_str()) == 0) continue;  // not a process
     const std::string stat = TextOf(entry.path() / "stat");
     const std::vector<std::string> words =
         absl::StrSplit(stat.substr(std::min(stat.size(), stat.rfind(')') + 1)), ' ', absl::SkipEmpty());
-    constexpr std::size_t kParent = 1, kUser = 11, kSystem = 12;  // behind the name (proc(5))
+    constexpr std::size_t kParent = 1, kUser = 11, kSystem = 12;  // after the name (proc(5))
     if (words.size() <= kSystem || (entry.path().filename() != pid && words[kParent] != pid)) continue;
     ticks += std::atof(words[kUser].c_str()) + std::atof(words[kSystem].c_str());
   }
@@ -219,7 +219,7 @@ void Deployment::StartAgain(const std::string& name) {
   Program& program = Find(name);
   program.ours = true;
   program.pid = fork();
-  if (program.pid == 0) Become(program.words, absl::StrCat(folder_, "/", name, ".log"));
+  if (program.pid == 0) Exec(program.words, absl::StrCat(folder_, "/", name, ".log"));
 }
 
 }  // namespace phrenic::cluster

@@ -1,4 +1,4 @@
-// A cluster as deploy/cluster starts it, with nginx and Redis, whose servers can be killed, drained and started again.
+// A cluster started by deploy/cluster, with nginx and Redis, whose programs can be signalled and restarted.
 #ifndef PHRENIC_TESTS_CLUSTER_TRIAL_DEPLOYMENT_H_
 #define PHRENIC_TESTS_CLUSTER_TRIAL_DEPLOYMENT_H_
 
@@ -14,17 +14,17 @@
 namespace phrenic::cluster {
 
 inline constexpr int kSkipped = 77;  // ctest's SKIP_RETURN_CODE
-// Whether a cluster can be started here; where not, says so.
+// True if this machine has the programs that a cluster needs; prints the missing one otherwise.
 bool HasTools();
 
-// Not thread-safe, but for NewChannel. Stopped with the object.
+// Not thread-safe, except NewChannel. The destructor stops the cluster.
 class Deployment {
  public:
-  // A program of it: "redis", "server-1" ...
+  // A program of the cluster: "redis", "server-1" ...
   struct Program {
     std::string name;
     pid_t pid = -1;
-    std::vector<std::string> words;  // it was started with these
+    std::vector<std::string> words;  // command line
     bool ours = false;               // a child of this process
   };
 
@@ -33,27 +33,27 @@ class Deployment {
   Deployment(const Deployment&) = delete;
   Deployment& operator=(const Deployment&) = delete;
 
-  // With so many servers, on free ports, each with these flags as well. UNAVAILABLE with what it said.
+  // Starts `servers` servers on free ports with additional flags. UNAVAILABLE, with the output, if that fails.
   absl::Status Start(int servers, const std::vector<std::string>& flags = {});
-  // A connection of its own to nginx, with TLS.
+  // Returns a channel to nginx with TLS and its own connection.
   std::shared_ptr<grpc::Channel> NewChannel() const;
-  // The same to one server itself.
+  // Returns a channel to one server, without TLS.
   std::shared_ptr<grpc::Channel> NewChannelTo(int server) const;
 
-  // Sends the signal, and waits for the program's end where the signal ends it.
+  // Sends a signal that ends the program, and waits for its end.
   void End(const std::string& name, int signal);
   void Signal(const std::string& name, int signal);
-  // Starts it again as it was; returns at once.
+  // Restarts a program with its command line; returns at once.
   void StartAgain(const std::string& name);
   const std::string& folder() const { return folder_; }
-  // CPU time so far of "nginx", "redis", "server-1" ... and the processes it started [s].
+  // Returns the CPU time of "nginx", "redis", "server-1" ... and its child processes [s].
   double Cpu(const std::string& name) const;
-  // A number of a server's /metrics; 0 where it has none of that name.
+  // Returns a value from a server's /metrics; 0 if it has no metric of that name.
   double Metric(int server, const std::string& name) const;
 
  private:
   Program& Find(const std::string& name);
-  std::string Said() const;
+  std::string Output() const;
 
   std::string folder_, trust_;
   int port_ = 0, base_ = 0;

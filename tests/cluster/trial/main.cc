@@ -1,6 +1,6 @@
-// Tries a cluster: servers of it are killed and drained at random and Redis goes away, while sessions are stepped and
-// watched through nginx. Prints what came of it; 1 where a session was lost or a state was wrong, 77 where it cannot be
-// tried here.
+// Tests a cluster under faults: kills and drains random servers and stops Redis while sessions are stepped and watched
+// through nginx. Prints the outages. Exit code 1 if a session was lost or a state was wrong, 77 if programs are
+// missing.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <csignal>
@@ -21,19 +21,19 @@ struct Options {
   double outage_seconds = 5;
 };
 
-// Of all events of a kind [s].
+// The events of one kind; times in [s].
 struct Row {
   std::string name;
   int events = 0;
-  std::vector<double> moved = {};        // from the event until the session's next answer
-  std::vector<double> rolled_back = {};  // simulated
-  std::vector<double> elsewhere = {};    // gaps of sessions that stayed where they were
+  std::vector<double> moved = {};        // from the event to the next answer of a session that moved
+  std::vector<double> rolled_back = {};  // simulated time
+  std::vector<double> elsewhere = {};    // gaps of sessions that did not move
 };
 
-double Quantile(std::vector<double> values, double part) {
+double Quantile(std::vector<double> values, double fraction) {
   if (values.empty()) return 0;
   std::sort(values.begin(), values.end());
-  return values[std::min(values.size() - 1, static_cast<std::size_t>(part * static_cast<double>(values.size())))];
+  return values[std::min(values.size() - 1, static_cast<std::size_t>(fraction * static_cast<double>(values.size())))];
 }
 
 class Trial {
@@ -46,12 +46,12 @@ class Trial {
       return 1;
     }
     if (!MakeWorkers()) return 1;
-    absl::SleepFor(absl::Seconds(5));  // the servers watch over each other from now on
+    absl::SleepFor(absl::Seconds(5));  // until all servers take over sessions
     for (int i = 0; i < std::max(options_.kills, options_.drains); ++i) {
       if (i < options_.kills) Disturb(killed_, SIGKILL);
       if (i < options_.drains) Disturb(drained_, SIGTERM);
     }
-    for (int i = 0; i < options_.outages; ++i) LoseRedis(i % 2 == 1);
+    for (int i = 0; i < options_.outages; ++i) StopRedis(i % 2 == 1);
     return Judge();
   }
 
@@ -73,18 +73,18 @@ class Trial {
       watchers_.push_back(std::make_unique<Watcher>(deployment_, absl::StrCat("watched-", i)));
       made = made && watchers_.back()->made();
     }
-    if (!made) std::fprintf(stderr, "the sessions could not be made\n");
+    if (!made) std::fprintf(stderr, "the sessions could not be created\n");
     return made;
   }
 
-  // Until every session has been heard of since `event`, and a while longer.
+  // Waits until every session has answered 4 s after `event`.
   void AwaitAll(absl::Time event) {
     for (const absl::Time end = absl::Now() + absl::Seconds(30); absl::Now() < end;
          absl::SleepFor(absl::Milliseconds(50))) {
       const auto all = Workers();
-      const bool back = std::all_of(all.begin(), all.end(),
-                                    [event](const Worker* each) { return each->last() > event + absl::Seconds(4); });
-      if (back) return;
+      const bool all_back = std::all_of(
+          all.begin(), all.end(), [event](const Worker* each) { return each->last() > event + absl::Seconds(4); });
+      if (all_back) return;
     }
   }
 
@@ -116,14 +116,14 @@ class Trial {
     absl::SleepFor(absl::Seconds(5));
   }
 
-  void LoseRedis(bool for_good) {
-    Row& row = for_good ? emptied_ : outage_;
+  void StopRedis(bool delete_data) {
+    Row& row = delete_data ? emptied_ : outage_;
     std::fprintf(stderr, "%s\n", row.name.c_str());
     const absl::Time event = absl::Now();
     deployment_.End("redis", SIGKILL);
     absl::SleepFor(absl::Seconds(options_.outage_seconds));
     std::error_code ignored;
-    if (for_good) std::filesystem::remove_all(deployment_.folder() + "/appendonlydir", ignored);
+    if (delete_data) std::filesystem::remove_all(deployment_.folder() + "/appendonlydir", ignored);
     deployment_.StartAgain("redis");
     AwaitAll(absl::Now());
     Collect(event, row);
@@ -167,21 +167,21 @@ class Trial {
   faults::Oracle oracle_;
   std::vector<std::unique_ptr<Stepper>> steppers_;
   std::vector<std::unique_ptr<Watcher>> watchers_;
-  Row killed_{"a server is killed"}, drained_{"a server is drained"}, outage_{"Redis is away"},
-      emptied_{"Redis loses all"};
+  Row killed_{"a server is killed"}, drained_{"a server is drained"}, outage_{"Redis is stopped"},
+      emptied_{"Redis loses its data"};
 };
 
 int Main(int argc, char** argv) {
   Options options;
-  CLI::App app("cluster_trial: kills servers of a cluster at random and says what came of it.");
+  CLI::App app("cluster_trial: kills and drains servers of a local cluster and reports the outages.");
   app.add_option("--servers", options.servers, "servers")->check(CLI::Range(2, 16))->capture_default_str();
   app.add_option("--stepped", options.steppers, "sessions that are stepped")->capture_default_str();
   app.add_option("--watched", options.watchers, "sessions that play and are watched")->capture_default_str();
   app.add_option("--kills", options.kills, "servers killed, one after the other")->capture_default_str();
-  app.add_option("--drains", options.drains, "servers told to end")->capture_default_str();
-  app.add_option("--outages", options.outages, "times that Redis goes; every second time it comes back empty")
+  app.add_option("--drains", options.drains, "servers stopped by SIGTERM")->capture_default_str();
+  app.add_option("--outages", options.outages, "stops of Redis; every second one deletes its data")
       ->capture_default_str();
-  app.add_option("--outage-seconds", options.outage_seconds, "for how long")->capture_default_str();
+  app.add_option("--outage-seconds", options.outage_seconds, "duration of each stop [s]")->capture_default_str();
   CLI11_PARSE(app, argc, argv);
   if (!HasTools()) return kSkipped;
   return Trial(options).Run();

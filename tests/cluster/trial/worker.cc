@@ -14,8 +14,8 @@ namespace phrenic::cluster {
 namespace {
 
 constexpr char kScene[] = "sheet-2d";
-// Between two attempts, as a page waits.
-constexpr absl::Duration kAgain = absl::Milliseconds(100);
+// The pause before a retry, as in the viewer.
+constexpr absl::Duration kRetryPause = absl::Milliseconds(100);
 constexpr absl::Duration kPause = absl::Milliseconds(30);  // between two steps
 
 struct Timed : grpc::ClientContext {
@@ -34,7 +34,7 @@ grpc::Status Make(v1::SessionService::Stub& stub, const std::string& session) {
   return stub.CreateSession(&call, request, &created);
 }
 
-// The hash of its state after `ticks`; empty where it cannot be had.
+// Steps `ticks` ticks and returns the state's hash; empty after an error.
 std::string HashAfter(v1::SessionService::Stub& stub, const std::string& session, std::int64_t ticks) {
   v1::StepSessionRequest step;
   step.set_session_id(session);
@@ -59,12 +59,13 @@ absl::Time Worker::last() const {
   return last_;
 }
 
-void Worker::Came(std::int64_t epoch, double time) {
-  constexpr absl::Duration kLeast = absl::Milliseconds(100);
+void Worker::Record(std::int64_t epoch, double time) {
+  constexpr absl::Duration kShortestGap = absl::Milliseconds(100);
   absl::MutexLock lock(&mutex_);
   const absl::Time now = absl::Now();
   const bool moved = epoch != epoch_ && epoch_ != 0 && epoch != 0;
-  if (moved || now - last_ > kLeast) gaps_.push_back({last_, now, moved, moved ? std::max(0.0, time_ - time) : 0});
+  if (moved || now - last_ > kShortestGap)
+    gaps_.push_back({last_, now, moved, moved ? std::max(0.0, time_ - time) : 0});
   last_ = now;
   if (epoch != 0) epoch_ = epoch;
   time_ = time;
@@ -84,13 +85,13 @@ void Stepper::Stop() {
 
 void Stepper::Work() {
   while (!stopped_) {
-    // Where it stands after something went wrong is what was rolled back.
+    // After an error, reads the session's tick to measure what was rolled back.
     const bool found = driver_.knows() || driver_.FindTick(0).has_value();
-    if (found) Came(driver_.seen().epoch(), driver_.seen().time());
-    const bool good = found && driver_.Step();
-    if (good) ++steps_;
-    if (good) Came(driver_.seen().epoch(), driver_.seen().time());
-    absl::SleepFor(good ? kPause : kAgain);
+    if (found) Record(driver_.seen().epoch(), driver_.seen().time());
+    const bool stepped = found && driver_.Step();
+    if (stepped) ++steps_;
+    if (stepped) Record(driver_.seen().epoch(), driver_.seen().time());
+    absl::SleepFor(stepped ? kPause : kRetryPause);
   }
 }
 
@@ -117,7 +118,7 @@ void Watcher::Stop() {
 void Watcher::Work() {
   while (!stopped_) {
     WatchOnce();
-    absl::SleepFor(kAgain);
+    absl::SleepFor(kRetryPause);
   }
 }
 
@@ -137,7 +138,7 @@ void Watcher::WatchOnce() {
   std::int64_t epoch = 0;
   while (!stopped_ && stream->Read(&event)) {
     if (event.has_session()) epoch = event.session().epoch();
-    if (event.has_frame()) Came(epoch, event.frame().time());
+    if (event.has_frame()) Record(epoch, event.frame().time());
   }
   call.TryCancel();
   stream->Finish();
@@ -154,7 +155,7 @@ bool Watcher::Right(bool& lost) {
   for (const absl::Time end = absl::Now() + absl::Seconds(20); absl::Now() < end && !status.ok();) {
     Timed call(session_, 5);
     status = stub->PauseSession(&call, pause, &paused);
-    if (!status.ok()) absl::SleepFor(kAgain);
+    if (!status.ok()) absl::SleepFor(kRetryPause);
   }
   lost = !status.ok();
   if (lost) return false;

@@ -1,4 +1,4 @@
-// People who work with a cluster: each steps a session or watches one that plays, and comes back by itself.
+// Clients of a cluster: each steps a session or watches a playing one, and retries after errors.
 #ifndef PHRENIC_TESTS_CLUSTER_TRIAL_WORKER_H_
 #define PHRENIC_TESTS_CLUSTER_TRIAL_WORKER_H_
 
@@ -20,26 +20,26 @@
 
 namespace phrenic::cluster {
 
-// Nothing came from a session for a while.
+// An interval without messages from a session.
 struct Gap {
   absl::Time begin, end;
-  bool moved = false;      // another server had the session afterwards
-  double rolled_back = 0;  // simulated time that was seen before and had not happened afterwards [s]
+  bool moved = false;      // another server had the session afterwards (a new epoch)
+  double rolled_back = 0;  // simulated time that was received before the gap and lost [s]
 };
 
-// Any thread may call. Works from its making to Stop.
+// Thread-safe. Works on its own thread from construction to Stop.
 class Worker {
  public:
   virtual ~Worker() = default;
   virtual void Stop() = 0;
-  // The longest first is not promised; `since` leaves out what began before.
+  // Returns the gaps that ended after `since`, in order of time.
   std::vector<Gap> GapsSince(absl::Time since) const ABSL_LOCKS_EXCLUDED(mutex_);
-  // When something came last.
+  // Returns the time of the last message.
   absl::Time last() const ABSL_LOCKS_EXCLUDED(mutex_);
 
  protected:
-  // Something came, at this epoch and time.
-  void Came(std::int64_t epoch, double time) ABSL_LOCKS_EXCLUDED(mutex_);
+  // Records a message with its epoch and simulated time [s].
+  void Record(std::int64_t epoch, double time) ABSL_LOCKS_EXCLUDED(mutex_);
 
  private:
   mutable absl::Mutex mutex_;
@@ -49,17 +49,17 @@ class Worker {
   std::vector<Gap> gaps_ ABSL_GUARDED_BY(mutex_);
 };
 
-// Steps a session, every answer held against an undisturbed run (faults::Driver).
+// Steps a session and compares every response with an undisturbed run (faults::Driver).
 class Stepper final : public Worker {
  public:
   Stepper(const Deployment& deployment, faults::Oracle& oracle, const std::string& session);
   ~Stepper() override { Stop(); }
   void Stop() override;
   bool made() const { return made_; }
-  // After Stop.
+  // wrong, steps and Lost are valid after Stop.
   int wrong() const { return driver_.wrong(); }
   int steps() const { return steps_; }
-  // Whether it can still be had; after Stop.
+  // True if the session no longer exists.
   bool Lost() { return !driver_.FindTick(20).has_value(); }
   const std::string& error() const { return driver_.error(); }
 
@@ -79,8 +79,8 @@ class Watcher final : public Worker {
   ~Watcher() override { Stop(); }
   void Stop() override;
   bool made() const { return made_; }
-  // Pauses the session: whether its state is that of an undisturbed run of as many ticks; after Stop. `lost` where it
-  // cannot be had.
+  // Pauses the session and compares its state with an undisturbed run of the same number of ticks. Sets `lost` if the
+  // session no longer exists. Call it after Stop.
   bool Right(bool& lost);
 
  private:

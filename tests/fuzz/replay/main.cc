@@ -1,4 +1,4 @@
-// Runs a fuzz target over the files named, or the files of the folders named: how compilers without a fuzzer test it.
+// Runs a fuzz target on the named files, and on all files of the named folders, for compilers without libFuzzer.
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -15,7 +15,7 @@ void Replay(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(file), {}};
   std::printf("%s\n", path.c_str());
-  std::fflush(stdout);  // the last name printed is the one that broke it
+  std::fflush(stdout);  // the last name printed is the input that failed
   LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
 }
 

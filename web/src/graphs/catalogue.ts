@@ -1,7 +1,7 @@
 import type { Frame } from "../gen/phrenic/v1/frames_pb";
-import { familiarUnit } from "../panels/measures";
+import { displayUnit } from "./units";
 
-/** One line of a graph: where its values are kept, and what they are multiplied by to be in the graph's unit. */
+/** A curve of a graph: the key of its values, and the factor from SI to the unit of the graph. */
 export interface Curve {
   key: string;
   name: string;
@@ -12,15 +12,15 @@ export interface Curve {
 export interface GraphSpec {
   id: string;
   title: string;
-  /** What it is, where its title leaves that open. */
+  /** Explanation, if the title is not sufficient. */
   help?: string;
   unit: string;
   curves: Curve[];
-  /** Of a loop: what runs to the right, and its unit. */
-  across?: Curve & { unit: string };
+  /** For a loop: the quantity on the horizontal axis. */
+  abscissa?: Curve & { unit: string };
 }
 
-/** The values of a frame by the keys of curves, SI. */
+/** Returns the values of a frame by the keys of the curves, in SI units. */
 export function valuesOf(frame: Frame): [key: string, value: number][] {
   return [
     ...frame.measures.map(({ name, value }): [string, number] => [measureKey(name), value]),
@@ -32,7 +32,7 @@ export function valuesOf(frame: Frame): [key: string, value: number][] {
 const measureKey = (name: string) => `measure ${name}`;
 const probeKey = (name: string) => `probe ${name}`;
 
-/** The graphs of whatever measures and probes come with the frames, most telling first. */
+/** Returns the graphs of the measures and probes of a frame, the most informative first. */
 export function graphsOf(frame: Frame): GraphSpec[] {
   const [volume, ...volumes] = byUnit(frame, "m^3", "Volume", false);
   return [
@@ -57,9 +57,9 @@ function others(frame: Frame): GraphSpec[] {
   return [...units].flatMap((unit) => byUnit(frame, unit, unit, true));
 }
 
-/** Measures of one unit in one graph, or in one each where they have little in common but the unit. */
+/** Returns the measures of one unit in one graph, or in one graph each. */
 function byUnit({ measures }: Frame, unit: string, title: string, together: boolean): GraphSpec[] {
-  const [familiar, factor] = familiarUnit(unit);
+  const [familiar, factor] = displayUnit(unit);
   const curves = measures
     .filter((each) => each.unit === unit && !isDomeHeight(each))
     .map(({ name }) => curve(measureKey(name), name, factor));
@@ -69,36 +69,42 @@ function byUnit({ measures }: Frame, unit: string, title: string, together: bool
   return curves.map((each) => ({ id: each.key, title: capital(each.name), unit: familiar, curves: [each] }));
 }
 
-/** Volume over the pressure around the lungs: the area inside is work. */
+/** Pressure-volume loop: the enclosed area is work. */
 function loop({ measures }: Frame): GraphSpec[] {
   const pressures = measures.filter(({ unit }) => unit === "Pa");
   const pressure = pressures.find(({ name }) => name.includes("pleural")) ?? pressures[0];
   const volume = measures.find(({ unit }) => unit === "m^3");
   if (pressure === undefined || volume === undefined) return [];
-  const [unit, factor] = familiarUnit("m^3");
-  const across = { ...curve(measureKey(pressure.name), pressure.name, 1), unit: "Pa" };
+  const [unit, factor] = displayUnit("m^3");
+  const abscissa = { ...curve(measureKey(pressure.name), pressure.name, 1), unit: "Pa" };
   const curves = [curve(measureKey(volume.name), volume.name, factor)];
-  return [{ id: "loop", title: "P–V loop", unit, curves, across }];
+  return [{ id: "loop", title: "P–V loop", unit, curves, abscissa }];
 }
 
-/** What M-mode ultrasound shows: how far each dome has come down. */
+/** The descent of each dome, as M-mode ultrasound shows it. */
 function domes(frame: Frame): GraphSpec[] {
-  const curves = domesOf(frame).map(({ key, name }) => curve(key, name, -1000));
+  const curves = domeHeights(frame).map(({ key, name }) => curve(key, name, -1000));
   return curves.length === 0 ? [] : [{ id: "domes", title: "M-mode: descent", help: domeHelp, unit: "mm", curves }];
 }
 
 function probes({ probes }: Frame): GraphSpec[] {
   const curves = probes.filter((probe) => !isDome(probe)).map(({ name }) => curve(probeKey(name), name, 1000));
-  return curves.length === 0 ? [] : [{ id: "probes", title: "Probes: upward", help: probeHelp, unit: "mm", curves }];
+  return curves.length === 0
+    ? []
+    : [{ id: "probes", title: "Probes: upward displacement", help: probeHelp, unit: "mm", curves }];
 }
 
-/** What a dome's descent is: with `phrenic physiology` it is the same. */
+/** The descent is defined as in `phrenic physiology`. */
 export const domeHelp =
-  "How far the highest point of each side is below where it was at rest, whichever point that is now";
-export const probeHelp = "How far one vertex each, always the same, is above where it rests";
+  "Descent of the highest point of each side from its height at rest; the highest point may change";
+/** Explanation of the probes' graph. */
+export const probeHelp = "Upward displacement of a fixed vertex from rest";
 
-/** How high each dome is above its rest [m], by the scene's measures or, where it has none, its probes of that name. */
-export function domesOf({ measures, probes }: Frame): { key: string; name: string; height: number }[] {
+/**
+ * Returns the height of each dome above rest [m], from the scene's measures or, without these, from probes of that
+ * name.
+ */
+export function domeHeights({ measures, probes }: Frame): { key: string; name: string; height: number }[] {
   return [
     ...measures.filter(isDomeHeight).map(({ name, value }) => ({ key: measureKey(name), name, height: value })),
     ...probes.filter(isDome).map(({ name, dz }) => ({ key: probeKey(name), name, height: dz })),

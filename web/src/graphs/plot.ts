@@ -2,16 +2,16 @@ import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import type { GraphSpec } from "./catalogue";
 import { curveColor } from "./colors";
-import { type GraphData, rangeOf, type Span } from "./window";
+import { type GraphData, type TimeSpan, valueRange } from "./window";
 
-/** What a plot tells its owner. */
+/** Events of a plot. */
 export interface PlotEvents {
-  /** A stretch of time was chosen by dragging over it. */
-  zoom(span: Span): void;
-  /** A double click: back to what comes. */
-  live(): void;
-  /** The place in the data under the pointer, in every plot over time at once. */
-  point(place: number | undefined): void;
+  /** A time span was selected by dragging. */
+  zoom(span: TimeSpan): void;
+  /** A double click: shows live data again. */
+  resume(): void;
+  /** Index of the data point under the pointer, shared by all plots over time. */
+  cursor(place: number | undefined): void;
 }
 
 const faint = "#b6c0ca";
@@ -19,26 +19,27 @@ const grid = { stroke: "#2a323b", width: 1 };
 const font = "11px system-ui, sans-serif";
 const plotHeight = 104;
 
-/** One graph on the screen. */
+/** One graph, drawn by uPlot. */
 export class Plot {
   readonly element = document.createElement("div");
   private readonly plot: uPlot;
-  private data: GraphData = { times: [], across: undefined, curves: [] };
-  private span: Span = { start: 0, end: 1 };
+  private data: GraphData = { times: [], abscissa: undefined, curves: [] };
+  private span: TimeSpan = { start: 0, end: 1 };
 
   constructor(
     private readonly spec: GraphSpec,
     private readonly events: PlotEvents,
   ) {
     this.element.className = "plot";
-    this.plot = new uPlot(spec.across === undefined ? this.overTime() : this.loop(), [[]], this.element);
-    this.plot.over.addEventListener("dblclick", () => events.live());
+    this.plot = new uPlot(spec.abscissa === undefined ? this.overTime() : this.loop(), [[]], this.element);
+    this.plot.over.addEventListener("dblclick", () => events.resume());
     new ResizeObserver(() => this.fit()).observe(this.element);
   }
 
-  show(data: GraphData, span: Span): void {
+  /** Draws the data within the span. */
+  show(data: GraphData, span: TimeSpan): void {
     [this.data, this.span] = [data, span];
-    if (data.across === undefined) this.plot.setData([data.times, ...data.curves], true);
+    if (data.abscissa === undefined) this.plot.setData([data.times, ...data.curves], true);
     else this.plot.setData([[0, 1]], true);
   }
 
@@ -69,13 +70,13 @@ export class Plot {
     return {
       ...this.frame(
         { range: () => [this.span.start, this.span.end] },
-        { range: () => rangeOf(this.data.curves, leastOf(this.spec.unit)) },
+        { range: () => valueRange(this.data.curves, minimumRange(this.spec.unit)) },
       ),
       series: [{}, ...curves.map((_, i) => ({ stroke: curveColor(i), width: 1.6, points: { show: false } }))],
       cursor: { y: false, sync: { key: "phrenic" }, drag: { x: true, setScale: false }, points: { size: 6 } },
       hooks: {
         setSelect: [(plot) => this.select(plot)],
-        setCursor: [(plot) => this.events.point(plot.cursor.idx ?? undefined)],
+        setCursor: [(plot) => this.events.cursor(plot.cursor.idx ?? undefined)],
       },
     };
   }
@@ -88,12 +89,12 @@ export class Plot {
     this.events.zoom({ start, end });
   }
 
-  /** uPlot draws lines from left to right only; a loop is drawn by hand into its axes. */
+  /** uPlot draws curves only from left to right, so a loop is drawn by hand into its axes. */
   private loop(): uPlot.Options {
     return {
       ...this.frame(
-        { range: () => rangeOf([this.data.across ?? []], 1) },
-        { range: () => rangeOf(this.data.curves, leastOf(this.spec.unit)) },
+        { range: () => valueRange([this.data.abscissa ?? []], 1) },
+        { range: () => valueRange(this.data.curves, minimumRange(this.spec.unit)) },
       ),
       series: [{}],
       cursor: { show: false },
@@ -101,11 +102,14 @@ export class Plot {
     };
   }
 
-  /** The last stretch bright, what came before it fading, and a dot where it is now. */
+  /** Draws the loop with older parts fading and a dot at the current point. */
   private drawLoop({ ctx, valToPos }: uPlot): void {
-    const { across = [], curves } = this.data;
-    const place = (i: number): [number, number] => [valToPos(across[i], "x", true), valToPos(curves[0][i], "y", true)];
-    if (across.length < 2) return;
+    const { abscissa = [], curves } = this.data;
+    const pixelAt = (i: number): [number, number] => [
+      valToPos(abscissa[i], "x", true),
+      valToPos(curves[0][i], "y", true),
+    ];
+    if (abscissa.length < 2) return;
     const parts = 24;
     ctx.save();
     ctx.strokeStyle = ctx.fillStyle = curveColor(0);
@@ -113,18 +117,18 @@ export class Plot {
     for (let part = 0; part < parts; part++) {
       ctx.globalAlpha = 0.15 + (0.85 * (part + 1)) / parts;
       ctx.beginPath();
-      const [first, last] = [part, part + 1].map((k) => Math.floor((k * (across.length - 1)) / parts));
-      for (let i = first; i <= last; i++) ctx.lineTo(...place(i));
+      const [first, last] = [part, part + 1].map((k) => Math.floor((k * (abscissa.length - 1)) / parts));
+      for (let i = first; i <= last; i++) ctx.lineTo(...pixelAt(i));
       ctx.stroke();
     }
     ctx.beginPath();
-    ctx.arc(...place(across.length - 1), 3.5 * devicePixelRatio, 0, 7);
+    ctx.arc(...pixelAt(abscissa.length - 1), 3.5 * devicePixelRatio, 0, 7);
     ctx.fill();
     ctx.restore();
   }
 }
 
-/** The least height of a graph: below it, what moves is rounding. */
-function leastOf(unit: string): number {
+/** Smallest vertical range of a graph: smaller changes are rounding errors. */
+function minimumRange(unit: string): number {
   return { l: 0.01, "l/s": 0.01, Pa: 1, mm: 0.1, "": 0.1 }[unit] ?? 1e-9;
 }

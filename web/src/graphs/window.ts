@@ -1,35 +1,36 @@
-import type { History } from "../history";
+import type { TimeSeries } from "../state/time_series";
 import type { GraphSpec } from "./catalogue";
 
-/** A stretch of simulated time [s]. */
-export interface Span {
+/** A span of simulated time [s]. */
+export interface TimeSpan {
   start: number;
   end: number;
 }
 
-/** The numbers of one graph within a span, in its units. */
+/** The data of one graph within a span, in its units. */
 export interface GraphData {
   times: number[];
-  /** Of a loop: what runs to the right. */
-  across: number[] | undefined;
+  /** For a loop: the values on the horizontal axis. */
+  abscissa: number[] | undefined;
   curves: number[][];
 }
 
-export function dataOf(spec: GraphSpec, history: History, { start, end }: Span): GraphData {
-  // One point more at either side, so that lines run to the edge.
-  const first = Math.max(0, history.from(start) - 1);
-  const last = Math.min(history.times.length, history.from(end) + 1);
+/** Returns the data of a graph within a span, in its units. */
+export function graphData(spec: GraphSpec, history: TimeSeries, { start, end }: TimeSpan): GraphData {
+  // One more point on either side, so that curves extend to the edge.
+  const first = Math.max(0, history.indexAt(start) - 1);
+  const last = Math.min(history.times.length, history.indexAt(end) + 1);
   const part = ({ key, factor }: { key: string; factor: number }) =>
     (history.series.get(key) ?? []).slice(first, last).map((value) => factor * value);
   return {
     times: history.times.slice(first, last),
-    across: spec.across && part(spec.across),
+    abscissa: spec.abscissa && part(spec.abscissa),
     curves: spec.curves.map(part),
   };
 }
 
-/** From the least to the greatest of all, with some room; 0 is within reach of what hardly moves. */
-export function rangeOf(values: number[][], least: number): [low: number, high: number] {
+/** Returns the range of all values with a margin, at least `least` wide. */
+export function valueRange(values: number[][], least: number): [low: number, high: number] {
   let [low, high] = [Infinity, -Infinity];
   for (const each of values) {
     for (const value of each) {

@@ -1,15 +1,20 @@
 import { plot, type PlotOptions, type ScaleOptions } from "@observablehq/plot";
 import { formatTicks } from "./format";
 
+/** Text colour. */
 export const ink = "#1b1f24";
+/** Colour of secondary texts and lines. */
 export const faint = "#59626d";
+/** Width of a plot [px]. */
 export const wide = 1080;
+/** Width of one of two plots side by side [px]. */
 export const half = 530;
 
+/** True for finite numbers above 0, which a logarithmic axis can show. */
 export const isPositive = (value: number | undefined): value is number =>
   value !== undefined && Number.isFinite(value) && value > 0;
 
-/** From the smallest to the largest value with some air, in powers; a decade where there is but one. */
+/** Returns the range of the positive values with a margin on a logarithmic axis; at least half a decade. */
 export function logDomain(values: number[], air = 0.06): [number, number] {
   const known = values.filter(isPositive);
   if (known.length === 0) return [0.1, 10];
@@ -19,14 +24,14 @@ export function logDomain(values: number[], air = 0.06): [number, number] {
   return [10 ** (low - more), 10 ** (high + more)];
 }
 
-/** Whether `value` is near enough to what is drawn to be drawn with it: within its span, or `decades`. */
+/** True if `value` is within the span of `values`, or within `decades` of them, and can be drawn in the same plot. */
 export function isNear(value: number, values: number[], decades: number): boolean {
   if (!isPositive(value) || values.length === 0) return false;
   const [low, high, at] = [Math.min(...values), Math.max(...values), value].map(Math.log10);
   return Math.max(low - at, at - high) <= Math.max(high - low, decades);
 }
 
-/** More of each decade where few are shown, decades alone where many are. */
+/** Returns more ticks per decade for small ranges, and decades only for large ones. */
 export function logTicks([low, high]: [number, number]): number[] {
   const first = Math.floor(Math.log10(low));
   const last = Math.ceil(Math.log10(high));
@@ -41,13 +46,14 @@ export function logTicks([low, high]: [number, number]): number[] {
   return ticks.filter((tick) => tick >= low * 0.999 && tick <= high * 1.001);
 }
 
+/** Returns a logarithmic scale with label, ticks and grid. */
 export function logScale(label: string, domain: [number, number]): ScaleOptions {
   const ticks = logTicks(domain);
   return { type: "log", domain, ticks, tickFormat: formatTicks(ticks), label, grid: true };
 }
 
-/** A plot as all of them look; `label` says in words what it shows. */
-export function draw(label: string, { x, y, ...options }: PlotOptions): SVGSVGElement | HTMLElement {
+/** Draws a plot in the common style; `label` describes it for screen readers. */
+export function drawPlot(label: string, { x, y, ...options }: PlotOptions): SVGSVGElement | HTMLElement {
   const drawn = plot({
     width: wide,
     height: 560,
@@ -61,16 +67,16 @@ export function draw(label: string, { x, y, ...options }: PlotOptions): SVGSVGEl
     y: { labelArrow: "none", labelOffset: 70, ...y },
     ...options,
   });
-  // What Plot says about the look of its pictures is in report.css: a page's policy may allow no style of theirs.
+  // Plot's own styles are in report.css, since the content security policy may not allow inline styles.
   for (const style of drawn.querySelectorAll("style")) style.remove();
-  // One picture with one name: the names of its parts would only be in the way.
+  // The plot has one accessible name, so its parts have none.
   for (const part of drawn.querySelectorAll("[aria-label]")) part.removeAttribute("aria-label");
   drawn.setAttribute("role", "img");
   drawn.setAttribute("aria-label", label);
   return drawn;
 }
 
-/** The wanted scale for series: their colours and symbols. */
+/** Returns the colour and symbol scales of the series. */
 export function seriesScales(looks: Map<string, { color: string; symbol: unknown }>): PlotOptions {
   const domain = [...looks.keys()];
   const all = [...looks.values()];

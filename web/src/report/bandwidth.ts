@@ -1,10 +1,10 @@
 import { dot, frame, line, pointer, ruleX, text, tip } from "@observablehq/plot";
 import type { StreamingRow, StreamingTable } from "../gen/phrenic/v1/study_results_pb";
-import { draw, faint, ink, isNear, isPositive, logDomain, logScale, seriesScales } from "./axes";
+import { drawPlot, faint, ink, isNear, isPositive, logDomain, logScale, seriesScales } from "./axes";
 import { directLabels } from "./direct_labels";
 import { figure } from "./figure";
 import { formatDigits } from "./format";
-import { looksOf, nameOf } from "./names";
+import { seriesName, seriesStyles } from "./names";
 
 interface Point {
   id: string;
@@ -13,10 +13,10 @@ interface Point {
   row: StreamingRow;
 }
 
-/** Lines that people have [Mbit/s]. */
+/** Bandwidth of a slow line [Mbit/s]. */
 const thin = 4;
 
-/** The largest error against bandwidth: who is low and to the left is good. */
+/** Plots the largest error against bandwidth; lower left is better. */
 export function bandwidth({ rows }: StreamingTable): HTMLElement {
   const title = "Largest error against bandwidth.";
   const points = rows.flatMap((row): Point[] =>
@@ -28,12 +28,12 @@ export function bandwidth({ rows }: StreamingTable): HTMLElement {
   const [xs, ys] = [points.map(({ x }) => x), points.map(({ y }) => y)];
   const thinShown = isNear(thin, xs, 1.5);
   const ids = [...new Set(points.map(({ id }) => id))];
-  const sentence = sentenceOf(rows);
-  const drawn = draw(`${title} ${sentence}`, {
-    ...seriesScales(looksOf(ids)),
+  const sentence = captionOf(rows);
+  const drawn = drawPlot(`${title} ${sentence}`, {
+    ...seriesScales(seriesStyles(ids)),
     height: 560,
     marginTop: 44,
-    x: logScale("Mbit/s at 30 frames a second", logDomain(thinShown ? [...xs, thin] : xs)),
+    x: logScale("Mbit/s at 30 frames per second", logDomain(thinShown ? [...xs, thin] : xs)),
     y: logScale("Largest error [mm]", logDomain(ys)),
     marks: [
       frame({ stroke: "#8b949e" }),
@@ -44,8 +44,8 @@ export function bandwidth({ rows }: StreamingTable): HTMLElement {
         points.filter(({ row }) => row.pareto),
         { x: "x", y: "y", r: 10, stroke: ink, strokeWidth: 1.8 },
       ),
-      directLabels(ids.map((id) => ({ id, name: nameOf(id), points: points.filter((point) => point.id === id) }))),
-      tip(points, pointer({ x: "x", y: "y", title: inWords, fontSize: 14 })),
+      directLabels(ids.map((id) => ({ id, name: seriesName(id), points: points.filter((point) => point.id === id) }))),
+      tip(points, pointer({ x: "x", y: "y", title: tooltip, fontSize: 14 })),
     ],
   });
   return figure(title, sentence, drawn);
@@ -54,20 +54,19 @@ export function bandwidth({ rows }: StreamingTable): HTMLElement {
 function thinLine() {
   return [
     ruleX([thin], { stroke: faint, strokeWidth: 1.5, strokeDasharray: "7 4" }),
-    text(["a line of 4 Mbit/s"], { x: [thin], frameAnchor: "top", dy: -11, fill: ink, fontSize: 14 }),
+    text(["a connection of 4 Mbit/s"], { x: [thin], frameAnchor: "top", dy: -11, fill: ink, fontSize: 14 }),
   ];
 }
 
-function sentenceOf(rows: StreamingRow[]): string {
+function captionOf(rows: StreamingRow[]): string {
   const raw = rows.find(({ codec }) => codec === "raw");
-  const exact =
-    raw === undefined ? "" : ` Raw frames err by nothing and take ${formatDigits(raw.mbitPerSecond, 3)} Mbit/s.`;
-  return `Lower errs less, further left takes less; each dot is one error bound, rings mark the front.${exact}`;
+  const exact = raw === undefined ? "" : ` Raw frames are exact and take ${formatDigits(raw.mbitPerSecond, 3)} Mbit/s.`;
+  return `Lower is more accurate, further left needs less bandwidth; each dot is one error bound, rings mark the Pareto front.${exact}`;
 }
 
-function inWords({ row }: Point): string {
-  return `${nameOf(row.codec)} within ${formatDigits(row.boundMm ?? 0, 3)} mm
+function tooltip({ row }: Point): string {
+  return `${seriesName(row.codec)} within ${formatDigits(row.boundMm ?? 0, 3)} mm
 largest error ${formatDigits(row.errorMaxMm, 3)} mm, RMS ${formatDigits(row.errorRmsMm, 3)} mm
-${formatDigits(row.bytesPerFrame, 6)} bytes a frame, ${formatDigits(row.mbitPerSecond, 3)} Mbit/s
+${formatDigits(row.bytesPerFrame, 6)} bytes per frame, ${formatDigits(row.mbitPerSecond, 3)} Mbit/s
 encode ${formatDigits(row.encodeUs, 3)} µs, decode ${formatDigits(row.decodeUs, 3)} µs`;
 }

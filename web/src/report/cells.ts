@@ -1,6 +1,6 @@
 import type { StabilityRow } from "../gen/phrenic/v1/study_results_pb";
 
-/** A rectangle of the map around one run, on logarithmic axes. */
+/** A rectangle around one run of the map, on logarithmic axes. */
 export interface Cell {
   x: number;
   y: number;
@@ -11,7 +11,7 @@ export interface Cell {
   row: StabilityRow;
 }
 
-/** Cells that meet half-way between their neighbours, in powers. */
+/** Returns cells that meet at the geometric mean of neighbouring values. */
 export function cellsOf(points: { x: number; y: number; row: StabilityRow }[]): Cell[] {
   const rows = sortedSet(points.map(({ y }) => y));
   const borders = edgesOf(rows);
@@ -28,7 +28,10 @@ export function cellsOf(points: { x: number; y: number; row: StabilityRow }[]): 
   });
 }
 
-/** The borders of values that grow: one more than there are. A single value reaches a factor of sqrt(2) either way. */
+/**
+ * Returns the cell borders of ascending values, one more than values. The cell of a single value extends by a factor of
+ * sqrt(2).
+ */
 export function edgesOf(values: number[]): number[] {
   const inner = values.slice(1).map((value, i) => Math.sqrt(value * values[i]));
   const first = values[0] ** 2 / (inner[0] ?? values[0] * Math.SQRT2);

@@ -1,30 +1,30 @@
 import { frame, line, type Markish, text } from "@observablehq/plot";
 import type { ErrorTable } from "../gen/phrenic/v1/study_results_pb";
-import { draw, faint, logDomain, logScale, seriesScales } from "./axes";
+import { drawPlot, faint, logDomain, logScale, seriesScales } from "./axes";
 import { directLabels } from "./direct_labels";
 import { figure } from "./figure";
 import { formatDigits } from "./format";
-import { looksOf, nameOf } from "./names";
-import { leftOut, linesOf, type Run, runsOf, seriesMarks } from "./work_precision";
+import { seriesName, seriesStyles } from "./names";
+import { linesOf, omittedRuns, type Run, runsOf, seriesMarks } from "./work_precision";
 
 interface Guide {
   order: number;
   points: { x: number; y: number }[];
 }
 
-/** Error against time step: the slope is the order. */
+/** Plots the error against the time step; the slope is the order of convergence. */
 export function convergence(table: ErrorTable): HTMLElement | undefined {
   const runs = runsOf(table.rows, ({ timeStepS }) => 1e3 * timeStepS, "errorRmsMm");
   if (runs.length === 0) return undefined;
   const xs = runs.map(({ x }) => x);
   const y = logDomain(runs.map((run) => run.y));
   const [low, high] = logDomain(xs);
-  // Guides have a strip of their own, to the right of all runs.
+  // The slope guides are drawn to the right of all runs.
   const end = high * 10 ** Math.max(0.3, 0.18 * Math.log10(high / low));
   const guides = guidesIn(high, end, y);
   const title = "RMS error against time step.";
-  const drawn = draw(`${title} ${ordersInWords(runs)}`, {
-    ...seriesScales(looksOf(table.rows.map(({ integrator }) => integrator))),
+  const drawn = drawPlot(`${title} ${measuredOrders(runs)}`, {
+    ...seriesScales(seriesStyles(table.rows.map(({ integrator }) => integrator))),
     height: 560,
     marginRight: 84,
     x: logScale("Time step [ms]", [low, end]),
@@ -37,12 +37,12 @@ export function convergence(table: ErrorTable): HTMLElement | undefined {
     ],
   });
   const sentence =
-    `Half the step, and the error of order p falls to 1/2^p: dashed guides have the slopes 1, 2 and 4. ` +
-    [ordersInWords(runs), leftOut(table.rows, runs)].filter(Boolean).join(" ");
+    `Halving the step reduces an error of order p to 1/2^p: dashed guides have slopes 1, 2 and 4. ` +
+    [measuredOrders(runs), omittedRuns(table.rows, runs)].filter(Boolean).join(" ");
   return figure(title, sentence.replace("1/2^p", "1/2ᵖ"), drawn);
 }
 
-/** Lines of slope 1, 2 and 4 from one point, as far as the frame goes. */
+/** Returns lines of slope 1, 2 and 4 from one point to the edge of the frame. */
 export function guidesIn(from: number, to: number, [low, high]: [number, number]): Guide[] {
   const bottom = low * (high / low) ** 0.06;
   const rise = (high / low) ** 0.88;
@@ -67,10 +67,10 @@ function guideMarks({ order, points }: Guide): Markish[] {
   ];
 }
 
-/** "Orders measured at the smallest steps: BDF2: 1.4; Velocity Verlet: 2." */
-function ordersInWords(runs: Run[]): string {
+/** Returns "Orders measured at the smallest steps: BDF2: 1.4; Velocity Verlet: 2." */
+function measuredOrders(runs: Run[]): string {
   const last = new Map(runs.flatMap(({ id, row }) => (row.order === undefined ? [] : [[id, row.order]])));
   if (last.size === 0) return "";
-  const words = [...last].map(([id, order]) => `${nameOf(id)}: ${formatDigits(order, 2)}`);
+  const words = [...last].map(([id, order]) => `${seriesName(id)}: ${formatDigits(order, 2)}`);
   return `Orders measured at the smallest steps: ${words.join("; ")}.`;
 }

@@ -1,13 +1,13 @@
 import { barX, type Markish, ruleX, text, tickX } from "@observablehq/plot";
 import type { CostRow, StageRow } from "../gen/phrenic/v1/study_results_pb";
-import { draw, ink, isPositive } from "./axes";
+import { drawPlot, ink, isPositive } from "./axes";
 import { figure } from "./figure";
 import { formatDigits } from "./format";
 
 interface Bar {
   name: string;
   value: number;
-  /** Beside the bar. */
+  /** Label beside the bar. */
   words: string;
   color: string;
   thesis?: number;
@@ -17,7 +17,7 @@ const blue = "#00609f";
 const pale = "#7fb2d8";
 const thesisColor = "#b23a12";
 
-/** Each variant's step, the thesis' figure beside it where there is one. */
+/** Bars of the CPU time per step of each variant, with the values of the thesis if there are any. */
 export function variantBars(rows: CostRow[]): HTMLElement {
   const title = "CPU time of a step, by variant.";
   const known = rows.filter(({ cpuUsPerStep }) => isPositive(cpuUsPerStep));
@@ -26,31 +26,31 @@ export function variantBars(rows: CostRow[]): HTMLElement {
   const bars = known.map((row, i): Bar => {
     const thesis = isPositive(row.thesisStepsPerS) ? 1e6 / row.thesisStepsPerS : undefined;
     const color = i === 0 ? blue : pale;
-    return { name: row.variant, value: row.cpuUsPerStep, words: wordsOf(row, thesis), color, thesis };
+    return { name: row.variant, value: row.cpuUsPerStep, words: barLabel(row, thesis), color, thesis };
   });
   const spread = Math.max(...known.map((row) => row.spread));
   const sentences = [
     `Medians over the trials, which differ by up to ${formatDigits(100 * spread, 2)} %; percentages are of the full scene.`,
-    drawnThesis(bars, longest).length > 0 ? "Upright strokes are the thesis' figures." : "",
+    drawnThesis(bars, longest).length > 0 ? "Vertical strokes are values of the thesis." : "",
   ];
   return figure(title, sentences.filter(Boolean).join(" "), drawBars(title, "CPU time [µs per step]", bars));
 }
 
-function wordsOf(row: CostRow, thesis: number | undefined): string {
+function barLabel(row: CostRow, thesis: number | undefined): string {
   const share = isPositive(row.share) ? `, ${formatDigits(100 * row.share, 3)} %` : "";
   const own = `${formatDigits(row.cpuUsPerStep, 3)} µs${share}`;
   if (thesis === undefined) return own;
   const ratio = row.timesThesis;
-  const pace = ratio === undefined ? "" : `, ${formatDigits(ratio, 3)} × its pace`;
+  const pace = ratio === undefined ? "" : `, ${formatDigits(ratio, 3)} × its speed`;
   return `${own} (thesis ${formatDigits(thesis, 3)} µs${pace})`;
 }
 
-/** Those of the thesis' figures that do not make every bar short. */
+/** Returns the bars whose thesis value fits into the axis. */
 function drawnThesis(bars: Bar[], longest: number): Bar[] {
   return bars.filter(({ thesis }) => thesis !== undefined && thesis <= 2.5 * longest);
 }
 
-/** Where a step's time goes. */
+/** Bars of the time per step of each stage, or undefined without data. */
 export function stageBars(rows: StageRow[]): HTMLElement | undefined {
   const known = rows.filter(({ usPerStep }) => isPositive(usPerStep));
   if (known.length === 0) return undefined;
@@ -63,7 +63,7 @@ export function stageBars(rows: StageRow[]): HTMLElement | undefined {
     });
   const title = "Time of a step, by stage.";
   const most = bars.find(({ name }) => !name.startsWith("step"));
-  const sentence = `Measured from inside${most === undefined ? "" : `; most goes to ${most.name}: ${most.words}`}.`;
+  const sentence = `Measured inside the process${most === undefined ? "" : `; the largest part is ${most.name}: ${most.words}`}.`;
   return figure(title, sentence, drawBars(title, "Time [µs per step]", bars));
 }
 
@@ -82,7 +82,7 @@ function drawBars(title: string, label: string, bars: Bar[]): HTMLElement | SVGS
     ),
     text(places, { x: "end", y: "at", text: "words", dx: 9, textAnchor: "start", fill: ink, fontSize: 14 }),
   ];
-  return draw(`${title} ${bars.map(({ name, words }) => `${name}: ${words}`).join("; ")}.`, {
+  return drawPlot(`${title} ${bars.map(({ name, words }) => `${name}: ${words}`).join("; ")}.`, {
     height: 80 + 36 * bars.length,
     marginTop: 12,
     marginLeft,
@@ -102,7 +102,7 @@ function drawBars(title: string, label: string, bars: Bar[]): HTMLElement | SVGS
 const barEnd = (bar: Bar, thesis: Bar[]) => (thesis.some(({ name }) => name === bar.name) ? (bar.thesis ?? 0) : 0);
 const clipped = (name: string) => (name.length > 42 ? `${name.slice(0, 41)}…` : name);
 
-/** How much longer than the longest bar the axis must be, for the words beside it. */
+/** Returns the length of the axis relative to the longest bar that leaves room for the labels. */
 function roomFor(letters: number, marginLeft: number): number {
   const inner = 1080 - marginLeft - 28;
   return 1 / Math.max(0.35, 1 - (7.6 * letters + 16) / inner);

@@ -1,3 +1,4 @@
+import { make } from "../dom/elements";
 import {
   type CostRow,
   CostRowSchema,
@@ -7,15 +8,15 @@ import {
   type StageRow,
   StageRowSchema,
 } from "../gen/phrenic/v1/study_results_pb";
-import { make } from "../panels/dom";
 import { stageBars, variantBars } from "./cost_bars";
 import { formatDigits } from "./format";
 import { growth } from "./growth";
 import { tableOf } from "./table";
 
+/** Returns summary, plots and tables of a cost study. */
 export function costParts(table: CostTable): HTMLElement[] {
   const parts: (HTMLElement | undefined)[] = [
-    make("div", { className: "advice" }, ...adviceOf(table).map((sentence) => make("p", {}, sentence))),
+    make("div", { className: "advice" }, ...summaryOf(table).map((sentence) => make("p", {}, sentence))),
     make("h2", {}, "What a step costs"),
     variantBars(table.rows),
     stageBars(table.stages),
@@ -31,8 +32,8 @@ export function costParts(table: CostTable): HTMLElement[] {
   return parts.filter((part) => part !== undefined);
 }
 
-/** What a reader takes away: what a step takes, where it goes, and whether leaving out is free. */
-function adviceOf({ rows, stages }: CostTable): string[] {
+/** Summary: the cost of a step, its largest part, and whether parts that are left out cost nothing. */
+function summaryOf({ rows, stages }: CostTable): string[] {
   const full = rows.find(({ variant }) => variant === "full");
   const parts = stages.filter(({ stage }) => stage !== "step").sort((a, b) => b.usPerStep - a.usPerStep);
   return [full && paceOf(full), parts[0] && mostTo(parts[0]), leavingOut(rows)].filter(
@@ -45,7 +46,7 @@ function mostTo({ stage, element }: StageRow): string {
 }
 
 function paceOf({ cpuUsPerStep, timesThesis }: CostRow): string {
-  const beside = timesThesis === undefined ? "" : `, ${formatDigits(timesThesis, 3)} times the thesis' pace`;
+  const beside = timesThesis === undefined ? "" : `, ${formatDigits(timesThesis, 3)} times the speed of the thesis`;
   return `A step takes ${formatDigits(cpuUsPerStep, 3)} µs${beside}.`;
 }
 
@@ -55,5 +56,5 @@ function leavingOut(rows: CostRow[]): string | undefined {
   );
   if (ratios.length === 0) return undefined;
   const [least, most] = [Math.min(...ratios), Math.max(...ratios)].map((ratio) => formatDigits(ratio, 3));
-  return `What a scene leaves out: ${least} to ${most} of the time of a scene that never had it.`;
+  return `Time with a part left out, relative to a scene without it: ${least} to ${most}.`;
 }

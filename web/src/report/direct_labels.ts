@@ -1,6 +1,6 @@
-import { initializer, text, type Markish } from "@observablehq/plot";
+import { initializer, type Markish, text } from "@observablehq/plot";
 
-/** A line of a plot that is to bear its name. */
+/** A curve of a plot with its label. */
 export interface LabelledLine {
   id: string;
   name: string;
@@ -22,10 +22,10 @@ interface Placed {
   cost: number;
 }
 
-const letter = 7.7; // width of a letter [px]
-const line = 18; // height of a label [px]
+const letterWidth = 7.7; // mean character width [px]
+const labelHeight = 18; // label height [px]
 
-/** The lines' names beside them, in their colours, where they hide least. */
+/** Labels beside their curves, in the colours of the curves, where they cover the least. */
 export function directLabels(lines: LabelledLine[], keepFree: { x: number; y: number }[] = []): Markish {
   const placeAll = initializer<{ frameAnchor: "middle" }>(
     { frameAnchor: "middle" },
@@ -44,7 +44,7 @@ export function directLabels(lines: LabelledLine[], keepFree: { x: number; y: nu
       );
       const channels = {
         x: { value: boxes.map(({ left }) => left + 3) },
-        y: { value: boxes.map(({ top }) => top + line / 2) },
+        y: { value: boxes.map(({ top }) => top + labelHeight / 2) },
       };
       return { data, facets, channels };
     },
@@ -62,17 +62,17 @@ export function directLabels(lines: LabelledLine[], keepFree: { x: number; y: nu
   });
 }
 
-/** One box for each line, in pixels: beside one of its points, over as little as can be. */
+/** Returns one box per curve [px], beside one of its points, where it covers the least. */
 export function placeLabels(lines: { name: string; points: Point[] }[], keepFree: Point[], frame: Box): Box[] {
-  const own = lines.map(({ points }) => along(points));
+  const own = lines.map(({ points }) => samplePoints(points));
   const placed: Box[] = [];
   lines.forEach(({ name, points }, i) => {
     const others = [...own.flatMap((each, j) => (j === i ? [] : each)), ...keepFree];
     const best = points
-      .flatMap((point, at) => around(point, letter * name.length + 6).map((box) => ({ box, at })))
+      .flatMap((point, at) => candidateBoxes(point, letterWidth * name.length + 6).map((box) => ({ box, at })))
       .map(({ box, at }): Placed => {
         const fromEnd = Math.min(at, points.length - 1 - at);
-        return { box, cost: costOf(box, frame, placed, others, own[i]) + fromEnd };
+        return { box, cost: placementCost(box, frame, placed, others, own[i]) + fromEnd };
       })
       .sort((a, b) => a.cost - b.cost)[0];
     placed.push(best?.box ?? { left: frame.left, top: frame.top, right: frame.left, bottom: frame.top });
@@ -80,8 +80,8 @@ export function placeLabels(lines: { name: string; points: Point[] }[], keepFree
   return placed;
 }
 
-/** Points of a line and between them, close together. */
-function along(points: Point[]): Point[] {
+/** Returns points along a curve at small distances. */
+function samplePoints(points: Point[]): Point[] {
   return points.flatMap((point, i) => {
     const next = points[i + 1];
     if (next === undefined) return [point];
@@ -94,15 +94,15 @@ function along(points: Point[]): Point[] {
   });
 }
 
-function around({ x, y }: Point, width: number): Box[] {
+function candidateBoxes({ x, y }: Point, width: number): Box[] {
   const lefts = [x + 13, x - width - 13, x - width / 2];
-  const tops = [y - line / 2, y - line - 9, y + 9, y - line - 22, y + 22];
+  const tops = [y - labelHeight / 2, y - labelHeight - 9, y + 9, y - labelHeight - 22, y + 22];
   return lefts
-    .flatMap((left) => tops.map((top) => ({ left, top, right: left + width, bottom: top + line })))
+    .flatMap((left) => tops.map((top) => ({ left, top, right: left + width, bottom: top + labelHeight })))
     .filter((box) => !(box.left < x && box.right > x && box.top < y && box.bottom > y));
 }
 
-function costOf(box: Box, frame: Box, placed: Box[], others: Point[], own: Point[]): number {
+function placementCost(box: Box, frame: Box, placed: Box[], others: Point[], own: Point[]): number {
   const outside =
     Math.max(0, frame.left - box.left) +
     Math.max(0, box.right - frame.right) +

@@ -1,25 +1,26 @@
+import { make } from "../dom/elements";
 import {
-  type ErrorTable,
   ErrorRowSchema,
+  type ErrorTable,
   type Reference,
   ResidualRowSchema,
   ResolutionRowSchema,
 } from "../gen/phrenic/v1/study_results_pb";
-import { make } from "../panels/dom";
 import { convergence } from "./convergence";
-import { beside } from "./figure";
+import { sideBySide } from "./figure";
 import { formatDigits } from "./format";
-import { spelled } from "./names";
+import { withSeriesNames } from "./names";
 import { positionErrors, residuals, resolutions } from "./residuals";
 import { tableOf } from "./table";
 import { type Measure, workPrecision } from "./work_precision";
 
+/** Returns advice, plots and tables of an error study. */
 export function errorParts(table: ErrorTable): HTMLElement[] {
   const parts: (HTMLElement | undefined)[] = [
-    table.advice === "" ? undefined : make("p", { className: "advice" }, spelled(table.advice)),
+    table.advice === "" ? undefined : make("p", { className: "advice" }, withSeriesNames(table.advice)),
     switched(table),
     convergence(table),
-    beside(residuals(table), positionErrors(table), resolutions(table)),
+    sideBySide(residuals(table), positionErrors(table), resolutions(table)),
     table.reference === undefined ? undefined : referenceWords(table.reference),
     make("h2", {}, "Tables"),
     tableOf("Runs", ErrorRowSchema, table.rows),
@@ -34,7 +35,7 @@ const measures: [Measure, string][] = [
   ["errorMaxMm", "Largest error"],
 ];
 
-/** The work-precision diagram, of one measure of error or the other. */
+/** The work-precision diagram, with a choice of the error measure. */
 function switched(table: ErrorTable): HTMLElement {
   const frame = make("div", {});
   const show = (measure: Measure) => frame.replaceChildren(workPrecision(table, measure));
@@ -45,7 +46,7 @@ function switched(table: ErrorTable): HTMLElement {
   });
   show("errorRmsMm");
   const choice = make("fieldset", { className: "choice" }, make("legend", {}, "Error shown"), ...choices);
-  return make("section", {}, make("h2", {}, "What precision costs"), choice, frame);
+  return make("section", {}, make("h2", {}, "Work and precision"), choice, frame);
 }
 
 function referenceWords(reference: Reference): HTMLElement {
@@ -53,8 +54,8 @@ function referenceWords(reference: Reference): HTMLElement {
   const sentence =
     `${method || "An independent solution"} at a tolerance of ${formatDigits(toleranceM)} m, with ` +
     `${formatDigits(Number(evaluations), 9)} evaluations in ${formatDigits(cpuS, 3)} s of CPU time. Against the same ` +
-    `solution at a tenth of the tolerance it errs by ${formatDigits(errorRmsMm, 3)} mm RMS and ` +
-    `${formatDigits(errorMaxMm, 3)} mm at most, while vertices move by up to ` +
+    `solution at a tenth of the tolerance its error is ${formatDigits(errorRmsMm, 3)} mm RMS and ` +
+    `${formatDigits(errorMaxMm, 3)} mm at most; vertices move by up to ` +
     `${formatDigits(largestDisplacementMm, 3)} mm.`;
   return make("section", {}, make("h2", {}, "The reference"), make("p", {}, sentence));
 }

@@ -1,12 +1,12 @@
 const raised = "⁰¹²³⁴⁵⁶⁷⁸⁹";
 
-/** "10⁻³" */
+/** Formats "10⁻³". */
 export function powerOfTen(exponent: number): string {
   const digits = [...String(Math.abs(exponent))].map((digit) => raised[Number(digit)]).join("");
   return `10${exponent < 0 ? "⁻" : ""}${digits}`;
 }
 
-/** At most `digits` significant ones: "0.01234", "1.5 × 10⁻⁷". */
+/** Formats at most `digits` significant digits: "0.01234", "1.5 × 10⁻⁷". */
 export function formatDigits(value: number, digits = 4): string {
   if (Number.isNaN(value)) return "not a number";
   if (!Number.isFinite(value)) return value < 0 ? "−∞" : "∞";
@@ -19,14 +19,14 @@ export function formatDigits(value: number, digits = 4): string {
   return grouped(Number(value.toPrecision(digits)));
 }
 
-/** Thousands apart, by a narrow space that does not break: "12 400". */
+/** Separates thousands by a narrow no-break space: "12 400". */
 function grouped(value: number): string {
   const [whole, part] = String(Math.abs(value)).split(".");
   const apart = whole.length > 4 ? whole.replace(/\B(?=(\d{3})+$)/g, "\u202f") : whole;
   return `${value < 0 ? "−" : ""}${apart}${part === undefined ? "" : `.${part}`}`;
 }
 
-/** Ticks of a logarithmic axis: plain where that is short for all of them, "10⁻⁵" elsewhere. */
+/** Formats ticks of a logarithmic axis: plain numbers if all are short, otherwise powers like "10⁻⁵". */
 export function formatTicks(ticks: number[]): (value: number) => string {
   const plain = ticks.every((tick) => tick > 0.999e-3 && tick < 1.001e5);
   return (value) => formatTick(value, plain ? [-3, 5] : [-1, 1]);
@@ -39,7 +39,7 @@ function formatTick(value: number, [least, most]: [number, number]): string {
   return factor === 1 ? powerOfTen(exponent) : `${factor}·${powerOfTen(exponent)}`;
 }
 
-/** "1 run", "3 runs" */
+/** Formats "1 run", "3 runs". */
 export function count(number: number, what: string): string {
   return `${number} ${what}${number === 1 ? "" : "s"}`;
 }

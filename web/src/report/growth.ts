@@ -1,10 +1,10 @@
 import { dot, frame, line, pointer, text, tip } from "@observablehq/plot";
 import type { CostTable } from "../gen/phrenic/v1/study_results_pb";
-import { draw, faint, isPositive, logDomain, logScale, seriesScales } from "./axes";
+import { drawPlot, faint, isPositive, logDomain, logScale, seriesScales } from "./axes";
 import { directLabels } from "./direct_labels";
 import { figure } from "./figure";
 import { formatDigits } from "./format";
-import { looksOf, nameOf } from "./names";
+import { seriesName, seriesStyles } from "./names";
 
 interface Point {
   id: string;
@@ -12,7 +12,7 @@ interface Point {
   y: number;
 }
 
-/** The cost of a step against the number of vertices, and the power that fits it. */
+/** Plots the cost of a step against the number of vertices, with the fitted power law. */
 export function growth({ growth: rows, growthExponent }: CostTable): HTMLElement | undefined {
   const points = rows.flatMap(({ what, vertices, cpuUsPerStep }) =>
     isPositive(cpuUsPerStep) && vertices > 0n ? [{ id: what, x: Number(vertices), y: cpuUsPerStep }] : [],
@@ -24,10 +24,10 @@ export function growth({ growth: rows, growthExponent }: CostTable): HTMLElement
   const title = "CPU time of a step against the number of vertices.";
   const sentence =
     growthExponent === undefined
-      ? "Straight lines are powers; slope 1 is a cost in proportion."
-      : `The cost grows as vertices to the power of ${formatDigits(growthExponent, 3)} (dashed); 1 is in proportion.`;
-  const drawn = draw(`${title} ${sentence}`, {
-    ...seriesScales(looksOf(ids)),
+      ? "Straight lines are power laws; slope 1 is proportional cost."
+      : `The cost grows as vertices to the power of ${formatDigits(growthExponent, 3)} (dashed); 1 is proportional.`;
+  const drawn = drawPlot(`${title} ${sentence}`, {
+    ...seriesScales(seriesStyles(ids)),
     height: 480,
     x: logScale("Vertices", x),
     y: logScale(
@@ -43,7 +43,7 @@ export function growth({ growth: rows, growthExponent }: CostTable): HTMLElement
       line(points, { x: "x", y: "y", z: "id", stroke: "id", strokeWidth: 2.5 }),
       dot(points, { x: "x", y: "y", fill: "id", symbol: "id", r: 6, stroke: "white" }),
       directLabels(
-        ids.map((id) => ({ id, name: nameOf(id), points: points.filter((point) => point.id === id) })),
+        ids.map((id) => ({ id, name: seriesName(id), points: points.filter((point) => point.id === id) })),
         fit,
       ),
       text(fit.length === 0 ? [] : [`dashed: vertices^${formatDigits(growthExponent ?? 1, 3)}`], {
@@ -53,16 +53,16 @@ export function growth({ growth: rows, growthExponent }: CostTable): HTMLElement
         fill: faint,
         fontSize: 14,
       }),
-      tip(points, pointer({ x: "x", y: "y", title: inWords, fontSize: 14 })),
+      tip(points, pointer({ x: "x", y: "y", title: tooltip, fontSize: 14 })),
     ],
   });
   return figure(title, sentence, drawn);
 }
 
-const inWords = ({ id, x, y }: Point) => `${nameOf(id)}
+const tooltip = ({ id, x, y }: Point) => `${seriesName(id)}
 ${formatDigits(x, 9)} vertices: ${formatDigits(y, 3)} µs per step`;
 
-/** For each series the power through its middle, a little longer than the series. */
+/** Returns the power law through the geometric mean of each series, a little longer than the series. */
 function fitted(points: Point[], exponent: number): Point[] {
   const mean = (values: number[]) => Math.exp(values.reduce((sum, each) => sum + Math.log(each), 0) / values.length);
   return [...new Set(points.map(({ id }) => id))].flatMap((id) => {

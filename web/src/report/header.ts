@@ -1,10 +1,10 @@
-import type { Study } from "../gen/phrenic/v1/study_pb";
+import { make } from "../dom/elements";
 import type { Parameters } from "../gen/phrenic/v1/parameters_pb";
+import type { Study } from "../gen/phrenic/v1/study_pb";
 import type { StudyResult } from "../gen/phrenic/v1/study_results_pb";
-import { make } from "../panels/dom";
-import { type Control, parameterControls } from "../schema";
+import { type Control, parameterControls } from "../parameters/controls";
 import { formatDigits } from "./format";
-import { nameOf } from "./names";
+import { seriesName } from "./names";
 
 const kinds = {
   error: "Error against run time",
@@ -13,21 +13,21 @@ const kinds = {
   streaming: "Error against bandwidth",
 };
 
-/** "Cost: thorax – Phrenic" */
+/** Returns "Cost: thorax – Phrenic". */
 export function titleOf(study: Study): string {
-  const { title, scene } = wordsOf(study);
+  const { title, scene } = studyNames(study);
   return `${title}: ${scene} – Phrenic`;
 }
 
-function wordsOf({ result, scene }: Study): { title: string; scene: string } {
+function studyNames({ result, scene }: Study): { title: string; scene: string } {
   const kind = result?.result.case;
   return { title: kind === undefined ? "Study" : kinds[kind], scene: result?.scene || scene || "unnamed scene" };
 }
 
-/** What was studied, of which scene, with which parameters. */
+/** The page header: kind of study, scene and parameters. */
 export function header(study: Study): HTMLElement {
   const { result } = study;
-  const { title, scene } = wordsOf(study);
+  const { title, scene } = studyNames(study);
   const facts: [string, string][] = [];
   if (result !== undefined) facts.push(...factsOf(result));
   const list = facts.flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)]);
@@ -47,7 +47,7 @@ export function header(study: Study): HTMLElement {
 
 function factsOf({ sceneHash, parameters, tookS, result }: StudyResult): [string, string][] {
   const facts: [string, string][] = [];
-  if (parameters !== undefined) facts.push(["Parameters", parametersInWords(parameters)]);
+  if (parameters !== undefined) facts.push(["Parameters", parameterSummary(parameters)]);
   const simulated = result.case === "error" ? result.value.seconds : 0;
   const took = `the study took ${formatDigits(tookS, 3)} s`;
   facts.push(["Duration", simulated > 0 ? `${formatDigits(simulated)} s simulated; ${took}` : took]);
@@ -55,20 +55,20 @@ function factsOf({ sceneHash, parameters, tookS, result }: StudyResult): [string
   return facts;
 }
 
-/** "Time step 0.005 s · Breath force 1 · ..." */
-export function parametersInWords(parameters: Parameters): string {
+/** Returns "time step 0.005 s · breath force 1 · ...". */
+export function parameterSummary(parameters: Parameters): string {
   const values = parameters as unknown as Record<string, unknown>;
   return parameterControls()
     .filter(({ field }) => values[field] !== undefined)
-    .map((control) => `${control.label.toLowerCase()} ${valueInWords(control, values[control.field])}`)
+    .map((control) => `${control.label.toLowerCase()} ${formatParameter(control, values[control.field])}`)
     .join(" · ");
 }
 
-function valueInWords(control: Control, value: unknown): string {
+function formatParameter(control: Control, value: unknown): string {
   if (control.kind === "switch") return value === true ? "on" : "off";
   if (control.kind === "choice") {
     const label = control.options.find((each) => each.value === value)?.label ?? String(value);
-    return nameOf(label.toLowerCase().replaceAll(" ", "_"));
+    return seriesName(label.toLowerCase().replaceAll(" ", "_"));
   }
   return `${formatDigits(Number(value))}${control.unit === "" ? "" : ` ${control.unit}`}`;
 }

@@ -1,25 +1,25 @@
-import { inWords } from "./names";
+import { sentenceCase } from "./names";
 
 const units: Record<string, string> = { mm: "mm", m: "m", s: "s", ms: "ms", us: "µs", ns: "ns", j: "J" };
 const words: Record<string, string> = { cpu: "CPU", rms: "RMS" };
 const whole: Record<string, string> = {
   cpu_per_second: "CPU [s per s]",
   real_time: "Faster than real time",
-  pareto: "On front",
+  pareto: "Pareto front",
   bytes_per_frame: "Bytes per frame",
   mbit_per_second: "Mbit/s at 30 fps",
   order: "Measured order",
   case: "Case",
 };
 
-/** What stands over a column: the words of the field's name, and the unit at its end: "Error RMS [mm]". */
+/** Returns the heading of a column from the name of its field, with the unit at its end: "Error RMS [mm]". */
 export function headingOf(field: string): string {
   const known = whole[field];
   if (known !== undefined) return known;
   const parts = field.split("_");
   const at = parts.findIndex((part, i) => part in units && (i + 1 === parts.length || parts[i + 1] === "per"));
-  if (at < 0 || parts[at - 1] === "per") return inWords(spell(parts));
-  const name = inWords(spell(parts.slice(0, at))) || "Time";
+  if (at < 0 || parts[at - 1] === "per") return sentenceCase(spell(parts));
+  const name = sentenceCase(spell(parts.slice(0, at))) || "Time";
   return `${name} [${[units[parts[at]], ...parts.slice(at + 1)].join(" ")}]`;
 }
 

@@ -1,4 +1,4 @@
-import { place } from "../panels/dom";
+import { elementById } from "../dom/elements";
 import { showStudy } from "./page";
 
-showStudy(place("page"), place("study").textContent ?? "");
+showStudy(elementById("page"), elementById("study").textContent ?? "");

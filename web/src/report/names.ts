@@ -1,13 +1,13 @@
 import type { SymbolImplementation, SymbolType } from "@observablehq/plot";
 
-/** How one series looks in every plot: never by colour alone. */
-export interface Look {
+/** The style of a series in all plots; series never differ by colour alone. */
+export interface SeriesStyle {
   name: string;
   color: string;
   symbol: SymbolType | SymbolImplementation;
 }
 
-// A triangle on its tip.
+// A triangle that points down.
 const down: SymbolImplementation = {
   draw(context: CanvasPath, size: number) {
     const r = Math.sqrt(size) * 0.88;
@@ -18,8 +18,8 @@ const down: SymbolImplementation = {
   },
 };
 
-// Dark enough to be read as text on white (WCAG AA), and apart for people who see fewer colours.
-const looks: [string, string, string, Look["symbol"]][] = [
+// Dark enough for text on white (WCAG AA), and distinguishable for colour-blind people.
+const styles: [string, string, string, SeriesStyle["symbol"]][] = [
   ["semi_implicit_euler", "Semi-implicit Euler", "#00609f", "circle"],
   ["thesis", "Thesis", "#b23a12", down],
   ["explicit_euler", "Explicit Euler", "#7d5600", "triangle"],
@@ -31,33 +31,33 @@ const looks: [string, string, string, Look["symbol"]][] = [
   ["projective_dynamics", "Projective dynamics", "#8f4a1e", "wye"],
 ];
 
-const known = new Map(looks.map(([id, name, color, symbol]) => [id, { name, color, symbol }]));
+const known = new Map(styles.map(([id, name, color, symbol]) => [id, { name, color, symbol }]));
 
-/** How the series are drawn that a table calls `ids`; a name that is not known gets what no other has. */
-export function looksOf(ids: Iterable<string>): Map<string, Look> {
+/** Returns the style of each series; unknown series get unused styles. */
+export function seriesStyles(ids: Iterable<string>): Map<string, SeriesStyle> {
   const all = [...new Set(ids)];
-  const free = looks.filter(([id]) => !all.includes(id)).map(([, , color, symbol]) => ({ color, symbol }));
+  const free = styles.filter(([id]) => !all.includes(id)).map(([, , color, symbol]) => ({ color, symbol }));
   return new Map(
-    all.map((id): [string, Look] => {
+    all.map((id): [string, SeriesStyle] => {
       const next = known.has(id) ? undefined : (free.shift() ?? { color: "#222222", symbol: "plus" as const });
-      return [id, known.get(id) ?? { name: inWords(id), ...next! }];
+      return [id, known.get(id) ?? { name: sentenceCase(id), ...next! }];
     }),
   );
 }
 
-/** Of a series, and of what stands after a comma behind it: "Velocity Verlet, guarded". */
-export function nameOf(id: string): string {
+/** Returns the name of a series; text after a comma is kept: "Velocity Verlet, guarded". */
+export function seriesName(id: string): string {
   const [series, ...rest] = id.split(", ");
-  return [known.get(series)?.name ?? inWords(series), ...rest].join(", ");
+  return [known.get(series)?.name ?? sentenceCase(series), ...rest].join(", ");
 }
 
-/** The names of known series inside a sentence as people write them. */
-export function spelled(sentence: string): string {
+/** Replaces the ids of known series in a sentence by their names. */
+export function withSeriesNames(sentence: string): string {
   return sentence.replace(/\b[a-z]+(?:_[a-z0-9]+)+\b/g, (word) => known.get(word)?.name ?? word);
 }
 
-/** "velocity_verlet" is "Velocity verlet" */
-export function inWords(id: string): string {
+/** Formats "velocity_verlet" as "Velocity verlet". */
+export function sentenceCase(id: string): string {
   const words = id.replaceAll("_", " ").trim();
   return words.charAt(0).toUpperCase() + words.slice(1);
 }

@@ -1,14 +1,14 @@
 import { fromJsonString } from "@bufbuild/protobuf";
+import { make } from "../dom/elements";
 import { type Study, StudySchema } from "../gen/phrenic/v1/study_pb";
 import type { StudyResult } from "../gen/phrenic/v1/study_results_pb";
-import { make } from "../panels/dom";
 import { costParts } from "./cost_page";
 import { errorParts } from "./error_page";
 import { header, titleOf } from "./header";
 import { stabilityParts } from "./stability_page";
 import { streamingParts } from "./streaming_page";
 
-/** Fills the page with the study that `json` (proto3 JSON of phrenic.v1.Study) holds. */
+/** Fills the page with the study in `json` (proto3 JSON of phrenic.v1.Study), or with a message if it is invalid. */
 export function showStudy(page: HTMLElement, json: string): void {
   let study: Study;
   try {
@@ -21,14 +21,14 @@ export function showStudy(page: HTMLElement, json: string): void {
   page.replaceChildren(...contentsOf(study));
 }
 
-/** What there is to say of a study: plots, tables, and what they are of. */
+/** Returns the contents of a study: header, plots and tables. */
 export function contentsOf(study: Study): HTMLElement[] {
   const { result } = study;
-  const parts = result?.result.case === undefined ? [nothing(study)] : partsOf(result);
+  const parts = result?.result.case === undefined ? [noResult(study)] : partsOf(result);
   return [header(study), ...parts, disclaimer()];
 }
 
-/** The kind's plots and tables, each of which may be missing. */
+/** Returns the plots and tables of the kind of study. */
 function partsOf({ result }: StudyResult): HTMLElement[] {
   if (result.case === "error") return errorParts(result.value);
   if (result.case === "stability") return stabilityParts(result.value);
@@ -36,7 +36,7 @@ function partsOf({ result }: StudyResult): HTMLElement[] {
   return result.case === "streaming" ? streamingParts(result.value) : [];
 }
 
-function nothing({ problem }: Study): HTMLElement {
+function noResult({ problem }: Study): HTMLElement {
   return make("p", { className: "none" }, problem === "" ? "This study has no result." : `No result: ${problem}`);
 }
 

@@ -1,10 +1,10 @@
 import { dot, frame, line, type Markish, pointer, text, tip } from "@observablehq/plot";
 import type { ErrorTable } from "../gen/phrenic/v1/study_results_pb";
-import { draw, half, ink, isPositive, logDomain, logScale, seriesScales } from "./axes";
+import { drawPlot, half, ink, isPositive, logDomain, logScale, seriesScales } from "./axes";
 import { directLabels } from "./direct_labels";
 import { figure } from "./figure";
 import { formatDigits } from "./format";
-import { inWords, type Look } from "./names";
+import { sentenceCase, type SeriesStyle } from "./names";
 
 interface Point {
   id: string;
@@ -12,14 +12,14 @@ interface Point {
   y: number;
 }
 
-const styles: [string, Look["symbol"]][] = [
+const styles: [string, SeriesStyle["symbol"]][] = [
   ["#00609f", "circle"],
   ["#b23a12", "square"],
   ["#00704c", "diamond"],
   ["#6f3fa0", "triangle"],
 ];
 
-/** How far rigid links are from their length, for each way of keeping them. */
+/** Plots the length error of rigid links over time for each projection method; undefined without data. */
 export function residuals(table: ErrorTable): HTMLElement | undefined {
   const points = table.residuals.flatMap(({ projection, timeS, residualMm }) =>
     isPositive(residualMm) ? [{ id: projection, x: timeS, y: residualMm }] : [],
@@ -31,7 +31,7 @@ export function residuals(table: ErrorTable): HTMLElement | undefined {
   return overTime("Residual of rigid links.", "Residual [mm]", sentence, points);
 }
 
-/** What the way of keeping links costs in the motion. */
+/** Plots the position error that each projection method causes; undefined without data. */
 export function positionErrors(table: ErrorTable): HTMLElement | undefined {
   const points = table.residuals.flatMap(({ projection, timeS, errorRmsMm }) =>
     isPositive(errorRmsMm) ? [{ id: projection, x: timeS, y: errorRmsMm }] : [],
@@ -40,16 +40,16 @@ export function positionErrors(table: ErrorTable): HTMLElement | undefined {
   const ids = [...new Set(points.map(({ id }) => id))];
   const last = ids.map((id) => ({ id, y: points.findLast((point) => point.id === id)!.y }));
   const words = last.map(({ id, y }) => `${formatDigits(y, 2)} mm (${id})`).join(", ");
-  const sentence = `How links are kept shows in the motion: at the end the RMS error is ${words}.`;
+  const sentence = `The projection method affects the motion: at the end the RMS error is ${words}.`;
   return overTime("Error by projection.", "RMS error of positions [mm]", sentence, points);
 }
 
 function overTime(title: string, label: string, sentence: string, points: Point[]): HTMLElement {
   const ids = [...new Set(points.map(({ id }) => id))];
   const looks = new Map(ids.map((id, i) => [id, { color: styles[i % 4][0], symbol: styles[i % 4][1] }]));
-  const lines = ids.map((id) => ({ id, name: inWords(id), points: points.filter((point) => point.id === id) }));
+  const lines = ids.map((id) => ({ id, name: sentenceCase(id), points: points.filter((point) => point.id === id) }));
   const values = points.map(({ y }) => y);
-  const drawn = draw(`${title} ${sentence}`, {
+  const drawn = drawPlot(`${title} ${sentence}`, {
     ...seriesScales(looks),
     width: half,
     height: 400,
@@ -58,21 +58,21 @@ function overTime(title: string, label: string, sentence: string, points: Point[
     y: logScale(label, logDomain(values, 0.15)),
     marks: [
       frame({ stroke: "#8b949e" }),
-      // Thinner one over another: series that agree are both seen.
+      // Later curves are thinner, so that coinciding curves remain visible.
       ...lines.flatMap(({ id, points: own }, i) => [
         line(own, { x: "x", y: "y", stroke: looks.get(id)!.color, strokeWidth: Math.max(2, 5 - 3 * i) }),
         dot(own, { x: "x", y: "y", fill: () => id, symbol: () => id, r: Math.max(3, 7 - 3 * i), stroke: "white" }),
       ]),
-      tip(points, pointer({ x: "x", y: "y", title: inWordsAt, fontSize: 14 })),
+      tip(points, pointer({ x: "x", y: "y", title: tooltip, fontSize: 14 })),
       directLabels(lines),
     ],
   });
   return figure(title, sentence, drawn);
 }
 
-const inWordsAt = ({ id, x, y }: Point) => `${inWords(id)}: ${formatDigits(y, 3)} mm at ${formatDigits(x, 3)} s`;
+const tooltip = ({ id, x, y }: Point) => `${sentenceCase(id)}: ${formatDigits(y, 3)} mm at ${formatDigits(x, 3)} s`;
 
-/** The probes' error against the size of elements. */
+/** Plots the probes' error against the element size; undefined without data. */
 export function resolutions(table: ErrorTable): HTMLElement | undefined {
   const rows = table.resolutions.flatMap(({ resolutionMm, errorProbeMm, vertices }) =>
     isPositive(errorProbeMm) && isPositive(resolutionMm)
@@ -101,6 +101,6 @@ export function resolutions(table: ErrorTable): HTMLElement | undefined {
     ),
   );
   const size = { width: half, height: 400, marginLeft: 74 };
-  const drawn = draw(`${title} ${sentence}`, { ...size, x: logScale("Edge length [mm]", x), y, marks });
+  const drawn = drawPlot(`${title} ${sentence}`, { ...size, x: logScale("Edge length [mm]", x), y, marks });
   return figure(title, sentence, drawn);
 }

@@ -1,15 +1,15 @@
 import { dot, frame, line, type Markish, pointer, rect, text, tip } from "@observablehq/plot";
+import { make } from "../dom/elements";
 import type { StabilityRow, StabilityTable } from "../gen/phrenic/v1/study_results_pb";
-import { make } from "../panels/dom";
-import { draw, half, ink, isPositive, logScale } from "./axes";
+import { drawPlot, half, ink, isPositive, logScale } from "./axes";
 import { type Cell, cellsOf, edgesOf } from "./cells";
 import { formatDigits } from "./format";
-import { nameOf } from "./names";
+import { seriesName } from "./names";
 
-/** What one integrator's map is drawn from. */
+/** The data of the map of one integrator. */
 export interface StabilityMapData {
   integrator: string;
-  /** Steps are drawn over the predicted limit, or in milliseconds where there is none. */
+  /** True if time steps are relative to the predicted limit; otherwise in milliseconds. */
   relative: boolean;
   cells: Cell[];
   predicted: { x: number; y: number }[];
@@ -27,8 +27,8 @@ const verdicts: Record<string, { color: string; letter: string }> = {
 const unknown = { color: "#ffffff", letter: "?" };
 const verdictOf = (verdict: string) => verdicts[verdict] ?? unknown;
 
-/** One map for each integrator that the table has points of. */
-export function mapsOf({ map, limits }: StabilityTable): StabilityMapData[] {
+/** Returns one map for each integrator with data. */
+export function stabilityMaps({ map, limits }: StabilityTable): StabilityMapData[] {
   return [...new Set(map.map(({ integrator }) => integrator))].flatMap((integrator) => {
     const own = limits.filter((limit) => limit.integrator === integrator);
     const rows = map.filter((row) => row.integrator === integrator && isPositive(row.stiffness));
@@ -53,14 +53,15 @@ export function mapsOf({ map, limits }: StabilityTable): StabilityMapData[] {
   });
 }
 
+/** Draws the stability map of one integrator. */
 export function stabilityMap(data: StabilityMapData): HTMLElement {
   const { integrator, relative, cells } = data;
   const x: [number, number] = [Math.min(...cells.map(({ x1 }) => x1)), Math.max(...cells.map(({ x2 }) => x2))];
   const y: [number, number] = [Math.min(...cells.map(({ y1 }) => y1)), Math.max(...cells.map(({ y2 }) => y2))];
   const stable = cells.filter(({ row }) => row.verdict === "stable" || row.verdict === "damped").length;
   const rows = new Set(cells.map(({ row }) => row.stiffness)).size;
-  const label = `${nameOf(integrator)}: ${stable} of ${cells.length} runs stay stable, over stiffness and time step.`;
-  const drawn = draw(label, {
+  const label = `${seriesName(integrator)}: ${stable} of ${cells.length} runs stay stable, over stiffness and time step.`;
+  const drawn = drawPlot(label, {
     width: half,
     height: 90 + 34 * Math.max(3, rows),
     marginLeft: 64,
@@ -68,7 +69,7 @@ export function stabilityMap(data: StabilityMapData): HTMLElement {
     y: { ...logScale("Stiffness, times the scene's", y), grid: false, labelOffset: 58 },
     marks: mapMarks(data, y),
   });
-  return make("div", {}, make("h3", {}, nameOf(integrator)), drawn);
+  return make("div", {}, make("h3", {}, seriesName(integrator)), drawn);
 }
 
 function mapMarks({ cells, predicted, measured }: StabilityMapData, y: [number, number]): Markish[] {
@@ -77,7 +78,7 @@ function mapMarks({ cells, predicted, measured }: StabilityMapData, y: [number, 
   return [
     rect(cells, { ...sides, fill: ({ row }: Cell) => verdictOf(row.verdict).color, stroke: "white", inset: 0.5 }),
     text(cells, {
-      x: (cell: Cell) => letterOf(cell, [...predicted, ...measured]),
+      x: (cell: Cell) => letterX(cell, [...predicted, ...measured]),
       y: "y",
       text: ({ row }: Cell) => verdictOf(row.verdict).letter,
       fill: ink,
@@ -86,17 +87,17 @@ function mapMarks({ cells, predicted, measured }: StabilityMapData, y: [number, 
     frame({ stroke: "#8b949e" }),
     line(limit, { x: "x", y: "y", stroke: ink, strokeWidth: 3, strokeDasharray: "8 5", clip: true }),
     dot(measured, { x: "x", y: "y", r: 6, fill: ink, stroke: "white", strokeWidth: 1.5, clip: true }),
-    tip(cells, pointer({ x: "x", y: "y", title: ({ row }: Cell) => inWords(row), fontSize: 14 })),
+    tip(cells, pointer({ x: "x", y: "y", title: ({ row }: Cell) => tooltip(row), fontSize: 14 })),
   ];
 }
 
-/** Where a cell's letter stands: in the middle, or beside it where a limit is drawn. */
-function letterOf({ x1, x2, y1, y2, x }: Cell, limits: { x: number; y: number }[]): number {
+/** Returns the x position of a cell's letter: the centre, or beside a limit that is drawn there. */
+function letterX({ x1, x2, y1, y2, x }: Cell, limits: { x: number; y: number }[]): number {
   const over = limits.some((limit) => limit.x > x1 && limit.x < x2 && limit.y > y1 && limit.y < y2);
   return over ? x1 ** 0.55 * x ** 0.45 : Math.sqrt(x1 * x2);
 }
 
-/** The predicted limit through all rows of the map, to its lower and upper edge. */
+/** Returns the predicted limit through all rows, extended to the edges of the map. */
 function limitLine(points: { x: number; y: number }[], [low, high]: [number, number]): { x: number; y: number }[] {
   if (points.length === 0) return [];
   const sorted = [...points].sort((a, b) => a.y - b.y);
@@ -108,9 +109,9 @@ function limitLine(points: { x: number; y: number }[], [low, high]: [number, num
   return [start, ...sorted, { x: xs[xs.length - 1] * last, y: Math.min(high, ys[ys.length - 1]) }];
 }
 
-function inWords(row: StabilityRow): string {
+function tooltip(row: StabilityRow): string {
   const lines = [
-    `${nameOf(row.integrator)}, ${formatDigits(row.stiffness)} times as stiff, ${formatDigits(1e3 * row.timeStepS, 3)} ms`,
+    `${seriesName(row.integrator)}, ${formatDigits(row.stiffness)} times as stiff, ${formatDigits(1e3 * row.timeStepS, 3)} ms`,
     row.divergedAtS === undefined ? row.verdict : `${row.verdict} at ${formatDigits(row.divergedAtS, 3)} s`,
     row.where,
     row.energyRatio === undefined ? "" : `largest energy ${formatDigits(row.energyRatio, 3)} times the expected`,
@@ -118,7 +119,7 @@ function inWords(row: StabilityRow): string {
   return lines.filter(Boolean).join("\n");
 }
 
-/** What colours, letters and lines mean: of verdicts, those that occur. */
+/** The legend of the colours, letters and lines that occur. */
 export function verdictKey({ map, limits }: StabilityTable): HTMLElement {
   const present = new Set(map.map(({ verdict }) => verdict));
   const order = [...new Set([...Object.keys(verdicts), ...present])].filter((verdict) => present.has(verdict));

@@ -1,9 +1,9 @@
 import type { DescField, DescMessage, Message } from "@bufbuild/protobuf";
 import { isFieldSet, ScalarType } from "@bufbuild/protobuf";
-import { make } from "../panels/dom";
+import { make } from "../dom/elements";
 import { formatDigits } from "./format";
 import { headingOf } from "./headings";
-import { nameOf } from "./names";
+import { seriesName } from "./names";
 
 const marks: Record<string, [string, string]> = {
   pass: ["✔", "good"],
@@ -13,11 +13,11 @@ const marks: Record<string, [string, string]> = {
   FAILED: ["✖", "bad"],
 };
 
-/** Every row of one message type, a column for each field that some row has. */
+/** A table of messages of one type, with a column for each field that is set in some row. */
 export function tableOf(title: string, schema: DescMessage, rows: readonly Message[]): HTMLElement {
   const heading = make("h3", {}, title);
   if (rows.length === 0) return make("section", {}, heading, make("p", { className: "none" }, "No rows."));
-  const fields = schema.fields.filter((field) => rows.some((row) => worthAColumn(row, field)));
+  const fields = schema.fields.filter((field) => rows.some((row) => isShown(row, field)));
   const head = make("tr", {}, ...fields.map((field) => headCell(field)));
   const body = rows.map((row) => make("tr", {}, ...fields.map((field) => cell(row, field))));
   const table = make("table", {}, make("thead", {}, head), make("tbody", {}, ...body));
@@ -25,8 +25,8 @@ export function tableOf(title: string, schema: DescMessage, rows: readonly Messa
   return make("section", { className: "table" }, heading, scroller);
 }
 
-// A number that is 0 and a switch that is off are worth showing; a text that no row has is not.
-function worthAColumn(row: Message, field: DescField): boolean {
+// Shows zeros and false, but no text column that is empty in all rows.
+function isShown(row: Message, field: DescField): boolean {
   if (field.fieldKind !== "scalar") return false;
   const value = valueOf(row, field);
   return value !== undefined && value !== "";
@@ -56,10 +56,14 @@ function cell(row: Message, field: DescField): HTMLElement {
   if (typeof value === "number") return make("td", { className: "number" }, shortDigits(value));
   const text = String(value);
   if (field.name === "verdict") return verdictCell(text);
-  return make("td", { className: text.length > 30 ? "words" : "" }, field.name === "integrator" ? nameOf(text) : text);
+  return make(
+    "td",
+    { className: text.length > 30 ? "words" : "" },
+    field.name === "integrator" ? seriesName(text) : text,
+  );
 }
 
-/** Four digits, three where a power takes the room of one. */
+/** Formats four digits, or three with a power of ten. */
 function shortDigits(value: number): string {
   const size = Math.abs(value);
   return formatDigits(value, size !== 0 && (size < 1e-3 || size >= 1e6) ? 3 : 4);

@@ -1,22 +1,28 @@
 import { scaleLinear } from "d3-scale";
 import * as THREE from "three";
-import type { Look } from "../looks";
 import type { BodyView } from "./body_view";
+import { planeAxes } from "./named_views";
 import type { Viewer } from "./viewer";
-import { planeAxes } from "./views";
 
-/** Names stand so far beside what they name, and at least so far apart [CSS pixels]. */
-const aside = 36;
-const apart = 20;
-/** About the width of a letter [CSS pixels]. */
-const letter = 7.5;
+/** Distance of a label from its anchor, and between labels [CSS pixels]. */
+const labelOffset = 36;
+const labelSpacing = 20;
+/** Mean character width [CSS pixels]. */
+const letterWidth = 7.5;
 
-/** What is written over the picture: names of the layers, and of a flat scene the axes of its plane. */
+/** The properties of a layer that annotations use. */
+export interface LabelledLayer {
+  layer: string;
+  title: string;
+  visible: boolean;
+}
+
+/** An SVG over the canvas with the names of the layers and, for planar scenes, axes. */
 export class Annotations {
   readonly element = svg("svg", { class: "annotations" });
   private readonly names = svg("g", { class: "names" });
   private readonly axes = svg("g", { class: "axes" });
-  private anchors: { view: BodyView; vertex: number; look: Look }[] = [];
+  private anchors: { view: BodyView; vertex: number; layer: LabelledLayer }[] = [];
   private labels = false;
 
   constructor(private readonly viewer: Viewer) {
@@ -24,52 +30,54 @@ export class Annotations {
     this.element.append(this.axes, this.names);
   }
 
-  /** Another scene, or other layers that are seen. */
-  start(looks: Look[]): void {
-    this.anchors = looks.flatMap((look) => (look.visible ? (outermost(this.viewer, look) ?? []) : []));
+  /** Sets the layers, for another scene or another visibility. */
+  setLayers(layers: LabelledLayer[]): void {
+    this.anchors = layers.flatMap((layer) => (layer.visible ? (labelAnchor(this.viewer, layer) ?? []) : []));
     this.draw();
   }
 
+  /** Shows or hides the names of the layers. */
   setLabels(on: boolean): void {
     this.labels = on;
     this.draw();
   }
 
+  /** Updates the annotations to the current camera. */
   draw(): void {
     this.names.replaceChildren(...(this.labels ? this.drawNames() : []));
     this.axes.replaceChildren(...this.drawAxes());
   }
 
   private drawNames(): SVGElement[] {
-    const places = this.anchors.map(({ view, vertex, look }) => {
+    const places = this.anchors.map(({ view, vertex, layer }) => {
       const place = new THREE.Vector3().fromBufferAttribute(view.positions, vertex);
       place.applyMatrix4(view.group.matrixWorld);
       const [x, y] = this.viewer.rig.project(place);
-      return { x, y, look, gone: this.viewer.cutAway(place) };
+      return { x, y, layer, clipped: this.viewer.isClipped(place) };
     });
     const width = this.element.clientWidth;
     let last = -Infinity;
     return places
-      .filter(({ gone }) => !gone)
+      .filter(({ clipped: gone }) => !gone)
       .sort((a, b) => a.y - b.y)
-      .flatMap(({ x, y, look }) => {
-        last = Math.max(y, last + apart);
-        // Where it would leave the picture, it stands on the other side.
-        const side = x + aside + letter * look.title.length > width ? -1 : 1;
-        const [toX, toY] = [x + side * aside, last];
+      .flatMap(({ x, y, layer }) => {
+        last = Math.max(y, last + labelSpacing);
+        // A label that would leave the canvas is placed on the other side.
+        const side = x + labelOffset + letterWidth * layer.title.length > width ? -1 : 1;
+        const [toX, toY] = [x + side * labelOffset, last];
         const line = svg("polyline", { points: `${x},${y} ${toX - 4 * side},${toY}` });
         const dot = svg("circle", { cx: x, cy: y, r: 2.5 });
-        return [line, dot, words(toX, toY + 4, look.title, side > 0 ? "start" : "end")];
+        return [line, dot, svgText(toX, toY + 4, layer.title, side > 0 ? "start" : "end")];
       });
   }
 
-  /** Only where the camera looks straight at the plane, so that lengths in it are true. */
+  /** Axes are drawn only if the camera looks perpendicularly at the plane, so that lengths are true. */
   private drawAxes(): SVGElement[] {
     const { bounds, rig } = this.viewer;
     const plane = bounds.isEmpty() ? undefined : planeAxes(bounds);
     if (plane === undefined) return [];
     const [right, up] = plane;
-    const [across, along] = rig.compass().axes;
+    const [across, along] = rig.orientation().axes;
     if (across[right] < 0.9995 || along[up] < 0.9995) return [];
     const at = (x: number, y: number) => {
       const place = bounds.min.clone();
@@ -84,7 +92,7 @@ export class Annotations {
   }
 }
 
-/** A side of the scene's box with its numbers [m]. */
+/** An axis along the bounding box with ticks [m]. */
 function ruler(
   { min, max }: THREE.Box3,
   axis: "x" | "y" | "z",
@@ -102,25 +110,28 @@ function ruler(
     const [x, y] = beside(tick);
     parts.push(line([x, y], [x + dx, y + dy]));
     const text = scale.tickFormat(6)(tick).replace("-", "−");
-    parts.push(across ? words(x, y + 22, text, "middle") : words(x - 12, y + 4, text, "end"));
+    parts.push(across ? svgText(x, y + 22, text, "middle") : svgText(x - 12, y + 4, text, "end"));
   }
   const [x, y] = beside(max[axis]);
-  parts.push(across ? words(x + 14, y + 5, `${axis} [m]`, "start") : words(x, y - 10, `${axis} [m]`, "middle"));
+  parts.push(across ? svgText(x + 14, y + 5, `${axis} [m]`, "start") : svgText(x, y - 10, `${axis} [m]`, "middle"));
   return parts;
 }
 
-/** Of a layer the vertex that rests farthest to the patient's left, of those that no cut takes away. */
-function outermost(viewer: Viewer, look: Look): { view: BodyView; vertex: number; look: Look } | undefined {
-  let found: { view: BodyView; vertex: number; look: Look } | undefined;
+/** Returns the vertex of a layer that is farthest to the patient's left at rest and not clipped. */
+function labelAnchor(
+  viewer: Viewer,
+  layer: LabelledLayer,
+): { view: BodyView; vertex: number; layer: LabelledLayer } | undefined {
+  let found: { view: BodyView; vertex: number; layer: LabelledLayer } | undefined;
   let farthest = -Infinity;
   const place = new THREE.Vector3();
   for (const view of viewer.bodies) {
-    if (view.body.layer !== look.layer) continue;
+    if (view.body.layer !== layer.layer) continue;
     const { rest } = view.body;
     for (let i = 0; i < rest.length; i += 3) {
-      if (rest[i] <= farthest || viewer.cutAway(place.fromArray(rest, i))) continue;
+      if (rest[i] <= farthest || viewer.isClipped(place.fromArray(rest, i))) continue;
       farthest = rest[i];
-      found = { view, vertex: i / 3, look };
+      found = { view, vertex: i / 3, layer };
     }
   }
   return found;
@@ -136,7 +147,7 @@ function line([x1, y1]: [number, number], [x2, y2]: [number, number]): SVGElemen
   return svg("line", { x1, y1, x2, y2 });
 }
 
-function words(x: number, y: number, text: string, anchor: string): SVGElement {
+function svgText(x: number, y: number, text: string, anchor: string): SVGElement {
   const element = svg("text", { x, y, "text-anchor": anchor });
   element.textContent = text;
   return element;

@@ -1,34 +1,30 @@
 import * as THREE from "three";
-import { type Body, floatsPerPose, type FrameArrays, positionsOf } from "../codec";
 import { Placement } from "../gen/phrenic/v1/frames_pb";
-import { edgesOf } from "./edges";
+import { type Body, floatsPerPose, type FrameArrays, positionsOf } from "../geometry/bodies";
+import { edgesOf } from "../geometry/edges";
+import { computeNormals } from "../geometry/normals";
+import { tendonWeights } from "../geometry/tendon";
 import { pointMaterial, setOpacity, surfaceMaterial } from "./materials";
-import { computeNormals } from "./normals";
-import { addOverlays, type Overlay } from "./overlays";
-import { Paint } from "./paint";
-import { tendonWeights } from "./tendon";
+import { addOverlays, type Overlay, type OverlayHost, type OverlayKind } from "./overlays";
 import { ThickLines } from "./thick_lines";
-
-/** What can be drawn over a body. */
-export const overlayKinds = ["wireframe", "links", "lines", "attachments"] as const;
-export type OverlayKind = (typeof overlayKinds)[number];
+import { VertexColors } from "./vertex_colors";
 
 /**
- * One body on the screen. Everything that lies on its vertices shares one position buffer, so that a frame is one copy
- * and one upload however many overlays are on.
+ * The three.js objects of one body. All objects share one position buffer, so that a frame needs one copy and one
+ * upload regardless of the overlays.
  */
-export class BodyView {
+export class BodyView implements OverlayHost {
   readonly group = new THREE.Group();
   readonly positions: THREE.BufferAttribute;
   private knownEdges: Uint32Array<ArrayBuffer> | undefined;
   private readonly normals: THREE.BufferAttribute | undefined;
   private readonly surface: THREE.MeshStandardMaterial | undefined;
-  private readonly colors: Paint | undefined;
+  private readonly vertexColors: VertexColors | undefined;
   private opacity: number;
   private readonly overlays: Overlay[];
   private readonly thick: ThickLines[] = [];
 
-  /** `diagram` is for scenes of few vertices: every vertex and edge is drawn as well. */
+  /** `diagram` also draws every vertex and edge, for scenes of few vertices. */
   constructor(
     readonly body: Body,
     diagram: boolean,
@@ -44,26 +40,26 @@ export class BodyView {
       const { geometry, material } = this.addSurface(this.normals);
       const own = body.rigidLinks.length > 0 ? this.tendonColors() : undefined;
       this.surface = material;
-      this.colors = new Paint(geometry, material, body.color, own);
+      this.vertexColors = new VertexColors(geometry, material, body.color, own);
     }
-    if (!solid || diagram) this.addNetwork(solid ? lighter(body.color) : body.color);
+    if (!solid || diagram) this.addPointsAndLines(solid ? lighter(body.color) : body.color);
     this.overlays = addOverlays(this);
   }
 
-  /** Pairs of vertex indices; found when somebody first asks, since few bodies show their edges. */
+  /** Pairs of vertex indices; computed on first use, since few bodies show their edges. */
   get edges(): Uint32Array<ArrayBuffer> {
     const { triangles, edges, rest } = this.body;
     this.knownEdges ??= triangles.length > 0 ? edgesOf(triangles, rest.length / 3) : edges;
     return this.knownEdges;
   }
 
-  /** Lines of some width, redrawn with every frame: only for few. */
-  addThick(lines: ThickLines): void {
+  /** Adds lines that are updated with every frame; only for few lines. */
+  addThickLines(lines: ThickLines): void {
     this.thick.push(lines);
     this.group.add(lines.object);
   }
 
-  /** Geometry over this body's vertices; `index` picks some of them. */
+  /** Returns a geometry over this body's vertices; `index` selects some of them. */
   geometry(index?: Uint32Array<ArrayBuffer>): THREE.BufferGeometry {
     const geometry = new THREE.BufferGeometry().setAttribute("position", this.positions);
     if (index !== undefined) geometry.setIndex(new THREE.BufferAttribute(index, 1));
@@ -91,14 +87,15 @@ export class BodyView {
     return new THREE.BufferAttribute(colors, 3);
   }
 
-  private addNetwork(color: string): void {
+  private addPointsAndLines(color: string): void {
     const many = this.edges.length > 2000;
-    this.addThick(new ThickLines(this.edges, this.positions, color, many ? 1.5 : 3));
+    this.addThickLines(new ThickLines(this.edges, this.positions, color, many ? 1.5 : 3));
     const points = new THREE.Points(this.geometry(), pointMaterial(color, many ? 4 : 10));
     points.frustumCulled = false;
     this.group.add(points);
   }
 
+  /** Moves the body to its state in a frame. */
   update(frame: FrameArrays): void {
     if (this.body.placement === Placement.RIGID) this.pose(frame);
     if (this.body.placement !== Placement.STREAMED) return;
@@ -111,8 +108,8 @@ export class BodyView {
     this.normals.needsUpdate = true;
   }
 
-  /** Where the vertices are: x y z each. */
-  placed(): ArrayLike<number> {
+  /** Returns the current positions, x y z per vertex [m]. */
+  worldPositions(): ArrayLike<number> {
     if (this.body.placement !== Placement.RIGID) return this.positions.array;
     this.group.updateMatrixWorld();
     return this.positions.clone().applyMatrix4(this.group.matrixWorld).array;
@@ -124,23 +121,26 @@ export class BodyView {
     this.group.position.fromArray(frame.poses, at + 4);
   }
 
+  /** Sets the opacity, 0 to 1; 0 hides the body. */
   setOpacity(opacity: number): void {
     this.opacity = opacity;
     this.group.visible = opacity > 0;
-    // Paint is solid: through a clear one its scale could not be read.
-    if (this.surface !== undefined) setOpacity(this.surface, this.colors?.covers ? 1 : opacity);
+    // Field colours are opaque, since their scale could not be read through a transparent surface.
+    if (this.surface !== undefined) setOpacity(this.surface, this.vertexColors?.active ? 1 : opacity);
   }
 
-  /** Colours of the vertices over the body's own: sRGB, three bytes each; undefined takes them away. */
-  paint(rgb: Uint8Array | undefined): void {
-    this.colors?.show(rgb);
+  /** Sets vertex colours, three sRGB bytes per vertex; undefined restores the body's own colours. */
+  setColors(rgb: Uint8Array | undefined): void {
+    this.vertexColors?.set(rgb);
     this.setOpacity(this.opacity);
   }
 
+  /** Shows or hides an overlay. */
   setOverlay(kind: OverlayKind, on: boolean): void {
     for (const overlay of this.overlays) if (overlay.kind === kind) overlay.show(on);
   }
 
+  /** Releases GPU resources. */
   dispose(): void {
     this.group.traverse((object) => {
       if (object instanceof THREE.Mesh || object instanceof THREE.Line || object instanceof THREE.Points) {

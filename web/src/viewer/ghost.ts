@@ -1,38 +1,39 @@
 import * as THREE from "three";
-import { type Body, type FrameArrays, positionsOf } from "../codec";
 import { Placement } from "../gen/phrenic/v1/frames_pb";
-import type { Surface } from "./nearest_surface";
-import { computeNormals } from "./normals";
+import { type Body, type FrameArrays, positionsOf } from "../geometry/bodies";
+import { computeNormals } from "../geometry/normals";
+import type { Surface } from "../geometry/surface";
 
 interface Colors {
   color: string;
   emissive: string;
 }
 
-/** Surfaces that are seen through: the moving tissue as it was at another moment, or what it is compared with. */
-export class Ghost {
+/** Translucent surfaces: the deformable bodies in another state, or a compared surface. */
+export class TranslucentSurfaces {
   readonly object = new THREE.Group();
 
   constructor(private readonly colors: Colors) {
     this.object.renderOrder = 3;
   }
 
-  /** A surface that stands still. */
+  /** Shows a fixed surface. */
   showSurface({ positions, triangles }: Surface): void {
     this.clear();
-    this.object.add(shell(positions, triangles, this.colors));
+    this.object.add(translucentMesh(positions, triangles, this.colors));
   }
 
-  /** Those of `bodies` that move by themselves; at rest where `arrays` is undefined. */
+  /** Shows the streamed ones of `bodies`; at rest if `arrays` is undefined. */
   show(bodies: Body[], arrays: FrameArrays | undefined): void {
     this.clear();
     for (const body of bodies) {
       if (body.placement !== Placement.STREAMED || body.triangles.length === 0) continue;
       const positions = arrays === undefined ? body.rest : positionsOf(body, arrays).slice();
-      this.object.add(shell(positions, body.triangles, this.colors));
+      this.object.add(translucentMesh(positions, body.triangles, this.colors));
     }
   }
 
+  /** Removes all surfaces and releases GPU resources. */
   clear(): void {
     for (const child of this.object.children) {
       if (!(child instanceof THREE.Mesh)) continue;
@@ -43,8 +44,8 @@ export class Ghost {
   }
 }
 
-/** A surface that is dense at its outline and clear where it faces the eye. */
-function shell(positions: Float32Array, triangles: Uint32Array, colors: Colors): THREE.Mesh {
+/** A mesh that is denser at its silhouette and clearer where it faces the camera. */
+function translucentMesh(positions: Float32Array, triangles: Uint32Array, colors: Colors): THREE.Mesh {
   const normals = new Float32Array(positions.length);
   computeNormals(positions, triangles, normals);
   const geometry = new THREE.BufferGeometry()

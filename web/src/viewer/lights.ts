@@ -1,8 +1,8 @@
 import * as THREE from "three";
 
 /**
- * Light that hangs on the camera, so that every view is lit alike: a soft sky, a key from the upper left that shapes
- * the surfaces, a fill, and a cool rim from behind that lifts outlines off the background.
+ * Lights that are attached to the camera, so that all views are lit alike: a hemisphere light, a key light from the
+ * upper left, a fill light, and a rim light from behind that separates outlines from the background.
  */
 export function addLights(scene: THREE.Scene, camera: THREE.Camera): void {
   scene.add(new THREE.HemisphereLight("#f4f6ff", "#8f827c", 1.3));
@@ -18,7 +18,7 @@ function beam(color: string, intensity: number, from: [number, number, number]):
   const light = new THREE.DirectionalLight(color, intensity);
   light.position.set(...from);
   const holder = new THREE.Group();
-  // The target rides along, or the beam would turn as the camera moves.
+  // The target moves with the camera as well, so that the light keeps its direction.
   holder.add(light, light.target);
   return holder;
 }

@@ -1,27 +1,23 @@
 import * as THREE from "three";
+import type { Marker } from "../geometry/vertices";
 
-/** A place to be marked, in a colour. */
-export interface Marker {
-  place: [number, number, number];
-  color: string;
-}
-
-/** Balls of one size on the screen, over everything. */
+/** Spheres of constant size on the screen, drawn over everything. */
 export class Markers {
   readonly object = new THREE.Group();
   private readonly ball = new THREE.SphereGeometry(1, 16, 12);
 
+  /** Replaces all markers. */
   show(markers: Marker[]): void {
     while (this.object.children.length > markers.length) this.object.remove(this.object.children.at(-1)!);
     while (this.object.children.length < markers.length) this.object.add(this.make());
-    markers.forEach(({ place, color }, i) => {
+    markers.forEach(({ position, color }, i) => {
       const mesh = this.object.children[i] as THREE.Mesh<THREE.SphereGeometry, THREE.MeshBasicMaterial>;
-      mesh.position.fromArray(place);
+      mesh.position.fromArray(position);
       mesh.material.color.set(color);
     });
   }
 
-  /** `size` is the radius at the centre of the scene [m]. */
+  /** Sets the radius at the centre of the scene [m]. */
   scale(size: number): void {
     for (const child of this.object.children) child.scale.setScalar(size);
   }

@@ -1,6 +1,6 @@
 import * as THREE from "three";
 
-/** A lit surface. Where it is see-through it gets denser towards its outline, as glass and wet membranes do. */
+/** A lit surface material. Transparent surfaces are denser towards their silhouette, like glass and wet membranes. */
 export function surfaceMaterial(color: string, opacity: number): THREE.MeshStandardMaterial {
   const material = new THREE.MeshStandardMaterial({
     color,
@@ -29,6 +29,7 @@ export function surfaceMaterial(color: string, opacity: number): THREE.MeshStand
   return material;
 }
 
+/** Sets the opacity, 0 to 1; transparent materials do not write depth. */
 export function setOpacity(material: THREE.Material, opacity: number): void {
   const transparent = opacity < 1;
   if (material.transparent !== transparent) material.needsUpdate = true;
@@ -37,6 +38,7 @@ export function setOpacity(material: THREE.Material, opacity: number): void {
   material.depthWrite = !transparent;
 }
 
+/** Lines of one pixel; `onTop` disables the depth test. */
 export function lineMaterial(color: string, opacity: number, onTop: boolean): THREE.LineBasicMaterial {
   return new THREE.LineBasicMaterial({ color, opacity, transparent: true, depthTest: !onTop, depthWrite: false });
 }

@@ -1,10 +1,28 @@
 import * as THREE from "three";
-import type { ActionLine } from "../codec";
-import type { BodyView, OverlayKind } from "./body_view";
+import type { ActionLine, Body } from "../geometry/bodies";
 import { lineMaterial, pointMaterial } from "./materials";
 import { ThickLines } from "./thick_lines";
 
-/** Something drawn over a body that can be switched on; made the first time it is. */
+/** The kinds of overlay. */
+export const overlayKinds = ["wireframe", "links", "lines", "attachments"] as const;
+/** A kind of overlay. */
+export type OverlayKind = (typeof overlayKinds)[number];
+
+/** What an overlay uses of its body. */
+export interface OverlayHost {
+  readonly body: Body;
+  readonly group: THREE.Group;
+  /** x y z per vertex [m], updated with every frame. */
+  readonly positions: THREE.BufferAttribute;
+  /** Pairs of vertex indices. */
+  readonly edges: Uint32Array<ArrayBuffer>;
+  /** Returns a geometry over the body's vertices; `index` selects some of them. */
+  geometry(index?: Uint32Array<ArrayBuffer>): THREE.BufferGeometry;
+  /** Adds lines that are updated with every frame. */
+  addThickLines(lines: ThickLines): void;
+}
+
+/** An overlay that can be switched; created when it is shown first. */
 export interface Overlay {
   kind: OverlayKind;
   show(on: boolean): void;
@@ -15,9 +33,10 @@ const lineColor = "#ffd166";
 const attachedColor = "#7be495";
 const fixedColor = "#b99bff";
 /** More lines than this are drawn one pixel wide. */
-const mostThickLines = 3000;
+const maxThickLines = 3000;
 
-export function addOverlays(view: BodyView): Overlay[] {
+/** Returns the overlays that the data of a body allows. */
+export function addOverlays(view: OverlayHost): Overlay[] {
   const { body } = view;
   const overlays: Overlay[] = [];
   const add = (kind: OverlayKind, make: () => THREE.Object3D) => overlays.push(new Lazy(kind, view.group, make));
@@ -48,29 +67,29 @@ class Lazy implements Overlay {
   }
 }
 
-function segments(view: BodyView, pairs: Uint32Array<ArrayBuffer>, material: THREE.Material): THREE.LineSegments {
+function segments(view: OverlayHost, pairs: Uint32Array<ArrayBuffer>, material: THREE.Material): THREE.LineSegments {
   const lines = new THREE.LineSegments(view.geometry(pairs), material);
   lines.frustumCulled = false;
   return lines;
 }
 
-function links(view: BodyView): THREE.Object3D {
+function links(view: OverlayHost): THREE.Object3D {
   const pairs = view.body.rigidLinks;
-  if (pairs.length / 2 > mostThickLines) return segments(view, pairs, lineMaterial(linkColor, 0.75, true));
+  if (pairs.length / 2 > maxThickLines) return segments(view, pairs, lineMaterial(linkColor, 0.75, true));
   const lines = new ThickLines(pairs, view.positions, linkColor, 2.5);
   Object.assign(lines.object.material, { depthTest: false, transparent: true, opacity: 0.8 });
   lines.object.renderOrder = 1;
-  view.addThick(lines);
+  view.addThickLines(lines);
   return lines.object;
 }
 
-function points(view: BodyView, index: Uint32Array<ArrayBuffer>, color: string): THREE.Points {
+function points(view: OverlayHost, index: Uint32Array<ArrayBuffer>, color: string): THREE.Points {
   const result = new THREE.Points(view.geometry(index), pointMaterial(color, 5));
   result.frustumCulled = false;
   return result;
 }
 
-/** Arrows from the origin of each line along its pull. */
+/** Arrows from the origin of each line in the direction of its force. */
 function arrows(lines: ActionLine[]): THREE.Group {
   const group = new THREE.Group();
   const material = new THREE.MeshBasicMaterial({ color: lineColor, depthTest: false, transparent: true, opacity: 0.9 });

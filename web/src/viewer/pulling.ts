@@ -1,14 +1,17 @@
 import * as THREE from "three";
 import type { BodyView } from "./body_view";
-import { acrossFrom, pickVertex, pointerOf } from "./picking";
+import { dragPoint, pickVertex, pointerOf } from "./picking";
 
-/** A force on a vertex of a body [N]; zero lets go. */
+/** Called with the force on a vertex [N]; zero releases it. */
 export type Pull = (body: string, vertex: number, force: [number, number, number]) => void;
 
-/** How hard a drag pulls [N/m]. */
-const strength = 40;
+/** Force per distance of the drag [N/m]. */
+const stiffness = 40;
 
-/** Dragging with the shift key pulls the tissue under the pointer; beside it shift moves the camera as it always does. */
+/**
+ * Pulls the tissue under the pointer by dragging with the shift key. Beside the tissue the camera controls handle the
+ * drag.
+ */
 export class Pulling {
   private readonly arrow = new THREE.ArrowHelper(new THREE.Vector3(0, 0, 1), new THREE.Vector3(), 1, "#ffd166");
   private held: { view: BodyView; vertex: number } | undefined;
@@ -21,18 +24,18 @@ export class Pulling {
     private readonly pull: Pull,
     private readonly changed: () => void,
     private readonly cut: () => THREE.Plane | undefined,
-    /** Hears how hard it pulls [N] and where on the picture; undefined when it lets go. */
-    private readonly told: (newtons: number | undefined, x: number, y: number) => void,
+    /** Called with the force [N] and the pointer position; undefined on release. */
+    private readonly onForce: (newtons: number | undefined, x: number, y: number) => void,
   ) {
     this.arrow.visible = false;
-    // Over everything: the tissue may lie behind bone.
+    // Drawn over everything, since the tissue may be behind bone.
     for (const part of [this.arrow.line, this.arrow.cone]) {
       part.renderOrder = 1;
       (part.material as THREE.Material).depthTest = false;
       (part.material as THREE.Material).transparent = true;
     }
     scene.add(this.arrow);
-    // Before the camera's own controls hear of it.
+    // Handles the event before the camera controls.
     canvas.addEventListener("pointerdown", (event) => this.start(event), { capture: true });
     canvas.addEventListener("pointermove", (event) => this.move(event));
     for (const kind of ["pointerup", "pointercancel", "lostpointercapture"] as const) {
@@ -58,14 +61,14 @@ export class Pulling {
     if (this.held === undefined) return;
     const { view, vertex } = this.held;
     const place = new THREE.Vector3().fromBufferAttribute(view.positions, vertex);
-    const way = acrossFrom(pointerOf(event, this.canvas), this.camera, place).sub(place);
-    this.point(place, way);
-    const force = way.multiplyScalar(strength);
-    this.told(force.length(), event.offsetX, event.offsetY);
+    const way = dragPoint(pointerOf(event, this.canvas), this.camera, place).sub(place);
+    this.drawArrow(place, way);
+    const force = way.multiplyScalar(stiffness);
+    this.onForce(force.length(), event.offsetX, event.offsetY);
     this.pull(view.body.name, vertex, [force.x, force.y, force.z]);
   }
 
-  private point(from: THREE.Vector3, way: THREE.Vector3): void {
+  private drawArrow(from: THREE.Vector3, way: THREE.Vector3): void {
     const length = way.length();
     this.arrow.visible = length > 0;
     if (length === 0) return;
@@ -80,7 +83,7 @@ export class Pulling {
     const { view, vertex } = this.held;
     this.held = undefined;
     this.arrow.visible = false;
-    this.told(undefined, 0, 0);
+    this.onForce(undefined, 0, 0);
     this.changed();
     this.pull(view.body.name, vertex, [0, 0, 0]);
   }

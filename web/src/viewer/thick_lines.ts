@@ -3,7 +3,7 @@ import { LineMaterial } from "three/addons/lines/LineMaterial.js";
 import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
 import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
 
-/** Lines some pixels wide between pairs of vertices (WebGL's own are one pixel wide everywhere). */
+/** Lines several pixels wide between pairs of vertices; native WebGL lines are one pixel wide. */
 export class ThickLines {
   readonly object: LineSegments2;
   private readonly ends: Float32Array;
@@ -17,18 +17,19 @@ export class ThickLines {
     this.ends = new Float32Array(3 * pairs.length);
     this.object = new LineSegments2(new LineSegmentsGeometry(), new LineMaterial({ color, linewidth: width }));
     this.object.frustumCulled = false;
-    this.gather();
+    this.copyEnds();
     this.object.geometry.setPositions(this.ends);
   }
 
+  /** Copies the current positions to the lines. */
   update(): void {
-    this.gather();
+    this.copyEnds();
     const start = this.object.geometry.getAttribute("instanceStart") as THREE.InterleavedBufferAttribute;
     start.data.set(this.ends);
     start.data.needsUpdate = true;
   }
 
-  private gather(): void {
+  private copyEnds(): void {
     const source = this.positions.array;
     this.pairs.forEach((vertex, i) => {
       for (let k = 0; k < 3; k++) this.ends[3 * i + k] = source[3 * vertex + k];

@@ -1,65 +1,67 @@
 import * as THREE from "three";
-import type { Body, FrameArrays } from "../codec";
-import { BodyView, type OverlayKind, overlayKinds } from "./body_view";
-import { letClick, type VertexRef } from "./clicking";
-import { type Cut, placeOf, planeOf } from "./cut";
-import { Ghost } from "./ghost";
+import type { Body, FrameArrays } from "../geometry/bodies";
+import type { Surface } from "../geometry/surface";
+import { type Marker, type VertexRef } from "../geometry/vertices";
+import { AdaptiveResolution } from "./adaptive_resolution";
+import { BodyView } from "./body_view";
+import { CameraRig, type Insets, type ViewOrientation } from "./camera_rig";
+import { enablePicking } from "./click_picking";
+import { clippingPlane, type Cut, planeCoordinate } from "./clipping";
+import { TranslucentSurfaces } from "./ghost";
 import { addLights } from "./lights";
-import { type Marker, Markers } from "./markers";
-import type { Surface } from "./nearest_surface";
+import { Markers } from "./markers";
+import type { ViewName } from "./named_views";
+import { type OverlayKind, overlayKinds } from "./overlays";
 import { type Pull, Pulling } from "./pulling";
-import { type Compass, type Covered, Rig } from "./rig";
-import { Sharpness } from "./sharpness";
-import type { ViewName } from "./views";
 
-/** Scenes of at most so many vertices are diagrams rather than anatomy. */
-const mostOfADiagram = 2000;
+/** Scenes with at most this many vertices are drawn as diagrams. */
+const maxDiagramVertices = 2000;
 /** Radius of a marker [CSS pixels]. */
 const markerSize = 5;
 
-/** What a picture asks of its page. */
-export interface Surroundings {
-  /** Goes on to the moment that is due; whether the picture changes by it. */
+/** What the viewer needs from its page. */
+export interface ViewerHost {
+  /** Advances to the frame that is due; returns true if the display changes. */
   advance(): boolean;
-  /** That moment. */
-  source(): FrameArrays | undefined;
-  /** Hears of a frame before it is drawn for the first time. */
-  update?(frame: FrameArrays): void;
-  /** Hears of every picture. */
-  drawn(compass: Compass): void;
-  /** How much of the canvas panels hide. */
-  covered(): Covered;
-  /** Whether the person asked for less motion. */
-  calm(): boolean;
+  /** Returns the frame to display. */
+  frame(): FrameArrays | undefined;
+  /** Called before a frame is drawn for the first time. */
+  beforeDraw?(frame: FrameArrays): void;
+  /** Called after each drawing. */
+  afterDraw(compass: ViewOrientation): void;
+  /** Returns the parts of the canvas that panels cover. */
+  insets(): Insets;
+  /** True if the user prefers reduced motion. */
+  reducedMotion(): boolean;
 }
 
 /**
- * The picture. It draws only when something changed, on the browser's own beat, so a hidden tab draws nothing and any
- * number of frames between two beats cost one drawing.
+ * Draws the scene with three.js. Draws only after changes and in animation frames, so that a hidden tab draws nothing
+ * and several received frames cause one drawing.
  */
 export class Viewer {
-  readonly rig: Rig;
+  readonly rig: CameraRig;
   private readonly scene = new THREE.Scene();
-  /** Depth by haze: what lies behind fades a little into the background. */
-  private readonly haze = new THREE.Fog("#1f262d");
+  /** Depth cue: distant parts fade slightly into the background. */
+  private readonly fog = new THREE.Fog("#1f262d");
   private readonly renderer: THREE.WebGLRenderer;
   private views: BodyView[] = [];
   private overlays: ReadonlySet<OverlayKind> = new Set();
-  private readonly sharpness = new Sharpness(Math.min(devicePixelRatio, 2));
-  private readonly ghost = new Ghost({ color: "#8fd0ff", emissive: "#2d5f86" });
-  private readonly target = new Ghost({ color: "#ffd166", emissive: "#7a5a12" });
+  private readonly resolution = new AdaptiveResolution(Math.min(devicePixelRatio, 2));
+  private readonly ghost = new TranslucentSurfaces({ color: "#8fd0ff", emissive: "#2d5f86" });
+  private readonly comparedSurface = new TranslucentSurfaces({ color: "#ffd166", emissive: "#7a5a12" });
   private readonly markers = new Markers();
-  private cut: Cut = { kind: "none", part: 0.5, flipped: false };
+  private cut: Cut = { kind: "none", fraction: 0.5, flipped: false };
   private box = new THREE.Box3();
-  private stale = true;
-  private drawings = 0;
-  /** When the first picture with a frame was drawn, since the page was asked for [ms]; -1 before. */
-  firstPicture = -1;
+  private dirty = true;
+  private drawn = 0;
+  /** Time of the first drawing that shows a frame, since navigation start [ms]; -1 before. */
+  firstDrawTime = -1;
   private shown: FrameArrays | undefined;
 
   constructor(
     private readonly canvas: HTMLCanvasElement,
-    private readonly around: Surroundings,
+    private readonly host: ViewerHost,
   ) {
     this.renderer = new THREE.WebGLRenderer({
       canvas,
@@ -67,23 +69,23 @@ export class Viewer {
       alpha: true,
       powerPreference: "high-performance",
     });
-    // No tone mapping: a layer has the colour that its swatch shows.
+    // No tone mapping, so that layers have the colours of their swatches.
     this.renderer.toneMapping = THREE.NoToneMapping;
-    this.renderer.setPixelRatio(this.sharpness.ratio);
-    this.rig = new Rig(canvas, () => this.refresh(), around.calm);
-    this.scene.fog = this.haze;
+    this.renderer.setPixelRatio(this.resolution.ratio);
+    this.rig = new CameraRig(canvas, () => this.refresh(), host.reducedMotion);
+    this.scene.fog = this.fog;
     addLights(this.scene, this.rig.camera);
-    this.scene.add(this.ghost.object, this.target.object, this.markers.object);
+    this.scene.add(this.ghost.object, this.comparedSurface.object, this.markers.object);
     new ResizeObserver(() => this.resize()).observe(canvas);
-    this.renderer.setAnimationLoop((now) => this.beat(now));
+    this.renderer.setAnimationLoop((now) => this.onAnimationFrame(now));
   }
 
-  /** Pictures drawn so far. */
-  get count(): number {
-    return this.drawings;
+  /** Number of drawings so far. */
+  get drawCount(): number {
+    return this.drawn;
   }
 
-  /** Whether the scene is shown as a diagram, with every vertex and edge. */
+  /** Shows another scene. Returns true if it is drawn as a diagram, with every vertex and edge. */
   show(bodies: Body[]): boolean {
     for (const view of this.views) {
       this.scene.remove(view.group);
@@ -91,12 +93,12 @@ export class Viewer {
     }
     this.shown = undefined;
     this.ghost.clear();
-    this.target.clear();
-    const diagram = verticesOf(bodies) <= mostOfADiagram;
+    this.comparedSurface.clear();
+    const diagram = verticesOf(bodies) <= maxDiagramVertices;
     this.views = bodies.map((body) => new BodyView(body, diagram));
     for (const view of this.views) this.scene.add(view.group);
     this.showOverlays(this.overlays);
-    const sample = sampleOf(bodies);
+    const sample = sampleVertices(bodies);
     this.box = new THREE.Box3().setFromPoints(sample);
     this.setCut(this.cut);
     this.resize();
@@ -105,98 +107,103 @@ export class Viewer {
     return diagram;
   }
 
-  /** The bodies as they stand, and the box they rest in. */
+  /** The views of the bodies. */
   get bodies(): readonly BodyView[] {
     return this.views;
   }
 
+  /** Bounding box of the scene at rest [m]. */
   get bounds(): THREE.Box3 {
     return this.box;
   }
 
-  /** Whether a cut has taken this place away. */
-  cutAway(place: THREE.Vector3): boolean {
+  /** True if the current cut clips this position. */
+  isClipped(place: THREE.Vector3): boolean {
     return this.renderer.clippingPlanes.some((plane) => plane.distanceToPoint(place) < 0);
   }
 
-  /** Draws at the next beat. */
+  /** Draws in the next animation frame. */
   refresh(): void {
-    this.stale = true;
+    this.dirty = true;
   }
 
+  /** Sets the opacity of all bodies of a layer, 0 to 1. */
   setLayerOpacity(layer: string, opacity: number): void {
     for (const view of this.views) if (view.body.layer === layer) view.setOpacity(opacity);
     this.refresh();
   }
 
+  /** Shows these overlays and hides all others. */
   showOverlays(shown: ReadonlySet<OverlayKind>): void {
     this.overlays = shown;
     for (const view of this.views) for (const kind of overlayKinds) view.setOverlay(kind, shown.has(kind));
     this.refresh();
   }
 
-  /** Takes away what lies on one side of a plane; where that lies along its axis [m]. */
+  /** Clips one side of a plane. Returns its coordinate along its axis [m]. */
   setCut(cut: Cut): number {
     this.cut = cut;
-    const plane = this.plane();
+    const plane = this.currentPlane();
     this.renderer.clippingPlanes = plane === undefined ? [] : [plane];
     this.refresh();
-    return placeOf(cut, this.box);
+    return planeCoordinate(cut, this.box);
   }
 
-  /** Shows bodies as they were in `arrays`, at rest, or not at all, as a ghost. */
+  /** Shows bodies as a ghost, in the state of `arrays` or at rest; undefined removes it. */
   setGhost(of: FrameArrays | "rest" | undefined, bodies: Body[]): void {
     if (of === undefined) this.ghost.clear();
     else this.ghost.show(bodies, of === "rest" ? undefined : of);
     this.refresh();
   }
 
-  /** Shows what bodies are compared with, or nothing. */
-  setTarget(surface: Surface | undefined): void {
-    if (surface === undefined) this.target.clear();
-    else this.target.showSurface(surface);
+  /** Shows the surface that a body is compared with; undefined removes it. */
+  setComparedSurface(surface: Surface | undefined): void {
+    if (surface === undefined) this.comparedSurface.clear();
+    else this.comparedSurface.showSurface(surface);
     this.refresh();
   }
 
-  mark(markers: Marker[]): void {
+  /** Replaces all markers. */
+  setMarkers(markers: Marker[]): void {
     this.markers.show(markers);
     this.refresh();
   }
 
-  /** Paints bodies by name, sRGB, three bytes a vertex, and no other. */
-  paint(painted: ReadonlyMap<string, Uint8Array>): void {
-    for (const view of this.views) view.paint(painted.get(view.body.name));
+  /** Sets the vertex colours of bodies by name, three sRGB bytes per vertex; other bodies get their own colours. */
+  setVertexColors(painted: ReadonlyMap<string, Uint8Array>): void {
+    for (const view of this.views) view.setColors(painted.get(view.body.name));
     this.refresh();
   }
 
-  /** Dragging with the shift key pulls at the visible ones among the bodies of these names from now on. */
-  letPull(
+  /** Enables pulling of visible bodies with these names by dragging with the shift key. */
+  enablePulling(
     names: () => ReadonlySet<string>,
     pull: Pull,
     told: (newtons: number | undefined, x: number, y: number) => void,
   ): void {
     const views = () => this.views.filter(({ body, group }) => group.visible && names().has(body.name));
-    const [changed, plane] = [() => this.refresh(), () => this.plane()];
+    const [changed, plane] = [() => this.refresh(), () => this.currentPlane()];
     new Pulling(this.canvas, this.rig.camera, this.scene, views, pull, changed, plane, told);
   }
 
-  /** A click tells the vertex that is seen there from now on. */
-  letClick(picked: (vertex: VertexRef | undefined) => void): void {
-    letClick(
+  /** Enables picking of vertices by clicks. */
+  enablePicking(picked: (vertex: VertexRef | undefined) => void): void {
+    enablePicking(
       this.canvas,
       this.rig.camera,
       () => this.views,
-      () => this.plane(),
+      () => this.currentPlane(),
       picked,
     );
   }
 
-  go(view: ViewName): void {
-    this.rig.go(view);
+  /** Moves the camera to a named view. */
+  goTo(view: ViewName): void {
+    this.rig.goTo(view);
   }
 
-  /** The picture as it stands, without what lies over it. */
-  photograph(): Promise<Blob | null> {
+  /** Returns the current view as PNG, without annotations. */
+  capture(): Promise<Blob | null> {
     this.renderer.render(this.scene, this.rig.camera);
     const { width, height } = this.canvas;
     const copy = Object.assign(document.createElement("canvas"), { width, height });
@@ -204,48 +211,48 @@ export class Viewer {
     if (pen === null) return Promise.resolve(null);
     pen.fillStyle = "#1f262d";
     pen.fillRect(0, 0, width, height);
-    // Before the browser takes the picture off the canvas.
+    // The drawing buffer is valid only until the browser composes the page.
     pen.drawImage(this.canvas, 0, 0);
     return new Promise((done) => copy.toBlob(done, "image/png"));
   }
 
-  /** Takes the canvas as it is now, and what panels leave of it. */
+  /** Adapts to the current size of the canvas and of the covered parts. */
   resize(): void {
     const { clientWidth, clientHeight } = this.canvas;
     if (clientWidth === 0 || clientHeight === 0) return;
     this.renderer.setSize(clientWidth, clientHeight, false);
-    this.rig.resize(this.around.covered());
+    this.rig.resize(this.host.insets());
     this.refresh();
   }
 
-  private plane(): THREE.Plane | undefined {
-    return planeOf(this.cut, this.box);
+  private currentPlane(): THREE.Plane | undefined {
+    return clippingPlane(this.cut, this.box);
   }
 
-  private beat(now: number): void {
+  private onAnimationFrame(now: number): void {
     this.rig.update(now);
-    if (this.around.advance()) this.stale = true;
-    if (this.sharpness.beat(now, this.stale)) {
-      this.renderer.setPixelRatio(this.sharpness.ratio);
-      this.stale = true;
+    if (this.host.advance()) this.dirty = true;
+    if (this.resolution.recordFrame(now, this.dirty)) {
+      this.renderer.setPixelRatio(this.resolution.ratio);
+      this.dirty = true;
     }
-    if (!this.stale) return;
-    this.stale = false;
-    const frame = this.around.source();
+    if (!this.dirty) return;
+    this.dirty = false;
+    const frame = this.host.frame();
     if (frame !== undefined && frame !== this.shown) {
       for (const view of this.views) view.update(frame);
-      this.around.update?.(frame);
-      this.stale = false;
+      this.host.beforeDraw?.(frame);
+      this.dirty = false;
     }
     this.shown = frame;
     const { distance, extent } = this.rig.depth;
-    [this.haze.near, this.haze.far] = [distance - 0.1 * extent, distance + 0.75 * extent];
-    const compass = this.rig.compass();
+    [this.fog.near, this.fog.far] = [distance - 0.1 * extent, distance + 0.75 * extent];
+    const compass = this.rig.orientation();
     this.markers.scale(markerSize / compass.pixelsPerMetre);
     this.renderer.render(this.scene, this.rig.camera);
-    this.drawings++;
-    if (frame !== undefined && this.firstPicture < 0) this.firstPicture = performance.now();
-    this.around.drawn(compass);
+    this.drawn++;
+    if (frame !== undefined && this.firstDrawTime < 0) this.firstDrawTime = performance.now();
+    this.host.afterDraw(compass);
   }
 }
 
@@ -253,8 +260,8 @@ function verticesOf(bodies: Body[]): number {
   return bodies.reduce((sum, { rest }) => sum + rest.length / 3, 0);
 }
 
-/** Some thousands of vertices at rest, a fair sample of where the bodies are. */
-function sampleOf(bodies: Body[]): THREE.Vector3[] {
+/** Returns some thousands of rest positions as a sample of the scene. */
+function sampleVertices(bodies: Body[]): THREE.Vector3[] {
   const stride = Math.max(1, Math.floor(verticesOf(bodies) / 4000));
   return bodies.flatMap(({ rest }) => {
     const points: THREE.Vector3[] = [];

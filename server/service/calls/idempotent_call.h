@@ -1,0 +1,43 @@
+// Idempotent calls: a request with a request_id takes effect once; a repeat gets the first response.
+#ifndef PHRENIC_SERVER_SERVICE_CALLS_IDEMPOTENT_CALL_H_
+#define PHRENIC_SERVER_SERVICE_CALLS_IDEMPOTENT_CALL_H_
+
+#include <optional>
+#include <string>
+
+#include "absl/status/status.h"
+#include "absl/strings/str_cat.h"
+#include "server/session/idempotency_cache.h"
+
+namespace phrenic::service {
+
+// True if a call with this status may have changed the session, so that a repeat must not run again.
+inline bool MayHaveChanged(const absl::Status& status) {
+  return status.ok() || absl::IsAborted(status) || absl::IsOutOfRange(status);
+}
+
+// Runs `act`, which fills `response`, unless the cache has the response to this request_id. The cache compares the
+// whole request, with its control token, so that another client cannot read a response by guessing its id.
+// Returns the status of `act`, now or at the first call, or an error of IdempotencyCache::Begin. Thread-safe.
+template <class Request, class Response, class Act>
+absl::Status RunOnce(session::IdempotencyCache& cache, const Request& request, Response* response, Act act) {
+  const std::string& id = request.request_id();
+  if (id.empty()) return act();
+  const auto cached = cache.Begin(id, absl::StrCat(Request::descriptor()->full_name(), request.SerializeAsString()));
+  if (!cached.ok()) return cached.status();
+  if (cached->has_value()) {
+    if ((*cached)->status.ok()) response->ParseFromString((*cached)->bytes);
+    return (*cached)->status;
+  }
+  absl::Status status = act();
+  if (MayHaveChanged(status)) {
+    cache.Keep(id, {status, response->SerializeAsString()});
+  } else {
+    cache.Forget(id);
+  }
+  return status;
+}
+
+}  // namespace phrenic::service
+
+#endif  // PHRENIC_SERVER_SERVICE_CALLS_IDEMPOTENT_CALL_H_

@@ -1,0 +1,28 @@
+// Serialized messages as gRPC has them, read by their descriptors.
+#ifndef PHRENIC_SERVER_SERVICE_CALLS_MESSAGES_H_
+#define PHRENIC_SERVER_SERVICE_CALLS_MESSAGES_H_
+
+#include <google/protobuf/descriptor.h>
+#include <google/protobuf/message.h>
+#include <grpcpp/support/byte_buffer.h>
+#include <grpcpp/support/proto_buffer_reader.h>
+
+namespace phrenic::service {
+
+// Parses a message without copying its bytes. Returns false if they are not a `message`. Thread-safe.
+inline bool Parse(const grpc::ByteBuffer& bytes, google::protobuf::Message& message) {
+  grpc::ByteBuffer shared = bytes;  // shares the slices; the reader needs a non-const buffer
+  grpc::ProtoBufferReader reader(&shared);
+  return message.ParseFromZeroCopyStream(&reader);
+}
+
+// Returns the string field "session_id" of a request type; null if it has none.
+inline const google::protobuf::FieldDescriptor* SessionIdField(const google::protobuf::Descriptor& request) {
+  const auto* field = request.FindFieldByName("session_id");
+  const bool is_string = field != nullptr && field->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_STRING;
+  return is_string ? field : nullptr;
+}
+
+}  // namespace phrenic::service
+
+#endif  // PHRENIC_SERVER_SERVICE_CALLS_MESSAGES_H_

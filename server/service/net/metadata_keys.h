@@ -1,0 +1,18 @@
+// Names of HTTP headers and gRPC metadata that Phrenic defines, in lower case as HTTP/2 requires (RFC 9113
+// section 8.2).
+#ifndef PHRENIC_SERVER_SERVICE_NET_METADATA_KEYS_H_
+#define PHRENIC_SERVER_SERVICE_NET_METADATA_KEYS_H_
+
+namespace phrenic::service {
+
+// The caller's IP address. The web gateway and the session router set it for calls that they make within the process;
+// both remove it from what clients send.
+inline constexpr char kPeerKey[] = "x-phrenic-peer";
+// The session that a call is about; set by clients, read by the session router and by proxies.
+inline constexpr char kSessionKey[] = "x-session-id";
+// The address of the server that forwarded the call. A forwarded call is never forwarded again.
+inline constexpr char kForwardedByKey[] = "x-phrenic-via";
+
+}  // namespace phrenic::service
+
+#endif  // PHRENIC_SERVER_SERVICE_NET_METADATA_KEYS_H_

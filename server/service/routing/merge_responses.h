@@ -1,0 +1,24 @@
+// Merges the responses of several servers to one list call.
+#ifndef PHRENIC_SERVER_SERVICE_ROUTING_MERGE_RESPONSES_H_
+#define PHRENIC_SERVER_SERVICE_ROUTING_MERGE_RESPONSES_H_
+
+#include <grpcpp/support/byte_buffer.h>
+
+#include <string>
+#include <vector>
+
+namespace phrenic::service {
+
+// True for methods that list what a server has: ListSessions, ListExports, ListStudies, ListUploads. In a cluster each
+// server is asked and the responses are merged.
+bool IsListMethod(const std::string& method);
+
+// Returns the responses to a list method as one. Sessions are sorted by id, the copy with the highest epoch is kept,
+// and the page has at most the size that `request` asks for; other lists are concatenated. Empty buffers are skipped.
+// Pure function, thread-safe.
+grpc::ByteBuffer MergeResponses(const std::string& method, const grpc::ByteBuffer& request,
+                                const std::vector<grpc::ByteBuffer>& responses);
+
+}  // namespace phrenic::service
+
+#endif  // PHRENIC_SERVER_SERVICE_ROUTING_MERGE_RESPONSES_H_

@@ -1,0 +1,135 @@
+import { create } from "@bufbuild/protobuf";
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
+import { describe, expect, test } from "vitest";
+import { decodeShapes } from "../../../web/src/decoders/basis";
+import { makeDecoder } from "../../../web/src/decoders/decoder_table";
+import { FrameDecoder } from "../../../web/src/decoders/frame_decoder";
+import { restShapeOf } from "../../../web/src/decoders/rest_shape";
+import {
+  Codec,
+  FrameSchema,
+  GetBasisResponseSchema,
+  GetGeometryResponseSchema,
+  Placement,
+} from "../../../web/src/gen/phrenic/v1/frames_pb";
+import type { Body } from "../../../web/src/geometry/bodies";
+import { decodeBody } from "../../../web/src/geometry/bodies";
+import { bytesOf, triangleBody } from "../fakes/fake_server";
+
+interface Golden {
+  rest: number[];
+  triangles: number[];
+  shapes: { bytes: string; displacements: number[] }[];
+  encodings: { codec: keyof typeof Codec; bytes: string; positions: number[] }[];
+}
+
+// The server's tests pin the same file: tests/golden/codecs_test.cc.
+const golden = JSON.parse(readFileSync(join(import.meta.dirname, "../../golden/codecs.json"), "utf8")) as Golden;
+const codecOf = (name: string) => Codec[name.replace("CODEC_", "") as keyof typeof Codec];
+const bytesIn = (hex: string) => new Uint8Array(Buffer.from(hex, "hex"));
+
+const sheet: Body = decodeBody(
+  create(GetGeometryResponseSchema, {
+    name: "sheet",
+    placement: Placement.STREAMED,
+    restPositions: bytesOf(Float32Array.from(golden.rest)),
+    triangles: bytesOf(Uint32Array.from(golden.triangles)),
+  }),
+);
+
+const basis = create(GetBasisResponseSchema, { epoch: 1n, shapes: golden.shapes.map(({ bytes }) => bytesIn(bytes)) });
+
+function decode(codec: Codec, positions: Uint8Array) {
+  const decoder = new FrameDecoder([sheet]);
+  decoder.addBasis(basis);
+  const basisEpoch = codec === Codec.BASIS ? 1n : 0n;
+  return decoder.decode(create(FrameSchema, { codec, positions, bodies: [0], basisEpoch })).positions;
+}
+
+describe.each(golden.encodings)("$codec", ({ codec, bytes, positions }) => {
+  test("PositionsAreThoseInTheFileBitForBit", () => {
+    expect([...decode(codecOf(codec), bytesIn(bytes))]).toEqual([...Float32Array.from(positions)]);
+  });
+
+  test("InvalidBytesThrowRangeError", () => {
+    const whole = bytesIn(bytes);
+    const outcome = (changed: Uint8Array) => {
+      try {
+        return decode(codecOf(codec), changed).length;
+      } catch (error) {
+        expect(error).toBeInstanceOf(RangeError);
+        return 0;
+      }
+    };
+    for (let i = 0; i < whole.length; i++) {
+      expect(outcome(whole.slice(0, i))).toBe(0);
+      for (const flip of [1, 0x80, 0xff]) {
+        const flipped = whole.slice();
+        flipped[i] ^= flip;
+        expect([0, golden.rest.length]).toContain(outcome(flipped));
+      }
+    }
+  });
+});
+
+test("TheFileContainsEveryCodec", () => {
+  const named = golden.encodings.map(({ codec }) => codecOf(codec));
+  expect([...new Set(named)].sort()).toEqual([Codec.RAW, Codec.PLANES, Codec.PREDICTED, Codec.BASIS]);
+});
+
+test("ShapesAreThoseInTheFileBitForBit", () => {
+  const predicted = makeDecoder(Codec.PREDICTED, restShapeOf([sheet]));
+  const shapes = decodeShapes(sheet.rest, predicted, basis.shapes);
+  expect(shapes.map((each) => [...each])).toEqual(
+    golden.shapes.map(({ displacements }) => [...Float32Array.from(displacements)]),
+  );
+});
+
+test("AFrameOfAnUnknownBasisIsRefused", () => {
+  const frame = create(FrameSchema, { codec: Codec.BASIS, bodies: [0], basisEpoch: 2n });
+  expect(() => new FrameDecoder([sheet]).decode(frame)).toThrow(
+    "basis_epoch: the basis of epoch 2 has not been received",
+  );
+});
+
+/** CODEC_PREDICTED of two triangles, all vertices 1 m above rest: only the residual of the first vertex is not zero. */
+function allUp(): Uint8Array {
+  const pairs = [0, 0, 0, 2, 0]; // of 18 numbers the 13th is 1
+  const frame = [0x28, 0xb5, 0x2f, 0xfd, 0x20, pairs.length, (pairs.length << 3) | 1, 0, 0, ...pairs];
+  const head = new DataView(new ArrayBuffer(16));
+  head.setFloat64(0, 1, true);
+  head.setUint32(8, frame.length, true);
+  return Uint8Array.from([...new Uint8Array(head.buffer), ...frame]);
+}
+
+test("ABodyUsesItsPartOfTheBasis", () => {
+  const [one, other] = [0, 3].map((firstVertex) =>
+    decodeBody(triangleBody({ placement: Placement.STREAMED, firstVertex })),
+  );
+  const decoder = new FrameDecoder([one, other]);
+  decoder.addBasis(create(GetBasisResponseSchema, { epoch: 3n, shapes: [allUp()] }));
+  const head = new DataView(new ArrayBuffer(20));
+  head.setFloat64(0, 1, true);
+  head.setUint32(8, 1, true);
+  head.setFloat32(16, 2, true);
+  const positions = new Uint8Array(head.buffer);
+  const frame = create(FrameSchema, { codec: Codec.BASIS, bodies: [1], basisEpoch: 3n, positions });
+  const raised = [...other.rest].map((x, i) => (i % 3 === 2 ? x + 2 : x));
+  expect([...decoder.decode(frame).positions]).toEqual([...one.rest, ...raised]);
+});
+
+test("BodiesMissingInAFrameStayAtRest", () => {
+  const one = decodeBody(triangleBody({ placement: Placement.STREAMED, firstVertex: 0 }));
+  const other = decodeBody(triangleBody({ placement: Placement.STREAMED, firstVertex: 3 }));
+  const moved = bytesOf(new Float32Array([9, 9, 9, 8, 8, 8, 7, 7, 7]));
+  const frame = create(FrameSchema, { codec: Codec.RAW, positions: moved, bodies: [1] });
+  const { positions } = new FrameDecoder([one, other]).decode(frame);
+  expect([...positions]).toEqual([...one.rest, 9, 9, 9, 8, 8, 8, 7, 7, 7]);
+});
+
+test("AnUnknownBodyIsRefused", () => {
+  expect(() => new FrameDecoder([]).decode(create(FrameSchema, { bodies: [3] }))).toThrow(
+    "bodies: an index is out of range, there are 0 bodies",
+  );
+});

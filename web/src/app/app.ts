@@ -1,0 +1,354 @@
+import { needsExactPositions } from "../appearance/fields";
+import { LayerStyles } from "../appearance/layer_styles";
+import type { Api } from "../connection/api";
+import type { Identity } from "../connection/identity";
+import { type ConnectionListener, type ConnectionState, SessionConnection } from "../connection/session_connection";
+import { download } from "../dom/download";
+import { elementById } from "../dom/elements";
+import { FrameBuffer } from "../frames/frame_buffer";
+import type { CompileReport } from "../gen/phrenic/v1/report_pb";
+import type { Preset } from "../gen/phrenic/v1/scene_pb";
+import { SessionState } from "../gen/phrenic/v1/session_pb";
+import type { Body } from "../geometry/bodies";
+import { ComparisonCard } from "../panels/comparison/comparison_card";
+import { distancePanel } from "../panels/comparison/distance_panel";
+import { presetComparison } from "../panels/comparison/preset_comparison";
+import { exportPanel } from "../panels/jobs/export_panel";
+import { studiesPanel } from "../panels/jobs/studies_panel";
+import { uploadPanel } from "../panels/jobs/upload_panel";
+import { parameterSections } from "../panels/parameters/parameter_sections";
+import { GraphsPanel } from "../panels/readings/graphs";
+import { Measures } from "../panels/readings/measures";
+import { Probes } from "../panels/readings/probes";
+import { banners } from "../panels/session/banners";
+import { compileReportPanel } from "../panels/session/compile_report";
+import { ConnectionBadge, ViewerCount } from "../panels/session/connection_badge";
+import { controlBadge, ControlDialog, controlledGroup } from "../panels/session/control_dialog";
+import { encodingPanel } from "../panels/session/encoding_panel";
+import { sessionButton } from "../panels/session/session_button";
+import type { SessionChooser } from "../panels/session/session_chooser";
+import { ShareDialog } from "../panels/session/share_dialog";
+import { layersPanel } from "../panels/view/layers_panel";
+import { Margins } from "../panels/view/margins";
+import { playbackPanel } from "../panels/view/playback";
+import { Readout } from "../panels/view/readout";
+import { Timeline } from "../panels/view/timeline";
+import { viewBar } from "../panels/view/view_bar";
+import { CameraSharing } from "../session/camera_sharing";
+import { Comparisons } from "../session/comparisons";
+import { Exports } from "../session/exports";
+import { ForceQueries } from "../session/force_queries";
+import { Participation, refusalReason } from "../session/participation";
+import { SessionController } from "../session/session_controller";
+import { Studies } from "../session/studies";
+import { Uploads } from "../session/uploads";
+import { Signal } from "../state/signal";
+import type { Clock } from "../timing/clock";
+import { Viewer } from "../viewer/viewer";
+import { drawers } from "./drawers";
+import { dropZone } from "./drop_zone";
+import { stageInsets } from "./insets";
+import { SceneTools } from "./scene_tools";
+import { SecondView } from "./second_view";
+import { shortcuts } from "./shortcuts";
+import { testHook } from "./test_hook";
+
+/** Update intervals of texts and numbers, and of graphs [ms]. */
+const statusInterval = 200;
+const graphInterval = 100;
+
+/** What the page shows, from its address. */
+export interface PageTarget {
+  sessionId: string;
+  /** Id of a session that is shown in a second view beside the first. */
+  secondSessionId: string | undefined;
+  /** Reloads the page with this query string. */
+  open(query: string): void;
+}
+
+/** One session on one page: connects the connection, the viewer and the panels. */
+export class App {
+  private readonly frames = new FrameBuffer();
+  private readonly layerStyles = new LayerStyles();
+  private readonly report = new Signal<CompileReport | undefined>(undefined);
+  private readonly presets = new Signal<Preset[]>([]);
+  private readonly connectionState = new Signal<ConnectionState>({ kind: "connecting" });
+  private readonly controller: SessionController;
+  private readonly participation: Participation;
+  private readonly cameraSharing: CameraSharing;
+  private readonly connection: SessionConnection;
+  private readonly viewer: Viewer;
+  private readonly tools: SceneTools;
+  private readonly graphs: GraphsPanel;
+  private readonly secondView: SecondView | undefined;
+  private readonly margins = new Margins();
+  private readonly connectionBadge: ConnectionBadge;
+  private readonly viewers = new ViewerCount();
+  private readonly readout = new Readout();
+  private readonly timeline = new Timeline(this.frames, (time) => this.replayAt(time));
+  private readonly probes = new Probes();
+  private readonly measures = new Measures();
+  private readonly comparisons: Comparisons;
+  private readonly exports: Exports;
+  private readonly uploads: Uploads;
+  private readonly comparisonCard: ComparisonCard;
+  private readonly bodies = new Signal<Body[]>([]);
+  /** Last known top of the dock [CSS pixels]. */
+  private dockTop = 0;
+  /** Names of the bodies that have mass and are moved by forces. */
+  private deformable: ReadonlySet<string> = new Set();
+
+  constructor(
+    private readonly api: Api,
+    private readonly target: PageTarget,
+    private readonly chooser: SessionChooser,
+    identity: Identity,
+    private readonly clock: Clock,
+  ) {
+    const { sessionId } = target;
+    this.controller = new SessionController(api, sessionId, clock);
+    this.participation = new Participation(api, this.controller, identity, clock);
+    this.comparisons = new Comparisons(api, sessionId);
+    this.exports = new Exports(api, sessionId);
+    this.uploads = new Uploads(api);
+    this.comparisonCard = new ComparisonCard(this.comparisons);
+    this.connection = new SessionConnection(api, sessionId, this.connectionListener(), clock);
+    this.connectionBadge = new ConnectionBadge(() => this.connection.retryNow());
+    this.viewer = new Viewer(elementById("view") as HTMLCanvasElement, this.viewerHost());
+    this.tools = new SceneTools(
+      this.viewer,
+      () => this.frames.displayed?.arrays,
+      this.layerStyles,
+      this.comparisons,
+      new ForceQueries(api, sessionId),
+    );
+    this.cameraSharing = new CameraSharing(api, sessionId, this.participation, this.viewer.rig, clock);
+    this.graphs = new GraphsPanel(() => sessionId, this.tools.trackedVertices);
+    this.secondView = this.openSecondView();
+    window.phrenic = testHook(() => this.bodies.value, this.frames, this.viewer);
+  }
+
+  /** Builds the page and connects to the server. */
+  start(): void {
+    this.buildStage();
+    this.buildPanel();
+    this.buildHeader();
+    this.layerStyles.all.subscribe((styles) => {
+      for (const { layer, opacity, visible } of styles) this.viewer.setLayerOpacity(layer, visible ? opacity : 0);
+    });
+    // Playing ends the replay.
+    let playing = true;
+    this.controller.session.subscribe((session) => {
+      const [before, now] = [playing, session?.state === SessionState.PLAYING];
+      playing = now;
+      if (now && !before && this.timeline.replaying) this.replayAt(undefined);
+    });
+    setInterval(() => this.updateStatus(), statusInterval);
+    setInterval(() => document.hidden || this.drawGraphs(), graphInterval);
+    window.addEventListener("pagehide", () => this.controller.flush());
+    this.tools.coloring.field.subscribe((kind) => this.connection.setExact(needsExactPositions(kind)));
+    void this.connection.run();
+    void this.participation.run();
+  }
+
+  private viewerHost() {
+    const reduced = matchMedia("(prefers-reduced-motion: reduce)");
+    return {
+      advance: () => this.frames.advance(this.clock.now(), reduced.matches),
+      frame: () => this.frames.displayed?.arrays,
+      beforeDraw: (arrays: NonNullable<FrameBuffer["arrays"]>) =>
+        this.tools.beforeDraw(this.frames.displayed?.time ?? 0, arrays),
+      afterDraw: (orientation: Parameters<Margins["show"]>[0]) => {
+        this.margins.show(orientation);
+        this.tools.afterDraw(orientation);
+        this.secondView?.followCamera();
+        this.cameraSharing.sendIfMoved();
+      },
+      insets: stageInsets,
+      reducedMotion: () => reduced.matches,
+    };
+  }
+
+  private openSecondView(): SecondView | undefined {
+    const { sessionId, secondSessionId, open } = this.target;
+    if (secondSessionId === undefined || secondSessionId === sessionId) return undefined;
+    const { viewer, frames, tools, layerStyles, controller, presets } = this;
+    const mayChange = () => refusalReason(this.participation.roles.value) === "";
+    const primary = { viewer, frames, tools, layerStyles, controller, presets, host: this.viewerHost(), mayChange };
+    return new SecondView(this.api, secondSessionId, primary, this.clock, {
+      swap: () => open(`?${new URLSearchParams({ session: secondSessionId, beside: sessionId })}`),
+      close: () => open(`?${new URLSearchParams({ session: sessionId })}`),
+    });
+  }
+
+  private buildStage(): void {
+    const { controller, viewer, tools } = this;
+    viewer.enablePulling(
+      () => this.deformable,
+      (body, vertex, force) => {
+        const refused = refusalReason(this.participation.roles.value);
+        if (refused === "") controller.pull(body, vertex, force);
+        else controller.notice.set(refused);
+      },
+      (newtons, x, y) => tools.showForce(newtons, x, y),
+    );
+    elementById("cards").append(...tools.cards, this.comparisonCard.element);
+    new ResizeObserver(() => this.resize()).observe(elementById("cards"));
+    const drop = dropZone(document.body, (file) => void this.comparisons.compare(file));
+    elementById("stage").append(drop, tools.forceLabel);
+    if (this.secondView !== undefined) {
+      elementById("stage").classList.add("split");
+      elementById("view").after(this.secondView.element);
+      elementById("stage").append(this.secondView.headers.element);
+      new ResizeObserver(() => this.resize()).observe(this.secondView.headers.element);
+    }
+    elementById("annotations-slot").append(tools.annotations.element);
+    elementById("cube-slot").append(tools.cube.element);
+    elementById("playback-slot").append(controlledGroup(this.participation, playbackPanel(controller)));
+    elementById("readout-slot").append(this.timeline.element, this.readout.element);
+    elementById("margins").append(...this.margins.elements);
+    elementById("views").append(...viewBar(viewer, elementById("view")));
+    elementById("banners").append(...banners(controller, this.connectionState, () => void this.chooser.show()));
+  }
+
+  private buildPanel(): void {
+    const { controller, layerStyles } = this;
+    const [breathing, solver] = parameterSections(controller, this.report, this.presets);
+    elementById("panel").append(
+      presetComparison(controller, this.presets, this.target.open),
+      controlledGroup(this.participation, breathing),
+      this.tools.panel,
+      layersPanel(layerStyles),
+      controlledGroup(this.participation, solver),
+      encodingPanel((codec) => this.connection.setCodec(codec)),
+      this.probes.element,
+      this.measures.element,
+      distancePanel(this.comparisons, this.bodies, this.uploads.extensions),
+      studiesPanel(new Studies(this.api, this.clock), controller),
+      exportPanel(this.exports, this.bodies),
+      uploadPanel(this.uploads),
+      compileReportPanel(this.report),
+    );
+    elementById("graphs").append(this.graphs.element);
+  }
+
+  private buildHeader(): void {
+    const { controller, viewer, report } = this;
+    const { open, sessionId } = this.target;
+    const photograph = async () => {
+      const picture = await viewer.capture();
+      if (picture !== null) download(`${sessionId}.png`, picture);
+    };
+    const share = new ShareDialog({ controller, report, open, photograph: () => void photograph() });
+    const { graphs, panel } = drawers(() => this.resize(), this.secondView !== undefined);
+    const press = (id: string) => () => document.getElementById(id)?.click();
+    const keys = shortcuts(
+      [
+        { key: " ", description: "Play, pause", run: press("play") },
+        { key: ".", description: "Step; next frame during replay", run: () => this.stepForward() },
+        { key: ",", description: "Replay, one frame back", run: () => this.timeline.stepFrame(-1) },
+        { key: "r", description: "Reset", run: press("reset") },
+        { key: "g", description: "Graphs", run: graphs },
+        { key: "c", description: "Controls", run: panel },
+        { key: "h", description: "Whole scene", run: () => viewer.goTo("home") },
+        { key: "f", description: "Front view", run: () => viewer.goTo("front") },
+        { key: "p", description: "Save a screenshot", run: () => void photograph() },
+        { key: "s", description: "Share, copy, compare", run: () => share.show() },
+      ],
+      () => controller.undo(),
+      () => controller.redo(),
+    );
+    const control = new ControlDialog(this.participation, () => this.cameraSharing.follow());
+    document.body.append(share.element, keys, control.element);
+    elementById("share-open").onclick = () => share.show();
+    elementById("help-open").onclick = () => keys.showModal();
+    elementById("status-slot").append(
+      controlBadge(this.participation, () => control.show()),
+      this.viewers.element,
+      this.connectionBadge.element,
+    );
+    elementById("session-slot").append(sessionButton(controller, () => void this.chooser.show()));
+  }
+
+  /** Distributes what the connection receives. */
+  private connectionListener(): ConnectionListener {
+    return {
+      state: (link) => this.connectionState.set(link),
+      session: (session, fresh) => this.controller.receive(session, fresh),
+      frame: (frame) => {
+        this.frames.receive(frame, this.clock.now());
+        this.graphs.receive(frame);
+        this.tools.receive(frame);
+      },
+      camera: (camera) => this.cameraSharing.receive(camera),
+      basis: (basis) => this.frames.addBasis(basis),
+      acknowledged: (response, sent, answered) => this.frames.acknowledged(response, sent, answered),
+      scene: (bodies, report) => this.showScene(bodies, report),
+    };
+  }
+
+  private showScene(bodies: Body[], report: CompileReport): void {
+    this.comparisons.clear();
+    this.bodies.set(bodies);
+    this.frames.start(bodies);
+    this.graphs.clear();
+    this.report.set(report);
+    this.deformable = new Set(report.bodies.filter(({ role }) => role === "deformable").map(({ name }) => name));
+    this.comparisons.choose({ body: this.mainBody(bodies) });
+    const diagram = this.viewer.show(bodies);
+    this.layerStyles.start(bodies, report);
+    this.tools.start(bodies, this.deformable, diagram);
+    elementById("loading").hidden = true;
+  }
+
+  /** Returns the deformable body with the most triangles. */
+  private mainBody(bodies: Body[]): string {
+    const moving = bodies.filter(({ name, triangles }) => this.deformable.has(name) && triangles.length > 0);
+    return moving.sort((a, b) => b.triangles.length - a.triangles.length)[0]?.name ?? "";
+  }
+
+  private resize(): void {
+    this.viewer.resize();
+    this.secondView?.resize();
+  }
+
+  private replayAt(time: number | undefined): void {
+    this.frames.replayAt(time);
+    this.secondView?.replayAt(time);
+    this.tools.replayAt(this.frames.replayedFrame?.time);
+  }
+
+  private stepForward(): void {
+    if (this.timeline.replaying) this.timeline.stepFrame(1);
+    else document.getElementById("step")?.click();
+  }
+
+  private drawGraphs(): void {
+    this.graphs.draw();
+    if (this.timeline.replaying) return;
+    const session = this.controller.session.value;
+    this.tools.queryForces(`${this.frames.frame?.tick} ${session?.revision}`);
+    this.secondView?.queryForces();
+  }
+
+  private updateStatus(): void {
+    if (document.hidden) return;
+    const now = this.clock.now();
+    const session = this.controller.session.value;
+    const rate = this.frames.rate(now);
+    const frame = this.frames.replayedFrame ?? this.frames.liveFrame(now);
+    const status = { connection: this.connectionState.value, session, frame, rate, now };
+    this.connectionBadge.show(status);
+    this.viewers.show(status);
+    this.readout.show(status);
+    this.probes.show(status.frame);
+    this.timeline.show();
+    // Texts that need another line change the height of the dock.
+    if (elementById("dock").offsetTop !== this.dockTop) this.resize();
+    this.dockTop = elementById("dock").offsetTop;
+    this.secondView?.updateStatus(status.frame, now);
+    this.measures.show(status.frame);
+    this.comparisonCard.show(status.frame?.time);
+    this.tools.updateReadings();
+  }
+}

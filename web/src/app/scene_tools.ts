@@ -1,0 +1,200 @@
+import { ColorScale, niceTop } from "../appearance/color_scale";
+import { Coloring } from "../appearance/coloring";
+import { forceKindOf } from "../appearance/fields";
+import { type GhostKind, GhostSelector } from "../appearance/ghosts";
+import type { LayerStyles } from "../appearance/layer_styles";
+import { LiveDistance } from "../appearance/live_distance";
+import { TrackedVertices } from "../appearance/tracked_vertices";
+import { make } from "../dom/elements";
+import type { Frame } from "../gen/phrenic/v1/frames_pb";
+import type { Body, FrameArrays } from "../geometry/bodies";
+import { appearancePanel } from "../panels/view/appearance_panel";
+import { coloringCard } from "../panels/view/coloring_card";
+import { OrientationCube } from "../panels/view/orientation_cube";
+import { PickCard } from "../panels/view/pick_card";
+import type { Comparisons } from "../session/comparisons";
+import type { ForceQueries, ForceRequest } from "../session/force_queries";
+import { Signal } from "../state/signal";
+import { Annotations } from "../viewer/annotations";
+import type { ViewOrientation } from "../viewer/camera_rig";
+import type { Cut } from "../viewer/clipping";
+import type { OverlayKind } from "../viewer/overlays";
+import type { Viewer } from "../viewer/viewer";
+
+/** The viewer's local tools: colours, ghost, labels, orientation cube, clipping, and picked and tracked vertices. */
+export class SceneTools {
+  readonly trackedVertices = new TrackedVertices(() => this.bodies);
+  readonly panel: HTMLElement;
+  /** Cards over the stage. */
+  readonly cards: HTMLElement[];
+  readonly cube: OrientationCube;
+  readonly annotations: Annotations;
+  readonly forceLabel = make("output", { id: "force", hidden: true });
+  readonly coloring: Coloring;
+  /** Settings that a second view shares. */
+  readonly overlays = new Signal<ReadonlySet<OverlayKind>>(new Set());
+  readonly labels = new Signal(false);
+  readonly cut = new Signal<Cut>({ kind: "none", fraction: 0.5, flipped: false });
+  readonly ghost = new Signal<GhostKind>("none");
+  private readonly pickCard: PickCard;
+  private readonly ghosts: GhostSelector;
+  private bodies: Body[] = [];
+  private deformable: Body[] = [];
+  private liveDistance: LiveDistance | undefined;
+  private time = 0;
+  /** The replayed time [s]; undefined when live. */
+  private replayTime: number | undefined;
+
+  constructor(
+    private readonly viewer: Viewer,
+    private readonly arrays: () => FrameArrays | undefined,
+    layerStyles: LayerStyles,
+    private readonly comparisons: Comparisons,
+    private readonly forces: ForceQueries,
+  ) {
+    this.coloring = new Coloring(forces);
+    this.ghosts = new GhostSelector(viewer, arrays, this.ghost);
+    this.pickCard = new PickCard(this.trackedVertices, forces.onVertex);
+    this.annotations = new Annotations(viewer);
+    this.cube = new OrientationCube((view) => viewer.goTo(view));
+    this.cards = [coloringCard(this.coloring), this.pickCard.element];
+    const { labels, ghost } = this;
+    this.panel = appearancePanel({
+      layerStyles,
+      labels,
+      ghost,
+      forceKinds: forces.kinds,
+      overlays: this.overlays,
+      coloring: this.coloring,
+      setCut: (cut) => {
+        const place = viewer.setCut(cut);
+        this.annotations.setLayers(layerStyles.all.value);
+        this.cut.set(cut);
+        return place;
+      },
+    });
+    labels.subscribe((on) => this.annotations.setLabels(on));
+    layerStyles.all.subscribe((all) => this.annotations.setLayers(all));
+    this.overlays.subscribe((shown) => viewer.showOverlays(shown));
+    this.coloring.field.subscribe(() => {
+      this.updateFields();
+      this.replayForces();
+    });
+    this.coloring.scale.subscribe(() => this.updateColors());
+    comparisons.result.subscribe((result) => {
+      this.liveDistance = result === undefined ? undefined : new LiveDistance(result);
+      this.updateComparedSurface();
+      this.updateColors();
+    });
+    comparisons.surfaceVisible.subscribe(() => this.updateComparedSurface());
+    forces.magnitudes.subscribe(() => this.updateColors());
+    viewer.enablePicking((ref) => this.trackedVertices.picked.set(ref));
+    this.trackedVertices.picked.subscribe(() => {
+      this.replayForces();
+      this.updateMarkers();
+    });
+    this.trackedVertices.tracked.subscribe(() => this.updateMarkers());
+  }
+
+  /** Starts another scene, which the viewer shows already. `diagram` is true for scenes of few vertices. */
+  start(bodies: Body[], deformable: ReadonlySet<string>, diagram: boolean): void {
+    this.bodies = bodies;
+    this.deformable = bodies.filter(({ name }) => deformable.has(name));
+    this.coloring.start(this.deformable);
+    void this.forces.start(this.deformable[0]?.name);
+    this.trackedVertices.clear();
+    if (this.ghost.value === "now") this.ghost.set("none");
+    this.ghosts.start(this.deformable);
+    // A diagram shows which of its edges are rigid.
+    if (diagram && bodies.some(({ rigidLinks }) => rigidLinks.length > 0))
+      this.overlays.set(new Set([...this.overlays.value, "links"]));
+  }
+
+  /** Receives every frame, also those that are not displayed. */
+  receive(frame: Frame): void {
+    this.ghosts.receive(frame);
+  }
+
+  /** Updates colours, tracks and markers before a frame of this time [s] is drawn. */
+  beforeDraw(time: number, arrays: FrameArrays): void {
+    this.time = time;
+    this.updateFields();
+    this.trackedVertices.receive(time, arrays);
+    if (this.coloring.field.value !== undefined) this.updateColors();
+    this.updateMarkers();
+  }
+
+  /** Passes the displayed frame to the coloring. */
+  private updateFields(): void {
+    const arrays = this.arrays();
+    if (arrays !== undefined) this.coloring.receive(this.time, arrays);
+  }
+
+  /** Updates what depends on the camera. */
+  afterDraw(compass: ViewOrientation): void {
+    this.cube.show(compass);
+    this.annotations.draw();
+  }
+
+  /** Queries the forces that are shown. `seen` identifies the state that the viewer received last. */
+  queryForces(seen: string): void {
+    void this.forces.query(this.forceRequest(), seen);
+  }
+
+  /** Shows the forces of an earlier time [s], or live ones if `time` is undefined. */
+  replayAt(time: number | undefined): void {
+    this.replayTime = time;
+    this.replayForces();
+  }
+
+  private forceRequest(): ForceRequest {
+    const kind = forceKindOf(this.coloring.field.value);
+    const picked = this.trackedVertices.picked.value;
+    const vertex = this.deformable.some(({ name }) => name === picked?.body) ? picked : undefined;
+    return { vertex, kind, bodies: kind === undefined ? [] : this.coloring.bodyNames };
+  }
+
+  private replayForces(): void {
+    this.forces.replayAt(this.replayTime, this.forceRequest());
+    const unknown =
+      this.replayTime !== undefined &&
+      this.forceRequest().kind !== undefined &&
+      this.forces.magnitudes.value.size === 0;
+    this.coloring.message.set(unknown ? "Forces are unknown at this time: only displayed forces are recorded." : "");
+  }
+
+  /** Updates the readings and the colours of a comparison; called a few times per second. */
+  updateReadings(): void {
+    const arrays = this.arrays();
+    this.pickCard.show(arrays);
+    if (arrays !== undefined && this.liveDistance?.update(this.bodies, arrays, () => performance.now()))
+      this.updateColors();
+  }
+
+  /** Shows the pulling force [N] beside the pointer; hides it if undefined. */
+  showForce(newtons: number | undefined, x: number, y: number): void {
+    this.forceLabel.hidden = newtons === undefined;
+    if (newtons === undefined) return;
+    this.forceLabel.textContent = `${newtons.toFixed(2)} N`;
+    this.forceLabel.style.transform = `translate(${x + 14}px, ${y + 14}px)`;
+  }
+
+  /** Colours of a comparison take precedence over those of a field. */
+  private updateColors(): void {
+    const comparison = this.comparisons.result.value;
+    if (comparison === undefined) return this.viewer.setVertexColors(this.coloring.colors());
+    const { body, distances } = comparison;
+    const scale = new ColorScale(niceTop(distances));
+    this.viewer.setVertexColors(new Map([[body, scale.colors(this.liveDistance?.values ?? distances)]]));
+  }
+
+  private updateComparedSurface(): void {
+    const { result, surfaceVisible } = this.comparisons;
+    this.viewer.setComparedSurface(surfaceVisible.value ? result.value?.surface : undefined);
+  }
+
+  private updateMarkers(): void {
+    const arrays = this.arrays();
+    if (arrays !== undefined) this.viewer.setMarkers(this.trackedVertices.markers(arrays));
+  }
+}

@@ -1,0 +1,213 @@
+import { forceKindOf, needsExactPositions } from "../appearance/fields";
+import { GhostSelector } from "../appearance/ghosts";
+import type { LayerStyles } from "../appearance/layer_styles";
+import { VertexColorizer } from "../appearance/vertex_colorizer";
+import type { Api } from "../connection/api";
+import { type ConnectionListener, SessionConnection } from "../connection/session_connection";
+import { make } from "../dom/elements";
+import { FrameBuffer, maxWait } from "../frames/frame_buffer";
+import type { Frame } from "../gen/phrenic/v1/frames_pb";
+import { type Preset } from "../gen/phrenic/v1/scene_pb";
+import { SessionState } from "../gen/phrenic/v1/session_pb";
+import type { Body } from "../geometry/bodies";
+import { ViewHeaders } from "../panels/comparison/view_headers";
+import { ForceQueries, type ForceRequest } from "../session/force_queries";
+import { SessionController } from "../session/session_controller";
+import type { Signal } from "../state/signal";
+import type { Clock } from "../timing/clock";
+import { Annotations } from "../viewer/annotations";
+import { Viewer, type ViewerHost } from "../viewer/viewer";
+import type { SceneTools } from "./scene_tools";
+
+/** Two playing sessions that differ by more than this [s] for this many checks are synchronised again. */
+const maxTimeDifference = 0.2;
+const checksBeforeResync = 10;
+
+/** What the second view shares with the primary one. */
+export interface PrimaryView {
+  viewer: Viewer;
+  frames: FrameBuffer;
+  tools: SceneTools;
+  layerStyles: LayerStyles;
+  controller: SessionController;
+  presets: Signal<Preset[]>;
+  host: Pick<ViewerHost, "insets" | "reducedMotion">;
+  /** True if this viewer may play and pause the session. */
+  mayChange(): boolean;
+}
+
+/**
+ * A view of a second session that shares camera, layers, colours and their scale, clipping, ghost and labels with the
+ * primary view. It plays and pauses in step with the primary session.
+ */
+export class SecondView {
+  readonly element: HTMLElement;
+  readonly headers: ViewHeaders;
+  private readonly viewer: Viewer;
+  private readonly controller: SessionController;
+  private readonly connection: SessionConnection;
+  private readonly frames = new FrameBuffer();
+  private readonly forces: ForceQueries;
+  private readonly colorizer: VertexColorizer;
+  private readonly ghosts: GhostSelector;
+  private readonly annotations: Annotations;
+  private leadsCamera = false;
+  private checksOutOfStep = 0;
+
+  constructor(
+    api: Api,
+    sessionId: string,
+    private readonly primary: PrimaryView,
+    private readonly clock: Clock,
+    actions: { swap(): void; close(): void },
+  ) {
+    const canvas = make("canvas", { role: "img", ariaLabel: `3D view of the session ${sessionId}` });
+    this.controller = new SessionController(api, sessionId, clock);
+    primary.controller.companion = this.controller;
+    primary.frames.synchroniseWith(this.frames);
+    this.headers = new ViewHeaders([primary.controller, this.controller], primary.presets, actions);
+    this.viewer = new Viewer(canvas, this.viewerHost());
+    this.annotations = new Annotations(this.viewer);
+    this.element = make("div", { id: "second-view" }, canvas, this.annotations.element);
+    this.forces = new ForceQueries(api, sessionId);
+    this.colorizer = new VertexColorizer(this.forces);
+    this.ghosts = new GhostSelector(this.viewer, () => this.frames.displayed?.arrays, primary.tools.ghost);
+    this.connection = new SessionConnection(api, sessionId, this.connectionListener(), clock);
+    this.trackCameraLeader(canvas);
+    this.followAppearance();
+    void this.connection.run();
+  }
+
+  /** Copies the camera of the primary view. */
+  followCamera(): void {
+    if (!this.leadsCamera) this.viewer.rig.copyFrom(this.primary.viewer.rig);
+  }
+
+  /** Adapts to the current size of the canvas. */
+  resize(): void {
+    this.viewer.resize();
+  }
+
+  /** Updates the headers; `now` is in ms. */
+  updateStatus(first: Frame | undefined, now: number): void {
+    this.headers.update([first, this.frames.replayedFrame ?? this.frames.liveFrame(now)]);
+    const [here, there] = [this.primary.frames, this.frames].map(({ frame }) => frame?.time ?? 0);
+    this.resynchronise(Math.abs(here - there));
+  }
+
+  /** Shows an earlier time [s] like the primary view, or live frames if undefined. */
+  replayAt(time: number | undefined): void {
+    this.frames.replayAt(time);
+    this.forces.replayAt(time, this.forceRequest());
+  }
+
+  /** Queries the forces that this view is coloured by. */
+  queryForces(): void {
+    const seen = `${this.frames.frame?.tick} ${this.controller.session.value?.revision}`;
+    void this.forces.query(this.forceRequest(), seen);
+  }
+
+  private forceRequest(): ForceRequest {
+    const kind = forceKindOf(this.primary.tools.coloring.field.value);
+    return { vertex: undefined, kind, bodies: kind === undefined ? [] : this.colorizer.bodyNames };
+  }
+
+  /** The view that the user turned last determines the camera. */
+  private trackCameraLeader(canvas: HTMLCanvasElement): void {
+    const lead = (event: Event) => (this.leadsCamera = event.target === canvas);
+    for (const kind of ["pointerdown", "wheel", "keydown"])
+      document.addEventListener(kind, lead, { capture: true, passive: true });
+  }
+
+  /** Applies the settings of the primary view whenever they change. */
+  private followAppearance(): void {
+    const { layerStyles, tools } = this.primary;
+    const { coloring } = tools;
+    layerStyles.all.subscribe(() => this.applyLayerStyles());
+    tools.overlays.subscribe((shown) => this.viewer.showOverlays(shown));
+    tools.labels.subscribe((on) => this.annotations.setLabels(on));
+    tools.cut.subscribe((cut) => {
+      this.viewer.setCut(cut);
+      this.annotations.setLayers(layerStyles.all.value);
+    });
+    coloring.field.subscribe((kind) => {
+      this.connection.setExact(needsExactPositions(kind));
+      this.updateFields();
+    });
+    coloring.scale.subscribe(() => this.updateColors());
+    this.forces.magnitudes.subscribe(() => this.updateColors());
+  }
+
+  private viewerHost(): ViewerHost {
+    const { host, viewer } = this.primary;
+    return {
+      ...host,
+      advance: () => this.frames.advance(this.clock.now(), host.reducedMotion()),
+      frame: () => this.frames.displayed?.arrays,
+      beforeDraw: () => {
+        this.updateFields();
+        if (this.primary.tools.coloring.field.value !== undefined) this.updateColors();
+      },
+      afterDraw: () => {
+        this.annotations.draw();
+        if (this.leadsCamera) viewer.rig.copyFrom(this.viewer.rig);
+      },
+    };
+  }
+
+  private connectionListener(): ConnectionListener {
+    return {
+      state: () => undefined,
+      session: (session, fresh) => this.controller.receive(session, fresh),
+      scene: (bodies, report) => {
+        const deformableNames = new Set(
+          report.bodies.filter(({ role }) => role === "deformable").map(({ name }) => name),
+        );
+        this.show(bodies, deformableNames);
+      },
+      basis: (basis) => this.frames.addBasis(basis),
+      acknowledged: (response, sent, answered) => this.frames.acknowledged(response, sent, answered),
+      frame: (frame) => {
+        this.frames.receive(frame, this.clock.now());
+        this.ghosts.receive(frame);
+      },
+    };
+  }
+
+  private show(bodies: Body[], deformableNames: ReadonlySet<string>): void {
+    const deformable = bodies.filter(({ name }) => deformableNames.has(name));
+    this.frames.start(bodies);
+    this.viewer.show(bodies);
+    this.colorizer.start(deformable);
+    this.ghosts.start(deformable);
+    this.followCamera();
+    this.applyLayerStyles();
+  }
+
+  private applyLayerStyles(): void {
+    const styles = this.primary.layerStyles.all.value;
+    for (const { layer, opacity, visible } of styles) this.viewer.setLayerOpacity(layer, visible ? opacity : 0);
+    this.annotations.setLayers(styles);
+  }
+
+  private updateFields(): void {
+    const moment = this.frames.displayed;
+    if (moment !== undefined) this.colorizer.receive(moment.time, moment.arrays);
+  }
+
+  private updateColors(): void {
+    const { field, scale } = this.primary.tools.coloring;
+    this.viewer.setVertexColors(this.colorizer.colors(field.value, scale.value));
+  }
+
+  /** Synchronises the sessions again if others played them separately or the server restarted. */
+  private resynchronise(apart: number): void {
+    const { controller, mayChange } = this.primary;
+    const playing = [controller, this.controller].every(({ session }) => session.value?.state === SessionState.PLAYING);
+    this.checksOutOfStep =
+      playing && mayChange() && apart > maxTimeDifference && apart < maxWait ? this.checksOutOfStep + 1 : 0;
+    if (this.checksOutOfStep < checksBeforeResync) return;
+    this.checksOutOfStep = 0;
+    void controller.resynchronise();
+  }
+}

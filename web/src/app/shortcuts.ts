@@ -1,0 +1,52 @@
+import { make } from "../dom/elements";
+
+/** A key, its description, and its action. */
+export interface Shortcut {
+  key: string;
+  description: string;
+  run(): void;
+}
+
+const pointerGestures: [key: string, words: string][] = [
+  ["Drag, arrow keys", "Rotate the view"],
+  ["Wheel, + and −", "Zoom in and out"],
+  ["Right drag", "Move the view"],
+  ["Click", "Pick a vertex"],
+  ["Shift and drag", "Pull the tissue"],
+  ["Ctrl Z, Ctrl Shift Z", "Undo, redo"],
+];
+
+/** Handles keys outside of inputs and dialogs. Returns the dialog that lists them. */
+export function shortcuts(all: Shortcut[], undo: () => void, redo: () => void): HTMLDialogElement {
+  const dialog = make("dialog", { className: "chooser", id: "help", ariaLabel: "Keys and gestures" });
+  const close = make("button", { type: "button", onclick: () => dialog.close() }, "Close");
+  const help: Shortcut = { key: "?", description: "Show this list", run: () => dialog.showModal() };
+  const keys = [...all, help];
+  const rows = [
+    ...keys.map(({ key, description }) => [key === " " ? "Space" : key.toUpperCase(), description]),
+    ...pointerGestures,
+  ];
+  const list = rows.flatMap(([key, words]) => [make("dt", {}, make("kbd", {}, key)), make("dd", {}, words)]);
+  dialog.append(
+    make("header", {}, make("h2", {}, "Keys and gestures"), close),
+    make("dl", { className: "keys-list" }, ...list),
+  );
+  document.addEventListener("keydown", (event) => {
+    if ((event.target as Element | null)?.closest("dialog, input, select, textarea") || event.altKey) return;
+    if (event.ctrlKey || event.metaKey) return onUndoKey(event, undo, redo);
+    // A focused button is pressed by the space bar.
+    if (event.key === " " && (event.target as Element | null)?.closest("button, summary, a")) return;
+    const shortcut = keys.find(({ key }) => key === event.key);
+    if (shortcut === undefined) return;
+    event.preventDefault();
+    shortcut.run();
+  });
+  return dialog;
+}
+
+function onUndoKey(event: KeyboardEvent, undo: () => void, redo: () => void): void {
+  if (event.key.toLowerCase() !== "z") return;
+  event.preventDefault();
+  if (event.shiftKey) redo();
+  else undo();
+}

@@ -1,0 +1,48 @@
+import { type Client, ConnectError, createClient, type Transport } from "@connectrpc/connect";
+import { AccessService } from "../gen/phrenic/v1/access_pb";
+import { CompareService } from "../gen/phrenic/v1/compare_pb";
+import { ControlService } from "../gen/phrenic/v1/control_pb";
+import { ExportService } from "../gen/phrenic/v1/export_pb";
+import { FrameService } from "../gen/phrenic/v1/frames_pb";
+import { SceneService, SessionService } from "../gen/phrenic/v1/session_pb";
+import { StudyService } from "../gen/phrenic/v1/study_pb";
+import { UploadService } from "../gen/phrenic/v1/upload_pb";
+
+/** Clients of the server's services over one transport: gRPC-web in the page, a router in tests. */
+export interface Api {
+  access: Client<typeof AccessService>;
+  scenes: Client<typeof SceneService>;
+  sessions: Client<typeof SessionService>;
+  control: Client<typeof ControlService>;
+  frames: Client<typeof FrameService>;
+  comparisons: Client<typeof CompareService>;
+  exports: Client<typeof ExportService>;
+  uploads: Client<typeof UploadService>;
+  studies: Client<typeof StudyService>;
+}
+
+/** Creates the clients of all services over one transport. */
+export function createApi(transport: Transport): Api {
+  return {
+    access: createClient(AccessService, transport),
+    scenes: createClient(SceneService, transport),
+    sessions: createClient(SessionService, transport),
+    control: createClient(ControlService, transport),
+    frames: createClient(FrameService, transport),
+    comparisons: createClient(CompareService, transport),
+    exports: createClient(ExportService, transport),
+    uploads: createClient(UploadService, transport),
+    studies: createClient(StudyService, transport),
+  };
+}
+
+/** True if a call failed before a server could answer; browsers then throw a TypeError. */
+export function isUnreachable(error: unknown): boolean {
+  return error instanceof ConnectError && error.cause instanceof TypeError;
+}
+
+/** Returns the message of an error without its status code. */
+export function errorText(error: unknown): string {
+  if (isUnreachable(error)) return "the server cannot be reached";
+  return ConnectError.from(error).rawMessage || "the server gave no reason";
+}

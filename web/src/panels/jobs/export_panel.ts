@@ -1,0 +1,105 @@
+import { make } from "../../dom/elements";
+import { alertMessage, labelledRow, section } from "../../dom/rows";
+import { ExportValues } from "../../gen/phrenic/v1/export_pb";
+import type { Body } from "../../geometry/bodies";
+import type { ExportProgress, Exports } from "../../session/exports";
+import type { Signal } from "../../state/signal";
+
+const valueNames: [ExportValues, string][] = [
+  [ExportValues.UNSPECIFIED, "default"],
+  [ExportValues.POSITIONS, "positions"],
+  [ExportValues.DISPLACEMENTS, "displacements"],
+];
+
+/** Selects format, duration and bodies, and records the motion into a file. */
+export function exportPanel(exports: Exports, bodies: Signal<Body[]>): HTMLElement {
+  const start = make("button", { type: "button", id: "export", onclick: () => void exports.start() }, "Export…");
+  const rows = [
+    formatRow(exports),
+    bodyRow(exports, bodies),
+    numberRow("export-seconds", "Duration [s]", "8", (value) => exports.choose({ seconds: value ?? 8 })),
+    numberRow("export-fps", "Frames per second", "default", (value) => exports.choose({ framesPerSecond: value })),
+    valuesRow(exports),
+  ];
+  const [, bodyChoice, length, rate, values] = rows as [HTMLElement, ...HTMLElement[]];
+  const hint = make("p", { className: "faint" });
+  exports.choices.subscribe(() => {
+    const format = exports.format;
+    hint.textContent = format?.description ?? "";
+    length!.hidden = rate!.hidden = format?.instant ?? false;
+    bodyChoice!.hidden = format?.numbersOnly ?? false;
+    values!.hidden = (format?.values.length ?? 0) < 2;
+  });
+  void exports.loadFormats();
+  return section("Export the motion", false, ...rows, hint, start, progress(exports, start));
+}
+
+function formatRow(exports: Exports): HTMLElement {
+  const list = make("select", { id: "export-format" });
+  list.onchange = () => exports.choose({ format: list.value });
+  exports.formats.subscribe((formats) => {
+    list.replaceChildren(
+      ...formats.map(({ name, instant }) =>
+        make("option", { value: name }, instant ? `.${name}, current state` : `.${name}`),
+      ),
+    );
+    list.value = exports.choices.value.format;
+    exports.choose({});
+  });
+  return labelledRow("export-format", "Format", list);
+}
+
+function bodyRow(exports: Exports, bodies: Signal<Body[]>): HTMLElement {
+  const list = make("select", { id: "export-body" });
+  const all = () => bodies.value.map(({ name }) => name);
+  list.onchange = () => exports.choose({ bodies: list.value === "" ? [] : list.value === "*" ? all() : [list.value] });
+  bodies.subscribe((present) => {
+    const names = present.map(({ name }) => make("option", { value: name }, name));
+    list.replaceChildren(
+      make("option", { value: "" }, "deformable bodies"),
+      make("option", { value: "*" }, "all bodies"),
+      ...names,
+    );
+    exports.choose({ bodies: [] });
+  });
+  return labelledRow("export-body", "Bodies", list);
+}
+
+function valuesRow(exports: Exports): HTMLElement {
+  const list = make("select", { id: "export-values" });
+  list.append(...valueNames.map(([value, label]) => make("option", { value: String(value) }, label)));
+  list.onchange = () => exports.choose({ values: Number(list.value) });
+  return labelledRow("export-values", "Values", list);
+}
+
+function numberRow(id: string, label: string, placeholder: string, choose: (value: number | undefined) => void) {
+  const entry = make("input", { type: "number", step: "any", min: "0", id, placeholder });
+  entry.onchange = () => choose(entry.value === "" ? undefined : entry.valueAsNumber);
+  return labelledRow(id, label, entry);
+}
+
+/** Shows the progress and a link to the finished file. */
+function progress(exports: Exports, start: HTMLElement): HTMLElement {
+  const place = make("div", { id: "export-progress" });
+  exports.progress.subscribe((work) => {
+    const running = work.kind === "recording" || work.kind === "fetching";
+    (start as HTMLButtonElement).disabled = running;
+    place.replaceChildren(...progressElements(work, () => exports.stop()));
+  });
+  return place;
+}
+
+function progressElements(work: ExportProgress, stop: () => void): HTMLElement[] {
+  if (work.kind === "idle") return [];
+  if (work.kind === "failed") return [alertMessage(work.message)];
+  if (work.kind === "ready") {
+    const size = (work.size / 1e6).toFixed(1);
+    return [make("a", { href: work.url, download: work.file, id: "export-link" }, `Save ${work.file} (${size} MB)`)];
+  }
+  const bar = make("progress", { max: 1, ariaLabel: "Progress of the export" });
+  bar.value = work.done;
+  const left =
+    work.kind === "recording" && work.secondsLeft !== undefined ? `, ${work.secondsLeft.toFixed(0)} s left` : "";
+  const words = make("p", { className: "faint" }, `${work.kind === "recording" ? "Recording" : "Fetching"}${left}…`);
+  return [words, make("div", { className: "row" }, bar, make("button", { type: "button", onclick: stop }, "Stop"))];
+}

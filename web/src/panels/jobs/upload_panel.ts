@@ -1,0 +1,44 @@
+import { make } from "../../dom/elements";
+import { alertMessage, section } from "../../dom/rows";
+import type { SurfaceReport } from "../../gen/phrenic/v1/inspect_pb";
+import type { UploadProgress, Uploads } from "../../session/uploads";
+
+/** Uploads a surface file to the server, and shows its name for scenes and the report on the surface. */
+export function uploadPanel(uploads: Uploads): HTMLElement {
+  const file = make("input", { type: "file", id: "upload-file", hidden: true });
+  file.ariaLabel = "Surface file to upload";
+  file.onchange = () => {
+    const [chosen] = file.files ?? [];
+    if (chosen !== undefined) void uploads.upload(chosen).finally(() => (file.value = ""));
+  };
+  const hint = make("p", { className: "faint" });
+  uploads.extensions.subscribe((endings) => {
+    file.accept = endings.join(",");
+    hint.textContent = `A surface (${endings.join(", ")}) in millimetres, for scenes of any session.`;
+  });
+  const open = make("button", { type: "button", id: "upload", onclick: () => file.click() }, "Upload a surface…");
+  const place = make("div", { id: "upload-progress" });
+  uploads.progress.subscribe((work) => place.replaceChildren(...progressElements(work)));
+  void uploads.loadFormats();
+  return section("Surface files", false, open, file, hint, place);
+}
+
+function progressElements(work: UploadProgress): HTMLElement[] {
+  if (work.kind === "idle") return [];
+  if (work.kind === "failed") return [alertMessage(work.message)];
+  if (work.kind === "sending") {
+    const bar = make("progress", { max: 1, value: work.done, ariaLabel: "Progress of the upload" });
+    return [make("p", { className: "faint" }, `Sending ${work.file}…`), bar];
+  }
+  const path = make("input", { type: "text", readOnly: true, value: work.path, id: "upload-path" });
+  path.ariaLabel = "Name of the file in scenes";
+  path.onfocus = () => path.select();
+  return [make("p", {}, `${work.file} is uploaded. Its name in scenes:`), path, ...reported(work.report)];
+}
+
+function reported(report: SurfaceReport | undefined): HTMLElement[] {
+  if (report === undefined) return [];
+  const counts = `${report.vertices} vertices, ${report.triangles} triangles`;
+  const repairs = report.repairs.map((words) => make("li", {}, words));
+  return [make("p", { className: "faint" }, counts), make("ul", { className: "faint" }, ...repairs)];
+}

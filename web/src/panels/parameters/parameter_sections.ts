@@ -1,0 +1,93 @@
+import { button, make } from "../../dom/elements";
+import { icon } from "../../dom/icons";
+import { section, switchRow } from "../../dom/rows";
+import { ParametersSchema } from "../../gen/phrenic/v1/parameters_pb";
+import type { CompileReport } from "../../gen/phrenic/v1/report_pb";
+import type { Preset } from "../../gen/phrenic/v1/scene_pb";
+import { type Control, parameterControls, type ParameterName, type SwitchControl } from "../../parameters/controls";
+import type { SessionController } from "../../session/session_controller";
+import { Signal } from "../../state/signal";
+import { ChoiceRow } from "./choice_row";
+import { NumberRow } from "./number_row";
+import { PresetRow } from "./preset_row";
+import { pullRow } from "./pull_row";
+
+/** Matches the names of the solver's parameters; all others belong to breathing. */
+const solverParameter = /integrator|step|solver/i;
+
+/**
+ * Sections with the live parameters, one row per field of the schema. Rows of parameters without effect in this scene
+ * are hidden. Rows follow the changes of other viewers.
+ */
+export function parameterSections(
+  controller: SessionController,
+  report?: Signal<CompileReport | undefined>,
+  presets = new Signal<Preset[]>([]),
+): HTMLElement[] {
+  const rows = parameterControls().map((control) => parameterRow(control, controller));
+  controller.session.subscribe((session) => {
+    if (session?.parameters === undefined) return;
+    for (const { name, show } of rows) if (!controller.pending(name)) show(session.parameters[name]);
+  });
+  report?.subscribe((value) => {
+    const idle = new Set(value?.idleParameters.map((name) => localNameOf(name)));
+    for (const { name, element } of rows) element.hidden = idle.has(name);
+  });
+  const elements = (solver: boolean) =>
+    rows.filter(({ name }) => solverParameter.test(name) === solver).map(({ element }) => element);
+  const ways = new PresetRow(controller, presets).element;
+  return [
+    section("Breathing", true, ways, changesRow(controller), pullRow(controller), ...elements(false)),
+    section("Solver", true, ...elements(true)),
+  ];
+}
+
+/** Buttons to undo, redo and reset all parameters. */
+function changesRow(controller: SessionController): HTMLElement {
+  const undo = button("Undo", () => controller.undo(), icon("undo"), "Undo");
+  const redo = button("Redo", () => controller.redo(), icon("redo"), "Redo");
+  const all = button("Reset all parameters", () => void controller.resetAll(), "Reset all");
+  [undo.id, redo.id, all.id] = ["undo", "redo", "reset-all"];
+  controller.changes.state.subscribe((state) => {
+    undo.disabled = !state.undo;
+    redo.disabled = !state.redo;
+  });
+  return make("div", { className: "changes" }, undo, redo, all);
+}
+
+function localNameOf(name: string): string | undefined {
+  return ParametersSchema.fields.find((field) => field.name === name)?.localName;
+}
+
+interface Row {
+  name: ParameterName;
+  element: HTMLElement;
+  show(value: number | boolean | undefined): void;
+}
+
+function parameterRow(control: Control, controller: SessionController): Row {
+  const name = control.field as ParameterName;
+  if (control.kind === "switch") return parameterSwitch(control, name, controller);
+  const events = {
+    set: (value: number) => controller.set(name, value),
+    reset: () => void reset(controller, name),
+  };
+  const row = control.kind === "choice" ? new ChoiceRow(control, events) : new NumberRow(control, events);
+  return { name, element: row.element, show: (value) => typeof value === "number" && row.show(value) };
+}
+
+function parameterSwitch(control: SwitchControl, name: ParameterName, controller: SessionController): Row {
+  const { row, input } = switchRow(control.label, control.help, (on) => controller.set(name, on));
+  input.id = `parameter-${name}`;
+  return {
+    name,
+    element: row,
+    show: (value) => (input.checked = value === undefined ? input.checked : value === true),
+  };
+}
+
+/** Sets the parameter to the initial value of the scene. */
+async function reset(controller: SessionController, name: ParameterName): Promise<void> {
+  const value = (await controller.startValues())?.[name];
+  if (typeof value === "number" || typeof value === "boolean") controller.set(name, value);
+}

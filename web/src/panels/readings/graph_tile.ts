@@ -1,0 +1,81 @@
+import { download } from "../../dom/download";
+import { make } from "../../dom/elements";
+import type { GraphSpec } from "../../graphs/catalogue";
+import { curveColor } from "../../graphs/colors";
+import { toCsv, toSvg } from "../../graphs/files";
+import { Plot, type PlotEvents } from "../../graphs/plot";
+import { graphData, type GraphData, type TimeSpan } from "../../graphs/window";
+import type { TimeSeries } from "../../state/time_series";
+
+/** One graph with its title, legend, current values, and buttons to save it. */
+export class GraphTile {
+  readonly element: HTMLElement;
+  private readonly plot: Plot;
+  private readonly readings: HTMLElement[];
+  private data: GraphData = { times: [], abscissa: undefined, curves: [] };
+
+  constructor(
+    private readonly spec: GraphSpec,
+    private readonly history: TimeSeries,
+    private readonly fileName: () => string,
+    events: PlotEvents,
+  ) {
+    this.plot = new Plot(spec, events);
+    this.readings = spec.curves.map(() => make("b"));
+    const keys = spec.curves.map(({ name }, i) => this.key(name, i));
+    const save = ["SVG", "CSV"].map((kind) => this.saveButton(kind as "SVG" | "CSV"));
+    // A single curve needs no legend.
+    const alone = keys.length === 1;
+    const title = make("h3", { title: spec.help ?? "" }, this.title(), ...(alone ? this.readings : []));
+    const head = make("header", {}, title, make("div", { className: "save" }, ...save));
+    this.element = make("section", { className: "tile", ariaLabel: spec.title }, head, this.plot.element);
+    if (!alone) this.element.append(make("div", { className: "keys" }, ...keys));
+    this.element.dataset.graph = spec.id;
+  }
+
+  /** Shows a time span with the values at index `place`, or at its end. */
+  show(span: TimeSpan, place: number | undefined): void {
+    this.data = graphData(this.spec, this.history, span);
+    this.plot.show(this.data, span);
+    this.showValues(place);
+  }
+
+  /** Shows the values at an index of the data, or the last ones if undefined. */
+  showValues(place: number | undefined): void {
+    this.data.curves.forEach((values, i) => {
+      const value = values[place ?? values.length - 1] as number | undefined;
+      const words = value === undefined ? "" : formatReading(value);
+      if (this.readings[i].textContent !== words) this.readings[i].textContent = words;
+    });
+  }
+
+  private title(): string {
+    const { title, unit, abscissa } = this.spec;
+    if (abscissa !== undefined) return `${title} [${unit}, ${abscissa.unit}]`;
+    return unit === "" ? title : `${title} [${unit}]`;
+  }
+
+  private key(name: string, order: number): HTMLElement {
+    const swatch = make("span", { className: "swatch" });
+    swatch.style.backgroundColor = curveColor(order);
+    return make("span", { className: "key" }, swatch, make("span", {}, name), this.readings[order]);
+  }
+
+  private saveButton(kind: "SVG" | "CSV"): HTMLElement {
+    const save = () => {
+      const content = kind === "SVG" ? toSvg(this.spec, this.data) : toCsv(this.spec, this.data);
+      const type = kind === "SVG" ? "image/svg+xml" : "text/csv";
+      const file = `${this.fileName()}-${this.spec.id.replaceAll(/[^a-z0-9]+/g, "-")}.${kind.toLowerCase()}`;
+      download(file, new Blob([content], { type }));
+    };
+    const title = `Save ${this.spec.title} as ${kind}`;
+    return make("button", { type: "button", className: "small", title, ariaLabel: title, onclick: save }, kind);
+  }
+}
+
+/** Formats three significant digits, with a minus sign only for numbers that are not zero. */
+function formatReading(value: number): string {
+  const size = Math.abs(value);
+  const text = value.toFixed(size >= 100 ? 0 : size >= 10 ? 1 : size >= 1 ? 2 : 3);
+  return Number(text) === 0 ? text.replace("-", "") : text.replace("-", "−");
+}

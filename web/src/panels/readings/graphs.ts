@@ -1,0 +1,114 @@
+import { button, make } from "../../dom/elements";
+import { icon } from "../../dom/icons";
+import type { Frame } from "../../gen/phrenic/v1/frames_pb";
+import { graphsOf, type GraphSpec, valuesOf } from "../../graphs/catalogue";
+import type { TimeSpan } from "../../graphs/window";
+import { TimeSeries } from "../../state/time_series";
+import { GraphTile } from "./graph_tile";
+
+/** Duration that is kept, and the durations that can be shown [simulated s]. */
+const kept = 120;
+const lengths = [6, 12, 30, 60, 120];
+
+/** The series of the vertices that this viewer tracks. */
+export interface TrackedSeries {
+  spec: GraphSpec | undefined;
+  history: TimeSeries;
+}
+
+/** Graphs of all values in the frames on a common time axis; they hold, zoom and resume together. */
+export class GraphsPanel {
+  readonly element = make("div", { className: "graphs" });
+  private readonly history = new TimeSeries(kept);
+  private readonly list = make("div", { className: "tiles" });
+  private readonly pause: HTMLButtonElement;
+  private readonly words = make("span", { className: "faint", id: "graphs-span" });
+  private readonly length = make("select", { id: "graphs-length", ariaLabel: "Time shown", title: "Time shown" });
+  private tiles: GraphTile[] = [];
+  private specsKey = "";
+  private held: TimeSpan | undefined;
+  private drawn = -1;
+
+  constructor(
+    private readonly fileName: () => string,
+    private readonly tracked: TrackedSeries,
+  ) {
+    this.length.append(...lengths.map((each) => make("option", { value: String(each) }, `${each} s`)));
+    this.length.value = "12";
+    this.length.onchange = () => this.resume();
+    this.pause = button("Hold the graphs", () => (this.held ? this.resume() : this.hold(this.newest())), icon("pause"));
+    this.pause.id = "graphs-pause";
+    this.pause.className = "quiet";
+    const title = make("h2", {}, "Graphs");
+    this.element.append(make("header", { className: "bar" }, title, this.words, this.length, this.pause), this.list);
+  }
+
+  /** Records every frame, also those between two drawings. */
+  receive(frame: Frame): void {
+    this.history.add(frame.time, valuesOf(frame));
+    const { spec } = this.tracked;
+    const specs = [...graphsOf(frame), ...(spec === undefined ? [] : [spec])];
+    const offered = JSON.stringify(specs);
+    if (offered === this.specsKey) return;
+    this.specsKey = offered;
+    this.rebuild(specs);
+  }
+
+  /** Removes all data, for another scene. */
+  clear(): void {
+    this.history.clear();
+    this.resume();
+  }
+
+  /** Draws new data; returns early if there is none. */
+  draw(): void {
+    const { times } = this.history;
+    const last = times.at(-1) ?? 0;
+    if (last === this.drawn || this.held !== undefined || this.element.clientWidth === 0) return;
+    this.drawn = last;
+    this.show(this.newest());
+  }
+
+  private rebuild(specs: GraphSpec[]): void {
+    const events = {
+      zoom: (span: TimeSpan) => this.hold(span),
+      resume: () => this.resume(),
+      cursor: (place: number | undefined) => this.tiles.forEach((tile) => tile.showValues(place)),
+    };
+    this.tiles = specs.map((spec) => {
+      const history = spec === this.tracked.spec ? this.tracked.history : this.history;
+      return new GraphTile(spec, history, this.fileName, events);
+    });
+    this.list.replaceChildren(...this.tiles.map(({ element }) => element));
+    this.drawn = -1;
+  }
+
+  private newest(): TimeSpan {
+    const end = Math.max(this.history.times.at(-1) ?? 0, Number(this.length.value));
+    return { start: end - Number(this.length.value), end };
+  }
+
+  private hold(span: TimeSpan): void {
+    this.held = span;
+    this.words.textContent = `held, ${span.start.toFixed(1)} to ${span.end.toFixed(1)} s`;
+    this.label("Resume the graphs", "play");
+    this.show(span);
+  }
+
+  private resume(): void {
+    this.held = undefined;
+    this.drawn = -1;
+    this.words.textContent = "";
+    this.label("Hold the graphs", "pause");
+    this.draw();
+  }
+
+  private label(words: string, name: "play" | "pause"): void {
+    this.pause.ariaLabel = this.pause.title = words;
+    this.pause.replaceChildren(icon(name));
+  }
+
+  private show(span: TimeSpan): void {
+    for (const tile of this.tiles) tile.show(span, undefined);
+  }
+}

@@ -1,0 +1,95 @@
+import { make } from "../../dom/elements";
+import type { CompileReport } from "../../gen/phrenic/v1/report_pb";
+import { permalinkOf } from "../../session/permalink";
+import type { SessionController } from "../../session/session_controller";
+import type { Signal } from "../../state/signal";
+
+/** What the dialog acts on. */
+export interface Sharing {
+  controller: SessionController;
+  report: Signal<CompileReport | undefined>;
+  /** Opens the page with this query string. */
+  open(query: string): void;
+  photograph(): void;
+}
+
+/** A dialog with links to this session, copies of it, and a screenshot. */
+export class ShareDialog {
+  readonly element = make("dialog", { className: "chooser", id: "share", ariaLabel: "Share and copy" });
+  private readonly session = linkRow("share-session", "This session, for others to join");
+  private readonly frame = linkRow("share-embed", "HTML to embed the view in another page");
+  private readonly permalink = linkRow("share-permalink", "This state, simulated again when the link is opened");
+
+  constructor(private readonly sharing: Sharing) {
+    const close = make("button", { type: "button", onclick: () => this.element.close() }, "Close");
+    const rerunWords =
+      "Contains scene, parameters and tick. The state is identical, bit for bit, if the parameters have not changed since the start.";
+    this.element.append(
+      make("header", {}, make("h2", {}, "Share"), close),
+      this.session.row,
+      this.permalink.row,
+      make("p", { className: "faint" }, rerunWords),
+      this.frame.row,
+      make("p", { className: "faint" }, "Pages of other origins need phrenicd --allow-origin."),
+      make("h2", {}, "Copy"),
+      make("ul", {}, ...this.copies()),
+    );
+  }
+
+  /** Opens the dialog with links to the current state. */
+  show(): void {
+    const { controller, report } = this.sharing;
+    const session = controller.session.value;
+    const base = `${location.origin}${location.pathname}`;
+    this.session.entry.value = `${base}?${new URLSearchParams({ session: controller.sessionId })}`;
+    const embedded = `${base}?${new URLSearchParams({ session: controller.sessionId })}&amp;embed`;
+    this.frame.entry.value = `<iframe src="${embedded}" width="720" height="540" title="Phrenic"></iframe>`;
+    if (session !== undefined) this.permalink.entry.value = base + permalinkOf(session, report.value?.sceneHash ?? "");
+    this.element.showModal();
+  }
+
+  private copies(): HTMLElement[] {
+    const { controller, open, photograph } = this.sharing;
+    const here = controller.sessionId;
+    return [
+      action("share-fork", "Your own copy", "A copy in the current state that you own.", "Fork", async () => {
+        const id = await controller.fork();
+        if (id !== undefined) open(`?${new URLSearchParams({ session: id })}`);
+      }),
+      action(
+        "share-compare",
+        "Side by side",
+        "A copy beside this session, with its own parameters and a common camera.",
+        "Compare",
+        async () => {
+          const id = await controller.forkForComparison();
+          if (id !== undefined) open(`?${new URLSearchParams({ session: id, beside: here })}`);
+        },
+      ),
+      action("share-picture", "Screenshot", "The current view as PNG.", "Save", async () => photograph()),
+    ];
+  }
+}
+
+function linkRow(id: string, label: string) {
+  const entry = make("input", { type: "text", id, readOnly: true });
+  entry.onfocus = () => entry.select();
+  const copy = make("button", { type: "button", ariaLabel: `Copy the link: ${label}` }, "Copy");
+  copy.onclick = async () => {
+    // The clipboard may be unavailable; selected text can always be copied.
+    await navigator.clipboard?.writeText(entry.value).catch(() => entry.select());
+    copy.textContent = "Copied";
+    setTimeout(() => (copy.textContent = "Copy"), 1500);
+  };
+  return { row: make("div", { className: "link-row" }, make("label", { htmlFor: id }, label), entry, copy), entry };
+}
+
+function action(id: string, title: string, detail: string, verb: string, act: () => Promise<void>): HTMLElement {
+  const go = make("button", { type: "button", id, ariaLabel: `${verb}: ${title}` }, verb);
+  go.onclick = async () => {
+    go.disabled = true;
+    await act();
+    go.disabled = false;
+  };
+  return make("li", {}, make("div", {}, make("b", {}, title), make("span", {}, detail)), go);
+}

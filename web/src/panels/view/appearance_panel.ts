@@ -1,0 +1,123 @@
+import type { Coloring } from "../../appearance/coloring";
+import { type FieldKind, fields } from "../../appearance/fields";
+import type { GhostKind } from "../../appearance/ghosts";
+import type { LayerStyles } from "../../appearance/layer_styles";
+import { make } from "../../dom/elements";
+import { labelledRow, section, switchRow } from "../../dom/rows";
+import { forceKindLabel } from "../../session/force_queries";
+import type { Signal } from "../../state/signal";
+import type { Cut } from "../../viewer/clipping";
+import type { OverlayKind } from "../../viewer/overlays";
+import { cutRows } from "./cut_rows";
+import { projectorRow } from "./projector_row";
+
+/** The settings that the panel changes. */
+export interface AppearanceSettings {
+  layerStyles: LayerStyles;
+  overlays: Signal<ReadonlySet<OverlayKind>>;
+  coloring: Coloring;
+  labels: Signal<boolean>;
+  forceKinds: Signal<string[]>;
+  setCut(cut: Cut): number;
+  ghost: Signal<GhostKind>;
+}
+
+const overlayRows: [OverlayKind, string, string][] = [
+  ["wireframe", "Show wireframe", "The edges of every surface."],
+  ["links", "Show rigid links", "The links of constant length: the tensegrity."],
+  ["lines", "Show action lines", "The lines along which the muscle pulls."],
+  ["attachments", "Show attachments", "Vertices attached to bones, and fixed vertices."],
+];
+
+const ghosts: [GhostKind, string][] = [
+  ["none", "None"],
+  ["rest", "At rest"],
+  ["expiration", "At the end of expiration"],
+  ["now", "Current state"],
+];
+
+/** A panel for colours, transparency, clipping, ghost, overlays and labels. */
+export function appearancePanel(view: AppearanceSettings): HTMLElement {
+  const ghost = choice("ghost", "Ghost", "Deformable bodies in another state", ghosts, (kind) => view.ghost.set(kind));
+  view.ghost.subscribe((kind) => (ghost.querySelector("select")!.value = kind));
+  const labels = switchRow("Show names", "Names of the layers.", (on) => view.labels.set(on));
+  labels.input.id = "show-labels";
+  const rows = overlayRows.map(([kind, label, help]) => overlayRow(kind, label, help, view.overlays));
+  const cut = cutRows((value) => view.setCut(value));
+  return section(
+    "View",
+    true,
+    coloringRow(view.coloring, view.forceKinds),
+    transparencyRow(view.layerStyles),
+    ghost,
+    ...cut,
+    ...rows,
+    labels.row,
+    projectorRow(),
+  );
+}
+
+function coloringRow(coloring: Coloring, kinds: Signal<string[]>): HTMLElement {
+  const options: [FieldKind | "own", string][] = [
+    ["own", "Layer colours"],
+    ...fields.map(({ kind, label }): [FieldKind, string] => [kind, label]),
+  ];
+  const help = "Field that colours the deformable bodies";
+  const row = choice("coloring-kind", "Colour by", help, options, (kind) =>
+    coloring.choose(kind === "own" ? undefined : kind),
+  );
+  // The available kinds of force are known later, and change when a vertex is pulled.
+  const group = make("optgroup", { label: "Force" });
+  row.querySelector("select")?.append(group);
+  kinds.subscribe((all) => {
+    const wanted = all.map((kind) => make("option", { value: `force:${kind}` }, upper(forceKindLabel(kind))));
+    group.hidden = all.length === 0;
+    group.replaceChildren(...wanted);
+    row.querySelector("select")!.value = coloring.field.value ?? "own";
+  });
+  return row;
+}
+
+const upper = (words: string) => words.charAt(0).toUpperCase() + words.slice(1);
+
+function choice<T extends string>(
+  id: string,
+  label: string,
+  title: string,
+  options: [T, string][],
+  chosen: (value: T) => void,
+): HTMLElement {
+  const list = make("select", { id, title });
+  list.append(...options.map(([value, words]) => make("option", { value }, words)));
+  list.onchange = () => chosen(list.value as T);
+  return labelledRow(id, label, list);
+}
+
+function overlayRow(
+  kind: OverlayKind,
+  label: string,
+  help: string,
+  overlays: Signal<ReadonlySet<OverlayKind>>,
+): HTMLElement {
+  const { row, input } = switchRow(label, help, (on) => {
+    const rest = [...overlays.value].filter((each) => each !== kind);
+    overlays.set(new Set(on ? [...rest, kind] : rest));
+  });
+  input.id = `show-${kind}`;
+  overlays.subscribe((shown) => (input.checked = shown.has(kind)));
+  return row;
+}
+
+function transparencyRow(layerStyles: LayerStyles): HTMLElement {
+  const slider = make("input", { type: "range", id: "transparency", min: "0", max: "100", step: "1" });
+  const output = make("output", { className: "unit" });
+  slider.oninput = () => layerStyles.change(layerStyles.mainLayer, { opacity: 1 - slider.valueAsNumber / 100 });
+  layerStyles.all.subscribe(() => {
+    const percent = Math.round(100 * (1 - (layerStyles.get(layerStyles.mainLayer)?.opacity ?? 1)));
+    slider.value = String(percent);
+    slider.style.setProperty("--filled", `${percent}%`);
+    output.textContent = `${percent} %`;
+  });
+  const label = make("label", { htmlFor: "transparency" }, "Transparency");
+  return make("div", { className: "number-row plain" }, label, output, slider);
+}

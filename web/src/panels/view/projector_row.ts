@@ -1,0 +1,16 @@
+import { switchRow } from "../../dom/rows";
+
+const key = "phrenic-projector";
+
+/** A switch for large type and strong contrast, stored in the browser. */
+export function projectorRow(memory: Pick<Storage, "getItem" | "setItem"> = localStorage): HTMLElement {
+  const turn = (on: boolean) => {
+    document.documentElement.classList.toggle("projector", on);
+    memory.setItem(key, on ? "on" : "off");
+  };
+  const { row, input } = switchRow("Projector mode", "Large type and strong contrast.", turn);
+  input.id = "projector";
+  input.checked = memory.getItem(key) === "on";
+  turn(input.checked);
+  return row;
+}

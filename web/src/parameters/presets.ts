@@ -1,0 +1,22 @@
+import { type Parameters, ParametersSchema } from "../gen/phrenic/v1/parameters_pb";
+import type { Preset } from "../gen/phrenic/v1/scene_pb";
+import type { ParameterName } from "./controls";
+
+/** Formats "paralysis-right" as "Paralysis right". */
+export function presetLabel({ name }: Preset): string {
+  return name.charAt(0).toUpperCase() + name.slice(1).replaceAll("-", " ");
+}
+
+/** Returns the first preset that is active. */
+export function activePreset(presets: Preset[], parameters: Parameters | undefined): Preset | undefined {
+  return parameters === undefined ? undefined : presets.find((preset) => isActive(preset, parameters));
+}
+
+/** True if all parameters that the preset sets have its values. */
+export function isActive(preset: Preset, parameters: Parameters): boolean {
+  return ParametersSchema.fields.every((field) => {
+    const name = field.localName as ParameterName;
+    const wanted = preset.parameters?.[name];
+    return wanted === undefined || wanted === parameters[name];
+  });
+}

@@ -1,0 +1,46 @@
+/** Values over the last `span` seconds of simulated time. */
+export class TimeSeries {
+  readonly times: number[] = [];
+  readonly series = new Map<string, number[]>();
+
+  constructor(readonly span: number) {}
+
+  /** Adds values at `time` [s]. Starts again if time goes back or the names change. */
+  add(time: number, values: [name: string, value: number][]): void {
+    const last = this.times.at(-1);
+    if (last !== undefined && time === last) return;
+    const known = [...this.series.keys()];
+    const same = values.length === known.length && values.every(([name], i) => name === known[i]);
+    if (!same || (last !== undefined && time < last)) this.restart(values.map(([name]) => name));
+    this.times.push(time);
+    for (const [name, value] of values) this.series.get(name)?.push(value);
+    if (this.times[0] < time - this.span) this.discard(this.indexAt(time - this.span));
+  }
+
+  /** Returns the first index with a time of `time` [s] or later. */
+  indexAt(time: number): number {
+    let [low, high] = [0, this.times.length];
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (this.times[middle] < time) low = middle + 1;
+      else high = middle;
+    }
+    return low;
+  }
+
+  /** Removes all values and names. */
+  clear(): void {
+    this.restart([]);
+  }
+
+  private restart(names: string[]): void {
+    this.times.length = 0;
+    this.series.clear();
+    for (const name of names) this.series.set(name, []);
+  }
+
+  private discard(count: number): void {
+    this.times.splice(0, count);
+    for (const values of this.series.values()) values.splice(0, count);
+  }
+}

@@ -1,0 +1,48 @@
+/** Interval above which an animation frame is slow [ms]. */
+const slowInterval = 70;
+/** Slow frames in a row before the resolution is reduced, and idle time before one drawing in full resolution [ms]. */
+const maxSlowFrames = 6;
+const restDelay = 400;
+const minRatio = 0.5;
+
+/**
+ * Device pixels per CSS pixel. A slow machine draws fewer pixels during motion, so that the page stays responsive, and
+ * the full number when the scene is at rest.
+ */
+export class AdaptiveResolution {
+  private movingRatio: number;
+  private currentRatio: number;
+  private slowFrames = 0;
+  private lastDrawn = -Infinity;
+  private lastFrame = -Infinity;
+
+  constructor(private readonly fullRatio: number) {
+    this.movingRatio = fullRatio;
+    this.currentRatio = fullRatio;
+  }
+
+  /** Current number of device pixels per CSS pixel. */
+  get ratio(): number {
+    return this.currentRatio;
+  }
+
+  /** Records an animation frame at `now` [ms] and whether it is drawn. Returns true if `ratio` changes. */
+  recordFrame(now: number, draws: boolean): boolean {
+    const steady = draws && this.lastDrawn === this.lastFrame;
+    if (steady) this.judge(now - this.lastFrame);
+    this.lastFrame = now;
+    if (draws) this.lastDrawn = now;
+    const wanted =
+      !draws && now - this.lastDrawn > restDelay ? this.fullRatio : draws ? this.movingRatio : this.currentRatio;
+    const changed = wanted !== this.currentRatio;
+    this.currentRatio = wanted;
+    return changed;
+  }
+
+  private judge(interval: number): void {
+    this.slowFrames = interval > slowInterval ? this.slowFrames + 1 : 0;
+    if (this.slowFrames < maxSlowFrames) return;
+    this.slowFrames = 0;
+    this.movingRatio = Math.max(Math.min(minRatio, this.fullRatio), this.movingRatio * 0.7);
+  }
+}

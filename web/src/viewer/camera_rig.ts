@@ -1,0 +1,192 @@
+import * as THREE from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import type { CameraPose } from "../geometry/camera_pose";
+import { cameraPosition, directionLetter, type FreeArea, openingView, planeAxes, type ViewName } from "./named_views";
+
+/** The orientation and scale of a view. */
+export interface ViewOrientation {
+  left: string;
+  right: string;
+  top: string;
+  bottom: string;
+  /** CSS pixels per metre at the centre of the scene. */
+  pixelsPerMetre: number;
+  /** Unit vectors to the right, up and towards the camera. */
+  axes: [THREE.Vector3, THREE.Vector3, THREE.Vector3];
+}
+
+/** Parts of the canvas that panels cover at its edges [CSS pixels]. */
+export interface Insets {
+  left: number;
+  top: number;
+  bottom: number;
+}
+
+const flightDuration = 350;
+/** Fraction of the distance to the remote camera that remains after one frame. */
+const chaseRemainder = 0.7;
+
+/** The camera and its controls: orbit, zoom, pan, and transitions to named views. */
+export class CameraRig {
+  readonly camera = new THREE.PerspectiveCamera(26, 1, 0.01, 100);
+  private readonly controls: OrbitControls;
+  private points: THREE.Vector3[] = [];
+  private center = new THREE.Vector3();
+  private homeView: ViewName = "home";
+  private freeArea: FreeArea = { width: 1, height: 1 };
+  /** The named view that the camera shows or moves to; undefined after the user moved it. */
+  private namedView: ViewName | undefined;
+  private extent = 1;
+  private flat = false;
+  private remotePose: CameraPose | undefined;
+  private flight: { from: THREE.Vector3; to: THREE.Vector3; start: number } | undefined;
+
+  constructor(
+    private readonly canvas: HTMLCanvasElement,
+    private readonly onChange: () => void,
+    private readonly reducedMotion: () => boolean,
+  ) {
+    this.camera.up.set(0, 0, 1);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.enableDamping = !reducedMotion();
+    this.controls.dampingFactor = 0.12;
+    this.controls.addEventListener("change", onChange);
+    this.controls.addEventListener("start", () => (this.flight = this.namedView = this.remotePose = undefined));
+  }
+
+  /** Fits the camera to a new scene; `points` is a sample of its vertices. */
+  frame(points: THREE.Vector3[]): void {
+    const box = new THREE.Box3().setFromPoints(points);
+    this.points = points;
+    this.center = box.getCenter(new THREE.Vector3());
+    const size = box.getSize(new THREE.Vector3()).length() || 1;
+    this.extent = size;
+    this.camera.near = size / 100;
+    this.camera.far = size * 20;
+    this.controls.minDistance = size / 20;
+    this.controls.maxDistance = size * 8;
+    this.homeView = openingView(box);
+    this.flat = planeAxes(box) !== undefined;
+    this.goTo("home", true);
+  }
+
+  /** Moves to a named view. */
+  goTo(view: ViewName, atOnce = this.reducedMotion()): void {
+    this.namedView = view;
+    this.remotePose = undefined;
+    this.controls.target.copy(this.center);
+    const side = view === "home" ? this.homeView : view;
+    // A planar scene needs room for its axes.
+    const air = this.flat ? 0.84 : 1;
+    const free = { width: air * this.freeArea.width, height: air * this.freeArea.height };
+    const to = cameraPosition(side, this.points, this.center, this.camera, free);
+    this.flight = undefined;
+    if (atOnce) this.camera.position.copy(to);
+    else this.flight = { from: this.camera.position.clone(), to, start: performance.now() };
+    this.onChange();
+  }
+
+  /** Centres the scene in the part of the canvas that panels do not cover. */
+  resize({ left, top, bottom }: Insets): void {
+    const width = Math.max(this.canvas.clientWidth, 1);
+    const height = Math.max(this.canvas.clientHeight, 1);
+    this.freeArea = { width: Math.max(0.3, 1 - left / width), height: Math.max(0.3, 1 - (top + bottom) / height) };
+    this.camera.aspect = width / height;
+    this.camera.setViewOffset(width, height, -left / 2, (bottom - top) / 2, width, height);
+    this.camera.updateProjectionMatrix();
+    if (this.namedView !== undefined) this.goTo(this.namedView, true);
+  }
+
+  /** Distance from the camera to its target, and the extent of the scene [m]. */
+  get depth(): { distance: number; extent: number } {
+    return { distance: this.camera.position.distanceTo(this.controls.target), extent: this.extent };
+  }
+
+  /** Projects a point [m] to the canvas [CSS pixels]. */
+  project(point: THREE.Vector3): [x: number, y: number] {
+    const { x, y } = point.clone().project(this.camera);
+    return [((x + 1) / 2) * this.canvas.clientWidth, ((1 - y) / 2) * this.canvas.clientHeight];
+  }
+
+  /** Copies the camera of another view of the same scene. */
+  copyFrom({ camera, controls }: CameraRig): void {
+    const apart = this.camera.position.distanceTo(camera.position) + this.controls.target.distanceTo(controls.target);
+    if (apart < 1e-5 * this.extent) return;
+    this.flight = this.namedView = undefined;
+    this.camera.position.copy(camera.position);
+    this.controls.target.copy(controls.target);
+    this.onChange();
+  }
+
+  /** The current camera pose [m]. */
+  get pose(): CameraPose {
+    const plain = ({ x, y, z }: THREE.Vector3) => ({ x, y, z });
+    return { eye: plain(this.camera.position), target: plain(this.controls.target) };
+  }
+
+  /** Moves smoothly to a remote camera, whose poses arrive a few times per second. */
+  moveTo(pose: CameraPose): void {
+    this.flight = this.namedView = undefined;
+    this.remotePose = pose;
+    this.onChange();
+  }
+
+  private chase({ eye, target }: CameraPose): void {
+    const part = this.reducedMotion() ? 1 : 1 - chaseRemainder;
+    this.camera.position.lerp(eye, part);
+    this.controls.target.lerp(target, part);
+    if (this.camera.position.distanceTo(eye) < 1e-5 * this.extent) this.remotePose = undefined;
+    this.onChange();
+  }
+
+  /** Advances transitions and damping to `now` [ms]. */
+  update(now: number): void {
+    if (this.remotePose !== undefined) this.chase(this.remotePose);
+    if (this.flight !== undefined) this.fly(this.flight, now);
+    this.controls.update();
+  }
+
+  private fly({ from, to, start }: { from: THREE.Vector3; to: THREE.Vector3; start: number }, now: number): void {
+    const { target } = this.controls;
+    const part = THREE.MathUtils.smootherstep((now - start) / flightDuration, 0, 1);
+    // Moves along a sphere and not through the patient.
+    const distance = THREE.MathUtils.lerp(from.distanceTo(target), to.distanceTo(target), part);
+    const away = from.clone().sub(target).lerp(to.clone().sub(target), part);
+    if (away.lengthSq() < 1e-12) away.copy(to).sub(target);
+    this.camera.position.copy(target).addScaledVector(away.normalize(), distance);
+    if (part >= 1) this.flight = undefined;
+    this.onChange();
+  }
+
+  /** Orbits by these angles [rad] and zooms by a factor, for the keyboard. */
+  nudge(azimuth: number, polar: number, zoom: number): void {
+    this.flight = this.namedView = undefined;
+    const { target } = this.controls;
+    const away = this.camera.position.clone().sub(target);
+    const radius = away.length() / zoom;
+    const phi = Math.acos(THREE.MathUtils.clamp(away.z / away.length(), -1, 1)) + polar;
+    const theta = Math.atan2(away.y, away.x) + azimuth;
+    const level = THREE.MathUtils.clamp(phi, 0.01, Math.PI - 0.01);
+    const ring = Math.sin(level);
+    away.set(ring * Math.cos(theta), ring * Math.sin(theta), Math.cos(level)).multiplyScalar(radius);
+    this.camera.position.copy(target).add(away);
+    this.onChange();
+  }
+
+  /** Returns the orientation and scale of the view. */
+  orientation(): ViewOrientation {
+    this.camera.updateMatrixWorld(); // also before the next drawing
+    const axis = (i: number) => new THREE.Vector3().setFromMatrixColumn(this.camera.matrixWorld, i);
+    const [right, up, back] = [axis(0), axis(1), axis(2)];
+    const { distance } = this.depth;
+    const slope = Math.tan(THREE.MathUtils.degToRad(this.camera.fov / 2));
+    return {
+      right: directionLetter(right),
+      left: directionLetter(right.clone().negate()),
+      top: directionLetter(up),
+      bottom: directionLetter(up.clone().negate()),
+      pixelsPerMetre: this.canvas.clientHeight / (2 * slope * distance),
+      axes: [right, up, back],
+    };
+  }
+}

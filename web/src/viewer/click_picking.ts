@@ -1,0 +1,30 @@
+import * as THREE from "three";
+import type { VertexRef } from "../geometry/vertices";
+import type { BodyView } from "./body_view";
+import { pickVertex, pointerOf } from "./picking";
+
+/** A pointer that moves farther [CSS pixels] or stays down longer [ms] than this turns the view. */
+const maxMovement = 5;
+const maxDuration = 500;
+
+/** Calls `picked` with the vertex under each click; undefined if there is none. */
+export function enablePicking(
+  canvas: HTMLCanvasElement,
+  camera: THREE.Camera,
+  views: () => BodyView[],
+  cut: () => THREE.Plane | undefined,
+  picked: (vertex: VertexRef | undefined) => void,
+): void {
+  let down: PointerEvent | undefined;
+  canvas.addEventListener("pointerdown", (event) => {
+    down = event.button === 0 && !event.shiftKey ? event : undefined;
+  });
+  canvas.addEventListener("pointerup", (event) => {
+    if (down === undefined || event.timeStamp - down.timeStamp > maxDuration) return;
+    if (Math.hypot(event.offsetX - down.offsetX, event.offsetY - down.offsetY) > maxMovement) return;
+    const visible = views().filter(({ group }) => group.visible);
+    const bodies = visible.map((view) => ({ positions: view.worldPositions(), triangles: view.body.triangles }));
+    const found = pickVertex(pointerOf(event, canvas), camera, bodies, cut());
+    picked(found && { body: visible[found.body].body.name, vertex: found.vertex });
+  });
+}
