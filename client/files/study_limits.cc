@@ -1,12 +1,10 @@
-#include "client/files/limits.h"
+#include "client/files/study_limits.h"
 
 #include <google/protobuf/descriptor.h>
 
-#include <fstream>
-#include <sstream>
-
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
+#include "client/files/whole_file.h"
 #include "client/print/rows.h"
 #include "server/schema/fields.h"
 #include "server/schema/schema.h"
@@ -23,7 +21,8 @@ absl::StatusOr<const FieldDescriptor*> Column(const FieldDescriptor& table, cons
   return absl::InvalidArgumentError(absl::StrCat("table ", table.name(), " has no column \"", name, "\""));
 }
 
-// "integrator=velocity_verlet"; numbers are the same when the table of people shows them alike.
+// True if the row meets every condition, such as "integrator=velocity_verlet". Numbers are equal if CellOf returns the
+// same text.
 absl::StatusOr<bool> Fits(const Message& row, const FieldDescriptor& table, const v1::StudyLimit& limit) {
   for (const std::string& condition : limit.where()) {
     const size_t equals = condition.find('=');
@@ -37,7 +36,7 @@ absl::StatusOr<bool> Fits(const Message& row, const FieldDescriptor& table, cons
   return true;
 }
 
-// What is wrong with this row, if anything.
+// Returns how the row exceeds the limit; empty if it does not.
 std::string Problem(const Message& row, const FieldDescriptor& column, const v1::StudyLimit& limit) {
   const std::string cell = CellOf(row, column);
   if (!limit.equals().empty()) {
@@ -54,7 +53,7 @@ std::string Problem(const Message& row, const FieldDescriptor& column, const v1:
   return "";
 }
 
-absl::Status Check(const v1::StudyLimit& limit, const Message& tables, std::vector<std::string>& passed) {
+absl::Status Check(const v1::StudyLimit& limit, const Message& tables, std::vector<std::string>& exceeded) {
   const FieldDescriptor* table = tables.GetDescriptor()->FindFieldByName(limit.table());
   if (table == nullptr || !table->is_repeated() || table->cpp_type() != FieldDescriptor::CPPTYPE_MESSAGE) {
     return absl::InvalidArgumentError(absl::StrCat("the study has no table \"", limit.table(), "\""));
@@ -69,9 +68,9 @@ absl::Status Check(const v1::StudyLimit& limit, const Message& tables, std::vect
     if (!*fits) continue;
     any = true;
     const std::string problem = Problem(row, **column, limit);
-    if (!problem.empty()) passed.push_back(absl::StrCat(LimitText(limit), " (row ", i + 1, ") ", problem));
+    if (!problem.empty()) exceeded.push_back(absl::StrCat(LimitText(limit), " (row ", i + 1, ") ", problem));
   }
-  if (!any) passed.push_back(absl::StrCat(LimitText(limit), ": no row is like that"));
+  if (!any) exceeded.push_back(absl::StrCat(LimitText(limit), ": no row meets these conditions"));
   return absl::OkStatus();
 }
 
@@ -84,22 +83,20 @@ std::string LimitText(const v1::StudyLimit& limit) {
 }
 
 absl::StatusOr<v1::StudyLimits> ReadStudyLimits(const std::string& file) {
-  std::ifstream stream(file);
-  if (!stream) return absl::NotFoundError(absl::StrCat("cannot read the limits ", file, ": is the path right?"));
-  std::stringstream text;
-  text << stream.rdbuf();
+  const absl::StatusOr<std::string> text = ReadWhole(file, "the limits");
+  if (!text.ok()) return text.status();
   v1::StudyLimits limits;
-  absl::Status parsed = schema::ParseText(file, text.str(), &limits);
+  absl::Status parsed = schema::ParseText(file, *text, &limits);
   if (!parsed.ok()) return parsed;
   return limits;
 }
 
-absl::StatusOr<std::vector<std::string>> PassedLimits(const v1::StudyLimits& limits, const Message& tables) {
-  std::vector<std::string> passed;
+absl::StatusOr<std::vector<std::string>> ExceededLimits(const v1::StudyLimits& limits, const Message& tables) {
+  std::vector<std::string> exceeded;
   for (const v1::StudyLimit& limit : limits.limits()) {
-    if (absl::Status status = Check(limit, tables, passed); !status.ok()) return status;
+    if (absl::Status status = Check(limit, tables, exceeded); !status.ok()) return status;
   }
-  return passed;
+  return exceeded;
 }
 
 }  // namespace phrenic::client

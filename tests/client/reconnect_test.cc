@@ -1,9 +1,9 @@
-// A command that waits for a job outlives the server's end, as the job does.
+// Commands that wait for a job reconnect after a restart of the server.
 #include <gmock/gmock.h>
 
 #include <algorithm>
 
-#include "client/connection/connection.h"
+#include "client/connection/errors.h"
 #include "tests/client/programs.h"
 
 namespace phrenic::client {
@@ -11,31 +11,32 @@ namespace {
 
 using ::testing::HasSubstr;
 
-TEST(RideOut, AnExportGoesOnWhenTheServerIsBackAndIsTheSameFile) {
-  RunningServer server(Scratch("ride_out_store"));
+TEST(Reconnect, AnExportResumesAfterARestartAndWritesTheSameFile) {
+  RunningServer server(Scratch("reconnect_store"));
   const std::vector<std::string> at = {"--server", server.address()};
   const auto with = [&at](std::vector<std::string> words) {
     words.insert(words.end(), at.begin(), at.end());
     return words;
   };
   ASSERT_EQ(Phrenic(with({"create", "sheet-2d", "--id", "class", "--set", "time_step=1e-5"})).code, 0);
-  const std::string whole = Scratch("whole.csv"), torn = Scratch("torn.csv"), said = Scratch("torn.err");
+  const std::string whole = Scratch("whole.csv"), interrupted = Scratch("interrupted.csv"),
+                    said = Scratch("interrupted.err");
   ASSERT_EQ(Phrenic(with({"export", "class", whole, "--seconds", "30", "--fps", "2"})).code, 0);
   const pid_t client =
-      Start("phrenic", with({"export", "class", torn, "--seconds", "30", "--fps", "2"}), "/dev/null", said);
+      Start("phrenic", with({"export", "class", interrupted, "--seconds", "30", "--fps", "2"}), "/dev/null", said);
   while (Phrenic(with({"exports", "list", "-o", "json"})).json()["exports"].empty()) usleep(20'000);
-  usleep(500'000);  // in which it hears of it
+  usleep(500'000);  // time to receive progress
   server.Kill();
   usleep(300'000);
   const absl::Status back = server.Restart();
   ASSERT_TRUE(back.ok()) << back;
   EXPECT_EQ(WaitFor(client), 0) << ReadAll(said);
-  EXPECT_THAT(ReadAll(said), HasSubstr("is gone; waiting for it"));
-  EXPECT_EQ(ReadAll(torn), ReadAll(whole));
+  EXPECT_THAT(ReadAll(said), HasSubstr("does not answer; waiting for it"));
+  EXPECT_EQ(ReadAll(interrupted), ReadAll(whole));
 }
 
-TEST(RideOut, AWatchGoesOnWhenTheServerIsBackAndSaysSo) {
-  RunningServer server(Scratch("ride_out_watch"));
+TEST(Reconnect, AWatchResumesAfterARestartAndReportsIt) {
+  RunningServer server(Scratch("reconnect_watch"));
   const auto at = [&server](std::vector<std::string> words) {
     words.insert(words.end(), {"--server", server.address()});
     return words;
@@ -48,26 +49,26 @@ TEST(RideOut, AWatchGoesOnWhenTheServerIsBackAndSaysSo) {
   server.Kill();
   const absl::Status back = server.Restart();
   ASSERT_TRUE(back.ok()) << back;
-  // A session that a server finds when it starts is paused.
+  // A restarted server pauses its sessions.
   EXPECT_EQ(Phrenic(at({"play", "class"})).code, 0);
   EXPECT_EQ(WaitFor(client), 0) << ReadAll(said);
-  EXPECT_THAT(ReadAll(said),
-              testing::MatchesRegex("phrenic: the server at .* is gone; waiting for it\nphrenic: .* is back\n"));
+  EXPECT_THAT(ReadAll(said), testing::MatchesRegex(
+                                 "phrenic: the server at .* does not answer; waiting for it\nphrenic: .* is back\n"));
   const std::string csv = ReadAll(lines);
-  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 41) << "a header, and forty frames";
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 41) << "a header and forty frames";
 }
 
-TEST(RideOut, AServerThatAnswersIsNotSaidToBeAway) {
+TEST(Reconnect, AServerThatAnswersIsNotReportedAsMissing) {
   RunningServer server;
   Context context;
   context.server = server.address();
   testing::internal::CaptureStderr();
-  EXPECT_EQ(Fail(context, {grpc::StatusCode::UNAVAILABLE, "the disk is away"}), kUnreachable);
+  EXPECT_EQ(Fail(context, {grpc::StatusCode::UNAVAILABLE, "no disk"}), kUnreachable);
   EXPECT_THAT(testing::internal::GetCapturedStderr(),
-              testing::AllOf(HasSubstr("cannot do it now: the disk is away"), testing::Not(HasSubstr("no server"))));
+              testing::AllOf(HasSubstr("is not available now: no disk"), testing::Not(HasSubstr("no server"))));
 }
 
-TEST(RideOut, AServerThatNeverWasIsNotWaitedFor) {
+TEST(Reconnect, AServerThatNeverAnsweredIsNotWaitedFor) {
   EXPECT_EQ(Phrenic({"exports", "get", "class", "--server", "127.0.0.1:1"}).code, 3);
 }
 

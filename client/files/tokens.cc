@@ -1,4 +1,4 @@
-#include "client/connection/tokens.h"
+#include "client/files/tokens.h"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -14,6 +13,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "client/files/whole_file.h"
+#include "client/terminal/environment.h"
 
 namespace phrenic::client {
 namespace {
@@ -26,13 +26,11 @@ struct Entry {
   std::string server, session, token;
 };
 
-// Empty where the environment names no place.
+// Empty if neither XDG_STATE_HOME nor HOME is set.
 fs::path Folder() {
-  if (const char* state = std::getenv("XDG_STATE_HOME"); state != nullptr && *state == '/') {
-    return fs::path(state) / "phrenic";
-  }
-  const char* home = std::getenv("HOME");
-  return home == nullptr || *home == '\0' ? fs::path() : fs::path(home) / ".local/state/phrenic";
+  const std::string state = EnvironmentVariable("XDG_STATE_HOME"), home = EnvironmentVariable("HOME");
+  if (state.starts_with('/')) return fs::path(state) / "phrenic";
+  return home.empty() ? fs::path() : fs::path(home) / ".local/state/phrenic";
 }
 
 std::vector<Entry> ReadEntries(const fs::path& file) {
@@ -42,17 +40,17 @@ std::vector<Entry> ReadEntries(const fs::path& file) {
   return entries;
 }
 
-// One command at a time changes the file.
-class Lock {
+// Lets one process at a time change the file.
+class FileLock {
  public:
-  explicit Lock(const fs::path& file) : file_(open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0600)) {
+  explicit FileLock(const fs::path& file) : file_(open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0600)) {
     if (file_ >= 0) flock(file_, LOCK_EX);
   }
-  ~Lock() {
+  ~FileLock() {
     if (file_ >= 0) close(file_);
   }
-  Lock(const Lock&) = delete;
-  Lock& operator=(const Lock&) = delete;
+  FileLock(const FileLock&) = delete;
+  FileLock& operator=(const FileLock&) = delete;
 
  private:
   const int file_;
@@ -64,25 +62,25 @@ absl::Status WriteEntries(const fs::path& file, const std::vector<Entry>& entrie
   for (std::size_t i = first; i < entries.size(); ++i) {
     absl::StrAppend(&text, entries[i].server, " ", entries[i].session, " ", entries[i].token, "\n");
   }
-  const mode_t before = umask(0077);  // nobody else's to read from its first byte on
+  const mode_t before = umask(0077);  // the new file is private from the start
   absl::Status status = WriteWhole(file.string(), text);
   umask(before);
   return status;
 }
 
-// In place of what there was of this session; an empty token leaves nothing.
-absl::Status Replace(const Entry& entry) {
+// Replaces the session's entry; an empty token removes it.
+absl::Status ReplaceEntry(const Entry& entry) {
   const fs::path folder = Folder();
-  if (folder.empty()) return absl::NotFoundError("neither XDG_STATE_HOME nor HOME says where");
+  if (folder.empty()) return absl::NotFoundError("neither XDG_STATE_HOME nor HOME is set");
   std::error_code error;
   fs::create_directories(folder, error);
   fs::permissions(folder, fs::perms::owner_all, error);
   if (error) return absl::NotFoundError(absl::StrCat(folder.string(), ": ", error.message()));
-  const Lock lock(folder / "control.lock");
+  const FileLock lock(folder / "control.lock");
   std::vector<Entry> entries = ReadEntries(folder / "control");
-  const auto gone = std::erase_if(
+  const auto removed = std::erase_if(
       entries, [&](const Entry& each) { return each.server == entry.server && each.session == entry.session; });
-  if (entry.token.empty() && gone == 0) return absl::OkStatus();
+  if (entry.token.empty() && removed == 0) return absl::OkStatus();
   if (!entry.token.empty()) entries.push_back(entry);
   return WriteEntries(folder / "control", entries);
 }
@@ -99,14 +97,14 @@ std::string TokenOf(const Context& context, const std::string& session_id) {
 }
 
 void KeepToken(const Context& context, const std::string& session_id, const std::string& token) {
-  const absl::Status status = Replace({context.server, session_id, token});
+  const absl::Status status = ReplaceEntry({context.server, session_id, token});
   if (status.ok()) return;
-  std::cerr << "phrenic: warning: the session's token could not be kept (" << std::string(status.message())
-            << "): later commands will not own it; set XDG_STATE_HOME to a folder of yours\n";
+  std::cerr << "phrenic: warning: cannot store the session's control token (" << std::string(status.message())
+            << "): later commands will not control the session; set XDG_STATE_HOME to a folder that you may write\n";
 }
 
 void ForgetToken(const Context& context, const std::string& session_id) {
-  (void)Replace({context.server, session_id, ""});  // a token of nothing does no harm
+  (void)ReplaceEntry({context.server, session_id, ""});  // a token of a deleted session is harmless
 }
 
 }  // namespace phrenic::client
