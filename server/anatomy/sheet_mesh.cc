@@ -134,7 +134,7 @@ void Relax(const SheetDomain& domain, int first_free, Sheet& sheet) {
 // Vertices that triangles join come close together: what is asked of one after the other lies in a core's cache. Those
 // that no triangle has are left out.
 Sheet InLocalOrder(const Sheet& sheet) {
-  const std::vector<int> order = LocalOrder(TriangleEdges(sheet.triangles), static_cast<int>(sheet.plane.size()));
+  const std::vector<int> order = CuthillMcKeeOrder(TriangleEdges(sheet.triangles), static_cast<int>(sheet.plane.size()));
   std::vector<int> name(sheet.plane.size(), -1);
   Sheet ordered{.plane = {}, .points = {}, .triangles = sheet.triangles, .loops = sheet.loops};
   for (const int vertex : order) {

@@ -3,7 +3,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "server/mesh/units.h"
-#include "server/mesh/vtp.h"
+#include "server/mesh/polydata.h"
 #include "server/record/archive.h"
 
 namespace phrenic::record {
