@@ -1,12 +1,11 @@
 // Reader of VTK XML PolyData (VTK File Formats, "XML File Formats"): text, base64 and appended data, uncompressed or
 // zlib. The writer is mesh/polydata.h.
-#include "server/mesh/polydata.h"
-
 #include <algorithm>
 #include <cstdint>
 #include <pugixml.hpp>
 
 #include "absl/strings/str_cat.h"
+#include "server/mesh/polydata.h"
 #include "server/meshio/bytes.h"
 #include "server/meshio/formats.h"
 #include "server/meshio/text.h"
