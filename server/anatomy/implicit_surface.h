@@ -4,13 +4,12 @@
 #define PHRENIC_SERVER_ANATOMY_IMPLICIT_SURFACE_H_
 
 #include <Eigen/Core>
-#include <functional>
 
+#include "server/anatomy/field.h"
 #include "server/mesh/mesh.h"
 
 namespace phrenic::anatomy {
 
-using Field = std::function<double(const Eigen::Vector3d&)>;  // approximate signed distance [mm], negative inside
 struct Box {
   Eigen::Vector3d low, high;  // corners; the surface must lie inside
 };
@@ -23,13 +22,6 @@ Mesh Polygonise(const Field& field, const Box& box, double cell);
 // Polygonises with cells of 0.6 edge lengths, or of `detail` [mm], the thinnest feature, if that is finer; then
 // remeshes to near-uniform triangles of `edge_length` [mm].
 Mesh ImplicitSurface(const Field& field, const Box& box, double edge_length, double detail);
-
-// Returns the polynomial smooth minimum of two distances, blended over the width k (Quilez): min(a, b) - h^2 k / 4 with
-// h = max(k - |a - b|, 0) / k.
-double SmoothMin(double a, double b, double k);
-
-// Returns the approximate signed distance to the tapered capsule from a (radius ra) to b (radius rb).
-double Capsule(const Eigen::Vector3d& x, const Eigen::Vector3d& a, const Eigen::Vector3d& b, double ra, double rb);
 
 }  // namespace phrenic::anatomy
 

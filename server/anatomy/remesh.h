@@ -2,7 +2,8 @@
 #ifndef PHRENIC_SERVER_ANATOMY_REMESH_H_
 #define PHRENIC_SERVER_ANATOMY_REMESH_H_
 
-#include "server/anatomy/implicit_surface.h"
+#include "server/anatomy/field.h"
+#include "server/mesh/mesh.h"
 
 namespace phrenic::anatomy {
 

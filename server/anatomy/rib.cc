@@ -57,9 +57,10 @@ double AngleAzimuth(int number, const Eigen::Vector3d& tubercle) {
 }
 
 TubeSection Section(int number, double s, const Eigen::Vector3d& centre) {
-  const double head = 1 - Smooth(s / 0.06);                                                // thick head, round neck
-  const double shaft = number == 1 ? Smooth((s - 0.3) / 0.25) : Smooth((s - 0.08) / 0.2);  // flat, high shaft
-  const double tip = Smooth((s - 0.75) / 0.25);  // ribs 11 and 12 end pointed, the others slightly broader
+  // Thick head, round neck, flat and high shaft; ribs 11 and 12 end pointed, the others slightly broader.
+  const double head = 1 - Smooth(s / 0.06);
+  const double shaft = number == 1 ? Smooth((s - 0.3) / 0.25) : Smooth((s - 0.08) / 0.2);
+  const double tip = Smooth((s - 0.75) / 0.25);
   const bool floating = number >= 11;
   const double height = number == 1 ? 8.0 : number == 12 ? 5.0 : 6.6;  // half height of the shaft
   const double broad = 4.4 + 1.4 * head + (height - 4.4) * shaft + (floating ? -2.5 : 0.6) * tip;

@@ -84,9 +84,9 @@ std::vector<double> EvenAngles(double broad, double thin, int count, double shif
   std::vector<double> angles;
   int at = 0;
   for (int i = 0; i < count; ++i) {
-    const double aim = passed.back() * (i + shift) / count;
-    while (passed[at + 1] <= aim) ++at;
-    angles.push_back(2 * std::numbers::pi * (at + (aim - passed[at]) / (passed[at + 1] - passed[at])) / kFine);
+    const double target = passed.back() * (i + shift) / count;
+    while (passed[at + 1] <= target) ++at;
+    angles.push_back(2 * std::numbers::pi * (at + (target - passed[at]) / (passed[at + 1] - passed[at])) / kFine);
   }
   return angles;
 }
@@ -162,12 +162,12 @@ Curve SmoothCurve(const Curve& through, int count) {
   size_t at = 0;
   double passed = 0;
   for (int i = 0; i + 1 < count; ++i) {
-    const double aim = length * i / (count - 1);
-    while (passed + (dense[at + 1] - dense[at]).norm() <= aim) {
+    const double target = length * i / (count - 1);
+    while (passed + (dense[at + 1] - dense[at]).norm() <= target) {
       passed += (dense[at + 1] - dense[at]).norm();
       ++at;
     }
-    const double t = (aim - passed) / (dense[at + 1] - dense[at]).norm();
+    const double t = (target - passed) / (dense[at + 1] - dense[at]).norm();
     even.emplace_back((1 - t) * dense[at] + t * dense[at + 1]);
   }
   even.push_back(dense.back());

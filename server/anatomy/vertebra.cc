@@ -83,9 +83,9 @@ Mesh Vertebra(int number, double edge_length) {
   const VertebralBody body = BodyOfVertebra(number);
   const Field field = [&](const Eigen::Vector3d& x) { return Distance(shape, x); };
   const double half = shape.transverse + 12, below = shape.height / 2 + 18 + shape.spine * std::sin(shape.slope);
-  constexpr double kDetail = 3, kCoarsest = 8;  // the arch is about 9 mm thick
+  constexpr double kDetail = 3, kMaxEdge = 8;  // the arch is about 9 mm thick
   const Box box{{-half, -8, -below}, {half, shape.depth + 32 + shape.spine, shape.height / 2 + 18}};
-  Mesh mesh = ImplicitSurface(field, box, std::min(edge_length, kCoarsest), kDetail);
+  Mesh mesh = ImplicitSurface(field, box, std::min(edge_length, kMaxEdge), kDetail);
   const double tilt = std::atan(SpineSlope(body.Middle()));
   const Eigen::AngleAxisd turn(-tilt, Eigen::Vector3d::UnitX());
   const Eigen::Vector3d front(0, SpineFront(body.Middle()), body.Middle());

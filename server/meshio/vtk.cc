@@ -28,25 +28,25 @@ struct Type {
   std::string_view name;
   int bytes;
 };
-constexpr std::array<Type, 14> kTypes = {{{"char", 1},
-                                          {"unsigned_char", 1},
-                                          {"short", 2},
-                                          {"unsigned_short", 2},
-                                          {"int", 4},
-                                          {"unsigned_int", 4},
-                                          {"vtkidtype", 4},
-                                          {"vtktypeint32", 4},
-                                          {"long", 8},
-                                          {"unsigned_long", 8},
-                                          {"vtktypeint64", 8},
-                                          {"vtktypeuint64", 8},
-                                          {"float", 4},
-                                          {"double", 8}}};
+constexpr std::array<Type, 14> kVtkTypes = {{{"char", 1},
+                                             {"unsigned_char", 1},
+                                             {"short", 2},
+                                             {"unsigned_short", 2},
+                                             {"int", 4},
+                                             {"unsigned_int", 4},
+                                             {"vtkidtype", 4},
+                                             {"vtktypeint32", 4},
+                                             {"long", 8},
+                                             {"unsigned_long", 8},
+                                             {"vtktypeint64", 8},
+                                             {"vtktypeuint64", 8},
+                                             {"float", 4},
+                                             {"double", 8}}};
 
 // Returns the size of a type in a binary file [bytes]; 0 for an unknown type.
 int BytesOf(std::string_view type) {
   const std::string small = absl::AsciiStrToLower(std::string(type));
-  for (const Type& known : kTypes) {
+  for (const Type& known : kVtkTypes) {
     if (known.name == small) return known.bytes;
   }
   return 0;
