@@ -170,7 +170,7 @@ v1::SurfaceReport Inspect(const std::string& name, const meshio::Surface& surfac
   v1::SurfaceReport report;
   report.set_name(name);
   report.set_unit_mm(unit_mm);
-  if (surface.frame != meshio::Frame::kUnsaid) report.set_frame(surface.frame == meshio::Frame::kRas ? "RAS" : "LPS");
+  if (surface.frame != meshio::Frame::kUnspecified) report.set_frame(surface.frame == meshio::Frame::kRas ? "RAS" : "LPS");
   Count(surface.mesh, report);
   Measure(surface.mesh, unit_mm, report);
   for (const auto& [region, vertices] : surface.mesh.regions) report.add_regions(region);

@@ -16,8 +16,8 @@ using Names = google::protobuf::RepeatedPtrField<std::string>;
 
 constexpr double kPatternWidth = 262;  // of the generated thorax [mm]
 
-// The pattern is made for the generated sheet, with openings and another tendon. These, times its values, let the three
-// phantoms of the acceptance tests breathe quietly inside the published ranges.
+// The pattern is tuned for the generated sheet, which has openings and another tendon. These factors on its values
+// bring the quiet breath of the three phantoms in the acceptance tests into the published ranges.
 constexpr double kMuscle = 0.75, kTendon = 2.3;       // stiffness
 constexpr double kPullRight = 0.8, kPullLeft = 1.07;  // of the action lines, for a sheet of this area:
 constexpr double kSheetArea = 0.1045;                 // the adult phantom's [m^2]

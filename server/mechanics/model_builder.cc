@@ -129,7 +129,8 @@ const Edges& ModelBuilder::EdgesOf(int body) const {
 const std::vector<int>& ModelBuilder::BorderOf(int body) const {
   borders_.resize(model.bodies.size());
   std::unique_ptr<std::vector<int>>& border = borders_[body];
-  if (border == nullptr) border = std::make_unique<std::vector<int>>(BorderVertices(model.bodies[body].mesh.triangles));
+  if (border == nullptr)
+    border = std::make_unique<std::vector<int>>(BoundaryVertices(model.bodies[body].mesh.triangles));
   return *border;
 }
 

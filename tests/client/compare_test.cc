@@ -155,7 +155,7 @@ TEST(Compare, InvalidArgumentsHaveTheRightExitCode) {
       {{a}, 2, "B is required"},
       {{a, "/nowhere/b.obj"}, 1, "cannot read the surface \"/nowhere/b.obj\""},
       {{a, testing::TempDir()}, 1, "cannot read"},
-      {{a, WriteScratch("b.stp", "solid")}, 1, "b.stp:1: the name's ending tells no known format"},
+      {{a, WriteScratch("b.stp", "solid")}, 1, "b.stp:1: the file name extension is not one of"},
       {{a, WriteScratch("bad.obj", "v 1 2\n")}, 1, "bad.obj:1:"},
       {{a, a, "--check", "hd=2"}, 2, "there is no measure \"hd\"; there are hd_max"},
       {{a, a, "--check", "hd_max"}, 2, "write measure=number"},

@@ -17,7 +17,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-v1::SurfaceReport Report(const Mesh& mesh) { return Inspect("a.stl", {mesh, meshio::Frame::kUnsaid}, 1); }
+v1::SurfaceReport Report(const Mesh& mesh) { return Inspect("a.stl", {mesh, meshio::Frame::kUnspecified}, 1); }
 
 Mesh Ball() { return EllipsoidSurface({0, 0, 0}, {0.05, 0.05, 0.05}, 5, false); }
 

@@ -17,7 +17,7 @@ double Depth(const ConstPoints& x, const ConstPoints& surface, const TriangleTre
   double deepest = 0;
   for (Eigen::Index i = 0; i < x.cols(); ++i) {
     const SurfacePoint nearest = tree.Nearest(surface, boxes, x.col(i), 0.3);
-    if (nearest.triangle >= 0 && nearest.facing > 0 && !nearest.on_rim) {
+    if (nearest.triangle >= 0 && nearest.facing > 0 && !nearest.on_boundary) {
       deepest = std::max(deepest, nearest.offset.norm());
     }
   }

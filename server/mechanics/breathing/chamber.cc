@@ -74,7 +74,7 @@ absl::Status Chamber::Add(const v1::SurfacePatch& scene, double side, std::strin
     if (part.triangles.cols() == 0) continue;
     part.packets = PackTriangles(part.triangles);
     const bool whole = part.triangles.cols() == builder.model.bodies[b].mesh.triangles.cols();
-    part.border = whole ? builder.BorderOf(b) : BorderVertices(part.triangles);
+    part.border = whole ? builder.BorderOf(b) : BoundaryVertices(part.triangles);
     parts_.push_back(std::move(part));
   }
   if (triangles() > before) return absl::OkStatus();

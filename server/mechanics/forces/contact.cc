@@ -84,7 +84,7 @@ void Contact::ForEachTouch(const EvalContext& at, const Visitor& visit) const {
     for (const int vertex : vertices_) {
       const Eigen::Vector3d point = rotation.transpose() * (at.x.col(vertex) - pose.translation);
       const SurfacePoint nearest = surface.tree.Nearest(x, boxes, point, reach_);
-      if (nearest.triangle < 0 || nearest.facing <= 0 || nearest.on_rim) continue;
+      if (nearest.triangle < 0 || nearest.facing <= 0 || nearest.on_boundary) continue;
       const Eigen::Vector3i corners = surface.tree.triangle(nearest.triangle).array() + surface.first_vertex;
       visit(Touch{vertex, rotation * nearest.offset, &surface, corners, nearest.weights});
     }

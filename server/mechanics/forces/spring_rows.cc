@@ -34,7 +34,7 @@ struct Rows {
 std::vector<int> OrderOf(const std::vector<Spring>& springs, int vertices) {
   Edges edges(2, static_cast<Eigen::Index>(springs.size()));
   for (size_t s = 0; s < springs.size(); ++s) edges.col(static_cast<Eigen::Index>(s)) << springs[s].a, springs[s].b;
-  return LocalOrderIfFar(edges, vertices);
+  return CuthillMcKeeIfScattered(edges, vertices);
 }
 
 Rows ByPlace(const std::vector<Spring>& springs, const std::vector<int>& order, int vertices) {

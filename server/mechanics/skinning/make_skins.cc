@@ -34,7 +34,7 @@ Skin RideOnVertices(const SkinDrivers& search, const BodyModel& body, int b) {
   const Points& vertices = body.mesh.vertices;
   InverseDistanceWeights blender(search);
   std::vector<SkinWeight> shares;
-  for (const int i : CurveOrder(vertices)) blender.Blend(vertices.col(i), i, shares);
+  for (const int i : HilbertOrder(vertices)) blender.Blend(vertices.col(i), i, shares);
   return {.body = b, .shares = ByVertex(shares, vertices.cols()), .triangles = {}};
 }
 

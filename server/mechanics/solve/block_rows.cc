@@ -144,7 +144,7 @@ void BlockRows::PlaceRows() {
     joined.emplace_back(call.i, call.j);
   }
   const auto all = static_cast<int>(row_.size());
-  PutFirst(LocalOrderIfFar(ToEdges(joined), all), all, vertices_);
+  PutFirst(CuthillMcKeeIfScattered(ToEdges(joined), all), all, vertices_);
   const auto longer = [&degree](int a, int b) { return degree[a] > degree[b]; };
   for (size_t first = 0; first < vertices_.size(); first += kRowWindow) {
     const size_t end = std::min(first + kRowWindow, vertices_.size());

@@ -1,4 +1,4 @@
-#include "server/imaging/rim.h"
+#include "server/imaging/diaphragm_rim.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,17 +11,17 @@ namespace phrenic::imaging {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr int kStep = 10;            // between two knots on the costal margin [degrees from the front]
+constexpr int kKnotSpacing = 10;     // between knots on the costal margin [degrees]
 constexpr double kHalfSternum = 8;   // [degrees]
-constexpr double kLastCostal = 140;  // further back the arcuate ligaments begin
+constexpr double kLastCostal = 140;  // from the front [degrees]; the arcuate ligaments begin behind it
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
-constexpr int kDirections = 360 / kStep;
+constexpr int kDirections = 360 / kKnotSpacing;
 
 struct Knot {
-  double degrees, z;  // from the front, positive to the left; height [mm]
+  double degrees, z;  // azimuth from the front, positive to the left; height [mm]
 };
 
-// The lowest point of ribs and cartilages 7 to 12 for each direction.
+// Returns the height of the lowest point of ribs 7 to 12 and cartilages in each direction; infinity if there is none.
 std::vector<double> CostalMargin(const LabelVolume& volume, const std::vector<Part>& parts, const CageFrame& frame) {
   std::vector<double> lowest(kDirections, kUnknown);
   for (const Part& part : parts) {
@@ -29,21 +29,21 @@ std::vector<double> CostalMargin(const LabelVolume& volume, const std::vector<Pa
     if (!rib && !part.Is(v1::STRUCTURE_COSTAL_CARTILAGE)) continue;
     for (std::size_t at = 0; at < part.mask.inside.size(); ++at) {
       if (part.mask.inside[at] != 1) continue;
-      const Eigen::Vector3d place = part.mask.Place(volume, at), from = place - frame.centre;
+      const Eigen::Vector3d position = part.mask.Position(volume, at), from = position - frame.centre;
       const double degrees = std::atan2(from.x(), -from.y()) / kDegree;
-      const auto direction = (std::lround(degrees / kStep) + kDirections) % kDirections;
-      lowest[direction] = std::min(lowest[direction], place.z());
+      const auto direction = (std::lround(degrees / kKnotSpacing) + kDirections) % kDirections;
+      lowest[direction] = std::min(lowest[direction], position.z());
     }
   }
   return lowest;
 }
 
-// The costal margin of one side from front to back; gaps are bridged linearly.
+// Returns the costal margin of one side from front to back. Skips directions without bone; the spline bridges them.
 std::vector<Knot> CostalKnots(const std::vector<double>& lowest, const CageFrame& frame, double side, int* bridged) {
-  const double highest = frame.sternum_end;  // beside the xiphoid the margin rises in front of the sheet
+  const double highest = frame.sternum_end;  // beside the xiphoid the margin is higher, but in front of the sheet
   std::vector<Knot> known = {{0, frame.sternum_end}};
-  for (int degrees = kStep; degrees <= kLastCostal; degrees += kStep) {
-    const auto direction = (static_cast<int>(side) * degrees / kStep + kDirections) % kDirections;
+  for (int degrees = kKnotSpacing; degrees <= kLastCostal; degrees += kKnotSpacing) {
+    const auto direction = (static_cast<int>(side) * degrees / kKnotSpacing + kDirections) % kDirections;
     if (lowest[direction] < kUnknown) {
       known.push_back({static_cast<double>(degrees), std::min(highest, lowest[direction])});
     } else {
@@ -55,7 +55,7 @@ std::vector<Knot> CostalKnots(const std::vector<double>& lowest, const CageFrame
   return known;
 }
 
-// From the outside of the crus round its tip to the median arcuate ligament; degrees from straight back.
+// Returns the crus from its lateral edge around the tip to the median arcuate ligament, in degrees from the back.
 std::vector<Knot> CrusKnots(const CageFrame& frame, v1::Side side) {
   const double l1 = frame.lumbar[0], h = frame.vertebra_height;
   const double tip = side == v1::SIDE_RIGHT ? frame.lumbar[2] : frame.lumbar[1] - 0.2 * h;
@@ -69,8 +69,8 @@ std::vector<Knot> CrusKnots(const CageFrame& frame, v1::Side side) {
           {2, l1 + h}};
 }
 
-// Once round, anticlockwise seen from above with the front at the beginning: left side first.
-std::vector<Knot> Knots(const std::vector<double>& lowest, const CageFrame& frame, Sentences& fallbacks) {
+// Returns the knots of the whole rim from the front, counter-clockwise seen from above: left side first.
+std::vector<Knot> Knots(const std::vector<double>& lowest, const CageFrame& frame, Messages& fallbacks) {
   int bridged = 0;
   std::vector<Knot> knots = CostalKnots(lowest, frame, 1, &bridged);
   for (const Knot& knot : CrusKnots(frame, v1::SIDE_LEFT)) knots.push_back({180 - knot.degrees, knot.z});
@@ -80,11 +80,12 @@ std::vector<Knot> Knots(const std::vector<double>& lowest, const CageFrame& fram
   for (auto knot = right.rbegin(); knot != right.rend(); ++knot) knots.push_back({knot->degrees + 360, knot->z});
   if (bridged > 0) {
     fallbacks.push_back(
-        absl::StrFormat("costal margin: no rib or cartilage 7-12 in %d of 28 directions; bridged", bridged));
+        absl::StrFormat("costal margin: no rib or cartilage 7-12 in %d of 28 directions; interpolated", bridged));
   }
   return knots;
 }
 
+// Evaluates the uniform cubic B-spline.
 Knot Spline(const std::vector<Knot>& knots, std::size_t span, double t) {
   const std::size_t n = knots.size();
   const double u = 1 - t;
@@ -103,7 +104,7 @@ Knot Spline(const std::vector<Knot>& knots, std::size_t span, double t) {
 }  // namespace
 
 anatomy::PlaneLoop FindRim(const LabelVolume& volume, const std::vector<Part>& parts, const CageFrame& frame,
-                           const SmoothSheet& sheet, Sentences& fallbacks) {
+                           const SmoothSheet& sheet, Messages& fallbacks) {
   constexpr int kSamplesASpan = 12;
   const std::vector<Knot> knots = Knots(CostalMargin(volume, parts, frame), frame, fallbacks);
   anatomy::PlaneLoop rim;

@@ -1,4 +1,4 @@
-#include "server/mesh/vtp.h"
+#include "server/mesh/polydata.h"
 
 #include <zlib.h>
 
@@ -11,17 +11,18 @@
 namespace phrenic {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "the file says LittleEndian");
+static_assert(std::endian::native == std::endian::little, "the file declares byte_order LittleEndian");
 
-constexpr int kLevel = 1;  // of zlib: coordinates hardly get smaller by more
+constexpr int kLevel = 1;  // zlib's fastest; higher levels barely shrink coordinates further
 
 std::string Escaped(const std::string& text) {
   return absl::StrReplaceAll(text, {{"&", "&amp;"}, {"<", "&lt;"}, {">", "&gt;"}, {"\"", "&quot;"}});
 }
 
-// The text of the file's head and the bytes behind it.
+// Builds the XML text and the appended binary data side by side.
 class Writer {
  public:
+  // Adds a DataArray: one tuple per column of `values`.
   template <typename Derived>
   void Add(const char* type, const std::string& name, const Eigen::MatrixBase<Derived>& values) {
     const typename Derived::PlainObject plain = values;
@@ -30,7 +31,7 @@ class Writer {
     Append(plain.data(), sizeof(typename Derived::Scalar) * static_cast<std::size_t>(plain.size()));
   }
 
-  // Text as numbers of characters, each ended by a zero.
+  // Adds a String array: the character codes of each text, ended by 0.
   void AddText(const std::string& name, const std::vector<std::string>& texts) {
     absl::StrAppend(&head_, "<Array type=\"String\" Name=\"", name, "\" NumberOfTuples=\"", texts.size(),
                     "\" format=\"ascii\">");
@@ -41,13 +42,14 @@ class Writer {
     head_ += "</Array>\n";
   }
 
-  void Say(const std::string& text) { head_ += text; }
+  void AddXml(const std::string& text) { head_ += text; }
   std::string Finish() && {
     return absl::StrCat(head_, "<AppendedData encoding=\"raw\">\n_", appended_, "\n</AppendedData>\n</VTKFile>\n");
   }
 
  private:
-  // One block: number of blocks, its size, the size of a last one that is shorter, its size compressed, its bytes.
+  // Appends a compressed array of one block: header (number of blocks, uncompressed block size, size of a partial last
+  // block or 0, compressed size), then the zlib stream.
   void Append(const void* bytes, std::size_t size) {
     if (size == 0) return AppendHeader({0, 0, 0});
     uLongf packed = compressBound(size);
@@ -68,45 +70,45 @@ class Writer {
 
 void WriteArrays(const char* section, const std::vector<PolyData::Array>& arrays, Writer& writer) {
   if (arrays.empty()) return;
-  // What a viewer colours by unasked.
+  // Viewers colour by the active scalars on opening.
   const std::string active =
       arrays.front().values.rows() == 1 ? absl::StrCat(" Scalars=\"", Escaped(arrays.front().name), "\"") : "";
-  writer.Say(absl::StrCat("<", section, active, ">\n"));
+  writer.AddXml(absl::StrCat("<", section, active, ">\n"));
   for (const PolyData::Array& array : arrays) writer.Add("Float64", array.name, array.values);
-  writer.Say(absl::StrCat("</", section, ">\n"));
+  writer.AddXml(absl::StrCat("</", section, ">\n"));
 }
 
 template <typename Cells>
 void WriteCells(const char* section, const Cells& cells, Writer& writer) {
-  writer.Say(absl::StrCat("<", section, ">\n"));
+  writer.AddXml(absl::StrCat("<", section, ">\n"));
   writer.Add("Int64", "connectivity", cells.template cast<std::int64_t>().reshaped().transpose());
   const Eigen::Index corners = cells.rows();
   using Offsets = Eigen::Matrix<std::int64_t, 1, Eigen::Dynamic>;
   Offsets offsets = Offsets::LinSpaced(cells.cols(), corners, corners * cells.cols());
   writer.Add("Int64", "offsets", offsets);
-  writer.Say(absl::StrCat("</", section, ">\n"));
+  writer.AddXml(absl::StrCat("</", section, ">\n"));
 }
 
 }  // namespace
 
 std::string WriteVtp(const PolyData& data) {
   Writer writer;
-  writer.Say(
+  writer.AddXml(
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
       "header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n<PolyData>\n<FieldData>\n");
   writer.AddText("SPACE", {"LPS"});
   if (!data.names.empty()) writer.AddText("body names", data.names);
-  writer.Say(absl::StrCat("</FieldData>\n<Piece NumberOfPoints=\"", data.points.cols(),
-                          "\" NumberOfVerts=\"0\" NumberOfLines=\"", data.lines.cols(),
-                          "\" NumberOfStrips=\"0\" NumberOfPolys=\"", data.triangles.cols(), "\">\n"));
+  writer.AddXml(absl::StrCat("</FieldData>\n<Piece NumberOfPoints=\"", data.points.cols(),
+                             "\" NumberOfVerts=\"0\" NumberOfLines=\"", data.lines.cols(),
+                             "\" NumberOfStrips=\"0\" NumberOfPolys=\"", data.triangles.cols(), "\">\n"));
   WriteArrays("PointData", data.point_arrays, writer);
   WriteArrays("CellData", data.cell_arrays, writer);
-  writer.Say("<Points>\n");
+  writer.AddXml("<Points>\n");
   writer.Add("Float64", "Points", data.points);
-  writer.Say("</Points>\n");
+  writer.AddXml("</Points>\n");
   WriteCells("Lines", data.lines, writer);
   WriteCells("Polys", data.triangles, writer);
-  writer.Say("</Piece>\n</PolyData>\n");
+  writer.AddXml("</Piece>\n</PolyData>\n");
   return std::move(writer).Finish();
 }
 
