@@ -7,6 +7,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/mechanics/constraint_residual.h"
+#include "server/mechanics/measures/readings.h"
 #include "server/session/run.h"
 #include "server/session/session.h"
 

@@ -4,6 +4,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "server/mechanics/compile/compile.h"
+#include "server/mechanics/stability/largest_step.h"
 #include "server/session/session.h"
 
 namespace phrenic::session {
