@@ -3,8 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "server/mechanics/skinning/body_points.h"
-#include "server/mechanics/step/advance.h"
+#include "server/mechanics/parallel/vertex_range.h"
 
 namespace phrenic {
 
@@ -24,7 +23,7 @@ Workspace Model::MakeWorkspace() const {
   Workspace work;
   work.before = work.velocity_before = work.force = Points::Zero(3, rest.cols());
   work.damping = Eigen::VectorXd::Zero(rest.cols());
-  ResizeBounds(rest.cols(), work.bounds);
+  work.bounds.reserve(static_cast<size_t>(CountBlocks(rest.cols())) + 1);
   return work;
 }
 
@@ -48,12 +47,13 @@ double BreathSlope(v1::Waveform waveform, double phase) {
   return 2 * std::numbers::pi * std::cos(angle);
 }
 
-EvalContext MakeEvalContext(const Model& model, const v1::Parameters& parameters, const State& state) {
-  return MakeEvalContext(model, parameters, state, state.time, state.phase);
+EvalContext MakeEvalContext(const Model& model, const v1::Parameters& parameters, const State& state,
+                            const Scratch& scratch) {
+  return MakeEvalContext(model, parameters, state, state.time, state.phase, scratch);
 }
 
 EvalContext MakeEvalContext(const Model& model, const v1::Parameters& parameters, const State& state, double time,
-                            double phase) {
+                            double phase, const Scratch& scratch) {
   const v1::Waveform waveform = model.scene.breath().waveform();
   return {.time = time,
           .breath = BreathSignal(waveform, phase),
@@ -62,11 +62,8 @@ EvalContext MakeEvalContext(const Model& model, const v1::Parameters& parameters
           .x = state.x,
           .v = state.v,
           .poses = state.poses,
-          .pulls = state.pulls};
-}
-
-void PlaceBody(const Model& model, const State& state, int body, MutablePoints out) {
-  BodyPoints(model, body).Place(MakeEvalContext(model, model.parameters, state), out);
+          .pulls = state.pulls,
+          .scratch = scratch};
 }
 
 }  // namespace phrenic

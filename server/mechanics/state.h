@@ -3,7 +3,6 @@
 #define PHRENIC_SERVER_MECHANICS_STATE_H_
 
 #include <Eigen/Geometry>
-#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -51,14 +50,6 @@ struct State {
   History history;
   int halvings = 0;  // of an adaptive step, the last time
 };
-
-// The largest magnitudes of a coordinate and of a velocity's: of a block's vertices, or all; no number where one is
-// none.
-struct StateBounds {
-  double furthest = 0, fastest = 0;  // [m], [m/s]
-};
-// The larger of two; no number where one is none.
-inline double LargerMagnitude(double a, double b) { return a > b || std::isnan(a) ? a : b; }
 
 // A word-wise FNV-1a, in four lanes, over the bits of time, phase, positions and velocities: equal states, equal
 // hashes.

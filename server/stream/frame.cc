@@ -3,6 +3,8 @@
 #include <cmath>
 
 #include "absl/strings/str_cat.h"
+#include "server/mechanics/measures/readings.h"
+#include "server/mechanics/skinning/body_points.h"
 #include "server/mechanics/skinning/probe_position.h"
 #include "server/stream/wire.h"
 

@@ -50,9 +50,9 @@ void Collect(double clock, Stages& stages, Times& times) {
 
 // The same run twice, some steps of the one and some of the other in turn: with clocks inside and without.
 absl::StatusOr<Times> Watch(const Subject& subject, int steps, const Progress& progress, Stages& stages) {
-  const Model timed_model = Timed(*subject.model, stages);
+  const std::shared_ptr<const Model> timed_model = Timed(*subject.model, stages);
   const State start = subject.model->InitialState();
-  Watched plain(*subject.model, start), timed(timed_model, start);
+  Watched plain(*subject.model, start), timed(*timed_model, start);
   const double clock = ClockCost();
   Times times;
   times.stages.resize(stages.size());

@@ -3,6 +3,7 @@
 #define PHRENIC_SERVER_STUDY_TIMED_MODEL_H_
 
 #include <deque>
+#include <memory>
 #include <string>
 
 #include "server/mechanics/model.h"
@@ -22,7 +23,7 @@ using Stages = std::deque<Stage>;  // places stay where they are
 
 // The same model for steps (bodies, probes and what viewers see are not copied); its elements are those of `model`,
 // which must outlive it, and add their time to `stages`. For one thread.
-Model Timed(const Model& model, Stages& stages);
+std::shared_ptr<const Model> Timed(const Model& model, Stages& stages);
 
 // Wall time that a stage shows for a call that does nothing [s].
 double ClockCost();

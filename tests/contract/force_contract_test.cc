@@ -5,7 +5,7 @@
 #include <random>
 
 #include "server/mechanics/solve/block_matrix.h"
-#include "server/mechanics/step/advance.h"
+#include "server/mechanics/step/step_plan.h"
 #include "tests/compile_text.h"
 #include "tests/contract/allocations.h"
 
@@ -108,7 +108,7 @@ class ForceContract : public testing::TestWithParam<ForceCase> {
   // As a step sums it.
   Points ForceAt(const State& state) const {
     Points f(3, state.x.cols());
-    SumForces(*model_, At(state), f);
+    model_->plan->SumForces(At(state), f);
     return f;
   }
   Points StiffnessTimes(const State& state, const Points& dx) const {
@@ -183,9 +183,9 @@ TEST_P(ForceContract, AllocatesNothing) {
   Points f = Points::Zero(3, state_.x.cols());
   Eigen::VectorXd c = Eigen::VectorXd::Zero(state_.x.cols());
   const EvalContext at = At(state_);
-  SumForces(*model_, at, f);
+  model_->plan->SumForces(at, f);
   const std::int64_t before = Allocations();
-  SumForces(*model_, at, f);
+  model_->plan->SumForces(at, f);
   force().AddForce(at, f);
   force().AddDamping(at, c);
   EXPECT_EQ(Allocations(), before);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <random>
 
+#include "server/mechanics/measures/readings.h"
+#include "server/mechanics/skinning/body_points.h"
 #include "server/mesh/topology.h"
 #include "tests/compile_text.h"
 #include "tests/contract/allocations.h"

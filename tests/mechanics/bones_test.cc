@@ -3,6 +3,7 @@
 
 #include <numbers>
 
+#include "server/mechanics/skinning/body_points.h"
 #include "tests/compile_text.h"
 
 namespace phrenic {

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "server/mechanics/stability/diagnosis.h"
 #include "tests/compile_text.h"
 
 namespace phrenic {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "server/mechanics/step/advance.h"
+#include "server/mechanics/step/step_plan.h"
 #include "tests/compile_text.h"
 
 namespace phrenic {
@@ -70,7 +70,7 @@ TEST(Masses, ByStiffnessLeaveWhatActsAsItIs) {
     state.phase = 0.25;
     state.v.setConstant(0.1);
     Points f(3, model.rest.cols());
-    SumForces(model, MakeEvalContext(model, model.parameters, state), f);
+    model.plan->SumForces(MakeEvalContext(model, model.parameters, state), f);
     return f;
   };
   EXPECT_GT(force(*by_area).norm(), 0);

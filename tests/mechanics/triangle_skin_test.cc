@@ -4,6 +4,7 @@
 
 #include <random>
 
+#include "server/mechanics/skinning/body_points.h"
 #include "tests/compile_text.h"
 
 namespace phrenic {

@@ -8,6 +8,7 @@
 #include <limits>
 #include <random>
 
+#include "server/mechanics/skinning/body_points.h"
 #include "server/mechanics/step/step.h"
 #include "server/session/models.h"
 #include "server/stream/basis.h"

@@ -327,16 +327,16 @@ TEST(CostGrowth, SheetsHaveTheirSize) {
 TEST(TimedModel, StepsToTheSameState) {
   const auto model = CompileText(kSheet);
   Stages stages;
-  const Model timed = Timed(*model, stages);
+  const auto timed = Timed(*model, stages);
   for (const v1::Integrator integrator :
        {v1::INTEGRATOR_SEMI_IMPLICIT_EULER, v1::INTEGRATOR_VELOCITY_VERLET, v1::INTEGRATOR_TR_BDF2}) {
     v1::Parameters parameters = model->parameters;
     parameters.set_integrator(integrator);
     State a = model->InitialState(), b = a;
-    Workspace work = model->MakeWorkspace(), timed_work = timed.MakeWorkspace();
+    Workspace work = model->MakeWorkspace(), timed_work = timed->MakeWorkspace();
     for (int i = 0; i < 20; ++i) {
       ASSERT_TRUE(Step(*model, parameters, parameters.time_step(), a, work).ok());
-      ASSERT_TRUE(Step(timed, parameters, parameters.time_step(), b, timed_work).ok());
+      ASSERT_TRUE(Step(*timed, parameters, parameters.time_step(), b, timed_work).ok());
     }
     EXPECT_EQ(StateHash(a), StateHash(b));
   }

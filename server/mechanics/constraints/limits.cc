@@ -55,12 +55,13 @@ absl::StatusOr<std::unique_ptr<Constraint>> Limits::Make(const v1::Limits& scene
   return constraint;
 }
 
-void Limits::Project(const v1::Parameters& parameters, const ConstPoints& before, double dt, State& state) const {
-  if (parameters.apply_links()) network_.Project(before, dt, state);
+void Limits::Project(const v1::Parameters& parameters, const ConstPoints& before, double dt, const Scratch& scratch,
+                     State& state) const {
+  if (parameters.apply_links()) network_.Project(before, dt, scratch, state);
 }
 
-void Limits::ProjectVelocities(const v1::Parameters& parameters, State& state) const {
-  if (parameters.apply_links()) network_.ProjectVelocities(state);
+void Limits::ProjectVelocities(const v1::Parameters& parameters, const Scratch& scratch, State& state) const {
+  if (parameters.apply_links()) network_.ProjectVelocities(scratch, state);
 }
 
 double Limits::Residual(const State& state) const {

@@ -9,7 +9,7 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "phrenic/v1/options.pb.h"
-#include "server/mechanics/measure.h"
+#include "server/mechanics/measures/readings.h"
 #include "server/mechanics/skinning/probe_position.h"
 #include "server/mesh/units.h"
 #include "server/record/spool_file.h"
