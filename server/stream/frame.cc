@@ -6,7 +6,7 @@
 #include "server/mechanics/measures/readings.h"
 #include "server/mechanics/skinning/body_points.h"
 #include "server/mechanics/skinning/probe_position.h"
-#include "server/stream/wire.h"
+#include "server/stream/codecs/wire.h"
 
 namespace phrenic::stream {
 namespace {
