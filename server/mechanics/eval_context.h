@@ -22,6 +22,7 @@ struct EvalContext {
   const ConstPoints v;               // [m/s]
   const std::vector<Pose>& poses;
   const std::vector<VertexPull>& pulls;
+  const ScalarState& scalars;
   ChamberReadings* readings = nullptr;    // what measures of one moment share (chamber.h); null in a step
   const float* packed = nullptr;          // x in single precision (PackPoints), where a step has packed it
   const PoseMatrices* columns = nullptr;  // one of each pose, where a step has made them

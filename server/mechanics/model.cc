@@ -15,6 +15,12 @@ State Model::InitialState() const {
   int poses = 0;
   for (const BodyModel& body : bodies) poses += body.pose >= 0 ? 1 : 0;
   state.poses.resize(poses);
+  const auto scalar_count = static_cast<Eigen::Index>(scalars.size());
+  state.scalars = {Eigen::VectorXd(scalar_count), Eigen::VectorXd(scalar_count)};
+  for (Eigen::Index i = 0; i < scalar_count; ++i) {
+    state.scalars.q[i] = scalars[i].initial;
+    state.scalars.v[i] = scalars[i].initial_rate;
+  }
   const EvalContext start = MakeEvalContext(*this, parameters, state);
   for (const auto& motion : motions) motion->Drive(start, state);
   return state;
@@ -62,7 +68,8 @@ EvalContext MakeEvalContext(const Model& model, const v1::Parameters& parameters
           .x = state.x,
           .v = state.v,
           .poses = state.poses,
-          .pulls = state.pulls};
+          .pulls = state.pulls,
+          .scalars = state.scalars};
 }
 
 void PlaceBody(const Model& model, const State& state, int body, MutablePoints out) {

@@ -45,6 +45,14 @@ struct ActionLineView {
   double radius = 0;                  // [m]
 };
 
+// A generalised coordinate of State::scalars: its name and unit, and where it starts.
+struct ScalarCoordinate {
+  std::string name;
+  std::string unit;         // SI, as in tables: "rad"
+  double initial = 0;       // [unit]
+  double initial_rate = 0;  // [unit/s]
+};
+
 struct Model {
   v1::Scene scene;
   v1::CompileReport report;
@@ -61,6 +69,7 @@ struct Model {
   std::vector<const Force*> whole_forces, range_forces;
   const LoadBatch* loads = nullptr;  // the last of range_forces, where a step may leave it to its kick
   int packed_from = -1;  // a step packs positions, from this vertex, for forces in single precision; -1 where none are
+  std::vector<ScalarCoordinate> scalars;  // in the order of State::scalars
   std::vector<std::unique_ptr<Motion>> motions;
   std::vector<std::unique_ptr<Constraint>> constraints;
   std::vector<Skin> skins;  // seen bodies; worked out with frames, not with steps

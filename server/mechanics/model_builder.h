@@ -38,7 +38,9 @@ struct Selection {
 struct ModelBuilder {
   Model model;
 
-  // Bodies by the names of bodies or layers; INVALID_ARGUMENT with the field's path and the names there are.
+  // The bodies that the names mean, each once, in the scene's order. A name is a body's or a layer's, or says which:
+  // "body:NAME", "layer:NAME", or "structure:STRUCTURE" for all bodies of that anatomy. INVALID_ARGUMENT with the
+  // field's path and the names there are, also for a layer or a structure that has no body.
   absl::StatusOr<std::vector<int>> Bodies(const Names& names, std::string_view path) const;
   absl::StatusOr<int> Body(const std::string& name, std::string_view path) const;
   // The same, and each must be deformable.
@@ -59,6 +61,11 @@ struct ModelBuilder {
   const Edges& EdgesOf(int body) const;
   // And its border's vertices, none where it is closed.
   const std::vector<int>& BorderOf(int body) const;
+
+  // Adds a generalised coordinate and returns its index in State::scalars. It starts at `initial` [unit] with
+  // `initial_rate` [unit/s]. No integrator advances it: the element that adds it drives it. Requires: no other
+  // coordinate has the name.
+  int AddScalar(std::string name, std::string unit, double initial, double initial_rate = 0);
 
   void ReportElement(std::string_view family, std::string_view name, std::int64_t count, std::string_view counted,
                      std::string_view detail);

@@ -13,7 +13,7 @@ class Motion {
  public:
   virtual ~Motion() = default;
   const std::string& name() const { return name_; }
-  // Sets the poses, or the positions and velocities of the vertices, that it drives, for the time of `at`.
+  // Sets what it drives for the time of `at`: poses, positions and velocities of vertices, or scalars with their rates.
   virtual void Drive(const EvalContext& at, State& state) const = 0;
 
  protected:

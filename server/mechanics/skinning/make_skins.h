@@ -9,7 +9,7 @@
 namespace phrenic {
 
 // Adds a Skin to the builder for each of the bodies. A carrier may ride itself when its ride was made before.
-absl::Status AddSkins(const v1::Ride& scene, const std::string& name, std::string_view path, ModelBuilder& builder);
+absl::Status AddSkins(const v1::Skin& scene, const std::string& name, std::string_view path, ModelBuilder& builder);
 
 }  // namespace phrenic
 
