@@ -23,8 +23,8 @@ bool CarriedByTissue(const Model& model, const BodyModel& body) {
 
 absl::StatusOr<std::vector<int>> CarrierBodies(const v1::Attachment& scene, std::string_view path,
                                                const ModelBuilder& builder) {
-  const std::string field = absl::StrCat(std::string(path), ".carriers");
-  auto carriers = builder.Bodies(scene.carriers(), field);
+  const std::string field = absl::StrCat(std::string(path), ".anchors");
+  auto carriers = builder.Bodies(scene.anchors(), field);
   if (!carriers.ok()) return carriers;
   for (const int c : *carriers) {
     if (CarriedByTissue(builder.model, builder.model.bodies[c])) {

@@ -72,18 +72,18 @@ absl::Status BindAllToTriangles(const std::vector<int>& bodies, const std::vecto
 
 }  // namespace
 
-absl::Status AddSkins(const v1::Ride& scene, const std::string& given, std::string_view path, ModelBuilder& builder) {
-  const std::string name = ElementName(given, "ride", scene.bodies());
+absl::Status AddSkins(const v1::Skin& scene, const std::string& given, std::string_view path, ModelBuilder& builder) {
+  const std::string name = ElementName(given, "skin", scene.bodies());
   const std::string field = absl::StrCat(std::string(path), ".bodies");
-  const std::string carried = absl::StrCat(std::string(path), ".carriers");
+  const std::string carried = absl::StrCat(std::string(path), ".drivers");
   auto bodies = builder.Bodies(scene.bodies(), field);
   if (!bodies.ok()) return bodies.status();
-  auto carriers = builder.Bodies(scene.carriers(), carried);
+  auto carriers = builder.Bodies(scene.drivers(), carried);
   if (!carriers.ok()) return carriers.status();
   for (const int b : *bodies) {
     if (absl::Status status = CheckBody(builder.model.bodies[b], field); !status.ok()) return status;
   }
-  if (scene.mode() == v1::RIDE_MODE_TRIANGLES) return BindAllToTriangles(*bodies, *carriers, name, carried, builder);
+  if (scene.mode() == v1::SKIN_MODE_TRIANGLES) return BindAllToTriangles(*bodies, *carriers, name, carried, builder);
   SkinAllByDistance(*bodies, *carriers, name, builder);
   return absl::OkStatus();
 }

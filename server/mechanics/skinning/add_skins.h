@@ -10,7 +10,7 @@ namespace phrenic {
 
 // Adds a Skin to the builder for each body of a ride. A driver may be skinned itself, if its skin was added before.
 // INVALID_ARGUMENT if a body does not exist, is not only seen, or has a skin already.
-absl::Status AddSkins(const v1::Ride& scene, const std::string& name, std::string_view path, ModelBuilder& builder);
+absl::Status AddSkins(const v1::Skin& scene, const std::string& name, std::string_view path, ModelBuilder& builder);
 
 }  // namespace phrenic
 
