@@ -14,10 +14,10 @@ using Clock = std::chrono::steady_clock;
 
 double Since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-// Adds the time until its end.
+// Adds the time from its construction to its destruction to a stage.
 class Span {
  public:
-  // A call may come in parts: the first one counts.
+  // A call may be split into parts; only the first part counts as a call.
   explicit Span(Stage& stage, bool first = true) : stage_(stage), first_(first), start_(Clock::now()) {}
   Span(const Span&) = delete;
   Span& operator=(const Span&) = delete;
