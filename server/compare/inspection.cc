@@ -150,10 +150,10 @@ void JudgeRefusals(v1::SurfaceReport& report) {
   auto* refusals = report.mutable_refusals();
   if (report.triangles() == 0) {
     refusals->Add(
-        "no triangles: no contact, no attachment or skinning of other bodies, and no substance (density) in place of a "
+        "no triangles: no contact, no attachment or skinning of other bodies, and no material (density) in place of a "
         "mass");
   } else if (report.area_mm2() <= 0) {
-    refusals->Add("no area: no substance (density) in place of a mass");
+    refusals->Add("no area: no material (density) in place of a mass");
   }
   if (report.has_volume_ml() && report.volume_ml() < 0) {
     refusals->Add("faces inwards: filling it by a solid finds no cell inside");

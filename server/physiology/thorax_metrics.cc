@@ -6,6 +6,7 @@
 #include <limits>
 #include <queue>
 
+#include "server/mechanics/skinning/body_points.h"
 #include "server/mesh/topology.h"
 
 namespace phrenic::physiology {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "absl/strings/str_cat.h"
-#include "server/mechanics/step/advance.h"
+#include "server/mechanics/step/step_plan.h"
 
 namespace phrenic::study {
 namespace {
@@ -42,13 +42,13 @@ const State& Acceleration::SetState(double time, const ConstPoints& x, const Con
     state_.x.col(free_[i]) = model.rest.col(free_[i]) + x.col(k);
     state_.v.col(free_[i]) = v.col(k);
   }
-  DriveMotions(model, subject_.parameters, 0, state_);
+  model.plan->DriveMotions(subject_.parameters, 0, scratch_, state_);
   return state_;
 }
 
 void Acceleration::Unconstrained(MutablePoints a) {
   const Model& model = *subject_.model;
-  SumForces(model, MakeEvalContext(model, subject_.parameters, state_), force_);
+  model.plan->SumForces(MakeEvalContext(model, subject_.parameters, state_, scratch_), force_);
   for (size_t i = 0; i < free_.size(); ++i) {
     a.col(static_cast<Eigen::Index>(i)) = model.inverse_mass[free_[i]] * force_.col(free_[i]);
   }
@@ -61,12 +61,12 @@ void Acceleration::ProjectedVelocities(double ahead, const ConstPoints& a, Point
   ahead_.x = state_.x;
   ahead_.v = state_.v;
   ahead_.poses = state_.poses;
-  DriveMotions(model, subject_.parameters, ahead, ahead_);
+  model.plan->DriveMotions(subject_.parameters, ahead, scratch_, ahead_);
   for (size_t i = 0; i < free_.size(); ++i) {
     ahead_.x.col(free_[i]) += ahead * state_.v.col(free_[i]);
     ahead_.v.col(free_[i]) += ahead * a.col(static_cast<Eigen::Index>(i));
   }
-  ProjectVelocities(model, subject_.parameters, ahead_);
+  model.plan->ProjectVelocities(subject_.parameters, scratch_, ahead_);
   v = ahead_.v;
 }
 

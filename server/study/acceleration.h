@@ -36,6 +36,7 @@ class Acceleration {
   std::vector<int> free_;
   State state_, ahead_;
   Points force_, later_, earlier_;
+  Scratch scratch_;
 };
 
 }  // namespace phrenic::study

@@ -50,9 +50,9 @@ void Collect(double clock, Stages& stages, Times& times) {
 
 // Alternates blocks of steps of two equal runs, one without clocks inside and one with them.
 absl::StatusOr<Times> Watch(const Subject& subject, int steps, const Progress& progress, Stages& stages) {
-  const Model timed_model = Timed(*subject.model, stages);
+  const std::shared_ptr<const Model> timed_model = Timed(*subject.model, stages);
   const State start = subject.model->InitialState();
-  TimedRun plain(*subject.model, start), timed(timed_model, start);
+  TimedRun plain(*subject.model, start), timed(*timed_model, start);
   const double clock = ClockCost();
   Times times;
   times.stages.resize(stages.size());

@@ -14,6 +14,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "server/mechanics/compile/compile.h"
+#include "server/mechanics/stability/largest_step.h"
 #include "server/schema/thread_cpu.h"
 #include "server/study/acceleration.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "absl/strings/str_format.h"
-#include "server/mechanics/compile/catalogue.h"
+#include "server/mechanics/integrators/catalogue.h"
 #include "server/mechanics/step/step.h"
 #include "server/schema/thread_cpu.h"
 #include "server/study/watched_run.h"

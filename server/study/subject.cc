@@ -2,6 +2,7 @@
 
 #include "server/mechanics/compile/compile.h"
 #include "server/mechanics/compile/presets.h"
+#include "server/mechanics/stability/largest_step.h"
 #include "server/schema/fields.h"
 #include "server/schema/schema.h"
 

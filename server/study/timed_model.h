@@ -3,6 +3,7 @@
 #define PHRENIC_SERVER_STUDY_TIMED_MODEL_H_
 
 #include <deque>
+#include <memory>
 #include <string>
 
 #include "server/mechanics/model.h"
@@ -22,7 +23,7 @@ using Stages = std::deque<Stage>;  // a deque, so that references stay valid
 
 // Returns a model that steps to the same bits as `model` and adds the time of its elements to `stages`. It has no
 // bodies, probes and display data. Requires: `model` and `stages` outlive it. Not thread-safe.
-Model Timed(const Model& model, Stages& stages);
+std::shared_ptr<const Model> Timed(const Model& model, Stages& stages);
 
 // Returns the wall time that a stage measures for an empty call [s].
 double ClockCost();

@@ -36,7 +36,8 @@ struct Distance {
   double energy = 0;   // largest difference of energy [J]
 };
 
-// Returns the distance over common moments and free vertices. Requires: both are trajectories of the subject's model.
+// Returns the distance over common moments and free vertices. Only vertices are compared: State::scalars count by the
+// vertices that they move. Requires: both are trajectories of the subject's model.
 Distance DistanceBetween(const Subject& subject, const Trajectory& a, const Trajectory& b);
 
 // Returns the largest displacement of a vertex from rest [m].

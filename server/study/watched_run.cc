@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "absl/strings/str_format.h"
+#include "server/mechanics/stability/diagnosis.h"
 #include "server/mechanics/step/step.h"
 #include "server/mechanics/step/step_checkpoint.h"
 #include "server/schema/thread_cpu.h"
@@ -41,7 +42,7 @@ absl::StatusOr<WatchedRun> Watch(const Subject& subject, const State& start, dou
       run.cut = ThreadCpuSeconds() - began > most_cpu_s;
       if (run.cut) return run;
     }
-    checkpoint.Note(parameters, state);
+    checkpoint.Note(model, parameters, state);
     run.status = Step(model, parameters, dt, state, work);
     if (!run.status.ok()) {
       const State before = checkpoint.StateBeforeLastStep(model, parameters, dt, work);

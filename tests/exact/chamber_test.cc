@@ -6,7 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "server/mechanics/step/advance.h"
+#include "server/mechanics/step/step_plan.h"
 #include "tests/compile_text.h"
 #include "tests/static_solve.h"
 
@@ -130,10 +130,10 @@ double DepthOverExact(int cells) {
   constexpr double kRadius = 0.1, kStiffness = 40, kRatio = 0.5;
   const double a = kRadius / cells;
   std::string vertices, triangles, fixed;
-  std::vector<int> places(static_cast<size_t>((2 * cells + 5) * (4 * cells + 9)), -1);
+  std::vector<int> indices(static_cast<size_t>((2 * cells + 5) * (4 * cells + 9)), -1);
   const int half = cells + 2;
-  const auto place = [&](int column, int row) -> int& {
-    return places[static_cast<size_t>((row + half) * (4 * cells + 9) + column + 2 * half)];
+  const auto vertex_at = [&](int column, int row) -> int& {
+    return indices[static_cast<size_t>((row + half) * (4 * cells + 9) + column + 2 * half)];
   };
   int count = 0;
   for (int row = -half; row <= half; ++row) {
@@ -142,14 +142,14 @@ double DepthOverExact(int cells) {
       if (r > kRadius + a / 2) continue;
       absl::StrAppend(&vertices, absl::StrFormat(" vertices { x: %.17g y: %.17g }", x, y));
       if (r >= kRadius - a / 2) absl::StrAppend(&fixed, " fixed_vertices: ", count);
-      place(column, row) = count++;
+      vertex_at(column, row) = count++;
     }
   }
   for (int row = -half; row < half; ++row) {
     for (int column = -2 * half; column < 2 * half; ++column) {
-      const int right = place(column + 1, row), up = place(column, row + 1);
+      const int right = vertex_at(column + 1, row), up = vertex_at(column, row + 1);
       if (right < 0 || up < 0) continue;
-      const int here = place(column, row), across = place(column + 1, row + 1);
+      const int here = vertex_at(column, row), across = vertex_at(column + 1, row + 1);
       if (here >= 0) absl::StrAppend(&triangles, absl::StrFormat(" triangles { a: %d b: %d c: %d }", here, right, up));
       if (across >= 0) {
         absl::StrAppend(&triangles, absl::StrFormat(" triangles { a: %d b: %d c: %d }", right, across, up));

@@ -6,7 +6,7 @@
 
 #include "server/mechanics/integrators/projective_dynamics.h"
 #include "server/mechanics/solve/prefactored_system.h"
-#include "server/mechanics/step/advance.h"
+#include "server/mechanics/step/step_plan.h"
 #include "server/mesh/topology.h"
 #include "tests/compile_text.h"
 
@@ -54,14 +54,14 @@ State StepBy(const Integrator& integrator, const Model& model, double dt, State 
   Workspace work = model.MakeWorkspace();
   work.before = state.x;
   work.velocity_before = state.v;
-  EXPECT_TRUE(integrator.Advance(model, model.parameters, dt, state, work).ok());
+  EXPECT_TRUE(integrator.Advance(*model.plan, model.parameters, dt, state, work).ok());
   return state;
 }
 
 // Residual of backward Euler, M (v' - v) - dt f(x'), over dt times the largest force.
 double Residual(const Model& model, double dt, const State& before, const State& after) {
   Points f(3, after.x.cols());
-  SumForces(model, MakeEvalContext(model, model.parameters, after), f);
+  model.plan->SumForces(MakeEvalContext(model, model.parameters, after), f);
   double left = 0;
   for (int i = 0; i < f.cols(); ++i) {
     if (model.inverse_mass[i] == 0) continue;

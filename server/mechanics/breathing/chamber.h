@@ -50,6 +50,8 @@ class Chamber {
   double rest_volume() const { return rest_volume_; }
   // f += scale a, 3 x simulated vertices.
   void AddAreas(const EvalContext& at, double scale, MutablePoints f) const;
+  // Returns a, 3 x simulated vertices, valid until the next call with the same scratch memory.
+  const Points& AreaVectors(const EvalContext& at) const;
   // Visits the corners of every simulated triangle with their places among the simulated vertices.
   template <typename Visitor>
   void ForEachSimulated(const Visitor& visit) const {

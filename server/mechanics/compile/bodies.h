@@ -2,7 +2,7 @@
 #ifndef PHRENIC_SERVER_MECHANICS_COMPILE_BODIES_H_
 #define PHRENIC_SERVER_MECHANICS_COMPILE_BODIES_H_
 
-#include "server/mechanics/compile/compile.h"
+#include "server/mechanics/compile/mesh_source.h"
 #include "server/mechanics/model_builder.h"
 
 namespace phrenic {

@@ -12,8 +12,6 @@ namespace phrenic {
 absl::StatusOr<std::unique_ptr<Force>> MakeForce(const v1::Force& scene, std::string_view path, ModelBuilder& builder);
 absl::StatusOr<std::unique_ptr<Constraint>> MakeConstraint(const v1::Constraint& scene, std::string_view path,
                                                            ModelBuilder& builder);
-// The one integrator of this kind; the default where it is unspecified.
-const Integrator& FindIntegrator(v1::Integrator kind);
 // Adds a motion to the builder, or a ride.
 absl::Status AddMotion(const v1::Motion& scene, std::string_view path, ModelBuilder& builder);
 absl::StatusOr<std::unique_ptr<Measure>> MakeMeasure(const v1::Measure& scene, std::string_view path,

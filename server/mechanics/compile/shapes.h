@@ -4,7 +4,7 @@
 
 #include "absl/status/statusor.h"
 #include "phrenic/v1/scene.pb.h"
-#include "server/mechanics/compile/compile.h"
+#include "server/mechanics/compile/mesh_source.h"
 #include "server/mesh/mesh.h"
 
 namespace phrenic {

@@ -12,11 +12,12 @@ namespace phrenic {
 class Limits final : public Constraint {
  public:
   // Null where no edge lies in the region.
-  static absl::StatusOr<std::unique_ptr<Constraint>> Make(const v1::Limits& scene, const std::string& name,
+  static absl::StatusOr<std::unique_ptr<Constraint>> Make(const v1::LengthLimits& scene, const std::string& name,
                                                           std::string_view path, ModelBuilder& builder);
 
-  void Project(const v1::Parameters& parameters, const ConstPoints& before, double dt, State& state) const override;
-  void ProjectVelocities(const v1::Parameters& parameters, State& state) const override;
+  void Project(const v1::Parameters& parameters, const ConstPoints& before, double dt, const Scratch& scratch,
+               State& state) const override;
+  void ProjectVelocities(const v1::Parameters& parameters, const Scratch& scratch, State& state) const override;
   bool smooth() const override { return false; }
   double Residual(const State& state) const override;
 

@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "server/mechanics/linalg/vector_targets.h"
+#include "server/mechanics/parallel/vertex_range.h"
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "server/mechanics/constraints/link_kernel.cc"
 #include <hwy/foreach_target.h>

@@ -18,17 +18,17 @@
 
 namespace phrenic {
 
-// Immutable; any number of threads may call. Working memory is the thread's own: a thread's first call on a larger
-// network than any before allocates.
+// Immutable; any number of threads may call, each with scratch memory of its own. Allocates if no network that used
+// that memory before was as large.
 class LinkNetwork {
  public:
   LinkNetwork() = default;
   explicit LinkNetwork(const std::vector<Link>& links);
 
   // Positions of `state` get onto the links, velocities change by the same over dt.
-  void Project(const ConstPoints& before, double dt, State& state) const;
+  void Project(const ConstPoints& before, double dt, const Scratch& scratch, State& state) const;
   // Velocities keep nothing that would stretch a link.
-  void ProjectVelocities(State& state) const;
+  void ProjectVelocities(const Scratch& scratch, State& state) const;
   const std::vector<Link>& links() const { return links_; }
 
  private:
@@ -38,20 +38,20 @@ class LinkNetwork {
     int i, j;       // links
     double factor;  // 1/m of the vertex [1/kg]; negative where one link starts and the other ends there
   };
-  struct Scratch;
-  Scratch& Fitted() const;  // the thread's, large enough
+  struct Memory;
+  Memory& Fit(const Scratch& scratch) const;  // large enough
 
   void FindCouplings();
-  void Factorise(const ConstPoints& x, Scratch& scratch) const;
-  double Errors(const State& state, Scratch& scratch) const;  // the largest, relative; all of them to scratch.pulls
-  double Rates(const State& state, Scratch& scratch) const;   // the same of the velocities [m/s]
-  double LargestMove(const Scratch& scratch) const;
-  void PullAll(double sign, double dt, Scratch& scratch, State& state) const;
-  void PushAll(Scratch& scratch, State& state) const;  // velocities alone
-  bool Correct(double dt, Scratch& scratch, State& state, double& error) const;
-  void Newton(const ConstPoints& before, double dt, Scratch& scratch, State& state) const;
-  bool Switch(double dt, Scratch& scratch, State& state) const;  // true where any limit took hold or let go
-  bool SwitchVelocities(double slow, Scratch& scratch, State& state) const;
+  void Factorise(const ConstPoints& x, Memory& memory) const;
+  double Errors(const State& state, Memory& memory) const;  // the largest, relative; all of them to memory.pulls
+  double Rates(const State& state, Memory& memory) const;   // the same of the velocities [m/s]
+  double LargestMove(const Memory& memory) const;
+  void PullAll(double sign, double dt, Memory& memory, State& state) const;
+  void PushAll(Memory& memory, State& state) const;  // velocities alone
+  bool Correct(double dt, Memory& memory, State& state, double& error) const;
+  void Newton(const ConstPoints& before, double dt, Memory& memory, State& state) const;
+  bool Switch(double dt, Memory& memory, State& state) const;  // true where any limit took hold or let go
+  bool SwitchVelocities(double slow, Memory& memory, State& state) const;
   double LargestViolation(const State& state) const;
 
   std::vector<Link> links_;

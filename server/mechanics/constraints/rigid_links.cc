@@ -6,9 +6,12 @@
 #include <limits>
 #include <numeric>
 #include <tuple>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "server/mechanics/constraints/link_pairing.h"
+#include "server/mechanics/constraints/thesis_links.h"
+#include "server/mechanics/linalg/state_bounds.h"
 
 namespace phrenic {
 namespace {
@@ -81,32 +84,33 @@ absl::StatusOr<std::unique_ptr<Constraint>> RigidLinks::Make(const v1::RigidLink
     builder.ReportLeftOut(name, "no two vertices fit the pairing");
     return nullptr;
   }
-  std::unique_ptr<RigidLinks> constraint(new RigidLinks(name));
-  constraint->thesis_ = scene.projection() == v1::PROJECTION_THESIS;
-  constraint->Sort(*links, builder.model);
   Show(*links, builder.model);
   const auto count = static_cast<std::int64_t>(links->size());
   builder.model.report.set_rigid_links(builder.model.report.rigid_links() + count);
-  builder.ReportElement("constraint", name, count, "links",
-                        constraint->thesis_ ? "split by distance moved (thesis 2.10-2.11)"
-                                            : absl::StrCat("mass-weighted, velocities corrected; ",
-                                                           constraint->network_.links().size(), " solved together"));
+  if (scene.projection() == v1::PROJECTION_THESIS) {
+    builder.ReportElement("constraint", name, count, "links", "split by distance moved (thesis 2.10-2.11)");
+    return std::make_unique<ThesisLinks>(name, *std::move(links));
+  }
+  std::unique_ptr<RigidLinks> constraint(new RigidLinks(name, *links, builder.model));
+  builder.ReportElement(
+      "constraint", name, count, "links",
+      absl::StrCat("mass-weighted, velocities corrected; ", constraint->network_.links().size(), " solved together"));
   return constraint;
 }
 
-void RigidLinks::Sort(const std::vector<Link>& links, const Model& model) {
+RigidLinks::RigidLinks(std::string name, const std::vector<Link>& links, const Model& model)
+    : BlockConstraint(std::move(name)) {
   const std::vector<int> count = LinksPerVertex(links, model);
   std::vector<Link> joined;
   for (const Link& link : links) {
-    const bool alone = thesis_ || (count[link.a] < 2 && count[link.b] < 2);
-    if (alone) {
+    if (count[link.a] < 2 && count[link.b] < 2) {
       alone_.push_back(link);
     } else if (link.Movable()) {
       joined.push_back(link);
     }
   }
   if (!joined.empty()) network_ = LinkNetwork(joined);
-  if (!thesis_) PackAlone(model.rest.cols());
+  PackAlone(model.rest.cols());
 }
 
 void RigidLinks::PackAlone(Eigen::Index vertices) {
@@ -128,20 +132,6 @@ void RigidLinks::PackAlone(Eigen::Index vertices) {
   across_.erase(std::unique(across_.begin(), across_.end()), across_.end());
 }
 
-void RigidLinks::ProjectThesis(const ConstPoints& before, Points& x) const {
-  for (const Link& link : alone_) {
-    const Eigen::Vector3d between = x.col(link.b) - x.col(link.a);
-    const double length = between.norm();
-    if (length == 0 || !link.Movable()) continue;
-    double a = link.inverse_a > 0 ? (x.col(link.a) - before.col(link.a)).norm() : 0;
-    double b = link.inverse_b > 0 ? (x.col(link.b) - before.col(link.b)).norm() : 0;
-    if (a + b == 0) a = link.inverse_a, b = link.inverse_b;  // neither moved: a fixed end still does not
-    const Eigen::Vector3d correction = ((length - link.length) / length) * between;
-    x.col(link.a) += a / (a + b) * correction;
-    x.col(link.b) -= b / (a + b) * correction;
-  }
-}
-
 double RigidLinks::RestoreAlone(absl::Span<const LinkPacket> packets, Eigen::Index from, const LinkVectors* directions,
                                 double dt, Points& x, Points& v) const {
   double way = 0;
@@ -158,7 +148,7 @@ double RigidLinks::RestoreAlone(absl::Span<const LinkPacket> packets, Eigen::Ind
   return way;
 }
 
-void RigidLinks::RestoreAcross(const ConstPoints& before, double dt, State& state) const {
+void RigidLinks::RestoreAcross(const ConstPoints& before, double dt, const Scratch& scratch, State& state) const {
   const absl::Span<const LinkPacket> packets = absl::MakeConstSpan(packets_).subspan(block_start_.back());
   LinkVectors directions[kPacketsTogether];
   for (size_t p = 0; p < packets.size(); p += kPacketsTogether) {
@@ -166,7 +156,7 @@ void RigidLinks::RestoreAcross(const ConstPoints& before, double dt, State& stat
     FindDirections(some, before.data(), directions);
     RestoreAlone(some, 0, directions, dt, state.x, state.v);
   }
-  network_.Project(before, dt, state);
+  network_.Project(before, dt, scratch, state);
 }
 
 absl::Span<const LinkPacket> RigidLinks::PacketsIn(const VertexRange& block) const {
@@ -174,38 +164,35 @@ absl::Span<const LinkPacket> RigidLinks::PacketsIn(const VertexRange& block) con
   return absl::MakeConstSpan(packets_).subspan(block_start_[b], block_start_[b + 1] - block_start_[b]);
 }
 
-void RigidLinks::Remember(const VertexRange& block, const ConstPoints& x, double* start) const {
+void RigidLinks::RecordStart(const VertexRange& block, const ConstPoints& x, double* start) const {
   FindDirections(PacketsIn(block), x.data() + 3 * block.first, reinterpret_cast<LinkVectors*>(start));
 }
 
-double RigidLinks::ProjectIn(const VertexRange& block, const double* start, double dt, Points& x, Points& v) const {
+double RigidLinks::ProjectBlock(const VertexRange& block, const double* start, double dt, Points& x, Points& v) const {
   return RestoreAlone(PacketsIn(block), block.first, reinterpret_cast<const LinkVectors*>(start), dt, x, v);
 }
 
-void RigidLinks::ProjectAcross(const v1::Parameters& parameters, const ConstPoints& before, double dt,
-                               State& state) const {
-  if (parameters.apply_links()) RestoreAcross(before, dt, state);
+void RigidLinks::ProjectAcrossBlocks(const v1::Parameters& parameters, const ConstPoints& before, double dt,
+                                     const Scratch& scratch, State& state) const {
+  if (parameters.apply_links()) RestoreAcross(before, dt, scratch, state);
 }
 
-void RigidLinks::Project(const v1::Parameters& parameters, const ConstPoints& before, double dt, State& state) const {
+void RigidLinks::Project(const v1::Parameters& parameters, const ConstPoints& before, double dt, const Scratch& scratch,
+                         State& state) const {
   if (!parameters.apply_links()) return;
-  if (thesis_) {
-    ProjectThesis(before, state.x);
-    return;
-  }
   alignas(LinkVectors) double start[3 * kVertexBlock];
   for (Eigen::Index first = 0; first < state.x.cols(); first += kVertexBlock) {
     const VertexRange block = {first, std::min(first + kVertexBlock, state.x.cols())};
-    Remember(block, before, start);
-    ProjectIn(block, start, dt, state.x, state.v);
+    RecordStart(block, before, start);
+    ProjectBlock(block, start, dt, state.x, state.v);
   }
-  RestoreAcross(before, dt, state);
+  RestoreAcross(before, dt, scratch, state);
 }
 
-void RigidLinks::ProjectVelocities(const v1::Parameters& parameters, State& state) const {
-  if (!parameters.apply_links() || thesis_) return;
+void RigidLinks::ProjectVelocities(const v1::Parameters& parameters, const Scratch& scratch, State& state) const {
+  if (!parameters.apply_links()) return;
   for (const Link& link : alone_) StopStretching(link, state);
-  network_.ProjectVelocities(state);
+  network_.ProjectVelocities(scratch, state);
 }
 
 double RigidLinks::Residual(const State& state) const {

@@ -17,14 +17,14 @@ bool CarriedByTissue(const Model& model, const BodyModel& body) {
   if (body.first_vertex >= 0) return true;
   if (body.skin < 0) return false;
   if (!model.skins[body.skin].triangles.empty()) return true;
-  const std::vector<SkinWeight>& shares = model.skins[body.skin].shares;
-  return std::any_of(shares.begin(), shares.end(), [](const SkinWeight& share) { return share.pose < 0; });
+  const std::vector<SkinWeight>& weights = model.skins[body.skin].weights;
+  return std::any_of(weights.begin(), weights.end(), [](const SkinWeight& weight) { return weight.pose < 0; });
 }
 
 absl::StatusOr<std::vector<int>> CarrierBodies(const v1::Attachment& scene, std::string_view path,
                                                const ModelBuilder& builder) {
-  const std::string field = absl::StrCat(std::string(path), ".carriers");
-  auto carriers = builder.Bodies(scene.carriers(), field);
+  const std::string field = absl::StrCat(std::string(path), ".anchors");
+  auto carriers = builder.Bodies(scene.anchors(), field);
   if (!carriers.ok()) return carriers;
   for (const int c : *carriers) {
     if (CarriedByTissue(builder.model, builder.model.bodies[c])) {
@@ -48,13 +48,13 @@ absl::StatusOr<std::unique_ptr<Force>> Attachment::Make(const v1::Attachment& sc
   if (!carriers.ok()) return carriers.status();
   std::unique_ptr<Attachment> force(new Attachment(name));
   force->thesis_ = scene.mode() == v1::ATTACHMENT_MODE_THESIS;
-  std::vector<SkinWeight> shares;
+  std::vector<SkinWeight> weights;
   for (const int b : *bodies) {
     auto region = builder.Region(b, scene.region(), absl::StrCat(std::string(path), ".region"));
     if (!region.ok()) return region.status();
-    force->AddHolds(scene, *carriers, *region, b, shares, builder);
+    force->AddHolds(scene, *carriers, *region, b, weights, builder);
   }
-  force->Pack(std::move(shares), builder.model.mass.size());
+  force->Pack(std::move(weights), builder.model.mass.size());
   if (force->holds_.empty()) {
     builder.ReportLeftOut(name, absl::StrFormat("no vertex is within %g m of a carrier", scene.radius()));
     return nullptr;
@@ -68,38 +68,38 @@ absl::StatusOr<std::unique_ptr<Force>> Attachment::Make(const v1::Attachment& sc
 }
 
 void Attachment::AddHolds(const v1::Attachment& scene, const std::vector<int>& carriers,
-                          const std::vector<bool>& region, int b, std::vector<SkinWeight>& shares,
+                          const std::vector<bool>& region, int b, std::vector<SkinWeight>& weights,
                           ModelBuilder& builder) {
   const BodyModel& body = builder.model.bodies[b];
   const SkinDrivers search(builder, carriers);
   for (int i = 0; i < body.mesh.vertices.cols(); ++i) {
     const int vertex = body.first_vertex + i;
     if (!region[i]) continue;
-    const SkinDrivers::Contact contact = search.Nearest(body.mesh.vertices.col(i), scene.radius());
-    if (contact.distance >= scene.radius() || builder.model.inverse_mass[vertex] == 0) continue;
-    const double stiffness = (1 - contact.distance / scene.radius()) * scene.stiffness();
+    const SkinDrivers::Nearby nearby = search.Nearest(body.mesh.vertices.col(i), scene.radius());
+    if (nearby.distance >= scene.radius() || builder.model.inverse_mass[vertex] == 0) continue;
+    const double stiffness = (1 - nearby.distance / scene.radius()) * scene.stiffness();
     const double damping = 2 * scene.damping_ratio() * std::sqrt(stiffness * builder.model.mass[vertex]);
     holds_.push_back({vertex, stiffness, damping, body.mesh.vertices.col(i)});
-    search.AppendWeights(contact, vertex, 1, shares);
+    search.AppendWeights(nearby, vertex, 1, weights);
     builder.model.attached_vertices.push_back(vertex);
   }
 }
 
 // In packets by block and, of what is carried, by pose.
-void Attachment::Pack(std::vector<SkinWeight> shares, Eigen::Index vertices) {
+void Attachment::Pack(std::vector<SkinWeight> weights, Eigen::Index vertices) {
   const auto by_vertex = [](const Hold& hold, int vertex) { return hold.vertex < vertex; };
   std::sort(holds_.begin(), holds_.end(), [](const Hold& a, const Hold& b) { return a.vertex < b.vertex; });
   for (const Hold& hold : holds_) {
     if (!thesis_) PackInto(held_.of, -1, hold, hold.stiffness, hold.damping);
   }
-  const auto place = [](const SkinWeight& share) {
-    return std::tuple(share.vertex / kVertexBlock, share.pose, share.vertex);
+  const auto place = [](const SkinWeight& weight) {
+    return std::tuple(weight.vertex / kVertexBlock, weight.pose, weight.vertex);
   };
-  std::sort(shares.begin(), shares.end(), [&](const auto& a, const auto& b) { return place(a) < place(b); });
-  for (const SkinWeight& share : shares) {
-    const Hold& hold = *std::lower_bound(holds_.begin(), holds_.end(), share.vertex, by_vertex);
-    const double stiffness = thesis_ ? 0 : share.weight * hold.stiffness;
-    PackInto(carried_.of, share.pose, hold, stiffness, share.weight * (thesis_ ? hold.stiffness : hold.damping));
+  std::sort(weights.begin(), weights.end(), [&](const auto& a, const auto& b) { return place(a) < place(b); });
+  for (const SkinWeight& weight : weights) {
+    const Hold& hold = *std::lower_bound(holds_.begin(), holds_.end(), weight.vertex, by_vertex);
+    const double stiffness = thesis_ ? 0 : weight.weight * hold.stiffness;
+    PackInto(carried_.of, weight.pose, hold, stiffness, weight.weight * (thesis_ ? hold.stiffness : hold.damping));
   }
   held_.Index(vertices), carried_.Index(vertices);
 }
@@ -110,7 +110,7 @@ void Attachment::Groups::Index(Eigen::Index vertices) {
   std::partial_sum(first.begin(), first.end(), first.begin());
 }
 
-// A vertex twice in a row, which has two shares of one pose, goes into two packets.
+// A vertex twice in a row, which has two weights of one pose, goes into two packets.
 void Attachment::PackInto(std::vector<Group>& groups, int pose, const Hold& hold, double stiffness, double damping) {
   const Eigen::Index block = hold.vertex / kVertexBlock;
   const auto place = static_cast<std::int32_t>(3 * (hold.vertex % kVertexBlock));
@@ -129,7 +129,13 @@ void Attachment::PackInto(std::vector<Group>& groups, int pose, const Hold& hold
   groups.back().end_packet = packets_.size();
 }
 
-void Attachment::AddForceIn(const VertexRange& range, const EvalContext& at, MutablePoints f) const {
+void Attachment::AddForce(const EvalContext& at, MutablePoints f) const {
+  BlockContext all{at};
+  all.pose_matrices = PoseMatricesOf(at).data();
+  AddForceToBlock({0, f.cols()}, all, f);
+}
+
+void Attachment::AddForceToBlock(const VertexRange& range, const BlockContext& at, MutablePoints f) const {
   const double scale = thesis_ ? at.parameters.time_step() : 1;
   const HoldPacket* const packets = packets_.data();
   const auto for_each = [&range](const Groups& groups, const auto& add) {
@@ -143,9 +149,8 @@ void Attachment::AddForceIn(const VertexRange& range, const EvalContext& at, Mut
             f.data() + (block - 3 * range.first));
   });
   if (carried_.of.empty()) return;
-  const auto poses = PoseMatricesOf(at);
   for_each(carried_, [&](const Group& group, Eigen::Index block) {
-    AddCarried(poses[group.pose], scale, packets + group.first_packet, packets + group.end_packet,
+    AddCarried(at.pose_matrices[group.pose], scale, packets + group.first_packet, packets + group.end_packet,
                f.data() + (block - 3 * range.first));
   });
 }

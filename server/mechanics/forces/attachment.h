@@ -8,19 +8,21 @@
 
 #include <vector>
 
+#include "server/mechanics/block_force.h"
 #include "server/mechanics/forces/attachment_kernel.h"
 #include "server/mechanics/model_builder.h"
 
 namespace phrenic {
 
-class Attachment final : public Force {
+class Attachment final : public BlockForce {
  public:
   // Null where no vertex is within the radius. SkinDrivers are driven, at rest, or riding on such bodies.
   static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::Attachment& scene, const std::string& name,
                                                      std::string_view path, ModelBuilder& builder);
 
-  bool by_range() const override { return true; }
-  void AddForceIn(const VertexRange& range, const EvalContext& at, MutablePoints f) const override;
+  void AddForce(const EvalContext& at, MutablePoints f) const override;
+  // Requires: `at.pose_matrices`.
+  void AddForceToBlock(const VertexRange& range, const BlockContext& at, MutablePoints f) const override;
   void AddStiffness(const EvalContext& at, StiffnessSink& sink) const override;
   void AddDamping(const EvalContext& at, Eigen::VectorXd& c) const override;
 
@@ -30,7 +32,7 @@ class Attachment final : public Force {
     double stiffness, damping;  // [N/m], [N s/m]
     Eigen::Vector3d rest;       // [m]
   };
-  // Holds of one block of vertices: all of them, or those in which one pose has a share.
+  // Holds of one block of vertices: all of them, or those in which one pose has a weight.
   struct Group {
     Eigen::Index block;
     int pose;
@@ -41,10 +43,10 @@ class Attachment final : public Force {
     std::vector<size_t> first;  // of each block, and one more
     void Index(Eigen::Index vertices);
   };
-  explicit Attachment(std::string name) : Force(std::move(name)) {}
+  explicit Attachment(std::string name) : BlockForce(std::move(name)) {}
   void AddHolds(const v1::Attachment& scene, const std::vector<int>& carriers, const std::vector<bool>& region,
-                int body, std::vector<SkinWeight>& shares, ModelBuilder& builder);
-  void Pack(std::vector<SkinWeight> shares, Eigen::Index vertices);
+                int body, std::vector<SkinWeight>& weights, ModelBuilder& builder);
+  void Pack(std::vector<SkinWeight> weights, Eigen::Index vertices);
   void PackInto(std::vector<Group>& groups, int pose, const Hold& hold, double stiffness, double damping);
 
   bool thesis_ = false;

@@ -8,6 +8,11 @@
 namespace phrenic {
 namespace {
 
+// Of one deformable surface after another.
+struct FittedBoxes {
+  TriangleTree::Boxes boxes;
+};
+
 constexpr double kReach = 10;      // depths
 constexpr double kGravity = 9.81;  // [m/s^2]
 
@@ -72,7 +77,7 @@ Contact::Surface Contact::MakeSurface(const BodyModel& body) {
 
 template <typename Visitor>
 void Contact::ForEachTouch(const EvalContext& at, const Visitor& visit) const {
-  thread_local TriangleTree::Boxes fitted;
+  TriangleTree::Boxes& fitted = at.scratch.Get<FittedBoxes>().boxes;
   for (const Surface& surface : surfaces_) {
     const bool deformable = surface.deformable();
     const ConstPoints x =

@@ -10,6 +10,11 @@
 namespace phrenic {
 namespace {
 
+// Triangles that are evaluated one by one: there are hardly ever any.
+struct FlatTriangles {
+  std::vector<int> numbers;
+};
+
 constexpr double kFlattest = 1e-3;  // stretch below which a flat element's transverse stiffness grows no further
 
 // The second derivative of the energy density is
@@ -145,7 +150,7 @@ void Corotated<N>::AddForce(const EvalContext& at, MutablePoints f) const {
     for (const FiniteElement<N>& element : elements_) AddForceOf(element, elasticity, at.x, f);
     return;
   }
-  thread_local std::vector<int> flat;  // of which there are hardly ever any
+  std::vector<int>& flat = at.scratch.Get<FlatTriangles>().numbers;
   flat.clear();
   AddTriangles(batches_, elasticity * lame_.mu, elasticity * lame_.lambda, at.x.data(), f.data(), flat);
   for (const int t : flat) AddForceOf(elements_[t], elasticity, at.x, f);

@@ -20,7 +20,8 @@ class Lungs final : public Force {
                                                      std::string_view path, ModelBuilder& builder);
 
   void AddForce(const EvalContext& at, MutablePoints f) const override;
-  bool by_range() const override { return !pushes_; }  // nothing, in every range
+  bool acts_on_vertices() const override { return pushes_; }
+  bool has_shared_damping() const override { return pushes_ && resistance_ > 0; }
   void AddStiffness(const EvalContext& at, StiffnessSink& sink) const override;
   void AddSharedDamping(const EvalContext& at, OuterProducts& shared) const override;
   double Energy(const EvalContext& at) const override;
@@ -35,7 +36,6 @@ class Lungs final : public Force {
   double PressureChange(const ChamberReading& read) const {
     return AlveolarPressure(read) - Change(read.volume) / compliance_;
   }
-  const Points& Areas(const EvalContext& at) const;
 
   Chamber chamber_;
   bool pushes_ = false;

@@ -50,7 +50,7 @@ Eigen::Vector3d PointLoad::LoadAt(const EvalContext& at) const {
   return (breathes_ ? at.parameters.breath_force() * at.breath : 1.0) * load_;
 }
 
-void PointLoad::AddForceIn(const VertexRange& range, const EvalContext& at, MutablePoints f) const {
+void PointLoad::AddForceToBlock(const VertexRange& range, const BlockContext& at, MutablePoints f) const {
   const Eigen::Vector3d load = LoadAt(at);
   auto vertex = std::lower_bound(vertices_.begin(), vertices_.end(), range.first);
   for (; vertex != vertices_.end() && *vertex < range.end; ++vertex) f.col(*vertex - range.first) += load;

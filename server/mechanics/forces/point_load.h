@@ -5,23 +5,23 @@
 
 #include <vector>
 
+#include "server/mechanics/block_force.h"
 #include "server/mechanics/model_builder.h"
 
 namespace phrenic {
 
-class PointLoad final : public Force {
+class PointLoad final : public BlockForce {
  public:
   // Null where no vertex is free or the force is 0.
   static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::PointLoad& scene, const std::string& name,
                                                      std::string_view path, ModelBuilder& builder);
 
-  bool by_range() const override { return true; }
-  void AddForceIn(const VertexRange& range, const EvalContext& at, MutablePoints f) const override;
+  void AddForceToBlock(const VertexRange& range, const BlockContext& at, MutablePoints f) const override;
   double Energy(const EvalContext& at) const override;
   bool conservative() const override { return true; }
 
  private:
-  explicit PointLoad(std::string name) : Force(std::move(name)) {}
+  explicit PointLoad(std::string name) : BlockForce(std::move(name)) {}
   Eigen::Vector3d LoadAt(const EvalContext& at) const;
 
   std::vector<int> vertices_;  // ascending

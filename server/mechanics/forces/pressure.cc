@@ -57,11 +57,7 @@ double Pressure::PressureAt(const EvalContext& at) const {
 void Pressure::AddForce(const EvalContext& at, MutablePoints f) const { chamber_.AddAreas(at, PressureAt(at), f); }
 
 void Pressure::AddStiffness(const EvalContext& at, StiffnessSink& sink) const {
-  if (stiffness_ == 0) return;
-  thread_local Points areas;
-  areas.setZero(3, at.x.cols());
-  chamber_.AddAreas(at, 1, areas);
-  sink.AddOuter(stiffness_, areas);
+  if (stiffness_ != 0) sink.AddOuter(stiffness_, chamber_.AreaVectors(at));
 }
 
 // Of what is left out above, a bound: corner a of a triangle abc has the blocks p/6 [b - c]x, p/6 [c - a]x and

@@ -6,11 +6,12 @@
 #include <utility>
 #include <vector>
 
+#include "server/mechanics/block_force.h"
 #include "server/mechanics/model_builder.h"
 
 namespace phrenic {
 
-class SharedForce : public Force {
+class SharedForce : public BlockForce {
  public:
   // F at this moment.
   virtual Eigen::Vector3d Whole(const EvalContext& at) const = 0;
@@ -18,13 +19,12 @@ class SharedForce : public Force {
   const Eigen::VectorXd& share() const { return share_; }
   bool ActsOn(Eigen::Index block) const { return acts_[static_cast<size_t>(block)]; }
 
-  bool by_range() const override { return true; }
-  void AddForceIn(const VertexRange& range, const EvalContext& at, MutablePoints f) const override;
+  void AddForceToBlock(const VertexRange& range, const BlockContext& at, MutablePoints f) const override;
   double Energy(const EvalContext& at) const override;
   bool conservative() const override { return true; }
 
  protected:
-  explicit SharedForce(std::string name) : Force(std::move(name)) {}
+  explicit SharedForce(std::string name) : BlockForce(std::move(name)) {}
   void SetShare(Eigen::VectorXd share);
 
  private:

@@ -221,10 +221,17 @@ void PutInOrder(const SpringSlices<float>& slices, const VertexRange& block, con
   }
 }
 
+// Positions in the order of the slices.
 template <typename Number>
-void AddInOrder(const SpringSlices<Number>& slices, int origin, double scale, const ConstPoints& x, double* f) {
+struct OrderedPoints {
+  AlignedNumbers<Number> numbers;
+};
+
+template <typename Number>
+void AddInOrder(const SpringSlices<Number>& slices, int origin, double scale, const ConstPoints& x,
+                const Scratch& scratch, double* f) {
   const auto places = static_cast<Eigen::Index>(slices.order.size());
-  auto* const ordered = ThreadMemory<Kept::kInOrder, Number>(kPointStride<Number> * places);
+  auto* const ordered = scratch.Get<OrderedPoints<Number>>().numbers.Fit(kPointStride<Number> * places);
   ForEachBlock({0, places}, [&](const VertexRange& block) { PutInOrder(slices, block, x, origin, ordered); });
   ForEachBlock({0, places}, [&](const VertexRange& range) {
     const std::int64_t block = range.first / kVertexBlock;
@@ -248,12 +255,16 @@ void SpringRows::SetLoad(const Points& load) {
   std::visit([&load](auto& slices) { LayLoad(load, slices); }, slices_);
 }
 
-void SpringRows::AddForce(double scale, const ConstPoints& x, MutablePoints f) const {
+Precision SpringRows::precision() const {
+  return std::holds_alternative<SpringSlices<float>>(slices_) ? Precision::kSingle : Precision::kDouble;
+}
+
+void SpringRows::AddForce(double scale, const ConstPoints& x, const Scratch& scratch, MutablePoints f) const {
   if (ordered_) {
-    std::visit([&](const auto& slices) { AddInOrder(slices, origin_, scale, x, f.data()); }, slices_);
+    std::visit([&](const auto& slices) { AddInOrder(slices, origin_, scale, x, scratch, f.data()); }, slices_);
   } else {
-    const bool single = std::holds_alternative<SpringSlices<float>>(slices_);
-    AddForce({0, x.cols()}, scale, x, single ? PackAll(x, origin_) : nullptr, false, f);
+    const float* const packed = precision() == Precision::kSingle ? PackAll(x, origin_, scratch) : nullptr;
+    AddForce({0, x.cols()}, scale, x, packed, false, f);
   }
 }
 

@@ -10,6 +10,7 @@
 
 #include "server/mechanics/forces/spring_kernel.h"
 #include "server/mechanics/parallel/vertex_range.h"
+#include "server/mechanics/scratch.h"
 #include "server/mechanics/spring.h"
 #include "server/mesh/mesh.h"
 
@@ -17,8 +18,8 @@ namespace phrenic {
 
 enum class Precision { kDouble, kSingle };
 
-// Immutable; any number of threads may call. Where springs join vertices that are far apart, they are put into an order
-// of their own first, in memory of the thread's own: its first call on more vertices than any before allocates.
+// Immutable; any number of threads may call, each with scratch memory of its own. Where springs join vertices that are
+// far apart, positions are first put into an order of their own.
 class SpringRows {
  public:
   SpringRows() = default;
@@ -31,7 +32,7 @@ class SpringRows {
   // On the vertices that have springs acts a steady force too: `load` is 3 x n [N], and nothing on others.
   void SetLoad(const Points& load);
   // f += scale (pulls + load) [N], 3 x n. The sum of a vertex is taken in its neighbours' order, on every machine.
-  void AddForce(double scale, const ConstPoints& x, MutablePoints f) const;
+  void AddForce(double scale, const ConstPoints& x, const Scratch& scratch, MutablePoints f) const;
 
   // Whether the same can be had range by range: not in an order of its own.
   bool InRanges() const { return !ordered_; }
@@ -40,6 +41,7 @@ class SpringRows {
   void AddForce(const VertexRange& range, double scale, const ConstPoints& x, const float* packed, bool fresh,
                 MutablePoints f) const;
 
+  Precision precision() const;
   // In single precision, the vertex to pack from: in the middle of theirs.
   int origin() const { return origin_; }
 

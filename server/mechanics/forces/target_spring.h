@@ -14,7 +14,7 @@ namespace phrenic {
 class TargetSpring final : public Force {
  public:
   // Null where no vertex is free or the stiffness is 0.
-  static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::Drag& scene, const std::string& name,
+  static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::TargetSpring& scene, const std::string& name,
                                                      std::string_view path, ModelBuilder& builder);
 
   void AddForce(const EvalContext& at, MutablePoints f) const override;
@@ -34,9 +34,9 @@ class TargetSpring final : public Force {
     Eigen::Vector3d place, velocity;  // [m], [m/s]
   };
   explicit TargetSpring(std::string name) : Force(std::move(name)) {}
-  absl::Status AddDraws(const v1::Drag& scene, int body, std::string_view path, ModelBuilder& builder);
-  absl::Status FindTargets(const v1::Drag& scene, std::string_view path, const ModelBuilder& builder);
-  absl::Status FindSurfaceTargets(const v1::Drag& scene, std::string_view path, const ModelBuilder& builder);
+  absl::Status AddDraws(const v1::TargetSpring& scene, int body, std::string_view path, ModelBuilder& builder);
+  absl::Status FindTargets(const v1::TargetSpring& scene, std::string_view path, const ModelBuilder& builder);
+  absl::Status FindSurfaceTargets(const v1::TargetSpring& scene, std::string_view path, const ModelBuilder& builder);
   Aim AimOf(const Draw& draw, const EvalContext& at) const;
 
   std::vector<Draw> draws_;

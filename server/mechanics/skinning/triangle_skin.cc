@@ -33,7 +33,7 @@ void AddTriangles(const ModelBuilder& builder, const BodyModel& body, std::vecto
 }
 
 // Where `point` is in the triangle's own coordinates; exact for every point, inside or not.
-TriangleBinding PlaceIn(const ConstPoints& x, const Eigen::Vector3i& t, const Eigen::Vector3d& point) {
+TriangleBinding BindTo(const ConstPoints& x, const Eigen::Vector3i& t, const Eigen::Vector3d& point) {
   const Eigen::Vector3d area = AreaVector(x, t);
   const Eigen::Vector3d a = x.col(t[0]), b = x.col(t[1]), c = x.col(t[2]);
   const double squared = area.squaredNorm();
@@ -47,10 +47,10 @@ double LargestStretchError(double height) { return 2 / std::sqrt(3.0) * kStretch
 
 }  // namespace
 
-absl::StatusOr<Mapping> Mapping::Make(const ModelBuilder& builder, const std::vector<int>& carriers,
-                                      std::string_view path) {
+absl::StatusOr<TriangleBinder> TriangleBinder::Make(const ModelBuilder& builder, const std::vector<int>& drivers,
+                                                    std::string_view path) {
   std::vector<Eigen::Vector3i> triangles;
-  for (const int c : carriers) {
+  for (const int c : drivers) {
     const BodyModel& body = builder.model.bodies[c];
     const size_t before = triangles.size();
     if (body.first_vertex >= 0) AddTriangles(builder, body, triangles);
@@ -61,32 +61,32 @@ absl::StatusOr<Mapping> Mapping::Make(const ModelBuilder& builder, const std::ve
   }
   Triangles columns(3, static_cast<Eigen::Index>(triangles.size()));
   for (size_t t = 0; t < triangles.size(); ++t) columns.col(static_cast<Eigen::Index>(t)) = triangles[t];
-  return Mapping(builder, columns);
+  return TriangleBinder(builder, columns);
 }
 
-Mapping::Mapping(const ModelBuilder& builder, const Triangles& triangles)
+TriangleBinder::TriangleBinder(const ModelBuilder& builder, const Triangles& triangles)
     : builder_(builder), tree_(builder.model.rest, triangles) {
   tree_.Fit(builder.model.rest, boxes_);
 }
 
-Skin Mapping::Carry(int body, v1::MappingReport& report) const {
+Skin TriangleBinder::Bind(int body, v1::MappingReport& report) const {
   const BodyModel& seen = builder_.model.bodies[body];
   const ConstPoints x = builder_.model.rest;
-  Skin ride{.body = body, .shares = {}, .triangles = {}};
+  Skin skin{.body = body, .weights = {}, .triangles = {}};
   double sum = 0, furthest = 0, highest = 0;
   for (Eigen::Index i = 0; i < seen.mesh.vertices.cols(); ++i) {
     const Eigen::Vector3d point = seen.mesh.vertices.col(i);
     const SurfacePoint nearest = tree_.Nearest(x, boxes_, point, std::numeric_limits<double>::infinity());
-    ride.triangles.push_back(PlaceIn(x, tree_.triangle(nearest.triangle), point));
+    skin.triangles.push_back(BindTo(x, tree_.triangle(nearest.triangle), point));
     sum += nearest.offset.norm();
     furthest = std::max(furthest, nearest.offset.norm());
-    highest = std::max(highest, std::abs(ride.triangles.back().height));
+    highest = std::max(highest, std::abs(skin.triangles.back().height));
   }
   report.set_body(seen.name);
   report.set_mean_distance_mm(kMillimetresAMetre * sum / static_cast<double>(seen.mesh.vertices.cols()));
   report.set_largest_distance_mm(kMillimetresAMetre * furthest);
   report.set_largest_strain_error_mm(kMillimetresAMetre * LargestStretchError(highest));
-  return ride;
+  return skin;
 }
 
 }  // namespace phrenic

@@ -1,4 +1,4 @@
-#include "server/mechanics/skinning/make_skins.h"
+#include "server/mechanics/skinning/add_skins.h"
 
 #include <numeric>
 #include <utility>
@@ -12,7 +12,7 @@
 namespace phrenic {
 namespace {
 
-absl::Status CheckRider(const BodyModel& body, std::string_view path) {
+absl::Status CheckBody(const BodyModel& body, std::string_view path) {
   if (body.role != v1::ROLE_SEEN) {
     return FieldError(path, absl::StrCat("body \"", body.name, "\" must have ROLE_SEEN to ride on others"));
   }
@@ -21,21 +21,21 @@ absl::Status CheckRider(const BodyModel& body, std::string_view path) {
 }
 
 // Sorts by vertex what lies together for each.
-std::vector<SkinWeight> ByVertex(const std::vector<SkinWeight>& shares, Eigen::Index vertices) {
+std::vector<SkinWeight> ByVertex(const std::vector<SkinWeight>& weights, Eigen::Index vertices) {
   std::vector<int> next(static_cast<size_t>(vertices) + 1, 0);
-  for (const SkinWeight& share : shares) ++next[share.vertex + 1];
+  for (const SkinWeight& weight : weights) ++next[weight.vertex + 1];
   std::partial_sum(next.begin(), next.end(), next.begin());
-  std::vector<SkinWeight> sorted(shares.size());
-  for (const SkinWeight& share : shares) sorted[next[share.vertex]++] = share;
+  std::vector<SkinWeight> sorted(weights.size());
+  for (const SkinWeight& weight : weights) sorted[next[weight.vertex]++] = weight;
   return sorted;
 }
 
-Skin RideOnVertices(const SkinDrivers& search, const BodyModel& body, int b) {
+Skin SkinByDistance(const SkinDrivers& drivers, const BodyModel& body, int b) {
   const Points& vertices = body.mesh.vertices;
-  InverseDistanceWeights blender(search);
-  std::vector<SkinWeight> shares;
-  for (const int i : HilbertOrder(vertices)) blender.Blend(vertices.col(i), i, shares);
-  return {.body = b, .shares = ByVertex(shares, vertices.cols()), .triangles = {}};
+  InverseDistanceWeights by_distance(drivers);
+  std::vector<SkinWeight> weights;
+  for (const int i : HilbertOrder(vertices)) by_distance.Append(vertices.col(i), i, weights);
+  return {.body = b, .weights = ByVertex(weights, vertices.cols()), .triangles = {}};
 }
 
 void AddSkin(Skin skin, ModelBuilder& builder) {
@@ -43,24 +43,24 @@ void AddSkin(Skin skin, ModelBuilder& builder) {
   builder.model.skins.push_back(std::move(skin));
 }
 
-void RideAllOnVertices(const std::vector<int>& bodies, const std::vector<int>& carriers, const std::string& name,
+void SkinAllByDistance(const std::vector<int>& bodies, const std::vector<int>& carriers, const std::string& name,
                        ModelBuilder& builder) {
   const SkinDrivers search(builder, carriers);
   std::int64_t vertices = 0;
   for (const int b : bodies) {
-    AddSkin(RideOnVertices(search, builder.model.bodies[b], b), builder);
+    AddSkin(SkinByDistance(search, builder.model.bodies[b], b), builder);
     vertices += builder.model.bodies[b].mesh.vertices.cols();
   }
   builder.ReportElement("seen", name, vertices, "vertices", "worked out with each frame, not with each step");
 }
 
-absl::Status RideAllOnTriangles(const std::vector<int>& bodies, const std::vector<int>& carriers,
+absl::Status BindAllToTriangles(const std::vector<int>& bodies, const std::vector<int>& carriers,
                                 const std::string& name, const std::string& path, ModelBuilder& builder) {
-  const auto mapping = Mapping::Make(builder, carriers, path);
-  if (!mapping.ok()) return mapping.status();
+  const auto binder = TriangleBinder::Make(builder, carriers, path);
+  if (!binder.ok()) return binder.status();
   for (const int b : bodies) {
     v1::MappingReport& report = *builder.model.report.add_mappings();
-    AddSkin(mapping->Carry(b, report), builder);
+    AddSkin(binder->Bind(b, report), builder);
     builder.ReportElement(
         "seen", name, builder.model.bodies[b].mesh.vertices.cols(), "vertices",
         absl::StrFormat("mapped onto triangles with each frame: %.2g mm off them at rest, %.2g mm at most; an even "
@@ -72,19 +72,19 @@ absl::Status RideAllOnTriangles(const std::vector<int>& bodies, const std::vecto
 
 }  // namespace
 
-absl::Status AddSkins(const v1::Ride& scene, const std::string& given, std::string_view path, ModelBuilder& builder) {
-  const std::string name = ElementName(given, "ride", scene.bodies());
+absl::Status AddSkins(const v1::Skin& scene, const std::string& given, std::string_view path, ModelBuilder& builder) {
+  const std::string name = ElementName(given, "skin", scene.bodies());
   const std::string field = absl::StrCat(std::string(path), ".bodies");
-  const std::string carried = absl::StrCat(std::string(path), ".carriers");
+  const std::string carried = absl::StrCat(std::string(path), ".drivers");
   auto bodies = builder.Bodies(scene.bodies(), field);
   if (!bodies.ok()) return bodies.status();
-  auto carriers = builder.Bodies(scene.carriers(), carried);
+  auto carriers = builder.Bodies(scene.drivers(), carried);
   if (!carriers.ok()) return carriers.status();
   for (const int b : *bodies) {
-    if (absl::Status status = CheckRider(builder.model.bodies[b], field); !status.ok()) return status;
+    if (absl::Status status = CheckBody(builder.model.bodies[b], field); !status.ok()) return status;
   }
-  if (scene.mode() == v1::RIDE_MODE_TRIANGLES) return RideAllOnTriangles(*bodies, *carriers, name, carried, builder);
-  RideAllOnVertices(*bodies, *carriers, name, builder);
+  if (scene.mode() == v1::SKIN_MODE_TRIANGLES) return BindAllToTriangles(*bodies, *carriers, name, carried, builder);
+  SkinAllByDistance(*bodies, *carriers, name, builder);
   return absl::OkStatus();
 }
 

@@ -1,0 +1,17 @@
+// Makes skins at compile time: cartilages between ribs and sternum, lungs between ribs and diaphragm. Each vertex gets
+// weights by inverse distance at rest (inverse_distance_weights.h), or a binding to its nearest triangle
+// (triangle_skin.h). Skins cost frames, not steps.
+#ifndef PHRENIC_SERVER_MECHANICS_SKINNING_ADD_SKINS_H_
+#define PHRENIC_SERVER_MECHANICS_SKINNING_ADD_SKINS_H_
+
+#include "server/mechanics/model_builder.h"
+
+namespace phrenic {
+
+// Adds a Skin to the builder for each body of a ride. A driver may be skinned itself, if its skin was added before.
+// INVALID_ARGUMENT if a body does not exist, is not only seen, or has a skin already.
+absl::Status AddSkins(const v1::Skin& scene, const std::string& name, std::string_view path, ModelBuilder& builder);
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_SERVER_MECHANICS_SKINNING_ADD_SKINS_H_
