@@ -4,7 +4,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
-#include "server/mechanics/model_builder.h"
+#include "server/mechanics/field_error.h"
 #include "server/schema/fields.h"
 
 namespace phrenic {

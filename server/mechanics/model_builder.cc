@@ -9,11 +9,6 @@
 #include "server/mesh/topology.h"
 
 namespace phrenic {
-absl::Status FieldError(std::string_view path, std::string_view what) {
-  return absl::InvalidArgumentError(
-      absl::StrCat(absl::string_view(path.data(), path.size()), ": ", absl::string_view(what.data(), what.size())));
-}
-
 absl::StatusOr<std::vector<int>> ModelBuilder::Bodies(const Names& names, std::string_view path) const {
   std::vector<int> found;
   for (int i = 0; i < names.size(); ++i) {

@@ -10,6 +10,7 @@
 #include "absl/status/statusor.h"
 #include "google/protobuf/repeated_field.h"
 #include "google/protobuf/repeated_ptr_field.h"
+#include "server/mechanics/field_error.h"
 #include "server/mechanics/model.h"
 #include "server/mesh/nearest.h"
 
@@ -86,9 +87,6 @@ struct ModelBuilder {
 std::string ElementName(const std::string& given, std::string_view kind, const Names& names);
 
 Eigen::Vector3d ToEigen(const v1::Vector& vector);
-
-// Returns INVALID_ARGUMENT "path: what".
-absl::Status FieldError(std::string_view path, std::string_view what);
 
 }  // namespace phrenic
 
