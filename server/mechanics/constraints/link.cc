@@ -7,8 +7,9 @@
 namespace phrenic {
 namespace {
 
-// What to take off `between` along `direction` for its squared length to lose `excess`: the smaller root c of
-// |between - c direction|^2 = |between|^2 - excess. Along `between` itself where that has no root ahead.
+// Returns the correction c `direction` that reduces the squared length of `between` by `excess`: c is the smaller root
+// of |between - c direction|^2 = |between|^2 - excess. If there is no root in that direction, a correction along
+// `between`.
 Eigen::Vector3d Correction(const Eigen::Vector3d& between, const Eigen::Vector3d& direction, double excess) {
   const double along = between.dot(direction);
   const double discriminant = along * along - direction.squaredNorm() * excess;
@@ -33,10 +34,10 @@ absl::StatusOr<std::vector<Link>> ListedLinks(const v1::LinkList& list, int body
     const int a = list.links(i).a(), b = list.links(i).b();
     if (absl::Status status = builder.CheckVertex(body, a, where); !status.ok()) return status;
     if (absl::Status status = builder.CheckVertex(body, b, where); !status.ok()) return status;
-    if (a == b) return FieldError(where, absl::StrCat("joins vertex ", a, " to itself"));
+    if (a == b) return FieldError(where, absl::StrCat("links vertex ", a, " to itself"));
     links.push_back(MakeLink(builder.model, first + a, first + b));
     if (links.back().length > 0) continue;
-    return FieldError(where, absl::StrCat("vertices ", a, " and ", b, " are in one point: move one of them"));
+    return FieldError(where, absl::StrCat("vertices ", a, " and ", b, " coincide: move one of them"));
   }
   return links;
 }
