@@ -147,9 +147,9 @@ void JudgeRefusals(v1::SurfaceReport& report) {
   auto* refusals = report.mutable_refusals();
   if (report.triangles() == 0) {
     refusals->Add(
-        "it has no triangles: contact, carrying and drawing other bodies, and a substance (density) instead of a mass");
+        "it has no triangles: contact, carrying and drawing other bodies, and a material (density) instead of a mass");
   } else if (report.area_mm2() <= 0) {
-    refusals->Add("its triangles have no area: a substance (density) instead of a mass");
+    refusals->Add("its triangles have no area: a material (density) instead of a mass");
   }
   if (report.has_volume_ml() && report.volume_ml() < 0) {
     refusals->Add("it faces inwards: filling it by a solid finds no cell inside");

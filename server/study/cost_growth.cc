@@ -93,7 +93,7 @@ v1::Scene SheetOf(int vertices) {
   v1::Body& body = *scene.add_bodies();
   body.set_name("sheet");
   body.set_role(v1::ROLE_DEFORMABLE);
-  body.mutable_substance();
+  body.mutable_material();
   for (int i = 0; i < columns; ++i) body.add_fixed_vertices(i);
   body.mutable_grid()->set_columns(columns);
   body.mutable_grid()->set_rows(rows);

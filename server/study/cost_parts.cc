@@ -42,8 +42,8 @@ std::string PartOf(const v1::Force& force) {
       return "pressure";
     case v1::Force::kLungs:
       return "lungs";
-    case v1::Force::kDrag:
-      return "drag";
+    case v1::Force::kTargetSpring:
+      return "target springs";
     case v1::Force::kPointLoad:
       return "point loads";
     case v1::Force::KIND_NOT_SET:
@@ -59,7 +59,7 @@ std::string PartOf(const v1::Motion& motion) {
       return kRibs;
     case v1::Motion::kOscillation:
       return "oscillation";
-    case v1::Motion::kRide:
+    case v1::Motion::kSkin:
     case v1::Motion::KIND_NOT_SET:
       break;
   }
@@ -70,8 +70,8 @@ std::string PartOf(const v1::Constraint& constraint) {
   switch (constraint.kind_case()) {
     case v1::Constraint::kRigidLinks:
       return kLinks;
-    case v1::Constraint::kLimits:
-      return "limits";
+    case v1::Constraint::kLengthLimits:
+      return "length limits";
     case v1::Constraint::KIND_NOT_SET:
       break;
   }
@@ -110,7 +110,7 @@ void AddNowhere(const Model& model, v1::Scene& scene) {
 
 // No mass can be spread by the stiffness of springs that are not there.
 void SpreadMassByArea(v1::Scene& scene) {
-  for (v1::Body& body : *scene.mutable_bodies()) body.clear_mass_shares();
+  for (v1::Body& body : *scene.mutable_bodies()) body.clear_mass_lumping();
 }
 
 template <typename Element>
@@ -153,7 +153,7 @@ bool Void(v1::Force& force) {
     case v1::Force::kContact:
     case v1::Force::kPressure:
     case v1::Force::kLungs:
-    case v1::Force::kDrag:
+    case v1::Force::kTargetSpring:
     case v1::Force::kPointLoad:
     case v1::Force::KIND_NOT_SET:
       break;
@@ -166,9 +166,9 @@ bool Void(v1::Constraint& constraint) {
     case v1::Constraint::kRigidLinks:
       constraint.mutable_rigid_links()->mutable_pairing()->set_distance(1e-9);
       return Confine(*constraint.mutable_rigid_links()->mutable_pairing());
-    case v1::Constraint::kLimits:
-      constraint.mutable_limits()->clear_list();
-      return Confine(*constraint.mutable_limits());
+    case v1::Constraint::kLengthLimits:
+      constraint.mutable_length_limits()->clear_list();
+      return Confine(*constraint.mutable_length_limits());
     case v1::Constraint::KIND_NOT_SET:
       break;
   }

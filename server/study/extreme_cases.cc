@@ -181,11 +181,11 @@ std::string Everything() {
     forces { bending { bodies: "b" youngs_modulus: 5000 thickness: 0.003 } }
     forces { fibres { bodies: "b" from_region: "top" to_region: "bottom" modulus_along: 5000 active_stress: 100 } }
     forces { cables { body: "b" list { links { a: 35 b: 0 } links { a: 35 b: 6 } } stiffness: 100 } }
-    forces { attachment { bodies: "b" carriers: "post" radius: 0.1 stiffness: 100 } }
+    forces { attachment { bodies: "b" anchors: "post" radius: 0.1 stiffness: 100 } }
     forces { contact { bodies: "b" surfaces: "floor" depth: 0.01 } }
     forces { action_line { bodies: "b" origin { x: 0.5 z: -0.5 } direction { z: 1 } radius: 0.2 force: 1 } }
     constraints { rigid_links { body: "b" list { links { a: 35 b: 28 } links { a: 35 b: 29 } } } }
-    constraints { limits { body: "b" list { links { a: 35 b: 34 } } at_most_ratio: 1.1 at_least_ratio: 0.9 } }
+    constraints { length_limits { body: "b" list { links { a: 35 b: 34 } } at_most_ratio: 1.1 at_least_ratio: 0.9 } }
   )");
 }
 

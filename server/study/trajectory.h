@@ -34,7 +34,8 @@ struct Distance {
   double energy = 0;   // the largest difference of energy [J]
 };
 
-// Over the moments that both have, and the vertices that forces move; equal models.
+// Compares vertices only: State::scalars counts by the vertices that it moves. Over the moments that both have, and the
+// vertices that forces move; equal models.
 Distance DistanceBetween(const Subject& subject, const Trajectory& a, const Trajectory& b);
 
 // How far any vertex came from rest [m].

@@ -23,7 +23,8 @@ std::shared_ptr<const Model> Masses(const std::string& more, const std::string& 
 
 // A damped oscillator let go off its target: x = d (1 - e^(-zeta w t) (cos w' t + zeta w/w' sin w' t)).
 TEST(TargetSpring, IsADampedOscillatorAboutItsTarget) {
-  const auto model = Masses("drag { bodies: 'masses' displacement { z: 0.2 } stiffness: 60 damping_ratio: 0.3 }");
+  const auto model =
+      Masses("target_spring { bodies: 'masses' displacement { z: 0.2 } stiffness: 60 damping_ratio: 0.3 }");
   const double omega = std::sqrt(60 / 1.5), t = 0.7, damped = omega * std::sqrt(1 - 0.3 * 0.3);
   const double exact =
       0.2 * (1 - std::exp(-0.3 * omega * t) * (std::cos(damped * t) + 0.3 * omega / damped * std::sin(damped * t)));
@@ -34,7 +35,7 @@ TEST(TargetSpring, IsADampedOscillatorAboutItsTarget) {
 }
 
 TEST(TargetSpring, EndsAtThePointOfASurfaceThatIsNearest) {
-  const auto model = Masses("drag { bodies: 'masses' vertices: 0 surface: 'slope' damping_ratio: 1 }");
+  const auto model = Masses("target_spring { bodies: 'masses' vertices: 0 surface: 'slope' damping_ratio: 1 }");
   const State state = RunTo(*model, 10, 1e-2);
   // The plane z = x - 2 is nearest to the origin at (1, 0, -1).
   EXPECT_LT((state.x.col(0) - Eigen::Vector3d(1, 0, -1)).norm(), 1e-9);
@@ -42,8 +43,8 @@ TEST(TargetSpring, EndsAtThePointOfASurfaceThatIsNearest) {
 }
 
 TEST(TargetSpring, WithTheBreathStandsWhereTheBreathIs) {
-  const auto model =
-      Masses("drag { bodies: 'masses' point { z: 4 } damping_ratio: 0 scaled_by_breath: true }", "0.5", "STATIC");
+  const auto model = Masses("target_spring { bodies: 'masses' point { z: 4 } damping_ratio: 0 scaled_by_breath: true }",
+                            "0.5", "STATIC");
   const State state = RunTo(*model, 1, 0.01);  // a quarter of 4 s: the signal is 1/2
   EXPECT_LT((state.x.col(1) - (9 * Eigen::Vector3d::UnitX() + 0.25 * Eigen::Vector3d(-9, 0, 4))).norm(), 1e-9);
 }

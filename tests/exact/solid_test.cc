@@ -12,7 +12,7 @@ namespace {
 std::shared_ptr<const Model> Beam(int n, const std::string& strain) {
   return CompileText(
       absl::StrFormat("name: 'beam' bodies { name: 'beam' role: ROLE_DEFORMABLE block { size { x: 1 y: 0.2 z: 0.2 } "
-                      "columns: %d rows: %d layers: %d } substance { density: 1000 } } forces { solid { bodies: 'beam' "
+                      "columns: %d rows: %d layers: %d } material { density: 1000 } } forces { solid { bodies: 'beam' "
                       "youngs_modulus: 1000 poissons_ratio: 0.3 strain: %s } }",
                       5 * n, n, n, strain));
 }

@@ -29,7 +29,7 @@ std::shared_ptr<const Model> Strip(const std::string& methods, int cells, const 
   const double cell = 0.1 / cells;
   return CompileText(
       absl::StrFormat("name: 'strip' bodies { name: 'sheet' role: ROLE_DEFORMABLE grid { columns: %d rows: %d u { x: "
-                      "%.17g } v { z: %.17g } } substance { density: 1000 thickness: 0.003 } regions { name: 'top' low "
+                      "%.17g } v { z: %.17g } } material { density: 1000 thickness: 0.003 } regions { name: 'top' low "
                       "{} high { x: 1 } } regions { name: 'half' low { z: -0.1 } high { x: 1 } } fixed_regions: 'top' "
                       "} %s %s",
                       cells + 1, 2 * cells + 1, cell, -cell, methods, more));

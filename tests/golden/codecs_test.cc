@@ -8,7 +8,7 @@
 
 #include "absl/strings/escaping.h"
 #include "server/mesh/topology.h"
-#include "server/stream/codec.h"
+#include "server/stream/codecs/codec.h"
 
 namespace phrenic::stream {
 namespace {

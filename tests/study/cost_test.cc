@@ -49,9 +49,9 @@ const char kSheet[] = R"(
     }
   }
   bodies {
-    name: "sheet" role: ROLE_DEFORMABLE mass_shares: MASS_SHARES_BY_STIFFNESS
+    name: "sheet" role: ROLE_DEFORMABLE mass_lumping: MASS_LUMPING_BY_STIFFNESS
     grid { columns: 10 rows: 10 u { x: 0.1 } v { y: 0.1 } }
-    substance { density: 1030 thickness: 0.003 }
+    material { density: 1030 thickness: 0.003 }
   }
   motions { oscillation { body: "sheet" vertices: [90, 99] amplitude { z: 0.02 } period: 2 } }
   forces { springs { bodies: "sheet" stiffness: 50 } }
@@ -60,11 +60,11 @@ const char kSheet[] = R"(
   forces { cables { body: "sheet" } }
   forces { friction { bodies: "sheet" rate: 3 } }
   forces { gravity { bodies: "sheet" acceleration { z: -1 } } }
-  forces { attachment { bodies: "sheet" carriers: "post" radius: 0.15 stiffness: 20 } }
+  forces { attachment { bodies: "sheet" anchors: "post" radius: 0.15 stiffness: 20 } }
   forces { action_line { bodies: "sheet" origin { x: 0.5 y: 0.5 } direction { z: 1 } radius: 0.3 force: 1 air_load: 0.5 } }
   forces { contact { bodies: "sheet" surfaces: "floor" depth: 0.01 load: 1 } }
   constraints { rigid_links { body: "sheet" list { links { a: 44 b: 46 } links { a: 64 b: 66 } } } }
-  constraints { limits { body: "sheet" at_most_ratio: 1.5 } }
+  constraints { length_limits { body: "sheet" at_most_ratio: 1.5 } }
 )";
 
 v1::CreateStudyRequest CostRequest(int steps, int trials) {
@@ -98,7 +98,7 @@ const v1::CostTable& SheetTable() {
 TEST(CostStudy, HasARowForEveryPartOfTheScene) {
   const auto rows = RowsOf(SheetTable());
   for (const std::string part : {"springs", "membrane", "bending", "cables", "friction", "gravity", "attachments",
-                                 "muscles", "contact", "links", "limits", "oscillation"}) {
+                                 "muscles", "contact", "links", "length limits", "oscillation"}) {
     EXPECT_TRUE(rows.contains("without " + part)) << part;
   }
   EXPECT_TRUE(rows.contains("full, once more"));

@@ -17,7 +17,7 @@ const char kWavingSheet[] = R"(
   bodies {
     name: "sheet" role: ROLE_DEFORMABLE
     grid { columns: 12 rows: 12 u { x: 0.01 } v { y: 0.01 } }
-    substance { density: 1030 thickness: 0.003 }
+    material { density: 1030 thickness: 0.003 }
   }
   motions { oscillation { body: "sheet" vertices: [132, 133, 142, 143] amplitude { z: 0.01 } period: 1 } }
   forces { springs { bodies: "sheet" stiffness: 50 } }

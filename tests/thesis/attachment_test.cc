@@ -18,7 +18,7 @@ double Travel(const std::string& mode, double stiffness, double dt) {
       "bodies { name: 'tissue' role: ROLE_DEFORMABLE mass: 0.002 polyhedron { vertices { x: 0.06 y: -0.18 z: -0.062 } "
       "vertices { x: 0.06 y: -0.17 z: -0.15 } } } "
       "motions { ribs { bodies: 'rib' quiet_state: 1 end_states { number: 7 pump_degrees: 10 bucket_degrees: 12 } } } "
-      "forces { attachment { bodies: 'tissue' carriers: 'rib' radius: 0.01 stiffness: %g mode: %s } } "
+      "forces { attachment { bodies: 'tissue' anchors: 'rib' radius: 0.01 stiffness: %g mode: %s } } "
       "forces { friction { bodies: 'tissue' rate: 5 } } parameters { time_step: %g }",
       stiffness, mode, dt));
   const State state = RunTo(*model, 2, dt);

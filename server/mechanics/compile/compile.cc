@@ -139,10 +139,10 @@ void ChooseStep(Model& model) {
 }  // namespace
 
 absl::StatusOr<std::shared_ptr<const Model>> Compile(const v1::Scene& scene, const MeshSource& source) {
-  if (absl::Status status = schema::Validate(scene); !status.ok()) return status;
   ModelBuilder builder;
   Model& model = builder.model;
   model.scene = scene;
+  if (absl::Status status = schema::Resolve(&model.scene); !status.ok()) return status;
   schema::FillDefaults(&model.scene);
   // Unset fields of these have a meaning, so that they must not be filled with defaults.
   model.scene.mutable_parameters()->CopyFrom(scene.parameters());

@@ -78,7 +78,7 @@ OwnStiffness StiffnessAtRest(const Model& model) {
 }
 
 bool ByStiffness(const v1::Body& body) {
-  return body.mass_shares() == v1::MASS_SHARES_BY_STIFFNESS && body.role() == v1::ROLE_DEFORMABLE;
+  return body.mass_lumping() == v1::MASS_LUMPING_BY_STIFFNESS && body.role() == v1::ROLE_DEFORMABLE;
 }
 
 }  // namespace
@@ -87,12 +87,12 @@ absl::StatusOr<Eigen::VectorXd> VertexMasses(const v1::Body& body, const Mesh& m
   const Eigen::Index n = mesh.vertices.cols();
   Eigen::VectorXd share = Shares(mesh);
   const double sum = share.sum();
-  if (sum <= 0 && body.has_substance()) {
-    return FieldError(absl::StrCat(std::string(path), ".substance"),
+  if (sum <= 0 && body.has_material()) {
+    return FieldError(absl::StrCat(std::string(path), ".material"),
                       "the body has neither area nor volume: give it a mass instead");
   }
-  const double thickness = mesh.tetrahedra.cols() == 0 ? body.substance().thickness() : 1;
-  const double total = body.has_substance() ? body.substance().density() * thickness * sum : body.mass();
+  const double thickness = mesh.tetrahedra.cols() == 0 ? body.material().thickness() : 1;
+  const double total = body.has_material() ? body.material().density() * thickness * sum : body.mass();
   if (sum <= 0) return Eigen::VectorXd::Constant(n, total / static_cast<double>(n));
   return Spread(total, share);
 }
@@ -107,8 +107,8 @@ absl::Status SpreadMassByStiffness(Model& model) {
     const auto vertices = body.mesh.vertices.cols();
     const Eigen::VectorXd shares = stiffness.Largest(body.first_vertex, vertices);
     if (shares.sum() == 0) {
-      return FieldError(absl::StrCat("bodies[", b, "].mass_shares"),
-                        "nothing in the scene resists a motion of the body: leave MASS_SHARES_BY_AREA");
+      return FieldError(absl::StrCat("bodies[", b, "].mass_lumping"),
+                        "nothing in the scene resists a motion of the body: leave MASS_LUMPING_BY_AREA");
     }
     auto mass = model.mass.segment(body.first_vertex, vertices);
     auto inverse = model.inverse_mass.segment(body.first_vertex, vertices);

@@ -7,7 +7,7 @@
 namespace phrenic {
 namespace {
 
-absl::Status CheckRatios(const v1::Limits& scene, std::string_view path) {
+absl::Status CheckRatios(const v1::LengthLimits& scene, std::string_view path) {
   if (!scene.has_at_most_ratio() && !scene.has_at_least_ratio()) {
     return FieldError(path, "limits nothing: set at_most_ratio, at_least_ratio or both");
   }
@@ -18,7 +18,7 @@ absl::Status CheckRatios(const v1::Limits& scene, std::string_view path) {
 }
 
 // Returns one Link per ratio that is set, for each link with a movable end.
-std::vector<Link> MakeLimits(const v1::Limits& scene, const std::vector<Link>& links) {
+std::vector<Link> MakeLimits(const v1::LengthLimits& scene, const std::vector<Link>& links) {
   std::vector<Link> limits;
   for (Link link : links) {
     if (!link.Movable()) continue;
@@ -35,9 +35,9 @@ std::vector<Link> MakeLimits(const v1::Limits& scene, const std::vector<Link>& l
 
 }  // namespace
 
-absl::StatusOr<std::unique_ptr<Constraint>> Limits::Make(const v1::Limits& scene, const std::string& given,
+absl::StatusOr<std::unique_ptr<Constraint>> Limits::Make(const v1::LengthLimits& scene, const std::string& given,
                                                          std::string_view path, ModelBuilder& builder) {
-  const std::string name = given.empty() ? absl::StrCat("limits:", scene.body()) : given;
+  const std::string name = given.empty() ? absl::StrCat("length_limits:", scene.body()) : given;
   if (absl::Status status = CheckRatios(scene, path); !status.ok()) return status;
   auto body = DeformableBody(scene.body(), absl::StrCat(std::string(path), ".body"), builder);
   if (!body.ok()) return body.status();

@@ -14,7 +14,7 @@ class Limits final : public Constraint {
  public:
   // Returns null, and reports it, if the region has no edge with a movable end. INVALID_ARGUMENT if the scene sets
   // neither ratio, or the lower above the upper.
-  static absl::StatusOr<std::unique_ptr<Constraint>> Make(const v1::Limits& scene, const std::string& name,
+  static absl::StatusOr<std::unique_ptr<Constraint>> Make(const v1::LengthLimits& scene, const std::string& name,
                                                           std::string_view path, ModelBuilder& builder);
 
   void Project(const v1::Parameters& parameters, const ConstPoints& before, double dt, const Scratch& scratch,

@@ -22,20 +22,20 @@ bool FollowsTissue(const Model& model, const BodyModel& body) {
   return std::any_of(weights.begin(), weights.end(), [](const SkinWeight& weight) { return weight.pose < 0; });
 }
 
-absl::StatusOr<std::vector<int>> CarrierBodies(const v1::Attachment& scene, std::string_view path,
-                                               const ModelBuilder& builder) {
-  const std::string field = absl::StrCat(std::string(path), ".carriers");
-  auto carriers = builder.Bodies(scene.carriers(), field);
-  if (!carriers.ok()) return carriers;
-  for (const int c : *carriers) {
+absl::StatusOr<std::vector<int>> AnchorBodies(const v1::Attachment& scene, std::string_view path,
+                                              const ModelBuilder& builder) {
+  const std::string field = absl::StrCat(std::string(path), ".anchors");
+  auto anchors = builder.Bodies(scene.anchors(), field);
+  if (!anchors.ok()) return anchors;
+  for (const int c : *anchors) {
     if (FollowsTissue(builder.model, builder.model.bodies[c])) {
       return FieldError(field,
                         absl::StrCat("body \"", builder.model.bodies[c].name,
-                                     "\" is deformable, or follows a deformable body, and cannot be a carrier; name "
+                                     "\" is deformable, or follows a deformable body, and cannot be an anchor; name "
                                      "bodies that are driven or at rest"));
     }
   }
-  return carriers;
+  return anchors;
 }
 
 }  // namespace
@@ -45,34 +45,34 @@ absl::StatusOr<std::unique_ptr<Force>> Attachment::Make(const v1::Attachment& sc
   const std::string name = ElementName(given, "attachment", scene.bodies());
   auto bodies = builder.DeformableBodies(scene.bodies(), absl::StrCat(std::string(path), ".bodies"));
   if (!bodies.ok()) return bodies.status();
-  auto carriers = CarrierBodies(scene, path, builder);
-  if (!carriers.ok()) return carriers.status();
+  auto anchors = AnchorBodies(scene, path, builder);
+  if (!anchors.ok()) return anchors.status();
   std::unique_ptr<Attachment> force(new Attachment(name));
   force->thesis_ = scene.mode() == v1::ATTACHMENT_MODE_THESIS;
   std::vector<SkinWeight> weights;
   for (const int b : *bodies) {
     auto region = builder.Region(b, scene.region(), absl::StrCat(std::string(path), ".region"));
     if (!region.ok()) return region.status();
-    force->AddVertices(scene, *carriers, *region, b, weights, builder);
+    force->AddVertices(scene, *anchors, *region, b, weights, builder);
   }
   force->Pack(std::move(weights), builder.model.mass.size());
   if (force->vertices_.empty()) {
-    builder.ReportLeftOut(name, absl::StrFormat("no vertex is within %g m of a carrier", scene.radius()));
+    builder.ReportLeftOut(name, absl::StrFormat("no vertex is within %g m of an anchor", scene.radius()));
     return nullptr;
   }
   const auto count = static_cast<std::int64_t>(force->vertices_.size());
   builder.model.report.set_attachments(builder.model.report.attachments() + count);
   builder.ReportElement("force", name, count, "vertices",
                         absl::StrFormat("within %g mm, k = %g N/m%s", 1e3 * scene.radius(), scene.stiffness(),
-                                        force->thesis_ ? " times the carrier's displacement per step (thesis)" : ""));
+                                        force->thesis_ ? " times the anchor's displacement per step (thesis)" : ""));
   return force;
 }
 
-void Attachment::AddVertices(const v1::Attachment& scene, const std::vector<int>& carriers,
+void Attachment::AddVertices(const v1::Attachment& scene, const std::vector<int>& anchors,
                              const std::vector<bool>& region, int b, std::vector<SkinWeight>& weights,
                              ModelBuilder& builder) {
   const BodyModel& body = builder.model.bodies[b];
-  const SkinDrivers search(builder, carriers);
+  const SkinDrivers search(builder, anchors);
   for (int i = 0; i < body.mesh.vertices.cols(); ++i) {
     const int vertex = body.first_vertex + i;
     if (!region[i]) continue;

@@ -1,9 +1,9 @@
 // Attachment of a deformable body to bones (thesis section 3.3, figures 3.6-3.8): a spring and a damper from each
-// vertex to an anchor that moves with the nearest carrier body,
+// vertex to a point c that moves with the nearest anchor body,
 //   f = w k (c - x) + 2 zeta sqrt(w k m) (c' - v)  [N],  w = 1 - d/radius,
-// d the distance to the nearest vertex of a carrier at rest [m], c the anchor: the vertex's rest position moved with
-// that carrier [m], k the stiffness [N/m], zeta the damping ratio, m the vertex's mass [kg]. Independent of the time
-// step. Mode THESIS reproduces the thesis (stickTo): f = w k c' dt, the carrier's displacement in this time step dt [s]
+// d the distance to the nearest vertex of an anchor at rest [m], c the vertex's rest position moved with that anchor
+// [m], k the stiffness [N/m], zeta the damping ratio, m the vertex's mass [kg]. Independent of the time
+// step. Mode THESIS reproduces the thesis (stickTo): f = w k c' dt, the anchor's displacement in this time step dt [s]
 // times a stiffness; displacements then depend on the time step, and there is no restoring force.
 #ifndef PHRENIC_SERVER_MECHANICS_FORCES_ATTACHMENT_H_
 #define PHRENIC_SERVER_MECHANICS_FORCES_ATTACHMENT_H_
@@ -18,7 +18,7 @@ namespace phrenic {
 
 class Attachment final : public BlockForce {
  public:
-  // Returns null, and reports it, if no free vertex is within the radius. INVALID_ARGUMENT if a carrier is not driven,
+  // Returns null, and reports it, if no free vertex is within the radius. INVALID_ARGUMENT if an anchor is not driven,
   // at rest, or skinned to such bodies.
   static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::Attachment& scene, const std::string& name,
                                                      std::string_view path, ModelBuilder& builder);
@@ -47,7 +47,7 @@ class Attachment final : public BlockForce {
     void Index(Eigen::Index vertices);
   };
   explicit Attachment(std::string name) : BlockForce(std::move(name)) {}
-  void AddVertices(const v1::Attachment& scene, const std::vector<int>& carriers, const std::vector<bool>& region,
+  void AddVertices(const v1::Attachment& scene, const std::vector<int>& anchors, const std::vector<bool>& region,
                    int body, std::vector<SkinWeight>& weights, ModelBuilder& builder);
   void Pack(std::vector<SkinWeight> weights, Eigen::Index vertices);
   void PackInto(std::vector<Group>& groups, int pose, const AttachedVertex& attached, double stiffness, double damping);

@@ -29,14 +29,14 @@ absl::StatusOr<int> RigidSurface(const std::string& name, std::string_view path,
 
 }  // namespace
 
-absl::StatusOr<std::unique_ptr<Force>> TargetSpring::Make(const v1::Drag& scene, const std::string& given,
+absl::StatusOr<std::unique_ptr<Force>> TargetSpring::Make(const v1::TargetSpring& scene, const std::string& given,
                                                           std::string_view path, ModelBuilder& builder) {
-  const std::string name = ElementName(given, "drag", scene.bodies());
+  const std::string name = ElementName(given, "target_spring", scene.bodies());
   auto bodies = builder.DeformableBodies(scene.bodies(), FieldOf(path, "bodies"));
   if (!bodies.ok()) return bodies.status();
   if (!scene.vertices().empty() && bodies->size() != 1) {
     return FieldError(FieldOf(path, "vertices"),
-                      "are indices of one body, but `bodies` names several: write one drag for each");
+                      "are indices of one body, but `bodies` names several: write one target_spring for each");
   }
   std::unique_ptr<TargetSpring> force(new TargetSpring(name));
   force->stiffness_ = scene.stiffness();
@@ -56,7 +56,8 @@ absl::StatusOr<std::unique_ptr<Force>> TargetSpring::Make(const v1::Drag& scene,
   return force;
 }
 
-absl::Status TargetSpring::AddVertices(const v1::Drag& scene, int body, std::string_view path, ModelBuilder& builder) {
+absl::Status TargetSpring::AddVertices(const v1::TargetSpring& scene, int body, std::string_view path,
+                                       ModelBuilder& builder) {
   const auto vertices = builder.FreeVertices(body, scene.region(), scene.vertices(), path);
   if (!vertices.ok()) return vertices.status();
   for (const int vertex : *vertices) {
@@ -66,23 +67,24 @@ absl::Status TargetSpring::AddVertices(const v1::Drag& scene, int body, std::str
   return absl::OkStatus();
 }
 
-absl::Status TargetSpring::FindTargets(const v1::Drag& scene, std::string_view path, const ModelBuilder& builder) {
+absl::Status TargetSpring::FindTargets(const v1::TargetSpring& scene, std::string_view path,
+                                       const ModelBuilder& builder) {
   switch (scene.target_case()) {
-    case v1::Drag::kDisplacement:
+    case v1::TargetSpring::kDisplacement:
       for (VertexSpring& spring : springs_) spring.target = spring.rest + ToEigen(scene.displacement());
       return absl::OkStatus();
-    case v1::Drag::kPoint:
+    case v1::TargetSpring::kPoint:
       for (VertexSpring& spring : springs_) spring.target = ToEigen(scene.point());
       return absl::OkStatus();
-    case v1::Drag::kSurface:
+    case v1::TargetSpring::kSurface:
       return FindSurfaceTargets(scene, path, builder);
-    case v1::Drag::TARGET_NOT_SET:
+    case v1::TargetSpring::TARGET_NOT_SET:
       break;
   }
   return FieldError(path, "says no target: set displacement, point or surface");
 }
 
-absl::Status TargetSpring::FindSurfaceTargets(const v1::Drag& scene, std::string_view path,
+absl::Status TargetSpring::FindSurfaceTargets(const v1::TargetSpring& scene, std::string_view path,
                                               const ModelBuilder& builder) {
   const auto found = RigidSurface(scene.surface(), FieldOf(path, "surface"), builder);
   if (!found.ok()) return found.status();

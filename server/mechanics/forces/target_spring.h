@@ -3,7 +3,7 @@
 // k the stiffness [N/m], zeta the damping ratio, m the vertex's mass [kg], c the target [m]: the vertex's rest position
 // plus a displacement, one point for all, or the point of a surface that is nearest at rest, which moves with the
 // surface if that is driven. Scaled by the breath, c = rest + s (target - rest), s = breath_force signal(t).
-// Conservative if zeta is 0. In scenes: `drag`.
+// Conservative if zeta is 0.
 #ifndef PHRENIC_SERVER_MECHANICS_FORCES_TARGET_SPRING_H_
 #define PHRENIC_SERVER_MECHANICS_FORCES_TARGET_SPRING_H_
 
@@ -17,7 +17,7 @@ class TargetSpring final : public Force {
  public:
   // Returns null, and reports it, if no vertex is free or the stiffness is 0. INVALID_ARGUMENT if there is no target,
   // if `vertices` are given for several bodies, or if the surface is deformable, skinned or has no triangles.
-  static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::Drag& scene, const std::string& name,
+  static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::TargetSpring& scene, const std::string& name,
                                                      std::string_view path, ModelBuilder& builder);
 
   void AddForce(const EvalContext& at, MutablePoints f) const override;
@@ -36,9 +36,9 @@ class TargetSpring final : public Force {
     Eigen::Vector3d position, velocity;  // [m], [m/s]
   };
   explicit TargetSpring(std::string name) : Force(std::move(name)) {}
-  absl::Status AddVertices(const v1::Drag& scene, int body, std::string_view path, ModelBuilder& builder);
-  absl::Status FindTargets(const v1::Drag& scene, std::string_view path, const ModelBuilder& builder);
-  absl::Status FindSurfaceTargets(const v1::Drag& scene, std::string_view path, const ModelBuilder& builder);
+  absl::Status AddVertices(const v1::TargetSpring& scene, int body, std::string_view path, ModelBuilder& builder);
+  absl::Status FindTargets(const v1::TargetSpring& scene, std::string_view path, const ModelBuilder& builder);
+  absl::Status FindSurfaceTargets(const v1::TargetSpring& scene, std::string_view path, const ModelBuilder& builder);
   Target TargetOf(const VertexSpring& spring, const EvalContext& at) const;
 
   std::vector<VertexSpring> springs_;

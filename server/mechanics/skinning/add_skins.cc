@@ -43,9 +43,9 @@ void AddSkin(Skin skin, ModelBuilder& builder) {
   builder.model.skins.push_back(std::move(skin));
 }
 
-void SkinAllByDistance(const std::vector<int>& bodies, const std::vector<int>& carriers, const std::string& name,
+void SkinAllByDistance(const std::vector<int>& bodies, const std::vector<int>& drivers, const std::string& name,
                        ModelBuilder& builder) {
-  const SkinDrivers search(builder, carriers);
+  const SkinDrivers search(builder, drivers);
   std::int64_t vertices = 0;
   for (const int b : bodies) {
     AddSkin(SkinByDistance(search, builder.model.bodies[b], b), builder);
@@ -54,9 +54,9 @@ void SkinAllByDistance(const std::vector<int>& bodies, const std::vector<int>& c
   builder.ReportElement("seen", name, vertices, "vertices", "computed per frame, not per step");
 }
 
-absl::Status BindAllToTriangles(const std::vector<int>& bodies, const std::vector<int>& carriers,
+absl::Status BindAllToTriangles(const std::vector<int>& bodies, const std::vector<int>& drivers,
                                 const std::string& name, const std::string& path, ModelBuilder& builder) {
-  const auto binder = TriangleBinder::Make(builder, carriers, path);
+  const auto binder = TriangleBinder::Make(builder, drivers, path);
   if (!binder.ok()) return binder.status();
   for (const int b : bodies) {
     v1::MappingReport& report = *builder.model.report.add_mappings();
@@ -73,20 +73,20 @@ absl::Status BindAllToTriangles(const std::vector<int>& bodies, const std::vecto
 
 }  // namespace
 
-absl::Status AddSkins(const v1::Ride& scene, const std::string& given, std::string_view path, ModelBuilder& builder) {
-  const std::string name = ElementName(given, "ride", scene.bodies());
+absl::Status AddSkins(const v1::Skin& scene, const std::string& given, std::string_view path, ModelBuilder& builder) {
+  const std::string name = ElementName(given, "skin", scene.bodies());
   const std::string field = absl::StrCat(std::string(path), ".bodies");
-  const std::string carriers_field = absl::StrCat(std::string(path), ".carriers");
+  const std::string drivers_field = absl::StrCat(std::string(path), ".drivers");
   auto bodies = builder.Bodies(scene.bodies(), field);
   if (!bodies.ok()) return bodies.status();
-  auto carriers = builder.Bodies(scene.carriers(), carriers_field);
-  if (!carriers.ok()) return carriers.status();
+  auto drivers = builder.Bodies(scene.drivers(), drivers_field);
+  if (!drivers.ok()) return drivers.status();
   for (const int b : *bodies) {
     if (absl::Status status = CheckBody(builder.model.bodies[b], field); !status.ok()) return status;
   }
-  if (scene.mode() == v1::RIDE_MODE_TRIANGLES)
-    return BindAllToTriangles(*bodies, *carriers, name, carriers_field, builder);
-  SkinAllByDistance(*bodies, *carriers, name, builder);
+  if (scene.mode() == v1::SKIN_MODE_TRIANGLES)
+    return BindAllToTriangles(*bodies, *drivers, name, drivers_field, builder);
+  SkinAllByDistance(*bodies, *drivers, name, builder);
   return absl::OkStatus();
 }
 

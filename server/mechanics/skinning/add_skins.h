@@ -8,9 +8,9 @@
 
 namespace phrenic {
 
-// Adds a Skin to the builder for each body of a ride. A driver may be skinned itself, if its skin was added before.
-// INVALID_ARGUMENT if a body does not exist, is not only seen, or has a skin already.
-absl::Status AddSkins(const v1::Ride& scene, const std::string& name, std::string_view path, ModelBuilder& builder);
+// Adds a Skin to the builder for each body of the message. A driver may be skinned itself, if its skin was added
+// before. INVALID_ARGUMENT if a body does not exist, is not only seen, or has a skin already.
+absl::Status AddSkins(const v1::Skin& scene, const std::string& name, std::string_view path, ModelBuilder& builder);
 
 }  // namespace phrenic
 
