@@ -64,7 +64,7 @@ absl::StatusOr<int> DeformableBody(const std::string& name, std::string_view pat
   return FieldError(path, absl::StrCat("body \"", name, "\" must be ROLE_DEFORMABLE"));
 }
 
-void Pull(const Link& link, const Eigen::Vector3d& impulse, double dt, Points& x, Points& v) {
+void ApplyPositionImpulse(const Link& link, const Eigen::Vector3d& impulse, double dt, Points& x, Points& v) {
   x.col(link.a) += link.inverse_a * impulse;
   x.col(link.b) -= link.inverse_b * impulse;
   v.col(link.a) += link.inverse_a / dt * impulse;
@@ -76,10 +76,10 @@ void Restore(const Link& link, const Eigen::Vector3d& direction, double dt, Poin
   const Eigen::Vector3d between = x.col(link.b) - x.col(link.a);
   const double excess = between.squaredNorm() - link.length * link.length;
   const Eigen::Vector3d correction = Correction(between, direction, excess);
-  Pull(link, correction / (link.inverse_a + link.inverse_b), dt, x, v);
+  ApplyPositionImpulse(link, correction / (link.inverse_a + link.inverse_b), dt, x, v);
 }
 
-void Push(const Link& link, const Eigen::Vector3d& impulse, State& state) {
+void ApplyVelocityImpulse(const Link& link, const Eigen::Vector3d& impulse, State& state) {
   state.v.col(link.a) += link.inverse_a * impulse;
   state.v.col(link.b) -= link.inverse_b * impulse;
 }
@@ -89,7 +89,7 @@ void StopStretching(const Link& link, State& state) {
   const double squared = between.squaredNorm();
   if (!link.Movable() || squared == 0) return;
   const double rate = between.dot(state.v.col(link.b) - state.v.col(link.a)) / squared;
-  Push(link, rate / (link.inverse_a + link.inverse_b) * between, state);
+  ApplyVelocityImpulse(link, rate / (link.inverse_a + link.inverse_b) * between, state);
 }
 
 }  // namespace phrenic

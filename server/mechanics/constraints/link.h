@@ -51,10 +51,10 @@ Link MakeLink(const Model& model, int a, int b);
 
 // Moves end a by inverse_a `impulse` and end b by -inverse_b `impulse` ([kg m], along the link; from a to b shortens
 // it), and changes the velocities by the same over dt.
-void Pull(const Link& link, const Eigen::Vector3d& impulse, double dt, Points& x, Points& v);
+void ApplyPositionImpulse(const Link& link, const Eigen::Vector3d& impulse, double dt, Points& x, Points& v);
 
 // Changes the velocities only, by an impulse [kg m/s] of the same sign.
-void Push(const Link& link, const Eigen::Vector3d& impulse, State& state);
+void ApplyVelocityImpulse(const Link& link, const Eigen::Vector3d& impulse, State& state);
 
 // Restores the length in one step (SHAKE), with an impulse along `direction`, the vector from a to b at the start of
 // the step [m], which conserves angular momentum. If the link has turned too far for that direction to have a solution,

@@ -49,11 +49,12 @@ std::vector<Entry> EntriesBelow(const std::vector<Link>& links) {
 }  // namespace
 
 struct LinkNetwork::Memory {
-  Points directions;                     // unit vectors; 0 if not active
-  Eigen::VectorXd diagonal;              // [1/kg]
-  Eigen::VectorXd pulls, taken, totals;  // [kg m] or, of velocities, [kg m/s]; `pulls` is [m] or [m/s] before the solve
-  std::vector<double> values;            // below the diagonal [1/kg]
-  std::vector<bool> active;              // equalities, and limits in the active set
+  Points directions;         // unit vectors; 0 if not active
+  Eigen::VectorXd diagonal;  // [1/kg]
+  Eigen::VectorXd multipliers, taken,
+      totals;                  // [kg m] or, of velocities, [kg m/s]; `multipliers` is [m] or [m/s] before the solve
+  std::vector<double> values;  // below the diagonal [1/kg]
+  std::vector<bool> active;    // equalities, and limits in the active set
   SparseLdlt::Factors factors;
 
   bool AnyActive(size_t links) const {
@@ -66,9 +67,9 @@ LinkNetwork::Memory& LinkNetwork::Fit(const Scratch& scratch) const {
   auto& memory = scratch.Get<Memory>();
   const auto links = static_cast<Eigen::Index>(links_.size());
   if (memory.values.size() < values_) memory.values.resize(values_);
-  if (memory.pulls.size() >= links) return memory;
+  if (memory.multipliers.size() >= links) return memory;
   memory.directions.resize(3, links);
-  for (Eigen::VectorXd* vector : {&memory.diagonal, &memory.pulls, &memory.taken, &memory.totals}) {
+  for (Eigen::VectorXd* vector : {&memory.diagonal, &memory.multipliers, &memory.taken, &memory.totals}) {
     vector->resize(links);
   }
   memory.active.resize(links_.size());
@@ -121,7 +122,7 @@ double LinkNetwork::Errors(const State& state, Memory& memory) const {
   double worst = 0;
   for (size_t i = 0; i < links_.size(); ++i) {
     const double error = memory.active[i] ? links_[i].RelativeError(state.x) : 0;
-    memory.pulls[static_cast<Eigen::Index>(i)] = error * links_[i].length;
+    memory.multipliers[static_cast<Eigen::Index>(i)] = error * links_[i].length;
     worst = std::max(worst, std::abs(error));
   }
   return worst;
@@ -132,8 +133,8 @@ double LinkNetwork::Rates(const State& state, Memory& memory) const {
   for (size_t i = 0; i < links_.size(); ++i) {
     const auto column = static_cast<Eigen::Index>(i);
     const Eigen::Vector3d relative = state.v.col(links_[i].b) - state.v.col(links_[i].a);
-    memory.pulls[column] = memory.directions.col(column).dot(relative);
-    worst = std::max(worst, std::abs(memory.pulls[column]));
+    memory.multipliers[column] = memory.directions.col(column).dot(relative);
+    worst = std::max(worst, std::abs(memory.multipliers[column]));
   }
   return worst;
 }
@@ -142,40 +143,41 @@ double LinkNetwork::Rates(const State& state, Memory& memory) const {
 double LinkNetwork::LargestMove(const Memory& memory) const {
   double largest = 0;
   for (size_t i = 0; i < links_.size(); ++i) {
-    const double pull = std::abs(memory.pulls[static_cast<Eigen::Index>(i)]);
-    largest = std::max(largest, pull * (links_[i].inverse_a + links_[i].inverse_b) / links_[i].length);
+    const double multiplier = std::abs(memory.multipliers[static_cast<Eigen::Index>(i)]);
+    largest = std::max(largest, multiplier * (links_[i].inverse_a + links_[i].inverse_b) / links_[i].length);
   }
   return largest;
 }
 
-void LinkNetwork::PullAll(double sign, double dt, Memory& memory, State& state) const {
+void LinkNetwork::ApplyPositionImpulses(double sign, double dt, Memory& memory, State& state) const {
   for (size_t i = 0; i < links_.size(); ++i) {
     const auto column = static_cast<Eigen::Index>(i);
-    Pull(links_[i], sign * memory.pulls[column] * memory.directions.col(column), dt, state.x, state.v);
-    memory.totals[column] += sign * memory.pulls[column];
+    ApplyPositionImpulse(links_[i], sign * memory.multipliers[column] * memory.directions.col(column), dt, state.x,
+                         state.v);
+    memory.totals[column] += sign * memory.multipliers[column];
   }
 }
 
-void LinkNetwork::PushAll(Memory& memory, State& state) const {
+void LinkNetwork::ApplyVelocityImpulses(Memory& memory, State& state) const {
   for (size_t i = 0; i < links_.size(); ++i) {
     const auto column = static_cast<Eigen::Index>(i);
-    Push(links_[i], memory.pulls[column] * memory.directions.col(column), state);
-    memory.totals[column] += memory.pulls[column];
+    ApplyVelocityImpulse(links_[i], memory.multipliers[column] * memory.directions.col(column), state);
+    memory.totals[column] += memory.multipliers[column];
   }
 }
 
 // One Newton iteration with the factorised matrix; updates `error`. Returns false, and undoes it, if the error did not
 // decrease.
 bool LinkNetwork::Correct(double dt, Memory& memory, State& state, double& error) const {
-  matrix_.Solve(memory.factors, memory.pulls);
+  matrix_.Solve(memory.factors, memory.multipliers);
   const double part = std::min(1.0, kLargestMove / LargestMove(memory));
-  memory.taken = memory.pulls;
-  PullAll(part, dt, memory, state);
+  memory.taken = memory.multipliers;
+  ApplyPositionImpulses(part, dt, memory, state);
   const double before = error;
   error = Errors(state, memory);
   if (error < before) return true;
-  memory.pulls = memory.taken;
-  PullAll(-part, dt, memory, state);
+  memory.multipliers = memory.taken;
+  ApplyPositionImpulses(-part, dt, memory, state);
   error = Errors(state, memory);
   return false;
 }
@@ -194,14 +196,14 @@ void LinkNetwork::Newton(const ConstPoints& before, double dt, Memory& memory, S
 }
 
 // Releases limits that push a cable or pull a strut, undoing their displacements, and activates violated ones.
-bool LinkNetwork::Switch(double dt, Memory& memory, State& state) const {
+bool LinkNetwork::UpdateActiveSet(double dt, Memory& memory, State& state) const {
   bool changed = false;
   for (size_t i = 0; i < links_.size(); ++i) {
     const Link& link = links_[i];
     double& total = memory.totals[static_cast<Eigen::Index>(i)];
     if (link.sign == 0) continue;
     if (memory.active[i] && link.sign * total * (link.inverse_a + link.inverse_b) < -kTolerance * link.length) {
-      Pull(link, -total * memory.directions.col(static_cast<Eigen::Index>(i)), dt, state.x, state.v);
+      ApplyPositionImpulse(link, -total * memory.directions.col(static_cast<Eigen::Index>(i)), dt, state.x, state.v);
       total = 0;
       memory.active[i] = false;
       changed = true;
@@ -222,7 +224,7 @@ void LinkNetwork::Project(const ConstPoints& before, double dt, const Scratch& s
   memory.totals.setZero();
   for (int round = 0; round < kSwitches; ++round) {
     Newton(before, dt, memory, state);
-    if (!Switch(dt, memory, state)) break;
+    if (!UpdateActiveSet(dt, memory, state)) break;
   }
   for (int sweep = 0; sweep < kSweeps && LargestViolation(state) > kTolerance; ++sweep) {
     for (const Link& link : links_) {
@@ -237,14 +239,14 @@ double LinkNetwork::LargestViolation(const State& state) const {
   return worst;
 }
 
-bool LinkNetwork::SwitchVelocities(double slow, Memory& memory, State& state) const {
+bool LinkNetwork::UpdateActiveSetOfVelocities(double slow, Memory& memory, State& state) const {
   bool changed = false;
   for (size_t i = 0; i < links_.size(); ++i) {
     const Link& link = links_[i];
     double& total = memory.totals[static_cast<Eigen::Index>(i)];
     if (link.sign == 0) continue;
     if (memory.active[i] && link.sign * total * (link.inverse_a + link.inverse_b) < -slow) {
-      Push(link, -total * memory.directions.col(static_cast<Eigen::Index>(i)), state);
+      ApplyVelocityImpulse(link, -total * memory.directions.col(static_cast<Eigen::Index>(i)), state);
       total = 0;
       memory.active[i] = false;
       changed = true;
@@ -270,10 +272,10 @@ void LinkNetwork::ProjectVelocities(const Scratch& scratch, State& state) const 
   for (int round = 0; round < kSwitches; ++round) {
     Factorise(state.x, memory);
     for (int pass = 0; pass < kRefinements && Rates(state, memory) > 0; ++pass) {
-      matrix_.Solve(memory.factors, memory.pulls);
-      PushAll(memory, state);
+      matrix_.Solve(memory.factors, memory.multipliers);
+      ApplyVelocityImpulses(memory, state);
     }
-    if (!SwitchVelocities(kAtRest * fastest, memory, state)) return;
+    if (!UpdateActiveSetOfVelocities(kAtRest * fastest, memory, state)) return;
   }
 }
 

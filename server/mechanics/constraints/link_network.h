@@ -48,15 +48,16 @@ class LinkNetwork {
 
   void FindCouplings();
   void Factorise(const ConstPoints& x, Memory& memory) const;
-  double Errors(const State& state, Memory& memory) const;  // sets memory.pulls [m]; returns the largest relative error
-  double Rates(const State& state, Memory& memory) const;   // sets memory.pulls [m/s]; returns the largest rate
+  double Errors(const State& state,
+                Memory& memory) const;  // sets memory.multipliers [m]; returns the largest relative error
+  double Rates(const State& state, Memory& memory) const;  // sets memory.multipliers [m/s]; returns the largest rate
   double LargestMove(const Memory& memory) const;
-  void PullAll(double sign, double dt, Memory& memory, State& state) const;
-  void PushAll(Memory& memory, State& state) const;  // velocities only
+  void ApplyPositionImpulses(double sign, double dt, Memory& memory, State& state) const;
+  void ApplyVelocityImpulses(Memory& memory, State& state) const;  // velocities only
   bool Correct(double dt, Memory& memory, State& state, double& error) const;
   void Newton(const ConstPoints& before, double dt, Memory& memory, State& state) const;
-  bool Switch(double dt, Memory& memory, State& state) const;  // true if the active set changed
-  bool SwitchVelocities(double slow, Memory& memory, State& state) const;
+  bool UpdateActiveSet(double dt, Memory& memory, State& state) const;  // true if the active set changed
+  bool UpdateActiveSetOfVelocities(double slow, Memory& memory, State& state) const;
   double LargestViolation(const State& state) const;
 
   std::vector<Link> links_;
