@@ -13,10 +13,10 @@
 namespace phrenic {
 namespace {
 
-constexpr double kLeastShare = 0.5;  // of an equal one
+constexpr double kLeastShare = 0.5;  // smallest weight of a vertex, relative to the mean
 
-// A quarter of the volume of the tetrahedra around each vertex [m^3]; a third of the area of the triangles [m^2] of a
-// surface.
+// Returns each vertex's weight: a quarter of the volume of its tetrahedra [m^3], or of a surface a third of the area of
+// its triangles [m^2].
 Eigen::VectorXd Shares(const Mesh& mesh) {
   if (mesh.tetrahedra.cols() == 0) return VertexAreas(mesh.vertices, mesh.triangles);
   Eigen::VectorXd share = Eigen::VectorXd::Zero(mesh.vertices.cols());
@@ -26,15 +26,16 @@ Eigen::VectorXd Shares(const Mesh& mesh) {
   return share;
 }
 
-// The total spread by shares whose sum is not 0.
+// Distributes the total in proportion to the shares, each raised to at least kLeastShare of their mean. Requires: their
+// sum is not 0.
 Eigen::VectorXd Spread(double total, const Eigen::VectorXd& shares) {
   const double equal = shares.sum() / static_cast<double>(shares.size());
   const Eigen::VectorXd raised = shares.cwiseMax(kLeastShare * equal);
   return raised * (total / raised.sum());
 }
 
-// The stiffness that each simulated vertex meets where the others stay: K_ii. A load on a whole surface at once
-// (outer products) is left out: at one vertex it comes to little.
+// The diagonal blocks K_ii of the stiffness: that of each simulated vertex with all others fixed [N/m]. Ignores outer
+// products (pressures that depend on a volume), whose diagonal blocks are small.
 class OwnStiffness final : public StiffnessSink {
  public:
   explicit OwnStiffness(Eigen::Index vertices) : blocks_(vertices, Eigen::Matrix3d::Zero()) {}
@@ -50,7 +51,7 @@ class OwnStiffness final : public StiffnessSink {
   }
   void AddOuter(double, const Points&) override {}
 
-  // Of vertices first ... first + count - 1, each in the direction in which it is stiffest [N/m].
+  // Returns the largest eigenvalue of each block of the vertices [first, first + count) [N/m].
   Eigen::VectorXd Largest(Eigen::Index first, Eigen::Index count) const {
     Eigen::VectorXd largest(count);
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;

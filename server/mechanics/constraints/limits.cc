@@ -17,7 +17,7 @@ absl::Status CheckRatios(const v1::LengthLimits& scene, std::string_view path) {
   return absl::OkStatus();
 }
 
-// A limit a side and link that can move.
+// Returns one Link per ratio that is set, for each link with a movable end.
 std::vector<Link> MakeLimits(const v1::LengthLimits& scene, const std::vector<Link>& links) {
   std::vector<Link> limits;
   for (Link link : links) {
@@ -45,13 +45,13 @@ absl::StatusOr<std::unique_ptr<Constraint>> Limits::Make(const v1::LengthLimits&
   if (!links.ok()) return links.status();
   const std::vector<Link> limits = MakeLimits(scene, *links);
   if (limits.empty()) {
-    builder.ReportLeftOut(name, "no edge that can move has both its vertices in the region");
+    builder.ReportLeftOut(name, "no edge with a movable vertex has both vertices in the region");
     return nullptr;
   }
   std::unique_ptr<Limits> constraint(new Limits(name));
   constraint->network_ = LinkNetwork(limits);
   builder.ReportElement("constraint", name, static_cast<std::int64_t>(limits.size()), "limits",
-                        "mass-weighted where they are violated, velocities corrected");
+                        "mass-weighted projection of violated limits, velocities corrected");
   return constraint;
 }
 
