@@ -1,14 +1,13 @@
 #include "client/campaign/plan.h"
 
 #include <filesystem>
-#include <fstream>
 #include <set>
-#include <sstream>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "client/cli/scene_argument.h"
+#include "client/files/whole_file.h"
 #include "server/schema/schema.h"
 #include "server/schema/sha256.h"
 
@@ -20,7 +19,7 @@ constexpr size_t kMostCells = 1'000'000;
 
 using Settings = std::vector<std::string>;  // "time_step=0.001"
 
-// Every way to take one value of each axis.
+// Returns all combinations of one value per axis.
 absl::StatusOr<std::vector<Settings>> SettingsOf(const v1::Campaign& campaign) {
   std::vector<Settings> all(1);
   for (const v1::CampaignAxis& axis : campaign.axes()) {
@@ -42,7 +41,7 @@ std::string ScenePath(const std::string& scene, const std::string& campaign_file
   return (std::filesystem::path(campaign_file).parent_path() / scene).string();
 }
 
-// An empty list counts as one entry: the scene's own.
+// Returns the list, or `own` as its only entry if it is empty.
 template <typename List, typename Value>
 std::vector<Value> OrOne(const List& list, Value own) {
   std::vector<Value> all(list.begin(), list.end());
@@ -77,12 +76,10 @@ absl::StatusOr<CampaignCell> MakeCell(const v1::Campaign& campaign, const v1::Sc
 }  // namespace
 
 absl::StatusOr<v1::Campaign> ReadCampaign(const std::string& file) {
-  std::ifstream in(file);
-  if (!in) return absl::NotFoundError(absl::StrCat("cannot read the campaign ", file, ": is the path right?"));
-  std::stringstream text;
-  text << in.rdbuf();
+  const absl::StatusOr<std::string> text = ReadWhole(file, "the campaign");
+  if (!text.ok()) return text.status();
   v1::Campaign campaign;
-  if (absl::Status status = schema::ParseText(file, text.str(), &campaign); !status.ok()) return status;
+  if (absl::Status status = schema::ParseText(file, *text, &campaign); !status.ok()) return status;
   schema::FillDefaults(&campaign);
   return campaign;
 }
@@ -94,7 +91,7 @@ absl::StatusOr<std::vector<CampaignCell>> CellsOf(const v1::Campaign& campaign, 
   std::set<std::string> names;
   for (const std::string& scene : campaign.scenes()) {
     for (const double resolution : OrOne(campaign.resolutions_mm(), 0.0)) {
-      const auto source = ReadSceneArgument(ScenePath(scene, file), resolution);
+      const auto source = ReadScene({ScenePath(scene, file), resolution});
       if (!source.ok()) return source.status();
       for (const std::string& preset : OrOne(campaign.presets(), std::string())) {
         for (const Settings& chosen : *settings) {

@@ -1,4 +1,4 @@
-// What a campaign is made of: its file, and the runs that it asks for.
+// A campaign's file and the runs it defines.
 #ifndef PHRENIC_CLIENT_CAMPAIGN_PLAN_H_
 #define PHRENIC_CLIENT_CAMPAIGN_PLAN_H_
 
@@ -11,20 +11,21 @@
 
 namespace phrenic::client {
 
-// One run: a cell of the product of what the campaign lists.
+// One run: one combination of the campaign's lists.
 struct CampaignCell {
-  v1::CampaignRow row;  // with what names it: cell, scene, resolution, preset, settings
+  v1::CampaignRow row;  // cell, scene, resolution, preset and settings are set
   v1::SceneSource source;
   v1::Parameters parameters;
-  double seconds = 0;
+  double seconds = 0;  // simulated time [s]
 };
 
-// Reads, parses and validates the file; errors name it and the line.
+// Reads, parses and validates the file. Errors name the file and the line.
 absl::StatusOr<v1::Campaign> ReadCampaign(const std::string& file);
 
-// The runs in the order of the lists, the last axis fastest. A cell's name is the SHA-256 of scene, parameters, length
-// and Phrenic's version, so that it changes with whatever may change the result. `file` is the campaign's: scenes are
-// looked for beside it. Errors name the scene or the axis.
+// Returns the runs in the order of the lists; the last axis varies fastest. A cell's name is a prefix of the SHA-256 of
+// scene, preset, parameters, length and Phrenic's version, that is, of all that may change the result. Scene files are
+// relative to the folder of the campaign's `file`. INVALID_ARGUMENT names the scene or the axis, or says that there are
+// more than a million runs.
 absl::StatusOr<std::vector<CampaignCell>> CellsOf(const v1::Campaign& campaign, const std::string& file);
 
 }  // namespace phrenic::client

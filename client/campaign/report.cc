@@ -23,7 +23,7 @@ struct Grid {
   std::vector<Texts> rows;
 };
 
-// The parameters that the runs set, in the order in which they first come.
+// Returns the parameters that the runs set, in order of first appearance.
 Texts ParametersOf(const v1::CampaignResult& result) {
   Texts names;
   for (const v1::CampaignRow& row : result.rows()) {
@@ -52,7 +52,7 @@ Texts MeasuresOf(const v1::CampaignResult& result) {
   return names;
 }
 
-// "3.695 l" without its unit, which stands in the header.
+// Returns "3.695" of "3.695 l"; the unit is in the header.
 std::string NumberOf(const v1::CampaignReading& reading) {
   const std::string text = ReadingText(reading.greatest(), reading.unit());
   return text.substr(0, text.find(' '));
@@ -93,13 +93,13 @@ Grid MakeGrid(const v1::CampaignResult& result) {
   return grid;
 }
 
-// Without the columns that are empty in every row.
+// Removes columns that are empty in every row.
 Grid Trimmed(const Grid& grid) {
   Grid kept;
   kept.rows.resize(grid.rows.size());
   for (size_t c = 0; c < grid.header.size(); ++c) {
-    const auto said = [c](const Texts& row) { return !row[c].empty(); };
-    if (!std::any_of(grid.rows.begin(), grid.rows.end(), said)) continue;
+    const auto filled = [c](const Texts& row) { return !row[c].empty(); };
+    if (!std::any_of(grid.rows.begin(), grid.rows.end(), filled)) continue;
     kept.header.push_back(grid.header[c]);
     for (size_t r = 0; r < grid.rows.size(); ++r) kept.rows[r].push_back(grid.rows[r][c]);
   }
@@ -110,7 +110,7 @@ std::string HtmlEscaped(const std::string& text) {
   return absl::StrReplaceAll(text, {{"&", "&amp;"}, {"<", "&lt;"}, {">", "&gt;"}, {"\"", "&quot;"}});
 }
 
-// Where a number stands between the least and the greatest of its column, 0 to 1; -1 for what is none.
+// Returns each number's position between the smallest and the greatest of its column, 0 to 1; -1 for text.
 std::vector<std::vector<double>> Shades(const Grid& grid) {
   std::vector<std::vector<double>> shades(grid.rows.size(), std::vector<double>(grid.header.size(), -1));
   for (size_t c = 0; c < grid.header.size(); ++c) {
@@ -161,18 +161,18 @@ Table CampaignTable(const v1::CampaignResult& result) {
 }
 
 std::string CampaignPage(const v1::Campaign& campaign, const v1::CampaignResult& result,
-                         const std::vector<std::string>& passed_limits) {
+                         const std::vector<std::string>& exceeded_limits) {
   std::map<std::string, int> outcomes;
   for (const v1::CampaignRow& row : result.rows()) ++outcomes[row.outcome()];
   const auto count = [](std::string* out, const auto& entry) { absl::StrAppend(out, entry.second, " ", entry.first); };
   std::string html = absl::StrCat(
       kHead, "<title>", HtmlEscaped(campaign.name()), "</title><h1>", HtmlEscaped(campaign.name()), "</h1><p>",
       result.rows_size(), " runs of ", campaign.seconds(), " s: ", absl::StrJoin(outcomes, ", ", count), "; ",
-      campaign.limits_size() - static_cast<int>(passed_limits.size()), " of ", campaign.limits_size(),
-      " limits kept. Shaded from a column's least to its most.</p>\n");
-  if (!passed_limits.empty()) absl::StrAppend(&html, "<h2>Limits that were passed</h2><ul>\n");
-  for (const std::string& sentence : passed_limits) absl::StrAppend(&html, "<li>", HtmlEscaped(sentence), "</li>\n");
-  if (!passed_limits.empty()) absl::StrAppend(&html, "</ul>\n");
+      campaign.limits_size() - static_cast<int>(exceeded_limits.size()), " of ", campaign.limits_size(),
+      " limits met. Shaded from the smallest to the greatest value of a column.</p>\n");
+  if (!exceeded_limits.empty()) absl::StrAppend(&html, "<h2>Exceeded limits</h2><ul>\n");
+  for (const std::string& sentence : exceeded_limits) absl::StrAppend(&html, "<li>", HtmlEscaped(sentence), "</li>\n");
+  if (!exceeded_limits.empty()) absl::StrAppend(&html, "</ul>\n");
   return html + TableOf(Trimmed(MakeGrid(result))) + "</html>\n";
 }
 

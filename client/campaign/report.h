@@ -1,4 +1,4 @@
-// A campaign's results for people: a table, and one HTML file that needs nothing else.
+// A campaign's results as a table and as a self-contained HTML page.
 #ifndef PHRENIC_CLIENT_CAMPAIGN_REPORT_H_
 #define PHRENIC_CLIENT_CAMPAIGN_REPORT_H_
 
@@ -10,13 +10,14 @@
 
 namespace phrenic::client {
 
-// A line a run: what was chosen, how it went, and the greatest value of each measure, in the units that people know.
-// Columns in which all runs agree on nothing (no preset, no resolution) are left out.
+// Returns one row per run: its settings, its outcome and the greatest value of each measure, in the units of
+// ReadingText. Leaves out columns that are empty in all rows.
 Table CampaignTable(const v1::CampaignResult& result);
 
-// The table, its numbers shaded from the column's least to its greatest, under what passed which limit.
+// Returns the HTML page: the exceeded limits, then the table, with numbers shaded from each column's smallest to its
+// greatest.
 std::string CampaignPage(const v1::Campaign& campaign, const v1::CampaignResult& result,
-                         const std::vector<std::string>& passed_limits);
+                         const std::vector<std::string>& exceeded_limits);
 
 }  // namespace phrenic::client
 

@@ -8,8 +8,8 @@
 #include <sstream>
 
 #include "absl/strings/str_cat.h"
-#include "client/connection/connection.h"
 #include "client/files/whole_file.h"
+#include "client/print/output.h"
 
 namespace phrenic::client {
 
@@ -44,7 +44,7 @@ absl::StatusOr<v1::CampaignResult> CampaignFolder::Read(const std::vector<Campai
     text << in.rdbuf();
     v1::CampaignResult one;
     if (!google::protobuf::util::JsonStringToMessage(text.str(), &one).ok() || one.rows_size() != 1) {
-      return absl::DataLossError(absl::StrCat(file, " is no result of a run: remove it to run it again"));
+      return absl::DataLossError(absl::StrCat(file, " is not a run's result: remove it to repeat the run"));
     }
     all.MergeFrom(one);
   }

@@ -1,5 +1,5 @@
-// What a campaign's runs came to: a file a run in FOLDER/cells, there whole or not at all, so that a run that was
-// finished is never computed again, whoever was killed in between.
+// A campaign's results: one file per finished run, FOLDER/cells/NAME.json. Files are written whole, so that a finished
+// run is never repeated.
 #ifndef PHRENIC_CLIENT_CAMPAIGN_RESULTS_H_
 #define PHRENIC_CLIENT_CAMPAIGN_RESULTS_H_
 
@@ -12,17 +12,19 @@
 
 namespace phrenic::client {
 
-// Any number of processes may use one folder at once, on one machine or over a shared file system.
+// Several processes may use one folder at a time, on one machine or over a shared file system.
 class CampaignFolder {
  public:
-  // Makes the folder where it is missing; errors name it.
+  // Creates missing folders. PERMISSION_DENIED names the folder.
   static absl::StatusOr<CampaignFolder> Open(const std::string& folder);
 
+  // True if the run is finished.
   bool Has(const CampaignCell& cell) const;
-  // How many of the runs are finished.
+  // Returns the number of finished runs.
   std::int64_t Finished(const std::vector<CampaignCell>& cells) const;
+  // Writes the result of one run. DATA_LOSS names the file if it cannot be written.
   absl::Status Write(const v1::CampaignResult& result) const;
-  // Of the finished ones, in the plan's order. DATA_LOSS names a file that cannot be read: remove it to run it again.
+  // Returns the results of the finished runs, in the order of `cells`. DATA_LOSS names a file that cannot be read.
   absl::StatusOr<v1::CampaignResult> Read(const std::vector<CampaignCell>& cells) const;
   const std::string& path() const { return path_; }
 

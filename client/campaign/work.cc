@@ -3,6 +3,7 @@
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "client/campaign/worker.h"
+#include "client/connection/connection.h"
 #include "client/connection/local_run.h"
 #include "server/service/server.h"
 
@@ -11,14 +12,14 @@ namespace {
 
 constexpr char kCell[] = "cell";
 
-void WriteCost(const Cost& cost, const std::string& cell, v1::CampaignResult& result) {
+void WriteCost(const RunCost& cost, const std::string& cell, v1::CampaignResult& result) {
   v1::CampaignRow& row = *result.mutable_rows(0);
   row.set_simulated_seconds(cost.simulated);
   row.set_steps(cost.steps);
   if (cost.steps > 0) row.set_cpu_us_a_step(1e6 * cost.cpu / static_cast<double>(cost.steps));
   if (cost.wall > 0) row.set_times_real_time(cost.simulated / cost.wall);
   row.set_state_hash(cost.state_hash);
-  for (const Readings::Range& range : cost.readings.ranges()) {
+  for (const MeasureRange& range : cost.measures.ranges()) {
     v1::CampaignReading& reading = *result.add_readings();
     reading.set_cell(cell);
     reading.set_measure(range.name);
@@ -39,9 +40,9 @@ grpc::Status RunSession(const Context& context, const CampaignCell& cell, v1::Se
   v1::CreateSessionResponse created;
   grpc::Status status = Call(context, stub, &v1::SessionService::Stub::CreateSession, create, &created);
   if (!status.ok()) return status;
-  Cost cost;
+  RunCost cost;
   v1::Session& session = *created.mutable_session();
-  status = StepThrough(context, TickAt(cell.seconds, session), stub, &session, &cost, [](std::int64_t) {});
+  status = StepUntil(context, TickAt(cell.seconds, session), stub, &session, &cost, [](std::int64_t) {});
   if (status.ok()) WriteCost(cost, cell.row.cell(), result);
   v1::CampaignRow& row = *result.mutable_rows(0);
   row.set_outcome(session.has_divergence() ? "diverged" : "done");
@@ -57,8 +58,8 @@ grpc::Status RunSession(const Context& context, const CampaignCell& cell, v1::Se
   return status.ok() ? deleted : status;
 }
 
-// What a run is refused for belongs to it; what ends the whole share does not.
-bool OfTheRun(const grpc::Status& status) {
+// True if the error concerns this run only, so that the share continues.
+bool ConcernsRunOnly(const grpc::Status& status) {
   return status.error_code() == grpc::StatusCode::INVALID_ARGUMENT ||
          status.error_code() == grpc::StatusCode::NOT_FOUND ||
          status.error_code() == grpc::StatusCode::FAILED_PRECONDITION ||
@@ -71,7 +72,7 @@ absl::Status RunCell(const Context& context, const CampaignCell& cell, v1::Sessi
   *result.add_rows() = cell.row;
   const grpc::Status status = RunSession(context, cell, stub, result);
   if (context.interruption->happened()) return absl::CancelledError("interrupted");
-  if (!status.ok() && !OfTheRun(status)) return absl::InternalError(status.error_message());
+  if (!status.ok() && !ConcernsRunOnly(status)) return absl::InternalError(status.error_message());
   if (!status.ok()) {
     result.mutable_rows(0)->set_outcome("failed");
     result.mutable_rows(0)->set_why(status.error_message());
@@ -85,10 +86,11 @@ absl::StatusOr<Share> ReadShare(const std::string& text) {
   Share share;
   const size_t slash = text.find('/');
   if (slash != std::string::npos && absl::SimpleAtoi(text.substr(0, slash), &share.number) &&
-      absl::SimpleAtoi(text.substr(slash + 1), &share.of) && share.number >= 0 && share.number < share.of) {
+      absl::SimpleAtoi(text.substr(slash + 1), &share.count) && share.number >= 0 && share.number < share.count) {
     return share;
   }
-  return absl::InvalidArgumentError(absl::StrCat("--share \"", text, "\" is not of the form 3/16, from 0/16 to 15/16"));
+  return absl::InvalidArgumentError(
+      absl::StrCat("--share \"", text, "\" is not of the form 3/16, between 0/16 and 15/16"));
 }
 
 absl::Status Work(const Context& context, const std::vector<CampaignCell>& cells, const Share& share,
@@ -98,7 +100,7 @@ absl::Status Work(const Context& context, const std::vector<CampaignCell>& cells
   const auto server = service::Server::Start(options);
   if (!server.ok()) return server.status();
   const auto stub = v1::SessionService::NewStub((*server)->InProcessChannel());
-  for (auto i = static_cast<size_t>(share.number); i < cells.size(); i += static_cast<size_t>(share.of)) {
+  for (auto i = static_cast<size_t>(share.number); i < cells.size(); i += static_cast<size_t>(share.count)) {
     if (folder.Has(cells[i])) continue;
     if (absl::Status status = RunCell(context, cells[i], *stub, folder); !status.ok()) return status;
   }

@@ -1,4 +1,4 @@
-// One process' share of a campaign, and the processes that take them.
+// The processes of a campaign and the runs of each.
 #ifndef PHRENIC_CLIENT_CAMPAIGN_WORKER_H_
 #define PHRENIC_CLIENT_CAMPAIGN_WORKER_H_
 
@@ -8,31 +8,32 @@
 
 #include "absl/status/status.h"
 #include "client/campaign/results.h"
-#include "client/connection/connection.h"
+#include "client/connection/context.h"
 
 namespace phrenic::client {
 
-// Of `of` shares the one with this number, from 0: every `of`th run.
+// A share of the runs: those with index `number` modulo `count`.
 struct Share {
-  int number = 0, of = 1;
+  int number = 0, count = 1;
 };
-// From "3/16"; INVALID_ARGUMENT says what is wrong.
+// Parses "3/16". INVALID_ARGUMENT quotes the text.
 absl::StatusOr<Share> ReadShare(const std::string& text);
 
-// Runs those of the share that are not finished, one after the other, each to a file of its own. A run that diverges,
-// or that the server refuses, is finished too: its row says why. CANCELLED where somebody interrupts.
+// Computes the unfinished runs of the share one after the other and writes a file for each. A run that diverges or that
+// the server refuses is finished too; its row has the reason. CANCELLED after Ctrl-C.
 absl::Status Work(const Context& context, const std::vector<CampaignCell>& cells, const Share& share,
                   const std::string& data_dir, const CampaignFolder& folder);
 
-// `phrenic campaign work` as processes of this program: what they are called with, but for the share.
+// Processes of this program that run `phrenic campaign work`.
 struct Workers {
-  std::vector<std::string> arguments;
-  int at_once = 1;
+  std::vector<std::string> arguments;  // without --share
+  int concurrent = 1;                  // number of processes at a time
 };
-// Runs as many shares as there are, `at_once` processes at a time, until all have ended; `wait` is called ten times a
-// second. Where it gives false they are ended. INTERNAL names the first that failed.
+// Runs `shares` shares, `concurrent` at a time, and waits for them. Calls `wait` ten times a second; if it returns
+// false, ends all processes and returns CANCELLED. INTERNAL if a process fails.
 absl::Status RunHere(const Workers& workers, int shares, const std::function<bool()>& wait);
-// The same as an array of Slurm jobs: `sbatch` and `squeue` must be on the path. Logs go to the folder.
+// Runs the same as an array of Slurm jobs. Logs are written to `log_folder`. Requires: `sbatch`, `squeue` and `scancel`
+// on the PATH.
 absl::Status RunOnSlurm(const Workers& workers, int shares, const std::string& log_folder,
                         const std::function<bool()>& wait);
 

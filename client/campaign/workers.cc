@@ -18,8 +18,8 @@
 namespace phrenic::client {
 namespace {
 
-constexpr absl::Duration kLook = absl::Milliseconds(100);
-constexpr absl::Duration kAskSlurm = absl::Seconds(2);
+constexpr absl::Duration kPollPeriod = absl::Milliseconds(100);
+constexpr absl::Duration kSlurmPeriod = absl::Seconds(2);
 
 std::string ThisProgram() {
   std::array<char, 4096> path{};
@@ -41,21 +41,21 @@ absl::StatusOr<pid_t> Spawn(const Workers& workers, const std::string& share) {
   return pid;
 }
 
-// The processes of a campaign on this machine; those that still run when it goes are ended.
-class Crew {
+// The processes of a campaign on this machine. The destructor ends those that still run.
+class ProcessPool {
  public:
-  Crew(const Workers& workers, int shares) : workers_(workers), shares_(shares) {}
-  ~Crew() {
+  ProcessPool(const Workers& workers, int shares) : workers_(workers), shares_(shares) {}
+  ~ProcessPool() {
     for (const pid_t pid : running_) kill(pid, SIGTERM);
     for (const pid_t pid : running_) waitpid(pid, nullptr, 0);
   }
-  Crew(const Crew&) = delete;
-  Crew& operator=(const Crew&) = delete;
+  ProcessPool(const ProcessPool&) = delete;
+  ProcessPool& operator=(const ProcessPool&) = delete;
 
   bool busy() const { return next_ < shares_ || !running_.empty(); }
-  // Starts who is missing and sees who has ended.
-  absl::Status Look() {
-    while (next_ < shares_ && static_cast<int>(running_.size()) < workers_.at_once) {
+  // Starts processes up to the limit and collects those that have ended. INTERNAL if one failed.
+  absl::Status Poll() {
+    while (next_ < shares_ && static_cast<int>(running_.size()) < workers_.concurrent) {
       const auto pid = Spawn(workers_, ShareText(next_, shares_));
       if (!pid.ok()) return pid.status();
       running_.insert(*pid);
@@ -68,7 +68,8 @@ class Crew {
       running_.erase(pid);
       if (WIFEXITED(status) && WEXITSTATUS(status) == 0) continue;
       return absl::InternalError(
-          "a worker ended before its runs were done: what is finished is kept, so start the campaign again to go on");
+          "a process ended before its runs were finished: finished runs are kept; start the campaign again to "
+          "continue");
     }
     return absl::OkStatus();
   }
@@ -80,15 +81,15 @@ class Crew {
   std::set<pid_t> running_;
 };
 
-// What a command prints; INTERNAL with what it says where it fails.
-absl::StatusOr<std::string> Ask(const std::string& command) {
+// Returns the output of a shell command. INTERNAL with its output if it fails.
+absl::StatusOr<std::string> RunShell(const std::string& command) {
   FILE* const pipe = popen((command + " 2>&1").c_str(), "r");
   if (pipe == nullptr) return absl::InternalError(absl::StrCat("cannot run ", command));
-  std::string said;
+  std::string output;
   std::array<char, 512> part{};
-  while (fgets(part.data(), part.size(), pipe) != nullptr) said += part.data();
+  while (fgets(part.data(), part.size(), pipe) != nullptr) output += part.data();
   const int status = pclose(pipe);
-  const std::string text(absl::StripAsciiWhitespace(said));
+  const std::string text(absl::StripAsciiWhitespace(output));
   if (status == 0) return text;
   return absl::InternalError(absl::StrCat(command.substr(0, command.find(' ')), ": ", text));
 }
@@ -101,36 +102,36 @@ std::string SlurmCommand(const Workers& workers, int shares, const std::string& 
   std::string work = Quoted(ThisProgram());
   for (const std::string& argument : workers.arguments) absl::StrAppend(&work, " ", Quoted(argument));
   absl::StrAppend(&work, " --share $SLURM_ARRAY_TASK_ID/", shares);
-  return absl::StrCat("sbatch --parsable --job-name=phrenic --array=0-", shares - 1, "%", workers.at_once,
+  return absl::StrCat("sbatch --parsable --job-name=phrenic --array=0-", shares - 1, "%", workers.concurrent,
                       " --output=", Quoted(log_folder + "/slurm-%A-%a.log"), " --wrap ", Quoted(work));
 }
 
 }  // namespace
 
 absl::Status RunHere(const Workers& workers, int shares, const std::function<bool()>& wait) {
-  Crew crew(workers, shares);
-  while (crew.busy()) {
-    if (absl::Status status = crew.Look(); !status.ok()) return status;
+  ProcessPool pool(workers, shares);
+  while (pool.busy()) {
+    if (absl::Status status = pool.Poll(); !status.ok()) return status;
     if (!wait()) return absl::CancelledError("interrupted");
-    absl::SleepFor(kLook);
+    absl::SleepFor(kPollPeriod);
   }
   return absl::OkStatus();
 }
 
 absl::Status RunOnSlurm(const Workers& workers, int shares, const std::string& log_folder,
                         const std::function<bool()>& wait) {
-  const auto job = Ask(SlurmCommand(workers, shares, log_folder));
+  const auto job = RunShell(SlurmCommand(workers, shares, log_folder));
   if (!job.ok()) return job.status();
-  absl::Time asked = absl::Now();
+  absl::Time polled = absl::Now();
   for (bool queued = true; queued;) {
     if (!wait()) {
-      Ask(absl::StrCat("scancel ", *job)).status().IgnoreError();
+      RunShell(absl::StrCat("scancel ", *job)).status().IgnoreError();
       return absl::CancelledError(absl::StrCat("interrupted: Slurm job ", *job, " was cancelled"));
     }
-    absl::SleepFor(kLook);
-    if (absl::Now() - asked < kAskSlurm) continue;
-    asked = absl::Now();
-    const auto left = Ask(absl::StrCat("squeue --noheader --jobs ", *job));
+    absl::SleepFor(kPollPeriod);
+    if (absl::Now() - polled < kSlurmPeriod) continue;
+    polled = absl::Now();
+    const auto left = RunShell(absl::StrCat("squeue --noheader --jobs ", *job));
     queued = left.ok() && !left->empty();
   }
   return absl::OkStatus();

@@ -11,15 +11,15 @@
 namespace phrenic::client {
 namespace {
 
-struct Row {
-  const char* name;  // of the argument, or of command and argument
+struct KindRow {
+  const char* name;  // "ARGUMENT", or "COMMAND ARGUMENT" for one top-level command
   Kind kind;
   const char* placeholder;
   const char* choices;
 };
 
-// The first that fits counts.
-constexpr Row kRows[] = {
+// The first row that fits applies.
+constexpr KindRow kKindRows[] = {
     {"--output", Kind::kChoice, "FORMAT", "table json jsonl csv"},
     {"--server", Kind::kOther, "HOST:PORT", ""},
     {"--viewer", Kind::kOther, "URL", ""},
@@ -47,6 +47,8 @@ constexpr Row kRows[] = {
     {"study --check", Kind::kFile, "FILE", ""},
     {"physiology --check", Kind::kOther, "", ""},
     {"--check", Kind::kOther, "MEASURE=LIMIT", ""},
+    {"--codec", Kind::kOther, "CODEC", ""},
+    {"--repair", Kind::kChoice, "REPAIR,...", "weld slivers fins orient all"},
     {"--labels", Kind::kFile, "NAME or FILE", ""},
     {"patient --out", Kind::kFolder, "DIR", ""},
     {"campaign --out", Kind::kFolder, "DIR", ""},
@@ -68,8 +70,8 @@ constexpr Row kRows[] = {
     {"B", Kind::kFile, "", ""},
 };
 
-// A row's command is one of the path's words: "study --check" is of "study error" too.
-bool Fits(const Row& row, const std::string& path, const std::string& name) {
+// True if the row applies to the argument. "study --check" applies to "study error" too.
+bool Fits(const KindRow& row, const std::string& path, const std::string& name) {
   const std::vector<std::string> words = absl::StrSplit(row.name, ' ');
   if (words.back() != name) return false;
   const std::vector<std::string> commands = absl::StrSplit(path, ' ');
@@ -115,7 +117,7 @@ std::string PathOf(const CLI::App& command) {
 
 ArgumentKind KindOf(const CLI::App& command, const CLI::Option& option) {
   const std::string path = PathOf(command), name = NameOf(option);
-  for (const Row& row : kRows) {
+  for (const KindRow& row : kKindRows) {
     if (!Fits(row, path, name)) continue;
     return {row.kind, row.placeholder, absl::StrSplit(row.choices, ' ', absl::SkipEmpty())};
   }

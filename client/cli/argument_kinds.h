@@ -1,4 +1,4 @@
-// What the command line's arguments are, by their names: for help, for completion, and for what is checked here.
+// The kinds of the command line's arguments, by their names. Help, completion and checks are made from them.
 #ifndef PHRENIC_CLIENT_CLI_ARGUMENT_KINDS_H_
 #define PHRENIC_CLIENT_CLI_ARGUMENT_KINDS_H_
 
@@ -12,23 +12,23 @@ enum class Kind { kOther, kChoice, kFile, kFolder, kScene, kSession, kExport, kS
 
 struct ArgumentKind {
   Kind kind = Kind::kOther;
-  std::string placeholder;           // "NAME=VALUE"; empty: from the type
+  std::string placeholder;           // "NAME=VALUE"; empty: CLI11's name of the type
   std::vector<std::string> choices;  // of kChoice
 };
 
-// Of one option or positional of a command.
+// Returns the kind of an option or positional argument of a command.
 ArgumentKind KindOf(const CLI::App& command, const CLI::Option& option);
 
-// Gives every argument of the tree its placeholder, and every choice its check: one that is not there is refused with
-// the nearest.
+// Sets the placeholder of every argument of the tree, and a check for every choice: an unknown choice is an error that
+// names the nearest one.
 void ApplyKinds(CLI::App& command);
 
-// Refuses what is no number, and what is outside.
+// Returns a check for numbers in [low, high].
 CLI::Validator NumberIn(double low, double high);
 
-// "--seconds" of "-s,--seconds", or a positional's name.
+// Returns the option's long name, such as "--seconds", or the positional argument's name.
 std::string NameOf(const CLI::Option& option);
-// "run", "study error"; empty for the root.
+// Returns the command's path, such as "run" or "study error"; empty for the root.
 std::string PathOf(const CLI::App& command);
 
 }  // namespace phrenic::client

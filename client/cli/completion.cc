@@ -12,11 +12,11 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-// Where the last word stands: in which command, and as which of its arguments.
-struct Place {
+// The position of the last word: its command and its argument.
+struct Position {
   const CLI::App* command;
-  int positionals = 0;                  // before it
-  const CLI::Option* option = nullptr;  // whose value it is
+  int positionals = 0;                  // number of positional arguments before it
+  const CLI::Option* option = nullptr;  // the option whose value it is; null if it is none
 };
 
 const CLI::Option* FindOption(const CLI::App& app, const std::string& name) {
@@ -26,28 +26,29 @@ const CLI::Option* FindOption(const CLI::App& app, const std::string& name) {
   return nullptr;
 }
 
-// Null where there is none of that name.
+// Returns the subcommand of that name; null if there is none.
 const CLI::App* FindBelow(const CLI::App& command, const std::string& name) {
   const auto found = command.get_subcommands([&](const CLI::App* below) { return below->get_name() == name; });
   return found.empty() ? nullptr : found.front();
 }
 
-Place PlaceOfLast(const CLI::App& app, const Words& words) {
-  Place place{&app};
+Position PositionOfLast(const CLI::App& app, const Words& words) {
+  Position position{&app};
   for (size_t i = 1; i + 1 < words.size(); ++i) {
     const std::string& word = words[i];
-    if (place.option != nullptr) {
-      place.option = nullptr;
+    if (position.option != nullptr) {
+      position.option = nullptr;
     } else if (absl::StartsWith(word, "-")) {
-      const CLI::Option* option = FindOption(*place.command, word);
-      if (option != nullptr && option->get_items_expected_max() > 0) place.option = option;
-    } else if (const CLI::App* below = FindBelow(*place.command, word); below != nullptr && place.positionals == 0) {
-      place.command = below;
+      const CLI::Option* option = FindOption(*position.command, word);
+      if (option != nullptr && option->get_items_expected_max() > 0) position.option = option;
+    } else if (const CLI::App* below = FindBelow(*position.command, word);
+               below != nullptr && position.positionals == 0) {
+      position.command = below;
     } else {
-      ++place.positionals;
+      ++position.positionals;
     }
   }
-  return place;
+  return position;
 }
 
 std::string FirstSentence(const std::string& text) { return text.substr(0, text.find(". ")); }
@@ -67,7 +68,7 @@ std::vector<Candidate> OptionNames(const CLI::App& app) {
       names.push_back({NameOf(*option), FirstSentence(option->get_description())});
     }
   }
-  names.push_back({"--help", "what there is, by example"});
+  names.push_back({"--help", "print help with examples"});
   return names;
 }
 
@@ -77,40 +78,41 @@ Candidates ValuesOf(const CLI::App& command, const CLI::Option& option, const Wo
     case Kind::kOther:
       return {};
     case Kind::kFile:
-      return {{}, Beside::kFiles};
+      return {{}, Directive::kFiles};
     case Kind::kFolder:
-      return {{}, Beside::kFolders};
+      return {{}, Directive::kFolders};
     case Kind::kScene:
-      return {lookup(kind.kind, words), Beside::kFiles};
+      return {lookup(kind.kind, words), Directive::kFiles};
     case Kind::kSetting:
-      return {lookup(kind.kind, words), Beside::kNoSpace};
+      return {lookup(kind.kind, words), Directive::kNoSpace};
     case Kind::kChoice: {
       Candidates choices;
       for (const std::string& choice : kind.choices) choices.words.push_back({choice, ""});
       return choices;
     }
     default:
-      return {lookup(kind.kind, words), Beside::kNothing};
+      return {lookup(kind.kind, words), Directive::kNothing};
   }
 }
 
-Candidates AllAt(const Place& place, const Words& words, const Lookup& lookup) {
-  if (place.option != nullptr) {
-    const CLI::App* owner = place.command;
-    while (owner->get_option_no_throw(NameOf(*place.option)) != place.option) owner = owner->get_parent();
-    return ValuesOf(*owner, *place.option, words, lookup);
+Candidates CandidatesAt(const Position& position, const Words& words, const Lookup& lookup) {
+  if (position.option != nullptr) {
+    const CLI::App* owner = position.command;
+    while (owner->get_option_no_throw(NameOf(*position.option)) != position.option) owner = owner->get_parent();
+    return ValuesOf(*owner, *position.option, words, lookup);
   }
-  if (absl::StartsWith(words.back(), "-")) return {OptionNames(*place.command), Beside::kNothing};
-  if (place.command->get_require_subcommand_min() > 0) return {SubcommandsOf(*place.command), Beside::kNothing};
-  const auto positionals = PositionalsOf(*place.command);
+  if (absl::StartsWith(words.back(), "-")) return {OptionNames(*position.command), Directive::kNothing};
+  if (position.command->get_require_subcommand_min() > 0)
+    return {SubcommandsOf(*position.command), Directive::kNothing};
+  const auto positionals = PositionalsOf(*position.command);
   if (positionals.empty()) return {};
   const bool many = positionals.back()->get_expected_max() >= CLI::detail::expected_max_vector_size;
-  const auto index = static_cast<size_t>(place.positionals);
+  const auto index = static_cast<size_t>(position.positionals);
   if (index >= positionals.size() && !many) return {};
-  return ValuesOf(*place.command, *positionals[std::min(index, positionals.size() - 1)], words, lookup);
+  return ValuesOf(*position.command, *positionals[std::min(index, positionals.size() - 1)], words, lookup);
 }
 
-// "--output=js": what is in front of the value stays.
+// Completes the value in "--output=js"; the candidates keep the "--output=".
 Candidates AfterEquals(const CLI::App& app, Words words, const Lookup& lookup) {
   const std::string last = words.back();
   const std::string name = last.substr(0, last.find('='));
@@ -121,15 +123,15 @@ Candidates AfterEquals(const CLI::App& app, Words words, const Lookup& lookup) {
   return candidates;
 }
 
-const char* Directive(Beside beside) {
-  switch (beside) {
-    case Beside::kNothing:
+const char* DirectiveText(Directive directive) {
+  switch (directive) {
+    case Directive::kNothing:
       return ":nothing";
-    case Beside::kFiles:
+    case Directive::kFiles:
       return ":files";
-    case Beside::kFolders:
+    case Directive::kFolders:
       return ":folders";
-    case Beside::kNoSpace:
+    case Directive::kNoSpace:
       return ":nospace";
   }
   return "";
@@ -160,15 +162,15 @@ std::vector<std::string> SplitLine(const std::string& line) {
 Candidates Complete(const CLI::App& app, const std::vector<std::string>& words, const Lookup& lookup) {
   const std::string& last = words.back();
   if (words.size() < 2) return {};
-  const Place place = PlaceOfLast(app, words);
-  if (place.option == nullptr && absl::StartsWith(last, "--") && absl::StrContains(last, "=")) {
+  const Position position = PositionOfLast(app, words);
+  if (position.option == nullptr && absl::StartsWith(last, "--") && absl::StrContains(last, "=")) {
     return AfterEquals(app, words, lookup);
   }
-  Candidates candidates = AllAt(place, words, lookup);
+  Candidates candidates = CandidatesAt(position, words, lookup);
   std::erase_if(candidates.words, [&](const Candidate& candidate) { return !absl::StartsWith(candidate.word, last); });
-  // A value that is whole gets its space.
+  // A complete setting is followed by a space.
   const bool names_left = std::ranges::any_of(candidates.words, [](const auto& one) { return one.word.back() == '='; });
-  if (candidates.beside == Beside::kNoSpace && !names_left) candidates.beside = Beside::kNothing;
+  if (candidates.directive == Directive::kNoSpace && !names_left) candidates.directive = Directive::kNothing;
   return candidates;
 }
 
@@ -177,7 +179,7 @@ void PrintCandidates(const CLI::App& app, const std::string& line) {
   for (const Candidate& candidate : candidates.words) {
     std::cout << candidate.word << (candidate.meaning.empty() ? "" : "\t") << candidate.meaning << "\n";
   }
-  std::cout << Directive(candidates.beside) << "\n";
+  std::cout << DirectiveText(candidates.directive) << "\n";
 }
 
 }  // namespace phrenic::client

@@ -1,44 +1,37 @@
-// What a shell may complete: asked for by the scripts of `phrenic completion` with every press of the tab key.
+// Completion: which words may follow on a command line. The scripts of `phrenic completion` ask for them at each press
+// of the tab key.
 #ifndef PHRENIC_CLIENT_CLI_COMPLETION_H_
 #define PHRENIC_CLIENT_CLI_COMPLETION_H_
 
 #include <CLI/CLI.hpp>
-#include <functional>
 #include <string>
 #include <vector>
 
-#include "client/cli/argument_kinds.h"
+#include "client/cli/candidate.h"
 
 namespace phrenic::client {
 
-// `phrenic __complete "phrenic run th"`; nobody types it.
+// The hidden command of the completion scripts: `phrenic __complete "phrenic run th"`.
 inline constexpr char kCompleteCommand[] = "__complete";
 
-struct Candidate {
-  std::string word;
-  std::string meaning;  // may be empty
-};
-
-// What the shell does beside: completes file names, folders, or leaves no space behind the word.
-enum class Beside { kNothing, kFiles, kFolders, kNoSpace };
+// What the shell does besides offering the words: nothing, complete file names, complete folder names, or add no space
+// after the word.
+enum class Directive { kNothing, kFiles, kFolders, kNoSpace };
 
 struct Candidates {
   std::vector<Candidate> words;
-  Beside beside = Beside::kNothing;
+  Directive directive = Directive::kNothing;
 };
 
-// The words of a line as a shell has them, with quotes and backslashes taken away; the last is the one that is being
-// typed, and may be empty.
+// Splits a line into words as a shell does and removes quotes and backslashes. The last word is the one being typed; it
+// may be empty.
 std::vector<std::string> SplitLine(const std::string& line);
 
-// The names there are of a kind; `command` are the words typed so far.
-using Lookup = std::function<std::vector<Candidate>(Kind kind, const std::vector<std::string>& typed)>;
-
-// What may stand in place of the last word.
+// Returns the words that may replace the last one.
 Candidates Complete(const CLI::App& app, const std::vector<std::string>& words, const Lookup& lookup);
 
-// Prints the candidates for the line typed so far, "word<TAB>meaning" each, and what is beside last, ":files"; names
-// that the server knows are asked for there, for a moment.
+// Prints one candidate per line, "word<TAB>meaning", and the directive last, such as ":files". May ask the server for
+// names, for 0.4 s per call.
 void PrintCandidates(const CLI::App& app, const std::string& line);
 
 }  // namespace phrenic::client

@@ -22,17 +22,17 @@ std::string Heading(const std::string& words) {
   return absl::StrCat("\n", Painted(words, Ink::kBold, STDOUT_FILENO), "\n");
 }
 
-// Two columns; the second begins on a line of its own where the first is too long.
+// Returns two columns. The second starts on the next line if the first is too long.
 std::string Pair(const std::string& first, const std::string& second) {
   const int at = std::min(kMeaningAt, HelpWidth() / 3);
   std::string text = std::string(kIndent, ' ') + first;
   if (second.empty()) return text + "\n";
-  const int used = kIndent + PoseMatricesOf(first);
+  const int used = kIndent + ColumnsOf(first);
   text += used + 1 < at ? std::string(at - used, ' ') : "\n" + std::string(at, ' ');
   return text + Wrapped(second, HelpWidth(), at) + "\n";
 }
 
-// The range that NumberIn says behind the type: "FLOAT: in [0.5 to 50]".
+// NumberIn adds its range to the type: "FLOAT: in [0.5 to 50]".
 constexpr char kRangeBegins[] = ": in [";
 
 std::string RangeOf(const CLI::Option& option) {
@@ -58,9 +58,9 @@ std::string List(const char* heading, const std::vector<const CLI::Option*>& opt
   return text;
 }
 
-std::string List(const char* heading, std::span<const Named> rows) {
+std::string List(const char* heading, std::span<const NamedText> rows) {
   std::string text = Heading(heading);
-  for (const Named& row : rows) text += Pair(row.name, row.meaning);
+  for (const NamedText& row : rows) text += Pair(row.name, row.meaning);
   return text;
 }
 
@@ -77,13 +77,13 @@ std::string CommandsOf(const CLI::App& command) {
   return text;
 }
 
-std::string CommandsByGroup(const CLI::App& root) {
+std::string CommandsByGroup(CommandTable commands) {
   std::string text, group;
-  for (const CommandGuide& guide : Guides()) {
-    if (*guide.group == 0) continue;
-    if (guide.group != group) text += Heading(guide.group);
-    group = guide.group;
-    text += Pair(guide.command, root.get_subcommand(guide.command)->get_description());
+  for (const Command& command : commands) {
+    if (*command.group == 0) continue;
+    if (command.group != group) text += Heading(command.group);
+    group = command.group;
+    text += Pair(command.path, command.summary);
   }
   return text;
 }
@@ -93,24 +93,25 @@ std::string Beginning(const CLI::App& root) {
                       "\n", Heading("Examples"), Examples(FirstExamples()));
 }
 
-std::string OfTheRoot(const CLI::App& root) {
-  std::string text = Beginning(root) + CommandsByGroup(root) + List("Options of every command", OptionsOf(root));
+std::string RootHelp(const CLI::App& root, CommandTable commands) {
+  std::string text = Beginning(root) + CommandsByGroup(commands) + List("Options of every command", OptionsOf(root));
   text += List("Environment", EnvironmentVariables()) + List("Exit codes", ExitCodes());
   text += "\n" + Wrapped(SettingsText(), HelpWidth(), 0) + "\n";
   return text + "\n" +
-         Wrapped("`phrenic COMMAND --help` says more; `phrenic man | man -l -` says everything.", HelpWidth(), 0) +
+         Wrapped("Help for one command: phrenic COMMAND --help. The manual: phrenic man | man -l -", HelpWidth(), 0) +
          "\n";
 }
 
-std::string OfACommand(const CLI::App& command) {
+std::string CommandHelp(const CLI::App& command, CommandTable commands) {
   std::string text = Wrapped(command.get_description(), HelpWidth(), 0) + "\n";
   text += Heading("Usage") + "  " + Wrapped(UsageOf(command), HelpWidth(), 6) + "\n";
-  if (const CommandGuide* guide = GuideOf(PathOf(command))) text += Heading("Examples") + Examples(guide->examples);
+  const Command* row = FindCommand(commands, PathOf(command));
+  if (row != nullptr && !row->examples().empty()) text += Heading("Examples") + Examples(row->examples());
   text += CommandsOf(command) + List("Arguments", PositionalsOf(command)) + List("Options", OptionsOf(command));
-  if (SetsParameters(command)) text += Heading("Parameters, as NAME=VALUE") + Parameters();
+  if (SetsParameters(command)) text += Heading("Parameters, set by NAME=VALUE") + Parameters();
   text += command.get_footer();
-  return text + "\n" + Wrapped("And those of every command, as --server and --output: phrenic --help", HelpWidth(), 0) +
-         "\n";
+  return text + "\n" +
+         Wrapped("Options of every command, such as --server and --output: phrenic --help", HelpWidth(), 0) + "\n";
 }
 
 }  // namespace
@@ -176,7 +177,7 @@ bool SetsParameters(const CLI::App& command) {
 }
 
 std::string HelpFormatter::make_help(const CLI::App* command, std::string /*name*/, CLI::AppFormatMode /*mode*/) const {
-  return command->get_parent() == nullptr ? OfTheRoot(*command) : OfACommand(*command);
+  return command->get_parent() == nullptr ? RootHelp(*command, commands_) : CommandHelp(*command, commands_);
 }
 
 }  // namespace phrenic::client

@@ -1,4 +1,4 @@
-// `--help`: what a command does, how it is typed, by examples first, in the terminal's width.
+// `--help`: what a command does, its usage, examples and arguments, in the terminal's width.
 #ifndef PHRENIC_CLIENT_CLI_HELP_H_
 #define PHRENIC_CLIENT_CLI_HELP_H_
 
@@ -6,31 +6,37 @@
 #include <string>
 #include <vector>
 
-#include "client/cli/scene_argument.h"
+#include "client/cli/command.h"
+#include "client/cli/parameter_rows.h"
 
 namespace phrenic::client {
 
 class HelpFormatter final : public CLI::Formatter {
  public:
+  explicit HelpFormatter(CommandTable commands) : commands_(commands) {}
   std::string make_help(const CLI::App* command, std::string name, CLI::AppFormatMode mode) const override;
+
+ private:
+  const CommandTable commands_;
 };
 
-// For who types no command: how it begins.
+// Returns the help for `phrenic` without a command.
 std::string ShortHelp(const CLI::App& root);
 
-// "Step of the integrator. (s, 1e-07 to 0.1; automatic)".
+// Returns "Step of the integrator. (1e-07 to 0.1 s; automatic)".
 std::string MeaningOf(const ParameterRow& parameter);
-// Whether one of the command's arguments sets parameters.
+// True if one of the command's arguments sets parameters.
 bool SetsParameters(const CLI::App& command);
 
-// "phrenic run SCENE [options]".
+// Returns "phrenic run SCENE [options]".
 std::string UsageOf(const CLI::App& command);
-// "-o,--output FORMAT"; a positional's name.
+// Returns "-o, --output FORMAT", or a positional argument's name.
 std::string LabelOf(const CLI::Option& option);
-// What it means, with its range, its default and its variable: "simulated time [s] (1e-06 to 3600; 8)".
+// Returns the option's help with its range, default and environment variable: "simulated time [s] (1e-06 to 3600; 8)".
 std::string MeaningOf(const CLI::Option& option);
-// What people may type: positionals, or options but for --help.
+// Returns the command's positional arguments.
 std::vector<const CLI::Option*> PositionalsOf(const CLI::App& command);
+// Returns the command's options, without --help.
 std::vector<const CLI::Option*> OptionsOf(const CLI::App& command);
 
 }  // namespace phrenic::client

@@ -1,10 +1,12 @@
 #include "client/cli/known_names.h"
 
-#include <cstdlib>
+#include <algorithm>
+#include <chrono>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "client/connection/connection.h"
+#include "client/terminal/environment.h"
 #include "phrenic/v1/export.grpc.pb.h"
 #include "phrenic/v1/session.grpc.pb.h"
 #include "phrenic/v1/study.grpc.pb.h"
@@ -18,22 +20,23 @@ namespace {
 using google::protobuf::FieldDescriptor;
 using Words = std::vector<std::string>;
 
-constexpr std::chrono::milliseconds kServerPatience(400);
+constexpr std::chrono::milliseconds kServerDeadline(400);
 
-// One call; what it gives is empty where nobody answers in time.
+// Makes one call. Returns an empty response if the server does not answer in time.
 template <typename Service, typename Response, typename Method, typename Request>
 Response Ask(const std::shared_ptr<grpc::Channel>& channel, Method method, const Request& request) {
   grpc::ClientContext call;
-  call.set_deadline(std::chrono::system_clock::now() + kServerPatience);
+  call.set_deadline(std::chrono::system_clock::now() + kServerDeadline);
   Response response;
   const auto stub = Service::NewStub(channel);
   if (!(stub.get()->*method)(&call, request, &response).ok()) response.Clear();
   return response;
 }
 
-class Server {
+// The names that the server knows.
+class NameServer {
  public:
-  explicit Server(const std::string& address) {
+  explicit NameServer(const std::string& address) {
     Context context;
     context.server = address;
     channel_ = Connect(context);
@@ -62,14 +65,14 @@ class Server {
   std::shared_ptr<grpc::Channel> channel_;
 };
 
-// "--server X" and "--server=X", else what the settings say.
+// Returns the value of "--server X" or "--server=X", or the setting's value.
 std::string AddressIn(const CLI::App& app, const Words& typed) {
   for (size_t i = 0; i < typed.size(); ++i) {
     if (typed[i] == "--server" && i + 1 < typed.size()) return typed[i + 1];
     if (absl::StartsWith(typed[i], "--server=")) return typed[i].substr(typed[i].find('=') + 1);
   }
-  const char* variable = std::getenv("PHRENIC_SERVER");
-  return variable != nullptr && *variable != 0 ? variable : app.get_option("--server")->get_default_str();
+  const std::string variable = EnvironmentVariable("PHRENIC_SERVER");
+  return !variable.empty() ? variable : app.get_option("--server")->get_default_str();
 }
 
 std::vector<Candidate> ChoicesOf(const FieldDescriptor& field) {
@@ -84,7 +87,7 @@ std::vector<Candidate> ChoicesOf(const FieldDescriptor& field) {
   return choices;
 }
 
-// "breath_force=" first, and the values behind the sign.
+// Returns "breath_force=" and the like, or the values if `last` has an equals sign.
 std::vector<Candidate> SettingsFor(const std::string& last) {
   std::vector<Candidate> settings;
   const google::protobuf::Descriptor& type = *v1::Parameters::descriptor();
@@ -100,8 +103,8 @@ std::vector<Candidate> SettingsFor(const std::string& last) {
   return settings;
 }
 
-// Of the scene that is named on the line, or that a session named there runs; of all where there is none.
-std::vector<Candidate> PresetsFor(const Server& server, const Words& typed) {
+// Returns the presets of the scenes named on the line, directly or by a session that runs them.
+std::vector<Candidate> PresetsFor(const NameServer& server, const Words& typed) {
   Words named = typed;
   const v1::ListSessionsResponse sessions = server.Sessions();
   for (const v1::Session& session : sessions.sessions()) {
@@ -115,7 +118,7 @@ std::vector<Candidate> PresetsFor(const Server& server, const Words& typed) {
   return presets;
 }
 
-std::vector<Candidate> ScenesOf(const Server& server) {
+std::vector<Candidate> ScenesOf(const NameServer& server) {
   std::vector<Candidate> names;
   for (const v1::SceneSummary& scene : server.Scenes()) names.push_back({scene.name(), scene.title()});
   return names;
@@ -139,7 +142,7 @@ std::vector<Candidate> StudiesOf(const v1::ListStudiesResponse& all) {
   return names;
 }
 
-std::vector<Candidate> NamesOfKind(Kind kind, const Server& server, const Words& typed) {
+std::vector<Candidate> NamesOfKind(Kind kind, const NameServer& server, const Words& typed) {
   switch (kind) {
     case Kind::kScene:
       return ScenesOf(server);
@@ -161,7 +164,7 @@ std::vector<Candidate> NamesOfKind(Kind kind, const Server& server, const Words&
 }  // namespace
 
 Lookup KnownNames(const CLI::App& app) {
-  return [&app](Kind kind, const Words& typed) { return NamesOfKind(kind, Server(AddressIn(app, typed)), typed); };
+  return [&app](Kind kind, const Words& typed) { return NamesOfKind(kind, NameServer(AddressIn(app, typed)), typed); };
 }
 
 }  // namespace phrenic::client

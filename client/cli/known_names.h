@@ -1,13 +1,16 @@
-// The names that completion knows: parameters from the schema, scenes, sessions and the like from the server.
+// The names that completion offers: parameters from the schema; scenes, sessions, exports and studies from the server.
 #ifndef PHRENIC_CLIENT_CLI_KNOWN_NAMES_H_
 #define PHRENIC_CLIENT_CLI_KNOWN_NAMES_H_
 
-#include "client/cli/completion.h"
+#include <CLI/CLI.hpp>
+
+#include "client/cli/candidate.h"
 
 namespace phrenic::client {
 
-// Asks the server that the typed words, the environment or the settings file name, for 0.4 s at most. Scenes and their
-// presets are the shipped ones where nobody answers; of all else there is nothing then.
+// Returns a lookup that asks the server named by the typed words, the environment or the settings file, with a deadline
+// of 0.4 s per call. If the server does not answer, scenes and presets are those of the installation and other names
+// are empty. Requires: `app` outlives the lookup.
 Lookup KnownNames(const CLI::App& app);
 
 }  // namespace phrenic::client

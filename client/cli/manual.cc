@@ -9,12 +9,12 @@
 #include "client/cli/argument_kinds.h"
 #include "client/cli/guide.h"
 #include "client/cli/help.h"
-#include "client/cli/scene_argument.h"
+#include "client/cli/parameter_rows.h"
 
 namespace phrenic::client {
 namespace {
 
-// A line of text may not begin as a request does.
+// Escapes text so that no line starts like a request.
 std::string RoffEscaped(const std::string& text) {
   std::string safe = absl::StrReplaceAll(text, {{"\\", "\\e"}, {"-", "\\-"}, {"\n.", "\n\\&."}, {"\n'", "\n\\&'"}});
   if (safe.starts_with('.') || safe.starts_with('\'')) safe = "\\&" + safe;
@@ -31,9 +31,9 @@ std::string ExampleItems(std::span<const Example> examples) {
   return text;
 }
 
-std::string NamedItems(std::span<const Named> rows) {
+std::string NamedItems(std::span<const NamedText> rows) {
   std::string text;
-  for (const Named& row : rows) absl::StrAppend(&text, Item(row.name, row.meaning));
+  for (const NamedText& row : rows) absl::StrAppend(&text, Item(row.name, row.meaning));
   return text;
 }
 
@@ -50,27 +50,33 @@ std::string ParameterItems() {
   return text;
 }
 
-void AddCommand(const CLI::App& command, std::string& text) {
+void AddCommandText(const CLI::App& command, CommandTable commands, std::string& text) {
   const bool leaf = command.get_require_subcommand_min() == 0;
   if (leaf) {
     absl::StrAppend(&text, ".SS \"", RoffEscaped(UsageOf(command)), "\"\n", RoffEscaped(command.get_description()),
                     ".\n", ArgumentItems(command));
-    const CommandGuide* guide = GuideOf(PathOf(command));
-    if (guide != nullptr) absl::StrAppend(&text, ".PP\nExamples:\n", ExampleItems(guide->examples));
+    const Command* row = FindCommand(commands, PathOf(command));
+    if (row != nullptr && !row->examples().empty()) {
+      absl::StrAppend(&text, ".PP\nExamples:\n", ExampleItems(row->examples()));
+    }
   }
-  for (const CLI::App* below : command.get_subcommands([](const CLI::App*) { return true; })) AddCommand(*below, text);
+  for (const CLI::App* below : command.get_subcommands([](const CLI::App*) { return true; })) {
+    AddCommandText(*below, commands, text);
+  }
 }
 
 }  // namespace
 
-std::string ManualOf(const CLI::App& app) {
+std::string ManualOf(const CLI::App& root, CommandTable commands) {
   std::string text = ".TH PHRENIC 1 \"2026-11-22\" \"phrenic " PHRENIC_VERSION "\" \"User commands\"\n";
-  absl::StrAppend(&text, ".SH NAME\nphrenic \\- the breathing diaphragm, simulated\n",
+  absl::StrAppend(&text, ".SH NAME\nphrenic \\- simulate the breathing diaphragm\n",
                   ".SH SYNOPSIS\n.B phrenic\n.I COMMAND\n[options]\n", ".SH DESCRIPTION\n",
-                  RoffEscaped(app.get_description()), "\n.SH EXAMPLES\n", ExampleItems(FirstExamples()));
-  absl::StrAppend(&text, ".SH OPTIONS\nOf every command:\n", ArgumentItems(app), ".SH COMMANDS\n");
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) AddCommand(*command, text);
-  absl::StrAppend(&text, ".SH PARAMETERS\nOf \\-\\-set, and of `phrenic set`:\n", ParameterItems(), ".SH SETTINGS\n",
+                  RoffEscaped(root.get_description()), "\n.SH EXAMPLES\n", ExampleItems(FirstExamples()));
+  absl::StrAppend(&text, ".SH OPTIONS\nOptions of every command:\n", ArgumentItems(root), ".SH COMMANDS\n");
+  for (const CLI::App* command : root.get_subcommands([](const CLI::App*) { return true; })) {
+    AddCommandText(*command, commands, text);
+  }
+  absl::StrAppend(&text, ".SH PARAMETERS\nSet by \\-\\-set and by `phrenic set`:\n", ParameterItems(), ".SH SETTINGS\n",
                   RoffEscaped(SettingsText()), "\n.SH ENVIRONMENT\n", NamedItems(EnvironmentVariables()),
                   ".SH EXIT STATUS\n", NamedItems(ExitCodes()));
   return text;

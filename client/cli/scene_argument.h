@@ -1,4 +1,4 @@
-// The SCENE of a command line: a name of the catalogue, or a .textproto file.
+// The arguments of commands that make a session: a scene, parameters and pulls.
 #ifndef PHRENIC_CLIENT_CLI_SCENE_ARGUMENT_H_
 #define PHRENIC_CLIENT_CLI_SCENE_ARGUMENT_H_
 
@@ -10,21 +10,19 @@
 
 namespace phrenic::client {
 
-// A path (with a slash, or ending in .textproto) is read, parsed and checked here, so that errors name file and line.
-// `resolution_mm` 0 leaves the scene's own.
-absl::StatusOr<v1::SceneSource> ReadSceneArgument(const std::string& scene, double resolution_mm);
+struct SceneOptions {
+  std::string scene;         // a name of the catalogue, or a path: contains a slash or ends in .textproto
+  double resolution_mm = 0;  // edge length of generated bodies [mm]; 0: the scene's own
+};
 
-// Pulls from "BODY:VERTEX:X,Y,Z", the force in newtons; INVALID_ARGUMENT says what is wrong with which.
+// Returns the scene's name, or the scene read from its file. Errors name the file and the line.
+absl::StatusOr<v1::SceneSource> ReadScene(const SceneOptions& options);
+
+// Parses pulls "BODY:VERTEX:X,Y,Z" with the force in [N]. INVALID_ARGUMENT quotes the text.
 absl::StatusOr<google::protobuf::RepeatedPtrField<v1::Pull>> ReadPulls(const std::vector<std::string>& pulls);
 
-// Parameters from "name=value" words; INVALID_ARGUMENT names the word.
+// Parses parameters "name=value". INVALID_ARGUMENT names the parameter or quotes the text.
 absl::StatusOr<v1::Parameters> ReadSettings(const std::vector<std::string>& settings);
-
-// All live parameters with unit, range, default and meaning.
-struct ParameterRow {
-  std::string name, unit, range, default_value, meaning;
-};
-std::vector<ParameterRow> ParameterRows();
 
 }  // namespace phrenic::client
 

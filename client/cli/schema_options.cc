@@ -1,11 +1,10 @@
 #include "client/cli/schema_options.h"
 
-#include <string>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "absl/strings/str_replace.h"
-#include "server/schema/fields.h"
 
 namespace phrenic::client {
 namespace {
@@ -13,7 +12,7 @@ namespace {
 using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 
-// Throws CLI::ValidationError where the server would refuse the number.
+// Returns the value. Throws CLI::ValidationError if the schema does not allow it.
 double Checked(const FieldDescriptor& field, double value) {
   if (const auto problem = schema::NumberProblem(value, schema::QuantityOf(field))) {
     throw CLI::ValidationError(field.name(), *problem);
@@ -41,43 +40,50 @@ void AddChoice(Message* message, const FieldDescriptor* field, const std::string
 
 std::string Meaning(const FieldDescriptor& field) {
   if (field.cpp_type() == FieldDescriptor::CPPTYPE_ENUM) {
-    return absl::StrCat("names with commas (all), of ", schema::ChoiceNames(*field.enum_type()));
+    return absl::StrCat("comma-separated names (all) of ", schema::ChoiceNames(*field.enum_type()));
   }
   const v1::Quantity* quantity = schema::QuantityOf(field);
   if (quantity == nullptr) return "";
   std::string text = quantity->label().empty() ? absl::StrReplaceAll(field.name(), {{"_", " "}}) : quantity->label();
   absl::StrAppend(&text, ", ", schema::FormatRange(*quantity));
-  if (field.is_repeated()) return absl::StrCat(text, ", with commas (none)");
+  if (field.is_repeated()) return absl::StrCat(text, ", comma-separated (none)");
   return absl::StrCat(text, " (", schema::FormatNumber(quantity->default_value()), ")");
 }
 
-void AddOption(CLI::App* command, const std::string& name, const FieldDescriptor* field, Message* message) {
+void AddOption(CLI::App& command, const std::string& name, const FieldDescriptor* field, Message* message) {
   const std::string meaning = Meaning(*field);
   if (field->cpp_type() == FieldDescriptor::CPPTYPE_BOOL) {
-    command->add_flag_callback(name, [=] { message->GetReflection()->SetBool(message, field, true); });
+    command.add_flag_callback(name, [=] { message->GetReflection()->SetBool(message, field, true); });
   } else if (field->cpp_type() == FieldDescriptor::CPPTYPE_ENUM) {
     const auto set = [=](const std::vector<std::string>& values) {
       for (const std::string& value : values) AddChoice(message, field, value);
     };
-    command->add_option_function<std::vector<std::string>>(name, set, meaning)->delimiter(',');
+    command.add_option_function<std::vector<std::string>>(name, set, meaning)->delimiter(',');
   } else if (field->is_repeated()) {
     const auto set = [=](const std::vector<double>& values) {
       for (const double value : values) message->GetReflection()->AddDouble(message, field, Checked(*field, value));
     };
-    command->add_option_function<std::vector<double>>(name, set, meaning)->delimiter(',');
+    command.add_option_function<std::vector<double>>(name, set, meaning)->delimiter(',');
   } else {
-    command->add_option_function<double>(
+    command.add_option_function<double>(
         name, [=](double value) { SetNumber(message, field, value); }, meaning);
   }
 }
 
 }  // namespace
 
-void AddSchemaOptions(CLI::App* command, Message* message) {
+void AddSchemaOptions(CLI::App& command, Message* message) {
   const auto& type = *message->GetDescriptor();
   for (int f = 0; f < type.field_count(); ++f) {
     AddOption(command, "--" + absl::StrReplaceAll(type.field(f)->name(), {{"_", "-"}}), type.field(f), message);
   }
+}
+
+std::string FieldHelp(const google::protobuf::Descriptor& message, const std::string& field) {
+  const v1::Quantity& quantity = *schema::QuantityOf(*message.FindFieldByName(field));
+  const std::string otherwise = quantity.automatic() ? "automatic" : schema::FormatNumber(quantity.default_value());
+  return absl::StrFormat("%s [%s], %s (%s). %s", quantity.label(), quantity.unit(), schema::FormatRange(quantity),
+                         otherwise, quantity.help());
 }
 
 }  // namespace phrenic::client

@@ -1,4 +1,4 @@
-// Where this user's settings are kept.
+// The user's settings file.
 #ifndef PHRENIC_CLIENT_CLI_SETTINGS_H_
 #define PHRENIC_CLIENT_CLI_SETTINGS_H_
 
@@ -10,10 +10,13 @@
 
 namespace phrenic::client {
 
-// $PHRENIC_CONFIG, else $XDG_CONFIG_HOME/phrenic/config.toml, else that in ~/.config; empty where no home is known.
+// Returns $PHRENIC_CONFIG, or $XDG_CONFIG_HOME/phrenic/config.toml, or ~/.config/phrenic/config.toml: the first whose
+// variable is set; empty if none is.
 std::string SettingsFile();
 
-// settings::ReadFile of it; a file that is not there says nothing, NOT_FOUND where PHRENIC_CONFIG names it.
+// Makes the file's values the defaults of the tree's options. Returns the names that the file sets
+// (settings::ReadFile); empty if there is no file. NOT_FOUND if PHRENIC_CONFIG names a missing file; INVALID_ARGUMENT
+// names file and line. Requires: called before parsing.
 absl::StatusOr<std::set<std::string>> ReadSettingsFile(const std::string& file, CLI::App& app);
 
 }  // namespace phrenic::client

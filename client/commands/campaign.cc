@@ -1,4 +1,4 @@
-// `phrenic campaign`: many runs on this machine's cores or on Slurm, their table and their page.
+// `phrenic campaign`: many runs, on this machine's cores or on Slurm, and their results.
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
@@ -9,8 +9,11 @@
 #include "client/campaign/report.h"
 #include "client/campaign/results.h"
 #include "client/campaign/worker.h"
+#include "client/cli/argument_kinds.h"
+#include "client/cli/shared_options.h"
 #include "client/commands/commands.h"
-#include "client/files/limits.h"
+#include "client/connection/errors.h"
+#include "client/files/study_limits.h"
 #include "client/files/whole_file.h"
 #include "client/print/output.h"
 #include "client/terminal/progress.h"
@@ -18,83 +21,92 @@
 namespace phrenic::client {
 namespace {
 
-constexpr int kSharesAWorker = 8;  // small enough shares that none is left over at the end
+constexpr int kSharesPerProcess = 8;  // small shares, so that all processes end at about the same time
 
-struct Opened {
+struct CampaignOptions {
+  std::string file;  // the campaign, in text format
+  std::string out;   // folder of results
+  int jobs = 0;      // number of concurrent processes; 0: one per core
+  std::string on = "here";
+  std::string share;  // of `campaign work`
+  std::string page, data_dir;
+};
+
+// A campaign and its results so far.
+struct OpenCampaign {
   v1::Campaign campaign;
   std::vector<CampaignCell> cells;
   CampaignFolder folder;
 };
 
-absl::StatusOr<Opened> Open(const CampaignOptions& options) {
+absl::StatusOr<OpenCampaign> Open(const CampaignOptions& options) {
   auto campaign = ReadCampaign(options.file);
   if (!campaign.ok()) return campaign.status();
   auto cells = CellsOf(*campaign, options.file);
   if (!cells.ok()) return cells.status();
   auto folder = CampaignFolder::Open(options.out);
   if (!folder.ok()) return folder.status();
-  return Opened{*std::move(campaign), *std::move(cells), *std::move(folder)};
+  return OpenCampaign{*std::move(campaign), *std::move(cells), *std::move(folder)};
 }
 
-std::string Absolute(const std::string& path) { return std::filesystem::absolute(path).string(); }
+std::string AbsolutePath(const std::string& path) { return std::filesystem::absolute(path).string(); }
 
-absl::Status RunAll(const Context& context, const CampaignOptions& options, const Opened& opened) {
+absl::Status RunAll(const Context& context, const CampaignOptions& options, const OpenCampaign& opened) {
   Workers workers;
-  workers.arguments = {"campaign", "work", Absolute(options.file), "--out", Absolute(options.out)};
+  workers.arguments = {"campaign", "work", AbsolutePath(options.file), "--out", AbsolutePath(options.out)};
   if (!options.data_dir.empty()) {
-    workers.arguments.insert(workers.arguments.end(), {"--data", Absolute(options.data_dir)});
+    workers.arguments.insert(workers.arguments.end(), {"--data", AbsolutePath(options.data_dir)});
   }
-  workers.at_once =
+  workers.concurrent =
       options.jobs > 0 ? options.jobs : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   const auto total = static_cast<double>(opened.cells.size());
-  const int shares = static_cast<int>(std::min<double>(total, kSharesAWorker * workers.at_once));
+  const int shares = static_cast<int>(std::min<double>(total, kSharesPerProcess * workers.concurrent));
   Progress progress(opened.campaign.name(), total);
-  int looks = 0;
+  int calls = 0;
   const auto wait = [&] {
-    if (looks++ % 10 == 0) progress.Update(static_cast<double>(opened.folder.Finished(opened.cells)));
+    if (calls++ % 10 == 0) progress.Update(static_cast<double>(opened.folder.Finished(opened.cells)));
     return !context.interruption->happened();
   };
-  if (options.on == "slurm") return RunOnSlurm(workers, shares, Absolute(options.out), wait);
+  if (options.on == "slurm") return RunOnSlurm(workers, shares, AbsolutePath(options.out), wait);
   return RunHere(workers, shares, wait);
 }
 
-// The table, the page, and the limits; kMissed where one is passed, kFailed where runs are missing or failed.
-int Report(const Context& context, const CampaignOptions& options, const Opened& opened) {
+// Prints the table, writes the page and checks the limits. Returns kMissed if a limit is exceeded, kFailed if runs are
+// missing or failed.
+int ReportResults(const Context& context, const CampaignOptions& options, const OpenCampaign& opened) {
   const auto result = opened.folder.Read(opened.cells);
   if (!result.ok()) return Fail(result.status());
   v1::StudyLimits limits;
   *limits.mutable_limits() = opened.campaign.limits();
-  const auto passed = PassedLimits(limits, *result);
-  if (!passed.ok()) return Fail(passed.status());
+  const auto exceeded = ExceededLimits(limits, *result);
+  if (!exceeded.ok()) return Fail(exceeded.status());
   PrintList(context, *result, CampaignTable(*result));
   if (!options.page.empty()) {
-    const std::string page = CampaignPage(opened.campaign, *result, *passed);
+    const std::string page = CampaignPage(opened.campaign, *result, *exceeded);
     if (absl::Status status = WriteWhole(options.page, page); !status.ok()) return Fail(status);
   }
-  for (const std::string& sentence : *passed) std::cerr << "phrenic: limit passed: " << sentence << "\n";
+  for (const std::string& sentence : *exceeded) std::cerr << "phrenic: limit exceeded: " << sentence << "\n";
   const auto failed = std::count_if(result->rows().begin(), result->rows().end(),
                                     [](const v1::CampaignRow& row) { return row.outcome() != "done"; });
-  std::cerr << absl::StrFormat("%d of %d runs finished, %d of them diverged or failed; %d of %d limits kept\n",
+  std::cerr << absl::StrFormat("%d of %d runs finished, %d of them diverged or failed; %d of %d limits met\n",
                                result->rows_size(), static_cast<int>(opened.cells.size()), static_cast<int>(failed),
-                               limits.limits_size() - static_cast<int>(passed->size()), limits.limits_size());
+                               limits.limits_size() - static_cast<int>(exceeded->size()), limits.limits_size());
   if (result->rows_size() < static_cast<int>(opened.cells.size())) return kFailed;
-  if (!passed->empty()) return kMissed;
+  if (!exceeded->empty()) return kMissed;
   return failed == 0 ? kOk : kFailed;
 }
-
-}  // namespace
 
 int RunCampaign(const Context& context, const CampaignOptions& options) {
   const auto opened = Open(options);
   if (!opened.ok()) return Fail(opened.status());
-  const std::int64_t before = opened->folder.Finished(opened->cells);
-  if (before > 0) std::cerr << absl::StrFormat("%d runs are finished already\n", before);
-  if (before < static_cast<std::int64_t>(opened->cells.size())) {
+  const std::int64_t finished = opened->folder.Finished(opened->cells);
+  if (finished > 0) std::cerr << absl::StrFormat("%d runs are already finished\n", finished);
+  if (finished < static_cast<std::int64_t>(opened->cells.size())) {
     const absl::Status status = RunAll(context, options, *opened);
     if (absl::IsCancelled(status)) return kInterrupted;
     if (!status.ok()) return Fail(status);
   }
-  return Report(context, options, *opened);
+  return ReportResults(context, options, *opened);
 }
 
 int WorkOnCampaign(const Context& context, const CampaignOptions& options) {
@@ -110,7 +122,44 @@ int WorkOnCampaign(const Context& context, const CampaignOptions& options) {
 int ReportCampaign(const Context& context, const CampaignOptions& options) {
   const auto opened = Open(options);
   if (!opened.ok()) return Fail(opened.status());
-  return Report(context, options, *opened);
+  return ReportResults(context, options, *opened);
+}
+
+// Adds the options of all three subcommands.
+std::shared_ptr<CampaignOptions> AddCampaign(CLI::App& command) {
+  const auto options = std::make_shared<CampaignOptions>();
+  command.add_option("FILE", options->file, "campaign in text format (phrenic/v1/campaign.proto)")->required();
+  command.add_option("--out", options->out, "folder of the results, one file per run")->required();
+  return options;
+}
+
+void AddPage(CLI::App& command, CampaignOptions& options) {
+  command.add_option("--page", options.page, "also write the table as an HTML page");
+}
+
+}  // namespace
+
+CommandFunction SetUpCampaignRun(CLI::App& command) {
+  const auto options = AddCampaign(command);
+  AddDataFolder(command, options->data_dir);
+  AddPage(command, *options);
+  command.add_option("--jobs", options->jobs, "number of concurrent processes (one per core)")
+      ->check(NumberIn(1, 10'000));
+  command.add_option("--on", options->on, "where to run: here or slurm")->capture_default_str();
+  return Bind(&RunCampaign, options);
+}
+
+CommandFunction SetUpCampaignReport(CLI::App& command) {
+  const auto options = AddCampaign(command);
+  AddPage(command, *options);
+  return Bind(&ReportCampaign, options);
+}
+
+CommandFunction SetUpCampaignWork(CLI::App& command) {
+  const auto options = AddCampaign(command);
+  AddDataFolder(command, options->data_dir);
+  command.add_option("--share", options->share, "which share of how many: 0/16 to 15/16")->required();
+  return Bind(&WorkOnCampaign, options);
 }
 
 }  // namespace phrenic::client

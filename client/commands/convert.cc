@@ -1,11 +1,15 @@
-// `phrenic convert`: a surface file in another format. What was written is read back, and told.
+// `phrenic convert`: writes a surface file in another format, reads it back and reports what was lost.
 #include <algorithm>
 #include <iostream>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "client/cli/argument_kinds.h"
+#include "client/cli/shared_options.h"
 #include "client/commands/commands.h"
+#include "client/connection/errors.h"
 #include "client/files/whole_file.h"
+#include "client/print/output.h"
 #include "server/compare/inspection.h"
 #include "server/mesh/repair.h"
 #include "server/mesh/units.h"
@@ -14,36 +18,42 @@
 namespace phrenic::client {
 namespace {
 
-// A sentence for each thing of `in` that `out` has not.
-void TellLosses(const meshio::Surface& in, const Mesh& out) {
+struct ConvertOptions {
+  std::string in, out;
+  std::vector<std::string> repairs;     // of "weld", "slivers", "fins", "orient" and "all"
+  double within_mm = 1e-3;              // points closer than this coincide
+  double unit_mm = 1, out_unit_mm = 1;  // length of the units of IN and OUT [mm]
+};
+
+// Prints a sentence for each property of `in` that `out` lacks.
+void ReportLosses(const meshio::Surface& in, const Mesh& out) {
   const auto fewer = in.mesh.vertices.cols() - out.vertices.cols();
-  if (fewer > 0) std::cerr << "phrenic: " << fewer << " vertices, unused or in the place of another, are not in it\n";
+  if (fewer > 0) std::cerr << "phrenic: " << fewer << " unused or duplicate vertices are not in the file\n";
   for (const auto& [name, vertices] : in.mesh.regions) {
     const auto kept = out.regions.find(name);
     if (kept != out.regions.end() && kept->second == vertices) continue;
-    std::cerr << "phrenic: the region \"" << name << "\" is not, or not whole, in it; .msh keeps regions\n";
+    std::cerr << "phrenic: the region \"" << name << "\" is missing or incomplete in the file; .msh keeps regions\n";
   }
-  if (in.frame == meshio::Frame::kRas) std::cerr << "phrenic: turned from RAS to LPS\n";
+  if (in.frame == meshio::Frame::kRas) std::cerr << "phrenic: converted from RAS to LPS\n";
 }
 
-// What `options` asks for, in the order in which each helps the next.
+// Applies the chosen repairs, in an order in which each helps the next.
 void Repair(const ConvertOptions& options, Mesh& mesh) {
-  const auto asked = [&options](const char* repair) {
+  const auto wanted = [&options](const char* repair) {
     const auto& repairs = options.repairs;
-    return std::any_of(repairs.begin(), repairs.end(), [&](const auto& one) { return one == repair || one == "all"; });
+    return std::any_of(repairs.begin(), repairs.end(),
+                       [&](const auto& name) { return name == repair || name == "all"; });
   };
   const double within = options.within_mm / options.out_unit_mm;
-  const auto tell = [](int count, const char* what) { std::cerr << "phrenic: " << count << what; };
-  if (asked("weld")) tell(Weld(within, mesh), " vertices were at the place of another, or unused\n");
-  if (asked("slivers")) tell(DropSlivers(within, mesh), " triangles were slivers or doubled\n");
-  if (asked("fins")) tell(DropFins(mesh), " triangles were of fins\n");
-  if (asked("orient")) tell(Orient(mesh), " triangles were turned\n");
+  const auto report = [](int count, const char* what) { std::cerr << "phrenic: " << count << what; };
+  if (wanted("weld")) report(Weld(within, mesh), " duplicate or unused vertices removed\n");
+  if (wanted("slivers")) report(DropSlivers(within, mesh), " slivers and doubled triangles removed\n");
+  if (wanted("fins")) report(DropFins(mesh), " triangles of fins removed\n");
+  if (wanted("orient")) report(Orient(mesh), " triangles reoriented\n");
 }
 
-}  // namespace
-
 int Convert(const Context& context, const ConvertOptions& options) {
-  // In units of OUT rather than metres: where the two units are one, every digit is kept.
+  // Reads in units of OUT, not metres, so that equal units keep all digits.
   auto surface = meshio::ReadSurface(options.in, options.unit_mm / options.out_unit_mm);
   if (!surface.ok()) return Fail(surface.status());
   Repair(options, surface->mesh);
@@ -52,7 +62,7 @@ int Convert(const Context& context, const ConvertOptions& options) {
   auto written = meshio::ParseSurface(options.out, *bytes, 1);
   if (!written.ok()) return Fail(written.status());
   if (const absl::Status status = WriteWhole(options.out, *bytes); !status.ok()) return Fail(status);
-  TellLosses(*surface, written->mesh);
+  ReportLosses(*surface, written->mesh);
   written->mesh.vertices *= kMillimetre * options.out_unit_mm;
   const v1::SurfaceReport report = compare::Inspect(options.out, *written, options.out_unit_mm);
   if (context.json()) {
@@ -61,6 +71,28 @@ int Convert(const Context& context, const ConvertOptions& options) {
     std::cout << absl::StrFormat("%s: %d vertices, %d triangles\n", options.out, report.vertices(), report.triangles());
   }
   return kOk;
+}
+
+}  // namespace
+
+CommandFunction SetUpConvert(CLI::App& command) {
+  const auto options = std::make_shared<ConvertOptions>();
+  command.add_option("IN", options->in, "a surface (" + meshio::Endings() + ")")->required();
+  command
+      .add_option("OUT", options->out, "file to write; its ending sets the format (" + meshio::WrittenEndings() + ")")
+      ->required();
+  AddUnit(command, "--unit-mm", options->unit_mm, "IN's");
+  AddUnit(command, "--out-unit-mm", options->out_unit_mm, "OUT's");
+  command
+      .add_option("--repair", options->repairs,
+                  "weld (merge coincident vertices), slivers (remove thin and doubled triangles), fins (remove pieces "
+                  "attached by one edge), orient (make neighbours agree and closed parts face outwards), or all (none)")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command.add_option("--within-mm", options->within_mm, "distance below which points coincide for --repair [mm]")
+      ->check(NumberIn(0.0, 10.0))
+      ->capture_default_str();
+  return Bind(&Convert, options);
 }
 
 }  // namespace phrenic::client

@@ -1,10 +1,15 @@
+// `phrenic describe`: what the compiler made of a scene.
 #include <iostream>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
-#include "client/cli/scene_argument.h"
+#include "client/cli/parameter_rows.h"
+#include "client/cli/shared_options.h"
 #include "client/commands/commands.h"
+#include "client/connection/connection.h"
+#include "client/connection/errors.h"
+#include "client/print/output.h"
 #include "client/print/print_session.h"
 #include "client/print/table.h"
 #include "client/terminal/progress.h"
@@ -45,7 +50,7 @@ void PrintReport(const v1::DescribeSceneResponse& response) {
   const v1::StableStep& step = report.stable_step();
   std::cout << absl::StrFormat(
       "\n%d simulated vertices, %d springs, %d rigid links, %d attachments\n"
-      "Largest stable step %.4g s: %s\nStep it starts with %.4g s\nCompiled in %.2f s; scene hash %s\n",
+      "Largest stable step %.4g s: %s\nInitial step %.4g s\nCompiled in %.2f s; scene hash %s\n",
       report.simulated_vertices(), report.springs(), report.rigid_links(), report.attachments(), step.seconds(),
       step.reason(), step.chosen_seconds(), report.compile_seconds(), report.scene_hash());
   if (response.scene().presets_size() > 0) std::cout << "\nPresets\n";
@@ -54,7 +59,7 @@ void PrintReport(const v1::DescribeSceneResponse& response) {
   }
   std::cout << "\nParameters\n" << ParametersLine(response.parameters()) << "\n";
   if (report.idle_parameters_size() > 0) {
-    std::cout << "Without effect here: " << absl::StrJoin(report.idle_parameters(), ", ") << "\n";
+    std::cout << "Without effect in this scene: " << absl::StrJoin(report.idle_parameters(), ", ") << "\n";
   }
   Table parameters({"parameter", "unit", "range", "default", "meaning"});
   for (const ParameterRow& row : ParameterRows()) {
@@ -63,10 +68,8 @@ void PrintReport(const v1::DescribeSceneResponse& response) {
   parameters.Print(std::cout);
 }
 
-}  // namespace
-
 int Describe(const Context& context, const SceneOptions& options) {
-  const absl::StatusOr<v1::SceneSource> source = ReadSceneArgument(options.scene, options.resolution_mm);
+  const absl::StatusOr<v1::SceneSource> source = ReadScene(options);
   if (!source.ok()) return Fail(source.status());
   v1::DescribeSceneRequest request;
   *request.mutable_source() = *source;
@@ -82,6 +85,14 @@ int Describe(const Context& context, const SceneOptions& options) {
     PrintReport(response);
   }
   return kOk;
+}
+
+}  // namespace
+
+CommandFunction SetUpDescribe(CLI::App& command) {
+  const auto options = std::make_shared<SceneOptions>();
+  AddScene(command, *options);
+  return Bind(&Describe, options);
 }
 
 }  // namespace phrenic::client

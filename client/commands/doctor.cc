@@ -1,4 +1,4 @@
-// `phrenic doctor`: whether all is there; each line that is not well has its remedy.
+// `phrenic doctor`: checks the installation and the server. Each problem has a remedy.
 #include <unistd.h>
 
 #include <filesystem>
@@ -8,7 +8,9 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "client/commands/commands.h"
+#include "client/connection/connection.h"
 #include "client/connection/reachable.h"
+#include "client/terminal/environment.h"
 #include "client/terminal/terminal.h"
 #include "phrenic/v1/server.grpc.pb.h"
 
@@ -17,11 +19,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kPatienceSeconds = 3;
+constexpr int kServerSeconds = 3;  // deadline of the call to the server
 
-// "good", "hint": goes without, and "bad".
 struct Finding {
-  std::string verdict, what, found, remedy;
+  std::string verdict;  // "good", "hint" for something optional that is missing, or "bad"
+  std::string what, found, remedy;
 };
 using Findings = std::vector<Finding>;
 
@@ -34,7 +36,7 @@ void CheckSettings(const Context& context, Findings& findings) {
   std::error_code error;
   const bool there = fs::exists(file, error);
   findings.push_back({there ? "good" : "hint", "settings file", there ? file : absl::StrCat("none at ", file),
-                      there ? "" : "only if you want one: a line such as server = \"HOST:PORT\""});
+                      there ? "" : "optional; it holds lines such as server = \"HOST:PORT\""});
 }
 
 void CheckViewer(const Context& context, const v1::GetServerResponse& server, Findings& findings) {
@@ -43,8 +45,8 @@ void CheckViewer(const Context& context, const v1::GetServerResponse& server, Fi
   if (server.web_port() == 0) {
     findings.push_back({"hint", "viewer", "not served", "start the server with --web HOST:PORT"});
   } else if (!IsReachable(address)) {
-    findings.push_back({"bad", "viewer", absl::StrCat("nobody answers at ", address),
-                        "start the server with --web 0.0.0.0:PORT, or forward the port; --viewer URL where it is"});
+    findings.push_back({"bad", "viewer", absl::StrCat("no answer at ", address),
+                        "start the server with --web 0.0.0.0:PORT, or forward the port and set --viewer URL"});
   } else if (!server.viewer_is_built()) {
     findings.push_back({"bad", "viewer", "not built", "deploy/run --build-only, or npm run build in web/"});
   } else {
@@ -58,19 +60,19 @@ void CheckAnswer(const Context& context, const v1::GetServerResponse& server, Fi
   findings.push_back({equal ? "good" : "bad", "versions",
                       equal ? absl::StrCat("both ", PHRENIC_VERSION)
                             : absl::StrCat("server ", server.version(), ", command line ", PHRENIC_VERSION),
-                      equal ? "" : "build both from one source: deploy/run --build-only"});
+                      equal ? "" : "build both from the same source: deploy/run --build-only"});
   CheckViewer(context, server, findings);
   findings.push_back({server.has_data_folder() ? "good" : "hint", "data folder",
-                      server.has_data_folder() ? "the server has one" : "none",
-                      server.has_data_folder() ? "" : "for surfaces and scenes of your own: phrenicd --data DIR"});
+                      server.has_data_folder() ? "set" : "none",
+                      server.has_data_folder() ? "" : "for your own surfaces and scenes: phrenicd --data DIR"});
 }
 
-// True where the server answers.
+// Returns true if the server answers.
 bool CheckServer(const Context& context, Findings& findings) {
   const auto stub = v1::ServerService::NewStub(Connect(context));
   v1::GetServerResponse server;
   const grpc::Status status =
-      Call(context, *stub, &v1::ServerService::Stub::GetServer, v1::GetServerRequest(), &server, kPatienceSeconds);
+      Call(context, *stub, &v1::ServerService::Stub::GetServer, v1::GetServerRequest(), &server, kServerSeconds);
   if (status.ok()) {
     CheckAnswer(context, server, findings);
     return true;
@@ -78,22 +80,22 @@ bool CheckServer(const Context& context, Findings& findings) {
   const bool another = IsReachable(HostOf(context));
   if (status.error_code() == grpc::StatusCode::UNIMPLEMENTED) {
     findings.push_back(
-        {"bad", "server", absl::StrCat("an older one at ", context.server), "build and start it anew: deploy/run"});
+        {"bad", "server", absl::StrCat("older version at ", context.server), "rebuild and restart it: deploy/run"});
   } else if (another) {
     findings.push_back({"bad", "server",
-                        absl::StrCat("what listens at ", context.server, " is no gRPC server of Phrenic"),
-                        "is it the viewer's port? name that of gRPC: --server HOST:50051"});
+                        absl::StrCat("the program at ", context.server, " is not a gRPC server of Phrenic"),
+                        "if it is the viewer's port, use the gRPC port: --server HOST:50051"});
   } else {
-    findings.push_back({"bad", "server", absl::StrCat("nobody listens at ", context.server),
-                        "start it: deploy/run, or phrenicd; or name another: --server HOST:PORT"});
+    findings.push_back({"bad", "server", absl::StrCat("no answer at ", context.server),
+                        "start it with deploy/run or phrenicd, or name another: --server HOST:PORT"});
   }
   return false;
 }
 
 std::string FindProgram(const std::vector<std::string>& names) {
-  const char* path = std::getenv("PATH");
+  const std::string path = EnvironmentVariable("PATH");
   for (const std::string& name : names) {
-    for (const absl::string_view folder : absl::StrSplit(path == nullptr ? "" : path, ':')) {
+    for (const absl::string_view folder : absl::StrSplit(path, ':')) {
       if (::access(absl::StrCat(folder, "/", name).c_str(), X_OK) == 0) return absl::StrCat(folder, "/", name);
     }
   }
@@ -111,40 +113,42 @@ void CheckPrograms(Findings& findings) {
       {"browser", {"chromium", "google-chrome", "firefox", "firefox-esr"}, "for the viewer: apt install chromium"},
   };
   for (const auto& program : programs) {
-    const std::string place = FindProgram(program.names);
-    findings.push_back({place.empty() ? "hint" : "good", program.what, place.empty() ? "not found" : place,
-                        place.empty() ? program.remedy : ""});
+    const std::string path = FindProgram(program.names);
+    findings.push_back({path.empty() ? "hint" : "good", program.what, path.empty() ? "not found" : path,
+                        path.empty() ? program.remedy : ""});
   }
 }
 
 void CheckGraphics(Findings& findings) {
   std::error_code error;
   const bool gpu = fs::exists("/dev/dri", error);
-  findings.push_back({gpu ? "good" : "hint", "graphics", gpu ? "/dev/dri" : "no GPU seen",
+  findings.push_back({gpu ? "good" : "hint", "graphics", gpu ? "/dev/dri" : "no GPU found",
                       gpu ? ""
                           : "if the viewer stays black: chromium --use-gl=angle --use-angle=swiftshader "
                             "--enable-unsafe-swiftshader"});
   findings.push_back({ShowsUnicode() ? "good" : "hint", "locale", ShowsUnicode() ? "UTF-8" : "not UTF-8",
-                      ShowsUnicode() ? "" : "finer bars in phrenic watch: export LC_ALL=C.UTF-8"});
+                      ShowsUnicode() ? "" : "for finer bars in phrenic watch: export LC_ALL=C.UTF-8"});
 }
 
-std::string Sign(const std::string& verdict) {
+std::string Mark(const std::string& verdict) {
   if (verdict == "good") return Painted("ok", Ink::kGreen, STDOUT_FILENO);
   return verdict == "hint" ? Painted("--", Ink::kYellow, STDOUT_FILENO) : Painted("!!", Ink::kRed, STDOUT_FILENO);
 }
 
-void Print(const Findings& findings) {
-  constexpr int kRemedyAt = 6;
+void PrintFindings(const Findings& findings) {
+  constexpr int kRemedyIndent = 6;
   for (const Finding& finding : findings) {
-    std::cout << Sign(finding.verdict) << "  "
-              << Wrapped(absl::StrCat(finding.what, ": ", finding.found), WidthOf(STDOUT_FILENO), kRemedyAt) << "\n";
+    std::cout << Mark(finding.verdict) << "  "
+              << Wrapped(absl::StrCat(finding.what, ": ", finding.found), WidthOf(STDOUT_FILENO), kRemedyIndent)
+              << "\n";
     if (!finding.remedy.empty()) {
-      std::cout << std::string(kRemedyAt, ' ') << Wrapped(finding.remedy, WidthOf(STDOUT_FILENO), kRemedyAt) << "\n";
+      std::cout << std::string(kRemedyIndent, ' ') << Wrapped(finding.remedy, WidthOf(STDOUT_FILENO), kRemedyIndent)
+                << "\n";
     }
   }
 }
 
-void PrintJson(const Findings& findings) {
+void PrintFindingsJson(const Findings& findings) {
   auto rows = nlohmann::ordered_json::array();
   for (const Finding& finding : findings) {
     rows.push_back(
@@ -153,8 +157,6 @@ void PrintJson(const Findings& findings) {
   std::cout << nlohmann::ordered_json{{"findings", rows}}.dump() << "\n";
 }
 
-}  // namespace
-
 int Doctor(const Context& context) {
   Findings findings;
   CheckSettings(context, findings);
@@ -162,13 +164,17 @@ int Doctor(const Context& context) {
   CheckPrograms(findings);
   CheckGraphics(findings);
   if (context.json()) {
-    PrintJson(findings);
+    PrintFindingsJson(findings);
   } else {
-    Print(findings);
+    PrintFindings(findings);
   }
   if (!answered) return kUnreachable;
   const auto bad = [](const Finding& finding) { return finding.verdict == "bad"; };
   return std::ranges::any_of(findings, bad) ? kFailed : kOk;
 }
+
+}  // namespace
+
+CommandFunction SetUpDoctor(CLI::App&) { return Doctor; }
 
 }  // namespace phrenic::client

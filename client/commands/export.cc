@@ -1,14 +1,25 @@
-// `phrenic export`: a motion of a session as a file.
+// `phrenic export`: writes a session's motion to a file.
 #include <iostream>
 
 #include "absl/strings/str_format.h"
+#include "client/cli/shared_options.h"
 #include "client/commands/commands.h"
+#include "client/connection/connection.h"
+#include "client/connection/errors.h"
 #include "client/files/motion_file.h"
+#include "client/print/output.h"
 
 namespace phrenic::client {
 namespace {
 
-int Detach(const Context& context, const v1::CreateExportRequest& request) {
+struct ExportOptions {
+  std::string id;
+  MotionOptions motion;
+  bool detach = false;  // true: do not wait for the export
+};
+
+// Creates the export and prints its id.
+int ExportDetached(const Context& context, const v1::CreateExportRequest& request) {
   const auto stub = v1::ExportService::NewStub(Connect(context));
   v1::CreateExportResponse created;
   const grpc::Status status = Call(context, *stub, &v1::ExportService::Stub::CreateExport, request, &created);
@@ -17,17 +28,15 @@ int Detach(const Context& context, const v1::CreateExportRequest& request) {
     std::cout << Json(created.job()) << "\n";
   } else {
     std::cout << created.job().id() << "\n";
-    std::cerr << "phrenic: fetch it by: phrenic exports get " << created.job().id() << "\n";
+    std::cerr << "phrenic: to download it: phrenic exports get " << created.job().id() << "\n";
   }
   return kOk;
 }
 
-}  // namespace
-
 int Export(const Context& context, const ExportOptions& options) {
   const auto request = MakeExportRequest(options.id, options.motion);
   if (!request.ok()) return Fail(request.status());
-  if (options.detach) return Detach(context, *request);
+  if (options.detach) return ExportDetached(context, *request);
   v1::ExportSummary summary;
   const int code = ExportToFile(context, Connect(context), *request, options.motion.file, &summary);
   if (code != kOk) return code;
@@ -38,6 +47,19 @@ int Export(const Context& context, const ExportOptions& options) {
                                  summary.frames(), summary.vertices(), summary.simulated_seconds(), summary.bytes());
   }
   return kOk;
+}
+
+}  // namespace
+
+CommandFunction SetUpExport(CLI::App& command) {
+  const auto options = std::make_shared<ExportOptions>();
+  AddSession(command, options->id);
+  command.add_option("FILE", options->motion.file, "file to write; its ending sets the format" + ExportEndings())
+      ->required();
+  command.add_option("--seconds", options->motion.seconds, "simulated time to record [s] (8; 0 for one instant)");
+  AddMotion(command, options->motion);
+  command.add_flag("--detach", options->detach, "print the export's id and let it run on the server");
+  return Bind(&Export, options);
 }
 
 }  // namespace phrenic::client

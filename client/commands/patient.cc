@@ -1,25 +1,23 @@
-// `phrenic patient`: a label volume becomes a thorax that breathes; `phrenic phantom`: a label volume of a known body.
+// `phrenic patient`: makes a breathing thorax from a label volume.
 #include "server/imaging/patient.h"
 
 #include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
 #include <iostream>
-#include <sstream>
 
-#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "client/cli/argument_kinds.h"
+#include "client/cli/shared_options.h"
 #include "client/commands/commands.h"
+#include "client/connection/errors.h"
 #include "client/files/patient_files.h"
 #include "client/files/whole_file.h"
-#include "client/print/table.h"
+#include "client/print/output.h"
 #include "client/terminal/progress.h"
-#include "server/imaging/gzip.h"
 #include "server/imaging/label_map.h"
 #include "server/imaging/nifti.h"
-#include "server/imaging/phantom.h"
 #include "server/schema/id.h"
 #include "server/schema/places.h"
 #include "server/schema/schema.h"
@@ -27,46 +25,54 @@
 namespace phrenic::client {
 namespace {
 
-absl::StatusOr<v1::Scene> ReadPattern() {
+struct PatientOptions {
+  std::string volume, labels = "totalsegmentator";
+  std::string out, name = "patient";
+  double edge_length = 4;  // [mm]
+  int vertices = 20000;
+  double tendon_share = 0.22;
+  bool serve = false;
+  std::string web = "127.0.0.1:8080";
+};
+
+// Returns the generated thorax's scene, the template of patients' scenes.
+absl::StatusOr<v1::Scene> ReadTemplate() {
   const std::string path = Installed("scenes", PHRENIC_SCENES_DIR) + "/thorax.textproto";
-  std::ifstream file(path);
-  if (!file)
-    return absl::NotFoundError(absl::StrCat("cannot read the scene ", path, ", which patients' scenes follow"));
-  std::stringstream text;
-  text << file.rdbuf();
-  return schema::ParseScene(path, text.str());
+  const absl::StatusOr<std::string> text = ReadWhole(path, "the template of patients' scenes");
+  if (!text.ok()) return text.status();
+  return schema::ParseScene(path, *text);
 }
 
-absl::StatusOr<imaging::Patient> Make(const PatientOptions& options) {
+absl::StatusOr<imaging::Patient> ReadAndMakePatient(const PatientOptions& options) {
   const absl::StatusOr<v1::LabelMap> map = imaging::ReadLabelMap(options.labels);
   if (!map.ok()) return map.status();
-  const absl::StatusOr<v1::Scene> pattern = ReadPattern();
-  if (!pattern.ok()) return pattern.status();
-  Progress bar("making " + options.name, 1);
-  bar.Say("reading");
-  bar.Update(0);
+  const absl::StatusOr<v1::Scene> scene_template = ReadTemplate();
+  if (!scene_template.ok()) return scene_template.status();
+  Progress progress("making " + options.name, 1);
+  progress.SetDetail("reading");
+  progress.Update(0);
   const absl::StatusOr<imaging::LabelVolume> volume = imaging::ReadNifti(options.volume);
   if (!volume.ok()) return volume.status();
-  const imaging::PatientOptions made = {options.name, options.edge_length, {options.vertices, options.tendon_share}};
-  return imaging::MakePatient(*volume, *map, *pattern, made, [&](double done, std::string_view doing) {
-    bar.Say(std::string(doing));
-    bar.Update(done);
+  const imaging::PatientOptions patient = {options.name, options.edge_length, {options.vertices, options.tendon_share}};
+  return imaging::MakePatient(*volume, *map, *scene_template, patient, [&](double done, std::string_view stage) {
+    progress.SetDetail(std::string(stage));
+    progress.Update(done);
     return true;
   });
 }
 
 void PrintDiaphragm(const v1::DerivedDiaphragm& diaphragm) {
   std::cout << absl::StrFormat(
-      "diaphragm: %d vertices, %.0f cm2 a layer; of it between organs %.0f %%, under one organ %.0f %%, on bone %.0f "
-      "%%, in a label of its own %.0f %%, extrapolated %.0f %%\n",
+      "diaphragm: %d vertices, %.0f cm2 per layer; %.0f %% between organs, %.0f %% under one organ, %.0f %% on bone, "
+      "%.0f %% in its own label, %.0f %% extrapolated\n",
       diaphragm.vertices(), diaphragm.area_cm2(), 100 * diaphragm.between_organs(), 100 * diaphragm.beside_one_organ(),
       100 * diaphragm.on_bone(), 100 * diaphragm.labelled(), 100 * diaphragm.extrapolated());
   for (const v1::ExtrapolatedSector& sector : diaphragm.sectors()) {
-    std::cout << absl::StrFormat("  extrapolated: %s, %.0f %% of it\n", sector.where(), 100 * sector.share());
+    std::cout << absl::StrFormat("  extrapolated: %s, %.0f %% of this sector\n", sector.where(), 100 * sector.share());
   }
 }
 
-void Print(const v1::PatientReport& report) {
+void PrintPatient(const v1::PatientReport& report) {
   Table surfaces({"surface", "vertices", "ml", "label ml"});
   for (const v1::PatientSurface& surface : report.surfaces()) {
     surfaces.Add({surface.body(), absl::StrCat(surface.vertices()), absl::StrFormat("%.1f", surface.volume_ml()),
@@ -83,49 +89,55 @@ void Print(const v1::PatientReport& report) {
   for (const std::string& fallback : report.fallbacks()) std::cout << "fall-back: " << fallback << "\n";
 }
 
-// Becomes the server that plays the patient; comes back only where that cannot be.
-int Serve(const PatientOptions& options) {
+// Replaces this process by a server that plays the patient. Returns only on failure.
+int ServePatient(const PatientOptions& options) {
   std::error_code error;
   const std::string server =
       (std::filesystem::read_symlink("/proc/self/exe", error).parent_path() / "phrenicd").string();
   execl(server.c_str(), "phrenicd", "--data", options.out.c_str(), "--start", options.name.c_str(), "--web",
         options.web.c_str(), "--store", "none", nullptr);
-  return Fail(absl::NotFoundError(absl::StrCat("cannot start ", server, ": build it, or leave out --serve")));
+  return Fail(absl::NotFoundError(absl::StrCat("cannot start ", server, ": build phrenicd, or omit --serve")));
 }
-
-}  // namespace
 
 int MakePatient(const Context& context, const PatientOptions& options) {
   if (absl::Status status = schema::CheckId("--name", options.name); !status.ok()) return Fail(status);
-  const absl::StatusOr<imaging::Patient> patient = Make(options);
+  const absl::StatusOr<imaging::Patient> patient = ReadAndMakePatient(options);
   if (!patient.ok()) return Fail(patient.status());
   if (absl::Status status = WritePatient(options.out, *patient); !status.ok()) return Fail(status);
   if (context.json()) {
     std::cout << Json(patient->report) << "\n";
   } else {
-    Print(patient->report);
+    PrintPatient(patient->report);
   }
-  if (options.serve) return Serve(options);
-  std::cerr << "wrote " << SceneFile(options.out, options.name) << "; now\n"
+  if (options.serve) return ServePatient(options);
+  std::cerr << "wrote " << SceneFile(options.out, options.name) << "; next:\n"
             << "  phrenic run " << SceneFile(options.out, options.name) << " --data " << options.out << "\n"
             << "  phrenicd --data " << options.out << " --start " << options.name << "\n";
   return kOk;
 }
 
-int MakePhantom(const Context&, const PhantomOptions& options) {
-  const absl::StatusOr<imaging::PhantomBody> body = imaging::FindPhantomBody(options.body);
-  if (!body.ok()) return Fail(body.status());
-  const absl::StatusOr<v1::LabelMap> map = imaging::ReadLabelMap(options.labels);
-  if (!map.ok()) return Fail(map.status());
-  const absl::StatusOr<imaging::LabelVolume> volume =
-      imaging::MakePhantom(*body, {options.voxel, options.noise, options.holes, options.seed}, *map);
-  if (!volume.ok()) return Fail(volume.status());
-  std::string bytes = imaging::WriteNifti(*volume);
-  if (absl::EndsWith(options.out, ".gz")) bytes = imaging::Deflate(bytes);
-  if (absl::Status status = WriteWhole(options.out, bytes); !status.ok()) return Fail(status);
-  std::cout << absl::StrFormat("%s: %d x %d x %d voxels of %g mm\n", options.out, volume->size.x(), volume->size.y(),
-                               volume->size.z(), options.voxel);
-  return kOk;
+}  // namespace
+
+CommandFunction SetUpPatient(CLI::App& command) {
+  const auto options = std::make_shared<PatientOptions>();
+  command.add_option("VOLUME", options->volume, "labels as NIfTI (.nii, .nii.gz)")->required();
+  AddLabels(command, options->labels);
+  command.add_option("--out", options->out, "data folder for the surfaces and the scene")->required();
+  command.add_option("--name", options->name, "name of the scene: 1 to 64 of a-z, 0-9 and -")->capture_default_str();
+  command
+      .add_option("--edge-length", options->edge_length,
+                  "edge length of the bones' triangles [mm]; the lungs' are 1.5 times as long")
+      ->check(NumberIn(1.0, 20.0))
+      ->capture_default_str();
+  command.add_option("--vertices", options->vertices, "approximate number of vertices of the diaphragm")
+      ->check(NumberIn(500, 200000))
+      ->capture_default_str();
+  command.add_option("--tendon-share", options->tendon_share, "fraction of the diaphragm's area that is tendon")
+      ->check(NumberIn(0.05, 0.5))
+      ->capture_default_str();
+  CLI::Option* serve = command.add_flag("--serve", options->serve, "then start phrenicd with the viewer");
+  command.add_option("--web", options->web, "address of the viewer")->needs(serve)->capture_default_str();
+  return Bind(&MakePatient, options);
 }
 
 }  // namespace phrenic::client

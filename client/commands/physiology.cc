@@ -1,11 +1,14 @@
-// `phrenic physiology`: a scene's breath held against published ranges, by the server's own study in this process.
+// `phrenic physiology`: compares a scene's breaths with published ranges, with the server's own service in this
+// process.
 #include <iostream>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "client/cli/scene_argument.h"
+#include "client/cli/shared_options.h"
 #include "client/commands/commands.h"
-#include "client/print/junit.h"
+#include "client/connection/errors.h"
+#include "client/files/junit.h"
+#include "client/print/output.h"
 #include "client/print/table.h"
 #include "client/terminal/progress.h"
 #include "phrenic/v1/study.grpc.pb.h"
@@ -14,7 +17,14 @@
 namespace phrenic::client {
 namespace {
 
-const char* Word(v1::Verdict verdict) {
+struct PhysiologyOptions {
+  SceneOptions scene;
+  std::string data_dir;
+  bool check = false;      // true: a value out of range is a failure
+  std::string junit_file;  // empty: none
+};
+
+const char* VerdictText(v1::Verdict verdict) {
   switch (verdict) {
     case v1::VERDICT_INSIDE:
       return "inside";
@@ -25,43 +35,42 @@ const char* Word(v1::Verdict verdict) {
   }
 }
 
-void Print(const v1::PhysiologyTable& result) {
+void PrintPhysiology(const v1::PhysiologyTable& result) {
   Table table({"breath", "what", "value", "accepted", "unit", "verdict"});
-  int inside = 0, judged = 0;
+  int inside = 0, modelled_rows = 0;
   for (const v1::PhysiologyRow& row : result.rows()) {
     const bool modelled = row.verdict() != v1::VERDICT_NOT_MODELLED;
-    judged += modelled ? 1 : 0;
+    modelled_rows += modelled ? 1 : 0;
     inside += row.verdict() == v1::VERDICT_INSIDE ? 1 : 0;
     table.Add({row.breath(), row.what(), modelled ? absl::StrFormat("%.2f", row.value()) : "-",
                absl::StrFormat("%g to %g", row.low(), row.high()), row.unit() == "1" ? "" : row.unit(),
-               Word(row.verdict())});
+               VerdictText(row.verdict())});
   }
   table.Print(std::cout);
-  std::cout << absl::StrFormat("%s: %d of %d inside the published ranges\n", result.scene(), inside, judged);
+  std::cout << absl::StrFormat("%s: %d of %d inside the published ranges\n", result.scene(), inside, modelled_rows);
 }
 
-int JudgeBreaths(const PhysiologyOptions& options, const v1::PhysiologyTable& table) {
-  std::vector<JudgedCase> cases;
+// Writes the JUnit file. Returns the exit code.
+int CheckBreaths(const PhysiologyOptions& options, const v1::PhysiologyTable& table) {
+  std::vector<CheckResult> checks;
   bool outside = false;
   for (const v1::PhysiologyRow& row : table.rows()) {
-    JudgedCase& judged = cases.emplace_back();
-    judged.name = absl::StrCat(row.breath(), " breath: ", row.what());
-    judged.skipped = row.verdict() == v1::VERDICT_NOT_MODELLED;
+    CheckResult& check = checks.emplace_back();
+    check.name = absl::StrCat(row.breath(), " breath: ", row.what());
+    check.skipped = row.verdict() == v1::VERDICT_NOT_MODELLED;
     if (row.verdict() != v1::VERDICT_OUTSIDE) continue;
     outside = true;
-    judged.failure = absl::StrFormat("%.4g is outside %g to %g %s", row.value(), row.low(), row.high(), row.unit());
+    check.failure = absl::StrFormat("%.4g is outside %g to %g %s", row.value(), row.low(), row.high(), row.unit());
   }
   if (!options.junit_file.empty()) {
-    const absl::Status written = WriteJUnit(options.junit_file, "physiology of " + table.scene(), cases);
+    const absl::Status written = WriteJUnit(options.junit_file, "physiology of " + table.scene(), checks);
     if (!written.ok()) return Fail(written);
   }
   return options.check && outside ? kMissed : kOk;
 }
 
-}  // namespace
-
 int Physiology(const Context& context, const PhysiologyOptions& options) {
-  const absl::StatusOr<v1::SceneSource> source = ReadSceneArgument(options.scene.scene, options.scene.resolution_mm);
+  const absl::StatusOr<v1::SceneSource> source = ReadScene(options.scene);
   if (!source.ok()) return Fail(source.status());
   service::ServerOptions server_options;
   server_options.data_dir = options.data_dir;
@@ -82,9 +91,20 @@ int Physiology(const Context& context, const PhysiologyOptions& options) {
   if (context.json()) {
     std::cout << Json(response.table()) << "\n";
   } else {
-    Print(response.table());
+    PrintPhysiology(response.table());
   }
-  return JudgeBreaths(options, response.table());
+  return CheckBreaths(options, response.table());
+}
+
+}  // namespace
+
+CommandFunction SetUpPhysiology(CLI::App& command) {
+  const auto options = std::make_shared<PhysiologyOptions>();
+  AddScene(command, options->scene);
+  AddDataFolder(command, options->data_dir);
+  command.add_flag("--check", options->check, "exit code 4 if a value is out of its range");
+  AddJUnit(command, options->junit_file);
+  return Bind(&Physiology, options);
 }
 
 }  // namespace phrenic::client

@@ -1,13 +1,18 @@
-// `phrenic run`: the server's own services in this process, over an in-process channel; one way to run a session.
+// `phrenic run`: simulates a scene with the server's own services in this process, over an in-process channel.
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "absl/strings/str_format.h"
-#include "client/cli/scene_argument.h"
+#include "client/cli/argument_kinds.h"
+#include "client/cli/shared_options.h"
 #include "client/commands/commands.h"
+#include "client/connection/connection.h"
+#include "client/connection/errors.h"
 #include "client/connection/local_run.h"
 #include "client/files/motion_file.h"
+#include "client/print/output.h"
 #include "client/print/print_session.h"
+#include "client/print/readings.h"
 #include "client/print/table.h"
 #include "client/terminal/progress.h"
 #include "phrenic/v1/session.grpc.pb.h"
@@ -18,17 +23,43 @@
 namespace phrenic::client {
 namespace {
 
-using Pulls = google::protobuf::RepeatedPtrField<v1::Pull>;
+struct RunOptions {
+  SceneOptions scene;
+  double seconds = 8;  // simulated time [s]
+  std::string preset;
+  std::vector<std::string> settings;
+  std::vector<std::string> pulls;
+  MotionOptions motion;             // no export if its file is empty
+  std::string data_dir, spool_dir;  // empty spool_dir: the server's default
+  int threads = 1;
+  bool dry_run = false;
+};
 
-grpc::Status CreateHere(const Context& context, const RunOptions& options, const v1::SceneSource& source,
-                        const v1::Parameters& parameters, const Pulls& pulls, v1::SessionService::Stub& stub,
-                        v1::GetSessionResponse* session) {
+// The run's options, parsed.
+struct RunInput {
+  v1::SceneSource source;
+  v1::Parameters parameters;
+  google::protobuf::RepeatedPtrField<v1::Pull> pulls;
+};
+
+absl::StatusOr<RunInput> ReadRunInput(const RunOptions& options) {
+  const absl::StatusOr<v1::SceneSource> source = ReadScene(options.scene);
+  if (!source.ok()) return source.status();
+  const absl::StatusOr<v1::Parameters> parameters = ReadSettings(options.settings);
+  if (!parameters.ok()) return parameters.status();
+  const auto pulls = ReadPulls(options.pulls);
+  if (!pulls.ok()) return pulls.status();
+  return RunInput{*source, *parameters, *pulls};
+}
+
+grpc::Status CreateRunSession(const Context& context, const RunOptions& options, const RunInput& input,
+                              v1::SessionService::Stub& stub, v1::GetSessionResponse* session) {
   v1::CreateSessionRequest request;
-  *request.mutable_source() = source;
-  *request.mutable_parameters() = parameters;
+  *request.mutable_source() = input.source;
+  *request.mutable_parameters() = input.parameters;
   request.set_session_id("run");
   request.set_preset(options.preset);
-  for (const v1::Pull& pull : pulls) *request.add_pulls() = pull;
+  *request.mutable_pulls() = input.pulls;
   v1::CreateSessionResponse created;
   const Progress compiling("compiling " + options.scene.scene);
   grpc::Status status = Call(context, stub, &v1::SessionService::Stub::CreateSession, request, &created);
@@ -38,11 +69,11 @@ grpc::Status CreateHere(const Context& context, const RunOptions& options, const
   return Call(context, stub, &v1::SessionService::Stub::GetSession, get, session);
 }
 
-int ExportHere(const Context& context, const RunOptions& options, service::Server& server, Cost* cost) {
+int ExportRun(const Context& context, const RunOptions& options, service::Server& server, RunCost* cost) {
   MotionOptions motion = options.motion;
   const auto format = record::FindFormat(session::ExportFormats(), FormatOf(motion.file));
   if (!format.ok()) return Fail(format.status());
-  // A surface is that of the run's end, unless a time is said; a motion is the whole run.
+  // By default a surface is exported at the end of the run and a motion over the whole run.
   if (format->instant && !motion.start) motion.start = options.seconds;
   if (!format->instant) motion.seconds = options.seconds - motion.start.value_or(0);
   const auto request = MakeExportRequest("run", motion);
@@ -58,7 +89,7 @@ int ExportHere(const Context& context, const RunOptions& options, service::Serve
   return code;
 }
 
-void PrintCost(const RunOptions& options, const v1::CompileReport& report, const Cost& cost,
+void PrintCost(const RunOptions& options, const v1::CompileReport& report, const RunCost& cost,
                const study::ThesisFigure& thesis) {
   const double rate = static_cast<double>(cost.steps) / cost.wall;
   std::cout << absl::StrFormat("%s: %d vertices, %d springs, %d rigid links, %d attachments\n", report.scene(),
@@ -66,7 +97,7 @@ void PrintCost(const RunOptions& options, const v1::CompileReport& report, const
                                report.attachments());
   std::cout << absl::StrFormat("%.3f s simulated in %d steps: %.3f s wall, %.3f s CPU\n", cost.simulated, cost.steps,
                                cost.wall, cost.cpu);
-  Table table({"", "steps/s", "x real time", "us CPU a step", "ns CPU a spring and step"});
+  Table table({"", "steps/s", "x real time", "us CPU per step", "ns CPU per spring and step"});
   const double step_cpu = cost.cpu / static_cast<double>(cost.steps);
   table.Add(
       {"Phrenic", absl::StrFormat("%.0f", rate), absl::StrFormat("%.2f", cost.simulated / cost.wall),
@@ -74,13 +105,13 @@ void PrintCost(const RunOptions& options, const v1::CompileReport& report, const
        report.springs() > 0 ? absl::StrFormat("%.2f", 1e9 * step_cpu / static_cast<double>(report.springs())) : "-"});
   table.Add({"thesis (" + thesis.what + ")", absl::StrFormat("%.2f", thesis.steps_per_second), "-", "-", "-"});
   table.Print(std::cout);
-  std::cout << absl::StrFormat("%.0f times the thesis' steps a second (another machine, 2008)\nstate hash %s\n",
+  std::cout << absl::StrFormat("%.0f times the steps per second of the thesis (another machine, 2008)\nstate hash %s\n",
                                rate / thesis.steps_per_second, cost.state_hash);
-  cost.readings.Print(std::cout);
+  PrintMeasureRanges(cost.measures, std::cout);
   if (!options.motion.file.empty()) std::cout << "wrote " << options.motion.file << "\n";
 }
 
-void PrintCostJson(const RunOptions& options, const v1::GetSessionResponse& session, const Cost& cost,
+void PrintCostJson(const RunOptions& options, const v1::GetSessionResponse& session, const RunCost& cost,
                    const study::ThesisFigure& thesis) {
   nlohmann::json json = {
       {"simulated_seconds", cost.simulated},
@@ -91,7 +122,7 @@ void PrintCostJson(const RunOptions& options, const v1::GetSessionResponse& sess
       {"times_real_time", cost.simulated / cost.wall},
       {"thesis", {{"figure", thesis.what}, {"steps_per_second", thesis.steps_per_second}}},
       {"state_hash", cost.state_hash},
-      {"measures", cost.readings.ToJson()},
+      {"measures", MeasureRangesJson(cost.measures)},
       {"file", options.motion.file},
       {"report", nlohmann::json::parse(Json(session.report()))},
       {"session", nlohmann::json::parse(Json(session.session()))},
@@ -99,8 +130,8 @@ void PrintCostJson(const RunOptions& options, const v1::GetSessionResponse& sess
   std::cout << json.dump(1) << "\n";
 }
 
-// What a run would do, once its scene is compiled.
-int Foretell(const Context& context, const RunOptions& options, const v1::GetSessionResponse& session) {
+// Prints what the run would do, after its scene was compiled.
+int PrintPlan(const Context& context, const RunOptions& options, const v1::GetSessionResponse& session) {
   const double step = session.session().parameters().time_step();
   const auto steps = static_cast<std::int64_t>(std::ceil(options.seconds / step - 1e-9));
   if (context.json()) {
@@ -119,30 +150,29 @@ int Foretell(const Context& context, const RunOptions& options, const v1::GetSes
   return kOk;
 }
 
-int RunOn(const Context& context, const RunOptions& options, const v1::SceneSource& source,
-          const v1::Parameters& parameters, const Pulls& pulls, service::Server& server) {
+int RunOn(const Context& context, const RunOptions& options, const RunInput& input, service::Server& server) {
   const auto stub = v1::SessionService::NewStub(server.InProcessChannel());
   v1::GetSessionResponse session;
-  grpc::Status status = CreateHere(context, options, source, parameters, pulls, *stub, &session);
+  grpc::Status status = CreateRunSession(context, options, input, *stub, &session);
   if (!status.ok()) return Fail(context, status);
-  // The scene as the server has it; its model is kept, so that this compiles nothing anew.
+  // The server keeps the compiled model, so that this call compiles nothing.
   v1::DescribeSceneRequest describe;
-  *describe.mutable_source() = source;
+  *describe.mutable_source() = input.source;
   v1::DescribeSceneResponse described;
   const auto scenes = v1::SceneService::NewStub(server.InProcessChannel());
   status = Call(context, *scenes, &v1::SceneService::Stub::DescribeScene, describe, &described);
   if (!status.ok()) return Fail(context, status);
-  if (options.dry) return Foretell(context, options, session);
-  Cost cost;
+  if (options.dry_run) return PrintPlan(context, options, session);
+  RunCost cost;
   if (!options.motion.file.empty()) {
-    const int code = ExportHere(context, options, server, &cost);
+    const int code = ExportRun(context, options, server, &cost);
     if (code != kOk) return code;
   } else {
     {
       const std::int64_t last = TickAt(options.seconds, session.session());
       Progress progress("stepping", static_cast<double>(last));
-      status = StepThrough(context, last, *stub, session.mutable_session(), &cost,
-                           [&](std::int64_t tick) { progress.Update(static_cast<double>(tick)); });
+      status = StepUntil(context, last, *stub, session.mutable_session(), &cost,
+                         [&](std::int64_t tick) { progress.Update(static_cast<double>(tick)); });
     }
     if (!status.ok()) return Fail(context, status);
   }
@@ -151,7 +181,7 @@ int RunOn(const Context& context, const RunOptions& options, const v1::SceneSour
     PrintCostJson(options, session, cost, thesis);
   } else {
     PrintCost(options, session.report(), cost, thesis);
-    // An export steps a copy of the session: what this one keeps is not its end.
+    // An export steps a copy of the session, so that this session has no residuals of the run's end.
     if (options.motion.file.empty()) {
       std::cout << SolverText(session.session(), "solver: ", "\n")
                 << ResidualText(session.session(), "constraints kept within ", "\n");
@@ -162,22 +192,38 @@ int RunOn(const Context& context, const RunOptions& options, const v1::SceneSour
   return kFailed;
 }
 
-}  // namespace
-
 int Run(const Context& context, const RunOptions& options) {
-  const absl::StatusOr<v1::SceneSource> source = ReadSceneArgument(options.scene.scene, options.scene.resolution_mm);
-  if (!source.ok()) return Fail(source.status());
-  const absl::StatusOr<v1::Parameters> parameters = ReadSettings(options.settings);
-  if (!parameters.ok()) return Fail(parameters.status());
-  const auto pulls = ReadPulls(options.pulls);
-  if (!pulls.ok()) return Fail(pulls.status());
+  const absl::StatusOr<RunInput> input = ReadRunInput(options);
+  if (!input.ok()) return Fail(input.status());
   service::ServerOptions server_options;
   server_options.data_dir = options.data_dir;
   server_options.step_threads = options.threads;
   if (!options.spool_dir.empty()) server_options.spool_dir = options.spool_dir;
   auto server = service::Server::Start(server_options);
   if (!server.ok()) return Fail(server.status());
-  return RunOn(context, options, *source, *parameters, *pulls, **server);
+  return RunOn(context, options, *input, **server);
+}
+
+}  // namespace
+
+CommandFunction SetUpRun(CLI::App& command) {
+  const auto options = std::make_shared<RunOptions>();
+  AddScene(command, options->scene);
+  AddPreset(command, options->preset);
+  AddParameters(command, options->settings);
+  AddPulls(command, options->pulls);
+  command.add_option("--seconds", options->seconds, "simulated time [s]")
+      ->check(NumberIn(1e-6, 3600.0))
+      ->capture_default_str();
+  command.add_option("--export", options->motion.file, "write the motion to this file" + ExportEndings());
+  AddMotion(command, options->motion);
+  command.add_option("--threads", options->threads, "threads for a step of a large scene; does not change the result")
+      ->check(NumberIn(1, 256))
+      ->capture_default_str();
+  command.add_option("--spool", options->spool_dir, "folder for the temporary data of an export");
+  AddDataFolder(command, options->data_dir);
+  command.add_flag("--dry-run", options->dry_run, "compile the scene and print what the run would do");
+  return Bind(&Run, options);
 }
 
 }  // namespace phrenic::client

@@ -1,10 +1,14 @@
+// `phrenic scenes`: the server's scenes.
 #include "client/commands/commands.h"
+#include "client/connection/connection.h"
+#include "client/connection/errors.h"
 #include "client/print/output.h"
 #include "phrenic/v1/session.grpc.pb.h"
 
 namespace phrenic::client {
+namespace {
 
-int Scenes(const Context& context) {
+int ListScenes(const Context& context) {
   const auto stub = v1::SceneService::NewStub(Connect(context));
   v1::ListScenesResponse response;
   const grpc::Status status =
@@ -15,5 +19,9 @@ int Scenes(const Context& context) {
   PrintList(context, response, table);
   return kOk;
 }
+
+}  // namespace
+
+CommandFunction SetUpScenes(CLI::App&) { return ListScenes; }
 
 }  // namespace phrenic::client

@@ -1,13 +1,17 @@
+// `phrenic sessions`: the server's sessions.
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "client/commands/commands.h"
+#include "client/connection/connection.h"
+#include "client/connection/errors.h"
 #include "client/print/output.h"
 #include "client/print/print_session.h"
 #include "phrenic/v1/session.grpc.pb.h"
 
 namespace phrenic::client {
+namespace {
 
-int Sessions(const Context& context) {
+int ListSessions(const Context& context) {
   const auto stub = v1::SessionService::NewStub(Connect(context));
   v1::ListSessionsResponse all;
   v1::ListSessionsRequest request;
@@ -27,5 +31,9 @@ int Sessions(const Context& context) {
   PrintList(context, all, table);
   return kOk;
 }
+
+}  // namespace
+
+CommandFunction SetUpSessions(CLI::App&) { return ListSessions; }
 
 }  // namespace phrenic::client

@@ -1,34 +1,31 @@
-// `phrenic upload`: a surface file for scenes of the server.
-#include <algorithm>
+// `phrenic upload`: uploads a surface file for use in scenes.
 #include <filesystem>
-#include <fstream>
 #include <iostream>
-#include <sstream>
 
-#include "absl/strings/str_cat.h"
+#include "client/cli/shared_options.h"
 #include "client/commands/commands.h"
+#include "client/connection/connection.h"
+#include "client/connection/errors.h"
+#include "client/files/whole_file.h"
+#include "client/print/output.h"
 #include "client/print/surface_report.h"
 #include "client/terminal/progress.h"
 #include "phrenic/v1/upload.grpc.pb.h"
+#include "server/meshio/meshio.h"
 #include "server/schema/sha256.h"
 #include "server/session/uploads.h"
 
 namespace phrenic::client {
 namespace {
 
-absl::StatusOr<std::string> ReadBytes(const std::string& file) {
-  std::error_code error;
-  std::ifstream in(file, std::ios::binary);
-  if (!std::filesystem::is_regular_file(file, error) || !in) {
-    return absl::NotFoundError(absl::StrCat("cannot read \"", file, "\": is there such a file, and may it be read?"));
-  }
-  std::ostringstream bytes;
-  bytes << in.rdbuf();
-  return std::move(bytes).str();
-}
+struct UploadOptions {
+  std::string file;
+  double unit_mm = 1;  // length of the file's unit [mm]
+};
 
-grpc::Status Send(const Context& context, v1::UploadService::Stub& stub, const std::string& bytes,
-                  const v1::BeginUploadResponse& begun) {
+// Sends the bytes that the server does not have yet.
+grpc::Status SendBytes(const Context& context, v1::UploadService::Stub& stub, const std::string& bytes,
+                       const v1::BeginUploadResponse& begun) {
   Progress progress("uploading", static_cast<double>(bytes.size()));
   v1::AddUploadChunkRequest request;
   request.set_upload_id(begun.upload_id());
@@ -54,10 +51,8 @@ void Print(const Context& context, const v1::FinishUploadResponse& response) {
   if (response.has_report() && !response.report().repairs().empty()) PrintSurface(response.report(), std::cerr);
 }
 
-}  // namespace
-
 int Upload(const Context& context, const UploadOptions& options) {
-  const auto bytes = ReadBytes(options.file);
+  const auto bytes = ReadWhole(options.file, "the surface");
   if (!bytes.ok()) return Fail(bytes.status());
   const auto stub = v1::UploadService::NewStub(Connect(context));
   v1::BeginUploadRequest begin;
@@ -73,12 +68,21 @@ int Upload(const Context& context, const UploadOptions& options) {
     v1::FinishUploadRequest finish;
     finish.set_upload_id(begun.upload_id());
     finish.set_unit_mm(options.unit_mm);
-    status = Send(context, *stub, *bytes, begun);
+    status = SendBytes(context, *stub, *bytes, begun);
     if (status.ok()) status = Call(context, *stub, &v1::UploadService::Stub::FinishUpload, finish, &finished);
     if (!status.ok()) return Fail(context, status);
   }
   Print(context, finished);
   return kOk;
+}
+
+}  // namespace
+
+CommandFunction SetUpUpload(CLI::App& command) {
+  const auto options = std::make_shared<UploadOptions>();
+  command.add_option("FILE", options->file, "a surface (" + meshio::Endings() + ")")->required();
+  AddUnit(command, "--unit-mm", options->unit_mm, "FILE's");
+  return Bind(&Upload, options);
 }
 
 }  // namespace phrenic::client

@@ -1,18 +1,33 @@
-// `phrenic watch`: a session's numbers as they come, and what frames take where vertices are asked for.
+// `phrenic watch`: prints a session's values as they change and, with --codec, the size of its frames.
 #include <unistd.h>
 
 #include <chrono>
+#include <set>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "client/cli/schema_options.h"
+#include "client/cli/shared_options.h"
 #include "client/commands/commands.h"
+#include "client/connection/connection.h"
+#include "client/connection/errors.h"
 #include "client/print/watch_printer.h"
 #include "phrenic/v1/frames.grpc.pb.h"
-#include "server/stream/codec.h"
+#include "server/stream/codecs/codec.h"
 
 namespace phrenic::client {
 namespace {
 
-constexpr int kWindow = 4;  // frames unacknowledged
+constexpr int kWindow = 4;  // frames that may be unacknowledged
+
+struct WatchOptions {
+  std::string id;
+  double seconds = 0;  // 0: until interrupted
+  int count = 0;       // number of lines; 0: no limit
+  double frames_per_second = 5;
+  std::string codec;    // encoding of the vertices; empty: receive numbers only
+  double bound_mm = 0;  // error bound of the codec [mm]; 0: the server's default
+};
 
 v1::WatchFramesRequest RequestOf(const WatchOptions& options) {
   v1::WatchFramesRequest request;
@@ -29,23 +44,23 @@ v1::WatchFramesRequest RequestOf(const WatchOptions& options) {
   return request;
 }
 
-// Tells the server that the frame came, and fetches the shapes that there are. A call that fails is not repeated: the
-// stream says what is wrong.
-void Acknowledge(v1::FrameService::Stub& stub, const v1::WatchFramesRequest& watched, v1::AckFramesRequest& taken) {
-  taken.set_session_id(watched.session_id());
-  taken.set_watch_id(watched.watch_id());
+// Acknowledges a frame and fetches a new basis if the server has one. Ignores errors: the stream reports them.
+void Acknowledge(v1::FrameService::Stub& stub, const v1::WatchFramesRequest& watched,
+                 v1::AckFramesRequest& acknowledged) {
+  acknowledged.set_session_id(watched.session_id());
+  acknowledged.set_watch_id(watched.watch_id());
   v1::AckFramesResponse answer;
   grpc::ClientContext call, fetch;
-  NameSession(taken, call);
-  if (!stub.AckFrames(&call, taken, &answer).ok() || answer.basis_epoch() <= taken.basis_epoch()) return;
+  NameSession(acknowledged, call);
+  if (!stub.AckFrames(&call, acknowledged, &answer).ok() || answer.basis_epoch() <= acknowledged.basis_epoch()) return;
   v1::GetBasisRequest request;
   request.set_session_id(watched.session_id());
   NameSession(request, fetch);
   v1::GetBasisResponse basis;
-  if (stub.GetBasis(&fetch, request, &basis).ok()) taken.set_basis_epoch(basis.epoch());
+  if (stub.GetBasis(&fetch, request, &basis).ok()) acknowledged.set_basis_epoch(basis.epoch());
 }
 
-// The frames of one connection, up to `count` of them over all.
+// Watches frames over one or more connections, up to `count` in total.
 class Watcher {
  public:
   Watcher(const Context& context, const WatchOptions& options)
@@ -55,22 +70,22 @@ class Watcher {
         request_(RequestOf(options)),
         printer_(MakeWatchPrinter(context)) {}
 
-  grpc::Status Follow(Heard heard) {
+  grpc::Status Follow(OnReceived received) {
     grpc::ClientContext call;
     NameSession(request_, call);
     if (options_.seconds > 0) call.set_deadline(end_);
     const Interruption::Scope scope(*context_.interruption, call);
     const auto stream = stub_->WatchFrames(&call, request_);
-    v1::AckFramesRequest taken;  // what a server that starts anew knows of it: nothing
+    v1::AckFramesRequest acknowledged;  // empty, because a restarted server knows nothing of earlier frames
     for (v1::WatchFramesResponse event; stream->Read(&event);) {
-      heard();
+      received();
       printer_->Print(event);
       if (!event.has_frame()) continue;
       if (++frames_ == options_.count) call.TryCancel();
-      taken.set_sequence(event.frame().sequence());
-      if (request_.max_unacked_frames() > 0) Acknowledge(*stub_, request_, taken);
+      acknowledged.set_sequence(event.frame().sequence());
+      if (request_.max_unacked_frames() > 0) Acknowledge(*stub_, request_, acknowledged);
     }
-    printer_->Leave();
+    printer_->Detach();
     const grpc::Status status = stream->Finish();
     const bool enough = frames_ > 0 && frames_ == options_.count;
     return enough ? grpc::Status::OK : status;
@@ -87,13 +102,30 @@ class Watcher {
   int frames_ = 0;
 };
 
-}  // namespace
-
 int Watch(const Context& context, const WatchOptions& options) {
   Watcher watcher(context, options);
-  const grpc::Status status = RideOut(context, [&](Heard heard) { return watcher.Follow(heard); });
+  const grpc::Status status =
+      StreamWithReconnect(context, [&](OnReceived received) { return watcher.Follow(received); });
   const bool time_is_up = options.seconds > 0 && status.error_code() == grpc::StatusCode::DEADLINE_EXCEEDED;
   return status.ok() || time_is_up ? kOk : Fail(context, status);
+}
+
+}  // namespace
+
+CommandFunction SetUpWatch(CLI::App& command) {
+  const auto options = std::make_shared<WatchOptions>();
+  AddSession(command, options->id);
+  command.add_option("--seconds", options->seconds, "stop after this time [s]");
+  command.add_option("--count", options->count, "stop after this many lines");
+  command.add_option("--fps", options->frames_per_second, "lines per second, at most")->capture_default_str();
+  std::set<std::string> codecs;
+  for (const stream::CodecRow& row : stream::Codecs()) codecs.emplace(row.name);
+  command
+      .add_option("--codec", options->codec,
+                  "also receive the vertices in this encoding and print their size: " + absl::StrJoin(codecs, ", "))
+      ->check(CLI::IsMember(codecs).description(""));
+  AddNumber(command, "--bound", options->bound_mm, *v1::WatchFramesRequest::descriptor(), "max_error_mm");
+  return Bind(&Watch, options);
 }
 
 }  // namespace phrenic::client

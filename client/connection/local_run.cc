@@ -5,10 +5,12 @@
 #include <cmath>
 #include <ctime>
 
+#include "client/connection/connection.h"
+
 namespace phrenic::client {
 namespace {
 
-constexpr double kReadingsASecond = 60;  // of simulated time
+constexpr double kReadingsPerSecond = 60;  // of simulated time
 
 double ProcessCpuSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
@@ -22,24 +24,24 @@ std::int64_t TickAt(double seconds, const v1::Session& session) {
   return static_cast<std::int64_t>(std::ceil(seconds / session.parameters().time_step() - 1e-9));
 }
 
-grpc::Status StepThrough(const Context& context, std::int64_t last, v1::SessionService::Stub& stub,
-                         v1::Session* session, Cost* cost, const std::function<void(std::int64_t)>& progress) {
+grpc::Status StepUntil(const Context& context, std::int64_t last, v1::SessionService::Stub& stub, v1::Session* session,
+                       RunCost* cost, const std::function<void(std::int64_t)>& progress) {
   const std::int64_t frame =
-      std::max<std::int64_t>(1, std::lround(1 / (kReadingsASecond * session->parameters().time_step())));
-  std::int64_t portion = std::min(frame, FortiethOf(last));
+      std::max<std::int64_t>(1, std::lround(1 / (kReadingsPerSecond * session->parameters().time_step())));
+  std::int64_t ticks = std::min(frame, FortiethOf(last));
   const auto start = std::chrono::steady_clock::now();
   const double cpu = ProcessCpuSeconds();
   while (session->tick() < last && session->state() != v1::SESSION_STATE_DIVERGED) {
     v1::StepSessionRequest request;
     request.set_session_id(session->id());
-    request.set_ticks(std::min(portion, last - session->tick()));
+    request.set_ticks(std::min(ticks, last - session->tick()));
     v1::StepSessionResponse response;
     grpc::Status status = Call(context, stub, &v1::SessionService::Stub::StepSession, request, &response, 3600);
     if (!status.ok()) return status;
     *session = response.session();
     cost->state_hash = response.state_hash();
-    cost->readings.Add(response.measures());
-    if (response.measures().empty()) portion = FortiethOf(last);
+    cost->measures.Add(response.measures());
+    if (response.measures().empty()) ticks = FortiethOf(last);
     progress(session->tick());
   }
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;

@@ -16,12 +16,12 @@ bool IsReachable(const std::string& address) {
   if (!parts.ok()) return false;
   boost::asio::io_context io;
   boost::system::error_code error;
-  const auto places = boost::asio::ip::tcp::resolver(io).resolve(parts->host, absl::StrCat(parts->port), error);
+  const auto endpoints = boost::asio::ip::tcp::resolver(io).resolve(parts->host, absl::StrCat(parts->port), error);
   if (error) return false;
   bool reached = false;
   boost::beast::tcp_stream stream(io);
   stream.expires_after(kMostWait);
-  stream.async_connect(places, [&](const boost::system::error_code& refused, const auto&) { reached = !refused; });
+  stream.async_connect(endpoints, [&](const boost::system::error_code& refused, const auto&) { reached = !refused; });
   io.run();
   return reached;
 }

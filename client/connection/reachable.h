@@ -1,4 +1,4 @@
-// Whether anybody listens at an address.
+// Whether a program listens at an address.
 #ifndef PHRENIC_CLIENT_CONNECTION_REACHABLE_H_
 #define PHRENIC_CLIENT_CONNECTION_REACHABLE_H_
 
@@ -6,7 +6,7 @@
 
 namespace phrenic::client {
 
-// Opens a connection to "HOST:PORT" and closes it, within two seconds; false for what is no address too.
+// Opens and closes a TCP connection to "HOST:PORT". Returns false after two seconds, or if the address is invalid.
 bool IsReachable(const std::string& address);
 
 }  // namespace phrenic::client

@@ -1,6 +1,6 @@
 #!/bin/bash
-# An evaluation harness in the shell: each scene's integrators against an independent reference, held against limits,
-# with a page for each. Exit code 0 where every limit is kept.
+# An evaluation script: compares each scene's integrators with an independent reference and checks limits. Exit code 0
+# if every limit is met.
 #
 #   client/examples/harness.sh [SCENE ...]         PHRENIC=path/to/phrenic OUT=folder
 set -euo pipefail
@@ -18,7 +18,7 @@ for scene in "${scenes[@]}"; do
     >"$out/$scene.json" || code=$?
   case $code in
     0) echo "$scene: every limit kept" ;;
-    4) echo "$scene: a limit is passed" && failed=1 ;;
+    4) echo "$scene: a limit is exceeded" && failed=1 ;;
     *) echo "$scene: no answer (exit code $code)" && failed=1 ;;
   esac
 done

@@ -1,13 +1,13 @@
-// An evaluation harness in TypeScript over Connect (gRPC-web): starts a study on a server, follows its progress and
-// says which integrator to use. The study goes on when this ends.
+// An evaluation script in TypeScript over Connect (gRPC-web): starts a study on a server, prints its progress and the
+// recommended integrator. The study continues on the server if this script ends.
 //
 //   cd web && npm run harness -- http://127.0.0.1:8080 cube-tensegrity
 import { createClient } from "@connectrpc/connect";
 import { createGrpcWebTransport } from "@connectrpc/connect-web";
 import { type Study, StudyService, StudyState } from "../../web/src/gen/phrenic/v1/study_pb";
 
-/** Runs an error study of `scene` on the server at `baseUrl` to its end; `told` hears of its progress. */
-export async function studyError(baseUrl: string, scene: string, told: (study: Study) => void): Promise<Study> {
+/** Runs an error study of `scene` on the server at `baseUrl` to its end. `onProgress` receives each state. */
+export async function studyError(baseUrl: string, scene: string, onProgress: (study: Study) => void): Promise<Study> {
   const client = createClient(StudyService, createGrpcWebTransport({ baseUrl }));
   const created = await client.createStudy({
     source: { source: { case: "name", value: scene } },
@@ -17,7 +17,7 @@ export async function studyError(baseUrl: string, scene: string, told: (study: S
   for await (const { study } of client.watchStudy({ studyId: last?.id ?? "" })) {
     if (study === undefined) continue;
     last = study;
-    told(study);
+    onProgress(study);
   }
   if (last?.state !== StudyState.DONE) throw new Error(last?.problem ?? "the study did not end");
   await client.deleteStudy({ studyId: last.id });

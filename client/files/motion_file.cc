@@ -7,6 +7,8 @@
 #include <filesystem>
 
 #include "absl/strings/str_cat.h"
+#include "client/connection/connection.h"
+#include "client/connection/errors.h"
 #include "client/files/part_file.h"
 #include "client/files/unpack.h"
 #include "client/terminal/progress.h"
@@ -16,12 +18,12 @@
 namespace phrenic::client {
 namespace {
 
-constexpr double kSeconds = 8;  // of a motion, where no length is said
+constexpr double kSeconds = 8;  // default length of a motion
 constexpr char kArchive[] = "zip";
 constexpr double kMegabyte = 1e6;
 
-// Cancels and forgets, whatever became of the command: an interrupted one is not waited for.
-void Forget(v1::ExportService::Stub& stub, const std::string& id) {
+// Cancels and deletes the export. Not part of the interruptible calls, so that Ctrl-C does not stop it.
+void ForgetExport(v1::ExportService::Stub& stub, const std::string& id) {
   v1::DeleteExportRequest request;
   request.set_export_id(id);
   v1::DeleteExportResponse response;
@@ -30,7 +32,7 @@ void Forget(v1::ExportService::Stub& stub, const std::string& id) {
   (void)stub.DeleteExport(&call, request, &response);
 }
 
-// From where the part ends to the file's end; the first error of either side.
+// Downloads from the end of the part file to the end of the export. `written` receives the first error of writing.
 grpc::Status Receive(const Context& context, v1::ExportService::Stub& stub, const v1::Export& job, PartFile& part,
                      absl::Status& written, absl::FunctionRef<void()> on_chunk) {
   v1::DownloadExportRequest request;
@@ -48,21 +50,23 @@ grpc::Status Receive(const Context& context, v1::ExportService::Stub& stub, cons
   return stream->Finish();
 }
 
-absl::Status Place(const v1::Export& job, const std::string& file, PartFile& part) {
+// Renames the part file and unpacks it if FILE is one of several.
+absl::Status FinishDownload(const v1::Export& job, const std::string& file, PartFile& part) {
   const bool unpacked = FormatOf(file) != kArchive && FormatOf(job.file_name()) == kArchive;
-  const std::string place = unpacked ? file + "." + kArchive : file;
-  if (absl::Status status = part.PutInPlace(job.summary().sha256()); !status.ok() || !unpacked) return status;
-  absl::Status status = Unpack(place, std::filesystem::path(file).parent_path().string());
+  const std::string archive_file = unpacked ? file + "." + kArchive : file;
+  if (absl::Status status = part.Finish(job.summary().sha256()); !status.ok() || !unpacked) return status;
+  absl::Status status = Unpack(archive_file, std::filesystem::path(file).parent_path().string());
   std::error_code ignored;
-  std::filesystem::remove(place, ignored);
+  std::filesystem::remove(archive_file, ignored);
   return status;
 }
 
-// Before work is done for a file that cannot be written.
-absl::Status CheckPlace(const std::string& file) {
+// Checks that the folder is writable before the server starts to work.
+absl::Status CheckFolder(const std::string& file) {
   const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
   if (::access(folder.c_str(), W_OK) == 0) return absl::OkStatus();
-  return absl::NotFoundError(absl::StrCat("cannot write ", file, ": is the folder there, and may it be written?"));
+  return absl::NotFoundError(
+      absl::StrCat("cannot write ", file, ": check that its folder exists and that you may write to it"));
 }
 
 }  // namespace
@@ -78,7 +82,7 @@ absl::StatusOr<v1::CreateExportRequest> MakeExportRequest(const std::string& ses
   request.set_format(FormatOf(options.file));
   const auto format = record::FindFormat(session::ExportFormats(), request.format());
   if (!format.ok()) return format.status();
-  // Of the files of an archive, which name each other.
+  // The files in an archive name each other, so they need the final name.
   if (format->ending == kArchive) request.set_file_stem(std::filesystem::path(options.file).stem().string());
   request.set_seconds(options.seconds.value_or(format->instant ? 0 : kSeconds));
   if (options.start) request.set_start(*options.start);
@@ -90,20 +94,21 @@ absl::StatusOr<v1::CreateExportRequest> MakeExportRequest(const std::string& ses
   return request;
 }
 
-int WatchToItsEnd(const Context& context, v1::ExportService::Stub& stub, const std::string& id, v1::Export* job) {
+int WaitForExport(const Context& context, v1::ExportService::Stub& stub, const std::string& id, v1::Export* job) {
   v1::WatchExportRequest request;
   request.set_export_id(id);
   grpc::Status status;
   {
     Progress progress("recording", 1);
-    status = RideOut(context, [&](Heard heard) {
+    status = StreamWithReconnect(context, [&](OnReceived received) {
       grpc::ClientContext call;
       const Interruption::Scope scope(*context.interruption, call);
       const auto stream = stub.WatchExport(&call, request);
       for (v1::WatchExportResponse response; stream->Read(&response);) {
-        heard();
+        received();
         *job = response.job();
-        progress.Say(absl::StrCat(static_cast<std::int64_t>(static_cast<double>(job->bytes()) / kMegabyte), " MB"));
+        progress.SetDetail(
+            absl::StrCat(static_cast<std::int64_t>(static_cast<double>(job->bytes()) / kMegabyte), " MB"));
         progress.Update(job->progress());
       }
       return stream->Finish();
@@ -111,11 +116,12 @@ int WatchToItsEnd(const Context& context, v1::ExportService::Stub& stub, const s
   }
   if (!status.ok()) return Fail(context, status);
   if (job->state() == v1::EXPORT_STATE_DONE) return kOk;
-  return Fail(absl::AbortedError(job->problem().empty() ? "the export ended without a word" : job->problem()));
+  return Fail(
+      absl::AbortedError(job->problem().empty() ? "the export failed and the server gave no reason" : job->problem()));
 }
 
-int Download(const Context& context, v1::ExportService::Stub& stub, const v1::Export& job, const std::string& file,
-             bool keep_part) {
+int DownloadExport(const Context& context, v1::ExportService::Stub& stub, const v1::Export& job,
+                   const std::string& file, bool keep_part) {
   const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
   const absl::Status room = record::CheckRoom(folder.string(), job.bytes());
   if (absl::IsResourceExhausted(room)) return Fail(room);
@@ -123,29 +129,29 @@ int Download(const Context& context, v1::ExportService::Stub& stub, const v1::Ex
   PartFile part(unpacked ? file + "." + kArchive : file, keep_part);
   Progress progress("downloading", static_cast<double>(job.bytes()));
   absl::Status written;
-  const grpc::Status status = RideOut(context, [&](Heard heard) {
+  const grpc::Status status = StreamWithReconnect(context, [&](OnReceived received) {
     return Receive(context, stub, job, part, written, [&] {
-      heard();
+      received();
       progress.Update(static_cast<double>(part.bytes()));
     });
   });
   if (!written.ok()) return Fail(written);
   if (!status.ok()) return Fail(context, status);
-  const absl::Status placed = Place(job, file, part);
-  return placed.ok() ? kOk : Fail(placed);
+  const absl::Status finished = FinishDownload(job, file, part);
+  return finished.ok() ? kOk : Fail(finished);
 }
 
 int ExportToFile(const Context& context, const std::shared_ptr<grpc::Channel>& channel,
                  const v1::CreateExportRequest& request, const std::string& file, v1::ExportSummary* summary) {
-  if (absl::Status status = CheckPlace(file); !status.ok()) return Fail(status);
+  if (absl::Status status = CheckFolder(file); !status.ok()) return Fail(status);
   const auto stub = v1::ExportService::NewStub(channel);
   v1::CreateExportResponse created;
   const grpc::Status status = Call(context, *stub, &v1::ExportService::Stub::CreateExport, request, &created);
   if (!status.ok()) return Fail(context, status);
   v1::Export job;
-  int code = WatchToItsEnd(context, *stub, created.job().id(), &job);
-  if (code == kOk) code = Download(context, *stub, job, file, false);
-  Forget(*stub, created.job().id());
+  int code = WaitForExport(context, *stub, created.job().id(), &job);
+  if (code == kOk) code = DownloadExport(context, *stub, job, file, false);
+  ForgetExport(*stub, created.job().id());
   *summary = job.summary();
   return code;
 }

@@ -7,7 +7,7 @@
 namespace phrenic::client {
 
 PartFile::PartFile(const std::string& file, bool keep) : file_(file), part_(file + ".part"), keep_(keep) {
-  if (keep_) TakeWhatIsThere();
+  if (keep_) ReadExistingPart();
   out_.open(part_, bytes_ > 0 ? std::ios::binary | std::ios::app : std::ios::binary | std::ios::trunc);
 }
 
@@ -16,7 +16,7 @@ PartFile::~PartFile() {
   if (!keep_ || damaged_) std::remove(part_.c_str());
 }
 
-void PartFile::TakeWhatIsThere() {
+void PartFile::ReadExistingPart() {
   std::ifstream in(part_, std::ios::binary);
   std::string block(std::size_t{1} << 20, '\0');
   while (in.read(block.data(), static_cast<std::streamsize>(block.size())) || in.gcount() > 0) {
@@ -33,14 +33,15 @@ absl::Status PartFile::Write(const std::string& bytes) {
 }
 
 absl::Status PartFile::Error() const {
-  return absl::DataLossError(absl::StrCat("cannot write ", part_, ": is the folder there, and the disk not full?"));
+  return absl::DataLossError(
+      absl::StrCat("cannot write ", part_, ": check that its folder exists and that the disk is not full"));
 }
 
-absl::Status PartFile::PutInPlace(const std::string& sha256) {
+absl::Status PartFile::Finish(const std::string& sha256) {
   out_.close();
   if (!out_) return Error();
   damaged_ = hash_.Hex() != sha256;
-  if (damaged_) return absl::DataLossError(absl::StrCat(file_, " arrived damaged: try again"));
+  if (damaged_) return absl::DataLossError(absl::StrCat(file_, " was damaged in transit: try again"));
   if (std::rename(part_.c_str(), file_.c_str()) == 0) return absl::OkStatus();
   return absl::DataLossError(absl::StrCat("cannot rename ", part_, " to ", file_));
 }

@@ -1,4 +1,4 @@
-// FILE.part: what has arrived of FILE, until it is whole.
+// A file that is being downloaded.
 #ifndef PHRENIC_CLIENT_FILES_PART_FILE_H_
 #define PHRENIC_CLIENT_FILES_PART_FILE_H_
 
@@ -11,23 +11,25 @@
 
 namespace phrenic::client {
 
-// Not thread-safe. Removed by the destructor unless it is in its place or `keep` holds.
+// Collects the bytes of FILE in FILE.part and renames it once it is complete. The destructor removes FILE.part unless
+// `keep` is true. Not thread-safe.
 class PartFile {
  public:
-  // Where `keep` holds, what is there already counts as arrived.
+  // If `keep` is true, an existing FILE.part counts as already downloaded.
   PartFile(const std::string& file, bool keep);
   ~PartFile();
   PartFile(const PartFile&) = delete;
   PartFile& operator=(const PartFile&) = delete;
 
-  // DATA_LOSS names the file where it cannot be written.
+  // Appends bytes. DATA_LOSS names the file if it cannot be written.
   absl::Status Write(const std::string& bytes);
+  // Number of bytes in FILE.part.
   std::int64_t bytes() const { return bytes_; }
-  // DATA_LOSS where the file is not the one with that SHA-256.
-  absl::Status PutInPlace(const std::string& sha256);
+  // Renames FILE.part to FILE. DATA_LOSS if the SHA-256 of its bytes differs or it cannot be renamed.
+  absl::Status Finish(const std::string& sha256);
 
  private:
-  void TakeWhatIsThere();
+  void ReadExistingPart();
   absl::Status Error() const;
 
   const std::string file_, part_;

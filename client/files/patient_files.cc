@@ -5,8 +5,8 @@
 #include <filesystem>
 
 #include "absl/strings/str_cat.h"
-#include "client/connection/connection.h"
 #include "client/files/whole_file.h"
+#include "client/print/output.h"
 #include "server/meshio/meshio.h"
 
 namespace phrenic::client {

@@ -9,10 +9,11 @@
 
 namespace phrenic::client {
 
+// Returns DATA/scenes/NAME.textproto.
 std::string SceneFile(const std::string& folder, const std::string& name);
 
-// Makes the folders that are not there; a patient of the same name is replaced, the scene last. DATA_LOSS or
-// PERMISSION_DENIED names what cannot be written.
+// Writes the patient's files and creates missing folders. Replaces a patient of the same name; writes the scene last.
+// DATA_LOSS or PERMISSION_DENIED names the file or folder that cannot be written.
 absl::Status WritePatient(const std::string& folder, const imaging::Patient& patient);
 
 }  // namespace phrenic::client

@@ -33,7 +33,7 @@ absl::Status CopyEntry(const std::string& name, archive* zip, const std::filesys
   out.close();
   if (out) return absl::OkStatus();
   return absl::DataLossError(
-      absl::StrCat("cannot write ", to.string(), ": is the folder there, and the disk not full?"));
+      absl::StrCat("cannot write ", to.string(), ": check that its folder exists and that the disk is not full"));
 }
 
 }  // namespace
@@ -46,10 +46,10 @@ absl::Status Unpack(const std::string& name, const std::string& folder) {
   int code = ARCHIVE_OK;
   while ((code = archive_read_next_header(zip.get(), &entry)) == ARCHIVE_OK) {
     const std::filesystem::path inside(archive_entry_pathname(entry));
-    bool climbs = inside.is_absolute();
-    for (const auto& part : inside) climbs = climbs || part == "..";
-    if (climbs)
-      return absl::InvalidArgumentError(absl::StrCat(name, ": ", inside.string(), " leads out of its folder"));
+    bool escapes = inside.is_absolute();
+    for (const auto& part : inside) escapes = escapes || part == "..";
+    if (escapes)
+      return absl::InvalidArgumentError(absl::StrCat(name, ": ", inside.string(), " is a path outside the folder"));
     absl::Status copied = CopyEntry(name, zip.get(), std::filesystem::path(folder) / inside);
     if (!copied.ok()) return copied;
   }

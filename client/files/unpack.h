@@ -1,4 +1,4 @@
-// Archives of several files, taken apart.
+// Extracts archives.
 #ifndef PHRENIC_CLIENT_FILES_UNPACK_H_
 #define PHRENIC_CLIENT_FILES_UNPACK_H_
 
@@ -8,8 +8,8 @@
 
 namespace phrenic::client {
 
-// Writes the files of a zip archive below `folder`, in the archive's order, over what is there of the same name.
-// INVALID_ARGUMENT for an archive that names a place outside, DATA_LOSS where something cannot be written.
+// Extracts a zip archive into `folder`, in the archive's order, and overwrites existing files. INVALID_ARGUMENT if the
+// archive names a path outside the folder; DATA_LOSS if the archive cannot be read or a file cannot be written.
 absl::Status Unpack(const std::string& archive, const std::string& folder);
 
 }  // namespace phrenic::client

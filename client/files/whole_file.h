@@ -1,14 +1,20 @@
-// Files that are there whole or not at all.
+// Files read and written as a whole.
 #ifndef PHRENIC_CLIENT_FILES_WHOLE_FILE_H_
 #define PHRENIC_CLIENT_FILES_WHOLE_FILE_H_
 
 #include <string>
 
 #include "absl/status/status.h"
+#include "absl/status/statusor.h"
 
 namespace phrenic::client {
 
-// Writes FILE.part and renames it; DATA_LOSS names the file where that cannot be.
+// Returns the file's bytes. NOT_FOUND, "cannot read the scene file x.textproto: ...", if it is not a readable file;
+// `what` describes the file, such as "the scene file".
+absl::StatusOr<std::string> ReadWhole(const std::string& file, const std::string& what);
+
+// Writes FILE.part and renames it to FILE, so that FILE is never incomplete. DATA_LOSS names the file if it cannot be
+// written.
 absl::Status WriteWhole(const std::string& file, const std::string& bytes);
 
 }  // namespace phrenic::client

@@ -6,7 +6,6 @@
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
-#include "absl/strings/str_replace.h"
 #include "absl/strings/str_split.h"
 #include "client/print/table.h"
 #include "server/schema/fields.h"
@@ -24,7 +23,7 @@ std::vector<const FieldDescriptor*> Fields() {
   return fields;
 }
 
-// Those with a meaning in the schema; the others are counts.
+// The fields with a quantity in the schema; the others are counts.
 std::vector<const FieldDescriptor*> Measures() {
   std::vector<const FieldDescriptor*> measures = Fields();
   std::erase_if(measures, [](const FieldDescriptor* field) { return schema::QuantityOf(*field) == nullptr; });
@@ -51,7 +50,7 @@ std::string Cell(const v1::SurfaceDistance& distance, const FieldDescriptor& fie
   return absl::StrFormat("%.0f", number);
 }
 
-// The measures down, the surfaces across; beside each the baseline where there is one.
+// One row per measure, one column per surface, followed by its baseline if it has one.
 void PrintMeasures(const v1::ComparisonTable& comparison, std::ostream& out) {
   std::vector<std::string> header = {"measure", "unit"};
   std::vector<const v1::SurfaceDistance*> columns;
@@ -96,11 +95,6 @@ void PrintState(const char* which, const v1::ComparedState& state, std::ostream&
                          state.time(), state.tick());
 }
 
-std::string CsvText(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  return "\"" + absl::StrReplaceAll(text, {{"\"", "\"\""}}) + "\"";
-}
-
 }  // namespace
 
 absl::StatusOr<std::vector<Limit>> ReadLimits(const std::vector<std::string>& texts) {
@@ -118,7 +112,7 @@ absl::StatusOr<std::vector<Limit>> ReadLimits(const std::vector<std::string>& te
                                                         parts[0], absl::StrJoin(names, ", ")));
     }
     if (parts.size() < 2 || !absl::SimpleAtod(parts[1], &limit.value) || !std::isfinite(limit.value)) {
-      return absl::InvalidArgumentError(absl::StrFormat("--check %s: write measure=number, as hd95_max=2", text));
+      return absl::InvalidArgumentError(absl::StrFormat("--check %s: write measure=number, such as hd95_max=2", text));
     }
     limits.push_back(limit);
   }
@@ -131,9 +125,9 @@ std::vector<std::string> MissedLimits(const v1::ComparisonTable& table, const st
     const double value = table.rows().empty() ? NAN : Number(table.rows(0).distance(), *limit.measure);
     const bool least = MoreIsBetter(*limit.measure);
     if (least ? value >= limit.value : value <= limit.value) continue;
-    missed.push_back(absl::StrFormat("%s is %.4g%s, and %g is the %s that was asked for", limit.measure->name(), value,
-                                     Unit(*limit.measure).empty() ? "" : " " + Unit(*limit.measure), limit.value,
-                                     least ? "least" : "most"));
+    missed.push_back(absl::StrFormat("%s is %.4g%s; the limit is at %s %g", limit.measure->name(), value,
+                                     Unit(*limit.measure).empty() ? "" : " " + Unit(*limit.measure),
+                                     least ? "least" : "most", limit.value));
   }
   return missed;
 }
@@ -146,7 +140,7 @@ void PrintComparison(const v1::ComparisonTable& table, std::ostream& out) {
   PrintMeasures(table, out);
   PrintTimes(table, out);
   if (table.times_left_out() > 0) {
-    out << absl::StrFormat("%d times of A are outside B's and were left out\n", table.times_left_out());
+    out << absl::StrFormat("%d times of A are outside B's times and were left out\n", table.times_left_out());
   }
 }
 
@@ -158,34 +152,27 @@ void PrintComparisonCsv(const v1::ComparisonTable& table, std::ostream& out) {
   for (const FieldDescriptor* field : Fields()) {
     if (baselines) cells.push_back("baseline_" + field->name());
   }
-  out << absl::StrJoin(cells, ",") << "\n";
+  PrintCsvLine(cells, out);
   for (const v1::ComparisonRow& row : table.rows()) {
-    cells = {CsvText(row.region()), row.has_time() ? absl::StrFormat("%.9g", row.time()) : ""};
+    cells = {row.region(), row.has_time() ? absl::StrFormat("%.9g", row.time()) : ""};
     for (const FieldDescriptor* field : Fields()) {
       cells.push_back(absl::StrFormat("%.9g", Number(row.distance(), *field)));
     }
     for (const FieldDescriptor* field : Fields()) {
       if (baselines) cells.push_back(absl::StrFormat("%.9g", Number(row.baseline(), *field)));
     }
-    out << absl::StrJoin(cells, ",") << "\n";
+    PrintCsvLine(cells, out);
   }
 }
 
 std::string MeasureHelp() {
-  std::string help = "Measures, as --check takes them; point to surface, weighted by area, in mm:\n";
+  std::string help = "Measures for --check; distances from points to surfaces in mm, weighted by area:\n";
   for (const FieldDescriptor* field : Measures()) {
     const v1::Quantity& quantity = *schema::QuantityOf(*field);
     absl::StrAppendFormat(&help, "  %-14s %s%s%s\n", field->name(), quantity.label(),
                           quantity.help().empty() ? "" : ": ", quantity.help());
   }
   return help;
-}
-
-std::string FieldHelp(const google::protobuf::Descriptor& message, const std::string& field) {
-  const v1::Quantity& quantity = *schema::QuantityOf(*message.FindFieldByName(field));
-  const std::string otherwise = quantity.automatic() ? "automatic" : schema::FormatNumber(quantity.default_value());
-  return absl::StrFormat("%s [%s], %s (%s). %s", quantity.label(), quantity.unit(), schema::FormatRange(quantity),
-                         otherwise, quantity.help());
 }
 
 }  // namespace phrenic::client

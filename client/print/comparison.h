@@ -1,4 +1,4 @@
-// What a comparison of surfaces says: as a table, as CSV, and against limits.
+// The result of `phrenic compare`: as a table, as CSV, and checked against limits.
 #ifndef PHRENIC_CLIENT_PRINT_COMPARISON_H_
 #define PHRENIC_CLIENT_PRINT_COMPARISON_H_
 
@@ -11,25 +11,26 @@
 
 namespace phrenic::client {
 
-// A measure of SurfaceDistance and what it may be: at most `value`, or at least where more is better (surface_dice).
+// A limit of a measure of SurfaceDistance: at most `value` in the measure's unit, or at least `value` if more is better
+// (surface_dice).
 struct Limit {
   const google::protobuf::FieldDescriptor* measure = nullptr;
   double value = 0;
 };
 
-// Reads "hd95_max=2" and the like; INVALID_ARGUMENT names the measures there are.
+// Parses texts such as "hd95_max=2". INVALID_ARGUMENT quotes the text and lists the measures.
 absl::StatusOr<std::vector<Limit>> ReadLimits(const std::vector<std::string>& texts);
 
-// A sentence for each limit that the whole surfaces, over all times, do not keep; NaN keeps none.
+// Returns a sentence for each limit that the whole surfaces, over all times, do not meet. NaN meets no limit.
 std::vector<std::string> MissedLimits(const v1::ComparisonTable& table, const std::vector<Limit>& limits);
 
+// Prints the measures of each region [mm], the baseline beside them, and one row per time of a motion.
 void PrintComparison(const v1::ComparisonTable& table, std::ostream& out);
-// One line a row, with a head; the baseline's measures after the others where there is one.
+// Prints a header and one line per row. The baseline's measures, if any, follow the others.
 void PrintComparisonCsv(const v1::ComparisonTable& table, std::ostream& out);
 
-// Every measure with its unit and meaning, and the meaning of one field of the request, as the schema has them.
+// Returns the help text of every measure, from the schema.
 std::string MeasureHelp();
-std::string FieldHelp(const google::protobuf::Descriptor& message, const std::string& field);
 
 }  // namespace phrenic::client
 

@@ -13,15 +13,15 @@
 namespace phrenic::client {
 namespace {
 
-constexpr size_t kMostValues = 400;  // a terminal is not wider
+constexpr size_t kMostValues = 400;  // more than a terminal is wide
 constexpr int kBar = 12, kSpace = 2, kShortestSparkline = 8;
 
 std::string ValueText(double value, const std::string& unit) {
   return unit.empty() ? absl::StrFormat("%.3f", value) : ReadingText(value, unit);
 }
 
-std::string Filled(const std::string& text, int width) {
-  return text + std::string(std::max(0, width - PoseMatricesOf(text)), ' ');
+std::string PadRight(const std::string& text, int width) {
+  return text + std::string(std::max(0, width - ColumnsOf(text)), ' ');
 }
 
 }  // namespace
@@ -36,7 +36,7 @@ void LiveView::Put(size_t index, const std::string& name, const std::string& uni
 }
 
 void LiveView::Add(const v1::Frame& frame) {
-  if (frame.tick() < tick_) rows_.clear();  // it was reset
+  if (frame.tick() < tick_) rows_.clear();  // the session was reset
   time_ = frame.time();
   tick_ = frame.tick();
   size_t index = 0;
@@ -60,9 +60,9 @@ std::string LiveView::Heading() const {
 
 std::string LiveView::Line(const Row& row, int name_width, int value_width, const Canvas& canvas) const {
   const double value = row.values.back();
-  std::string line = Filled(row.name, name_width) + std::string(kSpace, ' ') +
-                     Filled(ValueText(value, row.unit), value_width) + std::string(kSpace, ' ');
-  const int left = canvas.width - PoseMatricesOf(line);
+  std::string line = PadRight(row.name, name_width) + std::string(kSpace, ' ') +
+                     PadRight(ValueText(value, row.unit), value_width) + std::string(kSpace, ' ');
+  const int left = canvas.width - ColumnsOf(line);
   if (left < kBar) return Clipped(line, canvas.width);
   line += Bar(value, row.least, row.greatest, kBar, canvas.unicode);
   const int room = left - kBar - kSpace;
@@ -75,9 +75,9 @@ std::string LiveView::Line(const Row& row, int name_width, int value_width, cons
 std::vector<std::string> LiveView::Lines(const Canvas& canvas) const {
   int name_width = 0, value_width = 0;
   for (const Row& row : rows_) {
-    name_width = std::max(name_width, PoseMatricesOf(row.name));
+    name_width = std::max(name_width, ColumnsOf(row.name));
     for (const double value : {row.least, row.greatest, row.values.back()}) {
-      value_width = std::max(value_width, PoseMatricesOf(ValueText(value, row.unit)));
+      value_width = std::max(value_width, ColumnsOf(ValueText(value, row.unit)));
     }
   }
   std::vector<std::string> lines = {Clipped(Heading(), canvas.width)};

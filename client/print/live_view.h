@@ -1,4 +1,4 @@
-// The breath of a session as it goes on, drawn over and over in a terminal.
+// A live picture of a session's breath, for a terminal.
 #ifndef PHRENIC_CLIENT_PRINT_LIVE_VIEW_H_
 #define PHRENIC_CLIENT_PRINT_LIVE_VIEW_H_
 
@@ -10,20 +10,21 @@
 
 namespace phrenic::client {
 
-// What it is drawn on.
+// The area to draw on.
 struct Canvas {
-  int width = 80;
+  int width = 80;  // [columns]
   bool unicode = true;
 };
 
-// Keeps the last values of the breath, of each measure, and of how far each probe is from rest. Not thread-safe.
+// Keeps the last values of the breath, of each measure, and of each probe's distance from rest [m]. Not thread-safe.
 class LiveView {
  public:
+  // Clears the history if the frame's tick is before the last one: the session was reset.
   void Add(const v1::Frame& frame);
   void Add(const v1::Session& session) { session_ = session; }
 
-  // A heading, then a line each: name, value, a bar between the least and the greatest value seen, and a sparkline of
-  // the last frames as far as the width goes. No line is wider than the canvas.
+  // Returns a heading and one line per row: name, value, a bar between the smallest and the greatest value seen, and a
+  // sparkline of the last frames. No line is wider than the canvas.
   std::vector<std::string> Lines(const Canvas& canvas) const;
 
  private:

@@ -1,8 +1,8 @@
 #include "client/print/output.h"
 
 #include <google/protobuf/descriptor.h>
+#include <google/protobuf/util/json_util.h>
 
-#include <algorithm>
 #include <iostream>
 
 namespace phrenic::client {
@@ -10,10 +10,6 @@ namespace {
 
 using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
-
-constexpr const char* kLists[] = {"scenes",     "sessions",     "watch",          "exports list",
-                                  "study list", "campaign run", "campaign report"};
-constexpr const char* kTables[] = {"compare", "study error", "study stability", "study cost", "study watch"};
 
 void PrintLines(const Message& message) {
   const auto& type = *message.GetDescriptor();
@@ -35,10 +31,13 @@ Output OutputOf(const std::string& name) {
   return name == "csv" ? Output::kCsv : Output::kTable;
 }
 
-bool Knows(const std::string& command, Output output) {
-  if (output == Output::kTable || output == Output::kJson) return true;
-  const auto is = [&](const char* name) { return command == name; };
-  return std::ranges::any_of(kLists, is) || (output == Output::kCsv && std::ranges::any_of(kTables, is));
+std::string Json(const Message& message) {
+  google::protobuf::util::JsonPrintOptions options;
+  options.preserve_proto_field_names = true;
+  options.always_print_primitive_fields = true;
+  std::string text;
+  (void)google::protobuf::util::MessageToJsonString(message, &text, options);
+  return text;
 }
 
 void PrintList(const Context& context, const Message& message, const Table& rows) {

@@ -1,4 +1,4 @@
-// The ways in which answers are printed, and which command knows which.
+// The output formats: JSON of any message, and lists in each format.
 #ifndef PHRENIC_CLIENT_PRINT_OUTPUT_H_
 #define PHRENIC_CLIENT_PRINT_OUTPUT_H_
 
@@ -6,19 +6,19 @@
 
 #include <string>
 
-#include "client/connection/connection.h"
+#include "client/connection/context.h"
 #include "client/print/table.h"
 
 namespace phrenic::client {
 
-// Of "table", "json", "jsonl" and "csv".
+// Returns the format called "table", "json", "jsonl" or "csv"; kTable for any other name.
 Output OutputOf(const std::string& name);
 
-// Every command knows table and json; jsonl and csv are for lists.
-bool Knows(const std::string& command, Output output);
+// Returns the message as one line of JSON with the proto's field names. Fields with default values are included.
+std::string Json(const google::protobuf::Message& message);
 
-// A list on standard output: `rows` for people and as CSV; the message, or each element of its first repeated field on
-// a line, as JSON.
+// Prints a list on standard output in the context's format: `rows` as a table or CSV, the message as JSON, or each
+// element of its first repeated field as a line of JSON.
 void PrintList(const Context& context, const google::protobuf::Message& message, const Table& rows);
 
 }  // namespace phrenic::client

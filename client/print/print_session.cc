@@ -59,18 +59,19 @@ std::string SolverText(const v1::Session& session, const char* before, const cha
 }
 
 std::string ControlText(const v1::Control& control) {
-  std::string text = "  everybody controls it\n";
+  std::string text = "  everybody may control it\n";
   if (!control.controller().empty()) {
     text = absl::StrCat("  controlled by ", control.controller());
     if (control.has_expire_time()) {
       google::protobuf::Timestamp second;
       second.set_seconds(control.expire_time().seconds());
-      absl::StrAppend(&text, ", until ", google::protobuf::util::TimeUtil::ToString(second), " unless they go on");
+      absl::StrAppend(&text, ", until ", google::protobuf::util::TimeUtil::ToString(second),
+                      " unless they send a command");
     }
     text += "\n";
   }
   for (const v1::Participant& person : control.participants()) {
-    absl::StrAppend(&text, "  ", person.name(), person.owner() ? ", who owns it" : "",
+    absl::StrAppend(&text, "  ", person.name(), person.owner() ? ", owner" : "",
                     person.asks() ? ", asks for control" : "", "\n");
   }
   return text;

@@ -1,4 +1,4 @@
-// A session as people read it.
+// A session as text.
 #ifndef PHRENIC_CLIENT_PRINT_PRINT_SESSION_H_
 #define PHRENIC_CLIENT_PRINT_PRINT_SESSION_H_
 
@@ -9,22 +9,24 @@
 
 namespace phrenic::client {
 
-// "paused", "playing", "diverged".
+// Returns "paused", "playing", "diverged" or "unknown".
 std::string StateName(v1::SessionState state);
 
-// "breath_force=1.5 breath_length=4 ...".
+// Returns the parameters that are set: "breath_force=1.5 breath_length=4 ...".
 std::string ParametersLine(const v1::Parameters& parameters);
 
-// How well the session keeps its constraints, "1.2e-07 mm (rigid-links:cube)" between two words; "" where it has none.
+// Returns the largest constraint residual, "1.2e-07 mm (rigid-links:cube)", between `before` and `after`; empty if the
+// session has no constraints.
 std::string ResidualText(const v1::Session& session, const char* before, const char* after);
 
-// What the last implicit step's solver left, "8.1e-04 left after 12 iterations" between two words; "" where none ran.
+// Returns the relative residual of the last implicit step's solver, "8.1e-04 left after 12 iterations", between
+// `before` and `after`; empty if no implicit step ran.
 std::string SolverText(const v1::Session& session, const char* before, const char* after);
 
-// Who controls a session, who is there and who asks, a line each.
+// Returns one line for the controller and one for each participant.
 std::string ControlText(const v1::Control& control);
 
-// A few lines: state, time, pace, parameters, constraints, pulls, and why it diverged where it has.
+// Prints state, time, pace, parameters, residuals, control, pulls and, after a divergence, its cause and remedy.
 void PrintSession(const v1::Session& session, std::ostream& out);
 
 }  // namespace phrenic::client

@@ -1,7 +1,5 @@
 #include "client/print/readings.h"
 
-#include <algorithm>
-
 #include "absl/strings/str_format.h"
 #include "client/print/table.h"
 
@@ -30,23 +28,10 @@ std::string ReadingText(double value, const std::string& unit) {
   return Number(value, familiar) + " " + familiar.name;
 }
 
-void Readings::Add(const google::protobuf::RepeatedPtrField<v1::MeasureReading>& readings) {
-  for (int i = 0; i < readings.size(); ++i) {
-    const double value = readings[i].value();
-    if (i == static_cast<int>(ranges_.size())) {
-      ranges_.push_back({readings[i].name(), readings[i].unit(), value, value, value});
-    }
-    Range& range = ranges_[i];
-    range.last = value;
-    range.minimum = std::min(range.minimum, value);
-    range.maximum = std::max(range.maximum, value);
-  }
-}
-
-void Readings::Print(std::ostream& out) const {
-  if (ranges_.empty()) return;
+void PrintMeasureRanges(const MeasureRanges& measures, std::ostream& out) {
+  if (measures.ranges().empty()) return;
   Table table({"measure", "last", "least", "greatest", "unit"});
-  for (const Range& range : ranges_) {
+  for (const MeasureRange& range : measures.ranges()) {
     const Familiar familiar = FamiliarUnit(range.unit);
     table.Add({range.name, Number(range.last, familiar), Number(range.minimum, familiar),
                Number(range.maximum, familiar), familiar.name});
@@ -54,9 +39,9 @@ void Readings::Print(std::ostream& out) const {
   table.Print(out);
 }
 
-nlohmann::json Readings::ToJson() const {
+nlohmann::json MeasureRangesJson(const MeasureRanges& measures) {
   nlohmann::json json = nlohmann::json::array();
-  for (const Range& range : ranges_) {
+  for (const MeasureRange& range : measures.ranges()) {
     json.push_back({{"name", range.name},
                     {"unit", range.unit},
                     {"last", range.last},

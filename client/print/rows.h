@@ -1,4 +1,4 @@
-// Tables made from messages: a repeated field of flat messages is a table, its fields are the columns.
+// Tables made from messages: each repeated field of flat messages is a table whose columns are the message's fields.
 #ifndef PHRENIC_CLIENT_PRINT_ROWS_H_
 #define PHRENIC_CLIENT_PRINT_ROWS_H_
 
@@ -9,12 +9,12 @@
 
 namespace phrenic::client {
 
-// A number in four digits, "yes" or nothing, text as it is, "-" where nothing is set.
+// Returns a number in four digits, "yes" or "" for a bool, text unchanged, "-" for a field that is not set.
 std::string CellOf(const google::protobuf::Message& row, const google::protobuf::FieldDescriptor& field);
 
-// Every table of `message` that has rows, each under its name, for people.
+// Prints every table of `message` that has rows, under its name.
 void PrintTables(const google::protobuf::Message& message, std::ostream& out);
-// The same as CSV (RFC 4180), every digit; an empty line and a header before each table after the first.
+// Prints the same tables as CSV (RFC 4180) with all digits, separated by empty lines, each with a header.
 void PrintCsv(const google::protobuf::Message& message, std::ostream& out);
 
 }  // namespace phrenic::client

@@ -24,8 +24,8 @@ std::string Box(const v1::SurfaceReport& report) {
 
 std::string Unit(const v1::SurfaceReport& report) {
   const std::string said = absl::StrFormat("%g mm", report.unit_mm());
-  if (report.likely_unit().empty()) return said + "; the size tells no likely one";
-  return said + "; the size is that of a body part in " + report.likely_unit();
+  if (report.likely_unit().empty()) return said + "; the size fits no common unit";
+  return said + "; the size fits a body part in " + report.likely_unit();
 }
 
 void PrintCounts(const v1::SurfaceReport& report, std::ostream& out) {
@@ -44,7 +44,7 @@ void PrintCounts(const v1::SurfaceReport& report, std::ostream& out) {
   line("Euler characteristic", absl::StrCat(report.euler_characteristic()));
   line("bounding box", Box(report));
   line("unit", Unit(report));
-  line("frame", report.frame().empty() ? "the file says none; LPS is assumed" : report.frame());
+  line("frame", report.frame().empty() ? "not given in the file; LPS is assumed" : report.frame());
   line("area", absl::StrFormat("%.1f mm^2", report.area_mm2()));
   line("volume", report.has_volume_ml() ? absl::StrFormat("%.3f ml", report.volume_ml()) : "not closed");
   if (report.regions_size() > 0) line("regions", absl::StrJoin(report.regions(), ", "));
@@ -64,7 +64,7 @@ void PrintComponents(const v1::SurfaceReport& report, std::ostream& out) {
   }
   table.Print(out);
   const int more = report.components_size() - kMostComponents;
-  if (more > 0) out << more << " more, smaller ones (-o json has them all)\n";
+  if (more > 0) out << more << " smaller ones are not shown (-o json shows all)\n";
 }
 
 void PrintSentences(const char* title, const google::protobuf::RepeatedPtrField<std::string>& sentences,

@@ -1,4 +1,4 @@
-// What a surface file holds, as people read it.
+// The report of `phrenic inspect` as text.
 #ifndef PHRENIC_CLIENT_PRINT_SURFACE_REPORT_H_
 #define PHRENIC_CLIENT_PRINT_SURFACE_REPORT_H_
 
@@ -8,7 +8,8 @@
 
 namespace phrenic::client {
 
-// Counts and measures, the ten largest components, and in words what should be repaired and would be refused.
+// Prints counts, measures, the ten largest components, suggested repairs and reasons for which a scene refuses the
+// file.
 void PrintSurface(const v1::SurfaceReport& report, std::ostream& out);
 
 }  // namespace phrenic::client

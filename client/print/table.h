@@ -1,4 +1,4 @@
-// Columns: aligned for people, two spaces apart, numbers to the right; or CSV (RFC 4180).
+// A table of text cells, printed in aligned columns or as CSV (RFC 4180).
 #ifndef PHRENIC_CLIENT_PRINT_TABLE_H_
 #define PHRENIC_CLIENT_PRINT_TABLE_H_
 
@@ -8,18 +8,19 @@
 
 namespace phrenic::client {
 
-// One line of CSV; cells with a comma, a quote or a line break stand in quotes.
+// Prints one line of CSV. Cells with a comma, a quote or a line break are quoted.
 void PrintCsvLine(const std::vector<std::string>& cells, std::ostream& out);
 
+// Columns are two spaces apart; numbers are aligned to the right. Not thread-safe.
 class Table {
  public:
   explicit Table(std::vector<std::string> header) : header_(std::move(header)) {}
-  // As many cells as the header has.
+  // Requires: one cell per column of the header.
   void Add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
   bool empty() const { return rows_.empty(); }
-  // On a terminal the header stands out, and the last column is broken into lines where it does not fit.
+  // Prints for people. On a terminal the header is bold and the last column is wrapped to the terminal's width.
   void Print(std::ostream& out) const;
-  // In `width` columns of text; 0: any number.
+  // Wraps the last column to `width` columns of text; 0: no limit.
   void Print(std::ostream& out, int width) const;
   void PrintCsv(std::ostream& out) const;
 

@@ -10,6 +10,7 @@
 #include "absl/strings/str_format.h"
 #include "absl/time/clock.h"
 #include "client/print/live_view.h"
+#include "client/print/output.h"
 #include "client/print/print_session.h"
 #include "client/print/readings.h"
 #include "client/print/table.h"
@@ -19,7 +20,7 @@
 namespace phrenic::client {
 namespace {
 
-// "  predicted: 12912 bytes within 0.1 mm, 4 ms old"; nothing where no vertices came.
+// "  predicted: 12912 bytes within 0.1 mm, 4 ms old"; empty if the frame has no vertices.
 std::string SendingText(const v1::Frame& frame) {
   if (frame.positions().empty()) return "";
   const std::string name = absl::AsciiStrToLower(v1::Codec_Name(frame.codec()).substr(sizeof "CODEC_" - 1));
@@ -46,7 +47,7 @@ class JsonPrinter final : public WatchPrinter {
   void Print(const v1::WatchFramesResponse& event) override { std::cout << Json(event) << std::endl; }
 };
 
-// SI units, every digit; the header is made of the first frame.
+// SI units, all digits. The first frame determines the header.
 class CsvPrinter final : public WatchPrinter {
  public:
   void Print(const v1::WatchFramesResponse& event) override {
@@ -63,14 +64,14 @@ class CsvPrinter final : public WatchPrinter {
       names.push_back(absl::StrCat(reading.name(), " [", reading.unit(), "]"));
       cells.push_back(schema::FormatNumber(reading.value()));
     }
-    if (!headed_) PrintCsvLine(names, std::cout);
-    headed_ = true;
+    if (!has_header_) PrintCsvLine(names, std::cout);
+    has_header_ = true;
     PrintCsvLine(cells, std::cout);
     std::cout << std::flush;
   }
 
  private:
-  bool headed_ = false;
+  bool has_header_ = false;
 };
 
 class LinePrinter final : public WatchPrinter {
@@ -89,10 +90,10 @@ class LinePrinter final : public WatchPrinter {
 
  private:
   std::int64_t revision_ = -1;
-  std::string residual_;  // about a second old at most
+  std::string residual_;  // at most about a second old
 };
 
-// Draws over what it drew before; the terminal may change its width meanwhile.
+// Draws each picture over the one before. The terminal's width may change in between.
 class LivePrinter final : public WatchPrinter {
  public:
   void Print(const v1::WatchFramesResponse& event) override {
@@ -102,7 +103,7 @@ class LivePrinter final : public WatchPrinter {
     }
     view_.Add(event.frame());
     std::vector<std::string> lines = view_.Lines({WidthOf(STDOUT_FILENO) - 1, ShowsUnicode()});
-    // What has left the terminal at its top cannot be drawn over.
+    // Lines that scrolled off the top of the terminal cannot be overwritten.
     lines.resize(std::min(lines.size(), static_cast<size_t>(std::max(2, HeightOf(STDOUT_FILENO) - 1))));
     std::string picture = drawn_ > 0 ? absl::StrFormat("\x1b[%dA", drawn_) : "";
     for (size_t i = 0; i < lines.size(); ++i) {
@@ -112,7 +113,7 @@ class LivePrinter final : public WatchPrinter {
     drawn_ = static_cast<int>(lines.size());
   }
 
-  void Leave() override { drawn_ = 0; }
+  void Detach() override { drawn_ = 0; }
 
  private:
   LiveView view_;

@@ -1,24 +1,24 @@
-// What `phrenic watch` prints of each event.
+// Prints the events of `phrenic watch`.
 #ifndef PHRENIC_CLIENT_PRINT_WATCH_PRINTER_H_
 #define PHRENIC_CLIENT_PRINT_WATCH_PRINTER_H_
 
 #include <memory>
 
-#include "client/connection/connection.h"
+#include "client/connection/context.h"
 #include "phrenic/v1/frames.pb.h"
 
 namespace phrenic::client {
 
-// Not thread-safe. What is drawn stays when the object goes.
+// Prints events on standard output. Not thread-safe. The last picture stays after destruction.
 class WatchPrinter {
  public:
   virtual ~WatchPrinter() = default;
   virtual void Print(const v1::WatchFramesResponse& event) = 0;
-  // Somebody else writes below: what is there is drawn over no more.
-  virtual void Leave() {}
+  // Keeps the current picture: the next event is drawn below it.
+  virtual void Detach() {}
 };
 
-// Live bars where standard output is a terminal, a line a frame where not; as the context's output says otherwise.
+// Returns a printer for the context's output format. For kTable: live bars on a terminal, one line per frame elsewhere.
 std::unique_ptr<WatchPrinter> MakeWatchPrinter(const Context& context);
 
 }  // namespace phrenic::client

@@ -18,7 +18,7 @@ sigset_t Signals() {
 
 Interruption::Interruption() {
   const sigset_t signals = Signals();
-  pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // for every thread made from now on
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // threads inherit the mask
   std::thread([this] { Wait(); }).detach();
 }
 
@@ -27,7 +27,7 @@ void Interruption::Wait() {
   int signal = 0;
   while (sigwait(&signals, &signal) == 0) {
     const absl::MutexLock lock(&mutex_);
-    if (happened_) std::_Exit(130);  // a second Ctrl-C does not wait for anything
+    if (happened_) std::_Exit(130);  // the second signal ends the process at once
     happened_ = true;
     if (call_ != nullptr) call_->TryCancel();
   }

@@ -1,4 +1,4 @@
-// Ctrl-C: cancels the call that is under way, so that a command ends cleanly and a half-written file is removed.
+// Ctrl-C: cancels the call in progress, so that a command ends cleanly and removes half-written files.
 #ifndef PHRENIC_CLIENT_TERMINAL_INTERRUPTION_H_
 #define PHRENIC_CLIENT_TERMINAL_INTERRUPTION_H_
 
@@ -9,16 +9,20 @@
 
 namespace phrenic::client {
 
-// One a process, made before any other thread. Its thread waits for SIGINT and SIGTERM and ends with the process.
+// Handles SIGINT and SIGTERM on its own thread, until the process ends. The first signal cancels the call in progress;
+// the second ends the process with exit code 130. Thread-safe. Requires: one per process, constructed before any other
+// thread starts.
 class Interruption {
  public:
   Interruption();
   Interruption(const Interruption&) = delete;
   Interruption& operator=(const Interruption&) = delete;
 
+  // True once a signal was received.
   bool happened() const;
 
-  // The call that an interruption cancels while this lives; one that happened before cancels at once.
+  // Registers the call that a signal cancels, for the scope's lifetime. Cancels the call at once if a signal was
+  // received before. At most one scope exists at a time.
   class Scope {
    public:
     Scope(Interruption& interruption, grpc::ClientContext& context);

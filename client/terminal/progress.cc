@@ -13,7 +13,7 @@
 namespace phrenic::client {
 namespace {
 
-constexpr absl::Duration kPatience = absl::Seconds(1), kBetween = absl::Milliseconds(100);
+constexpr absl::Duration kDelay = absl::Seconds(1), kPeriod = absl::Milliseconds(100);
 constexpr int kBarWidth = 30;
 
 }  // namespace
@@ -38,9 +38,9 @@ Progress::~Progress() {
   if (drawing_.joinable()) drawing_.join();
 }
 
-void Progress::Say(std::string doing) {
+void Progress::SetDetail(std::string detail) {
   const absl::MutexLock lock(&mutex_);
-  doing_ = std::move(doing);
+  detail_ = std::move(detail);
 }
 
 void Progress::Update(double done) {
@@ -50,22 +50,22 @@ void Progress::Update(double done) {
 
 void Progress::Draw() {
   const absl::MutexLock lock(&mutex_);
-  if (mutex_.AwaitWithTimeout(absl::Condition(&over_), kPatience)) return;
+  if (mutex_.AwaitWithTimeout(absl::Condition(&over_), kDelay)) return;
   do {
     std::cerr << "\r" << Clipped(Line(), WidthOf(STDERR_FILENO) - 1) << "\x1b[K" << std::flush;
-  } while (!mutex_.AwaitWithTimeout(absl::Condition(&over_), kBetween));
+  } while (!mutex_.AwaitWithTimeout(absl::Condition(&over_), kPeriod));
   std::cerr << "\r\x1b[K" << std::flush;
 }
 
 std::string Progress::Line() const {
-  const std::chrono::duration<double> spent = Clock::now() - start_;
-  const double share = total_ > 0 ? std::clamp(done_ / total_, 0.0, 1.0) : 0;
-  const std::string doing = doing_.empty() ? "" : "  " + doing_;
-  if (share == 0) return absl::StrFormat("%s ... %s%s", what_, DurationText(std::floor(spent.count())), doing);
-  const int filled = static_cast<int>(share * kBarWidth);
+  const std::chrono::duration<double> elapsed = Clock::now() - start_;
+  const double fraction = total_ > 0 ? std::clamp(done_ / total_, 0.0, 1.0) : 0;
+  const std::string detail = detail_.empty() ? "" : "  " + detail_;
+  if (fraction == 0) return absl::StrFormat("%s ... %s%s", what_, DurationText(std::floor(elapsed.count())), detail);
+  const int filled = static_cast<int>(fraction * kBarWidth);
   const std::string bar = std::string(filled, '#') + std::string(kBarWidth - filled, '.');
-  const double left = spent.count() * (1 - share) / share;
-  return absl::StrFormat("%s [%s] %3.0f %%, %s left%s", what_, bar, 100 * share, DurationText(left), doing);
+  const double left = elapsed.count() * (1 - fraction) / fraction;
+  return absl::StrFormat("%s [%s] %3.0f %%, %s left%s", what_, bar, 100 * fraction, DurationText(left), detail);
 }
 
 }  // namespace phrenic::client

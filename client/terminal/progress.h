@@ -1,4 +1,4 @@
-// A bar on standard error for work of more than a second; nothing where that is no terminal.
+// A progress bar on standard error.
 #ifndef PHRENIC_CLIENT_TERMINAL_PROGRESS_H_
 #define PHRENIC_CLIENT_TERMINAL_PROGRESS_H_
 
@@ -11,19 +11,20 @@
 
 namespace phrenic::client {
 
-// Any thread may call. A thread of its own draws, from the first second on, ten times a second: the share that is done
-// and the time that is left, or, where the total is not known, the time since it began. The bar goes when the object
-// does.
+// Draws a progress bar from its own thread, ten times a second, starting one second after construction: the fraction
+// done and the remaining time, or the elapsed time if the total is unknown. The destructor erases the bar. Draws
+// nothing if standard error is not a terminal. Thread-safe.
 class Progress {
  public:
-  // `total` 0: not known.
+  // `total`: the value of Update at the end, in any unit; 0 if it is unknown.
   explicit Progress(std::string what, double total = 0);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  // What is being done now, behind the bar.
-  void Say(std::string doing);
+  // Sets the text after the bar, such as the current stage.
+  void SetDetail(std::string detail);
+  // Sets how much of the total is done.
   void Update(double done);
 
  private:
@@ -35,20 +36,20 @@ class Progress {
   const double total_;
   const Clock::time_point start_ = Clock::now();
   absl::Mutex mutex_;
-  std::string doing_ ABSL_GUARDED_BY(mutex_);
+  std::string detail_ ABSL_GUARDED_BY(mutex_);
   double done_ ABSL_GUARDED_BY(mutex_) = 0;
   bool over_ ABSL_GUARDED_BY(mutex_) = false;
   std::thread drawing_;
 };
 
-// Does what cannot say how far it is, behind its name and the time since it began.
+// Runs `work` and shows its elapsed time. Returns what `work` returns.
 template <typename Work>
 auto WithProgress(std::string what, Work work) {
   const Progress progress(std::move(what));
   return work();
 }
 
-// "12 s", "3 min", "2 h 05 min".
+// Formats a duration [s], rounded up: "12 s", "3 min", "2 h 05 min".
 std::string DurationText(double seconds);
 
 }  // namespace phrenic::client

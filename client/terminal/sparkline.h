@@ -1,4 +1,4 @@
-// Numbers drawn in a line of text.
+// Numbers drawn as text.
 #ifndef PHRENIC_CLIENT_TERMINAL_SPARKLINE_H_
 #define PHRENIC_CLIENT_TERMINAL_SPARKLINE_H_
 
@@ -7,11 +7,12 @@
 
 namespace phrenic::client {
 
-// One character a value, the lowest at `low` and the highest at `high`, which are clipped to: eighths of a block, or
-// "_.-=*#" where there is no Unicode. A line in the middle where `low` is `high`.
+// Returns one character per value: eighths of a block, or "_.-=*#" if not `unicode`. Values are clamped to
+// [low, high]. The middle character if low == high or a value is not finite.
 std::string Sparkline(std::span<const double> values, double low, double high, bool unicode);
 
-// A bar `width` characters long, as full as `value` lies between `low` and `high`; empty where these are equal.
+// Returns a bar of `width` characters, filled to (value - low) / (high - low). Empty if low == high or the value is not
+// finite.
 std::string Bar(double value, double low, double high, int width, bool unicode);
 
 }  // namespace phrenic::client

@@ -4,22 +4,17 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdlib>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
+#include "client/terminal/environment.h"
 
 namespace phrenic::client {
 namespace {
 
-constexpr int kUsualWidth = 80, kLeastWidth = 20, kUsualHeight = 24;
-
-std::string Variable(const char* name) {
-  const char* value = std::getenv(name);
-  return value == nullptr ? "" : value;
-}
+constexpr int kDefaultWidth = 80, kLeastWidth = 20, kDefaultHeight = 24;
 
 const char* CodeOf(Ink ink) {
   switch (ink) {
@@ -39,7 +34,7 @@ const char* CodeOf(Ink ink) {
   return "0";
 }
 
-// All zero where it is no terminal.
+// Returns zeros if the stream is not a terminal.
 winsize SizeOf(int stream) {
   winsize size = {};
   if (isatty(stream) == 0 || ioctl(stream, TIOCGWINSZ, &size) != 0) return {};
@@ -50,23 +45,23 @@ bool StartsCharacter(char c) { return (static_cast<unsigned char>(c) & 0xC0U) !=
 
 }  // namespace
 
-bool IsTerminal(int stream) { return isatty(stream) != 0 && Variable("TERM") != "dumb"; }
+bool IsTerminal(int stream) { return isatty(stream) != 0 && EnvironmentVariable("TERM") != "dumb"; }
 
 int WidthOf(int stream) {
   const winsize size = SizeOf(stream);
-  return size.ws_col == 0 ? kUsualWidth : std::max<int>(kLeastWidth, size.ws_col);
+  return size.ws_col == 0 ? kDefaultWidth : std::max<int>(kLeastWidth, size.ws_col);
 }
 
 int HeightOf(int stream) {
   const winsize size = SizeOf(stream);
-  return size.ws_row == 0 ? kUsualHeight : size.ws_row;
+  return size.ws_row == 0 ? kDefaultHeight : size.ws_row;
 }
 
-bool HasColour(int stream) { return IsTerminal(stream) && Variable("NO_COLOR").empty(); }
+bool HasColour(int stream) { return IsTerminal(stream) && EnvironmentVariable("NO_COLOR").empty(); }
 
 bool ShowsUnicode() {
   for (const char* name : {"LC_ALL", "LC_CTYPE", "LANG"}) {
-    if (const std::string value = absl::AsciiStrToUpper(Variable(name)); !value.empty()) {
+    if (const std::string value = absl::AsciiStrToUpper(EnvironmentVariable(name)); !value.empty()) {
       return absl::StrContains(value, "UTF-8") || absl::StrContains(value, "UTF8");
     }
   }
@@ -77,12 +72,12 @@ std::string Painted(const std::string& text, Ink ink, int stream) {
   return HasColour(stream) ? absl::StrCat("\x1b[", CodeOf(ink), "m", text, "\x1b[0m") : text;
 }
 
-int PoseMatricesOf(std::string_view text) { return static_cast<int>(std::ranges::count_if(text, StartsCharacter)); }
+int ColumnsOf(std::string_view text) { return static_cast<int>(std::ranges::count_if(text, StartsCharacter)); }
 
 std::string Clipped(const std::string& text, int columns) {
   std::size_t end = 0;
-  for (int seen = 0; end < text.size(); ++end) {
-    if (StartsCharacter(text[end]) && seen++ == columns) break;
+  for (int characters = 0; end < text.size(); ++end) {
+    if (StartsCharacter(text[end]) && characters++ == columns) break;
   }
   return text.substr(0, end);
 }
@@ -91,7 +86,7 @@ std::string Wrapped(const std::string& text, int width, int indent) {
   std::string wrapped;
   int column = 0;
   for (const absl::string_view word : absl::StrSplit(text, ' ', absl::SkipEmpty())) {
-    const int length = PoseMatricesOf({word.data(), word.size()});
+    const int length = ColumnsOf({word.data(), word.size()});
     if (column > 0 && indent + column + 1 + length > width) {
       wrapped += "\n" + std::string(indent, ' ');
       column = 0;

@@ -1,4 +1,4 @@
-// What the terminal can show, and text made to fit it.
+// The terminal's capabilities, and text fitted to its width. A stream is STDOUT_FILENO or STDERR_FILENO.
 #ifndef PHRENIC_CLIENT_TERMINAL_TERMINAL_H_
 #define PHRENIC_CLIENT_TERMINAL_TERMINAL_H_
 
@@ -7,28 +7,27 @@
 
 namespace phrenic::client {
 
-// The streams are named by their descriptors, STDOUT_FILENO or STDERR_FILENO.
-
-// A terminal that can move its cursor: not where TERM is "dumb".
+// True if the stream is a terminal that understands cursor movements. False if TERM is "dumb".
 bool IsTerminal(int stream);
-// Columns, 20 at least; 80 where it is no terminal.
+// Returns the number of columns, at least 20; 80 if the stream is not a terminal.
 int WidthOf(int stream);
-// Lines; 24 where it is no terminal.
+// Returns the number of lines; 24 if the stream is not a terminal.
 int HeightOf(int stream);
-// A terminal, unless NO_COLOR is set to anything (no-color.org).
+// True if the stream is a terminal and NO_COLOR is not set (no-color.org).
 bool HasColour(int stream);
-// Whether the locale is one of UTF-8.
+// True if the locale uses UTF-8.
 bool ShowsUnicode();
 
 enum class Ink { kBold, kDim, kRed, kGreen, kYellow, kCyan };
-// The text in that ink where the stream has colours, and as it is elsewhere.
+// Returns the text with the escape codes of `ink`; unchanged if the stream has no colours.
 std::string Painted(const std::string& text, Ink ink, int stream);
 
-// The characters of UTF-8 text, each counted as one column.
-int PoseMatricesOf(std::string_view text);
-// The first `columns` characters.
+// Returns the number of characters of UTF-8 text. Each character counts as one column.
+int ColumnsOf(std::string_view text);
+// Returns the first `columns` characters.
 std::string Clipped(const std::string& text, int columns);
-// Broken between words into lines of `width` columns, each after the first behind `indent` spaces, which count.
+// Breaks text between words into lines of at most `width` columns. Every line after the first starts with `indent`
+// spaces, which count towards the width. A word longer than a line stays whole.
 std::string Wrapped(const std::string& text, int width, int indent);
 
 }  // namespace phrenic::client

@@ -10,15 +10,15 @@
 #include "server/anatomy/rib.h"
 #include "server/anatomy/sternum.h"
 #include "server/anatomy/vertebra.h"
+#include "server/mesh/units.h"
 
 namespace phrenic::anatomy {
 namespace {
 
 constexpr int kCartilages = 10;
-constexpr double kMetresAMillimetre = 1e-3;
 constexpr double kCoarsest = 50;  // [mm]
 
-// The part's own edge length [mm].
+// The default edge length [mm].
 double DefaultResolution(v1::Structure structure) {
   switch (structure) {
     case v1::STRUCTURE_DIAPHRAGM:
@@ -32,7 +32,7 @@ double DefaultResolution(v1::Structure structure) {
   }
 }
 
-// The finest edge length [mm]: it bounds time and memory (seconds, some hundred megabytes).
+// The finest edge length [mm]; bounds the time to seconds and the memory to some hundred megabytes.
 double FinestResolution(v1::Structure structure) {
   return structure == v1::STRUCTURE_LUNG || structure == v1::STRUCTURE_VERTEBRA ? 2 : 1;
 }
@@ -42,13 +42,13 @@ absl::Status CheckResolution(const v1::Anatomy& part, double resolution_mm) {
   if (resolution_mm == 0 || (resolution_mm >= finest && resolution_mm <= kCoarsest)) return absl::OkStatus();
   return absl::InvalidArgumentError(absl::StrCat("generated.resolution_mm: ", resolution_mm, " is outside ", finest,
                                                  " to ", kCoarsest, " mm for ", v1::Structure_Name(part.structure()),
-                                                 "; 0 takes the part's own"));
+                                                 "; 0 takes the structure's default"));
 }
 
 absl::Status NeedsSide(const v1::Anatomy& part) {
   if (part.side() == v1::SIDE_LEFT || part.side() == v1::SIDE_RIGHT) return absl::OkStatus();
   return absl::InvalidArgumentError(absl::StrCat("anatomy.side: ", v1::Structure_Name(part.structure()),
-                                                 " is on one side; set SIDE_RIGHT or SIDE_LEFT"));
+                                                 " needs a side; set SIDE_RIGHT or SIDE_LEFT"));
 }
 
 absl::Status NeedsNumber(const v1::Anatomy& part, int last) {
@@ -75,7 +75,7 @@ absl::Status CheckPart(const v1::Anatomy& part) {
       if (absl::Status status = NeedsNumber(part, kCartilages); !status.ok()) return status;
       return NeedsSide(part);
     default:
-      return absl::InvalidArgumentError("anatomy.structure: name the part to generate, for example STRUCTURE_RIB");
+      return absl::InvalidArgumentError("anatomy.structure: set the structure to generate, for example STRUCTURE_RIB");
   }
 }
 
@@ -112,7 +112,7 @@ absl::StatusOr<Mesh> Generate(const v1::Anatomy& part, double resolution_mm) {
   if (absl::Status status = CheckPart(part); !status.ok()) return status;
   if (absl::Status status = CheckResolution(part, resolution_mm); !status.ok()) return status;
   Mesh mesh = InMillimetres(part, resolution_mm == 0 ? DefaultResolution(part.structure()) : resolution_mm);
-  mesh.vertices *= kMetresAMillimetre;
+  mesh.vertices *= kMillimetre;
   return mesh;
 }
 

@@ -1,5 +1,5 @@
-// The generated thorax: parametric anatomy, any resolution. Dimensions come from published adult values; each part's
-// file names its sources.
+// The generated thorax: parametric anatomy at any resolution, with published adult dimensions. The header of each
+// structure names its sources. Thread-safe.
 #ifndef PHRENIC_SERVER_ANATOMY_ANATOMY_H_
 #define PHRENIC_SERVER_ANATOMY_ANATOMY_H_
 
@@ -9,10 +9,11 @@
 
 namespace phrenic::anatomy {
 
-// The surface of one part, in metres, in the one frame that all parts share. `resolution_mm` is the aimed edge length;
-// 0 takes the part's own default (the diaphragm's gives 20,000 to 21,000 vertices). The same arguments give the same
-// bits. The diaphragm comes with the regions "tendon", "muscle", "rim", "crus-right", "crus-left".
-// INVALID_ARGUMENT names the field when there is no such part (rib 13, a lung with no side).
+// Returns the closed surface of one structure [m] in the frame common to all structures (LPS, see dimensions.h).
+// `resolution_mm` is the target edge length; 0 takes the structure's default (for the diaphragm 20,000 to 21,000
+// vertices). Deterministic: the same arguments give the same bits. The diaphragm has the regions "tendon", "muscle",
+// "rim", "crus-right" and "crus-left". INVALID_ARGUMENT names the field if the structure does not exist (rib 13, a lung
+// without a side) or the resolution is out of range.
 absl::StatusOr<Mesh> Generate(const v1::Anatomy& part, double resolution_mm);
 
 }  // namespace phrenic::anatomy

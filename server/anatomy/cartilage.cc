@@ -13,13 +13,13 @@ namespace {
 
 constexpr int kTrueRibs = 7;
 
-// Where cartilages 1 to 7 meet the sternum's edge.
+// Where cartilages 1 to 7 meet the edge of the sternum.
 Eigen::Vector3d SternalEnd(int number) {
   const double z = SternalNotch(number);
   return {SternumHalfWidth(z) + 1, SternumLine(z) + 1, z};
 }
 
-// Where cartilages 8 to 10 meet the one above: on its lower edge, in its first half.
+// Where cartilages 8 to 10 meet the one above: at its lower edge, in its lateral half.
 Eigen::Vector3d EndOnCartilageAbove(int number) {
   constexpr int kSamples = 101;
   const Curve above = SmoothCurve(LeftCartilagePath(number - 1), kSamples);
@@ -38,8 +38,8 @@ Curve LeftCartilagePath(int number) {
   const Eigen::Vector3d from = LeftRibPath(number).back();
   const Eigen::Vector3d to = number <= kTrueRibs ? SternalEnd(number) : EndOnCartilageAbove(number);
   const double from_azimuth = AzimuthOf(from), to_azimuth = AzimuthOf(to);
-  const double dip = number >= 5 && number <= 8 ? 2.5 * (number - 4) : 0;       // goes on downwards before it turns up
-  const double late = number >= 5 && number <= 7 ? 1 + 0.2 * (number - 4) : 1;  // and rises late
+  const double dip = number >= 5 && number <= 8 ? 2.5 * (number - 4) : 0;       // descends before it turns up
+  const double late = number >= 5 && number <= 7 ? 1 + 0.2 * (number - 4) : 1;  // exponent; above 1 it rises late
   const int steps = number <= 4 ? 3 : 7;
   Curve path = {from};
   for (int i = 1; i < steps; ++i) {
@@ -49,7 +49,7 @@ Curve LeftCartilagePath(int number) {
     const double z = from.z() + (to.z() - from.z()) * rise - dip * 4 * t * (1 - t) * (1 - t);
     const Eigen::Vector2d on_cage = CageSection(z, 0).Point({std::sin(azimuth), -std::cos(azimuth)});
     const Eigen::Vector3d straight = from + (to - from) * t;
-    const double blend = t * t;  // leaves the cage for the end that it must meet
+    const double blend = t * t;  // from the cage's surface to the straight line that ends at `to`
     path.emplace_back((1 - blend) * on_cage.x() + blend * straight.x(),
                       (1 - blend) * on_cage.y() + blend * straight.y(), z);
   }

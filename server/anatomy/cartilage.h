@@ -1,4 +1,5 @@
-// Costal cartilages: 1 to 7 join the ribs to the sternum, 8 to 10 each the one above; together the costal margin.
+// Costal cartilages. Numbers 1 to 7 join the ribs to the sternum, 8 to 10 join the cartilage above; their lower edges
+// form the costal margin.
 #ifndef PHRENIC_SERVER_ANATOMY_CARTILAGE_H_
 #define PHRENIC_SERVER_ANATOMY_CARTILAGE_H_
 
@@ -6,11 +7,11 @@
 
 namespace phrenic::anatomy {
 
-// Control points of the left cartilage's centreline (number 1 to 10), from the rib's anterior end, along the cage, to
-// the sternum's edge or to the cartilage above [mm].
+// Returns the control points of the left cartilage's centreline (number 1 to 10) [mm]: from the rib's anterior end
+// along the cage to the edge of the sternum or to the cartilage above.
 Curve LeftCartilagePath(int number);
 
-// The left cartilage [mm]; the right one is its mirror image.
+// Returns the left cartilage [mm] with edges of about `edge_length` [mm]; the right one is its mirror image.
 Mesh LeftCartilage(int number, double edge_length);
 
 }  // namespace phrenic::anatomy

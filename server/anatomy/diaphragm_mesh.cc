@@ -12,7 +12,7 @@
 namespace phrenic::anatomy {
 namespace {
 
-// A ball in which edges are at most `edge_length` long; outside they grow by a third of the distance.
+// A ball in which edges are at most `edge_length` long; outside, the limit grows by a third of the distance to it.
 struct FineBall {
   Eigen::Vector3d centre;
   double radius, edge_length;

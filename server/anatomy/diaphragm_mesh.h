@@ -1,5 +1,5 @@
-// The diaphragm as a closed double layer: the thoracic and the abdominal surface, half the gap to either side of the
-// middle surface along its normal, joined along the border and round the two openings; so a sphere with two handles.
+// The generated diaphragm as a closed double layer: the thoracic and the abdominal surface, each half the gap away from
+// the middle surface along its normal, joined along the rim and around the two openings. Genus 2.
 #ifndef PHRENIC_SERVER_ANATOMY_DIAPHRAGM_MESH_H_
 #define PHRENIC_SERVER_ANATOMY_DIAPHRAGM_MESH_H_
 
@@ -7,10 +7,10 @@
 
 namespace phrenic::anatomy {
 
-// In millimetres. `edge_length` [mm] is kept except near the openings and in the crura, which take finer ones where
-// they need them. With n vertices in all, vertex i < n / 2 is thoracic and i + n / 2 faces it on the abdominal surface.
-// Regions: "tendon"; "muscle", all the rest; "rim", the muscle near the costal and lumbar border; "crus-right" and
-// "crus-left", the pillars (not in "rim").
+// Returns the mesh [mm] with edges of about `edge_length` [mm], finer near the openings and in the crura. Vertex 2 i is
+// on the thoracic layer and 2 i + 1 faces it on the abdominal one (UpperVertex, LowerVertex). Regions: "tendon";
+// "muscle", the rest; "rim", the muscle near the costal and lumbar insertions; "crus-right" and "crus-left", disjoint
+// from "rim".
 Mesh DiaphragmMesh(double edge_length);
 
 }  // namespace phrenic::anatomy

@@ -11,21 +11,21 @@
 namespace phrenic::anatomy {
 namespace {
 
-constexpr double kFoldAt = 1.3;      // d of the fold between dome and wall
-constexpr double kSquareness = 2.6;  // m: 1 is a cone's section, 2 a superellipse of degree four
+constexpr double kFoldAt = 1.3;      // d at the fold between dome and wall
+constexpr double kSquareness = 2.6;  // m; the meridian is a superellipse of degree 2 m
 
 double Bump(const Eigen::Vector2d& q, double x, double y, double wide, double deep) {
   const double u = (q.x() - x) / wide, v = (q.y() - y) / deep;
   return std::exp(-u * u - v * v);
 }
 
-// The height of the domes before the margin bends down.
+// Height of the domes, without the bend down at the margin [mm].
 double Top(const Eigen::Vector2d& q) {
   return 194 + 30 * Bump(q, -0.5, 0.05, 0.48, 0.65) + 13.5 * Bump(q, 0.55, 0.15, 0.42, 0.55) +
          10 * Bump(q, 0.05, -0.4, 0.6, 0.5);
 }
 
-// The height at which the sheet leaves the chest wall, by azimuth; lower on the left, as its dome is.
+// Height at which the sheet leaves the chest wall, by azimuth [mm]; lower on the left, like the dome.
 double Fold(const Eigen::Vector2d& azimuth) {
   const double c = -azimuth.y(), s = azimuth.x();
   const double c2 = 2 * c * c - 1, c3 = c * (4 * c * c - 3);
@@ -53,7 +53,7 @@ Meridian OnMeridian(const Eigen::Vector2d& p) {
   return {q, fold + (Top(q) - fold) * std::cos(phi)};
 }
 
-// The point of the meridian at height z; heights fall along it beyond d = 0.8.
+// Returns the plane point of the meridian at height z, by bisection; height decreases along it beyond d = 0.8.
 Eigen::Vector2d AtHeight(const Eigen::Vector2d& azimuth, double z) {
   double low = 0.8, high = 12;
   for (int i = 0; i < 50; ++i) {
@@ -63,7 +63,7 @@ Eigen::Vector2d AtHeight(const Eigen::Vector2d& azimuth, double z) {
   return azimuth * low;
 }
 
-// A control point of the border: azimuth from the front [degrees] and height.
+// A control point of the rim: azimuth from the front [degrees] and height [mm].
 struct RimKnot {
   double degrees, z;
 };
@@ -73,7 +73,7 @@ constexpr RimKnot kBorder[] = {{5, 189},  {12, 183}, {21, 164}, {30, 140}, {39, 
                                {58, 88},  {70, 69},  {85, 52},  {100, 45}, {115, 43}, {128, 44},
                                {138, 54}, {147, 72}, {154, 86}, {160, 91}, {165, 88}};
 
-// The pillars, from the lateral edge round the tip to the medial edge.
+// The crura, from the lateral edge around the tip to the medial edge.
 constexpr RimKnot kRightCrus[] = {{167, 76},   {168.5, 58}, {170, 40}, {171.5, 31}, {173, 16},
                                   {174.5, 18}, {175.5, 33}, {176, 60}, {176.2, 90}, {177.5, 116}};
 constexpr RimKnot kLeftCrus[] = {{167, 78},   {168.5, 68}, {170, 58}, {171.5, 53}, {173, 43},
@@ -87,7 +87,8 @@ Eigen::Vector2d Spline(const std::vector<Eigen::Vector2d>& knots, size_t span, d
          6;
 }
 
-// Control points (azimuth from the front, positive to the left and unwrapped once round, height).
+// Returns the control points around the rim: azimuth from the front, positive to the left, unwrapped to [0, 360)
+// degrees, and height [mm].
 std::vector<Eigen::Vector2d> RimKnots() {
   std::vector<Eigen::Vector2d> knots;
   for (const RimKnot& knot : kBorder) knots.emplace_back(knot.degrees, knot.z);
@@ -102,7 +103,7 @@ std::vector<Eigen::Vector2d> RimKnots() {
   return knots;
 }
 
-// An ellipse on the sheet's tangent plane, carried to the parameter plane.
+// Returns an ellipse in the sheet's tangent plane, semi-axes `across` and `along` [mm], mapped to the parameter plane.
 PlaneLoop Opening(const Eigen::Vector2d& centre, double across, double along) {
   constexpr double kStep = 1e-4;
   constexpr int kSamples = 120;
@@ -116,15 +117,16 @@ PlaneLoop Opening(const Eigen::Vector2d& centre, double across, double along) {
   Eigen::Matrix2d local;
   local.row(0) = first.transpose() * jacobian;
   local.row(1) = second.transpose() * jacobian;
-  const Eigen::Matrix2d back = local.inverse();
+  const Eigen::Matrix2d to_plane = local.inverse();
   PlaneLoop loop;
   for (int i = 0; i < kSamples; ++i) {
     const double angle = 2 * std::numbers::pi * i / kSamples;
-    loop.push_back(centre + back * Eigen::Vector2d(across * std::cos(angle), along * std::sin(angle)));
+    loop.push_back(centre + to_plane * Eigen::Vector2d(across * std::cos(angle), along * std::sin(angle)));
   }
   return loop;
 }
 
+// Returns the distance of q from the segment a b.
 double ToSegment(const Eigen::Vector2d& q, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   const double t = std::clamp((q - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
   return (q - a - t * (b - a)).norm();

@@ -1,14 +1,16 @@
-// The middle surface of the diaphragm as one smooth map from a plane, its border, its openings and its tendon.
+// The middle surface of the generated diaphragm as one smooth map from the plane, with its rim, openings and tendon.
 //
-// The plane point p = d (cos, sin) lies on the meridian of that azimuth (+x left, +y back). With rho(d) = d - 0.1365
-// d^3 below d = 1.3, phi = pi rho^m / 2 (up to pi / 2), q = (sin phi)^(1/m) times the azimuth's unit vector, m = 2.6:
-//   z = fold + (top(q) - fold) cos phi on the domes, z = fold - m pi / 2 (top - fold)(rho - 1) on the wall below the
-//   fold, (x, y) = the cage's cross-section at that z, at q.
-// So each meridian is a superellipse that goes over into the vertical zone of apposition with a continuous tangent.
+// The plane point p = d (cos a, sin a) lies on the meridian of azimuth a (+x left, +y posterior). With
+//   rho(d) = d - 0.1365 d^3 for d < 1.3, linear beyond; m = 2.6; phi = pi rho^m / 2, at most pi / 2;
+//   q = (sin phi)^(1/m) (cos a, sin a):
+//   domes: z = fold + (top(q) - fold) cos phi;
+//   wall below the fold: z = fold - m pi / 2 (top - fold) (rho - 1);
+//   (x, y) = the cage's cross-section at height z, at q.
+// Each meridian is a superellipse that continues into the vertical zone of apposition with a continuous tangent.
 //
-// Sources: domes, saddle, rim and opening levels after the project's physiology notes (right dome at T8, left 15-25 mm
-// lower, saddle 10-15 mm lower, caval opening T8 in the tendon, oesophageal T10 in the muscle, aortic T12 behind the
-// sheet, right crus to L3, left to L2). All lengths in millimetres; pure functions, any thread.
+// Sources: levels of domes, saddle, rim and openings from the project's physiology notes (right dome at T8, left 15-25
+// mm lower, saddle 10-15 mm lower, caval opening at T8 in the tendon, oesophageal at T10 in the muscle, aortic at T12
+// behind the sheet, right crus to L3, left to L2). Lengths in millimetres. Pure functions, thread-safe.
 #ifndef PHRENIC_SERVER_ANATOMY_DIAPHRAGM_SHAPE_H_
 #define PHRENIC_SERVER_ANATOMY_DIAPHRAGM_SHAPE_H_
 
@@ -17,28 +19,30 @@
 
 namespace phrenic::anatomy {
 
-using PlaneLoop = std::vector<Eigen::Vector2d>;  // closed: the last point joins the first
+using PlaneLoop = std::vector<Eigen::Vector2d>;  // a closed polygon; the last point joins the first
 
+// Returns the surface point of a plane point [mm].
 Eigen::Vector3d DiaphragmPoint(const Eigen::Vector2d& p);
 
-// Unit normal towards the thorax: upwards on the domes, outwards on the wall.
+// Returns the unit normal towards the thorax: upwards on the domes, outwards on the wall.
 Eigen::Vector3d DiaphragmNormal(const Eigen::Vector2d& p);
 
-// Height of the dome over disc coordinates q of the cage, |q| <= 1: what the lungs rest on.
+// Returns the height of the dome at disc coordinates q of the cage [mm]. Requires: |q| <= 1. The lungs' bases follow
+// it.
 double DomeHeight(const Eigen::Vector2d& q);
 
-// How far the sheet keeps from the ribs' centrelines [mm].
+// Distance of the sheet from the ribs' centrelines [mm].
 inline constexpr double kDiaphragmInset = 8;
 
-// Densely sampled: the border (anticlockwise seen from above) and the two openings.
+// Return densely sampled loops in the plane: the rim, counter-clockwise seen from above, and the two openings.
 PlaneLoop DiaphragmRim();
 PlaneLoop CavalOpening();
 PlaneLoop OesophagealOpening();
 
-// The trefoil tendon around the caval opening.
+// True in the trefoil central tendon, which contains the caval opening.
 bool InTendon(const Eigen::Vector2d& p);
 
-// In the pillar of that side, below the arcuate ligaments.
+// True in the crus of that side, below the arcuate ligaments.
 bool InRightCrus(const Eigen::Vector2d& p);
 bool InLeftCrus(const Eigen::Vector2d& p);
 

@@ -7,20 +7,20 @@
 namespace phrenic::anatomy {
 namespace {
 
-// Half the width of the cage: widest at the eighth rib, closing over the lungs' tops like an ellipse.
+// Half the width of the cage [mm]: widest at the eighth rib, closing elliptically above the lungs' apices.
 double HalfWidth(double z) {
   constexpr double kWidest = 185, kLargest = 131, kAbove = 216, kBelow = 270;
   const double away = z > kWidest ? (z - kWidest) / kAbove : (kWidest - z) / kBelow;
   return kLargest * std::sqrt(std::max(0.015, 1 - away * away));
 }
 
-// The back of the cage beside the spine: furthest back at the sixth and seventh ribs.
+// y of the back of the cage beside the spine [mm]: most posterior at the sixth and seventh ribs.
 double Back(double z) {
   const double away = z > 235 ? (z - 235) / 150 : (235 - z) / 150;
   return 107 - (z > 235 ? 50 : 20) * away * away;
 }
 
-// Behind the sternum, and straight down below it, with a soft bend at the xiphoid.
+// y of the front of the cage [mm]: behind the sternum, vertical below it, with a smooth bend at the xiphoid.
 double Front(double z) {
   constexpr double kSoft = 12;
   const double bend = kSoft * std::log1p(std::exp((z - 205) / kSoft));
@@ -37,7 +37,7 @@ VertebralBody BodyOfVertebra(int number) {
   VertebralBody body{};
   double z = 0;
   for (int n = kVertebrae; n >= number; --n) {
-    const double up = static_cast<double>(kVertebrae - n) / (kVertebrae - 1);  // 0 at L3, 1 at T1
+    const double up = static_cast<double>(kVertebrae - n) / (kVertebrae - 1);  // from 0 at L3 to 1 at T1
     const double height = 28 - 12 * up;
     body.bottom = z;
     body.top = z + height;
@@ -56,9 +56,10 @@ CageSection::CageSection(double z, double inset)
 
 namespace {
 
-constexpr double kCageSquareness = 0.3;  // 0 is an ellipse
-constexpr double kColumnHalfWidth = 33;  // of the vertebral column with the muscles beside it [mm]
+constexpr double kCageSquareness = 0.3;  // 0 gives an ellipse
+constexpr double kColumnHalfWidth = 33;  // of the vertebral column with the paraspinal muscles [mm]
 
+// Relative depth of the vertebral column's impression at x [mm].
 double Pressed(double x) { return 1 / (1 + std::pow(x / kColumnHalfWidth, 4)); }
 
 }  // namespace
@@ -76,7 +77,7 @@ Eigen::Vector2d CageSection::DiscCoordinates(const Eigen::Vector2d& point) const
 }
 
 double SternumLine(double z) {
-  constexpr double kSoft = 5;  // the xiphoid bends backwards
+  constexpr double kSoft = 5;  // width of the xiphoid's posterior bend [mm]
   return -99 + 0.62 * kSoft * std::log1p(std::exp((z - 210) / kSoft)) - 0.12 * (z - 210);
 }
 

@@ -1,9 +1,9 @@
-// The laws that all generated parts share, so that they fit each other: the curve of the spine and the cross-section of
-// the rib cage at every height.
+// Dimensions common to all generated structures, so that they fit together: the curve of the spine and the
+// cross-section of the rib cage at every height.
 //
-// Frame: patient frame LPS (+x left, +y posterior, +z superior); x = 0 is the midsagittal plane, z = 0 the lower end
-// plate of L3 (disc L3/L4), y = 0 the mid-coronal plane of the lower rib cage. The laws are written in millimetres, as
-// anatomy gives them; Generate turns the finished surfaces into metres.
+// Frame: LPS (+x left, +y posterior, +z superior). x = 0 is the midsagittal plane, z = 0 the lower end plate of L3
+// (disc L3/L4), y = 0 the mid-coronal plane of the lower rib cage. Lengths are in millimetres here; Generate returns
+// metres. Thread-safe.
 //
 // Sources: rounded adult dimensions (vertebral bodies 17 to 28 mm high, transverse chest 26 cm, lower chest 20 cm deep,
 // sternum tilted by 25-27 degrees, thoracic kyphosis with its vertex at T6) of general anatomy; rib cage and diaphragm
@@ -18,10 +18,11 @@ namespace phrenic::anatomy {
 inline constexpr int kRibs = 12;
 inline constexpr int kVertebrae = 15;  // T1 to T12, then L1 to L3
 
-// y of the fronts of the vertebral bodies at height z: one cosine, convex backwards at T6, forwards at L3 [mm].
+// Returns y of the anterior faces of the vertebral bodies at height z [mm]: y = 20 + 25 cos(pi (z - 290) / 290),
+// kyphotic at T6 and lordotic at L3.
 double SpineFront(double z);
 
-// dy/dz of the spine's curve.
+// Returns dy/dz of SpineFront.
 double SpineSlope(double z);
 
 struct VertebralBody {
@@ -30,16 +31,17 @@ struct VertebralBody {
   double Middle() const { return (bottom + top) / 2; }
 };
 
-// Number 1 (T1) to 15 (L3), stacked upwards from z = 0 with discs of 8 mm (lumbar) to 3 mm (upper thoracic).
+// Returns vertebra 1 (T1) to 15 (L3). They are stacked upwards from z = 0, with discs of 8 mm (lumbar) to 3 mm (upper
+// thoracic) between.
 VertebralBody BodyOfVertebra(int number);
 
-// The horizontal cross-section of the cage that carries the ribs' centrelines, moved inwards by `inset` [mm]: a rounded
-// rectangle with the vertebral column pressed into its back.
+// The horizontal cross-section of the cage surface that holds the ribs' centrelines, offset inwards by `inset` [mm]: a
+// rounded rectangle with an impression of the vertebral column. Immutable, thread-safe.
 class CageSection {
  public:
   CageSection(double z, double inset);
 
-  // Unit-disc coordinates q (q.x to the left, q.y backwards; |q| = 1 is the outline) to (x, y) [mm], and back.
+  // Map unit-disc coordinates q (+x left, +y posterior; |q| = 1 is the outline) to (x, y) [mm], and back.
   Eigen::Vector2d Point(const Eigen::Vector2d& q) const;
   Eigen::Vector2d DiscCoordinates(const Eigen::Vector2d& point) const;
 
@@ -47,7 +49,7 @@ class CageSection {
   double half_width_, half_depth_, centre_, column_;
 };
 
-// y of the middle of the sternum at height z [mm].
+// Returns y of the middle of the sternum at height z [mm].
 double SternumLine(double z);
 
 }  // namespace phrenic::anatomy

@@ -10,20 +10,20 @@
 namespace phrenic::anatomy {
 namespace {
 
-// The border's edges as the triangles run along them.
-std::vector<std::pair<int, int>> BorderEdges(const Sheet& sheet) {
+// Returns the directed boundary edges, in the winding of their triangles.
+std::vector<std::pair<int, int>> BoundaryEdges(const Sheet& sheet) {
   std::set<std::pair<int, int>> along;
   for (Eigen::Index t = 0; t < sheet.triangles.cols(); ++t) {
     for (int k = 0; k < 3; ++k) along.emplace(sheet.triangles(k, t), sheet.triangles((k + 1) % 3, t));
   }
-  std::vector<std::pair<int, int>> border;
+  std::vector<std::pair<int, int>> boundary;
   for (const auto& [a, b] : along) {
-    if (!along.contains({b, a})) border.emplace_back(a, b);
+    if (!along.contains({b, a})) boundary.emplace_back(a, b);
   }
-  return border;
+  return boundary;
 }
 
-// The gap narrows to the border within 8 mm.
+// Returns the gap at a vertex [mm]; it narrows towards the boundary within 8 mm.
 double Gap(const Sheet& sheet, int vertex) {
   constexpr double kTaper = 8;
   double nearest = kTaper;
@@ -58,7 +58,7 @@ Mesh DoubleLayer(const Sheet& sheet, const SheetNormal& normal) {
     const Eigen::Vector3i v = sheet.triangles.col(t);
     triangles.emplace_back(LowerVertex(v[0]), LowerVertex(v[2]), LowerVertex(v[1]));
   }
-  for (const auto& [a, b] : BorderEdges(sheet)) {
+  for (const auto& [a, b] : BoundaryEdges(sheet)) {
     triangles.emplace_back(UpperVertex(b), UpperVertex(a), LowerVertex(a));
     triangles.emplace_back(UpperVertex(b), LowerVertex(a), LowerVertex(b));
   }

@@ -1,5 +1,5 @@
-// A sheet as a closed double layer: a surface half the gap to either side of it, joined along its border and round its
-// openings. With h openings it is a sphere with h handles.
+// A sheet as a closed double layer: two surfaces, each half the gap away along the normal, joined along the boundary
+// and around the openings. With h openings the genus is h.
 #ifndef PHRENIC_SERVER_ANATOMY_DOUBLE_LAYER_H_
 #define PHRENIC_SERVER_ANATOMY_DOUBLE_LAYER_H_
 
@@ -10,21 +10,21 @@
 namespace phrenic::anatomy {
 
 inline constexpr double kDiaphragmGap = 3;  // between the layers [mm]
-inline constexpr double kBorderGap = 2.2;   // along the border and the openings, so that the edge is thin
+inline constexpr double kBorderGap = 2.2;   // at the boundary and the openings [mm]
 
-// Of the upper layer, at a point of the plane; unit.
+// The unit normal towards the upper layer at a plane point.
 using SheetNormal = std::function<Eigen::Vector3d(const Eigen::Vector2d&)>;
 
-// Where vertex i of the sheet lies in the double layer's mesh. Those that face each other come one after the other: a
-// rigid link's ends, and what joins the layers, are then fetched together.
+// The indices of vertex i of the sheet in the double layer. Opposite vertices are adjacent in memory, because links
+// between the layers read both.
 constexpr int UpperVertex(int i) { return 2 * i; }
 constexpr int LowerVertex(int i) { return 2 * i + 1; }
 constexpr bool IsUpper(int vertex) { return vertex % 2 == 0; }
 
-// Without regions.
+// Returns the closed mesh in the sheet's unit, without regions.
 Mesh DoubleLayer(const Sheet& sheet, const SheetNormal& normal);
 
-// From a vertex of the sheet to the nearest one of the loop.
+// Returns the distance from a vertex of the sheet to the nearest vertex of the loop.
 double LoopDistance(const Sheet& sheet, const std::vector<int>& loop, int vertex);
 
 }  // namespace phrenic::anatomy

@@ -21,7 +21,7 @@ class Collapser {
     }
   }
 
-  // One sweep over the edges as they are now; false when nothing could be merged.
+  // Collapses short edges, shortest first, at most one in each neighbourhood. Returns false if none could be collapsed.
   bool Sweep(double shortest) {
     std::vector<std::tuple<double, int, int>> edges;
     for (int t = 0; t < static_cast<int>(triangles_.cols()); ++t) {
@@ -33,18 +33,19 @@ class Collapser {
       }
     }
     std::sort(edges.begin(), edges.end());
-    bool merged = false;
+    bool collapsed = false;
     std::vector<bool> touched(points_.size(), false);
     for (const auto& [length, a, b] : edges) {
-      if (touched[a] || touched[b] || !MayMerge(a, b)) continue;
+      if (touched[a] || touched[b] || !CanCollapse(a, b)) continue;
       for (const int n : Around(a)) touched[n] = true;
       for (const int n : Around(b)) touched[n] = true;
-      Merge(a, b);
-      merged = true;
+      Collapse(a, b);
+      collapsed = true;
     }
-    return merged;
+    return collapsed;
   }
 
+  // Removes dead vertices and triangles.
   void Compact() {
     std::vector<int> renumbered(points_.size(), -1);
     std::vector<Eigen::Vector3d> kept;
@@ -78,7 +79,8 @@ class Collapser {
 
   bool Has(int t, int vertex) const { return (triangles_.col(t).array() == vertex).any(); }
 
-  bool MayMerge(int a, int b) const {
+  // Checks the link condition, the length limit and the normals.
+  bool CanCollapse(int a, int b) const {
     const std::vector<int> around_a = Around(a), around_b = Around(b);
     if (!std::binary_search(around_a.begin(), around_a.end(), b)) return false;
     std::vector<int> shared;
@@ -89,11 +91,11 @@ class Collapser {
     const auto too_far = [&](int n) { return (points_[n] - middle).norm() > longest_; };
     if (std::any_of(around_a.begin(), around_a.end(), too_far)) return false;
     if (std::any_of(around_b.begin(), around_b.end(), too_far)) return false;
-    return KeepsFacing(a, b, middle) && KeepsFacing(b, a, middle);
+    return KeepsNormals(a, b, middle) && KeepsNormals(b, a, middle);
   }
 
-  // The triangles at `moved` that stay keep facing about the same way.
-  bool KeepsFacing(int moved, int other, const Eigen::Vector3d& to) const {
+  // True if no remaining triangle at `moved` turns by more than 60 degrees or degenerates when it moves to `to`.
+  bool KeepsNormals(int moved, int other, const Eigen::Vector3d& to) const {
     for (const int t : fans_[moved]) {
       if (Has(t, other)) continue;
       std::array<Eigen::Vector3d, 3> before, after;
@@ -108,7 +110,7 @@ class Collapser {
     return true;
   }
 
-  void Merge(int a, int b) {
+  void Collapse(int a, int b) {
     points_[a] = (points_[a] + points_[b]) / 2;
     for (const int t : std::vector<int>(fans_[b])) {
       if (Has(t, a)) {
@@ -127,7 +129,7 @@ class Collapser {
   double longest_;
   std::vector<Eigen::Vector3d>& points_;
   Triangles& triangles_;
-  std::vector<std::vector<int>> fans_;
+  std::vector<std::vector<int>> fans_;  // the triangles at each vertex
   std::vector<bool> alive_;
 };
 

@@ -1,4 +1,4 @@
-// Coarsens a closed triangle surface by merging the ends of short edges.
+// Coarsens a closed triangle surface by edge collapse.
 #ifndef PHRENIC_SERVER_ANATOMY_EDGE_COLLAPSE_H_
 #define PHRENIC_SERVER_ANATOMY_EDGE_COLLAPSE_H_
 
@@ -9,9 +9,9 @@
 
 namespace phrenic::anatomy {
 
-// Merges the ends of edges shorter than `shortest` at their middles, shortest first, until none is left that may be
-// merged: the surface must stay a manifold (the ends share exactly two neighbours), no triangle may turn by more than
-// 60 degrees and no edge grow past `longest`. Vertices and triangles are renumbered without gaps.
+// Collapses edges shorter than `shortest` to their midpoints, shortest first, until none can be collapsed. A collapse
+// must keep the surface manifold (link condition: the ends share exactly two neighbours), turn no triangle by more than
+// 60 degrees and make no edge longer than `longest`. Renumbers vertices and triangles contiguously. Deterministic.
 void CollapseShortEdges(double shortest, double longest, std::vector<Eigen::Vector3d>& points, Triangles& triangles);
 
 }  // namespace phrenic::anatomy

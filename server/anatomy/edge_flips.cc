@@ -14,18 +14,18 @@ double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Ve
   return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
 }
 
-// Cotangent of the angle at c between a and b.
+// Returns the cotangent of the angle at c in the triangle a b c.
 double Cotangent(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
   const Eigen::Vector3d u = a - c, v = b - c;
   return u.dot(v) / std::max(1e-12, u.cross(v).norm());
 }
 
-// Triangles with the neighbour across each side; side k runs from corner k to corner k + 1.
+// Triangle adjacency: the triangle across each edge; edge k of a triangle joins corners k and k + 1.
 class Neighbours {
  public:
   explicit Neighbours(Triangles& triangles) : triangles_(triangles), across_(3, triangles.cols()) {
     struct HalfEdge {
-      int low, high, triangle, side;
+      int low, high, triangle, edge;
     };
     std::vector<HalfEdge> edges;
     for (int t = 0; t < static_cast<int>(triangles.cols()); ++t) {
@@ -39,24 +39,24 @@ class Neighbours {
     across_.setConstant(-1);
     for (size_t i = 0; i + 1 < edges.size(); ++i) {
       if (edges[i].low != edges[i + 1].low || edges[i].high != edges[i + 1].high) continue;
-      across_(edges[i].side, edges[i].triangle) = edges[i + 1].triangle;
-      across_(edges[i + 1].side, edges[i + 1].triangle) = edges[i].triangle;
+      across_(edges[i].edge, edges[i].triangle) = edges[i + 1].triangle;
+      across_(edges[i + 1].edge, edges[i + 1].triangle) = edges[i].triangle;
     }
   }
 
   int Across(int t, int k) const { return across_(k, t); }
 
-  // The side of triangle t that borders triangle other.
-  int SideTowards(int t, int other) const {
+  // Returns the edge of triangle t that it shares with triangle `other`, or -1.
+  int EdgeTowards(int t, int other) const {
     for (int k = 0; k < 3; ++k) {
       if (across_(k, t) == other) return k;
     }
     return -1;
   }
 
-  // (a, b, c) and (b, a, d) become (c, d, b) and (d, c, a).
+  // Flips edge k of t: triangles (a, b, c) and (b, a, d) become (c, d, b) and (d, c, a).
   void Flip(int t, int k) {
-    const int u = across_(k, t), j = SideTowards(u, t);
+    const int u = across_(k, t), j = EdgeTowards(u, t);
     const int a = triangles_(k, t), b = triangles_((k + 1) % 3, t);
     const int c = triangles_((k + 2) % 3, t), d = triangles_((j + 2) % 3, u);
     const int beyond_bc = across_((k + 1) % 3, t), beyond_ca = across_((k + 2) % 3, t);
@@ -65,8 +65,8 @@ class Neighbours {
     across_.col(t) << u, beyond_db, beyond_bc;
     triangles_.col(u) << d, c, a;
     across_.col(u) << t, beyond_ca, beyond_ad;
-    if (beyond_db >= 0) across_(SideTowards(beyond_db, u), beyond_db) = t;
-    if (beyond_ca >= 0) across_(SideTowards(beyond_ca, t), beyond_ca) = u;
+    if (beyond_db >= 0) across_(EdgeTowards(beyond_db, u), beyond_db) = t;
+    if (beyond_ca >= 0) across_(EdgeTowards(beyond_ca, t), beyond_ca) = u;
   }
 
  private:
@@ -74,11 +74,13 @@ class Neighbours {
   Eigen::Matrix3Xi across_;
 };
 
-// The edge a-b of the triangles (a, b, c) and (b, a, d), about to become c-d.
+// An edge a-b between the triangles (a, b, c) and (b, a, d), to be flipped to c-d.
 struct Diamond {
   int a, b, c, d;
 };
 
+// Flips every edge that is not Delaunay (cot c + cot d < 0) and for which `allowed(diamond)`, in passes until nothing
+// changes. Calls `flipped(diamond)` after each flip.
 template <typename Allowed, typename Flipped>
 void Flip(const std::vector<Eigen::Vector3d>& points, Triangles& triangles, Allowed allowed, Flipped flipped) {
   constexpr int kPasses = 30;
@@ -92,7 +94,7 @@ void Flip(const std::vector<Eigen::Vector3d>& points, Triangles& triangles, Allo
         const int u = neighbours.Across(t, k);
         if (u < 0) continue;
         const Diamond at{triangles(k, t), triangles((k + 1) % 3, t), triangles((k + 2) % 3, t),
-                         triangles((neighbours.SideTowards(u, t) + 2) % 3, u)};
+                         triangles((neighbours.EdgeTowards(u, t) + 2) % 3, u)};
         const double facing =
             Cotangent(points[at.a], points[at.b], points[at.c]) + Cotangent(points[at.a], points[at.b], points[at.d]);
         if (facing > -kSlack || !allowed(at)) continue;
@@ -106,7 +108,7 @@ void Flip(const std::vector<Eigen::Vector3d>& points, Triangles& triangles, Allo
 
 int64_t Key(int a, int b) { return (static_cast<int64_t>(std::min(a, b)) << 32) + std::max(a, b); }
 
-// Whether the diamond is flat enough for either diagonal.
+// True if both triangles after the flip face within 60 degrees of the diamond's mean normal.
 bool Flat(const std::vector<Eigen::Vector3d>& points, const Diamond& at) {
   const auto normal = [&](int a, int b, int c) {
     return Eigen::Vector3d((points[b] - points[a]).cross(points[c] - points[a]));
@@ -120,10 +122,10 @@ bool Flat(const std::vector<Eigen::Vector3d>& points, const Diamond& at) {
 
 void FlipToDelaunay(const std::vector<Eigen::Vector2d>& plane, const std::vector<Eigen::Vector3d>& points,
                     Triangles& triangles) {
-  const auto anticlockwise = [&](const Diamond& at) {
+  const auto convex = [&](const Diamond& at) {
     return Cross(plane[at.c], plane[at.d], plane[at.b]) > 0 && Cross(plane[at.d], plane[at.c], plane[at.a]) > 0;
   };
-  Flip(points, triangles, anticlockwise, [](const Diamond&) {});
+  Flip(points, triangles, convex, [](const Diamond&) {});
 }
 
 void FlipToDelaunay(const std::vector<Eigen::Vector3d>& points, Triangles& triangles) {

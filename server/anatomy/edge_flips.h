@@ -1,4 +1,4 @@
-// Improves the triangles of a surface by exchanging diagonals.
+// Intrinsic Delaunay triangulation of a surface by edge flips.
 #ifndef PHRENIC_SERVER_ANATOMY_EDGE_FLIPS_H_
 #define PHRENIC_SERVER_ANATOMY_EDGE_FLIPS_H_
 
@@ -9,13 +9,13 @@
 
 namespace phrenic::anatomy {
 
-// Flips until every inner edge is Delaunay on the surface (the two angles facing it sum to at most pi, measured in
-// `points`), as long as the triangles stay anticlockwise in the plane. Border edges stay.
+// Flips interior edges until each is Delaunay on the surface (its two opposite angles, measured in `points`, sum to at
+// most pi) or its flip would make a triangle clockwise in `plane`. At most 30 passes. Deterministic.
 void FlipToDelaunay(const std::vector<Eigen::Vector2d>& plane, const std::vector<Eigen::Vector3d>& points,
                     Triangles& triangles);
 
-// The same for a closed surface: a flip may turn no triangle by more than 60 degrees from its neighbour's facing and
-// may not make an edge that is there already.
+// The same for a closed surface in space. A flip must keep both triangles within 60 degrees of their mean normal and
+// must not create an existing edge.
 void FlipToDelaunay(const std::vector<Eigen::Vector3d>& points, Triangles& triangles);
 
 }  // namespace phrenic::anatomy

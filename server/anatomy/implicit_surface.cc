@@ -5,18 +5,20 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
 #include <unordered_map>
 #include <vector>
 
 #include "server/anatomy/remesh.h"
+#include "server/mesh/renumber.h"
+#include "server/mesh/topology.h"
 
 namespace phrenic::anatomy {
 namespace {
 
-class Marcher {
+// Marching tetrahedra on a cubic grid whose nodes are sampled once.
+class MarchingTetrahedra {
  public:
-  Marcher(const Field& field, const Box& box, double cell) : low_(box.low), cell_(cell) {
+  MarchingTetrahedra(const Field& field, const Box& box, double cell) : low_(box.low), cell_(cell) {
     size_ = ((box.high - box.low) / cell).array().ceil().cast<int>() + 2;
     values_.resize(static_cast<size_t>(size_.prod()));
     for (int k = 0; k < size_.z(); ++k) {
@@ -24,14 +26,14 @@ class Marcher {
         for (int i = 0; i < size_.x(); ++i) {
           const int node = Node({i, j, k});
           const bool border = ((Eigen::Array3i(i, j, k) == 0) || (Eigen::Array3i(i, j, k) == size_.array() - 1)).any();
-          const double value = field(Place(node));
-          values_[node] = border ? std::max(value, 0.1 * cell) : value;  // closed whatever the field does there
+          const double value = field(PositionOf(node));
+          values_[node] = border ? std::max(value, 0.1 * cell) : value;  // closes the surface at the box
         }
       }
     }
   }
 
-  Mesh March() {
+  Mesh Run() {
     for (int k = 0; k + 1 < size_.z(); ++k) {
       for (int j = 0; j + 1 < size_.y(); ++j) {
         for (int i = 0; i + 1 < size_.x(); ++i) Cube({i, j, k});
@@ -48,7 +50,7 @@ class Marcher {
  private:
   int Node(const Eigen::Vector3i& at) const { return (at.z() * size_.y() + at.y()) * size_.x() + at.x(); }
 
-  Eigen::Vector3d Place(int node) const {
+  Eigen::Vector3d PositionOf(int node) const {
     const int i = node % size_.x(), j = node / size_.x() % size_.y(), k = node / (size_.x() * size_.y());
     return low_ + cell_ * (Eigen::Vector3d(i, j, k) - Eigen::Vector3d::Constant(0.5));
   }
@@ -75,30 +77,33 @@ class Marcher {
     for (const int node : nodes) (In(node) ? in : out).push_back(node);
     if (in.empty() || out.empty()) return;
     if (in.size() == 1) {
-      Triangle(in[0], out[0], Cut(in[0], out[0]), Cut(in[0], out[1]), Cut(in[0], out[2]));
+      Triangle(in[0], out[0], CutPoint(in[0], out[0]), CutPoint(in[0], out[1]), CutPoint(in[0], out[2]));
     } else if (out.size() == 1) {
-      Triangle(in[0], out[0], Cut(in[0], out[0]), Cut(in[1], out[0]), Cut(in[2], out[0]));
+      Triangle(in[0], out[0], CutPoint(in[0], out[0]), CutPoint(in[1], out[0]), CutPoint(in[2], out[0]));
     } else {
-      const int p = Cut(in[0], out[0]), q = Cut(in[0], out[1]), r = Cut(in[1], out[1]), s = Cut(in[1], out[0]);
+      const int p = CutPoint(in[0], out[0]), q = CutPoint(in[0], out[1]), r = CutPoint(in[1], out[1]),
+                s = CutPoint(in[1], out[0]);
       Triangle(in[0], out[0], p, q, r);
       Triangle(in[0], out[0], p, r, s);
     }
   }
 
-  // Turned so that it faces from the inner node to the outer one, which lie on either side of it.
+  // Adds a triangle facing from the inner node to the outer one, which lie on opposite sides of it.
   void Triangle(int in, int out, int a, int b, int c) {
     const Eigen::Vector3d normal = (points_[b] - points_[a]).cross(points_[c] - points_[a]);
-    const double side = normal.dot(Place(out) - points_[a]) - normal.dot(Place(in) - points_[a]);
+    const double side = normal.dot(PositionOf(out) - points_[a]) - normal.dot(PositionOf(in) - points_[a]);
     triangles_.emplace_back(side > 0 ? Eigen::Vector3i(a, b, c) : Eigen::Vector3i(a, c, b));
   }
 
-  int Cut(int a, int b) {
+  // Returns the vertex where the edge between two nodes crosses zero, linearly interpolated. It stays 8 % of the edge
+  // away from the nodes, which avoids degenerate triangles.
+  int CutPoint(int a, int b) {
     const int64_t key = static_cast<int64_t>(std::min(a, b)) * size_.prod() + std::max(a, b);
     const auto [found, added] = cuts_.try_emplace(key, static_cast<int>(points_.size()));
     if (added) {
       const int low = std::min(a, b), high = std::max(a, b);
       const double t = std::clamp(values_[low] / (values_[low] - values_[high]), 0.08, 0.92);
-      points_.emplace_back((1 - t) * Place(low) + t * Place(high));
+      points_.emplace_back((1 - t) * PositionOf(low) + t * PositionOf(high));
     }
     return found->second;
   }
@@ -112,59 +117,27 @@ class Marcher {
   std::vector<Eigen::Vector3i> triangles_;
 };
 
-int Root(std::vector<int>& parent, int i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-
-// Only the component with the most triangles: no crumbs where the field is thinner than a cell.
-Mesh LargestComponent(const Mesh& mesh) {
-  std::vector<int> parent(static_cast<size_t>(mesh.vertices.cols()));
-  std::iota(parent.begin(), parent.end(), 0);
-  for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
-    for (int k = 1; k < 3; ++k) parent[Root(parent, mesh.triangles(k, t))] = Root(parent, mesh.triangles(0, t));
-  }
-  std::vector<int> size(parent.size(), 0);
-  for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) ++size[Root(parent, mesh.triangles(0, t))];
-  const auto largest = static_cast<int>(std::max_element(size.begin(), size.end()) - size.begin());
-  std::vector<int> renumbered(parent.size(), -1);
-  Mesh kept;
-  kept.vertices.resize(3, mesh.vertices.cols());
-  kept.triangles.resize(3, mesh.triangles.cols());
-  int vertices = 0, triangles = 0;
-  for (int i = 0; i < static_cast<int>(parent.size()); ++i) {
-    if (Root(parent, i) != largest) continue;
-    kept.vertices.col(vertices) = mesh.vertices.col(i);
-    renumbered[i] = vertices++;
-  }
-  for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
-    const Eigen::Vector3i v = mesh.triangles.col(t);
-    if (renumbered[v[0]] < 0) continue;
-    kept.triangles.col(triangles++) << renumbered[v[0]], renumbered[v[1]], renumbered[v[2]];
-  }
-  kept.vertices.conservativeResize(3, vertices);
-  kept.triangles.conservativeResize(3, triangles);
-  return kept;
+// Keeps the connected component with the most triangles. Drops fragments where the field is thinner than a cell.
+Mesh LargestComponent(Mesh mesh) {
+  const std::vector<std::vector<int>> components = Components(mesh);
+  const auto largest = std::max_element(components.begin(), components.end(),
+                                        [](const auto& a, const auto& b) { return a.size() < b.size(); });
+  if (largest == components.end()) return mesh;
+  std::vector<bool> keep(static_cast<size_t>(mesh.triangles.cols()), false);
+  for (const int t : *largest) keep[t] = true;
+  KeepTriangles(keep, mesh);
+  DropUnusedVertices(mesh);
+  return mesh;
 }
 
 }  // namespace
 
 Mesh Polygonise(const Field& field, const Box& box, double cell) {
-  return LargestComponent(Marcher(field, box, cell).March());
+  return LargestComponent(MarchingTetrahedra(field, box, cell).Run());
 }
 
 Mesh ImplicitSurface(const Field& field, const Box& box, double edge_length, double detail) {
   return Remesh(field, Polygonise(field, box, std::min(0.6 * edge_length, detail)), edge_length);
-}
-
-double SmoothMin(double a, double b, double k) {
-  const double h = std::max(k - std::abs(a - b), 0.0) / k;
-  return std::min(a, b) - h * h * k / 4;
-}
-
-double Capsule(const Eigen::Vector3d& x, const Eigen::Vector3d& a, const Eigen::Vector3d& b, double ra, double rb) {
-  const double t = std::clamp((x - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
-  return (x - a - t * (b - a)).norm() - (ra + t * (rb - ra));
 }
 
 }  // namespace phrenic::anatomy

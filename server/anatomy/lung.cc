@@ -11,21 +11,23 @@
 namespace phrenic::anatomy {
 namespace {
 
-constexpr double kPleura = 5;       // from the ribs' centrelines to the lung
-constexpr double kAboveDome = 3.5;  // from the sheet's middle to the lung's base, square to it
-constexpr double kTop = 393;        // of the apex
+constexpr double kPleura = 5;       // distance of the lung from the ribs' centrelines [mm]
+constexpr double kAboveDome = 3.5;  // distance of the base from the diaphragm's middle surface [mm]
+constexpr double kTop = 393;        // z of the apex [mm]
 
 double SmoothMax(double a, double b, double k) { return -SmoothMin(-a, -b, k); }
 
-// The chest wall, which narrows to the cupola of the pleura.
+// The fields below are approximate signed distances [mm], negative where lung may be.
+
+// Inside the chest wall, which narrows to the pleural cupola.
 double InsideCage(const Eigen::Vector3d& x) {
-  const double pleura = kPleura + 4 * std::clamp((x.z() - 315) / 40, 0.0, 1.0);  // the first ribs lie flat
+  const double pleura = kPleura + 4 * std::clamp((x.z() - 315) / 40, 0.0, 1.0);  // wider where the first ribs lie flat
   const Eigen::Vector2d q = CageSection(std::min(x.z(), kTop + 2), pleura).DiscCoordinates(x.head<2>());
   const double narrowing = std::clamp((kTop - x.z()) / 120, 0.3, 1.0);
   return SmoothMax((q.norm() - 1) * 80 * narrowing, x.z() - kTop, 14);
 }
 
-// Height over the dome, made a distance by the dome's slope.
+// Above the diaphragm: the height difference to the dome, divided by the gradient's magnitude.
 double AboveDiaphragm(const Eigen::Vector3d& x) {
   constexpr double kStep = 0.01, kRadius = 105, kRecess = 0.93;
   if (x.z() > 260) return 230 - x.z();
@@ -35,17 +37,17 @@ double AboveDiaphragm(const Eigen::Vector3d& x) {
   const Eigen::Vector2d unit = q / std::max(q.norm(), 1e-9);
   const double slope = (DomeHeight((r - kStep) * unit) - DomeHeight((r + kStep) * unit)) / (2 * kStep * kRadius);
   const double above = kAboveDome + (DomeHeight(q) - x.z()) / std::hypot(1.0, slope);
-  return SmoothMax(above, DomeHeight(kRecess * unit) - x.z(), 6);  // the recess below stays empty
+  return SmoothMax(above, DomeHeight(kRecess * unit) - x.z(), 6);  // leaves the costophrenic recess empty
 }
 
-// What the heart takes: it reaches the chest wall on the left, where the lung leaves the cardiac notch.
+// Outside the heart, which reaches the chest wall on the left (cardiac notch of the left lung).
 double BesideHeart(const Eigen::Vector3d& x, bool left) {
   const Eigen::Vector3d centre = left ? Eigen::Vector3d(20, -42, 238) : Eigen::Vector3d(8, -26, 248);
   const Eigen::Vector3d reach = left ? Eigen::Vector3d(46, 50, 56) : Eigen::Vector3d(40, 28, 54);
   return (1 - (x - centre).cwiseQuotient(reach).norm()) * 46;
 }
 
-// Heart, great vessels and spine.
+// Outside heart, great vessels and spine.
 double OutsideMediastinum(const Eigen::Vector3d& x, bool left) {
   const double in_front = std::clamp((10 - x.y()) / 60, 0.0, 1.0);
   const double wall = 19 - 11 * in_front - (left ? x.x() : -x.x());

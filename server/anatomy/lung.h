@@ -1,4 +1,5 @@
-// Lungs: what the cage leaves above the diaphragm on either side of the mediastinum. They are seen, not simulated.
+// The generated lungs: the space in the cage above the diaphragm on either side of the mediastinum. Displayed, not
+// simulated.
 #ifndef PHRENIC_SERVER_ANATOMY_LUNG_H_
 #define PHRENIC_SERVER_ANATOMY_LUNG_H_
 
@@ -6,10 +7,10 @@
 
 namespace phrenic::anatomy {
 
-// The smooth intersection of the inside of the cage, of what lies above the diaphragm's domes by a few millimetres and
-// of what lies beside spine, mediastinum and heart [mm]. The base follows the dome; the costophrenic recess below its
-// edge is free of lung; the apex rises above the first rib; the heart's impression is deeper on the left (the cardiac
-// notch). Genus 0.
+// Return the surface [mm] of the smooth intersection of three fields: inside the cage, a few millimetres above the
+// diaphragm's domes, and outside spine, mediastinum and heart. The base follows the dome; the costophrenic recess is
+// empty; the apex rises above the first rib; the cardiac impression is deeper on the left. Closed, genus 0, edges of
+// about `edge_length` [mm].
 Mesh LeftLung(double edge_length);
 Mesh RightLung(double edge_length);
 

@@ -9,7 +9,7 @@ namespace {
 using Diagram = boost::polygon::voronoi_diagram<double>;
 using GridPoint = boost::polygon::point_data<int>;
 
-// The exact predicates need whole numbers.
+// Scales the points to integers, which Boost's exact predicates require.
 std::vector<GridPoint> OnGrid(const std::vector<Eigen::Vector2d>& points) {
   constexpr double kGrid = 5e8;
   double extent = 1e-300;
@@ -23,7 +23,7 @@ std::vector<GridPoint> OnGrid(const std::vector<Eigen::Vector2d>& points) {
   return grid;
 }
 
-// The sites round a Voronoi vertex, in order.
+// Returns the sites around a Voronoi vertex, in cyclic order: the corners of a Delaunay polygon.
 std::vector<int> SitesAround(const Diagram::vertex_type& vertex) {
   std::vector<int> sites;
   const Diagram::edge_type* edge = vertex.incident_edge();

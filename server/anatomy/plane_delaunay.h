@@ -1,4 +1,4 @@
-// Delaunay triangulation of points of the plane, by Boost.Polygon's exact Voronoi diagram.
+// Delaunay triangulation of points in the plane, the dual of Boost.Polygon's exact Voronoi diagram.
 #ifndef PHRENIC_SERVER_ANATOMY_PLANE_DELAUNAY_H_
 #define PHRENIC_SERVER_ANATOMY_PLANE_DELAUNAY_H_
 
@@ -9,8 +9,8 @@
 
 namespace phrenic::anatomy {
 
-// Anticlockwise triangles over the convex hull of the points, which must differ by more than 1e-8 of their extent.
-// Where more than three points share an empty circle the polygon is fanned. Same points, same triangles.
+// Returns counter-clockwise triangles (3 x n) that cover the convex hull. More than three cocircular points become a
+// fan. Requires: points differ by more than 1e-8 of their extent. Deterministic.
 Triangles PlaneDelaunay(const std::vector<Eigen::Vector2d>& points);
 
 }  // namespace phrenic::anatomy

@@ -5,7 +5,7 @@
 namespace phrenic::anatomy {
 
 namespace {
-constexpr int kRows = 512;
+constexpr int kRows = 512;  // horizontal bands
 }  // namespace
 
 PlaneRegion::PlaneRegion(const std::vector<std::vector<Eigen::Vector2d>>& loops)
@@ -18,7 +18,7 @@ PlaneRegion::PlaneRegion(const std::vector<std::vector<Eigen::Vector2d>>& loops)
   }
   for (const auto& loop : loops) {
     for (size_t i = 0; i < loop.size(); ++i) {
-      const Side side{loop[i], loop[(i + 1) % loop.size()]};
+      const Segment side{loop[i], loop[(i + 1) % loop.size()]};
       const auto [from, to] = std::minmax({Row(side.first.y()), Row(side.second.y())});
       for (int row = from; row <= to; ++row) rows_[static_cast<size_t>(row)].push_back(side);
     }

@@ -1,4 +1,4 @@
-// A region of the plane bounded by closed polygons.
+// A region of the plane bounded by closed polygons, with a fast point-in-polygon test.
 #ifndef PHRENIC_SERVER_ANATOMY_PLANE_REGION_H_
 #define PHRENIC_SERVER_ANATOMY_PLANE_REGION_H_
 
@@ -8,21 +8,23 @@
 
 namespace phrenic::anatomy {
 
-// Immutable; any thread. The even-odd rule decides, so that loops inside the first are holes.
+// Even-odd rule, so loops inside the first are holes. Immutable, thread-safe.
 class PlaneRegion {
  public:
+  // Requires: at least one loop of three points or more.
   explicit PlaneRegion(const std::vector<std::vector<Eigen::Vector2d>>& loops);
 
   bool Contains(const Eigen::Vector2d& point) const;
+  // Corners of the bounding box.
   const Eigen::Vector2d& low() const { return low_; }
   const Eigen::Vector2d& high() const { return high_; }
 
  private:
-  using Side = std::pair<Eigen::Vector2d, Eigen::Vector2d>;
+  using Segment = std::pair<Eigen::Vector2d, Eigen::Vector2d>;
   int Row(double y) const;
 
   Eigen::Vector2d low_, high_;
-  std::vector<std::vector<Side>> rows_;  // the sides that reach into each horizontal band
+  std::vector<std::vector<Segment>> rows_;  // the segments that intersect each horizontal band
 };
 
 }  // namespace phrenic::anatomy

@@ -22,7 +22,7 @@ Eigen::Vector3d Gradient(const Field& field, const Eigen::Vector3d& x) {
   return gradient;
 }
 
-// One Newton step towards the surface, no longer than `reach`.
+// Returns x after one Newton step towards the zero level set, at most `reach` long.
 Eigen::Vector3d Project(const Field& field, const Eigen::Vector3d& x, double reach) {
   const Eigen::Vector3d gradient = Gradient(field, x);
   const double square = gradient.squaredNorm();
@@ -32,8 +32,9 @@ Eigen::Vector3d Project(const Field& field, const Eigen::Vector3d& x, double rea
   return x + (length > reach ? reach / length : 1.0) * step;
 }
 
+// Sums over the triangles at a vertex (its one-ring).
 struct Ring {
-  Eigen::Vector3d centroids = Eigen::Vector3d::Zero();  // weighted by area
+  Eigen::Vector3d centroids = Eigen::Vector3d::Zero();  // area-weighted
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   double area = 0;
 };
@@ -53,6 +54,7 @@ std::vector<Ring> Rings(const std::vector<Eigen::Vector3d>& points, const Triang
   return rings;
 }
 
+// Moves each vertex towards the area centroid of its one-ring, tangentially, and projects it back onto the surface.
 void Relax(const Field& field, double edge_length, const Triangles& triangles, std::vector<Eigen::Vector3d>& points) {
   const std::vector<Ring> rings = Rings(points, triangles);
   for (size_t i = 0; i < points.size(); ++i) {

@@ -1,14 +1,15 @@
-// Even triangles for the closed surface of a field.
+// Isotropic remeshing of the closed surface of an implicit function.
 #ifndef PHRENIC_SERVER_ANATOMY_REMESH_H_
 #define PHRENIC_SERVER_ANATOMY_REMESH_H_
 
-#include "server/anatomy/implicit_surface.h"
+#include "server/anatomy/field.h"
+#include "server/mesh/mesh.h"
 
 namespace phrenic::anatomy {
 
-// Collapses edges shorter than the aim, makes the rest Delaunay and relaxes the vertices along the surface, some rounds
-// (after Botsch and Kobbelt, Symposium on Geometry Processing 2004, without splits: the input is finer than the aim).
-// Keeps the topology. Deterministic.
+// Repeats edge collapse, Delaunay flips and tangential relaxation with projection onto field = 0, six rounds (after
+// Botsch and Kobbelt, Symposium on Geometry Processing 2004, without edge splits). Requires: the edges of `fine` are
+// shorter than `edge_length`, in the field's unit. Keeps the topology. Deterministic.
 Mesh Remesh(const Field& field, const Mesh& fine, double edge_length);
 
 }  // namespace phrenic::anatomy

@@ -16,9 +16,10 @@ double SagittalSlope(int number) { return std::tan((31 - 0.8 * (number - 1)) * k
 
 double FrontalSlope(int number) { return std::tan(std::min(50.0, 7 + 0.46 * (number - 1) * (number - 1)) * kRadian); }
 
-// Azimuth of the anterior end from the front [degrees].
+// Azimuth of the anterior end, measured from the front [degrees].
 double EndAzimuth(int number) { return number == 1 ? 40 : 26 + 0.98 * (number - 2) * (number - 2); }
 
+// End points of the rib's neck [mm].
 struct Neck {
   Eigen::Vector3d head, tubercle;
 };
@@ -27,14 +28,14 @@ Neck NeckOf(int number) {
   const VertebralBody body = BodyOfVertebra(number);
   const bool own_level = number == 1 || number >= 11;
   const double z = own_level ? body.Middle() + 3 : body.top - 4;
-  const double lower = Smooth((number - 9) / 3.0);  // the last heads sit further back, at the pedicles
+  const double lower = Smooth((number - 9) / 3.0);  // the heads of the last ribs are at the pedicles
   const double x = body.width / 2 + 2 + 5 * lower;
   const Eigen::Vector3d head(x, SpineFront(z) + 1.02 * body.depth + 15 * lower, z);
   const double drop = 2 - 13 * Smooth((number - 5) / 5.0);
   return {head, head + Eigen::Vector3d(number == 1 ? 22 : 17, number == 1 ? 6 : number == 12 ? 11 : 13, drop)};
 }
 
-// Where the rib's plane cuts the cage at that azimuth.
+// Returns the point of the cage at this azimuth in the rib's plane, by damped fixed-point iteration in z.
 Eigen::Vector3d OnCage(int number, const Eigen::Vector3d& tubercle, double degrees) {
   constexpr int kRounds = 40;
   Eigen::Vector3d point = tubercle;
@@ -48,7 +49,7 @@ Eigen::Vector3d OnCage(int number, const Eigen::Vector3d& tubercle, double degre
   return point;
 }
 
-// The azimuth at which the rib reaches the cage, a little beyond its tubercle.
+// Returns the azimuth of the rib's angle, where it reaches the cage lateral to the tubercle [degrees].
 double AngleAzimuth(int number, const Eigen::Vector3d& tubercle) {
   double degrees = 165;
   while (degrees > EndAzimuth(number) + 20 && OnCage(number, tubercle, degrees).x() < tubercle.x() + 13) --degrees;
@@ -56,14 +57,15 @@ double AngleAzimuth(int number, const Eigen::Vector3d& tubercle) {
 }
 
 TubeSection Section(int number, double s, const Eigen::Vector3d& centre) {
-  const double head = 1 - Smooth(s / 0.06);  // the head is thicker, the neck round
-  const double shaft = number == 1 ? Smooth((s - 0.3) / 0.25) : Smooth((s - 0.08) / 0.2);  // the shaft flat and high
-  const double tip = Smooth((s - 0.75) / 0.25);  // ribs 11 and 12 end in a point, the others a little broader
+  // Thick head, round neck, flat and high shaft; ribs 11 and 12 end pointed, the others slightly broader.
+  const double head = 1 - Smooth(s / 0.06);
+  const double shaft = number == 1 ? Smooth((s - 0.3) / 0.25) : Smooth((s - 0.08) / 0.2);
+  const double tip = Smooth((s - 0.75) / 0.25);
   const bool floating = number >= 11;
-  const double height = number == 1 ? 8.0 : number == 12 ? 5.0 : 6.6;  // half, of the shaft
+  const double height = number == 1 ? 8.0 : number == 12 ? 5.0 : 6.6;  // half height of the shaft
   const double broad = 4.4 + 1.4 * head + (height - 4.4) * shaft + (floating ? -2.5 : 0.6) * tip;
   const double thin = 3.9 + 1.2 * head - (number == 1 ? 0.9 : 0.3) * shaft + (floating ? -0.9 : 0.3) * tip;
-  // The upper ribs lie flat, their thin axis upwards.
+  // The upper ribs lie flat, with the thin axis upwards.
   const double flat = std::max(0.0, 80 - 32.0 * (number - 1)) * kRadian;
   const Eigen::Vector3d out = OutOfCage(centre);
   return {broad, thin, std::cos(flat) * out + std::sin(flat) * Eigen::Vector3d::UnitZ()};

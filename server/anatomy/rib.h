@@ -1,4 +1,4 @@
-// Ribs: flattened tubes along a curve from the vertebra over neck, tubercle and angle round the cage.
+// Ribs: flattened tubes along a curve from the vertebra over neck, tubercle and angle around the cage.
 #ifndef PHRENIC_SERVER_ANATOMY_RIB_H_
 #define PHRENIC_SERVER_ANATOMY_RIB_H_
 
@@ -6,16 +6,18 @@
 
 namespace phrenic::anatomy {
 
-// Control points of the left rib's centreline (number 1 to 12) from head to anterior end [mm]. Beyond the angle the rib
-// lies where the plane z = z_t + tan(sagittal slope) (y - y_t) - tan(frontal slope) (|x| - x_t) through its tubercle
-// cuts the cage; the slopes and the end's azimuth are smooth laws of the rib's number (sagittal 31 to 22 degrees,
-// frontal 7 to 50 degrees from the first to the last).
+// Returns the control points of the left rib's centreline (number 1 to 12) from head to anterior end [mm]. Beyond the
+// angle the rib is the intersection of the cage with the plane through its tubercle t,
+//   z = z_t + tan(sagittal slope) (y - y_t) - tan(frontal slope) (|x| - x_t).
+// Slopes and the azimuth of the end are smooth functions of the number: sagittal 31 to 22 degrees, frontal 7 to 50
+// degrees from the first rib to the last.
 Curve LeftRibPath(int number);
 
-// The left rib [mm]; the right one is its mirror image. The head is the end nearest to the midplane.
+// Returns the left rib [mm] with edges of about `edge_length` [mm]; the right one is its mirror image. The head is the
+// end nearest to the midsagittal plane.
 Mesh LeftRib(int number, double edge_length);
 
-// Horizontal direction out of the cage at a point on its wall (left or right).
+// Returns the horizontal unit normal of the cage, outwards, at a point on its wall on either side.
 Eigen::Vector3d OutOfCage(const Eigen::Vector3d& point);
 
 }  // namespace phrenic::anatomy

@@ -18,8 +18,8 @@ namespace {
 
 using Plane = std::vector<Eigen::Vector2d>;
 
-// Points along a closed loop so that each step is the same share of the aimed edge lengths.
-Plane EvenlyAlong(const SheetDomain& domain, const Plane& loop) {
+// Resamples a closed loop so that all steps have the same length relative to the target edge length.
+Plane Resample(const SheetDomain& domain, const Plane& loop) {
   std::vector<double> passed = {0};
   for (size_t i = 0; i < loop.size(); ++i) {
     const Eigen::Vector3d a = domain.map(loop[i]), b = domain.map(loop[(i + 1) % loop.size()]);
@@ -27,22 +27,22 @@ Plane EvenlyAlong(const SheetDomain& domain, const Plane& loop) {
   }
   const int count = std::max(8, static_cast<int>(std::lround(passed.back())));
   Plane even;
-  size_t side = 0;
+  size_t segment = 0;
   for (int i = 0; i < count; ++i) {
-    const double aim = passed.back() * i / count;
-    while (passed[side + 1] <= aim) ++side;
-    const double t = (aim - passed[side]) / (passed[side + 1] - passed[side]);
-    even.push_back((1 - t) * loop[side] + t * loop[(side + 1) % loop.size()]);
+    const double target = passed.back() * i / count;
+    while (passed[segment + 1] <= target) ++segment;
+    const double t = (target - passed[segment]) / (passed[segment + 1] - passed[segment]);
+    even.push_back((1 - t) * loop[segment] + t * loop[(segment + 1) % loop.size()]);
   }
   return even;
 }
 
-// The most square edge lengths of surface over a unit of the plane.
-double MostSquaresAUnit(const SheetDomain& domain, const PlaneRegion& region) {
+// Returns the maximum surface area per unit of plane area, in squared target edge lengths.
+double MaxAreaDensity(const SheetDomain& domain, const PlaneRegion& region) {
   constexpr int kSamples = 2000;
-  constexpr double kShare = 1e-4;  // of the extent: a small step
+  constexpr double kRelativeStep = 1e-4;  // of the extent
   const Eigen::Vector2d extent = region.high() - region.low();
-  const Eigen::Vector2d across(kShare * extent.x(), 0), along(0, kShare * extent.y());
+  const Eigen::Vector2d across(kRelativeStep * extent.x(), 0), along(0, kRelativeStep * extent.y());
   double most = 0;
   for (int i = 1; i <= kSamples; ++i) {
     const Eigen::Vector2d p = region.low() + extent.cwiseProduct(QuasiRandom(i));
@@ -54,16 +54,16 @@ double MostSquaresAUnit(const SheetDomain& domain, const PlaneRegion& region) {
   return most;
 }
 
-// Fills the inside with points that keep their distance from each other and from the border.
+// Adds interior points that keep a minimum distance from each other and from the boundary (dart throwing).
 void Fill(const SheetDomain& domain, const PlaneRegion& region, Sheet& sheet) {
-  constexpr double kApart = 0.8;     // of the edge length: a hexagonal lattice of the same density has about 1
-  constexpr int kTriesASquare = 12;  // candidates per square edge length of surface
+  constexpr double kApart = 0.8;  // relative to the edge length; a hexagonal lattice of that density has about 1
+  constexpr int kCandidatesPerArea = 12;  // per squared edge length of surface
   double smallest = domain.edge_length(sheet.points[0]);
   for (const Eigen::Vector3d& x : sheet.points) smallest = std::min(smallest, domain.edge_length(x));
   SpacedPoints spaced(domain.edge_length(Eigen::Vector3d::Zero()), kApart, smallest);
   for (const Eigen::Vector3d& x : sheet.points) spaced.Add(x, domain.edge_length(x));
   const Eigen::Vector2d extent = region.high() - region.low();
-  const auto tries = static_cast<int64_t>(kTriesASquare * extent.prod() * MostSquaresAUnit(domain, region));
+  const auto tries = static_cast<int64_t>(kCandidatesPerArea * extent.prod() * MaxAreaDensity(domain, region));
   for (int64_t i = 1; i <= tries; ++i) {
     const Eigen::Vector2d p = region.low() + extent.cwiseProduct(QuasiRandom(i));
     if (!region.Contains(p)) continue;
@@ -74,6 +74,7 @@ void Fill(const SheetDomain& domain, const PlaneRegion& region, Sheet& sheet) {
   }
 }
 
+// Returns the triangles whose centroid is in the region.
 Triangles Inside(const PlaneRegion& region, const Plane& plane, const Triangles& all) {
   Triangles kept(3, all.cols());
   Eigen::Index count = 0;
@@ -87,7 +88,7 @@ Triangles Inside(const PlaneRegion& region, const Plane& plane, const Triangles&
 
 double Cross(const Eigen::Vector2d& u, const Eigen::Vector2d& v) { return u.x() * v.y() - u.y() * v.x(); }
 
-// The triangles round each vertex.
+// Returns the triangles at each vertex.
 std::vector<std::vector<int>> Fans(size_t vertices, const Triangles& triangles) {
   std::vector<std::vector<int>> fans(vertices);
   for (int t = 0; t < static_cast<int>(triangles.cols()); ++t) {
@@ -96,22 +97,23 @@ std::vector<std::vector<int>> Fans(size_t vertices, const Triangles& triangles) 
   return fans;
 }
 
-// Mean of the centroids of the triangles round the vertex, each weighted by its area in aimed square edge lengths.
+// Returns the mean centroid of the fan's triangles, weighted by area in squared target edge lengths.
 Eigen::Vector2d Centroid(const SheetDomain& domain, const Sheet& sheet, const std::vector<int>& fan) {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   double weights = 0;
   for (const int t : fan) {
     const Eigen::Vector3i v = sheet.triangles.col(t);
     const Eigen::Vector3d &a = sheet.points[v[0]], &b = sheet.points[v[1]], &c = sheet.points[v[2]];
-    const double aimed = domain.edge_length(a);
-    const double weight = (b - a).cross(c - a).norm() / (aimed * aimed);
+    const double target = domain.edge_length(a);
+    const double weight = (b - a).cross(c - a).norm() / (target * target);
     sum += weight / 3 * (sheet.plane[v[0]] + sheet.plane[v[1]] + sheet.plane[v[2]]);
     weights += weight;
   }
   return sum / weights;
 }
 
-bool StaysAnticlockwise(const Sheet& sheet, const std::vector<int>& fan, int vertex, const Eigen::Vector2d& moved) {
+// True if the fan's triangles stay counter-clockwise when the vertex moves.
+bool StaysCounterClockwise(const Sheet& sheet, const std::vector<int>& fan, int vertex, const Eigen::Vector2d& moved) {
   for (const int t : fan) {
     std::array<Eigen::Vector2d, 3> p;
     for (int k = 0; k < 3; ++k) p[k] = sheet.triangles(k, t) == vertex ? moved : sheet.plane[sheet.triangles(k, t)];
@@ -125,26 +127,26 @@ void Relax(const SheetDomain& domain, int first_free, Sheet& sheet) {
   const std::vector<std::vector<int>> fans = Fans(sheet.plane.size(), sheet.triangles);
   for (int i = first_free; i < static_cast<int>(sheet.plane.size()); ++i) {
     const Eigen::Vector2d moved = Centroid(domain, sheet, fans[i]);
-    if (!StaysAnticlockwise(sheet, fans[i], i, moved)) continue;
+    if (!StaysCounterClockwise(sheet, fans[i], i, moved)) continue;
     sheet.plane[i] = moved;
     sheet.points[i] = domain.map(moved);
   }
 }
 
-// Vertices that triangles join come close together: what is asked of one after the other lies in a core's cache. Those
-// that no triangle has are left out.
-Sheet InLocalOrder(const Sheet& sheet) {
-  const std::vector<int> order = LocalOrder(TriangleEdges(sheet.triangles), static_cast<int>(sheet.plane.size()));
-  std::vector<int> name(sheet.plane.size(), -1);
+// Renumbers the vertices so that neighbours are close in memory; drops unused ones.
+Sheet InCacheOrder(const Sheet& sheet) {
+  const std::vector<int> order =
+      CuthillMcKeeOrder(TriangleEdges(sheet.triangles), static_cast<int>(sheet.plane.size()));
+  std::vector<int> number(sheet.plane.size(), -1);
   Sheet ordered{.plane = {}, .points = {}, .triangles = sheet.triangles, .loops = sheet.loops};
   for (const int vertex : order) {
-    name[vertex] = static_cast<int>(ordered.plane.size());
+    number[vertex] = static_cast<int>(ordered.plane.size());
     ordered.plane.push_back(sheet.plane[vertex]);
     ordered.points.push_back(sheet.points[vertex]);
   }
-  for (int& corner : ordered.triangles.reshaped()) corner = name[corner];
+  for (int& corner : ordered.triangles.reshaped()) corner = number[corner];
   for (std::vector<int>& loop : ordered.loops) {
-    for (int& vertex : loop) vertex = name[vertex];
+    for (int& vertex : loop) vertex = number[vertex];
   }
   return ordered;
 }
@@ -154,18 +156,18 @@ Sheet InLocalOrder(const Sheet& sheet) {
 Sheet MeshSheet(const SheetDomain& domain) {
   constexpr int kRounds = 30;
   Sheet sheet;
-  std::vector<Plane> border;
+  std::vector<Plane> boundary;
   for (const Plane& loop : domain.loops) {
-    border.push_back(EvenlyAlong(domain, loop));
+    boundary.push_back(Resample(domain, loop));
     sheet.loops.emplace_back();
-    for (const Eigen::Vector2d& p : border.back()) {
+    for (const Eigen::Vector2d& p : boundary.back()) {
       sheet.loops.back().push_back(static_cast<int>(sheet.plane.size()));
       sheet.plane.push_back(p);
       sheet.points.push_back(domain.map(p));
     }
   }
   const auto first_free = static_cast<int>(sheet.plane.size());
-  const PlaneRegion region(border);
+  const PlaneRegion region(boundary);
   Fill(domain, region, sheet);
   sheet.triangles = Inside(region, sheet.plane, PlaneDelaunay(sheet.plane));
   for (int round = 0; round < kRounds; ++round) {
@@ -173,7 +175,7 @@ Sheet MeshSheet(const SheetDomain& domain) {
     Relax(domain, first_free, sheet);
   }
   FlipToDelaunay(sheet.plane, sheet.points, sheet.triangles);
-  return InLocalOrder(sheet);
+  return InCacheOrder(sheet);
 }
 
 }  // namespace phrenic::anatomy

@@ -1,4 +1,4 @@
-// A soft step, by which one thickness or angle passes into another.
+// Smoothstep, which blends one thickness or angle into another.
 #ifndef PHRENIC_SERVER_ANATOMY_SMOOTH_H_
 #define PHRENIC_SERVER_ANATOMY_SMOOTH_H_
 
@@ -6,7 +6,7 @@
 
 namespace phrenic::anatomy {
 
-// 0 up to t = 0, 1 from t = 1, level at both.
+// Returns t^2 (3 - 2 t) for t clamped to [0, 1]: C1, with zero slope at both ends.
 inline double Smooth(double t) {
   t = std::clamp(t, 0.0, 1.0);
   return t * t * (3 - 2 * t);

@@ -1,4 +1,4 @@
-// A set of points in space that keep their distance, and the quasi-random sequence that proposes them.
+// Dart throwing: a set of points with a minimum distance (in a hash grid), and the quasi-random sequence of candidates.
 #ifndef PHRENIC_SERVER_ANATOMY_SPACED_POINTS_H_
 #define PHRENIC_SERVER_ANATOMY_SPACED_POINTS_H_
 
@@ -9,18 +9,19 @@
 
 namespace phrenic::anatomy {
 
-// Point i of the additive recurrence with the plastic number: evenly scattered over the unit square (Roberts 2018,
-// "R2" sequence; Martin, Craster and Kearney for the plastic number's property).
+// Returns point i of the R2 low-discrepancy sequence in the unit square: the additive recurrence of the plastic number
+// (Roberts 2018; Martin, Craster and Kearney for the plastic number's property).
 Eigen::Vector2d QuasiRandom(int64_t i);
 
-// One thread. Every point has its own aimed spacing; two points are too near when their distance is less than `apart`
-// times the smaller of their spacings.
+// Each point has its own target spacing. Two points conflict if their distance is below `apart` times the smaller of
+// their spacings. Not thread-safe.
 class SpacedPoints {
  public:
   // `largest` and `smallest` bound the spacings.
   SpacedPoints(double largest, double apart, double smallest);
 
   void Add(const Eigen::Vector3d& point, double spacing);
+  // Adds the point unless it conflicts with one added before. Returns whether it was added.
   bool TryAdd(const Eigen::Vector3d& point, double spacing);
 
  private:

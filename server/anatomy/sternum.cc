@@ -11,8 +11,8 @@ namespace phrenic::anatomy {
 namespace {
 
 constexpr double kAngle = 317;    // sternal angle, where manubrium and body meet [mm]
-constexpr double kBodyEnd = 214;  // where the xiphoid begins
-constexpr double kNotch = 358;    // jugular notch
+constexpr double kBodyEnd = 214;  // z where the xiphoid begins [mm]
+constexpr double kNotch = 358;    // z of the jugular notch [mm]
 constexpr double kXiphoidTip = 186;
 
 Mesh Plate(double bottom, double top, double thickness, double edge_length) {
@@ -31,7 +31,7 @@ Mesh Plate(double bottom, double top, double thickness, double edge_length) {
 }  // namespace
 
 double SternumHalfWidth(double z) {
-  if (z > kAngle) {  // manubrium: from 14 mm at the angle to 28 mm below the clavicular notches, narrower at the top
+  if (z > kAngle) {  // manubrium: 14 mm at the angle, 28 mm below the clavicular notches, narrower at the top
     const double up = std::min(1.0, (z - kAngle) / (kNotch - kAngle));
     return 13 + 17 * Smooth(up / 0.75) - 8 * Smooth((up - 0.78) / 0.22);
   }

@@ -1,4 +1,4 @@
-// Manubrium, body of the sternum and xiphoid process: flat plates along the tilted line of the sternum.
+// Manubrium, body of the sternum and xiphoid process: flat plates along the sternum's tilted midline.
 #ifndef PHRENIC_SERVER_ANATOMY_STERNUM_H_
 #define PHRENIC_SERVER_ANATOMY_STERNUM_H_
 
@@ -6,15 +6,16 @@
 
 namespace phrenic::anatomy {
 
-// Adult means, rounded: manubrium 45 mm high and 56 mm wide, body 100 mm high and up to 38 mm wide, xiphoid 30 mm.
+// Return closed surfaces [mm] with edges of about `edge_length` [mm]. Rounded adult means: manubrium 45 mm high and 56
+// mm wide, body 100 mm high and up to 38 mm wide, xiphoid 30 mm high.
 Mesh Manubrium(double edge_length);
 Mesh SternumBody(double edge_length);
 Mesh Xiphoid(double edge_length);
 
-// Half the sternum's width at height z [mm], from the manubrium down to the xiphoid.
+// Returns half the width of the sternum at height z [mm], from the manubrium down to the xiphoid.
 double SternumHalfWidth(double z);
 
-// Height of the notch for costal cartilage 1 to 7.
+// Returns the height of the notch for costal cartilage 1 to 7 [mm].
 double SternalNotch(int number);
 
 }  // namespace phrenic::anatomy

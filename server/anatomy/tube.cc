@@ -9,7 +9,7 @@
 namespace phrenic::anatomy {
 namespace {
 
-// Barry and Goldman's pyramid on knots spaced by the square root of the chords.
+// Barry and Goldman's recursive evaluation, with centripetal knots: spaced by the square root of the chord lengths.
 Eigen::Vector3d CatmullRom(const std::array<Eigen::Vector3d, 4>& p, double t) {
   std::array<double, 4> knot{};
   for (int i = 1; i < 4; ++i) knot[i] = knot[i - 1] + std::sqrt(std::max(1e-9, (p[i] - p[i - 1]).norm()));
@@ -22,6 +22,7 @@ Eigen::Vector3d CatmullRom(const std::array<Eigen::Vector3d, 4>& p, double t) {
   return blend(blend(a1, a2, knot[0], knot[2]), blend(a2, a3, knot[1], knot[3]), knot[1], knot[2]);
 }
 
+// Samples the curve at 24 parameters per span.
 Curve Dense(const Curve& through) {
   constexpr int kSteps = 24;
   const auto n = static_cast<int>(through.size());
@@ -48,9 +49,9 @@ Profile RingAt(const Curve& path, size_t i, const TubeSection& section) {
   return {path[i], section.half_broad * broad, section.half_thin * thin};
 }
 
-// The rings of the path, and at each end two that round it off.
+// Returns one ring per path point and two more at each end that round it off.
 std::vector<Profile> Rings(const Curve& path, const SectionAt& section) {
-  constexpr double kAngles[] = {62, 34};  // degrees of the quarter circle that rounds an end
+  constexpr double kAngles[] = {62, 34};  // degrees along the quarter circle at an end
   std::vector<Profile> rings;
   const double last = static_cast<double>(path.size()) - 1;
   for (size_t i = 0; i < path.size(); ++i) {
@@ -72,7 +73,7 @@ std::vector<Profile> Rings(const Curve& path, const SectionAt& section) {
   return rings;
 }
 
-// Angles that step evenly along the ellipse.
+// Returns `count` parameter angles at equal arc lengths of the ellipse, offset by `shift` steps.
 std::vector<double> EvenAngles(double broad, double thin, int count, double shift) {
   constexpr int kFine = 720;
   std::vector<double> passed = {0};
@@ -83,9 +84,9 @@ std::vector<double> EvenAngles(double broad, double thin, int count, double shif
   std::vector<double> angles;
   int at = 0;
   for (int i = 0; i < count; ++i) {
-    const double aim = passed.back() * (i + shift) / count;
-    while (passed[at + 1] <= aim) ++at;
-    angles.push_back(2 * std::numbers::pi * (at + (aim - passed[at]) / (passed[at + 1] - passed[at])) / kFine);
+    const double target = passed.back() * (i + shift) / count;
+    while (passed[at + 1] <= target) ++at;
+    angles.push_back(2 * std::numbers::pi * (at + (target - passed[at]) / (passed[at + 1] - passed[at])) / kFine);
   }
   return angles;
 }
@@ -102,7 +103,7 @@ Points RingPoints(const std::vector<Profile>& rings, int around) {
   return points;
 }
 
-// Joins the two sides of an end ring across its thin direction.
+// Closes an end ring with a zigzag of triangles across its thin direction.
 void ZipEnd(int first, int around, bool reversed, std::vector<Eigen::Vector3i>& triangles) {
   int low = 0, high = around - 1;
   const auto add = [&](int a, int b, int c) {
@@ -124,7 +125,7 @@ Triangles RingTriangles(int rings, int around) {
     const int here = r * around, next = here + around;
     for (int i = 0; i < around; ++i) {
       const int j = (i + 1) % around;
-      if (r % 2 == 0) {  // the next ring is half a step ahead
+      if (r % 2 == 0) {  // the next ring is offset by half a step
         triangles.emplace_back(here + i, here + j, next + i);
         triangles.emplace_back(here + j, next + j, next + i);
       } else {
@@ -140,6 +141,7 @@ Triangles RingTriangles(int rings, int around) {
   return result;
 }
 
+// Ramanujan's approximation of the ellipse's perimeter.
 double Perimeter(const TubeSection& s) {
   return std::numbers::pi * (3 * (s.half_broad + s.half_thin) -
                              std::sqrt((3 * s.half_broad + s.half_thin) * (s.half_broad + 3 * s.half_thin)));
@@ -160,12 +162,12 @@ Curve SmoothCurve(const Curve& through, int count) {
   size_t at = 0;
   double passed = 0;
   for (int i = 0; i + 1 < count; ++i) {
-    const double aim = length * i / (count - 1);
-    while (passed + (dense[at + 1] - dense[at]).norm() <= aim) {
+    const double target = length * i / (count - 1);
+    while (passed + (dense[at + 1] - dense[at]).norm() <= target) {
       passed += (dense[at + 1] - dense[at]).norm();
       ++at;
     }
-    const double t = (aim - passed) / (dense[at + 1] - dense[at]).norm();
+    const double t = (target - passed) / (dense[at + 1] - dense[at]).norm();
     even.emplace_back((1 - t) * dense[at] + t * dense[at + 1]);
   }
   even.push_back(dense.back());

@@ -1,4 +1,5 @@
-// Closed tubes of varying elliptic section along a smooth curve: ribs, cartilages, the plates of the sternum.
+// Closed tubes of varying elliptic cross-section along a smooth curve: ribs, cartilages, the plates of the sternum.
+// Lengths in one unit, here millimetres. Thread-safe.
 #ifndef PHRENIC_SERVER_ANATOMY_TUBE_H_
 #define PHRENIC_SERVER_ANATOMY_TUBE_H_
 
@@ -12,24 +13,27 @@ namespace phrenic::anatomy {
 
 using Curve = std::vector<Eigen::Vector3d>;
 
-// The centripetal Catmull-Rom curve through the points (at least two), sampled at `count` >= 2 even arc lengths.
+// Returns the centripetal Catmull-Rom spline through the points (at least two), sampled at `count` >= 2 equal arc
+// lengths.
 Curve SmoothCurve(const Curve& through, int count);
 
+// Returns the length of the polyline.
 double Length(const Curve& curve);
 
 struct TubeSection {
   double half_broad, half_thin;  // semi-axes [mm]
-  Eigen::Vector3d thin;          // direction of the thin axis; need be neither unit nor square to the curve
+  Eigen::Vector3d thin;          // direction of the thin axis; normalised and made perpendicular to the curve
 };
 
-// The section at the share s in [0, 1] of the length where the curve passes through `centre`.
+// The cross-section at the relative arc length s in [0, 1], at the curve point `centre`.
 using SectionAt = std::function<TubeSection(double s, const Eigen::Vector3d& centre)>;
 
-// Rings of one count, each turned by half a step against the last, with rounded ends; edges near `edge_length`, at
-// least six round a ring and three rings. Outward triangles, one component, genus 0. All lengths in one unit.
+// Returns a tube with rounded ends, built of rings with equal vertex counts, each offset by half a step from the
+// previous one. Edges are about `edge_length` long; at least six vertices per ring and three rings. Closed, facing
+// outwards, genus 0.
 Mesh Tube(const Curve& through, const SectionAt& section, double edge_length);
 
-// The mirror image in x = 0, again facing outwards.
+// Returns the mirror image in x = 0, with the winding reversed so that it faces outwards.
 Mesh Mirrored(Mesh mesh);
 
 }  // namespace phrenic::anatomy

@@ -13,7 +13,7 @@ namespace {
 
 struct Shape {
   double width, depth, height;  // of the body
-  double transverse, backward;  // reach of the transverse processes sideways and backwards
+  double transverse, backward;  // extent of the transverse processes, lateral and posterior
   double spine, slope;          // length of the spinous process and its slope below the horizontal [rad]
   double canal;                 // half width of the vertebral canal
 };
@@ -33,7 +33,7 @@ Shape ShapeOf(int number) {
           lumbar ? 11.0 : 9.0};
 }
 
-// The body: an elliptic cylinder, narrower at its waist, hollowed a little at the canal.
+// Signed distance to the body: an elliptic cylinder, narrower at its waist.
 double BodyDistance(const Shape& s, const Eigen::Vector3d& x) {
   const double up = 2 * x.z() / s.height;
   const double waist = 1 - 0.1 * std::max(0.0, 1 - up * up);
@@ -48,18 +48,18 @@ double SpinousProcess(const Shape& s, const Eigen::Vector3d& x) {
   const Eigen::Vector3d to = from + s.spine * Eigen::Vector3d(0, std::cos(s.slope), -std::sin(s.slope));
   const bool lumbar = s.canal > 10;
   Eigen::Vector3d flat = x;
-  flat.x() *= 1.35;  // higher than wide
+  flat.x() *= 1.35;  // makes it higher than wide
   return Capsule(flat, from, to, lumbar ? 8.5 : 6.2, lumbar ? 8.0 : 4.8) / 1.15;
 }
 
-// The parts of the arch, in the local frame of Distance, on the left half.
+// Signed distance to the vertebral arch, in the local frame of Distance, for the left half.
 double Arch(const Shape& s, const Eigen::Vector3d& x) {
   const double side = s.canal + 4.5, back = s.depth + 10, high = s.height / 2;
   const bool lumbar = s.canal > 10;
   const double stout = lumbar ? 1.25 : 1.0;
   const double pedicle =
       Capsule(x, {side - 1, s.depth - 5, high * 0.4}, {side, back, high * 0.3}, 4.6 * stout, 4.8 * stout);
-  Eigen::Vector3d plate = x;  // the laminae are plates, higher than thick
+  Eigen::Vector3d plate = x;  // makes the laminae higher than thick
   plate.z() /= 2;
   const double lamina = 1.2 * Capsule(plate, {side, back + 1, 0}, {0, s.depth + 22, -3}, 4.8, 5.2);
   const Eigen::Vector3d root(side, back + 1, high * 0.25);
@@ -70,7 +70,7 @@ double Arch(const Shape& s, const Eigen::Vector3d& x) {
   return SmoothMin(SmoothMin(pedicle, lamina, 4), SmoothMin(transverse, facets, 4), 4);
 }
 
-// Local frame: y backwards from the body's front, z along the spine; left and right are alike.
+// Signed distance to the vertebra. Local frame: +y posterior from the body's front, z along the spine. Symmetric in x.
 double Distance(const Shape& s, Eigen::Vector3d x) {
   x.x() = std::abs(x.x());
   return SmoothMin(SmoothMin(BodyDistance(s, x), Arch(s, x), 4), SpinousProcess(s, x), 6);
@@ -83,9 +83,9 @@ Mesh Vertebra(int number, double edge_length) {
   const VertebralBody body = BodyOfVertebra(number);
   const Field field = [&](const Eigen::Vector3d& x) { return Distance(shape, x); };
   const double half = shape.transverse + 12, below = shape.height / 2 + 18 + shape.spine * std::sin(shape.slope);
-  constexpr double kDetail = 3, kCoarsest = 8;  // the arch is about 9 mm thick
+  constexpr double kDetail = 3, kMaxEdge = 8;  // the arch is about 9 mm thick
   const Box box{{-half, -8, -below}, {half, shape.depth + 32 + shape.spine, shape.height / 2 + 18}};
-  Mesh mesh = ImplicitSurface(field, box, std::min(edge_length, kCoarsest), kDetail);
+  Mesh mesh = ImplicitSurface(field, box, std::min(edge_length, kMaxEdge), kDetail);
   const double tilt = std::atan(SpineSlope(body.Middle()));
   const Eigen::AngleAxisd turn(-tilt, Eigen::Vector3d::UnitX());
   const Eigen::Vector3d front(0, SpineFront(body.Middle()), body.Middle());

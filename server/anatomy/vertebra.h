@@ -1,5 +1,4 @@
-// Thoracic and upper lumbar vertebrae: body with its waist, pedicles, arch, spinous, transverse and articular
-// processes.
+// Thoracic and upper lumbar vertebrae: body, pedicles, laminae, spinous, transverse and articular processes.
 #ifndef PHRENIC_SERVER_ANATOMY_VERTEBRA_H_
 #define PHRENIC_SERVER_ANATOMY_VERTEBRA_H_
 
@@ -7,9 +6,9 @@
 
 namespace phrenic::anatomy {
 
-// Number 1 (T1) to 15 (L3), in place [mm], with edges of at most 8 mm: the zero set of a smooth union of distances. One
-// closed surface of genus 1, the vertebral canal going through. Spinous processes slope most at T5 to T8; the thoracic
-// transverse processes point backwards, the lumbar ones sideways.
+// Returns vertebra 1 (T1) to 15 (L3) at its position [mm], with edges of at most 8 mm: the zero level set of a smooth
+// union of signed distances. Closed, genus 1 (the vertebral canal). Spinous processes slope most at T5 to T8;
+// transverse processes point backwards in the thorax and sideways in the lumbar spine.
 Mesh Vertebra(int number, double edge_length);
 
 }  // namespace phrenic::anatomy

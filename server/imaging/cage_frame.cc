@@ -22,9 +22,9 @@ Bounds BoundsOf(const LabelVolume& volume, const Mask& mask) {
   double count = 0;
   for (std::size_t at = 0; at < mask.inside.size(); ++at) {
     if (mask.inside[at] != 1) continue;
-    const Eigen::Vector3d place = mask.Place(volume, at);
-    bounds.box.extend(place);
-    bounds.mean += place;
+    const Eigen::Vector3d position = mask.Position(volume, at);
+    bounds.box.extend(position);
+    bounds.mean += position;
     ++count;
   }
   bounds.mean /= count;
@@ -50,11 +50,11 @@ Landmarks Find(const LabelVolume& volume, const std::vector<Part>& parts) {
   return marks;
 }
 
-// Middles of L1 to L3; one that is not there stands as far from the next as the others do.
-void PlaceLumbar(const Landmarks& marks, CageFrame& frame, Sentences& fallbacks) {
+// Sets the heights of L1 to L3. A missing one is extrapolated at the spacing of its neighbours.
+void SetLumbarHeights(const Landmarks& marks, CageFrame& frame, Messages& fallbacks) {
   const auto& [last, last_bounds] = *marks.vertebrae.rbegin();
   const auto& [first, first_bounds] = *marks.vertebrae.begin();
-  constexpr double kUsual = 33;  // from one middle to the next, of lumbar vertebrae [mm]
+  constexpr double kUsual = 33;  // typical distance between the centres of lumbar vertebrae [mm]
   frame.vertebra_height = kUsual * frame.width / 262;
   const auto above = marks.vertebrae.find(last - 1);
   if (above != marks.vertebrae.end()) frame.vertebra_height = above->second.mean.z() - last_bounds.mean.z();
@@ -65,13 +65,13 @@ void PlaceLumbar(const Landmarks& marks, CageFrame& frame, Sentences& fallbacks)
                               : first_bounds.mean.z() + (first - kL1 - l) * frame.vertebra_height;
     frame.lumbar[l] = found != marks.vertebrae.end() ? found->second.mean.z() : from;
     if (found == marks.vertebrae.end()) {
-      fallbacks.push_back(absl::StrFormat("no L%d: the crura are placed as if it stood %.0f mm from the next vertebra",
-                                          l + 1, frame.vertebra_height));
+      fallbacks.push_back(absl::StrFormat("no L%d: assumed %.0f mm from the next vertebra to place the crura", l + 1,
+                                          frame.vertebra_height));
     }
   }
 }
 
-// y of the front of the vertebra nearest to T12 or L1.
+// Returns y of the anterior face of T12, or of the vertebra nearest to it in number.
 double SpineFront(const Landmarks& marks) {
   const auto nearest = std::min_element(
       marks.vertebrae.begin(), marks.vertebrae.end(),
@@ -92,26 +92,27 @@ Ray CageFrame::RayOf(const Eigen::Vector2d& p) const {
 }
 
 absl::StatusOr<CageFrame> FindCageFrame(const LabelVolume& volume, const std::vector<Part>& parts,
-                                        Sentences& fallbacks) {
+                                        Messages& fallbacks) {
   const Landmarks marks = Find(volume, parts);
   if (marks.vertebrae.empty() || (marks.lower_ribs.isEmpty() && marks.lungs.isEmpty())) {
     return absl::FailedPreconditionError(
-        "a diaphragm cannot be derived: labels of vertebrae, and of ribs 6-12 or lungs, are needed to say where it is");
+        "cannot derive a diaphragm: labels of vertebrae, and of ribs 6-12 or lungs, are needed to locate it");
   }
   CageFrame frame;
   const Eigen::AlignedBox3d& cage = marks.lower_ribs.isEmpty() ? marks.lungs : marks.lower_ribs;
-  if (marks.lower_ribs.isEmpty()) fallbacks.push_back("no ribs 6-12: the cage is taken to be as wide as the lungs");
+  if (marks.lower_ribs.isEmpty())
+    fallbacks.push_back("no ribs 6-12: the width of the lungs is used as the width of the cage");
   frame.width = cage.sizes().x();
   double middle = 0;
   for (const auto& [number, bounds] : marks.vertebrae) {
     middle += bounds.mean.x() / static_cast<double>(marks.vertebrae.size());
   }
-  PlaceLumbar(marks, frame, fallbacks);
+  SetLumbarHeights(marks, frame, fallbacks);
   frame.sternum_end = marks.sternum.isEmpty() ? frame.lumbar[0] + 3.3 * frame.vertebra_height : marks.sternum.min().z();
-  if (marks.sternum.isEmpty()) fallbacks.push_back("no sternum: the front of the rim is placed by the spine");
+  if (marks.sternum.isEmpty()) fallbacks.push_back("no sternum: the front of the rim is estimated from the spine");
   frame.spine_front = SpineFront(marks);
   const double front = marks.sternum.isEmpty() ? cage.min().y() : marks.sternum.min().y() + 8;
-  // Towards the front, so that the gutters beside the spine are seen; low, so that both domes are.
+  // Anterior, so that rays reach the gutters beside the spine; low, so that they reach both domes.
   frame.centre = {middle, front + 0.3 * (frame.spine_front - front), frame.sternum_end - 0.3 * frame.width};
   frame.wall_length = 0.65 * frame.width;
   return frame;

@@ -10,7 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "server/anatomy/double_layer.h"
 #include "server/anatomy/plane_region.h"
-#include "server/imaging/rim.h"
+#include "server/imaging/diaphragm_rim.h"
 #include "server/mesh/topology.h"
 #include "server/mesh/units.h"
 
@@ -19,9 +19,9 @@ namespace {
 
 using anatomy::Sheet;
 
-constexpr double kTold = 0.1;  // share of a sector that is worth a line of the report
+constexpr double kReported = 0.1;  // minimum extrapolated share of a sector for the report
 
-// Area of the sheet inside the rim [mm^2].
+// Returns the area of the sheet inside the rim [mm^2], by quadrature in the plane.
 double AreaOf(const SmoothSheet& sheet, const anatomy::PlaneRegion& region) {
   constexpr double kCell = 0.04;
   const Eigen::Vector2d ex(kCell, 0), ey(0, kCell);
@@ -37,8 +37,8 @@ double AreaOf(const SmoothSheet& sheet, const anatomy::PlaneRegion& region) {
   return area;
 }
 
-// Lengths of the shortest ways along edges from the border (Dijkstra).
-std::vector<double> FromBorder(const Sheet& sheet) {
+// Returns each vertex' distance from the rim along edges (Dijkstra) [mm].
+std::vector<double> DistanceFromRim(const Sheet& sheet) {
   std::vector<std::vector<int>> neighbours(sheet.points.size());
   for (Eigen::Index t = 0; t < sheet.triangles.cols(); ++t) {
     for (int k = 0; k < 3; ++k) {
@@ -46,8 +46,8 @@ std::vector<double> FromBorder(const Sheet& sheet) {
       neighbours[sheet.triangles((k + 1) % 3, t)].push_back(sheet.triangles(k, t));
     }
   }
-  using Reached = std::pair<double, int>;
-  std::priority_queue<Reached, std::vector<Reached>, std::greater<>> queue;
+  using Entry = std::pair<double, int>;  // distance, vertex
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
   std::vector<double> distance(sheet.points.size(), std::numeric_limits<double>::infinity());
   for (const int i : sheet.loops[0]) distance[i] = 0, queue.emplace(0, i);
   while (!queue.empty()) {
@@ -55,8 +55,8 @@ std::vector<double> FromBorder(const Sheet& sheet) {
     queue.pop();
     if (so_far > distance[i]) continue;
     for (const int j : neighbours[i]) {
-      const double way = so_far + (sheet.points[j] - sheet.points[i]).norm();
-      if (way < distance[j]) distance[j] = way, queue.emplace(way, j);
+      const double length = so_far + (sheet.points[j] - sheet.points[i]).norm();
+      if (length < distance[j]) distance[j] = length, queue.emplace(length, j);
     }
   }
   return distance;
@@ -67,8 +67,8 @@ double TriangleArea(const Sheet& sheet, Eigen::Index t) {
   return (b - a).cross(sheet.points[sheet.triangles(2, t)] - a).norm() / 2;
 }
 
-// The least distance from the border that leaves `share` of the area further in.
-double TendonBorder(const Sheet& sheet, const std::vector<double>& distance, double share) {
+// Returns the distance from the rim beyond which `share` of the area lies.
+double TendonDistance(const Sheet& sheet, const std::vector<double>& distance, double share) {
   std::vector<std::pair<double, double>> triangles;  // distance, area
   double area = 0;
   for (Eigen::Index t = 0; t < sheet.triangles.cols(); ++t) {
@@ -78,16 +78,16 @@ double TendonBorder(const Sheet& sheet, const std::vector<double>& distance, dou
   }
   std::sort(triangles.rbegin(), triangles.rend());
   double taken = 0;
-  for (const auto& [from_border, own] : triangles) {
-    taken += own;
-    if (taken >= share * area) return from_border;
+  for (const auto& [from_rim, triangle_area] : triangles) {
+    taken += triangle_area;
+    if (taken >= share * area) return from_rim;
   }
   return 0;
 }
 
 void AddRegions(const Sheet& sheet, const CageFrame& frame, double edge_length, double tendon_share, Mesh& mesh) {
-  const std::vector<double> distance = FromBorder(sheet);
-  const double tendon = TendonBorder(sheet, distance, tendon_share), band = std::max(8.0, 2.2 * edge_length);
+  const std::vector<double> distance = DistanceFromRim(sheet);
+  const double tendon = TendonDistance(sheet, distance, tendon_share), band = std::max(8.0, 2.2 * edge_length);
   const auto n = static_cast<int>(sheet.points.size());
   for (int i = 0; i < n; ++i) {
     const auto add = [&](const char* name) {
@@ -113,32 +113,32 @@ std::string SectorName(int sector) {
 }
 
 v1::DerivedDiaphragm ReportOf(const Sheet& sheet, const SmoothSheet& smooth) {
-  std::array<double, 5> area{};  // by sight
-  std::array<double, 8> sector_area{}, sector_unseen{};
+  std::array<double, 5> area{};  // by Source
+  std::array<double, 8> sector_area{}, sector_extrapolated{};
   for (Eigen::Index t = 0; t < sheet.triangles.cols(); ++t) {
     const Eigen::Vector3i v = sheet.triangles.col(t);
     const Eigen::Vector2d p = (sheet.plane[v[0]] + sheet.plane[v[1]] + sheet.plane[v[2]]) / 3;
-    const Sight sight = smooth.SightAt(p);
+    const Source source = smooth.SourceAt(p);
     const int sector = (p.norm() > 1 ? 4 : 0) + (p.y() > 0 ? 2 : 0) + (p.x() > 0 ? 1 : 0);
     const double own = TriangleArea(sheet, t);
-    area[static_cast<int>(sight)] += own;
+    area[static_cast<int>(source)] += own;
     sector_area[sector] += own;
-    if (sight == Sight::kNone) sector_unseen[sector] += own;
+    if (source == Source::kNone) sector_extrapolated[sector] += own;
   }
   const double all = area[0] + area[1] + area[2] + area[3] + area[4];
   v1::DerivedDiaphragm report;
   report.set_vertices(static_cast<int>(2 * sheet.points.size()));
   report.set_area_cm2(all / 100);
-  report.set_between_organs(area[static_cast<int>(Sight::kBetween)] / all);
-  report.set_beside_one_organ(area[static_cast<int>(Sight::kBesideOne)] / all);
-  report.set_on_bone(area[static_cast<int>(Sight::kOnBone)] / all);
-  report.set_labelled(area[static_cast<int>(Sight::kLabel)] / all);
-  report.set_extrapolated(area[static_cast<int>(Sight::kNone)] / all);
+  report.set_between_organs(area[static_cast<int>(Source::kBetween)] / all);
+  report.set_beside_one_organ(area[static_cast<int>(Source::kBesideOne)] / all);
+  report.set_on_bone(area[static_cast<int>(Source::kOnBone)] / all);
+  report.set_labelled(area[static_cast<int>(Source::kLabel)] / all);
+  report.set_extrapolated(area[static_cast<int>(Source::kNone)] / all);
   for (int s = 0; s < 8; ++s) {
-    if (sector_unseen[s] < kTold * sector_area[s] || sector_area[s] == 0) continue;
+    if (sector_extrapolated[s] < kReported * sector_area[s] || sector_area[s] == 0) continue;
     v1::ExtrapolatedSector& sector = *report.add_sectors();
     sector.set_where(SectorName(s));
-    sector.set_share(sector_unseen[s] / sector_area[s]);
+    sector.set_share(sector_extrapolated[s] / sector_area[s]);
   }
   return report;
 }
@@ -147,11 +147,11 @@ v1::DerivedDiaphragm ReportOf(const Sheet& sheet, const SmoothSheet& smooth) {
 
 absl::StatusOr<DerivedDiaphragm> DeriveDiaphragm(const LabelVolume& volume, const std::vector<Part>& parts,
                                                  const CageFrame& frame, const DiaphragmOptions& options,
-                                                 Sentences& fallbacks) {
-  const SmoothSheet smooth(frame, Look(volume, parts, frame));
+                                                 Messages& fallbacks) {
+  const SmoothSheet smooth(frame, CollectEvidence(volume, parts, frame));
   anatomy::SheetDomain domain;
   domain.loops = {FindRim(volume, parts, frame, smooth, fallbacks)};
-  // A hexagonal lattice has a vertex for each edge length squared times sqrt(3)/2, MeshSheet 0.855 as many.
+  // A hexagonal lattice has one vertex per sqrt(3)/2 squared edge lengths; MeshSheet gives 0.855 times as many.
   constexpr double kOfLattice = 0.855;
   const double area = AreaOf(smooth, anatomy::PlaneRegion(domain.loops));
   const double edge_length = std::sqrt(kOfLattice * area / (options.vertices / 2.0) * 2 / std::sqrt(3.0));

@@ -1,4 +1,4 @@
-// The diaphragm that no segmentation has: derived from what lies on either side of it.
+// Derives the diaphragm, which segmentations lack, from the structures on either side of it.
 #ifndef PHRENIC_SERVER_IMAGING_DERIVED_DIAPHRAGM_H_
 #define PHRENIC_SERVER_IMAGING_DERIVED_DIAPHRAGM_H_
 
@@ -9,24 +9,23 @@
 namespace phrenic::imaging {
 
 struct DiaphragmOptions {
-  int vertices = 20000;        // aimed at, on both layers together
-  double tendon_share = 0.22;  // of the sheet's area; 15-25 % in people
+  int vertices = 20000;        // target, for both layers together
+  double tendon_share = 0.22;  // of the sheet's area; 0.15 to 0.25 in humans
 };
 
 struct DerivedDiaphragm {
-  Mesh
-      mesh;  // [m], LPS: a closed double layer, 3 mm apart, with the regions "tendon", "rim", "crus-right", "crus-left"
+  // A closed double layer with a gap of 3 mm [m], LPS. Regions: "tendon", "rim", "crus-right", "crus-left".
+  Mesh mesh;
   v1::DerivedDiaphragm report;
 };
 
-// The domes from the under side of lungs and heart against the upper side of liver, spleen and stomach; the zone of
-// apposition from the inner face of ribs and cartilages; the crura along the lumbar vertebrae; smooth and, where
-// nothing was seen, going on from around (SmoothSheet). The tendon is the part of the sheet that is furthest from the
-// rim along the sheet, as large as the share says (automatic division, thesis 3.1). Without openings. Errors as
-// FindCageFrame's.
+// Fits a smooth sheet (SmoothSheet) to the evidence: domes between the lower faces of lungs and heart and the upper
+// faces of liver, spleen and stomach; the zone of apposition along the inner faces of ribs and cartilages; the crura
+// along the lumbar vertebrae; extrapolated elsewhere. The tendon is the part furthest from the rim along the sheet,
+// with `tendon_share` of the area (automatic division, thesis 3.1). No openings. Genus 0. Adds messages to `fallbacks`.
 absl::StatusOr<DerivedDiaphragm> DeriveDiaphragm(const LabelVolume& volume, const std::vector<Part>& parts,
                                                  const CageFrame& frame, const DiaphragmOptions& options,
-                                                 Sentences& fallbacks);
+                                                 Messages& fallbacks);
 
 }  // namespace phrenic::imaging
 

@@ -9,24 +9,24 @@
 namespace phrenic::imaging {
 namespace {
 
-constexpr int kGzip = 15 + 16;             // zlib's window bits for gzip alone
-constexpr std::size_t kPortion = 1 << 18;  // [bytes]
+constexpr int kGzip = 15 + 16;             // zlib's windowBits for the gzip format
+constexpr std::size_t kPortion = 1 << 18;  // output buffer [bytes]
 
 Bytef* Bytes(const char* text) { return reinterpret_cast<Bytef*>(const_cast<char*>(text)); }
 
-// Takes in at most as much as zlib's counters hold.
+// Limits an input to what zlib's counters hold.
 uInt Portion(std::size_t bytes) { return static_cast<uInt>(std::min<std::size_t>(bytes, 1 << 30)); }
 
 }  // namespace
 
 bool IsGzip(std::string_view bytes) { return bytes.starts_with("\x1f\x8b"); }
 
-absl::StatusOr<std::string> Inflate(std::string_view name, std::string_view bytes, std::size_t most) {
+absl::StatusOr<std::string> Inflate(std::string_view name, std::string_view bytes, std::size_t max_bytes) {
   z_stream stream{};
   inflateInit2(&stream, kGzip);
-  std::string out, portion(std::min(kPortion, most + 1), '\0');
+  std::string out, portion(std::min(kPortion, max_bytes + 1), '\0');
   int state = Z_OK;
-  while (state == Z_OK && out.size() <= most) {
+  while (state == Z_OK && out.size() <= max_bytes) {
     const std::size_t taken = stream.total_in;
     stream.next_in = Bytes(bytes.data() + taken);
     stream.avail_in = Portion(bytes.size() - taken);
@@ -36,12 +36,12 @@ absl::StatusOr<std::string> Inflate(std::string_view name, std::string_view byte
     out.append(portion, 0, portion.size() - stream.avail_out);
   }
   inflateEnd(&stream);
-  const bool enough = out.size() > most;
-  out.resize(std::min(out.size(), most));
-  if (state == Z_STREAM_END || (state == Z_OK && enough)) return out;
+  const bool complete = out.size() > max_bytes;
+  out.resize(std::min(out.size(), max_bytes));
+  if (state == Z_STREAM_END || (state == Z_OK && complete)) return out;
   return absl::InvalidArgumentError(absl::StrCat(std::string(name), ": the gzip data is ",
-                                                 state == Z_BUF_ERROR ? "cut off" : "damaged", " after ", out.size(),
-                                                 " bytes of what it holds; fetch the file again"));
+                                                 state == Z_BUF_ERROR ? "truncated" : "damaged", " after ", out.size(),
+                                                 " uncompressed bytes; download the file again"));
 }
 
 std::string Deflate(std::string_view bytes) {

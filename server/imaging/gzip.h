@@ -1,4 +1,4 @@
-// gzip (RFC 1952), by zlib.
+// gzip compression (RFC 1952) by zlib. Thread-safe.
 #ifndef PHRENIC_SERVER_IMAGING_GZIP_H_
 #define PHRENIC_SERVER_IMAGING_GZIP_H_
 
@@ -10,12 +10,14 @@
 
 namespace phrenic::imaging {
 
+// True if the data starts with gzip's magic number.
 bool IsGzip(std::string_view bytes);
 
-// The first `most` bytes of what `bytes` hold, or all where that is less; no more memory than that is ever taken. Where
-// all is read the checksum is held too. INVALID_ARGUMENT "name: ..." for bytes that are damaged or cut off.
-absl::StatusOr<std::string> Inflate(std::string_view name, std::string_view bytes, std::size_t most);
+// Returns up to `max_bytes` of the uncompressed data and allocates no more. Verifies the checksum if it reaches the
+// end. INVALID_ARGUMENT "name: ..." if the data is damaged or truncated.
+absl::StatusOr<std::string> Inflate(std::string_view name, std::string_view bytes, std::size_t max_bytes);
 
+// Returns the data in gzip format, level 6.
 std::string Deflate(std::string_view bytes);
 
 }  // namespace phrenic::imaging

@@ -1,4 +1,4 @@
-// What the numbers of a label volume mean.
+// Label maps: the anatomical meaning of the numbers in a label volume.
 #ifndef PHRENIC_SERVER_IMAGING_LABEL_MAP_H_
 #define PHRENIC_SERVER_IMAGING_LABEL_MAP_H_
 
@@ -11,11 +11,12 @@
 
 namespace phrenic::imaging {
 
-// The map of that name that comes along ("totalsegmentator"), or that the text file says. NOT_FOUND names the file,
-// INVALID_ARGUMENT its line and field.
+// Reads the installed map of that name ("totalsegmentator"), or a file if the argument has a "/" or ends in .textproto.
+// NOT_FOUND names the file, INVALID_ARGUMENT its line and field.
 absl::StatusOr<v1::LabelMap> ReadLabelMap(const std::string& name_or_file);
 
-// The map with the numbers that the volume gives its names, where it names its labels.
+// Returns the map with the volume's numbers, matched by label name; the map unchanged if the volume has no names or
+// none matches.
 v1::LabelMap Resolve(const v1::LabelMap& map, const LabelVolume& volume);
 
 }  // namespace phrenic::imaging

@@ -11,15 +11,17 @@
 namespace phrenic::imaging {
 namespace {
 
-constexpr double kBlur = 0.7;       // of the longest edge of a voxel: the Gaussian's standard deviation
-constexpr double kReach = 2.5;      // standard deviations
-constexpr std::size_t kFewest = 8;  // voxels
+constexpr double kBlur = 0.7;       // standard deviation of the Gaussian, relative to the longest voxel edge
+constexpr double kReach = 2.5;      // truncation of the Gaussian [standard deviations]
+constexpr std::size_t kFewest = 8;  // voxels of the smallest mask
 
-double Sigma(const LabelVolume& volume, int axis) {  // [voxels]
+// Returns the standard deviation along an axis [voxels].
+double Sigma(const LabelVolume& volume, int axis) {
   const Eigen::Vector3d spacing = volume.Spacing();
   return kBlur * spacing.maxCoeff() / spacing[axis];
 }
 
+// Returns a truncated Gaussian with unit sum.
 std::vector<float> Kernel(double sigma) {
   const int reach = static_cast<int>(std::ceil(kReach * sigma));
   std::vector<float> kernel;
@@ -32,7 +34,7 @@ std::vector<float> Kernel(double sigma) {
   return kernel;
 }
 
-// A mask made soft: 1 deep inside, 0 far outside.
+// A mask blurred by a Gaussian: 1 deep inside, 0 far outside.
 class SoftMask {
  public:
   SoftMask(const LabelVolume& volume, const Mask& mask)
@@ -43,18 +45,18 @@ class SoftMask {
     for (int axis = 0; axis < 3; ++axis) Blur(axis, Kernel(Sigma(volume, axis)));
   }
 
-  // The level above which `count` voxels lie.
+  // Returns the level above which `count` voxels lie.
   double LevelOf(std::size_t count) const {
-    constexpr double kLowest = 0.15, kHighest = 0.6;  // outside of these the mask is no body with a surface
+    constexpr double kLowest = 0.15, kHighest = 0.6;  // other levels do not occur for a solid body
     std::vector<float> sorted = values_;
     std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(count), sorted.end(),
                      std::greater<>());
     return std::clamp<double>(sorted[count], kLowest, kHighest);
   }
 
-  // At a place in the patient [mm], linear between the middles of voxels.
-  double At(const Eigen::Vector3d& place) const {
-    const Eigen::Array3d at = (to_voxel_ * place - low_).array();
+  // Returns the value at a patient position [mm] by trilinear interpolation; 0 outside the mask's box.
+  double At(const Eigen::Vector3d& position) const {
+    const Eigen::Array3d at = (to_voxel_ * position - low_).array();
     const Eigen::Array3d floor = at.floor();
     if ((floor < 0).any() || (floor >= size_.array().cast<double>() - 1).any()) return 0;
     const Eigen::Array3d t = at - floor;
@@ -68,6 +70,7 @@ class SoftMask {
   }
 
  private:
+  // Convolves along one axis.
   void Blur(int axis, const std::vector<float>& kernel) {
     const std::array<std::ptrdiff_t, 3> strides = {1, size_.x(), static_cast<std::ptrdiff_t>(size_.x()) * size_.y()};
     const std::ptrdiff_t stride = strides[axis], reach = static_cast<std::ptrdiff_t>(kernel.size() / 2);
@@ -109,7 +112,8 @@ int SurfaceMargin(const LabelVolume& volume) {
 absl::StatusOr<Mesh> SurfaceOf(const LabelVolume& volume, const Mask& mask, double edge_length) {
   const std::size_t count = mask.Count();
   if (count < kFewest) {
-    return absl::FailedPreconditionError(absl::StrCat("a label of ", count, " voxels has no surface"));
+    return absl::FailedPreconditionError(
+        absl::StrCat("a label of ", count, " voxels is too small for a surface; at least ", kFewest, " are needed"));
   }
   const SoftMask soft(volume, mask);
   const double level = soft.LevelOf(count), scale = 2 * kBlur * volume.Spacing().maxCoeff();

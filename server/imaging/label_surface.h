@@ -1,4 +1,4 @@
-// Surfaces of labels: where the softened label is as large as the label was.
+// Extracts surfaces from label masks: a level set of the blurred mask that keeps the volume.
 #ifndef PHRENIC_SERVER_IMAGING_LABEL_SURFACE_H_
 #define PHRENIC_SERVER_IMAGING_LABEL_SURFACE_H_
 
@@ -8,15 +8,15 @@
 
 namespace phrenic::imaging {
 
-// How many empty voxels a mask needs around it for SurfaceOf.
+// Returns the number of empty voxels that SurfaceOf requires around a mask.
 int SurfaceMargin(const LabelVolume& volume);
 
-// The surface of the mask in metres, LPS: closed, outward, one component, of near-uniform triangles of the edge length
-// [mm]. The mask is blurred by a Gaussian of 0.7 of the longest edge of a voxel, which takes the steps away, and cut at
-// that level at which as many voxels lie inside as before, so that smoothing keeps the volume and thin bones stay.
-// Own code rather than VTK's: marching and remeshing are those of the generated thorax (server/anatomy), VTK would add
-// 766 MB to what builds this, and its windowed sinc filter keeps volume no better.
-// FAILED_PRECONDITION for a mask of fewer than eight voxels.
+// Returns the surface of the mask [m], LPS: closed, facing outwards, one component, near-uniform triangles with edges
+// of `edge_length` [mm]. Blurs the mask with a Gaussian of 0.7 longest voxel edges, which removes staircase artefacts,
+// and extracts the level at which as many voxels lie inside as before, so that smoothing keeps the volume and thin
+// bones. Uses marching tetrahedra and remeshing of server/anatomy rather than VTK, which would add 766 MB to the build
+// dependencies and whose windowed sinc filter keeps the volume no better.
+// FAILED_PRECONDITION if the mask has fewer than eight voxels.
 absl::StatusOr<Mesh> SurfaceOf(const LabelVolume& volume, const Mask& mask, double edge_length);
 
 }  // namespace phrenic::imaging

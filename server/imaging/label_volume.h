@@ -1,4 +1,4 @@
-// A volume of labels: a number a voxel, and where the voxels lie in the patient.
+// A label volume: one integer label per voxel, and the affine map from voxel indices to patient coordinates.
 #ifndef PHRENIC_SERVER_IMAGING_LABEL_VOLUME_H_
 #define PHRENIC_SERVER_IMAGING_LABEL_VOLUME_H_
 
@@ -11,14 +11,14 @@
 
 namespace phrenic::imaging {
 
-using Label = std::uint16_t;  // 0: nothing
+using Label = std::uint16_t;  // 0 is background
 
-// Lengths in millimetres, as images give them; frame LPS (+x left, +y posterior, +z superior).
+// Lengths in millimetres, as in images; frame LPS (+x left, +y posterior, +z superior).
 struct LabelVolume {
   Eigen::Vector3i size = Eigen::Vector3i::Zero();            // voxels along i, j, k
-  Eigen::Affine3d to_patient = Eigen::Affine3d::Identity();  // of (i, j, k), the middle of a voxel, to [mm]
-  std::vector<Label> labels;                                 // i runs fastest
-  std::map<int, std::string> names;                          // of labels, where the file says them
+  Eigen::Affine3d to_patient = Eigen::Affine3d::Identity();  // voxel index (i, j, k) -> voxel centre [mm]
+  std::vector<Label> labels;                                 // i varies fastest
+  std::map<int, std::string> names;                          // label -> name; empty if the file has none
 
   std::size_t Index(const Eigen::Vector3i& at) const {
     return (static_cast<std::size_t>(at.z()) * size.y() + at.y()) * size.x() + at.x();
@@ -26,7 +26,7 @@ struct LabelVolume {
   bool Contains(const Eigen::Vector3i& at) const {
     return (at.array() >= 0).all() && (at.array() < size.array()).all();
   }
-  // Lengths of the three edges of a voxel [mm].
+  // Returns the voxel spacing along i, j, k [mm].
   Eigen::Vector3d Spacing() const { return to_patient.linear().colwise().norm(); }
 };
 

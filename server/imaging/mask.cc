@@ -6,21 +6,22 @@
 namespace phrenic::imaging {
 namespace {
 
-// Every voxel takes the greatest (or least) of itself and its two neighbours along one axis.
+// Replaces every voxel by the maximum (or minimum) of itself and its two neighbours along one axis.
 template <typename Choose>
-void Spread(Mask& mask, int axis, const Choose& choose) {
+void Filter(Mask& mask, int axis, const Choose& choose) {
   const std::array<std::size_t, 3> strides = {1, static_cast<std::size_t>(mask.size.x()),
                                               static_cast<std::size_t>(mask.size.x()) * mask.size.y()};
   const std::size_t stride = strides[axis];
   const std::vector<std::uint8_t> before = mask.inside;
   for (std::size_t at = 0; at < before.size(); ++at) {
-    const auto place = static_cast<int>(at / stride % mask.size[axis]);
-    if (place > 0) mask.inside[at] = choose(mask.inside[at], before[at - stride]);
-    if (place + 1 < mask.size[axis]) mask.inside[at] = choose(mask.inside[at], before[at + stride]);
+    const auto coordinate = static_cast<int>(at / stride % mask.size[axis]);
+    if (coordinate > 0) mask.inside[at] = choose(mask.inside[at], before[at - stride]);
+    if (coordinate + 1 < mask.size[axis]) mask.inside[at] = choose(mask.inside[at], before[at + stride]);
   }
 }
 
-// Floods from `seed` over voxels whose `inside` is `value`. `reach` 1: over faces, 3: corners as well.
+// Flood fill from `seed` over voxels whose `inside` is `value`. Neighbours differ by at most `reach` in the 1-norm: 1
+// gives 6-connectivity, 3 gives 26-connectivity.
 std::vector<std::size_t> Flood(const Mask& mask, std::size_t seed, std::uint8_t value, int reach,
                                std::vector<bool>& seen) {
   std::vector<std::size_t> found = {seed};
@@ -43,17 +44,17 @@ std::vector<std::size_t> Flood(const Mask& mask, std::size_t seed, std::uint8_t 
   return found;
 }
 
-Eigen::Vector3i Unpacked(const Mask& mask, std::size_t index) {
+Eigen::Vector3i VoxelOf(const Mask& mask, std::size_t index) {
   const std::size_t nx = mask.size.x(), ny = mask.size.y();
   return {static_cast<int>(index % nx), static_cast<int>(index / nx % ny), static_cast<int>(index / nx / ny)};
 }
 
-// Those voxels alone.
+// Returns a mask of only these voxels, in their bounding box plus `margin`.
 Mask Cropped(const Mask& mask, const std::vector<std::size_t>& voxels, int margin) {
   Extent extent;
   for (const std::size_t at : voxels) {
-    extent.low = extent.low.cwiseMin(Unpacked(mask, at));
-    extent.high = extent.high.cwiseMax(Unpacked(mask, at));
+    extent.low = extent.low.cwiseMin(VoxelOf(mask, at));
+    extent.high = extent.high.cwiseMax(VoxelOf(mask, at));
   }
   Mask piece;
   const Eigen::Vector3i start = extent.low.array() - margin;
@@ -61,7 +62,7 @@ Mask Cropped(const Mask& mask, const std::vector<std::size_t>& voxels, int margi
   piece.size = (extent.high - extent.low).array() + 1 + 2 * margin;
   piece.inside.assign(static_cast<std::size_t>(piece.size.x()) * piece.size.y() * piece.size.z(), 0);
   for (const std::size_t at : voxels) {
-    const Eigen::Vector3i to = Unpacked(mask, at) - start;
+    const Eigen::Vector3i to = VoxelOf(mask, at) - start;
     piece.inside[piece.Index(to.x(), to.y(), to.z())] = 1;
   }
   return piece;
@@ -92,11 +93,11 @@ std::map<Label, Extent> Extents(const LabelVolume& volume) {
 
 std::size_t Mask::Count() const { return static_cast<std::size_t>(std::count(inside.begin(), inside.end(), 1)); }
 
-Eigen::Vector3d Mask::Place(const LabelVolume& volume, std::size_t index) const {
-  return volume.to_patient * (low + Unpacked(*this, index)).cast<double>();
+Eigen::Vector3d Mask::Position(const LabelVolume& volume, std::size_t index) const {
+  return volume.to_patient * (low + VoxelOf(*this, index)).cast<double>();
 }
 
-Mask CutOut(const LabelVolume& volume, Label label, const Extent& extent, int margin) {
+Mask ExtractMask(const LabelVolume& volume, Label label, const Extent& extent, int margin) {
   Mask mask;
   mask.low = extent.low.array() - margin;
   mask.size = (extent.high - extent.low).array() + 1 + 2 * margin;
@@ -113,25 +114,25 @@ Mask CutOut(const LabelVolume& volume, Label label, const Extent& extent, int ma
 }
 
 void Close(Mask& mask, int reach) {
-  for (int step = 0; step < 3 * reach; ++step) Spread(mask, step % 3, [](auto a, auto b) { return std::max(a, b); });
-  for (int step = 0; step < 3 * reach; ++step) Spread(mask, step % 3, [](auto a, auto b) { return std::min(a, b); });
+  for (int step = 0; step < 3 * reach; ++step) Filter(mask, step % 3, [](auto a, auto b) { return std::max(a, b); });
+  for (int step = 0; step < 3 * reach; ++step) Filter(mask, step % 3, [](auto a, auto b) { return std::min(a, b); });
 }
 
 void FillCavities(Mask& mask) {
   std::vector<bool> outside(mask.inside.size(), false);
-  Flood(mask, 0, 0, 1, outside);  // the margin hangs together
+  Flood(mask, 0, 0, 1, outside);  // the margin is connected
   for (std::size_t at = 0; at < mask.inside.size(); ++at) mask.inside[at] = outside[at] ? 0 : 1;
 }
 
-std::vector<Mask> Pieces(const Mask& mask, int margin, Joint joint) {
+std::vector<Mask> ConnectedComponents(const Mask& mask, int margin, Connectivity connectivity) {
   std::vector<std::vector<std::size_t>> found;
   std::vector<bool> seen(mask.inside.size(), false);
   for (std::size_t at = 0; at < mask.inside.size(); ++at) {
-    if (mask.inside[at] == 1 && !seen[at]) found.push_back(Flood(mask, at, 1, static_cast<int>(joint), seen));
+    if (mask.inside[at] == 1 && !seen[at]) found.push_back(Flood(mask, at, 1, static_cast<int>(connectivity), seen));
   }
   std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
-  constexpr std::size_t kMost = 64;  // the rest are crumbs
-  found.resize(std::min(found.size(), kMost));
+  constexpr std::size_t kMaxPieces = 64;  // the rest are fragments
+  found.resize(std::min(found.size(), kMaxPieces));
   std::vector<Mask> pieces;
   pieces.reserve(found.size());
   for (const std::vector<std::size_t>& voxels : found) pieces.push_back(Cropped(mask, voxels, margin));

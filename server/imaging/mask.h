@@ -1,4 +1,4 @@
-// The voxels of a label, cut out of its volume: closed, cleaned, taken apart.
+// Binary masks of labels: extraction from the volume, morphological closing, hole filling, connected components.
 #ifndef PHRENIC_SERVER_IMAGING_MASK_H_
 #define PHRENIC_SERVER_IMAGING_MASK_H_
 
@@ -11,41 +11,42 @@
 
 namespace phrenic::imaging {
 
-// The smallest box that holds a label's voxels.
+// A label's bounding box, in voxel indices.
 struct Extent {
   Eigen::Vector3i low = Eigen::Vector3i::Constant(1 << 30);
   Eigen::Vector3i high = Eigen::Vector3i::Constant(-1);  // inclusive
   std::size_t voxels = 0;
 };
 
-// Of every label that the volume has, but 0.
+// Returns the extent of every label in the volume except 0.
 std::map<Label, Extent> Extents(const LabelVolume& volume);
 
 struct Mask {
-  Eigen::Vector3i low = Eigen::Vector3i::Zero();  // where its first voxel lies in the volume; may be outside of it
+  Eigen::Vector3i low = Eigen::Vector3i::Zero();  // volume index of its first voxel; may be outside the volume
   Eigen::Vector3i size = Eigen::Vector3i::Zero();
-  std::vector<std::uint8_t> inside;  // 1 or 0, i fastest
+  std::vector<std::uint8_t> inside;  // 1 or 0, i varies fastest
 
   std::size_t Index(int i, int j, int k) const { return (static_cast<std::size_t>(k) * size.y() + j) * size.x() + i; }
   std::size_t Count() const;
-  // The middle of a voxel [mm].
-  Eigen::Vector3d Place(const LabelVolume& volume, std::size_t index) const;
+  // Returns the patient position of a voxel's centre [mm].
+  Eigen::Vector3d Position(const LabelVolume& volume, std::size_t index) const;
 };
 
-// The label's voxels with `margin` empty ones around, also where the volume ends: what is cut by its border is closed.
-Mask CutOut(const LabelVolume& volume, Label label, const Extent& extent, int margin);
+// Returns the label's voxels with a margin of empty ones, also at the volume's border, so that surfaces are closed
+// there.
+Mask ExtractMask(const LabelVolume& volume, Label label, const Extent& extent, int margin);
 
-// Closing: dilation by a cube of three, `reach` times, then as many erosions. Holes and cracks of up to twice as many
-// voxels go; the mask needs as much room around.
+// Morphological closing: `reach` dilations by a 3 x 3 x 3 cube, then as many erosions. Closes holes and gaps up to 2
+// `reach` voxels wide. Requires: a margin of at least `reach`.
 void Close(Mask& mask, int reach);
 
-// Cavities that the outside does not reach become inside.
+// Fills cavities that are not connected to the outside. Requires: a margin of at least 1.
 void FillCavities(Mask& mask);
 
-enum class Joint : std::uint8_t { kFaces = 1, kCorners = 3 };  // kCorners: by faces, edges or corners
+enum class Connectivity : std::uint8_t { kFaces = 1, kCorners = 3 };  // 6- and 26-connectivity
 
-// What hangs together, largest first; each in a box of its own with `margin` around.
-std::vector<Mask> Pieces(const Mask& mask, int margin, Joint joint = Joint::kCorners);
+// Returns the connected components, largest first, at most 64; each in its own bounding box plus `margin`.
+std::vector<Mask> ConnectedComponents(const Mask& mask, int margin, Connectivity connectivity = Connectivity::kCorners);
 
 }  // namespace phrenic::imaging
 

@@ -17,10 +17,10 @@ namespace {
 using meshio::AppendBytes;
 using meshio::ByteReader;
 
-constexpr std::size_t kDeflatesBestRatio = 1032;  // zlib's manual: no byte holds more
+constexpr std::size_t kMaxDeflateRatio = 1032;  // zlib's manual
 const Eigen::Vector3d kRasToLps(-1, -1, 1);
 
-// The first number between quotes after `key`.
+// Returns the integer before the next quotation mark, or -1.
 int KeyOf(std::string_view text) {
   int key = -1;
   const std::size_t end = text.find('"');
@@ -28,7 +28,7 @@ int KeyOf(std::string_view text) {
   return key;
 }
 
-// <Label Key="5" ...><![CDATA[liver]]></Label>
+// Reads entries <Label Key="5" ...><![CDATA[liver]]></Label>.
 void ReadNames(std::string_view extension, std::map<int, std::string>& names) {
   constexpr std::string_view kEntry = "<Label Key=\"", kOpen = "<![CDATA[", kClose = "]]>";
   for (std::size_t at = extension.find(kEntry); at != std::string_view::npos; at = extension.find(kEntry, at + 1)) {
@@ -39,13 +39,13 @@ void ReadNames(std::string_view extension, std::map<int, std::string>& names) {
   }
 }
 
-// Extensions: a length of 16 n with these eight bytes, a code, and what they hold.
+// Reads header extensions. Each has its length including these 8 bytes (int32), a code (int32) and its content.
 absl::Status ReadExtensions(ByteReader reader, std::string_view bytes, std::size_t end, LabelVolume& volume) {
   while (reader.at() + 8 <= end) {
     const std::size_t at = reader.at();
     std::int32_t length = 0, code = 0;
     if (!reader.Take(length) || !reader.Take(code) || length < 8 || at + length > end || !reader.Skip(length - 8)) {
-      return reader.Error("an extension of the header has no length that fits before the voxels");
+      return reader.Error("a header extension's length does not fit before the voxels");
     }
     ReadNames(bytes.substr(at + 8, length - 8), volume.names);
   }
@@ -59,7 +59,7 @@ absl::Status ReadVoxels(ByteReader reader, std::size_t count, std::vector<Label>
     T number{};
     reader.Take(number);
     if (std::cmp_less(number, 0) || std::cmp_greater(number, std::numeric_limits<Label>::max())) {
-      return reader.Error(absl::StrCat("label ", number, " is outside 0 to 65535; number the labels anew"));
+      return reader.Error(absl::StrCat("label ", number, " is outside 0 to 65535; renumber the labels"));
     }
     labels.push_back(static_cast<Label>(number));
   }
@@ -70,8 +70,9 @@ absl::StatusOr<LabelVolume> ParsePlain(std::string_view name, std::string_view b
   const absl::StatusOr<NiftiHeader> header = ParseNiftiHeader(name, bytes);
   if (!header.ok()) return header.status();
   if (bytes.size() < header->end()) {
-    return absl::InvalidArgumentError(absl::StrCat(std::string(name), ": cut off: the header says ", header->end(),
-                                                   " bytes, there are ", bytes.size(), "; fetch the file again"));
+    return absl::InvalidArgumentError(absl::StrCat(std::string(name), ": truncated: the header declares ",
+                                                   header->end(), " bytes, the file has ", bytes.size(),
+                                                   "; download it again"));
   }
   LabelVolume volume;
   volume.size = header->size;
@@ -106,15 +107,15 @@ std::string NamesExtension(const std::map<int, std::string>& names) {
 
 absl::StatusOr<LabelVolume> ParseNifti(std::string_view name, std::string_view bytes) {
   if (!IsGzip(bytes)) return ParsePlain(name, bytes);
-  const absl::StatusOr<std::string> start = Inflate(name, bytes, kLongestHeader);
+  const absl::StatusOr<std::string> start = Inflate(name, bytes, kMaxHeader);
   if (!start.ok()) return start.status();
   const absl::StatusOr<NiftiHeader> header = ParseNiftiHeader(name, *start);
   if (!header.ok()) return header.status();
-  if (header->end() / kDeflatesBestRatio > bytes.size()) {
-    return absl::InvalidArgumentError(absl::StrCat(std::string(name), ": the header says ", header->end(),
+  if (header->end() / kMaxDeflateRatio > bytes.size()) {
+    return absl::InvalidArgumentError(absl::StrCat(std::string(name), ": the header declares ", header->end(),
                                                    " bytes, more than a file of ", bytes.size(), " can hold"));
   }
-  // One byte more: at the stream's end the checksum is held.
+  // Ask for one more byte, so that zlib reaches the end of the stream and verifies the checksum.
   const absl::StatusOr<std::string> whole = Inflate(name, bytes, header->end() + 1);
   if (!whole.ok()) return whole.status();
   return ParsePlain(name, *whole);
@@ -122,7 +123,7 @@ absl::StatusOr<LabelVolume> ParseNifti(std::string_view name, std::string_view b
 
 absl::StatusOr<LabelVolume> ReadNifti(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  if (!file) return absl::NotFoundError(absl::StrCat("cannot read the label volume ", path, ": is the path right?"));
+  if (!file) return absl::NotFoundError(absl::StrCat("cannot read the label volume ", path, "; check the path"));
   const std::string bytes{std::istreambuf_iterator<char>(file), {}};
   return ParseNifti(path, bytes);
 }

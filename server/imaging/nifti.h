@@ -1,8 +1,8 @@
-// Label volumes in NIfTI files, as 3D Slicer and TotalSegmentator write them.
+// Reads and writes label volumes in NIfTI files, as 3D Slicer and TotalSegmentator write them (format:
+// https://nifti.nimh.nih.gov/nifti-1, nifti-2).
 //
-// A strict reader of our own rather than Debian's libnifti: it reads from bytes, takes no more memory than the file can
-// hold, and every cut and every flipped byte gives an error or a volume. (VTK's reader does not turn RAS to LPS, and
-// would bring 157 MB along.) Format: https://nifti.nimh.nih.gov/nifti-1, nifti-2.
+// A strict reader instead of libnifti: it parses memory, allocates in proportion to the file, and returns an error or a
+// valid volume for every truncated or corrupted file. (VTK's reader does not convert RAS to LPS and needs 157 MB.)
 #ifndef PHRENIC_SERVER_IMAGING_NIFTI_H_
 #define PHRENIC_SERVER_IMAGING_NIFTI_H_
 
@@ -14,16 +14,16 @@
 
 namespace phrenic::imaging {
 
-// Parses a single-file NIfTI-1 or NIfTI-2 image (.nii), as it is or in gzip (.nii.gz), of either byte order: one volume
-// of any integer type, every value 0 to 65,535. The sform says where it lies, else the qform; NIfTI's frame is RAS, the
-// volume's is LPS. Names of labels come from an extension with a table `<Label Key="5"...>`, as TotalSegmentator writes
-// it. INVALID_ARGUMENT "name: ..." or "name:byte N: ..." says what is wrong and what to do.
+// Parses a single-file NIfTI-1 or NIfTI-2 image, .nii or .nii.gz, of either endianness: one 3D volume of any integer
+// type with values 0 to 65,535. The voxel-to-patient map is the sform if present, else the qform, converted from
+// NIfTI's RAS to LPS. Label names come from an extension with a table `<Label Key="5" ...>`, as TotalSegmentator writes
+// it. INVALID_ARGUMENT "name: ..." or "name:byte N: ..." with problem and remedy.
 absl::StatusOr<LabelVolume> ParseNifti(std::string_view name, std::string_view bytes);
 
-// Reads the file and parses it; NOT_FOUND names the path.
+// Reads and parses a file. NOT_FOUND names the path.
 absl::StatusOr<LabelVolume> ReadNifti(const std::string& path);
 
-// The bytes of a NIfTI-1 file of unsigned 16-bit numbers, with the names of labels in an extension; not compressed.
+// Returns an uncompressed NIfTI-1 file: uint16 voxels, sform, label names in an extension.
 std::string WriteNifti(const LabelVolume& volume);
 
 }  // namespace phrenic::imaging

@@ -13,17 +13,18 @@ namespace {
 
 using meshio::ByteReader;
 
-// Where a version of the format has its fields, from the header's first byte.
+// Byte offsets of the fields in a version of the header.
 struct Layout {
   std::size_t length, magic, dim, type, pixdim, data_at, slope, qform, quaternion, offset, srow, units;
-  bool wide;  // counts of 64 bits, numbers of 64 bits
+  bool wide;  // 64-bit counts and reals
 };
 constexpr Layout kNifti1 = {348, 344, 40, 70, 76, 108, 112, 252, 256, 268, 280, 123, false};
 constexpr Layout kNifti2 = {540, 4, 16, 12, 104, 168, 176, 344, 352, 376, 400, 500, true};
 
-constexpr std::int64_t kMostAlong = 32767;  // voxels along an axis
-constexpr std::size_t kMostVoxels = std::size_t{1} << 30;
+constexpr std::int64_t kMaxAlong = 32767;  // voxels along an axis
+constexpr std::size_t kMaxVoxels = std::size_t{1} << 30;
 
+// Decodes header fields of either version and endianness.
 class Fields {
  public:
   const Layout* at;
@@ -32,9 +33,9 @@ class Fields {
       : at(&layout), name_(name), bytes_(bytes), order_(order) {}
 
   template <typename T>
-  T Get(std::size_t place) const {
+  T Get(std::size_t offset) const {
     T number{};
-    ByteReader(name_, bytes_, place, order_).Take(number);
+    ByteReader(name_, bytes_, offset, order_).Take(number);
     return number;
   }
   std::int64_t Count(std::size_t field, int index) const {
@@ -46,8 +47,8 @@ class Fields {
   std::int64_t Code(std::size_t field, int index) const {
     return at->wide ? Get<std::int32_t>(field + 4 * index) : Get<std::int16_t>(field + 2 * index);
   }
-  absl::Status Error(std::size_t place, const std::string& message) const {
-    return ByteReader(name_, bytes_, place).Error(message);
+  absl::Status Error(std::size_t offset, const std::string& message) const {
+    return ByteReader(name_, bytes_, offset).Error(message);
   }
   std::endian order() const { return order_; }
 
@@ -56,6 +57,7 @@ class Fields {
   std::endian order_;
 };
 
+// Determines version and endianness from the header's length and magic number.
 absl::StatusOr<Fields> Recognise(std::string_view name, std::string_view bytes) {
   for (const std::endian order : {std::endian::little, std::endian::big}) {
     for (const Layout* layout : {&kNifti1, &kNifti2}) {
@@ -71,7 +73,7 @@ absl::StatusOr<Fields> Recognise(std::string_view name, std::string_view bytes) 
   }
   return absl::InvalidArgumentError(
       absl::StrCat(std::string(name),
-                   ": no NIfTI-1 or NIfTI-2 file: its first bytes are not such a header; save the "
+                   ": not a NIfTI-1 or NIfTI-2 file: its first bytes are not such a header; save the "
                    "segmentation as .nii or .nii.gz"));
 }
 
@@ -82,15 +84,16 @@ absl::Status ReadSize(const Fields& fields, NiftiHeader& header) {
   }
   for (int k = 1; k <= dimensions; ++k) {
     const std::int64_t along = fields.Count(fields.at->dim, k);
-    const bool right = k <= 3 ? along >= 1 && along <= kMostAlong : along == 1;
-    if (!right) {
-      return fields.Error(fields.at->dim, absl::StrCat("dimension ", k, " has ", along, " entries; ",
-                                                       k <= 3 ? "1 to 32767 will do" : "one volume alone will do"));
+    const bool valid = k <= 3 ? along >= 1 && along <= kMaxAlong : along == 1;
+    if (!valid) {
+      return fields.Error(fields.at->dim,
+                          absl::StrCat("dimension ", k, " has ", along, " entries; ",
+                                       k <= 3 ? "1 to 32767 are supported" : "only a single volume is supported"));
     }
     if (k <= 3) header.size[k - 1] = static_cast<int>(along);
   }
-  if (header.voxels() > kMostVoxels) {
-    return fields.Error(fields.at->dim, absl::StrCat("more than ", kMostVoxels, " voxels; crop to the thorax"));
+  if (header.voxels() > kMaxVoxels) {
+    return fields.Error(fields.at->dim, absl::StrCat("more than ", kMaxVoxels, " voxels; crop to the thorax"));
   }
   return absl::OkStatus();
 }
@@ -98,22 +101,25 @@ absl::Status ReadSize(const Fields& fields, NiftiHeader& header) {
 absl::Status ReadType(const Fields& fields, NiftiHeader& header) {
   header.type = fields.Get<std::int16_t>(fields.at->type);
   if (!WithIntegerOf(header.type, [&](auto number) { header.voxel_bytes = sizeof(number); })) {
-    return fields.Error(fields.at->type, absl::StrCat("voxels are of type ", header.type,
+    return fields.Error(fields.at->type, absl::StrCat("voxels have type code ", header.type,
                                                       "; labels are integers: save it as such (uint8, int16, ...)"));
   }
   const double slope = fields.Real(fields.at->slope, 0), intercept = fields.Real(fields.at->slope, 1);
   const bool plain = (slope == 0 && std::isfinite(intercept)) || (slope == 1 && intercept == 0);
-  if (!plain) return fields.Error(fields.at->slope, "voxels are scaled; labels must not be: save them as they are");
+  if (!plain)
+    return fields.Error(fields.at->slope,
+                        "voxels are scaled (scl_slope, scl_inter), which labels must not be; save them unscaled");
   const double start = fields.at->wide ? static_cast<double>(fields.Get<std::int64_t>(fields.at->data_at))
                                        : fields.Get<float>(fields.at->data_at);
   if (!(start >= static_cast<double>(header.length) && start < 1e9) || start != std::floor(start)) {
-    return fields.Error(fields.at->data_at, absl::StrCat("voxels cannot begin at byte ", start));
+    return fields.Error(fields.at->data_at, absl::StrCat("voxels cannot start at byte ", start));
   }
   header.data_at = static_cast<std::size_t>(start);
   return absl::OkStatus();
 }
 
-Eigen::Affine3d BySrow(const Fields& fields) {
+// Returns the sform: voxel index to RAS.
+Eigen::Affine3d SformOf(const Fields& fields) {
   Eigen::Affine3d to_ras = Eigen::Affine3d::Identity();
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 4; ++column) {
@@ -123,7 +129,8 @@ Eigen::Affine3d BySrow(const Fields& fields) {
   return to_ras;
 }
 
-Eigen::Affine3d ByQuaternion(const Fields& fields) {
+// Returns the qform: rotation by the unit quaternion (a, b, c, d), voxel spacing, and offset.
+Eigen::Affine3d QformOf(const Fields& fields) {
   const auto q = [&](int k) { return fields.Real(fields.at->quaternion, k); };
   const double a = std::sqrt(std::max(0.0, 1 - q(0) * q(0) - q(1) * q(1) - q(2) * q(2)));
   Eigen::Vector3d spacing;
@@ -135,28 +142,29 @@ Eigen::Affine3d ByQuaternion(const Fields& fields) {
   return to_ras;
 }
 
-// Millimetres in the header's unit of length.
+// Returns the header's unit of length [mm].
 double UnitOf(const Fields& fields) {
   const int code =
       fields.at->wide ? fields.Get<std::int32_t>(fields.at->units) : fields.Get<std::uint8_t>(fields.at->units);
   return (code & 7) == 1 ? 1e3 : (code & 7) == 3 ? 1e-3 : 1.0;
 }
 
-absl::Status ReadPlace(const Fields& fields, NiftiHeader& header) {
+absl::Status ReadOrientation(const Fields& fields, NiftiHeader& header) {
   const bool qform = fields.Code(fields.at->qform, 0) > 0, sform = fields.Code(fields.at->qform, 1) > 0;
   if (!qform && !sform) {
     return fields.Error(fields.at->qform,
-                        "neither sform nor qform: which side is left is not said; save it with its orientation");
+                        "neither sform nor qform is set, so left and right are unknown; save it with its orientation");
   }
-  header.to_ras = sform ? BySrow(fields) : ByQuaternion(fields);
+  header.to_ras = sform ? SformOf(fields) : QformOf(fields);
   header.to_ras.matrix().topRows<3>() *= UnitOf(fields);
   const Eigen::Matrix3d axes = header.to_ras.linear();
   const double low = axes.colwise().norm().minCoeff(), high = axes.colwise().norm().maxCoeff();
-  const bool right = axes.allFinite() && header.to_ras.translation().allFinite() && low >= 0.05 && high <= 50 &&
+  const bool valid = axes.allFinite() && header.to_ras.translation().allFinite() && low >= 0.05 && high <= 50 &&
                      header.to_ras.translation().norm() < 1e5 && std::abs(axes.determinant()) > 0.1 * low * low * low;
-  if (!right) {
-    return fields.Error(sform ? fields.at->srow : fields.at->quaternion,
-                        "the orientation is no frame of voxels of 0.05 to 50 mm; save it from a viewer that shows it");
+  if (!valid) {
+    return fields.Error(
+        sform ? fields.at->srow : fields.at->quaternion,
+        "the orientation is not an affine frame with voxels of 0.05 to 50 mm; save it from a viewer that displays it");
   }
   return absl::OkStatus();
 }
@@ -171,7 +179,7 @@ absl::StatusOr<NiftiHeader> ParseNiftiHeader(std::string_view name, std::string_
   header.length = fields->at->length + 4;
   if (absl::Status status = ReadSize(*fields, header); !status.ok()) return status;
   if (absl::Status status = ReadType(*fields, header); !status.ok()) return status;
-  if (absl::Status status = ReadPlace(*fields, header); !status.ok()) return status;
+  if (absl::Status status = ReadOrientation(*fields, header); !status.ok()) return status;
   return header;
 }
 

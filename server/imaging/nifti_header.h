@@ -1,4 +1,4 @@
-// What the header of a NIfTI file says: how many voxels of which type there are, and where they lie.
+// The header of a NIfTI-1 or NIfTI-2 file: size, type and orientation of the volume.
 #ifndef PHRENIC_SERVER_IMAGING_NIFTI_HEADER_H_
 #define PHRENIC_SERVER_IMAGING_NIFTI_HEADER_H_
 
@@ -12,23 +12,23 @@
 
 namespace phrenic::imaging {
 
-// The header and the four bytes after it, of the longer of the two versions.
-inline constexpr std::size_t kLongestHeader = 544;
+// Size of the longer header, NIfTI-2's, with the four extension bytes after it.
+inline constexpr std::size_t kMaxHeader = 544;
 
 struct NiftiHeader {
   std::endian order = std::endian::little;
-  std::size_t length = 0;  // of the header with the four bytes that tell of extensions
+  std::size_t length = 0;  // of the header with the four extension bytes
   Eigen::Vector3i size;    // voxels along i, j, k
-  int type = 0;            // NIfTI's code
+  int type = 0;            // NIfTI's datatype code
   int voxel_bytes = 0;
-  std::size_t data_at = 0;  // of the first voxel
-  Eigen::Affine3d to_ras;   // (i, j, k) to [mm] in NIfTI's own frame
+  std::size_t data_at = 0;  // byte offset of the first voxel (vox_offset)
+  Eigen::Affine3d to_ras;   // voxel index (i, j, k) -> RAS [mm]
 
   std::size_t voxels() const { return static_cast<std::size_t>(size.x()) * size.y() * size.z(); }
   std::size_t end() const { return data_at + voxels() * voxel_bytes; }
 };
 
-// Calls `then` with a number of the type that NIfTI's code tells; false where it is no integer type.
+// Calls `then` with a zero of the type of NIfTI's datatype code. Returns false if it is not an integer type.
 template <typename Then>
 bool WithIntegerOf(int type, const Then& then) {
   switch (type) {
@@ -53,7 +53,7 @@ bool WithIntegerOf(int type, const Then& then) {
   }
 }
 
-// INVALID_ARGUMENT "name:byte N: ..." where `bytes`, the beginning of a file, are no header of a label volume.
+// Parses the header from the start of a file. INVALID_ARGUMENT "name:byte N: ..." if it is not that of a label volume.
 absl::StatusOr<NiftiHeader> ParseNiftiHeader(std::string_view name, std::string_view bytes);
 
 }  // namespace phrenic::imaging

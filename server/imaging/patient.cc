@@ -16,8 +16,8 @@
 namespace phrenic::imaging {
 namespace {
 
-constexpr double kDiaphragmsShare = 0.5;  // of the whole time
-constexpr double kLungEdges = 1.5;        // of the bones' edge length
+constexpr double kDiaphragmsShare = 0.5;  // of the progress
+constexpr double kLungEdges = 1.5;        // edge length of lungs, relative to bones
 
 bool HasSurface(const Part& part) { return part.organ == v1::ORGAN_UNSPECIFIED && !part.Is(v1::STRUCTURE_DIAPHRAGM); }
 
@@ -27,7 +27,7 @@ absl::Status CheckParts(const std::vector<Part>& parts) {
   };
   if (has(v1::STRUCTURE_LUNG) && has(v1::STRUCTURE_RIB) && has(v1::STRUCTURE_VERTEBRA)) return absl::OkStatus();
   return absl::FailedPreconditionError(
-      "the volume has no lungs, no ribs or no vertebrae by this label map: a thorax cannot be made of it");
+      "by this label map the volume has no lungs, no ribs or no vertebrae, so it cannot be made into a thorax");
 }
 
 absl::Status AddSurfaces(const LabelVolume& volume, const std::vector<Part>& parts, const PatientOptions& options,
@@ -75,7 +75,7 @@ absl::StatusOr<Patient> MakePatient(const LabelVolume& volume, const v1::LabelMa
                                     const PatientOptions& options, PatientProgress progress) {
   Patient patient;
   patient.report.set_name(options.name);
-  Sentences fallbacks;
+  Messages fallbacks;
   const absl::StatusOr<std::vector<Part>> parts = FindParts(volume, Resolve(map, volume), fallbacks);
   if (!parts.ok()) return parts.status();
   if (absl::Status status = CheckParts(*parts); !status.ok()) return status;
@@ -94,7 +94,7 @@ absl::StatusOr<Patient> MakePatient(const LabelVolume& volume, const v1::LabelMa
   for (PatientBody& body : patient.bodies) body.mesh.vertices.row(0).array() -= kMillimetre * frame->centre.x();
   ReportRibs(*frame, patient);
   patient.scene = PatientScene(pattern, patient.bodies, *frame, options.name);
-  for (std::string& sentence : fallbacks) patient.report.add_fallbacks(std::move(sentence));
+  for (std::string& message : fallbacks) patient.report.add_fallbacks(std::move(message));
   return patient;
 }
 

@@ -1,4 +1,4 @@
-// From a label volume to a thorax that breathes: surfaces, diaphragm, scene, and a report of what had to be guessed.
+// Converts a label volume to a breathing thorax: surfaces, a derived diaphragm, a scene, and a report of assumptions.
 #ifndef PHRENIC_SERVER_IMAGING_PATIENT_H_
 #define PHRENIC_SERVER_IMAGING_PATIENT_H_
 
@@ -11,6 +11,7 @@
 #include "phrenic/v1/patient.pb.h"
 #include "server/imaging/derived_diaphragm.h"
 #include "server/imaging/label_volume.h"
+#include "server/imaging/patient_body.h"
 
 namespace phrenic::imaging {
 
@@ -20,25 +21,19 @@ struct PatientOptions {
   DiaphragmOptions diaphragm;
 };
 
-struct PatientBody {
-  std::string name;
-  v1::Anatomy anatomy;
-  Mesh mesh;  // [m], LPS, the midsagittal plane at x = 0
-};
-
 struct Patient {
   std::vector<PatientBody> bodies;
   v1::Scene scene;  // its surfaces are the files NAME/BODY.msh of the data folder, in millimetres
   v1::PatientReport report;
 };
 
-// Told how much is done, 0 to 1, and what is being done; false stops it.
+// Receives the progress, 0 to 1, and the current step. Returns false to cancel.
 using PatientProgress = absl::FunctionRef<bool(double done, std::string_view doing)>;
 
-// `pattern` is the scene whose forces, breath and presets the patient gets, scaled to the patient's width: the shipped
-// "thorax". Every part is moved sideways by one distance (in the report), so that the spine's middle is x = 0, where
-// the scene language has its midsagittal plane. FAILED_PRECONDITION where the volume has no lungs, ribs or vertebrae,
-// or is no thorax; CANCELLED where the progress says so.
+// `pattern` is the scene that supplies forces, breath and presets, scaled to the patient's width: the installed scene
+// "thorax". All parts are shifted along x by one distance (in the report) so that the midsagittal plane is x = 0, as
+// scenes require. FAILED_PRECONDITION if the volume has no lungs, ribs or vertebrae; CANCELLED if `progress` returns
+// false.
 absl::StatusOr<Patient> MakePatient(const LabelVolume& volume, const v1::LabelMap& map, const v1::Scene& pattern,
                                     const PatientOptions& options, PatientProgress progress);
 

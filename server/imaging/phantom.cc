@@ -13,9 +13,9 @@
 namespace phrenic::imaging {
 namespace {
 
-const Eigen::Vector3d kLow(-145, -125, -12), kHigh(145, 160, 405);  // of the generated thorax [mm]
+const Eigen::Vector3d kLow(-145, -125, -12), kHigh(145, 160, 405);  // bounds of the generated thorax [mm]
 
-// How much of the flattening a height takes [0, 1]: nothing at the rim and at the lungs' tops, all at the domes.
+// Returns the share of the flattening at a height, in [0, 1]: 0 at the rim and at the lungs' apices, 1 at the domes.
 double Share(double z) {
   const double up = z < 205 ? (z - 95) / 110 : (330 - z) / 125;
   const double t = std::clamp(up, 0.0, 1.0);
@@ -25,11 +25,11 @@ double Share(double z) {
 bool IsSoft(v1::Structure structure) { return structure == v1::STRUCTURE_LUNG || structure == v1::STRUCTURE_DIAPHRAGM; }
 
 LabelVolume EmptyVolume(const PhantomBody& body, double voxel) {
-  const Eigen::Vector3d low = 1e3 * body.Place(kMillimetre * kLow, false),
-                        high = 1e3 * body.Place(kMillimetre * kHigh, false);
+  const Eigen::Vector3d low = 1e3 * body.FromGenerated(kMillimetre * kLow, false),
+                        high = 1e3 * body.FromGenerated(kMillimetre * kHigh, false);
   LabelVolume volume;
   volume.size = ((high - low) / voxel).array().ceil().cast<int>() + 1;
-  // As scanners do: i to the patient's right, j to the front, k up.
+  // The usual scanner orientation: i to the patient's right, j anterior, k superior.
   volume.to_patient.linear() = Eigen::Vector3d(-voxel, -voxel, voxel).asDiagonal();
   volume.to_patient.translation() = Eigen::Vector3d(high.x(), high.y(), low.z());
   volume.labels.assign(static_cast<std::size_t>(volume.size.x()) * volume.size.y() * volume.size.z(), 0);
@@ -52,17 +52,18 @@ void AddOrgans(const PhantomBody& body, const v1::LabelMap& map, LabelVolume& vo
   ForEachVoxel(volume.size, [&](const Eigen::Vector3i& at) {
     Label& voxel = volume.labels[volume.Index(at)];
     if (voxel != 0) return;
-    const Eigen::Vector3d place = 1e3 * body.Generated(kMillimetre * (volume.to_patient * at.cast<double>()), true);
-    if (place.z() < 60 || place.z() > 310) return;
+    const Eigen::Vector3d point = 1e3 * body.ToGenerated(kMillimetre * (volume.to_patient * at.cast<double>()), true);
+    if (point.z() < 60 || point.z() > 310) return;
     for (const v1::LabelMeaning& organ : organs) {
-      if (!InOrgan(organ.organ(), place)) continue;
+      if (!InOrgan(organ.organ(), point)) continue;
       voxel = static_cast<Label>(organ.number());
       return;
     }
   });
 }
 
-// All cartilages and the three parts of the sternum where the map has one label for them.
+// Returns the generated structures of a label: all ribs, all cartilages or the three parts of the sternum if the map
+// has one label for them.
 std::vector<v1::Anatomy> PartsOf(const v1::Anatomy& anatomy) {
   std::vector<v1::Anatomy> parts;
   if (anatomy.structure() == v1::STRUCTURE_STERNUM_BODY) {
@@ -104,7 +105,7 @@ absl::Status AddSurfaces(const PhantomBody& body, const v1::LabelMap& map, doubl
   return absl::OkStatus();
 }
 
-// Voxels at the borders of labels take the number of a neighbour, as people and networks disagree there.
+// Replaces random voxels at label borders by a neighbour's label, to simulate disagreement between segmentations.
 void Roughen(double share, std::mt19937& random, LabelVolume& volume) {
   const std::vector<Label> before = volume.labels;
   std::uniform_real_distribution<double> chance(0, 1);
@@ -112,11 +113,12 @@ void Roughen(double share, std::mt19937& random, LabelVolume& volume) {
   ForEachVoxel(volume.size, [&](const Eigen::Vector3i& at) {
     const Eigen::Vector3i to = at + Eigen::Vector3i(step(random), step(random), step(random));
     if (!volume.Contains(to) || before[volume.Index(to)] == before[volume.Index(at)]) return;
-    // A voxel within 27 of a border is asked about a third of the time.
+    // A border voxel draws a neighbour of another label about a third of the time.
     if (chance(random) < 3 * share) volume.labels[volume.Index(at)] = before[volume.Index(to)];
   });
 }
 
+// Clears the labels in random balls of 3 mm radius.
 void Pierce(int holes, double voxel, std::mt19937& random, LabelVolume& volume) {
   std::vector<std::size_t> labelled;
   for (std::size_t at = 0; at < volume.labels.size(); ++at) {
@@ -140,16 +142,16 @@ void Pierce(int holes, double voxel, std::mt19937& random, LabelVolume& volume) 
 
 }  // namespace
 
-Eigen::Vector3d PhantomBody::Place(const Eigen::Vector3d& generated, bool soft) const {
+Eigen::Vector3d PhantomBody::FromGenerated(const Eigen::Vector3d& generated, bool soft) const {
   Eigen::Vector3d placed = generated;
   if (soft) placed.z() -= kMillimetre * flattening * Share(generated.z() / kMillimetre);
   return scale.cwiseProduct(placed) + kMillimetre * shift;
 }
 
-Eigen::Vector3d PhantomBody::Generated(const Eigen::Vector3d& placed, bool soft) const {
+Eigen::Vector3d PhantomBody::ToGenerated(const Eigen::Vector3d& placed, bool soft) const {
   const Eigen::Vector3d lowered = (placed - kMillimetre * shift).cwiseQuotient(scale);
   Eigen::Vector3d generated = lowered;
-  constexpr int kRounds = 20;  // a fixed point: flattening changes by less than its own height
+  constexpr int kRounds = 20;  // fixed-point iteration; a contraction, since d(flattening)/dz < 1
   for (int i = 0; soft && i < kRounds; ++i) {
     generated.z() = lowered.z() + kMillimetre * flattening * Share(generated.z() / kMillimetre);
   }
@@ -162,7 +164,8 @@ absl::StatusOr<PhantomBody> FindPhantomBody(std::string_view name) {
   for (const PhantomBody& body : bodies) {
     if (body.name == name) return body;
   }
-  return absl::NotFoundError(absl::StrCat("there is no body \"", std::string(name), "\"; adult, small, tall, flat"));
+  return absl::NotFoundError(
+      absl::StrCat("there is no body \"", std::string(name), "\"; there are adult, small, tall and flat"));
 }
 
 absl::StatusOr<Mesh> PhantomPart(const PhantomBody& body, const v1::Anatomy& part, double resolution_mm) {
@@ -170,7 +173,7 @@ absl::StatusOr<Mesh> PhantomPart(const PhantomBody& body, const v1::Anatomy& par
   if (!mesh.ok()) return mesh;
   const bool soft = IsSoft(part.structure());
   for (Eigen::Index i = 0; i < mesh->vertices.cols(); ++i) {
-    mesh->vertices.col(i) = body.Place(mesh->vertices.col(i), soft);
+    mesh->vertices.col(i) = body.FromGenerated(mesh->vertices.col(i), soft);
   }
   return mesh;
 }

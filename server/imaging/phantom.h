@@ -1,4 +1,4 @@
-// Label volumes of bodies whose truth is known: the generated thorax, made small or tall or flat, voxel by voxel.
+// Phantoms: synthetic label volumes with known ground truth, voxelised from a scaled or flattened generated thorax.
 #ifndef PHRENIC_SERVER_IMAGING_PHANTOM_H_
 #define PHRENIC_SERVER_IMAGING_PHANTOM_H_
 
@@ -14,35 +14,35 @@
 
 namespace phrenic::imaging {
 
-// How a body differs from the generated thorax.
+// The map from the generated thorax to a body.
 struct PhantomBody {
   std::string name;
   Eigen::Vector3d scale = Eigen::Vector3d::Ones();
-  double flattening = 0;                                    // how much lower the domes stand, before scaling [mm]
-  Eigen::Vector3d shift = Eigen::Vector3d(12, -140, 1050);  // of the origin, as scanners give it: off the middle [mm]
+  double flattening = 0;                                    // lowering of the domes before scaling [mm]
+  Eigen::Vector3d shift = Eigen::Vector3d(12, -140, 1050);  // of the origin, arbitrary as in scanners [mm]
 
-  // From the generated thorax' frame to the body's [m]. Flattening lowers what lies at the domes and the lungs' bases,
-  // and nothing at the rim.
-  Eigen::Vector3d Place(const Eigen::Vector3d& generated, bool soft) const;
-  Eigen::Vector3d Generated(const Eigen::Vector3d& placed, bool soft) const;  // and back
+  // Map points from the generated thorax' frame to the body's [m], and back. For `soft` structures, flattening lowers
+  // points at the domes and the lungs' bases, not at the rim.
+  Eigen::Vector3d FromGenerated(const Eigen::Vector3d& generated, bool soft) const;
+  Eigen::Vector3d ToGenerated(const Eigen::Vector3d& placed, bool soft) const;
 };
 
-// "adult", "small", "tall" or "flat"; NOT_FOUND names them.
+// Returns "adult", "small", "tall" or "flat". NOT_FOUND lists them.
 absl::StatusOr<PhantomBody> FindPhantomBody(std::string_view name);
 
-// A part of the generated thorax in the body's frame [m]; soft: diaphragm and lungs.
+// Returns a structure of the generated thorax in the body's frame [m]. Errors as anatomy::Generate.
 absl::StatusOr<Mesh> PhantomPart(const PhantomBody& body, const v1::Anatomy& part, double resolution_mm);
 
 struct PhantomOptions {
   double voxel = 2;     // [mm]
-  double noise = 0.02;  // the share of voxels next to another label that take its number
-  int holes = 40;       // balls without a label
+  double noise = 0.02;  // share of voxels next to another label that take it
+  int holes = 40;       // balls of 3 mm radius without a label
   std::uint32_t seed = 1;
 };
 
-// Labels as `map` numbers them (lobes of a lung: the first of its side), in the body's frame: bones and lungs from the
-// generated surfaces, heart, liver, spleen and stomach from laws of their own on either side of the generated
-// diaphragm. The diaphragm itself has no label, as nobody segments it.
+// Returns a volume with the label numbers of `map` (a lung has the first lobe's label of its side) in the body's frame:
+// bones and lungs from the generated surfaces; heart, liver, spleen and stomach from InOrgan. The diaphragm has no
+// label, as in real segmentations. Deterministic for a given seed.
 absl::StatusOr<LabelVolume> MakePhantom(const PhantomBody& body, const PhantomOptions& options,
                                         const v1::LabelMap& map);
 

@@ -9,13 +9,14 @@
 namespace phrenic::imaging {
 namespace {
 
-constexpr double kBeside = 3.7;  // from the sheet's middle to the organ [mm]
+constexpr double kBeside = 3.7;  // distance of an organ from the diaphragm's middle surface [mm]
 
 Eigen::Vector2d Disc(const Eigen::Vector3d& point, double inset) {
   return anatomy::CageSection(point.z(), inset).DiscCoordinates(point.head<2>());
 }
 
-// The height over the dome [mm], made a distance by the dome's slope; positive above.
+// Returns the approximate signed distance from the dome [mm], positive above: the height difference divided by the
+// gradient's magnitude.
 double AboveDome(const Eigen::Vector3d& point) {
   constexpr double kStep = 0.01, kRadius = 105;
   const Eigen::Vector2d q = Disc(point, anatomy::kDiaphragmInset);
@@ -26,6 +27,7 @@ double AboveDome(const Eigen::Vector3d& point) {
   return (point.z() - anatomy::DomeHeight(q)) / std::hypot(1.0, slope);
 }
 
+// Below 1 inside the ellipsoid.
 double Ellipsoid(const Eigen::Vector3d& point, const Eigen::Vector3d& centre, const Eigen::Vector3d& radii) {
   return (point - centre).cwiseQuotient(radii).norm();
 }
@@ -41,7 +43,7 @@ bool InHeart(const Eigen::Vector3d& point) {
   return in && AboveDome(point) > kBeside && Disc(point, 6).norm() < 1;
 }
 
-// The right lobe fills the right dome, the left lobe thins out to the left.
+// The right lobe fills the right dome; the left lobe tapers to the left.
 bool InLiver(const Eigen::Vector3d& point) {
   const double lowest = 70 + std::max(0.0, point.x() + 40) * 0.9;
   return InAbdomen(point) && point.x() < 52 && point.z() > lowest && (point.x() < -10 || point.y() < 15);

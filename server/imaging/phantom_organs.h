@@ -1,4 +1,4 @@
-// The organs beside the generated diaphragm, as laws of place: the generated thorax has no surfaces of them.
+// Implicit organs next to the generated diaphragm, for phantoms; the generated thorax has no surfaces of them.
 #ifndef PHRENIC_SERVER_IMAGING_PHANTOM_ORGANS_H_
 #define PHRENIC_SERVER_IMAGING_PHANTOM_ORGANS_H_
 
@@ -8,8 +8,8 @@
 
 namespace phrenic::imaging {
 
-// Whether a point of the generated thorax' frame [mm] lies in the organ: heart, liver, spleen or stomach. They keep 3.5
-// to 4 mm from the middle of the generated diaphragm, and leave room between them, as fat does.
+// True if a point in the generated thorax' frame [mm] is in the organ: heart, liver, spleen or stomach; false for other
+// organs. The organs keep 3.5 to 4 mm from the diaphragm's middle surface and leave gaps between them, like fat.
 bool InOrgan(v1::Organ organ, const Eigen::Vector3d& point);
 
 }  // namespace phrenic::imaging

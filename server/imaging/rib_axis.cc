@@ -3,7 +3,7 @@
 namespace phrenic::imaging {
 namespace {
 
-// Mean of the vertices that lie `from` to `to` [m] from a point.
+// Returns the mean of the vertices at distances from `from` to `to` [m] of a point; the point if there are none.
 Eigen::Vector3d MeanAround(const Mesh& mesh, const Eigen::Vector3d& point, double from, double to) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   double count = 0;

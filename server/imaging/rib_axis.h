@@ -1,4 +1,4 @@
-// The axis about which a rib turns, from its own neck.
+// Estimates the axis of rotation of a rib from its neck.
 #ifndef PHRENIC_SERVER_IMAGING_RIB_AXIS_H_
 #define PHRENIC_SERVER_IMAGING_RIB_AXIS_H_
 
@@ -9,12 +9,13 @@
 namespace phrenic::imaging {
 
 struct RibNeck {
-  Eigen::Vector3d head, tubercle;  // middles of the neck's two ends [m]
+  Eigen::Vector3d head, tubercle;  // centres of the neck's ends [m]
   Eigen::Vector3d Axis() const { return (tubercle - head).normalized(); }
 };
 
-// The head is the end of the rib nearest to the midsagittal plane x = 0; the neck runs from there to the tubercle, 14
-// to 22 mm along (in a cage of 262 mm; times `scale` in another). Each end is the mean of the surface there.
+// Finds the neck. The head is the end of the rib nearest to the midsagittal plane x = 0; the tubercle is 14 to 22 mm
+// away from it (times `scale`, the cage's width relative to 262 mm). Each end is the mean of the surface vertices
+// there.
 RibNeck FindRibNeck(const Mesh& rib, double scale);
 
 }  // namespace phrenic::imaging

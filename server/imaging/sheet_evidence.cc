@@ -9,11 +9,11 @@ namespace {
 
 enum Tissue : std::uint8_t { kNothing, kThorax, kAbdomen, kBone, kSheet };
 
-constexpr int kRays = 121;          // along an edge of the grid
-constexpr double kNear = 14;        // between two organs that touch the sheet both [mm]
-constexpr double kBelowLung = 3.5;  // from a lung's or heart's under side to the sheet's middle [mm]
-constexpr double kOffBone = 4;      // from a bone's inner face [mm]
-constexpr double kLongest = 260;    // of a ray [mm]
+constexpr int kRays = 121;          // along each axis of the grid
+constexpr double kNear = 14;        // maximum distance between organs on opposite sides of the sheet [mm]
+constexpr double kBelowLung = 3.5;  // distance of the middle surface below a lung or the heart [mm]
+constexpr double kOffBone = 4;      // distance of the middle surface from a bone's inner face [mm]
+constexpr double kMaxDepth = 260;   // of a ray [mm]
 
 Tissue TissueOf(const Part& part) {
   if (part.organ != v1::ORGAN_UNSPECIFIED) return part.organ == v1::ORGAN_HEART ? kThorax : kAbdomen;
@@ -29,7 +29,7 @@ Tissue TissueOf(const Part& part) {
   }
 }
 
-// Above this height the part says nothing of the sheet: sternum and cartilages stand in front of the heart there.
+// Returns the height above which the part is no evidence [mm]: there, sternum and cartilages are in front of the heart.
 double CeilingOf(const Part& part, const CageFrame& frame) {
   constexpr double kInsertion = 12;  // [mm]
   const bool in_front = part.Is(v1::STRUCTURE_STERNUM_BODY) || part.Is(v1::STRUCTURE_COSTAL_CARTILAGE) ||
@@ -37,7 +37,8 @@ double CeilingOf(const Part& part, const CageFrame& frame) {
   return in_front ? frame.sternum_end + kInsertion : std::numeric_limits<double>::infinity();
 }
 
-std::vector<Tissue> Paint(const LabelVolume& volume, const std::vector<Part>& parts, const CageFrame& frame) {
+// Returns the tissue of each voxel of the volume.
+std::vector<Tissue> ClassifyVoxels(const LabelVolume& volume, const std::vector<Part>& parts, const CageFrame& frame) {
   std::vector<Tissue> tissues(volume.labels.size(), kNothing);
   for (const Part& part : parts) {
     const Tissue tissue = TissueOf(part);
@@ -49,7 +50,7 @@ std::vector<Tissue> Paint(const LabelVolume& volume, const std::vector<Part>& pa
         for (int i = 0; i < mask.size.x(); ++i, ++at) {
           const Eigen::Vector3i voxel = mask.low + Eigen::Vector3i(i, j, k);
           if (mask.inside[at] != 1 || !volume.Contains(voxel)) continue;
-          if (mask.Place(volume, at).z() < ceiling) tissues[volume.Index(voxel)] = tissue;
+          if (mask.Position(volume, at).z() < ceiling) tissues[volume.Index(voxel)] = tissue;
         }
       }
     }
@@ -57,46 +58,47 @@ std::vector<Tissue> Paint(const LabelVolume& volume, const std::vector<Part>& pa
   return tissues;
 }
 
-struct Seen {
-  Sight sight = Sight::kNone;
-  double depth = 0;
+struct Observation {
+  Source source = Source::kNone;
+  double depth = 0;  // [mm]
 };
 
-Seen Follow(const LabelVolume& volume, const std::vector<Tissue>& tissues, const Eigen::Affine3d& to_voxel,
-            const Ray& ray) {
+// Casts a ray outwards.
+Observation CastRay(const LabelVolume& volume, const std::vector<Tissue>& tissues, const Eigen::Affine3d& to_voxel,
+                    const Ray& ray) {
   const double step = volume.Spacing().minCoeff() / 3;
   double abdomen = -1, sheet = -1;
-  for (double depth = step; depth < kLongest; depth += step) {
+  for (double depth = step; depth < kMaxDepth; depth += step) {
     const Eigen::Vector3i voxel = (to_voxel * ray.At(depth)).array().round().cast<int>();
     if (!volume.Contains(voxel)) break;
     const Tissue tissue = tissues[volume.Index(voxel)];
     if (tissue == kSheet && sheet < 0) sheet = depth;
-    if (sheet > 0 && tissue != kSheet) return {Sight::kLabel, (sheet + depth - step) / 2};
+    if (sheet > 0 && tissue != kSheet) return {Source::kLabel, (sheet + depth - step) / 2};
     if (tissue == kAbdomen) abdomen = depth;
-    if (tissue == kBone) return {Sight::kOnBone, depth - kOffBone};
+    if (tissue == kBone) return {Source::kOnBone, depth - kOffBone};
     if (tissue != kThorax) continue;
-    if (abdomen > 0 && depth - abdomen < kNear) return {Sight::kBetween, (depth + abdomen) / 2};
-    return {Sight::kBesideOne, depth - kBelowLung};
+    if (abdomen > 0 && depth - abdomen < kNear) return {Source::kBetween, (depth + abdomen) / 2};
+    return {Source::kBesideOne, depth - kBelowLung};
   }
   return {};
 }
 
 }  // namespace
 
-SheetEvidence Look(const LabelVolume& volume, const std::vector<Part>& parts, const CageFrame& frame) {
-  const std::vector<Tissue> tissues = Paint(volume, parts, frame);
+SheetEvidence CollectEvidence(const LabelVolume& volume, const std::vector<Part>& parts, const CageFrame& frame) {
+  const std::vector<Tissue> tissues = ClassifyVoxels(volume, parts, frame);
   const Eigen::Affine3d to_voxel = volume.to_patient.inverse();
   SheetEvidence evidence;
   evidence.count = kRays;
-  evidence.sight.assign(kRays * kRays, Sight::kNone);
+  evidence.source.assign(kRays * kRays, Source::kNone);
   evidence.depth.assign(kRays * kRays, 0);
   for (int j = 0; j < kRays; ++j) {
     for (int i = 0; i < kRays; ++i) {
       const Eigen::Vector2d p = evidence.Plane(i, j);
       if (p.norm() > kPlaneReach) continue;
-      const Seen seen = Follow(volume, tissues, to_voxel, frame.RayOf(p));
-      evidence.sight[evidence.Index(i, j)] = seen.sight;
-      evidence.depth[evidence.Index(i, j)] = seen.depth;
+      const Observation observation = CastRay(volume, tissues, to_voxel, frame.RayOf(p));
+      evidence.source[evidence.Index(i, j)] = observation.source;
+      evidence.depth[evidence.Index(i, j)] = observation.depth;
     }
   }
   return evidence;

@@ -1,4 +1,4 @@
-// Where the sheet between thorax and abdomen was seen along each ray of the cage's frame.
+// Collects evidence for the sheet between thorax and abdomen by casting rays through the segmented volume.
 #ifndef PHRENIC_SERVER_IMAGING_SHEET_EVIDENCE_H_
 #define PHRENIC_SERVER_IMAGING_SHEET_EVIDENCE_H_
 
@@ -6,13 +6,15 @@
 
 namespace phrenic::imaging {
 
-enum class Sight { kNone, kBetween, kBesideOne, kOnBone, kLabel };
+// What determined the sheet's depth: nothing, organs on both sides, an organ on one side, a bone, or the diaphragm's
+// own label.
+enum class Source { kNone, kBetween, kBesideOne, kOnBone, kLabel };
 
 // A square grid of rays over |p.x|, |p.y| <= kPlaneReach.
 struct SheetEvidence {
-  int count = 0;  // along an edge
-  std::vector<Sight> sight;
-  std::vector<double> depth;  // of the sheet's middle where something was seen [mm]
+  int count = 0;  // along each axis
+  std::vector<Source> source;
+  std::vector<double> depth;  // of the sheet's middle surface, unless the source is kNone [mm]
 
   double cell() const { return 2 * kPlaneReach / (count - 1); }
   int Index(int i, int j) const { return j * count + i; }
@@ -21,11 +23,15 @@ struct SheetEvidence {
   }
 };
 
-// Follows each ray outwards to the first voxel of lung, heart or bone, or of the diaphragm where it has a label: then
-// its middle counts. Else the sheet's middle is halfway between an abdominal organ and lung or heart where they are
-// near each other, 3.5 mm below a lung or heart that has nothing near below it, 4 mm inside a bone's inner face.
-// Vertebrae count from T11 down, sternum and cartilages near the sternum's end: above, the mediastinum lies between.
-SheetEvidence Look(const LabelVolume& volume, const std::vector<Part>& parts, const CageFrame& frame);
+// Casts each ray outwards to the first voxel of lung, heart or bone, or through the diaphragm if it has a label. The
+// depth of the middle surface is then
+//   kLabel:     the middle of the labelled diaphragm;
+//   kBetween:   halfway between an abdominal organ and lung or heart at most 14 mm apart;
+//   kBesideOne: 3.5 mm below a lung or the heart with no organ near below it;
+//   kOnBone:    4 mm inside a bone's inner face.
+// Of the vertebrae only T11 and below count, of sternum and cartilages only the part near the sternum's lower end;
+// above, the mediastinum lies between.
+SheetEvidence CollectEvidence(const LabelVolume& volume, const std::vector<Part>& parts, const CageFrame& frame);
 
 }  // namespace phrenic::imaging
 

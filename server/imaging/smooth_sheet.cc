@@ -10,12 +10,12 @@ namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
 
-constexpr double kBending = 2;  // b, against a weight of 1 for each ray
-constexpr double kOff = 6;      // [mm]
-constexpr double kAgrees = 8;   // a sight that is further off did not count [mm]
-constexpr double kNearby = 10;  // [mm]
+constexpr double kBending = 2;  // b, relative to a weight of 1 per ray
+constexpr double kOff = 6;      // scale of the robust weight [mm]
+constexpr double kAgrees = 8;   // maximum residual of evidence that SourceAt reports [mm]
+constexpr double kNearby = 10;  // maximum distance of evidence that SourceAt reports [mm]
 
-// The five-point Laplacian at the grid's inner points; second differences along its edges.
+// Returns the five-point Laplacian at interior grid points, and second differences along the grid's edges.
 Sparse Laplacian(const SheetEvidence& grid) {
   std::vector<Eigen::Triplet<double>> entries;
   const int last = grid.count - 1;
@@ -38,28 +38,30 @@ Sparse Laplacian(const SheetEvidence& grid) {
 
 double Square(double x) { return x * x; }
 
+// Minimises by iteratively reweighted least squares.
 Eigen::VectorXd Fit(const SheetEvidence& evidence) {
   constexpr int kRounds = 4;
   const int n = evidence.count * evidence.count;
   const Sparse laplacian = Laplacian(evidence);
   const Sparse bending = kBending * Sparse(laplacian.transpose()) * laplacian;
-  const Eigen::Map<const Eigen::VectorXd> seen(evidence.depth.data(), n);
+  const Eigen::Map<const Eigen::VectorXd> observed(evidence.depth.data(), n);
   Eigen::VectorXd weights(n), depth;
-  for (int i = 0; i < n; ++i) weights[i] = evidence.sight[i] == Sight::kNone ? 0 : 1;
+  for (int i = 0; i < n; ++i) weights[i] = evidence.source[i] == Source::kNone ? 0 : 1;
   Eigen::SimplicialLDLT<Sparse> solver;
   for (int round = 0; round < kRounds; ++round) {
     Sparse system = bending;
     system.diagonal() += (weights.array() + 1e-9).matrix();
     if (round == 0) solver.analyzePattern(system);
     solver.factorize(system);
-    depth = solver.solve(weights.cwiseProduct(seen));
+    depth = solver.solve(weights.cwiseProduct(observed));
     for (int i = 0; i < n; ++i) {
-      if (evidence.sight[i] != Sight::kNone) weights[i] = 1 / (1 + Square((depth[i] - seen[i]) / kOff));
+      if (evidence.source[i] != Source::kNone) weights[i] = 1 / (1 + Square((depth[i] - observed[i]) / kOff));
     }
   }
   return depth;
 }
 
+// Returns the uniform cubic B-spline's basis at t in [0, 1].
 std::array<double, 4> SplineWeights(double t) {
   const double u = 1 - t;
   return {u * u * u / 6, (3 * t * t * t - 6 * t * t + 4) / 6, (3 * u * u * u - 6 * u * u + 4) / 6, t * t * t / 6};
@@ -99,23 +101,23 @@ Eigen::Vector2d SmoothSheet::AtHeight(const Eigen::Vector2d& azimuth, double z) 
   return azimuth * inner;
 }
 
-Sight SmoothSheet::SightAt(const Eigen::Vector2d& p) const {
+Source SmoothSheet::SourceAt(const Eigen::Vector2d& p) const {
   const Eigen::Vector3d here = Point(p);
   const Eigen::Array2d at = (p.array() + kPlaneReach) / evidence_.cell();
   constexpr int kAround = 5;
   double nearest = kNearby;
-  Sight sight = Sight::kNone;
+  Source source = Source::kNone;
   for (int j = static_cast<int>(at.y()) - kAround; j <= static_cast<int>(at.y()) + kAround; ++j) {
     for (int i = static_cast<int>(at.x()) - kAround; i <= static_cast<int>(at.x()) + kAround; ++i) {
       if (i < 0 || j < 0 || i >= evidence_.count || j >= evidence_.count) continue;
       const int index = evidence_.Index(i, j);
-      if (evidence_.sight[index] == Sight::kNone) continue;
+      if (evidence_.source[index] == Source::kNone) continue;
       if (std::abs(evidence_.depth[index] - depth_[index]) > kAgrees) continue;
       const double distance = (frame_.RayOf(evidence_.Plane(i, j)).At(depth_[index]) - here).norm();
-      if (distance < nearest) nearest = distance, sight = evidence_.sight[index];
+      if (distance < nearest) nearest = distance, source = evidence_.source[index];
     }
   }
-  return sight;
+  return source;
 }
 
 }  // namespace phrenic::imaging

@@ -1,4 +1,4 @@
-// The smoothest sheet through what was seen of it.
+// A smoothing spline through the evidence for the diaphragm.
 #ifndef PHRENIC_SERVER_IMAGING_SMOOTH_SHEET_H_
 #define PHRENIC_SERVER_IMAGING_SMOOTH_SHEET_H_
 
@@ -8,20 +8,21 @@
 
 namespace phrenic::imaging {
 
-// A depth r(p) along the rays of a frame that is smooth everywhere: minimises sum w (r - seen)^2 + b sum (Laplacian
-// r)^2 over the grid (a thin plate; Wahba, Spline Models, 1990), so that what was not seen goes on from around; seen
-// depths that lie off lose weight over some rounds, w = 1 / (1 + (off / 6 mm)^2). Immutable; any thread.
+// A smooth depth r(p) along the rays of a frame. Minimises over the grid
+//   sum w (r - observed)^2 + b sum (Laplacian r)^2
+// (a thin plate; Wahba, Spline Models for Observational Data, 1990), which extrapolates where nothing was observed.
+// Four rounds of reweighting with w = 1 / (1 + (residual / 6 mm)^2) suppress outliers. Immutable, thread-safe.
 class SmoothSheet {
  public:
   SmoothSheet(const CageFrame& frame, const SheetEvidence& evidence);
 
-  double Depth(const Eigen::Vector2d& p) const;  // [mm], by cubic B-splines: twice differentiable
+  double Depth(const Eigen::Vector2d& p) const;  // [mm], a cubic B-spline (C2)
   Eigen::Vector3d Point(const Eigen::Vector2d& p) const { return frame_.RayOf(p).At(Depth(p)); }  // [mm]
   Eigen::Vector3d Normal(const Eigen::Vector2d& p) const;  // unit, towards the thorax
-  // The outermost p of that azimuth (a unit vector) whose point stands at the height z [mm].
+  // Returns the outermost p with this azimuth (a unit vector) whose point has height z [mm].
   Eigen::Vector2d AtHeight(const Eigen::Vector2d& azimuth, double z) const;
-  // What the sheet went by at p: the nearest sight within 10 mm that it agrees with.
-  Sight SightAt(const Eigen::Vector2d& p) const;
+  // Returns the source of the nearest evidence within 10 mm of p that agrees with the sheet to 8 mm; else kNone.
+  Source SourceAt(const Eigen::Vector2d& p) const;
 
  private:
   CageFrame frame_;

@@ -10,8 +10,9 @@ namespace {
 
 double Cross(const Eigen::Vector2d& u, const Eigen::Vector2d& v) { return u.x() * v.y() - u.y() * v.x(); }
 
-// Where the lines along k, one for each (i, j), cross a triangle; in voxels.
-void Cross(const Eigen::Matrix3d& corners, const Eigen::Vector3i& size, std::vector<std::vector<double>>& crossings) {
+// Adds the intersections of a triangle with the lines along k, one line per (i, j), in voxel coordinates.
+void AddCrossings(const Eigen::Matrix3d& corners, const Eigen::Vector3i& size,
+                  std::vector<std::vector<double>>& crossings) {
   const Eigen::Vector2d a = corners.col(0).head<2>(), b = corners.col(1).head<2>(), c = corners.col(2).head<2>();
   const double twice = Cross(b - a, c - a);
   if (twice == 0) return;
@@ -30,14 +31,14 @@ void Cross(const Eigen::Matrix3d& corners, const Eigen::Vector3i& size, std::vec
 }  // namespace
 
 void Voxelise(const Mesh& mesh, Label number, LabelVolume& volume) {
-  // Off the grid by a hair, so that no line runs through a vertex or an edge.
-  const Eigen::Vector3d hair(1.234e-5, 2.345e-5, 0);
-  const Points voxels = (volume.to_patient.inverse() * (mesh.vertices / kMillimetre)).colwise() + hair;
+  // A small offset, so that no line passes through a vertex or an edge.
+  const Eigen::Vector3d offset(1.234e-5, 2.345e-5, 0);
+  const Points voxels = (volume.to_patient.inverse() * (mesh.vertices / kMillimetre)).colwise() + offset;
   std::vector<std::vector<double>> crossings(static_cast<std::size_t>(volume.size.x()) * volume.size.y());
   for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
     Eigen::Matrix3d corners;
     for (int k = 0; k < 3; ++k) corners.col(k) = voxels.col(mesh.triangles(k, t));
-    Cross(corners, volume.size, crossings);
+    AddCrossings(corners, volume.size, crossings);
   }
   for (std::size_t line = 0; line < crossings.size(); ++line) {
     std::vector<double>& along = crossings[line];

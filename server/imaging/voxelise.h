@@ -1,4 +1,4 @@
-// Closed surfaces into voxels.
+// Voxelises closed surfaces.
 #ifndef PHRENIC_SERVER_IMAGING_VOXELISE_H_
 #define PHRENIC_SERVER_IMAGING_VOXELISE_H_
 
@@ -7,8 +7,8 @@
 
 namespace phrenic::imaging {
 
-// Gives the number to each unlabelled voxel whose middle lies inside the closed surface [m]: between the first and
-// second, third and fourth ... crossing of the line of voxels along k.
+// Sets the label `number` in each unlabelled voxel whose centre is inside the closed surface [m], by the parity of the
+// crossings along k.
 void Voxelise(const Mesh& mesh, Label number, LabelVolume& volume);
 
 }  // namespace phrenic::imaging

@@ -1,4 +1,4 @@
-// How well a state keeps the constraints of its model.
+// How far a state violates the constraints of its model.
 #ifndef PHRENIC_SERVER_MECHANICS_CONSTRAINT_RESIDUAL_H_
 #define PHRENIC_SERVER_MECHANICS_CONSTRAINT_RESIDUAL_H_
 
@@ -8,12 +8,14 @@
 
 namespace phrenic {
 
+// The largest violation of any constraint.
 struct ConstraintResidual {
-  double metres = 0;            // the largest violation of any constraint [m]
-  std::string_view constraint;  // whose it is; lives as long as the model; empty where nothing is violated
+  double metres = 0;            // [m]
+  std::string_view constraint;  // its name, valid as long as the model; empty if nothing is violated
 };
 
-// Constraints that cannot all hold, or that are switched off, show here; others stay within 1e-9 of a link's length.
+// Returns the largest violation in a state. After a step it is below 1e-9 of a link's length, unless constraints
+// contradict each other or are switched off. Thread-safe.
 ConstraintResidual LargestResidual(const Model& model, const State& state);
 
 }  // namespace phrenic

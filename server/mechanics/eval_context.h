@@ -1,10 +1,11 @@
-// What an element may read while it acts: one moment of a run.
+// One moment of a run, as elements see it.
 #ifndef PHRENIC_SERVER_MECHANICS_EVAL_CONTEXT_H_
 #define PHRENIC_SERVER_MECHANICS_EVAL_CONTEXT_H_
 
 #include <vector>
 
 #include "phrenic/v1/parameters.pb.h"
+#include "server/mechanics/scratch.h"
 #include "server/mechanics/state.h"
 
 namespace phrenic {
@@ -12,19 +13,22 @@ namespace phrenic {
 class ChamberReadings;
 struct PoseMatrices;
 
-// References into the state of the caller: valid during the call only.
+// The input of every force, motion and measure. Refers to the caller's state: valid during the call only. n is the
+// number of simulated vertices.
 struct EvalContext {
   double time;                       // [s]
   double breath;                     // the waveform's signal, -1 to 1; 0 at rest
   double breath_rate;                // its time derivative [1/s]
   const v1::Parameters& parameters;  // every field set
-  const ConstPoints x;               // [m]
-  const ConstPoints v;               // [m/s]
+  const ConstPoints x;               // positions, 3 x n [m]
+  const ConstPoints v;               // velocities, 3 x n [m/s]
   const std::vector<Pose>& poses;
   const std::vector<VertexPull>& pulls;
-  ChamberReadings* readings = nullptr;    // what measures of one moment share (chamber.h); null in a step
-  const float* packed = nullptr;          // x in single precision (PackPoints), where a step has packed it
-  const PoseMatrices* columns = nullptr;  // one of each pose, where a step has made them
+  const ScalarState& scalars;  // generalised coordinates
+  Scratch scratch = {};        // memory for intermediate results
+  // Results that several elements share at this moment; null if not available.
+  ChamberReadings* readings = nullptr;          // of chambers read so far (breathing/chamber.h)
+  const PoseMatrices* pose_matrices = nullptr;  // one per pose (skinning/pose_matrices.h)
 };
 
 }  // namespace phrenic

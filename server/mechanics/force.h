@@ -1,5 +1,5 @@
-// The family of forces. To add one: a file in forces/, a message in forces.proto, its case in catalogue.cc, its line in
-// tests/contract.
+// The family of forces. To add one: a file in forces/, a message in forces.proto, its case in compile/catalogue.cc, its
+// line in tests/contract.
 #ifndef PHRENIC_SERVER_MECHANICS_FORCE_H_
 #define PHRENIC_SERVER_MECHANICS_FORCE_H_
 
@@ -8,54 +8,52 @@
 
 #include "server/mechanics/eval_context.h"
 #include "server/mechanics/linalg/outer_products.h"
-#include "server/mechanics/parallel/vertex_range.h"
 #include "server/mechanics/stiffness.h"
 
 namespace phrenic {
 
-// A batch of like force elements: all springs of a body, one action line. Any number of batches act on the same
-// vertices: that is how one body mixes springs, finite elements and muscle (thesis 4.1.3). Immutable; any number of
-// threads may call. No call allocates.
+// A force on the simulated vertices: one batch of like elements, such as all springs of a body or one muscle. Several
+// batches may act on the same vertices: one body may mix springs, finite elements and muscle (thesis 4.1.3). Immutable
+// and thread-safe. No call allocates once its scratch memory is large enough.
+//
+// n is the number of simulated vertices. A force that can be evaluated for some vertices at a time may be a BlockForce
+// (block_force.h).
 class Force {
  public:
   virtual ~Force() = default;
-  // "springs:diaphragm", in timings and errors.
+  // The element's name in reports and errors, such as "springs:diaphragm".
   const std::string& name() const { return name_; }
 
-  // f += force [N], 3 x n; never clears.
-  virtual void AddForce(const EvalContext& at, MutablePoints f) const { AddForceIn({0, f.cols()}, at, f); }
-  // A force that can be worked out for some vertices alone, from the positions of all and the velocities of those, says
-  // so, and has this in AddForce's place, f then 3 x the range's vertices; several threads may ask at once, for
-  // different ranges.
-  virtual bool by_range() const { return false; }
-  virtual void AddForceIn(const VertexRange&, const EvalContext&, MutablePoints /*f*/) const {}
-  // Whether it then reads positions of vertices outside the range, `at.packed` apart: those are to wait for it.
-  virtual bool reads_others() const { return false; }
-  // f = force, whatever it held: what the first to act on it is asked.
-  virtual void SetForceIn(const VertexRange& range, const EvalContext& at, MutablePoints f) const {
-    f.setZero();
-    AddForceIn(range, at, f);
-  }
-  // Hands over K = -df/dx, positive semi-definite. Nothing where the force does not depend on positions.
-  virtual void AddStiffness(const EvalContext&, StiffnessSink&) const {}
-  // Hands over what AddStiffness may come to where nothing acts now (surfaces that do not touch, cables that are
-  // slack): the largest stable step counts on it.
-  virtual void AddLatentStiffness(const EvalContext&, StiffnessSink&) const {}
-  // c_i += the coefficient [N s/m] of the part -c_i v_i of the force on vertex i.
+  // Adds the force on each vertex [N] to `f` (3 x n). Never clears `f`.
+  virtual void AddForce(const EvalContext& at, MutablePoints f) const = 0;
+  // False if AddForce adds nothing at any time: steps leave the force out, measures read it.
+  virtual bool acts_on_vertices() const { return true; }
+
+  // Adds K = -df/dx [N/m], positive semi-definite, to `sink`. Adds nothing if the force does not depend on positions.
+  virtual void AddStiffness(const EvalContext&, StiffnessSink& /*sink*/) const {}
+  // Adds an upper bound of the stiffness that is inactive at this moment (surfaces that do not touch, slack cables) and
+  // may become active. The largest stable step includes it.
+  virtual void AddLatentStiffness(const EvalContext&, StiffnessSink& /*sink*/) const {}
+
+  // Adds to each c_i the coefficient [N s/m] of the term -c_i v_i in the force on vertex i.
   virtual void AddDamping(const EvalContext&, Eigen::VectorXd& /*c*/) const {}
-  // Hands over the rest of -df/dv, scale g g^T [N s/m], where the velocity of one vertex acts on others.
-  virtual void AddSharedDamping(const EvalContext&, OuterProducts&) const {}
-  // [J]; force = -dE/dx where it has one, and whether it has.
+  // Adds the rest of -df/dv as terms scale g g^T [N s/m] with g of 3 x n, where the velocity of one vertex acts on
+  // others.
+  virtual void AddSharedDamping(const EvalContext&, OuterProducts& /*shared*/) const {}
+  // True if AddSharedDamping adds terms.
+  virtual bool has_shared_damping() const { return false; }
+
+  // Returns the stored energy [J]; f = -dE/dx. Requires: conservative().
   virtual double Energy(const EvalContext&) const { return 0; }
   virtual bool conservative() const { return false; }
 
-  // What it can say about itself beside its pull: measures read it (measure.h).
+  // A number that the force computes beside its forces; a measure may read it (measures/force_output.h).
   struct Output {
     const char* name;  // "flow"
     const char* unit;  // "m^3/s"
   };
   virtual std::span<const Output> outputs() const { return {}; }
-  // In the order of `outputs`.
+  // Returns the value of outputs()[output].
   virtual double Read(size_t /*output*/, const EvalContext&) const { return 0; }
 
  protected:

@@ -1,20 +1,17 @@
-// The family of measures: numbers that people read off a run. To add one: a file in measures/, a message in
-// measures.proto, its case in catalogue.cc, its line in tests/contract.
+// The family of measures. To add one: a file in measures/, a message in measures.proto, its case in
+// compile/catalogue.cc, its line in tests/contract.
 #ifndef PHRENIC_SERVER_MECHANICS_MEASURE_H_
 #define PHRENIC_SERVER_MECHANICS_MEASURE_H_
 
-#include <google/protobuf/repeated_ptr_field.h>
-
 #include <string>
+#include <utility>
 
-#include "absl/status/status.h"
-#include "phrenic/v1/measures.pb.h"
 #include "server/mechanics/eval_context.h"
 
 namespace phrenic {
 
-// A function of one instant of a run: it changes nothing, and is worked out with frames, not with steps. Immutable; any
-// number of threads may call.
+// A number computed from one moment of a run, such as a volume. Measures are read with frames and cost no step
+// (measures/readings.h). Immutable and thread-safe.
 class Measure {
  public:
   virtual ~Measure() = default;
@@ -29,16 +26,6 @@ class Measure {
  private:
   std::string name_, unit_;
 };
-
-struct ModelBuilder;
-struct Model;
-
-// Fills the measures; bodies and forces are there.
-absl::Status AddMeasures(ModelBuilder& builder);
-
-using MeasureReadings = google::protobuf::RepeatedPtrField<v1::MeasureReading>;
-// All measures of the model, in the scene's order.
-MeasureReadings ReadMeasures(const Model& model, const EvalContext& at);
 
 }  // namespace phrenic
 

@@ -3,8 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "server/mechanics/skinning/body_points.h"
-#include "server/mechanics/step/advance.h"
+#include "server/mechanics/parallel/vertex_range.h"
 
 namespace phrenic {
 
@@ -15,6 +14,12 @@ State Model::InitialState() const {
   int poses = 0;
   for (const BodyModel& body : bodies) poses += body.pose >= 0 ? 1 : 0;
   state.poses.resize(poses);
+  const auto scalar_count = static_cast<Eigen::Index>(scalars.size());
+  state.scalars = {Eigen::VectorXd(scalar_count), Eigen::VectorXd(scalar_count)};
+  for (Eigen::Index i = 0; i < scalar_count; ++i) {
+    state.scalars.q[i] = scalars[i].initial;
+    state.scalars.v[i] = scalars[i].initial_rate;
+  }
   const EvalContext start = MakeEvalContext(*this, parameters, state);
   for (const auto& motion : motions) motion->Drive(start, state);
   return state;
@@ -24,7 +29,7 @@ Workspace Model::MakeWorkspace() const {
   Workspace work;
   work.before = work.velocity_before = work.force = Points::Zero(3, rest.cols());
   work.damping = Eigen::VectorXd::Zero(rest.cols());
-  ResizeBounds(rest.cols(), work.bounds);
+  work.bounds.reserve(static_cast<size_t>(CountBlocks(rest.cols())) + 1);
   return work;
 }
 
@@ -48,12 +53,13 @@ double BreathSlope(v1::Waveform waveform, double phase) {
   return 2 * std::numbers::pi * std::cos(angle);
 }
 
-EvalContext MakeEvalContext(const Model& model, const v1::Parameters& parameters, const State& state) {
-  return MakeEvalContext(model, parameters, state, state.time, state.phase);
+EvalContext MakeEvalContext(const Model& model, const v1::Parameters& parameters, const State& state,
+                            const Scratch& scratch) {
+  return MakeEvalContext(model, parameters, state, state.time, state.phase, scratch);
 }
 
 EvalContext MakeEvalContext(const Model& model, const v1::Parameters& parameters, const State& state, double time,
-                            double phase) {
+                            double phase, const Scratch& scratch) {
   const v1::Waveform waveform = model.scene.breath().waveform();
   return {.time = time,
           .breath = BreathSignal(waveform, phase),
@@ -62,11 +68,9 @@ EvalContext MakeEvalContext(const Model& model, const v1::Parameters& parameters
           .x = state.x,
           .v = state.v,
           .poses = state.poses,
-          .pulls = state.pulls};
-}
-
-void PlaceBody(const Model& model, const State& state, int body, MutablePoints out) {
-  BodyPoints(model, body).Place(MakeEvalContext(model, model.parameters, state), out);
+          .pulls = state.pulls,
+          .scalars = state.scalars,
+          .scratch = scratch};
 }
 
 }  // namespace phrenic

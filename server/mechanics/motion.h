@@ -1,19 +1,23 @@
-// The family of motions: what moves by a law of its own (bones with the breath, driven vertices).
+// The family of motions. To add one: a file in motions/, a message in scene.proto, its case in compile/catalogue.cc,
+// its line in tests/contract.
 #ifndef PHRENIC_SERVER_MECHANICS_MOTION_H_
 #define PHRENIC_SERVER_MECHANICS_MOTION_H_
 
 #include <string>
+#include <utility>
 
 #include "server/mechanics/eval_context.h"
 
 namespace phrenic {
 
-// Immutable; any number of threads may call. Motions run in the scene's order, so that one may follow another.
+// A prescribed motion of bones or of single vertices: a function of time, breath and parameters. Motions run in the
+// scene's order, so that one may follow another. Immutable and thread-safe.
 class Motion {
  public:
   virtual ~Motion() = default;
   const std::string& name() const { return name_; }
-  // Sets the poses, or the positions and velocities of the vertices, that it drives, for the time of `at`.
+  // Sets what the motion drives to the moment of `at`: poses, positions and velocities of vertices, or scalars with
+  // their rates.
   virtual void Drive(const EvalContext& at, State& state) const = 0;
 
  protected:

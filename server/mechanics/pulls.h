@@ -1,5 +1,5 @@
-// Forces by which people pull single vertices while a session runs: f += F on the vertex [N]. They are part of the
-// State: a copy of it goes on under the same pulls.
+// Forces with which users pull single vertices while a session runs: f += F on the vertex [N]. They are part of the
+// State: a copy continues under the same pulls.
 #ifndef PHRENIC_SERVER_MECHANICS_PULLS_H_
 #define PHRENIC_SERVER_MECHANICS_PULLS_H_
 
@@ -16,18 +16,18 @@ namespace phrenic {
 
 using PullList = google::protobuf::RepeatedPtrField<v1::Pull>;
 
-inline constexpr int kMostPulls = 64;     // at a time
+inline constexpr int kMostPulls = 64;     // at the same time
 inline constexpr double kMostPull = 1e6;  // along each axis [N]
 
-// What the list names, in simulated vertices. INVALID_ARGUMENT "pulls[1].vertex: ..." where there is no such body or
-// vertex, where it cannot move, or where the force is out of range.
+// Returns the listed pulls on simulated vertices. INVALID_ARGUMENT "pulls[1].vertex: ..." if there is no such body or
+// vertex, if it cannot move, or if the force is out of range.
 absl::StatusOr<std::vector<VertexPull>> FindPulls(const Model& model, const PullList& list, std::string_view path);
 
-// Each change replaces the pull on its vertex, or lets go of it where its force is zero; `alone` lets go of all others.
-// RESOURCE_EXHAUSTED, and no change, where there would be more than kMostPulls.
+// Replaces the pull on the vertex of each change, or removes it if the force is zero; removes all others if `alone`.
+// RESOURCE_EXHAUSTED, and no change, if there would be more than kMostPulls.
 absl::Status ChangePulls(const std::vector<VertexPull>& changes, bool alone, std::vector<VertexPull>& pulls);
 
-// As people name them.
+// Returns the pulls by body and vertex.
 PullList DescribePulls(const Model& model, const std::vector<VertexPull>& pulls);
 
 }  // namespace phrenic

@@ -1,6 +1,9 @@
-// Points that carriers carry along: u = sum_c w_c u_c, u_c the displacement that carrier c gives the point. A carrier
-// is a pose (it moves the point as part of the rigid body) or a simulated vertex (it lends its own displacement); what
-// is missing to a sum of 1 stands still. Or points that keep their place in a triangle (motions/mapping.h).
+// Skinning: how seen bodies follow the bodies that drive them.
+//
+// A vertex moves by the weighted mean of its drivers' displacements, u = sum_d w_d u_d. A driver is a pose, which moves
+// the vertex as part of the rigid body, or a simulated vertex, which passes on its own displacement; if the weights sum
+// to less than 1, the rest does not move. Or a vertex is bound to a triangle of simulated vertices. Skins are made at
+// compile time (skinning/add_skins.h) and evaluated by BodyPoints (skinning/body_points.h).
 #ifndef PHRENIC_SERVER_MECHANICS_SKIN_H_
 #define PHRENIC_SERVER_MECHANICS_SKIN_H_
 
@@ -10,26 +13,27 @@
 
 namespace phrenic {
 
-// One vertex's share of one carrier.
+// The weight of one driver for one vertex.
 struct SkinWeight {
-  int vertex = 0;             // of the riding body
-  int pose = -1;              // the carrier: a pose, or ...
+  int vertex = 0;             // of the skinned body
+  int pose = -1;              // the driver: index into State::poses, or -1 and ...
   int simulated_vertex = -1;  // ... a simulated vertex
   double weight = 0;          // between 0 and 1
 };
 
-// A vertex's place in a triangle of simulated vertices: x = sum_i weights_i x_i + height n, n the unit normal.
+// The position of a vertex relative to a triangle of simulated vertices: x = sum_i weights_i x_i + height n, n the unit
+// normal (thesis 6.1.3).
 struct TriangleBinding {
   Eigen::Vector3i corners = Eigen::Vector3i::Zero();
   Eigen::Vector3d weights = Eigen::Vector3d::Zero();  // barycentric: their sum is 1
   double height = 0;                                  // [m]
 };
 
-// A body that is only seen and rides on others.
+// The skin of one seen body: weights or bindings.
 struct Skin {
   int body = 0;
-  std::vector<SkinWeight> shares;          // sorted by vertex; or ...
-  std::vector<TriangleBinding> triangles;  // ... one a vertex of the body
+  std::vector<SkinWeight> weights;         // sorted by vertex; or ...
+  std::vector<TriangleBinding> triangles;  // ... one per vertex of the body
 };
 
 }  // namespace phrenic

@@ -1,4 +1,4 @@
-// What the linear systems of a step may take, and what they came to.
+// The limits and the result of the linear solves of a step.
 #ifndef PHRENIC_SERVER_MECHANICS_SOLVER_EFFORT_H_
 #define PHRENIC_SERVER_MECHANICS_SOLVER_EFFORT_H_
 
@@ -8,11 +8,11 @@
 
 namespace phrenic {
 
-// Of the step that was taken last. With a budget a run depends on the machine's speed. For one thread.
+// Belongs to the last step. With a time limit, results depend on the speed of the machine. Not thread-safe.
 class SolverEffort {
  public:
-  // A step begins; its systems are given up once `budget` [s] is spent, wall time, where that is not 0, and each after
-  // so many iterations.
+  // Begins a step. Solves end when `budget` [s] of wall time is spent, unless it is 0, and each after
+  // `most_iterations`.
   void Begin(double budget, int most_iterations = std::numeric_limits<int>::max()) {
     most_iterations_ = most_iterations;
     limited_ = budget > 0;
@@ -23,15 +23,14 @@ class SolverEffort {
   bool limited() const { return limited_; }
   bool Spent() const { return limited_ && Clock::now() >= deadline_; }
   int most_iterations() const { return most_iterations_; }
-  // A system was solved: what is left over what there was, in the preconditioner's norm; 0 iterations where it was
-  // factorised.
+  // Adds a solve: its iterations, 0 for a factorisation, and its relative residual in the preconditioner's norm.
   void Note(int iterations, double residual) {
     iterations_ += iterations;
     residual_ = std::max(residual_, residual);
   }
-  // Of conjugate gradients, over the whole step; 0 where there were none.
+  // The iterations of conjugate gradients in the whole step.
   int iterations() const { return iterations_; }
-  // The largest of the step's systems.
+  // The largest relative residual of the step.
   double residual() const { return residual_; }
 
  private:

@@ -1,4 +1,4 @@
-// A spring as forces list it and solvers lay it out.
+// A spring, as forces list them and solvers lay them out.
 #ifndef PHRENIC_SERVER_MECHANICS_SPRING_H_
 #define PHRENIC_SERVER_MECHANICS_SPRING_H_
 

@@ -3,7 +3,6 @@
 #define PHRENIC_SERVER_MECHANICS_STATE_H_
 
 #include <Eigen/Geometry>
-#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -40,6 +39,12 @@ struct VertexPull {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  // [N]
 };
 
+// Generalised coordinates that are not vertices: joint angles, volumes, activations. Model::scalars has their names.
+struct ScalarState {
+  Eigen::VectorXd q;  // values, each in its own unit
+  Eigen::VectorXd v;  // rates [that unit/s]
+};
+
 struct State {
   double time = 0;          // [s]
   std::int64_t tick = 0;    // steps taken
@@ -47,21 +52,14 @@ struct State {
   Points x;                 // positions of the simulated vertices [m]
   Points v;                 // their velocities [m/s]
   std::vector<Pose> poses;  // of the driven bodies
+  ScalarState scalars;
   std::vector<VertexPull> pulls;  // one a vertex
   History history;
   int halvings = 0;  // of an adaptive step, the last time
 };
 
-// The largest magnitudes of a coordinate and of a velocity's: of a block's vertices, or all; no number where one is
-// none.
-struct StateBounds {
-  double furthest = 0, fastest = 0;  // [m], [m/s]
-};
-// The larger of two; no number where one is none.
-inline double LargerMagnitude(double a, double b) { return a > b || std::isnan(a) ? a : b; }
-
-// A word-wise FNV-1a, in four lanes, over the bits of time, phase, positions and velocities: equal states, equal
-// hashes.
+// Returns a word-wise FNV-1a hash, in four lanes, of the bits of time, phase, positions, velocities and scalars. Equal
+// states have equal hashes.
 std::uint64_t StateHash(const State& state);
 
 }  // namespace phrenic

@@ -1,4 +1,4 @@
-// How forces hand over their stiffness K = -df/dx [N/m], in 3 x 3 blocks.
+// The interface to which forces add their stiffness K = -df/dx [N/m], in 3 x 3 blocks.
 #ifndef PHRENIC_SERVER_MECHANICS_STIFFNESS_H_
 #define PHRENIC_SERVER_MECHANICS_STIFFNESS_H_
 
@@ -12,8 +12,8 @@ namespace phrenic {
 
 struct EvalContext;
 
-// What a spring between two vertices adds: the force on a changes by (axial e e^T + transverse I)(dx_b - dx_a), that on
-// b by its opposite. `edge` is e = x_b - x_a at the instant [m]; axial [N/m^3] and transverse [N/m] are not negative.
+// The stiffness of a spring between two vertices: the force on a changes by (axial e e^T + transverse I)(dx_b - dx_a),
+// that on b by its opposite. `edge` is e = x_b - x_a [m]; axial [N/m^3] and transverse [N/m] are not negative.
 struct SpringStiffness {
   int a = 0, b = 0;
   Eigen::Vector3d edge = Eigen::Vector3d::Zero();
@@ -26,19 +26,19 @@ struct SpringStiffness {
   }
 };
 
-// Receives the stiffness of one force after another. What a force adds is symmetric and positive semi-definite: a
-// compressed spring's negative transverse term, and the like, is left out.
+// Sums the stiffness of one force after another. Each force's stiffness is symmetric and positive semi-definite: it
+// leaves out negative terms, such as the transverse one of a compressed spring.
 class StiffnessSink {
  public:
   virtual ~StiffnessSink() = default;
-  // K_ij += block, i and j simulated vertices.
+  // Adds `block` to K_ij, i and j simulated vertices.
   virtual void Add(int i, int j, const Eigen::Matrix3d& block) = 0;
-  // K += scale g g^T [N/m], g 3 x n: a pressure that answers to the volume below a whole surface.
+  // Adds scale g g^T [N/m], g of 3 x n: of a pressure that depends on the volume below a surface.
   virtual void AddOuter(double scale, const Points& g) = 0;
 
-  // All springs of a force at this instant. One without length is left out: it has no direction.
+  // Adds all springs of a force at this moment. Leaves out springs of length 0, which have no direction.
   virtual void AddSpringsAt(std::span<const Spring> springs, const EvalContext& at);
-  // Many springs at a time, as they are worked out.
+  // Adds several springs.
   virtual void AddSprings(std::span<const SpringStiffness> springs) {
     for (const SpringStiffness& spring : springs) {
       const Eigen::Matrix3d block = spring.Block();

@@ -1,4 +1,5 @@
-// Sorting what has a small dense key, such as a vertex, in time that grows with its number.
+// Bucket sort for items with a small dense integer key, such as a vertex index. O(n + keys) plus the sort within
+// buckets.
 #ifndef PHRENIC_SERVER_MESH_BUCKET_SORT_H_
 #define PHRENIC_SERVER_MESH_BUCKET_SORT_H_
 
@@ -9,8 +10,8 @@
 
 namespace phrenic {
 
-// Sorts ascending, as std::sort would; an item's `key` is what its order compares first, from 0 to keys - 1. Items of a
-// key are few: each bucket is sorted by comparison.
+// Sorts `items` ascending, with the same result as std::sort. `key(item)` returns a value in [0, keys) and must be the
+// most significant part of operator<. Each bucket is sorted by comparison, so buckets should be small.
 template <typename Item, typename Key>
 void BucketSort(std::vector<Item>& items, int keys, const Key& key) {
   std::vector<std::int64_t> first(static_cast<size_t>(keys) + 1, 0);

@@ -5,14 +5,14 @@
 namespace phrenic {
 namespace {
 
-using Place = std::array<int, 3>;  // on the octahedron |x| + |y| + |z| = divisions
+using LatticeIndex = std::array<int, 3>;  // a lattice point of the octahedron |x| + |y| + |z| = divisions
 
 class Octasphere {
  public:
   explicit Octasphere(int divisions) : divisions_(divisions) {}
 
-  // The face in the octant of these signs, facing outwards.
-  void AddFace(const Place& sign) {
+  // Adds the octahedron's face in the octant with these signs (+1 or -1 per axis), facing outwards.
+  void AddFace(const LatticeIndex& sign) {
     const bool mirrored = sign[0] * sign[1] * sign[2] < 0;
     for (int a = 0; a < divisions_; ++a) {
       for (int b = 0; a + b < divisions_; ++b) {
@@ -26,11 +26,12 @@ class Octasphere {
     }
   }
 
-  Mesh Blown(const Eigen::Vector3d& centre, const Eigen::Vector3d& radii) const {
+  // Returns the mesh with every vertex projected onto the ellipsoid.
+  Mesh ToMesh(const Eigen::Vector3d& centre, const Eigen::Vector3d& radii) const {
     Mesh mesh;
     mesh.vertices.resize(3, static_cast<Eigen::Index>(vertices_.size()));
-    for (const auto& [place, i] : vertices_) {
-      const Eigen::Vector3d direction = Eigen::Vector3d(place[0], place[1], place[2]).normalized();
+    for (const auto& [index, i] : vertices_) {
+      const Eigen::Vector3d direction = Eigen::Vector3d(index[0], index[1], index[2]).normalized();
       mesh.vertices.col(i) = centre + radii.cwiseProduct(direction);
     }
     mesh.triangles.resize(3, static_cast<Eigen::Index>(triangles_.size()));
@@ -40,20 +41,23 @@ class Octasphere {
 
   std::vector<int> Equator() const {
     std::vector<int> equator;
-    for (const auto& [place, i] : vertices_) {
-      if (place[2] == 0) equator.push_back(i);
+    for (const auto& [index, i] : vertices_) {
+      if (index[2] == 0) equator.push_back(i);
     }
     return equator;
   }
 
  private:
-  int Vertex(const Place& place) { return vertices_.emplace(place, static_cast<int>(vertices_.size())).first->second; }
+  // Returns the vertex at a lattice point, which neighbouring faces share.
+  int Vertex(const LatticeIndex& index) {
+    return vertices_.emplace(index, static_cast<int>(vertices_.size())).first->second;
+  }
   void AddTriangle(const Eigen::Vector3i& corners, bool mirrored) {
     triangles_.emplace_back(mirrored ? Eigen::Vector3i(corners[0], corners[2], corners[1]) : corners);
   }
 
   const int divisions_;
-  std::map<Place, int> vertices_;
+  std::map<LatticeIndex, int> vertices_;
   std::vector<Eigen::Vector3i> triangles_;
 };
 
@@ -67,7 +71,7 @@ Mesh EllipsoidSurface(const Eigen::Vector3d& centre, const Eigen::Vector3d& radi
       for (const int x : {1, -1}) sphere.AddFace({x, y, z});
     }
   }
-  Mesh mesh = sphere.Blown(centre, radii);
+  Mesh mesh = sphere.ToMesh(centre, radii);
   if (upper_half) mesh.regions.emplace("rim", sphere.Equator());
   return mesh;
 }

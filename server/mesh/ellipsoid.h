@@ -1,4 +1,4 @@
-// The surface of an ellipsoid as triangles.
+// Triangulates the surface of an ellipsoid.
 #ifndef PHRENIC_SERVER_MESH_ELLIPSOID_H_
 #define PHRENIC_SERVER_MESH_ELLIPSOID_H_
 
@@ -6,8 +6,9 @@
 
 namespace phrenic {
 
-// An octahedron with its edges cut into `divisions` (at least 1), each vertex pushed out onto the ellipsoid. `radii`
-// are half its width, depth and height [m]. The upper half alone is open; its edge is region "rim".
+// Returns a subdivided octahedron, each edge cut into `divisions`, with every vertex projected onto the ellipsoid with
+// this centre and these semi-axes along x, y and z [m]. Closed and facing outwards. With `upper_half` only z >=
+// centre.z remains; its boundary loop is the region "rim". Requires: divisions >= 1.
 Mesh EllipsoidSurface(const Eigen::Vector3d& centre, const Eigen::Vector3d& radii, int divisions, bool upper_half);
 
 }  // namespace phrenic

@@ -6,11 +6,12 @@
 namespace phrenic {
 namespace {
 
-constexpr double kAnchor = 1e-12;  // weight by which a vertex is held that nothing else holds
+constexpr double kAnchor =
+    1e-12;  // added to the diagonal, so that components without a boundary value are not singular
 
 using Entries = std::vector<Eigen::Triplet<double>>;
 
-// Each edge has half the cotangent of the angle opposite it, from each of its triangles.
+// Adds a triangle's part of the cotangent Laplacian: each edge weighs cot(angle opposite) / 2.
 void AddTriangle(const Mesh& mesh, const Eigen::Vector3i& corner, Entries& entries) {
   for (int k = 0; k < 3; ++k) {
     const int a = corner[k], b = corner[(k + 1) % 3], opposite = corner[(k + 2) % 3];
@@ -44,10 +45,14 @@ absl::StatusOr<Eigen::VectorXd> HarmonicBetween(const Mesh& mesh, const std::vec
   Eigen::SparseMatrix<double> laplacian(n, n);
   laplacian.setFromTriplets(free.begin(), free.end());
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(laplacian);
-  if (solver.info() != Eigen::Success) return absl::InvalidArgumentError("the surface has no harmonic function");
+  if (solver.info() != Eigen::Success)
+    return absl::InvalidArgumentError(
+        "Laplace's equation has no solution on the surface: its cotangent matrix cannot be factorised");
   for (Eigen::Index i = 0; i < n; ++i) load[i] = held(i) ? value[i] : load[i];
   value = solver.solve(load);
-  if (!value.allFinite()) return absl::InvalidArgumentError("the surface has no harmonic function");
+  if (!value.allFinite())
+    return absl::InvalidArgumentError(
+        "Laplace's equation has no solution on the surface: its cotangent matrix cannot be factorised");
   return value;
 }
 

@@ -9,7 +9,7 @@
 namespace phrenic {
 namespace {
 
-// Neighbours of vertex i: of[first[i]] to of[first[i + 1] - 1].
+// Adjacency in compressed rows: the neighbours of vertex i are of[first[i]] to of[first[i + 1] - 1].
 struct Neighbours {
   std::vector<int> first, of;
   int Degree(int i) const { return first[i + 1] - first[i]; }
@@ -27,7 +27,7 @@ Neighbours FindNeighbours(const Edges& edges, int vertices) {
   return found;
 }
 
-// Appends all that can be reached from `start`, breadth first.
+// Appends the connected component of `start` in breadth-first order, neighbours by ascending degree.
 void AppendComponent(int start, const Neighbours& neighbours, std::vector<bool>& seen, std::vector<int>& order) {
   const auto by_degree = [&neighbours](int a, int b) { return neighbours.Degree(a) < neighbours.Degree(b); };
   size_t next = order.size();
@@ -46,10 +46,10 @@ void AppendComponent(int start, const Neighbours& neighbours, std::vector<bool>&
   }
 }
 
-constexpr double kFarApart = 8192;  // vertices between the ends of an edge, on the mean
-constexpr int kCurveBits = 10;      // of a cell's place along each axis
+constexpr double kScattered = 8192;  // mean index distance between the ends of an edge
+constexpr int kCurveBits = 10;       // bits of a cell's coordinate along each axis
 
-// Two empty bits before each of the number's.
+// Returns the number with two zero bits inserted before each bit.
 std::uint32_t Spread(std::uint32_t number) {
   number = (number | number << 16) & 0x030000ff;
   number = (number | number << 8) & 0x0300f00f;
@@ -57,9 +57,9 @@ std::uint32_t Spread(std::uint32_t number) {
   return (number | number << 2) & 0x09249249;
 }
 
-// A cell's place along the curve, from its places along the axes.
-std::uint32_t AlongCurve(std::array<std::uint32_t, 3> x) {
-  // Of a number's bit: all bits or none. Without a branch, as either is as likely.
+// Returns a cell's index along the Hilbert curve from its coordinates (Skilling's AxesToTranspose).
+std::uint32_t HilbertIndex(std::array<std::uint32_t, 3> x) {
+  // Returns all ones if the bit is set, else 0; branch-free, since both are equally likely.
   const auto all = [](std::uint32_t number, int bit) { return 0 - (number >> bit & 1); };
   for (int bit = kCurveBits - 1; bit > 0; --bit) {
     const std::uint32_t below = (1U << bit) - 1;
@@ -78,7 +78,7 @@ std::uint32_t AlongCurve(std::array<std::uint32_t, 3> x) {
 
 }  // namespace
 
-std::vector<int> LocalOrder(const Edges& edges, int vertices) {
+std::vector<int> CuthillMcKeeOrder(const Edges& edges, int vertices) {
   const Neighbours neighbours = FindNeighbours(edges, vertices);
   std::vector<int> starts(vertices);
   std::iota(starts.begin(), starts.end(), 0);
@@ -93,28 +93,28 @@ std::vector<int> LocalOrder(const Edges& edges, int vertices) {
   return order;
 }
 
-std::vector<int> LocalOrderIfFar(const Edges& edges, int vertices) {
+std::vector<int> CuthillMcKeeIfScattered(const Edges& edges, int vertices) {
   if (edges.cols() == 0) return {};
   const double apart = (edges.row(1) - edges.row(0)).cwiseAbs().cast<double>().mean();
-  return apart > kFarApart ? LocalOrder(edges, vertices) : std::vector<int>();
+  return apart > kScattered ? CuthillMcKeeOrder(edges, vertices) : std::vector<int>();
 }
 
-std::vector<int> CurveOrder(const ConstPoints& points) {
+std::vector<int> HilbertOrder(const ConstPoints& points) {
   if (points.cols() == 0) return {};
   const Eigen::Vector3d low = points.rowwise().minCoeff();
   const double size = (points.rowwise().maxCoeff() - low).maxCoeff();
   const double scale = size > 0 ? ((1 << kCurveBits) - 1) / size : 0;
-  std::vector<std::pair<std::uint32_t, int>> places;
-  places.reserve(static_cast<size_t>(points.cols()));
+  std::vector<std::pair<std::uint32_t, int>> cells;
+  cells.reserve(static_cast<size_t>(points.cols()));
   for (int i = 0; i < static_cast<int>(points.cols()); ++i) {
     std::array<std::uint32_t, 3> cell{};
     for (int k = 0; k < 3; ++k) cell[k] = static_cast<std::uint32_t>(scale * (points(k, i) - low[k]));
-    places.emplace_back(AlongCurve(cell), i);
+    cells.emplace_back(HilbertIndex(cell), i);
   }
-  std::sort(places.begin(), places.end());
+  std::sort(cells.begin(), cells.end());
   std::vector<int> order;
-  order.reserve(places.size());
-  for (const auto& [along, i] : places) order.push_back(i);
+  order.reserve(cells.size());
+  for (const auto& [index, i] : cells) order.push_back(i);
   return order;
 }
 

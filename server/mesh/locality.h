@@ -1,5 +1,5 @@
-// Orders of vertices in which those joined by edges, or close in space, are close together: what is then asked of one
-// after another is found in the cache.
+// Vertex orders with locality: vertices joined by edges, or close in space, get close indices, so that a loop over them
+// hits the cache. All functions are deterministic.
 #ifndef PHRENIC_SERVER_MESH_LOCALITY_H_
 #define PHRENIC_SERVER_MESH_LOCALITY_H_
 
@@ -9,18 +9,18 @@
 
 namespace phrenic {
 
-// The vertices that edges join, each once: reverse Cuthill-McKee (Cuthill and McKee 1969, George 1971), breadth first
-// from a vertex of least degree, neighbours by their degree, backwards. The same edges give the same order. Time and
-// memory grow with the edges; `vertices` is their number, above every index.
-std::vector<int> LocalOrder(const Edges& edges, int vertices);
+// Returns the vertices in reverse Cuthill-McKee order (Cuthill and McKee 1969, George 1971), each once: breadth first
+// from a vertex of least degree, neighbours by ascending degree, reversed. Vertices without edges are left out.
+// Requires: every index in `edges` is below `vertices`. O(edges) time and memory, plus sorting.
+std::vector<int> CuthillMcKeeOrder(const Edges& edges, int vertices);
 
-// The same where it is worth while: none where edges join vertices that are near by their numbers, and so meet in a
-// core's cache as they come.
-std::vector<int> LocalOrderIfFar(const Edges& edges, int vertices);
+// Returns CuthillMcKeeOrder if the ends of an edge are on average more than 8192 indices apart; else empty, because the
+// present order already fits a core's cache.
+std::vector<int> CuthillMcKeeIfScattered(const Edges& edges, int vertices);
 
-// All points along a Hilbert curve through the cube around them (Skilling, AIP Conf Proc 2004;707:381), of 1024 cells
-// a side; those of one cell by their index.
-std::vector<int> CurveOrder(const ConstPoints& points);
+// Returns the indices of all points in the order of a Hilbert curve through their bounding cube (Skilling, AIP Conf
+// Proc 2004;707:381) with 1024 cells per side. Points in the same cell keep their order.
+std::vector<int> HilbertOrder(const ConstPoints& points);
 
 }  // namespace phrenic
 

@@ -6,8 +6,8 @@ namespace phrenic {
 namespace {
 
 absl::Status OutOfRange(const std::string& what, int index, int vertices) {
-  return absl::InvalidArgumentError(
-      absl::StrCat(what, " names vertex ", index, " but there are ", vertices, " vertices (0 to ", vertices - 1, ")"));
+  return absl::InvalidArgumentError(absl::StrCat(what, " names vertex ", index, " but the mesh has ", vertices,
+                                                 " vertices (0 to ", vertices - 1, ")"));
 }
 
 template <typename Indices>

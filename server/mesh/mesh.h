@@ -1,5 +1,5 @@
-// A triangle surface, a solid of tetrahedra, or a network of edges, in metres and the patient frame (LPS: +x left, +y
-// posterior, +z superior).
+// Mesh: a triangle surface, a tetrahedral solid, or a network of edges. Coordinates are in metres in the patient frame
+// LPS (+x left, +y posterior, +z superior).
 #ifndef PHRENIC_SERVER_MESH_MESH_H_
 #define PHRENIC_SERVER_MESH_MESH_H_
 
@@ -13,22 +13,22 @@
 namespace phrenic {
 
 using Points = Eigen::Matrix3Xd;      // 3 x n, one column per vertex
-using Triangles = Eigen::Matrix3Xi;   // 3 x n, vertex indices, anticlockwise seen from outside
-using Tetrahedra = Eigen::Matrix4Xi;  // 4 x n, vertex indices, det(b - a, c - a, d - a) > 0
+using Triangles = Eigen::Matrix3Xi;   // 3 x n, vertex indices, counter-clockwise seen from outside
+using Tetrahedra = Eigen::Matrix4Xi;  // 4 x n, vertex indices a b c d with det(b - a, c - a, d - a) > 0
 using Edges = Eigen::Matrix2Xi;       // 2 x n, vertex indices
 using ConstPoints = Eigen::Ref<const Points>;
 using MutablePoints = Eigen::Ref<Points>;
 
 struct Mesh {
-  Points vertices;  // [m]
-  Triangles triangles;
-  Tetrahedra tetrahedra;                            // of a solid; its surface is in triangles
-  Edges edges;                                      // only where they are not the triangles' own edges
+  Points vertices;                                  // [m]
+  Triangles triangles;                              // the surface; for a solid, its boundary faces
+  Tetrahedra tetrahedra;                            // empty unless the mesh is a solid
+  Edges edges;                                      // empty if the edges are those of the triangles
   std::map<std::string, std::vector<int>> regions;  // named vertex sets: "tendon", "muscle", "rim", "crus-right"
 };
 
-// Checks that there is at least one vertex, that every coordinate is finite and every index is in range; the error
-// names the first offender and its remedy.
+// Checks that the mesh has a vertex, that every coordinate is finite and every index is in range. INVALID_ARGUMENT
+// names the first vertex, triangle, tetrahedron, edge or region that fails.
 absl::Status Validate(const Mesh& mesh);
 
 }  // namespace phrenic

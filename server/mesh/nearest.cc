@@ -9,8 +9,9 @@
 namespace phrenic {
 namespace {
 
-constexpr int kLeafVertices = 32;  // to look at so many takes less time than to go down the tree further
+constexpr int kLeafVertices = 32;  // a linear scan of so many is faster than descending further
 
+// The point set in the form nanoflann asks for.
 struct Cloud {
   Points points;
   size_t kdtree_get_point_count() const { return static_cast<size_t>(points.cols()); }
@@ -25,18 +26,18 @@ struct Cloud {
 
 using KdTree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 3, int>;
 
-// The tree offers only points nearer than a result's worst distance, and its cell bounds carry rounding; asking a
-// little farther keeps every tie, and the result itself then compares exactly.
-double LittleFarther(double squared) { return squared * (1 + 1e-9) + std::numeric_limits<double>::min(); }
+// Returns a slightly larger squared distance. The tree reports only points nearer than worstDist() and rounds its cell
+// bounds; the margin keeps ties, which addPoint then compares exactly.
+double WithMargin(double squared) { return squared * (1 + 1e-9) + std::numeric_limits<double>::min(); }
 
-// The nearest vertex; of equally near ones the lowest index.
+// nanoflann result set: the nearest vertex; ties go to the lowest index.
 class NearestResult {
  public:
-  explicit NearestResult(double reach) : squared_(LittleFarther(reach * reach)), worst_(LittleFarther(squared_)) {}
+  explicit NearestResult(double reach) : squared_(WithMargin(reach * reach)), worst_(WithMargin(squared_)) {}
   bool addPoint(double squared, int vertex) {
     if (squared < squared_ || (squared == squared_ && vertex < vertex_)) {
       squared_ = squared;
-      worst_ = LittleFarther(squared);
+      worst_ = WithMargin(squared);
       vertex_ = vertex;
     }
     return true;
@@ -54,7 +55,7 @@ class NearestResult {
   int vertex_ = -1;
 };
 
-// Every vertex whose squared distance is at most a limit.
+// nanoflann result set: every vertex within a squared distance.
 class WithinResult {
  public:
   explicit WithinResult(double squared_limit) : limit_(squared_limit) {}
@@ -62,7 +63,7 @@ class WithinResult {
     if (squared <= limit_) neighbours_.push_back({vertex, std::sqrt(squared)});
     return true;
   }
-  double worstDist() const { return LittleFarther(limit_); }
+  double worstDist() const { return WithMargin(limit_); }
   bool full() const { return true; }
   std::vector<Neighbour> Take() { return std::move(neighbours_); }
 
@@ -77,7 +78,7 @@ struct NearestSearch::Tree {
   explicit Tree(Points points)
       : cloud{std::move(points)}, index(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(kLeafVertices)) {}
   Cloud cloud;
-  KdTree index;  // builds itself over the cloud
+  KdTree index;  // its constructor builds the tree over `cloud`
 };
 
 NearestSearch::NearestSearch(Points points) : tree_(std::make_unique<Tree>(std::move(points))) {}

@@ -1,4 +1,5 @@
-// Nearest-vertex search over a point set (a k-d tree by nanoflann).
+// Nearest-vertex search over a fixed point set, by nanoflann's k-d tree. For the nearest point of a surface see
+// triangle_tree.h.
 #ifndef PHRENIC_SERVER_MESH_NEAREST_H_
 #define PHRENIC_SERVER_MESH_NEAREST_H_
 
@@ -11,22 +12,24 @@
 namespace phrenic {
 
 struct Neighbour {
-  int vertex = -1;      // -1: there is none
+  int vertex = -1;      // -1 if there is none
   double distance = 0;  // [m]
 };
 
-// Immutable once built; any number of threads may ask. Keeps its own copy of the points.
+// Immutable after construction; thread-safe. Keeps its own copy of the points.
 class NearestSearch {
  public:
-  explicit NearestSearch(Points points);  // at least one point
+  // Requires: at least one point.
+  explicit NearestSearch(Points points);
   ~NearestSearch();
   NearestSearch(const NearestSearch&) = delete;
   NearestSearch& operator=(const NearestSearch&) = delete;
 
-  // Equal distances are settled by the lower index, so that results do not depend on the tree. None, at an infinite
-  // distance, where the nearest is farther than `reach` [m]; the less it is, the sooner that is known.
+  // Returns the nearest vertex; ties go to the lowest index, so that the result does not depend on the tree. Returns
+  // vertex -1 at infinite distance if no vertex is within `reach` [m]. A small reach makes the search faster.
   Neighbour Nearest(const Eigen::Vector3d& point, double reach = std::numeric_limits<double>::infinity()) const;
-  // Every vertex within `radius` [m], nearest first.
+  // Returns every vertex within `radius` [m], boundary included, nearest first, ties by index. Empty if the radius is
+  // negative or NaN.
   std::vector<Neighbour> Within(const Eigen::Vector3d& point, double radius) const;
 
  private:

@@ -5,7 +5,7 @@
 namespace phrenic {
 namespace {
 
-// Twice the area of a triangle along its normal [m^2].
+// Returns the triangle's normal times twice its area [m^2].
 Eigen::Vector3d AreaNormal(const ConstPoints& vertices, const Eigen::Vector3i& corner) {
   const Eigen::Vector3d a = vertices.col(corner[0]);
   const Eigen::Vector3d b = vertices.col(corner[1]), c = vertices.col(corner[2]);

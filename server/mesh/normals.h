@@ -6,10 +6,11 @@
 
 namespace phrenic {
 
-// Unit normals, 3 x n; zero where a vertex is in no triangle with area.
+// Returns unit vertex normals (3 x n): the area-weighted mean of the normals of the triangles at each vertex. Zero for
+// a vertex without a triangle of positive area.
 Points VertexNormals(const ConstPoints& vertices, const Triangles& triangles);
 
-// A third of the area of the triangles around each vertex [m^2].
+// Returns one third of the area of the triangles at each vertex [m^2]; the sum is the area of the surface.
 Eigen::VectorXd VertexAreas(const ConstPoints& vertices, const Triangles& triangles);
 
 }  // namespace phrenic

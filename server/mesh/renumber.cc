@@ -6,8 +6,8 @@ namespace phrenic {
 namespace {
 
 template <typename Indices>
-void Rename(const std::vector<int>& name, Indices& indices) {
-  for (int& vertex : indices.reshaped()) vertex = name[vertex];
+void Renumber(const std::vector<int>& number, Indices& indices) {
+  for (int& vertex : indices.reshaped()) vertex = number[vertex];
 }
 
 }  // namespace
@@ -20,12 +20,12 @@ void KeepTriangles(const std::vector<bool>& keep, Mesh& mesh) {
   mesh.triangles = Triangles(mesh.triangles(Eigen::all, kept));
 }
 
-void RenameVertices(const std::vector<int>& name, Mesh& mesh) {
-  Rename(name, mesh.triangles);
-  Rename(name, mesh.tetrahedra);
-  Rename(name, mesh.edges);
+void RenumberVertices(const std::vector<int>& number, Mesh& mesh) {
+  Renumber(number, mesh.triangles);
+  Renumber(number, mesh.tetrahedra);
+  Renumber(number, mesh.edges);
   for (auto& [region, vertices] : mesh.regions) {
-    for (int& vertex : vertices) vertex = name[vertex];
+    for (int& vertex : vertices) vertex = number[vertex];
     std::sort(vertices.begin(), vertices.end());
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   }
@@ -36,15 +36,15 @@ void DropUnusedVertices(Mesh& mesh) {
   for (const int vertex : mesh.triangles.reshaped()) used[vertex] = true;
   for (const int vertex : mesh.tetrahedra.reshaped()) used[vertex] = true;
   for (const int vertex : mesh.edges.reshaped()) used[vertex] = true;
-  std::vector<int> name(used.size(), -1), kept;
+  std::vector<int> number(used.size(), -1), kept;
   for (int i = 0; i < static_cast<int>(used.size()); ++i) {
     if (!used[i]) continue;
-    name[i] = static_cast<int>(kept.size());
+    number[i] = static_cast<int>(kept.size());
     kept.push_back(i);
   }
   for (auto& [region, vertices] : mesh.regions) std::erase_if(vertices, [&](int vertex) { return !used[vertex]; });
   mesh.vertices = Points(mesh.vertices(Eigen::all, kept));
-  RenameVertices(name, mesh);
+  RenumberVertices(number, mesh);
 }
 
 }  // namespace phrenic

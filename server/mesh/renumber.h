@@ -1,4 +1,4 @@
-// Triangles and vertices taken out of a mesh, and what names them renumbered.
+// Removes triangles and vertices from a mesh and renumbers the indices that refer to them.
 #ifndef PHRENIC_SERVER_MESH_RENUMBER_H_
 #define PHRENIC_SERVER_MESH_RENUMBER_H_
 
@@ -8,13 +8,14 @@
 
 namespace phrenic {
 
-// Keeps the triangles t with keep[t], in their order.
+// Removes every triangle t with !keep[t]; the others keep their order. Vertices stay.
 void KeepTriangles(const std::vector<bool>& keep, Mesh& mesh);
 
-// Vertex i is called name[i] from now on, in triangles, tetrahedra, edges and regions; the places stay.
-void RenameVertices(const std::vector<int>& name, Mesh& mesh);
+// Replaces vertex index i by number[i] in triangles, tetrahedra, edges and regions; regions end up sorted, each index
+// once. mesh.vertices is unchanged.
+void RenumberVertices(const std::vector<int>& number, Mesh& mesh);
 
-// Drops vertices that no triangle, tetrahedron or edge has.
+// Removes vertices that no triangle, tetrahedron or edge uses, also from regions, and renumbers the others.
 void DropUnusedVertices(Mesh& mesh);
 
 }  // namespace phrenic

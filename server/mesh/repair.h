@@ -1,5 +1,6 @@
-// Repairs of triangle surfaces as other programs write them. Each does one thing, keeps the order of what stays,
-// renumbers regions and edges, and says how much it changed. None is done unless asked for.
+// Repairs for defective triangle surfaces from other programs. Each function repairs one kind of defect, keeps the
+// order of the remaining vertices and triangles, renumbers regions and edges, and returns how much it changed. Readers
+// call none of them; the caller chooses. Not thread-safe for one mesh.
 #ifndef PHRENIC_SERVER_MESH_REPAIR_H_
 #define PHRENIC_SERVER_MESH_REPAIR_H_
 
@@ -7,24 +8,25 @@
 
 namespace phrenic {
 
-// Makes one of vertices that lie within `tolerance` [m] of each other, at the place of the first, and drops vertices
-// that nothing uses. Returns how many vertices there are less.
+// Merges vertices within `tolerance` [m] of each other into the one with the lowest index, then removes unused
+// vertices. Returns by how many vertices the mesh shrank.
 int Weld(double tolerance, Mesh& mesh);
 
-// Takes away triangles whose least height is under `height` [m]: a needle's short side becomes one vertex, a flat
-// triangle's long side is flipped, so that no hole is left and the surface moves by less than `height`; of two
-// triangles of the same three vertices one is dropped where they face the same way, both where they are back to back.
-// Returns how many triangles were slivers or doubled. What cannot be flipped (at an open edge, or where the new edge is
-// there already) is dropped at an open edge and left elsewhere.
+// Removes slivers, triangles whose smallest altitude is under `height` [m], without leaving holes and moving the
+// surface by less than `height`: a needle's short edge is collapsed, a cap's long edge is flipped. If the flip is
+// impossible the sliver is deleted at a boundary edge and kept elsewhere (non-manifold edge, or the new edge exists).
+// Also removes duplicate triangles on the same three vertices: one of two with equal winding, both of two with opposite
+// winding. Returns the number of slivers and duplicates.
 int DropSlivers(double height, Mesh& mesh);
 
-// Drops the pieces of surface that hang on an edge of three triangles or more and end in an open edge. Returns how many
-// triangles they had.
+// Removes fins: pieces of surface that are attached at a non-manifold edge (three triangles or more) and have a
+// boundary edge. Returns the number of triangles removed.
 int DropFins(Mesh& mesh);
 
-// Turns triangles until neighbours agree and closed components face outwards; of a component that is open, or has no
-// two sides, the larger part keeps its side. A closed component inside the bounds of a larger one may be a hollow: it
-// is turned whole or not at all. Returns how many triangles were turned.
+// Makes the winding consistent: neighbours agree across manifold edges, and closed components face outwards (positive
+// signed volume). An open or non-orientable component keeps the winding of its majority. A closed component inside the
+// bounding box of another closed one may be a cavity; it keeps the winding of its majority. Returns the number of
+// triangles flipped.
 int Orient(Mesh& mesh);
 
 }  // namespace phrenic

@@ -6,24 +6,24 @@
 #include <utility>
 #include <vector>
 
+#include "server/mesh/half_edges.h"
 #include "server/mesh/renumber.h"
 #include "server/mesh/repair.h"
-#include "server/mesh/sides.h"
 
 namespace phrenic {
 namespace {
 
-constexpr int kRounds = 16;  // of slivers that come of others
+constexpr int kRounds = 16;  // at most; a repair may create further slivers
 
 bool Repeats(const Eigen::Vector3i& corner) {
   return corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0];
 }
 
-// Drops triangles that have a vertex twice; of those with the same three vertices, pairs that are back to back, and
-// copies. Returns how many.
-int DropFolded(Mesh& mesh) {
+// Removes triangles with a repeated vertex and duplicates on the same three vertices: all of them if both windings
+// occur, else all but the first. Returns how many.
+int DropDuplicates(Mesh& mesh) {
   std::vector<bool> keep(static_cast<size_t>(mesh.triangles.cols()), true);
-  std::map<std::array<int, 3>, std::vector<std::pair<int, bool>>> copies;  // triangle, and which way it runs
+  std::map<std::array<int, 3>, std::vector<std::pair<int, bool>>> copies;  // sorted vertices -> triangle, winding
   for (int t = 0; t < static_cast<int>(mesh.triangles.cols()); ++t) {
     const Eigen::Vector3i corner = mesh.triangles.col(t);
     keep[t] = !Repeats(corner);
@@ -43,14 +43,13 @@ int DropFolded(Mesh& mesh) {
   return dropped;
 }
 
-// How a triangle is a sliver: `corner` is opposite its longest side.
 struct Sliver {
-  int corner = -1;  // -1: it is none
-  bool needle = false;
+  int corner = -1;      // the one opposite the longest edge; -1 if the triangle is not a sliver
+  bool needle = false;  // it has a short edge; otherwise it is a cap
 };
 
-Sliver Judge(const Mesh& mesh, int t, double height) {
-  Eigen::Vector3d length;  // of the side opposite each corner
+Sliver Classify(const Mesh& mesh, int t, double height) {
+  Eigen::Vector3d length;  // of the edge opposite each corner
   for (int k = 0; k < 3; ++k) {
     const auto a = mesh.vertices.col(mesh.triangles((k + 1) % 3, t)),
                b = mesh.vertices.col(mesh.triangles((k + 2) % 3, t));
@@ -67,22 +66,23 @@ Sliver Judge(const Mesh& mesh, int t, double height) {
   return sliver;
 }
 
-// Flips the side of sliver `t` that lies opposite `corner`, where one other triangle is beyond it.
-enum class Flip { kDone, kOpen, kImpossible };
+enum class Flip { kDone, kBoundary, kImpossible };
 
-Flip FlipLongSide(int t, int corner, const std::vector<Side>& sides, std::vector<bool>& touched, Triangles& triangles) {
+// Flips the edge of sliver `t` opposite `corner`. Returns kBoundary if the edge has no other triangle.
+Flip FlipLongEdge(int t, int corner, const std::vector<HalfEdge>& half_edges, std::vector<bool>& touched,
+                  Triangles& triangles) {
   const int c = triangles(corner, t), a = triangles((corner + 1) % 3, t), b = triangles((corner + 2) % 3, t);
-  const auto of_edge = [&sides](int i, int j) {
-    const auto before = [](const Side& side, const std::pair<int, int>& edge) {
-      return std::pair(side.low, side.high) < edge;
+  const auto of_edge = [&half_edges](int i, int j) {
+    const auto before = [](const HalfEdge& half_edge, const std::pair<int, int>& edge) {
+      return std::pair(half_edge.low, half_edge.high) < edge;
     };
     const std::pair edge(std::min(i, j), std::max(i, j));
-    auto first = std::lower_bound(sides.begin(), sides.end(), edge, before), last = first;
-    while (last != sides.end() && std::pair(last->low, last->high) == edge) ++last;
+    auto first = std::lower_bound(half_edges.begin(), half_edges.end(), edge, before), last = first;
+    while (last != half_edges.end() && std::pair(last->low, last->high) == edge) ++last;
     return std::pair(first, last);
   };
   const auto [first, last] = of_edge(a, b);
-  if (last - first == 1) return Flip::kOpen;
+  if (last - first == 1) return Flip::kBoundary;
   if (last - first != 2 || first->forward == (first + 1)->forward) return Flip::kImpossible;
   const int beyond = first->triangle == t ? (first + 1)->triangle : first->triangle;
   if (touched[t] || touched[beyond]) return Flip::kImpossible;
@@ -94,53 +94,53 @@ Flip FlipLongSide(int t, int corner, const std::vector<Side>& sides, std::vector
   return Flip::kDone;
 }
 
-// One round: how many slivers it dealt with.
-int TreatSlivers(double height, Mesh& mesh) {
-  const std::vector<Side> sides = SortedSides(mesh.triangles);
+// Runs one round. Returns the number of slivers repaired.
+int RepairSlivers(double height, Mesh& mesh) {
+  const std::vector<HalfEdge> half_edges = SortedHalfEdges(mesh.triangles);
   const auto count = static_cast<size_t>(mesh.triangles.cols());
   std::vector<bool> touched(count, false), keep(count, true);
-  std::vector<int> name(static_cast<size_t>(mesh.vertices.cols()));
-  std::iota(name.begin(), name.end(), 0);
-  int treated = 0;
+  std::vector<int> number(static_cast<size_t>(mesh.vertices.cols()));
+  std::iota(number.begin(), number.end(), 0);
+  int repaired = 0;
   for (int t = 0; t < static_cast<int>(count); ++t) {
-    const Sliver sliver = Judge(mesh, t, height);
+    const Sliver sliver = Classify(mesh, t, height);
     if (sliver.corner < 0 || touched[t]) continue;
     if (sliver.needle) {
-      // Opposite the longest side the two others meet; the shortest is one of them.
+      // `corner` joins the two shorter edges; the shortest of the three is one of them.
       const int c = mesh.triangles(sliver.corner, t);
       const int a = mesh.triangles((sliver.corner + 1) % 3, t), b = mesh.triangles((sliver.corner + 2) % 3, t);
       const auto x = [&mesh](int vertex) { return mesh.vertices.col(vertex); };
       const int other = (x(a) - x(c)).norm() < (x(b) - x(c)).norm() ? a : b;
-      if (name[c] != c || name[other] != other) continue;  // its turn comes in the next round
-      name[std::max(c, other)] = std::min(c, other);
+      if (number[c] != c || number[other] != other) continue;  // left to the next round
+      number[std::max(c, other)] = std::min(c, other);
     } else {
-      const Flip flip = FlipLongSide(t, sliver.corner, sides, touched, mesh.triangles);
+      const Flip flip = FlipLongEdge(t, sliver.corner, half_edges, touched, mesh.triangles);
       if (flip == Flip::kImpossible) continue;
-      keep[t] = flip != Flip::kOpen;
+      keep[t] = flip != Flip::kBoundary;
     }
-    ++treated;
+    ++repaired;
   }
   KeepTriangles(keep, mesh);
-  // A vertex that is to be merged is no other's target in the same round, or follows it there.
-  for (int& vertex : name) {
-    while (name[vertex] != vertex) vertex = name[vertex];
+  // Follow chains of merges to their last vertex.
+  for (int& vertex : number) {
+    while (number[vertex] != vertex) vertex = number[vertex];
   }
-  RenameVertices(name, mesh);
-  DropFolded(mesh);
-  return treated;
+  RenumberVertices(number, mesh);
+  DropDuplicates(mesh);
+  return repaired;
 }
 
 }  // namespace
 
 int DropSlivers(double height, Mesh& mesh) {
-  int treated = DropFolded(mesh);
+  int repaired = DropDuplicates(mesh);
   for (int round = 0; round < kRounds; ++round) {
-    const int now = TreatSlivers(height, mesh);
-    treated += now;
+    const int now = RepairSlivers(height, mesh);
+    repaired += now;
     if (now == 0) break;
   }
   DropUnusedVertices(mesh);
-  return treated;
+  return repaired;
 }
 
 }  // namespace phrenic

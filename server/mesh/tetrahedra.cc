@@ -10,22 +10,23 @@
 namespace phrenic {
 namespace {
 
-using Place = std::array<int, 3>;  // lattice indices
+using LatticeIndex = std::array<int, 3>;
 
-class Filler {
+class LatticeMesher {
  public:
-  explicit Filler(const Lattice& lattice) : lattice_(lattice) {}
+  explicit LatticeMesher(const Lattice& lattice) : lattice_(lattice) {}
 
-  void AddCell(const Place& low) {
+  // Adds the cell whose lowest corner is `low`.
+  void AddCell(const LatticeIndex& low) {
     std::array<int, 4> even{};
     int evens = 0;
     for (int corner = 0; corner < 8; ++corner) {
-      const Place place = Corner(low, corner);
-      if ((place[0] + place[1] + place[2]) % 2 == 0) {
-        even[evens++] = Vertex(place);
+      const LatticeIndex index = Corner(low, corner);
+      if ((index[0] + index[1] + index[2]) % 2 == 0) {
+        even[evens++] = Vertex(index);
         continue;
       }
-      Add({Vertex(place), Vertex(Corner(low, corner ^ 1)), Vertex(Corner(low, corner ^ 2)),
+      Add({Vertex(index), Vertex(Corner(low, corner ^ 1)), Vertex(Corner(low, corner ^ 2)),
            Vertex(Corner(low, corner ^ 4))});
     }
     Add(even);
@@ -34,9 +35,9 @@ class Filler {
   Mesh Finish() {
     Mesh mesh;
     mesh.vertices.resize(3, static_cast<Eigen::Index>(vertices_.size()));
-    for (const auto& [place, i] : vertices_) {
+    for (const auto& [index, i] : vertices_) {
       mesh.vertices.col(i) =
-          lattice_.origin + lattice_.cell.cwiseProduct(Eigen::Vector3d(place[0], place[1], place[2]));
+          lattice_.origin + lattice_.cell.cwiseProduct(Eigen::Vector3d(index[0], index[1], index[2]));
     }
     mesh.tetrahedra.resize(4, static_cast<Eigen::Index>(tetrahedra_.size()));
     for (Eigen::Index t = 0; t < mesh.tetrahedra.cols(); ++t) {
@@ -48,14 +49,16 @@ class Filler {
   }
 
  private:
-  static Place Corner(const Place& low, int corner) {
+  static LatticeIndex Corner(const LatticeIndex& low, int corner) {
     return {low[0] + (corner & 1), low[1] + (corner >> 1 & 1), low[2] + (corner >> 2 & 1)};
   }
-  int Vertex(const Place& place) { return vertices_.emplace(place, static_cast<int>(vertices_.size())).first->second; }
+  int Vertex(const LatticeIndex& index) {
+    return vertices_.emplace(index, static_cast<int>(vertices_.size())).first->second;
+  }
   void Add(const std::array<int, 4>& corners) { tetrahedra_.emplace_back(corners.data()); }
 
   const Lattice lattice_;
-  std::map<Place, int> vertices_;
+  std::map<LatticeIndex, int> vertices_;
   std::vector<Eigen::Vector4i> tetrahedra_;
 };
 
@@ -67,16 +70,16 @@ struct Face {
 }  // namespace
 
 Mesh FillCells(const Lattice& lattice, const std::function<bool(const Eigen::Vector3d& centre)>& keep) {
-  Filler filler(lattice);
+  LatticeMesher mesher(lattice);
   for (int z = 0; z < lattice.cells[2]; ++z) {
     for (int y = 0; y < lattice.cells[1]; ++y) {
       for (int x = 0; x < lattice.cells[0]; ++x) {
         const Eigen::Vector3d middle(x + 0.5, y + 0.5, z + 0.5);
-        if (keep(lattice.origin + lattice.cell.cwiseProduct(middle))) filler.AddCell({x, y, z});
+        if (keep(lattice.origin + lattice.cell.cwiseProduct(middle))) mesher.AddCell({x, y, z});
       }
     }
   }
-  return filler.Finish();
+  return mesher.Finish();
 }
 
 Triangles SurfaceOf(const Tetrahedra& tetrahedra) {

@@ -1,4 +1,4 @@
-// Solids of tetrahedra: lattices of cells, what lies inside a surface, the surface of a solid.
+// Tetrahedral solids: meshing a lattice of cells, the boundary of a solid, and the inside test for a surface.
 #ifndef PHRENIC_SERVER_MESH_TETRAHEDRA_H_
 #define PHRENIC_SERVER_MESH_TETRAHEDRA_H_
 
@@ -8,24 +8,26 @@
 
 namespace phrenic {
 
+// An axis-aligned lattice of equal cells.
 struct Lattice {
-  Eigen::Vector3d origin;  // [m]
-  Eigen::Vector3d cell;    // its width, depth and height [m]
-  Eigen::Vector3i cells;   // along each axis
+  Eigen::Vector3d origin;  // the lowest corner [m]
+  Eigen::Vector3d cell;    // size of a cell along each axis [m]
+  Eigen::Vector3i cells;   // number of cells along each axis
 };
 
-// The cells whose centre `keep` takes, five tetrahedra each, with their surface. Cells are split so that neighbours'
-// faces match: one tetrahedron over the corners with an even sum of lattice indices, one at each of the odd corners.
+// Returns the cells for whose centre [m] `keep` is true, each split into five tetrahedra, with their boundary faces as
+// triangles. The split is conforming: one tetrahedron joins the corners with an even sum of lattice indices, one cuts
+// off each odd corner.
 Mesh FillCells(const Lattice& lattice, const std::function<bool(const Eigen::Vector3d& centre)>& keep);
 
-// The triangles that belong to one tetrahedron only, facing outwards.
+// Returns the boundary faces, which belong to one tetrahedron only, facing outwards.
 Triangles SurfaceOf(const Tetrahedra& tetrahedra);
 
-// Positive where the vertices are in the order that Tetrahedra asks for [m^3].
+// Returns V = (b - a) . ((c - a) x (d - a)) / 6 [m^3]; positive if the vertices are ordered as Tetrahedra requires.
 double TetrahedronVolume(const Mesh& mesh, Eigen::Index tetrahedron);
 
-// How often the surface's triangles go round the point: 1 inside a closed surface that faces outwards, 0 outside (Van
-// Oosterom and Strackee 1983).
+// Returns the winding number of the surface about the point, the sum of the triangles' signed solid angles / (4 pi)
+// (Van Oosterom and Strackee 1983): 1 inside a closed surface that faces outwards, 0 outside. O(triangles).
 double WindingNumber(const Mesh& surface, const Eigen::Vector3d& point);
 
 }  // namespace phrenic

@@ -8,13 +8,14 @@
 #include <utility>
 #include <vector>
 
-#include "server/mesh/sides.h"
+#include "server/mesh/half_edges.h"
 
 namespace phrenic {
 namespace {
 
 constexpr double kSmallestArea = 1e-14;  // [m^2]
 
+// Returns the representative of i in a union-find forest, halving the path.
 int Root(std::vector<int>& parent, int i) {
   while (parent[i] != i) i = parent[i] = parent[parent[i]];
   return i;
@@ -34,17 +35,18 @@ bool Degenerate(const Mesh& mesh, Eigen::Index t) {
   return (b - a).cross(c - a).norm() / 2 < kSmallestArea;
 }
 
-// The triangles' sides by their lower vertices, of each the higher ones ascending: one item a side.
-class SideEnds {
+// The half-edges bucketed by their lower vertex, each bucket holding the higher vertices ascending. Smaller than
+// SortedHalfEdges: 4 bytes per half-edge, without triangle and direction.
+class EdgeTable {
  public:
-  explicit SideEnds(const Triangles& triangles) : high_(static_cast<size_t>(triangles.size())) {
+  explicit EdgeTable(const Triangles& triangles) : high_(static_cast<size_t>(triangles.size())) {
     first_.assign(triangles.size() > 0 ? static_cast<size_t>(triangles.maxCoeff()) + 3 : 2, 0);
-    ForEachSide(triangles, [this](int low, int) { ++first_[low + 2]; });
+    ForEachHalfEdge(triangles, [this](int low, int) { ++first_[low + 2]; });
     std::partial_sum(first_.begin(), first_.end(), first_.begin());
-    ForEachSide(triangles, [this](int low, int high) { high_[first_[low + 1]++] = high; });
+    ForEachHalfEdge(triangles, [this](int low, int high) { high_[first_[low + 1]++] = high; });
     for (size_t v = 0; v + 2 < first_.size(); ++v) std::sort(high_.begin() + first_[v], high_.begin() + first_[v + 1]);
   }
-  // Calls `use(low, high, sides)` for each edge, in order.
+  // Calls `use(low, high, half_edges)` for each edge, ascending; the last is the number of triangles at the edge.
   template <typename Use>
   void ForEachEdge(const Use& use) const {
     for (size_t v = 0; v + 2 < first_.size(); ++v) {
@@ -58,7 +60,7 @@ class SideEnds {
 
  private:
   template <typename Use>
-  static void ForEachSide(const Triangles& triangles, const Use& use) {
+  static void ForEachHalfEdge(const Triangles& triangles, const Use& use) {
     const int* corner = triangles.data();
     for (Eigen::Index t = 0; t < triangles.cols(); ++t, corner += 3) {
       for (int k = 0; k < 3; ++k) {
@@ -68,19 +70,19 @@ class SideEnds {
     }
   }
 
-  std::vector<std::int64_t> first_;  // of each vertex, and the end; one more while they are counted
+  std::vector<std::int64_t> first_;  // start of each vertex' bucket, and the end; one more entry during counting
   std::vector<int> high_;
 };
 
 }  // namespace
 
 Edges TriangleEdges(const Triangles& triangles) {
-  SideEnds ends(triangles);
+  const EdgeTable table(triangles);
   std::int64_t count = 0;
-  ends.ForEachEdge([&](int, int, int) { ++count; });
+  table.ForEachEdge([&](int, int, int) { ++count; });
   Edges edges(2, count);
   int* next = edges.data();
-  ends.ForEachEdge([&](int low, int high, int) { *next++ = low, *next++ = high; });
+  table.ForEachEdge([&](int low, int high, int) { *next++ = low, *next++ = high; });
   return edges;
 }
 
@@ -92,37 +94,39 @@ Edges ToEdges(const std::vector<std::pair<int, int>>& pairs) {
 
 Edges SpringEdges(const Mesh& mesh) { return mesh.edges.cols() > 0 ? mesh.edges : TriangleEdges(mesh.triangles); }
 
-std::vector<int> BorderVertices(const Triangles& triangles) {
-  std::vector<int> border;
-  SideEnds(triangles).ForEachEdge([&](int low, int high, int sides) {
-    if (sides == 1) border.insert(border.end(), {low, high});
+std::vector<int> BoundaryVertices(const Triangles& triangles) {
+  std::vector<int> boundary;
+  EdgeTable(triangles).ForEachEdge([&](int low, int high, int half_edges) {
+    if (half_edges == 1) boundary.insert(boundary.end(), {low, high});
   });
-  std::sort(border.begin(), border.end());
-  border.erase(std::unique(border.begin(), border.end()), border.end());
-  return border;
+  std::sort(boundary.begin(), boundary.end());
+  boundary.erase(std::unique(boundary.begin(), boundary.end()), boundary.end());
+  return boundary;
 }
 
 std::vector<int> PinchedVertices(const Triangles& triangles) {
-  // Corner 3 t + k is where triangle t has its k-th vertex. Corners of one vertex are joined across each edge there.
+  // Corner 3 t + k is the k-th corner of triangle t. Corners at the same vertex are united across each edge there; each
+  // remaining set is a fan.
   struct Corners {
-    int low, high, at_low, at_high;  // vertices, and their corners
+    int low, high, at_low, at_high;  // the half-edge's vertices, and its triangle's corners at them
   };
-  std::vector<Corners> sides;
+  std::vector<Corners> half_edges;
   std::vector<int> parent(static_cast<size_t>(triangles.size()));
   std::iota(parent.begin(), parent.end(), 0);
   for (int t = 0; t < static_cast<int>(triangles.cols()); ++t) {
     for (int k = 0; k < 3; ++k) {
       const int next = (k + 1) % 3, a = triangles(k, t), b = triangles(next, t);
       const int at_a = 3 * t + k, at_b = 3 * t + next;
-      sides.push_back(a < b ? Corners{a, b, at_a, at_b} : Corners{b, a, at_b, at_a});
+      half_edges.push_back(a < b ? Corners{a, b, at_a, at_b} : Corners{b, a, at_b, at_a});
     }
   }
-  const auto edge = [](const Corners& side) { return std::pair(side.low, side.high); };
-  std::sort(sides.begin(), sides.end(), [&](const Corners& a, const Corners& b) { return edge(a) < edge(b); });
-  for (size_t i = 1; i < sides.size(); ++i) {
-    if (edge(sides[i - 1]) != edge(sides[i])) continue;
-    parent[Root(parent, sides[i].at_low)] = Root(parent, sides[i - 1].at_low);
-    parent[Root(parent, sides[i].at_high)] = Root(parent, sides[i - 1].at_high);
+  const auto edge = [](const Corners& corners) { return std::pair(corners.low, corners.high); };
+  std::sort(half_edges.begin(), half_edges.end(),
+            [&](const Corners& a, const Corners& b) { return edge(a) < edge(b); });
+  for (size_t i = 1; i < half_edges.size(); ++i) {
+    if (edge(half_edges[i - 1]) != edge(half_edges[i])) continue;
+    parent[Root(parent, half_edges[i].at_low)] = Root(parent, half_edges[i - 1].at_low);
+    parent[Root(parent, half_edges[i].at_high)] = Root(parent, half_edges[i - 1].at_high);
   }
   std::vector<int> fans(triangles.size() > 0 ? static_cast<size_t>(triangles.maxCoeff()) + 1 : 0, 0);
   for (int corner = 0; corner < static_cast<int>(parent.size()); ++corner) {
@@ -159,31 +163,24 @@ SurfaceTopology AnalyseTopology(const Mesh& mesh) {
   topology.triangles = static_cast<int>(mesh.triangles.cols());
   topology.vertices = CountUsed(mesh);
   topology.components = static_cast<int>(Components(mesh).size());
-  const std::vector<Side> edges = SortedSides(mesh.triangles);
-  for (size_t i = 0; i < edges.size();) {
-    size_t end = i;
-    int forward = 0;
-    for (; end < edges.size() && edges[end].low == edges[i].low && edges[end].high == edges[i].high; ++end) {
-      forward += edges[end].forward ? 1 : 0;
-    }
+  ForEachEdge(SortedHalfEdges(mesh.triangles), [&](auto first, auto last) {
     ++topology.edges;
-    topology.boundary_edges += end - i == 1 ? 1 : 0;
-    topology.non_manifold_edges += end - i > 2 ? 1 : 0;
-    topology.misoriented_edges += end - i == 2 && forward != 1 ? 1 : 0;
-    i = end;
-  }
+    topology.boundary_edges += last - first == 1 ? 1 : 0;
+    topology.non_manifold_edges += last - first > 2 ? 1 : 0;
+    topology.misoriented_edges += last - first == 2 && first->forward == (first + 1)->forward ? 1 : 0;
+  });
   for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) topology.degenerate_triangles += Degenerate(mesh, t) ? 1 : 0;
   return topology;
 }
 
 double SignedVolume(const ConstPoints& vertices, const Triangles& triangles) {
-  double six = 0;
+  double sixfold = 0;
   for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
     const Eigen::Vector3d a = vertices.col(triangles(0, t));
     const Eigen::Vector3d b = vertices.col(triangles(1, t)), c = vertices.col(triangles(2, t));
-    six += a.dot(b.cross(c));
+    sixfold += a.dot(b.cross(c));
   }
-  return six / 6;
+  return sixfold / 6;
 }
 
 }  // namespace phrenic

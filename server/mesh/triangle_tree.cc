@@ -11,8 +11,8 @@ namespace phrenic {
 namespace {
 
 constexpr int kLeaf = 4;        // triangles
-constexpr double kTie = 1e-10;  // of the squared distance: nearer together than this counts as equally near
-constexpr int kDeepest = 64;    // nodes that wait; a tree split in halves needs one a level
+constexpr double kTie = 1e-10;  // relative difference of squared distances that counts as a tie
+constexpr int kMaxStack = 64;   // nodes to visit; a balanced tree needs one per level
 
 double Ratio(double part, double whole) { return whole > 0 ? part / whole : 0; }
 
@@ -47,37 +47,37 @@ Eigen::Vector3d NearestWeights(const Eigen::Vector3d& a, const Eigen::Vector3d& 
 }
 
 TriangleTree::TriangleTree(const ConstPoints& x, const Triangles& triangles) : triangles_(3, triangles.cols()) {
-  Points middles(3, triangles.cols());
+  Points centroids(3, triangles.cols());
   for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
-    middles.col(t) = (x.col(triangles(0, t)) + x.col(triangles(1, t)) + x.col(triangles(2, t))) / 3;
+    centroids.col(t) = (x.col(triangles(0, t)) + x.col(triangles(1, t)) + x.col(triangles(2, t))) / 3;
   }
   std::vector<int> order(static_cast<size_t>(triangles.cols()));
   std::iota(order.begin(), order.end(), 0);
   nodes_.push_back({0, static_cast<int>(triangles.cols())});
-  for (int node = 0; node < static_cast<int>(nodes_.size()); ++node) Split(node, middles, order);
+  for (int node = 0; node < static_cast<int>(nodes_.size()); ++node) Split(node, centroids, order);
   for (Eigen::Index t = 0; t < triangles.cols(); ++t) triangles_.col(t) = triangles.col(order[static_cast<size_t>(t)]);
-  open_vertex_.assign(static_cast<size_t>(x.cols()), false);
-  FindRims();
+  boundary_vertex_.assign(static_cast<size_t>(x.cols()), false);
+  FindBoundary();
 }
 
-// Halves a node's triangles across the longest side of the box of their middles.
-void TriangleTree::Split(int node, const Points& middles, std::vector<int>& order) {
+// Splits a node's triangles at the median along the longest side of the bounding box of their centroids.
+void TriangleTree::Split(int node, const Points& centroids, std::vector<int>& order) {
   const auto [first, count, left] = nodes_[node];
   if (count <= kLeaf) return;
   Eigen::AlignedBox3d box;
-  for (int i = first; i < first + count; ++i) box.extend(middles.col(order[i]));
+  for (int i = first; i < first + count; ++i) box.extend(centroids.col(order[i]));
   int axis = 0;
   box.sizes().maxCoeff(&axis);
   const auto begin = order.begin() + first, half = begin + count / 2;
   std::nth_element(begin, half, begin + count,
-                   [&](int a, int b) { return std::pair(middles(axis, a), a) < std::pair(middles(axis, b), b); });
+                   [&](int a, int b) { return std::pair(centroids(axis, a), a) < std::pair(centroids(axis, b), b); });
   nodes_[node].left = static_cast<int>(nodes_.size());
   nodes_.push_back({first, count / 2});
   nodes_.push_back({first + count / 2, count - count / 2});
 }
 
-void TriangleTree::FindRims() {
-  std::map<std::pair<int, int>, int> triangles_at;
+void TriangleTree::FindBoundary() {
+  std::map<std::pair<int, int>, int> triangles_at;  // edge -> number of triangles
   const auto edge = [this](Eigen::Index t, int opposite) {
     return std::minmax({triangles_((opposite + 1) % 3, t), triangles_((opposite + 2) % 3, t)});
   };
@@ -89,9 +89,9 @@ void TriangleTree::FindRims() {
     for (int i = 0; i < 3; ++i) {
       const auto [a, b] = edge(t, i);
       open[i] = triangles_at[{a, b}] == 1;
-      if (open[i] != 0) open_vertex_[a] = open_vertex_[b] = true;
+      if (open[i] != 0) boundary_vertex_[a] = boundary_vertex_[b] = true;
     }
-    open_edge_.push_back(open);
+    boundary_edge_.push_back(open);
   }
 }
 
@@ -122,8 +122,8 @@ void TriangleTree::Try(const ConstPoints& x, const Eigen::Vector3d& point, int t
   if (squared >= best.squared * (1 - kTie) && std::abs(facing) <= std::abs(best.facing)) return;
   best = {t, weights, offset, squared, facing, false};
   for (int i = 0; i < 3; ++i) {
-    if (weights[i] == 1) best.on_rim = open_vertex_[vertices[i]];
-    if (weights[i] == 0 && open_edge_[t][i] != 0) best.on_rim = true;
+    if (weights[i] == 1) best.on_boundary = boundary_vertex_[vertices[i]];
+    if (weights[i] == 0 && boundary_edge_[t][i] != 0) best.on_boundary = true;
   }
 }
 
@@ -131,11 +131,11 @@ SurfacePoint TriangleTree::Nearest(const ConstPoints& x, const Boxes& boxes, con
                                    double reach) const {
   SurfacePoint best;
   best.squared = reach * reach;
-  std::array<int, kDeepest> waiting;
-  int waits = 0;
-  waiting[waits++] = 0;
-  while (waits > 0) {
-    const int n = waiting[--waits];
+  std::array<int, kMaxStack> stack;
+  int depth = 0;
+  stack[depth++] = 0;
+  while (depth > 0) {
+    const int n = stack[--depth];
     if (boxes[n].squaredExteriorDistance(point) > best.squared * (1 + kTie)) continue;
     const Node& node = nodes_[n];
     if (node.left < 0) {
@@ -144,8 +144,8 @@ SurfacePoint TriangleTree::Nearest(const ConstPoints& x, const Boxes& boxes, con
     }
     const double left = boxes[node.left].squaredExteriorDistance(point);
     const double right = boxes[node.left + 1].squaredExteriorDistance(point);
-    waiting[waits++] = left <= right ? node.left + 1 : node.left;
-    waiting[waits++] = left <= right ? node.left : node.left + 1;
+    stack[depth++] = left <= right ? node.left + 1 : node.left;
+    stack[depth++] = left <= right ? node.left : node.left + 1;
   }
   return best;
 }

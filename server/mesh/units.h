@@ -1,11 +1,11 @@
-// Files and people speak of millimetres; everything inside is in metres.
+// Unit conversion: files and user interfaces use millimetres, all computation uses metres.
 #ifndef PHRENIC_SERVER_MESH_UNITS_H_
 #define PHRENIC_SERVER_MESH_UNITS_H_
 
 namespace phrenic {
 
 inline constexpr double kMillimetre = 1e-3;        // [m]
-inline constexpr double kMillimetresAMetre = 1e3;  // exact, where 1/kMillimetre is rounded
+inline constexpr double kMillimetresAMetre = 1e3;  // exact; 1 / kMillimetre is rounded
 
 }  // namespace phrenic
 

@@ -1,4 +1,4 @@
-// Numbers in binary files: taken from bytes, and added to them.
+// Reads and writes binary numbers of either endianness.
 #ifndef PHRENIC_SERVER_MESHIO_BYTES_H_
 #define PHRENIC_SERVER_MESHIO_BYTES_H_
 
@@ -14,14 +14,14 @@
 
 namespace phrenic::meshio {
 
-// Walks over bytes that hold numbers in either byte order, without copying them. Holds views into `bytes`, which must
-// outlive it. Not thread-safe.
+// A cursor over binary data that decodes numbers without copying the data. Holds views into `name` and `bytes`, which
+// must outlive it. Not thread-safe.
 class ByteReader {
  public:
   ByteReader(std::string_view name, std::string_view bytes, std::size_t at, std::endian order = std::endian::little)
       : name_(name), bytes_(bytes), at_(std::min(at, bytes.size())), order_(order) {}
 
-  // Takes the next number; false, and nothing taken, where fewer bytes are left than it has.
+  // Reads the next number. Returns false and reads nothing if fewer than sizeof(T) bytes are left.
   template <typename T>
   bool Take(T& number) {
     std::array<char, sizeof(T)> raw;
@@ -39,9 +39,9 @@ class ByteReader {
     return true;
   }
 
-  std::size_t at() const { return at_; }  // of the next byte, from 0
+  std::size_t at() const { return at_; }  // offset of the next byte
   std::size_t left() const { return bytes_.size() - at_; }
-  // INVALID_ARGUMENT "name:byte N: message", N that of the next byte.
+  // Returns INVALID_ARGUMENT "name:byte N: message", N the offset of the next byte.
   absl::Status Error(const std::string& message) const {
     return absl::InvalidArgumentError(absl::StrCat(std::string(name_), ":byte ", at_, ": ", message));
   }
@@ -53,7 +53,7 @@ class ByteReader {
   std::endian order_;
 };
 
-// Adds the number's bytes, little end first.
+// Appends the number in little-endian byte order.
 template <typename T>
 void AppendBytes(std::string& bytes, T number) {
   auto raw = std::bit_cast<std::array<char, sizeof(T)>>(number);

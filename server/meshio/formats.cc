@@ -13,15 +13,15 @@
 namespace phrenic::meshio {
 namespace {
 
-// Every index and line number of a file of this size fits an int.
+// Every index and line number in a file of this size fits an int.
 constexpr std::size_t kMaxBytes = std::size_t{1} << 30;
 
 absl::Status TooLarge(const std::string& name) {
   return absl::InvalidArgumentError(
-      absl::StrCat(name, ":1: the file is larger than 1 GiB, the most that is read; make the surface coarser"));
+      absl::StrCat(name, ":1: the file is larger than the maximum of 1 GiB; coarsen the surface"));
 }
 
-// The format by the name's ending; null where there is none such.
+// Returns the format of the file name's extension, ignoring case; null if there is none.
 const Format* Find(const std::string& name) {
   for (const Format& format : Formats()) {
     if (absl::EndsWith(absl::AsciiStrToLower(name), std::string(format.ending))) return &format;
@@ -34,14 +34,14 @@ absl::Status CheckReadable(const std::string& path) {
   const auto status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status)) return absl::NotFoundError(absl::StrCat("there is no file \"", path, "\""));
   if (!std::filesystem::is_regular_file(status)) {
-    return absl::InvalidArgumentError(absl::StrCat(path, ":1: not a file that can be read as a surface"));
+    return absl::InvalidArgumentError(absl::StrCat(path, ":1: not a regular file"));
   }
   if (const auto size = std::filesystem::file_size(path, error); !error && size > kMaxBytes) return TooLarge(path);
   return absl::OkStatus();
 }
 
-// Half a turn about the vertical axis, without negative zeros.
-void TurnFromRas(Points& vertices) { vertices.topRows<2>() = (0.0 - vertices.topRows<2>().array()).matrix(); }
+// Converts RAS to LPS, x -> -x and y -> -y, without negative zeros.
+void RasToLps(Points& vertices) { vertices.topRows<2>() = (0.0 - vertices.topRows<2>().array()).matrix(); }
 
 }  // namespace
 
@@ -69,13 +69,13 @@ std::string WrittenEndings() {
   return endings;
 }
 
-void Collected::AddPolygon(const std::vector<int>& corners) {
+void SurfaceBuilder::AddPolygon(const std::vector<int>& corners) {
   for (std::size_t i = 2; i < corners.size(); ++i) {
     triangles.insert(triangles.end(), {corners[0], corners[i - 1], corners[i]});
   }
 }
 
-Mesh Collected::ToMesh() const {
+Mesh SurfaceBuilder::ToMesh() const {
   Mesh mesh;
   mesh.vertices = Eigen::Map<const Points>(coordinates.data(), 3, vertices());
   mesh.triangles = Eigen::Map<const Triangles>(triangles.data(), 3, static_cast<Eigen::Index>(triangles.size() / 3));
@@ -85,24 +85,23 @@ Mesh Collected::ToMesh() const {
   return mesh;
 }
 
-Frame FrameIn(std::string_view text, Frame otherwise) {
+Frame FrameFromText(std::string_view text, Frame fallback) {
   if (text.find("SPACE=RAS") != std::string_view::npos) return Frame::kRas;
   if (text.find("SPACE=LPS") != std::string_view::npos) return Frame::kLps;
-  return otherwise;
+  return fallback;
 }
 
 absl::StatusOr<Surface> ParseSurface(std::string_view name, std::string_view bytes, double unit) {
   const std::string file(name);
   const Format* format = Find(file);
   if (format == nullptr) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(file, ":1: the name's ending tells no known format; there are ", Endings()));
+    return absl::InvalidArgumentError(absl::StrCat(file, ":1: the file name extension is not one of ", Endings()));
   }
   if (bytes.size() > kMaxBytes) return TooLarge(file);
   absl::StatusOr<Surface> surface = format->parse(name, bytes);
   if (!surface.ok()) return surface;
   surface->mesh.vertices *= unit;
-  if (surface->frame == Frame::kRas) TurnFromRas(surface->mesh.vertices);
+  if (surface->frame == Frame::kRas) RasToLps(surface->mesh.vertices);
   if (absl::Status status = Validate(surface->mesh); !status.ok()) {
     return absl::InvalidArgumentError(absl::StrCat(file, ":1: ", status.message()));
   }
@@ -120,7 +119,7 @@ absl::StatusOr<Surface> ReadSurface(const std::string& path, double unit) {
   std::ifstream file(path, std::ios::binary);
   std::ostringstream bytes;
   if (!file || (!(bytes << file.rdbuf()) && file.peek() != std::ifstream::traits_type::eof())) {
-    return absl::PermissionDeniedError(absl::StrCat("\"", path, "\" cannot be read; check who may read it"));
+    return absl::PermissionDeniedError(absl::StrCat("\"", path, "\" cannot be read; check the file's permissions"));
   }
   return ParseSurface(path, std::move(bytes).str(), unit);
 }
@@ -136,7 +135,7 @@ absl::StatusOr<std::string> Write(std::string_view name, const Mesh& mesh, doubl
   const Format* format = Find(file);
   if (format == nullptr || format->write == nullptr) {
     return absl::InvalidArgumentError(
-        absl::StrCat(file, ": the name's ending tells no format that is written; there are ", WrittenEndings()));
+        absl::StrCat(file, ": the file name extension is not one that can be written: ", WrittenEndings()));
   }
   Mesh scaled = mesh;
   scaled.vertices /= unit;

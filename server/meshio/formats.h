@@ -1,5 +1,8 @@
-// One parser and one writer a format. Coordinates stay in the file's unit and frame; meshio.h scales, turns and
-// validates.
+// The surface file formats: one parser and one writer each. They leave coordinates in the file's unit and frame and
+// indices unchecked; meshio.h scales, converts to LPS and validates. All functions are thread-safe.
+//
+// Parsers return INVALID_ARGUMENT "name:line: ..." or "name:byte N: ...". They allocate in proportion to the data,
+// never by a count that a file claims.
 #ifndef PHRENIC_SERVER_MESHIO_FORMATS_H_
 #define PHRENIC_SERVER_MESHIO_FORMATS_H_
 
@@ -13,55 +16,58 @@
 
 namespace phrenic::meshio {
 
-// Wavefront OBJ: "v", "f" (any polygon, v, v/vt, v//vn or v/vt/vn, negative indices) and "l"; the rest is passed over.
+// Wavefront OBJ: "v", "f" (any polygon; v, v/vt, v//vn or v/vt/vn; negative indices) and "l"; other statements are
+// ignored.
 absl::StatusOr<Surface> ParseObj(std::string_view name, std::string_view bytes);
 absl::StatusOr<std::string> WriteObj(const Mesh& mesh);
 
-// Gmsh 2.0-2.2 and 4.1, text and binary: nodes of any numbering, triangles, quadrilaterals and lines. A named physical
-// surface becomes a region of the mesh. Written as 2.2 in text; a triangle is of the first region (by name) that has
-// its three vertices.
+// Gmsh MSH 2.0-2.2 and 4.1, text and binary: nodes of any numbering, triangles, quadrilaterals and lines. A named
+// physical surface becomes a region of the mesh. Written as 2.2 text; a triangle belongs to the first region (by name)
+// that holds its three vertices.
 absl::StatusOr<Surface> ParseMsh(std::string_view name, std::string_view bytes);
 absl::StatusOr<std::string> WriteMsh(const Mesh& mesh);
 
-// STL, text and binary. Written in binary, in float32. Where it is written, the mesh has triangles.
+// STL, text and binary. Written as binary float32; INVALID_ARGUMENT if the mesh has no triangles.
 absl::StatusOr<Surface> ParseStl(std::string_view name, std::string_view bytes);
 absl::StatusOr<std::string> WriteStl(const Mesh& mesh);
 
-// PLY 1.0, text and binary of either byte order: vertices, faces (any polygon) and edges; other elements and properties
-// are passed over. Written in binary, little end first, in float64.
+// PLY 1.0, text and binary of either endianness: vertices, faces (any polygon) and edges; other elements and properties
+// are ignored. Written as little-endian binary float64.
 absl::StatusOr<Surface> ParsePly(std::string_view name, std::string_view bytes);
 absl::StatusOr<std::string> WritePly(const Mesh& mesh);
 
-// VTK's PolyData: legacy .vtk, text and binary, and .vtp in XML, plain and compressed by zlib. Polygons, strips and
-// lines are read; numbers on points and cells are passed over. Written in float64, binary.
+// VTK PolyData: legacy .vtk, text and binary, and XML .vtp, uncompressed or zlib. Polygons, triangle strips and lines
+// are read; point and cell data are ignored. Written as binary float64.
 absl::StatusOr<Surface> ParseVtk(std::string_view name, std::string_view bytes);
 absl::StatusOr<std::string> WriteVtk(const Mesh& mesh);
 absl::StatusOr<Surface> ParseVtp(std::string_view name, std::string_view bytes);
 absl::StatusOr<std::string> WriteVtp(const Mesh& mesh);
 
 struct Format {
-  std::string_view ending;  // of the file's name, in small letters, with its dot
+  std::string_view ending;  // file name extension in lower case, with its dot
   absl::StatusOr<Surface> (*parse)(std::string_view name, std::string_view bytes);
-  absl::StatusOr<std::string> (*write)(const Mesh& mesh);  // null where the format is only read
+  absl::StatusOr<std::string> (*write)(const Mesh& mesh);  // null if the format is read-only
 };
 
-// The catalogue: one row a format.
+// The catalogue of formats, one row each.
 const std::vector<Format>& Formats();
 
-// What the parsers collect; vertices and cells in the file's order.
-struct Collected {
-  std::vector<double> coordinates;  // x y z a vertex
-  std::vector<int> triangles;       // three indices a triangle
-  std::vector<int> lines;           // two indices a line
+// Accumulates a mesh while parsing, in the file's order.
+struct SurfaceBuilder {
+  std::vector<double> coordinates;  // x y z per vertex
+  std::vector<int> triangles;       // three indices per triangle
+  std::vector<int> lines;           // two indices per line
 
   int vertices() const { return static_cast<int>(coordinates.size() / 3); }
-  void AddPolygon(const std::vector<int>& corners);  // three or more, fanned from the first
-  // Lines are kept only where there are no triangles: beside triangles they are outlines, not a network of their own.
+  // Adds a polygon of three corners or more as a fan of triangles at its first corner.
+  void AddPolygon(const std::vector<int>& corners);
+  // Keeps lines only if there are no triangles; beside triangles, lines are outlines and not a network.
   Mesh ToMesh() const;
 };
 
-// The frame that a comment or header says, as 3D Slicer writes it; `otherwise` where it says none.
-Frame FrameIn(std::string_view text, Frame otherwise);
+// Returns the frame that "SPACE=RAS" or "SPACE=LPS" in a comment or header names (3D Slicer's convention), else
+// `fallback`.
+Frame FrameFromText(std::string_view text, Frame fallback);
 
 }  // namespace phrenic::meshio
 

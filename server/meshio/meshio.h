@@ -1,4 +1,4 @@
-// Surface files: bytes <-> Mesh.
+// Reads and writes surface files: OBJ, MSH, STL, PLY, VTK and VTP. All functions are thread-safe.
 #ifndef PHRENIC_SERVER_MESHIO_MESHIO_H_
 #define PHRENIC_SERVER_MESHIO_MESHIO_H_
 
@@ -10,33 +10,32 @@
 
 namespace phrenic::meshio {
 
-// The axes that a file says its coordinates run along, as 3D Slicer writes them: "SPACE=LPS" or "SPACE=RAS" in the
-// header of an STL, in a comment of an OBJ or a PLY, in the field "SPACE" of a VTK file.
-enum class Frame { kUnsaid, kLps, kRas };
+// The patient frame that a file declares, by 3D Slicer's convention: "SPACE=LPS" or "SPACE=RAS" in the header of an
+// STL, in a comment of an OBJ or a PLY, or in the field "SPACE" of a VTK file.
+enum class Frame { kUnspecified, kLps, kRas };
 
 struct Surface {
-  Mesh mesh;                     // in LPS, whatever the file's own frame
-  Frame frame = Frame::kUnsaid;  // the file's own; LPS is assumed where it says none
+  Mesh mesh;                          // in LPS, whatever the file's frame
+  Frame frame = Frame::kUnspecified;  // the file's; read as LPS if unspecified
 };
 
-// Parses the bytes of a surface file in the format that `name`'s ending tells, one of Endings(); coordinates are
-// multiplied by `unit` [m per unit of the file] and turned from RAS to LPS where the file says that it is in RAS.
-// Quadrilaterals and larger polygons are fanned into triangles; vertices keep the file's order (of STL, which has none:
-// that of their first triangle, those at exactly one place made one). Errors are INVALID_ARGUMENT "name:line: what is
-// wrong and what to do", "name:byte N: ..." in binary parts.
+// Parses a surface file in the format of `name`'s extension, one of Endings(). Multiplies coordinates by `unit` [m per
+// unit of the file] and converts RAS to LPS if the file declares RAS. Polygons become fans of triangles; vertices keep
+// the file's order. STL has no shared vertices: bitwise equal points become one vertex, in the order they first occur.
+// Errors: INVALID_ARGUMENT "name:line: problem and remedy", or "name:byte N: ..." in binary data.
 absl::StatusOr<Mesh> Parse(std::string_view name, std::string_view bytes, double unit);
 absl::StatusOr<Surface> ParseSurface(std::string_view name, std::string_view bytes, double unit);
 
-// Reads the file and parses it; NOT_FOUND names the path.
+// Reads and parses a file. Also NOT_FOUND or PERMISSION_DENIED with the path.
 absl::StatusOr<Mesh> ReadFile(const std::string& path, double unit);
 absl::StatusOr<Surface> ReadSurface(const std::string& path, double unit);
 
-// The bytes of a file in the format that `name`'s ending tells, one of WrittenEndings(): coordinates are divided by
-// `unit` [m per unit of the file], in LPS, and where the format has a place for it the file says so. INVALID_ARGUMENT
-// "name: ..." where the format cannot hold the mesh. What each format keeps stands in the README.
+// Returns the bytes of a file in the format of `name`'s extension, one of WrittenEndings(). Divides coordinates by
+// `unit` [m per unit of the file]; the frame is LPS, and the file declares it if the format can. INVALID_ARGUMENT
+// "name: ..." if the mesh is invalid or the format cannot represent it. The README lists what each format keeps.
 absl::StatusOr<std::string> Write(std::string_view name, const Mesh& mesh, double unit);
 
-// The endings of the names of files that are read, and written, for people: ".obj, .msh".
+// Return the extensions that can be read, and written, for messages: ".obj, .msh".
 std::string Endings();
 std::string WrittenEndings();
 

@@ -1,4 +1,4 @@
-// Motions of a surface: bytes -> a mesh and where its vertices go.
+// Reads the motion of a surface: a mesh and its vertices' displacements over time.
 #ifndef PHRENIC_SERVER_MESHIO_MOTION_H_
 #define PHRENIC_SERVER_MESHIO_MOTION_H_
 
@@ -11,16 +11,16 @@
 namespace phrenic::meshio {
 
 struct Motion {
-  Mesh mesh;                          // as the file's nodes have it [m]
-  std::vector<double> times;          // [s], each later than the one before
-  std::vector<Points> displacements;  // one a time: of each vertex from `mesh` [m]
+  Mesh mesh;                          // at the node coordinates of the file [m]
+  std::vector<double> times;          // [s], strictly increasing
+  std::vector<Points> displacements;  // per time: displacement of each vertex from `mesh` (3 x n) [m]
 
   bool moves() const { return times.size() > 1; }
 };
 
-// Parses a surface as Parse in meshio.h does; of a .msh the time steps of the $NodeData view "displacement" as well, as
-// server/record/README.md has them. Files without such a view give a motion of no times. Every step has a row for each
-// node. Errors are INVALID_ARGUMENT "name:line: what is wrong and what to do".
+// Parses a surface like Parse in meshio.h; in a .msh also the time steps of the $NodeData view "displacement" (see
+// server/record/README.md). Without such a view the motion has no times. INVALID_ARGUMENT "name:line: problem and
+// remedy", also if a step lacks a row for a node or the view is in another version than MSH 2.2 text.
 absl::StatusOr<Motion> ParseMotion(std::string_view name, std::string_view bytes, double unit);
 
 }  // namespace phrenic::meshio

@@ -1,5 +1,5 @@
-// Gmsh's MSH format 2.2 in text (Gmsh reference manual, "MSH file format version 2 (Legacy)"), and which of the other
-// versions a file has.
+// Gmsh's MSH format, version 2 text (Gmsh reference manual, "MSH file format version 2 (Legacy)"). Detects the version
+// and passes binary files and version 4.1 on to msh_blocks.cc.
 #include <algorithm>
 #include <cstdint>
 
@@ -11,7 +11,7 @@
 namespace phrenic::meshio {
 namespace {
 
-constexpr double kBlocks = 4.1;  // the version
+constexpr double kVersion4 = 4.1;  // the version that stores blocks of nodes and elements
 
 class MshParser {
  public:
@@ -20,17 +20,17 @@ class MshParser {
   absl::StatusOr<Surface> Parse() {
     while (reader_.NextFilledLine()) {
       if (absl::Status status = ReadSection(std::string(reader_.Word())); !status.ok()) return status;
-      if (version_.binary || version_.version == kBlocks) {
+      if (version_.binary || version_.version == kVersion4) {
         return ParseMshBlocks(name_, bytes_, reader_.next_line(), version_);
       }
     }
     if (version_.version == 0) return reader_.Error("the file has no $MeshFormat; is this a Gmsh file?");
-    if (absl::Status status = found_.Check(); !status.ok()) return Here(status);
-    return Surface{found_.ToMesh(), Frame::kUnsaid};
+    if (absl::Status status = surface_.Check(); !status.ok()) return WithLine(status);
+    return Surface{surface_.ToMesh(), Frame::kUnspecified};
   }
 
  private:
-  absl::Status Here(const absl::Status& status) const {
+  absl::Status WithLine(const absl::Status& status) const {
     return status.ok() ? status : reader_.Error(std::string(status.message()));
   }
 
@@ -43,7 +43,7 @@ class MshParser {
     if (section == "$PhysicalNames") return ReadList("$EndPhysicalNames", &MshParser::ReadPhysicalName);
     if (section == "$Nodes") return ReadList("$EndNodes", &MshParser::ReadNode);
     if (section == "$Elements") return ReadList("$EndElements", &MshParser::ReadElement);
-    return PassOver("$End" + section.substr(1));
+    return SkipTo("$End" + section.substr(1));
   }
 
   absl::Status ReadFormat() {
@@ -53,7 +53,7 @@ class MshParser {
     if (!reader_.NextFilledLine() || !reader_.Number(version.version) || !reader_.Integer(binary)) {
       return reader_.Error("$MeshFormat is not followed by \"2.2 0 8\" or \"4.1 0 8\"");
     }
-    if ((version.version < 2 || version.version >= 3) && version.version != kBlocks) {
+    if ((version.version < 2 || version.version >= 3) && version.version != kVersion4) {
       return reader_.Error(absl::StrCat("MSH version ", version.version, " is not read, only 2.0 to 2.2 and 4.1; ",
                                         "convert it with: gmsh FILE -save -format msh22 -o NEW.msh"));
     }
@@ -62,17 +62,17 @@ class MshParser {
       return reader_.Error("the file's numbers are not of 8 bytes; convert it with: gmsh FILE -save -o NEW.msh");
     }
     version_ = version;
-    return version_.binary || version_.version == kBlocks ? absl::OkStatus() : PassOver("$EndMeshFormat");
+    return version_.binary || version_.version == kVersion4 ? absl::OkStatus() : SkipTo("$EndMeshFormat");
   }
 
-  absl::Status PassOver(const std::string& end) {
+  absl::Status SkipTo(const std::string& end) {
     while (reader_.NextLine()) {
       if (reader_.Rest() == end) return absl::OkStatus();
     }
     return reader_.Error(absl::StrCat("the file ends before ", end));
   }
 
-  // The claimed count is only compared with what is there: nothing is allocated by it.
+  // Reads the rows of a section. The claimed count is only compared with the actual one, never allocated.
   absl::Status ReadList(const char* end, absl::Status (MshParser::*read_row)()) {
     std::int64_t claimed = 0;
     if (!reader_.NextFilledLine() || !reader_.Integer(claimed)) return reader_.Error("the section's count is missing");
@@ -88,7 +88,7 @@ class MshParser {
     return reader_.Error(absl::StrCat("the file ends before ", end, ", after ", rows, " of ", claimed, " rows"));
   }
 
-  absl::Status ReadPhysicalName() { return Here(found_.AddPhysicalName(reader_.Rest())); }
+  absl::Status ReadPhysicalName() { return WithLine(surface_.AddPhysicalName(reader_.Rest())); }
 
   absl::Status ReadNode() {
     std::int64_t number = 0;
@@ -96,7 +96,7 @@ class MshParser {
     if (!reader_.Integer(number) || !reader_.Number(x) || !reader_.Number(y) || !reader_.Number(z)) {
       return reader_.Error("a node is written: number x y z, all of them finite");
     }
-    return Here(found_.AddNode(number, x, y, z));
+    return WithLine(surface_.AddNode(number, x, y, z));
   }
 
   absl::Status ReadElement() {
@@ -109,23 +109,24 @@ class MshParser {
       if (!reader_.Integer(value)) return reader_.Error("a tag of the element is missing or not a whole number");
       if (tag == 0) physical = value;
     }
-    nodes_.resize(MshIsRead(type) ? static_cast<std::size_t>(MshNodesOf(type)) : 0);
+    nodes_.resize(MshIsSupported(type) ? static_cast<std::size_t>(MshNodesOf(type)) : 0);
     for (std::int64_t& node : nodes_) {
       if (!reader_.Integer(node)) {
         return reader_.Error(absl::StrCat("the element needs ", nodes_.size(), " node numbers"));
       }
     }
-    return Here(found_.AddElement(type, nodes_, physical));
+    return WithLine(surface_.AddElement(type, nodes_, physical));
   }
 
   std::string_view name_, bytes_;
   TextReader reader_;
   MshVersion version_;  // 0 until $MeshFormat is read
-  MshSurface found_;
+  MshSurface surface_;
   std::vector<std::int64_t> nodes_;
 };
 
-// The region that each triangle is written with: its number from 1, by name; 0 for none.
+// Returns the physical group of each triangle: the number, from 1, of the first region by name that holds its three
+// vertices; 0 for none.
 std::vector<int> RegionOfTriangles(const Mesh& mesh) {
   std::vector<int> region_of(static_cast<std::size_t>(mesh.triangles.cols()), 0);
   int number = 0;
@@ -157,7 +158,7 @@ void AppendPhysicalNames(std::string& text, const Mesh& mesh) {
 
 }  // namespace
 
-bool MshHasRows(std::string_view bytes) {
+bool MshIsVersion2Text(std::string_view bytes) {
   TextReader reader("", bytes);
   MshVersion version;
   std::int64_t binary = 0;

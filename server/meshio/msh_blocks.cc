@@ -1,4 +1,4 @@
-// MSH files whose nodes and elements come in blocks: version 2 in binary, and 4.1 in text and in binary (Gmsh reference
+// MSH files that store nodes and elements in blocks: version 2 binary, and version 4.1 text and binary (Gmsh reference
 // manual, "MSH file format" and "MSH file format version 2 (Legacy)").
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@ namespace phrenic::meshio {
 namespace {
 
 constexpr int kSurfaceDimension = 2;
-constexpr int kBox = 6;  // least and greatest x, y, z of an entity
+constexpr int kBox = 6;  // numbers of an entity's bounding box
 
 class BlockParser {
  public:
@@ -27,12 +27,12 @@ class BlockParser {
     for (std::string section = values_.Word(); !section.empty(); section = values_.Word()) {
       if (absl::Status status = ReadSection(section); !status.ok()) return status;
     }
-    if (absl::Status status = found_.Check(); !status.ok()) return Here(status);
-    return Surface{found_.ToMesh(), Frame::kUnsaid};
+    if (absl::Status status = surface_.Check(); !status.ok()) return WithPosition(status);
+    return Surface{surface_.ToMesh(), Frame::kUnspecified};
   }
 
  private:
-  absl::Status Here(const absl::Status& status) const {
+  absl::Status WithPosition(const absl::Status& status) const {
     return status.ok() ? status : values_.Error(std::string(status.message()));
   }
 
@@ -51,39 +51,39 @@ class BlockParser {
     } else if (section == "$Elements") {
       status = version_.version < 3 ? ReadElements2() : ReadElements4();
     } else {
-      return values_.PassOver(end) ? absl::OkStatus() : values_.Error(absl::StrCat("the file ends before ", end));
+      return values_.SkipPast(end) ? absl::OkStatus() : values_.Error(absl::StrCat("the file ends before ", end));
     }
     if (!status.ok()) return status;
     if (values_.Expect(end)) return absl::OkStatus();
     return values_.Error(
-        absl::StrCat(end, " is expected here: the section has more rows than it says, or was cut off"));
+        absl::StrCat(end, " is expected here: the section has more rows than it declares, or is truncated"));
   }
 
-  absl::Status Short(const char* what) const {
-    return values_.Error(absl::StrCat(what, " is missing or not a number: was the file cut off?"));
+  absl::Status Missing(const char* what) const {
+    return values_.Error(absl::StrCat(what, " is missing or not a number: is the file truncated?"));
   }
 
   absl::Status ReadPhysicalNames() {
     std::int64_t count = 0;
-    if (!values_.TextInteger(count)) return Short("the count of physical names");
+    if (!values_.TextInteger(count)) return Missing("the count of physical names");
     for (std::int64_t i = 0; i < count; ++i) {
       const std::string_view line = values_.Line();
-      if (line.empty()) return Short("a physical name");
-      if (absl::Status status = found_.AddPhysicalName(line); !status.ok()) return Here(status);
+      if (line.empty()) return Missing("a physical name");
+      if (absl::Status status = surface_.AddPhysicalName(line); !status.ok()) return WithPosition(status);
     }
     return absl::OkStatus();
   }
 
-  // Of points, curves, surfaces and volumes only the surfaces' physical tags matter.
+  // Reads points, curves, surfaces and volumes; keeps only the physical tags of surfaces.
   absl::Status ReadEntities() {
     std::int64_t counts[4] = {};
-    if (!values_.StartBlock()) return Short("the number of entities");
+    if (!values_.StartBlock()) return Missing("the number of entities");
     for (std::int64_t& count : counts) {
-      if (!values_.Size(count)) return Short("the number of entities");
+      if (!values_.Size(count)) return Missing("the number of entities");
     }
     for (int dimension = 0; dimension < 4; ++dimension) {
       for (std::int64_t i = 0; i < counts[dimension]; ++i) {
-        if (!ReadEntity(dimension)) return Short("a number of an entity");
+        if (!ReadEntity(dimension)) return Missing("a number of an entity");
       }
     }
     return absl::OkStatus();
@@ -99,7 +99,7 @@ class BlockParser {
     if (!values_.Size(count)) return false;
     for (std::int64_t i = 0; i < count; ++i) {
       if (!values_.Int(physical)) return false;
-      // Negative where the entity is turned round in the group.
+      // Negative if the entity has reversed orientation in the group.
       if (dimension == kSurfaceDimension && i == 0) physical_of_[tag] = std::abs(std::max(physical, -INT64_MAX));
     }
     if (dimension == 0) return true;
@@ -113,20 +113,20 @@ class BlockParser {
   absl::Status AddNode(std::int64_t number, int parameters) {
     double at[3] = {}, parameter = 0;
     for (double& coordinate : at) {
-      if (!values_.Double(coordinate)) return Short("a node's coordinate");
+      if (!values_.Double(coordinate)) return Missing("a node's coordinate");
       if (!std::isfinite(coordinate)) return values_.Error(absl::StrCat("node ", number, " is not at finite numbers"));
     }
     for (int i = 0; i < parameters; ++i) {
-      if (!values_.Double(parameter)) return Short("a node's parameter");
+      if (!values_.Double(parameter)) return Missing("a node's parameter");
     }
-    return Here(found_.AddNode(number, at[0], at[1], at[2]));
+    return WithPosition(surface_.AddNode(number, at[0], at[1], at[2]));
   }
 
   absl::Status ReadNodes2() {
     std::int64_t count = 0, number = 0;
-    if (!values_.TextInteger(count) || !values_.StartBlock()) return Short("the count of nodes");
+    if (!values_.TextInteger(count) || !values_.StartBlock()) return Missing("the count of nodes");
     for (std::int64_t i = 0; i < count; ++i) {
-      if (!values_.Int(number)) return Short("a node's number");
+      if (!values_.Int(number)) return Missing("a node's number");
       if (absl::Status status = AddNode(number, 0); !status.ok()) return status;
     }
     return absl::OkStatus();
@@ -134,14 +134,14 @@ class BlockParser {
 
   absl::Status ReadElements2() {
     std::int64_t count = 0;
-    if (!values_.TextInteger(count) || !values_.StartBlock()) return Short("the count of elements");
+    if (!values_.TextInteger(count) || !values_.StartBlock()) return Missing("the count of elements");
     while (count > 0) {
       std::int64_t type = 0, rows = 0, tags = 0;
       if (!values_.Int(type) || !values_.Int(rows) || !values_.Int(tags))
-        return Short("the head of a block of elements");
+        return Missing("the head of a block of elements");
       if (rows < 1 || rows > count || tags < 0 || tags > kMaxTags) {
-        return values_.Error(
-            absl::StrCat("a block says ", rows, " elements with ", tags, " tags, of ", count, " left"));
+        return values_.Error(absl::StrCat("a block declares ", rows, " elements with ", tags, " tags, but ", count,
+                                          " elements are left"));
       }
       count -= rows;
       for (; rows > 0; --rows) {
@@ -151,46 +151,46 @@ class BlockParser {
     return absl::OkStatus();
   }
 
-  // `tags` of version 2, of which the first is the physical one.
+  // `tags` is the number of tags in version 2, the first of which replaces `physical`.
   absl::Status ReadElement(std::int64_t type, std::int64_t tags, std::int64_t physical) {
     std::int64_t number = 0;
-    if (!Index(number)) return Short("an element's number");
+    if (!Index(number)) return Missing("an element's number");
     for (std::int64_t i = 0, tag = 0; i < tags; ++i) {
-      if (!values_.Int(tag)) return Short("a tag of an element");
+      if (!values_.Int(tag)) return Missing("a tag of an element");
       if (i == 0) physical = tag;
     }
     nodes_.resize(static_cast<std::size_t>(MshNodesOf(type)));
     if (nodes_.empty()) return values_.Error(absl::StrCat("there is no type ", type, " of elements"));
     for (std::int64_t& node : nodes_) {
-      if (!Index(node)) return Short("a node of an element");
+      if (!Index(node)) return Missing("a node of an element");
     }
-    return Here(found_.AddElement(type, nodes_, physical));
+    return WithPosition(surface_.AddElement(type, nodes_, physical));
   }
 
-  // Four bytes in version 2, eight in version 4.
+  // Reads a node or element number: 4 bytes in version 2, 8 in version 4.
   bool Index(std::int64_t& index) { return version_.version < 3 ? values_.Int(index) : values_.Size(index); }
 
-  absl::Status ReadSums(std::int64_t& blocks, const char* what) {
+  absl::Status ReadBlockCount(std::int64_t& blocks, const char* what) {
     std::int64_t rows = 0, least = 0, most = 0;
     if (values_.StartBlock() && values_.Size(blocks) && values_.Size(rows) && values_.Size(least) &&
         values_.Size(most)) {
       return absl::OkStatus();
     }
-    return Short(what);
+    return Missing(what);
   }
 
   absl::Status ReadNodes4() {
     std::int64_t blocks = 0;
-    if (absl::Status status = ReadSums(blocks, "the count of nodes"); !status.ok()) return status;
+    if (absl::Status status = ReadBlockCount(blocks, "the count of nodes"); !status.ok()) return status;
     for (; blocks > 0; --blocks) {
       std::int64_t dimension = 0, tag = 0, parametric = 0, rows = 0, number = 0;
       if (!values_.Int(dimension) || !values_.Int(tag) || !values_.Int(parametric) || !values_.Size(rows)) {
-        return Short("the head of a block of nodes");
+        return Missing("the head of a block of nodes");
       }
       if (dimension < 0 || dimension > 3) return values_.Error(absl::StrCat("there is no dimension ", dimension));
       nodes_.clear();
       for (std::int64_t i = 0; i < rows; ++i) {
-        if (!values_.Size(number)) return Short("a node's number");
+        if (!values_.Size(number)) return Missing("a node's number");
         nodes_.push_back(number);
       }
       for (const std::int64_t node : nodes_) {
@@ -203,11 +203,11 @@ class BlockParser {
 
   absl::Status ReadElements4() {
     std::int64_t blocks = 0;
-    if (absl::Status status = ReadSums(blocks, "the count of elements"); !status.ok()) return status;
+    if (absl::Status status = ReadBlockCount(blocks, "the count of elements"); !status.ok()) return status;
     for (; blocks > 0; --blocks) {
       std::int64_t dimension = 0, entity = 0, type = 0, rows = 0;
       if (!values_.Int(dimension) || !values_.Int(entity) || !values_.Int(type) || !values_.Size(rows)) {
-        return Short("the head of a block of elements");
+        return Missing("the head of a block of elements");
       }
       const auto physical = physical_of_.find(entity);
       const bool named = dimension == kSurfaceDimension && physical != physical_of_.end();
@@ -220,9 +220,9 @@ class BlockParser {
 
   MshValues values_;
   const MshVersion version_;
-  MshSurface found_;
+  MshSurface surface_;
   std::vector<std::int64_t> nodes_;
-  std::map<std::int64_t, std::int64_t> physical_of_;  // surface -> its physical group
+  std::map<std::int64_t, std::int64_t> physical_of_;  // surface entity -> physical group
 };
 
 }  // namespace

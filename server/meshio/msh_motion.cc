@@ -1,4 +1,4 @@
-// The $NodeData sections of Gmsh's MSH format 2.2 in text (Gmsh reference manual, "MSH file format version 2
+// $NodeData sections of Gmsh's MSH format, version 2 text (Gmsh reference manual, "MSH file format version 2
 // (Legacy)").
 #include <cstdint>
 #include <unordered_map>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr char kView[] = "\"displacement\"";
 
-// Reads bytes that Parse has accepted: the mesh's own sections are as they should be.
+// Reads the time steps of a file. Requires: Parse has accepted the file, so the mesh's sections are valid.
 class StepReader {
  public:
   StepReader(std::string_view name, std::string_view bytes, double unit, Motion& motion)
@@ -32,7 +32,7 @@ class StepReader {
       } else if (section == "$NodeData") {
         status = ReadStep();
       } else {
-        PassOver("$End" + section.substr(1));
+        SkipTo("$End" + section.substr(1));
       }
       if (!status.ok()) return status;
     }
@@ -40,7 +40,7 @@ class StepReader {
   }
 
  private:
-  void PassOver(const std::string& end) {
+  void SkipTo(const std::string& end) {
     while (reader_.NextLine() && reader_.Rest() != end) continue;
   }
 
@@ -54,15 +54,15 @@ class StepReader {
     return absl::OkStatus();
   }
 
-  // A count and so many lines, of which the first few are kept.
-  absl::Status ReadTags(const char* what, std::vector<std::string>& first) {
+  // Reads a count and that many lines.
+  absl::Status ReadTags(const char* what, std::vector<std::string>& tags) {
     std::int64_t count = 0;
     if (!reader_.NextFilledLine() || !reader_.Integer(count) || count < 0 || count > kMaxTags) {
       return reader_.Error(absl::StrCat("the number of the view's ", what, " is missing"));
     }
     for (std::int64_t i = 0; i < count; ++i) {
       if (!reader_.NextFilledLine()) return reader_.Error(absl::StrCat("a ", what, " of the view is missing"));
-      first.emplace_back(reader_.Rest());
+      tags.emplace_back(reader_.Rest());
     }
     return absl::OkStatus();
   }
@@ -71,7 +71,7 @@ class StepReader {
     std::vector<std::string> texts, reals, integers;
     if (absl::Status status = ReadTags("text tags", texts); !status.ok()) return status;
     if (texts.empty() || texts[0] != kView) {
-      PassOver("$EndNodeData");
+      SkipTo("$EndNodeData");
       return absl::OkStatus();
     }
     if (absl::Status status = ReadTags("real tags", reals); !status.ok()) return status;
@@ -112,15 +112,17 @@ class StepReader {
       }
       const auto found = index_of_.find(number);
       if (found == index_of_.end()) return reader_.Error(absl::StrCat("there is no node ", number, " before this"));
-      if (seen[static_cast<std::size_t>(found->second)]) return reader_.Error(absl::StrCat("node ", number, " twice"));
+      if (seen[static_cast<std::size_t>(found->second)])
+        return reader_.Error(absl::StrCat("node ", number, " is there twice"));
       seen[static_cast<std::size_t>(found->second)] = true;
       displacement.col(found->second) = unit_ * u;
       ++rows;
     }
     if (rows != vertices) {
-      return reader_.Error(absl::StrCat("the step has rows for ", rows, " of ", vertices, " nodes; it needs them all"));
+      return reader_.Error(
+          absl::StrCat("the step has rows for ", rows, " of ", vertices, " nodes; it must have one for each"));
     }
-    if (!displacement.allFinite()) return reader_.Error("a displacement is too large to be a number");
+    if (!displacement.allFinite()) return reader_.Error("a displacement in metres is not finite");
     motion_.displacements.push_back(std::move(displacement));
     return absl::OkStatus();
   }
@@ -138,11 +140,11 @@ absl::StatusOr<Motion> ParseMotion(std::string_view name, std::string_view bytes
   if (!mesh.ok()) return mesh.status();
   Motion motion{*std::move(mesh), {}, {}};
   if (!absl::EndsWith(absl::AsciiStrToLower(std::string(name)), ".msh")) return motion;
-  if (!MshHasRows(bytes)) {
+  if (!MshIsVersion2Text(bytes)) {
     if (bytes.find(kView) == std::string_view::npos) return motion;
     return absl::InvalidArgumentError(
         absl::StrCat(std::string(name), ":1: the steps of the view ", kView,
-                     " are read from MSH 2.2 in text alone; save the views in that form"));
+                     " are only read from MSH 2.2 in text; save the views in that format"));
   }
   if (absl::Status status = StepReader(name, bytes, unit, motion).Read(); !status.ok()) return status;
   return motion;

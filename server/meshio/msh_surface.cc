@@ -9,31 +9,31 @@
 namespace phrenic::meshio {
 namespace {
 
-// By type, from 1: Gmsh reference manual, "MSH file format".
+// Nodes by element type (Gmsh reference manual, "MSH file format").
 constexpr std::array<int, 32> kNodes = {0, 2,  3,  4,  4, 8,  6,  5,  3,  6,  9, 10, 27, 18, 14, 1,
                                         8, 20, 15, 13, 9, 10, 12, 15, 15, 21, 4, 5,  6,  20, 35, 56};
 
 }  // namespace
 
 int MshNodesOf(std::int64_t type) {
-  if (type == 92) return 64;   // hexahedron of third order
-  if (type == 93) return 125;  // and of fourth
+  if (type == 92) return 64;   // third-order hexahedron
+  if (type == 93) return 125;  // fourth-order hexahedron
   return type > 0 && type < static_cast<std::int64_t>(kNodes.size()) ? kNodes[static_cast<std::size_t>(type)] : 0;
 }
 
-bool MshIsRead(std::int64_t type) { return type == kMshLine || type == kMshTriangle || type == kMshQuadrilateral; }
+bool MshIsSupported(std::int64_t type) { return type == kMshLine || type == kMshTriangle || type == kMshQuadrilateral; }
 
 absl::Status MshSurface::AddNode(std::int64_t number, double x, double y, double z) {
-  if (!index_of_.emplace(number, found_.vertices()).second) {
+  if (!index_of_.emplace(number, builder_.vertices()).second) {
     return absl::InvalidArgumentError(absl::StrCat("node ", number, " is there twice"));
   }
-  found_.coordinates.insert(found_.coordinates.end(), {x, y, z});
+  builder_.coordinates.insert(builder_.coordinates.end(), {x, y, z});
   return absl::OkStatus();
 }
 
 absl::Status MshSurface::AddElement(std::int64_t type, const std::vector<std::int64_t>& nodes, std::int64_t physical) {
-  if (!MshIsRead(type)) {
-    ++passed_over_;
+  if (!MshIsSupported(type)) {
+    ++ignored_;
     return absl::OkStatus();
   }
   corners_.clear();
@@ -41,13 +41,13 @@ absl::Status MshSurface::AddElement(std::int64_t type, const std::vector<std::in
     const auto found = index_of_.find(node);
     if (found == index_of_.end()) {
       return absl::InvalidArgumentError(absl::StrCat("the element names node ", node, ", which is not among the ",
-                                                     found_.vertices(), " of $Nodes before it"));
+                                                     builder_.vertices(), " of $Nodes before it"));
     }
     corners_.push_back(found->second);
   }
-  if (corners_.size() == 2) found_.lines.insert(found_.lines.end(), corners_.begin(), corners_.end());
-  found_.AddPolygon(corners_);
-  physical_of_triangle_.resize(found_.triangles.size() / 3, physical);
+  if (corners_.size() == 2) builder_.lines.insert(builder_.lines.end(), corners_.begin(), corners_.end());
+  builder_.AddPolygon(corners_);
+  physical_of_triangle_.resize(builder_.triangles.size() / 3, physical);
   return absl::OkStatus();
 }
 
@@ -66,21 +66,21 @@ absl::Status MshSurface::AddPhysicalName(std::string_view line) {
 }
 
 absl::Status MshSurface::Check() const {
-  if (found_.coordinates.empty()) return absl::InvalidArgumentError("the file has no nodes");
-  if (!found_.triangles.empty() || !found_.lines.empty()) return absl::OkStatus();
-  return absl::InvalidArgumentError(absl::StrCat(
-      "the file has no triangles, quadrilaterals or lines of first order", passed_over_ > 0 ? ", only " : "",
-      passed_over_ > 0 ? absl::StrCat(passed_over_, " elements of other types") : "",
-      "; make the surface with: gmsh FILE -2 -order 1 -format msh22 -o NEW.msh"));
+  if (builder_.coordinates.empty()) return absl::InvalidArgumentError("the file has no nodes");
+  if (!builder_.triangles.empty() || !builder_.lines.empty()) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrCat("the file has no first-order triangles, quadrilaterals or lines", ignored_ > 0 ? ", only " : "",
+                   ignored_ > 0 ? absl::StrCat(ignored_, " elements of other types") : "",
+                   "; generate the surface with: gmsh FILE -2 -order 1 -format msh22 -o NEW.msh"));
 }
 
 Mesh MshSurface::ToMesh() const {
-  Mesh mesh = found_.ToMesh();
+  Mesh mesh = builder_.ToMesh();
   for (std::size_t triangle = 0; triangle < physical_of_triangle_.size(); ++triangle) {
     const auto name = surface_names_.find(physical_of_triangle_[triangle]);
     if (name == surface_names_.end()) continue;
     std::vector<int>& region = mesh.regions[name->second];
-    const auto corners = found_.triangles.begin() + static_cast<std::ptrdiff_t>(3 * triangle);
+    const auto corners = builder_.triangles.begin() + static_cast<std::ptrdiff_t>(3 * triangle);
     region.insert(region.end(), corners, corners + 3);
   }
   for (auto& [name, region] : mesh.regions) {

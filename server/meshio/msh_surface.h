@@ -1,4 +1,4 @@
-// What the sections of an MSH file, of whichever version, say of a surface.
+// The contents of an MSH file of any version: collects nodes, elements and physical groups into a surface.
 #ifndef PHRENIC_SERVER_MESHIO_MSH_SURFACE_H_
 #define PHRENIC_SERVER_MESHIO_MSH_SURFACE_H_
 
@@ -14,14 +14,14 @@
 
 namespace phrenic::meshio {
 
-// Gmsh's types of elements.
+// Gmsh's element types.
 inline constexpr std::int64_t kMshLine = 1, kMshTriangle = 2, kMshQuadrilateral = 3;
-inline constexpr std::int64_t kMaxTags = 1000;  // of an element or a block of data: more is no file
+inline constexpr std::int64_t kMaxTags = 1000;  // of an element or a view; more means a corrupt file
 
-// How many nodes an element of the type has; 0 for a type that Gmsh's manual does not have.
+// Returns the number of nodes of an element type; 0 if Gmsh's manual does not list the type.
 int MshNodesOf(std::int64_t type);
-// Whether elements of the type are read: lines, triangles and quadrilaterals of first order.
-bool MshIsRead(std::int64_t type);
+// True for the element types that are read: first-order lines, triangles and quadrilaterals.
+bool MshIsSupported(std::int64_t type);
 
 // The line "2.2 0 8" of $MeshFormat.
 struct MshVersion {
@@ -29,32 +29,32 @@ struct MshVersion {
   bool binary = false;
 };
 
+// Errors are INVALID_ARGUMENT with the sentence alone; the parser adds the position. Not thread-safe.
 class MshSurface {
  public:
-  // Statuses have the sentence alone, for the reader to say where.
   absl::Status AddNode(std::int64_t number, double x, double y, double z);
-  // An element of MshNodesOf(type) nodes; passed over where MshIsRead(type) says so.
+  // Adds an element of MshNodesOf(type) nodes; ignores it unless MshIsSupported(type).
   absl::Status AddElement(std::int64_t type, const std::vector<std::int64_t>& nodes, std::int64_t physical);
-  // A line of $PhysicalNames: dimension number "name".
+  // Adds a line of $PhysicalNames: dimension number "name".
   absl::Status AddPhysicalName(std::string_view line);
-  // Whether there is a surface or a network; the sentence says what is missing.
+  // OK if there are triangles or lines; the error says what is missing.
   absl::Status Check() const;
   Mesh ToMesh() const;
 
  private:
-  Collected found_;
-  std::int64_t passed_over_ = 0;
+  SurfaceBuilder builder_;
+  std::int64_t ignored_ = 0;  // elements of other types
   std::vector<int> corners_;
-  std::unordered_map<std::int64_t, int> index_of_;  // node number -> vertex
-  std::map<std::int64_t, std::string> surface_names_;
+  std::unordered_map<std::int64_t, int> index_of_;     // node number -> vertex
+  std::map<std::int64_t, std::string> surface_names_;  // physical group -> name
   std::vector<std::int64_t> physical_of_triangle_;
 };
 
-// Whether the file, which ParseMsh has accepted, is of version 2 in text: a node and an element a line.
-bool MshHasRows(std::string_view bytes);
+// True if the file is version 2 text, with one node or element per line. Requires: ParseMsh has accepted the file.
+bool MshIsVersion2Text(std::string_view bytes);
 
-// Reads a file of version 2 in binary, or of 4.1, after its line of $MeshFormat, which ends before byte `at`.
-// INVALID_ARGUMENT "name:line: ..." or "name:byte N: ...".
+// Parses a file of version 2 binary or version 4.1 from byte `at`, the start of the line after "2.2 1 8" or "4.1 0 8".
+// INVALID_ARGUMENT "name:line: ..." in text, "name:byte N: ..." in binary.
 absl::StatusOr<Surface> ParseMshBlocks(std::string_view name, std::string_view bytes, std::size_t at,
                                        const MshVersion& version);
 

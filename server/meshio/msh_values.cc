@@ -48,7 +48,7 @@ bool MshValues::StartBlock() {
   return true;
 }
 
-bool MshValues::PassOver(const std::string& end) {
+bool MshValues::SkipPast(const std::string& end) {
   const std::size_t found = bytes_.find("\n" + end, at_);
   if (found == std::string_view::npos) return false;
   at_ = found + 1 + end.size();

@@ -1,4 +1,4 @@
-// The numbers of an MSH file in blocks, one after the other, whether they stand in text or in binary.
+// A cursor over the numbers of a block-structured MSH file, text or binary.
 #ifndef PHRENIC_SERVER_MESHIO_MSH_VALUES_H_
 #define PHRENIC_SERVER_MESHIO_MSH_VALUES_H_
 
@@ -12,32 +12,33 @@
 
 namespace phrenic::meshio {
 
-// Sections' names and counts of version 2 are words of text in either kind of file. Holds views into `bytes`. Every
-// bool is false where nothing more, or nothing fitting, is there.
+// Section names, and the counts of version 2, are text in binary files too. Methods that return bool return false at
+// the end of the file or if the data does not fit. Holds views into `name` and `bytes`, which must outlive it. Not
+// thread-safe.
 class MshValues {
  public:
   MshValues(std::string_view name, std::string_view bytes, std::size_t at, bool binary);
 
-  // The number 1 after $MeshFormat's line, by which a binary file tells its byte order.
+  // Reads the int32 1 after the version line, from which the endianness of a binary file follows.
   bool TakeByteOrder();
 
-  // The next word of text, over ends of lines; empty at the file's end.
+  // Returns the next whitespace-separated word, also from later lines; empty at the end of the file.
   std::string Word();
   bool Expect(std::string_view word) { return Word() == word; }
   bool TextInteger(std::int64_t& integer) { return ParseInteger(Word(), integer); }
-  // What is left of the line, or the next line that has a word, without surrounding blanks.
+  // Returns the rest of the line, or the next non-blank line, without surrounding blanks.
   std::string_view Line();
-  // In a binary file the numbers after a word start on the next line, and there is nothing but blanks before it.
+  // Moves to the start of binary data on the next line; the rest of the present line must be blank. No-op in text.
   bool StartBlock();
-  // Goes to the line after the one that is `end`.
-  bool PassOver(const std::string& end);
+  // Moves past the next line that starts with `end`.
+  bool SkipPast(const std::string& end);
 
-  // Four bytes, eight bytes, and eight bytes of a float64; words in text.
+  // Read an int32, an int64 and a float64 in binary; a word in text.
   bool Int(std::int64_t& integer) { return binary_ ? TakeAs<std::int32_t>(integer) : TextInteger(integer); }
   bool Size(std::int64_t& integer) { return binary_ ? TakeAs<std::int64_t>(integer) : TextInteger(integer); }
   bool Double(double& number) { return binary_ ? TakeAs<double>(number) : ParseNumber(Word(), number); }
 
-  // INVALID_ARGUMENT "name:line: message", or "name:byte N: message" of a binary file.
+  // Returns INVALID_ARGUMENT "name:line: message" for text, "name:byte N: message" for binary.
   absl::Status Error(const std::string& message) const;
 
  private:
@@ -53,7 +54,7 @@ class MshValues {
 
   std::string_view name_, bytes_;
   std::size_t at_;
-  std::size_t word_ = 0;  // where the last word starts
+  std::size_t word_ = 0;  // start of the last word
   bool binary_;
   std::endian order_ = std::endian::little;
 };

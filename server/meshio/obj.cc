@@ -1,4 +1,4 @@
-// Wavefront OBJ, the polygonal part of the format (Wavefront, "Object Files", appendix B1).
+// Wavefront OBJ, polygonal geometry only (Wavefront, "Object Files (.obj)", appendix B1).
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -10,8 +10,8 @@
 namespace phrenic::meshio {
 namespace {
 
-// Statements that say nothing about the shape.
-constexpr std::array<std::string_view, 17> kPassedOver = {
+// Statements that do not affect the geometry.
+constexpr std::array<std::string_view, 17> kIgnored = {
     "vt", "vn",    "vp",       "g",        "o",   "s",      "mg",     "usemtl",    "mtllib",
     "p",  "bevel", "c_interp", "d_interp", "lod", "usemap", "maplib", "shadow_obj"};
 
@@ -21,25 +21,25 @@ class ObjParser {
 
   absl::StatusOr<Surface> Parse() {
     while (reader_.NextLine()) {
-      // A comment may end in a path's "\\" without going on.
+      // A comment may end in a path's backslash, which is not a continuation.
       if (reader_.Rest().substr(0, 1) != "#") reader_.JoinContinuedLine();
       if (absl::Status status = ReadStatement(reader_.Word()); !status.ok()) return status;
     }
-    if (absl::Status status = CheckWhole(); !status.ok()) return status;
-    return Surface{found_.ToMesh(), frame_};
+    if (absl::Status status = CheckComplete(); !status.ok()) return status;
+    return Surface{builder_.ToMesh(), frame_};
   }
 
  private:
   absl::Status ReadStatement(std::string_view keyword) {
     if (keyword.empty()) return absl::OkStatus();
     if (keyword[0] == '#') {
-      frame_ = FrameIn(keyword, FrameIn(reader_.Rest(), frame_));
+      frame_ = FrameFromText(keyword, FrameFromText(reader_.Rest(), frame_));
       return absl::OkStatus();
     }
     if (keyword == "v") return ReadVertex();
     if (keyword == "f") return ReadFace();
     if (keyword == "l") return ReadLine();
-    if (std::find(kPassedOver.begin(), kPassedOver.end(), keyword) != kPassedOver.end()) return absl::OkStatus();
+    if (std::find(kIgnored.begin(), kIgnored.end(), keyword) != kIgnored.end()) return absl::OkStatus();
     return reader_.Error(absl::StrCat("there is no OBJ statement ", Quoted(keyword),
                                       " for surfaces (v, f and l are read); is this an OBJ file?"));
   }
@@ -51,7 +51,7 @@ class ObjParser {
         return reader_.Error(
             absl::StrCat("the vertex's ", axis, " is missing or not a finite number; write \"v x y z\""));
       }
-      found_.coordinates.push_back(coordinate);
+      builder_.coordinates.push_back(coordinate);
     }
     return absl::OkStatus();
   }
@@ -61,7 +61,7 @@ class ObjParser {
     if (corners_.size() < 3) {
       return reader_.Error(absl::StrCat("a face needs at least 3 vertices, this one has ", corners_.size()));
     }
-    found_.AddPolygon(corners_);
+    builder_.AddPolygon(corners_);
     return absl::OkStatus();
   }
 
@@ -69,12 +69,12 @@ class ObjParser {
     if (absl::Status status = ReadCorners(); !status.ok()) return status;
     if (corners_.size() < 2) return reader_.Error("a line needs at least 2 vertices");
     for (std::size_t i = 1; i < corners_.size(); ++i) {
-      found_.lines.insert(found_.lines.end(), {corners_[i - 1], corners_[i]});
+      builder_.lines.insert(builder_.lines.end(), {corners_[i - 1], corners_[i]});
     }
     return absl::OkStatus();
   }
 
-  // The vertex indices of the statement, from 0: "7", "7/1", "7//2", "7/1/2" or "-1", the newest vertex.
+  // Reads the statement's vertex indices, from 0: "7", "7/1", "7//2", "7/1/2", or "-1" for the latest vertex.
   absl::Status ReadCorners() {
     corners_.clear();
     for (std::string_view word = reader_.Word(); !word.empty() && word[0] != '#'; word = reader_.Word()) {
@@ -82,11 +82,11 @@ class ObjParser {
       if (!ParseInteger(word.substr(0, word.find('/')), index) || index == 0 || index > INT32_MAX) {
         return reader_.Error(absl::StrCat(Quoted(word), " names no vertex; indices start at 1, or at -1 for the last"));
       }
-      if (index < 0 && -index > found_.vertices()) {
-        return reader_.Error(absl::StrCat("index ", index, " goes back past the first vertex; there are ",
-                                          found_.vertices(), " so far"));
+      if (index < 0 && -index > builder_.vertices()) {
+        return reader_.Error(
+            absl::StrCat("index ", index, " is before the first vertex; there are ", builder_.vertices(), " so far"));
       }
-      corners_.push_back(static_cast<int>(index < 0 ? found_.vertices() + index : index - 1));
+      corners_.push_back(static_cast<int>(index < 0 ? builder_.vertices() + index : index - 1));
       if (corners_.back() > largest_index_) {
         largest_index_ = corners_.back();
         line_of_largest_ = reader_.line();
@@ -95,24 +95,24 @@ class ObjParser {
     return absl::OkStatus();
   }
 
-  absl::Status CheckWhole() const {
-    if (found_.coordinates.empty()) return reader_.Error("the file has no vertices (\"v x y z\")");
-    if (found_.triangles.empty() && found_.lines.empty()) {
-      return reader_.Error(absl::StrCat("the file has ", found_.vertices(), " vertices but no faces (\"f 1 2 3\")"));
+  absl::Status CheckComplete() const {
+    if (builder_.coordinates.empty()) return reader_.Error("the file has no vertices (\"v x y z\")");
+    if (builder_.triangles.empty() && builder_.lines.empty()) {
+      return reader_.Error(absl::StrCat("the file has ", builder_.vertices(), " vertices but no faces (\"f 1 2 3\")"));
     }
-    if (largest_index_ >= found_.vertices()) {
+    if (largest_index_ >= builder_.vertices()) {
       return reader_.ErrorAt(line_of_largest_,
                              absl::StrCat("index ", std::int64_t{largest_index_} + 1,
-                                          " is past the last vertex; the file has ", found_.vertices()));
+                                          " is past the last vertex; the file has ", builder_.vertices()));
     }
     return absl::OkStatus();
   }
 
   TextReader reader_;
-  Collected found_;
-  Frame frame_ = Frame::kUnsaid;
+  SurfaceBuilder builder_;
+  Frame frame_ = Frame::kUnspecified;
   std::vector<int> corners_;
-  // A face may stand before its vertices, so that the indices are checked at the end.
+  // A face may precede its vertices, so indices are checked at the end.
   int largest_index_ = -1;
   int line_of_largest_ = 0;
 };

@@ -1,4 +1,4 @@
-// PLY, the polygon file format (G. Turk, "The PLY Polygon File Format", 1994), version 1.0.
+// PLY 1.0, the polygon file format (G. Turk, "The PLY Polygon File Format", 1994).
 #include <cmath>
 #include <cstdint>
 
@@ -13,24 +13,24 @@ namespace {
 
 class PlyParser {
  public:
-  PlyParser(std::string_view name, std::string_view bytes) : name_(name), bytes_(bytes), head_(name, bytes) {}
+  PlyParser(std::string_view name, std::string_view bytes) : name_(name), bytes_(bytes), header_reader_(name, bytes) {}
 
   absl::StatusOr<Surface> Parse() {
-    const absl::StatusOr<PlyHeader> header = ReadPlyHeader(head_);
+    const absl::StatusOr<PlyHeader> header = ReadPlyHeader(header_reader_);
     if (!header.ok()) return header.status();
     for (const PlyElement& element : header->elements) {
       if (element.name == "vertex") vertices_ = element.count;
     }
-    values_ = MakePlyValues(header->encoding, name_, bytes_, head_);
+    values_ = MakePlyValues(header->encoding, name_, bytes_, header_reader_);
     for (const PlyElement& element : header->elements) {
       if (absl::Status status = ReadElement(element); !status.ok()) return status;
     }
-    if (!values_->FileIsDone()) return values_->Error("the file goes on after the last row that its header tells of");
-    if (found_.triangles.empty() && found_.lines.empty()) {
-      return values_->Error(absl::StrCat("the file has ", found_.vertices(), " vertices but neither faces nor edges",
+    if (!values_->AtEnd()) return values_->Error("the file has data after the last row that its header declares");
+    if (builder_.triangles.empty() && builder_.lines.empty()) {
+      return values_->Error(absl::StrCat("the file has ", builder_.vertices(), " vertices but neither faces nor edges",
                                          strips_ ? "; triangle strips are not read: save it with faces" : ""));
     }
-    return Surface{found_.ToMesh(), header->frame};
+    return Surface{builder_.ToMesh(), header->frame};
   }
 
  private:
@@ -39,7 +39,7 @@ class PlyParser {
     for (std::int64_t row = 0; row < element.count; ++row) {
       if (!values_->NextRow()) {
         return values_->Error(absl::StrCat("the file ends after ", row, " of ", element.count, " rows of element ",
-                                           Quoted(element.name), ": it was cut off; fetch or export it again"));
+                                           Quoted(element.name), ": it is truncated; download or export it again"));
       }
       if (absl::Status status = ReadRow(element); !status.ok()) return status;
       if (absl::Status status = AddRow(element); !status.ok()) return status;
@@ -47,20 +47,20 @@ class PlyParser {
     return absl::OkStatus();
   }
 
-  // The row's single numbers go to row_, the list that makes a face to corners_.
+  // Reads a row: scalar properties into row_, the list of a face's vertices into corners_.
   absl::Status ReadRow(const PlyElement& element) {
     row_.assign(element.properties.size(), 0);
     corners_.clear();
     for (std::size_t i = 0; i < element.properties.size(); ++i) {
       const PlyProperty& property = element.properties[i];
-      if (!values_->Take(property.list ? property.count_type : property.type, row_[i])) return RowIsShort(element);
+      if (!values_->Take(property.list ? property.count_type : property.type, row_[i])) return RowTooShort(element);
       if (!property.list) continue;
       if (!(row_[i] >= 0) || row_[i] != std::floor(row_[i]))
-        return values_->Error("a list's length is no whole number");
+        return values_->Error("a list's length is not a whole number");
       const bool face = property.name == "vertex_indices" || property.name == "vertex_index";
       if (absl::Status status = ReadList(element, property, row_[i], face); !status.ok()) return status;
     }
-    if (values_->RowIsDone()) return absl::OkStatus();
+    if (values_->AtEndOfRow()) return absl::OkStatus();
     return values_->Error(
         absl::StrCat("the row has more numbers than element ", Quoted(element.name), " has properties"));
   }
@@ -68,16 +68,16 @@ class PlyParser {
   absl::Status ReadList(const PlyElement& element, const PlyProperty& property, double length, bool face) {
     for (double i = 0; i < length; ++i) {
       double number = 0;
-      if (!values_->Take(property.type, number)) return RowIsShort(element);
+      if (!values_->Take(property.type, number)) return RowTooShort(element);
       if (!face || element.name != "face") continue;
       if (absl::Status status = AddCorner(number); !status.ok()) return status;
     }
     return absl::OkStatus();
   }
 
-  absl::Status RowIsShort(const PlyElement& element) const {
+  absl::Status RowTooShort(const PlyElement& element) const {
     return values_->Error(absl::StrCat("the row of element ", Quoted(element.name),
-                                       " ends early: was the file cut off, or does the header not fit it?"));
+                                       " ends early: the file is truncated, or its header does not match"));
   }
 
   absl::Status AddCorner(double index) {
@@ -101,7 +101,7 @@ class PlyParser {
       if (!std::isfinite(coordinate)) {
         return values_->Error(absl::StrCat("the vertex's ", axis, " is not a finite number"));
       }
-      found_.coordinates.push_back(coordinate);
+      builder_.coordinates.push_back(coordinate);
     }
     return absl::OkStatus();
   }
@@ -113,25 +113,25 @@ class PlyParser {
     if (corners_.size() < 3) {
       return values_->Error(absl::StrCat("a face needs at least 3 vertices, this one has ", corners_.size()));
     }
-    found_.AddPolygon(corners_);
+    builder_.AddPolygon(corners_);
     return absl::OkStatus();
   }
 
   absl::Status AddEdge(const PlyElement& element) {
     for (const char* end : {"vertex1", "vertex2"}) {
-      const int place = element.Find(end);
-      if (place < 0) return values_->Error(absl::StrCat("the edges have no property \"", end, "\""));
-      if (absl::Status status = AddCorner(row_[static_cast<std::size_t>(place)]); !status.ok()) return status;
+      const int property = element.Find(end);
+      if (property < 0) return values_->Error(absl::StrCat("the edges have no property \"", end, "\""));
+      if (absl::Status status = AddCorner(row_[static_cast<std::size_t>(property)]); !status.ok()) return status;
     }
-    found_.lines.insert(found_.lines.end(), corners_.begin(), corners_.end());
+    builder_.lines.insert(builder_.lines.end(), corners_.begin(), corners_.end());
     return absl::OkStatus();
   }
 
   std::string_view name_, bytes_;
-  TextReader head_;
+  TextReader header_reader_;
   std::unique_ptr<PlyValues> values_;
-  std::int64_t vertices_ = 0;  // as the header claims
-  Collected found_;
+  std::int64_t vertices_ = 0;  // as the header declares
+  SurfaceBuilder builder_;
   std::vector<double> row_;
   std::vector<int> corners_;
   bool strips_ = false;

@@ -38,7 +38,7 @@ class HeaderReader {
     if (absl::Status status = ReadFormat(); !status.ok()) return status;
     while (reader_.NextLine()) {
       const std::string keyword(reader_.Word());
-      if (keyword == "end_header") return Checked();
+      if (keyword == "end_header") return Validated();
       if (absl::Status status = ReadStatement(keyword); !status.ok()) return status;
     }
     return reader_.Error("the file ends before \"end_header\"");
@@ -52,16 +52,17 @@ class HeaderReader {
     } else if (encoding == "binary_big_endian") {
       header_.encoding = PlyEncoding::kBigEndian;
     } else if (encoding != "ascii") {
-      return reader_.Error(absl::StrCat("the encoding ", Quoted(encoding),
-                                        " is not read, only ascii, binary_little_endian and binary_big_endian"));
+      return reader_.Error(
+          absl::StrCat("the encoding ", Quoted(encoding),
+                       " is unknown; supported are ascii, binary_little_endian and binary_big_endian"));
     }
     if (reader_.Word() == "1.0") return absl::OkStatus();
-    return reader_.Error("the version is not 1.0, the only one that is read");
+    return reader_.Error("the version is not 1.0, the only supported one");
   }
 
   absl::Status ReadStatement(const std::string& keyword) {
     if (keyword == "comment" || keyword == "obj_info") {
-      header_.frame = FrameIn(reader_.Rest(), header_.frame);
+      header_.frame = FrameFromText(reader_.Rest(), header_.frame);
       return absl::OkStatus();
     }
     if (keyword == "element") return ReadElement();
@@ -80,14 +81,14 @@ class HeaderReader {
   }
 
   absl::Status ReadProperty() {
-    if (header_.elements.empty()) return reader_.Error("a property stands before the first element");
+    if (header_.elements.empty()) return reader_.Error("a property precedes the first element");
     PlyProperty property;
     std::string_view word = reader_.Word();
     if (word == "list") {
       property.list = true;
       word = reader_.Word();
       if (!ReadType(word, property.count_type) || IsReal(property.count_type)) {
-        return reader_.Error(absl::StrCat("a list's length has a type of whole numbers, not ", Quoted(word)));
+        return reader_.Error(absl::StrCat("a list's length must have an integer type, not ", Quoted(word)));
       }
       word = reader_.Word();
     }
@@ -98,8 +99,9 @@ class HeaderReader {
     return absl::OkStatus();
   }
 
-  // Rows of elements without properties take no bytes: their number is the word of the file alone.
-  absl::StatusOr<PlyHeader> Checked() {
+  // Returns the header if it is consistent. Rejects elements without properties: their rows take no bytes, so the
+  // declared count could not be checked.
+  absl::StatusOr<PlyHeader> Validated() {
     bool vertices = false;
     for (const PlyElement& element : header_.elements) {
       if (element.properties.empty()) {
@@ -109,8 +111,8 @@ class HeaderReader {
       if (vertices) return reader_.Error("there are two elements \"vertex\"");
       vertices = true;
       for (const char* axis : {"x", "y", "z"}) {
-        const int place = element.Find(axis);
-        if (place < 0 || element.properties[static_cast<std::size_t>(place)].list) {
+        const int property = element.Find(axis);
+        if (property < 0 || element.properties[static_cast<std::size_t>(property)].list) {
           return reader_.Error(absl::StrCat("the vertices have no property \"", axis, "\""));
         }
       }

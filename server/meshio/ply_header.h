@@ -1,4 +1,4 @@
-// The header of a PLY file: what its body holds and how.
+// The header of a PLY file: the encoding and layout of its body.
 #ifndef PHRENIC_SERVER_MESHIO_PLY_HEADER_H_
 #define PHRENIC_SERVER_MESHIO_PLY_HEADER_H_
 
@@ -20,25 +20,25 @@ struct PlyProperty {
   std::string name;
   PlyType type = PlyType::kFloat32;
   bool list = false;
-  PlyType count_type = PlyType::kUint8;  // of a list
+  PlyType count_type = PlyType::kUint8;  // type of a list's length
 };
 
 struct PlyElement {
   std::string name;
-  std::int64_t count = 0;  // as the file claims
+  std::int64_t count = 0;  // rows, as declared
   std::vector<PlyProperty> properties;
 
-  // The property's place, or -1.
+  // Returns the index of the property, or -1.
   int Find(std::string_view property) const;
 };
 
 struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::kText;
-  Frame frame = Frame::kUnsaid;
-  std::vector<PlyElement> elements;  // one at least is called "vertex"
+  Frame frame = Frame::kUnspecified;
+  std::vector<PlyElement> elements;  // exactly one is named "vertex", with scalar properties x, y and z
 };
 
-// Reads from the start of the file up to and with the line "end_header". INVALID_ARGUMENT names the line.
+// Reads from the start of the file through the line "end_header". INVALID_ARGUMENT "name:line: ...".
 absl::StatusOr<PlyHeader> ReadPlyHeader(TextReader& reader);
 
 }  // namespace phrenic::meshio

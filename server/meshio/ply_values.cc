@@ -18,8 +18,8 @@ class TextValues final : public PlyValues {
     if (!ParseNumber(word, number)) number = std::numeric_limits<double>::quiet_NaN();
     return !word.empty();
   }
-  bool RowIsDone() const override { return reader_.Rest().empty(); }
-  bool FileIsDone() override { return !reader_.NextFilledLine(); }
+  bool AtEndOfRow() const override { return reader_.Rest().empty(); }
+  bool AtEnd() override { return !reader_.NextFilledLine(); }
   absl::Status Error(const std::string& message) const override { return reader_.Error(message); }
 
  private:
@@ -52,8 +52,8 @@ class BinaryValues final : public PlyValues {
     }
     return false;
   }
-  bool RowIsDone() const override { return true; }
-  bool FileIsDone() override { return reader_.left() == 0; }
+  bool AtEndOfRow() const override { return true; }
+  bool AtEnd() override { return reader_.left() == 0; }
   absl::Status Error(const std::string& message) const override { return reader_.Error(message); }
 
  private:

@@ -1,4 +1,4 @@
-// The body of a PLY file, number by number, in text or binary.
+// A cursor over the numbers in the body of a PLY file, text or binary.
 #ifndef PHRENIC_SERVER_MESHIO_PLY_VALUES_H_
 #define PHRENIC_SERVER_MESHIO_PLY_VALUES_H_
 
@@ -12,22 +12,24 @@
 
 namespace phrenic::meshio {
 
+// Not thread-safe.
 class PlyValues {
  public:
   virtual ~PlyValues() = default;
-  // Moves to the next row of an element, in text to the next line; false at the file's end.
+  // Moves to the next row of an element (in text: the next non-blank line). Returns false at the end of the file.
   virtual bool NextRow() = 0;
-  // The row's next number, which may be none that is finite; false where there is none left.
+  // Reads the row's next number, NaN if the text is not a finite number. Returns false at the end of the row or file.
   virtual bool Take(PlyType type, double& number) = 0;
-  // Whether nothing of the row is left.
-  virtual bool RowIsDone() const = 0;
-  // Whether nothing of the file is left.
-  virtual bool FileIsDone() = 0;
-  // INVALID_ARGUMENT at the present line or byte.
+  // True if the row has no further numbers; always true in binary.
+  virtual bool AtEndOfRow() const = 0;
+  // True if the file has no further data.
+  virtual bool AtEnd() = 0;
+  // Returns INVALID_ARGUMENT with the current line or byte.
   virtual absl::Status Error(const std::string& message) const = 0;
 };
 
-// Those after the header, which `reader` has read of `bytes`. Holds views into `bytes`.
+// Returns a cursor at the start of the body. Requires: `reader` has read the header of `bytes`, which must outlive the
+// result.
 std::unique_ptr<PlyValues> MakePlyValues(PlyEncoding encoding, std::string_view name, std::string_view bytes,
                                          const TextReader& reader);
 

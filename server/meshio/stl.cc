@@ -1,5 +1,5 @@
-// STL, text and binary (3D Systems, "StereoLithography Interface Specification", 1989). Triangles stand alone in it:
-// vertices at exactly one place become one.
+// STL, text and binary (3D Systems, "StereoLithography Interface Specification", 1989). The format has no shared
+// vertices; bitwise equal points become one vertex.
 #include <Eigen/Geometry>
 #include <array>
 #include <bit>
@@ -17,18 +17,19 @@ namespace phrenic::meshio {
 namespace {
 
 constexpr std::size_t kHeader = 80;    // [bytes]
-constexpr std::size_t kTriangle = 50;  // [bytes]: normal and three corners in float32, two bytes of attributes
+constexpr std::size_t kTriangle = 50;  // [bytes]: normal and three corners as float32, attribute count as uint16
 constexpr std::size_t kNormal = 12;    // [bytes]
 
-struct Place {
+// The bit patterns of a point's coordinates.
+struct PointBits {
   std::array<std::uint64_t, 3> bits;
-  bool operator==(const Place&) const = default;
+  bool operator==(const PointBits&) const = default;
 };
 
-struct PlaceHash {
-  std::size_t operator()(const Place& place) const {
+struct PointBitsHash {
+  std::size_t operator()(const PointBits& point) const {
     std::uint64_t hash = 0;
-    for (const std::uint64_t bits : place.bits) {
+    for (const std::uint64_t bits : point.bits) {
       hash = (hash ^ bits) * 0x9e3779b97f4a7c15U;
       hash ^= hash >> 32;
     }
@@ -36,23 +37,23 @@ struct PlaceHash {
   }
 };
 
-// Gathers triangles; each place becomes one vertex, numbered where it is first seen.
+// Collects triangles and merges equal points into one vertex, numbered by first occurrence.
 class Welder {
  public:
   void AddCorner(const Eigen::Vector3d& at) {
-    Place place{};
-    for (int axis = 0; axis < 3; ++axis) place.bits[axis] = std::bit_cast<std::uint64_t>(at[axis] + 0.0);  // -0 is 0
-    const auto [found, fresh] = vertex_at_.emplace(place, found_.vertices());
-    if (fresh) found_.coordinates.insert(found_.coordinates.end(), {at[0], at[1], at[2]});
-    found_.triangles.push_back(found->second);
+    PointBits point{};
+    for (int axis = 0; axis < 3; ++axis) point.bits[axis] = std::bit_cast<std::uint64_t>(at[axis] + 0.0);  // -0 -> 0
+    const auto [vertex, inserted] = vertex_at_.emplace(point, builder_.vertices());
+    if (inserted) builder_.coordinates.insert(builder_.coordinates.end(), {at[0], at[1], at[2]});
+    builder_.triangles.push_back(vertex->second);
   }
 
-  std::size_t corners() const { return found_.triangles.size(); }
-  Mesh ToMesh() const { return found_.ToMesh(); }
+  std::size_t corners() const { return builder_.triangles.size(); }
+  Mesh ToMesh() const { return builder_.ToMesh(); }
 
  private:
-  Collected found_;
-  std::unordered_map<Place, int, PlaceHash> vertex_at_;
+  SurfaceBuilder builder_;
+  std::unordered_map<PointBits, int, PointBitsHash> vertex_at_;
 };
 
 class TextParser {
@@ -65,7 +66,8 @@ class TextParser {
         return status;
       }
     }
-    if (inside_) return reader_.Error("the file ends before \"endsolid\": it was cut off; fetch or export it again");
+    if (inside_)
+      return reader_.Error("the file ends before \"endsolid\": it is truncated; download or export it again");
     if (welder_.corners() == 0) return reader_.Error("the file has no triangles (\"facet\")");
     return Surface{welder_.ToMesh(), frame_};
   }
@@ -73,7 +75,7 @@ class TextParser {
  private:
   absl::Status ReadStatement(const std::string& keyword) {
     if (keyword == "solid" && !inside_) {
-      frame_ = FrameIn(reader_.Rest(), frame_);
+      frame_ = FrameFromText(reader_.Rest(), frame_);
       inside_ = true;
       return absl::OkStatus();
     }
@@ -86,7 +88,7 @@ class TextParser {
     return absl::OkStatus();
   }
 
-  // What the normal says follows from the corners; some programs write NaN there.
+  // Ignores the normal, which follows from the corners; some programs write NaN there.
   absl::Status ReadFacet() {
     if (absl::Status status = Expect("outer"); !status.ok()) return status;
     for (int corner = 0; corner < 3; ++corner) {
@@ -103,22 +105,22 @@ class TextParser {
 
   absl::Status Expect(const std::string& keyword) {
     if (!reader_.NextFilledLine()) {
-      return reader_.Error(absl::StrCat("the file ends where \"", keyword, "\" is expected: it was cut off"));
+      return reader_.Error(absl::StrCat("the file ends where \"", keyword, "\" is expected: it is truncated"));
     }
     const std::string_view word = reader_.Word();
     if (absl::AsciiStrToLower(std::string(word)) == keyword) return absl::OkStatus();
     return reader_.Error(absl::StrCat("\"", keyword, "\" is expected, not ", Quoted(word),
-                                      "; a facet has three corners, each on a line of its own"));
+                                      "; a facet has three corners, each on its own line"));
   }
 
   TextReader reader_;
   Welder welder_;
-  Frame frame_ = Frame::kUnsaid;
+  Frame frame_ = Frame::kUnspecified;
   bool inside_ = false;  // between "solid" and "endsolid"
 };
 
-// The number of triangles that the 80 bytes of header are followed by; 0 in a shorter file.
-std::uint32_t ClaimedTriangles(std::string_view bytes) {
+// Returns the triangle count that follows the 80-byte header; 0 if the file is shorter.
+std::uint32_t DeclaredTriangles(std::string_view bytes) {
   std::uint32_t count = 0;
   ByteReader("", bytes, kHeader).Take(count);
   return count;
@@ -127,15 +129,15 @@ std::uint32_t ClaimedTriangles(std::string_view bytes) {
 std::size_t SizeOf(std::uint32_t triangles) { return kHeader + sizeof(std::uint32_t) + kTriangle * triangles; }
 
 absl::Status CheckSize(std::string_view name, std::string_view bytes) {
-  const std::uint32_t count = ClaimedTriangles(bytes);
+  const std::uint32_t count = DeclaredTriangles(bytes);
   if (bytes.size() < SizeOf(0)) {
     return ByteReader(name, bytes, bytes.size())
-        .Error("the file is neither an STL in text (\"solid\") nor long enough for one in binary; is this an STL?");
+        .Error("the file is neither text STL (\"solid\") nor long enough for binary STL; is this an STL file?");
   }
   if (bytes.size() == SizeOf(count) && count > 0) return absl::OkStatus();
   return ByteReader(name, bytes, kHeader)
-      .Error(absl::StrCat("the file says ", count, " triangles, which take ", SizeOf(count), " bytes, but has ",
-                          bytes.size(), "; was it cut off, or is it no STL?"));
+      .Error(absl::StrCat("the file declares ", count, " triangles, which take ", SizeOf(count), " bytes, but has ",
+                          bytes.size(), "; it is truncated or not an STL file"));
 }
 
 absl::StatusOr<Surface> ParseBinary(std::string_view name, std::string_view bytes) {
@@ -146,7 +148,7 @@ absl::StatusOr<Surface> ParseBinary(std::string_view name, std::string_view byte
     for (int corner = 0; corner < 3; ++corner) {
       float x = 0, y = 0, z = 0;
       const ByteReader start = reader;
-      if (!reader.Take(x) || !reader.Take(y) || !reader.Take(z)) return reader.Error("the file ends in a triangle");
+      if (!reader.Take(x) || !reader.Take(y) || !reader.Take(z)) return reader.Error("the file ends within a triangle");
       if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z)) {
         return start.Error(absl::StrCat("triangle ", welder.corners() / 3, " has a corner that is not finite"));
       }
@@ -154,7 +156,7 @@ absl::StatusOr<Surface> ParseBinary(std::string_view name, std::string_view byte
     }
     reader.Skip(sizeof(std::uint16_t));
   }
-  return Surface{welder.ToMesh(), FrameIn(bytes.substr(0, kHeader), Frame::kUnsaid)};
+  return Surface{welder.ToMesh(), FrameFromText(bytes.substr(0, kHeader), Frame::kUnspecified)};
 }
 
 bool IsText(std::string_view bytes) {
@@ -166,16 +168,16 @@ bool IsText(std::string_view bytes) {
 
 }  // namespace
 
-// Programs write binary files whose header begins with "solid" too. The size tells: in a text of less than 1 GiB, the
-// four bytes where a binary file has its count make a larger number than fit.
+// Some programs start the header of binary files with "solid". The size decides: in text, the four bytes at the
+// position of the binary count give a size above 1 GiB, the maximum.
 absl::StatusOr<Surface> ParseStl(std::string_view name, std::string_view bytes) {
-  const bool sized = bytes.size() >= SizeOf(0) && bytes.size() == SizeOf(ClaimedTriangles(bytes));
-  return !sized && IsText(bytes) ? TextParser(name, bytes).Parse() : ParseBinary(name, bytes);
+  const bool size_matches = bytes.size() >= SizeOf(0) && bytes.size() == SizeOf(DeclaredTriangles(bytes));
+  return !size_matches && IsText(bytes) ? TextParser(name, bytes).Parse() : ParseBinary(name, bytes);
 }
 
 absl::StatusOr<std::string> WriteStl(const Mesh& mesh) {
   if (mesh.triangles.cols() == 0) {
-    return absl::InvalidArgumentError("STL holds triangles and the mesh has edges alone; write another format");
+    return absl::InvalidArgumentError("STL holds only triangles and the mesh has only edges; write another format");
   }
   std::string bytes = "Phrenic. SPACE=LPS";
   bytes.resize(kHeader, ' ');

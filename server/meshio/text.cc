@@ -11,14 +11,14 @@ namespace {
 
 bool IsBlank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
 
-// std::from_chars takes no leading "+".
+// std::from_chars does not accept a leading "+".
 std::string_view WithoutPlus(std::string_view word) {
   if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
   return word;
 }
 
 template <typename T>
-bool ParseWhole(std::string_view word, T& value) {
+bool ParseWord(std::string_view word, T& value) {
   word = WithoutPlus(word);
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   return error == std::errc() && end == word.data() + word.size();
@@ -62,7 +62,7 @@ std::string_view TextReader::Rest() const {
 }
 
 std::string_view TextReader::Word() {
-  // In a joined line, the mark of continuation and the line's end are blanks too.
+  // In a joined line, the continuation backslash and the newline count as blanks.
   const auto blank = [this](std::size_t i) {
     return IsBlank(bytes_[i]) || bytes_[i] == '\n' || (bytes_[i] == '\\' && (i + 1 == end_ || bytes_[i + 1] <= ' '));
   };
@@ -74,23 +74,23 @@ std::string_view TextReader::Word() {
 
 bool TextReader::Number(double& number) { return ParseNumber(Word(), number); }
 
-bool TextReader::Integer(std::int64_t& integer) { return ParseWhole(Word(), integer); }
+bool TextReader::Integer(std::int64_t& integer) { return ParseWord(Word(), integer); }
 
 absl::Status TextReader::ErrorAt(int line, const std::string& message) const {
   return absl::InvalidArgumentError(absl::StrCat(std::string(name_), ":", line, ": ", message));
 }
 
 std::string Quoted(std::string_view word) {
-  constexpr std::size_t kLongest = 32;
+  constexpr std::size_t kMaxLength = 32;
   std::string quoted = "\"";
-  for (char c : word.substr(0, kLongest)) quoted += (c >= ' ' && c <= '~') ? c : '?';
-  quoted += word.size() > kLongest ? "...\"" : "\"";
+  for (char c : word.substr(0, kMaxLength)) quoted += (c >= ' ' && c <= '~') ? c : '?';
+  quoted += word.size() > kMaxLength ? "...\"" : "\"";
   return quoted;
 }
 
-bool ParseInteger(std::string_view word, std::int64_t& integer) { return ParseWhole(word, integer); }
+bool ParseInteger(std::string_view word, std::int64_t& integer) { return ParseWord(word, integer); }
 
-bool ParseNumber(std::string_view word, double& number) { return ParseWhole(word, number) && std::isfinite(number); }
+bool ParseNumber(std::string_view word, double& number) { return ParseWord(word, number) && std::isfinite(number); }
 
 void AppendNumber(std::string& text, double number) {
   char digits[32];

@@ -1,4 +1,4 @@
-// Walks over the bytes of a text file, line by line and word by word, without copying them.
+// A cursor over a text file by lines and words, and number conversion. Nothing depends on the locale.
 #ifndef PHRENIC_SERVER_MESHIO_TEXT_H_
 #define PHRENIC_SERVER_MESHIO_TEXT_H_
 
@@ -10,52 +10,52 @@
 
 namespace phrenic::meshio {
 
-// Lines end at "\n" or "\r\n"; words are separated by spaces and tabs. Holds views into `bytes`, which must outlive it.
-// Not thread-safe.
+// Lines end with "\n" or "\r\n"; words are separated by blanks. Holds views into `name` and `bytes`, which must outlive
+// it, and copies nothing. Not thread-safe.
 class TextReader {
  public:
   TextReader(std::string_view name, std::string_view bytes) : name_(name), bytes_(bytes) {}
 
-  // Moves to the next line; false after the last one.
+  // Moves to the next line. Returns false after the last one.
   bool NextLine();
-  // Moves to the next line that has a word; false when there is none left.
+  // Moves to the next line that is not blank. Returns false if there is none.
   bool NextFilledLine();
-  // A line whose last character is "\" goes on in the next one (OBJ); call right after NextLine.
+  // Joins the line with the next ones while it ends in "\" (OBJ). Call right after NextLine.
   void JoinContinuedLine();
 
-  // What is left of the present line, without surrounding blanks.
+  // Returns the rest of the line without surrounding blanks.
   std::string_view Rest() const;
-  // Takes the next word of the line; empty at its end.
+  // Reads the next word of the line; empty at its end.
   std::string_view Word();
-  // Takes the next word as a number; false when it is none, or not finite, or there is no word left.
+  // Reads the next word as a finite number. Returns false if it is not one or the line has ended.
   bool Number(double& number);
   bool Integer(std::int64_t& integer);
 
-  // Where the line after the present one starts [bytes from the first].
+  // Byte offset of the next line.
   std::size_t next_line() const { return next_; }
-  // Number of the present line, from 1.
+  // Number of the current line, from 1; 0 before the first.
   int line() const { return line_; }
-  // INVALID_ARGUMENT "name:line: message".
+  // Returns INVALID_ARGUMENT "name:line: message".
   absl::Status Error(const std::string& message) const { return ErrorAt(line_, message); }
   absl::Status ErrorAt(int line, const std::string& message) const;
 
  private:
   std::string_view name_;
   std::string_view bytes_;
-  std::size_t next_ = 0;  // start of the line after the present one
-  std::size_t at_ = 0;    // the reading place in the present line
-  std::size_t end_ = 0;   // end of the present line
+  std::size_t next_ = 0;  // start of the next line
+  std::size_t at_ = 0;    // position in the current line
+  std::size_t end_ = 0;   // end of the current line
   int line_ = 0;
 };
 
-// The word as it may stand in an error message: quoted, short and printable.
+// Returns the word for an error message: quoted, truncated to 32 characters, unprintable ones replaced by "?".
 std::string Quoted(std::string_view word);
 
-// Takes a whole word as an integer, or as a finite number.
+// Parse the entire word as an integer, and as a finite number. Return false if that fails.
 bool ParseInteger(std::string_view word, std::int64_t& integer);
 bool ParseNumber(std::string_view word, double& number);
 
-// Adds a blank and the shortest text that reads back as the same number.
+// Appends a blank and the shortest text that parses back to the same number.
 void AppendNumber(std::string& text, double number);
 
 }  // namespace phrenic::meshio

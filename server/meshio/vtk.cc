@@ -1,4 +1,5 @@
-// VTK's legacy PolyData, text and binary, versions 1 to 5.1 (VTK File Formats, "Simple Legacy Formats").
+// VTK legacy PolyData, text and binary, versions 1 to 5.1 (VTK File Formats, "Simple Legacy Formats"). Binary data is
+// big-endian.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -17,8 +18,9 @@
 namespace phrenic::meshio {
 namespace {
 
-constexpr std::size_t kLongestLine = 256;  // of the four lines of the head
-// How long text is said before it in a binary file: the first two bits tell how many bytes say it.
+constexpr std::size_t kMaxLine = 256;  // of the header
+// A string in a binary file follows its length. The length's two high bits encode its size; 3 means one byte, with the
+// length in the other six bits.
 constexpr int kShortText = 3;
 constexpr unsigned char kLengthBits = 0x3f;
 
@@ -26,25 +28,25 @@ struct Type {
   std::string_view name;
   int bytes;
 };
-constexpr std::array<Type, 14> kTypes = {{{"char", 1},
-                                          {"unsigned_char", 1},
-                                          {"short", 2},
-                                          {"unsigned_short", 2},
-                                          {"int", 4},
-                                          {"unsigned_int", 4},
-                                          {"vtkidtype", 4},
-                                          {"vtktypeint32", 4},
-                                          {"long", 8},
-                                          {"unsigned_long", 8},
-                                          {"vtktypeint64", 8},
-                                          {"vtktypeuint64", 8},
-                                          {"float", 4},
-                                          {"double", 8}}};
+constexpr std::array<Type, 14> kVtkTypes = {{{"char", 1},
+                                             {"unsigned_char", 1},
+                                             {"short", 2},
+                                             {"unsigned_short", 2},
+                                             {"int", 4},
+                                             {"unsigned_int", 4},
+                                             {"vtkidtype", 4},
+                                             {"vtktypeint32", 4},
+                                             {"long", 8},
+                                             {"unsigned_long", 8},
+                                             {"vtktypeint64", 8},
+                                             {"vtktypeuint64", 8},
+                                             {"float", 4},
+                                             {"double", 8}}};
 
-// Bytes of a number of the type in a binary file; 0 for one that is not known.
+// Returns the size of a type in a binary file [bytes]; 0 for an unknown type.
 int BytesOf(std::string_view type) {
   const std::string small = absl::AsciiStrToLower(std::string(type));
-  for (const Type& known : kTypes) {
+  for (const Type& known : kVtkTypes) {
     if (known.name == small) return known.bytes;
   }
   return 0;
@@ -55,7 +57,7 @@ class LegacyParser {
   LegacyParser(std::string_view name, std::string_view bytes) : name_(name), bytes_(bytes) {}
 
   absl::StatusOr<Surface> Parse() {
-    if (absl::Status status = ReadHead(); !status.ok()) return status;
+    if (absl::Status status = ReadHeader(); !status.ok()) return status;
     while (!done_) {
       const std::string keyword = absl::AsciiStrToUpper(std::string(Word()));
       if (keyword.empty()) break;
@@ -80,7 +82,7 @@ class LegacyParser {
     return line;
   }
 
-  // The next word, over ends of lines.
+  // Returns the next whitespace-separated word, also from later lines.
   std::string_view Word() {
     at_ = std::min(bytes_.find_first_not_of(" \t\r\n", at_), bytes_.size());
     const std::size_t end = std::min(bytes_.find_first_of(" \t\r\n", at_), bytes_.size());
@@ -90,20 +92,20 @@ class LegacyParser {
   }
   bool Count(std::int64_t& count) { return ParseInteger(Word(), count) && count >= 0; }
 
-  absl::Status ReadHead() {
-    const std::string_view version = Line().substr(0, kLongestLine);
+  absl::Status ReadHeader() {
+    const std::string_view version = Line().substr(0, kMaxLine);
     if (version.substr(0, 22) != "# vtk DataFile Version") {
       return Error("the file does not begin with \"# vtk DataFile Version\"; is this a .vtk file?");
     }
-    frame_ = FrameIn(Line(), frame_);
+    frame_ = FrameFromText(Line(), frame_);
     const std::string kind = absl::AsciiStrToUpper(std::string(Word()));
     if (kind != "ASCII" && kind != "BINARY") return Error("the third line is neither ASCII nor BINARY");
     if (absl::AsciiStrToUpper(std::string(Word())) != "DATASET") return Error("the fourth line has no DATASET");
     const std::string data = absl::AsciiStrToUpper(std::string(Word()));
     if (data != "POLYDATA") {
-      return Error(absl::StrCat("the file has a ", Quoted(data),
-                                ", and only POLYDATA, a surface, is read; extract the "
-                                "surface in ParaView and save it as .vtp"));
+      return Error(absl::StrCat("the data set is ", Quoted(data),
+                                ", but only POLYDATA, a surface, is supported; extract the surface in ParaView and "
+                                "save it as .vtp"));
     }
     binary_ = kind == "BINARY";
     return absl::OkStatus();
@@ -120,13 +122,13 @@ class LegacyParser {
       while (!Line().empty()) continue;
       return absl::OkStatus();
     }
-    // Numbers on points and cells, which end the file, are not the surface's shape.
+    // Point and cell data come last and do not affect the geometry.
     done_ = keyword == "POINT_DATA" || keyword == "CELL_DATA";
     if (done_) return absl::OkStatus();
     return Error(absl::StrCat("there is no section ", Quoted(keyword), " of POLYDATA"));
   }
 
-  // One number of the type; words in text. False where none is left.
+  // Reads one number: of the given type in binary, a word in text. Returns false if there is none.
   template <typename Number>
   bool Take(std::string_view type, Number& number) {
     if (!binary_) {
@@ -160,7 +162,7 @@ class LegacyParser {
   absl::Status ReadPoints() {
     std::int64_t count = 0;
     if (!Count(count) || count > static_cast<std::int64_t>(bytes_.size())) {
-      return Error("POINTS is not followed by their number, or by a larger one than the file has bytes");
+      return Error("POINTS is not followed by a count, or the count exceeds the file's size");
     }
     const std::string_view type = Word();
     if (type != "float" && type != "double")
@@ -170,7 +172,7 @@ class LegacyParser {
       double coordinate = 0;
       if (!Take(type, coordinate)) {
         return Error(absl::StrCat("coordinate ", i % 3, " of point ", i / 3, " of ", count,
-                                  " is missing, no number or not finite"));
+                                  " is missing or not a finite number"));
       }
       cells_.AddCoordinate(coordinate);
     }
@@ -194,19 +196,20 @@ class LegacyParser {
       cells_.Add(KindOf(kind), corners_);
       read += corners + 1;
     }
-    return read == size ? absl::OkStatus() : Error(absl::StrCat(kind, " says ", size, " numbers but has ", read));
+    return read == size ? absl::OkStatus() : Error(absl::StrCat(kind, " declares ", size, " numbers but has ", read));
   }
 
-  // Version 5: where each cell ends, and all cells' corners.
+  // Reads cells of version 5: the offset of each cell's end, then the concatenated corners.
   absl::Status ReadOffsetCells(const std::string& kind, std::int64_t count, std::int64_t size) {
     const std::string_view type = Word();
-    if (BytesOf(type) < 4) return Error(absl::StrCat("offsets of type ", Quoted(type), " are not read"));
+    if (BytesOf(type) < 4) return Error(absl::StrCat("offsets of type ", Quoted(type), " are not supported"));
     if (binary_) Line();
     if (absl::Status status = TakeIndices(type, count, kind); !status.ok()) return status;
     const std::vector<std::int64_t> offsets = corners_;
     if (absl::AsciiStrToUpper(std::string(Word())) != "CONNECTIVITY") return Error("CONNECTIVITY is expected");
     const std::string_view corner_type = Word();
-    if (BytesOf(corner_type) < 4) return Error(absl::StrCat("corners of type ", Quoted(corner_type), " are not read"));
+    if (BytesOf(corner_type) < 4)
+      return Error(absl::StrCat("corners of type ", Quoted(corner_type), " are not supported"));
     if (binary_) Line();
     if (absl::Status status = TakeIndices(corner_type, size, kind); !status.ok()) return status;
     const std::string fault = cells_.AddAll(KindOf(kind), offsets, corners_, true);
@@ -229,7 +232,7 @@ class LegacyParser {
     return absl::OkStatus();
   }
 
-  // Arrays beside the surface; of 3D Slicer's, SPACE tells the frame.
+  // Reads field data. Keeps only SPACE, the frame, as 3D Slicer writes it.
   absl::Status ReadField() {
     std::int64_t arrays = 0;
     Word();
@@ -244,25 +247,25 @@ class LegacyParser {
       std::int64_t components = 0, tuples = 0;
       if (!Count(components) || !Count(tuples)) return Error("an array is written: name components tuples type");
       if (components > 0 && tuples > static_cast<std::int64_t>(bytes_.size()) / components) {
-        return Error("the array says more numbers than the file has bytes");
+        return Error("the array's size exceeds the file's size");
       }
-      if (absl::Status status = PassArray(name, components * tuples); !status.ok()) return status;
+      if (absl::Status status = SkipArray(name, components * tuples); !status.ok()) return status;
     }
     return absl::OkStatus();
   }
 
-  absl::Status PassArray(std::string_view name, std::int64_t count) {
+  absl::Status SkipArray(std::string_view name, std::int64_t count) {
     const std::string_view type = Word();
     Line();
     if (type == "string") return ReadTexts(name, count);
     const int size = BytesOf(type);
     if (size == 0) return Error(absl::StrCat("there is no type ", Quoted(type)));
     for (std::int64_t i = 0; !binary_ && i < count; ++i) {
-      if (Word().empty()) return Error("the file ends in an array");
+      if (Word().empty()) return Error("the file ends within an array");
     }
     if (!binary_) return absl::OkStatus();
     ByteReader reader(name_, bytes_, at_);
-    if (!reader.Skip(static_cast<std::size_t>(count * size))) return Error("the file ends in an array");
+    if (!reader.Skip(static_cast<std::size_t>(count * size))) return Error("the file ends within an array");
     at_ = reader.at();
     return absl::OkStatus();
   }
@@ -274,12 +277,12 @@ class LegacyParser {
         text = Line();
       } else {
         if (at_ >= bytes_.size() || static_cast<unsigned char>(bytes_[at_]) >> 6 != kShortText) {
-          return Error("a text of the file's arrays is missing or longer than 63 characters");
+          return Error("a string in an array is missing or longer than 63 characters");
         }
         text = bytes_.substr(at_ + 1, static_cast<unsigned char>(bytes_[at_]) & kLengthBits);
         at_ = std::min(at_ + 1 + text.size(), bytes_.size());
       }
-      if (name == "SPACE") frame_ = FrameNamed(text, frame_);
+      if (name == "SPACE") frame_ = FrameFromField(text, frame_);
     }
     return absl::OkStatus();
   }
@@ -287,13 +290,13 @@ class LegacyParser {
   std::string_view name_, bytes_;
   std::size_t at_ = 0;
   bool binary_ = false, done_ = false;
-  Frame frame_ = Frame::kUnsaid;
+  Frame frame_ = Frame::kUnspecified;
   VtkCells cells_;
   std::vector<std::int64_t> corners_;
 };
 
 template <typename T>
-void AppendBig(std::string& bytes, T number) {
+void AppendBigEndian(std::string& bytes, T number) {
   const std::size_t start = bytes.size();
   AppendBytes(bytes, number);
   std::reverse(bytes.begin() + static_cast<std::ptrdiff_t>(start), bytes.end());
@@ -304,8 +307,8 @@ void AppendCells(const char* kind, const Cells& cells, std::string& bytes) {
   if (cells.cols() == 0) return;
   absl::StrAppend(&bytes, kind, " ", cells.cols(), " ", (cells.rows() + 1) * cells.cols(), "\n");
   for (const auto cell : cells.colwise()) {
-    AppendBig(bytes, static_cast<std::int32_t>(cells.rows()));
-    for (const int corner : cell) AppendBig(bytes, std::int32_t{corner});
+    AppendBigEndian(bytes, static_cast<std::int32_t>(cells.rows()));
+    for (const int corner : cell) AppendBigEndian(bytes, std::int32_t{corner});
   }
   bytes += "\n";
 }
@@ -322,7 +325,7 @@ absl::StatusOr<std::string> WriteVtk(const Mesh& mesh) {
   constexpr std::string_view kFrame = "LPS";
   bytes += static_cast<char>((kShortText << 6) | kFrame.size());
   absl::StrAppend(&bytes, std::string(kFrame), "\nPOINTS ", mesh.vertices.cols(), " double\n");
-  for (const double coordinate : mesh.vertices.reshaped()) AppendBig(bytes, coordinate);
+  for (const double coordinate : mesh.vertices.reshaped()) AppendBigEndian(bytes, coordinate);
   bytes += "\n";
   AppendCells("POLYGONS", mesh.triangles, bytes);
   if (mesh.triangles.cols() == 0) AppendCells("LINES", mesh.edges, bytes);

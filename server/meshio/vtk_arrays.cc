@@ -16,25 +16,23 @@ namespace {
 constexpr std::string_view kWhite = " \t\r\n";
 constexpr std::size_t kTriple = 3, kQuadruple = 4;  // base64: bytes, characters
 
-absl::Status Cut() {
-  return absl::InvalidArgumentError("an array ends before it should: the file was cut off, or changed");
-}
+absl::Status Truncated() { return absl::InvalidArgumentError("an array ends early: the file is truncated or damaged"); }
 
-// Bytes that stand raw or as base64, taken from the front.
-class Packed {
+// Reads bytes from the front of raw or base64 data.
+class EncodedBytes {
  public:
-  Packed(std::string_view from, bool base64) : from_(from), base64_(base64) {}
+  EncodedBytes(std::string_view from, bool base64) : from_(from), base64_(base64) {}
 
-  // Groups of base64 are taken whole: what is taken together was written together.
+  // Decodes whole base64 groups: one call reads what the writer encoded at once.
   absl::StatusOr<std::string> Take(std::size_t count) {
     const std::size_t width = base64_ ? (count + kTriple - 1) / kTriple * kQuadruple : count;
-    if (count > from_.size() || width > from_.size()) return Cut();
+    if (count > from_.size() || width > from_.size()) return Truncated();
     const std::string_view taken = from_.substr(0, width);
     from_.remove_prefix(width);
     if (!base64_) return std::string(taken);
     std::string bytes;
     if (!absl::Base64Unescape(absl::string_view(taken.data(), taken.size()), &bytes) || bytes.size() < count)
-      return Cut();
+      return Truncated();
     bytes.resize(count);
     return bytes;
   }
@@ -52,7 +50,8 @@ bool TakeWord(const VtkEncoding& encoding, ByteReader& reader, std::uint64_t& wo
   return taken;
 }
 
-absl::StatusOr<std::vector<std::uint64_t>> TakeWords(std::size_t count, const VtkEncoding& encoding, Packed& packed) {
+absl::StatusOr<std::vector<std::uint64_t>> TakeWords(std::size_t count, const VtkEncoding& encoding,
+                                                     EncodedBytes& packed) {
   const auto bytes = packed.Take(count * (encoding.wide_header ? sizeof(std::uint64_t) : sizeof(std::uint32_t)));
   if (!bytes.ok()) return bytes.status();
   ByteReader reader("", *bytes, 0, encoding.order);
@@ -61,20 +60,20 @@ absl::StatusOr<std::vector<std::uint64_t>> TakeWords(std::size_t count, const Vt
   return words;
 }
 
-absl::Status TooMuch(const VtkEncoding& encoding) {
+absl::Status UnpackedTooLarge(const VtkEncoding& encoding) {
   return absl::InvalidArgumentError(
-      absl::StrCat("an array says that it unpacks to more than ", encoding.most_bytes,
-                   " bytes, far more than such a file holds; save it without compression"));
+      absl::StrCat("an array declares an uncompressed size above ", encoding.max_unpacked,
+                   " bytes, implausible for the file's size; save it without compression"));
 }
 
-// The length, then so many bytes.
+// Reads an uncompressed array: its length in bytes, then the bytes.
 absl::StatusOr<std::string> TakePlain(std::string_view from, bool base64, const VtkEncoding& encoding) {
-  Packed header(from, base64);
+  EncodedBytes header(from, base64);
   const auto length = TakeWords(1, encoding, header);
   if (!length.ok()) return length.status();
-  if (length->front() > from.size()) return Cut();
+  if (length->front() > from.size()) return Truncated();
   const std::size_t word = encoding.wide_header ? sizeof(std::uint64_t) : sizeof(std::uint32_t);
-  auto all = Packed(from, base64).Take(word + length->front());  // base64 goes through header and bytes
+  auto all = EncodedBytes(from, base64).Take(word + length->front());  // header and data are one base64 run
   if (all.ok()) all->erase(0, word);
   return all;
 }
@@ -86,26 +85,26 @@ absl::Status Inflate(const std::string& block, std::size_t size, std::string& by
   const int code = uncompress(reinterpret_cast<Bytef*>(bytes.data() + before), &got,
                               reinterpret_cast<const Bytef*>(block.data()), block.size());
   if (code == Z_OK && got == size) return absl::OkStatus();
-  return absl::InvalidArgumentError(
-      "a compressed array does not unpack to what it says: the file was changed or damaged");
+  return absl::InvalidArgumentError("a compressed array does not inflate to its declared size: the file is damaged");
 }
 
-// Number of blocks, size of a block, size of a shorter last one or 0, packed size of each; then the blocks.
+// Reads a zlib-compressed array. Header: number of blocks, uncompressed block size, uncompressed size of a partial last
+// block or 0, compressed size of each block. Then the blocks.
 absl::StatusOr<std::string> TakeCompressed(std::string_view from, bool base64, const VtkEncoding& encoding) {
-  Packed start(from, base64), packed(from, base64);
+  EncodedBytes start(from, base64), packed(from, base64);
   const auto head = TakeWords(3, encoding, start);
   if (!head.ok()) return head.status();
   const std::uint64_t blocks = (*head)[0], size = (*head)[1], last = (*head)[2];
   if (blocks == 0) return std::string();
-  if (blocks > from.size() || last > size) return Cut();
+  if (blocks > from.size() || last > size) return Truncated();
   const double unpacked_size =
       static_cast<double>(blocks - 1) * static_cast<double>(size) + static_cast<double>(last > 0 ? last : size);
-  if (unpacked_size > static_cast<double>(encoding.most_bytes)) return TooMuch(encoding);
+  if (unpacked_size > static_cast<double>(encoding.max_unpacked)) return UnpackedTooLarge(encoding);
   const auto sizes = TakeWords(3 + blocks, encoding, packed);
   if (!sizes.ok()) return sizes.status();
   std::uint64_t total = 0;
   for (std::size_t block = 0; block < blocks; ++block) {
-    if ((*sizes)[3 + block] > from.size()) return Cut();
+    if ((*sizes)[3 + block] > from.size()) return Truncated();
     total += (*sizes)[3 + block];
   }
   const auto data = packed.Take(total);
@@ -128,12 +127,12 @@ absl::StatusOr<std::string> TakeBytes(const VtkArray& array, const VtkEncoding& 
     std::int64_t offset = 0;
     if (!ParseInteger(array.offset, offset) || offset < 0 ||
         offset > static_cast<std::int64_t>(encoding.appended.size())) {
-      return absl::InvalidArgumentError("an array's offset lies outside of the appended data: the file was cut off");
+      return absl::InvalidArgumentError("an array's offset is outside the appended data: the file is truncated");
     }
     from = encoding.appended.substr(static_cast<std::size_t>(offset));
     base64 = encoding.appended_base64;
   } else if (array.format != "binary") {
-    return absl::InvalidArgumentError(absl::StrCat("there is no format ", Quoted(array.format), " of data arrays"));
+    return absl::InvalidArgumentError(absl::StrCat("unknown format ", Quoted(array.format), " of a data array"));
   }
   from.remove_prefix(base64 ? std::min(from.find_first_not_of(kWhite), from.size()) : 0);
   return encoding.compressed ? TakeCompressed(from, base64, encoding) : TakePlain(from, base64, encoding);
@@ -149,7 +148,7 @@ bool Convert(ByteReader reader, std::vector<Number>& numbers) {
   return reader.left() == 0;
 }
 
-// False where the type is not one that holds such numbers, a number is not finite, or bytes are left.
+// Return false if the type does not fit, a number is not finite, or bytes remain.
 bool ConvertAs(std::string_view type, const ByteReader& reader, std::vector<double>& numbers) {
   if (type == "Float32") return Convert<float>(reader, numbers);
   return type == "Float64" && Convert<double>(reader, numbers);
@@ -177,7 +176,7 @@ absl::StatusOr<std::vector<Number>> ReadText(std::string_view text) {
     const std::string_view word = text.substr(0, text.find_first_of(kWhite));
     Number number{};
     if (!ParseAs(word, number)) {
-      return absl::InvalidArgumentError(absl::StrCat(Quoted(word), " is no number of the array's kind"));
+      return absl::InvalidArgumentError(absl::StrCat(Quoted(word), " is not a number of the array's type"));
     }
     numbers.push_back(number);
     text.remove_prefix(word.size());
@@ -191,8 +190,8 @@ absl::StatusOr<std::vector<Number>> Read(const VtkArray& array, const VtkEncodin
   if (!bytes.ok()) return bytes.status();
   std::vector<Number> numbers;
   if (ConvertAs(array.type, ByteReader("", *bytes, 0, encoding.order), numbers)) return numbers;
-  return absl::InvalidArgumentError(
-      absl::StrCat("an array of type ", Quoted(array.type), " holds no such numbers, or one that is not finite"));
+  return absl::InvalidArgumentError(absl::StrCat("an array has the unsuitable type ", Quoted(array.type),
+                                                 ", a number that is not finite, or excess bytes"));
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// The numbers of a data array of VTK's XML files: in text, in base64, or as bytes at the file's end.
+// Decodes the data arrays of VTK XML files: text, base64 or appended raw data, uncompressed or zlib (VTK File Formats,
+// "XML File Formats").
 #ifndef PHRENIC_SERVER_MESHIO_VTK_ARRAYS_H_
 #define PHRENIC_SERVER_MESHIO_VTK_ARRAYS_H_
 
@@ -12,26 +13,26 @@
 
 namespace phrenic::meshio {
 
-// What the whole file says of its arrays.
+// Encoding attributes of a file, common to its arrays.
 struct VtkEncoding {
-  bool wide_header = false;  // UInt64, not UInt32
+  bool wide_header = false;  // header_type is UInt64 instead of UInt32
   bool compressed = false;   // by zlib
   std::endian order = std::endian::little;
-  std::string_view appended;  // behind the "_" of AppendedData
+  std::string_view appended;  // the data after the "_" of AppendedData
   bool appended_base64 = false;
-  std::size_t most_bytes = 0;  // that an array may unpack to
+  std::size_t max_unpacked = 0;  // maximum uncompressed size of an array [bytes]
 };
 
-// One DataArray.
+// The attributes and text of a DataArray element.
 struct VtkArray {
   std::string_view type;    // "Float32"
   std::string_view format;  // "ascii", "binary", "appended"
-  std::string_view text;    // of "ascii" and "binary"
-  std::string_view offset;  // of "appended"
+  std::string_view text;    // data of "ascii" and "binary"
+  std::string_view offset;  // byte offset of "appended"
 };
 
-// Statuses have the sentence alone, for the reader to say where. Coordinates are finite; whole numbers of every integer
-// type are read.
+// Return the numbers of a Float32 or Float64 array, all finite, and of an array of any integer type. Errors are
+// INVALID_ARGUMENT with the sentence alone; the parser adds the position. Thread-safe.
 absl::StatusOr<std::vector<double>> ReadDoubles(const VtkArray& array, const VtkEncoding& encoding);
 absl::StatusOr<std::vector<std::int64_t>> ReadIntegers(const VtkArray& array, const VtkEncoding& encoding);
 

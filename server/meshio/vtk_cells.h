@@ -1,4 +1,4 @@
-// What the cells of VTK's PolyData, of whichever kind of file, say of a surface.
+// Collects the points and cells of VTK PolyData, legacy or XML, into a surface.
 #ifndef PHRENIC_SERVER_MESHIO_VTK_CELLS_H_
 #define PHRENIC_SERVER_MESHIO_VTK_CELLS_H_
 
@@ -13,29 +13,30 @@ namespace phrenic::meshio {
 
 enum class VtkCell { kVertex, kLine, kPolygon, kStrip };
 
+// Not thread-safe.
 class VtkCells {
  public:
-  void AddCoordinate(double coordinate) { found_.coordinates.push_back(coordinate); }
-  int points() const { return found_.vertices(); }
-  // Corners are numbers of points, `first` more than written. Cells of single points are passed over; a strip's
-  // triangles face as its first one does.
+  void AddCoordinate(double coordinate) { builder_.coordinates.push_back(coordinate); }
+  int points() const { return builder_.vertices(); }
+  // Adds a cell. `first` is added to each corner's point index. Vertex cells are ignored; the triangles of a strip get
+  // the winding of its first one.
   void Add(VtkCell kind, const std::vector<std::int64_t>& corners, std::int64_t first = 0);
-  // Cells one after the other: where each ends, after a zero at the beginning where `from_zero` holds. What is wrong,
-  // in words, or empty.
+  // Adds concatenated cells; `offsets` holds the end of each in `corners`, after a leading 0 if `from_zero`. Returns an
+  // error message, or an empty string.
   std::string AddAll(VtkCell kind, const std::vector<std::int64_t>& offsets, const std::vector<std::int64_t>& corners,
                      bool from_zero, std::int64_t first = 0);
-  // What is wrong with the whole, in words; empty where it is a surface or a network.
+  // Returns an error message if there is nothing to show or an index is out of range, or an empty string.
   std::string Fault() const;
-  Mesh ToMesh() const { return found_.ToMesh(); }
+  Mesh ToMesh() const { return builder_.ToMesh(); }
 
  private:
-  Collected found_;
+  SurfaceBuilder builder_;
   std::vector<int> corners_;
-  std::int64_t least_ = 0, greatest_ = -1;  // corner
+  std::int64_t min_index_ = 0, max_index_ = -1;  // of all corners, before clamping
 };
 
-// The frame that the field "SPACE" names: "RAS", "LPS", or "SPACE=RAS".
-Frame FrameNamed(std::string_view text, Frame otherwise);
+// Returns the frame that the field "SPACE" names, "RAS", "LPS" or "SPACE=RAS", else `fallback`.
+Frame FrameFromField(std::string_view text, Frame fallback);
 
 }  // namespace phrenic::meshio
 

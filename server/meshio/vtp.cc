@@ -1,11 +1,11 @@
-// VTK's PolyData in XML (VTK File Formats, "XML File Formats"): text, base64 and appended, plain and zlib.
-#include "server/mesh/vtp.h"
-
+// Reader of VTK XML PolyData (VTK File Formats, "XML File Formats"): text, base64 and appended data, uncompressed or
+// zlib. The writer is mesh/polydata.h.
 #include <algorithm>
 #include <cstdint>
 #include <pugixml.hpp>
 
 #include "absl/strings/str_cat.h"
+#include "server/mesh/polydata.h"
 #include "server/meshio/bytes.h"
 #include "server/meshio/formats.h"
 #include "server/meshio/text.h"
@@ -16,7 +16,8 @@ namespace phrenic::meshio {
 namespace {
 
 constexpr std::string_view kAppended = "<AppendedData";
-constexpr std::size_t kSmallest = 16 << 10, kUnpacking = 16;  // bytes; times a file's size
+// An array may unpack to 16 KiB plus 16 times the size of the file.
+constexpr std::size_t kMinUnpacked = 16 << 10, kUnpackedRatio = 16;
 
 std::string_view Attribute(pugi::xml_node node, const char* name) { return node.attribute(name).value(); }
 
@@ -39,18 +40,18 @@ class XmlParser {
 
  private:
   absl::Status Error(pugi::xml_node at, const std::string& message) const {
-    const auto place = std::max<std::ptrdiff_t>(0, at.offset_debug());
-    return ByteReader(name_, bytes_, static_cast<std::size_t>(place)).Error(message);
+    const auto offset = std::max<std::ptrdiff_t>(0, at.offset_debug());
+    return ByteReader(name_, bytes_, static_cast<std::size_t>(offset)).Error(message);
   }
 
-  // Appended data may be any bytes, which is not XML: it is cut off first.
+  // Parses the XML after removing the appended data, whose arbitrary bytes are not XML.
   absl::Status ReadXml() {
     const std::size_t cut = bytes_.find(kAppended);
     std::string head(bytes_.substr(0, cut));
     if (cut != std::string_view::npos) {
       const std::size_t end = bytes_.find('>', cut), start = bytes_.find('_', std::min(end, bytes_.size()));
       if (start == std::string_view::npos) {
-        return ByteReader(name_, bytes_, cut).Error("AppendedData has no \"_\": the file was cut off");
+        return ByteReader(name_, bytes_, cut).Error("AppendedData has no \"_\": the file is truncated");
       }
       encoding_.appended = bytes_.substr(start + 1);
       encoding_.appended_base64 = bytes_.substr(cut, end - cut).find("base64") != std::string_view::npos;
@@ -59,23 +60,23 @@ class XmlParser {
     const pugi::xml_parse_result result = document_.load_buffer(head.data(), head.size());
     if (result) return absl::OkStatus();
     return ByteReader(name_, bytes_, static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, result.offset)))
-        .Error(absl::StrCat("the XML is broken: ", result.description(), "; was the file cut off, or is it no .vtp?"));
+        .Error(absl::StrCat("invalid XML: ", result.description(), "; the file is truncated or not a .vtp file"));
   }
 
   absl::Status ReadRoot(pugi::xml_node root) {
     if (Attribute(root, "type") != "PolyData") {
       return Error(root,
-                   absl::StrCat("the file has ", Quoted(Attribute(root, "type")), ", and only PolyData, a surface, ",
-                                "is read; extract the surface in ParaView and save it as .vtp"));
+                   absl::StrCat("the data set is ", Quoted(Attribute(root, "type")), ", but only PolyData, a surface, ",
+                                "is supported; extract the surface in ParaView and save it as .vtp"));
     }
-    const std::string_view packer = Attribute(root, "compressor");
-    if (!packer.empty() && packer != "vtkZLibDataCompressor") {
-      return Error(root, absl::StrCat("arrays are compressed by ", Quoted(packer), ", and only zlib is read"));
+    const std::string_view compressor = Attribute(root, "compressor");
+    if (!compressor.empty() && compressor != "vtkZLibDataCompressor") {
+      return Error(root, absl::StrCat("the compressor ", Quoted(compressor), " is not supported, only zlib"));
     }
-    encoding_.compressed = !packer.empty();
+    encoding_.compressed = !compressor.empty();
     encoding_.wide_header = Attribute(root, "header_type") == "UInt64";
     encoding_.order = Attribute(root, "byte_order") == "BigEndian" ? std::endian::big : std::endian::little;
-    encoding_.most_bytes = kSmallest + kUnpacking * bytes_.size();
+    encoding_.max_unpacked = kMinUnpacked + kUnpackedRatio * bytes_.size();
     return absl::OkStatus();
   }
 
@@ -83,7 +84,7 @@ class XmlParser {
     return {Attribute(node, "type"), Attribute(node, "format"), node.child_value(), Attribute(node, "offset")};
   }
 
-  // SPACE is text: characters' numbers, ended by a zero. 3D Slicer's frame where it can be read.
+  // Reads 3D Slicer's field SPACE, a String array of character codes ended by 0. Ignores an unreadable one.
   void ReadFrame(pugi::xml_node field) {
     const pugi::xml_node node = field.find_child_by_attribute("Name", "SPACE");
     VtkArray array = ArrayOf(node);
@@ -95,7 +96,7 @@ class XmlParser {
     for (const std::int64_t character : *characters) {
       if (character > 0 && character < 128) text += static_cast<char>(character);
     }
-    frame_ = FrameNamed(text, frame_);
+    frame_ = FrameFromField(text, frame_);
   }
 
   absl::Status ReadPiece(pugi::xml_node piece) {
@@ -103,11 +104,11 @@ class XmlParser {
     const pugi::xml_node points = piece.child("Points").child("DataArray");
     const auto coordinates = ReadDoubles(ArrayOf(points), encoding_);
     if (!coordinates.ok()) return Error(points, absl::StrCat("Points: ", coordinates.status().message()));
-    std::int64_t said = 0;
-    const bool counted = ParseInteger(Attribute(piece, "NumberOfPoints"), said);
-    if (!counted || said < 0 || coordinates->size() % 3 != 0 ||
-        coordinates->size() / 3 != static_cast<std::size_t>(said)) {
-      return Error(points, absl::StrCat("the piece says ", Quoted(Attribute(piece, "NumberOfPoints")),
+    std::int64_t declared = 0;
+    const bool counted = ParseInteger(Attribute(piece, "NumberOfPoints"), declared);
+    if (!counted || declared < 0 || coordinates->size() % 3 != 0 ||
+        coordinates->size() / 3 != static_cast<std::size_t>(declared)) {
+      return Error(points, absl::StrCat("the piece declares ", Quoted(Attribute(piece, "NumberOfPoints")),
                                         " points, and Points has ", coordinates->size(), " numbers"));
     }
     for (const double coordinate : *coordinates) cells_.AddCoordinate(coordinate);
@@ -136,7 +137,7 @@ class XmlParser {
   std::string_view name_, bytes_;
   pugi::xml_document document_;
   VtkEncoding encoding_;
-  Frame frame_ = Frame::kUnsaid;
+  Frame frame_ = Frame::kUnspecified;
   VtkCells cells_;
 };
 

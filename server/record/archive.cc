@@ -15,7 +15,7 @@ constexpr int kFileMode = 0644;
 Archive::Archive(Sink sink) : receiver_{std::move(sink), absl::OkStatus()}, zip_(archive_write_new()) {
   archive_write_set_format_zip(zip_);
   archive_write_zip_set_compression_store(zip_);
-  archive_write_set_bytes_in_last_block(zip_, 1);  // no bytes behind the end
+  archive_write_set_bytes_in_last_block(zip_, 1);  // no padding after the end
   const auto write = [](archive*, void* to, const void* bytes, size_t count) -> la_ssize_t {
     auto& receiver = *static_cast<Receiver*>(to);
     if (receiver.status.ok()) receiver.status = receiver.sink({static_cast<const char*>(bytes), count});
@@ -30,7 +30,7 @@ absl::Status Archive::Check(int code) const {
   if (!receiver_.status.ok()) return receiver_.status;
   if (code == ARCHIVE_OK) return absl::OkStatus();
   const char* words = archive_error_string(zip_);
-  return absl::InternalError(absl::StrCat("the archive cannot be written: ", words == nullptr ? "unknown" : words));
+  return absl::InternalError(absl::StrCat("cannot write the archive: ", words == nullptr ? "unknown" : words));
 }
 
 absl::Status Archive::Add(const std::string& name, std::string_view bytes) {

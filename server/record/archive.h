@@ -1,4 +1,4 @@
-// Several files as one: a zip archive that is written as it comes, uncompressed.
+// Writes several files as one: an uncompressed zip archive, streamed to a sink.
 #ifndef PHRENIC_SERVER_RECORD_ARCHIVE_H_
 #define PHRENIC_SERVER_RECORD_ARCHIVE_H_
 
@@ -12,7 +12,7 @@ struct archive;
 
 namespace phrenic::record {
 
-// Not thread-safe.
+// Not thread-safe. Methods return the sink's error, or INTERNAL.
 class Archive {
  public:
   explicit Archive(Sink sink);
@@ -21,7 +21,7 @@ class Archive {
   Archive& operator=(const Archive&) = delete;
 
   absl::Status Add(const std::string& name, std::string_view bytes);
-  // What ends the archive; call it once, at the end.
+  // Writes the archive's directory. Call once, last.
   absl::Status Finish();
 
  private:

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kTimeDigits = 12, kNumberDigits = 9;
 
-// RFC 4180: in double quotes where it has to be, and never a line of its own.
+// Returns a cell by RFC 4180: quoted if necessary, with line breaks replaced by blanks.
 std::string Cell(const std::string& text) {
   std::string line = absl::StrReplaceAll(text, {{"\n", " "}, {"\r", " "}});
   if (line.find_first_of(",\"") == std::string::npos) return line;

@@ -1,4 +1,4 @@
-// Numbers over time as comma-separated values. README.md beside this file is the format.
+// Numbers over time as comma-separated values (RFC 4180). README.md in this folder specifies the format.
 #ifndef PHRENIC_SERVER_RECORD_CSV_H_
 #define PHRENIC_SERVER_RECORD_CSV_H_
 
@@ -6,6 +6,7 @@
 
 namespace phrenic::record {
 
+// Returns a recorder that writes one row per frame and keeps nothing.
 std::unique_ptr<Recorder> MakeCsvRecorder(Settings settings);
 
 }  // namespace phrenic::record

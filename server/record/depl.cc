@@ -9,18 +9,18 @@ namespace {
 constexpr double kNanometres = 1e9;
 constexpr std::int64_t kPerMillimetre = 1'000'000;  // nanometres
 constexpr int kDecimals = 6;                        // of a millimetre: nanometres
-constexpr Eigen::Index kBetweenWords = 64;          // vertices
+constexpr Eigen::Index kBetweenReports = 64;        // vertices
 
-// Whole nanometres as millimetres with six decimals.
-void AppendMillimetres(std::int64_t nanometres, char behind, TextBlock& text) {
+// Appends an integer number of nanometres as millimetres with six decimals, and the character `after`.
+void AppendMillimetres(std::int64_t nanometres, char after, TextBlock& text) {
   if (nanometres < 0) text.Put('-');
   const std::int64_t size = nanometres < 0 ? -nanometres : nanometres;
   text.AppendInteger(size / kPerMillimetre, '.');
   std::int64_t rest = size % kPerMillimetre;
   char decimals[kDecimals];
-  for (int place = kDecimals - 1; place >= 0; --place, rest /= 10) decimals[place] = static_cast<char>('0' + rest % 10);
+  for (int digit = kDecimals - 1; digit >= 0; --digit, rest /= 10) decimals[digit] = static_cast<char>('0' + rest % 10);
   for (const char decimal : decimals) text.Put(decimal);
-  text.Put(behind);
+  text.Put(after);
 }
 
 class DeplRecorder final : public Recorder {
@@ -50,7 +50,7 @@ class DeplRecorder final : public Recorder {
     Eigen::Index written = 0;
     const absl::Status all = spool_->ForEachVertex([&](const VertexSpool::Rows& rows) {
       WriteVertex(rows);
-      if (!text_.status().ok() || ++written % kBetweenWords != 0) return text_.status();
+      if (!text_.status().ok() || ++written % kBetweenReports != 0) return text_.status();
       return report(static_cast<double>(written) / static_cast<double>(vertices_));
     });
     return all.ok() ? text_.Flush() : all;

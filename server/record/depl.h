@@ -1,4 +1,4 @@
-// Motions in the thesis' .depl format (table 4.1). README.md beside this file is the format.
+// Motions in the thesis' .depl format (table 4.1). README.md in this folder specifies the format.
 #ifndef PHRENIC_SERVER_RECORD_DEPL_H_
 #define PHRENIC_SERVER_RECORD_DEPL_H_
 
@@ -6,7 +6,8 @@
 
 namespace phrenic::record {
 
-// The format runs vertex by vertex: frames are spooled to disk and transposed there, in VertexSpool's memory.
+// Returns a recorder. The format is ordered by vertex, so frames are spooled to disk and transposed by VertexSpool,
+// which bounds the memory.
 std::unique_ptr<Recorder> MakeDeplRecorder(Settings settings);
 
 }  // namespace phrenic::record

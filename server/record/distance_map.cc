@@ -2,8 +2,8 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "server/mesh/polydata.h"
 #include "server/mesh/units.h"
-#include "server/mesh/vtp.h"
 #include "server/record/msh.h"
 #include "server/record/text_block.h"
 

@@ -1,4 +1,5 @@
-// Colour maps of a surface: each vertex with its distance to another surface. README.md beside this file is the format.
+// Distance maps: a surface with each vertex' distance to another surface, for colour mapping. README.md in this folder
+// specifies the formats.
 #ifndef PHRENIC_SERVER_RECORD_DISTANCE_MAP_H_
 #define PHRENIC_SERVER_RECORD_DISTANCE_MAP_H_
 
@@ -10,26 +11,26 @@
 namespace phrenic::record {
 
 struct DistanceMap {
-  Mesh surface;                            // at rest [m]; of triangles
+  Mesh surface;                            // triangles, at rest [m]
   std::vector<double> times;               // [s], at least one
-  std::vector<Eigen::VectorXd> distances;  // one a time, of each vertex [m], finite
+  std::vector<Eigen::VectorXd> distances;  // per time: of each vertex [m], finite
 };
 
 struct MapFormat {
-  std::string_view name;  // also the file name's ending
+  std::string_view name;  // also the file name extension, without its dot
   std::string_view description;
   absl::Status (*write)(const DistanceMap& map, const Sink& sink);
 };
 
-// The catalogue: one row a format.
+// The catalogue of formats, one row each.
 const std::vector<MapFormat>& MapFormats();
 
-// INVALID_ARGUMENT with the names there are.
+// Returns the format of that name. INVALID_ARGUMENT lists the known names.
 absl::StatusOr<MapFormat> FindMapFormat(std::string_view name);
 
-// Gmsh 2.2 text: every time as a step of the view "distance [mm]".
+// Writes Gmsh 2.2 text: one step of the view "distance [mm]" per time. Returns the sink's error.
 absl::Status WriteMshMap(const DistanceMap& map, const Sink& sink);
-// VTK's PolyData in XML: the largest over all times as the point data "distance [mm]".
+// Writes VTK XML PolyData: the maximum over all times as the point data "distance [mm]". Returns the sink's error.
 absl::Status WriteVtpMap(const DistanceMap& map, const Sink& sink);
 
 }  // namespace phrenic::record

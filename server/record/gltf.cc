@@ -19,13 +19,13 @@
 namespace phrenic::record {
 namespace {
 
-constexpr std::size_t kMostBytes = std::size_t{64} << 20;
-constexpr int kMostFrames = 1000;
-constexpr double kHalf = 0.70710678118654752;  // sine and cosine of half a quarter turn
+constexpr std::size_t kMaxBytes = std::size_t{64} << 20;
+constexpr int kMaxFrames = 1000;
+constexpr double kSinCos45 = 0.70710678118654752;  // of half the root's rotation by 90 degrees
 
 using Floats = Eigen::Matrix3Xf;
 
-// Builds the model's one buffer and what points into it.
+// Builds the model's single binary buffer with its views and accessors.
 class Builder {
  public:
   template <typename Derived>
@@ -48,7 +48,7 @@ class Builder {
     return static_cast<int>(model_.accessors.size()) - 1;
   }
 
-  // Positions and changes of them need their bounds said.
+  // glTF requires bounds on POSITION accessors.
   int AddPositions(const Floats& columns) {
     const int index =
         AddAccessor(columns, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3, TINYGLTF_TARGET_ARRAY_BUFFER);
@@ -99,11 +99,12 @@ class GltfRecorder final : public Recorder {
 
   absl::Status AddFrame(const RecordedFrame& frame) override {
     const std::size_t bytes = sizeof(float) * static_cast<std::size_t>(frame.positions.size());
-    if ((times_.size() + 1) * bytes > kMostBytes || times_.size() >= kMostFrames) {
-      return absl::ResourceExhaustedError(absl::StrFormat(
-          "a .glb holds %d MiB of key frames at most, or %d of them, and frame %d is beyond that: record fewer frames "
-          "a second, a shorter time or fewer bodies, or as .pvd",
-          kMostBytes >> 20, kMostFrames, times_.size() + 1));
+    if ((times_.size() + 1) * bytes > kMaxBytes || times_.size() >= kMaxFrames) {
+      return absl::ResourceExhaustedError(
+          absl::StrFormat("a .glb holds at most %d MiB of key frames, and at most %d of them; frame %d exceeds that: "
+                          "record fewer frames "
+                          "per second, a shorter time or fewer bodies, or use .pvd",
+                          kMaxBytes >> 20, kMaxFrames, times_.size() + 1));
     }
     times_.push_back(static_cast<float>(frame.time - first_time_.value_or(frame.time)));
     if (!first_time_) first_time_ = frame.time, first_ = frame.positions;
@@ -123,11 +124,11 @@ class GltfRecorder final : public Recorder {
   }
 
  private:
-  // From LPS to glTF's axes, +y up and +z towards the viewer, who looks at the chest: a quarter turn about x.
+  // Rotates LPS to glTF's axes (+y up, +z towards the viewer, who faces the chest): -90 degrees about x.
   void AddRoot() {
     tinygltf::Node root;
     root.name = "LPS to y up";
-    root.rotation = {-kHalf, 0, 0, kHalf};
+    root.rotation = {-kSinCos45, 0, 0, kSinCos45};
     builder_.model().nodes.push_back(root);
     tinygltf::Scene scene;
     scene.nodes = {0};
@@ -157,7 +158,7 @@ class GltfRecorder final : public Recorder {
     model.materials.push_back(material);
   }
 
-  // The first frame, and each other frame's change from it as a target.
+  // The first frame is the mesh; each other frame's displacement from it is a morph target.
   tinygltf::Primitive PrimitiveOf(const Mesh& mesh, Eigen::Index first) {
     const Eigen::Index count = mesh.vertices.cols();
     const bool surface = mesh.triangles.cols() > 0;
@@ -169,7 +170,7 @@ class GltfRecorder final : public Recorder {
     if (surface) {
       Floats normals = VertexNormals(at_first, mesh.triangles).cast<float>();
       for (auto normal : normals.colwise()) {
-        // Of a vertex in no triangle: glTF takes unit vectors alone.
+        // A vertex without a triangle; glTF requires unit vectors.
         if (normal.isZero()) normal = Eigen::Vector3f::UnitZ();
       }
       primitive.attributes["NORMAL"] = builder_.AddAccessor(normals, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3,
@@ -186,7 +187,7 @@ class GltfRecorder final : public Recorder {
     return primitive;
   }
 
-  // At each key frame its own target alone has weight 1, and viewers go between them linearly.
+  // Each key frame's own target has weight 1, all others 0; viewers interpolate linearly.
   void AddAnimation() {
     const auto frames = static_cast<Eigen::Index>(times_.size());
     Eigen::MatrixXf weights = Eigen::MatrixXf::Zero(frames - 1, frames);
@@ -208,7 +209,7 @@ class GltfRecorder final : public Recorder {
     builder_.model().animations.push_back(animation);
   }
 
-  // Flesh, bone, lung and what else there is; red, green, blue and opacity.
+  // Muscle, bone, lung, other; red, green, blue, opacity.
   static constexpr std::array<std::array<double, 4>, 4> kColours = {
       {{0.72, 0.26, 0.22, 1}, {0.89, 0.85, 0.75, 1}, {0.85, 0.58, 0.60, 1}, {0.45, 0.57, 0.72, 1}}};
 
@@ -217,7 +218,7 @@ class GltfRecorder final : public Recorder {
   std::optional<double> first_time_;
   Points first_;
   std::vector<float> times_;
-  std::vector<Floats> changes_;  // of each frame from the first [m]
+  std::vector<Floats> changes_;  // displacement of each frame from the first [m]
   Builder builder_;
 };
 

@@ -1,5 +1,5 @@
-// Motions as glTF 2.0 in one binary file (.glb): an animation of morph targets. README.md beside this file is the
-// format.
+// Motions as binary glTF 2.0 (.glb; Khronos, "glTF 2.0 Specification"): an animation of morph targets. README.md in
+// this folder specifies the format.
 #ifndef PHRENIC_SERVER_RECORD_GLTF_H_
 #define PHRENIC_SERVER_RECORD_GLTF_H_
 
@@ -7,8 +7,8 @@
 
 namespace phrenic::record {
 
-// The file's head tells its length, and viewers hold every frame at once, so that this does too: RESOURCE_EXHAUSTED
-// past 64 MiB of key frames, or 1,000 of them.
+// Returns a recorder that keeps all frames in memory, because the file's header has its length and viewers load every
+// frame. AddFrame returns RESOURCE_EXHAUSTED beyond 64 MiB of key frames or 1,000 of them.
 std::unique_ptr<Recorder> MakeGltfRecorder(Settings settings);
 
 }  // namespace phrenic::record

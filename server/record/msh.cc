@@ -10,9 +10,12 @@ constexpr int kDigits = 6, kPositionDigits = 9;
 constexpr int kGmshLine = 1, kGmshTriangle = 2;
 constexpr int kCurve = 1, kSurface = 2;  // dimensions of physical groups
 
-Eigen::Index Shapes(const Mesh& mesh) { return mesh.triangles.cols() > 0 ? mesh.triangles.cols() : mesh.edges.cols(); }
+// Returns the number of the mesh's elements: triangles, else edges.
+Eigen::Index ElementsOf(const Mesh& mesh) {
+  return mesh.triangles.cols() > 0 ? mesh.triangles.cols() : mesh.edges.cols();
+}
 
-// The name as it may stand between double quotes on one line.
+// Replaces quotation marks and control characters, which the format cannot quote.
 std::string Quotable(std::string name) {
   for (char& c : name) {
     if (c == '"' || static_cast<unsigned char>(c) < ' ') c = '_';
@@ -40,7 +43,8 @@ class MshRecorder final : public Recorder {
 
   absl::Status AddFrame(const RecordedFrame& frame) override {
     if (frames_ == 0) first_ = displacements_ ? frame.positions : Points::Zero(3, frame.positions.cols());
-    if (frame.positions.cols() != first_.cols()) return absl::InternalError("a frame has another number of vertices");
+    if (frame.positions.cols() != first_.cols())
+      return absl::InternalError("a frame has a different number of vertices than the first one");
     text_.Append("$NodeData\n1\n\"%s\"\n1\n%.9g\n3\n%d\n3\n%d\n", displacements_ ? "displacement" : "position",
                  frame.time, frames_, first_.cols());
     const int digits = displacements_ ? kDigits : kPositionDigits;
@@ -73,12 +77,12 @@ class MshRecorder final : public Recorder {
 
   void WriteElements(const std::vector<RecordedBody>& bodies) {
     Eigen::Index elements = 0;
-    for (const RecordedBody& body : bodies) elements += Shapes(body.mesh);
+    for (const RecordedBody& body : bodies) elements += ElementsOf(body.mesh);
     text_.Append("$Elements\n%d\n", elements);
     Eigen::Index number = 0, first = 1;
     for (size_t b = 0; b < bodies.size(); ++b) {
       const Mesh& mesh = bodies[b].mesh;
-      for (Eigen::Index i = 0; i < Shapes(mesh); ++i) {
+      for (Eigen::Index i = 0; i < ElementsOf(mesh); ++i) {
         if (mesh.triangles.cols() > 0) {
           text_.Append("%d %d 2 %d %d %d %d %d\n", ++number, kGmshTriangle, b + 1, b + 1, first + mesh.triangles(0, i),
                        first + mesh.triangles(1, i), first + mesh.triangles(2, i));
@@ -94,7 +98,7 @@ class MshRecorder final : public Recorder {
 
   const bool displacements_;
   TextBlock text_;
-  Points first_;  // zero where positions are written
+  Points first_;  // [m]; zero if positions are written
   int frames_ = 0;
 };
 

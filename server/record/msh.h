@@ -1,4 +1,4 @@
-// Motions as Gmsh 2.2 text with NodeData. README.md beside this file is the format.
+// Motions as Gmsh MSH 2.2 text with $NodeData. README.md in this folder specifies the format.
 #ifndef PHRENIC_SERVER_RECORD_MSH_H_
 #define PHRENIC_SERVER_RECORD_MSH_H_
 
@@ -6,7 +6,7 @@
 
 namespace phrenic::record {
 
-// Holds one frame, the first; every other one goes to the sink as it comes.
+// Returns a recorder that keeps one frame, the first, and streams the others to the sink.
 std::unique_ptr<Recorder> MakeMshRecorder(Settings settings);
 
 }  // namespace phrenic::record

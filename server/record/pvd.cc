@@ -2,8 +2,8 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "server/mesh/polydata.h"
 #include "server/mesh/units.h"
-#include "server/mesh/vtp.h"
 #include "server/record/archive.h"
 
 namespace phrenic::record {
@@ -11,8 +11,8 @@ namespace {
 
 Eigen::Index LinesOf(const Mesh& mesh) { return mesh.triangles.cols() > 0 ? 0 : mesh.edges.cols(); }
 
-// All bodies as one surface; the cell array "body" tells them apart.
-PolyData Joined(const std::vector<RecordedBody>& bodies) {
+// Returns all bodies as one PolyData; the cell array "body" holds each cell's body number.
+PolyData Merge(const std::vector<RecordedBody>& bodies) {
   Eigen::Index points = 0, triangles = 0, lines = 0;
   for (const RecordedBody& body : bodies) {
     points += body.mesh.vertices.cols();
@@ -43,7 +43,7 @@ class PvdRecorder final : public Recorder {
       : moved_(settings.values == Values::kPositions), stem_(std::move(settings.stem)), archive_(settings.sink) {}
 
   absl::Status Begin(const Recording& recording) override {
-    data_ = Joined(recording.bodies);
+    data_ = Merge(recording.bodies);
     first_ = data_.points;
     data_.points *= kMillimetresAMetre;
     data_.point_arrays.push_back({"displacement [mm]", Points::Zero(3, first_.cols())});
@@ -69,7 +69,7 @@ class PvdRecorder final : public Recorder {
   }
 
  private:
-  const bool moved_;  // points are where they go, not where they are at first
+  const bool moved_;  // true if points are the current positions, false for those of the first frame
   const std::string stem_;
   Archive archive_;
   PolyData data_;

@@ -1,4 +1,4 @@
-// Motions for ParaView: a .vtp a frame, and the .pvd that has their times. README.md beside this file is the format.
+// Motions for ParaView: one .vtp per frame and a .pvd with their times. README.md in this folder specifies the format.
 #ifndef PHRENIC_SERVER_RECORD_PVD_H_
 #define PHRENIC_SERVER_RECORD_PVD_H_
 
@@ -6,7 +6,7 @@
 
 namespace phrenic::record {
 
-// Holds one frame, the first; every other one goes to the sink as it comes, and the .pvd last.
+// Returns a recorder that keeps one frame, the first, streams the others to the sink, and writes the .pvd last.
 std::unique_ptr<Recorder> MakePvdRecorder(Settings settings);
 
 }  // namespace phrenic::record

@@ -1,4 +1,5 @@
-// What files hold of a motion: every recorded frame, in order, none skipped.
+// Recorders write motions to files: every recorded frame, in order, none skipped. Viewers, which may skip frames, are
+// served by server/stream.
 #ifndef PHRENIC_SERVER_RECORD_RECORDER_H_
 #define PHRENIC_SERVER_RECORD_RECORDER_H_
 
@@ -14,16 +15,16 @@
 
 namespace phrenic::record {
 
-// Takes the next bytes of the file; an error stops the recording.
+// Receives the next bytes of the file. An error stops the recording.
 using Sink = std::function<absl::Status(std::string_view bytes)>;
 
-// One body as it goes into the file.
+// A body in the file.
 struct RecordedBody {
   std::string name;
   Mesh mesh;  // at the first frame [m]
 };
 
-// A number beside the positions: "tip x" [mm].
+// A scalar recorded with each frame, such as "tip x" [mm].
 struct Column {
   std::string name, unit;
 };
@@ -35,48 +36,49 @@ struct Recording {
 
 struct RecordedFrame {
   double time;                         // [s]
-  const Points& positions;             // of all bodies' vertices one after the other, 3 x n [m]
-  const std::vector<double>& numbers;  // one a column
+  const Points& positions;             // of the vertices of all bodies, concatenated (3 x n) [m]
+  const std::vector<double>& numbers;  // one per column
 };
 
-// Writes one motion of one or more bodies to a sink. Not thread-safe. `Begin` once, `AddFrame` for each frame, `End`
-// once.
+// Writes one motion of one or more bodies to a sink. Call Begin once, AddFrame for each frame, End once. Methods return
+// the sink's first error. Not thread-safe.
 class Recorder {
  public:
   virtual ~Recorder() = default;
   virtual absl::Status Begin(const Recording& recording) = 0;
   virtual absl::Status AddFrame(const RecordedFrame& frame) = 0;
-  // `report` hears what share is done of what is left to write, and may end it by an error.
+  // Writes the rest. Calls `report` with the share of it that is written, in [0, 1]; an error from it cancels.
   virtual absl::Status End(const std::function<absl::Status(double share)>& report) = 0;
 };
 
-// What a vertex' numbers are in the file.
+// What the file stores for each vertex.
 enum class Values { kPositions, kDisplacements };
 
 struct Settings {
   Sink sink;
-  Values values = Values::kPositions;  // one of the format's
-  std::string stem = "motion";         // of the names of files in an archive
-  std::string spool_folder = {};       // for what memory should not hold
+  Values values = Values::kPositions;  // one of Format::values, if there are any
+  std::string stem = "motion";         // of file names in an archive
+  std::string spool_folder = {};       // for temporary files
 };
 
 struct Format {
   std::string name;
-  std::string ending;  // of the file's name
+  std::string ending;  // file name extension, without its dot
   std::string description;
-  std::vector<Values> values = {};  // the first is the format's own; empty where there is no choice
-  // Estimates, by which a full disk is foreseen: of the file and of the spool, for each vertex and frame.
+  std::vector<Values> values = {};  // the first is the default; empty if there is no choice
+  // Estimated size of the file and of the spool per vertex and frame [bytes], to reject exports that do not fit the
+  // disk.
   std::int64_t file_bytes, spool_bytes;
-  double frames_a_breath = 0;  // where it is not said how many; 0 leaves it to the frames a second
-  bool numbers_only = false;   // has columns and no bodies
-  bool instant = false;        // has the last frame alone
+  double frames_a_breath = 0;  // default frames per breath; 0: the default frame rate applies
+  bool numbers_only = false;   // only columns, no bodies
+  bool instant = false;        // only the last frame
   std::function<std::unique_ptr<Recorder>(Settings settings)> make = {};
 };
 
-// The catalogue of motions: one row a format.
+// The catalogue of motion formats, one row each.
 const std::vector<Format>& Formats();
 
-// INVALID_ARGUMENT with the names there are.
+// Returns the format of that name. INVALID_ARGUMENT lists the known names.
 absl::StatusOr<Format> FindFormat(const std::vector<Format>& formats, std::string_view name);
 
 }  // namespace phrenic::record

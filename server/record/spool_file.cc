@@ -14,27 +14,27 @@
 namespace phrenic::record {
 namespace {
 
-// Not all of it: others write to the disk as well.
+// Share of the free space that may be used; other programs write to the disk too.
 constexpr double kUsable = 0.95;
 constexpr double kMegabyte = 1e6;
 
 absl::Status Cannot(const std::string& what, const std::string& folder, int error) {
   const std::string words = absl::StrCat("cannot ", what, " in the spool folder ", folder, ": ", std::strerror(error),
-                                         "; choose another one by --spool DIR");
+                                         "; choose another one with --spool DIR");
   if (error == ENOENT || error == ENOTDIR) return absl::NotFoundError(words);
   return error == EACCES ? absl::PermissionDeniedError(words) : absl::InternalError(words);
 }
 
 absl::Status Full(const std::string& folder, double needed, double free) {
   return absl::ResourceExhaustedError(
-      absl::StrFormat("the disk has too little room: %.1f MB are needed in the spool folder %s, and %.1f MB are free; "
-                      "make room, record fewer frames, or choose another folder by --spool DIR",
+      absl::StrFormat("too little disk space: %.1f MB are needed in the spool folder %s, and %.1f MB are free; "
+                      "free some space, record fewer frames, or choose another folder with --spool DIR",
                       needed / kMegabyte, folder, free / kMegabyte));
 }
 
 absl::StatusOr<double> Free(const std::string& folder) {
   struct statvfs disk {};
-  if (statvfs(folder.c_str(), &disk) != 0) return Cannot("look", folder, errno);
+  if (statvfs(folder.c_str(), &disk) != 0) return Cannot("read the free space", folder, errno);
   return static_cast<double>(disk.f_bavail) * static_cast<double>(disk.f_frsize);
 }
 
@@ -54,12 +54,12 @@ absl::Status CheckRoom(const std::string& folder, std::int64_t bytes) {
 
 absl::StatusOr<std::unique_ptr<SpoolFile>> SpoolFile::Open(const std::string& folder) {
   int descriptor = open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-  if (descriptor < 0 && (errno == EOPNOTSUPP || errno == EISDIR)) {  // a file system without such files
+  if (descriptor < 0 && (errno == EOPNOTSUPP || errno == EISDIR)) {  // the file system does not support unnamed files
     std::string name = folder + "/phrenic-XXXXXX";
     descriptor = mkostemp(name.data(), O_CLOEXEC);
     if (descriptor >= 0) unlink(name.c_str());
   }
-  if (descriptor < 0) return Cannot("make a file", folder, errno);
+  if (descriptor < 0) return Cannot("create a file", folder, errno);
   return std::unique_ptr<SpoolFile>(new SpoolFile(folder, descriptor));
 }
 

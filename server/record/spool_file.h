@@ -1,4 +1,5 @@
-// Files without a name: work of more bytes than memory should hold, gone when it is let go, however the program ends.
+// Unnamed temporary files (O_TMPFILE) for data that should not be in memory. The kernel deletes them when they are
+// closed, even if the program crashes.
 #ifndef PHRENIC_SERVER_RECORD_SPOOL_FILE_H_
 #define PHRENIC_SERVER_RECORD_SPOOL_FILE_H_
 
@@ -12,25 +13,25 @@
 
 namespace phrenic::record {
 
-// The folder for spool files where none is said: TMPDIR, or /var/tmp, which is a disk where /tmp may be memory.
+// Returns TMPDIR, or /var/tmp, which is on disk where /tmp may be in memory.
 std::string DefaultSpoolFolder();
 
-// RESOURCE_EXHAUSTED names the folder, the bytes needed and the bytes free where there is not that much room; NOT_FOUND
-// where there is no such folder.
+// Checks that `bytes` fit into 95 % of the free space. RESOURCE_EXHAUSTED names the folder, the space needed and the
+// free space; NOT_FOUND if the folder does not exist.
 absl::Status CheckRoom(const std::string& folder, std::int64_t bytes);
 
-// One thread appends; any number may read what was appended before.
+// One thread may append while others read what was appended before.
 class SpoolFile {
  public:
-  // NOT_FOUND or PERMISSION_DENIED names the folder.
+  // Creates a file. NOT_FOUND or PERMISSION_DENIED names the folder.
   static absl::StatusOr<std::unique_ptr<SpoolFile>> Open(const std::string& folder);
   ~SpoolFile();
   SpoolFile(const SpoolFile&) = delete;
   SpoolFile& operator=(const SpoolFile&) = delete;
 
-  // RESOURCE_EXHAUSTED as CheckRoom where the disk is full.
+  // RESOURCE_EXHAUSTED, as CheckRoom, if the disk is full.
   absl::Status Append(std::string_view bytes);
-  // Fills `to` from `offset` on; OUT_OF_RANGE where the file has not that many bytes.
+  // Reads `count` bytes from `offset` into `to`. OUT_OF_RANGE if the file is shorter.
   absl::Status Read(std::int64_t offset, char* to, std::size_t count) const;
   std::int64_t size() const { return size_; }
 

@@ -1,4 +1,4 @@
-// Text that goes to a sink in blocks.
+// Buffered text output to a sink.
 #ifndef PHRENIC_SERVER_RECORD_TEXT_BLOCK_H_
 #define PHRENIC_SERVER_RECORD_TEXT_BLOCK_H_
 
@@ -12,7 +12,8 @@
 
 namespace phrenic::record {
 
-// Gathers text and hands it on in blocks of about 64 KiB. After the sink's first error nothing more is handed on.
+// Collects text and passes it to the sink in blocks of about 64 KiB. Stops passing text after the sink's first error.
+// Not thread-safe.
 class TextBlock {
  public:
   explicit TextBlock(Sink sink) : sink_(std::move(sink)) {}
@@ -23,18 +24,18 @@ class TextBlock {
     if (text_.size() >= kBlock) (void)Flush();
   }
 
-  // A number as "%.*g" writes it, and a character behind it; several times as fast.
-  void AppendNumber(double number, int digits, char behind) {
+  // Appends a number as "%.*g" formats it, and the character `after`. Several times as fast as Append.
+  void AppendNumber(double number, int digits, char after) {
     char text[48];
     const auto end = std::to_chars(text, text + sizeof text, number, std::chars_format::general, digits).ptr;
     text_.append(text, end);
-    Put(behind);
+    Put(after);
   }
 
-  void AppendInteger(std::int64_t integer, char behind) {
+  void AppendInteger(std::int64_t integer, char after) {
     char text[24];
     text_.append(text, std::to_chars(text, text + sizeof text, integer).ptr);
-    Put(behind);
+    Put(after);
   }
 
   void Put(char character) {
@@ -42,7 +43,7 @@ class TextBlock {
     if (text_.size() >= kBlock) (void)Flush();
   }
 
-  // Hands on what there is; the first error of all.
+  // Passes the rest to the sink. Returns the sink's first error so far.
   absl::Status Flush() {
     if (status_.ok() && !text_.empty()) status_ = sink_(text_);
     text_.clear();

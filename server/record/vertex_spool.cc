@@ -6,7 +6,7 @@
 namespace phrenic::record {
 namespace {
 
-// Rows of one block: all tiles' shares of it are in memory together.
+// Returns the number of rows that fit into a buffer.
 Eigen::Index RowsIn(std::size_t bytes) { return static_cast<Eigen::Index>(bytes / VertexSpool::kRow); }
 
 }  // namespace
@@ -34,7 +34,7 @@ absl::Status VertexSpool::Add(const Rows& frame) {
   return frames_ % tile_frames_ == 0 ? WriteTile() : absl::OkStatus();
 }
 
-// The last tile may be short: its rows are moved together first.
+// Appends the tile to the file. Compacts the rows of a partial last tile first.
 absl::Status VertexSpool::WriteTile() {
   const Eigen::Index rows = InTile((frames_ - 1) / tile_frames_);
   for (Eigen::Index i = 1; rows < tile_frames_ && i < vertices_; ++i) {
@@ -71,9 +71,9 @@ absl::Status VertexSpool::ForEachVertex(const std::function<absl::Status(const R
   tile_ = {};
   Rows rows(3, frames_);
   const Eigen::Index fit = RowsIn(buffer_bytes_) / std::max<Eigen::Index>(1, frames_);
-  const Eigen::Index most = std::max<Eigen::Index>(1, fit);
-  for (Eigen::Index first = 0; first < vertices_; first += most) {
-    const Eigen::Index count = std::min(most, vertices_ - first);
+  const Eigen::Index max_count = std::max<Eigen::Index>(1, fit);
+  for (Eigen::Index first = 0; first < vertices_; first += max_count) {
+    const Eigen::Index count = std::min(max_count, vertices_ - first);
     if (absl::Status status = ReadBlock(first, count); !status.ok()) return status;
     for (Eigen::Index i = 0; i < count; ++i) {
       Gather(i, count, rows);

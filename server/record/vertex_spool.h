@@ -1,4 +1,4 @@
-// Positions that come frame by frame and are read vertex by vertex: transposed on disk.
+// Out-of-core transposition: positions are added frame by frame and read vertex by vertex.
 #ifndef PHRENIC_SERVER_RECORD_VERTEX_SPOOL_H_
 #define PHRENIC_SERVER_RECORD_VERTEX_SPOOL_H_
 
@@ -12,12 +12,12 @@
 
 namespace phrenic::record {
 
-// Frames are gathered in tiles of some frames and all vertices, and each full tile is appended to the file vertex by
-// vertex; a block of vertices is then one read a tile. Memory is two buffers of about `buffer_bytes`, whatever the
-// number of frames, but for one vertex' rows. Not thread-safe.
+// Collects frames in tiles of several frames and all vertices and appends each full tile to the file ordered by vertex.
+// A block of consecutive vertices then takes one read per tile. Memory: two buffers of about `buffer_bytes` and the
+// rows of one vertex, independent of the number of frames. Not thread-safe.
 class VertexSpool {
  public:
-  using Rows = Eigen::Matrix<std::int64_t, 3, Eigen::Dynamic>;  // a column a frame, or a vertex
+  using Rows = Eigen::Matrix<std::int64_t, 3, Eigen::Dynamic>;  // one column per frame, or per vertex
   static constexpr std::size_t kBuffer = std::size_t{32} << 20;
   static constexpr std::int64_t kRow = 3 * sizeof(std::int64_t);  // [bytes]
 
@@ -25,21 +25,21 @@ class VertexSpool {
   static absl::StatusOr<std::unique_ptr<VertexSpool>> Open(const std::string& folder, Eigen::Index vertices,
                                                            std::size_t buffer_bytes = kBuffer);
 
-  // A column a vertex.
+  // Adds a frame, one column per vertex. Errors as SpoolFile::Append.
   absl::Status Add(const Rows& frame);
   std::int64_t frames() const { return frames_; }
-  // Each vertex' rows, a column a frame, in the order of the vertices; the first error of `visit` ends it. No frame is
-  // added afterwards.
+  // Calls `visit` with the rows of each vertex in order, one column per frame. Stops at its first error. Call once; no
+  // frame may be added afterwards.
   absl::Status ForEachVertex(const std::function<absl::Status(const Rows& rows)>& visit);
 
  private:
   VertexSpool(std::unique_ptr<SpoolFile> file, Eigen::Index vertices, std::size_t buffer_bytes);
 
-  // Rows that one tile has of each vertex.
+  // Returns the number of frames in a tile.
   Eigen::Index InTile(Eigen::Index tile) const { return std::min(tile_frames_, frames_ - tile * tile_frames_); }
   absl::Status WriteTile();
   absl::Status ReadBlock(Eigen::Index first, Eigen::Index count);
-  // Of the block's vertex `at`, which has `count` vertices.
+  // Copies the rows of vertex `at` of the block, which has `count` vertices.
   void Gather(Eigen::Index at, Eigen::Index count, Rows& rows) const;
 
   const std::unique_ptr<SpoolFile> file_;

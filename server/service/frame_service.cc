@@ -39,7 +39,7 @@ absl::StatusOr<stream::ViewerOptions> ReadOptions(const Model& model, const stre
   if (!bodies.ok()) return bodies.status();
   if (request.numbers_only()) {
     return stream::ViewerOptions{.max_fps = request.max_fps(),
-                                 .form = {.numbers_only = true},
+                                 .encoding = {.numbers_only = true},
                                  .max_unacked = request.max_unacked_frames(),
                                  .watch_id = request.watch_id()};
   }
@@ -47,11 +47,12 @@ absl::StatusOr<stream::ViewerOptions> ReadOptions(const Model& model, const stre
   const bool bounded = request.has_max_error_mm();
   return stream::ViewerOptions{
       .max_fps = request.max_fps(),
-      .form = {.numbers_only = request.numbers_only(),
-               .codec = raw ? v1::CODEC_RAW : request.codec(),
-               .rung = bounded && !raw ? stream::RungWithin(request.max_error_mm()) : stream::kDefaultRung,
-               .chosen = !request.bodies().empty(),
-               .bodies = *std::move(bodies)},
+      .encoding = {.numbers_only = request.numbers_only(),
+                   .codec = raw ? v1::CODEC_RAW : request.codec(),
+                   .bound_level =
+                       bounded && !raw ? stream::BoundLevelWithin(request.max_error_mm()) : stream::kDefaultBoundLevel,
+                   .chosen = !request.bodies().empty(),
+                   .bodies = *std::move(bodies)},
       .max_unacked = request.max_unacked_frames(),
       .may_coarsen = !raw && !bounded,
       .watch_id = request.watch_id()};

@@ -6,6 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "server/mechanics/skinning/body_points.h"
 
 namespace phrenic::session {
 namespace {

@@ -4,6 +4,7 @@
 
 #include "absl/strings/str_format.h"
 #include "server/mechanics/pulls.h"
+#include "server/mechanics/stability/diagnosis.h"
 #include "server/mechanics/step/step.h"
 
 namespace phrenic::session {
@@ -23,7 +24,7 @@ Run::Run(std::shared_ptr<const Model> model, v1::Parameters parameters, State st
 absl::Status Run::Step() {
   if (divergence_.has_value()) return absl::FailedPreconditionError(Describe(*divergence_));
   const double dt = parameters_.time_step();
-  checkpoint_.Note(parameters_, state_);
+  checkpoint_.Note(*model_, parameters_, state_);
   absl::Status stepped = phrenic::Step(*model_, parameters_, dt, state_, work_);
   if (stepped.ok()) return stepped;
   State before = checkpoint_.StateBeforeLastStep(*model_, parameters_, dt, work_);

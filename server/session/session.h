@@ -16,6 +16,7 @@
 #include "absl/synchronization/mutex.h"
 #include "phrenic/v1/saved.pb.h"
 #include "phrenic/v1/session.pb.h"
+#include "server/mechanics/measures/readings.h"
 #include "server/mechanics/pulls.h"
 #include "server/session/control.h"
 #include "server/session/idempotency_cache.h"

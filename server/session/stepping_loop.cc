@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "server/mechanics/measures/readings.h"
 #include "server/schema/thread_cpu.h"
 
 namespace phrenic::session {

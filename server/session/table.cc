@@ -7,6 +7,7 @@
 #include "server/mechanics/compile/compile.h"
 #include "server/mechanics/compile/presets.h"
 #include "server/mechanics/pulls.h"
+#include "server/mechanics/stability/largest_step.h"
 #include "server/schema/id.h"
 #include "server/schema/names.h"
 #include "server/schema/schema.h"

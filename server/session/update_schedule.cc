@@ -4,6 +4,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/mechanics/compile/compile.h"
+#include "server/mechanics/stability/largest_step.h"
 
 namespace phrenic::session {
 

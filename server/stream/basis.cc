@@ -7,7 +7,7 @@
 namespace phrenic::stream {
 namespace {
 
-// Of an encoded shape [m]: frames are put together from what comes out, so that it costs no exactness.
+// Error bound of an encoded shape [m]. Frames are combined from decoded shapes, so it does not add to their error.
 constexpr double kBound = 1e-5;
 constexpr double kSmallest = 1e-6;  // root mean square of a shape over the displacements [m]
 
@@ -34,7 +34,7 @@ std::vector<Floats> FindShapes(const std::vector<Floats>& displacements) {
   for (Eigen::Index k = count - 1; k >= 0 && static_cast<int>(shapes.size()) < kMostShapes; --k) {
     const double variance = solver.eigenvalues()[k];
     if (!(variance > kSmallest * kSmallest * numbers)) break;
-    // u = A v / s; its part in displacement j is s v_j, so that A v times the largest v_j is as large as it was.
+    // u = A v / s has the coefficient s v_j in displacement j, so A v max_j |v_j| has its largest amplitude.
     const Eigen::VectorXd v = solver.eigenvectors().col(k);
     const double largest = v.cwiseAbs().maxCoeff();
     Floats& shape = shapes.emplace_back(Floats::Zero(3, displacements.front().cols()));

@@ -1,4 +1,4 @@
-// The shapes in which bodies were seen to move, as they travel and as both ends have them.
+// The basis of CODEC_BASIS: displacement shapes that frames are linear combinations of.
 #ifndef PHRENIC_SERVER_STREAM_BASIS_H_
 #define PHRENIC_SERVER_STREAM_BASIS_H_
 
@@ -7,25 +7,26 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "server/stream/codec.h"
+#include "server/stream/codecs/codec.h"
 
 namespace phrenic::stream {
 
 // Immutable once shared.
 struct Basis {
   std::int64_t epoch = 0;
-  std::vector<std::string> encoded;  // CODEC_PREDICTED of rest + shape
-  std::vector<Floats> shapes;        // as they come out of that, so that both ends have the same bits [m]
+  std::vector<std::string> encoded;  // rest + shape, encoded with CODEC_PREDICTED
+  std::vector<Floats> shapes;        // decoded from `encoded`, so that server and viewer have the same bits [m]
 };
 
 inline constexpr int kMostShapes = 8;
 
-// Proper orthogonal decomposition of displacements, by the method of snapshots (Sirovich 1987): at most kMostShapes,
-// the largest first, each as large as it was in any of them; none whose root mean square is below a micrometre.
+// Returns the proper orthogonal decomposition of displacements [m] by the method of snapshots (Sirovich 1987): at most
+// kMostShapes, in descending order, each scaled to its largest amplitude in any snapshot. Omits shapes whose root mean
+// square is below 1e-6 m.
 std::vector<Floats> FindShapes(const std::vector<Floats>& displacements);
 
-// Each shape through `predicted`, the codec of CODEC_PREDICTED for all streamed vertices. OUT_OF_RANGE where that
-// cannot hold one.
+// Encodes the shapes with `predicted`, the codec of CODEC_PREDICTED for all streamed vertices. OUT_OF_RANGE if a shape
+// exceeds its range.
 absl::StatusOr<Basis> MakeBasis(const Codec& predicted, const Floats& rest, const std::vector<Floats>& shapes,
                                 std::int64_t epoch);
 

@@ -8,10 +8,10 @@ namespace {
 
 constexpr absl::Duration kBetweenLooks = absl::Milliseconds(100);
 constexpr std::size_t kMostSeen = 24;  // frames: half a quiet breath
-constexpr double kMuch = 5e-5;         // [m]: half of the viewers' bound
+constexpr double kMuch = 5e-5;         // residual of a poor approximation [m]: half of the viewers' bound
 constexpr absl::Duration kFirstPatience = absl::Seconds(2), kLongestPatience = absl::Seconds(60);
 
-// Frames that are new, and the shapes that there were, so that a motion seen before is not forgotten.
+// New frames and the previous shapes, so that the new basis still spans earlier motion.
 std::shared_ptr<const Basis> MakeFrom(const Floats& rest, const Codec& predicted, std::vector<Floats> seen,
                                       const Basis* before) {
   if (before != nullptr) seen.insert(seen.end(), before->shapes.begin(), before->shapes.end());
@@ -23,10 +23,10 @@ std::shared_ptr<const Basis> MakeFrom(const Floats& rest, const Codec& predicted
 }  // namespace
 
 BasisMaker::BasisMaker(const RestShape& shape, std::shared_ptr<const Codec> predicted)
-    : rest_(shape.rest), predicted_(std::move(predicted)), patience_(kFirstPatience) {}
+    : rest_(shape.rest), predicted_(std::move(predicted)), interval_(kFirstPatience) {}
 
-// What is left after each shape's own part in turn: shapes are nearly at right angles.
-bool BasisMaker::LeavesMuch(const Floats& moved) const {
+// The residual after projecting onto each shape in turn: shapes are nearly orthogonal.
+bool BasisMaker::IsPoorlyApproximated(const Floats& moved) const {
   Floats left = moved;
   if (newest_ != nullptr) {
     for (const Floats& shape : newest_->shapes) {
@@ -41,15 +41,15 @@ void BasisMaker::See(const Floats& positions, absl::Time now) {
   if (now < next_look_) return;
   next_look_ = now + kBetweenLooks;
   Floats moved = positions - rest_;
-  if (!LeavesMuch(moved)) return;
+  if (!IsPoorlyApproximated(moved)) return;
   if (seen_.size() == kMostSeen) seen_.erase(seen_.begin());
   seen_.push_back(std::move(moved));
   if (seen_.size() == kMostSeen && now >= next_basis_ && !making_.valid()) Make(now);
 }
 
 void BasisMaker::Make(absl::Time now) {
-  next_basis_ = now + patience_;
-  patience_ = std::min(2 * patience_, kLongestPatience);
+  next_basis_ = now + interval_;
+  interval_ = std::min(2 * interval_, kLongestPatience);
   making_ = std::async(std::launch::async, [rest = rest_, predicted = predicted_, seen = std::exchange(seen_, {}),
                                             before = newest_]() mutable {
     return MakeFrom(rest, *predicted, std::move(seen), before.get());

@@ -5,11 +5,11 @@
 namespace phrenic::stream {
 namespace {
 
-constexpr absl::Duration kLate = absl::Milliseconds(150);  // beyond the quickest acknowledgement: frames are queueing
-constexpr double kFew = 12;                                // frames a second below which the bound grows
-constexpr double kRoom = 18;                               // and above which a finer one is tried
-constexpr absl::Duration kLook = absl::Milliseconds(500);  // between two changes: as long as one takes to show
-constexpr absl::Duration kMemory = absl::Seconds(5);       // how long a line counts as full after frames queued on it
+constexpr absl::Duration kLate = absl::Milliseconds(150);  // over the fastest acknowledgement: frames queue
+constexpr double kFew = 12;                                // frames a second: below, the bound grows
+constexpr double kRoom = 18;                               // frames a second: above, a finer bound is tried
+constexpr absl::Duration kLook = absl::Milliseconds(500);  // between two adaptations: an effect shows within it
+constexpr absl::Duration kMemory = absl::Seconds(5);       // a connection counts as congested after frames queued
 constexpr absl::Duration kShortest = absl::Seconds(5), kLongest = absl::Seconds(60);
 
 }  // namespace
@@ -52,18 +52,18 @@ void Credit::Adapt(absl::Duration delay, absl::Time now) {
     ++allowed_;
   } else if (few) {
     Coarsen(now);
-  } else if (rung_ > options_.rung && (pace > kRoom || !wanted_more) && now - coarsened_ > patience_) {
-    --rung_;
+  } else if (bound_level_ > options_.bound_level && (pace > kRoom || !wanted_more) && now - coarsened_ > interval_) {
+    --bound_level_;
     coarsened_ = now;
   }
 }
 
-// A line that has once been too thin for a bound is tried with it less and less often.
+// A bound that congested the connection before is retried at growing intervals.
 void Credit::Coarsen(absl::Time now) {
-  if (!options_.may_coarsen || rung_ >= kCoarsestRung) return;
-  ++rung_;
+  if (!options_.may_coarsen || bound_level_ >= kCoarsestBoundLevel) return;
+  ++bound_level_;
   coarsened_ = now;
-  patience_ = std::clamp(2 * patience_, kShortest, kLongest);
+  interval_ = std::clamp(2 * interval_, kShortest, kLongest);
 }
 
 }  // namespace phrenic::stream

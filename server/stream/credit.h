@@ -1,5 +1,4 @@
-// How many frames one viewer may be sent, and how coarse: what its line and its machine take, told by what it
-// acknowledges.
+// Flow control for one viewer: how many frames may be in flight and how coarse they are, from its acknowledgements.
 #ifndef PHRENIC_SERVER_STREAM_CREDIT_H_
 #define PHRENIC_SERVER_STREAM_CREDIT_H_
 
@@ -12,26 +11,27 @@
 namespace phrenic::stream {
 
 struct CreditOptions {
-  int window = 0;  // most frames unacknowledged; 0: nothing is counted
-  int rung = kDefaultRung;
-  bool may_coarsen = false;  // the viewer named no bound
+  int window = 0;  // most unacknowledged frames; 0: unlimited
+  int bound_level = kDefaultBoundLevel;
+  bool may_coarsen = false;  // true if the viewer requested no bound
 };
 
-// Frames that come late are queueing: then fewer are on their way. Where few frames a second are left the bound grows
-// by a rung, and shrinks again when there is room. Not thread-safe.
+// Late acknowledgements mean that frames queue on the connection: the window shrinks. If the frame rate falls too low,
+// the error bound grows by a level; it shrinks again when there is capacity. Not thread-safe.
 class Credit {
  public:
-  explicit Credit(const CreditOptions& options) : options_(options), allowed_(options.window), rung_(options.rung) {}
+  explicit Credit(const CreditOptions& options)
+      : options_(options), allowed_(options.window), bound_level_(options.bound_level) {}
 
   bool MaySend() const { return options_.window == 0 || static_cast<int>(unacknowledged_.size()) < allowed_; }
   void Sent(std::int64_t sequence, absl::Time now);
-  // A frame was overtaken before it could be sent: more were wanted than went.
+  // Records that a newer frame replaced one before it was sent.
   void Missed(absl::Time now) { missed_ = now; }
   void Acknowledged(std::int64_t sequence, absl::Time now);
 
   int allowed() const { return allowed_; }
-  int rung() const { return rung_; }
-  // Sent within the last second.
+  int bound_level() const { return bound_level_; }
+  // Returns the number of frames sent in the second before `now`.
   double FramesPerSecond(absl::Time now) const;
 
  private:
@@ -44,15 +44,15 @@ class Credit {
   void Coarsen(absl::Time now);
 
   const CreditOptions options_;
-  int allowed_, rung_;
-  std::deque<Sending> unacknowledged_;  // as many as the window
+  int allowed_, bound_level_;
+  std::deque<Sending> unacknowledged_;  // at most the window
   std::deque<absl::Time> recent_;       // of the last second
   absl::Duration quickest_ = absl::InfiniteDuration();
   absl::Time missed_ = absl::InfinitePast();
-  absl::Time adapted_ = absl::InfinitePast();    // last looked at
-  absl::Time queued_ = absl::InfinitePast();     // last late
-  absl::Time coarsened_ = absl::InfinitePast();  // or refined
-  absl::Duration patience_;                      // before the bound is refined
+  absl::Time adapted_ = absl::InfinitePast();    // last adaptation
+  absl::Time queued_ = absl::InfinitePast();     // last late acknowledgement
+  absl::Time coarsened_ = absl::InfinitePast();  // last change of the bound
+  absl::Duration interval_;                      // until the bound may be refined
 };
 
 }  // namespace phrenic::stream

@@ -7,7 +7,7 @@
 namespace phrenic::stream {
 namespace {
 
-constexpr std::size_t kMostCodecs = 8;  // kept: each choice of bodies has its own
+constexpr std::size_t kMostCodecs = 8;  // cached, one per selection of bodies
 
 }  // namespace
 
@@ -61,13 +61,13 @@ void Encoder::LookForBasis(absl::Time made) {
   if (maker_->newest() != bases_.front()) bases_ = {maker_->newest(), bases_.front()};
 }
 
-void Encoder::SetPositions(const FrameEncoding& form, v1::Frame& frame) {
-  const std::vector<int>& bodies = form.chosen ? form.bodies : streamed_;
+void Encoder::SetPositions(const FrameEncoding& encoding, v1::Frame& frame) {
+  const std::vector<int>& bodies = encoding.chosen ? encoding.bodies : streamed_;
   const Floats positions = Pick(*model_, layout_, bodies, positions_);
-  const bool put_together = form.codec == v1::CODEC_BASIS && FindBasis(form.basis_epoch) != nullptr;
-  const v1::Codec codec = form.codec == v1::CODEC_BASIS && !put_together ? v1::CODEC_PREDICTED : form.codec;
-  const std::int64_t epoch = put_together ? form.basis_epoch : 0;
-  const double bound = codec == v1::CODEC_RAW ? 0 : RungMillimetres(form.rung);
+  const bool put_together = encoding.codec == v1::CODEC_BASIS && FindBasis(encoding.basis_epoch) != nullptr;
+  const v1::Codec codec = encoding.codec == v1::CODEC_BASIS && !put_together ? v1::CODEC_PREDICTED : encoding.codec;
+  const std::int64_t epoch = put_together ? encoding.basis_epoch : 0;
+  const double bound = codec == v1::CODEC_RAW ? 0 : BoundMillimetres(encoding.bound_level);
   frame.set_codec(codec);
   frame.set_max_error_mm(bound);
   frame.set_basis_epoch(epoch);
@@ -78,20 +78,20 @@ void Encoder::SetPositions(const FrameEncoding& form, v1::Frame& frame) {
     frame.set_basis_epoch(0);
     bytes = FindCodec({v1::CODEC_RAW, bodies, 0})->Encode(positions, 0);
   }
-  frame.set_positions(*std::move(bytes));  // raw is never refused
+  frame.set_positions(*std::move(bytes));  // CODEC_RAW never fails
   frame.mutable_bodies()->Assign(bodies.begin(), bodies.end());
   frame.set_poses(poses_);
   ++encodings_;
 }
 
-Bytes Encoder::Encode(const Snapshot& snapshot, const FrameEncoding& form) {
+Bytes Encoder::Encode(const Snapshot& snapshot, const FrameEncoding& encoding) {
   if (!Make(snapshot)) return nullptr;
-  Bytes& bytes = made_[form];
+  Bytes& bytes = made_[encoding];
   if (bytes != nullptr) return bytes;
   v1::WatchFramesResponse response;
   *response.mutable_frame() = numbers_;
-  if (form.codec == v1::CODEC_BASIS) LookForBasis(snapshot.made);
-  if (!form.numbers_only) SetPositions(form, *response.mutable_frame());
+  if (encoding.codec == v1::CODEC_BASIS) LookForBasis(snapshot.made);
+  if (!encoding.numbers_only) SetPositions(encoding, *response.mutable_frame());
   bytes = std::make_shared<const std::string>(response.SerializeAsString());
   return bytes;
 }

@@ -1,4 +1,4 @@
-// Frames to bytes, each frame once a form.
+// Encodes frames to bytes, each frame once per FrameEncoding.
 #ifndef PHRENIC_SERVER_STREAM_ENCODER_H_
 #define PHRENIC_SERVER_STREAM_ENCODER_H_
 
@@ -13,35 +13,35 @@
 #include "phrenic/v1/frames.pb.h"
 #include "phrenic/v1/session.pb.h"
 #include "server/stream/basis_maker.h"
-#include "server/stream/codec.h"
+#include "server/stream/codecs/codec.h"
 #include "server/stream/frame.h"
 #include "server/stream/viewer.h"
 
 namespace phrenic::stream {
 
-// Keeps the encodings of the newest snapshot it was given. Not thread-safe: the publisher's thread has it.
+// Caches the encodings of the newest snapshot. Not thread-safe: only the publisher's thread calls it.
 class Encoder {
  public:
   Encoder(std::shared_ptr<const Model> model, const Layout& layout);
 
-  // A WatchFramesResponse with the frame in that form; null where a number of it is not finite. What the form's codec
-  // cannot hold within its bound goes out raw.
-  Bytes Encode(const Snapshot& snapshot, const FrameEncoding& form);
-  // How often positions were encoded.
+  // Returns a WatchFramesResponse with the frame in that encoding; null if a number of the frame is not finite.
+  // Positions that the codec cannot encode within the bound are encoded with CODEC_RAW.
+  Bytes Encode(const Snapshot& snapshot, const FrameEncoding& encoding);
+  // Returns the number of position encodings so far.
   std::int64_t encodings() const { return encodings_; }
-  // The newest; null where nobody asked for CODEC_BASIS, or too little was seen.
+  // Returns the newest basis; null if no viewer requested CODEC_BASIS or there were too few frames.
   std::shared_ptr<const Basis> basis() const { return bases_.front(); }
 
  private:
   using Chosen = std::tuple<v1::Codec, std::vector<int>, std::int64_t>;  // codec, bodies, epoch of the basis
 
-  // Makes the frame unless it is the one made last; false where it may not be sent.
+  // Makes the frame unless it is cached. Returns false if it has numbers that are not finite.
   bool Make(const Snapshot& snapshot);
-  void SetPositions(const FrameEncoding& form, v1::Frame& frame);
+  void SetPositions(const FrameEncoding& encoding, v1::Frame& frame);
   std::shared_ptr<const Codec> FindCodec(const Chosen& chosen);
-  // Shows the frame to who makes the basis, once.
+  // Passes the frame to the basis maker, once.
   void LookForBasis(absl::Time made);
-  // That of `epoch`; null where it is no longer kept.
+  // Returns the basis of `epoch`; null if it is no longer kept.
   std::shared_ptr<const Basis> FindBasis(std::int64_t epoch) const;
 
   const std::shared_ptr<const Model> model_;
@@ -54,9 +54,9 @@ class Encoder {
   Floats positions_;  // of all streamed bodies
   std::map<FrameEncoding, Bytes> made_;
   std::map<Chosen, std::shared_ptr<const Codec>> codecs_;
-  std::unique_ptr<BasisMaker> maker_;                  // since somebody asked for CODEC_BASIS
-  bool shown_ = false;                                 // the present frame, to maker_
-  std::array<std::shared_ptr<const Basis>, 2> bases_;  // the newest, and the one before, which viewers still have
+  std::unique_ptr<BasisMaker> maker_;                  // from the first request for CODEC_BASIS
+  bool shown_ = false;                                 // true if maker_ has the current frame
+  std::array<std::shared_ptr<const Basis>, 2> bases_;  // the newest and the previous one, which viewers may still use
   std::int64_t encodings_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// One moment of a session as viewers see it.
+// A session at one time, as viewers see it.
 #ifndef PHRENIC_SERVER_STREAM_FRAME_H_
 #define PHRENIC_SERVER_STREAM_FRAME_H_
 
@@ -12,7 +12,7 @@
 
 namespace phrenic::stream {
 
-// What the stepping thread hands over: a copy of its state. Immutable once shared.
+// A copy of the stepping thread's state. Immutable once shared.
 struct Snapshot {
   std::int64_t sequence = 0;
   State state;
@@ -20,8 +20,8 @@ struct Snapshot {
   absl::Time made;
 };
 
-// Places every streamed body and every pose of the snapshot. INTERNAL when any number of it is not finite as a
-// float32: such a frame is sent to nobody.
+// Computes the positions of every streamed body and every pose of the snapshot. INTERNAL if a number is not finite as
+// float32; such a frame is not sent.
 absl::StatusOr<v1::Frame> MakeFrame(const Model& model, const Layout& layout, const Snapshot& snapshot);
 
 }  // namespace phrenic::stream

@@ -1,4 +1,4 @@
-// What a viewer's frames hold and how: viewers with equal forms share their bytes.
+// What a viewer's frames contain and how they are encoded. Viewers with equal encodings share the bytes.
 #ifndef PHRENIC_SERVER_STREAM_FRAME_ENCODING_H_
 #define PHRENIC_SERVER_STREAM_FRAME_ENCODING_H_
 
@@ -12,32 +12,32 @@
 
 namespace phrenic::stream {
 
-// Error bounds are those of a ladder, 1, 2 and 5 times powers of ten, so that many viewers make few encodings.
-inline constexpr int kDefaultRung = 6;   // 0.1 mm
-inline constexpr int kCoarsestRung = 9;  // 1 mm: the furthest that anybody is taken who did not ask for it
+// Error bounds are discrete levels, 1, 2 and 5 times powers of ten, so that many viewers need few encodings.
+inline constexpr int kDefaultBoundLevel = 6;   // 0.1 mm
+inline constexpr int kCoarsestBoundLevel = 9;  // 1 mm: the coarsest bound that flow control chooses
 
-// The bound of a rung [mm]: 0.001, 0.002, 0.005, 0.01 ...
-inline double RungMillimetres(int rung) {
+// Returns the bound of a level [mm]: 0.001, 0.002, 0.005, 0.01 ...
+inline double BoundMillimetres(int bound_level) {
   constexpr std::array<double, 3> kSteps = {1, 2, 5};
-  return kSteps[rung % 3] * std::pow(10.0, rung / 3 - 3);
+  return kSteps[bound_level % 3] * std::pow(10.0, bound_level / 3 - 3);
 }
 
-// The coarsest rung that is not above `millimetres`, which are 0.001 or more.
-inline int RungWithin(double millimetres) {
-  int rung = 0;
-  while (RungMillimetres(rung + 1) <= millimetres * (1 + 1e-9)) ++rung;
-  return rung;
+// Returns the coarsest level whose bound is not above `millimetres`. Requires: millimetres >= 0.001.
+inline int BoundLevelWithin(double millimetres) {
+  int bound_level = 0;
+  while (BoundMillimetres(bound_level + 1) <= millimetres * (1 + 1e-9)) ++bound_level;
+  return bound_level;
 }
 
 struct FrameEncoding {
-  bool numbers_only = false;  // neither positions nor poses
+  bool numbers_only = false;  // omits positions and poses
   v1::Codec codec = v1::CODEC_RAW;
-  int rung = kDefaultRung;
-  bool chosen = false;           // of the bodies' vertices only those of `bodies`
+  int bound_level = kDefaultBoundLevel;
+  bool chosen = false;           // true: only the vertices of `bodies`
   std::vector<int> bodies = {};  // streamed ones, ascending
-  std::int64_t basis_epoch = 0;  // of the basis that the viewer has; of CODEC_BASIS alone
+  std::int64_t basis_epoch = 0;  // of the viewer's basis; only for CODEC_BASIS
 
-  // clang-tidy takes the zero that a defaulted comparison is held against for a null pointer.
+  // clang-tidy mistakes the zero in a defaulted comparison for a null pointer.
   auto operator<=>(const FrameEncoding&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "server/stream/wire.h"
+#include "server/stream/codecs/wire.h"
 
 namespace phrenic::stream {
 namespace {
@@ -30,7 +30,7 @@ void SetSurface(const BodyModel& body, v1::GetGeometryResponse& geometry) {
   AppendIndices(body.mesh.edges, *geometry.mutable_edges());
 }
 
-// Overlays are kept by simulated vertex; this body's have its own vertex numbers.
+// Converts overlays from simulated vertices to the body's vertex numbers.
 void SetOverlays(const Model& model, const BodyModel& body, v1::GetGeometryResponse& geometry) {
   if (body.first_vertex < 0) return;
   const int first = body.first_vertex;
@@ -49,7 +49,7 @@ void SetOverlays(const Model& model, const BodyModel& body, v1::GetGeometryRespo
   }
 }
 
-// A line is drawn from its origin as far as the body reaches along it: twice the radius where it reaches nowhere.
+// A line is drawn from its origin to the end of the body along its direction; to twice the radius if it misses it.
 double LineLength(const ActionLineView& line, const ConstPoints& vertices) {
   double length = 2 * line.radius;
   for (Eigen::Index i = 0; i < vertices.cols(); ++i) {

@@ -1,4 +1,4 @@
-// What never changes in a session: bodies as they look, and the overlays that lie on them.
+// The constant part of a session: meshes of bodies and their overlays.
 #ifndef PHRENIC_SERVER_STREAM_GEOMETRY_H_
 #define PHRENIC_SERVER_STREAM_GEOMETRY_H_
 
@@ -8,7 +8,7 @@
 
 namespace phrenic::stream {
 
-// The message of one body, 0 <= body < model.bodies.size().
+// Returns the message of one body. Requires: 0 <= body < model.bodies.size().
 v1::GetGeometryResponse MakeGeometry(const Model& model, const Layout& layout, int body);
 
 }  // namespace phrenic::stream

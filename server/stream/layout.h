@@ -1,4 +1,4 @@
-// Where the vertices of each body come from in a frame: the same for every frame of a session.
+// Where each body's vertices are in a frame: constant for a session.
 #ifndef PHRENIC_SERVER_STREAM_LAYOUT_H_
 #define PHRENIC_SERVER_STREAM_LAYOUT_H_
 
@@ -9,15 +9,15 @@
 
 namespace phrenic::stream {
 
-// Immutable; any number of threads may call.
+// Immutable; thread-safe.
 class Layout {
  public:
   explicit Layout(const Model& model);
 
   v1::Placement placement(int body) const { return placements_[body].placement; }
-  // The place of the body's first vertex among the streamed vertices; 0 for a body that is not streamed.
+  // Returns the index of the body's first vertex among the streamed vertices; 0 if the body is not streamed.
   int first_vertex(int body) const { return placements_[body].first_vertex; }
-  // Of all streamed bodies.
+  // Returns the number of vertices of all streamed bodies.
   int vertices() const { return vertices_; }
 
  private:

@@ -10,7 +10,7 @@
 namespace phrenic::stream {
 namespace {
 
-// A frame may come this much before its time, so that a viewer that asks for 60 a second gets 60.
+// A frame may be sent this much early, so that a viewer that requests 60 a second gets 60.
 constexpr absl::Duration kEarly = absl::Milliseconds(2);
 
 }  // namespace
@@ -31,7 +31,7 @@ Publisher::~Publisher() {
 void Publisher::Offer(std::shared_ptr<const Snapshot> snapshot) {
   absl::MutexLock lock(&mutex_);
   newest_ = std::move(snapshot);
-  stirred_ = true;
+  has_work_ = true;
 }
 
 void Publisher::Announce(const v1::Session& session) {
@@ -44,15 +44,15 @@ void Publisher::ShowCamera(Bytes camera) {
   absl::MutexLock lock(&mutex_);
   camera_ = std::move(camera);
   camera_moved_ = camera_ != nullptr;
-  stirred_ = true;
+  has_work_ = true;
 }
 
 void Publisher::SessionChanged() {
   session_.set_viewers(static_cast<int>(subscriptions_.size()));
-  if (subscriptions_.empty()) return;  // who comes is told the newest
+  if (subscriptions_.empty()) return;  // a new viewer gets the newest
   if (!updates_.empty() && updates_.back().revision() == session_.revision()) updates_.pop_back();
   updates_.push_back(session_);
-  stirred_ = true;
+  has_work_ = true;
 }
 
 absl::StatusOr<std::shared_ptr<Viewer>> Publisher::Join(const ViewerOptions& options, std::function<void()> wake) {
@@ -104,13 +104,13 @@ absl::StatusOr<v1::AckFramesResponse> Publisher::Acknowledge(const v1::AckFrames
       return absl::NotFoundError(absl::StrCat("watch_id: nobody watches as ", request.watch_id()));
     }
     viewer = found->second;
-    if (viewer->options().form.codec == v1::CODEC_BASIS && basis_ != nullptr) epoch = basis_->epoch;
+    if (viewer->options().encoding.codec == v1::CODEC_BASIS && basis_ != nullptr) epoch = basis_->epoch;
   }
   v1::AckFramesResponse response = viewer->Acknowledge(request.sequence(), request.basis_epoch(), clock_.Now());
   response.set_basis_epoch(epoch);
-  if (!viewer->passed_over()) return response;
+  if (!viewer->deferred()) return response;
   absl::MutexLock lock(&mutex_);
-  stirred_ = true;
+  has_work_ = true;
   return response;
 }
 
@@ -161,19 +161,19 @@ void Publisher::TakeFrames(absl::Time now, Round& round) {
   std::map<FrameEncoding, std::vector<Subscription*>> wanted;
   for (Subscription& subscription : subscriptions_) {
     if (subscription.sequence < sequence && now >= subscription.due)
-      wanted[subscription.viewer->form()].push_back(&subscription);
+      wanted[subscription.viewer->encoding()].push_back(&subscription);
   }
-  for (const auto& [form, seats] : wanted) {
-    const bool taken = std::any_of(seats.begin(), seats.end(), [sequence, now](const Subscription* subscription) {
-      return !subscription->viewer->PassOver(sequence, now);
-    });
-    for (Subscription* subscription : seats) {
+  for (const auto& [encoding, subscriptions] : wanted) {
+    const bool taken = std::any_of(
+        subscriptions.begin(), subscriptions.end(),
+        [sequence, now](const Subscription* subscription) { return !subscription->viewer->Defer(sequence, now); });
+    for (Subscription* subscription : subscriptions) {
       subscription->passed = sequence;
       if (!taken) continue;
       subscription->sequence = sequence;
       const double max_fps = subscription->viewer->options().max_fps;
       if (max_fps > 0) subscription->due = now + absl::Seconds(1 / max_fps) - kEarly;
-      round.frames[form].push_back(subscription->viewer);
+      round.frames[encoding].push_back(subscription->viewer);
     }
   }
 }
@@ -197,8 +197,8 @@ void Publisher::DeliverCamera(const Round& round) {
 }
 
 void Publisher::DeliverFrames(const Round& round) {
-  for (const auto& [form, viewers] : round.frames) {
-    const Bytes bytes = encoder_.Encode(*round.snapshot, form);
+  for (const auto& [encoding, viewers] : round.frames) {
+    const Bytes bytes = encoder_.Encode(*round.snapshot, encoding);
     {
       absl::MutexLock lock(&mutex_);
       encodings_ = encoder_.encodings();
@@ -216,9 +216,9 @@ void Publisher::Run() {
     Round round;
     {
       absl::MutexLock lock(&mutex_);
-      clock_.Await(mutex_, absl::Condition(this, &Publisher::Stirred), NextDue());
+      clock_.Await(mutex_, absl::Condition(this, &Publisher::HasWork), NextDue());
       if (closed_.has_value()) return;
-      stirred_ = false;
+      has_work_ = false;
       round = TakeRound(clock_.Now());
     }
     Deliver(round);

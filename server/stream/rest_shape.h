@@ -1,21 +1,21 @@
-// The rest shape of the bodies that travel, and where they are among all streamed vertices.
+// The rest shape of streamed bodies, and their range among all streamed vertices.
 #ifndef PHRENIC_SERVER_STREAM_REST_SHAPE_H_
 #define PHRENIC_SERVER_STREAM_REST_SHAPE_H_
 
 #include <vector>
 
-#include "server/stream/codec.h"
+#include "server/stream/codecs/codec.h"
 #include "server/stream/layout.h"
 
 namespace phrenic::stream {
 
-// All streamed bodies, ascending.
+// Returns all streamed bodies, ascending.
 std::vector<int> StreamedBodies(const Model& model, const Layout& layout);
 
-// Of these streamed bodies, one after the other: float32 rest positions, and the edges that springs would lie on.
+// Returns the float32 rest positions and the mesh edges of these bodies, in their order.
 RestShape MakeRestShape(const Model& model, const std::vector<int>& bodies);
 
-// Their columns of the positions of all streamed bodies.
+// Returns the columns of these bodies from `all`, the positions of all streamed bodies.
 Floats Pick(const Model& model, const Layout& layout, const std::vector<int>& bodies, const Floats& all);
 
 }  // namespace phrenic::stream

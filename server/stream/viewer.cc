@@ -6,33 +6,33 @@
 
 namespace phrenic::stream {
 
-FrameEncoding Viewer::form() const {
+FrameEncoding Viewer::encoding() const {
   absl::MutexLock lock(&mutex_);
-  FrameEncoding form = options_.form;
-  form.rung = credit_.rung();
-  if (form.codec == v1::CODEC_BASIS) form.basis_epoch = basis_epoch_;
-  return form;
+  FrameEncoding encoding = options_.encoding;
+  encoding.bound_level = credit_.bound_level();
+  if (encoding.codec == v1::CODEC_BASIS) encoding.basis_epoch = basis_epoch_;
+  return encoding;
 }
 
-bool Viewer::passed_over() const {
+bool Viewer::deferred() const {
   absl::MutexLock lock(&mutex_);
-  return passed_over_;
+  return deferred_;
 }
 
 void Viewer::Wait(std::int64_t sequence, absl::Time now) {
-  if ((frame_ != nullptr || passed_over_) && sequence_ != sequence) {
+  if ((frame_ != nullptr || deferred_) && sequence_ != sequence) {
     ++missed_;
     credit_.Missed(now);
   }
   sequence_ = sequence;
 }
 
-bool Viewer::PassOver(std::int64_t sequence, absl::Time now) {
+bool Viewer::Defer(std::int64_t sequence, absl::Time now) {
   absl::MutexLock lock(&mutex_);
   if (credit_.MaySend()) return false;
   Wait(sequence, now);
   frame_ = nullptr;
-  passed_over_ = true;
+  deferred_ = true;
   return true;
 }
 
@@ -42,7 +42,7 @@ void Viewer::PutFrame(std::int64_t sequence, Bytes frame, absl::Time now) {
     if (end_.has_value()) return;
     Wait(sequence, now);
     frame_ = std::move(frame);
-    passed_over_ = false;
+    deferred_ = false;
   }
   wake_();
 }
@@ -53,14 +53,14 @@ void Viewer::PutSession(const StatusUpdate& updates) {
     if (end_.has_value()) return;
     if (!updates_.empty() && updates_.back().revision == updates.revision) {
       updates_.back() = updates;
-    } else if (updates_.size() < kMostNews) {
+    } else if (updates_.size() < kMaxUpdates) {
       updates_.push_back(updates);
     } else {
       updates_.clear();
       frame_ = nullptr;
       camera_ = nullptr;
       end_ = absl::ResourceExhaustedError(
-          absl::StrCat("the viewer took none of ", kMostNews, " changes of the session; watch again"));
+          absl::StrCat("the viewer took none of ", kMaxUpdates, " changes of the session; watch again"));
     }
   }
   wake_();
@@ -106,7 +106,7 @@ v1::AckFramesResponse Viewer::Acknowledge(std::int64_t sequence, std::int64_t ba
     basis_epoch_ = basis_epoch;
     response.set_unix_nanos(absl::ToUnixNanos(now));
     response.set_frames_per_second(credit_.FramesPerSecond(now));
-    response.set_max_error_mm(options_.form.codec == v1::CODEC_RAW ? 0 : RungMillimetres(credit_.rung()));
+    response.set_max_error_mm(options_.encoding.codec == v1::CODEC_RAW ? 0 : BoundMillimetres(credit_.bound_level()));
     response.set_max_unacked_frames(credit_.allowed());
   }
   wake_();

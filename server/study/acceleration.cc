@@ -3,12 +3,12 @@
 #include <algorithm>
 
 #include "absl/strings/str_cat.h"
-#include "server/mechanics/step/advance.h"
+#include "server/mechanics/step/step_plan.h"
 
 namespace phrenic::study {
 namespace {
 
-constexpr double kTurn = 2e-6;  // of the central difference: the part of the scene that a vertex crosses in it
+constexpr double kTravel = 2e-6;  // of the fastest vertex within the central difference, in sizes of the scene
 
 }  // namespace
 
@@ -26,14 +26,14 @@ absl::StatusOr<Acceleration> Acceleration::Make(const Subject& subject) {
     if (!constraint->smooth()) {
       return absl::UnimplementedError(
           absl::StrCat("constraint ", constraint->name(),
-                       " jerks (limits, or the thesis' projection of links): no smooth equation of motion describes "
-                       "it, so there is no reference; take it out of the scene, or project exactly"));
+                       " is not smooth (limits, or the thesis' projection of links), so there is no reference "
+                       "solution; remove it from the scene, or set its projection to PROJECTION_EXACT"));
     }
   }
   return Acceleration(subject);
 }
 
-const State& Acceleration::Place(double time, const ConstPoints& x, const ConstPoints& v) {
+const State& Acceleration::SetState(double time, const ConstPoints& x, const ConstPoints& v) {
   const Model& model = *subject_.model;
   state_.time = time;
   state_.phase = time / subject_.parameters.breath_length();
@@ -42,31 +42,31 @@ const State& Acceleration::Place(double time, const ConstPoints& x, const ConstP
     state_.x.col(free_[i]) = model.rest.col(free_[i]) + x.col(k);
     state_.v.col(free_[i]) = v.col(k);
   }
-  DriveMotions(model, subject_.parameters, 0, state_);
+  model.plan->DriveMotions(subject_.parameters, 0, scratch_, state_);
   return state_;
 }
 
 void Acceleration::Unconstrained(MutablePoints a) {
   const Model& model = *subject_.model;
-  SumForces(model, MakeEvalContext(model, subject_.parameters, state_), force_);
+  model.plan->SumForces(MakeEvalContext(model, subject_.parameters, state_, scratch_), force_);
   for (size_t i = 0; i < free_.size(); ++i) {
     a.col(static_cast<Eigen::Index>(i)) = model.inverse_mass[free_[i]] * force_.col(free_[i]);
   }
 }
 
-void Acceleration::VelocitiesAhead(double ahead, const ConstPoints& a, Points& v) {
+void Acceleration::ProjectedVelocities(double ahead, const ConstPoints& a, Points& v) {
   const Model& model = *subject_.model;
   ahead_.time = state_.time;
   ahead_.phase = state_.phase;
   ahead_.x = state_.x;
   ahead_.v = state_.v;
   ahead_.poses = state_.poses;
-  DriveMotions(model, subject_.parameters, ahead, ahead_);
+  model.plan->DriveMotions(subject_.parameters, ahead, scratch_, ahead_);
   for (size_t i = 0; i < free_.size(); ++i) {
     ahead_.x.col(free_[i]) += ahead * state_.v.col(free_[i]);
     ahead_.v.col(free_[i]) += ahead * a.col(static_cast<Eigen::Index>(i));
   }
-  ProjectVelocities(model, subject_.parameters, ahead_);
+  model.plan->ProjectVelocities(subject_.parameters, scratch_, ahead_);
   v = ahead_.v;
 }
 
@@ -74,9 +74,9 @@ void Acceleration::Evaluate(MutablePoints a) {
   Unconstrained(a);
   if (subject_.model->constraints.empty()) return;
   const double fastest = std::max(1.0, state_.v.cwiseAbs().maxCoeff() / subject_.model->size);
-  const double ahead = kTurn / fastest;
-  VelocitiesAhead(ahead, a, later_);
-  VelocitiesAhead(-ahead, a, earlier_);
+  const double ahead = kTravel / fastest;
+  ProjectedVelocities(ahead, a, later_);
+  ProjectedVelocities(-ahead, a, earlier_);
   for (size_t i = 0; i < free_.size(); ++i) {
     a.col(static_cast<Eigen::Index>(i)) = (later_.col(free_[i]) - earlier_.col(free_[i])) / (2 * ahead);
   }

@@ -2,6 +2,7 @@
 
 #include "server/mechanics/compile/compile.h"
 #include "server/mechanics/compile/presets.h"
+#include "server/mechanics/stability/largest_step.h"
 #include "server/schema/fields.h"
 #include "server/schema/schema.h"
 
@@ -45,6 +46,15 @@ absl::StatusOr<Subject> MakeSubject(const v1::SceneSource& source, const std::st
   }
   if (absl::Status status = schema::Validate(subject.parameters); !status.ok()) return status;
   return subject;
+}
+
+absl::StatusOr<Subject> Recompile(const v1::CreateStudyRequest& request, const Subject& subject, const v1::Scene& scene,
+                                  const Compiler& compile) {
+  v1::SceneSource source = request.source();
+  *source.mutable_scene() = scene;
+  const auto model = compile(source);
+  if (!model.ok()) return model.status();
+  return Subject{.model = *model, .parameters = subject.parameters};
 }
 
 }  // namespace phrenic::study

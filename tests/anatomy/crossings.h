@@ -1,4 +1,4 @@
-// Where a surface cuts through itself.
+// Detects self-intersections of a surface.
 #ifndef PHRENIC_TESTS_ANATOMY_CROSSINGS_H_
 #define PHRENIC_TESTS_ANATOMY_CROSSINGS_H_
 
@@ -12,7 +12,7 @@
 
 namespace phrenic::anatomy {
 
-// Whether the segment p-q passes through the triangle's inside (Moeller and Trumbore).
+// True if the segment p-q passes through the interior of the triangle a b c (Moeller and Trumbore 1997).
 inline bool Pierces(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Eigen::Vector3d& a,
                     const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
   const Eigen::Vector3d along = q - p, u = b - a, v = c - a, h = along.cross(v);
@@ -23,7 +23,8 @@ inline bool Pierces(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Ei
   return x > 0 && y > 0 && x + y < 1 && t > 0 && t < 1;
 }
 
-// The number of pairs of an edge and a triangle without a common vertex that cross; a grid of `cell` finds them.
+// Returns the number of intersecting pairs of an edge and a triangle without a common vertex. Uses a hash grid with
+// cells of size `cell` [m].
 inline int SelfCrossings(const Mesh& mesh, double cell) {
   using Key = std::tuple<int, int, int>;
   const auto over = [&](const Eigen::Vector3d& low, const Eigen::Vector3d& high, auto visit) {

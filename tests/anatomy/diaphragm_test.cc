@@ -14,7 +14,7 @@ namespace {
 
 class DiaphragmTest : public testing::Test {
  protected:
-  // The highest thoracic vertex whose x is in the range [m].
+  // Returns the highest thoracic vertex with x between `from` and `to` [m].
   Eigen::Vector3d Highest(double from, double to) const {
     Eigen::Vector3d highest(0, 0, -1);
     for (const Eigen::Vector3d x : thoracic_.colwise()) {
@@ -32,7 +32,7 @@ class DiaphragmTest : public testing::Test {
   const Points thoracic_ = UpperLayer(mesh_);
 };
 
-TEST_F(DiaphragmTest, DefaultHasTheThesisSize) {
+TEST_F(DiaphragmTest, DefaultHasTheVertexCountOfTheThesis) {
   EXPECT_GE(mesh_.vertices.cols(), 20000);
   EXPECT_LE(mesh_.vertices.cols(), 21000);
 }
@@ -53,7 +53,7 @@ TEST_F(DiaphragmTest, TrianglesAreNearUniform) {
   EXPECT_GT(shortest, 0.45 * mean);
 }
 
-TEST_F(DiaphragmTest, MeasuresAsAnAdults) {
+TEST_F(DiaphragmTest, HasAdultDimensions) {
   const Eigen::Vector3d size = High(mesh_) - Low(mesh_);
   EXPECT_NEAR(size.x(), 0.243, 0.024);
   EXPECT_NEAR(size.y(), 0.179, 0.018);
@@ -63,7 +63,7 @@ TEST_F(DiaphragmTest, MeasuresAsAnAdults) {
   EXPECT_NEAR(area / 2, 0.1085, 0.011);
 }
 
-TEST_F(DiaphragmTest, RightDomeStandsAboveSaddleAndLeftDome) {
+TEST_F(DiaphragmTest, RightDomeIsAboveSaddleAndLeftDome) {
   const double right = Highest(-0.09, -0.03).z(), left = Highest(0.04, 0.09).z();
   const double saddle = Highest(-0.002, 0.002).z();
   EXPECT_GT(right - left, 0.015);
@@ -72,9 +72,9 @@ TEST_F(DiaphragmTest, RightDomeStandsAboveSaddleAndLeftDome) {
   EXPECT_LT(right - saddle, 0.015);
 }
 
-TEST_F(DiaphragmTest, LeftSideIsADomeOfItsOwn) {
+TEST_F(DiaphragmTest, LeftDomeIsSeparateFromTheSaddle) {
   const Eigen::Vector3d left = Highest(0.04, 0.09);
-  double between = 1;  // the lowest of the ridge from the midline to the left dome, in its coronal plane
+  double between = 1;  // minimum of the ridge from the midline to the left dome, in its coronal plane
   for (double x = 0; x < left.x(); x += 0.005) {
     double ridge = 0;
     for (const Eigen::Vector3d p : thoracic_.colwise()) {
@@ -85,7 +85,7 @@ TEST_F(DiaphragmTest, LeftSideIsADomeOfItsOwn) {
   EXPECT_LT(between, left.z() - 0.003);
 }
 
-TEST_F(DiaphragmTest, RimIsHighInFrontAndLowAtTheSidesAndCruraReachTheLumbarSpine) {
+TEST_F(DiaphragmTest, RimDescendsFromFrontToSidesAndCruraReachTheLumbarSpine) {
   double front = 0, side = 1;
   for (const int i : Region("rim")) {
     const Eigen::Vector3d x = mesh_.vertices.col(i);
@@ -113,18 +113,18 @@ TEST_F(DiaphragmTest, LayersFaceEachOtherThreeMillimetresApart) {
     EXPECT_LT(nearest.distance, 4 * kMillimetre);
     acute += normals.col(UpperVertex(i)).dot(normals.col(LowerVertex(i))) > 0 ? 1 : 0;
   }
-  EXPECT_LT(acute, 0.005 * static_cast<double>(n)) << "only sharp corners of the border look the same way";
+  EXPECT_LT(acute, 0.005 * static_cast<double>(n)) << "normals agree only at sharp corners of the rim";
 }
 
-TEST_F(DiaphragmTest, DoesNotCutThroughItself) { EXPECT_EQ(SelfCrossings(mesh_, 4 * kMillimetre), 0); }
+TEST_F(DiaphragmTest, HasNoSelfIntersections) { EXPECT_EQ(SelfCrossings(mesh_, 4 * kMillimetre), 0); }
 
-TEST(Diaphragm, CoarseSheetsDoNotCutThroughThemselves) {
+TEST(Diaphragm, CoarseSheetsHaveNoSelfIntersections) {
   for (const double resolution_mm : {7.0, 12.0, 20.0}) {
     EXPECT_EQ(SelfCrossings(Diaphragm(resolution_mm), 8 * kMillimetre), 0) << resolution_mm;
   }
 }
 
-TEST_F(DiaphragmTest, TendonIsASixthToAQuarter) {
+TEST_F(DiaphragmTest, TendonIsASixthToAQuarterOfTheArea) {
   const std::set<int> tendon = Region("tendon");
   double inside = 0, all = 0;
   for (Eigen::Index t = 0; t < mesh_.triangles.cols(); ++t) {
@@ -155,7 +155,7 @@ TEST_F(DiaphragmTest, RegionsPartitionTheSheet) {
   }
 }
 
-// The loops of edges that join the layers, each with its mean place: the border and the two openings.
+// Returns the loops of edges at which the layers are joined, each with its centroid: the rim and the two openings.
 std::vector<std::pair<Eigen::Vector3d, std::vector<int>>> JoinLoops(const Mesh& mesh) {
   std::map<int, int> next;
   for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
@@ -181,7 +181,7 @@ std::vector<std::pair<Eigen::Vector3d, std::vector<int>>> JoinLoops(const Mesh& 
   return loops;
 }
 
-TEST_F(DiaphragmTest, CavalOpeningIsInTheTendonOnTheRightAndOesophagealInMuscleOnTheLeft) {
+TEST_F(DiaphragmTest, CavalOpeningIsInTheTendonAndOesophagealInTheMuscle) {
   const auto loops = JoinLoops(mesh_);
   ASSERT_EQ(loops.size(), 3u);
   const auto& [caval, caval_loop] = loops[1].first.x() < 0 ? loops[1] : loops[2];
@@ -193,7 +193,7 @@ TEST_F(DiaphragmTest, CavalOpeningIsInTheTendonOnTheRightAndOesophagealInMuscleO
   EXPECT_GT(oesophageal.x(), 0);
   EXPECT_LT(oesophageal.x(), 0.02) << "slightly left";
   EXPECT_GT(caval.z(), oesophageal.z() + 0.025) << "T8 above T10";
-  const Mesh t10 = Made(Part(v1::STRUCTURE_VERTEBRA, 10));
+  const Mesh t10 = MeshOf(Part(v1::STRUCTURE_VERTEBRA, 10));
   EXPECT_GT(oesophageal.z(), Low(t10).z());
   EXPECT_LT(oesophageal.z(), High(t10).z());
 }

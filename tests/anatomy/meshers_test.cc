@@ -1,4 +1,4 @@
-// The surface makers on shapes that are known.
+// Mesh generators on shapes with known properties.
 #include <gtest/gtest.h>
 
 #include "server/anatomy/implicit_surface.h"
@@ -13,7 +13,7 @@
 namespace phrenic::anatomy {
 namespace {
 
-TEST(PlaneDelaunay, NoPointLiesInsideATrianglesCircle) {
+TEST(PlaneDelaunay, CircumcirclesAreEmpty) {
   std::vector<Eigen::Vector2d> points;
   for (int i = 1; i <= 200; ++i) points.push_back(QuasiRandom(i));
   const Triangles triangles = PlaneDelaunay(points);
@@ -29,7 +29,7 @@ TEST(PlaneDelaunay, NoPointLiesInsideATrianglesCircle) {
   }
 }
 
-TEST(PlaneDelaunay, PointsOnOneCircleAreFanned) {
+TEST(PlaneDelaunay, CocircularPointsBecomeAFan) {
   const Triangles triangles = PlaneDelaunay({{0, 0}, {1, 0}, {1, 1}, {0, 1}});
   EXPECT_EQ(triangles.cols(), 2);
 }
@@ -42,7 +42,7 @@ TEST(PlaneRegion, HolesAreOutside) {
   EXPECT_FALSE(region.Contains({3, -1}));
 }
 
-TEST(SpacedPoints, KeepTheirDistance) {
+TEST(SpacedPoints, KeepTheMinimumDistance) {
   SpacedPoints points(0.1, 1, 0.1);
   std::vector<Eigen::Vector3d> kept;
   for (int i = 1; i < 2000; ++i) {
@@ -56,8 +56,8 @@ TEST(SpacedPoints, KeepTheirDistance) {
   }
 }
 
-// A half cylinder of radius 1 with a round hole: the map bends the plane without stretching it.
-TEST(SheetMesh, CoversACurvedSheetEvenly) {
+// A half cylinder of radius 1 with a round hole; the map is an isometry.
+TEST(SheetMesh, MeshesACurvedSheetUniformly) {
   SheetDomain domain;
   domain.map = [](const Eigen::Vector2d& p) { return Eigen::Vector3d(std::sin(p.x()), std::cos(p.x()), p.y()); };
   domain.edge_length = [](const Eigen::Vector3d&) { return 0.1; };
@@ -79,7 +79,7 @@ TEST(SheetMesh, CoversACurvedSheetEvenly) {
   EXPECT_NEAR(area, 6 - 0.16 * M_PI, 0.03);
 }
 
-TEST(ImplicitSurface, SphereIsRoundClosedAndEven) {
+TEST(ImplicitSurface, SphereIsRoundClosedAndUniform) {
   const Field sphere = [](const Eigen::Vector3d& x) { return x.norm() - 20; };
   const Mesh mesh = ImplicitSurface(sphere, {Eigen::Vector3d::Constant(-25), Eigen::Vector3d::Constant(25)}, 3, 3);
   const SurfaceTopology topology = AnalyseTopology(mesh);
@@ -117,7 +117,7 @@ TEST(Tube, MirrorImageFacesOutwards) {
   EXPECT_LT(mesh.vertices.row(0).maxCoeff(), 0);
 }
 
-TEST(SmoothCurve, PassesItsEndsAtEvenSteps) {
+TEST(SmoothCurve, HasItsEndPointsAndEqualSteps) {
   const Curve curve = SmoothCurve({{0, 0, 0}, {10, 5, 0}, {30, 0, 0}, {31, -8, 4}}, 40);
   ASSERT_EQ(curve.size(), 40u);
   EXPECT_LT((curve.front() - Eigen::Vector3d(0, 0, 0)).norm(), 1e-12);

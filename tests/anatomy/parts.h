@@ -1,4 +1,4 @@
-// The parts of the generated thorax, by name, for the tests.
+// Shorthands for the structures of the generated thorax and for measuring meshes.
 #ifndef PHRENIC_TESTS_ANATOMY_PARTS_H_
 #define PHRENIC_TESTS_ANATOMY_PARTS_H_
 
@@ -20,14 +20,14 @@ inline v1::Anatomy Part(v1::Structure structure, int number = 0, v1::Side side =
   return part;
 }
 
-inline Mesh Made(const v1::Anatomy& part, double resolution_mm = 0) {
+inline Mesh MeshOf(const v1::Anatomy& part, double resolution_mm = 0) {
   auto mesh = Generate(part, resolution_mm);
   return mesh.ok() ? *std::move(mesh) : Mesh();
 }
 
-inline Mesh Diaphragm(double resolution_mm = 0) { return Made(Part(v1::STRUCTURE_DIAPHRAGM), resolution_mm); }
+inline Mesh Diaphragm(double resolution_mm = 0) { return MeshOf(Part(v1::STRUCTURE_DIAPHRAGM), resolution_mm); }
 
-// Those of a double layer.
+// The vertices of each layer of a double layer.
 inline Points UpperLayer(const Mesh& mesh) {
   return mesh.vertices(Eigen::all, Eigen::seq(UpperVertex(0), Eigen::last, UpperVertex(1)));
 }
@@ -46,7 +46,7 @@ inline std::vector<v1::Anatomy> Bones() {
   return parts;
 }
 
-inline std::vector<v1::Anatomy> EveryPart() {
+inline std::vector<v1::Anatomy> AllParts() {
   std::vector<v1::Anatomy> parts = Bones();
   parts.push_back(Part(v1::STRUCTURE_DIAPHRAGM));
   parts.push_back(Part(v1::STRUCTURE_LUNG, 0, v1::SIDE_RIGHT));
@@ -58,7 +58,7 @@ inline Eigen::Vector3d Corner(const Mesh& mesh, Eigen::Index t, int k) {
   return mesh.vertices.col(mesh.triangles(k % 3, t));
 }
 
-// The smallest angle of all triangles [degrees].
+// Returns the smallest angle of all triangles [degrees].
 inline double SmallestAngle(const Mesh& mesh) {
   double smallest = 180;
   for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {

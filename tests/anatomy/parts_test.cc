@@ -13,7 +13,7 @@ int Genus(v1::Structure structure) {
   return structure == v1::STRUCTURE_VERTEBRA ? 1 : 0;  // the vertebral canal
 }
 
-void ExpectSound(const v1::Anatomy& part, double resolution_mm) {
+void ExpectValidSurface(const v1::Anatomy& part, double resolution_mm) {
   SCOPED_TRACE(part.ShortDebugString() + " at " + std::to_string(resolution_mm) + " mm");
   const auto mesh = Generate(part, resolution_mm);
   ASSERT_TRUE(mesh.ok()) << mesh.status();
@@ -28,74 +28,74 @@ void ExpectSound(const v1::Anatomy& part, double resolution_mm) {
   EXPECT_GT(SmallestAngle(*mesh), 4);
 }
 
-TEST(Parts, EverySurfaceIsClosedOutwardAndInOnePiece) {
-  for (const v1::Anatomy& part : EveryPart()) ExpectSound(part, 0);
+TEST(Parts, SurfacesAreClosedOutwardAndConnected) {
+  for (const v1::Anatomy& part : AllParts()) ExpectValidSurface(part, 0);
 }
 
 TEST(Parts, StayClosedAtCoarseResolutions) {
   for (const double resolution_mm : {7.0, 12.0, 20.0}) {
-    for (const v1::Anatomy& part : EveryPart()) ExpectSound(part, resolution_mm);
+    for (const v1::Anatomy& part : AllParts()) ExpectValidSurface(part, resolution_mm);
   }
 }
 
 TEST(Parts, DiaphragmAndRibsStayClosedAtFineResolutions) {
-  ExpectSound(Part(v1::STRUCTURE_DIAPHRAGM), 2);
-  ExpectSound(Part(v1::STRUCTURE_RIB, 1, v1::SIDE_LEFT), 2);
-  ExpectSound(Part(v1::STRUCTURE_RIB, 7, v1::SIDE_RIGHT), 1);
-  ExpectSound(Part(v1::STRUCTURE_VERTEBRA, 5), 2);
+  ExpectValidSurface(Part(v1::STRUCTURE_DIAPHRAGM), 2);
+  ExpectValidSurface(Part(v1::STRUCTURE_RIB, 1, v1::SIDE_LEFT), 2);
+  ExpectValidSurface(Part(v1::STRUCTURE_RIB, 7, v1::SIDE_RIGHT), 1);
+  ExpectValidSurface(Part(v1::STRUCTURE_VERTEBRA, 5), 2);
 }
 
-TEST(Parts, DefaultsSuitStreaming) {
+TEST(Parts, DefaultResolutionsSuitStreaming) {
   Eigen::Index bones = 0;
-  for (const v1::Anatomy& part : Bones()) bones += Made(part).vertices.cols();
+  for (const v1::Anatomy& part : Bones()) bones += MeshOf(part).vertices.cols();
   EXPECT_LT(bones, 60000);
   for (const v1::Side side : {v1::SIDE_LEFT, v1::SIDE_RIGHT}) {
-    const Eigen::Index lung = Made(Part(v1::STRUCTURE_LUNG, 0, side)).vertices.cols();
+    const Eigen::Index lung = MeshOf(Part(v1::STRUCTURE_LUNG, 0, side)).vertices.cols();
     EXPECT_GT(lung, 3000);
     EXPECT_LT(lung, 5000);
   }
 }
 
-TEST(Parts, FinerResolutionMeansMoreVertices) {
+TEST(Parts, FinerResolutionGivesMoreVertices) {
   for (const v1::Anatomy& part : {Part(v1::STRUCTURE_RIB, 5, v1::SIDE_LEFT), Part(v1::STRUCTURE_VERTEBRA, 12),
                                   Part(v1::STRUCTURE_DIAPHRAGM), Part(v1::STRUCTURE_MANUBRIUM)}) {
-    EXPECT_GT(Made(part, 3).vertices.cols(), 1.5 * static_cast<double>(Made(part, 5).vertices.cols()));
+    EXPECT_GT(MeshOf(part, 3).vertices.cols(), 1.5 * static_cast<double>(MeshOf(part, 5).vertices.cols()));
   }
 }
 
 TEST(Parts, SameArgumentsGiveTheSameBits) {
   for (const v1::Anatomy& part : {Part(v1::STRUCTURE_DIAPHRAGM), Part(v1::STRUCTURE_RIB, 3, v1::SIDE_LEFT),
                                   Part(v1::STRUCTURE_VERTEBRA, 9), Part(v1::STRUCTURE_LUNG, 0, v1::SIDE_LEFT)}) {
-    const Mesh first = Made(part, 6), second = Made(part, 6);
+    const Mesh first = MeshOf(part, 6), second = MeshOf(part, 6);
     EXPECT_EQ(first.vertices, second.vertices);
     EXPECT_EQ(first.triangles, second.triangles);
     EXPECT_EQ(first.regions, second.regions);
   }
 }
 
-void ExpectRefused(const v1::Anatomy& part, double resolution_mm, const std::string& field) {
+void ExpectRejected(const v1::Anatomy& part, double resolution_mm, const std::string& field) {
   const auto mesh = Generate(part, resolution_mm);
   ASSERT_FALSE(mesh.ok()) << part.ShortDebugString();
   EXPECT_EQ(mesh.status().code(), absl::StatusCode::kInvalidArgument);
   EXPECT_THAT(std::string(mesh.status().message()), testing::HasSubstr(field));
 }
 
-TEST(Parts, NoSuchPartIsRefusedByField) {
-  ExpectRefused(Part(v1::STRUCTURE_UNSPECIFIED), 0, "anatomy.structure");
-  ExpectRefused(Part(v1::STRUCTURE_RIB, 13, v1::SIDE_LEFT), 0, "anatomy.number");
-  ExpectRefused(Part(v1::STRUCTURE_RIB, 0, v1::SIDE_LEFT), 0, "anatomy.number");
-  ExpectRefused(Part(v1::STRUCTURE_RIB, 4), 0, "anatomy.side");
-  ExpectRefused(Part(v1::STRUCTURE_COSTAL_CARTILAGE, 11, v1::SIDE_RIGHT), 0, "anatomy.number");
-  ExpectRefused(Part(v1::STRUCTURE_COSTAL_CARTILAGE, 2), 0, "anatomy.side");
-  ExpectRefused(Part(v1::STRUCTURE_VERTEBRA, 16), 0, "anatomy.number");
-  ExpectRefused(Part(v1::STRUCTURE_LUNG), 0, "anatomy.side");
+TEST(Parts, UnknownPartsAreRejectedByField) {
+  ExpectRejected(Part(v1::STRUCTURE_UNSPECIFIED), 0, "anatomy.structure");
+  ExpectRejected(Part(v1::STRUCTURE_RIB, 13, v1::SIDE_LEFT), 0, "anatomy.number");
+  ExpectRejected(Part(v1::STRUCTURE_RIB, 0, v1::SIDE_LEFT), 0, "anatomy.number");
+  ExpectRejected(Part(v1::STRUCTURE_RIB, 4), 0, "anatomy.side");
+  ExpectRejected(Part(v1::STRUCTURE_COSTAL_CARTILAGE, 11, v1::SIDE_RIGHT), 0, "anatomy.number");
+  ExpectRejected(Part(v1::STRUCTURE_COSTAL_CARTILAGE, 2), 0, "anatomy.side");
+  ExpectRejected(Part(v1::STRUCTURE_VERTEBRA, 16), 0, "anatomy.number");
+  ExpectRejected(Part(v1::STRUCTURE_LUNG), 0, "anatomy.side");
 }
 
-TEST(Parts, ResolutionOutOfRangeIsRefused) {
+TEST(Parts, ResolutionOutOfRangeIsRejected) {
   for (const double resolution_mm : {-1.0, 0.1, 51.0, std::nan("")}) {
-    ExpectRefused(Part(v1::STRUCTURE_DIAPHRAGM), resolution_mm, "generated.resolution_mm");
+    ExpectRejected(Part(v1::STRUCTURE_DIAPHRAGM), resolution_mm, "generated.resolution_mm");
   }
-  ExpectRefused(Part(v1::STRUCTURE_LUNG, 0, v1::SIDE_LEFT), 1, "generated.resolution_mm");
+  ExpectRejected(Part(v1::STRUCTURE_LUNG, 0, v1::SIDE_LEFT), 1, "generated.resolution_mm");
 }
 
 }  // namespace

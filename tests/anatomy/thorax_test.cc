@@ -1,4 +1,4 @@
-// How the parts fit each other.
+// The structures of the generated thorax fit together.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -12,24 +12,24 @@
 namespace phrenic::anatomy {
 namespace {
 
-Points Together(const std::vector<v1::Anatomy>& parts) {
+Points VerticesOf(const std::vector<v1::Anatomy>& parts) {
   Points all(3, 0);
   for (const v1::Anatomy& part : parts) {
-    const Mesh mesh = Made(part);
+    const Mesh mesh = MeshOf(part);
     all.conservativeResize(3, all.cols() + mesh.vertices.cols());
     all.rightCols(mesh.vertices.cols()) = mesh.vertices;
   }
   return all;
 }
 
-Mesh Rib(int number, v1::Side side) { return Made(Part(v1::STRUCTURE_RIB, number, side)); }
-Mesh Vertebra(int number) { return Made(Part(v1::STRUCTURE_VERTEBRA, number)); }
-Mesh Lung(v1::Side side) { return Made(Part(v1::STRUCTURE_LUNG, 0, side)); }
+Mesh Rib(int number, v1::Side side) { return MeshOf(Part(v1::STRUCTURE_RIB, number, side)); }
+Mesh Vertebra(int number) { return MeshOf(Part(v1::STRUCTURE_VERTEBRA, number)); }
+Mesh Lung(v1::Side side) { return MeshOf(Part(v1::STRUCTURE_LUNG, 0, side)); }
 
-TEST(Thorax, RimLiesWithinReachOfTheBonesItIsFixedTo) {
+TEST(Thorax, RimIsCloseToTheBonesOfItsInsertion) {
   const Mesh diaphragm = Diaphragm();
-  const NearestSearch bones(Together(Bones()));
-  // Of the band called rim, the border itself: in each ten degrees round the body, the nearest vertex.
+  const NearestSearch bones(VerticesOf(Bones()));
+  // The region is a band; take its vertex nearest to bone in each 10 degrees around the body.
   std::map<int, double> nearest;
   for (const int i : diaphragm.regions.at("rim")) {
     const Eigen::Vector3d x = diaphragm.vertices.col(i);
@@ -38,7 +38,7 @@ TEST(Thorax, RimLiesWithinReachOfTheBonesItIsFixedTo) {
     nearest[sector] = nearest.contains(sector) ? std::min(nearest[sector], distance) : distance;
     EXPECT_LT(distance, 21 * kMillimetre);
   }
-  EXPECT_GE(nearest.size(), 35u) << "the rim goes round";
+  EXPECT_GE(nearest.size(), 35u) << "the rim surrounds the body";
   for (const auto& [sector, distance] : nearest) {
     EXPECT_GT(distance, 1 * kMillimetre) << sector;
     EXPECT_LT(distance, 12 * kMillimetre) << sector;
@@ -47,8 +47,8 @@ TEST(Thorax, RimLiesWithinReachOfTheBonesItIsFixedTo) {
 
 TEST(Thorax, CruraLieOnTheLumbarBodies) {
   const Mesh diaphragm = Diaphragm();
-  const NearestSearch spine(Together({Part(v1::STRUCTURE_VERTEBRA, 12), Part(v1::STRUCTURE_VERTEBRA, 13),
-                                      Part(v1::STRUCTURE_VERTEBRA, 14), Part(v1::STRUCTURE_VERTEBRA, 15)}));
+  const NearestSearch spine(VerticesOf({Part(v1::STRUCTURE_VERTEBRA, 12), Part(v1::STRUCTURE_VERTEBRA, 13),
+                                        Part(v1::STRUCTURE_VERTEBRA, 14), Part(v1::STRUCTURE_VERTEBRA, 15)}));
   for (const char* crus : {"crus-right", "crus-left"}) {
     for (const int i : diaphragm.regions.at(crus)) {
       EXPECT_LT(spine.Nearest(diaphragm.vertices.col(i)).distance, 18 * kMillimetre) << crus;
@@ -56,14 +56,14 @@ TEST(Thorax, CruraLieOnTheLumbarBodies) {
   }
 }
 
-// Bones stay on the thoracic side of the sheet: beyond the middle surface along its normal, where they are near.
+// Bones near the sheet are on its thoracic side: at positive distance from the middle surface along its normal.
 TEST(Thorax, NoBonePiercesTheDiaphragm) {
   const Mesh diaphragm = Diaphragm();
   const Points upper = UpperLayer(diaphragm), lower = LowerLayer(diaphragm);
   const Points middle = (upper + lower) / 2, across = upper - lower;
   const NearestSearch sheet(middle);
   for (const v1::Anatomy& part : Bones()) {
-    const Mesh bone = Made(part);
+    const Mesh bone = MeshOf(part);
     for (Eigen::Index i = 0; i < bone.vertices.cols(); ++i) {
       const Neighbour at = sheet.Nearest(bone.vertices.col(i));
       if (at.distance > 10 * kMillimetre) continue;
@@ -83,7 +83,7 @@ TEST(Thorax, RightAndLeftRibsMirrorEachOther) {
   }
 }
 
-TEST(Thorax, RibsSlopeDownwardsFromTheirHeadsAtTheirVertebrae) {
+TEST(Thorax, RibsDescendFromHeadsAtTheirVertebrae) {
   for (int i = 1; i <= 12; ++i) {
     const Mesh rib = Rib(i, v1::SIDE_LEFT), vertebra = Vertebra(i);
     Eigen::Index head = 0, end = 0;
@@ -103,12 +103,12 @@ TEST(Thorax, MiddleRibsAreTheLongest) {
 }
 
 TEST(Thorax, CartilagesJoinRibAndSternumOrTheCartilageAbove) {
-  const Points sternum = Together({Part(v1::STRUCTURE_MANUBRIUM), Part(v1::STRUCTURE_STERNUM_BODY)});
+  const Points sternum = VerticesOf({Part(v1::STRUCTURE_MANUBRIUM), Part(v1::STRUCTURE_STERNUM_BODY)});
   for (int i = 1; i <= 10; ++i) {
-    const Mesh cartilage = Made(Part(v1::STRUCTURE_COSTAL_CARTILAGE, i, v1::SIDE_LEFT));
+    const Mesh cartilage = MeshOf(Part(v1::STRUCTURE_COSTAL_CARTILAGE, i, v1::SIDE_LEFT));
     const NearestSearch rib(Rib(i, v1::SIDE_LEFT).vertices);
     const v1::Anatomy above = Part(v1::STRUCTURE_COSTAL_CARTILAGE, i - 1, v1::SIDE_LEFT);
-    const NearestSearch other(i < 8 ? sternum : Made(above).vertices);
+    const NearestSearch other(i < 8 ? sternum : MeshOf(above).vertices);
     double to_rib = 1, to_other = 1;
     for (Eigen::Index k = 0; k < cartilage.vertices.cols(); ++k) {
       to_rib = std::min(to_rib, rib.Nearest(cartilage.vertices.col(k)).distance);
@@ -119,7 +119,7 @@ TEST(Thorax, CartilagesJoinRibAndSternumOrTheCartilageAbove) {
   }
 }
 
-TEST(Thorax, LungsRestAboveTheDomesAndLeaveTheRecessFree) {
+TEST(Thorax, LungsLieAboveTheDomesAndLeaveTheRecessEmpty) {
   const Mesh diaphragm = Diaphragm();
   const Points normals = VertexNormals(diaphragm.vertices, diaphragm.triangles);
   const NearestSearch thoracic(UpperLayer(diaphragm));
@@ -167,7 +167,7 @@ TEST(Thorax, LungsHoldAnAdultsVolumeAndTheRightIsLarger) {
   EXPECT_LT(r + l, 4e-3);
 }
 
-TEST(Thorax, VertebraeStackWithoutOverlapOfTheirBodies) {
+TEST(Thorax, VertebralBodiesStackWithoutOverlap) {
   for (int i = 1; i < 15; ++i) {
     const Mesh upper = Vertebra(i), lower = Vertebra(i + 1);
     EXPECT_GT((High(upper) + Low(upper)).z() / 2, (High(lower) + Low(lower)).z() / 2 + 0.012) << i;

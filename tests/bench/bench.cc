@@ -8,6 +8,7 @@
 #include <cstdio>
 
 #include "absl/strings/str_cat.h"
+#include "server/mechanics/measures/readings.h"
 #include "tests/bench/bullet_body.h"
 #include "tests/bench/machine.h"
 #include "tests/bench/plain_springs.h"

@@ -112,7 +112,7 @@ std::vector<Spring> SpringsOf(const Model& model) {
 }
 
 Renumbered::Renumbered(const std::vector<Spring>& of, const Points& from) : springs(of), x(from) {
-  const std::vector<int> order = CurveOrder(from);
+  const std::vector<int> order = HilbertOrder(from);
   std::vector<int> place(order.size());
   for (size_t i = 0; i < order.size(); ++i) {
     place[order[i]] = static_cast<int>(i);

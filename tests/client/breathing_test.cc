@@ -1,4 +1,4 @@
-// Presets, and `phrenic physiology`, on a thorax coarse enough to breathe in a moment.
+// Presets and `phrenic physiology`, on a coarse thorax for speed.
 #include <gmock/gmock.h>
 
 #include "tests/client/programs.h"
@@ -15,7 +15,7 @@ TEST(Presets, AreListedAndRun) {
   EXPECT_EQ(deep.json()["session"]["parameters"]["breath_length"], 8);
 }
 
-TEST(Presets, GiveWayToWhatIsSetBesideThem) {
+TEST(Presets, AreOverriddenBySet) {
   const Outcome both = Phrenic({"run", "thorax", "--resolution", "20", "--seconds", "0.01", "--preset", "deep", "--set",
                                 "breath_length=6", "-o", "json"});
   ASSERT_EQ(both.code, 0) << both.err;
@@ -23,7 +23,7 @@ TEST(Presets, GiveWayToWhatIsSetBesideThem) {
   EXPECT_GT(both.json()["session"]["parameters"]["rib_motion"], 1);
 }
 
-TEST(Presets, ThatAreNotThereNameThoseThatAre) {
+TEST(Presets, UnknownOnesAreRejectedWithTheKnownOnes) {
   const Outcome none = Phrenic({"run", "thorax", "--resolution", "20", "--preset", "snore"});
   EXPECT_EQ(none.code, 1);
   EXPECT_THAT(none.err, HasSubstr("has no preset \"snore\"; there are quiet, deep, diaphragmatic, chest"));
@@ -40,7 +40,7 @@ TEST(Physiology, PrintsValueRangeAndVerdict) {
   }
 }
 
-TEST(Physiology, OfASceneWithoutADiaphragmIsRefused) {
+TEST(Physiology, OfASceneWithoutADiaphragmIsRejected) {
   const Outcome cube = Phrenic({"physiology", "cube-springs"});
   EXPECT_EQ(cube.code, 1);
   EXPECT_THAT(cube.err, HasSubstr("STRUCTURE_DIAPHRAGM"));

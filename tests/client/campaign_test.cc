@@ -1,4 +1,4 @@
-// Campaigns: every combination once, whoever is killed in between, and held to its limits.
+// Campaigns: every combination runs once, even after a kill, and limits are checked.
 #include <gmock/gmock.h>
 
 #include <filesystem>
@@ -27,12 +27,12 @@ class Campaigns : public ::testing::Test {
     more.insert(more.begin(), {"campaign", verb, WriteScratch("sweep.textproto", campaign), "--out", folder_});
     return Phrenic(more);
   }
-  // Of each result its bytes and when it was written.
+  // Returns each result file's bytes and time of writing.
   std::map<std::string, std::pair<std::string, std::filesystem::file_time_type>> Results() const {
     std::map<std::string, std::pair<std::string, std::filesystem::file_time_type>> results;
     if (!std::filesystem::exists(folder_ + "/cells")) return results;
     for (const auto& file : std::filesystem::directory_iterator(folder_ + "/cells")) {
-      if (file.path().extension() != ".json") continue;  // half written when its process was killed
+      if (file.path().extension() != ".json") continue;  // incomplete, if its process was killed
       results[file.path()] = {ReadAll(file.path()), file.last_write_time()};
     }
     return results;
@@ -53,7 +53,7 @@ TEST_F(Campaigns, RunEveryCombinationAsOneRunWould) {
   EXPECT_THAT(ReadAll(Scratch("page.html")), HasSubstr("12 runs of 0.5 s: 12 done"));
 }
 
-TEST_F(Campaigns, GoOnWhereTheyWereKilledAndComputeNothingTwice) {
+TEST_F(Campaigns, ResumeAfterAKillAndRepeatNothing) {
   std::string sweep = kSweep;
   sweep.replace(sweep.find("seconds: 0.5"), 12, "seconds: 60");
   const std::vector<std::string> words = {"campaign", "run", WriteScratch("sweep.textproto", sweep), "--out", folder_};
@@ -70,16 +70,16 @@ TEST_F(Campaigns, GoOnWhereTheyWereKilledAndComputeNothingTwice) {
   for (const auto& [file, result] : before) EXPECT_EQ(after.at(file), result) << "computed again";
 }
 
-TEST_F(Campaigns, SayWhichRunPassesALimit) {
+TEST_F(Campaigns, NameTheRunThatExceedsALimit) {
   const std::string limited =
       std::string(kSweep) + "limits { table: 'rows' where: 'scene=cube-springs' column: 'steps' at_most: 1 }";
   const Outcome missed = Ask("run", limited);
   EXPECT_EQ(missed.code, 4) << missed.err;
-  EXPECT_THAT(missed.err, HasSubstr("limit passed: rows.steps where scene=cube-springs"));
-  EXPECT_EQ(Ask("run", kSweep).code, 0) << "other limits compute nothing anew";
+  EXPECT_THAT(missed.err, HasSubstr("limit exceeded: rows.steps where scene=cube-springs"));
+  EXPECT_EQ(Ask("run", kSweep).code, 0) << "changed limits repeat no run";
 }
 
-TEST_F(Campaigns, ARunThatIsRefusedOrDivergesIsARowAndNotTheEnd) {
+TEST_F(Campaigns, ARejectedRunIsARowAndTheOthersContinue) {
   const Outcome outcome = Ask("run", R"(
     name: "one of them" scenes: "cube-springs" presets: "no such preset" presets: "" seconds: 0.1 )",
                               {"-o", "json"});
@@ -91,7 +91,7 @@ TEST_F(Campaigns, ARunThatIsRefusedOrDivergesIsARowAndNotTheEnd) {
   EXPECT_EQ(rows[1]["outcome"], "done");
 }
 
-TEST_F(Campaigns, BadOnesNameTheFieldOrTheFile) {
+TEST_F(Campaigns, ErrorsNameTheFieldOrTheFile) {
   EXPECT_THAT(Ask("run", "name: 'x' scenes: 'nosuch.textproto'").err, HasSubstr("nosuch.textproto"));
   EXPECT_THAT(Ask("run", "name: 'x' scenes: 'cube-springs' axes { parameter: 'tim_step' values: '1' }").err,
               HasSubstr("tim_step"));
@@ -105,9 +105,9 @@ TEST_F(Campaigns, BadOnesNameTheFieldOrTheFile) {
   EXPECT_THAT(outcome.err, HasSubstr(broken));
 }
 
-// A cluster of one machine: `sbatch` has to be there, and to have somewhere to run jobs.
+// Needs a Slurm cluster; tests/client/slurm/start starts one on this machine.
 TEST_F(Campaigns, RunOnSlurm) {
-  if (std::system("sinfo --noheader > /dev/null 2>&1") != 0) GTEST_SKIP() << "no Slurm runs here";
+  if (std::system("sinfo --noheader > /dev/null 2>&1") != 0) GTEST_SKIP() << "Slurm does not run here";
   const Outcome outcome = Ask("run", kSweep, {"--on", "slurm", "--jobs", "2", "-o", "json"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(outcome.json()["rows"].size(), 12);

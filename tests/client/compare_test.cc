@@ -1,4 +1,4 @@
-// `phrenic compare`: surfaces and motions apart, limits, colour maps, and bad input.
+// `phrenic compare`: distances of surfaces and motions, limits, colour maps, and invalid input.
 #include <gmock/gmock.h>
 
 #include <cstdlib>
@@ -35,7 +35,7 @@ TEST(Compare, JsonHasEveryMeasureInMillimetres) {
   EXPECT_GT(std::stoi(distance["samples_a"].get<std::string>()), 20'000);
 }
 
-TEST(Compare, TableAndCsvSayTheSame) {
+TEST(Compare, TableAndCsvHaveTheSameNumbers) {
   const std::string a = Square("a", "0"), b = Square("b", "3");
   const Outcome table = Phrenic({"compare", a, b});
   ASSERT_EQ(table.code, 0) << table.err;
@@ -47,19 +47,19 @@ TEST(Compare, TableAndCsvSayTheSame) {
   EXPECT_THAT(csv.out, HasSubstr("\n,,3,3.0003,3,3,3,"));
 }
 
-TEST(Compare, AMissedLimitIsExitCodeFourAndNamed) {
+TEST(Compare, AnExceededLimitIsNamedAndHasExitCodeFour) {
   const std::string a = Square("a", "0"), b = Square("b", "3");
   const Outcome kept = Phrenic({"compare", "--check", "hd_max=3.1,surface_dice=1", "--tolerance", "4", a, b});
   EXPECT_EQ(kept.code, 0) << kept.err;
   const Outcome missed =
       Phrenic({"compare", a, b, "--check", "hd_max=3.1,mean_a_to_b=1", "--check", "surface_dice=0.9"});
   EXPECT_EQ(missed.code, 4);
-  EXPECT_THAT(missed.err, HasSubstr("mean_a_to_b is 3 mm, and 1 is the most"));
-  EXPECT_THAT(missed.err, HasSubstr("surface_dice is 0, and 0.9 is the least"));
-  EXPECT_THAT(missed.out, HasSubstr("hd_max")) << "the numbers come all the same";
+  EXPECT_THAT(missed.err, HasSubstr("mean_a_to_b is 3 mm; the limit is at most 1"));
+  EXPECT_THAT(missed.err, HasSubstr("surface_dice is 0; the limit is at least 0.9"));
+  EXPECT_THAT(missed.out, HasSubstr("hd_max")) << "the numbers are printed anyway";
   const std::string wire = WriteScratch("wire.obj", "v 0 0 0\nv 1 0 0\nl 1 2\n");
   const Outcome nothing = Phrenic({"compare", a, wire, "--check", "hd_max=1000"});
-  EXPECT_EQ(nothing.code, 4) << "what is not a number keeps no limit";
+  EXPECT_EQ(nothing.code, 4) << "NaN meets no limit";
   EXPECT_THAT(nothing.out, HasSubstr("NaN"));
 }
 
@@ -92,7 +92,7 @@ TEST(Compare, TheMapOpensInVtk) {
   EXPECT_EQ(ReadAll(out), "4 2 (3.0, 3.0) (0.0, 100.0, 0.0, 100.0, 0.0, 0.0)\n");
 }
 
-TEST(Compare, ExportedMotionsHaveARowATimeAndTheBaseline) {
+TEST(Compare, ExportedMotionsHaveARowPerTimeAndABaseline) {
   const std::string a = Scratch("a.msh"), b = Scratch("b.msh");
   for (const auto& [file, force] : {std::pair(a, "1"), std::pair(b, "2")}) {
     const Outcome run = Phrenic({"run", "cube-tensegrity", "--seconds", "1", "--fps", "4", "--set",
@@ -101,7 +101,7 @@ TEST(Compare, ExportedMotionsHaveARowATimeAndTheBaseline) {
   }
   const Outcome itself = Phrenic({"compare", a, a, "-o", "json", "--check", "hd_max=1e-6"});
   ASSERT_EQ(itself.code, 0) << itself.err;
-  EXPECT_EQ(itself.json()["rows"].size(), 6U) << "over all times, and five";
+  EXPECT_EQ(itself.json()["rows"].size(), 6U) << "one over all times and five times";
   EXPECT_GT(itself.json()["rows"][0]["baseline"]["hd_max"].get<double>(), 1) << "the cube moves";
   const Outcome other = Phrenic({"compare", a, b, "--regions"});
   ASSERT_EQ(other.code, 0) << other.err;
@@ -109,7 +109,7 @@ TEST(Compare, ExportedMotionsHaveARowATimeAndTheBaseline) {
   EXPECT_THAT(other.out, HasSubstr("at each time [s], in mm"));
 }
 
-TEST(Compare, AServerThatIsNamedDoesTheWork) {
+TEST(Compare, ANamedServerCompares) {
   const RunningServer server;
   ASSERT_GT(server.port(), 0);
   const std::string a = Square("a", "0"), b = Square("b", "3");
@@ -119,7 +119,7 @@ TEST(Compare, AServerThatIsNamedDoesTheWork) {
   EXPECT_EQ(Phrenic({"compare", a, b, "--server", "127.0.0.1:1"}).code, 3);
 }
 
-TEST(Compare, ASessionsBodyIsComparedAsItIsNow) {
+TEST(Compare, ASessionsBodyIsComparedInItsPresentState) {
   const RunningServer server;
   ASSERT_GT(server.port(), 0);
   const std::vector<std::string> at = {"--server", server.address()};
@@ -143,31 +143,31 @@ TEST(Compare, ASessionsBodyIsComparedAsItIsNow) {
   EXPECT_EQ(Phrenic({"compare", "session:cube", cube, "--server", "127.0.0.1:1"}).code, 3);
 }
 
-struct BadWords {
+struct BadArguments {
   std::vector<std::string> arguments;
   int code;
   const char* words;
 };
 
-TEST(Compare, BadWordsAreRefusedWithTheRightCode) {
+TEST(Compare, InvalidArgumentsHaveTheRightExitCode) {
   const std::string a = Square("a", "0");
-  const BadWords lines[] = {
+  const BadArguments lines[] = {
       {{a}, 2, "B is required"},
-      {{a, "/nowhere/b.obj"}, 1, "cannot read \"/nowhere/b.obj\""},
+      {{a, "/nowhere/b.obj"}, 1, "cannot read the surface \"/nowhere/b.obj\""},
       {{a, testing::TempDir()}, 1, "cannot read"},
-      {{a, WriteScratch("b.stp", "solid")}, 1, "b.stp:1: the name's ending tells no known format"},
+      {{a, WriteScratch("b.stp", "solid")}, 1, "b.stp:1: the file name extension is not one of"},
       {{a, WriteScratch("bad.obj", "v 1 2\n")}, 1, "bad.obj:1:"},
       {{a, a, "--check", "hd=2"}, 2, "there is no measure \"hd\"; there are hd_max"},
       {{a, a, "--check", "hd_max"}, 2, "write measure=number"},
       {{a, a, "--check", "hd_max=soon"}, 2, "write measure=number"},
       {{a, a, "--tolerance", "-1"}, 2, "--tolerance"},
       {{a, a, "--spacing", "0.0001"}, 1, "spacing_mm: 0.0001 mm asks for"},
-      {{a, a, "--map", "map"}, 1, "name it .msh or .vtp"},
+      {{a, a, "--map", "map"}, 1, "use a name ending in .msh or .vtp"},
       {{a, a, "--map", Scratch("map.png")}, 1, "there are msh, vtp"},
       {{a, a, "--map", "/nowhere/map.vtp"}, 1, "cannot write /nowhere/map.vtp"},
       {{a, a, "-o", "yaml"}, 2, "--output"},
   };
-  for (const BadWords& line : lines) {
+  for (const BadArguments& line : lines) {
     std::vector<std::string> arguments = {"compare"};
     arguments.insert(arguments.end(), line.arguments.begin(), line.arguments.end());
     const Outcome compared = Phrenic(arguments);

@@ -1,4 +1,4 @@
-// Completion in the shells themselves: keys typed into bash and zsh in a terminal, and fish asked as it asks itself.
+// Completion, also in real shells: keys typed into bash and zsh on a terminal, and fish's own query.
 #include "client/cli/completion.h"
 
 #include <gmock/gmock.h>
@@ -15,7 +15,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-TEST(SplitLine, TakesQuotesAndBackslashesAway) {
+TEST(SplitLine, RemovesQuotesAndBackslashes) {
   EXPECT_THAT(SplitLine("phrenic run th"), ElementsAre("phrenic", "run", "th"));
   EXPECT_THAT(SplitLine("phrenic  run "), ElementsAre("phrenic", "run", ""));
   EXPECT_THAT(SplitLine("phrenic inspect 'my lung"), ElementsAre("phrenic", "inspect", "my lung"));
@@ -23,29 +23,29 @@ TEST(SplitLine, TakesQuotesAndBackslashesAway) {
   EXPECT_THAT(SplitLine(""), ElementsAre(""));
 }
 
-std::string Asked(const std::string& line) { return Phrenic({"__complete", line}).out; }
+std::string Completed(const std::string& line) { return Phrenic({"__complete", line}).out; }
 
-TEST(Complete, KnowsWhatStandsWhere) {
-  EXPECT_THAT(Asked("phrenic ru"), HasSubstr("run\tRun a scene here"));
-  EXPECT_THAT(Asked("phrenic study "), HasSubstr("stability\t"));
-  EXPECT_EQ(Asked("phrenic run thorax --sec"), "--seconds\tsimulated time [s]\n:nothing\n");
-  EXPECT_THAT(Asked("phrenic run thorax --serv"), HasSubstr("--server\t")) << "those of every command, too";
-  EXPECT_EQ(Asked("phrenic scenes --output j"), "json\njsonl\n:nothing\n");
-  EXPECT_EQ(Asked("phrenic scenes --output=j"), "--output=json\n--output=jsonl\n:nothing\n");
-  EXPECT_EQ(Asked("phrenic scenes -o c"), "csv\n:nothing\n");
-  EXPECT_EQ(Asked("phrenic phantom --body t"), "tall\n:nothing\n");
-  EXPECT_EQ(Asked("phrenic inspect "), ":files\n");
-  EXPECT_EQ(Asked("phrenic run thorax --data "), ":folders\n");
-  EXPECT_EQ(Asked("phrenic run thorax --seconds "), ":nothing\n");
-  EXPECT_EQ(Asked("phrenic run thorax extra "), ":nothing\n");
+TEST(Complete, KnowsWhichArgumentFollows) {
+  EXPECT_THAT(Completed("phrenic ru"), HasSubstr("run\tSimulate a scene"));
+  EXPECT_THAT(Completed("phrenic study "), HasSubstr("stability\t"));
+  EXPECT_EQ(Completed("phrenic run thorax --sec"), "--seconds\tsimulated time [s]\n:nothing\n");
+  EXPECT_THAT(Completed("phrenic run thorax --serv"), HasSubstr("--server\t")) << "options of every command";
+  EXPECT_EQ(Completed("phrenic scenes --output j"), "json\njsonl\n:nothing\n");
+  EXPECT_EQ(Completed("phrenic scenes --output=j"), "--output=json\n--output=jsonl\n:nothing\n");
+  EXPECT_EQ(Completed("phrenic scenes -o c"), "csv\n:nothing\n");
+  EXPECT_EQ(Completed("phrenic phantom --body t"), "tall\n:nothing\n");
+  EXPECT_EQ(Completed("phrenic inspect "), ":files\n");
+  EXPECT_EQ(Completed("phrenic run thorax --data "), ":folders\n");
+  EXPECT_EQ(Completed("phrenic run thorax --seconds "), ":nothing\n");
+  EXPECT_EQ(Completed("phrenic run thorax extra "), ":nothing\n");
 }
 
 TEST(Complete, KnowsParametersTheirValuesAndPresets) {
-  EXPECT_EQ(Asked("phrenic run thorax --set breath_f"), "breath_force=\t0 to 20\n:nospace\n");
-  EXPECT_EQ(Asked("phrenic run thorax --set apply_links="), "apply_links=on\napply_links=off\n:nothing\n");
-  EXPECT_THAT(Asked("phrenic run thorax --set integrator=b"), HasSubstr("integrator=bdf2\n"));
-  EXPECT_EQ(Asked("phrenic set class breath_force=2 breath_l"), "breath_length=\t0.5 to 30 s\n:nospace\n");
-  EXPECT_THAT(Asked("phrenic run thorax --server 127.0.0.1:1 --preset de"), testing::StartsWith("deep\t"));
+  EXPECT_EQ(Completed("phrenic run thorax --set breath_f"), "breath_force=\t0 to 20\n:nospace\n");
+  EXPECT_EQ(Completed("phrenic run thorax --set apply_links="), "apply_links=on\napply_links=off\n:nothing\n");
+  EXPECT_THAT(Completed("phrenic run thorax --set integrator=b"), HasSubstr("integrator=bdf2\n"));
+  EXPECT_EQ(Completed("phrenic set class breath_force=2 breath_l"), "breath_length=\t0.5 to 30 s\n:nospace\n");
+  EXPECT_THAT(Completed("phrenic run thorax --server 127.0.0.1:1 --preset de"), testing::StartsWith("deep\t"));
 }
 
 TEST(Scripts, OfBashAreCleanForShellcheck) {
@@ -55,7 +55,7 @@ TEST(Scripts, OfBashAreCleanForShellcheck) {
   EXPECT_EQ(system(("shellcheck -s bash " + script + " >" + said).c_str()), 0) << ReadAll(said);
 }
 
-// What is typed, and what the tab key adds to it.
+// A typed line and the text that the tab key adds.
 struct Typed {
   std::string line, added;
 };
@@ -76,7 +76,7 @@ class Shells : public testing::Test {
             {"TERM", "dumb"}};
   }
 
-  // Ctrl-U takes the line away before the next.
+  // Ctrl-U clears the line before the next one.
   void ExpectEach(PseudoTerminal& shell) {
     for (const Typed& typed : cases_) {
       shell.Type(typed.line + "\t");

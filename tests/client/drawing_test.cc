@@ -1,4 +1,4 @@
-// Bars, sparklines, text that fits, and the time that is left.
+// Bars, sparklines, wrapped text, durations and the live view.
 #include <gmock/gmock.h>
 
 #include "client/print/live_view.h"
@@ -15,7 +15,7 @@ TEST(Sparkline, GoesFromTheLowestToTheHighestBlock) {
   EXPECT_EQ(Sparkline(rising, 0, 7, false), "__.-=*##" + std::string()) << "six levels for eight values";
 }
 
-TEST(Sparkline, ClipsAndTakesTheMiddleWhereNothingMoves) {
+TEST(Sparkline, ClampsAndUsesTheMiddleForAnEmptyRange) {
   EXPECT_EQ(Sparkline(std::vector<double>{-9, 9}, 0, 1, true), "▁█");
   EXPECT_EQ(Sparkline(std::vector<double>{3, 3}, 3, 3, true), "▅▅");
   EXPECT_EQ(Sparkline({}, 0, 1, true), "");
@@ -26,7 +26,7 @@ TEST(Bar, IsAsFullAsTheValue) {
   EXPECT_EQ(Bar(1, 0, 1, 4, true), "████");
   EXPECT_EQ(Bar(0.5, 0, 1, 3, true), "█▌ ");
   EXPECT_EQ(Bar(0.5, 0, 1, 4, false), "##..");
-  for (double value = 0; value <= 1; value += 0.01) EXPECT_EQ(PoseMatricesOf(Bar(value, 0, 1, 7, true)), 7);
+  for (double value = 0; value <= 1; value += 0.01) EXPECT_EQ(ColumnsOf(Bar(value, 0, 1, 7, true)), 7);
 }
 
 TEST(Wrapped, KeepsWordsAndWidth) {
@@ -38,7 +38,7 @@ TEST(Wrapped, KeepsWordsAndWidth) {
 TEST(Clipped, CountsCharactersNotBytes) {
   EXPECT_EQ(Clipped("▁▂▃", 2), "▁▂");
   EXPECT_EQ(Clipped("ab", 5), "ab");
-  EXPECT_EQ(PoseMatricesOf("▁a"), 2);
+  EXPECT_EQ(ColumnsOf("▁a"), 2);
 }
 
 TEST(DurationText, GrowsCoarser) {
@@ -66,18 +66,18 @@ TEST(LiveView, FitsEveryWidthAndShowsTheLastValue) {
   for (const int width : {20, 40, 80, 200}) {
     const std::vector<std::string> lines = view.Lines({width, true});
     ASSERT_EQ(lines.size(), 3U) << "heading, breath, volume";
-    for (const std::string& line : lines) EXPECT_LE(PoseMatricesOf(line), width);
+    for (const std::string& line : lines) EXPECT_LE(ColumnsOf(line), width);
   }
   const std::string volume = view.Lines({80, true})[2];
   EXPECT_THAT(volume, testing::HasSubstr("lung volume  0 l"));
   EXPECT_THAT(volume, testing::HasSubstr("▁▁▂▃▄▅▆▇██"));
 }
 
-TEST(LiveView, BeginsAnewWithAReset) {
+TEST(LiveView, StartsAgainAfterAReset) {
   LiveView view;
   view.Add(FrameAt(1, 9));
   view.Add(FrameAt(0, 1));
-  EXPECT_THAT(view.Lines({80, true})[2], testing::EndsWith("▅")) << "one value, and nothing to compare it with";
+  EXPECT_THAT(view.Lines({80, true})[2], testing::EndsWith("▅")) << "one value has no range";
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// `phrenic inspect` and `phrenic convert`: surface files looked at, and written in other formats.
+// `phrenic inspect` and `phrenic convert`: surface files are checked, repaired and converted.
 #include <gmock/gmock.h>
 
 #include <filesystem>
@@ -18,7 +18,7 @@ constexpr char kTetrahedron[] =
 
 std::string Ras() { return WriteScratch("ras.obj", std::string("# 3D Slicer output. SPACE=RAS\n") + kTetrahedron); }
 
-TEST(InspectCommand, JsonAndTextSayTheSame) {
+TEST(InspectCommand, JsonAndTextHaveTheSameNumbers) {
   const Outcome text = Phrenic({"inspect", Ras()});
   ASSERT_EQ(text.code, 0) << text.err;
   EXPECT_THAT(text.out, HasSubstr("frame                         RAS\n"));
@@ -33,14 +33,14 @@ TEST(InspectCommand, JsonAndTextSayTheSame) {
   EXPECT_NEAR(json["volume_ml"].get<double>(), 35.420, 0.001);
 }
 
-TEST(InspectCommand, TheUnitIsSaidAndChecked) {
+TEST(InspectCommand, TheUnitIsAppliedAndChecked) {
   const auto json = Phrenic({"inspect", Ras(), "--unit-mm", "10", "-o", "json"}).json();
   ASSERT_FALSE(json.is_discarded());
   EXPECT_NEAR(json["greatest_mm"][2].get<double>(), 700, 1e-9);
   EXPECT_EQ(Phrenic({"inspect", Ras(), "--unit-mm", "0"}).code, 2);
 }
 
-TEST(InspectCommand, BadFilesAreRefusedWithTheirPlace) {
+TEST(InspectCommand, InvalidFilesAreRejectedWithFileAndLine) {
   const Outcome missing = Phrenic({"inspect", "/nowhere/lung.stl"});
   EXPECT_EQ(missing.code, 1);
   EXPECT_THAT(missing.err, HasSubstr("/nowhere/lung.stl"));
@@ -54,7 +54,7 @@ TEST(InspectCommand, BadFilesAreRefusedWithTheirPlace) {
 TEST(ConvertCommand, AnyToAnyAndBackKeepsTheSurface) {
   const std::string first = Scratch("first.obj");
   ASSERT_EQ(Phrenic({"convert", Ras(), first}).code, 0);
-  EXPECT_THAT(ReadAll(first), HasSubstr("v -50.7 0 0\n")) << "every digit, in LPS";
+  EXPECT_THAT(ReadAll(first), HasSubstr("v -50.7 0 0\n")) << "all digits, in LPS";
   for (const std::string ending : {".msh", ".ply", ".stl"}) {
     const std::string file = Scratch("there" + ending), back = Scratch("back.obj");
     const Outcome there = Phrenic({"convert", first, file});
@@ -79,38 +79,38 @@ TEST(ConvertCommand, UnitsAreConverted) {
   EXPECT_EQ(json["likely_unit"], "m");
 }
 
-TEST(ConvertCommand, WhatAFormatCannotHoldIsSaid) {
+TEST(ConvertCommand, LossesAreReported) {
   const std::string regions = WriteScratch(
       "regions.msh",
       "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n2 7 \"tendon\"\n$EndPhysicalNames\n"
       "$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 5 5 5\n$EndNodes\n$Elements\n1\n1 2 2 7 1 1 2 3\n$EndElements\n");
   const Outcome stl = Phrenic({"convert", regions, Scratch("out.stl")});
   EXPECT_EQ(stl.code, 0);
-  EXPECT_THAT(stl.err, HasSubstr("1 vertices, unused"));
-  EXPECT_THAT(stl.err, HasSubstr("the region \"tendon\" is not"));
+  EXPECT_THAT(stl.err, HasSubstr("1 unused or duplicate vertices"));
+  EXPECT_THAT(stl.err, HasSubstr("the region \"tendon\" is missing"));
   EXPECT_THAT(Phrenic({"convert", regions, Scratch("out.msh")}).err, IsEmpty());
   const Outcome unknown = Phrenic({"convert", regions, Scratch("out.step")});
   EXPECT_EQ(unknown.code, 1);
   EXPECT_THAT(unknown.err, HasSubstr(".obj, .msh, .stl, .ply"));
 }
 
-TEST(ConvertCommand, RepairsWhatItIsAskedTo) {
+TEST(ConvertCommand, AppliesTheChosenRepairs) {
   const std::string turned = WriteScratch("turned.obj",
                                           "v 0 0 0\nv 50 0 0\nv 0 60 0\nv 0 0 70\nv 0 0 70\n"
                                           "f 1 3 2\nf 1 2 4\nf 1 5 3\nf 2 4 3\n");
   const std::string out = Scratch("repaired.obj");
   const auto repairs = [&out] { return Phrenic({"inspect", out, "-o", "json"}).json()["repairs"].size(); };
   ASSERT_EQ(Phrenic({"convert", turned, out}).code, 0);
-  EXPECT_EQ(repairs(), 3u) << "nothing unless asked for: a double vertex, open edges, one turned triangle";
+  EXPECT_EQ(repairs(), 3u) << "no repair by default: a double vertex, open edges, one reversed triangle";
   const Outcome welded = Phrenic({"convert", turned, out, "--repair", "weld,orient"});
-  EXPECT_THAT(welded.err, HasSubstr("1 vertices were at the place of another"));
-  EXPECT_THAT(welded.err, HasSubstr("1 triangles were turned"));
+  EXPECT_THAT(welded.err, HasSubstr("1 duplicate or unused vertices removed"));
+  EXPECT_THAT(welded.err, HasSubstr("1 triangles reoriented"));
   EXPECT_EQ(repairs(), 0u);
   EXPECT_EQ(Phrenic({"convert", turned, out, "--repair", "magic"}).code, 2);
 }
 
-// A lung with a fin inside, as its authors published it.
-TEST(ConvertCommand, ALungWithAFinBecomesWhole) {
+// A published lung surface with a fin inside.
+TEST(ConvertCommand, ALungWithAFinIsRepaired) {
   const std::filesystem::path lungs = std::filesystem::path(PHRENIC_SHARED_DIR) / "data" / "thorax" / "lungs";
   const std::string lung = lungs / "inferior_lobe_of_right_lung_closed.obj";
   if (!std::filesystem::exists(lung)) GTEST_SKIP() << "no " << lung;
@@ -122,7 +122,7 @@ TEST(ConvertCommand, ALungWithAFinBecomesWhole) {
   EXPECT_NEAR(json["volume_ml"].get<double>(), 691.6, 0.1);
 }
 
-TEST(CompareCommand, TakesEveryFormatThatIsRead) {
+TEST(CompareCommand, AcceptsEveryReadableFormat) {
   const std::string stl = Scratch("compared.stl");
   ASSERT_EQ(Phrenic({"convert", Ras(), stl}).code, 0);
   const Outcome same = Phrenic({"compare", Ras(), stl, "--check", "hd_max=1e-5"});

@@ -1,6 +1,6 @@
-// Help, answers and errors, word for word as in golden/. After a change that is meant:
+// Help, answers and errors are equal to the files in golden/. After an intended change, renew the files and check the
+// difference:
 //   PHRENIC_RENEW_GOLDEN=1 build/client_test --gtest_filter='Golden*'
-// and look at the difference.
 #include <gmock/gmock.h>
 
 #include <cstdlib>
@@ -28,10 +28,10 @@ void ExpectGolden(const std::string& name, const std::string& text) {
     std::filesystem::create_directories(std::filesystem::path(path).parent_path());
     std::ofstream(path) << text;
   }
-  EXPECT_EQ(text, ReadAll(path)) << "renew it, where that is meant: see the head of this file";
+  EXPECT_EQ(text, ReadAll(path)) << "to renew the file after an intended change, see the top of golden_test.cc";
 }
 
-// The commands there are, as completion has them.
+// Returns the subcommands that completion offers after `line`.
 Words CommandsBelow(const std::string& line) {
   Words names;
   for (const std::string& row : Words(absl::StrSplit(Phrenic({"__complete", line + " "}).out, '\n'))) {
@@ -99,9 +99,9 @@ TEST(Golden, AnswersOfAServer) {
       {"delete", {"delete", "class"}},
   };
   for (const auto& [name, words] : cases) {
-    Words asked = words;
-    asked.insert(asked.end(), {"--server", server.address()});
-    Outcome outcome = Phrenic(asked);
+    Words arguments = words;
+    arguments.insert(arguments.end(), {"--server", server.address()});
+    Outcome outcome = Phrenic(arguments);
     outcome.out = absl::StrReplaceAll(outcome.out, {{std::to_string(server.web_port()), "WEB"}});
     ExpectGolden(std::string("answers/") + name, Transcript(words, outcome));
   }

@@ -1,4 +1,4 @@
-// Runs the built programs as a user would: `phrenic` to its end, `phrenicd` beside a test.
+// Runs the built programs as a user does: `phrenic` to its end, `phrenicd` during a test.
 #ifndef PHRENIC_TESTS_CLIENT_PROGRAMS_H_
 #define PHRENIC_TESTS_CLIENT_PROGRAMS_H_
 
@@ -22,9 +22,11 @@
 
 namespace phrenic::client {
 
+// The result of a program.
 struct Outcome {
   int code = -1;  // exit code
   std::string out, err;
+  // Returns standard output as JSON; discarded() if it is not JSON.
   nlohmann::json json() const { return nlohmann::json::parse(out, nullptr, false); }
 };
 
@@ -35,7 +37,7 @@ inline std::string ReadAll(const std::string& path) {
   return text.str();
 }
 
-// A folder of the process' own, which goes with it.
+// A temporary folder of this process. The destructor removes it.
 struct ScratchFolder {
   ScratchFolder() { std::filesystem::create_directories(path); }
   ~ScratchFolder() {
@@ -45,31 +47,33 @@ struct ScratchFolder {
   const std::string path = testing::TempDir() + "phrenic_client_" + std::to_string(getpid());
 };
 
-// A path in it.
+// Returns a path in the temporary folder.
 inline std::string Scratch(const std::string& name) {
   static const ScratchFolder folder;
   return folder.path + "/" + name;
 }
 
+// Writes a file in the temporary folder. Returns its path.
 inline std::string WriteScratch(const std::string& name, const std::string& text) {
   std::ofstream(Scratch(name)) << text;
   return Scratch(name);
 }
 
-// Whose commands are run: each keeps tokens of their own, in the tests' folder.
+// The user whose commands run. Each user has their own control tokens, in the temporary folder.
 inline std::string& User() {
   static std::string user = "anna";
   return user;
 }
 
-// Starts a program of the build with standard output and error in files; it ends with the test.
+// Starts a program of the build with standard output and error in files. The program ends with the test at the latest.
+// Returns its process id.
 inline pid_t Start(const std::string& program, const std::vector<std::string>& arguments, const std::string& out,
                    const std::string& err) {
   const std::string state = Scratch(User());
   const pid_t pid = fork();
   if (pid != 0) return pid;
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  setenv("XDG_CONFIG_HOME", Scratch("config").c_str(), 1);  // whatever the person who tests has set
+  setenv("XDG_CONFIG_HOME", Scratch("config").c_str(), 1);  // independent of the tester's settings
   setenv("XDG_STATE_HOME", state.c_str(), 1);
   const int to_out = open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
   const int to_err = open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
@@ -83,12 +87,14 @@ inline pid_t Start(const std::string& program, const std::vector<std::string>& a
   _exit(127);
 }
 
+// Waits for a process. Returns its exit code, 128 + signal, or -1.
 inline int WaitFor(pid_t pid) {
   int status = 0;
   if (waitpid(pid, &status, 0) != pid) return -1;
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
+// Runs `phrenic` to its end.
 inline Outcome Phrenic(const std::vector<std::string>& arguments) {
   const std::string out = Scratch("out"), err = Scratch("err");
   Outcome outcome;
@@ -98,10 +104,10 @@ inline Outcome Phrenic(const std::vector<std::string>& arguments) {
   return outcome;
 }
 
-// phrenicd on free ports, with no session; it ends with the object.
+// phrenicd on free ports, without sessions. The destructor stops it.
 class RunningServer : public ServerProcess {
  public:
-  // `store` is a folder, or "none".
+  // `store`: the folder of saved sessions, or "none".
   explicit RunningServer(const std::string& store = "none")
       : ServerProcess(Scratch("server"), {"--web-root", std::string(PHRENIC_SOURCE_DIR) + "/web", "--store", store},
                       {"XDG_CONFIG_HOME=" + Scratch("config"), "XDG_STATE_HOME=" + Scratch(User())}) {

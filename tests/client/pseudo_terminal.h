@@ -1,4 +1,4 @@
-// A program in a terminal of a given size, as a person has it: what it writes, and keys for it.
+// A program on a terminal of a given width.
 #ifndef PHRENIC_TESTS_CLIENT_PSEUDO_TERMINAL_H_
 #define PHRENIC_TESTS_CLIENT_PSEUDO_TERMINAL_H_
 
@@ -16,10 +16,10 @@
 
 namespace phrenic::client {
 
-// Ended by the destructor.
+// Starts the program. The destructor kills it. Not thread-safe.
 class PseudoTerminal {
  public:
-  // `environment` is put over the test's own.
+  // `environment` is added to the test's environment.
   PseudoTerminal(const std::vector<std::string>& words, unsigned short columns,
                  const std::map<std::string, std::string>& environment = {}) {
     winsize size = {};
@@ -45,11 +45,12 @@ class PseudoTerminal {
   PseudoTerminal(const PseudoTerminal&) = delete;
   PseudoTerminal& operator=(const PseudoTerminal&) = delete;
 
+  // Sends keys to the program.
   void Type(const std::string& keys) const { (void)!write(master_, keys.data(), keys.size()); }
 
-  // What was written since the last call, once the words are among it, or the program has ended.
-  std::string ReadUntil(const std::string& words, std::chrono::seconds patience = std::chrono::seconds(20)) {
-    const auto end = std::chrono::steady_clock::now() + patience;
+  // Returns the output since the last call, up to `words`, the program's end, or the timeout.
+  std::string ReadUntil(const std::string& words, std::chrono::seconds timeout = std::chrono::seconds(20)) {
+    const auto end = std::chrono::steady_clock::now() + timeout;
     std::string text;
     while (text.find(words) == std::string::npos && std::chrono::steady_clock::now() < end) {
       pollfd ready = {master_, POLLIN, 0};
@@ -61,7 +62,7 @@ class PseudoTerminal {
     }
     return text;
   }
-  // To the program's end.
+  // Returns all output up to the program's end.
   std::string ReadAll() { return ReadUntil(std::string(1, '\0')); }
 
  private:

@@ -1,4 +1,4 @@
-// Runs that are run again, foretold, and judged for CI.
+// `phrenic replay`, `phrenic run --dry-run`, and JUnit reports.
 #include <gmock/gmock.h>
 
 #include <filesystem>
@@ -11,7 +11,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-// What `phrenic run` says of a cube, after `change` was made to it.
+// Writes the JSON output of a run of a cube, after `change` modified it. Returns the file.
 template <typename Change>
 std::string RecordedCube(Change change) {
   const Outcome run = Phrenic({"run", "cube-tensegrity", "--seconds", "0.5", "--set", "elasticity=1.5", "-o", "json"});
@@ -21,31 +21,31 @@ std::string RecordedCube(Change change) {
   return WriteScratch("recorded.json", json.dump());
 }
 
-TEST(Replay, ComesToTheSameStateToTheLastBit) {
+TEST(Replay, EndsInTheSameStateToTheLastBit) {
   const std::string file = RecordedCube([](nlohmann::json&) {});
   const Outcome again = Phrenic({"replay", file});
   EXPECT_EQ(again.code, 0) << again.err;
   EXPECT_THAT(again.out, HasSubstr("100 steps: state hash "));
-  EXPECT_THAT(again.out, HasSubstr("the same to the last bit"));
+  EXPECT_THAT(again.out, HasSubstr("equal to the recorded one"));
   EXPECT_EQ(Phrenic({"replay", file, "-o", "json"}).json()["same"], true);
 }
 
-TEST(Replay, OfAnotherStateIsAMissedLimit) {
+TEST(Replay, OfAnotherStateHasExitCodeFour) {
   const auto softer = [](nlohmann::json& json) { json["session"]["parameters"]["elasticity"] = 1.4; };
   const Outcome again = Phrenic({"replay", RecordedCube(softer)});
   EXPECT_EQ(again.code, 4) << again.err;
-  EXPECT_THAT(again.out, HasSubstr("not the recorded "));
+  EXPECT_THAT(again.out, HasSubstr("not equal to the recorded "));
 }
 
-TEST(Replay, OfAnotherSceneIsRefused) {
+TEST(Replay, OfAnotherSceneIsRejected) {
   const auto other = [](nlohmann::json& json) { json["report"]["scene_hash"] = "0123456789abcdef"; };
   const Outcome again = Phrenic({"replay", RecordedCube(other)});
   EXPECT_EQ(again.code, 1);
-  EXPECT_THAT(again.err, HasSubstr("the scene is another one here"));
+  EXPECT_THAT(again.err, HasSubstr("the scene differs from the recorded one"));
   EXPECT_THAT(again.err, HasSubstr("--scene"));
 }
 
-TEST(Replay, OfWhatIsNoRecordSaysWhatToWriteItBy) {
+TEST(Replay, OfAnInvalidRecordNamesTheCommandThatWritesOne) {
   for (const char* text : {"", "{", "[]", "{\"session\": {}}", "{\"session\": 3, \"state_hash\": 4}"}) {
     const Outcome again = Phrenic({"replay", WriteScratch("bad.json", text)});
     EXPECT_EQ(again.code, 1) << text;
@@ -54,10 +54,10 @@ TEST(Replay, OfWhatIsNoRecordSaysWhatToWriteItBy) {
   const Outcome wrong = Phrenic({"replay", RecordedCube([](nlohmann::json& json) { json["session"]["tick"] = "x"; })});
   EXPECT_EQ(wrong.code, 1);
   EXPECT_THAT(wrong.err, HasSubstr("session: "));
-  EXPECT_THAT(Phrenic({"replay", Scratch("missing.json")}).err, HasSubstr("is the path right?"));
+  EXPECT_THAT(Phrenic({"replay", Scratch("missing.json")}).err, HasSubstr("cannot read the recorded run"));
 }
 
-TEST(DryRun, SaysWhatWouldBeDoneAndDoesNothing) {
+TEST(DryRun, PrintsThePlanAndWritesNothing) {
   const std::string file = Scratch("dry.msh");
   const Outcome dry = Phrenic({"run", "cube-tensegrity", "--seconds", "1", "--export", file, "--dry-run"});
   EXPECT_EQ(dry.code, 0) << dry.err;
@@ -69,7 +69,7 @@ TEST(DryRun, SaysWhatWouldBeDoneAndDoesNothing) {
   EXPECT_EQ(json["session"]["tick"], "0");
 }
 
-TEST(JUnit, HasACaseForEachLimitAndAFailureForEachThatIsMissed) {
+TEST(JUnit, HasACasePerLimitAndAFailurePerExceededLimit) {
   const std::string square = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
   const std::string here = WriteScratch("here.obj", square);
   const std::string there = WriteScratch("there.obj", "v 0 0 2\nv 1 0 2\nv 0 1 2\nf 1 2 3\n");
@@ -79,10 +79,10 @@ TEST(JUnit, HasACaseForEachLimitAndAFailureForEachThatIsMissed) {
   const std::string xml = ReadAll(report);
   EXPECT_THAT(xml, HasSubstr("tests=\"2\" failures=\"1\""));
   EXPECT_THAT(xml, HasSubstr("name=\"hd_max\""));
-  EXPECT_THAT(xml, HasSubstr("message=\"hd_max is 2 mm, and 1 is the most that was asked for\""));
+  EXPECT_THAT(xml, HasSubstr("message=\"hd_max is 2 mm; the limit is at most 1\""));
   EXPECT_THAT(xml, HasSubstr("name=\"assd\" />"));
-  const Outcome kept = Phrenic({"compare", here, there, "--check", "hd_max=3", "--junit", report});
-  EXPECT_EQ(kept.code, 0) << kept.err;
+  const Outcome met = Phrenic({"compare", here, there, "--check", "hd_max=3", "--junit", report});
+  EXPECT_EQ(met.code, 0) << met.err;
   EXPECT_THAT(ReadAll(report), Not(HasSubstr("<failure")));
 }
 

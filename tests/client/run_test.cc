@@ -1,4 +1,4 @@
-// `phrenic run`: the whole job with no server, and every kind of bad input.
+// `phrenic run`: simulation and export without a server, and invalid input.
 #include <gmock/gmock.h>
 
 #include <cstdlib>
@@ -14,7 +14,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-// A scene whose parts a test may spoil.
+// Returns a scene, with the text `from` replaced by `to`.
 std::string Scene(const std::string& from = "", const std::string& to = "") {
   std::string text = R"(
     name: "sheet"
@@ -31,14 +31,14 @@ std::string Scene(const std::string& from = "", const std::string& to = "") {
   return text;
 }
 
-TEST(Run, SaysTheCostBesideTheThesisFigure) {
+TEST(Run, PrintsTheCostBesideTheThesisFigure) {
   const Outcome run = Phrenic({"run", "cube-tensegrity", "--seconds", "1"});
   ASSERT_EQ(run.code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("8 vertices, 12 springs, 4 rigid links"));
   EXPECT_THAT(run.out, HasSubstr("1.000 s simulated in 200 steps"));
   EXPECT_THAT(run.out, HasSubstr("x real time"));
   EXPECT_THAT(run.out, HasSubstr("fig. 5.10, cube, 8 vertices, with rigid links"));
-  EXPECT_THAT(run.err, IsEmpty()) << "nothing to say where standard error is no terminal";
+  EXPECT_THAT(run.err, IsEmpty()) << "no progress bar without a terminal";
 }
 
 TEST(Run, JsonHasTheNumbersAndTheReport) {
@@ -53,7 +53,7 @@ TEST(Run, JsonHasTheNumbersAndTheReport) {
   EXPECT_EQ(json["report"]["scene"], "cube-springs");
 }
 
-TEST(Run, SaysWhatTheSceneMeasures) {
+TEST(Run, PrintsTheScenesMeasures) {
   const std::string measured = "measures { name: 'height' highest { body: 'sheet' } } parameters";
   const std::string file = WriteScratch("measured.textproto", Scene("parameters", measured));
   const Outcome run = Phrenic({"run", file, "--seconds", "0.5"});
@@ -71,7 +71,7 @@ TEST(Run, SaysWhatTheSceneMeasures) {
   EXPECT_EQ(height["maximum"].get<double>(), 0) << "one corner is fixed and the others fall";
 }
 
-TEST(Run, SameSettingsSameHashOtherSettingsOtherHash) {
+TEST(Run, EqualSettingsGiveEqualHashesOthersDoNot) {
   const auto hash = [](const std::vector<std::string>& more) {
     std::vector<std::string> arguments = {"run", "cube-tensegrity", "--seconds", "1", "--output", "json"};
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -105,7 +105,7 @@ TEST(Run, ExportedMshOpensInGmshWithEveryFrame) {
   EXPECT_THAT(ReadAll(log), Not(HasSubstr("largest 0\n"))) << "the cube moves";
 }
 
-TEST(Run, ExportedDeplHasARowAVertexAndFrame) {
+TEST(Run, ExportedDeplHasARowPerVertexAndFrame) {
   const std::string file = Scratch("motion.depl");
   const Outcome run = Phrenic({"run", "cube-springs", "--seconds", "1", "--fps", "4", "--export", file});
   ASSERT_EQ(run.code, 0) << run.err;
@@ -120,7 +120,7 @@ TEST(Run, ExportedDeplHasARowAVertexAndFrame) {
   EXPECT_EQ(numbers.size(), 8U * 5 * 3);
 }
 
-TEST(Run, ASceneFileOfOnesOwnRuns) {
+TEST(Run, ASceneFileRuns) {
   const Outcome run = Phrenic({"run", WriteScratch("own.textproto", Scene()), "--seconds", "0.1", "-o", "json"});
   ASSERT_EQ(run.code, 0) << run.err;
   EXPECT_EQ(run.json()["steps"], 10);
@@ -148,7 +148,7 @@ struct BadScene {
   const char* words;
 };
 
-TEST(Run, BadScenesAreRefusedWithTheirFieldOrPlace) {
+TEST(Run, InvalidScenesAreRejectedWithFieldOrLine) {
   const BadScene scenes[] = {
       {"malformed", "bodies {", "bodies [", "bad.textproto:4:"},
       {"unknown field", "mass: 3", "maas: 3", "maas"},
@@ -177,7 +177,7 @@ struct BadRun {
   const char* words;
 };
 
-TEST(Run, BadWordsAreRefusedWithTheRightCode) {
+TEST(Run, InvalidArgumentsHaveTheRightExitCode) {
   const BadRun lines[] = {
       {{"run", "no-such-scene"}, 1, "cube-springs"},
       {{"run", "/nowhere/scene.textproto"}, 1, "/nowhere/scene.textproto"},
@@ -216,7 +216,7 @@ TEST(Help, IsMadeFromTheSchema) {
   }
 }
 
-// Whether the process has a file open that has no name any more: its spool.
+// True if the process has an open file without a name: its spool.
 bool Spools(pid_t pid) {
   std::error_code error;
   const std::string folder = "/proc/" + std::to_string(pid) + "/fd";
@@ -227,7 +227,7 @@ bool Spools(pid_t pid) {
   return false;
 }
 
-TEST(Run, InterruptedLeavesNothingBehind) {
+TEST(Run, InterruptedLeavesNoFiles) {
   const std::string file = Scratch("interrupted.msh"), spool = Scratch("spool");
   std::filesystem::create_directory(spool);
   const std::vector<std::string> words = {"run",  "cube-springs", "--seconds", "3600",    "--fps",
@@ -242,7 +242,7 @@ TEST(Run, InterruptedLeavesNothingBehind) {
   EXPECT_TRUE(std::filesystem::is_empty(spool));
 }
 
-TEST(Run, ASurfaceIsThatOfTheEndAndNumbersAreRows) {
+TEST(Run, ASurfaceIsExportedAtTheEndAndNumbersAsRows) {
   const std::string end = Scratch("end.ply"), csv = Scratch("numbers.csv");
   ASSERT_EQ(Phrenic({"run", "cube-tensegrity", "--seconds", "1", "--export", end}).code, 0);
   const Outcome inspected = Phrenic({"inspect", end});

@@ -1,4 +1,4 @@
-// The commands that talk to a running server.
+// The commands for sessions of a running server.
 #include <gmock/gmock.h>
 
 #include <filesystem>
@@ -41,7 +41,7 @@ TEST_F(Sessions, ScenesAreListed) {
   EXPECT_GE(Json({"scenes"})["scenes"].size(), 5U);
 }
 
-TEST_F(Sessions, DescribeTellsWhatRunsAndTheLargestStableStep) {
+TEST_F(Sessions, DescribePrintsWhatRunsAndTheLargestStableStep) {
   const Outcome table = Ask({"describe", "cube-tensegrity"});
   ASSERT_EQ(table.code, 0) << table.err;
   for (const char* words : {"What runs", "What was left out", "12 springs", "Largest stable step", "breath_force"}) {
@@ -60,7 +60,7 @@ TEST_F(Sessions, ASessionLivesFromCreateToDelete) {
   const auto stepped = Json({"step", "one", "10", "--expected-tick", "0"});
   EXPECT_EQ(stepped["session"]["tick"], "10");
   EXPECT_EQ(stepped["state_hash"].get<std::string>().size(), 16U);
-  EXPECT_EQ(Ask({"step", "one", "1", "--expected-tick", "0"}).code, 1) << "it is at tick 10 by now";
+  EXPECT_EQ(Ask({"step", "one", "1", "--expected-tick", "0"}).code, 1) << "the session is at tick 10";
 
   const auto set = Json({"set", "one", "breath_force=1.5", "apply_links=off"});
   EXPECT_EQ(set["session"]["parameters"]["breath_force"], 1.5);
@@ -93,23 +93,23 @@ TEST_F(Sessions, AChoiceIsSetAndShownByItsName) {
   EXPECT_EQ(refused.code, 1);
   EXPECT_THAT(refused.err,
               HasSubstr("integrator: there is no \"magic\"; did you mean static? There are semi_implicit_euler"));
-  EXPECT_EQ(Json({"sessions"})["sessions"][0]["parameters"]["breath_force"], 1) << "all of it is refused";
+  EXPECT_EQ(Json({"sessions"})["sessions"][0]["parameters"]["breath_force"], 1) << "the whole change is rejected";
 }
 
-TEST_F(Sessions, AVertexIsPulledAndLetGo) {
+TEST_F(Sessions, AVertexIsPulledAndReleased) {
   ASSERT_EQ(Ask({"create", "cube-springs", "--id", "class"}).code, 0);
   const Outcome pulled = Ask({"pull", "class", "--body", "cube", "--vertex", "6", "--force", "-1,0,0.5"});
   ASSERT_EQ(pulled.code, 0) << pulled.err;
   EXPECT_THAT(pulled.out, HasSubstr("pulled by (-1, 0, 0.5) N at vertex 6 of cube"));
   EXPECT_EQ(Json({"sessions"})["sessions"][0]["pulls"][0]["vertex"], 6);
   EXPECT_THAT(Ask({"pull", "class", "--release"}).out, Not(HasSubstr("pulled by")));
-  EXPECT_EQ(Ask({"pull", "class", "--vertex", "6"}).code, 2) << "of which body?";
+  EXPECT_EQ(Ask({"pull", "class", "--vertex", "6"}).code, 2) << "the body is missing";
   EXPECT_EQ(Ask({"pull", "class"}).code, 1);
   EXPECT_THAT(Ask({"create", "cube-springs", "--pull", "cube:6:1,0"}).err, HasSubstr("BODY:VERTEX:X,Y,Z"));
   EXPECT_THAT(Ask({"create", "cube-springs", "--pull", "cube:6:1,0,2"}).out, HasSubstr("pulled by (1, 0, 2) N"));
 }
 
-TEST_F(Sessions, ConstraintsAreSpokenOfWhereThereAreAny) {
+TEST_F(Sessions, ConstraintsAreReportedIfThereAreAny) {
   ASSERT_EQ(Ask({"create", "cube-tensegrity", "--id", "links", "--play"}).code, 0);
   EXPECT_THAT(Ask({"watch", "links", "--count", "2", "--fps", "50"}).out, HasSubstr("constraints within"));
   EXPECT_TRUE(Json({"sessions"})["sessions"][0].contains("constraint_residual"));
@@ -117,14 +117,14 @@ TEST_F(Sessions, ConstraintsAreSpokenOfWhereThereAreAny) {
   EXPECT_THAT(Ask({"run", "cube-tensegrity", "--seconds", "0.2"}).out, HasSubstr("constraints kept within"));
 }
 
-TEST_F(Sessions, WatchPrintsNumbersALineAndEndsByCount) {
+TEST_F(Sessions, WatchPrintsLinesAndEndsAfterCount) {
   ASSERT_EQ(Ask({"create", "cube-springs", "--id", "seen", "--play"}).code, 0);
   const Outcome watched = Ask({"watch", "seen", "--count", "3", "--fps", "50"});
   ASSERT_EQ(watched.code, 0) << watched.err;
   EXPECT_THAT(watched.out, HasSubstr("breath"));
   EXPECT_THAT(watched.out, HasSubstr("p "));
   EXPECT_THAT(watched.out, HasSubstr(" mm"));
-  EXPECT_THAT(watched.out, Not(HasSubstr("\x1b"))) << "no control sequences where it is no terminal";
+  EXPECT_THAT(watched.out, Not(HasSubstr("\x1b"))) << "no control sequences without a terminal";
 
   const Outcome json = Ask({"watch", "seen", "--count", "2", "-o", "json"});
   std::istringstream lines(json.out);
@@ -138,7 +138,7 @@ TEST_F(Sessions, WatchPrintsNumbersALineAndEndsByCount) {
   EXPECT_EQ(Ask({"watch", "seen", "--seconds", "0.3"}).code, 0);
 }
 
-TEST_F(Sessions, ExportLeavesTheSessionAsItIs) {
+TEST_F(Sessions, ExportDoesNotChangeTheSession) {
   ASSERT_EQ(Ask({"create", "cube-tensegrity", "--id", "kept"}).code, 0);
   const std::string file = Scratch("kept.depl");
   const auto summary = Json({"export", "kept", file, "--seconds", "1", "--fps", "10"});
@@ -147,11 +147,11 @@ TEST_F(Sessions, ExportLeavesTheSessionAsItIs) {
   EXPECT_EQ(Json({"step", "kept", "1"})["session"]["tick"], "1");
 }
 
-TEST_F(Sessions, AnExportGoesOnWithoutItsCallerAndADownloadWhereItWas) {
+TEST_F(Sessions, AnExportContinuesWithoutItsCallerAndADownloadResumes) {
   ASSERT_EQ(Ask({"create", "cube-tensegrity", "--id", "away"}).code, 0);
   const std::string plain = Scratch("plain.msh"), fetched = Scratch("away.msh");
   ASSERT_EQ(Ask({"export", "away", plain, "--seconds", "1"}).code, 0);
-  EXPECT_EQ(Json({"exports", "list"})["exports"].size(), 0U) << "one that was fetched is forgotten";
+  EXPECT_EQ(Json({"exports", "list"})["exports"].size(), 0U) << "a downloaded export is deleted";
   const Outcome detached = Ask({"export", "away", fetched, "--seconds", "1", "--detach"});
   EXPECT_EQ(detached.out, "away\n");
   const std::string whole = ReadAll(plain);
@@ -164,7 +164,7 @@ TEST_F(Sessions, AnExportGoesOnWithoutItsCallerAndADownloadWhereItWas) {
   EXPECT_THAT(Ask({"exports", "get", "away"}).err, HasSubstr("there are none"));
 }
 
-TEST_F(Sessions, APvdComesWithItsFolder) {
+TEST_F(Sessions, APvdHasAFolder) {
   ASSERT_EQ(Ask({"create", "cube-tensegrity", "--id", "pvd"}).code, 0);
   const std::string file = Scratch("motion.pvd"), stem = Scratch("motion");
   ASSERT_EQ(Ask({"export", "pvd", file, "--seconds", "0.2"}).code, 0);
@@ -178,7 +178,7 @@ TEST_F(Sessions, AnUploadedSurfaceServesScenes) {
   const Outcome uploaded = Ask({"upload", file});
   ASSERT_EQ(uploaded.code, 0) << uploaded.err;
   EXPECT_THAT(uploaded.out, testing::MatchesRegex("upload:[0-9a-f]{64}\n"));
-  EXPECT_EQ(Ask({"upload", file}).out, uploaded.out) << "it is there already";
+  EXPECT_EQ(Ask({"upload", file}).out, uploaded.out) << "the server has it already";
   const std::string scene =
       WriteScratch("own.textproto", "name: 'own' bodies { name: 'a' role: ROLE_DEFORMABLE file { path: '" +
                                         uploaded.out.substr(0, uploaded.out.size() - 1) + "' } }");
@@ -212,7 +212,7 @@ TEST_F(Sessions, ErrorsNameTheRemedyOnStandardError) {
   }
 }
 
-TEST(Unreachable, IsACodeOfItsOwnAndNamesTheRemedy) {
+TEST(Unreachable, HasItsOwnExitCodeAndNamesTheRemedy) {
   for (const std::vector<std::string>& command :
        {std::vector<std::string>{"sessions"}, {"watch", "one"}, {"export", "one", Scratch("u.msh")}}) {
     std::vector<std::string> arguments = {"--server", "127.0.0.1:1"};
@@ -231,7 +231,7 @@ TEST(Unreachable, TheEnvironmentNamesTheServer) {
   EXPECT_THAT(outcome.err, HasSubstr("no server at 127.0.0.1:2"));
 }
 
-TEST_F(Sessions, WhoMadeASessionControlsItUntilTheyHandItOver) {
+TEST_F(Sessions, TheOwnerControlsASessionUntilItIsHandedOver) {
   ASSERT_EQ(Ask({"create", "cube-springs", "--id", "mine", "--mine", "--name", "Anna"}).code, 0);
   EXPECT_EQ(Ask({"set", "mine", "breath_force=2"}).code, 0);
   User() = "ben";
@@ -251,7 +251,7 @@ TEST_F(Sessions, WhoMadeASessionControlsItUntilTheyHandItOver) {
   User() = "anna";
 }
 
-TEST_F(Sessions, TokensAreNobodyElsesToRead) {
+TEST_F(Sessions, OnlyTheUserMayReadTokens) {
   namespace fs = std::filesystem;
   const std::string token = Json({"create", "cube-springs", "--id", "kept"})["control_token"];
   const fs::path folder = fs::path(Scratch("anna")) / "phrenic";
@@ -262,7 +262,7 @@ TEST_F(Sessions, TokensAreNobodyElsesToRead) {
   EXPECT_THAT(ReadAll((folder / "control").string()), Not(HasSubstr(token)));
 }
 
-TEST_F(Sessions, AStepThatIsRepeatedUnderItsIdIsTakenOnce) {
+TEST_F(Sessions, ARepeatedRequestIdStepsOnce) {
   ASSERT_EQ(Ask({"create", "cube-springs", "--id", "once"}).code, 0);
   ASSERT_EQ(Ask({"set", "once", "breath_force=3", "--at-tick", "5"}).code, 0);
   const auto first = Json({"step", "once", "10", "--request-id", "a-1"});

@@ -1,4 +1,4 @@
-// The command line before the environment, that before the settings file, that before the default.
+// The precedence of settings: command line, environment, settings file, default. `phrenic doctor` and `phrenic man`.
 #include <gmock/gmock.h>
 
 #include "tests/client/programs.h"
@@ -9,7 +9,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-// A variable of the environment while the object lives.
+// Sets an environment variable during the object's lifetime.
 class Variable {
  public:
   Variable(const char* name, const std::string& value) : name_(name) { setenv(name, value.c_str(), 1); }
@@ -23,7 +23,7 @@ class Variable {
 
 std::string SettingsWith(const std::string& text) { return WriteScratch("config.toml", text); }
 
-TEST(Settings, HaveAPrecedence) {
+TEST(Settings, FollowThePrecedence) {
   const Variable file("PHRENIC_CONFIG", SettingsWith("# mine\nserver = \"127.0.0.1:3\"\n"));
   EXPECT_THAT(Phrenic({"sessions"}).err, HasSubstr("no server at 127.0.0.1:3"));
   const Variable variable("PHRENIC_SERVER", "127.0.0.1:2");
@@ -45,13 +45,13 @@ TEST(Settings, AreShownWithTheirOrigin) {
   EXPECT_THAT(table.out, HasSubstr("none, by default"));
 }
 
-TEST(Settings, OfOneCommandStandBelowItsName) {
+TEST(Settings, OfOneCommandAreBelowItsName) {
   const Variable file("PHRENIC_CONFIG", SettingsWith("[run]\nseconds = 0.5\n"));
   EXPECT_THAT(Phrenic({"run", "cube-springs"}).out, HasSubstr("0.500 s simulated"));
   EXPECT_THAT(Phrenic({"run", "cube-springs", "--seconds", "0.25"}).out, HasSubstr("0.250 s simulated"));
 }
 
-TEST(Settings, ThatAreWrongAreNamedWithFileAndLine) {
+TEST(Settings, ErrorsNameFileAndLine) {
   const struct {
     const char *text, *words;
   } cases[] = {
@@ -71,7 +71,7 @@ TEST(Settings, ThatAreWrongAreNamedWithFileAndLine) {
   EXPECT_THAT(Phrenic({"scenes"}).err, HasSubstr("PHRENIC_CONFIG: there is no file"));
 }
 
-TEST(Settings, AnOutputThatACommandDoesNotKnowIsAPreferenceOnly) {
+TEST(Settings, AnUnsupportedOutputIsIgnoredUnlessItIsTyped) {
   const Variable variable("PHRENIC_OUTPUT", "csv");
   EXPECT_EQ(Phrenic({"run", "cube-springs", "--seconds", "0.1"}).code, 0);
   EXPECT_EQ(Phrenic({"run", "cube-springs", "--seconds", "0.1", "-o", "csv"}).code, 2);
@@ -79,7 +79,7 @@ TEST(Settings, AnOutputThatACommandDoesNotKnowIsAPreferenceOnly) {
   EXPECT_THAT(Phrenic({"scenes"}).err, HasSubstr("(from PHRENIC_OUTPUT)"));
 }
 
-TEST(Doctor, GivesEveryLineThatIsNotWellARemedy) {
+TEST(Doctor, HasARemedyForEachProblem) {
   const Outcome alone = Phrenic({"doctor", "--server", "127.0.0.1:1", "-o", "json"});
   EXPECT_EQ(alone.code, 3);
   const auto answer = alone.json();
@@ -94,7 +94,7 @@ TEST(Doctor, GivesEveryLineThatIsNotWellARemedy) {
   EXPECT_THAT(table.out, HasSubstr("phrenicd --data DIR"));
   const Outcome other = Phrenic({"doctor", "--server", "127.0.0.1:" + std::to_string(server.web_port())});
   EXPECT_EQ(other.code, 3);
-  EXPECT_THAT(other.out, HasSubstr("is it the viewer's port?"));
+  EXPECT_THAT(other.out, HasSubstr("if it is the viewer's port"));
 }
 
 TEST(Manual, RendersWithoutAWarning) {

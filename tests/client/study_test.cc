@@ -1,4 +1,4 @@
-// `phrenic study`, here and on a server, as harnesses use it.
+// `phrenic study` in this process and on a server, as scripts use it.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ std::string Limit(const std::string& at_most) {
          " }";
 }
 
-TEST(StudyError, IsATableWithASentence) {
+TEST(StudyError, PrintsATableAndAdvice) {
   const Outcome study = Quick({});
   ASSERT_EQ(study.code, 0) << study.err;
   EXPECT_THAT(study.out, HasSubstr("reference: CVODE"));
@@ -57,12 +57,12 @@ TEST(StudyError, IsCsvWithAsManyCellsInEachLineOfATable) {
 
 TEST(StudyError, IsCheckedAgainstLimits) {
   EXPECT_EQ(Quick({"--check", WriteScratch("wide.textproto", Limit("1e3"))}).code, 0);
-  const Outcome passed = Quick({"--check", WriteScratch("tight.textproto", Limit("1e-9"))});
-  EXPECT_EQ(passed.code, 4);
-  EXPECT_THAT(passed.err, HasSubstr("rows.error_max_mm where integrator=velocity_verlet (row 1) is"));
+  const Outcome exceeded = Quick({"--check", WriteScratch("tight.textproto", Limit("1e-9"))});
+  EXPECT_EQ(exceeded.code, 4);
+  EXPECT_THAT(exceeded.err, HasSubstr("rows.error_max_mm where integrator=velocity_verlet (row 1) is"));
 }
 
-TEST(StudyError, LimitsThatMeanNothingAreRefused) {
+TEST(StudyError, InvalidLimitsAreRejected) {
   const Outcome no_file = Quick({"--check", "/nowhere/limits.textproto"});
   EXPECT_EQ(no_file.code, 1);
   EXPECT_THAT(no_file.err, HasSubstr("/nowhere/limits.textproto"));
@@ -74,10 +74,10 @@ TEST(StudyError, LimitsThatMeanNothingAreRefused) {
   const Outcome none = Quick({"--check", WriteScratch("c.textproto", R"(
     limits { table: "rows" where: "integrator=bdf2" column: "error_max_mm" at_most: 1 })")});
   EXPECT_EQ(none.code, 4);
-  EXPECT_THAT(none.err, HasSubstr("no row is like that"));
+  EXPECT_THAT(none.err, HasSubstr("no row meets these conditions"));
 }
 
-TEST(StudyError, BadOptionsAreWrongUsage) {
+TEST(StudyError, InvalidOptionsAreUsageErrors) {
   for (const auto& [option, value, words] :
        {std::tuple{"--levels", "99", "outside 1 to 16"}, {"--integrators", "magic", "there are semi_implicit_euler"}}) {
     const Outcome bad = Phrenic({"study", "error", "cube-tensegrity", option, value});
@@ -87,7 +87,7 @@ TEST(StudyError, BadOptionsAreWrongUsage) {
   EXPECT_EQ(Phrenic({"study", "error", "no-such-scene"}).code, 1);
 }
 
-TEST(Study, OnAServerGoesOnWithoutItsClient) {
+TEST(Study, ContinuesOnTheServerWithoutItsClient) {
   const RunningServer server;
   ASSERT_NE(server.port(), 0) << server.output();
   const auto ask = [&](std::vector<std::string> arguments) {

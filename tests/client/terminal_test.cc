@@ -1,4 +1,4 @@
-// What a person sees in a terminal, and what a pipe gets.
+// Output on a terminal and into a pipe.
 #include <gmock/gmock.h>
 
 #include "tests/client/programs.h"
@@ -19,7 +19,7 @@ std::string Seen(std::vector<std::string> words, unsigned short columns,
   return PseudoTerminal(words, columns, environment).ReadAll();
 }
 
-TEST(Colours, AreForTerminalsThatWantThem) {
+TEST(Colours, AreForTerminalsWithColours) {
   EXPECT_THAT(Seen({"--help"}, 100), HasSubstr(kEscape));
   EXPECT_THAT(Seen({"--help"}, 100, {{"NO_COLOR", "1"}}), Not(HasSubstr(kEscape)));
   EXPECT_THAT(Seen({"--help"}, 100, {{"TERM", "dumb"}}), Not(HasSubstr(kEscape)));
@@ -32,13 +32,13 @@ TEST(Help, FitsTheTerminal) {
   for (const unsigned short columns : {40, 80}) {
     std::istringstream lines(Seen({"run", "--help"}, columns, {{"NO_COLOR", "1"}}));
     for (std::string line; std::getline(lines, line);) {
-      const bool example = line.find("  phrenic ") == 0;  // is copied, and not broken
+      const bool example = line.find("  phrenic ") == 0;  // examples are not wrapped, so that they can be copied
       EXPECT_TRUE(example || line.size() <= columns + 1U) << line;
     }
   }
 }
 
-TEST(Progress, TellsTheTimeLeftInATerminalAlone) {
+TEST(Progress, ShowsTheRemainingTimeOnATerminal) {
   PseudoTerminal terminal({kProgram, "run", "hanging-sheet", "--seconds", "3600"}, 60);
   EXPECT_THAT(terminal.ReadUntil("s left"), HasSubstr("stepping ["));
 }
@@ -50,7 +50,7 @@ TEST(Watch, DrawsLiveBarsInATerminal) {
   const std::vector<std::string> words = {"watch", "seen", "--count", "5", "--fps", "20", "--server", server.address()};
   const std::string drawn = Seen(words, 60, {{"LC_ALL", "C.UTF-8"}});
   EXPECT_THAT(drawn, HasSubstr("breath"));
-  EXPECT_THAT(drawn, HasSubstr("A\r")) << "the cursor goes back up";
+  EXPECT_THAT(drawn, HasSubstr("A\r")) << "the cursor moves up";
   EXPECT_THAT(drawn, testing::AnyOf(HasSubstr("▁"), HasSubstr("█")));
   EXPECT_THAT(Seen(words, 60, {{"LC_ALL", "C"}}), Not(HasSubstr("▁")));
   EXPECT_THAT(Seen(words, 60, {{"TERM", "dumb"}}), Not(HasSubstr(kEscape)));

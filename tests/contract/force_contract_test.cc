@@ -5,7 +5,7 @@
 #include <random>
 
 #include "server/mechanics/solve/block_matrix.h"
-#include "server/mechanics/step/advance.h"
+#include "server/mechanics/step/step_plan.h"
 #include "tests/compile_text.h"
 #include "tests/contract/allocations.h"
 
@@ -53,13 +53,16 @@ const ForceCase kForces[] = {
     {"action_line_vertical",
      "action_line { bodies: 'sheet' origin {} direction { x: 1 } radius: 2 force: 3 fall_off: FALL_OFF_VERTICAL }",
      false},
-    {"attachment", "attachment { bodies: 'sheet' carriers: 'bone' radius: 1.5 stiffness: 40 }", false},
+    {"attachment", "attachment { bodies: 'sheet' anchors: 'bone' radius: 1.5 stiffness: 40 }", false},
     {"attachment_thesis",
-     "attachment { bodies: 'sheet' carriers: 'bone' radius: 1.5 stiffness: 40 mode: ATTACHMENT_MODE_THESIS }", false},
-    {"drag", "drag { bodies: 'sheet' displacement { x: 0.2 z: -0.3 } stiffness: 40 scaled_by_breath: true }", false},
-    {"drag_point", "drag { bodies: 'sheet' region: 'left' point { z: 2 } stiffness: 40 damping_ratio: 0 }", false},
+     "attachment { bodies: 'sheet' anchors: 'bone' radius: 1.5 stiffness: 40 mode: ATTACHMENT_MODE_THESIS }", false},
+    {"drag", "target_spring { bodies: 'sheet' displacement { x: 0.2 z: -0.3 } stiffness: 40 scaled_by_breath: true }",
+     false},
+    {"drag_point", "target_spring { bodies: 'sheet' region: 'left' point { z: 2 } stiffness: 40 damping_ratio: 0 }",
+     false},
     {"drag_surface",
-     "drag { bodies: 'sheet' vertices: [1, 5] surface: 'floor' stiffness: 40 damping_ratio: 0 scaled_by_breath: true }",
+     "target_spring { bodies: 'sheet' vertices: [1, 5] surface: 'floor' stiffness: 40 damping_ratio: 0 "
+     "scaled_by_breath: true }",
      false},
     {"point_load", "point_load { body: 'sheet' vertices: [2, 3] force { x: 1 z: -2 } }", false},
     {"point_load_region", "point_load { body: 'sheet' region: 'right' force { y: 3 } scaled_by_breath: true }", false},
@@ -108,7 +111,7 @@ class ForceContract : public testing::TestWithParam<ForceCase> {
   // As a step sums it.
   Points ForceAt(const State& state) const {
     Points f(3, state.x.cols());
-    SumForces(*model_, At(state), f);
+    model_->plan->SumForces(At(state), f);
     return f;
   }
   Points StiffnessTimes(const State& state, const Points& dx) const {
@@ -183,9 +186,9 @@ TEST_P(ForceContract, AllocatesNothing) {
   Points f = Points::Zero(3, state_.x.cols());
   Eigen::VectorXd c = Eigen::VectorXd::Zero(state_.x.cols());
   const EvalContext at = At(state_);
-  SumForces(*model_, at, f);
+  model_->plan->SumForces(at, f);
   const std::int64_t before = Allocations();
-  SumForces(*model_, at, f);
+  model_->plan->SumForces(at, f);
   force().AddForce(at, f);
   force().AddDamping(at, c);
   EXPECT_EQ(Allocations(), before);

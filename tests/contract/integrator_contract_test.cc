@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "absl/strings/str_format.h"
-#include "server/mechanics/compile/catalogue.h"
+#include "server/mechanics/integrators/catalogue.h"
 #include "server/mechanics/stability/spectrum.h"
 #include "server/mechanics/step/step_checkpoint.h"
 #include "tests/compile_text.h"
@@ -164,7 +164,7 @@ TEST_P(IntegratorContract, TheStartOfAStepIsFoundOnceMore) {
     for (int i = 0; i < 70; ++i) {
       if (i == 3) state.v *= 1.1, trail.Forget();
       const State start = state;
-      trail.Note(parameters, state);
+      trail.Note(*model, parameters, state);
       ASSERT_TRUE(Step(*model, parameters, 1e-3, state, work).ok());
       EXPECT_NE(state.x, start.x);
       const State found = trail.StateBeforeLastStep(*model, parameters, 1e-3, other);

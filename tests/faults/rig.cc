@@ -21,7 +21,8 @@ Rig::Rig(Oracle& oracle, const std::string& folder, std::vector<std::string> env
   server_ = std::make_unique<ServerProcess>(folder + "/log", std::vector<std::string>{"--store", store_},
                                             std::move(environment));
   if (absl::Status status = server_->Start(); !status.ok()) std::fprintf(stderr, "%s\n", status.ToString().c_str());
-  if (!driver_.Connect(server_->address(), true)) std::fprintf(stderr, "the session could not be created\n");
+  if (driver_.Connect(server_->address(), true)) return;
+  std::fprintf(stderr, "the session could not be created: %s\n", driver_.error().c_str());
 }
 
 void Rig::StepSome(int steps) {

@@ -1,4 +1,4 @@
-// Label volumes from NIfTI files: where the voxels lie, what they hold, and what bad files give.
+// Reading and writing NIfTI label volumes: orientation, values, names, malformed files.
 #include "server/imaging/nifti.h"
 
 #include <gmock/gmock.h>
@@ -16,7 +16,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// Off the middle, of three spacings, turned, and without a symmetry: one voxel of each label.
+// Returns a volume with an offset, three different spacings and a rotation; one voxel of each label, not symmetric.
 LabelVolume Asymmetric() {
   LabelVolume volume;
   volume.size = {5, 4, 3};
@@ -38,7 +38,8 @@ void Put(std::string& bytes, std::size_t at, T number, std::endian order = std::
   std::memcpy(bytes.data() + at, raw.data(), raw.size());
 }
 
-// Two voxels along i by the qform alone: a half turn about k, so that i runs to the patient's left and j to the back.
+// Returns a file of two voxels along i with only a qform: a rotation by 180 degrees about k, so that i points to the
+// patient's left and j to posterior.
 std::string ByQform(bool second_version, std::endian order) {
   const std::size_t header = second_version ? 540 : 348;
   std::string bytes(header + 4 + 2, '\0');
@@ -58,14 +59,14 @@ std::string ByQform(bool second_version, std::endian order) {
   second_version ? Put<std::int64_t>(bytes, 168, static_cast<std::int64_t>(header) + 4, order)
                  : Put<float>(bytes, 108, static_cast<float>(header) + 4, order);
   second_version ? Put<std::int32_t>(bytes, 344, 1, order) : Put<std::int16_t>(bytes, 252, 1, order);
-  real(256, 352, 2, 1);  // quatern_d: a half turn about k
+  real(256, 352, 2, 1);  // quatern_d: 180 degrees about k
   for (int k = 0; k < 3; ++k) real(268, 376, k, 10 * (k + 1));
   bytes[header + 4] = 7;
   bytes[header + 5] = 9;
   return bytes;
 }
 
-TEST(Nifti, WhatIsWrittenIsReadInItsPlaceWithNamesPlainAndInGzip) {
+TEST(Nifti, WrittenFilesRoundTripPlainAndGzipped) {
   const LabelVolume volume = Asymmetric();
   for (const std::string& bytes : {WriteNifti(volume), Deflate(WriteNifti(volume))}) {
     const auto read = ParseNifti("a.nii", bytes);
@@ -78,14 +79,14 @@ TEST(Nifti, WhatIsWrittenIsReadInItsPlaceWithNamesPlainAndInGzip) {
 
 TEST(Nifti, RasBecomesLps) {
   std::string bytes = WriteNifti(Asymmetric());
-  const float srow_x[4] = {2, 0, 0, 100};  // i runs to the right: NIfTI's +x
+  const float srow_x[4] = {2, 0, 0, 100};  // i points to the right, NIfTI's +x
   std::memcpy(bytes.data() + 280, srow_x, sizeof(srow_x));
   const auto read = ParseNifti("a.nii", bytes);
   ASSERT_TRUE(read.ok()) << read.status();
   EXPECT_NEAR((read->to_patient * Eigen::Vector3d(1, 0, 0)).x(), -102, 1e-4) << "+x is the patient's left";
 }
 
-TEST(Nifti, TheQformSaysThePlaceInBothVersionsAndByteOrders) {
+TEST(Nifti, TheQformIsReadInBothVersionsAndEndiannesses) {
   for (const bool second : {false, true}) {
     for (const std::endian order : {std::endian::little, std::endian::big}) {
       const auto read = ParseNifti("a.nii", ByQform(second, order));
@@ -97,7 +98,7 @@ TEST(Nifti, TheQformSaysThePlaceInBothVersionsAndByteOrders) {
   }
 }
 
-TEST(Nifti, EveryCutAndEveryFlippedByteGivesAnErrorOrAVolume) {
+TEST(Nifti, EveryTruncationFailsAndEveryFlippedByteGivesAnErrorOrAVolume) {
   const std::string plain = WriteNifti(Asymmetric()), packed = Deflate(plain);
   for (const std::string& good : {plain, packed}) {
     for (std::size_t length = 0; length < good.size(); ++length) {
@@ -112,10 +113,10 @@ TEST(Nifti, EveryCutAndEveryFlippedByteGivesAnErrorOrAVolume) {
   }
 }
 
-TEST(Nifti, AFileThatClaimsMoreThanItCanHoldIsRefusedBeforeItIsUnpacked) {
+TEST(Nifti, AFileThatDeclaresMoreThanItCanHoldIsRejectedBeforeInflating) {
   std::string bomb = WriteNifti(Asymmetric());
   for (int k = 1; k <= 3; ++k) Put<std::int16_t>(bomb, 40 + 2 * k, 1000);
-  EXPECT_THAT(std::string(ParseNifti("b.nii", bomb).status().message()), HasSubstr("cut off"));
+  EXPECT_THAT(std::string(ParseNifti("b.nii", bomb).status().message()), HasSubstr("truncated"));
   EXPECT_THAT(std::string(ParseNifti("b.nii.gz", Deflate(bomb)).status().message()), HasSubstr("more than a file of"));
 }
 
@@ -125,15 +126,16 @@ struct Bad {
   const char* words;
 };
 
-TEST(Nifti, FaultsOfTheHeaderAreNamedWithTheRemedy) {
-  for (const Bad& bad : {Bad{70, 16, "labels are integers"}, Bad{40, 2, "3 dimensions"}, Bad{48, 4, "one volume alone"},
-                         Bad{254, 0, "which side is left is not said"}, Bad{42, -3, "1 to 32767"}}) {
+TEST(Nifti, HeaderErrorsNameProblemAndRemedy) {
+  for (const Bad& bad :
+       {Bad{70, 16, "labels are integers"}, Bad{40, 2, "3 dimensions"}, Bad{48, 4, "only a single volume"},
+        Bad{254, 0, "left and right are unknown"}, Bad{42, -3, "1 to 32767"}}) {
     std::string bytes = WriteNifti(Asymmetric());
     Put<std::int16_t>(bytes, 40, 4);
     Put<std::int16_t>(bytes, bad.at, bad.value);
     EXPECT_THAT(std::string(ParseNifti("b.nii", bytes).status().message()), HasSubstr(bad.words));
   }
-  EXPECT_THAT(std::string(ParseNifti("b.nii", "no image").status().message()), HasSubstr("no NIfTI"));
+  EXPECT_THAT(std::string(ParseNifti("b.nii", "no image").status().message()), HasSubstr("not a NIfTI"));
 }
 
 }  // namespace

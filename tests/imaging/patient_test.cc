@@ -1,4 +1,5 @@
-// Label volumes of a known body become its thorax again: surfaces, rib axes and diaphragm held against the truth.
+// A phantom's label volume is converted to a thorax; surfaces, rib axes and diaphragm are compared with the ground
+// truth.
 #include "server/imaging/patient.h"
 
 #include <gmock/gmock.h>
@@ -34,7 +35,7 @@ v1::Scene Pattern() {
                            fall_off: FALL_OFF_CYLINDER } })");
 }
 
-bool GoOn(double, std::string_view) { return true; }
+bool NeverCancel(double, std::string_view) { return true; }
 
 PatientOptions Coarse() {
   PatientOptions options;
@@ -43,7 +44,7 @@ PatientOptions Coarse() {
   return options;
 }
 
-// Distances [mm] of a's vertices from b's surface, ascending.
+// Returns the distances of a's vertices from b's surface [mm], ascending.
 std::vector<double> Distances(const Mesh& a, const Mesh& b) {
   const TriangleTree tree(b.vertices, b.triangles);
   TriangleTree::Boxes boxes;
@@ -64,14 +65,14 @@ double Mean(const std::vector<double>& values) {
 
 double P95(const std::vector<double>& sorted) { return sorted[sorted.size() * 95 / 100]; }
 
-// One phantom and what was made of it, for all tests.
+// Converts one phantom for all tests.
 class Adult : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     body_ = *FindPhantomBody("adult");
     const auto volume = MakePhantom(body_, {kVoxel, 0.02, 40, 1}, Map());
     ASSERT_TRUE(volume.ok()) << volume.status();
-    auto patient = MakePatient(*volume, Map(), Pattern(), Coarse(), GoOn);
+    auto patient = MakePatient(*volume, Map(), Pattern(), Coarse(), NeverCancel);
     ASSERT_TRUE(patient.ok()) << patient.status();
     patient_ = *std::move(patient);
   }
@@ -82,7 +83,7 @@ class Adult : public testing::Test {
     }
     return nullptr;
   }
-  // The generated part where the patient's is: moved sideways with it.
+  // Returns the generated part in the patient's frame, shifted like the patient.
   static Mesh Truth(v1::Structure structure, int number, v1::Side side, double resolution_mm) {
     v1::Anatomy part;
     part.set_structure(structure);
@@ -100,7 +101,7 @@ class Adult : public testing::Test {
 PhantomBody Adult::body_;
 Patient Adult::patient_;
 
-TEST_F(Adult, SurfacesAreClosedOutwardAndLessThanAVoxelFromTheTruth) {
+TEST_F(Adult, SurfacesAreClosedOutwardAndWithinAVoxelOfTheTruth) {
   ASSERT_GE(patient_.bodies.size(), 45U);
   for (const PatientBody& body : patient_.bodies) {
     EXPECT_TRUE(AnalyseTopology(body.mesh).watertight()) << body.name;
@@ -121,7 +122,7 @@ TEST_F(Adult, SmoothingKeepsTheVolumeOfTheLabel) {
   }
 }
 
-TEST_F(Adult, RibsTurnAboutTheirOwnNecks) {
+TEST_F(Adult, RibAxesFollowTheRibsNecks) {
   double off = 0;
   int ribs = 0;
   for (const PatientBody& body : patient_.bodies) {
@@ -137,7 +138,7 @@ TEST_F(Adult, RibsTurnAboutTheirOwnNecks) {
   EXPECT_LT(off / ribs, 12) << "of a neck of 22 mm in voxels of 3 mm";
 }
 
-TEST_F(Adult, TheDiaphragmLiesWhereTheGeneratedOneDoes) {
+TEST_F(Adult, TheDerivedDiaphragmIsCloseToTheGeneratedOne) {
   const Mesh& derived = patient_.bodies.front().mesh;
   const Mesh truth = Truth(v1::STRUCTURE_DIAPHRAGM, 0, v1::SIDE_UNSPECIFIED, 6);
   const std::vector<double> there = Distances(derived, truth), back = Distances(truth, derived);
@@ -153,10 +154,10 @@ TEST_F(Adult, TheDiaphragmLiesWhereTheGeneratedOneDoes) {
   const v1::DerivedDiaphragm& report = patient_.report.diaphragm();
   EXPECT_NEAR(report.between_organs() + report.beside_one_organ() + report.on_bone() + report.extrapolated(), 1, 1e-9);
   EXPECT_GT(report.between_organs(), 0.15);
-  EXPECT_GT(report.extrapolated(), 0.01) << "the mediastinum shows nothing";
+  EXPECT_GT(report.extrapolated(), 0.01) << "the mediastinum gives no evidence";
 }
 
-TEST_F(Adult, TheSceneHasThePartsAndItsOwnRibAxes) {
+TEST_F(Adult, TheSceneHasTheBodiesAndPatientSpecificRibAxes) {
   EXPECT_EQ(patient_.scene.bodies(0).file().path(), "patient/diaphragm.msh");
   int turned = 0;
   for (const v1::Motion& motion : patient_.scene.motions()) {
@@ -165,18 +166,18 @@ TEST_F(Adult, TheSceneHasThePartsAndItsOwnRibAxes) {
     EXPECT_NEAR(std::hypot(end.pump_degrees(), end.bucket_degrees()), 15, 1e-9) << "the pattern's angle";
     ++turned;
   }
-  EXPECT_EQ(turned, 2) << "the fifth ribs, of which the pattern has the angle";
+  EXPECT_EQ(turned, 2) << "the fifth ribs, whose angle the pattern has";
   EXPECT_TRUE(schema::Validate(patient_.scene).ok()) << schema::Validate(patient_.scene);
 }
 
-TEST(Patient, WhatIsNoThoraxIsRefused) {
+TEST(Patient, VolumesWithoutAThoraxAreRejected) {
   LabelVolume volume;
   volume.size = {8, 8, 8};
   volume.labels.assign(512, 7);
-  const auto none = MakePatient(volume, Map(), Pattern(), Coarse(), GoOn);
+  const auto none = MakePatient(volume, Map(), Pattern(), Coarse(), NeverCancel);
   EXPECT_THAT(std::string(none.status().message()), HasSubstr("is it the right map?"));
   volume.labels.assign(512, 5);
-  const auto liver = MakePatient(volume, Map(), Pattern(), Coarse(), GoOn);
+  const auto liver = MakePatient(volume, Map(), Pattern(), Coarse(), NeverCancel);
   EXPECT_THAT(std::string(liver.status().message()), HasSubstr("no lungs, no ribs or no vertebrae"));
 }
 

@@ -1,4 +1,4 @@
-// What is worked out range by range gives the bits of the whole, on every instruction set that this machine has.
+// What is evaluated block by block gives the bits of the whole, on every instruction set that this machine has.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include "server/mechanics/forces/attachment_kernel.h"
 #include "server/mechanics/forces/spring_kernel.h"
 #include "server/mechanics/linalg/vertex_kernel.h"
-#include "server/mechanics/step/advance.h"
+#include "server/mechanics/step/step_plan.h"
 #include "tests/compile_text.h"
 #include "tests/mechanics/every_target.h"
 #include "tests/mechanics/mixed_sheet.h"
@@ -26,20 +26,29 @@ State Disturbed(const Model& model) {
   return state;
 }
 
+// All that a step evaluates block by block.
+std::vector<const BlockForce*> BlockForcesOf(const Model& model) {
+  const ForceSchedule& schedule = model.plan->schedule();
+  std::vector<const BlockForce*> forces = schedule.by_block;
+  if (schedule.loads != nullptr) forces.push_back(schedule.loads);
+  return forces;
+}
+
 TEST(Ranges, GiveEachForceTheBitsOfTheWhole) {
   const auto model = CompileText(kMixedSheet);
   ASSERT_NE(model, nullptr);
   const State state = Disturbed(*model);
   ASSERT_GT(state.x.cols(), 2 * kVertexBlock);
-  const EvalContext at = Packed(*model, MakeEvalContext(*model, model->parameters, state));
-  ASSERT_TRUE(model->whole_forces.empty());
-  for (const Force* force : model->range_forces) {
+  Workspace work = model->MakeWorkspace();
+  const BlockContext at = model->plan->PrepareBlocks(model->parameters, state, work);
+  ASSERT_TRUE(model->plan->schedule().whole.empty());
+  for (const BlockForce* force : BlockForcesOf(*model)) {
     Points whole = Points::Zero(3, state.x.cols()), parts = whole;
     force->AddForce(at, whole);
     ForEachBlock({0, state.x.cols()}, [&](const VertexRange& block) {
       const Eigen::Index vertices = block.end - block.first;
       Points guarded = Points::Zero(3, vertices + 2);  // a column before the range's own, and one after
-      force->AddForceIn(block, at, guarded.middleCols(1, vertices));
+      force->AddForceToBlock(block, at, guarded.middleCols(1, vertices));
       parts.middleCols(block.first, vertices) = guarded.middleCols(1, vertices);
       EXPECT_EQ(guarded.col(0).norm() + guarded.col(vertices + 1).norm(), 0)
           << force->name() << " reaches beyond its range";
@@ -53,24 +62,26 @@ TEST(Ranges, ReadNoPlacesOfOthersUnlessTheySaySo) {
   const auto model = CompileText(kMixedSheet);
   ASSERT_NE(model, nullptr);
   const State state = Disturbed(*model);
-  const EvalContext at = Packed(*model, MakeEvalContext(*model, model->parameters, state));
+  Workspace work = model->MakeWorkspace();
+  const BlockContext at = model->plan->PrepareBlocks(model->parameters, state, work);
   int readers = 0;
-  for (const Force* force : model->range_forces) {
+  for (const BlockForce* force : BlockForcesOf(*model)) {
     bool read = false;
     ForEachBlock({0, state.x.cols()}, [&](const VertexRange& block) {
       const Eigen::Index vertices = block.end - block.first;
       State others = state;
       others.x.setConstant(7);
       others.x.middleCols(block.first, vertices) = state.x.middleCols(block.first, vertices);
-      EvalContext moved = MakeEvalContext(*model, model->parameters, others);
+      BlockContext moved{MakeEvalContext(*model, model->parameters, others)};
       moved.packed = at.packed;
+      moved.pose_matrices = at.pose_matrices;
       Points here = Points::Zero(3, vertices), there = here;
-      force->AddForceIn(block, at, here);
-      force->AddForceIn(block, moved, there);
+      force->AddForceToBlock(block, at, here);
+      force->AddForceToBlock(block, moved, there);
       read = read || here != there;
     });
-    EXPECT_EQ(read, force->reads_others()) << force->name();
-    readers += force->reads_others();
+    EXPECT_EQ(read, force->reads_neighbours()) << force->name();
+    readers += force->reads_neighbours();
   }
   EXPECT_EQ(readers, 1) << "the springs in double precision alone";
 }
@@ -88,9 +99,9 @@ TEST(Ranges, SumWhatTheElementsSayOneByOne) {
   const EvalContext at = MakeEvalContext(*model, model->parameters, state);
   Points apart = Points::Zero(3, state.x.cols()), together = apart;
   for (const auto& force : model->forces) force->AddForce(at, apart);
-  SumForces(*model, at, together);
+  model->plan->SumForces(at, together);
   EXPECT_LT((together - apart).cwiseAbs().maxCoeff(), 1e-5 * apart.cwiseAbs().maxCoeff());
-  EXPECT_LT(model->range_forces.size(), model->forces.size() - 4);
+  EXPECT_LT(BlockForcesOf(*model).size(), model->forces.size() - 4);
 }
 
 TEST(Ranges, SetTheForceThatTheyWouldAddToNothingOnEveryInstructionSet) {
@@ -98,13 +109,14 @@ TEST(Ranges, SetTheForceThatTheyWouldAddToNothingOnEveryInstructionSet) {
   ASSERT_NE(model, nullptr);
   const State state = Disturbed(*model);
   OnEveryTarget([&] {
-    const EvalContext at = Packed(*model, MakeEvalContext(*model, model->parameters, state));
-    for (const Force* force : model->range_forces) {
+    Workspace work = model->MakeWorkspace();
+    const BlockContext at = model->plan->PrepareBlocks(model->parameters, state, work);
+    for (const BlockForce* force : BlockForcesOf(*model)) {
       ForEachBlock({0, state.x.cols()}, [&](const VertexRange& block) {
         Points added = Points::Zero(3, block.end - block.first);
         Points set = Points::Constant(3, block.end - block.first, std::nan(""));
-        force->AddForceIn(block, at, added);
-        force->SetForceIn(block, at, set);
+        force->AddForceToBlock(block, at, added);
+        force->SetForceOnBlock(block, at, set);
         EXPECT_EQ(set, added) << force->name() << " from vertex " << block.first;
       });
     }

@@ -69,7 +69,7 @@ TEST_F(BlenderBetweenClouds, GivesSharesByInverseDistance) {
   int shared = 0;
   for (int i = 0; i < path.cols(); ++i) {
     std::vector<SkinWeight> shares;
-    blender.Blend(path.col(i), i, shares);
+    blender.Append(path.col(i), i, shares);
     std::map<int, double> expected = SharesOf(builder, path.col(i));
     for (const SkinWeight& share : shares) {
       EXPECT_NEAR(share.weight, expected[share.pose], 1e-9) << i;
@@ -84,8 +84,8 @@ TEST_F(BlenderBetweenClouds, GivesSharesByInverseDistance) {
 TEST_F(BlenderBetweenClouds, IsTheSameWhateverWasBlendedBefore) {
   for (int i = 0; i < path.cols(); ++i) {
     std::vector<SkinWeight> shares, alone;
-    blender.Blend(path.col(i), i, shares);
-    InverseDistanceWeights(carriers).Blend(path.col(i), i, alone);
+    blender.Append(path.col(i), i, shares);
+    InverseDistanceWeights(carriers).Append(path.col(i), i, alone);
     ASSERT_EQ(shares.size(), alone.size()) << i;
     for (size_t s = 0; s < shares.size(); ++s) {
       EXPECT_EQ(shares[s].pose, alone[s].pose) << i;

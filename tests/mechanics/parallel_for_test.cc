@@ -46,7 +46,8 @@ const char kDriven[] =
     " motions { oscillation { body: 'sheet' vertices: [5, 300] amplitude { z: 0.002 } period: 0.1 } }";
 
 // Never acts; with another, both are worked out for all vertices at once.
-const char kSlack[] = " constraints { limits { body: 'sheet' list { links { a: 0 b: 200 } } at_most_ratio: 9 } }";
+const char kSlack[] =
+    " constraints { length_limits { body: 'sheet' list { links { a: 0 b: 200 } } at_most_ratio: 9 } }";
 
 void ExpectSameBits(const std::vector<std::string>& scenes) {
   const OneThreadAgain again;
@@ -72,7 +73,8 @@ void ExpectSameBitsWithLinks(const std::string& sheet) {
     const std::string scene = sheet + kDriven + LinksOfTwo(120 * 90, apart);
     const auto model = CompileText(scene);
     ASSERT_NE(model, nullptr);
-    EXPECT_TRUE(model->constraints.front()->by_range()) << "threads restore none of them";
+    EXPECT_NE(dynamic_cast<const BlockConstraint*>(model->constraints.front().get()), nullptr)
+        << "threads restore none of them";
     ExpectSameBits({scene, scene + kSlack});
   }
 }
@@ -93,9 +95,9 @@ TEST(ParallelFor, SpringsInAnOrderOfTheirOwnToo) {
   ASSERT_FALSE(rows.InRanges());
   const Points x = Points::Random(3, vertices);
   Points alone = Points::Zero(3, vertices), shared = alone;
-  rows.AddForce(1, x, alone);
+  rows.AddForce(1, x, Scratch(), alone);
   SetStepThreads(4);
-  rows.AddForce(1, x, shared);
+  rows.AddForce(1, x, Scratch(), shared);
   EXPECT_EQ(alone, shared);
   EXPECT_GT(alone.norm(), 0);
 }

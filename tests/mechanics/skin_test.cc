@@ -37,8 +37,8 @@ Riding RandomRiding() {
   for (int vertex = 0; vertex < kVertices; ++vertex) {
     for (int s = 0; s < (vertex % 7 == 0 ? 0 : 1 + vertex % 4); ++s) {
       const bool of_pose = value(random) > 0;
-      made.shares.push_back({vertex, of_pose ? static_cast<int>(random() % kPoses) : -1,
-                             of_pose ? -1 : static_cast<int>(random() % kSimulated), value(random)});
+      made.weights.push_back({vertex, of_pose ? static_cast<int>(random() % kPoses) : -1,
+                              of_pose ? -1 : static_cast<int>(random() % kSimulated), value(random)});
     }
   }
   return made;
@@ -46,7 +46,7 @@ Riding RandomRiding() {
 
 Moved ByDefinition(const Riding& of) {
   Moved out{of.rest, Points::Zero(3, kVertices)};
-  for (const SkinWeight& share : of.shares) {
+  for (const SkinWeight& share : of.weights) {
     const Eigen::Vector3d rest = of.rest.col(share.vertex);
     if (share.pose >= 0) {
       out.x.col(share.vertex) += share.weight * (of.poses[share.pose].At(rest) - rest);
@@ -63,7 +63,7 @@ Moved ByDefinition(const Riding& of) {
 Moved Ours(const Riding& of, bool velocities) {
   Moved out{of.rest, Points::Zero(3, kVertices)};
   const DriverState carriers = {of.columns, of.rest_of_carriers.data(), of.x.data(), of.v.data()};
-  ApplySkinWeights(of.shares, carriers, of.rest.data(), out.x.data(), velocities ? out.v.data() : nullptr);
+  ApplySkinWeights(of.weights, carriers, of.rest.data(), out.x.data(), velocities ? out.v.data() : nullptr);
   return out;
 }
 

@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "absl/strings/str_cat.h"
-#include "server/mechanics/compile/catalogue.h"
+#include "server/mechanics/integrators/catalogue.h"
 #include "tests/compile_text.h"
 
 namespace phrenic {

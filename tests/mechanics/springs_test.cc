@@ -27,7 +27,7 @@ struct Network {
   }
   Points Ours(const SpringRows& rows, double scale) const {
     Points f = Points::Zero(3, x.cols());
-    rows.AddForce(scale, x, f);
+    rows.AddForce(scale, x, Scratch(), f);
     return f;
   }
   SpringRows Rows(Precision precision = Precision::kDouble) const {

@@ -11,7 +11,7 @@ namespace {
 
 const Eigen::Vector3d kRadii(3, 2, 1);
 
-TEST(Ellipsoid, IsClosedAndFillsItsVolumeInTheLimit) {
+TEST(Ellipsoid, IsClosedAndItsVolumeConverges) {
   const Mesh mesh = EllipsoidSurface({5, 6, 7}, kRadii, 24, false);
   const SurfaceTopology topology = AnalyseTopology(mesh);
   EXPECT_TRUE(topology.watertight());
@@ -22,7 +22,7 @@ TEST(Ellipsoid, IsClosedAndFillsItsVolumeInTheLimit) {
   EXPECT_LT((scaled.colwise().norm().array() - 1).abs().maxCoeff(), 1e-12);
 }
 
-TEST(Ellipsoid, UpperHalfIsOpenAtItsRim) {
+TEST(Ellipsoid, UpperHalfHasTheRimAsBoundary) {
   const Mesh mesh = EllipsoidSurface(Eigen::Vector3d::Zero(), kRadii, 6, true);
   const SurfaceTopology topology = AnalyseTopology(mesh);
   EXPECT_EQ(topology.boundary_edges, 24);

@@ -14,7 +14,7 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::UnorderedElementsAre;
 
-// A rows x columns grid whose vertices have been given numbers at random.
+// Returns the edges of a rows x columns grid whose vertices are numbered at random.
 Edges ScatteredGrid(int rows, int columns) {
   std::vector<int> number(rows * columns);
   std::iota(number.begin(), number.end(), 0);
@@ -32,44 +32,44 @@ Edges ScatteredGrid(int rows, int columns) {
   return made;
 }
 
-TEST(LocalOrder, TakesEachVertexThatIsJoinedOnce) {
+TEST(CuthillMcKeeOrder, HoldsEachConnectedVertexOnce) {
   Edges edges(2, 3);
   edges << 5, 1, 7,  //
       1, 2, 8;
-  EXPECT_THAT(LocalOrder(edges, 10), UnorderedElementsAre(1, 2, 5, 7, 8));
-  EXPECT_THAT(LocalOrder(Edges(2, 0), 4), IsEmpty());
+  EXPECT_THAT(CuthillMcKeeOrder(edges, 10), UnorderedElementsAre(1, 2, 5, 7, 8));
+  EXPECT_THAT(CuthillMcKeeOrder(Edges(2, 0), 4), IsEmpty());
 }
 
-TEST(LocalOrder, UnrollsAChain) {
+TEST(CuthillMcKeeOrder, FollowsAChain) {
   Edges edges(2, 3);
   edges << 3, 0, 2,  //
       0, 2, 1;
-  EXPECT_THAT(LocalOrder(edges, 4), ElementsAre(3, 0, 2, 1));
+  EXPECT_THAT(CuthillMcKeeOrder(edges, 4), ElementsAre(3, 0, 2, 1));
 }
 
-TEST(LocalOrder, BringsTheEdgesOfAGridTogether) {
+TEST(CuthillMcKeeOrder, ReducesTheBandwidthOfAGrid) {
   const Edges edges = ScatteredGrid(40, 10);
-  const std::vector<int> order = LocalOrder(edges, 400);
-  std::vector<int> place(400);
-  for (int i = 0; i < 400; ++i) place[order[i]] = i;
-  int furthest = 0;
-  for (const auto& edge : edges.colwise()) furthest = std::max(furthest, std::abs(place[edge[0]] - place[edge[1]]));
-  EXPECT_LE(furthest, 11);  // the narrower side, and one
+  const std::vector<int> order = CuthillMcKeeOrder(edges, 400);
+  std::vector<int> rank(400);
+  for (int i = 0; i < 400; ++i) rank[order[i]] = i;
+  int bandwidth = 0;
+  for (const auto& edge : edges.colwise()) bandwidth = std::max(bandwidth, std::abs(rank[edge[0]] - rank[edge[1]]));
+  EXPECT_LE(bandwidth, 11);  // the grid's width plus one
 }
 
-TEST(CurveOrder, GoesFromCellToNextCell) {
-  Points cells(3, 512);  // 8 x 8 x 8, each an edge from its neighbours
+TEST(HilbertOrder, StepsBetweenAdjacentCells) {
+  Points cells(3, 512);  // an 8 x 8 x 8 grid of unit cells
   for (int i = 0; i < 512; ++i) cells.col(i) << i % 8, i / 8 % 8, i / 64;
-  const std::vector<int> order = CurveOrder(cells);
+  const std::vector<int> order = HilbertOrder(cells);
   std::vector<int> all = order;
   std::sort(all.begin(), all.end());
   for (int i = 0; i < 512; ++i) EXPECT_EQ(all[i], i);
   for (int i = 1; i < 512; ++i) EXPECT_EQ((cells.col(order[i]) - cells.col(order[i - 1])).norm(), 1) << i;
 }
 
-TEST(CurveOrder, TakesPointsOfOnePlaceByTheirIndex) {
-  EXPECT_THAT(CurveOrder(Points::Constant(3, 3, 0.5)), ElementsAre(0, 1, 2));
-  EXPECT_THAT(CurveOrder(Points(3, 0)), IsEmpty());
+TEST(HilbertOrder, KeepsTheOrderOfCoincidentPoints) {
+  EXPECT_THAT(HilbertOrder(Points::Constant(3, 3, 0.5)), ElementsAre(0, 1, 2));
+  EXPECT_THAT(HilbertOrder(Points(3, 0)), IsEmpty());
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ Points RandomPoints(int n, unsigned seed) {
   return Points::NullaryExpr(3, n, [&] { return uniform(random); });
 }
 
-// An 11 x 11 x 11 lattice: many distances are exactly equal.
+// Returns an 11 x 11 x 11 lattice, in which many distances are exactly equal.
 Points Grid() {
   Points points(3, 11 * 11 * 11);
   for (int i = 0; i < points.cols(); ++i) points.col(i) << i % 11, i / 11 % 11, i / 121;
@@ -31,7 +31,7 @@ Neighbour BruteForce(const Points& points, const Eigen::Vector3d& query) {
   return best;
 }
 
-TEST(Nearest, IsTheOneOfAFullSearch) {
+TEST(Nearest, EqualsBruteForce) {
   const Points points = RandomPoints(2000, 1), queries = RandomPoints(500, 2);
   const NearestSearch search(points);
   for (Eigen::Index q = 0; q < queries.cols(); ++q) {
@@ -46,12 +46,12 @@ TEST(Nearest, TiesGoToTheLowestIndex) {
   const Points points = Grid();
   const NearestSearch search(points);
   for (int i = 0; i < 10; ++i) {
-    const Eigen::Vector3d middle = points.col(i * 133).array() + 0.5;  // eight corners equally far
-    EXPECT_EQ(search.Nearest(middle).vertex, i * 133);
+    const Eigen::Vector3d centre = points.col(i * 133).array() + 0.5;  // equally far from the cell's eight corners
+    EXPECT_EQ(search.Nearest(centre).vertex, i * 133);
   }
 }
 
-TEST(Nearest, TiesAmongManyCopiesGoToTheFirst) {
+TEST(Nearest, TiesAmongCoincidentPointsGoToTheFirst) {
   Points points = Points::Constant(3, 300, 0.25);
   points.col(0).setConstant(9);
   const Neighbour found = NearestSearch(points).Nearest(Eigen::Vector3d::Constant(0.25));
@@ -59,12 +59,12 @@ TEST(Nearest, TiesAmongManyCopiesGoToTheFirst) {
   EXPECT_EQ(found.distance, 0);
 }
 
-TEST(Nearest, OnePointIsAlwaysTheNearest) {
+TEST(Nearest, ASinglePointIsAlwaysTheNearest) {
   const NearestSearch search(Points::Constant(3, 1, 1.0));
   EXPECT_EQ(search.Nearest({1e6, 0, 0}).vertex, 0);
 }
 
-TEST(Nearest, WithinReachIsTheNearestOfAll) {
+TEST(Nearest, ReachOnlyLimitsTheDistance) {
   const Points points = RandomPoints(2000, 1), queries = RandomPoints(500, 2);
   const NearestSearch search(points);
   for (Eigen::Index q = 0; q < queries.cols(); ++q) {
@@ -79,7 +79,7 @@ TEST(Nearest, WithinReachIsTheNearestOfAll) {
   }
 }
 
-TEST(Within, HoldsTheBallsBoundaryNearestFirst) {
+TEST(Within, IncludesTheBoundaryNearestFirst) {
   const std::vector<Neighbour> found = NearestSearch(Grid()).Within({5, 5, 5}, 1);
   ASSERT_EQ(found.size(), 7U);  // the centre and six at exactly 1 m
   EXPECT_EQ(found[0].vertex, 5 * 133);
@@ -87,7 +87,7 @@ TEST(Within, HoldsTheBallsBoundaryNearestFirst) {
   for (size_t i = 2; i < found.size(); ++i) EXPECT_LT(found[i - 1].vertex, found[i].vertex);
 }
 
-TEST(Within, IsTheOneOfAFullSearch) {
+TEST(Within, EqualsBruteForce) {
   const Points points = RandomPoints(2000, 3);
   const NearestSearch search(points);
   for (const double radius : {0.0, 0.05, 0.3, 4.0}) {
@@ -97,7 +97,7 @@ TEST(Within, IsTheOneOfAFullSearch) {
   }
 }
 
-TEST(Within, OfNoRadiusIsEmpty) {
+TEST(Within, IsEmptyForANegativeOrNanRadius) {
   EXPECT_TRUE(NearestSearch(Grid()).Within({5, 5, 5}, -2).empty());
   EXPECT_TRUE(NearestSearch(Grid()).Within({5, 5, 5}, std::numeric_limits<double>::quiet_NaN()).empty());
 }

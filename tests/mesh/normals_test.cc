@@ -18,8 +18,8 @@ TEST(Normals, AreUnitAndPointOutwards) {
   }
 }
 
-TEST(Normals, WeighTrianglesByArea) {
-  // A large triangle facing +z and one a hundredth of it facing +x, on vertex 0.
+TEST(Normals, AreWeightedByTriangleArea) {
+  // At vertex 0: a triangle facing +z, and one with a hundredth of its area facing +x.
   Mesh mesh;
   mesh.vertices.resize(3, 5);
   mesh.vertices << 0, 1, 0, 0, 0, 0, 0, 1, 0.1, 0, 0, 0, 0, 0, 0.1;
@@ -29,19 +29,19 @@ TEST(Normals, WeighTrianglesByArea) {
   EXPECT_LT((VertexNormals(mesh.vertices, mesh.triangles).col(0) - expected).norm(), 1e-12);
 }
 
-TEST(Normals, AreZeroWhereThereIsNoArea) {
+TEST(Normals, AreZeroAtUnusedVertices) {
   Mesh mesh = Tetrahedron();
   mesh.vertices.conservativeResize(3, 5);
   mesh.vertices.col(4) << 1, 2, 3;
   EXPECT_EQ(VertexNormals(mesh.vertices, mesh.triangles).col(4), Eigen::Vector3d::Zero());
 }
 
-TEST(Areas, SumToTheSurface) {
+TEST(Areas, SumToTheSurfaceArea) {
   const Mesh tetrahedron = Tetrahedron();
   EXPECT_NEAR(VertexAreas(tetrahedron.vertices, tetrahedron.triangles).sum(), 1.5 + std::sqrt(3.0) / 2, 1e-12);
 }
 
-TEST(Areas, AreAThirdOfTheTrianglesAround) {
+TEST(Areas, AreAThirdOfTheIncidentTriangles) {
   const Mesh tetrahedron = Tetrahedron();
   const Eigen::VectorXd areas = VertexAreas(tetrahedron.vertices, tetrahedron.triangles);
   EXPECT_NEAR(areas[0], 0.5, 1e-12);  // three right triangles of 0.5 m^2

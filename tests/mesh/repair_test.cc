@@ -19,7 +19,7 @@ Mesh Ring() { return Torus(2, 0.5, 16, 8); }
 
 double EnclosedBy(const Mesh& mesh) { return SignedVolume(mesh.vertices, mesh.triangles); }
 
-void ExpectWholeRing(const Mesh& mesh, const char* what) {
+void ExpectIntactRing(const Mesh& mesh, const char* what) {
   const SurfaceTopology topology = AnalyseTopology(mesh);
   EXPECT_TRUE(topology.watertight()) << what;
   EXPECT_EQ(topology.genus(), 1) << what;
@@ -27,7 +27,7 @@ void ExpectWholeRing(const Mesh& mesh, const char* what) {
   EXPECT_NEAR(EnclosedBy(mesh), EnclosedBy(Ring()), 1e-5) << what;
 }
 
-// Every triangle with vertices of its own, each off by up to `off` in each direction.
+// Returns a triangle soup: every triangle has its own vertices, each displaced by up to `off` per axis.
 Mesh Soup(const Mesh& mesh, double off) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> shift(-off, off);
@@ -42,21 +42,21 @@ Mesh Soup(const Mesh& mesh, double off) {
   return soup;
 }
 
-// Puts a vertex into triangle t, at the weights of its corners, and makes three triangles of one.
+// Splits triangle t into three at the point with these barycentric weights.
 void SplitTriangle(int t, const Eigen::Vector3d& weights, Mesh& mesh) {
   const Eigen::Vector3i corner = mesh.triangles.col(t);
   const auto vertex = static_cast<int>(mesh.vertices.cols());
   const auto last = mesh.triangles.cols();
-  const Eigen::Vector3d place = mesh.vertices(Eigen::all, corner) * weights;
+  const Eigen::Vector3d point = mesh.vertices(Eigen::all, corner) * weights;
   mesh.vertices.conservativeResize(3, vertex + 1);
-  mesh.vertices.col(vertex) = place;
+  mesh.vertices.col(vertex) = point;
   mesh.triangles.conservativeResize(3, last + 2);
   mesh.triangles.col(t) << corner[0], corner[1], vertex;
   mesh.triangles.col(last) << corner[1], corner[2], vertex;
   mesh.triangles.col(last + 1) << corner[2], corner[0], vertex;
 }
 
-TEST(Repair, AWholeSurfaceStaysAsItIs) {
+TEST(Repair, AnIntactSurfaceIsUnchanged) {
   Mesh mesh = Ring();
   EXPECT_EQ(Weld(kNear, mesh), 0);
   EXPECT_EQ(DropSlivers(kNear, mesh), 0);
@@ -66,16 +66,16 @@ TEST(Repair, AWholeSurfaceStaysAsItIs) {
   EXPECT_EQ(mesh.triangles, Ring().triangles);
 }
 
-TEST(Repair, WeldingMakesOneSurfaceOfASoup) {
+TEST(Repair, WeldingClosesATriangleSoup) {
   for (const double off : {0.0, kNear / 4}) {
     Mesh mesh = Soup(Ring(), off);
     const auto soup = mesh.vertices.cols();
     EXPECT_EQ(Weld(off == 0 ? 0 : kNear, mesh), soup - Ring().vertices.cols());
-    ExpectWholeRing(mesh, "welded");
+    ExpectIntactRing(mesh, "welded");
   }
 }
 
-TEST(Repair, WeldingKeepsPlacesApartThatAreFurther) {
+TEST(Repair, WeldingKeepsVerticesBeyondTheToleranceApart) {
   Mesh mesh = Soup(Tetrahedron(), 0);
   mesh.vertices(0, 0) += 2 * kNear;
   Weld(kNear, mesh);
@@ -84,32 +84,32 @@ TEST(Repair, WeldingKeepsPlacesApartThatAreFurther) {
 }
 
 TEST(Repair, RegionsFollowTheirVertices) {
-  Mesh mesh = Soup(Tetrahedron(), 0);  // vertex i stands for the tetrahedron's triangles(i % 3, i / 3)
-  mesh.regions["tip"] = {5, 8};        // both at its vertex 3
+  Mesh mesh = Soup(Tetrahedron(), 0);  // vertex i is a copy of the tetrahedron's triangles(i % 3, i / 3)
+  mesh.regions["tip"] = {5, 8};        // both copies of its vertex 3
   Weld(0, mesh);
   ASSERT_EQ(mesh.regions["tip"].size(), 1u);
   EXPECT_EQ(mesh.vertices.col(mesh.regions["tip"][0]), Eigen::Vector3d::UnitZ());
 }
 
-TEST(Repair, SliversGoAndLeaveNoHole) {
+TEST(Repair, SliversAreRemovedWithoutHoles) {
   Mesh mesh = Ring();
-  SplitTriangle(3, {0.4, 0.6 - 1e-9, 1e-9}, mesh);       // a flat one along a side
+  SplitTriangle(3, {0.4, 0.6 - 1e-9, 1e-9}, mesh);       // a cap along an edge
   SplitTriangle(40, {1 - 2e-8, 1e-8, 1e-8}, mesh);       // needles at a corner
-  SplitTriangle(80, {0.5, 0.5, 0}, mesh);                // no area at all
+  SplitTriangle(80, {0.5, 0.5, 0}, mesh);                // zero area
   SplitTriangle(81, {1.0 / 3, 1.0 / 3, 1.0 / 3}, mesh);  // a good one
   EXPECT_GT(AnalyseTopology(mesh).degenerate_triangles, 0);
   EXPECT_GE(DropSlivers(kNear, mesh), 3);
-  ExpectWholeRing(mesh, "without slivers");
+  ExpectIntactRing(mesh, "without slivers");
   EXPECT_EQ(mesh.vertices.cols(), Ring().vertices.cols() + 3) << "the needles' one vertex is gone";
 }
 
-TEST(Repair, DoubledTrianglesGo) {
+TEST(Repair, DuplicateTrianglesAreRemoved) {
   Mesh copied = Ring();
   copied.triangles.conservativeResize(3, copied.triangles.cols() + 2);
   copied.triangles.rightCols(2) = copied.triangles.leftCols(2);
   EXPECT_EQ(DropSlivers(kNear, copied), 2);
   EXPECT_EQ(copied.triangles, Ring().triangles);
-  Mesh folded = Tetrahedron();  // with an ear: two triangles back to back over one edge
+  Mesh folded = Tetrahedron();  // plus two triangles of opposite winding on one edge
   folded.vertices.conservativeResize(3, 5);
   folded.vertices.col(4) << 2, 2, 2;
   folded.triangles.conservativeResize(3, 6);
@@ -119,7 +119,7 @@ TEST(Repair, DoubledTrianglesGo) {
   EXPECT_EQ(folded.vertices.cols(), 4);
 }
 
-TEST(Repair, FinsGoAndSheetsStay) {
+TEST(Repair, FinsAreRemovedAndSheetsKept) {
   Mesh mesh = Ring();
   mesh.vertices.conservativeResize(3, mesh.vertices.cols() + 1);
   mesh.vertices.rightCols(1) << 0, 0, 9;
@@ -133,7 +133,7 @@ TEST(Repair, FinsGoAndSheetsStay) {
   EXPECT_EQ(DropFins(sheet), 0);
 }
 
-TEST(Repair, NeighboursAgreeAndClosedSurfacesFaceOutwards) {
+TEST(Repair, OrientingMakesWindingsConsistentAndOutward) {
   Mesh small = Ring();
   small.vertices.row(0).array() += 20;
   const Mesh good = Together(Ring(), small);
@@ -151,7 +151,7 @@ TEST(Repair, NeighboursAgreeAndClosedSurfacesFaceOutwards) {
   }
 }
 
-TEST(Repair, AHollowStaysAHollow) {
+TEST(Repair, ACavityStaysACavity) {
   Mesh inner = Tetrahedron({0.1, 0.1, 0.1}), outer = Tetrahedron();
   outer.vertices *= 9;
   inner.triangles.row(1).swap(inner.triangles.row(2));

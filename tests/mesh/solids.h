@@ -1,4 +1,4 @@
-// Small closed surfaces whose topology, area and volume are known.
+// Small closed surfaces with known topology, area and volume.
 #ifndef PHRENIC_TESTS_MESH_SOLIDS_H_
 #define PHRENIC_TESTS_MESH_SOLIDS_H_
 
@@ -9,7 +9,7 @@
 
 namespace phrenic {
 
-// The unit tetrahedron with a corner at `origin`, facing outwards; its volume is 1/6 m^3.
+// Returns the unit right tetrahedron with its right-angled corner at `origin`, facing outwards. Volume 1/6 m^3.
 inline Mesh Tetrahedron(const Eigen::Vector3d& origin = Eigen::Vector3d::Zero()) {
   Mesh mesh;
   mesh.vertices.resize(3, 4);
@@ -20,7 +20,7 @@ inline Mesh Tetrahedron(const Eigen::Vector3d& origin = Eigen::Vector3d::Zero())
   return mesh;
 }
 
-// Both meshes side by side, joined nowhere.
+// Returns both meshes as separate components of one.
 inline Mesh Together(const Mesh& a, const Mesh& b) {
   Mesh mesh;
   mesh.vertices.resize(3, a.vertices.cols() + b.vertices.cols());
@@ -30,7 +30,8 @@ inline Mesh Together(const Mesh& a, const Mesh& b) {
   return mesh;
 }
 
-// A torus about z: ring radius `ring`, tube radius `tube` [m], `around` x `across` quads cut in two.
+// Returns a torus about the z axis with major radius `ring` and minor radius `tube` [m]: `around` x `across`
+// quadrilaterals, each split in two triangles. Volume 2 pi^2 ring tube^2 in the limit.
 inline Mesh Torus(double ring, double tube, int around, int across) {
   Mesh mesh;
   mesh.vertices.resize(3, around * across);

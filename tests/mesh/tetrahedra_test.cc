@@ -17,7 +17,7 @@ double VolumeOf(const Mesh& mesh) {
   return volume;
 }
 
-TEST(FillCells, FillsABoxWithNoGapAndNoOverlap) {
+TEST(FillCells, FillsABoxWithoutGapsOrOverlaps) {
   const Mesh mesh = FillCells({{1, 2, 3}, {0.5, 0.25, 0.2}, {4, 3, 5}}, [](const Eigen::Vector3d&) { return true; });
   EXPECT_EQ(mesh.vertices.cols(), 5 * 4 * 6);
   EXPECT_EQ(mesh.tetrahedra.cols(), 4 * 3 * 5 * 5);
@@ -29,7 +29,7 @@ TEST(FillCells, FillsABoxWithNoGapAndNoOverlap) {
   EXPECT_NEAR(SignedVolume(mesh.vertices, mesh.triangles), 1.5, 1e-12);
 }
 
-TEST(FillCells, OfWhatLiesInsideASurfaceComeToItsVolume) {
+TEST(FillCells, ApproximatesTheVolumeInsideASurface) {
   const Mesh surface = EllipsoidSurface({0, 0, 0}, {3, 2, 1}, 12, false);
   const auto inside = [&](const Eigen::Vector3d& x) { return WindingNumber(surface, x) > 0.5; };
   const Mesh solid = FillCells({{-3, -2, -1}, {0.1, 0.1, 0.1}, {60, 40, 20}}, inside);
@@ -38,7 +38,7 @@ TEST(FillCells, OfWhatLiesInsideASurfaceComeToItsVolume) {
   EXPECT_EQ(AnalyseTopology(solid).boundary_edges, 0);
 }
 
-TEST(WindingNumber, CountsHowOftenTheSurfaceGoesRound) {
+TEST(WindingNumber, IsOneInsideAndZeroOutside) {
   const Mesh surface = EllipsoidSurface({1, 0, 0}, {3, 2, 1}, 6, false);
   EXPECT_NEAR(WindingNumber(surface, {1, 0.5, 0.2}), 1, 1e-12);
   EXPECT_NEAR(WindingNumber(surface, {1, 0.5, 1.2}), 0, 1e-12);

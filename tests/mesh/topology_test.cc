@@ -25,12 +25,12 @@ TEST(Topology, TorusHasGenusOne) {
   EXPECT_EQ(topology.genus(), 1);
 }
 
-TEST(Topology, OnlyAnOpenSurfaceHasABorder) {
-  EXPECT_TRUE(BorderVertices(Tetrahedron().triangles).empty());
-  EXPECT_EQ(BorderVertices(Tetrahedron().triangles.rightCols(3)).size(), 3u);  // one face away
+TEST(Topology, OnlyAnOpenSurfaceHasABoundary) {
+  EXPECT_TRUE(BoundaryVertices(Tetrahedron().triangles).empty());
+  EXPECT_EQ(BoundaryVertices(Tetrahedron().triangles.rightCols(3)).size(), 3u);  // one face removed
   Triangles fan(3, 4);
   fan << 0, 0, 0, 0, 1, 2, 3, 4, 2, 3, 4, 1;
-  EXPECT_EQ(BorderVertices(fan), (std::vector<int>{1, 2, 3, 4}));
+  EXPECT_EQ(BoundaryVertices(fan), (std::vector<int>{1, 2, 3, 4}));
 }
 
 TEST(Topology, GenusAddsOverComponents) {
@@ -88,7 +88,7 @@ TEST(Topology, RepeatedCornersAndSliversAreDegenerate) {
   EXPECT_EQ(AnalyseTopology(mesh).degenerate_triangles, 2);
 }
 
-TEST(Topology, EmptySurfaceCountsNothing) {
+TEST(Topology, EmptySurfaceHasZeroCounts) {
   const SurfaceTopology topology = AnalyseTopology(Mesh{});
   EXPECT_EQ(topology.vertices, 0);
   EXPECT_EQ(topology.components, 0);
@@ -101,7 +101,7 @@ TEST(Edges, EachOnceLowerIndexFirstSorted) {
   EXPECT_EQ(TriangleEdges(Tetrahedron().triangles), expected);
 }
 
-TEST(Edges, SpringsTakeTheMeshsOwnEdgesWhereItHasAny) {
+TEST(Edges, SpringsPreferTheMeshesOwnEdges) {
   Mesh mesh = Tetrahedron();
   EXPECT_EQ(SpringEdges(mesh).cols(), 6);
   mesh.edges.resize(2, 1);
@@ -109,7 +109,7 @@ TEST(Edges, SpringsTakeTheMeshsOwnEdgesWhereItHasAny) {
   EXPECT_EQ(SpringEdges(mesh), mesh.edges);
 }
 
-TEST(Volume, IsTheSolidsWhereverItStands) {
+TEST(Volume, DoesNotDependOnThePosition) {
   EXPECT_NEAR(SignedVolume(Tetrahedron().vertices, Tetrahedron().triangles), 1.0 / 6, 1e-15);
   const Mesh far = Tetrahedron({10, -20, 30});
   EXPECT_NEAR(SignedVolume(far.vertices, far.triangles), 1.0 / 6, 1e-11);
@@ -121,7 +121,7 @@ TEST(Volume, IsNegativeInsideOut) {
   EXPECT_NEAR(SignedVolume(mesh.vertices, mesh.triangles), -1.0 / 6, 1e-15);
 }
 
-TEST(Volume, OfAFineTorusIsPappus) {
+TEST(Volume, OfAFineTorusFollowsPappus) {
   const Mesh torus = Torus(2, 0.5, 200, 100);
   const double pappus = 2 * std::numbers::pi * std::numbers::pi * 2 * 0.25;
   EXPECT_NEAR(SignedVolume(torus.vertices, torus.triangles), pappus, 2e-3 * pappus);

@@ -1,4 +1,4 @@
-// The nearest point of a surface, against a search through every triangle and against closed forms.
+// Checks nearest-point search against dense sampling and against closed forms.
 #include "server/mesh/triangle_tree.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 
 double Uniform(std::mt19937& random) { return std::uniform_real_distribution<double>(-1, 1)(random); }
 
-// Nearest of a dense sample of the triangle: an upper bound that is close.
+// Returns the distance to the nearest of dense samples of the triangles: a close upper bound.
 double SampledDistance(const Points& x, const Triangles& triangles, const Eigen::Vector3d& p) {
   double nearest = std::numeric_limits<double>::infinity();
   constexpr int kSteps = 40;
@@ -30,7 +30,7 @@ double SampledDistance(const Points& x, const Triangles& triangles, const Eigen:
   return nearest;
 }
 
-TEST(TriangleTree, FindsTheNearestPointAlsoAfterTheSurfaceHasMoved) {
+TEST(TriangleTree, FindsTheNearestPointAlsoOnAMovedSurface) {
   std::mt19937 random(4);
   Points x(3, 40);
   for (double& value : x.reshaped()) value = Uniform(random);
@@ -58,8 +58,8 @@ TEST(TriangleTree, FindsTheNearestPointAlsoAfterTheSurfaceHasMoved) {
   }
 }
 
-// Also where the nearest point is on an edge or a vertex, which on a torus are convex and concave.
-TEST(TriangleTree, KnowsWhatIsBehindAClosedSurface) {
+// Includes nearest points on edges and vertices; a torus has convex and concave ones.
+TEST(TriangleTree, FacingTellsInsideFromOutsideOfAClosedSurface) {
   const Mesh torus = Torus(1, 0.4, 24, 12);
   const TriangleTree tree(torus.vertices, torus.triangles);
   TriangleTree::Boxes boxes;
@@ -71,18 +71,18 @@ TEST(TriangleTree, KnowsWhatIsBehindAClosedSurface) {
     if (std::abs(tube - 0.4) < 0.03) continue;  // between the torus and its facets
     const SurfacePoint found = tree.Nearest(torus.vertices, boxes, point, 10);
     EXPECT_EQ(found.facing > 0, tube < 0.4) << point.transpose();
-    EXPECT_FALSE(found.on_rim);
+    EXPECT_FALSE(found.on_boundary);
   }
 }
 
-TEST(TriangleTree, KnowsTheBorderOfAnOpenSurface) {
+TEST(TriangleTree, MarksPointsOnTheBoundaryOfAnOpenSurface) {
   const Mesh solid = Tetrahedron();
   const TriangleTree tree(solid.vertices, solid.triangles.leftCols(1));  // the face at z = 0
   TriangleTree::Boxes boxes;
   tree.Fit(solid.vertices, boxes);
-  EXPECT_FALSE(tree.Nearest(solid.vertices, boxes, {0.2, 0.2, 1}, 10).on_rim);
-  EXPECT_TRUE(tree.Nearest(solid.vertices, boxes, {0.2, -0.1, 1}, 10).on_rim);
-  EXPECT_TRUE(tree.Nearest(solid.vertices, boxes, {-0.2, -0.1, 1}, 10).on_rim);
+  EXPECT_FALSE(tree.Nearest(solid.vertices, boxes, {0.2, 0.2, 1}, 10).on_boundary);
+  EXPECT_TRUE(tree.Nearest(solid.vertices, boxes, {0.2, -0.1, 1}, 10).on_boundary);
+  EXPECT_TRUE(tree.Nearest(solid.vertices, boxes, {-0.2, -0.1, 1}, 10).on_boundary);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// How much memory this program has asked for at once: what a file merely claims must not make it ask for.
+// Records the largest allocation of the process, to show that a count which a file merely claims is never allocated.
 #ifndef PHRENIC_TESTS_MESHIO_ALLOCATIONS_H_
 #define PHRENIC_TESTS_MESHIO_ALLOCATIONS_H_
 
@@ -6,8 +6,8 @@
 
 namespace phrenic {
 
-// The largest size that malloc or realloc was asked for since the last call; always 0 under sanitizers, which have a
-// malloc of their own. [bytes]
+// Returns the largest size passed to malloc or realloc since the last call [bytes]. Always 0 under sanitizers, which
+// replace malloc.
 std::size_t TakeLargestAllocation();
 
 }  // namespace phrenic

@@ -19,13 +19,13 @@ constexpr char kTriangle[] =
     "$Nodes\n3\n10 0 0 0\n7 1 0 0\n3000000000 1 1 0\n$EndNodes\n"
     "$Elements\n1\n1 2 2 1 1 10 7 3000000000\n$EndElements\n";
 
-// Rows are in another order than the nodes.
+// Returns a time step. Its rows are in another order than the nodes.
 std::string Step(const std::string& time, double z) {
   return absl::StrCat("$NodeData\n1\n\"displacement\"\n1\n", time, "\n3\n0\n3\n3\n7 0 0 ", z, "\n10 0 0 ", 2 * z,
                       "\n3000000000 0 0 ", 3 * z, "\n$EndNodeData\n");
 }
 
-TEST(Motion, StepsAreDisplacementsOfTheVerticesAtTheirTimes) {
+TEST(Motion, StepsGiveTimesAndDisplacements) {
   const std::string other = "$NodeData\n1\n\"pressure\"\n1\n0\n3\n0\n1\n1\n7 5\n$EndNodeData\n";
   const auto motion = ParseMotion("a.msh", kTriangle + Step("0", 0) + other + Step("0.5", 10), 0.001);
   ASSERT_TRUE(motion.ok()) << motion.status();
@@ -37,7 +37,7 @@ TEST(Motion, StepsAreDisplacementsOfTheVerticesAtTheirTimes) {
   EXPECT_NEAR(motion->displacements[1](2, 1), 0.01, 1e-15);
 }
 
-TEST(Motion, AFileWithoutDisplacementsStandsStill) {
+TEST(Motion, AFileWithoutDisplacementsHasNoTimes) {
   const auto msh = ParseMotion("a.msh", kTriangle, 0.001);
   ASSERT_TRUE(msh.ok()) << msh.status();
   EXPECT_FALSE(msh->moves());
@@ -47,7 +47,7 @@ TEST(Motion, AFileWithoutDisplacementsStandsStill) {
   EXPECT_FALSE(obj->moves());
 }
 
-TEST(Motion, StepsInOtherVersionsAreRefusedRatherThanPassedOver) {
+TEST(Motion, StepsInOtherVersionsAreRejectedNotIgnored) {
   const std::string still =
       "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 3 1 3\n2 1 0 3\n1\n2\n3\n0 0 0\n1 0 0\n0 1 0\n$EndNodes\n"
       "$Elements\n1 1 1 1\n2 1 2 1\n1 1 2 3\n$EndElements\n";
@@ -65,10 +65,10 @@ struct BadMotion {
   const char* words;
 };
 
-TEST(Motion, BadStepsAreRefusedWithTheirLine) {
+TEST(Motion, ErrorsNameTheLineAndTheProblem) {
   const BadMotion cases[] = {
       {"10 0 0 4\n", "", "a.msh:38: the step has rows for 2 of 3 nodes"},
-      {"10 0 0 4\n", "7 0 0 4\n", "a.msh:37: node 7 twice"},
+      {"10 0 0 4\n", "7 0 0 4\n", "a.msh:37: node 7 is there twice"},
       {"10 0 0 4\n", "11 0 0 4\n", "a.msh:37: there is no node 11"},
       {"10 0 0 4\n", "10 0 nan 4\n", "a.msh:37: a row is written"},
       {"10 0 0 4\n", "10 0 0\n", "a.msh:37: a row is written"},

@@ -1,5 +1,5 @@
-// What every reader owes. A kind of file joins by a line in kSamples: a file of the fuzz target's corpus that holds the
-// tetrahedron of Corners() and Faces(), written by gmsh or VTK where they write the kind.
+// The contract of every reader. To add a kind of file, add a line to kSamples: a file in the fuzz corpus that holds the
+// tetrahedron of Corners() and Faces(), written by gmsh or VTK if they support the kind.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ using ::testing::StartsWith;
 
 struct Sample {
   const char* file;
-  Frame frame = Frame::kUnsaid;
+  Frame frame = Frame::kUnspecified;
 };
 
 constexpr Sample kSamples[] = {
@@ -83,7 +83,7 @@ class Reader : public ::testing::TestWithParam<Sample> {
     ASSERT_FALSE(bytes_.empty()) << file_;
   }
 
-  // An error that says where, or a mesh in range; of bytes of at most the sample's size.
+  // Expects a valid mesh or an error with a position, and no allocation out of proportion to the file.
   void ExpectMeshOrError(std::string_view bytes, const std::string& what) {
     (void)TakeLargestAllocation();
     const auto mesh = Parse(file_, bytes, 1.0);
@@ -102,7 +102,7 @@ class Reader : public ::testing::TestWithParam<Sample> {
   int meshes_ = 0, errors_ = 0;
 };
 
-TEST_P(Reader, GivesTheTetrahedronInTheFramePhrenicHas) {
+TEST_P(Reader, GivesTheTetrahedronInLps) {
   const auto surface = ParseSurface(file_, bytes_, 1.0);
   ASSERT_TRUE(surface.ok()) << surface.status();
   EXPECT_EQ(surface->mesh.vertices, Corners());
@@ -110,37 +110,37 @@ TEST_P(Reader, GivesTheTetrahedronInTheFramePhrenicHas) {
   EXPECT_EQ(surface->frame, GetParam().frame);
 }
 
-TEST_P(Reader, EveryTruncationGivesAMeshInRangeOrAnError) {
+TEST_P(Reader, EveryTruncationGivesAValidMeshOrAnError) {
   for (std::size_t length = 0; length < bytes_.size(); ++length) {
     ExpectMeshOrError(std::string_view(bytes_).substr(0, length), absl::StrCat("the first ", length, " bytes"));
   }
   EXPECT_GT(errors_, 0);
 }
 
-TEST_P(Reader, EveryFlippedByteGivesAMeshInRangeOrAnError) {
-  for (std::size_t place = 0; place < bytes_.size(); ++place) {
+TEST_P(Reader, EveryFlippedBitGivesAValidMeshOrAnError) {
+  for (std::size_t at = 0; at < bytes_.size(); ++at) {
     for (const int flip : {0x01, 0x02, 0x04, 0x08, 0x10, 0x20, 0x40, 0x80, 0xff}) {
       std::string flipped = bytes_;
-      flipped[place] = static_cast<char>(flipped[place] ^ flip);
-      ExpectMeshOrError(flipped, absl::StrCat("byte ", place, " ^ ", flip));
+      flipped[at] = static_cast<char>(flipped[at] ^ flip);
+      ExpectMeshOrError(flipped, absl::StrCat("byte ", at, " ^ ", flip));
     }
   }
   EXPECT_GT(errors_, 0);
   EXPECT_GT(meshes_, 0);
 }
 
-TEST_P(Reader, EveryByteLeftOutOrPutInGivesAMeshInRangeOrAnError) {
-  for (std::size_t place = 0; place < bytes_.size(); ++place) {
-    ExpectMeshOrError(std::string(bytes_).erase(place, 1), absl::StrCat("without byte ", place));
+TEST_P(Reader, EveryRemovedOrInsertedByteGivesAValidMeshOrAnError) {
+  for (std::size_t at = 0; at < bytes_.size(); ++at) {
+    ExpectMeshOrError(std::string(bytes_).erase(at, 1), absl::StrCat("without byte ", at));
     for (const char extra : {'\0', '9', '\n', '\xff'}) {
-      const std::string longer = std::string(bytes_).insert(place, 1, extra);
-      ExpectMeshOrError(longer, absl::StrCat("a byte before ", place));
+      const std::string longer = std::string(bytes_).insert(at, 1, extra);
+      ExpectMeshOrError(longer, absl::StrCat("a byte before ", at));
     }
   }
   EXPECT_GT(errors_, 0);
 }
 
-TEST_P(Reader, CoordinatesAreScaledAndTheNamesCaseDoesNotMatter) {
+TEST_P(Reader, CoordinatesAreScaledAndTheExtensionsCaseDoesNotMatter) {
   const auto mesh = Parse(absl::AsciiStrToUpper(file_), bytes_, 0.5);
   ASSERT_TRUE(mesh.ok()) << mesh.status();
   EXPECT_EQ(mesh->vertices, 0.5 * Corners());

@@ -1,5 +1,5 @@
-// What every writer owes: what is written reads back, and from any format into any other. A format joins by its row in
-// the catalogue, and by a line here where it keeps less than the mesh.
+// The contract of every writer: round trips, and conversion between any two formats. Formats come from the catalogue;
+// one that loses part of a mesh also needs a line in KeepsAll.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -25,11 +25,11 @@ std::vector<std::string> Written() {
   return endings;
 }
 
-// Those that keep every digit of a float64, the vertices' order, unused vertices, and networks of edges.
+// True for formats that keep float64 precision, the order of vertices, unused vertices and networks of edges.
 bool KeepsAll(const std::string& ending) { return ending != ".stl"; }
 
-// A closed surface of coordinates with all the digits there are; its vertices stand in the order of their triangles.
-Mesh Awkward() {
+// Returns a closed surface whose coordinates use all digits and whose vertices are ordered by first use.
+Mesh ManyDigits() {
   const Mesh plain = EllipsoidSurface({0.1, 0.2, 0.3}, {1.0 / 3, 2.0 / 7, 0.1}, 5, false);
   Mesh mesh = plain;
   std::vector<int> renumbered(static_cast<std::size_t>(plain.vertices.cols()), -1);
@@ -45,26 +45,26 @@ Mesh Awkward() {
   return mesh;
 }
 
-Mesh Again(const Mesh& mesh, const std::string& ending, double unit = 1) {
+Mesh RoundTrip(const Mesh& mesh, const std::string& ending, double unit = 1) {
   const auto bytes = Write("a" + ending, mesh, unit);
   EXPECT_TRUE(bytes.ok()) << bytes.status();
-  const auto again = bytes.ok() ? Parse("a" + ending, *bytes, unit) : bytes.status();
-  EXPECT_TRUE(again.ok()) << ending << again.status();
-  return again.ok() ? *again : Mesh{};
+  const auto parsed = bytes.ok() ? Parse("a" + ending, *bytes, unit) : bytes.status();
+  EXPECT_TRUE(parsed.ok()) << ending << parsed.status();
+  return parsed.ok() ? *parsed : Mesh{};
 }
 
 class Pair : public ::testing::TestWithParam<std::tuple<std::string, std::string>> {};
 
-TEST_P(Pair, ConvertingLosesNothingBeyondTheFormatsPrecision) {
+TEST_P(Pair, ConversionLosesOnlyTheFormatsPrecision) {
   const auto& [first, second] = GetParam();
-  const Mesh mesh = Awkward();
-  const Mesh there = Again(Again(mesh, first), second);
-  ASSERT_EQ(there.vertices.cols(), mesh.vertices.cols());
-  EXPECT_EQ(there.triangles, mesh.triangles);
+  const Mesh mesh = ManyDigits();
+  const Mesh result = RoundTrip(RoundTrip(mesh, first), second);
+  ASSERT_EQ(result.vertices.cols(), mesh.vertices.cols());
+  EXPECT_EQ(result.triangles, mesh.triangles);
   if (KeepsAll(first) && KeepsAll(second)) {
-    EXPECT_EQ(there.vertices, mesh.vertices) << "every bit";
+    EXPECT_EQ(result.vertices, mesh.vertices) << "every bit";
   } else {
-    EXPECT_EQ(there.vertices, mesh.vertices.cast<float>().cast<double>()) << "float32, rounded once";
+    EXPECT_EQ(result.vertices, mesh.vertices.cast<float>().cast<double>()) << "float32, rounded once";
   }
 }
 
@@ -76,36 +76,36 @@ INSTANTIATE_TEST_SUITE_P(Formats, Pair,
 
 class Writer : public ::testing::TestWithParam<std::string> {};
 
-TEST_P(Writer, UnitsGoThereAndBack) {
-  const Mesh mesh = Awkward(), there = Again(mesh, GetParam(), 0.001);
-  ASSERT_EQ(there.vertices.cols(), mesh.vertices.cols());
+TEST_P(Writer, UnitsRoundTrip) {
+  const Mesh mesh = ManyDigits(), result = RoundTrip(mesh, GetParam(), 0.001);
+  ASSERT_EQ(result.vertices.cols(), mesh.vertices.cols());
   const double digits = KeepsAll(GetParam()) ? 1e-15 : 1e-7;
-  EXPECT_LT((there.vertices - mesh.vertices).cwiseAbs().maxCoeff(), digits);
+  EXPECT_LT((result.vertices - mesh.vertices).cwiseAbs().maxCoeff(), digits);
 }
 
-TEST_P(Writer, UnusedVerticesAndNetworksAreKeptOrRefused) {
+TEST_P(Writer, UnusedVerticesAndNetworksAreKeptOrRejected) {
   Mesh wire;
   wire.vertices = Points::Random(3, 4);
   wire.edges.resize(2, 2);
   wire.edges << 0, 3, 2, 0;
   if (!KeepsAll(GetParam())) {
-    const auto refused = Write("a" + GetParam(), wire, 1);
-    EXPECT_EQ(refused.status().code(), absl::StatusCode::kInvalidArgument);
-    EXPECT_THAT(std::string(refused.status().message()), HasSubstr("edges alone"));
+    const auto rejected = Write("a" + GetParam(), wire, 1);
+    EXPECT_EQ(rejected.status().code(), absl::StatusCode::kInvalidArgument);
+    EXPECT_THAT(std::string(rejected.status().message()), HasSubstr("only edges"));
     return;
   }
-  const Mesh there = Again(wire, GetParam());
-  EXPECT_EQ(there.vertices, wire.vertices);
-  EXPECT_EQ(there.edges, wire.edges);
+  const Mesh result = RoundTrip(wire, GetParam());
+  EXPECT_EQ(result.vertices, wire.vertices);
+  EXPECT_EQ(result.edges, wire.edges);
 }
 
-TEST_P(Writer, WhatIsNoSurfaceIsRefusedWithTheFilesName) {
-  Mesh mesh = Awkward();
+TEST_P(Writer, InvalidMeshesAreRejectedWithTheFilesName) {
+  Mesh mesh = ManyDigits();
   mesh.vertices(1, 3) = NAN;
   const auto not_finite = Write("a" + GetParam(), mesh, 1);
   EXPECT_EQ(not_finite.status().code(), absl::StatusCode::kInvalidArgument);
   EXPECT_THAT(std::string(not_finite.status().message()), StartsWith("a" + GetParam() + ": vertex 3"));
-  mesh = Awkward();
+  mesh = ManyDigits();
   mesh.triangles.resize(3, 0);
   EXPECT_THAT(std::string(Write("a" + GetParam(), mesh, 1).status().message()), HasSubstr("neither triangles nor"));
 }
@@ -114,28 +114,28 @@ INSTANTIATE_TEST_SUITE_P(Formats, Writer, ::testing::ValuesIn(Written()),
                          [](const auto& ending) { return ending.param.substr(1); });
 
 TEST(Writers, MshKeepsRegions) {
-  Mesh mesh = Awkward();
+  Mesh mesh = ManyDigits();
   mesh.regions["rim"] = {mesh.triangles(0, 5), mesh.triangles(1, 5), mesh.triangles(2, 5)};
   std::sort(mesh.regions["rim"].begin(), mesh.regions["rim"].end());
-  EXPECT_EQ(Again(mesh, ".msh").regions, mesh.regions);
+  EXPECT_EQ(RoundTrip(mesh, ".msh").regions, mesh.regions);
 }
 
-TEST(Writers, StlRefusesWhatFloatsCannotHold) {
-  Mesh mesh = Awkward();
+TEST(Writers, StlRejectsCoordinatesBeyondFloat32) {
+  Mesh mesh = ManyDigits();
   mesh.vertices(0, 0) = 1e39;
   EXPECT_THAT(std::string(Write("a.stl", mesh, 1).status().message()), HasSubstr("too large for STL"));
 }
 
-TEST(Writers, TheFilesSayTheirFrame) {
+TEST(Writers, FilesDeclareTheirFrame) {
   for (const std::string ending : {".obj", ".stl", ".ply", ".vtk", ".vtp"}) {
-    const auto bytes = Write("a" + ending, Awkward(), 1);
+    const auto bytes = Write("a" + ending, ManyDigits(), 1);
     ASSERT_TRUE(bytes.ok()) << bytes.status();
     EXPECT_EQ(ParseSurface("a" + ending, *bytes, 1)->frame, Frame::kLps) << ending;
   }
 }
 
-TEST(Writers, UnknownEndingsAreNamedWithThoseThereAre) {
-  const auto unknown = Write("a.stp", Awkward(), 1);
+TEST(Writers, UnknownExtensionsGiveTheListOfKnownOnes) {
+  const auto unknown = Write("a.stp", ManyDigits(), 1);
   EXPECT_EQ(unknown.status().code(), absl::StatusCode::kInvalidArgument);
   EXPECT_THAT(std::string(unknown.status().message()), HasSubstr(WrittenEndings()));
 }

@@ -1,4 +1,4 @@
-// Round trips of motion files by small independent readers, and Gmsh itself.
+// Motion files, read back by small independent parsers, by Gmsh and by VTK.
 #include <gmock/gmock.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -43,7 +43,7 @@ Points PositionsAt(int frame) {
 
 absl::Status NoReport(double) { return absl::OkStatus(); }
 
-// What a recorder is given, and the bytes that come of it.
+// Records a motion of kFrames frames and keeps the bytes.
 struct Recorded {
   explicit Recorded(const std::string& format, std::optional<Values> values = {}) {
     const Format row = *FindFormat(Formats(), format);
@@ -67,14 +67,14 @@ struct Recorded {
 
 std::string Record(const std::string& format) { return Recorded(format).file; }
 
-TEST(Formats, UnknownNamesListWhatThereIs) {
+TEST(Formats, UnknownNamesListTheKnownOnes) {
   const auto format = FindFormat(Formats(), "avi");
   ASSERT_FALSE(format.ok());
   EXPECT_THAT(std::string(format.status().message()),
               testing::AllOf(testing::HasSubstr("avi"), testing::HasSubstr("msh, depl, pvd, glb, csv")));
 }
 
-TEST(Formats, ASinkThatFailsEndsTheRecording) {
+TEST(Formats, ASinksErrorEndsTheRecording) {
   for (const Format& format : Formats()) {
     const auto full = [](std::string_view) { return absl::ResourceExhaustedError("disk full"); };
     const auto recorder = format.make({.sink = full, .spool_folder = testing::TempDir()});
@@ -85,14 +85,14 @@ TEST(Formats, ASinkThatFailsEndsTheRecording) {
   }
 }
 
-TEST(Formats, ASpoolFolderThatIsNotThereIsNamed) {
+TEST(Formats, AMissingSpoolFolderIsNamed) {
   const auto recorder = FindFormat(Formats(), "depl")->make({.sink = {}, .spool_folder = "/nowhere/spool"});
   const absl::Status status = recorder->Begin({.bodies = TwoBodies()});
   EXPECT_EQ(status.code(), absl::StatusCode::kNotFound);
   EXPECT_THAT(std::string(status.message()), testing::HasSubstr("/nowhere/spool"));
 }
 
-TEST(SpoolFile, AFullDiskIsForeseenWithFolderNeedAndRoom) {
+TEST(SpoolFile, TooLittleSpaceIsReportedWithFolderAndSizes) {
   EXPECT_TRUE(CheckRoom(testing::TempDir(), 1).ok());
   const absl::Status status = CheckRoom(testing::TempDir(), std::int64_t{1} << 60);
   EXPECT_EQ(status.code(), absl::StatusCode::kResourceExhausted);
@@ -101,7 +101,7 @@ TEST(SpoolFile, AFullDiskIsForeseenWithFolderNeedAndRoom) {
                              testing::HasSubstr(testing::TempDir()), testing::HasSubstr("MB are free")));
 }
 
-TEST(VertexSpool, GivesEachVertexItsRowsWhateverTheBuffer) {
+TEST(VertexSpool, TransposesForEveryBufferSize) {
   constexpr int kVertices = 7, kRows = 23;
   for (const std::size_t buffer : {1, 200, 500, 1000, 100'000}) {
     auto spool = VertexSpool::Open(testing::TempDir(), kVertices, buffer);
@@ -124,7 +124,7 @@ TEST(VertexSpool, GivesEachVertexItsRowsWhateverTheBuffer) {
   }
 }
 
-// The largest resident memory of a process that spools so many frames and reads them all back [kB].
+// Returns the peak resident memory of a process that spools so many frames and reads them back [kB].
 long PeakWith(int frames) {
   constexpr int kVertices = 1000;
   const pid_t child = fork();
@@ -146,11 +146,11 @@ long PeakWith(int frames) {
   return usage.ru_maxrss;
 }
 
-TEST(VertexSpool, MemoryDoesNotGrowWithTheFrames) {
-  EXPECT_LT(PeakWith(2000), PeakWith(50) + 8'000) << "48 MB of positions and 1 MB of them";
+TEST(VertexSpool, MemoryDoesNotGrowWithTheNumberOfFrames) {
+  EXPECT_LT(PeakWith(2000), PeakWith(50) + 8'000) << "48 MB of positions against 1 MB";
 }
 
-TEST(Depl, RunningSumIsThePositionToItsLastDecimal) {
+TEST(Depl, RunningSumIsThePositionToTheLastDecimal) {
   std::istringstream file(Record("depl"));
   std::string kind;
   int vertices = 0, shapes = 0, rows = 0;
@@ -200,7 +200,7 @@ TEST(Msh, NodeDataIsTheDisplacementFromTheFirstFrame) {
   EXPECT_EQ(frame, kFrames);
 }
 
-TEST(Msh, EveryBodyIsAPhysicalGroupOfItsOwnDimension) {
+TEST(Msh, EveryBodyIsAPhysicalGroup) {
   EXPECT_THAT(Record("msh"), testing::HasSubstr("$PhysicalNames\n2\n2 1 \"sheet\"\n1 2 \"wire\"\n$EndPhysicalNames\n"));
 }
 
@@ -222,11 +222,11 @@ TEST(Msh, PositionsAreDisplacementsFromZero) {
   EXPECT_THAT(file, testing::Not(testing::HasSubstr("displacement")));
 }
 
-TEST(Csv, IsARowAFrameWithNamesThatKeepTheirCommas) {
+TEST(Csv, HasOneRowPerFrameAndQuotesNames) {
   EXPECT_EQ(Record("csv"), "time [s],\"volume, \"\"right\"\" [l]\"\n0,0\n0.25,1.5\n0.5,3\n0.75,4.5\n1,6\n");
 }
 
-TEST(Msh, OpensInGmshWithAllItsStepsAndTimes) {
+TEST(Msh, OpensInGmshWithAllSteps) {
   if (std::system("command -v gmsh >/dev/null 2>&1") != 0) GTEST_SKIP() << "gmsh is not installed";
   const std::string base = testing::TempDir() + "phrenic_record_" + std::to_string(getpid());
   std::ofstream(base + ".msh") << Record("msh");
@@ -246,7 +246,7 @@ TEST(Msh, OpensInGmshWithAllItsStepsAndTimes) {
   EXPECT_THAT(said, testing::Not(testing::HasSubstr("Error")));
 }
 
-// Reads every .vtp of a .pvd that stands in an archive, by VTK: its times, points, cells and largest displacement.
+// Reads every .vtp of a .pvd archive by VTK and prints time, points, cells, displacement, frame and body names.
 constexpr char kReadPvd[] = R"(
 import sys, zipfile, os, vtk
 import xml.etree.ElementTree as xml
@@ -264,8 +264,8 @@ for step in xml.parse(folder + '/' + sys.argv[2] + '.pvd').getroot().iter('DataS
           [names.GetValue(int(data.GetCellData().GetArray('body').GetTuple1(c))) for c in range(data.GetNumberOfCells())])
 )";
 
-TEST(Pvd, OpensInVtkWithEveryFrameItsTimeAndItsBodies) {
-  const std::string python = "/usr/bin/python3";  // Debian's own: its VTK is for that one
+TEST(Pvd, OpensInVtkWithAllTimesPositionsAndBodies) {
+  const std::string python = "/usr/bin/python3";  // Debian's Python, for which its VTK package is built
   if (std::system((python + " -c 'import vtk' >/dev/null 2>&1").c_str()) != 0) {
     GTEST_SKIP() << "VTK is not installed (python3-vtk9)";
   }

@@ -1,4 +1,4 @@
-# Opens each kind of file that Phrenic writes in a program that is not Phrenic's, and puts the pictures into one:
+# Opens each file format that Phrenic writes in another program and makes one picture of the results:
 # xvfb-run -a /usr/bin/python3 tests/record/show_formats.py build/phrenic out.png
 # Needs python3-vtk9, gmsh, gnuplot-nox, imagemagick, xvfb.
 import os
@@ -17,7 +17,7 @@ def run(*words, **options):
 
 
 def look_from_the_front(camera, up):
-    # In LPS from before and a little above; glTF has +y up and the chest towards +z.
+    # From the front and slightly above: in LPS, and in glTF with +y up and the chest towards +z.
     camera.SetPosition(*((0.35, -1, 0.3) if up == "z" else (0.35, 0.3, 1)))
     camera.SetFocalPoint(0, 0, 0)
     camera.SetViewUp(*((0, 0, 1) if up == "z" else (0, 1, 0)))
@@ -96,11 +96,11 @@ def curves(file, png):
 
 
 def paths(file, png):
-    # The format's law in a line of awk: of each vertex the first row is a place, the others are changes.
-    law = 'NR==1 {n = $4; next} {k = (NR - 2) % n; z = k ? z + $3 : $3; v = int((NR - 2) / n)} ' \
+    # The format in one line of awk: the first row of each vertex is a position, the others are changes.
+    program = 'NR==1 {n = $4; next} {k = (NR - 2) % n; z = k ? z + $3 : $3; v = int((NR - 2) / n)} ' \
           'v % 400 == 0 {if (!k) print ""; print k, z}'
     with open(png + ".txt", "w") as table:
-        subprocess.run(["awk", law, file], check=True, stdout=table)
+        subprocess.run(["awk", program, file], check=True, stdout=table)
     run("gnuplot", "-e", f"set terminal pngcairo size {SIZE},{SIZE} font 'sans,9'; set output '{png}';"
         "set xlabel 'row'; set ylabel 'z [mm]'; set key off;"
         f"plot '{png}.txt' with lines lc rgb '#b4473a'")

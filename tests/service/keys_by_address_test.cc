@@ -76,7 +76,7 @@ TEST_F(KeysByAddress, AreFoundByTheOpenIdConfiguration) {
 }
 
 TEST_F(KeysByAddress, ThatCannotBeReadPreventTheStartWithTheReason) {
-  EXPECT_THAT(std::string(Start(At("other.json")).message()), HasSubstr("other.json: answers 404"));
+  EXPECT_THAT(std::string(Start(At("other.json")).message()), HasSubstr("other.json: returns HTTP status 404"));
   Publish("none.json", {{"keys", 3}});
   EXPECT_THAT(std::string(Start(At("none.json")).message()), HasSubstr("none.json is not a JSON Web Key Set"));
   EXPECT_THAT(std::string(Start("http://id.example.org/keys").message()), HasSubstr("use https://"));

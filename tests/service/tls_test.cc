@@ -117,7 +117,7 @@ TEST_F(Tls, BadFilesAreNamedWithTheirFlag) {
     const char* words;
   } cases[] = {{{"", key, ""}, "--tls-cert: required with"},
                {{good, "", ""}, "--tls-key: required with"},
-               {{"/nowhere", key, ""}, "--tls-cert: there is no file /nowhere"},
+               {{"/nowhere", key, ""}, "--tls-cert: no such file: /nowhere"},
                {{key, key, ""}, "--tls-cert"},
                {{good, certificates_.Key("another"), ""}, "is not the private key of the certificate"},
                {{good, key, key}, "--tls-client-ca"}};

@@ -96,7 +96,7 @@ TEST(BasisOverThePublisher, ComesOnceTheViewerHasTheShapes) {
   const auto model = CompileText(kTriangle);
   FakeClock clock;
   Publisher publisher(model, clock, 4);
-  const auto viewer = publisher.Join({.form = {.codec = v1::CODEC_BASIS}, .watch_id = "page"}, [] {});
+  const auto viewer = publisher.Join({.encoding = {.codec = v1::CODEC_BASIS}, .watch_id = "page"}, [] {});
   ASSERT_TRUE(viewer.ok()) << viewer.status();
   std::int64_t sequence = 0;
   const auto next = [&](std::int64_t epoch) {

@@ -1,5 +1,5 @@
 // What holds for every codec, on frames of simulations as they are: the bound, and that no bytes do harm.
-#include "server/stream/codec.h"
+#include "server/stream/codecs/codec.h"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +8,7 @@
 #include <limits>
 #include <random>
 
+#include "server/mechanics/skinning/body_points.h"
 #include "server/mechanics/step/step.h"
 #include "server/session/models.h"
 #include "server/stream/basis.h"

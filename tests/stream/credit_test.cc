@@ -22,7 +22,7 @@ struct Watched {
 };
 
 // A frame of 13 kB at 0.1 mm, and a quarter less for each rung above.
-double FrameBytes(int rung) { return 13e3 * std::pow(0.75, rung - kDefaultRung); }
+double FrameBytes(int bound_level) { return 13e3 * std::pow(0.75, bound_level - kDefaultBoundLevel); }
 
 Watched Watch(Credit& credit, const Line& line, int seconds) {
   struct Frame {
@@ -48,29 +48,29 @@ Watched Watch(Credit& credit, const Line& line, int seconds) {
     }
     if (waiting == 0 || !credit.MaySend()) continue;
     credit.Sent(waiting, now);
-    free = std::max(free, now) + absl::Seconds(FrameBytes(credit.rung()) / line.bytes_per_second);
+    free = std::max(free, now) + absl::Seconds(FrameBytes(credit.bound_level()) / line.bytes_per_second);
     underway.push_back({waiting, now, free + line.delay});
     waiting = 0;
-    watched.coarsest = std::max(watched.coarsest, credit.rung());
+    watched.coarsest = std::max(watched.coarsest, credit.bound_level());
   }
   watched.frames_per_second = came / 5.0;
   return watched;
 }
 
-Credit Browser() { return Credit({.window = 6, .rung = kDefaultRung, .may_coarsen = true}); }
+Credit Browser() { return Credit({.window = 6, .bound_level = kDefaultBoundLevel, .may_coarsen = true}); }
 
 TEST(Credit, AWideLineTakesEverythingAsItIs) {
   Credit credit = Browser();
   const Watched watched = Watch(credit, {.bytes_per_second = 100e6, .delay = absl::Milliseconds(2)}, 20);
   EXPECT_GT(watched.frames_per_second, 57);
-  EXPECT_EQ(watched.coarsest, kDefaultRung);
+  EXPECT_EQ(watched.coarsest, kDefaultBoundLevel);
 }
 
 TEST(Credit, ALongLineKeepsItsFrames) {
   Credit credit = Browser();
   const Watched watched = Watch(credit, {.bytes_per_second = 100e6, .delay = absl::Milliseconds(90)}, 20);
   EXPECT_GT(watched.frames_per_second, 50);
-  EXPECT_EQ(watched.coarsest, kDefaultRung);
+  EXPECT_EQ(watched.coarsest, kDefaultBoundLevel);
 }
 
 TEST(Credit, AThinLineGetsFewerFramesAndNoOldOnes) {
@@ -78,34 +78,34 @@ TEST(Credit, AThinLineGetsFewerFramesAndNoOldOnes) {
   const Watched watched = Watch(credit, {.bytes_per_second = 500e3, .delay = absl::Milliseconds(10)}, 30);
   EXPECT_GT(watched.frames_per_second, 30);
   EXPECT_LT(watched.oldest, absl::Milliseconds(300));
-  EXPECT_EQ(watched.coarsest, kDefaultRung) << "frames are given up before precision";
+  EXPECT_EQ(watched.coarsest, kDefaultBoundLevel) << "frames are given up before precision";
 }
 
 TEST(Credit, AVeryThinLineGetsCoarserFramesToo) {
   Credit credit = Browser();
   const Watched watched = Watch(credit, {.bytes_per_second = 60e3, .delay = absl::Milliseconds(10)}, 40);
-  EXPECT_GT(watched.coarsest, kDefaultRung);
-  EXPECT_LE(watched.coarsest, kCoarsestRung);
+  EXPECT_GT(watched.coarsest, kDefaultBoundLevel);
+  EXPECT_LE(watched.coarsest, kCoarsestBoundLevel);
   EXPECT_LT(watched.oldest, absl::Milliseconds(500));
   EXPECT_GT(watched.frames_per_second, 8);
 }
 
 TEST(Credit, ABoundThatWasAskedForStays) {
-  Credit credit({.window = 6, .rung = kDefaultRung, .may_coarsen = false});
-  EXPECT_EQ(Watch(credit, {.bytes_per_second = 60e3}, 40).coarsest, kDefaultRung);
+  Credit credit({.window = 6, .bound_level = kDefaultBoundLevel, .may_coarsen = false});
+  EXPECT_EQ(Watch(credit, {.bytes_per_second = 60e3}, 40).coarsest, kDefaultBoundLevel);
 }
 
 TEST(Credit, ALineThatWidensGetsItsPrecisionBack) {
   Credit credit = Browser();
   Watch(credit, {.bytes_per_second = 60e3}, 40);
-  ASSERT_GT(credit.rung(), kDefaultRung);
+  ASSERT_GT(credit.bound_level(), kDefaultBoundLevel);
   Credit* const same = &credit;
   for (std::int64_t sequence = 1'000'000, i = 0; i < 600 * 60; ++i, ++sequence) {
     const absl::Time now = absl::UnixEpoch() + absl::Seconds(100) + i * absl::Milliseconds(17);
     same->Acknowledged(sequence - 1, now);
     same->Sent(sequence, now);
   }
-  EXPECT_EQ(credit.rung(), kDefaultRung);
+  EXPECT_EQ(credit.bound_level(), kDefaultBoundLevel);
 }
 
 TEST(Credit, NothingGoesPastTheWindowUntilItIsAcknowledged) {
@@ -122,11 +122,11 @@ TEST(Credit, NothingGoesPastTheWindowUntilItIsAcknowledged) {
 }
 
 TEST(FrameEncoding, RungsAreOneTwoAndFive) {
-  EXPECT_EQ(RungWithin(0.1), kDefaultRung);
-  EXPECT_EQ(RungWithin(1), kCoarsestRung);
-  EXPECT_EQ(RungWithin(0.001), 0);
-  EXPECT_DOUBLE_EQ(RungMillimetres(RungWithin(0.3)), 0.2);
-  EXPECT_DOUBLE_EQ(RungMillimetres(RungWithin(10)), 10);
+  EXPECT_EQ(BoundLevelWithin(0.1), kDefaultBoundLevel);
+  EXPECT_EQ(BoundLevelWithin(1), kCoarsestBoundLevel);
+  EXPECT_EQ(BoundLevelWithin(0.001), 0);
+  EXPECT_DOUBLE_EQ(BoundMillimetres(BoundLevelWithin(0.3)), 0.2);
+  EXPECT_DOUBLE_EQ(BoundMillimetres(BoundLevelWithin(10)), 10);
 }
 
 }  // namespace

@@ -138,7 +138,7 @@ TEST(Viewer, ChangesOfTheSessionAllComeAndProgressReplacesItself) {
   EXPECT_EQ(viewer.Take(absl::Now()), progress);
   EXPECT_EQ(viewer.Take(absl::Now()), paused);
   EXPECT_EQ(viewer.Take(absl::Now()), nullptr);
-  for (std::size_t i = 0; i <= kMostNews; ++i) {
+  for (std::size_t i = 0; i <= kMaxUpdates; ++i) {
     EXPECT_FALSE(viewer.ended().has_value());
     viewer.PutSession({.revision = static_cast<std::int64_t>(3 + i), .bytes = paused});
   }
@@ -163,7 +163,8 @@ TEST(Viewer, TakesNoMoreFramesThanItsWindowUntilItAcknowledges) {
 
 TEST_F(PublisherTest, EachFormIsEncodedOnceAndHoldsWhatWasAskedFor) {
   const FrameEncoding predicted{.codec = v1::CODEC_PREDICTED}, nothing{.chosen = true};
-  const auto raw = Join(), a = Join({.form = predicted}), b = Join({.form = predicted}), none = Join({.form = nothing});
+  const auto raw = Join(), a = Join({.encoding = predicted}), b = Join({.encoding = predicted}),
+             none = Join({.encoding = nothing});
   Offer(1);
   const Bytes frame = NextFrame(*a);
   EXPECT_EQ(NextFrame(*b), frame);
@@ -175,7 +176,8 @@ TEST_F(PublisherTest, EachFormIsEncodedOnceAndHoldsWhatWasAskedFor) {
 }
 
 TEST_F(PublisherTest, NothingIsEncodedForThoseWhoMayNotTakeItAndTheNewestComesOnceTheyMay) {
-  const auto full = Join({.form = {.codec = v1::CODEC_PREDICTED}, .max_unacked = 1, .watch_id = "full"}), raw = Join();
+  const auto full = Join({.encoding = {.codec = v1::CODEC_PREDICTED}, .max_unacked = 1, .watch_id = "full"}),
+             raw = Join();
   for (int sequence = 1; sequence <= 5; ++sequence) {
     Offer(sequence);
     NextFrame(*raw);
@@ -189,8 +191,9 @@ TEST_F(PublisherTest, NothingIsEncodedForThoseWhoMayNotTakeItAndTheNewestComesOn
 }
 
 TEST_F(PublisherTest, WhatOneMayTakeIsThereForAllOfItsForm) {
-  const FrameEncoding form{.codec = v1::CODEC_PREDICTED};
-  const auto full = Join({.form = form, .max_unacked = 1, .watch_id = "full"}), quick = Join({.form = form});
+  const FrameEncoding encoding{.codec = v1::CODEC_PREDICTED};
+  const auto full = Join({.encoding = encoding, .max_unacked = 1, .watch_id = "full"}),
+             quick = Join({.encoding = encoding});
   for (int sequence = 1; sequence <= 3; ++sequence) {
     Offer(sequence);
     NextFrame(*quick);

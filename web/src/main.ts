@@ -15,13 +15,13 @@ import { systemClock } from "./timing/clock";
 let leaving = false;
 window.addEventListener("pagehide", () => (leaving = true), { capture: true });
 window.addEventListener("pageshow", () => (leaving = false));
-const carry: typeof fetch = (input, init) => fetch(input, { ...init, keepalive: leaving });
+const fetchKeepingAlive: typeof fetch = (input, init) => fetch(input, { ...init, keepalive: leaving });
 
 // The page and the services have the same origin.
 const identity = new Identity(localStorage);
-const access = new Credentials(localStorage);
-const interceptors = [identityInterceptor(identity), credentialsInterceptor(access), routingInterceptor()];
-const api = createApi(createGrpcWebTransport({ baseUrl: location.origin, fetch: carry, interceptors }));
+const credentials = new Credentials(localStorage);
+const interceptors = [identityInterceptor(identity), credentialsInterceptor(credentials), routingInterceptor()];
+const api = createApi(createGrpcWebTransport({ baseUrl: location.origin, fetch: fetchKeepingAlive, interceptors }));
 
 function address(sessionId: string): string {
   return `?${new URLSearchParams({ session: sessionId })}`;
@@ -33,25 +33,25 @@ document.body.append(chooser.element);
 const loading = elementById("loading");
 const start = make("button", { type: "button", onclick: () => void chooser.show() }, "Start a session");
 
-function say(error?: unknown): void {
+function showWaiting(error?: unknown): void {
   if (error === undefined) loading.replaceChildren("The server has no session yet. ", start);
   else loading.replaceChildren(`No answer from the server (${errorText(error)}). Trying again…`);
 }
 
 const here = new URL(location.href);
-storeJoinLink(here, access);
+storeJoinLink(here, credentials);
 
 /** Returns the session of the address, or runs the simulation that the address describes. */
-async function find(): Promise<string> {
+async function findSession(): Promise<string> {
   const recipe = recipeOf(here);
-  if (recipe === undefined) return chooseSession(here, api, systemClock, say);
+  if (recipe === undefined) return chooseSession(here, api, systemClock, showWaiting);
   return rerun(api, recipe, (part) => {
     loading.replaceChildren(`Running ${recipe.scene} again: ${Math.round(100 * part)} %`);
   });
 }
 
-await signIn(api, access, loading);
-const sessionId = await find().catch((error: unknown) => {
+await signIn(api, credentials, loading);
+const sessionId = await findSession().catch((error: unknown) => {
   loading.replaceChildren(`The simulation of this link cannot be repeated: ${errorText(error)}. `, start);
   throw error;
 });

@@ -24,25 +24,22 @@ Triangles Chosen(const Mesh& mesh, const Selection& selection, const v1::Surface
   return mesh.triangles(Eigen::all, chosen);
 }
 
-// The points in axes of which the third is the plane's normal; valid until this thread turns others.
-ConstPoints Turned(const Eigen::Matrix3d& axes, const ConstPoints& y, Points& memory) {
+struct TurnedPoints {
+  Points x, v;
+};
+struct Areas {
+  Points a;
+};
+
+// Returns the points in the coordinates of `axes`. They are valid until `memory` is used again.
+ConstPoints Turn(const Eigen::Matrix3d& axes, const ConstPoints& y, Points& memory) {
   if (axes.isIdentity(0)) return y;
   if (memory.cols() < y.cols()) memory.resize(3, y.cols());
   memory.leftCols(y.cols()).noalias() = axes * y;
   return memory.leftCols(y.cols());
 }
 
-ConstPoints TurnedPositions(const Eigen::Matrix3d& axes, const ConstPoints& x) {
-  thread_local Points memory;
-  return Turned(axes, x, memory);
-}
-
-BodyPoints::Moving TurnedMoving(const Eigen::Matrix3d& axes, const BodyPoints::Moving& body) {
-  thread_local Points memory;
-  return {TurnedPositions(axes, body.x), Turned(axes, body.v, memory)};
-}
-
-// Right-handed.
+// Returns right-handed axes as rows; the third is the normal.
 Eigen::Matrix3d AxesOf(const Vector& normal) {
   if (normal == Vector::UnitZ()) return Eigen::Matrix3d::Identity();
   const Vector p = normal.unitOrthogonal();
@@ -74,11 +71,11 @@ absl::Status Chamber::Add(const v1::SurfacePatch& scene, double side, std::strin
     if (part.triangles.cols() == 0) continue;
     part.packets = PackTriangles(part.triangles);
     const bool whole = part.triangles.cols() == builder.model.bodies[b].mesh.triangles.cols();
-    part.border = whole ? builder.BorderOf(b) : BorderVertices(part.triangles);
+    part.border = whole ? builder.BorderOf(b) : BoundaryVertices(part.triangles);
     parts_.push_back(std::move(part));
   }
   if (triangles() > before) return absl::OkStatus();
-  return FieldError(path, "chooses no triangle: name bodies with a surface, and widen region and facing");
+  return FieldError(path, "chooses no triangle: name bodies with a surface, and extend region and facing");
 }
 
 absl::Status Chamber::SetPlane(const v1::Plane* scene, std::string_view path) {
@@ -106,8 +103,9 @@ absl::Status Chamber::SetPlane(const v1::Plane* scene, std::string_view path) {
 
 double Chamber::VolumeAtRest() const {
   double sum = 0;
+  Points memory;
   for (const Part& part : parts_) {
-    sum += part.side * SumTriangles(part.packets, height_, TurnedPositions(axes_, part.points.rest()).data()).volume;
+    sum += part.side * SumTriangles(part.packets, height_, Turn(axes_, part.points.rest(), memory).data()).volume;
   }
   return sum;
 }
@@ -115,14 +113,16 @@ double Chamber::VolumeAtRest() const {
 ChamberReading Chamber::Sum(ChamberReadings::What what, const EvalContext& at) const {
   const ChamberReading* const found = at.readings == nullptr ? nullptr : at.readings->Find(key_, what);
   if (found != nullptr) return *found;
+  TurnedPoints& turned = at.scratch.Get<TurnedPoints>();
   ChamberReading sum;
   for (const Part& part : parts_) {
     ChamberReading reading;
     if (what == ChamberReadings::What::kVolume) {
-      reading = SumTriangles(part.packets, height_, TurnedPositions(axes_, part.points.Positions(at)).data());
+      reading = SumTriangles(part.packets, height_, Turn(axes_, part.points.Positions(at), turned.x).data());
     } else {
-      const BodyPoints::Moving body = TurnedMoving(axes_, part.points.Locate(at));
-      reading = SumTriangles(part.packets, height_, body.x.data(), body.v.data());
+      const BodyPoints::Moving body = part.points.Locate(at);
+      const ConstPoints x = Turn(axes_, body.x, turned.x), v = Turn(axes_, body.v, turned.v);
+      reading = SumTriangles(part.packets, height_, x.data(), v.data());
     }
     sum.volume += part.side * reading.volume;
     sum.flow += part.side * reading.flow;
@@ -148,6 +148,13 @@ void Chamber::AddAreas(const EvalContext& at, double scale, MutablePoints f) con
       f.col(k) += third;
     }
   }
+}
+
+const Points& Chamber::AreaVectors(const EvalContext& at) const {
+  Points& a = at.scratch.Get<Areas>().a;
+  a.setZero(3, at.x.cols());
+  AddAreas(at, 1, a);
+  return a;
 }
 
 int Chamber::triangles() const {

@@ -19,16 +19,6 @@
 #include "server/mechanics/forces/solid.h"
 #include "server/mechanics/forces/springs.h"
 #include "server/mechanics/forces/target_spring.h"
-#include "server/mechanics/integrators/bdf2.h"
-#include "server/mechanics/integrators/explicit_euler.h"
-#include "server/mechanics/integrators/linear_implicit_euler.h"
-#include "server/mechanics/integrators/projective_dynamics.h"
-#include "server/mechanics/integrators/rk4.h"
-#include "server/mechanics/integrators/semi_implicit_euler.h"
-#include "server/mechanics/integrators/static_equilibrium.h"
-#include "server/mechanics/integrators/thesis_euler.h"
-#include "server/mechanics/integrators/tr_bdf2.h"
-#include "server/mechanics/integrators/velocity_verlet.h"
 #include "server/mechanics/measures/energy.h"
 #include "server/mechanics/measures/force_output.h"
 #include "server/mechanics/measures/highest.h"
@@ -36,7 +26,7 @@
 #include "server/mechanics/motions/oscillation.h"
 #include "server/mechanics/motions/ribs.h"
 #include "server/mechanics/motions/sternum.h"
-#include "server/mechanics/skinning/make_skins.h"
+#include "server/mechanics/skinning/add_skins.h"
 
 namespace phrenic {
 namespace {
@@ -79,8 +69,8 @@ absl::StatusOr<std::unique_ptr<Force>> MakeForce(const v1::Force& scene, std::st
       return Bending::Make(scene.bending(), scene.name(), In(path, "bending"), builder);
     case v1::Force::kCrossLayer:
       return MakeCrossLayer(scene.cross_layer(), scene.name(), In(path, "cross_layer"), builder);
-    case v1::Force::kDrag:
-      return TargetSpring::Make(scene.drag(), scene.name(), In(path, "drag"), builder);
+    case v1::Force::kTargetSpring:
+      return TargetSpring::Make(scene.target_spring(), scene.name(), In(path, "target_spring"), builder);
     case v1::Force::kPointLoad:
       return PointLoad::Make(scene.point_load(), scene.name(), In(path, "point_load"), builder);
     case v1::Force::kPressure:
@@ -98,51 +88,12 @@ absl::StatusOr<std::unique_ptr<Constraint>> MakeConstraint(const v1::Constraint&
   switch (scene.kind_case()) {
     case v1::Constraint::kRigidLinks:
       return RigidLinks::Make(scene.rigid_links(), scene.name(), In(path, "rigid_links"), builder);
-    case v1::Constraint::kLimits:
-      return Limits::Make(scene.limits(), scene.name(), In(path, "limits"), builder);
+    case v1::Constraint::kLengthLimits:
+      return Limits::Make(scene.length_limits(), scene.name(), In(path, "length_limits"), builder);
     case v1::Constraint::KIND_NOT_SET:
       break;
   }
   return NoKind(path);
-}
-
-namespace {
-
-template <typename Kind>
-const Integrator& Only() {
-  static const Kind only;
-  return only;
-}
-
-}  // namespace
-
-const Integrator& FindIntegrator(v1::Integrator kind) {
-  switch (kind) {
-    case v1::INTEGRATOR_THESIS:
-      return Only<ThesisEuler>();
-    case v1::INTEGRATOR_EXPLICIT_EULER:
-      return Only<ExplicitEuler>();
-    case v1::INTEGRATOR_VELOCITY_VERLET:
-      return Only<VelocityVerlet>();
-    case v1::INTEGRATOR_RUNGE_KUTTA_4:
-      return Only<Rk4>();
-    case v1::INTEGRATOR_LINEAR_IMPLICIT_EULER:
-      return Only<LinearImplicitEuler>();
-    case v1::INTEGRATOR_BDF2:
-      return Only<Bdf2>();
-    case v1::INTEGRATOR_TR_BDF2:
-      return Only<TrBdf2>();
-    case v1::INTEGRATOR_PROJECTIVE_DYNAMICS:
-      return Only<ProjectiveDynamics>();
-    case v1::INTEGRATOR_STATIC:
-      return Only<StaticEquilibrium>();
-    case v1::INTEGRATOR_SEMI_IMPLICIT_EULER:
-    case v1::INTEGRATOR_UNSPECIFIED:
-    case v1::Integrator_INT_MIN_SENTINEL_DO_NOT_USE_:
-    case v1::Integrator_INT_MAX_SENTINEL_DO_NOT_USE_:
-      break;
-  }
-  return Only<SemiImplicitEuler>();
 }
 
 absl::Status AddMotion(const v1::Motion& scene, std::string_view path, ModelBuilder& builder) {
@@ -153,8 +104,8 @@ absl::Status AddMotion(const v1::Motion& scene, std::string_view path, ModelBuil
       return Add(Sternum::Make(scene.sternum(), scene.name(), In(path, "sternum"), builder), builder);
     case v1::Motion::kOscillation:
       return Add(Oscillation::Make(scene.oscillation(), scene.name(), In(path, "oscillation"), builder), builder);
-    case v1::Motion::kRide:
-      return AddSkins(scene.ride(), scene.name(), In(path, "ride"), builder);
+    case v1::Motion::kSkin:
+      return AddSkins(scene.skin(), scene.name(), In(path, "skin"), builder);
     case v1::Motion::KIND_NOT_SET:
       break;
   }

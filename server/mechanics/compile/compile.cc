@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <span>
+#include <set>
 #include <string>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
@@ -13,38 +13,32 @@
 #include "server/mechanics/compile/masses.h"
 #include "server/mechanics/compile/presets.h"
 #include "server/mechanics/compile/scene_hash.h"
-#include "server/mechanics/stability/spectrum.h"
-#include "server/mechanics/step/step_forces.h"
+#include "server/mechanics/integrators/catalogue.h"
+#include "server/mechanics/stability/largest_step.h"
+#include "server/mechanics/step/step_plan.h"
 #include "server/schema/schema.h"
 
 namespace phrenic {
 namespace {
 
-constexpr double kSafety = 0.95;           // of the Lanczos estimate
-constexpr double kChosen = 0.9;            // of the largest stable step
-constexpr double kLongestStep = 1.0 / 60;  // [s]; one step a frame at most
-
-// Tells the report how long each stage takes, and all of them.
+// Adds the duration of each stage, and their sum, to a report.
 class StageClock {
  public:
-  explicit StageClock(v1::CompileReport& report) : report_(report) {}
-
-  void End(const char* stage) {
+  void End(const char* stage, v1::CompileReport& report) {
     const auto now = std::chrono::steady_clock::now();
     const double seconds = std::chrono::duration<double>(now - start_).count();
-    v1::StageTime& row = *report_.add_stages();
+    v1::StageTime& row = *report.add_stages();
     row.set_name(stage);
     row.set_seconds(seconds);
-    report_.set_compile_seconds(report_.compile_seconds() + seconds);
+    report.set_compile_seconds(report.compile_seconds() + seconds);
     start_ = now;
   }
 
  private:
-  v1::CompileReport& report_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-// "action_line": the name of the field that is set of the kinds there are.
+// Returns the name of the kind, such as "action_line": the field of the oneof that is set.
 std::string KindOf(const v1::Force& force) {
   return v1::Force::descriptor()->FindFieldByNumber(force.kind_case())->name();
 }
@@ -61,7 +55,6 @@ absl::Status AddElements(ModelBuilder& builder) {
     builder.model.forces.push_back(*std::move(force));
     builder.model.force_kinds.push_back(KindOf(scene.forces(i)));
   }
-  ChooseStepForces(builder.model);
   if (absl::Status s = SpreadMassByStiffness(builder.model); !s.ok()) return s;
   for (int i = 0; i < scene.constraints_size(); ++i) {
     auto constraint = MakeConstraint(scene.constraints(i), absl::StrCat("constraints[", i, "]"), builder);
@@ -74,12 +67,27 @@ absl::Status AddElements(ModelBuilder& builder) {
   return absl::OkStatus();
 }
 
-// What the scene has no need of, beside what the elements themselves said.
+absl::Status AddMeasures(ModelBuilder& builder) {
+  std::set<std::string> names;
+  for (int i = 0; i < builder.model.scene.measures_size(); ++i) {
+    const v1::Measure& scene = builder.model.scene.measures(i);
+    const std::string path = absl::StrCat("measures[", i, "]");
+    if (!names.insert(scene.name()).second) {
+      return FieldError(path + ".name", absl::StrCat("there are two measures named \"", scene.name(), "\""));
+    }
+    auto measure = MakeMeasure(scene, path, builder);
+    if (!measure.ok()) return measure.status();
+    builder.model.measures.push_back(*std::move(measure));
+  }
+  return absl::OkStatus();
+}
+
+// Reports the parts of the simulation that the scene does not need. Elements have reported themselves before.
 void ReportUnused(ModelBuilder& builder) {
   const Model& model = builder.model;
   if (model.rest.cols() == 0) builder.ReportLeftOut("integration", "no body is deformable");
   if (model.constraints.empty()) builder.ReportLeftOut("constraints", "the scene has no rigid links");
-  if (model.motions.empty()) builder.ReportLeftOut("motions", "nothing in the scene moves by a law of its own");
+  if (model.motions.empty()) builder.ReportLeftOut("motions", "the scene has no prescribed motion");
   std::int64_t still = 0, vertices = 0;
   for (const BodyModel& body : model.bodies) {
     if (body.first_vertex >= 0 || body.pose >= 0 || body.skin >= 0) continue;
@@ -92,7 +100,7 @@ void ReportUnused(ModelBuilder& builder) {
   }
 }
 
-// Live parameters that have nothing to act on; viewers hide them.
+// Reports the live parameters without effect in this scene, which viewers hide.
 void ReportIdleParameters(const v1::Scene& scene, v1::CompileReport& report) {
   const bool ribs = std::any_of(scene.motions().begin(), scene.motions().end(),
                                 [](const v1::Motion& motion) { return motion.has_ribs(); });
@@ -115,59 +123,10 @@ void ReportIdleParameters(const v1::Scene& scene, v1::CompileReport& report) {
   if (scene.constraints().empty()) report.add_idle_parameters("apply_links");
 }
 
-// The stiffness that forces put on one vertex.
-class VertexStiffness final : public StiffnessSink {
- public:
-  explicit VertexStiffness(int vertex) : vertex_(vertex) {}
-  void Add(int i, int j, const Eigen::Matrix3d& block) override {
-    if (i == vertex_ && j == vertex_) sum_ += block;
-  }
-  void AddSprings(std::span<const SpringStiffness> springs) override {
-    for (const SpringStiffness& spring : springs) {
-      if (spring.a == vertex_ || spring.b == vertex_) sum_ += spring.Block();
-    }
-  }
-  void AddOuter(double scale, const Points& g) override { sum_ += scale * g.col(vertex_) * g.col(vertex_).transpose(); }
-  double Size() const { return sum_.norm(); }
-
- private:
-  const int vertex_;
-  Eigen::Matrix3d sum_ = Eigen::Matrix3d::Zero();
-};
-
-std::string StiffestElementAt(const Model& model, const EvalContext& at, int vertex) {
-  std::string name = "nothing";
-  double largest = 0;
-  for (const auto& force : model.forces) {
-    VertexStiffness stiffness(vertex);
-    force->AddStiffness(at, stiffness);
-    force->AddLatentStiffness(at, stiffness);
-    if (stiffness.Size() <= largest) continue;
-    largest = stiffness.Size();
-    name = force->name();
-  }
-  return name;
-}
-
-std::string Verdict(const Integrator& integrator, const Spectrum& spectrum, double limit) {
-  if (limit == 0) {
-    return absl::StrFormat("; %s is stable at no step here: least damping %.3g 1/s, lightest vertex %.3g kg",
-                           std::string(integrator.name()), spectrum.least_damping_rate, spectrum.least_mass);
-  }
-  if (std::isinf(limit)) return absl::StrCat("; ", std::string(integrator.name()), " is stable at any step");
-  return "";
-}
-
 void ResolveParameters(Model& model) {
   model.parameters = model.scene.parameters();
   schema::FillDefaults(&model.parameters);
-  if (!model.parameters.has_time_step()) model.parameters.set_time_step(kLongestStep);  // until the limit is known
-}
-
-// Three significant digits, downwards, and just what those digits read as: people see and type it.
-double RoundDown(double value) {
-  const double unit = std::pow(10, std::floor(std::log10(value)) - 2);
-  return std::stod(absl::StrFormat("%.2e", std::floor(value / unit * (1 + 1e-12)) * unit));
+  if (!model.parameters.has_time_step()) model.parameters.set_time_step(kLongestStep);  // until ChooseStep
 }
 
 void ChooseStep(Model& model) {
@@ -180,61 +139,35 @@ void ChooseStep(Model& model) {
 }  // namespace
 
 absl::StatusOr<std::shared_ptr<const Model>> Compile(const v1::Scene& scene, const MeshSource& source) {
-  if (absl::Status status = schema::Validate(scene); !status.ok()) return status;
   ModelBuilder builder;
   Model& model = builder.model;
   model.scene = scene;
+  if (absl::Status status = schema::Resolve(&model.scene); !status.ok()) return status;
   schema::FillDefaults(&model.scene);
-  // What these leave open has a meaning of its own.
+  // Unset fields of these have a meaning, so that they must not be filled with defaults.
   model.scene.mutable_parameters()->CopyFrom(scene.parameters());
   model.scene.mutable_presets()->CopyFrom(scene.presets());
   ResolveParameters(model);
   CompletePresets(model.scene);
-  StageClock clock(model.report);
+  StageClock clock;
   if (absl::Status status = AddBodies(source, builder); !status.ok()) return status;
-  clock.End("bodies");
+  clock.End("bodies", model.report);
   if (absl::Status status = AddElements(builder); !status.ok()) return status;
-  clock.End("elements");
+  clock.End("elements", model.report);
   if (absl::Status status = AddProbes(builder); !status.ok()) return status;
   if (absl::Status status = AddMeasures(builder); !status.ok()) return status;
-  clock.End("measures");
+  clock.End("measures", model.report);
   ReportUnused(builder);
   ReportIdleParameters(model.scene, model.report);
   model.report.set_scene(scene.name());
   model.report.set_scene_hash(SceneHash(model));
-  clock.End("hash");
+  clock.End("hash", model.report);
   ChooseStep(model);
-  clock.End("largest step");
-  return std::make_shared<const Model>(std::move(model));
-}
-
-double ChosenStep(const v1::StableStep& stable) {
-  // Where no step is stable: a small one, so that it can be watched going wrong.
-  const double limit = stable.seconds() > 0 ? stable.seconds() : 0.1 / stable.omega_max();
-  return std::isinf(limit) ? kLongestStep : std::min(RoundDown(kChosen * limit), kLongestStep);
-}
-
-v1::StableStep LargestStableStep(const Model& model, const v1::Parameters& parameters) {
-  v1::StableStep report;
-  const State state = model.InitialState();
-  const FastestMode fastest = FindFastestMode(model, parameters, state);
-  const Integrator& integrator = FindIntegrator(parameters.integrator());
-  const double limit = kSafety * integrator.MaxStep(fastest.spectrum);
-  report.set_omega_max(fastest.spectrum.omega_max);
-  const double largest_step =
-      v1::Parameters::descriptor()->FindFieldByName("time_step")->options().GetExtension(v1::quantity).maximum();
-  report.set_seconds(std::min(limit, largest_step));
-  if (fastest.vertex < 0) {
-    report.set_reason(limit > 0 ? "nothing in the scene vibrates: any step is stable"
-                                : "nothing in the scene vibrates" + Verdict(integrator, fastest.spectrum, limit));
-    return report;
-  }
-  const BodyModel& body = model.BodyOf(fastest.vertex);
-  const std::string stiffest = StiffestElementAt(model, MakeEvalContext(model, parameters, state), fastest.vertex);
-  report.set_reason(absl::StrFormat("fastest vibration %.3g rad/s at vertex %d of %s, by %s; damping %.3g 1/s%s",
-                                    fastest.spectrum.omega_max, fastest.vertex - body.first_vertex, body.name, stiffest,
-                                    fastest.spectrum.damping_rate, Verdict(integrator, fastest.spectrum, limit)));
-  return report;
+  clock.End("largest step", model.report);
+  const auto compiled = std::make_shared<Model>(std::move(model));
+  compiled->plan = MakeStepPlan(*compiled, AllIntegrators());
+  clock.End("step plan", compiled->report);
+  return compiled;
 }
 
 }  // namespace phrenic

@@ -8,18 +8,18 @@
 namespace phrenic {
 namespace {
 
-constexpr double kTolerance = 1e-10;   // of the length
-constexpr double kWorthAnother = 0.5;  // an iteration that leaves more of the error than this is the last
-constexpr int kFactorisations = 20;    // along the directions of the moment, where those before do not get there
-constexpr double kLargestMove = 0.5;   // of a link's length in one go
-constexpr int kSweeps = 200;
-constexpr int kSwitches = 30;      // rounds of limits that take hold or let go
-constexpr double kAtRest = 1e-12;  // of the fastest rate: a limit that is left slower needs no stopping
-constexpr int kRefinements = 3;    // of velocities; each gains about ten digits where no link is nearly redundant
+constexpr double kTolerance = 1e-10;   // relative to the length
+constexpr double kWorthAnother = 0.5;  // the chord iterations end if the error is not reduced to this fraction
+constexpr int kFactorisations = 20;    // at most, with current directions, after the chord iterations
+constexpr double kLargestMove = 0.5;   // largest change of a length per iteration, relative to the length
+constexpr int kSweeps = 200;           // Gauss-Seidel, at most
+constexpr int kSwitches = 30;          // changes of the active set, at most
+constexpr double kAtRest = 1e-12;      // relative to the largest rate: slower limits count as at rest
+constexpr int kRefinements = 3;        // of velocities; each gains about ten digits unless links are nearly redundant
 
-using Place = std::pair<int, int>;
+using Entry = std::pair<int, int>;  // row and column of the matrix
 
-// The links at each vertex that moves, by their numbers; a link's number is negative (~i) where it ends there.
+// Returns the links at each movable vertex: index i of a link that starts there, ~i (negative) of one that ends there.
 std::map<int, std::vector<int>> LinksAtVertices(const std::vector<Link>& links) {
   std::map<int, std::vector<int>> at;
   for (int i = 0; i < static_cast<int>(links.size()); ++i) {
@@ -29,30 +29,32 @@ std::map<int, std::vector<int>> LinksAtVertices(const std::vector<Link>& links) 
   return at;
 }
 
-int Number(int signed_number) { return signed_number < 0 ? ~signed_number : signed_number; }
+int Index(int signed_index) { return signed_index < 0 ? ~signed_index : signed_index; }
 
-std::vector<Place> PlacesBelow(const std::vector<Link>& links) {
-  std::vector<Place> places;
+// Returns the non-zero entries below the diagonal, sorted.
+std::vector<Entry> EntriesBelow(const std::vector<Link>& links) {
+  std::vector<Entry> entries;
   for (const auto& [vertex, there] : LinksAtVertices(links)) {
     for (const int a : there) {
       for (const int b : there) {
-        if (Number(a) > Number(b)) places.emplace_back(Number(a), Number(b));
+        if (Index(a) > Index(b)) entries.emplace_back(Index(a), Index(b));
       }
     }
   }
-  std::sort(places.begin(), places.end());
-  places.erase(std::unique(places.begin(), places.end()), places.end());
-  return places;
+  std::sort(entries.begin(), entries.end());
+  entries.erase(std::unique(entries.begin(), entries.end()), entries.end());
+  return entries;
 }
 
 }  // namespace
 
-struct LinkNetwork::Scratch {
-  Points directions;                     // unit; 0 of what is not active
-  Eigen::VectorXd diagonal;              // [1/kg]
-  Eigen::VectorXd pulls, taken, totals;  // [kg m], of velocities [kg m/s]; errors [m] and rates [m/s] before the solve
-  std::vector<double> values;            // [1/kg]
-  std::vector<bool> active;
+struct LinkNetwork::Memory {
+  Points directions;         // unit vectors; 0 if not active
+  Eigen::VectorXd diagonal;  // [1/kg]
+  Eigen::VectorXd multipliers, taken,
+      totals;                  // [kg m] or, of velocities, [kg m/s]; `multipliers` is [m] or [m/s] before the solve
+  std::vector<double> values;  // below the diagonal [1/kg]
+  std::vector<bool> active;    // equalities, and limits in the active set
   SparseLdlt::Factors factors;
 
   bool AnyActive(size_t links) const {
@@ -61,167 +63,168 @@ struct LinkNetwork::Scratch {
   }
 };
 
-LinkNetwork::Scratch& LinkNetwork::Fitted() const {
-  thread_local Scratch scratch;
+LinkNetwork::Memory& LinkNetwork::Fit(const Scratch& scratch) const {
+  auto& memory = scratch.Get<Memory>();
   const auto links = static_cast<Eigen::Index>(links_.size());
-  if (scratch.values.size() < values_) scratch.values.resize(values_);
-  if (scratch.pulls.size() >= links) return scratch;
-  scratch.directions.resize(3, links);
-  for (Eigen::VectorXd* vector : {&scratch.diagonal, &scratch.pulls, &scratch.taken, &scratch.totals}) {
+  if (memory.values.size() < values_) memory.values.resize(values_);
+  if (memory.multipliers.size() >= links) return memory;
+  memory.directions.resize(3, links);
+  for (Eigen::VectorXd* vector : {&memory.diagonal, &memory.multipliers, &memory.taken, &memory.totals}) {
     vector->resize(links);
   }
-  scratch.active.resize(links_.size());
-  return scratch;
+  memory.active.resize(links_.size());
+  return memory;
 }
 
 LinkNetwork::LinkNetwork(const std::vector<Link>& links) {
-  for (const int old : SparseLdlt::Order(static_cast<int>(links.size()), PlacesBelow(links))) {
+  for (const int old : SparseLdlt::Order(static_cast<int>(links.size()), EntriesBelow(links))) {
     links_.push_back(links[old]);
   }
   FindCouplings();
 }
 
 void LinkNetwork::FindCouplings() {
-  const std::vector<Place> places = PlacesBelow(links_);
+  const std::vector<Entry> entries = EntriesBelow(links_);
   for (const auto& [vertex, there] : LinksAtVertices(links_)) {
     for (const int a : there) {
       for (const int b : there) {
-        const Place place(Number(a), Number(b));
-        if (place.first <= place.second) continue;
-        const auto at = std::lower_bound(places.begin(), places.end(), place) - places.begin();
-        const Link& link = links_[place.first];
+        const Entry entry(Index(a), Index(b));
+        if (entry.first <= entry.second) continue;
+        const auto at = std::lower_bound(entries.begin(), entries.end(), entry) - entries.begin();
+        const Link& link = links_[entry.first];
         const double inverse = link.a == vertex ? link.inverse_a : link.inverse_b;
         const double sign = (a < 0) == (b < 0) ? 1 : -1;
-        couplings_.push_back({static_cast<int>(at), place.first, place.second, sign * inverse});
+        couplings_.push_back({static_cast<int>(at), entry.first, entry.second, sign * inverse});
       }
     }
   }
-  values_ = places.size();
-  matrix_ = SparseLdlt(static_cast<int>(links_.size()), places);
+  values_ = entries.size();
+  matrix_ = SparseLdlt(static_cast<int>(links_.size()), entries);
 }
 
-// Links that are not active have no direction and so no part in the matrix.
-void LinkNetwork::Factorise(const ConstPoints& x, Scratch& scratch) const {
+// Inactive links have direction 0 and hence no entries in the matrix.
+void LinkNetwork::Factorise(const ConstPoints& x, Memory& memory) const {
   for (size_t i = 0; i < links_.size(); ++i) {
     const auto column = static_cast<Eigen::Index>(i);
     const Eigen::Vector3d between = x.col(links_[i].b) - x.col(links_[i].a);
-    const double length = scratch.active[i] ? between.norm() : 0;
-    scratch.directions.col(column) = length > 0 ? Eigen::Vector3d(between / length) : Eigen::Vector3d::Zero();
-    scratch.diagonal[column] = length > 0 ? links_[i].inverse_a + links_[i].inverse_b : 0;
+    const double length = memory.active[i] ? between.norm() : 0;
+    memory.directions.col(column) = length > 0 ? Eigen::Vector3d(between / length) : Eigen::Vector3d::Zero();
+    memory.diagonal[column] = length > 0 ? links_[i].inverse_a + links_[i].inverse_b : 0;
   }
-  std::fill(scratch.values.begin(), scratch.values.begin() + static_cast<std::ptrdiff_t>(values_), 0.0);
+  std::fill(memory.values.begin(), memory.values.begin() + static_cast<std::ptrdiff_t>(values_), 0.0);
   for (const Coupling& c : couplings_) {
-    scratch.values[c.at] += c.factor * scratch.directions.col(c.i).dot(scratch.directions.col(c.j));
+    memory.values[c.at] += c.factor * memory.directions.col(c.i).dot(memory.directions.col(c.j));
   }
-  matrix_.Factorise(scratch.diagonal, scratch.values, scratch.factors);
+  matrix_.Factorise(memory.diagonal, memory.values, memory.factors);
 }
 
-double LinkNetwork::Errors(const State& state, Scratch& scratch) const {
+double LinkNetwork::Errors(const State& state, Memory& memory) const {
   double worst = 0;
   for (size_t i = 0; i < links_.size(); ++i) {
-    const double error = scratch.active[i] ? links_[i].RelativeError(state.x) : 0;
-    scratch.pulls[static_cast<Eigen::Index>(i)] = error * links_[i].length;
+    const double error = memory.active[i] ? links_[i].RelativeError(state.x) : 0;
+    memory.multipliers[static_cast<Eigen::Index>(i)] = error * links_[i].length;
     worst = std::max(worst, std::abs(error));
   }
   return worst;
 }
 
-double LinkNetwork::Rates(const State& state, Scratch& scratch) const {
+double LinkNetwork::Rates(const State& state, Memory& memory) const {
   double worst = 0;
   for (size_t i = 0; i < links_.size(); ++i) {
     const auto column = static_cast<Eigen::Index>(i);
     const Eigen::Vector3d relative = state.v.col(links_[i].b) - state.v.col(links_[i].a);
-    scratch.pulls[column] = scratch.directions.col(column).dot(relative);
-    worst = std::max(worst, std::abs(scratch.pulls[column]));
+    memory.multipliers[column] = memory.directions.col(column).dot(relative);
+    worst = std::max(worst, std::abs(memory.multipliers[column]));
   }
   return worst;
 }
 
-// What the pulls would move links by, over their lengths.
-double LinkNetwork::LargestMove(const Scratch& scratch) const {
+// Returns the largest change of a length that the multipliers would cause, relative to the length.
+double LinkNetwork::LargestMove(const Memory& memory) const {
   double largest = 0;
   for (size_t i = 0; i < links_.size(); ++i) {
-    const double pull = std::abs(scratch.pulls[static_cast<Eigen::Index>(i)]);
-    largest = std::max(largest, pull * (links_[i].inverse_a + links_[i].inverse_b) / links_[i].length);
+    const double multiplier = std::abs(memory.multipliers[static_cast<Eigen::Index>(i)]);
+    largest = std::max(largest, multiplier * (links_[i].inverse_a + links_[i].inverse_b) / links_[i].length);
   }
   return largest;
 }
 
-void LinkNetwork::PullAll(double sign, double dt, Scratch& scratch, State& state) const {
+void LinkNetwork::ApplyPositionImpulses(double sign, double dt, Memory& memory, State& state) const {
   for (size_t i = 0; i < links_.size(); ++i) {
     const auto column = static_cast<Eigen::Index>(i);
-    Pull(links_[i], sign * scratch.pulls[column] * scratch.directions.col(column), dt, state.x, state.v);
-    scratch.totals[column] += sign * scratch.pulls[column];
+    ApplyPositionImpulse(links_[i], sign * memory.multipliers[column] * memory.directions.col(column), dt, state.x,
+                         state.v);
+    memory.totals[column] += sign * memory.multipliers[column];
   }
 }
 
-void LinkNetwork::PushAll(Scratch& scratch, State& state) const {
+void LinkNetwork::ApplyVelocityImpulses(Memory& memory, State& state) const {
   for (size_t i = 0; i < links_.size(); ++i) {
     const auto column = static_cast<Eigen::Index>(i);
-    Push(links_[i], scratch.pulls[column] * scratch.directions.col(column), state);
-    scratch.totals[column] += scratch.pulls[column];
+    ApplyVelocityImpulse(links_[i], memory.multipliers[column] * memory.directions.col(column), state);
+    memory.totals[column] += memory.multipliers[column];
   }
 }
 
-// One step along the directions that are factorised, `error` the one before it. False where it made things worse, and
-// was taken back.
-bool LinkNetwork::Correct(double dt, Scratch& scratch, State& state, double& error) const {
-  matrix_.Solve(scratch.factors, scratch.pulls);
-  const double part = std::min(1.0, kLargestMove / LargestMove(scratch));
-  scratch.taken = scratch.pulls;
-  PullAll(part, dt, scratch, state);
+// One Newton iteration with the factorised matrix; updates `error`. Returns false, and undoes it, if the error did not
+// decrease.
+bool LinkNetwork::Correct(double dt, Memory& memory, State& state, double& error) const {
+  matrix_.Solve(memory.factors, memory.multipliers);
+  const double part = std::min(1.0, kLargestMove / LargestMove(memory));
+  memory.taken = memory.multipliers;
+  ApplyPositionImpulses(part, dt, memory, state);
   const double before = error;
-  error = Errors(state, scratch);
+  error = Errors(state, memory);
   if (error < before) return true;
-  scratch.pulls = scratch.taken;
-  PullAll(-part, dt, scratch, state);
-  error = Errors(state, scratch);
+  memory.multipliers = memory.taken;
+  ApplyPositionImpulses(-part, dt, memory, state);
+  error = Errors(state, memory);
   return false;
 }
 
-void LinkNetwork::Newton(const ConstPoints& before, double dt, Scratch& scratch, State& state) const {
-  Factorise(before, scratch);
-  double error = Errors(state, scratch), last = std::numeric_limits<double>::infinity();
+void LinkNetwork::Newton(const ConstPoints& before, double dt, Memory& memory, State& state) const {
+  Factorise(before, memory);
+  double error = Errors(state, memory), last = std::numeric_limits<double>::infinity();
   while (error > kTolerance && error <= kWorthAnother * last) {
     last = error;
-    if (!Correct(dt, scratch, state, error)) break;
+    if (!Correct(dt, memory, state, error)) break;
   }
   for (int i = 0; i < kFactorisations && error > kTolerance; ++i) {
-    Factorise(state.x, scratch);
-    if (!Correct(dt, scratch, state, error)) break;
+    Factorise(state.x, memory);
+    if (!Correct(dt, memory, state, error)) break;
   }
 }
 
-// Limits that would push a cable, or pull a strut, are let go with what they did; those that are violated join.
-bool LinkNetwork::Switch(double dt, Scratch& scratch, State& state) const {
+// Releases limits that push a cable or pull a strut, undoing their displacements, and activates violated ones.
+bool LinkNetwork::UpdateActiveSet(double dt, Memory& memory, State& state) const {
   bool changed = false;
   for (size_t i = 0; i < links_.size(); ++i) {
     const Link& link = links_[i];
-    double& total = scratch.totals[static_cast<Eigen::Index>(i)];
+    double& total = memory.totals[static_cast<Eigen::Index>(i)];
     if (link.sign == 0) continue;
-    if (scratch.active[i] && link.sign * total * (link.inverse_a + link.inverse_b) < -kTolerance * link.length) {
-      Pull(link, -total * scratch.directions.col(static_cast<Eigen::Index>(i)), dt, state.x, state.v);
+    if (memory.active[i] && link.sign * total * (link.inverse_a + link.inverse_b) < -kTolerance * link.length) {
+      ApplyPositionImpulse(link, -total * memory.directions.col(static_cast<Eigen::Index>(i)), dt, state.x, state.v);
       total = 0;
-      scratch.active[i] = false;
+      memory.active[i] = false;
       changed = true;
-    } else if (!scratch.active[i] && link.Violation(state.x) > kTolerance) {
-      scratch.active[i] = true;
+    } else if (!memory.active[i] && link.Violation(state.x) > kTolerance) {
+      memory.active[i] = true;
       changed = true;
     }
   }
   return changed;
 }
 
-void LinkNetwork::Project(const ConstPoints& before, double dt, State& state) const {
-  Scratch& scratch = Fitted();
+void LinkNetwork::Project(const ConstPoints& before, double dt, const Scratch& scratch, State& state) const {
+  Memory& memory = Fit(scratch);
   for (size_t i = 0; i < links_.size(); ++i) {
-    scratch.active[i] = links_[i].sign == 0 || links_[i].Violation(state.x) > kTolerance;
+    memory.active[i] = links_[i].sign == 0 || links_[i].Violation(state.x) > kTolerance;
   }
-  if (!scratch.AnyActive(links_.size())) return;
-  scratch.totals.setZero();
+  if (!memory.AnyActive(links_.size())) return;
+  memory.totals.setZero();
   for (int round = 0; round < kSwitches; ++round) {
-    Newton(before, dt, scratch, state);
-    if (!Switch(dt, scratch, state)) break;
+    Newton(before, dt, memory, state);
+    if (!UpdateActiveSet(dt, memory, state)) break;
   }
   for (int sweep = 0; sweep < kSweeps && LargestViolation(state) > kTolerance; ++sweep) {
     for (const Link& link : links_) {
@@ -236,43 +239,43 @@ double LinkNetwork::LargestViolation(const State& state) const {
   return worst;
 }
 
-bool LinkNetwork::SwitchVelocities(double slow, Scratch& scratch, State& state) const {
+bool LinkNetwork::UpdateActiveSetOfVelocities(double slow, Memory& memory, State& state) const {
   bool changed = false;
   for (size_t i = 0; i < links_.size(); ++i) {
     const Link& link = links_[i];
-    double& total = scratch.totals[static_cast<Eigen::Index>(i)];
+    double& total = memory.totals[static_cast<Eigen::Index>(i)];
     if (link.sign == 0) continue;
-    if (scratch.active[i] && link.sign * total * (link.inverse_a + link.inverse_b) < -slow) {
-      Push(link, -total * scratch.directions.col(static_cast<Eigen::Index>(i)), state);
+    if (memory.active[i] && link.sign * total * (link.inverse_a + link.inverse_b) < -slow) {
+      ApplyVelocityImpulse(link, -total * memory.directions.col(static_cast<Eigen::Index>(i)), state);
       total = 0;
-      scratch.active[i] = false;
+      memory.active[i] = false;
       changed = true;
-    } else if (!scratch.active[i] && link.Reached(state.x) && link.sign * link.Rate(state) > slow) {
-      scratch.active[i] = true;
+    } else if (!memory.active[i] && link.Reached(state.x) && link.sign * link.Rate(state) > slow) {
+      memory.active[i] = true;
       changed = true;
     }
   }
   return changed;
 }
 
-void LinkNetwork::ProjectVelocities(State& state) const {
-  Scratch& scratch = Fitted();
+void LinkNetwork::ProjectVelocities(const Scratch& scratch, State& state) const {
+  Memory& memory = Fit(scratch);
   double fastest = 0;
   for (size_t i = 0; i < links_.size(); ++i) {
     const Link& link = links_[i];
     const double rate = link.sign == 0 ? std::abs(link.Rate(state)) : link.sign * link.Rate(state);
-    scratch.active[i] = link.sign == 0 || (rate > 0 && link.Reached(state.x));
-    if (scratch.active[i]) fastest = std::max(fastest, rate);
+    memory.active[i] = link.sign == 0 || (rate > 0 && link.Reached(state.x));
+    if (memory.active[i]) fastest = std::max(fastest, rate);
   }
   if (fastest == 0) return;
-  scratch.totals.setZero();
+  memory.totals.setZero();
   for (int round = 0; round < kSwitches; ++round) {
-    Factorise(state.x, scratch);
-    for (int pass = 0; pass < kRefinements && Rates(state, scratch) > 0; ++pass) {
-      matrix_.Solve(scratch.factors, scratch.pulls);
-      PushAll(scratch, state);
+    Factorise(state.x, memory);
+    for (int pass = 0; pass < kRefinements && Rates(state, memory) > 0; ++pass) {
+      matrix_.Solve(memory.factors, memory.multipliers);
+      ApplyVelocityImpulses(memory, state);
     }
-    if (!SwitchVelocities(kAtRest * fastest, scratch, state)) return;
+    if (!UpdateActiveSetOfVelocities(kAtRest * fastest, memory, state)) return;
   }
 }
 

@@ -6,9 +6,12 @@
 #include <limits>
 #include <numeric>
 #include <tuple>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "server/mechanics/constraints/link_pairing.h"
+#include "server/mechanics/constraints/thesis_links.h"
+#include "server/mechanics/linalg/state_bounds.h"
 
 namespace phrenic {
 namespace {
@@ -33,10 +36,10 @@ absl::StatusOr<std::vector<Link>> FindLinks(const v1::RigidLinks& scene, int bod
     case v1::RigidLinks::WHICH_NOT_SET:
       break;
   }
-  return FieldError(path, "says neither pairing nor list: which vertices are to be linked?");
+  return FieldError(path, "selects no vertices to link: set pairing or list");
 }
 
-// How many links have an end in each vertex that moves by forces.
+// Returns the number of links at each movable vertex.
 std::vector<int> LinksPerVertex(const std::vector<Link>& links, const Model& model) {
   std::vector<int> count(static_cast<size_t>(model.rest.cols()), 0);
   for (const Link& link : links) {
@@ -46,12 +49,12 @@ std::vector<int> LinksPerVertex(const std::vector<Link>& links, const Model& mod
   return count;
 }
 
-// Both ends move by forces, and lie in one block.
+// True if both ends are movable and in the same block.
 bool InOneBlock(const Link& link) {
   return link.inverse_a > 0 && link.inverse_b > 0 && link.a / kVertexBlock == link.b / kVertexBlock;
 }
 
-// Of each block's packets, and their end.
+// Returns the index of each block's first packet, and the number of packets.
 std::vector<size_t> BlockStarts(const std::vector<Link>& links, const std::vector<LinkPacket>& packets,
                                 Eigen::Index vertices) {
   std::vector<size_t> starts((vertices + kVertexBlock - 1) / kVertexBlock + 1, 0);
@@ -60,8 +63,8 @@ std::vector<size_t> BlockStarts(const std::vector<Link>& links, const std::vecto
   return starts;
 }
 
-// For viewers.
-void Show(const std::vector<Link>& links, Model& model) {
+// Adds the links to the list that viewers display.
+void AddToDisplay(const std::vector<Link>& links, Model& model) {
   Eigen::Index at = model.rigid_links.cols();
   model.rigid_links.conservativeResize(2, at + static_cast<Eigen::Index>(links.size()));
   for (const Link& link : links) model.rigid_links.col(at++) = Eigen::Vector2i(link.a, link.b);
@@ -78,42 +81,41 @@ absl::StatusOr<std::unique_ptr<Constraint>> RigidLinks::Make(const v1::RigidLink
   auto links = FindLinks(scene, *b, field, builder);
   if (!links.ok()) return links.status();
   if (links->empty()) {
-    builder.ReportLeftOut(name, "no two vertices fit the pairing");
+    builder.ReportLeftOut(name, "no two vertices match the pairing");
     return nullptr;
   }
-  std::unique_ptr<RigidLinks> constraint(new RigidLinks(name));
-  constraint->thesis_ = scene.projection() == v1::PROJECTION_THESIS;
-  constraint->Sort(*links, builder.model);
-  Show(*links, builder.model);
+  AddToDisplay(*links, builder.model);
   const auto count = static_cast<std::int64_t>(links->size());
   builder.model.report.set_rigid_links(builder.model.report.rigid_links() + count);
+  if (scene.projection() == v1::PROJECTION_THESIS) {
+    builder.ReportElement("constraint", name, count, "links", "correction split by displacement (thesis 2.10-2.11)");
+    return std::make_unique<ThesisLinks>(name, *std::move(links));
+  }
+  std::unique_ptr<RigidLinks> constraint(new RigidLinks(name, *links, builder.model));
   builder.ReportElement("constraint", name, count, "links",
-                        constraint->thesis_ ? "split by distance moved (thesis 2.10-2.11)"
-                                            : absl::StrCat("mass-weighted, velocities corrected; ",
-                                                           constraint->network_.links().size(), " solved together"));
+                        absl::StrCat("mass-weighted, velocities corrected; ", constraint->network_.links().size(),
+                                     " solved simultaneously"));
   return constraint;
 }
 
-void RigidLinks::Sort(const std::vector<Link>& links, const Model& model) {
+RigidLinks::RigidLinks(std::string name, const std::vector<Link>& links, const Model& model)
+    : BlockConstraint(std::move(name)) {
   const std::vector<int> count = LinksPerVertex(links, model);
   std::vector<Link> joined;
   for (const Link& link : links) {
-    const bool alone = thesis_ || (count[link.a] < 2 && count[link.b] < 2);
-    if (alone) {
+    if (count[link.a] < 2 && count[link.b] < 2) {
       alone_.push_back(link);
     } else if (link.Movable()) {
       joined.push_back(link);
     }
   }
   if (!joined.empty()) network_ = LinkNetwork(joined);
-  if (!thesis_) PackAlone(model.rest.cols());
+  PackAlone(model.rest.cols());
 }
 
 void RigidLinks::PackAlone(Eigen::Index vertices) {
-  const auto place = [](const Link& link) {
-    return std::tuple(!InOneBlock(link), link.a / kVertexBlock, !IsPair(link));
-  };
-  std::stable_sort(alone_.begin(), alone_.end(), [&](const Link& p, const Link& q) { return place(p) < place(q); });
+  const auto key = [](const Link& link) { return std::tuple(!InOneBlock(link), link.a / kVertexBlock, !IsPair(link)); };
+  std::stable_sort(alone_.begin(), alone_.end(), [&](const Link& p, const Link& q) { return key(p) < key(q); });
   const auto across = std::partition_point(alone_.begin(), alone_.end(), InOneBlock);
   const auto inside = static_cast<size_t>(across - alone_.begin());
   const absl::Span<const Link> all(alone_);
@@ -128,37 +130,23 @@ void RigidLinks::PackAlone(Eigen::Index vertices) {
   across_.erase(std::unique(across_.begin(), across_.end()), across_.end());
 }
 
-void RigidLinks::ProjectThesis(const ConstPoints& before, Points& x) const {
-  for (const Link& link : alone_) {
-    const Eigen::Vector3d between = x.col(link.b) - x.col(link.a);
-    const double length = between.norm();
-    if (length == 0 || !link.Movable()) continue;
-    double a = link.inverse_a > 0 ? (x.col(link.a) - before.col(link.a)).norm() : 0;
-    double b = link.inverse_b > 0 ? (x.col(link.b) - before.col(link.b)).norm() : 0;
-    if (a + b == 0) a = link.inverse_a, b = link.inverse_b;  // neither moved: a fixed end still does not
-    const Eigen::Vector3d correction = ((length - link.length) / length) * between;
-    x.col(link.a) += a / (a + b) * correction;
-    x.col(link.b) -= b / (a + b) * correction;
-  }
-}
-
 double RigidLinks::RestoreAlone(absl::Span<const LinkPacket> packets, Eigen::Index from, const LinkVectors* directions,
                                 double dt, Points& x, Points& v) const {
-  double way = 0;
+  double largest = 0;
   for (size_t p = 0; p < packets.size(); p += kPacketsTogether) {
     const absl::Span<const LinkPacket> some = packets.subspan(p, kPacketsTogether);
     auto [missed, furthest] = RestorePackets(some, directions + p, dt, x.data() + 3 * from, v.data() + 3 * from);
-    way = LargerMagnitude(missed == 0 ? furthest : std::numeric_limits<double>::infinity(), way);
+    largest = LargerMagnitude(missed == 0 ? furthest : std::numeric_limits<double>::infinity(), largest);
     for (; missed != 0; missed &= missed - 1) {
       const int bit = std::countr_zero(missed), lane = bit % kPacketLinks;
       const LinkVectors& of = directions[p + bit / kPacketLinks];
       Restore(alone_[some[bit / kPacketLinks].first + lane], {of.x[lane], of.y[lane], of.z[lane]}, dt, x, v);
     }
   }
-  return way;
+  return largest;
 }
 
-void RigidLinks::RestoreAcross(const ConstPoints& before, double dt, State& state) const {
+void RigidLinks::RestoreAcross(const ConstPoints& before, double dt, const Scratch& scratch, State& state) const {
   const absl::Span<const LinkPacket> packets = absl::MakeConstSpan(packets_).subspan(block_start_.back());
   LinkVectors directions[kPacketsTogether];
   for (size_t p = 0; p < packets.size(); p += kPacketsTogether) {
@@ -166,7 +154,7 @@ void RigidLinks::RestoreAcross(const ConstPoints& before, double dt, State& stat
     FindDirections(some, before.data(), directions);
     RestoreAlone(some, 0, directions, dt, state.x, state.v);
   }
-  network_.Project(before, dt, state);
+  network_.Project(before, dt, scratch, state);
 }
 
 absl::Span<const LinkPacket> RigidLinks::PacketsIn(const VertexRange& block) const {
@@ -174,38 +162,35 @@ absl::Span<const LinkPacket> RigidLinks::PacketsIn(const VertexRange& block) con
   return absl::MakeConstSpan(packets_).subspan(block_start_[b], block_start_[b + 1] - block_start_[b]);
 }
 
-void RigidLinks::Remember(const VertexRange& block, const ConstPoints& x, double* start) const {
+void RigidLinks::RecordStart(const VertexRange& block, const ConstPoints& x, double* start) const {
   FindDirections(PacketsIn(block), x.data() + 3 * block.first, reinterpret_cast<LinkVectors*>(start));
 }
 
-double RigidLinks::ProjectIn(const VertexRange& block, const double* start, double dt, Points& x, Points& v) const {
+double RigidLinks::ProjectBlock(const VertexRange& block, const double* start, double dt, Points& x, Points& v) const {
   return RestoreAlone(PacketsIn(block), block.first, reinterpret_cast<const LinkVectors*>(start), dt, x, v);
 }
 
-void RigidLinks::ProjectAcross(const v1::Parameters& parameters, const ConstPoints& before, double dt,
-                               State& state) const {
-  if (parameters.apply_links()) RestoreAcross(before, dt, state);
+void RigidLinks::ProjectAcrossBlocks(const v1::Parameters& parameters, const ConstPoints& before, double dt,
+                                     const Scratch& scratch, State& state) const {
+  if (parameters.apply_links()) RestoreAcross(before, dt, scratch, state);
 }
 
-void RigidLinks::Project(const v1::Parameters& parameters, const ConstPoints& before, double dt, State& state) const {
+void RigidLinks::Project(const v1::Parameters& parameters, const ConstPoints& before, double dt, const Scratch& scratch,
+                         State& state) const {
   if (!parameters.apply_links()) return;
-  if (thesis_) {
-    ProjectThesis(before, state.x);
-    return;
-  }
   alignas(LinkVectors) double start[3 * kVertexBlock];
   for (Eigen::Index first = 0; first < state.x.cols(); first += kVertexBlock) {
     const VertexRange block = {first, std::min(first + kVertexBlock, state.x.cols())};
-    Remember(block, before, start);
-    ProjectIn(block, start, dt, state.x, state.v);
+    RecordStart(block, before, start);
+    ProjectBlock(block, start, dt, state.x, state.v);
   }
-  RestoreAcross(before, dt, state);
+  RestoreAcross(before, dt, scratch, state);
 }
 
-void RigidLinks::ProjectVelocities(const v1::Parameters& parameters, State& state) const {
-  if (!parameters.apply_links() || thesis_) return;
+void RigidLinks::ProjectVelocities(const v1::Parameters& parameters, const Scratch& scratch, State& state) const {
+  if (!parameters.apply_links()) return;
   for (const Link& link : alone_) StopStretching(link, state);
-  network_.ProjectVelocities(state);
+  network_.ProjectVelocities(scratch, state);
 }
 
 double RigidLinks::Residual(const State& state) const {

@@ -29,7 +29,7 @@ absl::StatusOr<std::unique_ptr<Force>> Friction::Make(const v1::Friction& scene,
   return force;
 }
 
-void Friction::AddForceIn(const VertexRange& range, const EvalContext& at, MutablePoints f) const {
+void Friction::AddForceToBlock(const VertexRange& range, const BlockContext& at, MutablePoints f) const {
   VertexLoads loads;
   loads.c = coefficient_.data();
   AddLoads(range, loads, at.v, f);

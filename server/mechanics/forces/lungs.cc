@@ -39,7 +39,7 @@ absl::StatusOr<std::unique_ptr<Force>> Lungs::Make(const v1::Lungs& scene, const
   force->rest_volume_ = scene.rest_volume();
   builder.ReportElement("force", name, force->chamber_.triangles(), "triangles",
                         absl::StrFormat("%g m^3/Pa, %g Pa s/m^3%s", scene.compliance(), scene.resistance(),
-                                        force->pushes_ ? "" : ", driven: pulls at nothing"));
+                                        force->pushes_ ? "" : ", surface is not deformable: exerts no force"));
   return force;
 }
 
@@ -47,19 +47,12 @@ void Lungs::AddForce(const EvalContext& at, MutablePoints f) const {
   if (pushes_) chamber_.AddAreas(at, PressureChange(chamber_.Read(at)), f);
 }
 
-const Points& Lungs::Areas(const EvalContext& at) const {
-  thread_local Points areas;
-  areas.setZero(3, at.x.cols());
-  chamber_.AddAreas(at, 1, areas);
-  return areas;
-}
-
 void Lungs::AddStiffness(const EvalContext& at, StiffnessSink& sink) const {
-  if (pushes_) sink.AddOuter(1 / compliance_, Areas(at));
+  if (pushes_) sink.AddOuter(1 / compliance_, chamber_.AreaVectors(at));
 }
 
 void Lungs::AddSharedDamping(const EvalContext& at, OuterProducts& shared) const {
-  if (pushes_ && resistance_ > 0) shared.Add(resistance_, Areas(at));
+  if (has_shared_damping()) shared.Add(resistance_, chamber_.AreaVectors(at));
 }
 
 double Lungs::Energy(const EvalContext& at) const {

@@ -4,9 +4,16 @@
 #include "server/mechanics/parallel/vertex_range.h"
 
 namespace phrenic {
+namespace {
 
-const float* PackAll(const ConstPoints& x, int from) {
-  float* const packed = ThreadMemory<Kept::kForAll, float>(kPointStride<float> * x.cols());
+struct PackedPoints {
+  AlignedNumbers<float> numbers;
+};
+
+}  // namespace
+
+const float* PackAll(const ConstPoints& x, int from, const Scratch& scratch) {
+  float* const packed = scratch.Get<PackedPoints>().numbers.Fit(kPointStride<float> * x.cols());
   ForEachBlock({0, x.cols()},
                [&](const VertexRange& block) { PackPoints(block, x.data(), x.col(from).data(), packed); });
   return packed;

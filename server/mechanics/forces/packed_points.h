@@ -1,4 +1,4 @@
-// Positions in single precision, four numbers each (spring_kernel.h), in memory of the calling thread's own.
+// Positions in single precision, padded to four numbers per point for aligned loads (spring_kernel.h).
 #ifndef PHRENIC_SERVER_MECHANICS_FORCES_PACKED_POINTS_H_
 #define PHRENIC_SERVER_MECHANICS_FORCES_PACKED_POINTS_H_
 
@@ -6,28 +6,32 @@
 #include <cstddef>
 #include <vector>
 
+#include "server/mechanics/scratch.h"
 #include "server/mesh/mesh.h"
 
 namespace phrenic {
 
-// What positions are kept for: packed for all that ask, or put into one batch of springs' own order.
-enum class Kept { kForAll, kInOrder };
+// An array of numbers, aligned to a cache line. Not thread-safe.
+template <typename Number>
+class AlignedNumbers {
+ public:
+  // Returns memory for `count` numbers. Allocates if `count` is the largest so far; the contents are then undefined.
+  Number* Fit(Eigen::Index count) {
+    const auto lines = static_cast<std::size_t>(count) * sizeof(Number) / 64 + 1;
+    if (lines_.size() < lines) lines_.resize(lines);
+    return lines_.front().numbers;
+  }
 
-// `count` Numbers, aligned to a cache line: the thread's own, for all that help it, until it asks again for the same.
-// Allocates where it has never asked for as many.
-template <Kept kWhat, typename Number>
-Number* ThreadMemory(Eigen::Index count) {
+ private:
   struct alignas(64) Line {
     Number numbers[64 / sizeof(Number)];
   };
-  thread_local std::vector<Line> memory;
-  const auto lines = static_cast<std::size_t>(count) * sizeof(Number) / 64 + 1;
-  if (memory.size() < lines) memory.resize(lines);
-  return memory.front().numbers;
-}
+  std::vector<Line> lines_;
+};
 
-// The columns of x, from where column `from` is [m]; shared out over the threads of a step.
-const float* PackAll(const ConstPoints& x, int from);
+// Returns the columns of x relative to column `from` [m]. They are valid until the next call with the same scratch
+// memory. Runs on the threads of the step.
+const float* PackAll(const ConstPoints& x, int from, const Scratch& scratch);
 
 }  // namespace phrenic
 

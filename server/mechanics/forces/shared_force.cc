@@ -12,7 +12,7 @@ void SharedForce::SetShare(Eigen::VectorXd share) {
   }
 }
 
-void SharedForce::AddForceIn(const VertexRange& range, const EvalContext& at, MutablePoints f) const {
+void SharedForce::AddForceToBlock(const VertexRange& range, const BlockContext& at, MutablePoints f) const {
   VertexLoads loads;
   loads.shared[loads.count++] = {share_.data(), Whole(at)};
   AddLoads(range, loads, at.v, f);

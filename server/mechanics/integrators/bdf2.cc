@@ -1,11 +1,10 @@
 #include "server/mechanics/integrators/bdf2.h"
 
-#include <algorithm>
 #include <limits>
 
 #include "server/mechanics/integrators/tr_bdf2.h"
 #include "server/mechanics/solve/implicit_stage.h"
-#include "server/mechanics/step/advance.h"
+#include "server/mechanics/step/step_plan.h"
 
 namespace phrenic {
 namespace {
@@ -15,17 +14,16 @@ bool HasStepBefore(const State& state, double dt) {
   return history.integrator == v1::INTEGRATOR_BDF2 && history.tick == state.tick && history.dt == dt;
 }
 
-absl::Status AdvanceFromTwo(const Model& model, const v1::Parameters& parameters, double dt, State& state,
+absl::Status AdvanceFromTwo(const StepPlan& plan, const v1::Parameters& parameters, double dt, State& state,
                             Workspace& work) {
-  work.stages.resize(std::max<size_t>(work.stages.size(), 3));
-  Points &position = work.stages[1], &velocity = work.stages[2];
+  Points &position = work.Stage(1), &velocity = work.Stage(2);
   position = (4 * work.before - state.history.x) / 3;
   velocity = (4 * work.velocity_before - state.history.v) / 3;
-  state.v = 2 * work.velocity_before - state.history.v;  // a first guess
+  state.v = 2 * work.velocity_before - state.history.v;  // first guess
   const ImplicitStage stage{dt, 2 * dt / 3, position, velocity, kNewtonSteps};
-  if (absl::Status solved = SolveStage(model, parameters, stage, state, work); !solved.ok()) return solved;
-  ProjectPositions(model, parameters, work.before, dt, state);
-  ProjectVelocities(model, parameters, state);
+  if (absl::Status solved = SolveStage(plan, parameters, stage, state, work); !solved.ok()) return solved;
+  plan.ProjectPositions(parameters, work.before, dt, work.scratch, state);
+  plan.ProjectVelocities(parameters, work.scratch, state);
   return absl::OkStatus();
 }
 
@@ -33,10 +31,10 @@ absl::Status AdvanceFromTwo(const Model& model, const v1::Parameters& parameters
 
 double Bdf2::MaxStep(const Spectrum&) const { return std::numeric_limits<double>::infinity(); }
 
-absl::Status Bdf2::Advance(const Model& model, const v1::Parameters& parameters, double dt, State& state,
+absl::Status Bdf2::Advance(const StepPlan& plan, const v1::Parameters& parameters, double dt, State& state,
                            Workspace& work) const {
-  absl::Status advanced = HasStepBefore(state, dt) ? AdvanceFromTwo(model, parameters, dt, state, work)
-                                                   : TrBdf2().Advance(model, parameters, dt, state, work);
+  absl::Status advanced = HasStepBefore(state, dt) ? AdvanceFromTwo(plan, parameters, dt, state, work)
+                                                   : TrBdf2().Advance(plan, parameters, dt, state, work);
   if (!advanced.ok()) return advanced;
   History& history = state.history;
   history.integrator = v1::INTEGRATOR_BDF2;

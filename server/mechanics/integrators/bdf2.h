@@ -1,6 +1,8 @@
-// The second backward differentiation formula: x' = (4 x - x_before + 2 dt v')/3, and the same for v with a = f(x',
-// v')/m, by Newton's method. Order 2, stable at any step for what is linear; damps fast vibrations. Its step before is
-// kept in State::history; where there is none of the same length it takes a step of TR-BDF2.
+// The second backward differentiation formula: x' = (4 x - x_before + 2 dt v')/3, and v' in the same way from
+// a = f(x', v')/m, by Newton's method.
+//
+// Order 2; stable at any step if the forces are linear; damps fast vibrations. State::history keeps the step before. If
+// that is missing or had another length, the step is one of TR-BDF2.
 #ifndef PHRENIC_SERVER_MECHANICS_INTEGRATORS_BDF2_H_
 #define PHRENIC_SERVER_MECHANICS_INTEGRATORS_BDF2_H_
 
@@ -13,7 +15,7 @@ class Bdf2 final : public Integrator {
   std::string_view name() const override { return "BDF2"; }
   int order() const override { return 2; }
   double MaxStep(const Spectrum& spectrum) const override;
-  absl::Status Advance(const Model& model, const v1::Parameters& parameters, double dt, State& state,
+  absl::Status Advance(const StepPlan& plan, const v1::Parameters& parameters, double dt, State& state,
                        Workspace& work) const override;
 };
 

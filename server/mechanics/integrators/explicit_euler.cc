@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "server/mechanics/step/advance.h"
+#include "server/mechanics/step/step_plan.h"
 
 namespace phrenic {
 
@@ -14,16 +14,17 @@ double ExplicitEuler::MaxStep(const Spectrum& spectrum) const {
                   spectrum.damping_rate > 0 ? 2 / spectrum.damping_rate : infinity);
 }
 
-absl::Status ExplicitEuler::Advance(const Model& model, const v1::Parameters& parameters, double dt, State& state,
+absl::Status ExplicitEuler::Advance(const StepPlan& plan, const v1::Parameters& parameters, double dt, State& state,
                                     Workspace& work) const {
-  SumForces(model, MakeEvalContext(model, parameters, state), work.force);
+  const Eigen::VectorXd& inverse_mass = plan.model().inverse_mass;
+  plan.SumForces(plan.ContextAhead(parameters, 0, state, work.scratch), work.force);
   for (Eigen::Index i = 0; i < state.x.cols(); ++i) {
-    if (model.inverse_mass[i] == 0) continue;  // fixed, or set by a motion
+    if (inverse_mass[i] == 0) continue;  // fixed or driven
     state.x.col(i) += dt * state.v.col(i);
-    state.v.col(i) += dt * model.inverse_mass[i] * work.force.col(i);
+    state.v.col(i) += dt * inverse_mass[i] * work.force.col(i);
   }
-  DriveMotions(model, parameters, dt, state);
-  ProjectPositions(model, parameters, work.before, dt, state);
+  plan.DriveMotions(parameters, dt, work.scratch, state);
+  plan.ProjectPositions(parameters, work.before, dt, work.scratch, state);
   return absl::OkStatus();
 }
 

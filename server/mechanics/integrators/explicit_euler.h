@@ -1,5 +1,7 @@
-// Explicit Euler: x += dt v, v += dt f/m, both from the start of the step. Order 1. It adds energy: without friction no
-// step is stable; with friction rate c it is stable for dt < c/omega^2 and c dt < 2. Here to be judged, not to be used.
+// Explicit Euler: x += dt v, v += dt f/m, both from the start of the step. Order 1.
+//
+// It adds energy: without friction no step is stable; with friction rate c [1/s] it is stable for dt < c/omega^2 and
+// c dt < 2. For comparison only.
 #ifndef PHRENIC_SERVER_MECHANICS_INTEGRATORS_EXPLICIT_EULER_H_
 #define PHRENIC_SERVER_MECHANICS_INTEGRATORS_EXPLICIT_EULER_H_
 
@@ -12,7 +14,7 @@ class ExplicitEuler final : public Integrator {
   std::string_view name() const override { return "explicit Euler"; }
   int order() const override { return 1; }
   double MaxStep(const Spectrum& spectrum) const override;
-  absl::Status Advance(const Model& model, const v1::Parameters& parameters, double dt, State& state,
+  absl::Status Advance(const StepPlan& plan, const v1::Parameters& parameters, double dt, State& state,
                        Workspace& work) const override;
 };
 

@@ -3,24 +3,24 @@
 #include <limits>
 
 #include "server/mechanics/solve/implicit_stage.h"
-#include "server/mechanics/step/advance.h"
+#include "server/mechanics/step/step_plan.h"
 
 namespace phrenic {
 
 double LinearImplicitEuler::MaxStep(const Spectrum&) const { return std::numeric_limits<double>::infinity(); }
 
-absl::Status LinearImplicitEuler::Advance(const Model& model, const v1::Parameters& parameters, double dt, State& state,
-                                          Workspace& work) const {
-  state.v.setZero();  // so that forces and stiffness are those where the step begins
+absl::Status LinearImplicitEuler::Advance(const StepPlan& plan, const v1::Parameters& parameters, double dt,
+                                          State& state, Workspace& work) const {
+  state.v.setZero();  // forces and stiffness are those at the start of the step
   const ImplicitStage stage{.ahead = dt,
                             .g = dt,
                             .position = work.before,
                             .velocity = work.velocity_before,
                             .newton_steps = 1,
                             .guess = &work.velocity_before};
-  if (absl::Status solved = SolveStage(model, parameters, stage, state, work); !solved.ok()) return solved;
-  ProjectPositions(model, parameters, work.before, dt, state);
-  ProjectVelocities(model, parameters, state);
+  if (absl::Status solved = SolveStage(plan, parameters, stage, state, work); !solved.ok()) return solved;
+  plan.ProjectPositions(parameters, work.before, dt, work.scratch, state);
+  plan.ProjectVelocities(parameters, work.scratch, state);
   return absl::OkStatus();
 }
 

@@ -1,5 +1,7 @@
-// Backward Euler with one Newton step (Baraff and Witkin 1998): (M + dt C + dt^2 K) v' = M v + dt (f(x) + dt ...), then
-// x += dt v'. Order 1, stable at any step for what is linear; it damps fast vibrations strongly.
+// Backward Euler with one Newton step (Baraff and Witkin 1998): (M + dt C + dt^2 K) v' = M v + dt f(x, 0), then
+// x += dt v', with M the masses, C the damping and K the stiffness.
+//
+// Order 1; stable at any step if the forces are linear. It damps fast vibrations strongly.
 #ifndef PHRENIC_SERVER_MECHANICS_INTEGRATORS_LINEAR_IMPLICIT_EULER_H_
 #define PHRENIC_SERVER_MECHANICS_INTEGRATORS_LINEAR_IMPLICIT_EULER_H_
 
@@ -12,7 +14,7 @@ class LinearImplicitEuler final : public Integrator {
   std::string_view name() const override { return "linear-implicit Euler"; }
   int order() const override { return 1; }
   double MaxStep(const Spectrum& spectrum) const override;
-  absl::Status Advance(const Model& model, const v1::Parameters& parameters, double dt, State& state,
+  absl::Status Advance(const StepPlan& plan, const v1::Parameters& parameters, double dt, State& state,
                        Workspace& work) const override;
 };
 

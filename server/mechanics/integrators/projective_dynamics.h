@@ -1,10 +1,12 @@
 // Projective dynamics, for preview: backward Euler, M (v' - v) = dt f(x + dt v', v'), by a few iterations with a matrix
-// that is factorised once and serves every step (Bouaziz et al. 2014). It is a quasi-Newton method (Liu, Bouaziz, Kavan
-// 2017) for every force that tells its stiffness: v' += B r, r what is missing to the equation, B by L-BFGS from A^-1
-// (PrefactoredSystem). The first way is the old velocities; each is cut back where r along it turns round, so that it
-// leads downhill however stiff and nonlinear the forces are, and the last velocities are shortened where they would
-// gain energy. Order 1 where the iterations suffice, which they do at small steps; at large ones the error stops at
-// what they leave, most for what A makes too stiff: springs across their direction. Stable at any step.
+// that is factorised once for all steps (Bouaziz et al. 2014).
+//
+// A quasi-Newton method (Liu, Bouaziz, Kavan 2017) for every force with a stiffness: v' += B r, r the residual of the
+// equation, B by L-BFGS from A^-1 (PrefactoredSystem). The first direction is the old velocities. Each direction is
+// shortened if r along it changes its sign, so that it leads downhill for any stiff and nonlinear force, and the last
+// velocities are shortened if they would gain energy. Order 1 at small steps, where the iterations suffice; at large
+// steps the remaining residual limits the error, most of all where A is too stiff: for springs across their direction.
+// Stable at any step.
 #ifndef PHRENIC_SERVER_MECHANICS_INTEGRATORS_PROJECTIVE_DYNAMICS_H_
 #define PHRENIC_SERVER_MECHANICS_INTEGRATORS_PROJECTIVE_DYNAMICS_H_
 
@@ -18,7 +20,7 @@ class ProjectiveDynamics final : public Integrator {
   std::string_view name() const override { return "projective dynamics"; }
   int order() const override { return 1; }
   double MaxStep(const Spectrum& spectrum) const override;
-  absl::Status Advance(const Model& model, const v1::Parameters& parameters, double dt, State& state,
+  absl::Status Advance(const StepPlan& plan, const v1::Parameters& parameters, double dt, State& state,
                        Workspace& work) const override;
 
  private:

@@ -1,32 +1,31 @@
 #include "server/mechanics/integrators/rk4.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
-#include "server/mechanics/step/advance.h"
+#include "server/mechanics/step/step_plan.h"
 
 namespace phrenic {
 namespace {
 
-// Of the stability region: how far it reaches along the negative real axis, less than along any other direction.
+// The extent of the stability region along the negative real axis; it is larger in all other directions.
 constexpr double kRadius = 2.785;
 
 struct Stage {
-  double at;      // the part of the step after which its slopes are taken
-  double weight;  // of its slopes in the whole
+  double at;      // its time, as a fraction of the step
+  double weight;  // of its slopes in their sum
 };
 constexpr std::array<Stage, 4> kStages = {{{0, 1.0 / 6}, {0.5, 1.0 / 3}, {0.5, 1.0 / 3}, {1, 1.0 / 6}}};
 
-// state = start + h slope, with driven vertices and poses where they are then.
-void MoveBy(const Model& model, const v1::Parameters& parameters, double h, const Points& velocity,
+// Sets state = start + h slope, with driven vertices and poses at that time.
+void MoveBy(const StepPlan& plan, const v1::Parameters& parameters, double h, const Points& velocity,
             const Points& acceleration, const Workspace& work, State& state) {
   state.x = work.before;
   state.v = work.velocity_before;
-  AddToFree(model, h, velocity, state.x);
-  AddToFree(model, h, acceleration, state.v);
-  DriveMotions(model, parameters, h, state);
+  plan.AddToFree(h, velocity, state.x);
+  plan.AddToFree(h, acceleration, state.v);
+  plan.DriveMotions(parameters, h, work.scratch, state);
 }
 
 }  // namespace
@@ -37,24 +36,23 @@ double Rk4::MaxStep(const Spectrum& spectrum) const {
   return fastest > 0 ? kRadius / fastest : std::numeric_limits<double>::infinity();
 }
 
-absl::Status Rk4::Advance(const Model& model, const v1::Parameters& parameters, double dt, State& state,
+absl::Status Rk4::Advance(const StepPlan& plan, const v1::Parameters& parameters, double dt, State& state,
                           Workspace& work) const {
-  work.stages.resize(std::max<size_t>(work.stages.size(), 4));
-  Points &velocity = work.stages[0], &acceleration = work.stages[1];     // of the stage
-  Points &velocities = work.stages[2], &accelerations = work.stages[3];  // their weighted sums
-  velocities.setZero(3, state.x.cols());
-  accelerations.setZero(3, state.x.cols());
+  Points &velocity = work.Stage(0), &acceleration = work.Stage(1);     // of the stage
+  Points &velocities = work.Stage(2), &accelerations = work.Stage(3);  // their weighted sums
+  velocities.setZero();
+  accelerations.setZero();
   for (const Stage& stage : kStages) {
-    if (stage.at > 0) MoveBy(model, parameters, stage.at * dt, velocity, acceleration, work, state);
-    SumForces(model, EvalContextAhead(model, parameters, stage.at * dt, state), work.force);
+    if (stage.at > 0) MoveBy(plan, parameters, stage.at * dt, velocity, acceleration, work, state);
+    plan.SumForces(plan.ContextAhead(parameters, stage.at * dt, state, work.scratch), work.force);
     velocity = state.v;
-    acceleration = work.force * model.inverse_mass.asDiagonal();
+    acceleration = work.force * plan.model().inverse_mass.asDiagonal();
     velocities += stage.weight * velocity;
     accelerations += stage.weight * acceleration;
   }
-  MoveBy(model, parameters, dt, velocities, accelerations, work, state);
-  ProjectPositions(model, parameters, work.before, dt, state);
-  ProjectVelocities(model, parameters, state);
+  MoveBy(plan, parameters, dt, velocities, accelerations, work, state);
+  plan.ProjectPositions(parameters, work.before, dt, work.scratch, state);
+  plan.ProjectVelocities(parameters, work.scratch, state);
   return absl::OkStatus();
 }
 

@@ -1,7 +1,9 @@
-// The static solve: every step ends where all forces balance, with the bones and muscles as they are then and nothing
-// moving; inertia and friction play no part. f(x) = 0 by Newton's method with pseudo-transient continuation (Kelley and
-// Keyes 1998): (M/h^2 + K) dx = f with h growing as long as steps stay small, so that it ends as Newton's method. A
-// motion of such steps is the quasi-static one; its order is 0, since it is not the dynamic one in any limit.
+// The static solve: every step ends in equilibrium, f(x) = 0 with v = 0, for bones and muscles at the end of the step.
+// Inertia and friction have no effect.
+//
+// Newton's method with pseudo-transient continuation (Kelley and Keyes 1998): (M/h^2 + K) dx = f, with h growing as
+// long as steps stay small, so that the last steps are Newton's. A sequence of such steps is the quasi-static motion;
+// the order is 0, since it is not the limit of the dynamic motion for any step.
 #ifndef PHRENIC_SERVER_MECHANICS_INTEGRATORS_STATIC_EQUILIBRIUM_H_
 #define PHRENIC_SERVER_MECHANICS_INTEGRATORS_STATIC_EQUILIBRIUM_H_
 
@@ -14,7 +16,7 @@ class StaticEquilibrium final : public Integrator {
   std::string_view name() const override { return "static"; }
   int order() const override { return 0; }
   double MaxStep(const Spectrum& spectrum) const override;
-  absl::Status Advance(const Model& model, const v1::Parameters& parameters, double dt, State& state,
+  absl::Status Advance(const StepPlan& plan, const v1::Parameters& parameters, double dt, State& state,
                        Workspace& work) const override;
 };
 

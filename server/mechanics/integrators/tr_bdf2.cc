@@ -1,11 +1,10 @@
 #include "server/mechanics/integrators/tr_bdf2.h"
 
-#include <algorithm>
 #include <limits>
 #include <numbers>
 
 #include "server/mechanics/solve/implicit_stage.h"
-#include "server/mechanics/step/advance.h"
+#include "server/mechanics/step/step_plan.h"
 
 namespace phrenic {
 namespace {
@@ -20,22 +19,21 @@ constexpr double kStart = 1 - kMiddle;
 
 double TrBdf2::MaxStep(const Spectrum&) const { return std::numeric_limits<double>::infinity(); }
 
-absl::Status TrBdf2::Advance(const Model& model, const v1::Parameters& parameters, double dt, State& state,
+absl::Status TrBdf2::Advance(const StepPlan& plan, const v1::Parameters& parameters, double dt, State& state,
                              Workspace& work) const {
-  work.stages.resize(std::max<size_t>(work.stages.size(), 3));
-  Points &position = work.stages[1], &velocity = work.stages[2];
+  Points &position = work.Stage(1), &velocity = work.Stage(2);
   const double g = kWeight * dt;
-  SumForces(model, MakeEvalContext(model, parameters, state), work.force);
+  plan.SumForces(plan.ContextAhead(parameters, 0, state, work.scratch), work.force);
   position = work.before + g * work.velocity_before;
-  velocity = work.velocity_before + g * work.force * model.inverse_mass.asDiagonal();
+  velocity = work.velocity_before + g * work.force * plan.model().inverse_mass.asDiagonal();
   const ImplicitStage trapezoid{kGamma * dt, g, position, velocity, kNewtonSteps};
-  if (absl::Status solved = SolveStage(model, parameters, trapezoid, state, work); !solved.ok()) return solved;
+  if (absl::Status solved = SolveStage(plan, parameters, trapezoid, state, work); !solved.ok()) return solved;
   position = kMiddle * state.x + kStart * work.before;
   velocity = kMiddle * state.v + kStart * work.velocity_before;
   const ImplicitStage bdf2{dt, g, position, velocity, kNewtonSteps};
-  if (absl::Status solved = SolveStage(model, parameters, bdf2, state, work); !solved.ok()) return solved;
-  ProjectPositions(model, parameters, work.before, dt, state);
-  ProjectVelocities(model, parameters, state);
+  if (absl::Status solved = SolveStage(plan, parameters, bdf2, state, work); !solved.ok()) return solved;
+  plan.ProjectPositions(parameters, work.before, dt, work.scratch, state);
+  plan.ProjectVelocities(parameters, work.scratch, state);
   return absl::OkStatus();
 }
 

@@ -1,6 +1,7 @@
 // TR-BDF2 (Bank et al. 1985): the trapezoidal rule to t + (2 - sqrt 2) dt, then BDF2 over the three points, each by
-// Newton's method. Order 2, stable at any step for what is linear, damps fast vibrations (L-stable) and needs no step
-// before.
+// Newton's method.
+//
+// Order 2; stable at any step if the forces are linear; damps fast vibrations (L-stable). Needs no step before.
 #ifndef PHRENIC_SERVER_MECHANICS_INTEGRATORS_TR_BDF2_H_
 #define PHRENIC_SERVER_MECHANICS_INTEGRATORS_TR_BDF2_H_
 
@@ -13,7 +14,7 @@ class TrBdf2 final : public Integrator {
   std::string_view name() const override { return "TR-BDF2"; }
   int order() const override { return 2; }
   double MaxStep(const Spectrum& spectrum) const override;
-  absl::Status Advance(const Model& model, const v1::Parameters& parameters, double dt, State& state,
+  absl::Status Advance(const StepPlan& plan, const v1::Parameters& parameters, double dt, State& state,
                        Workspace& work) const override;
 };
 

@@ -1,7 +1,8 @@
 // Velocity Verlet: v += dt/2 a, x += dt v, then v += dt/2 a at the new positions; with rigid links RATTLE (Andersen
-// 1983): positions are projected after the drift and velocities after the second kick. Order 2, symplectic, stable for
-// dt < 2/omega_max whatever the friction: friction is taken half at the start and half, implicitly, at the end. One
-// evaluation of the forces a step: that at the end is kept for the next one in State::history.
+// 1983): positions are projected after the drift and velocities after the second kick.
+//
+// Order 2, symplectic; stable for dt < 2/omega_max [rad/s] at any friction: half of it is applied explicitly at the
+// start and half implicitly at the end. One evaluation of the forces per step: State::history keeps that at the end.
 #ifndef PHRENIC_SERVER_MECHANICS_INTEGRATORS_VELOCITY_VERLET_H_
 #define PHRENIC_SERVER_MECHANICS_INTEGRATORS_VELOCITY_VERLET_H_
 
@@ -14,7 +15,7 @@ class VelocityVerlet final : public Integrator {
   std::string_view name() const override { return "velocity Verlet"; }
   int order() const override { return 2; }
   double MaxStep(const Spectrum& spectrum) const override;
-  absl::Status Advance(const Model& model, const v1::Parameters& parameters, double dt, State& state,
+  absl::Status Advance(const StepPlan& plan, const v1::Parameters& parameters, double dt, State& state,
                        Workspace& work) const override;
 };
 

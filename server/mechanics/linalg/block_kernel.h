@@ -1,6 +1,6 @@
-// The inner loops of conjugate gradients on a symmetric matrix of 3 x 3 blocks, in single precision: written once with
-// Google Highway, compiled for several instruction sets, the machine's best chosen at run time. No target fuses a
-// product into a sum, and all take the same sums in the same order, so that they give the same bits.
+// The inner loops of conjugate gradients with a symmetric matrix of 3 x 3 blocks, in single precision (Google Highway:
+// the machine's best instruction set is chosen at run time). No target fuses multiplication and addition, and all sum
+// in the same order, so that they give the same bits. Thread-safe.
 #ifndef PHRENIC_SERVER_MECHANICS_LINALG_BLOCK_KERNEL_H_
 #define PHRENIC_SERVER_MECHANICS_LINALG_BLOCK_KERNEL_H_
 
@@ -10,7 +10,7 @@
 
 namespace phrenic {
 
-// Rows of a slice: one a free vertex, all padded to the slice's longest.
+// Rows per slice, one per free vertex; all are padded to the slice's longest.
 inline constexpr int kSliceLanes = 16;
 
 struct alignas(64) Lanes {
@@ -19,36 +19,36 @@ struct alignas(64) Lanes {
 struct alignas(64) LanePlaces {
   std::int32_t at[kSliceLanes] = {};
 };
-// One vector of a system: for each slice all x, all y, all z.
+// A vector of unknowns: for each slice all x, all y, all z.
 using RowVector = std::vector<Lanes>;
 inline constexpr int kAxes = 3;
-// What is gathered: a point a row, and parts of blocks.
+// The unit of gathers: the point of a row, or a part of a block.
 struct alignas(16) Quad {
   float at[4] = {};
 };
 
-// Where a vertex is [m]: x, y, z and nothing.
+// Position of a vertex [m]: x, y, z and padding.
 struct alignas(32) Position {
   double at[4] = {};
 };
 
-// Of a column of springs [m]: what is small beside it is told by the exact one.
+// Rest lengths of a column of springs [m]; small elongations are computed from the exact ones.
 struct RestLengths {
   alignas(64) double exact[kSliceLanes] = {};
   Lanes rounded;
 };
 
-// Blocks as forces hand them over, but for springs. One on the diagonal takes two: xx, xy, xz, yy, yz, zz. One off it,
-// K_ij with i < j, takes three: the symmetric part as on the diagonal and then (K_zy - K_yz)/2, (K_xz - K_zx)/2,
-// (K_yx - K_xy)/2.
+// Blocks of all forces except springs. A diagonal block takes two entries: xx, xy, xz, yy, yz, zz. An off-diagonal
+// block K_ij with i < j takes three: the symmetric part in the same way, then (K_zy - K_yz)/2, (K_xz - K_zx)/2, (K_yx -
+// K_xy)/2.
 using BlockEntries = std::vector<Quad>;
 
-// What lies off the diagonal, by vertex, in slices of rows: SELL-C-sigma (Kreutzer et al., SIAM J Sci Comput
-// 2014;36:C401). A column is one neighbour of each row of its slice.
+// The off-diagonal blocks by vertex, in slices of rows: SELL-C-sigma (Kreutzer et al., SIAM J Sci Comput
+// 2014;36:C401). A column has one neighbour for each row of its slice.
 struct BlockColumns {
   std::vector<std::int64_t> first;     // of the slices, and the end
-  std::vector<LanePlaces> neighbours;  // a column: four times the other vertex' row; padding is its own neighbour
-  std::vector<Lanes> blocks;           // kSpringValues or kWholeValues a column
+  std::vector<LanePlaces> neighbours;  // per column: four times the neighbour's row; padding is its own neighbour
+  std::vector<Lanes> blocks;           // kSpringValues or kWholeValues per column
 };
 inline constexpr int kSpringValues = 4;  // vx, vy, vz, t of K_ij = -(v v^T + t I)
 inline constexpr int kWholeValues = 9;   // row by row
@@ -56,31 +56,30 @@ inline constexpr int kWholeValues = 9;   // row by row
 // The matrix A = inertia + weight K, each vertex scaled by s so that its diagonal block has the trace 3: s_i A_ij s_j.
 struct BlockSlices {
   BlockColumns springs, whole;
-  std::vector<Lanes> spring_stiffness;  // a column of springs [N/m]; zeros are padding
+  std::vector<Lanes> spring_stiffness;  // per column of springs [N/m]; 0 for padding
   std::vector<RestLengths> spring_rest;
-  std::vector<LanePlaces> entries;  // a column of whole blocks: twice the entry's place, plus 1 where it is seen from j
-  std::vector<Lanes> scale;         // s, one a slice; 0 for rows that the last slice lacks
-  // Six a slice each: xx, xy, xz, yy, yz, zz of A and of weight K; the factors of A = L D L^T, L_yx, L_zx, L_zy and
-  // 1/D.
+  std::vector<LanePlaces> entries;  // per column of whole blocks: twice the entry's index, plus 1 for the row of j
+  std::vector<Lanes> scale;         // s, one per slice; 0 for rows that the last slice lacks
+  // Six per slice: xx, xy, xz, yy, yz, zz of A and of weight K; L_yx, L_zx, L_zy and 1/D of the factors A = L D L^T.
   std::vector<Lanes> diagonal, stiffness, factors;
 
   size_t size() const { return scale.size(); }
 };
 
-// Springs' blocks, as yet unscaled, from where each row is; the diagonal from them, from K's entries (none are zeros)
-// and the inertia [kg], one a row; and the scale, which `packed` gets as x, its root as y.
+// Computes the blocks of springs, unscaled, from the positions of the rows; the diagonal from them, from K's entries
+// (empty for none) and from the inertia of each row [kg]; and the scale. Sets each `packed` to the scale and its root.
 void FillDiagonal(const BlockEntries& diagonal, const std::vector<Position>& positions, float elasticity,
                   const std::vector<Lanes>& inertia, float weight, BlockSlices& slices, Quad* packed);
-// The blocks off it, scaled; padding's entry is at 0, and zero. `packed` as FillDiagonal left it.
+// Computes the scaled off-diagonal blocks. Entry 0 is zero and serves as padding. `packed` is that of FillDiagonal.
 void FillBlocks(const BlockEntries& entries, float weight, const Quad* packed, BlockSlices& slices);
 
-// The direction p is kept row by row, as it is gathered: x, y, z and nothing.
+// Stores the direction z as p, row by row for gathers: x, y, z and padding.
 void Pack(const RowVector& z, Quad* p);
-// q = A p with this diagonal; p . q.
+// Sets q = A p with this diagonal. Returns p . q.
 double Multiply(const BlockSlices& slices, const std::vector<Lanes>& diagonal, const Quad* p, RowVector& q);
-// r -= along q, then q = the inverse of A's diagonal blocks times r; r . q.
+// Sets r -= along q, then q to the inverse of A's diagonal blocks times r. Returns r . q.
 double Descend(const BlockSlices& slices, float along, RowVector& q, RowVector& r);
-// y += along p, then p = z + keep p.
+// Sets y += along p, then p = z + keep p.
 void Turn(float along, float keep, const RowVector& z, RowVector& y, Quad* p);
 
 }  // namespace phrenic

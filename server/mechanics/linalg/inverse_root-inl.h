@@ -1,7 +1,6 @@
-// 1/sqrt(x) of several vectors at once. Roots and divisions go through one unit of a processor, one after the other; on
-// some machines those of doubles take longer than all else of a spring. Three vectors share one division, therefore. To
-// be included between the namespaces of a file that Google Highway compiles once for each instruction set, after
-// <hwy/highway.h>.
+// 1/sqrt(x) of several vectors at once. A processor has one unit for square roots and divisions, and on some machines
+// those of doubles take longer than the rest of a spring. Three vectors therefore share one division. To be included by
+// a file that Google Highway compiles once for each instruction set, after <hwy/highway.h>.
 #if defined(PHRENIC_SERVER_MECHANICS_INVERSE_ROOT_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PHRENIC_SERVER_MECHANICS_INVERSE_ROOT_INL_H_
 #undef PHRENIC_SERVER_MECHANICS_INVERSE_ROOT_INL_H_
@@ -16,9 +15,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace phrenic::HWY_NAMESPACE {
 
-// x <- 1/sqrt(x), off by four units in the last place at most; the same bits on every machine. Doubles lie between
-// 1e-200 and 1e200: each root's inverse is taken from that of the product of all (Montgomery, Math Comp 1987;48:243),
-// which three of them leave within range.
+// Replaces x by 1/sqrt(x), with an error of at most four units in the last place and the same bits on every machine.
+// Requires of doubles: 1e-200 < x < 1e200, so that the product of three roots is in range: each inverse follows from
+// the inverse of the product (Montgomery, Math Comp 1987;48:243).
 template <typename Tag, int kCount>
 HWY_INLINE void InvertRoots(Tag d, hwy::HWY_NAMESPACE::Vec<Tag> (&x)[kCount]) {
   namespace hn = hwy::HWY_NAMESPACE;

@@ -1,6 +1,5 @@
-// Memory for large arrays, in pages as large as the system has (Linux: madvise(2), MADV_HUGEPAGE),
-// which begin where such a page may. To touch 10 MB of new memory in pages of 4 KiB took 3 ms on one machine, and 25 ms
-// on a virtual one inside another.
+// Memory for large arrays in huge pages (Linux: madvise(2), MADV_HUGEPAGE), aligned to such a page. The first access to
+// 10 MB of new memory in pages of 4 KiB took 3 ms on one machine, and 25 ms on a nested virtual machine.
 #ifndef PHRENIC_SERVER_MECHANICS_LINALG_LARGE_PAGES_H_
 #define PHRENIC_SERVER_MECHANICS_LINALG_LARGE_PAGES_H_
 
@@ -15,8 +14,8 @@
 
 namespace phrenic {
 
-// An allocator for std::vector. What `resize` appends is not set to zero but left as it is: memory is touched when it
-// is first written. Any number of threads may use their own. Throws std::bad_alloc where there is no memory.
+// An allocator for std::vector. Elements that `resize` appends are not initialised, so that memory is first accessed
+// when it is first written. Thread-safe. Throws std::bad_alloc if there is no memory.
 template <typename T>
 class LargePages {
  public:
@@ -31,7 +30,7 @@ class LargePages {
     void* const memory = std::aligned_alloc(kPage, Whole(bytes));
     if (memory == nullptr) throw std::bad_alloc();
 #ifdef MADV_HUGEPAGE
-    madvise(memory, Whole(bytes), MADV_HUGEPAGE);  // a wish: small pages do too
+    madvise(memory, Whole(bytes), MADV_HUGEPAGE);  // a hint: small pages work too
 #endif
     return static_cast<T*>(memory);
   }

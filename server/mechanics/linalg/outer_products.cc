@@ -1,8 +1,6 @@
 #include "server/mechanics/linalg/outer_products.h"
 
 namespace phrenic {
-namespace {}  // namespace
-
 void OuterProducts::Add(double scale, const Points& g) {
   if (used_ == terms_.size()) terms_.emplace_back();
   terms_[used_].scale = scale;

@@ -1,4 +1,4 @@
-// S = sum of scale g g^T, g 3 x n: matrices of low rank that are never written out.
+// Matrices of low rank, S = sum of scale g g^T with g of 3 x n, of which only the terms are stored.
 #ifndef PHRENIC_SERVER_MECHANICS_LINALG_OUTER_PRODUCTS_H_
 #define PHRENIC_SERVER_MECHANICS_LINALG_OUTER_PRODUCTS_H_
 
@@ -9,26 +9,26 @@
 
 namespace phrenic {
 
-// The sum of the products of entries.
+// Returns the sum of the products of entries.
 inline double Dot(const ConstPoints& a, const ConstPoints& b) { return a.cwiseProduct(b).sum(); }
 
 // Not thread-safe. Allocates only while the number of terms grows.
 class OuterProducts {
  public:
   void Clear() { used_ = 0; }
-  // scale >= 0.
+  // Adds a term. Requires: scale >= 0.
   void Add(double scale, const Points& g);
   bool empty() const { return used_ == 0; }
 
-  // y += factor S x.
+  // Adds factor S x to y.
   void AddTimes(double factor, const ConstPoints& x, MutablePoints y) const;
-  // Makes y = B^-1 b into (B + factor S)^-1 b (Sherman and Morrison 1950, term after term); `inverse` sets its second
+  // Replaces y = B^-1 b by (B + factor S)^-1 b (Sherman and Morrison 1950, term after term). `inverse` sets its second
   // argument to B^-1 times its first.
   void Correct(double factor, absl::FunctionRef<void(const Points&, Points&)> inverse, Points& y);
-  // Its two halves: what depends on B alone, and on b; for many right sides.
+  // The two halves of Correct, for several right-hand sides: what depends on B alone, and the rest.
   void Prepare(double factor, absl::FunctionRef<void(const Points&, Points&)> inverse);
   void CorrectPrepared(double factor, Points& y) const;
-  // Largest eigenvalue of W S at most, W the diagonal matrix of `weights`; exact for one term.
+  // Returns an upper bound of the largest eigenvalue of W S, W the diagonal matrix of `weights`; exact for one term.
   double Bound(const Eigen::VectorXd& weights) const;
 
  private:

@@ -1,5 +1,5 @@
-// Points of a 3 x n array, fetched and added to as vectors of coordinates. To be included between the namespaces of a
-// file that Google Highway compiles once for each instruction set, after <hwy/highway.h>.
+// Loads and stores of points of a 3 x n array as vectors of coordinates. To be included by a file that Google Highway
+// compiles once for each instruction set, after <hwy/highway.h>.
 #if defined(PHRENIC_SERVER_MECHANICS_POINTS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PHRENIC_SERVER_MECHANICS_POINTS_INL_H_
 #undef PHRENIC_SERVER_MECHANICS_POINTS_INL_H_

@@ -1,13 +1,16 @@
 #include "server/mechanics/linalg/sparse_ldlt.h"
 
 #include <Eigen/OrderingMethods>
-#include <Eigen/SparseCore>
 #include <algorithm>
 
 namespace phrenic {
 namespace {
 
-constexpr double kVanishes = 1e-11;  // of the diagonal: a smaller pivot is that of a redundant row
+// An entry of a row below the diagonal.
+struct Entry {
+  int column;
+  double value;
+};
 
 }  // namespace
 
@@ -87,7 +90,8 @@ void SparseLdlt::PlaceColumns() {
   }
 }
 
-void SparseLdlt::Factorise(const Eigen::VectorXd& diagonal, const std::vector<double>& values, Factors& factors) const {
+int SparseLdlt::Factorise(const Eigen::VectorXd& diagonal, const std::vector<double>& values, Factors& factors,
+                          double vanishes) const {
   if (factors.lower.size() < places_.size()) factors.lower.resize(places_.size());
   if (factors.row.size() < size_) {
     factors.row.resize(size_);
@@ -95,6 +99,7 @@ void SparseLdlt::Factorise(const Eigen::VectorXd& diagonal, const std::vector<do
   }
   double* const row = factors.row.data();
   std::fill(row, row + size_, 0.0);
+  int left_out = 0;
   for (int k = 0; k < size_; ++k) {
     for (int p = first_below_[k]; p < first_below_[k + 1]; ++p) row[below_columns_[p]] = values[p];
     double pivot = diagonal[k];
@@ -106,8 +111,11 @@ void SparseLdlt::Factorise(const Eigen::VectorXd& diagonal, const std::vector<do
       factors.lower[at] = y * factors.inverse_pivot[j];
       pivot -= factors.lower[at] * y;
     }
-    factors.inverse_pivot[k] = pivot > kVanishes * diagonal[k] ? 1 / pivot : 0;
+    const bool independent = pivot > vanishes * diagonal[k];
+    factors.inverse_pivot[k] = independent ? 1 / pivot : 0;
+    left_out += !independent;
   }
+  return left_out;
 }
 
 void SparseLdlt::Solve(const Factors& factors, Eigen::VectorXd& x) const {
@@ -130,6 +138,48 @@ void SparseLdlt::Solve(const Factors& factors, Points& x) const {
     for (int q = first_in_column_[j]; q < first_in_column_[j + 1]; ++q) sum -= factors.lower[q] * x.col(rows_[q]);
     x.col(j) = sum;
   }
+}
+
+bool OrderedLdlt::Factorise(const Eigen::SparseMatrix<double>& a) {
+  const auto size = static_cast<int>(a.cols());
+  std::vector<std::pair<int, int>> below;
+  const auto for_each_below = [&](const auto& visit) {
+    for (int j = 0; j < size; ++j) {
+      for (Eigen::SparseMatrix<double>::InnerIterator entry(a, j); entry; ++entry) {
+        if (entry.row() > j) visit(static_cast<int>(entry.row()), j, entry.value());
+      }
+    }
+  };
+  for_each_below([&](int i, int j, double) { below.emplace_back(i, j); });
+  const std::vector<int> order = SparseLdlt::Order(size, below);
+  row_.resize(static_cast<size_t>(size));
+  for (int k = 0; k < size; ++k) row_[order[k]] = k;
+  std::vector<std::vector<Entry>> rows(static_cast<size_t>(size));
+  for_each_below([&](int i, int j, double value) {
+    rows[std::max(row_[i], row_[j])].push_back({std::min(row_[i], row_[j]), value});
+  });
+  std::vector<double> values;
+  below.clear();
+  for (int i = 0; i < size; ++i) {
+    std::sort(rows[i].begin(), rows[i].end(), [](const Entry& p, const Entry& q) { return p.column < q.column; });
+    for (const Entry& entry : rows[i]) {
+      below.emplace_back(i, entry.column);
+      values.push_back(entry.value);
+    }
+  }
+  Eigen::VectorXd diagonal(size);
+  const Eigen::VectorXd unordered = a.diagonal();
+  for (int i = 0; i < size; ++i) diagonal[row_[i]] = unordered[i];
+  pattern_ = SparseLdlt(size, below);
+  return pattern_.Factorise(diagonal, values, factors_, 0) == 0;
+}
+
+void OrderedLdlt::Solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) const {
+  Eigen::VectorXd ordered(b.size());
+  for (Eigen::Index i = 0; i < b.size(); ++i) ordered[row_[i]] = b[i];
+  pattern_.Solve(factors_, ordered);
+  x.resize(b.size());
+  for (Eigen::Index i = 0; i < b.size(); ++i) x[i] = ordered[row_[i]];
 }
 
 }  // namespace phrenic

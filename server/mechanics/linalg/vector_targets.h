@@ -1,5 +1,5 @@
-// Before <hwy/foreach_target.h>: leaves out targets whose vectors have no size that the compiler knows; their machines
-// take NEON and the portable path, as do the few that have SSSE3 and no SSE4.
+// To be included before <hwy/foreach_target.h>: disables targets with vectors of a size unknown to the compiler, whose
+// machines use NEON or the portable path, and SSSE3, since few machines have SSSE3 without SSE4.
 #ifndef PHRENIC_SERVER_MECHANICS_LINALG_VECTOR_TARGETS_H_
 #define PHRENIC_SERVER_MECHANICS_LINALG_VECTOR_TARGETS_H_
 

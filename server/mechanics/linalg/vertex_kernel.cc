@@ -19,8 +19,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using points::Tag, points::Vector;
 constexpr Eigen::Index kLanes = points::kLanes;
 
-// Of kLanes vertices, whose coordinates fill three vectors: a number a vertex, as often as it has coordinates in vector
-// 0, 1, 2.
+// Repeats one number per vertex for each coordinate: the coordinates of kLanes vertices fill three vectors.
 struct Spread {
   using Indices = decltype(hn::SetTableIndices(Tag(), static_cast<const std::int64_t*>(nullptr)));
 
@@ -35,7 +34,7 @@ struct Spread {
   Indices indices[3];
 };
 
-// A force as often as vertices' coordinates fill three vectors.
+// A force repeated for each of kLanes vertices, whose coordinates fill three vectors.
 struct Repeated {
   HWY_ALIGN double numbers[3 * kLanes];
 
@@ -47,7 +46,7 @@ struct Repeated {
   HWY_INLINE Vector At(int vector) const { return hn::Load(Tag(), numbers + vector * kLanes); }
 };
 
-// Loads whose number is known to the compiler.
+// Loads of a number that is known at compile time.
 template <bool kRubs, size_t kCount>
 class Loads {
  public:
@@ -55,7 +54,7 @@ class Loads {
     for (size_t l = 0; l < kCount; ++l) forces_[l].Set(loads.shared[l].force), shares_[l] = loads.shared[l].share;
   }
 
-  // f += the loads of kLanes vertices, v [m/s] theirs.
+  // Adds the loads on kLanes vertices to f; v are their velocities [m/s].
   HWY_INLINE void AddTo(const Spread& spread, Eigen::Index vertex, const Vector (&v)[3], Vector (&f)[3]) const {
     const Tag d;
     if constexpr (kRubs) {
@@ -68,7 +67,7 @@ class Loads {
       for (int i = 0; i < 3; ++i) f[i] = hn::Add(f[i], hn::Mul(spread.Of(share, i), forces_[l].At(i)));
     }
   }
-  // A coordinate of the force on one vertex, with its loads.
+  // Returns a coordinate of the force on one vertex with its loads.
   double Sum(double f, Eigen::Index vertex, int i, double v) const {
     if constexpr (kRubs) f -= loads_.c[vertex] * v;
     for (size_t l = 0; l < kCount; ++l) f += shares_[l][vertex] * loads_.shared[l].force[i];
@@ -81,7 +80,7 @@ class Loads {
   const double* shares_[kCount + 1];
 };
 
-// What is done to a range with loads of any number: Do(range, loads, ...) is called with those of its own.
+// Calls Do::In(range, Loads<...>, ...) for the number of loads.
 template <typename Do, bool kRubs, typename... Arguments>
 HWY_INLINE void ByCount(const VertexRange& range, const VertexLoads& loads, Arguments... arguments) {
   static_assert(VertexLoads::kMost == 4);
@@ -97,7 +96,7 @@ HWY_INLINE void WithLoads(const VertexRange& range, const VertexLoads& loads, Ar
   loads.c != nullptr ? ByCount<Do, true>(range, loads, arguments...) : ByCount<Do, false>(range, loads, arguments...);
 }
 
-// How far vertices have got.
+// The bounds of vertices so far.
 struct Reached {
   points::Largest furthest, fastest;
 
@@ -105,9 +104,9 @@ struct Reached {
   StateBounds Whole() const { return {furthest.Whole(), fastest.Whole()}; }
 };
 
-void Note(double x, double v, StateBounds& reach) {
-  reach.furthest = LargerMagnitude(reach.furthest, std::abs(x));
-  reach.fastest = LargerMagnitude(reach.fastest, std::abs(v));
+void Note(double x, double v, StateBounds& bounds) {
+  bounds.furthest = LargerMagnitude(bounds.furthest, std::abs(x));
+  bounds.fastest = LargerMagnitude(bounds.fastest, std::abs(v));
 }
 
 HWY_INLINE void LoadThree(const double* from, Vector (&to)[3]) {
@@ -139,13 +138,13 @@ void AddLoadsHere(const VertexRange& range, const VertexLoads& loads, const doub
   WithLoads<Adding>(range, loads, v, f);
 }
 
-// The arrays of all vertices; f has those of the range.
+// Arrays of all vertices; f has the columns of the range.
 struct Kick {
   const double* inverse_mass;
   double kick, drift;
   const double *f, *x, *v;
   double *x_next, *v_next;
-  StateBounds* reach;
+  StateBounds* bounds;
 };
 
 struct Kicking {
@@ -155,19 +154,19 @@ struct Kicking {
     Reached reached;
     Eigen::Index vertex = range.first;
     for (; vertex + kLanes <= range.end; vertex += kLanes) Eight(spread, range.first, vertex, loads, with, reached);
-    StateBounds& reach = *with.reach = reached.Whole();
+    StateBounds& bounds = *with.bounds = reached.Whole();
     for (; vertex < range.end; ++vertex) {
       const double w = with.inverse_mass[vertex];
       for (Eigen::Index c = 0, i = 3 * vertex; c < 3; ++c, ++i) {
         const double f = loads.Sum(with.f[i - 3 * range.first], vertex, static_cast<int>(c), with.v[i]);
         with.v_next[i] = w > 0 ? with.v[i] + with.kick * w * f : with.v[i];
         with.x_next[i] = w > 0 ? with.x[i] + with.drift * with.v_next[i] : with.x[i];
-        Note(with.x_next[i], with.v_next[i], reach);
+        Note(with.x_next[i], with.v_next[i], bounds);
       }
     }
   }
 
-  // kLanes of them.
+  // Moves kLanes vertices.
   template <typename Loads>
   static HWY_INLINE void Eight(const Spread& spread, Eigen::Index first, Eigen::Index vertex, const Loads& loads,
                                const Kick& with, Reached& reached) {
@@ -193,18 +192,18 @@ struct Kicking {
 StateBounds KickAndDriftHere(const VertexRange& range, const VertexLoads& loads, const double* inverse_mass,
                              double kick, double drift, const double* f, const double* x, const double* v,
                              double* x_next, double* v_next) {
-  StateBounds reach;
-  WithLoads<Kicking>(range, loads, Kick{inverse_mass, kick, drift, f, x, v, x_next, v_next, &reach});
-  return reach;
+  StateBounds bounds;
+  WithLoads<Kicking>(range, loads, Kick{inverse_mass, kick, drift, f, x, v, x_next, v_next, &bounds});
+  return bounds;
 }
 
-StateBounds ReachHere(const double* x, const double* v, Eigen::Index count) {
+StateBounds BoundsHere(const double* x, const double* v, Eigen::Index count) {
   Reached reached;
   Eigen::Index i = 0;
   for (; i + kLanes <= count; i += kLanes) reached.Note(hn::LoadU(Tag(), x + i), hn::LoadU(Tag(), v + i));
-  StateBounds reach = reached.Whole();
-  for (; i < count; ++i) Note(x[i], v[i], reach);
-  return reach;
+  StateBounds bounds = reached.Whole();
+  for (; i < count; ++i) Note(x[i], v[i], bounds);
+  return bounds;
 }
 
 }  // namespace
@@ -216,7 +215,7 @@ namespace phrenic {
 
 HWY_EXPORT(KickAndDriftHere);
 HWY_EXPORT(AddLoadsHere);
-HWY_EXPORT(ReachHere);
+HWY_EXPORT(BoundsHere);
 
 void AddLoads(const VertexRange& range, const VertexLoads& loads, const ConstPoints& v, MutablePoints f) {
   HWY_DYNAMIC_DISPATCH(AddLoadsHere)(range, loads, v.data(), f.data());
@@ -231,7 +230,7 @@ StateBounds KickAndDrift(const VertexRange& range, const Eigen::VectorXd& w, dou
 
 StateBounds BoundsOf(const VertexRange& range, const Points& x, const Points& v) {
   const Eigen::Index first = 3 * range.first;
-  return HWY_DYNAMIC_DISPATCH(ReachHere)(x.data() + first, v.data() + first, 3 * range.end - first);
+  return HWY_DYNAMIC_DISPATCH(BoundsHere)(x.data() + first, v.data() + first, 3 * range.end - first);
 }
 
 }  // namespace phrenic

@@ -13,16 +13,16 @@
 namespace phrenic {
 namespace {
 
-// Fewer parts take less time than it takes to wake a thread.
+// Fewer parts take less time than waking a thread.
 constexpr std::int64_t kLeastParts = 16;
-// How often a thread looks whether the others are done before it lets somebody else have its core.
+// Polls for the end of the other threads before the caller yields its core.
 constexpr int kSpins = 2000;
 
-// How often a helper looks for work before it sleeps: longer than from one part of a step to the next, as waking it
-// takes longer than it would help.
-constexpr int kLooks = 1000;
+// Polls for work before a helper sleeps: longer than from one loop of a step to the next, since waking it takes longer
+// than its help saves.
+constexpr int kPolls = 1000;
 
-// Threads that help whoever posts work.
+// Threads that run posted work.
 class Pool {
  public:
   explicit Pool(int threads) {
@@ -43,12 +43,12 @@ class Pool {
  private:
   void Help(int own) {
     number = own;
-    for (int looks = 0; !context_.stopped(); ++looks) {
-      if (context_.poll_one() > 0 || (looks > kLooks && context_.run_one() > 0)) looks = 0;
+    for (int polls = 0; !context_.stopped(); ++polls) {
+      if (context_.poll_one() > 0 || (polls > kPolls && context_.run_one() > 0)) polls = 0;
     }
   }
 
-  static thread_local int number;  // of a helper, from 1 on
+  static thread_local int number;  // identity of a helper thread, from 1 on; 0 for other threads
 
   boost::asio::io_context context_;
   boost::asio::executor_work_guard<boost::asio::io_context::executor_type> guard_{context_.get_executor()};
@@ -67,8 +67,9 @@ Helpers& TheHelpers() {
   return helpers;
 }
 
-// One call's parts, in a run for each thread. It begins with its own and goes on with what others have left. A helper
-// that comes when all are taken does not touch `work`, which is gone when the caller is.
+// The parts of one call, in one run per thread. A thread begins with its own run and goes on with the rest of the
+// others. A helper that comes after all parts are taken does not call `work`, which is gone once the caller has
+// returned.
 class Parts {
  public:
   Parts(std::int64_t count, int threads, absl::FunctionRef<void(std::int64_t)> work)

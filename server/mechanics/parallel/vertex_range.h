@@ -1,4 +1,4 @@
-// Which simulated vertices a piece of a step's work is for.
+// Ranges and blocks of simulated vertices, and loops over blocks on several threads.
 #ifndef PHRENIC_SERVER_MECHANICS_PARALLEL_VERTEX_RANGE_H_
 #define PHRENIC_SERVER_MECHANICS_PARALLEL_VERTEX_RANGE_H_
 
@@ -14,15 +14,17 @@ struct VertexRange {
   Eigen::Index first = 0, end = 0;
 };
 
-// Ranges begin, and but for the last one end, at a multiple of this. A block's forces, positions and velocities, before
-// and after a step, fit into a core's nearest cache beside what its springs take.
+// Vertices per block. Ranges begin at a multiple of this and, except for the last, end at one. Forces, positions and
+// velocities of a block, before and after a step, fit into a core's L1 cache beside the data of its springs.
 inline constexpr Eigen::Index kVertexBlock = 256;
 
-// Calls `work` with the blocks of a range, shared out over the threads of a step.
+// Returns the number of blocks of so many vertices; the last may be incomplete.
+inline Eigen::Index CountBlocks(Eigen::Index vertices) { return (vertices + kVertexBlock - 1) / kVertexBlock; }
+
+// Calls work(VertexRange) once for each block of a range, on the threads of a step (ParallelFor), in any order.
 template <typename Work>
 void ForEachBlock(const VertexRange& range, const Work& work) {
-  const Eigen::Index blocks = (range.end - range.first + kVertexBlock - 1) / kVertexBlock;
-  ParallelFor(blocks, [&](std::int64_t block) {
+  ParallelFor(CountBlocks(range.end - range.first), [&](std::int64_t block) {
     const Eigen::Index first = range.first + block * kVertexBlock;
     work(VertexRange{first, std::min(first + kVertexBlock, range.end)});
   });

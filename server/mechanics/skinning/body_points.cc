@@ -8,19 +8,23 @@
 namespace phrenic {
 namespace {
 
-// Memory that keeps its capacity from body to body.
+// Scratch memory, which keeps its capacity from one body to the next.
+struct Placements {
+  std::vector<double> positions, moving_positions, moving_velocities;
+};
+
 Eigen::Map<Points> Fit(std::vector<double>& memory, const Points& like) {
   memory.resize(static_cast<size_t>(like.size()));
   return {memory.data(), 3, like.cols()};
 }
 
-// x [m], and v [m/s] where kVelocities.
+// Output arrays x [m] and, with kVelocities, v [m/s].
 struct Placed {
   MutablePoints x, v;
 };
 
 template <bool kVelocities>
-void CarryAll(const Pose& pose, const Points& rest, Placed& out) {
+void MoveRigidly(const Pose& pose, const Points& rest, Placed& out) {
   const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
   for (Eigen::Index i = 0; i < rest.cols(); ++i) {
     const Eigen::Vector3d turned = rotation * rest.col(i);
@@ -32,32 +36,32 @@ void CarryAll(const Pose& pose, const Points& rest, Placed& out) {
 // The corners of a triangle, or their velocities.
 struct Corners {
   Eigen::Vector3d a, b, c;
-  Corners(const ConstPoints& of, const TriangleBinding& share)
-      : a(of.col(share.corners[0])), b(of.col(share.corners[1])), c(of.col(share.corners[2])) {}
+  Corners(const ConstPoints& of, const TriangleBinding& binding)
+      : a(of.col(binding.corners[0])), b(of.col(binding.corners[1])), c(of.col(binding.corners[2])) {}
   Eigen::Vector3d Weighted(const Eigen::Vector3d& weights) const {
     return weights[0] * a + weights[1] * b + weights[2] * c;
   }
 };
 
-// Of the area vector N = (b - a) x (c - a), n = N/|N| turns at dn/dt = (dN/dt - n (n . dN/dt))/|N|.
+// With the area vector N = (b - a) x (c - a) and n = N/|N|: dn/dt = (dN/dt - n (n . dN/dt))/|N|.
 template <bool kVelocities>
-void PlaceOnTriangle(const TriangleBinding& share, const EvalContext& at, Eigen::Index i, Placed& out) {
-  const Corners x(at.x, share);
+void PlaceOnTriangle(const TriangleBinding& binding, const EvalContext& at, Eigen::Index i, Placed& out) {
+  const Corners x(at.x, binding);
   const Eigen::Vector3d area = (x.b - x.a).cross(x.c - x.a), normal = area.stableNormalized();
-  out.x.col(i) = x.Weighted(share.weights) + share.height * normal;
+  out.x.col(i) = x.Weighted(binding.weights) + binding.height * normal;
   if constexpr (!kVelocities) return;
-  const Corners v(at.v, share);
-  out.v.col(i) = v.Weighted(share.weights);
+  const Corners v(at.v, binding);
+  out.v.col(i) = v.Weighted(binding.weights);
   const double size = area.stableNorm();
   if (!(size > 0)) return;
   const Eigen::Vector3d rate = (v.b - v.a).cross(x.c - x.a) + (x.b - x.a).cross(v.c - v.a);
-  out.v.col(i) += share.height / size * (rate - normal * normal.dot(rate));
+  out.v.col(i) += binding.height / size * (rate - normal * normal.dot(rate));
 }
 
 template <bool kVelocities>
-void PlaceOnTriangles(std::span<const TriangleBinding> shares, const EvalContext& at, Placed& out) {
-  for (size_t i = 0; i < shares.size(); ++i) {
-    PlaceOnTriangle<kVelocities>(shares[i], at, static_cast<Eigen::Index>(i), out);
+void PlaceOnTriangles(std::span<const TriangleBinding> bindings, const EvalContext& at, Placed& out) {
+  for (size_t i = 0; i < bindings.size(); ++i) {
+    PlaceOnTriangle<kVelocities>(bindings[i], at, static_cast<Eigen::Index>(i), out);
   }
 }
 
@@ -67,23 +71,23 @@ BodyPoints::BodyPoints(const Model& model, int body)
     : rest_(&model.bodies[body].mesh.vertices),
       first_vertex_(model.bodies[body].first_vertex),
       pose_(model.bodies[body].pose),
-      carriers_(model.rest.data()) {
-  const int ride = model.bodies[body].skin;
-  if (ride < 0) return;
-  shares_ = model.skins[ride].shares;
-  triangles_ = model.skins[ride].triangles;
+      driver_rest_(model.rest.data()) {
+  const int skin = model.bodies[body].skin;
+  if (skin < 0) return;
+  weights_ = model.skins[skin].weights;
+  triangles_ = model.skins[skin].triangles;
 }
 
-// Without velocities, v is not written.
+// Does not write v without kVelocities.
 template <bool kVelocities>
 void BodyPoints::Follow(const EvalContext& at, MutablePoints x, MutablePoints v) const {
   Placed out{x, v};
   if (!triangles_.empty()) return PlaceOnTriangles<kVelocities>(triangles_, at, out);
-  if (pose_ >= 0) return CarryAll<kVelocities>(at.poses[pose_], *rest_, out);
+  if (pose_ >= 0) return MoveRigidly<kVelocities>(at.poses[pose_], *rest_, out);
   x = *rest_;
   if (kVelocities) v.setZero();
-  const DriverState carriers = {PoseMatricesOf(at), carriers_, at.x.data(), at.v.data()};
-  ApplySkinWeights(shares_, carriers, rest_->data(), x.data(), kVelocities ? v.data() : nullptr);
+  const DriverState drivers = {PoseMatricesOf(at), driver_rest_, at.x.data(), at.v.data()};
+  ApplySkinWeights(weights_, drivers, rest_->data(), x.data(), kVelocities ? v.data() : nullptr);
 }
 
 void BodyPoints::Place(const EvalContext& at, MutablePoints x) const {
@@ -96,8 +100,7 @@ void BodyPoints::Place(const EvalContext& at, MutablePoints x) const {
 
 ConstPoints BodyPoints::Positions(const EvalContext& at) const {
   if (first_vertex_ >= 0) return at.x.middleCols(first_vertex_, rest_->cols());
-  thread_local std::vector<double> memory;
-  Eigen::Map<Points> x = Fit(memory, *rest_);
+  Eigen::Map<Points> x = Fit(at.scratch.Get<Placements>().positions, *rest_);
   Follow<false>(at, x, x);
   return x;
 }
@@ -105,10 +108,14 @@ ConstPoints BodyPoints::Positions(const EvalContext& at) const {
 BodyPoints::Moving BodyPoints::Locate(const EvalContext& at) const {
   const Eigen::Index n = rest_->cols();
   if (first_vertex_ >= 0) return {at.x.middleCols(first_vertex_, n), at.v.middleCols(first_vertex_, n)};
-  thread_local std::vector<double> positions, velocities;
-  Eigen::Map<Points> x = Fit(positions, *rest_), v = Fit(velocities, *rest_);
+  Placements& memory = at.scratch.Get<Placements>();
+  Eigen::Map<Points> x = Fit(memory.moving_positions, *rest_), v = Fit(memory.moving_velocities, *rest_);
   Follow<true>(at, x, v);
   return {x, v};
+}
+
+void PlaceBody(const Model& model, const State& state, int body, MutablePoints out, const Scratch& scratch) {
+  BodyPoints(model, body).Place(MakeEvalContext(model, model.parameters, state, scratch), out);
 }
 
 }  // namespace phrenic

@@ -1,4 +1,4 @@
-// Where the vertices of any body are and how they move: simulated, carried by a pose, riding or still.
+// Positions and velocities of the vertices of any body: simulated, moved by a pose, skinned (skin.h) or fixed.
 #ifndef PHRENIC_SERVER_MECHANICS_SKINNING_BODY_POINTS_H_
 #define PHRENIC_SERVER_MECHANICS_SKINNING_BODY_POINTS_H_
 
@@ -8,28 +8,28 @@
 
 namespace phrenic {
 
-// Of one body, by the instant alone, for elements, which do not see the model while they act; what is seen and exported
-// is placed by the same. Refers to the model's bodies, rides and points at rest, which stay where they are when it is
-// moved: for the model's own elements, once all its bodies and motions are there. Immutable; any number of threads may
-// call.
+// The points of one body as a function of the EvalContext only, for elements (which have no access to the model when
+// they are evaluated), frames and exports. Refers to the model's bodies, skins and rest positions, which keep their
+// addresses when the model is moved. Requires: the model has all its bodies, motions and skins. Immutable and
+// thread-safe, for threads with scratch memory of their own.
 class BodyPoints {
  public:
   BodyPoints(const Model& model, int body);
 
-  // 3 x vertices of the body, x [m] and v [m/s].
+  // Positions [m] and velocities [m/s], 3 x vertices of the body.
   struct Moving {
     ConstPoints x, v;
   };
-  // Valid while the instant is, and until this thread locates another body. Allocates only while the largest body that
-  // this thread has located grows.
+  // Returns both. They are valid as long as the context, and until the next call with the same scratch memory.
+  // Allocates if this is the largest body located with that memory so far.
   Moving Locate(const EvalContext& at) const;
-  // The same for x alone, at half the price.
+  // Returns positions only, at half the cost.
   ConstPoints Positions(const EvalContext& at) const;
-  // Into memory of one's own.
+  // Sets x to the positions, 3 x vertices of the body [m].
   void Place(const EvalContext& at, MutablePoints x) const;
 
   const Points& rest() const { return *rest_; }  // [m]
-  // Place of its first vertex among the simulated ones; -1 where it is not simulated.
+  // Index of its first vertex among the simulated ones; -1 if it is not simulated.
   int first_vertex() const { return first_vertex_; }
 
  private:
@@ -39,10 +39,14 @@ class BodyPoints {
   const Points* rest_;
   int first_vertex_ = -1;
   int pose_ = -1;
-  std::span<const SkinWeight> shares_;
+  std::span<const SkinWeight> weights_;
   std::span<const TriangleBinding> triangles_;
-  const double* carriers_;  // the simulated vertices at rest [m]
+  const double* driver_rest_;  // the simulated vertices at rest [m]
 };
+
+// Sets `out`, 3 x vertices of the body, to the positions of all vertices of a body in a state [m]. Thread-safe, for
+// threads with scratch memory of their own.
+void PlaceBody(const Model& model, const State& state, int body, MutablePoints out, const Scratch& scratch = {});
 
 }  // namespace phrenic
 

@@ -1,4 +1,4 @@
-// How bodies carry points that lie between several of them: shares of each by its distance.
+// Skin weights for points between several bodies, by inverse distance.
 #ifndef PHRENIC_SERVER_MECHANICS_SKINNING_INVERSE_DISTANCE_WEIGHTS_H_
 #define PHRENIC_SERVER_MECHANICS_SKINNING_INVERSE_DISTANCE_WEIGHTS_H_
 
@@ -8,36 +8,36 @@
 
 namespace phrenic {
 
-// Shares of carriers by inverse distance, w_c ~ (d_c^2 + (5 mm)^2)^(-2): smooth, and the nearest has the say; those
-// below 1 % of the nearest's are dropped and the rest scaled to 1. What is found for one point bounds the search for
-// the next, so that points close together are soon done; it changes no result. Not thread-safe; use it while the
-// carriers last.
+// Weights w_d ~ (d^2 + (5 mm)^2)^(-2), d the distance to a driver: smooth, with the nearest driver dominating. Weights
+// below 1 % of the largest are dropped and the rest scaled to a sum of 1. The result for one point bounds the search
+// for the next, so that neighbouring points are fast; it does not change results. The drivers must outlive it. Not
+// thread-safe.
 class InverseDistanceWeights {
  public:
-  explicit InverseDistanceWeights(const SkinDrivers& carriers);
-  // Appends the shares of a point, by carrier; `vertex` of them is `for_vertex`.
-  void Blend(const Eigen::Vector3d& point, int for_vertex, std::vector<SkinWeight>& shares);
+  explicit InverseDistanceWeights(const SkinDrivers& drivers);
+  // Appends the weights of a point at rest [m] as those of `for_vertex`, sorted by driver.
+  void Append(const Eigen::Vector3d& point, int for_vertex, std::vector<SkinWeight>& weights);
 
  private:
-  // What is known of a carrier: how far it was from the point it was last sought from.
+  // The result of the last nearest-vertex search in a driver.
   struct Track {
-    Eigen::Vector3d from = Eigen::Vector3d::Zero();
-    double distance = 0;  // [m]
-    int vertex = 0;       // nearest then
-    double weight = 0;    // for the present point
+    Eigen::Vector3d from = Eigen::Vector3d::Zero();  // the point
+    double distance = 0;                             // [m]
+    int vertex = 0;                                  // the nearest one of the driver
+    double weight = 0;                               // for the present point
 
     double AtLeast(const Eigen::Vector3d& point) const;
   };
-  double AtMost(int carrier, const Eigen::Vector3d& point) const;
-  void Find(int carrier, const Eigen::Vector3d& point);
+  double AtMost(int driver, const Eigen::Vector3d& point) const;
+  void Find(int driver, const Eigen::Vector3d& point);
   void LookAround(const Eigen::Vector3d& point);
   void Weigh(const Eigen::Vector3d& point);
 
-  const SkinDrivers& carriers_;
+  const SkinDrivers& drivers_;
   std::vector<Track> tracks_;
   int nearest_ = 0;
-  Eigen::Vector3d middle_;   // points around it ...
-  std::vector<int> around_;  // ... are carried by no others than these
+  Eigen::Vector3d middle_;   // the point for which around_ was computed [m]
+  std::vector<int> around_;  // candidate drivers of points near middle_
 };
 
 }  // namespace phrenic

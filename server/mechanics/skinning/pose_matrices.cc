@@ -1,8 +1,16 @@
 #include "server/mechanics/skinning/pose_matrices.h"
 
 #include <Eigen/Geometry>
+#include <vector>
 
 namespace phrenic {
+namespace {
+
+struct AllMatrices {
+  std::vector<PoseMatrices> of_poses;
+};
+
+}  // namespace
 
 PoseMatrices::PoseMatrices(const Pose& pose) {
   const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
@@ -15,16 +23,12 @@ PoseMatrices::PoseMatrices(const Pose& pose) {
   columns.block<3, 1>(4, 3) = pose.velocity;
 }
 
-std::span<const PoseMatrices> MakePoseMatrices(const std::vector<Pose>& poses, std::vector<PoseMatrices>& memory) {
-  memory.clear();
-  for (const Pose& pose : poses) memory.emplace_back(pose);
-  return memory;
-}
-
 std::span<const PoseMatrices> PoseMatricesOf(const EvalContext& at) {
-  if (at.columns != nullptr) return {at.columns, at.poses.size()};
-  thread_local std::vector<PoseMatrices> memory;
-  return MakePoseMatrices(at.poses, memory);
+  if (at.pose_matrices != nullptr) return {at.pose_matrices, at.poses.size()};
+  std::vector<PoseMatrices>& matrices = at.scratch.Get<AllMatrices>().of_poses;
+  matrices.clear();
+  for (const Pose& pose : at.poses) matrices.emplace_back(pose);
+  return matrices;
 }
 
 }  // namespace phrenic

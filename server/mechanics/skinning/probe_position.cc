@@ -1,5 +1,7 @@
 #include "server/mechanics/skinning/probe_position.h"
 
+#include "server/mechanics/skinning/body_points.h"
+
 namespace phrenic {
 
 Eigen::Vector3d ProbePosition(const Model& model, const State& state, const Probe& probe) {

@@ -6,27 +6,26 @@
 namespace phrenic {
 namespace {
 
-// What carries a vertex that rides itself carries what rides on it.
-void AppendOfVertex(const Skin& ride, int vertex, int for_vertex, double weight, std::vector<SkinWeight>& shares) {
-  if (!ride.triangles.empty()) {
-    const TriangleBinding& place = ride.triangles[vertex];
-    for (int i = 0; i < 3; ++i) shares.push_back({for_vertex, -1, place.corners[i], weight * place.weights[i]});
+// Appends the drivers of a vertex of a skinned body, their weights times `weight`.
+void AppendOfVertex(const Skin& skin, int vertex, int for_vertex, double weight, std::vector<SkinWeight>& weights) {
+  if (!skin.triangles.empty()) {
+    const TriangleBinding& binding = skin.triangles[vertex];
+    for (int i = 0; i < 3; ++i) weights.push_back({for_vertex, -1, binding.corners[i], weight * binding.weights[i]});
     return;
   }
-  const auto before = [](const SkinWeight& share, int v) { return share.vertex < v; };
-  auto share = std::lower_bound(ride.shares.begin(), ride.shares.end(), vertex, before);
-  for (; share != ride.shares.end() && share->vertex == vertex; ++share) {
-    shares.push_back({for_vertex, share->pose, share->simulated_vertex, weight * share->weight});
+  const auto before = [](const SkinWeight& own, int v) { return own.vertex < v; };
+  auto own = std::lower_bound(skin.weights.begin(), skin.weights.end(), vertex, before);
+  for (; own != skin.weights.end() && own->vertex == vertex; ++own) {
+    weights.push_back({for_vertex, own->pose, own->simulated_vertex, weight * own->weight});
   }
 }
 
-// Boxes by their distances from a point, nearest first; of equally near ones the first. Those that are nearer than
-// `reach` [m].
+// A priority queue of the boxes within `reach` [m] of a point, nearest first; ties by index.
 class NearestBoxes {
  public:
   struct Box {
     double squared;  // [m^2]
-    int carrier;
+    int driver;
   };
 
   NearestBoxes(const std::vector<Eigen::AlignedBox3d>& boxes, const Eigen::Vector3d& point, double reach) {
@@ -47,7 +46,7 @@ class NearestBoxes {
 
  private:
   static bool Farther(const Box& a, const Box& b) {
-    return a.squared != b.squared ? a.squared > b.squared : a.carrier > b.carrier;
+    return a.squared != b.squared ? a.squared > b.squared : a.driver > b.driver;
   }
 
   std::vector<Box> heap_;
@@ -64,28 +63,28 @@ SkinDrivers::SkinDrivers(const ModelBuilder& builder, const std::vector<int>& bo
   }
 }
 
-SkinDrivers::Contact SkinDrivers::Nearest(const Eigen::Vector3d& point, double reach) const {
-  Contact nearest{.distance = kAnywhere};
+SkinDrivers::Nearby SkinDrivers::Nearest(const Eigen::Vector3d& point, double reach) const {
+  Nearby nearest{.distance = kAnywhere};
   for (NearestBoxes boxes(boxes_, point, reach); !boxes.empty();) {
-    const auto [squared, carrier] = boxes.Take();
+    const auto [squared, driver] = boxes.Take();
     if (std::sqrt(squared) >= reach) break;
-    const Neighbour found = searches_[carrier]->Nearest(point, reach);
+    const Neighbour found = searches_[driver]->Nearest(point, reach);
     if (!(found.distance < reach)) continue;
-    nearest = {carrier, found.vertex, found.distance};
+    nearest = {driver, found.vertex, found.distance};
     reach = found.distance;
   }
   return nearest;
 }
 
-void SkinDrivers::AppendWeights(const Contact& contact, int for_vertex, double weight,
-                                std::vector<SkinWeight>& shares) const {
-  const BodyModel& body = builder_.model.bodies[bodies_[contact.carrier]];
+void SkinDrivers::AppendWeights(const Nearby& nearby, int for_vertex, double weight,
+                                std::vector<SkinWeight>& weights) const {
+  const BodyModel& body = builder_.model.bodies[bodies_[nearby.driver]];
   if (body.pose >= 0) {
-    shares.push_back({for_vertex, body.pose, -1, weight});
+    weights.push_back({for_vertex, body.pose, -1, weight});
   } else if (body.first_vertex >= 0) {
-    shares.push_back({for_vertex, -1, body.first_vertex + contact.vertex, weight});
+    weights.push_back({for_vertex, -1, body.first_vertex + nearby.vertex, weight});
   } else if (body.skin >= 0) {
-    AppendOfVertex(builder_.model.skins[body.skin], contact.vertex, for_vertex, weight, shares);
+    AppendOfVertex(builder_.model.skins[body.skin], nearby.vertex, for_vertex, weight, weights);
   }
 }
 

@@ -1,4 +1,4 @@
-// How bodies carry points: finds, at compile time, the shares of carriers for points at rest.
+// The bodies that drive a skin: finds, at compile time, which of them is near a point at rest.
 #ifndef PHRENIC_SERVER_MECHANICS_SKINNING_SKIN_DRIVERS_H_
 #define PHRENIC_SERVER_MECHANICS_SKINNING_SKIN_DRIVERS_H_
 
@@ -11,33 +11,35 @@
 
 namespace phrenic {
 
-// Nearest-vertex search over each of several carriers. Keeps references into the builder: use it while it lasts.
+// A nearest-vertex search over several bodies. The builder must outlive it. Immutable, but not thread-safe, because the
+// builder is not.
 class SkinDrivers {
  public:
   static constexpr double kAnywhere = std::numeric_limits<double>::infinity();
 
   SkinDrivers(const ModelBuilder& builder, const std::vector<int>& bodies);
 
-  struct Contact {
-    int carrier = 0;  // place in the list of bodies
-    int vertex = 0;   // of that body
+  struct Nearby {
+    int driver = 0;  // index in the list of bodies
+    int vertex = 0;  // of that body
     double distance = 0;
   };
-  // At an infinite distance where none is nearer than `reach` [m]; the less it is, the sooner that is known.
-  Contact Nearest(const Eigen::Vector3d& point, double reach = kAnywhere) const;
-  // Appends what the carrier does to a point near one of its vertices, by `weight`; `vertex` of the shares is
-  // `for_vertex`.
-  void AppendWeights(const Contact& contact, int for_vertex, double weight, std::vector<SkinWeight>& shares) const;
+  // Returns the nearest vertex of all bodies, with infinite distance if none is within `reach` [m]. A smaller reach
+  // makes the search faster.
+  Nearby Nearest(const Eigen::Vector3d& point, double reach = kAnywhere) const;
+  // Appends the weights by which `for_vertex` follows the driver of `nearby`. Their sum is `weight`, or less if a
+  // skinned driver follows bodies that do not move.
+  void AppendWeights(const Nearby& nearby, int for_vertex, double weight, std::vector<SkinWeight>& weights) const;
 
   int count() const { return static_cast<int>(bodies_.size()); }
-  const NearestSearch& search(int carrier) const { return *searches_[carrier]; }
-  const Points& vertices(int carrier) const { return builder_.model.bodies[bodies_[carrier]].mesh.vertices; }
+  const NearestSearch& search(int driver) const { return *searches_[driver]; }
+  const Points& vertices(int driver) const { return builder_.model.bodies[bodies_[driver]].mesh.vertices; }
 
  private:
   const ModelBuilder& builder_;
   std::vector<int> bodies_;
   std::vector<const NearestSearch*> searches_;
-  std::vector<Eigen::AlignedBox3d> boxes_;  // what is outside reach is not searched
+  std::vector<Eigen::AlignedBox3d> boxes_;  // of the bodies, to skip those out of reach
 };
 
 }  // namespace phrenic

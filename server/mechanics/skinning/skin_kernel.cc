@@ -14,11 +14,10 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Of one vertex: displacement x, y, z, 0 and velocity x, y, z, 0.
+// Numbers per vertex: displacement (x, y, z, 0) and velocity (x, y, z, 0).
 constexpr int kNumbers = 8;
 
-// What the poses among a vertex' shares give it. With velocities a vector, or several, of all; without, of the first
-// half.
+// The weighted sum over a vertex's poses of displacement and velocity, or of displacement only.
 template <bool kVelocities>
 class Posed {
   using Tag = hn::CappedTag<double, kVelocities ? kNumbers : kNumbers / 2>;
@@ -49,21 +48,21 @@ class Posed {
 };
 
 template <bool kVelocities>
-void Carry(std::span<const SkinWeight> shares, const DriverState& carriers, const double* rest, double* x, double* v) {
-  for (auto share = shares.begin(); share != shares.end();) {
-    const int vertex = share->vertex;
+void Apply(std::span<const SkinWeight> weights, const DriverState& drivers, const double* rest, double* x, double* v) {
+  for (auto weight = weights.begin(); weight != weights.end();) {
+    const int vertex = weight->vertex;
     const std::ptrdiff_t first = 3 * static_cast<std::ptrdiff_t>(vertex);
     Posed<kVelocities> posed(rest + first);
     double moved[3] = {}, velocity[3] = {};
-    for (; share != shares.end() && share->vertex == vertex; ++share) {
-      if (share->pose >= 0) {
-        posed.Add(share->weight, carriers.poses[static_cast<size_t>(share->pose)]);
+    for (; weight != weights.end() && weight->vertex == vertex; ++weight) {
+      if (weight->pose >= 0) {
+        posed.Add(weight->weight, drivers.poses[static_cast<size_t>(weight->pose)]);
         continue;
       }
-      const std::ptrdiff_t carrier = 3 * static_cast<std::ptrdiff_t>(share->simulated_vertex);
+      const std::ptrdiff_t driver = 3 * static_cast<std::ptrdiff_t>(weight->simulated_vertex);
       for (int k = 0; k < 3; ++k) {
-        moved[k] += share->weight * (carriers.x[carrier + k] - carriers.rest[carrier + k]);
-        if (kVelocities) velocity[k] += share->weight * carriers.v[carrier + k];
+        moved[k] += weight->weight * (drivers.x[driver + k] - drivers.rest[driver + k]);
+        if (kVelocities) velocity[k] += weight->weight * drivers.v[driver + k];
       }
     }
     HWY_ALIGN double given[kNumbers];
@@ -75,12 +74,12 @@ void Carry(std::span<const SkinWeight> shares, const DriverState& carriers, cons
   }
 }
 
-void CarryHere(std::span<const SkinWeight> shares, const DriverState& carriers, const double* rest, double* x,
+void ApplyHere(std::span<const SkinWeight> weights, const DriverState& drivers, const double* rest, double* x,
                double* v) {
   if (v == nullptr) {
-    Carry<false>(shares, carriers, rest, x, v);
+    Apply<false>(weights, drivers, rest, x, v);
   } else {
-    Carry<true>(shares, carriers, rest, x, v);
+    Apply<true>(weights, drivers, rest, x, v);
   }
 }
 
@@ -91,11 +90,11 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace phrenic {
 
-HWY_EXPORT(CarryHere);
+HWY_EXPORT(ApplyHere);
 
-void ApplySkinWeights(std::span<const SkinWeight> shares, const DriverState& carriers, const double* rest, double* x,
+void ApplySkinWeights(std::span<const SkinWeight> weights, const DriverState& drivers, const double* rest, double* x,
                       double* v) {
-  HWY_DYNAMIC_DISPATCH(CarryHere)(shares, carriers, rest, x, v);
+  HWY_DYNAMIC_DISPATCH(ApplyHere)(weights, drivers, rest, x, v);
 }
 
 }  // namespace phrenic

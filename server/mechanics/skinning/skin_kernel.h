@@ -1,5 +1,6 @@
-// Where carriers (skin.h) take a body's vertices, position and velocity in one vector: written once with Google
-// Highway, the machine's best instruction set chosen at run time, with the same bits on all of them.
+// SIMD kernel of skin weights (skin.h), with position and velocity in one vector. Google Highway compiles it for
+// several instruction sets and selects the best one at run time; the results are bitwise equal on all of them.
+// Thread-safe.
 #ifndef PHRENIC_SERVER_MECHANICS_SKINNING_SKIN_KERNEL_H_
 #define PHRENIC_SERVER_MECHANICS_SKINNING_SKIN_KERNEL_H_
 
@@ -10,16 +11,16 @@
 
 namespace phrenic {
 
-// What shares are of. Arrays are 3 x n, point after point.
+// The drivers at one moment. Arrays are 3 x n, column-major.
 struct DriverState {
   std::span<const PoseMatrices> poses;
   const double* rest;   // simulated vertices [m]
-  const double *x, *v;  // the same now [m], [m/s]
+  const double *x, *v;  // their current positions [m] and velocities [m/s]
 };
 
-// x = rest + sum of what each of the vertex' shares gives, and v the sum of their velocities; of vertices that have
-// shares alone. `rest`, x [m] and v [m/s] are those of the riding body. Without v, positions alone.
-void ApplySkinWeights(std::span<const SkinWeight> shares, const DriverState& carriers, const double* rest, double* x,
+// Sets x = rest + the weighted displacements of the drivers [m], and v to their weighted velocities [m/s], for the
+// vertices with weights. `rest`, x and v are those of the skinned body; v may be null.
+void ApplySkinWeights(std::span<const SkinWeight> weights, const DriverState& drivers, const double* rest, double* x,
                       double* v = nullptr);
 
 }  // namespace phrenic

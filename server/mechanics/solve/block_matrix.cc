@@ -10,7 +10,7 @@
 namespace phrenic {
 namespace {
 
-// Notes which blocks the forces fill.
+// Records which blocks forces add to.
 class Pattern final : public StiffnessSink {
  public:
   explicit Pattern(bool springs) : springs_(springs) {}

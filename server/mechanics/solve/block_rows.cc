@@ -4,7 +4,7 @@
 #include <iterator>
 #include <utility>
 
-#include "server/mechanics/step/advance.h"
+#include "server/mechanics/damping.h"
 #include "server/mesh/bucket_sort.h"
 #include "server/mesh/locality.h"
 #include "server/mesh/topology.h"
@@ -12,13 +12,13 @@
 namespace phrenic {
 namespace {
 
-// Rows that may change places to lie beside others of their length: more pads less and is less local.
+// Rows within which rows are sorted by their length: a larger window needs less padding and is less local.
 constexpr size_t kRowWindow = 256;
-constexpr int kQuads = 3;  // of an entry off the diagonal
+constexpr int kQuads = 3;  // per off-diagonal entry
 
 using CallPairs = std::vector<std::pair<int, int>>;
 
-// Notes lists of springs, and the blocks off the diagonal in the order in which they come, i < j.
+// Records lists of springs, and the off-diagonal blocks, i < j, in the order in which forces add them.
 class Recorder final : public StiffnessSink {
  public:
   void Add(int i, int j, const Eigen::Matrix3d&) override {
@@ -31,7 +31,7 @@ class Recorder final : public StiffnessSink {
   std::vector<std::span<const Spring>> springs;
 };
 
-// The symmetric part of a block, as entries have it.
+// The symmetric part of a block in the order of entries.
 class SymmetricPart {
  public:
   explicit SymmetricPart(const Eigen::Matrix3d& block) {
@@ -55,7 +55,7 @@ void AddTurning(const Eigen::Matrix3d& block, Quad* entry) {
   entry[2].at[0] += b(1, 0) - b(0, 1);
 }
 
-// What rows list, a column of each slice's after another; a slice has as many as its longest row.
+// The items that rows list, column by column of each slice; a slice has as many columns as its longest row has items.
 template <typename Seen>
 void LayColumns(const std::vector<std::vector<Seen>>& rows, BlockColumns& columns) {
   columns.first.push_back(0);
@@ -74,7 +74,7 @@ void LayColumns(const std::vector<std::vector<Seen>>& rows, BlockColumns& column
   }
 }
 
-// Calls put(what a row lists, its column, its lane) for all that rows list.
+// Calls put(item, column, lane) for all items that rows list.
 template <typename Seen, typename Put>
 void FillColumns(const std::vector<std::vector<Seen>>& rows, const BlockColumns& columns, Put put) {
   for (size_t r = 0; r < rows.size(); ++r) {
@@ -83,7 +83,7 @@ void FillColumns(const std::vector<std::vector<Seen>>& rows, const BlockColumns&
   }
 }
 
-// The vertices in this order, as far as it goes, then the rest.
+// Returns the vertices that are ordered, in that order, then the rest.
 void PutFirst(std::vector<int> order, int all, std::vector<int>& vertices) {
   std::vector<bool> taken(all, false);
   for (const int vertex : order) taken[vertex] = true;
@@ -128,8 +128,8 @@ void BlockRows::NoteCalls(const Model& model) {
   if (!known_.empty()) entries_.resize(kQuads * (known_.size() + 1));
 }
 
-// Vertices as they come, unless what is joined is too far apart for that; by their numbers of springs and of other
-// blocks in windows.
+// Keeps the order of vertices, unless springs join vertices that are too far apart; within windows, sorts by the
+// numbers of springs and of other blocks.
 void BlockRows::PlaceRows() {
   std::vector<std::pair<int, int>> degree(row_.size());  // springs, other blocks
   CallPairs joined;
@@ -144,7 +144,7 @@ void BlockRows::PlaceRows() {
     joined.emplace_back(call.i, call.j);
   }
   const auto all = static_cast<int>(row_.size());
-  PutFirst(LocalOrderIfFar(ToEdges(joined), all), all, vertices_);
+  PutFirst(CuthillMcKeeIfScattered(ToEdges(joined), all), all, vertices_);
   const auto longer = [&degree](int a, int b) { return degree[a] > degree[b]; };
   for (size_t first = 0; first < vertices_.size(); first += kRowWindow) {
     const size_t end = std::min(first + kRowWindow, vertices_.size());
@@ -232,7 +232,7 @@ void BlockRows::Assemble(const Model& model, const EvalContext& at, double g, co
   FillBlocks(entries_, weight, direction_.data(), slices_);
 }
 
-// Where the slices' rows are, and those beyond them.
+// Sets the positions of the slices' rows and of those after them.
 void BlockRows::PlaceAll(const ConstPoints& x) {
   const auto place = [&x](int vertex, Position& position) {
     const double* const from = x.data() + 3 * static_cast<std::ptrdiff_t>(vertex);
@@ -243,7 +243,7 @@ void BlockRows::PlaceAll(const ConstPoints& x) {
   for (size_t h = 0; h < held_.size(); ++h) place(held_[h], positions_[rows + h]);
 }
 
-// Where block (i, j) is kept, i < j: most often the one that came next at rest. Null where it is not.
+// Returns the entry of block (i, j), i < j; most often that of the next call at rest. Null if it is not in the pattern.
 Quad* BlockRows::Find(int i, int j) {
   if (next_ < calls_.size() && calls_[next_].i == i && calls_[next_].j == j) {
     return entries_.data() + calls_[next_++].place;

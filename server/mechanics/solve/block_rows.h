@@ -1,5 +1,5 @@
-// The stiffness of a whole model gathered by vertex in single precision, laid out for the machine: what conjugate
-// gradients multiply by.
+// The matrix of implicit steps by vertex, in single precision, in the layout of linalg/block_kernel.h: conjugate
+// gradients multiply by it.
 #ifndef PHRENIC_SERVER_MECHANICS_SOLVE_BLOCK_ROWS_H_
 #define PHRENIC_SERVER_MECHANICS_SOLVE_BLOCK_ROWS_H_
 
@@ -12,34 +12,34 @@
 
 namespace phrenic {
 
-// A = inertia + g^2 K + g S on the free vertices of a model, S the shared damping. Not thread-safe. Where a block lies
-// is found once, from the model at rest, as is the order in which forces hand blocks over; a block that turns up later
-// (a contact) is kept beside, more slowly, as are outer products. Springs' blocks are worked out where they lie: a
-// force that hands over a list of springs at rest hands over that list always.
+// A = inertia + g^2 K + g S on the free vertices of a model, S the shared damping. The pattern, and the order in which
+// forces add blocks, are those of the model at rest; blocks that appear later (contacts) and outer products are kept
+// apart, which is slower. The blocks of springs are computed in the layout: a force that adds a list of springs at rest
+// always adds the same list. Not thread-safe.
 class BlockRows final : public StiffnessSink {
  public:
   explicit BlockRows(const Model& model);
 
-  // A at this instant; `inertia` [kg] one a vertex, g [s]. Allocates only for blocks that are new to the pattern.
+  // Sets A at this moment; `inertia` is one per vertex [kg], g in [s]. Allocates only for blocks outside the pattern.
   void Assemble(const Model& model, const EvalContext& at, double g, const Eigen::VectorXd& inertia);
 
   void Add(int i, int j, const Eigen::Matrix3d& block) override;
   void AddSpringsAt(std::span<const Spring> springs, const EvalContext& at) override;
   void AddOuter(double scale, const Points& g) override { outer_.Add(scale, g); }
 
-  // The direction p of a search, scaled (BlockSlices): z to begin with, then as block_kernel.h turns it.
+  // Sets the search direction p, scaled as BlockSlices: first to z, then as phrenic::Turn does.
   void Face(const RowVector& z) { Pack(z, direction_.data()); }
   void Turn(float along, float keep, const RowVector& z, RowVector& y) {
     phrenic::Turn(along, keep, z, y, direction_.data());
   }
-  // q = A p, or without the inertia, scaled too; p . q.
+  // Sets q = A p, with or without the inertia, scaled in the same way. Returns p . q.
   double Times(bool inertia, RowVector& q);
   const BlockSlices& slices() const { return slices_; }
   size_t row_lanes() const { return kAxes * slices_.size(); }
   OuterProducts& shared_damping() { return shared_; }
 
-  // b = factor s forces; displacements += factor s y, and back, y = displacements/s. Points are 3 x vertices of the
-  // model; rows are its free ones.
+  // Sets b = factor s forces; adds factor s y to `displacements`; sets y = displacements/s. Points are 3 x vertices of
+  // the model, rows are its free vertices.
   void ForcesToRows(double factor, const Points& forces, RowVector& b) const;
   void AddDisplacements(double factor, const RowVector& y, Points& displacements) const;
   void DisplacementsToRows(const Points& displacements, RowVector& y) const;
@@ -47,7 +47,7 @@ class BlockRows final : public StiffnessSink {
  private:
   struct Call {
     int i, j;   // i < j, both free
-    int place;  // in entries_
+    int place;  // index into entries_
     bool operator==(const Call& other) const { return i == other.i && j == other.j; }
     bool operator<(const Call& other) const { return i != other.i ? i < other.i : j < other.j; }
   };
@@ -64,16 +64,16 @@ class BlockRows final : public StiffnessSink {
   Quad* Find(int i, int j);
   void AddBeside(RowVector& q);
 
-  std::vector<std::span<const Spring>> springs_;  // whose columns are laid out
-  std::vector<int> row_;                          // of each vertex; -1 where it does not move
+  std::vector<std::span<const Spring>> springs_;  // in the order of their columns
+  std::vector<int> row_;                          // of each vertex; -1 if it does not move
   std::vector<int> vertices_;                     // of each row
-  std::vector<int> held_;           // vertices that do not move, with springs to those that do: rows beyond the slices
-  std::vector<Call> calls_;         // in the order in which forces hand blocks over at rest
+  std::vector<int> held_;           // vertices that do not move, with springs to some that do: rows after the slices
+  std::vector<Call> calls_;         // in the order in which forces add blocks at rest
   std::vector<Call> known_;         // each block once, sorted
   std::vector<size_t> first_call_;  // of each force
-  size_t next_ = 0;                 // of calls_, while forces hand over
+  size_t next_ = 0;                 // index into calls_ while forces add
   double g_ = 0;
-  BlockEntries entries_, diagonal_;  // none while nothing but springs hands over
+  BlockEntries entries_, diagonal_;  // empty if there are only springs
   std::vector<Extra> extra_;
   OuterProducts outer_, shared_;
   BlockSlices slices_;

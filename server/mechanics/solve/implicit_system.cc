@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "server/mechanics/step/advance.h"
+#include "server/mechanics/damping.h"
 
 namespace phrenic {
 namespace {
@@ -13,7 +13,7 @@ constexpr int kIterations = 400;
 auto Values(Lanes& lanes) { return Eigen::Map<Eigen::Array<float, kSliceLanes, 1>>(lanes.at); }
 auto Values(const Lanes& lanes) { return Eigen::Map<const Eigen::Array<float, kSliceLanes, 1>>(lanes.at); }
 
-// The largest of a vector's numbers, and the sum of their squares.
+// The largest magnitude of a vector's numbers, and the sum of their squares.
 struct Size {
   double largest = 0, squares = 0;
 };
@@ -62,8 +62,8 @@ absl::Status ImplicitSystem::Solve(const Model& model, const EvalContext& at, co
   return absl::OkStatus();
 }
 
-// What is missing to the guess y goes to residual_, in units of its largest number, with the fewest squares that are
-// worth going on for; the unit, 0 where nothing is missing.
+// Sets residual_ to that of the guess y, in units of its largest number, and floor_. Returns the unit; 0 if the
+// residual is 0.
 double ImplicitSystem::StartFrom(const Points& b, Points& y) {
   for (Eigen::Index i = 0; i < y.cols(); ++i) {
     if (inertia_[i] == 0) y.col(i).setZero();
@@ -122,15 +122,15 @@ absl::Status ImplicitSystem::Factorise(const Model& model, const EvalContext& at
     Eigen::SparseMatrix<double> matrix = free.asDiagonal() * stiffness_->ToSparse() * free.asDiagonal();
     matrix *= g_ * g_;
     matrix.diagonal() += mass;
-    factor_.compute(matrix);
-    if (factor_.info() != Eigen::Success)
+    if (!factor_.Factorise(matrix)) {
       return absl::AbortedError("the implicit step's matrix is singular: lower time_step");
+    }
     factorised_ = true;
   }
   SolveFactored(b, y);
   const auto inverse = [&](const Points& right, Points& left) { SolveFactored(right, left); };
   stiffness_->outer().Correct(g_ * g_, inverse, y);
-  // What damps comes on top of what the stiffness' products have made of the matrix.
+  // The damping's products correct the matrix that the stiffness' products have corrected.
   const auto stiffened = [&](const Points& right, Points& left) {
     SolveFactored(right, left);
     stiffness_->outer().Correct(g_ * g_, inverse, left);
@@ -144,7 +144,9 @@ void ImplicitSystem::SolveFactored(const Points& b, Points& y) const {
   for (Eigen::Index i = 0; i < b.cols(); ++i) {
     if (inertia_[i] == 0) right.segment<3>(3 * i).setZero();
   }
-  y = factor_.solve(right).reshaped(3, b.cols());
+  Eigen::VectorXd solution;
+  factor_.Solve(right, solution);
+  y = solution.reshaped(3, b.cols());
 }
 
 }  // namespace phrenic

@@ -3,40 +3,40 @@
 #ifndef PHRENIC_SERVER_MECHANICS_SOLVE_IMPLICIT_SYSTEM_H_
 #define PHRENIC_SERVER_MECHANICS_SOLVE_IMPLICIT_SYSTEM_H_
 
-#include <Eigen/SparseCholesky>
 #include <memory>
 
 #include "absl/status/status.h"
+#include "server/mechanics/linalg/sparse_ldlt.h"
 #include "server/mechanics/solve/block_matrix.h"
 #include "server/mechanics/solve/block_rows.h"
 #include "server/mechanics/solver_effort.h"
 
 namespace phrenic {
 
-// Conjugate gradients with the inverse diagonal blocks as preconditioner (Baraff and Witkin 1998, their filter for what
-// is fixed); a sparse LDL^T factorisation where they take too many iterations, which they do where stiffnesses differ
-// by orders of magnitude. The iterations are taken in single precision for what is missing to a first guess, which is
-// worked out in double: y is right to 1e-6 of that, so that a relative residual below kFinest is not to be had from
-// them. Not thread-safe. Allocates when it is made and when it factorises.
+// Conjugate gradients, preconditioned by the inverse diagonal blocks (Baraff and Witkin 1998, with their filter for
+// fixed vertices). A sparse factorisation takes over if they need too many iterations, as they do if stiffnesses differ
+// by orders of magnitude. The iterations run in single precision on the residual of the first guess, which is computed
+// in double: y is accurate to 1e-6 of that, so that no relative residual below kFinest can be reached. Not thread-safe.
+// Allocates when it is made and when it factorises.
 class ImplicitSystem {
  public:
   static constexpr double kFinest = 1e-6;
 
   explicit ImplicitSystem(const Model& model);
 
-  // Takes M, C and K from the model at this instant.
+  // Sets A from the model at this moment.
   void Assemble(const Model& model, const EvalContext& at, double g);
-  // y becomes A^-1 b, from what it is as a first guess, until what is missing, in the preconditioner's norm, is
-  // `tolerance` of what it was, or kFinest of b; 0 for fixed and driven vertices. At the instant of Assemble. Where the
-  // effort is spent y is the best there is by then, after one iteration at least; it notes what was reached. ABORTED
-  // where b is not finite or the matrix cannot be factorised.
+  // Sets y = A^-1 b, with y as first guess, to a residual in the preconditioner's norm of `tolerance` of the first one,
+  // or of kFinest of b; 0 for fixed and driven vertices. Requires: `at` is the moment of Assemble. If the effort's
+  // limit is reached, y is the result of the iterations so far, at least one. Adds the solve to `effort`. ABORTED if b
+  // is not finite or the matrix cannot be factorised.
   absl::Status Solve(const Model& model, const EvalContext& at, const Points& b, double tolerance, SolverEffort& effort,
                      Points& y);
 
  private:
   enum class End { kSolved, kSpent, kTooLong };
   struct Progress {
-    double first = 0, enough = 0, now = 0;  // squared norms of what is missing: at first, in the end, and now
+    double first = 0, enough = 0, now = 0;  // squared norms of the residual: at first, to be reached, and now
     int iterations = 0;
   };
   double StartFrom(const Points& b, Points& y);
@@ -48,12 +48,12 @@ class ImplicitSystem {
   BlockRows rows_;
   double g_ = 0;
   Eigen::VectorXd inertia_;  // m + g c; 0 for fixed and driven vertices
-  Points missing_;           // to the first guess, K left out
+  Points missing_;           // residual of the first guess, without K
   double floor_ = 0;         // kFinest of b, squared, in the unit of residual_
   RowVector change_, residual_, product_;
-  // Where a factorisation is needed; made when first needed.
+  // Of factorisations; made when first needed.
   std::unique_ptr<BlockMatrix> stiffness_;
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;
+  OrderedLdlt factor_;
   bool factorised_ = false;  // factor_ is that of the present matrix
 };
 

@@ -5,12 +5,12 @@
 #include <tuple>
 #include <utility>
 
-#include "server/mechanics/step/advance.h"
+#include "server/mechanics/damping.h"
 
 namespace phrenic {
 namespace {
 
-// The scalar that stands for a block: its symmetric part's largest eigenvalue, at least 0.
+// Returns the scalar that replaces a block: its symmetric part's largest eigenvalue, at least 0.
 double Weight(const Eigen::Matrix3d& block) {
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
   solver.computeDirect(0.5 * (block + block.transpose()), Eigen::EigenvaluesOnly);
@@ -88,7 +88,7 @@ void PrefactoredSystem::Assemble(const Model& model, const EvalContext& at) {
   }
 }
 
-// What damps comes on top of what the stiffness' products have made of the matrix.
+// The damping's products correct the matrix that the stiffness' products have corrected.
 void PrefactoredSystem::PrepareShared(const Model& model, const EvalContext& at) {
   SumSharedDamping(model, at, shared_damping_);
   stiffness_.outer().Prepare(g_ * g_, [this](const Points& b, Points& y) { SolvePlain(b, y); });

@@ -5,7 +5,7 @@
 namespace phrenic {
 namespace {
 
-constexpr double kNoFall = 1e-12;  // of the product of the lengths: a fall that is none
+constexpr double kNoFall = 1e-12;  // of the product of the lengths: a smaller decrease counts as none
 
 }  // namespace
 

@@ -1,5 +1,5 @@
-// L-BFGS: a fixed matrix A for the true one, corrected by what the steps so far have shown (Nocedal, Math Comput
-// 1980;35:773; with the matrix of projective dynamics: Liu, Bouaziz, Kavan, ACM Trans Graph 2017;36:23).
+// L-BFGS: a constant matrix A in place of the true one, corrected by the differences of previous steps (Nocedal, Math
+// Comput 1980;35:773; with the matrix of projective dynamics: Liu, Bouaziz, Kavan, ACM Trans Graph 2017;36:23).
 #ifndef PHRENIC_SERVER_MECHANICS_SOLVE_QUASI_NEWTON_H_
 #define PHRENIC_SERVER_MECHANICS_SOLVE_QUASI_NEWTON_H_
 
@@ -12,12 +12,12 @@ namespace phrenic {
 // Not thread-safe.
 class QuasiNewton {
  public:
-  // Forgets all steps, and has room for `most`. Allocates where it had not.
+  // Forgets all steps and makes room for `most`. Allocates if there was less room.
   void Restart(int vertices, int most);
-  // The residual went from `before` to `after` over this step; all 3 x n. A step along which it did not fall says
-  // nothing of a positive definite matrix, and is left out, as is one for which there is no room.
+  // Adds a step over which the residual changed from `before` to `after`; all 3 x n. Ignores a step along which the
+  // residual did not fall, since it contradicts a positive definite matrix, and one for which there is no room.
   void Note(const Points& step, const Points& before, const Points& after);
-  // y = B r, B symmetric and positive definite: A^-1 where nothing is noted, and by the steps noted what they showed.
+  // Sets y = B r, B symmetric and positive definite: A^-1, corrected by the steps.
   void Times(const Points& r, PrefactoredSystem& a, Points& y);
 
  private:

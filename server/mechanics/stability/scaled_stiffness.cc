@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "server/mechanics/step/advance.h"
+#include "server/mechanics/damping.h"
 
 namespace phrenic {
 

@@ -1,5 +1,5 @@
-// What a model's vibrations follow from: M^-1/2 K M^-1/2, of which the eigenvalues are their frequencies squared; and
-// with it the damping C that an integrator counts, where it is given weight.
+// M^-1/2 K M^-1/2, whose eigenvalues are the squared frequencies of a model's vibrations [rad^2/s^2], optionally with
+// the damping C that limits an integrator's step.
 #ifndef PHRENIC_SERVER_MECHANICS_STABILITY_SCALED_STIFFNESS_H_
 #define PHRENIC_SERVER_MECHANICS_STABILITY_SCALED_STIFFNESS_H_
 
@@ -10,9 +10,9 @@
 
 namespace phrenic {
 
-// K positive semi-definite, with what may yet wake (latent stiffness), in the instant that it is made from; zero rows
-// and columns for what does not move. Springs are kept one by one: a few products are not worth a pattern. Not
-// thread-safe.
+// K is positive semi-definite and includes inactive contacts and slack cables (latent stiffness), at the moment of
+// construction. Rows and columns of vertices that do not move are 0. Springs are kept one by one: for a few products no
+// pattern pays. Not thread-safe.
 class ScaledStiffness final : public StiffnessSink {
  public:
   ScaledStiffness(const Model& model, const EvalContext& at, Integrator::Damping counted);
@@ -21,10 +21,10 @@ class ScaledStiffness final : public StiffnessSink {
   void AddSprings(std::span<const SpringStiffness> springs) override;
   void AddOuter(double scale, const Points& g) override { blocks_.AddOuter(scale, g); }
 
-  // From now on K is K + weight C; `weight` in 1/s, 0 at first.
+  // Replaces K by K + weight C, `weight` [1/s]; initially 0.
   void WeighDamping(double weight) { damping_weight_ = weight; }
 
-  // y = M^-1/2 K M^-1/2 x, both of 3 n numbers.
+  // Sets y = M^-1/2 K M^-1/2 x, both of 3 n numbers.
   void Times(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::VectorXd& y);
   const Eigen::VectorXd& scale() const { return scale_; }  // M^-1/2 [kg^-1/2]
 
@@ -38,7 +38,7 @@ class ScaledStiffness final : public StiffnessSink {
   void AddJoints(double* y) const;
 
   BlockMatrix blocks_;
-  Eigen::VectorXd damping_;  // C's diagonal [N s/m], and the rest of it
+  Eigen::VectorXd damping_;  // C's diagonal [N s/m]; the rest is shared_damping_
   OuterProducts shared_damping_;
   double damping_weight_ = 0;
   LargeVector<Joint> joints_;

@@ -8,23 +8,23 @@
 #include <utility>
 #include <vector>
 
-#include "server/mechanics/compile/catalogue.h"
+#include "server/mechanics/damping.h"
+#include "server/mechanics/integrators/catalogue.h"
 #include "server/mechanics/linalg/large_pages.h"
 #include "server/mechanics/stability/scaled_stiffness.h"
-#include "server/mechanics/step/advance.h"
 
 namespace phrenic {
 namespace {
 
 constexpr int kProducts = 20;
 constexpr int kRough = 8;        // products for a first guess of the step
-constexpr double kNearby = 0.1;  // of a step: a guess that is off by less is as good as the step itself
+constexpr double kNearby = 0.1;  // of a step: the accuracy of a guess that is good enough
 constexpr int kGuesses = 4;
 constexpr double kMostlyLeft = 0.7;
-constexpr double kConverged = 1e-5;   // of the largest Ritz value: round-off over it is still small
-constexpr double kExhausted = 1e-11;  // a product that leaves less than this that is new leaves round-off
+constexpr double kConverged = 1e-5;   // of the largest Ritz value: the residual of a converged one
+constexpr double kExhausted = 1e-11;  // of a product: a smaller new component is round-off
 
-// Deterministic and without a pattern that a mesh could share; zero where the scale is.
+// Returns a pseudo-random start vector, always the same; zero where the scale is.
 Eigen::VectorXd Start(const Eigen::VectorXd& scale) {
   Eigen::VectorXd x(3 * scale.size());
   std::uint64_t bits = 0x9e3779b97f4a7c15;
@@ -35,7 +35,7 @@ Eigen::VectorXd Start(const Eigen::VectorXd& scale) {
   return x;
 }
 
-// Of the free vertices.
+// Sets the smallest mass of the free vertices.
 void FindLeastMass(const Model& model, Spectrum& spectrum) {
   for (Eigen::Index i = 0; i < model.mass.size(); ++i) {
     if (model.inverse_mass[i] > 0) spectrum.least_mass = std::min(spectrum.least_mass, model.mass[i]);
@@ -56,13 +56,13 @@ void FindDampingRates(const Model& model, const EvalContext& at, Spectrum& spect
   spectrum.damping_rate += shared.Bound(model.inverse_mass);
 }
 
-// Vectors one after another; each begins at an even place, so that sums over them are taken alike.
+// A list of vectors; each begins at an even index, so that sums over them are vectorised in the same way.
 class Basis {
  public:
   using Column = Eigen::Map<const Eigen::VectorXd, Eigen::Aligned16>;
   explicit Basis(Eigen::Index rows) : rows_(rows) { values_.reserve(static_cast<size_t>(kProducts * Stride())); }
 
-  // q / norm
+  // Appends q / norm.
   void Append(const Eigen::VectorXd& q, double norm) {
     values_.resize(static_cast<size_t>((size_ + 1) * Stride()));
     Eigen::Map<Eigen::VectorXd, Eigen::Aligned16>(values_.data() + size_++ * Stride(), rows_) = q / norm;
@@ -95,16 +95,16 @@ Ritz RitzPairs(const Krylov& krylov) {
   return pairs;
 }
 
-// Whether a Ritz vector has converged: only along those does the next vector lose its right angle to the basis (Paige,
-// J Inst Maths Applics 1976;18:341), by round-off over what is left of it.
+// Returns true if a Ritz vector has converged: the next vector loses its orthogonality along converged ones only
+// (Paige, J Inst Maths Applics 1976;18:341).
 bool OneHasConverged(const Krylov& krylov) {
   const Ritz pairs = RitzPairs(krylov);
   const double left = krylov.off_diagonal.back() * pairs.eigenvectors().bottomRows<1>().cwiseAbs().minCoeff();
   return left <= kConverged * pairs.eigenvalues().cwiseAbs().maxCoeff();
 }
 
-// Takes off q what of it lies along the basis, again where little is left, which may not be orthogonal (Daniel, Gragg,
-// Kaufman, Stewart 1976); what is left of its length.
+// Orthogonalises q against the basis; twice if little of it remains, which may not be orthogonal yet (Daniel, Gragg,
+// Kaufman, Stewart 1976). Returns its remaining length.
 double Orthogonalise(const Basis& basis, Eigen::VectorXd& q) {
   double norm = q.norm();
   for (int pass = 0; pass < 2; ++pass) {
@@ -119,7 +119,7 @@ double Orthogonalise(const Basis& basis, Eigen::VectorXd& q) {
 Krylov Lanczos(ScaledStiffness& matrix, Eigen::VectorXd q, int products) {
   Krylov krylov{.basis = Basis(q.size()), .diagonal = {}, .off_diagonal = {}};
   double norm = q.norm();
-  double largest = 0;  // product's length: what is left of one is measured by it, whatever the unit of stiffness
+  double largest = 0;  // length of a product: the scale of what remains of one
   bool converged = false;
   while (krylov.basis.size() < products && norm > kExhausted * largest) {
     krylov.basis.Append(q, norm);
@@ -143,7 +143,7 @@ Krylov Lanczos(ScaledStiffness& matrix, Eigen::VectorXd q, int products) {
   return krylov;
 }
 
-// What the basis comes to with these weights; part by part, each of which stays in the nearest cache.
+// Returns the weighted sum of the basis, part by part, so that each part stays in the L1 cache.
 Eigen::VectorXd Combine(const Basis& basis, const Eigen::VectorXd& weights) {
   constexpr Eigen::Index kPart = 1024;
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(basis.rows());
@@ -154,11 +154,11 @@ Eigen::VectorXd Combine(const Basis& basis, const Eigen::VectorXd& weights) {
   return sum;
 }
 
-// The largest of the matrix' eigenvalues.
+// An estimate of the largest eigenvalue of the matrix.
 struct Largest {
-  double ritz = 0;         // at most the eigenvalue
-  double residual = 0;     // with it, at least
-  Eigen::VectorXd vector;  // of length 1; no rows where there is no eigenvalue above 0
+  double ritz = 0;         // lower bound of the eigenvalue
+  double residual = 0;     // ritz + residual is an upper bound
+  Eigen::VectorXd vector;  // of length 1; no rows if no eigenvalue is above 0
 };
 
 Largest FindLargest(ScaledStiffness& matrix, const Eigen::VectorXd& start, int products) {
@@ -172,8 +172,8 @@ Largest FindLargest(ScaledStiffness& matrix, const Eigen::VectorXd& start, int p
   return {ritz, residual, Combine(krylov.basis, combination)};
 }
 
-// The mode that limits the integrator's step; the spectrum has its own damping rate then, in the largest one's place. A
-// search goes on from what the last one found, and from all directions, as another mode may be the one now.
+// Finds the mode that limits the integrator's step and sets the spectrum's frequency and damping rate to that mode's.
+// Each search starts from the last result and from all directions, since another mode may be the limiting one now.
 Largest FindLimiting(ScaledStiffness& matrix, const Integrator& integrator, Spectrum& spectrum) {
   const Eigen::VectorXd start = Start(matrix.scale()).normalized();
   Largest limiting = FindLargest(matrix, start, kRough);
@@ -194,7 +194,7 @@ Largest FindLimiting(ScaledStiffness& matrix, const Integrator& integrator, Spec
   return limiting;
 }
 
-// The vector as displacements, of which the largest is of length 1.
+// Converts the vector to displacements, scaled so that the largest is of length 1.
 void TakeMode(const Model& model, const Eigen::VectorXd& vector, FastestMode& fastest) {
   const Eigen::Map<const Points> mode(vector.data(), 3, vector.size() / 3);
   Eigen::Index largest = 0;

@@ -1,18 +1,18 @@
-// A step in as many parts as its error asks for.
+// A step in as many parts as its error requires.
 #ifndef PHRENIC_SERVER_MECHANICS_STEP_ADAPTIVE_STEP_H_
 #define PHRENIC_SERVER_MECHANICS_STEP_ADAPTIVE_STEP_H_
 
 #include "absl/status/status.h"
-#include "server/mechanics/model.h"
+#include "server/mechanics/step/step_plan.h"
 
 namespace phrenic {
 
-// Carries `state` over dt by `integrator`, each part taken once whole and once in halves: where the two differ
-// by more than `tolerance` (2^order - 1) [m] at some vertex, in position or in velocity times the part, the part is
-// halved, down to dt/4096; the halves are kept. The size of parts is remembered in State::halvings. ABORTED where the
-// smallest part still errs more.
-absl::Status AdvanceAdaptively(const Model& model, const v1::Parameters& parameters, const Integrator& integrator,
-                               double dt, State& state, Workspace& work);
+// Advances `state` by dt [s] with the integrator that the parameters name, except for its time, phase and tick. Each
+// part is computed once whole and once in two halves. If the two differ by more than step_tolerance (2^order - 1) [m]
+// at some vertex, in position or in velocity times the part, the part is halved, down to dt/4096; otherwise the halves
+// are kept. State::halvings keeps the size of parts for the next step. ABORTED if the smallest part differs by more.
+absl::Status AdvanceAdaptively(const StepPlan& plan, const v1::Parameters& parameters, double dt, State& state,
+                               Workspace& work);
 
 }  // namespace phrenic
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "server/mechanics/step/advance.h"
+#include "server/mechanics/step/step_plan.h"
 
 namespace phrenic {
 namespace {
@@ -13,7 +13,7 @@ constexpr char kConstraints[] = "constraints", kPull[] = "pull", kNet[] = "net";
 
 ForceReading::ForceReading(const Model& model, const v1::Parameters& parameters, const State& state)
     : model_(model), parameters_(parameters), dt_(std::min(parameters.time_step(), kLongestReading)), state_(state) {
-  DriveMotions(model, parameters, dt_, state_);
+  model.plan->DriveMotions(parameters, dt_, scratch_, state_);
   for (const std::string& kind : model.force_kinds) {
     if (std::find(kinds_.begin(), kinds_.end(), kind) == kinds_.end()) kinds_.push_back(kind);
   }
@@ -23,14 +23,14 @@ ForceReading::ForceReading(const Model& model, const v1::Parameters& parameters,
 }
 
 Points ForceReading::Of(const std::string& kind) const {
-  if (kind == kNet) return Loads() + Constraints();
+  if (kind == kNet) return Sum() + Constraints();
   if (kind == kPull) return Pulls();
   return kind == kConstraints ? Constraints() : Elements(kind);
 }
 
 Points ForceReading::Elements(const std::string& kind) const {
   Points force = Points::Zero(3, state_.x.cols());
-  const EvalContext at = MakeEvalContext(model_, parameters_, state_);
+  const EvalContext at = MakeEvalContext(model_, parameters_, state_, scratch_);
   for (std::size_t i = 0; i < model_.forces.size(); ++i) {
     if (model_.force_kinds[i] == kind) model_.forces[i]->AddForce(at, force);
   }
@@ -43,9 +43,9 @@ Points ForceReading::Pulls() const {
   return force;
 }
 
-Points ForceReading::Loads() const {
+Points ForceReading::Sum() const {
   Points force(3, state_.x.cols());
-  SumForces(model_, MakeEvalContext(model_, parameters_, state_), force);
+  model_.plan->SumForces(MakeEvalContext(model_, parameters_, state_, scratch_), force);
   return force;
 }
 
@@ -53,10 +53,10 @@ Points ForceReading::Constraints() const {
   Points force = Points::Zero(3, state_.x.cols());
   if (model_.constraints.empty()) return force;
   State after = state_;
-  AddToFree(model_, dt_, Loads() * model_.inverse_mass.asDiagonal(), after.v);
+  model_.plan->AddToFree(dt_, Sum() * model_.inverse_mass.asDiagonal(), after.v);
   const Points free = after.v;
-  AddToFree(model_, dt_, free, after.x);
-  ProjectPositions(model_, parameters_, state_.x, dt_, after);
+  model_.plan->AddToFree(dt_, free, after.x);
+  model_.plan->ProjectPositions(parameters_, state_.x, dt_, scratch_, after);
   for (Eigen::Index i = 0; i < force.cols(); ++i) {
     if (model_.inverse_mass[i] > 0) force.col(i) = (after.v.col(i) - free.col(i)) / (dt_ * model_.inverse_mass[i]);
   }

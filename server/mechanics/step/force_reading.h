@@ -1,8 +1,8 @@
-// The forces on vertices, by kind, for people who ask; no step pays for it.
+// The forces on vertices by kind, for display. Steps do not compute them.
 //
-// They are those that semi-implicit Euler's next step takes: "net" is m (v' - v)/dt of that step, and the sum of all
-// other kinds. "constraints" is what links and limits add to it: m times what they change of the velocities, over dt.
-// dt is the session's step, at most kLongestReading.
+// They are those of semi-implicit Euler's next step: "net" is m (v' - v)/dt of that step and the sum of all other
+// kinds, except for rounding of springs in single precision, which are read in double. "constraints" is the change of
+// the velocities by links and limits, times m/dt. dt is the session's step, at most kLongestReading.
 #ifndef PHRENIC_SERVER_MECHANICS_STEP_FORCE_READING_H_
 #define PHRENIC_SERVER_MECHANICS_STEP_FORCE_READING_H_
 
@@ -15,28 +15,29 @@ namespace phrenic {
 
 inline constexpr double kLongestReading = 1e-3;  // [s]
 
-// Reads one state under its parameters, of which it takes copies; the model outlives it. One thread at a time.
+// Reads copies of one state and its parameters; the model must outlive it. Not thread-safe.
 class ForceReading {
  public:
   ForceReading(const Model& model, const v1::Parameters& parameters, const State& state);
 
-  // As scene text names them ("action_line"), each once, in the scene's order; then "constraints" and "pull" where
-  // there are some, and "net".
+  // The kinds of forces by their names in scene text ("action_line"), each once, in the scene's order; then
+  // "constraints" and "pull" if there are any, and "net".
   const std::vector<std::string>& kinds() const { return kinds_; }
-  // [N], 3 x simulated vertices; zero where it is none of `kinds`. Fixed and driven vertices have a net force and do
-  // not follow it; no constraint acts on them.
+  // Returns the forces of one kind [N], 3 x simulated vertices; zero for a name that is not in `kinds`. Fixed and
+  // driven vertices have a net force that they do not follow; constraints do not act on them.
   Points Of(const std::string& kind) const;
 
  private:
   Points Elements(const std::string& kind) const;
   Points Pulls() const;
   Points Constraints() const;
-  Points Loads() const;  // all but constraints
+  Points Sum() const;  // of all but constraints
 
   const Model& model_;
   const v1::Parameters parameters_;
   const double dt_;  // [s]
-  State state_;      // driven vertices and poses are where the next step has them
+  State state_;      // with driven vertices and poses at the end of the next step
+  Scratch scratch_;
   std::vector<std::string> kinds_;
 };
 

@@ -8,7 +8,7 @@
 namespace phrenic {
 namespace {
 
-std::string JointName(std::span<const Friction* const> friction, std::span<const SharedForce* const> shared) {
+std::string JoinedName(std::span<const Friction* const> friction, std::span<const SharedForce* const> shared) {
   std::vector<std::string> names;
   for (const Friction* force : friction) names.push_back(force->name());
   for (const SharedForce* force : shared) names.push_back(force->name());
@@ -18,13 +18,13 @@ std::string JointName(std::span<const Friction* const> friction, std::span<const
 }  // namespace
 
 LoadBatch::LoadBatch(std::span<const Friction* const> friction, std::span<const SharedForce* const> shared)
-    : Force(JointName(friction, shared)), shared_(shared.begin(), shared.end()) {
+    : BlockForce(JoinedName(friction, shared)), shared_(shared.begin(), shared.end()) {
   for (const Friction* force : friction) {
     coefficient_ = coefficient_.size() == 0 ? force->coefficient() : coefficient_ + force->coefficient();
   }
 }
 
-VertexLoads LoadBatch::InBlock(const VertexRange& block, const EvalContext& at, MutablePoints f) const {
+VertexLoads LoadBatch::LoadsOnBlock(const VertexRange& block, const EvalContext& at, MutablePoints f) const {
   VertexLoads loads;
   if (coefficient_.size() > 0) loads.c = coefficient_.data();
   for (const SharedForce* force : shared_) {
@@ -40,11 +40,11 @@ VertexLoads LoadBatch::InBlock(const VertexRange& block, const EvalContext& at, 
   return loads;
 }
 
-void LoadBatch::AddForceIn(const VertexRange& range, const EvalContext& at, MutablePoints f) const {
+void LoadBatch::AddForceToBlock(const VertexRange& range, const BlockContext& at, MutablePoints f) const {
   for (Eigen::Index first = range.first; first < range.end; first += kVertexBlock) {
     const VertexRange block = {first, std::min(first + kVertexBlock, range.end)};
     const MutablePoints own = f.middleCols(first - range.first, block.end - first);
-    const VertexLoads loads = InBlock(block, at, own);
+    const VertexLoads loads = LoadsOnBlock(block, at, own);
     if (!loads.empty()) AddLoads(block, loads, at.v, own);
   }
 }

@@ -1,6 +1,5 @@
 #include "server/mechanics/step/spring_batch.h"
 
-#include <string>
 #include <vector>
 
 #include "absl/strings/str_join.h"
@@ -8,11 +7,7 @@
 namespace phrenic {
 namespace {
 
-std::string JointName(std::span<const Springs* const> members) {
-  return absl::StrJoin(members, " + ", [](std::string* out, const Springs* springs) { out->append(springs->name()); });
-}
-
-SpringRows Lay(std::span<const Springs* const> members, const Points& rest) {
+SpringRows LayOut(std::span<const Springs* const> members, const Points& rest) {
   const auto vertices = static_cast<int>(rest.cols());
   const Precision precision = members.front()->precision();
   if (members.size() == 1) return {members.front()->springs(), vertices, precision};
@@ -23,26 +18,33 @@ SpringRows Lay(std::span<const Springs* const> members, const Points& rest) {
 
 }  // namespace
 
-SpringBatch::SpringBatch(std::span<const Springs* const> members, const Points& rest)
-    : Force(JointName(members)),
-      rows_(Lay(members, rest)),
-      packs_(rows_.InRanges() && members.front()->precision() == Precision::kSingle) {
-  if (!members.front()->balanced()) return;
+SpringRows MakeSpringRows(std::span<const Springs* const> members, const Points& rest) {
+  SpringRows rows = LayOut(members, rest);
+  if (!members.front()->balanced()) return rows;
   Points load = Points::Zero(3, rest.cols());
-  rows_.AddForce(-1, rest, load);
-  rows_.SetLoad(load);
+  rows.AddForce(-1, rest, Scratch(), load);
+  rows.SetLoad(load);
+  return rows;
+}
+
+std::string JoinedName(std::span<const Springs* const> members) {
+  return absl::StrJoin(members, " + ", [](std::string* out, const Springs* springs) { out->append(springs->name()); });
 }
 
 void SpringBatch::AddForce(const EvalContext& at, MutablePoints f) const {
-  rows_.AddForce(at.parameters.elasticity(), at.x, f);
+  rows_.AddForce(at.parameters.elasticity(), at.x, at.scratch, f);
 }
 
-void SpringBatch::AddForceIn(const VertexRange& range, const EvalContext& at, MutablePoints f) const {
-  rows_.AddForce(range, at.parameters.elasticity(), at.x, at.packed, false, f);
+void SpringBatch::AddForceToBlock(const VertexRange& block, const BlockContext& at, MutablePoints f) const {
+  rows_.AddForce(block, at.parameters.elasticity(), at.x, at.packed, false, f);
 }
 
-void SpringBatch::SetForceIn(const VertexRange& range, const EvalContext& at, MutablePoints f) const {
-  rows_.AddForce(range, at.parameters.elasticity(), at.x, at.packed, true, f);
+void SpringBatch::SetForceOnBlock(const VertexRange& block, const BlockContext& at, MutablePoints f) const {
+  rows_.AddForce(block, at.parameters.elasticity(), at.x, at.packed, true, f);
+}
+
+void ReorderedSpringBatch::AddForce(const EvalContext& at, MutablePoints f) const {
+  rows_.AddForce(at.parameters.elasticity(), at.x, at.scratch, f);
 }
 
 }  // namespace phrenic

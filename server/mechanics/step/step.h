@@ -1,23 +1,20 @@
-// One step of a run, and what can go wrong in it.
+// One step of a run.
 #ifndef PHRENIC_SERVER_MECHANICS_STEP_STEP_H_
 #define PHRENIC_SERVER_MECHANICS_STEP_STEP_H_
 
 #include "absl/status/status.h"
-#include "phrenic/v1/session.pb.h"
 #include "server/mechanics/model.h"
 
 namespace phrenic {
 
-// The state becomes the state at t + dt, by the integrator that the parameters name. OUT_OF_RANGE when the
-// step diverged (a position that is not finite, or ten times the scene's size outside its box at rest; velocities that
-// are not finite, or that would cross all that in one step); `state` is then
-// not to be shown to anyone, and Diagnose says why; StepCheckpoint (step_checkpoint.h) finds the state before. ABORTED
-// when the integrator found no next state. Allocates nothing.
+// Advances the state by dt [s], with the integrator that the parameters name; in parts if they set a step_tolerance.
+// Allocates nothing but in the first step of an integrator. One thread per state and workspace.
+//
+// OUT_OF_RANGE if the step diverged: a position is not finite or beyond Model::bound, or a velocity is not finite or
+// would cross that distance within the step. The state is then invalid: Diagnose (stability/diagnosis.h) names the
+// cause, and StepCheckpoint (step_checkpoint.h) recomputes the state before. ABORTED if the integrator found no next
+// state.
 absl::Status Step(const Model& model, const v1::Parameters& parameters, double dt, State& state, Workspace& work);
-
-// Names the vertex that went furthest in a diverged state, the force with the largest pull on it before, and a remedy.
-v1::Divergence Diagnose(const Model& model, const v1::Parameters& parameters, const absl::Status& why,
-                        const State& before, const State& diverged);
 
 }  // namespace phrenic
 

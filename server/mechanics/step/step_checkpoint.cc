@@ -1,22 +1,22 @@
 #include "server/mechanics/step/step_checkpoint.h"
 
-#include "server/mechanics/compile/catalogue.h"
 #include "server/mechanics/step/step.h"
+#include "server/mechanics/step/step_plan.h"
 
 namespace phrenic {
 namespace {
 
-// Steps from one copy to the next. It costs a quick one next to nothing, and few are dear to take again. What a solver
-// finds in a limited time it may not find again.
-int StepsOf(const v1::Parameters& parameters) {
+// Steps per copy. A copy costs little beside an implicit step, and few of those are expensive to repeat. A step that a
+// solver's time limit cuts short cannot be repeated: its start is copied.
+int StepsPerCopy(const StepPlan& plan, const v1::Parameters& parameters) {
   if (parameters.solver_budget() > 0) return 1;
-  return FindIntegrator(parameters.integrator()).needs_start() ? 8 : 64;
+  return plan.FindIntegrator(parameters).needs_start() ? 8 : 64;
 }
 
 }  // namespace
 
-void StepCheckpoint::Note(const v1::Parameters& parameters, const State& state) {
-  if (!known_ || steps_ >= StepsOf(parameters)) {
+void StepCheckpoint::Note(const Model& model, const v1::Parameters& parameters, const State& state) {
+  if (!known_ || steps_ >= StepsPerCopy(*model.plan, parameters)) {
     kept_ = state;
     known_ = true;
     steps_ = 0;
@@ -27,7 +27,7 @@ void StepCheckpoint::Note(const v1::Parameters& parameters, const State& state) 
 State StepCheckpoint::StateBeforeLastStep(const Model& model, const v1::Parameters& parameters, double dt,
                                           Workspace& work) const {
   State state = kept_;
-  for (int step = 1; step < steps_; ++step) Step(model, parameters, dt, state, work).IgnoreError();  // it was good
+  for (int step = 1; step < steps_; ++step) Step(model, parameters, dt, state, work).IgnoreError();  // each succeeded
   return state;
 }
 

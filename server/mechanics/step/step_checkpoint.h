@@ -1,4 +1,4 @@
-// Where the start of a run's last step is found once more: a step may be written over what it starts from.
+// Recomputes the state before the last step of a run: a step may be written over its start.
 #ifndef PHRENIC_SERVER_MECHANICS_STEP_STEP_CHECKPOINT_H_
 #define PHRENIC_SERVER_MECHANICS_STEP_STEP_CHECKPOINT_H_
 
@@ -6,20 +6,20 @@
 
 namespace phrenic {
 
-// A copy of the state every so many steps, from which the steps are taken again. Not thread-safe; one for a run.
+// A copy of the state every few steps, from which the steps are repeated. One per run. Not thread-safe.
 class StepCheckpoint {
  public:
-  // To be told of the state before each step that is taken from it. Allocates the first time.
-  void Note(const v1::Parameters& parameters, const State& state);
-  // State or parameters are changed otherwise than by a step.
+  // Is told the state before each step. Allocates the first time.
+  void Note(const Model& model, const v1::Parameters& parameters, const State& state);
+  // State or parameters change otherwise than by a step.
   void Forget() { known_ = false; }
-  // The state before the last step, bit for bit; the parameters, and dt [s], are those of the steps.
+  // Returns the state before the last step, bit for bit. Requires: `parameters` and dt [s] are those of the steps.
   State StateBeforeLastStep(const Model& model, const v1::Parameters& parameters, double dt, Workspace& work) const;
 
  private:
   State kept_;
-  bool known_ = false;  // what became of it
-  int steps_ = 0;       // since then, with the one to come
+  bool known_ = false;  // `kept_` and `steps_` belong to the run
+  int steps_ = 0;       // from `kept_` on, with the one that follows
 };
 
 }  // namespace phrenic

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "server/mechanics/skinning/body_points.h"
 #include "server/record/recorder.h"
 #include "server/schema/thread_cpu.h"
 #include "server/session/run.h"

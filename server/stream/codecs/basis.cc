@@ -3,20 +3,20 @@
 #include <algorithm>
 #include <optional>
 
-#include "server/stream/quantise.h"
-#include "server/stream/wire.h"
+#include "server/stream/codecs/quantise.h"
+#include "server/stream/codecs/wire.h"
 
 namespace phrenic::stream {
 namespace {
 
-constexpr std::size_t kBasisHead = 16;  // step float64, number of shapes, what follows
-constexpr double kRidge = 1e-9;         // of the shapes' mean square: two of them may be alike on chosen bodies
+constexpr std::size_t kBasisHead = 16;  // step float64, number of shapes, kind of residuals
+constexpr double kRidge = 1e-9;         // of the shapes' mean square: shapes may be equal on selected bodies
 
-// What follows the shapes' parts.
+// What follows the coefficients.
 enum class Rest : std::uint32_t { kNothing = 0, kAsItIs = 1, kForetold = 2 };
 
-// Steps from `sum` for each vertex that it leaves further from `positions` than `max_error`, three a place. None where
-// one is too far; empty where the sum suffices.
+// Returns the steps from `sum` to `positions`, three per place, 0 for vertices within `max_error`. Empty if all are;
+// nothing if one exceeds the range.
 std::optional<Steps> StepsFrom(const Eigen::Matrix3Xd& sum, const Floats& positions, double max_error, double step,
                                const std::vector<int>& order) {
   Steps steps;
@@ -40,7 +40,7 @@ absl::Status BadBasis(const char* what) { return absl::InvalidArgumentError(std:
 
 }  // namespace
 
-BasisCodec::BasisCodec(const RestShape& shape) : shape_(shape), foretelling_(shape) {
+BasisCodec::BasisCodec(const RestShape& shape) : shape_(shape), predictor_(shape) {
   const auto count = static_cast<Eigen::Index>(shape.shapes.size());
   Eigen::MatrixXd gram(count, count);
   for (Eigen::Index i = 0; i < count; ++i) {
@@ -53,7 +53,7 @@ BasisCodec::BasisCodec(const RestShape& shape) : shape_(shape), foretelling_(sha
   gram_.compute(gram);
 }
 
-BasisCodec::Parts BasisCodec::FindParts(const Floats& positions) const {
+BasisCodec::Parts BasisCodec::FindCoefficients(const Floats& positions) const {
   const auto count = static_cast<Eigen::Index>(shape_.shapes.size());
   const Floats moved = positions - shape_.rest;
   Eigen::VectorXd along(count);
@@ -81,10 +81,10 @@ BasisCodec::Doubles BasisCodec::Sum(const Parts& parts) const {
 absl::StatusOr<std::string> BasisCodec::Encode(const Floats& positions, double max_error) const {
   const auto step = GridStep(positions, max_error);
   if (!step.has_value() || !IsGridStep(*step)) return absl::OutOfRangeError("the bound is finer than float32");
-  const Parts parts = FindParts(positions);
-  const auto steps = StepsFrom(Sum(parts), positions, max_error, *step, foretelling_.order());
+  const Parts parts = FindCoefficients(positions);
+  const auto steps = StepsFrom(Sum(parts), positions, max_error, *step, predictor_.order());
   if (!steps.has_value()) return absl::OutOfRangeError("a vertex is too far from rest");
-  const Steps foretold = foretelling_.Remainders(*steps);
+  const Steps foretold = predictor_.Residuals(*steps);
   const bool fewer = Zeros(foretold) > Zeros(*steps);
   const Rest rest = steps->empty() ? Rest::kNothing : fewer ? Rest::kForetold : Rest::kAsItIs;
   std::string bytes;
@@ -92,7 +92,7 @@ absl::StatusOr<std::string> BasisCodec::Encode(const Floats& positions, double m
   Append(static_cast<std::uint32_t>(parts.size()), bytes);
   Append(static_cast<std::uint32_t>(rest), bytes);
   for (const float part : parts) Append(part, bytes);
-  if (rest != Rest::kNothing) AppendRemainders(fewer ? foretold : *steps, bytes);
+  if (rest != Rest::kNothing) AppendResiduals(fewer ? foretold : *steps, bytes);
   return bytes;
 }
 
@@ -109,11 +109,11 @@ absl::StatusOr<Floats> BasisCodec::Decode(std::string_view bytes) const {
   Doubles sum = Sum(parts);
   if (rest == Rest::kNothing && bytes.size() != head) return BadBasis("more follows than was said");
   if (rest != Rest::kNothing) {
-    auto steps = ReadRemainders(bytes.substr(head), foretelling_.order().size());
+    auto steps = ReadResiduals(bytes.substr(head), predictor_.order().size());
     if (!steps.ok()) return steps.status();
-    if (rest == Rest::kForetold) *steps = foretelling_.Sums(*steps);
-    for (std::size_t place = 0; place < foretelling_.order().size(); ++place) {
-      const int vertex = foretelling_.order()[place];
+    if (rest == Rest::kForetold) *steps = predictor_.Sums(*steps);
+    for (std::size_t place = 0; place < predictor_.order().size(); ++place) {
+      const int vertex = predictor_.order()[place];
       for (int axis = 0; axis < 3; ++axis) sum(axis, vertex) += step * (*steps)[3 * place + axis];
     }
   }

@@ -1,17 +1,17 @@
-// A sum of the shapes that both ends have, and what is left of each vertex that the sum leaves outside the bound.
+// A linear combination of the basis' shapes, and residuals of the vertices that it leaves outside the bound.
 #ifndef PHRENIC_SERVER_STREAM_CODECS_BASIS_H_
 #define PHRENIC_SERVER_STREAM_CODECS_BASIS_H_
 
 #include <Eigen/Cholesky>
 #include <vector>
 
-#include "server/stream/codec.h"
+#include "server/stream/codecs/codec.h"
 #include "server/stream/codecs/neighbour_predictor.h"
 
 namespace phrenic::stream {
 
-// x = rest + sum c_k s_k + step d, the c_k by least squares, d whole numbers: 0 where the sum alone keeps the bound, so
-// that the bound holds whatever the shapes are. proto/README.md has the bytes.
+// x = rest + sum c_k s_k + step d, c_k by least squares, d integers: 0 where the sum meets the bound, so the bound
+// holds for any shapes. proto/README.md specifies the bytes.
 class BasisCodec final : public Codec {
  public:
   explicit BasisCodec(const RestShape& shape);
@@ -22,12 +22,12 @@ class BasisCodec final : public Codec {
   using Parts = std::vector<float>;  // c_k [1]
   using Doubles = Eigen::Matrix3Xd;  // [m]
 
-  Parts FindParts(const Floats& positions) const;
-  // rest + sum c_k s_k, term after term.
+  Parts FindCoefficients(const Floats& positions) const;
+  // Returns rest + sum c_k s_k, summed in the order of k.
   Doubles Sum(const Parts& parts) const;
 
   const RestShape shape_;
-  const NeighbourPredictor foretelling_;
+  const NeighbourPredictor predictor_;
   Eigen::LDLT<Eigen::MatrixXd> gram_;  // of the shapes
 };
 

@@ -3,32 +3,32 @@
 #include <optional>
 
 #include "absl/strings/str_cat.h"
-#include "server/stream/wire.h"
-#include "server/stream/zstd.h"
+#include "server/stream/codecs/wire.h"
+#include "server/stream/codecs/zstd.h"
 
 namespace phrenic::stream {
 namespace {
 
-constexpr std::uint32_t kEscape = 3;       // of two bits: the rest follows in the overflow
+constexpr std::uint32_t kEscape = 3;       // of two bits: the number continues in the overflow
 constexpr std::size_t kLengths = 8;        // bytes of the first zstd frame, bytes of the overflow
 constexpr std::size_t kLongestNumber = 5;  // bytes of the overflow
 
-absl::Status Bad(const char* what) { return absl::InvalidArgumentError(absl::StrCat("remainders: ", what)); }
+absl::Status Bad(const char* what) { return absl::InvalidArgumentError(absl::StrCat("residuals: ", what)); }
 
-// 0, -1, 1, -2, ... as 0, 1, 2, 3, ...
+// Zigzag encoding: 0, -1, 1, -2, ... as 0, 1, 2, 3, ...
 std::uint32_t ZigZag(std::int32_t value) {
   return (static_cast<std::uint32_t>(value) << 1) ^ static_cast<std::uint32_t>(value >> 31);
 }
 
 std::int32_t UnZigZag(std::uint32_t value) { return static_cast<std::int32_t>((value >> 1) ^ (0U - (value & 1))); }
 
-// Seven bits a byte, the low ones first, the eighth set where more follow.
+// Varint: seven bits per byte, low bits first, the eighth bit set if more follow.
 void AppendNumber(std::uint32_t value, std::string& bytes) {
   for (; value >= 0x80; value >>= 7) bytes += static_cast<char>(value | 0x80);
   bytes += static_cast<char>(value);
 }
 
-// None where the bytes end before the number does.
+// Nothing if the bytes end within the number.
 std::optional<std::uint32_t> TakeNumber(std::string_view bytes, std::size_t& at) {
   std::uint32_t value = 0;
   for (int shift = 0; shift < 35 && at < bytes.size(); shift += 7) {
@@ -39,7 +39,7 @@ std::optional<std::uint32_t> TakeNumber(std::string_view bytes, std::size_t& at)
   return std::nullopt;
 }
 
-// The remainders in two parts: two bits each, four a byte from the low bits, and what is left of those of kEscape.
+// Residuals in two parts: two bits each, four per byte from the low bits, and the overflow of those with kEscape.
 struct Parts {
   explicit Parts(std::size_t count) : bits((count + 3) / 4, '\0') {}
   void Add(std::int32_t remainder) {
@@ -53,9 +53,9 @@ struct Parts {
   std::size_t next = 0;
 };
 
-// Three a place.
+// Three per place.
 std::optional<Steps> Join(std::string_view bits, std::string_view overflow, std::size_t places) {
-  Steps remainders(3 * places);
+  Steps residuals(3 * places);
   std::size_t at = 0, i = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t place = 0; place < places; ++place, ++i) {
@@ -65,16 +65,16 @@ std::optional<Steps> Join(std::string_view bits, std::string_view overflow, std:
         if (!more.has_value()) return std::nullopt;
         value += *more;
       }
-      remainders[3 * place + axis] = UnZigZag(value);
+      residuals[3 * place + axis] = UnZigZag(value);
     }
   }
   if (at != overflow.size()) return std::nullopt;
-  return remainders;
+  return residuals;
 }
 
 }  // namespace
 
-std::array<std::int64_t, 3> NeighbourPredictor::Foretell(const Steps& steps, int place) const {
+std::array<std::int64_t, 3> NeighbourPredictor::Predict(const Steps& steps, int place) const {
   static_assert(kUnit == 1 << 12);
   std::int64_t x = kUnit / 2, y = kUnit / 2, z = kUnit / 2;
   for (int i = neighbours_.first[place]; i < neighbours_.first[place + 1]; ++i) {
@@ -85,32 +85,32 @@ std::array<std::int64_t, 3> NeighbourPredictor::Foretell(const Steps& steps, int
   return {x >> 12, y >> 12, z >> 12};  // over kUnit, rounded down
 }
 
-Steps NeighbourPredictor::Remainders(const Steps& steps) const {
-  Steps remainders(steps.size());
+Steps NeighbourPredictor::Residuals(const Steps& steps) const {
+  Steps residuals(steps.size());
   for (int place = 0; 3 * static_cast<std::size_t>(place) < steps.size(); ++place) {
-    const auto foretold = Foretell(steps, place);
+    const auto foretold = Predict(steps, place);
     for (int axis = 0; axis < 3; ++axis) {
-      remainders[3 * place + axis] = static_cast<std::int32_t>(steps[3 * place + axis] - foretold[axis]);
+      residuals[3 * place + axis] = static_cast<std::int32_t>(steps[3 * place + axis] - foretold[axis]);
     }
   }
-  return remainders;
+  return residuals;
 }
 
-Steps NeighbourPredictor::Sums(const Steps& remainders) const {
-  Steps steps(remainders.size());
+Steps NeighbourPredictor::Sums(const Steps& residuals) const {
+  Steps steps(residuals.size());
   for (int place = 0; 3 * static_cast<std::size_t>(place) < steps.size(); ++place) {
-    const auto foretold = Foretell(steps, place);
+    const auto foretold = Predict(steps, place);
     for (int axis = 0; axis < 3; ++axis) {
-      steps[3 * place + axis] = static_cast<std::int32_t>(foretold[axis] + remainders[3 * place + axis]);
+      steps[3 * place + axis] = static_cast<std::int32_t>(foretold[axis] + residuals[3 * place + axis]);
     }
   }
   return steps;
 }
 
-void AppendRemainders(const Steps& remainders, std::string& bytes) {
-  Parts parts(remainders.size());
+void AppendResiduals(const Steps& residuals, std::string& bytes) {
+  Parts parts(residuals.size());
   for (int axis = 0; axis < 3; ++axis) {
-    for (std::size_t i = axis; i < remainders.size(); i += 3) parts.Add(remainders[i]);
+    for (std::size_t i = axis; i < residuals.size(); i += 3) parts.Add(residuals[i]);
   }
   std::string compressed;
   const std::size_t first = AppendCompressed(parts.bits, compressed);
@@ -120,7 +120,7 @@ void AppendRemainders(const Steps& remainders, std::string& bytes) {
   bytes += compressed;
 }
 
-absl::StatusOr<Steps> ReadRemainders(std::string_view bytes, std::size_t places) {
+absl::StatusOr<Steps> ReadResiduals(std::string_view bytes, std::size_t places) {
   if (bytes.size() < kLengths) return Bad("the lengths are cut off");
   const std::size_t first = Read<std::uint32_t>(bytes, 0), overflow_bytes = Read<std::uint32_t>(bytes, 4);
   const std::size_t count = 3 * places;
@@ -130,9 +130,9 @@ absl::StatusOr<Steps> ReadRemainders(std::string_view bytes, std::size_t places)
   if (!bits.ok()) return bits.status();
   const auto overflow = Decompress(bytes.substr(kLengths + first), overflow_bytes);
   if (!overflow.ok()) return overflow.status();
-  auto remainders = Join(*bits, *overflow, places);
-  if (!remainders.has_value()) return Bad("the overflow does not fit the two bits");
-  return *std::move(remainders);
+  auto residuals = Join(*bits, *overflow, places);
+  if (!residuals.has_value()) return Bad("the overflow does not fit the two bits");
+  return *std::move(residuals);
 }
 
 }  // namespace phrenic::stream

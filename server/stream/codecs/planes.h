@@ -1,12 +1,12 @@
-// Sixteen bits a coordinate, low and high bytes apart: for programs that would rather not keep the rest shape.
+// Sixteen bits per coordinate, low and high bytes in separate planes: for clients that do not keep the rest shape.
 #ifndef PHRENIC_SERVER_STREAM_CODECS_PLANES_H_
 #define PHRENIC_SERVER_STREAM_CODECS_PLANES_H_
 
-#include "server/stream/codec.h"
+#include "server/stream/codecs/codec.h"
 
 namespace phrenic::stream {
 
-// x = corner + step q, 0 <= q < 2^16, the corner that of the positions' own box; proto/README.md has the bytes.
+// x = corner + step q, 0 <= q < 2^16, corner that of the positions' bounding box. proto/README.md specifies the bytes.
 class PlanesCodec final : public Codec {
  public:
   explicit PlanesCodec(const RestShape& shape) : vertices_(shape.rest.cols()) {}

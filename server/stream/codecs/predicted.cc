@@ -1,7 +1,7 @@
 #include "server/stream/codecs/predicted.h"
 
-#include "server/stream/quantise.h"
-#include "server/stream/wire.h"
+#include "server/stream/codecs/quantise.h"
+#include "server/stream/codecs/wire.h"
 
 namespace phrenic::stream {
 namespace {
@@ -15,7 +15,7 @@ Floats InOrder(const Floats& values, const std::vector<int>& order) {
 }  // namespace
 
 PredictedCodec::PredictedCodec(const RestShape& shape)
-    : foretelling_(shape), rest_(InOrder(shape.rest, foretelling_.order())) {}
+    : predictor_(shape), rest_(InOrder(shape.rest, predictor_.order())) {}
 
 absl::StatusOr<std::string> PredictedCodec::Encode(const Floats& positions, double max_error) const {
   const auto step = GridStep(positions, max_error);
@@ -23,7 +23,7 @@ absl::StatusOr<std::string> PredictedCodec::Encode(const Floats& positions, doub
   Steps displacements(static_cast<std::size_t>(rest_.size()));
   const double inverse = 1 / *step;
   for (int place = 0; place < static_cast<int>(rest_.cols()); ++place) {
-    const int vertex = foretelling_.order()[place];
+    const int vertex = predictor_.order()[place];
     for (int axis = 0; axis < 3; ++axis) {
       const double moved = static_cast<double>(positions(axis, vertex)) - static_cast<double>(rest_(axis, place));
       const double steps = std::floor(moved * inverse + 0.5);
@@ -33,7 +33,7 @@ absl::StatusOr<std::string> PredictedCodec::Encode(const Floats& positions, doub
   }
   std::string bytes;
   Append(*step, bytes);
-  AppendRemainders(foretelling_.Remainders(displacements), bytes);
+  AppendResiduals(predictor_.Residuals(displacements), bytes);
   return bytes;
 }
 
@@ -41,13 +41,13 @@ absl::StatusOr<Floats> PredictedCodec::Decode(std::string_view bytes) const {
   if (bytes.size() < sizeof(double)) return absl::InvalidArgumentError("predicted: the head is cut off");
   const double step = Read<double>(bytes, 0);
   if (!IsGridStep(step)) return absl::InvalidArgumentError("predicted: the step is not within 0 to 1 m");
-  const auto remainders = ReadRemainders(bytes.substr(sizeof(double)), static_cast<std::size_t>(rest_.cols()));
-  if (!remainders.ok()) return remainders.status();
-  const Steps displacements = foretelling_.Sums(*remainders);
+  const auto residuals = ReadResiduals(bytes.substr(sizeof(double)), static_cast<std::size_t>(rest_.cols()));
+  if (!residuals.ok()) return residuals.status();
+  const Steps displacements = predictor_.Sums(*residuals);
   Floats positions(3, rest_.cols());
   for (int place = 0; place < static_cast<int>(rest_.cols()); ++place) {
     for (int axis = 0; axis < 3; ++axis) {
-      positions(axis, foretelling_.order()[place]) =
+      positions(axis, predictor_.order()[place]) =
           static_cast<float>(static_cast<double>(rest_(axis, place)) + step * displacements[3 * place + axis]);
     }
   }

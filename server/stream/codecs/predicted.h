@@ -1,13 +1,13 @@
-// What is left of each vertex' displacement from rest after it is foretold from its neighbours': the viewer's codec.
+// Residuals of each vertex' displacement from rest after prediction from its neighbours: the viewer's default codec.
 #ifndef PHRENIC_SERVER_STREAM_CODECS_PREDICTED_H_
 #define PHRENIC_SERVER_STREAM_CODECS_PREDICTED_H_
 
-#include "server/stream/codec.h"
+#include "server/stream/codecs/codec.h"
 #include "server/stream/codecs/neighbour_predictor.h"
 
 namespace phrenic::stream {
 
-// x = rest + step d, d whole numbers; proto/README.md has the bytes.
+// x = rest + step d, d integers. proto/README.md specifies the bytes.
 class PredictedCodec final : public Codec {
  public:
   explicit PredictedCodec(const RestShape& shape);
@@ -15,7 +15,7 @@ class PredictedCodec final : public Codec {
   absl::StatusOr<Floats> Decode(std::string_view bytes) const override;
 
  private:
-  const NeighbourPredictor foretelling_;
+  const NeighbourPredictor predictor_;
   const Floats rest_;  // in the order of places
 };
 

@@ -1,12 +1,12 @@
-// Float32 as it is: for programs, and for what no other codec can hold.
+// Lossless float32: for clients without a decoder, and for positions that other codecs cannot encode.
 #ifndef PHRENIC_SERVER_STREAM_CODECS_RAW_H_
 #define PHRENIC_SERVER_STREAM_CODECS_RAW_H_
 
-#include "server/stream/codec.h"
+#include "server/stream/codecs/codec.h"
 
 namespace phrenic::stream {
 
-// x y z a vertex. Loses nothing.
+// x, y, z per vertex.
 class RawCodec final : public Codec {
  public:
   explicit RawCodec(const RestShape& shape) : vertices_(shape.rest.cols()) {}

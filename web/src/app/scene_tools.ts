@@ -131,8 +131,8 @@ export class SceneTools {
   }
 
   /** Updates what depends on the camera. */
-  afterDraw(compass: ViewOrientation): void {
-    this.cube.show(compass);
+  afterDraw(orientation: ViewOrientation): void {
+    this.cube.show(orientation);
     this.annotations.draw();
   }
 

@@ -89,8 +89,8 @@ export class SecondView {
   }
 
   /** Updates the headers; `now` is in ms. */
-  updateStatus(first: Frame | undefined, now: number): void {
-    this.headers.update([first, this.frames.replayedFrame ?? this.frames.liveFrame(now)]);
+  updateStatus(primaryFrame: Frame | undefined, now: number): void {
+    this.headers.update([primaryFrame, this.frames.replayedFrame ?? this.frames.liveFrame(now)]);
     const [here, there] = [this.primary.frames, this.frames].map(({ frame }) => frame?.time ?? 0);
     this.resynchronise(Math.abs(here - there));
   }
@@ -201,11 +201,13 @@ export class SecondView {
   }
 
   /** Synchronises the sessions again if others played them separately or the server restarted. */
-  private resynchronise(apart: number): void {
+  private resynchronise(timeDifference: number): void {
     const { controller, mayChange } = this.primary;
     const playing = [controller, this.controller].every(({ session }) => session.value?.state === SessionState.PLAYING);
     this.checksOutOfStep =
-      playing && mayChange() && apart > maxTimeDifference && apart < maxWait ? this.checksOutOfStep + 1 : 0;
+      playing && mayChange() && timeDifference > maxTimeDifference && timeDifference < maxWait
+        ? this.checksOutOfStep + 1
+        : 0;
     if (this.checksOutOfStep < checksBeforeResync) return;
     this.checksOutOfStep = 0;
     void controller.resynchronise();

@@ -29,16 +29,16 @@ export class Credentials {
 }
 
 /** Stores the secret of a join link, "#join=SECRET". Browsers do not send the fragment to a server. */
-export function storeJoinLink(address: URL, access: Credentials): void {
+export function storeJoinLink(address: URL, credentials: Credentials): void {
   const secret = new URLSearchParams(address.hash.slice(1)).get("join") ?? "";
-  if (/^[0-9a-f]{32}$/.test(secret)) access.addJoinLink(secret);
+  if (/^[0-9a-f]{32}$/.test(secret)) credentials.addJoinLink(secret);
 }
 
 /** Adds the credentials to the header of each call. */
-export function credentialsInterceptor(access: Credentials): Interceptor {
+export function credentialsInterceptor(credentials: Credentials): Interceptor {
   return (next) => (request) => {
-    if (access.token !== "") request.header.set("authorization", `Bearer ${access.token}`);
-    if (access.joinLinks.length > 0) request.header.set("x-join", access.joinLinks.join(","));
+    if (credentials.token !== "") request.header.set("authorization", `Bearer ${credentials.token}`);
+    if (credentials.joinLinks.length > 0) request.header.set("x-join", credentials.joinLinks.join(","));
     return next(request);
   };
 }

@@ -47,8 +47,8 @@ export class FrameDecoder {
 
   private decoderOf({ codec, bodies, basisEpoch }: Frame, present: Body[]): PositionDecoder {
     const key = `${codec}:${basisEpoch}:${bodies.join()}`;
-    const known = this.decoders.get(key);
-    if (known !== undefined) return known;
+    const cached = this.decoders.get(key);
+    if (cached !== undefined) return cached;
     const shapes = codec === Codec.BASIS ? this.shapesOf(present, basisEpoch) : [];
     const decoder = makeDecoder(codec, restShapeOf(present, shapes));
     this.decoders.set(key, decoder);

@@ -40,9 +40,9 @@ function largestExact(first: Int32Array, weights: Int32Array): number {
 
 /**
  * Predicts in 32-bit integers with local variables, since most of the decoding time is spent here. Stops after the
- * first vertex with a value above `most`, and returns the next position in the order.
+ * first vertex with a value above `limit`, and returns the next position in the order.
  */
-function addIn32Bits(values: Int32Array, first: Int32Array, others: Int32Array, weights: Int32Array, most: number) {
+function addIn32Bits(values: Int32Array, first: Int32Array, others: Int32Array, weights: Int32Array, limit: number) {
   for (let place = 0, own = 0; place + 1 < first.length; place++, own += 3) {
     let x = weightUnit / 2;
     let y = weightUnit / 2;
@@ -61,7 +61,7 @@ function addIn32Bits(values: Int32Array, first: Int32Array, others: Int32Array, 
     values[own] = x;
     values[own + 1] = y;
     values[own + 2] = z;
-    if (x > most || x < -most || y > most || y < -most || z > most || z < -most) return place + 1;
+    if (x > limit || x < -limit || y > limit || y < -limit || z > limit || z < -limit) return place + 1;
   }
   return first.length - 1;
 }

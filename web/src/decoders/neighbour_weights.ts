@@ -25,15 +25,15 @@ type Triple = [number, number, number];
 /** Computes prediction order and weights of a mesh from its rest shape. */
 export function neighbourWeights({ rest, neighbours: neighboursOf }: RestShape): NeighbourWeights {
   const order = breadthFirst(neighboursOf);
-  const place = new Int32Array(order.length);
-  order.forEach((vertex, i) => (place[vertex] = i));
+  const positions = new Int32Array(order.length);
+  order.forEach((vertex, i) => (positions[vertex] = i));
   const first = new Int32Array(order.length + 1);
   const places: number[] = [];
   const weights: number[] = [];
   for (let i = 0; i < order.length; i++) {
-    const chosen = chooseNeighbours(neighboursOf, place, order[i]);
+    const chosen = chooseNeighbours(neighboursOf, positions, order[i]);
     if (chosen.length === 0 && i > 0) chosen.push(order[i - 1]);
-    for (const vertex of chosen) places.push(place[vertex]);
+    for (const vertex of chosen) places.push(positions[vertex]);
     if (chosen.length > 0) weights.push(...weightsOf(rest, order[i], chosen));
     first[i + 1] = places.length;
   }
@@ -41,33 +41,33 @@ export function neighbourWeights({ rest, neighbours: neighboursOf }: RestShape):
 }
 
 /** Breadth-first order from the lowest vertex, with ascending neighbours. */
-function breadthFirst(beside: number[][]): Int32Array {
-  const order = new Int32Array(beside.length);
-  const seen = new Uint8Array(beside.length);
+function breadthFirst(neighbours: number[][]): Int32Array {
+  const order = new Int32Array(neighbours.length);
+  const seen = new Uint8Array(neighbours.length);
   let count = 0;
   const visit = (vertex: number) => {
     if (seen[vertex] !== 0) return;
     seen[vertex] = 1;
     order[count++] = vertex;
   };
-  for (let start = 0; start < beside.length; start++) {
+  for (let start = 0; start < neighbours.length; start++) {
     let next = count;
     visit(start);
-    for (; next < count; next++) beside[order[next]].forEach(visit);
+    for (; next < count; next++) neighbours[order[next]].forEach(visit);
   }
   return order;
 }
 
 /** Returns neighbours that precede the vertex, then their neighbours, each once. */
-function chooseNeighbours(beside: number[][], place: Int32Array, vertex: number): number[] {
+function chooseNeighbours(neighbours: number[][], positions: Int32Array, vertex: number): number[] {
   const chosen: number[] = [];
   const add = (candidate: number) => {
-    if (chosen.length === maxNeighbours || place[candidate] >= place[vertex]) return;
+    if (chosen.length === maxNeighbours || positions[candidate] >= positions[vertex]) return;
     if (!chosen.includes(candidate)) chosen.push(candidate);
   };
-  beside[vertex].forEach(add);
+  neighbours[vertex].forEach(add);
   const near = chosen.length;
-  for (let i = 0; i < near; i++) beside[chosen[i]].forEach(add);
+  for (let i = 0; i < near; i++) neighbours[chosen[i]].forEach(add);
   return chosen;
 }
 

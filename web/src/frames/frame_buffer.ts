@@ -165,8 +165,8 @@ export class FrameBuffer {
     if (replayed !== undefined) return this.replayed(replayed);
     const { before, after, part } = this.smooth ? between : { before: this.newest, after: this.newest, part: 0 };
     const time = before.frame.time + part * (after.frame.time - before.frame.time);
-    const present = this.liveFrame(now);
-    if (present !== undefined && present.time < time) return this.replayed(present);
+    const live = this.liveFrame(now);
+    if (live !== undefined && live.time < time) return this.replayed(live);
     return { time, arrays: interpolate(this.decode(before), this.decode(after), part) };
   }
 
@@ -176,8 +176,8 @@ export class FrameBuffer {
     return { time: frame.time, arrays: this.decode(this.replayedEntry) };
   }
 
-  private decode(taken: BufferedFrame): FrameArrays {
-    return (taken.arrays ??= this.decoder.decode(taken.frame));
+  private decode(entry: BufferedFrame): FrameArrays {
+    return (entry.arrays ??= this.decoder.decode(entry.frame));
   }
 
   /** Returns rate, age and accuracy over the last second before `now` [ms]. */

@@ -77,9 +77,9 @@ export function drawPlot(label: string, { x, y, ...options }: PlotOptions): SVGS
 }
 
 /** Returns the colour and symbol scales of the series. */
-export function seriesScales(looks: Map<string, { color: string; symbol: unknown }>): PlotOptions {
-  const domain = [...looks.keys()];
-  const all = [...looks.values()];
+export function seriesScales(styles: Map<string, { color: string; symbol: unknown }>): PlotOptions {
+  const domain = [...styles.keys()];
+  const all = [...styles.values()];
   return {
     color: { type: "categorical", domain, range: all.map(({ color }) => color) },
     symbol: { domain, range: all.map(({ symbol }) => symbol) } as ScaleOptions,

@@ -46,8 +46,8 @@ function mostTo({ stage, element }: StageRow): string {
 }
 
 function paceOf({ cpuUsPerStep, timesThesis }: CostRow): string {
-  const beside = timesThesis === undefined ? "" : `, ${formatDigits(timesThesis, 3)} times the speed of the thesis`;
-  return `A step takes ${formatDigits(cpuUsPerStep, 3)} µs${beside}.`;
+  const comparison = timesThesis === undefined ? "" : `, ${formatDigits(timesThesis, 3)} times the speed of the thesis`;
+  return `A step takes ${formatDigits(cpuUsPerStep, 3)} µs${comparison}.`;
 }
 
 function leavingOut(rows: CostRow[]): string | undefined {

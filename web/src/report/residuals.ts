@@ -46,11 +46,11 @@ export function positionErrors(table: ErrorTable): HTMLElement | undefined {
 
 function overTime(title: string, label: string, sentence: string, points: Point[]): HTMLElement {
   const ids = [...new Set(points.map(({ id }) => id))];
-  const looks = new Map(ids.map((id, i) => [id, { color: styles[i % 4][0], symbol: styles[i % 4][1] }]));
+  const seriesStyle = new Map(ids.map((id, i) => [id, { color: styles[i % 4][0], symbol: styles[i % 4][1] }]));
   const lines = ids.map((id) => ({ id, name: sentenceCase(id), points: points.filter((point) => point.id === id) }));
   const values = points.map(({ y }) => y);
   const drawn = drawPlot(`${title} ${sentence}`, {
-    ...seriesScales(looks),
+    ...seriesScales(seriesStyle),
     width: half,
     height: 400,
     marginLeft: 74,
@@ -60,7 +60,7 @@ function overTime(title: string, label: string, sentence: string, points: Point[
       frame({ stroke: "#8b949e" }),
       // Later curves are thinner, so that coinciding curves remain visible.
       ...lines.flatMap(({ id, points: own }, i) => [
-        line(own, { x: "x", y: "y", stroke: looks.get(id)!.color, strokeWidth: Math.max(2, 5 - 3 * i) }),
+        line(own, { x: "x", y: "y", stroke: seriesStyle.get(id)!.color, strokeWidth: Math.max(2, 5 - 3 * i) }),
         dot(own, { x: "x", y: "y", fill: () => id, symbol: () => id, r: Math.max(3, 7 - 3 * i), stroke: "white" }),
       ]),
       tip(points, pointer({ x: "x", y: "y", title: tooltip, fontSize: 14 })),

@@ -214,10 +214,10 @@ export class SessionController {
   /** Lets the paused session that is behind step to the time of the other, if the difference is small. */
   private async alignTimes(): Promise<void> {
     const { companion } = this;
-    const apart = (companion?.session.value?.time ?? 0) - (this.session.value?.time ?? 0);
-    if (companion === undefined || Math.abs(apart) > maxTimeDifference) return;
-    const behind = apart > 0 ? this : companion;
-    const ticks = Math.round(Math.abs(apart) / (behind.session.value?.parameters?.timeStep ?? Infinity));
+    const timeDifference = (companion?.session.value?.time ?? 0) - (this.session.value?.time ?? 0);
+    if (companion === undefined || Math.abs(timeDifference) > maxTimeDifference) return;
+    const behind = timeDifference > 0 ? this : companion;
+    const ticks = Math.round(Math.abs(timeDifference) / (behind.session.value?.parameters?.timeStep ?? Infinity));
     if (ticks > 0) await behind.stepThis(ticks);
   }
 

@@ -101,18 +101,18 @@ function ruler(
 ): SVGElement[] {
   const scale = scaleLinear([min[axis], max[axis]], [0, 1]);
   const [dx, dy] = across ? [0, 8] : [-8, 0];
-  const beside = (value: number): [number, number] => {
+  const outside = (value: number): [number, number] => {
     const [x, y] = at(value);
     return [x + 2 * dx, y + 2 * dy];
   };
-  const parts: SVGElement[] = [line(beside(min[axis]), beside(max[axis]))];
+  const parts: SVGElement[] = [line(outside(min[axis]), outside(max[axis]))];
   for (const tick of scale.ticks(6)) {
-    const [x, y] = beside(tick);
+    const [x, y] = outside(tick);
     parts.push(line([x, y], [x + dx, y + dy]));
     const text = scale.tickFormat(6)(tick).replace("-", "−");
     parts.push(across ? svgText(x, y + 22, text, "middle") : svgText(x - 12, y + 4, text, "end"));
   }
-  const [x, y] = beside(max[axis]);
+  const [x, y] = outside(max[axis]);
   parts.push(across ? svgText(x + 14, y + 5, `${axis} [m]`, "start") : svgText(x, y - 10, `${axis} [m]`, "middle"));
   return parts;
 }

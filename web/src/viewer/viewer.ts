@@ -28,7 +28,7 @@ export interface ViewerHost {
   /** Called before a frame is drawn for the first time. */
   beforeDraw?(frame: FrameArrays): void;
   /** Called after each drawing. */
-  afterDraw(compass: ViewOrientation): void;
+  afterDraw(orientation: ViewOrientation): void;
   /** Returns the parts of the canvas that panels cover. */
   insets(): Insets;
   /** True if the user prefers reduced motion. */
@@ -247,12 +247,12 @@ export class Viewer {
     this.shown = frame;
     const { distance, extent } = this.rig.depth;
     [this.fog.near, this.fog.far] = [distance - 0.1 * extent, distance + 0.75 * extent];
-    const compass = this.rig.orientation();
-    this.markers.scale(markerSize / compass.pixelsPerMetre);
+    const orientation = this.rig.orientation();
+    this.markers.scale(markerSize / orientation.pixelsPerMetre);
     this.renderer.render(this.scene, this.rig.camera);
     this.drawn++;
     if (frame !== undefined && this.firstDrawTime < 0) this.firstDrawTime = performance.now();
-    this.host.afterDraw(compass);
+    this.host.afterDraw(orientation);
   }
 }
 

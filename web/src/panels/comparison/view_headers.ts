@@ -45,9 +45,11 @@ export class ViewHeaders {
     const [here, there] = frames.map((frame) => frame?.time ?? 0);
     frames.forEach((frame, i) => (this.domes[i].textContent = domeLabel(frame)));
     this.times[0].textContent = `${here.toFixed(2)} s`;
-    const apart = there - here;
+    const timeDifference = there - here;
     const words =
-      Math.abs(apart) < maxTimeDifference ? "" : `, ${Math.abs(apart).toFixed(1)} s ${apart > 0 ? "ahead" : "behind"}`;
+      Math.abs(timeDifference) < maxTimeDifference
+        ? ""
+        : `, ${Math.abs(timeDifference).toFixed(1)} s ${timeDifference > 0 ? "ahead" : "behind"}`;
     this.times[1].textContent = `${there.toFixed(2)} s${words}`;
   }
 

@@ -3,15 +3,15 @@ import type { Credentials } from "../../connection/credentials";
 import { make } from "../../dom/elements";
 
 /** True if the server has no accounts, knows the user, or a join link may be sufficient. */
-async function isAdmitted(api: Api, access: Credentials): Promise<boolean> {
+async function isAdmitted(api: Api, credentials: Credentials): Promise<boolean> {
   const { accounts, name } = await api.access.getAccess({}, { timeoutMs: 8000 });
-  return !accounts || name !== "" || (access.token === "" && access.joinLinks.length > 0);
+  return !accounts || name !== "" || (credentials.token === "" && credentials.joinLinks.length > 0);
 }
 
 /** Asks for the account token, in `place`, until the server accepts it. Returns immediately if none is needed. */
-export async function signIn(api: Api, access: Credentials, place: HTMLElement): Promise<void> {
+export async function signIn(api: Api, credentials: Credentials, place: HTMLElement): Promise<void> {
   // Errors of an unreachable server are reported by the next call.
-  for (let first = true; !(await isAdmitted(api, access).catch(() => true)); first = false) {
+  for (let first = true; !(await isAdmitted(api, credentials).catch(() => true)); first = false) {
     const entry = make("input", { type: "password", autocomplete: "current-password", required: true });
     const label = make("label", {}, "Your token ", entry);
     const button = make("button", { type: "submit" }, "Sign in");
@@ -19,7 +19,7 @@ export async function signIn(api: Api, access: Credentials, place: HTMLElement):
     const words = first ? "This server requires an account. " : "No account has this token. ";
     place.replaceChildren(words, form);
     entry.focus();
-    access.token = await new Promise<string>((done) => {
+    credentials.token = await new Promise<string>((done) => {
       form.onsubmit = (event) => {
         event.preventDefault();
         done(entry.value.trim());

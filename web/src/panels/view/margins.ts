@@ -22,12 +22,12 @@ export class Margins {
   }
 
   /** Shows the orientation and scale of a view. */
-  show(compass: ViewOrientation): void {
+  show(orientation: ViewOrientation): void {
     for (const side of ["left", "right", "top", "bottom"] as const) {
-      if (this.letters[side].textContent !== compass[side]) this.letters[side].textContent = compass[side];
+      if (this.letters[side].textContent !== orientation[side]) this.letters[side].textContent = orientation[side];
     }
-    const length = lengths.findLast((each) => each * compass.pixelsPerMetre <= longest) ?? lengths[0];
-    this.bar.style.width = `${length * compass.pixelsPerMetre}px`;
+    const length = lengths.findLast((each) => each * orientation.pixelsPerMetre <= longest) ?? lengths[0];
+    this.bar.style.width = `${length * orientation.pixelsPerMetre}px`;
     const text = length < 1 ? `${Math.round(1000 * length)} mm` : `${length} m`;
     if (this.words.textContent !== text) this.words.textContent = text;
   }

@@ -1,0 +1,19 @@
+// The live parameters as rows of text, from the schema.
+#ifndef PHRENIC_CLIENT_CLI_PARAMETER_ROWS_H_
+#define PHRENIC_CLIENT_CLI_PARAMETER_ROWS_H_
+
+#include <string>
+#include <vector>
+
+namespace phrenic::client {
+
+struct ParameterRow {
+  std::string name, unit, range, default_value, meaning;  // the unit is empty for a pure number
+};
+
+// Returns one row per live parameter, in the schema's order.
+std::vector<ParameterRow> ParameterRows();
+
+}  // namespace phrenic::client
+
+#endif  // PHRENIC_CLIENT_CLI_PARAMETER_ROWS_H_

@@ -1,0 +1,35 @@
+// Shows the session that a call returned.
+#ifndef PHRENIC_CLIENT_COMMANDS_SHOW_SESSION_H_
+#define PHRENIC_CLIENT_COMMANDS_SHOW_SESSION_H_
+
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "client/connection/connection.h"
+#include "client/connection/errors.h"
+#include "client/print/output.h"
+#include "client/print/print_session.h"
+
+namespace phrenic::client {
+
+// Prints the session of a response, or the error. `viewer` is the link to the session in the viewer; empty: none.
+// Returns the exit code; kFailed if the session diverged.
+template <typename Response>
+int ShowSession(const Context& context, const grpc::Status& status, const Response& response,
+                const std::string& viewer = "") {
+  if (!status.ok()) return Fail(context, status);
+  if (context.json()) {
+    auto answer = nlohmann::ordered_json::parse(Json(response));
+    if (!viewer.empty()) answer["viewer"] = viewer;
+    std::cout << answer.dump() << "\n";
+  } else {
+    PrintSession(response.session(), std::cout);
+    if (!viewer.empty()) std::cout << "  viewer: " << viewer << "\n";
+  }
+  return response.session().state() == v1::SESSION_STATE_DIVERGED ? kFailed : kOk;
+}
+
+}  // namespace phrenic::client
+
+#endif  // PHRENIC_CLIENT_COMMANDS_SHOW_SESSION_H_

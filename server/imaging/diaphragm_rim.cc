@@ -1,0 +1,127 @@
+#include "server/imaging/diaphragm_rim.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "absl/strings/str_format.h"
+
+namespace phrenic::imaging {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr int kKnotSpacing = 10;     // between knots on the costal margin [degrees]
+constexpr double kHalfSternum = 8;   // [degrees]
+constexpr double kLastCostal = 140;  // from the front [degrees]; the arcuate ligaments begin behind it
+constexpr double kUnknown = std::numeric_limits<double>::infinity();
+constexpr int kDirections = 360 / kKnotSpacing;
+
+struct Knot {
+  double degrees, z;  // azimuth from the front, positive to the left; height [mm]
+};
+
+// Returns the height of the lowest point of ribs 7 to 12 and cartilages in each direction; infinity if there is none.
+std::vector<double> CostalMargin(const LabelVolume& volume, const std::vector<Part>& parts, const CageFrame& frame) {
+  std::vector<double> lowest(kDirections, kUnknown);
+  for (const Part& part : parts) {
+    const bool rib = part.Is(v1::STRUCTURE_RIB) && part.anatomy.number() >= 7;
+    if (!rib && !part.Is(v1::STRUCTURE_COSTAL_CARTILAGE)) continue;
+    for (std::size_t at = 0; at < part.mask.inside.size(); ++at) {
+      if (part.mask.inside[at] != 1) continue;
+      const Eigen::Vector3d position = part.mask.Position(volume, at), from = position - frame.centre;
+      const double degrees = std::atan2(from.x(), -from.y()) / kDegree;
+      const auto direction = (std::lround(degrees / kKnotSpacing) + kDirections) % kDirections;
+      lowest[direction] = std::min(lowest[direction], position.z());
+    }
+  }
+  return lowest;
+}
+
+// Returns the costal margin of one side from front to back. Skips directions without bone; the spline bridges them.
+std::vector<Knot> CostalKnots(const std::vector<double>& lowest, const CageFrame& frame, double side, int* bridged) {
+  const double highest = frame.sternum_end;  // beside the xiphoid the margin is higher, but in front of the sheet
+  std::vector<Knot> known = {{0, frame.sternum_end}};
+  for (int degrees = kKnotSpacing; degrees <= kLastCostal; degrees += kKnotSpacing) {
+    const auto direction = (static_cast<int>(side) * degrees / kKnotSpacing + kDirections) % kDirections;
+    if (lowest[direction] < kUnknown) {
+      known.push_back({static_cast<double>(degrees), std::min(highest, lowest[direction])});
+    } else {
+      ++*bridged;
+    }
+  }
+  for (Knot& knot : known) knot.degrees *= side;
+  known.front().degrees = side * kHalfSternum / 2;
+  return known;
+}
+
+// Returns the crus from its lateral edge around the tip to the median arcuate ligament, in degrees from the back.
+std::vector<Knot> CrusKnots(const CageFrame& frame, v1::Side side) {
+  const double l1 = frame.lumbar[0], h = frame.vertebra_height;
+  const double tip = side == v1::SIDE_RIGHT ? frame.lumbar[2] : frame.lumbar[1] - 0.2 * h;
+  return {{28, l1 + 0.3 * h},
+          {20, l1 + 0.2 * h},
+          {15, l1 - 0.4 * h},
+          {12, (l1 + tip) / 2 - 0.3 * h},
+          {9, tip},
+          {6, (l1 + tip) / 2 - 0.3 * h},
+          {4, l1},
+          {2, l1 + h}};
+}
+
+// Returns the knots of the whole rim from the front, counter-clockwise seen from above: left side first.
+std::vector<Knot> Knots(const std::vector<double>& lowest, const CageFrame& frame, Messages& fallbacks) {
+  int bridged = 0;
+  std::vector<Knot> knots = CostalKnots(lowest, frame, 1, &bridged);
+  for (const Knot& knot : CrusKnots(frame, v1::SIDE_LEFT)) knots.push_back({180 - knot.degrees, knot.z});
+  knots.push_back({180, frame.lumbar[0] + 1.3 * frame.vertebra_height});
+  std::vector<Knot> right = CostalKnots(lowest, frame, -1, &bridged);
+  for (const Knot& knot : CrusKnots(frame, v1::SIDE_RIGHT)) right.push_back({knot.degrees - 180, knot.z});
+  for (auto knot = right.rbegin(); knot != right.rend(); ++knot) knots.push_back({knot->degrees + 360, knot->z});
+  if (bridged > 0) {
+    fallbacks.push_back(
+        absl::StrFormat("costal margin: no rib or cartilage 7-12 in %d of 28 directions; interpolated", bridged));
+  }
+  return knots;
+}
+
+// Evaluates the uniform cubic B-spline.
+Knot Spline(const std::vector<Knot>& knots, std::size_t span, double t) {
+  const std::size_t n = knots.size();
+  const double u = 1 - t;
+  const double weights[4] = {u * u * u / 6, (3 * t * t * t - 6 * t * t + 4) / 6, (3 * u * u * u - 6 * u * u + 4) / 6,
+                             t * t * t / 6};
+  Knot at{0, 0};
+  for (std::size_t k = 0; k < 4; ++k) {
+    const Knot& knot = knots[(span + n + k - 1) % n];
+    const double unwrapped = knot.degrees + 360 * std::round((knots[span].degrees - knot.degrees) / 360);
+    at.degrees += weights[k] * unwrapped;
+    at.z += weights[k] * knot.z;
+  }
+  return at;
+}
+
+}  // namespace
+
+anatomy::PlaneLoop FindRim(const LabelVolume& volume, const std::vector<Part>& parts, const CageFrame& frame,
+                           const SmoothSheet& sheet, Messages& fallbacks) {
+  constexpr int kSamplesASpan = 12;
+  const std::vector<Knot> knots = Knots(CostalMargin(volume, parts, frame), frame, fallbacks);
+  anatomy::PlaneLoop rim;
+  for (std::size_t span = 0; span < knots.size(); ++span) {
+    for (int i = 0; i < kSamplesASpan; ++i) {
+      const Knot at = Spline(knots, span, static_cast<double>(i) / kSamplesASpan);
+      const double angle = at.degrees * kDegree;
+      rim.push_back(sheet.AtHeight({std::sin(angle), -std::cos(angle)}, at.z));
+    }
+  }
+  return rim;
+}
+
+bool InCrus(const CageFrame& frame, const Eigen::Vector3d& point, v1::Side side) {
+  const double across = (point.x() - frame.centre.x()) * (side == v1::SIDE_LEFT ? 1 : -1);
+  return point.y() > frame.centre.y() && across > 0 && across < 0.115 * frame.width &&
+         point.z() < frame.lumbar[0] + 0.5 * frame.vertebra_height;
+}
+
+}  // namespace phrenic::imaging

@@ -1,0 +1,28 @@
+// Quantisation of positions to a grid within an error bound.
+#ifndef PHRENIC_SERVER_STREAM_CODECS_QUANTISE_H_
+#define PHRENIC_SERVER_STREAM_CODECS_QUANTISE_H_
+
+#include <cmath>
+#include <optional>
+
+#include "server/stream/codecs/codec.h"
+
+namespace phrenic::stream {
+
+// Returns the grid step [m] for which rounding each coordinate moves no vertex by more than `max_error` [m]:
+// sqrt(3)/2 step plus the rounding of the result to float32. Nothing if float32 alone takes half of the bound or more.
+inline std::optional<double> GridStep(const Floats& positions, double max_error) {
+  const double largest = positions.size() == 0 ? 0 : positions.cwiseAbs().maxCoeff();
+  const double rounding = std::ldexp(largest + max_error, -23);  // above sqrt(3) half units in the last place
+  if (!(rounding <= max_error / 2)) return std::nullopt;
+  return 2 / std::sqrt(3.0) * (max_error - rounding);
+}
+
+inline constexpr double kLargestStep = 1;  // [m]: decoders accept steps in (0, kLargestStep]
+
+// True for a step that decoders accept: 2^31 steps are then finite as float32.
+inline bool IsGridStep(double step) { return step > 0 && step <= kLargestStep; }
+
+}  // namespace phrenic::stream
+
+#endif  // PHRENIC_SERVER_STREAM_CODECS_QUANTISE_H_

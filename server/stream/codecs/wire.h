@@ -1,0 +1,47 @@
+// Little-endian numbers of the wire format (proto/README.md).
+#ifndef PHRENIC_SERVER_STREAM_CODECS_WIRE_H_
+#define PHRENIC_SERVER_STREAM_CODECS_WIRE_H_
+
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/mesh/mesh.h"
+
+namespace phrenic::stream {
+
+// Numbers are copied without conversion.
+static_assert(std::endian::native == std::endian::little, "the wire is little-endian: swap the bytes here");
+
+// Appends x, y, z of each column as float32.
+inline void AppendFloats(const Eigen::Ref<const Eigen::MatrixXf>& values, std::string& bytes) {
+  bytes.append(reinterpret_cast<const char*>(values.data()), sizeof(float) * values.size());
+}
+
+// Appends indices as uint32, column by column.
+inline void AppendIndices(const Eigen::Ref<const Eigen::MatrixXi>& indices, std::string& bytes) {
+  static_assert(sizeof(int) == sizeof(std::uint32_t));
+  bytes.append(reinterpret_cast<const char*>(indices.data()), sizeof(int) * indices.size());
+}
+
+template <class Number>
+void Append(Number value, std::string& bytes) {
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+inline void AppendIndex(int index, std::string& bytes) { Append(static_cast<std::uint32_t>(index), bytes); }
+
+// Returns the number at `offset`. Requires: offset + sizeof(Number) <= bytes.size().
+template <class Number>
+Number Read(std::string_view bytes, std::size_t offset) {
+  Number value;
+  std::memcpy(&value, bytes.data() + offset, sizeof value);
+  return value;
+}
+
+}  // namespace phrenic::stream
+
+#endif  // PHRENIC_SERVER_STREAM_CODECS_WIRE_H_

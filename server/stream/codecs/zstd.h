@@ -1,0 +1,20 @@
+// Zstandard compression (RFC 8878) at the fastest level: one frame per string.
+#ifndef PHRENIC_SERVER_STREAM_CODECS_ZSTD_H_
+#define PHRENIC_SERVER_STREAM_CODECS_ZSTD_H_
+
+#include <string>
+#include <string_view>
+
+#include "absl/status/statusor.h"
+
+namespace phrenic::stream {
+
+// Appends a frame to `compressed` and returns its number of bytes. Thread-safe.
+std::size_t AppendCompressed(std::string_view bytes, std::string& compressed);
+
+// INVALID_ARGUMENT unless `compressed` decompresses to exactly `size` bytes; allocates no more than that.
+absl::StatusOr<std::string> Decompress(std::string_view compressed, std::size_t size);
+
+}  // namespace phrenic::stream
+
+#endif  // PHRENIC_SERVER_STREAM_CODECS_ZSTD_H_

@@ -1,0 +1,72 @@
+// Ribs in one label are divided, compared with the same volume with one label per rib.
+#include "server/imaging/segmented_parts.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+
+#include "server/imaging/label_map.h"
+#include "server/imaging/phantom.h"
+
+namespace phrenic::imaging {
+namespace {
+
+constexpr Label kRibs = 200;
+
+bool IsRib(const v1::LabelMeaning& label) { return label.anatomy().structure() == v1::STRUCTURE_RIB; }
+
+// Replaces the ribs' labels by a single one, in volume and map.
+void JoinRibs(LabelVolume& volume, v1::LabelMap& map) {
+  std::vector<bool> rib(256, false);
+  for (const v1::LabelMeaning& label : map.labels()) rib[label.number()] = IsRib(label);
+  std::replace_if(
+      volume.labels.begin(), volume.labels.end(), [&rib](Label label) { return rib[label]; }, kRibs);
+  auto& labels = *map.mutable_labels();
+  labels.erase(std::remove_if(labels.begin(), labels.end(), IsRib), labels.end());
+  v1::LabelMeaning& ribs = *map.add_labels();
+  ribs.set_number(kRibs);
+  ribs.set_name("ribs");
+  ribs.mutable_anatomy()->set_structure(v1::STRUCTURE_RIB);
+}
+
+// Returns the ribs' centroids [mm].
+std::map<std::string, Eigen::Vector3d> Ribs(const LabelVolume& volume, const v1::LabelMap& map, Messages& fallbacks) {
+  std::map<std::string, Eigen::Vector3d> centroids;
+  const auto parts = FindParts(volume, map, fallbacks);
+  EXPECT_TRUE(parts.ok()) << parts.status();
+  for (const Part& part : *parts) {
+    if (!part.Is(v1::STRUCTURE_RIB)) continue;
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (std::size_t at = 0; at < part.mask.inside.size(); ++at) {
+      if (part.mask.inside[at] == 1) sum += part.mask.Position(volume, at);
+    }
+    centroids[part.name] = sum / static_cast<double>(part.mask.Count());
+  }
+  return centroids;
+}
+
+class RibsInOneLabel : public testing::TestWithParam<const char*> {};
+
+TEST_P(RibsInOneLabel, GetTheirSidesAndNumbers) {
+  v1::LabelMap map = *ReadLabelMap("totalsegmentator");
+  auto volume = MakePhantom(*FindPhantomBody(GetParam()), {.voxel = 2, .noise = 0.02, .holes = 40}, map);
+  ASSERT_TRUE(volume.ok()) << volume.status();
+  Messages fallbacks;
+  const auto truth = Ribs(*volume, map, fallbacks);
+  JoinRibs(*volume, map);
+  const auto found = Ribs(*volume, map, fallbacks);
+  ASSERT_EQ(truth.size(), 24u);
+  EXPECT_THAT(fallbacks, testing::Contains(testing::HasSubstr("ribs on the left: one label, divided into 12")));
+  for (const auto& [name, middle] : truth) {
+    ASSERT_TRUE(found.contains(name)) << name;
+    EXPECT_LT((found.at(name) - middle).norm(), 4) << name;
+  }
+}
+
+// The bodies whose lowest ribs are less than two voxels apart.
+INSTANTIATE_TEST_SUITE_P(Bodies, RibsInOneLabel, testing::Values("small", "flat"));
+
+}  // namespace
+}  // namespace phrenic::imaging
