@@ -177,6 +177,7 @@ TEST_P(ForceContract, DampingIsTheForcesPartInVelocity) {
   Points damped = state_.v * c.asDiagonal();
   OuterProducts shared;
   force().AddSharedDamping(At(state_), shared);
+  EXPECT_EQ(force().has_shared_damping(), !shared.empty());
   if (!GetParam().turns) shared.AddTimes(1, state_.v, damped);
   if (GetParam().turns && !shared.empty()) GTEST_SKIP() << "on a free border flow is not only the surface's own";
   EXPECT_LT((ForceAt(state_) - ForceAt(still) + damped).cwiseAbs().maxCoeff(), 1e-12);

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "absl/strings/str_cat.h"
+#include "server/mechanics/block_constraint.h"
 #include "server/mechanics/constraint_residual.h"
 #include "server/mechanics/forces/spring_rows.h"
 #include "tests/compile_text.h"
