@@ -120,7 +120,7 @@ TEST(Repetition, RefusesLargeSets) {
 TEST(Repetition, RefusesTwoBodiesOfOneName) {
   EXPECT_EQ(
       RefusalOf(ParseBody("\nname: 'b' layer: '{value}' for_each { values: ['x', 'y'] }")),
-      "s:2:1: bodies[0].name: its for_each makes two bodies named \"b\": write {number}, {side} or {value} in the "
+      "s:3:1: bodies[0].name: its for_each makes two bodies named \"b\": write {number}, {side} or {value} in the "
       "name");
   EXPECT_THAT(RefusalOf(ParseElements("bodies { name: 'b2' " + kBall + "}\nbodies { name: 'b{number}' " + kBall +
                                       "for_each { numbers { first: 1 last: 2 } } }")),
