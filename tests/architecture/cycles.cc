@@ -23,7 +23,7 @@ std::set<std::string> QuotedIncludes(const std::string& text) {
   return headers;
 }
 
-std::string FolderOf(const std::string& path) { return path.substr(0, path.rfind('/')); }
+std::string ParentFolder(const std::string& path) { return path.substr(0, path.rfind('/')); }
 
 // Depth-first search that records the first path back to a node that is still open.
 class CycleSearch {
@@ -77,7 +77,7 @@ Faults CycleFaults(const Texts& texts) {
     for (const std::string& header : QuotedIncludes(text)) {
       if (!texts.contains(header)) continue;
       if (UnitOf(header) != UnitOf(path)) units[UnitOf(path)].insert(UnitOf(header));
-      if (FolderOf(header) != FolderOf(path)) folders[FolderOf(path)].insert(FolderOf(header));
+      if (ParentFolder(header) != ParentFolder(path)) folders[ParentFolder(path)].insert(ParentFolder(header));
     }
   }
   Faults faults;
@@ -88,7 +88,7 @@ Faults CycleFaults(const Texts& texts) {
 
 Faults FolderSizeFaults(const std::vector<std::string>& paths) {
   std::map<std::string, std::set<std::string>> units;
-  for (const std::string& path : paths) units[FolderOf(path)].insert(UnitOf(path));
+  for (const std::string& path : paths) units[ParentFolder(path)].insert(UnitOf(path));
   Faults faults;
   for (const auto& [folder, members] : units) {
     if (members.size() <= kLargestFolder) continue;
