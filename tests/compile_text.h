@@ -1,4 +1,4 @@
-// Models from scenes written in tests.
+// Compiles and runs scenes that tests give as text. Such scenes read no files.
 #ifndef PHRENIC_TESTS_COMPILE_TEXT_H_
 #define PHRENIC_TESTS_COMPILE_TEXT_H_
 
@@ -14,19 +14,21 @@
 
 namespace phrenic {
 
+// Returns the model, or the error of the parser or the compile step.
 inline absl::StatusOr<std::shared_ptr<const Model>> TryCompileText(const std::string& text) {
   absl::StatusOr<v1::Scene> scene = schema::ParseScene("test", text);
   if (!scene.ok()) return scene.status();
   return Compile(*scene, [](const v1::Body&) { return absl::NotFoundError("tests read no files"); });
 }
 
+// Returns the model; fails the test and returns null if there is an error.
 inline std::shared_ptr<const Model> CompileText(const std::string& text) {
   auto model = TryCompileText(text);
   EXPECT_TRUE(model.ok()) << model.status();
   return model.ok() ? *model : nullptr;
 }
 
-// Takes steps of `dt` until `time`; the state then.
+// Takes steps of `dt` [s] from rest to `time` [s] and returns the state. Fails the test if a step fails.
 inline State RunTo(const Model& model, double time, double dt) {
   State state = model.InitialState();
   Workspace work = model.MakeWorkspace();

@@ -1,4 +1,4 @@
-// Time that only the test moves.
+// A clock that the test advances.
 #ifndef PHRENIC_TESTS_FAKE_CLOCK_H_
 #define PHRENIC_TESTS_FAKE_CLOCK_H_
 
@@ -7,7 +7,7 @@
 
 namespace phrenic {
 
-// Any thread may call.
+// Starts at a fixed time. Thread-safe.
 class FakeClock final : public Clock {
  public:
   absl::Time Now() const override {
@@ -17,6 +17,7 @@ class FakeClock final : public Clock {
   void Await(absl::Mutex& mutex, const absl::Condition& condition, absl::Time deadline) const override {
     while (!condition.Eval() && Now() < deadline) mutex.AwaitWithTimeout(condition, absl::Milliseconds(1));
   }
+  // Moves the time forward; Await returns within a few milliseconds of real time.
   void Advance(absl::Duration duration) {
     absl::MutexLock lock(&mutex_);
     now_ += duration;
@@ -27,7 +28,7 @@ class FakeClock final : public Clock {
   absl::Time now_ ABSL_GUARDED_BY(mutex_) = absl::FromUnixSeconds(1'700'000'000);
 };
 
-// Whether `condition` came to hold within ten seconds of the real clock.
+// Polls `condition`. Returns true as soon as it holds, false after ten seconds of real time.
 template <class Condition>
 bool Eventually(const Condition& condition) {
   const absl::Time last = absl::Now() + absl::Seconds(10);

@@ -1,4 +1,4 @@
-// Scenes that compile and step in no time.
+// Small scenes that compile and step fast.
 #ifndef PHRENIC_TESTS_SMALL_SCENES_H_
 #define PHRENIC_TESTS_SMALL_SCENES_H_
 
@@ -6,7 +6,7 @@
 
 namespace phrenic {
 
-// A triangle of springs, one corner fixed, falling, beside a post that never moves.
+// A falling triangle of springs with one fixed corner, beside a fixed post.
 inline const char kTriangle[] = R"(
   name: "triangle" title: "Triangle"
   layers { name: "tissue" title: "Tissue" color: "#c8553d" opacity: 0.5 }
@@ -28,10 +28,10 @@ inline const char kTriangle[] = R"(
   parameters { time_step: 0.01 }
 )";
 
-// The same with `more` in it.
+// The same scene with the text `more` appended.
 inline std::string Triangle(const std::string& more) { return std::string(kTriangle) + more; }
 
-// The same with other live parameters.
+// The same scene with other parameters in place of its time step.
 inline std::string Retimed(const std::string& parameters) {
   std::string text = kTriangle;
   const std::string old = "time_step: 0.01";

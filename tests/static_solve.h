@@ -1,4 +1,4 @@
-// Equilibria by Newton's method: what a law of elasticity says, without any integrator.
+// Computes static equilibria by Newton's method, without an integrator.
 #ifndef PHRENIC_TESTS_STATIC_SOLVE_H_
 #define PHRENIC_TESTS_STATIC_SOLVE_H_
 
@@ -13,16 +13,18 @@
 
 namespace phrenic {
 
-// Whether a coordinate (0 to 2) of a vertex stays where `start` has it.
+// True if a coordinate (axis 0 to 2) of a vertex is fixed at its start value.
 using Held = std::function<bool(int vertex, int axis)>;
 
+// Returns the sum of all forces, 3 x n [N].
 inline Points ForceOn(const Model& model, const State& state) {
   Points f = Points::Zero(3, state.x.cols());
   for (const auto& force : model.forces) force->AddForce(MakeEvalContext(model, model.parameters, state), f);
   return f;
 }
 
-// Positions where the model's forces and `load` [N], 3 x n, balance on what is not held.
+// Returns the positions, 3 x n [m], at which the model's forces and `load` (3 x n [N]) balance at all free coordinates.
+// Starts from `start` (3 x n [m]). Fails the test if Newton's method does not converge in 100 iterations.
 inline Points SolveStatic(const Model& model, const Points& start, const Points& load, const Held& held) {
   State state = model.InitialState();
   state.x = start;

@@ -13,7 +13,7 @@
 #include "client/connection/errors.h"
 #include "client/print/watch_printer.h"
 #include "phrenic/v1/frames.grpc.pb.h"
-#include "server/stream/codec.h"
+#include "server/stream/codecs/codec.h"
 
 namespace phrenic::client {
 namespace {

@@ -10,7 +10,7 @@
 namespace phrenic::compare {
 namespace {
 
-constexpr double kFarthest = 1e6;  // [m]; squares and sums of what is nearer keep their digits
+constexpr double kMaxCoordinate = 1e6;  // [m]; squares and sums of smaller coordinates stay accurate
 
 absl::StatusOr<Compared> ReadFile(const v1::ComparedSurface& file, const char* field) {
   if (file.name().empty()) return absl::InvalidArgumentError(absl::StrCat(field, ".name: must be set for a file"));
@@ -21,7 +21,7 @@ absl::StatusOr<Compared> ReadFile(const v1::ComparedSurface& file, const char* f
   for (const Points& displacement : motion->displacements) {
     largest = std::max(largest, displacement.cwiseAbs().maxCoeff());
   }
-  if (largest <= kFarthest) return Compared{file.name(), *std::move(motion), std::nullopt};
+  if (largest <= kMaxCoordinate) return Compared{file.name(), *std::move(motion), std::nullopt};
   return absl::InvalidArgumentError(
       absl::StrCat(file.name(), ":1: has a coordinate of ", largest, " m; is unit_mm right?"));
 }
@@ -29,7 +29,8 @@ absl::StatusOr<Compared> ReadFile(const v1::ComparedSurface& file, const char* f
 absl::StatusOr<Compared> ReadBody(const v1::ComparedSurface& surface, const char* field, BodySource bodies) {
   for (const auto& [set, name] : {std::pair(surface.has_unit_mm(), "unit_mm"), std::pair(surface.has_time(), "time")}) {
     if (!set) continue;
-    return absl::InvalidArgumentError(absl::StrCat(field, ".", name, ": is of files; leave it out with a body"));
+    return absl::InvalidArgumentError(
+        absl::StrCat(field, ".", name, ": applies to files only; leave it out for a body"));
   }
   Compared compared;
   auto mesh = bodies(surface.body(), compared.state.emplace());
@@ -53,7 +54,7 @@ absl::StatusOr<Compared> Read(const v1::ComparedSurface& surface, const char* fi
   return ReadFile(surface, field);
 }
 
-// Leaves of a motion one state alone, where one is asked for.
+// Reduces a motion to the state at one time, if the request or the other side sets a time.
 absl::Status ChooseState(const v1::ComparedSurface& asked, const std::optional<v1::ComparedState>& other,
                          Compared& compared) {
   if (!compared.motion.moves() || (!asked.has_time() && !other)) return absl::OkStatus();
@@ -61,7 +62,7 @@ absl::Status ChooseState(const v1::ComparedSurface& asked, const std::optional<v
   const auto state = FindTime(compared.motion.times, time);
   if (!state) {
     return absl::FailedPreconditionError(absl::StrFormat(
-        "%s: has no state at %g s%s, but from %g to %g s; name one of these times", compared.name, time,
+        "%s: has no state at %g s%s; its times are %g to %g s: choose one of them", compared.name, time,
         asked.has_time() ? "" : ", the session's time", compared.motion.times.front(), compared.motion.times.back()));
   }
   compared.motion.mesh.vertices = PositionsAt(compared.motion, *state);

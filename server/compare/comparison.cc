@@ -32,14 +32,14 @@ Triangles TrianglesOf(const Mesh& mesh, const std::string& region) {
   return triangles;
 }
 
-bool AsksForVertices(const v1::CompareRequest& request) {
+bool WantsVertices(const v1::CompareRequest& request) {
   return request.vertex_distances() || !request.map_format().empty();
 }
 
-// The whole surfaces, or one region of them, with what was measured of them.
+// The whole surfaces or one region of them, with the measured distances, one per moment.
 struct ComparedPart {
   std::string region;
-  MeasuredSurface a, b, rest;  // `rest` is A as it was at first
+  MeasuredSurface a, b, rest;  // `rest` is A at its first time
   std::vector<v1::SurfaceDistance> distances, baselines;
 };
 
@@ -60,7 +60,7 @@ class Comparer {
   absl::Status Measure() {
     const auto total = static_cast<double>(moments_.pairs.size() * parts_.size());
     double done = 0;
-    if (absl::Status status = TellMesh(); !status.ok()) return status;
+    if (absl::Status status = SendMesh(); !status.ok()) return status;
     for (const Moment& moment : moments_.pairs) {
       const Points a = PositionsAt(a_, moment.a), b = PositionsAt(b_, moment.b);
       for (ComparedPart& part : parts_) {
@@ -94,14 +94,14 @@ class Comparer {
     return table;
   }
 
-  // Of the surface's own vertices: a vertex of no triangle has no distance.
+  // Has only the vertices that a triangle uses: the others have no distance.
   record::DistanceMap Map() const {
     const MeasuredSurface& whole = parts_.front().rest;
-    std::vector<int> place(static_cast<std::size_t>(whole.vertices().cols()), -1);
-    for (std::size_t i = 0; i < whole.used().size(); ++i) place[whole.used()[i]] = static_cast<int>(i);
+    std::vector<int> index(static_cast<std::size_t>(whole.vertices().cols()), -1);
+    for (std::size_t i = 0; i < whole.used().size(); ++i) index[whole.used()[i]] = static_cast<int>(i);
     record::DistanceMap map;
     map.surface.vertices = whole.vertices()(Eigen::all, whole.used());
-    map.surface.triangles = whole.triangles().unaryExpr([&](int vertex) { return place[vertex]; });
+    map.surface.triangles = whole.triangles().unaryExpr([&](int vertex) { return index[vertex]; });
     for (std::size_t m = 0; m < moments_.pairs.size(); ++m) {
       map.times.push_back(moments_.pairs[m].time.value_or(0));
       map.distances.emplace_back(at_vertices_[m](whole.used()));
@@ -116,13 +116,13 @@ class Comparer {
   }
 
   absl::Status MeasurePart(ComparedPart& part, const Moment& moment) {
-    const bool of_vertices = part.region.empty() && AsksForVertices(request_);
+    const bool wants_vertices = part.region.empty() && WantsVertices(request_);
     Eigen::VectorXd at_vertices;
-    auto distance = MeasureDistance(part.a, part.b, options_, of_vertices ? &at_vertices : nullptr);
+    auto distance = MeasureDistance(part.a, part.b, options_, wants_vertices ? &at_vertices : nullptr);
     if (!distance.ok()) return distance.status();
     part.distances.push_back(*std::move(distance));
-    if (of_vertices) {
-      if (absl::Status status = Tell(at_vertices, moment); !status.ok()) return status;
+    if (wants_vertices) {
+      if (absl::Status status = SendVertices(at_vertices, moment); !status.ok()) return status;
       if (!request_.map_format().empty()) at_vertices_.push_back(std::move(at_vertices));
     }
     if (!a_.moves()) return absl::OkStatus();
@@ -132,7 +132,7 @@ class Comparer {
     return absl::OkStatus();
   }
 
-  absl::Status Tell(const Eigen::VectorXd& at_vertices, const Moment& moment) const {
+  absl::Status SendVertices(const Eigen::VectorXd& at_vertices, const Moment& moment) const {
     if (!request_.vertex_distances()) return absl::OkStatus();
     v1::VertexDistances vertices;
     if (moment.time) vertices.set_time(*moment.time);
@@ -141,7 +141,7 @@ class Comparer {
     return sink_.vertices(vertices);
   }
 
-  absl::Status TellMesh() const {
+  absl::Status SendMesh() const {
     if (!request_.mesh_of_b() || moments_.pairs.empty()) return absl::OkStatus();
     return sink_.mesh(PositionsAt(b_, moments_.pairs.front().b), b_.mesh.triangles);
   }
@@ -160,26 +160,28 @@ class Comparer {
   const MatchedMoments moments_;
   const ComparisonSink& sink_;
   DistanceOptions options_;
-  std::vector<ComparedPart> parts_;           // the whole first
-  std::vector<Eigen::VectorXd> at_vertices_;  // of the whole, one a moment, where there is a map
+  std::vector<ComparedPart> parts_;           // the whole surface first
+  std::vector<Eigen::VectorXd> at_vertices_;  // of the whole surface, one per moment, if a map is requested
 };
 
 absl::Status CheckVertices(const v1::CompareRequest& request, const ComparedPair& pair) {
-  if (!AsksForVertices(request)) return absl::OkStatus();
+  if (!WantsVertices(request)) return absl::OkStatus();
   if (const auto format = record::FindMapFormat(request.map_format()); !request.map_format().empty() && !format.ok()) {
     return format.status();
   }
   for (const Compared* compared : {&pair.a, &pair.b}) {
     if (compared->motion.mesh.triangles.cols() > 0) continue;
     return absl::InvalidArgumentError(
-        absl::StrCat(compared->name, ":1: has no triangles, so that vertices have no distances; leave map_format and ",
+        absl::StrCat(compared->name, ":1: has no triangles, so its vertices have no distances; leave map_format and ",
                      "vertex_distances out"));
   }
   return absl::OkStatus();
 }
 
+// Returns the larger value; NaN if either is NaN.
 double NanMax(double a, double b) { return std::isnan(a) || a > b ? a : b; }
 
+// Aggregates one measure by the rule of its name.
 double OverTimes(const std::string& name, const std::vector<double>& values) {
   const auto count = static_cast<double>(values.size());
   const bool square = absl::StartsWith(name, "rms");

@@ -1,4 +1,4 @@
-// Two surfaces, or two motions, compared: whole, by region and by time.
+// Compares two surfaces or two motions: as a whole, by region and by time.
 #ifndef PHRENIC_SERVER_COMPARE_COMPARISON_H_
 #define PHRENIC_SERVER_COMPARE_COMPARISON_H_
 
@@ -12,21 +12,22 @@
 
 namespace phrenic::compare {
 
-// Where a comparison goes as it is made. An error of a call ends it and becomes its own.
+// Receives the results of a comparison while it runs. An error of a callback ends the comparison and is returned.
 struct ComparisonSink {
-  std::function<bool(double)> progress;  // how much is done, 0 to 1; false: CANCELLED
-  std::function<absl::Status(const v1::VertexDistances&)> vertices;
+  std::function<bool(double)> progress;  // gets the completed fraction, 0 to 1; cancels by returning false
+  std::function<absl::Status(const v1::VertexDistances&)> vertices;             // once per time
   record::Sink map;                                                             // the next bytes of the map's file
-  std::function<absl::Status(ConstPoints x, const Triangles& triangles)> mesh;  // B's [m]
+  std::function<absl::Status(ConstPoints x, const Triangles& triangles)> mesh;  // B, x 3 x n [m]
 };
 
-// Compares as compare.proto says; `request` has been validated. A triangle belongs to a region when its three vertices
-// do. Errors are ReadPair's; INVALID_ARGUMENT too for a surface without triangles whose vertices are asked for.
+// Compares two surfaces as compare.proto defines. Requires: `request` is validated. A triangle belongs to a region if
+// its three vertices do. Errors: those of ReadPair and MatchTimes; INVALID_ARGUMENT if vertex distances are requested
+// of a surface without triangles; CANCELLED if `progress` returns false. Uses two threads (MeasureDistance).
 absl::StatusOr<v1::ComparisonTable> Compare(const v1::CompareRequest& request, BodySource bodies,
                                             const ComparisonSink& sink);
 
-// One distance for several times: of rms_* the root of the mean square, of hd*, p95* and spacing_* the largest, of the
-// other measures the mean; samples are added up. NaN where one of them is NaN.
+// Aggregates distances over times: rms_* by the root of the mean square; hd*, p95* and spacing_* by the maximum; the
+// other measures by the mean; sample counts by the sum. A measure is NaN if any of its inputs is NaN.
 v1::SurfaceDistance OverTimes(const std::vector<v1::SurfaceDistance>& distances);
 
 }  // namespace phrenic::compare

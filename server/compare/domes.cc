@@ -8,14 +8,15 @@ namespace phrenic::compare {
 namespace {
 
 constexpr char kDiaphragm[] = "diaphragm";
-constexpr double kLeast = 2e-3;  // by which a summit is above the saddle [m]
-constexpr int kPlanes = 128;     // across x, in which the outline is read
+constexpr double kMinDepth = 2e-3;  // of the saddle below the lower summit [m]
+constexpr int kPlanes = 128;        // of constant x in which the outline is sampled
 
-// The greatest z over x, in planes of equal distance.
+// The greatest z in each of kPlanes equidistant planes of constant x.
 struct Outline {
-  double first = 0, step = 0;  // of the planes [m]
+  double first = 0, step = 0;  // x of the first plane and distance between planes [m]
   std::vector<double> heights = std::vector<double>(kPlanes, -std::numeric_limits<double>::infinity());
 
+  // Raises the outline to the segment from a to b.
   void Add(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
     if (a.x() > b.x()) return Add(b, a);
     const int begin = std::max(0, static_cast<int>(std::ceil((a.x() - first) / step)));
@@ -27,7 +28,7 @@ struct Outline {
   }
 };
 
-// Adds what the plane at `y` cuts out of a triangle.
+// Adds the segment in which the plane y = `y` cuts a triangle.
 void AddSection(const Mesh& mesh, const Eigen::Vector3i& corners, double y, Outline& outline) {
   std::vector<Eigen::Vector3d> cut;
   for (int k = 0; k < 3; ++k) {
@@ -68,12 +69,12 @@ void AddDomes(Mesh& mesh, double saddle) {
 std::optional<double> FindSaddle(const Mesh& mesh, const std::vector<int>& vertices) {
   if (vertices.empty()) return std::nullopt;
   const auto [first, step, heights] = OutlineOf(mesh, vertices);
-  // The plane that lies deepest below the lower of the highest summits on its two sides.
+  // The saddle has the greatest depth below the lower of the highest summits on its two sides.
   std::vector<double> summit_after(heights.size());
   double summit = -std::numeric_limits<double>::infinity();
   for (std::size_t i = heights.size(); i-- > 0;) summit_after[i] = summit = std::max(summit, heights[i]);
   std::optional<double> saddle;
-  double deepest = kLeast, summit_before = -std::numeric_limits<double>::infinity();
+  double deepest = kMinDepth, summit_before = -std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < heights.size(); ++i) {
     summit_before = std::max(summit_before, heights[i]);
     const double depth = std::min(summit_before, summit_after[i]) - heights[i];

@@ -1,4 +1,4 @@
-// The two domes of a diaphragm, as regions of its own.
+// Divides a diaphragm into its left and right dome.
 #ifndef PHRENIC_SERVER_COMPARE_DOMES_H_
 #define PHRENIC_SERVER_COMPARE_DOMES_H_
 
@@ -8,14 +8,15 @@
 
 namespace phrenic::compare {
 
-// In the coronal section of a region through its highest point, where the sheet is lowest between a summit on the left
-// (+x) and one on the right: that x [m]. None where there are not two summits that rise 2 mm and more above what lies
-// between.
+// Returns the x [m] of the saddle between the two domes of a region, in its coronal section (constant y) through its
+// highest point: the x at which the outline z(x) is lowest between a summit on the left (+x) and one on the right.
+// Returns nullopt if there are not two summits that rise at least 2 mm above the saddle. `vertices` are those of the
+// region; the outline is sampled at 128 equidistant x.
 std::optional<double> FindSaddle(const Mesh& mesh, const std::vector<int>& vertices);
 
-// Where both surfaces have a region "diaphragm" that has a saddle in `a`, gives both the regions "left dome" and "right
-// dome": its vertices on either side of the saddle of `a`, so that both are cut at one place. Regions of these names
-// that a file has already stay as they are.
+// Adds the regions "left dome" (x above the saddle) and "right dome" to both surfaces, if both have a region
+// "diaphragm" and that of `a` has a saddle. Both surfaces are divided at the saddle of `a`. Existing regions of these
+// names are kept.
 void AddDomes(Mesh& a, Mesh& b);
 
 }  // namespace phrenic::compare

@@ -7,13 +7,13 @@
 namespace phrenic::compare {
 namespace {
 
-constexpr int kMostParts = 200'000;
+constexpr int kMaxPieces = 200'000;
 
-// A triangle, or a part of one.
+// A triangle or a piece of one.
 struct Piece {
-  Eigen::Matrix3d corners;  // one a column
-  double distance;          // of its middle [m]
-  double upper;             // of every point's distance [m]
+  Eigen::Matrix3d corners;  // one per column [m]
+  double distance;          // of its centroid [m]
+  double upper;             // upper bound of the distance of its points [m]
   bool operator<(const Piece& other) const { return upper < other.upper; }
 };
 
@@ -21,8 +21,9 @@ class Search {
  public:
   Search(const MeasuredSurface& to, double found) : to_(to), found_(found) {}
 
-  // Looks at a part of which no point is farther than `upper`, and whose middle is no farther than `reach`.
-  void Look(const Eigen::Matrix3d& corners, double reach, double upper) {
+  // Evaluates a piece; queues it if it may hold the farthest point. `upper` bounds the distance of all its points,
+  // `reach` that of its centroid.
+  void Evaluate(const Eigen::Matrix3d& corners, double reach, double upper) {
     const Eigen::Vector3d middle = corners.rowwise().mean();
     const SurfacePoint nearest = to_.Nearest(middle, reach);
     const double distance = std::sqrt(nearest.squared);
@@ -32,42 +33,43 @@ class Search {
     }
     const double by_middle = distance + (corners.colwise() - middle).colwise().norm().maxCoeff();
     found_ = std::max(found_, distance);
-    ++looked_at_;
+    ++evaluated_;
     const double least = std::min({by_triangle, by_middle, upper});
     if (least > Enough()) waiting_.push({corners, distance, least});
   }
 
   Farthest Run() {
-    while (!waiting_.empty() && waiting_.top().upper > Enough() && looked_at_ < kMostParts) {
-      const Piece part = waiting_.top();
+    while (!waiting_.empty() && waiting_.top().upper > Enough() && evaluated_ < kMaxPieces) {
+      const Piece piece = waiting_.top();
       waiting_.pop();
-      Halve(part);
+      Split(piece);
     }
     return {found_, waiting_.empty() ? Enough() : std::max(Enough(), waiting_.top().upper)};
   }
 
-  // What need not be looked at.
+  // Pieces with an upper bound below this are not evaluated [m].
   double Enough() const { return found_ + std::max(1e-4 * found_, 1e-9); }
 
  private:
-  void Halve(const Piece& part) {
-    const Eigen::Vector3d a = part.corners.col(0), b = part.corners.col(1), c = part.corners.col(2);
+  // Evaluates the four quarters of a piece.
+  void Split(const Piece& piece) {
+    const Eigen::Vector3d a = piece.corners.col(0), b = piece.corners.col(1), c = piece.corners.col(2);
     const Eigen::Vector3d ab = (a + b) / 2, bc = (b + c) / 2, ca = (c + a) / 2;
-    const Eigen::Vector3d middle = part.corners.rowwise().mean();
-    const auto look = [&](const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Eigen::Vector3d& r) {
+    const Eigen::Vector3d middle = piece.corners.rowwise().mean();
+    const auto evaluate = [&](const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Eigen::Vector3d& r) {
       Eigen::Matrix3d corners;
       corners << p, q, r;
-      Look(corners, part.distance + (corners.rowwise().mean() - middle).norm(), part.upper);
+      Evaluate(corners, piece.distance + (corners.rowwise().mean() - middle).norm(), piece.upper);
     };
-    look(a, ab, ca);
-    look(ab, b, bc);
-    look(ca, bc, c);
-    look(ab, bc, ca);
+    evaluate(a, ab, ca);
+    evaluate(ab, b, bc);
+    evaluate(ca, bc, c);
+    evaluate(ab, bc, ca);
   }
 
   const MeasuredSurface& to_;
   double found_;
-  int looked_at_ = 0;
+  int evaluated_ = 0;
   std::priority_queue<Piece> waiting_;
 };
 
@@ -83,7 +85,7 @@ Farthest FindFarthest(const MeasuredSurface& from, const MeasuredSurface& to, co
     const double longest = std::max({(corners.col(0) - corners.col(1)).norm(), (corners.col(1) - corners.col(2)).norm(),
                                      (corners.col(2) - corners.col(0)).norm()});
     const double upper = at.minCoeff() + longest;
-    if (upper > search.Enough()) search.Look(corners, upper, upper);
+    if (upper > search.Enough()) search.Evaluate(corners, upper, upper);
   }
   return search.Run();
 }

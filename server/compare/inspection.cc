@@ -17,7 +17,7 @@ namespace {
 constexpr double kSquare = kMillimetresAMetre * kMillimetresAMetre;
 constexpr double kMillilitres = 1e6;  // in a cubic metre
 
-// The largest first.
+// Returns the triangles of each component, the largest component first.
 std::vector<std::vector<int>> ComponentsBySize(const Mesh& mesh) {
   std::vector<std::vector<int>> components = Components(mesh);
   std::stable_sort(components.begin(), components.end(),
@@ -25,7 +25,8 @@ std::vector<std::vector<int>> ComponentsBySize(const Mesh& mesh) {
   return components;
 }
 
-// The triangles as a mesh of their own vertices. `number` is -1 for each vertex before and after.
+// Returns a mesh of these triangles and the vertices that they use. `number` is scratch space, one entry per vertex of
+// `mesh`: -1 before and after the call.
 Mesh Extract(const Mesh& mesh, const std::vector<int>& triangles, std::vector<int>& number) {
   Mesh part;
   part.triangles.resize(3, static_cast<Eigen::Index>(triangles.size()));
@@ -70,11 +71,11 @@ int UnusedVertices(const Mesh& mesh) {
 }
 
 int DuplicateVertices(const Points& vertices) {
-  std::vector<std::array<double, 3>> places;
-  places.reserve(static_cast<std::size_t>(vertices.cols()));
-  for (const auto vertex : vertices.colwise()) places.push_back({vertex[0], vertex[1], vertex[2]});
-  std::sort(places.begin(), places.end());
-  return static_cast<int>(places.end() - std::unique(places.begin(), places.end()));
+  std::vector<std::array<double, 3>> positions;
+  positions.reserve(static_cast<std::size_t>(vertices.cols()));
+  for (const auto vertex : vertices.colwise()) positions.push_back({vertex[0], vertex[1], vertex[2]});
+  std::sort(positions.begin(), positions.end());
+  return static_cast<int>(positions.end() - std::unique(positions.begin(), positions.end()));
 }
 
 void Count(const Mesh& mesh, v1::SurfaceReport& report) {
@@ -113,6 +114,7 @@ void Measure(const Mesh& mesh, double unit_mm, v1::SurfaceReport& report) {
 }
 
 template <typename... Args>
+// Adds the sentence, which begins with the count, if the count is positive.
 void AddIf(int count, google::protobuf::RepeatedPtrField<std::string>* sentences,
            const absl::FormatSpec<int, Args...>& format, const Args&... args) {
   if (count > 0) *sentences->Add() = absl::StrFormat(format, count, args...);
@@ -123,23 +125,24 @@ void JudgeRepairs(v1::SurfaceReport& report) {
   for (const v1::SurfacePart& part : report.components()) inwards += part.volume_ml() < 0 ? 1 : 0;
   auto* repairs = report.mutable_repairs();
   AddIf(report.duplicate_vertices(), repairs,
-        "%d vertices lie at the place of another: weld them (phrenic convert --repair weld)");
-  AddIf(report.unused_vertices(), repairs, "%d vertices are in no triangle: drop them (--repair weld)");
+        "%d vertices have the same position as another vertex: weld them (phrenic convert --repair weld)");
+  AddIf(report.unused_vertices(), repairs, "%d vertices belong to no triangle: remove them (--repair weld)");
   AddIf(report.degenerate_triangles(), repairs,
-        "%d triangles have no area: finite elements leave them out (--repair slivers)");
-  AddIf(report.non_manifold_edges(), repairs,
-        "%d edges have three triangles or more, the surface has no inside there: drop what hangs on them (--repair "
-        "fins)");
+        "%d triangles have no area: finite elements skip them (--repair slivers)");
+  AddIf(
+      report.non_manifold_edges(), repairs,
+      "%d edges have three or more triangles, so the inside is not defined there: remove the extra triangles (--repair "
+      "fins)");
   AddIf(report.misoriented_edges(), repairs,
-        "%d edges lie between triangles that face opposite ways: areas and volumes count wrongly (--repair orient)");
+        "%d edges join triangles of opposite orientation: volumes and normals are wrong there (--repair orient)");
   AddIf(report.pinched_vertices(), repairs,
-        "%d vertices are where surfaces touch in a point: give each its own vertex, genus and normals are wrong there");
-  AddIf(report.boundary_edges(), repairs, "%d edges are open: close them if this is to be an organ, not a sheet");
+        "%d vertices join surfaces that touch in a point, where genus and normals are wrong: duplicate these vertices");
+  AddIf(report.boundary_edges(), repairs, "%d edges are open: close the surface if it is an organ, not a sheet");
   AddIf(inwards, repairs,
-        "%d closed components face inwards: turn them, unless they are hollows in others (--repair orient)");
+        "%d closed components face inwards: flip them unless they are cavities of other components (--repair orient)");
   if (report.unit_mm() == 1 && (report.likely_unit() == "cm" || report.likely_unit() == "m")) {
-    repairs->Add(absl::StrCat("its size is that of a body part in ", report.likely_unit(),
-                              ", and mm are assumed: say so by --unit-mm here, by unit in a scene"));
+    repairs->Add(absl::StrCat("the size fits a body part in ", report.likely_unit(),
+                              ", but mm are assumed: set --unit-mm here, or unit in a scene"));
   }
 }
 
@@ -147,20 +150,21 @@ void JudgeRefusals(v1::SurfaceReport& report) {
   auto* refusals = report.mutable_refusals();
   if (report.triangles() == 0) {
     refusals->Add(
-        "it has no triangles: contact, carrying and drawing other bodies, and a substance (density) instead of a mass");
+        "no triangles: no contact, no attachment or skinning of other bodies, and no material (density) in place of a "
+        "mass");
   } else if (report.area_mm2() <= 0) {
-    refusals->Add("its triangles have no area: a substance (density) instead of a mass");
+    refusals->Add("no area: no material (density) in place of a mass");
   }
   if (report.has_volume_ml() && report.volume_ml() < 0) {
-    refusals->Add("it faces inwards: filling it by a solid finds no cell inside");
+    refusals->Add("faces inwards: filling it by a solid finds no cell inside");
   }
-  if (report.duplicate_vertices() > 0) refusals->Add("vertices lie at one place: rigid links between two such");
+  if (report.duplicate_vertices() > 0) refusals->Add("coincident vertices: no rigid links between them");
 }
 
 }  // namespace
 
 std::string LikelyUnit(double extent) {
-  // Parts of a trunk are 3 cm (a vertebra's process, a cartilage) to 1 m (a whole one) long.
+  // Parts of a trunk are 3 cm (a vertebra's process, a cartilage) to 1 m (the whole trunk) long.
   if (extent >= 30 && extent < 1000) return "mm";
   if (extent >= 3 && extent < 30) return "cm";
   return extent >= 0.03 && extent < 1 ? "m" : "";
@@ -170,7 +174,8 @@ v1::SurfaceReport Inspect(const std::string& name, const meshio::Surface& surfac
   v1::SurfaceReport report;
   report.set_name(name);
   report.set_unit_mm(unit_mm);
-  if (surface.frame != meshio::Frame::kUnspecified) report.set_frame(surface.frame == meshio::Frame::kRas ? "RAS" : "LPS");
+  if (surface.frame != meshio::Frame::kUnspecified)
+    report.set_frame(surface.frame == meshio::Frame::kRas ? "RAS" : "LPS");
   Count(surface.mesh, report);
   Measure(surface.mesh, unit_mm, report);
   for (const auto& [region, vertices] : surface.mesh.regions) report.add_regions(region);

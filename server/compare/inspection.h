@@ -1,4 +1,4 @@
-// What a surface file holds, and whether it will do.
+// Reports topology, size and defects of a surface file, and which uses the defects rule out.
 #ifndef PHRENIC_SERVER_COMPARE_INSPECTION_H_
 #define PHRENIC_SERVER_COMPARE_INSPECTION_H_
 
@@ -9,11 +9,14 @@
 
 namespace phrenic::compare {
 
-// Counts and measures `surface`, read in metres from a file of that name whose unit is `unit_mm` [mm].
+// Inspects `surface` [m], which was read from the file `name` with the unit `unit_mm` [mm]. The report has counts of
+// vertices, triangles and defects, the Euler characteristic and genus of each component (largest first), bounds [mm],
+// area [mm^2], volume [ml] if every component is closed and consistently oriented, suggested repairs, and uses for
+// which the surface is refused.
 v1::SurfaceReport Inspect(const std::string& name, const meshio::Surface& surface, double unit_mm);
 
-// "mm", "cm" or "m" where something of this largest extent [units of its file] is as large as a part of a trunk in that
-// unit and in no other of the three; else empty.
+// Returns the unit "mm", "cm" or "m" in which an object of this largest extent [file units] has the size of a body part
+// of the trunk (3 cm to 1 m). Returns an empty string if no unit or more than one fits.
 std::string LikelyUnit(double extent);
 
 }  // namespace phrenic::compare

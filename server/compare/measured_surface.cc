@@ -31,8 +31,8 @@ double MeasuredSurface::Area() const {
 }
 
 SurfacePoint MeasuredSurface::Nearest(const Eigen::Vector3d& point, double reach) const {
-  constexpr double kSlack = 1e-6;  // of the reach: what rounding may take from it
-  constexpr double kLeast = 1e-9;  // [m]
+  constexpr double kSlack = 1e-6;  // relative allowance for rounding of `reach`
+  constexpr double kLeast = 1e-9;  // absolute allowance [m]
   SurfacePoint nearest = tree_.Nearest(x_, boxes_, point, reach * (1 + kSlack) + kLeast);
   if (nearest.triangle >= 0) return nearest;
   return tree_.Nearest(x_, boxes_, point, std::numeric_limits<double>::infinity());

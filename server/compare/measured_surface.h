@@ -1,4 +1,4 @@
-// A triangle surface that distances are measured from and to.
+// A triangle surface with a bounding-volume tree for distance queries.
 #ifndef PHRENIC_SERVER_COMPARE_MEASURED_SURFACE_H_
 #define PHRENIC_SERVER_COMPARE_MEASURED_SURFACE_H_
 
@@ -9,26 +9,27 @@
 
 namespace phrenic::compare {
 
-// May move, with the same triangles. Any number of threads may ask while none moves it.
+// The vertices may move; the triangles stay the same. Const methods are thread-safe as long as no thread calls MoveTo.
 class MeasuredSurface {
  public:
+  // `x` are the vertices, 3 x n [m]; `triangles` their indices, 3 x m.
   MeasuredSurface(const ConstPoints& x, Triangles triangles);
 
-  // The vertices go to `x`, 3 x n [m].
+  // Sets the vertices to `x`, 3 x n [m], and refits the tree.
   void MoveTo(const ConstPoints& x);
 
   bool empty() const { return triangles_.cols() == 0; }
   const Points& vertices() const { return x_; }
-  // In an order in which neighbours are near each other.
+  // In the order of the tree: consecutive triangles are near each other.
   const Triangles& triangles() const { return triangles_; }
-  // The vertices that a triangle has, each once, in order: others are no part of the surface.
+  // The vertices that a triangle uses, each once, ascending. Other vertices are not part of the surface.
   const std::vector<int>& used() const { return used_; }
   double Area() const;  // [m^2]
 
-  // The nearest point of the surface, which is not empty. `reach` [m] is known to be no less than the distance, and
-  // spares the search what is farther.
+  // Returns the nearest point of the surface. `reach` [m] is an upper bound of the distance, which shortens the search;
+  // a bound that is too small costs a second search. Requires: the surface is not empty.
   SurfacePoint Nearest(const Eigen::Vector3d& point, double reach = std::numeric_limits<double>::infinity()) const;
-  // The distance [m] to one triangle, numbered as in SurfacePoint.
+  // Returns the distance [m] from `point` to one triangle, numbered as in SurfacePoint.
   double DistanceTo(int triangle, const Eigen::Vector3d& point) const;
 
  private:

@@ -8,9 +8,10 @@
 namespace phrenic::compare {
 namespace {
 
-// Files write nine digits of a time.
+// Tolerance of a time [s]: files write nine digits.
 double Slack(double time) { return 1e-8 * std::max(1.0, std::abs(time)); }
 
+// Maps the times linearly onto the interval of `onto`.
 std::vector<double> Stretched(std::vector<double> times, const std::vector<double>& onto) {
   const double first = times.front(), length = times.back() - first;
   for (double& time : times) time = onto.front() + (time - first) / length * (onto.back() - onto.front());
@@ -47,8 +48,8 @@ absl::StatusOr<MatchedMoments> MatchTimes(const meshio::Motion& a, const meshio:
   }
   if (!moments.pairs.empty()) return moments;
   return absl::FailedPreconditionError(absl::StrFormat(
-      "the motions share no time: A has %g to %g s, B %g to %g s; record B over A's times, or match the "
-      "phases (match_phases)",
+      "the motions have no common time: A has %g to %g s, B %g to %g s; record B over A's times, or set "
+      "match_phases",
       times.front(), times.back(), others.front(), others.back()));
 }
 

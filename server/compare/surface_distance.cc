@@ -16,21 +16,22 @@ namespace {
 constexpr double kSquareMillimetres = 1e6;
 constexpr double kNoDistance = std::numeric_limits<double>::quiet_NaN();
 
+// A sample's distance and the area that it represents.
 struct Weighted {
   double distance;  // [m]
   double area;      // [m^2]
   bool operator<(const Weighted& other) const { return distance < other.distance; }
 };
 
-// One surface's distances from another.
+// The distances from one surface to another.
 struct Directed {
-  std::vector<Weighted> samples;  // nearest first
-  Eigen::VectorXd at_vertices;    // [m]
+  std::vector<Weighted> samples;  // ascending by distance
+  Eigen::VectorXd at_vertices;    // one per vertex [m]
   Farthest farthest;
 };
 
-// Asks for one point after the other. Distances change no faster than points move, and the triangle that was nearest to
-// the point before is no farther than it is: both tell how far the search need reach.
+// Queries distances of consecutive points. Two upper bounds limit each search: the previous distance plus the distance
+// of the two points (Lipschitz continuity), and the distance to the previous nearest triangle.
 class Walk {
  public:
   explicit Walk(const MeasuredSurface& to) : to_(to) {}
@@ -49,7 +50,7 @@ class Walk {
   const MeasuredSurface& to_;
   Eigen::Vector3d before_ = Eigen::Vector3d::Zero();
   int triangle_ = -1;
-  double distance_ = std::numeric_limits<double>::infinity();  // of the point before [m]
+  double distance_ = std::numeric_limits<double>::infinity();  // of the previous point [m]
 };
 
 Eigen::VectorXd VertexDistances(const MeasuredSurface& from, const MeasuredSurface& to) {
@@ -85,7 +86,7 @@ Directed Measure(const MeasuredSurface& from, const MeasuredSurface& to, const S
   return directed;
 }
 
-// Sums over samples, nearest first, so that the bits do not depend on the triangles' order.
+// Sums over samples in ascending order of distance, so that the result does not depend on the order of the triangles.
 struct Sums {
   explicit Sums(const std::vector<Weighted>& samples, double tolerance) {
     for (const Weighted& sample : samples) {
@@ -98,6 +99,7 @@ struct Sums {
   double area = 0, first = 0, second = 0, within = 0;
 };
 
+// Returns the area-weighted 95th percentile; NaN without area.
 double Percentile95(const std::vector<Weighted>& samples) {
   double total = 0, area = 0;
   for (const Weighted& sample : samples) total += sample.area;
@@ -116,7 +118,7 @@ std::vector<Weighted> Pooled(const std::vector<Weighted>& a, const std::vector<W
   return both;
 }
 
-// Every distance NaN.
+// Returns a message in which every distance is NaN.
 v1::SurfaceDistance Unknown() {
   v1::SurfaceDistance distance;
   const auto* descriptor = v1::SurfaceDistance::descriptor();
@@ -166,7 +168,7 @@ absl::StatusOr<v1::SurfaceDistance> MeasureDistance(const MeasuredSurface& a, co
   distance.set_area_b(kSquareMillimetres * b.Area());
   if (at_vertices != nullptr) at_vertices->setConstant(a.vertices().cols(), kNoDistance);
   if (a.empty() || b.empty()) return distance;
-  // Each direction sums for itself, so that the bits do not depend on the threads.
+  // Each direction has its own sums, so that the result does not depend on the threads.
   std::future<Directed> later = std::async([&] { return Measure(b, a, *sampling_b); });
   Directed from_a = Measure(a, b, *sampling_a);
   const Directed from_b = later.get();

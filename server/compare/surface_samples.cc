@@ -12,8 +12,8 @@
 namespace phrenic::compare {
 namespace {
 
-constexpr double kWanted = 5e4;
-constexpr double kMost = 5e6;
+constexpr double kWanted = 5e4;  // samples of a surface if no spacing is given
+constexpr double kMost = 5e6;    // largest number of samples if a spacing is given
 
 struct Corners {
   Corners(const ConstPoints& x, const Triangles& triangles, Eigen::Index t)
@@ -23,7 +23,8 @@ struct Corners {
   Eigen::Vector3d a, b, c;
 };
 
-// Into how many parts each edge goes; the tolerance keeps an edge that is a whole number of spacings from one more.
+// Returns into how many parts an edge is divided. The tolerance avoids an extra part if the edge is a multiple of the
+// spacing.
 double PartsOf(double edge, double spacing) { return std::max(1.0, std::ceil(edge / spacing * (1 - 1e-12))); }
 
 double CountSamples(const ConstPoints& x, const Triangles& triangles, double spacing) {
@@ -35,7 +36,8 @@ double CountSamples(const ConstPoints& x, const Triangles& triangles, double spa
   return samples;
 }
 
-// Equilateral parts of edge s have sqrt(3)/4 s^2; slivers have less for their longest edge, and then it is coarser.
+// Returns the spacing [m] for kWanted samples. An equilateral part with edge s has the area sqrt(3)/4 s^2. Slivers have
+// less area for their longest edge: then the spacing grows until there are not too many samples.
 double AutomaticSpacing(const ConstPoints& x, const Triangles& triangles) {
   double area = 0;
   for (Eigen::Index t = 0; t < triangles.cols(); ++t) area += Corners(x, triangles, t).Area();
@@ -55,8 +57,8 @@ absl::StatusOr<Sampling> PlanSampling(const ConstPoints& x, const Triangles& tri
   const double samples = CountSamples(x, triangles, sampling.spacing);
   if (spacing && samples > std::max(kMost, static_cast<double>(triangles.cols()))) {
     return absl::InvalidArgumentError(absl::StrFormat(
-        "spacing_mm: %g mm asks for %.3g samples of a surface, and %g are the most; about %.2g mm is the "
-        "least for it",
+        "spacing_mm: %g mm needs %.3g samples of a surface, above the limit of %g; about %.2g mm is the least for this "
+        "surface",
         kMillimetresAMetre * *spacing, samples, kMost,
         1.05 * kMillimetresAMetre * *spacing * std::sqrt(samples / kMost)));
   }

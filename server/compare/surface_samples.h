@@ -1,4 +1,4 @@
-// Samples of a surface, each standing for a part of its area.
+// Samples of a triangle surface, each with the area that it represents.
 #ifndef PHRENIC_SERVER_COMPARE_SURFACE_SAMPLES_H_
 #define PHRENIC_SERVER_COMPARE_SURFACE_SAMPLES_H_
 
@@ -11,19 +11,20 @@
 
 namespace phrenic::compare {
 
-// Each triangle is parted into n^2 equal ones of its own shape, n the least for which none of their edges is longer
-// than `spacing`; a sample is the middle of a part (the midpoint rule: means converge with the square of the spacing).
+// Each triangle is divided into n^2 congruent triangles similar to it, n the smallest number for which their edges are
+// no longer than `spacing`. A sample is the centroid of such a part: the midpoint rule, of second order in the spacing.
 struct Sampling {
-  double spacing = 0;        // asked for [m]
+  double spacing = 0;        // upper bound of the edges of parts [m]
   double longest = 0;        // the longest edge of a part [m]; at most `spacing`
-  std::int64_t samples = 0;  // of the whole surface
+  std::int64_t samples = 0;  // number of samples of the whole surface
 };
 
-// `spacing` [m]; where it is not given, one that gives about 50,000 samples or one a triangle, whichever is more.
-// INVALID_ARGUMENT where it asks for more than 5,000,000.
+// Plans the sampling of the surface x (3 x n [m]) with `spacing` [m]. Without `spacing` it chooses one that gives about
+// 50,000 samples, and at least one per triangle. INVALID_ARGUMENT if the given spacing needs more than 5,000,000
+// samples and more than one per triangle; the message names a spacing that works.
 absl::StatusOr<Sampling> PlanSampling(const ConstPoints& x, const Triangles& triangles, std::optional<double> spacing);
 
-// Calls `visit` with each sample and the area it stands for [m^2]; samples follow each other near by.
+// Calls `visit` with each sample [m] and the area that it represents [m^2]. Consecutive samples are near each other.
 void ForEachSample(const ConstPoints& x, const Triangles& triangles, const Sampling& sampling,
                    absl::FunctionRef<void(const Eigen::Vector3d& point, double area)> visit);
 

@@ -67,7 +67,7 @@ void AddBodies(const std::vector<PatientBody>& bodies, const v1::Body& sheet, do
     body.mutable_file()->set_path(absl::StrCat(folder, "/", from.name, ".msh"));
     if (body.role() != v1::ROLE_DEFORMABLE) continue;
     body.set_mass(mass);
-    body.set_mass_shares(sheet.mass_shares());
+    body.set_mass_lumping(sheet.mass_lumping());
     *body.mutable_regions() = sheet.regions();
   }
 }
@@ -105,16 +105,16 @@ void AddMotions(const v1::Scene& pattern, const std::vector<PatientBody>& bodies
       }
     } else if (motion.has_sternum() && layers.contains("sternum")) {
       *scene.add_motions() = motion;
-    } else if (motion.has_ride() && motion.ride().bodies(0) == "lungs") {
+    } else if (motion.has_skin() && motion.skin().bodies(0) == "lungs") {
       *scene.add_motions() = motion;
-      KeepKnown(layers, scene.mutable_motions(scene.motions_size() - 1)->mutable_ride()->mutable_carriers());
+      KeepKnown(layers, scene.mutable_motions(scene.motions_size() - 1)->mutable_skin()->mutable_drivers());
     }
   }
   if (!layers.contains("cartilages")) return;
-  v1::Ride& ride = *scene.add_motions()->mutable_ride();
-  ride.add_bodies("cartilages");
-  ride.add_carriers("ribs");
-  if (layers.contains("sternum")) ride.add_carriers("sternum");
+  v1::Skin& skin = *scene.add_motions()->mutable_skin();
+  skin.add_bodies("cartilages");
+  skin.add_drivers("ribs");
+  if (layers.contains("sternum")) skin.add_drivers("sternum");
 }
 
 double Area(const Mesh& mesh) {
@@ -132,7 +132,7 @@ void AdaptForces(const Mesh& diaphragm, const CageFrame& frame, const std::set<s
   const Eigen::Vector3d low = diaphragm.vertices.rowwise().minCoeff(), high = diaphragm.vertices.rowwise().maxCoeff();
   for (v1::Force& force : *scene.mutable_forces()) {
     if (force.has_attachment()) {
-      KeepKnown(layers, force.mutable_attachment()->mutable_carriers());
+      KeepKnown(layers, force.mutable_attachment()->mutable_anchors());
       force.mutable_attachment()->set_radius(force.attachment().radius() * std::max(1.0, scale));
     }
     if (force.has_springs()) {

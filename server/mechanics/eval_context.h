@@ -24,7 +24,8 @@ struct EvalContext {
   const ConstPoints v;               // velocities, 3 x n [m/s]
   const std::vector<Pose>& poses;
   const std::vector<VertexPull>& pulls;
-  Scratch scratch = {};  // memory for intermediate results
+  const ScalarState& scalars;  // generalised coordinates
+  Scratch scratch = {};        // memory for intermediate results
   // Results that several elements share at this moment; null if not available.
   ChamberReadings* readings = nullptr;          // of chambers read so far (breathing/chamber.h)
   const PoseMatrices* pose_matrices = nullptr;  // one per pose (skinning/pose_matrices.h)

@@ -14,6 +14,12 @@ State Model::InitialState() const {
   int poses = 0;
   for (const BodyModel& body : bodies) poses += body.pose >= 0 ? 1 : 0;
   state.poses.resize(poses);
+  const auto scalar_count = static_cast<Eigen::Index>(scalars.size());
+  state.scalars = {Eigen::VectorXd(scalar_count), Eigen::VectorXd(scalar_count)};
+  for (Eigen::Index i = 0; i < scalar_count; ++i) {
+    state.scalars.q[i] = scalars[i].initial;
+    state.scalars.v[i] = scalars[i].initial_rate;
+  }
   const EvalContext start = MakeEvalContext(*this, parameters, state);
   for (const auto& motion : motions) motion->Drive(start, state);
   return state;
@@ -63,6 +69,7 @@ EvalContext MakeEvalContext(const Model& model, const v1::Parameters& parameters
           .v = state.v,
           .poses = state.poses,
           .pulls = state.pulls,
+          .scalars = state.scalars,
           .scratch = scratch};
 }
 

@@ -48,6 +48,14 @@ struct ActionLineView {
   double radius = 0;                  // [m]
 };
 
+// A generalised coordinate of State::scalars: its name and unit, and where it starts.
+struct ScalarCoordinate {
+  std::string name;
+  std::string unit;         // SI, as in tables: "rad"
+  double initial = 0;       // [unit]
+  double initial_rate = 0;  // [unit/s]
+};
+
 // Immutable once compiled; shared by any number of sessions and threads. n is the number of simulated vertices.
 struct Model {
   v1::Scene scene;
@@ -58,7 +66,8 @@ struct Model {
   Eigen::VectorXd mass;          // [kg]
   Eigen::VectorXd inverse_mass;  // [1/kg]; 0 for fixed and driven vertices
   std::vector<std::unique_ptr<Force>> forces;
-  std::vector<std::string> force_kinds;  // of each of `forces`, as scene text names it: "action_line"
+  std::vector<std::string> force_kinds;   // of each of `forces`, as scene text names it: "action_line"
+  std::vector<ScalarCoordinate> scalars;  // in the order of State::scalars
   std::vector<std::unique_ptr<Motion>> motions;
   std::vector<std::unique_ptr<Constraint>> constraints;
   std::vector<Skin> skins;  // of seen bodies; placed with frames, not with steps

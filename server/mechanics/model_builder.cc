@@ -3,39 +3,18 @@
 #include <algorithm>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
+#include "server/mechanics/body_names.h"
 #include "server/mesh/topology.h"
 
 namespace phrenic {
-namespace {
-
-std::string KnownNames(const Model& model) {
-  std::vector<std::string> names;
-  for (const BodyModel& body : model.bodies) {
-    const std::string& name = body.layer.empty() ? body.name : body.layer;
-    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-  }
-  return absl::StrJoin(names, ", ");
-}
-
-}  // namespace
-
-absl::Status FieldError(std::string_view path, std::string_view what) {
-  return absl::InvalidArgumentError(
-      absl::StrCat(absl::string_view(path.data(), path.size()), ": ", absl::string_view(what.data(), what.size())));
-}
-
 absl::StatusOr<std::vector<int>> ModelBuilder::Bodies(const Names& names, std::string_view path) const {
   std::vector<int> found;
   for (int i = 0; i < names.size(); ++i) {
-    const size_t before = found.size();
-    for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
-      if (model.bodies[b].name == names[i] || model.bodies[b].layer == names[i]) found.push_back(b);
-    }
-    if (found.size() == before) {
-      return FieldError(absl::StrCat(std::string(path), "[", i, "]"),
-                        absl::StrCat("there is no body or layer \"", names[i], "\"; there are ", KnownNames(model)));
-    }
+    const auto named = BodiesNamed(model, names[i], absl::StrCat(std::string(path), "[", i, "]"));
+    if (!named.ok()) return named;
+    found.insert(found.end(), named->begin(), named->end());
   }
   std::sort(found.begin(), found.end());
   found.erase(std::unique(found.begin(), found.end()), found.end());
@@ -46,7 +25,7 @@ absl::StatusOr<int> ModelBuilder::Body(const std::string& name, std::string_view
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
     if (model.bodies[b].name == name) return b;
   }
-  return FieldError(path, absl::StrCat("there is no body \"", name, "\"; there are ", KnownNames(model)));
+  return FieldError(path, absl::StrCat("there is no body \"", name, "\"; there are ", KnownBodyNames(model)));
 }
 
 absl::StatusOr<std::vector<int>> ModelBuilder::DeformableBodies(const Names& names, std::string_view path) const {
@@ -132,6 +111,12 @@ const std::vector<int>& ModelBuilder::BorderOf(int body) const {
   if (border == nullptr)
     border = std::make_unique<std::vector<int>>(BoundaryVertices(model.bodies[body].mesh.triangles));
   return *border;
+}
+
+int ModelBuilder::AddScalar(std::string name, std::string unit, double initial, double initial_rate) {
+  ReportElement("coordinate", name, 1, "scalar", absl::StrFormat("starts at %g %s", initial, unit));
+  model.scalars.push_back({std::move(name), std::move(unit), initial, initial_rate});
+  return static_cast<int>(model.scalars.size()) - 1;
 }
 
 void ModelBuilder::ReportElement(std::string_view family, std::string_view name, std::int64_t count,

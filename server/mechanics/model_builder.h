@@ -10,6 +10,7 @@
 #include "absl/status/statusor.h"
 #include "google/protobuf/repeated_field.h"
 #include "google/protobuf/repeated_ptr_field.h"
+#include "server/mechanics/field_error.h"
 #include "server/mechanics/model.h"
 #include "server/mesh/nearest.h"
 
@@ -40,7 +41,9 @@ struct Selection {
 struct ModelBuilder {
   Model model;
 
-  // Returns bodies by the names of bodies or layers. INVALID_ARGUMENT with the path and the existing names.
+  // Returns the bodies that the names select, each once, in the scene's order. A name is a body's or a layer's, or is
+  // qualified: "body:NAME", "layer:NAME", or "structure:STRUCTURE" for all bodies of that anatomy. INVALID_ARGUMENT
+  // with the path and the existing names, also for a layer or a structure without bodies.
   absl::StatusOr<std::vector<int>> Bodies(const Names& names, std::string_view path) const;
   absl::StatusOr<int> Body(const std::string& name, std::string_view path) const;
   // The same. INVALID_ARGUMENT if one is not deformable.
@@ -63,6 +66,11 @@ struct ModelBuilder {
   // Returns the vertices of a body's border; none if it is closed. Valid in the same way.
   const std::vector<int>& BorderOf(int body) const;
 
+  // Adds a generalised coordinate and returns its index in State::scalars. It starts at `initial` [unit] with
+  // `initial_rate` [unit/s]. No integrator advances it: the element that adds it drives it. Requires: no other
+  // coordinate has the name.
+  int AddScalar(std::string name, std::string unit, double initial, double initial_rate = 0);
+
   // Adds an element to the report, or something that the scene does not need.
   void ReportElement(std::string_view family, std::string_view name, std::int64_t count, std::string_view counted,
                      std::string_view detail);
@@ -79,9 +87,6 @@ struct ModelBuilder {
 std::string ElementName(const std::string& given, std::string_view kind, const Names& names);
 
 Eigen::Vector3d ToEigen(const v1::Vector& vector);
-
-// Returns INVALID_ARGUMENT "path: what".
-absl::Status FieldError(std::string_view path, std::string_view what);
 
 }  // namespace phrenic
 

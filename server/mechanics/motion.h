@@ -16,7 +16,8 @@ class Motion {
  public:
   virtual ~Motion() = default;
   const std::string& name() const { return name_; }
-  // Sets the poses, or the positions and velocities of the vertices, that it drives, to those at the moment of `at`.
+  // Sets what the motion drives to the moment of `at`: poses, positions and velocities of vertices, or scalars with
+  // their rates.
   virtual void Drive(const EvalContext& at, State& state) const = 0;
 
  protected:

@@ -30,6 +30,8 @@ std::uint64_t StateHash(const State& state) {
   HashLanes lanes = {kBasis, kBasis + 1, kBasis + 2, kBasis + 3};
   Mix(state.x.data(), state.x.size(), lanes);
   Mix(state.v.data(), state.v.size(), lanes);
+  Mix(state.scalars.q.data(), state.scalars.q.size(), lanes);
+  Mix(state.scalars.v.data(), state.scalars.v.size(), lanes);
   std::uint64_t hash = kBasis;
   Mix(state.time, hash);
   Mix(state.phase, hash);

@@ -39,6 +39,12 @@ struct VertexPull {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  // [N]
 };
 
+// Generalised coordinates that are not vertices: joint angles, volumes, activations. Model::scalars has their names.
+struct ScalarState {
+  Eigen::VectorXd q;  // values, each in its own unit
+  Eigen::VectorXd v;  // rates [that unit/s]
+};
+
 struct State {
   double time = 0;          // [s]
   std::int64_t tick = 0;    // steps taken
@@ -46,13 +52,14 @@ struct State {
   Points x;                 // positions of the simulated vertices [m]
   Points v;                 // their velocities [m/s]
   std::vector<Pose> poses;  // of the driven bodies
+  ScalarState scalars;
   std::vector<VertexPull> pulls;  // one a vertex
   History history;
   int halvings = 0;  // of an adaptive step, the last time
 };
 
-// A word-wise FNV-1a, in four lanes, over the bits of time, phase, positions and velocities: equal states, equal
-// hashes.
+// Returns a word-wise FNV-1a hash, in four lanes, of the bits of time, phase, positions, velocities and scalars. Equal
+// states have equal hashes.
 std::uint64_t StateHash(const State& state);
 
 }  // namespace phrenic

@@ -12,8 +12,9 @@
 namespace phrenic::physiology {
 namespace {
 
-constexpr double kSample = 0.1;  // between two looks at the dome [s]
+constexpr double kSampleInterval = 0.1;  // between two measurements of the dome's height [s]
 
+// One simulated inspiration.
 struct Breath {
   std::string name;
   v1::Parameters parameters;
@@ -21,7 +22,7 @@ struct Breath {
   double dome_speed = 0;  // the fastest descent of the right dome [m/s]
 };
 
-// What is measured on a breath, and the accepted range.
+// A measure of a breath with its accepted range.
 struct Check {
   const char* breath;
   const char* what;
@@ -32,6 +33,7 @@ struct Check {
 
 using Value = std::optional<double>;
 
+// The volume swept by the diaphragm over the change of lung volume [%].
 Value AbdominalShare(const ThoraxMetrics& metrics, const Breath& breath) {
   const Value lungs = metrics.LungVolumeChange(breath.peak);
   if (!lungs.has_value() || *lungs <= 0) return std::nullopt;
@@ -100,7 +102,7 @@ std::vector<Breath> BreathsOf(const Model& model) {
   return breaths;
 }
 
-// The part of a breath after which it is deepest.
+// The phase of the peak of inspiration, 0 to 1.
 double PeakPhase(const Model& model) {
   return model.scene.breath().waveform() == v1::WAVEFORM_RAISED_COSINE ? 0.5 : 0.25;
 }
@@ -117,7 +119,7 @@ absl::Status BreatheIn(const Model& model, const ThoraxMetrics& metrics, absl::F
       return absl::OutOfRangeError(absl::StrCat("the ", breath.name, " breath diverged at ", state.time, " s: lower ",
                                                 "time_step, or the preset's breath_force"));
     }
-    if (state.time - sampled < kSample) continue;
+    if (state.time - sampled < kSampleInterval) continue;
     const double now = metrics.DomeDescent(state, v1::SIDE_RIGHT);
     breath.dome_speed = std::max(breath.dome_speed, (now - descent) / (state.time - sampled));
     descent = now, sampled = state.time;
@@ -136,7 +138,7 @@ v1::PhysiologyRow Judge(const Check& check, const ThoraxMetrics& metrics, const 
   const Value value = check.measure(metrics, breath);
   if (!value.has_value()) {
     row.set_verdict(v1::VERDICT_NOT_MODELLED);
-    row.set_note("the scene has no body, or no region of it, to measure this on");
+    row.set_note("the scene lacks the body or the region that this is measured on");
     return row;
   }
   row.set_value(*value);
@@ -152,9 +154,9 @@ absl::StatusOr<v1::PhysiologyTable> CheckPhysiology(const Model& model, absl::Fu
   v1::PhysiologyTable table;
   table.set_scene(model.scene.name());
   std::vector<Breath> breaths = BreathsOf(model);
-  const double share = 1.0 / static_cast<double>(breaths.size());
+  const double fraction = 1.0 / static_cast<double>(breaths.size());
   for (size_t b = 0; b < breaths.size(); ++b) {
-    const auto part = [&](double done) { return progress(share * (static_cast<double>(b) + done)); };
+    const auto part = [&](double done) { return progress(fraction * (static_cast<double>(b) + done)); };
     if (absl::Status status = BreatheIn(model, *metrics, part, breaths[b]); !status.ok()) return status;
     for (const Check& check : kChecks) {
       if (breaths[b].name == check.breath) *table.add_rows() = Judge(check, *metrics, breaths[b]);

@@ -1,4 +1,4 @@
-// A thorax' breath held against published ranges.
+// Compares the breathing motion of a thorax with published ranges.
 #ifndef PHRENIC_SERVER_PHYSIOLOGY_PHYSIOLOGY_H_
 #define PHRENIC_SERVER_PHYSIOLOGY_PHYSIOLOGY_H_
 
@@ -9,10 +9,12 @@
 
 namespace phrenic::physiology {
 
-// Breathes in once, from rest to the peak, by the scene's own parameters ("quiet") and by its presets "deep",
-// "diaphragmatic" and "chest", where it has them, and measures at each peak. Ranges: Boussuges 2009, Wilson 1987,
-// Gauthier 1994, Konno and Mead's shares. `progress` is told how much is done, 0 to 1; CANCELLED as soon as it returns
-// false. FAILED_PRECONDITION for a scene without a diaphragm, OUT_OF_RANGE where a breath diverges.
+// Simulates one inspiration from rest to its peak with the scene's own parameters ("quiet") and with each of the
+// presets "deep", "diaphragmatic" and "chest" that the scene has, and measures the state at the peak. The verdict of a
+// row is inside, outside or not modelled. Sources of the ranges: Boussuges 2009 (dome motion), Wilson 1987 (ribs),
+// Gauthier 1994 (fibres), Konno and Mead (abdominal and chest volumes). `progress` gets the completed fraction, 0 to 1.
+// Errors: CANCELLED if `progress` returns false, FAILED_PRECONDITION for a scene without a diaphragm, OUT_OF_RANGE if a
+// breath diverges.
 absl::StatusOr<v1::PhysiologyTable> CheckPhysiology(const Model& model, absl::FunctionRef<bool(double)> progress);
 
 }  // namespace phrenic::physiology

@@ -13,8 +13,9 @@ namespace phrenic::physiology {
 namespace {
 
 constexpr double kBesideMidline = 0.035;  // [m]
-constexpr double kUpwards = 0.3;          // of the unit normal: less is the steep rim of the dome
+constexpr double kUpwards = 0.3;          // least z of a unit normal of the upper face; the steep rim has less
 
+// Normal of a triangle with the length of its area [m^2].
 Eigen::Vector3d AreaNormal(const ConstPoints& x, const Triangles& triangles, int t) {
   const Eigen::Vector3d a = x.col(triangles(0, t)), b = x.col(triangles(1, t)), c = x.col(triangles(2, t));
   return (b - a).cross(c - a) / 2;
@@ -26,9 +27,9 @@ double TotalArea(const ConstPoints& x, const Triangles& triangles) {
   return area;
 }
 
-// Dijkstra's shortest ways over the edges, from any of `from`: the vertex before each on its way, -1 for those of
-// `from` and for what cannot be reached.
-std::vector<int> WaysBack(const Points& x, const Edges& edges, const std::vector<int>& from) {
+// Dijkstra's shortest paths along the edges from the vertices `from`. Returns the predecessor of each vertex on its
+// path; -1 for the vertices of `from` and for unreachable ones.
+std::vector<int> Predecessors(const Points& x, const Edges& edges, const std::vector<int>& from) {
   const auto n = static_cast<size_t>(x.cols());
   std::vector<std::vector<int>> neighbours(n);
   for (Eigen::Index e = 0; e < edges.cols(); ++e) {
@@ -45,10 +46,10 @@ std::vector<int> WaysBack(const Points& x, const Edges& edges, const std::vector
     queue.pop();
     if (so_far > distance[i]) continue;
     for (const int j : neighbours[i]) {
-      const double way = so_far + (x.col(j) - x.col(i)).norm();
-      if (way >= distance[j]) continue;
-      distance[j] = way, before[j] = i;
-      queue.emplace(way, j);
+      const double length = so_far + (x.col(j) - x.col(i)).norm();
+      if (length >= distance[j]) continue;
+      distance[j] = length, before[j] = i;
+      queue.emplace(length, j);
     }
   }
   return before;
@@ -66,7 +67,7 @@ absl::StatusOr<ThoraxMetrics> ThoraxMetrics::Of(const Model& model) {
     return metrics;
   }
   return absl::FailedPreconditionError(
-      "the scene has no deformable body whose anatomy is STRUCTURE_DIAPHRAGM: there is nothing to hold against a "
+      "the scene has no deformable body with the anatomy STRUCTURE_DIAPHRAGM, so there is nothing to compare with a "
       "person's breath");
 }
 
@@ -107,7 +108,7 @@ void ThoraxMetrics::FindFibres() {
     const bool inside = in_tendon[corners[0]] && in_tendon[corners[1]] && in_tendon[corners[2]];
     (inside ? tendon_ : muscle_).push_back(t);
   }
-  const std::vector<int> before = WaysBack(mesh.vertices, SpringEdges(mesh), tendon->second);
+  const std::vector<int> before = Predecessors(mesh.vertices, SpringEdges(mesh), tendon->second);
   std::vector<Eigen::Vector2i> edges;
   for (const int start : rim->second) {
     for (int i = start; before[i] >= 0; i = before[i]) edges.emplace_back(i, before[i]);

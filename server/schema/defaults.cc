@@ -24,11 +24,11 @@ void SetNumber(Message* message, const FieldDescriptor& field, double value) {
     case FieldDescriptor::CPPTYPE_UINT64:
       return reflection.SetUInt64(message, &field, static_cast<uint64_t>(value));
     default:
-      return;  // a Quantity stands on numbers alone; tests/schema holds that
+      return;  // only numbers have a Quantity; tests/schema checks that
   }
 }
 
-// Only fields that know whether they are set: a 0 elsewhere may be what the person wrote.
+// Fields without presence are left unchanged: their 0 may be meant.
 void FillField(Message* message, const FieldDescriptor& field) {
   if (field.is_repeated() || !field.has_presence() || message->GetReflection()->HasField(*message, &field)) return;
   const v1::Quantity* quantity = QuantityOf(field);

@@ -35,7 +35,10 @@ std::string ChoiceName(const EnumValueDescriptor& value) {
 
 std::vector<std::string> ChoiceNameList(const EnumDescriptor& type) {
   std::vector<std::string> names;
-  for (int i = 1; i < type.value_count(); ++i) names.push_back(ChoiceName(*type.value(i)));
+  for (int i = 1; i < type.value_count(); ++i) {
+    const EnumValueDescriptor* value = type.value(i);
+    if (type.FindValueByNumber(value->number()) == value) names.push_back(ChoiceName(*value));
+  }
   return names;
 }
 

@@ -1,4 +1,4 @@
-// What the options of phrenic/v1/options.proto say about one field, and how its numbers are written for people.
+// Reads the options of phrenic/v1/options.proto off a field, and formats its values for people. Stateless; thread-safe.
 #ifndef PHRENIC_SERVER_SCHEMA_FIELDS_H_
 #define PHRENIC_SERVER_SCHEMA_FIELDS_H_
 
@@ -13,29 +13,31 @@
 
 namespace phrenic::schema {
 
-// The field's Quantity, Toggle or Choice; null where it has none. Lives as long as the field's descriptor.
+// Return the field's Quantity, Toggle or Choice; null if it has none. Valid as long as the field's descriptor.
 const v1::Quantity* QuantityOf(const google::protobuf::FieldDescriptor& field);
 const v1::Toggle* ToggleOf(const google::protobuf::FieldDescriptor& field);
 const v1::Choice* ChoiceOf(const google::protobuf::FieldDescriptor& field);
+// True if the field must be set, or must not be empty.
 bool IsRequired(const google::protobuf::FieldDescriptor& field);
 
-// What a person calls a value of an enum: "velocity_verlet" for INTEGRATOR_VELOCITY_VERLET of enum Integrator.
+// Returns an enum value's name for people: "velocity_verlet" for INTEGRATOR_VELOCITY_VERLET of enum Integrator.
 std::string ChoiceName(const google::protobuf::EnumValueDescriptor& value);
-// The names of all values but the unspecified one; with commas "semi_implicit_euler, velocity_verlet".
+// Return the names of all values but the unspecified one, as a list or joined: "semi_implicit_euler, velocity_verlet".
+// Older names of a value are left out.
 std::vector<std::string> ChoiceNameList(const google::protobuf::EnumDescriptor& type);
 std::string ChoiceNames(const google::protobuf::EnumDescriptor& type);
-// The value of that name, whatever the case; null where there is none.
+// Returns the value of that name, ignoring case; null if there is none.
 const google::protobuf::EnumValueDescriptor* FindChoice(const google::protobuf::EnumDescriptor& type,
                                                         std::string_view name);
 
-// The shortest decimal that reads back as the same number: "0.1", "1e+09".
+// Returns the shortest decimal that parses back as the same number: "0.1", "1e+09".
 std::string FormatNumber(double value);
 
-// "0 to 1e+09 N/m"; without the unit where it is "1".
+// Returns "0 to 1e+09 N/m"; leaves out the unit "1".
 std::string FormatRange(const v1::Quantity& quantity);
 
-// What is wrong with `value`: "-5 is outside 0 to 1e+09 N/m", "nan is not a finite number, ..."; nothing where it is
-// right. `quantity` may be null: then only finiteness counts.
+// Returns the error of a value: "-5 is outside 0 to 1e+09 N/m", "nan is not a finite number; ...". Returns nullopt if
+// it is valid. If `quantity` is null, only finiteness is checked.
 std::optional<std::string> NumberProblem(double value, const v1::Quantity* quantity);
 
 }  // namespace phrenic::schema

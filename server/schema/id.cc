@@ -10,12 +10,12 @@ namespace {
 
 constexpr std::size_t kLongestId = 64;
 
-bool MayBeInId(char c) { return absl::ascii_islower(c) || absl::ascii_isdigit(c) || c == '-'; }
+bool IsAllowed(char c) { return absl::ascii_islower(c) || absl::ascii_isdigit(c) || c == '-'; }
 
 }  // namespace
 
 absl::Status CheckId(const std::string& field, const std::string& id) {
-  if (id.size() <= kLongestId && std::all_of(id.begin(), id.end(), MayBeInId)) return absl::OkStatus();
+  if (id.size() <= kLongestId && std::all_of(id.begin(), id.end(), IsAllowed)) return absl::OkStatus();
   return absl::InvalidArgumentError(
       absl::StrCat(field, ": \"", ShortId(id), "\" is not 1 to 64 characters of a-z, 0-9 and \"-\""));
 }
@@ -24,7 +24,7 @@ std::string FreeId(const std::string& stem, const std::string& otherwise,
                    const std::function<bool(const std::string&)>& taken) {
   std::string id = absl::AsciiStrToLower(stem).substr(0, kLongestId - 8);
   for (char& c : id) {
-    if (!MayBeInId(c)) c = '-';
+    if (!IsAllowed(c)) c = '-';
   }
   if (id.empty()) id = otherwise;
   if (!taken(id)) return id;

@@ -1,4 +1,4 @@
-// Names that clients give to sessions and studies: 1 to 64 of a-z, 0-9 and "-".
+// Ids that clients give to sessions, studies and exports: 1 to 64 characters of a-z, 0-9 and "-".
 #ifndef PHRENIC_SERVER_SCHEMA_ID_H_
 #define PHRENIC_SERVER_SCHEMA_ID_H_
 
@@ -9,15 +9,15 @@
 
 namespace phrenic::schema {
 
-// OK for an empty id too: the server chooses then. INVALID_ARGUMENT "session_id: ...".
+// Returns INVALID_ARGUMENT "FIELD: ..." for a malformed id. An empty id is valid: the server then chooses one.
 absl::Status CheckId(const std::string& field, const std::string& id);
 
-// The first of "stem", "stem-2", "stem-3" ... that is not taken, with what no id may hold replaced by "-"; `otherwise`
-// where nothing is left of the stem.
+// Returns the first of "stem", "stem-2", "stem-3" ... that is not taken. Replaces characters that are not allowed by
+// "-"; uses `otherwise` for an empty stem.
 std::string FreeId(const std::string& stem, const std::string& otherwise,
                    const std::function<bool(const std::string&)>& taken);
 
-// Cut to what an error message may repeat.
+// Returns the id truncated to the longest valid length, for error messages.
 std::string ShortId(const std::string& id);
 
 }  // namespace phrenic::schema

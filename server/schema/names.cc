@@ -9,9 +9,9 @@
 namespace phrenic::schema {
 namespace {
 
-constexpr size_t kLongestGuess = 64;  // a longer name is no slip of the fingers
+constexpr size_t kLongestGuess = 64;  // a longer name is not a misspelling
 
-// Levenshtein's distance: the fewest insertions, deletions and replacements that make `b` of `a`.
+// Returns the Levenshtein distance: the fewest insertions, deletions and replacements that turn `a` into `b`.
 size_t EditDistance(std::string_view a, std::string_view b) {
   std::vector<size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), size_t{0});

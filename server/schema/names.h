@@ -1,4 +1,4 @@
-// What to say of a name that is not there.
+// Suggestions for unknown names in error messages.
 #ifndef PHRENIC_SERVER_SCHEMA_NAMES_H_
 #define PHRENIC_SERVER_SCHEMA_NAMES_H_
 
@@ -8,12 +8,12 @@
 
 namespace phrenic::schema {
 
-// The one of `names` that `wanted` may be a slip of: within half of its letters by Levenshtein's distance, or what it
-// begins with alone; empty where there is none.
+// Returns the name that `wanted` probably misspells: the only one that begins with it, or the nearest by Levenshtein
+// distance if that is at most half of the name's length. Returns "" if there is none.
 std::string NearestName(std::string_view wanted, const std::vector<std::string>& names);
 
-// Goes behind `there is no scene "thorx"`: "; did you mean thorax? There are cube, thorax", "; there are cube", or
-// "; there are none".
+// Returns the rest of a message that begins with `there is no scene "thorx"`: "; did you mean thorax? There are cube,
+// thorax", "; there are cube", or "; there are none".
 std::string ThereAre(std::string_view wanted, const std::vector<std::string>& names);
 
 }  // namespace phrenic::schema

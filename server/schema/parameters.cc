@@ -65,7 +65,7 @@ absl::Status SetParameter(std::string_view name, std::string_view value, v1::Par
   if (field == nullptr) return NoSuchParameter(name);
   std::string text(value);
   absl::StripAsciiWhitespace(&text);
-  // Parameters are switches, choices and real numbers; tests/schema holds that.
+  // Parameters are switches, choices and real numbers; tests/schema checks that.
   switch (field->cpp_type()) {
     case FieldDescriptor::CPPTYPE_BOOL:
       return SetToggle(*field, text, parameters);

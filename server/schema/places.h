@@ -1,4 +1,4 @@
-// Where what is served lies: beside an installed program, else in the source it was built from.
+// Finds data files: beside an installed program, or in the source tree that it was built from.
 #ifndef PHRENIC_SERVER_SCHEMA_PLACES_H_
 #define PHRENIC_SERVER_SCHEMA_PLACES_H_
 
@@ -6,7 +6,7 @@
 
 namespace phrenic {
 
-// PREFIX/share/phrenic/NAME where the program is PREFIX/bin/..., and that folder is there; else `otherwise`.
+// Returns PREFIX/share/phrenic/NAME if the program is PREFIX/bin/... and that folder exists; otherwise `otherwise`.
 std::string Installed(const std::string& name, const std::string& otherwise);
 
 }  // namespace phrenic

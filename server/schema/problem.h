@@ -1,4 +1,4 @@
-// The first thing that is wrong with a message, and where.
+// The first error in a message, and the field that has it.
 #ifndef PHRENIC_SERVER_SCHEMA_PROBLEM_H_
 #define PHRENIC_SERVER_SCHEMA_PROBLEM_H_
 
@@ -10,7 +10,8 @@
 
 namespace phrenic::schema {
 
-// One step of a path into a message; `index` is -1 for a field that is not repeated.
+// One step of a path into a message. `index` is -1 for a field that is not repeated, and for a repeated field as a
+// whole.
 struct PathStep {
   const google::protobuf::FieldDescriptor* field = nullptr;
   int index = -1;
@@ -21,10 +22,10 @@ struct Problem {
   std::string what;            // "-5 is outside 0 to 1e+09 N/m"
 };
 
-// Fields in the order of the schema, depth first; nothing where the message is right.
+// Returns the first invalid field in the order of the schema, depth first; nullopt if the message is valid.
 std::optional<Problem> FindProblem(const google::protobuf::Message& message);
 
-// "forces[2].springs.stiffness".
+// Returns "forces[2].springs.stiffness".
 std::string FormatPath(const std::vector<PathStep>& path);
 
 }  // namespace phrenic::schema

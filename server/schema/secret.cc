@@ -12,7 +12,7 @@ namespace phrenic {
 
 std::string NewToken() {
   std::array<unsigned char, 16> bits;
-  // A machine without randomness can keep no secret: there is nothing to go on with.
+  // Without randomness no secret is safe: the program cannot continue.
   if (RAND_bytes(bits.data(), static_cast<int>(bits.size())) != 1) std::abort();
   return absl::BytesToHexString({reinterpret_cast<const char*>(bits.data()), bits.size()});
 }

@@ -1,4 +1,4 @@
-// Secrets that name their bearer: 128 random bits in hexadecimal. They go into no log, no address and no error.
+// Bearer tokens: 128 random bits in hexadecimal. They must not appear in a log, an address or an error.
 #ifndef PHRENIC_SERVER_SCHEMA_SECRET_H_
 #define PHRENIC_SERVER_SCHEMA_SECRET_H_
 
@@ -7,10 +7,10 @@
 
 namespace phrenic {
 
-// From OpenSSL's generator, which the system seeds. Any thread may call.
+// Returns a new token from OpenSSL's generator, which the system seeds. Thread-safe. Aborts if there is no randomness.
 std::string NewToken();
 
-// Takes the same time wherever they differ, so that nobody finds a token out by measuring. An empty one equals none.
+// Compares in constant time, against timing attacks. An empty token equals no token.
 bool SameToken(std::string_view a, std::string_view b);
 
 }  // namespace phrenic

@@ -1,4 +1,4 @@
-// SHA-256 (FIPS 180-4), by which scenes, uploads and exports are known and checked.
+// SHA-256 (FIPS 180-4): identifies and checks scenes, uploads and exports.
 #ifndef PHRENIC_SERVER_SCHEMA_SHA256_H_
 #define PHRENIC_SERVER_SCHEMA_SHA256_H_
 
@@ -10,19 +10,20 @@
 
 namespace phrenic {
 
-// Of bytes that come in parts. Not thread-safe.
+// Hashes bytes that arrive in parts. Not thread-safe.
 class Sha256 {
  public:
   Sha256();
 
   void Add(std::string_view bytes);
-  // Of everything added, 64 hexadecimal digits; ends the hash, so call it once, at the end.
+  // Returns the hash of everything added, 64 hexadecimal digits. To be called once, at the end.
   std::string Hex();
 
  private:
   std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_;
 };
 
+// Returns the hash of `bytes`, 64 hexadecimal digits.
 std::string Sha256Hex(std::string_view bytes);
 
 }  // namespace phrenic

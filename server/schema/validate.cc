@@ -3,8 +3,10 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "server/schema/aliases.h"
 #include "server/schema/fields.h"
 #include "server/schema/problem.h"
+#include "server/schema/repetition.h"
 #include "server/schema/schema.h"
 
 namespace phrenic::schema {
@@ -18,7 +20,9 @@ using google::protobuf::Reflection;
 std::string NamesOf(const EnumDescriptor& type) {
   std::vector<std::string> names;
   for (int i = 0; i < type.value_count(); ++i) {
-    if (type.value(i)->number() != 0) names.push_back(type.value(i)->name());
+    const google::protobuf::EnumValueDescriptor* value = type.value(i);
+    const bool older_name = type.FindValueByNumber(value->number()) != value;
+    if (value->number() != 0 && !older_name) names.push_back(value->name());
   }
   return absl::StrJoin(names, ", ");
 }
@@ -31,7 +35,7 @@ bool IsUtf8(const std::string& text) {
   return true;
 }
 
-// A value of the field: the one at `index` of a repeated field, or the field's own where `index` is -1.
+// A value of a field: entry `index` of a repeated field, or the field's own if `index` is -1.
 class Value {
  public:
   Value(const Message& message, const FieldDescriptor& field, int index)
@@ -76,7 +80,7 @@ class Value {
 
   std::optional<std::string> Enum(int value) const {
     if (field_.enum_type()->FindValueByNumber(value) != nullptr) return std::nullopt;
-    return absl::StrCat(value, " is none of ", NamesOf(*field_.enum_type()));
+    return absl::StrCat(value, " is not one of ", NamesOf(*field_.enum_type()));
   }
 
   std::optional<std::string> Text(const std::string& value) const {
@@ -130,7 +134,7 @@ std::optional<Problem> FindInField(const Message& message, const FieldDescriptor
     return Problem{path, MissingProblem(field)};
   }
   if (!field.is_repeated()) {
-    // A number without presence always counts: where it is not written it is 0, which may be outside its range.
+    // A number without presence is always checked: unset, it is 0, which may be outside its range.
     const bool counts = !field.has_presence() || message.GetReflection()->HasField(message, &field);
     return counts ? FindInValue(message, field, -1, path) : std::nullopt;
   }
@@ -146,6 +150,10 @@ std::optional<Problem> FindIn(const Message& message, std::vector<PathStep>& pat
     if (auto problem = FindInField(message, *message.GetDescriptor()->field(i), path)) return problem;
   }
   return std::nullopt;
+}
+
+absl::Status ErrorOf(const Problem& problem) {
+  return absl::InvalidArgumentError(absl::StrCat(FormatPath(problem.path), ": ", problem.what));
 }
 
 }  // namespace
@@ -164,8 +172,14 @@ std::string FormatPath(const std::vector<PathStep>& path) {
 
 absl::Status Validate(const Message& message) {
   const std::optional<Problem> problem = FindProblem(message);
-  if (!problem) return absl::OkStatus();
-  return absl::InvalidArgumentError(absl::StrCat(FormatPath(problem->path), ": ", problem->what));
+  return problem ? ErrorOf(*problem) : absl::OkStatus();
+}
+
+absl::Status Resolve(v1::Scene* scene) {
+  if (const auto problem = MoveAliases(scene)) return ErrorOf(*problem);
+  if (const auto problem = FindProblem(*scene)) return ErrorOf(*problem);
+  if (const auto problem = Repeat(scene)) return ErrorOf(*problem);
+  return absl::OkStatus();
 }
 
 }  // namespace phrenic::schema

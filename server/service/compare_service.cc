@@ -8,7 +8,7 @@
 #include "server/compare/comparison.h"
 #include "server/service/calls/status.h"
 #include "server/session/present_body.h"
-#include "server/stream/wire.h"
+#include "server/stream/codecs/wire.h"
 
 namespace phrenic::service {
 namespace {

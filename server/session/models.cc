@@ -85,6 +85,7 @@ absl::StatusOr<v1::Scene> Models::Resolve(const v1::SceneSource& source) const {
   v1::Scene scene;
   if (source.has_scene()) {
     scene = source.scene();
+    if (absl::Status status = schema::Resolve(&scene); !status.ok()) return status;
   } else if (!source.name().empty()) {
     absl::StatusOr<v1::Scene> found = catalogue_.Find(source.name());
     if (!found.ok()) return found.status();

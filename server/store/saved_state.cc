@@ -60,6 +60,19 @@ absl::Status RestoreHistory(const v1::SavedHistory& saved, Eigen::Index vertices
   return absl::OkStatus();
 }
 
+// A state that was saved before the model had scalars has none: they keep the model's initial values.
+absl::Status RestoreScalars(const v1::SavedState& saved, ScalarState& scalars) {
+  if (saved.scalars().empty() && saved.scalar_rates().empty()) return absl::OkStatus();
+  const Eigen::Index count = scalars.q.size();
+  if (saved.scalars_size() != count || saved.scalar_rates_size() != count) {
+    return absl::DataLossError(absl::StrCat("scalars: ", saved.scalars_size(), " values and ",
+                                            saved.scalar_rates_size(), " rates are not of ", count, " coordinates"));
+  }
+  scalars.q = Eigen::Map<const Eigen::VectorXd>(saved.scalars().data(), count);
+  scalars.v = Eigen::Map<const Eigen::VectorXd>(saved.scalar_rates().data(), count);
+  return absl::OkStatus();
+}
+
 }  // namespace
 
 v1::SavedState Save(const State& state) {
@@ -83,6 +96,8 @@ v1::SavedState Save(const State& state) {
   history.set_velocities(BytesOf(state.history.v));
   history.set_forces(BytesOf(state.history.force));
   saved.set_halvings(state.halvings);
+  saved.mutable_scalars()->Assign(state.scalars.q.begin(), state.scalars.q.end());
+  saved.mutable_scalar_rates()->Assign(state.scalars.v.begin(), state.scalars.v.end());
   return saved;
 }
 
@@ -105,6 +120,7 @@ absl::StatusOr<State> Restore(const Model& model, const v1::SavedState& saved) {
     if (!good) return absl::DataLossError(absl::StrCat("pulls: vertex ", pull.vertex()));
     state.pulls.push_back({pull.vertex(), Eigen::Map<const Eigen::Vector3d>(pull.force().data())});
   }
+  if (absl::Status status = RestoreScalars(saved, state.scalars); !status.ok()) return status;
   if (absl::Status status = RestoreHistory(saved.history(), vertices, state.history); !status.ok()) return status;
   return state;
 }

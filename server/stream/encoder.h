@@ -13,7 +13,7 @@
 #include "phrenic/v1/frames.pb.h"
 #include "phrenic/v1/session.pb.h"
 #include "server/stream/basis_maker.h"
-#include "server/stream/codec.h"
+#include "server/stream/codecs/codec.h"
 #include "server/stream/frame.h"
 #include "server/stream/viewer.h"
 

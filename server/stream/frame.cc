@@ -6,7 +6,7 @@
 #include "server/mechanics/measures/readings.h"
 #include "server/mechanics/skinning/body_points.h"
 #include "server/mechanics/skinning/probe_position.h"
-#include "server/stream/wire.h"
+#include "server/stream/codecs/wire.h"
 
 namespace phrenic::stream {
 namespace {
@@ -57,6 +57,22 @@ absl::Status AddProbe(const Model& model, const State& state, const Probe& probe
   return absl::OkStatus();
 }
 
+absl::Status AddScalars(const Model& model, const State& state, v1::Frame& frame) {
+  for (int i = 0; i < static_cast<int>(model.scalars.size()); ++i) {
+    const ScalarCoordinate& coordinate = model.scalars[i];
+    const double value = state.scalars.q[i], rate = state.scalars.v[i];
+    if (!std::isfinite(value) || !std::isfinite(rate)) {
+      return NotFinite(absl::StrCat("coordinate ", coordinate.name), state);
+    }
+    v1::ScalarReading& reading = *frame.add_scalars();
+    reading.set_name(coordinate.name);
+    reading.set_value(value);
+    reading.set_rate(rate);
+    reading.set_unit(coordinate.unit);
+  }
+  return absl::OkStatus();
+}
+
 }  // namespace
 
 absl::StatusOr<v1::Frame> MakeFrame(const Model& model, const Layout& layout, const Snapshot& snapshot) {
@@ -71,6 +87,7 @@ absl::StatusOr<v1::Frame> MakeFrame(const Model& model, const Layout& layout, co
   if (!std::isfinite(frame.time()) || !std::isfinite(frame.breath())) return NotFinite("the time", state);
   if (absl::Status status = AddPositions(model, layout, state, frame); !status.ok()) return status;
   if (absl::Status status = AddPoses(state, frame); !status.ok()) return status;
+  if (absl::Status status = AddScalars(model, state, frame); !status.ok()) return status;
   for (const Probe& probe : model.probes) {
     if (absl::Status status = AddProbe(model, state, probe, frame); !status.ok()) return status;
   }

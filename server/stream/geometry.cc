@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "server/stream/wire.h"
+#include "server/stream/codecs/wire.h"
 
 namespace phrenic::stream {
 namespace {

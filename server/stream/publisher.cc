@@ -164,9 +164,9 @@ void Publisher::TakeFrames(absl::Time now, Round& round) {
       wanted[subscription.viewer->encoding()].push_back(&subscription);
   }
   for (const auto& [encoding, subscriptions] : wanted) {
-    const bool taken = std::any_of(subscriptions.begin(), subscriptions.end(), [sequence, now](const Subscription* subscription) {
-      return !subscription->viewer->Defer(sequence, now);
-    });
+    const bool taken = std::any_of(
+        subscriptions.begin(), subscriptions.end(),
+        [sequence, now](const Subscription* subscription) { return !subscription->viewer->Defer(sequence, now); });
     for (Subscription* subscription : subscriptions) {
       subscription->passed = sequence;
       if (!taken) continue;

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "server/stream/codec.h"
+#include "server/stream/codecs/codec.h"
 #include "server/stream/layout.h"
 
 namespace phrenic::stream {

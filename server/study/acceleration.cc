@@ -8,7 +8,7 @@
 namespace phrenic::study {
 namespace {
 
-constexpr double kTurn = 2e-6;  // of the central difference: the part of the scene that a vertex crosses in it
+constexpr double kTravel = 2e-6;  // of the fastest vertex within the central difference, in sizes of the scene
 
 }  // namespace
 
@@ -26,14 +26,14 @@ absl::StatusOr<Acceleration> Acceleration::Make(const Subject& subject) {
     if (!constraint->smooth()) {
       return absl::UnimplementedError(
           absl::StrCat("constraint ", constraint->name(),
-                       " jerks (limits, or the thesis' projection of links): no smooth equation of motion describes "
-                       "it, so there is no reference; take it out of the scene, or project exactly"));
+                       " is not smooth (limits, or the thesis' projection of links), so there is no reference "
+                       "solution; remove it from the scene, or set its projection to PROJECTION_EXACT"));
     }
   }
   return Acceleration(subject);
 }
 
-const State& Acceleration::Place(double time, const ConstPoints& x, const ConstPoints& v) {
+const State& Acceleration::SetState(double time, const ConstPoints& x, const ConstPoints& v) {
   const Model& model = *subject_.model;
   state_.time = time;
   state_.phase = time / subject_.parameters.breath_length();
@@ -54,7 +54,7 @@ void Acceleration::Unconstrained(MutablePoints a) {
   }
 }
 
-void Acceleration::VelocitiesAhead(double ahead, const ConstPoints& a, Points& v) {
+void Acceleration::ProjectedVelocities(double ahead, const ConstPoints& a, Points& v) {
   const Model& model = *subject_.model;
   ahead_.time = state_.time;
   ahead_.phase = state_.phase;
@@ -74,9 +74,9 @@ void Acceleration::Evaluate(MutablePoints a) {
   Unconstrained(a);
   if (subject_.model->constraints.empty()) return;
   const double fastest = std::max(1.0, state_.v.cwiseAbs().maxCoeff() / subject_.model->size);
-  const double ahead = kTurn / fastest;
-  VelocitiesAhead(ahead, a, later_);
-  VelocitiesAhead(-ahead, a, earlier_);
+  const double ahead = kTravel / fastest;
+  ProjectedVelocities(ahead, a, later_);
+  ProjectedVelocities(-ahead, a, earlier_);
   for (size_t i = 0; i < free_.size(); ++i) {
     a.col(static_cast<Eigen::Index>(i)) = (later_.col(free_[i]) - earlier_.col(free_[i])) / (2 * ahead);
   }

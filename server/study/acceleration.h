@@ -1,4 +1,4 @@
-// The equations of motion themselves, without any integrator: what an independent solver integrates.
+// The equations of motion without an integrator, as the right-hand side for an independent ODE solver.
 #ifndef PHRENIC_SERVER_STUDY_ACCELERATION_H_
 #define PHRENIC_SERVER_STUDY_ACCELERATION_H_
 
@@ -8,28 +8,29 @@
 
 namespace phrenic::study {
 
-// a = M^-1 f(t, x, v) of the vertices that forces move; where there are constraints, a is what keeps to them:
-//   a = dv*/dt,  v* = the velocities v + a dt of an unconstrained moment, at x + v dt, projected (mass-weighted) onto
-// the constraints, by a central difference of that projection. That is the index-1 form of the equations with Lagrange
+// Evaluates the accelerations a = M^-1 f(t, x, v) of the free vertices (those with finite mass that no motion drives).
+// With constraints, a is the constrained acceleration
+//   a = dv*/dt,  v* = the velocities v + a dt of an unconstrained step, at x + v dt, projected (mass-weighted) onto the
+// constraints, by a central difference of that projection. This is the index-1 form of the equations with Lagrange
 // multipliers; its relative error is about 1e-9. Not thread-safe.
 class Acceleration {
  public:
-  // UNIMPLEMENTED for a model with a constraint that no smooth equation describes (limits; the thesis' projection).
+  // UNIMPLEMENTED if the model has a constraint without a smooth equation (limits; the thesis' projection).
   static absl::StatusOr<Acceleration> Make(const Subject& subject);
 
-  // The vertices that forces move: the unknowns, in this order, x then v, three numbers each.
+  // Indices of the free vertices. The unknowns follow this order: first x, then v, three numbers each.
   const std::vector<int>& free() const { return free_; }
-  // State at `time` with the unknowns `x` (displacements from rest [m]) and `v` [m/s], each 3 x free; driven vertices
-  // where the motions have them.
-  const State& Place(double time, const ConstPoints& x, const ConstPoints& v);
-  // Acceleration [m/s^2] of the placed state, 3 x free.
+  // Sets the state at `time` [s] from the unknowns `x` (displacements from rest [m]) and `v` [m/s], each 3 x free, with
+  // driven vertices moved by their motions, and returns it. The reference is valid until the next call.
+  const State& SetState(double time, const ConstPoints& x, const ConstPoints& v);
+  // Writes the accelerations [m/s^2] of the state that was set, 3 x free.
   void Evaluate(MutablePoints a);
 
  private:
   explicit Acceleration(const Subject& subject);
   void Unconstrained(MutablePoints a);
-  // The velocities a little later or earlier, on the constraints.
-  void VelocitiesAhead(double ahead, const ConstPoints& a, Points& v);
+  // Writes the velocities at the time offset `ahead` [s], projected onto the constraints.
+  void ProjectedVelocities(double ahead, const ConstPoints& a, Points& v);
 
   Subject subject_;
   std::vector<int> free_;

@@ -1,4 +1,4 @@
-// What a study needs of whoever runs it.
+// The interface between a study and its caller: scene compiler, progress, subject.
 #ifndef PHRENIC_SERVER_STUDY_CONTEXT_H_
 #define PHRENIC_SERVER_STUDY_CONTEXT_H_
 
@@ -12,21 +12,24 @@
 
 namespace phrenic::study {
 
+// Compiles a scene source, as the server or the client does.
 using Compiler = std::function<absl::StatusOr<std::shared_ptr<const Model>>(const v1::SceneSource&)>;
 
-// Is told how much is done, 0 to 1, and what is being done; false asks the study to end with CANCELLED.
+// Reports the completed fraction, 0 to 1, and the current activity. Returns false to cancel: the study then ends with
+// CANCELLED.
 using Progress = std::function<bool(double done, std::string_view doing)>;
-inline constexpr long kLook = 16;  // steps between two looks at the clock and the caller
+inline constexpr long kCheckInterval = 16;  // steps between two checks of the CPU time and of Progress
 
-// One model under the parameters that the study was asked for.
+// A model with the parameters under which it is studied.
 struct Subject {
   std::shared_ptr<const Model> model;
   v1::Parameters parameters;  // every field set
 };
 
+// The status of a study whose Progress returned false.
 inline absl::Status Cancelled() { return absl::CancelledError("the study was cancelled"); }
 
-// The part of a study from `from` to `to` of the whole.
+// Maps the progress of one part of a study, 0 to 1, onto `from` to `to` of the whole. Requires: `whole` outlives it.
 inline Progress Part(const Progress& whole, double from, double to) {
   return [&whole, from, to](double done, std::string_view doing) { return whole(from + (to - from) * done, doing); };
 }

@@ -7,7 +7,7 @@
 namespace phrenic::study {
 namespace {
 
-// Shares of the whole study's progress.
+// Fractions of the study's progress at which its parts end.
 constexpr double kVariantsEnd = 0.5, kStagesEnd = 0.55, kSizesEnd = 0.8;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What each part of a scene costs, and that what is left out costs nothing.
+// The cost study: CPU time of each part of a scene, and proof that a part that is left out costs nothing.
 #ifndef PHRENIC_SERVER_STUDY_COST_H_
 #define PHRENIC_SERVER_STUDY_COST_H_
 
@@ -7,10 +7,11 @@
 
 namespace phrenic::study {
 
-// Times the scene whole and without each of its parts (CPU time of this thread, under the subject's parameters, from
-// rest, in trials that take turns), each part left out by the compile step against a scene that never named it, the
-// stages of a step, the sizes of the thesis and the growth with the number of vertices. Every field of `request`'s
-// study must be set. Errors: those of the compile step; CANCELLED as soon as `progress` says so.
+// Measures the CPU time per step (of this thread, under the subject's parameters, from rest, in interleaved trials):
+// of the whole scene and of the scene without each of its parts (cost_variants.h); of the stages of a step
+// (cost_stages.h); of the mesh sizes of the thesis; and as a function of the number of vertices (cost_sizes.h).
+// Requires: every field of the request's study is set. Errors: those of the compile step; CANCELLED if `progress`
+// returns false. Uses one thread.
 absl::StatusOr<v1::CostTable> StudyCost(const v1::CreateStudyRequest& request, const Subject& subject,
                                         const Compiler& compile, const Progress& progress);
 

@@ -9,14 +9,14 @@
 namespace phrenic::study {
 namespace {
 
-constexpr double kGrowthCompiled = 0.5;  // of the progress
+constexpr double kGrowthCompiled = 0.5;  // fraction of the progress
 constexpr int kSmallestSheet = 5000;     // vertices
-constexpr int kLargestOverSmallest = 8;  // at least
+constexpr int kLargestOverSmallest = 8;  // least ratio of the sheets' sizes
 constexpr double kCell = 0.01;           // edge of a sheet's cells [m]
-constexpr double kMostOfATurn = 1e7;     // vertices times steps of a turn, at most
-constexpr int kFewest = 10;              // steps of a turn
+constexpr double kMaxTurn = 1e7;         // largest product of vertices and steps in a turn
+constexpr int kMinSteps = 10;            // of a turn
 
-// Doubled from the smallest on; the last one is the largest.
+// Numbers of vertices: a geometric sequence of ratio 2 that ends with `largest`.
 std::vector<int> SheetSizes(int largest) {
   std::vector<int> sizes;
   if (largest < kLargestOverSmallest) return sizes;
@@ -28,7 +28,7 @@ std::vector<int> SheetSizes(int largest) {
 
 Timing MakeTiming(const Subject& subject, int steps) {
   const auto vertices = static_cast<double>(std::max<int64_t>(1, subject.model->report.simulated_vertices()));
-  const int most = std::max(kFewest, static_cast<int>(kMostOfATurn / vertices));
+  const int most = std::max(kMinSteps, static_cast<int>(kMaxTurn / vertices));
   return {.subject = subject, .steps = std::min(steps, most), .step_s = {}, .part_s = {}, .problem = ""};
 }
 
@@ -66,7 +66,7 @@ absl::StatusOr<std::vector<Timing>> Resolutions(const v1::CreateStudyRequest& re
   return timings;
 }
 
-// One kind's rows; the exponent that fits them all.
+// Adds the rows of one series and returns its fitted exponent.
 double AddRows(const std::string& what, const std::vector<Timing>& timings, v1::CostTable& table) {
   std::vector<double> vertices, costs;
   for (const Timing& timing : timings) {
@@ -93,7 +93,7 @@ v1::Scene SheetOf(int vertices) {
   v1::Body& body = *scene.add_bodies();
   body.set_name("sheet");
   body.set_role(v1::ROLE_DEFORMABLE);
-  body.mutable_substance();
+  body.mutable_material();
   for (int i = 0; i < columns; ++i) body.add_fixed_vertices(i);
   body.mutable_grid()->set_columns(columns);
   body.mutable_grid()->set_rows(rows);
@@ -114,11 +114,11 @@ absl::Status AddGrowth(const v1::CreateStudyRequest& request, const Subject& sub
   auto resolutions = Resolutions(request, compile, Part(progress, kGrowthCompiled / 2, kGrowthCompiled));
   if (!resolutions.ok()) return resolutions.status();
   const int trials = request.cost().trials();
-  absl::Status status = TimeInTurn(*sheets, trials, Part(progress, kGrowthCompiled, 0.8));
-  if (status.ok()) status = TimeInTurn(*resolutions, trials, Part(progress, 0.8, 1));
+  absl::Status status = TimeInterleaved(*sheets, trials, Part(progress, kGrowthCompiled, 0.8));
+  if (status.ok()) status = TimeInterleaved(*resolutions, trials, Part(progress, 0.8, 1));
   if (!status.ok()) return status;
   const double of_sheets = AddRows("sheet of springs", *sheets, table);
-  const double of_resolutions = AddRows("the scene, finer and finer", *resolutions, table);
+  const double of_resolutions = AddRows("the scene, refined", *resolutions, table);
   if (sheets->size() > 1 || resolutions->size() > 1) {
     table.set_growth_exponent(sheets->size() > 1 ? of_sheets : of_resolutions);
   }

@@ -5,13 +5,13 @@
 namespace phrenic::study {
 namespace {
 
-constexpr const char* kNowhere = "nowhere";  // a region of one vertex: no edge, triangle or tetrahedron is in it
+constexpr const char* kEmptyRegion = "nowhere";  // a region of one vertex: it has no edge, triangle or tetrahedron
 constexpr const char* kAttachments = "attachments";
 constexpr const char* kLinks = "links";
 constexpr const char* kMuscles = "muscles";
 constexpr const char* kRibs = "ribs";
 constexpr const char* kSprings = "springs";
-constexpr const char* kNone = "";
+constexpr const char* kNone = "";  // elements that cost nothing in a step
 
 std::string PartOf(const v1::Force& force) {
   switch (force.kind_case()) {
@@ -42,8 +42,8 @@ std::string PartOf(const v1::Force& force) {
       return "pressure";
     case v1::Force::kLungs:
       return "lungs";
-    case v1::Force::kDrag:
-      return "drag";
+    case v1::Force::kTargetSpring:
+      return "target springs";
     case v1::Force::kPointLoad:
       return "point loads";
     case v1::Force::KIND_NOT_SET:
@@ -59,7 +59,7 @@ std::string PartOf(const v1::Motion& motion) {
       return kRibs;
     case v1::Motion::kOscillation:
       return "oscillation";
-    case v1::Motion::kRide:
+    case v1::Motion::kSkin:
     case v1::Motion::KIND_NOT_SET:
       break;
   }
@@ -70,8 +70,8 @@ std::string PartOf(const v1::Constraint& constraint) {
   switch (constraint.kind_case()) {
     case v1::Constraint::kRigidLinks:
       return kLinks;
-    case v1::Constraint::kLimits:
-      return "limits";
+    case v1::Constraint::kLengthLimits:
+      return "length limits";
     case v1::Constraint::KIND_NOT_SET:
       break;
   }
@@ -94,13 +94,13 @@ void Drop(const std::string& part, Elements& elements) {
                  elements.end());
 }
 
-// Gives each deformable body a region of the one vertex that it begins with.
-void AddNowhere(const Model& model, v1::Scene& scene) {
+// Gives each deformable body a region that contains only its first vertex.
+void AddEmptyRegion(const Model& model, v1::Scene& scene) {
   for (int b = 0; b < scene.bodies_size(); ++b) {
     if (scene.bodies(b).role() != v1::ROLE_DEFORMABLE) continue;
     const Eigen::Vector3d at = model.bodies[static_cast<size_t>(b)].mesh.vertices.col(0);
     v1::Region& region = *scene.mutable_bodies(b)->add_regions();
-    region.set_name(kNowhere);
+    region.set_name(kEmptyRegion);
     region.mutable_low()->set_x(at.x());
     region.mutable_low()->set_y(at.y());
     region.mutable_low()->set_z(at.z());
@@ -108,18 +108,20 @@ void AddNowhere(const Model& model, v1::Scene& scene) {
   }
 }
 
-// No mass can be spread by the stiffness of springs that are not there.
+// Mass cannot be distributed by the stiffness of springs that are removed.
 void SpreadMassByArea(v1::Scene& scene) {
-  for (v1::Body& body : *scene.mutable_bodies()) body.clear_mass_shares();
+  for (v1::Body& body : *scene.mutable_bodies()) body.clear_mass_lumping();
 }
 
+// Restricts an element to the empty region.
 template <typename Element>
 bool Confine(Element& element) {
-  element.set_region(kNowhere);
+  element.set_region(kEmptyRegion);
   return true;
 }
 
-bool Void(v1::Force& force) {
+// Makes a force empty; returns false if the compile step could not detect that.
+bool MakeEmpty(v1::Force& force) {
   switch (force.kind_case()) {
     case v1::Force::kSprings:
       return Confine(*force.mutable_springs());
@@ -153,7 +155,7 @@ bool Void(v1::Force& force) {
     case v1::Force::kContact:
     case v1::Force::kPressure:
     case v1::Force::kLungs:
-    case v1::Force::kDrag:
+    case v1::Force::kTargetSpring:
     case v1::Force::kPointLoad:
     case v1::Force::KIND_NOT_SET:
       break;
@@ -161,14 +163,15 @@ bool Void(v1::Force& force) {
   return false;
 }
 
-bool Void(v1::Constraint& constraint) {
+// The same for a constraint.
+bool MakeEmpty(v1::Constraint& constraint) {
   switch (constraint.kind_case()) {
     case v1::Constraint::kRigidLinks:
       constraint.mutable_rigid_links()->mutable_pairing()->set_distance(1e-9);
       return Confine(*constraint.mutable_rigid_links()->mutable_pairing());
-    case v1::Constraint::kLimits:
-      constraint.mutable_limits()->clear_list();
-      return Confine(*constraint.mutable_limits());
+    case v1::Constraint::kLengthLimits:
+      constraint.mutable_length_limits()->clear_list();
+      return Confine(*constraint.mutable_length_limits());
     case v1::Constraint::KIND_NOT_SET:
       break;
   }
@@ -186,7 +189,7 @@ std::vector<std::string> PartsOf(const v1::Scene& scene) {
 }
 
 v1::Scene Without(v1::Scene scene, const std::string& part) {
-  scene.clear_measures();  // they may name what is dropped, and no step takes them
+  scene.clear_measures();  // they may refer to removed elements, and no step evaluates them
   Drop(part, *scene.mutable_forces());
   Drop(part, *scene.mutable_motions());
   Drop(part, *scene.mutable_constraints());
@@ -200,17 +203,17 @@ v1::Scene Without(v1::Scene scene, const std::string& part) {
 
 std::optional<v1::Scene> LeftOut(const Model& model, const std::string& part) {
   v1::Scene scene = model.scene;
-  AddNowhere(model, scene);
+  AddEmptyRegion(model, scene);
   if (part == kSprings) SpreadMassByArea(scene);
   bool any = false;
   for (v1::Force& force : *scene.mutable_forces()) {
     if (PartOf(force) != part) continue;
-    if (!Void(force)) return std::nullopt;
+    if (!MakeEmpty(force)) return std::nullopt;
     any = true;
   }
   for (v1::Constraint& constraint : *scene.mutable_constraints()) {
     if (PartOf(constraint) != part) continue;
-    if (!Void(constraint)) return std::nullopt;
+    if (!MakeEmpty(constraint)) return std::nullopt;
     any = true;
   }
   return any ? std::optional(scene) : std::nullopt;

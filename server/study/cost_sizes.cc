@@ -6,20 +6,19 @@
 
 #include "server/study/cost_parts.h"
 #include "server/study/cost_trials.h"
-#include "server/study/cost_variants.h"
 #include "server/study/subject.h"
 #include "server/study/thesis_tables.h"
 
 namespace phrenic::study {
 namespace {
 
-constexpr double kSizesCompiled = 0.6;  // of the progress
-constexpr double kNearEnough = 0.01;    // of the thesis' number of vertices
-constexpr int kTries = 3;               // at a resolution that gives it
+constexpr double kSizesCompiled = 0.6;  // fraction of the progress
+constexpr double kTolerance = 0.01;     // relative, of the thesis' number of vertices
+constexpr int kIterations = 3;          // of the resolution for that number
 constexpr int kCubeVertices = 8;
 constexpr int kCubeSteps = 100'000;  // of a trial of figure 5.10
 
-// The resolution of generated bodies where nobody names one, as a first guess: edges of the simulated ones [mm].
+// Mean edge length of the deformable bodies [mm]: the initial guess of the resolution if the scene names none.
 double MeanEdgeMm(const Model& model) {
   double sum = 0;
   Eigen::Index count = 0;
@@ -48,25 +47,27 @@ double ResolutionOf(const v1::CreateStudyRequest& request, const Model& model) {
   return MeanEdgeMm(model);
 }
 
+// A subject with the resolution of its mesh; 0 if it is not generated.
 struct Sized {
   Subject subject;
   double resolution_mm = 0;
 };
 
-// A step of these sizes is not to be longer than what is stable there.
+// Compiles the scene at a resolution [mm], with a time step that is stable for it.
 absl::StatusOr<Subject> AtResolution(const v1::CreateStudyRequest& request, const Compiler& compile, double mm) {
   v1::SceneSource source = request.source();
   source.set_resolution_mm(mm);
   return MakeSubject(source, request.preset(), request.parameters(), compile);
 }
 
-// Vertices go with 1/resolution^2; the deformable bodies' resolution alone would tear bones from tissue.
+// Finds the resolution that gives `vertices`: their number is proportional to 1/resolution^2. It applies to all
+// generated bodies, so that bones and tissue still meet.
 absl::StatusOr<Sized> WithVertices(const v1::CreateStudyRequest& request, const Subject& subject, int vertices,
                                    const Compiler& compile) {
   Sized sized{.subject = subject, .resolution_mm = ResolutionOf(request, *subject.model)};
-  for (int i = 0; i < kTries; ++i) {
+  for (int i = 0; i < kIterations; ++i) {
     const double ratio = static_cast<double>(sized.subject.model->report.simulated_vertices()) / vertices;
-    if (std::abs(ratio - 1) < kNearEnough) break;
+    if (std::abs(ratio - 1) < kTolerance) break;
     sized.resolution_mm *= std::sqrt(ratio);
     auto made = AtResolution(request, compile, sized.resolution_mm);
     if (!made.ok()) return made.status();
@@ -93,7 +94,7 @@ void AddRow(const ThesisSize& thesis, const Sized& sized, const Timing& with, co
   row.set_thesis(thesis.vertices == kCubeVertices ? thesis.figure : "fig. 5.24, 5.27");
 }
 
-// The sizes that the scene can be had in.
+// The thesis' sizes that this scene can reproduce.
 std::vector<ThesisSize> SizesFor(const Model& model) {
   std::vector<ThesisSize> sizes = LikeThesisSizes(model.scene, model.report.simulated_vertices());
   if (IsGenerated(model.scene) || sizes.size() < 2) return sizes;
@@ -115,7 +116,7 @@ absl::Status AddSizes(const v1::CreateStudyRequest& request, const Subject& subj
   std::vector<Timing> timings;
   for (size_t i = 0; i < sizes.size(); ++i) {
     const double done = kSizesCompiled * static_cast<double>(i) / static_cast<double>(sizes.size());
-    if (!progress(done, "making the meshes of figures 5.14-5.27")) return Cancelled();
+    if (!progress(done, "meshing for figures 5.14-5.27")) return Cancelled();
     absl::StatusOr<Sized> sized = Sized{.subject = subject, .resolution_mm = 0};
     if (IsGenerated(subject.model->scene)) sized = WithVertices(request, subject, sizes[i].vertices, compile);
     if (!sized.ok()) return sized.status();
@@ -126,7 +127,7 @@ absl::Status AddSizes(const v1::CreateStudyRequest& request, const Subject& subj
     timings.push_back({.subject = *without, .steps = steps, .step_s = {}, .part_s = {}, .problem = ""});
     made.push_back(*std::move(sized));
   }
-  absl::Status status = TimeInTurn(timings, request.cost().trials(), Part(progress, kSizesCompiled, 1));
+  absl::Status status = TimeInterleaved(timings, request.cost().trials(), Part(progress, kSizesCompiled, 1));
   if (!status.ok()) return status;
   for (size_t i = 0; i < sizes.size(); ++i) AddRow(sizes[i], made[i], timings[2 * i], timings[2 * i + 1], table);
   return absl::OkStatus();

@@ -1,4 +1,4 @@
-// How the cost goes with size: the three meshes of the thesis with rigid links and without, and how the cost grows.
+// Cost as a function of size: the meshes of the thesis with and without rigid links, and the growth exponent.
 #ifndef PHRENIC_SERVER_STUDY_COST_SIZES_H_
 #define PHRENIC_SERVER_STUDY_COST_SIZES_H_
 
@@ -9,22 +9,23 @@
 
 namespace phrenic::study {
 
-// Figures 5.10, 5.14-5.24 and 5.27, for the scenes that are like theirs: generated bodies are made anew with as many
-// vertices as the thesis has, to about a hundredth; other bodies stand for the one size that comes nearest. The cube
-// takes 100,000 steps a trial, as in the thesis. Nothing where the scene has no rigid links.
+// Appends rows that reproduce figures 5.10, 5.14-5.24 and 5.27 of the thesis, for scenes of the same kind. Generated
+// bodies are meshed again with the thesis' numbers of vertices, within about 1 %; other bodies are compared with the
+// nearest size only. The cube takes 100,000 steps per trial, as in the thesis. Adds nothing if the scene has no rigid
+// links. Errors: those of the compile step; CANCELLED if `progress` returns false.
 absl::Status AddSizes(const v1::CreateStudyRequest& request, const Subject& subject, const Compiler& compile,
                       const Progress& progress, v1::CostTable& table);
 
-// Sheets of springs up to the largest that is asked for, and the scene at each of the resolutions, all under the
-// subject's integrator; the exponents.
+// Appends the cost of sheets of springs up to the requested size and of the scene at each requested resolution, with
+// the subject's integrator, and the growth exponents. Errors as for AddSizes.
 absl::Status AddGrowth(const v1::CreateStudyRequest& request, const Subject& subject, const Compiler& compile,
                        const Progress& progress, v1::CostTable& table);
 
-// A square sheet of springs of about as many vertices, under its weight and friction, held along one side. Edges of 1
-// cm whatever its size.
+// Returns the scene of a square sheet of springs with about `vertices` vertices and edges of 1 cm, fixed along one
+// side, under gravity and friction.
 v1::Scene SheetOf(int vertices);
 
-// The exponent p of cost ~ vertices^p by least squares of the logarithms; 0 for fewer than two sizes.
+// Returns the exponent p of cost ~ vertices^p, a least-squares fit of the logarithms; 0 for fewer than two sizes.
 double FitExponent(const std::vector<double>& vertices, const std::vector<double>& costs);
 
 }  // namespace phrenic::study

@@ -10,18 +10,18 @@
 namespace phrenic::study {
 namespace {
 
-constexpr int kBlock = 16;              // steps with clocks inside, then as many without, so that caches are warm
-constexpr int kMostTimedSteps = 20000;  // whose times are kept
+constexpr int kBlock = 16;             // steps without clocks, then as many with clocks, so that caches are warm
+constexpr int kMaxTimedSteps = 20000;  // upper bound of stored times
 
-// One run, step by step.
-struct Watched {
+// A run that is timed step by step.
+struct TimedRun {
   const Model& model;
   State state;
   Workspace work;
 
-  explicit Watched(const Model& of, const State& start) : model(of), state(start), work(of.MakeWorkspace()) {}
+  explicit TimedRun(const Model& of, const State& start) : model(of), state(start), work(of.MakeWorkspace()) {}
 
-  // Wall time of the next step [s]; from `start` again where it failed.
+  // Takes a step and returns its wall time [s]; restarts from `start` if it fails.
   double Take(const v1::Parameters& parameters, const State& start) {
     const auto begin = std::chrono::steady_clock::now();
     const absl::Status status = Step(model, parameters, parameters.time_step(), state, work);
@@ -31,7 +31,7 @@ struct Watched {
   }
 };
 
-// Times of the stages, a list of steps each.
+// Times of the stages and of whole steps, one entry per step [s].
 struct Times {
   std::vector<std::vector<double>> stages;
   std::vector<double> whole;
@@ -48,11 +48,11 @@ void Collect(double clock, Stages& stages, Times& times) {
   }
 }
 
-// The same run twice, some steps of the one and some of the other in turn: with clocks inside and without.
+// Alternates blocks of steps of two equal runs, one without clocks inside and one with them.
 absl::StatusOr<Times> Watch(const Subject& subject, int steps, const Progress& progress, Stages& stages) {
   const std::shared_ptr<const Model> timed_model = Timed(*subject.model, stages);
   const State start = subject.model->InitialState();
-  Watched plain(*subject.model, start), timed(*timed_model, start);
+  TimedRun plain(*subject.model, start), timed(*timed_model, start);
   const double clock = ClockCost();
   Times times;
   times.stages.resize(stages.size());
@@ -82,7 +82,7 @@ void AddRow(const Stage& stage, double seconds, double whole, double calls, v1::
 
 absl::Status AddStages(const Subject& subject, int steps, const Progress& progress, v1::CostTable& table) {
   Stages stages;
-  steps = std::min(steps, kMostTimedSteps);
+  steps = std::min(steps, kMaxTimedSteps);
   const auto times = Watch(subject, steps, progress, stages);
   if (!times.ok()) return times.status();
   const double whole = MiddleMean(times->whole);
@@ -93,8 +93,8 @@ absl::Status AddStages(const Subject& subject, int steps, const Progress& progre
     sum += seconds;
     AddRow(stages[i], seconds, whole, static_cast<double>(times->calls[i]) / steps, table);
   }
-  AddRow({.stage = "integrator", .element = "what remains", .seconds = 0, .calls = 0, .parts = 0}, whole - sum, whole,
-         1, table);
+  AddRow({.stage = "integrator", .element = "remainder", .seconds = 0, .calls = 0, .parts = 0}, whole - sum, whole, 1,
+         table);
   AddRow({.stage = "step", .element = "whole", .seconds = 0, .calls = 0, .parts = 0}, whole, whole, 1, table);
   return absl::OkStatus();
 }

@@ -1,5 +1,4 @@
-// Where the time of a step goes, from inside: a copy of the model whose elements hold a clock each. Steps of other
-// models know nothing of it.
+// Profiles a step by stages with a copy of the model whose elements measure their own time (timed_model.h).
 #ifndef PHRENIC_SERVER_STUDY_COST_STAGES_H_
 #define PHRENIC_SERVER_STUDY_COST_STAGES_H_
 
@@ -8,9 +7,10 @@
 
 namespace phrenic::study {
 
-// Appends a row for each thing that each element does in a step ("force" of "springs:muscle", "velocities" of
-// "rigid-links:diaphragm"), one for what remains ("integrator") and one for the whole step. Wall time, means of
-// the middle half of `steps` steps, less what the clocks take themselves. CANCELLED as soon as `progress` says so.
+// Appends a row per stage of each element ("force" of "springs:muscle", "velocities" of "rigid-links:diaphragm"), one
+// for the remainder ("integrator") and one for the whole step. Times are wall times: interquartile means over `steps`
+// steps, minus the cost of the clocks. The whole step is timed without clocks inside. CANCELLED if `progress` returns
+// false.
 absl::Status AddStages(const Subject& subject, int steps, const Progress& progress, v1::CostTable& table);
 
 }  // namespace phrenic::study

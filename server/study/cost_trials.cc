@@ -14,22 +14,22 @@
 namespace phrenic::study {
 namespace {
 
-constexpr int kWarm = 8;               // steps before the first trial
-constexpr double kWorthTiming = 5e-3;  // of a trial, at least [s]
-constexpr int kMostTurns = 1000;       // of a trial
-constexpr double kPart = 1e-3;         // of a turn, at least [s]: so short that drift hits all alike ...
-constexpr double kStepsOfAPart = 16;   // ... and at least so many steps
+constexpr int kWarmUp = 8;              // steps before the first trial
+constexpr double kMinTrialTime = 5e-3;  // [s]
+constexpr int kMaxTurns = 1000;         // of a trial
+constexpr double kMinPartTime = 1e-3;   // [s]; short, so that drift affects all subjects alike
+constexpr double kMinPartSteps = 16;
 
-// Where a subject begins, where it is, and what its integrator needs.
-struct Stand {
+// The run of one subject.
+struct TrialRun {
   State start, state;
   Workspace work;
-  double clock = 0;     // what the clock itself takes [s]
-  double spent = 0;     // in this trial [s]
-  double of_steps = 0;  // steps that it was spent on
+  double clock = 0;     // cost of reading the clock [s]
+  double spent = 0;     // CPU time in this trial [s]
+  double of_steps = 0;  // number of steps in this trial
 };
 
-// What two readings of the clock show with nothing between them [s].
+// Median difference of two consecutive clock readings [s].
 double ClockCost() {
   std::vector<double> nothing(101);
   for (double& seconds : nothing) {
@@ -39,40 +39,40 @@ double ClockCost() {
   return Median(std::move(nothing));
 }
 
-// Takes steps, from the start again after one that failed; the CPU time of the steps [s].
-double TakeSteps(Timing& timing, int steps, Stand& stand) {
+// Takes steps and returns their CPU time [s]. Restarts from the start if a step fails.
+double TakeSteps(Timing& timing, int steps, TrialRun& run) {
   const Subject& subject = timing.subject;
   const double dt = subject.parameters.time_step();
   const double begin = ThreadCpuSeconds();
   for (int i = 0; i < steps; ++i) {
-    const absl::Status stepped = Step(*subject.model, subject.parameters, dt, stand.state, stand.work);
+    const absl::Status stepped = Step(*subject.model, subject.parameters, dt, run.state, run.work);
     if (stepped.ok()) continue;
-    timing.problem = absl::StrFormat("starts again: %s at %.3g s", absl::IsAborted(stepped) ? "stopped" : "diverged",
-                                     stand.state.time);
-    stand.state = stand.start;
+    timing.problem =
+        absl::StrFormat("restarted: %s at %.3g s", absl::IsAborted(stepped) ? "stopped" : "diverged", run.state.time);
+    run.state = run.start;
   }
-  return std::max(0.0, ThreadCpuSeconds() - begin - stand.clock);
+  return std::max(0.0, ThreadCpuSeconds() - begin - run.clock);
 }
 
-// One part of `parts` of a turn. Its first step is to warm up, where there are more.
-void TakePart(Timing& timing, int part, int parts, Stand& stand) {
-  if (part == 0) stand.state = stand.start;
+// Runs part number `part` of `parts` of a turn. Its first step is not timed, unless it is the only one.
+void TakePart(Timing& timing, int part, int parts, TrialRun& run) {
+  if (part == 0) run.state = run.start;
   const auto at = [&](int edge) { return static_cast<int>(static_cast<std::int64_t>(timing.steps) * edge / parts); };
   int steps = at(part + 1) - at(part);
   if (steps > 1) {
-    TakeSteps(timing, 1, stand);
+    TakeSteps(timing, 1, run);
     --steps;
   }
-  const double spent = TakeSteps(timing, steps, stand);
+  const double spent = TakeSteps(timing, steps, run);
   timing.part_s.push_back(steps > 0 ? spent / steps : 0);
-  stand.spent += spent;
-  stand.of_steps += steps;
+  run.spent += spent;
+  run.of_steps += steps;
 }
 
-// How a trial is cut up.
+// How a trial is divided.
 struct Plan {
-  int turns = 1;  // each of all steps, from rest
-  int parts = 1;  // of a turn
+  int turns = 1;  // repetitions of all steps, each from rest
+  int parts = 1;  // per turn
 };
 
 Plan PlanFor(const std::vector<Timing>& timings, const std::vector<double>& step_s) {
@@ -81,33 +81,33 @@ Plan PlanFor(const std::vector<Timing>& timings, const std::vector<double>& step
     quickest = std::min(quickest, step_s[i] * timings[i].steps);
     fewest = std::min<double>(fewest, timings[i].steps);
   }
-  const double turns = std::ceil(kWorthTiming / std::max(quickest, kWorthTiming / kMostTurns));
-  const double parts = std::min(quickest / kPart, fewest / kStepsOfAPart);
+  const double turns = std::ceil(kMinTrialTime / std::max(quickest, kMinTrialTime / kMaxTurns));
+  const double parts = std::min(quickest / kMinPartTime, fewest / kMinPartSteps);
   return {.turns = static_cast<int>(turns), .parts = std::max(1, static_cast<int>(parts))};
 }
 
-// From rest, with what each takes for a step [s].
-absl::StatusOr<std::vector<Stand>> WarmUp(std::vector<Timing>& timings, const Progress& progress,
-                                          std::vector<double>& step_s) {
-  std::vector<Stand> stands;
+// Prepares the runs and estimates the CPU time per step of each [s].
+absl::StatusOr<std::vector<TrialRun>> WarmUp(std::vector<Timing>& timings, const Progress& progress,
+                                             std::vector<double>& step_s) {
+  std::vector<TrialRun> runs;
   const double clock = ClockCost();
   for (Timing& timing : timings) {
     if (!progress(0, "warming up")) return Cancelled();
     const State start = timing.subject.model->InitialState();
-    stands.push_back({start, start, timing.subject.model->MakeWorkspace(), clock});
-    TakeSteps(timing, 1, stands.back());
-    step_s.push_back(TakeSteps(timing, kWarm, stands.back()) / kWarm);
+    runs.push_back({start, start, timing.subject.model->MakeWorkspace(), clock});
+    TakeSteps(timing, 1, runs.back());
+    step_s.push_back(TakeSteps(timing, kWarmUp, runs.back()) / kWarmUp);
   }
-  return stands;
+  return runs;
 }
 
 }  // namespace
 
-absl::Status TimeInTurn(std::vector<Timing>& timings, int trials, const Progress& progress) {
+absl::Status TimeInterleaved(std::vector<Timing>& timings, int trials, const Progress& progress) {
   if (timings.empty()) return absl::OkStatus();
   std::vector<double> warm;
-  auto stands = WarmUp(timings, progress, warm);
-  if (!stands.ok()) return stands.status();
+  auto runs = WarmUp(timings, progress, warm);
+  if (!runs.ok()) return runs.status();
   const Plan plan = PlanFor(timings, warm);
   const int rounds = plan.turns * plan.parts;
   for (int trial = 0; trial < trials; ++trial) {
@@ -115,13 +115,13 @@ absl::Status TimeInTurn(std::vector<Timing>& timings, int trials, const Progress
       const double done = (trial + static_cast<double>(round) / rounds) / trials;
       for (size_t i = 0; i < timings.size(); ++i) {
         if (!progress(done, "timing steps in turn")) return Cancelled();
-        TakePart(timings[i], round % plan.parts, plan.parts, (*stands)[i]);
+        TakePart(timings[i], round % plan.parts, plan.parts, (*runs)[i]);
       }
     }
     for (size_t i = 0; i < timings.size(); ++i) {
-      Stand& stand = (*stands)[i];
-      timings[i].step_s.push_back(stand.spent / stand.of_steps);
-      stand.spent = stand.of_steps = 0;
+      TrialRun& run = (*runs)[i];
+      timings[i].step_s.push_back(run.spent / run.of_steps);
+      run.spent = run.of_steps = 0;
     }
   }
   return absl::OkStatus();

@@ -1,4 +1,4 @@
-// How long steps take: several subjects in turn, round after round, so that whatever slows the machine slows all alike.
+// Measures CPU time per step of several subjects in interleaved trials, so that load and drift affect all alike.
 #ifndef PHRENIC_SERVER_STUDY_COST_TRIALS_H_
 #define PHRENIC_SERVER_STUDY_COST_TRIALS_H_
 
@@ -9,25 +9,27 @@
 
 namespace phrenic::study {
 
-// One subject that is timed, from rest, time after time.
+// A subject and its measured times.
 struct Timing {
   Subject subject;
-  int steps = 0;               // of a trial, at least
-  std::vector<double> step_s;  // CPU time of a step in each trial [s]
-  std::vector<double> part_s;  // and in each part of each [s]
-  std::string problem;         // why a turn ended early, after which it began anew; empty where none did
+  int steps = 0;               // least number of steps per trial
+  std::vector<double> step_s;  // mean CPU time per step of each trial [s]
+  std::vector<double> part_s;  // and of each part of each trial [s]
+  std::string problem;         // why a run was restarted; empty if none was
 };
 
-// Each trial takes every subject through its steps from rest, a short part of each in turn, and again while all steps
-// of the quickest are too few for the clock. CANCELLED as soon as `progress` says so.
-absl::Status TimeInTurn(std::vector<Timing>& timings, int trials, const Progress& progress);
+// Runs `trials` trials of each subject from rest, in round-robin order over short parts of a trial. The steps of a
+// trial are repeated until the fastest subject takes at least 5 ms. CANCELLED if `progress` returns false. Uses one
+// thread.
+absl::Status TimeInterleaved(std::vector<Timing>& timings, int trials, const Progress& progress);
 
+// Returns the median; 0 if there are no values.
 double Median(std::vector<double> values);
-// The mean of the middle half: finer than the clock's ticks, and deaf to interruptions.
+// Returns the interquartile mean: finer than the resolution of the clock and robust against interruptions.
 double MiddleMean(std::vector<double> values);
-// (Largest - smallest) / median; 0 for a single one.
+// Returns (largest - smallest) / median; 0 for a single value.
 double Spread(const std::vector<double>& values);
-// The median over the parts of a's time over b's in the same part.
+// Returns the median over parts of the ratio of a's time to b's in the same part.
 double MedianRatio(const Timing& a, const Timing& b);
 
 }  // namespace phrenic::study

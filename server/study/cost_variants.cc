@@ -7,31 +7,32 @@
 #include "absl/strings/str_cat.h"
 #include "server/study/cost_parts.h"
 #include "server/study/cost_trials.h"
+#include "server/study/subject.h"
 #include "server/study/thesis_tables.h"
 
 namespace phrenic::study {
 namespace {
 
-constexpr double kCompiled = 0.3;  // of the progress
+constexpr double kCompiled = 0.3;  // fraction of the progress
 
-// One row in the making.
+// One row before it is timed.
 struct Variant {
   std::string name;
   std::string note;
-  size_t never_had = 0;  // the variant that it is held against; itself where there is none
+  size_t never_had = 0;  // index of the variant that never had the part, for comparison; its own index if none
   std::optional<ThesisTrial> trial;
 };
 
-// Variants and their timings, place by place; the first is the full scene.
+// Variants and their timings, by index; the first is the full scene.
 struct Variants {
   std::vector<Variant> variants;
   std::vector<Timing> timings;
 
   size_t Add(Variant variant, const Subject& subject, int steps) {
-    const size_t place = variants.size();
+    const size_t index = variants.size();
     variants.push_back(std::move(variant));
     timings.push_back({.subject = subject, .steps = steps, .step_s = {}, .part_s = {}, .problem = ""});
-    return place;
+    return index;
   }
 };
 
@@ -44,7 +45,7 @@ std::optional<ThesisTrial> TrialWithout(const std::string& part) {
   return found == trials.end() ? std::nullopt : std::optional(found->second);
 }
 
-// What the compile step said of an element that it left out, which `never_had` does not name.
+// The compile report's reason for an element that it left out and that `never_had` does not have.
 std::string WhyLeftOut(const Model& model, const Model& never_had) {
   if (model.forces.size() != never_had.forces.size() || model.constraints.size() != never_had.constraints.size()) {
     return "the compile step did NOT leave it out";
@@ -70,18 +71,18 @@ absl::Status AddLeftOut(const v1::CreateStudyRequest& request, const Subject& su
   return absl::OkStatus();
 }
 
-// The three ways to leave out one part.
+// Adds the variants without one part: removed, made empty, switched off.
 absl::Status AddPart(const v1::CreateStudyRequest& request, const Subject& subject, const std::string& part,
                      const Compiler& compile, Variants& all) {
   const int steps = request.cost().steps();
   const auto without = Recompile(request, subject, Without(subject.model->scene, part), compile);
   if (!without.ok()) return without.status();
-  const size_t place = all.variants.size();
-  all.Add({.name = "without " + part, .note = "", .never_had = place, .trial = TrialWithout(part)}, *without, steps);
-  if (absl::Status status = AddLeftOut(request, subject, part, place, compile, all); !status.ok()) return status;
+  const size_t index = all.variants.size();
+  all.Add({.name = "without " + part, .note = "", .never_had = index, .trial = TrialWithout(part)}, *without, steps);
+  if (absl::Status status = AddLeftOut(request, subject, part, index, compile, all); !status.ok()) return status;
   Subject off = subject;
   if (!SwitchOff(part, off.parameters)) return absl::OkStatus();
-  all.Add({.name = part + " switched off", .note = "by a live parameter", .never_had = place, .trial = {}}, off, steps);
+  all.Add({.name = part + " switched off", .note = "by a live parameter", .never_had = index, .trial = {}}, off, steps);
   return absl::OkStatus();
 }
 
@@ -92,10 +93,10 @@ absl::StatusOr<Variants> MakeVariants(const v1::CreateStudyRequest& request, con
   all.Add({.name = "full", .note = "", .never_had = 0, .trial = links ? ThesisTrial::kFull : ThesisTrial::kNoLinks},
           subject, request.cost().steps());
   v1::Scene again = subject.model->scene;
-  again.set_description(again.description() + " Once more.");
-  const auto once_more = Recompile(request, subject, again, compile);
-  if (!once_more.ok()) return once_more.status();
-  all.Add({.name = "full, once more", .note = "the blur of the measurement", .never_had = 0, .trial = {}}, *once_more,
+  again.set_description(again.description() + " Repeated.");
+  const auto repeated = Recompile(request, subject, again, compile);
+  if (!repeated.ok()) return repeated.status();
+  all.Add({.name = "full, repeated", .note = "noise of the measurement", .never_had = 0, .trial = {}}, *repeated,
           request.cost().steps());
   const std::vector<std::string> parts = PartsOf(subject.model->scene);
   for (size_t i = 0; i < parts.size(); ++i) {
@@ -124,9 +125,9 @@ void SetThesis(const Variant& variant, const Model& full, v1::CostRow& row) {
   row.set_thesis(figure->what);
 }
 
-void AddRow(const Variants& all, size_t place, v1::CostTable& table) {
-  const Variant& variant = all.variants[place];
-  const Timing& timing = all.timings[place];
+void AddRow(const Variants& all, size_t index, v1::CostTable& table) {
+  const Variant& variant = all.variants[index];
+  const Timing& timing = all.timings[index];
   const v1::CompileReport& report = timing.subject.model->report;
   v1::CostRow& row = *table.add_rows();
   row.set_variant(variant.name);
@@ -137,28 +138,19 @@ void AddRow(const Variants& all, size_t place, v1::CostTable& table) {
                                                               : absl::StrCat(variant.note, "; ", timing.problem));
   SetTimes(timing, row);
   row.set_share(MedianRatio(timing, all.timings.front()));
-  if (variant.never_had != place) row.set_over_never_had(MedianRatio(timing, all.timings[variant.never_had]));
+  if (variant.never_had != index) row.set_over_never_had(MedianRatio(timing, all.timings[variant.never_had]));
   SetThesis(variant, *all.timings.front().subject.model, row);
 }
 
 }  // namespace
 
-absl::StatusOr<Subject> Recompile(const v1::CreateStudyRequest& request, const Subject& subject, const v1::Scene& scene,
-                                  const Compiler& compile) {
-  v1::SceneSource source = request.source();
-  *source.mutable_scene() = scene;
-  const auto model = compile(source);
-  if (!model.ok()) return model.status();
-  return Subject{.model = *model, .parameters = subject.parameters};
-}
-
 absl::Status AddVariants(const v1::CreateStudyRequest& request, const Subject& subject, const Compiler& compile,
                          const Progress& progress, v1::CostTable& table) {
   auto all = MakeVariants(request, subject, compile, Part(progress, 0, kCompiled));
   if (!all.ok()) return all.status();
-  absl::Status status = TimeInTurn(all->timings, request.cost().trials(), Part(progress, kCompiled, 1));
+  absl::Status status = TimeInterleaved(all->timings, request.cost().trials(), Part(progress, kCompiled, 1));
   if (!status.ok()) return status;
-  for (size_t place = 0; place < all->variants.size(); ++place) AddRow(*all, place, table);
+  for (size_t index = 0; index < all->variants.size(); ++index) AddRow(*all, index, table);
   return absl::OkStatus();
 }
 

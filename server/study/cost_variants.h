@@ -1,4 +1,4 @@
-// The rows of the cost study: the scene whole, without each of its parts, and with each part left out or switched off.
+// Rows of the cost study: the full scene, and the scene with each part removed, made empty or switched off.
 #ifndef PHRENIC_SERVER_STUDY_COST_VARIANTS_H_
 #define PHRENIC_SERVER_STUDY_COST_VARIANTS_H_
 
@@ -7,12 +7,9 @@
 
 namespace phrenic::study {
 
-// Another scene under the subject's parameters.
-absl::StatusOr<Subject> Recompile(const v1::CreateStudyRequest& request, const Subject& subject, const v1::Scene& scene,
-                                  const Compiler& compile);
-
-// Appends to the table's rows. "full, once more" is the same scene compiled anew: what its row is off 1 by is the
-// measurement's own blur. A row "X left out" is held against the row "without X", both of one round of trials.
+// Appends the rows. "full, repeated" is the same scene compiled again: the deviation of its ratio from 1 is the noise
+// of the measurement. A row "X left out" is compared with the row "without X" of the same trials: a ratio of 1 shows
+// that a part without effect costs nothing. Errors: those of the compile step; CANCELLED if `progress` returns false.
 absl::Status AddVariants(const v1::CreateStudyRequest& request, const Subject& subject, const Compiler& compile,
                          const Progress& progress, v1::CostTable& table);
 

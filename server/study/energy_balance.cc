@@ -19,7 +19,7 @@ void EnergyBalance::AddReleased(const EvalContext& at) {
   }
 }
 
-// The trapezoidal rule along the way from the last state.
+// Adds the positive work of non-conservative forces since the last state, by the trapezoidal rule.
 void EnergyBalance::AddWork(const EvalContext& at, const State& state) {
   const Model& model = *subject_.model;
   force_.setZero(3, state.x.cols());

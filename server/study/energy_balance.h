@@ -1,4 +1,4 @@
-// Whether a run has more kinetic energy than there can be.
+// Checks whether a run gains energy that no source supplies.
 #ifndef PHRENIC_SERVER_STUDY_ENERGY_BALANCE_H_
 #define PHRENIC_SERVER_STUDY_ENERGY_BALANCE_H_
 
@@ -8,15 +8,17 @@
 
 namespace phrenic::study {
 
-// Kinetic energy comes from three sources: that of the start, what each force with a potential V releases, and the work
-// of the others: T(t) <= T(0) + sum max(V(0) - V) + sum max(0, F dx). Friction and steps that lose energy only lower T.
-// The work of driven vertices is not counted. Not thread-safe.
+// Compares the kinetic energy T with its three sources: the initial T, the potential energy released by each
+// conservative force, and the work of the other forces:
+//   T(t) <= T(0) + sum max(V(0) - V) + sum max(0, F dx)   [J]
+// Work is integrated by the trapezoidal rule. Friction and numerical dissipation only lower T. The work of driven
+// vertices is not counted. Requires: the subject outlives it. Not thread-safe.
 class EnergyBalance {
  public:
   explicit EnergyBalance(const Subject& subject) : subject_(subject) {}
-  // The states of a run in their order, the start first.
+  // Adds the next state of a run. Requires: states are added in order of time, the initial state first.
   void Add(const State& state);
-  // Largest kinetic energy over the three sources; 0 where nothing ever moved.
+  // Returns the largest kinetic energy over the sum of the sources; above 1 means spurious energy. 0 if nothing moved.
   double ratio() const;
 
  private:
@@ -26,7 +28,7 @@ class EnergyBalance {
   const Subject& subject_;
   bool started_ = false;
   double kinetic_at_start_ = 0, largest_ = 0, done_ = 0;  // [J]
-  std::vector<double> potential_at_start_, released_;     // of each force [J]
+  std::vector<double> potential_at_start_, released_;     // one per force [J]
   Points force_, last_force_, last_x_;
 };
 

@@ -12,8 +12,8 @@
 namespace phrenic::study {
 namespace {
 
-// Shares of the whole study's progress.
-constexpr double kReferenceEnds = 0.3, kLaddersEnd = 0.85, kResidualsEnd = 0.9;
+// Fractions of the study's progress at which its parts end.
+constexpr double kReferenceEnd = 0.3, kIntegratorsEnd = 0.85, kResidualsEnd = 0.9;
 
 bool HasLinks(const v1::Scene& scene) {
   return std::any_of(scene.constraints().begin(), scene.constraints().end(),
@@ -32,98 +32,91 @@ void UseDoublePrecision(v1::Scene& scene) {
   }
 }
 
-// The subject with a scene in this one's place.
-absl::StatusOr<Subject> WithScene(const v1::CreateStudyRequest& request, const Subject& subject, const v1::Scene& scene,
-                                  const Compiler& compile) {
-  v1::SceneSource source = request.source();
-  *source.mutable_scene() = scene;
-  const auto model = compile(source);
-  if (!model.ok()) return model.status();
-  return Subject{.model = *model, .parameters = subject.parameters};
-}
-
-absl::StatusOr<Yardstick> MakeYardstick(const v1::CreateStudyRequest& request, const Subject& subject,
-                                        const Compiler& compile, const Progress& progress, v1::ErrorTable& table) {
+absl::StatusOr<ReferenceSolution> MakeReference(const v1::CreateStudyRequest& request, const Subject& subject,
+                                                const Compiler& compile, const Progress& progress,
+                                                v1::ErrorTable& table) {
   const v1::ErrorStudy& study = request.error();
   v1::Scene scene = subject.model->scene;
   ProjectLinks(v1::PROJECTION_EXACT, scene);
   UseDoublePrecision(scene);
-  const auto exact = WithScene(request, subject, scene, compile);
+  const auto exact = Recompile(request, subject, scene, compile);
   if (!exact.ok()) return exact.status();
-  Yardstick yardstick;
-  yardstick.moments = Moments(study.seconds(), study.moments());
+  ReferenceSolution solution;
+  solution.moments = Moments(study.seconds(), study.moments());
   v1::Reference& report = *table.mutable_reference();
-  auto reference = ConfirmedReference(*exact, yardstick.moments, study.tolerance(), progress, report);
-  if (!reference.ok()) return reference.status();
-  yardstick.reference = *std::move(reference);
-  yardstick.reference_rms = 1e-3 * report.error_rms_mm();
-  yardstick.reference_max = 1e-3 * report.error_max_mm();
-  return yardstick;
+  auto trajectory = ConfirmedReference(*exact, solution.moments, study.tolerance(), progress, report);
+  if (!trajectory.ok()) return trajectory.status();
+  solution.trajectory = *std::move(trajectory);
+  solution.error_rms = 1e-3 * report.error_rms_mm();
+  solution.error_max = 1e-3 * report.error_max_mm();
+  return solution;
 }
 
-absl::Status AddLadders(const v1::ErrorStudy& study, const Subject& subject, const Yardstick& yardstick,
-                        const Progress& progress, v1::ErrorTable& table) {
+absl::Status AddIntegrators(const v1::ErrorStudy& study, const Subject& subject, const ReferenceSolution& solution,
+                            const Progress& progress, v1::ErrorTable& table) {
   const std::vector<v1::Integrator> integrators = IntegratorsFor(study.integrators());
-  const double share = (kLaddersEnd - kReferenceEnds) / static_cast<double>(integrators.size());
-  double from = kReferenceEnds;
+  const double part = (kIntegratorsEnd - kReferenceEnd) / static_cast<double>(integrators.size());
+  double from = kReferenceEnd;
   for (const v1::Integrator integrator : integrators) {
-    const Progress part = Part(progress, from, from + share);
-    absl::Status added = AddLadder(With(subject, integrator), study, yardstick, part, table);
+    absl::Status added =
+        AddIntegrator(With(subject, integrator), study, solution, Part(progress, from, from + part), table);
     if (!added.ok()) return added;
-    from += share;
+    from += part;
   }
   return absl::OkStatus();
 }
 
-absl::Status AddResiduals(const v1::CreateStudyRequest& request, const Subject& subject, const Yardstick& yardstick,
-                          const Compiler& compile, const Progress& progress, v1::ErrorTable& table) {
+absl::Status AddResiduals(const v1::CreateStudyRequest& request, const Subject& subject,
+                          const ReferenceSolution& solution, const Compiler& compile, const Progress& progress,
+                          v1::ErrorTable& table) {
   if (!HasLinks(subject.model->scene)) return absl::OkStatus();
   for (const v1::Projection projection : {v1::PROJECTION_EXACT, v1::PROJECTION_THESIS}) {
     v1::Scene scene = subject.model->scene;
     ProjectLinks(projection, scene);
-    const auto projected = WithScene(request, subject, scene, compile);
+    const auto projected = Recompile(request, subject, scene, compile);
     if (!projected.ok()) return projected.status();
-    const auto run = Simulate(*projected, yardstick.moments, subject.parameters.time_step(),
+    const auto run = Simulate(*projected, solution.moments, subject.parameters.time_step(),
                               request.error().most_seconds_a_run(), progress);
     if (!run.ok()) return run.status();
     for (size_t i = 0; i < run->states.size(); ++i) {
       v1::ResidualRow& row = *table.add_residuals();
       row.set_projection(projection == v1::PROJECTION_EXACT ? "exact" : "thesis");
-      row.set_time_s(yardstick.moments[i]);
+      row.set_time_s(solution.moments[i]);
       row.set_residual_mm(1e3 * LargestResidual(*projected->model, run->states[i]).metres);
-      row.set_error_rms_mm(1e3 * RmsApart(*projected->model, run->states[i].x, yardstick.reference.states[i].x));
+      row.set_error_rms_mm(1e3 * RmsDistance(*projected->model, run->states[i].x, solution.trajectory.states[i].x));
     }
   }
   return absl::OkStatus();
 }
 
-// Where a probe is, relative to rest, at each moment.
-std::vector<Eigen::Vector3d> ProbeWays(const Model& model, const Trajectory& run) {
-  std::vector<Eigen::Vector3d> ways;
+// Displacements of the probes from rest at each moment [m].
+std::vector<Eigen::Vector3d> ProbeDisplacements(const Model& model, const Trajectory& run) {
+  std::vector<Eigen::Vector3d> displacements;
   for (const State& state : run.states) {
     for (const Probe& probe : model.probes) {
       const BodyModel& body = model.bodies[static_cast<size_t>(probe.body)];
       if (body.first_vertex < 0) continue;
       const int vertex = body.first_vertex + probe.vertex;
-      ways.emplace_back(state.x.col(vertex) - model.rest.col(vertex));
+      displacements.emplace_back(state.x.col(vertex) - model.rest.col(vertex));
     }
   }
-  return ways;
+  return displacements;
 }
 
-void SetApart(const std::vector<Eigen::Vector3d>& ways, const std::vector<Eigen::Vector3d>& finest,
-              v1::ResolutionRow& row) {
-  if (ways.size() != finest.size() || ways.empty()) return;
+// Sets the largest distance of probe displacements from those of the finest mesh.
+void SetProbeError(const std::vector<Eigen::Vector3d>& displacements, const std::vector<Eigen::Vector3d>& finest,
+                   v1::ResolutionRow& row) {
+  if (displacements.size() != finest.size() || displacements.empty()) return;
   double largest = 0;
-  for (size_t i = 0; i < ways.size(); ++i) largest = std::max(largest, (ways[i] - finest[i]).norm());
+  for (size_t i = 0; i < displacements.size(); ++i) largest = std::max(largest, (displacements[i] - finest[i]).norm());
   row.set_error_probe_mm(1e3 * largest);
 }
 
-absl::Status AddResolutions(const v1::CreateStudyRequest& request, const Yardstick& yardstick, const Compiler& compile,
-                            const Progress& progress, v1::ErrorTable& table) {
+absl::Status AddResolutions(const v1::CreateStudyRequest& request, const ReferenceSolution& solution,
+                            const Compiler& compile, const Progress& progress, v1::ErrorTable& table) {
   const v1::ErrorStudy& study = request.error();
   std::vector<double> sizes(study.resolutions_mm().begin(), study.resolutions_mm().end());
-  std::sort(sizes.begin(), sizes.end());  // the finest first: the others are held against it
+  std::sort(sizes.begin(), sizes.end());  // the finest first: the others are compared with it
   std::vector<Eigen::Vector3d> finest;
   for (const double size : sizes) {
     v1::SceneSource source = request.source();
@@ -133,14 +126,14 @@ absl::Status AddResolutions(const v1::CreateStudyRequest& request, const Yardsti
     const auto subject = MakeSubject(source, request.preset(), request.parameters(), compile);
     if (!subject.ok()) return subject.status();
     const double step = std::min(0.9 * PredictedStep(*subject), subject->parameters.time_step());
-    const auto run = Simulate(*subject, yardstick.moments, step, study.most_seconds_a_run(), progress);
+    const auto run = Simulate(*subject, solution.moments, step, study.most_seconds_a_run(), progress);
     if (!run.ok()) return run.status();
     row.set_vertices(subject->model->rest.cols());
     row.set_cpu_per_second(run->cpu_s / run->simulated_s);
     row.set_verdict(run->problem.empty() ? "ok" : run->problem);
-    const std::vector<Eigen::Vector3d> ways = ProbeWays(*subject->model, *run);
-    if (size == sizes.front()) finest = ways;
-    SetApart(ways, finest, row);
+    const std::vector<Eigen::Vector3d> displacements = ProbeDisplacements(*subject->model, *run);
+    if (size == sizes.front()) finest = displacements;
+    SetProbeError(displacements, finest, row);
   }
   return absl::OkStatus();
 }
@@ -151,13 +144,13 @@ absl::StatusOr<v1::ErrorTable> StudyError(const v1::CreateStudyRequest& request,
                                           const Compiler& compile, const Progress& progress) {
   v1::ErrorTable table;
   table.set_seconds(request.error().seconds());
-  const auto yardstick = MakeYardstick(request, subject, compile, Part(progress, 0, kReferenceEnds), table);
-  if (!yardstick.ok()) return yardstick.status();
-  absl::Status status = AddLadders(request.error(), subject, *yardstick, progress, table);
+  const auto solution = MakeReference(request, subject, compile, Part(progress, 0, kReferenceEnd), table);
+  if (!solution.ok()) return solution.status();
+  absl::Status status = AddIntegrators(request.error(), subject, *solution, progress, table);
   if (!status.ok()) return status;
-  status = AddResiduals(request, subject, *yardstick, compile, Part(progress, kLaddersEnd, kResidualsEnd), table);
+  status = AddResiduals(request, subject, *solution, compile, Part(progress, kIntegratorsEnd, kResidualsEnd), table);
   if (!status.ok()) return status;
-  status = AddResolutions(request, *yardstick, compile, Part(progress, kResidualsEnd, 1), table);
+  status = AddResolutions(request, *solution, compile, Part(progress, kResidualsEnd, 1), table);
   if (!status.ok()) return status;
   MarkPareto(table);
   table.set_advice(Advice(table, request.error().target()));

@@ -1,4 +1,4 @@
-// Error against run time.
+// The error study: a work-precision diagram of every integrator.
 #ifndef PHRENIC_SERVER_STUDY_ERROR_H_
 #define PHRENIC_SERVER_STUDY_ERROR_H_
 
@@ -7,13 +7,14 @@
 
 namespace phrenic::study {
 
-// Runs the scene by every integrator of the request over a ladder of time steps: the largest stable one (a thirtieth of
-// a second where nothing limits it), and each half of the one before, all dividing the time between moments; once one
-// is out of time, shorter ones are not tried. Errors are those of positions at the moments against ConfirmedReference
-// of the same scene with exact links and all springs in double precision: the thesis' projection is not smooth, and a
-// solver takes round-off for motion. Rows whose error lies within three times the reference's own are refused ("below
-// the reference's error"). Also the links' residual over time for each projection, and the probes' error against mesh
-// resolution. Every field of `request`'s study must be set. Errors as of ConfirmedReference.
+// Runs the scene with every requested integrator and a sequence of time steps: the largest stable step (1/30 s without
+// a stability limit), halved repeatedly; each step divides the time between moments. After a run exceeds its CPU time,
+// smaller steps are not tried. Errors are those of positions at the moments against ConfirmedReference of the same
+// scene with exact link projection and all springs in double precision: the thesis' projection is not smooth, and an
+// adaptive solver resolves round-off of single precision as motion. A row whose error is below three times the error of
+// the reference gets the verdict "below the reference's error" and no number. The table also has the residual of links
+// over time for each projection, and the error at probes against mesh resolution. Requires: every field of the
+// request's study is set. Errors: those of ConfirmedReference and of the compile step. Uses one thread.
 absl::StatusOr<v1::ErrorTable> StudyError(const v1::CreateStudyRequest& request, const Subject& subject,
                                           const Compiler& compile, const Progress& progress);
 

@@ -1,4 +1,4 @@
-// The rows of the error study: one integrator's ladder, and what is read off all of them.
+// Rows of the error study: one integrator over a sequence of time steps, the Pareto front, and the advice.
 #ifndef PHRENIC_SERVER_STUDY_ERROR_ROWS_H_
 #define PHRENIC_SERVER_STUDY_ERROR_ROWS_H_
 
@@ -9,20 +9,21 @@
 
 namespace phrenic::study {
 
-// What every ladder is held against.
-struct Yardstick {
-  std::vector<double> moments;
-  Trajectory reference;
-  double reference_rms = 0;  // what the reference errs by [m]
-  double reference_max = 0;  // [m]
+// The reference solution and its own error.
+struct ReferenceSolution {
+  std::vector<double> moments;  // times at which errors are measured [s]
+  Trajectory trajectory;        // one state per moment
+  double error_rms = 0;         // of the reference itself [m]
+  double error_max = 0;         // [m]
 };
 
-// Appends the rows of the subject's own integrator. CANCELLED as soon as `progress` says so.
-absl::Status AddLadder(const Subject& subject, const v1::ErrorStudy& study, const Yardstick& yardstick,
-                       const Progress& progress, v1::ErrorTable& table);
-// Marks the rows that no other row is both faster and better than.
+// Appends one row per time step for the subject's integrator: error, CPU time per simulated second, and observed order
+// of convergence log2(e(h)/e(h/2)). CANCELLED if `progress` returns false.
+absl::Status AddIntegrator(const Subject& subject, const v1::ErrorStudy& study, const ReferenceSolution& solution,
+                           const Progress& progress, v1::ErrorTable& table);
+// Marks the Pareto front: rows that no other row beats in both RMS error and CPU time.
 void MarkPareto(v1::ErrorTable& table);
-// The sentence: for that error [m] use this integrator at this step.
+// Returns a sentence that names the fastest integrator and step whose largest error is at most `target` [m].
 std::string Advice(const v1::ErrorTable& table, double target);
 
 }  // namespace phrenic::study

@@ -12,7 +12,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kChain = 20;  // vertices
 
-// A sheet of 6 x 6 vertices of 0.01 kg, 10 cm apart, that hangs from its first row.
+// A sheet of 6 x 6 vertices, 10 cm apart, that hangs from its first row; `mass` is the total [kg].
 std::string Hanging(const std::string& mass, const std::string& more) {
   return absl::StrCat(R"(
     name: "extreme"
@@ -43,7 +43,7 @@ std::string Pulled(const std::string& newtons) {
   )"));
 }
 
-// Bodies of vertices written out, joined by springs along `edges`.
+// A body of explicit vertices, joined by springs along `edges`.
 std::string Points3(const std::string& vertices, const std::string& edges, const std::string& more) {
   return absl::StrCat(R"(name: "extreme" bodies { name: "b" role: ROLE_DEFORMABLE mass: 0.04 )", more, " polyhedron {",
                       vertices, edges, "} } ", Usual());
@@ -61,7 +61,7 @@ std::string OnePoint() {
 
 std::string NotANumber() { return Points3("vertices { } vertices { z: nan }", "edges { a: 0 b: 1 }", ""); }
 
-// A chain whose every fifth spring is a hundred million times as stiff as the others.
+// A chain in which every fifth spring is 1e7 times as stiff as the others.
 std::string StiffFifths() {
   std::string vertices, edges, regions, springs;
   for (int i = 0; i < kChain; ++i) {
@@ -116,7 +116,7 @@ std::string Shell() {
   )");
 }
 
-// Triangles a millionth as high as they are long, and one of the other orientation.
+// A triangle with a height of 1e-6 of its length, and one of opposite orientation.
 std::string Slivers() {
   return absl::StrCat(R"(
     name: "extreme"
@@ -154,7 +154,7 @@ std::string Solid() {
                       kFriction, kGravity);
 }
 
-// Two links to a vertex that is held and one that is driven away: together they cannot be that long.
+// Links between a fixed vertex and one that is driven away: their lengths cannot all be kept.
 std::string ConflictingLinks() {
   return absl::StrCat(R"(
     name: "extreme"
@@ -169,7 +169,7 @@ std::string ConflictingLinks() {
                       Usual());
 }
 
-// One vertex, the lower right corner, takes part in all that there is.
+// Every kind of element acts on one vertex, the lower right corner.
 std::string Everything() {
   return absl::StrCat(Sheet(Usual()), R"(
     bodies { name: "post" role: ROLE_AT_REST
@@ -181,15 +181,15 @@ std::string Everything() {
     forces { bending { bodies: "b" youngs_modulus: 5000 thickness: 0.003 } }
     forces { fibres { bodies: "b" from_region: "top" to_region: "bottom" modulus_along: 5000 active_stress: 100 } }
     forces { cables { body: "b" list { links { a: 35 b: 0 } links { a: 35 b: 6 } } stiffness: 100 } }
-    forces { attachment { bodies: "b" carriers: "post" radius: 0.1 stiffness: 100 } }
+    forces { attachment { bodies: "b" anchors: "post" radius: 0.1 stiffness: 100 } }
     forces { contact { bodies: "b" surfaces: "floor" depth: 0.01 } }
     forces { action_line { bodies: "b" origin { x: 0.5 z: -0.5 } direction { z: 1 } radius: 0.2 force: 1 } }
     constraints { rigid_links { body: "b" list { links { a: 35 b: 28 } links { a: 35 b: 29 } } } }
-    constraints { limits { body: "b" list { links { a: 35 b: 34 } } at_most_ratio: 1.1 at_least_ratio: 0.9 } }
+    constraints { length_limits { body: "b" list { links { a: 35 b: 34 } } at_most_ratio: 1.1 at_least_ratio: 0.9 } }
   )");
 }
 
-// x' = scale x of the vertices that forces move.
+// Scales the positions of free vertices by the factors x, y, z.
 std::function<void(const Model&, State&)> Scaled(double x, double y, double z) {
   return [=](const Model& model, State& state) {
     for (Eigen::Index i = 0; i < state.x.cols(); ++i) {
@@ -200,7 +200,7 @@ std::function<void(const Model&, State&)> Scaled(double x, double y, double z) {
 
 void Compress(const Model& model, State& state) {
   Scaled(1.0 / 3, 1.0 / 3, 1.0 / 3)(model, state);
-  for (Eigen::Index i = 0; i < state.x.cols(); ++i) {  // out of the plane by a little, so that it can buckle
+  for (Eigen::Index i = 0; i < state.x.cols(); ++i) {  // a small displacement out of the plane, so that it can buckle
     if (model.inverse_mass[i] > 0) state.x(1, i) += 1e-4 * static_cast<double>(i % 3 - 1);
   }
 }
@@ -211,15 +211,15 @@ void Throw(const Model& model, State& state) {
   }
 }
 
-void LoseAPosition(const Model&, State& state) { state.x(1, state.x.cols() - 1) = kNan; }
-void BreatheForever(v1::Parameters& parameters) { parameters.set_breath_force(kInfinity); }
+void SetNanPosition(const Model&, State& state) { state.x(1, state.x.cols() - 1) = kNan; }
+void SetInfiniteForce(v1::Parameters& parameters) { parameters.set_breath_force(kInfinity); }
 
 std::vector<ExtremeCase> RefusedOrStopped() {
   return {
       {.name = "NaN in a position of the scene", .scene = NotANumber()},
-      {.name = "NaN in a position of a run", .scene = Sheet(Usual()), .disturb = LoseAPosition},
+      {.name = "NaN in a position of a run", .scene = Sheet(Usual()), .disturb = SetNanPosition},
       {.name = "infinite force in the scene", .scene = Pulled("inf")},
-      {.name = "infinite force in a run", .scene = Pulled("1"), .adjust = BreatheForever},
+      {.name = "infinite force in a run", .scene = Pulled("1"), .adjust = SetInfiniteForce},
       {.name = "zero mass", .scene = Hanging("0", Usual())},
   };
 }
@@ -228,14 +228,14 @@ std::vector<ExtremeCase> Stiff() {
   return {
       {.name = "mass ratio 1e6", .scene = MassRatio(), .step = 0.001, .seconds = 0.2},
       {.name = "stiffness 1e9 on every fifth spring", .scene = StiffFifths()},
-      {.name = "fibre ratio 1e6", .scene = FibreRatio(), .judged = {.error = false}},
-      {.name = "time step x 10", .scene = Sheet(Usual()), .step = 0.04, .judged = {.error = false}},
+      {.name = "fibre ratio 1e6", .scene = FibreRatio(), .criteria = {.error = false}},
+      {.name = "time step x 10", .scene = Sheet(Usual()), .step = 0.04, .criteria = {.error = false}},
       {.name = "friction rate 1e6",
        .scene = Sheet(absl::StrCat(kSoftSprings, kGravity, R"(forces { friction { bodies: "b" rate: 1e6 } })")),
        .seconds = 0.1},
       {.name = "force x 10", .scene = Pulled("10")},
       {.name = "force x 1000", .scene = Pulled("1000")},
-      {.name = "initial speed 100 m/s", .scene = Sheet(Usual()), .judged = {.error = false}, .disturb = Throw},
+      {.name = "initial speed 100 m/s", .scene = Sheet(Usual()), .criteria = {.error = false}, .disturb = Throw},
   };
 }
 
@@ -256,16 +256,16 @@ std::vector<ExtremeCase> Degenerate() {
        .scene = Solid(),
        .step = 0.001,
        .seconds = 0.1,
-       .judged = {.error = false},
+       .criteria = {.error = false},
        .disturb = Scaled(1, 1, -1)},
   };
 }
 
 std::vector<ExtremeCase> Folded() {
   return {
-      {.name = "compressed threefold", .scene = Sheet(Usual()), .judged = {.error = false}, .disturb = Compress},
-      {.name = "inverted dome", .scene = Shell(), .judged = {.error = false}, .disturb = Scaled(1, 1, -1)},
-      {.name = "conflicting links", .scene = ConflictingLinks(), .judged = {.energy = false, .error = false}},
+      {.name = "compressed threefold", .scene = Sheet(Usual()), .criteria = {.error = false}, .disturb = Compress},
+      {.name = "inverted dome", .scene = Shell(), .criteria = {.error = false}, .disturb = Scaled(1, 1, -1)},
+      {.name = "conflicting links", .scene = ConflictingLinks(), .criteria = {.energy = false, .error = false}},
       {.name = "everything on one vertex", .scene = Everything()},
   };
 }

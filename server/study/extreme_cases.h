@@ -1,4 +1,4 @@
-// The fixed suite of extreme cases: small scenes that ask for what no step can give, or that look as if they did.
+// The fixed suite of extreme cases: small scenes with invalid, stiff, degenerate or strongly deformed input.
 #ifndef PHRENIC_SERVER_STUDY_EXTREME_CASES_H_
 #define PHRENIC_SERVER_STUDY_EXTREME_CASES_H_
 
@@ -10,24 +10,25 @@
 
 namespace phrenic::study {
 
-// How a case is judged beside what all are: finite or an honest stop.
-struct Judged {
-  bool energy = true;  // kinetic energy within what is there: not where driven vertices bring more
-  bool error = true;   // distance from the reference: not where a motion amplifies the smallest difference
+// Criteria of a case beside the one that always applies: a finite result, or an error that names the cause.
+struct Criteria {
+  bool energy = true;  // kinetic energy within its sources; off if driven vertices add energy
+  bool error = true;   // distance from the reference solution; off if the motion is chaotic
 };
 
+// One case: a scene, its run and its criteria.
 struct ExtremeCase {
   std::string name = {};
-  std::string scene = {};  // in the scene language
-  double step = 0.004;     // [s]
-  double seconds = 0.4;    // [s]
-  Judged judged = {};
-  // What the scene language cannot say: another start, parameters that no session accepts.
+  std::string scene = {};  // text of a scene file
+  double step = 0.004;     // time step [s]
+  double seconds = 0.4;    // simulated time [s]
+  Criteria criteria = {};
+  // Changes that a scene cannot express: another initial state, and parameters that a session would refuse.
   std::function<void(const Model&, State&)> disturb = {};
   std::function<void(v1::Parameters&)> adjust = {};
 };
 
-// The first is the baseline: nothing in it is extreme.
+// Returns all cases. The first one, "baseline", has nothing extreme.
 std::vector<ExtremeCase> ExtremeCases();
 
 }  // namespace phrenic::study

@@ -17,13 +17,13 @@
 namespace phrenic::study {
 namespace {
 
-constexpr double kTolerance = 1e-6;      // of guarded runs [m]
-constexpr double kMostEnergy = 1.1;      // over what there is
-constexpr double kBaselines = 2;         // errors of the baseline
-constexpr double kNegligible = 0.05;     // of the largest way: an error that is none
-constexpr double kInvisible = 1e-4;      // of the size of the scene: a way too small to tell
-constexpr double kReferenceErrs = 1e-8;  // [m]
-constexpr long kReferenceLooks = 20000;  // of 16 evaluations each, at most, for a reference
+constexpr double kStepTolerance = 1e-6;       // of guarded runs [m]
+constexpr double kMaxEnergyRatio = 1.1;       // kinetic energy over its sources
+constexpr double kMaxBaselineErrors = 2;      // tolerated error, in errors of the baseline
+constexpr double kNegligible = 0.05;          // tolerated error, in largest displacements
+constexpr double kMinDisplacement = 1e-4;     // over the size of the scene: smaller displacements count as this
+constexpr double kReferenceTolerance = 1e-8;  // [m]
+constexpr long kMaxReferenceChecks = 20000;   // of Progress, one per 16 evaluations, for a reference solution
 constexpr int kMoments = 5;
 
 std::vector<v1::Integrator> Chosen(const v1::StabilityStudy& study) {
@@ -50,11 +50,11 @@ State StartOf(const ExtremeCase& extreme, const Subject& subject) {
   return state;
 }
 
-// A run with all that it is judged by.
+// A run with the quantities that it is judged by.
 struct Outcome {
   WatchedRun run;
   double energy_ratio = 0;
-  std::vector<State> states;  // at the moments that it reached
+  std::vector<State> states;  // at the moments that the run reached
 };
 
 absl::StatusOr<Outcome> RunCase(const ExtremeCase& extreme, const Subject& subject, double most_cpu_s,
@@ -73,14 +73,14 @@ absl::StatusOr<Outcome> RunCase(const ExtremeCase& extreme, const Subject& subje
   return outcome;
 }
 
-// The independent solution, where there is one that can be had.
+// The reference solution; nullopt if the case does not use one or it costs too much.
 std::optional<Trajectory> ReferenceOf(const ExtremeCase& extreme, const Subject& subject) {
-  if (!extreme.judged.error) return std::nullopt;
-  long looks = 0;
-  const Progress enough = [&looks](double, std::string_view) { return ++looks < kReferenceLooks; };
+  if (!extreme.criteria.error) return std::nullopt;
+  long checks = 0;
+  const Progress enough = [&checks](double, std::string_view) { return ++checks < kMaxReferenceChecks; };
   v1::Reference report;
   auto reference = SolveReferenceFrom(subject, StartOf(extreme, subject), Moments(extreme.seconds, kMoments),
-                                      kReferenceErrs, enough, report);
+                                      kReferenceTolerance, enough, report);
   if (!reference.ok()) return std::nullopt;
   return *std::move(reference);
 }
@@ -88,16 +88,17 @@ std::optional<Trajectory> ReferenceOf(const ExtremeCase& extreme, const Subject&
 double ErrorOf(const Model& model, const Outcome& outcome, const Trajectory& reference) {
   double squares = 0;
   for (size_t i = 0; i < reference.states.size(); ++i) {
-    const double apart = RmsApart(model, outcome.states[i].x, reference.states[i].x);
-    squares += apart * apart;
+    const double error = RmsDistance(model, outcome.states[i].x, reference.states[i].x);
+    squares += error * error;
   }
   return std::sqrt(squares / static_cast<double>(reference.states.size()));
 }
 
-// The mean error over the largest way of the reference; over a little of the scene's size where it hardly moves.
+// RMS error over the largest displacement of the reference, which is bounded from below by the scene's size.
 double RelativeError(const Model& model, const Outcome& outcome, const Trajectory& reference) {
-  const double way = std::max(LargestWay(model, reference), kInvisible / kNegligible * model.size);
-  return ErrorOf(model, outcome, reference) / way;
+  const double displacement =
+      std::max(LargestDisplacement(model, reference), kMinDisplacement / kNegligible * model.size);
+  return ErrorOf(model, outcome, reference) / displacement;
 }
 
 std::string RunName(const Subject& subject) {
@@ -105,11 +106,11 @@ std::string RunName(const Subject& subject) {
   return subject.parameters.step_tolerance() > 0 ? absl::StrCat(name, ", guarded") : name;
 }
 
-// The subject under each integrator, unguarded and guarded.
+// The subject with each integrator, without and with error control.
 std::vector<Subject> Runs(const Subject& subject, const v1::StabilityStudy& study) {
   std::vector<Subject> runs;
   for (const v1::Integrator integrator : Chosen(study)) {
-    for (const double tolerance : {0.0, kTolerance}) {
+    for (const double tolerance : {0.0, kStepTolerance}) {
       runs.push_back(With(subject, integrator));
       runs.back().parameters.set_step_tolerance(tolerance);
     }
@@ -117,24 +118,25 @@ std::vector<Subject> Runs(const Subject& subject, const v1::StabilityStudy& stud
   return runs;
 }
 
-bool Honest(const v1::Divergence& divergence) {
+// True if the error names time, vertex, force and remedy.
+bool IsDiagnosed(const v1::Divergence& divergence) {
   return divergence.time() > 0 && !divergence.body().empty() && !divergence.force().empty() &&
          !divergence.remedy().empty();
 }
 
 void JudgeStop(const WatchedRun& run, v1::ExtremeRow& row) {
-  row.set_verdict(Honest(run.divergence) ? "stopped" : "FAILED");
+  row.set_verdict(IsDiagnosed(run.divergence) ? "stopped" : "FAILED");
   row.set_note(absl::StrFormat("%s at %.4g s, %s: %s", absl::IsAborted(run.status) ? "stopped" : "diverged",
                                run.divergence.time(), Where(run.divergence), run.divergence.remedy()));
 }
 
-// What is wrong with a run that came to its end; empty where nothing is.
+// The criteria that a completed run violates.
 std::vector<std::string> Faults(const std::optional<double>& error, double allowed, const v1::ExtremeRow& row) {
   std::vector<std::string> faults;
-  if (!row.finite()) faults.emplace_back("not finite, and no word of it");
-  if (!(row.energy_ratio() <= kMostEnergy)) faults.emplace_back("more energy than there is");
+  if (!row.finite()) faults.emplace_back("not finite, without an error");
+  if (!(row.energy_ratio() <= kMaxEnergyRatio)) faults.emplace_back("gains energy without a source");
   if (error && !(*error <= allowed)) {
-    faults.push_back(absl::StrFormat("errs by %.2g of the largest way, more than %.2g", *error, allowed));
+    faults.push_back(absl::StrFormat("error of %.2g of the largest displacement, above %.2g", *error, allowed));
   }
   return faults;
 }
@@ -146,7 +148,7 @@ void Judge(const ExtremeCase& extreme, const Model& model, const Outcome& outcom
     JudgeStop(outcome.run, row);
     return;
   }
-  if (extreme.judged.energy && outcome.energy_ratio > 0) row.set_energy_ratio(outcome.energy_ratio);
+  if (extreme.criteria.energy && outcome.energy_ratio > 0) row.set_energy_ratio(outcome.energy_ratio);
   std::optional<double> error;
   if (reference && outcome.states.size() == reference->states.size()) {
     error = RelativeError(model, outcome, *reference);
@@ -176,7 +178,7 @@ absl::StatusOr<Baselines> BaselineErrors(const v1::StabilityStudy& study, const 
   const auto subject = SubjectOf(usual);
   if (!subject.ok()) return subject.status();
   const auto reference = ReferenceOf(usual, *subject);
-  if (!reference) return absl::InternalError("the baseline of the extreme cases has no reference");
+  if (!reference) return absl::InternalError("the baseline of the extreme cases has no reference solution");
   Baselines baselines;
   for (const Subject& part : Runs(*subject, study)) {
     const auto outcome = RunCase(usual, part, study.most_seconds_a_run(), progress);
@@ -203,7 +205,7 @@ absl::Status AddExtreme(const ExtremeCase& extreme, const Baselines& baselines, 
     row.set_integrator(RunName(part));
     const auto baseline = baselines.find(row.integrator());
     const double usual = baseline == baselines.end() ? 0 : baseline->second;
-    Judge(extreme, *subject->model, *outcome, reference, std::max(kNegligible, kBaselines * usual), row);
+    Judge(extreme, *subject->model, *outcome, reference, std::max(kNegligible, kMaxBaselineErrors * usual), row);
   }
   return absl::OkStatus();
 }

@@ -21,11 +21,11 @@
 namespace phrenic::study {
 namespace {
 
-constexpr double kFastest = 10;  // velocities may err by as much as this lets positions err in a second [1/s]
-constexpr int kStop = -1;        // CVODE: an error that nothing recovers from
-constexpr int kRetry = 1;        // CVODE: try a smaller step
+constexpr double kMaxVelocityRatio = 10;  // largest ratio of the tolerances of velocities and positions [1/s]
+constexpr int kStop = -1;                 // CVODE: unrecoverable error
+constexpr int kRetry = 1;                 // CVODE: recoverable error, retry with a smaller step
 
-// What a problem's evaluations share with the one who solves it.
+// State shared by the right-hand side and the solver.
 struct Problem {
   Acceleration acceleration;
   const Progress& progress;
@@ -34,6 +34,7 @@ struct Problem {
   bool cancelled = false;
 };
 
+// The positions (half 0) or velocities (half 1) of the unknowns, 3 x n.
 Eigen::Map<Points> Half(N_Vector y, int half) {
   const Eigen::Index n = N_VGetLength(y) / 6;
   return {N_VGetArrayPointer(y) + 3 * n * half, 3, n};
@@ -41,25 +42,25 @@ Eigen::Map<Points> Half(N_Vector y, int half) {
 
 int Evaluate(realtype t, N_Vector y, N_Vector derivative, void* user) {
   Problem& problem = *static_cast<Problem*>(user);
-  // The fixed-point iteration takes a stop for one step's failure: it is said until CVODE believes it.
+  // CVODE's fixed-point iteration treats a stop as a failed step and calls again, so every further call stops too.
   if (problem.cancelled) return kStop;
-  if (problem.evaluations++ % kLook == 0 && !problem.progress(t / problem.seconds, "solving the reference")) {
+  if (problem.evaluations++ % kCheckInterval == 0 && !problem.progress(t / problem.seconds, "solving the reference")) {
     problem.cancelled = true;
     return kStop;
   }
-  problem.acceleration.Place(t, Half(y, 0), Half(y, 1));
+  problem.acceleration.SetState(t, Half(y, 0), Half(y, 1));
   Half(derivative, 0) = Half(y, 1);
   problem.acceleration.Evaluate(Half(derivative, 1));
   return Half(derivative, 1).allFinite() ? 0 : kRetry;
 }
 
-// What CVODE calls an outcome; the name is ours to free.
+// CVODE's name of a return code. The caller owns the C string that CVODE returns.
 std::string OutcomeName(int outcome) {
   const std::unique_ptr<char, decltype(&std::free)> name(CVodeGetReturnFlagName(outcome), &std::free);
   return name == nullptr ? "unknown" : name.get();
 }
 
-// CVODE's parts, freed in the opposite order.
+// Owns the objects of CVODE and frees them in reverse order.
 class Solver {
  public:
   Solver(const Model& model, const State& start, Problem& problem, double tolerance, double omega) : problem_(problem) {
@@ -67,10 +68,10 @@ class Solver {
     const auto n = static_cast<Eigen::Index>(problem.acceleration.free().size());
     y_ = N_VNew_Serial(6 * n, context_);
     scale_ = N_VNew_Serial(6 * n, context_);
-    // CVODE holds the root mean square of all errors: with 1/sqrt(n) none of them is above the tolerance.
+    // CVODE bounds the RMS of all errors: divided by sqrt(6 n), it bounds each of them by the tolerance.
     const double each = tolerance / std::sqrt(6.0 * static_cast<double>(n));
     Half(scale_, 0).setConstant(each);
-    Half(scale_, 1).setConstant(each * std::clamp(omega, 1.0, kFastest));
+    Half(scale_, 1).setConstant(each * std::clamp(omega, 1.0, kMaxVelocityRatio));
     for (Eigen::Index i = 0; i < n; ++i) {
       const int vertex = problem.acceleration.free()[static_cast<size_t>(i)];
       Half(y_, 0).col(i) = start.x.col(vertex) - model.rest.col(vertex);
@@ -95,18 +96,18 @@ class Solver {
     SUNContext_Free(&context_);
   }
 
-  // The state at `time`, which is later than the last one.
+  // Integrates to `time` and returns the state. Requires: `time` is later than in the last call.
   absl::StatusOr<State> Reach(double time) {
     realtype reached = 0;
     CVodeSetStopTime(cvode_, time);
     const int outcome = ok_ ? CVode(cvode_, time, y_, &reached, CV_NORMAL) : CV_MEM_FAIL;
     if (problem_.cancelled) return Cancelled();
     if (outcome < 0) {
-      return absl::AbortedError(absl::StrFormat(
-          "the reference found no next step at %.4g s (CVODE: %s): shorten the study, or raise the tolerance", reached,
-          OutcomeName(outcome)));
+      return absl::AbortedError(
+          absl::StrFormat("the reference solver failed at %.4g s (CVODE: %s): shorten the study or raise the tolerance",
+                          reached, OutcomeName(outcome)));
     }
-    return problem_.acceleration.Place(time, Half(y_, 0), Half(y_, 1));
+    return problem_.acceleration.SetState(time, Half(y_, 0), Half(y_, 1));
   }
 
  private:
@@ -131,7 +132,7 @@ absl::StatusOr<Trajectory> SolveReferenceFrom(const Subject& subject, const Stat
   const double began = ThreadCpuSeconds();
   auto acceleration = Acceleration::Make(subject);
   if (!acceleration.ok()) return acceleration.status();
-  if (acceleration->free().empty()) return absl::FailedPreconditionError("no vertex of the scene moves by forces");
+  if (acceleration->free().empty()) return absl::FailedPreconditionError("the scene has no vertex that forces move");
   const double omega = LargestStableStep(*subject.model, subject.parameters).omega_max();
   Problem problem{.acceleration = *std::move(acceleration), .progress = progress, .seconds = moments.back()};
   Solver solver(*subject.model, start, problem, tolerance, omega);
@@ -147,7 +148,7 @@ absl::StatusOr<Trajectory> SolveReferenceFrom(const Subject& subject, const Stat
   report.set_tolerance_m(tolerance);
   report.set_evaluations(problem.evaluations);
   report.set_cpu_s(trajectory.cpu_s);
-  report.set_largest_displacement_mm(1e3 * LargestWay(*subject.model, trajectory));
+  report.set_largest_displacement_mm(1e3 * LargestDisplacement(*subject.model, trajectory));
   return trajectory;
 }
 
@@ -158,10 +159,10 @@ absl::StatusOr<Trajectory> ConfirmedReference(const Subject& subject, const std:
   if (!coarse.ok()) return coarse.status();
   auto fine = SolveReference(subject, moments, 0.1 * tolerance, Part(progress, 0.4, 1), report);
   if (!fine.ok()) return fine.status();
-  const Distance apart = DistanceBetween(subject, *coarse, *fine);
+  const Distance error = DistanceBetween(subject, *coarse, *fine);
   report.set_tolerance_m(tolerance);
-  report.set_error_max_mm(1e3 * apart.largest);
-  report.set_error_rms_mm(1e3 * apart.rms);
+  report.set_error_max_mm(1e3 * error.largest);
+  report.set_error_rms_mm(1e3 * error.rms);
   report.set_cpu_s(first.cpu_s() + report.cpu_s());
   report.set_evaluations(first.evaluations() + report.evaluations());
   return fine;

@@ -1,4 +1,4 @@
-// The independent solution that errors are measured against.
+// Reference solutions by an independent adaptive ODE solver, against which errors are measured.
 #ifndef PHRENIC_SERVER_STUDY_REFERENCE_H_
 #define PHRENIC_SERVER_STUDY_REFERENCE_H_
 
@@ -9,22 +9,23 @@
 
 namespace phrenic::study {
 
-// Solves x' = v, v' = Acceleration by SUNDIALS' CVODE (Adams-Moulton of variable order and step, fixed-point iteration:
-// Hindmarsh et al., ACM TOMS 31:363, 2005), with the local error of every single coordinate below `tolerance` [m], of
-// every velocity below `tolerance` times the fastest eigenfrequency, but at least 1/s and at most 10/s: the slow
-// vertices of a scene with fast ones are held to theirs. None of Phrenic's integrators takes
-// part. Where tissue is very stiff, its steps are as short as theirs. UNIMPLEMENTED where no smooth equation describes
-// the model, ABORTED where CVODE finds no next step, CANCELLED as soon as `progress` says so.
+// Solves x' = v, v' = Acceleration from rest with SUNDIALS' CVODE (Adams-Moulton of variable order and step,
+// fixed-point iteration: Hindmarsh et al., ACM TOMS 31:363, 2005). The local error is below `tolerance` [m] for each
+// coordinate, and below `tolerance` times the fastest eigenfrequency, clamped to 1/s to 10/s, for each velocity. None
+// of Phrenic's integrators is involved. Stiff tissue needs steps as short as an explicit integrator. Returns one state
+// per moment [s]; `report` gets method, tolerance, number of evaluations and CPU time. Errors: UNIMPLEMENTED if a
+// constraint has no smooth equation, FAILED_PRECONDITION if no vertex is free, ABORTED if CVODE fails, CANCELLED if
+// `progress` returns false. Uses one thread.
 absl::StatusOr<Trajectory> SolveReference(const Subject& subject, const std::vector<double>& moments, double tolerance,
                                           const Progress& progress, v1::Reference& report);
 
-// The same from another start than rest, at its time 0.
+// The same from the initial state `start` at time 0.
 absl::StatusOr<Trajectory> SolveReferenceFrom(const Subject& subject, const State& start,
                                               const std::vector<double>& moments, double tolerance,
                                               const Progress& progress, v1::Reference& report);
 
-// The same twice, the second time at a tenth of the tolerance: the better one, and in `report` how far they are apart,
-// which is what the reference errs by.
+// Solves twice, with `tolerance` and with a tenth of it. Returns the second solution; `report` gets the distance of the
+// two as the error of the reference [mm].
 absl::StatusOr<Trajectory> ConfirmedReference(const Subject& subject, const std::vector<double>& moments,
                                               double tolerance, const Progress& progress, v1::Reference& report);
 

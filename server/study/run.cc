@@ -13,7 +13,7 @@
 namespace phrenic::study {
 namespace {
 
-// Not the parameters and the scene: what they leave out is the compile step's.
+// Leaves out parameters and scene: their defaults are set by the compile step.
 void FillStudy(v1::CreateStudyRequest& request) {
   if (request.has_error()) schema::FillDefaults(request.mutable_error());
   if (request.has_stability()) schema::FillDefaults(request.mutable_stability());

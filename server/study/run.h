@@ -1,4 +1,4 @@
-// One study, whatever its kind.
+// Runs one study of any kind.
 #ifndef PHRENIC_SERVER_STUDY_RUN_H_
 #define PHRENIC_SERVER_STUDY_RUN_H_
 
@@ -7,8 +7,9 @@
 
 namespace phrenic::study {
 
-// Gives the study its defaults, compiles the scene and runs it, as long as `progress` says so. INVALID_ARGUMENT where
-// the request names no kind of study; else the errors of the compile step and of the kind.
+// Fills in the defaults of the study, compiles the scene and runs the study. The result has the table of its kind, the
+// scene's name and hash, the parameters and the wall time. Errors: INVALID_ARGUMENT if the request names no kind of
+// study; those of the compile step and of the kind; CANCELLED if `progress` returns false.
 absl::StatusOr<v1::StudyResult> Run(v1::CreateStudyRequest request, const Compiler& compile, const Progress& progress);
 
 }  // namespace phrenic::study

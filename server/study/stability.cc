@@ -9,9 +9,9 @@
 namespace phrenic::study {
 namespace {
 
-// Parts of the whole that are done when ...
+// Fractions of the study's progress at which its parts end.
 constexpr double kLimitsEnd = 0.3;
-constexpr double kMapEnds = 0.8;
+constexpr double kMapEnd = 0.8;
 
 absl::Status AddLimits(const Subject& subject, const v1::StabilityStudy& study, const Progress& progress,
                        v1::StabilityTable& table) {
@@ -43,12 +43,12 @@ absl::StatusOr<v1::StabilityTable> StudyStability(const v1::CreateStudyRequest& 
   if (absl::Status status = AddLimits(subject, study, Part(progress, 0, kLimitsEnd), table); !status.ok()) {
     return status;
   }
-  const double map_ends = study.leave_out_extremes() ? 1 : kMapEnds;
-  if (absl::Status status = AddMap(subject, study, Part(progress, kLimitsEnd, map_ends), table); !status.ok()) {
+  const double map_end = study.leave_out_extremes() ? 1 : kMapEnd;
+  if (absl::Status status = AddMap(subject, study, Part(progress, kLimitsEnd, map_end), table); !status.ok()) {
     return status;
   }
   if (study.leave_out_extremes()) return table;
-  if (absl::Status status = AddExtremes(study, Part(progress, kMapEnds, 1), table); !status.ok()) return status;
+  if (absl::Status status = AddExtremes(study, Part(progress, kMapEnd, 1), table); !status.ok()) return status;
   return table;
 }
 

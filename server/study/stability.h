@@ -1,4 +1,4 @@
-// Where a scene is stable: limits of the step, a map over stiffness and step, and extreme cases.
+// The stability study: largest stable steps, a map over stiffness and step, and extreme cases.
 #ifndef PHRENIC_SERVER_STUDY_STABILITY_H_
 #define PHRENIC_SERVER_STUDY_STABILITY_H_
 
@@ -7,9 +7,9 @@
 
 namespace phrenic::study {
 
-// The tables of stability_limits.h, stability_map.h and extremes.h; the request's `stability` has its defaults. No run
-// takes more CPU time than most_seconds_a_run, so that the study ends: 100 to 200 runs that count for a map over seven
-// stiffnesses and eight integrators, most of which end early. CANCELLED as soon as `progress` says so.
+// Fills in the tables of stability_limits.h, stability_map.h and extremes.h. Each run is limited to the CPU time
+// most_seconds_a_run; a map over seven stiffnesses and eight integrators has 100 to 200 runs, most of which end early.
+// Requires: every field of the request's `stability` is set. CANCELLED if `progress` returns false. Uses one thread.
 absl::StatusOr<v1::StabilityTable> StudyStability(const v1::CreateStudyRequest& request, const Subject& subject,
                                                   const Progress& progress);
 

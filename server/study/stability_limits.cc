@@ -13,62 +13,66 @@
 namespace phrenic::study {
 namespace {
 
-constexpr double kKick = 1e-8;      // way of the kick in one radian of the fastest vibration, in sizes of the scene
-constexpr long kSteps = 400;        // of a trial
-constexpr long kMostSteps = 20000;  // of a trial: what takes longer is not measured
-constexpr double kDampings = 60;    // damping times of a trial where friction is what limits growth
-constexpr double kGrowth = 30;      // of the energy from the second to the last quarter
-constexpr double kSlowGrowth = 2;   // the same, of explicit Euler
-constexpr double kRunaway = 1e12;   // growth of the energy over the first one that ends a trial
-constexpr double kWithin = 0.01;    // of the limit that is found
-constexpr double kNear = 1.03;      // the first look around the prediction
-constexpr double kFar = 4;          // how far from the prediction the limit is looked for
+constexpr double kPerturbation = 1e-8;  // amplitude v/omega of the perturbation, in sizes of the scene
+constexpr long kSteps = 400;            // of a trial
+constexpr long kMaxSteps = 20000;       // of a trial: limits that need more are not measured
+constexpr double kDampings = 60;        // damping times of a trial of explicit Euler with friction
+constexpr double kGrowth = 30;          // ratio of energies of the last and the second quarter
+constexpr double kSlowGrowth = 2;       // the same for explicit Euler
+constexpr double kRunaway = 1e12;       // growth of the energy from its first value that ends a trial
+constexpr double kTolerance = 0.01;     // relative, of the measured limit
+constexpr double kFirstFactor = 1.03;   // first ratio to the prediction in the search
+constexpr double kMaxFactor = 4;        // largest ratio to the prediction in the search
 
+// The result of a trial; kCut if it ran out of CPU time.
 enum class Trial { kBounded, kGrows, kCut };
 
-// The largest kinetic energy of a difference, by quarters of a trial.
+// The largest kinetic energy of the difference in each quarter of a trial [J].
 struct Quarters {
   std::array<double, 4> largest = {};
   double first = 0;
 
   void Add(long step, long steps, double energy) {
     if (step == 0) first = energy;
-    double& place = largest.at(static_cast<size_t>(4 * step / steps));
-    place = std::max(place, energy);
+    double& quarter = largest.at(static_cast<size_t>(4 * step / steps));
+    quarter = std::max(quarter, energy);
   }
   bool Runaway(double energy) const { return !(energy <= kRunaway * first); }
   double Growth() const { return largest[3] / largest[1]; }
 };
 
-// Explicit Euler's growth is the difference of two small numbers a step: what it adds and what friction takes.
+// Number of steps of a trial. Explicit Euler grows per step by the small difference of the energy that it adds and the
+// energy that friction dissipates.
 double StepsToSeeGrowth(const Subject& subject, const FastestMode& fastest, double dt) {
   if (subject.parameters.integrator() != v1::INTEGRATOR_EXPLICIT_EULER) return kSteps;
   const double damped = fastest.spectrum.least_damping_rate * dt;
   return damped > 0 ? std::max<double>(kSteps, kDampings / damped) : kSteps;
 }
 
-// Two runs side by side.
+// An unperturbed and a perturbed run.
 class Pair {
  public:
   Pair(const Subject& subject, const FastestMode& fastest)
       : subject_(subject),
-        still_(subject.model->InitialState()),
-        kicked_(Kicked(subject, fastest)),
-        still_work_(subject.model->MakeWorkspace()),
-        kicked_work_(subject.model->MakeWorkspace()) {}
+        plain_(subject.model->InitialState()),
+        perturbed_(Perturbed(subject, fastest)),
+        plain_work_(subject.model->MakeWorkspace()),
+        perturbed_work_(subject.model->MakeWorkspace()) {}
 
   bool Advance(double dt) {
-    return Step(*subject_.model, subject_.parameters, dt, still_, still_work_).ok() &&
-           Step(*subject_.model, subject_.parameters, dt, kicked_, kicked_work_).ok();
+    return Step(*subject_.model, subject_.parameters, dt, plain_, plain_work_).ok() &&
+           Step(*subject_.model, subject_.parameters, dt, perturbed_, perturbed_work_).ok();
   }
-  double Apart() const { return KineticEnergy(*subject_.model, kicked_.v - still_.v); }
+  // Kinetic energy of the difference [J].
+  double Difference() const { return KineticEnergy(*subject_.model, perturbed_.v - plain_.v); }
 
  private:
   const Subject& subject_;
-  State still_, kicked_;
-  Workspace still_work_, kicked_work_;
+  State plain_, perturbed_;
+  Workspace plain_work_, perturbed_work_;
 };
 
+// Finds the step at which trials change from bounded to growing.
 class Bisection {
  public:
   Bisection(const Subject& subject, const FastestMode& fastest, double most_cpu_s, const Progress& progress)
@@ -79,6 +83,7 @@ class Bisection {
     subject_.parameters.set_apply_muscles(false);
   }
 
+  // Runs a trial with the step dt.
   absl::StatusOr<Trial> Try(double dt) {
     subject_.parameters.set_time_step(dt);
     Pair pair(subject_, fastest_);
@@ -86,22 +91,22 @@ class Bisection {
     const long steps = std::lround(StepsToSeeGrowth(subject_, fastest_, dt));
     const double began = ThreadCpuSeconds();
     for (long step = 0; step < steps; ++step) {
-      if (step % kLook == 0) {
+      if (step % kCheckInterval == 0) {
         if (!progress_(0.5, absl::StrFormat("measuring the limit at %.3g ms", 1e3 * dt))) return Cancelled();
         if (ThreadCpuSeconds() - began > most_cpu_s_) return Trial::kCut;
       }
       if (!pair.Advance(dt)) return Trial::kGrows;
-      const double apart = pair.Apart();
-      quarters.Add(step, steps, apart);
-      if (quarters.Runaway(apart)) return Trial::kGrows;
+      const double difference = pair.Difference();
+      quarters.Add(step, steps, difference);
+      if (quarters.Runaway(difference)) return Trial::kGrows;
     }
     const bool slow = subject_.parameters.integrator() == v1::INTEGRATOR_EXPLICIT_EULER;
     return quarters.Growth() > (slow ? kSlowGrowth : kGrowth) ? Trial::kGrows : Trial::kBounded;
   }
 
-  // Between a step that is stable and one that is not.
+  // Bisects between a stable step and an unstable one.
   absl::Status Narrow(double low, double high, v1::LimitRow& row) {
-    while (high > low * (1 + kWithin)) {
+    while (high > low * (1 + kTolerance)) {
       const double middle = std::sqrt(low * high);
       const auto trial = Try(middle);
       if (!trial.ok()) return trial.status();
@@ -112,14 +117,14 @@ class Bisection {
     return absl::OkStatus();
   }
 
-  // Walks from the prediction to where the verdict changes.
+  // Brackets the limit by steps away from the prediction, then bisects.
   absl::Status Search(double predicted, v1::LimitRow& row) {
     const auto at = Try(predicted);
     if (!at.ok()) return at.status();
     if (*at == Trial::kCut) return Cut(row);
     const bool up = *at == Trial::kBounded;
     double last = predicted;
-    for (double factor = kNear; factor < kFar * kNear; factor *= factor) {
+    for (double factor = kFirstFactor; factor < kMaxFactor * kFirstFactor; factor *= factor) {
       const double next = up ? predicted * factor : predicted / factor;
       const auto trial = Try(next);
       if (!trial.ok()) return trial.status();
@@ -155,7 +160,7 @@ const char* InWords(Trial trial) {
   return "out of time";
 }
 
-// Theory sets no limit, or allows no step: one trial says whether that is so.
+// Checks by one trial that theory is right if it predicts no limit or no stable step.
 absl::Status TryOne(Bisection& bisection, double predicted, double dt, v1::LimitRow& row) {
   const auto trial = bisection.Try(dt);
   if (!trial.ok()) return trial.status();
@@ -180,10 +185,10 @@ double TheoreticalStep(const Subject& subject, const FastestMode& fastest) {
   return FindIntegrator(subject.parameters.integrator()).MaxStep(fastest.spectrum);
 }
 
-State Kicked(const Subject& subject, const FastestMode& fastest) {
+State Perturbed(const Subject& subject, const FastestMode& fastest) {
   State state = subject.model->InitialState();
   if (fastest.vertex < 0) return state;
-  state.v += kKick * subject.model->size * fastest.spectrum.omega_max * fastest.mode;
+  state.v += kPerturbation * subject.model->size * fastest.spectrum.omega_max * fastest.mode;
   return state;
 }
 
@@ -198,9 +203,9 @@ absl::Status MeasureLimit(const Subject& subject, double most_cpu_s, const Progr
   if (predicted == 0) return TryOne(bisection, predicted, 0.2 / fastest.spectrum.omega_max, row);
   if (std::isinf(predicted)) return TryOne(bisection, predicted, kLongestStep, row);
   row.set_predicted_s(predicted);
-  if (StepsToSeeGrowth(subject, fastest, predicted) > kMostSteps) {
+  if (StepsToSeeGrowth(subject, fastest, predicted) > kMaxSteps) {
     row.set_note(
-        absl::StrFormat("not measured: friction is so weak that more than %d steps show no growth", kMostSteps));
+        absl::StrFormat("not measured: with friction this weak, growth needs more than %d steps to show", kMaxSteps));
     return absl::OkStatus();
   }
   if (absl::Status status = bisection.Search(predicted, row); !status.ok()) return status;

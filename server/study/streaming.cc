@@ -18,14 +18,15 @@ namespace {
 using stream::Floats;
 
 constexpr double kFramesPerSecond = 30;
-constexpr double kRunEnd = 0.8;  // share of the progress
+constexpr double kRunEnd = 0.8;  // fraction of the progress at which the simulation ends
 
+// Positions of the streamed vertices, 3 x n per frame [m].
 struct Frames {
   stream::RestShape shape;
-  std::vector<Floats> seen, measured;  // those before, of which shapes are made; those that are sent
+  std::vector<Floats> training, measured;  // frames from which shapes are made; frames that are encoded
 };
 
-// The positions of every streamed body, `interval` apart, one `take` after the other.
+// Simulates `count` frames, `interval` [s] apart, and calls `take` with the positions of each.
 absl::Status RunFrames(const Subject& subject, double interval, int count, const Progress& progress,
                        const std::function<void(int frame, Floats positions)>& take) {
   const Model& model = *subject.model;
@@ -48,23 +49,23 @@ absl::Status RunFrames(const Subject& subject, double interval, int count, const
 absl::StatusOr<Frames> MakeFrames(const Subject& subject, const v1::StreamingStudy& study, const Progress& progress) {
   const stream::Layout layout(*subject.model);
   Frames frames{.shape = stream::MakeRestShape(*subject.model, stream::StreamedBodies(*subject.model, layout)),
-                .seen = {},
+                .training = {},
                 .measured = {}};
   if (layout.vertices() == 0) {
-    return absl::FailedPreconditionError("the scene has no body that moves vertex by vertex: nothing is streamed");
+    return absl::FailedPreconditionError("the scene has no body whose vertices are streamed");
   }
   const absl::Status status =
       RunFrames(subject, study.interval(), 2 * study.frames(), progress, [&](int i, Floats positions) {
-        (i < study.frames() ? frames.seen : frames.measured).push_back(std::move(positions));
+        (i < study.frames() ? frames.training : frames.measured).push_back(std::move(positions));
       });
   if (!status.ok()) return status;
   return frames;
 }
 
-// Gives the shape what moved in the frames that were seen; the bytes that it takes to send.
+// Adds the shapes of the training frames to the rest shape. Returns the number of bytes for sending them.
 absl::StatusOr<std::int64_t> AddShapes(Frames& frames) {
   std::vector<Floats> displacements;
-  for (const Floats& positions : frames.seen) displacements.emplace_back(positions - frames.shape.rest);
+  for (const Floats& positions : frames.training) displacements.emplace_back(positions - frames.shape.rest);
   const auto predicted = stream::MakeCodec(v1::CODEC_PREDICTED, frames.shape);
   auto basis = stream::MakeBasis(*predicted, frames.shape.rest, stream::FindShapes(displacements), 1);
   if (!basis.ok()) return basis.status();
@@ -74,13 +75,15 @@ absl::StatusOr<std::int64_t> AddShapes(Frames& frames) {
   return bytes;
 }
 
-struct Sending {
-  double bytes = 0, encode = 0, decode = 0, squares = 0, worst = 0;  // [s], [m^2], [m]
-  int held = 0;
+// Sums over frames.
+struct CodecSums {
+  double bytes = 0, encode = 0, decode = 0;  // sizes; CPU times [s]
+  double squares = 0, worst = 0;             // mean squared errors [m^2]; largest error [m]
+  int held = 0;                              // number of frames that the codec could encode
 };
 
-// One frame there and back; nothing is added where the codec cannot hold it.
-absl::Status Send(const stream::Codec& codec, const Floats& frame, double bound, Sending& sums) {
+// Encodes and decodes one frame. Adds nothing if the codec cannot encode it.
+absl::Status AddRoundTrip(const stream::Codec& codec, const Floats& frame, double bound, CodecSums& sums) {
   const double start = ThreadCpuSeconds();
   const auto bytes = codec.Encode(frame, bound);
   const double encoded = ThreadCpuSeconds();
@@ -98,19 +101,20 @@ absl::Status Send(const stream::Codec& codec, const Floats& frame, double bound,
   return absl::OkStatus();
 }
 
-std::string VerdictOf(const Sending& sums, double bound, std::size_t frames) {
+std::string VerdictOf(const CodecSums& sums, double bound, std::size_t frames) {
   if (sums.worst > bound) return "FAILED";
   if (sums.held == static_cast<int>(frames)) return "ok";
   return absl::StrCat("holds ", sums.held, " of ", frames, " frames");
 }
 
-// `bound_level`; -1 for a codec without one. Adds nothing if there are no frames.
+// Adds a row for one codec and bound level; `bound_level` is -1 for a codec without bounds. Adds nothing if the codec
+// could encode no frame.
 absl::Status AddCodecRow(std::string_view name, const stream::Codec& codec, int bound_level,
                          const std::vector<Floats>& frames, v1::StreamingTable& table) {
   const double bound = bound_level < 0 ? 0 : 1e-3 * stream::BoundMillimetres(bound_level);
-  Sending sums;
+  CodecSums sums;
   for (const Floats& frame : frames) {
-    if (absl::Status status = Send(codec, frame, bound, sums); !status.ok()) return status;
+    if (absl::Status status = AddRoundTrip(codec, frame, bound, sums); !status.ok()) return status;
   }
   if (sums.held == 0) return absl::OkStatus();
   v1::StreamingRow& row = *table.add_rows();
@@ -126,16 +130,17 @@ absl::Status AddCodecRow(std::string_view name, const stream::Codec& codec, int 
   return absl::OkStatus();
 }
 
-void MarkFront(v1::StreamingTable& table) {
+// Marks the Pareto front: rows that no other row beats in both size and error.
+void MarkPareto(v1::StreamingTable& table) {
   for (v1::StreamingRow& row : *table.mutable_rows()) {
-    const auto beats = [&row](const v1::StreamingRow& other) {
+    const auto dominates = [&row](const v1::StreamingRow& other) {
       return other.bytes_per_frame() < row.bytes_per_frame() && other.error_max_mm() <= row.error_max_mm();
     };
-    row.set_pareto(std::none_of(table.rows().begin(), table.rows().end(), beats));
+    row.set_pareto(std::none_of(table.rows().begin(), table.rows().end(), dominates));
   }
 }
 
-// Of what viewers get who ask for nothing else.
+// Returns a sentence about the bandwidth at the default error bound.
 std::string AdviceOf(const v1::StreamingTable& table) {
   const double bound = stream::BoundMillimetres(stream::kDefaultBoundLevel);
   std::string advice;
@@ -168,12 +173,12 @@ absl::StatusOr<v1::StreamingTable> StudyStreaming(const v1::CreateStudyRequest& 
     for (int bound_level = bounded ? 0 : -1; bound_level <= (bounded ? stream::kCoarsestBoundLevel : -1);
          ++bound_level) {
       const double done = kRunEnd + (1 - kRunEnd) * static_cast<double>(i) / static_cast<double>(codecs);
-      if (!progress(done, absl::StrCat("sending by ", std::string(each.name)))) return Cancelled();
+      if (!progress(done, absl::StrCat("encoding with ", std::string(each.name)))) return Cancelled();
       if (absl::Status status = AddCodecRow(each.name, *codec, bound_level, frames->measured, table); !status.ok())
         return status;
     }
   }
-  MarkFront(table);
+  MarkPareto(table);
   table.set_advice(AdviceOf(table));
   return table;
 }

@@ -1,4 +1,4 @@
-// Error against bandwidth: what frames of a scene cost to send, by every codec and error bound.
+// The streaming study: error, bandwidth and CPU time of every codec and error bound.
 #ifndef PHRENIC_SERVER_STUDY_STREAMING_H_
 #define PHRENIC_SERVER_STUDY_STREAMING_H_
 
@@ -7,10 +7,11 @@
 
 namespace phrenic::study {
 
-// Runs the subject from rest for as many frames as are measured, from which the shapes of CODEC_BASIS are made, and
-// then for those that are measured: encoded and decoded by each codec within each bound of the ladder (CPU time of this
-// thread). Every field of `request`'s study must be set. Errors: a run that diverges, with where; CANCELLED as soon as
-// `progress` says so.
+// Runs the subject from rest for two equal numbers of frames. The shapes of CODEC_BASIS are made from the first half;
+// the second half is encoded and decoded with each codec and each error bound (CPU time of this thread). A row has
+// bytes per frame, Mbit/s at 30 frames per second, largest and RMS error [mm], and times [us]. Requires: every field of
+// the request's study is set. Errors: those of a step that diverges; FAILED_PRECONDITION if the scene streams no
+// vertices; CANCELLED if `progress` returns false.
 absl::StatusOr<v1::StreamingTable> StudyStreaming(const v1::CreateStudyRequest& request, const Subject& subject,
                                                   const Progress& progress);
 

@@ -12,9 +12,9 @@ static_assert(static_cast<int>(jobs::State::kRunning) == v1::STUDY_STATE_RUNNING
 static_assert(static_cast<int>(jobs::State::kDone) == v1::STUDY_STATE_DONE);
 static_assert(static_cast<int>(jobs::State::kFailed) == v1::STUDY_STATE_FAILED);
 
-constexpr char kRecord[] = "study";  // the kind in a store
+constexpr char kRecord[] = "study";  // the kind of its records in a store
 constexpr int kMostStudies = 16;
-constexpr double kSmallestProgress = 0.001;  // that watchers are told
+constexpr double kSmallestProgress = 0.001;  // smallest change of progress that is reported
 
 // Null if the request names no kind of study.
 const char* KindOf(const v1::CreateStudyRequest& request) {
@@ -53,7 +53,7 @@ void StudyJob::Finish(const absl::Status& status, absl::Time /*expires*/, v1::St
   if (status.ok()) *message.mutable_result() = std::move(result_);
 }
 
-// Until it has ended, a study is saved with the request from which it runs again.
+// A study that has not ended is saved with its request, so that it can run again.
 void StudyJob::Save(const v1::Study& message, const jobs::Records& records) const {
   v1::SavedStudy saved;
   if (message.state() == v1::STUDY_STATE_QUEUED) {
@@ -80,7 +80,7 @@ absl::StatusOr<Studies::Draft> Studies::MakeDraft(const v1::CreateStudyRequest& 
   Draft draft;
   draft.id_base = absl::StrCat(kind, "-", *scene);
   draft.message.set_scene(*scene);
-  draft.message.set_doing("waiting for the studies before it");
+  draft.message.set_doing("waiting for earlier studies");
   draft.job = std::make_shared<StudyJob>(
       request, owner, [this, request](const Progress& progress) { return study::Run(request, compile_, progress); });
   return draft;

@@ -25,10 +25,11 @@ class StudyJob {
   using Message = v1::Study;
   using Work = std::function<absl::StatusOr<v1::StudyResult>(const Progress& progress)>;
 
-  // `owner` on a server with accounts.
+  // `owner` is the account of the study; empty on a server without accounts. `work` runs the study.
   StudyJob(v1::CreateStudyRequest request, std::string owner, Work work)
       : request_(std::move(request)), owner_(std::move(owner)), work_(std::move(work)) {}
 
+  // The interface of a job: see jobs::Queue.
   absl::Status Run(jobs::Progress<v1::Study> progress);
   void Finish(const absl::Status& status, absl::Time expires, v1::Study& message);
   void Save(const v1::Study& message, const jobs::Records& records) const;
@@ -40,24 +41,24 @@ class StudyJob {
   v1::StudyResult result_;  // of a study that succeeded
 };
 
-// Thread-safe. A thread of its own runs the studies, at most 16 of which are kept.
+// Thread-safe. One background thread runs the studies in order; at most 16 studies are kept.
 class Studies {
  public:
   using Seen = jobs::Queue<StudyJob>::Seen;
   // Returns the name of the scene that a request studies, or why it cannot be studied.
   using SceneName = std::function<absl::StatusOr<std::string>(const v1::CreateStudyRequest& request)>;
 
-  // `clock` and `store` outlive it. A null store keeps nothing.
+  // Requires: `clock` and `store` outlive it. With a null store, studies do not survive a restart of the server.
   Studies(SceneName scene_name, Compiler compile, const Clock& clock, store::Store* store);
 
-  // Restores the studies of an earlier server: ended ones with their results; the others run again from their start and
-  // come to the same results. Calls `found` with each and its owner. `lost` gets the reason why one could not be
-  // restored, by "study ID". Requires: no other call was made yet.
+  // Restores the studies of an earlier server: ended ones with their results; the others run again from their start.
+  // Calls `found` with each and its owner. `lost` gets the reason why one could not be restored, by "study ID".
+  // Requires: no other call was made yet.
   void Restore(const std::vector<store::SavedRecord>& records,
                absl::FunctionRef<void(const std::string& id, const std::string& owner)> found,
                std::map<std::string, absl::Status>& lost);
 
-  // Queues a study and returns once the store has it on the disk. An empty id is chosen from its kind and its scene.
+  // Queues a study and returns after the store has written it to disk. An empty id is derived from kind and scene.
   // INVALID_ARGUMENT if the request names no kind; the errors of SceneName and jobs::Queue::Add.
   absl::StatusOr<v1::Study> Add(const v1::CreateStudyRequest& request, const std::string& owner);
   // The same as the methods of jobs::Queue; List leaves out the results.

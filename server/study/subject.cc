@@ -48,4 +48,13 @@ absl::StatusOr<Subject> MakeSubject(const v1::SceneSource& source, const std::st
   return subject;
 }
 
+absl::StatusOr<Subject> Recompile(const v1::CreateStudyRequest& request, const Subject& subject, const v1::Scene& scene,
+                                  const Compiler& compile) {
+  v1::SceneSource source = request.source();
+  *source.mutable_scene() = scene;
+  const auto model = compile(source);
+  if (!model.ok()) return model.status();
+  return Subject{.model = *model, .parameters = subject.parameters};
+}
+
 }  // namespace phrenic::study

@@ -1,4 +1,4 @@
-// What a study is about: a model under parameters and an integrator.
+// Makes and varies the subject of a study: a model with its parameters.
 #ifndef PHRENIC_SERVER_STUDY_SUBJECT_H_
 #define PHRENIC_SERVER_STUDY_SUBJECT_H_
 
@@ -7,24 +7,31 @@
 #include <string>
 #include <vector>
 
+#include "phrenic/v1/study.pb.h"
 #include "server/study/context.h"
 
 namespace phrenic::study {
 
-// The wanted ones; all that carry motion (every one but the static) where none is named.
+// Returns the given integrators; all time integrators (all but the static solver) if none is given.
 std::vector<v1::Integrator> IntegratorsFor(const google::protobuf::RepeatedField<int>& wanted);
-// "velocity_verlet"
+// Returns the name of an integrator as in JSON and on the command line: "velocity_verlet".
 std::string NameOf(v1::Integrator integrator);
 
-// The subject under another integrator.
+// Returns the subject with another integrator.
 Subject With(const Subject& subject, v1::Integrator integrator);
-// The largest stable step of the subject's own integrator, as predicted [s]; 0 where none is.
+// Returns the predicted largest stable step of the subject's integrator [s]; infinity if there is no limit, 0 if no
+// step is stable.
 double PredictedStep(const Subject& subject);
 
-// The model of `source` with the parameters of the request over the scene's and the preset's; the time step that the
-// compile step chooses where none is named. INVALID_ARGUMENT names what is wrong.
+// Compiles `source`. Parameters are those of the scene, overridden by the preset and then by `parameters`; the time
+// step is chosen from the stability limit if neither the request nor the scene sets it. Errors: those of `compile`;
+// INVALID_ARGUMENT with the field's name if a parameter or the preset is invalid.
 absl::StatusOr<Subject> MakeSubject(const v1::SceneSource& source, const std::string& preset,
                                     const v1::Parameters& parameters, const Compiler& compile);
+
+// Compiles another scene in place of the request's, under the subject's parameters.
+absl::StatusOr<Subject> Recompile(const v1::CreateStudyRequest& request, const Subject& subject, const v1::Scene& scene,
+                                  const Compiler& compile);
 
 }  // namespace phrenic::study
 

@@ -36,7 +36,7 @@ struct TrialRow {
   const char* what;
 };
 
-// With parts left out; all of them with rigid links.
+// Trials with a part left out, all with rigid links.
 constexpr TrialRow kTrials[] = {
     {Kind::kPerfect, ThesisTrial::kNoAttachments, 20859, kThoraces / 12.2994, "fig. 5.12, no rib/sternum attachment"},
     {Kind::kPerfect, ThesisTrial::kNoRibs, 11359, kThoraces / 12.1572, "fig. 5.12, no rib kinematics"},
@@ -59,8 +59,8 @@ bool HasDiaphragm(const v1::Scene& scene) {
   });
 }
 
-// How far apart two numbers of vertices are, as a ratio's logarithm.
-double Apart(int64_t a, int64_t b) {
+// |log(a/b)| of two numbers of vertices.
+double LogRatio(int64_t a, int64_t b) {
   return std::abs(std::log((1.0 + static_cast<double>(a)) / (1.0 + static_cast<double>(b))));
 }
 
@@ -81,10 +81,10 @@ ThesisFigure FigureOf(const ThesisSize& size, bool links) {
 ThesisFigure NearestThesisFigure(const v1::Scene& scene, const v1::CompileReport& report) {
   const bool patient = IsOfAPatient(scene);
   const Size* nearest = nullptr;
-  const auto apart = [&](const Size& row) { return Apart(report.simulated_vertices(), row.size.vertices); };
+  const auto log_ratio = [&](const Size& row) { return LogRatio(report.simulated_vertices(), row.size.vertices); };
   for (const Size& row : kSizes) {
     if ((row.kind == Kind::kPatient) != patient) continue;
-    if (nearest == nullptr || apart(row) < apart(*nearest)) nearest = &row;
+    if (nearest == nullptr || log_ratio(row) < log_ratio(*nearest)) nearest = &row;
   }
   return FigureOf(nearest->size, report.rigid_links() > 0);
 }
@@ -95,8 +95,8 @@ std::optional<ThesisFigure> LikeThesisFigure(const v1::Scene& scene, int64_t ver
   std::optional<ThesisFigure> figure;
   double nearest = std::log(2.0);
   const auto take = [&](int of, const ThesisFigure& found) {
-    if (Apart(vertices, of) > nearest) return;
-    nearest = Apart(vertices, of);
+    if (LogRatio(vertices, of) > nearest) return;
+    nearest = LogRatio(vertices, of);
     figure = found;
   };
   const bool whole = trial == ThesisTrial::kFull || trial == ThesisTrial::kNoLinks;

@@ -15,10 +15,10 @@ using Clock = std::chrono::steady_clock;
 
 double Since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-// Adds the time until its end.
+// Adds the time from its construction to its destruction to a stage.
 class Span {
  public:
-  // A call may come in parts: the first one counts.
+  // A call may be split into parts; only the first part counts as a call.
   explicit Span(Stage& stage, bool first = true) : stage_(stage), first_(first), start_(Clock::now()) {}
   Span(const Span&) = delete;
   Span& operator=(const Span&) = delete;
@@ -38,7 +38,7 @@ Stage& NewStage(const char* what, const std::string& element, Stages& stages) {
   return stages.emplace_back(Stage{.stage = what, .element = element, .seconds = 0, .calls = 0, .parts = 0});
 }
 
-// A Force or BlockForce of which every call is timed.
+// Forwards to a Force or BlockForce and times every call.
 template <typename Kind>
 class TimedKind : public Kind {
  public:
@@ -147,7 +147,7 @@ const BlockForce& TimedBlock(const BlockForce& force, ForceSchedule& schedule, S
   return timed;
 }
 
-// Loads are timed as a force of their own.
+// Returns the schedule of `timed`. Loads, which the plan folds into other forces, are timed as a separate force.
 ForceSchedule TimedSchedule(const Model& model, const Model& timed, Stages& stages) {
   const ForceSchedule& plain = model.plan->schedule();
   ForceSchedule schedule;

@@ -1,4 +1,4 @@
-// A model that keeps time of its elements.
+// A copy of a model whose elements measure their own time.
 #ifndef PHRENIC_SERVER_STUDY_TIMED_MODEL_H_
 #define PHRENIC_SERVER_STUDY_TIMED_MODEL_H_
 
@@ -10,22 +10,22 @@
 
 namespace phrenic::study {
 
-// What one element does in one way, since it was last set to nothing.
+// The time that one element spent in one kind of call since the last reset.
 struct Stage {
   std::string stage;    // "force"
   std::string element;  // "springs:muscle"
-  double seconds = 0;   // wall time
+  double seconds = 0;   // wall time [s]
   int calls = 0;
-  int parts = 0;  // in which the calls came: the clock was read before and after each
+  int parts = 0;  // timed intervals; a call may be split into several
 };
 
-using Stages = std::deque<Stage>;  // places stay where they are
+using Stages = std::deque<Stage>;  // a deque, so that references stay valid
 
-// The same model for steps (bodies, probes and what viewers see are not copied); its elements are those of `model`,
-// which must outlive it, and add their time to `stages`. For one thread.
+// Returns a model that steps to the same bits as `model` and adds the time of its elements to `stages`. It has no
+// bodies, probes and display data. Requires: `model` and `stages` outlive it. Not thread-safe.
 std::shared_ptr<const Model> Timed(const Model& model, Stages& stages);
 
-// Wall time that a stage shows for a call that does nothing [s].
+// Returns the wall time that a stage measures for an empty call [s].
 double ClockCost();
 
 }  // namespace phrenic::study

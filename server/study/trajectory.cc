@@ -10,12 +10,13 @@
 namespace phrenic::study {
 namespace {
 
-// Why a step was the last one.
+// Describes why a run ended with this error.
 std::string Ended(const absl::Status& why, double time) {
   if (absl::IsAborted(why)) return absl::StrFormat("stopped at %.4g s: %s", time, std::string(why.message()));
   return absl::StrFormat("diverged at %.4g s", time);
 }
 
+// Adds the squared distances of free vertices to the sums; `sum.largest` is squared until the end.
 void Add(const Points& a, const Points& b, const Model& model, Distance& sum, double& squares, long& count) {
   for (Eigen::Index i = 0; i < a.cols(); ++i) {
     if (model.inverse_mass[i] <= 0) continue;
@@ -26,7 +27,8 @@ void Add(const Points& a, const Points& b, const Model& model, Distance& sum, do
   }
 }
 
-double ProbesApart(const Model& model, const State& a, const State& b) {
+// Largest distance of a probe [m].
+double ProbeDistance(const Model& model, const State& a, const State& b) {
   double largest = 0;
   for (const Probe& probe : model.probes) {
     const BodyModel& body = model.bodies[static_cast<size_t>(probe.body)];
@@ -65,7 +67,7 @@ absl::StatusOr<Trajectory> Simulate(const Subject& subject, const std::vector<do
     const absl::Status stepped = Step(model, parameters, step, state, work);
     trajectory.simulated_s = state.time;
     if (!stepped.ok()) trajectory.problem = Ended(stepped, state.time);
-    if (done % kLook == 0) {
+    if (done % kCheckInterval == 0) {
       trajectory.cpu_s = ThreadCpuSeconds() - start;
       if (!progress(static_cast<double>(done) / static_cast<double>(all), "stepping")) return Cancelled();
       if (trajectory.cpu_s > most_cpu_s) trajectory.problem = absl::StrFormat("out of time at %.4g s", state.time);
@@ -77,7 +79,7 @@ absl::StatusOr<Trajectory> Simulate(const Subject& subject, const std::vector<do
   return trajectory;
 }
 
-double LargestWay(const Model& model, const Trajectory& trajectory) {
+double LargestDisplacement(const Model& model, const Trajectory& trajectory) {
   double largest = 0;
   for (const State& state : trajectory.states) {
     if (state.x.cols() > 0) largest = std::max(largest, (state.x - model.rest).colwise().norm().maxCoeff());
@@ -92,7 +94,7 @@ Distance DistanceBetween(const Subject& subject, const Trajectory& a, const Traj
   long count = 0;
   for (size_t i = 0; i < std::min(a.states.size(), b.states.size()); ++i) {
     Add(a.states[i].x, b.states[i].x, model, distance, squares, count);
-    distance.probes = std::max(distance.probes, ProbesApart(model, a.states[i], b.states[i]));
+    distance.probes = std::max(distance.probes, ProbeDistance(model, a.states[i], b.states[i]));
     distance.energy = std::max(distance.energy, std::abs(Energy(subject, a.states[i]) - Energy(subject, b.states[i])));
   }
   distance.largest = std::sqrt(distance.largest);
@@ -100,7 +102,7 @@ Distance DistanceBetween(const Subject& subject, const Trajectory& a, const Traj
   return distance;
 }
 
-double RmsApart(const Model& model, const Points& a, const Points& b) {
+double RmsDistance(const Model& model, const Points& a, const Points& b) {
   Distance distance;
   double squares = 0;
   long count = 0;

@@ -1,4 +1,4 @@
-// Where a model is at given moments, how it was got there, and how far two such motions are apart.
+// Simulates a model to given moments and measures the distance of two such runs.
 #ifndef PHRENIC_SERVER_STUDY_TRAJECTORY_H_
 #define PHRENIC_SERVER_STUDY_TRAJECTORY_H_
 
@@ -9,41 +9,44 @@
 
 namespace phrenic::study {
 
+// The states of a run at given moments.
 struct Trajectory {
-  std::vector<State> states;  // one a moment
+  std::vector<State> states;  // one per moment
   double cpu_s = 0;           // CPU time of this thread [s]
-  double simulated_s = 0;     // [s]
-  std::string problem;        // why there are fewer states than moments ("out of time at 0.2 s"); or empty
+  double simulated_s = 0;     // simulated time [s]
+  std::string problem;        // why the run ended early ("out of time at 0.2 s"); empty if it is complete
 };
 
-// `count` moments, evenly spaced, the last one at `seconds`.
+// Returns `count` equidistant moments, the last one at `seconds` [s].
 std::vector<double> Moments(double seconds, int count);
 
-// Steps from rest by the parameters' integrator with the longest step that is no longer than `dt` and divides the time
-// between moments (Moments' spacing). Ends early, with `problem`, where the run diverges or takes more than
-// `most_cpu_s`. CANCELLED as soon as `progress` says so.
+// Simulates from rest with the subject's integrator and the step DividingStep(moments, dt). Ends early, with `problem`,
+// if the run diverges or takes more CPU time than `most_cpu_s` [s]. CANCELLED if `progress` returns false. Requires:
+// `moments` are those of Moments. Uses one thread.
 absl::StatusOr<Trajectory> Simulate(const Subject& subject, const std::vector<double>& moments, double dt,
                                     double most_cpu_s, const Progress& progress);
-// The step that Simulate takes for `dt` [s].
+// Returns the longest step that is at most `dt` and divides the time between moments [s].
 double DividingStep(const std::vector<double>& moments, double dt);
 
+// The distance of two trajectories.
 struct Distance {
-  double largest = 0;  // of any vertex at any moment [m]
-  double rms = 0;      // over vertices and moments [m]
-  double probes = 0;   // the largest of any probe [m]
-  double energy = 0;   // the largest difference of energy [J]
+  double largest = 0;  // largest distance of a vertex at any moment [m]
+  double rms = 0;      // RMS over vertices and moments [m]
+  double probes = 0;   // largest distance of a probe [m]
+  double energy = 0;   // largest difference of energy [J]
 };
 
-// Over the moments that both have, and the vertices that forces move; equal models.
+// Returns the distance over common moments and free vertices. Only vertices are compared: State::scalars count by the
+// vertices that they move. Requires: both are trajectories of the subject's model.
 Distance DistanceBetween(const Subject& subject, const Trajectory& a, const Trajectory& b);
 
-// How far any vertex came from rest [m].
-double LargestWay(const Model& model, const Trajectory& trajectory);
+// Returns the largest displacement of a vertex from rest [m].
+double LargestDisplacement(const Model& model, const Trajectory& trajectory);
 
-// RMS distance of the vertices that forces move [m]; positions 3 x n.
-double RmsApart(const Model& model, const Points& a, const Points& b);
+// Returns the RMS distance of the free vertices [m]; `a` and `b` are positions, 3 x n [m].
+double RmsDistance(const Model& model, const Points& a, const Points& b);
 
-// Kinetic energy and that of every force that has one [J].
+// Returns the kinetic energy plus the potential energy of all conservative forces [J].
 double Energy(const Subject& subject, const State& state);
 
 }  // namespace phrenic::study

@@ -32,20 +32,20 @@ absl::StatusOr<WatchedRun> Watch(const Subject& subject, const State& start, dou
   State& state = run.last;
   state = start;
   Workspace work = model.MakeWorkspace();
-  StepCheckpoint trail;
+  StepCheckpoint checkpoint;
   const long all = std::max(1L, std::lround(std::ceil(seconds / dt * (1 - 1e-9))));
   const double began = ThreadCpuSeconds();
   if (each) each(state);
   for (long done = 0; done < all; ++done) {
-    if (done % kLook == 0) {
+    if (done % kCheckInterval == 0) {
       if (!progress(static_cast<double>(done) / static_cast<double>(all), "stepping")) return Cancelled();
       run.cut = ThreadCpuSeconds() - began > most_cpu_s;
       if (run.cut) return run;
     }
-    trail.Note(model, parameters, state);
+    checkpoint.Note(model, parameters, state);
     run.status = Step(model, parameters, dt, state, work);
     if (!run.status.ok()) {
-      const State before = trail.StateBeforeLastStep(model, parameters, dt, work);
+      const State before = checkpoint.StateBeforeLastStep(model, parameters, dt, work);
       run.divergence = Diagnose(model, parameters, run.status, before, state);
       return run;
     }

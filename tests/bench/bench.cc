@@ -87,11 +87,12 @@ class Bench {
     // At each end stiffness times length and a place; a vertex' point, and its force read and written.
     const double ends = 2 * many * (Doubles(1) + sizeof(int)), single_ends = 2 * many * (Floats(1) + sizeof(int));
     const double points = vertices * Doubles(3 + 6), packed = vertices * Floats(4), flops = 2 * many * 19;
-    table.Register({kSprings, [this] { rows_.AddForce(1, x_, f_); }, many, "spring", kPlain, ends + points, flops});
-    table.Register({"springs, single precision", [this] { single_.AddForce(1, x_, f_); }, many, "spring", kPlain,
-                    single_ends + points + packed});
+    table.Register(
+        {kSprings, [this] { rows_.AddForce(1, x_, scratch_, f_); }, many, "spring", kPlain, ends + points, flops});
+    table.Register({"springs, single precision", [this] { single_.AddForce(1, x_, scratch_, f_); }, many, "spring",
+                    kPlain, single_ends + points + packed});
     table.Register({"the same, vertices numbered otherwise",
-                    [this] { renumbered_single_.AddForce(1, renumbered_.x, f_); }, many, "spring", kPlain});
+                    [this] { renumbered_single_.AddForce(1, renumbered_.x, scratch_, f_); }, many, "spring", kPlain});
     // Position and velocity, read and written, and the mass.
     table.Register({kEuler, [this] { euler_.Step(); }, many, "spring", kPlain, ends + vertices * Doubles(12 + 1)});
     table.Register({kEulerSingle, [this] { euler_single_.Step(); }, many, "spring", kPlain,
@@ -118,7 +119,7 @@ class Bench {
     table.Register({kThorax, [this] { thorax_.Step(); }, vertices, "vertex", kEulerSingle});
     table.Register({"thorax without its rigid links", [this] { unlinked_.Step(); }, vertices, "vertex", kThorax});
     const auto measure = [this] {
-      const EvalContext at = MakeEvalContext(*subjects_.thorax, thorax_.parameters, thorax_.state);
+      const EvalContext at = MakeEvalContext(*subjects_.thorax, thorax_.parameters, thorax_.state, scratch_);
       benchmark::DoNotOptimize(ReadMeasures(*subjects_.thorax, at));
     };
     table.Register({kMeasures, measure, vertices, "vertex", kThorax});
@@ -132,7 +133,8 @@ class Bench {
     const auto vertices = static_cast<double>(x_.cols());
     const auto triangles = static_cast<double>(subjects_.membrane->bodies.front().mesh.triangles.cols());
     const auto pull = [this] {
-      const EvalContext at = MakeEvalContext(*subjects_.membrane, subjects_.membrane->parameters, membrane_.state);
+      const EvalContext at =
+          MakeEvalContext(*subjects_.membrane, subjects_.membrane->parameters, membrane_.state, scratch_);
       subjects_.membrane->forces.front()->AddForce(at, f_);
     };
     table.Register({"finite elements", pull, triangles, "triangle", ""});
@@ -148,6 +150,7 @@ class Bench {
   const SpringRows rows_, single_;
   const Points x_;
   Points f_;
+  Scratch scratch_;
   const Renumbered renumbered_;
   const SpringRows renumbered_single_;
   Solver solver_;

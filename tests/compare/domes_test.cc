@@ -11,7 +11,7 @@
 namespace phrenic::compare {
 namespace {
 
-// Two summits over a sheet 200 mm wide: at -60 mm, 40 mm high, and at 60 mm, `left` high; between them the saddle.
+// A sheet 200 mm wide with two summits: 40 mm high at x = -60 mm, and `left` [m] high at x = 60 mm.
 Mesh Domes(double left) {
   Mesh mesh = Moved(Square(0.2, 80), {-0.1, 0, 0});
   for (auto x : mesh.vertices.colwise()) {
@@ -41,7 +41,7 @@ TEST(Domes, TheSaddleMovesTowardsTheLowerDome) {
   EXPECT_LT(*saddle, 0.05);
 }
 
-// From the front the ridge that runs forward hides the dip; in the section through the summits it shows.
+// A ridge in front hides the saddle in the silhouette, not in the section through the summits.
 TEST(Domes, ARidgeInFrontHidesNoSaddle) {
   Mesh mesh = Domes(0.04);
   for (auto x : mesh.vertices.colwise()) x.z() += 0.039 * std::exp(-std::pow(x.y() / 0.02, 2));
@@ -63,12 +63,12 @@ TEST(Domes, AreTheVerticesOnEitherSideAndTheLeftIsPlusX) {
   for (const Mesh* mesh : {&a, &b}) {
     const auto &left = mesh->regions.at("left dome"), &right = mesh->regions.at("right dome");
     EXPECT_EQ(left.size() + right.size(), mesh->regions.at("diaphragm").size());
-    for (const int i : left) EXPECT_GT(mesh->vertices(0, i), saddle) << "one cut for both";
+    for (const int i : left) EXPECT_GT(mesh->vertices(0, i), saddle) << "one saddle for both";
     for (const int i : right) EXPECT_LE(mesh->vertices(0, i), saddle);
   }
 }
 
-TEST(Domes, AreOfDiaphragmsAloneAndLeaveAFilesOwnRegions) {
+TEST(Domes, AreOnlyForDiaphragmsAndKeepExistingRegions) {
   Mesh a = Domes(0.04), other = Domes(0.04);
   other.regions.clear();
   AddDomes(a, other);

@@ -38,7 +38,7 @@ Mesh Torus(int n) {
   return mesh;
 }
 
-// Both in one mesh, the second moved by `shift`.
+// Joins two meshes, the second translated by `shift`.
 Mesh Together(const Mesh& a, const Mesh& b, const Eigen::Vector3d& shift) {
   Mesh mesh;
   mesh.vertices.resize(3, a.vertices.cols() + b.vertices.cols());
@@ -48,14 +48,14 @@ Mesh Together(const Mesh& a, const Mesh& b, const Eigen::Vector3d& shift) {
   return mesh;
 }
 
-TEST(Inspection, AClosedBallNeedsNothing) {
+TEST(Inspection, AClosedBallNeedsNoRepair) {
   const v1::SurfaceReport report = Report(Ball());
   EXPECT_EQ(report.euler_characteristic(), 2);
   ASSERT_EQ(report.components_size(), 1);
   EXPECT_TRUE(report.components(0).closed());
   EXPECT_EQ(report.components(0).genus(), 0);
   EXPECT_NEAR(report.volume_ml(), 4.0 / 3 * M_PI * 125, 32)
-      << "a ball of 5 cm, 6 % smaller as it is flat between its vertices";
+      << "a ball of 5 cm radius; the facets take 6 % of its volume";
   EXPECT_NEAR(report.area_mm2(), 4 * M_PI * 2500, 1500);
   EXPECT_EQ(report.likely_unit(), "mm");
   EXPECT_NEAR(report.greatest_mm(2), 50, 1e-9);
@@ -85,13 +85,13 @@ TEST(Inspection, WhereTwoBallsTouchInAPointAVertexIsPinched) {
   EXPECT_THAT(report.repairs(), testing::Contains(HasSubstr("touch in a point")));
 }
 
-TEST(Inspection, WhatIsWrongIsCountedAndSaid) {
+TEST(Inspection, CountsAndNamesDefects) {
   Mesh mesh = Ball();
   mesh.triangles.col(0).swap(mesh.triangles.col(7));  // order does not matter
   std::swap(mesh.triangles(0, 3), mesh.triangles(1, 3));
   EXPECT_EQ(Report(mesh).misoriented_edges(), 3);
   EXPECT_FALSE(Report(mesh).has_volume_ml());
-  EXPECT_THAT(Report(mesh).repairs(), ElementsAre(HasSubstr("3 edges lie between triangles that face opposite ways")));
+  EXPECT_THAT(Report(mesh).repairs(), ElementsAre(HasSubstr("3 edges join triangles of opposite orientation")));
 
   mesh = Ball();
   mesh.triangles = mesh.triangles.rightCols(mesh.triangles.cols() - 1).eval();
@@ -130,7 +130,7 @@ TEST(Inspection, TheLikelyUnitIsThatOfABodyPart) {
   EXPECT_EQ(LikelyUnit(25000), "");
   Mesh metres = Ball();
   metres.vertices *= 1e-3;  // a file in metres, read as millimetres
-  EXPECT_THAT(Report(metres).repairs(), ElementsAre(HasSubstr("body part in m, and mm are assumed")));
+  EXPECT_THAT(Report(metres).repairs(), ElementsAre(HasSubstr("body part in m, but mm are assumed")));
 }
 
 TEST(Inspection, ANetworkHasNoTriangles) {
@@ -144,11 +144,11 @@ TEST(Inspection, ANetworkHasNoTriangles) {
   EXPECT_THAT(report.refusals(), ElementsAre(HasSubstr("no triangles")));
 }
 
-// Boundary edges, non-manifold edges, components, area and volume by VTK.
+// Compares boundary edges, non-manifold edges, components, area and volume with VTK.
 TEST(Inspection, VtkCountsTheSameOnRealLungs) {
   const std::string folder = std::string(PHRENIC_SHARED_DIR) + "/data/thorax/lungs";
-  const std::string python = "/usr/bin/python3";  // Debian's own: its VTK is for that one
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "the anatomical surfaces are not here";
+  const std::string python = "/usr/bin/python3";  // Debian's interpreter, for which its VTK is built
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "the anatomical surfaces are missing";
   if (std::system((python + " -c 'import vtk' >/dev/null 2>&1").c_str()) != 0) {
     GTEST_SKIP() << "VTK is not installed (python3-vtk9)";
   }

@@ -24,8 +24,8 @@ Mesh Sphere(double radius, int cells) {
   return EllipsoidSurface(Eigen::Vector3d::Zero(), Eigen::Vector3d::Constant(radius), cells, false);
 }
 
-// |2 mm cos| is uniform over a sphere's area: max 2, mean 1, RMS 2/sqrt(3), 95th percentile 1.9.
-TEST(SurfaceDistance, OfASphereMovedByTwoMillimetresIsTheExactOne) {
+// |2 mm cos| is uniformly distributed over a sphere's area: maximum 2, mean 1, RMS 2/sqrt(3), 95th percentile 1.9.
+TEST(SurfaceDistance, OfASphereMovedByTwoMillimetresMatchesTheClosedForm) {
   const Mesh sphere = Sphere(0.1, 64);
   const v1::SurfaceDistance distance = Distance(sphere, Moved(sphere, {0, 0, 0.002}), {.tolerance = 1e-3});
   EXPECT_NEAR(distance.hd_max(), 2, 0.002);
@@ -51,7 +51,7 @@ TEST(SurfaceDistance, ToItselfIsZero) {
 
 TEST(SurfaceDistance, IsToTheSurfaceAndNotToItsVertices) {
   const v1::SurfaceDistance distance = Distance(Square(0.1, 1), Square(0.1, 7));
-  EXPECT_LT(distance.hd_max(), 1e-9) << "the same square, cut otherwise";
+  EXPECT_LT(distance.hd_max(), 1e-9) << "the same square with another triangulation";
   EXPECT_LT(distance.assd(), 1e-9);
 }
 
@@ -66,14 +66,15 @@ TEST(SurfaceDistance, OfParallelSquaresIsTheGapInEveryMeasure) {
   EXPECT_EQ(Distance(Square(0.1, 5), Moved(Square(0.1, 5), {0, 0, 0.003}), {.tolerance = 0.0031}).surface_dice(), 1);
 }
 
-// A square and its left half: from the half to the whole 0, from the whole to the half 0 to 50 mm, evenly.
+// A square and its left half: the distance from the half to the whole is 0, from the whole to the half uniform in 0 to
+// 50 mm.
 TEST(SurfaceDistance, DirectionsAreKeptApartAndSwapWithTheSurfaces) {
   Mesh half = Square(0.1, 4);
   half.vertices.row(0) /= 2;
   const v1::SurfaceDistance distance = Distance(half, Square(0.1, 4));
   EXPECT_LT(distance.hd_a_to_b(), 1e-9);
   EXPECT_NEAR(distance.hd_b_to_a(), 50, 0.01);
-  EXPECT_NEAR(distance.mean_b_to_a(), 12.5, 0.05) << "half of the area at 0, half at 25 mm in the mean";
+  EXPECT_NEAR(distance.mean_b_to_a(), 12.5, 0.05) << "half of the area at 0, half at a mean of 25 mm";
   EXPECT_NEAR(distance.p95_b_to_a(), 45, 0.5);
   EXPECT_NEAR(distance.assd(), 12.5 * 2 / 3, 0.05);
   EXPECT_EQ(distance.hd_max(), distance.hd_b_to_a());
@@ -85,7 +86,8 @@ TEST(SurfaceDistance, DirectionsAreKeptApartAndSwapWithTheSurfaces) {
   EXPECT_EQ(swapped.hd95_pooled(), distance.hd95_pooled());
 }
 
-// The farthest point of a 30-40-50 triangle from its corners is the middle of the longest edge: no vertex, no sample.
+// The point of a 30-40-50 triangle farthest from its corners is the midpoint of the longest edge: neither a vertex nor
+// a sample.
 TEST(SurfaceDistance, MaximumIsRightBetweenSamples) {
   Mesh triangle;
   triangle.vertices.resize(3, 3);
@@ -148,14 +150,15 @@ TEST(SurfaceDistance, OfASurfaceWithoutAreaHasAMaximumAndNoMean) {
   EXPECT_TRUE(std::isnan(distance.hd95_max()));
 }
 
-TEST(SurfaceDistance, SamplesStandNoFartherApartThanTheSpacingAndMeansConvergeAtSecondOrder) {
+TEST(SurfaceDistance, SamplesKeepTheSpacingAndMeansConvergeAtSecondOrder) {
   const Mesh plane = Square(0.1, 1), dome = EllipsoidSurface({0.05, 0.05, 0}, {0.05, 0.05, 0.05}, 8, true);
   const double exact = Distance(plane, dome, {.spacing = 0.00025}).mean_a_to_b();
   const v1::SurfaceDistance coarse = Distance(plane, dome, {.spacing = 0.008});
   const v1::SurfaceDistance fine = Distance(plane, dome, {.spacing = 0.002});
   EXPECT_LE(fine.spacing_a(), 2 + 1e-9);
   EXPECT_LE(coarse.spacing_b(), 8 + 1e-9);
-  EXPECT_LT(std::abs(fine.mean_a_to_b() - exact), std::abs(coarse.mean_a_to_b() - exact) / 8) << "16 in the limit";
+  EXPECT_LT(std::abs(fine.mean_a_to_b() - exact), std::abs(coarse.mean_a_to_b() - exact) / 8)
+      << "the ratio tends to 16";
 }
 
 TEST(SurfaceDistance, TooFineASpacingIsRefusedWithOneThatWorks) {

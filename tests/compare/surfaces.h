@@ -1,4 +1,4 @@
-// Surfaces whose distances are known.
+// Simple surfaces for tests of distances.
 #ifndef PHRENIC_TESTS_COMPARE_SURFACES_H_
 #define PHRENIC_TESTS_COMPARE_SURFACES_H_
 
@@ -12,12 +12,14 @@ namespace phrenic::compare {
 
 inline MeasuredSurface Measured(const Mesh& mesh) { return {mesh.vertices, mesh.triangles}; }
 
+// Returns the mesh translated by `by` [m].
 inline Mesh Moved(Mesh mesh, const Eigen::Vector3d& by) {
   mesh.vertices.colwise() += by;
   return mesh;
 }
 
-// A square in the plane z = 0 from the origin, `cells` cells a side, each of two triangles.
+// Returns a square with corner at the origin in the plane z = 0, of `cells` x `cells` cells of two triangles; `side`
+// [m].
 inline Mesh Square(double side, int cells) {
   Mesh mesh;
   mesh.vertices.resize(3, (cells + 1) * (cells + 1));
@@ -35,7 +37,7 @@ inline Mesh Square(double side, int cells) {
   return mesh;
 }
 
-// The mesh as an OBJ file in millimetres.
+// Returns the mesh as the text of an OBJ file in millimetres.
 inline std::string ObjText(const Mesh& mesh) {
   std::string text;
   for (const auto x : mesh.vertices.colwise()) {

@@ -1,4 +1,4 @@
-// Mean, root mean square and 95th percentile held against VTK's nearest points from 100,000 random samples.
+// Compares mean, RMS and 95th percentile with VTK's nearest points for 100,000 random samples.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,14 +13,14 @@
 namespace phrenic::compare {
 namespace {
 
-// Debian's own interpreter: its VTK is for that one.
+// Debian's interpreter, for which its VTK is built.
 constexpr char kPython[] = "/usr/bin/python3";
 
 TEST(Vtk, AgreesOnTheLobesOfALung) {
   const std::string folder = std::string(PHRENIC_SHARED_DIR) + "/data/thorax/lungs/";
   const std::string a = folder + "superior_lobe_of_left_lung_closed.obj";
   const std::string b = folder + "inferior_lobe_of_left_lung_closed.obj";
-  if (!std::filesystem::exists(a)) GTEST_SKIP() << "the anatomical surfaces are not here";
+  if (!std::filesystem::exists(a)) GTEST_SKIP() << "the anatomical surfaces are missing";
   if (std::system((std::string(kPython) + " -c 'import vtk, numpy' >/dev/null 2>&1").c_str()) != 0) {
     GTEST_SKIP() << "VTK is not installed (python3-vtk9)";
   }
@@ -34,7 +34,7 @@ TEST(Vtk, AgreesOnTheLobesOfALung) {
   EXPECT_NEAR(ours->mean_a_to_b(), mean, 0.01 * mean);
   EXPECT_NEAR(ours->rms_a_to_b(), rms, 0.01 * rms);
   EXPECT_NEAR(ours->p95_a_to_b(), p95, 0.01 * p95);
-  EXPECT_GE(ours->hd_a_to_b(), largest * (1 - 1e-5)) << "a sample of VTK's is farther than the farthest";
+  EXPECT_GE(ours->hd_a_to_b(), largest * (1 - 1e-5)) << "a sample of VTK is farther than the maximum";
   std::printf("mean %.4f, VTK %.4f; RMS %.4f, VTK %.4f; p95 %.4f, VTK %.4f mm\n", ours->mean_a_to_b(), mean,
               ours->rms_a_to_b(), rms, ours->p95_a_to_b(), p95);
 }

@@ -30,9 +30,9 @@ const ConstraintCase kConstraints[] = {
     {"rigid_links_chain", "rigid_links { body: 'truss' " CHAIN " }", true},
     {"rigid_links_truss", "rigid_links { body: 'truss' " TRUSS " }", true},
     {"rigid_links_thesis", "rigid_links { body: 'truss' " PAIRS " projection: PROJECTION_THESIS }", false},
-    {"limits_at_most", "limits { body: 'truss' " CHAIN " at_most_ratio: 1 }", true},
-    {"limits_at_least", "limits { body: 'truss' " CHAIN " at_least_ratio: 1 }", true},
-    {"limits_both", "limits { body: 'truss' " CHAIN " at_most_ratio: 1.01 at_least_ratio: 0.99 }", true},
+    {"limits_at_most", "length_limits { body: 'truss' " CHAIN " at_most_ratio: 1 }", true},
+    {"limits_at_least", "length_limits { body: 'truss' " CHAIN " at_least_ratio: 1 }", true},
+    {"limits_both", "length_limits { body: 'truss' " CHAIN " at_most_ratio: 1.01 at_least_ratio: 0.99 }", true},
 };
 
 void PrintTo(const ConstraintCase& constraint, std::ostream* out) { *out << constraint.name; }
@@ -119,7 +119,8 @@ TEST_P(ConstraintContract, HoldsBlockByBlockToTheBitAsForAll) {
   if (dynamic_cast<const BlockConstraint*>(model_->constraints.front().get()) == nullptr) {
     GTEST_SKIP() << "is projected for all vertices at once";
   }
-  const std::string slack = " } constraints { limits { body: 'truss' list { links { a: 3 b: 6 } } at_most_ratio: 9 }";
+  const std::string slack =
+      " } constraints { length_limits { body: 'truss' list { links { a: 3 b: 6 } } at_most_ratio: 9 }";
   const auto both = CompileText(Scene(GetParam().text + slack));
   ASSERT_NE(both, nullptr);
   ASSERT_EQ(both->constraints.size(), 2u);

@@ -53,13 +53,16 @@ const ForceCase kForces[] = {
     {"action_line_vertical",
      "action_line { bodies: 'sheet' origin {} direction { x: 1 } radius: 2 force: 3 fall_off: FALL_OFF_VERTICAL }",
      false},
-    {"attachment", "attachment { bodies: 'sheet' carriers: 'bone' radius: 1.5 stiffness: 40 }", false},
+    {"attachment", "attachment { bodies: 'sheet' anchors: 'bone' radius: 1.5 stiffness: 40 }", false},
     {"attachment_thesis",
-     "attachment { bodies: 'sheet' carriers: 'bone' radius: 1.5 stiffness: 40 mode: ATTACHMENT_MODE_THESIS }", false},
-    {"drag", "drag { bodies: 'sheet' displacement { x: 0.2 z: -0.3 } stiffness: 40 scaled_by_breath: true }", false},
-    {"drag_point", "drag { bodies: 'sheet' region: 'left' point { z: 2 } stiffness: 40 damping_ratio: 0 }", false},
+     "attachment { bodies: 'sheet' anchors: 'bone' radius: 1.5 stiffness: 40 mode: ATTACHMENT_MODE_THESIS }", false},
+    {"drag", "target_spring { bodies: 'sheet' displacement { x: 0.2 z: -0.3 } stiffness: 40 scaled_by_breath: true }",
+     false},
+    {"drag_point", "target_spring { bodies: 'sheet' region: 'left' point { z: 2 } stiffness: 40 damping_ratio: 0 }",
+     false},
     {"drag_surface",
-     "drag { bodies: 'sheet' vertices: [1, 5] surface: 'floor' stiffness: 40 damping_ratio: 0 scaled_by_breath: true }",
+     "target_spring { bodies: 'sheet' vertices: [1, 5] surface: 'floor' stiffness: 40 damping_ratio: 0 "
+     "scaled_by_breath: true }",
      false},
     {"point_load", "point_load { body: 'sheet' vertices: [2, 3] force { x: 1 z: -2 } }", false},
     {"point_load_region", "point_load { body: 'sheet' region: 'right' force { y: 3 } scaled_by_breath: true }", false},
@@ -174,6 +177,7 @@ TEST_P(ForceContract, DampingIsTheForcesPartInVelocity) {
   Points damped = state_.v * c.asDiagonal();
   OuterProducts shared;
   force().AddSharedDamping(At(state_), shared);
+  EXPECT_EQ(force().has_shared_damping(), !shared.empty());
   if (!GetParam().turns) shared.AddTimes(1, state_.v, damped);
   if (GetParam().turns && !shared.empty()) GTEST_SKIP() << "on a free border flow is not only the surface's own";
   EXPECT_LT((ForceAt(state_) - ForceAt(still) + damped).cwiseAbs().maxCoeff(), 1e-12);

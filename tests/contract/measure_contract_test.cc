@@ -51,10 +51,10 @@ const char kScene[] =
     "radii { x: 1 y: 2 z: 1 } divisions: 2 } } bodies { name: 'rider' role: ROLE_SEEN ellipsoid { centre { x: 2 } "
     "radii { x: 0.5 y: 0.5 z: 0.5 } divisions: 2 } } bodies { name: 'passenger' role: ROLE_SEEN ellipsoid { centre { "
     "x: 2 } "
-    "radii { x: 0.5 y: 0.5 z: 0.5 } divisions: 2 } } motions { ride { bodies: 'rider' carriers: ['ball', 'piston'] } } "
-    "motions { ride { bodies: 'passenger' carriers: 'piston' } } "
+    "radii { x: 0.5 y: 0.5 z: 0.5 } divisions: 2 } } motions { skin { bodies: 'rider' drivers: ['ball', 'piston'] } } "
+    "motions { skin { bodies: 'passenger' drivers: 'piston' } } "
     "bodies { name: 'skin' role: ROLE_SEEN ellipsoid { radii { x: 1.2 y: 1.2 z: 2.2 } divisions: 4 } } "
-    "motions { ride { bodies: 'skin' carriers: 'ball' mode: RIDE_MODE_TRIANGLES } } "
+    "motions { skin { bodies: 'skin' drivers: 'ball' mode: SKIN_MODE_TRIANGLES } } "
     "forces { springs { bodies: 'ball' } } "
     "forces { name: 'gas' pressure { surface { bodies: 'ball' } pressure: 3 } } ";
 

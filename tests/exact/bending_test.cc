@@ -1,4 +1,4 @@
-// Bending of plates against what plate theory says.
+// Compares bending with plate theory.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,9 +15,8 @@ double EnergyOf(const Model& model, const State& state) {
   return energy;
 }
 
-// Rolled up to a curvature c, a plate has the energy B c^2 / 2 on its area (but for the outermost cells' halves, which
-// no edge bends).
-TEST(Bending, OfARolledPlateIsItsFlexuralRigidity) {
+// A plate of curvature c has the energy B c^2 / 2 per area, except on the outer half cells, where no edge bends.
+TEST(Bending, OfARolledPlateHasTheEnergyOfItsFlexuralRigidity) {
   const auto model = CompileText(
       "name: 'plate' bodies { name: 'plate' role: ROLE_DEFORMABLE grid { columns: 9 rows: 4 u { x: 0.1 } v { y: 0.07 } "
       "} } forces { bending { bodies: 'plate' youngs_modulus: 2e6 poissons_ratio: 0.25 thickness: 0.01 } }");
@@ -32,7 +31,7 @@ TEST(Bending, OfARolledPlateIsItsFlexuralRigidity) {
   EXPECT_NEAR(EnergyOf(*model, state), rigidity * kCurvature * kCurvature / 2 * area, 1e-12);
 }
 
-TEST(Bending, OfACurvedShapeIsNoneAtRest) {
+TEST(Bending, OfACurvedShapeIsZeroAtRest) {
   const auto model = CompileText(
       "name: 'dome' bodies { name: 'dome' role: ROLE_DEFORMABLE ellipsoid { radii { x: 0.1 y: 0.08 z: 0.06 } "
       "upper_half: true } } forces { bending { bodies: 'dome' youngs_modulus: 2e6 thickness: 0.01 } }");

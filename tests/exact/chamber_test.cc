@@ -1,4 +1,4 @@
-// Volumes, pressures and lungs against closed forms.
+// Compares volumes, pressures and lungs with closed forms.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -31,7 +31,7 @@ std::string Sphere(int divisions) {
       divisions);
 }
 
-// r = R (1 + sin(omega t)/4): V = 4 pi r^3/3 and its rate, at any moment of the breath, at second order of the mesh.
+// r = R (1 + sin(omega t)/4): V = 4 pi r^3/3 and its rate, at any time of the breath, at second order in the mesh size.
 TEST(BreathingSphere, HasTheVolumeAndFlowOfTheClosedForm) {
   constexpr double kRadius = 0.2, kOmega = 3;
   const auto worst = [&](int divisions) {
@@ -55,8 +55,8 @@ TEST(BreathingSphere, HasTheVolumeAndFlowOfTheClosedForm) {
   EXPECT_NEAR(coarse / fine, 4, 0.2);
 }
 
-// A gas in a sphere without stiffness of its own, or lungs with a resistance: V'' + R S V' + S/C (V - V0) = 0 for small
-// breaths, S = sum |a_i|^2/m_i, about (4 pi r^2)^2/m. Kicked along a_i/m_i with the flow V'(0).
+// A gas in a sphere without stiffness, or lungs with a resistance, for small amplitudes: V'' + R S V' + S/C (V - V0) =
+// 0, S = sum |a_i|^2/m_i, about (4 pi r^2)^2/m. The initial velocities along a_i/m_i give the flow V'(0).
 struct Gas {
   const char* force;
   double resistance;
@@ -87,12 +87,12 @@ double VolumeErrorAfter(const Gas& gas, const std::string& integrator, double dt
   return std::abs(Reading(*model, state, "V") - before - exact) / (kFlow / omega);
 }
 
-TEST_P(GasInASphere, SwingsAsTheClosedForm) {
+TEST_P(GasInASphere, OscillatesAsTheClosedForm) {
   for (const std::string integrator : {"INTEGRATOR_VELOCITY_VERLET", "INTEGRATOR_BDF2", "INTEGRATOR_TR_BDF2"}) {
     const double coarse = VolumeErrorAfter(GetParam(), integrator, 1e-3);
     const double fine = VolumeErrorAfter(GetParam(), integrator, 5e-4);
     EXPECT_LT(fine, 0.02) << integrator;
-    EXPECT_LT(fine, 0.35 * coarse) << integrator << " is of second order, with what vertices share of the damping too";
+    EXPECT_LT(fine, 0.35 * coarse) << integrator << " is of second order, including the coupled damping";
   }
 }
 
@@ -101,7 +101,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Gas{"forces { pressure { surface { bodies: 'ball' } compliance: 2e-5 } }", 0},
                     Gas{"forces { lungs { walls { bodies: 'ball' } compliance: 2e-5 resistance: 30 } }", 30}));
 
-// A piston of 0.06 m^2 below the lungs goes up and down by a sine: all they say is known.
+// A piston of 0.06 m^2 below the lungs moves by a sine: volume, flow and pressures have closed forms.
 TEST(LungsOverAPiston, FollowTheEquationOfMotion) {
   const auto model = CompileText(
       "name: 'piston' bodies { name: 'piston' role: ROLE_DEFORMABLE grid { columns: 3 rows: 2 u { x: 0.1 } v { y: 0.3 "
@@ -124,16 +124,16 @@ TEST(LungsOverAPiston, FollowTheEquationOfMotion) {
   }
 }
 
-// A round membrane of radius 0.1 m under the tension T, its rim (to half a spacing) fixed: p R^2/(4 T) deep in the
-// middle. A hexagonal lattice of springs a long that pull by f has T = sqrt(3) f/a.
+// A circular membrane of radius R = 0.1 m under the tension T, with a fixed rim (to half a spacing), deflects by
+// p R^2/(4 T) at its centre. A hexagonal lattice of springs of length a and tension f has T = sqrt(3) f/a.
 double DepthOverExact(int cells) {
   constexpr double kRadius = 0.1, kStiffness = 40, kRatio = 0.5;
   const double a = kRadius / cells;
   std::string vertices, triangles, fixed;
-  std::vector<int> places(static_cast<size_t>((2 * cells + 5) * (4 * cells + 9)), -1);
+  std::vector<int> indices(static_cast<size_t>((2 * cells + 5) * (4 * cells + 9)), -1);
   const int half = cells + 2;
-  const auto place = [&](int column, int row) -> int& {
-    return places[static_cast<size_t>((row + half) * (4 * cells + 9) + column + 2 * half)];
+  const auto vertex_at = [&](int column, int row) -> int& {
+    return indices[static_cast<size_t>((row + half) * (4 * cells + 9) + column + 2 * half)];
   };
   int count = 0;
   for (int row = -half; row <= half; ++row) {
@@ -142,14 +142,14 @@ double DepthOverExact(int cells) {
       if (r > kRadius + a / 2) continue;
       absl::StrAppend(&vertices, absl::StrFormat(" vertices { x: %.17g y: %.17g }", x, y));
       if (r >= kRadius - a / 2) absl::StrAppend(&fixed, " fixed_vertices: ", count);
-      place(column, row) = count++;
+      vertex_at(column, row) = count++;
     }
   }
   for (int row = -half; row < half; ++row) {
     for (int column = -2 * half; column < 2 * half; ++column) {
-      const int right = place(column + 1, row), up = place(column, row + 1);
+      const int right = vertex_at(column + 1, row), up = vertex_at(column, row + 1);
       if (right < 0 || up < 0) continue;
-      const int here = place(column, row), across = place(column + 1, row + 1);
+      const int here = vertex_at(column, row), across = vertex_at(column + 1, row + 1);
       if (here >= 0) absl::StrAppend(&triangles, absl::StrFormat(" triangles { a: %d b: %d c: %d }", here, right, up));
       if (across >= 0) {
         absl::StrAppend(&triangles, absl::StrFormat(" triangles { a: %d b: %d c: %d }", right, across, up));
@@ -170,7 +170,7 @@ double DepthOverExact(int cells) {
   return Reading(*model, state, "top") / exact;
 }
 
-TEST(MembraneUnderPressure, BulgesAsTheClosedFormOfARoundOne) {
+TEST(MembraneUnderPressure, DeflectsAsTheClosedFormOfACircularOne) {
   const double coarse = DepthOverExact(8), fine = DepthOverExact(32);
   EXPECT_NEAR(fine, 1, 0.02);
   EXPECT_LT(std::abs(fine - 1), 0.5 * std::abs(coarse - 1));

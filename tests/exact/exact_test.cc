@@ -1,4 +1,4 @@
-// Cases with a known solution. Numbers are those of the exact cases in the mechanics notes and the textbooks.
+// Compares simple mechanical systems with exact solutions from textbooks.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,7 +11,7 @@ namespace phrenic {
 namespace {
 
 // Fixed chain of N free masses m and springs k, mode j: omega = 2 sqrt(k/m) sin(j pi / (2 (N + 1))).
-TEST(FixedChain, FastestModeIsThatOfTheClosedForm) {
+TEST(FixedChain, FastestModeMatchesTheClosedForm) {
   constexpr int kFree = 12;
   std::string text =
       "name: 'chain' bodies { name: 'chain' role: ROLE_DEFORMABLE mass: 7 fixed_vertices: [0, 13] polyhedron {";
@@ -25,7 +25,7 @@ TEST(FixedChain, FastestModeIsThatOfTheClosedForm) {
 }
 
 // Semi-implicit Euler falls -g h^2 n (n + 1) / 2 after n steps, exactly.
-TEST(FreeFall, SemiImplicitEulerFallsAsItsSumSays) {
+TEST(FreeFall, SemiImplicitEulerMatchesItsExactSum) {
   const auto model = CompileText(
       "name: 'fall' bodies { name: 'mass' role: ROLE_DEFORMABLE mass: 3 polyhedron { vertices {} vertices { x: 9 } } } "
       "forces { gravity { bodies: 'mass' acceleration { z: -9.81 } } }");
@@ -33,8 +33,8 @@ TEST(FreeFall, SemiImplicitEulerFallsAsItsSumSays) {
   EXPECT_NEAR(state.x(2, 0), -9.81 * 0.01 * 0.01 * 100 * 101 / 2, 1e-12);
 }
 
-// Pendulum of 1 m on a rigid link, let go at 90 degrees: period 4 sqrt(L/g) K(sin 45 deg) = 2.367841948 s. A quarter of
-// a period brings it to the lowest point; the time is found between two steps.
+// Pendulum of 1 m on a rigid link, released at 90 degrees: its period is 4 sqrt(L/g) K(sin 45 deg) = 2.367841948 s. It
+// reaches the lowest point after a quarter of it; the time is interpolated between two steps.
 double QuarterPeriod(const Model& model, double dt) {
   State state = model.InitialState();
   Workspace work = model.MakeWorkspace();
@@ -58,7 +58,7 @@ TEST(Pendulum, OnAnExactLinkHasTheEllipticPeriodInTheLimit) {
   EXPECT_LT(fine, 0.2 * coarse);
 }
 
-// By RATTLE the same pendulum converges with the square of the step, and keeps its energy for a hundred swings.
+// With RATTLE the same pendulum converges at second order and keeps its energy for a hundred swings.
 TEST(Pendulum, OnAnExactLinkIsOfSecondOrderByVerlet) {
   const auto model = CompileText(
       "name: 'pendulum' bodies { name: 'rod' role: ROLE_DEFORMABLE mass: 2 fixed_vertices: 0 polyhedron { vertices {} "
@@ -70,11 +70,11 @@ TEST(Pendulum, OnAnExactLinkIsOfSecondOrderByVerlet) {
   EXPECT_LT(coarse, 1e-3);
   EXPECT_LT(std::abs(QuarterPeriod(*model, 1e-3) - exact), 0.05 * coarse);
   const State late = RunTo(*model, 236.7841948, 1e-2);
-  const double energy = 0.5 * late.v.col(1).squaredNorm() + 9.81 * late.x(2, 1);  // of 1 kg; 0 at the start
+  const double energy = 0.5 * late.v.col(1).squaredNorm() + 9.81 * late.x(2, 1);  // of a mass of 1 kg; initially 0
   EXPECT_LT(std::abs(energy), 1e-2 * 9.81);
 }
 
-// Hanging elastic chain of N equal springs: spring j carries the masses below it, so each stretches by its load over k.
+// Hanging chain of N equal springs: spring j carries the masses below it and stretches by that load over k.
 TEST(HangingChain, SettlesToTheClosedForm) {
   constexpr int kMasses = 6;
   std::string text =

@@ -1,4 +1,4 @@
-// Muscle fibres: where they run and how they shorten.
+// Muscle fibres: their directions, their shortening and their pull.
 #include "server/mechanics/forces/fibres.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ TEST(Fibres, RunFromOneRegionToTheOther) {
   EXPECT_LT((directions.colwise() - Eigen::Vector3d::UnitX()).cwiseAbs().maxCoeff(), 1e-9);
 }
 
-// Free to, they shorten until their own elasticity holds the pull: by active stress / modulus.
+// Free fibres shorten until their elasticity balances the active stress: by active stress / modulus.
 TEST(Fibres, ShortenByActiveStressOverModulus) {
   const auto model = Strip();
   State state = model->InitialState();
@@ -36,7 +36,7 @@ TEST(Fibres, ShortenByActiveStressOverModulus) {
   EXPECT_LT(ForceOn(*model, state).cwiseAbs().maxCoeff(), 1e-12);
 }
 
-// Held, they pull on each end with active stress x cross-section; not when muscles are off, nor when breathing out.
+// Fixed fibres pull on each end with active stress x cross-section; not with muscles off, nor in expiration.
 TEST(Fibres, PullByTheirActiveStressWhenHeld) {
   const auto model = Strip();
   State state = model->InitialState();
@@ -59,7 +59,7 @@ TEST(Fibres, PullByTheirActiveStressWhenHeld) {
   EXPECT_NEAR(pull(), 0, 1e-12);
 }
 
-// Between two circles of a plane the harmonic function is log r: its gradient is radial.
+// The harmonic function between two concentric circles is log r: its gradient is radial.
 TEST(HarmonicBetween, TwoCirclesIsTheLogarithm) {
   constexpr int kAround = 48, kOut = 12;
   Mesh mesh;

@@ -1,4 +1,4 @@
-// Motions with a closed form, by the integrators that are to follow them.
+// Compares integrators with motions that have a closed form.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,7 +21,7 @@ std::string Chain(int free, const std::string& more) {
 
 std::string By(const std::string& integrator) { return "parameters { integrator: INTEGRATOR_" + integrator + " }"; }
 
-// Two equal masses on a spring, friction on both: their distance is a damped oscillator of frequency sqrt(2 k/m).
+// Two equal masses on a spring, both with friction: their distance is a damped oscillator of frequency sqrt(2 k/m).
 double TwoMassesError(const std::string& integrator, double dt) {
   const auto model = CompileText(
       "name: 'pair' bodies { name: 'pair' role: ROLE_DEFORMABLE mass: 2 polyhedron { vertices {} vertices { x: 1.25 } "
@@ -43,7 +43,7 @@ TEST(TwoMasses, OnADampedSpringFollowTheClosedFormAtTheirOrder) {
   EXPECT_LT(TwoMassesError("VELOCITY_VERLET", 1e-3), 1e-5);
 }
 
-// Mode j of the fixed chain swings with 2 sqrt(k/m) sin(j pi / (2 (N + 1))) and keeps its shape.
+// Mode j of the fixed chain has the frequency 2 sqrt(k/m) sin(j pi / (2 (N + 1))) and keeps its shape.
 TEST(FixedChain, KeepsTheShapeAndTheFrequencyOfAMode) {
   constexpr int kFree = 9, kMode = 3;
   const auto model = CompileText(Chain(kFree, By("VELOCITY_VERLET")));
@@ -55,14 +55,14 @@ TEST(FixedChain, KeepsTheShapeAndTheFrequencyOfAMode) {
     Workspace work = model->MakeWorkspace();
     const double dt = 2 * std::numbers::pi / omega / steps;
     for (int i = 0; i < steps; ++i) EXPECT_TRUE(Step(*model, model->parameters, dt, state, work).ok());
-    return (state.x - start).cwiseAbs().maxCoeff();  // after a period all is as it was, but for the error of time
+    return (state.x - start).cwiseAbs().maxCoeff();  // the state repeats after a period, except for the time error
   };
   EXPECT_LT(error(400), 1e-5);
-  EXPECT_NEAR(std::log2(error(200) / error(400)), 4, 0.3);  // the cosine is flat there: twice the order
+  EXPECT_NEAR(std::log2(error(200) / error(400)), 4, 0.3);  // the cosine has zero slope there: twice the order
 }
 
-// Elastic catenary of point masses: every spring carries the same horizontal pull H, and the weight below it; the span
-// settles H, found here by bisection.
+// Elastic catenary of point masses: every spring carries the same horizontal force H and the weight below it. The span
+// determines H, found here by bisection.
 TEST(Catenary, OfPointMassesHangsAsItsDiscreteSolution) {
   constexpr int kFree = 9;
   constexpr double kWeight = 0.5 * 9.81, kStiffness = 50;
@@ -71,7 +71,7 @@ TEST(Catenary, OfPointMassesHangsAsItsDiscreteSolution) {
   const auto hang = [&](double pull) {
     Points x = Points::Zero(3, kFree + 2);
     for (int s = 0; s <= kFree; ++s) {
-      const double lift = kWeight * (s - kFree / 2.0);  // vertical part of the pull on the right of mass s
+      const double lift = kWeight * (s - kFree / 2.0);  // vertical force on the right of mass s
       const double tension = std::hypot(pull, lift), length = 1 + tension / kStiffness;
       x.col(s + 1) = x.col(s) + length / tension * Eigen::Vector3d(pull, 0, lift);
     }
@@ -86,8 +86,8 @@ TEST(Catenary, OfPointMassesHangsAsItsDiscreteSolution) {
   EXPECT_LT((state.x - hang(low)).cwiseAbs().maxCoeff(), 1e-8);
 }
 
-// A pendulum of 1 m on a spring of 1e7 N/m, let go at 90 degrees: a quarter of its period, 2.367841948 s, brings it to
-// the lowest point. An explicit step would have to be below 0.63 ms.
+// A pendulum of 1 m on a spring of 1e7 N/m, released at 90 degrees, reaches the lowest point after a quarter of its
+// period of 2.367841948 s. An explicit integrator needs steps below 0.63 ms.
 double StiffPendulumError(const std::string& integrator, double dt) {
   const auto model = CompileText(
       "name: 'pendulum' bodies { name: 'rod' role: ROLE_DEFORMABLE mass: 2 fixed_vertices: 0 polyhedron { vertices {} "
@@ -97,7 +97,7 @@ double StiffPendulumError(const std::string& integrator, double dt) {
   return std::abs(RunTo(*model, 2.367841948 / 4, 2.367841948 / 4 / std::round(0.592 / dt)).x(0, 1));
 }
 
-TEST(StiffPendulum, IsFollowedByImplicitMethodsFarAboveTheExplicitLimit) {
+TEST(StiffPendulum, ImplicitMethodsAreAccurateFarAboveTheExplicitLimit) {
   for (const char* integrator : {"BDF2", "TR_BDF2"}) {
     EXPECT_LT(StiffPendulumError(integrator, 4e-3), 5e-3) << integrator;
     EXPECT_LT(StiffPendulumError(integrator, 2e-3), 0.4 * StiffPendulumError(integrator, 4e-3)) << integrator;

@@ -1,4 +1,4 @@
-// Loads, drags and pulls with a known answer.
+// Compares point loads, target springs and pulls with closed forms.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace phrenic {
 namespace {
 
-// Two masses of 1.5 kg far apart; `more` acts on them.
+// Two masses of 1.5 kg far apart, with the elements `more`.
 std::shared_ptr<const Model> Masses(const std::string& more, const std::string& breath_force = "1",
                                     const std::string& integrator = "VELOCITY_VERLET") {
   return CompileText(
@@ -21,9 +21,10 @@ std::shared_ptr<const Model> Masses(const std::string& more, const std::string& 
       more + " } parameters { integrator: INTEGRATOR_" + integrator + " breath_force: " + breath_force + " }");
 }
 
-// A damped oscillator let go off its target: x = d (1 - e^(-zeta w t) (cos w' t + zeta w/w' sin w' t)).
+// A damped oscillator released off its target: x = d (1 - e^(-zeta w t) (cos w' t + zeta w/w' sin w' t)).
 TEST(TargetSpring, IsADampedOscillatorAboutItsTarget) {
-  const auto model = Masses("drag { bodies: 'masses' displacement { z: 0.2 } stiffness: 60 damping_ratio: 0.3 }");
+  const auto model =
+      Masses("target_spring { bodies: 'masses' displacement { z: 0.2 } stiffness: 60 damping_ratio: 0.3 }");
   const double omega = std::sqrt(60 / 1.5), t = 0.7, damped = omega * std::sqrt(1 - 0.3 * 0.3);
   const double exact =
       0.2 * (1 - std::exp(-0.3 * omega * t) * (std::cos(damped * t) + 0.3 * omega / damped * std::sin(damped * t)));
@@ -33,22 +34,22 @@ TEST(TargetSpring, IsADampedOscillatorAboutItsTarget) {
   EXPECT_LT(fine, 0.03 * coarse) << "second order";
 }
 
-TEST(TargetSpring, EndsAtThePointOfASurfaceThatIsNearest) {
-  const auto model = Masses("drag { bodies: 'masses' vertices: 0 surface: 'slope' damping_ratio: 1 }");
+TEST(TargetSpring, EndsAtTheNearestPointOfASurface) {
+  const auto model = Masses("target_spring { bodies: 'masses' vertices: 0 surface: 'slope' damping_ratio: 1 }");
   const State state = RunTo(*model, 10, 1e-2);
-  // The plane z = x - 2 is nearest to the origin at (1, 0, -1).
+  // The nearest point of the plane z = x - 2 to the origin is (1, 0, -1).
   EXPECT_LT((state.x.col(0) - Eigen::Vector3d(1, 0, -1)).norm(), 1e-9);
   EXPECT_EQ(state.x.col(1), model->rest.col(1));
 }
 
-TEST(TargetSpring, WithTheBreathStandsWhereTheBreathIs) {
-  const auto model =
-      Masses("drag { bodies: 'masses' point { z: 4 } damping_ratio: 0 scaled_by_breath: true }", "0.5", "STATIC");
+TEST(TargetSpring, WithTheBreathFollowsItsSignal) {
+  const auto model = Masses("target_spring { bodies: 'masses' point { z: 4 } damping_ratio: 0 scaled_by_breath: true }",
+                            "0.5", "STATIC");
   const State state = RunTo(*model, 1, 0.01);  // a quarter of 4 s: the signal is 1/2
   EXPECT_LT((state.x.col(1) - (9 * Eigen::Vector3d::UnitX() + 0.25 * Eigen::Vector3d(-9, 0, 4))).norm(), 1e-9);
 }
 
-TEST(PointLoad, IsSharedEvenly) {
+TEST(PointLoad, IsDistributedEvenly) {
   const auto model = Masses("point_load { body: 'masses' region: 'both' force { y: 6 } }");
   const State state = RunTo(*model, 2, 1e-2);
   for (int i = 0; i < 2; ++i) EXPECT_NEAR(state.x(1, i), 3 / 1.5 * 2 * 2 / 2, 1e-12) << i;

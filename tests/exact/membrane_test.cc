@@ -1,4 +1,4 @@
-// Finite elements of a membrane against what elasticity says.
+// Compares membrane finite elements with linear elasticity.
 #include <gtest/gtest.h>
 
 #include "absl/strings/str_cat.h"
@@ -24,7 +24,8 @@ std::string Sheet(const std::string& strain) {
 
 class MembraneStrain : public testing::TestWithParam<const char*> {};
 
-// Of whatever shape its triangles are, a patch whose edge is moved by a uniform strain takes that strain.
+// Patch test: with boundary displacements of a uniform strain, a patch of arbitrary triangles has that strain
+// everywhere.
 TEST_P(MembraneStrain, PassesThePatchTest) {
   const auto model = CompileText(Sheet(GetParam()));
   Eigen::Matrix3d stretch = Eigen::Matrix3d::Identity();
@@ -40,7 +41,7 @@ TEST_P(MembraneStrain, PassesThePatchTest) {
   EXPECT_LT((x - exact).cwiseAbs().maxCoeff(), 1e-12);
 }
 
-// The pull of a strip of width w stretched by a strain e along, free across: E h w e.
+// A strip of width w under the axial strain e, free across, has the force E h w e.
 TEST_P(MembraneStrain, StretchesByYoungsModulusAndThinsByPoissonsRatio) {
   const auto model = CompileText(Sheet(GetParam()));
   constexpr double kStrain = 1e-6;
@@ -104,7 +105,7 @@ TEST(CooksMembrane, ConvergesFromBelow) {
   EXPECT_LT(middle, fine);
   EXPECT_LT(fine, 23.96);
   EXPECT_NEAR(fine, 23.96, 0.01 * 23.96);
-  EXPECT_NEAR(fine + (fine - middle) / 3, 23.96, 0.005 * 23.96);  // as of second order
+  EXPECT_NEAR(fine + (fine - middle) / 3, 23.96, 0.005 * 23.96);  // Richardson extrapolation at second order
 }
 
 }  // namespace

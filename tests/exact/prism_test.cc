@@ -1,6 +1,6 @@
-// The tensegrity prism of n struts: whatever its radius and height, it is in balance only when the ends that a vertical
-// cable joins are turned by 90 - 180/n degrees against each other, and then its force densities (tension over length)
-// stand as q_horizontal / q_vertical = 1 / (2 sin(pi/n)) (Connelly and Terrell 1995).
+// The tensegrity prism of n struts: for any radius and height it is in equilibrium only if the two ends of a vertical
+// cable are twisted by 90 - 180/n degrees. Then its force densities (tension over length) have the ratio
+// q_horizontal / q_vertical = 1 / (2 sin(pi/n)) (Connelly and Terrell 1995).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ constexpr double kStiffness = 200, kRestRatio = 0.7;
 // Vertices 0 to n-1 are the lower polygon, n to 2n-1 the upper one; strut i -> n+i, vertical cable i -> n+i-1.
 struct Prism {
   int n;
-  double turn;  // from the stable form [rad]
+  double turn;  // initial deviation from the stable twist [rad]
 
   double StableTwist() const { return std::numbers::pi / 2 - std::numbers::pi / n; }
   int Upper(int i) const { return n + (i + n) % n; }
@@ -59,7 +59,7 @@ double Density(const Model& model, const State& state, int a, int b) {
   return kStiffness * (1 - kRestRatio * (model.rest.col(a) - model.rest.col(b)).norm() / length);
 }
 
-// Angle about the axis from vertex i to the upper end of its cable, and the mean over the prism [rad].
+// Mean angle about the axis from vertex i to the upper end of its cable [rad].
 double Twist(const Prism& prism, const State& state) {
   const Eigen::Vector3d lower = state.x.leftCols(prism.n).rowwise().mean();
   const Eigen::Vector3d upper = state.x.rightCols(prism.n).rowwise().mean();
@@ -79,7 +79,7 @@ TEST_P(TensegrityPrism, TurnsToItsStableTwist) {
     const Prism prism{GetParam(), turn};
     const auto model = CompileText(prism.Scene());
     ASSERT_NE(model, nullptr);
-    EXPECT_NEAR(Twist(prism, model->InitialState()), prism.StableTwist() + turn, 1e-12) << "where it starts";
+    EXPECT_NEAR(Twist(prism, model->InitialState()), prism.StableTwist() + turn, 1e-12) << "the initial twist";
     const State state = RunTo(*model, 60, 2e-3);
     EXPECT_NEAR(Twist(prism, state), prism.StableTwist(), 1e-6);
     const double horizontal = Density(*model, state, 0, 1), vertical = Density(*model, state, 0, prism.Upper(-1));

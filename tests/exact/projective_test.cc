@@ -1,4 +1,4 @@
-// Projective dynamics: where its iterations lead, and that they lead nowhere else.
+// Projective dynamics: its iterations converge to backward Euler, it dissipates energy, and its matrix is exact.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@
 namespace phrenic {
 namespace {
 
-// A chain along x of masses of 0.5 kg between two fixed ends, springs of 1 m; every `third` one may be stiffer.
+// A chain along x of masses of 0.5 kg between two fixed ends, with springs of 1 m; every third spring may be stiffer.
 std::string Chain(const std::string& forces, double stiffness = 50, double third = 50) {
   constexpr int kFree = 11;
   std::string text =
@@ -29,7 +29,7 @@ std::string Chain(const std::string& forces, double stiffness = 50, double third
 
 const char kGravity[] = "forces { gravity { bodies: 'chain' acceleration { z: -9.81 } } } ";
 
-// A square net under tension, held along one side.
+// A square net under tension, fixed along one side.
 const char kNet[] = R"(
   name: "net" title: "Net"
   bodies {
@@ -58,7 +58,7 @@ State StepBy(const Integrator& integrator, const Model& model, double dt, State 
   return state;
 }
 
-// What backward Euler's equation M (v' - v) = dt f(x') leaves, over dt times the largest force.
+// Residual of backward Euler, M (v' - v) - dt f(x'), over dt times the largest force.
 double Residual(const Model& model, double dt, const State& before, const State& after) {
   Points f(3, after.x.cols());
   model.plan->SumForces(MakeEvalContext(model, model.parameters, after), f);
@@ -89,7 +89,7 @@ TEST(ProjectiveDynamics, IteratesTowardsBackwardEuler) {
   EXPECT_LT(error(100), 0.01 * error(20));
 }
 
-TEST(ProjectiveDynamics, ComesToRestAtTheEquilibrium) {
+TEST(ProjectiveDynamics, ConvergesToTheEquilibrium) {
   const auto model = CompileText(Chain(kGravity));
   v1::Parameters parameters = model->parameters;
   State still = model->InitialState(), state = still;
@@ -122,7 +122,7 @@ TEST(ProjectiveDynamics, LosesEnergyInFreeVibrationAtAnyStep) {
   }
 }
 
-TEST(ProjectiveDynamics, StaysBoundedWhereStiffnessesDifferAMillionfold) {
+TEST(ProjectiveDynamics, StaysBoundedWithAStiffnessRatioOfAMillion) {
   for (const double dt : {1.0 / 60, 0.1}) {
     const auto model = CompileText(Chain(kGravity, 50, 5e7));
     State state = Disturbed(*model, 1);
@@ -132,12 +132,12 @@ TEST(ProjectiveDynamics, StaysBoundedWhereStiffnessesDifferAMillionfold) {
       ASSERT_TRUE(Step(*model, model->parameters, dt, state, work).ok()) << i;
       most = std::max(most, (state.x - model->rest).cwiseAbs().maxCoeff());
     }
-    EXPECT_LT(most, 10) << dt;  // it hangs 6 m deep
+    EXPECT_LT(most, 10) << dt;  // in equilibrium it hangs down by 6 m
   }
 }
 
-// In a net of springs at rest A is M + g^2 sum k (e_a - e_b)(e_a - e_b)^T on the free vertices, whatever their
-// direction.
+// For a net of springs at rest, A is M + g^2 sum k (e_a - e_b)(e_a - e_b)^T on the free vertices, for any direction of
+// the springs.
 TEST(PrefactoredSystem, IsTheLaplacianOfSpringsAtRest) {
   const auto model = CompileText(kNet);
   constexpr double kStep = 0.1, kSpring = 100;
@@ -162,8 +162,8 @@ TEST(PrefactoredSystem, IsTheLaplacianOfSpringsAtRest) {
   }
 }
 
-// What a live parameter changes is seen, and what it changed is undone bit for bit.
-TEST(PrefactoredSystem, DependsOnItsParametersAndNotOnWhatCameBefore) {
+// A change of a live parameter changes the matrix; resetting it restores the same bits.
+TEST(PrefactoredSystem, DependsOnParametersAndNotOnHistory) {
   const auto model = CompileText(kNet);
   v1::Parameters stiffer = model->parameters;
   stiffer.set_elasticity(10);

@@ -1,4 +1,4 @@
-// Finite elements of a solid against what elasticity says.
+// Compares solid finite elements with linear elasticity.
 #include <gtest/gtest.h>
 
 #include "absl/strings/str_format.h"
@@ -8,11 +8,11 @@
 namespace phrenic {
 namespace {
 
-// 1 x 0.2 x 0.2 m of 1000 Pa, n cells across and 5 n along.
+// A beam of 1 x 0.2 x 0.2 m with Young's modulus 1000 Pa, n cells across and 5 n along.
 std::shared_ptr<const Model> Beam(int n, const std::string& strain) {
   return CompileText(
       absl::StrFormat("name: 'beam' bodies { name: 'beam' role: ROLE_DEFORMABLE block { size { x: 1 y: 0.2 z: 0.2 } "
-                      "columns: %d rows: %d layers: %d } substance { density: 1000 } } forces { solid { bodies: 'beam' "
+                      "columns: %d rows: %d layers: %d } material { density: 1000 } } forces { solid { bodies: 'beam' "
                       "youngs_modulus: 1000 poissons_ratio: 0.3 strain: %s } }",
                       5 * n, n, n, strain));
 }
@@ -49,7 +49,7 @@ TEST_P(SolidStrain, PassesThePatchTest) {
   EXPECT_LT((x - exact).cwiseAbs().maxCoeff(), 1e-12);
 }
 
-// Under a traction p a beam that is free to thin grows by p L / E and thins by nu p / E.
+// Under an axial traction p, a free beam lengthens by p L / E and has the transverse strain -nu p / E.
 TEST_P(SolidStrain, StretchesByYoungsModulusAndThinsByPoissonsRatio) {
   const auto model = Beam(2, GetParam());
   const auto on_plane = [&](int i, int axis) { return model->rest(axis, i) == 0; };
@@ -81,8 +81,8 @@ double SagOfCantilever(int n) {
   return -(x - model->rest).row(2).minCoeff();
 }
 
-// Timoshenko's beam: F L^3 / (3 E I) + F L / (5/6 G A). Constant strain is too stiff in bending, less so with each
-// refinement, at second order but for the clamped corners.
+// Deflection of Timoshenko's beam: F L^3 / (3 E I) + F L / (5/6 G A). Constant-strain elements are too stiff in
+// bending; the error falls at second order, except at the clamped corners.
 TEST(Cantilever, ConvergesFromBelow) {
   const double side = 0.2, force = 0.01 * side * side, shear = 1000 / 2.6;
   const double exact = force / (3 * 1000 * std::pow(side, 4) / 12) + force / (5.0 / 6 * shear * side * side);

@@ -1,4 +1,4 @@
-// One tissue by several methods and resolutions: what is given as a material must not depend on the mesh.
+// One tissue with several methods and mesh sizes: results for a given material must not depend on the mesh.
 #include <gtest/gtest.h>
 
 #include "absl/strings/str_format.h"
@@ -24,18 +24,18 @@ std::string Methods(const std::string& method) {
   return Membrane("region: 'half'") + Springs("exclude_region: 'half'");
 }
 
-// 0.2 m along z by 0.1 m, held along its upper edge.
+// A sheet of 0.2 m along z by 0.1 m, fixed along its upper edge.
 std::shared_ptr<const Model> Strip(const std::string& methods, int cells, const std::string& more) {
   const double cell = 0.1 / cells;
   return CompileText(
       absl::StrFormat("name: 'strip' bodies { name: 'sheet' role: ROLE_DEFORMABLE grid { columns: %d rows: %d u { x: "
-                      "%.17g } v { z: %.17g } } substance { density: 1000 thickness: 0.003 } regions { name: 'top' low "
+                      "%.17g } v { z: %.17g } } material { density: 1000 thickness: 0.003 } regions { name: 'top' low "
                       "{} high { x: 1 } } regions { name: 'half' low { z: -0.1 } high { x: 1 } } fixed_regions: 'top' "
                       "} %s %s",
                       cells + 1, 2 * cells + 1, cell, -cell, methods, more));
 }
 
-// How far the lower edge's mean comes down, out of the sheet's plane held.
+// Mean descent of the lower edge [m], with motion out of the sheet's plane fixed.
 double Descent(const Model& model, int cells, double pull) {
   Points load = Points::Zero(3, model.rest.cols());
   for (int c = 0; c <= cells; ++c) load(2, model.rest.cols() - 1 - c) -= pull / cells * (c % cells == 0 ? 0.5 : 1);
@@ -47,13 +47,13 @@ double Descent(const Model& model, int cells, double pull) {
 class Tissue : public testing::TestWithParam<const char*> {};
 
 TEST_P(Tissue, StretchedStripDoesNotDependOnTheMesh) {
-  const double pull = 0.02 * 20000 * 0.003 * 0.1;  // strains it by 2 %, but for the clamped edge
+  const double pull = 0.02 * 20000 * 0.003 * 0.1;  // a strain of 2 %, except at the clamped edge
   for (const int cells : {4, 8, 16}) {
     EXPECT_NEAR(Descent(*Strip(Methods(GetParam()), cells, ""), cells, pull), 0.02 * 0.2, 0.05 * 0.02 * 0.2) << cells;
   }
 }
 
-// Under its own weight a sheet of length L comes down by density g L^2 / (2 E), for small strains.
+// Under its own weight a sheet of length L lengthens by density g L^2 / (2 E), for small strains.
 TEST_P(Tissue, HangingSheetDoesNotDependOnTheMesh) {
   const double exact = 1000 * 2.0 * 0.2 * 0.2 / (2 * 20000);
   for (const int cells : {4, 8, 16}) {
@@ -66,8 +66,8 @@ TEST_P(Tissue, HangingSheetDoesNotDependOnTheMesh) {
 
 INSTANTIATE_TEST_SUITE_P(Methods, Tissue, testing::Values("membrane", "springs", "mixed"));
 
-// A method with a region and the same method without it share out the triangles: none twice, none left.
-TEST(SharedOutTissue, HasNeitherGapNorOverlap) {
+// A method with a region and the same method for the rest cover each triangle exactly once.
+TEST(PartitionedTissue, HasNeitherGapNorOverlap) {
   for (const auto method : {&Membrane, &Springs}) {
     const auto model = Strip(method("") + method("region: 'half'") + method("exclude_region: 'half'"), 8, "");
     State state = model->InitialState();

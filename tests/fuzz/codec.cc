@@ -1,5 +1,5 @@
 // Any bytes decoded by any codec give finite positions or an error. The first byte selects the codec.
-#include "server/stream/codec.h"
+#include "server/stream/codecs/codec.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Bytes of each codec, as proto/README.md has them, and the positions that must come out, bit for bit. The viewer's
-// tests read the same file. Compressed bytes may differ between versions of zstd; what comes out may not.
+// Decodes golden bytes of each codec (see proto/README.md) and compares the positions bit by bit. The viewer's tests
+// read the same file. Compressed bytes may differ between versions of zstd; decoded positions may not.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -8,7 +8,7 @@
 
 #include "absl/strings/escaping.h"
 #include "server/mesh/topology.h"
-#include "server/stream/codec.h"
+#include "server/stream/codecs/codec.h"
 
 namespace phrenic::stream {
 namespace {
@@ -29,9 +29,9 @@ TEST(Golden, PositionsOfEachCodecAreThoseInTheFile) {
   RestShape shape{.rest = Positions(golden["rest"]), .edges = TriangleEdges(triangles)};
   const auto predicted = MakeCodec(v1::CODEC_PREDICTED, shape);
   for (const Json& each : golden["shapes"]) {
-    const auto placed = predicted->Decode(absl::HexStringToBytes(each["bytes"].get<std::string>()));
-    ASSERT_TRUE(placed.ok()) << placed.status();
-    shape.shapes.emplace_back(*placed - shape.rest);
+    const auto decoded = predicted->Decode(absl::HexStringToBytes(each["bytes"].get<std::string>()));
+    ASSERT_TRUE(decoded.ok()) << decoded.status();
+    shape.shapes.emplace_back(*decoded - shape.rest);
     EXPECT_EQ(shape.shapes.back(), Positions(each["displacements"]));
   }
   std::set<v1::Codec> pinned;
@@ -48,7 +48,7 @@ TEST(Golden, PositionsOfEachCodecAreThoseInTheFile) {
     ASSERT_TRUE(again.ok()) << again.status();
     EXPECT_EQ(*codec->Decode(*again), *decoded) << encoding["codec"];
   }
-  EXPECT_EQ(pinned.size(), Codecs().size()) << "a codec has no bytes in the file";
+  EXPECT_EQ(pinned.size(), Codecs().size()) << "a codec has no golden bytes in the file";
 }
 
 }  // namespace

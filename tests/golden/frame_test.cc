@@ -1,5 +1,5 @@
-// The bytes of one frame and of one body's geometry, as proto/README.md has them. The viewer's tests read the same
-// files.
+// Compares the encoded bytes of one frame and of one body's geometry with golden files (see proto/README.md). The
+// viewer's tests read the same files.
 #include "server/stream/frame.h"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ std::string Golden(const std::string& name) {
   return text.str();
 }
 
-// Hexadecimal digits in lines of 64.
+// Hexadecimal digits, 64 per line.
 std::string Hex(const std::string& bytes) {
   const std::string digits = absl::BytesToHexString(bytes);
   std::string lines;
@@ -44,7 +44,7 @@ Json Numbers(const std::string& bytes) {
   return numbers;
 }
 
-// Every number has an exact float32, so that no rounding differs between languages.
+// All numbers are exact in float32, so that rounding cannot differ between languages.
 Snapshot MakeSnapshot(const Model& model) {
   Snapshot snapshot{.sequence = 7,
                     .state = model.InitialState(),

@@ -32,7 +32,7 @@ std::string Thorax() {
          "motions { ribs { bodies: 'ribs' quiet_state: 1 " +
          ends +
          "} } motions { sternum { bodies: 'sternum' ribs: 'ribs' } } "
-         "motions { ride { bodies: 'cartilage' carriers: ['rib-1-r', 'sternum'] } } ";
+         "motions { skin { bodies: 'cartilage' drivers: ['rib-1-r', 'sternum'] } } ";
 }
 
 State AtPeak(const Model& model) { return RunTo(model, 2.0, 1e-3); }  // half of the 4 s breath

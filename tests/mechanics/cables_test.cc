@@ -42,8 +42,8 @@ TEST(Cable, CountsForTheStableStepAlsoWhenSlack) {
 
 // Thrown outwards slack, the mass flies freely until the cable is taut and then falls back or stays: an inelastic jerk.
 TEST(Limit, LetsFlyUntilItIsReached) {
-  const auto model =
-      CompileText(std::string(kPair) + "constraints { limits { body: 'pair' at_most_ratio: 2 at_least_ratio: 0.5 } }");
+  const auto model = CompileText(std::string(kPair) +
+                                 "constraints { length_limits { body: 'pair' at_most_ratio: 2 at_least_ratio: 0.5 } }");
   State state = model->InitialState();
   Workspace work = model->MakeWorkspace();
   const auto fly = [&](double velocity, int steps) {
@@ -61,9 +61,9 @@ TEST(Limit, LetsFlyUntilItIsReached) {
 }
 
 TEST(Limits, ThatLimitNothingAreAnErrorWithARemedy) {
-  const auto model = TryCompileText(std::string(kPair) + "constraints { limits { body: 'pair' } }");
+  const auto model = TryCompileText(std::string(kPair) + "constraints { length_limits { body: 'pair' } }");
   EXPECT_EQ(model.status().code(), absl::StatusCode::kInvalidArgument);
-  EXPECT_NE(model.status().message().find("constraints[0].limits: limits nothing: set at_most_ratio"),
+  EXPECT_NE(model.status().message().find("constraints[0].length_limits: limits nothing: set at_most_ratio"),
             std::string::npos)
       << model.status();
 }
@@ -75,7 +75,7 @@ TEST(Limits, LetGoWhatWouldHaveToPush) {
       "5 "
       "u { x: 0.1 } v { y: 0.1 } } } forces { gravity { bodies: 'net' acceleration { z: -9.81 } } } forces { friction "
       "{ "
-      "bodies: 'net' rate: 0.5 } } constraints { limits { body: 'net' at_most_ratio: 1.05 } }");
+      "bodies: 'net' rate: 0.5 } } constraints { length_limits { body: 'net' at_most_ratio: 1.05 } }");
   State state = model->InitialState();
   Workspace work = model->MakeWorkspace();
   double longest = 0;
@@ -97,7 +97,7 @@ TEST(Limits, MakeAStringOfManyPieces) {
   for (int i = 0; i < 10; ++i) text += " edges { a: " + std::to_string(i) + " b: " + std::to_string(i + 1) + " }";
   const auto model = CompileText(text +
                                  " } } forces { gravity { bodies: 'string' acceleration { z: -9.81 } } } forces { "
-                                 "friction { bodies: 'string' rate: 3 } } constraints { limits { body: 'string' "
+                                 "friction { bodies: 'string' rate: 3 } } constraints { length_limits { body: 'string' "
                                  "at_most_ratio: 1 } }");
   const State state = RunTo(*model, 20, 2e-3);
   EXPECT_NEAR(state.x(2, 10), -1, 1e-6);

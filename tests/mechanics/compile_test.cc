@@ -76,11 +76,11 @@ TEST(Compile, RegionsAreBoxesOfTheBodyAtRest) {
 TEST(Compile, MassFollowsFromTheSubstance) {
   const auto model = CompileText(
       "name: 's' bodies { name: 'b' role: ROLE_DEFORMABLE grid { columns: 3 rows: 5 u { x: 0.1 } v { y: 0.1 } } "
-      "substance { density: 500 thickness: 0.02 } }");
+      "material { density: 500 thickness: 0.02 } }");
   EXPECT_NEAR(model->mass.sum(), 500 * 0.02 * 0.2 * 0.4, 1e-12);
   EXPECT_THAT(
-      ErrorOf("", "name: 's' bodies { name: 'b' role: ROLE_DEFORMABLE polyhedron { vertices {} } substance {} }"),
-      AllOf(HasSubstr("bodies[0].substance"), HasSubstr("neither area nor volume")));
+      ErrorOf("", "name: 's' bodies { name: 'b' role: ROLE_DEFORMABLE polyhedron { vertices {} } material {} }"),
+      AllOf(HasSubstr("bodies[0].material"), HasSubstr("neither area nor volume")));
 }
 
 TEST(Compile, FillsClosedSurfacesWithCellsThatFit) {

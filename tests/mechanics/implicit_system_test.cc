@@ -21,7 +21,7 @@ Points RandomPoints(Eigen::Index columns, int seed) {
 // A sheet that is held at one edge, of a kind of tissue.
 std::shared_ptr<const Model> Sheet(const std::string& forces, int columns = 9, int rows = 13) {
   return CompileText(
-      "name: 'sheet' bodies { name: 'sheet' role: ROLE_DEFORMABLE substance {} fixed_vertices: [0, 1, "
+      "name: 'sheet' bodies { name: 'sheet' role: ROLE_DEFORMABLE material {} fixed_vertices: [0, 1, "
       "2] grid { columns: " +
       std::to_string(columns) + " rows: " + std::to_string(rows) + " u { x: 0.01 } v { y: 0.01 } } } " + forces);
 }
@@ -33,7 +33,7 @@ const char* const kTissues[] = {
     "rest_length_ratio: 0.7 } }",  // two along each edge
     "forces { springs { bodies: 'sheet' stiffness: 300 } } forces { springs { bodies: 'sheet' stiffness: 5000 "
     "rest_length_ratio: 1.3 } } forces { bending { bodies: 'sheet' youngs_modulus: 9000 } } forces { friction { "
-    "bodies: 'sheet' rate: 40 } } forces { drag { bodies: 'sheet' displacement { z: 0.01 } stiffness: 2 } }",
+    "bodies: 'sheet' rate: 40 } } forces { target_spring { bodies: 'sheet' displacement { z: 0.01 } stiffness: 2 } }",
 };
 
 // A y = b by the matrix in double precision.

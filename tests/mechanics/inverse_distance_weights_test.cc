@@ -44,7 +44,7 @@ Points Path() {
 }
 
 // By the definition.
-std::map<int, double> SharesOf(const ModelBuilder& builder, const Eigen::Vector3d& point) {
+std::map<int, double> WeightsOf(const ModelBuilder& builder, const Eigen::Vector3d& point) {
   std::map<int, double> weights;
   double largest = 0, kept = 0;
   for (int b = 0; b < static_cast<int>(builder.model.bodies.size()); ++b) {
@@ -57,39 +57,39 @@ std::map<int, double> SharesOf(const ModelBuilder& builder, const Eigen::Vector3
   return weights;
 }
 
-class BlenderBetweenClouds : public testing::Test {
+class WeightsBetweenClouds : public testing::Test {
  protected:
   const ModelBuilder builder = Clouds();
-  const SkinDrivers carriers{builder, All(builder)};
-  InverseDistanceWeights blender{carriers};
+  const SkinDrivers drivers{builder, All(builder)};
+  InverseDistanceWeights by_distance{drivers};
   const Points path = Path();
 };
 
-TEST_F(BlenderBetweenClouds, GivesSharesByInverseDistance) {
+TEST_F(WeightsBetweenClouds, AreByInverseDistance) {
   int shared = 0;
   for (int i = 0; i < path.cols(); ++i) {
-    std::vector<SkinWeight> shares;
-    blender.Append(path.col(i), i, shares);
-    std::map<int, double> expected = SharesOf(builder, path.col(i));
-    for (const SkinWeight& share : shares) {
-      EXPECT_NEAR(share.weight, expected[share.pose], 1e-9) << i;
-      expected[share.pose] = 0;
+    std::vector<SkinWeight> found;
+    by_distance.Append(path.col(i), i, found);
+    std::map<int, double> expected = WeightsOf(builder, path.col(i));
+    for (const SkinWeight& weight : found) {
+      EXPECT_NEAR(weight.weight, expected[weight.pose], 1e-9) << i;
+      expected[weight.pose] = 0;
     }
-    for (const auto& [body, weight] : expected) EXPECT_EQ(weight, 0) << "left out at " << i;
-    shared += shares.size() > 2 ? 1 : 0;
+    for (const auto& [body, rest] : expected) EXPECT_EQ(rest, 0) << "left out at " << i;
+    shared += found.size() > 2 ? 1 : 0;
   }
-  EXPECT_GT(shared, 500) << "the path is between carriers";
+  EXPECT_GT(shared, 500) << "the path is between drivers";
 }
 
-TEST_F(BlenderBetweenClouds, IsTheSameWhateverWasBlendedBefore) {
+TEST_F(WeightsBetweenClouds, DoNotDependOnThePointBefore) {
   for (int i = 0; i < path.cols(); ++i) {
-    std::vector<SkinWeight> shares, alone;
-    blender.Append(path.col(i), i, shares);
-    InverseDistanceWeights(carriers).Append(path.col(i), i, alone);
-    ASSERT_EQ(shares.size(), alone.size()) << i;
-    for (size_t s = 0; s < shares.size(); ++s) {
-      EXPECT_EQ(shares[s].pose, alone[s].pose) << i;
-      EXPECT_EQ(shares[s].weight, alone[s].weight) << i;
+    std::vector<SkinWeight> found, alone;
+    by_distance.Append(path.col(i), i, found);
+    InverseDistanceWeights(drivers).Append(path.col(i), i, alone);
+    ASSERT_EQ(found.size(), alone.size()) << i;
+    for (size_t s = 0; s < found.size(); ++s) {
+      EXPECT_EQ(found[s].pose, alone[s].pose) << i;
+      EXPECT_EQ(found[s].weight, alone[s].weight) << i;
     }
   }
 }

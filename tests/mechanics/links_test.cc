@@ -184,7 +184,7 @@ TEST(SparseLdlt, SolvesWhatADenseSolverDoesAndLeavesRedundantRowsOut) {
   }
   const SparseLdlt ldlt(n, below);
   SparseLdlt::Factors factors;
-  ldlt.Factorise(matrix.diagonal(), values, factors);
+  EXPECT_EQ(ldlt.Factorise(matrix.diagonal(), values, factors), 1) << "rows left out";
   const Eigen::VectorXd right = matrix * Eigen::VectorXd::NullaryExpr(n, [&] { return value(random); });
   Eigen::VectorXd x = right;
   ldlt.Solve(factors, x);
@@ -195,6 +195,28 @@ TEST(SparseLdlt, SolvesWhatADenseSolverDoesAndLeavesRedundantRowsOut) {
   ldlt.Solve(factors, three);
   for (int axis = 0; axis < 3; ++axis) {
     EXPECT_LT((three.row(axis).transpose() - (axis + 1) * x).norm(), 1e-12 * x.norm()) << "axis " << axis;
+  }
+}
+
+TEST(OrderedLdlt, SolvesWhatADenseSolverDoesAndRefusesWhatIsNotPositiveDefinite) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> value(-1, 1);
+  const int n = 40;
+  Eigen::MatrixXd dense = 4 * Eigen::MatrixXd::Identity(n, n);
+  for (int i = 0; i < n; ++i) {
+    const int j = (11 * i + 3) % n;
+    if (i != j) dense(i, j) = dense(j, i) = value(random);
+  }
+  const Eigen::VectorXd right = Eigen::VectorXd::NullaryExpr(n, [&] { return value(random); });
+  Eigen::SparseMatrix<double> matrix = dense.sparseView();
+  OrderedLdlt factor;
+  ASSERT_TRUE(factor.Factorise(matrix));
+  Eigen::VectorXd x;
+  factor.Solve(right, x);
+  EXPECT_LT((x - dense.ldlt().solve(right)).norm(), 1e-14 * n);
+  for (const double bad : {-1.0, 0.0, std::nan("")}) {
+    matrix.coeffRef(7, 7) = bad;
+    EXPECT_FALSE(factor.Factorise(matrix)) << bad;
   }
 }
 

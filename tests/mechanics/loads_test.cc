@@ -26,13 +26,18 @@ std::string WhyLeftOut(const std::string& force) {
 }
 
 TEST(TargetSpring, SaysWhatIsWrongWithIt) {
-  EXPECT_EQ(Refusal("drag { bodies: 'sheet' }"), "forces[3].drag: says no target: set displacement, point or surface");
-  EXPECT_THAT(Refusal("drag { bodies: 'sheet' vertices: 7 point {} }"), HasSubstr("forces[3].drag.vertices[0]: there"));
-  EXPECT_THAT(Refusal("drag { bodies: 'sheet' region: 'rim' point {} }"), HasSubstr("forces[3].drag.region"));
-  EXPECT_THAT(Refusal("drag { bodies: 'post' point {} }"), HasSubstr("must be ROLE_DEFORMABLE"));
-  EXPECT_THAT(Refusal("drag { bodies: 'sheet' surface: 'post' }"), HasSubstr("has no triangles to draw to"));
-  EXPECT_THAT(Refusal("drag { bodies: 'sheet' surface: 'sheet' }"), HasSubstr("name a body that is driven or at rest"));
-  EXPECT_THAT(Refusal("drag { bodies: 'sheet' point {} stiffness: -1 }"), HasSubstr("-1 is outside 0 to 1e+09 N/m"));
+  EXPECT_EQ(Refusal("target_spring { bodies: 'sheet' }"),
+            "forces[3].target_spring: says no target: set displacement, point or surface");
+  EXPECT_THAT(Refusal("target_spring { bodies: 'sheet' vertices: 7 point {} }"),
+              HasSubstr("forces[3].target_spring.vertices[0]: there"));
+  EXPECT_THAT(Refusal("target_spring { bodies: 'sheet' region: 'rim' point {} }"),
+              HasSubstr("forces[3].target_spring.region"));
+  EXPECT_THAT(Refusal("target_spring { bodies: 'post' point {} }"), HasSubstr("must be ROLE_DEFORMABLE"));
+  EXPECT_THAT(Refusal("target_spring { bodies: 'sheet' surface: 'post' }"), HasSubstr("has no triangles to draw to"));
+  EXPECT_THAT(Refusal("target_spring { bodies: 'sheet' surface: 'sheet' }"),
+              HasSubstr("name a body that is driven or at rest"));
+  EXPECT_THAT(Refusal("target_spring { bodies: 'sheet' point {} stiffness: -1 }"),
+              HasSubstr("-1 is outside 0 to 1e+09 N/m"));
 }
 
 TEST(PointLoad, SaysWhatIsWrongWithIt) {
@@ -47,9 +52,9 @@ TEST(PointLoad, SaysWhatIsWrongWithIt) {
 TEST(Loads, OnWhatCannotMoveAreLeftOut) {
   EXPECT_EQ(WhyLeftOut("point_load { body: 'sheet' vertices: 0 force { z: 1 } }"), "none of its vertices is free");
   EXPECT_EQ(WhyLeftOut("point_load { body: 'sheet' vertices: 1 force {} }"), "its force is 0");
-  EXPECT_EQ(WhyLeftOut("drag { bodies: 'sheet' vertices: 0 point {} }"), "none of its vertices is free");
-  EXPECT_EQ(WhyLeftOut("drag { bodies: 'sheet' stiffness: 0 point {} }"), "its stiffness is 0");
-  EXPECT_EQ(WhyLeftOut("drag { bodies: 'sheet' point {} }"), "");
+  EXPECT_EQ(WhyLeftOut("target_spring { bodies: 'sheet' vertices: 0 point {} }"), "none of its vertices is free");
+  EXPECT_EQ(WhyLeftOut("target_spring { bodies: 'sheet' stiffness: 0 point {} }"), "its stiffness is 0");
+  EXPECT_EQ(WhyLeftOut("target_spring { bodies: 'sheet' point {} }"), "");
 }
 
 TEST(Parameters, ThatNothingAnswersToAreReported) {
@@ -59,7 +64,7 @@ TEST(Parameters, ThatNothingAnswersToAreReported) {
   };
   EXPECT_THAT(idle(""), testing::ElementsAre("rib_motion", "pump_handle", "bucket_handle", "apply_muscles",
                                              "hyperinflation", "right_activation", "left_activation", "apply_links"));
-  EXPECT_THAT(idle("constraints { limits { body: 'sheet' at_most_ratio: 2 } }"),
+  EXPECT_THAT(idle("constraints { length_limits { body: 'sheet' at_most_ratio: 2 } }"),
               testing::Not(testing::Contains("apply_links")));
   EXPECT_THAT(idle("forces { action_line { bodies: 'sheet' origin {} direction { z: 1 } radius: 3 force: 1 } }"),
               testing::Not(testing::Contains("apply_muscles")));

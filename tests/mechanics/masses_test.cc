@@ -12,9 +12,9 @@ namespace phrenic {
 namespace {
 
 // Soft on one side and stiff on the other, held at a corner, small triangles in the last column, pulled by a muscle.
-std::string TwoStiffnesses(const std::string& mass_shares) {
+std::string TwoStiffnesses(const std::string& mass_lumping) {
   return absl::StrCat(
-      "name: 'sheet' bodies { name: 'sheet' role: ROLE_DEFORMABLE mass: 2 fixed_vertices: [0] ", mass_shares,
+      "name: 'sheet' bodies { name: 'sheet' role: ROLE_DEFORMABLE mass: 2 fixed_vertices: [0] ", mass_lumping,
       " grid { columns: 12 rows: 9 u { x: 0.01 } v { y: 0.01 } } regions { name: 'stiff' low { x: 0.055 y: -1 z: -1 } "
       "high { x: 1 y: 1 z: 1 } } } "
       "forces { springs { bodies: 'sheet' region: 'stiff' stiffness: 90 } } "
@@ -25,7 +25,7 @@ std::string TwoStiffnesses(const std::string& mass_shares) {
       "parameters { breath_force: 1 }");
 }
 
-const char kByStiffness[] = "mass_shares: MASS_SHARES_BY_STIFFNESS";
+const char kByStiffness[] = "mass_lumping: MASS_LUMPING_BY_STIFFNESS";
 
 // What each vertex meets where the others stay.
 class StiffnessAt final : public StiffnessSink {
@@ -79,12 +79,13 @@ TEST(Masses, ByStiffnessLeaveWhatActsAsItIs) {
 
 TEST(Masses, ByStiffnessOfNothingAreRefusedByField) {
   const auto model = TryCompileText(
-      "name: 'ball' bodies { name: 'ball' role: ROLE_DEFORMABLE mass_shares: MASS_SHARES_BY_STIFFNESS grid { columns: "
+      "name: 'ball' bodies { name: 'ball' role: ROLE_DEFORMABLE mass_lumping: MASS_LUMPING_BY_STIFFNESS grid { "
+      "columns: "
       "2 "
       "rows: 2 u { x: 1 } v { y: 1 } } } forces { gravity { bodies: 'ball' acceleration { z: -9.81 } } }");
   ASSERT_FALSE(model.ok());
   EXPECT_EQ(model.status().message(),
-            "bodies[0].mass_shares: nothing in the scene resists a motion of the body: leave MASS_SHARES_BY_AREA");
+            "bodies[0].mass_lumping: nothing in the scene resists a motion of the body: leave MASS_LUMPING_BY_AREA");
 }
 
 }  // namespace

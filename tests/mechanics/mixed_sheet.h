@@ -17,7 +17,7 @@ inline const char kMixedSheet[] = R"(
   forces { friction { bodies: "sheet" rate: 3 } }
   forces { gravity { bodies: "sheet" acceleration { x: 1 z: -9.81 } } }
   forces { point_load { body: "sheet" vertices: [3, 700, 511] force { y: 2 } } }
-  forces { attachment { bodies: "sheet" carriers: "bone" radius: 0.05 stiffness: 40 } }
+  forces { attachment { bodies: "sheet" anchors: "bone" radius: 0.05 stiffness: 40 } }
   forces { action_line { bodies: "sheet" origin {} direction { z: -1 } radius: 0.3 force: 2 } }
 )";
 

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "absl/strings/str_cat.h"
+#include "server/mechanics/block_constraint.h"
 #include "server/mechanics/constraint_residual.h"
 #include "server/mechanics/forces/spring_rows.h"
 #include "tests/compile_text.h"
@@ -46,7 +47,8 @@ const char kDriven[] =
     " motions { oscillation { body: 'sheet' vertices: [5, 300] amplitude { z: 0.002 } period: 0.1 } }";
 
 // Never acts; with another, both are worked out for all vertices at once.
-const char kSlack[] = " constraints { limits { body: 'sheet' list { links { a: 0 b: 200 } } at_most_ratio: 9 } }";
+const char kSlack[] =
+    " constraints { length_limits { body: 'sheet' list { links { a: 0 b: 200 } } at_most_ratio: 9 } }";
 
 void ExpectSameBits(const std::vector<std::string>& scenes) {
   const OneThreadAgain again;

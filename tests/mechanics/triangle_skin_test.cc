@@ -18,14 +18,14 @@ std::shared_ptr<const Model> Domes(int coarse, int fine) {
   };
   return CompileText("name: 'domes' bodies { name: 'coarse' role: ROLE_DEFORMABLE " + dome(coarse) +
                      "} bodies { name: 'fine' role: ROLE_SEEN " + dome(fine) +
-                     "} motions { ride { bodies: 'fine' carriers: 'coarse' mode: RIDE_MODE_TRIANGLES } }");
+                     "} motions { skin { bodies: 'fine' drivers: 'coarse' mode: SKIN_MODE_TRIANGLES } }");
 }
 
 // A coarse sheet of 3 x 3 cells of 1 m, and points over it.
 std::string SheetText(const std::string& points) {
   return "name: 'sheet' bodies { name: 'coarse' role: ROLE_DEFORMABLE grid { columns: 4 rows: 4 u { x: 1 } v { y: 1 } "
          "} } bodies { name: 'fine' role: ROLE_SEEN polyhedron { " +
-         points + " } } motions { ride { bodies: 'fine' carriers: 'coarse' mode: RIDE_MODE_TRIANGLES } }";
+         points + " } } motions { skin { bodies: 'fine' drivers: 'coarse' mode: SKIN_MODE_TRIANGLES } }";
 }
 
 Points Carried(const Model& model, const Points& x) {
@@ -112,10 +112,10 @@ TEST(Mapping, IsContinuousAcrossTheEdges) {
 TEST(Mapping, NeedsTrianglesThatMove) {
   const auto made = TryCompileText(
       "name: 'x' bodies { name: 'rod' role: ROLE_DEFORMABLE polyhedron { vertices {} vertices { x: 1 } edges { a: 0 b: "
-      "1 } } } bodies { name: 'fine' role: ROLE_SEEN polyhedron { vertices {} } } motions { ride { bodies: 'fine' "
-      "carriers: 'rod' mode: RIDE_MODE_TRIANGLES } }");
+      "1 } } } bodies { name: 'fine' role: ROLE_SEEN polyhedron { vertices {} } } motions { skin { bodies: 'fine' "
+      "drivers: 'rod' mode: SKIN_MODE_TRIANGLES } }");
   EXPECT_EQ(made.status().code(), absl::StatusCode::kInvalidArgument);
-  EXPECT_THAT(std::string(made.status().message()), testing::HasSubstr("motions[0].ride.carriers: body \"rod\""));
+  EXPECT_THAT(std::string(made.status().message()), testing::HasSubstr("motions[0].skin.drivers: body \"rod\""));
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// The generated thorax breathes inside the published ranges; what does not is named among the README's limits.
+// The generated thorax breathes inside the published ranges; measures outside are listed in
+// server/physiology/README.md.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -39,16 +40,16 @@ class Thorax : public testing::Test {
 
 std::shared_ptr<const Model> Thorax::model_;
 
-TEST_F(Thorax, BreathesInsideThePublishedRangesOrTheReadmeSaysWhereNot) {
-  double told = 0;
+TEST_F(Thorax, BreathesInsideThePublishedRangesOrTheReadmeListsTheMeasure) {
+  double last = 0;
   const auto table = physiology::CheckPhysiology(*model_, [&](double done) {
-    EXPECT_GE(done, told);
-    told = done;
+    EXPECT_GE(done, last);
+    last = done;
     return true;
   });
   ASSERT_TRUE(table.ok()) << table.status();
   EXPECT_GE(table->rows_size(), 19);
-  const std::string readme = ReadSource("README.md");
+  const std::string readme = ReadSource("server/physiology/README.md");
   for (const v1::PhysiologyRow& row : table->rows()) {
     std::printf("%-14s %-28s %7.2f   accepted %g to %g\n", row.breath().c_str(), row.what().c_str(), row.value(),
                 row.low(), row.high());
@@ -56,16 +57,16 @@ TEST_F(Thorax, BreathesInsideThePublishedRangesOrTheReadmeSaysWhereNot) {
     const bool outside = row.verdict() == v1::VERDICT_OUTSIDE;
     EXPECT_FALSE(outside && row.breath() == "quiet") << row.what();
     const std::string named = row.breath() + " breath, " + row.what();
-    EXPECT_FALSE(outside && readme.find(named) == std::string::npos) << "the README does not name: " << named;
+    EXPECT_FALSE(outside && readme.find(named) == std::string::npos) << "the README does not list: " << named;
   }
 }
 
-TEST_F(Thorax, StopsTheStudyWhenItsReaderGoes) {
+TEST_F(Thorax, StopsTheStudyIfItIsCancelled) {
   EXPECT_EQ(physiology::CheckPhysiology(*model_, [](double) { return false; }).status().code(),
             absl::StatusCode::kCancelled);
 }
 
-TEST_F(Thorax, IsHeldInItsTendonByRigidLinks) {
+TEST_F(Thorax, KeepsTheRigidLinksOfItsTendon) {
   EXPECT_GT(model_->report.rigid_links(), 500);
   State state = model_->InitialState();
   Workspace work = model_->MakeWorkspace();
@@ -75,7 +76,7 @@ TEST_F(Thorax, IsHeldInItsTendonByRigidLinks) {
   EXPECT_LT(model_->constraints.front()->Residual(state), 1e-9);
 }
 
-TEST_F(Thorax, IsMadeByTheSizeOfMeshThatWasPromised) {
+TEST_F(Thorax, HasTheSpecifiedNumberOfVertices) {
   EXPECT_GE(model_->report.simulated_vertices(), 20'000);
   EXPECT_LE(model_->report.simulated_vertices(), 21'000);
 }

@@ -1,4 +1,4 @@
-// The generated thorax, compiled once for all tests of a suite, and its ways to breathe.
+// The generated thorax, compiled once per test suite, and the parameters of its presets.
 #ifndef PHRENIC_TESTS_PHYSIOLOGY_GENERATED_THORAX_H_
 #define PHRENIC_TESTS_PHYSIOLOGY_GENERATED_THORAX_H_
 
@@ -16,6 +16,7 @@
 
 namespace phrenic {
 
+// A fixture whose model all tests of a suite share.
 class GeneratedThorax : public testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -28,6 +29,7 @@ class GeneratedThorax : public testing::Test {
   }
   static void TearDownTestSuite() { model_.reset(); }
 
+  // Returns the model's parameters with those of a preset merged in.
   static v1::Parameters With(const std::string& preset) {
     v1::Parameters parameters = model_->parameters;
     parameters.MergeFrom(*FindPreset(model_->scene, preset));

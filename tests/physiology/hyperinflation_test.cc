@@ -1,4 +1,4 @@
-// Lungs that stay full, on the generated thorax: what the preset of COPD promises.
+// Hyperinflated lungs of the generated thorax: the preset "COPD" has low domes, high ribs and full lungs.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -11,13 +11,13 @@ namespace phrenic {
 namespace {
 
 struct Extent {
-  double right = 0, left = 0;  // a dome's descent from rest [mm]
-  double litres = 0;           // more in the lungs than at rest
-  double sternum = 0;          // up [mm]
+  double right = 0, left = 0;  // descent of the domes from rest [mm]
+  double litres = 0;           // change of lung volume from rest [l]
+  double sternum = 0;          // cranial displacement [mm]
 };
 
 struct Breath {
-  Extent out, in;  // at the end of the third expiration, and the peak of the breath after it
+  Extent out, in;  // at the end of the third expiration and at the next peak of inspiration
 };
 
 class Hyperinflated : public GeneratedThorax {
@@ -31,7 +31,7 @@ class Hyperinflated : public GeneratedThorax {
   static Breath Breathe(const v1::Parameters& parameters) {
     State state = model_->InitialState();
     Workspace work = model_->MakeWorkspace();
-    const auto go_on_to = [&](double breaths) {
+    const auto advance_to = [&](double breaths) {
       while (state.time < breaths * parameters.breath_length()) {
         const absl::Status status = Step(*model_, parameters, parameters.time_step(), state, work);
         EXPECT_TRUE(status.ok()) << status;
@@ -39,7 +39,7 @@ class Hyperinflated : public GeneratedThorax {
       }
       return Measure(state);
     };
-    const Breath breath{go_on_to(3), go_on_to(3.5)};
+    const Breath breath{advance_to(3), advance_to(3.5)};
     for (const Extent& at : {breath.out, breath.in}) {
       std::printf("right %5.1f mm  left %5.1f mm  lungs %+.2f l  sternum %4.1f mm\n", at.right, at.left, at.litres,
                   at.sternum);
@@ -53,13 +53,14 @@ TEST_F(Hyperinflated, CopdBreathesFromLowDomesHighRibsAndFullLungs) {
   EXPECT_GT(copd.out.right, quiet.out.right + 10);
   EXPECT_GT(copd.out.left, quiet.out.left + 8);
   EXPECT_GT(copd.out.sternum, 3);
-  // A functional residual capacity of 2.5 l, raised to 120 to 160 %.
+  // COPD raises a functional residual capacity of 2.5 l to 120 to 160 %.
   EXPECT_GT(copd.out.litres - quiet.out.litres, 0.5);
   EXPECT_LT(copd.out.litres - quiet.out.litres, 1.5);
-  EXPECT_LT(copd.in.right - copd.out.right, (quiet.in.right - quiet.out.right) * 0.6) << "and hardly descends";
+  EXPECT_LT(copd.in.right - copd.out.right, (quiet.in.right - quiet.out.right) * 0.6)
+      << "the low domes descend little further";
 }
 
-TEST_F(Hyperinflated, IsStableAsFarAsTheParameterGoes) {
+TEST_F(Hyperinflated, IsStableOverTheParametersRange) {
   v1::Parameters parameters = With("quiet");
   double before = 0;
   for (const double h : {0.5, 1.0, 2.0}) {

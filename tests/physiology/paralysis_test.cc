@@ -1,4 +1,4 @@
-// A hemidiaphragm whose muscle does not pull: what the presets of the generated thorax promise.
+// Paralysis of one half of the diaphragm: the presets of the generated thorax and their effect on the domes.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -11,7 +11,7 @@ namespace phrenic {
 namespace {
 
 struct Descent {
-  double right = 0, left = 0;  // [mm], at the peak of a breath in
+  double right = 0, left = 0;  // of the domes at the peak of inspiration [mm]
 };
 
 class Paralysis : public GeneratedThorax {
@@ -41,10 +41,10 @@ TEST_F(Paralysis, ADomeWithoutMuscleMovesLessThanAThirdOfTheOther) {
   EXPECT_LT(left.left, left.right / 3);
 }
 
-TEST_F(Paralysis, OfOneSideIsThatOfTheOtherMirrored) {
+TEST_F(Paralysis, IsSymmetric) {
   const Descent right = BreatheIn("paralysis-right"), left = BreatheIn("paralysis-left");
   EXPECT_NEAR(right.right, left.left, 2);
-  // The right muscle is the stronger one: each moves by as much of what it does beside a healthy one.
+  // The right muscle is stronger: each active side moves by the same fraction of its motion in a quiet breath.
   const Descent quiet = BreatheIn("quiet");
   EXPECT_NEAR(right.left / quiet.left, left.right / quiet.right, 0.2);
 }
@@ -57,7 +57,7 @@ TEST_F(Paralysis, ASniffDrawsTheParalysedDomeUp) {
   EXPECT_GT(sniff.left, 5);
 }
 
-TEST_F(Paralysis, IsNoPartOfOtherBreaths) {
+TEST_F(Paralysis, DoesNotAffectOtherPresets) {
   v1::Parameters empty;
   empty.set_hyperinflation(0);
   const Descent quiet = BreatheIn("quiet"), weak = BreatheIn("COPD", empty), sniff = BreatheIn("sniff");

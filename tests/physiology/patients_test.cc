@@ -1,5 +1,5 @@
-// Three bodies, small, tall and with flattened domes, go from noisy label volumes to a breath inside the published
-// ranges.
+// Three phantom patients (small, tall, flattened domes) breathe inside the published ranges when their models are made
+// from noisy label volumes.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -40,7 +40,7 @@ class Patients : public testing::TestWithParam<const char*> {};
 TEST_P(Patients, BreatheQuietlyInsideThePublishedRanges) {
   auto patient = PatientOf(GetParam());
   ASSERT_TRUE(patient.ok()) << patient.status();
-  patient->scene.clear_presets();  // the quiet breath alone
+  patient->scene.clear_presets();  // only the quiet breath
   std::map<std::string, const Mesh*> meshes;
   for (const imaging::PatientBody& body : patient->bodies) meshes[body.name] = &body.mesh;
   const auto model =

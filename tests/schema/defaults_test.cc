@@ -41,7 +41,7 @@ TEST(Defaults, ReachNestedMessagesThatAreSet) {
   EXPECT_EQ(scene.parameters().breath_length(), 4);
 }
 
-TEST(Defaults, MakeNoMessagesOfTheirOwn) {
+TEST(Defaults, CreateNoMessages) {
   v1::Scene scene;
   scene.add_bodies();
   FillDefaults(&scene);
@@ -50,13 +50,13 @@ TEST(Defaults, MakeNoMessagesOfTheirOwn) {
   EXPECT_EQ(scene.bodies(0).shape_case(), v1::Body::SHAPE_NOT_SET);
 }
 
-TEST(Defaults, LeaveNumbersWithoutPresenceAlone) {
+TEST(Defaults, LeaveNumbersWithoutPresenceUnchanged) {
   v1::StepSessionRequest request;
   FillDefaults(&request);
   EXPECT_EQ(request.ticks(), 0);
 }
 
-TEST(Defaults, FillTwiceIsFillOnce) {
+TEST(Defaults, AreIdempotent) {
   v1::Scene once;
   once.add_forces()->mutable_attachment();
   FillDefaults(&once);

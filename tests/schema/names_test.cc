@@ -14,13 +14,13 @@ TEST(NearestName, IsWithinHalfOfTheLetters) {
   EXPECT_EQ(NearestName("lung", kNames), "");
 }
 
-TEST(NearestName, IsTheOneThatBeginsSo) {
+TEST(NearestName, IsTheOnlyOneWithThatPrefix) {
   EXPECT_EQ(NearestName("cu", kNames), "cube-springs");
   EXPECT_EQ(NearestName("thorax-", kNames), "thorax-patient");
   EXPECT_EQ(NearestName("c", kNames), "") << "a letter says too little";
 }
 
-TEST(NearestName, OfNothingIsNothing) {
+TEST(NearestName, IsEmptyIfThereIsNone) {
   EXPECT_EQ(NearestName("", kNames), "");
   EXPECT_EQ(NearestName("thorax", {}), "");
   EXPECT_EQ(NearestName(std::string(1000, 'x'), kNames), "");

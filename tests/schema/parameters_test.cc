@@ -28,7 +28,7 @@ TEST(SetParameter, SetsNumbers) {
   EXPECT_EQ(parameters.breath_force(), 1.5);
 }
 
-TEST(SetParameter, SetsSwitchesInTheWordsPeopleUse) {
+TEST(SetParameter, AcceptsSeveralWordsForSwitches) {
   for (const char* word : {"on", "true", "yes", "1", "ON", "True"}) {
     v1::Parameters parameters;
     ASSERT_EQ(SetParameter("apply_muscles", word, &parameters), absl::OkStatus()) << word;
@@ -42,7 +42,7 @@ TEST(SetParameter, SetsSwitchesInTheWordsPeopleUse) {
   }
 }
 
-TEST(SetParameter, SetsChoicesByWhatIsParticularInTheirNames) {
+TEST(SetParameter, SetsChoicesByNameWithoutPrefix) {
   for (const char* word :
        {"semi_implicit_euler", "semi-implicit-euler", "SEMI_IMPLICIT_EULER", " semi_implicit_euler "}) {
     v1::Parameters parameters;
@@ -51,7 +51,7 @@ TEST(SetParameter, SetsChoicesByWhatIsParticularInTheirNames) {
   }
 }
 
-TEST(SetParameter, RefusesWhatIsNoChoiceWithThoseThereAre) {
+TEST(SetParameter, RefusesUnknownChoicesAndListsThem) {
   EXPECT_THAT(Refusal("integrator", "magic"),
               StartsWith("integrator: there is no \"magic\"; did you mean static? There are semi_implicit_euler"));
   for (const char* word : {"unspecified", "INTEGRATOR_SEMI_IMPLICIT_EULER", "1", ""}) {
@@ -64,7 +64,7 @@ TEST(SetParameter, NamesTheRange) {
   EXPECT_EQ(Refusal("time_step", "0"), "time_step: 0 is outside 1e-07 to 0.1 s");
 }
 
-TEST(SetParameter, RefusesWhatIsNoNumber) {
+TEST(SetParameter, RefusesTextThatIsNotANumber) {
   EXPECT_EQ(Refusal("breath_length", "long"), "breath_length: \"long\" is not a number; allowed is 0.5 to 30 s");
   EXPECT_THAT(Refusal("breath_length", ""), HasSubstr("is not a number"));
   EXPECT_THAT(Refusal("breath_length", "4 s"), HasSubstr("is not a number"));
@@ -81,7 +81,7 @@ TEST(SetParameter, SuggestsTheNearestName) {
   }
 }
 
-TEST(SetParameter, SuggestsNothingWhereNothingIsNear) {
+TEST(SetParameter, SuggestsNothingIfNoNameIsNear) {
   EXPECT_THAT(Refusal("q", "1"), StartsWith("there is no parameter \"q\"; there are time_step, "));
   EXPECT_LT(Refusal(std::string(100000, 'x'), "1").size(), 500U);
 }

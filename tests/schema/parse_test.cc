@@ -14,7 +14,7 @@ namespace {
 using testing::HasSubstr;
 using testing::StartsWith;
 
-constexpr char kSound[] = R"(# Comments are allowed.
+constexpr char kValid[] = R"(# Comments are allowed.
 name: "sheet"
 bodies {
   name: "sheet"
@@ -24,9 +24,9 @@ bodies {
 forces { springs { bodies: "sheet" stiffness: 5 } }
 )";
 
-// The sound scene with `from` replaced by `to`.
+// The valid scene with `from` replaced by `to`.
 std::string With(const std::string& from, const std::string& to) {
-  std::string text = kSound;
+  std::string text = kValid;
   return text.replace(text.find(from), from.size(), to);
 }
 
@@ -36,43 +36,43 @@ std::string Refusal(const std::string& text) {
   return std::string(scene.status().message());
 }
 
-TEST(ParseScene, ReadsASoundScene) {
-  const auto scene = ParseScene("lung.textproto", kSound);
+TEST(ParseScene, ReadsAValidScene) {
+  const auto scene = ParseScene("lung.textproto", kValid);
   ASSERT_TRUE(scene.ok()) << scene.status();
   EXPECT_EQ(scene->name(), "sheet");
   EXPECT_EQ(scene->forces(0).springs().stiffness(), 5);
 }
 
 TEST(ParseScene, FillsNoDefaults) {
-  const auto scene = ParseScene("lung.textproto", kSound);
+  const auto scene = ParseScene("lung.textproto", kValid);
   ASSERT_TRUE(scene.ok()) << scene.status();
   EXPECT_FALSE(scene->bodies(0).has_mass());
 }
 
-TEST(ParseScene, PlacesSyntaxErrors) {
+TEST(ParseScene, LocatesSyntaxErrors) {
   EXPECT_THAT(Refusal(With("role: ROLE_DEFORMABLE", "role = 1")), StartsWith("lung.textproto:5:8: "));
   EXPECT_THAT(Refusal(With("grid {", "grid ")), StartsWith("lung.textproto:6:"));
 }
 
-TEST(ParseScene, PlacesUnknownFieldsAndNamesThem) {
+TEST(ParseScene, LocatesUnknownFieldsAndNamesThem) {
   const std::string refusal = Refusal(With("stiffness", "stifness"));
   EXPECT_THAT(refusal, StartsWith("lung.textproto:8:"));
   EXPECT_THAT(refusal, HasSubstr("stifness"));
 }
 
-TEST(ParseScene, PlacesUnknownEnumNames) {
+TEST(ParseScene, LocatesUnknownEnumNames) {
   const std::string refusal = Refusal(With("ROLE_DEFORMABLE", "ROLE_SOFT"));
-  EXPECT_THAT(refusal, StartsWith("lung.textproto:6:3: "));  // the parser has read on to the next word
+  EXPECT_THAT(refusal, StartsWith("lung.textproto:6:3: "));  // the parser has already read the next token
   EXPECT_THAT(refusal, HasSubstr("ROLE_SOFT"));
   EXPECT_THAT(refusal, HasSubstr("role"));
 }
 
-TEST(ParseScene, PlacesNumbersOutsideTheirRange) {
+TEST(ParseScene, LocatesNumbersOutsideTheirRange) {
   EXPECT_EQ(Refusal(With("stiffness: 5", "stiffness: -5")),
             "lung.textproto:8:36: forces[0].springs.stiffness: -5 is outside 0 to 1e+09 N/m");
 }
 
-TEST(ParseScene, PlacesWhatIsMissingAtTheMessageThatLacksIt) {
+TEST(ParseScene, LocatesMissingFieldsAtTheirMessage) {
   EXPECT_EQ(Refusal(With("u { x: 1 }", "")), "lung.textproto:6:3: bodies[0].grid.u: must be set: every Grid needs it");
   EXPECT_THAT(Refusal(With("name: \"sheet\"\nbodies", "bodies")), StartsWith("lung.textproto: name: must be set"));
 }
@@ -81,15 +81,15 @@ TEST(ParseScene, RefusesNaN) {
   EXPECT_THAT(Refusal(With("stiffness: 5", "stiffness: nan")), HasSubstr("nan is not a finite number"));
 }
 
-TEST(ParseScene, RefusesNestingWithoutEnd) {
-  std::string text = kSound;
+TEST(ParseScene, RefusesDeepNesting) {
+  std::string text = kValid;
   for (int i = 0; i < 100000; ++i) text += "bodies { ";
   EXPECT_THAT(Refusal(text), StartsWith("lung.textproto:9:"));
 }
 
 TEST(ParseScene, RefusesAnEmptyFile) { EXPECT_THAT(Refusal(""), HasSubstr("name: must be set")); }
 
-TEST(ParseScene, EveryShippedSceneIsSound) {
+TEST(ParseScene, EveryShippedSceneIsValid) {
   int scenes = 0;
   for (const auto& entry : std::filesystem::directory_iterator(PHRENIC_SOURCE_DIR "/server/scenes")) {
     if (entry.path().extension() != ".textproto") continue;

@@ -1,4 +1,4 @@
-// Laws over the schema itself, whatever fields it has.
+// Laws that hold for every field of the schema.
 #include "server/schema/schema.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace {
 using google::protobuf::Descriptor;
 using google::protobuf::FieldDescriptor;
 
-// Visits every field that a request can hold.
+// Visits every field of every request.
 void ForEachField(const std::function<void(const FieldDescriptor&)>& visit) {
   std::set<const Descriptor*> seen;
   const std::function<void(const Descriptor*)> walk = [&](const Descriptor* type) {
@@ -44,7 +44,7 @@ bool IsNumber(const FieldDescriptor& field) {
   }
 }
 
-TEST(Schema, QuantitiesStandOnNumbersWithUnitAndRange) {
+TEST(Schema, QuantitiesAreOnNumbersWithUnitAndRange) {
   int quantities = 0;
   ForEachField([&](const FieldDescriptor& field) {
     const v1::Quantity* quantity = QuantityOf(field);
@@ -65,7 +65,7 @@ TEST(Schema, DefaultsLieInTheirRanges) {
   });
 }
 
-TEST(Schema, TogglesStandOnSwitchesThatKnowWhetherTheyAreSet) {
+TEST(Schema, TogglesAreOnBooleansWithPresence) {
   ForEachField([](const FieldDescriptor& field) {
     if (ToggleOf(field) == nullptr) return;
     EXPECT_EQ(field.cpp_type(), FieldDescriptor::CPPTYPE_BOOL) << field.full_name();
@@ -73,7 +73,7 @@ TEST(Schema, TogglesStandOnSwitchesThatKnowWhetherTheyAreSet) {
   });
 }
 
-TEST(Schema, ChoicesStandOnEnumsAndHaveADefaultAmongTheirValues) {
+TEST(Schema, ChoicesAreOnEnumsWithADefaultAmongTheirValues) {
   ForEachField([](const FieldDescriptor& field) {
     const v1::Choice* choice = ChoiceOf(field);
     if (choice == nullptr) return;
@@ -84,7 +84,7 @@ TEST(Schema, ChoicesStandOnEnumsAndHaveADefaultAmongTheirValues) {
   });
 }
 
-TEST(Schema, ChoicesAreCalledByWhatIsParticularInTheirNames) {
+TEST(Schema, ChoicesAreNamedWithoutTheirPrefix) {
   const google::protobuf::EnumDescriptor& type = *v1::Integrator_descriptor();
   EXPECT_EQ(ChoiceName(*type.FindValueByNumber(v1::INTEGRATOR_SEMI_IMPLICIT_EULER)), "semi_implicit_euler");
   for (int i = 1; i < type.value_count(); ++i) EXPECT_EQ(FindChoice(type, ChoiceName(*type.value(i))), type.value(i));

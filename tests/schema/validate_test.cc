@@ -14,8 +14,8 @@ namespace {
 using testing::HasSubstr;
 using testing::StartsWith;
 
-// A scene with nothing wrong in it.
-v1::Scene SoundScene() {
+// A valid scene.
+v1::Scene ValidScene() {
   v1::Scene scene;
   scene.set_name("sound");
   v1::Body& body = *scene.add_bodies();
@@ -37,16 +37,16 @@ std::string Refusal(const google::protobuf::Message& message) {
   return std::string(status.message());
 }
 
-TEST(Validation, TakesASoundScene) { EXPECT_EQ(Validate(SoundScene()), absl::OkStatus()); }
+TEST(Validation, AcceptsAValidScene) { EXPECT_EQ(Validate(ValidScene()), absl::OkStatus()); }
 
 TEST(Validation, NamesPathValueRangeAndUnit) {
-  v1::Scene scene = SoundScene();
+  v1::Scene scene = ValidScene();
   scene.mutable_forces(0)->mutable_springs()->set_stiffness(-5);
   EXPECT_EQ(Refusal(scene), "forces[0].springs.stiffness: -5 is outside 0 to 1e+09 N/m");
 }
 
-TEST(Validation, TakesTheEndsOfARange) {
-  v1::Scene scene = SoundScene();
+TEST(Validation, IncludesTheEndsOfARange) {
+  v1::Scene scene = ValidScene();
   for (const double end : {0.0, 1e9}) {
     scene.mutable_forces(0)->mutable_springs()->set_stiffness(end);
     EXPECT_EQ(Validate(scene), absl::OkStatus());
@@ -64,17 +64,17 @@ TEST(Validation, LeavesOutTheUnitOfAPureNumber) {
 TEST(Validation, RefusesNumbersThatAreNotFiniteEverywhere) {
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
                            -std::numeric_limits<double>::infinity()}) {
-    v1::Scene scene = SoundScene();
+    v1::Scene scene = ValidScene();
     scene.mutable_forces(0)->mutable_springs()->set_stiffness(bad);
     EXPECT_THAT(Refusal(scene), HasSubstr("is not a finite number; allowed is 0 to 1e+09 N/m"));
-    v1::Scene vector = SoundScene();  // a number without a Quantity
+    v1::Scene vector = ValidScene();  // a number without a Quantity
     vector.mutable_bodies(0)->mutable_grid()->mutable_origin()->set_z(bad);
     EXPECT_THAT(Refusal(vector), StartsWith("bodies[0].grid.origin.z: "));
   }
 }
 
 TEST(Validation, IntegersHaveRangesToo) {
-  v1::Scene scene = SoundScene();
+  v1::Scene scene = ValidScene();
   scene.mutable_bodies(0)->mutable_grid()->set_rows(2001);
   EXPECT_EQ(Refusal(scene), "bodies[0].grid.rows: 2001 is outside 2 to 2000");
   v1::StepSessionRequest step;
@@ -83,21 +83,21 @@ TEST(Validation, IntegersHaveRangesToo) {
   EXPECT_EQ(Refusal(step), "ticks: 1000001 is outside 1 to 1e+06");
 }
 
-TEST(Validation, ANumberNotWrittenCountsAsZero) {
+TEST(Validation, UnsetNumbersWithoutPresenceAreZero) {
   v1::StepSessionRequest step;
   step.set_session_id("a");
   EXPECT_EQ(Refusal(step), "ticks: 0 is outside 1 to 1e+06");
 }
 
-TEST(Validation, AnOptionalNumberNotSetIsRight) {
-  v1::Scene scene = SoundScene();
+TEST(Validation, UnsetOptionalNumbersAreValid) {
+  v1::Scene scene = ValidScene();
   scene.mutable_forces(0)->mutable_springs()->clear_stiffness();
   scene.mutable_parameters();  // time_step may not be 0, and is not set
   EXPECT_EQ(Validate(scene), absl::OkStatus());
 }
 
 TEST(Validation, RequiredTextMustNotBeEmpty) {
-  v1::Scene scene = SoundScene();
+  v1::Scene scene = ValidScene();
   scene.clear_name();
   EXPECT_EQ(Refusal(scene), "name: must be set: every Scene needs it");
   v1::GetSessionRequest request;
@@ -105,19 +105,19 @@ TEST(Validation, RequiredTextMustNotBeEmpty) {
 }
 
 TEST(Validation, RequiredListsMustNotBeEmpty) {
-  v1::Scene scene = SoundScene();
+  v1::Scene scene = ValidScene();
   scene.clear_bodies();
   EXPECT_EQ(Refusal(scene), "bodies: must not be empty: every Scene needs at least one");
 }
 
 TEST(Validation, RequiredMessagesMustBeSet) {
-  v1::Scene scene = SoundScene();
+  v1::Scene scene = ValidScene();
   scene.mutable_bodies(0)->mutable_grid()->clear_v();
   EXPECT_EQ(Refusal(scene), "bodies[0].grid.v: must be set: every Grid needs it");
 }
 
 TEST(Validation, RequiredEnumsNameTheirValues) {
-  v1::Scene scene = SoundScene();
+  v1::Scene scene = ValidScene();
   scene.mutable_bodies(0)->clear_role();
   EXPECT_EQ(Refusal(scene),
             "bodies[0].role: must be set: every Body needs one of ROLE_DEFORMABLE, ROLE_DRIVEN, ROLE_AT_REST, "
@@ -125,20 +125,20 @@ TEST(Validation, RequiredEnumsNameTheirValues) {
 }
 
 TEST(Validation, RefusesUnknownEnumValues) {
-  v1::Scene scene = SoundScene();
+  v1::Scene scene = ValidScene();
   scene.mutable_breath()->set_waveform(static_cast<v1::Waveform>(77));
-  EXPECT_EQ(Refusal(scene), "breath.waveform: 77 is none of WAVEFORM_SINE, WAVEFORM_RAISED_COSINE");
+  EXPECT_EQ(Refusal(scene), "breath.waveform: 77 is not one of WAVEFORM_SINE, WAVEFORM_RAISED_COSINE");
 }
 
-TEST(Validation, NamesThePlaceInALongList) {
-  v1::Scene scene = SoundScene();
+TEST(Validation, NamesTheIndexInAList) {
+  v1::Scene scene = ValidScene();
   for (int i = 0; i < 3; ++i) *scene.add_forces() = scene.forces(0);
   scene.mutable_forces(2)->mutable_springs()->set_rest_length_ratio(2.5);
   EXPECT_EQ(Refusal(scene), "forces[2].springs.rest_length_ratio: 2.5 is outside 0 to 2");
 }
 
 TEST(Validation, RefusesTextThatIsNotUtf8) {
-  v1::Scene scene = SoundScene();
+  v1::Scene scene = ValidScene();
   scene.set_title("Zwerchfell, Diaphragme, \xe6\xa8\xaa\xe9\x9a\x94\xe8\x86\x9c");
   EXPECT_EQ(Validate(scene), absl::OkStatus());
   for (const char* bad : {"\xff", "cut \xe6\xa8", "\xc0\xaf", "\xed\xa0\x80"}) {
@@ -147,7 +147,7 @@ TEST(Validation, RefusesTextThatIsNotUtf8) {
   }
 }
 
-TEST(Validation, LooksAtEveryValueOfARepeatedField) {
+TEST(Validation, ChecksEveryValueOfARepeatedField) {
   v1::CreateExportRequest request;
   request.set_session_id("a");
   request.set_format("msh");

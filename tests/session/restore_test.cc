@@ -248,7 +248,7 @@ TEST_F(RestoreTest, ASessionThatCannotBeRestoredStaysUntilItIsDeleted) {
   }
   Again();
   ASSERT_TRUE(lost_.contains("odd"));
-  EXPECT_THAT(std::string(lost_["odd"].message()), HasSubstr("are not those that it was made with"));
+  EXPECT_THAT(std::string(lost_["odd"].message()), HasSubstr("differ from those that it was made with"));
   v1::CreateSessionRequest request;
   request.set_session_id("odd");
   request.mutable_source()->set_name("triangle");

@@ -1,5 +1,5 @@
 // What holds for every codec, on frames of simulations as they are: the bound, and that no bytes do harm.
-#include "server/stream/codec.h"
+#include "server/stream/codecs/codec.h"
 
 #include <gtest/gtest.h>
 

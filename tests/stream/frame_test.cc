@@ -6,6 +6,7 @@
 #include "server/stream/encoder.h"
 #include "server/stream/geometry.h"
 #include "tests/compile_text.h"
+#include "tests/scalar_motion.h"
 #include "tests/small_scenes.h"
 
 namespace phrenic::stream {
@@ -50,6 +51,26 @@ TEST(Frame, ProbesReadPositionAndDisplacementFromRest) {
   EXPECT_EQ(frame->probes(0).y(), snapshot.state.x(1, 2));
   EXPECT_EQ(frame->probes(0).dy(), snapshot.state.x(1, 2) - 1);
   EXPECT_EQ(frame->probes(0).dz(), snapshot.state.x(2, 2));
+}
+
+TEST(Frame, ScalarsAreReadWithTheirNamesUnitsAndRates) {
+  const auto model = CompileWithScalars(kTriangle);
+  Snapshot snapshot = At(*model, 0.5);
+  const auto frame = MakeFrame(*model, Layout(*model), snapshot);
+  ASSERT_TRUE(frame.ok()) << frame.status();
+  ASSERT_EQ(frame->scalars_size(), 2);
+  EXPECT_EQ(frame->scalars(0).name(), "angle");
+  EXPECT_EQ(frame->scalars(0).unit(), "rad");
+  EXPECT_EQ(frame->scalars(0).value(), snapshot.state.scalars.q[0]);
+  EXPECT_EQ(frame->scalars(0).rate(), snapshot.state.scalars.v[0]);
+  EXPECT_EQ(frame->scalars(1).value(), 0.5);
+  snapshot.state.scalars.v[1] = std::numeric_limits<double>::infinity();
+  EXPECT_FALSE(MakeFrame(*model, Layout(*model), snapshot).ok());
+}
+
+TEST(Frame, ModelsWithoutScalarsSendNone) {
+  const auto model = CompileText(kTriangle);
+  EXPECT_EQ(MakeFrame(*model, Layout(*model), At(*model, 0.5))->scalars_size(), 0);
 }
 
 TEST(Frame, MeasuresAreReadAtItsState) {

@@ -1,5 +1,5 @@
-// What parts cost: every part a scene names gets its row, what is left out is gone, and the sums add up. Times are held
-// against nothing here but other times of the same run, generously.
+// The cost study: every part has its rows, parts that are left out are not compiled, and stages sum to the step. Times
+// are compared only with other times of the same run, with wide tolerances.
 #include "server/study/cost.h"
 
 #include <gmock/gmock.h>
@@ -34,7 +34,7 @@ using testing::Le;
 using testing::Not;
 using testing::StartsWith;
 
-// A sheet of many methods, hung on a post that never moves; its contact with the floor cannot be left out.
+// A sheet with many kinds of elements, attached to a fixed post. The compile step cannot leave out its contact.
 const char kSheet[] = R"(
   name: "sheet" title: "Sheet"
   bodies {
@@ -49,9 +49,9 @@ const char kSheet[] = R"(
     }
   }
   bodies {
-    name: "sheet" role: ROLE_DEFORMABLE mass_shares: MASS_SHARES_BY_STIFFNESS
+    name: "sheet" role: ROLE_DEFORMABLE mass_lumping: MASS_LUMPING_BY_STIFFNESS
     grid { columns: 10 rows: 10 u { x: 0.1 } v { y: 0.1 } }
-    substance { density: 1030 thickness: 0.003 }
+    material { density: 1030 thickness: 0.003 }
   }
   motions { oscillation { body: "sheet" vertices: [90, 99] amplitude { z: 0.02 } period: 2 } }
   forces { springs { bodies: "sheet" stiffness: 50 } }
@@ -60,11 +60,11 @@ const char kSheet[] = R"(
   forces { cables { body: "sheet" } }
   forces { friction { bodies: "sheet" rate: 3 } }
   forces { gravity { bodies: "sheet" acceleration { z: -1 } } }
-  forces { attachment { bodies: "sheet" carriers: "post" radius: 0.15 stiffness: 20 } }
+  forces { attachment { bodies: "sheet" anchors: "post" radius: 0.15 stiffness: 20 } }
   forces { action_line { bodies: "sheet" origin { x: 0.5 y: 0.5 } direction { z: 1 } radius: 0.3 force: 1 air_load: 0.5 } }
   forces { contact { bodies: "sheet" surfaces: "floor" depth: 0.01 load: 1 } }
   constraints { rigid_links { body: "sheet" list { links { a: 44 b: 46 } links { a: 64 b: 66 } } } }
-  constraints { limits { body: "sheet" at_most_ratio: 1.5 } }
+  constraints { length_limits { body: "sheet" at_most_ratio: 1.5 } }
 )";
 
 v1::CreateStudyRequest CostRequest(int steps, int trials) {
@@ -89,7 +89,7 @@ std::map<std::string, v1::CostRow> RowsOf(const v1::CostTable& table) {
   return rows;
 }
 
-// The small sheet's study, made once.
+// The study of the small sheet, run once.
 const v1::CostTable& SheetTable() {
   static const auto* const table = new v1::CostTable(RunOn(kSheet, CostRequest(20, 3))->cost());
   return *table;
@@ -98,17 +98,17 @@ const v1::CostTable& SheetTable() {
 TEST(CostStudy, HasARowForEveryPartOfTheScene) {
   const auto rows = RowsOf(SheetTable());
   for (const std::string part : {"springs", "membrane", "bending", "cables", "friction", "gravity", "attachments",
-                                 "muscles", "contact", "links", "limits", "oscillation"}) {
+                                 "muscles", "contact", "links", "length limits", "oscillation"}) {
     EXPECT_TRUE(rows.contains("without " + part)) << part;
   }
-  EXPECT_TRUE(rows.contains("full, once more"));
+  EXPECT_TRUE(rows.contains("full, repeated"));
   EXPECT_TRUE(rows.contains("links switched off"));
   EXPECT_TRUE(rows.contains("muscles switched off"));
   EXPECT_FALSE(rows.contains("without ribs"));
   EXPECT_FALSE(rows.contains("contact left out"));
 }
 
-TEST(CostStudy, CountsWhatIsThere) {
+TEST(CostStudy, CountsElements) {
   auto rows = RowsOf(SheetTable());
   EXPECT_EQ(rows["full"].links(), 2);
   EXPECT_GT(rows["full"].springs(), 0);
@@ -120,7 +120,7 @@ TEST(CostStudy, CountsWhatIsThere) {
   for (const auto& [name, row] : rows) EXPECT_EQ(row.vertices(), 100) << name;
 }
 
-TEST(CostStudy, CompilesLeftOutPartsToNothing) {
+TEST(CostStudy, DoesNotCompileEmptyParts) {
   int left_out = 0;
   for (const v1::CostRow& row : SheetTable().rows()) {
     EXPECT_THAT(row.note(), Not(HasSubstr("NOT leave it out"))) << row.variant();
@@ -139,16 +139,16 @@ TEST(CostStudy, TimesArePositiveAndAgreeWithEachOther) {
     EXPECT_NEAR(row.ns_per_vertex_step() * 100, 1e3 * row.cpu_us_per_step(), 1e-3 * row.cpu_us_per_step());
     EXPECT_GE(row.spread(), 0);
     EXPECT_GT(row.share(), 0);
-    const bool held = row.variant().ends_with(" left out") || row.variant().ends_with(" switched off") ||
-                      row.variant() == "full, once more";
-    EXPECT_EQ(row.has_over_never_had(), held) << row.variant();
+    const bool compared = row.variant().ends_with(" left out") || row.variant().ends_with(" switched off") ||
+                          row.variant() == "full, repeated";
+    EXPECT_EQ(row.has_over_never_had(), compared) << row.variant();
   }
   EXPECT_EQ(SheetTable().rows(0).variant(), "full");
   EXPECT_EQ(SheetTable().rows(0).share(), 1);
 }
 
-// Of a step, by clocks inside.
-double InsideShare(const v1::CostTable& table, const std::string& element) {
+// Fraction of the step that an element takes, by clocks inside.
+double InsideFraction(const v1::CostTable& table, const std::string& element) {
   double whole = 0, part = 0;
   for (const v1::StageRow& row : table.stages()) {
     if (row.stage() == "step") whole = row.us_per_step();
@@ -157,9 +157,9 @@ double InsideShare(const v1::CostTable& table, const std::string& element) {
   return part / whole;
 }
 
-// By leaving it out and by clocks inside, within what other work on the machine blurs.
-TEST(CostStudy, SeesWhatTheDearestPartCosts) {
-  const double inside = InsideShare(SheetTable(), "bending");
+// Leaving a part out and clocks inside agree within the noise of the machine.
+TEST(CostStudy, MeasuresTheMostExpensivePart) {
+  const double inside = InsideFraction(SheetTable(), "bending");
   EXPECT_GT(inside, 0.2);
   EXPECT_NEAR(1 - RowsOf(SheetTable())["without bending"].share(), inside, 0.2);
 }
@@ -177,14 +177,14 @@ TEST(CostStudy, StagesSumToTheStep) {
   EXPECT_NEAR(sum, whole, 1e-9 * whole);
   EXPECT_GT(whole, 0);
   EXPECT_EQ(stages["force"], 7);
-  EXPECT_EQ(joint, 1);  // friction, weight and action line, worked out together
+  EXPECT_EQ(joint, 1);  // friction, gravity and action line are one batch
   EXPECT_EQ(stages["motion"], 1);
   EXPECT_EQ(stages["constraint"], 2);
   EXPECT_EQ(stages["integrator"], 1);
-  EXPECT_EQ(stages["stiffness"], 0);  // an explicit integrator asks for none
+  EXPECT_EQ(stages["stiffness"], 0);  // an explicit integrator needs none
 }
 
-TEST(CostStudy, StagesCountWhatTheIntegratorAsksFor) {
+TEST(CostStudy, StagesCountTheIntegratorsCalls) {
   v1::CreateStudyRequest request = CostRequest(20, 1);
   request.mutable_parameters()->set_integrator(v1::INTEGRATOR_RUNGE_KUTTA_4);
   const auto result = RunOn(kSheet, request);
@@ -212,7 +212,7 @@ const Repeated& RepeatedStudy() {
   return *repeated;
 }
 
-TEST(CostStudy, GivesTheSameTwiceButForTimes) {
+TEST(CostStudy, RepeatsExactlyExceptForTimes) {
   const absl::StatusOr<v1::StudyResult>& again = RepeatedStudy().result;
   ASSERT_TRUE(again.ok()) << again.status();
   const v1::CostTable &a = SheetTable(), &b = again->cost();
@@ -243,7 +243,7 @@ TEST(CostStudy, GrowsInProportionToTheVertices) {
   EXPECT_TRUE(table.growth(3).has_exponent());
 }
 
-TEST(CostStudy, EndsWhenItIsCancelled) {
+TEST(CostStudy, StopsWhenCancelled) {
   for (const double end : {0.0, 0.1, 0.3, 0.52, 0.85}) {
     v1::CreateStudyRequest request = CostRequest(10, 1);
     request.mutable_cost()->set_largest_sheet(100);
@@ -265,7 +265,7 @@ TEST(CostStudy, ProgressOnlyGrows) {
   EXPECT_THAT(progress, Each(AllOf(Ge(0), Le(1))));
 }
 
-TEST(CostStudy, HoldsTheCubesAgainstFigure510) {
+TEST(CostStudy, ComparesTheCubesWithFigure510) {
   const auto result = RunOn(FileText("cube-tensegrity"), CostRequest(200, 1));
   ASSERT_TRUE(result.ok()) << result.status();
   ASSERT_EQ(result->cost().sizes_size(), 1);
@@ -281,7 +281,7 @@ TEST(CostStudy, HoldsTheCubesAgainstFigure510) {
   EXPECT_FALSE(rows["without gravity"].has_thesis_steps_per_s());
 }
 
-TEST(CostParts, AreThoseThatTheSceneNames) {
+TEST(CostParts, AreThoseOfTheScene) {
   const v1::Scene thorax = SceneFile("thorax");
   EXPECT_THAT(PartsOf(thorax), ElementsAre("ribs", "springs", "friction", "attachments", "muscles", "lungs", "links"));
   EXPECT_TRUE(PartsOf({}).empty());
@@ -323,7 +323,7 @@ TEST(CostGrowth, SheetsHaveTheirSize) {
   }
 }
 
-// Clocks inside change no motion: a timed model steps to the same bits.
+// Clocks do not change the motion: a timed model steps to the same bits.
 TEST(TimedModel, StepsToTheSameState) {
   const auto model = CompileText(kSheet);
   Stages stages;
@@ -342,7 +342,7 @@ TEST(TimedModel, StepsToTheSameState) {
   }
 }
 
-TEST(ThesisTables, AreThoseOfTheLikeModel) {
+TEST(ThesisTables, AreThoseOfTheCorrespondingModel) {
   const v1::Scene thorax = SceneFile("thorax"), cube = SceneFile("cube-springs"), sheet = SceneFile("sheet-2d");
   EXPECT_EQ(LikeThesisFigure(thorax, 20900, ThesisTrial::kFull)->steps_per_second, 8.13);
   EXPECT_EQ(LikeThesisFigure(thorax, 20900, ThesisTrial::kNoLinks)->steps_per_second, 8.56);

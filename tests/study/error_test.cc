@@ -1,4 +1,4 @@
-// Error against run time: orders come out as published, the thesis' scheme as it is, and refusals are honest.
+// The error study: observed orders match the published ones, and insignificant errors are not reported.
 #include "server/study/error.h"
 
 #include <gmock/gmock.h>
@@ -47,7 +47,7 @@ v1::CreateStudyRequest ErrorRequest(double seconds, int levels) {
   return request;
 }
 
-// The order between the two finest steps, by integrator.
+// The observed order of convergence between the two finest steps, by integrator.
 std::map<std::string, double> Orders(const v1::ErrorTable& table) {
   std::map<std::string, double> orders;
   for (const v1::ErrorRow& row : table.rows()) {
@@ -76,20 +76,20 @@ TEST(ErrorStudy, FindsThePublishedOrders) {
   EXPECT_LT(result->error().reference().error_max_mm(), 1e-5);
 }
 
-TEST(ErrorStudy, SaysWhatToUse) {
+TEST(ErrorStudy, RecommendsAnIntegrator) {
   v1::CreateStudyRequest request = ErrorRequest(1, 6);
   request.mutable_error()->set_target(1e-5);
   const auto result = RunOn(kSwing, request);
   ASSERT_TRUE(result.ok()) << result.status();
   EXPECT_THAT(result->error().advice(), HasSubstr("For an error of 0.01 mm"));
-  const auto beaten = [&](const v1::ErrorRow& row) {
+  const auto dominated = [&](const v1::ErrorRow& row) {
     return std::any_of(result->error().rows().begin(), result->error().rows().end(), [&](const v1::ErrorRow& other) {
       return other.verdict() == "ok" && other.error_rms_mm() < row.error_rms_mm() &&
              other.cpu_per_second() < row.cpu_per_second();
     });
   };
   for (const v1::ErrorRow& row : result->error().rows()) {
-    EXPECT_EQ(row.pareto(), row.verdict() == "ok" && !beaten(row)) << row.DebugString();
+    EXPECT_EQ(row.pareto(), row.verdict() == "ok" && !dominated(row)) << row.DebugString();
   }
 }
 
@@ -105,7 +105,7 @@ TEST(ErrorStudy, RefusesErrorsBelowTheReferences) {
   EXPECT_FALSE(last.pareto());
 }
 
-TEST(ErrorStudy, ShowsWhatTheThesisProjectionCosts) {
+TEST(ErrorStudy, ShowsTheErrorOfTheThesisProjection) {
   v1::CreateStudyRequest request = ErrorRequest(1, 3);
   request.mutable_error()->add_integrators(v1::INTEGRATOR_VELOCITY_VERLET);
   request.mutable_parameters()->set_integrator(v1::INTEGRATOR_VELOCITY_VERLET);
@@ -120,8 +120,9 @@ TEST(ErrorStudy, ShowsWhatTheThesisProjectionCosts) {
   EXPECT_GT(last["thesis"].error_rms_mm(), 10 * last["exact"].error_rms_mm());
 }
 
-// An accurate solver takes the round-off of single precision for motion, and its steps never end.
-TEST(ErrorStudy, MeasuresSinglePrecisionByDouble) {
+// The reference uses double precision: an adaptive solver resolves round-off of single precision as motion and hardly
+// advances.
+TEST(ErrorStudy, ComparesSinglePrecisionWithADoubleReference) {
   v1::CreateStudyRequest request = ErrorRequest(1, 6);
   request.mutable_error()->add_integrators(v1::INTEGRATOR_RUNGE_KUTTA_4);
   std::string single = kSwing;
@@ -132,10 +133,10 @@ TEST(ErrorStudy, MeasuresSinglePrecisionByDouble) {
   EXPECT_EQ(rounded.reference().evaluations(), exact.reference().evaluations());
   EXPECT_EQ(rounded.reference().error_max_mm(), exact.reference().error_max_mm());
   ASSERT_EQ(rounded.rows_size(), exact.rows_size());
-  EXPECT_GT(rounded.rows(5).error_rms_mm(), 2 * exact.rows(5).error_rms_mm()) << "round-off is what is left";
+  EXPECT_GT(rounded.rows(5).error_rms_mm(), 2 * exact.rows(5).error_rms_mm()) << "the remaining error is round-off";
 }
 
-TEST(ErrorStudy, GivesTheSameNumbersTwice) {
+TEST(ErrorStudy, RepeatsExactly) {
   v1::CreateStudyRequest request = ErrorRequest(0.5, 3);
   const auto a = RunOn(kSwing, request), b = RunOn(kSwing, request);
   ASSERT_TRUE(a.ok() && b.ok());
@@ -146,7 +147,7 @@ TEST(ErrorStudy, GivesTheSameNumbersTwice) {
   }
 }
 
-TEST(ErrorStudy, SaysWhereARunWasOutOfTimeAndTriesNoShorterSteps) {
+TEST(ErrorStudy, ReportsWhenARunWasOutOfTimeAndSkipsShorterSteps) {
   std::string stiff = kSwing;
   v1::CreateStudyRequest request = ErrorRequest(1, 1);
   request.mutable_error()->add_integrators(v1::INTEGRATOR_VELOCITY_VERLET);

@@ -1,4 +1,4 @@
-// Every extreme case ends well: it passes, or it is stopped or refused with a reason.
+// Every extreme case passes, or is stopped or refused with a reason.
 #include "server/study/extremes.h"
 
 #include <gmock/gmock.h>
@@ -25,14 +25,14 @@ using testing::HasSubstr;
 v1::StabilityTable Judge(const ExtremeCase& extreme) {
   v1::StabilityStudy study;
   study.set_most_seconds_a_run(120);
-  static const Baselines baselines = *BaselineErrors(study, kNobody);
+  static const Baselines baselines = *BaselineErrors(study, kNeverCancel);
   v1::StabilityTable table;
-  EXPECT_TRUE(AddExtreme(extreme, baselines, study, kNobody, table).ok());
+  EXPECT_TRUE(AddExtreme(extreme, baselines, study, kNeverCancel, table).ok());
   return table;
 }
 
-// The first letter of each verdict, of semi-implicit Euler, velocity Verlet, Runge-Kutta 4, linear-implicit Euler and
-// BDF2, each unguarded and guarded. Nothing FAILs.
+// First letters of the verdicts (pass, stopped) of semi-implicit Euler, velocity Verlet, Runge-Kutta 4, linear-implicit
+// Euler and BDF2, each without and with error control. None is FAILED.
 const std::map<std::string, std::string> kVerdicts = {
     {"baseline", "pppppppppp"},
     {"zero rest length", "pppppppppp"},
@@ -64,7 +64,7 @@ const std::map<std::string, std::string> kVerdicts = {
 
 class Extremes : public testing::TestWithParam<ExtremeCase> {};
 
-TEST_P(Extremes, EndAsTheyShould) {
+TEST_P(Extremes, HaveTheExpectedVerdicts) {
   const v1::StabilityTable table = Judge(GetParam());
   std::string verdicts, rows;
   for (const v1::ExtremeRow& row : table.extremes()) {
@@ -97,8 +97,8 @@ const char kPendulum[] = R"(
   parameters { time_step: 0.01 }
 )";
 
-// The link holds the position within bounds whatever the velocity.
-TEST(Divergence, IsNoticedInVelocitiesAlone) {
+// The link keeps positions within bounds at any velocity.
+TEST(Divergence, IsDetectedFromVelocitiesAlone) {
   const auto model = CompileText(kPendulum);
   State state = model->InitialState();
   Workspace work = model->MakeWorkspace();
@@ -110,7 +110,7 @@ TEST(Divergence, IsNoticedInVelocitiesAlone) {
   EXPECT_EQ(Step(*model, model->parameters, 0.01, state, work).code(), absl::StatusCode::kOutOfRange);
 }
 
-TEST(EnergyBalance, CountsWhatIsMoreThanThereWas) {
+TEST(EnergyBalance, IsTheRatioOfKineticEnergyToItsSources) {
   const auto model = CompileText(kPendulum);
   const Subject subject{.model = model, .parameters = model->parameters};
   EnergyBalance balance(subject);

@@ -1,4 +1,4 @@
-// The reference is right where the answer is known, and independent of every integrator.
+// Reference solutions match closed forms.
 #include "server/study/reference.h"
 
 #include <gtest/gtest.h>
@@ -24,11 +24,11 @@ const char kOscillator[] = R"(
   parameters { time_step: 0.01 }
 )";
 
-TEST(Reference, IsTheClosedFormOfADampedOscillator) {
+TEST(Reference, MatchesTheClosedFormOfADampedOscillator) {
   const Subject subject = SubjectOf(kOscillator);
   v1::Reference report;
   const std::vector<double> moments = Moments(3, 6);
-  const auto reference = ConfirmedReference(subject, moments, 1e-10, kNobody, report);
+  const auto reference = ConfirmedReference(subject, moments, 1e-10, kNeverCancel, report);
   ASSERT_TRUE(reference.ok()) << reference.status();
   const double m = subject.model->mass[1], k = 50;
   Eigen::VectorXd c = Eigen::VectorXd::Zero(2);
@@ -60,14 +60,14 @@ TEST(Reference, KeepsRigidLinksAndTheirPeriod) {
   const Subject subject = SubjectOf(kSwingingLink);
   v1::Reference report;
   const double period = 2.367841948;  // from 90 degrees, length 1 m, g = 9.81 m/s^2 (complete elliptic integral)
-  const auto reference = SolveReference(subject, Moments(period, 4), 1e-10, kNobody, report);
+  const auto reference = SolveReference(subject, Moments(period, 4), 1e-10, kNeverCancel, report);
   ASSERT_TRUE(reference.ok()) << reference.status();
   for (const State& state : reference->states) EXPECT_NEAR(state.x.col(1).norm(), 1, 1e-7);
   EXPECT_NEAR(reference->states[1].x(0, 1), -1, 1e-6);
   EXPECT_NEAR(reference->states[3].x(0, 1), 1, 1e-6);
 }
 
-TEST(Reference, StopsWhereverItIsCancelled) {
+TEST(Reference, StopsAtEveryCheckThatCancels) {
   const Subject subject = SubjectOf(kOscillator);
   for (int looks = 1; looks <= 8; ++looks) {
     int seen = 0;
@@ -75,22 +75,22 @@ TEST(Reference, StopsWhereverItIsCancelled) {
     const auto stop = [&](double, std::string_view) { return ++seen < looks; };
     const auto reference = SolveReference(subject, Moments(1, 1), 1e-12, stop, report);
     EXPECT_TRUE(absl::IsCancelled(reference.status())) << reference.status();
-    EXPECT_EQ(seen, looks) << "it went on and asked again";
+    EXPECT_EQ(seen, looks) << "it continued after the cancellation";
   }
 }
 
-TEST(Reference, IsMissingWhereNoSmoothEquationIs) {
+TEST(Reference, NeedsSmoothConstraints) {
   std::string text = kSwingingLink;
   text.replace(text.find("list {"), 0, "projection: PROJECTION_THESIS ");
   v1::Reference report;
-  const auto reference = SolveReference(SubjectOf(text), Moments(1, 1), 1e-8, kNobody, report);
+  const auto reference = SolveReference(SubjectOf(text), Moments(1, 1), 1e-8, kNeverCancel, report);
   EXPECT_EQ(reference.status().code(), absl::StatusCode::kUnimplemented);
 }
 
-TEST(Reference, EndsWhenItsCallerAsks) {
+TEST(Reference, StopsWhenCancelled) {
   v1::Reference report;
-  const auto nobody = [](double, std::string_view) { return false; };
-  const auto reference = SolveReference(SubjectOf(kOscillator), Moments(1, 1), 1e-8, nobody, report);
+  const auto cancel = [](double, std::string_view) { return false; };
+  const auto reference = SolveReference(SubjectOf(kOscillator), Moments(1, 1), 1e-8, cancel, report);
   EXPECT_EQ(reference.status().code(), absl::StatusCode::kCancelled);
 }
 

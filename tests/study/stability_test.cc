@@ -1,4 +1,4 @@
-// Stability: limits of the step come out as predicted, what blows up is noticed, and extreme cases end well.
+// The stability study: measured limits match the prediction, and the map divides at the limit.
 #include "server/study/stability.h"
 
 #include <gmock/gmock.h>
@@ -20,7 +20,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// Masses of 1 kg between two fixed ends, in a row.
+// A row of masses of 1 kg between two fixed ends.
 const char kChain[] = R"(
   name: "chain" title: "Chain"
   bodies {
@@ -48,7 +48,7 @@ const char kHungSheet[] = R"(
 v1::LimitRow Limit(const std::string& text, v1::Integrator integrator, double factor = 1) {
   v1::LimitRow row;
   const Subject subject = With(Stiffened(SubjectOf(text), factor), integrator);
-  EXPECT_TRUE(MeasureLimit(subject, 60, kNobody, row).ok());
+  EXPECT_TRUE(MeasureLimit(subject, 60, kNeverCancel, row).ok());
   return row;
 }
 
@@ -57,16 +57,16 @@ const v1::Integrator kExplicit[] = {v1::INTEGRATOR_SEMI_IMPLICIT_EULER, v1::INTE
 const v1::Integrator kImplicit[] = {v1::INTEGRATOR_LINEAR_IMPLICIT_EULER, v1::INTEGRATOR_BDF2, v1::INTEGRATOR_TR_BDF2,
                                     v1::INTEGRATOR_PROJECTIVE_DYNAMICS};
 
-TEST(Limits, OfAChainAreThosePredicted) {
+TEST(Limits, OfAChainMatchThePrediction) {
   for (const v1::Integrator integrator : kExplicit) {
     const v1::LimitRow row = Limit(kChain, integrator);
     EXPECT_NEAR(row.ratio(), 1, 0.1) << NameOf(integrator) << ": " << row.note();
   }
-  // The chain's fastest mode in closed form: omega = 2 sqrt(k/m) sin(6 pi/14).
+  // The frequency of the chain's fastest mode in closed form: omega = 2 sqrt(k/m) sin(6 pi/14).
   EXPECT_NEAR(Limit(kChain, v1::INTEGRATOR_VELOCITY_VERLET).measured_s(), 0.1 / std::sin(6 * M_PI / 14), 0.002);
 }
 
-TEST(Limits, OfASheetWithFrictionAreThosePredicted) {
+TEST(Limits, OfASheetWithFrictionMatchThePrediction) {
   for (const v1::Integrator integrator : kExplicit) {
     const v1::LimitRow row = Limit(kHungSheet, integrator);
     EXPECT_NEAR(row.ratio(), 1, 0.1) << NameOf(integrator) << ": " << row.note();
@@ -75,20 +75,20 @@ TEST(Limits, OfASheetWithFrictionAreThosePredicted) {
   EXPECT_NEAR(euler.ratio(), 1, 0.1) << euler.note();
 }
 
-TEST(Limits, FallWithTheRootOfTheStiffness) {
+TEST(Limits, AreProportionalToTheInverseRootOfTheStiffness) {
   for (const v1::Integrator integrator : {v1::INTEGRATOR_VELOCITY_VERLET, v1::INTEGRATOR_RUNGE_KUTTA_4}) {
     const double soft = Limit(kChain, integrator).measured_s(), stiff = Limit(kChain, integrator, 1e6).measured_s();
     EXPECT_NEAR(soft / stiff, 1000, 20) << NameOf(integrator);
   }
 }
 
-TEST(Limits, OfExplicitEulerWithoutFrictionAreNone) {
+TEST(Limits, OfExplicitEulerWithoutFrictionDoNotExist) {
   const v1::LimitRow row = Limit(kChain, v1::INTEGRATOR_EXPLICIT_EULER);
   EXPECT_FALSE(row.has_predicted_s() || row.has_measured_s());
   EXPECT_THAT(row.note(), testing::AllOf(HasSubstr("stable at no step"), HasSubstr("unstable")));
 }
 
-TEST(Limits, OfImplicitIntegratorsAreNoneHoweverStiff) {
+TEST(Limits, OfImplicitIntegratorsDoNotExistAtAnyStiffness) {
   for (const v1::Integrator integrator : kImplicit) {
     for (const double factor : {1.0, 1e6}) {
       const v1::LimitRow row = Limit(kHungSheet, integrator, factor);
@@ -98,8 +98,8 @@ TEST(Limits, OfImplicitIntegratorsAreNoneHoweverStiff) {
   }
 }
 
-// Its damping of 0.02 kg a step turns the springs of a lighter vertex round.
-TEST(Limits, OfTheThesisDampingAreNoneForLightVertices) {
+// The thesis' damping of 0.02 kg per step reverses the velocity of a lighter vertex.
+TEST(Limits, OfTheThesisDampingDoNotExistForLightVertices) {
   std::string light = kChain;
   light.replace(light.find("mass: 8"), 7, "mass: 0.12");
   const v1::LimitRow row = Limit(light, v1::INTEGRATOR_THESIS);
@@ -124,7 +124,7 @@ std::string Loaded() {
   return std::string(kHungSheet) + R"(forces { gravity { bodies: "b" acceleration { z: -2 } } })";
 }
 
-// The map of the loaded sheet, made once.
+// The map of the loaded sheet, run once.
 const absl::StatusOr<v1::StudyResult>& LoadedMap() {
   static const auto* const map = new absl::StatusOr<v1::StudyResult>(RunOn(Loaded(), MapRequest()));
   return *map;
@@ -149,14 +149,14 @@ TEST(Map, DividesAtTheLimit) {
   EXPECT_TRUE(verdicts.contains("stable") && verdicts.contains("damped") && verdicts.contains("diverged"));
 }
 
-TEST(Map, IsTheSameTwice) {
+TEST(Map, RepeatsExactly) {
   const auto& a = LoadedMap();
   const auto b = RunOn(Loaded(), MapRequest());
   ASSERT_TRUE(a.ok() && b.ok());
   EXPECT_EQ(a->stability().SerializeAsString(), b->stability().SerializeAsString());
 }
 
-TEST(Map, KeepsToItsBudget) {
+TEST(Map, KeepsItsCpuBudget) {
   v1::CreateStudyRequest request = MapRequest();
   request.mutable_stability()->set_seconds(60);
   request.mutable_stability()->set_most_seconds_a_run(0.001);
@@ -167,7 +167,7 @@ TEST(Map, KeepsToItsBudget) {
   EXPECT_LT(result->took_s(), 20);
 }
 
-TEST(Stability, EndsWhenItsCallerAsks) {
+TEST(Stability, StopsWhenCancelled) {
   double furthest = 0;
   const auto until = [&furthest](double done, std::string_view) {
     EXPECT_GE(done, furthest - 1e-9);

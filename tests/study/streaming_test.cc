@@ -1,4 +1,4 @@
-// Error against bandwidth: no row errs by more than its bound, and what repeats itself is sent for next to nothing.
+// The streaming study: errors keep their bounds, and the Pareto front is marked correctly.
 #include "server/study/streaming.h"
 
 #include <gmock/gmock.h>
@@ -11,13 +11,13 @@
 namespace phrenic::study {
 namespace {
 
-// A sheet that hangs on one side and is swung at it.
+// A sheet, part of which is driven by an oscillation.
 const char kWavingSheet[] = R"(
   name: "swing" title: "Swing"
   bodies {
     name: "sheet" role: ROLE_DEFORMABLE
     grid { columns: 12 rows: 12 u { x: 0.01 } v { y: 0.01 } }
-    substance { density: 1030 thickness: 0.003 }
+    material { density: 1030 thickness: 0.003 }
   }
   motions { oscillation { body: "sheet" vertices: [132, 133, 142, 143] amplitude { z: 0.01 } period: 1 } }
   forces { springs { bodies: "sheet" stiffness: 50 } }
@@ -31,7 +31,7 @@ v1::CreateStudyRequest Wanted() {
   return request;
 }
 
-TEST(StreamingStudy, NoRowErrsByMoreThanItsBound) {
+TEST(StreamingStudy, ErrorsKeepTheirBounds) {
   const auto result = RunOn(kWavingSheet, Wanted());
   ASSERT_TRUE(result.ok()) << result.status();
   const v1::StreamingTable& table = result->streaming();
@@ -50,7 +50,7 @@ TEST(StreamingStudy, NoRowErrsByMoreThanItsBound) {
   EXPECT_THAT(table.advice(), testing::HasSubstr("Within 0.1 mm a frame takes"));
 }
 
-TEST(StreamingStudy, ACoarserBoundTakesNoMoreAndNothingBeatsTheFront) {
+TEST(StreamingStudy, ACoarserBoundNeedsNoMoreBytesAndNothingBeatsTheParetoFront) {
   const auto result = RunOn(kWavingSheet, Wanted());
   ASSERT_TRUE(result.ok()) << result.status();
   const v1::StreamingRow* before = nullptr;
@@ -66,12 +66,12 @@ TEST(StreamingStudy, ACoarserBoundTakesNoMoreAndNothingBeatsTheFront) {
   }
 }
 
-TEST(StreamingStudy, EndsWhenItIsToldTo) {
+TEST(StreamingStudy, StopsWhenCancelled) {
   const auto result = RunOn(kWavingSheet, Wanted(), [](double done, std::string_view) { return done < 0.5; });
   EXPECT_TRUE(absl::IsCancelled(result.status())) << result.status();
 }
 
-TEST(StreamingStudy, OfASceneThatStandsStillIsRefused) {
+TEST(StreamingStudy, RefusesASceneWithoutMotion) {
   const auto result = RunOn(R"(
     name: "post" title: "Post"
     bodies { name: "post" role: ROLE_AT_REST polyhedron { vertices { x: 1 } vertices { x: 2 } edges { a: 0 b: 1 } } }

@@ -14,8 +14,7 @@ using testing::SizeIs;
 
 constexpr char kScene[] = "cube";
 
-// A store holds what an earlier server left; its scene is one that no longer compiles, so that a study that runs again
-// fails at once.
+// The store has records of an earlier server. The scene does not compile, so a study that runs again fails at once.
 class StudiesTest : public testing::Test {
  protected:
   ~StudiesTest() override {
@@ -53,7 +52,7 @@ class StudiesTest : public testing::Test {
     return seen.message;
   }
 
-  // Restores all records, and returns their owners.
+  // Restores all records and returns their owners by id.
   std::map<std::string, std::string> Restore(Studies& studies) {
     std::map<std::string, std::string> owners;
     studies.Restore(
@@ -67,7 +66,7 @@ class StudiesTest : public testing::Test {
   std::map<std::string, absl::Status> lost_;
 };
 
-TEST_F(StudiesTest, TakeTheirIdFromKindAndSceneAndRefuseWhatCannotBeStudied) {
+TEST_F(StudiesTest, DeriveTheirIdFromKindAndSceneAndRefuseInvalidRequests) {
   const auto studies = Make();
   const auto added = studies->Add(Request(kScene), "anna");
   ASSERT_TRUE(added.ok()) << added.status();
@@ -82,7 +81,7 @@ TEST_F(StudiesTest, TakeTheirIdFromKindAndSceneAndRefuseWhatCannotBeStudied) {
   EXPECT_THAT(ended.problem(), HasSubstr("does not compile"));
 }
 
-TEST_F(StudiesTest, AnEndedStudyOutlivesItsServerWithItsResultWhichListsLeaveOut) {
+TEST_F(StudiesTest, AnEndedStudySurvivesARestartAndListsLeaveOutItsResult) {
   v1::SavedStudy saved;
   saved.set_owner("anna");
   saved.mutable_study()->set_id("done");
@@ -97,7 +96,7 @@ TEST_F(StudiesTest, AnEndedStudyOutlivesItsServerWithItsResultWhichListsLeaveOut
   EXPECT_FALSE(studies->List()[0].has_result());
 }
 
-TEST_F(StudiesTest, AnUnfinishedStudyRunsAgainAndOneWhoseSceneIsGoneSaysSo) {
+TEST_F(StudiesTest, AnUnfinishedStudyRunsAgainAndFailsIfItsSceneIsGone) {
   for (const char* scene : {kScene, "sphere"}) {
     v1::SavedStudy saved;
     *saved.mutable_request() = Request(scene);

@@ -1,5 +1,5 @@
-// The thesis' attachment pushes with the carrier's displacement of the step, so that the tissue travels in proportion
-// to the time step; the spring and damper do not depend on it.
+// The force of the thesis' attachment is proportional to the carrier's displacement per step, so the motion of the
+// tissue is proportional to the time step. An attachment by spring and damper does not depend on the time step.
 #include <gtest/gtest.h>
 
 #include "absl/strings/str_format.h"
@@ -8,7 +8,7 @@
 namespace phrenic {
 namespace {
 
-// How far a rib takes a vertex near its tip over half a breath [m].
+// Returns the displacement of a vertex that a rib moves over half a breath [m].
 double Travel(const std::string& mode, double stiffness, double dt) {
   const auto model = CompileText(absl::StrFormat(
       "name: 'stick' breath { waveform: WAVEFORM_RAISED_COSINE } "
@@ -18,11 +18,11 @@ double Travel(const std::string& mode, double stiffness, double dt) {
       "bodies { name: 'tissue' role: ROLE_DEFORMABLE mass: 0.002 polyhedron { vertices { x: 0.06 y: -0.18 z: -0.062 } "
       "vertices { x: 0.06 y: -0.17 z: -0.15 } } } "
       "motions { ribs { bodies: 'rib' quiet_state: 1 end_states { number: 7 pump_degrees: 10 bucket_degrees: 12 } } } "
-      "forces { attachment { bodies: 'tissue' carriers: 'rib' radius: 0.01 stiffness: %g mode: %s } } "
+      "forces { attachment { bodies: 'tissue' anchors: 'rib' radius: 0.01 stiffness: %g mode: %s } } "
       "forces { friction { bodies: 'tissue' rate: 5 } } parameters { time_step: %g }",
       stiffness, mode, dt));
   const State state = RunTo(*model, 2, dt);
-  EXPECT_EQ(state.x.col(1), model->rest.col(1)) << "out of the rib's reach";
+  EXPECT_EQ(state.x.col(1), model->rest.col(1)) << "outside the radius of the attachment";
   return (state.x.col(0) - model->rest.col(0)).norm();
 }
 

@@ -1,4 +1,4 @@
-// The shipped ball bounces on its sheet and stays on it; neither gets through the other.
+// The ball of the shipped scene "contact" bounces on its sheet without penetrating it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace phrenic {
 namespace {
 
-// How deep vertices of one body are behind the other's triangles [m].
+// Returns the largest penetration of vertices of one body behind the other's triangles [m].
 double Depth(const ConstPoints& x, const ConstPoints& surface, const TriangleTree& tree) {
   TriangleTree::Boxes boxes;
   tree.Fit(surface, boxes);
@@ -45,9 +45,9 @@ TEST(BallOnASheet, StaysOnItAndBounces) {
   }
   RecordProperty("deepest_um", static_cast<int>(1e6 * deepest));
   EXPECT_GT(deepest, 0);
-  EXPECT_LT(deepest, 0.01) << "the depth that the scene states";
-  EXPECT_GT(lowest, -0.5) << "it has not fallen through";
-  EXPECT_GT(highest, lowest + 0.3) << "it is seen to move";
+  EXPECT_LT(deepest, 0.01) << "the contact depth of the scene";
+  EXPECT_GT(lowest, -0.5) << "the ball does not fall through the sheet";
+  EXPECT_GT(highest, lowest + 0.3) << "the ball bounces visibly";
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// The thesis' finding of figure 5.3 as an ordering: the cube of springs collapses where the cube of tensegrity keeps
-// its height.
+// The result of figure 5.3 of the thesis as an inequality: the cube of springs collapses, the tensegrity cube keeps its
+// height.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ double LowestHeightOfP(const std::string& scene) {
   return lowest;
 }
 
-TEST(Cube, OfSpringsCollapsesWhereTensegrityKeepsItsHeight) {
+TEST(Cube, OfSpringsCollapsesWhileTensegrityKeepsItsHeight) {
   const double springs = LowestHeightOfP("cube-springs"), tensegrity = LowestHeightOfP("cube-tensegrity");
   RecordProperty("springs_mm", static_cast<int>(1e3 * springs));
   RecordProperty("tensegrity_mm", static_cast<int>(1e3 * tensegrity));

@@ -1,5 +1,6 @@
-// The thesis' finding of figures 5.5 and 5.6 as orderings: a vertex on top of a dome of two layers, tracked for 200
-// frames of a breath with and without rigid links between the layers, under weak forces and ten times stronger ones.
+// The results of figures 5.5 and 5.6 of the thesis as inequalities: the top vertex of a dome of two layers is tracked
+// for 200 frames of a breath, with and without rigid links between the layers, under weak and ten times stronger
+// forces.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +17,7 @@ namespace {
 constexpr int kRings = 7, kAround = 16, kLayer = 1 + kRings * kAround;
 constexpr double kRadius = 0.1, kThickness = 0.006;
 
-// Vertex `a` of ring r of a layer; ring 0 is the top. The outer layer is 0.
+// Index of vertex `a` on ring `r` of a layer. Ring 0 is the top vertex; layer 0 is the outer one.
 int At(int layer, int r, int a) {
   return layer * kLayer + (r == 0 ? 0 : 1 + (r - 1) * kAround + (a + kAround) % kAround);
 }
@@ -37,7 +38,7 @@ std::string DomeVertices() {
   return text;
 }
 
-// Outwards on the outer layer, inwards on the inner one, and a band around the rim.
+// Triangles that face outwards on the outer layer, inwards on the inner one, and a band that closes the rim.
 std::string DomeTriangles() {
   std::string text;
   const auto add = [&text](int a, int b, int c, bool turned) {
@@ -73,8 +74,8 @@ std::string Dome(double force) {
 }
 
 struct Track {
-  std::vector<double> height;  // of the top, a frame [m]
-  double gap = 0;              // largest change of the distance between the layers at the top, over it
+  std::vector<double> height;  // of the top, one per frame [m]
+  double gap = 0;              // largest relative change of the distance between the layers at the top
 };
 
 Track Breathe(double force, bool links) {
@@ -97,7 +98,7 @@ Track Breathe(double force, bool links) {
 struct Comparison {
   Track with, without;
   double largest = 0;  // difference of the heights [m]
-  int turns = 0;       // how often the difference stops growing or falling
+  int turns = 0;       // number of local extrema of the difference
 };
 
 Comparison Compare(double force) {
@@ -113,20 +114,20 @@ Comparison Compare(double force) {
   return compared;
 }
 
-// Were the links' effect as linear as the forces, ten times the force would make ten times the difference.
-TEST(Dome, LinksMatterFarMoreThanTenTimesAsMuchUnderTenTimesTheForce) {
+// If the effect of the links were linear in the force, ten times the force would give ten times the difference.
+TEST(Dome, EffectOfLinksGrowsFasterThanTheForce) {
   const Comparison weak = Compare(0.01), strong = Compare(0.1);
   RecordProperty("weak_um", static_cast<int>(1e6 * weak.largest));
   RecordProperty("strong_um", static_cast<int>(1e6 * strong.largest));
   EXPECT_GT(weak.largest, 0);
   EXPECT_GT(strong.largest, 100 * weak.largest);
-  EXPECT_GT(strong.turns, weak.turns) << "troughs and hills where the links take hold";
+  EXPECT_GT(strong.turns, weak.turns) << "the links add local extrema under strong forces";
 }
 
-TEST(Dome, LinksKeepTheLayersTogetherWhereStrongForcesPartThem) {
+TEST(Dome, LinksKeepTheLayersTogetherUnderStrongForces) {
   const Comparison weak = Compare(0.01), strong = Compare(0.1);
   EXPECT_LT(weak.without.gap, 0.1) << "weak forces do not need the links";
-  EXPECT_GT(strong.without.gap, 0.5) << "strong ones part or crush the layers without them";
+  EXPECT_GT(strong.without.gap, 0.5) << "without links strong forces separate or crush the layers";
   EXPECT_LT(strong.with.gap, 1e-9);
 }
 

@@ -1,4 +1,4 @@
-// What the shipped scenes of elastic tissue are there to show.
+// The shipped scenes of elastic tissue show the behaviour that they are made for.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,22 +11,22 @@ namespace {
 
 State After(const Model& model, double time) { return RunTo(model, time, model.parameters.time_step()); }
 
-// How far a probe has come down [m].
+// Returns the descent of a probe from rest [m].
 double Descent(const Model& model, const State& state, size_t probe) {
   const Probe& at = model.probes[probe];
   const int vertex = model.bodies[at.body].first_vertex + at.vertex;
   return model.rest(2, vertex) - state.x(2, vertex);
 }
 
-TEST(HangingSheets, OfSpringsAndOfElementsComeDownAlike) {
+TEST(HangingSheets, OfSpringsAndOfElementsHangAlike) {
   const auto model = CompileText(ShippedScene("hanging-sheet"));
-  const State state = After(*model, 20);  // five breaths of wind: it is still then
+  const State state = After(*model, 20);  // after five breaths of wind, at rest
   const double springs = Descent(*model, state, 0), membrane = Descent(*model, state, 1);
   EXPECT_GT(membrane, 0.01);
   EXPECT_NEAR(springs, membrane, 0.1 * membrane);
 }
 
-TEST(MixedMethods, TendonKeepsItsSizeWhereMuscleStretches) {
+TEST(MixedMethods, TendonKeepsItsSizeWhileMuscleStretches) {
   const auto model = CompileText(ShippedScene("mixed-methods"));
   const State state = After(*model, 2);
   EXPECT_GT(Descent(*model, state, 0), 0.05);

@@ -1,4 +1,4 @@
-// What the shipped scene of pressures and lungs is there to show.
+// The shipped scene "pressure-lungs" breathes with physiological volumes, flows and pressures.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -23,7 +23,7 @@ Values Read(const Model& model, const State& state) {
   return values;
 }
 
-TEST(PressureLungs, BreatheAsAPersonDoes) {
+TEST(PressureLungs, HavePhysiologicalVolumesAndPressures) {
   const auto model = CompileText(ShippedScene("pressure-lungs"));
   State state = model->InitialState();
   Workspace work = model->MakeWorkspace();
@@ -36,7 +36,7 @@ TEST(PressureLungs, BreatheAsAPersonDoes) {
   EXPECT_NEAR(rest.at("pleural pressure"), -500, 1e-9);
   advance(length / 4);
   const Values inwards = Read(*model, state);
-  EXPECT_GT(inwards.at("flow"), 1e-4) << "air comes in";
+  EXPECT_GT(inwards.at("flow"), 1e-4) << "air flows in";
   EXPECT_LT(inwards.at("alveolar pressure"), 0);
   advance(length / 2);
   const Values full = Read(*model, state);
@@ -44,18 +44,18 @@ TEST(PressureLungs, BreatheAsAPersonDoes) {
   EXPECT_GT(tidal, 3e-4);
   EXPECT_LT(tidal, 8e-4);
   EXPECT_NEAR(full.at("pleural pressure"), -500 + full.at("alveolar pressure") - tidal / 2e-6, 1e-6);
-  EXPECT_NEAR(full.at("abdominal pressure"), tidal / 2e-6, 1e-6) << "what the lungs gain the abdomen loses";
+  EXPECT_NEAR(full.at("abdominal pressure"), tidal / 2e-6, 1e-6) << "the abdomen loses the volume that the lungs gain";
   EXPECT_LT(full.at("dome height"), rest.at("dome height") - 0.01);
   EXPECT_NEAR(full.at("ventilator pressure"), 400, 4);
   EXPECT_GT(full.at("ventilated volume"), 1e-4);
   advance(3 * length / 4);
-  EXPECT_LT(Read(*model, state).at("flow"), -1e-4) << "and goes out";
+  EXPECT_LT(Read(*model, state).at("flow"), -1e-4) << "air flows out";
   advance(length);
   EXPECT_NEAR(Read(*model, state).at("lung volume"), rest.at("lung volume"), 0.15 * tidal);
 }
 
-// What resists the flow of air is met at the end of a step: however narrow the airways, steps are as long, and the
-// lungs take in the less.
+// Airway resistance is integrated implicitly: a higher resistance does not shorten the step, and it reduces the inhaled
+// volume.
 TEST(PressureLungs, NarrowAirwaysShortenNoStep) {
   const std::string open = "resistance: 1.5e5", scene = ShippedScene("pressure-lungs");
   ASSERT_NE(scene.find(open), std::string::npos);

@@ -1,4 +1,4 @@
-// The tower of prisms sways with its shaken base and stands, on cables alone: with slack ones it falls.
+// The tower of tensegrity prisms sways on its shaken base and stands because of its cables: with slack cables it falls.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,7 +11,8 @@ namespace phrenic {
 namespace {
 
 struct Sway {
-  double lowest = 10, left = -10, right = 10, residual = 0;  // of the top [m]
+  double lowest = 10, left = -10, right = 10;  // extreme positions of the top [m]
+  double residual = 0;                         // largest constraint residual [m]
 };
 
 Sway Shake(double elasticity) {
@@ -35,7 +36,7 @@ Sway Shake(double elasticity) {
 TEST(Tower, StandsOnItsCablesAndSways) {
   const Sway taut = Shake(1), slack = Shake(0.02);
   EXPECT_GT(taut.lowest, 1) << "four fifths of its height";
-  EXPECT_GT(taut.left - taut.right, 0.2) << "it is seen to move";
+  EXPECT_GT(taut.left - taut.right, 0.2) << "the tower sways visibly";
   EXPECT_LT(taut.residual, 1e-9);
   EXPECT_LT(slack.lowest, 0.6);
 }

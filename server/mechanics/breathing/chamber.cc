@@ -31,7 +31,7 @@ struct Areas {
   Points a;
 };
 
-// Returns the points in axes of which the third is the plane's normal; valid until `memory` is used again.
+// Returns the points in the coordinates of `axes`. They are valid until `memory` is used again.
 ConstPoints Turn(const Eigen::Matrix3d& axes, const ConstPoints& y, Points& memory) {
   if (axes.isIdentity(0)) return y;
   if (memory.cols() < y.cols()) memory.resize(3, y.cols());
@@ -39,7 +39,7 @@ ConstPoints Turn(const Eigen::Matrix3d& axes, const ConstPoints& y, Points& memo
   return memory.leftCols(y.cols());
 }
 
-// Right-handed.
+// Returns right-handed axes as rows; the third is the normal.
 Eigen::Matrix3d AxesOf(const Vector& normal) {
   if (normal == Vector::UnitZ()) return Eigen::Matrix3d::Identity();
   const Vector p = normal.unitOrthogonal();
@@ -75,7 +75,7 @@ absl::Status Chamber::Add(const v1::SurfacePatch& scene, double side, std::strin
     parts_.push_back(std::move(part));
   }
   if (triangles() > before) return absl::OkStatus();
-  return FieldError(path, "chooses no triangle: name bodies with a surface, and widen region and facing");
+  return FieldError(path, "chooses no triangle: name bodies with a surface, and extend region and facing");
 }
 
 absl::Status Chamber::SetPlane(const v1::Plane* scene, std::string_view path) {

@@ -16,8 +16,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 using points::Tag, points::Vector, points::Vectors;
 constexpr int kLanes = static_cast<int>(points::kLanes);
 
-// The corners of kLanes triangles, or their velocities. Reads nothing beyond them: a body's last vertex may be the
-// state's.
+// The corners of kLanes triangles, or their velocities. Loads nothing beyond them, because a body's last vertex may be
+// the last of the state.
 struct Corners {
   Vectors a, b, c;
 };
@@ -27,6 +27,7 @@ HWY_INLINE Corners Fetch(const TrianglePacket& packet, int first, const double* 
           points::Transposed<true>(x, packet.c + first)};
 }
 
+// Returns the sum of the corners' third coordinates.
 HWY_INLINE Vector Along(const Corners& h) { return hn::Add(hn::Add(h.a.z, h.b.z), h.c.z); }
 
 // p_a (q_b - q_c) + p_b (q_c - q_a) + p_c (q_a - q_b), p and q along the plane's two axes: n.((b - a) x (c - a))
@@ -35,7 +36,7 @@ HWY_INLINE Vector Area(const Corners& p, const Corners& q) {
   return hn::Add(hn::Add(a, b), hn::Mul(p.c.x, hn::Sub(q.a.y, q.b.y)));
 }
 
-// Sums of its own for each of a packet's lanes.
+// One sum per lane of a packet, so that the order of additions does not depend on the vector width.
 struct Lanes {
   HWY_ALIGN double of[kPacketTriangles] = {};
 

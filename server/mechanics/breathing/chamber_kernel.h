@@ -1,5 +1,5 @@
-// Sums over a surface's triangles for the volume that it bounds (chamber.h), eight at a time: written once with Google
-// Highway, the machine's best instruction set chosen at run time, with the same bits on all of them.
+// SIMD kernel of the sums over a surface's triangles (chamber.h), eight at a time. Google Highway compiles it for
+// several instruction sets and selects the best one at run time. The results are bitwise equal on all of them.
 #ifndef PHRENIC_SERVER_MECHANICS_BREATHING_CHAMBER_KERNEL_H_
 #define PHRENIC_SERVER_MECHANICS_BREATHING_CHAMBER_KERNEL_H_
 
@@ -12,8 +12,7 @@ namespace phrenic {
 
 inline constexpr int kPacketTriangles = 8;
 
-// Where the corners of eight triangles are in x [doubles]; one that is lacking has the same vertex three times, which
-// adds nothing.
+// Offsets in x of the corners of eight triangles [doubles]. Padding triangles have three equal corners and add 0.
 struct TrianglePacket {
   std::int32_t a[kPacketTriangles], b[kPacketTriangles], c[kPacketTriangles];
 };
@@ -24,8 +23,8 @@ struct ChamberReading {
   double flow = 0;    // dV/dt [m^3/s]
 };
 
-// Over the plane at `height` [m] across the third axis: x are 3 x n coordinates along the plane's two axes and its
-// normal [m], v their rates [m/s]. Without v the flow is 0. Any number of threads may call.
+// Returns volume and flow relative to the plane at `height` [m] along the third axis. x (3 x n) are coordinates along
+// two axes in the plane and its normal [m], v their rates [m/s]. Without v the flow is 0. Thread-safe.
 ChamberReading SumTriangles(const std::vector<TrianglePacket>& packets, double height, const double* x,
                             const double* v = nullptr);
 

@@ -10,9 +10,9 @@
 namespace phrenic {
 namespace {
 
-constexpr double kFurthest = 10;     // sizes of the scene
-constexpr double kSizeOfAPoint = 1;  // [m], so that it may fall
-constexpr double kRounding = 1e-9;   // [m]; a box includes the vertices on its faces
+constexpr double kFurthest = 10;     // margin of Model::bound, in sizes of the scene
+constexpr double kSizeOfAPoint = 1;  // size of a scene without extent [m], so that bound leaves room for motion
+constexpr double kRounding = 1e-9;   // tolerance of boxes, so that they include vertices on their faces [m]
 
 std::string RoleName(v1::Role role) {
   switch (role) {
@@ -27,7 +27,7 @@ std::string RoleName(v1::Role role) {
   }
 }
 
-// Named sets of vertices that the scene adds to the mesh's own.
+// Adds the scene's named vertex sets to those of the mesh.
 absl::Status AddRegions(const v1::Body& scene, std::string_view path, Mesh& mesh) {
   for (int r = 0; r < scene.regions_size(); ++r) {
     const v1::Region& region = scene.regions(r);
@@ -38,7 +38,7 @@ absl::Status AddRegions(const v1::Body& scene, std::string_view path, Mesh& mesh
       if ((x >= low - kRounding).all() && (x <= high + kRounding).all()) vertices.push_back(i);
     }
     const std::string field = absl::StrCat(std::string(path), ".regions[", r, "]");
-    if (vertices.empty()) return FieldError(field, "no vertex of the body lies in it at rest");
+    if (vertices.empty()) return FieldError(field, "contains no vertex of the body at rest");
     if (!mesh.regions.emplace(region.name(), std::move(vertices)).second) {
       return FieldError(field, absl::StrCat("there are two regions named \"", region.name(), "\""));
     }
@@ -110,10 +110,11 @@ void SetSize(Model& model) {
   model.bound = low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff() + kFurthest * model.size;
 }
 
-// Part of a body's width from the middle within which a vertex belongs to no side: what is highest of the lower dome
-// would otherwise be where it leans on the higher one.
+// Vertices closer to the midline than this fraction of the body's width belong to no side. Otherwise the highest vertex
+// of the lower dome would be where it adjoins the higher one.
 constexpr double kMiddlePart = 1.0 / 6;
 
+// Returns the highest vertex on that side; -1 if there is none.
 int HighestOn(v1::Side side, const Points& vertices) {
   const double width = vertices.row(0).maxCoeff() - vertices.row(0).minCoeff();
   const double outward = side == v1::SIDE_LEFT ? 1 : -1;
@@ -144,7 +145,7 @@ absl::StatusOr<int> ProbeVertex(const v1::Probe& probe, int body, const std::str
     case v1::Probe::WHERE_NOT_SET:
       break;
   }
-  return FieldError(path, "says no place: set vertex, nearest_to or highest_on");
+  return FieldError(path, "has no position: set vertex, nearest_to or highest_on");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The first half of the compile step: bodies, their meshes, places in the state, and masses.
+// The first part of the compile step: bodies with their meshes, indices in the state and masses; and probes.
 #ifndef PHRENIC_SERVER_MECHANICS_COMPILE_BODIES_H_
 #define PHRENIC_SERVER_MECHANICS_COMPILE_BODIES_H_
 
@@ -7,10 +7,11 @@
 
 namespace phrenic {
 
-// Fills bodies, rest, mass, inverse_mass, fixed_vertices and size from builder.model.scene.
+// Fills bodies, rest, mass, inverse_mass, fixed_vertices, size and bound of builder.model from its scene, and reports
+// the bodies. INVALID_ARGUMENT "bodies[2].name: ..." for invalid bodies; errors of `source` are passed on.
 absl::Status AddBodies(const MeshSource& source, ModelBuilder& builder);
 
-// Fills the probes; bodies are there.
+// Fills the probes. Requires: AddBodies. INVALID_ARGUMENT "probes[0].body: ..." if a body or vertex does not exist.
 absl::Status AddProbes(ModelBuilder& builder);
 
 }  // namespace phrenic

@@ -69,8 +69,8 @@ absl::StatusOr<std::unique_ptr<Force>> MakeForce(const v1::Force& scene, std::st
       return Bending::Make(scene.bending(), scene.name(), In(path, "bending"), builder);
     case v1::Force::kCrossLayer:
       return MakeCrossLayer(scene.cross_layer(), scene.name(), In(path, "cross_layer"), builder);
-    case v1::Force::kDrag:
-      return TargetSpring::Make(scene.drag(), scene.name(), In(path, "drag"), builder);
+    case v1::Force::kTargetSpring:
+      return TargetSpring::Make(scene.target_spring(), scene.name(), In(path, "target_spring"), builder);
     case v1::Force::kPointLoad:
       return PointLoad::Make(scene.point_load(), scene.name(), In(path, "point_load"), builder);
     case v1::Force::kPressure:
@@ -88,8 +88,8 @@ absl::StatusOr<std::unique_ptr<Constraint>> MakeConstraint(const v1::Constraint&
   switch (scene.kind_case()) {
     case v1::Constraint::kRigidLinks:
       return RigidLinks::Make(scene.rigid_links(), scene.name(), In(path, "rigid_links"), builder);
-    case v1::Constraint::kLimits:
-      return Limits::Make(scene.limits(), scene.name(), In(path, "limits"), builder);
+    case v1::Constraint::kLengthLimits:
+      return Limits::Make(scene.length_limits(), scene.name(), In(path, "length_limits"), builder);
     case v1::Constraint::KIND_NOT_SET:
       break;
   }
@@ -104,8 +104,8 @@ absl::Status AddMotion(const v1::Motion& scene, std::string_view path, ModelBuil
       return Add(Sternum::Make(scene.sternum(), scene.name(), In(path, "sternum"), builder), builder);
     case v1::Motion::kOscillation:
       return Add(Oscillation::Make(scene.oscillation(), scene.name(), In(path, "oscillation"), builder), builder);
-    case v1::Motion::kRide:
-      return AddSkins(scene.ride(), scene.name(), In(path, "ride"), builder);
+    case v1::Motion::kSkin:
+      return AddSkins(scene.skin(), scene.name(), In(path, "skin"), builder);
     case v1::Motion::KIND_NOT_SET:
       break;
   }

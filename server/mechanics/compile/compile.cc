@@ -21,7 +21,7 @@
 namespace phrenic {
 namespace {
 
-// Adds the time of each stage, and their sum, to a report.
+// Adds the duration of each stage, and their sum, to a report.
 class StageClock {
  public:
   void End(const char* stage, v1::CompileReport& report) {
@@ -38,7 +38,7 @@ class StageClock {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-// "action_line": the name of the field that is set of the kinds there are.
+// Returns the name of the kind, such as "action_line": the field of the oneof that is set.
 std::string KindOf(const v1::Force& force) {
   return v1::Force::descriptor()->FindFieldByNumber(force.kind_case())->name();
 }
@@ -82,12 +82,12 @@ absl::Status AddMeasures(ModelBuilder& builder) {
   return absl::OkStatus();
 }
 
-// What the scene has no need of, beside what the elements themselves said.
+// Reports the parts of the simulation that the scene does not need. Elements have reported themselves before.
 void ReportUnused(ModelBuilder& builder) {
   const Model& model = builder.model;
   if (model.rest.cols() == 0) builder.ReportLeftOut("integration", "no body is deformable");
   if (model.constraints.empty()) builder.ReportLeftOut("constraints", "the scene has no rigid links");
-  if (model.motions.empty()) builder.ReportLeftOut("motions", "nothing in the scene moves by a law of its own");
+  if (model.motions.empty()) builder.ReportLeftOut("motions", "the scene has no prescribed motion");
   std::int64_t still = 0, vertices = 0;
   for (const BodyModel& body : model.bodies) {
     if (body.first_vertex >= 0 || body.pose >= 0 || body.skin >= 0) continue;
@@ -100,7 +100,7 @@ void ReportUnused(ModelBuilder& builder) {
   }
 }
 
-// Live parameters that have nothing to act on; viewers hide them.
+// Reports the live parameters without effect in this scene, which viewers hide.
 void ReportIdleParameters(const v1::Scene& scene, v1::CompileReport& report) {
   const bool ribs = std::any_of(scene.motions().begin(), scene.motions().end(),
                                 [](const v1::Motion& motion) { return motion.has_ribs(); });
@@ -126,7 +126,7 @@ void ReportIdleParameters(const v1::Scene& scene, v1::CompileReport& report) {
 void ResolveParameters(Model& model) {
   model.parameters = model.scene.parameters();
   schema::FillDefaults(&model.parameters);
-  if (!model.parameters.has_time_step()) model.parameters.set_time_step(kLongestStep);  // until the limit is known
+  if (!model.parameters.has_time_step()) model.parameters.set_time_step(kLongestStep);  // until ChooseStep
 }
 
 void ChooseStep(Model& model) {
@@ -139,12 +139,12 @@ void ChooseStep(Model& model) {
 }  // namespace
 
 absl::StatusOr<std::shared_ptr<const Model>> Compile(const v1::Scene& scene, const MeshSource& source) {
-  if (absl::Status status = schema::Validate(scene); !status.ok()) return status;
   ModelBuilder builder;
   Model& model = builder.model;
   model.scene = scene;
+  if (absl::Status status = schema::Resolve(&model.scene); !status.ok()) return status;
   schema::FillDefaults(&model.scene);
-  // What these leave open has a meaning of its own.
+  // Unset fields of these have a meaning, so that they must not be filled with defaults.
   model.scene.mutable_parameters()->CopyFrom(scene.parameters());
   model.scene.mutable_presets()->CopyFrom(scene.presets());
   ResolveParameters(model);

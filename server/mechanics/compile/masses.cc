@@ -13,10 +13,10 @@
 namespace phrenic {
 namespace {
 
-constexpr double kLeastShare = 0.5;  // of an equal one
+constexpr double kLeastShare = 0.5;  // smallest weight of a vertex, relative to the mean
 
-// A quarter of the volume of the tetrahedra around each vertex [m^3]; a third of the area of the triangles [m^2] of a
-// surface.
+// Returns each vertex's weight: a quarter of the volume of its tetrahedra [m^3], or of a surface a third of the area of
+// its triangles [m^2].
 Eigen::VectorXd Shares(const Mesh& mesh) {
   if (mesh.tetrahedra.cols() == 0) return VertexAreas(mesh.vertices, mesh.triangles);
   Eigen::VectorXd share = Eigen::VectorXd::Zero(mesh.vertices.cols());
@@ -26,15 +26,16 @@ Eigen::VectorXd Shares(const Mesh& mesh) {
   return share;
 }
 
-// The total spread by shares whose sum is not 0.
+// Distributes the total in proportion to the shares, each raised to at least kLeastShare of their mean. Requires: their
+// sum is not 0.
 Eigen::VectorXd Spread(double total, const Eigen::VectorXd& shares) {
   const double equal = shares.sum() / static_cast<double>(shares.size());
   const Eigen::VectorXd raised = shares.cwiseMax(kLeastShare * equal);
   return raised * (total / raised.sum());
 }
 
-// The stiffness that each simulated vertex meets where the others stay: K_ii. A load on a whole surface at once
-// (outer products) is left out: at one vertex it comes to little.
+// The diagonal blocks K_ii of the stiffness: that of each simulated vertex with all others fixed [N/m]. Ignores outer
+// products (pressures that depend on a volume), whose diagonal blocks are small.
 class OwnStiffness final : public StiffnessSink {
  public:
   explicit OwnStiffness(Eigen::Index vertices) : blocks_(vertices, Eigen::Matrix3d::Zero()) {}
@@ -50,7 +51,7 @@ class OwnStiffness final : public StiffnessSink {
   }
   void AddOuter(double, const Points&) override {}
 
-  // Of vertices first ... first + count - 1, each in the direction in which it is stiffest [N/m].
+  // Returns the largest eigenvalue of each block of the vertices [first, first + count) [N/m].
   Eigen::VectorXd Largest(Eigen::Index first, Eigen::Index count) const {
     Eigen::VectorXd largest(count);
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
@@ -77,7 +78,7 @@ OwnStiffness StiffnessAtRest(const Model& model) {
 }
 
 bool ByStiffness(const v1::Body& body) {
-  return body.mass_shares() == v1::MASS_SHARES_BY_STIFFNESS && body.role() == v1::ROLE_DEFORMABLE;
+  return body.mass_lumping() == v1::MASS_LUMPING_BY_STIFFNESS && body.role() == v1::ROLE_DEFORMABLE;
 }
 
 }  // namespace
@@ -86,12 +87,12 @@ absl::StatusOr<Eigen::VectorXd> VertexMasses(const v1::Body& body, const Mesh& m
   const Eigen::Index n = mesh.vertices.cols();
   Eigen::VectorXd share = Shares(mesh);
   const double sum = share.sum();
-  if (sum <= 0 && body.has_substance()) {
-    return FieldError(absl::StrCat(std::string(path), ".substance"),
+  if (sum <= 0 && body.has_material()) {
+    return FieldError(absl::StrCat(std::string(path), ".material"),
                       "the body has neither area nor volume: give it a mass instead");
   }
-  const double thickness = mesh.tetrahedra.cols() == 0 ? body.substance().thickness() : 1;
-  const double total = body.has_substance() ? body.substance().density() * thickness * sum : body.mass();
+  const double thickness = mesh.tetrahedra.cols() == 0 ? body.material().thickness() : 1;
+  const double total = body.has_material() ? body.material().density() * thickness * sum : body.mass();
   if (sum <= 0) return Eigen::VectorXd::Constant(n, total / static_cast<double>(n));
   return Spread(total, share);
 }
@@ -106,8 +107,8 @@ absl::Status SpreadMassByStiffness(Model& model) {
     const auto vertices = body.mesh.vertices.cols();
     const Eigen::VectorXd shares = stiffness.Largest(body.first_vertex, vertices);
     if (shares.sum() == 0) {
-      return FieldError(absl::StrCat("bodies[", b, "].mass_shares"),
-                        "nothing in the scene resists a motion of the body: leave MASS_SHARES_BY_AREA");
+      return FieldError(absl::StrCat("bodies[", b, "].mass_lumping"),
+                        "nothing in the scene resists a motion of the body: leave MASS_LUMPING_BY_AREA");
     }
     auto mass = model.mass.segment(body.first_vertex, vertices);
     auto inverse = model.inverse_mass.segment(body.first_vertex, vertices);

@@ -8,16 +8,16 @@
 
 namespace phrenic {
 
-// The body's mass, or that of its substance, spread over the vertices by the area, of a solid the volume, around each.
-// Half an equal share at least: the vertices of small triangles would else be so light that they set the time step for
-// all (on a real diaphragm, half the step). Equal shares where there is neither; a substance without is
-// INVALID_ARGUMENT with `path`, the body's.
+// Lumps the body's mass (given, or that of its material) at its vertices, by the area around each, or by the volume of
+// a solid. Each vertex has at least half of an equal share: vertices of small triangles would otherwise be so light
+// that they limit the time step for all (on a real diaphragm, by half). Without area and volume, all vertices have
+// equal mass, and a material is INVALID_ARGUMENT "path.material: ...".
 absl::StatusOr<Eigen::VectorXd> VertexMasses(const v1::Body& body, const Mesh& mesh, std::string_view path);
-// Where bodies ask for it, spreads their inertia anew: by the stiffness [N/m] that each vertex meets at rest in the
-// direction in which it is stiffest, half an equal share at least. With springs no frequency is then above
-// sqrt(2 stiffness/m), the same for all ((a - b)^2 <= 2 a^2 + 2 b^2). To be called once forces are made, which act by
-// the masses of before (weight, friction), and before constraints are. INVALID_ARGUMENT where nothing resists a motion
-// of such a body.
+
+// Lumps mass again for bodies of MASS_LUMPING_BY_STIFFNESS: by each vertex' largest stiffness over all directions at
+// rest [N/m], at least half of an equal share. Frequencies of springs are then at most sqrt(2 stiffness/m), equal for
+// all vertices: (a - b)^2 <= 2 a^2 + 2 b^2. To be called after forces are made, which keep the masses by area (weight,
+// friction), and before constraints are. INVALID_ARGUMENT if nothing resists a motion of such a body.
 absl::Status SpreadMassByStiffness(Model& model);
 
 }  // namespace phrenic

@@ -1,4 +1,4 @@
-// Where the compile step gets meshes from that it does not make itself.
+// The source of meshes from files and generators, passed to the compile step.
 #ifndef PHRENIC_SERVER_MECHANICS_COMPILE_MESH_SOURCE_H_
 #define PHRENIC_SERVER_MECHANICS_COMPILE_MESH_SOURCE_H_
 

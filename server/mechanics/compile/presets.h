@@ -1,4 +1,4 @@
-// A scene's presets: values of live parameters that belong together.
+// Presets of a scene: named sets of live parameters.
 #ifndef PHRENIC_SERVER_MECHANICS_COMPILE_PRESETS_H_
 #define PHRENIC_SERVER_MECHANICS_COMPILE_PRESETS_H_
 
@@ -9,12 +9,12 @@
 
 namespace phrenic {
 
-// Adds to each preset what others set and it does not, as the scene starts with it: whichever was chosen before, what a
-// preset makes of a session is the same.
+// Completes each preset with the scene's initial values of the parameters that only other presets set. The result of
+// choosing a preset then does not depend on the preset chosen before.
 void CompletePresets(v1::Scene& scene);
 
-// The parameters of one of the scene's presets, none where the name is empty. INVALID_ARGUMENT with the names there
-// are.
+// Returns the parameters of the preset of that name; an empty message if the name is empty. INVALID_ARGUMENT, with the
+// scene's preset names, if there is none.
 absl::StatusOr<v1::Parameters> FindPreset(const v1::Scene& scene, const std::string& name);
 
 }  // namespace phrenic

@@ -1,4 +1,4 @@
-// The name of a motion: same scene and meshes, same hash, same motion.
+// An identifier of a compiled scene: equal scenes and meshes have equal hashes, and hence equal motions.
 #ifndef PHRENIC_SERVER_MECHANICS_COMPILE_SCENE_HASH_H_
 #define PHRENIC_SERVER_MECHANICS_COMPILE_SCENE_HASH_H_
 
@@ -8,7 +8,7 @@
 
 namespace phrenic {
 
-// SHA-256 over the scene's message and every body's vertices, triangles and edges, in hexadecimal.
+// Returns the SHA-256, in hexadecimal, of the serialized scene and each body's vertices, triangles and edges.
 std::string SceneHash(const Model& model);
 
 }  // namespace phrenic

@@ -9,7 +9,7 @@
 namespace phrenic {
 namespace {
 
-constexpr double kMostCells = 1e6;  // of a filling
+constexpr double kMostCells = 1e6;  // largest grid of a filling
 
 Mesh FromPolyhedron(const v1::Polyhedron& shape) {
   Mesh mesh;
@@ -26,7 +26,7 @@ Mesh FromPolyhedron(const v1::Polyhedron& shape) {
   return mesh;
 }
 
-// Cells are split along alternating diagonals, so that the sheet prefers no direction.
+// Splits cells along alternating diagonals, so that the sheet has no preferred direction.
 Mesh FromGrid(const v1::Grid& shape) {
   const int columns = shape.columns(), rows = shape.rows();
   const Eigen::Vector3d origin = ToEigen(shape.origin()), u = ToEigen(shape.u()), v = ToEigen(shape.v());
@@ -58,13 +58,13 @@ Mesh FromBlock(const v1::Block& shape) {
   return FillCells({ToEigen(shape.origin()), cell, cells}, [](const Eigen::Vector3d&) { return true; });
 }
 
-// The surface to fill, as a body of its own.
+// Returns the surface to fill.
 absl::StatusOr<Mesh> SurfaceToFill(const v1::Body& body, const MeshSource& source) {
   v1::Body surface = body;
   switch (body.filling().surface_case()) {
     case v1::Filling::kEllipsoid:
       if (body.filling().ellipsoid().upper_half())
-        return absl::InvalidArgumentError("fills half an ellipsoid: it must be closed");
+        return absl::InvalidArgumentError("the surface of a filling must be closed: unset upper_half");
       return FromEllipsoid(body.filling().ellipsoid());
     case v1::Filling::kFile:
       *surface.mutable_file() = body.filling().file();

@@ -1,4 +1,5 @@
-// The shapes that a scene writes out itself: polyhedra and grids.
+// Meshes of the shapes that a scene defines: polyhedron, grid, block, filling (a surface filled with tetrahedra) and
+// ellipsoid.
 #ifndef PHRENIC_SERVER_MECHANICS_COMPILE_SHAPES_H_
 #define PHRENIC_SERVER_MECHANICS_COMPILE_SHAPES_H_
 
@@ -9,7 +10,7 @@
 
 namespace phrenic {
 
-// The mesh of a body, checked; files and generated parts come from `source`. Errors name the body.
+// Returns the validated mesh of a body. `source` provides those of files and generators. Errors name the body.
 absl::StatusOr<Mesh> MakeShape(const v1::Body& body, const MeshSource& source);
 
 }  // namespace phrenic

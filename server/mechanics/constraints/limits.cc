@@ -7,7 +7,7 @@
 namespace phrenic {
 namespace {
 
-absl::Status CheckRatios(const v1::Limits& scene, std::string_view path) {
+absl::Status CheckRatios(const v1::LengthLimits& scene, std::string_view path) {
   if (!scene.has_at_most_ratio() && !scene.has_at_least_ratio()) {
     return FieldError(path, "limits nothing: set at_most_ratio, at_least_ratio or both");
   }
@@ -17,8 +17,8 @@ absl::Status CheckRatios(const v1::Limits& scene, std::string_view path) {
   return absl::OkStatus();
 }
 
-// A limit a side and link that can move.
-std::vector<Link> MakeLimits(const v1::Limits& scene, const std::vector<Link>& links) {
+// Returns one Link per ratio that is set, for each link with a movable end.
+std::vector<Link> MakeLimits(const v1::LengthLimits& scene, const std::vector<Link>& links) {
   std::vector<Link> limits;
   for (Link link : links) {
     if (!link.Movable()) continue;
@@ -35,9 +35,9 @@ std::vector<Link> MakeLimits(const v1::Limits& scene, const std::vector<Link>& l
 
 }  // namespace
 
-absl::StatusOr<std::unique_ptr<Constraint>> Limits::Make(const v1::Limits& scene, const std::string& given,
+absl::StatusOr<std::unique_ptr<Constraint>> Limits::Make(const v1::LengthLimits& scene, const std::string& given,
                                                          std::string_view path, ModelBuilder& builder) {
-  const std::string name = given.empty() ? absl::StrCat("limits:", scene.body()) : given;
+  const std::string name = given.empty() ? absl::StrCat("length_limits:", scene.body()) : given;
   if (absl::Status status = CheckRatios(scene, path); !status.ok()) return status;
   auto body = DeformableBody(scene.body(), absl::StrCat(std::string(path), ".body"), builder);
   if (!body.ok()) return body.status();
@@ -45,13 +45,13 @@ absl::StatusOr<std::unique_ptr<Constraint>> Limits::Make(const v1::Limits& scene
   if (!links.ok()) return links.status();
   const std::vector<Link> limits = MakeLimits(scene, *links);
   if (limits.empty()) {
-    builder.ReportLeftOut(name, "no edge that can move has both its vertices in the region");
+    builder.ReportLeftOut(name, "no edge with a movable vertex has both vertices in the region");
     return nullptr;
   }
   std::unique_ptr<Limits> constraint(new Limits(name));
   constraint->network_ = LinkNetwork(limits);
   builder.ReportElement("constraint", name, static_cast<std::int64_t>(limits.size()), "limits",
-                        "mass-weighted where they are violated, velocities corrected");
+                        "mass-weighted projection of violated limits, velocities corrected");
   return constraint;
 }
 

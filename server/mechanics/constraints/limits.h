@@ -1,7 +1,8 @@
-// Lengths within limits, l_min <= |x_b - x_a| <= l_max: cables that do not stretch, struts that do not shorten. What is
-// violated is brought back to its limit as a rigid link is (mass-weighted, velocities by the same over dt, momentum and
-// angular momentum kept; LinkNetwork), and let go where it would have to push a cable or pull a strut; the residual is
-// what is left. Velocities that would lead beyond a limit that is reached are stopped (an inelastic jerk).
+// Unilateral distance constraints, l_min <= |x_b - x_a| <= l_max [m]: inextensible cables (l_max) and incompressible
+// struts (l_min). Violated limits are projected like rigid links (LinkNetwork: mass-weighted, velocities corrected by
+// displacement/dt, momentum and angular momentum conserved). A limit is released if its multiplier has the wrong sign,
+// that is if it would push a cable or pull a strut. At a limit that is reached, the velocity component that would
+// violate it is removed (an inelastic impact). Residual: the largest remaining violation [m].
 #ifndef PHRENIC_SERVER_MECHANICS_CONSTRAINTS_LIMITS_H_
 #define PHRENIC_SERVER_MECHANICS_CONSTRAINTS_LIMITS_H_
 
@@ -11,8 +12,9 @@ namespace phrenic {
 
 class Limits final : public Constraint {
  public:
-  // Null where no edge lies in the region.
-  static absl::StatusOr<std::unique_ptr<Constraint>> Make(const v1::Limits& scene, const std::string& name,
+  // Returns null, and reports it, if the region has no edge with a movable end. INVALID_ARGUMENT if the scene sets
+  // neither ratio, or the lower above the upper.
+  static absl::StatusOr<std::unique_ptr<Constraint>> Make(const v1::LengthLimits& scene, const std::string& name,
                                                           std::string_view path, ModelBuilder& builder);
 
   void Project(const v1::Parameters& parameters, const ConstPoints& before, double dt, const Scratch& scratch,

@@ -7,8 +7,9 @@
 namespace phrenic {
 namespace {
 
-// What to take off `between` along `direction` for its squared length to lose `excess`: the smaller root c of
-// |between - c direction|^2 = |between|^2 - excess. Along `between` itself where that has no root ahead.
+// Returns the correction c `direction` that reduces the squared length of `between` by `excess`: c is the smaller root
+// of |between - c direction|^2 = |between|^2 - excess. If there is no root in that direction, a correction along
+// `between`.
 Eigen::Vector3d Correction(const Eigen::Vector3d& between, const Eigen::Vector3d& direction, double excess) {
   const double along = between.dot(direction);
   const double discriminant = along * along - direction.squaredNorm() * excess;
@@ -33,10 +34,10 @@ absl::StatusOr<std::vector<Link>> ListedLinks(const v1::LinkList& list, int body
     const int a = list.links(i).a(), b = list.links(i).b();
     if (absl::Status status = builder.CheckVertex(body, a, where); !status.ok()) return status;
     if (absl::Status status = builder.CheckVertex(body, b, where); !status.ok()) return status;
-    if (a == b) return FieldError(where, absl::StrCat("joins vertex ", a, " to itself"));
+    if (a == b) return FieldError(where, absl::StrCat("links vertex ", a, " to itself"));
     links.push_back(MakeLink(builder.model, first + a, first + b));
     if (links.back().length > 0) continue;
-    return FieldError(where, absl::StrCat("vertices ", a, " and ", b, " are in one point: move one of them"));
+    return FieldError(where, absl::StrCat("vertices ", a, " and ", b, " coincide: move one of them"));
   }
   return links;
 }
@@ -63,7 +64,7 @@ absl::StatusOr<int> DeformableBody(const std::string& name, std::string_view pat
   return FieldError(path, absl::StrCat("body \"", name, "\" must be ROLE_DEFORMABLE"));
 }
 
-void Pull(const Link& link, const Eigen::Vector3d& impulse, double dt, Points& x, Points& v) {
+void ApplyPositionImpulse(const Link& link, const Eigen::Vector3d& impulse, double dt, Points& x, Points& v) {
   x.col(link.a) += link.inverse_a * impulse;
   x.col(link.b) -= link.inverse_b * impulse;
   v.col(link.a) += link.inverse_a / dt * impulse;
@@ -75,10 +76,10 @@ void Restore(const Link& link, const Eigen::Vector3d& direction, double dt, Poin
   const Eigen::Vector3d between = x.col(link.b) - x.col(link.a);
   const double excess = between.squaredNorm() - link.length * link.length;
   const Eigen::Vector3d correction = Correction(between, direction, excess);
-  Pull(link, correction / (link.inverse_a + link.inverse_b), dt, x, v);
+  ApplyPositionImpulse(link, correction / (link.inverse_a + link.inverse_b), dt, x, v);
 }
 
-void Push(const Link& link, const Eigen::Vector3d& impulse, State& state) {
+void ApplyVelocityImpulse(const Link& link, const Eigen::Vector3d& impulse, State& state) {
   state.v.col(link.a) += link.inverse_a * impulse;
   state.v.col(link.b) -= link.inverse_b * impulse;
 }
@@ -88,7 +89,7 @@ void StopStretching(const Link& link, State& state) {
   const double squared = between.squaredNorm();
   if (!link.Movable() || squared == 0) return;
   const double rate = between.dot(state.v.col(link.b) - state.v.col(link.a)) / squared;
-  Push(link, rate / (link.inverse_a + link.inverse_b) * between, state);
+  ApplyVelocityImpulse(link, rate / (link.inverse_a + link.inverse_b) * between, state);
 }
 
 }  // namespace phrenic

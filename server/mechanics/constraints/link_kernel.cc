@@ -20,12 +20,13 @@ namespace hn = hwy::HWY_NAMESPACE;
 using points::Tag, points::Vector, points::Vectors;
 constexpr int kLanes = static_cast<int>(points::kLanes);
 
-// From a to b of kLanes links. Reads their ends alone: what lies beside may be another thread's.
+// Returns the vectors from a to b of kLanes links. Reads only their ends, because another thread may be writing
+// adjacent vertices.
 HWY_INLINE Vectors Between(const LinkPacket& packet, int first, const double* x) {
 #if HWY_TARGET <= HWY_AVX2
   const hn::FixedTag<double, 4> four;
-  const auto end = [&](const std::int32_t* place)
-                       HWY_ATTR { return hn::MaskedLoad(hn::FirstN(four, 3), four, x + *place); };
+  const auto end = [&](const std::int32_t* offset)
+                       HWY_ATTR { return hn::MaskedLoad(hn::FirstN(four, 3), four, x + *offset); };
   return points::Columns([&](int i) HWY_ATTR { return hn::Sub(end(packet.b + first + i), end(packet.a + first + i)); });
 #else
   const Vectors a = points::Transposed<true>(x, packet.a + first), b = points::Transposed<true>(x, packet.b + first);
@@ -58,7 +59,8 @@ void FindDirectionsHere(const LinkPacket* packets, int count, const double* x, L
   }
 }
 
-// What pulls links from `first` on back [kg m]. Those that do not reach get none, and it returns their bits.
+// Computes the impulses that restore the links from `first` on [kg m]: 0 for links that have turned too far, whose bits
+// it returns.
 HWY_INLINE std::uint64_t Correct(const LinkPacket& packet, int first, const LinkVectors& directions, const double* x,
                                  LinkVectors& impulses) {
   const Tag d;
@@ -79,13 +81,13 @@ HWY_INLINE std::uint64_t Correct(const LinkPacket& packet, int first, const Link
   return static_cast<std::uint64_t>(*missed) << first;
 }
 
-// Moves one end of links from `first` on, and their velocities.
-HWY_INLINE void MoveEnds(Vector inverse_mass, const Vectors& impulse, double rate, const std::int32_t* place, int count,
-                         double* x, double* v, points::Largest& largest) {
-  const Vectors way = Scaled(inverse_mass, impulse);
-  largest.Note(way);
-  points::AddRows(points::ToRows(way), place, count, x);
-  points::AddRows(points::ToRows(Scaled(hn::Set(Tag(), rate), way)), place, count, v);
+// Adds the displacements of one end of kLanes links to x, and displacement times `rate` to v.
+HWY_INLINE void MoveEnds(Vector inverse_mass, const Vectors& impulse, double rate, const std::int32_t* offset,
+                         int count, double* x, double* v, points::Largest& largest) {
+  const Vectors displacement = Scaled(inverse_mass, impulse);
+  largest.Note(displacement);
+  points::AddRows(points::ToRows(displacement), offset, count, x);
+  points::AddRows(points::ToRows(Scaled(hn::Set(Tag(), rate), displacement)), offset, count, v);
 }
 
 HWY_INLINE void Move(const LinkPacket& packet, int first, const LinkVectors& impulses, double rate, double* x,
@@ -98,27 +100,27 @@ HWY_INLINE void Move(const LinkPacket& packet, int first, const LinkVectors& imp
 }
 
 #if HWY_TARGET <= HWY_AVX2
-// Numbers of a pair's ends += way, and those of their velocities by its rate. No more of them is written than that:
-// what is fetched beside it next need not wait.
+// Adds a displacement to coordinates of a pair's ends, and displacement times rate to their velocities. Stores exactly
+// these numbers: a wider store would delay the following loads of adjacent numbers.
 template <class D>
-HWY_INLINE void MovePart(D d, hn::Vec<D> way, hn::Vec<D> rate, double* x, double* v) {
-  hn::StoreU(hn::Add(hn::LoadU(d, x), way), d, x);
-  hn::StoreU(hn::Add(hn::LoadU(d, v), hn::Mul(rate, way)), d, v);
+HWY_INLINE void MovePart(D d, hn::Vec<D> displacement, hn::Vec<D> rate, double* x, double* v) {
+  hn::StoreU(hn::Add(hn::LoadU(d, x), displacement), d, x);
+  hn::StoreU(hn::Add(hn::LoadU(d, v), hn::Mul(rate, displacement)), d, v);
 }
 
-// Both ends of one pair: xyzx has (xa, ya, za, xb), yz (yb, zb).
+// Moves both ends of one pair by xyzx = (xa, ya, za, xb) and yz = (yb, zb).
 HWY_INLINE void MovePair(hn::Vec<hn::FixedTag<double, 4>> xyzx, hn::Vec<hn::FixedTag<double, 2>> yz, double rate,
                          const LinkPacket& packet, int link, double* x, double* v) {
   if (link >= packet.count) return;
   const hn::FixedTag<double, 4> four;
   const hn::FixedTag<double, 2> two;
-  const std::int32_t place = packet.a[link];
-  MovePart(four, xyzx, hn::Set(four, rate), x + place, v + place);
-  MovePart(two, yz, hn::Set(two, rate), x + place + 4, v + place + 4);
+  const std::int32_t offset = packet.a[link];
+  MovePart(four, xyzx, hn::Set(four, rate), x + offset, v + offset);
+  MovePart(two, yz, hn::Set(two, rate), x + offset + 4, v + offset + 4);
 }
 
-// Every second pair from `first` on, of as many as a vector has: p has their (xa, ya), q (za, xb), r (yb, zb), a block
-// each.
+// Moves every second pair from `first` on, within one vector. Each 128-bit block of p has a pair's (xa, ya), of q
+// (za, xb), of r (yb, zb).
 HWY_INLINE void MoveEverySecond(Vector p, Vector q, Vector r, double rate, const LinkPacket& packet, int first,
                                 double* x, double* v) {
   const hn::FixedTag<double, 2> two;
@@ -138,7 +140,7 @@ HWY_INLINE void MoveEverySecond(Vector p, Vector q, Vector r, double rate, const
 #endif
 }
 
-// Pairs from `first` on: both ends of a link are fetched, moved and put back together.
+// Moves the pairs from `first` on. Loads and stores both ends of a link together.
 HWY_INLINE void MovePairs(const LinkPacket& packet, int first, const LinkVectors& impulses, double rate, double* x,
                           double* v, points::Largest& largest) {
   const Tag d;
@@ -166,7 +168,7 @@ HWY_INLINE void MoveAll(const LinkPacket& packet, const LinkVectors& impulses, d
   }
 }
 
-// All roots and divisions first: what one packet waits for, the next does not.
+// Computes the impulses of all packets before it moves any vertex: the latencies of square roots and divisions overlap.
 Restored RestorePacketsHere(const LinkPacket* packets, int count, const LinkVectors* directions, double dt, double* x,
                             double* v) {
   LinkVectors impulses[kPacketsTogether];
@@ -197,9 +199,9 @@ std::vector<LinkPacket> PackLinks(absl::Span<const Link> links, int first, bool 
   std::vector<LinkPacket> packets;
   for (size_t next = 0; next < links.size(); ++next) {
     const Link& link = links[next];
-    const bool goes_on =
+    const bool same_group =
         next > 0 && links[next - 1].a / kVertexBlock == link.a / kVertexBlock && packets.back().pairs == IsPair(link);
-    if (!goes_on || packets.back().count == kPacketLinks) {
+    if (!same_group || packets.back().count == kPacketLinks) {
       packets.push_back({.first = first + static_cast<int>(next), .pairs = IsPair(link)});
     }
     LinkPacket& packet = packets.back();
@@ -207,7 +209,7 @@ std::vector<LinkPacket> PackLinks(absl::Span<const Link> links, int first, bool 
     packet.squared_length[i] = link.length * link.length;
     packet.inverse_a[i] = link.inverse_a;
     packet.inverse_b[i] = link.inverse_b;
-    // Lanes that stay empty read the last link's ends.
+    // Padding lanes read the last link's ends.
     const int from = in_blocks ? static_cast<int>(link.a / kVertexBlock * kVertexBlock) : 0;
     std::fill(packet.a + i, std::end(packet.a), 3 * (link.a - from));
     std::fill(packet.b + i, std::end(packet.b), 3 * (link.b - from));

@@ -1,5 +1,6 @@
-// Links that share no vertex that moves, restored eight at a time (Restore in link.h is the rule): written once with
-// Google Highway, the machine's best instruction set chosen at run time, with the same bits on all of them.
+// SIMD kernel that restores links without common movable vertices, eight at a time, as Restore in link.h does. Google
+// Highway compiles it for several instruction sets and selects the best one at run time. The results are bitwise equal
+// on all of them.
 #ifndef PHRENIC_SERVER_MECHANICS_CONSTRAINTS_LINK_KERNEL_H_
 #define PHRENIC_SERVER_MECHANICS_CONSTRAINTS_LINK_KERNEL_H_
 
@@ -13,40 +14,41 @@ namespace phrenic {
 
 inline constexpr int kPacketLinks = 8;
 inline constexpr int kPacketsTogether = 8;
-static_assert(kPacketLinks * kPacketsTogether <= 64, "a bit each");
+static_assert(kPacketLinks * kPacketsTogether <= 64, "one bit per link in Restored::missed");
 
 struct alignas(64) LinkPacket {
   double squared_length[kPacketLinks] = {};                           // [m^2]
   double inverse_a[kPacketLinks] = {}, inverse_b[kPacketLinks] = {};  // 1/m of the ends [1/kg]
-  std::int32_t a[kPacketLinks] = {}, b[kPacketLinks] = {};            // places of the ends [doubles]
-  int count = 0;
-  int first = 0;  // of its links
-  bool pairs = false;
+  std::int32_t a[kPacketLinks] = {}, b[kPacketLinks] = {};            // offsets of the ends in x and v [doubles]
+  int count = 0;                                                      // used lanes; the others are padding
+  int first = 0;                                                      // index of its first link
+  bool pairs = false;                                                 // all links are pairs (IsPair)
 };
 
-// A vector of each of a packet's links: its direction at the start of a step [m], say.
+// One vector per link of a packet, such as its direction at the start of the step [m].
 struct alignas(64) LinkVectors {
   double x[kPacketLinks], y[kPacketLinks], z[kPacketLinks];
 };
 
-// Whether the end b is the next vertex to a: they lie together.
+// True if vertex b follows vertex a, so that their coordinates are contiguous.
 constexpr bool IsPair(const Link& link) { return link.b == link.a + 1; }
 
-// The links one after another, numbered from `first` on. Those of a packet begin in one block of vertices
-// (kVertexBlock), from which on their places count where all links lie `in_blocks`; and they are all pairs, or none is.
+// Packs the links in sequence, with indices from `first` on. The ends a of a packet's links lie in one block of
+// kVertexBlock vertices, and either all links are pairs or none is. With `in_blocks` (each link lies in one block)
+// offsets are relative to the block.
 std::vector<LinkPacket> PackLinks(absl::Span<const Link> links, int first, bool in_blocks);
 
-// From a to b of the packets' links; x are points from where their places count.
+// Sets `directions` to the vectors from a to b of the packets' links [m]. `x` points to the vertex of offset 0.
 void FindDirections(absl::Span<const LinkPacket> packets, const double* x, LinkVectors* directions);
 
 struct Restored {
-  std::uint64_t missed = 0;  // bit kPacketLinks p + i for link i of packet p
-  double way = 0;            // by which a coordinate of an end has moved, at most; no number where one is none [m]
+  std::uint64_t missed = 0;  // bit kPacketLinks p + i: link i of packet p is not restored
+  double way = 0;            // largest displacement of a coordinate of an end [m]; NaN if any is NaN
 };
 
-// Restores the links of up to kPacketsTogether packets that share no vertex that moves: x and v, points from where
-// their places count, change as by Restore over dt [s] along these directions. Those that have turned too far for that
-// are missed: they are left as they were. Threads may call at once for packets that share no vertex.
+// Restores the links of up to kPacketsTogether packets without common movable vertices: x [m] and v [m/s], from the
+// vertex of offset 0, change as by Restore over dt [s] along these directions. Links that have turned too far for their
+// direction are reported in `missed` and left unchanged. Thread-safe for packets without common vertices.
 Restored RestorePackets(absl::Span<const LinkPacket> packets, const LinkVectors* directions, double dt, double* x,
                         double* v);
 

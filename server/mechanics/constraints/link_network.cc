@@ -8,18 +8,18 @@
 namespace phrenic {
 namespace {
 
-constexpr double kTolerance = 1e-10;   // of the length
-constexpr double kWorthAnother = 0.5;  // an iteration that leaves more of the error than this is the last
-constexpr int kFactorisations = 20;    // along the directions of the moment, where those before do not get there
-constexpr double kLargestMove = 0.5;   // of a link's length in one go
-constexpr int kSweeps = 200;
-constexpr int kSwitches = 30;      // rounds of limits that take hold or let go
-constexpr double kAtRest = 1e-12;  // of the fastest rate: a limit that is left slower needs no stopping
-constexpr int kRefinements = 3;    // of velocities; each gains about ten digits where no link is nearly redundant
+constexpr double kTolerance = 1e-10;   // relative to the length
+constexpr double kWorthAnother = 0.5;  // the chord iterations end if the error is not reduced to this fraction
+constexpr int kFactorisations = 20;    // at most, with current directions, after the chord iterations
+constexpr double kLargestMove = 0.5;   // largest change of a length per iteration, relative to the length
+constexpr int kSweeps = 200;           // Gauss-Seidel, at most
+constexpr int kSwitches = 30;          // changes of the active set, at most
+constexpr double kAtRest = 1e-12;      // relative to the largest rate: slower limits count as at rest
+constexpr int kRefinements = 3;        // of velocities; each gains about ten digits unless links are nearly redundant
 
-using Place = std::pair<int, int>;
+using Entry = std::pair<int, int>;  // row and column of the matrix
 
-// The links at each vertex that moves, by their numbers; a link's number is negative (~i) where it ends there.
+// Returns the links at each movable vertex: index i of a link that starts there, ~i (negative) of one that ends there.
 std::map<int, std::vector<int>> LinksAtVertices(const std::vector<Link>& links) {
   std::map<int, std::vector<int>> at;
   for (int i = 0; i < static_cast<int>(links.size()); ++i) {
@@ -29,30 +29,32 @@ std::map<int, std::vector<int>> LinksAtVertices(const std::vector<Link>& links) 
   return at;
 }
 
-int Number(int signed_number) { return signed_number < 0 ? ~signed_number : signed_number; }
+int Index(int signed_index) { return signed_index < 0 ? ~signed_index : signed_index; }
 
-std::vector<Place> PlacesBelow(const std::vector<Link>& links) {
-  std::vector<Place> places;
+// Returns the non-zero entries below the diagonal, sorted.
+std::vector<Entry> EntriesBelow(const std::vector<Link>& links) {
+  std::vector<Entry> entries;
   for (const auto& [vertex, there] : LinksAtVertices(links)) {
     for (const int a : there) {
       for (const int b : there) {
-        if (Number(a) > Number(b)) places.emplace_back(Number(a), Number(b));
+        if (Index(a) > Index(b)) entries.emplace_back(Index(a), Index(b));
       }
     }
   }
-  std::sort(places.begin(), places.end());
-  places.erase(std::unique(places.begin(), places.end()), places.end());
-  return places;
+  std::sort(entries.begin(), entries.end());
+  entries.erase(std::unique(entries.begin(), entries.end()), entries.end());
+  return entries;
 }
 
 }  // namespace
 
 struct LinkNetwork::Memory {
-  Points directions;                     // unit; 0 of what is not active
-  Eigen::VectorXd diagonal;              // [1/kg]
-  Eigen::VectorXd pulls, taken, totals;  // [kg m], of velocities [kg m/s]; errors [m] and rates [m/s] before the solve
-  std::vector<double> values;            // [1/kg]
-  std::vector<bool> active;
+  Points directions;         // unit vectors; 0 if not active
+  Eigen::VectorXd diagonal;  // [1/kg]
+  Eigen::VectorXd multipliers, taken,
+      totals;                  // [kg m] or, of velocities, [kg m/s]; `multipliers` is [m] or [m/s] before the solve
+  std::vector<double> values;  // below the diagonal [1/kg]
+  std::vector<bool> active;    // equalities, and limits in the active set
   SparseLdlt::Factors factors;
 
   bool AnyActive(size_t links) const {
@@ -65,9 +67,9 @@ LinkNetwork::Memory& LinkNetwork::Fit(const Scratch& scratch) const {
   auto& memory = scratch.Get<Memory>();
   const auto links = static_cast<Eigen::Index>(links_.size());
   if (memory.values.size() < values_) memory.values.resize(values_);
-  if (memory.pulls.size() >= links) return memory;
+  if (memory.multipliers.size() >= links) return memory;
   memory.directions.resize(3, links);
-  for (Eigen::VectorXd* vector : {&memory.diagonal, &memory.pulls, &memory.taken, &memory.totals}) {
+  for (Eigen::VectorXd* vector : {&memory.diagonal, &memory.multipliers, &memory.taken, &memory.totals}) {
     vector->resize(links);
   }
   memory.active.resize(links_.size());
@@ -75,32 +77,32 @@ LinkNetwork::Memory& LinkNetwork::Fit(const Scratch& scratch) const {
 }
 
 LinkNetwork::LinkNetwork(const std::vector<Link>& links) {
-  for (const int old : SparseLdlt::Order(static_cast<int>(links.size()), PlacesBelow(links))) {
+  for (const int old : SparseLdlt::Order(static_cast<int>(links.size()), EntriesBelow(links))) {
     links_.push_back(links[old]);
   }
   FindCouplings();
 }
 
 void LinkNetwork::FindCouplings() {
-  const std::vector<Place> places = PlacesBelow(links_);
+  const std::vector<Entry> entries = EntriesBelow(links_);
   for (const auto& [vertex, there] : LinksAtVertices(links_)) {
     for (const int a : there) {
       for (const int b : there) {
-        const Place place(Number(a), Number(b));
-        if (place.first <= place.second) continue;
-        const auto at = std::lower_bound(places.begin(), places.end(), place) - places.begin();
-        const Link& link = links_[place.first];
+        const Entry entry(Index(a), Index(b));
+        if (entry.first <= entry.second) continue;
+        const auto at = std::lower_bound(entries.begin(), entries.end(), entry) - entries.begin();
+        const Link& link = links_[entry.first];
         const double inverse = link.a == vertex ? link.inverse_a : link.inverse_b;
         const double sign = (a < 0) == (b < 0) ? 1 : -1;
-        couplings_.push_back({static_cast<int>(at), place.first, place.second, sign * inverse});
+        couplings_.push_back({static_cast<int>(at), entry.first, entry.second, sign * inverse});
       }
     }
   }
-  values_ = places.size();
-  matrix_ = SparseLdlt(static_cast<int>(links_.size()), places);
+  values_ = entries.size();
+  matrix_ = SparseLdlt(static_cast<int>(links_.size()), entries);
 }
 
-// Links that are not active have no direction and so no part in the matrix.
+// Inactive links have direction 0 and hence no entries in the matrix.
 void LinkNetwork::Factorise(const ConstPoints& x, Memory& memory) const {
   for (size_t i = 0; i < links_.size(); ++i) {
     const auto column = static_cast<Eigen::Index>(i);
@@ -120,7 +122,7 @@ double LinkNetwork::Errors(const State& state, Memory& memory) const {
   double worst = 0;
   for (size_t i = 0; i < links_.size(); ++i) {
     const double error = memory.active[i] ? links_[i].RelativeError(state.x) : 0;
-    memory.pulls[static_cast<Eigen::Index>(i)] = error * links_[i].length;
+    memory.multipliers[static_cast<Eigen::Index>(i)] = error * links_[i].length;
     worst = std::max(worst, std::abs(error));
   }
   return worst;
@@ -131,50 +133,51 @@ double LinkNetwork::Rates(const State& state, Memory& memory) const {
   for (size_t i = 0; i < links_.size(); ++i) {
     const auto column = static_cast<Eigen::Index>(i);
     const Eigen::Vector3d relative = state.v.col(links_[i].b) - state.v.col(links_[i].a);
-    memory.pulls[column] = memory.directions.col(column).dot(relative);
-    worst = std::max(worst, std::abs(memory.pulls[column]));
+    memory.multipliers[column] = memory.directions.col(column).dot(relative);
+    worst = std::max(worst, std::abs(memory.multipliers[column]));
   }
   return worst;
 }
 
-// What the pulls would move links by, over their lengths.
+// Returns the largest change of a length that the multipliers would cause, relative to the length.
 double LinkNetwork::LargestMove(const Memory& memory) const {
   double largest = 0;
   for (size_t i = 0; i < links_.size(); ++i) {
-    const double pull = std::abs(memory.pulls[static_cast<Eigen::Index>(i)]);
-    largest = std::max(largest, pull * (links_[i].inverse_a + links_[i].inverse_b) / links_[i].length);
+    const double multiplier = std::abs(memory.multipliers[static_cast<Eigen::Index>(i)]);
+    largest = std::max(largest, multiplier * (links_[i].inverse_a + links_[i].inverse_b) / links_[i].length);
   }
   return largest;
 }
 
-void LinkNetwork::PullAll(double sign, double dt, Memory& memory, State& state) const {
+void LinkNetwork::ApplyPositionImpulses(double sign, double dt, Memory& memory, State& state) const {
   for (size_t i = 0; i < links_.size(); ++i) {
     const auto column = static_cast<Eigen::Index>(i);
-    Pull(links_[i], sign * memory.pulls[column] * memory.directions.col(column), dt, state.x, state.v);
-    memory.totals[column] += sign * memory.pulls[column];
+    ApplyPositionImpulse(links_[i], sign * memory.multipliers[column] * memory.directions.col(column), dt, state.x,
+                         state.v);
+    memory.totals[column] += sign * memory.multipliers[column];
   }
 }
 
-void LinkNetwork::PushAll(Memory& memory, State& state) const {
+void LinkNetwork::ApplyVelocityImpulses(Memory& memory, State& state) const {
   for (size_t i = 0; i < links_.size(); ++i) {
     const auto column = static_cast<Eigen::Index>(i);
-    Push(links_[i], memory.pulls[column] * memory.directions.col(column), state);
-    memory.totals[column] += memory.pulls[column];
+    ApplyVelocityImpulse(links_[i], memory.multipliers[column] * memory.directions.col(column), state);
+    memory.totals[column] += memory.multipliers[column];
   }
 }
 
-// One step along the directions that are factorised, `error` the one before it. False where it made things worse, and
-// was taken back.
+// One Newton iteration with the factorised matrix; updates `error`. Returns false, and undoes it, if the error did not
+// decrease.
 bool LinkNetwork::Correct(double dt, Memory& memory, State& state, double& error) const {
-  matrix_.Solve(memory.factors, memory.pulls);
+  matrix_.Solve(memory.factors, memory.multipliers);
   const double part = std::min(1.0, kLargestMove / LargestMove(memory));
-  memory.taken = memory.pulls;
-  PullAll(part, dt, memory, state);
+  memory.taken = memory.multipliers;
+  ApplyPositionImpulses(part, dt, memory, state);
   const double before = error;
   error = Errors(state, memory);
   if (error < before) return true;
-  memory.pulls = memory.taken;
-  PullAll(-part, dt, memory, state);
+  memory.multipliers = memory.taken;
+  ApplyPositionImpulses(-part, dt, memory, state);
   error = Errors(state, memory);
   return false;
 }
@@ -192,15 +195,15 @@ void LinkNetwork::Newton(const ConstPoints& before, double dt, Memory& memory, S
   }
 }
 
-// Limits that would push a cable, or pull a strut, are let go with what they did; those that are violated join.
-bool LinkNetwork::Switch(double dt, Memory& memory, State& state) const {
+// Releases limits that push a cable or pull a strut, undoing their displacements, and activates violated ones.
+bool LinkNetwork::UpdateActiveSet(double dt, Memory& memory, State& state) const {
   bool changed = false;
   for (size_t i = 0; i < links_.size(); ++i) {
     const Link& link = links_[i];
     double& total = memory.totals[static_cast<Eigen::Index>(i)];
     if (link.sign == 0) continue;
     if (memory.active[i] && link.sign * total * (link.inverse_a + link.inverse_b) < -kTolerance * link.length) {
-      Pull(link, -total * memory.directions.col(static_cast<Eigen::Index>(i)), dt, state.x, state.v);
+      ApplyPositionImpulse(link, -total * memory.directions.col(static_cast<Eigen::Index>(i)), dt, state.x, state.v);
       total = 0;
       memory.active[i] = false;
       changed = true;
@@ -221,7 +224,7 @@ void LinkNetwork::Project(const ConstPoints& before, double dt, const Scratch& s
   memory.totals.setZero();
   for (int round = 0; round < kSwitches; ++round) {
     Newton(before, dt, memory, state);
-    if (!Switch(dt, memory, state)) break;
+    if (!UpdateActiveSet(dt, memory, state)) break;
   }
   for (int sweep = 0; sweep < kSweeps && LargestViolation(state) > kTolerance; ++sweep) {
     for (const Link& link : links_) {
@@ -236,14 +239,14 @@ double LinkNetwork::LargestViolation(const State& state) const {
   return worst;
 }
 
-bool LinkNetwork::SwitchVelocities(double slow, Memory& memory, State& state) const {
+bool LinkNetwork::UpdateActiveSetOfVelocities(double slow, Memory& memory, State& state) const {
   bool changed = false;
   for (size_t i = 0; i < links_.size(); ++i) {
     const Link& link = links_[i];
     double& total = memory.totals[static_cast<Eigen::Index>(i)];
     if (link.sign == 0) continue;
     if (memory.active[i] && link.sign * total * (link.inverse_a + link.inverse_b) < -slow) {
-      Push(link, -total * memory.directions.col(static_cast<Eigen::Index>(i)), state);
+      ApplyVelocityImpulse(link, -total * memory.directions.col(static_cast<Eigen::Index>(i)), state);
       total = 0;
       memory.active[i] = false;
       changed = true;
@@ -269,10 +272,10 @@ void LinkNetwork::ProjectVelocities(const Scratch& scratch, State& state) const 
   for (int round = 0; round < kSwitches; ++round) {
     Factorise(state.x, memory);
     for (int pass = 0; pass < kRefinements && Rates(state, memory) > 0; ++pass) {
-      matrix_.Solve(memory.factors, memory.pulls);
-      PushAll(memory, state);
+      matrix_.Solve(memory.factors, memory.multipliers);
+      ApplyVelocityImpulses(memory, state);
     }
-    if (!SwitchVelocities(kAtRest * fastest, memory, state)) return;
+    if (!UpdateActiveSetOfVelocities(kAtRest * fastest, memory, state)) return;
   }
 }
 

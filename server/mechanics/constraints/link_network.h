@@ -1,13 +1,17 @@
-// Links that share vertices (chains, trusses, grids), solved together. The pulls lambda [kg m] along the links' unit
-// directions r at the start of the step solve J M^-1 J^T lambda = errors, J the links' directions: sparse, one row a
-// link, factorised once a step and used again until every length is within 1e-10 of its own (a chord Newton method,
-// whose error falls to about the turn of the links in one step [rad] of itself each time). Velocities have the same
-// system with the directions of the moment. Where that stops halving the error (links that turn far in one step) the
-// directions of the moment take over, factorised anew each time, 20 times at most; and where that fails too (links that
-// cannot all hold) link after link is restored, 200 times at most: what then is left over is the residual. Redundant
-// links are left to the others. Limits (links that must not be longer, or not shorter) take part while they hold
-// something: those that are violated join, those that would have to push a cable or pull a strut are let go, 30 rounds
-// at most. (Hess et al., LINCS, J Comput Chem 1997;18:1463; Andersen, RATTLE, J Comput Phys 1983;52:24.)
+// Links that share vertices (chains, trusses, grids), solved simultaneously.
+//
+// Positions: the multipliers lambda [kg m] along the links' unit directions r at the start of the step solve
+//   J M^-1 J^T lambda = errors [m],
+// J the constraint Jacobian (one row per link, from the directions), M the masses. The sparse matrix is factorised once
+// per step and reused until every relative length error is below 1e-10: a chord Newton method, which multiplies the
+// error by about the links' rotation per step [rad] in each iteration. Velocities: the same system with the current
+// directions (RATTLE).
+// If an iteration does not halve the error (large rotations in one step), Newton iterations with the current directions
+// follow, with up to 20 factorisations. If they fail too (incompatible links), up to 200 Gauss-Seidel sweeps restore
+// one link after another; the remaining error is the residual. Redundant links get no multiplier. Limits (inequality
+// links) form an active set: violated ones are added, those whose multiplier would push a cable or pull a strut are
+// released, in up to 30 rounds. Hess et al., LINCS, J Comput Chem 1997;18:1463; Andersen, RATTLE, J Comput Phys
+// 1983;52:24.
 #ifndef PHRENIC_SERVER_MECHANICS_CONSTRAINTS_LINK_NETWORK_H_
 #define PHRENIC_SERVER_MECHANICS_CONSTRAINTS_LINK_NETWORK_H_
 
@@ -18,46 +22,48 @@
 
 namespace phrenic {
 
-// Immutable; any number of threads may call, each with scratch memory of its own. Allocates if no network that used
-// that memory before was as large.
+// Immutable and thread-safe, for threads with scratch memory of their own. Allocates if this is the largest network
+// that used that memory so far.
 class LinkNetwork {
  public:
   LinkNetwork() = default;
   explicit LinkNetwork(const std::vector<Link>& links);
 
-  // Positions of `state` get onto the links, velocities change by the same over dt.
+  // Moves the positions of `state` onto the constraints and changes the velocities by displacement/dt. `before` are the
+  // positions at the start of the step, 3 x n [m].
   void Project(const ConstPoints& before, double dt, const Scratch& scratch, State& state) const;
-  // Velocities keep nothing that would stretch a link.
+  // Removes the velocity components that change a link's length, or violate a limit that is reached.
   void ProjectVelocities(const Scratch& scratch, State& state) const;
   const std::vector<Link>& links() const { return links_; }
 
  private:
-  // Two links with an end in one vertex.
+  // An off-diagonal term: two links with a common vertex.
   struct Coupling {
-    int at;         // place in the matrix's values
+    int at;         // index into the matrix's values
     int i, j;       // links
-    double factor;  // 1/m of the vertex [1/kg]; negative where one link starts and the other ends there
+    double factor;  // 1/m of the vertex [1/kg]; negative if one link starts and the other ends there
   };
   struct Memory;
-  Memory& Fit(const Scratch& scratch) const;  // large enough
+  Memory& Fit(const Scratch& scratch) const;  // returns the scratch memory, resized if it is too small
 
   void FindCouplings();
   void Factorise(const ConstPoints& x, Memory& memory) const;
-  double Errors(const State& state, Memory& memory) const;  // the largest, relative; all of them to memory.pulls
-  double Rates(const State& state, Memory& memory) const;   // the same of the velocities [m/s]
+  double Errors(const State& state,
+                Memory& memory) const;  // sets memory.multipliers [m]; returns the largest relative error
+  double Rates(const State& state, Memory& memory) const;  // sets memory.multipliers [m/s]; returns the largest rate
   double LargestMove(const Memory& memory) const;
-  void PullAll(double sign, double dt, Memory& memory, State& state) const;
-  void PushAll(Memory& memory, State& state) const;  // velocities alone
+  void ApplyPositionImpulses(double sign, double dt, Memory& memory, State& state) const;
+  void ApplyVelocityImpulses(Memory& memory, State& state) const;  // velocities only
   bool Correct(double dt, Memory& memory, State& state, double& error) const;
   void Newton(const ConstPoints& before, double dt, Memory& memory, State& state) const;
-  bool Switch(double dt, Memory& memory, State& state) const;  // true where any limit took hold or let go
-  bool SwitchVelocities(double slow, Memory& memory, State& state) const;
+  bool UpdateActiveSet(double dt, Memory& memory, State& state) const;  // true if the active set changed
+  bool UpdateActiveSetOfVelocities(double slow, Memory& memory, State& state) const;
   double LargestViolation(const State& state) const;
 
   std::vector<Link> links_;
   std::vector<Coupling> couplings_;
   SparseLdlt matrix_;
-  size_t values_ = 0;  // below the matrix's diagonal
+  size_t values_ = 0;  // number of entries below the matrix's diagonal
 };
 
 }  // namespace phrenic

@@ -10,14 +10,14 @@ namespace {
 
 struct Plane {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // zero: everything is above
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // zero: all points count as above
   bool Above(const Eigen::Vector3d& x) const { return normal.isZero() || (x - point).dot(normal) > 0; }
 };
 
 absl::StatusOr<Plane> PlaneOfVertices(const v1::LinkPairing& scene, int body, std::string_view path,
                                       const ModelBuilder& builder) {
   const std::string field = absl::StrCat(std::string(path), ".plane_vertices");
-  if (scene.plane_vertices_size() != 3) return FieldError(field, "a plane takes three vertices");
+  if (scene.plane_vertices_size() != 3) return FieldError(field, "must list three vertices to define a plane");
   for (const int vertex : scene.plane_vertices()) {
     if (absl::Status status = builder.CheckVertex(body, vertex, field); !status.ok()) return status;
   }
@@ -25,7 +25,7 @@ absl::StatusOr<Plane> PlaneOfVertices(const v1::LinkPairing& scene, int body, st
   const Eigen::Vector3d a = x.col(scene.plane_vertices(0));
   const Eigen::Vector3d b = x.col(scene.plane_vertices(1)), c = x.col(scene.plane_vertices(2));
   Eigen::Vector3d normal = (b - a).cross(c - a);
-  if (normal.norm() == 0) return FieldError(field, "the three vertices lie on one line and define no plane");
+  if (normal.norm() == 0) return FieldError(field, "the three vertices are collinear and define no plane");
   if (normal.z() < 0) normal = -normal;
   return Plane{a, normal.normalized()};
 }

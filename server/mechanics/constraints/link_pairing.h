@@ -1,4 +1,4 @@
-// The pairing of figure 3.4: which vertices of the two layers of a body are joined by rigid links.
+// Pairing of the vertices of a body's two layers for rigid links (thesis figure 3.4).
 #ifndef PHRENIC_SERVER_MECHANICS_CONSTRAINTS_LINK_PAIRING_H_
 #define PHRENIC_SERVER_MECHANICS_CONSTRAINTS_LINK_PAIRING_H_
 
@@ -6,9 +6,10 @@
 
 namespace phrenic {
 
-// Pairs of vertices of the body, 2 x n. Each vertex, in index order, takes the nearest vertex within the distance that
-// is free, whose normal makes no acute angle with its own, and that lies above the plane as it does itself. At most one
-// link a vertex. The result depends on the order of the vertices, which is the mesh's.
+// Returns pairs of vertices of the body, 2 x n. Greedy in index order: each unpaired vertex above the plane is paired
+// with the nearest unpaired vertex above the plane within the distance whose normal forms no acute angle with its own.
+// A vertex has at most one link. The result depends on the mesh's vertex order. INVALID_ARGUMENT if the region or the
+// plane is invalid.
 absl::StatusOr<Edges> PairLinks(const v1::LinkPairing& scene, int body, std::string_view path,
                                 const ModelBuilder& builder);
 

@@ -36,10 +36,10 @@ absl::StatusOr<std::vector<Link>> FindLinks(const v1::RigidLinks& scene, int bod
     case v1::RigidLinks::WHICH_NOT_SET:
       break;
   }
-  return FieldError(path, "says neither pairing nor list: which vertices are to be linked?");
+  return FieldError(path, "selects no vertices to link: set pairing or list");
 }
 
-// How many links have an end in each vertex that moves by forces.
+// Returns the number of links at each movable vertex.
 std::vector<int> LinksPerVertex(const std::vector<Link>& links, const Model& model) {
   std::vector<int> count(static_cast<size_t>(model.rest.cols()), 0);
   for (const Link& link : links) {
@@ -49,12 +49,12 @@ std::vector<int> LinksPerVertex(const std::vector<Link>& links, const Model& mod
   return count;
 }
 
-// Both ends move by forces, and lie in one block.
+// True if both ends are movable and in the same block.
 bool InOneBlock(const Link& link) {
   return link.inverse_a > 0 && link.inverse_b > 0 && link.a / kVertexBlock == link.b / kVertexBlock;
 }
 
-// Of each block's packets, and their end.
+// Returns the index of each block's first packet, and the number of packets.
 std::vector<size_t> BlockStarts(const std::vector<Link>& links, const std::vector<LinkPacket>& packets,
                                 Eigen::Index vertices) {
   std::vector<size_t> starts((vertices + kVertexBlock - 1) / kVertexBlock + 1, 0);
@@ -63,8 +63,8 @@ std::vector<size_t> BlockStarts(const std::vector<Link>& links, const std::vecto
   return starts;
 }
 
-// For viewers.
-void Show(const std::vector<Link>& links, Model& model) {
+// Adds the links to the list that viewers display.
+void AddToDisplay(const std::vector<Link>& links, Model& model) {
   Eigen::Index at = model.rigid_links.cols();
   model.rigid_links.conservativeResize(2, at + static_cast<Eigen::Index>(links.size()));
   for (const Link& link : links) model.rigid_links.col(at++) = Eigen::Vector2i(link.a, link.b);
@@ -81,20 +81,20 @@ absl::StatusOr<std::unique_ptr<Constraint>> RigidLinks::Make(const v1::RigidLink
   auto links = FindLinks(scene, *b, field, builder);
   if (!links.ok()) return links.status();
   if (links->empty()) {
-    builder.ReportLeftOut(name, "no two vertices fit the pairing");
+    builder.ReportLeftOut(name, "no two vertices match the pairing");
     return nullptr;
   }
-  Show(*links, builder.model);
+  AddToDisplay(*links, builder.model);
   const auto count = static_cast<std::int64_t>(links->size());
   builder.model.report.set_rigid_links(builder.model.report.rigid_links() + count);
   if (scene.projection() == v1::PROJECTION_THESIS) {
-    builder.ReportElement("constraint", name, count, "links", "split by distance moved (thesis 2.10-2.11)");
+    builder.ReportElement("constraint", name, count, "links", "correction split by displacement (thesis 2.10-2.11)");
     return std::make_unique<ThesisLinks>(name, *std::move(links));
   }
   std::unique_ptr<RigidLinks> constraint(new RigidLinks(name, *links, builder.model));
-  builder.ReportElement(
-      "constraint", name, count, "links",
-      absl::StrCat("mass-weighted, velocities corrected; ", constraint->network_.links().size(), " solved together"));
+  builder.ReportElement("constraint", name, count, "links",
+                        absl::StrCat("mass-weighted, velocities corrected; ", constraint->network_.links().size(),
+                                     " solved simultaneously"));
   return constraint;
 }
 
@@ -114,10 +114,8 @@ RigidLinks::RigidLinks(std::string name, const std::vector<Link>& links, const M
 }
 
 void RigidLinks::PackAlone(Eigen::Index vertices) {
-  const auto place = [](const Link& link) {
-    return std::tuple(!InOneBlock(link), link.a / kVertexBlock, !IsPair(link));
-  };
-  std::stable_sort(alone_.begin(), alone_.end(), [&](const Link& p, const Link& q) { return place(p) < place(q); });
+  const auto key = [](const Link& link) { return std::tuple(!InOneBlock(link), link.a / kVertexBlock, !IsPair(link)); };
+  std::stable_sort(alone_.begin(), alone_.end(), [&](const Link& p, const Link& q) { return key(p) < key(q); });
   const auto across = std::partition_point(alone_.begin(), alone_.end(), InOneBlock);
   const auto inside = static_cast<size_t>(across - alone_.begin());
   const absl::Span<const Link> all(alone_);
@@ -134,18 +132,18 @@ void RigidLinks::PackAlone(Eigen::Index vertices) {
 
 double RigidLinks::RestoreAlone(absl::Span<const LinkPacket> packets, Eigen::Index from, const LinkVectors* directions,
                                 double dt, Points& x, Points& v) const {
-  double way = 0;
+  double largest = 0;
   for (size_t p = 0; p < packets.size(); p += kPacketsTogether) {
     const absl::Span<const LinkPacket> some = packets.subspan(p, kPacketsTogether);
     auto [missed, furthest] = RestorePackets(some, directions + p, dt, x.data() + 3 * from, v.data() + 3 * from);
-    way = LargerMagnitude(missed == 0 ? furthest : std::numeric_limits<double>::infinity(), way);
+    largest = LargerMagnitude(missed == 0 ? furthest : std::numeric_limits<double>::infinity(), largest);
     for (; missed != 0; missed &= missed - 1) {
       const int bit = std::countr_zero(missed), lane = bit % kPacketLinks;
       const LinkVectors& of = directions[p + bit / kPacketLinks];
       Restore(alone_[some[bit / kPacketLinks].first + lane], {of.x[lane], of.y[lane], of.z[lane]}, dt, x, v);
     }
   }
-  return way;
+  return largest;
 }
 
 void RigidLinks::RestoreAcross(const ConstPoints& before, double dt, const Scratch& scratch, State& state) const {

@@ -1,11 +1,12 @@
-// Links of constant length L, its length at rest (tensegrity, thesis sections 2.4 and 3.2), by SHAKE and RATTLE.
+// Rigid links: distance constraints |B - A| = L, L the length at rest [m] (tensegrity, thesis sections 2.4 and 3.2), by
+// SHAKE and RATTLE.
 //
-// A link pulls along its direction r at the start of the step, so that momentum and angular momentum are conserved:
-// with w = 1/m, A += w_A/(w_A + w_B) c r and B -= w_B/(w_A + w_B) c r, c such that |B - A| = L, and the velocities
-// change by the same over dt. ProjectVelocities removes from velocities what would stretch a link. A vertex may have
-// any number of links: those that share a vertex are solved together (LinkNetwork), whatever their order. A fixed end
-// does not move. (Ryckaert, Ciccotti, Berendsen, J Comput Phys 1977;23:327; symplectic with semi-implicit Euler.) The
-// form that the thesis printed is ThesisLinks.
+// The correction is along the link's direction r at the start of the step, so that momentum and angular momentum are
+// conserved: with w = 1/m, A += w_A/(w_A + w_B) c r and B -= w_B/(w_A + w_B) c r, c such that |B - A| = L, and the
+// velocities change by the same over dt. ProjectVelocities removes the velocity components that change a length. A
+// vertex may have any number of links; those that share a vertex are solved simultaneously (LinkNetwork), independently
+// of their order. A fixed end does not move. (Ryckaert, Ciccotti, Berendsen, J Comput Phys 1977;23:327; symplectic with
+// semi-implicit Euler.) The form printed in the thesis is ThesisLinks.
 #ifndef PHRENIC_SERVER_MECHANICS_CONSTRAINTS_RIGID_LINKS_H_
 #define PHRENIC_SERVER_MECHANICS_CONSTRAINTS_RIGID_LINKS_H_
 
@@ -19,7 +20,8 @@ namespace phrenic {
 
 class RigidLinks final : public BlockConstraint {
  public:
-  // Makes RigidLinks, or ThesisLinks if the scene says so. Null if the pairing finds no pair.
+  // Returns RigidLinks, or ThesisLinks for PROJECTION_THESIS. Returns null, and reports it, if the pairing finds no
+  // pair. INVALID_ARGUMENT if the body is not deformable or the scene sets neither pairing nor list.
   static absl::StatusOr<std::unique_ptr<Constraint>> Make(const v1::RigidLinks& scene, const std::string& name,
                                                           std::string_view path, ModelBuilder& builder);
 
@@ -40,15 +42,15 @@ class RigidLinks final : public BlockConstraint {
   RigidLinks(std::string name, const std::vector<Link>& links, const Model& model);
   void PackAlone(Eigen::Index vertices);
   absl::Span<const LinkPacket> PacketsIn(const VertexRange& block) const;
-  // Vertex indices in packets count from vertex `from`. Returns what ProjectBlock returns.
+  // Offsets in packets are relative to vertex `from`. Returns what ProjectBlock returns.
   double RestoreAlone(absl::Span<const LinkPacket> packets, Eigen::Index from, const LinkVectors* directions, double dt,
                       Points& x, Points& v) const;
   void RestoreAcross(const ConstPoints& before, double dt, const Scratch& scratch, State& state) const;
 
-  std::vector<Link> alone_;          // those of which no end that moves has another link
-  std::vector<LinkPacket> packets_;  // the same: first, by block, those with both ends in one block, then the others
-  std::vector<size_t> block_start_;  // of each block's packets, and their end
-  std::vector<int> across_;          // ends of the others and of the network's
+  std::vector<Link> alone_;          // links whose movable ends have no other link
+  std::vector<LinkPacket> packets_;  // of alone_: first, by block, those within one block, then the others
+  std::vector<size_t> block_start_;  // first packet of each block, then the end of the packets within blocks
+  std::vector<int> across_;          // ends of the links across blocks and of the network's links, ascending
   LinkNetwork network_;              // of links that share vertices
 };
 

@@ -15,7 +15,7 @@ void ThesisLinks::Project(const v1::Parameters& parameters, const ConstPoints& b
     if (length == 0 || !link.Movable()) continue;
     double a = link.inverse_a > 0 ? (x.col(link.a) - before.col(link.a)).norm() : 0;
     double b = link.inverse_b > 0 ? (x.col(link.b) - before.col(link.b)).norm() : 0;
-    if (a + b == 0) a = link.inverse_a, b = link.inverse_b;  // neither moved: a fixed end still does not
+    if (a + b == 0) a = link.inverse_a, b = link.inverse_b;  // no displacement: split by inverse mass
     const Eigen::Vector3d correction = ((length - link.length) / length) * between;
     x.col(link.a) += a / (a + b) * correction;
     x.col(link.b) -= b / (a + b) * correction;

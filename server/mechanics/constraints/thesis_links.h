@@ -1,6 +1,7 @@
-// Rigid links as the thesis printed them (equations 2.10-2.11): the correction of a link's length is split by the
-// distance that each end has moved in this step, and velocities are not changed. A fixed end does not move. Reproduces
-// the thesis: it does not converge with the step and does not conserve momentum. See RigidLinks for the exact form.
+// Rigid links as printed in the thesis (equations 2.10-2.11): the correction of a link's length is distributed to its
+// ends in proportion to their displacements in this step, link after link; velocities are not changed. A fixed end does
+// not move. Kept to reproduce the thesis: it does not converge with the time step and does not conserve momentum. Use
+// RigidLinks otherwise.
 #ifndef PHRENIC_SERVER_MECHANICS_CONSTRAINTS_THESIS_LINKS_H_
 #define PHRENIC_SERVER_MECHANICS_CONSTRAINTS_THESIS_LINKS_H_
 

@@ -35,7 +35,7 @@ absl::StatusOr<std::unique_ptr<Force>> ActionLine::Make(const v1::ActionLine& sc
   if (along.norm() == 0) return FieldError(absl::StrCat(std::string(path), ".direction"), "must not be zero");
   const Eigen::Vector3d direction = along.normalized();
   std::unique_ptr<ActionLine> force(new ActionLine(name, scene, direction));
-  Eigen::VectorXd share = Eigen::VectorXd::Zero(builder.model.rest.cols());
+  Eigen::VectorXd weights = Eigen::VectorXd::Zero(builder.model.rest.cols());
   std::int64_t count = 0;
   for (const int b : *bodies) {
     const BodyModel& body = builder.model.bodies[b];
@@ -43,7 +43,7 @@ absl::StatusOr<std::unique_ptr<Force>> ActionLine::Make(const v1::ActionLine& sc
       const int vertex = body.first_vertex + i;
       const double weight = FallOff(scene, direction, body.mesh.vertices.col(i)) * builder.model.mass[vertex];
       if (weight == 0 || builder.model.inverse_mass[vertex] == 0) continue;
-      share[vertex] = weight;
+      weights[vertex] = weight;
       ++count;
     }
   }
@@ -51,7 +51,7 @@ absl::StatusOr<std::unique_ptr<Force>> ActionLine::Make(const v1::ActionLine& sc
     builder.ReportLeftOut(name, count == 0 ? "no free vertex is within its reach" : "its force is 0");
     return nullptr;
   }
-  force->SetShare(share / share.sum());
+  force->SetShare(weights / weights.sum());
   builder.model.action_lines.push_back({name, bodies->front(), ToEigen(scene.origin()), direction, scene.radius()});
   builder.ReportElement("force", name, count, "vertices",
                         absl::StrFormat("%g N at the peak of a quiet breath", scene.force()));

@@ -1,8 +1,9 @@
-// A muscle as a line (thesis section 3.4, listing A.1.2): f_i = F breath_force signal(t) w_i / sum w, along the line.
-// w_i = fall-off times the mass of the area around i at rest, so that the sum over the vertices is F whatever the mesh.
-// Cylinder: 1 - d/radius, d the perpendicular distance; vertical: height above the origin over the radius, where
-// positive. Where the muscle of its side is active by a alone, F is F - (1 - a)(F + lung load). Air that stays in the
-// lungs adds hyperinflation times the air load, whatever the muscle does.
+// A muscle with a straight line of action (thesis section 3.4, listing A.1.2). The force on vertex i is
+//   f_i = F breath_force signal(t) w_i / sum w  [N], along the line.
+// The weight w_i is the fall-off times the mass of the area around vertex i at rest, so that the forces sum to F on any
+// mesh. Fall-off of a cylinder: max(0, 1 - d/radius), d the perpendicular distance [m]; vertical: max(0,
+// height/radius), the height above the origin [m]. With the activation a of the muscle's side, F becomes F - (1 - a)(F
+// + lung load). Trapped air adds hyperinflation times the air load, independently of the muscle.
 #ifndef PHRENIC_SERVER_MECHANICS_FORCES_ACTION_LINE_H_
 #define PHRENIC_SERVER_MECHANICS_FORCES_ACTION_LINE_H_
 
@@ -12,7 +13,8 @@ namespace phrenic {
 
 class ActionLine final : public SharedForce {
  public:
-  // Null where no vertex is within reach or the force is 0.
+  // Returns null, and reports it, if no free vertex has a weight or both force and air load are 0. INVALID_ARGUMENT if
+  // the direction is zero or a body is not deformable.
   static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::ActionLine& scene, const std::string& name,
                                                      std::string_view path, ModelBuilder& builder);
 
@@ -23,7 +25,7 @@ class ActionLine final : public SharedForce {
 
   const v1::Side side_;
   const Eigen::Vector3d force_;   // at signal 1, breath force 1 and full activation [N]
-  const Eigen::Vector3d muscle_;  // the part of it that the activation scales: what the lungs pull is not in it [N]
+  const Eigen::Vector3d muscle_;  // the part that the activation scales: force plus lung load [N]
   const Eigen::Vector3d air_;     // at hyperinflation 1 [N]
 };
 

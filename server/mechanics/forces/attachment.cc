@@ -13,7 +13,8 @@
 namespace phrenic {
 namespace {
 
-bool CarriedByTissue(const Model& model, const BodyModel& body) {
+// True if the body is deformable or follows a deformable one.
+bool FollowsTissue(const Model& model, const BodyModel& body) {
   if (body.first_vertex >= 0) return true;
   if (body.skin < 0) return false;
   if (!model.skins[body.skin].triangles.empty()) return true;
@@ -21,20 +22,20 @@ bool CarriedByTissue(const Model& model, const BodyModel& body) {
   return std::any_of(weights.begin(), weights.end(), [](const SkinWeight& weight) { return weight.pose < 0; });
 }
 
-absl::StatusOr<std::vector<int>> CarrierBodies(const v1::Attachment& scene, std::string_view path,
-                                               const ModelBuilder& builder) {
-  const std::string field = absl::StrCat(std::string(path), ".carriers");
-  auto carriers = builder.Bodies(scene.carriers(), field);
-  if (!carriers.ok()) return carriers;
-  for (const int c : *carriers) {
-    if (CarriedByTissue(builder.model, builder.model.bodies[c])) {
+absl::StatusOr<std::vector<int>> AnchorBodies(const v1::Attachment& scene, std::string_view path,
+                                              const ModelBuilder& builder) {
+  const std::string field = absl::StrCat(std::string(path), ".anchors");
+  auto anchors = builder.Bodies(scene.anchors(), field);
+  if (!anchors.ok()) return anchors;
+  for (const int c : *anchors) {
+    if (FollowsTissue(builder.model, builder.model.bodies[c])) {
       return FieldError(field,
                         absl::StrCat("body \"", builder.model.bodies[c].name,
-                                     "\" is deformable, or rides on what is, and cannot carry; name driven bodies or "
-                                     "ones at rest"));
+                                     "\" is deformable, or follows a deformable body, and cannot be an anchor; name "
+                                     "bodies that are driven or at rest"));
     }
   }
-  return carriers;
+  return anchors;
 }
 
 }  // namespace
@@ -44,34 +45,34 @@ absl::StatusOr<std::unique_ptr<Force>> Attachment::Make(const v1::Attachment& sc
   const std::string name = ElementName(given, "attachment", scene.bodies());
   auto bodies = builder.DeformableBodies(scene.bodies(), absl::StrCat(std::string(path), ".bodies"));
   if (!bodies.ok()) return bodies.status();
-  auto carriers = CarrierBodies(scene, path, builder);
-  if (!carriers.ok()) return carriers.status();
+  auto anchors = AnchorBodies(scene, path, builder);
+  if (!anchors.ok()) return anchors.status();
   std::unique_ptr<Attachment> force(new Attachment(name));
   force->thesis_ = scene.mode() == v1::ATTACHMENT_MODE_THESIS;
   std::vector<SkinWeight> weights;
   for (const int b : *bodies) {
     auto region = builder.Region(b, scene.region(), absl::StrCat(std::string(path), ".region"));
     if (!region.ok()) return region.status();
-    force->AddHolds(scene, *carriers, *region, b, weights, builder);
+    force->AddVertices(scene, *anchors, *region, b, weights, builder);
   }
   force->Pack(std::move(weights), builder.model.mass.size());
-  if (force->holds_.empty()) {
-    builder.ReportLeftOut(name, absl::StrFormat("no vertex is within %g m of a carrier", scene.radius()));
+  if (force->vertices_.empty()) {
+    builder.ReportLeftOut(name, absl::StrFormat("no vertex is within %g m of an anchor", scene.radius()));
     return nullptr;
   }
-  const auto count = static_cast<std::int64_t>(force->holds_.size());
+  const auto count = static_cast<std::int64_t>(force->vertices_.size());
   builder.model.report.set_attachments(builder.model.report.attachments() + count);
   builder.ReportElement("force", name, count, "vertices",
                         absl::StrFormat("within %g mm, k = %g N/m%s", 1e3 * scene.radius(), scene.stiffness(),
-                                        force->thesis_ ? " of the carrier's step (thesis)" : ""));
+                                        force->thesis_ ? " times the anchor's displacement per step (thesis)" : ""));
   return force;
 }
 
-void Attachment::AddHolds(const v1::Attachment& scene, const std::vector<int>& carriers,
-                          const std::vector<bool>& region, int b, std::vector<SkinWeight>& weights,
-                          ModelBuilder& builder) {
+void Attachment::AddVertices(const v1::Attachment& scene, const std::vector<int>& anchors,
+                             const std::vector<bool>& region, int b, std::vector<SkinWeight>& weights,
+                             ModelBuilder& builder) {
   const BodyModel& body = builder.model.bodies[b];
-  const SkinDrivers search(builder, carriers);
+  const SkinDrivers search(builder, anchors);
   for (int i = 0; i < body.mesh.vertices.cols(); ++i) {
     const int vertex = body.first_vertex + i;
     if (!region[i]) continue;
@@ -79,29 +80,31 @@ void Attachment::AddHolds(const v1::Attachment& scene, const std::vector<int>& c
     if (nearby.distance >= scene.radius() || builder.model.inverse_mass[vertex] == 0) continue;
     const double stiffness = (1 - nearby.distance / scene.radius()) * scene.stiffness();
     const double damping = 2 * scene.damping_ratio() * std::sqrt(stiffness * builder.model.mass[vertex]);
-    holds_.push_back({vertex, stiffness, damping, body.mesh.vertices.col(i)});
+    vertices_.push_back({vertex, stiffness, damping, body.mesh.vertices.col(i)});
     search.AppendWeights(nearby, vertex, 1, weights);
     builder.model.attached_vertices.push_back(vertex);
   }
 }
 
-// In packets by block and, of what is carried, by pose.
+// Packs the springs to the rest positions by block, and the skin weights by block and pose.
 void Attachment::Pack(std::vector<SkinWeight> weights, Eigen::Index vertices) {
-  const auto by_vertex = [](const Hold& hold, int vertex) { return hold.vertex < vertex; };
-  std::sort(holds_.begin(), holds_.end(), [](const Hold& a, const Hold& b) { return a.vertex < b.vertex; });
-  for (const Hold& hold : holds_) {
-    if (!thesis_) PackInto(held_.of, -1, hold, hold.stiffness, hold.damping);
+  const auto precedes = [](const AttachedVertex& attached, int vertex) { return attached.vertex < vertex; };
+  std::sort(vertices_.begin(), vertices_.end(),
+            [](const AttachedVertex& a, const AttachedVertex& b) { return a.vertex < b.vertex; });
+  for (const AttachedVertex& attached : vertices_) {
+    if (!thesis_) PackInto(rest_groups_.of, -1, attached, attached.stiffness, attached.damping);
   }
-  const auto place = [](const SkinWeight& weight) {
+  const auto key = [](const SkinWeight& weight) {
     return std::tuple(weight.vertex / kVertexBlock, weight.pose, weight.vertex);
   };
-  std::sort(weights.begin(), weights.end(), [&](const auto& a, const auto& b) { return place(a) < place(b); });
+  std::sort(weights.begin(), weights.end(), [&](const auto& a, const auto& b) { return key(a) < key(b); });
   for (const SkinWeight& weight : weights) {
-    const Hold& hold = *std::lower_bound(holds_.begin(), holds_.end(), weight.vertex, by_vertex);
-    const double stiffness = thesis_ ? 0 : weight.weight * hold.stiffness;
-    PackInto(carried_.of, weight.pose, hold, stiffness, weight.weight * (thesis_ ? hold.stiffness : hold.damping));
+    const AttachedVertex& attached = *std::lower_bound(vertices_.begin(), vertices_.end(), weight.vertex, precedes);
+    const double stiffness = thesis_ ? 0 : weight.weight * attached.stiffness;
+    const double damping = weight.weight * (thesis_ ? attached.stiffness : attached.damping);
+    PackInto(pose_groups_.of, weight.pose, attached, stiffness, damping);
   }
-  held_.Index(vertices), carried_.Index(vertices);
+  rest_groups_.Index(vertices), pose_groups_.Index(vertices);
 }
 
 void Attachment::Groups::Index(Eigen::Index vertices) {
@@ -110,22 +113,23 @@ void Attachment::Groups::Index(Eigen::Index vertices) {
   std::partial_sum(first.begin(), first.end(), first.begin());
 }
 
-// A vertex twice in a row, which has two weights of one pose, goes into two packets.
-void Attachment::PackInto(std::vector<Group>& groups, int pose, const Hold& hold, double stiffness, double damping) {
-  const Eigen::Index block = hold.vertex / kVertexBlock;
-  const auto place = static_cast<std::int32_t>(3 * (hold.vertex % kVertexBlock));
-  const bool goes_on = !groups.empty() && groups.back().block == block && groups.back().pose == pose;
-  if (!goes_on) groups.push_back({block, pose, packets_.size(), packets_.size()});
-  const auto full = [place](const HoldPacket& packet) {
-    return packet.count == kPacketVertices || packet.place[packet.count - 1] == place;
+// If a vertex has two weights of one pose, it goes into two packets: a packet contains each vertex at most once.
+void Attachment::PackInto(std::vector<Group>& groups, int pose, const AttachedVertex& attached, double stiffness,
+                          double damping) {
+  const Eigen::Index block = attached.vertex / kVertexBlock;
+  const auto offset = static_cast<std::int32_t>(3 * (attached.vertex % kVertexBlock));
+  const bool same_group = !groups.empty() && groups.back().block == block && groups.back().pose == pose;
+  if (!same_group) groups.push_back({block, pose, packets_.size(), packets_.size()});
+  const auto full = [offset](const HoldPacket& packet) {
+    return packet.count == kPacketVertices || packet.place[packet.count - 1] == offset;
   };
-  if (!goes_on || full(packets_.back())) packets_.emplace_back();
+  if (!same_group || full(packets_.back())) packets_.emplace_back();
   HoldPacket& packet = packets_.back();
   const std::int32_t i = packet.count++;
-  packet.x[i] = hold.rest.x(), packet.y[i] = hold.rest.y(), packet.z[i] = hold.rest.z();
+  packet.x[i] = attached.rest.x(), packet.y[i] = attached.rest.y(), packet.z[i] = attached.rest.z();
   packet.stiffness[i] = stiffness;
   packet.damping[i] = damping;
-  packet.place[i] = place;
+  packet.place[i] = offset;
   groups.back().end_packet = packets_.size();
 }
 
@@ -144,12 +148,12 @@ void Attachment::AddForceToBlock(const VertexRange& range, const BlockContext& a
       add(groups.of[g], 3 * groups.of[g].block * kVertexBlock);
     }
   };
-  for_each(held_, [&](const Group& group, Eigen::Index block) {
+  for_each(rest_groups_, [&](const Group& group, Eigen::Index block) {
     AddHeld(packets + group.first_packet, packets + group.end_packet, at.x.data() + block, at.v.data() + block,
             f.data() + (block - 3 * range.first));
   });
-  if (carried_.of.empty()) return;
-  for_each(carried_, [&](const Group& group, Eigen::Index block) {
+  if (pose_groups_.of.empty()) return;
+  for_each(pose_groups_, [&](const Group& group, Eigen::Index block) {
     AddCarried(at.pose_matrices[group.pose], scale, packets + group.first_packet, packets + group.end_packet,
                f.data() + (block - 3 * range.first));
   });
@@ -157,12 +161,14 @@ void Attachment::AddForceToBlock(const VertexRange& range, const BlockContext& a
 
 void Attachment::AddStiffness(const EvalContext&, StiffnessSink& sink) const {
   if (thesis_) return;
-  for (const Hold& hold : holds_) sink.Add(hold.vertex, hold.vertex, hold.stiffness * Eigen::Matrix3d::Identity());
+  for (const AttachedVertex& attached : vertices_) {
+    sink.Add(attached.vertex, attached.vertex, attached.stiffness * Eigen::Matrix3d::Identity());
+  }
 }
 
 void Attachment::AddDamping(const EvalContext&, Eigen::VectorXd& c) const {
   if (thesis_) return;
-  for (const Hold& hold : holds_) c[hold.vertex] += hold.damping;
+  for (const AttachedVertex& attached : vertices_) c[attached.vertex] += attached.damping;
 }
 
 }  // namespace phrenic

@@ -22,21 +22,21 @@ HWY_INLINE Vectors AtRest(const HoldPacket& packet, int first) {
   return {hn::Load(d, packet.x + first), hn::Load(d, packet.y + first), hn::Load(d, packet.z + first)};
 }
 
-// Calls pull(packet, first, stiffness, damping), of the vertices from lane `first` on, and adds what it returns to f.
-template <typename Pull>
-HWY_INLINE void AddPulls(const HoldPacket* packet, const HoldPacket* end, double* f, const Pull& pull) {
+// Adds force_of(packet, first, stiffness, damping), the forces on the vertices from lane `first` on, to f.
+template <typename ForceOf>
+HWY_INLINE void AddForces(const HoldPacket* packet, const HoldPacket* end, double* f, const ForceOf& force_of) {
   const Tag d;
   for (; packet != end; ++packet) {
     for (int first = 0; first < packet->count; first += kLanes) {
       const auto stiffness = hn::Load(d, packet->stiffness + first), damping = hn::Load(d, packet->damping + first);
-      const Vectors force = pull(*packet, first, stiffness, damping);
+      const Vectors force = force_of(*packet, first, stiffness, damping);
       points::AddRows(points::ToRows(force), packet->place + first, packet->count - first, f);
     }
   }
 }
 
 void AddHeldHere(const HoldPacket* packet, const HoldPacket* end, const double* x, const double* v, double* f) {
-  const auto pull = [&](const HoldPacket& of, int first, Vector stiffness, Vector damping) HWY_ATTR {
+  const auto force_of = [&](const HoldPacket& of, int first, Vector stiffness, Vector damping) HWY_ATTR {
     const Vectors rest = AtRest(of, first);
     const Vectors at = points::Transposed<true>(x, of.place + first),
                   speed = points::Transposed<true>(v, of.place + first);
@@ -44,10 +44,10 @@ void AddHeldHere(const HoldPacket* packet, const HoldPacket* end, const double* 
                            HWY_ATTR { return hn::Sub(hn::Mul(stiffness, hn::Sub(r, p)), hn::Mul(damping, s)); };
     return Vectors{along(rest.x, at.x, speed.x), along(rest.y, at.y, speed.y), along(rest.z, at.z, speed.z)};
   };
-  AddPulls(packet, end, f, pull);
+  AddForces(packet, end, f, force_of);
 }
 
-// What the pose gives points, by a row of its columns.
+// Row `row` of the pose's matrix, applied to points: row 0 to 2 a displacement [m], row 4 to 6 a velocity [m/s].
 HWY_INLINE Vector Mapped(const PoseMatrices& pose, int row, const Vectors& p) {
   const Tag d;
   const auto of = [&](int c) HWY_ATTR { return hn::Set(d, pose.column[c][row]); };
@@ -57,7 +57,7 @@ HWY_INLINE Vector Mapped(const PoseMatrices& pose, int row, const Vectors& p) {
 
 void AddCarriedHere(const PoseMatrices& pose, double scale, const HoldPacket* packet, const HoldPacket* end,
                     double* f) {
-  const auto pull = [&](const HoldPacket& of, int first, Vector stiffness, Vector damping) HWY_ATTR {
+  const auto force_of = [&](const HoldPacket& of, int first, Vector stiffness, Vector damping) HWY_ATTR {
     const Vectors rest = AtRest(of, first);
     const auto along = [&](int k) HWY_ATTR {
       const auto sum = hn::Add(hn::Mul(stiffness, Mapped(pose, k, rest)), hn::Mul(damping, Mapped(pose, 4 + k, rest)));
@@ -65,7 +65,7 @@ void AddCarriedHere(const PoseMatrices& pose, double scale, const HoldPacket* pa
     };
     return Vectors{along(0), along(1), along(2)};
   };
-  AddPulls(packet, end, f, pull);
+  AddForces(packet, end, f, force_of);
 }
 
 }  // namespace

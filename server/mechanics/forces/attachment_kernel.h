@@ -1,5 +1,5 @@
-// What pulls at the vertices that hold on to carriers (attachment.h), eight at a time: written once with Google
-// Highway, the machine's best instruction set chosen at run time, with the same bits on all of them.
+// SIMD kernels of attachments (attachment.h), eight vertices at a time. Google Highway compiles them for several
+// instruction sets and selects the best one at run time. The results are bitwise equal on all of them.
 #ifndef PHRENIC_SERVER_MECHANICS_FORCES_ATTACHMENT_KERNEL_H_
 #define PHRENIC_SERVER_MECHANICS_FORCES_ATTACHMENT_KERNEL_H_
 
@@ -12,22 +12,22 @@ namespace phrenic {
 
 inline constexpr int kPacketVertices = 8;
 
-// Up to eight vertices of a block; what is left of it pulls at nothing.
+// Up to eight attached vertices of one block. Unused lanes are padding and exert no force.
 struct alignas(64) HoldPacket {
-  double x[kPacketVertices] = {}, y[kPacketVertices] = {}, z[kPacketVertices] = {};  // at rest [m]
+  double x[kPacketVertices] = {}, y[kPacketVertices] = {}, z[kPacketVertices] = {};  // rest positions [m]
   double stiffness[kPacketVertices] = {}, damping[kPacketVertices] = {};             // [N/m], [N s/m]
-  std::int32_t place[kPacketVertices] = {};  // of the vertex in its block's arrays [doubles]; none twice
+  std::int32_t place[kPacketVertices] = {};  // offset of the vertex in its block's arrays [doubles]; no duplicates
   std::int32_t count = 0;
 };
 
-// Both are for packets first to end - 1 of one block, whose positions, velocities and forces are 3 x n. Any number of
-// threads may call, at once only for different vertices.
+// Both functions process the packets [first, end) of one block; x [m], v [m/s] and f [N] are the block's 3 x n arrays.
+// Thread-safe for disjoint vertices.
 
-// f += stiffness (r - x) - damping v [N] for each vertex, r where it is at rest.
+// Adds stiffness (r - x) - damping v [N] to f for each vertex, r its rest position.
 void AddHeld(const HoldPacket* first, const HoldPacket* end, const double* x, const double* v, double* f);
 
-// f += scale (stiffness u + damping u') [N] for each vertex, u the way that the pose carries its point at rest [m];
-// stiffness and damping are times the pose's share in it.
+// Adds scale (stiffness u + damping u') [N] to f for each vertex, u the displacement that the pose gives its rest
+// position [m]. Stiffness and damping are already multiplied by the pose's skin weight.
 void AddCarried(const PoseMatrices& pose, double scale, const HoldPacket* first, const HoldPacket* end, double* f);
 
 }  // namespace phrenic

@@ -25,7 +25,7 @@ absl::StatusOr<std::unique_ptr<Force>> Bending::Make(const v1::Bending& scene, c
     force->AddBody(builder.model.bodies[b], *selection, rigidity);
   }
   if (force->hinges_.empty()) {
-    builder.ReportLeftOut(name, "no edge lies between two triangles of the region");
+    builder.ReportLeftOut(name, "no interior edge, between two triangles, lies in the region");
     return nullptr;
   }
   builder.ReportElement("force", name, static_cast<std::int64_t>(force->hinges_.size()), "edges",
@@ -34,7 +34,7 @@ absl::StatusOr<std::unique_ptr<Force>> Bending::Make(const v1::Bending& scene, c
 }
 
 void Bending::AddBody(const BodyModel& body, const Selection& selection, double rigidity) {
-  std::map<std::pair<int, int>, int> opposite;  // of each edge as its triangle runs along it
+  std::map<std::pair<int, int>, int> opposite;  // opposite vertex of each directed edge of a triangle
   const Triangles& triangles = body.mesh.triangles;
   for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
     for (int k = 0; k < 3; ++k) {

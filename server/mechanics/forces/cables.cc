@@ -23,7 +23,7 @@ absl::StatusOr<std::unique_ptr<Force>> Cables::Make(const v1::Cables& scene, con
   force->stiffness_ = scene.stiffness();
   for (const Link& link : *links) force->cables_.push_back({link.a, link.b, link.length * scene.rest_length_ratio()});
   builder.ReportElement("force", name, static_cast<std::int64_t>(links->size()), "cables",
-                        absl::StrFormat("k = %g N/m, pull only", scene.stiffness()));
+                        absl::StrFormat("k = %g N/m, tension only", scene.stiffness()));
   return force;
 }
 
@@ -45,9 +45,9 @@ void Cables::AddStiffness(const EvalContext& at, StiffnessSink& sink) const {
     const Eigen::Vector3d between = at.x.col(cable.b) - at.x.col(cable.a);
     const double length = between.norm();
     if (length <= cable.rest_length) continue;
-    const double slack_share = cable.rest_length / length;
-    const SpringStiffness spring{cable.a, cable.b, between, stiffness * slack_share / (length * length),
-                                 stiffness * (1 - slack_share)};
+    const double rest_fraction = cable.rest_length / length;
+    const SpringStiffness spring{cable.a, cable.b, between, stiffness * rest_fraction / (length * length),
+                                 stiffness * (1 - rest_fraction)};
     sink.AddSprings({&spring, 1});
   }
 }

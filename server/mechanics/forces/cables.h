@@ -1,6 +1,8 @@
-// Cables: springs that cannot push. f_a = k max(0, l - l0) d, d the unit vector from a to b, f_b = -f_a [N]; energy
-// k max(0, l - l0)^2 / 2; slack, they have neither force, nor energy, nor stiffness. k [N/m] is scaled by the live
-// parameter elasticity. With struts (rigid links) they make a tensegrity (thesis section 2.4).
+// Cables: tension-only springs between vertices a and b,
+//   f_a = k max(0, l - l0) d, f_b = -f_a  [N];  E = k max(0, l - l0)^2 / 2  [J],
+// d the unit vector from a to b, l the length and l0 the rest length [m], k the stiffness [N/m] times the live
+// parameter elasticity. A slack cable (l <= l0) has no force, energy or stiffness. Cables and struts (rigid links) form
+// a tensegrity (thesis section 2.4).
 #ifndef PHRENIC_SERVER_MECHANICS_FORCES_CABLES_H_
 #define PHRENIC_SERVER_MECHANICS_FORCES_CABLES_H_
 
@@ -12,7 +14,7 @@ namespace phrenic {
 
 class Cables final : public Force {
  public:
-  // Null where no edge lies in the region.
+  // Returns null, and reports it, if no edge lies in the region.
   static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::Cables& scene, const std::string& name,
                                                      std::string_view path, ModelBuilder& builder);
 

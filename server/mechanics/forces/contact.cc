@@ -8,12 +8,12 @@
 namespace phrenic {
 namespace {
 
-// Of one deformable surface after another.
+// Scratch memory: the bounding boxes of the deformable surface being evaluated.
 struct FittedBoxes {
   TriangleTree::Boxes boxes;
 };
 
-constexpr double kReach = 10;      // depths
+constexpr double kReach = 10;      // largest penetration [depths]
 constexpr double kGravity = 9.81;  // [m/s^2]
 
 absl::StatusOr<std::vector<int>> SurfaceBodies(const v1::Contact& scene, const std::vector<int>& bodies,
@@ -24,10 +24,11 @@ absl::StatusOr<std::vector<int>> SurfaceBodies(const v1::Contact& scene, const s
   for (const int s : *surfaces) {
     const BodyModel& body = builder.model.bodies[s];
     const auto error = [&](const char* what) { return FieldError(field, absl::StrCat("body \"", body.name, what)); };
-    if (body.mesh.triangles.cols() == 0) return error("\" has no triangles to slide on");
-    if (body.skin >= 0) return error("\" rides on others and is only seen: name a deformable, driven or resting body");
+    if (body.mesh.triangles.cols() == 0) return error("\" has no triangles and cannot be a contact surface");
+    if (body.skin >= 0)
+      return error("\" is only seen and follows other bodies: name a body that is deformable, driven or at rest");
     if (std::find(bodies.begin(), bodies.end(), s) != bodies.end()) {
-      return error("\" is among the bodies that slide: a body does not slide on itself");
+      return error("\" is also in bodies: self-contact is not supported");
     }
   }
   return surfaces;
@@ -61,8 +62,8 @@ absl::StatusOr<std::unique_ptr<Force>> Contact::Make(const v1::Contact& scene, c
   force->stiffness_ = Load(scene, *bodies, builder.model) / scene.depth();
   force->reach_ = kReach * scene.depth();
   builder.ReportElement("force", name, static_cast<std::int64_t>(force->vertices_.size()), "vertices",
-                        absl::StrFormat("on %d surfaces, %g mm deep, k = %g N/m", surfaces->size(), 1e3 * scene.depth(),
-                                        force->stiffness_));
+                        absl::StrFormat("on %d surfaces, penetration %g mm at the load, k = %g N/m", surfaces->size(),
+                                        1e3 * scene.depth(), force->stiffness_));
   return force;
 }
 
@@ -105,7 +106,8 @@ void Contact::AddForce(const EvalContext& at, MutablePoints f) const {
   });
 }
 
-// k g g^T, g the normal times 1 at the vertex and times the weights at the triangle.
+// K = k g g^T, g the derivative of the penetration: the normal times 1 at the vertex and times minus the barycentric
+// weights at the corners.
 void Contact::AddStiffness(const EvalContext& at, StiffnessSink& sink) const {
   ForEachTouch(at, [&](const Touch& touch) {
     const Eigen::Vector3d normal = touch.offset.normalized();
@@ -121,7 +123,8 @@ void Contact::AddStiffness(const EvalContext& at, StiffnessSink& sink) const {
   });
 }
 
-// One touch at each vertex of the bodies and each of a deformable surface, both of which move in it.
+// Assumes one contact at each vertex of the bodies and one at each vertex of a deformable surface; twice the stiffness
+// where both sides move.
 void Contact::AddLatentStiffness(const EvalContext&, StiffnessSink& sink) const {
   const bool deformable =
       std::any_of(surfaces_.begin(), surfaces_.end(), [](const Surface& surface) { return surface.deformable(); });

@@ -10,27 +10,27 @@
 namespace phrenic {
 namespace {
 
-// Triangles that are evaluated one by one: there are hardly ever any.
+// Scratch memory: the degenerate triangles, which are evaluated without SIMD. Usually empty.
 struct FlatTriangles {
   std::vector<int> numbers;
 };
 
-constexpr double kFlattest = 1e-3;  // stretch below which a flat element's transverse stiffness grows no further
+constexpr double kFlattest = 1e-3;  // lower bound of the stretch by which tensions are divided
 
 // The second derivative of the energy density is
 //   dF:H:dF = 2 mu dF:dF + lambda (R:dF)^2 - sum over modes of softening (Q:dF)^2,
-// where the modes Q are the ways for the element to turn: they cost no strain, only work against the tension.
+// where the modes Q are the infinitesimal rotations of the element: they cause no strain, only work against tension.
 template <int N>
 struct Modes {
   std::array<Gradient<N>, 3> q;
   std::array<double, 3> softening;  // [Pa]; 2 mu at rest, less under tension
 };
 
-// Stiffness that the stress sum `tension` [Pa] gives to a turn of what has the length `stretch`.
+// Returns the geometric stiffness [Pa] of a rotation mode: `tension` [Pa], 0 if compressive, over `stretch`.
 double Geometric(double tension, double stretch) { return std::max(0.0, tension) / std::max(stretch, kFlattest); }
 
-// In its plane, and out of it about each principal axis.
-Modes<2> TurningModes(const Gradient<2>& r, const Eigen::Matrix2d& s, const Lame& lame, bool turns) {
+// Returns one rotation mode in the triangle's plane and two out of it, about the principal axes.
+Modes<2> RotationModes(const Gradient<2>& r, const Eigen::Matrix2d& s, const Lame& lame, bool corotated) {
   Modes<2> modes;
   const Eigen::Vector3d normal = r.col(0).cross(r.col(1));
   const double trace = s.trace() - 2;
@@ -45,22 +45,22 @@ Modes<2> TurningModes(const Gradient<2>& r, const Eigen::Matrix2d& s, const Lame
     modes.q[i + 1] = normal * principal.eigenvectors().col(i).transpose();
     modes.softening[i + 1] = 2 * lame.mu - Geometric(tension, stretch);
   }
-  if (!turns) modes.softening.fill(2 * lame.mu);
+  if (!corotated) modes.softening.fill(2 * lame.mu);
   return modes;
 }
 
-// About each principal axis.
-Modes<3> TurningModes(const Gradient<3>& r, const Eigen::Matrix3d& s, const Lame& lame, bool turns) {
+// Returns a rotation mode about each principal axis.
+Modes<3> RotationModes(const Gradient<3>& r, const Eigen::Matrix3d& s, const Lame& lame, bool corotated) {
   Modes<3> modes;
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(s);
   for (int i = 0; i < 3; ++i) {
     const Eigen::Vector3d axis = principal.eigenvectors().col(i);
-    const double across = s.trace() - principal.eigenvalues()[i];  // the two other stretches
+    const double across = s.trace() - principal.eigenvalues()[i];  // sum of the other two stretches
     for (int k = 0; k < 3; ++k) modes.q[i].col(k) = std::sqrt(0.5) * r * axis.cross(Eigen::Vector3d::Unit(k));
     const double tension = 2 * lame.mu * (across - 2) + 2 * lame.lambda * (s.trace() - 3);
     modes.softening[i] = 2 * lame.mu - Geometric(tension, across);
   }
-  if (!turns) modes.softening.fill(2 * lame.mu);
+  if (!corotated) modes.softening.fill(2 * lame.mu);
   return modes;
 }
 
@@ -127,8 +127,8 @@ std::vector<TriangleBatch> InBatches(const std::vector<FiniteElement<2>>& elemen
     const auto& g = elements[t].gradient;
     batch.b1[i] = g(0, 1), batch.b2[i] = g(1, 1), batch.c1[i] = g(0, 2), batch.c2[i] = g(1, 2);
     batch.volume[i] = elements[t].volume;
-    const Eigen::Vector3i place = 3 * elements[t].vertices;
-    batch.a[i] = place[0], batch.b[i] = place[1], batch.c[i] = place[2];
+    const Eigen::Vector3i offset = 3 * elements[t].vertices;
+    batch.a[i] = offset[0], batch.b[i] = offset[1], batch.c[i] = offset[2];
   }
   return batches;
 }
@@ -162,7 +162,7 @@ void Corotated<N>::AddStiffness(const EvalContext& at, StiffnessSink& sink) cons
   for (const FiniteElement<N>& element : elements_) {
     const Gradient<N> gradient = DeformationOf(element, at.x);
     const Gradient<N> r = Rotation(element, gradient);
-    const Modes<N> modes = TurningModes(r, Symmetric<N>(r, gradient), lame_, turns_);
+    const Modes<N> modes = RotationModes(r, Symmetric<N>(r, gradient), lame_, corotated_);
     for (int a = 0; a <= N; ++a) {
       for (int b = 0; b <= N; ++b) {
         sink.Add(element.vertices[a], element.vertices[b], elasticity * Block(element, a, b, r, modes, lame_));

@@ -1,10 +1,10 @@
-// Finite elements of constant strain, linear in the strain and free to turn: triangles in plane stress (N = 2) and
-// tetrahedra (N = 3). With F = R S the deformation gradient (3 x N) of an element of rest volume V [m^3] and
-// e = sym(R^T F) - I its strain (Biot's),
+// Corotational finite elements with constant strain: triangles in plane stress (N = 2) and tetrahedra (N = 3). With
+// F = R S the deformation gradient (3 x N) of an element of rest volume V [m^3] and e = sym(R^T F) - I its Biot strain,
 //   E = V (mu e:e + lambda/2 tr(e)^2) [J],  f_a = -V R (2 mu e + lambda tr(e) I) g_a [N],
-// g_a the gradient of vertex a's shape function at rest [1/m]. The force is the exact gradient of the energy. With
-// linear strain R stays what it is at rest. Muller and Gross 2004; the energy and its eigenmodes: Smith, de Goes and
-// Kim 2019. K has its negative eigenvalues left out, mode by mode.
+// g_a the gradient of vertex a's shape function at rest [1/m], mu and lambda the Lame parameters [Pa]. The force is the
+// exact gradient of the energy. With linear strain R is the rotation at rest. Muller and Gross 2004; energy and
+// eigenmodes: Smith, de Goes and Kim 2019. The stiffness is projected to positive semi-definite: negative eigenvalues
+// are clamped to 0, mode by mode.
 #ifndef PHRENIC_SERVER_MECHANICS_FORCES_COROTATED_H_
 #define PHRENIC_SERVER_MECHANICS_FORCES_COROTATED_H_
 
@@ -20,25 +20,25 @@ namespace phrenic {
 struct Lame {
   double mu, lambda;  // [Pa]
 };
-// Of a membrane in plane stress, of a solid.
+// Return the Lame parameters of a membrane in plane stress and of a solid.
 Lame PlaneStress(double youngs_modulus, double poissons_ratio);
 Lame OfSolid(double youngs_modulus, double poissons_ratio);
 
 template <int N>
 struct FiniteElement {
   Eigen::Matrix<int, N + 1, 1> vertices;
-  Eigen::Matrix<double, N, N + 1> gradient;  // of the shape functions, by column [1/m]
-  Gradient<N> axes;                          // of its coordinates at rest, in space
+  Eigen::Matrix<double, N, N + 1> gradient;  // of the shape functions, one column per vertex [1/m]
+  Gradient<N> axes;                          // axes of the element's rest coordinates, 3 x N, orthonormal
   double volume;                             // [m^3]
 };
 
-// The element over these vertices at rest; its volume is area x thickness, or 0 where it is degenerate.
+// Returns the element of these vertices at rest. Its volume is area x thickness [m^3], 0 if it is degenerate.
 FiniteElement<2> MakeTriangle(const ConstPoints& rest, const Eigen::Vector3i& vertices, double thickness);
 
-// The same; its volume does not depend on the order of the vertices.
+// Returns the element of these vertices at rest. Its volume is positive for any order of the vertices, 0 if degenerate.
 FiniteElement<3> MakeTetrahedron(const ConstPoints& rest, const Eigen::Vector4i& vertices);
 
-// F = sum of x_a g_a^T.
+// Returns the deformation gradient F = sum_a x_a g_a^T.
 template <int N>
 Gradient<N> DeformationOf(const FiniteElement<N>& element, const ConstPoints& x) {
   Gradient<N> f = x.col(element.vertices[0]) * element.gradient.col(0).transpose();
@@ -46,17 +46,17 @@ Gradient<N> DeformationOf(const FiniteElement<N>& element, const ConstPoints& x)
   return f;
 }
 
-// f_a -= V P g_a, P the first Piola-Kirchhoff stress [Pa].
+// Adds the element's forces f_a = -V P g_a [N], P the first Piola-Kirchhoff stress [Pa].
 template <int N>
 void AddStress(const FiniteElement<N>& element, const Gradient<N>& stress, MutablePoints f) {
   for (int a = 0; a <= N; ++a) f.col(element.vertices[a]) -= element.volume * (stress * element.gradient.col(a));
 }
 
-// Laid out for the machine; nothing of tetrahedra.
+// Returns the triangles in batches for the SIMD kernel (triangle_kernel.h). There is none for tetrahedra.
 std::vector<TriangleBatch> InBatches(const std::vector<FiniteElement<2>>& elements);
 inline std::vector<TriangleBatch> InBatches(const std::vector<FiniteElement<3>>&) { return {}; }
 
-// Stiffness is scaled by the live parameter elasticity.
+// A batch of elements of one material. Stresses are scaled by the live parameter elasticity.
 template <int N>
 class Corotated final : public Force {
  public:
@@ -64,8 +64,8 @@ class Corotated final : public Force {
       : Force(std::move(name)),
         elements_(std::move(elements)),
         lame_(lame),
-        turns_(strain != v1::STRAIN_LINEAR),
-        batches_(turns_ ? InBatches(elements_) : std::vector<TriangleBatch>()) {}
+        corotated_(strain != v1::STRAIN_LINEAR),
+        batches_(corotated_ ? InBatches(elements_) : std::vector<TriangleBatch>()) {}
 
   void AddForce(const EvalContext& at, MutablePoints f) const override;
   void AddStiffness(const EvalContext& at, StiffnessSink& sink) const override;
@@ -75,15 +75,15 @@ class Corotated final : public Force {
  private:
   using Square = Eigen::Matrix<double, N, N>;
   Gradient<N> Rotation(const FiniteElement<N>& element, const Gradient<N>& f) const {
-    return turns_ ? NearestRotation(f) : element.axes;
+    return corotated_ ? NearestRotation(f) : element.axes;
   }
 
   void AddForceOf(const FiniteElement<N>& element, double elasticity, const ConstPoints& x, MutablePoints f) const;
 
   const std::vector<FiniteElement<N>> elements_;
   const Lame lame_;
-  const bool turns_;
-  const std::vector<TriangleBatch> batches_;  // the same, where they are triangles that turn: what a step reads
+  const bool corotated_;                      // false: linear strain
+  const std::vector<TriangleBatch> batches_;  // copy of elements_ for AddForce; empty unless corotated triangles
 };
 
 extern template class Corotated<2>;

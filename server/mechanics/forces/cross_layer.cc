@@ -16,7 +16,7 @@ namespace {
 
 using Pairs = std::set<std::pair<int, int>>;  // of simulated vertices
 
-// The nearest vertices of the opposite layer for each vertex that takes part.
+// Adds the nearest vertices of the opposite layer for each selected vertex.
 void PairLayers(const ModelBuilder& builder, int b, const Selection& selection, const v1::CrossLayer& scene,
                 Pairs& pairs) {
   const BodyModel& body = builder.model.bodies[b];
@@ -34,7 +34,7 @@ void PairLayers(const ModelBuilder& builder, int b, const Selection& selection, 
   }
 }
 
-// The nearest vertices of another body for each vertex that takes part.
+// Adds the nearest vertices of another body for each selected vertex.
 void PairBodies(const ModelBuilder& builder, int b, int to, const Selection& selection, const v1::CrossLayer& scene,
                 Pairs& pairs) {
   const BodyModel &body = builder.model.bodies[b], &other = builder.model.bodies[to];

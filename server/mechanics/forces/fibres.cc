@@ -10,8 +10,8 @@
 namespace phrenic {
 namespace {
 
-constexpr double kLevel = 1e-9;     // change of the harmonic function over a triangle that counts as none
-constexpr double kShortest = 1e-3;  // stretch below which the transverse stiffness grows no further
+constexpr double kLevel = 1e-9;     // the harmonic function counts as constant if it changes by less over a triangle
+constexpr double kShortest = 1e-3;  // lower bound of the stretch by which the tension is divided
 
 Eigen::Vector2d Across(const Eigen::Vector2d& along) { return {-along[1], along[0]}; }
 
@@ -72,7 +72,7 @@ double Fibres::ActiveStress(const EvalContext& at) const {
   return active_stress_ * at.parameters.breath_force() * std::max(0.0, at.breath);
 }
 
-Fibres::Pull Fibres::PullOf(const Eigen::Vector3d& stretched, double modulus, double active) {
+Fibres::Tension Fibres::TensionOf(const Eigen::Vector3d& stretched, double modulus, double active) {
   const double stretch = stretched.norm();
   if (stretch == 0) return {0, 0, Eigen::Vector3d::Zero()};
   return {stretch, modulus * (stretch - 1) + active, stretched / stretch};
@@ -83,8 +83,8 @@ void Fibres::AddForce(const EvalContext& at, MutablePoints f) const {
   for (const Strip& strip : strips_) {
     const Gradient<2> gradient = DeformationOf(strip.element, at.x);
     const Eigen::Vector2d across = Across(strip.along);
-    const Pull lengthwise = PullOf(gradient * strip.along, elasticity * along_, active);
-    const Pull crosswise = PullOf(gradient * across, elasticity * across_, 0);
+    const Tension lengthwise = TensionOf(gradient * strip.along, elasticity * along_, active);
+    const Tension crosswise = TensionOf(gradient * across, elasticity * across_, 0);
     AddStress<2>(strip.element,
                  lengthwise.tension * lengthwise.unit * strip.along.transpose() +
                      crosswise.tension * crosswise.unit * across.transpose(),
@@ -94,9 +94,9 @@ void Fibres::AddForce(const EvalContext& at, MutablePoints f) const {
 
 void Fibres::AddStiffness(const EvalContext& at, StiffnessSink& sink) const {
   const double active = ActiveStress(at), elasticity = at.parameters.elasticity();
-  const auto add = [&sink](const Strip& strip, const Eigen::Vector2d& direction, const Pull& pull, double modulus) {
-    const Eigen::Matrix3d lengthwise = pull.unit * pull.unit.transpose();
-    const double transverse = std::max(0.0, pull.tension) / std::max(pull.stretch, kShortest);
+  const auto add = [&sink](const Strip& strip, const Eigen::Vector2d& direction, const Tension& state, double modulus) {
+    const Eigen::Matrix3d lengthwise = state.unit * state.unit.transpose();
+    const double transverse = std::max(0.0, state.tension) / std::max(state.stretch, kShortest);
     const Eigen::Matrix3d block =
         strip.element.volume * (modulus * lengthwise + transverse * (Eigen::Matrix3d::Identity() - lengthwise));
     const Eigen::Vector3d slope = strip.element.gradient.transpose() * direction;
@@ -108,8 +108,8 @@ void Fibres::AddStiffness(const EvalContext& at, StiffnessSink& sink) const {
   for (const Strip& strip : strips_) {
     const Gradient<2> gradient = DeformationOf(strip.element, at.x);
     const Eigen::Vector2d across = Across(strip.along);
-    add(strip, strip.along, PullOf(gradient * strip.along, elasticity * along_, active), elasticity * along_);
-    add(strip, across, PullOf(gradient * across, elasticity * across_, 0), elasticity * across_);
+    add(strip, strip.along, TensionOf(gradient * strip.along, elasticity * along_, active), elasticity * along_);
+    add(strip, across, TensionOf(gradient * across, elasticity * across_, 0), elasticity * across_);
   }
 }
 

@@ -1,4 +1,5 @@
-// Friction on the velocity (thesis equation 2.1, its g given per mass): f = -rate m v [N].
+// Viscous damping proportional to mass and velocity: f = -rate m v [N], rate [1/s]. Thesis equation 2.1 with its
+// coefficient g = rate m.
 #ifndef PHRENIC_SERVER_MECHANICS_FORCES_FRICTION_H_
 #define PHRENIC_SERVER_MECHANICS_FORCES_FRICTION_H_
 
@@ -9,13 +10,13 @@ namespace phrenic {
 
 class Friction final : public BlockForce {
  public:
-  // Null where the rate is 0.
+  // Returns null, and reports it, if the rate is 0.
   static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::Friction& scene, const std::string& name,
                                                      std::string_view path, ModelBuilder& builder);
 
   void AddForceToBlock(const VertexRange& range, const BlockContext& at, MutablePoints f) const override;
   void AddDamping(const EvalContext&, Eigen::VectorXd& c) const override { c += coefficient_; }
-  // g of each simulated vertex [N s/m].
+  // The coefficient g, one per simulated vertex [N s/m].
   const Eigen::VectorXd& coefficient() const { return coefficient_; }
 
  private:

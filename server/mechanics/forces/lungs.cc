@@ -39,7 +39,7 @@ absl::StatusOr<std::unique_ptr<Force>> Lungs::Make(const v1::Lungs& scene, const
   force->rest_volume_ = scene.rest_volume();
   builder.ReportElement("force", name, force->chamber_.triangles(), "triangles",
                         absl::StrFormat("%g m^3/Pa, %g Pa s/m^3%s", scene.compliance(), scene.resistance(),
-                                        force->pushes_ ? "" : ", driven: pulls at nothing"));
+                                        force->pushes_ ? "" : ", surface is not deformable: exerts no force"));
   return force;
 }
 

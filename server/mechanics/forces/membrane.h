@@ -1,4 +1,4 @@
-// Finite elements over the triangles of bodies, in plane stress; the law is in corotated.h.
+// Membranes: corotational finite elements in plane stress over the triangles of bodies. Equations: corotated.h.
 #ifndef PHRENIC_SERVER_MECHANICS_FORCES_MEMBRANE_H_
 #define PHRENIC_SERVER_MECHANICS_FORCES_MEMBRANE_H_
 
@@ -6,7 +6,7 @@
 
 namespace phrenic {
 
-// Null where no triangle takes part; triangles without area are left out.
+// Returns null, and reports it, if no triangle is selected. Degenerate triangles are left out.
 absl::StatusOr<std::unique_ptr<Force>> MakeMembrane(const v1::Membrane& scene, const std::string& name,
                                                     std::string_view path, ModelBuilder& builder);
 

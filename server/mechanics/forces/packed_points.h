@@ -1,4 +1,4 @@
-// Positions in single precision, four numbers each (spring_kernel.h).
+// Positions in single precision, padded to four numbers per point for aligned loads (spring_kernel.h).
 #ifndef PHRENIC_SERVER_MECHANICS_FORCES_PACKED_POINTS_H_
 #define PHRENIC_SERVER_MECHANICS_FORCES_PACKED_POINTS_H_
 
@@ -11,11 +11,11 @@
 
 namespace phrenic {
 
-// Numbers that begin at a cache line. Not thread-safe.
+// An array of numbers, aligned to a cache line. Not thread-safe.
 template <typename Number>
 class AlignedNumbers {
  public:
-  // Returns room for `count` numbers. Allocates if it never had room for as many; keeps no contents then.
+  // Returns memory for `count` numbers. Allocates if `count` is the largest so far; the contents are then undefined.
   Number* Fit(Eigen::Index count) {
     const auto lines = static_cast<std::size_t>(count) * sizeof(Number) / 64 + 1;
     if (lines_.size() < lines) lines_.resize(lines);
@@ -29,8 +29,8 @@ class AlignedNumbers {
   std::vector<Line> lines_;
 };
 
-// Returns the columns of x relative to column `from` [m], in scratch memory until its next call. Runs on the threads of
-// a step.
+// Returns the columns of x relative to column `from` [m]. They are valid until the next call with the same scratch
+// memory. Runs on the threads of the step.
 const float* PackAll(const ConstPoints& x, int from, const Scratch& scratch);
 
 }  // namespace phrenic

@@ -8,7 +8,7 @@
 namespace phrenic {
 namespace {
 
-absl::Status CheckPlace(const v1::PointLoad& scene, std::string_view path) {
+absl::Status CheckSelection(const v1::PointLoad& scene, std::string_view path) {
   if (scene.region().empty() && scene.vertices().empty()) {
     return FieldError(path, "says no place: set vertices, or a region");
   }
@@ -27,27 +27,29 @@ absl::StatusOr<std::unique_ptr<Force>> PointLoad::Make(const v1::PointLoad& scen
   *body.Add() = scene.body();
   auto bodies = builder.DeformableBodies(body, absl::StrCat(std::string(path), ".body"));
   if (!bodies.ok()) return bodies.status();
-  if (bodies->size() != 1) return FieldError(absl::StrCat(std::string(path), ".body"), "names several bodies");
-  if (absl::Status status = CheckPlace(scene, path); !status.ok()) return status;
+  if (bodies->size() != 1)
+    return FieldError(absl::StrCat(std::string(path), ".body"), "names several bodies; a point load acts on one");
+  if (absl::Status status = CheckSelection(scene, path); !status.ok()) return status;
   auto vertices = builder.FreeVertices(bodies->front(), scene.region(), scene.vertices(), path);
   if (!vertices.ok()) return vertices.status();
   std::unique_ptr<PointLoad> force(new PointLoad(name));
   force->vertices_ = *std::move(vertices);
   std::sort(force->vertices_.begin(), force->vertices_.end());
-  force->breathes_ = scene.scaled_by_breath();
-  const Eigen::Vector3d whole = ToEigen(scene.force());
-  if (force->vertices_.empty() || whole.isZero(0)) {
+  force->scaled_by_breath_ = scene.scaled_by_breath();
+  const Eigen::Vector3d total = ToEigen(scene.force());
+  if (force->vertices_.empty() || total.isZero(0)) {
     builder.ReportLeftOut(name, force->vertices_.empty() ? "none of its vertices is free" : "its force is 0");
     return nullptr;
   }
-  force->load_ = whole / static_cast<double>(force->vertices_.size());
-  builder.ReportElement("force", name, static_cast<std::int64_t>(force->vertices_.size()), "vertices",
-                        absl::StrFormat("%g N in all%s", whole.norm(), force->breathes_ ? ", with the breath" : ""));
+  force->load_ = total / static_cast<double>(force->vertices_.size());
+  builder.ReportElement(
+      "force", name, static_cast<std::int64_t>(force->vertices_.size()), "vertices",
+      absl::StrFormat("%g N in total%s", total.norm(), force->scaled_by_breath_ ? ", scaled by the breath" : ""));
   return force;
 }
 
 Eigen::Vector3d PointLoad::LoadAt(const EvalContext& at) const {
-  return (breathes_ ? at.parameters.breath_force() * at.breath : 1.0) * load_;
+  return (scaled_by_breath_ ? at.parameters.breath_force() * at.breath : 1.0) * load_;
 }
 
 void PointLoad::AddForceToBlock(const VertexRange& range, const BlockContext& at, MutablePoints f) const {

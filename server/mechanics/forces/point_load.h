@@ -1,5 +1,5 @@
-// A load on chosen vertices: f_i = F s / n on each of the n that are free, F the whole force [N], s = 1 or
-// breath_force signal(t) where the scene says so. Energy -sum f_i.x_i.
+// A prescribed load on selected vertices: f_i = F s / n on each of the n free ones, F the total force [N], s = 1, or
+// breath_force signal(t) if scaled_by_breath is set. E = -sum f_i.x_i [J].
 #ifndef PHRENIC_SERVER_MECHANICS_FORCES_POINT_LOAD_H_
 #define PHRENIC_SERVER_MECHANICS_FORCES_POINT_LOAD_H_
 
@@ -12,7 +12,8 @@ namespace phrenic {
 
 class PointLoad final : public BlockForce {
  public:
-  // Null where no vertex is free or the force is 0.
+  // Returns null, and reports it, if no vertex is free or the force is 0. INVALID_ARGUMENT if the scene selects no
+  // vertices, or by both region and list.
   static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::PointLoad& scene, const std::string& name,
                                                      std::string_view path, ModelBuilder& builder);
 
@@ -26,7 +27,7 @@ class PointLoad final : public BlockForce {
 
   std::vector<int> vertices_;  // ascending
   Eigen::Vector3d load_;       // on each vertex [N]
-  bool breathes_ = false;
+  bool scaled_by_breath_ = false;
 };
 
 }  // namespace phrenic

@@ -8,11 +8,11 @@
 namespace phrenic {
 namespace {
 
-constexpr double kFlat = 1e-4;       // det F / |F|^3 below which Newton's iteration gives way
-constexpr int kMostIterations = 20;  // of which about five are needed
-constexpr double kSettled = 1e-18;   // squared change of R: the next iteration would change it by its square
+constexpr double kFlat = 1e-4;       // det F / |F|^3 below which the singular value decomposition is used
+constexpr int kMostIterations = 20;  // about five are typical
+constexpr double kSettled = 1e-18;   // squared change of R at convergence; the next change would be its square
 
-// Unit normal of the plane of F's two columns; of one of its planes where they are parallel.
+// Returns the unit normal of the plane of F's two columns; any normal to both if they are parallel.
 Eigen::Vector3d UnitNormal(const Gradient<2>& f, const Eigen::Vector3d& cross, double area) {
   if (area > 0) return cross / area;
   const Eigen::Vector3d longer = f.col(0).squaredNorm() > f.col(1).squaredNorm() ? f.col(0) : f.col(1);
@@ -24,7 +24,7 @@ Gradient<3> RotationBySingularValues(const Gradient<3>& f) {
   Gradient<3> r = svd.matrixU() * svd.matrixV().transpose();
   if (r.determinant() > 0) return r;
   Gradient<3> u = svd.matrixU();
-  u.col(2) = -u.col(2);  // the flattest direction is the one that was turned inside out
+  u.col(2) = -u.col(2);  // reflects the direction of the smallest singular value, in which the element is inverted
   return u * svd.matrixV().transpose();
 }
 

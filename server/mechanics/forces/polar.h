@@ -1,4 +1,4 @@
-// The rotation in a deformation gradient: F = R S, S symmetric (the polar decomposition).
+// The polar decomposition of a deformation gradient, F = R S, R a rotation and S symmetric.
 #ifndef PHRENIC_SERVER_MECHANICS_FORCES_POLAR_H_
 #define PHRENIC_SERVER_MECHANICS_FORCES_POLAR_H_
 
@@ -6,13 +6,13 @@
 
 namespace phrenic {
 
-// How N coordinates of an element at rest (2 of a triangle, 3 of a tetrahedron) became three in space.
+// A deformation gradient: from N rest coordinates of an element (2 of a triangle, 3 of a tetrahedron) to space.
 template <int N>
 using Gradient = Eigen::Matrix<double, 3, N>;
 
-// The R nearest to F, R^T R = I, to rounding. Where F is so degenerate that there are several, one of them. Of a
-// triangle: R = (F + cofactor(F)) / tr S, exact. Of a tetrahedron: det R = 1 even where it is turned inside out;
-// Newton's iteration (Higham 1986), the singular value decomposition where F is nearly flat or inverted.
+// Returns the R nearest to F with R^T R = I, to rounding; one of them if F is so degenerate that it is not unique.
+// Triangle: R = (F + cofactor(F)) / tr S in closed form. Tetrahedron: det R = 1 even if the element is inverted; Newton
+// iteration (Higham 1986), or the singular value decomposition if F is nearly singular or inverted. Thread-safe.
 Gradient<2> NearestRotation(const Gradient<2>& f);
 Gradient<3> NearestRotation(const Gradient<3>& f);
 

@@ -13,7 +13,8 @@ constexpr std::array<Force::Output, 2> kPressureOutputs = {{{"pressure", "Pa"}, 
 
 std::string Detail(const v1::Pressure& scene) {
   std::string detail = absl::StrFormat("%g Pa", scene.pressure());
-  if (scene.breath_pressure() != 0) absl::StrAppendFormat(&detail, ", %g Pa by the breath", scene.breath_pressure());
+  if (scene.breath_pressure() != 0)
+    absl::StrAppendFormat(&detail, ", %g Pa scaled by the breath", scene.breath_pressure());
   if (scene.has_compliance()) absl::StrAppendFormat(&detail, ", %g m^3/Pa", scene.compliance());
   return detail;
 }
@@ -60,21 +61,21 @@ void Pressure::AddStiffness(const EvalContext& at, StiffnessSink& sink) const {
   if (stiffness_ != 0) sink.AddOuter(stiffness_, chamber_.AreaVectors(at));
 }
 
-// Of what is left out above, a bound: corner a of a triangle abc has the blocks p/6 [b - c]x, p/6 [c - a]x and
-// p/6 [a - b]x in its row, whose norms are the edges' lengths.
+// Adds an upper bound of the term that AddStiffness leaves out: the row of corner a of a triangle abc has the blocks
+// p/6 [b - c]x, p/6 [c - a]x and p/6 [a - b]x, whose norms are p/6 times the edge lengths.
 void Pressure::AddLatentStiffness(const EvalContext& at, StiffnessSink& sink) const {
   const double p =
       std::abs(PressureAt(at) - Given(at)) + std::abs(constant_) + std::abs(breath_) * at.parameters.breath_force();
   chamber_.ForEachSimulated([&](const Eigen::Vector3i& corners) {
-    double round = 0;
-    for (int i = 0; i < 3; ++i) round += (at.x.col(corners[i]) - at.x.col(corners[(i + 1) % 3])).norm();
-    for (const int vertex : corners) sink.Add(vertex, vertex, p / 6 * round * Eigen::Matrix3d::Identity());
+    double perimeter = 0;
+    for (int i = 0; i < 3; ++i) perimeter += (at.x.col(corners[i]) - at.x.col(corners[(i + 1) % 3])).norm();
+    for (const int vertex : corners) sink.Add(vertex, vertex, p / 6 * perimeter * Eigen::Matrix3d::Identity());
   });
 }
 
 double Pressure::Energy(const EvalContext& at) const {
-  const double volume = chamber_.Volume(at), more = volume - rest_volume_;
-  return -Given(at) * volume + 0.5 * stiffness_ * more * more;
+  const double volume = chamber_.Volume(at), change = volume - rest_volume_;
+  return -Given(at) * volume + 0.5 * stiffness_ * change * change;
 }
 
 std::span<const Force::Output> Pressure::outputs() const { return kPressureOutputs; }

@@ -1,4 +1,4 @@
-// A force that is one vector at any moment, shared out among vertices: f_i = s_i F(t) [N], energy -F . sum s_i x_i.
+// A total force distributed over vertices by constant weights: f_i = s_i F(t) [N], E = -F . sum s_i x_i [J].
 #ifndef PHRENIC_SERVER_MECHANICS_FORCES_SHARED_FORCE_H_
 #define PHRENIC_SERVER_MECHANICS_FORCES_SHARED_FORCE_H_
 
@@ -11,12 +11,14 @@
 
 namespace phrenic {
 
+// Thread-safe. A step adds all forces of this kind to a block in one pass (step/load_batch.h).
 class SharedForce : public BlockForce {
  public:
-  // F at this moment.
+  // Returns F at this moment [N].
   virtual Eigen::Vector3d Whole(const EvalContext& at) const = 0;
-  // s, one a simulated vertex; and whether any of a block (kVertexBlock) is not 0.
+  // The weights s, one per simulated vertex.
   const Eigen::VectorXd& share() const { return share_; }
+  // True if any weight in this block of kVertexBlock vertices is not 0.
   bool ActsOn(Eigen::Index block) const { return acts_[static_cast<size_t>(block)]; }
 
   void AddForceToBlock(const VertexRange& range, const BlockContext& at, MutablePoints f) const override;
@@ -29,7 +31,7 @@ class SharedForce : public BlockForce {
 
  private:
   Eigen::VectorXd share_;
-  std::vector<bool> acts_;
+  std::vector<bool> acts_;  // one per block
 };
 
 }  // namespace phrenic

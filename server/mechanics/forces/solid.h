@@ -1,4 +1,4 @@
-// Finite elements over the tetrahedra of bodies; the law is in corotated.h.
+// Solids: corotational finite elements over the tetrahedra of bodies. Equations: corotated.h.
 #ifndef PHRENIC_SERVER_MECHANICS_FORCES_SOLID_H_
 #define PHRENIC_SERVER_MECHANICS_FORCES_SOLID_H_
 
@@ -6,7 +6,7 @@
 
 namespace phrenic {
 
-// Null where no tetrahedron takes part; those without volume are left out.
+// Returns null, and reports it, if no tetrahedron is selected. Degenerate tetrahedra are left out.
 absl::StatusOr<std::unique_ptr<Force>> MakeSolid(const v1::Solid& scene, const std::string& name, std::string_view path,
                                                  ModelBuilder& builder);
 

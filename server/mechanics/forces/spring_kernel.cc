@@ -15,7 +15,7 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// One vector is a slice, a half or a quarter of one, or less.
+// A SIMD vector has as many lanes as a slice has rows, or a half, a quarter or fewer.
 template <typename Number>
 using SliceTag = hn::CappedTag<Number, kSliceRows<Number>>;
 template <typename Number>
@@ -26,17 +26,18 @@ struct Coordinates {
   hn::Vec<SliceTag<Number>> x, y, z;
 };
 
-// Keeps 1/l finite, and 1 over the product of three, so that l = 0 gives no force and no exception is made of it [m^2].
+// Lower bound of l^2 [m^2]. Keeps 1/l, and the inverse of a product of three lengths, finite: l = 0 gives no force
+// without a branch.
 template <typename Number>
 constexpr Number kShortestSquared = std::is_same_v<Number, float> ? 1e-36 : 1e-200;
 
 #if HWY_TARGET <= HWY_AVX3
-// Four pairs of points, each of them one read.
-HWY_INLINE Coordinates<double> FetchPairs(const double* x, const std::int32_t* place) {
+// Gathers four pairs of points with one load each.
+HWY_INLINE Coordinates<double> GatherPairs(const double* x, const std::int32_t* offset) {
   using V = hn::Vec<SliceTag<double>>;
   const SliceTag<double> d;
-  const V a = hn::LoadU(d, x + place[0]), b = hn::LoadU(d, x + place[1]);
-  const V c = hn::LoadU(d, x + place[2]), e = hn::LoadU(d, x + place[3]);
+  const V a = hn::LoadU(d, x + offset[0]), b = hn::LoadU(d, x + offset[1]);
+  const V c = hn::LoadU(d, x + offset[2]), e = hn::LoadU(d, x + offset[3]);
   const auto xy_ab = __builtin_shufflevector(a.raw, b.raw, 0, 8, 3, 11, 1, 9, 4, 12);
   const auto xy_ce = __builtin_shufflevector(c.raw, e.raw, 0, 8, 3, 11, 1, 9, 4, 12);
   const auto z_ab = __builtin_shufflevector(a.raw, b.raw, 2, 10, 5, 13, 2, 10, 5, 13);
@@ -47,48 +48,48 @@ HWY_INLINE Coordinates<double> FetchPairs(const double* x, const std::int32_t* p
 }
 #endif
 
-template <Fetching kFetching>
-HWY_INLINE Coordinates<double> Fetch(const double* x, const std::int32_t* place) {
+template <GatherMode kMode>
+HWY_INLINE Coordinates<double> Gather(const double* x, const std::int32_t* offset) {
 #if HWY_TARGET <= HWY_AVX3
-  if constexpr (kFetching == Fetching::kInPairs) return FetchPairs(x, place);
+  if constexpr (kMode == GatherMode::kInPairs) return GatherPairs(x, offset);
 #endif
-  const points::Vectors fetched = points::Transposed<kFetching == Fetching::kAtEnd>(x, place);
-  return {fetched.x, fetched.y, fetched.z};
+  const points::Vectors gathered = points::Transposed<kMode == GatherMode::kAtEnd>(x, offset);
+  return {gathered.x, gathered.y, gathered.z};
 }
 
-// Points i, i + 4, ... , as many as a vector has.
-template <Fetching kFetching>
-HWY_INLINE hn::Vec<SliceTag<float>> EveryFourth(const float* x, const std::int32_t* place, int i) {
+// Returns points i, i + 4, ..., as many as fit into a vector.
+template <GatherMode kMode>
+HWY_INLINE hn::Vec<SliceTag<float>> EveryFourth(const float* x, const std::int32_t* offset, int i) {
   const SliceTag<float> d;
 #if HWY_TARGET == HWY_SCALAR
-  return hn::Load(d, x + place[i]);
+  return hn::Load(d, x + offset[i]);
 #elif HWY_TARGET <= HWY_AVX3
   const hn::FixedTag<float, 8> half;
-  if constexpr (kFetching == Fetching::kInPairs) {
-    return hn::Combine(d, hn::LoadU(half, x + place[i + 4]), hn::LoadU(half, x + place[i]));
+  if constexpr (kMode == GatherMode::kInPairs) {
+    return hn::Combine(d, hn::LoadU(half, x + offset[i + 4]), hn::LoadU(half, x + offset[i]));
   }
   const hn::FixedTag<float, 4> one;
-  const auto low = hn::Combine(half, hn::Load(one, x + place[i + 4]), hn::Load(one, x + place[i]));
-  const auto high = hn::Combine(half, hn::Load(one, x + place[i + 12]), hn::Load(one, x + place[i + 8]));
+  const auto low = hn::Combine(half, hn::Load(one, x + offset[i + 4]), hn::Load(one, x + offset[i]));
+  const auto high = hn::Combine(half, hn::Load(one, x + offset[i + 12]), hn::Load(one, x + offset[i + 8]));
   return hn::Combine(d, high, low);
 #elif HWY_TARGET == HWY_AVX2
-  if constexpr (kFetching == Fetching::kInPairs) return hn::LoadU(d, x + place[i]);
+  if constexpr (kMode == GatherMode::kInPairs) return hn::LoadU(d, x + offset[i]);
   const hn::FixedTag<float, 4> one;
-  return hn::Combine(d, hn::Load(one, x + place[i + 4]), hn::Load(one, x + place[i]));
+  return hn::Combine(d, hn::Load(one, x + offset[i + 4]), hn::Load(one, x + offset[i]));
 #else
-  return hn::Load(d, x + place[i]);
+  return hn::Load(d, x + offset[i]);
 #endif
 }
 
-template <Fetching kFetching>
-HWY_INLINE Coordinates<float> Fetch(const float* x, const std::int32_t* place) {
+template <GatherMode kMode>
+HWY_INLINE Coordinates<float> Gather(const float* x, const std::int32_t* offset) {
   const SliceTag<float> d;
 #if HWY_TARGET == HWY_SCALAR
-  return {hn::Load(d, x + *place), hn::Load(d, x + *place + 1), hn::Load(d, x + *place + 2)};
+  return {hn::Load(d, x + *offset), hn::Load(d, x + *offset + 1), hn::Load(d, x + *offset + 2)};
 #else
   const hn::RepartitionToWide<SliceTag<float>> pairs;
-  const auto a = EveryFourth<kFetching>(x, place, 0), b = EveryFourth<kFetching>(x, place, 1);
-  const auto c = EveryFourth<kFetching>(x, place, 2), e = EveryFourth<kFetching>(x, place, 3);
+  const auto a = EveryFourth<kMode>(x, offset, 0), b = EveryFourth<kMode>(x, offset, 1);
+  const auto c = EveryFourth<kMode>(x, offset, 2), e = EveryFourth<kMode>(x, offset, 3);
   const auto xy01 = hn::BitCast(pairs, hn::InterleaveLower(d, a, b));
   const auto xy23 = hn::BitCast(pairs, hn::InterleaveLower(d, c, e));
   const auto z01 = hn::BitCast(pairs, hn::InterleaveUpper(d, a, b));
@@ -98,16 +99,16 @@ HWY_INLINE Coordinates<float> Fetch(const float* x, const std::int32_t* place) {
 #endif
 }
 
-// The points of a column from `row` on, as many as a vector has.
-template <Fetching kFetching, typename Number>
-HWY_INLINE Coordinates<Number> FetchColumn(const Number* x, const std::int32_t* column, int row) {
-  if constexpr (kFetching == Fetching::kInPairs) {
-    return Fetch<kFetching>(x + PointOfPair(row) * kPointStride<Number>, column + PairOf(row));
+// Returns the points of a column from `row` on, one per lane.
+template <GatherMode kMode, typename Number>
+HWY_INLINE Coordinates<Number> GatherColumn(const Number* x, const std::int32_t* column, int row) {
+  if constexpr (kMode == GatherMode::kInPairs) {
+    return Gather<kMode>(x + PointOfPair(row) * kPointStride<Number>, column + PairOf(row));
   }
-  return Fetch<kFetching>(x, column + row);
+  return Gather<kMode>(x, column + row);
 }
 
-// The rows of a slice from `row` on, as many as a vector has.
+// The rows of a slice from `row` on, one per lane.
 template <typename Number>
 struct Part {
   const SpringSlices<Number>& slices;
@@ -115,67 +116,67 @@ struct Part {
   int row;
 };
 
-// What a column of a slice has for the part's rows.
+// The coefficients of one column for the part's rows: k [N/m] and k l0 [N].
 template <typename Number>
 struct Column {
   hn::Vec<SliceTag<Number>> stiffness, at_rest;
 };
 
-template <bool kAlike, typename Number>
+template <bool kUniform, typename Number>
 HWY_INLINE Column<Number> ColumnAt(const Part<Number>& part, std::int64_t c) {
   const SliceTag<Number> d;
   const SpringSlices<Number>& slices = part.slices;
   const SpringSlice<Number>& slice = slices.slices[part.slice];
   const auto at_rest = hn::Load(d, slices.at_rest[c].row + part.row);
-  if constexpr (kAlike) return {hn::Set(d, slice.common_stiffness), at_rest};
+  if constexpr (kUniform) return {hn::Set(d, slice.common_stiffness), at_rest};
   return {hn::Load(d, slices.stiffness[c - slice.first_column + slice.first_stiffness].row + part.row), at_rest};
 }
 
-template <Fetching kFetching, typename Number>
-constexpr int kPlacesOf = SpringSlice<Number>{.fetching = kFetching}.places();
+template <GatherMode kMode, typename Number>
+constexpr int kOffsetsOf = SpringSlice<Number>{.gather = kMode}.offsets();
 
-// Adds the pulls of kTogether columns, step by step: what one of them waits for, the others do not.
-template <bool kAlike, Fetching kFetching, int kTogether, typename Number>
-HWY_INLINE void AddPulls(const Part<Number>& part, std::int64_t first, const std::int32_t* places, const Number* x,
-                         const Coordinates<Number>& own, Coordinates<Number>& sum) {
-  constexpr int kPlaces = kPlacesOf<kFetching, Number>;
+// Adds the spring forces of kTogether columns. Their operations are interleaved to hide latency.
+template <bool kUniform, GatherMode kMode, int kTogether, typename Number>
+HWY_INLINE void AddForces(const Part<Number>& part, std::int64_t first, const std::int32_t* offsets, const Number* x,
+                          const Coordinates<Number>& own, Coordinates<Number>& sum) {
+  constexpr int kOffsets = kOffsetsOf<kMode, Number>;
   const SliceTag<Number> d;
   const auto shortest = hn::Set(d, kShortestSquared<Number>);
-  Coordinates<Number> way[kTogether];
-  hn::Vec<SliceTag<Number>> inverse[kTogether];  // of the length; before that, the length squared
+  Coordinates<Number> edge[kTogether];
+  hn::Vec<SliceTag<Number>> inverse[kTogether];  // first l^2, then 1/l
 #pragma GCC unroll 3
   for (int i = 0; i < kTogether; ++i) {
-    const Coordinates<Number> other = FetchColumn<kFetching>(x, places + i * kPlaces, part.row);
-    way[i] = {hn::Sub(other.x, own.x), hn::Sub(other.y, own.y), hn::Sub(other.z, own.z)};
-    const auto& [dx, dy, dz] = way[i];
+    const Coordinates<Number> other = GatherColumn<kMode>(x, offsets + i * kOffsets, part.row);
+    edge[i] = {hn::Sub(other.x, own.x), hn::Sub(other.y, own.y), hn::Sub(other.z, own.z)};
+    const auto& [dx, dy, dz] = edge[i];
     inverse[i] = hn::Max(hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz)), shortest);
   }
   InvertRoots(d, inverse);
 #pragma GCC unroll 3
   for (int i = 0; i < kTogether; ++i) {
-    const Column<Number> column = ColumnAt<kAlike>(part, first + i);
-    const auto pull = hn::Sub(column.stiffness, hn::Mul(column.at_rest, inverse[i]));
-    sum.x = hn::Add(sum.x, hn::Mul(pull, way[i].x));
-    sum.y = hn::Add(sum.y, hn::Mul(pull, way[i].y));
-    sum.z = hn::Add(sum.z, hn::Mul(pull, way[i].z));
+    const Column<Number> column = ColumnAt<kUniform>(part, first + i);
+    const auto coefficient = hn::Sub(column.stiffness, hn::Mul(column.at_rest, inverse[i]));
+    sum.x = hn::Add(sum.x, hn::Mul(coefficient, edge[i].x));
+    sum.y = hn::Add(sum.y, hn::Mul(coefficient, edge[i].y));
+    sum.z = hn::Add(sum.z, hn::Mul(coefficient, edge[i].z));
   }
 }
 
-// Sum of the pulls on the part's rows.
-template <bool kAlike, Fetching kFetching, typename Number>
-HWY_INLINE Coordinates<Number> SumPulls(const Part<Number>& part, const Number* x) {
+// Returns the sums of the spring forces on the part's rows.
+template <bool kUniform, GatherMode kMode, typename Number>
+HWY_INLINE Coordinates<Number> SumForces(const Part<Number>& part, const Number* x) {
   const SliceTag<Number> d;
-  constexpr int kPlaces = kPlacesOf<kFetching, Number>;
+  constexpr int kOffsets = kOffsetsOf<kMode, Number>;
   const SpringSlice<Number>& slice = part.slices.slices[part.slice];
   const std::int64_t end = part.slices.slices[part.slice + 1].first_column;
-  const std::int32_t* places = &part.slices.places[slice.first_place];
-  const Coordinates<Number> own = FetchColumn<kFetching>(x, places, part.row);
-  places += kPlaces;
+  const std::int32_t* offsets = &part.slices.offsets[slice.first_offset];
+  const Coordinates<Number> own = GatherColumn<kMode>(x, offsets, part.row);
+  offsets += kOffsets;
   Coordinates<Number> sum = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
   std::int64_t c = slice.first_column;
-  for (; c + 3 <= end; c += 3, places += 3 * kPlaces) AddPulls<kAlike, kFetching, 3>(part, c, places, x, own, sum);
-  if (c + 2 == end) AddPulls<kAlike, kFetching, 2>(part, c, places, x, own, sum);
-  if (c + 1 == end) AddPulls<kAlike, kFetching, 1>(part, c, places, x, own, sum);
+  for (; c + 3 <= end; c += 3, offsets += 3 * kOffsets) AddForces<kUniform, kMode, 3>(part, c, offsets, x, own, sum);
+  if (c + 2 == end) AddForces<kUniform, kMode, 2>(part, c, offsets, x, own, sum);
+  if (c + 1 == end) AddForces<kUniform, kMode, 1>(part, c, offsets, x, own, sum);
   return sum;
 }
 
@@ -189,7 +190,8 @@ HWY_INLINE void AddLoad(const Part<Number>& part, Coordinates<Number>& sum) {
   sum.z = hn::Add(sum.z, hn::Load(d, load.z.row + part.row));
 }
 
-// The sums of a slice's rows from `row` on as points (x, y, z, 0), to their slots; `tile` is where the slice's begin.
+// Scatters the sums of a slice's rows from `row` on to their slots, as points (x, y, z, 0). `tile` is the slice's first
+// slot.
 template <typename Number>
 HWY_INLINE void ToSlots(const Coordinates<Number>& sum, int row, Number* tile) {
   const SliceTag<Number> d;
@@ -222,7 +224,7 @@ HWY_INLINE void ToSlots(const Coordinates<Number>& sum, int row, Number* tile) {
   }
 }
 
-// A block's sums by slot. Three numbers before a slot and two after it are read with it, for nothing.
+// The sums of one block by slot. Vector loads of a slot also read up to three numbers before and two after it.
 template <typename Number>
 class Tile {
  public:
@@ -236,20 +238,20 @@ class Tile {
   alignas(64) Number numbers_[kAhead + kNoSlot<Number> + 8];
 };
 
-template <bool kAlike, typename Number>
-HWY_INLINE Coordinates<Number> SumPulls(const Part<Number>& part, const Number* x) {
-  switch (part.slices.slices[part.slice].fetching) {
-    case Fetching::kInPairs:
-      return SumPulls<kAlike, Fetching::kInPairs>(part, x);
-    case Fetching::kOneByOne:
-      return SumPulls<kAlike, Fetching::kOneByOne>(part, x);
-    case Fetching::kAtEnd:
+template <bool kUniform, typename Number>
+HWY_INLINE Coordinates<Number> SumForces(const Part<Number>& part, const Number* x) {
+  switch (part.slices.slices[part.slice].gather) {
+    case GatherMode::kInPairs:
+      return SumForces<kUniform, GatherMode::kInPairs>(part, x);
+    case GatherMode::kOneByOne:
+      return SumForces<kUniform, GatherMode::kOneByOne>(part, x);
+    case GatherMode::kAtEnd:
       break;
   }
-  return SumPulls<kAlike, Fetching::kAtEnd>(part, x);
+  return SumForces<kUniform, GatherMode::kAtEnd>(part, x);
 }
 
-// By itself: as a part of who calls it, compilers had it twice.
+// Not inlined: compilers would duplicate it in each caller.
 template <typename Number>
 HWY_NOINLINE void FillTile(const SpringSlices<Number>& slices, std::int64_t block, Number scale, const Number* x,
                            Number* tile) {
@@ -259,7 +261,7 @@ HWY_NOINLINE void FillTile(const SpringSlices<Number>& slices, std::int64_t bloc
     const SpringSlice<Number>& slice = slices.slices[s];
     for (int row = 0; row < slice.rows; row += kWidth<Number>) {
       const Part<Number> part = {slices, s, row};
-      Coordinates<Number> sum = slice.first_stiffness < 0 ? SumPulls<true>(part, x) : SumPulls<false>(part, x);
+      Coordinates<Number> sum = slice.first_stiffness < 0 ? SumForces<true>(part, x) : SumForces<false>(part, x);
       AddLoad(part, sum);
       ToSlots({hn::Mul(factor, sum.x), hn::Mul(factor, sum.y), hn::Mul(factor, sum.z)}, row, tile);
     }
@@ -274,7 +276,7 @@ HWY_INLINE void AddSlot(const Number* slot, double* point) {
 #if HWY_TARGET != HWY_SCALAR
 using FourDoubles = hn::CappedTag<double, 4>;
 
-// Four points at f, one after the other, += those at the slots.
+// Adds the sums at four slots to four consecutive points at f.
 template <bool kFresh, typename Number>
 HWY_INLINE void AddFour(const Number* tile, const std::uint16_t* slot, double* f) {
   const hn::Rebind<Number, FourDoubles> four;
@@ -297,7 +299,7 @@ HWY_INLINE void AddFour(const Number* tile, const std::uint16_t* slot, double* f
 }
 #endif
 
-// A block whose vertices lie in f one after the other; `f` is where they begin.
+// Adds the sums of a block whose vertices are consecutive in f; `f` points to the first.
 template <bool kFresh, typename Number>
 HWY_INLINE void AddWhole(const SpringSlices<Number>& slices, const VertexRange& range, const Number* tile, double* f) {
   const std::uint16_t* const slot = slices.slot.data();
@@ -317,8 +319,8 @@ HWY_INLINE void AddRowByRow(const SpringSlices<Number>& slices, std::int64_t blo
   for (std::int64_t s = first; s < end; ++s) {
     const SpringSlice<Number>& slice = slices.slices[s];
     for (int row = 0; row < slice.rows; ++row) {
-      const std::int64_t place = slices.VertexOf(s, row);
-      const std::int64_t vertex = slices.order.empty() ? place - first_vertex : slices.order[place];
+      const std::int64_t position = slices.VertexOf(s, row);
+      const std::int64_t vertex = slices.order.empty() ? position - first_vertex : slices.order[position];
       AddSlot<false>(tile + SlotOf<Number>(s - first, row), f + 3 * vertex);
     }
   }
@@ -331,8 +333,8 @@ HWY_INLINE void AddBlocks(const SpringSlices<Number>& slices, std::int64_t begin
   Number* const tile = memory.begin();
   for (std::int64_t b = begin; b < end; ++b) {
     FillTile(slices, b, static_cast<Number>(scale), x, tile);
-    const auto places = static_cast<Eigen::Index>(slices.slot.size());
-    const VertexRange range = {b * kVertexBlock, std::min((b + 1) * kVertexBlock, places)};
+    const auto count = static_cast<Eigen::Index>(slices.slot.size());
+    const VertexRange range = {b * kVertexBlock, std::min((b + 1) * kVertexBlock, count)};
     double* const own = f + 3 * (b - begin) * kVertexBlock;
     if (kFresh || slices.blocks[b].whole) {
       AddWhole<kFresh>(slices, range, tile, own);
@@ -353,7 +355,7 @@ void AddInSingle(const SpringSlices<float>& slices, std::int64_t begin, std::int
 }
 
 #if HWY_TARGET <= HWY_AVX3
-// Eight points: three whole vectors of coordinates.
+// Packs eight points at a time: three full vectors of coordinates. Returns the first vertex that is not packed.
 HWY_INLINE Eigen::Index PackEights(const VertexRange& range, const double* x, const double* origin, float* packed) {
   const hn::FixedTag<double, 8> d;
   const hn::FixedTag<float, 8> half;

@@ -1,7 +1,7 @@
-// The inner loop of springs (springs.h), for each vertex the sum over its own: written once with Google Highway,
-// compiled for several instruction sets, the machine's best chosen at run time. No target fuses a product into a sum,
-// and all take the same sums in the same order, so that they give the same bits. `Number` is double, or float for
-// half the memory and twice the springs an instruction.
+// SIMD kernel of springs (springs.h): each vertex gathers the forces of its own springs. Google Highway compiles it for
+// several instruction sets and selects the best one at run time. The results are bitwise equal on all of them: no
+// target uses fused multiply-add, and all sum in the same order. `Number` is double, or float for half the memory and
+// twice the lanes.
 #ifndef PHRENIC_SERVER_MECHANICS_FORCES_SPRING_KERNEL_H_
 #define PHRENIC_SERVER_MECHANICS_FORCES_SPRING_KERNEL_H_
 
@@ -14,94 +14,97 @@
 
 namespace phrenic {
 
-// Rows of a slice: one a vertex, all padded to the slice's longest.
+// Rows of a slice: one per vertex, all padded to the length of the longest.
 template <typename Number>
 inline constexpr int kSliceRows = 64 / sizeof(Number);
 
-// From a point to the next [Numbers]. Those in single precision are four numbers each, so that one aligned load has one
-// point: the last is not read for its value.
+// Distance between consecutive points [Numbers]. In single precision a point is padded to four numbers, so that one
+// aligned load reads it; the value of the fourth is not used.
 template <typename Number>
 inline constexpr int kPointStride = std::is_same_v<Number, float> ? 4 : 3;
 
-// How the points that a slice's rows are at, or a column of their neighbours, come out of x. One by one they are read
-// with what follows; at the end without, as one of them is the last. In pairs: of every eight rows, the last four and
-// all their neighbours follow the first four and theirs, whose places alone are noted, so that a read has two, and what
-// follows.
-enum class Fetching { kOneByOne, kAtEnd, kInPairs };
-// In pairs, which of a column's places is the row's, and how many points from there its own is.
+// How the positions of a slice's rows, or of one column of their neighbours, are gathered from x.
+// kOneByOne: one load per point, which also reads the numbers after it.
+// kAtEnd: one load per point, which reads nothing after it, because one of the points is the last of x.
+// kInPairs: one load per two consecutive points, which also reads the numbers after them. In every eight rows, rows 4
+// to 7 and all their neighbours are the successors of rows 0 to 3 and theirs; only the offsets of rows 0 to 3 are kept.
+enum class GatherMode { kOneByOne, kAtEnd, kInPairs };
+// With kInPairs: which of a column's offsets belongs to a row, and how many points after it the row's own point is.
 constexpr int PairOf(int row) { return row / 8 * 4 + row % 4; }
 constexpr int PointOfPair(int row) { return row % 8 / 4; }
 
 template <typename Number>
 struct SpringSlice {
-  int rows = 0;  // the others are padding
-  Fetching fetching = Fetching::kOneByOne;
-  std::int64_t first_column = 0, first_place = 0;
-  std::int64_t first_stiffness = -1;  // of its columns; -1 where its springs are alike
-  Number common_stiffness = 0;        // [N/m], where they are
+  int rows = 0;  // used rows; the others are padding
+  GatherMode gather = GatherMode::kOneByOne;
+  std::int64_t first_column = 0, first_offset = 0;
+  std::int64_t first_stiffness = -1;  // index of its first stiffness column; -1 if all stiffnesses are equal
+  Number common_stiffness = 0;        // that stiffness [N/m], if first_stiffness is -1
 
-  // Of a column.
-  constexpr int places() const { return fetching == Fetching::kInPairs ? kSliceRows<Number> / 2 : kSliceRows<Number>; }
+  // The number of offsets of a column.
+  constexpr int offsets() const { return gather == GatherMode::kInPairs ? kSliceRows<Number> / 2 : kSliceRows<Number>; }
 };
-// A number for each row of a slice: for one spring of each, k l0 [N] or k [N/m].
+// One column of a slice: k l0 [N] or k [N/m] of one spring of each row.
 template <typename Number>
 struct alignas(64) SliceNumbers {
   Number row[kSliceRows<Number>] = {};
 };
-// A steady force on each row of a slice [N].
+// The constant load on each row of a slice [N].
 template <typename Number>
 struct SliceLoad {
   SliceNumbers<Number> x, y, z;
 };
-// kVertexBlock vertices as the slices count them. Their sums are gathered in a tile before they are added to f.
+// kVertexBlock vertices in the order of the slices. Their sums are collected in a tile before they are added to f.
 struct SpringBlock {
   std::int64_t first_slice = 0;
-  bool whole = false;  // nearly all its vertices have springs, and lie in f as they do in x
+  bool whole = false;  // most vertices have springs, and f has the same vertex order as x: add all of them in sequence
 };
 
-// Springs by vertex, in slices of rows: SELL-C-sigma (Kreutzer et al., SIAM J Sci Comput 2014;36:C401). Padding is a
-// spring to itself, of no force at rest.
+// A sparse matrix of springs in the SELL-C-sigma format (Kreutzer et al., SIAM J Sci Comput 2014;36:C401): one row per
+// vertex with its springs, rows sorted by length within each block and cut into slices. Padding is a spring from a
+// vertex to itself with k l0 = 0, which exerts no force.
 template <typename Number>
 struct SpringSlices {
-  std::vector<SpringBlock> blocks;              // and one more, for the end of its slices
-  std::vector<SpringSlice<Number>> slices;      // and one more, for the end of its columns
-  LargeVector<SliceNumbers<Number>> at_rest;    // a column
-  LargeVector<SliceNumbers<Number>> stiffness;  // a column of the slices with springs that are not alike
-  // Of each slice where its rows' vertices lie in x, then where each column's neighbours do [Numbers].
-  LargeVector<std::int32_t> places;
-  std::vector<SliceLoad<Number>> load;  // a slice, or none
+  std::vector<SpringBlock> blocks;              // and a sentinel, whose first_slice is the end
+  std::vector<SpringSlice<Number>> slices;      // and a sentinel, whose first_column is the end
+  LargeVector<SliceNumbers<Number>> at_rest;    // k l0, one per column [N]
+  LargeVector<SliceNumbers<Number>> stiffness;  // k, one per column of the slices with different stiffnesses [N/m]
+  // Per slice: the offsets in x of its rows' vertices, then of each column's neighbours [Numbers].
+  LargeVector<std::int32_t> offsets;
+  std::vector<SliceLoad<Number>> load;  // one per slice; empty without load
   std::vector<std::uint16_t> slot;      // of each vertex in its block's tile
-  std::vector<int> order;               // the vertices as the slices count them; none where they come so
+  std::vector<int> order;               // the vertex at each position of the slices' order; empty if not reordered
 
-  // The vertex of a slice's row, as the slices count them.
+  // The position in the slices' order of the vertex of a slice's row.
   int VertexOf(std::int64_t slice, int row) const {
-    const std::int32_t* const own = &places[slices[slice].first_place];
-    const bool in_pairs = slices[slice].fetching == Fetching::kInPairs;
+    const std::int32_t* const own = &offsets[slices[slice].first_offset];
+    const bool in_pairs = slices[slice].gather == GatherMode::kInPairs;
     return in_pairs ? own[PairOf(row)] / kPointStride<Number> + PointOfPair(row) : own[row] / kPointStride<Number>;
   }
 };
 
-// Where the sum of a slice's row lies in a tile, so that one transposition of them all writes whole vectors.
+// The offset of a row's sum in a tile. Chosen so that a transposition of the slice's sums stores full vectors.
 template <typename Number>
 constexpr int SlotOf(std::int64_t slice_in_block, int row) {
   constexpr int kRows = kSliceRows<Number>;
   return static_cast<int>(slice_in_block) * 4 * kRows + row % 4 * kRows + row / 4 * 4;
 }
-// That of a vertex without springs.
+// The slot of vertices without springs.
 template <typename Number>
 inline constexpr int kNoSlot = SlotOf<Number>(kVertexBlock / kSliceRows<Number>, 0);
 
-// f += scale (sum over the row's springs of (k - k l0 / l) d + load) [N] for the vertices of blocks first to end - 1, d
-// from the row's vertex to the neighbour, l its length [m]; a spring with l = 0 pulls at nothing. x are points in the
-// slices' order, kPointStride numbers each; f has a column a simulated vertex, the first that of block `first`'s first
-// vertex, or of vertex 0 where the slices have an order of their own; where it is `fresh`, which it cannot be in such
-// an order, what it held counts for nothing. Any number of threads may call, at once only on different blocks.
+// Adds scale (sum over the row's springs of (k - k l0 / l) d + load) to f [N] for the vertices of the blocks
+// [first, end), d the vector from the row's vertex to its neighbour and l its length [m]. A spring with l = 0 exerts no
+// force. `x` has the points in the slices' order, kPointStride numbers each [m]. `f` is 3 x n in the order of the
+// simulated vertices; its first column is the first vertex of block `first`, or vertex 0 if the slices are reordered.
+// With `fresh` f is overwritten instead; requires that the slices are not reordered. Thread-safe for disjoint blocks.
 void AddSprings(const SpringSlices<double>& slices, std::int64_t first, std::int64_t end, double scale, const double* x,
                 bool fresh, double* f);
 void AddSprings(const SpringSlices<float>& slices, std::int64_t first, std::int64_t end, double scale, const float* x,
                 bool fresh, double* f);
 
-// Points first to end - 1 of the 3 x n array x, from `origin` [m], in single precision; aligned to 16 bytes.
+// Sets `packed` to the points of `range` of x (3 x n) relative to `origin` [m], in single precision, four numbers each.
+// Requires: `packed` is aligned to 16 bytes. Thread-safe for disjoint ranges.
 void PackPoints(const VertexRange& range, const double* x, const double* origin, float* packed);
 
 }  // namespace phrenic

@@ -1,7 +1,7 @@
-// Springs laid out for the machine: each vertex lists its own, so that every spring is worked out twice and nothing is
-// scattered; vertices in blocks, sorted in each by the number of their springs, cut into slices (spring_kernel.h). Two
-// that follow each other, and whose neighbours do, as in a sheet numbered row by row or in two sheets by turns, are
-// taken together: what they need of others is then half as many reads.
+// Springs in a layout for SIMD evaluation. Each vertex lists its own springs: every spring is evaluated twice, and no
+// force is scattered. Vertices are divided into blocks, sorted in each by their number of springs and cut into slices
+// (spring_kernel.h). Two consecutive vertices whose neighbours are consecutive too (as in a sheet numbered row by row,
+// or in two sheets numbered alternately) are paired, which halves the number of loads.
 #ifndef PHRENIC_SERVER_MECHANICS_FORCES_SPRING_ROWS_H_
 #define PHRENIC_SERVER_MECHANICS_FORCES_SPRING_ROWS_H_
 
@@ -18,36 +18,38 @@ namespace phrenic {
 
 enum class Precision { kDouble, kSingle };
 
-// Immutable; any number of threads may call, each with scratch memory of its own. Where springs join vertices that are
-// far apart, positions are first put into an order of their own.
+// Immutable and thread-safe, for threads with scratch memory of their own. If springs connect vertices that are far
+// apart in memory, the vertices are reordered (Cuthill-McKee), and positions are copied to that order first.
 class SpringRows {
  public:
   SpringRows() = default;
-  // Of `vertices` simulated vertices. In single precision positions are rounded, as they lie from some vertex, and so
-  // is all that is worked out from them: the force on a vertex, in each coordinate, is off by less than
-  //   2^-19 sum over its springs of k (r + l) (1 + l0 / l),
-  // r [m] its distance from there, l and l0 the spring's length and rest length; with a load, by 2^-22 of it more.
+  // `vertices` is the number of simulated vertices. In single precision, positions relative to the vertex origin() and
+  // all that is computed from them are rounded. The error of each component of the force on a vertex is less than
+  //   2^-19 sum over its springs of k (r + l) (1 + l0 / l)  [N],
+  // r the vertex's distance from that origin [m], l and l0 the spring's length and rest length [m]; a load adds 2^-22
+  // of itself.
   SpringRows(const std::vector<Spring>& springs, int vertices, Precision precision = Precision::kDouble);
 
-  // On the vertices that have springs acts a steady force too: `load` is 3 x n [N], and nothing on others.
+  // Adds a constant load, 3 x n [N], on the vertices with springs. Requires: it is 0 on all others.
   void SetLoad(const Points& load);
-  // f += scale (pulls + load) [N], 3 x n. The sum of a vertex is taken in its neighbours' order, on every machine.
+  // Adds scale (spring forces + load) to f [N], 3 x n. Sums over a vertex's springs in the order of its neighbours, on
+  // every machine.
   void AddForce(double scale, const ConstPoints& x, const Scratch& scratch, MutablePoints f) const;
 
-  // Whether the same can be had range by range: not in an order of its own.
+  // True if ranges of vertices can be evaluated separately: the vertices are not reordered.
   bool InRanges() const { return !ordered_; }
-  // The same on the vertices of the range alone; what f held counts for nothing where it is `fresh`. In single
-  // precision from `packed`, which is x as PackPoints has it.
+  // Adds the same for the vertices of the range only; overwrites f (3 x the range's vertices) with `fresh`. In single
+  // precision it reads `packed`, x as converted by PackPoints, instead of x. Requires: InRanges().
   void AddForce(const VertexRange& range, double scale, const ConstPoints& x, const float* packed, bool fresh,
                 MutablePoints f) const;
 
   Precision precision() const;
-  // In single precision, the vertex to pack from: in the middle of theirs.
+  // The vertex that positions are relative to in single precision: an end of the middle spring.
   int origin() const { return origin_; }
 
  private:
   std::variant<SpringSlices<double>, SpringSlices<float>> slices_;
-  bool ordered_ = false;
+  bool ordered_ = false;  // the vertices are reordered
   int origin_ = 0;
 };
 

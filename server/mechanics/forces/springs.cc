@@ -13,11 +13,11 @@ namespace phrenic {
 
 namespace {
 
-// The sum over the triangles that take part of 3 area / (sum of edges squared), for each of the edges.
-Eigen::VectorXd StiffnessShares(const Mesh& mesh, const Edges& edges, const Selection& selection) {
-  std::map<std::pair<int, int>, Eigen::Index> place;
-  for (Eigen::Index e = 0; e < edges.cols(); ++e) place[std::minmax(edges(0, e), edges(1, e))] = e;
-  Eigen::VectorXd shares = Eigen::VectorXd::Zero(edges.cols());
+// Returns k/(E h) of each edge: the sum over its selected triangles of 3 area / (sum of squared edge lengths).
+Eigen::VectorXd StiffnessFactors(const Mesh& mesh, const Edges& edges, const Selection& selection) {
+  std::map<std::pair<int, int>, Eigen::Index> index;
+  for (Eigen::Index e = 0; e < edges.cols(); ++e) index[std::minmax(edges(0, e), edges(1, e))] = e;
+  Eigen::VectorXd factors = Eigen::VectorXd::Zero(edges.cols());
   for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
     const Eigen::Vector3i corner = mesh.triangles.col(t);
     if (!selection.Takes(corner)) continue;
@@ -26,17 +26,17 @@ Eigen::VectorXd StiffnessShares(const Mesh& mesh, const Edges& edges, const Sele
     const double squares = (b - a).squaredNorm() + (c - b).squaredNorm() + (a - c).squaredNorm();
     if (squares == 0) continue;
     for (int k = 0; k < 3; ++k) {
-      const auto found = place.find(std::minmax(corner[k], corner[(k + 1) % 3]));
-      if (found != place.end()) shares[found->second] += 1.5 * (b - a).cross(c - a).norm() / squares;
+      const auto found = index.find(std::minmax(corner[k], corner[(k + 1) % 3]));
+      if (found != index.end()) factors[found->second] += 1.5 * (b - a).cross(c - a).norm() / squares;
     }
   }
-  return shares;
+  return factors;
 }
 
 std::string Detail(const v1::Springs& scene) {
   const char* const precision = scene.precision() == v1::PRECISION_SINGLE ? ", single precision" : "";
   if (!scene.has_material()) return absl::StrFormat("k = %g N/m%s", scene.stiffness(), precision);
-  return absl::StrFormat("k of E = %g Pa, %g mm thick%s", scene.material().youngs_modulus(),
+  return absl::StrFormat("k from E = %g Pa, thickness %g mm%s", scene.material().youngs_modulus(),
                          1e3 * scene.material().thickness(), precision);
 }
 
@@ -48,8 +48,8 @@ void AppendSprings(const v1::Springs& scene, int b, const Selection& selection, 
   const Edges& edges = others ? of_triangles : builder.EdgesOf(b);
   Eigen::VectorXd stiffness = Eigen::VectorXd::Constant(edges.cols(), scene.stiffness());
   if (scene.has_material()) {
-    stiffness =
-        scene.material().youngs_modulus() * scene.material().thickness() * StiffnessShares(body.mesh, edges, selection);
+    stiffness = scene.material().youngs_modulus() * scene.material().thickness() *
+                StiffnessFactors(body.mesh, edges, selection);
   }
   for (Eigen::Index e = 0; e < edges.cols(); ++e) {
     const Eigen::Vector2i ends = edges.col(e);
@@ -73,8 +73,8 @@ absl::StatusOr<std::vector<Spring>> FindSprings(const v1::Springs& scene, std::s
   return springs;
 }
 
-// f += scale times the pulls of all springs [N].
-void AddPulls(const std::vector<Spring>& springs, double scale, const ConstPoints& x, MutablePoints f) {
+// Adds `scale` times the forces of all springs to f [N].
+void AddSpringForces(const std::vector<Spring>& springs, double scale, const ConstPoints& x, MutablePoints f) {
   for (const Spring& spring : springs) {
     const Eigen::Vector3d edge = x.col(spring.b) - x.col(spring.a);
     const double length = edge.norm();
@@ -111,11 +111,11 @@ Springs::Springs(std::string name, std::vector<Spring> springs, Precision precis
 
 void Springs::Balance(const Points& rest) {
   rest_load_ = Points::Zero(3, rest.cols());
-  AddPulls(springs_, -1, rest, rest_load_);
+  AddSpringForces(springs_, -1, rest, rest_load_);
 }
 
 void Springs::AddForce(const EvalContext& at, MutablePoints f) const {
-  AddPulls(springs_, at.parameters.elasticity(), at.x, f);
+  AddSpringForces(springs_, at.parameters.elasticity(), at.x, f);
   if (balanced()) f += at.parameters.elasticity() * rest_load_;
 }
 

@@ -1,8 +1,10 @@
-// Springs over edges (thesis equation 2.1): f_a = k (l - l0) d, d the unit vector from a to b, f_b = -f_a.
-// k [N/m] is given, or follows from a tissue's Young's modulus E and thickness h: k = E h sum over the edge's triangles
-// of 3 area / (sum of the triangle's edges squared), which puts the right mean stiffness into every triangle. It is
-// scaled by the live parameter elasticity. A spring of length 0 has no direction and pulls with no force.
-// With `balanced_at_rest` the constant load -f(rest) acts too, so that the mesh as it stands is in balance.
+// Linear springs on the edges of meshes (thesis equation 2.1):
+//   f_a = k (l - l0) d, f_b = -f_a  [N],  E = k (l - l0)^2 / 2  [J],
+// d the unit vector from a to b, l the length and l0 the rest length [m]. The stiffness k [N/m] is given, or computed
+// from Young's modulus E [Pa] and thickness h [m] of a tissue: k = E h sum over the edge's triangles of
+// 3 area / (sum of the triangle's squared edge lengths), which gives each triangle the correct mean stiffness. The live
+// parameter elasticity scales k. A spring of length 0 has no direction and exerts no force. With `balanced_at_rest` the
+// constant load -f(rest) is added, so that the rest mesh is in equilibrium.
 #ifndef PHRENIC_SERVER_MECHANICS_FORCES_SPRINGS_H_
 #define PHRENIC_SERVER_MECHANICS_FORCES_SPRINGS_H_
 
@@ -15,30 +17,30 @@ namespace phrenic {
 
 class Springs final : public Force {
  public:
-  // Null where no edge lies in the region.
+  // Returns null, and reports it, if no edge lies in the region.
   static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::Springs& scene, const std::string& name,
                                                      std::string_view path, ModelBuilder& builder);
 
   Springs(std::string name, std::vector<Spring> springs, Precision precision = Precision::kDouble);
 
   const std::vector<Spring>& springs() const { return springs_; }
-  // A step works all springs out together (spring_batch.h), in the precision that the scene asks for.
+  // The precision that the scene sets, in which a step evaluates all springs together (step/spring_batch.h).
   Precision precision() const { return precision_; }
   bool balanced() const { return rest_load_.cols() > 0; }
 
-  // As one would write it down, in double precision.
+  // The reference implementation, in double precision.
   void AddForce(const EvalContext& at, MutablePoints f) const override;
   void AddStiffness(const EvalContext& at, StiffnessSink& sink) const override;
   double Energy(const EvalContext& at) const override;
   bool conservative() const override { return true; }
 
  private:
-  // The constant load that holds the springs at rest acts from now on.
+  // Adds the constant load that balances the springs at rest.
   void Balance(const Points& rest);
 
   std::vector<Spring> springs_;
   Precision precision_;
-  Points rest_load_;  // 3 x n [N] at elasticity 1; no columns where the rest is not balanced
+  Points rest_load_;  // 3 x n [N] at elasticity 1; no columns if not balanced at rest
 };
 
 }  // namespace phrenic

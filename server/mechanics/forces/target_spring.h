@@ -1,7 +1,9 @@
-// Vertices drawn to targets by springs and dampers: f = k (c - x) + 2 zeta sqrt(k m) (c' - v) [N], c the target: the
-// vertex's rest position moved by a displacement, one point for all, or the point of a surface that is nearest at rest,
-// carried along where that surface is driven. With the breath c = rest + s (target - rest), s = breath_force signal(t).
-// Energy k |c - x|^2 / 2; it is all there is where zeta is 0.
+// Springs and dampers between vertices and targets,
+//   f = k (c - x) + 2 zeta sqrt(k m) (c' - v)  [N],  E = k |c - x|^2 / 2  [J],
+// k the stiffness [N/m], zeta the damping ratio, m the vertex's mass [kg], c the target [m]: the vertex's rest position
+// plus a displacement, one point for all, or the point of a surface that is nearest at rest, which moves with the
+// surface if that is driven. Scaled by the breath, c = rest + s (target - rest), s = breath_force signal(t).
+// Conservative if zeta is 0.
 #ifndef PHRENIC_SERVER_MECHANICS_FORCES_TARGET_SPRING_H_
 #define PHRENIC_SERVER_MECHANICS_FORCES_TARGET_SPRING_H_
 
@@ -13,8 +15,9 @@ namespace phrenic {
 
 class TargetSpring final : public Force {
  public:
-  // Null where no vertex is free or the stiffness is 0.
-  static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::Drag& scene, const std::string& name,
+  // Returns null, and reports it, if no vertex is free or the stiffness is 0. INVALID_ARGUMENT if there is no target,
+  // if `vertices` are given for several bodies, or if the surface is deformable, skinned or has no triangles.
+  static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::TargetSpring& scene, const std::string& name,
                                                      std::string_view path, ModelBuilder& builder);
 
   void AddForce(const EvalContext& at, MutablePoints f) const override;
@@ -24,26 +27,25 @@ class TargetSpring final : public Force {
   bool conservative() const override { return damping_ratio_ == 0; }
 
  private:
-  struct Draw {
+  struct VertexSpring {
     int vertex;
     double damping;                // [N s/m]
-    Eigen::Vector3d rest, target;  // [m]; both at rest
+    Eigen::Vector3d rest, target;  // at rest [m]
   };
-  // Where a target is and how fast it moves.
-  struct Aim {
-    Eigen::Vector3d place, velocity;  // [m], [m/s]
+  struct Target {
+    Eigen::Vector3d position, velocity;  // [m], [m/s]
   };
   explicit TargetSpring(std::string name) : Force(std::move(name)) {}
-  absl::Status AddDraws(const v1::Drag& scene, int body, std::string_view path, ModelBuilder& builder);
-  absl::Status FindTargets(const v1::Drag& scene, std::string_view path, const ModelBuilder& builder);
-  absl::Status FindSurfaceTargets(const v1::Drag& scene, std::string_view path, const ModelBuilder& builder);
-  Aim AimOf(const Draw& draw, const EvalContext& at) const;
+  absl::Status AddVertices(const v1::TargetSpring& scene, int body, std::string_view path, ModelBuilder& builder);
+  absl::Status FindTargets(const v1::TargetSpring& scene, std::string_view path, const ModelBuilder& builder);
+  absl::Status FindSurfaceTargets(const v1::TargetSpring& scene, std::string_view path, const ModelBuilder& builder);
+  Target TargetOf(const VertexSpring& spring, const EvalContext& at) const;
 
-  std::vector<Draw> draws_;
+  std::vector<VertexSpring> springs_;
   double stiffness_ = 0;  // [N/m]
   double damping_ratio_ = 0;
-  int pose_ = -1;  // of the surface that carries the targets; -1: they stand still
-  bool breathes_ = false;
+  int pose_ = -1;  // of the driven surface; -1: the targets are fixed
+  bool scaled_by_breath_ = false;
 };
 
 }  // namespace phrenic

@@ -19,10 +19,10 @@ using points::Tag, points::Vector, points::Vectors;
 constexpr int kWidth = static_cast<int>(points::kLanes);
 static_assert(kBatch % kWidth == 0);
 
-// Of a batch the forces on a, b and c [N].
+// The forces of one batch on the corners a, b and c [N].
 struct Forces {
   points::Rows a[kBatch / kWidth], b[kBatch / kWidth], c[kBatch / kWidth];
-  HWY_ALIGN double area[kBatch];  // over that at rest
+  HWY_ALIGN double area[kBatch];  // current area over rest area
 };
 
 HWY_INLINE Vectors Scaled(const Vector& s, const Vectors& a) {
@@ -43,7 +43,7 @@ HWY_INLINE Vectors Between(const Vectors& from, const Vectors& to) {
   return {hn::Sub(to.x, from.x), hn::Sub(to.y, from.y), hn::Sub(to.z, from.z)};
 }
 
-// Triangle by triangle, so that a vertex takes its forces in the same order on every machine.
+// Scatters the forces triangle by triangle, so that the order of additions to a vertex is the same for all targets.
 HWY_INLINE void Scatter(const TriangleBatch& batch, const Forces& forces, double* f) {
 #pragma GCC unroll 8
   for (int i = 0; i < kBatch; ++i) {
@@ -53,8 +53,9 @@ HWY_INLINE void Scatter(const TriangleBatch& batch, const Forces& forces, double
   }
 }
 
-// kWidth triangles from lane `first` on; true where one of them is flat.
-HWY_INLINE bool Pull(const TriangleBatch& batch, double mu, double lambda, int first, const double* x, Forces& forces) {
+// Computes the forces of kWidth triangles from lane `first` on. Returns true if one of them has zero area.
+HWY_INLINE bool ComputeForces(const TriangleBatch& batch, double mu, double lambda, int first, const double* x,
+                              Forces& forces) {
   const Tag d;
   const Vector zero = hn::Zero(d), two = hn::Set(d, 2), twice = hn::Set(d, 2 * mu);
   const Vectors a = points::Transposed<true>(x, batch.a + first);
@@ -66,14 +67,14 @@ HWY_INLINE bool Pull(const TriangleBatch& batch, double mu, double lambda, int f
   const Vectors cross = Cross(f1, f2);
   const Vector area = hn::Sqrt(Dot(cross, cross));
   const auto flat = hn::Eq(area, zero);
-  const Vector divisor = hn::IfThenElse(flat, two, area);  // any number that is none of zero
+  const Vector divisor = hn::IfThenElse(flat, two, area);  // any non-zero number in flat lanes
   const Vector trace = hn::Sqrt(hn::Add(hn::Add(Dot(f1, f1), Dot(f2, f2)), hn::Mul(two, divisor)));
   const Vectors normal = Scaled(hn::Div(hn::Set(d, 1), divisor), cross);
-  const Vector turned =
-      hn::Div(hn::Sub(hn::Mul(hn::Set(d, lambda), hn::Sub(trace, two)), twice), trace);  // of R's two columns
+  const Vector factor =
+      hn::Div(hn::Sub(hn::Mul(hn::Set(d, lambda), hn::Sub(trace, two)), twice), trace);  // of F + cofactor(F)
   const Vector volume = hn::IfThenZeroElse(flat, hn::Neg(hn::Load(d, batch.volume + first)));
-  const Vectors p1 = Added(Scaled(twice, f1), Scaled(turned, Added(f1, Cross(f2, normal))));
-  const Vectors p2 = Added(Scaled(twice, f2), Scaled(turned, Added(f2, Cross(normal, f1))));
+  const Vectors p1 = Added(Scaled(twice, f1), Scaled(factor, Added(f1, Cross(f2, normal))));
+  const Vectors p2 = Added(Scaled(twice, f2), Scaled(factor, Added(f2, Cross(normal, f1))));
   const Vectors on_b = Scaled(volume, Added(Scaled(b1, p1), Scaled(b2, p2)));
   const Vectors on_c = Scaled(volume, Added(Scaled(c1, p1), Scaled(c2, p2)));
   forces.a[first / kWidth] = points::ToRows(Scaled(hn::Set(d, -1), Added(on_b, on_c)));
@@ -83,6 +84,7 @@ HWY_INLINE bool Pull(const TriangleBatch& batch, double mu, double lambda, int f
   return !hn::AllFalse(d, flat);
 }
 
+// Appends the indices of the batch's triangles with zero area.
 void NoteFlat(const TriangleBatch& batch, const Forces& forces, size_t number, std::vector<int>& flat) {
   for (size_t i = 0; i < kBatch; ++i) {
     if (forces.area[i] == 0 && batch.volume[i] > 0) flat.push_back(static_cast<int>(number * kBatch + i));
@@ -95,7 +97,7 @@ void AddAllTriangles(const std::vector<TriangleBatch>& batches, double mu, doubl
   for (size_t n = 0; n < batches.size(); ++n) {
     bool any = false;
     for (int first = 0; first < kBatch; first += kWidth) {
-      any = Pull(batches[n], mu, lambda, first, x, forces) || any;
+      any = ComputeForces(batches[n], mu, lambda, first, x, forces) || any;
     }
     if (any) NoteFlat(batches[n], forces, n, flat);
     Scatter(batches[n], forces, f);

@@ -8,7 +8,7 @@ namespace {
 
 class KineticMeasure final : public Measure {
  public:
-  // Of simulated vertices first ... first + masses.size() - 1.
+  // The simulated vertices [first, first + masses.size()).
   struct Part {
     int first;
     Eigen::VectorXd masses;  // [kg]

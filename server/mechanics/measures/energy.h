@@ -1,5 +1,5 @@
-// Energies [J]: sum of m v^2/2 over deformable bodies, driven and fixed vertices included, and the sum of forces' own
-// energies (force.h).
+// Energies [J]: the kinetic energy, sum of m v^2/2 over the vertices of deformable bodies including driven and fixed
+// ones, and the potential energy, the sum of Force::Energy over conservative forces.
 #ifndef PHRENIC_SERVER_MECHANICS_MEASURES_ENERGY_H_
 #define PHRENIC_SERVER_MECHANICS_MEASURES_ENERGY_H_
 
@@ -7,9 +7,11 @@
 
 namespace phrenic {
 
+// INVALID_ARGUMENT if a body is not deformable.
 absl::StatusOr<std::unique_ptr<Measure>> MakeKineticEnergy(const v1::KineticEnergy& scene, const std::string& name,
                                                            std::string_view path, ModelBuilder& builder);
-// A force that is named must be there and have an energy. A force that the compile step left out has none.
+// Sums the named forces, or all conservative ones if none is named. INVALID_ARGUMENT if a named force does not exist,
+// was left out by the compile step, or is not conservative.
 absl::StatusOr<std::unique_ptr<Measure>> MakeElasticEnergy(const v1::ElasticEnergy& scene, const std::string& name,
                                                            std::string_view path, ModelBuilder& builder);
 

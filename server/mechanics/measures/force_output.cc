@@ -30,6 +30,11 @@ absl::StatusOr<const Force*> FindForce(const std::string& name, std::string_view
     if (force->name() == name) return force.get();
     names.push_back(force->name());
   }
+  // The default name of an element begins with its kind: an older name of the kind stands for the present one.
+  if (const auto* kind = v1::Force::descriptor()->FindFieldByName(name.substr(0, name.find(':')))) {
+    const std::string& present = kind->options().GetExtension(v1::alias_of);
+    if (!present.empty()) return FindForce(present + name.substr(kind->name().size()), path, builder);
+  }
   return FieldError(path, absl::StrCat("there is no force \"", name, "\"",
                                        names.empty() ? "; there is none" : "; there are ", absl::StrJoin(names, ", ")));
 }

@@ -20,8 +20,8 @@ class HighestMeasure final : public Measure {
         zero_(zero) {}
 
   double Value(const EvalContext& at) const override { return Furthest(body_.Positions(at)) - zero_; }
-  // Counted from rest instead.
-  void CountFromRest() { zero_ = Furthest(body_.rest()); }
+  // Makes the value relative to that at rest.
+  void MeasureFromRest() { zero_ = Furthest(body_.rest()); }
 
  private:
   double Furthest(const ConstPoints& x) const {
@@ -57,7 +57,7 @@ absl::StatusOr<std::unique_ptr<Measure>> MakeHighest(const v1::Highest& scene, c
                         absl::StrCat("the highest point", scene.from_rest() ? " since rest" : ""));
   auto measure = std::make_unique<HighestMeasure>(name, BodyPoints(builder.model, *body), std::move(vertices), unit,
                                                   unit.dot(ToEigen(scene.point())));
-  if (scene.from_rest()) measure->CountFromRest();
+  if (scene.from_rest()) measure->MeasureFromRest();
   return measure;
 }
 

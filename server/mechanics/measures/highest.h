@@ -1,5 +1,5 @@
-// How far the furthest vertex of a body lies along a direction, max of (x_i - point).direction [m]: another vertex may
-// be it a moment later, where a probe stays with its own.
+// The largest coordinate of a body's vertices along a direction, max over i of (x_i - point).direction [m], or its
+// change since rest. The vertex at the maximum may change over time; use a probe to follow a fixed vertex.
 #ifndef PHRENIC_SERVER_MECHANICS_MEASURES_HIGHEST_H_
 #define PHRENIC_SERVER_MECHANICS_MEASURES_HIGHEST_H_
 
@@ -7,6 +7,7 @@
 
 namespace phrenic {
 
+// INVALID_ARGUMENT if the body or region does not exist, the region has no vertex, or the direction is zero.
 absl::StatusOr<std::unique_ptr<Measure>> MakeHighest(const v1::Highest& scene, const std::string& name,
                                                      std::string_view path, ModelBuilder& builder);
 

@@ -4,7 +4,7 @@
 
 namespace phrenic {
 
-// Volumes last: a flow of the same chamber gives its volume too.
+// Evaluates volumes last, because a flow of the same chamber also yields its volume.
 MeasureReadings ReadMeasures(const Model& model, const EvalContext& at) {
   MeasureReadings readings;
   ChamberReadings shared;

@@ -27,7 +27,7 @@ class FlowMeasure final : public Measure {
   Chamber chamber_;
 };
 
-// Both messages have a surface and a plane.
+// Scene is v1::Volume or v1::Flow, which both have a surface and a plane.
 template <typename Scene>
 absl::StatusOr<Chamber> MakeChamber(const Scene& scene, std::string_view path, const ModelBuilder& builder) {
   Chamber chamber;

@@ -1,4 +1,5 @@
-// The volume that a surface bounds [m^3], the whole or what it has swept since rest, and its rate [m^3/s]: chamber.h.
+// The volume bounded by a surface [m^3], total or relative to rest, and its rate of change, the flow [m^3/s]. The
+// equations are in breathing/chamber.h.
 #ifndef PHRENIC_SERVER_MECHANICS_MEASURES_VOLUME_H_
 #define PHRENIC_SERVER_MECHANICS_MEASURES_VOLUME_H_
 
@@ -6,6 +7,7 @@
 
 namespace phrenic {
 
+// Both return INVALID_ARGUMENT if the surface has no triangle or the plane's normal is zero.
 absl::StatusOr<std::unique_ptr<Measure>> MakeVolume(const v1::Volume& scene, const std::string& name,
                                                     std::string_view path, ModelBuilder& builder);
 absl::StatusOr<std::unique_ptr<Measure>> MakeFlow(const v1::Flow& scene, const std::string& name, std::string_view path,

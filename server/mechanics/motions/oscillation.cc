@@ -37,10 +37,10 @@ absl::StatusOr<std::unique_ptr<Motion>> Oscillation::Make(const v1::Oscillation&
 
 void Oscillation::Drive(const EvalContext& at, State& state) const {
   const double scale = scaled_ ? at.parameters.breath_force() : 1;
-  const Eigen::Vector3d shift = scale * std::sin(frequency_ * at.time) * amplitude_;
+  const Eigen::Vector3d displacement = scale * std::sin(frequency_ * at.time) * amplitude_;
   const Eigen::Vector3d velocity = scale * frequency_ * std::cos(frequency_ * at.time) * amplitude_;
   for (size_t i = 0; i < vertices_.size(); ++i) {
-    state.x.col(vertices_[i]) = rest_.col(static_cast<Eigen::Index>(i)) + shift;
+    state.x.col(vertices_[i]) = rest_.col(static_cast<Eigen::Index>(i)) + displacement;
     state.v.col(vertices_[i]) = velocity;
   }
 }

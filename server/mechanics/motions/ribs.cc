@@ -10,8 +10,9 @@
 namespace phrenic {
 namespace {
 
-constexpr double kHeadSize = 6e-3;  // [m]
+constexpr double kHeadSize = 6e-3;  // radius around the most medial vertex [m]
 
+// Returns the position of the rib's head at rest [m].
 Eigen::Vector3d Head(const Points& vertices) {
   int medial = 0;
   for (int i = 1; i < vertices.cols(); ++i) {
@@ -37,7 +38,7 @@ absl::Status CheckRib(const BodyModel& body, const v1::Ribs& scene, std::string_
   const bool is_rib = body.anatomy.structure() == v1::STRUCTURE_RIB && body.anatomy.side() != v1::SIDE_UNSPECIFIED;
   if (body.pose < 0 || !is_rib) {
     return FieldError(path, absl::StrCat("body \"", body.name,
-                                         "\" cannot turn as a rib: it must have ROLE_DRIVEN and anatomy { structure: "
+                                         "\" cannot move as a rib: it must have ROLE_DRIVEN and anatomy { structure: "
                                          "STRUCTURE_RIB number: ... side: ... }"));
   }
   if (EndState(scene, body.anatomy.number()) == nullptr) {
@@ -72,20 +73,20 @@ absl::StatusOr<std::unique_ptr<Motion>> Ribs::Make(const v1::Ribs& scene, const 
 }
 
 void Ribs::Drive(const EvalContext& at, State& state) const {
-  const double kept = std::min(1.0, quiet_state_ * at.parameters.hyperinflation());
-  const double scale = (1 - kept) * (quiet_state_ * at.parameters.rib_motion());
-  const double k = kept + scale * at.breath, k_rate = scale * at.breath_rate;
-  const Eigen::Vector3d shares(at.parameters.pump_handle(), at.parameters.bucket_handle(), 1);
+  const double k0 = std::min(1.0, quiet_state_ * at.parameters.hyperinflation());
+  const double scale = (1 - k0) * (quiet_state_ * at.parameters.rib_motion());
+  const double k = k0 + scale * at.breath, k_rate = scale * at.breath_rate;
+  const Eigen::Vector3d factors(at.parameters.pump_handle(), at.parameters.bucket_handle(), 1);
   for (const Rib& rib : ribs_) {
     Pose& pose = state.poses[rib.pose];
-    const Eigen::Vector3d whole = shares.cwiseProduct(rib.rotation);
-    const double angle = whole.norm();
-    const Eigen::Vector3d axis = angle > 0 ? Eigen::Vector3d(whole / angle) : Eigen::Vector3d::UnitX();
+    const Eigen::Vector3d rotation = factors.cwiseProduct(rib.rotation);  // at k = 1 [rad]
+    const double angle = rotation.norm();
+    const Eigen::Vector3d axis = angle > 0 ? Eigen::Vector3d(rotation / angle) : Eigen::Vector3d::UnitX();
     pose.rotation = Eigen::AngleAxisd(k * angle, axis);
-    const Eigen::Vector3d turned_head = pose.rotation * rib.head;
-    pose.translation = rib.head - turned_head + k * rib.translation;
-    pose.angular_velocity = k_rate * whole;
-    pose.velocity = k_rate * rib.translation - pose.angular_velocity.cross(turned_head);
+    const Eigen::Vector3d rotated_head = pose.rotation * rib.head;
+    pose.translation = rib.head - rotated_head + k * rib.translation;
+    pose.angular_velocity = k_rate * rotation;
+    pose.velocity = k_rate * rib.translation - pose.angular_velocity.cross(rotated_head);
   }
 }
 

@@ -1,9 +1,10 @@
-// Ribs turn about axes through their heads (thesis equations 3.1-3.3): t_i = k T_i, a_i = k A_i, k the breathing state:
-// 0 at functional residual capacity, 1 at total lung capacity. Right rib: A = (-pump, +bucket, 0); left rib its mirror
-// image, (-pump, -bucket, 0) (Wilson et al., J Appl Physiol 1987;62:1872). Live parameters pump_handle and
-// bucket_handle scale the two parts of A, and leave T as it is. With a live parameter hyperinflation h they breathe on
-// from k0 = h k_quiet, within what is left: k = k0 + (1 - k0) k_breath, so that no breath passes total lung capacity.
-// The head is the mean of the vertices within 6 mm of the medial-most one.
+// Rotation of the ribs about axes through their heads (thesis equations 3.1-3.3): translation t_i = k T_i [m] and
+// rotation vector a_i = k A_i [rad], k the breathing state: 0 at functional residual capacity, 1 at total lung
+// capacity. Right rib: A = (-pump, +bucket, 0); left rib its mirror image, (-pump, -bucket, 0) (Wilson et al., J Appl
+// Physiol 1987;62:1872). The live parameters pump_handle and bucket_handle scale the two components of A, but not T.
+// With the live parameter hyperinflation h, breaths start at k0 = h k_quiet and use the remaining range: k = k0 + (1 -
+// k0) k_breath, so that no breath exceeds total lung capacity. The head is the mean of the vertices within 6 mm of the
+// most medial one.
 #ifndef PHRENIC_SERVER_MECHANICS_MOTIONS_RIBS_H_
 #define PHRENIC_SERVER_MECHANICS_MOTIONS_RIBS_H_
 
@@ -15,6 +16,7 @@ namespace phrenic {
 
 class Ribs final : public Motion {
  public:
+  // INVALID_ARGUMENT if a body is not ROLE_DRIVEN, is not a rib with number and side, or has no end state.
   static absl::StatusOr<std::unique_ptr<Motion>> Make(const v1::Ribs& scene, const std::string& name,
                                                       std::string_view path, ModelBuilder& builder);
 
@@ -29,7 +31,7 @@ class Ribs final : public Motion {
   };
   Ribs(std::string name, double quiet_state) : Motion(std::move(name)), quiet_state_(quiet_state) {}
 
-  double quiet_state_;
+  double quiet_state_;  // k at the peak of a quiet breath
   std::vector<Rib> ribs_;
 };
 

@@ -8,9 +8,9 @@
 namespace phrenic {
 namespace {
 
-constexpr double kEndSize = 8e-3;  // [m]
+constexpr double kEndSize = 8e-3;  // radius around the most anterior vertex [m]
 
-// Mean of the vertices near the anterior-most one.
+// Returns the mean of the vertices near the most anterior one [m].
 Eigen::Vector3d AnteriorEnd(const Points& vertices) {
   Eigen::Index front = 0;
   vertices.row(1).minCoeff(&front);
@@ -24,7 +24,7 @@ Eigen::Vector3d AnteriorEnd(const Points& vertices) {
   return sum / count;
 }
 
-// Rotation about x by `angle` about `from`, which goes to `to`.
+// Returns the rotation by `angle` [rad] about the x axis that maps `from` to `to`, without the x component.
 Pose SagittalPose(double angle, const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   Pose pose;
   pose.rotation = Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitX());
@@ -57,10 +57,10 @@ absl::StatusOr<std::unique_ptr<Motion>> Sternum::Make(const v1::Sternum& scene, 
     motion->ends_.push_back({rib.pose, AnteriorEnd(rib.mesh.vertices)});
   }
   if (motion->ends_.size() < 2) {
-    return FieldError(absl::StrCat(field, ".ribs"), "at least two driven ribs must carry the sternum");
+    return FieldError(absl::StrCat(field, ".ribs"), "must name at least two driven ribs up to last_rib");
   }
   builder.ReportElement("motion", name, static_cast<std::int64_t>(motion->poses_.size()), "bodies",
-                        absl::StrCat("carried by the ends of ", motion->ends_.size(), " ribs, no sideways drift"));
+                        absl::StrCat("fitted to the ends of ", motion->ends_.size(), " ribs, no lateral motion"));
   return motion;
 }
 
@@ -85,7 +85,7 @@ void Sternum::Drive(const EvalContext&, State& state) const {
   pose.angular_velocity = Eigen::Vector3d(inertia > 0 ? moment / inertia : 0, 0, 0);
   pose.velocity = drift - pose.angular_velocity.cross(pose.rotation * from);
   pose.velocity.x() = 0;
-  for (const int place : poses_) state.poses[place] = pose;
+  for (const int index : poses_) state.poses[index] = pose;
 }
 
 }  // namespace phrenic

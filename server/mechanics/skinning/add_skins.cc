@@ -14,13 +14,13 @@ namespace {
 
 absl::Status CheckBody(const BodyModel& body, std::string_view path) {
   if (body.role != v1::ROLE_SEEN) {
-    return FieldError(path, absl::StrCat("body \"", body.name, "\" must have ROLE_SEEN to ride on others"));
+    return FieldError(path, absl::StrCat("body \"", body.name, "\" must have ROLE_SEEN to follow other bodies"));
   }
-  if (body.skin >= 0) return FieldError(path, absl::StrCat("body \"", body.name, "\" rides already"));
+  if (body.skin >= 0) return FieldError(path, absl::StrCat("body \"", body.name, "\" already follows other bodies"));
   return absl::OkStatus();
 }
 
-// Sorts by vertex what lies together for each.
+// Sorts the weights by vertex. Stable: keeps the order of each vertex's weights.
 std::vector<SkinWeight> ByVertex(const std::vector<SkinWeight>& weights, Eigen::Index vertices) {
   std::vector<int> next(static_cast<size_t>(vertices) + 1, 0);
   for (const SkinWeight& weight : weights) ++next[weight.vertex + 1];
@@ -43,48 +43,50 @@ void AddSkin(Skin skin, ModelBuilder& builder) {
   builder.model.skins.push_back(std::move(skin));
 }
 
-void SkinAllByDistance(const std::vector<int>& bodies, const std::vector<int>& carriers, const std::string& name,
+void SkinAllByDistance(const std::vector<int>& bodies, const std::vector<int>& drivers, const std::string& name,
                        ModelBuilder& builder) {
-  const SkinDrivers search(builder, carriers);
+  const SkinDrivers search(builder, drivers);
   std::int64_t vertices = 0;
   for (const int b : bodies) {
     AddSkin(SkinByDistance(search, builder.model.bodies[b], b), builder);
     vertices += builder.model.bodies[b].mesh.vertices.cols();
   }
-  builder.ReportElement("seen", name, vertices, "vertices", "worked out with each frame, not with each step");
+  builder.ReportElement("seen", name, vertices, "vertices", "computed per frame, not per step");
 }
 
-absl::Status BindAllToTriangles(const std::vector<int>& bodies, const std::vector<int>& carriers,
+absl::Status BindAllToTriangles(const std::vector<int>& bodies, const std::vector<int>& drivers,
                                 const std::string& name, const std::string& path, ModelBuilder& builder) {
-  const auto binder = TriangleBinder::Make(builder, carriers, path);
+  const auto binder = TriangleBinder::Make(builder, drivers, path);
   if (!binder.ok()) return binder.status();
   for (const int b : bodies) {
     v1::MappingReport& report = *builder.model.report.add_mappings();
     AddSkin(binder->Bind(b, report), builder);
     builder.ReportElement(
         "seen", name, builder.model.bodies[b].mesh.vertices.cols(), "vertices",
-        absl::StrFormat("mapped onto triangles with each frame: %.2g mm off them at rest, %.2g mm at most; an even "
-                        "stretch of 1 %% is carried within %.2g mm",
-                        report.mean_distance_mm(), report.largest_distance_mm(), report.largest_strain_error_mm()));
+        absl::StrFormat(
+            "bound to triangles, computed per frame: mean distance %.2g mm at rest, largest %.2g mm; a uniform "
+            "stretch of 1 %% is followed within %.2g mm",
+            report.mean_distance_mm(), report.largest_distance_mm(), report.largest_strain_error_mm()));
   }
   return absl::OkStatus();
 }
 
 }  // namespace
 
-absl::Status AddSkins(const v1::Ride& scene, const std::string& given, std::string_view path, ModelBuilder& builder) {
-  const std::string name = ElementName(given, "ride", scene.bodies());
+absl::Status AddSkins(const v1::Skin& scene, const std::string& given, std::string_view path, ModelBuilder& builder) {
+  const std::string name = ElementName(given, "skin", scene.bodies());
   const std::string field = absl::StrCat(std::string(path), ".bodies");
-  const std::string carried = absl::StrCat(std::string(path), ".carriers");
+  const std::string drivers_field = absl::StrCat(std::string(path), ".drivers");
   auto bodies = builder.Bodies(scene.bodies(), field);
   if (!bodies.ok()) return bodies.status();
-  auto carriers = builder.Bodies(scene.carriers(), carried);
-  if (!carriers.ok()) return carriers.status();
+  auto drivers = builder.Bodies(scene.drivers(), drivers_field);
+  if (!drivers.ok()) return drivers.status();
   for (const int b : *bodies) {
     if (absl::Status status = CheckBody(builder.model.bodies[b], field); !status.ok()) return status;
   }
-  if (scene.mode() == v1::RIDE_MODE_TRIANGLES) return BindAllToTriangles(*bodies, *carriers, name, carried, builder);
-  SkinAllByDistance(*bodies, *carriers, name, builder);
+  if (scene.mode() == v1::SKIN_MODE_TRIANGLES)
+    return BindAllToTriangles(*bodies, *drivers, name, drivers_field, builder);
+  SkinAllByDistance(*bodies, *drivers, name, builder);
   return absl::OkStatus();
 }
 

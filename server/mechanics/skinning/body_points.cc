@@ -8,7 +8,7 @@
 namespace phrenic {
 namespace {
 
-// Keep their capacity from body to body.
+// Scratch memory, which keeps its capacity from one body to the next.
 struct Placements {
   std::vector<double> positions, moving_positions, moving_velocities;
 };
@@ -18,7 +18,7 @@ Eigen::Map<Points> Fit(std::vector<double>& memory, const Points& like) {
   return {memory.data(), 3, like.cols()};
 }
 
-// x [m], and v [m/s] where kVelocities.
+// Output arrays x [m] and, with kVelocities, v [m/s].
 struct Placed {
   MutablePoints x, v;
 };
@@ -43,7 +43,7 @@ struct Corners {
   }
 };
 
-// Of the area vector N = (b - a) x (c - a), n = N/|N| turns at dn/dt = (dN/dt - n (n . dN/dt))/|N|.
+// With the area vector N = (b - a) x (c - a) and n = N/|N|: dn/dt = (dN/dt - n (n . dN/dt))/|N|.
 template <bool kVelocities>
 void PlaceOnTriangle(const TriangleBinding& binding, const EvalContext& at, Eigen::Index i, Placed& out) {
   const Corners x(at.x, binding);
@@ -78,7 +78,7 @@ BodyPoints::BodyPoints(const Model& model, int body)
   triangles_ = model.skins[skin].triangles;
 }
 
-// Without velocities, v is not written.
+// Does not write v without kVelocities.
 template <bool kVelocities>
 void BodyPoints::Follow(const EvalContext& at, MutablePoints x, MutablePoints v) const {
   Placed out{x, v};

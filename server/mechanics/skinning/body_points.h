@@ -8,10 +8,10 @@
 
 namespace phrenic {
 
-// Of one body, as a function of the moment alone: elements do not see the model when they are evaluated; frames and
-// exports use it too. Refers to the model's bodies, skins and rest positions, which keep their addresses when the model
-// is moved. Requires: the model has all its bodies, motions and skins. Immutable and thread-safe, for threads with
-// scratch memory of their own.
+// The points of one body as a function of the EvalContext only, for elements (which have no access to the model when
+// they are evaluated), frames and exports. Refers to the model's bodies, skins and rest positions, which keep their
+// addresses when the model is moved. Requires: the model has all its bodies, motions and skins. Immutable and
+// thread-safe, for threads with scratch memory of their own.
 class BodyPoints {
  public:
   BodyPoints(const Model& model, int body);
@@ -20,10 +20,10 @@ class BodyPoints {
   struct Moving {
     ConstPoints x, v;
   };
-  // Returns both. Valid as long as the moment, and until another body is located with the same scratch memory.
-  // Allocates only if no body located with it before was as large.
+  // Returns both. They are valid as long as the context, and until the next call with the same scratch memory.
+  // Allocates if this is the largest body located with that memory so far.
   Moving Locate(const EvalContext& at) const;
-  // The same for positions alone, at half the cost.
+  // Returns positions only, at half the cost.
   ConstPoints Positions(const EvalContext& at) const;
   // Sets x to the positions, 3 x vertices of the body [m].
   void Place(const EvalContext& at, MutablePoints x) const;

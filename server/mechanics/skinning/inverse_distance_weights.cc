@@ -5,19 +5,20 @@
 namespace phrenic {
 namespace {
 
-constexpr double kNear = 5e-3;           // distances below this count alike [m]
-constexpr double kSmallestShare = 0.01;  // of the nearest's: smaller ones are dropped and the rest scaled to 1
-constexpr double kSlack = 1e-9;          // of distances that are bounds: more than they are rounded by
-constexpr double kAround = 0.01;         // how far points may lie from the last place that was looked around [m]
+constexpr double kNear = 5e-3;            // smoothing length [m]
+constexpr double kSmallestWeight = 0.01;  // relative to the largest; smaller weights are dropped
+constexpr double kSlack = 1e-9;           // relative margin of distance bounds, above their rounding error
+constexpr double kAround = 0.01;          // the candidate drivers are valid within this distance of middle_ [m]
 
 double Weight(double distance) {
   const double squared = distance * distance + kNear * kNear;
   return 1 / (squared * squared);
 }
 
-// How near a driver must be to have the smallest share of what the nearest has: w_c/w = ((d^2 + n^2)/(d_c^2 + n^2))^2.
+// Returns the distance within which a driver has at least kSmallestWeight of the weight of one at distance `nearest`,
+// from w_c/w = ((d^2 + n^2)/(d_c^2 + n^2))^2 [m].
 double BoundsOf(double nearest) {
-  const double squared = (nearest * nearest + kNear * kNear) / std::sqrt(kSmallestShare);
+  const double squared = (nearest * nearest + kNear * kNear) / std::sqrt(kSmallestWeight);
   return std::sqrt(squared - kNear * kNear) * (1 + kSlack);
 }
 
@@ -28,13 +29,13 @@ InverseDistanceWeights::InverseDistanceWeights(const SkinDrivers& drivers)
       tracks_(static_cast<size_t>(drivers.count())),
       middle_(Eigen::Vector3d::Constant(SkinDrivers::kAnywhere)) {}
 
-// How far the driver is from a point at least.
+// Returns a lower bound of the driver's distance from a point [m].
 double InverseDistanceWeights::Track::AtLeast(const Eigen::Vector3d& point) const {
   const double moved = (point - from).norm();
   return distance - moved - kSlack * (distance + moved);
 }
 
-// As far as the vertex that was nearest last.
+// Returns an upper bound of the driver's distance [m]: that of the vertex that was nearest in its last search.
 double InverseDistanceWeights::AtMost(int driver, const Eigen::Vector3d& point) const {
   return (drivers_.vertices(driver).col(tracks_[driver].vertex) - point).norm() * (1 + kSlack);
 }
@@ -45,7 +46,7 @@ void InverseDistanceWeights::Find(int driver, const Eigen::Vector3d& point) {
   if (tracks_[driver].weight > tracks_[nearest_].weight) nearest_ = driver;
 }
 
-// Tells which may carry points within kAround from this one.
+// Finds the drivers that may have a weight for points within kAround of this one.
 void InverseDistanceWeights::LookAround(const Eigen::Vector3d& point) {
   middle_ = point;
   const double reach = BoundsOf(AtMost(nearest_, point) + kAround) + kAround;
@@ -55,7 +56,7 @@ void InverseDistanceWeights::LookAround(const Eigen::Vector3d& point) {
   }
 }
 
-// Weighs all drivers that may have a share; the others' weight is 0.
+// Computes the weights of all candidate drivers; 0 for those beyond reach.
 void InverseDistanceWeights::Weigh(const Eigen::Vector3d& point) {
   for (const int c : around_) tracks_[c].weight = 0;
   const int first = nearest_;
@@ -71,7 +72,7 @@ void InverseDistanceWeights::Weigh(const Eigen::Vector3d& point) {
 void InverseDistanceWeights::Append(const Eigen::Vector3d& point, int for_vertex, std::vector<SkinWeight>& weights) {
   if (!((point - middle_).norm() <= kAround)) LookAround(point);
   Weigh(point);
-  const double smallest = kSmallestShare * tracks_[nearest_].weight;
+  const double smallest = kSmallestWeight * tracks_[nearest_].weight;
   double sum = 0;
   for (const int c : around_) sum += tracks_[c].weight >= smallest ? tracks_[c].weight : 0;
   for (const int c : around_) {

@@ -15,16 +15,16 @@ namespace phrenic {
 class InverseDistanceWeights {
  public:
   explicit InverseDistanceWeights(const SkinDrivers& drivers);
-  // Appends the weights of a point, by driver, for `for_vertex`.
+  // Appends the weights of a point at rest [m] as those of `for_vertex`, sorted by driver.
   void Append(const Eigen::Vector3d& point, int for_vertex, std::vector<SkinWeight>& weights);
 
  private:
-  // The last search for a driver.
+  // The result of the last nearest-vertex search in a driver.
   struct Track {
-    Eigen::Vector3d from = Eigen::Vector3d::Zero();
-    double distance = 0;  // [m]
-    int vertex = 0;       // the nearest
-    double weight = 0;    // for the present point
+    Eigen::Vector3d from = Eigen::Vector3d::Zero();  // the point
+    double distance = 0;                             // [m]
+    int vertex = 0;                                  // the nearest one of the driver
+    double weight = 0;                               // for the present point
 
     double AtLeast(const Eigen::Vector3d& point) const;
   };
@@ -36,8 +36,8 @@ class InverseDistanceWeights {
   const SkinDrivers& drivers_;
   std::vector<Track> tracks_;
   int nearest_ = 0;
-  Eigen::Vector3d middle_;   // points near it ...
-  std::vector<int> around_;  // ... have no other drivers than these
+  Eigen::Vector3d middle_;   // the point for which around_ was computed [m]
+  std::vector<int> around_;  // candidate drivers of points near middle_
 };
 
 }  // namespace phrenic

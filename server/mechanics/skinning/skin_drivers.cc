@@ -6,11 +6,11 @@
 namespace phrenic {
 namespace {
 
-// A skinned body passes on its own drivers.
+// Appends the drivers of a vertex of a skinned body, their weights times `weight`.
 void AppendOfVertex(const Skin& skin, int vertex, int for_vertex, double weight, std::vector<SkinWeight>& weights) {
   if (!skin.triangles.empty()) {
-    const TriangleBinding& place = skin.triangles[vertex];
-    for (int i = 0; i < 3; ++i) weights.push_back({for_vertex, -1, place.corners[i], weight * place.weights[i]});
+    const TriangleBinding& binding = skin.triangles[vertex];
+    for (int i = 0; i < 3; ++i) weights.push_back({for_vertex, -1, binding.corners[i], weight * binding.weights[i]});
     return;
   }
   const auto before = [](const SkinWeight& own, int v) { return own.vertex < v; };
@@ -20,8 +20,7 @@ void AppendOfVertex(const Skin& skin, int vertex, int for_vertex, double weight,
   }
 }
 
-// Boxes by their distances from a point, nearest first; of equally near ones the first. Those that are nearer than
-// `reach` [m].
+// A priority queue of the boxes within `reach` [m] of a point, nearest first; ties by index.
 class NearestBoxes {
  public:
   struct Box {

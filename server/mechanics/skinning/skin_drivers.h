@@ -11,7 +11,8 @@
 
 namespace phrenic {
 
-// A nearest-vertex search over several bodies. The builder must outlive it. Immutable; not thread-safe, as the builder.
+// A nearest-vertex search over several bodies. The builder must outlive it. Immutable, but not thread-safe, because the
+// builder is not.
 class SkinDrivers {
  public:
   static constexpr double kAnywhere = std::numeric_limits<double>::infinity();
@@ -23,10 +24,11 @@ class SkinDrivers {
     int vertex = 0;  // of that body
     double distance = 0;
   };
-  // Returns the nearest vertex of all bodies; at an infinite distance if none is nearer than `reach` [m]. A smaller
-  // reach is faster.
+  // Returns the nearest vertex of all bodies, with infinite distance if none is within `reach` [m]. A smaller reach
+  // makes the search faster.
   Nearby Nearest(const Eigen::Vector3d& point, double reach = kAnywhere) const;
-  // Appends the weights that make `for_vertex`, a point near a vertex of a driver, follow that driver by `weight`.
+  // Appends the weights by which `for_vertex` follows the driver of `nearby`. Their sum is `weight`, or less if a
+  // skinned driver follows bodies that do not move.
   void AppendWeights(const Nearby& nearby, int for_vertex, double weight, std::vector<SkinWeight>& weights) const;
 
   int count() const { return static_cast<int>(bodies_.size()); }
@@ -37,7 +39,7 @@ class SkinDrivers {
   const ModelBuilder& builder_;
   std::vector<int> bodies_;
   std::vector<const NearestSearch*> searches_;
-  std::vector<Eigen::AlignedBox3d> boxes_;  // bodies out of reach are not searched
+  std::vector<Eigen::AlignedBox3d> boxes_;  // of the bodies, to skip those out of reach
 };
 
 }  // namespace phrenic

@@ -14,10 +14,10 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Of one vertex: displacement x, y, z, 0 and velocity x, y, z, 0.
+// Numbers per vertex: displacement (x, y, z, 0) and velocity (x, y, z, 0).
 constexpr int kNumbers = 8;
 
-// The weighted sum of the poses of one vertex: of displacement and velocity, or of displacement alone.
+// The weighted sum over a vertex's poses of displacement and velocity, or of displacement only.
 template <bool kVelocities>
 class Posed {
   using Tag = hn::CappedTag<double, kVelocities ? kNumbers : kNumbers / 2>;

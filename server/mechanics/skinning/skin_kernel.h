@@ -1,5 +1,6 @@
-// Evaluates skin weights (skin.h), position and velocity in one vector (Google Highway: the machine's best instruction
-// set is chosen at run time, and all give the same bits). Thread-safe.
+// SIMD kernel of skin weights (skin.h), with position and velocity in one vector. Google Highway compiles it for
+// several instruction sets and selects the best one at run time; the results are bitwise equal on all of them.
+// Thread-safe.
 #ifndef PHRENIC_SERVER_MECHANICS_SKINNING_SKIN_KERNEL_H_
 #define PHRENIC_SERVER_MECHANICS_SKINNING_SKIN_KERNEL_H_
 
@@ -10,11 +11,11 @@
 
 namespace phrenic {
 
-// The drivers at one moment. Arrays are 3 x n, point after point.
+// The drivers at one moment. Arrays are 3 x n, column-major.
 struct DriverState {
   std::span<const PoseMatrices> poses;
   const double* rest;   // simulated vertices [m]
-  const double *x, *v;  // the same now [m], [m/s]
+  const double *x, *v;  // their current positions [m] and velocities [m/s]
 };
 
 // Sets x = rest + the weighted displacements of the drivers [m], and v to their weighted velocities [m/s], for the

@@ -10,10 +10,10 @@
 namespace phrenic {
 namespace {
 
-constexpr double kNoArea = 1e-9;   // of a triangle's longest edge squared: with less area it has no normal
-constexpr double kStretch = 0.01;  // that the report speaks of
+constexpr double kNoArea = 1e-9;   // relative to the longest edge squared: smaller triangles count as degenerate
+constexpr double kStretch = 0.01;  // the strain for which the report states the error
 
-// Twice the triangle's area times its unit normal [m^2].
+// Returns twice the triangle's area times its unit normal [m^2].
 Eigen::Vector3d AreaVector(const ConstPoints& x, const Eigen::Vector3i& t) {
   const Eigen::Vector3d a = x.col(t[0]), b = x.col(t[1]), c = x.col(t[2]);
   return (b - a).cross(c - a);
@@ -32,7 +32,7 @@ void AddTriangles(const ModelBuilder& builder, const BodyModel& body, std::vecto
   }
 }
 
-// Where `point` is in the triangle's own coordinates; exact for every point, inside or not.
+// Returns barycentric coordinates and height of a point relative to a triangle. Exact for points outside it too.
 TriangleBinding BindTo(const ConstPoints& x, const Eigen::Vector3i& t, const Eigen::Vector3d& point) {
   const Eigen::Vector3d area = AreaVector(x, t);
   const Eigen::Vector3d a = x.col(t[0]), b = x.col(t[1]), c = x.col(t[2]);
@@ -41,8 +41,9 @@ TriangleBinding BindTo(const ConstPoints& x, const Eigen::Vector3i& t, const Eig
   return {t, {1 - of_b - of_c, of_b, of_c}, area.dot(point - a) / std::sqrt(squared)};
 }
 
-// Of a point at height h, where the triangles are stretched by F = I + s d d^T: the height keeps its length and turns
-// with the normal, so that the point is off by s h |2 c d - c^2 n|, c = n.d; the largest is 2/sqrt(3) s h.
+// Returns the largest position error [m] of a point at height h under a stretch F = I + s d d^T of the triangles: the
+// height keeps its length and rotates with the normal, so that the error is s h |2 c d - c^2 n|, c = n.d, whose maximum
+// is 2/sqrt(3) s h.
 double LargestStretchError(double height) { return 2 / std::sqrt(3.0) * kStretch * std::abs(height); }
 
 }  // namespace
@@ -55,8 +56,8 @@ absl::StatusOr<TriangleBinder> TriangleBinder::Make(const ModelBuilder& builder,
     const size_t before = triangles.size();
     if (body.first_vertex >= 0) AddTriangles(builder, body, triangles);
     if (triangles.size() == before) {
-      return FieldError(path, absl::StrCat("body \"", body.name, "\" is not ROLE_DEFORMABLE, or has no triangles, and ",
-                                           "cannot carry by them; leave mode out, or name another body"));
+      return FieldError(path, absl::StrCat("body \"", body.name, "\" is not ROLE_DEFORMABLE, or has no triangles to ",
+                                           "bind to; leave mode out, or name another body"));
     }
   }
   Triangles columns(3, static_cast<Eigen::Index>(triangles.size()));

@@ -9,6 +9,7 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "phrenic/v1/options.pb.h"
+#include "server/mechanics/body_names.h"
 #include "server/mechanics/measures/readings.h"
 #include "server/mechanics/skinning/probe_position.h"
 #include "server/mesh/units.h"
@@ -23,20 +24,14 @@ constexpr std::int64_t kBytesPerNumber = 16;  // of text
 constexpr std::int64_t kBytesPerShape = 60;   // a triangle or an edge, in text or a .vtp
 constexpr std::size_t kLongestStem = 100;
 
-bool HasName(const BodyModel& body, const std::string& name) { return body.name == name || body.layer == name; }
-
 absl::StatusOr<std::vector<int>> Bodies(const Model& model, const v1::CreateExportRequest& request) {
   std::vector<bool> chosen(model.bodies.size(), false);
   std::vector<std::string> names;
   for (const BodyModel& body : model.bodies) names.push_back(body.name);
   for (int k = 0; k < request.bodies_size(); ++k) {
-    bool found = false;
-    for (std::size_t i = 0; i < chosen.size(); ++i) {
-      if (HasName(model.bodies[i], request.bodies(k))) found = chosen[i] = true;
-    }
-    if (found) continue;
-    return absl::InvalidArgumentError(absl::StrCat("bodies[", k, "]: there is no body or layer \"", request.bodies(k),
-                                                   "\"; there are ", absl::StrJoin(names, ", ")));
+    const auto named = BodiesNamed(model, request.bodies(k), absl::StrCat("bodies[", k, "]"));
+    if (!named.ok()) return named.status();
+    for (const int body : *named) chosen[static_cast<std::size_t>(body)] = true;
   }
   std::vector<int> bodies;
   for (int i = 0; i < static_cast<int>(chosen.size()); ++i) {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <optional>
 
-#include "server/stream/quantise.h"
-#include "server/stream/wire.h"
+#include "server/stream/codecs/quantise.h"
+#include "server/stream/codecs/wire.h"
 
 namespace phrenic::stream {
 namespace {

@@ -5,7 +5,7 @@
 #include <Eigen/Cholesky>
 #include <vector>
 
-#include "server/stream/codec.h"
+#include "server/stream/codecs/codec.h"
 #include "server/stream/codecs/neighbour_predictor.h"
 
 namespace phrenic::stream {

@@ -3,8 +3,8 @@
 #include <optional>
 
 #include "absl/strings/str_cat.h"
-#include "server/stream/wire.h"
-#include "server/stream/zstd.h"
+#include "server/stream/codecs/wire.h"
+#include "server/stream/codecs/zstd.h"
 
 namespace phrenic::stream {
 namespace {

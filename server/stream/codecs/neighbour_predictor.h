@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "server/stream/codec.h"
-#include "server/stream/neighbour_weights.h"
+#include "server/stream/codecs/codec.h"
+#include "server/stream/codecs/neighbour_weights.h"
 
 namespace phrenic::stream {
 

@@ -2,9 +2,9 @@
 
 #include <cstring>
 
-#include "server/stream/quantise.h"
-#include "server/stream/wire.h"
-#include "server/stream/zstd.h"
+#include "server/stream/codecs/quantise.h"
+#include "server/stream/codecs/wire.h"
+#include "server/stream/codecs/zstd.h"
 
 namespace phrenic::stream {
 namespace {

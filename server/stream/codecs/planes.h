@@ -2,7 +2,7 @@
 #ifndef PHRENIC_SERVER_STREAM_CODECS_PLANES_H_
 #define PHRENIC_SERVER_STREAM_CODECS_PLANES_H_
 
-#include "server/stream/codec.h"
+#include "server/stream/codecs/codec.h"
 
 namespace phrenic::stream {
 

@@ -1,7 +1,7 @@
 #include "server/stream/codecs/predicted.h"
 
-#include "server/stream/quantise.h"
-#include "server/stream/wire.h"
+#include "server/stream/codecs/quantise.h"
+#include "server/stream/codecs/wire.h"
 
 namespace phrenic::stream {
 namespace {

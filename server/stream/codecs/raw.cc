@@ -3,7 +3,7 @@
 #include <cstring>
 
 #include "absl/strings/str_cat.h"
-#include "server/stream/wire.h"
+#include "server/stream/codecs/wire.h"
 
 namespace phrenic::stream {
 

@@ -1,7 +1,7 @@
 #include <cstdio>
 
 #include "absl/strings/str_cat.h"
-#include "server/stream/codec.h"
+#include "server/stream/codecs/codec.h"
 #include "tests/bench/streaming/gateway_viewers.h"
 #include "tests/bench/streaming/parts.h"
 

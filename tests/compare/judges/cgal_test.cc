@@ -1,4 +1,4 @@
-// The Hausdorff distance held against CGAL's bounded_error_Hausdorff_distance, on anatomy.
+// Compares the Hausdorff distance with CGAL's bounded_error_Hausdorff_distance on anatomical surfaces.
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/distance.h>
 #include <CGAL/Surface_mesh.h>
@@ -17,7 +17,7 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using CgalMesh = CGAL::Surface_mesh<Kernel::Point_3>;
 
-// In millimetres. Its vertices are not shared by triangles, so that any surface is a mesh to CGAL.
+// Converts to CGAL in millimetres. Triangles do not share vertices, so that CGAL accepts non-manifold surfaces.
 CgalMesh ToCgal(const Mesh& mesh) {
   CgalMesh cgal;
   const auto add = [&](int vertex) {
@@ -53,7 +53,7 @@ Mesh Anatomy(const std::string& file) {
   return mesh.value_or(Mesh());
 }
 
-// As a breath might: down, and tilted.
+// Deforms a surface smoothly by up to 1 cm, as a breath does.
 Mesh Bent(Mesh mesh) {
   for (auto x : mesh.vertices.colwise()) {
     x[2] += 0.008 * std::sin(x[0] / 0.06) + 0.003;
@@ -66,7 +66,7 @@ class Cgal : public testing::Test {
  protected:
   void SetUp() override {
     if (!std::filesystem::exists(std::string(PHRENIC_SHARED_DIR) + "/data/thorax/diaphragm.obj")) {
-      GTEST_SKIP() << "the anatomical surfaces are not here";
+      GTEST_SKIP() << "the anatomical surfaces are missing";
     }
   }
 };

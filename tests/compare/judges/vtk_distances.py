@@ -1,4 +1,4 @@
-"""Distances from random points of surface A to surface B by VTK: mean, root mean square, 95th percentile, largest.
+"""Measures distances from random points of surface A to surface B with VTK: mean, RMS, 95th percentile, maximum.
 
 Usage: vtk_distances.py A.obj B.obj; prints the four numbers in the files' unit.
 """
@@ -26,9 +26,9 @@ def random_points(surface):
     corners = points[vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)]
     a, ab, ac = corners[:, 0], corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     area = numpy.linalg.norm(numpy.cross(ab, ac), axis=1)
-    chance = numpy.random.default_rng(1)
-    triangle = chance.choice(len(area), SAMPLES, p=area / area.sum())
-    u, v = chance.random((2, SAMPLES, 1))
+    generator = numpy.random.default_rng(1)
+    triangle = generator.choice(len(area), SAMPLES, p=area / area.sum())
+    u, v = generator.random((2, SAMPLES, 1))
     outside = u + v > 1
     u, v = numpy.where(outside, 1 - u, u), numpy.where(outside, 1 - v, v)
     return a[triangle] + u * ab[triangle] + v * ac[triangle]

@@ -1,6 +1,6 @@
 // Zstandard compression (RFC 8878) at the fastest level: one frame per string.
-#ifndef PHRENIC_SERVER_STREAM_ZSTD_H_
-#define PHRENIC_SERVER_STREAM_ZSTD_H_
+#ifndef PHRENIC_SERVER_STREAM_CODECS_ZSTD_H_
+#define PHRENIC_SERVER_STREAM_CODECS_ZSTD_H_
 
 #include <string>
 #include <string_view>
@@ -17,4 +17,4 @@ absl::StatusOr<std::string> Decompress(std::string_view compressed, std::size_t 
 
 }  // namespace phrenic::stream
 
-#endif  // PHRENIC_SERVER_STREAM_ZSTD_H_
+#endif  // PHRENIC_SERVER_STREAM_CODECS_ZSTD_H_

@@ -1,4 +1,4 @@
-#include "server/stream/zstd.h"
+#include "server/stream/codecs/zstd.h"
 
 #include <zstd.h>
 

@@ -1,4 +1,4 @@
-#include "server/stream/neighbour_weights.h"
+#include "server/stream/codecs/neighbour_weights.h"
 
 #include <algorithm>
 #include <array>

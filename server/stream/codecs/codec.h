@@ -1,6 +1,6 @@
 // Codecs: vertex positions to bytes and back. One codec a file in codecs/, one row a codec in codecs.cc.
-#ifndef PHRENIC_SERVER_STREAM_CODEC_H_
-#define PHRENIC_SERVER_STREAM_CODEC_H_
+#ifndef PHRENIC_SERVER_STREAM_CODECS_CODEC_H_
+#define PHRENIC_SERVER_STREAM_CODECS_CODEC_H_
 
 #include <memory>
 #include <span>
@@ -48,4 +48,4 @@ std::unique_ptr<Codec> MakeCodec(v1::Codec codec, const RestShape& shape);
 
 }  // namespace phrenic::stream
 
-#endif  // PHRENIC_SERVER_STREAM_CODEC_H_
+#endif  // PHRENIC_SERVER_STREAM_CODECS_CODEC_H_

@@ -1,6 +1,6 @@
 // Little-endian numbers of the wire format (proto/README.md).
-#ifndef PHRENIC_SERVER_STREAM_WIRE_H_
-#define PHRENIC_SERVER_STREAM_WIRE_H_
+#ifndef PHRENIC_SERVER_STREAM_CODECS_WIRE_H_
+#define PHRENIC_SERVER_STREAM_CODECS_WIRE_H_
 
 #include <bit>
 #include <cstdint>
@@ -44,4 +44,4 @@ Number Read(std::string_view bytes, std::size_t offset) {
 
 }  // namespace phrenic::stream
 
-#endif  // PHRENIC_SERVER_STREAM_WIRE_H_
+#endif  // PHRENIC_SERVER_STREAM_CODECS_WIRE_H_

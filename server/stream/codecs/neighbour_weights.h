@@ -1,13 +1,13 @@
 // An order of a mesh's vertices and weights that predict each vertex from earlier ones. Server and viewer compute them
 // independently, with the same bits on every machine and in every language.
-#ifndef PHRENIC_SERVER_STREAM_NEIGHBOUR_WEIGHTS_H_
-#define PHRENIC_SERVER_STREAM_NEIGHBOUR_WEIGHTS_H_
+#ifndef PHRENIC_SERVER_STREAM_CODECS_NEIGHBOUR_WEIGHTS_H_
+#define PHRENIC_SERVER_STREAM_CODECS_NEIGHBOUR_WEIGHTS_H_
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "server/stream/codec.h"
+#include "server/stream/codecs/codec.h"
 
 namespace phrenic::stream {
 
@@ -29,4 +29,4 @@ NeighbourWeights MakeNeighbourWeights(const RestShape& shape);
 
 }  // namespace phrenic::stream
 
-#endif  // PHRENIC_SERVER_STREAM_NEIGHBOUR_WEIGHTS_H_
+#endif  // PHRENIC_SERVER_STREAM_CODECS_NEIGHBOUR_WEIGHTS_H_

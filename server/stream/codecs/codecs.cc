@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <array>
 
-#include "server/stream/codec.h"
 #include "server/stream/codecs/basis.h"
+#include "server/stream/codecs/codec.h"
 #include "server/stream/codecs/planes.h"
 #include "server/stream/codecs/predicted.h"
 #include "server/stream/codecs/raw.h"

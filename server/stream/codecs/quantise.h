@@ -1,11 +1,11 @@
 // Quantisation of positions to a grid within an error bound.
-#ifndef PHRENIC_SERVER_STREAM_QUANTISE_H_
-#define PHRENIC_SERVER_STREAM_QUANTISE_H_
+#ifndef PHRENIC_SERVER_STREAM_CODECS_QUANTISE_H_
+#define PHRENIC_SERVER_STREAM_CODECS_QUANTISE_H_
 
 #include <cmath>
 #include <optional>
 
-#include "server/stream/codec.h"
+#include "server/stream/codecs/codec.h"
 
 namespace phrenic::stream {
 
@@ -25,4 +25,4 @@ inline bool IsGridStep(double step) { return step > 0 && step <= kLargestStep; }
 
 }  // namespace phrenic::stream
 
-#endif  // PHRENIC_SERVER_STREAM_QUANTISE_H_
+#endif  // PHRENIC_SERVER_STREAM_CODECS_QUANTISE_H_
