@@ -5,6 +5,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "server/anatomy/anatomy.h"
@@ -20,12 +23,18 @@ inline v1::Anatomy Part(v1::Structure structure, int number = 0, v1::Side side =
   return part;
 }
 
-inline Mesh MeshOf(const v1::Anatomy& part, double resolution_mm = 0) {
-  auto mesh = Generate(part, resolution_mm);
-  return mesh.ok() ? *std::move(mesh) : Mesh();
+// Returns the mesh of a part, which a process generates once; empty if it cannot be generated. Not thread-safe.
+inline const Mesh& MeshOf(const v1::Anatomy& part, double resolution_mm = 0) {
+  static std::map<std::pair<std::string, double>, Mesh> meshes;
+  const auto [found, is_new] = meshes.try_emplace({part.SerializeAsString(), resolution_mm});
+  if (is_new) {
+    auto mesh = Generate(part, resolution_mm);
+    if (mesh.ok()) found->second = *std::move(mesh);
+  }
+  return found->second;
 }
 
-inline Mesh Diaphragm(double resolution_mm = 0) { return MeshOf(Part(v1::STRUCTURE_DIAPHRAGM), resolution_mm); }
+inline const Mesh& Diaphragm(double resolution_mm = 0) { return MeshOf(Part(v1::STRUCTURE_DIAPHRAGM), resolution_mm); }
 
 // The vertices of each layer of a double layer.
 inline Points UpperLayer(const Mesh& mesh) {

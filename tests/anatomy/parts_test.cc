@@ -66,10 +66,11 @@ TEST(Parts, FinerResolutionGivesMoreVertices) {
 TEST(Parts, SameArgumentsGiveTheSameBits) {
   for (const v1::Anatomy& part : {Part(v1::STRUCTURE_DIAPHRAGM), Part(v1::STRUCTURE_RIB, 3, v1::SIDE_LEFT),
                                   Part(v1::STRUCTURE_VERTEBRA, 9), Part(v1::STRUCTURE_LUNG, 0, v1::SIDE_LEFT)}) {
-    const Mesh first = MeshOf(part, 6), second = MeshOf(part, 6);
-    EXPECT_EQ(first.vertices, second.vertices);
-    EXPECT_EQ(first.triangles, second.triangles);
-    EXPECT_EQ(first.regions, second.regions);
+    const auto first = Generate(part, 6), second = Generate(part, 6);
+    ASSERT_TRUE(first.ok() && second.ok());
+    EXPECT_EQ(first->vertices, second->vertices);
+    EXPECT_EQ(first->triangles, second->triangles);
+    EXPECT_EQ(first->regions, second->regions);
   }
 }
 
