@@ -106,6 +106,8 @@ TEST_F(ModelsTest, ASceneThatIsTooLargeIsRefusedBeforeItIsGenerated) {
     body.set_role(v1::ROLE_DEFORMABLE);
     body.mutable_grid()->set_columns(2000);
     body.mutable_grid()->set_rows(2000);
+    body.mutable_grid()->mutable_u()->set_x(0.1);
+    body.mutable_grid()->mutable_v()->set_y(0.1);
   }
   const auto model = models.Get(source);
   EXPECT_TRUE(absl::IsResourceExhausted(model.status())) << model.status();
