@@ -194,7 +194,7 @@ TEST(Comparison, BadInputIsRefusedByName) {
     EXPECT_FALSE(table.ok());
     return std::string(table.status().message());
   };
-  EXPECT_THAT(message(Request("a.stp", "", "b.obj", kObj)), HasSubstr("a.stp:1: the name's ending"));
+  EXPECT_THAT(message(Request("a.stp", "", "b.obj", kObj)), HasSubstr("a.stp:1: the file name extension"));
   EXPECT_THAT(message(Request("a.obj", kObj, "b.obj", "v 1 2\n")), HasSubstr("b.obj:1:"));
   auto huge = Request("a.obj", kObj, "b.obj", "v 1e300 0 0\nv 0 1 0\nv 1 0 0\nf 1 2 3\n");
   EXPECT_THAT(message(huge), HasSubstr("b.obj:1: has a coordinate of"));
