@@ -173,7 +173,7 @@ TEST_F(Limits, AnUploadThatExpandsBeyondTheLimitIsRefused) {
     v1::FinishUploadResponse finished;
     const grpc::Status status = stub->FinishUpload(&third, finish, &finished);
     EXPECT_EQ(status.error_code(), grpc::INVALID_ARGUMENT);
-    EXPECT_THAT(status.error_message(), HasSubstr("unpacks to more than"));
+    EXPECT_THAT(status.error_message(), HasSubstr("declares an uncompressed size above"));
   }
   EXPECT_LT(server_->PeakMemory() - before, 128 << 20);
 }
