@@ -38,7 +38,7 @@ TEST(Includes, FollowTheDirections) {
   EXPECT_THAT(Including("server/mechanics/forces/springs.cc", "server/mechanics/force.h"), IsEmpty());
   EXPECT_THAT(Including("server/stream/frame.cc", "server/mechanics/model.h"), IsEmpty());
   EXPECT_THAT(Including("server/session/session.cc", "server/stream/frame.h"), IsEmpty());
-  EXPECT_THAT(Including("server/main.cc", "server/service/serve.h"), IsEmpty());
+  EXPECT_THAT(Including("server/main.cc", "server/daemon/serve.h"), IsEmpty());
   EXPECT_THAT(Including("client/main.cc", "server/service/serve.h"), IsEmpty());
   EXPECT_THAT(Including("tests/mesh/mesh_test.cc", "client/main.h"), IsEmpty());
 }

@@ -93,7 +93,7 @@ TEST(Mapping, ReportsHowFarTheFineSurfaceLies) {
   EXPECT_EQ(report.body(), "fine");
   EXPECT_NEAR(report.mean_distance_mm(), 20, 1e-9);
   EXPECT_NEAR(report.largest_distance_mm(), 30, 1e-9);
-  EXPECT_THAT(model->report.elements(0).detail(), testing::HasSubstr("20 mm off them at rest, 30 mm at most"));
+  EXPECT_THAT(model->report.elements(0).detail(), testing::HasSubstr("mean distance 20 mm at rest, largest 30 mm"));
 }
 
 // A line of points on the sheet, across its triangles: however the sheet is bent, it stays a line without a gap.
