@@ -13,16 +13,16 @@
 namespace phrenic::study {
 namespace {
 
-constexpr double kPerturbation = 1e-8;  // amplitude v/omega of the perturbation, in sizes of the scene
-constexpr long kSteps = 400;            // of a trial
-constexpr long kMaxSteps = 20000;       // of a trial: limits that need more are not measured
-constexpr double kDampings = 60;        // damping times of a trial of explicit Euler with friction
-constexpr double kGrowth = 30;          // ratio of energies of the last and the second quarter
-constexpr double kSlowGrowth = 2;       // the same for explicit Euler
-constexpr double kRunaway = 1e12;       // growth of the energy from its first value that ends a trial
-constexpr double kTolerance = 0.01;     // relative, of the measured limit
-constexpr double kFirstFactor = 1.03;   // first ratio to the prediction in the search
-constexpr double kMaxFactor = 4;        // largest ratio to the prediction in the search
+constexpr double kPerturbation = 1e-8;    // amplitude v/omega of the perturbation, in sizes of the scene
+constexpr long kSteps = 400;              // of a trial
+constexpr long kMaxSteps = 20000;         // of a trial: limits that need more are not measured
+constexpr double kDampings = 60;          // damping times of a trial of explicit Euler with friction
+constexpr double kGrowth = 30;            // ratio of energies of the last and the second quarter
+constexpr double kSlowGrowth = 2;         // the same for explicit Euler
+constexpr double kRunaway = 1e12;         // growth of the energy from its first value that ends a trial
+constexpr double kLimitTolerance = 0.01;  // relative, of the measured limit
+constexpr double kFirstFactor = 1.03;     // first ratio to the prediction in the search
+constexpr double kMaxFactor = 4;          // largest ratio to the prediction in the search
 
 // The result of a trial; kCut if it ran out of CPU time.
 enum class Trial { kBounded, kGrows, kCut };
@@ -106,7 +106,7 @@ class Bisection {
 
   // Bisects between a stable step and an unstable one.
   absl::Status Narrow(double low, double high, v1::LimitRow& row) {
-    while (high > low * (1 + kTolerance)) {
+    while (high > low * (1 + kLimitTolerance)) {
       const double middle = std::sqrt(low * high);
       const auto trial = Try(middle);
       if (!trial.ok()) return trial.status();

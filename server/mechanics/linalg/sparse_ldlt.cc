@@ -7,7 +7,7 @@ namespace phrenic {
 namespace {
 
 // An entry of a row below the diagonal.
-struct Entry {
+struct RowEntry {
   int column;
   double value;
 };
@@ -154,15 +154,15 @@ bool OrderedLdlt::Factorise(const Eigen::SparseMatrix<double>& a) {
   const std::vector<int> order = SparseLdlt::Order(size, below);
   row_.resize(static_cast<size_t>(size));
   for (int k = 0; k < size; ++k) row_[order[k]] = k;
-  std::vector<std::vector<Entry>> rows(static_cast<size_t>(size));
+  std::vector<std::vector<RowEntry>> rows(static_cast<size_t>(size));
   for_each_below([&](int i, int j, double value) {
     rows[std::max(row_[i], row_[j])].push_back({std::min(row_[i], row_[j]), value});
   });
   std::vector<double> values;
   below.clear();
   for (int i = 0; i < size; ++i) {
-    std::sort(rows[i].begin(), rows[i].end(), [](const Entry& p, const Entry& q) { return p.column < q.column; });
-    for (const Entry& entry : rows[i]) {
+    std::sort(rows[i].begin(), rows[i].end(), [](const RowEntry& p, const RowEntry& q) { return p.column < q.column; });
+    for (const RowEntry& entry : rows[i]) {
       below.emplace_back(i, entry.column);
       values.push_back(entry.value);
     }

@@ -15,9 +15,9 @@ namespace {
 
 // Constraints that share vertices partly undo each other's projection.
 constexpr int kRounds = 50;
-constexpr double kSatisfied = 1e-11;  // of the scene's size: a smaller residual is good enough
-constexpr double kGain = 0.9;         // a round that leaves more of the residual than this is the last
-constexpr double kSettled = 1e-12;    // of the largest velocity: a round that changes less is the last
+constexpr double kSatisfied = 1e-11;        // of the scene's size: a smaller residual is good enough
+constexpr double kGain = 0.9;               // a round that leaves more of the residual than this is the last
+constexpr double kResidualSettled = 1e-12;  // of the largest velocity: a round that changes less is the last
 
 struct VelocitiesBefore {
   Points v;
@@ -105,7 +105,7 @@ void StepPlan::ProjectVelocities(const v1::Parameters& parameters, const Scratch
     for (const auto& constraint : model_.constraints) constraint->ProjectVelocities(parameters, scratch, state);
     if (model_.constraints.size() < 2) return;
     const double change = (state.v - last).cwiseAbs().maxCoeff();
-    if (!(change > kSettled * state.v.cwiseAbs().maxCoeff())) return;
+    if (!(change > kResidualSettled * state.v.cwiseAbs().maxCoeff())) return;
   }
 }
 
