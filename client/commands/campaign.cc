@@ -127,7 +127,7 @@ int ReportCampaign(const Context& context, const CampaignOptions& options) {
 
 // Adds the options of all three subcommands.
 std::shared_ptr<CampaignOptions> AddCampaign(CLI::App& command) {
-  const auto options = std::make_shared<CampaignOptions>();
+  auto options = std::make_shared<CampaignOptions>();
   command.add_option("FILE", options->file, "campaign in text format (phrenic/v1/campaign.proto)")->required();
   command.add_option("--out", options->out, "folder of the results, one file per run")->required();
   return options;

@@ -154,7 +154,7 @@ Location Cluster::LocateInRedis(const std::string& id) {
   const std::string& lease = answer->list[0].text;
   const bool has_copy = answer->list[1].number == 1;
   if (lease.empty()) return {has_copy ? Location::Kind::kMoving : Location::Kind::kNone};
-  const Location location = {Location::Kind::kRemote, AddressOf(lease)};
+  Location location = {Location::Kind::kRemote, AddressOf(lease)};
   // A lease of this server from before a restart: it has not reclaimed the session yet.
   if (location.address == address_) return {Location::Kind::kMoving};
   absl::MutexLock lock(&mutex_);

@@ -106,9 +106,10 @@ absl::Status ReadType(const Fields& fields, NiftiHeader& header) {
   }
   const double slope = fields.Real(fields.at->slope, 0), intercept = fields.Real(fields.at->slope, 1);
   const bool plain = (slope == 0 && std::isfinite(intercept)) || (slope == 1 && intercept == 0);
-  if (!plain)
+  if (!plain) {
     return fields.Error(fields.at->slope,
                         "voxels are scaled (scl_slope, scl_inter), which labels must not be; save them unscaled");
+  }
   const double start = fields.at->wide ? static_cast<double>(fields.Get<std::int64_t>(fields.at->data_at))
                                        : fields.Get<float>(fields.at->data_at);
   if (!(start >= static_cast<double>(header.length) && start < 1e9) || start != std::floor(start)) {

@@ -45,14 +45,16 @@ absl::StatusOr<Eigen::VectorXd> HarmonicBetween(const Mesh& mesh, const std::vec
   Eigen::SparseMatrix<double> laplacian(n, n);
   laplacian.setFromTriplets(free.begin(), free.end());
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(laplacian);
-  if (solver.info() != Eigen::Success)
+  if (solver.info() != Eigen::Success) {
     return absl::InvalidArgumentError(
         "Laplace's equation has no solution on the surface: its cotangent matrix cannot be factorised");
+  }
   for (Eigen::Index i = 0; i < n; ++i) load[i] = held(i) ? value[i] : load[i];
   value = solver.solve(load);
-  if (!value.allFinite())
+  if (!value.allFinite()) {
     return absl::InvalidArgumentError(
         "Laplace's equation has no solution on the surface: its cotangent matrix cannot be factorised");
+  }
   return value;
 }
 

@@ -267,7 +267,7 @@ absl::StatusOr<v1::Control> SteppingLoop::ChangeControl(
 }
 
 absl::Status SteppingLoop::ShowCamera(const v1::Camera& camera, std::string_view token) {
-  const absl::Status allowed = session_.control.CheckAlone(token, clock_.Now());
+  absl::Status allowed = session_.control.CheckAlone(token, clock_.Now());
   reporter_.ReportControl(session_);
   if (!allowed.ok()) return allowed;
   reporter_.ShowCamera(session_, camera);

@@ -7,7 +7,7 @@ namespace phrenic {
 Eigen::Vector3d ProbePosition(const Model& model, const State& state, const Probe& probe) {
   const BodyModel& body = model.bodies[probe.body];
   if (body.first_vertex >= 0) return state.x.col(body.first_vertex + probe.vertex);
-  const Eigen::Vector3d rest = body.mesh.vertices.col(probe.vertex);
+  Eigen::Vector3d rest = body.mesh.vertices.col(probe.vertex);
   if (body.pose >= 0) return state.poses[body.pose].At(rest);
   if (body.skin < 0) return rest;
   Points placed(3, body.mesh.vertices.cols());

@@ -147,7 +147,7 @@ void StepPlan::KeepStart(const State& state, Workspace& work) const {
 }
 
 BlockContext StepPlan::PrepareBlocks(const v1::Parameters& parameters, const State& state, Workspace& work) const {
-  const BlockContext at = WithSharedResults(MakeEvalContext(model_, parameters, state, work.scratch));
+  BlockContext at = WithSharedResults(MakeEvalContext(model_, parameters, state, work.scratch));
   if (shares_damping_) SumSharedDamping(model_, at, work.shared_damping);
   if (final_in_blocks_) ResizeBounds(work);
   SumWholeForces(at, work.force);
