@@ -80,7 +80,7 @@ class QueueTest : public testing::Test {
     return seen;
   }
 
-  const SystemClock clock_;
+  const SystemClock clock_{};
 };
 
 TEST_F(QueueTest, JobsRunAndKeepTheirResults) {

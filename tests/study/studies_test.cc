@@ -60,7 +60,7 @@ class StudiesTest : public testing::Test {
     return owners;
   }
 
-  const SystemClock clock_;
+  const SystemClock clock_{};
   const std::string folder_ = testing::TempDir() + "phrenic_studies_" + std::to_string(getpid());
   std::unique_ptr<store::Store> store_ = *store::Store::Open(folder_);
   std::map<std::string, absl::Status> lost_;
