@@ -5,7 +5,7 @@
 namespace phrenic {
 namespace {
 
-StateBounds Largest(const std::vector<StateBounds>& blocks) {
+StateBounds LargestComponent(const std::vector<StateBounds>& blocks) {
   StateBounds whole;
   for (const StateBounds& block : blocks) {
     whole.furthest = LargerMagnitude(block.furthest, whole.furthest);
@@ -18,7 +18,7 @@ StateBounds MeasureAll(const State& state, Workspace& work) {
   ResizeBounds(work);
   ForEachBlock({0, state.x.cols()},
                [&](const VertexRange& block) { RecordBounds(block, BoundsOf(block, state.x, state.v), work); });
-  return Largest(work.bounds);
+  return LargestComponent(work.bounds);
 }
 
 }  // namespace
@@ -49,7 +49,7 @@ bool WithinBounds(const Model& model, double dt, const State& state, Workspace& 
   const auto within = [&](const StateBounds& bounds) {
     return bounds.furthest <= model.bound && bounds.fastest <= 2 * model.bound / dt;
   };
-  if (!work.bounds.empty() && within(Largest(work.bounds))) return true;
+  if (!work.bounds.empty() && within(LargestComponent(work.bounds))) return true;
   return within(MeasureAll(state, work));
 }
 
