@@ -171,21 +171,6 @@ BlockForces StepPlan::SumForces(const VertexRange& block, const BlockContext& at
   return {f, schedule_.loads == nullptr ? VertexLoads() : schedule_.loads->LoadsOnBlock(block, at, f)};
 }
 
-void StepPlan::RecordStart(const VertexRange& block, const BlockContext& at, BlockMemory& memory) const {
-  if (ActsOnBlock(block, at.parameters)) block_constraint_->RecordStart(block, at.x, memory.start);
-}
-
-StateBounds StepPlan::ProjectWithinBlock(const VertexRange& block, const BlockContext& at, const BlockMemory& memory,
-                                         double dt, const StepEnd& end, const StateBounds& bounds) const {
-  if (!ActsOnBlock(block, at.parameters)) return bounds;
-  const double displacement = block_constraint_->ProjectBlock(block, memory.start, dt, end.x, end.v);
-  return {bounds.furthest + displacement, bounds.fastest + displacement / dt};
-}
-
-void StepPlan::RecordBounds(const VertexRange& block, const StateBounds& bounds, Workspace& work) const {
-  if (final_in_blocks_) phrenic::RecordBounds(block, bounds, work);
-}
-
 void StepPlan::ApplySharedDamping(double dt, const State& start, const StepEnd& end, Workspace& work) const {
   if (!shares_damping_ || work.shared_damping.empty()) return;
   Points& gain = work.Stage(0);

@@ -82,12 +82,20 @@ class StepPlan {
   // Returns the sum of all forces and pulls on a block, without the loads that are to be added to it.
   BlockForces SumForces(const VertexRange& block, const BlockContext& at, Workspace& work, BlockMemory& memory) const;
   // Stores in `memory` what ProjectWithinBlock needs of the start of the step.
-  void RecordStart(const VertexRange& block, const BlockContext& at, BlockMemory& memory) const;
+  void RecordStart(const VertexRange& block, const BlockContext& at, BlockMemory& memory) const {
+    if (ActsOnBlock(block, at.parameters)) block_constraint_->RecordStart(block, at.x, memory.start);
+  }
   // Projects the part of the constraint that involves this block alone. Returns the block's bounds, given those before.
   StateBounds ProjectWithinBlock(const VertexRange& block, const BlockContext& at, const BlockMemory& memory, double dt,
-                                 const StepEnd& end, const StateBounds& bounds) const;
+                                 const StepEnd& end, const StateBounds& bounds) const {
+    if (!ActsOnBlock(block, at.parameters)) return bounds;
+    const double displacement = block_constraint_->ProjectBlock(block, memory.start, dt, end.x, end.v);
+    return {bounds.furthest + displacement, bounds.fastest + displacement / dt};
+  }
   // Stores the bounds of a block in work.bounds, unless operations after the blocks move its vertices.
-  void RecordBounds(const VertexRange& block, const StateBounds& bounds, Workspace& work) const;
+  void RecordBounds(const VertexRange& block, const StateBounds& bounds, Workspace& work) const {
+    if (final_in_blocks_) work.bounds[block.first / kVertexBlock] = bounds;
+  }
   // Corrects the end of a step x' = x + dt v', M (v' - v) = dt f for the damping S that vertices share:
   // (M + dt S)(v' - v) = dt f.
   void ApplySharedDamping(double dt, const State& start, const StepEnd& end, Workspace& work) const;
