@@ -6,11 +6,14 @@
 #include <span>
 #include <string>
 
+#include "absl/status/status.h"
 #include "server/mechanics/eval_context.h"
 #include "server/mechanics/linalg/outer_products.h"
 #include "server/mechanics/stiffness.h"
 
 namespace phrenic {
+
+struct Model;
 
 // A force on the simulated vertices: one batch of like elements, such as all springs of a body or one muscle. Several
 // batches may act on the same vertices: one body may mix springs, finite elements and muscle (thesis 4.1.3). Immutable
@@ -46,6 +49,15 @@ class Force {
   // Returns the stored energy [J]; f = -dE/dx. Requires: conservative().
   virtual double Energy(const EvalContext&) const { return 0; }
   virtual bool conservative() const { return false; }
+
+  // Adds the outward unit normal of each vertex that rests on a surface, 3 x n.
+  virtual void AddContactNormals(const EvalContext& /*at*/, MutablePoints /*normals*/) const {}
+  // Called once, when the scene has all its forces. A prestressed force chooses its prestress so that with it the sum
+  // of the forces at rest vanishes: `load` is the sum of all others [N], `normals` those of AddContactNormals; 3 x n.
+  virtual absl::Status BalanceAtRest(const Model& /*model*/, const ConstPoints& /*load*/,
+                                     const ConstPoints& /*normals*/) {
+    return absl::OkStatus();
+  }
 
   // A number that the force computes beside its forces; a measure may read it (measures/force_output.h).
   struct Output {

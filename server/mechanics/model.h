@@ -56,6 +56,23 @@ struct ScalarCoordinate {
   double initial_rate = 0;  // [unit/s]
 };
 
+// A generalised coordinate q with inertia, such as the angle by which a rib cage is raised: a component of a simulated
+// vertex that belongs to no body, x = scale q, so that integrators, solvers and stored states treat it as they treat
+// vertices. The kinetic energy is inertia/2 q'^2, with inertia = mass scale^2. A generalised force Q [J/unit] is the
+// component Q/scale of the force on that vertex [N].
+struct Coordinate {
+  std::string name;
+  std::string unit;  // SI, as in tables
+  int vertex = 0;    // simulated
+  int axis = 0;      // 0 to 2
+  double scale = 1;  // [m/unit]
+
+  double Value(const ConstPoints& x) const { return x(axis, vertex) / scale; }  // [unit]
+  double Rate(const ConstPoints& v) const { return v(axis, vertex) / scale; }   // [unit/s]
+  // Adds a generalised force [J/unit] to the forces on vertices [N].
+  void AddForce(double force, MutablePoints f) const { f(axis, vertex) += force / scale; }
+};
+
 // Immutable once compiled; shared by any number of sessions and threads. n is the number of simulated vertices.
 struct Model {
   v1::Scene scene;
@@ -68,6 +85,7 @@ struct Model {
   std::vector<std::unique_ptr<Force>> forces;
   std::vector<std::string> force_kinds;   // of each of `forces`, as scene text names it: "action_line"
   std::vector<ScalarCoordinate> scalars;  // in the order of State::scalars
+  std::vector<Coordinate> coordinates;    // with inertia; their vertices follow those of the bodies
   std::vector<std::unique_ptr<Motion>> motions;
   std::vector<std::unique_ptr<Constraint>> constraints;
   std::vector<Skin> skins;  // of seen bodies; placed with frames, not with steps
@@ -88,7 +106,7 @@ struct Model {
   State InitialState() const;
   // Returns memory for steps of this model.
   Workspace MakeWorkspace() const;
-  // Returns the body that a simulated vertex belongs to.
+  // Returns the body that a simulated vertex belongs to. Requires: it is not that of a coordinate.
   const BodyModel& BodyOf(int simulated_vertex) const;
 };
 

@@ -1,6 +1,7 @@
 #include "server/mechanics/model_builder.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
@@ -9,6 +10,12 @@
 #include "server/mesh/topology.h"
 
 namespace phrenic {
+namespace {
+
+constexpr double kCoordinateMass = 1;  // of a coordinate's vertex [kg]
+
+}  // namespace
+
 absl::StatusOr<std::vector<int>> ModelBuilder::Bodies(const Names& names, std::string_view path) const {
   std::vector<int> found;
   for (int i = 0; i < names.size(); ++i) {
@@ -117,6 +124,31 @@ int ModelBuilder::AddScalar(std::string name, std::string unit, double initial, 
   ReportElement("coordinate", name, 1, "scalar", absl::StrFormat("starts at %g %s", initial, unit));
   model.scalars.push_back({std::move(name), std::move(unit), initial, initial_rate});
   return static_cast<int>(model.scalars.size()) - 1;
+}
+
+Coordinate ModelBuilder::AddCoordinate(std::string name, std::string unit, double inertia) {
+  const int axis = static_cast<int>(model.coordinates.size()) % 3;
+  if (axis == 0) {
+    const Eigen::Index vertices = model.rest.cols() + 1;
+    model.rest.conservativeResize(3, vertices);
+    model.rest.rightCols(1).setZero();
+    model.mass.conservativeResize(vertices);
+    model.mass[vertices - 1] = kCoordinateMass;
+    model.inverse_mass.conservativeResize(vertices);
+    model.inverse_mass[vertices - 1] = 1 / kCoordinateMass;
+  }
+  ReportElement("coordinate", name, 1, "coordinate", absl::StrFormat("inertia %g J s^2/(%s)^2", inertia, unit));
+  model.coordinates.push_back({std::move(name), std::move(unit), static_cast<int>(model.rest.cols()) - 1, axis,
+                               std::sqrt(inertia / kCoordinateMass)});
+  return model.coordinates.back();
+}
+
+absl::StatusOr<Coordinate> ModelBuilder::FindCoordinate(std::string_view name, std::string_view path) const {
+  for (const Coordinate& coordinate : model.coordinates) {
+    if (coordinate.name == name) return coordinate;
+  }
+  return FieldError(path, absl::StrCat("needs the coordinate \"", std::string(name),
+                                       "\": set free in the scene's motion of the ribs"));
 }
 
 void ModelBuilder::ReportElement(std::string_view family, std::string_view name, std::int64_t count,

@@ -71,6 +71,12 @@ struct ModelBuilder {
   // coordinate has the name.
   int AddScalar(std::string name, std::string unit, double initial, double initial_rate = 0);
 
+  // Adds a coordinate with inertia [J s^2/unit^2], at rest at 0, which forces move; see Coordinate. Requires: no force
+  // and no constraint has been made yet; no other coordinate has the name.
+  Coordinate AddCoordinate(std::string name, std::string unit, double inertia);
+  // Returns the coordinate of that name. INVALID_ARGUMENT with the path and the remedy if there is none.
+  absl::StatusOr<Coordinate> FindCoordinate(std::string_view name, std::string_view path) const;
+
   // Adds an element to the report, or something that the scene does not need.
   void ReportElement(std::string_view family, std::string_view name, std::int64_t count, std::string_view counted,
                      std::string_view detail);

@@ -19,6 +19,11 @@ class Motion {
   // Sets what the motion drives to the moment of `at`: poses, positions and velocities of vertices, or scalars with
   // their rates.
   virtual void Drive(const EvalContext& at, State& state) const = 0;
+  // True if what it drives depends on coordinates of the state: a step drives it again at its end.
+  virtual bool follows_coordinates() const { return false; }
+  // Adds to the coordinates the generalised forces of the forces on the vertices that it drives, by virtual work:
+  // Q_j += sum_i f_i . dx_i/dq_j. Linear in `f`, 3 x n [N].
+  virtual void TransferForces(const EvalContext& /*at*/, MutablePoints /*f*/) const {}
 
  protected:
   explicit Motion(std::string name) : name_(std::move(name)) {}

@@ -7,6 +7,7 @@
 #include "server/mechanics/forces/attachment.h"
 #include "server/mechanics/forces/bending.h"
 #include "server/mechanics/forces/cables.h"
+#include "server/mechanics/forces/chest_wall.h"
 #include "server/mechanics/forces/contact.h"
 #include "server/mechanics/forces/cross_layer.h"
 #include "server/mechanics/forces/fibres.h"
@@ -19,10 +20,13 @@
 #include "server/mechanics/forces/solid.h"
 #include "server/mechanics/forces/springs.h"
 #include "server/mechanics/forces/target_spring.h"
+#include "server/mechanics/forces/thorax_pressures.h"
+#include "server/mechanics/forces/wall_contact.h"
 #include "server/mechanics/measures/energy.h"
 #include "server/mechanics/measures/force_output.h"
 #include "server/mechanics/measures/highest.h"
 #include "server/mechanics/measures/volume.h"
+#include "server/mechanics/motions/insertion.h"
 #include "server/mechanics/motions/oscillation.h"
 #include "server/mechanics/motions/ribs.h"
 #include "server/mechanics/motions/sternum.h"
@@ -77,6 +81,12 @@ absl::StatusOr<std::unique_ptr<Force>> MakeForce(const v1::Force& scene, std::st
       return Pressure::Make(scene.pressure(), scene.name(), In(path, "pressure"), builder);
     case v1::Force::kLungs:
       return Lungs::Make(scene.lungs(), scene.name(), In(path, "lungs"), builder);
+    case v1::Force::kWallContact:
+      return WallContact::Make(scene.wall_contact(), scene.name(), In(path, "wall_contact"), builder);
+    case v1::Force::kChestWall:
+      return ChestWall::Make(scene.chest_wall(), scene.name(), In(path, "chest_wall"), builder);
+    case v1::Force::kThoraxPressures:
+      return ThoraxPressures::Make(scene.thorax_pressures(), scene.name(), In(path, "thorax_pressures"), builder);
     case v1::Force::KIND_NOT_SET:
       break;
   }
@@ -106,6 +116,8 @@ absl::Status AddMotion(const v1::Motion& scene, std::string_view path, ModelBuil
       return Add(Oscillation::Make(scene.oscillation(), scene.name(), In(path, "oscillation"), builder), builder);
     case v1::Motion::kSkin:
       return AddSkins(scene.skin(), scene.name(), In(path, "skin"), builder);
+    case v1::Motion::kInsertion:
+      return Add(Insertion::Make(scene.insertion(), scene.name(), In(path, "insertion"), builder), builder);
     case v1::Motion::KIND_NOT_SET:
       break;
   }

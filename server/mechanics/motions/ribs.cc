@@ -11,6 +11,7 @@ namespace phrenic {
 namespace {
 
 constexpr double kHeadSize = 6e-3;  // radius around the most medial vertex [m]
+constexpr double kNoAngle = 1e-6;   // below it the rate of a rotation vector is the angular velocity [rad]
 
 // Returns the position of the rib's head at rest [m].
 Eigen::Vector3d Head(const Points& vertices) {
@@ -48,6 +49,22 @@ absl::Status CheckRib(const BodyModel& body, const v1::Ribs& scene, std::string_
   return absl::OkStatus();
 }
 
+// Returns the unit axis of a rotation vector.
+Eigen::Vector3d Axis(const Eigen::Vector3d& rotation) {
+  const double angle = rotation.norm();
+  return angle > 0 ? Eigen::Vector3d(rotation / angle) : Eigen::Vector3d::UnitX();
+}
+
+// Returns the angular velocity of a rotation vector w and its rate w' [rad/s]:
+// w' + (1 - cos a)/a^2 w x w' + (a - sin a)/a^3 w x (w x w'), a = |w|.
+Eigen::Vector3d AngularVelocity(const Eigen::Vector3d& w, const Eigen::Vector3d& rate) {
+  const double angle = w.norm();
+  if (angle < kNoAngle) return rate;
+  const Eigen::Vector3d cross = w.cross(rate);
+  return rate + (1 - std::cos(angle)) / (angle * angle) * cross +
+         (angle - std::sin(angle)) / (angle * angle * angle) * w.cross(cross);
+}
+
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<Motion>> Ribs::Make(const v1::Ribs& scene, const std::string& given,
@@ -67,27 +84,54 @@ absl::StatusOr<std::unique_ptr<Motion>> Ribs::Make(const v1::Ribs& scene, const 
     motion->ribs_.push_back({body.pose, Head(body.mesh.vertices), degrees * (std::numbers::pi / 180),
                              Eigen::Vector3d(mirror * t.x(), t.y(), t.z())});
   }
+  if (scene.has_free()) motion->AddCoordinates(scene.free(), builder);
   builder.ReportElement("motion", name, static_cast<std::int64_t>(motion->ribs_.size()), "bodies",
-                        absl::StrFormat("k = %g at the peak of a quiet breath", scene.quiet_state()));
+                        scene.has_free() ? "moved by forces"
+                                         : absl::StrFormat("k = %g at the peak of a quiet breath", scene.quiet_state()));
   return motion;
 }
 
-void Ribs::Drive(const EvalContext& at, State& state) const {
+void Ribs::AddCoordinates(const v1::FreeCage& scene, ModelBuilder& builder) {
+  free_ = true;
+  pump_ = builder.AddCoordinate(kPumpHandle, "1", scene.pump_inertia());
+  bucket_ = builder.AddCoordinate(kBucketHandle, "1", scene.bucket_inertia());
+}
+
+// Sets the pose of a rib that is turned about its head and moved, given its angular velocity [rad/s].
+void Ribs::SetPose(const Rib& rib, const Eigen::AngleAxisd& turn, const Eigen::Vector3d& angular_velocity, double k,
+                   double k_rate, State& state) {
+  Pose& pose = state.poses[rib.pose];
+  pose.rotation = turn;
+  const Eigen::Vector3d rotated_head = pose.rotation * rib.head;
+  pose.translation = rib.head - rotated_head + k * rib.translation;
+  pose.angular_velocity = angular_velocity;
+  pose.velocity = k_rate * rib.translation - pose.angular_velocity.cross(rotated_head);
+}
+
+void Ribs::DriveByBreath(const EvalContext& at, State& state) const {
   const double k0 = std::min(1.0, quiet_state_ * at.parameters.hyperinflation());
   const double scale = (1 - k0) * (quiet_state_ * at.parameters.rib_motion());
   const double k = k0 + scale * at.breath, k_rate = scale * at.breath_rate;
   const Eigen::Vector3d factors(at.parameters.pump_handle(), at.parameters.bucket_handle(), 1);
   for (const Rib& rib : ribs_) {
-    Pose& pose = state.poses[rib.pose];
     const Eigen::Vector3d rotation = factors.cwiseProduct(rib.rotation);  // at k = 1 [rad]
     const double angle = rotation.norm();
-    const Eigen::Vector3d axis = angle > 0 ? Eigen::Vector3d(rotation / angle) : Eigen::Vector3d::UnitX();
-    pose.rotation = Eigen::AngleAxisd(k * angle, axis);
-    const Eigen::Vector3d rotated_head = pose.rotation * rib.head;
-    pose.translation = rib.head - rotated_head + k * rib.translation;
-    pose.angular_velocity = k_rate * rotation;
-    pose.velocity = k_rate * rib.translation - pose.angular_velocity.cross(rotated_head);
+    SetPose(rib, Eigen::AngleAxisd(k * angle, Axis(rotation)), k_rate * rotation, k, k_rate, state);
   }
+}
+
+void Ribs::DriveByCoordinates(const EvalContext& at, State& state) const {
+  const Eigen::Vector3d k(pump_.Value(at.x), bucket_.Value(at.x), 0);
+  const Eigen::Vector3d rate(pump_.Rate(at.v), bucket_.Rate(at.v), 0);
+  for (const Rib& rib : ribs_) {
+    const Eigen::Vector3d rotation = k.cwiseProduct(rib.rotation);
+    const Eigen::Vector3d spin = AngularVelocity(rotation, rate.cwiseProduct(rib.rotation));
+    SetPose(rib, Eigen::AngleAxisd(rotation.norm(), Axis(rotation)), spin, k.sum() / 2, rate.sum() / 2, state);
+  }
+}
+
+void Ribs::Drive(const EvalContext& at, State& state) const {
+  free_ ? DriveByCoordinates(at, state) : DriveByBreath(at, state);
 }
 
 }  // namespace phrenic

@@ -3,7 +3,8 @@
 // capacity. Right rib: A = (-pump, +bucket, 0); left rib its mirror image, (-pump, -bucket, 0) (Wilson et al., J Appl
 // Physiol 1987;62:1872). The live parameters pump_handle and bucket_handle scale the two components of A, but not T.
 // With the live parameter hyperinflation h, breaths start at k0 = h k_quiet and use the remaining range: k = k0 + (1 -
-// k0) k_breath, so that no breath exceeds total lung capacity. The head is the mean of the vertices within 6 mm of the
+// k0) k_breath, so that no breath exceeds total lung capacity. If the scene sets `free`, the two components have a k
+// each, the coordinates "pump handle" and "bucket handle", which forces move. The head is the mean of the vertices within 6 mm of the
 // most medial one.
 #ifndef PHRENIC_SERVER_MECHANICS_MOTIONS_RIBS_H_
 #define PHRENIC_SERVER_MECHANICS_MOTIONS_RIBS_H_
@@ -14,6 +15,9 @@
 
 namespace phrenic {
 
+// Names of the coordinates of free ribs.
+inline constexpr char kPumpHandle[] = "pump handle", kBucketHandle[] = "bucket handle";
+
 class Ribs final : public Motion {
  public:
   // INVALID_ARGUMENT if a body is not ROLE_DRIVEN, is not a rib with number and side, or has no end state.
@@ -21,6 +25,7 @@ class Ribs final : public Motion {
                                                       std::string_view path, ModelBuilder& builder);
 
   void Drive(const EvalContext& at, State& state) const override;
+  bool follows_coordinates() const override { return free_; }
 
  private:
   struct Rib {
@@ -30,9 +35,16 @@ class Ribs final : public Motion {
     Eigen::Vector3d translation;  // at k = 1 [m]
   };
   Ribs(std::string name, double quiet_state) : Motion(std::move(name)), quiet_state_(quiet_state) {}
+  void AddCoordinates(const v1::FreeCage& scene, ModelBuilder& builder);
+  void DriveByBreath(const EvalContext& at, State& state) const;
+  void DriveByCoordinates(const EvalContext& at, State& state) const;
+  static void SetPose(const Rib& rib, const Eigen::AngleAxisd& turn, const Eigen::Vector3d& angular_velocity, double k,
+                      double k_rate, State& state);
 
   double quiet_state_;  // k at the peak of a quiet breath
   std::vector<Rib> ribs_;
+  bool free_ = false;         // moved by the coordinates ...
+  Coordinate pump_, bucket_;  // ... with k as values
 };
 
 }  // namespace phrenic

@@ -23,6 +23,11 @@ struct VelocitiesBefore {
   Points v;
 };
 
+bool FollowsCoordinates(const Model& model) {
+  return std::any_of(model.motions.begin(), model.motions.end(),
+                     [](const auto& motion) { return motion->follows_coordinates(); });
+}
+
 bool SharesDamping(const Model& model) {
   return std::any_of(model.forces.begin(), model.forces.end(),
                      [](const auto& force) { return force->has_shared_damping(); });
@@ -45,6 +50,7 @@ StepPlan::StepPlan(const Model& model, ForceSchedule schedule, const IntegratorT
     : model_(model),
       schedule_(std::move(schedule)),
       integrators_(integrators),
+      follows_coordinates_(FollowsCoordinates(model)),
       shares_damping_(SharesDamping(model)),
       block_constraint_(FindBlockConstraint(model, shares_damping_)),
       final_in_blocks_(!shares_damping_ && (model.constraints.empty() || block_constraint_ != nullptr)),
@@ -78,6 +84,8 @@ void StepPlan::SumForces(const EvalContext& at, Points& f) const {
   phrenic::ForEachBlock({0, f.cols()}, [&](const VertexRange& block) {
     AddBlockForces(block, context, first, true, f.middleCols(block.first, block.end - block.first));
   });
+  if (!follows_coordinates_) return;
+  for (const auto& motion : model_.motions) motion->TransferForces(at, f);
 }
 
 void StepPlan::AddToFree(double scale, const Points& shift, Points& x) const {
@@ -150,7 +158,11 @@ BlockContext StepPlan::PrepareBlocks(const v1::Parameters& parameters, const Sta
   BlockContext at = WithSharedResults(MakeEvalContext(model_, parameters, state, work.scratch));
   if (shares_damping_) SumSharedDamping(model_, at, work.shared_damping);
   if (final_in_blocks_) ResizeBounds(work);
-  SumWholeForces(at, work.force);
+  if (follows_coordinates_) {
+    SumForces(at, work.force);
+  } else {
+    SumWholeForces(at, work.force);
+  }
   return at;
 }
 
@@ -164,6 +176,7 @@ StepEnd StepPlan::ChooseEnd(State& state, Workspace& work) const {
 BlockForces StepPlan::SumForces(const VertexRange& block, const BlockContext& at, Workspace& work,
                                 BlockMemory& memory) const {
   const Eigen::Index vertices = block.end - block.first;
+  if (follows_coordinates_) return {work.force.middleCols(block.first, vertices), VertexLoads()};
   const bool first = schedule_.whole.empty();
   Eigen::Map<Points> own(memory.force, 3, vertices);
   MutablePoints f = first ? MutablePoints(own) : MutablePoints(work.force.middleCols(block.first, vertices));

@@ -51,9 +51,11 @@ class StepPlan {
   // Returns the moment `ahead` [s] of the state's time, with its present positions, velocities and poses.
   EvalContext ContextAhead(const v1::Parameters& parameters, double ahead, const State& state,
                            const Scratch& scratch) const;
+  // True if motions follow coordinates, which forces move: DriveMotions must be called again at the end of a step.
+  bool follows_coordinates() const { return follows_coordinates_; }
   // Sets driven vertices and poses to where the motions have them `ahead` [s] of the state's time.
   void DriveMotions(const v1::Parameters& parameters, double ahead, const Scratch& scratch, State& state) const;
-  // Sets f to the sum of all forces and pulls, 3 x n [N].
+  // Sets f to the sum of all forces and pulls, with those that motions transfer to coordinates, 3 x n [N].
   void SumForces(const EvalContext& at, Points& f) const;
   // Adds scale * shift (3 x n) to x, except for fixed and driven vertices.
   void AddToFree(double scale, const Points& shift, Points& x) const;
@@ -116,6 +118,7 @@ class StepPlan {
   const Model& model_;
   const ForceSchedule schedule_;
   const IntegratorTable integrators_;
+  const bool follows_coordinates_;                 // a motion does: blocks need the forces on all vertices first
   const bool shares_damping_;                      // a force has shared damping
   const BlockConstraint* const block_constraint_;  // the only constraint, if it can be projected per block; or null
   const bool final_in_blocks_;                     // nothing after the blocks moves vertices but ProjectAcrossBlocks

@@ -1,0 +1,69 @@
+// The inner surface of a free rib cage, along which a diaphragm slides: the radius R(azimuth, z; k) about a vertical
+// axis, on a regular table of azimuths and heights, quadratic in the two coordinates of the cage.
+//
+// The wall is a polar grid that is skinned to the cage's bones. It is placed at nine positions of the cage; at each, the
+// radius is read where the table has its azimuths and heights, and a quadratic is fitted (cage_quadratic.h). Between the
+// entries of the table R is bilinear.
+#ifndef PHRENIC_SERVER_MECHANICS_BREATHING_INNER_WALL_H_
+#define PHRENIC_SERVER_MECHANICS_BREATHING_INNER_WALL_H_
+
+#include <vector>
+
+#include "server/mechanics/breathing/cage_quadratic.h"
+#include "server/mechanics/breathing/wall_grid.h"
+
+namespace phrenic {
+
+// The wall for one position of the cage: the table's entries, which bilinear interpolation reads.
+struct WallTable {
+  std::vector<double> radius, by_pump, by_bucket;  // [m], one per entry
+};
+
+// The gap of a point, g = r - R, positive outside, and its derivatives.
+struct WallGap {
+  double gap = 0;                                      // [m]
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();  // by the point [-]
+  double by_pump = 0, by_bucket = 0;                   // [m]
+};
+
+// Immutable, thread-safe.
+class InnerWall {
+ public:
+  // `rest` is the grid at rest, `moved` the same at each of CageFit::Positions() [m]. INVALID_ARGUMENT as
+  // WallGrid::Find.
+  static absl::StatusOr<InnerWall> Make(const Points& rest, const std::vector<Points>& moved);
+
+  // Sets `table` for a position of the cage.
+  void Evaluate(const CagePosition& k, WallTable& table) const;
+  // Returns the gap of a point. Points below and above the table have the gap of its border.
+  WallGap Gap(const WallTable& table, const Eigen::Vector3d& point) const;
+
+  // A point that moves with the wall: a quadratic for x, y and z.
+  struct Follower {
+    CageQuadratic shift[3];  // [m]
+  };
+  // Returns how a point near the wall at rest moves with it.
+  Follower Follow(const Eigen::Vector3d& point) const;
+  // Returns the change of the volume above a closed loop of points near the wall at rest, counter-clockwise seen from
+  // above, up to the top of the wall, right (x < 0) and left of x = 0 [m^3]: cones from `apex` over the wall above the
+  // loop and over its flat top.
+  struct Volumes {
+    CageQuadratic right, left;
+  };
+  Volumes VolumesAbove(const std::vector<Eigen::Vector3d>& loop, const Eigen::Vector3d& apex) const;
+
+ private:
+  explicit InnerWall(WallGrid grid) : grid_(grid) {}
+  void Tabulate();
+
+  WallGrid grid_;
+  Points rest_;                // [m]
+  std::vector<Points> moved_;  // [m]
+  double bottom_ = 0, height_ = 0;  // of the table [m]
+  std::vector<double> radius_;      // at rest [m], one per entry
+  std::vector<double> change_[5];   // coefficients of the quadratics, one per entry
+};
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_SERVER_MECHANICS_BREATHING_INNER_WALL_H_

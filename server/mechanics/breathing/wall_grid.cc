@@ -1,0 +1,93 @@
+#include "server/mechanics/breathing/wall_grid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "absl/strings/str_cat.h"
+
+namespace phrenic {
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+constexpr double kSameHeight = 1e-6;  // [m]
+constexpr int kNewtonSteps = 25;
+constexpr double kLocated = 1e-7;  // of a column and a row
+constexpr double kLongestStep = 3;  // of columns in a step of Newton's method
+
+double Wrapped(double angle) { return angle - kTurn * std::floor((angle + std::numbers::pi) / kTurn); }
+
+absl::Status NoGrid(std::string_view why) {
+  return absl::InvalidArgumentError(
+      absl::StrCat("is no polar grid (STRUCTURE_INNER_CAGE): ", std::string(why),
+                   "; vertices go row by row upwards, each row once around from the front towards +x"));
+}
+
+int LeadingAtOneHeight(const Points& rest) {
+  int count = 0;
+  while (count < rest.cols() && std::abs(rest(2, count) - rest(2, 0)) < kSameHeight) ++count;
+  return count;
+}
+
+}  // namespace
+
+absl::StatusOr<WallGrid> WallGrid::Find(const Points& rest) {
+  WallGrid grid;
+  grid.columns_ = LeadingAtOneHeight(rest);
+  if (grid.columns_ < 8 || rest.cols() % grid.columns_ != 0) return NoGrid("its rows differ in length");
+  grid.rows_ = static_cast<int>(rest.cols()) / grid.columns_;
+  if (grid.rows_ < 2) return NoGrid("it has one row");
+  const int middle = grid.rows_ / 2 * grid.columns_;
+  grid.axis_y_ = (rest(1, middle) + rest(1, middle + grid.columns_ / 2)) / 2;
+  for (int i = 0; i < rest.cols(); ++i) {
+    const int next = i / grid.columns_ * grid.columns_ + (i + 1) % grid.columns_;
+    if (std::abs(rest(2, i) - rest(2, next)) > kSameHeight) return NoGrid("a row is not horizontal");
+    if (!(Wrapped(grid.Polar(rest.col(next)).azimuth - grid.Polar(rest.col(i)).azimuth) > 0)) {
+      return NoGrid("a row turns back around the vertical axis");
+    }
+  }
+  return grid;
+}
+
+PolarPoint WallGrid::Polar(const Eigen::Vector3d& point) const {
+  const double y = point.y() - axis_y_;
+  const double azimuth = std::atan2(point.x(), -y);
+  return {azimuth < 0 ? azimuth + kTurn : azimuth, point.z(), std::hypot(point.x(), y)};
+}
+
+Eigen::Vector3d WallGrid::At(const Points& grid, const GridCoordinates& at) const {
+  const double column = at.column - columns_ * std::floor(at.column / columns_);
+  const double row = std::clamp(at.row, 0.0, rows_ - 1.0);
+  const int left = std::min(static_cast<int>(column), columns_ - 1), right = (left + 1) % columns_;
+  const int below = std::min(static_cast<int>(row), rows_ - 2);
+  const double u = column - left, v = row - below;
+  const double w = 1 - u;
+  const int low = below * columns_, high = low + columns_;
+  return (1 - v) * (w * grid.col(low + left) + u * grid.col(low + right)) +
+         v * (w * grid.col(high + left) + u * grid.col(high + right));
+}
+
+GridCoordinates WallGrid::Guess(const Points& rest, double azimuth, double z) const {
+  const double bottom = rest(2, 0), top = rest(2, rest.cols() - 1);
+  return {azimuth / kTurn * columns_, std::clamp((z - bottom) / (top - bottom), 0.0, 1.0) * (rows_ - 1)};
+}
+
+GridCoordinates WallGrid::Locate(const Points& grid, double azimuth, double z, const GridCoordinates& guess) const {
+  GridCoordinates at = guess;
+  for (int step = 0; step < kNewtonSteps; ++step) {
+    const PolarPoint here = Polar(At(grid, at));
+    const PolarPoint left = Polar(At(grid, {at.column - 0.5, at.row}));
+    const PolarPoint right = Polar(At(grid, {at.column + 0.5, at.row}));
+    const double around = std::max(Wrapped(right.azimuth - left.azimuth), 0.1 * kTurn / columns_);
+    const double low = std::clamp(at.row - 0.5, 0.0, rows_ - 2.0);
+    const double up = At(grid, {at.column, low + 1}).z() - At(grid, {at.column, low}).z();
+    const double columns = std::clamp(Wrapped(azimuth - here.azimuth) / around, -kLongestStep, kLongestStep);
+    const double row = std::clamp(at.row + (up > 0 ? (z - here.z) / up : 0), 0.0, rows_ - 1.0);
+    const bool done = std::abs(columns) < kLocated && std::abs(row - at.row) < kLocated;
+    at = {at.column + columns, row};
+    if (done) break;
+  }
+  return at;
+}
+
+}  // namespace phrenic

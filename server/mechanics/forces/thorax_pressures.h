@@ -1,0 +1,91 @@
+// The pressures on a diaphragm: of the pleural spaces and lungs above, right and left, and of the abdomen below.
+//
+// Volumes are changes from rest [m^3]. A side h of the thorax has v_h = W_h(k) - (S_h - S_h0) +- s: W_h the volume inside
+// the wall (motions/insertion.h), S_h the cones from the wall's apex over the side's triangles, and s the volume that the
+// mediastinum has moved from the left side to the right, a coordinate. Gas and tissue are incompressible, so that v_h' is
+// the flow into the lung. With r_h = r/2 the room of one lung
+//   p_pleural,h = p_0 - ln(r_h/(r_h - v_h))/e - R_p 2 v_h' - R_c (v_right' + v_left') + p_airway  [Pa],
+// R_p the peripheral resistance of both lungs side by side and R_c = R - R_p that of the common airway. Of the abdomen,
+// with v = S_0 - S the volume that the diaphragm displaces,
+//   p_abdomen = p_0 + p_di + v/C (1 + (v/V)^2) + R_a v' + w . (x - x_mean),
+// w the gradient by the weight of its contents. The forces are those of virtual work:
+//   f_i = sum_h (p_abdomen - p_pleural,h) dS_h/dx_i,  Q_k = sum_h p_pleural,h dW_h/dk,
+//   Q_s = p_pleural,right - p_pleural,left - s/C_m - c M_m s'.
+// Inside the sheet dS_h/dx_i is the area vector of the side's triangles; where the sides meet the cones' common face
+// carries no force. The resistances are implicit: -df/dv = sum of R g g^T.
+// Sources: exponential recoil after Salazar and Knowles (J Appl Physiol 1964;19:97); common and peripheral resistance
+// and mediastinum as in Whitelaw's membrane in a chest of two sides; abdomen of incompressible contents after Mead and
+// Loring (J Appl Physiol 1982;53:756).
+#ifndef PHRENIC_SERVER_MECHANICS_FORCES_THORAX_PRESSURES_H_
+#define PHRENIC_SERVER_MECHANICS_FORCES_THORAX_PRESSURES_H_
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "server/mechanics/model_builder.h"
+#include "server/mechanics/motions/insertion.h"
+
+namespace phrenic {
+
+class ThoraxPressures final : public Force {
+ public:
+  // INVALID_ARGUMENT if no insertion of the body names the wall.
+  static absl::StatusOr<std::unique_ptr<Force>> Make(const v1::ThoraxPressures& scene, const std::string& name,
+                                                     std::string_view path, ModelBuilder& builder);
+
+  void AddForce(const EvalContext& at, MutablePoints f) const override;
+  void AddStiffness(const EvalContext& at, StiffnessSink& sink) const override;
+  bool has_shared_damping() const override { return true; }
+  void AddSharedDamping(const EvalContext& at, OuterProducts& shared) const override;
+  double Energy(const EvalContext& at) const override;
+  // Volume of both lungs, flow into them; pleural pressure, right and left; abdominal, transdiaphragmatic and alveolar
+  // pressure; volume displaced by the abdominal wall.
+  std::span<const Output> outputs() const override;
+  double Read(size_t output, const EvalContext& at) const override;
+
+ private:
+  static constexpr size_t kRight = 0, kLeft = 1;
+  // Volumes, flows and pressures at one moment.
+  struct Sides {
+    std::array<double, 2> volume = {}, flow = {}, pleural = {};  // [m^3], [m^3/s], [Pa]
+    double displaced = 0, displaced_rate = 0, abdominal = 0;     // [m^3], [m^3/s], [Pa]
+    CagePosition cage;
+  };
+  struct Triangle {
+    Eigen::Vector3i corners;  // simulated vertices
+    size_t side;
+  };
+  // dS_h/dx of each side, 3 x simulated vertices [m^2].
+  struct Slopes {
+    std::array<Points, 2> of;
+  };
+  ThoraxPressures(std::string name, const v1::ThoraxPressures& scene, std::shared_ptr<const CageWall> wall)
+      : Force(std::move(name)), scene_(scene), wall_(std::move(wall)) {}
+  void AddSheet(const BodyModel& body, const Model& model);
+  // Sets the slopes and returns S of each side [m^3].
+  std::array<double, 2> Cones(const ConstPoints& x, Slopes& slopes) const;
+  Sides SidesAt(const EvalContext& at, Slopes& slopes) const;
+  double Recoil(double volume) const;       // of one lung [Pa]
+  double RecoilSlope(double volume) const;  // [Pa/m^3]
+  double AbdominalPressure(double displaced) const;
+  double AbdominalSlope(double displaced) const;
+  const CageQuadratic& WallVolume(size_t side) const {
+    return side == kRight ? wall_->volumes.right : wall_->volumes.left;
+  }
+  // Adds factor dv_h/d(all) to g, vertices and coordinates.
+  void AddVolumeSlope(size_t side, double factor, const Slopes& slopes, const CagePosition& k, Points& g) const;
+
+  const v1::ThoraxPressures scene_;
+  const std::shared_ptr<const CageWall> wall_;
+  Coordinate shift_;  // of the mediastinum, to the left [m^3]
+  double shift_damping_ = 0;
+  std::vector<Triangle> triangles_;
+  std::vector<size_t> border_sides_;      // of each vertex of the wall's border
+  std::array<double, 2> rest_cones_ = {};  // S_h0 [m^3]
+  Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();  // area-weighted mean of the sheet at rest [m]
+};
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_SERVER_MECHANICS_FORCES_THORAX_PRESSURES_H_

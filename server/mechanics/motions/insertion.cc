@@ -1,0 +1,149 @@
+#include "server/mechanics/motions/insertion.h"
+
+#include <map>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "server/mechanics/motions/ribs.h"
+#include "server/mechanics/skinning/body_points.h"
+
+namespace phrenic {
+namespace {
+
+// Returns the positions of a body's vertices with the cage at `k`, by the motions that the scene has so far.
+Points PlaceAt(const Model& model, int body, const Coordinate& pump, const Coordinate& bucket, const CagePosition& k) {
+  State state = model.InitialState();
+  state.x(pump.axis, pump.vertex) = pump.scale * k.pump;
+  state.x(bucket.axis, bucket.vertex) = bucket.scale * k.bucket;
+  const EvalContext at = MakeEvalContext(model, model.parameters, state);
+  for (const auto& motion : model.motions) motion->Drive(at, state);
+  Points placed(3, model.bodies[body].mesh.vertices.cols());
+  PlaceBody(model, state, body, placed);
+  return placed;
+}
+
+absl::StatusOr<std::shared_ptr<CageWall>> MakeWall(int body, std::string_view path, const ModelBuilder& builder) {
+  const auto pump = builder.FindCoordinate(kPumpHandle, path), bucket = builder.FindCoordinate(kBucketHandle, path);
+  if (!pump.ok()) return pump.status();
+  if (!bucket.ok()) return bucket.status();
+  const BodyModel& grid = builder.model.bodies[body];
+  if (grid.skin < 0) {
+    return FieldError(path, absl::StrCat("body \"", grid.name, "\" does not follow the bones: give it a skin before"));
+  }
+  const auto place = [&](const CagePosition& k) { return PlaceAt(builder.model, body, *pump, *bucket, k); };
+  std::vector<Points> moved;
+  for (const CagePosition& k : CageFit::Positions()) moved.push_back(place(k));
+  auto wall = InnerWall::Make(place({}), moved);
+  if (!wall.ok()) {
+    return FieldError(path, absl::StrCat("body \"", grid.name, "\" ", std::string(wall.status().message())));
+  }
+  return std::make_shared<CageWall>(CageWall{body, *pump, *bucket, *std::move(wall)});
+}
+
+// Returns the longest border of a body, in the order of its triangles' edges; empty if it is closed.
+std::vector<int> LongestBorder(const Mesh& mesh) {
+  std::map<std::pair<int, int>, int> edges;  // directed, and how often
+  for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
+    for (int k = 0; k < 3; ++k) ++edges[{mesh.triangles(k, t), mesh.triangles((k + 1) % 3, t)}];
+  }
+  std::map<int, int> next;
+  for (const auto& [edge, count] : edges) {
+    if (edges.count({edge.second, edge.first}) == 0) next[edge.first] = edge.second;
+  }
+  std::vector<int> longest;
+  while (!next.empty()) {
+    std::vector<int> loop;
+    for (auto at = next.begin(); at != next.end(); at = next.find(loop.back())) {
+      loop.push_back(at->second);
+      next.erase(at);
+    }
+    if (loop.size() > longest.size()) longest = std::move(loop);
+  }
+  return longest;
+}
+
+// Measures the volume above the border of the body.
+absl::Status AddVolumes(const BodyModel& body, const v1::Insertion& scene, std::string_view path, CageWall& wall) {
+  std::vector<Eigen::Vector3d> loop;
+  for (const int i : LongestBorder(body.mesh)) {
+    wall.border.push_back(body.first_vertex + i);
+    loop.emplace_back(body.mesh.vertices.col(i));
+  }
+  if (loop.empty()) return FieldError(path, absl::StrCat("body \"", body.name, "\" has no border to insert"));
+  wall.apex = ToEigen(scene.apex());
+  wall.volumes = wall.wall.VolumesAbove(loop, wall.apex);
+  return absl::OkStatus();
+}
+
+void DriveVertex(int vertex, Model& model) {
+  if (model.inverse_mass[vertex] == 0) return;
+  model.inverse_mass[vertex] = 0;
+  model.driven_vertices.push_back(vertex);
+}
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<Motion>> Insertion::Make(const v1::Insertion& scene, const std::string& given,
+                                                        std::string_view path, ModelBuilder& builder) {
+  const std::string field(path);
+  const auto body = builder.Body(scene.body(), field + ".body");
+  if (!body.ok()) return body.status();
+  Names named;
+  *named.Add() = scene.body();
+  if (const auto deformable = builder.DeformableBodies(named, field + ".body"); !deformable.ok()) {
+    return deformable.status();
+  }
+  const auto grid = builder.Body(scene.wall(), field + ".wall");
+  if (!grid.ok()) return grid.status();
+  auto wall = MakeWall(*grid, field + ".wall", builder);
+  if (!wall.ok()) return wall.status();
+  const BodyModel& sheet = builder.model.bodies[*body];
+  if (absl::Status status = AddVolumes(sheet, scene, field + ".body", **wall); !status.ok()) return status;
+  const auto vertices = builder.FreeVertices(*body, scene.region(), {}, path);
+  if (!vertices.ok()) return vertices.status();
+  std::unique_ptr<Insertion> motion(new Insertion(ElementName(given, "insertion", named), *std::move(wall)));
+  for (const int vertex : *vertices) {
+    const Eigen::Vector3d rest = builder.model.rest.col(vertex);
+    motion->inserted_.push_back({vertex, rest, motion->wall_->wall.Follow(rest)});
+    DriveVertex(vertex, builder.model);
+  }
+  builder.ReportElement("motion", motion->name(), static_cast<std::int64_t>(motion->inserted_.size()), "vertices",
+                        absl::StrCat("follow ", scene.wall()));
+  return motion;
+}
+
+void Insertion::Drive(const EvalContext& at, State& state) const {
+  const CagePosition k = wall_->Position(at), rate = wall_->Rate(at);
+  for (const Inserted& each : inserted_) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const CageQuadratic& shift = each.path.shift[axis];
+      state.x(axis, each.vertex) = each.rest[axis] + shift.At(k);
+      state.v(axis, each.vertex) = shift.ByPump(k) * rate.pump + shift.ByBucket(k) * rate.bucket;
+    }
+  }
+}
+
+void Insertion::TransferForces(const EvalContext& at, MutablePoints f) const {
+  const CagePosition k = wall_->Position(at);
+  double pump = 0, bucket = 0;
+  for (const Inserted& each : inserted_) {
+    for (int axis = 0; axis < 3; ++axis) {
+      pump += f(axis, each.vertex) * each.path.shift[axis].ByPump(k);
+      bucket += f(axis, each.vertex) * each.path.shift[axis].ByBucket(k);
+    }
+  }
+  wall_->pump.AddForce(pump, f);
+  wall_->bucket.AddForce(bucket, f);
+}
+
+absl::StatusOr<std::shared_ptr<const CageWall>> FindCageWall(const std::string& body, std::string_view path,
+                                                             const ModelBuilder& builder) {
+  for (const auto& motion : builder.model.motions) {
+    const auto* const insertion = dynamic_cast<const Insertion*>(motion.get());
+    if (insertion != nullptr && builder.model.bodies[insertion->wall()->body].name == body) return insertion->wall();
+  }
+  return FieldError(path, absl::StrCat("no insertion of the scene names the wall \"", body,
+                                       "\": add motions { insertion { ... wall: \"", body, "\" } }"));
+}
+
+}  // namespace phrenic

@@ -1,0 +1,62 @@
+// Vertices of a deformable body that are inserted on the inner wall of a free rib cage, and move with it:
+//   x_i = x_i0 + d_i(k),  v_i = sum_j (dx_i/dk_j) k_j',
+// d_i a quadratic in the cage's coordinates k (breathing/inner_wall.h). The forces f_i on them act on the cage, by
+// virtual work: Q_j += sum_i f_i . dx_i/dk_j. Where the wall does not move with the bones the vertices are still.
+#ifndef PHRENIC_SERVER_MECHANICS_MOTIONS_INSERTION_H_
+#define PHRENIC_SERVER_MECHANICS_MOTIONS_INSERTION_H_
+
+#include <memory>
+#include <vector>
+
+#include "server/mechanics/breathing/inner_wall.h"
+#include "server/mechanics/model_builder.h"
+
+namespace phrenic {
+
+// The wall of a free cage, the coordinates that move it, and the border of the sheet inserted on it.
+struct CageWall {
+  int body = 0;  // of the wall
+  Coordinate pump, bucket;
+  InnerWall wall;
+  std::vector<int> border = {};                      // simulated vertices, in the order of their triangles' edges
+  Eigen::Vector3d apex = Eigen::Vector3d::Zero();    // of the cones by which volumes are measured [m]
+  InnerWall::Volumes volumes = {};                   // inside the wall, above the border
+
+  CagePosition Position(const EvalContext& at) const { return {pump.Value(at.x), bucket.Value(at.x)}; }
+  CagePosition Rate(const EvalContext& at) const { return {pump.Rate(at.v), bucket.Rate(at.v)}; }
+};
+
+class Insertion final : public Motion {
+ public:
+  // Fixes the vertices to the wall. Requires: the motions of the wall's bones, and its skin, come before. INVALID_ARGUMENT
+  // if the ribs are not free, the wall is no polar grid (breathing/wall_grid.h) or is not skinned, or the body is not
+  // deformable.
+  static absl::StatusOr<std::unique_ptr<Motion>> Make(const v1::Insertion& scene, const std::string& name,
+                                                      std::string_view path, ModelBuilder& builder);
+
+  void Drive(const EvalContext& at, State& state) const override;
+  bool follows_coordinates() const override { return true; }
+  void TransferForces(const EvalContext& at, MutablePoints f) const override;
+
+  const std::shared_ptr<const CageWall>& wall() const { return wall_; }
+
+ private:
+  struct Inserted {
+    int vertex;                // simulated
+    Eigen::Vector3d rest;      // [m]
+    InnerWall::Follower path;  // of the wall there
+  };
+  Insertion(std::string name, std::shared_ptr<const CageWall> wall) : Motion(std::move(name)), wall_(std::move(wall)) {}
+
+  const std::shared_ptr<const CageWall> wall_;
+  std::vector<Inserted> inserted_;
+};
+
+// Returns the wall that an insertion of the scene has made of a body. INVALID_ARGUMENT with the path and the remedy if
+// there is none.
+absl::StatusOr<std::shared_ptr<const CageWall>> FindCageWall(const std::string& body, std::string_view path,
+                                                             const ModelBuilder& builder);
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_SERVER_MECHANICS_MOTIONS_INSERTION_H_

@@ -1,0 +1,119 @@
+// Laws of a rib cage that forces move, of the sheet inserted on it, and of the pressures between.
+#include "tests/mechanics/free_cage.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "server/mechanics/step/step_plan.h"
+#include "tests/compile_text.h"
+
+namespace phrenic {
+namespace {
+
+constexpr char kContact[] = "forces { wall_contact { bodies: 'sheet' wall: 'wall' stiffness: 1e6 largest_depth: 1 } } ";
+constexpr char kChestWall[] = "forces { chest_wall { wall: 'wall' } } ";
+constexpr char kPressures[] =
+    "forces { thorax_pressures { body: 'sheet' wall: 'wall' lungs { room: 1e-3 } abdomen { compliance: 1e-6 } } } ";
+
+// A position that no symmetry makes simple, with driven vertices where the coordinates have them.
+State Disturbed(const Model& model, const Points& shift, double scale) {
+  State state = model.InitialState();
+  state.x += scale * shift;
+  model.plan->DriveMotions(model.parameters, 0, {}, state);
+  return state;
+}
+
+Points RandomShift(const Model& model, unsigned seed, double size) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(-size, size);
+  return Points::NullaryExpr(3, model.rest.cols(), [&] { return uniform(random); });
+}
+
+double EnergyOf(const Model& model, const State& state) {
+  double sum = 0;
+  for (const auto& force : model.forces) sum += force->Energy(MakeEvalContext(model, model.parameters, state));
+  return sum;
+}
+
+Points ForceOf(const Model& model, const State& state) {
+  Points f(3, model.rest.cols());
+  model.plan->SumForces(MakeEvalContext(model, model.parameters, state), f);
+  return f;
+}
+
+// The work of the forces on a small displacement of free vertices and coordinates, in which inserted vertices follow, is
+// the loss of energy: reactions at the insertion and contact forces reach the cage.
+void ExpectVirtualWork(const std::string& forces, double tolerance) {
+  const auto model = CompileText(FreeCage(forces));
+  ASSERT_NE(model, nullptr);
+  const Points start = RandomShift(*model, 1, 4e-3);
+  for (unsigned seed = 2; seed < 6; ++seed) {
+    const Points direction = RandomShift(*model, seed, 1);
+    const double h = 1e-6;
+    const double loss = EnergyOf(*model, Disturbed(*model, start - h * direction, 1)) -
+                        EnergyOf(*model, Disturbed(*model, start + h * direction, 1));
+    Points free = direction;
+    for (const int i : model->driven_vertices) free.col(i).setZero();
+    const double work = 2 * h * Dot(ForceOf(*model, Disturbed(*model, start, 1)), free);
+    EXPECT_NEAR(work, loss, tolerance * std::abs(loss)) << forces;
+  }
+}
+
+TEST(FreeCage, ContactObeysVirtualWork) { ExpectVirtualWork(kContact, 1e-4); }
+TEST(FreeCage, RecoilObeysVirtualWork) { ExpectVirtualWork(kChestWall, 1e-6); }
+
+// The sides' pressures are alike, so that the cones' common face carries no force.
+TEST(FreeCage, PressuresObeyVirtualWork) {
+  const auto model = CompileText(FreeCage(kPressures));
+  ASSERT_NE(model, nullptr);
+  Points start = Points::Zero(3, model->rest.cols()), direction = start;
+  for (Eigen::Index i = 0; i < start.cols(); ++i) {
+    const Eigen::Vector3d x = model->rest.col(i);
+    start.col(i) = Eigen::Vector3d(0, 0.1 * x.z(), -0.2 * x.z());
+    direction.col(i) = Eigen::Vector3d(x.x() * x.z(), x.y() + x.z(), 0.3 + x.z());
+  }
+  const Coordinate pump = model->coordinates[0], bucket = model->coordinates[1];
+  start(pump.axis, pump.vertex) = 0.3 * pump.scale, start(bucket.axis, bucket.vertex) = 0.5 * bucket.scale;
+  direction(pump.axis, pump.vertex) = 0.2, direction(bucket.axis, bucket.vertex) = -0.3;
+  direction(2, pump.vertex) = 0;
+  const double h = 1e-6;
+  const double loss = EnergyOf(*model, Disturbed(*model, start - h * direction, 1)) -
+                      EnergyOf(*model, Disturbed(*model, start + h * direction, 1));
+  Points free = direction;
+  for (const int i : model->driven_vertices) free.col(i).setZero();
+  EXPECT_NEAR(2 * h * Dot(ForceOf(*model, Disturbed(*model, start, 1)), free), loss, 2e-3 * std::abs(loss));
+}
+
+TEST(FreeCage, InsertedVerticesMoveWithTheWall) {
+  const auto model = CompileText(FreeCage(kChestWall));
+  ASSERT_NE(model, nullptr);
+  State state = model->InitialState();
+  const Coordinate pump = model->coordinates[0];
+  state.x(pump.axis, pump.vertex) = pump.scale;
+  state.v(pump.axis, pump.vertex) = pump.scale;
+  const double h = 1e-6;
+  State later = state;
+  later.x(pump.axis, pump.vertex) += h * pump.scale;
+  model->plan->DriveMotions(model->parameters, 0, {}, state);
+  model->plan->DriveMotions(model->parameters, 0, {}, later);
+  double largest = 0;
+  for (const int i : model->driven_vertices) {
+    largest = std::max(largest, (state.x.col(i) - model->rest.col(i)).norm());
+    EXPECT_LT(((later.x.col(i) - state.x.col(i)) / h - state.v.col(i)).norm(), 1e-6);
+  }
+  EXPECT_GT(largest, 3e-3);
+}
+
+// Activation raises the ribs; without it the cage stays.
+TEST(FreeCage, MovesByItsMuscles) {
+  const auto model = CompileText(FreeCage(std::string(kChestWall) + "parameters { intercostal_activation: 0.5 }"));
+  ASSERT_NE(model, nullptr);
+  const auto height = [](const State& state) { return state.x(0, state.x.cols() - 1); };
+  EXPECT_GT(height(RunTo(*model, 2, 1e-3)) / model->coordinates[0].scale, 0.2);
+  const auto still = CompileText(FreeCage(std::string(kChestWall) + "parameters { intercostal_activation: 0 }"));
+  EXPECT_EQ(height(RunTo(*still, 2, 1e-3)), 0);
+}
+
+}  // namespace
+}  // namespace phrenic
