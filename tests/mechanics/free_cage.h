@@ -22,7 +22,7 @@ inline std::string RibText(int number, bool right, double z) {
     const double angle = std::numbers::pi * (0.08 + 0.84 * i / (kPoints - 1));  // from the back to the front
     const double x = (right ? -0.108 : 0.108) * std::sin(angle), y = 0.108 * std::cos(angle);
     for (const double up : {0.0, 0.004}) {
-      absl::StrAppendFormat(&text, "vertices { x: %.9g y: %.9g z: %.9g } ", x, y, z + up - 0.01 * i / (kPoints - 1));
+      absl::StrAppendFormat(&text, "vertices { x: %.9g y: %.9g z: %.9g } ", x, y, z + up - 0.04 * std::sin(angle) - 0.02 * i / (kPoints - 1));
     }
   }
   for (int i = 0; i + 1 < kPoints; ++i) {
@@ -57,7 +57,7 @@ inline std::string WallText() {
 inline std::string FreeCage(const std::string& forces) {
   std::string text = "name: 'free-cage' breath { waveform: WAVEFORM_RAISED_COSINE } ";
   for (const int number : {5, 7}) {
-    for (const bool right : {true, false}) absl::StrAppend(&text, RibText(number, right, number == 5 ? 0.08 : 0.02));
+    for (const bool right : {true, false}) absl::StrAppend(&text, RibText(number, right, number == 5 ? 0.12 : 0.06));
   }
   absl::StrAppend(&text, WallText(),
                   "bodies { name: 'sheet' role: ROLE_DEFORMABLE mass: 0.3 ellipsoid { radii { x: 0.1 y: 0.1 z: 0.09 } "
