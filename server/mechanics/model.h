@@ -54,6 +54,7 @@ struct ScalarCoordinate {
   std::string unit;         // SI, as in tables: "rad"
   double initial = 0;       // [unit]
   double initial_rate = 0;  // [unit/s]
+  bool internal = false;    // an element's memory: frames leave it out
 };
 
 // Immutable once compiled; shared by any number of sessions and threads. n is the number of simulated vertices.

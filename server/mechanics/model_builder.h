@@ -71,6 +71,10 @@ struct ModelBuilder {
   // coordinate has the name.
   int AddScalar(std::string name, std::string unit, double initial, double initial_rate = 0);
 
+  // Adds `count` coordinates that are an element's memory (ScalarCoordinate::internal), which start at 0 and which a
+  // force advances (Force::AdvanceScalars). Returns the index of the first.
+  int AddInternalScalars(const std::string& name, const std::string& unit, int count);
+
   // Adds an element to the report, or something that the scene does not need.
   void ReportElement(std::string_view family, std::string_view name, std::int64_t count, std::string_view counted,
                      std::string_view detail);

@@ -14,6 +14,7 @@
 #include "server/mechanics/forces/gravity.h"
 #include "server/mechanics/forces/lungs.h"
 #include "server/mechanics/forces/membrane.h"
+#include "server/mechanics/forces/muscle.h"
 #include "server/mechanics/forces/point_load.h"
 #include "server/mechanics/forces/pressure.h"
 #include "server/mechanics/forces/solid.h"
@@ -77,6 +78,8 @@ absl::StatusOr<std::unique_ptr<Force>> MakeForce(const v1::Force& scene, std::st
       return Pressure::Make(scene.pressure(), scene.name(), In(path, "pressure"), builder);
     case v1::Force::kLungs:
       return Lungs::Make(scene.lungs(), scene.name(), In(path, "lungs"), builder);
+    case v1::Force::kMuscle:
+      return Muscle::Make(scene.muscle(), scene.name(), In(path, "muscle"), builder);
     case v1::Force::KIND_NOT_SET:
       break;
   }

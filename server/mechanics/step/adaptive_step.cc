@@ -16,6 +16,7 @@ absl::Status AdvancePart(const StepPlan& plan, const v1::Parameters& parameters,
   work.velocity_before = state.v;
   absl::Status status = plan.FindIntegrator(parameters).Advance(plan, parameters, h, state, work);
   if (!status.ok()) return status;
+  plan.AdvanceScalars(parameters, h, work.scratch, state);
   state.time += h;
   state.phase += h / parameters.breath_length();
   ++state.tick;

@@ -23,7 +23,9 @@ absl::Status Advance(const StepPlan& plan, const v1::Parameters& parameters, dou
     return AdvanceAdaptively(plan, parameters, dt, state, work);
   }
   if (integrator.needs_start()) CopyStart(plan, state, work);
-  return integrator.Advance(plan, parameters, dt, state, work);
+  absl::Status advanced = integrator.Advance(plan, parameters, dt, state, work);
+  if (advanced.ok()) plan.AdvanceScalars(parameters, dt, work.scratch, state);
+  return advanced;
 }
 
 void AdvanceClock(const v1::Parameters& parameters, double dt, State& state) {

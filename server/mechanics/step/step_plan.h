@@ -53,6 +53,9 @@ class StepPlan {
                            const Scratch& scratch) const;
   // Sets driven vertices and poses to where the motions have them `ahead` [s] of the state's time.
   void DriveMotions(const v1::Parameters& parameters, double ahead, const Scratch& scratch, State& state) const;
+  // Advances the scalars that forces advance (Force::AdvanceScalars) to the end of a step of `dt` [s], at which the
+  // positions, velocities and poses of `state` are already, but not its time.
+  void AdvanceScalars(const v1::Parameters& parameters, double dt, const Scratch& scratch, State& state) const;
   // Sets f to the sum of all forces and pulls, 3 x n [N].
   void SumForces(const EvalContext& at, Points& f) const;
   // Adds scale * shift (3 x n) to x, except for fixed and driven vertices.
@@ -117,6 +120,7 @@ class StepPlan {
   const ForceSchedule schedule_;
   const IntegratorTable integrators_;
   const bool shares_damping_;                      // a force has shared damping
+  const bool advances_scalars_;                    // a force advances scalars
   const BlockConstraint* const block_constraint_;  // the only constraint, if it can be projected per block; or null
   const bool final_in_blocks_;                     // nothing after the blocks moves vertices but ProjectAcrossBlocks
   const bool may_overwrite_start_;                 // no operation reads the start of a vertex after its block
