@@ -3,6 +3,7 @@
 #ifndef PHRENIC_SERVER_MECHANICS_FORCE_H_
 #define PHRENIC_SERVER_MECHANICS_FORCE_H_
 
+#include <cstdint>
 #include <span>
 #include <string>
 
@@ -13,7 +14,7 @@
 
 namespace phrenic {
 
-struct Model;
+struct ModelBuilder;
 
 // A force on the simulated vertices: one batch of like elements, such as all springs of a body or one muscle. Several
 // batches may act on the same vertices: one body may mix springs, finite elements and muscle (thesis 4.1.3). Immutable
@@ -46,18 +47,34 @@ class Force {
   // True if AddSharedDamping adds terms.
   virtual bool has_shared_damping() const { return false; }
 
+  // Adds the rest of -df/dv where the velocities of a few vertices act on each other, in 3 x 3 blocks [N s/m]:
+  // symmetric, positive semi-definite, and only between vertices that AddStiffness joins at every moment.
+  virtual void AddViscosity(const EvalContext&, StiffnessSink& /*blocks*/) const {}
+  // True if AddViscosity adds blocks.
+  virtual bool has_viscosity() const { return false; }
+
   // Returns the stored energy [J]; f = -dE/dx. Requires: conservative().
   virtual double Energy(const EvalContext&) const { return 0; }
   virtual bool conservative() const { return false; }
 
-  // Adds the outward unit normal of each vertex that rests on a surface, 3 x n.
-  virtual void AddContactNormals(const EvalContext& /*at*/, MutablePoints /*normals*/) const {}
-  // Called once, when the scene has all its forces. A prestressed force chooses its prestress so that with it the sum
-  // of the forces at rest vanishes: `load` is the sum of all others [N], `normals` those of AddContactNormals; 3 x n.
-  virtual absl::Status BalanceAtRest(const Model& /*model*/, const ConstPoints& /*load*/,
-                                     const ConstPoints& /*normals*/) {
+  // Adds to each vertex that rests on a surface the unit normal that points into the surface, which can push the vertex
+  // the other way (3 x n).
+  virtual void AddContactNormals(const EvalContext&, MutablePoints /*normals*/) const {}
+  // True if BalanceAtRest is to be called.
+  virtual bool balances_at_rest() const { return false; }
+  // Chooses a prestress so that the forces on the vertices that move sum to zero at rest. Called once while the scene
+  // is compiled, when all its forces are made. `load` is the sum of the other forces at rest [N], `normals` those of
+  // all contacts (AddContactNormals), 3 x n each.
+  virtual absl::Status BalanceAtRest(const ConstPoints& /*load*/, const ConstPoints& /*normals*/, ModelBuilder&) {
     return absl::OkStatus();
   }
+
+  // Advances the force's own State::scalars by a step of `dt` [s], or one part of an adaptive step, that ends at `end`.
+  // `tick` counts such steps. A function of these arguments only: a run that is restored goes on bit for bit.
+  virtual void AdvanceScalars(const EvalContext& /*end*/, std::int64_t /*tick*/, double /*dt*/,
+                              ScalarState& /*scalars*/) const {}
+  // True if AdvanceScalars changes some.
+  virtual bool advances_scalars() const { return false; }
 
   // A number that the force computes beside its forces; a measure may read it (measures/force_output.h).
   struct Output {

@@ -21,6 +21,7 @@ class StepPlan;
 struct Spectrum {
   double omega_max = 0;                                         // eigenfrequency [rad/s]
   double damping_rate = 0;                                      // [1/s]
+  double viscous_rate = 0;                                      // its part by Force::AddViscosity [1/s]
   double least_damping_rate = 0;                                // smallest damping rate [1/s]
   double least_mass = std::numeric_limits<double>::infinity();  // of a vertex that moves [kg]
 };
@@ -37,8 +38,8 @@ class Integrator {
   // Returns the largest stable step [s]; infinity if any step is stable, 0 if none is.
   virtual double MaxStep(const Spectrum& spectrum) const = 0;
   // The damping that limits the step together with a mode's frequency: with c its rate in that mode, the limit is
-  // dt^2 omega^2 + 2 dt c = 4.
-  enum class Damping { kNone, kOfEachVertex, kAll };
+  // dt^2 omega^2 + 2 dt c = 4. kOfEachVertex includes viscosity.
+  enum class Damping { kNone, kViscosity, kOfEachVertex, kAll };
   virtual Damping counted_damping() const { return Damping::kNone; }
   // True if Advance requires work.before and work.velocity_before to hold the start of the step.
   virtual bool needs_start() const { return true; }

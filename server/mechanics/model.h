@@ -54,6 +54,7 @@ struct ScalarCoordinate {
   std::string unit;         // SI, as in tables: "rad"
   double initial = 0;       // [unit]
   double initial_rate = 0;  // [unit/s]
+  bool internal = false;    // an element's memory: frames leave it out
 };
 
 // A generalised coordinate q with inertia, such as the angle by which a rib cage is raised: a component of a simulated

@@ -151,6 +151,15 @@ absl::StatusOr<Coordinate> ModelBuilder::FindCoordinate(std::string_view name, s
                                        "\": set free in the scene's motion of the ribs"));
 }
 
+int ModelBuilder::AddInternalScalars(const std::string& name, const std::string& unit, int count) {
+  const int first = static_cast<int>(model.scalars.size());
+  for (int i = 0; i < count; ++i) {
+    model.scalars.push_back({.name = absl::StrCat(name, "-", i), .unit = unit, .internal = true});
+  }
+  ReportElement("coordinate", name, count, "scalars", "internal, start at 0");
+  return first;
+}
+
 void ModelBuilder::ReportElement(std::string_view family, std::string_view name, std::int64_t count,
                                  std::string_view counted, std::string_view detail) {
   v1::ElementReport* element = model.report.add_elements();

@@ -76,6 +76,9 @@ struct ModelBuilder {
   Coordinate AddCoordinate(std::string name, std::string unit, double inertia);
   // Returns the coordinate of that name. INVALID_ARGUMENT with the path and the remedy if there is none.
   absl::StatusOr<Coordinate> FindCoordinate(std::string_view name, std::string_view path) const;
+  // Adds `count` coordinates that are an element's memory (ScalarCoordinate::internal), which start at 0 and which a
+  // force advances (Force::AdvanceScalars). Returns the index of the first.
+  int AddInternalScalars(const std::string& name, const std::string& unit, int count);
 
   // Adds an element to the report, or something that the scene does not need.
   void ReportElement(std::string_view family, std::string_view name, std::int64_t count, std::string_view counted,

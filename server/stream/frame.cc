@@ -64,6 +64,7 @@ absl::Status AddScalars(const Model& model, const State& state, v1::Frame& frame
     if (!std::isfinite(value) || !std::isfinite(rate)) {
       return NotFinite(absl::StrCat("coordinate ", coordinate.name), state);
     }
+    if (coordinate.internal) continue;
     v1::ScalarReading& reading = *frame.add_scalars();
     reading.set_name(coordinate.name);
     reading.set_value(value);

@@ -70,6 +70,16 @@ class TimedKind : public Kind {
     force_.AddSharedDamping(at, shared);
   }
   bool has_shared_damping() const override { return force_.has_shared_damping(); }
+  void AddViscosity(const EvalContext& at, StiffnessSink& blocks) const override {
+    const Span span(damping_);
+    force_.AddViscosity(at, blocks);
+  }
+  bool has_viscosity() const override { return force_.has_viscosity(); }
+  void AdvanceScalars(const EvalContext& end, std::int64_t tick, double dt, ScalarState& scalars) const override {
+    const Span span(adding_, false);
+    force_.AdvanceScalars(end, tick, dt, scalars);
+  }
+  bool advances_scalars() const override { return force_.advances_scalars(); }
   double Energy(const EvalContext& at) const override { return force_.Energy(at); }
   bool conservative() const override { return force_.conservative(); }
 

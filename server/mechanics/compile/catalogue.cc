@@ -15,6 +15,7 @@
 #include "server/mechanics/forces/gravity.h"
 #include "server/mechanics/forces/lungs.h"
 #include "server/mechanics/forces/membrane.h"
+#include "server/mechanics/forces/muscle.h"
 #include "server/mechanics/forces/point_load.h"
 #include "server/mechanics/forces/pressure.h"
 #include "server/mechanics/forces/solid.h"
@@ -87,6 +88,8 @@ absl::StatusOr<std::unique_ptr<Force>> MakeForce(const v1::Force& scene, std::st
       return ChestWall::Make(scene.chest_wall(), scene.name(), In(path, "chest_wall"), builder);
     case v1::Force::kThoraxPressures:
       return ThoraxPressures::Make(scene.thorax_pressures(), scene.name(), In(path, "thorax_pressures"), builder);
+    case v1::Force::kMuscle:
+      return Muscle::Make(scene.muscle(), scene.name(), In(path, "muscle"), builder);
     case v1::Force::KIND_NOT_SET:
       break;
   }

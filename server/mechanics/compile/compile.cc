@@ -43,6 +43,24 @@ std::string KindOf(const v1::Force& force) {
   return v1::Force::descriptor()->FindFieldByNumber(force.kind_case())->name();
 }
 
+// Lets the forces that can choose a prestress balance all others at rest, one after another.
+absl::Status BalanceForces(ModelBuilder& builder) {
+  const Model& model = builder.model;
+  const State rest = model.InitialState();
+  const EvalContext at = MakeEvalContext(model, model.parameters, rest);
+  for (const auto& force : model.forces) {
+    if (!force->balances_at_rest()) continue;
+    Points load = Points::Zero(3, model.rest.cols()), normals = load;
+    for (const auto& other : model.forces) {
+      if (other != force) other->AddForce(at, load);
+      other->AddContactNormals(at, normals);
+    }
+    for (const auto& motion : model.motions) motion->TransferForces(at, load);
+    if (absl::Status balanced = force->BalanceAtRest(load, normals, builder); !balanced.ok()) return balanced;
+  }
+  return absl::OkStatus();
+}
+
 absl::Status AddElements(ModelBuilder& builder) {
   const v1::Scene& scene = builder.model.scene;
   for (int i = 0; i < scene.motions_size(); ++i) {
@@ -55,6 +73,7 @@ absl::Status AddElements(ModelBuilder& builder) {
     builder.model.forces.push_back(*std::move(force));
     builder.model.force_kinds.push_back(KindOf(scene.forces(i)));
   }
+  if (absl::Status s = BalanceForces(builder); !s.ok()) return s;
   if (absl::Status s = SpreadMassByStiffness(builder.model); !s.ok()) return s;
   for (int i = 0; i < scene.constraints_size(); ++i) {
     auto constraint = MakeConstraint(scene.constraints(i), absl::StrCat("constraints[", i, "]"), builder);
@@ -104,8 +123,10 @@ void ReportUnused(ModelBuilder& builder) {
 void ReportIdleParameters(const v1::Scene& scene, v1::CompileReport& report) {
   const bool ribs = std::any_of(scene.motions().begin(), scene.motions().end(),
                                 [](const v1::Motion& motion) { return motion.has_ribs(); });
+  const bool muscle = std::any_of(scene.forces().begin(), scene.forces().end(),
+                                  [](const v1::Force& force) { return force.has_muscle(); });
   const bool muscles = std::any_of(scene.forces().begin(), scene.forces().end(), [](const v1::Force& force) {
-    return force.has_action_line() || force.has_fibres();
+    return force.has_action_line() || force.has_fibres() || force.has_muscle();
   });
   if (!ribs) {
     for (const char* name : {"rib_motion", "pump_handle", "bucket_handle"}) report.add_idle_parameters(name);
@@ -118,8 +139,9 @@ void ReportIdleParameters(const v1::Scene& scene, v1::CompileReport& report) {
   const bool air = std::any_of(scene.forces().begin(), scene.forces().end(),
                                [](const v1::Force& force) { return force.action_line().air_load() > 0; });
   if (!ribs && !air) report.add_idle_parameters("hyperinflation");
-  if (!has_line(v1::SIDE_RIGHT)) report.add_idle_parameters("right_activation");
-  if (!has_line(v1::SIDE_LEFT)) report.add_idle_parameters("left_activation");
+  if (!muscle) report.add_idle_parameters("diaphragm_activation");
+  if (!muscle && !has_line(v1::SIDE_RIGHT)) report.add_idle_parameters("right_activation");
+  if (!muscle && !has_line(v1::SIDE_LEFT)) report.add_idle_parameters("left_activation");
   if (scene.constraints().empty()) report.add_idle_parameters("apply_links");
 }
 

@@ -27,7 +27,8 @@ class ChestWall final : public Force {
   void AddForce(const EvalContext& at, MutablePoints f) const override;
   void AddStiffness(const EvalContext& at, StiffnessSink& sink) const override;
   double Energy(const EvalContext& at) const override;
-  absl::Status BalanceAtRest(const Model& model, const ConstPoints& load, const ConstPoints& normals) override;
+  bool balances_at_rest() const override { return true; }
+  absl::Status BalanceAtRest(const ConstPoints& load, const ConstPoints& normals, ModelBuilder& builder) override;
   // k of the pump handle and the bucket handle [-].
   std::span<const Output> outputs() const override;
   double Read(size_t output, const EvalContext& at) const override;

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "server/mechanics/damping.h"
+#include "server/mechanics/integrators/semi_implicit_euler.h"
 #include "server/mechanics/step/step_plan.h"
 
 namespace phrenic {
@@ -46,7 +47,11 @@ void KickImplicitly(const StepPlan& plan, double dt, Workspace& work, Points& v)
 
 }  // namespace
 
+// Viscosity acts with the velocities of half a step before, as in semi-implicit Euler; other damping is implicit.
 double VelocityVerlet::MaxStep(const Spectrum& spectrum) const {
+  if (spectrum.viscous_rate > 0) {
+    return SemiImplicitEuler().MaxStep({.omega_max = spectrum.omega_max, .damping_rate = spectrum.viscous_rate});
+  }
   return spectrum.omega_max > 0 ? 2 / spectrum.omega_max : std::numeric_limits<double>::infinity();
 }
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "server/mechanics/damping.h"
 #include "server/mesh/bucket_sort.h"
 
 namespace phrenic {
@@ -54,11 +55,14 @@ BlockMatrix::BlockMatrix(const Model& model, Springs springs) {
   blocks_.assign(columns_.size(), Eigen::Matrix3d::Zero());
 }
 
-void BlockMatrix::Assemble(const Model& model, const EvalContext& at) {
+void BlockMatrix::Assemble(const Model& model, const EvalContext& at, double viscosity) {
   std::fill(blocks_.begin(), blocks_.end(), Eigen::Matrix3d::Zero());
   extra_.clear();
   outer_.Clear();
-  for (const auto& force : model.forces) force->AddStiffness(at, *this);
+  for (const auto& force : model.forces) {
+    force->AddStiffness(at, *this);
+    if (viscosity > 0) AddViscosity(*force, at, viscosity, *this);
+  }
 }
 
 void BlockMatrix::Add(int i, int j, const Eigen::Matrix3d& block) {

@@ -19,8 +19,9 @@ class BlockMatrix final : public StiffnessSink {
   // Makes the pattern of all forces of the model at rest, and the diagonal; values are zero.
   explicit BlockMatrix(const Model& model, Springs springs = Springs::kWithin);
 
-  // Sets K to the stiffness of the model's forces at this moment. Allocates only for blocks outside the pattern.
-  void Assemble(const Model& model, const EvalContext& at);
+  // Sets K to the stiffness of the model's forces at this moment, plus `viscosity` [1/s] times their viscosity.
+  // Allocates only for blocks outside the pattern.
+  void Assemble(const Model& model, const EvalContext& at, double viscosity = 0);
 
   void Add(int i, int j, const Eigen::Matrix3d& block) override;
   void AddOuter(double scale, const Points& g) override { outer_.Add(scale, g); }

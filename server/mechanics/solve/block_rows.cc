@@ -221,6 +221,8 @@ void BlockRows::Assemble(const Model& model, const EvalContext& at, double g, co
   for (size_t f = 0; f < model.forces.size(); ++f) {
     next_ = first_call_[f];
     model.forces[f]->AddStiffness(at, *this);
+    next_ = first_call_[f];
+    AddViscosity(*model.forces[f], at, 1 / g, *this);
   }
   SumSharedDamping(model, at, shared_);
   for (size_t r = 0; r < vertices_.size(); ++r) {

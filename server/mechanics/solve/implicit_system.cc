@@ -113,7 +113,7 @@ absl::Status ImplicitSystem::Factorise(const Model& model, const EvalContext& at
   const Eigen::Index n = b.cols();
   if (stiffness_ == nullptr) stiffness_ = std::make_unique<BlockMatrix>(model);
   if (!factorised_) {
-    stiffness_->Assemble(model, at);
+    stiffness_->Assemble(model, at, 1 / g_);
     Eigen::VectorXd free(3 * n), mass(3 * n);
     for (Eigen::Index i = 0; i < n; ++i) {
       free.segment<3>(3 * i).setConstant(inertia_[i] > 0 ? 1 : 0);

@@ -1,5 +1,6 @@
 // The linear systems of implicit steps: A y = b with A = M + g C + g^2 K on the free vertices, M the masses, C the
-// damping coefficients, K the stiffness and g [s] the step's weight. A is symmetric and positive definite.
+// damping (coefficients and viscosity), K the stiffness and g [s] the step's weight. A is symmetric and positive
+// definite.
 #ifndef PHRENIC_SERVER_MECHANICS_SOLVE_IMPLICIT_SYSTEM_H_
 #define PHRENIC_SERVER_MECHANICS_SOLVE_IMPLICIT_SYSTEM_H_
 

@@ -67,7 +67,7 @@ void PrefactoredSystem::Prepare(const Model& model, const v1::Parameters& parame
 }
 
 void PrefactoredSystem::Assemble(const Model& model, const EvalContext& at) {
-  stiffness_.Assemble(model, at);
+  stiffness_.Assemble(model, at, 1 / g_);
   Eigen::VectorXd diagonal(diagonal_.size());
   SumDamping(model, at, diagonal);
   diagonal = model.mass + g_ * diagonal;

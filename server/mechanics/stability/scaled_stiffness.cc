@@ -10,7 +10,13 @@ ScaledStiffness::ScaledStiffness(const Model& model, const EvalContext& at, Inte
     : blocks_(model, BlockMatrix::Springs::kElsewhere),
       damping_(model.rest.cols()),
       scale_(model.inverse_mass.cwiseSqrt()) {
-  SumDamping(model, at, damping_);
+  if (counted >= Integrator::Damping::kViscosity && HasViscosity(model)) {
+    viscosity_ = std::make_unique<BlockMatrix>(model, BlockMatrix::Springs::kElsewhere);
+    viscous_.resize(3, model.rest.cols());
+    for (const auto& force : model.forces) AddViscosity(*force, at, 1, *viscosity_);
+  }
+  damping_.setZero();
+  if (counted >= Integrator::Damping::kOfEachVertex) SumDamping(model, at, damping_);
   if (counted == Integrator::Damping::kAll) SumSharedDamping(model, at, shared_damping_);
   joints_.reserve(static_cast<size_t>(model.report.springs()));
   for (const auto& force : model.forces) {
@@ -61,6 +67,10 @@ void ScaledStiffness::Times(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::V
   if (damping_weight_ > 0) {
     product += scaled_ * (damping_weight_ * damping_).asDiagonal();
     shared_damping_.AddTimes(damping_weight_, scaled_, product);
+    if (viscosity_ != nullptr) {
+      viscosity_->Times(scaled_, viscous_);
+      product += damping_weight_ * viscous_;
+    }
   }
   product *= scale_.asDiagonal();
 }

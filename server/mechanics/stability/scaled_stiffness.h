@@ -3,7 +3,7 @@
 #ifndef PHRENIC_SERVER_MECHANICS_STABILITY_SCALED_STIFFNESS_H_
 #define PHRENIC_SERVER_MECHANICS_STABILITY_SCALED_STIFFNESS_H_
 
-#include <vector>
+#include <memory>
 
 #include "server/mechanics/linalg/large_pages.h"
 #include "server/mechanics/solve/block_matrix.h"
@@ -40,10 +40,11 @@ class ScaledStiffness final : public StiffnessSink {
   BlockMatrix blocks_;
   Eigen::VectorXd damping_;  // C's diagonal [N s/m]; the rest is shared_damping_
   OuterProducts shared_damping_;
+  std::unique_ptr<BlockMatrix> viscosity_;  // null if there is none or it does not count
   double damping_weight_ = 0;
   LargeVector<Joint> joints_;
   Eigen::VectorXd scale_;
-  Points scaled_;
+  Points scaled_, viscous_;
 };
 
 }  // namespace phrenic

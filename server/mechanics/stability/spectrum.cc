@@ -42,6 +42,27 @@ void FindLeastMass(const Model& model, Spectrum& spectrum) {
   }
 }
 
+// Sums the norms of each row of blocks, scaled: upper bounds of the eigenvalues of M^-1/2 C M^-1/2 (Gershgorin).
+class RowNorms final : public StiffnessSink {
+ public:
+  explicit RowNorms(const Eigen::VectorXd& inverse_mass)
+      : scale_(inverse_mass.cwiseSqrt()), rows_(Eigen::VectorXd::Zero(inverse_mass.size())) {}
+  void Add(int i, int j, const Eigen::Matrix3d& block) override { rows_[i] += scale_[i] * scale_[j] * block.norm(); }
+  void AddOuter(double, const Points&) override {}
+  double Largest() const { return rows_.maxCoeff(); }
+
+ private:
+  const Eigen::VectorXd scale_;
+  Eigen::VectorXd rows_;
+};
+
+void FindViscousRate(const Model& model, const EvalContext& at, Spectrum& spectrum) {
+  if (!HasViscosity(model)) return;
+  RowNorms norms(model.inverse_mass);
+  for (const auto& force : model.forces) AddViscosity(*force, at, 1, norms);
+  spectrum.viscous_rate = norms.Largest();
+}
+
 void FindDampingRates(const Model& model, const EvalContext& at, Spectrum& spectrum) {
   Eigen::VectorXd c(model.rest.cols());
   SumDamping(model, at, c);
@@ -53,7 +74,8 @@ void FindDampingRates(const Model& model, const EvalContext& at, Spectrum& spect
   }
   OuterProducts shared;
   SumSharedDamping(model, at, shared);
-  spectrum.damping_rate += shared.Bound(model.inverse_mass);
+  FindViscousRate(model, at, spectrum);
+  spectrum.damping_rate += shared.Bound(model.inverse_mass) + spectrum.viscous_rate;
 }
 
 // A list of vectors; each begins at an even index, so that sums over them are vectorised in the same way.
@@ -172,6 +194,12 @@ Largest FindLargest(ScaledStiffness& matrix, const Eigen::VectorXd& start, int p
   return {ritz, residual, Combine(krylov.basis, combination)};
 }
 
+// Returns the rate by which the integrator's counted damping limits its step.
+double& CountedRate(const Integrator& integrator, Spectrum& spectrum) {
+  const bool viscous = integrator.counted_damping() == Integrator::Damping::kViscosity;
+  return viscous ? spectrum.viscous_rate : spectrum.damping_rate;
+}
+
 // Finds the mode that limits the integrator's step and sets the spectrum's frequency and damping rate to that mode's.
 // Each search starts from the last result and from all directions, since another mode may be the limiting one now.
 Largest FindLimiting(ScaledStiffness& matrix, const Integrator& integrator, Spectrum& spectrum) {
@@ -187,7 +215,7 @@ Largest FindLimiting(ScaledStiffness& matrix, const Integrator& integrator, Spec
     matrix.Times(limiting.vector, product);
     const double elastic = limiting.vector.dot(product);
     spectrum.omega_max = std::sqrt(std::max(0.0, elastic) + limiting.residual);
-    spectrum.damping_rate = std::max(0.0, limiting.ritz - elastic) * step / 2;
+    CountedRate(integrator, spectrum) = std::max(0.0, limiting.ritz - elastic) * step / 2;
     const double guessed = std::exchange(step, integrator.MaxStep(spectrum));
     if (std::abs(guessed / step - 1) < kNearby) break;
   }
@@ -216,7 +244,7 @@ FastestMode FindFastestMode(const Model& model, const v1::Parameters& parameters
   FindDampingRates(model, at, spectrum);
   ScaledStiffness matrix(model, at, integrator.counted_damping());
   Largest largest;
-  if (integrator.counted_damping() != Integrator::Damping::kNone && spectrum.damping_rate > 0) {
+  if (integrator.counted_damping() != Integrator::Damping::kNone && CountedRate(integrator, spectrum) > 0) {
     largest = FindLimiting(matrix, integrator, spectrum);
   } else {
     largest = FindLargest(matrix, Start(matrix.scale()), kProducts);

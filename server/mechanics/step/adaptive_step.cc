@@ -17,6 +17,7 @@ absl::Status AdvancePart(const StepPlan& plan, const v1::Parameters& parameters,
   absl::Status status = plan.FindIntegrator(parameters).Advance(plan, parameters, h, state, work);
   if (!status.ok()) return status;
   if (plan.follows_coordinates()) plan.DriveMotions(parameters, h, work.scratch, state);
+  plan.AdvanceScalars(parameters, h, work.scratch, state);
   state.time += h;
   state.phase += h / parameters.breath_length();
   ++state.tick;

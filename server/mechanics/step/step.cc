@@ -25,6 +25,7 @@ absl::Status Advance(const StepPlan& plan, const v1::Parameters& parameters, dou
   if (integrator.needs_start()) CopyStart(plan, state, work);
   absl::Status advanced = integrator.Advance(plan, parameters, dt, state, work);
   if (plan.follows_coordinates()) plan.DriveMotions(parameters, dt, work.scratch, state);
+  if (advanced.ok()) plan.AdvanceScalars(parameters, dt, work.scratch, state);
   return advanced;
 }
 

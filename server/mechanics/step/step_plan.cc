@@ -33,6 +33,11 @@ bool SharesDamping(const Model& model) {
                      [](const auto& force) { return force->has_shared_damping(); });
 }
 
+bool AdvancesScalars(const Model& model) {
+  return std::any_of(model.forces.begin(), model.forces.end(),
+                     [](const auto& force) { return force->advances_scalars(); });
+}
+
 // The constraint that is projected per block: the only one, if it can be and no operation before it needs all blocks.
 const BlockConstraint* FindBlockConstraint(const Model& model, bool shares_damping) {
   if (shares_damping || model.constraints.size() != 1) return nullptr;
@@ -52,6 +57,7 @@ StepPlan::StepPlan(const Model& model, ForceSchedule schedule, const IntegratorT
       integrators_(integrators),
       follows_coordinates_(FollowsCoordinates(model)),
       shares_damping_(SharesDamping(model)),
+      advances_scalars_(AdvancesScalars(model)),
       block_constraint_(FindBlockConstraint(model, shares_damping_)),
       final_in_blocks_(!shares_damping_ && (model.constraints.empty() || block_constraint_ != nullptr)),
       may_overwrite_start_(final_in_blocks_ && !ReadsNeighbours(schedule_)) {}
@@ -76,6 +82,14 @@ void StepPlan::DriveMotions(const v1::Parameters& parameters, double ahead, cons
   if (model_.motions.empty()) return;
   const EvalContext at = ContextAhead(parameters, ahead, state, scratch);
   for (const auto& motion : model_.motions) motion->Drive(at, state);
+}
+
+void StepPlan::AdvanceScalars(const v1::Parameters& parameters, double dt, const Scratch& scratch, State& state) const {
+  if (!advances_scalars_) return;
+  const EvalContext end = ContextAhead(parameters, dt, state, scratch);
+  for (const auto& force : model_.forces) {
+    if (force->advances_scalars()) force->AdvanceScalars(end, state.tick, dt, state.scalars);
+  }
 }
 
 void StepPlan::SumForces(const EvalContext& at, Points& f) const {

@@ -55,6 +55,9 @@ class StepPlan {
   bool follows_coordinates() const { return follows_coordinates_; }
   // Sets driven vertices and poses to where the motions have them `ahead` [s] of the state's time.
   void DriveMotions(const v1::Parameters& parameters, double ahead, const Scratch& scratch, State& state) const;
+  // Advances the scalars that forces advance (Force::AdvanceScalars) to the end of a step of `dt` [s], at which the
+  // positions, velocities and poses of `state` are already, but not its time.
+  void AdvanceScalars(const v1::Parameters& parameters, double dt, const Scratch& scratch, State& state) const;
   // Sets f to the sum of all forces and pulls, with those that motions transfer to coordinates, 3 x n [N].
   void SumForces(const EvalContext& at, Points& f) const;
   // Adds scale * shift (3 x n) to x, except for fixed and driven vertices.
@@ -120,6 +123,7 @@ class StepPlan {
   const IntegratorTable integrators_;
   const bool follows_coordinates_;                 // a motion does: blocks need the forces on all vertices first
   const bool shares_damping_;                      // a force has shared damping
+  const bool advances_scalars_;                    // a force advances scalars
   const BlockConstraint* const block_constraint_;  // the only constraint, if it can be projected per block; or null
   const bool final_in_blocks_;                     // nothing after the blocks moves vertices but ProjectAcrossBlocks
   const bool may_overwrite_start_;                 // no operation reads the start of a vertex after its block
