@@ -6,7 +6,9 @@
 #include "server/anatomy/cartilage.h"
 #include "server/anatomy/diaphragm_mesh.h"
 #include "server/anatomy/dimensions.h"
+#include "server/anatomy/inner_cage.h"
 #include "server/anatomy/lung.h"
+#include "server/anatomy/middle_sheet.h"
 #include "server/anatomy/rib.h"
 #include "server/anatomy/sternum.h"
 #include "server/anatomy/vertebra.h"
@@ -19,10 +21,12 @@ constexpr int kCartilages = 10;
 constexpr double kCoarsest = 50;  // [mm]
 
 // The default edge length [mm].
-double DefaultResolution(v1::Structure structure) {
+double DefaultResolution(v1::Structure structure, v1::Sheet sheet) {
   switch (structure) {
     case v1::STRUCTURE_DIAPHRAGM:
-      return 3.16;
+      return sheet == v1::SHEET_MIDDLE ? 5 : 3.16;
+    case v1::STRUCTURE_INNER_CAGE:
+      return 4;
     case v1::STRUCTURE_LUNG:
       return 5;
     case v1::STRUCTURE_VERTEBRA:
@@ -45,6 +49,12 @@ absl::Status CheckResolution(const v1::Anatomy& part, double resolution_mm) {
                                                  "; 0 takes the structure's default"));
 }
 
+absl::Status CheckSheet(const v1::Anatomy& part, v1::Sheet sheet) {
+  if (sheet == v1::SHEET_UNSPECIFIED || part.structure() == v1::STRUCTURE_DIAPHRAGM) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat("generated.sheet: ", v1::Structure_Name(part.structure()),
+                                                 " is no sheet; leave it out, or use STRUCTURE_DIAPHRAGM"));
+}
+
 absl::Status NeedsSide(const v1::Anatomy& part) {
   if (part.side() == v1::SIDE_LEFT || part.side() == v1::SIDE_RIGHT) return absl::OkStatus();
   return absl::InvalidArgumentError(absl::StrCat("anatomy.side: ", v1::Structure_Name(part.structure()),
@@ -63,6 +73,7 @@ absl::Status CheckPart(const v1::Anatomy& part) {
     case v1::STRUCTURE_MANUBRIUM:
     case v1::STRUCTURE_STERNUM_BODY:
     case v1::STRUCTURE_XIPHOID:
+    case v1::STRUCTURE_INNER_CAGE:
       return absl::OkStatus();
     case v1::STRUCTURE_VERTEBRA:
       return NeedsNumber(part, kVertebrae);
@@ -83,10 +94,12 @@ Mesh OnSide(const v1::Anatomy& part, Mesh left) {
   return part.side() == v1::SIDE_RIGHT ? Mirrored(std::move(left)) : std::move(left);
 }
 
-Mesh InMillimetres(const v1::Anatomy& part, double edge_length) {
+Mesh InMillimetres(const v1::Anatomy& part, double edge_length, v1::Sheet sheet) {
   switch (part.structure()) {
     case v1::STRUCTURE_DIAPHRAGM:
-      return DiaphragmMesh(edge_length);
+      return sheet == v1::SHEET_MIDDLE ? MiddleSheet(edge_length) : DiaphragmMesh(edge_length);
+    case v1::STRUCTURE_INNER_CAGE:
+      return InnerCage(edge_length);
     case v1::STRUCTURE_RIB:
       return OnSide(part, LeftRib(part.number(), edge_length));
     case v1::STRUCTURE_COSTAL_CARTILAGE:
@@ -108,10 +121,12 @@ Mesh InMillimetres(const v1::Anatomy& part, double edge_length) {
 
 }  // namespace
 
-absl::StatusOr<Mesh> Generate(const v1::Anatomy& part, double resolution_mm) {
+absl::StatusOr<Mesh> Generate(const v1::Anatomy& part, double resolution_mm, v1::Sheet sheet) {
   if (absl::Status status = CheckPart(part); !status.ok()) return status;
+  if (absl::Status status = CheckSheet(part, sheet); !status.ok()) return status;
   if (absl::Status status = CheckResolution(part, resolution_mm); !status.ok()) return status;
-  Mesh mesh = InMillimetres(part, resolution_mm == 0 ? DefaultResolution(part.structure()) : resolution_mm);
+  const double edge_length = resolution_mm == 0 ? DefaultResolution(part.structure(), sheet) : resolution_mm;
+  Mesh mesh = InMillimetres(part, edge_length, sheet);
   mesh.vertices *= kMillimetre;
   return mesh;
 }

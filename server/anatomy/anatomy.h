@@ -9,12 +9,13 @@
 
 namespace phrenic::anatomy {
 
-// Returns the closed surface of one structure [m] in the frame common to all structures (LPS, see dimensions.h).
-// `resolution_mm` is the target edge length; 0 takes the structure's default (for the diaphragm 20,000 to 21,000
-// vertices). Deterministic: the same arguments give the same bits. The diaphragm has the regions "tendon", "muscle",
-// "rim", "crus-right" and "crus-left". INVALID_ARGUMENT names the field if the structure does not exist (rib 13, a lung
-// without a side) or the resolution is out of range.
-absl::StatusOr<Mesh> Generate(const v1::Anatomy& part, double resolution_mm);
+// Returns the surface of one structure [m] in the frame common to all structures (LPS, see dimensions.h). It is closed,
+// except the inner cage (inner_cage.h) and the diaphragm with SHEET_MIDDLE (middle_sheet.h). `resolution_mm` is the
+// target edge length; 0 takes the structure's default (for the diaphragm 20,000 to 21,000 vertices, or about 4,000 with
+// SHEET_MIDDLE). Deterministic: the same arguments give the same bits. The diaphragm has the regions "tendon",
+// "muscle", "rim", "crus-right" and "crus-left"; SHEET_MIDDLE adds more. INVALID_ARGUMENT names the field if the
+// structure does not exist (rib 13, a lung without a side), is no sheet, or the resolution is out of range.
+absl::StatusOr<Mesh> Generate(const v1::Anatomy& part, double resolution_mm, v1::Sheet sheet = v1::SHEET_UNSPECIFIED);
 
 }  // namespace phrenic::anatomy
 

@@ -3,25 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
-#include <utility>
 #include <vector>
 
 namespace phrenic::anatomy {
 namespace {
-
-// Returns the directed boundary edges, in the winding of their triangles.
-std::vector<std::pair<int, int>> BoundaryEdges(const Sheet& sheet) {
-  std::set<std::pair<int, int>> along;
-  for (Eigen::Index t = 0; t < sheet.triangles.cols(); ++t) {
-    for (int k = 0; k < 3; ++k) along.emplace(sheet.triangles(k, t), sheet.triangles((k + 1) % 3, t));
-  }
-  std::vector<std::pair<int, int>> boundary;
-  for (const auto& [a, b] : along) {
-    if (!along.contains({b, a})) boundary.emplace_back(a, b);
-  }
-  return boundary;
-}
 
 // Returns the gap at a vertex [mm]; it narrows towards the boundary within 8 mm.
 double Gap(const Sheet& sheet, int vertex) {

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <set>
+#include <utility>
 
 #include "server/anatomy/edge_flips.h"
 #include "server/anatomy/plane_delaunay.h"
@@ -176,6 +178,18 @@ Sheet MeshSheet(const SheetDomain& domain) {
   }
   FlipToDelaunay(sheet.plane, sheet.points, sheet.triangles);
   return InCacheOrder(sheet);
+}
+
+std::vector<std::pair<int, int>> BoundaryEdges(const Sheet& sheet) {
+  std::set<std::pair<int, int>> along;
+  for (Eigen::Index t = 0; t < sheet.triangles.cols(); ++t) {
+    for (int k = 0; k < 3; ++k) along.emplace(sheet.triangles(k, t), sheet.triangles((k + 1) % 3, t));
+  }
+  std::vector<std::pair<int, int>> boundary;
+  for (const auto& [a, b] : along) {
+    if (!along.contains({b, a})) boundary.emplace_back(a, b);
+  }
+  return boundary;
 }
 
 }  // namespace phrenic::anatomy

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "server/mesh/mesh.h"
@@ -33,6 +34,9 @@ struct Sheet {
 //   5. renumbering so that neighbours are close in memory.
 // Deterministic.
 Sheet MeshSheet(const SheetDomain& domain);
+
+// Returns the directed edges of all boundary loops, in the winding of their triangles.
+std::vector<std::pair<int, int>> BoundaryEdges(const Sheet& sheet);
 
 }  // namespace phrenic::anatomy
 

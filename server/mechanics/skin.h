@@ -7,9 +7,11 @@
 #ifndef PHRENIC_SERVER_MECHANICS_SKIN_H_
 #define PHRENIC_SERVER_MECHANICS_SKIN_H_
 
+#include <memory>
 #include <vector>
 
 #include "server/mechanics/state.h"
+#include "server/mesh/mesh.h"
 
 namespace phrenic {
 
@@ -22,18 +24,26 @@ struct SkinWeight {
 };
 
 // The position of a vertex relative to a triangle of simulated vertices: x = sum_i weights_i x_i + height n, n the unit
-// normal (thesis 6.1.3).
+// normal (thesis 6.1.3); on a sheet the smooth one, with a height that changes (skinning/sheet_points.h).
 struct TriangleBinding {
   Eigen::Vector3i corners = Eigen::Vector3i::Zero();
   Eigen::Vector3d weights = Eigen::Vector3d::Zero();  // barycentric: their sum is 1
   double height = 0;                                  // [m]
 };
 
+// The middle surface of a sheet that keeps its volume, at rest.
+struct DriverSheet {
+  int first_vertex = 0;        // the lowest of its simulated vertices
+  Triangles triangles;         // 3 x n, simulated vertices
+  Eigen::VectorXd rest_areas;  // of all triangles at each vertex, from first_vertex on [m^2]; 0 for other vertices
+};
+
 // The skin of one seen body: weights or bindings.
 struct Skin {
   int body = 0;
-  std::vector<SkinWeight> weights;         // sorted by vertex; or ...
-  std::vector<TriangleBinding> triangles;  // ... one per vertex of the body
+  std::vector<SkinWeight> weights;           // sorted by vertex; or ...
+  std::vector<TriangleBinding> triangles;    // ... one per vertex of the body
+  std::shared_ptr<const DriverSheet> sheet;  // if not null, `triangles` are bound to this sheet
 };
 
 }  // namespace phrenic

@@ -7,6 +7,7 @@
 #include <queue>
 
 #include "server/mechanics/skinning/body_points.h"
+#include "server/mechanics/skinning/tissue_bodies.h"
 #include "server/mesh/topology.h"
 
 namespace phrenic::physiology {
@@ -59,8 +60,8 @@ std::vector<int> Predecessors(const Points& x, const Edges& edges, const std::ve
 
 absl::StatusOr<ThoraxMetrics> ThoraxMetrics::Of(const Model& model) {
   ThoraxMetrics metrics(model);
-  for (const int body : metrics.BodiesOf(v1::STRUCTURE_DIAPHRAGM)) {
-    if (model.bodies[body].first_vertex < 0) continue;
+  for (const int body : TissueBodies(model)) {
+    if (model.bodies[body].anatomy.structure() != v1::STRUCTURE_DIAPHRAGM) continue;
     metrics.diaphragm_ = body;
     metrics.FindUpperFace();
     metrics.FindFibres();
@@ -85,10 +86,7 @@ Points ThoraxMetrics::Placed(const State& state, int body) const {
   return placed;
 }
 
-ConstPoints ThoraxMetrics::Sheet(const State& state) const {
-  const BodyModel& body = model_.bodies[diaphragm_];
-  return state.x.middleCols(body.first_vertex, body.mesh.vertices.cols());
-}
+Points ThoraxMetrics::Sheet(const State& state) const { return Placed(state, diaphragm_); }
 
 void ThoraxMetrics::FindUpperFace() {
   const Mesh& mesh = model_.bodies[diaphragm_].mesh;
@@ -132,7 +130,7 @@ double ThoraxMetrics::DomeDescent(const State& state, v1::Side side) const {
 
 double ThoraxMetrics::PosteriorOverAnterior(const State& state) const {
   const Mesh& mesh = model_.bodies[diaphragm_].mesh;
-  const ConstPoints now = Sheet(state);
+  const Points now = Sheet(state);
   const double middle = (mesh.vertices.row(1).minCoeff() + mesh.vertices.row(1).maxCoeff()) / 2;
   double descent[2] = {0, 0}, area[2] = {0, 0};
   for (const int t : upper_) {
@@ -208,7 +206,7 @@ std::optional<double> ThoraxMetrics::LowerRibShift(const State& state) const {
 
 double ThoraxMetrics::SweptVolume(const State& state) const {
   const Mesh& mesh = model_.bodies[diaphragm_].mesh;
-  const ConstPoints now = Sheet(state);
+  const Points now = Sheet(state);
   double volume = 0;
   for (const int t : upper_) {
     const Eigen::Vector3i corners = mesh.triangles.col(t);

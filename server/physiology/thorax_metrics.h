@@ -46,7 +46,7 @@ class ThoraxMetrics {
   // Vertices of a body in the state, 3 x n [m].
   Points Placed(const State& state, int body) const;
   // Vertices of the diaphragm in the state, 3 x n [m].
-  ConstPoints Sheet(const State& state) const;
+  Points Sheet(const State& state) const;
   double FibreLength(const ConstPoints& x) const;
   double Area(const ConstPoints& x, const std::vector<int>& triangles) const;
   std::vector<int> BodiesOf(v1::Structure structure) const;

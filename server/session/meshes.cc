@@ -35,7 +35,8 @@ absl::StatusOr<std::string> ResolveBelow(const std::string& data_dir, const std:
 
 MeshSource MakeMeshSource(std::string data_dir, Uploads* uploads) {
   return [data_dir = std::move(data_dir), uploads](const v1::Body& body) -> absl::StatusOr<Mesh> {
-    if (body.has_generated()) return anatomy::Generate(body.anatomy(), body.generated().resolution_mm());
+    if (body.has_generated())
+      return anatomy::Generate(body.anatomy(), body.generated().resolution_mm(), body.generated().sheet());
     if (uploads != nullptr && absl::StartsWith(body.file().path(), std::string(Uploads::kPrefix))) {
       return uploads->Read(body.file().path(), body.file().unit());
     }

@@ -7,17 +7,19 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "server/mechanics/skinning/body_points.h"
+#include "server/mechanics/skinning/tissue_bodies.h"
 
 namespace phrenic::session {
 namespace {
 
 bool HasSurface(const BodyModel& body) { return body.mesh.triangles.cols() > 0; }
 
-// Returns the deformable body with the most triangles; null if none has any.
+// Returns the body of tissue with the most triangles; null if none has any.
 const BodyModel* Largest(const Model& model) {
   const BodyModel* largest = nullptr;
-  for (const BodyModel& body : model.bodies) {
-    if (body.role != v1::ROLE_DEFORMABLE || !HasSurface(body)) continue;
+  for (const int b : TissueBodies(model)) {
+    const BodyModel& body = model.bodies[static_cast<std::size_t>(b)];
+    if (!HasSurface(body)) continue;
     if (largest == nullptr || body.mesh.triangles.cols() > largest->mesh.triangles.cols()) largest = &body;
   }
   return largest;

@@ -11,10 +11,16 @@
 namespace phrenic::session {
 namespace {
 
-absl::StatusOr<const BodyModel*> FindDeformable(const Model& model, const std::string& name) {
+// Returns the sheet's bindings if the body is a layer of one.
+const Skin* LayerSkin(const Model& model, const BodyModel& body) {
+  if (body.skin < 0 || model.skins[static_cast<std::size_t>(body.skin)].sheet == nullptr) return nullptr;
+  return &model.skins[static_cast<std::size_t>(body.skin)];
+}
+
+absl::StatusOr<const BodyModel*> FindTissue(const Model& model, const std::string& name) {
   std::vector<std::string> names;
   for (const BodyModel& body : model.bodies) {
-    if (body.first_vertex < 0) continue;
+    if (body.first_vertex < 0 && LayerSkin(model, body) == nullptr) continue;
     if (body.name == name) return &body;
     names.push_back(body.name);
   }
@@ -35,9 +41,23 @@ absl::Status CheckRequest(const v1::GetForcesRequest& request, const BodyModel& 
       absl::StrCat("kind: there is no force of kind \"", request.kind(), "\"; there are ", absl::StrJoin(kinds, ", ")));
 }
 
-void WriteForces(const ForceReading& reading, int vertex, v1::GetForcesResponse& response) {
+// Returns the forces on a body's vertices [N], from those on the simulated vertices.
+Points OnBody(const Model& model, const BodyModel& body, const Points& forces) {
+  const Eigen::Index n = body.mesh.vertices.cols();
+  const Skin* layer = LayerSkin(model, body);
+  if (layer == nullptr) return forces.middleCols(body.first_vertex, n);
+  Points on_layer(3, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const TriangleBinding& binding = layer->triangles[static_cast<std::size_t>(i)];
+    on_layer.col(i) = forces(Eigen::all, binding.corners) * binding.weights;
+  }
+  return on_layer;
+}
+
+void WriteForces(const Model& model, const BodyModel& body, const ForceReading& reading, int vertex,
+                 v1::GetForcesResponse& response) {
   for (const std::string& kind : reading.kinds()) {
-    const Eigen::Vector3d force = reading.Of(kind).col(vertex);
+    const Eigen::Vector3d force = OnBody(model, body, reading.Of(kind)).col(vertex);
     v1::Vector& row = *response.add_forces();
     row.set_x(force.x());
     row.set_y(force.y());
@@ -51,7 +71,7 @@ absl::StatusOr<v1::GetForcesResponse> ReadForces(const Table& table, const v1::G
   const auto session = table.Find(request.session_id());
   if (!session.ok()) return session.status();
   const Model& model = (*session)->model();
-  const auto body = FindDeformable(model, request.body());
+  const auto body = FindTissue(model, request.body());
   if (!body.ok()) return body.status();
   const auto fork = (*session)->MakeFork();
   if (!fork.ok()) return fork.status();
@@ -61,11 +81,10 @@ absl::StatusOr<v1::GetForcesResponse> ReadForces(const Table& table, const v1::G
   response.set_tick(fork->state.tick);
   response.set_time(fork->state.time);
   response.mutable_kinds()->Add(reading.kinds().begin(), reading.kinds().end());
-  if (request.has_vertex()) WriteForces(reading, (*body)->first_vertex + request.vertex(), response);
+  if (request.has_vertex()) WriteForces(model, **body, reading, request.vertex(), response);
   if (!request.kind().empty()) {
-    const Points forces = reading.Of(request.kind());
-    const auto part = forces.middleCols((*body)->first_vertex, (*body)->mesh.vertices.cols());
-    const Eigen::VectorXf sizes = part.colwise().norm().cast<float>();
+    const Points forces = OnBody(model, **body, reading.Of(request.kind()));
+    const Eigen::VectorXf sizes = forces.colwise().norm().cast<float>();
     response.set_sizes(sizes.data(), sizeof(float) * static_cast<std::size_t>(sizes.size()));
   }
   return response;

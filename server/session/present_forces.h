@@ -9,7 +9,7 @@
 namespace phrenic::session {
 
 // Evaluates the forces [N], by kind, on a copy of the state between two steps, in the calling thread. INVALID_ARGUMENT
-// if there is no such deformable body, vertex or kind, and lists those that there are; the errors of Table::Find and
+// if there is no such body of tissue, vertex or kind, and lists those that there are; the errors of Table::Find and
 // Session::MakeFork. Thread-safe.
 absl::StatusOr<v1::GetForcesResponse> ReadForces(const Table& table, const v1::GetForcesRequest& request);
 

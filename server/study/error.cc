@@ -5,6 +5,8 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "server/mechanics/constraint_residual.h"
+#include "server/mechanics/skinning/probe_position.h"
+#include "server/mechanics/skinning/tissue_bodies.h"
 #include "server/study/error_rows.h"
 #include "server/study/reference.h"
 #include "server/study/subject.h"
@@ -95,9 +97,8 @@ std::vector<Eigen::Vector3d> ProbeDisplacements(const Model& model, const Trajec
   for (const State& state : run.states) {
     for (const Probe& probe : model.probes) {
       const BodyModel& body = model.bodies[static_cast<size_t>(probe.body)];
-      if (body.first_vertex < 0) continue;
-      const int vertex = body.first_vertex + probe.vertex;
-      displacements.emplace_back(state.x.col(vertex) - model.rest.col(vertex));
+      if (!FollowsTissue(model, body)) continue;
+      displacements.emplace_back(ProbePosition(model, state, probe) - body.mesh.vertices.col(probe.vertex));
     }
   }
   return displacements;

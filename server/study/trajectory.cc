@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "absl/strings/str_format.h"
+#include "server/mechanics/skinning/probe_position.h"
+#include "server/mechanics/skinning/tissue_bodies.h"
 #include "server/mechanics/step/step.h"
 #include "server/schema/thread_cpu.h"
 
@@ -32,9 +34,8 @@ double ProbeDistance(const Model& model, const State& a, const State& b) {
   double largest = 0;
   for (const Probe& probe : model.probes) {
     const BodyModel& body = model.bodies[static_cast<size_t>(probe.body)];
-    if (body.first_vertex < 0) continue;
-    const int vertex = body.first_vertex + probe.vertex;
-    largest = std::max(largest, (a.x.col(vertex) - b.x.col(vertex)).norm());
+    if (!FollowsTissue(model, body)) continue;
+    largest = std::max(largest, (ProbePosition(model, a, probe) - ProbePosition(model, b, probe)).norm());
   }
   return largest;
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -24,11 +25,11 @@ inline v1::Anatomy Part(v1::Structure structure, int number = 0, v1::Side side =
 }
 
 // Returns the mesh of a part, which a process generates once; empty if it cannot be generated. Not thread-safe.
-inline const Mesh& MeshOf(const v1::Anatomy& part, double resolution_mm = 0) {
-  static std::map<std::pair<std::string, double>, Mesh> meshes;
-  const auto [found, is_new] = meshes.try_emplace({part.SerializeAsString(), resolution_mm});
+inline const Mesh& MeshOf(const v1::Anatomy& part, double resolution_mm = 0, v1::Sheet sheet = v1::SHEET_UNSPECIFIED) {
+  static std::map<std::tuple<std::string, double, v1::Sheet>, Mesh> meshes;
+  const auto [found, is_new] = meshes.try_emplace({part.SerializeAsString(), resolution_mm, sheet});
   if (is_new) {
-    auto mesh = Generate(part, resolution_mm);
+    auto mesh = Generate(part, resolution_mm, sheet);
     if (mesh.ok()) found->second = *std::move(mesh);
   }
   return found->second;

@@ -32,12 +32,14 @@ const MeasureCase kMeasures[] = {
     {"volume_of_one_face", "volume { surface { bodies: 'ball' facing { z: 1 } } plane {} }", "m^3", 8, true},
     {"volume_from_rest", "volume { surface { bodies: 'ball' } from_rest: true }", "m^3", 0, false},
     {"flow", "flow { surface { bodies: 'ball' } }", "m^3/s", 8, false},
-    {"flow_of_several", "flow { surface { bodies: ['ball', 'piston', 'passenger', 'skin'] } }", "m^3/s", 0, false},
+    {"flow_of_several", "flow { surface { bodies: ['ball', 'piston', 'passenger', 'skin', 'layer'] } }", "m^3/s", 0,
+     false},
     {"kinetic_energy", "kinetic_energy { bodies: ['ball', 'sheet'] }", "J", 4, false},
     {"elastic_energy", "elastic_energy {}", "J", 0, false},
     {"highest", "highest { body: 'ball' direction { x: 1 z: 3 } }", "m", 2, true},
     {"highest_of_a_driven_body", "highest { body: 'piston' }", "m", 2, true},
     {"highest_of_a_mapped_body", "highest { body: 'skin' }", "m", 0, true},
+    {"highest_of_a_layer", "highest { body: 'layer' }", "m", 0, true},
     {"highest_from_rest", "highest { body: 'ball' from_rest: true }", "m", 0, true},
     {"force_output", "force_output { force: 'gas' output: 'volume' }", "m^3", 8, false},
 };
@@ -55,6 +57,8 @@ const char kScene[] =
     "motions { skin { bodies: 'passenger' drivers: 'piston' } } "
     "bodies { name: 'skin' role: ROLE_SEEN ellipsoid { radii { x: 1.2 y: 1.2 z: 2.2 } divisions: 4 } } "
     "motions { skin { bodies: 'skin' drivers: 'ball' mode: SKIN_MODE_TRIANGLES } } "
+    "bodies { name: 'layer' role: ROLE_SEEN ellipsoid { radii { x: 1.1 y: 1.1 z: 2.1 } divisions: 4 } } "
+    "motions { skin { bodies: 'layer' drivers: 'ball' mode: SKIN_MODE_SHEET thickness: 1 } } "
     "forces { springs { bodies: 'ball' } } "
     "forces { name: 'gas' pressure { surface { bodies: 'ball' } pressure: 3 } } ";
 

@@ -24,7 +24,7 @@ class GeneratedThorax : public testing::Test {
     std::stringstream text;
     text << file.rdbuf();
     model_ = *Compile(*schema::ParseScene("thorax.textproto", text.str()), [](const v1::Body& body) {
-      return anatomy::Generate(body.anatomy(), body.generated().resolution_mm());
+      return anatomy::Generate(body.anatomy(), body.generated().resolution_mm(), body.generated().sheet());
     });
   }
   static void TearDownTestSuite() { model_.reset(); }

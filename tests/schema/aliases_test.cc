@@ -136,7 +136,8 @@ TEST(Aliases, AreInNoListOfAllowedValues) {
   v1::Scene scene = *ParseScene("s", SceneText("", "motions { skin { bodies: 'b' drivers: 'c' } }"));
   scene.mutable_motions(0)->mutable_skin()->set_mode(static_cast<v1::SkinMode>(9));
   EXPECT_EQ(std::string(Validate(scene).message()),
-            "motions[0].skin.mode: 9 is not one of SKIN_MODE_NEAREST_VERTICES, SKIN_MODE_TRIANGLES");
+            "motions[0].skin.mode: 9 is not one of SKIN_MODE_NEAREST_VERTICES, SKIN_MODE_TRIANGLES, "
+            "SKIN_MODE_SHEET");
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "server/mechanics/compile/presets.h"
 #include "server/mechanics/compile/scene_hash.h"
 #include "server/mechanics/integrators/catalogue.h"
+#include "server/mechanics/skinning/tissue_bodies.h"
 #include "server/mechanics/stability/largest_step.h"
 #include "server/mechanics/step/step_plan.h"
 #include "server/schema/schema.h"
@@ -119,6 +120,10 @@ void ReportUnused(ModelBuilder& builder) {
   }
 }
 
+void ReportTissue(Model& model) {
+  for (const int body : TissueBodies(model)) model.report.mutable_bodies(body)->set_tissue(true);
+}
+
 // Reports the live parameters without effect in this scene, which viewers hide.
 void ReportIdleParameters(const v1::Scene& scene, v1::CompileReport& report) {
   const bool ribs = std::any_of(scene.motions().begin(), scene.motions().end(),
@@ -180,6 +185,7 @@ absl::StatusOr<std::shared_ptr<const Model>> Compile(const v1::Scene& scene, con
   if (absl::Status status = AddMeasures(builder); !status.ok()) return status;
   clock.End("measures", model.report);
   ReportUnused(builder);
+  ReportTissue(model);
   ReportIdleParameters(model.scene, model.report);
   model.report.set_scene(scene.name());
   model.report.set_scene_hash(SceneHash(model));

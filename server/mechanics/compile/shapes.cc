@@ -5,6 +5,7 @@
 #include "server/mechanics/model_builder.h"
 #include "server/mesh/ellipsoid.h"
 #include "server/mesh/tetrahedra.h"
+#include "server/mesh/topology.h"
 
 namespace phrenic {
 namespace {
@@ -58,6 +59,13 @@ Mesh FromBlock(const v1::Block& shape) {
   return FillCells({ToEigen(shape.origin()), cell, cells}, [](const Eigen::Vector3d&) { return true; });
 }
 
+// A generated part encloses something, or is open by design; a file may have small holes, which filling tolerates.
+absl::StatusOr<Mesh> ClosedPart(const v1::Body& body, const MeshSource& source) {
+  absl::StatusOr<Mesh> surface = source(body);
+  if (!surface.ok() || BoundaryVertices(surface->triangles).empty()) return surface;
+  return absl::InvalidArgumentError("the surface of a filling must be closed, and this generated part is open");
+}
+
 // Returns the surface to fill.
 absl::StatusOr<Mesh> SurfaceToFill(const v1::Body& body, const MeshSource& source) {
   v1::Body surface = body;
@@ -71,7 +79,7 @@ absl::StatusOr<Mesh> SurfaceToFill(const v1::Body& body, const MeshSource& sourc
       return source(surface);
     case v1::Filling::kGenerated:
       *surface.mutable_generated() = body.filling().generated();
-      return source(surface);
+      return ClosedPart(surface, source);
     case v1::Filling::SURFACE_NOT_SET:
       break;
   }

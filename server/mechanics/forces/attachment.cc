@@ -9,18 +9,10 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "server/mechanics/skinning/skin_drivers.h"
+#include "server/mechanics/skinning/tissue_bodies.h"
 
 namespace phrenic {
 namespace {
-
-// True if the body is deformable or follows a deformable one.
-bool FollowsTissue(const Model& model, const BodyModel& body) {
-  if (body.first_vertex >= 0) return true;
-  if (body.skin < 0) return false;
-  if (!model.skins[body.skin].triangles.empty()) return true;
-  const std::vector<SkinWeight>& weights = model.skins[body.skin].weights;
-  return std::any_of(weights.begin(), weights.end(), [](const SkinWeight& weight) { return weight.pose < 0; });
-}
 
 absl::StatusOr<std::vector<int>> AnchorBodies(const v1::Attachment& scene, std::string_view path,
                                               const ModelBuilder& builder) {

@@ -6,8 +6,10 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "server/mechanics/skinning/inverse_distance_weights.h"
+#include "server/mechanics/skinning/sheet_skin.h"
 #include "server/mechanics/skinning/triangle_skin.h"
 #include "server/mesh/locality.h"
+#include "server/mesh/units.h"
 
 namespace phrenic {
 namespace {
@@ -35,7 +37,7 @@ Skin SkinByDistance(const SkinDrivers& drivers, const BodyModel& body, int b) {
   InverseDistanceWeights by_distance(drivers);
   std::vector<SkinWeight> weights;
   for (const int i : HilbertOrder(vertices)) by_distance.Append(vertices.col(i), i, weights);
-  return {.body = b, .weights = ByVertex(weights, vertices.cols()), .triangles = {}};
+  return {.body = b, .weights = ByVertex(weights, vertices.cols()), .triangles = {}, .sheet = nullptr};
 }
 
 void AddSkin(Skin skin, ModelBuilder& builder) {
@@ -71,6 +73,24 @@ absl::Status BindAllToTriangles(const std::vector<int>& bodies, const std::vecto
   return absl::OkStatus();
 }
 
+absl::Status BindAllToSheet(const std::vector<int>& bodies, const std::vector<int>& drivers, double thickness,
+                            const std::string& name, const std::string& path, ModelBuilder& builder) {
+  const auto binder = SheetBinder::Make(builder, drivers, absl::StrCat(path, ".drivers"));
+  if (!binder.ok()) return binder.status();
+  for (const int b : bodies) {
+    v1::MappingReport& report = *builder.model.report.add_mappings();
+    absl::StatusOr<Skin> skin = binder->Bind(b, thickness, path, report);
+    if (!skin.ok()) return skin.status();
+    AddSkin(*std::move(skin), builder);
+    builder.ReportElement(
+        "seen", name, builder.model.bodies[b].mesh.vertices.cols(), "vertices",
+        absl::StrFormat("bound to the middle surface of a sheet %.2g mm thick at rest, computed per "
+                        "frame: mean distance %.2g mm at rest, largest %.2g mm",
+                        kMillimetresAMetre * thickness, report.mean_distance_mm(), report.largest_distance_mm()));
+  }
+  return absl::OkStatus();
+}
+
 }  // namespace
 
 absl::Status AddSkins(const v1::Skin& scene, const std::string& given, std::string_view path, ModelBuilder& builder) {
@@ -86,6 +106,8 @@ absl::Status AddSkins(const v1::Skin& scene, const std::string& given, std::stri
   }
   if (scene.mode() == v1::SKIN_MODE_TRIANGLES)
     return BindAllToTriangles(*bodies, *drivers, name, drivers_field, builder);
+  if (scene.mode() == v1::SKIN_MODE_SHEET)
+    return BindAllToSheet(*bodies, *drivers, scene.thickness(), name, std::string(path), builder);
   SkinAllByDistance(*bodies, *drivers, name, builder);
   return absl::OkStatus();
 }

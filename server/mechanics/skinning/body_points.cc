@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <vector>
 
+#include "server/mechanics/skinning/sheet_points.h"
 #include "server/mechanics/skinning/skin_kernel.h"
 
 namespace phrenic {
@@ -76,11 +77,15 @@ BodyPoints::BodyPoints(const Model& model, int body)
   if (skin < 0) return;
   weights_ = model.skins[skin].weights;
   triangles_ = model.skins[skin].triangles;
+  sheet_ = model.skins[skin].sheet.get();
 }
 
 // Does not write v without kVelocities.
 template <bool kVelocities>
 void BodyPoints::Follow(const EvalContext& at, MutablePoints x, MutablePoints v) const {
+  if (sheet_ != nullptr) {
+    return kVelocities ? MoveOnSheet(*sheet_, triangles_, at, x, v) : PlaceOnSheet(*sheet_, triangles_, at, x);
+  }
   Placed out{x, v};
   if (!triangles_.empty()) return PlaceOnTriangles<kVelocities>(triangles_, at, out);
   if (pose_ >= 0) return MoveRigidly<kVelocities>(at.poses[pose_], *rest_, out);

@@ -12,6 +12,7 @@
 #include "server/mechanics/body_names.h"
 #include "server/mechanics/measures/readings.h"
 #include "server/mechanics/skinning/probe_position.h"
+#include "server/mechanics/skinning/tissue_bodies.h"
 #include "server/mesh/units.h"
 #include "server/record/spool_file.h"
 #include "server/session/export/export_catalogue.h"
@@ -33,10 +34,12 @@ absl::StatusOr<std::vector<int>> Bodies(const Model& model, const v1::CreateExpo
     if (!named.ok()) return named.status();
     for (const int body : *named) chosen[static_cast<std::size_t>(body)] = true;
   }
+  if (request.bodies().empty()) {
+    for (const int body : TissueBodies(model)) chosen[static_cast<std::size_t>(body)] = true;
+  }
   std::vector<int> bodies;
   for (int i = 0; i < static_cast<int>(chosen.size()); ++i) {
-    const bool by_default = request.bodies().empty() && model.bodies[i].role == v1::ROLE_DEFORMABLE;
-    if (chosen[i] || by_default) bodies.push_back(i);
+    if (chosen[static_cast<std::size_t>(i)]) bodies.push_back(i);
   }
   if (bodies.empty()) {
     return absl::InvalidArgumentError(

@@ -95,8 +95,8 @@ export class App {
   private readonly bodies = new Signal<Body[]>([]);
   /** Last known top of the dock [CSS pixels]. */
   private dockTop = 0;
-  /** Names of the bodies that have mass and are moved by forces. */
-  private deformable: ReadonlySet<string> = new Set();
+  /** Names of the bodies that show tissue. */
+  private tissue: ReadonlySet<string> = new Set();
 
   constructor(
     private readonly api: Api,
@@ -184,7 +184,7 @@ export class App {
   private buildStage(): void {
     const { controller, viewer, tools } = this;
     viewer.enablePulling(
-      () => this.deformable,
+      () => this.tissue,
       (body, vertex, force) => {
         const refused = refusalReason(this.participation.roles.value);
         if (refused === "") controller.pull(body, vertex, force);
@@ -293,17 +293,17 @@ export class App {
     this.frames.start(bodies);
     this.graphs.clear();
     this.report.set(report);
-    this.deformable = new Set(report.bodies.filter(({ role }) => role === "deformable").map(({ name }) => name));
+    this.tissue = new Set(report.bodies.filter(({ tissue }) => tissue).map(({ name }) => name));
     this.comparisons.choose({ body: this.mainBody(bodies) });
     const diagram = this.viewer.show(bodies);
     this.layerStyles.start(bodies, report);
-    this.tools.start(bodies, this.deformable, diagram);
+    this.tools.start(bodies, this.tissue, diagram);
     elementById("loading").hidden = true;
   }
 
-  /** Returns the deformable body with the most triangles. */
+  /** Returns the body of tissue with the most triangles. */
   private mainBody(bodies: Body[]): string {
-    const moving = bodies.filter(({ name, triangles }) => this.deformable.has(name) && triangles.length > 0);
+    const moving = bodies.filter(({ name, triangles }) => this.tissue.has(name) && triangles.length > 0);
     return moving.sort((a, b) => b.triangles.length - a.triangles.length)[0]?.name ?? "";
   }
 

@@ -39,7 +39,7 @@ export class SceneTools {
   private readonly pickCard: PickCard;
   private readonly ghosts: GhostSelector;
   private bodies: Body[] = [];
-  private deformable: Body[] = [];
+  private tissue: Body[] = [];
   private liveDistance: LiveDistance | undefined;
   private time = 0;
   /** The replayed time [s]; undefined when live. */
@@ -97,14 +97,14 @@ export class SceneTools {
   }
 
   /** Starts another scene, which the viewer shows already. `diagram` is true for scenes of few vertices. */
-  start(bodies: Body[], deformable: ReadonlySet<string>, diagram: boolean): void {
+  start(bodies: Body[], tissue: ReadonlySet<string>, diagram: boolean): void {
     this.bodies = bodies;
-    this.deformable = bodies.filter(({ name }) => deformable.has(name));
-    this.coloring.start(this.deformable);
-    void this.forces.start(this.deformable[0]?.name);
+    this.tissue = bodies.filter(({ name }) => tissue.has(name));
+    this.coloring.start(this.tissue);
+    void this.forces.start(this.tissue[0]?.name);
     this.trackedVertices.clear();
     if (this.ghost.value === "now") this.ghost.set("none");
-    this.ghosts.start(this.deformable);
+    this.ghosts.start(this.tissue);
     // A diagram shows which of its edges are rigid.
     if (diagram && bodies.some(({ rigidLinks }) => rigidLinks.length > 0))
       this.overlays.set(new Set([...this.overlays.value, "links"]));
@@ -150,7 +150,7 @@ export class SceneTools {
   private forceRequest(): ForceRequest {
     const kind = forceKindOf(this.coloring.field.value);
     const picked = this.trackedVertices.picked.value;
-    const vertex = this.deformable.some(({ name }) => name === picked?.body) ? picked : undefined;
+    const vertex = this.tissue.some(({ name }) => name === picked?.body) ? picked : undefined;
     return { vertex, kind, bodies: kind === undefined ? [] : this.coloring.bodyNames };
   }
 

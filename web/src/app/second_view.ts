@@ -160,10 +160,7 @@ export class SecondView {
       state: () => undefined,
       session: (session, fresh) => this.controller.receive(session, fresh),
       scene: (bodies, report) => {
-        const deformableNames = new Set(
-          report.bodies.filter(({ role }) => role === "deformable").map(({ name }) => name),
-        );
-        this.show(bodies, deformableNames);
+        this.show(bodies, new Set(report.bodies.filter(({ tissue }) => tissue).map(({ name }) => name)));
       },
       basis: (basis) => this.frames.addBasis(basis),
       acknowledged: (response, sent, answered) => this.frames.acknowledged(response, sent, answered),
@@ -174,12 +171,12 @@ export class SecondView {
     };
   }
 
-  private show(bodies: Body[], deformableNames: ReadonlySet<string>): void {
-    const deformable = bodies.filter(({ name }) => deformableNames.has(name));
+  private show(bodies: Body[], tissueNames: ReadonlySet<string>): void {
+    const tissue = bodies.filter(({ name }) => tissueNames.has(name));
     this.frames.start(bodies);
     this.viewer.show(bodies);
-    this.colorizer.start(deformable);
-    this.ghosts.start(deformable);
+    this.colorizer.start(tissue);
+    this.ghosts.start(tissue);
     this.followCamera();
     this.applyLayerStyles();
   }

@@ -14,7 +14,7 @@ export interface LayerStyle {
 /** The styles of all layers in the order of the scene. */
 export class LayerStyles {
   readonly all = new Signal<LayerStyle[]>([]);
-  /** The layer with the most simulated vertices. */
+  /** The layer with the most vertices of tissue. */
   mainLayer = "";
 
   /** Starts another scene with the styles that it defines. */
@@ -40,9 +40,9 @@ export class LayerStyles {
 
 function mainLayer(report: CompileReport): string {
   const counts = new Map<string, number>();
-  for (const { name, layer, simulatedVertices } of report.bodies) {
+  for (const { name, layer, tissue, vertices } of report.bodies) {
     const key = layer || name;
-    counts.set(key, (counts.get(key) ?? 0) + Number(simulatedVertices));
+    counts.set(key, (counts.get(key) ?? 0) + (tissue ? Number(vertices) : 0));
   }
   return [...counts].sort((a, b) => b[1] - a[1])[0]?.[0] ?? "";
 }

@@ -1,0 +1,88 @@
+#include "server/anatomy/inner_cage.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "server/anatomy/diaphragm_shape.h"
+#include "server/anatomy/dimensions.h"
+
+namespace phrenic::anatomy {
+namespace {
+
+constexpr double kHeight = 396;   // [mm]
+constexpr double kQuarter = 144;  // of the circumference [mm]
+
+struct Grid {
+  int rows, columns;
+  int Vertex(int i, int j) const { return j * columns + i % columns; }
+  // Returns the point of the cage at fractions of columns and rows.
+  Eigen::Vector3d At(double i, double j) const {
+    const double azimuth = 2 * std::numbers::pi * i / columns, z = kHeight * j / (rows - 1);
+    const Eigen::Vector2d xy = CageSection(z, kDiaphragmInset).Point({std::sin(azimuth), -std::cos(azimuth)});
+    return {xy.x(), xy.y(), z};
+  }
+};
+
+Grid GridFor(double edge_length) {
+  const auto parts = [edge_length](double length) { return static_cast<int>(std::lround(length / edge_length)); };
+  return {std::max(2, 1 + parts(kHeight)), 4 * std::max(2, parts(kQuarter))};
+}
+
+// Returns the point of vertex (i, j), moved outwards by the sag of the chords at it, so that no chord is inside the
+// cage. Concave parts are not moved.
+Eigen::Vector3d AroundCage(const Grid& grid, int i, int j) {
+  constexpr double kMore = 1.02;  // what is between is not quite a parabola
+  const Eigen::Vector3d at = grid.At(i, j), left = grid.At(i + 1, j), right = grid.At(i - 1, j);
+  const Eigen::Vector3d outwards = (left - right).cross(Eigen::Vector3d::UnitZ()).normalized();
+  const auto sag = [&](const Eigen::Vector3d& middle, const Eigen::Vector3d& end) {
+    return std::max(0.0, outwards.dot(middle - (at + end) / 2));
+  };
+  const double across = std::max(sag(grid.At(i + 0.5, j), left), sag(grid.At(i - 0.5, j), right));
+  double upwards = 0;
+  if (j > 0) upwards = sag(grid.At(i, j - 0.5), grid.At(i, j - 1));
+  if (j + 1 < grid.rows) upwards = std::max(upwards, sag(grid.At(i, j + 0.5), grid.At(i, j + 1)));
+  return at + kMore * (across + upwards) * outwards;
+}
+
+Points Positions(const Grid& grid) {
+  Points points(3, grid.rows * grid.columns);
+  for (int j = 0; j < grid.rows; ++j) {
+    for (int i = 0; i < grid.columns; ++i) points.col(grid.Vertex(i, j)) = AroundCage(grid, i, j);
+  }
+  return points;
+}
+
+Triangles Faces(const Grid& grid) {
+  Triangles triangles(3, 2 * (grid.rows - 1) * grid.columns);
+  Eigen::Index t = 0;
+  for (int j = 0; j + 1 < grid.rows; ++j) {
+    for (int i = 0; i < grid.columns; ++i) {
+      const int a = grid.Vertex(i, j), b = grid.Vertex(i + 1, j);
+      const int c = grid.Vertex(i + 1, j + 1), d = grid.Vertex(i, j + 1);
+      const bool left = i < grid.columns / 2;
+      triangles.col(t++) << a, b, (left ? c : d);
+      triangles.col(t++) << (left ? a : b), c, d;
+    }
+  }
+  return triangles;
+}
+
+}  // namespace
+
+Mesh InnerCage(double edge_length) {
+  const Grid grid = GridFor(edge_length);
+  Mesh mesh;
+  mesh.vertices = Positions(grid);
+  mesh.triangles = Faces(grid);
+  for (const auto& [name, row] : {std::pair("bottom", 0), std::pair("top", grid.rows - 1)}) {
+    std::vector<int>& region = mesh.regions[name];
+    region.resize(static_cast<size_t>(grid.columns));
+    std::iota(region.begin(), region.end(), grid.Vertex(0, row));
+  }
+  return mesh;
+}
+
+}  // namespace phrenic::anatomy
