@@ -53,8 +53,6 @@ const ForceCase kForces[] = {
      true},
     {"muscle", MUSCLE " precision: PRECISION_DOUBLE }", true},
     {"muscle_single", MUSCLE " }", true, false, 1e-4},
-    {"muscle_balanced", MUSCLE " precision: PRECISION_DOUBLE balanced_at_rest: true greatest_resting_tension: 2 }",
-     false},
     {"friction", "friction { bodies: 'sheet' rate: 2 }", false},
     {"gravity", "gravity { bodies: 'sheet' acceleration { z: -9.81 } }", false},
     {"action_line_cylinder",
@@ -147,6 +145,7 @@ TEST_P(ForceContract, AddsAndNeverClears) {
 
 TEST_P(ForceContract, IsMinusEnergyGradient) {
   if (!force().conservative()) GTEST_SKIP() << "has no energy";
+  state_.v.setZero();  // viscosity is not part of the energy
   const Points f = ForceAt(state_);
   for (Eigen::Index i = 0; i < state_.x.size(); ++i) {
     constexpr double kStep = 1e-6;

@@ -62,12 +62,10 @@ std::vector<int> OriginsOnBorder(const Mesh& mesh, const Eigen::VectorXd& height
   std::stable_sort(by_height.begin(), by_height.end(), [&](int a, int b) { return height[a] < height[b]; });
   const std::vector<int> down = SteepestDescent(mesh, height);
   for (const int i : by_height) {  // whatever is lower has its origin already
-    if (position[i] >= 0) {
-      origin[i] = position[i];
-    } else if (down[i] != i) {
+    if (down[i] != i) {
       origin[i] = origin[down[i]];
     } else {
-      origin[i] = position[border[nearest.Nearest(mesh.vertices.col(i)).vertex]];
+      origin[i] = position[i] >= 0 ? position[i] : position[border[nearest.Nearest(mesh.vertices.col(i)).vertex]];
     }
   }
   return origin;

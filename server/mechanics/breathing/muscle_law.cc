@@ -13,7 +13,8 @@ constexpr double kHalfRise = 0.13;     // of the largest rate: where lengthening
 TensionAt ActiveAt(const MuscleLaw& law, double active, double stretch) {
   const double s = std::clamp((stretch / law.optimal - 1) / law.width, -1.0, 1.0);
   const double ds = 1 / (law.optimal * law.width);
-  return {active * (1 - s * s), -2 * active * s * ds, active * (s - s * s * s / 3) / ds};
+  const bool overlaps = s > -1 && s < 1;
+  return {active * (1 - s * s), overlaps ? -2 * active * s * ds : 0, active * (s - s * s * s / 3) / ds};
 }
 
 TensionAt RestingAt(const MuscleLaw& law, double resting, double stretch) {

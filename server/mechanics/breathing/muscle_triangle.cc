@@ -8,6 +8,7 @@ namespace phrenic {
 namespace {
 
 constexpr double kConstant = 1e-6;  // a height is constant if its gradient is smaller [1/m]
+constexpr double kFacing = 0.9;     // cosine of the angle within which a triangle faces an axis
 // Of the active tension at force-length 1: its steepest slope in a breath (at a stretch of 0.7), and the tension over
 // the stretch at that.
 constexpr double kActiveSlope = 2, kActiveTransverse = 0.6;
@@ -70,6 +71,12 @@ TensionAt Across(const MuscleTriangle& triangle, const MuscleLaw& law, double st
   return LinearAt(law.LinearOf(triangle.tissue), triangle.resting_across, stretch);
 }
 
+// Returns the unit vector in a plane that is nearest to an axis.
+Eigen::Vector3d AlongAxis(const Eigen::Vector3d& normal) {
+  const Eigen::Vector3d axis = Eigen::Vector3d::Unit(std::abs(normal.x()) < kFacing ? 0 : 1);
+  return (axis - axis.dot(normal) * normal).normalized();
+}
+
 }  // namespace
 
 MuscleTriangle MakeMuscleTriangle(const ConstPoints& rest, const Eigen::Vector3i& vertices,
@@ -86,7 +93,7 @@ MuscleTriangle MakeMuscleTriangle(const ConstPoints& rest, const Eigen::Vector3i
   Eigen::Matrix3d gradients;
   for (int i = 0; i < 3; ++i) gradients.col(i) = normal.cross(side(i)) / twice.norm();
   const Eigen::Vector3d uphill = gradients * height;
-  triangle.f = uphill.norm() < kConstant ? side(2).normalized() : uphill.normalized();
+  triangle.f = uphill.norm() < kConstant ? AlongAxis(normal) : uphill.normalized();
   triangle.c = normal.cross(triangle.f);
   triangle.along = gradients.transpose() * triangle.f;
   triangle.across = gradients.transpose() * triangle.c;

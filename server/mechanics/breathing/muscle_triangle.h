@@ -22,8 +22,8 @@ struct MuscleTriangle {
   int bundle = 0;  // of fibres; 0 if it is not muscle
 };
 
-// Returns the triangle of these vertices, with f along the gradient of `height` (of each vertex), or along its first
-// edge if that is constant. Resting tensions are 0.
+// Returns the triangle of these vertices, with f along the gradient of `height` (of each vertex); if that is constant,
+// as in tendon, as near as possible to the x axis, or to the y axis if the triangle faces x. Resting tensions are 0.
 MuscleTriangle MakeMuscleTriangle(const ConstPoints& rest, const Eigen::Vector3i& vertices,
                                   const Eigen::Vector3d& height);
 

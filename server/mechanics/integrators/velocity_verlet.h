@@ -2,7 +2,9 @@
 // 1983): positions are projected after the drift and velocities after the second kick.
 //
 // Order 2, symplectic; stable for dt < 2/omega_max [rad/s] at any friction: half of it is applied explicitly at the
-// start and half implicitly at the end. One evaluation of the forces per step: State::history keeps that at the end.
+// start and half implicitly at the end. Viscosity (Force::AddViscosity) acts with the velocities of half a step before:
+// it is of order 1 and limits the step as in semi-implicit Euler. One evaluation of the forces per step: State::history
+// keeps that at the end.
 #ifndef PHRENIC_SERVER_MECHANICS_INTEGRATORS_VELOCITY_VERLET_H_
 #define PHRENIC_SERVER_MECHANICS_INTEGRATORS_VELOCITY_VERLET_H_
 
@@ -15,6 +17,7 @@ class VelocityVerlet final : public Integrator {
   std::string_view name() const override { return "velocity Verlet"; }
   int order() const override { return 2; }
   double MaxStep(const Spectrum& spectrum) const override;
+  Damping counted_damping() const override { return Damping::kViscosity; }
   absl::Status Advance(const StepPlan& plan, const v1::Parameters& parameters, double dt, State& state,
                        Workspace& work) const override;
 };
