@@ -8,7 +8,7 @@
 namespace phrenic {
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
+constexpr double kFullTurn = 2 * std::numbers::pi;
 constexpr int kAzimuths = 96, kHeights = 80;  // of the table
 constexpr double kLeastRadius = 1e-6;           // below it a point has no azimuth [m]
 constexpr int kLevels = 60;                     // of the wall between a loop and its top
@@ -27,7 +27,7 @@ struct Cell {
 };
 
 Cell CellAt(double azimuth, double height) {
-  const double column = azimuth * kAzimuths / kTurn, row = std::clamp(height * (kHeights - 1), 0.0, kHeights - 1.0);
+  const double column = azimuth * kAzimuths / kFullTurn, row = std::clamp(height * (kHeights - 1), 0.0, kHeights - 1.0);
   const int left = std::min(static_cast<int>(column), kAzimuths - 1), below = std::min(static_cast<int>(row), kHeights - 2);
   const int right = (left + 1) % kAzimuths, low = below * kAzimuths, high = low + kAzimuths;
   return {low + left, low + right, high + left, high + right, column - left, row - below, height > 0 && height < 1};
@@ -45,8 +45,8 @@ absl::StatusOr<InnerWall> InnerWall::Make(const Points& rest, const std::vector<
   InnerWall wall(*grid);
   wall.rest_ = rest;
   wall.moved_ = moved;
-  wall.bottom_ = rest.row(2).minCoeff();
-  wall.height_ = rest.row(2).maxCoeff() - wall.bottom_;
+  wall.bottom_ = rest(2, 0);
+  wall.height_ = rest(2, grid->columns() * (grid->star_rows() - 1)) - wall.bottom_;
   wall.Tabulate();
   return wall;
 }
@@ -56,7 +56,7 @@ void InnerWall::Tabulate() {
   radius_.resize(kAzimuths * kHeights);
   for (auto& coefficient : change_) coefficient.resize(radius_.size());
   for (int entry = 0; entry < kAzimuths * kHeights; ++entry) {
-    const double azimuth = kTurn * (entry % kAzimuths) / kAzimuths;
+    const double azimuth = kFullTurn * (entry % kAzimuths) / kAzimuths;
     const double z = bottom_ + height_ * (entry / kAzimuths) / (kHeights - 1);
     const GridCoordinates there = grid_.Locate(rest_, azimuth, z, grid_.Guess(rest_, azimuth, z));
     radius_[entry] = grid_.Polar(grid_.At(rest_, there)).radius;
@@ -90,7 +90,7 @@ WallGap InnerWall::Gap(const WallTable& table, const Eigen::Vector3d& point) con
   const double r = std::max(polar.radius, kLeastRadius);
   const Eigen::Vector3d outward(std::sin(polar.azimuth), -std::cos(polar.azimuth), 0);
   const Eigen::Vector3d around(std::cos(polar.azimuth), std::sin(polar.azimuth), 0);
-  const double by_azimuth = cell.ByU(table.radius) * kAzimuths / kTurn;
+  const double by_azimuth = cell.ByU(table.radius) * kAzimuths / kFullTurn;
   const double by_z = cell.inside ? cell.ByV(table.radius) * (kHeights - 1) / height_ : 0;
   return {.gap = polar.radius - cell.Value(table.radius),
           .gradient = outward - by_azimuth / r * around - by_z * Eigen::Vector3d::UnitZ(),

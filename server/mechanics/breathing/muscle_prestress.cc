@@ -6,11 +6,11 @@
 namespace phrenic {
 namespace {
 
-constexpr int kIterations = 600;
+constexpr int kBalanceIterations = 600;
 constexpr int kPowers = 30;               // products of the power iteration
-constexpr float kSafety = 1.1F;           // of its result
+constexpr float kNormMargin = 1.1F;           // of its result
 constexpr float kRegularisation = 3e-3F;  // of the largest eigenvalue
-constexpr float kSettled = 1e-5F;         // of the greatest tension: an iteration that changes less is the last
+constexpr float kBalanced = 1e-5F;         // of the greatest tension: an iteration that changes less is the last
 constexpr double kLeastAlong = 0.15, kLeastAcross = 0.1;  // of the tensions to begin with
 constexpr double kGreatestAcross = 0.7;                   // of the greatest tension along
 constexpr float kContactStep = 0.5F;
@@ -35,9 +35,9 @@ float Product(const Four& a, const Four& b) { return a[0] * b[0] + (a[1] * b[1] 
 
 Four ToFour(const Eigen::Vector3d& v) { return Eigen::Vector4d(v[0], v[1], v[2], 0).cast<float>(); }
 
-class Search {
+class TensionSearch {
  public:
-  Search(const RestingLoad& resting, double greatest, const std::vector<MuscleTriangle>& triangles);
+  TensionSearch(const RestingLoad& resting, double greatest, const std::vector<MuscleTriangle>& triangles);
 
   int Run();
   const std::vector<Pair>& tensions() const { return last_; }
@@ -64,7 +64,7 @@ class Search {
   float largest_ = 0, scale_ = 0;
 };
 
-Search::Search(const RestingLoad& resting, double greatest, const std::vector<MuscleTriangle>& triangles) {
+TensionSearch::TensionSearch(const RestingLoad& resting, double greatest, const std::vector<MuscleTriangle>& triangles) {
   const Eigen::Index n = resting.area.size();
   contact_.assign(n, 0);
   scale_ = static_cast<float>(greatest);
@@ -95,7 +95,7 @@ Search::Search(const RestingLoad& resting, double greatest, const std::vector<Mu
   residual_.resize(n);
 }
 
-void Search::AddForces(const std::vector<Pair>& tensions, Fours& residual) const {
+void TensionSearch::AddForces(const std::vector<Pair>& tensions, Fours& residual) const {
   for (size_t t = 0; t < rows_.size(); ++t) {
     const Row& row = rows_[t];
     const Four f = tensions[t].along * row.f, c = tensions[t].across * row.c;
@@ -103,7 +103,7 @@ void Search::AddForces(const std::vector<Pair>& tensions, Fours& residual) const
   }
 }
 
-Pair Search::Columns(const Row& row, const Fours& residual) {
+Pair TensionSearch::Columns(const Row& row, const Fours& residual) {
   Four f = Four::Zero(), c = f;
   for (int i = 0; i < 3; ++i) {
     const Four& r = residual[row.vertices[i]];
@@ -112,7 +112,7 @@ Pair Search::Columns(const Row& row, const Fours& residual) {
   return {-Product(row.f, f), -Product(row.c, c)};
 }
 
-float Search::LargestEigenvalue() const {
+float TensionSearch::LargestEigenvalue() const {
   std::vector<Pair> vector(rows_.size(), Pair{1, 1});
   Fours product(residual_.size());
   float largest = 0;
@@ -133,17 +133,17 @@ float Search::LargestEigenvalue() const {
     }
     largest = static_cast<float>(sum);
   }
-  return kSafety * largest;
+  return kNormMargin * largest;
 }
 
-void Search::FindResidual() {
+void TensionSearch::FindResidual() {
   residual_ = load_;
   for (const int i : contacts_) residual_[i] -= contact_[i] * normal_[i];
   AddForces(ahead_, residual_);
 }
 
 // Returns the largest change [N/m].
-float Search::MoveTensions(float momentum) {
+float TensionSearch::MoveTensions(float momentum) {
   float change = 0;
   const auto move = [&](float gradient, float start, float least, float greatest, float& last, float& ahead) {
     const float moved = std::clamp(ahead - (gradient / largest_ + kRegularisation * (ahead - start)), least, greatest);
@@ -159,32 +159,32 @@ float Search::MoveTensions(float momentum) {
   return change;
 }
 
-void Search::MoveContacts() {
+void TensionSearch::MoveContacts() {
   for (const int i : contacts_) {
     const float along = Product(residual_[i], normal_[i]) / (root_[i] * root_[i]);
     contact_[i] = std::max(0.0F, contact_[i] + kContactStep * along);
   }
 }
 
-int Search::Run() {
+int TensionSearch::Run() {
   largest_ = LargestEigenvalue();
   if (!(largest_ > 0)) return 0;
   float weight = 1;
-  for (int iteration = 1; iteration <= kIterations; ++iteration) {
+  for (int iteration = 1; iteration <= kBalanceIterations; ++iteration) {
     FindResidual();
     const float next = (1 + std::sqrt(1 + 4 * weight * weight)) / 2;
     const float change = MoveTensions((weight - 1) / next);
     weight = next;
     MoveContacts();
-    if (change <= kSettled * scale_) return iteration;
+    if (change <= kBalanced * scale_) return iteration;
   }
-  return kIterations;
+  return kBalanceIterations;
 }
 
 }  // namespace
 
 PrestressReport ChoosePrestress(const RestingLoad& resting, double greatest, std::vector<MuscleTriangle>& triangles) {
-  Search search(resting, greatest, triangles);
+  TensionSearch search(resting, greatest, triangles);
   PrestressReport report{.iterations = search.Run(), .along = 0, .across = 0, .contact = {}};
   double area = 0;
   for (size_t t = 0; t < triangles.size(); ++t) {

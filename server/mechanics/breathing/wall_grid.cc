@@ -11,9 +11,10 @@ namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kSameHeight = 1e-6;  // [m]
-constexpr int kNewtonSteps = 25;
+constexpr int kAxes = 20;             // places of the axis that are tried
+constexpr int kLocateSteps = 25;
 constexpr double kLocated = 1e-7;  // of a column and a row
-constexpr double kLongestStep = 3;  // of columns in a step of Newton's method
+constexpr double kMostColumns = 3;  // of columns in a step of Newton's method
 
 double Wrapped(double angle) { return angle - kTurn * std::floor((angle + std::numbers::pi) / kTurn); }
 
@@ -37,16 +38,28 @@ absl::StatusOr<WallGrid> WallGrid::Find(const Points& rest) {
   if (grid.columns_ < 8 || rest.cols() % grid.columns_ != 0) return NoGrid("its rows differ in length");
   grid.rows_ = static_cast<int>(rest.cols()) / grid.columns_;
   if (grid.rows_ < 2) return NoGrid("it has one row");
-  const int middle = grid.rows_ / 2 * grid.columns_;
-  grid.axis_y_ = (rest(1, middle) + rest(1, middle + grid.columns_ / 2)) / 2;
   for (int i = 0; i < rest.cols(); ++i) {
     const int next = i / grid.columns_ * grid.columns_ + (i + 1) % grid.columns_;
     if (std::abs(rest(2, i) - rest(2, next)) > kSameHeight) return NoGrid("a row is not horizontal");
-    if (!(Wrapped(grid.Polar(rest.col(next)).azimuth - grid.Polar(rest.col(i)).azimuth) > 0)) {
-      return NoGrid("a row turns back around the vertical axis");
-    }
   }
-  return grid;
+  const int middle = grid.rows_ / 2 * grid.columns_;
+  const double front = rest(1, middle), back = rest(1, middle + grid.columns_ / 2);
+  WallGrid best = grid;
+  for (int i = 1; i < kAxes; ++i) {
+    grid.axis_y_ = front + (back - front) * i / kAxes;
+    grid.star_rows_ = grid.StarRows(rest);
+    if (grid.star_rows_ > best.star_rows_) best = grid;
+  }
+  if (best.star_rows_ < 2) return NoGrid("its rows turn back around the vertical axis");
+  return best;
+}
+
+int WallGrid::StarRows(const Points& rest) const {
+  for (int i = 0; i < rest.cols(); ++i) {
+    const int next = i / columns_ * columns_ + (i + 1) % columns_;
+    if (!(Wrapped(Polar(rest.col(next)).azimuth - Polar(rest.col(i)).azimuth) > 0)) return i / columns_;
+  }
+  return rows_;
 }
 
 PolarPoint WallGrid::Polar(const Eigen::Vector3d& point) const {
@@ -74,14 +87,14 @@ GridCoordinates WallGrid::Guess(const Points& rest, double azimuth, double z) co
 
 GridCoordinates WallGrid::Locate(const Points& grid, double azimuth, double z, const GridCoordinates& guess) const {
   GridCoordinates at = guess;
-  for (int step = 0; step < kNewtonSteps; ++step) {
+  for (int step = 0; step < kLocateSteps; ++step) {
     const PolarPoint here = Polar(At(grid, at));
     const PolarPoint left = Polar(At(grid, {at.column - 0.5, at.row}));
     const PolarPoint right = Polar(At(grid, {at.column + 0.5, at.row}));
     const double around = std::max(Wrapped(right.azimuth - left.azimuth), 0.1 * kTurn / columns_);
     const double low = std::clamp(at.row - 0.5, 0.0, rows_ - 2.0);
     const double up = At(grid, {at.column, low + 1}).z() - At(grid, {at.column, low}).z();
-    const double columns = std::clamp(Wrapped(azimuth - here.azimuth) / around, -kLongestStep, kLongestStep);
+    const double columns = std::clamp(Wrapped(azimuth - here.azimuth) / around, -kMostColumns, kMostColumns);
     const double row = std::clamp(at.row + (up > 0 ? (z - here.z) / up : 0), 0.0, rows_ - 1.0);
     const bool done = std::abs(columns) < kLocated && std::abs(row - at.row) < kLocated;
     at = {at.column + columns, row};

@@ -21,12 +21,15 @@ struct PolarPoint {
 // The layout of a grid: vertices row by row from below, each row once around from the front towards +x. Immutable.
 class WallGrid {
  public:
-  // Finds the columns, rows and axis of a grid at rest, whose rows are horizontal. The axis is half way between front and
-  // back of the middle row at x = 0. INVALID_ARGUMENT if the points are no such grid or a row turns back around the axis.
+  // Finds the columns, rows and axis of a grid at rest, whose rows are horizontal. The axis lies at x = 0 between front
+  // and back, where the most rows from below go around it without turning back. INVALID_ARGUMENT if the points are no
+  // such grid.
   static absl::StatusOr<WallGrid> Find(const Points& rest);
 
   int columns() const { return columns_; }
   int rows() const { return rows_; }
+  // Rows from below that each azimuth meets once: only in those do Locate and Polar agree.
+  int star_rows() const { return star_rows_; }
   PolarPoint Polar(const Eigen::Vector3d& point) const;
   // Returns the point of a grid at fractions of columns, which wrap around, and of rows, which are clamped.
   Eigen::Vector3d At(const Points& grid, const GridCoordinates& at) const;
@@ -36,7 +39,9 @@ class WallGrid {
   GridCoordinates Guess(const Points& rest, double azimuth, double z) const;
 
  private:
-  int columns_ = 0, rows_ = 0;
+  int StarRows(const Points& rest) const;
+
+  int columns_ = 0, rows_ = 0, star_rows_ = 0;
   double axis_y_ = 0;  // [m]
 };
 

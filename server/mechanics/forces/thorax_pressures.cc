@@ -10,7 +10,7 @@
 namespace phrenic {
 namespace {
 
-constexpr std::array<Force::Output, 8> kPressureOutputs = {{{"volume", "m^3"},
+constexpr std::array<Force::Output, 8> kThoraxOutputs = {{{"volume", "m^3"},
                                                             {"flow", "m^3/s"},
                                                             {"pleural_pressure_right", "Pa"},
                                                             {"pleural_pressure_left", "Pa"},
@@ -218,7 +218,7 @@ double ThoraxPressures::Energy(const EvalContext& at) const {
   return energy + (scene_.pleural_pressure() + scene_.transdiaphragmatic_pressure()) * v;
 }
 
-std::span<const Force::Output> ThoraxPressures::outputs() const { return kPressureOutputs; }
+std::span<const Force::Output> ThoraxPressures::outputs() const { return kThoraxOutputs; }
 
 double ThoraxPressures::Read(size_t output, const EvalContext& at) const {
   Slopes& slopes = at.scratch.Get<Slopes>();
