@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kSameHeight = 1e-6;  // [m]
-constexpr int kAxes = 20;             // places of the axis that are tried
+constexpr int kAxisTries = 20;             // places of the axis that are tried
 constexpr int kLocateSteps = 25;
 constexpr double kLocated = 1e-7;  // of a column and a row
 constexpr double kMostColumns = 3;  // of columns in a step of Newton's method
@@ -45,8 +45,8 @@ absl::StatusOr<WallGrid> WallGrid::Find(const Points& rest) {
   const int middle = grid.rows_ / 2 * grid.columns_;
   const double front = rest(1, middle), back = rest(1, middle + grid.columns_ / 2);
   WallGrid best = grid;
-  for (int i = 1; i < kAxes; ++i) {
-    grid.axis_y_ = front + (back - front) * i / kAxes;
+  for (int i = 1; i < kAxisTries; ++i) {
+    grid.axis_y_ = front + (back - front) * i / kAxisTries;
     grid.star_rows_ = grid.StarRows(rest);
     if (grid.star_rows_ > best.star_rows_) best = grid;
   }
