@@ -152,7 +152,7 @@ class GuardedWebEdge : public WebEdge {
   GuardedWebEdge() {
     options_.accounts.tokens_file = absl::StrCat(testing::TempDir(), "/phrenic-edge-accounts-", getpid());
     options_.max_message_bytes = 1 << 20;
-    options_.idle_seconds = 3;
+    options_.idle_seconds = 5;
     std::filesystem::remove(options_.accounts.tokens_file);
     for (const char* name : {"anna", "ben"}) {
       tokens_[name] = *access::AddToken(options_.accounts.tokens_file, {name, v1::ACCESS_ROLE_OWNER});
@@ -203,7 +203,7 @@ TEST_F(GuardedWebEdge, OneCallersUnfinishedBodiesLeaveRoomForOthers) {
     sockets.push_back(std::make_unique<RawSocket>(server_->web_port()));
     sockets.back()->Send(start);
   }
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));  // until both heads are judged; no proof
+  std::this_thread::sleep_for(std::chrono::milliseconds(1000));  // until both heads are judged; no proof
   RawSocket third(server_->web_port());
   const auto refused = third.Ask(start);
   ASSERT_TRUE(refused.has_value());

@@ -48,7 +48,7 @@ class ForwardedCall final : public grpc::ServerGenericBidiReactor, public std::e
   SessionRouter& router_;
   grpc::GenericCallbackServerContext& context_;
   const std::string method_, peer_;
-  const Metadata metadata_;
+  const SessionRouter::Metadata metadata_;
   std::shared_ptr<ForwardedCall> self_;  // keeps the reactor alive until OnDone
   grpc::ByteBuffer request_, outgoing_;
   SessionRouter::Route route_;

@@ -28,6 +28,8 @@ namespace phrenic::service {
 // others in turn. List methods go to all servers. A forwarded call is never forwarded again. Thread-safe.
 class SessionRouter {
  public:
+  using Metadata = service::Metadata;
+
   struct Target {
     std::shared_ptr<grpc::GenericStub> stub;
     std::string address;  // "HOST:PORT"; empty: this server

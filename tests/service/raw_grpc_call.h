@@ -1,6 +1,6 @@
-// A raw HTTP/2 client (RFC 9113) for requests that gRPC's own client does not send.
-#ifndef PHRENIC_TESTS_SERVICE_RAW_HTTP2_H_
-#define PHRENIC_TESTS_SERVICE_RAW_HTTP2_H_
+// One call over raw HTTP/2 (RFC 9113), for headers that gRPC's own client does not send.
+#ifndef PHRENIC_TESTS_SERVICE_RAW_GRPC_CALL_H_
+#define PHRENIC_TESTS_SERVICE_RAW_GRPC_CALL_H_
 
 #include "tests/service/raw_socket.h"
 // After Boost, which needs <utility> first.
@@ -72,4 +72,4 @@ inline bool AwaitEndOfStream(RawSocket& socket) {
 
 }  // namespace phrenic::service
 
-#endif  // PHRENIC_TESTS_SERVICE_RAW_HTTP2_H_
+#endif  // PHRENIC_TESTS_SERVICE_RAW_GRPC_CALL_H_
