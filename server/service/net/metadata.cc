@@ -17,17 +17,17 @@ namespace {
 constexpr std::size_t kEntryBytes = 32, kShownBytes = 64;
 constexpr std::int64_t kYear = 366LL * 24 * 3600;  // [s]
 
-grpc_slice View(const std::string& text) { return grpc_slice_from_static_buffer(text.data(), text.size()); }
+grpc_slice SliceOf(const std::string& text) { return grpc_slice_from_static_buffer(text.data(), text.size()); }
 
 absl::Status Illegal(const std::string& name, const char* what) {
   return absl::InvalidArgumentError(absl::StrCat(absl::CHexEscape(name.substr(0, kShownBytes)), ": ", what));
 }
 
 absl::Status CheckEntry(const std::string& name, const std::string& value) {
-  if (grpc_header_key_is_legal(View(name)) == 0 || absl::StartsWith(name, "grpc-")) {
+  if (grpc_header_key_is_legal(SliceOf(name)) == 0 || absl::StartsWith(name, "grpc-")) {
     return Illegal(name, "not a legal name of a header; use letters, digits, \"_\", \"-\" and \".\"");
   }
-  if (grpc_is_binary_header(View(name)) != 0 || grpc_header_nonbin_value_is_legal(View(value)) != 0) {
+  if (grpc_is_binary_header(SliceOf(name)) != 0 || grpc_header_nonbin_value_is_legal(SliceOf(value)) != 0) {
     return absl::OkStatus();
   }
   return Illegal(name, "its value has a character that is not printable ASCII; remove it");
