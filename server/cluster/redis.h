@@ -10,6 +10,7 @@
 
 #include "absl/status/statusor.h"
 #include "absl/time/time.h"
+#include "server/cluster/redis_tls_files.h"
 
 struct redisContext;
 struct redisReply;
@@ -17,12 +18,6 @@ struct redisReply;
 namespace phrenic::cluster {
 
 class RedisTls;
-
-// PEM files of connections to Redis with TLS.
-struct RedisTlsFiles {
-  std::string ca;                // of Redis' certificate; empty: the authorities that the system trusts
-  std::string certificate, key;  // of this server, which Redis may require; empty: none
-};
 
 struct RedisAddress {
   std::string host;

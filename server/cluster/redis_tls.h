@@ -9,9 +9,10 @@
 #include <string>
 
 #include "absl/status/statusor.h"
-#include "server/cluster/redis.h"
+#include "server/cluster/redis_tls_files.h"
 
 struct redisReader;
+struct redisReply;
 
 namespace phrenic::cluster {
 
