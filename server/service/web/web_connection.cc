@@ -24,6 +24,7 @@ constexpr std::size_t kReadBytes = 4 << 10;
 constexpr std::size_t kMaxPipelinedBytes = 64 << 10;  // of requests sent before the current one is answered
 constexpr std::size_t kSmallBodyBytes = 64 << 10;     // bodies that anybody may send, and that no budget counts
 constexpr std::chrono::seconds kLingerTime(2);
+constexpr std::size_t kLingerBytes = 1 << 20;
 
 std::string_view View(beast::string_view text) { return {text.data(), text.size()}; }
 
@@ -294,15 +295,15 @@ void WebConnection::Linger() {
   body_share_.reset();
   parser_.reset();
   stream_.tcp().expires_after(kLingerTime);
-  DiscardInput();
+  DiscardInput(kLingerBytes);
 }
 
-void WebConnection::DiscardInput() {
+void WebConnection::DiscardInput(std::size_t left) {
   buffer_.clear();
   stream_.tcp().async_read_some(buffer_.prepare(kReadBytes),
-                                [self = shared_from_this()](beast::error_code error, std::size_t) {
-                                  if (error) return self->Disconnect();
-                                  self->DiscardInput();
+                                [self = shared_from_this(), left](beast::error_code error, std::size_t bytes) {
+                                  if (error || bytes >= left) return self->Disconnect();
+                                  self->DiscardInput(left - bytes);
                                 });
 }
 
