@@ -98,8 +98,8 @@ absl::Status CheckConnection(const Context& context) {
   }
   const Metadata identity = MetadataOf(context);
   if (absl::Status status = service::CheckMetadata({identity.begin(), identity.end()}); !status.ok()) {
-    return absl::InvalidArgumentError(absl::StrCat(status.message(),
-                                                   " (--token-file, PHRENIC_TOKEN and PHRENIC_JOIN say who you are)"));
+    return absl::InvalidArgumentError(
+        absl::StrCat(status.message(), " (--token-file, PHRENIC_TOKEN and PHRENIC_JOIN say who you are)"));
   }
   if (context.tls_cert.empty() != context.tls_key.empty()) {
     return absl::InvalidArgumentError("--tls-cert, --tls-key: a client certificate needs both");

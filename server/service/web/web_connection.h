@@ -104,8 +104,8 @@ class WebConnection final : public std::enable_shared_from_this<WebConnection> {
   template <class Body>
   void Send(boost::beast::http::response<Body> response);
   void Disconnect();
-  // Ends the sending half and discards what still arrives, for a short time and up to a limit. A close with unread bytes would reset the
-  // connection and may lose the answer (RFC 9112 section 9.6).
+  // Ends the sending half and discards what still arrives, for a short time and up to a limit. A close with unread
+  // bytes would reset the connection and may lose the answer (RFC 9112 section 9.6).
   void Linger();
   void DiscardInput(std::size_t left);
 
