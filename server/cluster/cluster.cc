@@ -32,6 +32,7 @@ Cluster::Cluster(const RedisAddress& redis, std::string address)
 absl::StatusOr<std::unique_ptr<Cluster>> Cluster::Join(const ClusterOptions& options) {
   auto redis = ParseRedisAddress(options.redis);
   if (!redis.ok()) return redis.status();
+  redis->tls = options.tls;
   std::unique_ptr<Cluster> cluster(new Cluster(*redis, options.advertise));
   absl::MutexLock lock(&cluster->calls_mutex_);
   const auto answer = cluster->calls_.Run({"PING"});

@@ -21,8 +21,9 @@
 namespace phrenic::cluster {
 
 struct ClusterOptions {
-  std::string redis;      // "redis://HOST:PORT"; empty: not in a cluster
-  std::string advertise;  // "HOST:PORT" at which the other servers reach this server's gRPC
+  std::string redis;       // "redis://HOST:PORT" or "rediss://HOST:PORT"; empty: not in a cluster
+  std::string advertise;   // "HOST:PORT" at which the other servers reach this server's gRPC
+  RedisTlsFiles tls = {};  // of connections to a "rediss://" and, its CA, to the other servers
 };
 
 // Where a session is.

@@ -114,12 +114,20 @@ void AddAccess(CLI::App& app, Flags& flags) {
       .Add("allow-origin", options.allowed_origins,
            "Origins whose pages may call the server and frame the viewer, such as https://example.org")
       ->delimiter(',');
+  group
+      .Add("allow-host", options.allowed_hosts,
+           "Names by which browsers reach --web, such as phrenic.example.org, beside localhost, the address of this "
+           "machine and the names in --tls-cert")
+      ->delimiter(',');
   group.Add("tls-cert", options.tls.certificate, "Certificate chain in PEM; enables TLS for gRPC and web");
   group.Add("tls-key", options.tls.key, "Private key of the certificate in PEM");
   group.Add("tls-client-ca", options.tls.client_ca,
             "CA certificates in PEM; every client must have a certificate of one of them");
   group.AddFlag("insecure-listen", options.insecure_listen,
                 "Allow connections from other machines without TLS, which can be read and modified on the network");
+  group.AddFlag("unguarded-listen", options.unguarded_listen,
+                "Allow other machines to reach --listen without nginx in front of it, although one client can overload "
+                "gRPC itself");
   access::AccountOptions& accounts = options.accounts;
   group.Add("tokens", accounts.tokens_file, "Token file (phrenicd token add); with it every call requires an account");
   group.Add(
@@ -136,8 +144,12 @@ void AddAccess(CLI::App& app, Flags& flags) {
 void AddCluster(CLI::App& app, Flags& flags) {
   cluster::ClusterOptions& cluster = flags.options.cluster;
   Group group(app, "Cluster");
-  group.Add("cluster", cluster.redis, "redis://[:PASSWORD@]HOST:PORT of the cluster's Redis; empty: not in a cluster");
+  group.Add("cluster", cluster.redis,
+            "redis://[:PASSWORD@]HOST:PORT of the cluster's Redis, rediss:// with TLS; empty: not in a cluster");
   group.Add("advertise", cluster.advertise, "HOST:PORT at which the other servers of the cluster reach --listen");
+  group.Add(
+      "cluster-ca", cluster.tls.ca,
+      "CA certificates in PEM of the cluster's other servers and of a Redis with TLS; empty: those of the system");
 }
 
 }  // namespace

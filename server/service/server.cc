@@ -47,6 +47,12 @@ std::vector<std::string> SceneFolders(const ServerOptions& options) {
   return folders;
 }
 
+// Servers of a cluster check each other by the cluster's authority, else by that of their clients.
+std::shared_ptr<grpc::ChannelCredentials> PeerCredentials(const ServerOptions& options) {
+  return MakePeerCredentials(options.tls,
+                             options.cluster.tls.ca.empty() ? options.tls.client_ca : options.cluster.tls.ca);
+}
+
 int Milliseconds(double seconds) { return static_cast<int>(seconds * 1000); }
 
 // Sets keepalive (a dead peer is detected within 13 s), timeouts and limits. Two servers cannot share a port.
@@ -94,7 +100,7 @@ struct Server::Parts {
         models(session::SceneCatalogue(SceneFolders(options)), options.data_dir, options.limits.models, &uploads,
                options.limits.vertices),
         table(models, clock, options.limits, store.get(), cluster.get()),
-        router(cluster == nullptr ? nullptr : std::make_unique<SessionRouter>(*cluster)),
+        router(cluster == nullptr ? nullptr : std::make_unique<SessionRouter>(*cluster, PeerCredentials(options))),
         guard(*accounts, *audit, table, metrics, options.max_requests),
         pages(guard, metrics, table),
         scene_service(models, guard),
@@ -169,7 +175,10 @@ absl::StatusOr<Server::Parts::Opened> Server::Parts::Open(const ServerOptions& o
     opened.store = *std::move(store);
   }
   if (!options.cluster.redis.empty()) {
-    auto cluster = cluster::Cluster::Join(options.cluster);
+    cluster::ClusterOptions joining = options.cluster;
+    joining.tls.certificate = options.tls.certificate;
+    joining.tls.key = options.tls.key;
+    auto cluster = cluster::Cluster::Join(joining);
     if (!cluster.ok()) return cluster.status();
     opened.cluster = *std::move(cluster);
   }
@@ -264,16 +273,21 @@ absl::Status Server::Parts::Serve(const ServerOptions& options) {
 
 absl::Status Server::Parts::ServeWeb(const ServerOptions& options) {
   if (options.web.empty()) return absl::OkStatus();
-  constexpr std::size_t kBase64 = 2;  // base64 makes a body a third longer; rounded up
   const WebGateway::Options web_options = {
       .address = options.web,
-      .settings = {.root = options.web_root,
-                   .allowed_origins = options.allowed_origins,
-                   .max_body_bytes = kBase64 * static_cast<std::size_t>(options.max_message_bytes),
-                   .head_time = std::chrono::milliseconds(Milliseconds(options.head_seconds)),
-                   .idle_time = std::chrono::milliseconds(Milliseconds(options.idle_seconds)),
-                   .page = [this](std::string_view target,
-                                  std::string_view authorization) { return pages.Find(target, authorization); }},
+      .settings = {
+          .root = options.web_root,
+          .allowed_origins = options.allowed_origins,
+          .allowed_hosts = options.allowed_hosts,
+          .max_message_bytes = static_cast<std::size_t>(options.max_message_bytes),
+          .head_time = std::chrono::milliseconds(Milliseconds(options.head_seconds)),
+          .idle_time = std::chrono::milliseconds(Milliseconds(options.idle_seconds)),
+          .page = [this](std::string_view target,
+                         const WebSettings::Credentials& credentials) { return pages.Find(target, credentials); },
+          .known =
+              [this](const WebSettings::Credentials& credentials) {
+                return guard.Known(credentials.authorization, credentials.join);
+              }},
       .max_connections = static_cast<std::size_t>(options.max_connections),
       .tls = options.tls};
   grpc::ChannelArguments arguments;

@@ -230,6 +230,8 @@ TEST(RedisAddress, ReportsErrorsWithoutThePassword) {
   EXPECT_EQ(good->host, "10.0.0.1");
   EXPECT_EQ(good->port, 7000);
   EXPECT_EQ(good->password, "secret");
+  EXPECT_FALSE(good->encrypted);
+  EXPECT_TRUE(ParseRedisAddress("rediss://10.0.0.1")->encrypted);
   for (const char* bad :
        {"10.0.0.1:7000", "redis://", "redis://host:0", "redis://secret@host:1", "redis://:secret@:1"}) {
     const auto address = ParseRedisAddress(bad);

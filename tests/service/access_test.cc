@@ -277,10 +277,10 @@ class GuardedGateway : public GuardedServer {
   std::string TrailersOf(const std::string& headers) {
     RawSocket socket(server_->web_port());
     const std::string body = WebMessage("");
-    const auto response =
-        socket.Ask(absl::StrCat("POST /phrenic.v1.SessionService/ListSessions HTTP/1.1\r\nHost: x\r\nContent-Type: "
-                                "application/grpc-web+proto\r\n",
-                                headers, "Content-Length: ", body.size(), "\r\n\r\n", body));
+    const auto response = socket.Ask(
+        absl::StrCat("POST /phrenic.v1.SessionService/ListSessions HTTP/1.1\r\nHost: localhost\r\nContent-Type: "
+                     "application/grpc-web+proto\r\n",
+                     headers, "Content-Length: ", body.size(), "\r\n\r\n", body));
     EXPECT_TRUE(response.has_value());
     const auto frames = WebFrames(response.has_value() ? response->body() : "");
     return frames.empty() ? "" : frames.back().bytes;
@@ -297,7 +297,8 @@ TEST_F(GuardedGateway, TheHeadersIdentifyTheCaller) {
 TEST_F(GuardedGateway, MetricsRequireAnAdministrator) {
   const auto ask = [&](const std::string& page, const std::string& headers) {
     RawSocket socket(server_->web_port());
-    return socket.Ask("GET " + page + " HTTP/1.1\r\nHost: x\r\n" + headers + "\r\n").value_or(RawSocket::Response());
+    return socket.Ask("GET " + page + " HTTP/1.1\r\nHost: localhost\r\n" + headers + "\r\n")
+        .value_or(RawSocket::Response());
   };
   EXPECT_EQ(ask("/metrics", "").result_int(), 401u);
   EXPECT_EQ(ask("/metrics", "Authorization: Bearer " + tokens_["owner"] + "\r\n").result_int(), 401u);

@@ -186,6 +186,19 @@ absl::Status AccessGuard::CheckOwns(Kind kind, const std::string& id, const Call
   return absl::NotFoundError(absl::StrCat(what, id.substr(0, 80), "\" that belongs to you"));
 }
 
+std::optional<std::string> AccessGuard::Known(std::string_view authorization, std::string_view join) const {
+  constexpr int kMaxSessions = 1000;
+  if (!guarded()) return "";
+  if (const auto account = accounts_.Check(TokenOf(authorization)); account.ok()) return "account " + account->name;
+  Caller caller;
+  AddLinks(join, caller.links);
+  if (caller.links.empty()) return std::nullopt;
+  const auto sessions = table_.List(kMaxSessions, "").sessions;
+  const bool live =
+      std::any_of(sessions.begin(), sessions.end(), [&](const auto& session) { return MaySee(caller, *session); });
+  return live ? std::optional(caller.id()) : std::nullopt;
+}
+
 bool AccessGuard::IsAdmin(std::string_view authorization) const {
   if (!guarded()) return true;
   const auto account = accounts_.Check(TokenOf(authorization));

@@ -7,6 +7,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "absl/base/thread_annotations.h"
@@ -63,6 +64,9 @@ class AccessGuard {
 
   // True if an HTTP Authorization header has an administrator's token, or if the server has no accounts.
   bool IsAdmin(std::string_view authorization) const;
+  // Returns the name of a caller, given its Authorization and X-Join headers: of the account, or of a link to one of
+  // this server's sessions that has not expired. Empty if the server has no accounts; nullopt if the caller is unknown.
+  std::optional<std::string> Known(std::string_view authorization, std::string_view join) const;
 
  private:
   absl::StatusOr<access::Caller> Identify(const grpc::ServerContextBase& context) const;

@@ -40,7 +40,7 @@ void ForwardedCall::OnReadDone(bool ok) {
 }
 
 UpstreamCall::Request ForwardedCall::RequestTo(const SessionRouter::Target& target) const {
-  return {method_, request_, router_.MetadataFor(target, metadata_, peer_), context_.deadline()};
+  return {method_, request_, router_.MetadataFor(target, metadata_, peer_), DeadlineOf(context_)};
 }
 
 std::shared_ptr<UpstreamCall> ForwardedCall::upstream() const {
