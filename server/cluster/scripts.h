@@ -65,7 +65,7 @@ return {epoch, saved[1], saved[2], saved[3], saved[4], redis.call('HGETALL', 'ph
 
 // Arguments: address, lease [ms], "1" if this server takes sessions over, and pairs of id and epoch. Returns a number
 // for each pair: 1 if the lease is renewed, 2 if it is renewed but Redis had lost the session, 0 if another server has
-// it.
+// it or it was deleted.
 inline constexpr char kRenew[] = R"(
 local address, lease = ARGV[1], ARGV[2]
 if ARGV[3] == '1' then
@@ -80,7 +80,7 @@ for i = 4, #ARGV, 2 do
   local session = 'phrenic:session:' .. id
   local epoch = tonumber(redis.call('HGET', session, 'epoch') or -1)
   local answer = 0
-  if epoch == own then answer = 1 end
+  if epoch == own and redis.call('HEXISTS', session, 'deleted') == 0 then answer = 1 end
   if epoch < own then
     redis.call('HSET', session, 'epoch', own)
     answer = 2
@@ -94,11 +94,11 @@ end
 return answers)";
 
 // Arguments: id, epoch, scene or "", the state's sequence or "", its moment, the state, and pairs of sequence and
-// moment. Returns 1, or 0 if there is a later epoch.
+// moment. Returns 1, or 0 if there is a later epoch or the session was deleted.
 inline constexpr char kSave[] = R"(
 local id, own = ARGV[1], ARGV[2]
 local session, journal = 'phrenic:session:' .. id, 'phrenic:journal:' .. id
-if redis.call('HGET', session, 'epoch') ~= own then return 0 end
+if redis.call('HGET', session, 'epoch') ~= own or redis.call('HEXISTS', session, 'deleted') == 1 then return 0 end
 if ARGV[3] ~= '' then redis.call('HSET', session, 'scene', ARGV[3]) end
 if ARGV[4] ~= '' then
   redis.call('HSET', session, 'sequence', ARGV[4], 'last', ARGV[4], 'moment', ARGV[5], 'state', ARGV[6])
