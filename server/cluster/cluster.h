@@ -152,7 +152,8 @@ class Cluster final : public store::Ownership {
   Hooks hooks_;
   absl::Mutex calls_mutex_;
   Redis calls_ ABSL_GUARDED_BY(calls_mutex_);
-  Redis copies_;  // used by the store's thread
+  Redis copies_;             // used by the store's thread
+  std::int64_t writes_ = 0;  // of copies_
   const RedisAddress redis_;
 
   mutable absl::Mutex mutex_;

@@ -28,7 +28,7 @@ void Cluster::SetCopyIncomplete(const std::string& id, bool incomplete) {
 absl::StatusOr<std::int64_t> Cluster::WriteCopy(const std::string& id, std::vector<std::string> arguments) {
   const auto epoch = EpochOf(id);
   if (!epoch.has_value()) return 0;
-  arguments.insert(arguments.begin(), {id, std::to_string(*epoch)});
+  arguments.insert(arguments.begin(), {id, std::to_string(*epoch), std::to_string(++writes_)});
   const auto saved = copies_.Run(kSave, arguments);
   if (!saved.ok()) {
     SetCopyIncomplete(id, true);

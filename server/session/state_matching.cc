@@ -9,6 +9,7 @@
 #include "absl/strings/str_cat.h"
 #include "server/mechanics/constraint_residual.h"
 #include "server/mesh/nearest.h"
+#include "server/mesh/topology.h"
 #include "server/store/saved_state.h"
 
 namespace phrenic::session {
@@ -39,13 +40,25 @@ const v1::SavedBody* FindBody(const v1::SavedScene& scene, const std::string& na
 
 Eigen::Index CountOf(const BodyModel& body) { return body.mesh.vertices.cols(); }
 
-double MeanEdge(const BodyModel& body) {
-  if (body.mesh.edges.cols() == 0) return 0;
-  double sum = 0;
-  for (Eigen::Index i = 0; i < body.mesh.edges.cols(); ++i) {
-    sum += (body.mesh.vertices.col(body.mesh.edges(0, i)) - body.mesh.vertices.col(body.mesh.edges(1, i))).norm();
+// Returns the edges of a body, those of a solid's tetrahedra among them.
+Edges EdgesOf(const Mesh& mesh) {
+  const Edges surface = SpringEdges(mesh);
+  constexpr int kPairs[][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+  Edges edges(2, surface.cols() + 6 * mesh.tetrahedra.cols());
+  edges.leftCols(surface.cols()) = surface;
+  Eigen::Index at = surface.cols();
+  for (Eigen::Index t = 0; t < mesh.tetrahedra.cols(); ++t) {
+    for (const auto& [a, b] : kPairs) edges.col(at++) << mesh.tetrahedra(a, t), mesh.tetrahedra(b, t);
   }
-  return sum / static_cast<double>(body.mesh.edges.cols());
+  return edges;
+}
+
+double MeanEdge(const Mesh& mesh) {
+  const Edges edges = EdgesOf(mesh);
+  if (edges.cols() == 0) return 0;
+  double sum = 0;
+  for (const auto& edge : edges.colwise()) sum += (mesh.vertices.col(edge[0]) - mesh.vertices.col(edge[1])).norm();
+  return sum / static_cast<double>(edges.cols());
 }
 
 // Matches a body's vertices, which rest at `rest`, with those of `saved`, of a state of `vertices` vertices.
@@ -67,7 +80,7 @@ absl::Status MatchBody(const Model& model, const BodyModel& body, const v1::Save
   }
   match.same = false;
   ++match.bodies_by_distance;
-  const double reach = std::max(tolerance, kReach * MeanEdge(body));
+  const double reach = std::max(tolerance, kReach * MeanEdge(body.mesh));
   const NearestSearch search(before);
   for (Eigen::Index i = 0; i < rest.cols(); ++i) {
     const Neighbour nearest = search.Nearest(rest.col(i), reach);
@@ -142,13 +155,29 @@ int Continues(const VertexMatch& match, int saved) {
 // Returns the lengths of a body's edges in a state, divided by those at rest, sorted.
 std::vector<double> Stretches(const Model& model, const BodyModel& body, const State& state) {
   std::vector<double> stretches;
-  for (Eigen::Index i = 0; i < body.mesh.edges.cols(); ++i) {
-    const int a = body.first_vertex + body.mesh.edges(0, i), b = body.first_vertex + body.mesh.edges(1, i);
+  const Edges edges = EdgesOf(body.mesh);
+  stretches.reserve(static_cast<std::size_t>(edges.cols()));
+  for (const auto& edge : edges.colwise()) {
+    const int a = body.first_vertex + edge[0], b = body.first_vertex + edge[1];
     const double rest = (model.rest.col(a) - model.rest.col(b)).norm();
     if (rest > 0) stretches.push_back((state.x.col(a) - state.x.col(b)).norm() / rest);
   }
   std::ranges::sort(stretches);
   return stretches;
+}
+
+bool IsDriven(const Model& model, int vertex) {
+  return std::ranges::find(model.driven_vertices, vertex) != model.driven_vertices.end();
+}
+
+absl::Status CheckFixed(const Model& model, const State& state) {
+  for (const int vertex : model.fixed_vertices) {
+    const double distance = (state.x.col(vertex) - model.rest.col(vertex)).norm();
+    if (distance <= kLargestResidual * model.size || IsDriven(model, vertex)) continue;
+    return Unmatched(absl::StrCat("body \"", model.BodyOf(vertex).name, "\": a fixed vertex would be ", distance,
+                                  " m from its place: its vertices have another order now"));
+  }
+  return absl::OkStatus();
 }
 
 // Vertices in a wrong order have edges across the whole body.
@@ -221,6 +250,7 @@ absl::Status CheckState(const Model& model, const State& state, double residual)
     return Unmatched("the saved state is outside the scene's bounds");
   }
   if (absl::Status status = CheckStretches(model, state); !status.ok()) return status;
+  if (absl::Status status = CheckFixed(model, state); !status.ok()) return status;
   const ConstraintResidual violated = LargestResidual(model, state);
   if (!(violated.metres > std::max(kLargestResidual * model.size, 2 * residual))) return absl::OkStatus();
   return Unmatched(absl::StrCat("the saved state violates constraint ", std::string(violated.constraint), " by ",

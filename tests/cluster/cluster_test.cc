@@ -191,6 +191,27 @@ TEST_F(ClusterTest, SessionsContinueWithoutRedisAndAreCopiedAgainWhenItReturnsEm
   EXPECT_FALSE(a.Lost("s"));
 }
 
+// A connection that was given up may deliver its last command long after.
+TEST_F(ClusterTest, ALateWriteDoesNotUndoALaterOne) {
+  Member b(*redis_, "b:1");
+  b->StartTakeovers();
+  Member a(*redis_, "a:1");
+  ASSERT_TRUE(a->Claim("s").ok());
+  ASSERT_EQ(a->Copy(StateAt("s", 1)), store::Copied::kYes);
+  ASSERT_EQ(a->Copy(StateAt("s", 5)), store::Copied::kYes);
+  ASSERT_EQ(a->Copy(MomentOf("s", 6)), store::Copied::kYes);
+  Redis redis(*ParseRedisAddress(redis_->url()));
+  const std::string old = MomentAt(1).SerializeAsString();
+  ASSERT_TRUE(redis.Run(kSave, {"s", "1", "1", "", "1", old, "", "2", old}).ok());
+  ASSERT_TRUE(redis.Run(kSave, {"s", "1", "3", "", "", "", "", "6", old}).ok());
+  a->Leave();
+  ASSERT_TRUE(Within(absl::Seconds(6), [&] { return !b.taken_over().empty(); }));
+  const store::SavedSession saved = b.taken_over()[0].saved;
+  EXPECT_EQ(saved.state.tick(), 5);
+  ASSERT_EQ(saved.later.size(), 1U);
+  EXPECT_EQ(saved.later[0].session().tick(), 6);
+}
+
 TEST_F(ClusterTest, ADeletedSessionIsNotWrittenOrRenewedAgain) {
   Member a(*redis_, "a:1"), b(*redis_, "b:1");
   b->StartTakeovers();

@@ -150,7 +150,9 @@ TEST_F(MarkerTest, DeletedSessionsAreNotMissed) {
   }
   for (const char* id : {"a", "b", "c"}) {
     const auto store = Open(folder_);
-    for (const SavedSession& saved : *store->Load()) {
+    const auto sessions = store->Load();
+    ASSERT_TRUE(sessions.ok()) << sessions.status();
+    for (const SavedSession& saved : *sessions) {
       if (saved.id == id) store->Continue(saved)->Forget();
     }
   }
