@@ -128,7 +128,7 @@ absl::StatusOr<Marker> UpdateMarker(Database& database) {
   if (!id.ok()) return id.status();
   Marker marker;
   marker.id = id->empty() ? NewToken().substr(0, kIdLength) : *id;
-  for (const auto& [query, number] : {std::pair("SELECT saves + 1 FROM marker", &marker.saves),
+  for (const auto& [query, number] : {std::pair("SELECT coalesce(max(saves), 0) + 1 FROM marker", &marker.saves),
                                       {kSessions, &marker.sessions},
                                       {"SELECT count(*) FROM records", &marker.jobs}}) {
     const auto found = database.Number(query);
