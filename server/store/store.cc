@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "absl/functional/function_ref.h"
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
 #include "server/schema/sha256.h"
@@ -20,57 +21,69 @@ constexpr absl::Duration kSyncPeriod = absl::Milliseconds(500);
 // The marker is written when a session or a job comes or goes, and this often while sessions change.
 constexpr absl::Duration kMarkerPeriod = absl::Seconds(10);
 
-// The statements of one transaction.
-struct Writer {
-  static absl::StatusOr<Writer> Make(const Database& database) {
-    auto scene =
-        Statement::Prepare(database, "INSERT OR REPLACE INTO sessions (id, scene, scene_sha256) VALUES (?, ?, ?)");
-    auto state = Statement::Prepare(
-        database, "UPDATE sessions SET sequence = ?2, moment = ?3, state = ?4, sha256 = ?5 WHERE id = ?1");
-    auto shorten = Statement::Prepare(database, "DELETE FROM journal WHERE session = ? AND sequence <= ?");
-    auto moment = Statement::Prepare(database, "INSERT OR REPLACE INTO journal VALUES (?, ?, ?, ?)");
-    auto forget = Statement::Prepare(database, "DELETE FROM sessions WHERE id = ?");
-    auto record = Statement::Prepare(database,
-                                     "INSERT INTO records (kind, id, bytes, sha256) VALUES (?1, ?2, ?3, ?4) ON "
-                                     "CONFLICT (kind, id) DO UPDATE SET bytes = ?3, sha256 = ?4");
-    auto remove = Statement::Prepare(database, "DELETE FROM records WHERE kind = ? AND id = ?");
-    for (const auto* statement : {&scene, &state, &shorten, &moment, &forget, &record, &remove}) {
-      if (!statement->ok()) return statement->status();
-    }
-    return Writer{*std::move(scene),  *std::move(state),  *std::move(shorten), *std::move(moment),
-                  *std::move(forget), *std::move(record), *std::move(remove)};
-  }
+// The statements of one transaction, each prepared when it is first used: most transactions are one moment.
+class Writer {
+ public:
+  explicit Writer(const Database& database) : database_(database) {}
 
-  absl::Status Shorten(const std::string& id, std::int64_t last) { return shorten.Bind(1, id).Bind(2, last).Run(); }
   absl::Status WriteScene(const std::string& id, const v1::SavedScene& saved) {
     const std::string bytes = saved.SerializeAsString();
     if (absl::Status status = Shorten(id, INT64_MAX); !status.ok()) return status;
-    return scene.Bind(1, id).BindBytes(2, bytes).Bind(3, Sha256Hex(bytes)).Run();
+    return Run(scene_, "INSERT OR REPLACE INTO sessions (id, scene, scene_sha256) VALUES (?, ?, ?)",
+               [&](Statement& row) { row.Bind(1, id).BindBytes(2, bytes).Bind(3, Sha256Hex(bytes)); });
   }
   absl::Status WriteState(const std::string& id, std::int64_t sequence, const v1::SavedMoment& at, const State& saved) {
     const std::string words = at.SerializeAsString(), bytes = Save(saved).SerializeAsString();
     Sha256 hash;
     hash.Add(words);
     hash.Add(bytes);
-    state.Bind(1, id).Bind(2, sequence).BindBytes(3, words).BindBytes(4, bytes).Bind(5, hash.Hex());
-    if (absl::Status status = state.Run(); !status.ok()) return status;
-    return Shorten(id, sequence);
+    const absl::Status status =
+        Run(state_, "UPDATE sessions SET sequence = ?2, moment = ?3, state = ?4, sha256 = ?5 WHERE id = ?1",
+            [&](Statement& row) {
+              row.Bind(1, id).Bind(2, sequence).BindBytes(3, words).BindBytes(4, bytes).Bind(5, hash.Hex());
+            });
+    return status.ok() ? Shorten(id, sequence) : status;
   }
   absl::Status WriteMoment(const std::string& id, std::int64_t sequence, const v1::SavedMoment& saved) {
     const std::string bytes = saved.SerializeAsString();
-    return moment.Bind(1, id).Bind(2, sequence).BindBytes(3, bytes).Bind(4, Sha256Hex(bytes)).Run();
+    return Run(moment_, "INSERT OR REPLACE INTO journal VALUES (?, ?, ?, ?)", [&](Statement& row) {
+      row.Bind(1, id).Bind(2, sequence).BindBytes(3, bytes).Bind(4, Sha256Hex(bytes));
+    });
   }
   absl::Status Forget(const std::string& id) {
     if (absl::Status status = Shorten(id, INT64_MAX); !status.ok()) return status;
-    return forget.Bind(1, id).Run();
+    return Run(forget_, "DELETE FROM sessions WHERE id = ?", [&](Statement& row) { row.Bind(1, id); });
   }
-
   absl::Status WriteRecord(const std::string& kind, const std::string& id, const std::optional<std::string>& bytes) {
-    if (!bytes.has_value()) return remove.Bind(1, kind).Bind(2, id).Run();
-    return record.Bind(1, kind).Bind(2, id).BindBytes(3, *bytes).Bind(4, Sha256Hex(*bytes)).Run();
+    if (!bytes.has_value()) {
+      return Run(remove_, "DELETE FROM records WHERE kind = ? AND id = ?",
+                 [&](Statement& row) { row.Bind(1, kind).Bind(2, id); });
+    }
+    return Run(record_,
+               "INSERT INTO records (kind, id, bytes, sha256) VALUES (?1, ?2, ?3, ?4) ON "
+               "CONFLICT (kind, id) DO UPDATE SET bytes = ?3, sha256 = ?4",
+               [&](Statement& row) { row.Bind(1, kind).Bind(2, id).BindBytes(3, *bytes).Bind(4, Sha256Hex(*bytes)); });
   }
 
-  Statement scene, state, shorten, moment, forget, record, remove;
+ private:
+  using Prepared = std::optional<Statement>;
+
+  absl::Status Shorten(const std::string& id, std::int64_t last) {
+    return Run(shorten_, "DELETE FROM journal WHERE session = ? AND sequence <= ?",
+               [&](Statement& row) { row.Bind(1, id).Bind(2, last); });
+  }
+  absl::Status Run(Prepared& statement, const char* sql, absl::FunctionRef<void(Statement& row)> bind) {
+    if (!statement.has_value()) {
+      auto prepared = Statement::Prepare(database_, sql);
+      if (!prepared.ok()) return prepared.status();
+      statement = *std::move(prepared);
+    }
+    bind(*statement);
+    return statement->Run();
+  }
+
+  const Database& database_;
+  Prepared scene_, state_, shorten_, moment_, forget_, record_, remove_;
 };
 
 // Gives a store of an earlier release its marker. A full disk is reported by the first save.
@@ -202,22 +215,22 @@ void Store::PutBack(Batch& batch, Records& records) {
 }
 
 absl::Status Store::WriteRows(const Batch& batch, const Records& records) {
-  absl::StatusOr<Writer> writer = Writer::Make(database_);
-  absl::Status status = writer.status();
+  Writer writer(database_);
+  absl::Status status;
   for (const auto& [journal, pending] : batch) {
     if (!status.ok()) break;
-    if (pending.forgotten) status = writer->Forget(journal->id_);
-    if (status.ok() && pending.scene.has_value()) status = writer->WriteScene(journal->id_, *pending.scene);
+    if (pending.forgotten) status = writer.Forget(journal->id_);
+    if (status.ok() && pending.scene.has_value()) status = writer.WriteScene(journal->id_, *pending.scene);
     if (status.ok() && pending.kept.has_value()) {
       const Journal::Kept& kept = *pending.kept;
-      status = writer->WriteState(journal->id_, kept.sequence, kept.moment, *kept.state);
+      status = writer.WriteState(journal->id_, kept.sequence, kept.moment, *kept.state);
     }
     for (const auto& [sequence, moment] : pending.moments) {
-      if (status.ok()) status = writer->WriteMoment(journal->id_, sequence, moment);
+      if (status.ok()) status = writer.WriteMoment(journal->id_, sequence, moment);
     }
   }
   for (const auto& [kind, id, bytes] : records) {
-    if (status.ok()) status = writer->WriteRecord(kind, id, bytes);
+    if (status.ok()) status = writer.WriteRecord(kind, id, bytes);
   }
   return status;
 }
