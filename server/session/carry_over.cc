@@ -81,7 +81,8 @@ absl::StatusOr<Replayed> CarryOver(const std::shared_ptr<const Model>& model, co
   MatchPulls(*model, saved.scene, *match, *matched.moment.mutable_session());
   for (v1::SavedMoment& moment : matched.later) MatchPulls(*model, saved.scene, *match, *moment.mutable_session());
   const std::string how = absl::StrCat(
-      "this build of Phrenic compiles the scene to other bits; the session continues from its saved state at tick ",
+      "the scene compiles to other bits than before, by another build of Phrenic or from changed surface files; the "
+      "session continues from its saved state at tick ",
       start->state.tick, ", ", Describe(*match, *model));
   Run run(model, start->parameters, start->state);
   if (!ReplayJournal(matched.later, run).ok()) return WithoutJournal(*std::move(start), matched, how);

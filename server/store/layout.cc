@@ -4,7 +4,6 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/schema/sha256.h"
-#include "server/store/marker.h"
 
 namespace phrenic::store {
 namespace {
@@ -63,8 +62,6 @@ absl::Status ReadJournal(Database& database, SavedSession& session) {
 }
 
 }  // namespace
-
-std::string StoreFile(const std::string& folder) { return folder + "/phrenic.db"; }
 
 absl::Status Examine(const std::string& folder, Database& database) {
   const absl::StatusOr<std::int64_t> application = database.Number("PRAGMA application_id");

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "phrenic/v1/saved.pb.h"
+#include "server/store/marker.h"
 #include "server/store/sqlite.h"
 
 namespace phrenic::store {
@@ -29,9 +30,6 @@ struct SavedRecord {
   std::string kind, id, bytes;
   absl::Status problem;  // DATA_LOSS, as above
 };
-
-// Returns FOLDER/phrenic.db.
-std::string StoreFile(const std::string& folder);
 
 // Creates the tables in an empty file, and those that a file of an earlier format lacks; transactions are on the disk
 // after Database::Sync. FAILED_PRECONDITION if another

@@ -13,7 +13,6 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/schema/secret.h"
-#include "server/store/layout.h"
 
 namespace phrenic::store {
 namespace {
@@ -69,6 +68,8 @@ bool SyncFolder(const std::string& folder) {
 }
 
 }  // namespace
+
+std::string StoreFile(const std::string& folder) { return folder + "/phrenic.db"; }
 
 std::string MarkerFile(const std::string& folder) { return folder + "/phrenic.marker"; }
 

@@ -24,7 +24,8 @@ struct Marker {
   std::int64_t jobs = 0;  // studies and exports
 };
 
-// Returns FOLDER/phrenic.marker.
+// Return FOLDER/phrenic.db and FOLDER/phrenic.marker.
+std::string StoreFile(const std::string& folder);
 std::string MarkerFile(const std::string& folder);
 
 // Returns the marker in the folder; nullopt if there is none. DATA_LOSS if it cannot be read.
