@@ -99,8 +99,10 @@ void AddLimits(CLI::App& app, Flags& flags) {
   group.Add("head-seconds", options.head_seconds, "Timeout for the header of a request [s]", 1, 3600);
   group.Add("idle-seconds", options.idle_seconds, "Timeout for the body of a request and for an idle connection [s]", 1,
             86400);
-  group.Add("pause-minutes", limits.pause_minutes,
-            "Time after which a session without viewers and calls is paused [min]; 0: never", 0, kMaxCount);
+  group.Add(
+      "pause-minutes", limits.pause_minutes,
+      "Time after which a session without viewers and calls is paused, unless asked to keep playing [min]; 0: never", 0,
+      kMaxCount);
   group.Add("delete-minutes", limits.delete_minutes,
             "Time after which a session without viewers and calls is deleted [min]; 0: never", 0, kMaxCount);
   group.Add("stop-seconds", flags.stop_seconds, "Timeout for a clean shutdown, after which work is aborted [s]", 1,

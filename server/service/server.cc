@@ -204,6 +204,7 @@ absl::Status Server::Parts::Restore(const ServerOptions& options) {
   });
   if (!restored.ok()) return restored.status();
   lost = *std::move(restored);
+  for (const auto& [id, how] : table.carried_over()) spdlog::warn("session {}: {}", id, how);
   study_service.Restore(*records, lost);
   const auto set_owner = [this](const std::string& id, const std::string& owner) {
     guard.SetOwner(AccessGuard::Kind::kExport, id, owner);

@@ -60,7 +60,7 @@ grpc::Status SessionService::Change(const grpc::ServerContext& context, const Re
                                     Act act) {
   const auto call = AdmitToSession(guard_, table_, context, request);
   if (!call.ok()) return ToGrpc(call.status());
-  return ToGrpc(RunOnce(call->session->answers(), request, response, [&] {
+  return ToGrpc(RunOnce(*call->session, request, response, [&] {
     if constexpr (std::is_invocable_v<Act, session::Session&, const access::Caller&>) {
       return act(*call->session, call->caller);
     } else {
@@ -117,12 +117,14 @@ grpc::Status SessionService::DeleteSession(grpc::ServerContext* context, const v
 grpc::Status SessionService::PlaySession(grpc::ServerContext* context, const v1::PlaySessionRequest* request,
                                          v1::PlaySessionResponse* response) {
   return Change(*context, *request, response, [&](session::Session& session, const access::Caller& caller) {
-    const auto speed = OptionalOf(request->has_speed(), request->speed());
     const auto leader = LeaderOf(guard_, caller, *request);
     if (!leader.ok()) return leader.status();
-    return FillSession(
-        session.Play(speed, request->as_fast_as_possible(), request->until_time(), request->control_token(), *leader),
-        response);
+    const session::PlayRequest play{.speed = OptionalOf(request->has_speed(), request->speed()),
+                                    .as_fast_as_possible = request->as_fast_as_possible(),
+                                    .until = request->until_time(),
+                                    .leader = *leader,
+                                    .keep_playing = request->keep_playing()};
+    return FillSession(session.Play(play, request->control_token()), response);
   });
 }
 

@@ -20,7 +20,7 @@ struct Limits {
   std::int64_t upload_bytes = std::int64_t{256} << 20;  // of one file
   std::int64_t uploads_bytes = std::int64_t{1} << 30;   // of all of them
   int uploads = 256;                                    // kept
-  double pause_minutes = 60;                            // a session without viewers or calls plays on; 0: forever
+  double pause_minutes = 5;                             // a session without viewers or calls plays on; 0: forever
   double delete_minutes = 0;                            // a session without viewers or calls is kept; 0: forever
 };
 

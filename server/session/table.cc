@@ -17,6 +17,7 @@ namespace {
 
 constexpr int kUsualPage = 100;
 constexpr int kLargestPage = 1000;
+constexpr double kTemporaryMinutes = 1;  // a temporary copy without viewers or calls is kept
 
 }  // namespace
 
@@ -118,11 +119,13 @@ absl::StatusOr<std::shared_ptr<Session>> Table::Make(const Claim& claim, const v
   return std::make_shared<Session>(claim.id, model, std::move(start), clock_, limits_, *std::move(origin));
 }
 
-absl::StatusOr<std::shared_ptr<Session>> Table::MakeFork(const Claim& claim, Session& of, ControlBook control) const {
+absl::StatusOr<std::shared_ptr<Session>> Table::MakeFork(const Claim& claim, Session& of, bool temporary,
+                                                         ControlBook control) const {
   absl::StatusOr<Session::Fork> start = of.MakeFork();
   if (!start.ok()) return start.status();
   auto origin = Begin(claim, of.model(), of.surfaces(), std::move(control));
   if (!origin.ok()) return origin.status();
+  origin->temporary = temporary;
   return std::make_shared<Session>(claim.id, of.shared_model(), *std::move(start), clock_, limits_, *std::move(origin));
 }
 
@@ -138,7 +141,7 @@ absl::StatusOr<std::shared_ptr<Session>> Table::Fork(const v1::ForkSessionReques
   if (!of.ok()) return of.status();
   const std::string account = control.state().account;
   return Admit("fork_id", request.fork_id(), (*of)->model().scene.name(), account,
-               [&](const Claim& claim) { return MakeFork(claim, **of, std::move(control)); });
+               [&](const Claim& claim) { return MakeFork(claim, **of, request.temporary(), std::move(control)); });
 }
 
 absl::StatusOr<std::shared_ptr<Session>> Table::Admit(const char* field, const std::string& wanted,
@@ -148,7 +151,9 @@ absl::StatusOr<std::shared_ptr<Session>> Table::Admit(const char* field, const s
   if (!claim.ok()) return claim.status();
   absl::StatusOr<std::shared_ptr<Session>> session = make(*claim);
   if (session.ok()) {
-    if (const absl::Status saved = (*session)->Flush(); !saved.ok()) {
+    absl::Status saved = (*session)->Flush();
+    if (saved.ok()) saved = (*session)->Acknowledge();
+    if (!saved.ok()) {
       (*session)->Forget();
       session = saved;
     }
@@ -210,6 +215,9 @@ absl::Status Table::Remove(const std::string& id, std::optional<std::string_view
   if (token.has_value()) {
     if (absl::Status status = (*wanted)->CheckControl(*token); !status.ok()) return status;
   }
+  if (ownership_ != nullptr) {
+    if (absl::Status status = ownership_->Delete(id); !status.ok()) return status;
+  }
   std::shared_ptr<Session> session;
   {
     absl::MutexLock lock(&mutex_);
@@ -250,8 +258,11 @@ void Table::Tend() {
   for (const auto& session : List(kLargestPage, "").sessions) {
     const v1::Session status = session->status();
     if (status.viewers() > 0) session->NoteAttention();
-    if (status.state() == v1::SESSION_STATE_PLAYING && over(*session, limits_.pause_minutes)) session->Rest();
-    if (over(*session, limits_.delete_minutes)) DeleteAnyway(session->id()).IgnoreError();
+    session->AnnounceNotSaved();
+    const bool plays = status.state() == v1::SESSION_STATE_PLAYING && !status.keep_playing();
+    if (plays && over(*session, limits_.pause_minutes)) session->Rest();
+    const bool ended = status.temporary() && over(*session, kTemporaryMinutes);
+    if (ended || over(*session, limits_.delete_minutes)) DeleteAnyway(session->id()).IgnoreError();
   }
 }
 
@@ -269,7 +280,7 @@ void Table::Close(const absl::Status& reason) {
   for (const auto& [id, session] : sessions) {
     if (session == nullptr) continue;
     session->AwaitEnd();
-    if (ownership_ != nullptr && session->Flush().ok()) ownership_->Release(id);
+    if (session->Flush().ok() && ownership_ != nullptr && session->Acknowledge().ok()) ownership_->Release(id);
   }
 }
 

@@ -21,6 +21,9 @@
 
 namespace phrenic::session {
 
+struct Compiled;
+struct Replayed;
+
 // Creates, finds, restores and deletes sessions. Thread-safe.
 class Table {
  public:
@@ -36,10 +39,14 @@ class Table {
   ~Table();
 
   // Restores the sessions of an earlier server from the store; those that played continue to play. Returns the sessions
-  // that could not be restored, with the reason; they stay in the store under their id until they are deleted. Calls
-  // `progress` before each session.
+  // that could not be restored, with the reason; they stay in the store under their id until they are deleted, and the
+  // next server tries again. A session whose scene compiles to another model in this build is carried over (CarryOver).
+  // Calls `progress` before each session.
   absl::StatusOr<std::map<std::string, absl::Status>> Restore(absl::FunctionRef<void(const std::string& id)> progress)
       ABSL_LOCKS_EXCLUDED(mutex_);
+
+  // Returns what Restore and TakeOver carried over, as v1::Session.carried_over, by id.
+  std::map<std::string, std::string> carried_over() const ABSL_LOCKS_EXCLUDED(mutex_);
 
   // Continues a session of a server that is gone. The errors of Restore.
   absl::Status TakeOver(const store::SavedSession& saved, std::int64_t epoch) ABSL_LOCKS_EXCLUDED(mutex_);
@@ -62,8 +69,8 @@ class Table {
   absl::Status Delete(const std::string& id, std::string_view token = {}) ABSL_LOCKS_EXCLUDED(mutex_);
   // Deletes the session without regard to control.
   absl::Status DeleteAnyway(const std::string& id) ABSL_LOCKS_EXCLUDED(mutex_);
-  // Pauses and deletes sessions that have had no viewer and no call for as long as the limits say. A PeriodicTask calls
-  // it.
+  // Pauses and deletes sessions that have had no viewer and no call for as long as the limits say, unless they were
+  // asked to keep playing; deletes temporary copies after a minute. A PeriodicTask calls it.
   void Tend() ABSL_LOCKS_EXCLUDED(mutex_);
   // Stops and saves every session, for another server to continue. No session can be created afterwards, and none steps
   // or writes to the store any more, even if a caller still holds it.
@@ -92,12 +99,15 @@ class Table {
       ABSL_LOCKS_EXCLUDED(mutex_);
   absl::StatusOr<std::shared_ptr<Session>> Make(const Claim& claim, const v1::CreateSessionRequest& request,
                                                 ControlBook control);
-  absl::StatusOr<std::shared_ptr<Session>> MakeFork(const Claim& claim, Session& of, ControlBook control) const;
+  absl::StatusOr<std::shared_ptr<Session>> MakeFork(const Claim& claim, Session& of, bool temporary,
+                                                    ControlBook control) const;
   // Begins the journal of a new session, if there is a store.
   absl::StatusOr<SessionOrigin> Begin(const Claim& claim, const Model& model, std::vector<Uploads::Held> surfaces,
                                       ControlBook control) const;
   // `taken`: another server had the session, and this server's store gets all of it.
   absl::StatusOr<std::shared_ptr<Session>> Restored(const store::SavedSession& saved, std::int64_t epoch, bool taken);
+  absl::StatusOr<std::shared_ptr<store::Journal>> JournalOf(const store::SavedSession& saved, const Compiled& compiled,
+                                                            const Replayed& replayed, bool taken) const;
   // Returns the session's epoch. FAILED_PRECONDITION if another server has it; it is then removed from this store.
   absl::StatusOr<std::int64_t> Reclaim(const store::SavedSession& saved);
   // `token` of the caller; nullopt: without regard to control.
@@ -116,7 +126,8 @@ class Table {
   mutable absl::Mutex mutex_;
   std::map<std::string, std::shared_ptr<Session>> sessions_ ABSL_GUARDED_BY(mutex_);
   std::map<std::string, store::SavedSession> lost_ ABSL_GUARDED_BY(mutex_);  // could not be restored
-  std::vector<std::shared_ptr<Session>> dropped_ ABSL_GUARDED_BY(mutex_);    // Tend releases them
+  std::map<std::string, std::string> carried_over_ ABSL_GUARDED_BY(mutex_);
+  std::vector<std::shared_ptr<Session>> dropped_ ABSL_GUARDED_BY(mutex_);  // Tend releases them
   std::optional<absl::Status> closed_ ABSL_GUARDED_BY(mutex_);
 };
 
