@@ -17,6 +17,7 @@
 #include "absl/status/statusor.h"
 #include "absl/synchronization/mutex.h"
 #include "server/cluster/cluster.h"
+#include "server/service/calls/page_tokens.h"
 
 namespace phrenic::service {
 
@@ -37,7 +38,10 @@ class SessionRouter {
     bool fan_out = false;         // calls all targets at once and merges the responses
   };
 
-  explicit SessionRouter(cluster::Cluster& cluster) : cluster_(cluster) {}
+  // Both outlive the router.
+  SessionRouter(cluster::Cluster& cluster, const PageTokens& page_tokens)
+      : cluster_(cluster), page_tokens_(page_tokens) {}
+  const PageTokens& page_tokens() const { return page_tokens_; }
   // Sets the channel to this server's own services. Call it before Find.
   void set_local_channel(std::shared_ptr<grpc::Channel> channel);
 
@@ -61,6 +65,7 @@ class SessionRouter {
   void AddOtherServers(Route& route);
 
   cluster::Cluster& cluster_;
+  const PageTokens& page_tokens_;
   std::shared_ptr<grpc::GenericStub> local_;
   std::atomic<std::int64_t> forwarded_ = 0;
   absl::Mutex mutex_;
