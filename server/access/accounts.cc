@@ -66,9 +66,8 @@ bool Accounts::StillHas(const Account& account) const {
 std::string Accounts::Qualified(const std::string& stored) const {
   if (stored.empty() || options_.jwt.keys.empty()) return stored;
   absl::MutexLock lock(&mutex_);
-  const bool in_file = tokens_ != nullptr && std::any_of(tokens_->begin(), tokens_->end(), [&](const auto& each) {
-    return each.second.name == stored;
-  });
+  const bool in_file = tokens_ != nullptr && std::any_of(tokens_->begin(), tokens_->end(),
+                                                         [&](const auto& each) { return each.second.name == stored; });
   return in_file ? stored : JwtAccountName(options_.jwt.issuer, stored);
 }
 

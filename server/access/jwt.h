@@ -42,10 +42,10 @@ class JwtKeys {
   ~JwtKeys();
 
   // Returns the account that a token names. UNAUTHENTICATED, with the reason, if the signature is not by a key of the
-  // set with RS, PS or ES (RFC 7518 section 3.1), if the header has extensions that must be understood ("crit", RFC 7515
-  // section 4.1.11), or if issuer, audience, time ("exp" is required; "exp", "nbf" and "iat" must be numbers; clocks may
-  // differ by 60 s), name (1 to 255 bytes that can be printed on one line) or role are not accepted (RFC 7519 section
-  // 4.1).
+  // set with RS, PS or ES (RFC 7518 section 3.1), if the header has extensions that must be understood ("crit", RFC
+  // 7515 section 4.1.11), or if issuer, audience, time ("exp" is required; "exp", "nbf" and "iat" must be numbers;
+  // clocks may differ by 60 s), name (1 to 255 bytes that can be printed on one line) or role are not accepted (RFC
+  // 7519 section 4.1).
   absl::StatusOr<Account> Check(std::string_view token, absl::Time now) const;
 
  private:

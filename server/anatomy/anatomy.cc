@@ -110,13 +110,17 @@ Mesh InMillimetres(const v1::Anatomy& part, double edge_length) {
 double Area(v1::Structure structure) {
   switch (structure) {
     case v1::STRUCTURE_DIAPHRAGM:
-      return 240'000;
+      return 220'000;
     case v1::STRUCTURE_LUNG:
-      return 150'000;
+      return 110'000;
     case v1::STRUCTURE_VERTEBRA:
-      return 20'000;
+      return 12'000;
+    case v1::STRUCTURE_COSTAL_CARTILAGE:
+      return 4'000;
+    case v1::STRUCTURE_XIPHOID:
+      return 2'000;
     default:
-      return 30'000;
+      return 11'000;
   }
 }
 

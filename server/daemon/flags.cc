@@ -91,8 +91,8 @@ void AddLimits(CLI::App& app, Flags& flags) {
             "Maximum size of all uploaded files [MiB]; without accounts the least recently used one makes room", 1,
             1048576);
   group.Add("max-uploads-mb-of-user", flags.uploads_mb_of_user,
-            "Maximum size of the uploaded files of an account [MiB]; above it its least recently used one is deleted", 1,
-            1048576);
+            "Maximum size of the uploaded files of an account [MiB]; above it its least recently used one is deleted",
+            1, 1048576);
   group.Add("session-cpu", limits.session_cpu, "Fraction of a processor core that stepping one session may use", 0.01,
             1);
   group.Add("max-exports", limits.exports, "Maximum number of exports at a time, and of comparisons", 1, 64);

@@ -81,8 +81,8 @@ class Queue {
   // Keeps a job that had ended before the server restarted.
   void RestoreEnded(const std::string& owner, Message message) ABSL_LOCKS_EXCLUDED(mutex_);
 
-  // Returns the job as soon as its version is above `seen`, or after `longest`. NOT_FOUND lists the ids without an owner;
-  // CANCELLED if it is deleted meanwhile.
+  // Returns the job as soon as its version is above `seen`, or after `longest`. NOT_FOUND lists the ids without an
+  // owner; CANCELLED if it is deleted meanwhile.
   absl::StatusOr<Seen> Wait(const std::string& id, std::int64_t seen, absl::Duration longest) const
       ABSL_LOCKS_EXCLUDED(mutex_);
   // Calls `write` with the job, and again after each change, until it has ended: then returns OK. Returns UNAVAILABLE

@@ -71,18 +71,16 @@ grpc::Status SessionService::Change(const grpc::ServerContext& context, const Re
 
 grpc::Status SessionService::CreateSession(grpc::ServerContext* context, const v1::CreateSessionRequest* request,
                                            v1::CreateSessionResponse* response) {
-  return Add(*context, *request, response,
-             [&](session::ControlBook control, const session::Requester& by) {
-               return table_.Create(*request, std::move(control), by);
-             });
+  return Add(*context, *request, response, [&](session::ControlBook control, const session::Requester& by) {
+    return table_.Create(*request, std::move(control), by);
+  });
 }
 
 grpc::Status SessionService::ForkSession(grpc::ServerContext* context, const v1::ForkSessionRequest* request,
                                          v1::ForkSessionResponse* response) {
-  return Add(*context, *request, response,
-             [&](session::ControlBook control, const session::Requester&) {
-               return table_.Fork(*request, std::move(control));
-             });
+  return Add(*context, *request, response, [&](session::ControlBook control, const session::Requester&) {
+    return table_.Fork(*request, std::move(control));
+  });
 }
 
 grpc::Status SessionService::GetSession(grpc::ServerContext* context, const v1::GetSessionRequest* request,

@@ -51,7 +51,9 @@ grpc::Status StudyService::WatchStudy(grpc::ServerContext* context, const v1::Wa
                                       grpc::ServerWriter<v1::WatchStudyResponse>* writer) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
-  if (absl::Status own = guard_.CheckOwns(AccessGuard::Kind::kStudy, request->study_id(), studies_.OwnerOf(request->study_id()), *caller); !own.ok())
+  if (absl::Status own = guard_.CheckOwns(AccessGuard::Kind::kStudy, request->study_id(),
+                                          studies_.OwnerOf(request->study_id()), *caller);
+      !own.ok())
     return ToGrpc(own);
   absl::Status watched = absl::ResourceExhaustedError("16 callers watch studies, and no more are allowed: try later");
   if (watchers_.fetch_add(1) < kMaxWatchers) {
@@ -71,7 +73,7 @@ grpc::Status StudyService::ListStudies(grpc::ServerContext* context, const v1::L
                                        v1::ListStudiesResponse* response) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
-  const auto visible = [&](const std::string& owner) { return guard_.Owns(owner, *caller); };
+  const auto visible = [&](const std::string& owner) { return guard_.MayUse(owner, *caller); };
   for (v1::Study& study : studies_.List(visible)) *response->add_studies() = std::move(study);
   return grpc::Status::OK;
 }
@@ -80,7 +82,9 @@ grpc::Status StudyService::DeleteStudy(grpc::ServerContext* context, const v1::D
                                        v1::DeleteStudyResponse*) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
-  if (absl::Status own = guard_.CheckOwns(AccessGuard::Kind::kStudy, request->study_id(), studies_.OwnerOf(request->study_id()), *caller); !own.ok())
+  if (absl::Status own = guard_.CheckOwns(AccessGuard::Kind::kStudy, request->study_id(),
+                                          studies_.OwnerOf(request->study_id()), *caller);
+      !own.ok())
     return ToGrpc(own);
   return ToGrpc(studies_.Delete(request->study_id()));
 }
@@ -89,7 +93,9 @@ grpc::Status StudyService::GetStudyPage(grpc::ServerContext* context, const v1::
                                         v1::GetStudyPageResponse* response) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
-  if (absl::Status own = guard_.CheckOwns(AccessGuard::Kind::kStudy, request->study_id(), studies_.OwnerOf(request->study_id()), *caller); !own.ok())
+  if (absl::Status own = guard_.CheckOwns(AccessGuard::Kind::kStudy, request->study_id(),
+                                          studies_.OwnerOf(request->study_id()), *caller);
+      !own.ok())
     return ToGrpc(own);
   const auto seen = studies_.Wait(request->study_id(), 0, absl::ZeroDuration());
   if (!seen.ok()) return ToGrpc(seen.status());

@@ -33,7 +33,8 @@ grpc::Status UploadService::BeginUpload(grpc::ServerContext* context, const v1::
                                         v1::BeginUploadResponse* response) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
-  const auto begun = uploads_.Begin(guard_.RequesterOf(*caller, *context), request->name(), request->size(), request->sha256());
+  const auto begun =
+      uploads_.Begin(guard_.RequesterOf(*caller, *context), request->name(), request->size(), request->sha256());
   if (!begun.ok()) return ToGrpc(begun.status());
   response->set_upload_id(begun->id);
   response->set_received(begun->received);
@@ -47,7 +48,8 @@ grpc::Status UploadService::AddUploadChunk(grpc::ServerContext* context, const v
                                            v1::AddUploadChunkResponse* response) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
-  const auto received = uploads_.Add(guard_.RequesterOf(*caller, *context), request->upload_id(), request->offset(), request->chunk());
+  const auto received =
+      uploads_.Add(guard_.RequesterOf(*caller, *context), request->upload_id(), request->offset(), request->chunk());
   if (!received.ok()) return ToGrpc(received.status());
   response->set_received(*received);
   return grpc::Status::OK;

@@ -28,8 +28,8 @@ int CompileSlots::Running(const Waiting& one) const {
 
 bool CompileSlots::MayRun(const Waiting& one) const {
   const int capacity = capacity_.at(one.lane);
-  const auto all = std::count_if(running_.begin(), running_.end(),
-                                 [&one](const Waiting& each) { return each.lane == one.lane; });
+  const auto all =
+      std::count_if(running_.begin(), running_.end(), [&one](const Waiting& each) { return each.lane == one.lane; });
   return all < capacity && Running(one) < std::max(1, capacity - 1);
 }
 
@@ -55,7 +55,7 @@ absl::StatusOr<CompileSlots::Slot> CompileSlots::Take(const std::string& account
                                                       const std::function<bool()>& cancelled) {
   absl::MutexLock lock(&mutex_);
   if (absl::Status status = Enter(account); !status.ok()) return status;
-  const auto self = waiting_.insert(waiting_.end(), {account, lane});
+  const auto self = waiting_.insert(waiting_.end(), Waiting{account, lane});
   const auto next = [this, self] {
     mutex_.AssertHeld();
     return IsNext(self);

@@ -48,7 +48,7 @@ class CompileSlots {
 
   const std::map<Lane, int> capacity_;
   mutable absl::Mutex mutex_;
-  Queue waiting_ ABSL_GUARDED_BY(mutex_);                               // oldest first
+  Queue waiting_ ABSL_GUARDED_BY(mutex_);  // oldest first
   std::list<Waiting> running_ ABSL_GUARDED_BY(mutex_);
   std::map<std::string, std::int64_t> served_ ABSL_GUARDED_BY(mutex_);  // accounts that wait or run: their last turn
   std::int64_t turns_ ABSL_GUARDED_BY(mutex_) = 0;

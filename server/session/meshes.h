@@ -20,11 +20,12 @@ const v1::SurfaceFile* FileOf(const v1::Body& body);
 // True for a path "upload:SHA256".
 bool IsUpload(const std::string& path);
 
-// Returns a thread-safe source, for which the path "upload:SHA256" names one of `uploads`. NOT_FOUND if none of them has
-// that hash.
+// Returns a thread-safe source, for which the path "upload:SHA256" names one of `uploads`. NOT_FOUND if none of them
+// has that hash.
 MeshSource MakeMeshSource(std::string data_dir, std::vector<Uploads::Held> uploads = {});
 
-// Returns the sizes of generated parts by their resolution, within some 20 %, and an estimate for files by their length.
+// Returns the sizes of generated parts by their resolution, roughly, and an estimate for files by their
+// length.
 SizeSource MakeSizeSource(std::string data_dir, const std::vector<Uploads::Held>& uploads = {});
 
 }  // namespace phrenic::session

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <set>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "google/protobuf/io/coded_stream.h"
 #include "google/protobuf/io/zero_copy_stream_impl_lite.h"
+#include "server/mechanics/compile/shape_size.h"
 #include "server/schema/schema.h"
 #include "server/session/meshes.h"
 
@@ -24,9 +26,9 @@ std::string DeterministicBytes(const v1::Scene& scene) {
   return bytes;
 }
 
-constexpr std::int64_t kSmallScene = 200'000;          // vertices and elements: compiles within a second
-constexpr int kSmallAtATime = 3, kLargeAtATime = 2;    // the second takes some hundred megabytes at most
-constexpr int kMostOthers = 64;                        // who wait for one compile
+constexpr std::int64_t kSmallScene = 200'000;        // vertices and elements: compiles within a second
+constexpr int kSmallAtATime = 3, kLargeAtATime = 2;  // the second takes some hundred megabytes at most
+constexpr int kMostOthers = 64;                      // who wait for one compile
 constexpr absl::Duration kLook = absl::Milliseconds(50);
 
 bool IsCancelled(const Requester& by) { return by.cancelled != nullptr && by.cancelled(); }
@@ -48,7 +50,8 @@ absl::StatusOr<Models::Surfaces> Models::HoldSurfaces(const v1::Scene& scene, co
   std::set<std::string> held;
   for (const v1::Body& body : scene.bodies()) {
     const v1::SurfaceFile* file = FileOf(body);
-    if (uploads_ == nullptr || file == nullptr || !IsUpload(file->path()) || !held.insert(file->path()).second) continue;
+    if (uploads_ == nullptr || file == nullptr || !IsUpload(file->path()) || !held.insert(file->path()).second)
+      continue;
     auto surface = uploads_->Hold(by, file->path());
     if (!surface.ok()) return surface.status();
     surfaces.push_back(*std::move(surface));
@@ -99,6 +102,19 @@ std::shared_ptr<const Model> Models::FindKept(const std::string& key) {
   return found->model;
 }
 
+// The latest model is kept however large it is.
+void Models::Keep(Entry entry) {
+  entries_.push_front(std::move(entry));
+  std::int64_t elements = 0;
+  std::size_t kept = 0;
+  for (auto each = entries_.begin(); each != entries_.end();) {
+    elements = SaturatingSum(elements, each->elements);
+    const bool stays = kept == 0 || (kept < capacity_ && elements <= limits_.elements);
+    ++kept;
+    each = stays ? std::next(each) : entries_.erase(each);
+  }
+}
+
 absl::StatusOr<std::shared_ptr<const Model>> Models::Await(Job& job, const Requester& by) {
   if (job.others >= kMostOthers) {
     return absl::ResourceExhaustedError(
@@ -114,15 +130,16 @@ absl::StatusOr<std::shared_ptr<const Model>> Models::Await(Job& job, const Reque
 }
 
 absl::StatusOr<std::shared_ptr<const Model>> Models::CompileNow(const v1::Scene& scene, const Surfaces& surfaces,
-                                                                const Requester& by, const Job& job) {
+                                                                const Requester& by, Job& job) {
   CompileOptions options;
   options.size_of = MakeSizeSource(data_dir_, surfaces);
-  if (by.trusted) return phrenic::Compile(scene, MakeMeshSource(data_dir_, surfaces), options);
-  options.limits = {limits_.vertices, limits_.elements};
-  options.longest = limits_.compile_seconds;
-  options.cancelled = [&by, &job] { return job.others == 0 && IsCancelled(by); };
+  if (!by.trusted) options.limits = {limits_.vertices, limits_.elements};
   const auto size = EstimateSize(scene, options.size_of, options.limits);
   if (!size.ok()) return size.status();
+  job.elements = size->elements;
+  if (by.trusted) return phrenic::Compile(scene, MakeMeshSource(data_dir_, surfaces), options);
+  options.longest = limits_.compile_seconds;
+  options.cancelled = [&by, &job] { return job.others == 0 && IsCancelled(by); };
   const bool small = size->vertices <= kSmallScene && size->elements <= kSmallScene;
   const auto lane = small ? CompileSlots::Lane::kSmall : CompileSlots::Lane::kLarge;
   const auto slot = slots_.Take(by.share, lane, options.cancelled);
@@ -151,8 +168,7 @@ absl::StatusOr<std::shared_ptr<const Model>> Models::Find(const v1::Scene& scene
   jobs_.erase(key);
   job->result = model;
   if (!model.ok()) return model;
-  entries_.push_front({key, *model});
-  if (entries_.size() > capacity_) entries_.pop_back();
+  Keep({key, *model, job->elements});
   return model;
 }
 

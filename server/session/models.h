@@ -3,6 +3,7 @@
 #define PHRENIC_SERVER_SESSION_MODELS_H_
 
 #include <atomic>
+#include <cstdint>
 #include <list>
 #include <map>
 #include <memory>
@@ -32,16 +33,16 @@ struct Compiled {
 // Thread-safe. Compiles on the caller's thread; callers that want the same scene wait for one compile of it.
 class Models {
  public:
-  // Keeps the `capacity` models that were used last. `uploads` outlives it; null: scenes cannot name uploaded files.
+  // Keeps the `capacity` models that were used last, as long as they have limits.elements together. `uploads` outlives it; null: scenes cannot name uploaded files.
   Models(SceneCatalogue catalogue, std::string data_dir, int capacity, Uploads* uploads = nullptr,
          const Limits& limits = {});
 
   const SceneCatalogue& catalogue() const { return catalogue_; }
   // Returns the scene that `source` names or holds, at its resolution; INVALID_ARGUMENT "source: ..." if it is empty.
   absl::StatusOr<v1::Scene> Resolve(const v1::SceneSource& source) const;
-  // Returns the compiled scene. The same scene gives the same model while its surface files are unchanged. The errors of
-  // Uploads::Hold for the uploaded files that it names, of Compile, and of CompileSlots::Take. RESOURCE_EXHAUSTED if the
-  // model is larger than allowed; CANCELLED once by.cancelled is true and no one else wants it.
+  // Returns the compiled scene. The same scene gives the same model while its surface files are unchanged. The errors
+  // of Uploads::Hold for the uploaded files that it names, of Compile, and of CompileSlots::Take. RESOURCE_EXHAUSTED if
+  // the model is larger than allowed; CANCELLED once by.cancelled is true and no one else wants it.
   absl::StatusOr<Compiled> Compile(const v1::SceneSource& source, const Requester& by) ABSL_LOCKS_EXCLUDED(mutex_);
   // The same without the files, for the server itself or without accounts.
   absl::StatusOr<std::shared_ptr<const Model>> Get(const v1::SceneSource& source, const Requester& by = {})
@@ -54,22 +55,25 @@ class Models {
   struct Entry {
     std::string key;
     std::shared_ptr<const Model> model;
+    std::int64_t elements;
   };
   // A scene that is being compiled.
   struct Job {
     std::atomic<int> others = 0;  // who wait for it, besides the caller that compiles
+    std::int64_t elements = 0;    // an estimate
     std::optional<absl::StatusOr<std::shared_ptr<const Model>>> result;
   };
   std::string Key(const v1::Scene& scene) const;
   absl::StatusOr<Surfaces> HoldSurfaces(const v1::Scene& scene, const Requester& by) const;
   absl::StatusOr<std::shared_ptr<const Model>> Find(const v1::Scene& scene, const Surfaces& surfaces,
                                                     const Requester& by) ABSL_LOCKS_EXCLUDED(mutex_);
+  void Keep(Entry entry) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   std::shared_ptr<const Model> FindKept(const std::string& key) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   // Waits for the result of another caller's compile. CANCELLED once by.cancelled is true.
   absl::StatusOr<std::shared_ptr<const Model>> Await(Job& job, const Requester& by)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   absl::StatusOr<std::shared_ptr<const Model>> CompileNow(const v1::Scene& scene, const Surfaces& surfaces,
-                                                          const Requester& by, const Job& job)
+                                                          const Requester& by, Job& job)
       ABSL_LOCKS_EXCLUDED(mutex_);
 
   const SceneCatalogue catalogue_;

@@ -8,11 +8,11 @@
 namespace phrenic::session {
 
 struct Requester {
-  std::string owner;                           // account or guest (access::Caller::id()); empty without accounts
-  bool all_files = false;                      // an administrator may name the files of every owner
-  std::string share;                           // whose share of the compiles this one takes: the owner, or an address
-  std::function<bool()> cancelled;             // true once the caller has gone or its deadline has passed; null: never
-  bool trusted = false;                        // a scene that this server, or an earlier one, has accepted before
+  std::string owner = {};                     // account or guest (access::Caller::id()); empty without accounts
+  bool all_files = false;                     // an administrator may name the files of every owner
+  std::string share = {};                     // whose share of the compiles this one takes: the owner, or an address
+  std::function<bool()> cancelled = nullptr;  // true once the caller has gone or its deadline has passed; null: never
+  bool trusted = false;                       // a scene that this server, or an earlier one, has accepted before
 };
 
 }  // namespace phrenic::session

@@ -114,8 +114,8 @@ class Table {
   ControlState ControlOf(const store::SavedSession& saved) const;
   absl::Status DeleteLost(const std::string& id, std::optional<std::string_view> token)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  // Returns what an id may begin with: the scene's name if the catalogue has it, and otherwise "session", since the name
-  // of a scene that a client sends may be a patient's.
+  // Returns what an id may begin with: the scene's name if the catalogue has it, and otherwise "session", since the
+  // name of a scene that a client sends may be a patient's.
   std::string StemOf(const std::string& scene) const;
   // Returns "thorax", "thorax-2" ...; with an account "thorax-5f0c...", which tells others nothing.
   std::string FreeId(const std::string& stem, const std::string& account, const std::set<std::string>& elsewhere) const

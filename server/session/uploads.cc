@@ -15,7 +15,7 @@
 namespace phrenic::session {
 namespace {
 
-constexpr std::ptrdiff_t kMostPending = 16;        // of one owner
+constexpr std::ptrdiff_t kMostPending = 16;  // of one owner
 constexpr std::size_t kMostPendingInAll = 256;
 constexpr absl::Duration kAbandoned = absl::Minutes(10);  // without a chunk: others may take the room
 
@@ -37,9 +37,9 @@ Sum SumOf(const Files& files, const Counts& counts) {
 }
 
 absl::Status NoRoom(std::int64_t most) {
-  return absl::ResourceExhaustedError(
-      absl::StrCat("size: the files of others leave no room in the ", most,
-                   " bytes that all uploads may have (--max-uploads-mb): delete files that you do not need, or try later"));
+  return absl::ResourceExhaustedError(absl::StrCat(
+      "size: the files of others leave no room in the ", most,
+      " bytes that all uploads may have (--max-uploads-mb): delete files that you do not need, or try later"));
 }
 
 bool IsSurfaceName(const std::string& name) {
@@ -61,6 +61,11 @@ Uploads::Uploads(const Limits& limits, std::string spool_folder)
     : limits_(limits), spool_folder_(std::move(spool_folder)) {}
 
 absl::Status Uploads::CheckFile(const std::string& name, std::int64_t size) const {
+  constexpr std::size_t kLongestName = 255;
+  if (name.size() > kLongestName) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("name: has ", name.size(), " bytes; ", kLongestName, " are the most"));
+  }
   if (!IsSurfaceName(name)) {
     return absl::InvalidArgumentError(
         absl::StrCat("name: the ending of \"", name, "\" is no known format; there are ", meshio::Endings()));
@@ -93,13 +98,17 @@ absl::Status Uploads::MakeRoomToBegin(const std::string& owner, std::int64_t siz
   if (full()) pending_.remove_if(abandoned);
   if (full()) return NoRoom(limits_.uploads_bytes);
   const Sum others = SumOf(kept_, [&own](const Held& each) { return !own(each); });
-  const bool fits = others.files == 0 || (others.files < limits_.uploads && others.bytes + size <= limits_.uploads_bytes);
+  const bool fits =
+      others.files == 0 || (others.files < limits_.uploads && others.bytes + size <= limits_.uploads_bytes);
   return fits ? absl::OkStatus() : NoRoom(limits_.uploads_bytes);
 }
 
 absl::StatusOr<Uploads::Begun> Uploads::Begin(const Requester& by, const std::string& name, std::int64_t size,
                                               const std::string& sha256) {
   if (absl::Status status = CheckFile(name, size); !status.ok()) return status;
+  if (!sha256.empty() && sha256.size() != Sha256Hex("").size()) {
+    return absl::InvalidArgumentError("sha256: is not the 64 hexadecimal digits of a SHA-256");
+  }
   const Requester own{.owner = by.owner};
   absl::MutexLock lock(&mutex_);
   if (const auto kept = FindKept(own, sha256); kept != kept_.end()) {
@@ -177,8 +186,9 @@ absl::StatusOr<Uploads::Finished> Uploads::FinishedBefore(const Requester& by, c
   Held held;
   {
     absl::MutexLock lock(&mutex_);
-    const auto kept = std::find_if(kept_.begin(), kept_.end(),
-                                   [&](const Held& one) { return !id.empty() && one.id == id && one.owner == by.owner; });
+    const auto kept = std::find_if(kept_.begin(), kept_.end(), [&](const Held& one) {
+      return !id.empty() && one.id == id && one.owner == by.owner;
+    });
     if (kept == kept_.end()) return NoUpload(id);
     held = *kept;
   }
@@ -229,9 +239,8 @@ Uploads::Files::iterator Uploads::FindKept(const Requester& by, std::string_view
 }
 
 Uploads::Files::iterator Uploads::FindPending(const Requester& by, const std::string& id) {
-  return std::find_if(pending_.begin(), pending_.end(), [&](const Held& pending) {
-    return SameToken(pending.id, id) && pending.owner == by.owner;
-  });
+  return std::find_if(pending_.begin(), pending_.end(),
+                      [&](const Held& pending) { return SameToken(pending.id, id) && pending.owner == by.owner; });
 }
 
 std::vector<Uploads::File> Uploads::List(const Requester& by) const {
@@ -246,9 +255,8 @@ std::vector<Uploads::File> Uploads::List(const Requester& by) const {
 absl::Status Uploads::Delete(const Requester& by, const std::string& path) {
   const std::string_view sha256 = std::string_view(path).substr(std::min(path.size(), kPrefix.size()));
   absl::MutexLock lock(&mutex_);
-  const auto removed = kept_.remove_if([&](const Held& kept) {
-    return kept.file.sha256 == sha256 && (by.all_files || kept.owner == by.owner);
-  });
+  const auto removed = kept_.remove_if(
+      [&](const Held& kept) { return kept.file.sha256 == sha256 && (by.all_files || kept.owner == by.owner); });
   if (removed > 0) return absl::OkStatus();
   return absl::NotFoundError(absl::StrCat("path: there is no \"", path.substr(0, 80), "\" that belongs to you"));
 }

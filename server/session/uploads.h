@@ -22,8 +22,8 @@ namespace phrenic::session {
 
 // Keeps each owner's most recently used files within the owner's quota, in unnamed files that vanish when the server
 // ends. A file belongs to those who have sent its bytes: who only knows its hash does not get it, nor learns that the
-// server has it. Owners of the same bytes share one file on the disk. Without accounts, all callers are one owner, whose
-// quota is the whole. Thread-safe.
+// server has it. Owners of the same bytes share one file on the disk. Without accounts, all callers are one owner,
+// whose quota is the whole. Thread-safe.
 class Uploads {
  public:
   struct File {
@@ -55,9 +55,9 @@ class Uploads {
   Uploads(const Limits& limits, std::string spool_folder);
 
   // Begin, Add and Finish an upload, with the errors of upload.proto. The owner's oldest unfinished upload makes room
-  // for the 17th, and for one whose announced size exceeds the quota. RESOURCE_EXHAUSTED if the files of others leave no
-  // room. Clients of one owner that upload the same file at the same time share one upload: Add skips the bytes that it
-  // has, and each client may finish it. NOT_FOUND for an upload of another owner.
+  // for the 17th, and for one whose announced size exceeds the quota. RESOURCE_EXHAUSTED if the files of others leave
+  // no room. Clients of one owner that upload the same file at the same time share one upload: Add skips the bytes that
+  // it has, and each client may finish it. NOT_FOUND for an upload of another owner.
   absl::StatusOr<Begun> Begin(const Requester& by, const std::string& name, std::int64_t size,
                               const std::string& sha256) ABSL_LOCKS_EXCLUDED(mutex_);
   absl::StatusOr<std::int64_t> Add(const Requester& by, const std::string& id, std::int64_t offset,
@@ -86,8 +86,8 @@ class Uploads {
   Files::iterator FindPending(const Requester& by, const std::string& id) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   // Drops unfinished uploads of this owner, and then abandoned ones, until one more fits. RESOURCE_EXHAUSTED.
   absl::Status MakeRoomToBegin(const std::string& owner, std::int64_t size) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  // Keeps a file, sharing the bytes that another owner has sent as well, and drops others of its owner, until the quota and the limits hold. RESOURCE_EXHAUSTED if the files of
-  // others leave no room.
+  // Keeps a file, sharing the bytes that another owner has sent as well, and drops others of its owner, until the quota
+  // and the limits hold. RESOURCE_EXHAUSTED if the files of others leave no room.
   absl::Status Keep(Held& kept) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   std::int64_t QuotaOf(const std::string& owner) const;
 

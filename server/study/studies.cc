@@ -82,12 +82,11 @@ absl::StatusOr<Studies::Draft> Studies::MakeDraft(const v1::CreateStudyRequest& 
   draft.id_base = request.source().has_scene() ? kind : absl::StrCat(kind, "-", *scene);
   draft.message.set_scene(*scene);
   draft.message.set_doing("waiting for earlier studies");
-  draft.job = std::make_shared<StudyJob>(
-      request, owner, [this, request, owner](const Progress& progress) {
-        const auto cancelled = [&progress] { return !progress(0, "compiling the scene"); };
-        const Compiler compile = [&](const v1::SceneSource& source) { return compile_(source, owner, cancelled); };
-        return study::Run(request, compile, progress);
-      });
+  draft.job = std::make_shared<StudyJob>(request, owner, [this, request, owner](const Progress& progress) {
+    const auto cancelled = [&progress] { return !progress(0, "compiling the scene"); };
+    const Compiler compile = [&](const v1::SceneSource& source) { return compile_(source, owner, cancelled); };
+    return study::Run(request, compile, progress);
+  });
   return draft;
 }
 
@@ -106,7 +105,8 @@ absl::Status Studies::RestoreOne(const store::SavedRecord& record,
     auto draft = MakeDraft(saved.request(), owner);
     absl::Status resumed = draft.status();
     if (draft.ok()) {
-      resumed = queue_.Resume(owner, record.id, draft->id_base, std::move(draft->message), std::move(draft->job)).status();
+      resumed =
+          queue_.Resume(owner, record.id, draft->id_base, std::move(draft->message), std::move(draft->job)).status();
     }
     if (resumed.ok()) return resumed;
     saved.mutable_study()->set_state(v1::STUDY_STATE_FAILED);

@@ -93,7 +93,8 @@ TEST_F(Jwt, WithAWrongClaimIsRefused) {
 }
 
 TEST_F(Jwt, NamesOfPeopleAreAccepted) {
-  for (const char* name : {"Zo\u00eb \u0141ukasiewicz", "auth0|5f7c8ec7c33c6c004bbafe82", "\u5c71\u7530", "a@b.org", "x"}) {
+  for (const char* name :
+       {"Zo\u00eb \u0141ukasiewicz", "auth0|5f7c8ec7c33c6c004bbafe82", "\u5c71\u7530", "a@b.org", "x"}) {
     EXPECT_TRUE(With("sub", name).ok()) << name;
   }
   EXPECT_TRUE(With("iat", 1'799'999'999.5).ok());

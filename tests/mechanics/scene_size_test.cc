@@ -29,7 +29,9 @@ absl::StatusOr<Mesh> NoFiles(const v1::Body&) { return absl::NotFoundError("no f
 
 constexpr SizeLimits kLimits{.vertices = 4'000'000, .elements = 10'000'000};
 
-std::string Body(const std::string& shape) { return "bodies { name: 'x' role: ROLE_DEFORMABLE mass: 1 " + shape + " } "; }
+std::string Body(const std::string& shape) {
+  return "bodies { name: 'x' role: ROLE_DEFORMABLE mass: 1 " + shape + " } ";
+}
 
 TEST(SceneSize, SumsAndProductsSaturate) {
   EXPECT_EQ(SaturatingSum(kHuge, kHuge), kHuge);
@@ -46,8 +48,9 @@ TEST(SceneSize, IsAnUpperBoundOfEveryShapesMesh) {
         "ellipsoid { radii { x: 1 y: 1 z: 1 } divisions: 6 }",
         "ellipsoid { radii { x: 1 y: 1 z: 1 } upper_half: true }",
         "filling { ellipsoid { radii { x: 1 y: 2 z: 1 } } cell: 0.3 }"}) {
-    const v1::Scene scene = Parsed(Body(shape) + "forces { springs { bodies: 'x' } } forces { gravity { bodies: 'x' "
-                                                 "acceleration { z: -9 } } }");
+    const v1::Scene scene = Parsed(Body(shape) +
+                                   "forces { springs { bodies: 'x' } } forces { gravity { bodies: 'x' "
+                                   "acceleration { z: -9 } } }");
     const auto model = Compile(scene, &NoFiles);
     ASSERT_TRUE(model.ok()) << model.status();
     const auto size = EstimateSize(scene, nullptr, kLimits);
@@ -87,8 +90,9 @@ TEST(SceneSize, PathologicalScenesAreRefusedAtOnceByTheirField) {
 }
 
 TEST(SceneSize, AFileIsCountedOnceItIsRead) {
-  const v1::Scene scene = Parsed("bodies { name: 'f{number}' for_each { numbers { first: 1 last: 200 } } role: "
-                                 "ROLE_AT_REST file { path: 'a.obj' } }");
+  const v1::Scene scene = Parsed(
+      "bodies { name: 'f{number}' for_each { numbers { first: 1 last: 200 } } role: "
+      "ROLE_AT_REST file { path: 'a.obj' } }");
   int reads = 0;
   const MeshSource source = [&reads](const v1::Body&) {
     ++reads;
@@ -110,7 +114,8 @@ std::string AllPairs() {
 
 TEST(SceneSize, ACompileStopsWhenNobodyWaitsForIt) {
   int asked = 0;
-  const auto model = Compile(Parsed(AllPairs()), &NoFiles, {.limits = kLimits, .cancelled = [&] { return ++asked > 3; }});
+  const auto model =
+      Compile(Parsed(AllPairs()), &NoFiles, {.limits = kLimits, .cancelled = [&] { return ++asked > 3; }});
   EXPECT_TRUE(absl::IsCancelled(model.status())) << model.status();
   EXPECT_EQ(asked, 4);
 }

@@ -33,10 +33,10 @@ class OwnersOfUploads : public GuardedServer {
   }
   v1::BeginUploadResponse Begin(const std::string& who) {
     v1::BeginUploadResponse begun;
-    const auto status = CallAs({who}, *uploads_, &Uploads::BeginUpload,
-                               absl::StrCat("name: '", who, ".obj' size: ", sizeof kSurface - 1, " sha256: '",
-                                            Sha256Hex(kSurface), "'"),
-                               &begun);
+    const auto status = CallAs(
+        {who}, *uploads_, &Uploads::BeginUpload,
+        absl::StrCat("name: '", who, ".obj' size: ", sizeof kSurface - 1, " sha256: '", Sha256Hex(kSurface), "'"),
+        &begun);
     EXPECT_TRUE(status.ok()) << status.error_message();
     return begun;
   }
@@ -58,7 +58,8 @@ class OwnersOfUploads : public GuardedServer {
   }
   // Creates a session whose scene names the file.
   grpc::StatusCode Use(const std::string& who, const std::string& shape) {
-    return Code({who}, &Sessions::CreateSession, "source { scene { name: 's' bodies { name: 'x' role: ROLE_AT_REST " + shape + " } } }");
+    return Code({who}, &Sessions::CreateSession,
+                "source { scene { name: 's' bodies { name: 'x' role: ROLE_AT_REST " + shape + " } } }");
   }
 
   std::unique_ptr<Uploads> uploads_;
@@ -78,10 +79,11 @@ TEST_F(OwnersOfUploads, AnotherAccountsUploadCanNeitherBeFilledNorFinishedNorUse
   EXPECT_EQ(Use("other", "file { " + path + " }"), grpc::NOT_FOUND) << "though its model is kept";
   EXPECT_EQ(Use("other", "filling { cell: 0.1 file { " + path + " } }"), grpc::NOT_FOUND);
   v1::DescribeSceneResponse described;
-  EXPECT_EQ(CallAs({"other"}, *scenes_, &v1::SceneService::Stub::DescribeScene,
-                   "source { scene { name: 's' bodies { name: 'x' role: ROLE_AT_REST file { " + path + " } } } }", &described)
-                .error_code(),
-            grpc::NOT_FOUND);
+  EXPECT_EQ(
+      CallAs({"other"}, *scenes_, &v1::SceneService::Stub::DescribeScene,
+             "source { scene { name: 's' bodies { name: 'x' role: ROLE_AT_REST file { " + path + " } } } }", &described)
+          .error_code(),
+      grpc::NOT_FOUND);
   v1::DeleteUploadResponse deleted;
   EXPECT_EQ(CallAs({"other"}, *uploads_, &Uploads::DeleteUpload, path, &deleted).error_code(), grpc::NOT_FOUND);
   const v1::BeginUploadResponse begun = Begin("other");
@@ -112,7 +114,8 @@ TEST_F(GuardedServer, SessionIdsCarryNoNameUnlessTheOwnerGivesOne) {
   EXPECT_EQ(create("admin", inline_scene + " session_id: 'chosen'"), "chosen");
   const auto studies = v1::StudyService::NewStub(channel_);
   v1::CreateStudyResponse study;
-  ASSERT_TRUE(CallAs({"owner"}, *studies, &v1::StudyService::Stub::CreateStudy, inline_scene + " error {}", &study).ok());
+  ASSERT_TRUE(
+      CallAs({"owner"}, *studies, &v1::StudyService::Stub::CreateStudy, inline_scene + " error {}", &study).ok());
   EXPECT_THAT(study.study().id(), Not(HasSubstr("doe")));
 }
 
@@ -166,7 +169,8 @@ TEST_F(GuardedServer, AJoinLinkThatNoSessionHasIsNotAnIdentity) {
                                  std::string("' or 1=1"), good.substr(1), good + "0"}) {
     const As guest{"", bad};
     v1::ListSessionsResponse listed;
-    EXPECT_EQ(CallAs(guest, *sessions_, &Sessions::ListSessions, "", &listed).error_code(), grpc::UNAUTHENTICATED) << bad;
+    EXPECT_EQ(CallAs(guest, *sessions_, &Sessions::ListSessions, "", &listed).error_code(), grpc::UNAUTHENTICATED)
+        << bad;
     v1::ListScenesResponse scenes;
     EXPECT_EQ(CallAs(guest, *scenes_, &v1::SceneService::Stub::ListScenes, "", &scenes).error_code(),
               grpc::UNAUTHENTICATED);
@@ -181,9 +185,10 @@ TEST_F(GuardedServer, AJoinLinkThatNoSessionHasIsNotAnIdentity) {
 
 // Every pair of 40,000 vertices is near: minutes of work in a request of some hundred bytes.
 std::string LongScene(int number) {
-  return absl::StrCat("source { scene { name: 'long' title: '", number,
-                      "' bodies { name: 'x' role: ROLE_DEFORMABLE mass: 1 grid { columns: 200 rows: 200 u { x: 1e-6 } v { "
-                      "y: 1e-6 } } } forces { cross_layer { bodies: 'x' distance: 100 } } } }");
+  return absl::StrCat(
+      "source { scene { name: 'long' title: '", number,
+      "' bodies { name: 'x' role: ROLE_DEFORMABLE mass: 1 grid { columns: 200 rows: 200 u { x: 1e-6 } v { "
+      "y: 1e-6 } } } forces { cross_layer { bodies: 'x' distance: 100 } } } }");
 }
 
 TEST_F(GuardedServer, LongCompilesOfOneAccountDelayNobodyAndEndWithTheirCaller) {
@@ -223,7 +228,8 @@ TEST_F(GuardedServer, LongCompilesOfOneAccountDelayNobodyAndEndWithTheirCaller) 
 TEST_F(GuardedServer, ASmallRequestForAHugeSceneIsRefusedAtOnce) {
   for (const std::string scene :
        {"bodies { name: 'x' role: ROLE_AT_REST block { size { x: 1 y: 1 z: 1 } columns: 500 rows: 500 layers: 500 } }",
-        "bodies { name: 'x{number}' for_each { numbers { first: 1 last: 200 } } role: ROLE_AT_REST anatomy { structure: "
+        "bodies { name: 'x{number}' for_each { numbers { first: 1 last: 200 } } role: ROLE_AT_REST anatomy { "
+        "structure: "
         "STRUCTURE_DIAPHRAGM } generated { resolution_mm: 1 } }"}) {
     v1::DescribeSceneResponse response;
     const auto start = std::chrono::steady_clock::now();

@@ -49,14 +49,20 @@ TEST(CompileSlots, TheAccountServedLeastRecentlyIsNext) {
   std::vector<std::thread> threads;
   for (int i = 0; i < 5; ++i) {
     threads.emplace_back([&] {
-      const auto slot = slots.Take("greedy", Lane::kLarge, [&] { ++waiting; return false; });
+      const auto slot = slots.Take("greedy", Lane::kLarge, [&] {
+        ++waiting;
+        return false;
+      });
       ++greedy_done;
     });
   }
   ASSERT_TRUE(Eventually([&] { return waiting >= 5; }));
   std::atomic<bool> modest_waits = false;
   threads.emplace_back([&] {
-    const auto slot = slots.Take("modest", Lane::kLarge, [&] { modest_waits = true; return false; });
+    const auto slot = slots.Take("modest", Lane::kLarge, [&] {
+      modest_waits = true;
+      return false;
+    });
     before_modest = greedy_done.load();
   });
   ASSERT_TRUE(Eventually([&] { return modest_waits.load(); }));

@@ -214,7 +214,8 @@ TEST_F(UploadsTest, AnInterruptedUploadContinuesWhereItWas) {
 TEST_F(UploadsTest, TwoClientsThatUploadTheSameFileShareOneUpload) {
   const std::string bytes = kSurface, hash = Sha256Hex(bytes);
   const auto size = static_cast<std::int64_t>(bytes.size());
-  const std::string mine = uploads_.Begin(by_, "a.obj", size, hash)->id, other = uploads_.Begin(by_, "b.obj", size, hash)->id;
+  const std::string mine = uploads_.Begin(by_, "a.obj", size, hash)->id,
+                    other = uploads_.Begin(by_, "b.obj", size, hash)->id;
   EXPECT_EQ(*uploads_.Add(by_, mine, 0, bytes.substr(0, 9)), 9);
   EXPECT_EQ(*uploads_.Add(by_, other, 0, bytes.substr(0, 5)), 9) << "they are there";
   EXPECT_EQ(*uploads_.Add(by_, other, 5, bytes.substr(5)), size) << "its first four are there";

@@ -21,15 +21,17 @@ v1::SceneSource Parsed(const std::string& scene) {
 }
 
 v1::SceneSource Small(int number) {
-  return Parsed(absl::StrCat("title: '", number, "' bodies { name: 'x' role: ROLE_AT_REST grid { columns: 3 rows: 3 u { x: 1 } "
+  return Parsed(absl::StrCat("title: '", number,
+                             "' bodies { name: 'x' role: ROLE_AT_REST grid { columns: 3 rows: 3 u { x: 1 } "
                              "v { y: 1 } } }"));
 }
 
 // Takes minutes: every pair of vertices is near. `side` squared vertices.
 v1::SceneSource Long(int side, int number) {
-  return Parsed(absl::StrCat("title: '", number, "' bodies { name: 'x' role: ROLE_DEFORMABLE mass: 1 grid { columns: ", side,
-                             " rows: ", side, " u { x: 1e-6 } v { y: 1e-6 } } } "
-                             "forces { cross_layer { bodies: 'x' distance: 100 } }"));
+  return Parsed(absl::StrCat(
+      "title: '", number, "' bodies { name: 'x' role: ROLE_DEFORMABLE mass: 1 grid { columns: ", side, " rows: ", side,
+      " u { x: 1e-6 } v { y: 1e-6 } } } "
+      "forces { cross_layer { bodies: 'x' distance: 100 } }"));
 }
 
 TEST(Models, ASmallSceneDoesNotWaitForLongOnes) {
@@ -74,7 +76,13 @@ TEST(Models, ACompileGoesOnWhileAnyoneWaitsForIt) {
   std::atomic<bool> first_left = false, first_asked = false;
   absl::Status first, second;
   std::thread one([&] {
-    first = models.Get(Long(200, 0), {.cancelled = [&] { first_asked = true; return first_left.load(); }}).status();
+    first = models
+                .Get(Long(200, 0), {.cancelled =
+                                        [&] {
+                                          first_asked = true;
+                                          return first_left.load();
+                                        }})
+                .status();
   });
   while (!first_asked) absl::SleepFor(absl::Milliseconds(5));
   std::thread two([&] { second = models.Get(Long(200, 0)).status(); });

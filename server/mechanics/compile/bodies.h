@@ -9,8 +9,8 @@
 namespace phrenic {
 
 // Fills bodies, rest, mass, inverse_mass, fixed_vertices, size and bound of builder.model from its scene, and reports
-// the bodies. INVALID_ARGUMENT "bodies[2].name: ..." for invalid bodies; errors of `source` are passed on. The errors of
-// CountSize as soon as the meshes exceed the limits, before any element is made of them.
+// the bodies. INVALID_ARGUMENT "bodies[2].name: ..." for invalid bodies; errors of `source` are passed on. The errors
+// of CountSize as soon as the meshes exceed the limits, before any element is made of them.
 absl::Status AddBodies(const MeshSource& source, const SizeLimits& limits, ModelBuilder& builder);
 
 // Fills the probes. Requires: AddBodies. INVALID_ARGUMENT "probes[0].body: ..." if a body or vertex does not exist.

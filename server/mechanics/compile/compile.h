@@ -15,10 +15,10 @@ namespace phrenic {
 
 // What a compile may cost. By default, anything.
 struct CompileOptions {
-  SizeLimits limits;                // checked before anything is built, and again with the meshes of files
-  SizeSource size_of;               // of files and generated parts
-  std::function<bool()> cancelled;  // true once nobody waits for the model; null: never
-  double longest = 0;               // [s]; 0: any time
+  SizeLimits limits = {};                     // checked before anything is built, and again with the meshes of files
+  SizeSource size_of = nullptr;               // of files and generated parts
+  std::function<bool()> cancelled = nullptr;  // true once nobody waits for the model; null: never
+  double longest = 0;                         // [s]; 0: any time
 };
 
 // Thread-safe if `source` is. Errors of `source` are passed on; INVALID_ARGUMENT names the field:

@@ -91,10 +91,9 @@ absl::StatusOr<Mesh> FromFilling(const v1::Body& body, const MeshSource& source,
         absl::StrFormat("would be filled by %g cells: make them larger than %g m", cells.prod(), cell));
   }
   const Eigen::Vector3d margin = 0.5 * (cells * cell - size.array());
-  Mesh solid = FillCells({low - margin, Eigen::Vector3d::Constant(cell), cells.cast<int>()},
-                         [&](const Eigen::Vector3d& centre) {
-                           return !stop.Stopped() && WindingNumber(*surface, centre) > 0.5;
-                         });
+  Mesh solid = FillCells(
+      {low - margin, Eigen::Vector3d::Constant(cell), cells.cast<int>()},
+      [&](const Eigen::Vector3d& centre) { return !stop.Stopped() && WindingNumber(*surface, centre) > 0.5; });
   if (stop.Stopped()) return stop.status();
   if (solid.vertices.cols() > 0) return solid;
   return absl::InvalidArgumentError(

@@ -56,7 +56,8 @@ absl::Status NoLink() {
 void AddLinks(std::string_view secrets, std::vector<std::string>& links) {
   for (absl::string_view secret : absl::StrSplit(absl::string_view(secrets.data(), secrets.size()), ',')) {
     secret = absl::StripAsciiWhitespace(secret);
-    const bool is_secret = secret.size() == kSecretLength && std::all_of(secret.begin(), secret.end(), absl::ascii_isxdigit);
+    const bool is_secret =
+        secret.size() == kSecretLength && std::all_of(secret.begin(), secret.end(), absl::ascii_isxdigit);
     if (is_secret && links.size() < kMaxLinksPerCall) links.push_back(Sha256Hex({secret.data(), secret.size()}));
   }
 }
@@ -183,14 +184,14 @@ bool AccessGuard::Owns(const Caller& caller, const std::string& session) const {
   return found.ok() && caller.known() && (*found)->access()->account == caller.account.name;
 }
 
-bool AccessGuard::Owns(const std::string& owner, const Caller& caller) const {
+bool AccessGuard::MayUse(const std::string& owner, const Caller& caller) const {
   if (!guarded() || caller.admin()) return true;
   return !owner.empty() && owner == caller.id();
 }
 
 absl::Status AccessGuard::CheckOwns(Kind kind, const std::string& id, const std::optional<std::string>& owner,
                                     const Caller& caller) const {
-  if (Owns(owner.value_or(""), caller)) return absl::OkStatus();
+  if (MayUse(owner.value_or(""), caller)) return absl::OkStatus();
   const char* what = kind == Kind::kExport ? "export_id: there is no export \"" : "study_id: there is no study \"";
   return absl::NotFoundError(absl::StrCat(what, id.substr(0, 80), "\" that belongs to you"));
 }

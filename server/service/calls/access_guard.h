@@ -36,9 +36,9 @@ class AccessGuard {
 
   // Returns the caller if the rule of the method (access::Rules) allows the call and schema::Validate accepts the
   // request. Writes to the audit log and counts the outcome.
-  // Errors: UNAUTHENTICATED without an account, with a bad token, or with a join link that no session has; PERMISSION_DENIED if the role is too low;
-  // RESOURCE_EXHAUSTED above the rate limit; NOT_FOUND if the session does not exist or is not visible to the caller;
-  // INVALID_ARGUMENT for a bad field.
+  // Errors: UNAUTHENTICATED without an account, with a bad token, or with a join link that no session has;
+  // PERMISSION_DENIED if the role is too low; RESOURCE_EXHAUSTED above the rate limit; NOT_FOUND if the session does
+  // not exist or is not visible to the caller; INVALID_ARGUMENT for a bad field.
   absl::StatusOr<access::Caller> Admit(const grpc::ServerContextBase& context,
                                        const google::protobuf::Message& request);
 
@@ -54,9 +54,9 @@ class AccessGuard {
   // True if the caller's account owns the session or is an administrator; no control token is needed then.
   bool Owns(const access::Caller& caller, const std::string& session) const;
   // True if the caller may use a resource that belongs to `owner`, the id() of a caller.
-  bool Owns(const std::string& owner, const access::Caller& caller) const;
-  // Returns NOT_FOUND if the caller does not own the resource, so that its existence is not revealed. `owner` is nullopt
-  // if there is no such resource: the call then goes on and reports that, if the caller may know it.
+  bool MayUse(const std::string& owner, const access::Caller& caller) const;
+  // Returns NOT_FOUND if the caller does not own the resource, so that its existence is not revealed. `owner` is
+  // nullopt if there is no such resource: the call then goes on and reports that, if the caller may know it.
   absl::Status CheckOwns(Kind kind, const std::string& id, const std::optional<std::string>& owner,
                          const access::Caller& caller) const;
   // Returns what the caller may use of uploads and compiles. `context` outlives it.

@@ -31,9 +31,9 @@ class Exports {
   // `clock` and `store` outlive it. A null store keeps nothing.
   Exports(const Limits& limits, std::string spool_folder, const Clock& clock, store::Store* store = nullptr);
 
-  // Queues the exports of an earlier server again, which make the same files. `account_of` gives the present name of the
-  // account that the record names. `lost` gets the reason why one could not be restored, by "export ID". Requires: no
-  // other call was made yet.
+  // Queues the exports of an earlier server again, which make the same files. `account_of` gives the present name of
+  // the account that the record names. `lost` gets the reason why one could not be restored, by "export ID". Requires:
+  // no other call was made yet.
   void Restore(const std::vector<store::SavedRecord>& records, Models& models,
                absl::FunctionRef<std::string(const std::string& account)> account_of,
                std::map<std::string, absl::Status>& lost);

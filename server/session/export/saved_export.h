@@ -22,7 +22,8 @@ struct RestoredExport {
 
 // Returns a v1::SavedExport as bytes: the request, the scene, the parameters and the state. The errors of SaveScene.
 absl::StatusOr<std::string> SaveExport(const v1::CreateExportRequest& request, const ExportStart& start);
-// `account_of` gives the present name of the account that the record names, if an earlier version wrote it. DATA_LOSS if the record is no export; the errors of RestoreScene and of store::Restore.
+// `account_of` gives the present name of the account that the record names, if an earlier version wrote it. DATA_LOSS
+// if the record is no export; the errors of RestoreScene and of store::Restore.
 absl::StatusOr<RestoredExport> RestoreExport(const store::SavedRecord& record, Models& models,
                                              absl::FunctionRef<std::string(const std::string& account)> account_of);
 
