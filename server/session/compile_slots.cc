@@ -9,7 +9,7 @@ namespace phrenic::session {
 namespace {
 
 constexpr std::ptrdiff_t kMostOfAccount = 8;
-constexpr std::size_t kMostWaiting = 64;
+constexpr std::size_t kMostInAll = 64;
 constexpr absl::Duration kLook = absl::Milliseconds(50);  // between two looks at `cancelled`
 
 }  // namespace
@@ -17,7 +17,7 @@ constexpr absl::Duration kLook = absl::Milliseconds(50);  // between two looks a
 absl::Status CompileSlots::Enter(const std::string& account) const {
   const auto own = std::count_if(waiting_.begin(), waiting_.end(),
                                  [&account](const Waiting& each) { return each.account == account; });
-  if (own < kMostOfAccount && waiting_.size() < kMostWaiting) return absl::OkStatus();
+  if (own < kMostOfAccount && waiting_.size() < kMostInAll) return absl::OkStatus();
   return absl::ResourceExhaustedError(absl::StrCat(own < kMostOfAccount ? waiting_.size() : own,
                                                    " scenes wait to be compiled, and no more may: try again later"));
 }

@@ -29,7 +29,7 @@ std::string DeterministicBytes(const v1::Scene& scene) {
 constexpr std::int64_t kSmallScene = 200'000;        // vertices and elements: compiles within a second
 constexpr int kSmallAtATime = 3, kLargeAtATime = 2;  // the second takes some hundred megabytes at most
 constexpr int kMostOthers = 64;                      // who wait for one compile
-constexpr absl::Duration kLook = absl::Milliseconds(50);
+constexpr absl::Duration kAskAgain = absl::Milliseconds(50);
 
 bool IsCancelled(const Requester& by) { return by.cancelled != nullptr && by.cancelled(); }
 
@@ -123,7 +123,7 @@ absl::StatusOr<std::shared_ptr<const Model>> Models::Await(Job& job, const Reque
   ++job.others;
   const auto done = [&job] { return job.result.has_value(); };
   bool left = false;
-  while (!left && !mutex_.AwaitWithTimeout(absl::Condition(&done), kLook)) left = IsCancelled(by);
+  while (!left && !mutex_.AwaitWithTimeout(absl::Condition(&done), kAskAgain)) left = IsCancelled(by);
   --job.others;
   if (left) return NobodyWaits();
   return *job.result;

@@ -33,7 +33,8 @@ struct Compiled {
 // Thread-safe. Compiles on the caller's thread; callers that want the same scene wait for one compile of it.
 class Models {
  public:
-  // Keeps the `capacity` models that were used last, as long as they have limits.elements together. `uploads` outlives it; null: scenes cannot name uploaded files.
+  // Keeps the `capacity` models that were used last, as long as they have limits.elements together. `uploads` outlives
+  // it; null: scenes cannot name uploaded files.
   Models(SceneCatalogue catalogue, std::string data_dir, int capacity, Uploads* uploads = nullptr,
          const Limits& limits = {});
 
@@ -73,8 +74,7 @@ class Models {
   absl::StatusOr<std::shared_ptr<const Model>> Await(Job& job, const Requester& by)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   absl::StatusOr<std::shared_ptr<const Model>> CompileNow(const v1::Scene& scene, const Surfaces& surfaces,
-                                                          const Requester& by, Job& job)
-      ABSL_LOCKS_EXCLUDED(mutex_);
+                                                          const Requester& by, Job& job) ABSL_LOCKS_EXCLUDED(mutex_);
 
   const SceneCatalogue catalogue_;
   const std::string data_dir_;
