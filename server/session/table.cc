@@ -48,9 +48,12 @@ absl::Status Table::CheckRoom(const std::string& account) const {
                                                      "start the server with a larger --max-sessions"));
   }
   if (account.empty()) return absl::OkStatus();
-  const auto own = std::count_if(sessions_.begin(), sessions_.end(), [&account](const auto& each) {
-    return each.second != nullptr && each.second->access()->account == account;
-  });
+  const auto own = std::count_if(sessions_.begin(), sessions_.end(),
+                                 [&account](const auto& each) {
+                                   return each.second != nullptr && each.second->access()->account == account;
+                                 }) +
+                   std::count_if(reserved_.begin(), reserved_.end(),
+                                 [&account](const auto& each) { return each.second == account; });
   if (own < limits_.sessions_of_user) return absl::OkStatus();
   return absl::ResourceExhaustedError(
       absl::StrCat(account, " has ", own,
@@ -75,6 +78,7 @@ absl::StatusOr<std::string> Table::Reserve(const char* field, const std::string&
   if (absl::Status room = CheckRoom(account); !room.ok()) return room;
   const std::string id = wanted.empty() ? FreeId(stem, account, elsewhere) : wanted;
   sessions_.emplace(id, nullptr);
+  reserved_.emplace(id, account);
   return id;
 }
 
@@ -91,6 +95,7 @@ absl::StatusOr<Table::Claim> Table::ReserveEverywhere(const char* field, const s
     {
       absl::MutexLock lock(&mutex_);
       sessions_.erase(*id);
+      reserved_.erase(*id);
     }
     if (!wanted.empty() || !absl::IsAlreadyExists(epoch.status())) {
       return absl::Status(epoch.status().code(), absl::StrCat(field, ": ", epoch.status().message()));
@@ -165,6 +170,7 @@ absl::StatusOr<std::shared_ptr<Session>> Table::Admit(const char* field, const s
   }
   if (!session.ok() && ownership_ != nullptr) ownership_->Abandon(claim->id);
   absl::MutexLock lock(&mutex_);
+  reserved_.erase(claim->id);
   if (closed_.has_value()) return *closed_;
   if (session.ok()) {
     sessions_[claim->id] = *session;

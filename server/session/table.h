@@ -130,6 +130,7 @@ class Table {
   AccountNames account_names_;
   mutable absl::Mutex mutex_;
   std::map<std::string, std::shared_ptr<Session>> sessions_ ABSL_GUARDED_BY(mutex_);
+  std::map<std::string, std::string> reserved_ ABSL_GUARDED_BY(mutex_);      // accounts, by the ids that are reserved
   std::map<std::string, store::SavedSession> lost_ ABSL_GUARDED_BY(mutex_);  // could not be restored
   std::vector<std::shared_ptr<Session>> dropped_ ABSL_GUARDED_BY(mutex_);    // Tend releases them
   std::optional<absl::Status> closed_ ABSL_GUARDED_BY(mutex_);

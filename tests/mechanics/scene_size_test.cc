@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 
 #include <chrono>
+#include <cstdint>
+#include <limits>
 
 #include "absl/strings/str_cat.h"
 #include "google/protobuf/text_format.h"
@@ -132,6 +134,51 @@ TEST(SceneSize, ACompileStopsAfterItsTimeInEveryLoopOverPairs) {
     EXPECT_THAT(std::string(model.status().message()), HasSubstr("--max-compile-seconds"));
     EXPECT_LT(seconds.count(), 20) << text;
   }
+}
+
+// Links that share a vertex couple in pairs.
+TEST(SceneSize, LinksThatAllShareOneVertexAreRefused) {
+  std::string hub = Body("grid { columns: 100 rows: 100 u { x: 0.1 } v { y: 0.1 } }") +
+                    "constraints { rigid_links { body: 'x' list {";
+  for (int i = 1; i < 9000; ++i) hub += absl::StrCat(" links { a: 0 b: ", i, " }");
+  const auto model = Compile(Parsed(hub + " } } }"), &NoFiles, {.limits = kLimits});
+  EXPECT_TRUE(absl::IsResourceExhausted(model.status())) << model.status();
+  EXPECT_THAT(std::string(model.status().message()), HasSubstr("constraints[0].rigid_links: its 8999 links"));
+}
+
+// The factor of Laplace's equation on a surface of random triangles is nearly full.
+TEST(SceneSize, FibresOnATangledSurfaceAreRefused) {
+  constexpr int kVertices = 9000;
+  std::string random = "polyhedron {";
+  std::uint32_t bits = 1;
+  const auto next = [&bits] { return bits = bits * 1664525 + 1013904223; };
+  for (int i = 0; i < kVertices; ++i) {
+    random += absl::StrCat(" vertices { x: ", next() % 1000, " y: ", next() % 1000, " z: ", i % 1000, " }");
+  }
+  for (int i = 0; i < 3 * kVertices; ++i) {
+    random += absl::StrCat(" triangles { a: ", (next() >> 8U) % kVertices, " b: ", (next() >> 8U) % kVertices,
+                           " c: ", (next() >> 8U) % kVertices, " }");
+  }
+  random +=
+      " } regions { name: 'from' low { } high { x: 1000 y: 1000 z: 10 } } regions { name: 'to' low { z: 990 } high { "
+      "x: "
+      "1000 y: 1000 z: 1000 } }";
+  const auto model =
+      Compile(Parsed(Body(random) + "forces { fibres { bodies: 'x' from_region: 'from' to_region: 'to' } }"), &NoFiles,
+              {.limits = kLimits});
+  EXPECT_THAT(std::string(model.status().message()), HasSubstr("too much memory"));
+}
+
+// A vertex with very many springs costs no more than as many springs elsewhere.
+TEST(SceneSize, AHubOfSpringsCompiles) {
+  std::string star = "polyhedron { vertices { }";
+  for (int i = 1; i < 50'000; ++i)
+    star += absl::StrCat(" vertices { x: ", i % 97, " y: ", i % 89, " z: 1 } edges { a: 0 b: ", i, " }");
+  const auto start = std::chrono::steady_clock::now();
+  const auto model =
+      Compile(Parsed(Body(star + " }") + "forces { springs { bodies: 'x' } }"), &NoFiles, {.limits = kLimits});
+  EXPECT_TRUE(model.ok()) << model.status();
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(30));
 }
 
 }  // namespace
