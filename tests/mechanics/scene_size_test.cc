@@ -166,7 +166,7 @@ TEST(SceneSize, FibresOnATangledSurfaceAreRefused) {
   const auto model =
       Compile(Parsed(Body(random) + "forces { fibres { bodies: 'x' from_region: 'from' to_region: 'to' } }"), &NoFiles,
               {.limits = kLimits});
-  EXPECT_THAT(std::string(model.status().message()), HasSubstr("too much memory"));
+  EXPECT_THAT(std::string(model.status().message()), HasSubstr("too much work"));
 }
 
 // A vertex with very many springs costs no more than as many springs elsewhere.
