@@ -73,7 +73,6 @@ TEST_F(Jwt, WithAWrongClaimIsRefused) {
                                      {"iat", "now"},
                                      {"iat", json::object()},
                                      {"sub", "an\nna"},
-                                     {"sub", "an\u0000na"},
                                      {"sub", std::string("an\0na", 5)},
                                      {"sub", "\u001b[31manna"},
                                      {"sub", "an\u0085na"},
