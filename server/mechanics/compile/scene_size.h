@@ -3,23 +3,15 @@
 #define PHRENIC_SERVER_MECHANICS_COMPILE_SCENE_SIZE_H_
 
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <vector>
 
 #include "absl/status/statusor.h"
 #include "phrenic/v1/scene.pb.h"
+#include "server/mechanics/compile/shape_size.h"
 #include "server/mesh/mesh.h"
 
 namespace phrenic {
-
-// All counts saturate at the largest number.
-struct MeshSize {
-  std::int64_t vertices = 0, edges = 0, triangles = 0, tetrahedra = 0;
-};
-
-// Returns the size of a body's file or generated part, as far as it is known without reading it; zeros otherwise.
-using SizeSource = std::function<MeshSize(const v1::Body& body)>;
 
 struct SizeLimits {
   std::int64_t vertices = std::numeric_limits<std::int64_t>::max();
