@@ -82,10 +82,17 @@ void AddLimits(CLI::App& app, Flags& flags) {
   group.Add("max-viewers", limits.viewers, "Maximum number of viewers per session", 1, 10000);
   group.Add("max-viewers-in-all", limits.viewers_in_all, "Maximum number of viewers over all sessions", 1, kMaxCount);
   group.Add("max-vertices", limits.vertices, "Maximum number of vertices per scene", 1, 1e8);
+  group.Add("max-elements", limits.elements,
+            "Maximum number of springs, triangles, tetrahedra and other elements per scene", 1, 1e9);
+  group.Add("max-compile-seconds", limits.compile_seconds, "Timeout for compiling a scene [s]; 0: none", 0, 86400);
   group.Add("max-message-mb", flags.message_mb, "Maximum size of a request, uncompressed [MiB]", 1, 1024);
   group.Add("max-upload-mb", flags.upload_mb, "Maximum size of an uploaded file [MiB]", 1, 65536);
   group.Add("max-uploads-mb", flags.uploads_mb,
-            "Maximum size of all uploaded files [MiB]; above it the least recently used one is deleted", 1, 1048576);
+            "Maximum size of all uploaded files [MiB]; without accounts the least recently used one makes room", 1,
+            1048576);
+  group.Add("max-uploads-mb-of-user", flags.uploads_mb_of_user,
+            "Maximum size of the uploaded files of an account [MiB]; above it its least recently used one is deleted",
+            1, 1048576);
   group.Add("session-cpu", limits.session_cpu, "Fraction of a processor core that stepping one session may use", 0.01,
             1);
   group.Add("max-exports", limits.exports, "Maximum number of exports at a time, and of comparisons", 1, 64);
@@ -170,6 +177,7 @@ service::ServerOptions OptionsOf(const Flags& flags) {
   options.max_message_bytes = flags.message_mb << 20;
   options.limits.upload_bytes = std::int64_t{flags.upload_mb} << 20;
   options.limits.uploads_bytes = std::int64_t{flags.uploads_mb} << 20;
+  options.limits.uploads_bytes_of_user = std::int64_t{flags.uploads_mb_of_user} << 20;
   return options;
 }
 

@@ -98,13 +98,16 @@ struct Server::Parts {
         audit(std::move(opened.audit)),
         uploads(options.limits, options.spool_dir),
         models(session::SceneCatalogue(SceneFolders(options)), options.data_dir, options.limits.models, &uploads,
-               options.limits.vertices),
+               options.limits),
         table(models, clock, options.limits, store.get(), cluster.get()),
-        router(cluster == nullptr ? nullptr : std::make_unique<SessionRouter>(*cluster, PeerCredentials(options))),
+        page_tokens(cluster == nullptr ? PageTokens() : PageTokens("cluster")),
+        router(cluster == nullptr
+                   ? nullptr
+                   : std::make_unique<SessionRouter>(*cluster, PeerCredentials(options), page_tokens)),
         guard(*accounts, *audit, table, metrics, options.max_requests),
         pages(guard, metrics, table),
         scene_service(models, guard),
-        session_service(table, guard),
+        session_service(table, guard, page_tokens),
         control_service(table, guard),
         access_service(guard, table),
         frame_service(table, guard, metrics, options.limits.viewers_in_all),
@@ -114,7 +117,9 @@ struct Server::Parts {
         study_service(models, options.web_root, guard, clock, store.get()),
         compare_service(table, options.limits.exports, guard),
         server_service(std::filesystem::exists(options.web_root + "/index.html"), !options.data_dir.empty(),
-                       options.tls.used(), guard) {}
+                       options.tls.used(), guard) {
+    table.set_account_names([this](const std::string& account) { return guard.AccountOf(account); });
+  }
 
   void JoinCluster();
   absl::Status Restore(const ServerOptions& options);
@@ -136,6 +141,7 @@ struct Server::Parts {
   session::Uploads uploads;
   session::Models models;
   session::Table table;
+  const PageTokens page_tokens;
   const std::unique_ptr<SessionRouter> router;  // null: not in a cluster
   Metrics metrics;
   AccessGuard guard;
@@ -206,10 +212,8 @@ absl::Status Server::Parts::Restore(const ServerOptions& options) {
   lost = *std::move(restored);
   for (const auto& [id, how] : table.carried_over()) spdlog::warn("session {}: {}", id, how);
   study_service.Restore(*records, lost);
-  const auto set_owner = [this](const std::string& id, const std::string& owner) {
-    guard.SetOwner(AccessGuard::Kind::kExport, id, owner);
-  };
-  exports.Restore(*records, models, set_owner, lost);
+  exports.Restore(
+      *records, models, [this](const std::string& account) { return guard.AccountOf(account); }, lost);
   return absl::OkStatus();
 }
 

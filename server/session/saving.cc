@@ -94,17 +94,15 @@ absl::StatusOr<v1::SavedScene> SaveScene(const Model& model, const std::vector<U
   return scene;
 }
 
-absl::StatusOr<Compiled> CompileSaved(const v1::SavedScene& saved, Models& models) {
-  auto surfaces = models.AdoptSurfaces(saved);
-  if (!surfaces.ok()) return surfaces.status();
-  auto model = models.Get(saved.source());
-  if (!model.ok()) return model.status();
-  const bool same = (*model)->report.scene_hash() == saved.scene_hash();
-  return Compiled{*std::move(model), *std::move(surfaces), same};
+absl::StatusOr<Compiled> CompileSaved(const v1::SavedScene& saved, const std::string& owner, Models& models) {
+  auto compiled = models.Restore(saved, owner);
+  if (compiled.ok()) compiled->same = compiled->model->report.scene_hash() == saved.scene_hash();
+  return compiled;
 }
 
-absl::StatusOr<Compiled> RestoreScene(const v1::SavedScene& saved, const std::string& what, Models& models) {
-  auto compiled = CompileSaved(saved, models);
+absl::StatusOr<Compiled> RestoreScene(const v1::SavedScene& saved, const std::string& what, const std::string& owner,
+                                      Models& models) {
+  auto compiled = CompileSaved(saved, owner, models);
   if (!compiled.ok() || compiled->same) return compiled;
   return absl::FailedPreconditionError(absl::StrCat(
       what, ": the surface files of its scene \"", compiled->model->scene.name(),
@@ -120,6 +118,7 @@ v1::SavedControl SaveControl(const ControlState& state) {
   saved.set_holder(state.holder);
   saved.set_revision(state.revision);
   saved.set_account(state.account);
+  saved.set_account_qualified(true);
   for (const ControlState::Link& link : state.links) SaveLink(link, *saved.add_links());
   return saved;
 }

@@ -19,20 +19,14 @@ namespace phrenic::session {
 v1::SavedControl SaveControl(const ControlState& state);
 ControlState RestoreControl(const v1::SavedControl& saved);
 
-// A compiled scene, with the uploaded files that it uses.
-struct Compiled {
-  std::shared_ptr<const Model> model;
-  std::vector<Uploads::Held> surfaces;
-  bool same = true;  // the model has the same bits as the saved one
-};
-
 // Returns the scene with the content of its uploaded files and the layout of its states. The errors of reading the
 // files.
 absl::StatusOr<v1::SavedScene> SaveScene(const Model& model, const std::vector<Uploads::Held>& surfaces);
-// Compiles a saved scene. The errors of Models::AdoptSurfaces and Models::Get.
-absl::StatusOr<Compiled> CompileSaved(const v1::SavedScene& saved, Models& models);
+// Compiles a saved scene, whose files belong to `owner`. The errors of Models::Restore.
+absl::StatusOr<Compiled> CompileSaved(const v1::SavedScene& saved, const std::string& owner, Models& models);
 // The same. FAILED_PRECONDITION, which begins with `what`, if the model differs from the saved one.
-absl::StatusOr<Compiled> RestoreScene(const v1::SavedScene& saved, const std::string& what, Models& models);
+absl::StatusOr<Compiled> RestoreScene(const v1::SavedScene& saved, const std::string& what, const std::string& owner,
+                                      Models& models);
 
 // The last moment of a saved session.
 struct Replayed {

@@ -28,10 +28,18 @@ absl::StatusOr<std::shared_ptr<store::Journal>> Table::JournalOf(const store::Sa
   return store_->Begin(saved.id, *std::move(scene));
 }
 
+ControlState Table::ControlOf(const store::SavedSession& saved) const {
+  const v1::SavedControl& control = (saved.later.empty() ? saved.moment : saved.later.back()).control();
+  ControlState state = RestoreControl(control);
+  const bool current = control.account_qualified() || account_names_ == nullptr || state.account.empty();
+  if (!current) state.account = account_names_(state.account);
+  return state;
+}
+
 absl::StatusOr<std::shared_ptr<Session>> Table::Restored(const store::SavedSession& saved, std::int64_t epoch,
                                                          bool taken) {
   if (!saved.problem.ok()) return saved.problem;
-  auto compiled = CompileSaved(saved.scene, models_);
+  auto compiled = CompileSaved(saved.scene, ControlOf(saved).account, models_);
   if (!compiled.ok()) return compiled.status();
   absl::StatusOr<Replayed> replayed =
       compiled->same ? Replay(compiled->model, saved) : CarryOver(compiled->model, saved);
@@ -48,7 +56,7 @@ absl::StatusOr<std::shared_ptr<Session>> Table::Restored(const store::SavedSessi
   const v1::Session& last = replayed->moment.session();
   Session::Fork start{SavedParameters(*compiled->model, last.parameters()), std::move(replayed->state),
                       last.largest_stable_step()};
-  Session::Origin origin{ControlBook(RestoreControl(replayed->moment.control())), *std::move(journal), replayed->moment,
+  Session::Origin origin{ControlBook(ControlOf(saved)), *std::move(journal), replayed->moment,
                          epoch, std::move(compiled->surfaces)};
   return std::make_shared<Session>(saved.id, compiled->model, std::move(start), clock_, limits_, std::move(origin));
 }
@@ -109,7 +117,7 @@ absl::Status Table::TakeOver(const store::SavedSession& saved, std::int64_t epoc
 absl::Status Table::DeleteLost(const std::string& id, std::optional<std::string_view> token) {
   const auto lost = lost_.find(id);
   const store::SavedSession& saved = lost->second;
-  ControlBook control(RestoreControl((saved.later.empty() ? saved.moment : saved.later.back()).control()));
+  ControlBook control(ControlOf(saved));
   if (token.has_value()) {
     if (absl::Status status = control.Check(*token, clock_.Now()); !status.ok()) return status;
   }

@@ -150,7 +150,7 @@ TEST_F(RestoreTest, WhatACallHasReturnedSurvivesAKill) {
 }
 
 TEST_F(RestoreTest, ASessionWithAnUploadedFileIsSavedWithTheFile) {
-  const auto given = uploads_->Adopt("tent.obj", "v 0 0 0\nv 100 0 0\nv 0 100 0\nv 0 0 100\nf 1 2 3\nf 1 3 4\n");
+  const auto given = uploads_->Adopt({}, "tent.obj", "v 0 0 0\nv 100 0 0\nv 0 100 0\nv 0 0 100\nf 1 2 3\nf 1 3 4\n");
   ASSERT_TRUE(given.ok()) << given.status();
   v1::CreateSessionRequest request;
   request.set_session_id("given");
@@ -163,7 +163,7 @@ TEST_F(RestoreTest, ASessionWithAnUploadedFileIsSavedWithTheFile) {
       request.mutable_source()->mutable_scene()));
   const auto session = table_->Create(request);
   ASSERT_TRUE(session.ok()) << session.status();
-  ASSERT_TRUE(uploads_->Delete(given->file.path()).ok());
+  ASSERT_TRUE(uploads_->Delete({}, given->file.path()).ok());
   v1::ForkSessionRequest fork;
   fork.set_session_id("given");
   fork.set_fork_id("fork");
@@ -173,7 +173,7 @@ TEST_F(RestoreTest, ASessionWithAnUploadedFileIsSavedWithTheFile) {
   ASSERT_THAT(lost_, IsEmpty());
   EXPECT_EQ(HashText(Find("given")->MakeFork()->state), hash);
   EXPECT_EQ(HashAfter(*Find("fork"), 20), hash);
-  EXPECT_EQ(uploads_->List().size(), 1u);
+  EXPECT_EQ(uploads_->List({}).size(), 1u);
 }
 
 TEST_F(RestoreTest, APlayingSessionContinuesToPlay) {

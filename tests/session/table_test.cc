@@ -165,7 +165,7 @@ TEST_F(TableTest, PagesListEverySessionOnce) {
   do {
     const Table::Page page = table_.List(3, token);
     for (const auto& session : page.sessions) seen += session->id();
-    token = page.next_token;
+    token = page.last;
   } while (!token.empty());
   EXPECT_EQ(seen, "abcd");
 }

@@ -19,6 +19,7 @@
 #include "absl/status/statusor.h"
 #include "absl/synchronization/mutex.h"
 #include "server/cluster/cluster.h"
+#include "server/service/calls/page_tokens.h"
 #include "server/service/net/metadata.h"
 
 namespace phrenic::service {
@@ -40,9 +41,11 @@ class SessionRouter {
     bool fan_out = false;         // calls all targets at once and merges the responses
   };
 
-  // `credentials` are those of calls to the other servers.
-  SessionRouter(cluster::Cluster& cluster, std::shared_ptr<grpc::ChannelCredentials> credentials)
-      : cluster_(cluster), credentials_(std::move(credentials)) {}
+  // `credentials` are those of calls to the other servers. `cluster` and `page_tokens` outlive the router.
+  SessionRouter(cluster::Cluster& cluster, std::shared_ptr<grpc::ChannelCredentials> credentials,
+                const PageTokens& page_tokens)
+      : cluster_(cluster), credentials_(std::move(credentials)), page_tokens_(page_tokens) {}
+  const PageTokens& page_tokens() const { return page_tokens_; }
   // Sets the channel to this server's own services. Call it before Find.
   void set_local_channel(std::shared_ptr<grpc::Channel> channel);
 
@@ -67,6 +70,7 @@ class SessionRouter {
 
   cluster::Cluster& cluster_;
   const std::shared_ptr<grpc::ChannelCredentials> credentials_;
+  const PageTokens& page_tokens_;
   std::shared_ptr<grpc::GenericStub> local_;
   std::atomic<std::int64_t> forwarded_ = 0;
   absl::Mutex mutex_;
