@@ -3,13 +3,12 @@
 #include <cjose/cjose.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "absl/strings/str_cat.h"
 #include "server/access/fetch.h"
 #include "server/access/rules.h"
+#include "server/schema/file_bytes.h"
 
 namespace phrenic::access {
 namespace {
@@ -62,8 +61,7 @@ v1::AccessRole RoleIn(const json& claims, const std::string& claim) {
 
 absl::StatusOr<std::string> ReadText(const std::string& source) {
   if (IsAddress(source)) return Fetch(source);
-  std::ifstream in(source);
-  return std::string(std::istreambuf_iterator<char>(in), {});
+  return ReadBytes(source).value_or("");
 }
 
 absl::StatusOr<json> ReadKeySet(std::string source) {
