@@ -12,8 +12,7 @@
 namespace phrenic::faults {
 namespace {
 
-constexpr double kReturned = 50;     // memory above that before an attack [MB]
-constexpr double kLongestWait = 10;  // of a healthy call; long, as the machine may be busy [s]
+constexpr double kLongestWait = 2.5;  // of a healthy call; long, as the machine may be busy [s]
 
 std::string Milliseconds(double seconds) {
   return std::isfinite(seconds) ? absl::StrFormat("%.0f", 1e3 * seconds) : "no more";
@@ -24,7 +23,7 @@ void Judge(const Damage& damage, double largest_gap, std::vector<std::string>& b
   if (damage.died) return broken.emplace_back("the server died"), void();
   if (damage.gap > largest_gap) broken.push_back("the healthy viewer waited too long");
   if (damage.wait > kLongestWait) broken.push_back("healthy calls were not answered in time");
-  if (damage.afterwards > damage.before + kReturned) broken.push_back("memory was kept");
+  if (damage.afterwards > damage.before + kReturnedMemory) broken.push_back("memory was kept");
 }
 
 void PrintRow(const Attack& attack, const Outcome& outcome, const Damage& damage,

@@ -10,6 +10,9 @@
 
 namespace phrenic::faults {
 
+// Memory above that before an attack that is no longer held for it [MB].
+inline constexpr double kReturnedMemory = 50;
+
 struct Outcome {
   int tried = 0, refused = 0, served = 0;  // a flood has tries alone
   std::vector<std::string> broken;         // what the server must not do, and did
@@ -50,6 +53,9 @@ Outcome GreedyAccount(const Victim& victim, int times);
 Outcome UploadTheft(const Victim& victim, int times);
 Outcome StudyFlood(const Victim& victim, int times);
 Outcome ForgedTokens(const Victim& victim, int times);
+
+// A call that every server answers.
+inline constexpr char kGetServer[] = "/phrenic.v1.ServerService/GetServer";
 
 inline constexpr char kNoRateLimit[] = "--max-requests 0";
 

@@ -36,7 +36,7 @@ Outcome HoldCalls(const Victim& victim, int times, const std::string& path, cons
   return outcome;
 }
 
-void Count(const grpc::Status& status, Outcome& outcome) {
+void CountCall(const grpc::Status& status, Outcome& outcome) {
   ++outcome.tried;
   ++(status.ok() ? outcome.served : outcome.refused);
 }
@@ -183,9 +183,9 @@ Outcome GreedyAccount(const Victim& victim, int times) {
   const auto exports = v1::ExportService::NewStub(channel);
   Outcome outcome;
   for (int i = 0; i < times / 6 && victim.Continues(); ++i) {
-    Count(CreateSession(victim, *sessions, "greedy", absl::StrCat("greedy-", i)), outcome);
-    Count(CreateStudy(victim, *studies, "greedy", absl::StrCat("greedy-", i)), outcome);
-    Count(CreateExport(victim, *exports, "greedy", "greedy-0"), outcome);
+    CountCall(CreateSession(victim, *sessions, "greedy", absl::StrCat("greedy-", i)), outcome);
+    CountCall(CreateStudy(victim, *studies, "greedy", absl::StrCat("greedy-", i)), outcome);
+    CountCall(CreateExport(victim, *exports, "greedy", "greedy-0"), outcome);
   }
   v1::WatchFramesRequest watch;
   watch.set_session_id("greedy-0");

@@ -11,7 +11,6 @@
 namespace phrenic::faults {
 namespace {
 
-constexpr char kGetServer[] = "/phrenic.v1.ServerService/GetServer";
 constexpr char kWatchFrames[] = "/phrenic.v1.FrameService/WatchFrames";
 
 // Reads until `streams` have ended, the connection ends, or for `seconds`.
@@ -86,8 +85,9 @@ Outcome UnfinishedMessages(const Victim& victim, int times) {
     connection.SendData(stream, prefix);
   }
   const absl::Time until = absl::Now() + absl::Seconds(15);
+  absl::Time taken = absl::Now();  // when the server last took something
   std::size_t sent = 0;
-  while (connection.open() && victim.Continues() && absl::Now() < until) {
+  while (connection.open() && victim.Continues() && absl::Now() < until && absl::Now() < taken + absl::Seconds(3)) {
     std::size_t now = 0;
     for (auto& [stream, left] : streams) {
       const std::size_t some =
@@ -96,6 +96,7 @@ Outcome UnfinishedMessages(const Victim& victim, int times) {
     }
     connection.Read(now > 0 ? 0 : 0.05);
     sent += now;
+    if (now > 0) taken = absl::Now();
   }
   Outcome outcome;
   outcome.tried = times;

@@ -34,10 +34,14 @@ void PrintLine(const Fault& fault, const Tally& tally) {
 class Chosen {
  public:
   explicit Chosen(std::vector<std::string> names) : names_(std::move(names)) {}
-  bool Has(const char* name) const { return names_.empty() || std::ranges::find(names_, name) != names_.end(); }
+  // True if the row or its table was named, or nothing was.
+  bool Has(const char* table, const char* name) const {
+    const auto named = [this](const char* word) { return std::ranges::find(names_, word) != names_.end(); };
+    return names_.empty() || named(table) || named(name);
+  }
   template <class Rows>
-  bool HasAny(const Rows& rows) const {
-    return std::ranges::any_of(rows, [this](const auto& row) { return Has(row.name); });
+  bool HasAny(const char* table, const Rows& rows) const {
+    return std::ranges::any_of(rows, [&](const auto& row) { return Has(table, row.name); });
   }
 
  private:
@@ -49,13 +53,13 @@ std::string FolderOf(const char* name) {
 }
 
 int RunFaults(const Chosen& chosen, double share) {
-  if (!chosen.HasAny(kFaults)) return 0;
+  if (!chosen.HasAny("faults", kFaults)) return 0;
   std::printf("| fault | tries | sessions lost | wrong answers | time until it answers, median; longest [ms] |\n");
   std::printf("|--|--|--|--|--|\n");
   Oracle oracle;
   int bad = 0;
   for (const Fault& fault : kFaults) {
-    if (!chosen.Has(fault.name)) continue;
+    if (!chosen.Has("faults", fault.name)) continue;
     const std::string folder = FolderOf(fault.name);
     const int times = std::max(1, static_cast<int>(std::lround(share * fault.times)));
     const Tally tally = fault.run(oracle, folder, times);
@@ -68,11 +72,11 @@ int RunFaults(const Chosen& chosen, double share) {
 }
 
 int RunAttacks(const Chosen& chosen, double share, double largest_gap) {
-  if (!chosen.HasAny(kAttacks)) return 0;
+  if (!chosen.HasAny("attacks", kAttacks)) return 0;
   PrintAttackHeader();
   int bad = 0;
   for (const Attack& attack : kAttacks) {
-    if (chosen.Has(attack.name)) bad += RunAttack(attack, FolderOf(attack.name), share, largest_gap);
+    if (chosen.Has("attacks", attack.name)) bad += RunAttack(attack, FolderOf(attack.name), share, largest_gap);
   }
   return bad;
 }
@@ -83,7 +87,7 @@ int RunAttacks(const Chosen& chosen, double share, double largest_gap) {
 int main(int argc, char** argv) {
   using namespace phrenic::faults;  // NOLINT(google-build-using-namespace)
   CLI::App app("Injects faults and attacks into a server under load");
-  std::vector<std::string> names, chosen;
+  std::vector<std::string> names = {"faults", "attacks"}, chosen;
   for (const auto& fault : kFaults) names.emplace_back(fault.name);
   for (const auto& attack : kAttacks) names.emplace_back(attack.name);
   double share = 1, largest_gap = 1.5;

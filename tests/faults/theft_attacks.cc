@@ -167,9 +167,9 @@ Outcome StudyFlood(const Victim& victim, int times) {
   if (!create("healthy", "precious")) outcome.broken.emplace_back("a healthy account cannot create a study");
   for (int i = 0; i < times && victim.Continues(); ++i) {
     ++outcome.tried;
-    ++(create("greedy", "flood") ? outcome.served : outcome.refused);
+    ++(create("greedy", absl::StrCat("flood-", i)) ? outcome.served : outcome.refused);
     v1::DeleteStudyRequest remove;
-    remove.set_study_id("flood");
+    remove.set_study_id(absl::StrCat("flood-", i));
     v1::DeleteStudyResponse removed;
     grpc::ClientContext context;
     victim.Sign("greedy", context, 20);

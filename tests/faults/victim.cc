@@ -10,6 +10,7 @@
 #include "phrenic/v1/frames.grpc.pb.h"
 #include "phrenic/v1/session.grpc.pb.h"
 #include "server/access/token_file.h"
+#include "tests/faults/attacks.h"
 
 namespace phrenic::faults {
 namespace {
@@ -17,11 +18,10 @@ namespace {
 constexpr double kLongestAttack = 60;  // [s]
 constexpr double kLongestAnswer = 20;  // waited for after an attack [s]
 constexpr double kMemoryReturns = 10;  // waited for after an attack [s]
-constexpr double kReturned = 50;       // memory above that before an attack [MB]
 constexpr double kMostMemory = 6000;   // of the server, to protect the machine [MB]
 constexpr double kCoarse = 8;          // edge length of the healthy user's thorax [mm]
 
-double Now() { return absl::ToDoubleSeconds(absl::Now() - absl::UnixEpoch()); }
+double SecondsNow() { return absl::ToDoubleSeconds(absl::Now() - absl::UnixEpoch()); }
 
 void Raise(std::atomic<double>& number, double to) {
   if (to > number) number = to;
@@ -110,7 +110,7 @@ void Victim::Watch() {
     v1::WatchFramesResponse response;
     while (!ends_ && reader->Read(&response)) {
       if (!response.has_frame()) continue;
-      const double now = Now();
+      const double now = SecondsNow();
       if (last_frame_ > 0) Raise(gap_, now - last_frame_);
       last_frame_ = now;
     }
@@ -122,7 +122,7 @@ void Victim::Watch() {
 }
 
 void Victim::CallAgainAndAgain() {
-  double asked = Now();
+  double asked = SecondsNow();
   while (!ends_ && alive_) {
     const auto stub = v1::SessionService::NewStub(NewChannel());
     grpc::ClientContext context;
@@ -131,13 +131,13 @@ void Victim::CallAgainAndAgain() {
     request.set_session_id(kWatched);
     v1::GetSessionResponse response;
     const bool answered = stub->GetSession(&context, request, &response).ok();
-    const double now = Now();
+    const double now = SecondsNow();
     if (answered) {
       Raise(wait_, now - asked);
       last_answer_ = now;
     }
     absl::SleepFor(absl::Milliseconds(50));
-    if (answered) asked = Now();
+    if (answered) asked = SecondsNow();
   }
 }
 
@@ -149,23 +149,23 @@ void Victim::GuardMemory() {
   }
 }
 
-bool Victim::Continues() const { return alive_ && Now() - began_ < kLongestAttack; }
+bool Victim::Continues() const { return alive_ && SecondsNow() - began_ < kLongestAttack; }
 
 void Victim::Begin() {
-  const double start = Now();
-  while (alive_ && (last_frame_ == 0 || last_answer_ == 0) && Now() - start < kLongestAnswer) {
+  const double start = SecondsNow();
+  while (alive_ && (last_frame_ == 0 || last_answer_ == 0) && SecondsNow() - start < kLongestAnswer) {
     absl::SleepFor(absl::Milliseconds(20));
   }
   absl::SleepFor(absl::Milliseconds(500));  // the first frames of a session are slower
   before_ = Memory();
   ForgetPeak(server_->pid());
   gap_ = wait_ = 0;
-  began_ = Now();
+  began_ = SecondsNow();
 }
 
 Damage Victim::End() {
-  const double ended = Now();
-  while (alive_ && (last_answer_ <= ended || last_frame_ <= ended) && Now() - ended < kLongestAnswer) {
+  const double ended = SecondsNow();
+  while (alive_ && (last_answer_ <= ended || last_frame_ <= ended) && SecondsNow() - ended < kLongestAnswer) {
     absl::SleepFor(absl::Milliseconds(20));
   }
   Damage damage;
@@ -173,7 +173,7 @@ Damage Victim::End() {
   damage.gap = last_frame_ > ended ? gap_.load() : HUGE_VAL;
   damage.before = before_;
   damage.peak = 1e-6 * static_cast<double>(server_->PeakMemory());
-  while (alive_ && Memory() > before_ + kReturned && Now() - ended < kMemoryReturns) {
+  while (alive_ && Memory() > before_ + kReturnedMemory && SecondsNow() - ended < kMemoryReturns) {
     absl::SleepFor(absl::Milliseconds(100));
   }
   damage.afterwards = Memory();

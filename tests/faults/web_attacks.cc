@@ -10,8 +10,6 @@
 namespace phrenic::faults {
 namespace {
 
-constexpr char kGetServer[] = "/phrenic.v1.ServerService/GetServer";
-
 std::string Lines(const Headers& headers) {
   std::string text;
   for (const auto& [name, value] : headers) absl::StrAppend(&text, name, ": ", value, "\r\n");
@@ -26,7 +24,7 @@ std::string WebCall(const std::string& path, const std::string& host, const Head
 
 std::string HostLine(int port) { return absl::StrCat("Host: localhost:", port, "\r\n"); }
 
-void Count(int status, Outcome& outcome) {
+void CountStatus(int status, Outcome& outcome) {
   if (status == 0) absl::SleepFor(absl::Milliseconds(15));  // so that the end of the server is seen
   ++outcome.tried;
   ++(status >= 100 && status < 400 ? outcome.served : outcome.refused);
@@ -46,7 +44,7 @@ Outcome IllegalHeaders(const Victim& victim, int times) {
     const std::string odd(1, byte), name = kNames[i % std::size(kNames)];
     const Headers headers =
         i % 4 == 3 ? Headers{{absl::StrCat("x-", odd, "a"), "1"}} : Headers{{name, absl::StrCat("a", odd, "b")}};
-    Count(StatusOf(victim.web_port(), WebCall(kGetServer, HostLine(victim.web_port()), headers)), outcome);
+    CountStatus(StatusOf(victim.web_port(), WebCall(kGetServer, HostLine(victim.web_port()), headers)), outcome);
   }
   return outcome;
 }
@@ -119,7 +117,7 @@ Outcome ForeignHosts(const Victim& victim, int times) {
   for (int i = 0; i < times && victim.Continues(); ++i) {
     const std::string& request = requests[static_cast<std::size_t>(i) % std::size(requests)];
     const int status = StatusOf(victim.web_port(), request);
-    Count(status, outcome);
+    CountStatus(status, outcome);
     if (status >= 100 && status < 400) served.insert(static_cast<std::size_t>(i) % std::size(requests));
   }
   if (served.empty()) return outcome;
@@ -154,7 +152,7 @@ Outcome Upgrades(const Victim& victim, int times) {
     RawConnection(port).Send(requests[request]);
     if (i >= 2 * static_cast<int>(std::size(requests))) continue;  // once with its answer, then only sent
     const int status = StatusOf(port, requests[request]);
-    Count(status, outcome);
+    CountStatus(status, outcome);
     if (status == 101) outcome.broken.push_back(absl::StrCat("upgrade ", request, " was accepted"));
   }
   outcome.tried = times;
