@@ -31,7 +31,7 @@ Outcome HoldCalls(const Victim& victim, int times, const std::string& path, cons
   while (connection.open() && victim.Continues() && absl::Now() < until) connection.Read(0.05);
   Outcome outcome;
   outcome.tried = times;
-  outcome.refused = connection.open() ? std::min(times, connection.ended() + connection.reset()) : times;
+  outcome.refused = connection.open() ? std::min(times, connection.ended()) : times;
   outcome.served = times - outcome.refused;
   return outcome;
 }
@@ -195,8 +195,8 @@ Outcome GreedyAccount(const Victim& victim, int times) {
     viewers.Read(0);
   }
   viewers.Read(0.5);
-  outcome.tried += times / 2, outcome.refused += viewers.ended() + viewers.reset();
-  outcome.served += times / 2 - viewers.ended() - viewers.reset();
+  outcome.tried += times / 2, outcome.refused += viewers.ended();
+  outcome.served += times / 2 - viewers.ended();
   const auto must = [&](const grpc::Status& status, const char* what) {
     if (!status.ok())
       outcome.broken.push_back(absl::StrCat("a modest account gets no ", what, ": ", status.error_message()));

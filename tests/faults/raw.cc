@@ -231,8 +231,8 @@ void Http2::TakeFrame(FrameType type, std::uint8_t flags, std::uint32_t stream, 
   if (type == FrameType::kPing && (flags & kAck) == 0) Send(Frame(FrameType::kPing, kAck, 0, payload));
   if (type == FrameType::kWindow) (stream == 0 ? window_ : windows_[stream]) += BigEndian(payload);
   if (type == FrameType::kGoAway) gone_ = true;
-  if (type == FrameType::kReset) ++reset_;
-  if (ends) ++ended_;
+  if (type == FrameType::kData && !payload.empty()) ++data_frames_;
+  if (ends || type == FrameType::kReset) ended_.insert(stream);
 }
 
 void Http2::TakeSettings(std::string_view payload) {

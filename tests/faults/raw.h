@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -90,9 +91,9 @@ class Http2 {
   // Waits for up to `seconds` for frames, and answers SETTINGS and PING.
   void Read(double seconds);
 
-  // The number of streams that the server has ended, and of those with grpc-status 0 or without an error.
-  int ended() const { return ended_; }
-  int reset() const { return reset_; }
+  // The number of streams that the server has ended, and of frames with data; an error alone has none.
+  int ended() const { return static_cast<int>(ended_.size()); }
+  int data_frames() const { return data_frames_; }
 
  private:
   void TakeFrame(FrameType type, std::uint8_t flags, std::uint32_t stream, std::string_view payload);
@@ -102,7 +103,8 @@ class Http2 {
   std::string unread_;
   std::uint32_t next_ = 1;
   bool gone_ = false;
-  int ended_ = 0, reset_ = 0;
+  std::set<std::uint32_t> ended_;
+  int data_frames_ = 0;
   std::int64_t window_ = 65535, first_window_ = 65535;
   std::map<std::uint32_t, std::int64_t> windows_;  // by stream
 };
