@@ -12,6 +12,7 @@
 namespace phrenic::faults {
 namespace {
 
+constexpr double kMostTaken = 1000;   // memory above that before an attack, at any time [MB]
 constexpr double kLongestWait = 2.5;  // of a healthy call; long, as the machine may be busy [s]
 
 std::string Milliseconds(double seconds) {
@@ -23,6 +24,7 @@ void Judge(const Damage& damage, double largest_gap, std::vector<std::string>& b
   if (damage.died) return broken.emplace_back("the server died"), void();
   if (damage.gap > largest_gap) broken.push_back("the healthy viewer waited too long");
   if (damage.wait > kLongestWait) broken.push_back("healthy calls were not answered in time");
+  if (damage.peak > damage.before + kMostTaken) broken.push_back("it took too much memory");
   if (damage.afterwards > damage.before + kReturnedMemory) broken.push_back("memory was kept");
 }
 

@@ -15,11 +15,11 @@
 namespace phrenic::faults {
 namespace {
 
-constexpr double kLongestAttack = 60;  // [s]
-constexpr double kLongestAnswer = 20;  // waited for after an attack [s]
-constexpr double kMemoryReturns = 10;  // waited for after an attack [s]
-constexpr double kMostMemory = 6000;   // of the server, to protect the machine [MB]
-constexpr double kCoarse = 8;          // edge length of the healthy user's thorax [mm]
+constexpr double kLongestAttack = 180;  // [s]
+constexpr double kLongestAnswer = 20;   // waited for after an attack [s]
+constexpr double kMemoryReturns = 10;   // waited for after an attack [s]
+constexpr double kMostMemory = 6000;    // of the server, to protect the machine [MB]
+constexpr double kCoarse = 8;           // edge length of the healthy user's thorax [mm]
 
 double SecondsNow() { return absl::ToDoubleSeconds(absl::Now() - absl::UnixEpoch()); }
 
