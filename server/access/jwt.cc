@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
 #include "server/access/fetch.h"
 #include "server/access/rules.h"
 #include "server/schema/file_bytes.h"
@@ -24,9 +26,29 @@ absl::Status Refused(const std::string& why) {
   return absl::UnauthenticatedError(absl::StrCat("authorization: the token ", why, "; sign in again"));
 }
 
+// True for base64url without padding (RFC 7515 section 2) of whole bytes; cjose ends the process at some other texts.
+bool IsBase64Url(std::string_view text) {
+  const auto allowed = [](unsigned char c) { return absl::ascii_isalnum(c) || c == '-' || c == '_'; };
+  return text.size() % 4 != 1 && std::ranges::all_of(text, allowed);
+}
+
+// True if the token has three parts in base64url (RFC 7515 section 7.1).
+bool IsCompact(std::string_view token) {
+  const std::vector<std::string> parts = absl::StrSplit(std::string(token), '.');
+  return parts.size() == 3 && std::ranges::all_of(parts, IsBase64Url);
+}
+
 std::string TextOf(const json& claims, const std::string& name) {
   const auto found = claims.find(name);
   return found != claims.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
+// True if all numbers of a key are in base64url (RFC 7518 section 6).
+bool HasReadableNumbers(const json& key) {
+  constexpr const char* kNumbers[] = {"x", "y", "d", "n", "e", "p", "q", "dp", "dq", "qi", "k"};
+  return std::ranges::all_of(kNumbers, [&](const char* name) {
+    return !key.is_object() || !key.contains(name) || IsBase64Url(TextOf(key, name));
+  });
 }
 
 bool HasText(const json& claims, const std::string& name, const std::string& wanted) {
@@ -100,6 +122,7 @@ absl::StatusOr<std::shared_ptr<const JwtKeys>> JwtKeys::Read(const JwtOptions& o
   if (!set.ok()) return set.status();
   std::shared_ptr<JwtKeys> keys(new JwtKeys(options));
   for (const json& key : (*set)["keys"]) {
+    if (!HasReadableNumbers(key)) continue;
     const std::string text = key.dump();
     cjose_err error;
     cjose_jwk_t* jwk = cjose_jwk_import(text.data(), text.size(), &error);
@@ -115,6 +138,7 @@ absl::StatusOr<std::shared_ptr<const JwtKeys>> JwtKeys::Read(const JwtOptions& o
 
 absl::StatusOr<std::string> JwtKeys::VerifiedClaims(std::string_view token) const {
   if (token.size() > kMaxTokenBytes) return Refused("is too long");
+  if (!IsCompact(token)) return Refused("is not a token of this server and not a JWT");
   cjose_err error;
   const std::unique_ptr<cjose_jws_t, decltype(&cjose_jws_release)> jws(
       cjose_jws_import(token.data(), token.size(), &error), &cjose_jws_release);

@@ -22,7 +22,8 @@ const v1::Scene& Pattern() {
     layers { name: "diaphragm" } layers { name: "ribs" } layers { name: "sternum" } layers { name: "spine" }
     bodies { name: "diaphragm" role: ROLE_DEFORMABLE mass: 3 generated {} }
     motions { ribs { bodies: "ribs" end_states { number: 5 pump_degrees: 9 bucket_degrees: 12 } } }
-    forces { action_line { bodies: "diaphragm" direction { z: -1 } radius: 0.08 force: 4 } })"));
+    forces { action_line { bodies: "diaphragm" origin { x: -0.05 } direction { z: -1 } radius: 0.08 force: 4
+                           fall_off: FALL_OFF_CYLINDER } })"));
   return pattern;
 }
 
