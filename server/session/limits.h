@@ -22,6 +22,7 @@ struct Limits {
   int uploads = 256;                                    // kept
   double pause_minutes = 60;                            // a session without viewers or calls plays on; 0: forever
   double delete_minutes = 0;                            // a session without viewers or calls is kept; 0: forever
+  double share = 0.75;  // fraction of viewers, exports, comparisons, checks and studies that one caller may have
 };
 
 }  // namespace phrenic::session

@@ -65,10 +65,10 @@ void StudyJob::Save(const v1::Study& message, const jobs::Records& records) cons
   records.Put(message.id(), saved.SerializeAsString());
 }
 
-Studies::Studies(SceneName scene_name, Compiler compile, const Clock& clock, store::Store* store)
+Studies::Studies(SceneName scene_name, Compiler compile, const Clock& clock, store::Store* store, double share)
     : scene_name_(std::move(scene_name)),
       compile_(std::move(compile)),
-      queue_({.noun = {"study", "studies", "a"}, .threads = 1, .kept = kMostStudies}, clock,
+      queue_({.noun = {"study", "studies", "a"}, .threads = 1, .kept = kMostStudies, .share = share}, clock,
              jobs::Records(kRecord, store)) {}
 
 absl::StatusOr<Studies::Draft> Studies::MakeDraft(const v1::CreateStudyRequest& request,
@@ -89,7 +89,7 @@ absl::StatusOr<Studies::Draft> Studies::MakeDraft(const v1::CreateStudyRequest& 
 absl::StatusOr<v1::Study> Studies::Add(const v1::CreateStudyRequest& request, const std::string& owner) {
   auto draft = MakeDraft(request, owner);
   if (!draft.ok()) return draft.status();
-  return queue_.Add(request.study_id(), draft->id_base, std::move(draft->message), std::move(draft->job));
+  return queue_.Add(owner, request.study_id(), draft->id_base, std::move(draft->message), std::move(draft->job));
 }
 
 absl::Status Studies::RestoreOne(const store::SavedRecord& record,
@@ -101,13 +101,15 @@ absl::Status Studies::RestoreOne(const store::SavedRecord& record,
     auto draft = MakeDraft(saved.request(), saved.owner());
     absl::Status resumed = draft.status();
     if (draft.ok()) {
-      resumed = queue_.Resume(record.id, draft->id_base, std::move(draft->message), std::move(draft->job)).status();
+      resumed =
+          queue_.Resume(saved.owner(), record.id, draft->id_base, std::move(draft->message), std::move(draft->job))
+              .status();
     }
     if (resumed.ok()) return resumed;
     saved.mutable_study()->set_state(v1::STUDY_STATE_FAILED);
     saved.mutable_study()->set_problem(std::string(resumed.message()));
   }
-  queue_.RestoreEnded(saved.study());
+  queue_.RestoreEnded(saved.owner(), saved.study());
   return absl::OkStatus();
 }
 

@@ -48,8 +48,9 @@ class Studies {
   // Returns the name of the scene that a request studies, or why it cannot be studied.
   using SceneName = std::function<absl::StatusOr<std::string>(const v1::CreateStudyRequest& request)>;
 
-  // Requires: `clock` and `store` outlive it. With a null store, studies do not survive a restart of the server.
-  Studies(SceneName scene_name, Compiler compile, const Clock& clock, store::Store* store);
+  // `share` is the fraction of the studies that one owner may have. Requires: `clock` and `store` outlive it. With a
+  // null store, studies do not survive a restart of the server.
+  Studies(SceneName scene_name, Compiler compile, const Clock& clock, store::Store* store, double share = 1);
 
   // Restores the studies of an earlier server: ended ones with their results; the others run again from their start.
   // Calls `found` with each and its owner. `lost` gets the reason why one could not be restored, by "study ID".
