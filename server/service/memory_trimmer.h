@@ -2,18 +2,18 @@
 #ifndef PHRENIC_SERVER_SERVICE_MEMORY_TRIMMER_H_
 #define PHRENIC_SERVER_SERVICE_MEMORY_TRIMMER_H_
 
-#include <cstdint>
+#include <cstddef>
 
 namespace phrenic::service {
 
 // glibc keeps what was freed after a peak, such as thousands of calls at once. Not thread-safe.
 class MemoryTrimmer {
  public:
-  // Gives freed memory back, unless the process has hardly grown since the last time.
+  // Gives freed memory back, unless hardly any was freed since the last time.
   void Trim();
 
  private:
-  std::int64_t trimmed_ = 0;  // resident memory after the last time [bytes]
+  std::size_t free_ = 0;  // in malloc's lists after the last time, given back or not [bytes]
 };
 
 }  // namespace phrenic::service

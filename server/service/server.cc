@@ -57,7 +57,7 @@ std::vector<std::string> SceneFolders(const ServerOptions& options) {
 int Milliseconds(double seconds) { return static_cast<int>(seconds * 1000); }
 
 std::chrono::milliseconds RequestTime(const ServerOptions& options) {
-  return std::chrono::milliseconds(Milliseconds(options.head_seconds));
+  return std::chrono::milliseconds(Milliseconds(options.idle_seconds));
 }
 
 // Sets keepalive (a dead peer is detected within 13 s), timeouts and limits. Two servers cannot share a port.
@@ -177,6 +177,7 @@ struct Server::Parts {
   std::unique_ptr<grpc::Server> forwarding_server;
   std::unique_ptr<WebGateway> web;
   std::unique_ptr<PeriodicTask> maintenance, readiness;
+  std::unique_ptr<v1::ServerService::Stub> own_stub;  // for readiness
   std::atomic<bool> stopping = false;
   std::map<std::string, absl::Status> lost;
   MemoryTrimmer memory;        // of the maintenance
@@ -257,11 +258,10 @@ void Server::Parts::Maintain() {
 }
 
 void Server::Parts::CheckReady() {
-  const auto stub = v1::ServerService::NewStub(entry_server().InProcessChannel({}));
   grpc::ClientContext context;
   context.set_deadline(std::chrono::system_clock::now() + kReadyTime);
   v1::GetServerResponse response;
-  const grpc::Status status = stub->GetServer(&context, {}, &response);
+  const grpc::Status status = own_stub->GetServer(&context, {}, &response);
   if (stopping || pages.ready() == status.ok()) return;
   pages.set_ready(status.ok());
   spdlog::warn("readyz: {}",
@@ -346,6 +346,7 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& optio
   parts.maintenance = std::make_unique<PeriodicTask>(kMaintenancePeriod, [&parts] { parts.Maintain(); });
   if (parts.cluster != nullptr) parts.cluster->StartTakeovers();
   parts.pages.set_ready(true);
+  parts.own_stub = v1::ServerService::NewStub(parts.entry_server().InProcessChannel({}));
   parts.readiness = std::make_unique<PeriodicTask>(kMaintenancePeriod, [&parts] { parts.CheckReady(); });
   return server;
 }

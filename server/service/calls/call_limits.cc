@@ -9,8 +9,9 @@ constexpr char kSetting[] = "--max-calls";
 constexpr int kCallersInFull = 4;   // that fill the server with calls in flight
 constexpr int kOfUnknown = 16;      // callers without account or link share this fraction of one caller's calls
 constexpr int kWaitingOfCalls = 4;  // fraction of a caller's calls that may wait for a thread of one lane
-constexpr int kUnread = 64;         // requests that are being read; of one caller:
-constexpr int kUnreadOfCaller = 8;
+constexpr int kUnread = 32;         // requests that are being read; of one caller:
+constexpr int kUnreadOfCaller = 4;
+constexpr int kReplies = 256, kRepliesOfCaller = 64;  // that are large, and unread
 
 struct Threads {
   const char* calls;
@@ -43,6 +44,7 @@ CallLimits::CallLimits(int max_calls, std::chrono::milliseconds request_time)
                 std::max(1, max_calls / kOfUnknown)}),
       unread_({"requests that are being read", kSetting, kUnread, kUnreadOfCaller, max_calls}),
       conversations_({"conversations", kSetting, kUnread, kUnreadOfCaller}),
+      replies_({"large replies that are not read", kSetting, kReplies, kRepliesOfCaller}),
       lanes_{FairShare(LaneLimits(Lane::kQuick, max_calls)), FairShare(LaneLimits(Lane::kSession, max_calls)),
              FairShare(LaneLimits(Lane::kWork, max_calls)), FairShare(LaneLimits(Lane::kStream, max_calls)),
              FairShare(LaneLimits(Lane::kWatch, max_calls))},

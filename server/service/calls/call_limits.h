@@ -31,6 +31,8 @@ class CallLimits {
   // Requests that are being read; conversations whose client is to send a further one.
   FairShare& unread() { return unread_; }
   FairShare& conversations() { return conversations_; }
+  // Large replies that their clients have not read.
+  FairShare& replies() { return replies_; }
   FairShare& lane(Lane lane) { return lanes_[static_cast<std::size_t>(lane)]; }
   WorkerThreads& threads() { return threads_; }
   // Timeout of a request, from its headers to its end.
@@ -38,7 +40,7 @@ class CallLimits {
 
  private:
   const std::chrono::milliseconds request_time_;
-  FairShare in_flight_, unknown_, unread_, conversations_;
+  FairShare in_flight_, unknown_, unread_, conversations_, replies_;
   std::array<FairShare, 5> lanes_;
   WorkerThreads threads_;
 };

@@ -42,7 +42,7 @@ void IncomingCall::StartReading(std::chrono::milliseconds time) {
     const auto self = expired ? weak.lock() : nullptr;
     if (self == nullptr || !self->read_pending_.exchange(false)) return;
     self->FinishOnce({grpc::StatusCode::DEADLINE_EXCEEDED,
-                      absl::StrCat("the request was not complete after ", time.count() / 1000, " s (--head-seconds)")});
+                      absl::StrCat("the request was not complete after ", time.count() / 1000, " s (--idle-seconds)")});
   });
   StartRead(&request_);
 }

@@ -103,7 +103,7 @@ void AddReflection(CallTable& calls) {
   const std::vector<std::string> services = calls.Services();
   for (const char* package : {"grpc.reflection.v1alpha", "grpc.reflection.v1"}) {
     calls.Add(package, {.rule = &kRule,
-                        .lane = Lane::kQuick,
+                        .lane = Lane::kStream,
                         .handler = [services](ServedCall& call) { return Handle(call, services); },
                         .conversation = true});
   }

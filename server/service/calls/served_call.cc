@@ -2,11 +2,15 @@
 
 #include <utility>
 
+#include "server/service/calls/status.h"
+
 namespace phrenic::service {
 namespace {
 
 constexpr absl::Duration kStall = absl::Minutes(1);              // for which a client may read nothing
 constexpr std::chrono::milliseconds kConversationPause(60'000);  // between two requests of a conversation
+
+constexpr std::size_t kLargeReply = 64 << 10;  // [bytes]
 
 }  // namespace
 
@@ -54,6 +58,11 @@ bool ServedCall::Write(const grpc::ByteBuffer& message) {
 }
 
 void ServedCall::Reply(const grpc::ByteBuffer& message) {
+  if (message.Length() > kLargeReply) {
+    auto place = limits().replies().Take(caller());
+    if (!place.ok()) return FinishOnce(ToGrpc(place.status()));
+    reply_ = *std::move(place);
+  }
   outgoing_ = message;
   FinishOnce(outgoing_, grpc::Status::OK);
 }
@@ -84,6 +93,7 @@ void ServedCall::OnCancel() {
 }
 
 void ServedCall::OnDone() {
+  reply_ = nullptr;
   if (const auto stream = events(); stream != nullptr) stream->OnDone();
   IncomingCall::OnDone();
 }

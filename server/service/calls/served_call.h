@@ -50,7 +50,8 @@ class ServedCall final : public IncomingCall {
   // For handlers. Writes a message and waits until the client's flow control accepts it. False if the client is gone,
   // or has not read for a minute.
   bool Write(const grpc::ByteBuffer& message) ABSL_LOCKS_EXCLUDED(mutex_);
-  // Sends the only message, and ends the call.
+  // Sends the only message, and ends the call. RESOURCE_EXHAUSTED, which ends it too, if the message is large and the
+  // client leaves too many of them unread.
   void Reply(const grpc::ByteBuffer& message);
   // From now on `events` starts the writes, and calls Finish; a handler that returns nullopt calls it last.
   void Continue(std::shared_ptr<StreamEvents> events) ABSL_LOCKS_EXCLUDED(mutex_);
@@ -69,6 +70,7 @@ class ServedCall final : public IncomingCall {
 
   const Method* const method_;
   grpc::ByteBuffer outgoing_;
+  FairShare::Hold reply_;
   bool answered_ = false;  // a conversation had a request
 
   absl::Mutex mutex_;

@@ -20,16 +20,21 @@ void WorkerThreads::Post(std::function<void()> task) {
   if (idle_ < tasks_.size() && threads_.size() < most_) threads_.emplace_back([this] { Run(); });
 }
 
+// A thread counts as idle before it destroys its task, which may post the next one.
 void WorkerThreads::Run() {
   const auto wake = [this] {
     mutex_.AssertHeld();
     return ended_ || !tasks_.empty();
   };
+  std::function<void()> task;
   for (;;) {
-    std::function<void()> task;
     {
       absl::MutexLock lock(&mutex_);
       ++idle_;
+    }
+    task = nullptr;
+    {
+      absl::MutexLock lock(&mutex_);
       mutex_.Await(absl::Condition(&wake));
       --idle_;
       if (tasks_.empty()) return;
