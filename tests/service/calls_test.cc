@@ -167,12 +167,13 @@ TEST_F(Calls, LongCallsOfOneConnectionBlockNoOther) {
   Start();
   v1::DescribeSceneRequest describe;
   describe.mutable_source()->set_name("thorax");
+  describe.mutable_source()->set_resolution_mm(15);  // compiled fast
   while (Call(v1::SceneService::NewStub(server_->NewChannel()), &v1::SceneService::Stub::DescribeScene, describe)
              .error_code() == grpc::DEADLINE_EXCEEDED) {
     continue;  // the scene is still being compiled
   }
   v1::CheckPhysiologyRequest check;
-  check.mutable_source()->set_name("thorax");
+  *check.mutable_source() = describe.source();
   OpenStreams streams(server_->NewChannel());
   for (int i = 0; i < 120; ++i) {
     streams.Open("/phrenic.v1.StudyService/CheckPhysiology", check.SerializeAsString());
@@ -185,8 +186,9 @@ TEST_F(Calls, WatchesOfOneAccountBlockNoOther) {
   StartGuarded();
   v1::CreateStudyRequest study;
   study.set_study_id("long");
-  study.mutable_source()->set_name("thorax");
-  study.mutable_error();
+  study.mutable_source()->set_name("sheet-2d");
+  study.mutable_error()->set_seconds(120);
+  study.mutable_error()->set_levels(16);
   const auto create = [&](const std::string& name) {
     return Call(v1::StudyService::NewStub(server_->NewChannel()), &v1::StudyService::Stub::CreateStudy, study, name);
   };

@@ -148,8 +148,9 @@ TEST_F(TwoAccounts, ShareStudies) {
   const auto studies = v1::StudyService::NewStub(channel_);
   const auto add = [&](const std::string& account) {
     v1::CreateStudyRequest request;
-    request.mutable_source()->set_name("thorax");
-    request.mutable_error();
+    request.mutable_source()->set_name("sheet-2d");
+    request.mutable_error()->set_seconds(120);
+    request.mutable_error()->set_levels(16);
     v1::CreateStudyResponse response;
     return studies->CreateStudy(&Context(account), request, &response);
   };
@@ -209,6 +210,7 @@ TEST_F(TwoAccounts, ShareComparisons) {
 TEST_F(TwoAccounts, ShareChecksOfPhysiology) {
   v1::CheckPhysiologyRequest request;
   request.mutable_source()->set_name("thorax");
+  request.mutable_source()->set_resolution_mm(15);  // compiled fast
   const auto check = [&](const std::string& account) {
     return Keep(v1::StudyService::NewStub(channel_), &v1::StudyService::Stub::CheckPhysiology, account, request);
   };
