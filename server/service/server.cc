@@ -43,7 +43,7 @@ namespace phrenic::service {
 namespace {
 
 constexpr int kMaxStreams = 128;                      // of one HTTP/2 connection
-constexpr int kStreamWindow = 65535;                  // of a stream whose request is not read yet [bytes]
+constexpr int kStreamWindow = 16 << 10;               // of a stream whose request is not read yet [bytes]
 constexpr std::chrono::milliseconds kDrainTime(500);  // for calls to end before they are cancelled
 constexpr absl::Duration kMaintenancePeriod = absl::Seconds(2);
 constexpr std::chrono::seconds kReadyTime(1);  // for the call that /readyz makes

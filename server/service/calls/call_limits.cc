@@ -9,7 +9,7 @@ constexpr char kSetting[] = "--max-calls";
 constexpr int kCallersInFull = 4;   // that fill the server with calls in flight
 constexpr int kOfUnknown = 16;      // callers without account or link share this fraction of one caller's calls
 constexpr int kWaitingOfCalls = 4;  // fraction of a caller's calls that may wait for a thread of one lane
-constexpr int kUnread = 32;         // requests that are being read; of one caller:
+constexpr int kUnread = 24;         // requests that are being read; of one caller:
 constexpr int kUnreadOfCaller = 4;
 constexpr int kReplies = 256, kRepliesOfCaller = 64;  // that are large, and unread
 
