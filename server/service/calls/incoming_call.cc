@@ -72,7 +72,7 @@ void IncomingCall::Await(FairShare& share, FairShare::Granted granted) {
     awaited_ = &share;
     ticket_ = *ticket;
   }
-  if (context_.IsCancelled()) Withdraw();
+  if (cancelled_) Withdraw();
 }
 
 void IncomingCall::Withdraw() {
@@ -86,7 +86,10 @@ void IncomingCall::Withdraw() {
   if (awaited != nullptr && awaited->Withdraw(caller_, ticket)) FinishOnce(grpc::Status::CANCELLED);
 }
 
-void IncomingCall::OnCancel() { Withdraw(); }
+void IncomingCall::OnCancel() {
+  cancelled_ = true;
+  Withdraw();
+}
 
 void IncomingCall::FinishOnce(const grpc::Status& status) {
   if (!finished_.exchange(true)) Finish(status);

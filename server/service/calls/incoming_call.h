@@ -75,6 +75,7 @@ class IncomingCall : public grpc::ServerGenericBidiReactor, public std::enable_s
   std::optional<grpc::Alarm> alarm_;        // of the read
   std::atomic<bool> read_pending_ = false;  // neither complete nor expired
   std::atomic<bool> finished_ = false;
+  std::atomic<bool> cancelled_ = false;  // can be read when the call, and its context with it, may be done
 
   absl::Mutex mutex_;
   std::uint64_t waits_ ABSL_GUARDED_BY(mutex_) = 0;       // calls of Await so far
