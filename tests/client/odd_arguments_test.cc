@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 
 #include <deque>
+#include <filesystem>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
@@ -116,12 +117,20 @@ Words Line(const Subject& subject, int position, const std::string& odd) {
   return words;
 }
 
-// Runs the lines, some at a time, and expects an ordinary end of each.
+// Runs the lines, some at a time, in a folder of their own, since values are names of files that commands write. Expects
+// an ordinary end of each.
 class Runner {
  public:
+  Runner() : before_(std::filesystem::current_path()) {
+    std::filesystem::create_directories(Scratch("odd-work"));
+    std::filesystem::current_path(Scratch("odd-work"));
+  }
   ~Runner() {
     while (!running_.empty()) Collect();
+    std::filesystem::current_path(before_);
   }
+  Runner(const Runner&) = delete;
+  Runner& operator=(const Runner&) = delete;
   void Run(const Words& words) {
     if (running_.size() >= kAtATime) Collect();
     const std::string file = Scratch(absl::StrCat("odd-err-", ++started_ % (2 * kAtATime)));
@@ -148,25 +157,29 @@ class Runner {
     for (const char* word : {"Sanitizer", "terminate called", "what():", "assertion failed", "API misuse"}) {
       EXPECT_FALSE(absl::StrContains(err, word)) << "phrenic " << line << "\n" << err;
     }
-    if (code != 0 && !only_long) {
+    if (code != 0 && !only_long && ended.words[0] != "doctor") {  // which reports faults on standard output
       EXPECT_FALSE(err.empty()) << "phrenic " << line << "\nfails without a word";
     }
   }
+  const std::filesystem::path before_;
   int started_ = 0;
   std::deque<Running> running_;
 };
 
+// The values take turns, as each with every command would take too long.
 TEST(OddArguments, AsAllThatACommandRequiresEndItWithAnError) {
+  constexpr int kValuesACommand = 4;
   Runner runner;
+  std::size_t next = 0;
   for (const Subject& subject : Subjects()) {
     runner.Run(subject.path);
-    for (const std::string& odd : OddValues()) runner.Run(Line(subject, -1, odd));
+    for (int k = 0; k < kValuesACommand; ++k) runner.Run(Line(subject, -1, OddValues()[next++ % OddValues().size()]));
   }
 }
 
-// Every option in turn; the values take turns too, as all pairs would take too long.
+// Every option in turn.
 TEST(OddArguments, AsOneOptionEndTheCommandOrAreAccepted) {
-  constexpr int kValuesAnOption = 3;
+  constexpr int kValuesAnOption = 2;
   Runner runner;
   std::size_t next = 0;
   for (const Subject& subject : Subjects()) {

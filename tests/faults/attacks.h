@@ -10,9 +10,6 @@
 
 namespace phrenic::faults {
 
-// Memory above that before an attack that is no longer held for it [MB].
-inline constexpr double kReturnedMemory = 50;
-
 struct Outcome {
   int tried = 0, refused = 0, served = 0;  // a flood has tries alone
   std::vector<std::string> broken;         // what the server must not do, and did

@@ -10,7 +10,6 @@
 #include "phrenic/v1/frames.grpc.pb.h"
 #include "phrenic/v1/session.grpc.pb.h"
 #include "server/access/token_file.h"
-#include "tests/faults/attacks.h"
 
 namespace phrenic::faults {
 namespace {

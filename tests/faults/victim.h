@@ -19,6 +19,9 @@
 
 namespace phrenic::faults {
 
+// Memory above that before an attack that is no longer held for it [MB].
+inline constexpr double kReturnedMemory = 50;
+
 // What healthy users and the machine see during an attack.
 struct Damage {
   double gap = 0;                               // largest time between two frames of the healthy viewer [s]

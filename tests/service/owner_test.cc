@@ -228,7 +228,8 @@ TEST_F(GuardedServer, LongCompilesOfOneAccountDelayNobodyAndEndWithTheirCaller) 
 TEST_F(GuardedServer, ASmallRequestForAHugeSceneIsRefusedAtOnce) {
   for (const std::string scene :
        {"bodies { name: 'x' role: ROLE_AT_REST block { size { x: 1 y: 1 z: 1 } columns: 500 rows: 500 layers: 500 } }",
-        "bodies { name: 'x{number}' for_each { numbers { first: 1 last: 200 } } role: ROLE_AT_REST anatomy { "
+        "bodies { name: 'x{number}{side}' for_each { numbers { first: 1 last: 17 } sides: [SIDE_RIGHT, SIDE_LEFT] } "
+        "role: ROLE_AT_REST anatomy { "
         "structure: "
         "STRUCTURE_DIAPHRAGM } generated { resolution_mm: 1 } }"}) {
     v1::DescribeSceneResponse response;
