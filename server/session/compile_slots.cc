@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::ptrdiff_t kMostOfAccount = 8;
 constexpr std::size_t kMostInAll = 64;
-constexpr absl::Duration kLook = absl::Milliseconds(50);  // between two looks at `cancelled`
+constexpr absl::Duration kCancelLook = absl::Milliseconds(50);  // between two looks at `cancelled`
 
 }  // namespace
 
@@ -60,7 +60,7 @@ absl::StatusOr<CompileSlots::Slot> CompileSlots::Take(const std::string& account
     mutex_.AssertHeld();
     return IsNext(self);
   };
-  while (!mutex_.AwaitWithTimeout(absl::Condition(&next), kLook)) {
+  while (!mutex_.AwaitWithTimeout(absl::Condition(&next), kCancelLook)) {
     if (cancelled == nullptr || !cancelled()) continue;
     waiting_.erase(self);
     return absl::CancelledError("nobody waits for the scene any more");
