@@ -1,6 +1,7 @@
 #include "client/files/whole_file.h"
 
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <optional>
 #include <utility>
@@ -17,15 +18,21 @@ absl::StatusOr<std::string> ReadWhole(const std::string& file, const std::string
       absl::StrCat("cannot read ", what, " \"", file, "\": check that it exists and that you may read it"));
 }
 
+bool IsDevice(const std::string& file) {
+  std::error_code ignored;
+  return std::filesystem::is_other(std::filesystem::status(file, ignored));
+}
+
 absl::Status WriteWhole(const std::string& file, const std::string& bytes) {
-  const std::string part = file + ".part";
+  const bool device = IsDevice(file);
+  const std::string part = device ? file : file + ".part";
   {
     std::ofstream out(part, std::ios::binary);
     out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     out.close();
-    if (out && std::rename(part.c_str(), file.c_str()) == 0) return absl::OkStatus();
+    if (out && (device || std::rename(part.c_str(), file.c_str()) == 0)) return absl::OkStatus();
   }
-  std::remove(part.c_str());
+  if (!device) std::remove(part.c_str());
   return absl::DataLossError(
       absl::StrCat("cannot write ", file, ": check that its folder exists and that the disk is not full"));
 }

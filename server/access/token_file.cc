@@ -48,6 +48,10 @@ absl::Status CheckLine(const std::vector<std::string>& words, const TokenTable& 
 
 // Replaces the file atomically, with mode 0600.
 absl::Status WriteTokens(const std::string& file, const TokenTable& tokens) {
+  std::error_code missing;
+  if (std::filesystem::is_other(std::filesystem::status(file, missing))) {
+    return absl::InvalidArgumentError(absl::StrCat(file, " is a device or a pipe: name a file"));
+  }
   const std::string temporary = file + ".new";
   const mode_t before = umask(0077);
   {

@@ -177,7 +177,7 @@ class UploadsTest : public testing::Test {
     return uploads_.Finish(by_, begun->id, 1);
   }
 
-  const Requester by_;
+  const Requester by_ = {};
   Uploads uploads_{{.upload_bytes = 100, .uploads_bytes = 120}, testing::TempDir()};
 };
 

@@ -14,7 +14,7 @@ namespace {
 namespace net = boost::asio;
 using net::ip::tcp;
 
-constexpr int kThreads = 2;
+constexpr int kGatewayThreads = 2;
 constexpr std::size_t kBodies = 4;  // longest messages that are received at a time; half of them from one caller
 
 }  // namespace
@@ -25,7 +25,7 @@ WebGateway::WebGateway(const Options& options, std::shared_ptr<grpc::Channel> ch
       stub_(std::move(channel)),
       bodies_(kBodies * options.settings.max_message_bytes, kBodies / 2 * options.settings.max_message_bytes),
       shared_{options_.settings, hosts_, stub_, bodies_},
-      context_(kThreads),
+      context_(kGatewayThreads),
       acceptor_(context_),
       retry_timer_(context_),
       tls_(options.tls) {}
@@ -35,7 +35,7 @@ absl::StatusOr<std::unique_ptr<WebGateway>> WebGateway::Start(const Options& opt
   std::unique_ptr<WebGateway> gateway(new WebGateway(options, std::move(channel)));
   if (absl::Status status = gateway->Listen(); !status.ok()) return status;
   gateway->AcceptNext();
-  for (int i = 0; i < kThreads; ++i) {
+  for (int i = 0; i < kGatewayThreads; ++i) {
     gateway->threads_.emplace_back([gateway = gateway.get()] { gateway->RunThread(); });
   }
   return gateway;
