@@ -192,7 +192,6 @@ std::string LongScene(int number) {
 }
 
 TEST_F(GuardedServer, LongCompilesOfOneAccountDelayNobodyAndEndWithTheirCaller) {
-  std::atomic<bool> end = false;
   std::vector<std::thread> greedy;
   std::atomic<int> sent = 0;
   for (int i = 0; i < 12; ++i) {
