@@ -43,7 +43,7 @@ absl::Status RunUnlessCached(session::IdempotencyCache& cache, const Request& re
 // errors of Session::Acknowledge, also for a repeat, whose change is not made again.
 template <class Request, class Response, class Act>
 absl::Status RunOnce(session::Session& session, const Request& request, Response* response, Act act) {
-  const absl::Status status = RunUnlessCached(session.answers(), request, response, act);
+  absl::Status status = RunUnlessCached(session.answers(), request, response, act);
   if (!MayHaveChanged(status)) return status;
   const absl::Status acknowledged = session.Acknowledge();
   return acknowledged.ok() ? status : acknowledged;

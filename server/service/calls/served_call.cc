@@ -72,7 +72,7 @@ std::shared_ptr<StreamEvents> ServedCall::events() {
   return events_;
 }
 
-void ServedCall::Continue(std::shared_ptr<StreamEvents> events) {
+void ServedCall::Continue(const std::shared_ptr<StreamEvents>& events) {
   {
     absl::MutexLock lock(&mutex_);
     events_ = events;

@@ -54,7 +54,7 @@ class ServedCall final : public IncomingCall {
   // client leaves too many of them unread.
   void Reply(const grpc::ByteBuffer& message);
   // From now on `events` starts the writes, and calls Finish; a handler that returns nullopt calls it last.
-  void Continue(std::shared_ptr<StreamEvents> events) ABSL_LOCKS_EXCLUDED(mutex_);
+  void Continue(const std::shared_ptr<StreamEvents>& events) ABSL_LOCKS_EXCLUDED(mutex_);
 
   void OnWriteDone(bool ok) override ABSL_LOCKS_EXCLUDED(mutex_);
   void OnCancel() override ABSL_LOCKS_EXCLUDED(mutex_);

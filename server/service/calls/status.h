@@ -23,7 +23,7 @@ inline grpc::Status ToGrpc(const absl::Status& status) {
     while (end > 0 && (static_cast<unsigned char>(message[end]) & 0xC0U) == 0x80U) --end;  // between two characters
     message = message.substr(0, end) + " ...";
   }
-  return {static_cast<grpc::StatusCode>(status.code()), std::move(message)};
+  return {static_cast<grpc::StatusCode>(status.code()), message};
 }
 
 }  // namespace phrenic::service
