@@ -117,8 +117,8 @@ Words Line(const Subject& subject, int position, const std::string& odd) {
   return words;
 }
 
-// Runs the lines, some at a time, in a folder of their own, since values are names of files that commands write. Expects
-// an ordinary end of each.
+// Runs the lines, some at a time, in a folder of their own, since values are names of files that commands write.
+// Expects an ordinary end of each.
 class Runner {
  public:
   Runner() : before_(std::filesystem::current_path()) {
