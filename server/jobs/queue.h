@@ -76,7 +76,7 @@ class Queue {
 
   // Queues a job and returns once its record is on the disk. `message` holds the fields that watchers see first; the
   // queue sets its id and state. An empty `id` is chosen from `base`. The owner's oldest ended job makes room, or else
-  // one of an owner who has more jobs; RESOURCE_EXHAUSTED if there is none. Also the errors of Noun::ChooseId and
+  // one of an owner who has more jobs; RESOURCE_EXHAUSTED if no job may go. Also the errors of Noun::ChooseId and
   // Records::Flush.
   absl::StatusOr<Message> Add(const std::string& owner, const std::string& id, const std::string& base, Message message,
                               std::shared_ptr<Job> job) ABSL_LOCKS_EXCLUDED(mutex_);
@@ -100,7 +100,7 @@ class Queue {
   absl::Status Read(const std::string& id,
                     absl::FunctionRef<absl::Status(const Job* job, const Message& message)> read) const
       ABSL_LOCKS_EXCLUDED(mutex_);
-  // Returns the owner of a job; nullopt if there is none of this id.
+  // Returns the owner of a job; nullopt if no job has this id.
   std::optional<std::string> OwnerOf(const std::string& id) const ABSL_LOCKS_EXCLUDED(mutex_);
   // Returns the jobs whose owner is `visible`, oldest first; null: all.
   std::vector<Message> List(const std::function<bool(const std::string& owner)>& visible = nullptr) const

@@ -1,4 +1,4 @@
-// Whether a long computation has to end early: nobody waits for its result, or it has taken too long.
+// Tells a long computation to end early: its callers have gone, or it has exceeded its time limit.
 #ifndef PHRENIC_SERVER_MECHANICS_STOP_CHECK_H_
 #define PHRENIC_SERVER_MECHANICS_STOP_CHECK_H_
 
@@ -10,6 +10,9 @@
 #include "absl/strings/str_cat.h"
 
 namespace phrenic {
+
+// Returns the error of a compile whose callers have gone.
+inline absl::Status CallersGone() { return absl::CancelledError("the scene is not compiled: all callers have gone"); }
 
 // Loops over vertices call Stopped() and leave; the stage that contains them then returns status(). Once stopped, it
 // stays stopped. Not thread-safe: it belongs to the thread that computes.
@@ -33,7 +36,7 @@ class StopCheck {
       status_ = absl::ResourceExhaustedError(
           absl::StrCat("the scene takes more than ", longest_, " s to compile (", setting_, "); make it smaller"));
     } else if (cancelled_ != nullptr && cancelled_()) {
-      status_ = absl::CancelledError("nobody waits for the scene any more");
+      status_ = CallersGone();
     }
     return !status_.ok();
   }

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "server/mechanics/stop_check.h"
 
 namespace phrenic::session {
 namespace {
@@ -63,7 +64,7 @@ absl::StatusOr<CompileSlots::Slot> CompileSlots::Take(const std::string& account
   while (!mutex_.AwaitWithTimeout(absl::Condition(&next), kCancelLook)) {
     if (cancelled == nullptr || !cancelled()) continue;
     waiting_.erase(self);
-    return absl::CancelledError("nobody waits for the scene any more");
+    return CallersGone();
   }
   running_.push_back(*self);
   waiting_.erase(self);

@@ -10,6 +10,7 @@
 #include "google/protobuf/io/coded_stream.h"
 #include "google/protobuf/io/zero_copy_stream_impl_lite.h"
 #include "server/mechanics/compile/shape_size.h"
+#include "server/mechanics/stop_check.h"
 #include "server/schema/schema.h"
 #include "server/session/meshes.h"
 
@@ -32,8 +33,6 @@ constexpr int kMostOthers = 64;                      // who wait for one compile
 constexpr absl::Duration kAskAgain = absl::Milliseconds(50);
 
 bool IsCancelled(const Requester& by) { return by.cancelled != nullptr && by.cancelled(); }
-
-absl::Status NobodyWaits() { return absl::CancelledError("nobody waits for the scene any more"); }
 
 }  // namespace
 
@@ -125,7 +124,7 @@ absl::StatusOr<std::shared_ptr<const Model>> Models::Await(Job& job, const Reque
   bool left = false;
   while (!left && !mutex_.AwaitWithTimeout(absl::Condition(&done), kAskAgain)) left = IsCancelled(by);
   --job.others;
-  if (left) return NobodyWaits();
+  if (left) return CallersGone();
   return *job.result;
 }
 

@@ -146,7 +146,7 @@ absl::Status MatchScalars(const Model& model, const v1::SavedScene& scene, const
   return absl::OkStatus();
 }
 
-// Returns the model's vertex that continues a saved one; -1 if there is none.
+// Returns the model's vertex that continues a saved one; -1 if no vertex matches.
 int Continues(const VertexMatch& match, int saved) {
   const auto found = std::ranges::find(match.saved, saved);
   return found == match.saved.end() ? -1 : static_cast<int>(found - match.saved.begin());

@@ -28,7 +28,7 @@ struct Marker {
 std::string StoreFile(const std::string& folder);
 std::string MarkerFile(const std::string& folder);
 
-// Returns the marker in the folder; nullopt if there is none. DATA_LOSS if it cannot be read.
+// Returns the marker in the folder; nullopt without a marker file. DATA_LOSS if it cannot be read.
 absl::StatusOr<std::optional<Marker>> ReadMarkerFile(const std::string& folder);
 // Replaces the file; it is on the disk when the call returns. RESOURCE_EXHAUSTED or UNAVAILABLE if it cannot be
 // written.

@@ -70,17 +70,6 @@ grpc::Status CreateStudy(const Victim& victim, v1::StudyService::Stub& stub, con
   return stub.CreateStudy(&context, request, &response);
 }
 
-grpc::Status CreateSession(const Victim& victim, v1::SessionService::Stub& stub, const std::string& account,
-                           const std::string& id) {
-  v1::CreateSessionRequest request;
-  request.set_session_id(id);
-  request.mutable_source()->set_name("cube-springs");
-  v1::CreateSessionResponse response;
-  grpc::ClientContext context;
-  victim.Sign(account, context, 20);
-  return stub.CreateSession(&context, request, &response);
-}
-
 grpc::Status CreateExport(const Victim& victim, v1::ExportService::Stub& stub, const std::string& account,
                           const std::string& session) {
   v1::CreateExportRequest request;
@@ -142,8 +131,7 @@ Outcome CompileBombs(const Victim& victim, int times) {
   }
   absl::SleepFor(absl::Milliseconds(500));
   const absl::Time asked = absl::Now();
-  const auto stub = v1::SessionService::NewStub(victim.NewChannel());
-  const grpc::Status modest = CreateSession(victim, *stub, "healthy", "modest");
+  const grpc::Status modest = victim.CreateSession("healthy", "modest");
   if (!modest.ok())
     outcome.broken.push_back(absl::StrCat("another account cannot create a session: ", modest.error_message()));
   outcome.note =
@@ -178,12 +166,11 @@ Outcome SlowReaders(const Victim& victim, int times) {
 // One account takes all it gets; another one, which has next to nothing, must still get one of each.
 Outcome GreedyAccount(const Victim& victim, int times) {
   const auto channel = victim.NewChannel();
-  const auto sessions = v1::SessionService::NewStub(channel);
   const auto studies = v1::StudyService::NewStub(channel);
   const auto exports = v1::ExportService::NewStub(channel);
   Outcome outcome;
   for (int i = 0; i < times / 6 && victim.Continues(); ++i) {
-    CountCall(CreateSession(victim, *sessions, "greedy", absl::StrCat("greedy-", i)), outcome);
+    CountCall(victim.CreateSession("greedy", absl::StrCat("greedy-", i)), outcome);
     CountCall(CreateStudy(victim, *studies, "greedy", absl::StrCat("greedy-", i)), outcome);
     CountCall(CreateExport(victim, *exports, "greedy", "greedy-0"), outcome);
   }
@@ -201,7 +188,7 @@ Outcome GreedyAccount(const Victim& victim, int times) {
     if (!status.ok())
       outcome.broken.push_back(absl::StrCat("a modest account gets no ", what, ": ", status.error_message()));
   };
-  must(CreateSession(victim, *sessions, "thief", "modest"), "session");
+  must(victim.CreateSession("thief", "modest"), "session");
   must(CreateStudy(victim, *studies, "thief", "modest"), "study");
   must(CreateExport(victim, *exports, "thief", "modest"), "export");
   if (!SeesAFrame(victim, "thief", "modest")) outcome.broken.emplace_back("a modest account gets no seat");

@@ -18,7 +18,7 @@ namespace {
 
 constexpr char kScript[] = PHRENIC_SOURCE_DIR "/deploy/guard";
 
-// Returns a port that was free a moment ago; 0 if there is none.
+// Returns a port that was free a moment ago; 0 if all are taken.
 int FreePort() {
   const int probe = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   sockaddr_in address{};

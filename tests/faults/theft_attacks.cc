@@ -184,13 +184,7 @@ Outcome ForgedTokens(const Victim& victim, int times) {
   constexpr char kHidden[] = "anna-mueller";
   const auto stub = v1::SessionService::NewStub(victim.NewChannel());
   const auto create = [&](const std::string& account, const std::string& id) {
-    v1::CreateSessionRequest request;
-    request.set_session_id(id);
-    request.mutable_source()->set_name("cube-springs");
-    v1::CreateSessionResponse response;
-    grpc::ClientContext context;
-    victim.Sign(account, context, 20);
-    return stub->CreateSession(&context, request, &response).ok();
+    return victim.CreateSession(account, id).ok();
   };
   Outcome outcome;
   if (!create("healthy", kHidden) || !create("thief", "aaa") || !create("thief", "zzz"))

@@ -76,6 +76,16 @@ void Victim::Sign(const std::string& name, grpc::ClientContext& context, double 
   context.set_deadline(std::chrono::system_clock::now() + std::chrono::milliseconds(static_cast<int>(1e3 * seconds)));
 }
 
+grpc::Status Victim::CreateSession(const std::string& name, const std::string& id) const {
+  v1::CreateSessionRequest request;
+  request.set_session_id(id);
+  request.mutable_source()->set_name("cube-springs");
+  v1::CreateSessionResponse response;
+  grpc::ClientContext context;
+  Sign(name, context, 20);
+  return v1::SessionService::NewStub(NewChannel())->CreateSession(&context, request, &response);
+}
+
 bool Victim::StartSession() {
   const auto stub = v1::SessionService::NewStub(NewChannel());
   v1::CreateSessionRequest create;

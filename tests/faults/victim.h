@@ -62,6 +62,8 @@ class Victim {
   Headers As(const std::string& name) const;
   // Signs a call, and gives it a deadline of five seconds.
   void Sign(const std::string& name, grpc::ClientContext& context, double seconds = 5) const;
+  // Creates a small session as an account.
+  grpc::Status CreateSession(const std::string& name, const std::string& id) const;
 
   // Starts to measure.
   void Begin();

@@ -1,4 +1,5 @@
 // Calls of one connection, one account or callers without one never occupy the server.
+#include "tests/service/process_fixture.h"
 #include "tests/service/raw_http2.h"
 // After Boost, which needs <utility> first.
 #include <gmock/gmock.h>
@@ -14,7 +15,6 @@
 #include "phrenic/v1/study.grpc.pb.h"
 #include "server/access/rules.h"
 #include "server/access/token_file.h"
-#include "tests/support/server_process.h"
 
 namespace phrenic::service {
 namespace {
@@ -92,22 +92,8 @@ class OpenStreams {
   std::vector<std::unique_ptr<Call>> calls_;
 };
 
-class Calls : public testing::Test {
+class Calls : public ProcessFixture {
  protected:
-  Calls() : folder_(absl::StrCat(testing::TempDir(), "/phrenic-calls-", getpid())) {
-    std::filesystem::create_directories(folder_);
-  }
-  ~Calls() override {
-    server_.reset();
-    std::filesystem::remove_all(folder_);
-  }
-  void Start(std::vector<std::string> flags = {}) {
-    flags.insert(flags.end(), {"--store", "none", "--web-root", folder_});
-    server_ = std::make_unique<ServerProcess>(folder_ + "/said", flags,
-                                              std::vector<std::string>{"ASAN_OPTIONS=quarantine_size_mb=1"});
-    const absl::Status status = server_->Start();
-    ASSERT_TRUE(status.ok()) << status;
-  }
   void StartGuarded() {
     const std::string tokens = folder_ + "/tokens";
     for (const char* name : {"greedy", "modest"}) {
@@ -147,9 +133,7 @@ class Calls : public testing::Test {
     return Ready() == ready;
   }
 
-  const std::string folder_;
   std::map<std::string, std::string> tokens_;
-  std::unique_ptr<ServerProcess> server_;
 };
 
 TEST_F(Calls, OpenReflectionStreamsBlockNoOther) {

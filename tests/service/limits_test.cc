@@ -1,4 +1,5 @@
 // Callers above a limit are refused with the name of its setting, and do not affect other callers.
+#include "tests/service/process_fixture.h"
 #include "tests/service/raw_socket.h"
 // After Boost, which needs <utility> first.
 #include <gmock/gmock.h>
@@ -13,7 +14,6 @@
 #include "absl/strings/str_cat.h"
 #include "phrenic/v1/session.grpc.pb.h"
 #include "phrenic/v1/upload.grpc.pb.h"
-#include "tests/support/server_process.h"
 
 namespace phrenic::service {
 namespace {
@@ -27,23 +27,8 @@ constexpr int kAnswerTime = 30;
 constexpr int kAnswerTime = 10;
 #endif
 
-class Limits : public testing::Test {
+class Limits : public ProcessFixture {
  protected:
-  Limits() : folder_(testing::TempDir() + "/phrenic-limits-" + std::to_string(getpid())) {
-    std::filesystem::create_directories(folder_);
-  }
-  ~Limits() override {
-    server_.reset();
-    std::filesystem::remove_all(folder_);
-  }
-  void Start(std::vector<std::string> flags = {}) {
-    flags.insert(flags.end(), {"--store", "none", "--web-root", folder_});
-    // A small quarantine, so that AddressSanitizer's freed memory does not count as the server's.
-    server_ = std::make_unique<ServerProcess>(folder_ + "/said", flags,
-                                              std::vector<std::string>{"ASAN_OPTIONS=quarantine_size_mb=1"});
-    const absl::Status status = server_->Start();
-    ASSERT_TRUE(status.ok()) << status;
-  }
   // Returns how long a well-behaved client waits for its response; nullopt if it gets none.
   std::optional<absl::Duration> WebAnswer() const {
     const absl::Time start = absl::Now();
@@ -60,9 +45,6 @@ class Limits : public testing::Test {
     v1::ListSessionsResponse response;
     return stub->ListSessions(&context, {}, &response);
   }
-
-  const std::string folder_;
-  std::unique_ptr<ServerProcess> server_;
 };
 
 TEST_F(Limits, ASlowHeaderTimesOutAlthoughEachByteIsInTime) {

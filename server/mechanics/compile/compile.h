@@ -17,7 +17,7 @@ namespace phrenic {
 struct CompileOptions {
   SizeLimits limits = {};                     // checked before anything is built, and again with the meshes of files
   SizeSource size_of = nullptr;               // of files and generated parts
-  std::function<bool()> cancelled = nullptr;  // true once nobody waits for the model; null: never
+  std::function<bool()> cancelled = nullptr;  // true once the callers have gone; null: never
   double longest = 0;                         // [s]; 0: any time
 };
 

@@ -53,7 +53,7 @@ class CallTable final : public grpc::CallbackGenericService {
   // Adds method.rule->method of a package.
   void Add(const std::string& package, Method method);
 
-  // Returns the method of a path, "/phrenic.v1.ServerService/GetServer", and its rule; null if there is none.
+  // Returns the method of a path, "/phrenic.v1.ServerService/GetServer", and its rule; null if the method is unknown.
   const Method* Find(const std::string& path) const;
   const access::Rule* RuleOf(const std::string& path) const;
   // Returns the full names of the services, sorted.

@@ -33,7 +33,7 @@ class FairShare {
 
   explicit FairShare(Limits limits) : limits_(std::move(limits)) {}
 
-  // Takes a place at once. RESOURCE_EXHAUSTED, with the limit and its setting, if there is none for this caller.
+  // Takes a place at once. RESOURCE_EXHAUSTED, with the limit and its setting, if all are taken for this caller.
   absl::StatusOr<Hold> Take(const std::string& caller) ABSL_LOCKS_EXCLUDED(mutex_);
   // Calls `granted` with a place: now, or later on a thread that gives one back; it must return soon. Returns a ticket
   // for Withdraw. RESOURCE_EXHAUSTED if too many of this caller wait.
@@ -54,7 +54,7 @@ class FairShare {
   bool HasRoom(const std::string& name, const Caller& caller) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   // Forgets a caller who neither has nor waits for a place.
   void Tidy(const std::string& name) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  // Takes the next waiting entry whose caller has room, and counts its place; null if there is none.
+  // Takes the next waiting entry whose caller has room, and counts its place; null if no caller has room.
   Granted TakeNext(std::string& caller) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   Hold MakeHold(const std::string& caller);
   void Release(const std::string& caller) ABSL_LOCKS_EXCLUDED(mutex_);

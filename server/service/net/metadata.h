@@ -31,7 +31,7 @@ absl::Status CheckMethod(const std::string& method);
 // CheckMetadata.
 absl::Status PrepareContext(const std::string& method, const Metadata& metadata, grpc::ClientContext& context);
 
-// Returns the deadline of an incoming call; time_point::max() if it is more than a year away or if there is none.
+// Returns the deadline of an incoming call; time_point::max() if the call has no deadline or one more than a year away.
 // ServerContextBase::deadline() overflows for times beyond the year 2262, which a client may ask for.
 std::chrono::system_clock::time_point DeadlineOf(const grpc::ServerContextBase& context);
 
