@@ -23,7 +23,7 @@ absl::Status PointsOf(const char* field, const std::string& bytes, Eigen::Index 
     return absl::DataLossError(absl::StrCat(field, ": ", bytes.size(), " bytes do not hold ", vertices, " vertices"));
   }
   points.resize(3, vertices);
-  std::memcpy(points.data(), bytes.data(), bytes.size());
+  if (!bytes.empty()) std::memcpy(points.data(), bytes.data(), bytes.size());
   return absl::OkStatus();
 }
 

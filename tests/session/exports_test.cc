@@ -80,7 +80,7 @@ TEST_F(ExportsTest, OutliveTheirServerAndMakeTheSameFiles) {
     ASSERT_TRUE(exports->Delete("deleted").ok());
   }
   auto store = *store::Store::Open(folder);
-  const auto exports = begin(*store);
+  auto exports = begin(*store);
   std::map<std::string, std::string> found;
   std::map<std::string, absl::Status> lost;
   exports->Restore(
@@ -90,6 +90,8 @@ TEST_F(ExportsTest, OutliveTheirServerAndMakeTheSameFiles) {
   EXPECT_THAT(lost, IsEmpty());
   EXPECT_EQ(hash_of(*exports, "short"), whole);
   EXPECT_TRUE(exports->Wait("long", 0, absl::ZeroDuration()).ok());
+  exports.reset();  // it writes to the store until its jobs have stopped
+  store.reset();
   std::filesystem::remove_all(folder);
 }
 
