@@ -3,17 +3,19 @@
 #include <cstdio>
 
 #include "absl/strings/str_cat.h"
+#include "client/files/whole_file.h"
 
 namespace phrenic::client {
 
-PartFile::PartFile(const std::string& file, bool keep) : file_(file), part_(file + ".part"), keep_(keep) {
+PartFile::PartFile(const std::string& file, bool keep)
+    : device_(IsDevice(file)), file_(file), part_(device_ ? file : file + ".part"), keep_(keep && !device_) {
   if (keep_) ReadExistingPart();
   out_.open(part_, bytes_ > 0 ? std::ios::binary | std::ios::app : std::ios::binary | std::ios::trunc);
 }
 
 PartFile::~PartFile() {
   out_.close();
-  if (!keep_ || damaged_) std::remove(part_.c_str());
+  if (!device_ && (!keep_ || damaged_)) std::remove(part_.c_str());
 }
 
 void PartFile::ReadExistingPart() {
@@ -42,7 +44,7 @@ absl::Status PartFile::Finish(const std::string& sha256) {
   if (!out_) return Error();
   damaged_ = hash_.Hex() != sha256;
   if (damaged_) return absl::DataLossError(absl::StrCat(file_, " was damaged in transit: try again"));
-  if (std::rename(part_.c_str(), file_.c_str()) == 0) return absl::OkStatus();
+  if (device_ || std::rename(part_.c_str(), file_.c_str()) == 0) return absl::OkStatus();
   return absl::DataLossError(absl::StrCat("cannot rename ", part_, " to ", file_));
 }
 

@@ -12,7 +12,7 @@
 namespace phrenic::client {
 
 // Collects the bytes of FILE in FILE.part and renames it once it is complete. The destructor removes FILE.part unless
-// `keep` is true. Not thread-safe.
+// `keep` is true. A device (IsDevice) is written directly. Not thread-safe.
 class PartFile {
  public:
   // If `keep` is true, an existing FILE.part counts as already downloaded.
@@ -32,7 +32,8 @@ class PartFile {
   void ReadExistingPart();
   absl::Status Error() const;
 
-  const std::string file_, part_;
+  const bool device_;
+  const std::string file_, part_;  // the same for a device
   const bool keep_;
   bool damaged_ = false;
   std::int64_t bytes_ = 0;

@@ -13,8 +13,12 @@ namespace phrenic::client {
 // `what` describes the file, such as "the scene file".
 absl::StatusOr<std::string> ReadWhole(const std::string& file, const std::string& what);
 
-// Writes FILE.part and renames it to FILE, so that FILE is never incomplete. DATA_LOSS names the file if it cannot be
-// written.
+// True if the path exists and is neither a regular file nor a folder: a device, a pipe or a socket, which is written to
+// and never replaced (/dev/null, /dev/stdout).
+bool IsDevice(const std::string& file);
+
+// Writes FILE.part and renames it to FILE, so that FILE is never incomplete; a device is written directly. DATA_LOSS
+// names the file if it cannot be written.
 absl::Status WriteWhole(const std::string& file, const std::string& bytes);
 
 }  // namespace phrenic::client

@@ -6,12 +6,14 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <vector>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "server/access/rules.h"
+#include "server/schema/file_bytes.h"
 #include "server/schema/secret.h"
 #include "server/schema/sha256.h"
 
@@ -46,6 +48,10 @@ absl::Status CheckLine(const std::vector<std::string>& words, const TokenTable& 
 
 // Replaces the file atomically, with mode 0600.
 absl::Status WriteTokens(const std::string& file, const TokenTable& tokens) {
+  std::error_code missing;
+  if (std::filesystem::is_other(std::filesystem::status(file, missing))) {
+    return absl::InvalidArgumentError(absl::StrCat(file, " is a device or a pipe: name a file"));
+  }
   const std::string temporary = file + ".new";
   const mode_t before = umask(0077);
   {
@@ -81,9 +87,9 @@ absl::StatusOr<TokenTable> ParseTokens(std::string_view file, std::string_view t
 }
 
 absl::StatusOr<TokenTable> ReadTokens(const std::string& file) {
-  std::ifstream in(file);
-  if (!in) return absl::NotFoundError(absl::StrCat("--tokens: ", file, " cannot be read"));
-  return ParseTokens(file, std::string(std::istreambuf_iterator<char>(in), {}));
+  const std::optional<std::string> text = ReadBytes(file);
+  if (!text.has_value()) return absl::NotFoundError(absl::StrCat("--tokens: ", file, " cannot be read"));
+  return ParseTokens(file, *text);
 }
 
 absl::StatusOr<std::string> AddToken(const std::string& file, const Account& account) {

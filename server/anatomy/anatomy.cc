@@ -119,14 +119,43 @@ Mesh InMillimetres(const v1::Anatomy& part, double edge_length, v1::Sheet sheet)
   }
 }
 
+// The area of a structure's surface, so that area / edge length^2 estimates its vertices [mm^2].
+double Area(v1::Structure structure, v1::Sheet sheet) {
+  switch (structure) {
+    case v1::STRUCTURE_DIAPHRAGM:
+      return sheet == v1::SHEET_MIDDLE ? 100'000 : 220'000;
+    case v1::STRUCTURE_INNER_CAGE:
+      return 230'000;
+    case v1::STRUCTURE_LUNG:
+      return 110'000;
+    case v1::STRUCTURE_VERTEBRA:
+      return 12'000;
+    case v1::STRUCTURE_COSTAL_CARTILAGE:
+      return 4'000;
+    case v1::STRUCTURE_XIPHOID:
+      return 2'000;
+    default:
+      return 11'000;
+  }
+}
+
+double ResolutionOf(const v1::Anatomy& part, double resolution_mm, v1::Sheet sheet) {
+  return resolution_mm == 0 ? DefaultResolution(part.structure(), sheet) : resolution_mm;
+}
+
 }  // namespace
+
+std::int64_t EstimateVertices(const v1::Anatomy& part, double resolution_mm, v1::Sheet sheet) {
+  if (!CheckPart(part).ok() || !CheckResolution(part, resolution_mm).ok()) return 0;
+  const double edge = ResolutionOf(part, resolution_mm, sheet);
+  return static_cast<std::int64_t>(Area(part.structure(), sheet) / (edge * edge));
+}
 
 absl::StatusOr<Mesh> Generate(const v1::Anatomy& part, double resolution_mm, v1::Sheet sheet) {
   if (absl::Status status = CheckPart(part); !status.ok()) return status;
   if (absl::Status status = CheckSheet(part, sheet); !status.ok()) return status;
   if (absl::Status status = CheckResolution(part, resolution_mm); !status.ok()) return status;
-  const double edge_length = resolution_mm == 0 ? DefaultResolution(part.structure(), sheet) : resolution_mm;
-  Mesh mesh = InMillimetres(part, edge_length, sheet);
+  Mesh mesh = InMillimetres(part, ResolutionOf(part, resolution_mm, sheet), sheet);
   mesh.vertices *= kMillimetre;
   return mesh;
 }

@@ -3,6 +3,8 @@
 #ifndef PHRENIC_SERVER_ANATOMY_ANATOMY_H_
 #define PHRENIC_SERVER_ANATOMY_ANATOMY_H_
 
+#include <cstdint>
+
 #include "absl/status/statusor.h"
 #include "phrenic/v1/scene.pb.h"
 #include "server/mesh/mesh.h"
@@ -16,6 +18,10 @@ namespace phrenic::anatomy {
 // "muscle", "rim", "crus-right" and "crus-left"; SHEET_MIDDLE adds more. INVALID_ARGUMENT names the field if the
 // structure does not exist (rib 13, a lung without a side), is no sheet, or the resolution is out of range.
 absl::StatusOr<Mesh> Generate(const v1::Anatomy& part, double resolution_mm, v1::Sheet sheet = v1::SHEET_UNSPECIFIED);
+
+// Returns about how many vertices Generate gives, without generating; 0 for a part that does not exist.
+std::int64_t EstimateVertices(const v1::Anatomy& part, double resolution_mm,
+                              v1::Sheet sheet = v1::SHEET_UNSPECIFIED);
 
 }  // namespace phrenic::anatomy
 

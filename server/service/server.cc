@@ -1,23 +1,29 @@
 #include "server/service/server.h"
 
-#include <grpcpp/ext/proto_server_reflection_plugin.h>
-#include <grpcpp/health_check_service_interface.h>
+#include <grpcpp/client_context.h>
 #include <grpcpp/resource_quota.h>
 #include <grpcpp/server.h>
 #include <grpcpp/server_builder.h>
 #include <spdlog/spdlog.h>
 
+#include <atomic>
 #include <filesystem>
 
 #include "absl/strings/str_cat.h"
+#include "phrenic/v1/server.grpc.pb.h"
 #include "server/mechanics/parallel/parallel_for.h"
 #include "server/service/access_service.h"
 #include "server/service/calls/access_guard.h"
+#include "server/service/calls/call_limits.h"
+#include "server/service/calls/call_table.h"
 #include "server/service/calls/metrics.h"
+#include "server/service/calls/reflection.h"
 #include "server/service/compare_service.h"
 #include "server/service/control_service.h"
 #include "server/service/export_service.h"
 #include "server/service/frame_service.h"
+#include "server/service/health_service.h"
+#include "server/service/memory_trimmer.h"
 #include "server/service/net/grpc_listener.h"
 #include "server/service/periodic_task.h"
 #include "server/service/routing/forwarding_service.h"
@@ -36,10 +42,11 @@
 namespace phrenic::service {
 namespace {
 
-constexpr int kMaxThreads = 128;                      // of unary calls, watchers and downloads; viewers need none
-constexpr int kMaxStreams = 1000;                     // of one HTTP/2 connection
+constexpr int kMaxStreams = 128;                      // of one HTTP/2 connection
+constexpr int kStreamWindow = 16 << 10;               // of a stream whose request is not read yet [bytes]
 constexpr std::chrono::milliseconds kDrainTime(500);  // for calls to end before they are cancelled
 constexpr absl::Duration kMaintenancePeriod = absl::Seconds(2);
+constexpr std::chrono::seconds kReadyTime(1);  // for the call that /readyz makes
 
 std::vector<std::string> SceneFolders(const ServerOptions& options) {
   std::vector<std::string> folders = {options.scenes_dir};
@@ -47,7 +54,17 @@ std::vector<std::string> SceneFolders(const ServerOptions& options) {
   return folders;
 }
 
+// Servers of a cluster check each other by the cluster's authority, else by that of their clients.
+std::shared_ptr<grpc::ChannelCredentials> PeerCredentials(const ServerOptions& options) {
+  return MakePeerCredentials(options.tls,
+                             options.cluster.tls.ca.empty() ? options.tls.client_ca : options.cluster.tls.ca);
+}
+
 int Milliseconds(double seconds) { return static_cast<int>(seconds * 1000); }
+
+std::chrono::milliseconds RequestTime(const ServerOptions& options) {
+  return std::chrono::milliseconds(Milliseconds(options.idle_seconds));
+}
 
 // Sets keepalive (a dead peer is detected within 13 s), timeouts and limits. Two servers cannot share a port.
 void Configure(const ServerOptions& options, grpc::ServerBuilder& builder) {
@@ -57,6 +74,8 @@ void Configure(const ServerOptions& options, grpc::ServerBuilder& builder) {
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, 5'000);
   builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, kMaxStreams);
+  builder.AddChannelArgument(GRPC_ARG_HTTP2_STREAM_LOOKAHEAD_BYTES, kStreamWindow);
+  builder.AddChannelArgument(GRPC_ARG_HTTP2_BDP_PROBE, 0);  // would raise the window to megabytes
   builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, Milliseconds(options.head_seconds));
   builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_IDLE_MS, Milliseconds(options.idle_seconds));
   // gRPC checks a compressed message's size only after decompressing it, so compression is refused.
@@ -66,7 +85,7 @@ void Configure(const ServerOptions& options, grpc::ServerBuilder& builder) {
   builder.SetMaxReceiveMessageSize(options.max_message_bytes);
   builder.SetMaxSendMessageSize(-1);  // bounded by --max-vertices
   grpc::ResourceQuota quota("phrenicd");
-  quota.SetMaxThreads(kMaxThreads);
+  quota.Resize(static_cast<std::size_t>(options.network_mb) << 20);
   builder.SetResourceQuota(quota);
 }
 
@@ -92,28 +111,40 @@ struct Server::Parts {
         audit(std::move(opened.audit)),
         uploads(options.limits, options.spool_dir),
         models(session::SceneCatalogue(SceneFolders(options)), options.data_dir, options.limits.models, &uploads,
-               options.limits.vertices),
+               options.limits),
         table(models, clock, options.limits, store.get(), cluster.get()),
-        router(cluster == nullptr ? nullptr : std::make_unique<SessionRouter>(*cluster)),
+        page_tokens(cluster == nullptr ? PageTokens() : PageTokens("cluster")),
+        router(cluster == nullptr ? nullptr
+                                  : std::make_unique<SessionRouter>(*cluster, PeerCredentials(options), page_tokens)),
         guard(*accounts, *audit, table, metrics, options.max_requests),
         pages(guard, metrics, table),
         scene_service(models, guard),
-        session_service(table, guard),
+        session_service(table, guard, page_tokens),
         control_service(table, guard),
         access_service(guard, table),
-        frame_service(table, guard, metrics, options.limits.viewers_in_all),
+        frame_service(table, guard, metrics, options.limits),
         exports(options.limits, options.spool_dir, clock, store.get()),
         export_service(table, exports, guard),
         upload_service(uploads, options.limits, guard),
-        study_service(models, options.web_root, guard, clock, store.get()),
-        compare_service(table, options.limits.exports, guard),
+        study_service(models, options.web_root, guard, clock, options.limits, store.get()),
+        compare_service(table, options.limits, guard),
         server_service(std::filesystem::exists(options.web_root + "/index.html"), !options.data_dir.empty(),
-                       options.tls.used(), guard) {}
+                       options.tls.used(), guard),
+        call_limits(options.max_calls, RequestTime(options)),
+        calls(guard, call_limits),
+        forwarding_limits(options.max_calls, RequestTime(options)) {
+    AddCalls();
+    table.set_account_names([this](const std::string& account) { return guard.AccountOf(account); });
+  }
 
+  // Fills the table of calls.
+  void AddCalls();
   void JoinCluster();
   absl::Status Restore(const ServerOptions& options);
-  // Deletes idle sessions and reloads accounts.
+  // Deletes idle sessions, reloads accounts and gives freed memory back.
   void Maintain();
+  // Makes a call to this server in process, for /readyz.
+  void CheckReady();
   absl::Status Serve(const ServerOptions& options);
   absl::Status ServeWeb(const ServerOptions& options);
 
@@ -130,6 +161,7 @@ struct Server::Parts {
   session::Uploads uploads;
   session::Models models;
   session::Table table;
+  const PageTokens page_tokens;
   const std::unique_ptr<SessionRouter> router;  // null: not in a cluster
   Metrics metrics;
   AccessGuard guard;
@@ -145,13 +177,20 @@ struct Server::Parts {
   StudyService study_service;
   CompareService compare_service;
   ServerService server_service;
+  HealthService health_service;
+  CallLimits call_limits;
+  CallTable calls;
   std::unique_ptr<GrpcListener> listener;
   std::unique_ptr<grpc::Server> grpc;
+  CallLimits forwarding_limits;
   std::unique_ptr<ForwardingService> forwarding_service;  // in a cluster: listens in front of `grpc`
   std::unique_ptr<grpc::Server> forwarding_server;
   std::unique_ptr<WebGateway> web;
-  std::unique_ptr<PeriodicTask> maintenance;
+  std::unique_ptr<PeriodicTask> maintenance, readiness;
+  std::unique_ptr<v1::ServerService::Stub> own_stub;  // for readiness
+  std::atomic<bool> stopping = false;
   std::map<std::string, absl::Status> lost;
+  MemoryTrimmer memory;        // of the maintenance
   absl::Status refresh_error;  // of the accounts; logged when it changes
 };
 
@@ -169,11 +208,29 @@ absl::StatusOr<Server::Parts::Opened> Server::Parts::Open(const ServerOptions& o
     opened.store = *std::move(store);
   }
   if (!options.cluster.redis.empty()) {
-    auto cluster = cluster::Cluster::Join(options.cluster);
+    cluster::ClusterOptions joining = options.cluster;
+    joining.tls.certificate = options.tls.certificate;
+    joining.tls.key = options.tls.key;
+    auto cluster = cluster::Cluster::Join(joining);
     if (!cluster.ok()) return cluster.status();
     opened.cluster = *std::move(cluster);
   }
   return opened;
+}
+
+void Server::Parts::AddCalls() {
+  scene_service.AddTo(calls);
+  session_service.AddTo(calls);
+  control_service.AddTo(calls);
+  access_service.AddTo(calls);
+  frame_service.AddTo(calls);
+  export_service.AddTo(calls);
+  upload_service.AddTo(calls);
+  study_service.AddTo(calls);
+  compare_service.AddTo(calls);
+  server_service.AddTo(calls);
+  health_service.AddTo(calls);
+  AddReflection(calls);
 }
 
 void Server::Parts::JoinCluster() {
@@ -195,11 +252,10 @@ absl::Status Server::Parts::Restore(const ServerOptions& options) {
   });
   if (!restored.ok()) return restored.status();
   lost = *std::move(restored);
+  for (const auto& [id, how] : table.carried_over()) spdlog::warn("session {}: {}", id, how);
   study_service.Restore(*records, lost);
-  const auto set_owner = [this](const std::string& id, const std::string& owner) {
-    guard.SetOwner(AccessGuard::Kind::kExport, id, owner);
-  };
-  exports.Restore(*records, models, set_owner, lost);
+  exports.Restore(
+      *records, models, [this](const std::string& account) { return guard.AccountOf(account); }, lost);
   return absl::OkStatus();
 }
 
@@ -210,6 +266,18 @@ void Server::Parts::Maintain() {
     spdlog::warn("{}; the previous accounts stay in use", std::string(refreshed.message()));
   }
   refresh_error = refreshed;
+  memory.Trim();
+}
+
+void Server::Parts::CheckReady() {
+  grpc::ClientContext context;
+  context.set_deadline(std::chrono::system_clock::now() + kReadyTime);
+  v1::GetServerResponse response;
+  const grpc::Status status = own_stub->GetServer(&context, {}, &response);
+  if (stopping || pages.ready() == status.ok()) return;
+  pages.set_ready(status.ok());
+  spdlog::warn("readyz: {}",
+               status.ok() ? "calls get through again" : "a call does not get through: " + status.error_message());
 }
 
 absl::Status Server::Parts::Listen(const ServerOptions& options, grpc::ServerBuilder& builder) {
@@ -226,7 +294,7 @@ absl::Status Server::Parts::ServeForwarding(const ServerOptions& options) {
   grpc::ChannelArguments arguments;
   arguments.SetMaxReceiveMessageSize(-1);
   router->set_local_channel(grpc->InProcessChannel(arguments));
-  forwarding_service = std::make_unique<ForwardingService>(*router);
+  forwarding_service = std::make_unique<ForwardingService>(*router, calls, guard, forwarding_limits);
   grpc::ServerBuilder builder;
   Configure(options, builder);
   if (absl::Status status = Listen(options, builder); !status.ok()) return status;
@@ -236,23 +304,12 @@ absl::Status Server::Parts::ServeForwarding(const ServerOptions& options) {
 }
 
 absl::Status Server::Parts::Serve(const ServerOptions& options) {
-  grpc::EnableDefaultHealthCheckService(true);
-  grpc::reflection::InitProtoReflectionServerBuilderPlugin();
   grpc::ServerBuilder builder;
   Configure(options, builder);
   if (router == nullptr) {
     if (absl::Status status = Listen(options, builder); !status.ok()) return status;
   }
-  builder.RegisterService(&scene_service);
-  builder.RegisterService(&session_service);
-  builder.RegisterService(&control_service);
-  builder.RegisterService(&access_service);
-  builder.RegisterService(&frame_service);
-  builder.RegisterService(&export_service);
-  builder.RegisterService(&upload_service);
-  builder.RegisterService(&study_service);
-  builder.RegisterService(&compare_service);
-  builder.RegisterService(&server_service);
+  builder.RegisterCallbackGenericService(&calls);
   grpc = builder.BuildAndStart();
   if (grpc == nullptr) return absl::InternalError("gRPC could not be started");
   if (router != nullptr) {
@@ -264,16 +321,21 @@ absl::Status Server::Parts::Serve(const ServerOptions& options) {
 
 absl::Status Server::Parts::ServeWeb(const ServerOptions& options) {
   if (options.web.empty()) return absl::OkStatus();
-  constexpr std::size_t kBase64 = 2;  // base64 makes a body a third longer; rounded up
   const WebGateway::Options web_options = {
       .address = options.web,
-      .settings = {.root = options.web_root,
-                   .allowed_origins = options.allowed_origins,
-                   .max_body_bytes = kBase64 * static_cast<std::size_t>(options.max_message_bytes),
-                   .head_time = std::chrono::milliseconds(Milliseconds(options.head_seconds)),
-                   .idle_time = std::chrono::milliseconds(Milliseconds(options.idle_seconds)),
-                   .page = [this](std::string_view target,
-                                  std::string_view authorization) { return pages.Find(target, authorization); }},
+      .settings = {
+          .root = options.web_root,
+          .allowed_origins = options.allowed_origins,
+          .allowed_hosts = options.allowed_hosts,
+          .max_message_bytes = static_cast<std::size_t>(options.max_message_bytes),
+          .head_time = std::chrono::milliseconds(Milliseconds(options.head_seconds)),
+          .idle_time = std::chrono::milliseconds(Milliseconds(options.idle_seconds)),
+          .page = [this](std::string_view target,
+                         const WebSettings::Credentials& credentials) { return pages.Find(target, credentials); },
+          .known =
+              [this](const WebSettings::Credentials& credentials) {
+                return guard.Known(credentials.authorization, credentials.join);
+              }},
       .max_connections = static_cast<std::size_t>(options.max_connections),
       .tls = options.tls};
   grpc::ChannelArguments arguments;
@@ -301,6 +363,8 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& optio
   parts.maintenance = std::make_unique<PeriodicTask>(kMaintenancePeriod, [&parts] { parts.Maintain(); });
   if (parts.cluster != nullptr) parts.cluster->StartTakeovers();
   parts.pages.set_ready(true);
+  parts.own_stub = v1::ServerService::NewStub(parts.entry_server().InProcessChannel({}));
+  parts.readiness = std::make_unique<PeriodicTask>(kMaintenancePeriod, [&parts] { parts.CheckReady(); });
   return server;
 }
 
@@ -319,8 +383,10 @@ int Server::web_port() const { return parts_->web == nullptr ? 0 : parts_->web->
 const std::map<std::string, absl::Status>& Server::lost() const { return parts_->lost; }
 
 void Server::Shutdown() {
+  parts_->stopping = true;
   parts_->pages.set_ready(false);
-  if (parts_->grpc != nullptr) parts_->grpc->GetHealthCheckService()->SetServingStatus(false);
+  parts_->health_service.set_serving(false);
+  parts_->readiness.reset();
   parts_->maintenance.reset();
   if (parts_->cluster != nullptr) parts_->cluster->Drain();
   if (parts_->listener != nullptr) parts_->listener->Shutdown();

@@ -15,7 +15,16 @@ void Fill(const session::Uploads::File& file, v1::UploadedFile& filled) {
 
 }  // namespace
 
-grpc::Status UploadService::ListSurfaceFormats(grpc::ServerContext* context,
+void UploadService::AddTo(CallTable& calls) {
+  calls.Add(Lane::kQuick, *this, &UploadService::ListSurfaceFormats);
+  calls.Add(Lane::kSession, *this, &UploadService::BeginUpload);
+  calls.Add(Lane::kSession, *this, &UploadService::AddUploadChunk);
+  calls.Add(Lane::kWork, *this, &UploadService::FinishUpload);
+  calls.Add(Lane::kQuick, *this, &UploadService::ListUploads);
+  calls.Add(Lane::kSession, *this, &UploadService::DeleteUpload);
+}
+
+grpc::Status UploadService::ListSurfaceFormats(grpc::CallbackServerContext* context,
                                                const v1::ListSurfaceFormatsRequest* request,
                                                v1::ListSurfaceFormatsResponse* response) {
   const auto caller = guard_.Admit(*context, *request);
@@ -29,61 +38,60 @@ grpc::Status UploadService::ListSurfaceFormats(grpc::ServerContext* context,
   return grpc::Status::OK;
 }
 
-grpc::Status UploadService::BeginUpload(grpc::ServerContext* context, const v1::BeginUploadRequest* request,
+grpc::Status UploadService::BeginUpload(grpc::CallbackServerContext* context, const v1::BeginUploadRequest* request,
                                         v1::BeginUploadResponse* response) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
-  const auto begun = uploads_.Begin(request->name(), request->size(), request->sha256());
+  const auto begun =
+      uploads_.Begin(guard_.RequesterOf(*caller, *context), request->name(), request->size(), request->sha256());
   if (!begun.ok()) return ToGrpc(begun.status());
   response->set_upload_id(begun->id);
   response->set_received(begun->received);
   if (!begun->id.empty()) return grpc::Status::OK;
-  // The server already has a file with this hash.
+  // The caller has uploaded the file before.
   Fill(begun->file, *response->mutable_file());
-  guard_.SetOwner(AccessGuard::Kind::kUpload, begun->file.path(), caller->id());
   return grpc::Status::OK;
 }
 
-grpc::Status UploadService::AddUploadChunk(grpc::ServerContext* context, const v1::AddUploadChunkRequest* request,
+grpc::Status UploadService::AddUploadChunk(grpc::CallbackServerContext* context,
+                                           const v1::AddUploadChunkRequest* request,
                                            v1::AddUploadChunkResponse* response) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
-  const auto received = uploads_.Add(request->upload_id(), request->offset(), request->chunk());
+  const auto received =
+      uploads_.Add(guard_.RequesterOf(*caller, *context), request->upload_id(), request->offset(), request->chunk());
   if (!received.ok()) return ToGrpc(received.status());
   response->set_received(*received);
   return grpc::Status::OK;
 }
 
-grpc::Status UploadService::FinishUpload(grpc::ServerContext* context, const v1::FinishUploadRequest* request,
+grpc::Status UploadService::FinishUpload(grpc::CallbackServerContext* context, const v1::FinishUploadRequest* request,
                                          v1::FinishUploadResponse* response) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
   const double unit_mm = request->has_unit_mm() ? request->unit_mm() : 1;
-  const auto finished = uploads_.Finish(request->upload_id(), unit_mm);
+  const auto finished = uploads_.Finish(guard_.RequesterOf(*caller, *context), request->upload_id(), unit_mm);
   if (!finished.ok()) return ToGrpc(finished.status());
   Fill(finished->file, *response->mutable_file());
-  guard_.SetOwner(AccessGuard::Kind::kUpload, finished->file.path(), caller->id());
   *response->mutable_report() = compare::Inspect(finished->file.name, finished->surface, unit_mm);
   return grpc::Status::OK;
 }
 
-grpc::Status UploadService::ListUploads(grpc::ServerContext* context, const v1::ListUploadsRequest* request,
+grpc::Status UploadService::ListUploads(grpc::CallbackServerContext* context, const v1::ListUploadsRequest* request,
                                         v1::ListUploadsResponse* response) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
-  for (const session::Uploads::File& file : uploads_.List()) {
-    if (guard_.Owns(AccessGuard::Kind::kUpload, file.path(), *caller)) Fill(file, *response->add_files());
+  for (const session::Uploads::File& file : uploads_.List(guard_.RequesterOf(*caller, *context))) {
+    Fill(file, *response->add_files());
   }
   return grpc::Status::OK;
 }
 
-grpc::Status UploadService::DeleteUpload(grpc::ServerContext* context, const v1::DeleteUploadRequest* request,
+grpc::Status UploadService::DeleteUpload(grpc::CallbackServerContext* context, const v1::DeleteUploadRequest* request,
                                          v1::DeleteUploadResponse*) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
-  if (absl::Status own = guard_.CheckOwns(AccessGuard::Kind::kUpload, request->path(), *caller); !own.ok())
-    return ToGrpc(own);
-  return ToGrpc(uploads_.Delete(request->path()));
+  return ToGrpc(uploads_.Delete(guard_.RequesterOf(*caller, *context), request->path()));
 }
 
 }  // namespace phrenic::service

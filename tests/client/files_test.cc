@@ -1,8 +1,13 @@
 // `phrenic inspect` and `phrenic convert`: surface files are checked, repaired and converted.
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include <filesystem>
+#include <fstream>
+#include <string>
+#include <thread>
 
+#include "client/files/whole_file.h"
 #include "tests/client/programs.h"
 
 namespace phrenic::client {
@@ -31,6 +36,17 @@ TEST(InspectCommand, JsonAndTextHaveTheSameNumbers) {
   EXPECT_EQ(json["components"][0]["genus"], 0);
   EXPECT_EQ(json["frame"], "RAS");
   EXPECT_NEAR(json["volume_ml"].get<double>(), 35.420, 0.001);
+}
+
+TEST(WholeFiles, ADeviceOrPipeIsWrittenToAndNotReplaced) {
+  const std::string pipe = Scratch("pipe");
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  std::string read;
+  std::thread reader([&] { std::getline(std::ifstream(pipe), read); });
+  EXPECT_TRUE(WriteWhole(pipe, "text\n").ok());
+  reader.join();
+  EXPECT_EQ(read, "text");
+  EXPECT_TRUE(std::filesystem::is_fifo(pipe));
 }
 
 TEST(InspectCommand, TheUnitIsAppliedAndChecked) {

@@ -39,7 +39,10 @@ export class Server {
     return `127.0.0.1:${this.listen}`;
   }
 
-  /** Starts the process again on the same ports. Resolves when it serves the page; throws Error after a minute. */
+  /**
+   * Starts the process again on the same ports. Resolves when it serves the page and has its first session; throws Error
+   * after a minute.
+   */
   async restart(): Promise<void> {
     mkdirSync(outFolder, { recursive: true });
     const log = createWriteStream(join(outFolder, "phrenicd.log"), { flags: "a" });
@@ -49,10 +52,12 @@ export class Server {
     child.stdout.pipe(log, { end: false });
     child.stderr.pipe(log, { end: false });
     this.process = child;
+    let started = false; // it prints its addresses once the first session is made
+    child.stdout.on("data", (text) => (started ||= String(text).includes("Viewer: ")));
     for (const deadline = Date.now() + 60_000; Date.now() < deadline; await sleep(100)) {
       if (child.exitCode !== null)
         throw new Error(`phrenicd ended with ${child.exitCode}: see ${outFolder}/phrenicd.log.`);
-      if (await answers(this.url)) return;
+      if (started && (await answers(this.url))) return;
     }
     throw new Error(`phrenicd did not serve ${this.url} within a minute: see ${outFolder}/phrenicd.log.`);
   }

@@ -90,7 +90,12 @@ Tally Flipped(Oracle& oracle, const std::string& folder, int times) {
   for (int i = 0; i < times; ++i) {
     rig.Disturb([&] { rig.server().Stop(15); });
     const fs::path file = LargestFile(rig.store());
-    const std::string right = ReadFile(file);
+    const fs::path marker = fs::path(rig.store()) / "phrenic.marker";  // belongs to the database
+    const std::string right = ReadFile(file), right_marker = ReadFile(marker);
+    const auto restore = [&] {
+      WriteFile(file, right);
+      WriteFile(marker, right_marker);
+    };
     std::string wrong = right;
     wrong[rig.random()() % wrong.size()] ^= static_cast<char>(1 << rig.random()() % 8);
     WriteFile(file, wrong);
@@ -99,11 +104,11 @@ Tally Flipped(Oracle& oracle, const std::string& folder, int times) {
         std::fprintf(stderr, "the server wrote to a store that it refused\n");
         ++tally.lost;
       }
-      WriteFile(file, right);
+      restore();
     } else if (rig.driver().Connect(rig.server().address()) && !rig.driver().FindTick(5).has_value()) {
       // The server runs without the session and keeps its record.
       rig.server().Stop(15);
-      WriteFile(file, right);
+      restore();
     }
     rig.Recover(tally);
   }

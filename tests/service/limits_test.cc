@@ -1,4 +1,5 @@
 // Callers above a limit are refused with the name of its setting, and do not affect other callers.
+#include "tests/service/process_fixture.h"
 #include "tests/service/raw_socket.h"
 // After Boost, which needs <utility> first.
 #include <gmock/gmock.h>
@@ -13,7 +14,6 @@
 #include "absl/strings/str_cat.h"
 #include "phrenic/v1/session.grpc.pb.h"
 #include "phrenic/v1/upload.grpc.pb.h"
-#include "tests/support/server_process.h"
 
 namespace phrenic::service {
 namespace {
@@ -27,28 +27,13 @@ constexpr int kAnswerTime = 30;
 constexpr int kAnswerTime = 10;
 #endif
 
-class Limits : public testing::Test {
+class Limits : public ProcessFixture {
  protected:
-  Limits() : folder_(testing::TempDir() + "/phrenic-limits-" + std::to_string(getpid())) {
-    std::filesystem::create_directories(folder_);
-  }
-  ~Limits() override {
-    server_.reset();
-    std::filesystem::remove_all(folder_);
-  }
-  void Start(std::vector<std::string> flags = {}) {
-    flags.insert(flags.end(), {"--store", "none", "--web-root", folder_});
-    // A small quarantine, so that AddressSanitizer's freed memory does not count as the server's.
-    server_ = std::make_unique<ServerProcess>(folder_ + "/said", flags,
-                                              std::vector<std::string>{"ASAN_OPTIONS=quarantine_size_mb=1"});
-    const absl::Status status = server_->Start();
-    ASSERT_TRUE(status.ok()) << status;
-  }
   // Returns how long a well-behaved client waits for its response; nullopt if it gets none.
   std::optional<absl::Duration> WebAnswer() const {
     const absl::Time start = absl::Now();
     RawSocket socket(server_->web_port());
-    const auto response = socket.Ask("GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n");
+    const auto response = socket.Ask("GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n");
     if (!response.has_value() || response->result() != http::status::ok) return std::nullopt;
     return absl::Now() - start;
   }
@@ -60,15 +45,12 @@ class Limits : public testing::Test {
     v1::ListSessionsResponse response;
     return stub->ListSessions(&context, {}, &response);
   }
-
-  const std::string folder_;
-  std::unique_ptr<ServerProcess> server_;
 };
 
 TEST_F(Limits, ASlowHeaderTimesOutAlthoughEachByteIsInTime) {
   Start({"--head-seconds", "1"});
   RawSocket slow(server_->web_port());
-  slow.Send("GET / HTTP/1.1\r\nHost: x\r\n");
+  slow.Send("GET / HTTP/1.1\r\nHost: localhost\r\n");
   const absl::Time start = absl::Now();
   bool open = true;
   while (open && absl::Now() - start < absl::Seconds(8)) {
@@ -96,7 +78,7 @@ TEST_F(Limits, AnEndlessBodyIsRefusedWithTheLimit) {
   const std::int64_t before = server_->PeakMemory();
   RawSocket socket(server_->web_port());
   socket.Send(
-      "POST /phrenic.v1.UploadService/AddUploadChunk HTTP/1.1\r\nHost: x\r\nContent-Type: "
+      "POST /phrenic.v1.UploadService/AddUploadChunk HTTP/1.1\r\nHost: localhost\r\nContent-Type: "
       "application/grpc-web+proto\r\n"
       "Transfer-Encoding: chunked\r\n\r\n");
   const std::string chunk = "10000\r\n" + std::string(0x10000, 'x') + "\r\n";
@@ -254,7 +236,7 @@ TEST_F(Limits, ASessionUsesNoMoreThanItsFractionOfACore) {
 TEST_F(Limits, ASilentConnectionIsClosed) {
   Start({"--idle-seconds", "1", "--head-seconds", "1"});
   RawSocket fresh(server_->web_port()), kept(server_->web_port());
-  ASSERT_TRUE(kept.Ask("GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n").has_value());
+  ASSERT_TRUE(kept.Ask("GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n").has_value());
   const absl::Time start = absl::Now();
   EXPECT_EQ(fresh.ReadSome(1), "");
   EXPECT_EQ(kept.ReadSome(1), "");
