@@ -6,16 +6,15 @@
 namespace phrenic {
 namespace {
 
-constexpr int kIterations = 600;
-constexpr int kPowers = 30;               // products of the power iteration
-constexpr float kSafety = 1.1F;           // of its result
-constexpr float kRegularisation = 3e-3F;  // of the largest eigenvalue
-constexpr float kSettled = 1e-5F;         // of the greatest tension: an iteration that changes less is the last
+constexpr int kIterations = 450;
+constexpr int kPowers = 30;        // products of the power iteration
+constexpr float kSafety = 1.1F;    // of its result
+constexpr float kSettled = 2e-5F;  // of the greatest tension: an iteration that changes less is the last
 constexpr double kLeastAlong = 0.15, kLeastAcross = 0.1;  // of the tensions to begin with
 constexpr double kGreatestAcross = 0.7;                   // of the greatest tension along
 constexpr float kContactStep = 0.5F;
 
-using Four = Eigen::Vector4f;  // x, y, z, 0: one aligned load
+using Four = Eigen::Vector4f;  // x, y, z and any number: one load
 using Fours = std::vector<Four, Eigen::aligned_allocator<Four>>;
 
 // Along and across the fibres of a triangle.
@@ -24,11 +23,16 @@ struct Pair {
 };
 
 // One triangle's part of the problem: the force on corner i is -(along tension p_i f + across tension q_i c), scaled by
-// the root of the vertex' area.
-struct Row {
-  Four f, c;                   // area times the directions
+// the root of the vertex' area. One line of the cache.
+struct alignas(64) Row {
+  float f[3] = {}, c[3] = {};  // area times the directions
   float p[3] = {}, q[3] = {};  // 0 for vertices that do not move
   int vertices[3] = {};
+  float share = 0;  // of the area of all triangles
+
+  // The fourth number of these is any.
+  Four F() const { return Eigen::Map<const Four>(f); }
+  Four C() const { return Eigen::Map<const Four>(c); }
 };
 
 float Product(const Four& a, const Four& b) { return a[0] * b[0] + (a[1] * b[1] + a[2] * b[2]); }
@@ -53,7 +57,7 @@ class Search {
   float MoveTensions(float momentum);
   void MoveContacts();
 
-  std::vector<Row, Eigen::aligned_allocator<Row>> rows_;
+  std::vector<Row> rows_;
   Fours load_, normal_;        // scaled; normals times the root of the area
   std::vector<float> root_;    // of the area around each vertex [m]
   std::vector<int> contacts_;  // vertices that rest on a surface
@@ -61,7 +65,8 @@ class Search {
   std::vector<Pair> last_, ahead_;  // FISTA's iterate, and the point from which it goes on
   std::vector<float> contact_;      // [Pa]
   Fours residual_;
-  float largest_ = 0, scale_ = 0;
+  float step_ = 0;   // along the gradient
+  float scale_ = 0;  // the greatest tension [N/m]
 };
 
 Search::Search(const RestingLoad& resting, double greatest, const std::vector<MuscleTriangle>& triangles) {
@@ -78,7 +83,10 @@ Search::Search(const RestingLoad& resting, double greatest, const std::vector<Mu
   }
   for (const MuscleTriangle& triangle : triangles) {
     Row& row = rows_.emplace_back();
-    row.f = ToFour(triangle.area * triangle.f), row.c = ToFour(triangle.area * triangle.c);
+    for (int k = 0; k < 3; ++k) {
+      row.f[k] = static_cast<float>(triangle.area * triangle.f[k]);
+      row.c[k] = static_cast<float>(triangle.area * triangle.c[k]);
+    }
     for (int i = 0; i < 3; ++i) {
       row.vertices[i] = triangle.vertices[i] - resting.first;
       if (!resting.free[row.vertices[i]]) continue;
@@ -91,6 +99,9 @@ Search::Search(const RestingLoad& resting, double greatest, const std::vector<Mu
     greatest_.push_back({static_cast<float>(std::max(along, greatest)),
                          static_cast<float>(std::max(across, kGreatestAcross * greatest))});
   }
+  double area = 0;
+  for (const MuscleTriangle& triangle : triangles) area += triangle.area;
+  for (size_t t = 0; t < rows_.size(); ++t) rows_[t].share = static_cast<float>(triangles[t].area / area);
   last_ = ahead_ = start_;
   residual_.resize(n);
 }
@@ -98,7 +109,7 @@ Search::Search(const RestingLoad& resting, double greatest, const std::vector<Mu
 void Search::AddForces(const std::vector<Pair>& tensions, Fours& residual) const {
   for (size_t t = 0; t < rows_.size(); ++t) {
     const Row& row = rows_[t];
-    const Four f = tensions[t].along * row.f, c = tensions[t].across * row.c;
+    const Four f = tensions[t].along * row.F(), c = tensions[t].across * row.C();
     for (int i = 0; i < 3; ++i) residual[row.vertices[i]] -= row.p[i] * f + row.q[i] * c;
   }
 }
@@ -109,7 +120,7 @@ Pair Search::Columns(const Row& row, const Fours& residual) {
     const Four& r = residual[row.vertices[i]];
     f += row.p[i] * r, c += row.q[i] * r;
   }
-  return {-Product(row.f, f), -Product(row.c, c)};
+  return {-Product(row.F(), f), -Product(row.C(), c)};
 }
 
 float Search::LargestEigenvalue() const {
@@ -145,16 +156,19 @@ void Search::FindResidual() {
 // Returns the largest change [N/m].
 float Search::MoveTensions(float momentum) {
   float change = 0;
-  const auto move = [&](float gradient, float start, float least, float greatest, float& last, float& ahead) {
-    const float moved = std::clamp(ahead - (gradient / largest_ + kRegularisation * (ahead - start)), least, greatest);
+  const auto move = [&](float gradient, float least, float greatest, float& last, float& ahead) {
+    const float moved = std::clamp(ahead - gradient * step_, least, greatest);
     change = std::max(change, std::abs(moved - last));
     ahead = moved + momentum * (moved - last);
     last = moved;
   };
   for (size_t t = 0; t < rows_.size(); ++t) {
-    const Pair gradient = Columns(rows_[t], residual_);
-    move(gradient.along, start_[t].along, least_[t].along, greatest_[t].along, last_[t].along, ahead_[t].along);
-    move(gradient.across, start_[t].across, least_[t].across, greatest_[t].across, last_[t].across, ahead_[t].across);
+    const Pair gradient = Columns(rows_[t], residual_), start = start_[t], least = least_[t], greatest = greatest_[t];
+    Pair &last = last_[t], &ahead = ahead_[t];
+    const float share = rows_[t].share;
+    move(gradient.along + share * (ahead.along - start.along), least.along, greatest.along, last.along, ahead.along);
+    move(gradient.across + share * (ahead.across - start.across), least.across, greatest.across, last.across,
+         ahead.across);
   }
   return change;
 }
@@ -167,8 +181,9 @@ void Search::MoveContacts() {
 }
 
 int Search::Run() {
-  largest_ = LargestEigenvalue();
-  if (!(largest_ > 0)) return 0;
+  const float largest = LargestEigenvalue();
+  if (!(largest > 0)) return 0;
+  step_ = 1 / largest;
   float weight = 1;
   for (int iteration = 1; iteration <= kIterations; ++iteration) {
     FindResidual();
