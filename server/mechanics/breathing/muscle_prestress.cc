@@ -6,10 +6,10 @@
 namespace phrenic {
 namespace {
 
-constexpr int kIterations = 450;
-constexpr int kPowers = 30;        // products of the power iteration
-constexpr float kSafety = 1.1F;    // of its result
-constexpr float kSettled = 2e-5F;  // of the greatest tension: an iteration that changes less is the last
+constexpr int kPrestressIterations = 450;
+constexpr int kPowers = 30;               // products of the power iteration
+constexpr float kPowerSafety = 1.1F;      // of its result
+constexpr float kTensionSettled = 2e-5F;  // of the greatest tension: an iteration that changes less is the last
 constexpr double kLeastAlong = 0.15, kLeastAcross = 0.1;  // of the tensions to begin with
 constexpr double kGreatestAcross = 0.7;                   // of the greatest tension along
 constexpr float kContactStep = 0.5F;
@@ -39,9 +39,9 @@ float Product(const Four& a, const Four& b) { return a[0] * b[0] + (a[1] * b[1] 
 
 Four ToFour(const Eigen::Vector3d& v) { return Eigen::Vector4d(v[0], v[1], v[2], 0).cast<float>(); }
 
-class Search {
+class PrestressSearch {
  public:
-  Search(const RestingLoad& resting, double greatest, const std::vector<MuscleTriangle>& triangles);
+  PrestressSearch(const RestingLoad& resting, double greatest, const std::vector<MuscleTriangle>& triangles);
 
   int Run();
   const std::vector<Pair>& tensions() const { return last_; }
@@ -69,7 +69,8 @@ class Search {
   float scale_ = 0;  // the greatest tension [N/m]
 };
 
-Search::Search(const RestingLoad& resting, double greatest, const std::vector<MuscleTriangle>& triangles) {
+PrestressSearch::PrestressSearch(const RestingLoad& resting, double greatest,
+                                 const std::vector<MuscleTriangle>& triangles) {
   const Eigen::Index n = resting.area.size();
   contact_.assign(n, 0);
   scale_ = static_cast<float>(greatest);
@@ -106,7 +107,7 @@ Search::Search(const RestingLoad& resting, double greatest, const std::vector<Mu
   residual_.resize(n);
 }
 
-void Search::AddForces(const std::vector<Pair>& tensions, Fours& residual) const {
+void PrestressSearch::AddForces(const std::vector<Pair>& tensions, Fours& residual) const {
   for (size_t t = 0; t < rows_.size(); ++t) {
     const Row& row = rows_[t];
     const Four f = tensions[t].along * row.F(), c = tensions[t].across * row.C();
@@ -114,7 +115,7 @@ void Search::AddForces(const std::vector<Pair>& tensions, Fours& residual) const
   }
 }
 
-Pair Search::Columns(const Row& row, const Fours& residual) {
+Pair PrestressSearch::Columns(const Row& row, const Fours& residual) {
   Four f = Four::Zero(), c = f;
   for (int i = 0; i < 3; ++i) {
     const Four& r = residual[row.vertices[i]];
@@ -123,7 +124,7 @@ Pair Search::Columns(const Row& row, const Fours& residual) {
   return {-Product(row.F(), f), -Product(row.C(), c)};
 }
 
-float Search::LargestEigenvalue() const {
+float PrestressSearch::LargestEigenvalue() const {
   std::vector<Pair> vector(rows_.size(), Pair{1, 1});
   Fours product(residual_.size());
   float largest = 0;
@@ -144,17 +145,17 @@ float Search::LargestEigenvalue() const {
     }
     largest = static_cast<float>(sum);
   }
-  return kSafety * largest;
+  return kPowerSafety * largest;
 }
 
-void Search::FindResidual() {
+void PrestressSearch::FindResidual() {
   residual_ = load_;
   for (const int i : contacts_) residual_[i] -= contact_[i] * normal_[i];
   AddForces(ahead_, residual_);
 }
 
 // Returns the largest change [N/m].
-float Search::MoveTensions(float momentum) {
+float PrestressSearch::MoveTensions(float momentum) {
   float change = 0;
   const auto move = [&](float gradient, float least, float greatest, float& last, float& ahead) {
     const float moved = std::clamp(ahead - gradient * step_, least, greatest);
@@ -173,33 +174,33 @@ float Search::MoveTensions(float momentum) {
   return change;
 }
 
-void Search::MoveContacts() {
+void PrestressSearch::MoveContacts() {
   for (const int i : contacts_) {
     const float along = Product(residual_[i], normal_[i]) / (root_[i] * root_[i]);
     contact_[i] = std::max(0.0F, contact_[i] + kContactStep * along);
   }
 }
 
-int Search::Run() {
+int PrestressSearch::Run() {
   const float largest = LargestEigenvalue();
   if (!(largest > 0)) return 0;
   step_ = 1 / largest;
   float weight = 1;
-  for (int iteration = 1; iteration <= kIterations; ++iteration) {
+  for (int iteration = 1; iteration <= kPrestressIterations; ++iteration) {
     FindResidual();
     const float next = (1 + std::sqrt(1 + 4 * weight * weight)) / 2;
     const float change = MoveTensions((weight - 1) / next);
     weight = next;
     MoveContacts();
-    if (change <= kSettled * scale_) return iteration;
+    if (change <= kTensionSettled * scale_) return iteration;
   }
-  return kIterations;
+  return kPrestressIterations;
 }
 
 }  // namespace
 
 PrestressReport ChoosePrestress(const RestingLoad& resting, double greatest, std::vector<MuscleTriangle>& triangles) {
-  Search search(resting, greatest, triangles);
+  PrestressSearch search(resting, greatest, triangles);
   PrestressReport report{.iterations = search.Run(), .along = 0, .across = 0, .contact = {}};
   double area = 0;
   for (size_t t = 0; t < triangles.size(); ++t) {
