@@ -178,6 +178,35 @@ build_programs() {
     fail "the build failed (above): correct what it names; if it names none of your files, delete build/ and run this again."
 }
 
+# make_nginx_folder DIR PORT FILE makes the folder of an nginx with TLS on 127.0.0.1:PORT that includes deploy/nginx/FILE:
+# DIR/nginx.conf, the files of deploy/nginx and a certificate of its own.
+make_nginx_folder() {
+  local dir=$1 port=$2 file=$3
+  mkdir -p "$dir/phrenic" "$dir/temp"
+  chmod 755 "$dir"  # nginx's workers run as another user
+  cp "$root"/deploy/nginx/*.conf "$dir/phrenic/"
+  echo "listen 127.0.0.1:$port ssl http2;" >"$dir/phrenic/listen.conf"
+  [[ -f $dir/phrenic/cert.pem ]] ||
+    openssl req -x509 -newkey ec -pkeyopt ec_paramgen_curve:prime256v1 -nodes -days 3650 -subj /CN=localhost \
+      -addext subjectAltName=DNS:localhost,IP:127.0.0.1 -keyout "$dir/phrenic/key.pem" -out "$dir/phrenic/cert.pem" \
+      2>/dev/null
+  cat >"$dir/nginx.conf" <<TEXT
+pid nginx.pid;
+daemon off;
+worker_processes auto;
+worker_rlimit_nofile 16384;
+events { worker_connections 8192; }
+http {
+  client_body_temp_path temp/body;
+  proxy_temp_path temp/proxy;
+  fastcgi_temp_path temp/fastcgi;
+  uwsgi_temp_path temp/uwsgi;
+  scgi_temp_path temp/scgi;
+  include phrenic/$file;
+}
+TEXT
+}
+
 # True if a program accepts connections at HOST:PORT.
 answers() {
   local host=${1%:*} port=${1##*:}

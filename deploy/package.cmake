@@ -26,6 +26,8 @@ install(FILES ${PHRENIC_MADE}/_phrenic DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/
 install(FILES ${PHRENIC_MADE}/phrenic.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 install(FILES deploy/phrenicd.service DESTINATION /lib/systemd/system)
 install(FILES deploy/phrenicd.toml DESTINATION /etc/phrenic)
+install(FILES deploy/nginx/guard.conf deploy/nginx/cluster.conf deploy/nginx/server.conf deploy/nginx/limits.conf
+              deploy/nginx/listen.conf DESTINATION /etc/nginx/phrenic)
 install(FILES README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 set(CPACK_GENERATOR DEB)
@@ -38,7 +40,7 @@ set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS ca-certificates)
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "ca-certificates, nginx")
 set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA
     "${PROJECT_SOURCE_DIR}/deploy/debian/postinst;${PROJECT_SOURCE_DIR}/deploy/debian/prerm;${PROJECT_SOURCE_DIR}/deploy/debian/postrm;${PROJECT_SOURCE_DIR}/deploy/debian/conffiles")
 set(CPACK_STRIP_FILES ON)

@@ -37,6 +37,7 @@ struct PlayOptions {
   bool fast = false;
   double until = 0;  // simulated time [s]; 0: no end
   std::string in_step_with;
+  bool keep = false;
 };
 
 struct StepOptions {
@@ -97,6 +98,7 @@ int PlaySession(const Context& context, const PlayOptions& options) {
   request.set_as_fast_as_possible(options.fast);
   request.set_until_time(options.until);
   request.set_in_step_with(options.in_step_with);
+  request.set_keep_playing(options.keep);
   return CallAndShow<v1::PlaySessionResponse>(context, &SessionStub::PlaySession, request);
 }
 
@@ -167,6 +169,7 @@ CommandFunction SetUpPlay(CLI::App& command) {
   command.add_flag("--fast", options->fast, "as fast as possible");
   command.add_option("--until", options->until, "pause at this simulated time [s]");
   command.add_option("--in-step-with", options->in_step_with, "wait when a frame ahead of this session");
+  command.add_flag("--keep", options->keep, "play on without viewers, instead of being paused after some minutes");
   return Bind(&PlaySession, options);
 }
 

@@ -17,6 +17,7 @@
 #include "client/terminal/environment.h"
 #include "phrenic/v1/server.grpc.pb.h"
 #include "server/service/net/address.h"
+#include "server/service/net/metadata.h"
 
 namespace phrenic::client {
 namespace {
@@ -82,7 +83,8 @@ void NameSession(const google::protobuf::Message& request, grpc::ClientContext& 
   const auto* field = request.GetDescriptor()->FindFieldByName("session_id");
   if (field == nullptr) return;
   const std::string id = request.GetReflection()->GetString(request, field);
-  if (!id.empty()) call.AddMetadata("x-session-id", id);
+  const service::Metadata metadata = {{"x-session-id", id}};  // of use to proxies only
+  if (!id.empty() && service::CheckMetadata(metadata).ok()) call.AddMetadata("x-session-id", id);
 }
 
 absl::Status CheckConnection(const Context& context) {
@@ -93,6 +95,11 @@ absl::Status CheckConnection(const Context& context) {
     if (!file.empty() && FileText(file).empty()) {
       return absl::InvalidArgumentError(absl::StrCat(flag, ": ", file, " cannot be read or is empty"));
     }
+  }
+  const Metadata identity = MetadataOf(context);
+  if (absl::Status status = service::CheckMetadata({identity.begin(), identity.end()}); !status.ok()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(status.message(), " (--token-file, PHRENIC_TOKEN and PHRENIC_JOIN say who you are)"));
   }
   if (context.tls_cert.empty() != context.tls_key.empty()) {
     return absl::InvalidArgumentError("--tls-cert, --tls-key: a client certificate needs both");

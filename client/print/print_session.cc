@@ -95,6 +95,7 @@ void PrintSession(const v1::Session& session, std::ostream& out) {
     out << absl::StrFormat("  pulled by (%g, %g, %g) N at vertex %d of %s\n", pull.force().x(), pull.force().y(),
                            pull.force().z(), pull.vertex(), pull.body());
   }
+  if (!session.carried_over().empty()) out << "  carried over: " << session.carried_over() << "\n";
   if (!session.not_saved().empty()) out << "  not saved: " << session.not_saved() << "\n";
   if (!session.has_divergence()) return;
   const v1::Divergence& why = session.divergence();

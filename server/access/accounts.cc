@@ -1,5 +1,6 @@
 #include "server/access/accounts.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "absl/time/clock.h"
@@ -60,6 +61,14 @@ bool Accounts::StillHas(const Account& account) const {
   if (account.token_sha256.empty()) return true;
   absl::MutexLock lock(&mutex_);
   return tokens_ != nullptr && tokens_->contains(account.token_sha256);
+}
+
+std::string Accounts::Qualified(const std::string& stored) const {
+  if (stored.empty() || options_.jwt.keys.empty()) return stored;
+  absl::MutexLock lock(&mutex_);
+  const bool in_file = tokens_ != nullptr && std::any_of(tokens_->begin(), tokens_->end(),
+                                                         [&](const auto& each) { return each.second.name == stored; });
+  return in_file ? stored : JwtAccountName(options_.jwt.issuer, stored);
 }
 
 absl::StatusOr<Account> Accounts::Check(std::string_view token) const {

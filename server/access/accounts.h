@@ -35,6 +35,10 @@ class Accounts {
   absl::StatusOr<Account> Check(std::string_view token) const ABSL_LOCKS_EXCLUDED(mutex_);
   // True if the token file still has the account; always true for accounts of the identity provider.
   bool StillHas(const Account& account) const ABSL_LOCKS_EXCLUDED(mutex_);
+  // Returns the present name of an account that a version before the names of the identity provider's accounts began
+  // with "jwt:" stored. Names of both kinds looked alike then: it is an account of the token file if that has one of
+  // this name, and otherwise one of the provider's, if there is a provider.
+  std::string Qualified(const std::string& stored) const ABSL_LOCKS_EXCLUDED(mutex_);
   // Call it periodically. Returns the error of a changed file or of an address that cannot be read.
   absl::Status Refresh() ABSL_LOCKS_EXCLUDED(mutex_);
 

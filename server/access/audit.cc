@@ -14,6 +14,10 @@ namespace phrenic::access {
 namespace {
 
 constexpr std::size_t kMaxBytes = 16 << 20, kRotatedFiles = 4;
+constexpr std::size_t kMaxText = 128;  // longer than ids and addresses
+
+// A long text of a caller must not push earlier lines out of the rotated files.
+std::string Shortened(const std::string& text) { return text.substr(0, kMaxText); }
 
 }  // namespace
 
@@ -40,11 +44,11 @@ void AuditLog::Note(const Caller& caller, std::string_view method, const std::st
   nlohmann::ordered_json line = {{"time", absl::FormatTime(absl::RFC3339_full, absl::Now(), absl::UTCTimeZone())},
                                  {"caller", caller.id()},
                                  {"role", NameOf(caller.account.role)},
-                                 {"peer", caller.peer},
+                                 {"peer", Shortened(caller.peer)},
                                  {"method", method},
-                                 {"session", session},
+                                 {"session", Shortened(session)},
                                  {"outcome", outcome.ok() ? "admitted" : absl::StatusCodeToString(outcome.code())}};
-  log_->info(line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  log_->info(line.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace));
 }
 
 }  // namespace phrenic::access

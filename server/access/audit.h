@@ -15,8 +15,9 @@ class logger;
 
 namespace phrenic::access {
 
-// Thread-safe. The file has mode 0600 and is rotated at 16 MiB, to FILE.1 up to FILE.4. It contains the names of
-// callers, machines and sessions, but no token, no secret and no simulated data.
+// Thread-safe. Lines are ASCII, and what a caller wrote is escaped and shortened. The file has mode 0600 and is rotated
+// at 16 MiB, to FILE.1 up to FILE.4. It contains the names of callers, machines and sessions, but no token, no secret
+// and no simulated data.
 class AuditLog {
  public:
   // Writes nothing if `file` is empty. PERMISSION_DENIED if the file cannot be written.

@@ -10,7 +10,7 @@
 namespace phrenic::access {
 
 struct Account {
-  std::string name;
+  std::string name;  // "anna" of the token file; "jwt:ISSUER#anna" of the identity provider
   v1::AccessRole role = v1::ACCESS_ROLE_UNSPECIFIED;  // the highest role outside of the account's own sessions
   std::string token_sha256 = "";                      // key in the token file; empty: from the identity provider
 };

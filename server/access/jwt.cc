@@ -6,7 +6,10 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <optional>
 
+#include "absl/strings/ascii.h"
+#include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
 #include "server/access/fetch.h"
 #include "server/access/rules.h"
@@ -17,6 +20,8 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kMaxTokenBytes = 16 << 10;
+constexpr std::size_t kMaxNameBytes = 255;       // as of "sub" in OpenID Connect Core 1.0 section 2
+constexpr double kLastSecond = 253'402'300'799;  // of the year 9999
 constexpr absl::Duration kClockSkew = absl::Seconds(60);
 constexpr std::string_view kAlgorithms[] = {"RS256", "RS384", "RS512", "PS256", "PS384",
                                             "PS512", "ES256", "ES384", "ES512"};
@@ -37,18 +42,42 @@ bool HasText(const json& claims, const std::string& name, const std::string& wan
   return found->is_string() && found->get<std::string>() == wanted;
 }
 
-// Returns a NumericDate claim (RFC 7519 section 2), `otherwise` if it is missing or not a number.
-absl::Time TimeOf(const json& claims, const char* name, absl::Time otherwise) {
+// Returns a NumericDate claim (RFC 7519 section 2); nullopt if it is missing. UNAUTHENTICATED if it is no time.
+absl::StatusOr<std::optional<absl::Time>> TimeOf(const json& claims, const char* name) {
   const auto found = claims.find(name);
-  if (found == claims.end() || !found->is_number()) return otherwise;
-  return absl::UnixEpoch() + absl::Seconds(found->get<double>());
+  if (found == claims.end()) return std::nullopt;
+  const double seconds = found->is_number() ? found->get<double>() : -1;
+  if (seconds >= 0 && seconds <= kLastSecond) return absl::UnixEpoch() + absl::Seconds(seconds);
+  return Refused(absl::StrCat("has a time (", name, ") that is not a number of seconds from 1970 to 9999"));
 }
 
 absl::Status CheckTimes(const json& claims, absl::Time now) {
-  if (TimeOf(claims, "exp", absl::InfinitePast()) + kClockSkew <= now)
-    return Refused("has no expiry time (exp) or has expired");
-  if (TimeOf(claims, "nbf", absl::InfinitePast()) - kClockSkew > now) return Refused("is not valid yet (nbf)");
+  const auto expires = TimeOf(claims, "exp"), begins = TimeOf(claims, "nbf"), issued = TimeOf(claims, "iat");
+  for (const auto* time : {&expires, &begins, &issued}) {
+    if (!time->ok()) return time->status();
+  }
+  if (!expires->has_value() || **expires + kClockSkew <= now) return Refused("has no expiry time (exp) or has expired");
+  if (begins->has_value() && **begins - kClockSkew > now) return Refused("is not valid yet (nbf)");
   return absl::OkStatus();
+}
+
+// True for a character of two or three bytes that is not printed, breaks a line or changes the direction of the text:
+// C1 controls, U+200B to U+200F, U+2028 to U+202E, U+2060 to U+206F and U+FEFF.
+bool IsHidden(std::string_view rest) {
+  const auto byte = [rest](std::size_t i) { return i < rest.size() ? static_cast<unsigned char>(rest[i]) : 0U; };
+  if (byte(0) == 0xC2) return byte(1) < 0xA0;
+  if (byte(0) == 0xEF) return byte(1) == 0xBB && byte(2) == 0xBF;
+  if (byte(0) != 0xE2) return false;
+  if (byte(1) == 0x80) return (byte(2) >= 0x8B && byte(2) <= 0x8F) || (byte(2) >= 0xA8 && byte(2) <= 0xAE);
+  return byte(1) == 0x81 && byte(2) >= 0xA0 && byte(2) <= 0xAF;
+}
+
+// True if a name can be shown and logged in one line. Requires: UTF-8, which JSON's parser has checked.
+bool IsPrintable(std::string_view name) {
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    if (absl::ascii_iscntrl(static_cast<unsigned char>(name[i])) || IsHidden(name.substr(i))) return false;
+  }
+  return !name.empty() && name.front() != ' ' && name.back() != ' ';
 }
 
 // Returns the highest role that the claim names.
@@ -120,7 +149,12 @@ absl::StatusOr<std::string> JwtKeys::VerifiedClaims(std::string_view token) cons
   cjose_err error;
   const std::unique_ptr<cjose_jws_t, decltype(&cjose_jws_release)> jws(
       cjose_jws_import(token.data(), token.size(), &error), &cjose_jws_release);
-  if (jws == nullptr) return Refused("is not a token of this server and not a JWT");
+  std::string header;
+  const std::string_view encoded = token.substr(0, token.find('.'));
+  if (jws == nullptr || !absl::WebSafeBase64Unescape({encoded.data(), encoded.size()}, &header)) {
+    return Refused("is not a token of this server and not a JWT");
+  }
+  if (absl::Status status = CheckJwtHeader(header); !status.ok()) return status;
   const char* algorithm = cjose_header_get(cjose_jws_get_protected(jws.get()), CJOSE_HDR_ALG, &error);
   if (algorithm == nullptr ||
       std::find(std::begin(kAlgorithms), std::end(kAlgorithms), algorithm) == std::end(kAlgorithms)) {
@@ -140,15 +174,35 @@ absl::StatusOr<std::string> JwtKeys::VerifiedClaims(std::string_view token) cons
 absl::StatusOr<Account> JwtKeys::Check(std::string_view token, absl::Time now) const {
   const auto text = VerifiedClaims(token);
   if (!text.ok()) return text.status();
-  const json claims = json::parse(*text, nullptr, false);
+  return ReadJwtClaims(*text, options_, now);
+}
+
+std::string JwtAccountName(std::string_view issuer, std::string_view subject) {
+  return absl::StrCat("jwt:", std::string(issuer), "#", std::string(subject));
+}
+
+absl::Status CheckJwtHeader(std::string_view header) {
+  const json fields = json::parse(header, nullptr, false);
+  if (!fields.is_object()) return Refused("is not a token of this server and not a JWT");
+  if (!fields.contains("crit")) return absl::OkStatus();
+  return Refused("has extensions that must be understood (crit), and this server understands none");
+}
+
+absl::StatusOr<Account> ReadJwtClaims(std::string_view text, const JwtOptions& options, absl::Time now) {
+  const json claims = json::parse(text, nullptr, false);
   if (!claims.is_object()) return Refused("has no claims");
-  if (TextOf(claims, "iss") != options_.issuer) return Refused("comes from another issuer");
-  if (!HasText(claims, "aud", options_.audience)) return Refused("is for another audience");
+  if (TextOf(claims, "iss") != options.issuer) return Refused("comes from another issuer");
+  if (!HasText(claims, "aud", options.audience)) return Refused("is for another audience");
   if (absl::Status status = CheckTimes(claims, now); !status.ok()) return status;
-  const Account account{TextOf(claims, options_.name_claim), RoleIn(claims, options_.role_claim)};
-  if (account.name.empty()) return Refused(absl::StrCat("has no name in \"", options_.name_claim, "\""));
+  const std::string subject = TextOf(claims, options.name_claim);
+  if (subject.empty()) return Refused(absl::StrCat("has no name in \"", options.name_claim, "\""));
+  if (subject.size() > kMaxNameBytes || !IsPrintable(subject)) {
+    return Refused(absl::StrCat("has a name in \"", options.name_claim, "\" that is longer than ", kMaxNameBytes,
+                                " bytes or cannot be printed in one line"));
+  }
+  const Account account{JwtAccountName(options.issuer, subject), RoleIn(claims, options.role_claim)};
   if (account.role == v1::ACCESS_ROLE_UNSPECIFIED) {
-    return Refused(absl::StrCat("has no role in \"", options_.role_claim, "\": viewer, controller, owner, admin"));
+    return Refused(absl::StrCat("has no role in \"", options.role_claim, "\": viewer, controller, owner, admin"));
   }
   return account;
 }

@@ -23,6 +23,14 @@ struct JwtOptions {
   std::string role_claim = "phrenic_role";  // "viewer" to "admin", or a list that contains one
 };
 
+// Returns "jwt:ISSUER#SUBJECT". No account of a token file can have such a name.
+std::string JwtAccountName(std::string_view issuer, std::string_view subject);
+
+// Checks a token's header and claims, as JSON text, but not its signature: the parts of JwtKeys::Check that read what a
+// client has written. Thread-safe.
+absl::Status CheckJwtHeader(std::string_view header);
+absl::StatusOr<Account> ReadJwtClaims(std::string_view claims, const JwtOptions& options, absl::Time now);
+
 // Immutable and thread-safe.
 class JwtKeys {
  public:
@@ -34,8 +42,10 @@ class JwtKeys {
   ~JwtKeys();
 
   // Returns the account that a token names. UNAUTHENTICATED, with the reason, if the signature is not by a key of the
-  // set with RS, PS or ES (RFC 7518 section 3.1), or if issuer, audience, time ("exp" is required; clocks may differ by
-  // 60 s), name or role are not accepted (RFC 7519 section 4.1).
+  // set with RS, PS or ES (RFC 7518 section 3.1), if the header has extensions that must be understood ("crit", RFC
+  // 7515 section 4.1.11), or if issuer, audience, time ("exp" is required; "exp", "nbf" and "iat" must be numbers;
+  // clocks may differ by 60 s), name (1 to 255 bytes that can be printed on one line) or role are not accepted (RFC
+  // 7519 section 4.1).
   absl::StatusOr<Account> Check(std::string_view token, absl::Time now) const;
 
  private:

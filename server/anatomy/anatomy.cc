@@ -106,12 +106,40 @@ Mesh InMillimetres(const v1::Anatomy& part, double edge_length) {
   }
 }
 
+// The area of a structure's surface, so that area / edge length^2 estimates its vertices [mm^2].
+double Area(v1::Structure structure) {
+  switch (structure) {
+    case v1::STRUCTURE_DIAPHRAGM:
+      return 220'000;
+    case v1::STRUCTURE_LUNG:
+      return 110'000;
+    case v1::STRUCTURE_VERTEBRA:
+      return 12'000;
+    case v1::STRUCTURE_COSTAL_CARTILAGE:
+      return 4'000;
+    case v1::STRUCTURE_XIPHOID:
+      return 2'000;
+    default:
+      return 11'000;
+  }
+}
+
+double ResolutionOf(const v1::Anatomy& part, double resolution_mm) {
+  return resolution_mm == 0 ? DefaultResolution(part.structure()) : resolution_mm;
+}
+
 }  // namespace
+
+std::int64_t EstimateVertices(const v1::Anatomy& part, double resolution_mm) {
+  if (!CheckPart(part).ok() || !CheckResolution(part, resolution_mm).ok()) return 0;
+  const double edge = ResolutionOf(part, resolution_mm);
+  return static_cast<std::int64_t>(Area(part.structure()) / (edge * edge));
+}
 
 absl::StatusOr<Mesh> Generate(const v1::Anatomy& part, double resolution_mm) {
   if (absl::Status status = CheckPart(part); !status.ok()) return status;
   if (absl::Status status = CheckResolution(part, resolution_mm); !status.ok()) return status;
-  Mesh mesh = InMillimetres(part, resolution_mm == 0 ? DefaultResolution(part.structure()) : resolution_mm);
+  Mesh mesh = InMillimetres(part, ResolutionOf(part, resolution_mm));
   mesh.vertices *= kMillimetre;
   return mesh;
 }

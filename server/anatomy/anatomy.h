@@ -3,6 +3,8 @@
 #ifndef PHRENIC_SERVER_ANATOMY_ANATOMY_H_
 #define PHRENIC_SERVER_ANATOMY_ANATOMY_H_
 
+#include <cstdint>
+
 #include "absl/status/statusor.h"
 #include "phrenic/v1/scene.pb.h"
 #include "server/mesh/mesh.h"
@@ -15,6 +17,9 @@ namespace phrenic::anatomy {
 // "rim", "crus-right" and "crus-left". INVALID_ARGUMENT names the field if the structure does not exist (rib 13, a lung
 // without a side) or the resolution is out of range.
 absl::StatusOr<Mesh> Generate(const v1::Anatomy& part, double resolution_mm);
+
+// Returns about how many vertices Generate gives, without generating; 0 for a part that does not exist.
+std::int64_t EstimateVertices(const v1::Anatomy& part, double resolution_mm);
 
 }  // namespace phrenic::anatomy
 

@@ -32,6 +32,7 @@ Cluster::Cluster(const RedisAddress& redis, std::string address)
 absl::StatusOr<std::unique_ptr<Cluster>> Cluster::Join(const ClusterOptions& options) {
   auto redis = ParseRedisAddress(options.redis);
   if (!redis.ok()) return redis.status();
+  redis->tls = options.tls;
   std::unique_ptr<Cluster> cluster(new Cluster(*redis, options.advertise));
   absl::MutexLock lock(&cluster->calls_mutex_);
   const auto answer = cluster->calls_.Run({"PING"});
@@ -121,6 +122,20 @@ void Cluster::Abandon(const std::string& id) {
 }
 
 bool Cluster::RedisKnownDown() const { return !redis_reachable_ && Clock::now() < last_renewal_ + kLease / 2; }
+
+absl::Status Cluster::CheckLease(const std::string& id) const {
+  absl::MutexLock lock(&mutex_);
+  const auto own = owned_.find(id);
+  if (own == owned_.end()) {
+    return absl::AbortedError(absl::StrCat("session \"", id, "\" continues on another server; call again"));
+  }
+  if (Clock::now() + kMargin < own->second.expires) return absl::OkStatus();
+  return absl::UnavailableError(
+      absl::StrCat("session \"", id,
+                   "\" cannot be changed: this server's lease on it has ended and Redis, which has "
+                   "not answered since, may have given it to another server. It can be watched here meanwhile; try "
+                   "again, or start Redis"));
+}
 
 std::optional<Location> Cluster::LocateFromCache(const std::string& id, bool& expired) const {
   absl::MutexLock lock(&mutex_);

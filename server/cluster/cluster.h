@@ -21,8 +21,9 @@
 namespace phrenic::cluster {
 
 struct ClusterOptions {
-  std::string redis;      // "redis://HOST:PORT"; empty: not in a cluster
-  std::string advertise;  // "HOST:PORT" at which the other servers reach this server's gRPC
+  std::string redis;       // "redis://HOST:PORT" or "rediss://HOST:PORT"; empty: not in a cluster
+  std::string advertise;   // "HOST:PORT" at which the other servers reach this server's gRPC
+  RedisTlsFiles tls = {};  // of connections to a "rediss://" and, its CA, to the other servers
 };
 
 // Where a session is.
@@ -47,8 +48,9 @@ struct ClusterCounts {
 
 // Holds a lease of kLease on each of this server's sessions. One thread only renews leases, another finds sessions
 // without a lease and takes them over. No call waits for Redis longer than Redis::kTimeout. While Redis does not
-// answer, sessions stay where they are, because leases change only in Redis. Thread-safe, except where store::Ownership
-// says otherwise.
+// answer, sessions stay where they are, because leases change only in Redis; once a lease has ended by this server's
+// monotonic clock, kMargin early, CheckLease refuses changes. Thread-safe, except where store::Ownership says
+// otherwise.
 class Cluster final : public store::Ownership {
  public:
   struct Hooks {
@@ -80,8 +82,10 @@ class Cluster final : public store::Ownership {
       ABSL_LOCKS_EXCLUDED(mutex_, calls_mutex_);
   void Abandon(const std::string& id) override ABSL_LOCKS_EXCLUDED(mutex_, calls_mutex_);
   void Release(const std::string& id) override ABSL_LOCKS_EXCLUDED(mutex_, calls_mutex_);
-  bool Copy(const store::Written& written) override ABSL_LOCKS_EXCLUDED(mutex_);
-  void CopyWhole(const store::SavedSession& saved) override ABSL_LOCKS_EXCLUDED(mutex_);
+  absl::Status CheckLease(const std::string& id) const override ABSL_LOCKS_EXCLUDED(mutex_);
+  absl::Status Delete(const std::string& id) override ABSL_LOCKS_EXCLUDED(mutex_, calls_mutex_);
+  store::Copied Copy(const store::Written& written) override ABSL_LOCKS_EXCLUDED(mutex_);
+  store::Copied CopyWhole(const store::SavedSession& saved) override ABSL_LOCKS_EXCLUDED(mutex_);
 
   // Returns where a session is. Renews a lease first if it has expired by this server's clock, because a server that
   // was suspended may have lost it. Caches other servers' sessions for 0.5 s.
@@ -94,6 +98,8 @@ class Cluster final : public store::Ownership {
   const std::string& address() const { return address_; }
 
   static constexpr std::chrono::milliseconds kLease{3000};
+  // A lease counts as ended this much early: two clocks differ by less in the time of a lease.
+  static constexpr std::chrono::milliseconds kMargin{300};
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -122,9 +128,10 @@ class Cluster final : public store::Ownership {
   // the session but its lease has expired.
   std::optional<Location> LocateFromCache(const std::string& id, bool& expired) const ABSL_LOCKS_EXCLUDED(mutex_);
   Location LocateInRedis(const std::string& id) ABSL_LOCKS_EXCLUDED(mutex_, calls_mutex_);
-  // Runs kSave for a session of this server. Returns 1 if it was written, 0 if another server has the session;
-  // UNAVAILABLE if Redis does not answer.
+  // Runs kSave for a session of this server. Returns 1 if it was written, 0 if another server has the session or it was
+  // deleted; UNAVAILABLE if Redis does not answer.
   absl::StatusOr<std::int64_t> WriteCopy(const std::string& id, std::vector<std::string> arguments);
+  store::Copied CopyDeletion(const std::string& id) ABSL_LOCKS_EXCLUDED(mutex_);
   void SetCopyIncomplete(const std::string& id, bool incomplete) ABSL_LOCKS_EXCLUDED(mutex_);
   // Has an incomplete copy written whole and waits for it. False after 2 s.
   bool AwaitCompleteCopy(const std::string& id) ABSL_LOCKS_EXCLUDED(mutex_);
@@ -146,7 +153,8 @@ class Cluster final : public store::Ownership {
   Hooks hooks_;
   absl::Mutex calls_mutex_;
   Redis calls_ ABSL_GUARDED_BY(calls_mutex_);
-  Redis copies_;  // used by the store's thread
+  Redis copies_;             // used by the store's thread
+  std::int64_t writes_ = 0;  // of copies_
   const RedisAddress redis_;
 
   mutable absl::Mutex mutex_;

@@ -8,11 +8,12 @@
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
+#include "server/cluster/redis_tls.h"
 
 namespace phrenic::cluster {
 namespace {
 
-constexpr char kScheme[] = "redis://";
+constexpr char kScheme[] = "redis://", kTlsScheme[] = "rediss://";
 constexpr int kMaxPort = 65535;
 
 absl::Status BadAddress(const char* what) {
@@ -34,9 +35,12 @@ Reply Read(const redisReply& from) {
 }  // namespace
 
 absl::StatusOr<RedisAddress> ParseRedisAddress(const std::string& url) {
-  if (!absl::StartsWith(url, kScheme)) return BadAddress("the address does not begin with redis://");
-  std::string rest = url.substr(sizeof kScheme - 1);
   RedisAddress address;
+  address.encrypted = absl::StartsWith(url, kTlsScheme);
+  if (!address.encrypted && !absl::StartsWith(url, kScheme)) {
+    return BadAddress("the address does not begin with redis:// or rediss://");
+  }
+  std::string rest = url.substr((address.encrypted ? sizeof kTlsScheme : sizeof kScheme) - 1);
   if (const std::size_t at = rest.rfind('@'); at != std::string::npos) {
     if (rest.empty() || rest[0] != ':') return BadAddress("a password must be between \":\" and \"@\"");
     address.password = rest.substr(1, at - 1);
@@ -58,6 +62,7 @@ Redis::Redis(RedisAddress address) : address_(std::move(address)) {}
 Redis::~Redis() = default;
 
 absl::Status Redis::Disconnect(const std::string& why) {
+  tls_.reset();
   context_.reset();
   script_sha1_.clear();
   retry_at_ = absl::Now() + kReconnectPause;
@@ -77,12 +82,30 @@ absl::Status Redis::Connect() {
   if (context_->err != 0) return Disconnect(std::string(context_->errstr));
   redisSetTimeout(context_.get(), timeout);
   redisEnableKeepAlive(context_.get());
+  if (address_.encrypted) {
+    if (absl::Status status = ConnectTls(); !status.ok()) return status;
+  }
   if (!address_.password.empty()) {
     const auto authenticated = Send({"AUTH", address_.password});
     if (!authenticated.ok()) return Disconnect(std::string(authenticated.status().message()));
   }
   ++connections_;
   return absl::OkStatus();
+}
+
+absl::Status Redis::ConnectTls() {
+  auto tls = RedisTls::Connect(context_->fd, address_.host, address_.tls);
+  if (!tls.ok()) return Disconnect(std::string(tls.status().message()));
+  tls_ = *std::move(tls);
+  return absl::OkStatus();
+}
+
+redisReply* Redis::Exchange(std::vector<const char*>& texts, std::vector<std::size_t>& sizes) {
+  const int words = static_cast<int>(texts.size());
+  if (tls_ == nullptr) {
+    return static_cast<redisReply*>(redisCommandArgv(context_.get(), words, texts.data(), sizes.data()));
+  }
+  return tls_->Exchange(*context_->reader, words, texts.data(), sizes.data());
 }
 
 absl::StatusOr<Reply> Redis::Send(const std::vector<std::string>& words) {
@@ -94,11 +117,8 @@ absl::StatusOr<Reply> Redis::Send(const std::vector<std::string>& words) {
     texts.push_back(word.data());
     sizes.push_back(word.size());
   }
-  const std::unique_ptr<redisReply, void (*)(void*)> reply(
-      static_cast<redisReply*>(
-          redisCommandArgv(context_.get(), static_cast<int>(words.size()), texts.data(), sizes.data())),
-      &freeReplyObject);
-  if (reply == nullptr) return Disconnect(std::string(context_->errstr));
+  const std::unique_ptr<redisReply, void (*)(void*)> reply(Exchange(texts, sizes), &freeReplyObject);
+  if (reply == nullptr) return Disconnect(tls_ == nullptr ? std::string(context_->errstr) : "the TLS connection ended");
   if (reply->type == REDIS_REPLY_ERROR) return absl::InternalError(std::string(reply->str, reply->len));
   return Read(*reply);
 }

@@ -10,20 +10,25 @@
 
 #include "absl/status/statusor.h"
 #include "absl/time/time.h"
+#include "server/cluster/redis_tls_files.h"
 
 struct redisContext;
 struct redisReply;
 
 namespace phrenic::cluster {
 
+class RedisTls;
+
 struct RedisAddress {
   std::string host;
   int port = 6379;
   std::string password;  // empty: no AUTH
+  bool encrypted = false;
+  RedisTlsFiles tls = {};
 };
 
-// Parses "redis://HOST:PORT" or "redis://:PASSWORD@HOST:PORT". INVALID_ARGUMENT, without the password, if it is not
-// valid.
+// Parses "redis://HOST:PORT" or "redis://:PASSWORD@HOST:PORT", or rediss:// with TLS. INVALID_ARGUMENT, without the
+// password, if it is not valid.
 absl::StatusOr<RedisAddress> ParseRedisAddress(const std::string& url);
 
 // A reply of Redis: nil, an integer, a string, or a list of replies.
@@ -63,10 +68,14 @@ class Redis {
   absl::Status Connect();
   // Closes the connection and returns UNAVAILABLE.
   absl::Status Disconnect(const std::string& why);
+  absl::Status ConnectTls();
+  // Sends a command and waits for the reply; null if the connection fails.
+  redisReply* Exchange(std::vector<const char*>& texts, std::vector<std::size_t>& sizes);
   absl::StatusOr<Reply> Send(const std::vector<std::string>& words);
 
   const RedisAddress address_;
   std::unique_ptr<redisContext, Free> context_;
+  std::unique_ptr<RedisTls> tls_;                   // on context_'s socket; null without TLS
   std::map<const char*, std::string> script_sha1_;  // of the scripts loaded on this connection
   absl::Time retry_at_ = absl::InfinitePast();
   int connections_ = 0;

@@ -4,6 +4,7 @@
 //   phrenic:session:ID      hash     epoch: of its last owner
 //                                    scene, moment, state: SavedScene, SavedMoment, SavedState
 //                                    sequence: of the state; last: of the last journal entry
+//                                    write: "EPOCH NUMBER" of the last kSave
 //                                    a deleted session has epoch and deleted only
 //   phrenic:journal:ID      hash     sequence -> SavedMoment, the entries since the state
 //   phrenic:lease:ID        string   "EPOCH ADDRESS" of the server that has the session; expires
@@ -65,7 +66,7 @@ return {epoch, saved[1], saved[2], saved[3], saved[4], redis.call('HGETALL', 'ph
 
 // Arguments: address, lease [ms], "1" if this server takes sessions over, and pairs of id and epoch. Returns a number
 // for each pair: 1 if the lease is renewed, 2 if it is renewed but Redis had lost the session, 0 if another server has
-// it.
+// it or it was deleted.
 inline constexpr char kRenew[] = R"(
 local address, lease = ARGV[1], ARGV[2]
 if ARGV[3] == '1' then
@@ -80,7 +81,7 @@ for i = 4, #ARGV, 2 do
   local session = 'phrenic:session:' .. id
   local epoch = tonumber(redis.call('HGET', session, 'epoch') or -1)
   local answer = 0
-  if epoch == own then answer = 1 end
+  if epoch == own and redis.call('HEXISTS', session, 'deleted') == 0 then answer = 1 end
   if epoch < own then
     redis.call('HSET', session, 'epoch', own)
     answer = 2
@@ -93,18 +94,23 @@ for i = 4, #ARGV, 2 do
 end
 return answers)";
 
-// Arguments: id, epoch, scene or "", the state's sequence or "", its moment, the state, and pairs of sequence and
-// moment. Returns 1, or 0 if there is a later epoch.
+// Arguments: id, epoch, a number that grows with each kSave of a server, scene or "", the state's sequence or "", its
+// moment, the state, and pairs of sequence and moment. Returns 1, or 0 if there is a later epoch or the session was
+// deleted. A write that comes after a later one of the same epoch, from a connection that had been given up, has no
+// effect.
 inline constexpr char kSave[] = R"(
 local id, own = ARGV[1], ARGV[2]
 local session, journal = 'phrenic:session:' .. id, 'phrenic:journal:' .. id
-if redis.call('HGET', session, 'epoch') ~= own then return 0 end
-if ARGV[3] ~= '' then redis.call('HSET', session, 'scene', ARGV[3]) end
-if ARGV[4] ~= '' then
-  redis.call('HSET', session, 'sequence', ARGV[4], 'last', ARGV[4], 'moment', ARGV[5], 'state', ARGV[6])
+if redis.call('HGET', session, 'epoch') ~= own or redis.call('HEXISTS', session, 'deleted') == 1 then return 0 end
+local epoch, number = string.match(redis.call('HGET', session, 'write') or '', '^(%d+) (%d+)$')
+if epoch == own and tonumber(number) >= tonumber(ARGV[3]) then return 1 end
+redis.call('HSET', session, 'write', own .. ' ' .. ARGV[3])
+if ARGV[4] ~= '' then redis.call('HSET', session, 'scene', ARGV[4]) end
+if ARGV[5] ~= '' then
+  redis.call('HSET', session, 'sequence', ARGV[5], 'last', ARGV[5], 'moment', ARGV[6], 'state', ARGV[7])
   redis.call('DEL', journal)
 end
-for i = 7, #ARGV, 2 do
+for i = 8, #ARGV, 2 do
   redis.call('HSET', journal, ARGV[i], ARGV[i + 1])
   redis.call('HSET', session, 'last', ARGV[i])
 end

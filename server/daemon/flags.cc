@@ -82,10 +82,17 @@ void AddLimits(CLI::App& app, Flags& flags) {
   group.Add("max-viewers", limits.viewers, "Maximum number of viewers per session", 1, 10000);
   group.Add("max-viewers-in-all", limits.viewers_in_all, "Maximum number of viewers over all sessions", 1, kMaxCount);
   group.Add("max-vertices", limits.vertices, "Maximum number of vertices per scene", 1, 1e8);
+  group.Add("max-elements", limits.elements,
+            "Maximum number of springs, triangles, tetrahedra and other elements per scene", 1, 1e9);
+  group.Add("max-compile-seconds", limits.compile_seconds, "Timeout for compiling a scene [s]; 0: none", 0, 86400);
   group.Add("max-message-mb", flags.message_mb, "Maximum size of a request, uncompressed [MiB]", 1, 1024);
   group.Add("max-upload-mb", flags.upload_mb, "Maximum size of an uploaded file [MiB]", 1, 65536);
   group.Add("max-uploads-mb", flags.uploads_mb,
-            "Maximum size of all uploaded files [MiB]; above it the least recently used one is deleted", 1, 1048576);
+            "Maximum size of all uploaded files [MiB]; without accounts the least recently used one makes room", 1,
+            1048576);
+  group.Add("max-uploads-mb-of-user", flags.uploads_mb_of_user,
+            "Maximum size of the uploaded files of an account [MiB]; above it its least recently used one is deleted",
+            1, 1048576);
   group.Add("session-cpu", limits.session_cpu, "Fraction of a processor core that stepping one session may use", 0.01,
             1);
   group.Add("max-exports", limits.exports, "Maximum number of exports at a time, and of comparisons", 1, 64);
@@ -99,8 +106,10 @@ void AddLimits(CLI::App& app, Flags& flags) {
   group.Add("head-seconds", options.head_seconds, "Timeout for the header of a request [s]", 1, 3600);
   group.Add("idle-seconds", options.idle_seconds, "Timeout for the body of a request and for an idle connection [s]", 1,
             86400);
-  group.Add("pause-minutes", limits.pause_minutes,
-            "Time after which a session without viewers and calls is paused [min]; 0: never", 0, kMaxCount);
+  group.Add(
+      "pause-minutes", limits.pause_minutes,
+      "Time after which a session without viewers and calls is paused, unless asked to keep playing [min]; 0: never", 0,
+      kMaxCount);
   group.Add("delete-minutes", limits.delete_minutes,
             "Time after which a session without viewers and calls is deleted [min]; 0: never", 0, kMaxCount);
   group.Add("stop-seconds", flags.stop_seconds, "Timeout for a clean shutdown, after which work is aborted [s]", 1,
@@ -114,12 +123,20 @@ void AddAccess(CLI::App& app, Flags& flags) {
       .Add("allow-origin", options.allowed_origins,
            "Origins whose pages may call the server and frame the viewer, such as https://example.org")
       ->delimiter(',');
+  group
+      .Add("allow-host", options.allowed_hosts,
+           "Names by which browsers reach --web, such as phrenic.example.org, beside localhost, the address of this "
+           "machine and the names in --tls-cert")
+      ->delimiter(',');
   group.Add("tls-cert", options.tls.certificate, "Certificate chain in PEM; enables TLS for gRPC and web");
   group.Add("tls-key", options.tls.key, "Private key of the certificate in PEM");
   group.Add("tls-client-ca", options.tls.client_ca,
             "CA certificates in PEM; every client must have a certificate of one of them");
   group.AddFlag("insecure-listen", options.insecure_listen,
                 "Allow connections from other machines without TLS, which can be read and modified on the network");
+  group.AddFlag("unguarded-listen", options.unguarded_listen,
+                "Allow other machines to reach --listen without nginx in front of it, although one client can overload "
+                "gRPC itself");
   access::AccountOptions& accounts = options.accounts;
   group.Add("tokens", accounts.tokens_file, "Token file (phrenicd token add); with it every call requires an account");
   group.Add(
@@ -136,8 +153,12 @@ void AddAccess(CLI::App& app, Flags& flags) {
 void AddCluster(CLI::App& app, Flags& flags) {
   cluster::ClusterOptions& cluster = flags.options.cluster;
   Group group(app, "Cluster");
-  group.Add("cluster", cluster.redis, "redis://[:PASSWORD@]HOST:PORT of the cluster's Redis; empty: not in a cluster");
+  group.Add("cluster", cluster.redis,
+            "redis://[:PASSWORD@]HOST:PORT of the cluster's Redis, rediss:// with TLS; empty: not in a cluster");
   group.Add("advertise", cluster.advertise, "HOST:PORT at which the other servers of the cluster reach --listen");
+  group.Add(
+      "cluster-ca", cluster.tls.ca,
+      "CA certificates in PEM of the cluster's other servers and of a Redis with TLS; empty: those of the system");
 }
 
 }  // namespace
@@ -156,6 +177,7 @@ service::ServerOptions OptionsOf(const Flags& flags) {
   options.max_message_bytes = flags.message_mb << 20;
   options.limits.upload_bytes = std::int64_t{flags.upload_mb} << 20;
   options.limits.uploads_bytes = std::int64_t{flags.uploads_mb} << 20;
+  options.limits.uploads_bytes_of_user = std::int64_t{flags.uploads_mb_of_user} << 20;
   return options;
 }
 

@@ -11,8 +11,8 @@
 namespace phrenic::daemon {
 
 struct Flags {
-  service::ServerOptions options;                           // except the sizes below; OptionsOf adds them
-  int message_mb = 16, upload_mb = 256, uploads_mb = 1024;  // [MiB]
+  service::ServerOptions options;  // except the sizes below; OptionsOf adds them
+  int message_mb = 16, upload_mb = 256, uploads_mb = 1024, uploads_mb_of_user = 256;  // [MiB]
   std::string start = "thorax";
   std::string config;        // settings file; empty: none
   std::string log = "text";  // or "json"

@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kRestoreTimeout = 60'000'000;  // [us] for one session, told to the service manager
 
-// Logs a warning for each address that other machines reach without TLS or without authentication.
+// Logs a warning for each address that other machines reach without TLS, without authentication or without a guard.
 void WarnIfExposed(const service::ServerOptions& options) {
   const bool authenticated = options.accounts.used() || !options.tls.client_ca.empty();
   for (const std::string& address : {options.listen, options.web}) {
@@ -31,6 +31,8 @@ void WarnIfExposed(const service::ServerOptions& options) {
       spdlog::warn("{}: not encrypted; traffic can be read and modified on the network", address);
     if (!authenticated)
       spdlog::warn("{}: no authentication; every client may do everything; pass --tokens FILE", address);
+    if (options.unguarded_listen && address == options.listen)
+      spdlog::warn("{}: not guarded; one client without an account can overload gRPC; put nginx in front", address);
   }
 }
 

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <list>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <utility>
@@ -71,16 +73,16 @@ class Queue {
   // Queues a job and returns once its record is on the disk. `message` holds the fields that watchers see first; the
   // queue sets its id and state. An empty `id` is chosen from `base`. The oldest ended job makes room;
   // RESOURCE_EXHAUSTED if none has ended. Also the errors of Noun::ChooseId and Records::Flush.
-  absl::StatusOr<Message> Add(const std::string& id, const std::string& base, Message message, std::shared_ptr<Job> job)
-      ABSL_LOCKS_EXCLUDED(mutex_);
+  absl::StatusOr<Message> Add(const std::string& owner, const std::string& id, const std::string& base, Message message,
+                              std::shared_ptr<Job> job) ABSL_LOCKS_EXCLUDED(mutex_);
   // Queues a job that the store has; the same without waiting for the disk.
-  absl::StatusOr<Message> Resume(const std::string& id, const std::string& base, Message message,
-                                 std::shared_ptr<Job> job) ABSL_LOCKS_EXCLUDED(mutex_);
+  absl::StatusOr<Message> Resume(const std::string& owner, const std::string& id, const std::string& base,
+                                 Message message, std::shared_ptr<Job> job) ABSL_LOCKS_EXCLUDED(mutex_);
   // Keeps a job that had ended before the server restarted.
-  void RestoreEnded(Message message) ABSL_LOCKS_EXCLUDED(mutex_);
+  void RestoreEnded(const std::string& owner, Message message) ABSL_LOCKS_EXCLUDED(mutex_);
 
-  // Returns the job as soon as its version is above `seen`, or after `longest`. NOT_FOUND lists the ids that there are;
-  // CANCELLED if it is deleted meanwhile.
+  // Returns the job as soon as its version is above `seen`, or after `longest`. NOT_FOUND lists the ids without an
+  // owner; CANCELLED if it is deleted meanwhile.
   absl::StatusOr<Seen> Wait(const std::string& id, std::int64_t seen, absl::Duration longest) const
       ABSL_LOCKS_EXCLUDED(mutex_);
   // Calls `write` with the job, and again after each change, until it has ended: then returns OK. Returns UNAVAILABLE
@@ -93,8 +95,11 @@ class Queue {
   absl::Status Read(const std::string& id,
                     absl::FunctionRef<absl::Status(const Job* job, const Message& message)> read) const
       ABSL_LOCKS_EXCLUDED(mutex_);
-  // Returns all jobs, oldest first.
-  std::vector<Message> List() const ABSL_LOCKS_EXCLUDED(mutex_);
+  // Returns the owner of a job; nullopt if there is none of this id.
+  std::optional<std::string> OwnerOf(const std::string& id) const ABSL_LOCKS_EXCLUDED(mutex_);
+  // Returns the jobs whose owner is `visible`, oldest first; null: all.
+  std::vector<Message> List(const std::function<bool(const std::string& owner)>& visible = nullptr) const
+      ABSL_LOCKS_EXCLUDED(mutex_);
   // Cancels the job if it runs, and removes it here and from the store. NOT_FOUND if there is none.
   absl::Status Delete(const std::string& id) ABSL_LOCKS_EXCLUDED(mutex_);
 
@@ -102,6 +107,7 @@ class Queue {
 
  private:
   struct Entry {
+    std::string owner;
     std::shared_ptr<Job> job;
     Seen seen;
     State state = State::kQueued;
@@ -153,9 +159,9 @@ Queue<Job>::~Queue() {
 }
 
 template <typename Job>
-auto Queue<Job>::Add(const std::string& id, const std::string& base, Message message, std::shared_ptr<Job> job)
-    -> absl::StatusOr<Message> {
-  auto added = Resume(id, base, std::move(message), std::move(job));
+auto Queue<Job>::Add(const std::string& owner, const std::string& id, const std::string& base, Message message,
+                     std::shared_ptr<Job> job) -> absl::StatusOr<Message> {
+  auto added = Resume(owner, id, base, std::move(message), std::move(job));
   if (!added.ok()) return added;
   if (absl::Status saved = records_.Flush(); !saved.ok()) {
     Delete(added->id()).IgnoreError();
@@ -165,8 +171,8 @@ auto Queue<Job>::Add(const std::string& id, const std::string& base, Message mes
 }
 
 template <typename Job>
-auto Queue<Job>::Resume(const std::string& id, const std::string& base, Message message, std::shared_ptr<Job> job)
-    -> absl::StatusOr<Message> {
+auto Queue<Job>::Resume(const std::string& owner, const std::string& id, const std::string& base, Message message,
+                        std::shared_ptr<Job> job) -> absl::StatusOr<Message> {
   absl::MutexLock lock(&mutex_);
   if (closed_) return absl::UnavailableError("the server is shutting down");
   const auto taken = [this](const std::string& other) {
@@ -177,6 +183,7 @@ auto Queue<Job>::Resume(const std::string& id, const std::string& base, Message 
   if (!chosen.ok()) return chosen.status();
   if (absl::Status status = MakeRoom(); !status.ok()) return status;
   auto entry = std::make_shared<Entry>();
+  entry->owner = owner;
   entry->job = std::move(job);
   entry->seen.message = std::move(message);
   entry->seen.message.set_id(*std::move(chosen));
@@ -187,8 +194,9 @@ auto Queue<Job>::Resume(const std::string& id, const std::string& base, Message 
 }
 
 template <typename Job>
-void Queue<Job>::RestoreEnded(Message message) {
+void Queue<Job>::RestoreEnded(const std::string& owner, Message message) {
   auto entry = std::make_shared<Entry>();
+  entry->owner = owner;
   entry->state = State{static_cast<int>(message.state())};
   entry->seen = {std::move(message), 1, true};
   absl::MutexLock lock(&mutex_);
@@ -233,10 +241,19 @@ absl::Status Queue<Job>::Read(const std::string& id,
 }
 
 template <typename Job>
-auto Queue<Job>::List() const -> std::vector<Message> {
+std::optional<std::string> Queue<Job>::OwnerOf(const std::string& id) const {
+  absl::MutexLock lock(&mutex_);
+  const std::shared_ptr<Entry> entry = Find(id);
+  return entry == nullptr ? std::nullopt : std::optional(entry->owner);
+}
+
+template <typename Job>
+auto Queue<Job>::List(const std::function<bool(const std::string& owner)>& visible) const -> std::vector<Message> {
   absl::MutexLock lock(&mutex_);
   std::vector<Message> messages;
-  for (const auto& entry : entries_) messages.push_back(entry->seen.message);
+  for (const auto& entry : entries_) {
+    if (visible == nullptr || visible(entry->owner)) messages.push_back(entry->seen.message);
+  }
   return messages;
 }
 
@@ -357,8 +374,10 @@ auto Queue<Job>::FirstQueued() const -> std::shared_ptr<Entry> {
 
 template <typename Job>
 absl::Status Queue<Job>::NotFound(const std::string& id) const {
-  std::vector<std::string> ids;
-  for (const auto& entry : entries_) ids.push_back(entry->seen.message.id());
+  std::vector<std::string> ids;  // those that every caller may see
+  for (const auto& entry : entries_) {
+    if (entry->owner.empty()) ids.push_back(entry->seen.message.id());
+  }
   return options_.noun.NotFound(id, ids);
 }
 

@@ -12,6 +12,7 @@ namespace phrenic {
 absl::StatusOr<std::vector<int>> ModelBuilder::Bodies(const Names& names, std::string_view path) const {
   std::vector<int> found;
   for (int i = 0; i < names.size(); ++i) {
+    if (stop.Stopped()) return stop.status();
     auto named = BodiesNamed(model, names[i], absl::StrCat(std::string(path), "[", i, "]"));
     if (!named.ok()) return named;
     found.insert(found.end(), named->begin(), named->end());

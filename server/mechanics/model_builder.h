@@ -12,6 +12,7 @@
 #include "google/protobuf/repeated_ptr_field.h"
 #include "server/mechanics/field_error.h"
 #include "server/mechanics/model.h"
+#include "server/mechanics/stop_check.h"
 #include "server/mesh/nearest.h"
 
 namespace phrenic {
@@ -40,10 +41,12 @@ struct Selection {
 // scene field that errors name, such as "forces[2].springs.bodies".
 struct ModelBuilder {
   Model model;
+  // Loops over vertices leave when it has stopped, with an incomplete element: Compile then returns its status.
+  StopCheck stop;
 
   // Returns the bodies that the names select, each once, in the scene's order. A name is a body's or a layer's, or is
   // qualified: "body:NAME", "layer:NAME", or "structure:STRUCTURE" for all bodies of that anatomy. INVALID_ARGUMENT
-  // with the path and the existing names, also for a layer or a structure without bodies.
+  // with the path and the existing names, also for a layer or a structure without bodies; the status of `stop`.
   absl::StatusOr<std::vector<int>> Bodies(const Names& names, std::string_view path) const;
   absl::StatusOr<int> Body(const std::string& name, std::string_view path) const;
   // The same. INVALID_ARGUMENT if one is not deformable.

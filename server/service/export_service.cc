@@ -53,7 +53,6 @@ grpc::Status ExportService::CreateExport(grpc::ServerContext* context, const v1:
   auto job =
       exports_.Add(*request, {(*session)->shared_model(), *std::move(fork), (*session)->surfaces(), caller->id()});
   if (!job.ok()) return ToGrpc(job.status());
-  guard_.SetOwner(AccessGuard::Kind::kExport, job->id(), caller->id());
   *response->mutable_job() = *std::move(job);
   return grpc::Status::OK;
 }
@@ -62,7 +61,9 @@ grpc::Status ExportService::WatchExport(grpc::ServerContext* context, const v1::
                                         grpc::ServerWriter<v1::WatchExportResponse>* writer) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
-  if (absl::Status own = guard_.CheckOwns(AccessGuard::Kind::kExport, request->export_id(), *caller); !own.ok())
+  if (absl::Status own = guard_.CheckOwns(AccessGuard::Kind::kExport, request->export_id(),
+                                          exports_.OwnerOf(request->export_id()), *caller);
+      !own.ok())
     return ToGrpc(own);
   const absl::Cleanup release = [this] { --streams_; };
   if (++streams_ > kMaxExportStreams) return ToGrpc(TooMany());
@@ -79,9 +80,8 @@ grpc::Status ExportService::ListExports(grpc::ServerContext* context, const v1::
                                         v1::ListExportsResponse* response) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
-  for (v1::Export& job : exports_.List()) {
-    if (guard_.Owns(AccessGuard::Kind::kExport, job.id(), *caller)) *response->add_exports() = std::move(job);
-  }
+  const auto visible = [&](const std::string& owner) { return guard_.MayUse(owner, *caller); };
+  for (v1::Export& job : exports_.List(visible)) *response->add_exports() = std::move(job);
   return grpc::Status::OK;
 }
 
@@ -89,7 +89,9 @@ grpc::Status ExportService::DeleteExport(grpc::ServerContext* context, const v1:
                                          v1::DeleteExportResponse*) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
-  if (absl::Status own = guard_.CheckOwns(AccessGuard::Kind::kExport, request->export_id(), *caller); !own.ok())
+  if (absl::Status own = guard_.CheckOwns(AccessGuard::Kind::kExport, request->export_id(),
+                                          exports_.OwnerOf(request->export_id()), *caller);
+      !own.ok())
     return ToGrpc(own);
   return ToGrpc(exports_.Delete(request->export_id()));
 }
@@ -119,7 +121,9 @@ grpc::Status ExportService::DownloadExport(grpc::ServerContext* context, const v
                                            grpc::ServerWriter<v1::DownloadExportResponse>* writer) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
-  if (absl::Status own = guard_.CheckOwns(AccessGuard::Kind::kExport, request->export_id(), *caller); !own.ok())
+  if (absl::Status own = guard_.CheckOwns(AccessGuard::Kind::kExport, request->export_id(),
+                                          exports_.OwnerOf(request->export_id()), *caller);
+      !own.ok())
     return ToGrpc(own);
   const absl::Cleanup release = [this] { --streams_; };
   if (++streams_ > kMaxExportStreams) return ToGrpc(TooMany());

@@ -16,7 +16,7 @@ grpc::Status SceneService::DescribeScene(grpc::ServerContext* context, const v1:
                                          v1::DescribeSceneResponse* response) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
-  const auto model = models_.Get(request->source());
+  const auto model = models_.Get(request->source(), guard_.RequesterOf(*caller, *context));
   if (!model.ok()) return ToGrpc(model.status());
   *response->mutable_scene() = (*model)->scene;
   *response->mutable_report() = (*model)->report;

@@ -47,6 +47,12 @@ std::vector<std::string> SceneFolders(const ServerOptions& options) {
   return folders;
 }
 
+// Servers of a cluster check each other by the cluster's authority, else by that of their clients.
+std::shared_ptr<grpc::ChannelCredentials> PeerCredentials(const ServerOptions& options) {
+  return MakePeerCredentials(options.tls,
+                             options.cluster.tls.ca.empty() ? options.tls.client_ca : options.cluster.tls.ca);
+}
+
 int Milliseconds(double seconds) { return static_cast<int>(seconds * 1000); }
 
 // Sets keepalive (a dead peer is detected within 13 s), timeouts and limits. Two servers cannot share a port.
@@ -92,13 +98,16 @@ struct Server::Parts {
         audit(std::move(opened.audit)),
         uploads(options.limits, options.spool_dir),
         models(session::SceneCatalogue(SceneFolders(options)), options.data_dir, options.limits.models, &uploads,
-               options.limits.vertices),
+               options.limits),
         table(models, clock, options.limits, store.get(), cluster.get()),
-        router(cluster == nullptr ? nullptr : std::make_unique<SessionRouter>(*cluster)),
+        page_tokens(cluster == nullptr ? PageTokens() : PageTokens("cluster")),
+        router(cluster == nullptr
+                   ? nullptr
+                   : std::make_unique<SessionRouter>(*cluster, PeerCredentials(options), page_tokens)),
         guard(*accounts, *audit, table, metrics, options.max_requests),
         pages(guard, metrics, table),
         scene_service(models, guard),
-        session_service(table, guard),
+        session_service(table, guard, page_tokens),
         control_service(table, guard),
         access_service(guard, table),
         frame_service(table, guard, metrics, options.limits.viewers_in_all),
@@ -108,7 +117,9 @@ struct Server::Parts {
         study_service(models, options.web_root, guard, clock, store.get()),
         compare_service(table, options.limits.exports, guard),
         server_service(std::filesystem::exists(options.web_root + "/index.html"), !options.data_dir.empty(),
-                       options.tls.used(), guard) {}
+                       options.tls.used(), guard) {
+    table.set_account_names([this](const std::string& account) { return guard.AccountOf(account); });
+  }
 
   void JoinCluster();
   absl::Status Restore(const ServerOptions& options);
@@ -130,6 +141,7 @@ struct Server::Parts {
   session::Uploads uploads;
   session::Models models;
   session::Table table;
+  const PageTokens page_tokens;
   const std::unique_ptr<SessionRouter> router;  // null: not in a cluster
   Metrics metrics;
   AccessGuard guard;
@@ -169,7 +181,10 @@ absl::StatusOr<Server::Parts::Opened> Server::Parts::Open(const ServerOptions& o
     opened.store = *std::move(store);
   }
   if (!options.cluster.redis.empty()) {
-    auto cluster = cluster::Cluster::Join(options.cluster);
+    cluster::ClusterOptions joining = options.cluster;
+    joining.tls.certificate = options.tls.certificate;
+    joining.tls.key = options.tls.key;
+    auto cluster = cluster::Cluster::Join(joining);
     if (!cluster.ok()) return cluster.status();
     opened.cluster = *std::move(cluster);
   }
@@ -195,11 +210,10 @@ absl::Status Server::Parts::Restore(const ServerOptions& options) {
   });
   if (!restored.ok()) return restored.status();
   lost = *std::move(restored);
+  for (const auto& [id, how] : table.carried_over()) spdlog::warn("session {}: {}", id, how);
   study_service.Restore(*records, lost);
-  const auto set_owner = [this](const std::string& id, const std::string& owner) {
-    guard.SetOwner(AccessGuard::Kind::kExport, id, owner);
-  };
-  exports.Restore(*records, models, set_owner, lost);
+  exports.Restore(
+      *records, models, [this](const std::string& account) { return guard.AccountOf(account); }, lost);
   return absl::OkStatus();
 }
 
@@ -264,16 +278,21 @@ absl::Status Server::Parts::Serve(const ServerOptions& options) {
 
 absl::Status Server::Parts::ServeWeb(const ServerOptions& options) {
   if (options.web.empty()) return absl::OkStatus();
-  constexpr std::size_t kBase64 = 2;  // base64 makes a body a third longer; rounded up
   const WebGateway::Options web_options = {
       .address = options.web,
-      .settings = {.root = options.web_root,
-                   .allowed_origins = options.allowed_origins,
-                   .max_body_bytes = kBase64 * static_cast<std::size_t>(options.max_message_bytes),
-                   .head_time = std::chrono::milliseconds(Milliseconds(options.head_seconds)),
-                   .idle_time = std::chrono::milliseconds(Milliseconds(options.idle_seconds)),
-                   .page = [this](std::string_view target,
-                                  std::string_view authorization) { return pages.Find(target, authorization); }},
+      .settings = {
+          .root = options.web_root,
+          .allowed_origins = options.allowed_origins,
+          .allowed_hosts = options.allowed_hosts,
+          .max_message_bytes = static_cast<std::size_t>(options.max_message_bytes),
+          .head_time = std::chrono::milliseconds(Milliseconds(options.head_seconds)),
+          .idle_time = std::chrono::milliseconds(Milliseconds(options.idle_seconds)),
+          .page = [this](std::string_view target,
+                         const WebSettings::Credentials& credentials) { return pages.Find(target, credentials); },
+          .known =
+              [this](const WebSettings::Credentials& credentials) {
+                return guard.Known(credentials.authorization, credentials.join);
+              }},
       .max_connections = static_cast<std::size_t>(options.max_connections),
       .tls = options.tls};
   grpc::ChannelArguments arguments;

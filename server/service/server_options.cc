@@ -4,7 +4,9 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "server/cluster/redis.h"
 #include "server/service/net/address.h"
+#include "server/service/web/hosts.h"
 
 namespace phrenic::service {
 namespace {
@@ -37,16 +39,42 @@ absl::Status CheckEncryption(const ServerOptions& options) {
   return absl::OkStatus();
 }
 
+// gRPC 1.51 bounds neither the streams that a client opens and resets nor the messages that it does not finish.
+absl::Status CheckGuard(const ServerOptions& options) {
+  if (options.unguarded_listen || !options.tls.client_ca.empty()) return absl::OkStatus();
+  const auto parsed = ParseAddress(options.listen);
+  if (!parsed.ok() || IsLoopback(*parsed)) return absl::OkStatus();
+  return absl::FailedPreconditionError(absl::StrCat(
+      "--listen: ", options.listen, " lets other machines reach gRPC itself, which a single client without an account ",
+      "can overload: listen on 127.0.0.1 behind nginx (deploy/nginx/guard.conf), require client certificates with ",
+      "--tls-client-ca, or pass --unguarded-listen in a network that you trust"));
+}
+
+absl::Status CheckHosts(const ServerOptions& options) {
+  for (const std::string& host : options.allowed_hosts) {
+    if (HostOf(host).has_value()) continue;
+    return absl::InvalidArgumentError(absl::StrCat("--allow-host: \"", host, "\" is not the name of a host: write ",
+                                                   "phrenic.example.org, 192.0.2.1 or [2001:db8::1]"));
+  }
+  return absl::OkStatus();
+}
+
+// Redis has the states of sessions, so the way to it is encrypted like that to the servers.
+absl::Status CheckRedis(const ServerOptions& options) {
+  const auto redis = cluster::ParseRedisAddress(options.cluster.redis);
+  if (!redis.ok()) return redis.status();
+  if (redis->encrypted || options.insecure_listen || IsLoopback({redis->host, redis->port})) return absl::OkStatus();
+  return absl::FailedPreconditionError(
+      "--cluster: Redis is on another machine and the connection is not encrypted: write rediss://, or pass "
+      "--insecure-listen in a network that you trust");
+}
+
 absl::Status CheckCluster(const ServerOptions& options) {
   if (options.cluster.redis.empty()) return absl::OkStatus();
   if (options.store_dir.empty()) {
     return absl::InvalidArgumentError("--cluster: a cluster's server saves sessions on its own disk: pass --store DIR");
   }
-  if (options.tls.used()) {
-    return absl::InvalidArgumentError(
-        "--cluster: the servers of a cluster call each other without TLS: remove --tls-cert, terminate TLS in nginx, "
-        "and listen in a private network");
-  }
+  if (absl::Status status = CheckRedis(options); !status.ok()) return status;
   const auto parsed = ParseAddress(options.cluster.advertise);
   if (parsed.ok() && parsed->port != 0 && parsed->host != "0.0.0.0" && parsed->host != "::") return absl::OkStatus();
   return absl::InvalidArgumentError(
@@ -58,6 +86,8 @@ absl::Status CheckCluster(const ServerOptions& options) {
 absl::Status CheckOptions(const ServerOptions& options) {
   if (absl::Status status = CheckTls(options.tls); !status.ok()) return status;
   if (absl::Status status = CheckEncryption(options); !status.ok()) return status;
+  if (absl::Status status = CheckGuard(options); !status.ok()) return status;
+  if (absl::Status status = CheckHosts(options); !status.ok()) return status;
   if (absl::Status status = CheckCluster(options); !status.ok()) return status;
   return CheckFolders(options);
 }

@@ -26,6 +26,7 @@ struct ServerOptions {
   std::string store_dir;                                      // sessions are saved here and restored; empty: not saved
   std::function<void(const std::string& session)> restoring;  // called before each session of the store is restored
   std::vector<std::string> allowed_origins;  // "https://host:port": may call the server and frame the viewer
+  std::vector<std::string> allowed_hosts;  // names by which browsers reach `web`, beside loopback and the certificate's
   session::Limits limits;
   int step_threads = 1;              // threads of one step (mechanics/parallel/parallel_for.h), process-wide
   int max_message_bytes = 16 << 20;  // of a request [bytes]
@@ -35,14 +36,15 @@ struct ServerOptions {
   double idle_seconds = 60;          // timeout of a request's body and of an idle connection [s]
   TlsFiles tls;                      // empty: no encryption
   bool insecure_listen = false;      // allows addresses that other machines reach without TLS
+  bool unguarded_listen = false;     // allows other machines to reach `listen` without a proxy that guards it
   access::AccountOptions accounts;   // empty: every caller may do everything
   std::string audit_file;            // empty: no audit log
   cluster::ClusterOptions cluster;   // empty: not in a cluster
 };
 
 // Checks the options against each other. Errors name the flag and the remedy: FAILED_PRECONDITION if other machines can
-// connect without TLS and insecure_listen is not set; INVALID_ARGUMENT if options exclude each other or a certificate
-// is bad; NOT_FOUND if a file or folder is missing.
+// connect without TLS and insecure_listen is not set, or can reach gRPC itself and unguarded_listen is not set;
+// INVALID_ARGUMENT if options exclude each other or a certificate is bad; NOT_FOUND if a file or folder is missing.
 absl::Status CheckOptions(const ServerOptions& options);
 
 }  // namespace phrenic::service

@@ -49,7 +49,7 @@ grpc::Status SessionService::Add(const grpc::ServerContext& context, const Reque
   auto control = session::ControlBook::Make(request.control(), request.owner_name(), caller->account.name);
   if (!control.ok()) return ToGrpc(control.status());
   response->set_control_token(control->state().owner.token);
-  const auto session = make(*std::move(control));
+  const auto session = make(*std::move(control), guard_.RequesterOf(*caller, context));
   if (!session.ok()) return ToGrpc(session.status());
   *response->mutable_session() = (*session)->status();
   return grpc::Status::OK;
@@ -60,7 +60,7 @@ grpc::Status SessionService::Change(const grpc::ServerContext& context, const Re
                                     Act act) {
   const auto call = AdmitToSession(guard_, table_, context, request);
   if (!call.ok()) return ToGrpc(call.status());
-  return ToGrpc(RunOnce(call->session->answers(), request, response, [&] {
+  return ToGrpc(RunOnce(*call->session, request, response, [&] {
     if constexpr (std::is_invocable_v<Act, session::Session&, const access::Caller&>) {
       return act(*call->session, call->caller);
     } else {
@@ -71,14 +71,16 @@ grpc::Status SessionService::Change(const grpc::ServerContext& context, const Re
 
 grpc::Status SessionService::CreateSession(grpc::ServerContext* context, const v1::CreateSessionRequest* request,
                                            v1::CreateSessionResponse* response) {
-  return Add(*context, *request, response,
-             [&](session::ControlBook control) { return table_.Create(*request, std::move(control)); });
+  return Add(*context, *request, response, [&](session::ControlBook control, const session::Requester& by) {
+    return table_.Create(*request, std::move(control), by);
+  });
 }
 
 grpc::Status SessionService::ForkSession(grpc::ServerContext* context, const v1::ForkSessionRequest* request,
                                          v1::ForkSessionResponse* response) {
-  return Add(*context, *request, response,
-             [&](session::ControlBook control) { return table_.Fork(*request, std::move(control)); });
+  return Add(*context, *request, response, [&](session::ControlBook control, const session::Requester&) {
+    return table_.Fork(*request, std::move(control));
+  });
 }
 
 grpc::Status SessionService::GetSession(grpc::ServerContext* context, const v1::GetSessionRequest* request,
@@ -98,11 +100,12 @@ grpc::Status SessionService::ListSessions(grpc::ServerContext* context, const v1
     return ToGrpc(
         absl::InvalidArgumentError(absl::StrCat("page_size: ", request->page_size(), " is outside 0 to 1000")));
   }
-  session::Table::Page page = table_.List(request->page_size(), request->page_token());
-  for (const auto& session : page.sessions) {
-    if (guard_.MaySee(*caller, *session)) *response->add_sessions() = session->status();
-  }
-  response->set_next_page_token(std::move(page.next_token));
+  const auto after = page_tokens_.Open(request->page_token(), caller->id());
+  if (!after.ok()) return ToGrpc(after.status());
+  const session::Table::Page page = table_.List(
+      request->page_size(), *after, [&](const session::Session& session) { return guard_.MaySee(*caller, session); });
+  for (const auto& session : page.sessions) *response->add_sessions() = session->status();
+  if (!page.last.empty()) response->set_next_page_token(page_tokens_.Seal(page.last, caller->id()));
   return grpc::Status::OK;
 }
 
@@ -117,12 +120,14 @@ grpc::Status SessionService::DeleteSession(grpc::ServerContext* context, const v
 grpc::Status SessionService::PlaySession(grpc::ServerContext* context, const v1::PlaySessionRequest* request,
                                          v1::PlaySessionResponse* response) {
   return Change(*context, *request, response, [&](session::Session& session, const access::Caller& caller) {
-    const auto speed = OptionalOf(request->has_speed(), request->speed());
     const auto leader = LeaderOf(guard_, caller, *request);
     if (!leader.ok()) return leader.status();
-    return FillSession(
-        session.Play(speed, request->as_fast_as_possible(), request->until_time(), request->control_token(), *leader),
-        response);
+    const session::PlayRequest play{.speed = OptionalOf(request->has_speed(), request->speed()),
+                                    .as_fast_as_possible = request->as_fast_as_possible(),
+                                    .until = request->until_time(),
+                                    .leader = *leader,
+                                    .keep_playing = request->keep_playing()};
+    return FillSession(session.Play(play, request->control_token()), response);
   });
 }
 

@@ -4,6 +4,7 @@
 
 #include "phrenic/v1/session.grpc.pb.h"
 #include "server/service/calls/access_guard.h"
+#include "server/service/calls/page_tokens.h"
 #include "server/session/table.h"
 
 namespace phrenic::service {
@@ -11,7 +12,9 @@ namespace phrenic::service {
 // Thread-safe: gRPC calls the methods on its own threads. Errors as in the proto of each method.
 class SessionService final : public v1::SessionService::Service {
  public:
-  explicit SessionService(session::Table& table, AccessGuard& guard) : table_(table), guard_(guard) {}
+  // All outlive the service.
+  SessionService(session::Table& table, AccessGuard& guard, const PageTokens& page_tokens)
+      : table_(table), guard_(guard), page_tokens_(page_tokens) {}
 
   grpc::Status CreateSession(grpc::ServerContext* context, const v1::CreateSessionRequest* request,
                              v1::CreateSessionResponse* response) override;
@@ -46,6 +49,7 @@ class SessionService final : public v1::SessionService::Service {
 
   session::Table& table_;
   AccessGuard& guard_;
+  const PageTokens& page_tokens_;
 };
 
 }  // namespace phrenic::service

@@ -27,13 +27,14 @@ StudyService::StudyService(session::Models& models, std::string web_root, Access
             if (!preset.ok()) return preset.status();
             return scene->name();
           },
-          [this](const v1::SceneSource& source) { return models_.Get(source); }, clock, store) {}
+          [this](const v1::SceneSource& source, const std::string& owner, const std::function<bool()>& cancelled) {
+            return models_.Get(source, {.owner = owner, .share = "studies " + owner, .cancelled = cancelled});
+          },
+          clock, store) {}
 
 void StudyService::Restore(const std::vector<store::SavedRecord>& records, std::map<std::string, absl::Status>& lost) {
-  const auto found = [this](const std::string& id, const std::string& owner) {
-    guard_.SetOwner(AccessGuard::Kind::kStudy, id, owner);
-  };
-  studies_.Restore(records, found, lost);
+  studies_.Restore(
+      records, [this](const std::string& account) { return guard_.AccountOf(account); }, lost);
 }
 
 grpc::Status StudyService::CreateStudy(grpc::ServerContext* context, const v1::CreateStudyRequest* request,
@@ -42,7 +43,6 @@ grpc::Status StudyService::CreateStudy(grpc::ServerContext* context, const v1::C
   if (!caller.ok()) return ToGrpc(caller.status());
   auto study = studies_.Add(*request, caller->id());
   if (!study.ok()) return ToGrpc(study.status());
-  guard_.SetOwner(AccessGuard::Kind::kStudy, study->id(), caller->id());
   *response->mutable_study() = *std::move(study);
   return grpc::Status::OK;
 }
@@ -51,7 +51,9 @@ grpc::Status StudyService::WatchStudy(grpc::ServerContext* context, const v1::Wa
                                       grpc::ServerWriter<v1::WatchStudyResponse>* writer) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
-  if (absl::Status own = guard_.CheckOwns(AccessGuard::Kind::kStudy, request->study_id(), *caller); !own.ok())
+  if (absl::Status own = guard_.CheckOwns(AccessGuard::Kind::kStudy, request->study_id(),
+                                          studies_.OwnerOf(request->study_id()), *caller);
+      !own.ok())
     return ToGrpc(own);
   absl::Status watched = absl::ResourceExhaustedError("16 callers watch studies, and no more are allowed: try later");
   if (watchers_.fetch_add(1) < kMaxWatchers) {
@@ -71,9 +73,8 @@ grpc::Status StudyService::ListStudies(grpc::ServerContext* context, const v1::L
                                        v1::ListStudiesResponse* response) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
-  for (v1::Study& study : studies_.List()) {
-    if (guard_.Owns(AccessGuard::Kind::kStudy, study.id(), *caller)) *response->add_studies() = std::move(study);
-  }
+  const auto visible = [&](const std::string& owner) { return guard_.MayUse(owner, *caller); };
+  for (v1::Study& study : studies_.List(visible)) *response->add_studies() = std::move(study);
   return grpc::Status::OK;
 }
 
@@ -81,7 +82,9 @@ grpc::Status StudyService::DeleteStudy(grpc::ServerContext* context, const v1::D
                                        v1::DeleteStudyResponse*) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
-  if (absl::Status own = guard_.CheckOwns(AccessGuard::Kind::kStudy, request->study_id(), *caller); !own.ok())
+  if (absl::Status own = guard_.CheckOwns(AccessGuard::Kind::kStudy, request->study_id(),
+                                          studies_.OwnerOf(request->study_id()), *caller);
+      !own.ok())
     return ToGrpc(own);
   return ToGrpc(studies_.Delete(request->study_id()));
 }
@@ -90,7 +93,9 @@ grpc::Status StudyService::GetStudyPage(grpc::ServerContext* context, const v1::
                                         v1::GetStudyPageResponse* response) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
-  if (absl::Status own = guard_.CheckOwns(AccessGuard::Kind::kStudy, request->study_id(), *caller); !own.ok())
+  if (absl::Status own = guard_.CheckOwns(AccessGuard::Kind::kStudy, request->study_id(),
+                                          studies_.OwnerOf(request->study_id()), *caller);
+      !own.ok())
     return ToGrpc(own);
   const auto seen = studies_.Wait(request->study_id(), 0, absl::ZeroDuration());
   if (!seen.ok()) return ToGrpc(seen.status());
@@ -104,7 +109,7 @@ grpc::Status StudyService::CheckPhysiology(grpc::ServerContext* context, const v
                                            grpc::ServerWriter<v1::CheckPhysiologyResponse>* writer) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
-  const auto model = models_.Get(request->source());
+  const auto model = models_.Get(request->source(), guard_.RequesterOf(*caller, *context));
   if (!model.ok()) return ToGrpc(model.status());
   v1::CheckPhysiologyResponse response;
   const auto table = physiology::CheckPhysiology(**model, [&](double done) {

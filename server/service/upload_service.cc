@@ -33,14 +33,14 @@ grpc::Status UploadService::BeginUpload(grpc::ServerContext* context, const v1::
                                         v1::BeginUploadResponse* response) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
-  const auto begun = uploads_.Begin(request->name(), request->size(), request->sha256());
+  const auto begun =
+      uploads_.Begin(guard_.RequesterOf(*caller, *context), request->name(), request->size(), request->sha256());
   if (!begun.ok()) return ToGrpc(begun.status());
   response->set_upload_id(begun->id);
   response->set_received(begun->received);
   if (!begun->id.empty()) return grpc::Status::OK;
-  // The server already has a file with this hash.
+  // The caller has uploaded the file before.
   Fill(begun->file, *response->mutable_file());
-  guard_.SetOwner(AccessGuard::Kind::kUpload, begun->file.path(), caller->id());
   return grpc::Status::OK;
 }
 
@@ -48,7 +48,8 @@ grpc::Status UploadService::AddUploadChunk(grpc::ServerContext* context, const v
                                            v1::AddUploadChunkResponse* response) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
-  const auto received = uploads_.Add(request->upload_id(), request->offset(), request->chunk());
+  const auto received =
+      uploads_.Add(guard_.RequesterOf(*caller, *context), request->upload_id(), request->offset(), request->chunk());
   if (!received.ok()) return ToGrpc(received.status());
   response->set_received(*received);
   return grpc::Status::OK;
@@ -59,10 +60,9 @@ grpc::Status UploadService::FinishUpload(grpc::ServerContext* context, const v1:
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
   const double unit_mm = request->has_unit_mm() ? request->unit_mm() : 1;
-  const auto finished = uploads_.Finish(request->upload_id(), unit_mm);
+  const auto finished = uploads_.Finish(guard_.RequesterOf(*caller, *context), request->upload_id(), unit_mm);
   if (!finished.ok()) return ToGrpc(finished.status());
   Fill(finished->file, *response->mutable_file());
-  guard_.SetOwner(AccessGuard::Kind::kUpload, finished->file.path(), caller->id());
   *response->mutable_report() = compare::Inspect(finished->file.name, finished->surface, unit_mm);
   return grpc::Status::OK;
 }
@@ -71,8 +71,8 @@ grpc::Status UploadService::ListUploads(grpc::ServerContext* context, const v1::
                                         v1::ListUploadsResponse* response) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
-  for (const session::Uploads::File& file : uploads_.List()) {
-    if (guard_.Owns(AccessGuard::Kind::kUpload, file.path(), *caller)) Fill(file, *response->add_files());
+  for (const session::Uploads::File& file : uploads_.List(guard_.RequesterOf(*caller, *context))) {
+    Fill(file, *response->add_files());
   }
   return grpc::Status::OK;
 }
@@ -81,9 +81,7 @@ grpc::Status UploadService::DeleteUpload(grpc::ServerContext* context, const v1:
                                          v1::DeleteUploadResponse*) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
-  if (absl::Status own = guard_.CheckOwns(AccessGuard::Kind::kUpload, request->path(), *caller); !own.ok())
-    return ToGrpc(own);
-  return ToGrpc(uploads_.Delete(request->path()));
+  return ToGrpc(uploads_.Delete(guard_.RequesterOf(*caller, *context), request->path()));
 }
 
 }  // namespace phrenic::service

@@ -22,8 +22,9 @@ class WebPages {
   // /readyz answers 503 until it is set, and again during shutdown.
   void set_ready(bool ready) { ready_ = ready; }
   // Returns "/healthz", "/readyz" or, for an administrator's Authorization header, "/metrics" (401 for others); every
-  // caller may read it if the server has no accounts. Returns nullopt for other targets.
-  std::optional<WebSettings::Page> Find(std::string_view target, std::string_view authorization);
+  // caller may read it if the server has no accounts. "/known" is 200 for callers that AccessGuard::Known has and 401
+  // for others; proxies ask it before they pass a call on. Returns nullopt for other targets.
+  std::optional<WebSettings::Page> Find(std::string_view target, const WebSettings::Credentials& credentials);
 
  private:
   const AccessGuard& guard_;

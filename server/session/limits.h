@@ -15,13 +15,18 @@ struct Limits {
   int exports = 2;                                      // running at the same time; comparisons as well
   int models = 4;                                       // compiled scenes kept for the next session
   std::int64_t vertices = 4'000'000;                    // of one scene
+  std::int64_t elements = 4'000'000;                    // of one scene (SizeLimits)
+  double compile_seconds = 60;                          // of one scene; 0: any time
   int kept_exports = 16;                                // that wait, run or have ended
   int export_minutes = 60;                              // how long a file is kept for download
   std::int64_t upload_bytes = std::int64_t{256} << 20;  // of one file
   std::int64_t uploads_bytes = std::int64_t{1} << 30;   // of all of them
   int uploads = 256;                                    // kept
-  double pause_minutes = 60;                            // a session without viewers or calls plays on; 0: forever
-  double delete_minutes = 0;                            // a session without viewers or calls is kept; 0: forever
+  // Of each account, on a server with accounts.
+  std::int64_t uploads_bytes_of_user = std::int64_t{256} << 20;
+  int uploads_of_user = 64;
+  double pause_minutes = 5;  // a session without viewers or calls plays on; 0: forever
+  double delete_minutes = 0;  // a session without viewers or calls is kept; 0: forever
 };
 
 }  // namespace phrenic::session

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
+#include <utility>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
@@ -9,6 +11,25 @@
 #include "server/meshio/meshio.h"
 
 namespace phrenic::session {
+namespace {
+
+// Of the most verbose format (STL as text, two triangles of 250 bytes a vertex), so that no file that is within the
+// limits is refused before it is read.
+constexpr std::int64_t kBytesPerVertex = 500;
+
+// The size of a closed surface.
+MeshSize Surface(std::int64_t vertices) { return {vertices, 3 * vertices, 2 * vertices, 0}; }
+
+absl::StatusOr<Mesh> ReadUpload(const std::vector<Uploads::Held>& uploads, const v1::SurfaceFile& file) {
+  for (const Uploads::Held& upload : uploads) {
+    if (upload.file.path() != file.path()) continue;
+    const auto bytes = upload.Bytes();
+    return bytes.ok() ? meshio::Parse(upload.file.name, *bytes, file.unit()) : bytes.status();
+  }
+  return absl::NotFoundError(absl::StrCat(file.path().substr(0, 80), ": there is no such upload; upload it again"));
+}
+
+}  // namespace
 
 absl::StatusOr<std::string> ResolveBelow(const std::string& data_dir, const std::string& path) {
   namespace fs = std::filesystem;
@@ -33,15 +54,37 @@ absl::StatusOr<std::string> ResolveBelow(const std::string& data_dir, const std:
   return resolved.string();
 }
 
-MeshSource MakeMeshSource(std::string data_dir, Uploads* uploads) {
-  return [data_dir = std::move(data_dir), uploads](const v1::Body& body) -> absl::StatusOr<Mesh> {
+bool IsUpload(const std::string& path) { return absl::StartsWith(path, std::string(Uploads::kPrefix)); }
+
+const v1::SurfaceFile* FileOf(const v1::Body& body) {
+  if (body.has_file()) return &body.file();
+  return body.has_filling() && body.filling().has_file() ? &body.filling().file() : nullptr;
+}
+
+MeshSource MakeMeshSource(std::string data_dir, std::vector<Uploads::Held> uploads) {
+  return [data_dir = std::move(data_dir), uploads = std::move(uploads)](const v1::Body& body) -> absl::StatusOr<Mesh> {
     if (body.has_generated()) return anatomy::Generate(body.anatomy(), body.generated().resolution_mm());
-    if (uploads != nullptr && absl::StartsWith(body.file().path(), std::string(Uploads::kPrefix))) {
-      return uploads->Read(body.file().path(), body.file().unit());
-    }
+    if (IsUpload(body.file().path())) return ReadUpload(uploads, body.file());
     const absl::StatusOr<std::string> path = ResolveBelow(data_dir, body.file().path());
     if (!path.ok()) return path.status();
     return meshio::ReadFile(*path, body.file().unit());
+  };
+}
+
+SizeSource MakeSizeSource(std::string data_dir, const std::vector<Uploads::Held>& uploads) {
+  std::map<std::string, std::int64_t> sizes;
+  for (const Uploads::Held& upload : uploads) sizes[upload.file.path()] = upload.file.size;
+  return [data_dir = std::move(data_dir), sizes = std::move(sizes)](const v1::Body& body) {
+    if (body.has_generated()) {
+      return Surface(anatomy::EstimateVertices(body.anatomy(), body.generated().resolution_mm()));
+    }
+    if (const auto found = sizes.find(body.file().path()); found != sizes.end()) {
+      return Surface(found->second / kBytesPerVertex);
+    }
+    std::error_code error;
+    const absl::StatusOr<std::string> path = ResolveBelow(data_dir, body.file().path());
+    const std::uintmax_t bytes = path.ok() ? std::filesystem::file_size(*path, error) : 0;
+    return error ? MeshSize{} : Surface(static_cast<std::int64_t>(bytes) / kBytesPerVertex);
   };
 }
 

@@ -3,6 +3,7 @@
 #define PHRENIC_SERVER_SESSION_MESHES_H_
 
 #include <string>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "server/mechanics/compile/compile.h"
@@ -14,9 +15,18 @@ namespace phrenic::session {
 // leaves the folder (by ".." or a symbolic link), NOT_FOUND if there is no such file or no data folder.
 absl::StatusOr<std::string> ResolveBelow(const std::string& data_dir, const std::string& path);
 
-// Returns a thread-safe source, for which the path "upload:SHA256" names one of `uploads`. `uploads` outlives it; null:
-// there are none.
-MeshSource MakeMeshSource(std::string data_dir, Uploads* uploads = nullptr);
+// Returns the surface file of a body, also of one that fills it; null if the body has none.
+const v1::SurfaceFile* FileOf(const v1::Body& body);
+// True for a path "upload:SHA256".
+bool IsUpload(const std::string& path);
+
+// Returns a thread-safe source, for which the path "upload:SHA256" names one of `uploads`. NOT_FOUND if none of them
+// has that hash.
+MeshSource MakeMeshSource(std::string data_dir, std::vector<Uploads::Held> uploads = {});
+
+// Returns the sizes of generated parts by their resolution, roughly, and an estimate for files by their
+// length.
+SizeSource MakeSizeSource(std::string data_dir, const std::vector<Uploads::Held>& uploads = {});
 
 }  // namespace phrenic::session
 

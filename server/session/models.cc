@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
+#include <set>
 #include <utility>
 
-#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "google/protobuf/io/coded_stream.h"
 #include "google/protobuf/io/zero_copy_stream_impl_lite.h"
+#include "server/mechanics/compile/shape_size.h"
 #include "server/schema/schema.h"
 #include "server/session/meshes.h"
 
@@ -24,59 +26,35 @@ std::string DeterministicBytes(const v1::Scene& scene) {
   return bytes;
 }
 
-absl::Status TooLarge(const std::string& what, std::int64_t vertices, std::int64_t most) {
-  return absl::ResourceExhaustedError(
-      absl::StrCat(what, " has ", vertices, " vertices, and no more than ", most, " are allowed (--max-vertices)"));
-}
+constexpr std::int64_t kSmallScene = 200'000;        // vertices and elements: compiles within a second
+constexpr int kSmallAtATime = 3, kLargeAtATime = 2;  // the second takes some hundred megabytes at most
+constexpr int kMostOthers = 64;                      // who wait for one compile
+constexpr absl::Duration kAskAgain = absl::Milliseconds(50);
+
+bool IsCancelled(const Requester& by) { return by.cancelled != nullptr && by.cancelled(); }
+
+absl::Status NobodyWaits() { return absl::CancelledError("nobody waits for the scene any more"); }
 
 }  // namespace
 
-Models::Models(SceneCatalogue catalogue, std::string data_dir, int capacity, Uploads* uploads,
-               std::int64_t most_vertices)
+Models::Models(SceneCatalogue catalogue, std::string data_dir, int capacity, Uploads* uploads, const Limits& limits)
     : catalogue_(std::move(catalogue)),
-      data_dir_(data_dir),
+      data_dir_(std::move(data_dir)),
       uploads_(uploads),
-      meshes_(MakeMeshSource(std::move(data_dir), uploads)),
-      capacity_(std::max(1, capacity)),
-      most_vertices_(most_vertices) {}
+      capacity_(static_cast<std::size_t>(std::max(1, capacity))),
+      limits_(limits),
+      slots_(kSmallAtATime, kLargeAtATime) {}
 
-absl::Status Models::CheckSize(const v1::Scene& scene) const {
-  std::int64_t vertices = 0;
-  for (int i = 0; i < scene.bodies_size(); ++i) {
-    const v1::Body& body = scene.bodies(i);
-    if (body.has_grid()) vertices += std::int64_t{body.grid().columns()} * body.grid().rows();
-    if (vertices > most_vertices_) {
-      return TooLarge(absl::StrCat("bodies[", i, "].grid: with it the scene"), vertices, most_vertices_);
-    }
-  }
-  return absl::OkStatus();
-}
-
-absl::Status Models::CheckSize(const Model& model) const {
-  std::int64_t vertices = 0;
-  for (const BodyModel& body : model.bodies) vertices += body.mesh.vertices.cols();
-  if (vertices <= most_vertices_) return absl::OkStatus();
-  return TooLarge("bodies: the scene", vertices, most_vertices_);
-}
-
-absl::StatusOr<std::vector<Uploads::Held>> Models::HoldSurfaces(const v1::Scene& scene) const {
-  std::vector<Uploads::Held> surfaces;
+absl::StatusOr<Models::Surfaces> Models::HoldSurfaces(const v1::Scene& scene, const Requester& by) const {
+  Surfaces surfaces;
+  std::set<std::string> held;
   for (const v1::Body& body : scene.bodies()) {
-    if (uploads_ == nullptr || !absl::StartsWith(body.file().path(), std::string(Uploads::kPrefix))) continue;
-    auto held = uploads_->Hold(body.file().path());
-    if (!held.ok()) return held.status();
-    surfaces.push_back(*std::move(held));
-  }
-  return surfaces;
-}
-
-absl::StatusOr<std::vector<Uploads::Held>> Models::AdoptSurfaces(const v1::SavedScene& saved) const {
-  std::vector<Uploads::Held> surfaces;
-  if (uploads_ == nullptr) return surfaces;
-  for (const v1::SavedSurface& surface : saved.surfaces()) {
-    auto held = uploads_->Adopt(surface.name(), surface.content());
-    if (!held.ok()) return held.status();
-    surfaces.push_back(*std::move(held));
+    const v1::SurfaceFile* file = FileOf(body);
+    if (uploads_ == nullptr || file == nullptr || !IsUpload(file->path()) || !held.insert(file->path()).second)
+      continue;
+    auto surface = uploads_->Hold(by, file->path());
+    if (!surface.ok()) return surface.status();
+    surfaces.push_back(*std::move(surface));
   }
   return surfaces;
 }
@@ -105,8 +83,9 @@ absl::StatusOr<v1::Scene> Models::Resolve(const v1::SceneSource& source) const {
 std::string Models::Key(const v1::Scene& scene) const {
   std::string key = DeterministicBytes(scene);
   for (const v1::Body& body : scene.bodies()) {
-    if (!body.has_file()) continue;
-    const absl::StatusOr<std::string> path = ResolveBelow(data_dir_, body.file().path());
+    const v1::SurfaceFile* file = FileOf(body);
+    if (file == nullptr || IsUpload(file->path())) continue;
+    const absl::StatusOr<std::string> path = ResolveBelow(data_dir_, file->path());
     if (!path.ok()) continue;
     std::error_code ignored;
     absl::StrAppend(&key, "|", std::filesystem::file_size(*path, ignored), "|",
@@ -115,24 +94,115 @@ std::string Models::Key(const v1::Scene& scene) const {
   return key;
 }
 
-absl::StatusOr<std::shared_ptr<const Model>> Models::Get(const v1::SceneSource& source) {
+std::shared_ptr<const Model> Models::FindKept(const std::string& key) {
+  const auto found =
+      std::find_if(entries_.begin(), entries_.end(), [&key](const Entry& entry) { return entry.key == key; });
+  if (found == entries_.end()) return nullptr;
+  entries_.splice(entries_.begin(), entries_, found);
+  return found->model;
+}
+
+// The latest model is kept however large it is.
+void Models::Keep(Entry entry) {
+  entries_.push_front(std::move(entry));
+  std::int64_t elements = 0;
+  std::size_t kept = 0;
+  for (auto each = entries_.begin(); each != entries_.end();) {
+    elements = SaturatingSum(elements, each->elements);
+    const bool stays = kept == 0 || (kept < capacity_ && elements <= limits_.elements);
+    ++kept;
+    each = stays ? std::next(each) : entries_.erase(each);
+  }
+}
+
+absl::StatusOr<std::shared_ptr<const Model>> Models::Await(Job& job, const Requester& by) {
+  if (job.others >= kMostOthers) {
+    return absl::ResourceExhaustedError(
+        absl::StrCat(kMostOthers, " callers wait for this scene, and no more may: try again later"));
+  }
+  ++job.others;
+  const auto done = [&job] { return job.result.has_value(); };
+  bool left = false;
+  while (!left && !mutex_.AwaitWithTimeout(absl::Condition(&done), kAskAgain)) left = IsCancelled(by);
+  --job.others;
+  if (left) return NobodyWaits();
+  return *job.result;
+}
+
+absl::StatusOr<std::shared_ptr<const Model>> Models::CompileNow(const v1::Scene& scene, const Surfaces& surfaces,
+                                                                const Requester& by, Job& job) {
+  CompileOptions options;
+  options.size_of = MakeSizeSource(data_dir_, surfaces);
+  if (!by.trusted) options.limits = {limits_.vertices, limits_.elements};
+  const auto size = EstimateSize(scene, options.size_of, options.limits);
+  if (!size.ok()) return size.status();
+  job.elements = size->elements;
+  if (by.trusted) return phrenic::Compile(scene, MakeMeshSource(data_dir_, surfaces), options);
+  options.longest = limits_.compile_seconds;
+  options.cancelled = [&by, &job] { return job.others == 0 && IsCancelled(by); };
+  const bool small = size->vertices <= kSmallScene && size->elements <= kSmallScene;
+  const auto lane = small ? CompileSlots::Lane::kSmall : CompileSlots::Lane::kLarge;
+  const auto slot = slots_.Take(by.share, lane, options.cancelled);
+  if (!slot.ok()) return slot.status();
+  return phrenic::Compile(scene, MakeMeshSource(data_dir_, surfaces), options);
+}
+
+absl::StatusOr<std::shared_ptr<const Model>> Models::Find(const v1::Scene& scene, const Surfaces& surfaces,
+                                                          const Requester& by) {
+  const std::string key = Key(scene);
+  const auto job = std::make_shared<Job>();
+  {
+    absl::MutexLock lock(&mutex_);
+    for (auto kept = FindKept(key);; kept = FindKept(key)) {
+      if (kept != nullptr) return kept;
+      const auto [running, first] = jobs_.emplace(key, job);
+      if (first) break;
+      const std::shared_ptr<Job> other = running->second;
+      auto model = Await(*other, by);
+      // The other caller has gone: this one compiles.
+      if (!absl::IsCancelled(model.status()) || IsCancelled(by)) return model;
+    }
+  }
+  auto model = CompileNow(scene, surfaces, by, *job);
+  absl::MutexLock lock(&mutex_);
+  jobs_.erase(key);
+  job->result = model;
+  if (!model.ok()) return model;
+  Keep({key, *model, job->elements});
+  return model;
+}
+
+absl::StatusOr<Compiled> Models::Compile(const v1::SceneSource& source, const Requester& by) {
   const absl::StatusOr<v1::Scene> scene = Resolve(source);
   if (!scene.ok()) return scene.status();
-  if (absl::Status status = CheckSize(*scene); !status.ok()) return status;
-  std::string key = Key(*scene);
-  absl::MutexLock lock(&mutex_);
-  const auto found =
-      std::find_if(entries_.begin(), entries_.end(), [&](const Entry& entry) { return entry.key == key; });
-  if (found != entries_.end()) {
-    entries_.splice(entries_.begin(), entries_, found);
-    return entries_.front().model;
-  }
-  absl::StatusOr<std::shared_ptr<const Model>> model = Compile(*scene, meshes_);
+  auto surfaces = HoldSurfaces(*scene, by);
+  if (!surfaces.ok()) return surfaces.status();
+  auto model = Find(*scene, *surfaces, by);
   if (!model.ok()) return model.status();
-  if (absl::Status status = CheckSize(**model); !status.ok()) return status;
-  entries_.push_front({std::move(key), *model});
-  if (entries_.size() > capacity_) entries_.pop_back();
-  return model;
+  return Compiled{*std::move(model), *std::move(surfaces)};
+}
+
+absl::StatusOr<std::shared_ptr<const Model>> Models::Get(const v1::SceneSource& source, const Requester& by) {
+  auto compiled = Compile(source, by);
+  if (!compiled.ok()) return compiled.status();
+  return std::move(compiled->model);
+}
+
+absl::StatusOr<Compiled> Models::Restore(const v1::SavedScene& saved, const std::string& owner) {
+  const Requester by{.owner = owner, .trusted = true};
+  Surfaces surfaces;
+  if (uploads_ != nullptr) {
+    for (const v1::SavedSurface& surface : saved.surfaces()) {
+      auto held = uploads_->Adopt(by, surface.name(), surface.content());
+      if (!held.ok()) return held.status();
+      surfaces.push_back(*std::move(held));
+    }
+  }
+  const absl::StatusOr<v1::Scene> scene = Resolve(saved.source());
+  if (!scene.ok()) return scene.status();
+  auto model = Find(*scene, surfaces, by);
+  if (!model.ok()) return model.status();
+  return Compiled{*std::move(model), std::move(surfaces)};
 }
 
 }  // namespace phrenic::session

@@ -1,10 +1,13 @@
-// Compiles scenes, and keeps the models for the next session of the same scene.
+// Compiles scenes, some at a time, and keeps the models for the next session of the same scene.
 #ifndef PHRENIC_SERVER_SESSION_MODELS_H_
 #define PHRENIC_SERVER_SESSION_MODELS_H_
 
+#include <atomic>
 #include <cstdint>
 #include <list>
+#include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,47 +17,75 @@
 #include "phrenic/v1/saved.pb.h"
 #include "phrenic/v1/session.pb.h"
 #include "server/mechanics/compile/compile.h"
+#include "server/session/compile_slots.h"
+#include "server/session/requester.h"
 #include "server/session/scene_catalogue.h"
 #include "server/session/uploads.h"
 
 namespace phrenic::session {
 
-// Thread-safe. Compiles one scene at a time, which has all memory and cores for itself.
+// A compiled scene, with the uploaded files that it uses.
+struct Compiled {
+  std::shared_ptr<const Model> model;
+  std::vector<Uploads::Held> surfaces;
+  bool same = true;  // of a saved scene: the model has the same bits as the saved one
+};
+
+// Thread-safe. Compiles on the caller's thread; callers that want the same scene wait for one compile of it.
 class Models {
  public:
-  // Keeps the `capacity` models that were used last. `uploads` outlives it; null: scenes cannot name uploaded files.
+  // Keeps the `capacity` models that were used last, as long as they have limits.elements together. `uploads` outlives
+  // it; null: scenes cannot name uploaded files.
   Models(SceneCatalogue catalogue, std::string data_dir, int capacity, Uploads* uploads = nullptr,
-         std::int64_t most_vertices = Limits().vertices);
+         const Limits& limits = {});
 
   const SceneCatalogue& catalogue() const { return catalogue_; }
   // Returns the scene that `source` names or holds, at its resolution; INVALID_ARGUMENT "source: ..." if it is empty.
   absl::StatusOr<v1::Scene> Resolve(const v1::SceneSource& source) const;
-  // Returns the compiled scene. The same scene gives the same model while its surface files are unchanged.
-  // RESOURCE_EXHAUSTED if the model has more vertices than allowed; the errors of Compile.
-  absl::StatusOr<std::shared_ptr<const Model>> Get(const v1::SceneSource& source) ABSL_LOCKS_EXCLUDED(mutex_);
-  // Returns the uploaded files that the scene names. The errors of Uploads::Hold.
-  absl::StatusOr<std::vector<Uploads::Held>> HoldSurfaces(const v1::Scene& scene) const;
-  // Uploads the files of a saved scene again, before it is compiled.
-  absl::StatusOr<std::vector<Uploads::Held>> AdoptSurfaces(const v1::SavedScene& saved) const;
+  // Returns the compiled scene. The same scene gives the same model while its surface files are unchanged. The errors
+  // of Uploads::Hold for the uploaded files that it names, of Compile, and of CompileSlots::Take. RESOURCE_EXHAUSTED if
+  // the model is larger than allowed; CANCELLED once by.cancelled is true and no one else wants it.
+  absl::StatusOr<Compiled> Compile(const v1::SceneSource& source, const Requester& by) ABSL_LOCKS_EXCLUDED(mutex_);
+  // The same without the files, for the server itself or without accounts.
+  absl::StatusOr<std::shared_ptr<const Model>> Get(const v1::SceneSource& source, const Requester& by = {})
+      ABSL_LOCKS_EXCLUDED(mutex_);
+  // Uploads the files of a saved scene again, for their owner, and compiles it, however large it is.
+  absl::StatusOr<Compiled> Restore(const v1::SavedScene& saved, const std::string& owner) ABSL_LOCKS_EXCLUDED(mutex_);
 
  private:
+  using Surfaces = std::vector<Uploads::Held>;
   struct Entry {
     std::string key;
     std::shared_ptr<const Model> model;
+    std::int64_t elements;
+  };
+  // A scene that is being compiled.
+  struct Job {
+    std::atomic<int> others = 0;  // who wait for it, besides the caller that compiles
+    std::int64_t elements = 0;    // an estimate
+    std::optional<absl::StatusOr<std::shared_ptr<const Model>>> result;
   };
   std::string Key(const v1::Scene& scene) const;
-  // Check the number of vertices: of grids before they are generated, and of the compiled model.
-  absl::Status CheckSize(const v1::Scene& scene) const;
-  absl::Status CheckSize(const Model& model) const;
+  absl::StatusOr<Surfaces> HoldSurfaces(const v1::Scene& scene, const Requester& by) const;
+  absl::StatusOr<std::shared_ptr<const Model>> Find(const v1::Scene& scene, const Surfaces& surfaces,
+                                                    const Requester& by) ABSL_LOCKS_EXCLUDED(mutex_);
+  void Keep(Entry entry) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  std::shared_ptr<const Model> FindKept(const std::string& key) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // Waits for the result of another caller's compile. CANCELLED once by.cancelled is true.
+  absl::StatusOr<std::shared_ptr<const Model>> Await(Job& job, const Requester& by)
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  absl::StatusOr<std::shared_ptr<const Model>> CompileNow(const v1::Scene& scene, const Surfaces& surfaces,
+                                                          const Requester& by, Job& job) ABSL_LOCKS_EXCLUDED(mutex_);
 
   const SceneCatalogue catalogue_;
   const std::string data_dir_;
   Uploads* const uploads_;
-  const MeshSource meshes_;
   const std::size_t capacity_;
-  const std::int64_t most_vertices_;
+  const Limits limits_;
+  CompileSlots slots_;
   absl::Mutex mutex_;
   std::list<Entry> entries_ ABSL_GUARDED_BY(mutex_);  // last used first
+  std::map<std::string, std::shared_ptr<Job>> jobs_ ABSL_GUARDED_BY(mutex_);
 };
 
 }  // namespace phrenic::session

@@ -19,6 +19,7 @@ void Playback::Start(PlayRequest request) {
   speed_ = request.speed.value_or(speed_);
   as_fast_as_possible_ = request.as_fast_as_possible;
   until_ = request.until;
+  keep_playing_ = request.keep_playing;
   leader_ = std::move(request.leader);
 }
 
@@ -42,6 +43,7 @@ void Playback::Restore(const v1::SavedMoment& moment) {
   as_fast_as_possible_ = moment.session().speed() == 0;
   speed_ = moment.usual_speed();
   until_ = moment.until_time();
+  keep_playing_ = moment.session().keep_playing() && until_ == 0;
 }
 
 }  // namespace phrenic::session

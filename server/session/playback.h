@@ -20,14 +20,20 @@ struct PlayRequest {
   bool as_fast_as_possible = false;
   double until = 0;                              // simulated time at which the session pauses [s]; 0 never pauses
   std::weak_ptr<const ReachedTime> leader = {};  // of the session that this one plays in step with
+  bool keep_playing = false;                     // without viewers
 };
 
 // The speed, the end and the leader of a playing session. Not thread-safe: the stepping thread owns it.
 class Playback {
  public:
   void Start(PlayRequest request);
-  // Forgets the end time.
-  void Stop() { until_ = 0; }
+  // Forgets the end time, and that the session plays on without viewers.
+  void Stop() {
+    until_ = 0;
+    keep_playing_ = false;
+  }
+  // True if the session plays on without viewers: it was asked to, or has an end.
+  bool keeps_playing() const { return keep_playing_ || until_ > 0; }
 
   double speed() const { return speed_; }  // simulated seconds per second, also while as fast as possible
   bool as_fast_as_possible() const { return as_fast_as_possible_; }
@@ -46,6 +52,7 @@ class Playback {
   double speed_ = 1;
   bool as_fast_as_possible_ = false;
   double until_ = 0;  // [s]
+  bool keep_playing_ = false;
   std::weak_ptr<const ReachedTime> leader_;
 };
 

@@ -50,10 +50,22 @@ ControlState::Link RestoreLink(const v1::SavedLink& saved) {
 
 // Applies a moment to the run. Requires: the run is at the moment's tick.
 absl::Status Apply(const v1::SavedMoment& moment, Run& run) {
-  run.set_parameters(moment.session().parameters());
+  run.set_parameters(SavedParameters(run.model(), moment.session().parameters()));
   const auto pulls = FindPulls(run.model(), moment.session().pulls(), "pulls");
   if (!pulls.ok()) return absl::DataLossError(pulls.status().message());
   return run.ChangePulls(*pulls, true);
+}
+
+// Adds the body's part of a state, if it has one.
+void SaveBody(const Model& model, const BodyModel& body, v1::SavedScene& scene) {
+  if (body.first_vertex < 0 && body.pose < 0) return;
+  v1::SavedBody& saved = *scene.add_bodies();
+  saved.set_name(body.name);
+  saved.set_first_vertex(body.first_vertex);
+  saved.set_pose(body.pose);
+  if (body.first_vertex < 0) return;
+  const Eigen::Matrix3Xf rest = model.rest.middleCols(body.first_vertex, body.mesh.vertices.cols()).cast<float>();
+  saved.set_rest(rest.data(), sizeof(float) * static_cast<std::size_t>(rest.size()));
 }
 
 absl::Status StepTo(std::int64_t tick, Run& run) {
@@ -77,17 +89,23 @@ absl::StatusOr<v1::SavedScene> SaveScene(const Model& model, const std::vector<U
     saved.set_name(surface.file.name);
     saved.set_content(*std::move(bytes));
   }
+  for (const BodyModel& body : model.bodies) SaveBody(model, body, scene);
+  for (const ScalarCoordinate& scalar : model.scalars) scene.add_scalars(scalar.name);
   return scene;
 }
 
-absl::StatusOr<Compiled> RestoreScene(const v1::SavedScene& saved, const std::string& what, Models& models) {
-  auto surfaces = models.AdoptSurfaces(saved);
-  if (!surfaces.ok()) return surfaces.status();
-  auto model = models.Get(saved.source());
-  if (!model.ok()) return model.status();
-  if ((*model)->report.scene_hash() == saved.scene_hash()) return Compiled{*std::move(model), *std::move(surfaces)};
+absl::StatusOr<Compiled> CompileSaved(const v1::SavedScene& saved, const std::string& owner, Models& models) {
+  auto compiled = models.Restore(saved, owner);
+  if (compiled.ok()) compiled->same = compiled->model->report.scene_hash() == saved.scene_hash();
+  return compiled;
+}
+
+absl::StatusOr<Compiled> RestoreScene(const v1::SavedScene& saved, const std::string& what, const std::string& owner,
+                                      Models& models) {
+  auto compiled = CompileSaved(saved, owner, models);
+  if (!compiled.ok() || compiled->same) return compiled;
   return absl::FailedPreconditionError(absl::StrCat(
-      what, ": the surface files of its scene \"", (*model)->scene.name(),
+      what, ": the surface files of its scene \"", compiled->model->scene.name(),
       "\", or the version of Phrenic, differ from those that it was made with: restore the files and restart "
       "the server"));
 }
@@ -100,6 +118,7 @@ v1::SavedControl SaveControl(const ControlState& state) {
   saved.set_holder(state.holder);
   saved.set_revision(state.revision);
   saved.set_account(state.account);
+  saved.set_account_qualified(true);
   for (const ControlState::Link& link : state.links) SaveLink(link, *saved.add_links());
   return saved;
 }
@@ -116,18 +135,28 @@ ControlState RestoreControl(const v1::SavedControl& saved) {
   return state;
 }
 
-absl::StatusOr<Replayed> Replay(std::shared_ptr<const Model> model, const store::SavedSession& saved) {
-  absl::StatusOr<State> state = store::Restore(*model, saved.state);
-  if (!state.ok()) return state.status();
-  Run run(std::move(model), saved.moment.session().parameters(), *std::move(state));
-  const v1::SavedMoment* last = &saved.moment;
-  for (const v1::SavedMoment& moment : saved.later) {
-    last = &moment;
+v1::Parameters SavedParameters(const Model& model, const v1::Parameters& saved) {
+  v1::Parameters parameters = model.parameters;
+  parameters.MergeFrom(saved);
+  return parameters;
+}
+
+absl::Status ReplayJournal(const std::vector<v1::SavedMoment>& later, Run& run) {
+  for (const v1::SavedMoment& moment : later) {
     if (moment.from_start()) run.Reset();
     if (absl::Status status = StepTo(moment.session().tick(), run); !status.ok()) return status;
     if (absl::Status status = Apply(moment, run); !status.ok()) return status;
   }
-  return Replayed{run.state(), *last};
+  return absl::OkStatus();
+}
+
+absl::StatusOr<Replayed> Replay(std::shared_ptr<const Model> model, const store::SavedSession& saved) {
+  absl::StatusOr<State> state = store::Restore(*model, saved.state);
+  if (!state.ok()) return state.status();
+  v1::Parameters parameters = SavedParameters(*model, saved.moment.session().parameters());
+  Run run(std::move(model), std::move(parameters), *std::move(state));
+  if (absl::Status status = ReplayJournal(saved.later, run); !status.ok()) return status;
+  return Replayed{run.state(), saved.later.empty() ? saved.moment : saved.later.back()};
 }
 
 }  // namespace phrenic::session

@@ -11,6 +11,7 @@
 #include "server/mechanics/model.h"
 #include "server/session/control.h"
 #include "server/session/models.h"
+#include "server/session/run.h"
 #include "server/store/layout.h"
 
 namespace phrenic::session {
@@ -18,22 +19,26 @@ namespace phrenic::session {
 v1::SavedControl SaveControl(const ControlState& state);
 ControlState RestoreControl(const v1::SavedControl& saved);
 
-// A compiled scene, with the uploaded files that it uses.
-struct Compiled {
-  std::shared_ptr<const Model> model;
-  std::vector<Uploads::Held> surfaces;
-};
-
-// Returns the scene with the content of its uploaded files. The errors of reading the files.
+// Returns the scene with the content of its uploaded files and the layout of its states. The errors of reading the
+// files.
 absl::StatusOr<v1::SavedScene> SaveScene(const Model& model, const std::vector<Uploads::Held>& surfaces);
-// Compiles a saved scene. FAILED_PRECONDITION, which begins with `what`, if the model differs from the saved one.
-absl::StatusOr<Compiled> RestoreScene(const v1::SavedScene& saved, const std::string& what, Models& models);
+// Compiles a saved scene, whose files belong to `owner`. The errors of Models::Restore.
+absl::StatusOr<Compiled> CompileSaved(const v1::SavedScene& saved, const std::string& owner, Models& models);
+// The same. FAILED_PRECONDITION, which begins with `what`, if the model differs from the saved one.
+absl::StatusOr<Compiled> RestoreScene(const v1::SavedScene& saved, const std::string& what, const std::string& owner,
+                                      Models& models);
 
 // The last moment of a saved session.
 struct Replayed {
   State state;
-  v1::SavedMoment moment;  // the last in its journal
+  v1::SavedMoment moment;         // the last in its journal
+  std::string carried_over = {};  // v1::Session.carried_over
 };
+
+// Takes the steps and changes of a journal from `run`, which is at the first moment. DATA_LOSS as Replay.
+absl::Status ReplayJournal(const std::vector<v1::SavedMoment>& later, Run& run);
+// Returns the parameters of a saved session; those that its build did not have are the model's.
+v1::Parameters SavedParameters(const Model& model, const v1::Parameters& saved);
 
 // Replays a saved session: starts from its saved state, and takes the steps and changes of its journal. The result
 // equals the session's last state bit for bit. Requires: `model` is the model of the session. DATA_LOSS if the state

@@ -22,6 +22,10 @@ v1::Session FirstStatus(const std::string& id, const Model& model, const Session
       origin.saved_moment.has_value()
           ? origin.saved_moment->session().create_time()
           : google::protobuf::util::TimeUtil::NanosecondsToTimestamp(absl::ToUnixNanos(now));
+  status.set_temporary(origin.temporary);
+  if (!origin.saved_moment.has_value()) return status;
+  status.set_temporary(origin.saved_moment->session().temporary());
+  status.set_carried_over(origin.saved_moment->session().carried_over());
   return status;
 }
 
@@ -58,22 +62,29 @@ Session::Session(std::string id, std::shared_ptr<const Model> model, Fork start,
 
 Session::~Session() { Stop(absl::UnavailableError(absl::StrCat("session ", id_, " has ended"))); }
 
-absl::StatusOr<v1::Session> Session::Saved() {
-  const absl::Status saved = Flush();
-  if (absl::IsAborted(saved)) return saved;
+v1::Session Session::Saved(store::Durability durability) {
+  const absl::Status saved = saver_.Flush(durability);
   v1::Session now = status();
   if (!saved.ok()) publisher_.Announce(now);  // viewers got the status before the store failed
   return now;
 }
 
+absl::Status Session::CallToChange(std::string_view token, absl::FunctionRef<absl::Status()> act) {
+  if (absl::Status lease = saver_.CheckLease(); !lease.ok()) return lease;
+  return loop_.CallAs(token, act);
+}
+
 absl::StatusOr<v1::Session> Session::Change(std::string_view token, absl::FunctionRef<absl::Status()> act) {
-  if (absl::Status changed = loop_.CallAs(token, act); !changed.ok()) return changed;
+  if (absl::Status changed = CallToChange(token, act); !changed.ok()) return changed;
   return Saved();
 }
 
 absl::StatusOr<v1::Session> Session::Play(std::optional<double> speed, bool as_fast_as_possible, double until,
                                           std::string_view token, std::weak_ptr<const ReachedTime> leader) {
-  const PlayRequest request{speed, as_fast_as_possible, until, std::move(leader)};
+  return Play(PlayRequest{speed, as_fast_as_possible, until, std::move(leader)}, token);
+}
+
+absl::StatusOr<v1::Session> Session::Play(const PlayRequest& request, std::string_view token) {
   return Change(token, [&] { return loop_.Play(request); });
 }
 
@@ -88,7 +99,7 @@ absl::StatusOr<Session::Stepped> Session::Step(std::int64_t ticks, std::optional
                                                absl::FunctionRef<bool()> cancelled, std::string_view token) {
   auto job = std::make_shared<StepJob>();
   job->left = ticks;
-  absl::Status started = loop_.CallAs(token, [&] { return loop_.StartJob(job, expected_tick); });
+  absl::Status started = CallToChange(token, [&] { return loop_.StartJob(job, expected_tick); });
   if (!started.ok()) return started;
   while (!job->done.WaitForNotificationWithTimeout(kLook)) {
     if (!cancelled()) continue;
@@ -97,7 +108,9 @@ absl::StatusOr<Session::Stepped> Session::Step(std::int64_t ticks, std::optional
     });
     if (!called.ok()) return called;
   }
+  const std::string not_saved = Saved(store::Durability::kProcess).not_saved();
   if (!job->status.ok()) return std::move(job->status);
+  job->result.session.set_not_saved(not_saved);
   return std::move(job->result);
 }
 
@@ -129,20 +142,29 @@ absl::StatusOr<v1::Session> Session::Pull(const PullList& pulls, bool release_ot
 }
 
 void Session::Rest() {
-  (void)loop_.Call([this] { loop_.Pause("the session was paused, as it had no viewer for too long"); });
+  (void)loop_.Call([this] { loop_.Pause("the session was paused, because it had no viewer for too long"); });
+}
+
+void Session::AnnounceNotSaved() {
+  const v1::Session now = status();
+  if (now.not_saved() == announced_not_saved_) return;
+  announced_not_saved_ = now.not_saved();
+  publisher_.Announce(now);
 }
 
 absl::Status Session::CheckControl(std::string_view token) {
-  return loop_.CallAs(token, [] { return absl::OkStatus(); });
+  return CallToChange(token, [] { return absl::OkStatus(); });
 }
 
 absl::StatusOr<v1::Control> Session::ChangeControl(
     absl::FunctionRef<absl::Status(ControlBook& book, absl::Time now)> act) {
   absl::StatusOr<v1::Control> control;
+  if (absl::Status lease = saver_.CheckLease(); !lease.ok()) return lease;
   absl::Status called = loop_.Call([&] { control = loop_.ChangeControl(act); });
   if (!called.ok()) return called;
   if (!control.ok()) return control;
-  if (const auto saved = Saved(); !saved.ok()) return saved.status();
+  Saved();
+  if (absl::Status acknowledged = Acknowledge(); !acknowledged.ok()) return acknowledged;
   return control;
 }
 

@@ -38,11 +38,14 @@ struct SessionOrigin {
   std::optional<v1::SavedMoment> saved_moment = std::nullopt;  // the last one of a session that continues
   std::int64_t epoch = 0;                                      // in a cluster
   std::vector<Uploads::Held> surfaces = {};                    // uploaded files that the scene uses
+  bool temporary = false;                                      // v1::Session.temporary
 };
 
 // Thread-safe. The stepping thread (SteppingLoop) makes every change between two steps, so that it takes effect at once
-// and never in the middle of a step; the call returns when that is done and saved. `token` identifies the caller, who
-// gets PERMISSION_DENIED unless they control the session (ControlBook::Check).
+// and never in the middle of a step; the call returns when that is done and saved: steps survive the end of the
+// process, other changes a power failure as well (store::Durability). `token` identifies the caller, who gets
+// PERMISSION_DENIED unless they control the session (ControlBook::Check). In a cluster, a change returns UNAVAILABLE
+// and does nothing if another server may have the session (store::Ownership::CheckLease).
 class Session {
  public:
   using Fork = session::Fork;
@@ -76,6 +79,7 @@ class Session {
   // INVALID_ARGUMENT if `until` is in the past.
   absl::StatusOr<v1::Session> Play(std::optional<double> speed, bool as_fast_as_possible, double until,
                                    std::string_view token = {}, std::weak_ptr<const ReachedTime> leader = {});
+  absl::StatusOr<v1::Session> Play(const PlayRequest& request, std::string_view token);
   // The time that followers of this session read.
   std::shared_ptr<const ReachedTime> reached() const { return loop_.reached(); }
   absl::StatusOr<v1::Session> Pause(std::string_view token = {});
@@ -102,15 +106,20 @@ class Session {
   absl::Time attended() const { return absl::FromUnixNanos(attended_); }
   // Pauses the session without regard to control.
   void Rest();
+  // Announces the status to viewers if `not_saved` has changed since the last call. Not thread-safe.
+  void AnnounceNotSaved();
   // Returns OK if the token's bearer may change the session.
   absl::Status CheckControl(std::string_view token);
-  // Changes control by `act`, tells viewers, and returns the errors of `act`.
+  // Changes control by `act`, tells viewers, and returns the errors of `act`, or of Acknowledge.
   absl::StatusOr<v1::Control> ChangeControl(absl::FunctionRef<absl::Status(ControlBook& book, absl::Time now)> act);
   // Shows viewers the camera of the one who controls.
   absl::Status ShowCamera(const v1::Camera& camera, std::string_view token);
 
   // Waits until everything that calls have returned is in the store. Returns the errors of store::Journal::Flush.
-  absl::Status Flush() const { return saver_.Flush(); }
+  absl::Status Flush() const { return saver_.Flush(store::Durability::kPower); }
+  // In a cluster, waits until other servers would continue from what calls have returned, before they are answered.
+  // Returns the errors of store::Journal::AwaitCopy.
+  absl::Status Acknowledge() const { return saver_.AwaitCopy(); }
   // Removes the session from the store. Requires: Stop was not called yet.
   void Forget() { saver_.Forget(); }
   // Copies the present state, from which another run may continue. FAILED_PRECONDITION if the session has diverged.
@@ -121,9 +130,10 @@ class Session {
   void Stop(const absl::Status& reason);
 
  private:
-  // Returns the status once it is in the store, with `not_saved` if it cannot be. ABORTED if another server has taken
-  // the session.
-  absl::StatusOr<v1::Session> Saved();
+  // Returns the status once it is in the store, with `not_saved` if it cannot be.
+  v1::Session Saved(store::Durability durability = store::Durability::kPower);
+  // Runs `act` on the stepping thread for the token's bearer, if this server may change the session.
+  absl::Status CallToChange(std::string_view token, absl::FunctionRef<absl::Status()> act);
   // Runs `act` on the stepping thread for the token's bearer; the errors of both, else Saved().
   absl::StatusOr<v1::Session> Change(std::string_view token, absl::FunctionRef<absl::Status()> act);
 
@@ -135,6 +145,7 @@ class Session {
   IdempotencyCache idempotency_cache_;
   absl::Mutex update_mutex_;            // held by one call of Update at a time
   std::atomic<std::int64_t> attended_;  // [ns] since 1970
+  std::string announced_not_saved_;     // of AnnounceNotSaved
   StatusBoard board_;
   SessionSaver saver_;
   SessionReporter reporter_;

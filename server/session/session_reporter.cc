@@ -116,6 +116,7 @@ void SessionReporter::WriteStatus(const RunningSession& session, v1::Session& st
   *status.mutable_parameters() = run.parameters();
   status.set_revision(session.revision);
   status.set_speed(session.playback.shown_speed());
+  status.set_keep_playing(session.playback.keeps_playing());
   status.set_largest_stable_step(session.stable_step);
   *status.mutable_pace() = session.meter.pace();
   status.set_waiting_updates(session.updates.size());

@@ -17,7 +17,15 @@ SessionSaver::SessionSaver(std::shared_ptr<store::Journal> journal, const Clock&
       clock_(clock),
       between_states_(in_cluster ? kBetweenStatesInCluster : kBetweenStates) {}
 
-absl::Status SessionSaver::Flush() const { return journal_ == nullptr ? absl::OkStatus() : journal_->Flush(); }
+absl::Status SessionSaver::Flush(store::Durability durability) const {
+  return journal_ == nullptr ? absl::OkStatus() : journal_->Flush(durability);
+}
+
+absl::Status SessionSaver::AwaitCopy() const { return journal_ == nullptr ? absl::OkStatus() : journal_->AwaitCopy(); }
+
+absl::Status SessionSaver::CheckLease() const {
+  return journal_ == nullptr ? absl::OkStatus() : journal_->CheckLease();
+}
 
 void SessionSaver::Forget() const {
   if (journal_ != nullptr) journal_->Forget();

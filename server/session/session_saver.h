@@ -16,8 +16,8 @@ namespace phrenic::session {
 
 // Writes to the session's journal each change with its tick, the progress of a playing session every half second, and
 // a state every two seconds (every second in a cluster), so that a restored session steps again through two seconds of
-// its past at most. Without a journal nothing is saved. Any thread may call saves, Flush, Forget and WriteNotSaved; the
-// other methods belong to the stepping thread.
+// its past at most. Without a journal nothing is saved. Any thread may call saves, Flush, AwaitCopy, CheckLease, Forget
+// and WriteNotSaved; the other methods belong to the stepping thread.
 class SessionSaver {
  public:
   // `journal` may be null.
@@ -25,7 +25,10 @@ class SessionSaver {
 
   bool saves() const { return journal_ != nullptr; }
   // Waits until everything saved so far is on the disk. Returns the errors of store::Journal::Flush.
-  absl::Status Flush() const;
+  absl::Status Flush(store::Durability durability) const;
+  // The same as store::Journal::AwaitCopy and CheckLease.
+  absl::Status AwaitCopy() const;
+  absl::Status CheckLease() const;
   // Removes the session from the store.
   void Forget() const;
   // Fills `not_saved`: why the last attempt to write failed, or empty.

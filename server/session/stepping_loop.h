@@ -16,6 +16,7 @@
 #include "absl/synchronization/notification.h"
 #include "phrenic/v1/saved.pb.h"
 #include "phrenic/v1/session.pb.h"
+#include "server/mechanics/measures/readings.h"
 #include "server/session/command_queue.h"
 #include "server/session/control.h"
 #include "server/session/cpu_share.h"

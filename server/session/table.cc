@@ -11,12 +11,14 @@
 #include "server/schema/id.h"
 #include "server/schema/names.h"
 #include "server/schema/schema.h"
+#include "server/schema/secret.h"
 
 namespace phrenic::session {
 namespace {
 
 constexpr int kUsualPage = 100;
 constexpr int kLargestPage = 1000;
+constexpr double kTemporaryMinutes = 1;  // a temporary copy without viewers or calls is kept
 
 }  // namespace
 
@@ -25,8 +27,16 @@ Table::Table(Models& models, const Clock& clock, const Limits& limits, store::St
 
 Table::~Table() { Close(absl::UnavailableError("the server is shutting down")); }
 
-std::string Table::FreeId(const std::string& scene, const std::set<std::string>& elsewhere) const {
-  return schema::FreeId(scene, "session", [this, &elsewhere](const std::string& id) {
+std::string Table::StemOf(const std::string& scene) const {
+  const std::vector<std::string> names = models_.catalogue().Names();
+  return std::find(names.begin(), names.end(), scene) == names.end() ? "session" : scene;
+}
+
+std::string Table::FreeId(const std::string& stem, const std::string& account,
+                          const std::set<std::string>& elsewhere) const {
+  constexpr std::size_t kDigits = 12;  // of 4 bits
+  const std::string base = account.empty() ? stem : absl::StrCat(stem, "-", NewToken().substr(0, kDigits));
+  return schema::FreeId(base, "session", [this, &elsewhere](const std::string& id) {
     mutex_.AssertHeld();
     return sessions_.contains(id) || lost_.contains(id) || elsewhere.contains(id);
   });
@@ -39,9 +49,12 @@ absl::Status Table::CheckRoom(const std::string& account) const {
                                                      "start the server with a larger --max-sessions"));
   }
   if (account.empty()) return absl::OkStatus();
-  const auto own = std::count_if(sessions_.begin(), sessions_.end(), [&account](const auto& each) {
-    return each.second != nullptr && each.second->access()->account == account;
-  });
+  const auto own = std::count_if(sessions_.begin(), sessions_.end(),
+                                 [&account](const auto& each) {
+                                   return each.second != nullptr && each.second->access()->account == account;
+                                 }) +
+                   std::count_if(reserved_.begin(), reserved_.end(),
+                                 [&account](const auto& each) { return each.second == account; });
   if (own < limits_.sessions_of_user) return absl::OkStatus();
   return absl::ResourceExhaustedError(
       absl::StrCat(account, " has ", own,
@@ -49,7 +62,7 @@ absl::Status Table::CheckRoom(const std::string& account) const {
                    "the server with a larger --max-sessions-of-user"));
 }
 
-absl::StatusOr<std::string> Table::Reserve(const char* field, const std::string& wanted, const std::string& scene,
+absl::StatusOr<std::string> Table::Reserve(const char* field, const std::string& wanted, const std::string& stem,
                                            const std::string& account, const std::set<std::string>& elsewhere) {
   if (absl::Status status = schema::CheckId(field, wanted); !status.ok()) return status;
   absl::MutexLock lock(&mutex_);
@@ -58,21 +71,24 @@ absl::StatusOr<std::string> Table::Reserve(const char* field, const std::string&
     return absl::AlreadyExistsError(absl::StrCat(field, ": there is a session \"", wanted, "\" already"));
   }
   if (const auto lost = lost_.find(wanted); lost != lost_.end()) {
-    return absl::AlreadyExistsError(absl::StrCat(field, ": the store has a session \"", wanted, "\" that could not be ",
-                                                 "restored (", lost->second.problem.message(),
-                                                 "); delete it, or choose another id"));
+    const bool may_know = ControlOf(lost->second).account == account;
+    return absl::AlreadyExistsError(absl::StrCat(
+        field, ": the store has a session \"", wanted, "\" that could not be restored",
+        may_know ? absl::StrCat(" (", lost->second.problem.message(), ")") : "", "; delete it, or choose another id"));
   }
   if (absl::Status room = CheckRoom(account); !room.ok()) return room;
-  const std::string id = wanted.empty() ? FreeId(scene, elsewhere) : wanted;
+  const std::string id = wanted.empty() ? FreeId(stem, account, elsewhere) : wanted;
   sessions_.emplace(id, nullptr);
+  reserved_.emplace(id, account);
   return id;
 }
 
 absl::StatusOr<Table::Claim> Table::ReserveEverywhere(const char* field, const std::string& wanted,
                                                       const std::string& scene, const std::string& account) {
   std::set<std::string> elsewhere;
+  const std::string stem = StemOf(scene);
   for (;;) {
-    auto id = Reserve(field, wanted, scene, account, elsewhere);
+    auto id = Reserve(field, wanted, stem, account, elsewhere);
     if (!id.ok()) return id.status();
     if (ownership_ == nullptr) return Claim{*std::move(id)};
     const absl::StatusOr<std::int64_t> epoch = ownership_->Claim(*id);
@@ -80,6 +96,7 @@ absl::StatusOr<Table::Claim> Table::ReserveEverywhere(const char* field, const s
     {
       absl::MutexLock lock(&mutex_);
       sessions_.erase(*id);
+      reserved_.erase(*id);
     }
     if (!wanted.empty() || !absl::IsAlreadyExists(epoch.status())) {
       return absl::Status(epoch.status().code(), absl::StrCat(field, ": ", epoch.status().message()));
@@ -89,10 +106,10 @@ absl::StatusOr<Table::Claim> Table::ReserveEverywhere(const char* field, const s
 }
 
 absl::StatusOr<std::shared_ptr<Session>> Table::Make(const Claim& claim, const v1::CreateSessionRequest& request,
-                                                     ControlBook control) {
-  const auto compiled = models_.Get(request.source());
+                                                     ControlBook control, const Requester& by) {
+  auto compiled = models_.Compile(request.source(), by);
   if (!compiled.ok()) return compiled.status();
-  const std::shared_ptr<const Model>& model = *compiled;
+  const std::shared_ptr<const Model>& model = compiled->model;
   v1::Parameters parameters = model->parameters;
   const absl::StatusOr<v1::Parameters> preset = FindPreset(model->scene, request.preset());
   if (!preset.ok()) return preset.status();
@@ -111,26 +128,27 @@ absl::StatusOr<std::shared_ptr<Session>> Table::Make(const Claim& claim, const v
   if (!changes.ok()) return changes.status();
   Session::Fork start{std::move(parameters), model->InitialState(), stable_step};
   if (absl::Status status = ChangePulls(*changes, true, start.state.pulls); !status.ok()) return status;
-  auto surfaces = models_.HoldSurfaces(model->scene);
-  if (!surfaces.ok()) return surfaces.status();
-  auto origin = Begin(claim, *model, *std::move(surfaces), std::move(control));
+  auto origin = Begin(claim, *model, std::move(compiled->surfaces), std::move(control));
   if (!origin.ok()) return origin.status();
   return std::make_shared<Session>(claim.id, model, std::move(start), clock_, limits_, *std::move(origin));
 }
 
-absl::StatusOr<std::shared_ptr<Session>> Table::MakeFork(const Claim& claim, Session& of, ControlBook control) const {
+absl::StatusOr<std::shared_ptr<Session>> Table::MakeFork(const Claim& claim, Session& of, bool temporary,
+                                                         ControlBook control) const {
   absl::StatusOr<Session::Fork> start = of.MakeFork();
   if (!start.ok()) return start.status();
   auto origin = Begin(claim, of.model(), of.surfaces(), std::move(control));
   if (!origin.ok()) return origin.status();
+  origin->temporary = temporary;
   return std::make_shared<Session>(claim.id, of.shared_model(), *std::move(start), clock_, limits_, *std::move(origin));
 }
 
-absl::StatusOr<std::shared_ptr<Session>> Table::Create(const v1::CreateSessionRequest& request, ControlBook control) {
+absl::StatusOr<std::shared_ptr<Session>> Table::Create(const v1::CreateSessionRequest& request, ControlBook control,
+                                                       const Requester& by) {
   const std::string scene = request.source().has_scene() ? request.source().scene().name() : request.source().name();
   const std::string account = control.state().account;
   return Admit("session_id", request.session_id(), scene, account,
-               [&](const Claim& claim) { return Make(claim, request, std::move(control)); });
+               [&](const Claim& claim) { return Make(claim, request, std::move(control), by); });
 }
 
 absl::StatusOr<std::shared_ptr<Session>> Table::Fork(const v1::ForkSessionRequest& request, ControlBook control) {
@@ -138,7 +156,7 @@ absl::StatusOr<std::shared_ptr<Session>> Table::Fork(const v1::ForkSessionReques
   if (!of.ok()) return of.status();
   const std::string account = control.state().account;
   return Admit("fork_id", request.fork_id(), (*of)->model().scene.name(), account,
-               [&](const Claim& claim) { return MakeFork(claim, **of, std::move(control)); });
+               [&](const Claim& claim) { return MakeFork(claim, **of, request.temporary(), std::move(control)); });
 }
 
 absl::StatusOr<std::shared_ptr<Session>> Table::Admit(const char* field, const std::string& wanted,
@@ -148,13 +166,16 @@ absl::StatusOr<std::shared_ptr<Session>> Table::Admit(const char* field, const s
   if (!claim.ok()) return claim.status();
   absl::StatusOr<std::shared_ptr<Session>> session = make(*claim);
   if (session.ok()) {
-    if (const absl::Status saved = (*session)->Flush(); !saved.ok()) {
+    absl::Status saved = (*session)->Flush();
+    if (saved.ok()) saved = (*session)->Acknowledge();
+    if (!saved.ok()) {
       (*session)->Forget();
       session = saved;
     }
   }
   if (!session.ok() && ownership_ != nullptr) ownership_->Abandon(claim->id);
   absl::MutexLock lock(&mutex_);
+  reserved_.erase(claim->id);
   if (closed_.has_value()) return *closed_;
   if (session.ok()) {
     sessions_[claim->id] = *session;
@@ -167,7 +188,7 @@ absl::StatusOr<std::shared_ptr<Session>> Table::Admit(const char* field, const s
 absl::Status Table::NoSession(const std::string& id) const {
   std::vector<std::string> ids;
   for (const auto& [other, session] : sessions_) {
-    if (session != nullptr) ids.push_back(other);
+    if (session != nullptr && session->access()->account.empty()) ids.push_back(other);
   }
   return absl::NotFoundError(
       absl::StrCat("session_id: there is no session \"", schema::ShortId(id), "\"", schema::ThereAre(id, ids)));
@@ -181,14 +202,15 @@ absl::StatusOr<std::shared_ptr<Session>> Table::Find(const std::string& id) cons
   return found->second;
 }
 
-Table::Page Table::List(int page_size, const std::string& token) const {
+Table::Page Table::List(int page_size, const std::string& after,
+                        const std::function<bool(const Session& session)>& visible) const {
   const int limit = page_size <= 0 ? kUsualPage : std::min(page_size, kLargestPage);
   Page page;
   absl::MutexLock lock(&mutex_);
-  for (auto next = sessions_.upper_bound(token); next != sessions_.end(); ++next) {
-    if (next->second == nullptr) continue;
+  for (auto next = sessions_.upper_bound(after); next != sessions_.end(); ++next) {
+    if (next->second == nullptr || (visible != nullptr && !visible(*next->second))) continue;
     if (static_cast<int>(page.sessions.size()) == limit) {
-      page.next_token = page.sessions.back()->id();
+      page.last = page.sessions.back()->id();
       break;
     }
     page.sessions.push_back(next->second);
@@ -209,6 +231,9 @@ absl::Status Table::Remove(const std::string& id, std::optional<std::string_view
   if (!wanted.ok()) return wanted.status();
   if (token.has_value()) {
     if (absl::Status status = (*wanted)->CheckControl(*token); !status.ok()) return status;
+  }
+  if (ownership_ != nullptr) {
+    if (absl::Status status = ownership_->Delete(id); !status.ok()) return status;
   }
   std::shared_ptr<Session> session;
   {
@@ -250,8 +275,11 @@ void Table::Tend() {
   for (const auto& session : List(kLargestPage, "").sessions) {
     const v1::Session status = session->status();
     if (status.viewers() > 0) session->NoteAttention();
-    if (status.state() == v1::SESSION_STATE_PLAYING && over(*session, limits_.pause_minutes)) session->Rest();
-    if (over(*session, limits_.delete_minutes)) DeleteAnyway(session->id()).IgnoreError();
+    session->AnnounceNotSaved();
+    const bool plays = status.state() == v1::SESSION_STATE_PLAYING && !status.keep_playing();
+    if (plays && over(*session, limits_.pause_minutes)) session->Rest();
+    const bool ended = status.temporary() && over(*session, kTemporaryMinutes);
+    if (ended || over(*session, limits_.delete_minutes)) DeleteAnyway(session->id()).IgnoreError();
   }
 }
 
@@ -269,7 +297,7 @@ void Table::Close(const absl::Status& reason) {
   for (const auto& [id, session] : sessions) {
     if (session == nullptr) continue;
     session->AwaitEnd();
-    if (ownership_ != nullptr && session->Flush().ok()) ownership_->Release(id);
+    if (session->Flush().ok() && ownership_ != nullptr && session->Acknowledge().ok()) ownership_->Release(id);
   }
 }
 

@@ -2,12 +2,14 @@
 #ifndef PHRENIC_SERVER_SESSION_TABLE_H_
 #define PHRENIC_SERVER_SESSION_TABLE_H_
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "absl/base/thread_annotations.h"
@@ -21,12 +23,15 @@
 
 namespace phrenic::session {
 
+struct Compiled;
+struct Replayed;
+
 // Creates, finds, restores and deletes sessions. Thread-safe.
 class Table {
  public:
   struct Page {
     std::vector<std::shared_ptr<Session>> sessions;
-    std::string next_token;
+    std::string last;  // id of the last one, if more follow
   };
 
   // `store` saves the sessions; null: nothing is saved. `ownership` knows which sessions of a cluster this server owns;
@@ -35,35 +40,45 @@ class Table {
         store::Ownership* ownership = nullptr);
   ~Table();
 
+  // Gives the present name of an account that an earlier version stored.
+  using AccountNames = std::function<std::string(const std::string& stored)>;
+  // Sets the names for Restore and TakeOver; null: they are unchanged. Call it before them.
+  void set_account_names(AccountNames names) { account_names_ = std::move(names); }
+
   // Restores the sessions of an earlier server from the store; those that played continue to play. Returns the sessions
-  // that could not be restored, with the reason; they stay in the store under their id until they are deleted. Calls
-  // `progress` before each session.
+  // that could not be restored, with the reason; they stay in the store under their id until they are deleted, and the
+  // next server tries again. A session whose scene compiles to another model in this build is carried over (CarryOver).
+  // Calls `progress` before each session.
   absl::StatusOr<std::map<std::string, absl::Status>> Restore(absl::FunctionRef<void(const std::string& id)> progress)
       ABSL_LOCKS_EXCLUDED(mutex_);
+
+  // Returns what Restore and TakeOver carried over, as v1::Session.carried_over, by id.
+  std::map<std::string, std::string> carried_over() const ABSL_LOCKS_EXCLUDED(mutex_);
 
   // Continues a session of a server that is gone. The errors of Restore.
   absl::Status TakeOver(const store::SavedSession& saved, std::int64_t epoch) ABSL_LOCKS_EXCLUDED(mutex_);
   // Ends a session that another server continues, and its viewers with UNAVAILABLE. Does not wait.
   void Drop(const std::string& id) ABSL_LOCKS_EXCLUDED(mutex_);
 
-  // Compiles the scene and creates a paused session. An empty id is chosen from the scene's name. The errors of
-  // Models::Get; INVALID_ARGUMENT, ALREADY_EXISTS or RESOURCE_EXHAUSTED for the id, the fields and the number of
+  // Compiles the scene on behalf of `by` and creates a paused session. An empty id is chosen (FreeId). The errors of
+  // Models::Compile; INVALID_ARGUMENT, ALREADY_EXISTS or RESOURCE_EXHAUSTED for the id, the fields and the number of
   // sessions.
-  absl::StatusOr<std::shared_ptr<Session>> Create(const v1::CreateSessionRequest& request, ControlBook control = {})
-      ABSL_LOCKS_EXCLUDED(mutex_);
+  absl::StatusOr<std::shared_ptr<Session>> Create(const v1::CreateSessionRequest& request, ControlBook control = {},
+                                                  const Requester& by = {}) ABSL_LOCKS_EXCLUDED(mutex_);
   // Creates a paused session at the present state of another one (Session::MakeFork). The same errors.
   absl::StatusOr<std::shared_ptr<Session>> Fork(const v1::ForkSessionRequest& request, ControlBook control = {})
       ABSL_LOCKS_EXCLUDED(mutex_);
-  // NOT_FOUND lists the ids that there are.
+  // NOT_FOUND lists the ids of sessions that no account owns.
   absl::StatusOr<std::shared_ptr<Session>> Find(const std::string& id) const ABSL_LOCKS_EXCLUDED(mutex_);
-  // Returns sessions sorted by id, after the one that `token` names.
-  Page List(int page_size, const std::string& token) const ABSL_LOCKS_EXCLUDED(mutex_);
+  // Returns the sessions that are `visible` (null: all), sorted by id, after the id `after`.
+  Page List(int page_size, const std::string& after,
+            const std::function<bool(const Session& session)>& visible = nullptr) const ABSL_LOCKS_EXCLUDED(mutex_);
   // Deletes the session if the token's bearer may (Session::CheckControl), and ends its viewers with NOT_FOUND.
   absl::Status Delete(const std::string& id, std::string_view token = {}) ABSL_LOCKS_EXCLUDED(mutex_);
   // Deletes the session without regard to control.
   absl::Status DeleteAnyway(const std::string& id) ABSL_LOCKS_EXCLUDED(mutex_);
-  // Pauses and deletes sessions that have had no viewer and no call for as long as the limits say. A PeriodicTask calls
-  // it.
+  // Pauses and deletes sessions that have had no viewer and no call for as long as the limits say, unless they were
+  // asked to keep playing; deletes temporary copies after a minute. A PeriodicTask calls it.
   void Tend() ABSL_LOCKS_EXCLUDED(mutex_);
   // Stops and saves every session, for another server to continue. No session can be created afterwards, and none steps
   // or writes to the store any more, even if a caller still holds it.
@@ -79,7 +94,7 @@ class Table {
 
   // Reserves an id, under which sessions_ has null until the session is created. The field `field` of the request holds
   // the wanted id; `elsewhere` are ids that other servers have.
-  absl::StatusOr<std::string> Reserve(const char* field, const std::string& wanted, const std::string& scene,
+  absl::StatusOr<std::string> Reserve(const char* field, const std::string& wanted, const std::string& stem,
                                       const std::string& account, const std::set<std::string>& elsewhere)
       ABSL_LOCKS_EXCLUDED(mutex_);
   // Reserves an id in the whole cluster.
@@ -91,20 +106,29 @@ class Table {
                                                  const std::string& account, absl::FunctionRef<Maker> make)
       ABSL_LOCKS_EXCLUDED(mutex_);
   absl::StatusOr<std::shared_ptr<Session>> Make(const Claim& claim, const v1::CreateSessionRequest& request,
-                                                ControlBook control);
-  absl::StatusOr<std::shared_ptr<Session>> MakeFork(const Claim& claim, Session& of, ControlBook control) const;
+                                                ControlBook control, const Requester& by);
+  absl::StatusOr<std::shared_ptr<Session>> MakeFork(const Claim& claim, Session& of, bool temporary,
+                                                    ControlBook control) const;
   // Begins the journal of a new session, if there is a store.
   absl::StatusOr<SessionOrigin> Begin(const Claim& claim, const Model& model, std::vector<Uploads::Held> surfaces,
                                       ControlBook control) const;
   // `taken`: another server had the session, and this server's store gets all of it.
   absl::StatusOr<std::shared_ptr<Session>> Restored(const store::SavedSession& saved, std::int64_t epoch, bool taken);
+  absl::StatusOr<std::shared_ptr<store::Journal>> JournalOf(const store::SavedSession& saved, const Compiled& compiled,
+                                                            const Replayed& replayed, bool taken) const;
   // Returns the session's epoch. FAILED_PRECONDITION if another server has it; it is then removed from this store.
   absl::StatusOr<std::int64_t> Reclaim(const store::SavedSession& saved);
   // `token` of the caller; nullopt: without regard to control.
   absl::Status Remove(const std::string& id, std::optional<std::string_view> token) ABSL_LOCKS_EXCLUDED(mutex_);
+  // Returns the control of a saved session, with the present name of its account.
+  ControlState ControlOf(const store::SavedSession& saved) const;
   absl::Status DeleteLost(const std::string& id, std::optional<std::string_view> token)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  std::string FreeId(const std::string& scene, const std::set<std::string>& elsewhere) const
+  // Returns what an id may begin with: the scene's name if the catalogue has it, and otherwise "session", since the
+  // name of a scene that a client sends may be a patient's.
+  std::string StemOf(const std::string& scene) const;
+  // Returns "thorax", "thorax-2" ...; with an account "thorax-5f0c...", which tells others nothing.
+  std::string FreeId(const std::string& stem, const std::string& account, const std::set<std::string>& elsewhere) const
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   absl::Status NoSession(const std::string& id) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
@@ -113,10 +137,13 @@ class Table {
   const Limits limits_;
   store::Store* const store_;
   store::Ownership* const ownership_;
+  AccountNames account_names_;
   mutable absl::Mutex mutex_;
   std::map<std::string, std::shared_ptr<Session>> sessions_ ABSL_GUARDED_BY(mutex_);
+  std::map<std::string, std::string> reserved_ ABSL_GUARDED_BY(mutex_);      // accounts, by the ids that are reserved
   std::map<std::string, store::SavedSession> lost_ ABSL_GUARDED_BY(mutex_);  // could not be restored
-  std::vector<std::shared_ptr<Session>> dropped_ ABSL_GUARDED_BY(mutex_);    // Tend releases them
+  std::map<std::string, std::string> carried_over_ ABSL_GUARDED_BY(mutex_);
+  std::vector<std::shared_ptr<Session>> dropped_ ABSL_GUARDED_BY(mutex_);  // Tend releases them
   std::optional<absl::Status> closed_ ABSL_GUARDED_BY(mutex_);
 };
 

@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "server/session/carry_over.h"
 #include "server/session/saving.h"
 #include "server/session/table.h"
 
@@ -17,17 +18,45 @@ absl::StatusOr<SessionOrigin> Table::Begin(const Claim& claim, const Model& mode
   return origin;
 }
 
+// A session that is carried over begins a new record, under its id.
+absl::StatusOr<std::shared_ptr<store::Journal>> Table::JournalOf(const store::SavedSession& saved,
+                                                                 const Compiled& compiled, const Replayed& replayed,
+                                                                 bool taken) const {
+  if (replayed.carried_over.empty()) return taken ? store_->Begin(saved.id, saved.scene) : store_->Continue(saved);
+  auto scene = SaveScene(*compiled.model, compiled.surfaces);
+  if (!scene.ok()) return scene.status();
+  return store_->Begin(saved.id, *std::move(scene));
+}
+
+ControlState Table::ControlOf(const store::SavedSession& saved) const {
+  const v1::SavedControl& control = (saved.later.empty() ? saved.moment : saved.later.back()).control();
+  ControlState state = RestoreControl(control);
+  const bool current = control.account_qualified() || account_names_ == nullptr || state.account.empty();
+  if (!current) state.account = account_names_(state.account);
+  return state;
+}
+
 absl::StatusOr<std::shared_ptr<Session>> Table::Restored(const store::SavedSession& saved, std::int64_t epoch,
                                                          bool taken) {
   if (!saved.problem.ok()) return saved.problem;
-  auto compiled = RestoreScene(saved.scene, absl::StrCat("session ", saved.id), models_);
+  auto compiled = CompileSaved(saved.scene, ControlOf(saved).account, models_);
   if (!compiled.ok()) return compiled.status();
-  absl::StatusOr<Replayed> replayed = Replay(compiled->model, saved);
+  absl::StatusOr<Replayed> replayed =
+      compiled->same ? Replay(compiled->model, saved) : CarryOver(compiled->model, saved);
+  // The same scene, of which another build has other states or takes other steps.
+  if (!replayed.ok() && compiled->same) replayed = CarryOver(compiled->model, saved);
   if (!replayed.ok()) return replayed.status();
+  if (!replayed->carried_over.empty()) {
+    replayed->moment.mutable_session()->set_carried_over(replayed->carried_over);
+    absl::MutexLock lock(&mutex_);
+    carried_over_[saved.id] = replayed->carried_over;
+  }
+  auto journal = JournalOf(saved, *compiled, *replayed, taken);
+  if (!journal.ok()) return journal.status();
   const v1::Session& last = replayed->moment.session();
-  Session::Fork start{last.parameters(), std::move(replayed->state), last.largest_stable_step()};
-  Session::Origin origin{ControlBook(RestoreControl(replayed->moment.control())),
-                         taken ? store_->Begin(saved.id, saved.scene) : store_->Continue(saved), replayed->moment,
+  Session::Fork start{SavedParameters(*compiled->model, last.parameters()), std::move(replayed->state),
+                      last.largest_stable_step()};
+  Session::Origin origin{ControlBook(ControlOf(saved)), *std::move(journal), replayed->moment,
                          epoch, std::move(compiled->surfaces)};
   return std::make_shared<Session>(saved.id, compiled->model, std::move(start), clock_, limits_, std::move(origin));
 }
@@ -54,6 +83,11 @@ absl::StatusOr<std::map<std::string, absl::Status>> Table::Restore(
     lost_.emplace(std::move(id), std::move(saved));
   }
   return lost;
+}
+
+std::map<std::string, std::string> Table::carried_over() const {
+  absl::MutexLock lock(&mutex_);
+  return carried_over_;
 }
 
 absl::StatusOr<std::int64_t> Table::Reclaim(const store::SavedSession& saved) {
@@ -83,7 +117,7 @@ absl::Status Table::TakeOver(const store::SavedSession& saved, std::int64_t epoc
 absl::Status Table::DeleteLost(const std::string& id, std::optional<std::string_view> token) {
   const auto lost = lost_.find(id);
   const store::SavedSession& saved = lost->second;
-  ControlBook control(RestoreControl((saved.later.empty() ? saved.moment : saved.later.back()).control()));
+  ControlBook control(ControlOf(saved));
   if (token.has_value()) {
     if (absl::Status status = control.Check(*token, clock_.Now()); !status.ok()) return status;
   }

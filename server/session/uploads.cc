@@ -6,14 +6,41 @@
 #include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "absl/time/clock.h"
 #include "server/mesh/units.h"
 #include "server/meshio/formats.h"
+#include "server/schema/secret.h"
 #include "server/schema/sha256.h"
 
 namespace phrenic::session {
 namespace {
 
-constexpr std::size_t kMostPending = 16;
+constexpr std::ptrdiff_t kMostPending = 16;  // of one owner
+constexpr std::size_t kMostPendingInAll = 256;
+constexpr absl::Duration kAbandoned = absl::Minutes(10);  // without a chunk: others may take the room
+
+// What the files of a list, of one owner or of all, have in sum.
+struct Sum {
+  std::ptrdiff_t files = 0;
+  std::int64_t bytes = 0;
+};
+
+template <typename Files, typename Counts>
+Sum SumOf(const Files& files, const Counts& counts) {
+  Sum sum;
+  for (const auto& each : files) {
+    if (!counts(each)) continue;
+    ++sum.files;
+    sum.bytes += each.file.size;
+  }
+  return sum;
+}
+
+absl::Status NoRoom(std::int64_t most) {
+  return absl::ResourceExhaustedError(absl::StrCat(
+      "size: the files of others leave no room in the ", most,
+      " bytes that all uploads may have (--max-uploads-mb): delete files that you do not need, or try later"));
+}
 
 bool IsSurfaceName(const std::string& name) {
   const auto& formats = meshio::Formats();
@@ -34,6 +61,11 @@ Uploads::Uploads(const Limits& limits, std::string spool_folder)
     : limits_(limits), spool_folder_(std::move(spool_folder)) {}
 
 absl::Status Uploads::CheckFile(const std::string& name, std::int64_t size) const {
+  constexpr std::size_t kLongestName = 255;
+  if (name.size() > kLongestName) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("name: has ", name.size(), " bytes; ", kLongestName, " are the most"));
+  }
   if (!IsSurfaceName(name)) {
     return absl::InvalidArgumentError(
         absl::StrCat("name: the ending of \"", name, "\" is no known format; there are ", meshio::Endings()));
@@ -45,29 +77,61 @@ absl::Status Uploads::CheckFile(const std::string& name, std::int64_t size) cons
       " (--max-upload-mb); make the surface coarser, or write it in ", "a binary format (phrenic convert)"));
 }
 
-absl::StatusOr<Uploads::Begun> Uploads::Begin(const std::string& name, std::int64_t size, const std::string& sha256) {
+std::int64_t Uploads::QuotaOf(const std::string& owner) const {
+  return owner.empty() ? limits_.uploads_bytes : std::min(limits_.uploads_bytes, limits_.uploads_bytes_of_user);
+}
+
+absl::Status Uploads::MakeRoomToBegin(const std::string& owner, std::int64_t size) {
+  const auto own = [&owner](const Held& each) { return each.owner == owner; };
+  for (auto oldest = std::find_if(pending_.begin(), pending_.end(), own); oldest != pending_.end();
+       oldest = std::find_if(pending_.begin(), pending_.end(), own)) {
+    const Sum sum = SumOf(pending_, own);
+    if (sum.files < kMostPending && sum.bytes + size <= QuotaOf(owner)) break;
+    pending_.erase(oldest);
+  }
+  const auto any = [](const Held&) { return true; };
+  const auto full = [&] {
+    const Sum sum = SumOf(pending_, any);
+    return sum.files > 0 && (pending_.size() >= kMostPendingInAll || sum.bytes + size > limits_.uploads_bytes);
+  };
+  const auto abandoned = [now = absl::Now()](const Held& each) { return each.used + kAbandoned < now; };
+  if (full()) pending_.remove_if(abandoned);
+  if (full()) return NoRoom(limits_.uploads_bytes);
+  const Sum others = SumOf(kept_, [&own](const Held& each) { return !own(each); });
+  const bool fits =
+      others.files == 0 || (others.files < limits_.uploads && others.bytes + size <= limits_.uploads_bytes);
+  return fits ? absl::OkStatus() : NoRoom(limits_.uploads_bytes);
+}
+
+absl::StatusOr<Uploads::Begun> Uploads::Begin(const Requester& by, const std::string& name, std::int64_t size,
+                                              const std::string& sha256) {
   if (absl::Status status = CheckFile(name, size); !status.ok()) return status;
+  if (!sha256.empty() && sha256.size() != Sha256Hex("").size()) {
+    return absl::InvalidArgumentError("sha256: is not the 64 hexadecimal digits of a SHA-256");
+  }
+  const Requester own{.owner = by.owner};
   absl::MutexLock lock(&mutex_);
-  if (const auto kept = FindKept(sha256); kept != kept_.end()) {
+  if (const auto kept = FindKept(own, sha256); kept != kept_.end()) {
     kept_.splice(kept_.begin(), kept_, kept);
     return Begun{"", kept->file.size, kept->file};
   }
   for (const Held& pending : pending_) {
     const File& file = pending.file;
-    const bool same = !sha256.empty() && file.sha256 == sha256 && file.size == size;
+    const bool same = pending.owner == by.owner && !sha256.empty() && file.sha256 == sha256 && file.size == size;
     if (same) return Begun{pending.id, pending.spool->size(), file};
   }
   if (absl::Status status = record::CheckRoom(spool_folder_, size); !status.ok()) return status;
+  if (absl::Status status = MakeRoomToBegin(by.owner, size); !status.ok()) return status;
   auto spool = record::SpoolFile::Open(spool_folder_);
   if (!spool.ok()) return spool.status();
-  if (pending_.size() >= kMostPending) pending_.pop_front();
-  pending_.push_back({absl::StrCat("u", ++begun_), {sha256, name, size}, *std::move(spool)});
+  pending_.push_back({NewToken(), {sha256, name, size}, *std::move(spool), by.owner, absl::Now()});
   return Begun{pending_.back().id, 0, pending_.back().file};
 }
 
-absl::StatusOr<std::int64_t> Uploads::Add(const std::string& id, std::int64_t offset, std::string_view chunk) {
+absl::StatusOr<std::int64_t> Uploads::Add(const Requester& by, const std::string& id, std::int64_t offset,
+                                          std::string_view chunk) {
   absl::MutexLock lock(&mutex_);
-  const auto pending = FindPending(id);
+  const auto pending = FindPending(by, id);
   if (pending == pending_.end()) return NoUpload(id);
   const std::int64_t received = pending->spool->size();
   if (offset < 0 || offset > received) {
@@ -82,15 +146,19 @@ absl::StatusOr<std::int64_t> Uploads::Add(const std::string& id, std::int64_t of
   }
   const std::size_t known = std::min(chunk.size(), static_cast<std::size_t>(received - offset));
   if (absl::Status status = pending->spool->Append(chunk.substr(known)); !status.ok()) return status;
+  pending->used = absl::Now();
   return pending->spool->size();
 }
 
-absl::StatusOr<Uploads::Finished> Uploads::Finish(const std::string& id, double unit_mm) {
+absl::StatusOr<Uploads::Finished> Uploads::Finish(const Requester& by, const std::string& id, double unit_mm) {
   Held pending;
   {
-    absl::MutexLock lock(&mutex_);
-    const auto found = FindPending(id);
-    if (found == pending_.end()) return FinishedBefore(id, unit_mm);
+    absl::ReleasableMutexLock lock(&mutex_);
+    const auto found = FindPending(by, id);
+    if (found == pending_.end()) {
+      lock.Release();
+      return FinishedBefore(by, id, unit_mm);
+    }
     if (found->spool->size() < found->file.size) {
       return absl::FailedPreconditionError(absl::StrCat("upload_id: ", found->spool->size(), " of ", found->file.size,
                                                         " bytes have arrived; send the others first"));
@@ -109,30 +177,48 @@ absl::StatusOr<Uploads::Finished> Uploads::Finish(const std::string& id, double 
   auto surface = meshio::ParseSurface(pending.file.name, *bytes, kMillimetre * unit_mm);
   if (!surface.ok()) return surface.status();
   absl::MutexLock lock(&mutex_);
-  Keep(pending);
+  if (absl::Status status = Keep(pending); !status.ok()) return status;
   return Finished{pending.file, *std::move(surface)};
 }
 
-absl::StatusOr<Uploads::Finished> Uploads::FinishedBefore(const std::string& id, double unit_mm) const {
-  const auto kept = std::find_if(kept_.begin(), kept_.end(), [&id](const Held& one) { return one.id == id; });
-  if (kept == kept_.end()) return NoUpload(id);
-  const auto bytes = kept->Bytes();
+absl::StatusOr<Uploads::Finished> Uploads::FinishedBefore(const Requester& by, const std::string& id,
+                                                          double unit_mm) const {
+  Held held;
+  {
+    absl::MutexLock lock(&mutex_);
+    const auto kept = std::find_if(kept_.begin(), kept_.end(), [&](const Held& one) {
+      return !id.empty() && one.id == id && one.owner == by.owner;
+    });
+    if (kept == kept_.end()) return NoUpload(id);
+    held = *kept;
+  }
+  const auto bytes = held.Bytes();
   if (!bytes.ok()) return bytes.status();
-  auto surface = meshio::ParseSurface(kept->file.name, *bytes, kMillimetre * unit_mm);
+  auto surface = meshio::ParseSurface(held.file.name, *bytes, kMillimetre * unit_mm);
   if (!surface.ok()) return surface.status();
-  return Finished{kept->file, *std::move(surface)};
+  return Finished{held.file, *std::move(surface)};
 }
 
-void Uploads::Keep(Held kept) {
-  if (const auto same = FindKept(kept.file.sha256); same != kept_.end()) kept_.erase(same);
-  kept_.push_front(std::move(kept));
-  std::int64_t bytes = 0;
-  int files = 0;
-  for (auto file = kept_.begin(); file != kept_.end();) {
-    bytes += file->file.size;
-    const bool stays = files == 0 || (bytes <= limits_.uploads_bytes && files < limits_.uploads);
-    ++files;
-    file = stays ? std::next(file) : kept_.erase(file);
+absl::Status Uploads::Keep(Held& kept) {
+  const std::string owner = kept.owner;
+  for (const Held& same : kept_) {
+    if (same.file.sha256 == kept.file.sha256) kept.spool = same.spool;
+  }
+  if (const auto same = FindKept({.owner = owner}, kept.file.sha256); same != kept_.end()) kept_.erase(same);
+  kept_.push_front(kept);
+  const auto own = [&owner](const Held& each) { return each.owner == owner; };
+  const auto any = [](const Held&) { return true; };
+  const std::ptrdiff_t files = owner.empty() ? limits_.uploads : std::min(limits_.uploads, limits_.uploads_of_user);
+  for (;;) {
+    const Sum mine = SumOf(kept_, own), all = SumOf(kept_, any);
+    const bool fits = all.files <= limits_.uploads && all.bytes <= limits_.uploads_bytes;
+    if (mine.files <= files && mine.bytes <= QuotaOf(owner) && fits) return absl::OkStatus();
+    if (mine.files == 1) {
+      if (fits || all.files == 1) return absl::OkStatus();  // one file is always kept
+      kept_.pop_front();
+      return NoRoom(limits_.uploads_bytes);
+    }
+    kept_.erase(std::next(std::find_if(kept_.rbegin(), kept_.rend(), own)).base());
   }
 }
 
@@ -141,32 +227,43 @@ absl::Status Uploads::NoUpload(const std::string& id) const {
       absl::StrCat("upload_id: there is no upload \"", id.substr(0, 64), "\" in progress; begin it again"));
 }
 
-std::list<Uploads::Held>::iterator Uploads::FindKept(std::string_view sha256) {
-  return std::find_if(kept_.begin(), kept_.end(), [&](const Held& kept) { return kept.file.sha256 == sha256; });
+// An administrator's own file comes before those of others.
+Uploads::Files::iterator Uploads::FindKept(const Requester& by, std::string_view sha256) {
+  const auto find = [&](bool others) {
+    return std::find_if(kept_.begin(), kept_.end(), [&](const Held& kept) {
+      return kept.file.sha256 == sha256 && (others || kept.owner == by.owner);
+    });
+  };
+  const auto own = find(false);
+  return own == kept_.end() && by.all_files ? find(true) : own;
 }
 
-std::list<Uploads::Held>::iterator Uploads::FindPending(const std::string& id) {
-  return std::find_if(pending_.begin(), pending_.end(), [&](const Held& pending) { return pending.id == id; });
+Uploads::Files::iterator Uploads::FindPending(const Requester& by, const std::string& id) {
+  return std::find_if(pending_.begin(), pending_.end(),
+                      [&](const Held& pending) { return SameToken(pending.id, id) && pending.owner == by.owner; });
 }
 
-std::vector<Uploads::File> Uploads::List() const {
+std::vector<Uploads::File> Uploads::List(const Requester& by) const {
   absl::MutexLock lock(&mutex_);
   std::vector<File> files;
-  for (const Held& kept : kept_) files.push_back(kept.file);
+  for (const Held& kept : kept_) {
+    if (by.all_files || kept.owner == by.owner) files.push_back(kept.file);
+  }
   return files;
 }
 
-absl::Status Uploads::Delete(const std::string& path) {
+absl::Status Uploads::Delete(const Requester& by, const std::string& path) {
+  const std::string_view sha256 = std::string_view(path).substr(std::min(path.size(), kPrefix.size()));
   absl::MutexLock lock(&mutex_);
-  const auto kept = FindKept(std::string_view(path).substr(std::min(path.size(), kPrefix.size())));
-  if (kept == kept_.end()) return absl::NotFoundError(absl::StrCat("path: there is no ", path.substr(0, 80)));
-  kept_.erase(kept);
-  return absl::OkStatus();
+  const auto removed = kept_.remove_if(
+      [&](const Held& kept) { return kept.file.sha256 == sha256 && (by.all_files || kept.owner == by.owner); });
+  if (removed > 0) return absl::OkStatus();
+  return absl::NotFoundError(absl::StrCat("path: there is no \"", path.substr(0, 80), "\" that belongs to you"));
 }
 
-absl::StatusOr<Uploads::Held> Uploads::Hold(const std::string& path) {
+absl::StatusOr<Uploads::Held> Uploads::Hold(const Requester& by, const std::string& path) {
   absl::MutexLock lock(&mutex_);
-  const auto kept = FindKept(std::string_view(path).substr(std::min(path.size(), kPrefix.size())));
+  const auto kept = FindKept(by, std::string_view(path).substr(std::min(path.size(), kPrefix.size())));
   if (kept == kept_.end()) {
     return absl::NotFoundError(
         absl::StrCat(path.substr(0, 80),
@@ -176,23 +273,16 @@ absl::StatusOr<Uploads::Held> Uploads::Hold(const std::string& path) {
   return *kept;
 }
 
-absl::StatusOr<Uploads::Held> Uploads::Adopt(const std::string& name, std::string_view bytes) {
+absl::StatusOr<Uploads::Held> Uploads::Adopt(const Requester& by, const std::string& name, std::string_view bytes) {
   const std::string sha256 = Sha256Hex(bytes);
-  if (auto there = Hold(absl::StrCat(std::string(kPrefix), sha256)); there.ok()) return there;
+  if (auto there = Hold({.owner = by.owner}, absl::StrCat(std::string(kPrefix), sha256)); there.ok()) return there;
   auto spool = record::SpoolFile::Open(spool_folder_);
   if (!spool.ok()) return spool.status();
   if (absl::Status status = (*spool)->Append(bytes); !status.ok()) return status;
-  Held held{"", {sha256, name, static_cast<std::int64_t>(bytes.size())}, *std::move(spool)};
+  Held held{"", {sha256, name, static_cast<std::int64_t>(bytes.size())}, *std::move(spool), by.owner};
   absl::MutexLock lock(&mutex_);
-  Keep(held);
+  Keep(held).IgnoreError();  // without room, whoever holds it still has it
   return held;
-}
-
-absl::StatusOr<Mesh> Uploads::Read(const std::string& path, double unit) {
-  const auto held = Hold(path);
-  if (!held.ok()) return held.status();
-  const auto bytes = held->Bytes();
-  return bytes.ok() ? meshio::Parse(held->file.name, *bytes, unit) : bytes.status();
 }
 
 }  // namespace phrenic::session

@@ -1,10 +1,9 @@
-// Surface files that clients upload, identified by their content.
+// Surface files that clients upload, identified by their owner and their content.
 #ifndef PHRENIC_SERVER_SESSION_UPLOADS_H_
 #define PHRENIC_SERVER_SESSION_UPLOADS_H_
 
 #include <cstdint>
 #include <list>
-#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -13,13 +12,18 @@
 #include "absl/base/thread_annotations.h"
 #include "absl/status/statusor.h"
 #include "absl/synchronization/mutex.h"
+#include "absl/time/time.h"
 #include "server/meshio/meshio.h"
 #include "server/record/spool_file.h"
 #include "server/session/limits.h"
+#include "server/session/requester.h"
 
 namespace phrenic::session {
 
-// Keeps the most recently used files within the limits, in unnamed files that vanish when the server ends. Thread-safe.
+// Keeps each owner's most recently used files within the owner's quota, in unnamed files that vanish when the server
+// ends. A file belongs to those who have sent its bytes: who only knows its hash does not get it, nor learns that the
+// server has it. Owners of the same bytes share one file on the disk. Without accounts, all callers are one owner,
+// whose quota is the whole. Thread-safe.
 class Uploads {
  public:
   struct File {
@@ -28,7 +32,7 @@ class Uploads {
     std::string path() const { return std::string(kPrefix) + sha256; }
   };
   struct Begun {
-    std::string id;             // empty if the server has the file already
+    std::string id;             // 128 random bits; empty if the owner has the file already
     std::int64_t received = 0;  // [bytes]
     File file;
   };
@@ -41,6 +45,8 @@ class Uploads {
     std::string id;  // of its upload
     File file;
     std::shared_ptr<record::SpoolFile> spool;
+    std::string owner = {};  // Requester::owner
+    absl::Time used = absl::InfinitePast();
     absl::StatusOr<std::string> Bytes() const;
   };
   static constexpr std::string_view kPrefix = "upload:";
@@ -48,40 +54,48 @@ class Uploads {
 
   Uploads(const Limits& limits, std::string spool_folder);
 
-  // Begin, Add and Finish an upload, with the errors of upload.proto. The oldest unfinished upload makes room for the
-  // 17th. Clients that upload the same file at the same time share one upload: Add skips the bytes that it has, and
-  // each client may finish it.
-  absl::StatusOr<Begun> Begin(const std::string& name, std::int64_t size, const std::string& sha256)
+  // Begin, Add and Finish an upload, with the errors of upload.proto. The owner's oldest unfinished upload makes room
+  // for the 17th, and for one whose announced size exceeds the quota. RESOURCE_EXHAUSTED if the files of others leave
+  // no room. Clients of one owner that upload the same file at the same time share one upload: Add skips the bytes that
+  // it has, and each client may finish it. NOT_FOUND for an upload of another owner.
+  absl::StatusOr<Begun> Begin(const Requester& by, const std::string& name, std::int64_t size,
+                              const std::string& sha256) ABSL_LOCKS_EXCLUDED(mutex_);
+  absl::StatusOr<std::int64_t> Add(const Requester& by, const std::string& id, std::int64_t offset,
+                                   std::string_view chunk) ABSL_LOCKS_EXCLUDED(mutex_);
+  absl::StatusOr<Finished> Finish(const Requester& by, const std::string& id, double unit_mm)
       ABSL_LOCKS_EXCLUDED(mutex_);
-  absl::StatusOr<std::int64_t> Add(const std::string& id, std::int64_t offset, std::string_view chunk)
-      ABSL_LOCKS_EXCLUDED(mutex_);
-  absl::StatusOr<Finished> Finish(const std::string& id, double unit_mm) ABSL_LOCKS_EXCLUDED(mutex_);
-  std::vector<File> List() const ABSL_LOCKS_EXCLUDED(mutex_);
-  absl::Status Delete(const std::string& path) ABSL_LOCKS_EXCLUDED(mutex_);
+  // Returns the files that the requester may name.
+  std::vector<File> List(const Requester& by) const ABSL_LOCKS_EXCLUDED(mutex_);
+  // Deletes the requester's file; an administrator deletes it for every owner.
+  absl::Status Delete(const Requester& by, const std::string& path) ABSL_LOCKS_EXCLUDED(mutex_);
 
-  // Returns the file of "upload:SHA256"; NOT_FOUND says to upload it again.
-  absl::StatusOr<Held> Hold(const std::string& path) ABSL_LOCKS_EXCLUDED(mutex_);
-  // Takes over a file of an earlier server, as if it had just been uploaded.
-  absl::StatusOr<Held> Adopt(const std::string& name, std::string_view bytes) ABSL_LOCKS_EXCLUDED(mutex_);
-  // Returns the surface of "upload:SHA256" [m]; `unit` is the length of the file's unit [m]. The errors of Hold and of
-  // the parser.
-  absl::StatusOr<Mesh> Read(const std::string& path, double unit) ABSL_LOCKS_EXCLUDED(mutex_);
+  // Returns the file of "upload:SHA256"; NOT_FOUND, which is the same for the file of another owner, says to upload it.
+  absl::StatusOr<Held> Hold(const Requester& by, const std::string& path) ABSL_LOCKS_EXCLUDED(mutex_);
+  // Takes over a file of an earlier server, as if its owner had just uploaded it.
+  absl::StatusOr<Held> Adopt(const Requester& by, const std::string& name, std::string_view bytes)
+      ABSL_LOCKS_EXCLUDED(mutex_);
 
  private:
+  using Files = std::list<Held>;
+
   absl::Status CheckFile(const std::string& name, std::int64_t size) const;
-  absl::StatusOr<Finished> FinishedBefore(const std::string& id, double unit_mm) const
-      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  absl::StatusOr<Finished> FinishedBefore(const Requester& by, const std::string& id, double unit_mm) const
+      ABSL_LOCKS_EXCLUDED(mutex_);
   absl::Status NoUpload(const std::string& id) const;
-  std::list<Held>::iterator FindKept(std::string_view sha256) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  std::list<Held>::iterator FindPending(const std::string& id) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  void Keep(Held kept) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  Files::iterator FindKept(const Requester& by, std::string_view sha256) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  Files::iterator FindPending(const Requester& by, const std::string& id) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // Drops unfinished uploads of this owner, and then abandoned ones, until one more fits. RESOURCE_EXHAUSTED.
+  absl::Status MakeRoomToBegin(const std::string& owner, std::int64_t size) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // Keeps a file, sharing the bytes that another owner has sent as well, and drops others of its owner, until the quota
+  // and the limits hold. RESOURCE_EXHAUSTED if the files of others leave no room.
+  absl::Status Keep(Held& kept) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  std::int64_t QuotaOf(const std::string& owner) const;
 
   const Limits limits_;
   const std::string spool_folder_;
   mutable absl::Mutex mutex_;
-  std::list<Held> kept_ ABSL_GUARDED_BY(mutex_);     // last used first
-  std::list<Held> pending_ ABSL_GUARDED_BY(mutex_);  // oldest first
-  int begun_ ABSL_GUARDED_BY(mutex_) = 0;
+  Files kept_ ABSL_GUARDED_BY(mutex_);     // last used first
+  Files pending_ ABSL_GUARDED_BY(mutex_);  // oldest first
 };
 
 }  // namespace phrenic::session

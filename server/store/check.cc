@@ -7,6 +7,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "server/store/marker.h"
 
 namespace phrenic::store {
 
@@ -17,12 +18,14 @@ bool CheckedStore::whole() const {
 
 absl::StatusOr<CheckedStore> CheckStore(const std::string& folder) {
   const std::string file = StoreFile(folder);
+  if (absl::Status status = CheckDatabaseExists(folder); !status.ok()) return status;
   if (!std::filesystem::exists(file)) return absl::NotFoundError(absl::StrCat("there is no ", file));
   auto database = Database::Open(file, Access::kRead);
   if (!database.ok()) return database.status();
   CheckedStore checked;
   checked.problem = Examine(folder, *database);
   if (absl::IsFailedPrecondition(checked.problem)) return checked.problem;
+  if (checked.problem.ok()) checked.problem = CheckMarker(folder, *database);
   auto sessions = ReadSessions(*database);
   if (!sessions.ok()) return checked.problem.ok() ? sessions.status() : checked.problem;
   checked.sessions = *std::move(sessions);

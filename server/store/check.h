@@ -19,7 +19,7 @@ struct CheckedStore {
 };
 
 // NOT_FOUND if there is no store, FAILED_PRECONDITION while a server uses it or if its format is newer, DATA_LOSS if
-// nothing of it can be read.
+// nothing of it can be read, or if the database is missing or empty and its marker says otherwise.
 absl::StatusOr<CheckedStore> CheckStore(const std::string& folder);
 
 // Returns a text for people: one line per session, one for everything else that is damaged, and one for the whole.

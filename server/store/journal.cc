@@ -1,5 +1,6 @@
 #include <utility>
 
+#include "absl/strings/str_cat.h"
 #include "server/store/store.h"
 
 namespace phrenic::store {
@@ -42,22 +43,61 @@ void Journal::Forget() {
   store_.Enqueue(*this);
 }
 
-absl::Status Journal::Flush() {
+absl::Status Journal::Flush(Durability durability) {
   struct Wait {
     const Journal* journal;
     std::int64_t requested;
   } wait{this, 0};
   absl::MutexLock lock(&store_.mutex_);
   wait.requested = requested_;
+  const bool power = durability == Durability::kPower;
+  if (power && written_ < requested_) store_.sync_wanted_ = true;  // with the transaction that is waited for
   const auto settled =
       +[](Wait* waits) { return waits->journal->written_ >= waits->requested || !waits->journal->problem_.ok(); };
   store_.mutex_.Await(absl::Condition(settled, &wait));
-  return written_ >= wait.requested ? absl::OkStatus() : problem_;
+  if (written_ < wait.requested) return problem_;
+  return power ? store_.AwaitSync() : absl::OkStatus();
+}
+
+absl::Status Journal::AwaitCopy() {
+  // Between two looks at the lease, which ends by the clock.
+  constexpr absl::Duration kLook = absl::Milliseconds(50);
+  struct Wait {
+    const Journal* journal;
+    std::int64_t requested;
+  } wait{this, 0};
+  absl::MutexLock lock(&store_.mutex_);
+  if (store_.ownership_ == nullptr) return absl::OkStatus();
+  wait.requested = requested_;
+  const auto settled =
+      +[](Wait* waits) { return waits->journal->copied_ >= waits->requested || waits->journal->lost_; };
+  while (!store_.mutex_.AwaitWithTimeout(absl::Condition(settled, &wait), kLook)) {
+    if (absl::Status lease = LeaseProblem(); !lease.ok()) return lease;
+    if (lags_) store_.whole_.insert(id_);
+  }
+  return copied_ >= wait.requested ? absl::OkStatus() : LeaseProblem();
+}
+
+absl::Status Journal::LeaseProblem() const {
+  store_.mutex_.AssertHeld();
+  if (store_.ownership_ == nullptr) return absl::OkStatus();
+  if (!lost_) return store_.ownership_->CheckLease(id_);
+  return absl::AbortedError(
+      absl::StrCat("session ", id_, " continues on another server, without this change; repeat the change there"));
+}
+
+absl::Status Journal::CheckLease() const {
+  absl::MutexLock lock(&store_.mutex_);
+  return LeaseProblem();
 }
 
 absl::Status Journal::problem() const {
   absl::MutexLock lock(&store_.mutex_);
-  return problem_;
+  if (!problem_.ok() || store_.ownership_ == nullptr) return problem_;
+  if (absl::Status lease = LeaseProblem(); !lease.ok() || !lags_) return lease;
+  return absl::UnavailableError(
+      absl::StrCat("Redis does not take the last changes of session ", id_,
+                   ", which another server would need; they are not acknowledged until then"));
 }
 
 bool Journal::wants_state() const {

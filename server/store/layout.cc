@@ -21,6 +21,10 @@ constexpr char kRecordTable[] = R"(
   CREATE TABLE records (number INTEGER PRIMARY KEY, kind TEXT NOT NULL, id TEXT NOT NULL, bytes BLOB NOT NULL,
                         sha256 TEXT NOT NULL, UNIQUE (kind, id));)";
 
+// Since format 3: one row (marker.h).
+constexpr char kMarkerTable[] = R"(
+  CREATE TABLE IF NOT EXISTS marker (number INTEGER PRIMARY KEY, id TEXT NOT NULL, saves INTEGER NOT NULL);)";
+
 absl::Status Damaged(const std::string& id, const char* what) {
   return absl::DataLossError(absl::StrCat("session ", id, ": its ", what, " is damaged in the store"));
 }
@@ -59,8 +63,6 @@ absl::Status ReadJournal(Database& database, SavedSession& session) {
 
 }  // namespace
 
-std::string StoreFile(const std::string& folder) { return folder + "/phrenic.db"; }
-
 absl::Status Examine(const std::string& folder, Database& database) {
   const absl::StatusOr<std::int64_t> application = database.Number("PRAGMA application_id");
   if (!application.ok()) return application.status();
@@ -83,12 +85,22 @@ absl::Status Examine(const std::string& folder, Database& database) {
                                           "): nothing was changed; phrenicd check lists what can be read"));
 }
 
+namespace {
+
 // Adds the tables that an earlier format lacks. Requires: Examine has accepted the file.
 absl::Status Upgrade(Database& database) {
   const absl::StatusOr<std::int64_t> format = database.Number("PRAGMA user_version");
   if (!format.ok() || *format == kFormat) return format.status();
-  return database.Run(absl::StrCat("PRAGMA user_version = ", kFormat, ";", kRecordTable));
+  return database.Run(
+      absl::StrCat("PRAGMA user_version = ", kFormat, ";", *format < 2 ? kRecordTable : "", kMarkerTable));
 }
+
+absl::Status ExamineAll(const std::string& folder, Database& database) {
+  const absl::Status status = Examine(folder, database);
+  return status.ok() ? CheckMarker(folder, database) : status;
+}
+
+}  // namespace
 
 absl::Status Prepare(const std::string& folder, Database& database) {
   if (absl::Status status = database.Run("PRAGMA locking_mode = EXCLUSIVE; BEGIN EXCLUSIVE"); !status.ok())
@@ -96,16 +108,19 @@ absl::Status Prepare(const std::string& folder, Database& database) {
   const absl::StatusOr<std::int64_t> tables = database.Number("SELECT count(*) FROM sqlite_master");
   if (!tables.ok()) return tables.status();
   absl::Status status =
-      *tables > 0 ? Examine(folder, database)
-                  : database.Run(absl::StrCat("PRAGMA application_id = ", kApplication,
-                                              "; PRAGMA user_version = ", kFormat, ";", kTables, kRecordTable));
+      *tables > 0
+          ? ExamineAll(folder, database)
+          : database.Run(absl::StrCat("PRAGMA application_id = ", kApplication, "; PRAGMA user_version = ", kFormat,
+                                      ";", kTables, kRecordTable, kMarkerTable));
   if (status.ok()) status = Upgrade(database);
   if (!status.ok()) {
     database.Run("ROLLBACK").IgnoreError();
     return status;
   }
-  // FULL: what callers were told is saved is on the disk even after a power failure.
-  return database.Run("COMMIT; PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL");
+  // NORMAL: the store syncs what callers wait for (Database::Sync). Steps write a page each: the log may grow to 16 MB,
+  // so that it is rarely copied into the file.
+  return database.Run(
+      "COMMIT; PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL; PRAGMA wal_autocheckpoint = 4000");
 }
 
 absl::StatusOr<std::vector<SavedSession>> ReadSessions(Database& database, const std::string& only) {

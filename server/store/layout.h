@@ -6,11 +6,12 @@
 #include <vector>
 
 #include "phrenic/v1/saved.pb.h"
+#include "server/store/marker.h"
 #include "server/store/sqlite.h"
 
 namespace phrenic::store {
 
-inline constexpr int kFormat = 2;  // version of the tables
+inline constexpr int kFormat = 3;  // version of the tables
 
 // What a store has of one session.
 struct SavedSession {
@@ -30,10 +31,8 @@ struct SavedRecord {
   absl::Status problem;  // DATA_LOSS, as above
 };
 
-// Returns FOLDER/phrenic.db.
-std::string StoreFile(const std::string& folder);
-
-// Creates the tables in an empty file, and those that a file of an earlier format lacks. FAILED_PRECONDITION if another
+// Creates the tables in an empty file, and those that a file of an earlier format lacks; transactions are on the disk
+// after Database::Sync. FAILED_PRECONDITION if another
 // program or a newer Phrenic wrote the file, DATA_LOSS if SQLite finds it damaged; the file is then left unchanged.
 absl::Status Prepare(const std::string& folder, Database& database);
 // Makes the same checks, and creates nothing.

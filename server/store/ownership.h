@@ -28,6 +28,13 @@ struct Written {
   std::vector<std::pair<std::int64_t, v1::SavedMoment>> moments;
 };
 
+// What became of a copy.
+enum class Copied {
+  kYes,
+  kLater,  // not now; Store::CopyWhole will be called
+  kLost,   // another server has the session
+};
+
 // Any thread may call the methods, except Copy and CopyWhole, which the store's thread calls.
 class Ownership {
  public:
@@ -45,11 +52,17 @@ class Ownership {
   // bounded time, until its copy is complete.
   virtual void Release(const std::string& id) = 0;
 
-  // Copies what was written. Returns false, and copies nothing, if this server no longer owns the session. A copy that
-  // fails is requested again (Store::CopyWhole). Waits for a bounded time.
-  virtual bool Copy(const Written& written) = 0;
-  // Copies everything that the store has of a session.
-  virtual void CopyWhole(const SavedSession& saved) = 0;
+  // Returns OK if no other server can have the session now. UNAVAILABLE says why this server cannot know, and that it
+  // must not acknowledge a change. Does not wait.
+  virtual absl::Status CheckLease(const std::string& id) const = 0;
+  // Deletes the session for all servers, before its server deletes it. UNAVAILABLE if that is not certain; then the
+  // session goes on, or ends as one that is lost. ABORTED if another server has it.
+  virtual absl::Status Delete(const std::string& id) = 0;
+
+  // Copies what was written; kLost copies nothing. Waits for a bounded time.
+  virtual Copied Copy(const Written& written) = 0;
+  // Copies everything that the store has of a session. Returns kLater if that failed.
+  virtual Copied CopyWhole(const SavedSession& saved) = 0;
 };
 
 }  // namespace phrenic::store

@@ -101,27 +101,40 @@ v1::SavedState Save(const State& state) {
   return saved;
 }
 
-absl::StatusOr<State> Restore(const Model& model, const v1::SavedState& saved) {
-  State state = model.InitialState();
-  const Eigen::Index vertices = state.x.cols();
+absl::StatusOr<State> ReadState(const v1::SavedState& saved) {
+  const auto vertices = static_cast<Eigen::Index>(saved.positions().size() / (3 * sizeof(double)));
+  State state;
   state.time = saved.time();
   state.tick = saved.tick();
   state.phase = saved.phase();
   state.halvings = saved.halvings();
   if (absl::Status status = PointsOf("positions", saved.positions(), vertices, state.x); !status.ok()) return status;
   if (absl::Status status = PointsOf("velocities", saved.velocities(), vertices, state.v); !status.ok()) return status;
-  if (saved.poses_size() != static_cast<int>(state.poses.size())) return absl::DataLossError("poses: too few or many");
   for (int i = 0; i < saved.poses_size(); ++i) {
     if (saved.poses(i).values_size() != kPoseNumbers) return absl::DataLossError(absl::StrCat("poses[", i, "]"));
-    state.poses[i] = PoseOf(saved.poses(i));
+    state.poses.push_back(PoseOf(saved.poses(i)));
   }
   for (const v1::SavedPull& pull : saved.pulls()) {
     const bool good = pull.vertex() >= 0 && pull.vertex() < vertices && pull.force_size() == 3;
     if (!good) return absl::DataLossError(absl::StrCat("pulls: vertex ", pull.vertex()));
     state.pulls.push_back({pull.vertex(), Eigen::Map<const Eigen::Vector3d>(pull.force().data())});
   }
-  if (absl::Status status = RestoreScalars(saved, state.scalars); !status.ok()) return status;
-  if (absl::Status status = RestoreHistory(saved.history(), vertices, state.history); !status.ok()) return status;
+  return state;
+}
+
+absl::StatusOr<State> Restore(const Model& model, const v1::SavedState& saved) {
+  absl::StatusOr<State> state = ReadState(saved);
+  if (!state.ok()) return state;
+  const State first = model.InitialState();
+  const Eigen::Index vertices = first.x.cols();
+  if (state->x.cols() != vertices) {
+    return absl::DataLossError(
+        absl::StrCat("positions: ", saved.positions().size(), " bytes do not hold ", vertices, " vertices"));
+  }
+  if (state->poses.size() != first.poses.size()) return absl::DataLossError("poses: too few or many");
+  state->scalars = first.scalars;
+  if (absl::Status status = RestoreScalars(saved, state->scalars); !status.ok()) return status;
+  if (absl::Status status = RestoreHistory(saved.history(), vertices, state->history); !status.ok()) return status;
   return state;
 }
 

@@ -10,6 +10,11 @@ namespace phrenic::store {
 
 v1::SavedState Save(const State& state);
 
+// Returns the saved numbers as a state of no certain model, without the integrator's memory and without scalar
+// coordinates. DATA_LOSS if they are not whole: velocities of other vertices than positions, or a pose of other than 13
+// numbers.
+absl::StatusOr<State> ReadState(const v1::SavedState& saved);
+
 // DATA_LOSS if `saved` is not a state of the model: other numbers of vertices or poses, or a vertex that does not
 // exist.
 absl::StatusOr<State> Restore(const Model& model, const v1::SavedState& saved);

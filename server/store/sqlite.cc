@@ -44,6 +44,15 @@ absl::Status Database::Run(const std::string& sql) {
   return Status(sqlite3_exec(handle_.get(), sql.c_str(), nullptr, nullptr, nullptr));
 }
 
+absl::Status Database::Sync() {
+  sqlite3_file* log = nullptr;
+  const int code = sqlite3_file_control(handle_.get(), "main", SQLITE_FCNTL_JOURNAL_POINTER, static_cast<void*>(&log));
+  if (code != SQLITE_OK) return Status(code);
+  if (log == nullptr || log->pMethods == nullptr) return absl::OkStatus();  // nothing is written yet
+  if (log->pMethods->xSync(log, SQLITE_SYNC_NORMAL) == SQLITE_OK) return absl::OkStatus();
+  return absl::UnavailableError(absl::StrCat(file_, "-wal: the disk does not take what was written"));
+}
+
 absl::StatusOr<std::int64_t> Database::Number(const std::string& sql) {
   auto statement = Statement::Prepare(*this, sql);
   if (!statement.ok()) return statement.status();

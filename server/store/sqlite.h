@@ -25,6 +25,8 @@ class Database {
 
   // Runs statements that return no rows.
   absl::Status Run(const std::string& sql);
+  // Has the disk hold all committed transactions, also after a power failure. Requires: journal_mode = WAL.
+  absl::Status Sync();
   // Return the first column of the first row; 0 or empty without a row.
   absl::StatusOr<std::int64_t> Number(const std::string& sql);
   absl::StatusOr<std::string> Text(const std::string& sql);

@@ -6,7 +6,9 @@
 #include <filesystem>
 #include <utility>
 
+#include "absl/functional/function_ref.h"
 #include "absl/strings/str_cat.h"
+#include "absl/time/clock.h"
 #include "server/schema/sha256.h"
 #include "server/store/saved_state.h"
 
@@ -14,73 +16,101 @@ namespace phrenic::store {
 namespace {
 
 constexpr absl::Duration kAgain = absl::Seconds(1);  // after a failed attempt
+// What is written is synced after this time, also if no call waits for it.
+constexpr absl::Duration kSyncPeriod = absl::Milliseconds(500);
+// The marker is written when a session or a job comes or goes, and this often while sessions change.
+constexpr absl::Duration kMarkerPeriod = absl::Seconds(10);
 
-// The statements of one transaction.
-struct Writer {
-  static absl::StatusOr<Writer> Make(const Database& database) {
-    auto scene =
-        Statement::Prepare(database, "INSERT OR REPLACE INTO sessions (id, scene, scene_sha256) VALUES (?, ?, ?)");
-    auto state = Statement::Prepare(
-        database, "UPDATE sessions SET sequence = ?2, moment = ?3, state = ?4, sha256 = ?5 WHERE id = ?1");
-    auto shorten = Statement::Prepare(database, "DELETE FROM journal WHERE session = ? AND sequence <= ?");
-    auto moment = Statement::Prepare(database, "INSERT OR REPLACE INTO journal VALUES (?, ?, ?, ?)");
-    auto forget = Statement::Prepare(database, "DELETE FROM sessions WHERE id = ?");
-    auto record = Statement::Prepare(database,
-                                     "INSERT INTO records (kind, id, bytes, sha256) VALUES (?1, ?2, ?3, ?4) ON "
-                                     "CONFLICT (kind, id) DO UPDATE SET bytes = ?3, sha256 = ?4");
-    auto remove = Statement::Prepare(database, "DELETE FROM records WHERE kind = ? AND id = ?");
-    for (const auto* statement : {&scene, &state, &shorten, &moment, &forget, &record, &remove}) {
-      if (!statement->ok()) return statement->status();
-    }
-    return Writer{*std::move(scene),  *std::move(state),  *std::move(shorten), *std::move(moment),
-                  *std::move(forget), *std::move(record), *std::move(remove)};
-  }
+// The statements of one transaction, each prepared when it is first used: most transactions are one moment.
+class Writer {
+ public:
+  explicit Writer(const Database& database) : database_(database) {}
 
-  absl::Status Shorten(const std::string& id, std::int64_t last) { return shorten.Bind(1, id).Bind(2, last).Run(); }
   absl::Status WriteScene(const std::string& id, const v1::SavedScene& saved) {
     const std::string bytes = saved.SerializeAsString();
     if (absl::Status status = Shorten(id, INT64_MAX); !status.ok()) return status;
-    return scene.Bind(1, id).BindBytes(2, bytes).Bind(3, Sha256Hex(bytes)).Run();
+    return Run(scene_, "INSERT OR REPLACE INTO sessions (id, scene, scene_sha256) VALUES (?, ?, ?)",
+               [&](Statement& row) { row.Bind(1, id).BindBytes(2, bytes).Bind(3, Sha256Hex(bytes)); });
   }
   absl::Status WriteState(const std::string& id, std::int64_t sequence, const v1::SavedMoment& at, const State& saved) {
     const std::string words = at.SerializeAsString(), bytes = Save(saved).SerializeAsString();
     Sha256 hash;
     hash.Add(words);
     hash.Add(bytes);
-    state.Bind(1, id).Bind(2, sequence).BindBytes(3, words).BindBytes(4, bytes).Bind(5, hash.Hex());
-    if (absl::Status status = state.Run(); !status.ok()) return status;
-    return Shorten(id, sequence);
+    const absl::Status status =
+        Run(state_, "UPDATE sessions SET sequence = ?2, moment = ?3, state = ?4, sha256 = ?5 WHERE id = ?1",
+            [&](Statement& row) {
+              row.Bind(1, id).Bind(2, sequence).BindBytes(3, words).BindBytes(4, bytes).Bind(5, hash.Hex());
+            });
+    return status.ok() ? Shorten(id, sequence) : status;
   }
   absl::Status WriteMoment(const std::string& id, std::int64_t sequence, const v1::SavedMoment& saved) {
     const std::string bytes = saved.SerializeAsString();
-    return moment.Bind(1, id).Bind(2, sequence).BindBytes(3, bytes).Bind(4, Sha256Hex(bytes)).Run();
+    return Run(moment_, "INSERT OR REPLACE INTO journal VALUES (?, ?, ?, ?)", [&](Statement& row) {
+      row.Bind(1, id).Bind(2, sequence).BindBytes(3, bytes).Bind(4, Sha256Hex(bytes));
+    });
   }
   absl::Status Forget(const std::string& id) {
     if (absl::Status status = Shorten(id, INT64_MAX); !status.ok()) return status;
-    return forget.Bind(1, id).Run();
+    return Run(forget_, "DELETE FROM sessions WHERE id = ?", [&](Statement& row) { row.Bind(1, id); });
   }
-
   absl::Status WriteRecord(const std::string& kind, const std::string& id, const std::optional<std::string>& bytes) {
-    if (!bytes.has_value()) return remove.Bind(1, kind).Bind(2, id).Run();
-    return record.Bind(1, kind).Bind(2, id).BindBytes(3, *bytes).Bind(4, Sha256Hex(*bytes)).Run();
+    if (!bytes.has_value()) {
+      return Run(remove_, "DELETE FROM records WHERE kind = ? AND id = ?",
+                 [&](Statement& row) { row.Bind(1, kind).Bind(2, id); });
+    }
+    return Run(record_,
+               "INSERT INTO records (kind, id, bytes, sha256) VALUES (?1, ?2, ?3, ?4) ON "
+               "CONFLICT (kind, id) DO UPDATE SET bytes = ?3, sha256 = ?4",
+               [&](Statement& row) { row.Bind(1, kind).Bind(2, id).BindBytes(3, *bytes).Bind(4, Sha256Hex(*bytes)); });
   }
 
-  Statement scene, state, shorten, moment, forget, record, remove;
+ private:
+  using Prepared = std::optional<Statement>;
+
+  absl::Status Shorten(const std::string& id, std::int64_t last) {
+    return Run(shorten_, "DELETE FROM journal WHERE session = ? AND sequence <= ?",
+               [&](Statement& row) { row.Bind(1, id).Bind(2, last); });
+  }
+  absl::Status Run(Prepared& statement, const char* sql, absl::FunctionRef<void(Statement& row)> bind) {
+    if (!statement.has_value()) {
+      auto prepared = Statement::Prepare(database_, sql);
+      if (!prepared.ok()) return prepared.status();
+      statement = *std::move(prepared);
+    }
+    bind(*statement);
+    return statement->Run();
+  }
+
+  const Database& database_;
+  Prepared scene_, state_, shorten_, moment_, forget_, record_, remove_;
 };
+
+// Gives a store of an earlier release its marker. A full disk is reported by the first save.
+void MarkOpened(const std::string& folder, Database& database) {
+  if (!database.Run("BEGIN IMMEDIATE").ok()) return;
+  const auto marker = UpdateMarker(database);
+  const bool saved = marker.ok() && database.Run("COMMIT").ok() && database.Sync().ok();
+  if (saved) WriteMarkerFile(folder, *marker).IgnoreError();
+  if (!saved) database.Run("ROLLBACK").IgnoreError();
+}
 
 }  // namespace
 
-Store::Store(Database database) : database_(std::move(database)), thread_([this] { Run(); }) {}
+Store::Store(std::string folder, Database database)
+    : folder_(std::move(folder)), database_(std::move(database)), marked_(absl::Now()), thread_([this] { Run(); }) {}
 
 absl::StatusOr<std::unique_ptr<Store>> Store::Open(const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) return absl::NotFoundError(absl::StrCat("cannot create the folder ", folder, ": ", error.message()));
   std::filesystem::permissions(folder, std::filesystem::perms::owner_all, error);
+  if (absl::Status status = CheckDatabaseExists(folder); !status.ok()) return status;
   auto database = Database::Open(StoreFile(folder), Access::kWrite);
   if (!database.ok()) return database.status();
   if (absl::Status status = Prepare(folder, *database); !status.ok()) return status;
-  return std::unique_ptr<Store>(new Store(*std::move(database)));
+  MarkOpened(folder, *database);
+  return std::unique_ptr<Store>(new Store(folder, *std::move(database)));
 }
 
 Store::~Store() {
@@ -164,7 +194,7 @@ Store::Batch Store::TakeBatch() {
 }
 
 // Puts what could not be written before what came meanwhile, unless a newer state makes it unnecessary.
-void Store::PutBack(Batch& batch) {
+void Store::PutBack(Batch& batch, Records& records) {
   std::vector<std::shared_ptr<Journal>> waiting;
   for (auto& [journal, before] : batch) {
     Journal::Pending& now = journal->pending_;
@@ -180,30 +210,90 @@ void Store::PutBack(Batch& batch) {
     journal->waiting_ = true;
   }
   waiting_.insert(waiting_.begin(), waiting.begin(), waiting.end());
+  records_.swap(records);
+  for (Record& newer : records) Enqueue(std::move(newer));
 }
 
-absl::Status Store::Write(const Batch& batch, const Records& records) {
-  if (absl::Status status = database_.Run("BEGIN IMMEDIATE"); !status.ok()) return status;
-  absl::StatusOr<Writer> writer = Writer::Make(database_);
-  absl::Status status = writer.status();
+absl::Status Store::WriteRows(const Batch& batch, const Records& records) {
+  Writer writer(database_);
+  absl::Status status;
   for (const auto& [journal, pending] : batch) {
     if (!status.ok()) break;
-    if (pending.forgotten) status = writer->Forget(journal->id_);
-    if (status.ok() && pending.scene.has_value()) status = writer->WriteScene(journal->id_, *pending.scene);
+    if (pending.forgotten) status = writer.Forget(journal->id_);
+    if (status.ok() && pending.scene.has_value()) status = writer.WriteScene(journal->id_, *pending.scene);
     if (status.ok() && pending.kept.has_value()) {
       const Journal::Kept& kept = *pending.kept;
-      status = writer->WriteState(journal->id_, kept.sequence, kept.moment, *kept.state);
+      status = writer.WriteState(journal->id_, kept.sequence, kept.moment, *kept.state);
     }
     for (const auto& [sequence, moment] : pending.moments) {
-      if (status.ok()) status = writer->WriteMoment(journal->id_, sequence, moment);
+      if (status.ok()) status = writer.WriteMoment(journal->id_, sequence, moment);
     }
   }
   for (const auto& [kind, id, bytes] : records) {
-    if (status.ok()) status = writer->WriteRecord(kind, id, bytes);
+    if (status.ok()) status = writer.WriteRecord(kind, id, bytes);
+  }
+  return status;
+}
+
+absl::Status Store::Write(const Batch& batch, const Records& records) {
+  if (batch.empty() && records.empty()) return absl::OkStatus();
+  if (absl::Status status = database_.Run("BEGIN IMMEDIATE"); !status.ok()) return status;
+  absl::Status status = WriteRows(batch, records);
+  const bool counts = !records.empty() || std::ranges::any_of(batch, [](const auto& each) {
+    return each.second.scene.has_value() || each.second.forgotten;
+  });
+  std::optional<Marker> marker;
+  if (status.ok() && (counts || absl::Now() - marked_ >= kMarkerPeriod)) {
+    auto updated = UpdateMarker(database_);
+    status = updated.status();
+    if (updated.ok()) marker = *std::move(updated);
   }
   if (status.ok()) status = database_.Run("COMMIT");
   if (!status.ok()) database_.Run("ROLLBACK").IgnoreError();
+  if (status.ok() && marker.has_value()) marker_ = std::move(marker);
   return status;
+}
+
+void Store::NoteWritten(const Batch& batch, bool nothing, const absl::Status& status) {
+  for (const auto& [journal, pending] : batch) {
+    journal->problem_ = status;
+    if (status.ok()) journal->written_ = pending.requested;
+  }
+  if (!status.ok() || nothing) return;
+  if (synced_ == commits_) unsynced_since_ = absl::Now();
+  ++commits_;
+}
+
+void Store::Sync() {
+  std::int64_t commits = 0;
+  {
+    absl::MutexLock lock(&mutex_);
+    commits = commits_;
+    sync_wanted_ = false;
+  }
+  absl::Status status = database_.Sync();
+  {
+    absl::MutexLock lock(&mutex_);
+    sync_problem_ = status;
+    if (status.ok()) synced_ = commits;
+    if (!status.ok()) unsynced_since_ = absl::Now() + kAgain;
+  }
+  if (!status.ok() || !marker_.has_value()) return;
+  // A marker that cannot be written says too little, and the next one is tried.
+  WriteMarkerFile(folder_, *std::exchange(marker_, std::nullopt)).IgnoreError();
+  marked_ = absl::Now();
+}
+
+absl::Status Store::AwaitSync() {
+  const std::int64_t commits = commits_;
+  if (synced_ >= commits) return absl::OkStatus();
+  sync_wanted_ = true;
+  const auto settled = [this, commits] {
+    mutex_.AssertReaderHeld();
+    return synced_ >= commits || !sync_problem_.ok();
+  };
+  mutex_.Await(absl::Condition(&settled));
+  return synced_ >= commits ? absl::OkStatus() : sync_problem_;
 }
 
 void Store::set_ownership(Ownership* ownership) {
@@ -216,38 +306,71 @@ void Store::CopyWhole(const std::vector<std::string>& ids) {
   whole_.insert(ids.begin(), ids.end());
 }
 
-std::vector<absl::Status> Store::Copy(Ownership* ownership, Batch& batch, const std::set<std::string>& whole) {
-  std::vector<absl::Status> results(batch.size());
-  if (ownership == nullptr) return results;
-  for (std::size_t i = 0; i < batch.size(); ++i) {
-    auto& [journal, pending] = batch[i];
-    Written written;
-    written.id = journal->id_;
-    written.forgotten = pending.forgotten;
-    written.scene = std::move(pending.scene);
-    if (pending.kept.has_value()) {
-      written.sequence = pending.kept->sequence;
-      written.moment = std::move(pending.kept->moment);
-      written.state = std::move(pending.kept->state);
-    }
-    written.moments = std::move(pending.moments);
-    if (ownership->Copy(written)) continue;
-    results[i] = absl::AbortedError(absl::StrCat(
-        "session ", journal->id_, " continues on another server, without this change; repeat the change there"));
+void Store::CopyOne(Ownership& ownership, Journal& journal, Journal::Pending& pending) {
+  Written written;
+  written.id = journal.id_;
+  written.forgotten = pending.forgotten;
+  written.scene = std::move(pending.scene);
+  if (pending.kept.has_value()) {
+    written.sequence = pending.kept->sequence;
+    written.moment = std::move(pending.kept->moment);
+    written.state = std::move(pending.kept->state);
   }
-  for (const std::string& id : whole) {
-    const auto sessions = ReadSessions(database_, id);
-    if (sessions.ok() && !sessions->empty() && sessions->front().problem.ok()) ownership->CopyWhole(sessions->front());
+  written.moments = std::move(pending.moments);
+  const Copied copied = ownership.Copy(written);
+  absl::MutexLock lock(&mutex_);
+  journal.lags_ = copied == Copied::kLater;
+  if (copied == Copied::kYes) journal.copied_ = pending.requested;
+  if (copied == Copied::kLost) journal.lost_ = true;
+  if (copied == Copied::kLater) {
+    lagging_[journal.id_] = journal.shared_from_this();
+  } else {
+    lagging_.erase(journal.id_);
   }
-  return results;
+}
+
+void Store::CompleteCopy(Ownership& ownership, const std::string& id) {
+  const auto sessions = ReadSessions(database_, id);
+  if (!sessions.ok()) return;
+  Copied copied = Copied::kLater;
+  if (sessions->empty()) {
+    Written gone;
+    gone.id = id;
+    gone.forgotten = true;
+    copied = ownership.Copy(gone);
+  } else if (sessions->front().problem.ok()) {
+    copied = ownership.CopyWhole(sessions->front());
+  }
+  absl::MutexLock lock(&mutex_);
+  const auto found = lagging_.find(id);
+  if (found == lagging_.end() || copied == Copied::kLater) return;
+  Journal& journal = *found->second;
+  journal.lags_ = false;
+  if (copied == Copied::kYes) journal.copied_ = journal.written_;  // only this thread writes
+  if (copied == Copied::kLost) journal.lost_ = true;
+  lagging_.erase(found);
+}
+
+void Store::Copy(Ownership& ownership, Batch& batch, const std::set<std::string>& whole) {
+  for (auto& [journal, pending] : batch) CopyOne(ownership, *journal, pending);
+  for (const std::string& id : whole) CompleteCopy(ownership, id);
+}
+
+bool Store::AwaitWork() {
+  if (synced_ == commits_) {
+    mutex_.Await(absl::Condition(this, &Store::Awake));
+  } else if (!mutex_.AwaitWithDeadline(absl::Condition(this, &Store::Awake), unsynced_since_ + kSyncPeriod)) {
+    sync_wanted_ = true;
+  }
+  const bool due = absl::Now() >= unsynced_since_ + kSyncPeriod || (closing_ && sync_problem_.ok());
+  if (synced_ != commits_ && due) sync_wanted_ = true;
+  return HasWork();
 }
 
 void Store::Run() {
   pthread_setname_np(pthread_self(), "saving");
   absl::MutexLock lock(&mutex_);
-  for (;;) {
-    mutex_.Await(absl::Condition(this, &Store::Awake));
-    if (!HasWork()) return;
+  while (AwaitWork()) {
     const bool last = closing_;
     Batch batch = TakeBatch();
     Records records = std::exchange(records_, {});
@@ -255,22 +378,23 @@ void Store::Run() {
     const std::set<std::string> whole = std::exchange(whole_, {});
     Ownership* const ownership = ownership_;
     mutex_.Unlock();
-    const absl::Status status = Write(batch, records);
-    std::vector<absl::Status> results(batch.size(), status);
-    if (status.ok()) results = Copy(ownership, batch, whole);
+    absl::Status status = Write(batch, records);
     mutex_.Lock();
+    NoteWritten(batch, batch.empty() && records.empty(), status);
+    const bool sync = status.ok() && (sync_wanted_ || !records.empty());
+    mutex_.Unlock();
+    if (sync) Sync();
+    if (status.ok() && ownership != nullptr) Copy(*ownership, batch, whole);
+    mutex_.Lock();
+    if (!records.empty() && status.ok() && !sync_problem_.ok()) {
+      status = sync_problem_;
+      batch.clear();  // it is written
+    }
     progress_.problem = status;
     if (status.ok()) progress_.written = records_requested;
-    for (std::size_t i = 0; i < batch.size(); ++i) {
-      Journal& journal = *batch[i].first;
-      journal.problem_ = results[i];
-      if (results[i].ok()) journal.written_ = batch[i].second.requested;
-    }
     if (status.ok()) continue;
     if (last) return;
-    PutBack(batch);
-    records_.swap(records);
-    for (Record& newer : records) Enqueue(std::move(newer));
+    PutBack(batch, records);
     mutex_.AwaitWithTimeout(absl::Condition(this, &Store::Closing), kAgain);
   }
 }

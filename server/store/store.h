@@ -5,6 +5,7 @@
 #define PHRENIC_SERVER_STORE_STORE_H_
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -16,13 +17,21 @@
 #include "absl/base/thread_annotations.h"
 #include "absl/status/statusor.h"
 #include "absl/synchronization/mutex.h"
+#include "absl/time/time.h"
 #include "server/mechanics/state.h"
 #include "server/store/layout.h"
+#include "server/store/marker.h"
 #include "server/store/ownership.h"
 
 namespace phrenic::store {
 
 class Store;
+
+// What a change survives once Journal::Flush returns.
+enum class Durability {
+  kProcess,  // the end of the server, as by SIGKILL; a power failure loses half a second of them at most
+  kPower,    // a power failure as well
+};
 
 // The part of a store that belongs to one session. The store outlives it. Thread-safe.
 class Journal : public std::enable_shared_from_this<Journal> {
@@ -34,10 +43,16 @@ class Journal : public std::enable_shared_from_this<Journal> {
   void Keep(v1::SavedMoment moment, std::shared_ptr<const State> state);
   // Removes the session from the store. Later calls save nothing.
   void Forget();
-  // Waits until the effects of all earlier calls are on the disk. RESOURCE_EXHAUSTED if it is full, ABORTED if another
-  // server has taken the session, UNAVAILABLE for any other failure; the store tries again every second.
-  absl::Status Flush();
-  // Returns the result of the last attempt to write.
+  // Waits until the effects of all earlier calls are saved. RESOURCE_EXHAUSTED if the disk is full, UNAVAILABLE for any
+  // other failure; the store tries again every second.
+  absl::Status Flush(Durability durability = Durability::kPower);
+  // In a cluster, waits until the effects of all earlier calls are in the session's copy, from which another server
+  // would continue; otherwise returns at once. ABORTED if another server has the session, UNAVAILABLE once this server
+  // cannot know whether one has it.
+  absl::Status AwaitCopy();
+  // Returns the errors of AwaitCopy that a change at present would have, without waiting.
+  absl::Status CheckLease() const;
+  // Returns the result of the last attempt to write; in a cluster also of the last attempt to copy.
   absl::Status problem() const;
   // True if too many moments wait to be written; a state would replace them.
   bool wants_state() const;
@@ -68,15 +83,18 @@ class Journal : public std::enable_shared_from_this<Journal> {
   std::int64_t sequence_;
   bool time_alone_ = false;  // only time had changed in the last moment
   bool forgotten_ = false;
-  bool waiting_ = false;                      // in the store's list of journals to write
-  std::int64_t requested_ = 0, written_ = 0;  // changes
+  absl::Status LeaseProblem() const;                       // Requires: the store's mutex
+  bool waiting_ = false;                                   // in the store's list of journals to write
+  std::int64_t requested_ = 0, written_ = 0, copied_ = 0;  // changes
+  bool lost_ = false;                                      // another server has the session
+  bool lags_ = false;                                      // its copy is incomplete
   absl::Status problem_;
 };
 
 // Thread-safe, except that Load, LoadRecords and LimitSize come before anything is saved.
 class Store {
  public:
-  // Opens FOLDER/phrenic.db, and creates it if it is missing. The errors of Database::Open and Prepare.
+  // Opens FOLDER/phrenic.db, and creates it if it is missing. The errors of Database::Open, Prepare and CheckMarker.
   static absl::StatusOr<std::unique_ptr<Store>> Open(const std::string& folder);
   // Tries once to write what waits.
   ~Store();
@@ -119,28 +137,47 @@ class Store {
     absl::Status problem;  // of the last attempt
   };
 
-  explicit Store(Database database);
+  Store(std::string folder, Database database);
   void Enqueue(Record record) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void Enqueue(Journal& journal) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   bool Closing() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) { return closing_; }
   bool Awake() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) { return closing_ || HasWork(); }
   bool HasWork() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) {
-    return !waiting_.empty() || !records_.empty() || !whole_.empty();
+    return !waiting_.empty() || !records_.empty() || !whole_.empty() || sync_wanted_;
   }
+  // The store's thread: takes what waits, writes it in one transaction, syncs it if a call waits for that, copies it.
   void Run() ABSL_LOCKS_EXCLUDED(mutex_);
+  // Waits for work, or until what is written must be synced. Returns false if the store closes and nothing waits.
+  bool AwaitWork() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   Batch TakeBatch() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  void PutBack(Batch& batch) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  absl::Status Write(const Batch& batch, const Records& records);
-  // Copies the batch to the ownership. Returns one status per journal: ABORTED if another server has the session.
-  std::vector<absl::Status> Copy(Ownership* ownership, Batch& batch, const std::set<std::string>& whole);
+  void PutBack(Batch& batch, Records& records) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  absl::Status Write(const Batch& batch, const Records& records) ABSL_LOCKS_EXCLUDED(mutex_);
+  absl::Status WriteRows(const Batch& batch, const Records& records);
+  void NoteWritten(const Batch& batch, bool nothing, const absl::Status& status) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // Syncs what is written, and then the marker if it has changed.
+  void Sync() ABSL_LOCKS_EXCLUDED(mutex_);
+  // Waits until everything written so far is synced.
+  absl::Status AwaitSync() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // Copies the batch, and completes copies, for a server in a cluster.
+  void Copy(Ownership& ownership, Batch& batch, const std::set<std::string>& whole) ABSL_LOCKS_EXCLUDED(mutex_);
+  void CopyOne(Ownership& ownership, Journal& journal, Journal::Pending& pending) ABSL_LOCKS_EXCLUDED(mutex_);
+  void CompleteCopy(Ownership& ownership, const std::string& id) ABSL_LOCKS_EXCLUDED(mutex_);
 
-  Database database_;  // used by the caller of Load first, and then by thread_ alone
+  const std::string folder_;
+  Database database_;             // used by the caller of Load first, and then by thread_ alone
+  std::optional<Marker> marker_;  // not in its file yet; as database_
+  absl::Time marked_;             // when the marker was written last; as database_
   mutable absl::Mutex mutex_;
   std::vector<std::shared_ptr<Journal>> waiting_
       ABSL_GUARDED_BY(mutex_);               // journals to write, in the order of their calls
   Records records_ ABSL_GUARDED_BY(mutex_);  // to write, each id once
   RecordsProgress progress_ ABSL_GUARDED_BY(mutex_);
-  std::set<std::string> whole_ ABSL_GUARDED_BY(mutex_);  // to be copied
+  std::set<std::string> whole_ ABSL_GUARDED_BY(mutex_);                              // to be copied
+  std::map<std::string, std::shared_ptr<Journal>> lagging_ ABSL_GUARDED_BY(mutex_);  // whose copies are incomplete
+  std::int64_t commits_ ABSL_GUARDED_BY(mutex_) = 0, synced_ ABSL_GUARDED_BY(mutex_) = 0;  // transactions
+  bool sync_wanted_ ABSL_GUARDED_BY(mutex_) = false;
+  absl::Time unsynced_since_ ABSL_GUARDED_BY(mutex_);
+  absl::Status sync_problem_ ABSL_GUARDED_BY(mutex_);
   Ownership* ownership_ ABSL_GUARDED_BY(mutex_) = nullptr;
   bool closing_ ABSL_GUARDED_BY(mutex_) = false;
   std::thread thread_;

@@ -62,10 +62,11 @@ void StudyJob::Save(const v1::Study& message, const jobs::Records& records) cons
   }
   *saved.mutable_study() = message;
   saved.set_owner(owner_);
+  saved.set_owner_qualified(true);
   records.Put(message.id(), saved.SerializeAsString());
 }
 
-Studies::Studies(SceneName scene_name, Compiler compile, const Clock& clock, store::Store* store)
+Studies::Studies(SceneName scene_name, OwnersCompiler compile, const Clock& clock, store::Store* store)
     : scene_name_(std::move(scene_name)),
       compile_(std::move(compile)),
       queue_({.noun = {"study", "studies", "a"}, .threads = 1, .kept = kMostStudies}, clock,
@@ -78,48 +79,52 @@ absl::StatusOr<Studies::Draft> Studies::MakeDraft(const v1::CreateStudyRequest& 
   const absl::StatusOr<std::string> scene = scene_name_(request);
   if (!scene.ok()) return scene.status();
   Draft draft;
-  draft.id_base = absl::StrCat(kind, "-", *scene);
+  draft.id_base = request.source().has_scene() ? kind : absl::StrCat(kind, "-", *scene);
   draft.message.set_scene(*scene);
   draft.message.set_doing("waiting for earlier studies");
-  draft.job = std::make_shared<StudyJob>(
-      request, owner, [this, request](const Progress& progress) { return study::Run(request, compile_, progress); });
+  draft.job = std::make_shared<StudyJob>(request, owner, [this, request, owner](const Progress& progress) {
+    const auto cancelled = [&progress] { return !progress(0, "compiling the scene"); };
+    const Compiler compile = [&](const v1::SceneSource& source) { return compile_(source, owner, cancelled); };
+    return study::Run(request, compile, progress);
+  });
   return draft;
 }
 
 absl::StatusOr<v1::Study> Studies::Add(const v1::CreateStudyRequest& request, const std::string& owner) {
   auto draft = MakeDraft(request, owner);
   if (!draft.ok()) return draft.status();
-  return queue_.Add(request.study_id(), draft->id_base, std::move(draft->message), std::move(draft->job));
+  return queue_.Add(owner, request.study_id(), draft->id_base, std::move(draft->message), std::move(draft->job));
 }
 
 absl::Status Studies::RestoreOne(const store::SavedRecord& record,
-                                 absl::FunctionRef<void(const std::string& id, const std::string& owner)> found) {
+                                 absl::FunctionRef<std::string(const std::string& account)> account_of) {
   v1::SavedStudy saved;
   if (!saved.ParseFromString(record.bytes)) return absl::DataLossError("the record in the store is not a study");
-  found(record.id, saved.owner());
+  const std::string owner = saved.owner_qualified() ? saved.owner() : account_of(saved.owner());
   if (saved.has_request()) {
-    auto draft = MakeDraft(saved.request(), saved.owner());
+    auto draft = MakeDraft(saved.request(), owner);
     absl::Status resumed = draft.status();
     if (draft.ok()) {
-      resumed = queue_.Resume(record.id, draft->id_base, std::move(draft->message), std::move(draft->job)).status();
+      resumed =
+          queue_.Resume(owner, record.id, draft->id_base, std::move(draft->message), std::move(draft->job)).status();
     }
     if (resumed.ok()) return resumed;
     saved.mutable_study()->set_state(v1::STUDY_STATE_FAILED);
     saved.mutable_study()->set_problem(std::string(resumed.message()));
   }
-  queue_.RestoreEnded(saved.study());
+  queue_.RestoreEnded(owner, saved.study());
   return absl::OkStatus();
 }
 
 void Studies::Restore(const std::vector<store::SavedRecord>& records,
-                      absl::FunctionRef<void(const std::string& id, const std::string& owner)> found,
+                      absl::FunctionRef<std::string(const std::string& account)> account_of,
                       std::map<std::string, absl::Status>& lost) {
   queue_.records().Restore(
-      records, [&](const store::SavedRecord& record) { return RestoreOne(record, found); }, lost);
+      records, [&](const store::SavedRecord& record) { return RestoreOne(record, account_of); }, lost);
 }
 
-std::vector<v1::Study> Studies::List() const {
-  std::vector<v1::Study> studies = queue_.List();
+std::vector<v1::Study> Studies::List(const std::function<bool(const std::string& owner)>& visible) const {
+  std::vector<v1::Study> studies = queue_.List(visible);
   for (v1::Study& study : studies) study.clear_result();
   return studies;
 }

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -47,15 +49,18 @@ class Studies {
   using Seen = jobs::Queue<StudyJob>::Seen;
   // Returns the name of the scene that a request studies, or why it cannot be studied.
   using SceneName = std::function<absl::StatusOr<std::string>(const v1::CreateStudyRequest& request)>;
+  // Compiles a scene for the owner of a study, until `cancelled` returns true.
+  using OwnersCompiler = std::function<absl::StatusOr<std::shared_ptr<const Model>>(
+      const v1::SceneSource& source, const std::string& owner, const std::function<bool()>& cancelled)>;
 
   // Requires: `clock` and `store` outlive it. With a null store, studies do not survive a restart of the server.
-  Studies(SceneName scene_name, Compiler compile, const Clock& clock, store::Store* store);
+  Studies(SceneName scene_name, OwnersCompiler compile, const Clock& clock, store::Store* store);
 
   // Restores the studies of an earlier server: ended ones with their results; the others run again from their start.
-  // Calls `found` with each and its owner. `lost` gets the reason why one could not be restored, by "study ID".
-  // Requires: no other call was made yet.
+  // `account_of` gives the present name of the account that a record names. `lost` gets the reason why one could not be
+  // restored, by "study ID". Requires: no other call was made yet.
   void Restore(const std::vector<store::SavedRecord>& records,
-               absl::FunctionRef<void(const std::string& id, const std::string& owner)> found,
+               absl::FunctionRef<std::string(const std::string& account)> account_of,
                std::map<std::string, absl::Status>& lost);
 
   // Queues a study and returns after the store has written it to disk. An empty id is derived from kind and scene.
@@ -69,22 +74,23 @@ class Studies {
                      absl::FunctionRef<bool(v1::Study message)> write) const {
     return queue_.Watch(id, gone, write);
   }
-  std::vector<v1::Study> List() const;
+  std::vector<v1::Study> List(const std::function<bool(const std::string& owner)>& visible = nullptr) const;
+  std::optional<std::string> OwnerOf(const std::string& id) const { return queue_.OwnerOf(id); }
   absl::Status Delete(const std::string& id) { return queue_.Delete(id); }
 
  private:
   // A job that is ready for the queue.
   struct Draft {
-    std::string id_base;  // "error-thorax"
+    std::string id_base;  // "error-thorax"; "error" if the scene came with the request, whose name may be a person's
     v1::Study message;
     std::shared_ptr<StudyJob> job;
   };
   absl::StatusOr<Draft> MakeDraft(const v1::CreateStudyRequest& request, const std::string& owner) const;
   absl::Status RestoreOne(const store::SavedRecord& record,
-                          absl::FunctionRef<void(const std::string& id, const std::string& owner)> found);
+                          absl::FunctionRef<std::string(const std::string& account)> account_of);
 
   const SceneName scene_name_;
-  const Compiler compile_;
+  const OwnersCompiler compile_;
   jobs::Queue<StudyJob> queue_;
 };
 

@@ -50,7 +50,7 @@ class Jwt : public testing::Test {
 TEST_F(Jwt, OfTheProviderIsAnAccount) {
   const auto account = keys_->Check(provider_.Sign(Claims()), kNow);
   ASSERT_TRUE(account.ok()) << account.status();
-  EXPECT_EQ(account->name, "anna");
+  EXPECT_EQ(account->name, "jwt:https://id.example.org#anna");
   EXPECT_EQ(account->role, v1::ACCESS_ROLE_CONTROLLER);
   EXPECT_TRUE(With("phrenic_role", json{"staff", "admin"}).ok());
 }
@@ -63,6 +63,25 @@ TEST_F(Jwt, WithAWrongClaimIsRefused) {
                                      {"exp", 1'799'999'000},
                                      {"exp", nullptr},
                                      {"exp", "soon"},
+                                     {"exp", "1800000600"},
+                                     {"exp", true},
+                                     {"exp", 1e300},
+                                     {"exp", -1},
+                                     {"nbf", "1799999000"},
+                                     {"nbf", json::array({1'799'999'000})},
+                                     {"nbf", 1e300},
+                                     {"iat", "now"},
+                                     {"iat", json::object()},
+                                     {"sub", "an\nna"},
+                                     {"sub", std::string("an\0na", 5)},
+                                     {"sub", "\u001b[31manna"},
+                                     {"sub", "an\u0085na"},
+                                     {"sub", "an\u2028na"},
+                                     {"sub", "an\u202Ena"},
+                                     {"sub", "\uFEFFanna"},
+                                     {"sub", " anna"},
+                                     {"sub", ""},
+                                     {"sub", std::string(256, 'a')},
                                      {"nbf", 1'800'000'900},
                                      {"sub", nullptr},
                                      {"sub", 7},
@@ -70,6 +89,24 @@ TEST_F(Jwt, WithAWrongClaimIsRefused) {
                                      {"phrenic_role", nullptr}}) {
     EXPECT_TRUE(absl::IsUnauthenticated(With(claim, value))) << claim << " " << value;
   }
+}
+
+TEST_F(Jwt, NamesOfPeopleAreAccepted) {
+  for (const char* name :
+       {"Zo\u00eb \u0141ukasiewicz", "auth0|5f7c8ec7c33c6c004bbafe82", "\u5c71\u7530", "a@b.org", "x"}) {
+    EXPECT_TRUE(With("sub", name).ok()) << name;
+  }
+  EXPECT_TRUE(With("iat", 1'799'999'999.5).ok());
+}
+
+// RFC 7515 section 4.1.11: a token with an extension that the recipient does not understand is not valid.
+TEST_F(Jwt, WithACriticalExtensionIsRefused) {
+  for (const json& crit : {json::array({"exp"}), json::array({"b64"}), json::array(), json("exp"), json(nullptr)}) {
+    const std::string header = json{{"alg", "RS256"}, {"crit", crit}, {"exp", 1}}.dump();
+    EXPECT_THAT(std::string(CheckJwtHeader(header).message()), HasSubstr("(crit)")) << header;
+  }
+  const std::string token = provider_.Sign(Claims(), {{"crit", "exp"}});
+  EXPECT_THAT(std::string(keys_->Check(token, kNow).status().message()), HasSubstr("(crit)"));
 }
 
 TEST_F(Jwt, WithAnotherKeyOrModifiedIsRefused) {

@@ -5,6 +5,7 @@
 #include <cjose/cjose.h>
 
 #include <cstdlib>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -23,11 +24,16 @@ class Provider {
     free(text);
     return key;
   }
-  std::string Sign(const nlohmann::json& claims) { return SignWith(key_, "RS256", claims); }
-  static std::string SignWith(cjose_jwk_t* key, const char* algorithm, const nlohmann::json& claims) {
+  // `more` are further texts of the header.
+  std::string Sign(const nlohmann::json& claims, const std::map<std::string, std::string>& more = {}) {
+    return SignWith(key_, "RS256", claims, more);
+  }
+  static std::string SignWith(cjose_jwk_t* key, const char* algorithm, const nlohmann::json& claims,
+                              const std::map<std::string, std::string>& more = {}) {
     cjose_err error;
     cjose_header_t* header = cjose_header_new(&error);
     cjose_header_set(header, CJOSE_HDR_ALG, algorithm, &error);
+    for (const auto& [name, value] : more) cjose_header_set(header, name.c_str(), value.c_str(), &error);
     const std::string text = claims.dump();
     cjose_jws_t* jws =
         cjose_jws_sign(key, header, reinterpret_cast<const std::uint8_t*>(text.data()), text.size(), &error);

@@ -63,6 +63,17 @@ TEST(Parts, FinerResolutionGivesMoreVertices) {
   }
 }
 
+TEST(Parts, VerticesAreEstimatedWithoutGenerating) {
+  for (const double resolution_mm : {0.0, 7.0}) {
+    for (const v1::Anatomy& part : AllParts()) {
+      const auto vertices = MeshOf(part, resolution_mm).vertices.cols(), estimate = EstimateVertices(part, resolution_mm);
+      EXPECT_LE(vertices, 4 * estimate) << part.ShortDebugString() << resolution_mm;
+      EXPECT_LE(estimate, 10 * vertices) << part.ShortDebugString() << resolution_mm;
+    }
+  }
+  EXPECT_EQ(EstimateVertices(Part(v1::STRUCTURE_RIB, 13, v1::SIDE_LEFT), 0), 0);
+}
+
 TEST(Parts, SameArgumentsGiveTheSameBits) {
   for (const v1::Anatomy& part : {Part(v1::STRUCTURE_DIAPHRAGM), Part(v1::STRUCTURE_RIB, 3, v1::SIDE_LEFT),
                                   Part(v1::STRUCTURE_VERTEBRA, 9), Part(v1::STRUCTURE_LUNG, 0, v1::SIDE_LEFT)}) {

@@ -31,6 +31,14 @@ TEST(Settings, FollowThePrecedence) {
   EXPECT_THAT(Phrenic({"sessions", "--server", "127.0.0.1:1"}).err, HasSubstr("no server at 127.0.0.1:1"));
 }
 
+TEST(Settings, ATokenThatGrpcForbidsIsAnErrorThatNamesIt) {
+  const Variable token("PHRENIC_TOKEN", "\xe9");
+  const Outcome refused = Phrenic({"sessions", "--server", "127.0.0.1:1"});
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("authorization: its value"));
+  EXPECT_THAT(refused.err, HasSubstr("PHRENIC_TOKEN"));
+}
+
 TEST(Settings, AreShownWithTheirOrigin) {
   const std::string path = SettingsWith("output = \"json\"\n");
   const Variable file("PHRENIC_CONFIG", path);

@@ -8,6 +8,7 @@
 #include <set>
 #include <thread>
 
+#include "server/cluster/scripts.h"
 #include "tests/cluster/redis_server.h"
 
 namespace phrenic::cluster {
@@ -133,9 +134,9 @@ TEST_F(ClusterTest, ASlowServerCannotOverwriteItsSuccessor) {
   b->StartTakeovers();
   Member a(*redis_, "a:1");
   ASSERT_TRUE(a->Claim("s").ok());
-  ASSERT_TRUE(a->Copy(StateAt("s", 1)));
-  ASSERT_TRUE(a->Copy(MomentOf("s", 2)));
-  ASSERT_TRUE(a->Copy(MomentOf("s", 3)));
+  ASSERT_EQ(a->Copy(StateAt("s", 1)), store::Copied::kYes);
+  ASSERT_EQ(a->Copy(MomentOf("s", 2)), store::Copied::kYes);
+  ASSERT_EQ(a->Copy(MomentOf("s", 3)), store::Copied::kYes);
   a->Leave();  // stops renewing, as a suspended process does
   ASSERT_TRUE(Within(absl::Seconds(6), [&] { return !b.taken_over().empty(); }));
   const Member::TakenOver taken = b.taken_over()[0];
@@ -144,10 +145,10 @@ TEST_F(ClusterTest, ASlowServerCannotOverwriteItsSuccessor) {
   EXPECT_EQ(taken.saved.sequence, 3);
   ASSERT_EQ(taken.saved.later.size(), 2U);
   EXPECT_EQ(taken.saved.later[1].session().tick(), 3);
-  EXPECT_FALSE(a->Copy(MomentOf("s", 4))) << "a later epoch exists";
+  EXPECT_EQ(a->Copy(MomentOf("s", 4)), store::Copied::kLost) << "a later epoch exists";
   EXPECT_EQ(a->Locate("s").address, "b:1") << "its lease had expired by its own clock, so it asked Redis";
   EXPECT_TRUE(a.Lost("s"));
-  EXPECT_TRUE(b->Copy(StateAt("s", 1)));
+  EXPECT_EQ(b->Copy(StateAt("s", 1)), store::Copied::kYes);
 }
 
 // The median of three, because a loaded machine may delay one of them.
@@ -158,7 +159,7 @@ TEST_F(ClusterTest, AReleasedSessionIsTakenOverAtOnce) {
   const auto time_to_go_on = [&](const std::string& id) {
     const std::size_t before = b.taken_over().size();
     EXPECT_TRUE(a->Claim(id).ok());
-    EXPECT_TRUE(a->Copy(StateAt(id, 1)));
+    EXPECT_EQ(a->Copy(StateAt(id, 1)), store::Copied::kYes);
     const absl::Time released = absl::Now();
     a->Release(id);
     EXPECT_TRUE(Within(absl::Seconds(10), [&] { return b.taken_over().size() > before; })) << id;
@@ -179,7 +180,9 @@ TEST_F(ClusterTest, SessionsContinueWithoutRedisAndAreCopiedAgainWhenItReturnsEm
   const absl::Time asked = absl::Now();
   EXPECT_EQ(a->Locate("s").kind, Location::Kind::kLocal);
   EXPECT_EQ(a->Locate("t").kind, Location::Kind::kUnknown);
-  EXPECT_TRUE(a->Copy(StateAt("s", 1))) << "an incomplete copy must not end the session";
+  EXPECT_EQ(a->Copy(StateAt("s", 1)), store::Copied::kLater) << "an incomplete copy must not end the session";
+  EXPECT_EQ(a->CheckLease("s").code(), absl::StatusCode::kUnavailable) << "another server may have it";
+  EXPECT_EQ(a->Delete("s").code(), absl::StatusCode::kUnavailable);
   EXPECT_LT(absl::Now() - asked, absl::Seconds(1));
   EXPECT_EQ(a->Claim("u").status().code(), absl::StatusCode::kUnavailable);
   redis_->Start();
@@ -188,14 +191,48 @@ TEST_F(ClusterTest, SessionsContinueWithoutRedisAndAreCopiedAgainWhenItReturnsEm
   EXPECT_FALSE(a.Lost("s"));
 }
 
+// A connection that was given up may deliver its last command long after.
+TEST_F(ClusterTest, ALateWriteDoesNotUndoALaterOne) {
+  Member b(*redis_, "b:1");
+  b->StartTakeovers();
+  Member a(*redis_, "a:1");
+  ASSERT_TRUE(a->Claim("s").ok());
+  ASSERT_EQ(a->Copy(StateAt("s", 1)), store::Copied::kYes);
+  ASSERT_EQ(a->Copy(StateAt("s", 5)), store::Copied::kYes);
+  ASSERT_EQ(a->Copy(MomentOf("s", 6)), store::Copied::kYes);
+  Redis redis(*ParseRedisAddress(redis_->url()));
+  const std::string old = MomentAt(1).SerializeAsString();
+  ASSERT_TRUE(redis.Run(kSave, {"s", "1", "1", "", "1", old, "", "2", old}).ok());
+  ASSERT_TRUE(redis.Run(kSave, {"s", "1", "3", "", "", "", "", "6", old}).ok());
+  a->Leave();
+  ASSERT_TRUE(Within(absl::Seconds(6), [&] { return !b.taken_over().empty(); }));
+  const store::SavedSession saved = b.taken_over()[0].saved;
+  EXPECT_EQ(saved.state.tick(), 5);
+  ASSERT_EQ(saved.later.size(), 1U);
+  EXPECT_EQ(saved.later[0].session().tick(), 6);
+}
+
+TEST_F(ClusterTest, ADeletedSessionIsNotWrittenOrRenewedAgain) {
+  Member a(*redis_, "a:1"), b(*redis_, "b:1");
+  b->StartTakeovers();
+  ASSERT_TRUE(a->Claim("s").ok());
+  ASSERT_EQ(a->Copy(StateAt("s", 1)), store::Copied::kYes);
+  // As if its answer had been lost.
+  Redis redis(*ParseRedisAddress(redis_->url()));
+  ASSERT_TRUE(redis.Run(kDelete, {"s", "1", "60"}).ok());
+  EXPECT_EQ(a->Copy(MomentOf("s", 2)), store::Copied::kLost);
+  EXPECT_TRUE(Within(absl::Seconds(4), [&] { return a.Lost("s"); }));
+  EXPECT_EQ(b->Locate("s").kind, Location::Kind::kNone);
+}
+
 // Otherwise its successor would resume an old state.
 TEST_F(ClusterTest, AnIncompleteCopyIsCompletedBeforeARelease) {
   Member a(*redis_, "a:1"), b(*redis_, "b:1");
   b->StartTakeovers();
   ASSERT_TRUE(a->Claim("s").ok());
-  ASSERT_TRUE(a->Copy(StateAt("s", 1)));
+  ASSERT_EQ(a->Copy(StateAt("s", 1)), store::Copied::kYes);
   redis_->Kill();
-  ASSERT_TRUE(a->Copy(MomentOf("s", 2)));  // the copy is incomplete
+  ASSERT_EQ(a->Copy(MomentOf("s", 2)), store::Copied::kLater);
   redis_->Start();
   ASSERT_TRUE(Within(absl::Seconds(4), [&] { return a.AskedFor("s"); }));
   std::thread store([&] {
@@ -220,7 +257,7 @@ TEST_F(ClusterTest, AStoredSessionIsReclaimedUnlessOthersHadItSince) {
   store::Written gone;
   gone.id = "newer";
   gone.forgotten = true;
-  EXPECT_TRUE(a->Copy(gone));
+  EXPECT_EQ(a->Copy(gone), store::Copied::kYes);
   EXPECT_FALSE(b->Reclaim(SavedAt("newer", 5, 10)).ok()) << "a deleted session was reclaimed";
 }
 
@@ -230,6 +267,8 @@ TEST(RedisAddress, ReportsErrorsWithoutThePassword) {
   EXPECT_EQ(good->host, "10.0.0.1");
   EXPECT_EQ(good->port, 7000);
   EXPECT_EQ(good->password, "secret");
+  EXPECT_FALSE(good->encrypted);
+  EXPECT_TRUE(ParseRedisAddress("rediss://10.0.0.1")->encrypted);
   for (const char* bad :
        {"10.0.0.1:7000", "redis://", "redis://host:0", "redis://secret@host:1", "redis://:secret@:1"}) {
     const auto address = ParseRedisAddress(bad);

@@ -9,6 +9,8 @@
 #include <csignal>
 #include <cstdlib>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "absl/time/clock.h"
 #include "server/cluster/redis.h"
@@ -20,7 +22,11 @@ class RedisServer {
  public:
   static bool Installed() { return std::system("command -v redis-server > /dev/null") == 0; }
 
-  RedisServer() : port_(33'000 + getpid() % 20'000) { Start(); }
+  // `flags` are added to its command line.
+  explicit RedisServer(std::vector<std::string> flags = {})
+      : port_(33'000 + getpid() % 20'000), flags_(std::move(flags)) {
+    Start();
+  }
   ~RedisServer() { Kill(); }
   RedisServer(const RedisServer&) = delete;
   RedisServer& operator=(const RedisServer&) = delete;
@@ -31,8 +37,13 @@ class RedisServer {
     if (pid_ == 0) {
       const int nowhere = open("/dev/null", O_WRONLY);
       dup2(nowhere, 1);
-      execlp("redis-server", "redis-server", "--bind", "127.0.0.1", "--port", std::to_string(port_).c_str(), "--save",
-             "", nullptr);
+      std::vector<std::string> words = {"redis-server",        "--bind", "127.0.0.1", "--port",
+                                        std::to_string(port_), "--save", ""};
+      words.insert(words.end(), flags_.begin(), flags_.end());
+      std::vector<char*> arguments;
+      for (std::string& word : words) arguments.push_back(word.data());
+      arguments.push_back(nullptr);
+      execvp("redis-server", arguments.data());
       _exit(127);
     }
     for (int tries = 0; tries < 200; ++tries) {
@@ -47,10 +58,13 @@ class RedisServer {
     waitpid(pid_, nullptr, 0);
     pid_ = -1;
   }
+  void Signal(int signal) const { kill(pid_, signal); }
+  int port() const { return port_; }
   std::string url() const { return "redis://127.0.0.1:" + std::to_string(port_); }
 
  private:
   const int port_;
+  const std::vector<std::string> flags_;
   pid_t pid_ = -1;
 };
 

@@ -141,6 +141,20 @@ units_are_checked_once() {
   expect NoUnitIsAFault "$("$root/deploy/units.py" "$folder" nothing gcc 2>&1 || echo "status $?")" "no file of" "status 1"
 }
 
+guards_are_valid() {
+  local file
+  PATH=$PATH:/usr/sbin
+  command -v nginx >/dev/null || return 0
+  for file in guard.conf cluster.conf; do
+    mkdir -p "$scratch/$file"
+    in_lib make_nginx_folder "$scratch/$file" 18443 "$file"
+    echo "server 127.0.0.1:1;" | tee "$scratch/$file/phrenic/servers-grpc.conf" >"$scratch/$file/phrenic/servers-web.conf"
+    expect "GuardIsValid: $file" "$(nginx -t -p "$scratch/$file" -c "$scratch/$file/nginx.conf" -e stderr 2>&1)" \
+      "test is successful"
+  done
+  expect GuardFlagsAreSaid "$("$root/deploy/guard" --nonsense 2>&1 || echo "status $?")" "no flag --nonsense" "status 1"
+}
+
 # systemd's measure of what the service may do, in tenths: 0 is nothing, 100 everything.
 service_is_confined() {
   command -v systemd-analyze >/dev/null || return 0
@@ -153,6 +167,7 @@ packages
 node
 run_flags
 service_is_confined
+guards_are_valid
 stages
 failed_tests_are_named
 stages_are_counted_and_timed

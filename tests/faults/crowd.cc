@@ -51,7 +51,8 @@ void RequestPage(const ServerProcess& server) {
   boost::asio::ip::tcp::socket socket(io);
   boost::system::error_code error;
   socket.connect({boost::asio::ip::make_address("127.0.0.1"), static_cast<unsigned short>(server.web_port())}, error);
-  boost::asio::write(socket, boost::asio::buffer(std::string("GET /metrics HTTP/1.1\r\nHost: x\r\n\r\n")), error);
+  boost::asio::write(socket, boost::asio::buffer(std::string("GET /metrics HTTP/1.1\r\nHost: localhost\r\n\r\n")),
+                     error);
 }
 
 bool Round(const ServerProcess& server) {

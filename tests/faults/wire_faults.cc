@@ -254,7 +254,7 @@ Tally RandomBytes(Oracle& oracle, const std::string& folder, int times) {
   Rig rig(oracle, folder);
   static const char* const kStarts[] = {"", "PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n", "GET / HTTP/1.1\r\n",
                                         "POST /phrenic.v1.",
-                                        "POST /phrenic.v1.SessionService/GetSession HTTP/1.1\r\nHost: x\r\n"
+                                        "POST /phrenic.v1.SessionService/GetSession HTTP/1.1\r\nHost: localhost\r\n"
                                         "Content-Type: application/grpc-web+proto\r\nContent-Length: 100\r\n\r\n"};
   for (int i = 0; i < times; ++i) {
     rig.Disturb([&] {

@@ -66,7 +66,7 @@ class QueueTest : public testing::Test {
   static absl::StatusOr<v1::Study> Add(TestQueue& queue, const std::string& id, const Work& work) {
     v1::Study message;
     message.set_scene("thorax");
-    return queue.Add(id, "error-thorax", message, std::make_shared<TestJob>(work));
+    return queue.Add("", id, "error-thorax", message, std::make_shared<TestJob>(work));
   }
 
   static TestQueue::Seen WaitForEnd(const TestQueue& queue, const std::string& id) {

@@ -10,8 +10,7 @@
 #include "absl/strings/str_replace.h"
 #include "phrenic/v1/access.grpc.pb.h"
 #include "server/access/rules.h"
-#include "server/access/token_file.h"
-#include "tests/service/server_fixture.h"
+#include "tests/service/guarded_server.h"
 
 namespace phrenic::service {
 namespace {
@@ -19,80 +18,6 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-
-// A server with five accounts.
-class GuardedServer : public ServerFixture {
- protected:
-  GuardedServer() {
-    options_.accounts.tokens_file = absl::StrCat(testing::TempDir(), "/phrenic-accounts-", getpid());
-    options_.audit_file = absl::StrCat(testing::TempDir(), "/phrenic-audit-", getpid());
-    options_.limits.sessions_of_user = 2;
-    Forget();
-    for (const char* name : {"viewer", "controller", "owner", "admin"}) Add(name, access::RoleOf(name));
-    Add("other", v1::ACCESS_ROLE_OWNER);
-  }
-  ~GuardedServer() override { Forget(); }
-  void Forget() const {
-    std::filesystem::remove(options_.accounts.tokens_file);
-    std::filesystem::remove(options_.audit_file);
-  }
-  void Add(const std::string& name, v1::AccessRole role) {
-    tokens_[name] = *access::AddToken(options_.accounts.tokens_file, {name, role});
-  }
-
-  // Metadata of a call: the account, "" for none, and the secret of a join link.
-  struct As {
-    std::string name;
-    std::string link = "";
-  };
-  template <class Stub, class Request, class Response>
-  grpc::Status CallAs(const As& who, Stub& stub,
-                      grpc::Status (Stub::*method)(grpc::ClientContext*, const Request&, Response*),
-                      const std::string& text, Response* response) {
-    Request request;
-    EXPECT_TRUE(google::protobuf::TextFormat::ParseFromString(text, &request)) << text;
-    grpc::ClientContext context;
-    context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(30));
-    Sign(who, context);
-    return (stub.*method)(&context, request, response);
-  }
-  void Sign(const As& who, grpc::ClientContext& context) const {
-    if (!who.name.empty()) context.AddMetadata("authorization", "Bearer " + tokens_.at(who.name));
-    if (!who.link.empty()) context.AddMetadata("x-join", who.link);
-  }
-  // Returns the status code of a call to SessionService.
-  template <class Request, class Response>
-  grpc::StatusCode Code(const As& who,
-                        grpc::Status (v1::SessionService::Stub::*method)(grpc::ClientContext*, const Request&,
-                                                                         Response*),
-                        const std::string& text) {
-    Response response;
-    return CallAs(who, *sessions_, method, text, &response).error_code();
-  }
-  using Sessions = v1::SessionService::Stub;
-
-  grpc::StatusCode Create(const std::string& who, const std::string& id) {
-    return Code({who}, &Sessions::CreateSession,
-                absl::StrCat("session_id: '", id, "' source { name: 'cube-springs' }"));
-  }
-  std::vector<std::string> Listed(const As& who) {
-    v1::ListSessionsResponse listed;
-    EXPECT_TRUE(CallAs(who, *sessions_, &Sessions::ListSessions, "", &listed).ok());
-    std::vector<std::string> ids;
-    for (const v1::Session& session : listed.sessions()) ids.push_back(session.id());
-    return ids;
-  }
-  v1::CreateLinkResponse Link(const std::string& more) {
-    const auto links = v1::AccessService::NewStub(channel_);
-    v1::CreateLinkResponse made;
-    const auto status =
-        CallAs({"owner"}, *links, &v1::AccessService::Stub::CreateLink, "session_id: 'mine' " + more, &made);
-    EXPECT_TRUE(status.ok()) << status.error_message();
-    return made;
-  }
-
-  std::map<std::string, std::string> tokens_;
-};
 
 // Calls a method by its path with an empty request, so that the test covers every method.
 grpc::StatusCode CodeOfEmptyCall(grpc::GenericStub& stub, const std::string& method) {
@@ -176,7 +101,7 @@ TEST_F(GuardedServer, ALinkGrantsItsRoleUntilItIsRevoked) {
   using Links = v1::AccessService::Stub;
   EXPECT_EQ(CallAs(colleague, *links, &Links::RevokeLink, name, &revoked).error_code(), grpc::PERMISSION_DENIED);
   ASSERT_TRUE(CallAs({"owner"}, *links, &Links::RevokeLink, name, &revoked).ok());
-  EXPECT_EQ(Code(guest, &Sessions::GetSession, "session_id: 'mine'"), grpc::NOT_FOUND);
+  EXPECT_EQ(Code(guest, &Sessions::GetSession, "session_id: 'mine'"), grpc::UNAUTHENTICATED);
   EXPECT_EQ(Code(colleague, &Sessions::GetSession, "session_id: 'mine'"), grpc::OK) << "the other link";
 }
 
@@ -189,7 +114,7 @@ TEST_F(GuardedServer, ALinkExpires) {
     usleep(50'000);
     code = Code(guest, &Sessions::GetSession, "session_id: 'mine'");
   }
-  EXPECT_EQ(code, grpc::NOT_FOUND);
+  EXPECT_EQ(code, grpc::UNAUTHENTICATED);
 }
 
 TEST_F(GuardedServer, RevokingALinkEndsItsStreams) {
@@ -277,10 +202,10 @@ class GuardedGateway : public GuardedServer {
   std::string TrailersOf(const std::string& headers) {
     RawSocket socket(server_->web_port());
     const std::string body = WebMessage("");
-    const auto response =
-        socket.Ask(absl::StrCat("POST /phrenic.v1.SessionService/ListSessions HTTP/1.1\r\nHost: x\r\nContent-Type: "
-                                "application/grpc-web+proto\r\n",
-                                headers, "Content-Length: ", body.size(), "\r\n\r\n", body));
+    const auto response = socket.Ask(
+        absl::StrCat("POST /phrenic.v1.SessionService/ListSessions HTTP/1.1\r\nHost: localhost\r\nContent-Type: "
+                     "application/grpc-web+proto\r\n",
+                     headers, "Content-Length: ", body.size(), "\r\n\r\n", body));
     EXPECT_TRUE(response.has_value());
     const auto frames = WebFrames(response.has_value() ? response->body() : "");
     return frames.empty() ? "" : frames.back().bytes;
@@ -297,7 +222,8 @@ TEST_F(GuardedGateway, TheHeadersIdentifyTheCaller) {
 TEST_F(GuardedGateway, MetricsRequireAnAdministrator) {
   const auto ask = [&](const std::string& page, const std::string& headers) {
     RawSocket socket(server_->web_port());
-    return socket.Ask("GET " + page + " HTTP/1.1\r\nHost: x\r\n" + headers + "\r\n").value_or(RawSocket::Response());
+    return socket.Ask("GET " + page + " HTTP/1.1\r\nHost: localhost\r\n" + headers + "\r\n")
+        .value_or(RawSocket::Response());
   };
   EXPECT_EQ(ask("/metrics", "").result_int(), 401u);
   EXPECT_EQ(ask("/metrics", "Authorization: Bearer " + tokens_["owner"] + "\r\n").result_int(), 401u);

@@ -48,7 +48,7 @@ class Limits : public testing::Test {
   std::optional<absl::Duration> WebAnswer() const {
     const absl::Time start = absl::Now();
     RawSocket socket(server_->web_port());
-    const auto response = socket.Ask("GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n");
+    const auto response = socket.Ask("GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n");
     if (!response.has_value() || response->result() != http::status::ok) return std::nullopt;
     return absl::Now() - start;
   }
@@ -68,7 +68,7 @@ class Limits : public testing::Test {
 TEST_F(Limits, ASlowHeaderTimesOutAlthoughEachByteIsInTime) {
   Start({"--head-seconds", "1"});
   RawSocket slow(server_->web_port());
-  slow.Send("GET / HTTP/1.1\r\nHost: x\r\n");
+  slow.Send("GET / HTTP/1.1\r\nHost: localhost\r\n");
   const absl::Time start = absl::Now();
   bool open = true;
   while (open && absl::Now() - start < absl::Seconds(8)) {
@@ -96,7 +96,7 @@ TEST_F(Limits, AnEndlessBodyIsRefusedWithTheLimit) {
   const std::int64_t before = server_->PeakMemory();
   RawSocket socket(server_->web_port());
   socket.Send(
-      "POST /phrenic.v1.UploadService/AddUploadChunk HTTP/1.1\r\nHost: x\r\nContent-Type: "
+      "POST /phrenic.v1.UploadService/AddUploadChunk HTTP/1.1\r\nHost: localhost\r\nContent-Type: "
       "application/grpc-web+proto\r\n"
       "Transfer-Encoding: chunked\r\n\r\n");
   const std::string chunk = "10000\r\n" + std::string(0x10000, 'x') + "\r\n";
@@ -254,7 +254,7 @@ TEST_F(Limits, ASessionUsesNoMoreThanItsFractionOfACore) {
 TEST_F(Limits, ASilentConnectionIsClosed) {
   Start({"--idle-seconds", "1", "--head-seconds", "1"});
   RawSocket fresh(server_->web_port()), kept(server_->web_port());
-  ASSERT_TRUE(kept.Ask("GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n").has_value());
+  ASSERT_TRUE(kept.Ask("GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n").has_value());
   const absl::Time start = absl::Now();
   EXPECT_EQ(fresh.ReadSome(1), "");
   EXPECT_EQ(kept.ReadSome(1), "");

@@ -56,10 +56,10 @@ TEST(Phrenicd, StartsANewSessionBesideOneThatCannotBeRestored) {
   };
   EXPECT_THAT(run("100"), HasSubstr("first scene: session patch\n"));
   EXPECT_THAT(run("100"), HasSubstr("first scene: session patch\n"));
-  const std::string anew = run("120");
+  const std::string anew = run("400");
   EXPECT_THAT(anew, HasSubstr("patch could not be restored and stays in the store until it is deleted: "));
   EXPECT_THAT(anew, HasSubstr("first scene: session patch-2\n"));
-  EXPECT_THAT(run("120"), HasSubstr("first scene: session patch-2\n"));
+  EXPECT_THAT(run("400"), HasSubstr("first scene: session patch-2\n"));
   std::filesystem::remove_all(folder);
 }
 

@@ -57,6 +57,18 @@ class RawSocket {
     return bytes;
   }
 
+  // Reads `count` bytes, fewer if the connection ends before.
+  std::string ReadExactly(std::size_t count) {
+    while (unread_.size() < count) {
+      const std::string more = ReadSome(1);
+      if (more.empty()) break;
+      unread_ += more;
+    }
+    const std::string bytes = unread_.substr(0, count);
+    unread_.erase(0, bytes.size());
+    return bytes;
+  }
+
   std::optional<Response> Ask(const std::string& bytes) {
     Send(bytes);
     return Read();
@@ -78,6 +90,7 @@ class RawSocket {
   boost::asio::io_context context_;
   boost::beast::tcp_stream stream_;
   boost::beast::flat_buffer buffer_;
+  std::string unread_;  // of ReadExactly
 };
 
 // One frame of a gRPC-web body.

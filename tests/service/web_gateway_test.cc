@@ -37,6 +37,7 @@ class WebGatewayTest : public ServerFixture {
     std::ofstream(root_ / "site" / "assets" / "main-1a2b.js") << "export {};";
     options_.web_root = (root_ / "site").string();
     options_.max_connections = 8;
+    options_.allowed_hosts = {"phrenic.test"};
     options_.limits.viewers = 16;
   }
   ~WebGatewayTest() override { fs::remove_all(root_); }
@@ -247,25 +248,27 @@ TEST_F(WebGatewayTest, NoFileOutsideTheFolderIsServed) {
 }
 
 TEST_F(WebGatewayTest, RandomBytesDoNoHarm) {
-  const std::string large_header = "GET / HTTP/1.1\r\nHost: x\r\nX-Long: " + std::string(40'000, 'x') + "\r\n\r\n";
+  const std::string large_header =
+      "GET / HTTP/1.1\r\nHost: localhost\r\nX-Long: " + std::string(40'000, 'x') + "\r\n\r\n";
   for (const std::string& garbage :
        {std::string("\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03", 11), std::string("GET\r\n\r\n"),
         std::string("PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n"), std::string(20'000, '\0'), large_header,
-        std::string("POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 99999999999\r\n\r\n"),
-        std::string("POST / HTTP/1.1\r\nHost: x\r\nContent-Length: -1\r\n\r\n"),
-        std::string("POST / HTTP/1.1\r\nHost: x\r\nTransfer-Encoding: chunked\r\n\r\nzz\r\n")}) {
+        std::string("POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 99999999999\r\n\r\n"),
+        std::string("POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: -1\r\n\r\n"),
+        std::string("POST / HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: chunked\r\n\r\nzz\r\n")}) {
     RawSocket socket = Connect();
     const auto response = socket.Ask(garbage);
     if (!response.has_value()) continue;  // closing the connection is allowed, too
     EXPECT_GE(response->result_int(), 400u) << garbage.substr(0, 40);
-    EXPECT_FALSE(socket.Ask("GET / HTTP/1.1\r\nHost: x\r\n\r\n").has_value())
+    EXPECT_FALSE(socket.Ask("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n").has_value())
         << "the connection stays open after garbage";
   }
   EXPECT_EQ(Get("/").result(), http::status::ok);
 }
 
 TEST_F(WebGatewayTest, UnsupportedMethodsAndTypesAreRefused) {
-  EXPECT_EQ(Ask("PUT / HTTP/1.1\r\nHost: x\r\nContent-Length: 0\r\n\r\n").result(), http::status::method_not_allowed);
+  EXPECT_EQ(Ask("PUT / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 0\r\n\r\n").result(),
+            http::status::method_not_allowed);
   EXPECT_EQ(Ask(Post("SessionService/ListSessions", "{}", "", "application/json")).result(),
             http::status::unsupported_media_type);
 }
@@ -284,7 +287,7 @@ TEST_F(WebGatewayTest, ConnectionsAboveTheLimitAreRefusedWhileAllAreBusy) {
   sockets.clear();
   bool room = false;
   for (int i = 0; i < 250 && !room; ++i) {
-    const auto response = Connect().Ask("GET / HTTP/1.1\r\nHost: x\r\n\r\n");
+    const auto response = Connect().Ask("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
     room = response.has_value() && response->result() == http::status::ok;
     if (!room) std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
@@ -295,14 +298,14 @@ TEST_F(WebGatewayTest, ANewConnectionReplacesTheOneThatWaitedLongest) {
   std::vector<std::unique_ptr<RawSocket>> sockets;
   for (int i = 0; i < 8; ++i) {
     sockets.push_back(std::make_unique<RawSocket>(server_->web_port()));
-    ASSERT_TRUE(sockets.back()->Ask("GET / HTTP/1.1\r\nHost: x\r\n\r\n").has_value());
+    ASSERT_TRUE(sockets.back()->Ask("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n").has_value());
     std::this_thread::sleep_for(std::chrono::milliseconds(20));  // until it waits for a request
   }
   EXPECT_EQ(Get("/").result(), http::status::ok);
   const auto start = std::chrono::steady_clock::now();
   EXPECT_EQ(sockets.front()->ReadSome(1), "");
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5)) << "it was not closed";
-  EXPECT_TRUE(sockets.back()->Ask("GET / HTTP/1.1\r\nHost: x\r\n\r\n").has_value());
+  EXPECT_TRUE(sockets.back()->Ask("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n").has_value());
 }
 
 TEST_F(WebGatewayTest, ShutdownEndsOpenStreams) {

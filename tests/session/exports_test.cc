@@ -84,7 +84,8 @@ TEST_F(ExportsTest, OutliveTheirServerAndMakeTheSameFiles) {
   std::map<std::string, std::string> found;
   std::map<std::string, absl::Status> lost;
   exports->Restore(
-      *store->LoadRecords(), models, [&](const std::string& id, const std::string& owner) { found[id] = owner; }, lost);
+      *store->LoadRecords(), models, [](const std::string& account) { return account; }, lost);
+  for (const v1::Export& job : exports->List()) found[job.id()] = exports->OwnerOf(job.id()).value_or("none");
   EXPECT_THAT(found, ::testing::UnorderedElementsAre(Pair("short", "anna"), Pair("long", "anna")));
   EXPECT_THAT(lost, IsEmpty());
   EXPECT_EQ(hash_of(*exports, "short"), whole);
@@ -166,16 +167,17 @@ class UploadsTest : public testing::Test {
  protected:
   absl::StatusOr<Uploads::Finished> Upload(const std::string& name, const std::string& bytes,
                                            const std::string& sha256 = "") {
-    const auto begun = uploads_.Begin(name, static_cast<std::int64_t>(bytes.size()), sha256);
+    const auto begun = uploads_.Begin(by_, name, static_cast<std::int64_t>(bytes.size()), sha256);
     if (!begun.ok()) return begun.status();
     const std::size_t half = bytes.size() / 2;
-    EXPECT_EQ(*uploads_.Add(begun->id, 0, bytes.substr(0, half)), static_cast<std::int64_t>(half));
-    EXPECT_TRUE(absl::IsFailedPrecondition(uploads_.Finish(begun->id, 1).status())) << "half of it";
-    EXPECT_TRUE(absl::IsOutOfRange(uploads_.Add(begun->id, static_cast<std::int64_t>(half) + 1, "x").status()));
-    EXPECT_TRUE(uploads_.Add(begun->id, static_cast<std::int64_t>(half), bytes.substr(half)).ok());
-    return uploads_.Finish(begun->id, 1);
+    EXPECT_EQ(*uploads_.Add(by_, begun->id, 0, bytes.substr(0, half)), static_cast<std::int64_t>(half));
+    EXPECT_TRUE(absl::IsFailedPrecondition(uploads_.Finish(by_, begun->id, 1).status())) << "half of it";
+    EXPECT_TRUE(absl::IsOutOfRange(uploads_.Add(by_, begun->id, static_cast<std::int64_t>(half) + 1, "x").status()));
+    EXPECT_TRUE(uploads_.Add(by_, begun->id, static_cast<std::int64_t>(half), bytes.substr(half)).ok());
+    return uploads_.Finish(by_, begun->id, 1);
   }
 
+  const Requester by_;
   Uploads uploads_{{.upload_bytes = 100, .uploads_bytes = 120}, testing::TempDir()};
 };
 
@@ -184,24 +186,27 @@ TEST_F(UploadsTest, AFileIsKeptByItsContentAndScenesNameIt) {
   ASSERT_TRUE(finished.ok()) << finished.status();
   EXPECT_EQ(finished->file.path(), "upload:" + Sha256Hex(kSurface));
   EXPECT_EQ(finished->surface.mesh.vertices(0, 1), 0.03);
-  const auto again = uploads_.Begin("b.obj", sizeof kSurface - 1, Sha256Hex(kSurface));
+  const auto again = uploads_.Begin(by_, "b.obj", sizeof kSurface - 1, Sha256Hex(kSurface));
   ASSERT_TRUE(again.ok()) << again.status();
   EXPECT_TRUE(again->id.empty()) << "it is there";
   v1::Body body;
   body.mutable_file()->set_path(finished->file.path());
   body.mutable_file()->set_unit(1);
-  const auto mesh = MakeMeshSource("", &uploads_)(body);
+  const auto held = uploads_.Hold(by_, finished->file.path());
+  ASSERT_TRUE(held.ok()) << held.status();
+  const auto mesh = MakeMeshSource("", {*held})(body);
   ASSERT_TRUE(mesh.ok()) << mesh.status();
   EXPECT_EQ(mesh->vertices(0, 1), 30);
-  ASSERT_TRUE(uploads_.Delete(finished->file.path()).ok());
-  EXPECT_THAT(std::string(MakeMeshSource("", &uploads_)(body).status().message()), HasSubstr("upload it again"));
+  ASSERT_TRUE(uploads_.Delete(by_, finished->file.path()).ok());
+  EXPECT_THAT(std::string(uploads_.Hold(by_, finished->file.path()).status().message()), HasSubstr("upload it again"));
+  EXPECT_THAT(std::string(MakeMeshSource("")(body).status().message()), HasSubstr("upload it again"));
 }
 
 TEST_F(UploadsTest, AnInterruptedUploadContinuesWhereItWas) {
   const std::string hash = Sha256Hex(kSurface);
-  const auto first = uploads_.Begin("a.obj", sizeof kSurface - 1, hash);
-  ASSERT_TRUE(uploads_.Add(first->id, 0, "v 0 0").ok());
-  const auto second = uploads_.Begin("a.obj", sizeof kSurface - 1, hash);
+  const auto first = uploads_.Begin(by_, "a.obj", sizeof kSurface - 1, hash);
+  ASSERT_TRUE(uploads_.Add(by_, first->id, 0, "v 0 0").ok());
+  const auto second = uploads_.Begin(by_, "a.obj", sizeof kSurface - 1, hash);
   EXPECT_EQ(second->id, first->id);
   EXPECT_EQ(second->received, 5);
 }
@@ -209,28 +214,29 @@ TEST_F(UploadsTest, AnInterruptedUploadContinuesWhereItWas) {
 TEST_F(UploadsTest, TwoClientsThatUploadTheSameFileShareOneUpload) {
   const std::string bytes = kSurface, hash = Sha256Hex(bytes);
   const auto size = static_cast<std::int64_t>(bytes.size());
-  const std::string mine = uploads_.Begin("a.obj", size, hash)->id, other = uploads_.Begin("b.obj", size, hash)->id;
-  EXPECT_EQ(*uploads_.Add(mine, 0, bytes.substr(0, 9)), 9);
-  EXPECT_EQ(*uploads_.Add(other, 0, bytes.substr(0, 5)), 9) << "they are there";
-  EXPECT_EQ(*uploads_.Add(other, 5, bytes.substr(5)), size) << "its first four are there";
-  EXPECT_EQ(*uploads_.Add(mine, 9, bytes.substr(9)), size);
-  const auto first = uploads_.Finish(mine, 1), second = uploads_.Finish(other, 1);
+  const std::string mine = uploads_.Begin(by_, "a.obj", size, hash)->id,
+                    other = uploads_.Begin(by_, "b.obj", size, hash)->id;
+  EXPECT_EQ(*uploads_.Add(by_, mine, 0, bytes.substr(0, 9)), 9);
+  EXPECT_EQ(*uploads_.Add(by_, other, 0, bytes.substr(0, 5)), 9) << "they are there";
+  EXPECT_EQ(*uploads_.Add(by_, other, 5, bytes.substr(5)), size) << "its first four are there";
+  EXPECT_EQ(*uploads_.Add(by_, mine, 9, bytes.substr(9)), size);
+  const auto first = uploads_.Finish(by_, mine, 1), second = uploads_.Finish(by_, other, 1);
   ASSERT_TRUE(first.ok()) << first.status();
   ASSERT_TRUE(second.ok()) << second.status();
   EXPECT_EQ(first->file.sha256, hash);
   EXPECT_EQ(first->surface.mesh.vertices, second->surface.mesh.vertices);
-  EXPECT_THAT(uploads_.List(), SizeIs(1));
+  EXPECT_THAT(uploads_.List(by_), SizeIs(1));
 }
 
 TEST_F(UploadsTest, EachKindOfBadFileIsRefusedWithItsReason) {
   const auto words = [](const auto& status) { return std::string(status.status().message()); };
-  EXPECT_THAT(words(uploads_.Begin("a.doc", 10, "")), HasSubstr("there are .obj"));
-  EXPECT_THAT(words(uploads_.Begin("a.obj", 0, "")), HasSubstr("is empty"));
-  EXPECT_THAT(words(uploads_.Begin("a.obj", 101, "")), HasSubstr("a file may have 100"));
+  EXPECT_THAT(words(uploads_.Begin(by_, "a.doc", 10, "")), HasSubstr("there are .obj"));
+  EXPECT_THAT(words(uploads_.Begin(by_, "a.obj", 0, "")), HasSubstr("is empty"));
+  EXPECT_THAT(words(uploads_.Begin(by_, "a.obj", 101, "")), HasSubstr("a file may have 100"));
   EXPECT_THAT(words(Upload("a.obj", "v 0 0 0\nv 1 0\nf 1 2 2\n")), HasSubstr("a.obj:2: "));
   EXPECT_THAT(words(Upload("a.obj", kSurface, Sha256Hex("another"))), HasSubstr("arrived damaged"));
-  EXPECT_THAT(words(uploads_.Add("u99", 0, "x")), HasSubstr("begin it again"));
-  EXPECT_THAT(uploads_.List(), SizeIs(0));
+  EXPECT_THAT(words(uploads_.Add(by_, "u99", 0, "x")), HasSubstr("begin it again"));
+  EXPECT_THAT(uploads_.List(by_), SizeIs(0));
 }
 
 TEST_F(UploadsTest, TheLeastRecentlyUsedFileMakesRoom) {
@@ -239,12 +245,12 @@ TEST_F(UploadsTest, TheLeastRecentlyUsedFileMakesRoom) {
     const auto finished = Upload("a.obj", kSurface + more);
     ASSERT_TRUE(finished.ok()) << finished.status();
     paths.push_back(finished->file.path());
-    EXPECT_TRUE(uploads_.Read(paths[0], 1).ok()) << "it stays in use";
+    EXPECT_TRUE(uploads_.Hold(by_, paths[0]).ok()) << "it stays in use";
   }
   const auto last = Upload("a.obj", std::string(kSurface) + "\n\n\n");
   ASSERT_TRUE(last.ok());
-  EXPECT_TRUE(uploads_.Read(paths[0], 1).ok());
-  EXPECT_TRUE(absl::IsNotFound(uploads_.Read(paths[1], 1).status()));
+  EXPECT_TRUE(uploads_.Hold(by_, paths[0]).ok());
+  EXPECT_TRUE(absl::IsNotFound(uploads_.Hold(by_, paths[1]).status()));
 }
 
 }  // namespace

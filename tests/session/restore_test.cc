@@ -127,8 +127,30 @@ TEST_F(RestoreTest, ARestoredSessionEqualsTheUninterruptedOneBitForBit) {
   EXPECT_THAT(lost_, IsEmpty());
 }
 
+// Copies the files while the store has them open, which is what a server leaves that is killed.
+TEST_F(RestoreTest, WhatACallHasReturnedSurvivesAKill) {
+  auto session = Create("a");
+  const std::string left = folder_ + "/left";
+  for (int i = 1; i <= 40; ++i) {
+    if (i % 10 == 0) Set(*session, 0.1 * i);
+    const auto stepped = session->Step(1, std::nullopt, Nobody);
+    ASSERT_TRUE(stepped.ok()) << stepped.status();
+    ASSERT_EQ(stepped->session.tick(), i);
+    std::filesystem::remove_all(left);
+    std::filesystem::copy(folder_ + "/store", left);
+    const auto store = store::Store::Open(left);
+    ASSERT_TRUE(store.ok()) << store.status();
+    const auto saved = (*store)->Load();
+    ASSERT_TRUE(saved.ok() && saved->size() == 1);
+    const auto replayed = Replay(session->shared_model(), saved->front());
+    ASSERT_TRUE(replayed.ok()) << replayed.status();
+    EXPECT_EQ(HashText(replayed->state), stepped->state_hash) << "step " << i;
+    EXPECT_EQ(replayed->moment.session().revision(), stepped->session.revision());
+  }
+}
+
 TEST_F(RestoreTest, ASessionWithAnUploadedFileIsSavedWithTheFile) {
-  const auto given = uploads_->Adopt("tent.obj", "v 0 0 0\nv 100 0 0\nv 0 100 0\nv 0 0 100\nf 1 2 3\nf 1 3 4\n");
+  const auto given = uploads_->Adopt({}, "tent.obj", "v 0 0 0\nv 100 0 0\nv 0 100 0\nv 0 0 100\nf 1 2 3\nf 1 3 4\n");
   ASSERT_TRUE(given.ok()) << given.status();
   v1::CreateSessionRequest request;
   request.set_session_id("given");
@@ -141,7 +163,7 @@ TEST_F(RestoreTest, ASessionWithAnUploadedFileIsSavedWithTheFile) {
       request.mutable_source()->mutable_scene()));
   const auto session = table_->Create(request);
   ASSERT_TRUE(session.ok()) << session.status();
-  ASSERT_TRUE(uploads_->Delete(given->file.path()).ok());
+  ASSERT_TRUE(uploads_->Delete({}, given->file.path()).ok());
   v1::ForkSessionRequest fork;
   fork.set_session_id("given");
   fork.set_fork_id("fork");
@@ -151,7 +173,7 @@ TEST_F(RestoreTest, ASessionWithAnUploadedFileIsSavedWithTheFile) {
   ASSERT_THAT(lost_, IsEmpty());
   EXPECT_EQ(HashText(Find("given")->MakeFork()->state), hash);
   EXPECT_EQ(HashAfter(*Find("fork"), 20), hash);
-  EXPECT_EQ(uploads_->List().size(), 1u);
+  EXPECT_EQ(uploads_->List({}).size(), 1u);
 }
 
 TEST_F(RestoreTest, APlayingSessionContinuesToPlay) {
@@ -173,6 +195,19 @@ TEST_F(RestoreTest, ASessionEndsWithTheTableEvenIfACallerHoldsIt) {
     Again();
     ASSERT_EQ(Find("held")->status().tick(), tick) << "round " << round;
   }
+}
+
+TEST_F(RestoreTest, ASessionIsStillAskedToKeepPlayingAndACopyStillTemporary) {
+  ASSERT_TRUE(Create("a")->Play(PlayRequest{.keep_playing = true}, "").ok());
+  v1::ForkSessionRequest fork;
+  fork.set_session_id("a");
+  fork.set_fork_id("copy");
+  fork.set_temporary(true);
+  ASSERT_TRUE(table_->Fork(fork).ok());
+  Again();
+  EXPECT_TRUE(Find("a")->status().keep_playing());
+  EXPECT_FALSE(Find("a")->status().temporary());
+  EXPECT_TRUE(Find("copy")->status().temporary());
 }
 
 TEST_F(RestoreTest, OwnerAndWaitingUpdatesAreRestored) {

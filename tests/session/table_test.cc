@@ -165,7 +165,7 @@ TEST_F(TableTest, PagesListEverySessionOnce) {
   do {
     const Table::Page page = table_.List(3, token);
     for (const auto& session : page.sessions) seen += session->id();
-    token = page.next_token;
+    token = page.last;
   } while (!token.empty());
   EXPECT_EQ(seen, "abcd");
 }
@@ -267,6 +267,44 @@ TEST_F(TendedTable, AWatchedSessionContinues) {
   clock_.Advance(absl::Minutes(11));
   table_.Tend();
   EXPECT_FALSE(Plays(*watched));
+}
+
+TEST_F(TendedTable, ASessionThatWasAskedToKeepPlayingContinues) {
+  const auto kept = Play("kept"), until = Play("until");
+  ASSERT_TRUE(kept->Play(PlayRequest{.keep_playing = true}, "").ok());
+  ASSERT_TRUE(until->Play(PlayRequest{.until = 1e6}, "").ok());
+  clock_.Advance(absl::Minutes(29));
+  table_.Tend();
+  EXPECT_TRUE(Plays(*kept) && Plays(*until));
+  ASSERT_TRUE(kept->Pause().ok());
+  ASSERT_TRUE(kept->Play(PlayRequest{}, "").ok());
+  EXPECT_FALSE(kept->status().keep_playing()) << "it was asked once";
+}
+
+TEST_F(TendedTable, ACopyForAComparisonEndsWithIt) {
+  const auto session = Play("original");
+  v1::ForkSessionRequest fork;
+  fork.set_session_id("original");
+  fork.set_fork_id("copy");
+  fork.set_temporary(true);
+  const auto copy = table_.Fork(fork);
+  ASSERT_TRUE(copy.ok()) << copy.status();
+  const auto viewer = (*copy)->publisher().Join({}, [] {});
+  ASSERT_TRUE(viewer.ok());
+  clock_.Advance(absl::Minutes(3));
+  table_.Tend();
+  EXPECT_TRUE((*copy)->status().temporary());
+  ASSERT_EQ(table_.List(10, "").sessions.size(), 2u) << "it is watched";
+  (*copy)->publisher().Leave(*viewer);
+  clock_.Advance(absl::Minutes(1.1));
+  table_.Tend();
+  ASSERT_EQ(table_.List(10, "").sessions.size(), 1u);
+  EXPECT_TRUE(table_.Find("original").ok());
+}
+
+TEST(TendedTableByDefault, AnUnwatchedSessionIsPausedWithinMinutes) {
+  EXPECT_GT(Limits().pause_minutes, 0);
+  EXPECT_LE(Limits().pause_minutes, 5);
 }
 
 TEST_F(TendedTable, TheNumberOfSessionsOfAnAccountIsBounded) {

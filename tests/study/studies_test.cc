@@ -28,7 +28,8 @@ class StudiesTest : public testing::Test {
           if (request.source().name() != kScene) return absl::NotFoundError("there is no such scene");
           return kScene;
         },
-        [](const v1::SceneSource&) -> absl::StatusOr<std::shared_ptr<const Model>> {
+        [](const v1::SceneSource&, const std::string&,
+           const std::function<bool()>&) -> absl::StatusOr<std::shared_ptr<const Model>> {
           return absl::InvalidArgumentError("the scene does not compile");
         },
         clock_, store_.get());
@@ -54,9 +55,10 @@ class StudiesTest : public testing::Test {
 
   // Restores all records and returns their owners by id.
   std::map<std::string, std::string> Restore(Studies& studies) {
-    std::map<std::string, std::string> owners;
     studies.Restore(
-        *store_->LoadRecords(), [&](const std::string& id, const std::string& owner) { owners[id] = owner; }, lost_);
+        *store_->LoadRecords(), [](const std::string& account) { return account; }, lost_);
+    std::map<std::string, std::string> owners;
+    for (const v1::Study& study : studies.List()) owners[study.id()] = studies.OwnerOf(study.id()).value_or("none");
     return owners;
   }
 

@@ -150,9 +150,11 @@ absl::StatusOr<int> ProbeVertex(const v1::Probe& probe, int body, const std::str
 
 }  // namespace
 
-absl::Status AddBodies(const MeshSource& source, ModelBuilder& builder) {
+absl::Status AddBodies(const MeshSource& source, const SizeLimits& limits, ModelBuilder& builder) {
   Model& model = builder.model;
   std::set<std::string> names;
+  std::vector<MeshSize> sizes(static_cast<std::size_t>(model.scene.bodies_size()));
+  std::int64_t vertices = 0;
   int poses = 0;
   for (int b = 0; b < model.scene.bodies_size(); ++b) {
     const v1::Body& scene = model.scene.bodies(b);
@@ -160,8 +162,11 @@ absl::Status AddBodies(const MeshSource& source, ModelBuilder& builder) {
     if (!names.insert(scene.name()).second) {
       return FieldError(path + ".name", absl::StrCat("there are two bodies named \"", scene.name(), "\""));
     }
-    absl::StatusOr<Mesh> mesh = MakeShape(scene, source);
+    absl::StatusOr<Mesh> mesh = MakeShape(scene, source, builder.stop);
     if (!mesh.ok()) return mesh.status();
+    sizes[static_cast<std::size_t>(b)] = SizeOf(*mesh);
+    vertices += mesh->vertices.cols();
+    if (vertices > limits.vertices) return CountSize(model.scene, sizes, limits).status();
     if (absl::Status status = AddRegions(scene, path, *mesh); !status.ok()) return status;
     BodyModel body{.name = scene.name(),
                    .layer = scene.layer(),
@@ -177,7 +182,7 @@ absl::Status AddBodies(const MeshSource& source, ModelBuilder& builder) {
   }
   model.report.set_simulated_vertices(model.rest.cols());
   SetSize(model);
-  return absl::OkStatus();
+  return CountSize(model.scene, sizes, limits).status();
 }
 
 absl::Status AddProbes(ModelBuilder& builder) {

@@ -64,10 +64,12 @@ absl::Status AddElements(ModelBuilder& builder) {
   const v1::Scene& scene = builder.model.scene;
   for (int i = 0; i < scene.motions_size(); ++i) {
     if (absl::Status s = AddMotion(scene.motions(i), absl::StrCat("motions[", i, "]"), builder); !s.ok()) return s;
+    if (builder.stop.Stopped()) return builder.stop.status();
   }
   for (int i = 0; i < scene.forces_size(); ++i) {
     auto force = MakeForce(scene.forces(i), absl::StrCat("forces[", i, "]"), builder);
     if (!force.ok()) return force.status();
+    if (builder.stop.Stopped()) return builder.stop.status();
     if (*force == nullptr) continue;
     builder.model.forces.push_back(*std::move(force));
     builder.model.force_kinds.push_back(KindOf(scene.forces(i)));
@@ -77,6 +79,7 @@ absl::Status AddElements(ModelBuilder& builder) {
   for (int i = 0; i < scene.constraints_size(); ++i) {
     auto constraint = MakeConstraint(scene.constraints(i), absl::StrCat("constraints[", i, "]"), builder);
     if (!constraint.ok()) return constraint.status();
+    if (builder.stop.Stopped()) return builder.stop.status();
     if (*constraint != nullptr) builder.model.constraints.push_back(*std::move(constraint));
   }
   const Integrator& integrator = FindIntegrator(builder.model.parameters.integrator());
@@ -95,6 +98,7 @@ absl::Status AddMeasures(ModelBuilder& builder) {
     }
     auto measure = MakeMeasure(scene, path, builder);
     if (!measure.ok()) return measure.status();
+    if (builder.stop.Stopped()) return builder.stop.status();
     builder.model.measures.push_back(*std::move(measure));
   }
   return absl::OkStatus();
@@ -159,8 +163,10 @@ void ChooseStep(Model& model) {
 
 }  // namespace
 
-absl::StatusOr<std::shared_ptr<const Model>> Compile(const v1::Scene& scene, const MeshSource& source) {
+absl::StatusOr<std::shared_ptr<const Model>> Compile(const v1::Scene& scene, const MeshSource& source,
+                                                     const CompileOptions& options) {
   ModelBuilder builder;
+  builder.stop = StopCheck(options.cancelled, options.longest, "--max-compile-seconds");
   Model& model = builder.model;
   model.scene = scene;
   if (absl::Status status = schema::Resolve(&model.scene); !status.ok()) return status;
@@ -168,10 +174,12 @@ absl::StatusOr<std::shared_ptr<const Model>> Compile(const v1::Scene& scene, con
   // Unset fields of these have a meaning, so that they must not be filled with defaults.
   model.scene.mutable_parameters()->CopyFrom(scene.parameters());
   model.scene.mutable_presets()->CopyFrom(scene.presets());
+  const auto size = EstimateSize(model.scene, options.size_of, options.limits);
+  if (!size.ok()) return size.status();
   ResolveParameters(model);
   CompletePresets(model.scene);
   StageClock clock;
-  if (absl::Status status = AddBodies(source, builder); !status.ok()) return status;
+  if (absl::Status status = AddBodies(source, options.limits, builder); !status.ok()) return status;
   clock.End("bodies", model.report);
   if (absl::Status status = AddElements(builder); !status.ok()) return status;
   clock.End("elements", model.report);
@@ -183,8 +191,10 @@ absl::StatusOr<std::shared_ptr<const Model>> Compile(const v1::Scene& scene, con
   model.report.set_scene(scene.name());
   model.report.set_scene_hash(SceneHash(model));
   clock.End("hash", model.report);
+  if (builder.stop.Stopped()) return builder.stop.status();
   ChooseStep(model);
   clock.End("largest step", model.report);
+  if (builder.stop.Stopped()) return builder.stop.status();
   const auto compiled = std::make_shared<Model>(std::move(model));
   compiled->plan = MakeStepPlan(*compiled, AllIntegrators());
   clock.End("step plan", compiled->report);

@@ -3,17 +3,30 @@
 #ifndef PHRENIC_SERVER_MECHANICS_COMPILE_COMPILE_H_
 #define PHRENIC_SERVER_MECHANICS_COMPILE_COMPILE_H_
 
+#include <functional>
 #include <memory>
 
 #include "absl/status/statusor.h"
 #include "server/mechanics/compile/mesh_source.h"
+#include "server/mechanics/compile/scene_size.h"
 #include "server/mechanics/model.h"
 
 namespace phrenic {
 
+// What a compile may cost. By default, anything.
+struct CompileOptions {
+  SizeLimits limits = {};                     // checked before anything is built, and again with the meshes of files
+  SizeSource size_of = nullptr;               // of files and generated parts
+  std::function<bool()> cancelled = nullptr;  // true once nobody waits for the model; null: never
+  double longest = 0;                         // [s]; 0: any time
+};
+
 // Thread-safe if `source` is. Errors of `source` are passed on; INVALID_ARGUMENT names the field:
-// "forces[2].springs.bodies[0]: there is no body or layer \"lnug\"; there are ...".
-absl::StatusOr<std::shared_ptr<const Model>> Compile(const v1::Scene& scene, const MeshSource& source);
+// "forces[2].springs.bodies[0]: there is no body or layer \"lnug\"; there are ...". The errors of EstimateSize;
+// CANCELLED once options.cancelled is true, RESOURCE_EXHAUSTED after options.longest: between two stages, and within
+// loops over pairs of vertices.
+absl::StatusOr<std::shared_ptr<const Model>> Compile(const v1::Scene& scene, const MeshSource& source,
+                                                     const CompileOptions& options = {});
 
 }  // namespace phrenic
 

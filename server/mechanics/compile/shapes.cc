@@ -52,10 +52,10 @@ Mesh FromEllipsoid(const v1::Ellipsoid& shape) {
   return EllipsoidSurface(ToEigen(shape.centre()), ToEigen(shape.radii()), shape.divisions(), shape.upper_half());
 }
 
-Mesh FromBlock(const v1::Block& shape) {
+Mesh FromBlock(const v1::Block& shape, const StopCheck& stop) {
   const Eigen::Vector3i cells(shape.columns(), shape.rows(), shape.layers());
   const Eigen::Vector3d cell = ToEigen(shape.size()).array() / cells.array().cast<double>();
-  return FillCells({ToEigen(shape.origin()), cell, cells}, [](const Eigen::Vector3d&) { return true; });
+  return FillCells({ToEigen(shape.origin()), cell, cells}, [&stop](const Eigen::Vector3d&) { return !stop.Stopped(); });
 }
 
 // Returns the surface to fill.
@@ -78,7 +78,7 @@ absl::StatusOr<Mesh> SurfaceToFill(const v1::Body& body, const MeshSource& sourc
   return absl::InvalidArgumentError("fills no surface: set file, generated or ellipsoid");
 }
 
-absl::StatusOr<Mesh> FromFilling(const v1::Body& body, const MeshSource& source) {
+absl::StatusOr<Mesh> FromFilling(const v1::Body& body, const MeshSource& source, const StopCheck& stop) {
   absl::StatusOr<Mesh> surface = SurfaceToFill(body, source);
   if (!surface.ok()) return surface;
   if (absl::Status status = Validate(*surface); !status.ok()) return status;
@@ -91,23 +91,25 @@ absl::StatusOr<Mesh> FromFilling(const v1::Body& body, const MeshSource& source)
         absl::StrFormat("would be filled by %g cells: make them larger than %g m", cells.prod(), cell));
   }
   const Eigen::Vector3d margin = 0.5 * (cells * cell - size.array());
-  Mesh solid = FillCells({low - margin, Eigen::Vector3d::Constant(cell), cells.cast<int>()},
-                         [&](const Eigen::Vector3d& centre) { return WindingNumber(*surface, centre) > 0.5; });
+  Mesh solid = FillCells(
+      {low - margin, Eigen::Vector3d::Constant(cell), cells.cast<int>()},
+      [&](const Eigen::Vector3d& centre) { return !stop.Stopped() && WindingNumber(*surface, centre) > 0.5; });
+  if (stop.Stopped()) return stop.status();
   if (solid.vertices.cols() > 0) return solid;
   return absl::InvalidArgumentError(
       absl::StrFormat("has no cell of %g m inside: make cells smaller, or turn a surface that faces inwards", cell));
 }
 
-absl::StatusOr<Mesh> UncheckedShape(const v1::Body& body, const MeshSource& source) {
+absl::StatusOr<Mesh> UncheckedShape(const v1::Body& body, const MeshSource& source, const StopCheck& stop) {
   switch (body.shape_case()) {
     case v1::Body::kPolyhedron:
       return FromPolyhedron(body.polyhedron());
     case v1::Body::kGrid:
       return FromGrid(body.grid());
     case v1::Body::kBlock:
-      return FromBlock(body.block());
+      return FromBlock(body.block(), stop);
     case v1::Body::kFilling:
-      return FromFilling(body, source);
+      return FromFilling(body, source, stop);
     case v1::Body::kEllipsoid:
       return FromEllipsoid(body.ellipsoid());
     case v1::Body::kFile:
@@ -125,8 +127,10 @@ absl::Status InBody(const v1::Body& body, const absl::Status& status) {
 
 }  // namespace
 
-absl::StatusOr<Mesh> MakeShape(const v1::Body& body, const MeshSource& source) {
-  absl::StatusOr<Mesh> mesh = UncheckedShape(body, source);
+absl::StatusOr<Mesh> MakeShape(const v1::Body& body, const MeshSource& source, const StopCheck& stop) {
+  if (stop.Stopped()) return stop.status();
+  absl::StatusOr<Mesh> mesh = UncheckedShape(body, source, stop);
+  if (stop.Stopped()) return stop.status();
   if (!mesh.ok()) return InBody(body, mesh.status());
   if (absl::Status status = Validate(*mesh); !status.ok()) return InBody(body, status);
   return mesh;

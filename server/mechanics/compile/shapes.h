@@ -6,12 +6,14 @@
 #include "absl/status/statusor.h"
 #include "phrenic/v1/scene.pb.h"
 #include "server/mechanics/compile/mesh_source.h"
+#include "server/mechanics/stop_check.h"
 #include "server/mesh/mesh.h"
 
 namespace phrenic {
 
-// Returns the validated mesh of a body. `source` provides those of files and generators. Errors name the body.
-absl::StatusOr<Mesh> MakeShape(const v1::Body& body, const MeshSource& source);
+// Returns the validated mesh of a body. `source` provides those of files and generators. Errors name the body; the
+// status of `stop` once it has stopped.
+absl::StatusOr<Mesh> MakeShape(const v1::Body& body, const MeshSource& source, const StopCheck& stop);
 
 }  // namespace phrenic
 

@@ -50,6 +50,7 @@ absl::StatusOr<std::unique_ptr<Constraint>> Limits::Make(const v1::LengthLimits&
   }
   std::unique_ptr<Limits> constraint(new Limits(name));
   constraint->network_ = LinkNetwork(limits);
+  if (!constraint->network_.complete()) return TooTangled(path, limits.size());
   builder.ReportElement("constraint", name, static_cast<std::int64_t>(limits.size()), "limits",
                         "mass-weighted projection of violated limits, velocities corrected");
   return constraint;

@@ -58,6 +58,12 @@ absl::StatusOr<std::vector<Link>> ListedOrEdges(bool listed, const v1::LinkList&
   return links;
 }
 
+absl::Status TooTangled(std::string_view path, std::size_t links) {
+  return absl::ResourceExhaustedError(absl::StrCat(
+      std::string(path), ": its ", links,
+      " links share so many vertices that they cannot be solved simultaneously: use fewer of them, or springs"));
+}
+
 absl::StatusOr<int> DeformableBody(const std::string& name, std::string_view path, const ModelBuilder& builder) {
   auto body = builder.Body(name, path);
   if (!body.ok() || builder.model.bodies[*body].first_vertex >= 0) return body;

@@ -44,6 +44,8 @@ absl::StatusOr<std::vector<Link>> ListedLinks(const v1::LinkList& list, int body
 // it is empty) and a length above 0.
 absl::StatusOr<std::vector<Link>> ListedOrEdges(bool listed, const v1::LinkList& list, const std::string& region,
                                                 int body, std::string_view path, const ModelBuilder& builder);
+// RESOURCE_EXHAUSTED for links that cannot be solved simultaneously (LinkNetwork::complete).
+absl::Status TooTangled(std::string_view path, std::size_t links);
 // Returns the index of the body of this name. INVALID_ARGUMENT if it does not exist or is not deformable.
 absl::StatusOr<int> DeformableBody(const std::string& name, std::string_view path, const ModelBuilder& builder);
 // Returns the link between two simulated vertices, with its length at rest.

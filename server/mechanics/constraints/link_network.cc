@@ -17,6 +17,9 @@ constexpr int kSwitches = 30;          // changes of the active set, at most
 constexpr double kAtRest = 1e-12;      // relative to the largest rate: slower limits count as at rest
 constexpr int kRefinements = 3;        // of velocities; each gains about ten digits unless links are nearly redundant
 
+constexpr std::size_t kMostPairs = 20'000'000;    // of links that share a vertex, in both orders
+constexpr std::size_t kMostFactors = 20'000'000;  // of 20 bytes each
+
 using Entry = std::pair<int, int>;  // row and column of the matrix
 
 // Returns the links at each movable vertex: index i of a link that starts there, ~i (negative) of one that ends there.
@@ -77,6 +80,10 @@ LinkNetwork::Memory& LinkNetwork::Fit(const Scratch& scratch) const {
 }
 
 LinkNetwork::LinkNetwork(const std::vector<Link>& links) {
+  std::size_t pairs = 0;
+  for (const auto& [vertex, there] : LinksAtVertices(links)) pairs += there.size() * there.size();
+  complete_ = pairs <= kMostPairs;
+  if (!complete_) return;
   for (const int old : SparseLdlt::Order(static_cast<int>(links.size()), EntriesBelow(links))) {
     links_.push_back(links[old]);
   }
@@ -99,7 +106,8 @@ void LinkNetwork::FindCouplings() {
     }
   }
   values_ = entries.size();
-  matrix_ = SparseLdlt(static_cast<int>(links_.size()), entries);
+  matrix_ = SparseLdlt(static_cast<int>(links_.size()), entries, kMostFactors);
+  complete_ = matrix_.complete();
 }
 
 // Inactive links have direction 0 and hence no entries in the matrix.

@@ -27,7 +27,10 @@ namespace phrenic {
 class LinkNetwork {
  public:
   LinkNetwork() = default;
+  // A network that would take more than some hundred megabytes to solve is not complete() and must not be used: links
+  // that share one vertex couple in pairs, and the factors of tangled networks fill.
   explicit LinkNetwork(const std::vector<Link>& links);
+  bool complete() const { return complete_; }
 
   // Moves the positions of `state` onto the constraints and changes the velocities by displacement/dt. `before` are the
   // positions at the start of the step, 3 x n [m].
@@ -60,6 +63,7 @@ class LinkNetwork {
   bool UpdateActiveSetOfVelocities(double slow, Memory& memory, State& state) const;
   double LargestViolation(const State& state) const;
 
+  bool complete_ = true;
   std::vector<Link> links_;
   std::vector<Coupling> couplings_;
   SparseLdlt matrix_;

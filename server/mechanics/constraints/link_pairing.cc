@@ -55,7 +55,7 @@ absl::StatusOr<Edges> PairLinks(const v1::LinkPairing& scene, int b, std::string
     free[i] = free[i] && plane->Above(mesh.vertices.col(static_cast<Eigen::Index>(i)));
   }
   std::vector<std::pair<int, int>> pairs;
-  for (int i = 0; i < mesh.vertices.cols(); ++i) {
+  for (int i = 0; i < mesh.vertices.cols() && !builder.stop.Stopped(); ++i) {
     if (!free[i]) continue;
     for (const Neighbour& other : search.Within(mesh.vertices.col(i), scene.distance())) {
       const int j = other.vertex;

@@ -92,6 +92,7 @@ absl::StatusOr<std::unique_ptr<Constraint>> RigidLinks::Make(const v1::RigidLink
     return std::make_unique<ThesisLinks>(name, *std::move(links));
   }
   std::unique_ptr<RigidLinks> constraint(new RigidLinks(name, *links, builder.model));
+  if (!constraint->network_.complete()) return TooTangled(path, links->size());
   builder.ReportElement("constraint", name, count, "links",
                         absl::StrCat("mass-weighted, velocities corrected; ", constraint->network_.links().size(),
                                      " solved simultaneously"));

@@ -73,7 +73,7 @@ void Attachment::AddVertices(const v1::Attachment& scene, const std::vector<int>
                              ModelBuilder& builder) {
   const BodyModel& body = builder.model.bodies[b];
   const SkinDrivers search(builder, anchors);
-  for (int i = 0; i < body.mesh.vertices.cols(); ++i) {
+  for (int i = 0; i < body.mesh.vertices.cols() && !builder.stop.Stopped(); ++i) {
     const int vertex = body.first_vertex + i;
     if (!region[i]) continue;
     const SkinDrivers::Nearby nearby = search.Nearest(body.mesh.vertices.col(i), scene.radius());

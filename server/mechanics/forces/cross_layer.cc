@@ -22,7 +22,7 @@ void PairLayers(const ModelBuilder& builder, int b, const Selection& selection, 
   const BodyModel& body = builder.model.bodies[b];
   const Points normals = VertexNormals(body.mesh.vertices, body.mesh.triangles);
   const NearestSearch& search = builder.Search(b);
-  for (int i = 0; i < body.mesh.vertices.cols(); ++i) {
+  for (int i = 0; i < body.mesh.vertices.cols() && !builder.stop.Stopped(); ++i) {
     int wanted = scene.neighbours();
     for (const Neighbour& other : search.Within(body.mesh.vertices.col(i), scene.distance())) {
       const int j = other.vertex;
@@ -39,7 +39,7 @@ void PairBodies(const ModelBuilder& builder, int b, int to, const Selection& sel
                 Pairs& pairs) {
   const BodyModel &body = builder.model.bodies[b], &other = builder.model.bodies[to];
   const NearestSearch& search = builder.Search(to);
-  for (int i = 0; i < body.mesh.vertices.cols(); ++i) {
+  for (int i = 0; i < body.mesh.vertices.cols() && !builder.stop.Stopped(); ++i) {
     if (!selection.Takes(std::array{i})) continue;
     int wanted = scene.neighbours();
     for (const Neighbour& near : search.Within(body.mesh.vertices.col(i), scene.distance())) {

@@ -95,6 +95,7 @@ absl::Status TargetSpring::FindSurfaceTargets(const v1::TargetSpring& scene, std
   tree.Fit(surface.mesh.vertices, boxes);
   const double reach = std::numeric_limits<double>::infinity();
   for (VertexSpring& spring : springs_) {
+    if (builder.stop.Stopped()) return builder.stop.status();
     spring.target = spring.rest + tree.Nearest(surface.mesh.vertices, boxes, spring.rest, reach).offset;
   }
   return absl::OkStatus();

@@ -29,15 +29,15 @@ std::vector<int> SparseLdlt::Order(int size, const std::vector<std::pair<int, in
   return {order.indices().begin(), order.indices().end()};
 }
 
-SparseLdlt::SparseLdlt(int size, const std::vector<std::pair<int, int>>& below)
+SparseLdlt::SparseLdlt(int size, const std::vector<std::pair<int, int>>& below, std::size_t most)
     : size_(size), first_below_(static_cast<size_t>(size) + 1, 0) {
   for (const auto& [i, j] : below) {
     ++first_below_[static_cast<size_t>(i) + 1];
     below_columns_.push_back(j);
   }
   for (size_t i = 0; i < static_cast<size_t>(size); ++i) first_below_[i + 1] += first_below_[i];
-  FindRows();
-  PlaceColumns();
+  FindRows(most);
+  if (complete_) PlaceColumns();
 }
 
 // The elimination tree: the first row below the diagonal that is not zero in each column of L.
@@ -57,7 +57,7 @@ std::vector<int> SparseLdlt::Parents() const {
 }
 
 // Row k of L: all that lies on the paths of the tree from the entries of row k of A to k.
-void SparseLdlt::FindRows() {
+void SparseLdlt::FindRows(std::size_t most) {
   const std::vector<int> parent = Parents();
   std::vector<int> seen(static_cast<size_t>(size_), -1), row;
   first_in_row_.assign(1, 0);
@@ -71,6 +71,11 @@ void SparseLdlt::FindRows() {
       }
     }
     std::sort(row.begin(), row.end());
+    if (places_.size() + row.size() > most) {
+      complete_ = false;
+      places_ = {};
+      return;
+    }
     for (const int j : row) places_.push_back({j, 0});
     first_in_row_.push_back(static_cast<int>(places_.size()));
   }

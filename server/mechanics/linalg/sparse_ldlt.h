@@ -24,12 +24,15 @@ class SparseLdlt {
     Eigen::VectorXd inverse_pivot, row;
   };
 
+  static constexpr std::size_t kMostEntries = std::size_t{1} << 30;
   // A smaller pivot, relative to the diagonal, is that of a redundant row.
   static constexpr double kVanishes = 1e-11;
 
   SparseLdlt() = default;
-  // `below` are the indices (i, j), j < i, of the entries that may be non-zero, each once, sorted.
-  SparseLdlt(int size, const std::vector<std::pair<int, int>>& below);
+  // `below` are the indices (i, j), j < i, of the entries that may be non-zero, each once, sorted. If L has more than
+  // `most` entries below the diagonal, the object is not complete() and must not be used.
+  SparseLdlt(int size, const std::vector<std::pair<int, int>>& below, std::size_t most = kMostEntries);
+  bool complete() const { return complete_; }
 
   // Returns an order of rows that keeps L sparse (approximate minimum degree): the old index of each new row.
   static std::vector<int> Order(int size, const std::vector<std::pair<int, int>>& below);
@@ -49,10 +52,11 @@ class SparseLdlt {
     int column, at;  // `at` in rows_ and Factors::lower
   };
   std::vector<int> Parents() const;
-  void FindRows();
+  void FindRows(std::size_t most);
   void PlaceColumns();
 
   int size_ = 0;
+  bool complete_ = true;
   std::vector<int> first_below_, below_columns_;  // of A, row by row
   std::vector<int> first_in_row_;                 // of L, in places_
   std::vector<Place> places_;                     // of L, row by row, columns ascending

@@ -30,11 +30,14 @@ std::vector<SkinWeight> ByVertex(const std::vector<SkinWeight>& weights, Eigen::
   return sorted;
 }
 
-Skin SkinByDistance(const SkinDrivers& drivers, const BodyModel& body, int b) {
+Skin SkinByDistance(const SkinDrivers& drivers, const BodyModel& body, int b, const StopCheck& stop) {
   const Points& vertices = body.mesh.vertices;
   InverseDistanceWeights by_distance(drivers);
   std::vector<SkinWeight> weights;
-  for (const int i : HilbertOrder(vertices)) by_distance.Append(vertices.col(i), i, weights);
+  for (const int i : HilbertOrder(vertices)) {
+    if (stop.Stopped()) break;
+    by_distance.Append(vertices.col(i), i, weights);
+  }
   return {.body = b, .weights = ByVertex(weights, vertices.cols()), .triangles = {}};
 }
 
@@ -48,7 +51,7 @@ void SkinAllByDistance(const std::vector<int>& bodies, const std::vector<int>& d
   const SkinDrivers search(builder, drivers);
   std::int64_t vertices = 0;
   for (const int b : bodies) {
-    AddSkin(SkinByDistance(search, builder.model.bodies[b], b), builder);
+    AddSkin(SkinByDistance(search, builder.model.bodies[b], b, builder.stop), builder);
     vertices += builder.model.bodies[b].mesh.vertices.cols();
   }
   builder.ReportElement("seen", name, vertices, "vertices", "computed per frame, not per step");

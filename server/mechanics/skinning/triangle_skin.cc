@@ -75,7 +75,7 @@ Skin TriangleBinder::Bind(int body, v1::MappingReport& report) const {
   const ConstPoints x = builder_.model.rest;
   Skin skin{.body = body, .weights = {}, .triangles = {}};
   double sum = 0, furthest = 0, highest = 0;
-  for (Eigen::Index i = 0; i < seen.mesh.vertices.cols(); ++i) {
+  for (Eigen::Index i = 0; i < seen.mesh.vertices.cols() && !builder_.stop.Stopped(); ++i) {
     const Eigen::Vector3d point = seen.mesh.vertices.col(i);
     const SurfacePoint nearest = tree_.Nearest(x, boxes_, point, std::numeric_limits<double>::infinity());
     skin.triangles.push_back(BindTo(x, tree_.triangle(nearest.triangle), point));

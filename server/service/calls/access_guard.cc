@@ -21,7 +21,7 @@ using access::Caller;
 using access::Rule;
 
 constexpr std::string_view kBearer = "Bearer ";
-constexpr std::size_t kMaxLinksPerCall = 8, kMaxOwners = 4096;
+constexpr std::size_t kMaxLinksPerCall = 8, kSecretLength = 32;
 
 absl::Status SessionNotVisible(const std::string& id) {
   return absl::NotFoundError(absl::StrCat("session_id: there is no session \"", id.substr(0, 64),
@@ -46,11 +46,19 @@ std::string_view TokenOf(std::string_view authorization) {
   return authorization.substr(kBearer.size());
 }
 
-// Adds the hashes of a comma-separated list of link secrets (browsers join repeated headers with commas).
+absl::Status NoLink() {
+  return absl::UnauthenticatedError(
+      "x-join: no session has this join link, or it has expired; ask the session's owner for a new one");
+}
+
+// Adds the hashes of a comma-separated list of link secrets (browsers join repeated headers with commas). Leaves out
+// what is not a secret.
 void AddLinks(std::string_view secrets, std::vector<std::string>& links) {
   for (absl::string_view secret : absl::StrSplit(absl::string_view(secrets.data(), secrets.size()), ',')) {
     secret = absl::StripAsciiWhitespace(secret);
-    if (!secret.empty() && links.size() < kMaxLinksPerCall) links.push_back(Sha256Hex({secret.data(), secret.size()}));
+    const bool is_secret =
+        secret.size() == kSecretLength && std::all_of(secret.begin(), secret.end(), absl::ascii_isxdigit);
+    if (is_secret && links.size() < kMaxLinksPerCall) links.push_back(Sha256Hex({secret.data(), secret.size()}));
   }
 }
 
@@ -67,12 +75,31 @@ absl::StatusOr<Caller> AccessGuard::Identify(const grpc::ServerContextBase& cont
   }
   const auto [first, last] = context.client_metadata().equal_range("x-join");
   for (auto given = first; given != last; ++given) AddLinks(TextOf(given->second), caller.links);
+  KeepLive(caller.links);
   const auto given = context.client_metadata().find("authorization");
-  if (given == context.client_metadata().end()) return caller;
+  if (given == context.client_metadata().end()) {
+    if (first != last && caller.links.empty()) return NoLink();
+    return caller;
+  }
   auto account = accounts_.Check(TokenOf(TextOf(given->second)));
   if (!account.ok()) return account.status();
   caller.account = *std::move(account);
   return caller;
+}
+
+void AccessGuard::KeepLive(std::vector<std::string>& links) const {
+  constexpr int kMaxSessions = 1000;
+  if (links.empty()) return;
+  const absl::Time now = absl::Now();
+  const auto sessions = table_.List(kMaxSessions, "").sessions;
+  std::erase_if(links, [&](const std::string& hash) {
+    return std::none_of(sessions.begin(), sessions.end(), [&](const auto& session) {
+      const auto access = session->access();
+      return std::any_of(access->links.begin(), access->links.end(), [&](const session::ControlState::Link& link) {
+        return SameToken(hash, link.secret_sha256) && now < link.expires;
+      });
+    });
+  });
 }
 
 v1::AccessRole AccessGuard::RoleIn(const Caller& caller, const session::Session& session) const {
@@ -157,33 +184,33 @@ bool AccessGuard::Owns(const Caller& caller, const std::string& session) const {
   return found.ok() && caller.known() && (*found)->access()->account == caller.account.name;
 }
 
-std::string AccessGuard::OwnerOf(Kind kind, const std::string& id) const {
-  absl::MutexLock lock(&mutex_);
-  const auto owner = owners_.find({kind, id});
-  return owner == owners_.end() ? "" : owner->second;
-}
-
-void AccessGuard::SetOwner(Kind kind, const std::string& id, const std::string& caller_id) {
-  if (!guarded()) return;
-  absl::MutexLock lock(&mutex_);
-  if (owners_.size() >= kMaxOwners)
-    owners_.clear();  // bounds the map; the resources then belong to administrators only
-  owners_[{kind, id}] = caller_id;
-}
-
-bool AccessGuard::Owns(Kind kind, const std::string& id, const Caller& caller) const {
+bool AccessGuard::MayUse(const std::string& owner, const Caller& caller) const {
   if (!guarded() || caller.admin()) return true;
-  absl::MutexLock lock(&mutex_);
-  const auto owner = owners_.find({kind, id});
-  return owner != owners_.end() && owner->second == caller.id();
+  return !owner.empty() && owner == caller.id();
 }
 
-absl::Status AccessGuard::CheckOwns(Kind kind, const std::string& id, const Caller& caller) const {
-  if (Owns(kind, id, caller)) return absl::OkStatus();
-  const char* what = kind == Kind::kExport  ? "export_id: there is no export \""
-                     : kind == Kind::kStudy ? "study_id: there is no study \""
-                                            : "path: there is no \"";
+absl::Status AccessGuard::CheckOwns(Kind kind, const std::string& id, const std::optional<std::string>& owner,
+                                    const Caller& caller) const {
+  if (MayUse(owner.value_or(""), caller)) return absl::OkStatus();
+  const char* what = kind == Kind::kExport ? "export_id: there is no export \"" : "study_id: there is no study \"";
   return absl::NotFoundError(absl::StrCat(what, id.substr(0, 80), "\" that belongs to you"));
+}
+
+std::optional<std::string> AccessGuard::Known(std::string_view authorization, std::string_view join) const {
+  if (!guarded()) return "";
+  if (const auto account = accounts_.Check(TokenOf(authorization)); account.ok()) return "account " + account->name;
+  Caller caller;
+  AddLinks(join, caller.links);
+  KeepLive(caller.links);
+  return caller.links.empty() ? std::nullopt : std::optional(caller.id());
+}
+
+session::Requester AccessGuard::RequesterOf(const Caller& caller, const grpc::ServerContextBase& context) const {
+  const std::string owner = caller.id();
+  return {.owner = owner,
+          .all_files = caller.admin(),
+          .share = owner.empty() ? absl::StrCat(caller.peer, " ", context.peer()) : owner,
+          .cancelled = [&context] { return context.IsCancelled(); }};
 }
 
 bool AccessGuard::IsAdmin(std::string_view authorization) const {

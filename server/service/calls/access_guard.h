@@ -6,18 +6,18 @@
 #include <grpcpp/server_context.h>
 
 #include <functional>
-#include <map>
+#include <optional>
 #include <string>
+#include <vector>
 
-#include "absl/base/thread_annotations.h"
 #include "absl/status/statusor.h"
-#include "absl/synchronization/mutex.h"
 #include "server/access/accounts.h"
 #include "server/access/audit.h"
 #include "server/access/caller.h"
 #include "server/access/rate.h"
 #include "server/access/rules.h"
 #include "server/service/calls/metrics.h"
+#include "server/session/requester.h"
 #include "server/session/table.h"
 
 namespace phrenic::service {
@@ -26,8 +26,8 @@ namespace phrenic::service {
 // of browsers arrive in process, through the gateway. Thread-safe.
 class AccessGuard {
  public:
-  // Resources outside of sessions that belong to the caller who made them.
-  enum class Kind { kExport, kStudy, kUpload };
+  // Resources outside of sessions that belong to the caller who made them; they know their owner.
+  enum class Kind { kExport, kStudy };
 
   // All references outlive the guard. `max_requests` is per caller [1/s]; 0 means no limit.
   AccessGuard(const access::Accounts& accounts, access::AuditLog& audit, const session::Table& table, Metrics& metrics,
@@ -36,9 +36,9 @@ class AccessGuard {
 
   // Returns the caller if the rule of the method (access::Rules) allows the call and schema::Validate accepts the
   // request. Writes to the audit log and counts the outcome.
-  // Errors: UNAUTHENTICATED without an account or with a bad token; PERMISSION_DENIED if the role is too low;
-  // RESOURCE_EXHAUSTED above the rate limit; NOT_FOUND if the session does not exist or is not visible to the caller;
-  // INVALID_ARGUMENT for a bad field.
+  // Errors: UNAUTHENTICATED without an account, with a bad token, or with a join link that no session has;
+  // PERMISSION_DENIED if the role is too low; RESOURCE_EXHAUSTED above the rate limit; NOT_FOUND if the session does
+  // not exist or is not visible to the caller; INVALID_ARGUMENT for a bad field.
   absl::StatusOr<access::Caller> Admit(const grpc::ServerContextBase& context,
                                        const google::protobuf::Message& request);
 
@@ -53,19 +53,27 @@ class AccessGuard {
 
   // True if the caller's account owns the session or is an administrator; no control token is needed then.
   bool Owns(const access::Caller& caller, const std::string& session) const;
-  // Makes access::Caller::id() `caller_id` the owner of a resource.
-  void SetOwner(Kind kind, const std::string& id, const std::string& caller_id) ABSL_LOCKS_EXCLUDED(mutex_);
-  // Returns the id() of the resource's owner; empty if it has none.
-  std::string OwnerOf(Kind kind, const std::string& id) const ABSL_LOCKS_EXCLUDED(mutex_);
-  bool Owns(Kind kind, const std::string& id, const access::Caller& caller) const ABSL_LOCKS_EXCLUDED(mutex_);
-  // Returns NOT_FOUND if the caller does not own the resource, so that its existence is not revealed.
-  absl::Status CheckOwns(Kind kind, const std::string& id, const access::Caller& caller) const;
+  // True if the caller may use a resource that belongs to `owner`, the id() of a caller.
+  bool MayUse(const std::string& owner, const access::Caller& caller) const;
+  // Returns NOT_FOUND if the caller does not own the resource, so that its existence is not revealed. `owner` is
+  // nullopt if there is no such resource: the call then goes on and reports that, if the caller may know it.
+  absl::Status CheckOwns(Kind kind, const std::string& id, const std::optional<std::string>& owner,
+                         const access::Caller& caller) const;
+  // Returns what the caller may use of uploads and compiles. `context` outlives it.
+  session::Requester RequesterOf(const access::Caller& caller, const grpc::ServerContextBase& context) const;
+  // Returns the present name of an account that an earlier version stored (Accounts::Qualified).
+  std::string AccountOf(const std::string& stored) const { return accounts_.Qualified(stored); }
 
   // True if an HTTP Authorization header has an administrator's token, or if the server has no accounts.
   bool IsAdmin(std::string_view authorization) const;
+  // Returns the name of a caller, given its Authorization and X-Join headers: of the account, or of a link to one of
+  // this server's sessions that has not expired. Empty if the server has no accounts; nullopt if the caller is unknown.
+  std::optional<std::string> Known(std::string_view authorization, std::string_view join) const;
 
  private:
   absl::StatusOr<access::Caller> Identify(const grpc::ServerContextBase& context) const;
+  // Removes links that no session has, or that have expired.
+  void KeepLive(std::vector<std::string>& links) const;
   absl::Status CheckRule(const access::Rule& rule, const access::Caller& caller, const std::string& session) const;
   absl::Status CheckSessionRole(const access::Rule& rule, const access::Caller& caller,
                                 const std::string& session) const;
@@ -78,8 +86,6 @@ class AccessGuard {
   Metrics& metrics_;
   access::RateLimit rate_;
   access::RateLimit logged_refusals_{10};  // [1/s], so that refused calls cannot fill the disk
-  mutable absl::Mutex mutex_;
-  std::map<std::pair<Kind, std::string>, std::string> owners_ ABSL_GUARDED_BY(mutex_);
 };
 
 }  // namespace phrenic::service

@@ -8,6 +8,7 @@
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 #include "server/session/idempotency_cache.h"
+#include "server/session/session.h"
 
 namespace phrenic::service {
 
@@ -20,7 +21,7 @@ inline bool MayHaveChanged(const absl::Status& status) {
 // whole request, with its control token, so that another client cannot read a response by guessing its id.
 // Returns the status of `act`, now or at the first call, or an error of IdempotencyCache::Begin. Thread-safe.
 template <class Request, class Response, class Act>
-absl::Status RunOnce(session::IdempotencyCache& cache, const Request& request, Response* response, Act act) {
+absl::Status RunUnlessCached(session::IdempotencyCache& cache, const Request& request, Response* response, Act act) {
   const std::string& id = request.request_id();
   if (id.empty()) return act();
   const auto cached = cache.Begin(id, absl::StrCat(Request::descriptor()->full_name(), request.SerializeAsString()));
@@ -36,6 +37,16 @@ absl::Status RunOnce(session::IdempotencyCache& cache, const Request& request, R
     cache.Forget(id);
   }
   return status;
+}
+
+// The same for a session, whose change is acknowledged only if other servers of its cluster would continue from it: the
+// errors of Session::Acknowledge, also for a repeat, whose change is not made again.
+template <class Request, class Response, class Act>
+absl::Status RunOnce(session::Session& session, const Request& request, Response* response, Act act) {
+  const absl::Status status = RunUnlessCached(session.answers(), request, response, act);
+  if (!MayHaveChanged(status)) return status;
+  const absl::Status acknowledged = session.Acknowledge();
+  return acknowledged.ok() ? status : acknowledged;
 }
 
 }  // namespace phrenic::service

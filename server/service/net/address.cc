@@ -1,5 +1,9 @@
 #include "server/service/net/address.h"
 
+#include <utility>
+// Boost 1.74's Asio needs <utility> before it with C++20.
+#include <boost/asio/ip/address.hpp>
+
 #include "absl/strings/match.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
@@ -22,7 +26,9 @@ absl::StatusOr<Address> ParseAddress(const std::string& text) {
 }
 
 bool IsLoopback(const Address& address) {
-  return address.host == "localhost" || address.host == "::1" || absl::StartsWith(address.host, "127.");
+  boost::system::error_code error;
+  const auto number = boost::asio::ip::make_address(address.host, error);
+  return error ? address.host == "localhost" : number.is_loopback();
 }
 
 absl::Status CannotListen(const std::string& address, const std::string& why) {

@@ -67,4 +67,15 @@ std::shared_ptr<grpc::ServerCredentials> MakeCredentials(const TlsFiles& files) 
   return tls::TlsServerCredentials(options);
 }
 
+std::shared_ptr<grpc::ChannelCredentials> MakePeerCredentials(const TlsFiles& files, const std::string& ca) {
+  if (!files.used()) return grpc::InsecureChannelCredentials();
+  namespace tls = grpc::experimental;
+  tls::TlsChannelCredentialsOptions options;
+  options.set_certificate_provider(
+      std::make_shared<tls::FileWatcherCertificateProvider>(files.key, files.certificate, ca, kReloadSeconds));
+  options.watch_identity_key_cert_pairs();
+  if (!ca.empty()) options.watch_root_certs();
+  return tls::TlsCredentials(options);
+}
+
 }  // namespace phrenic::service

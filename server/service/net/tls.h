@@ -2,6 +2,7 @@
 #ifndef PHRENIC_SERVER_SERVICE_NET_TLS_H_
 #define PHRENIC_SERVER_SERVICE_NET_TLS_H_
 
+#include <grpcpp/security/credentials.h>
 #include <grpcpp/security/server_credentials.h>
 
 #include <memory>
@@ -26,6 +27,11 @@ absl::Status CheckTls(const TlsFiles& files);
 
 // Returns gRPC server credentials, insecure ones if TLS is not used. gRPC reloads changed files every 10 s.
 std::shared_ptr<grpc::ServerCredentials> MakeCredentials(const TlsFiles& files);
+
+// Returns credentials with which this server calls the cluster's other servers: its own certificate, and `ca` to check
+// theirs (empty: the authorities that the system trusts). Insecure ones if TLS is not used. gRPC reloads changed files
+// every 10 s.
+std::shared_ptr<grpc::ChannelCredentials> MakePeerCredentials(const TlsFiles& files, const std::string& ca);
 
 }  // namespace phrenic::service
 

@@ -40,7 +40,7 @@ void ForwardedCall::OnReadDone(bool ok) {
 }
 
 UpstreamCall::Request ForwardedCall::RequestTo(const SessionRouter::Target& target) const {
-  return {method_, request_, router_.MetadataFor(target, metadata_, peer_), context_.deadline()};
+  return {method_, request_, router_.MetadataFor(target, metadata_, peer_), DeadlineOf(context_)};
 }
 
 std::shared_ptr<UpstreamCall> ForwardedCall::upstream() const {
@@ -137,13 +137,16 @@ void ForwardedCall::OnFanOutDone(std::size_t index, const grpc::Status& status) 
   {
     absl::MutexLock lock(&mutex_);
     if (index == 0) local_status_ = status;
+    if (status.ok()) any_ok_ = true;
     if (!status.ok()) responses_[index].Clear();
     if (--pending_ > 0) return;
     local_status = local_status_;
+    // Only the server of a join link's session knows the link.
+    if (any_ok_ && local_status.error_code() == grpc::StatusCode::UNAUTHENTICATED) local_status = grpc::Status::OK;
     responses.swap(responses_);
   }
   if (!local_status.ok()) return Finish(local_status);
-  outgoing_ = MergeResponses(method_, request_, responses);
+  outgoing_ = MergeResponses(method_, request_, responses, router_.page_tokens());
   StartWriteAndFinish(&outgoing_, {}, grpc::Status::OK);
 }
 

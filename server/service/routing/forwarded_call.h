@@ -62,6 +62,7 @@ class ForwardedCall final : public grpc::ServerGenericBidiReactor, public std::e
   std::vector<grpc::ByteBuffer> responses_ ABSL_GUARDED_BY(mutex_);  // of a fan-out, one per target
   std::size_t pending_ ABSL_GUARDED_BY(mutex_) = 0;                  // targets of a fan-out that have not ended
   grpc::Status local_status_ ABSL_GUARDED_BY(mutex_);                // of a fan-out's first target, this server
+  bool any_ok_ ABSL_GUARDED_BY(mutex_) = false;                      // a target of a fan-out has succeeded
 };
 
 }  // namespace phrenic::service

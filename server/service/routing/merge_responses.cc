@@ -11,7 +11,8 @@
 namespace phrenic::service {
 namespace {
 
-grpc::ByteBuffer MergeSessionPages(const grpc::ByteBuffer& request, const std::vector<grpc::ByteBuffer>& responses) {
+grpc::ByteBuffer MergeSessionPages(const grpc::ByteBuffer& request, const std::vector<grpc::ByteBuffer>& responses,
+                                   const PageTokens& tokens) {
   constexpr int kDefaultPageSize = 100;
   v1::ListSessionsRequest asked;
   Parse(request, asked);
@@ -33,7 +34,9 @@ grpc::ByteBuffer MergeSessionPages(const grpc::ByteBuffer& request, const std::v
     if (static_cast<std::size_t>(merged.sessions_size()) == page_size) break;
     *merged.add_sessions() = std::move(session);
   }
-  if (more && merged.sessions_size() > 0) merged.set_next_page_token(merged.sessions().rbegin()->id());
+  if (more && merged.sessions_size() > 0) {
+    merged.set_next_page_token(tokens.Seal(merged.sessions().rbegin()->id(), ""));
+  }
   const grpc::Slice slice(merged.SerializeAsString());
   return grpc::ByteBuffer(&slice, 1);
 }
@@ -50,8 +53,8 @@ bool IsListMethod(const std::string& method) {
 // Concatenated serialized messages parse as one message whose repeated fields are concatenated
 // (protobuf.dev/programming-guides/encoding, "Last One Wins").
 grpc::ByteBuffer MergeResponses(const std::string& method, const grpc::ByteBuffer& request,
-                                const std::vector<grpc::ByteBuffer>& responses) {
-  if (absl::EndsWith(method, "/ListSessions")) return MergeSessionPages(request, responses);
+                                const std::vector<grpc::ByteBuffer>& responses, const PageTokens& tokens) {
+  if (absl::EndsWith(method, "/ListSessions")) return MergeSessionPages(request, responses, tokens);
   std::vector<grpc::Slice> slices;
   for (const grpc::ByteBuffer& response : responses) {
     std::vector<grpc::Slice> part;

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "server/service/calls/page_tokens.h"
+
 namespace phrenic::service {
 
 // True for methods that list what a server has: ListSessions, ListExports, ListStudies, ListUploads. In a cluster each
@@ -15,9 +17,9 @@ bool IsListMethod(const std::string& method);
 
 // Returns the responses to a list method as one. Sessions are sorted by id, the copy with the highest epoch is kept,
 // and the page has at most the size that `request` asks for; other lists are concatenated. Empty buffers are skipped.
-// Pure function, thread-safe.
+// `tokens` seals the token of the next page. Thread-safe.
 grpc::ByteBuffer MergeResponses(const std::string& method, const grpc::ByteBuffer& request,
-                                const std::vector<grpc::ByteBuffer>& responses);
+                                const std::vector<grpc::ByteBuffer>& responses, const PageTokens& tokens);
 
 }  // namespace phrenic::service
 

@@ -43,7 +43,7 @@ std::string ComparedSession(const std::string& method, const grpc::ByteBuffer& r
   return compare.a().has_body() ? compare.a().body().session_id() : compare.b().body().session_id();
 }
 
-std::string Value(const SessionRouter::Metadata& metadata, const char* key) {
+std::string Value(const Metadata& metadata, const char* key) {
   const auto found = metadata.find(key);
   return found == metadata.end() ? "" : found->second;
 }
@@ -57,7 +57,8 @@ bool NamesResource(const MethodDescriptor* method) {
 }
 
 // Reconnects within 1 s after a server restarts, and detects a dead one by keepalive within 13 s.
-std::shared_ptr<grpc::Channel> ChannelTo(const std::string& address) {
+std::shared_ptr<grpc::Channel> ChannelTo(const std::string& address,
+                                         const std::shared_ptr<grpc::ChannelCredentials>& credentials) {
   grpc::ChannelArguments arguments;
   arguments.SetMaxReceiveMessageSize(-1);
   arguments.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);
@@ -66,7 +67,7 @@ std::shared_ptr<grpc::Channel> ChannelTo(const std::string& address) {
   arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 1000);
   arguments.SetInt(GRPC_ARG_KEEPALIVE_TIME_MS, 10'000);
   arguments.SetInt(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, 3'000);
-  return grpc::CreateCustomChannel(address, grpc::InsecureChannelCredentials(), arguments);
+  return grpc::CreateCustomChannel(address, credentials, arguments);
 }
 
 }  // namespace
@@ -78,7 +79,7 @@ void SessionRouter::set_local_channel(std::shared_ptr<grpc::Channel> channel) {
 std::shared_ptr<grpc::GenericStub> SessionRouter::StubOf(const std::string& address) {
   absl::MutexLock lock(&mutex_);
   auto& stub = stubs_[address];
-  if (stub == nullptr) stub = std::make_shared<grpc::GenericStub>(ChannelTo(address));
+  if (stub == nullptr) stub = std::make_shared<grpc::GenericStub>(ChannelTo(address, credentials_));
   return stub;
 }
 
@@ -109,7 +110,8 @@ absl::StatusOr<SessionRouter::Route> SessionRouter::FindForwarded(const std::str
   Route route{session, {{local_, ""}}};
   const Location::Kind kind = session.empty() ? Location::Kind::kLocal : cluster_.Locate(session).kind;
   if (kind == Location::Kind::kLocal || kind == Location::Kind::kNone) return route;
-  return absl::UnavailableError(absl::StrCat("session \"", session, "\" has moved to another server; try again"));
+  return absl::UnavailableError(
+      absl::StrCat("session \"", session.substr(0, 64), "\" has moved to another server; try again"));
 }
 
 absl::StatusOr<SessionRouter::Route> SessionRouter::Find(const std::string& method, const Metadata& metadata,
@@ -132,7 +134,7 @@ void SessionRouter::ReportUnreachable(const Route& route) {
   if (!route.session.empty()) cluster_.Forget(route.session);
 }
 
-SessionRouter::Metadata SessionRouter::ForwardedMetadata(const grpc::ServerContextBase& context) {
+Metadata SessionRouter::ForwardedMetadata(const grpc::ServerContextBase& context) {
   Metadata metadata;
   for (const auto& [key, value] : context.client_metadata()) {
     const std::string name(key.data(), key.size());
@@ -143,8 +145,7 @@ SessionRouter::Metadata SessionRouter::ForwardedMetadata(const grpc::ServerConte
   return metadata;
 }
 
-SessionRouter::Metadata SessionRouter::MetadataFor(const Target& target, Metadata metadata,
-                                                   const std::string& peer) const {
+Metadata SessionRouter::MetadataFor(const Target& target, Metadata metadata, const std::string& peer) const {
   if (target.address.empty()) {
     metadata.emplace(kPeerKey, peer);
   } else {

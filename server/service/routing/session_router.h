@@ -4,6 +4,7 @@
 
 #include <grpcpp/channel.h>
 #include <grpcpp/generic/generic_stub.h>
+#include <grpcpp/security/credentials.h>
 #include <grpcpp/server_context.h>
 #include <grpcpp/support/byte_buffer.h>
 
@@ -11,12 +12,15 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "absl/base/thread_annotations.h"
 #include "absl/status/statusor.h"
 #include "absl/synchronization/mutex.h"
 #include "server/cluster/cluster.h"
+#include "server/service/calls/page_tokens.h"
+#include "server/service/net/metadata.h"
 
 namespace phrenic::service {
 
@@ -25,7 +29,7 @@ namespace phrenic::service {
 // others in turn. List methods go to all servers. A forwarded call is never forwarded again. Thread-safe.
 class SessionRouter {
  public:
-  using Metadata = std::multimap<std::string, std::string>;
+  using Metadata = service::Metadata;
 
   struct Target {
     std::shared_ptr<grpc::GenericStub> stub;
@@ -37,7 +41,11 @@ class SessionRouter {
     bool fan_out = false;         // calls all targets at once and merges the responses
   };
 
-  explicit SessionRouter(cluster::Cluster& cluster) : cluster_(cluster) {}
+  // `credentials` are those of calls to the other servers. `cluster` and `page_tokens` outlive the router.
+  SessionRouter(cluster::Cluster& cluster, std::shared_ptr<grpc::ChannelCredentials> credentials,
+                const PageTokens& page_tokens)
+      : cluster_(cluster), credentials_(std::move(credentials)), page_tokens_(page_tokens) {}
+  const PageTokens& page_tokens() const { return page_tokens_; }
   // Sets the channel to this server's own services. Call it before Find.
   void set_local_channel(std::shared_ptr<grpc::Channel> channel);
 
@@ -61,6 +69,8 @@ class SessionRouter {
   void AddOtherServers(Route& route);
 
   cluster::Cluster& cluster_;
+  const std::shared_ptr<grpc::ChannelCredentials> credentials_;
+  const PageTokens& page_tokens_;
   std::shared_ptr<grpc::GenericStub> local_;
   std::atomic<std::int64_t> forwarded_ = 0;
   absl::Mutex mutex_;

@@ -2,13 +2,12 @@
 
 #include <utility>
 
+#include "server/service/calls/status.h"
+
 namespace phrenic::service {
 
 UpstreamCall::UpstreamCall(Request request, Handlers handlers)
-    : request_(std::move(request)), handlers_(std::move(handlers)) {
-  for (const auto& [name, value] : request_.metadata) context_.AddMetadata(name, value);
-  context_.set_deadline(request_.deadline);
-}
+    : request_(std::move(request)), handlers_(std::move(handlers)) {}
 
 std::shared_ptr<UpstreamCall> UpstreamCall::Make(Request request, Handlers handlers) {
   std::shared_ptr<UpstreamCall> call(new UpstreamCall(std::move(request), std::move(handlers)));
@@ -17,6 +16,9 @@ std::shared_ptr<UpstreamCall> UpstreamCall::Make(Request request, Handlers handl
 }
 
 void UpstreamCall::Start(grpc::GenericStub& stub) {
+  const absl::Status status = PrepareContext(request_.method, request_.metadata, context_);
+  if (!status.ok()) return OnDone(ToGrpc(status));
+  context_.set_deadline(request_.deadline);
   stub.PrepareBidiStreamingCall(&context_, request_.method, {}, this);
   AddHold();  // ReadNext starts reads outside of reactions; the read that fails releases the hold
   StartWriteLast(&request_.message, {});

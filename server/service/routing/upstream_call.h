@@ -10,9 +10,10 @@
 
 #include <chrono>
 #include <functional>
-#include <map>
 #include <memory>
 #include <string>
+
+#include "server/service/net/metadata.h"
 
 namespace phrenic::service {
 
@@ -22,7 +23,7 @@ class UpstreamCall final : public grpc::ClientBidiReactor<grpc::ByteBuffer, grpc
   struct Request {
     std::string method;  // "/phrenic.v1.SessionService/GetSession"
     grpc::ByteBuffer message;
-    std::multimap<std::string, std::string> metadata;
+    Metadata metadata;
     std::chrono::system_clock::time_point deadline;
   };
   struct Handlers {
@@ -33,7 +34,7 @@ class UpstreamCall final : public grpc::ClientBidiReactor<grpc::ByteBuffer, grpc
   };
 
   static std::shared_ptr<UpstreamCall> Make(Request request, Handlers handlers);
-  // Call once.
+  // Call once. Errors of PrepareContext reach the handler `done`, possibly before Start returns.
   void Start(grpc::GenericStub& stub);
   void ReadNext() { StartRead(&incoming_); }
   void Cancel() { context_.TryCancel(); }

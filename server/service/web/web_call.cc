@@ -17,19 +17,19 @@ std::multimap<std::string, std::string> Copy(const std::multimap<grpc::string_re
 
 }  // namespace
 
-WebCall::WebCall(Request request, const boost::asio::any_io_executor& strand, Handlers handlers)
-    : request_(std::move(request)), strand_(strand), work_(strand), handlers_(std::move(handlers)) {
-  const grpc::Slice slice(request_.message);
-  outgoing_ = grpc::ByteBuffer(&slice, 1);
-  for (const auto& [name, value] : request_.metadata) context_.AddMetadata(name, value);
-  if (request_.timeout.has_value()) context_.set_deadline(std::chrono::system_clock::now() + *request_.timeout);
-}
+WebCall::WebCall(const boost::asio::any_io_executor& strand, Handlers handlers)
+    : strand_(strand), work_(strand), handlers_(std::move(handlers)) {}
 
-std::shared_ptr<WebCall> WebCall::Start(grpc::GenericStub& stub, Request request,
-                                        const boost::asio::any_io_executor& strand, Handlers handlers) {
-  std::shared_ptr<WebCall> call(new WebCall(std::move(request), strand, std::move(handlers)));
+absl::StatusOr<std::shared_ptr<WebCall>> WebCall::Start(grpc::GenericStub& stub, Request request,
+                                                        const boost::asio::any_io_executor& strand, Handlers handlers) {
+  std::shared_ptr<WebCall> call(new WebCall(strand, std::move(handlers)));
+  absl::Status status = PrepareContext(request.method, request.metadata, call->context_);
+  if (!status.ok()) return status;
+  if (request.timeout.has_value()) call->context_.set_deadline(std::chrono::system_clock::now() + *request.timeout);
+  const grpc::Slice slice(request.message);
+  call->outgoing_ = grpc::ByteBuffer(&slice, 1);
   call->self_ = call;
-  stub.PrepareBidiStreamingCall(&call->context_, call->request_.method, {}, call.get());
+  stub.PrepareBidiStreamingCall(&call->context_, request.method, {}, call.get());
   call->AddHold();  // ReadNext starts reads outside of reactions
   call->held_ = true;
   call->reading_ = true;

@@ -18,6 +18,9 @@
 #include <optional>
 #include <string>
 
+#include "absl/status/statusor.h"
+#include "server/service/net/metadata.h"
+
 namespace phrenic::service {
 
 // Not thread-safe: call its methods on `strand`, which also runs the handlers; gRPC's threads call the reactor's
@@ -28,7 +31,7 @@ class WebCall final : public grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::Byt
   struct Request {
     std::string method;  // "/phrenic.v1.SessionService/GetSession"
     std::string message;
-    std::multimap<std::string, std::string> metadata;
+    Metadata metadata;
     std::optional<std::chrono::nanoseconds> timeout;
   };
   struct Handlers {
@@ -36,9 +39,9 @@ class WebCall final : public grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::Byt
     std::function<void(const grpc::Status& status, const std::multimap<std::string, std::string>& trailers)> done;
   };
 
-  // Starts the call and reads the first message.
-  static std::shared_ptr<WebCall> Start(grpc::GenericStub& stub, Request request,
-                                        const boost::asio::any_io_executor& strand, Handlers handlers);
+  // Starts the call and reads the first message. Errors, without a call of a handler: those of PrepareContext.
+  static absl::StatusOr<std::shared_ptr<WebCall>> Start(grpc::GenericStub& stub, Request request,
+                                                        const boost::asio::any_io_executor& strand, Handlers handlers);
 
   // Reads the next message. Call it after the previous message is written to the browser: HTTP/2 flow control then
   // limits what a slow browser can queue, and only its own call waits.
@@ -50,12 +53,11 @@ class WebCall final : public grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::Byt
   void OnDone(const grpc::Status& status) override;
 
  private:
-  WebCall(Request request, const boost::asio::any_io_executor& strand, Handlers handlers);
+  WebCall(const boost::asio::any_io_executor& strand, Handlers handlers);
   void HandleRead(bool ok, const grpc::ByteBuffer& message);
   // Allows gRPC to call OnDone. Requires: no read is started afterwards.
   void ReleaseHold();
 
-  Request request_;
   boost::asio::any_io_executor strand_;
   // Keeps the gateway's threads running until the call ends.
   std::optional<boost::asio::executor_work_guard<boost::asio::any_io_executor>> work_;

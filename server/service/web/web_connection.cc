@@ -22,17 +22,46 @@ namespace net = boost::asio;
 constexpr std::uint32_t kMaxHeaderBytes = 16 << 10;
 constexpr std::size_t kReadBytes = 4 << 10;
 constexpr std::size_t kMaxPipelinedBytes = 64 << 10;  // of requests sent before the current one is answered
+constexpr std::size_t kSmallBodyBytes = 64 << 10;     // bodies that anybody may send, and that no budget counts
+constexpr std::chrono::seconds kLingerTime(2);
+constexpr std::size_t kLingerBytes = 1 << 20;
 
 std::string_view View(beast::string_view text) { return {text.data(), text.size()}; }
+
+// Returns the longest body that can hold a message [bytes]: with its prefix, in base64 if `text`.
+std::size_t LimitOf(bool text, std::size_t max_message_bytes) {
+  constexpr std::size_t kPrefix = 5, kBlock = 3, kEncodedBlock = 4;
+  const std::size_t bytes = max_message_bytes + kPrefix;
+  return text ? (bytes + kBlock - 1) / kBlock * kEncodedBlock : bytes;
+}
+
+Refusal TooLong(bool known, std::size_t limit) {
+  if (known) {
+    return {http::status::payload_too_large,
+            absl::StrCat("the request body exceeds the limit of ", limit, " bytes (--max-message-mb)")};
+  }
+  return {http::status::unauthorized,
+          absl::StrCat("authorization: a request body above ", limit, " bytes requires an account or a join link")};
+}
+
+Refusal Busy() {
+  return {http::status::service_unavailable,
+          "the server receives as many long requests as it has memory for (--max-message-mb); try again"};
+}
 
 }  // namespace
 
 WebConnection::WebConnection(net::ip::tcp::socket socket, const std::shared_ptr<net::ssl::context>& tls,
-                             const WebSettings& settings, grpc::GenericStub& stub)
-    : stream_(std::move(socket), tls), buffer_(kMaxHeaderBytes + kMaxPipelinedBytes), settings_(settings), stub_(stub) {
+                             const WebShared& shared)
+    : stream_(std::move(socket), tls),
+      buffer_(kMaxHeaderBytes + kMaxPipelinedBytes),
+      shared_(shared),
+      settings_(shared.settings) {
   beast::error_code error;
   const auto peer = stream_.tcp().socket().remote_endpoint(error);
   peer_ = error ? "unknown" : peer.address().to_string();  // an empty peer would be a call from within the process
+  const auto local = stream_.tcp().socket().local_endpoint(error);
+  if (!error) local_ = local.address();
   waiting_since_ = std::chrono::steady_clock::now().time_since_epoch().count();
 }
 
@@ -65,9 +94,12 @@ void WebConnection::Close() {
 // The first byte of a request may take `timeout`, the rest of its header head_time.
 void WebConnection::AwaitRequest(std::chrono::milliseconds timeout) {
   waiting_since_ = std::chrono::steady_clock::now().time_since_epoch().count();
+  body_share_.reset();
+  call_request_.reset();
+  origin_.clear();
   parser_.emplace();
   parser_->header_limit(kMaxHeaderBytes);
-  parser_->body_limit(settings_.max_body_bytes);
+  parser_->body_limit(LimitOf(true, settings_.max_message_bytes));
   if (buffer_.size() > 0) return ReadHead();
   stream_.tcp().expires_after(timeout);
   stream_.async_read_some(buffer_.prepare(kReadBytes),
@@ -82,74 +114,112 @@ void WebConnection::ReadHead() {
   stream_.tcp().expires_after(settings_.head_time);
   http::async_read_header(stream_, buffer_, *parser_,
                           [self = shared_from_this()](beast::error_code error, std::size_t) {
-                            if (error) return self->OnRequest(error);
-                            self->ReadBody();
+                            if (error) return self->OnReadError(error);
+                            self->OnHead();
                           });
 }
 
-void WebConnection::ReadBody() {
-  stream_.tcp().expires_after(settings_.idle_time);
-  http::async_read(stream_, buffer_, *parser_,
-                   [self = shared_from_this()](beast::error_code error, std::size_t) { self->OnRequest(error); });
+void WebConnection::OnHead() {
+  const Request& request = parser_->get();
+  keep_alive_ = request.keep_alive();
+  std::optional<Refusal> refusal = Judge(request);
+  if (!refusal.has_value()) refusal = AdmitBody(request);
+  if (refusal.has_value()) return Reject(*refusal);
+  parser_->eager(true);
+  stream_.tcp().expires_after(settings_.idle_time);  // of the whole body, so that a slow one does not stay
+  ReadBody();
 }
 
-void WebConnection::OnRequest(beast::error_code error) {
-  waiting_since_ = std::chrono::steady_clock::time_point::max().time_since_epoch().count();
-  if (!error) {
-    Handle(parser_->get());
-  } else if (error == http::error::body_limit || error == http::error::header_limit ||
-             error.category() == http::make_error_code(http::error::bad_method).category()) {
-    RejectUnreadable(error);
-  } else {
-    Disconnect();
+std::optional<Refusal> WebConnection::Judge(const HttpRequestHead& head) {
+  if (auto refusal = CheckFraming(head)) return refusal;
+  if (auto refusal = CheckHost(head, shared_.hosts, local_, stream_.certificate())) return refusal;
+  const std::string_view origin = View(head[http::field::origin]);
+  if (!IsAllowedOrigin(origin, View(head[http::field::host]), settings_.allowed_origins)) {
+    return Refusal{http::status::forbidden,
+                   "this origin is not allowed to call the server; allow it with --allow-origin"};
   }
+  origin_ = std::string(origin);
+  if (auto refusal = CheckMethodAndType(head)) return refusal;
+  if (head.method() != http::verb::post) return std::nullopt;
+  auto call = CallOf(head, peer_);
+  if (call.ok()) {
+    call_request_ = *std::move(call);
+    return std::nullopt;
+  }
+  const bool large = absl::IsResourceExhausted(call.status());
+  return Refusal{large ? http::status::request_header_fields_too_large : http::status::bad_request,
+                 std::string(call.status().message())};
+}
+
+std::optional<Refusal> WebConnection::AdmitBody(const HttpRequestHead& head) {
+  body_limit_ = kSmallBodyBytes;
+  const auto length = parser_->content_length();
+  if (length.has_value() ? *length <= kSmallBodyBytes : !parser_->chunked()) return std::nullopt;
+  const auto caller = settings_.known ? settings_.known(CredentialsOf(head)) : "";
+  if (caller.has_value()) {
+    body_limit_ = LimitOf(IsGrpcWebText(View(head[http::field::content_type])), settings_.max_message_bytes);
+    body_share_.emplace(shared_.bodies, caller->empty() ? peer_ : *caller);
+  }
+  if (!length.has_value()) return std::nullopt;
+  if (*length > body_limit_) return TooLong(caller.has_value(), body_limit_);
+  return body_share_->GrowTo(*length) ? std::nullopt : std::optional(Busy());
+}
+
+void WebConnection::ReadBody() {
+  if (parser_->is_done()) return Handle(parser_->get());
+  http::async_read_some(stream_, buffer_, *parser_, [self = shared_from_this()](beast::error_code error, std::size_t) {
+    if (error) return self->OnReadError(error);
+    self->OnBodyPart();
+  });
+}
+
+// A body of unknown length takes its part of the budget as it grows.
+void WebConnection::OnBodyPart() {
+  const std::string& body = parser_->get().body();
+  if (body.size() > body_limit_) return Reject(TooLong(body_share_.has_value(), body_limit_));
+  if (body_share_.has_value() && body.size() > kSmallBodyBytes && !body_share_->GrowTo(body.capacity())) {
+    return Reject(Busy());
+  }
+  ReadBody();
 }
 
 // The start of the next request is unknown after a malformed or oversized one, so the connection is closed.
-void WebConnection::RejectUnreadable(beast::error_code error) {
-  origin_.clear();
-  keep_alive_ = false;
-  if (error == http::error::end_of_stream || error == http::error::partial_message) return Disconnect();
+void WebConnection::OnReadError(beast::error_code error) {
+  const bool unreadable = error.category() == http::make_error_code(http::error::bad_method).category();
+  if (!unreadable || error == http::error::end_of_stream || error == http::error::partial_message) return Disconnect();
   if (error == http::error::body_limit) {
-    return SendError(
-        http::status::payload_too_large,
-        absl::StrCat("the request body exceeds the limit of ", settings_.max_body_bytes, " bytes (--max-message-mb)"));
+    return Reject(TooLong(true, LimitOf(true, settings_.max_message_bytes)));
   }
-  if (error == http::error::header_limit) {
-    return SendError(http::status::request_header_fields_too_large,
-                     absl::StrCat("the request header exceeds the limit of ", kMaxHeaderBytes, " bytes"));
+  if (error == http::error::header_limit || error == http::error::buffer_overflow) {
+    return Reject({http::status::request_header_fields_too_large,
+                   absl::StrCat("the request header exceeds the limit of ", kMaxHeaderBytes, " bytes")});
   }
-  SendError(http::status::bad_request, "the request is not HTTP/1.1");
+  Reject({http::status::bad_request, "the request is not HTTP/1.1"});
+}
+
+void WebConnection::Reject(const Refusal& refusal) {
+  keep_alive_ = false;
+  unread_ = true;
+  SendError(refusal.status, refusal.text);
 }
 
 void WebConnection::Handle(const Request& request) {
-  keep_alive_ = request.keep_alive();
-  origin_.clear();
-  const std::string_view origin = View(request[http::field::origin]);
-  if (!IsAllowedOrigin(origin, View(request[http::field::host]), settings_.allowed_origins)) {
-    return SendError(http::status::forbidden,
-                     "this origin is not allowed to call the server; allow it with --allow-origin");
-  }
-  origin_ = std::string(origin);
+  waiting_since_ = std::chrono::steady_clock::time_point::max().time_since_epoch().count();
   if (request.method() == http::verb::options) return Preflight(request);
-  if (request.method() == http::verb::get || request.method() == http::verb::head) return HandleGet(request);
-  if (request.method() != http::verb::post)
-    return SendError(http::status::method_not_allowed, "the method must be GET, HEAD or POST");
-  if (!IsGrpcWeb(View(request[http::field::content_type]))) {
-    return SendError(http::status::unsupported_media_type,
-                     "a POST must be a gRPC-web call: Content-Type application/grpc-web+proto");
-  }
-  if (request.version() < 11) return SendError(http::status::http_version_not_supported, "gRPC-web needs HTTP/1.1");
-  StartCall(parser_->release());
+  if (request.method() == http::verb::post) return StartCall(parser_->release());
+  HandleGet(request);
 }
 
 void WebConnection::Preflight(const Request& request) {
   http::response<http::empty_body> response(http::status::no_content, request.version());
-  AllowOrigin(origin_, response);
-  response.set(http::field::access_control_allow_methods, "POST, GET, HEAD, OPTIONS");
-  response.set(http::field::access_control_allow_headers, request[http::field::access_control_request_headers]);
-  response.set(http::field::access_control_max_age, "7200");
+  if (!AllowPreflight(origin_, View(request[http::field::access_control_request_headers]), response)) {
+    return SendError(http::status::bad_request, "Access-Control-Request-Headers: must be names of headers");
+  }
   Send(std::move(response));
+}
+
+WebSettings::Credentials WebConnection::CredentialsOf(const HttpRequestHead& head) {
+  return {View(head[http::field::authorization]), View(head["x-join"])};
 }
 
 void WebConnection::SendPage(const Request& request, const WebSettings::Page& page) {
@@ -163,7 +233,7 @@ void WebConnection::SendPage(const Request& request, const WebSettings::Page& pa
 
 void WebConnection::HandleGet(const Request& request) {
   if (settings_.page) {
-    const auto page = settings_.page(View(request.target()), View(request[http::field::authorization]));
+    const auto page = settings_.page(View(request.target()), CredentialsOf(request));
     if (page.has_value()) return SendPage(request, *page);
   }
   const auto file = FindStaticFile(settings_.root, View(request.target()));
@@ -213,9 +283,28 @@ void WebConnection::Send(http::response<Body> response) {
   auto owned = std::make_shared<http::response<Body>>(std::move(response));
   stream_.tcp().expires_after(settings_.idle_time);
   http::async_write(stream_, *owned, [self = shared_from_this(), owned](beast::error_code error, std::size_t) {
+    if (!error && self->unread_) return self->Linger();
     if (error || !self->keep_alive_) return self->Disconnect();
     self->AwaitRequest(self->settings_.idle_time);
   });
+}
+
+void WebConnection::Linger() {
+  beast::error_code ignored;
+  stream_.tcp().socket().shutdown(net::ip::tcp::socket::shutdown_send, ignored);
+  body_share_.reset();
+  parser_.reset();
+  stream_.tcp().expires_after(kLingerTime);
+  DiscardInput(kLingerBytes);
+}
+
+void WebConnection::DiscardInput(std::size_t left) {
+  buffer_.clear();
+  stream_.tcp().async_read_some(buffer_.prepare(kReadBytes),
+                                [self = shared_from_this(), left](beast::error_code error, std::size_t bytes) {
+                                  if (error || bytes >= left) return self->Disconnect();
+                                  self->DiscardInput(left - bytes);
+                                });
 }
 
 void WebConnection::Disconnect() {
@@ -234,18 +323,17 @@ void WebConnection::StartCall(Request request) {
   if (!message.ok()) {
     return SendTrailers({grpc::StatusCode::INVALID_ARGUMENT, std::string(message.status().message())}, {});
   }
-  WebCall::Request call{.method = std::string(View(request.target())),
-                        .message = *std::move(message),
-                        .metadata = CallMetadata(request, peer_),
-                        .timeout = ParseTimeout(View(request["grpc-timeout"]))};
+  WebCall::Request call = *std::exchange(call_request_, std::nullopt);
+  call.message = *std::move(message);
   const auto self = shared_from_this();
-  call_ =
-      WebCall::Start(stub_, std::move(call), stream_.get_executor(),
-                     {.message = [self](const grpc::ByteBuffer& bytes) { self->SendMessage(bytes); },
-                      .done =
-                          [self](const grpc::Status& status, const std::multimap<std::string, std::string>& trailers) {
-                            self->SendTrailers(status, trailers);
-                          }});
+  auto started = WebCall::Start(
+      shared_.stub, std::move(call), stream_.get_executor(),
+      {.message = [self](const grpc::ByteBuffer& bytes) { self->SendMessage(bytes); },
+       .done = [self](const grpc::Status& status, const Metadata& trailers) { self->SendTrailers(status, trailers); }});
+  if (!started.ok()) {
+    return SendTrailers({grpc::StatusCode::UNIMPLEMENTED, std::string(started.status().message())}, {});
+  }
+  call_ = *std::move(started);
   WatchForDisconnect();
 }
 
@@ -288,6 +376,7 @@ void WebConnection::OnChunkSent(beast::error_code error, bool last) {
     return;
   }
   call_ = nullptr;
+  body_share_.reset();
   call_ended_ = true;
   if (!keep_alive_) return Disconnect();
   if (!reading_during_call_) return NextRequest();

@@ -21,8 +21,11 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "server/service/web/body_budget.h"
+#include "server/service/web/hosts.h"
 #include "server/service/web/static_files.h"
 #include "server/service/web/web_call.h"
+#include "server/service/web/web_request.h"
 #include "server/service/web/web_stream.h"
 
 namespace phrenic::service {
@@ -31,16 +34,31 @@ namespace phrenic::service {
 struct WebSettings {
   std::string root;                          // folder of the viewer's files
   std::vector<std::string> allowed_origins;  // beside the server's own and loopback origins
-  std::size_t max_body_bytes = 0;
+  std::vector<std::string> allowed_hosts;    // beside loopback, the address in use and the certificate's names
+  std::size_t max_message_bytes = 0;
   std::chrono::milliseconds head_time{10'000};  // timeout of a request's header, and of the TLS handshake
-  std::chrono::milliseconds idle_time{60'000};  // timeout of a body, of each write, and between requests
+  std::chrono::milliseconds idle_time{60'000};  // timeout of a whole body, of each write, and between requests
+  // The headers of a request that tell who sends it.
+  struct Credentials {
+    std::string_view authorization, join;
+  };
   struct Page {
     unsigned status = 200;  // HTTP status code
     std::string type, text;
   };
-  // Returns the generated page of a target such as "/healthz", given the request's Authorization header; nullopt if the
-  // target is a static file. Thread-safe.
-  std::function<std::optional<Page>(std::string_view target, std::string_view authorization)> page;
+  // Returns the generated page of a target such as "/healthz"; nullopt if the target is a static file. Thread-safe.
+  std::function<std::optional<Page>(std::string_view target, const Credentials& credentials)> page;
+  // Returns under which name the sender of a request has its part of the budget for bodies, empty for its IP address;
+  // nullopt if it is not known, so that its bodies must be small. Null: everybody is known. Thread-safe.
+  std::function<std::optional<std::string>(const Credentials& credentials)> known;
+};
+
+// What all connections share; it outlives them.
+struct WebShared {
+  const WebSettings& settings;
+  const AllowedHosts& hosts;
+  grpc::GenericStub& stub;
+  BodyBudget& bodies;
 };
 
 // Runs on its own strand. Run, Refuse, Close and waiting_since are thread-safe.
@@ -48,7 +66,7 @@ class WebConnection final : public std::enable_shared_from_this<WebConnection> {
  public:
   // Without encryption if `tls` is null.
   WebConnection(boost::asio::ip::tcp::socket socket, const std::shared_ptr<boost::asio::ssl::context>& tls,
-                const WebSettings& settings, grpc::GenericStub& stub);
+                const WebShared& shared);
 
   // Serves requests until the client disconnects or a timeout expires.
   void Run();
@@ -65,19 +83,31 @@ class WebConnection final : public std::enable_shared_from_this<WebConnection> {
 
   void AwaitRequest(std::chrono::milliseconds timeout);
   void ReadHead();
+  // Judges the request by its head, then reads the body.
+  void OnHead();
+  std::optional<Refusal> Judge(const HttpRequestHead& head);
+  // Decides how long the body may be and takes a part of the budget for it.
+  std::optional<Refusal> AdmitBody(const HttpRequestHead& head);
   void ReadBody();
-  void OnRequest(boost::beast::error_code error);
-  void RejectUnreadable(boost::beast::error_code error);
+  void OnBodyPart();
+  void OnReadError(boost::beast::error_code error);
+  // Answers a request whose rest is not read, and disconnects.
+  void Reject(const Refusal& refusal);
   void Handle(const Request& request);
   void HandleGet(const Request& request);
   void SendPage(const Request& request, const WebSettings::Page& page);
   void SendFile(const Request& request, const StaticFile& file);
   // Answers a CORS preflight request (Fetch standard section 3.3.6).
   void Preflight(const Request& request);
+  static WebSettings::Credentials CredentialsOf(const HttpRequestHead& head);
   void SendError(boost::beast::http::status status, const std::string& text);
   template <class Body>
   void Send(boost::beast::http::response<Body> response);
   void Disconnect();
+  // Ends the sending half and discards what still arrives, for a short time and up to a limit. A close with unread
+  // bytes would reset the connection and may lose the answer (RFC 9112 section 9.6).
+  void Linger();
+  void DiscardInput(std::size_t left);
 
   void StartCall(Request request);
   void SendMessage(const grpc::ByteBuffer& message);
@@ -91,16 +121,21 @@ class WebConnection final : public std::enable_shared_from_this<WebConnection> {
   void NextRequest();
 
   WebStream stream_;
-  std::string peer_;  // IP address; "unknown" if the client disconnected early
+  std::string peer_;                // IP address; "unknown" if the client disconnected early
+  boost::asio::ip::address local_;  // that the client connected to
   std::atomic<std::chrono::steady_clock::rep> waiting_since_;
   boost::beast::flat_buffer buffer_;
+  const WebShared& shared_;
   const WebSettings& settings_;
-  grpc::GenericStub& stub_;
   std::optional<Parser> parser_;
 
   // State of the current request.
   std::string origin_;  // an allowed one; empty if the request has none
   bool keep_alive_ = false;
+  bool unread_ = false;                           // a part of the request was not read
+  std::size_t body_limit_ = 0;                    // [bytes]
+  std::optional<BodyBudget::Share> body_share_;   // of a long body, until the call ends
+  std::optional<WebCall::Request> call_request_;  // without its message
   // State of the current call.
   std::shared_ptr<WebCall> call_;
   std::string head_;                     // of the response; sent with its first chunk

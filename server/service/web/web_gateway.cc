@@ -1,7 +1,10 @@
 #include "server/service/web/web_gateway.h"
 
+#include <spdlog/spdlog.h>
+
 #include <boost/asio/connect.hpp>
 #include <boost/asio/strand.hpp>
+#include <exception>
 
 #include "server/service/net/listen.h"
 
@@ -12,12 +15,16 @@ namespace net = boost::asio;
 using net::ip::tcp;
 
 constexpr int kThreads = 2;
+constexpr std::size_t kBodies = 4;  // longest messages that are received at a time; half of them from one caller
 
 }  // namespace
 
 WebGateway::WebGateway(const Options& options, std::shared_ptr<grpc::Channel> channel)
     : options_(options),
+      hosts_(options.settings.allowed_hosts, options.settings.allowed_origins, options.address),
       stub_(std::move(channel)),
+      bodies_(kBodies * options.settings.max_message_bytes, kBodies / 2 * options.settings.max_message_bytes),
+      shared_{options_.settings, hosts_, stub_, bodies_},
       context_(kThreads),
       acceptor_(context_),
       retry_timer_(context_),
@@ -29,9 +36,21 @@ absl::StatusOr<std::unique_ptr<WebGateway>> WebGateway::Start(const Options& opt
   if (absl::Status status = gateway->Listen(); !status.ok()) return status;
   gateway->AcceptNext();
   for (int i = 0; i < kThreads; ++i) {
-    gateway->threads_.emplace_back([context = &gateway->context_] { context->run(); });
+    gateway->threads_.emplace_back([gateway = gateway.get()] { gateway->RunThread(); });
   }
   return gateway;
+}
+
+// An exception, such as std::bad_alloc, ends the connection whose handler throws it and no other.
+void WebGateway::RunThread() {
+  while (true) {
+    try {
+      context_.run();
+      return;
+    } catch (const std::exception& error) {
+      spdlog::error("a web connection was closed: {}", error.what());
+    }
+  }
 }
 
 WebGateway::~WebGateway() { Shutdown(); }
@@ -54,8 +73,7 @@ void WebGateway::OnAccept(boost::system::error_code error, tcp::socket socket) {
     boost::system::error_code ignored;
     socket.set_option(tcp::no_delay(true), ignored);
     EnableKeepalive(socket);
-    const auto connection =
-        std::make_shared<WebConnection>(std::move(socket), tls_.Current(), options_.settings, stub_);
+    const auto connection = std::make_shared<WebConnection>(std::move(socket), tls_.Current(), shared_);
     if (Admit(connection)) {
       connection->Run();
     } else {

@@ -47,6 +47,7 @@ class WebGateway {
   absl::Status Listen();
   void Accept() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void AcceptNext() ABSL_LOCKS_EXCLUDED(mutex_);
+  void RunThread();
   void OnAccept(boost::system::error_code error, boost::asio::ip::tcp::socket socket);
   // Adds a connection. False if the limit is reached and CloseLongestIdle finds none to close.
   bool Admit(const std::shared_ptr<WebConnection>& connection) ABSL_LOCKS_EXCLUDED(mutex_);
@@ -54,7 +55,10 @@ class WebGateway {
   bool CloseLongestIdle() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
   const Options options_;
+  const AllowedHosts hosts_;
   grpc::GenericStub stub_;
+  BodyBudget bodies_;
+  const WebShared shared_;
   boost::asio::io_context context_;
   boost::asio::ip::tcp::acceptor acceptor_;  // used by one thread at a time, or with mutex_ held
   boost::asio::steady_timer retry_timer_;

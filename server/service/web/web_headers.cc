@@ -1,11 +1,14 @@
 #include "server/service/web/web_headers.h"
 
+#include <algorithm>
 #include <sstream>
 
 #include "absl/strings/ascii.h"
+#include "absl/strings/escaping.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "absl/strings/str_split.h"
 #include "server/service/net/metadata_keys.h"
 
 namespace phrenic::service {
@@ -21,6 +24,16 @@ constexpr char kPolicy[] =
 bool IsForwarded(const std::string& name) {
   if (name == "x-grpc-web" || name == "x-user-agent" || name == kPeerKey) return false;
   return absl::StartsWith(name, "x-") || name == "authorization";
+}
+
+// Adds the values of a "-bin" header, separated by commas. False if one is not base64.
+bool AddBinary(const std::string& name, absl::string_view values, Metadata& metadata) {
+  for (const absl::string_view value : absl::StrSplit(values, ',')) {
+    std::string bytes;
+    if (!absl::Base64Unescape(absl::StripAsciiWhitespace(value), &bytes)) return false;
+    metadata.emplace(name, std::move(bytes));
+  }
+  return true;
 }
 
 }  // namespace
@@ -64,13 +77,32 @@ std::string CallHead(bool text, bool encrypted, const std::string& origin, bool 
   return head.str();
 }
 
-std::multimap<std::string, std::string> CallMetadata(const http::fields& request, const std::string& peer) {
-  std::multimap<std::string, std::string> metadata = {{kPeerKey, peer}};
+absl::StatusOr<Metadata> CallMetadata(const http::fields& request, const std::string& peer) {
+  Metadata metadata = {{kPeerKey, peer}};
   for (const auto& field : request) {
     const std::string name = absl::AsciiStrToLower(std::string(field.name_string()));
-    if (IsForwarded(name)) metadata.emplace(name, std::string(field.value()));
+    if (!IsForwarded(name)) continue;
+    const absl::string_view value(field.value().data(), field.value().size());
+    if (!absl::EndsWith(name, "-bin")) {
+      metadata.emplace(name, std::string(value));
+    } else if (!AddBinary(name, value, metadata)) {
+      return absl::InvalidArgumentError(absl::StrCat(absl::CHexEscape(name), ": its value is not base64"));
+    }
   }
-  return metadata;
+  absl::Status status = CheckMetadata(metadata);
+  return status.ok() ? absl::StatusOr<Metadata>(std::move(metadata)) : status;
+}
+
+bool AllowPreflight(const std::string& origin, std::string_view headers, HttpHeader& response) {
+  const auto legal = [](char c) {
+    return absl::ascii_isalnum(c) || absl::StrContains("-_., ", absl::string_view(&c, 1));
+  };
+  if (!std::all_of(headers.begin(), headers.end(), legal)) return false;
+  AllowOrigin(origin, response);
+  response.set(http::field::access_control_allow_methods, "POST, GET, HEAD, OPTIONS");
+  response.set(http::field::access_control_allow_headers, boost::beast::string_view(headers.data(), headers.size()));
+  response.set(http::field::access_control_max_age, "7200");
+  return true;
 }
 
 }  // namespace phrenic::service

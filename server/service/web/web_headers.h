@@ -5,11 +5,12 @@
 #include <utility>
 // Boost 1.74's Beast needs <utility> before it with C++20.
 #include <boost/beast/http.hpp>
-#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "absl/status/statusor.h"
+#include "server/service/net/metadata.h"
 #include "server/service/web/static_files.h"
 
 namespace phrenic::service {
@@ -26,9 +27,13 @@ void AllowOrigin(const std::string& origin, HttpHeader& response);
 // Returns the status line and headers of a gRPC-web response, with the empty line that ends them.
 std::string CallHead(bool text, bool encrypted, const std::string& origin, bool keep_alive);
 // Returns the metadata for a gRPC call: "x-..." and "authorization" headers of the request, and the caller's IP address
-// as kPeerKey, which replaces one that the client sent.
-std::multimap<std::string, std::string> CallMetadata(const boost::beast::http::fields& request,
-                                                     const std::string& peer);
+// as kPeerKey, which replaces one that the client sent. Values of "-bin" headers are decoded from base64.
+// Errors: those of CheckMetadata, and INVALID_ARGUMENT, with the header's name, if it is not base64.
+absl::StatusOr<Metadata> CallMetadata(const boost::beast::http::fields& request, const std::string& peer);
+
+// Sets the headers that answer a CORS preflight request (Fetch standard section 3.3.6) from a page of `origin`, which
+// asked for `headers`. False if these are not names of headers.
+bool AllowPreflight(const std::string& origin, std::string_view headers, HttpHeader& response);
 
 }  // namespace phrenic::service
 

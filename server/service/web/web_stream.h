@@ -27,6 +27,8 @@ class WebStream {
   // Returns the layer below TLS, which has the deadlines.
   boost::beast::tcp_stream& tcp() { return tcp_; }
   bool encrypted() const { return tls_.has_value(); }
+  // Returns the server's certificate; null without TLS.
+  X509* certificate() { return tls_.has_value() ? SSL_get_certificate(tls_->native_handle()) : nullptr; }
 
   // Performs the TLS handshake; without TLS it calls the handler at once.
   template <class Handler>

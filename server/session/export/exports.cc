@@ -33,23 +33,22 @@ absl::StatusOr<std::shared_ptr<ExportJob>> Exports::MakeJob(const v1::CreateExpo
 }
 
 absl::StatusOr<v1::Export> Exports::Add(const v1::CreateExportRequest& request, Start start) {
+  const std::string owner = start.owner;
   auto job = MakeJob(request, std::move(start));
   if (!job.ok()) return job.status();
-  return queue_.Add(request.export_id(), request.session_id(), (*job)->Describe(request.session_id()), *job);
+  return queue_.Add(owner, request.export_id(), request.session_id(), (*job)->Describe(request.session_id()), *job);
 }
 
 void Exports::Restore(const std::vector<store::SavedRecord>& records, Models& models,
-                      absl::FunctionRef<void(const std::string& id, const std::string& owner)> found,
+                      absl::FunctionRef<std::string(const std::string& account)> account_of,
                       std::map<std::string, absl::Status>& lost) {
   const auto restore = [&](const store::SavedRecord& record) -> absl::Status {
-    auto saved = RestoreExport(record, models);
+    auto saved = RestoreExport(record, models, account_of);
     if (!saved.ok()) return saved.status();
     const std::string owner = saved->start.owner, session = saved->request.session_id();
     auto job = MakeJob(saved->request, std::move(saved->start));
     if (!job.ok()) return job.status();
-    auto queued = queue_.Resume(record.id, session, (*job)->Describe(session), *job);
-    if (queued.ok()) found(record.id, owner);
-    return queued.status();
+    return queue_.Resume(owner, record.id, session, (*job)->Describe(session), *job).status();
   };
   queue_.records().Restore(records, restore, lost);
 }

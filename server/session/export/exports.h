@@ -3,8 +3,10 @@
 #define PHRENIC_SERVER_SESSION_EXPORT_EXPORTS_H_
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,10 +31,11 @@ class Exports {
   // `clock` and `store` outlive it. A null store keeps nothing.
   Exports(const Limits& limits, std::string spool_folder, const Clock& clock, store::Store* store = nullptr);
 
-  // Queues the exports of an earlier server again, which make the same files. Calls `found` with each and its owner.
-  // `lost` gets the reason why one could not be restored, by "export ID". Requires: no other call was made yet.
+  // Queues the exports of an earlier server again, which make the same files. `account_of` gives the present name of
+  // the account that the record names. `lost` gets the reason why one could not be restored, by "export ID". Requires:
+  // no other call was made yet.
   void Restore(const std::vector<store::SavedRecord>& records, Models& models,
-               absl::FunctionRef<void(const std::string& id, const std::string& owner)> found,
+               absl::FunctionRef<std::string(const std::string& account)> account_of,
                std::map<std::string, absl::Status>& lost);
 
   // Plans the export, queues it, and returns once the store has it on the disk. An empty id is chosen from the
@@ -46,7 +49,10 @@ class Exports {
                      absl::FunctionRef<bool(v1::Export message)> write) const {
     return queue_.Watch(id, gone, write);
   }
-  std::vector<v1::Export> List() const { return queue_.List(); }
+  std::vector<v1::Export> List(const std::function<bool(const std::string& owner)>& visible = nullptr) const {
+    return queue_.List(visible);
+  }
+  std::optional<std::string> OwnerOf(const std::string& id) const { return queue_.OwnerOf(id); }
   absl::Status Delete(const std::string& id) { return queue_.Delete(id); }
   // Returns the file of an export that is done; it lives as long as a caller holds it. FAILED_PRECONDITION before that.
   absl::StatusOr<std::shared_ptr<const record::SpoolFile>> File(const std::string& id) const;

@@ -18,13 +18,16 @@ absl::StatusOr<std::string> SaveExport(const v1::CreateExportRequest& request, c
   saved.set_largest_stable_step(start.fork.stable_step);
   *saved.mutable_state() = store::Save(start.fork.state);
   saved.set_owner(start.owner);
+  saved.set_owner_qualified(true);
   return saved.SerializeAsString();
 }
 
-absl::StatusOr<RestoredExport> RestoreExport(const store::SavedRecord& record, Models& models) {
+absl::StatusOr<RestoredExport> RestoreExport(const store::SavedRecord& record, Models& models,
+                                             absl::FunctionRef<std::string(const std::string& account)> account_of) {
   v1::SavedExport saved;
   if (!saved.ParseFromString(record.bytes)) return absl::DataLossError("the record in the store is not an export");
-  auto compiled = RestoreScene(saved.scene(), absl::StrCat("export ", record.id), models);
+  if (!saved.owner_qualified()) saved.set_owner(account_of(saved.owner()));
+  auto compiled = RestoreScene(saved.scene(), absl::StrCat("export ", record.id), saved.owner(), models);
   if (!compiled.ok()) return compiled.status();
   auto state = store::Restore(*compiled->model, saved.state());
   if (!state.ok()) return state.status();

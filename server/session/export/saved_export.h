@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "absl/functional/function_ref.h"
 #include "absl/status/statusor.h"
 #include "phrenic/v1/export.pb.h"
 #include "server/session/export/export_job.h"
@@ -21,8 +22,10 @@ struct RestoredExport {
 
 // Returns a v1::SavedExport as bytes: the request, the scene, the parameters and the state. The errors of SaveScene.
 absl::StatusOr<std::string> SaveExport(const v1::CreateExportRequest& request, const ExportStart& start);
-// DATA_LOSS if the record is no export; the errors of RestoreScene and of store::Restore.
-absl::StatusOr<RestoredExport> RestoreExport(const store::SavedRecord& record, Models& models);
+// `account_of` gives the present name of the account that the record names, if an earlier version wrote it. DATA_LOSS
+// if the record is no export; the errors of RestoreScene and of store::Restore.
+absl::StatusOr<RestoredExport> RestoreExport(const store::SavedRecord& record, Models& models,
+                                             absl::FunctionRef<std::string(const std::string& account)> account_of);
 
 }  // namespace phrenic::session
 

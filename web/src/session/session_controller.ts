@@ -190,7 +190,7 @@ export class SessionController {
 
   private async createFork(): Promise<SessionController | undefined> {
     try {
-      const { session } = await this.api.sessions.forkSession({ sessionId: this.sessionId });
+      const { session } = await this.api.sessions.forkSession({ sessionId: this.sessionId, temporary: true });
       return session === undefined ? undefined : new SessionController(this.api, session.id, this.clock);
     } catch (error) {
       this.notice.set(errorText(error));
