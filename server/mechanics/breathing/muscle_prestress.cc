@@ -43,7 +43,7 @@ class PrestressSearch {
  public:
   PrestressSearch(const RestingLoad& resting, double greatest, const std::vector<MuscleTriangle>& triangles);
 
-  int Run();
+  int Run(const StopCheck& stop);
   const std::vector<Pair>& tensions() const { return last_; }
   float Pressure(size_t vertex) const { return contact_[vertex]; }
 
@@ -181,7 +181,7 @@ void PrestressSearch::MoveContacts() {
   }
 }
 
-int PrestressSearch::Run() {
+int PrestressSearch::Run(const StopCheck& stop) {
   const float largest = LargestEigenvalue();
   if (!(largest > 0)) return 0;
   step_ = 1 / largest;
@@ -192,16 +192,17 @@ int PrestressSearch::Run() {
     const float change = MoveTensions((weight - 1) / next);
     weight = next;
     MoveContacts();
-    if (change <= kTensionSettled * scale_) return iteration;
+    if (change <= kTensionSettled * scale_ || stop.Stopped()) return iteration;
   }
   return kPrestressIterations;
 }
 
 }  // namespace
 
-PrestressReport ChoosePrestress(const RestingLoad& resting, double greatest, std::vector<MuscleTriangle>& triangles) {
+PrestressReport ChoosePrestress(const RestingLoad& resting, double greatest, const StopCheck& stop,
+                                std::vector<MuscleTriangle>& triangles) {
   PrestressSearch search(resting, greatest, triangles);
-  PrestressReport report{.iterations = search.Run(), .along = 0, .across = 0, .contact = {}};
+  PrestressReport report{.iterations = search.Run(stop), .along = 0, .across = 0, .contact = {}};
   double area = 0;
   for (size_t t = 0; t < triangles.size(); ++t) {
     MuscleTriangle& triangle = triangles[t];

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "server/mechanics/breathing/muscle_triangle.h"
+#include "server/mechanics/stop_check.h"
 
 namespace phrenic {
 
@@ -30,8 +31,9 @@ struct PrestressReport {
 };
 
 // Sets the resting tensions of the triangles, which hold those to begin with (T0). `greatest` is the greatest tension
-// along the fibres [N/m].
-PrestressReport ChoosePrestress(const RestingLoad& resting, double greatest, std::vector<MuscleTriangle>& triangles);
+// along the fibres [N/m]. Leaves early when `stop` has stopped.
+PrestressReport ChoosePrestress(const RestingLoad& resting, double greatest, const StopCheck& stop,
+                                std::vector<MuscleTriangle>& triangles);
 
 }  // namespace phrenic
 

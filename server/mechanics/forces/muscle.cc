@@ -253,7 +253,7 @@ absl::Status Muscle::BalanceAtRest(const ConstPoints& load, const ConstPoints& n
                       .area = VertexAreas(body.mesh.vertices, body.mesh.triangles),
                       .free = {}};
   for (Eigen::Index i = vertices_.first; i < vertices_.end; ++i) resting.free.push_back(model.inverse_mass[i] > 0);
-  const PrestressReport report = ChoosePrestress(resting, greatest_resting_tension_, triangles_);
+  const PrestressReport report = ChoosePrestress(resting, greatest_resting_tension_, builder.stop, triangles_);
   LayOut();
   rest_load_ = LoadThatIsLeft(model, resting, report);
   builder.ReportElement(
