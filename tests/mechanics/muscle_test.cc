@@ -384,7 +384,7 @@ TEST(MusclePrestress, LeavesToContactsWhatPointsIntoThem) {
     normals.row(2).setOnes();
     const PrestressReport report = ChoosePrestress(
         {.first = 0, .load = load, .normals = normals, .area = area, .free = std::vector<bool>(n, true)}, 120,
-        triangles);
+        StopCheck(), triangles);
     EXPECT_NEAR(report.contact.minCoeff(), std::max(0.0, pressure), 1);
     EXPECT_NEAR(report.contact.maxCoeff(), std::max(0.0, pressure), 1);
   }
