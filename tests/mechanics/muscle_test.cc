@@ -452,6 +452,13 @@ TEST(MuscleMesh, RefinementConverges) {
   EXPECT_LT(std::abs(tip[2] - tip[1]), 1e-3);
 }
 
+TEST(MuscleScene, AnswersToActivation) {
+  const auto model = CompileText(MuscleStrip(""));
+  for (const std::string& idle : model->report.idle_parameters()) {
+    EXPECT_FALSE(idle.ends_with("activation") || idle == "apply_muscles") << idle;
+  }
+}
+
 TEST(MuscleScene, NamesWhatIsWrong) {
   const auto message = [](const std::string& text) { return std::string(TryCompileText(text).status().message()); };
   EXPECT_NE(message(MuscleStrip("passive_regions: 'cap'")).find("passive_regions[0]"), std::string::npos);
