@@ -1,5 +1,6 @@
 #include "client/campaign/plan.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <set>
 
@@ -15,12 +16,25 @@ namespace phrenic::client {
 namespace {
 
 constexpr size_t kNameDigits = 16;
-constexpr size_t kMostCells = 1'000'000;
+constexpr double kMostCells = 1e6;
+constexpr int kMostAxes = 64;
 
 using Settings = std::vector<std::string>;  // "time_step=0.001"
 
+// Checks the number of runs before they are made.
+absl::Status CheckSize(const v1::Campaign& campaign) {
+  if (campaign.axes_size() > kMostAxes) {
+    return absl::InvalidArgumentError(absl::StrCat("axes: more than ", kMostAxes, " parameters: split the campaign"));
+  }
+  double runs = campaign.scenes_size() * std::max(1.0, static_cast<double>(campaign.resolutions_mm_size())) *
+                std::max(1.0, static_cast<double>(campaign.presets_size()));
+  for (const v1::CampaignAxis& axis : campaign.axes()) runs *= axis.values_size();
+  if (runs <= kMostCells) return absl::OkStatus();
+  return absl::InvalidArgumentError("more than a million runs: split the campaign");
+}
+
 // Returns all combinations of one value per axis.
-absl::StatusOr<std::vector<Settings>> SettingsOf(const v1::Campaign& campaign) {
+std::vector<Settings> SettingsOf(const v1::Campaign& campaign) {
   std::vector<Settings> all(1);
   for (const v1::CampaignAxis& axis : campaign.axes()) {
     std::vector<Settings> longer;
@@ -30,7 +44,6 @@ absl::StatusOr<std::vector<Settings>> SettingsOf(const v1::Campaign& campaign) {
         longer.back().push_back(absl::StrCat(axis.parameter(), "=", value));
       }
     }
-    if (longer.size() > kMostCells) return absl::InvalidArgumentError("more than a million runs: split the campaign");
     all = std::move(longer);
   }
   return all;
@@ -78,15 +91,19 @@ absl::StatusOr<CampaignCell> MakeCell(const v1::Campaign& campaign, const v1::Sc
 absl::StatusOr<v1::Campaign> ReadCampaign(const std::string& file) {
   const absl::StatusOr<std::string> text = ReadWhole(file, "the campaign");
   if (!text.ok()) return text.status();
+  return ParseCampaign(file, *text);
+}
+
+absl::StatusOr<v1::Campaign> ParseCampaign(const std::string& file, const std::string& text) {
   v1::Campaign campaign;
-  if (absl::Status status = schema::ParseText(file, *text, &campaign); !status.ok()) return status;
+  if (absl::Status status = schema::ParseText(file, text, &campaign); !status.ok()) return status;
   schema::FillDefaults(&campaign);
   return campaign;
 }
 
 absl::StatusOr<std::vector<CampaignCell>> CellsOf(const v1::Campaign& campaign, const std::string& file) {
-  const auto settings = SettingsOf(campaign);
-  if (!settings.ok()) return settings.status();
+  if (absl::Status status = CheckSize(campaign); !status.ok()) return status;
+  const std::vector<Settings> settings = SettingsOf(campaign);
   std::vector<CampaignCell> cells;
   std::set<std::string> names;
   for (const std::string& scene : campaign.scenes()) {
@@ -94,13 +111,11 @@ absl::StatusOr<std::vector<CampaignCell>> CellsOf(const v1::Campaign& campaign, 
       const auto source = ReadScene({ScenePath(scene, file), resolution});
       if (!source.ok()) return source.status();
       for (const std::string& preset : OrOne(campaign.presets(), std::string())) {
-        for (const Settings& chosen : *settings) {
+        for (const Settings& chosen : settings) {
           auto cell = MakeCell(campaign, *source, scene, preset, chosen);
           if (!cell.ok()) return cell.status();
           if (names.insert(cell->row.cell()).second) cells.push_back(*std::move(cell));
         }
-        if (cells.size() > kMostCells)
-          return absl::InvalidArgumentError("more than a million runs: split the campaign");
       }
     }
   }

@@ -37,7 +37,8 @@ Texts ParametersOf(const v1::CampaignResult& result) {
 
 std::string SettingOf(const v1::CampaignRow& row, const std::string& name) {
   for (const std::string& setting : Texts(absl::StrSplit(row.settings(), ' ', absl::SkipEmpty()))) {
-    if (setting.substr(0, setting.find('=')) == name) return setting.substr(name.size() + 1);
+    const std::pair<std::string, std::string> parts = absl::StrSplit(setting, absl::MaxSplits('=', 1));
+    if (parts.first == name) return parts.second;
   }
   return "";
 }
@@ -93,8 +94,9 @@ Grid MakeGrid(const v1::CampaignResult& result) {
   return grid;
 }
 
-// Removes columns that are empty in every row.
+// Removes columns that are empty in every row, if there are rows.
 Grid Trimmed(const Grid& grid) {
+  if (grid.rows.empty()) return grid;
   Grid kept;
   kept.rows.resize(grid.rows.size());
   for (size_t c = 0; c < grid.header.size(); ++c) {

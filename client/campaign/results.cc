@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
+#include <optional>
 
 #include "absl/strings/str_cat.h"
 #include "client/files/whole_file.h"
 #include "client/print/output.h"
+#include "server/schema/file_bytes.h"
 
 namespace phrenic::client {
 
@@ -38,12 +38,10 @@ absl::StatusOr<v1::CampaignResult> CampaignFolder::Read(const std::vector<Campai
   v1::CampaignResult all;
   for (const CampaignCell& cell : cells) {
     const std::string file = FileOf(cell.row.cell());
-    std::ifstream in(file);
-    if (!in) continue;  // not finished
-    std::stringstream text;
-    text << in.rdbuf();
+    const std::optional<std::string> text = ReadBytes(file);
+    if (!text.has_value()) continue;  // not finished
     v1::CampaignResult one;
-    if (!google::protobuf::util::JsonStringToMessage(text.str(), &one).ok() || one.rows_size() != 1) {
+    if (!google::protobuf::util::JsonStringToMessage(*text, &one).ok() || one.rows_size() != 1) {
       return absl::DataLossError(absl::StrCat(file, " is not a run's result: remove it to repeat the run"));
     }
     all.MergeFrom(one);

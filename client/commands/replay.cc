@@ -44,7 +44,9 @@ absl::StatusOr<Recorded> ReadRecorded(const std::string& file) {
   Recorded recorded;
   recorded.state_hash = json["state_hash"].get<std::string>();
   const nlohmann::json report = json.value("report", nlohmann::json::object());
-  if (report.contains("scene_hash")) recorded.scene_hash = report["scene_hash"].get<std::string>();
+  if (report.contains("scene_hash") && report["scene_hash"].is_string()) {
+    recorded.scene_hash = report["scene_hash"].get<std::string>();
+  }
   google::protobuf::util::JsonParseOptions options;
   options.ignore_unknown_fields = true;
   const auto parsed = google::protobuf::util::JsonStringToMessage(json["session"].dump(), &recorded.session, options);

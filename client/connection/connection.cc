@@ -3,10 +3,9 @@
 #include <grpcpp/create_channel.h>
 #include <grpcpp/support/client_interceptor.h>
 
+#include <algorithm>
 #include <chrono>
-#include <fstream>
 #include <iostream>
-#include <iterator>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -16,6 +15,7 @@
 #include "absl/strings/strip.h"
 #include "client/terminal/environment.h"
 #include "phrenic/v1/server.grpc.pb.h"
+#include "server/schema/file_bytes.h"
 #include "server/service/net/address.h"
 #include "server/service/net/metadata.h"
 
@@ -26,8 +26,7 @@ constexpr int kLinkSeconds = 5;  // deadline of the call that only finds the vie
 
 // Returns the file's text without surrounding white space; empty if it cannot be read.
 std::string FileText(const std::string& file) {
-  std::ifstream in(file);
-  return std::string(absl::StripAsciiWhitespace(std::string(std::istreambuf_iterator<char>(in), {})));
+  return std::string(absl::StripAsciiWhitespace(ReadBytes(file).value_or("")));
 }
 
 using Metadata = std::vector<std::pair<std::string, std::string>>;
@@ -96,13 +95,16 @@ absl::Status CheckConnection(const Context& context) {
       return absl::InvalidArgumentError(absl::StrCat(flag, ": ", file, " cannot be read or is empty"));
     }
   }
-  const Metadata identity = MetadataOf(context);
-  if (absl::Status status = service::CheckMetadata({identity.begin(), identity.end()}); !status.ok()) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(status.message(), " (--token-file, PHRENIC_TOKEN and PHRENIC_JOIN say who you are)"));
-  }
   if (context.tls_cert.empty() != context.tls_key.empty()) {
     return absl::InvalidArgumentError("--tls-cert, --tls-key: a client certificate needs both");
+  }
+  for (const auto& [name, value] : MetadataOf(context)) {
+    if (service::CheckMetadata({{name, value}}).ok()) continue;
+    return absl::InvalidArgumentError(
+        absl::StrCat(name == "x-join"             ? "PHRENIC_JOIN"
+                     : context.token_file.empty() ? "PHRENIC_TOKEN"
+                                                  : "--token-file",
+                     ": the text is not a token: it has characters other than printable ASCII"));
   }
   const auto address = service::ParseAddress(HostOf(context));
   const bool secret = !MetadataOf(context).empty();

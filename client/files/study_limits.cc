@@ -85,8 +85,12 @@ std::string LimitText(const v1::StudyLimit& limit) {
 absl::StatusOr<v1::StudyLimits> ReadStudyLimits(const std::string& file) {
   const absl::StatusOr<std::string> text = ReadWhole(file, "the limits");
   if (!text.ok()) return text.status();
+  return ParseStudyLimits(file, *text);
+}
+
+absl::StatusOr<v1::StudyLimits> ParseStudyLimits(const std::string& file, const std::string& text) {
   v1::StudyLimits limits;
-  absl::Status parsed = schema::ParseText(file, *text, &limits);
+  absl::Status parsed = schema::ParseText(file, text, &limits);
   if (!parsed.ok()) return parsed;
   return limits;
 }

@@ -12,6 +12,7 @@ namespace phrenic::client {
 
 // Reads and parses the file. Errors name the file and the line.
 absl::StatusOr<v1::StudyLimits> ReadStudyLimits(const std::string& file);
+absl::StatusOr<v1::StudyLimits> ParseStudyLimits(const std::string& file, const std::string& text);
 
 // Returns the limit as text: "rows.error_mm where integrator=bdf2".
 std::string LimitText(const v1::StudyLimit& limit);

@@ -1,24 +1,20 @@
 #include "client/files/whole_file.h"
 
 #include <cstdio>
-#include <filesystem>
 #include <fstream>
-#include <sstream>
+#include <optional>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "server/schema/file_bytes.h"
 
 namespace phrenic::client {
 
 absl::StatusOr<std::string> ReadWhole(const std::string& file, const std::string& what) {
-  std::error_code error;
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream bytes;
-  const bool readable = !std::filesystem::is_directory(file, error) && in;
-  if (!readable || (!(bytes << in.rdbuf()) && in.peek() != std::ifstream::traits_type::eof())) {
-    return absl::NotFoundError(
-        absl::StrCat("cannot read ", what, " \"", file, "\": check that it exists and that you may read it"));
-  }
-  return std::move(bytes).str();
+  std::optional<std::string> bytes = ReadBytes(file);
+  if (bytes.has_value()) return *std::move(bytes);
+  return absl::NotFoundError(
+      absl::StrCat("cannot read ", what, " \"", file, "\": check that it exists and that you may read it"));
 }
 
 absl::Status WriteWhole(const std::string& file, const std::string& bytes) {

@@ -24,6 +24,7 @@ std::string Padded(const std::string& cell, int width) {
 
 std::string RowText(const std::vector<std::string>& row, const std::vector<int>& widths, int width) {
   std::string line;
+  if (row.empty()) return line;
   for (size_t c = 0; c + 1 < row.size(); ++c) line += Padded(row[c], widths[c]) + std::string(kGap, ' ');
   const int at = ColumnsOf(line);
   const bool wrap = width - at >= kNarrowest && ColumnsOf(row.back()) > width - at;

@@ -3,16 +3,16 @@
 #include <cjose/cjose.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
 #include "server/access/fetch.h"
 #include "server/access/rules.h"
+#include "server/schema/file_bytes.h"
 
 namespace phrenic::access {
 namespace {
@@ -30,9 +30,29 @@ absl::Status Refused(const std::string& why) {
   return absl::UnauthenticatedError(absl::StrCat("authorization: the token ", why, "; sign in again"));
 }
 
+// True for base64url without padding (RFC 7515 section 2) of whole bytes; cjose ends the process at some other texts.
+bool IsBase64Url(std::string_view text) {
+  const auto allowed = [](unsigned char c) { return absl::ascii_isalnum(c) || c == '-' || c == '_'; };
+  return text.size() % 4 != 1 && std::ranges::all_of(text, allowed);
+}
+
+// True if the token has three parts in base64url (RFC 7515 section 7.1).
+bool IsCompact(std::string_view token) {
+  const std::vector<std::string> parts = absl::StrSplit(std::string(token), '.');
+  return parts.size() == 3 && std::ranges::all_of(parts, IsBase64Url);
+}
+
 std::string TextOf(const json& claims, const std::string& name) {
   const auto found = claims.find(name);
   return found != claims.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
+// True if all numbers of a key are in base64url (RFC 7518 section 6).
+bool HasReadableNumbers(const json& key) {
+  constexpr const char* kNumbers[] = {"x", "y", "d", "n", "e", "p", "q", "dp", "dq", "qi", "k"};
+  return std::ranges::all_of(kNumbers, [&](const char* name) {
+    return !key.is_object() || !key.contains(name) || IsBase64Url(TextOf(key, name));
+  });
 }
 
 bool HasText(const json& claims, const std::string& name, const std::string& wanted) {
@@ -91,8 +111,7 @@ v1::AccessRole RoleIn(const json& claims, const std::string& claim) {
 
 absl::StatusOr<std::string> ReadText(const std::string& source) {
   if (IsAddress(source)) return Fetch(source);
-  std::ifstream in(source);
-  return std::string(std::istreambuf_iterator<char>(in), {});
+  return ReadBytes(source).value_or("");
 }
 
 absl::StatusOr<json> ReadKeySet(std::string source) {
@@ -131,6 +150,7 @@ absl::StatusOr<std::shared_ptr<const JwtKeys>> JwtKeys::Read(const JwtOptions& o
   if (!set.ok()) return set.status();
   std::shared_ptr<JwtKeys> keys(new JwtKeys(options));
   for (const json& key : (*set)["keys"]) {
+    if (!HasReadableNumbers(key)) continue;
     const std::string text = key.dump();
     cjose_err error;
     cjose_jwk_t* jwk = cjose_jwk_import(text.data(), text.size(), &error);
@@ -146,6 +166,7 @@ absl::StatusOr<std::shared_ptr<const JwtKeys>> JwtKeys::Read(const JwtOptions& o
 
 absl::StatusOr<std::string> JwtKeys::VerifiedClaims(std::string_view token) const {
   if (token.size() > kMaxTokenBytes) return Refused("is too long");
+  if (!IsCompact(token)) return Refused("is not a token of this server and not a JWT");
   cjose_err error;
   const std::unique_ptr<cjose_jws_t, decltype(&cjose_jws_release)> jws(
       cjose_jws_import(token.data(), token.size(), &error), &cjose_jws_release);

@@ -6,12 +6,14 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <vector>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "server/access/rules.h"
+#include "server/schema/file_bytes.h"
 #include "server/schema/secret.h"
 #include "server/schema/sha256.h"
 
@@ -81,9 +83,9 @@ absl::StatusOr<TokenTable> ParseTokens(std::string_view file, std::string_view t
 }
 
 absl::StatusOr<TokenTable> ReadTokens(const std::string& file) {
-  std::ifstream in(file);
-  if (!in) return absl::NotFoundError(absl::StrCat("--tokens: ", file, " cannot be read"));
-  return ParseTokens(file, std::string(std::istreambuf_iterator<char>(in), {}));
+  const std::optional<std::string> text = ReadBytes(file);
+  if (!text.has_value()) return absl::NotFoundError(absl::StrCat("--tokens: ", file, " cannot be read"));
+  return ParseTokens(file, *text);
 }
 
 absl::StatusOr<std::string> AddToken(const std::string& file, const Account& account) {

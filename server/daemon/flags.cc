@@ -95,7 +95,19 @@ void AddLimits(CLI::App& app, Flags& flags) {
             1, 1048576);
   group.Add("session-cpu", limits.session_cpu, "Fraction of a processor core that stepping one session may use", 0.01,
             1);
-  group.Add("max-exports", limits.exports, "Maximum number of exports at a time, and of comparisons", 1, 64);
+  group.Add("max-exports", limits.exports,
+            "Maximum number of exports at a time, of comparisons, and of physiology checks", 1, 64);
+  group.Add(
+      "max-share", limits.share,
+      "Fraction of viewers, exports, comparisons, physiology checks and studies that one account, link or address "
+      "may have",
+      0.01, 1);
+  group.Add("max-calls", options.max_calls,
+            "Maximum number of calls and streams in flight of an account, link or address; a sixteenth for an address "
+            "without an account",
+            16, kMaxCount);
+  group.Add("max-network-mb", options.network_mb,
+            "Maximum memory of gRPC's connections [MiB]; above it calls are cancelled", 16, 65536);
   group.Add("max-requests", options.max_requests,
             "Maximum requests per second of an account or another machine, with bursts of twice as many; 0: no limit",
             0, kMaxCount);

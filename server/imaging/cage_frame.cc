@@ -79,6 +79,22 @@ double SpineFront(const Landmarks& marks) {
   return nearest->second.box.min().y();
 }
 
+// FAILED_PRECONDITION if the landmarks are not those of a person, lying or standing, in a volume of LPS millimetres.
+absl::Status CheckProportions(const CageFrame& frame, const Eigen::AlignedBox3d& cage) {
+  constexpr double kNarrowest = 60, kWidest = 800;  // cage [mm]
+  constexpr double kLowest = 5, kHighest = 100;     // vertebra [mm]
+  const double depth = frame.spine_front - cage.min().y();
+  const bool human = frame.width >= kNarrowest && frame.width <= kWidest && frame.vertebra_height >= kLowest &&
+                     frame.vertebra_height <= kHighest && depth > 0 && depth < kWidest && frame.centre.allFinite() &&
+                     frame.lumbar[0] > frame.lumbar[1] && frame.lumbar[1] > frame.lumbar[2] &&
+                     std::abs(frame.sternum_end - frame.lumbar[0]) < kWidest;
+  if (human) return absl::OkStatus();
+  return absl::FailedPreconditionError(absl::StrFormat(
+      "these are not the proportions of a thorax: the cage is %.0f mm wide, its front is %.0f mm before the spine, "
+      "vertebrae are %.0f mm apart from the top; check the label map, the volume's spacing and which way is up",
+      frame.width, depth, frame.vertebra_height));
+}
+
 }  // namespace
 
 Ray CageFrame::RayOf(const Eigen::Vector2d& p) const {
@@ -115,6 +131,7 @@ absl::StatusOr<CageFrame> FindCageFrame(const LabelVolume& volume, const std::ve
   // Anterior, so that rays reach the gutters beside the spine; low, so that they reach both domes.
   frame.centre = {middle, front + 0.3 * (frame.spine_front - front), frame.sternum_end - 0.3 * frame.width};
   frame.wall_length = 0.65 * frame.width;
+  if (absl::Status status = CheckProportions(frame, cage); !status.ok()) return status;
   return frame;
 }
 

@@ -8,6 +8,7 @@
 #include <queue>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "server/anatomy/double_layer.h"
 #include "server/anatomy/plane_region.h"
 #include "server/imaging/diaphragm_rim.h"
@@ -143,21 +144,64 @@ v1::DerivedDiaphragm ReportOf(const Sheet& sheet, const SmoothSheet& smooth) {
   return report;
 }
 
+// FAILED_PRECONDITION if too little of the sheet was observed to fit it.
+absl::Status CheckEvidence(const SheetEvidence& evidence) {
+  constexpr double kFewest = 0.05;  // share of the rays
+  const auto missing = std::count(evidence.source.begin(), evidence.source.end(), Source::kNone);
+  const double observed = 1 - static_cast<double>(missing) / static_cast<double>(evidence.source.size());
+  if (observed >= kFewest) return absl::OkStatus();
+  return absl::FailedPreconditionError(
+      absl::StrFormat("cannot derive a diaphragm: only %.1f %% of the rays from the middle of the lower cage meet "
+                      "lungs, heart or bones, "
+                      "and %.0f %% are needed; label lungs, ribs and the organs below them",
+                      100 * observed, 100 * kFewest));
+}
+
+// FAILED_PRECONDITION if the rim does not enclose a sheet of the size of a diaphragm, which could not be meshed.
+absl::Status CheckSize(const SmoothSheet& sheet, const anatomy::PlaneLoop& rim, double area) {
+  constexpr double kSmallest = 2'000, kLargest = 500'000;  // [mm^2]
+  constexpr double kFurthest = 1'000;                      // point of the rim [mm]
+  bool bounded = std::isfinite(area) && area >= kSmallest && area <= kLargest;
+  for (const Eigen::Vector2d& p : rim) {
+    bounded = bounded && p.allFinite() && std::abs(sheet.Depth(p)) < kFurthest;
+  }
+  if (bounded) return absl::OkStatus();
+  return absl::FailedPreconditionError(absl::StrFormat(
+      "cannot derive a diaphragm: the sheet inside the costal margin would have %.0f cm2, not %.0f to %.0f; check the "
+      "labels of ribs and vertebrae",
+      area / 100, kSmallest / 100, kLargest / 100));
+}
+
+// True if the mesh has triangles, and each vertex of its rim is a corner of one.
+bool IsWhole(const Sheet& sheet) {
+  const bool used = std::ranges::all_of(sheet.loops, [](const std::vector<int>& loop) {
+    return !loop.empty() && std::ranges::all_of(loop, [](int vertex) { return vertex >= 0; });
+  });
+  return used && !sheet.loops.empty() && sheet.triangles.cols() > 0;
+}
+
 }  // namespace
 
 absl::StatusOr<DerivedDiaphragm> DeriveDiaphragm(const LabelVolume& volume, const std::vector<Part>& parts,
                                                  const CageFrame& frame, const DiaphragmOptions& options,
                                                  Messages& fallbacks) {
-  const SmoothSheet smooth(frame, CollectEvidence(volume, parts, frame));
+  const SheetEvidence evidence = CollectEvidence(volume, parts, frame);
+  if (absl::Status status = CheckEvidence(evidence); !status.ok()) return status;
+  const SmoothSheet smooth(frame, evidence);
   anatomy::SheetDomain domain;
   domain.loops = {FindRim(volume, parts, frame, smooth, fallbacks)};
   // A hexagonal lattice has one vertex per sqrt(3)/2 squared edge lengths; MeshSheet gives 0.855 times as many.
   constexpr double kOfLattice = 0.855;
   const double area = AreaOf(smooth, anatomy::PlaneRegion(domain.loops));
+  if (absl::Status status = CheckSize(smooth, domain.loops[0], area); !status.ok()) return status;
   const double edge_length = std::sqrt(kOfLattice * area / (options.vertices / 2.0) * 2 / std::sqrt(3.0));
   domain.map = [&smooth](const Eigen::Vector2d& p) { return smooth.Point(p); };
   domain.edge_length = [edge_length](const Eigen::Vector3d&) { return edge_length; };
   const Sheet sheet = anatomy::MeshSheet(domain);
+  if (!IsWhole(sheet)) {
+    return absl::FailedPreconditionError(
+        "cannot derive a diaphragm: its rim crosses itself; check the labels of ribs and vertebrae");
+  }
   DerivedDiaphragm derived;
   derived.mesh = anatomy::DoubleLayer(sheet, [&smooth](const Eigen::Vector2d& p) { return smooth.Normal(p); });
   derived.mesh.vertices *= kMillimetre;

@@ -23,6 +23,8 @@ struct DerivedDiaphragm {
 // faces of liver, spleen and stomach; the zone of apposition along the inner faces of ribs and cartilages; the crura
 // along the lumbar vertebrae; extrapolated elsewhere. The tendon is the part furthest from the rim along the sheet,
 // with `tendon_share` of the area (automatic division, thesis 3.1). No openings. Genus 0. Adds messages to `fallbacks`.
+// FAILED_PRECONDITION, with what to label or check, if less than a twentieth of the sheet was observed, or if the rim
+// does not enclose a sheet that can be meshed.
 absl::StatusOr<DerivedDiaphragm> DeriveDiaphragm(const LabelVolume& volume, const std::vector<Part>& parts,
                                                  const CageFrame& frame, const DiaphragmOptions& options,
                                                  Messages& fallbacks);

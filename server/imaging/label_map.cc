@@ -1,11 +1,11 @@
 #include "server/imaging/label_map.h"
 
-#include <fstream>
 #include <map>
-#include <sstream>
+#include <optional>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "server/schema/file_bytes.h"
 #include "server/schema/places.h"
 #include "server/schema/schema.h"
 
@@ -16,15 +16,13 @@ absl::StatusOr<v1::LabelMap> ReadLabelMap(const std::string& name_or_file) {
   const std::string path =
       is_file ? name_or_file
               : absl::StrCat(Installed("labels", PHRENIC_LABEL_MAPS_DIR), "/", name_or_file, ".textproto");
-  std::ifstream file(path);
-  if (!file) {
+  const std::optional<std::string> text = ReadBytes(path);
+  if (!text.has_value()) {
     return absl::NotFoundError(absl::StrCat("cannot read the label map ", path,
                                             "; --labels takes totalsegmentator, or a file NAME.textproto"));
   }
-  std::stringstream text;
-  text << file.rdbuf();
   v1::LabelMap map;
-  if (absl::Status status = schema::ParseText(path, text.str(), &map); !status.ok()) return status;
+  if (absl::Status status = schema::ParseText(path, *text, &map); !status.ok()) return status;
   return map;
 }
 

@@ -92,6 +92,9 @@ class SoftMask {
   std::vector<float> values_;
 };
 
+constexpr double kLargestPart = 1500;  // [mm]
+constexpr double kMostCells = 3e7;     // of the grid on which a surface is found
+
 anatomy::Box BoxOf(const LabelVolume& volume, const Mask& mask) {
   Eigen::AlignedBox3d box;
   for (int corner = 0; corner < 8; ++corner) {
@@ -115,10 +118,20 @@ absl::StatusOr<Mesh> SurfaceOf(const LabelVolume& volume, const Mask& mask, doub
     return absl::FailedPreconditionError(
         absl::StrCat("a label of ", count, " voxels is too small for a surface; at least ", kFewest, " are needed"));
   }
+  const anatomy::Box box = BoxOf(volume, mask);
+  const Eigen::Vector3d size = box.high - box.low;
+  if (size.maxCoeff() > kLargestPart || (size / edge_length).prod() > kMostCells) {
+    return absl::FailedPreconditionError(
+        absl::StrCat("a label of ", std::lround(size.x()), " x ", std::lround(size.y()), " x ", std::lround(size.z()),
+                     " mm is too large for a part of a thorax; check the volume's spacing"));
+  }
   const SoftMask soft(volume, mask);
   const double level = soft.LevelOf(count), scale = 2 * kBlur * volume.Spacing().maxCoeff();
   const anatomy::Field field = [&](const Eigen::Vector3d& x) { return scale * (level - soft.At(x)); };
-  Mesh mesh = anatomy::ImplicitSurface(field, BoxOf(volume, mask), edge_length, edge_length);
+  Mesh mesh = anatomy::ImplicitSurface(field, box, edge_length, edge_length);
+  if (mesh.triangles.cols() == 0) {
+    return absl::FailedPreconditionError("its voxels enclose no volume at this edge length; lower --edge-length");
+  }
   mesh.vertices *= kMillimetre;
   return mesh;
 }

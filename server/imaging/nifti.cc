@@ -1,15 +1,15 @@
 #include "server/imaging/nifti.h"
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <limits>
+#include <optional>
 
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "server/imaging/gzip.h"
 #include "server/imaging/nifti_header.h"
 #include "server/meshio/bytes.h"
+#include "server/schema/file_bytes.h"
 
 namespace phrenic::imaging {
 namespace {
@@ -122,10 +122,9 @@ absl::StatusOr<LabelVolume> ParseNifti(std::string_view name, std::string_view b
 }
 
 absl::StatusOr<LabelVolume> ReadNifti(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return absl::NotFoundError(absl::StrCat("cannot read the label volume ", path, "; check the path"));
-  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
-  return ParseNifti(path, bytes);
+  const std::optional<std::string> bytes = ReadBytes(path);
+  if (bytes.has_value()) return ParseNifti(path, *bytes);
+  return absl::NotFoundError(absl::StrCat("cannot read the label volume ", path, "; check the path"));
 }
 
 std::string WriteNifti(const LabelVolume& volume) {

@@ -160,12 +160,15 @@ absl::Status ReadOrientation(const Fields& fields, NiftiHeader& header) {
   header.to_ras.matrix().topRows<3>() *= UnitOf(fields);
   const Eigen::Matrix3d axes = header.to_ras.linear();
   const double low = axes.colwise().norm().minCoeff(), high = axes.colwise().norm().maxCoeff();
+  constexpr double kMostElongated = 20;  // of a voxel; masks are padded by some of its longest edges
   const bool valid = axes.allFinite() && header.to_ras.translation().allFinite() && low >= 0.05 && high <= 50 &&
-                     header.to_ras.translation().norm() < 1e5 && std::abs(axes.determinant()) > 0.1 * low * low * low;
+                     high <= kMostElongated * low && header.to_ras.translation().norm() < 1e5 &&
+                     std::abs(axes.determinant()) > 0.1 * low * low * low;
   if (!valid) {
-    return fields.Error(
-        sform ? fields.at->srow : fields.at->quaternion,
-        "the orientation is not an affine frame with voxels of 0.05 to 50 mm; save it from a viewer that displays it");
+    return fields.Error(sform ? fields.at->srow : fields.at->quaternion,
+                        "the orientation is not an affine frame with voxels of 0.05 to 50 mm, at most 20 times as long "
+                        "as wide; save it "
+                        "from a viewer that displays it");
   }
   return absl::OkStatus();
 }

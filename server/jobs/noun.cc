@@ -29,4 +29,10 @@ absl::Status Noun::NoRoom(int kept) const {
       absl::StrCat(kept, " ", plural, " wait or run, and no more are allowed: delete one, or wait for one to end"));
 }
 
+absl::Status Noun::NoRoomForOwner(int kept) const {
+  return absl::ResourceExhaustedError(absl::StrCat(
+      "you have ", kept, " ", plural,
+      " that wait or run, the most that one caller may have (--max-share): ", "delete one, or wait for one to end"));
+}
+
 }  // namespace phrenic::jobs

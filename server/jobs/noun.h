@@ -26,6 +26,7 @@ struct Noun {
   absl::Status Deleted(const std::string& id) const;
   // RESOURCE_EXHAUSTED.
   absl::Status NoRoom(int kept) const;
+  absl::Status NoRoomForOwner(int kept) const;
 };
 
 }  // namespace phrenic::jobs

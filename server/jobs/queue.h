@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <list>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -22,6 +23,7 @@
 #include "server/jobs/noun.h"
 #include "server/jobs/records.h"
 #include "server/schema/clock.h"
+#include "server/schema/part_of.h"
 
 namespace phrenic::jobs {
 
@@ -38,11 +40,13 @@ struct QueueOptions {
   Noun noun;
   int threads = 1;                                     // jobs that run at the same time
   int kept = 16;                                       // jobs that wait, run or have ended
+  double share = 1;                                    // fraction of both that one owner may have
   absl::Duration lifetime = absl::InfiniteDuration();  // of a job that has ended
 };
 
-// Runs jobs in the order in which they were added, and keeps each until it is deleted, its lifetime is over, or its
-// place is needed. Thread-safe; its own threads run the jobs.
+// Runs the jobs of each owner in the order in which they were added, and of several owners in turn. Keeps each job
+// until it is deleted, its lifetime is over, or its place is needed. Jobs without an owner have no limit of their own.
+// Thread-safe; its own threads run the jobs.
 //
 // A Job has a type `Message`, a proto message with the fields id, state, progress and problem, and three methods:
 //   absl::Status Run(Progress<Message> progress)
@@ -71,8 +75,9 @@ class Queue {
   Queue& operator=(const Queue&) = delete;
 
   // Queues a job and returns once its record is on the disk. `message` holds the fields that watchers see first; the
-  // queue sets its id and state. An empty `id` is chosen from `base`. The oldest ended job makes room;
-  // RESOURCE_EXHAUSTED if none has ended. Also the errors of Noun::ChooseId and Records::Flush.
+  // queue sets its id and state. An empty `id` is chosen from `base`. The owner's oldest ended job makes room, or else
+  // one of an owner who has more jobs; RESOURCE_EXHAUSTED if there is none. Also the errors of Noun::ChooseId and
+  // Records::Flush.
   absl::StatusOr<Message> Add(const std::string& owner, const std::string& id, const std::string& base, Message message,
                               std::shared_ptr<Job> job) ABSL_LOCKS_EXCLUDED(mutex_);
   // Queues a job that the store has; the same without waiting for the disk.
@@ -126,18 +131,29 @@ class Queue {
   void End(Entry& entry, const absl::Status& status) ABSL_LOCKS_EXCLUDED(mutex_);
 
   void SetState(Entry& entry, State state) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  absl::Status MakeRoom() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  absl::Status MakeRoom(const std::string& owner) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // Returns the oldest ended job of `owner`, or of the owner who has most jobs, more than `owner`; the end if none.
+  typename Entries::iterator FindEnded(const std::string& owner, bool of_others) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // Returns the number of the owner's jobs, and of those that run.
+  int Kept(const std::string& owner) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  int Running(const std::string& owner) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  int OfOwner(const std::string& owner, int in_all) const {
+    return owner.empty() ? in_all : PartOf(in_all, options_.share);
+  }
   void RemoveExpired() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   absl::Time NextExpiry() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   std::shared_ptr<Entry> Find(const std::string& id) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  std::shared_ptr<Entry> FirstQueued() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // Returns the oldest queued job of the owner whose turn it is; null if none may run.
+  std::shared_ptr<Entry> NextQueued() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   absl::Status NotFound(const std::string& id) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
   const QueueOptions options_;
   const Clock& clock_;
   const Records records_;
   mutable absl::Mutex mutex_;
-  Entries entries_ ABSL_GUARDED_BY(mutex_);  // oldest first
+  Entries entries_ ABSL_GUARDED_BY(mutex_);                            // oldest first
+  std::int64_t started_ ABSL_GUARDED_BY(mutex_) = 0;                   // jobs so far
+  std::map<std::string, std::int64_t> turns_ ABSL_GUARDED_BY(mutex_);  // the number of each owner's last started job
   bool closed_ ABSL_GUARDED_BY(mutex_) = false;
   std::vector<std::thread> threads_;
 };
@@ -181,7 +197,7 @@ auto Queue<Job>::Resume(const std::string& owner, const std::string& id, const s
   };
   absl::StatusOr<std::string> chosen = options_.noun.ChooseId(id, base, taken);
   if (!chosen.ok()) return chosen.status();
-  if (absl::Status status = MakeRoom(); !status.ok()) return status;
+  if (absl::Status status = MakeRoom(owner); !status.ok()) return status;
   auto entry = std::make_shared<Entry>();
   entry->owner = owner;
   entry->job = std::move(job);
@@ -277,14 +293,19 @@ template <typename Job>
 auto Queue<Job>::Next() -> std::shared_ptr<Entry> {
   const auto wake = [this] {
     mutex_.AssertHeld();
-    return closed_ || FirstQueued() != nullptr || NextExpiry() <= clock_.Now();
+    return closed_ || NextQueued() != nullptr || NextExpiry() <= clock_.Now();
   };
   absl::MutexLock lock(&mutex_);
   while (true) {
     clock_.Await(mutex_, absl::Condition(&wake), NextExpiry());
     if (closed_) return nullptr;
     RemoveExpired();
-    if (std::shared_ptr<Entry> entry = FirstQueued(); entry != nullptr) {
+    if (std::shared_ptr<Entry> entry = NextQueued(); entry != nullptr) {
+      std::erase_if(turns_, [this](const auto& each) {
+        mutex_.AssertHeld();
+        return Kept(each.first) == 0;
+      });
+      turns_[entry->owner] = ++started_;
       SetState(*entry, State::kRunning);
       return entry;
     }
@@ -332,11 +353,39 @@ void Queue<Job>::SetState(Entry& entry, State state) {
 }
 
 template <typename Job>
-absl::Status Queue<Job>::MakeRoom() {
-  if (entries_.size() < static_cast<std::size_t>(options_.kept)) return absl::OkStatus();
-  const auto ended =
-      std::find_if(entries_.begin(), entries_.end(), [](const auto& entry) { return entry->seen.ended; });
-  if (ended == entries_.end()) return options_.noun.NoRoom(options_.kept);
+int Queue<Job>::Kept(const std::string& owner) const {
+  return static_cast<int>(
+      std::count_if(entries_.begin(), entries_.end(), [&owner](const auto& entry) { return entry->owner == owner; }));
+}
+
+template <typename Job>
+int Queue<Job>::Running(const std::string& owner) const {
+  return static_cast<int>(std::count_if(entries_.begin(), entries_.end(), [&owner](const auto& entry) {
+    return entry->owner == owner && entry->state == State::kRunning;
+  }));
+}
+
+template <typename Job>
+auto Queue<Job>::FindEnded(const std::string& owner, bool of_others) -> typename Entries::iterator {
+  auto best = entries_.end();
+  int most = of_others ? Kept(owner) : 0;
+  for (auto entry = entries_.begin(); entry != entries_.end(); ++entry) {
+    if (!(*entry)->seen.ended || ((*entry)->owner == owner) == of_others) continue;
+    const int kept = Kept((*entry)->owner);
+    if (kept > most) best = entry, most = kept;
+  }
+  return best;
+}
+
+template <typename Job>
+absl::Status Queue<Job>::MakeRoom(const std::string& owner) {
+  const int own = OfOwner(owner, options_.kept);
+  const bool own_full = Kept(owner) >= own;
+  if (!own_full && entries_.size() < static_cast<std::size_t>(options_.kept)) return absl::OkStatus();
+  auto ended = FindEnded(owner, false);
+  if (ended == entries_.end() && !own_full) ended = FindEnded(owner, true);
+  if (ended == entries_.end())
+    return own_full ? options_.noun.NoRoomForOwner(own) : options_.noun.NoRoom(options_.kept);
   records_.Remove((*ended)->seen.message.id());
   entries_.erase(ended);
   return absl::OkStatus();
@@ -366,10 +415,17 @@ auto Queue<Job>::Find(const std::string& id) const -> std::shared_ptr<Entry> {
 }
 
 template <typename Job>
-auto Queue<Job>::FirstQueued() const -> std::shared_ptr<Entry> {
-  const auto found =
-      std::find_if(entries_.begin(), entries_.end(), [](const auto& entry) { return entry->state == State::kQueued; });
-  return found == entries_.end() ? nullptr : *found;
+auto Queue<Job>::NextQueued() const -> std::shared_ptr<Entry> {
+  std::shared_ptr<Entry> next;
+  std::int64_t turn = 0;
+  for (const auto& entry : entries_) {
+    if (entry->state != State::kQueued) continue;
+    if (Running(entry->owner) >= OfOwner(entry->owner, options_.threads)) continue;
+    const auto last = turns_.find(entry->owner);
+    const std::int64_t own = last == turns_.end() ? 0 : last->second;
+    if (next == nullptr || own < turn) next = entry, turn = own;
+  }
+  return next;
 }
 
 template <typename Job>

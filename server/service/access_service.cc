@@ -35,6 +35,13 @@ std::pair<ControlState::Link, std::string> NewLink(const v1::CreateLinkRequest& 
 
 }  // namespace
 
+void AccessService::AddTo(CallTable& calls) {
+  calls.Add(Lane::kQuick, *this, &AccessService::GetAccess);
+  calls.Add(Lane::kSession, *this, &AccessService::CreateLink);
+  calls.Add(Lane::kQuick, *this, &AccessService::ListLinks);
+  calls.Add(Lane::kSession, *this, &AccessService::RevokeLink);
+}
+
 absl::Status AccessService::CheckGuarded() const {
   if (guard_.guarded()) return absl::OkStatus();
   return absl::FailedPreconditionError(
@@ -42,7 +49,7 @@ absl::Status AccessService::CheckGuarded() const {
       "the server with --tokens FILE to have links that expire");
 }
 
-grpc::Status AccessService::GetAccess(grpc::ServerContext* context, const v1::GetAccessRequest* request,
+grpc::Status AccessService::GetAccess(grpc::CallbackServerContext* context, const v1::GetAccessRequest* request,
                                       v1::GetAccessResponse* response) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
@@ -52,7 +59,7 @@ grpc::Status AccessService::GetAccess(grpc::ServerContext* context, const v1::Ge
   return grpc::Status::OK;
 }
 
-grpc::Status AccessService::CreateLink(grpc::ServerContext* context, const v1::CreateLinkRequest* request,
+grpc::Status AccessService::CreateLink(grpc::CallbackServerContext* context, const v1::CreateLinkRequest* request,
                                        v1::CreateLinkResponse* response) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
@@ -70,7 +77,7 @@ grpc::Status AccessService::CreateLink(grpc::ServerContext* context, const v1::C
   return ToGrpc(changed.status());
 }
 
-grpc::Status AccessService::ListLinks(grpc::ServerContext* context, const v1::ListLinksRequest* request,
+grpc::Status AccessService::ListLinks(grpc::CallbackServerContext* context, const v1::ListLinksRequest* request,
                                       v1::ListLinksResponse* response) {
   const auto call = AdmitToSession(guard_, table_, *context, *request);
   if (!call.ok()) return ToGrpc(call.status());
@@ -81,7 +88,7 @@ grpc::Status AccessService::ListLinks(grpc::ServerContext* context, const v1::Li
   return grpc::Status::OK;
 }
 
-grpc::Status AccessService::RevokeLink(grpc::ServerContext* context, const v1::RevokeLinkRequest* request,
+grpc::Status AccessService::RevokeLink(grpc::CallbackServerContext* context, const v1::RevokeLinkRequest* request,
                                        v1::RevokeLinkResponse* /*response*/) {
   const auto call = AdmitToSession(guard_, table_, *context, *request);
   if (!call.ok()) return ToGrpc(call.status());

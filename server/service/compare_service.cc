@@ -3,8 +3,6 @@
 #include <string>
 #include <string_view>
 
-#include "absl/cleanup/cleanup.h"
-#include "absl/strings/str_cat.h"
 #include "server/compare/comparison.h"
 #include "server/service/calls/status.h"
 #include "server/session/present_body.h"
@@ -13,14 +11,14 @@
 namespace phrenic::service {
 namespace {
 
-using CompareWriter = grpc::ServerWriter<v1::CompareResponse>;
+using CompareWriter = ReplyStream<v1::CompareResponse>;
 
 absl::Status Send(CompareWriter& writer, const v1::CompareResponse& response) {
   return writer.Write(response) ? absl::OkStatus()
                                 : absl::CancelledError("the client disconnected during the comparison");
 }
 
-compare::ComparisonSink MakeSink(grpc::ServerContext& context, CompareWriter& writer) {
+compare::ComparisonSink MakeSink(grpc::CallbackServerContext& context, CompareWriter& writer) {
   return {.progress =
               [&](double done) {
                 v1::CompareResponse response;
@@ -50,15 +48,14 @@ compare::ComparisonSink MakeSink(grpc::ServerContext& context, CompareWriter& wr
 
 }  // namespace
 
-grpc::Status CompareService::Compare(grpc::ServerContext* context, const v1::CompareRequest* request,
-                                     grpc::ServerWriter<v1::CompareResponse>* writer) {
+void CompareService::AddTo(CallTable& calls) { calls.Add(Lane::kWork, *this, &CompareService::Compare); }
+
+grpc::Status CompareService::Compare(grpc::CallbackServerContext* context, const v1::CompareRequest* request,
+                                     ReplyStream<v1::CompareResponse>* writer) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
-  const absl::Cleanup release = [this] { --comparisons_; };
-  if (++comparisons_ > max_comparisons_) {
-    return ToGrpc(absl::ResourceExhaustedError(absl::StrCat(
-        max_comparisons_, " comparisons are running, which is the limit (--max-exports); try again when one is done")));
-  }
+  const auto running = comparisons_.Take(guard_.ShareOf(*caller));
+  if (!running.ok()) return ToGrpc(running.status());
   const auto bodies = [&](const v1::SessionBody& body, v1::ComparedState& state) -> absl::StatusOr<Mesh> {
     if (const auto seen = guard_.Find(*caller, body.session_id()); !seen.ok()) return seen.status();
     return session::FindPresentBody(table_, body, state);

@@ -2,29 +2,36 @@
 #ifndef PHRENIC_SERVER_SERVICE_COMPARE_SERVICE_H_
 #define PHRENIC_SERVER_SERVICE_COMPARE_SERVICE_H_
 
-#include <atomic>
-
-#include "phrenic/v1/compare.grpc.pb.h"
+#include "phrenic/v1/compare.pb.h"
+#include "server/schema/part_of.h"
 #include "server/service/calls/access_guard.h"
+#include "server/service/calls/call_table.h"
+#include "server/service/calls/fair_share.h"
+#include "server/session/limits.h"
 #include "server/session/table.h"
 
 namespace phrenic::service {
 
-// Thread-safe: gRPC calls the methods on its own threads. A comparison occupies a thread until it is done or its caller
-// disconnects; RESOURCE_EXHAUSTED above `max_comparisons` at a time.
-class CompareService final : public v1::CompareService::Service {
+// Thread-safe: the method runs on a thread of its lane until the comparison is done or its caller disconnects.
+// RESOURCE_EXHAUSTED above limits.exports at a time, or above a caller's share of them.
+class CompareService final {
  public:
-  CompareService(const session::Table& table, int max_comparisons, AccessGuard& guard)
-      : table_(table), max_comparisons_(max_comparisons), guard_(guard) {}
+  CompareService(const session::Table& table, const session::Limits& limits, AccessGuard& guard)
+      : table_(table),
+        guard_(guard),
+        comparisons_(
+            {"comparisons", "--max-exports, --max-share", limits.exports, PartOf(limits.exports, limits.share)}) {}
 
-  grpc::Status Compare(grpc::ServerContext* context, const v1::CompareRequest* request,
-                       grpc::ServerWriter<v1::CompareResponse>* writer) override;
+  // Adds the methods to the table. The service outlives it.
+  void AddTo(CallTable& calls);
+
+  grpc::Status Compare(grpc::CallbackServerContext* context, const v1::CompareRequest* request,
+                       ReplyStream<v1::CompareResponse>* writer);
 
  private:
   const session::Table& table_;
-  const int max_comparisons_;
   AccessGuard& guard_;
-  std::atomic<int> comparisons_ = 0;
+  FairShare comparisons_;  // that run
 };
 
 }  // namespace phrenic::service

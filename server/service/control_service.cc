@@ -12,9 +12,17 @@ constexpr double kDefaultPresence = 30;  // [s]
 
 }  // namespace
 
+void ControlService::AddTo(CallTable& calls) {
+  calls.Add(Lane::kSession, *this, &ControlService::EnterSession);
+  calls.Add(Lane::kSession, *this, &ControlService::TakeControl);
+  calls.Add(Lane::kSession, *this, &ControlService::HandControl);
+  calls.Add(Lane::kSession, *this, &ControlService::ReleaseControl);
+  calls.Add(Lane::kSession, *this, &ControlService::ShowCamera);
+}
+
 template <class Request, class Response, class Act>
-grpc::Status ControlService::Change(const grpc::ServerContext& context, const Request& request, Response* response,
-                                    Act act) {
+grpc::Status ControlService::Change(const grpc::CallbackServerContext& context, const Request& request,
+                                    Response* response, Act act) {
   const auto call = AdmitToSession(guard_, table_, context, request);
   if (!call.ok()) return ToGrpc(call.status());
   auto control = call->session->ChangeControl(act);
@@ -23,7 +31,7 @@ grpc::Status ControlService::Change(const grpc::ServerContext& context, const Re
   return grpc::Status::OK;
 }
 
-grpc::Status ControlService::EnterSession(grpc::ServerContext* context, const v1::EnterSessionRequest* request,
+grpc::Status ControlService::EnterSession(grpc::CallbackServerContext* context, const v1::EnterSessionRequest* request,
                                           v1::EnterSessionResponse* response) {
   return Change(*context, *request, response, [&](session::ControlBook& book, absl::Time now) {
     const auto presence = absl::Seconds(request->has_time_to_live() ? request->time_to_live() : kDefaultPresence);
@@ -33,7 +41,7 @@ grpc::Status ControlService::EnterSession(grpc::ServerContext* context, const v1
   });
 }
 
-grpc::Status ControlService::TakeControl(grpc::ServerContext* context, const v1::TakeControlRequest* request,
+grpc::Status ControlService::TakeControl(grpc::CallbackServerContext* context, const v1::TakeControlRequest* request,
                                          v1::TakeControlResponse* response) {
   return Change(*context, *request, response, [&](session::ControlBook& book, absl::Time now) {
     const auto granted = book.Take(request->control_token(), now);
@@ -42,7 +50,7 @@ grpc::Status ControlService::TakeControl(grpc::ServerContext* context, const v1:
   });
 }
 
-grpc::Status ControlService::HandControl(grpc::ServerContext* context, const v1::HandControlRequest* request,
+grpc::Status ControlService::HandControl(grpc::CallbackServerContext* context, const v1::HandControlRequest* request,
                                          v1::HandControlResponse* response) {
   return Change(*context, *request, response, [&](session::ControlBook& book, absl::Time now) -> absl::Status {
     if (request->everybody()) return book.HandToEverybody(request->control_token(), now);
@@ -51,14 +59,15 @@ grpc::Status ControlService::HandControl(grpc::ServerContext* context, const v1:
   });
 }
 
-grpc::Status ControlService::ReleaseControl(grpc::ServerContext* context, const v1::ReleaseControlRequest* request,
+grpc::Status ControlService::ReleaseControl(grpc::CallbackServerContext* context,
+                                            const v1::ReleaseControlRequest* request,
                                             v1::ReleaseControlResponse* response) {
   return Change(*context, *request, response, [&](session::ControlBook& book, absl::Time now) {
     return book.Release(request->control_token(), now);
   });
 }
 
-grpc::Status ControlService::ShowCamera(grpc::ServerContext* context, const v1::ShowCameraRequest* request,
+grpc::Status ControlService::ShowCamera(grpc::CallbackServerContext* context, const v1::ShowCameraRequest* request,
                                         v1::ShowCameraResponse* /*response*/) {
   const auto call = AdmitToSession(guard_, table_, *context, *request);
   if (!call.ok()) return ToGrpc(call.status());

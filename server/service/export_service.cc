@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <string>
 
-#include "absl/cleanup/cleanup.h"
 #include "absl/strings/str_cat.h"
 #include "server/service/calls/status.h"
 #include "server/session/export/export_catalogue.h"
@@ -11,13 +10,7 @@
 namespace phrenic::service {
 namespace {
 
-constexpr int kMaxExportStreams = 32;       // each occupies a thread
 constexpr std::int64_t kChunk = 128 << 10;  // [bytes]
-
-absl::Status TooMany() {
-  return absl::ResourceExhaustedError(
-      absl::StrCat(kMaxExportStreams, " exports are being watched or downloaded, which is the limit; try again later"));
-}
 
 v1::ExportValues ToProto(record::Values values) {
   return values == record::Values::kPositions ? v1::EXPORT_VALUES_POSITIONS : v1::EXPORT_VALUES_DISPLACEMENTS;
@@ -25,7 +18,16 @@ v1::ExportValues ToProto(record::Values values) {
 
 }  // namespace
 
-grpc::Status ExportService::ListFormats(grpc::ServerContext* context, const v1::ListFormatsRequest* request,
+void ExportService::AddTo(CallTable& calls) {
+  calls.Add(Lane::kQuick, *this, &ExportService::ListFormats);
+  calls.Add(Lane::kSession, *this, &ExportService::CreateExport);
+  calls.Add(Lane::kWatch, *this, &ExportService::WatchExport);
+  calls.Add(Lane::kQuick, *this, &ExportService::ListExports);
+  calls.Add(Lane::kSession, *this, &ExportService::DeleteExport);
+  calls.Add(Lane::kStream, *this, &ExportService::DownloadExport);
+}
+
+grpc::Status ExportService::ListFormats(grpc::CallbackServerContext* context, const v1::ListFormatsRequest* request,
                                         v1::ListFormatsResponse* response) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
@@ -42,7 +44,7 @@ grpc::Status ExportService::ListFormats(grpc::ServerContext* context, const v1::
   return grpc::Status::OK;
 }
 
-grpc::Status ExportService::CreateExport(grpc::ServerContext* context, const v1::CreateExportRequest* request,
+grpc::Status ExportService::CreateExport(grpc::CallbackServerContext* context, const v1::CreateExportRequest* request,
                                          v1::CreateExportResponse* response) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
@@ -57,16 +59,14 @@ grpc::Status ExportService::CreateExport(grpc::ServerContext* context, const v1:
   return grpc::Status::OK;
 }
 
-grpc::Status ExportService::WatchExport(grpc::ServerContext* context, const v1::WatchExportRequest* request,
-                                        grpc::ServerWriter<v1::WatchExportResponse>* writer) {
+grpc::Status ExportService::WatchExport(grpc::CallbackServerContext* context, const v1::WatchExportRequest* request,
+                                        ReplyStream<v1::WatchExportResponse>* writer) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
   if (absl::Status own = guard_.CheckOwns(AccessGuard::Kind::kExport, request->export_id(),
                                           exports_.OwnerOf(request->export_id()), *caller);
       !own.ok())
     return ToGrpc(own);
-  const absl::Cleanup release = [this] { --streams_; };
-  if (++streams_ > kMaxExportStreams) return ToGrpc(TooMany());
   v1::WatchExportResponse response;
   return ToGrpc(exports_.Watch(
       request->export_id(), [&] { return context->IsCancelled(); },
@@ -76,7 +76,7 @@ grpc::Status ExportService::WatchExport(grpc::ServerContext* context, const v1::
       }));
 }
 
-grpc::Status ExportService::ListExports(grpc::ServerContext* context, const v1::ListExportsRequest* request,
+grpc::Status ExportService::ListExports(grpc::CallbackServerContext* context, const v1::ListExportsRequest* request,
                                         v1::ListExportsResponse* response) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
@@ -85,7 +85,7 @@ grpc::Status ExportService::ListExports(grpc::ServerContext* context, const v1::
   return grpc::Status::OK;
 }
 
-grpc::Status ExportService::DeleteExport(grpc::ServerContext* context, const v1::DeleteExportRequest* request,
+grpc::Status ExportService::DeleteExport(grpc::CallbackServerContext* context, const v1::DeleteExportRequest* request,
                                          v1::DeleteExportResponse*) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
@@ -97,7 +97,7 @@ grpc::Status ExportService::DeleteExport(grpc::ServerContext* context, const v1:
 }
 
 absl::Status ExportService::Download(const v1::DownloadExportRequest& request,
-                                     grpc::ServerWriter<v1::DownloadExportResponse>& writer) const {
+                                     ReplyStream<v1::DownloadExportResponse>& writer) const {
   const auto file = exports_.File(request.export_id());
   if (!file.ok()) return file.status();
   const std::int64_t size = (*file)->size();
@@ -117,16 +117,15 @@ absl::Status ExportService::Download(const v1::DownloadExportRequest& request,
   return absl::OkStatus();
 }
 
-grpc::Status ExportService::DownloadExport(grpc::ServerContext* context, const v1::DownloadExportRequest* request,
-                                           grpc::ServerWriter<v1::DownloadExportResponse>* writer) {
+grpc::Status ExportService::DownloadExport(grpc::CallbackServerContext* context,
+                                           const v1::DownloadExportRequest* request,
+                                           ReplyStream<v1::DownloadExportResponse>* writer) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
   if (absl::Status own = guard_.CheckOwns(AccessGuard::Kind::kExport, request->export_id(),
                                           exports_.OwnerOf(request->export_id()), *caller);
       !own.ok())
     return ToGrpc(own);
-  const absl::Cleanup release = [this] { --streams_; };
-  if (++streams_ > kMaxExportStreams) return ToGrpc(TooMany());
   return ToGrpc(Download(*request, *writer));
 }
 

@@ -2,43 +2,43 @@
 #ifndef PHRENIC_SERVER_SERVICE_EXPORT_SERVICE_H_
 #define PHRENIC_SERVER_SERVICE_EXPORT_SERVICE_H_
 
-#include <atomic>
-
-#include "phrenic/v1/export.grpc.pb.h"
+#include "phrenic/v1/export.pb.h"
 #include "server/service/calls/access_guard.h"
+#include "server/service/calls/call_table.h"
 #include "server/session/export/exports.h"
 #include "server/session/table.h"
 
 namespace phrenic::service {
 
-// Thread-safe: gRPC calls the methods on its own threads. A watcher or a download occupies a thread until it ends;
-// RESOURCE_EXHAUSTED above 32 of them.
-class ExportService final : public v1::ExportService::Service {
+// Thread-safe: the methods run on threads of their lanes, a watcher or a download until it ends.
+class ExportService final {
  public:
   ExportService(session::Table& table, session::Exports& exports, AccessGuard& guard)
       : table_(table), exports_(exports), guard_(guard) {}
 
-  grpc::Status ListFormats(grpc::ServerContext* context, const v1::ListFormatsRequest* request,
-                           v1::ListFormatsResponse* response) override;
-  grpc::Status CreateExport(grpc::ServerContext* context, const v1::CreateExportRequest* request,
-                            v1::CreateExportResponse* response) override;
-  grpc::Status WatchExport(grpc::ServerContext* context, const v1::WatchExportRequest* request,
-                           grpc::ServerWriter<v1::WatchExportResponse>* writer) override;
-  grpc::Status ListExports(grpc::ServerContext* context, const v1::ListExportsRequest* request,
-                           v1::ListExportsResponse* response) override;
-  grpc::Status DeleteExport(grpc::ServerContext* context, const v1::DeleteExportRequest* request,
-                            v1::DeleteExportResponse* response) override;
-  grpc::Status DownloadExport(grpc::ServerContext* context, const v1::DownloadExportRequest* request,
-                              grpc::ServerWriter<v1::DownloadExportResponse>* writer) override;
+  // Adds the methods to the table. The service outlives it.
+  void AddTo(CallTable& calls);
+
+  grpc::Status ListFormats(grpc::CallbackServerContext* context, const v1::ListFormatsRequest* request,
+                           v1::ListFormatsResponse* response);
+  grpc::Status CreateExport(grpc::CallbackServerContext* context, const v1::CreateExportRequest* request,
+                            v1::CreateExportResponse* response);
+  grpc::Status WatchExport(grpc::CallbackServerContext* context, const v1::WatchExportRequest* request,
+                           ReplyStream<v1::WatchExportResponse>* writer);
+  grpc::Status ListExports(grpc::CallbackServerContext* context, const v1::ListExportsRequest* request,
+                           v1::ListExportsResponse* response);
+  grpc::Status DeleteExport(grpc::CallbackServerContext* context, const v1::DeleteExportRequest* request,
+                            v1::DeleteExportResponse* response);
+  grpc::Status DownloadExport(grpc::CallbackServerContext* context, const v1::DownloadExportRequest* request,
+                              ReplyStream<v1::DownloadExportResponse>* writer);
 
  private:
   absl::Status Download(const v1::DownloadExportRequest& request,
-                        grpc::ServerWriter<v1::DownloadExportResponse>& writer) const;
+                        ReplyStream<v1::DownloadExportResponse>& writer) const;
 
   session::Table& table_;
   session::Exports& exports_;
   AccessGuard& guard_;
-  std::atomic<int> streams_ = 0;
 };
 
 }  // namespace phrenic::service

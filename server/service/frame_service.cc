@@ -1,10 +1,15 @@
 #include "server/service/frame_service.h"
 
 #include <algorithm>
+#include <limits>
+#include <memory>
+#include <optional>
 #include <set>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "server/schema/id.h"
+#include "server/schema/part_of.h"
 #include "server/service/calls/messages.h"
 #include "server/service/calls/session_call.h"
 #include "server/service/calls/status.h"
@@ -70,8 +75,28 @@ absl::Status Acknowledge(const session::Table& table, const v1::AckFramesRequest
 
 }  // namespace
 
-grpc::Status FrameService::GetGeometry(grpc::ServerContext* context, const v1::GetGeometryRequest* request,
-                                       grpc::ServerWriter<v1::GetGeometryResponse>* writer) {
+FrameService::FrameService(session::Table& table, AccessGuard& guard, Metrics& metrics, const session::Limits& limits)
+    : table_(table),
+      guard_(guard),
+      metrics_(metrics),
+      viewers_({"viewers", "--max-viewers-in-all, --max-share", limits.viewers_in_all,
+                PartOf(limits.viewers_in_all, limits.share)}),
+      seats_({"viewers of this session", "--max-viewers, --max-share", std::numeric_limits<int>::max(),
+              PartOf(limits.viewers, limits.share)}) {}
+
+void FrameService::AddTo(CallTable& calls) {
+  calls.AddRaw<v1::WatchFramesRequest>(Lane::kQuick, [this](ServedCall& call) -> std::optional<grpc::Status> {
+    if (absl::Status watched = WatchFrames(call); !watched.ok()) return ToGrpc(watched);
+    return std::nullopt;
+  });
+  calls.Add(Lane::kStream, *this, &FrameService::GetGeometry);
+  calls.Add(Lane::kQuick, *this, &FrameService::AckFrames);
+  calls.Add(Lane::kQuick, *this, &FrameService::GetBasis);
+  calls.Add(Lane::kSession, *this, &FrameService::GetForces);
+}
+
+grpc::Status FrameService::GetGeometry(grpc::CallbackServerContext* context, const v1::GetGeometryRequest* request,
+                                       ReplyStream<v1::GetGeometryResponse>* writer) {
   const auto call = AdmitToSession(guard_, table_, *context, *request);
   if (!call.ok()) return ToGrpc(call.status());
   session::Session& session = *call->session;
@@ -83,44 +108,41 @@ grpc::Status FrameService::GetGeometry(grpc::ServerContext* context, const v1::G
   return grpc::Status::OK;
 }
 
-absl::Status FrameService::Watch(const grpc::CallbackServerContext& context, const grpc::ByteBuffer& bytes,
-                                 WatchReactor& reactor) {
+absl::StatusOr<FairShare::Hold> FrameService::TakeSeats(const access::Caller& caller, const std::string& session) {
+  const std::string name = guard_.ShareOf(caller);
+  auto viewer = viewers_.Take(name);
+  if (!viewer.ok()) return viewer;
+  auto seat = seats_.Take(name.empty() ? "" : absl::StrCat(name, " in ", session));
+  if (!seat.ok()) return seat;
+  return std::make_shared<std::pair<FairShare::Hold, FairShare::Hold>>(*std::move(viewer), *std::move(seat));
+}
+
+absl::Status FrameService::WatchFrames(ServedCall& call) {
   v1::WatchFramesRequest request;
-  if (!Parse(bytes, request)) return absl::InvalidArgumentError("the message is not a phrenic.v1.WatchFramesRequest");
-  const auto caller = guard_.Admit(context, request);
+  if (!Parse(call.request(), request)) {
+    return absl::InvalidArgumentError("the message is not a phrenic.v1.WatchFramesRequest");
+  }
+  const auto caller = guard_.Admit(call.context(), request);
   if (!caller.ok()) return caller.status();
   auto session = table_.Find(request.session_id());
   if (!session.ok()) return session.status();
   const auto options = ReadOptions((*session)->model(), (*session)->publisher().layout(), request);
   if (!options.ok()) return options.status();
-  const std::shared_ptr<void> viewer_count(nullptr, [viewers = viewers_](void*) { --*viewers; });
-  if (++*viewers_ > max_viewers_) {
-    return absl::ResourceExhaustedError(absl::StrCat(
-        "the server has ", max_viewers_, " viewers, which is the limit (--max-viewers-in-all); try again later"));
-  }
+  auto seats = TakeSeats(*caller, request.session_id());
+  if (!seats.ok()) return seats.status();
   auto may_see = guard_.StillMaySee(*caller, **session);
-  reactor.Watch(*std::move(session), *options,
-                {viewer_count, std::move(may_see), [this](std::size_t sent) { metrics_.CountFrame(sent); }});
-  return absl::OkStatus();
+  return std::make_shared<WatchReactor>(call)->Watch(
+      *std::move(session), *options,
+      {*std::move(seats), std::move(may_see), [this](std::size_t sent) { metrics_.CountFrame(sent); }});
 }
 
-grpc::ServerWriteReactor<grpc::ByteBuffer>* FrameService::WatchFrames(grpc::CallbackServerContext* context,
-                                                                      const grpc::ByteBuffer* bytes) {
-  const auto reactor = WatchReactor::Make();
-  if (const absl::Status watched = Watch(*context, *bytes, *reactor); !watched.ok()) reactor->Refuse(watched);
-  return reactor.get();
-}
-
-grpc::ServerUnaryReactor* FrameService::AckFrames(grpc::CallbackServerContext* context,
-                                                  const v1::AckFramesRequest* request,
-                                                  v1::AckFramesResponse* response) {
-  grpc::ServerUnaryReactor* const reactor = context->DefaultReactor();
+grpc::Status FrameService::AckFrames(grpc::CallbackServerContext* context, const v1::AckFramesRequest* request,
+                                     v1::AckFramesResponse* response) {
   const auto caller = guard_.Admit(*context, *request);
-  reactor->Finish(ToGrpc(caller.ok() ? Acknowledge(table_, *request, *response) : caller.status()));
-  return reactor;
+  return ToGrpc(caller.ok() ? Acknowledge(table_, *request, *response) : caller.status());
 }
 
-grpc::Status FrameService::GetBasis(grpc::ServerContext* context, const v1::GetBasisRequest* request,
+grpc::Status FrameService::GetBasis(grpc::CallbackServerContext* context, const v1::GetBasisRequest* request,
                                     v1::GetBasisResponse* response) {
   const auto call = AdmitToSession(guard_, table_, *context, *request);
   if (!call.ok()) return ToGrpc(call.status());
@@ -131,7 +153,7 @@ grpc::Status FrameService::GetBasis(grpc::ServerContext* context, const v1::GetB
   return grpc::Status::OK;
 }
 
-grpc::Status FrameService::GetForces(grpc::ServerContext* context, const v1::GetForcesRequest* request,
+grpc::Status FrameService::GetForces(grpc::CallbackServerContext* context, const v1::GetForcesRequest* request,
                                      v1::GetForcesResponse* response) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());

@@ -4,7 +4,12 @@
 
 namespace phrenic::service {
 
-grpc::Status SceneService::ListScenes(grpc::ServerContext* context, const v1::ListScenesRequest* request,
+void SceneService::AddTo(CallTable& calls) {
+  calls.Add(Lane::kQuick, *this, &SceneService::ListScenes);
+  calls.Add(Lane::kWork, *this, &SceneService::DescribeScene);
+}
+
+grpc::Status SceneService::ListScenes(grpc::CallbackServerContext* context, const v1::ListScenesRequest* request,
                                       v1::ListScenesResponse* response) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
@@ -12,7 +17,7 @@ grpc::Status SceneService::ListScenes(grpc::ServerContext* context, const v1::Li
   return grpc::Status::OK;
 }
 
-grpc::Status SceneService::DescribeScene(grpc::ServerContext* context, const v1::DescribeSceneRequest* request,
+grpc::Status SceneService::DescribeScene(grpc::CallbackServerContext* context, const v1::DescribeSceneRequest* request,
                                          v1::DescribeSceneResponse* response) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());

@@ -2,21 +2,25 @@
 #ifndef PHRENIC_SERVER_SERVICE_SCENE_SERVICE_H_
 #define PHRENIC_SERVER_SERVICE_SCENE_SERVICE_H_
 
-#include "phrenic/v1/session.grpc.pb.h"
+#include "phrenic/v1/session.pb.h"
 #include "server/service/calls/access_guard.h"
+#include "server/service/calls/call_table.h"
 #include "server/session/models.h"
 
 namespace phrenic::service {
 
-// Thread-safe: gRPC calls the methods on its own threads. Errors as in the proto of each method.
-class SceneService final : public v1::SceneService::Service {
+// Thread-safe: the methods run on threads of their lanes. Errors as in the proto of each method.
+class SceneService final {
  public:
   SceneService(session::Models& models, AccessGuard& guard) : models_(models), guard_(guard) {}
 
-  grpc::Status ListScenes(grpc::ServerContext* context, const v1::ListScenesRequest* request,
-                          v1::ListScenesResponse* response) override;
-  grpc::Status DescribeScene(grpc::ServerContext* context, const v1::DescribeSceneRequest* request,
-                             v1::DescribeSceneResponse* response) override;
+  // Adds the methods to the table. The service outlives it.
+  void AddTo(CallTable& calls);
+
+  grpc::Status ListScenes(grpc::CallbackServerContext* context, const v1::ListScenesRequest* request,
+                          v1::ListScenesResponse* response);
+  grpc::Status DescribeScene(grpc::CallbackServerContext* context, const v1::DescribeSceneRequest* request,
+                             v1::DescribeSceneResponse* response);
 
  private:
   session::Models& models_;

@@ -1,23 +1,29 @@
 #include "server/service/server.h"
 
-#include <grpcpp/ext/proto_server_reflection_plugin.h>
-#include <grpcpp/health_check_service_interface.h>
+#include <grpcpp/client_context.h>
 #include <grpcpp/resource_quota.h>
 #include <grpcpp/server.h>
 #include <grpcpp/server_builder.h>
 #include <spdlog/spdlog.h>
 
+#include <atomic>
 #include <filesystem>
 
 #include "absl/strings/str_cat.h"
+#include "phrenic/v1/server.grpc.pb.h"
 #include "server/mechanics/parallel/parallel_for.h"
 #include "server/service/access_service.h"
 #include "server/service/calls/access_guard.h"
+#include "server/service/calls/call_limits.h"
+#include "server/service/calls/call_table.h"
 #include "server/service/calls/metrics.h"
+#include "server/service/calls/reflection.h"
 #include "server/service/compare_service.h"
 #include "server/service/control_service.h"
 #include "server/service/export_service.h"
 #include "server/service/frame_service.h"
+#include "server/service/health_service.h"
+#include "server/service/memory_trimmer.h"
 #include "server/service/net/grpc_listener.h"
 #include "server/service/periodic_task.h"
 #include "server/service/routing/forwarding_service.h"
@@ -36,10 +42,11 @@
 namespace phrenic::service {
 namespace {
 
-constexpr int kMaxThreads = 128;                      // of unary calls, watchers and downloads; viewers need none
-constexpr int kMaxStreams = 1000;                     // of one HTTP/2 connection
+constexpr int kMaxStreams = 128;                      // of one HTTP/2 connection
+constexpr int kStreamWindow = 16 << 10;               // of a stream whose request is not read yet [bytes]
 constexpr std::chrono::milliseconds kDrainTime(500);  // for calls to end before they are cancelled
 constexpr absl::Duration kMaintenancePeriod = absl::Seconds(2);
+constexpr std::chrono::seconds kReadyTime(1);  // for the call that /readyz makes
 
 std::vector<std::string> SceneFolders(const ServerOptions& options) {
   std::vector<std::string> folders = {options.scenes_dir};
@@ -55,6 +62,10 @@ std::shared_ptr<grpc::ChannelCredentials> PeerCredentials(const ServerOptions& o
 
 int Milliseconds(double seconds) { return static_cast<int>(seconds * 1000); }
 
+std::chrono::milliseconds RequestTime(const ServerOptions& options) {
+  return std::chrono::milliseconds(Milliseconds(options.idle_seconds));
+}
+
 // Sets keepalive (a dead peer is detected within 13 s), timeouts and limits. Two servers cannot share a port.
 void Configure(const ServerOptions& options, grpc::ServerBuilder& builder) {
   builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
@@ -63,6 +74,8 @@ void Configure(const ServerOptions& options, grpc::ServerBuilder& builder) {
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, 5'000);
   builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, kMaxStreams);
+  builder.AddChannelArgument(GRPC_ARG_HTTP2_STREAM_LOOKAHEAD_BYTES, kStreamWindow);
+  builder.AddChannelArgument(GRPC_ARG_HTTP2_BDP_PROBE, 0);  // would raise the window to megabytes
   builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, Milliseconds(options.head_seconds));
   builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_IDLE_MS, Milliseconds(options.idle_seconds));
   // gRPC checks a compressed message's size only after decompressing it, so compression is refused.
@@ -72,7 +85,7 @@ void Configure(const ServerOptions& options, grpc::ServerBuilder& builder) {
   builder.SetMaxReceiveMessageSize(options.max_message_bytes);
   builder.SetMaxSendMessageSize(-1);  // bounded by --max-vertices
   grpc::ResourceQuota quota("phrenicd");
-  quota.SetMaxThreads(kMaxThreads);
+  quota.Resize(static_cast<std::size_t>(options.network_mb) << 20);
   builder.SetResourceQuota(quota);
 }
 
@@ -110,21 +123,29 @@ struct Server::Parts {
         session_service(table, guard, page_tokens),
         control_service(table, guard),
         access_service(guard, table),
-        frame_service(table, guard, metrics, options.limits.viewers_in_all),
+        frame_service(table, guard, metrics, options.limits),
         exports(options.limits, options.spool_dir, clock, store.get()),
         export_service(table, exports, guard),
         upload_service(uploads, options.limits, guard),
-        study_service(models, options.web_root, guard, clock, store.get()),
-        compare_service(table, options.limits.exports, guard),
+        study_service(models, options.web_root, guard, clock, options.limits, store.get()),
+        compare_service(table, options.limits, guard),
         server_service(std::filesystem::exists(options.web_root + "/index.html"), !options.data_dir.empty(),
-                       options.tls.used(), guard) {
+                       options.tls.used(), guard),
+        call_limits(options.max_calls, RequestTime(options)),
+        calls(guard, call_limits),
+        forwarding_limits(options.max_calls, RequestTime(options)) {
+    AddCalls();
     table.set_account_names([this](const std::string& account) { return guard.AccountOf(account); });
   }
 
+  // Fills the table of calls.
+  void AddCalls();
   void JoinCluster();
   absl::Status Restore(const ServerOptions& options);
-  // Deletes idle sessions and reloads accounts.
+  // Deletes idle sessions, reloads accounts and gives freed memory back.
   void Maintain();
+  // Makes a call to this server in process, for /readyz.
+  void CheckReady();
   absl::Status Serve(const ServerOptions& options);
   absl::Status ServeWeb(const ServerOptions& options);
 
@@ -157,13 +178,20 @@ struct Server::Parts {
   StudyService study_service;
   CompareService compare_service;
   ServerService server_service;
+  HealthService health_service;
+  CallLimits call_limits;
+  CallTable calls;
   std::unique_ptr<GrpcListener> listener;
   std::unique_ptr<grpc::Server> grpc;
+  CallLimits forwarding_limits;
   std::unique_ptr<ForwardingService> forwarding_service;  // in a cluster: listens in front of `grpc`
   std::unique_ptr<grpc::Server> forwarding_server;
   std::unique_ptr<WebGateway> web;
-  std::unique_ptr<PeriodicTask> maintenance;
+  std::unique_ptr<PeriodicTask> maintenance, readiness;
+  std::unique_ptr<v1::ServerService::Stub> own_stub;  // for readiness
+  std::atomic<bool> stopping = false;
   std::map<std::string, absl::Status> lost;
+  MemoryTrimmer memory;        // of the maintenance
   absl::Status refresh_error;  // of the accounts; logged when it changes
 };
 
@@ -189,6 +217,21 @@ absl::StatusOr<Server::Parts::Opened> Server::Parts::Open(const ServerOptions& o
     opened.cluster = *std::move(cluster);
   }
   return opened;
+}
+
+void Server::Parts::AddCalls() {
+  scene_service.AddTo(calls);
+  session_service.AddTo(calls);
+  control_service.AddTo(calls);
+  access_service.AddTo(calls);
+  frame_service.AddTo(calls);
+  export_service.AddTo(calls);
+  upload_service.AddTo(calls);
+  study_service.AddTo(calls);
+  compare_service.AddTo(calls);
+  server_service.AddTo(calls);
+  health_service.AddTo(calls);
+  AddReflection(calls);
 }
 
 void Server::Parts::JoinCluster() {
@@ -224,6 +267,18 @@ void Server::Parts::Maintain() {
     spdlog::warn("{}; the previous accounts stay in use", std::string(refreshed.message()));
   }
   refresh_error = refreshed;
+  memory.Trim();
+}
+
+void Server::Parts::CheckReady() {
+  grpc::ClientContext context;
+  context.set_deadline(std::chrono::system_clock::now() + kReadyTime);
+  v1::GetServerResponse response;
+  const grpc::Status status = own_stub->GetServer(&context, {}, &response);
+  if (stopping || pages.ready() == status.ok()) return;
+  pages.set_ready(status.ok());
+  spdlog::warn("readyz: {}",
+               status.ok() ? "calls get through again" : "a call does not get through: " + status.error_message());
 }
 
 absl::Status Server::Parts::Listen(const ServerOptions& options, grpc::ServerBuilder& builder) {
@@ -240,7 +295,7 @@ absl::Status Server::Parts::ServeForwarding(const ServerOptions& options) {
   grpc::ChannelArguments arguments;
   arguments.SetMaxReceiveMessageSize(-1);
   router->set_local_channel(grpc->InProcessChannel(arguments));
-  forwarding_service = std::make_unique<ForwardingService>(*router);
+  forwarding_service = std::make_unique<ForwardingService>(*router, calls, guard, forwarding_limits);
   grpc::ServerBuilder builder;
   Configure(options, builder);
   if (absl::Status status = Listen(options, builder); !status.ok()) return status;
@@ -250,23 +305,12 @@ absl::Status Server::Parts::ServeForwarding(const ServerOptions& options) {
 }
 
 absl::Status Server::Parts::Serve(const ServerOptions& options) {
-  grpc::EnableDefaultHealthCheckService(true);
-  grpc::reflection::InitProtoReflectionServerBuilderPlugin();
   grpc::ServerBuilder builder;
   Configure(options, builder);
   if (router == nullptr) {
     if (absl::Status status = Listen(options, builder); !status.ok()) return status;
   }
-  builder.RegisterService(&scene_service);
-  builder.RegisterService(&session_service);
-  builder.RegisterService(&control_service);
-  builder.RegisterService(&access_service);
-  builder.RegisterService(&frame_service);
-  builder.RegisterService(&export_service);
-  builder.RegisterService(&upload_service);
-  builder.RegisterService(&study_service);
-  builder.RegisterService(&compare_service);
-  builder.RegisterService(&server_service);
+  builder.RegisterCallbackGenericService(&calls);
   grpc = builder.BuildAndStart();
   if (grpc == nullptr) return absl::InternalError("gRPC could not be started");
   if (router != nullptr) {
@@ -320,6 +364,8 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& optio
   parts.maintenance = std::make_unique<PeriodicTask>(kMaintenancePeriod, [&parts] { parts.Maintain(); });
   if (parts.cluster != nullptr) parts.cluster->StartTakeovers();
   parts.pages.set_ready(true);
+  parts.own_stub = v1::ServerService::NewStub(parts.entry_server().InProcessChannel({}));
+  parts.readiness = std::make_unique<PeriodicTask>(kMaintenancePeriod, [&parts] { parts.CheckReady(); });
   return server;
 }
 
@@ -338,8 +384,10 @@ int Server::web_port() const { return parts_->web == nullptr ? 0 : parts_->web->
 const std::map<std::string, absl::Status>& Server::lost() const { return parts_->lost; }
 
 void Server::Shutdown() {
+  parts_->stopping = true;
   parts_->pages.set_ready(false);
-  if (parts_->grpc != nullptr) parts_->grpc->GetHealthCheckService()->SetServingStatus(false);
+  parts_->health_service.set_serving(false);
+  parts_->readiness.reset();
   parts_->maintenance.reset();
   if (parts_->cluster != nullptr) parts_->cluster->Drain();
   if (parts_->listener != nullptr) parts_->listener->Shutdown();

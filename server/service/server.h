@@ -13,7 +13,8 @@
 
 namespace phrenic::service {
 
-// Thread-safe. Its threads: gRPC's, two of the gateway, two per session, one per running export, one for maintenance.
+// Thread-safe. Its threads: gRPC's, those of calls (calls/call_limits.h), two of the gateway, two per session, one per
+// running export, two for maintenance.
 class Server {
  public:
   // Restores the store's sessions, then listens. Errors: those of CheckOptions; UNAVAILABLE if an address cannot

@@ -30,6 +30,8 @@ struct ServerOptions {
   session::Limits limits;
   int step_threads = 1;              // threads of one step (mechanics/parallel/parallel_for.h), process-wide
   int max_message_bytes = 16 << 20;  // of a request [bytes]
+  int max_calls = 1024;              // calls and streams in flight of one caller
+  int network_mb = 512;              // memory of gRPC's connections [MiB], above which calls are cancelled
   double max_requests = 200;         // per account or other machine [1/s]; 0: no limit
   int max_connections = 512;         // to `web` and to `listen`, each
   double head_seconds = 10;          // timeout of a request's header [s]

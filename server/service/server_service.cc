@@ -4,7 +4,9 @@
 
 namespace phrenic::service {
 
-grpc::Status ServerService::GetServer(grpc::ServerContext* context, const v1::GetServerRequest* request,
+void ServerService::AddTo(CallTable& calls) { calls.Add(Lane::kQuick, *this, &ServerService::GetServer); }
+
+grpc::Status ServerService::GetServer(grpc::CallbackServerContext* context, const v1::GetServerRequest* request,
                                       v1::GetServerResponse* response) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());

@@ -4,13 +4,14 @@
 
 #include <atomic>
 
-#include "phrenic/v1/server.grpc.pb.h"
+#include "phrenic/v1/server.pb.h"
 #include "server/service/calls/access_guard.h"
+#include "server/service/calls/call_table.h"
 
 namespace phrenic::service {
 
-// Thread-safe: gRPC calls the methods on its own threads. Errors as in the proto of each method.
-class ServerService final : public v1::ServerService::Service {
+// Thread-safe: the methods run on threads of their lanes. Errors as in the proto of each method.
+class ServerService final {
  public:
   ServerService(bool viewer_is_built, bool has_data_folder, bool encrypted, AccessGuard& guard)
       : viewer_is_built_(viewer_is_built), has_data_folder_(has_data_folder), encrypted_(encrypted), guard_(guard) {}
@@ -18,8 +19,11 @@ class ServerService final : public v1::ServerService::Service {
   // Sets the gateway's port, which is known only after the first calls may arrive.
   void set_web_port(int port) { web_port_ = port; }
 
-  grpc::Status GetServer(grpc::ServerContext* context, const v1::GetServerRequest* request,
-                         v1::GetServerResponse* response) override;
+  // Adds the methods to the table. The service outlives it.
+  void AddTo(CallTable& calls);
+
+  grpc::Status GetServer(grpc::CallbackServerContext* context, const v1::GetServerRequest* request,
+                         v1::GetServerResponse* response);
 
  private:
   const bool viewer_is_built_, has_data_folder_, encrypted_;

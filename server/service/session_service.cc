@@ -41,8 +41,22 @@ absl::StatusOr<std::shared_ptr<const session::ReachedTime>> LeaderOf(const Acces
 
 }  // namespace
 
+void SessionService::AddTo(CallTable& calls) {
+  calls.Add(Lane::kWork, *this, &SessionService::CreateSession);
+  calls.Add(Lane::kQuick, *this, &SessionService::GetSession);
+  calls.Add(Lane::kSession, *this, &SessionService::ForkSession);
+  calls.Add(Lane::kQuick, *this, &SessionService::ListSessions);
+  calls.Add(Lane::kSession, *this, &SessionService::DeleteSession);
+  calls.Add(Lane::kSession, *this, &SessionService::PlaySession);
+  calls.Add(Lane::kSession, *this, &SessionService::PauseSession);
+  calls.Add(Lane::kSession, *this, &SessionService::StepSession);
+  calls.Add(Lane::kSession, *this, &SessionService::ResetSession);
+  calls.Add(Lane::kSession, *this, &SessionService::UpdateParameters);
+  calls.Add(Lane::kSession, *this, &SessionService::PullSession);
+}
+
 template <class Request, class Response, class Make>
-grpc::Status SessionService::Add(const grpc::ServerContext& context, const Request& request, Response* response,
+grpc::Status SessionService::Add(const grpc::CallbackServerContext& context, const Request& request, Response* response,
                                  Make make) {
   const auto caller = guard_.Admit(context, request);
   if (!caller.ok()) return ToGrpc(caller.status());
@@ -56,8 +70,8 @@ grpc::Status SessionService::Add(const grpc::ServerContext& context, const Reque
 }
 
 template <class Request, class Response, class Act>
-grpc::Status SessionService::Change(const grpc::ServerContext& context, const Request& request, Response* response,
-                                    Act act) {
+grpc::Status SessionService::Change(const grpc::CallbackServerContext& context, const Request& request,
+                                    Response* response, Act act) {
   const auto call = AdmitToSession(guard_, table_, context, request);
   if (!call.ok()) return ToGrpc(call.status());
   return ToGrpc(RunOnce(*call->session, request, response, [&] {
@@ -69,21 +83,22 @@ grpc::Status SessionService::Change(const grpc::ServerContext& context, const Re
   }));
 }
 
-grpc::Status SessionService::CreateSession(grpc::ServerContext* context, const v1::CreateSessionRequest* request,
+grpc::Status SessionService::CreateSession(grpc::CallbackServerContext* context,
+                                           const v1::CreateSessionRequest* request,
                                            v1::CreateSessionResponse* response) {
   return Add(*context, *request, response, [&](session::ControlBook control, const session::Requester& by) {
     return table_.Create(*request, std::move(control), by);
   });
 }
 
-grpc::Status SessionService::ForkSession(grpc::ServerContext* context, const v1::ForkSessionRequest* request,
+grpc::Status SessionService::ForkSession(grpc::CallbackServerContext* context, const v1::ForkSessionRequest* request,
                                          v1::ForkSessionResponse* response) {
   return Add(*context, *request, response, [&](session::ControlBook control, const session::Requester&) {
     return table_.Fork(*request, std::move(control));
   });
 }
 
-grpc::Status SessionService::GetSession(grpc::ServerContext* context, const v1::GetSessionRequest* request,
+grpc::Status SessionService::GetSession(grpc::CallbackServerContext* context, const v1::GetSessionRequest* request,
                                         v1::GetSessionResponse* response) {
   const auto call = AdmitToSession(guard_, table_, *context, *request);
   if (!call.ok()) return ToGrpc(call.status());
@@ -92,7 +107,7 @@ grpc::Status SessionService::GetSession(grpc::ServerContext* context, const v1::
   return grpc::Status::OK;
 }
 
-grpc::Status SessionService::ListSessions(grpc::ServerContext* context, const v1::ListSessionsRequest* request,
+grpc::Status SessionService::ListSessions(grpc::CallbackServerContext* context, const v1::ListSessionsRequest* request,
                                           v1::ListSessionsResponse* response) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
@@ -109,7 +124,8 @@ grpc::Status SessionService::ListSessions(grpc::ServerContext* context, const v1
   return grpc::Status::OK;
 }
 
-grpc::Status SessionService::DeleteSession(grpc::ServerContext* context, const v1::DeleteSessionRequest* request,
+grpc::Status SessionService::DeleteSession(grpc::CallbackServerContext* context,
+                                           const v1::DeleteSessionRequest* request,
                                            v1::DeleteSessionResponse* /*response*/) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
@@ -117,7 +133,7 @@ grpc::Status SessionService::DeleteSession(grpc::ServerContext* context, const v
   return ToGrpc(table_.Delete(request->session_id(), request->control_token()));
 }
 
-grpc::Status SessionService::PlaySession(grpc::ServerContext* context, const v1::PlaySessionRequest* request,
+grpc::Status SessionService::PlaySession(grpc::CallbackServerContext* context, const v1::PlaySessionRequest* request,
                                          v1::PlaySessionResponse* response) {
   return Change(*context, *request, response, [&](session::Session& session, const access::Caller& caller) {
     const auto leader = LeaderOf(guard_, caller, *request);
@@ -131,14 +147,14 @@ grpc::Status SessionService::PlaySession(grpc::ServerContext* context, const v1:
   });
 }
 
-grpc::Status SessionService::PauseSession(grpc::ServerContext* context, const v1::PauseSessionRequest* request,
+grpc::Status SessionService::PauseSession(grpc::CallbackServerContext* context, const v1::PauseSessionRequest* request,
                                           v1::PauseSessionResponse* response) {
   return Change(*context, *request, response, [&](session::Session& session) {
     return FillSession(session.Pause(request->control_token()), response);
   });
 }
 
-grpc::Status SessionService::StepSession(grpc::ServerContext* context, const v1::StepSessionRequest* request,
+grpc::Status SessionService::StepSession(grpc::CallbackServerContext* context, const v1::StepSessionRequest* request,
                                          v1::StepSessionResponse* response) {
   return Change(*context, *request, response, [&](session::Session& session) {
     const auto tick = OptionalOf(request->has_expected_tick(), request->expected_tick());
@@ -152,14 +168,15 @@ grpc::Status SessionService::StepSession(grpc::ServerContext* context, const v1:
   });
 }
 
-grpc::Status SessionService::ResetSession(grpc::ServerContext* context, const v1::ResetSessionRequest* request,
+grpc::Status SessionService::ResetSession(grpc::CallbackServerContext* context, const v1::ResetSessionRequest* request,
                                           v1::ResetSessionResponse* response) {
   return Change(*context, *request, response, [&](session::Session& session) {
     return FillSession(session.Reset(request->control_token()), response);
   });
 }
 
-grpc::Status SessionService::UpdateParameters(grpc::ServerContext* context, const v1::UpdateParametersRequest* request,
+grpc::Status SessionService::UpdateParameters(grpc::CallbackServerContext* context,
+                                              const v1::UpdateParametersRequest* request,
                                               v1::UpdateParametersResponse* response) {
   return Change(*context, *request, response, [&](session::Session& session) {
     auto changes = FindPreset(session.model().scene, request->preset());
@@ -174,7 +191,7 @@ grpc::Status SessionService::UpdateParameters(grpc::ServerContext* context, cons
   });
 }
 
-grpc::Status SessionService::PullSession(grpc::ServerContext* context, const v1::PullSessionRequest* request,
+grpc::Status SessionService::PullSession(grpc::CallbackServerContext* context, const v1::PullSessionRequest* request,
                                          v1::PullSessionResponse* response) {
   return Change(*context, *request, response, [&](session::Session& session) {
     if (request->pulls().empty() && !request->release_others()) {

@@ -4,21 +4,18 @@
 
 #include "server/mechanics/compile/presets.h"
 #include "server/physiology/physiology.h"
+#include "server/schema/part_of.h"
 #include "server/service/calls/status.h"
 #include "server/service/study_page.h"
 
 namespace phrenic::service {
-namespace {
-
-constexpr int kMaxWatchers = 16;  // each occupies a thread
-
-}  // namespace
-
 StudyService::StudyService(session::Models& models, std::string web_root, AccessGuard& guard, const Clock& clock,
-                           store::Store* store)
+                           const session::Limits& limits, store::Store* store)
     : models_(models),
       web_root_(std::move(web_root)),
       guard_(guard),
+      checks_(
+          {"physiology checks", "--max-exports, --max-share", limits.exports, PartOf(limits.exports, limits.share)}),
       studies_(
           [this](const v1::CreateStudyRequest& request) -> absl::StatusOr<std::string> {
             const auto scene = models_.Resolve(request.source());
@@ -30,14 +27,23 @@ StudyService::StudyService(session::Models& models, std::string web_root, Access
           [this](const v1::SceneSource& source, const std::string& owner, const std::function<bool()>& cancelled) {
             return models_.Get(source, {.owner = owner, .share = "studies " + owner, .cancelled = cancelled});
           },
-          clock, store) {}
+          clock, store, limits.share) {}
+
+void StudyService::AddTo(CallTable& calls) {
+  calls.Add(Lane::kSession, *this, &StudyService::CreateStudy);
+  calls.Add(Lane::kWatch, *this, &StudyService::WatchStudy);
+  calls.Add(Lane::kQuick, *this, &StudyService::ListStudies);
+  calls.Add(Lane::kSession, *this, &StudyService::DeleteStudy);
+  calls.Add(Lane::kQuick, *this, &StudyService::GetStudyPage);
+  calls.Add(Lane::kWork, *this, &StudyService::CheckPhysiology);
+}
 
 void StudyService::Restore(const std::vector<store::SavedRecord>& records, std::map<std::string, absl::Status>& lost) {
   studies_.Restore(
       records, [this](const std::string& account) { return guard_.AccountOf(account); }, lost);
 }
 
-grpc::Status StudyService::CreateStudy(grpc::ServerContext* context, const v1::CreateStudyRequest* request,
+grpc::Status StudyService::CreateStudy(grpc::CallbackServerContext* context, const v1::CreateStudyRequest* request,
                                        v1::CreateStudyResponse* response) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
@@ -47,29 +53,24 @@ grpc::Status StudyService::CreateStudy(grpc::ServerContext* context, const v1::C
   return grpc::Status::OK;
 }
 
-grpc::Status StudyService::WatchStudy(grpc::ServerContext* context, const v1::WatchStudyRequest* request,
-                                      grpc::ServerWriter<v1::WatchStudyResponse>* writer) {
+grpc::Status StudyService::WatchStudy(grpc::CallbackServerContext* context, const v1::WatchStudyRequest* request,
+                                      ReplyStream<v1::WatchStudyResponse>* writer) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
   if (absl::Status own = guard_.CheckOwns(AccessGuard::Kind::kStudy, request->study_id(),
                                           studies_.OwnerOf(request->study_id()), *caller);
       !own.ok())
     return ToGrpc(own);
-  absl::Status watched = absl::ResourceExhaustedError("16 callers watch studies, and no more are allowed: try later");
-  if (watchers_.fetch_add(1) < kMaxWatchers) {
-    v1::WatchStudyResponse response;
-    watched = studies_.Watch(
-        request->study_id(), [&] { return context->IsCancelled(); },
-        [&](v1::Study study) {
-          *response.mutable_study() = std::move(study);
-          return writer->Write(response);
-        });
-  }
-  watchers_.fetch_sub(1);
-  return ToGrpc(watched);
+  v1::WatchStudyResponse response;
+  return ToGrpc(studies_.Watch(
+      request->study_id(), [&] { return context->IsCancelled(); },
+      [&](v1::Study study) {
+        *response.mutable_study() = std::move(study);
+        return writer->Write(response);
+      }));
 }
 
-grpc::Status StudyService::ListStudies(grpc::ServerContext* context, const v1::ListStudiesRequest* request,
+grpc::Status StudyService::ListStudies(grpc::CallbackServerContext* context, const v1::ListStudiesRequest* request,
                                        v1::ListStudiesResponse* response) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
@@ -78,7 +79,7 @@ grpc::Status StudyService::ListStudies(grpc::ServerContext* context, const v1::L
   return grpc::Status::OK;
 }
 
-grpc::Status StudyService::DeleteStudy(grpc::ServerContext* context, const v1::DeleteStudyRequest* request,
+grpc::Status StudyService::DeleteStudy(grpc::CallbackServerContext* context, const v1::DeleteStudyRequest* request,
                                        v1::DeleteStudyResponse*) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
@@ -89,7 +90,7 @@ grpc::Status StudyService::DeleteStudy(grpc::ServerContext* context, const v1::D
   return ToGrpc(studies_.Delete(request->study_id()));
 }
 
-grpc::Status StudyService::GetStudyPage(grpc::ServerContext* context, const v1::GetStudyPageRequest* request,
+grpc::Status StudyService::GetStudyPage(grpc::CallbackServerContext* context, const v1::GetStudyPageRequest* request,
                                         v1::GetStudyPageResponse* response) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
@@ -105,10 +106,13 @@ grpc::Status StudyService::GetStudyPage(grpc::ServerContext* context, const v1::
   return grpc::Status::OK;
 }
 
-grpc::Status StudyService::CheckPhysiology(grpc::ServerContext* context, const v1::CheckPhysiologyRequest* request,
-                                           grpc::ServerWriter<v1::CheckPhysiologyResponse>* writer) {
+grpc::Status StudyService::CheckPhysiology(grpc::CallbackServerContext* context,
+                                           const v1::CheckPhysiologyRequest* request,
+                                           ReplyStream<v1::CheckPhysiologyResponse>* writer) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
+  const auto running = checks_.Take(guard_.ShareOf(*caller));
+  if (!running.ok()) return ToGrpc(running.status());
   const auto model = models_.Get(request->source(), guard_.RequesterOf(*caller, *context));
   if (!model.ok()) return ToGrpc(model.status());
   v1::CheckPhysiologyResponse response;

@@ -15,7 +15,16 @@ void Fill(const session::Uploads::File& file, v1::UploadedFile& filled) {
 
 }  // namespace
 
-grpc::Status UploadService::ListSurfaceFormats(grpc::ServerContext* context,
+void UploadService::AddTo(CallTable& calls) {
+  calls.Add(Lane::kQuick, *this, &UploadService::ListSurfaceFormats);
+  calls.Add(Lane::kSession, *this, &UploadService::BeginUpload);
+  calls.Add(Lane::kSession, *this, &UploadService::AddUploadChunk);
+  calls.Add(Lane::kWork, *this, &UploadService::FinishUpload);
+  calls.Add(Lane::kQuick, *this, &UploadService::ListUploads);
+  calls.Add(Lane::kSession, *this, &UploadService::DeleteUpload);
+}
+
+grpc::Status UploadService::ListSurfaceFormats(grpc::CallbackServerContext* context,
                                                const v1::ListSurfaceFormatsRequest* request,
                                                v1::ListSurfaceFormatsResponse* response) {
   const auto caller = guard_.Admit(*context, *request);
@@ -29,7 +38,7 @@ grpc::Status UploadService::ListSurfaceFormats(grpc::ServerContext* context,
   return grpc::Status::OK;
 }
 
-grpc::Status UploadService::BeginUpload(grpc::ServerContext* context, const v1::BeginUploadRequest* request,
+grpc::Status UploadService::BeginUpload(grpc::CallbackServerContext* context, const v1::BeginUploadRequest* request,
                                         v1::BeginUploadResponse* response) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
@@ -44,7 +53,8 @@ grpc::Status UploadService::BeginUpload(grpc::ServerContext* context, const v1::
   return grpc::Status::OK;
 }
 
-grpc::Status UploadService::AddUploadChunk(grpc::ServerContext* context, const v1::AddUploadChunkRequest* request,
+grpc::Status UploadService::AddUploadChunk(grpc::CallbackServerContext* context,
+                                           const v1::AddUploadChunkRequest* request,
                                            v1::AddUploadChunkResponse* response) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
@@ -55,7 +65,7 @@ grpc::Status UploadService::AddUploadChunk(grpc::ServerContext* context, const v
   return grpc::Status::OK;
 }
 
-grpc::Status UploadService::FinishUpload(grpc::ServerContext* context, const v1::FinishUploadRequest* request,
+grpc::Status UploadService::FinishUpload(grpc::CallbackServerContext* context, const v1::FinishUploadRequest* request,
                                          v1::FinishUploadResponse* response) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
@@ -67,7 +77,7 @@ grpc::Status UploadService::FinishUpload(grpc::ServerContext* context, const v1:
   return grpc::Status::OK;
 }
 
-grpc::Status UploadService::ListUploads(grpc::ServerContext* context, const v1::ListUploadsRequest* request,
+grpc::Status UploadService::ListUploads(grpc::CallbackServerContext* context, const v1::ListUploadsRequest* request,
                                         v1::ListUploadsResponse* response) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
@@ -77,7 +87,7 @@ grpc::Status UploadService::ListUploads(grpc::ServerContext* context, const v1::
   return grpc::Status::OK;
 }
 
-grpc::Status UploadService::DeleteUpload(grpc::ServerContext* context, const v1::DeleteUploadRequest* request,
+grpc::Status UploadService::DeleteUpload(grpc::CallbackServerContext* context, const v1::DeleteUploadRequest* request,
                                          v1::DeleteUploadResponse*) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());

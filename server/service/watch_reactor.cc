@@ -20,34 +20,21 @@ grpc::ByteBuffer Share(const stream::Bytes& bytes) {
 
 }  // namespace
 
-std::shared_ptr<WatchReactor> WatchReactor::Make() {
-  std::shared_ptr<WatchReactor> reactor(new WatchReactor);
-  absl::MutexLock lock(&reactor->mutex_);
-  reactor->self_ = reactor;
-  return reactor;
-}
-
-void WatchReactor::Watch(std::shared_ptr<session::Session> session, const stream::ViewerOptions& options,
-                         Subscription subscription) {
+absl::Status WatchReactor::Watch(std::shared_ptr<session::Session> session, const stream::ViewerOptions& options,
+                                 Subscription subscription) {
   subscription_ = std::move(subscription);
   auto viewer = session->publisher().Join(options, [weak = weak_from_this()] {
     if (const auto reactor = weak.lock()) reactor->Pump();
   });
-  if (!viewer.ok()) return Refuse(viewer.status());
+  if (!viewer.ok()) return viewer.status();
+  call_.Continue(shared_from_this());  // before the first write
   {
     absl::MutexLock lock(&mutex_);
     session_ = std::move(session);
     viewer_ = *std::move(viewer);
   }
   Pump();
-}
-
-void WatchReactor::Refuse(const absl::Status& status) {
-  {
-    absl::MutexLock lock(&mutex_);
-    finished_ = true;
-  }
-  Finish(ToGrpc(status));
+  return absl::OkStatus();
 }
 
 WatchReactor::Next WatchReactor::TakeNext() {
@@ -67,16 +54,16 @@ WatchReactor::Next WatchReactor::TakeNext() {
   return next;
 }
 
-// Calls StartWrite and Finish without the lock, because gRPC may run the reaction at once. TakeNext gives each
+// Calls StartWrite and FinishOnce without the lock, because gRPC may run the reaction at once. TakeNext gives each
 // operation to one thread only.
 void WatchReactor::Pump() {
   const Next next = TakeNext();
   if (next.finish.has_value()) {
-    Finish(*next.finish);
+    call_.FinishOnce(*next.finish);
   } else if (next.write != nullptr) {
     if (subscription_.sent) subscription_.sent(next.write->size());
     buffer_ = Share(next.write);
-    StartWrite(&buffer_);
+    call_.StartWrite(&buffer_);
   }
 }
 
@@ -99,12 +86,10 @@ void WatchReactor::OnCancel() {
 
 void WatchReactor::OnDone() {
   // Releases the session here: a publisher that wakes this reactor must not destroy its own session.
-  std::shared_ptr<WatchReactor> self;
   std::shared_ptr<session::Session> session;
   std::shared_ptr<stream::Viewer> viewer;
   {
     absl::MutexLock lock(&mutex_);
-    self = std::move(self_);
     session = std::move(session_);
     viewer = std::move(viewer_);
   }

@@ -3,7 +3,6 @@
 #define PHRENIC_SERVER_SERVICE_WATCH_REACTOR_H_
 
 #include <grpcpp/support/byte_buffer.h>
-#include <grpcpp/support/server_callback.h>
 
 #include <functional>
 #include <memory>
@@ -11,30 +10,29 @@
 
 #include "absl/base/thread_annotations.h"
 #include "absl/synchronization/mutex.h"
+#include "server/service/calls/served_call.h"
 #include "server/session/session.h"
 #include "server/stream/viewer.h"
 
 namespace phrenic::service {
 
-// Thread-safe: gRPC's threads and the publisher's thread call it. It keeps itself alive until OnDone; a publisher that
-// wakes it at that moment holds a reference of its own.
-class WatchReactor final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
-                           public std::enable_shared_from_this<WatchReactor> {
+// Thread-safe: gRPC's threads and the publisher's thread call it. The call keeps it alive until OnDone; a publisher
+// that wakes it at that moment holds a reference of its own.
+class WatchReactor final : public StreamEvents, public std::enable_shared_from_this<WatchReactor> {
  public:
-  static std::shared_ptr<WatchReactor> Make();
+  explicit WatchReactor(ServedCall& call) : call_(call) {}
 
   // What FrameService attaches to a stream; released when it ends.
   struct Subscription {
-    std::shared_ptr<void> count;                  // decrements the number of viewers when it is destroyed
+    std::shared_ptr<void> seats;                  // of the viewer, given back when it is destroyed
     std::function<bool()> may_see;                // checked before each message; null: always allowed
     std::function<void(std::size_t bytes)> sent;  // called with the size of each message
   };
 
-  // Exactly one of Watch and Refuse is called, once, before gRPC gets the reactor. Watch refuses the stream itself if
-  // the publisher does not accept the viewer. The stream ends with PERMISSION_DENIED when may_see becomes false.
-  void Watch(std::shared_ptr<session::Session> session, const stream::ViewerOptions& options,
-             Subscription subscription);
-  void Refuse(const absl::Status& status);
+  // Starts the stream, which ends with PERMISSION_DENIED when may_see becomes false. Call it once, by a shared pointer.
+  // Errors: the publisher's, if it does not accept the viewer; the stream then has not started.
+  absl::Status Watch(std::shared_ptr<session::Session> session, const stream::ViewerOptions& options,
+                     Subscription subscription);
 
   void OnWriteDone(bool ok) override;
   void OnCancel() override;
@@ -47,13 +45,12 @@ class WatchReactor final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
     std::optional<grpc::Status> finish = std::nullopt;
   };
 
-  WatchReactor() = default;
   Next TakeNext() ABSL_LOCKS_EXCLUDED(mutex_);
   // Starts the next write or finishes the stream, unless a write is in progress.
   void Pump() ABSL_LOCKS_EXCLUDED(mutex_);
 
+  ServedCall& call_;  // until it is finished
   absl::Mutex mutex_;
-  std::shared_ptr<WatchReactor> self_ ABSL_GUARDED_BY(mutex_);  // keeps the reactor alive until OnDone
   std::shared_ptr<session::Session> session_ ABSL_GUARDED_BY(mutex_);
   std::shared_ptr<stream::Viewer> viewer_ ABSL_GUARDED_BY(mutex_);
   Subscription subscription_;  // set before viewer_

@@ -21,6 +21,7 @@ class WebPages {
 
   // /readyz answers 503 until it is set, and again during shutdown.
   void set_ready(bool ready) { ready_ = ready; }
+  bool ready() const { return ready_; }
   // Returns "/healthz", "/readyz" or, for an administrator's Authorization header, "/metrics" (401 for others); every
   // caller may read it if the server has no accounts. "/known" is 200 for callers that AccessGuard::Known has and 401
   // for others; proxies ask it before they pass a call on. Returns nullopt for other targets.

@@ -66,10 +66,10 @@ void StudyJob::Save(const v1::Study& message, const jobs::Records& records) cons
   records.Put(message.id(), saved.SerializeAsString());
 }
 
-Studies::Studies(SceneName scene_name, OwnersCompiler compile, const Clock& clock, store::Store* store)
+Studies::Studies(SceneName scene_name, OwnersCompiler compile, const Clock& clock, store::Store* store, double share)
     : scene_name_(std::move(scene_name)),
       compile_(std::move(compile)),
-      queue_({.noun = {"study", "studies", "a"}, .threads = 1, .kept = kMostStudies}, clock,
+      queue_({.noun = {"study", "studies", "a"}, .threads = 1, .kept = kMostStudies, .share = share}, clock,
              jobs::Records(kRecord, store)) {}
 
 absl::StatusOr<Studies::Draft> Studies::MakeDraft(const v1::CreateStudyRequest& request,

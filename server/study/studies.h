@@ -53,8 +53,9 @@ class Studies {
   using OwnersCompiler = std::function<absl::StatusOr<std::shared_ptr<const Model>>(
       const v1::SceneSource& source, const std::string& owner, const std::function<bool()>& cancelled)>;
 
-  // Requires: `clock` and `store` outlive it. With a null store, studies do not survive a restart of the server.
-  Studies(SceneName scene_name, OwnersCompiler compile, const Clock& clock, store::Store* store);
+  // `share` is the fraction of the studies that one owner may have. Requires: `clock` and `store` outlive it. With a
+  // null store, studies do not survive a restart of the server.
+  Studies(SceneName scene_name, OwnersCompiler compile, const Clock& clock, store::Store* store, double share = 1);
 
   // Restores the studies of an earlier server: ended ones with their results; the others run again from their start.
   // `account_of` gives the present name of the account that a record names. `lost` gets the reason why one could not be

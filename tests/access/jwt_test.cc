@@ -138,6 +138,14 @@ TEST_F(Jwt, UnsignedOrSignedWithThePublicKeyIsRefused) {
               HasSubstr("not signed with an RS, PS or ES algorithm"));
 }
 
+// cjose 0.6 ends the process at some texts that are not base64url, such as "a=.$x:b.c.drun.e".
+TEST_F(Jwt, TextsThatAreNoBase64AreRefused) {
+  for (const char* token : {"A.A.A", "A", "..", "A..", "e30.e30.A", "a=.b.c", "a=.$x:b.c.drun.e", "$.$.$",
+                            "e30.e30.e30.e30.e", "\xff.\xff.\xff"}) {
+    EXPECT_TRUE(absl::IsUnauthenticated(keys_->Check(token, kNow).status())) << token;
+  }
+}
+
 TEST_F(Jwt, BadKeysAreAnErrorThatNamesTheFile) {
   std::ofstream(options_.keys) << "{\"keys\": [{\"kty\": \"oct\", \"k\": \"c2VjcmV0\"}]}";
   EXPECT_THAT(std::string(JwtKeys::Read(options_).status().message()), HasSubstr("has no RSA or EC key"));

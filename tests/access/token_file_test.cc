@@ -66,6 +66,7 @@ TEST_F(TokenFile, IsRefusedWithLineAndReason) {
     EXPECT_THAT(std::string(parsed.status().message()), HasSubstr(one.words));
   }
   EXPECT_TRUE(ParseTokens("f", "# nobody\n\n").ok());
+  EXPECT_TRUE(absl::IsNotFound(ReadTokens(testing::TempDir()).status())) << "a folder";
   EXPECT_TRUE(absl::IsInvalidArgument(AddToken(file_, {"two words", v1::ACCESS_ROLE_VIEWER}).status()));
 }
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 
+#include "absl/synchronization/notification.h"
 #include "phrenic/v1/study.pb.h"
 
 namespace phrenic::jobs {
@@ -62,11 +63,21 @@ class QueueTest : public testing::Test {
     return std::make_unique<TestQueue>(QueueOptions{.noun = {"study", "studies", "a"}, .kept = kept}, clock_,
                                        Records("study", store));
   }
+  // An owner may have half of the jobs.
+  std::unique_ptr<TestQueue> MakeShared(int kept, int threads) const {
+    return std::make_unique<TestQueue>(
+        QueueOptions{.noun = {"study", "studies", "a"}, .threads = threads, .kept = kept, .share = 0.5}, clock_,
+        Records("study", nullptr));
+  }
 
   static absl::StatusOr<v1::Study> Add(TestQueue& queue, const std::string& id, const Work& work) {
+    return AddOf("", queue, id, work);
+  }
+  static absl::StatusOr<v1::Study> AddOf(const std::string& owner, TestQueue& queue, const std::string& id,
+                                         const Work& work) {
     v1::Study message;
     message.set_scene("thorax");
-    return queue.Add("", id, "error-thorax", message, std::make_shared<TestJob>(work));
+    return queue.Add(owner, id, "error-thorax", message, std::make_shared<TestJob>(work));
   }
 
   static TestQueue::Seen WaitForEnd(const TestQueue& queue, const std::string& id) {
@@ -211,6 +222,73 @@ TEST_F(QueueTest, UnfinishedJobsStayInTheStoreAndDeletedOnesDoNot) {
   Records("export", store.get()).Restore(*store->LoadRecords(), restore, lost);
   EXPECT_THAT(lost, IsEmpty()) << "records of another kind";
   std::filesystem::remove_all(folder);
+}
+
+TEST_F(QueueTest, OneOwnerLeavesRoomForOthers) {
+  const auto queue = MakeShared(4, 1);
+  ASSERT_TRUE(AddOf("greedy", *queue, "a", &Endless).ok());
+  ASSERT_TRUE(AddOf("greedy", *queue, "b", &Endless).ok());
+  const auto third = AddOf("greedy", *queue, "c", &Endless);
+  EXPECT_TRUE(absl::IsResourceExhausted(third.status())) << third.status();
+  EXPECT_THAT(std::string(third.status().message()), HasSubstr("--max-share"));
+  EXPECT_TRUE(AddOf("modest", *queue, "d", &Endless).ok());
+}
+
+TEST_F(QueueTest, AnOwnersEndedJobMakesRoomForHisOwn) {
+  const auto queue = MakeShared(4, 1);
+  for (const char* id : {"a", "b"}) {
+    ASSERT_TRUE(AddOf("greedy", *queue, id, &Quick).ok());
+    WaitForEnd(*queue, id);
+  }
+  ASSERT_TRUE(AddOf("modest", *queue, "mine", &Quick).ok());
+  WaitForEnd(*queue, "mine");
+  ASSERT_TRUE(AddOf("greedy", *queue, "c", &Quick).ok());
+  WaitForEnd(*queue, "c");
+  EXPECT_TRUE(queue->Wait("mine", 0, absl::ZeroDuration()).ok());
+  EXPECT_TRUE(absl::IsNotFound(queue->Wait("a", 0, absl::ZeroDuration()).status()));
+}
+
+TEST_F(QueueTest, AFullQueueTakesTheEndedJobOfWhoHasMost) {
+  const auto queue = MakeShared(4, 1);
+  for (const auto& [owner, id] : {std::pair("one", "a"), {"two", "b"}, {"two", "c"}, {"one", "d"}}) {
+    ASSERT_TRUE(AddOf(owner, *queue, id, &Quick).ok());
+    WaitForEnd(*queue, id);
+  }
+  ASSERT_TRUE(AddOf("modest", *queue, "mine", &Quick).ok());
+  WaitForEnd(*queue, "mine");
+  ASSERT_TRUE(AddOf("two", *queue, "e", &Quick).ok()) << "his own job makes room";
+  WaitForEnd(*queue, "e");
+  EXPECT_TRUE(queue->Wait("mine", 0, absl::ZeroDuration()).ok());
+  EXPECT_TRUE(queue->Wait("d", 0, absl::ZeroDuration()).ok());
+}
+
+// The greedy owner's jobs were all added before the modest one's.
+TEST_F(QueueTest, SeveralOwnersRunInTurn) {
+  const auto queue = MakeShared(8, 1);
+  absl::Notification begin;
+  absl::Mutex mutex;
+  std::vector<std::string> ran;
+  const auto named = [&](const char* name) {
+    return [&, name](StudyProgress) {
+      begin.WaitForNotification();
+      absl::MutexLock lock(&mutex);
+      ran.emplace_back(name);
+      return absl::OkStatus();
+    };
+  };
+  for (const char* id : {"a", "b", "c"}) ASSERT_TRUE(AddOf("greedy", *queue, id, named("greedy")).ok());
+  ASSERT_TRUE(AddOf("modest", *queue, "d", named("modest")).ok());
+  begin.Notify();
+  for (const char* id : {"a", "b", "c", "d"}) WaitForEnd(*queue, id);
+  absl::MutexLock lock(&mutex);
+  EXPECT_THAT(ran, ElementsAre("greedy", "modest", "greedy", "greedy"));
+}
+
+TEST_F(QueueTest, OneOwnerLeavesAThreadForOthers) {
+  const auto queue = MakeShared(8, 2);
+  for (const char* id : {"a", "b"}) ASSERT_TRUE(AddOf("greedy", *queue, id, &Endless).ok());
+  ASSERT_TRUE(AddOf("modest", *queue, "c", &Quick).ok());
+  EXPECT_EQ(WaitForEnd(*queue, "c").message.state(), v1::STUDY_STATE_DONE);
 }
 
 }  // namespace

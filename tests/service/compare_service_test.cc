@@ -110,7 +110,7 @@ class NoComparisons : public CompareServiceTest {
 TEST_F(NoComparisons, AreRefusedAboveTheLimit) {
   const grpc::Status status = Compare(Request(kObj, kObj));
   EXPECT_EQ(status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
-  EXPECT_THAT(status.error_message(), HasSubstr("0 comparisons are running"));
+  EXPECT_THAT(status.error_message(), HasSubstr("there are 0 comparisons, which is the limit (--max-exports"));
 }
 
 }  // namespace

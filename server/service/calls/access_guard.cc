@@ -155,6 +155,33 @@ absl::Status AccessGuard::CheckRate(const Rule& rule, const Caller& caller) {
   return rate_.Take(caller.known() ? "account " + caller.account.name : caller.peer, absl::Now());
 }
 
+bool AccessGuard::IsKnown(const Caller& caller) const {
+  return !guarded() || caller.known() || caller.admin() || !caller.links.empty();
+}
+
+absl::StatusOr<Caller> AccessGuard::AdmitHeaders(const grpc::ServerContextBase& context, const Rule& rule) {
+  auto caller = Identify(context);
+  if (caller.ok() && (rule.open || IsKnown(*caller))) return caller;
+  Caller unknown;
+  unknown.peer = PeerOf(context);
+  if (rule.open) return unknown;
+  absl::Status refusal = CheckRate(rule, unknown);
+  if (refusal.ok()) refusal = caller.ok() ? CheckRule(rule, unknown, "") : caller.status();
+  metrics_.CountRequest(refusal);
+  if (logged_refusals_.Take("", absl::Now()).ok()) audit_.Note(unknown, rule.method, "", refusal);
+  return refusal;
+}
+
+std::string AccessGuard::ShareOf(const Caller& caller) const {
+  if (caller.known() || !caller.links.empty()) return absl::StrCat(caller.known() ? "account " : "", caller.id());
+  return !guarded() && IsThisMachine(caller.peer) ? "" : caller.peer;
+}
+
+std::string AccessGuard::KeyOf(const Caller& caller, const grpc::ServerContextBase& context) const {
+  const bool by_connection = !guarded() && IsThisMachine(caller.peer) && !caller.peer.empty();
+  return by_connection ? absl::StrCat(caller.peer, " ", context.peer()) : ShareOf(caller);
+}
+
 absl::StatusOr<Caller> AccessGuard::Admit(const grpc::ServerContextBase& context,
                                           const google::protobuf::Message& request) {
   const Rule* rule = access::RuleOf(request.GetDescriptor()->full_name());

@@ -42,6 +42,18 @@ class AccessGuard {
   absl::StatusOr<access::Caller> Admit(const grpc::ServerContextBase& context,
                                        const google::protobuf::Message& request);
 
+  // Returns the caller by the headers of a call alone, before its request is read. UNAUTHENTICATED if the method needs
+  // an account or a link and the caller has none; Admit counts and checks the calls that pass.
+  absl::StatusOr<access::Caller> AdmitHeaders(const grpc::ServerContextBase& context, const access::Rule& rule);
+  // True if the caller has an account or a link, or if the server needs none.
+  bool IsKnown(const access::Caller& caller) const;
+  // Returns the name under which limits count the calls of a caller: its account or link, else its address; without
+  // accounts, each connection from this machine is a caller of its own. Empty for this process.
+  std::string KeyOf(const access::Caller& caller, const grpc::ServerContextBase& context) const;
+  // Returns the name under which limits count what a caller has, such as viewers: its account or link, else its
+  // address. Empty, without a limit of its own, for this machine if the server has no accounts.
+  std::string ShareOf(const access::Caller& caller) const;
+
   // True if calls need an account.
   bool guarded() const { return accounts_.required(); }
   bool MaySee(const access::Caller& caller, const session::Session& session) const;

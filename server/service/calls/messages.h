@@ -6,6 +6,9 @@
 #include <google/protobuf/message.h>
 #include <grpcpp/support/byte_buffer.h>
 #include <grpcpp/support/proto_buffer_reader.h>
+#include <grpcpp/support/slice.h>
+
+#include <cstdint>
 
 namespace phrenic::service {
 
@@ -14,6 +17,13 @@ inline bool Parse(const grpc::ByteBuffer& bytes, google::protobuf::Message& mess
   grpc::ByteBuffer shared = bytes;  // shares the slices; the reader needs a non-const buffer
   grpc::ProtoBufferReader reader(&shared);
   return message.ParseFromZeroCopyStream(&reader);
+}
+
+// Returns the bytes of a message. Thread-safe.
+inline grpc::ByteBuffer Serialize(const google::protobuf::MessageLite& message) {
+  grpc::Slice slice(message.ByteSizeLong());
+  message.SerializeWithCachedSizesToArray(const_cast<std::uint8_t*>(slice.begin()));
+  return grpc::ByteBuffer(&slice, 1);
 }
 
 // Returns the string field "session_id" of a request type; null if it has none.

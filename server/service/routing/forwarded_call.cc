@@ -16,31 +16,37 @@ constexpr std::chrono::seconds kFanOutTimeout(2);
 
 }  // namespace
 
-ForwardedCall::ForwardedCall(SessionRouter& router, grpc::GenericCallbackServerContext& context)
-    : router_(router),
-      context_(context),
+ForwardedCall::ForwardedCall(SessionRouter& router, AccessGuard& guard, CallLimits& limits,
+                             grpc::GenericCallbackServerContext& context)
+    : IncomingCall(guard, limits, context),
+      router_(router),
       method_(context.method()),
       peer_(PeerOf(context).empty() ? "unknown" : PeerOf(context)),
       metadata_(SessionRouter::ForwardedMetadata(context)) {}
 
-ForwardedCall* ForwardedCall::Make(SessionRouter& router, grpc::GenericCallbackServerContext& context) {
-  std::shared_ptr<ForwardedCall> call(new ForwardedCall(router, context));
-  call->self_ = call;
-  call->StartRead(&call->request_);
+ForwardedCall* ForwardedCall::Make(SessionRouter& router, AccessGuard& guard, CallLimits& limits,
+                                   const access::Rule* rule, grpc::GenericCallbackServerContext& context) {
+  const std::shared_ptr<ForwardedCall> call(new ForwardedCall(router, guard, limits, context));
+  call->Begin(rule);
   return call.get();
 }
 
-void ForwardedCall::OnReadDone(bool ok) {
-  if (!ok) return Finish({grpc::StatusCode::INVALID_ARGUMENT, "the call has no request"});
-  auto route = router_.Find(method_, metadata_, request_);
-  if (!route.ok()) return Finish(ToGrpc(route.status()));
+void ForwardedCall::OnRequest() {
+  Await(limits().lane(Lane::kQuick), [self = self()](FairShare::Hold hold) {
+    self->limits().threads().Post([self, hold = std::move(hold)] { self->FindRoute(); });
+  });
+}
+
+void ForwardedCall::FindRoute() {
+  auto route = router_.Find(method_, metadata_, request());
+  if (!route.ok()) return FinishOnce(ToGrpc(route.status()));
   route_ = *std::move(route);
   if (route_.fan_out) return FanOut();
   CallTarget();
 }
 
-UpstreamCall::Request ForwardedCall::RequestTo(const SessionRouter::Target& target) const {
-  return {method_, request_, router_.MetadataFor(target, metadata_, peer_), DeadlineOf(context_)};
+UpstreamCall::Request ForwardedCall::RequestTo(const SessionRouter::Target& target) {
+  return {method_, request(), router_.MetadataFor(target, metadata_, peer_), DeadlineOf(context())};
 }
 
 std::shared_ptr<UpstreamCall> ForwardedCall::upstream() const {
@@ -53,8 +59,8 @@ void ForwardedCall::CallTarget() {
   if (!target.address.empty()) router_.CountForwarded();
   const auto call = UpstreamCall::Make(
       RequestTo(target),
-      {.message = [self = shared_from_this()](const grpc::ByteBuffer& message) { return self->WriteResponse(message); },
-       .done = [self = shared_from_this()](const grpc::Status& status) { self->OnUpstreamDone(status); }});
+      {.message = [self = self()](const grpc::ByteBuffer& message) { return self->WriteResponse(message); },
+       .done = [self = self()](const grpc::Status& status) { self->OnUpstreamDone(status); }});
   {
     absl::MutexLock lock(&mutex_);
     upstream_ = call;
@@ -86,12 +92,12 @@ void ForwardedCall::OnUpstreamDone(const grpc::Status& status) {
   if (unreachable) router_.ReportUnreachable(route_);
   if (first) first_status_ = status;
   if (first && unreachable) {
-    return Finish({grpc::StatusCode::UNAVAILABLE,
-                   absl::StrCat("the server at ", target.address, ", which has the session, does not answer (",
-                                status.error_message(), "); try again in a moment")});
+    return FinishOnce({grpc::StatusCode::UNAVAILABLE,
+                       absl::StrCat("the server at ", target.address, ", which has the session, does not answer (",
+                                    status.error_message(), "); try again in a moment")});
   }
-  if (!missing && !unreachable) return Finish(status);
-  if (target_ + 1 == route_.targets.size()) return Finish(first_status_);
+  if (!missing && !unreachable) return FinishOnce(status);
+  if (target_ + 1 == route_.targets.size()) return FinishOnce(first_status_);
   ++target_;
   CallTarget();
 }
@@ -104,12 +110,15 @@ void ForwardedCall::OnCancel() {
     call = upstream_;
   }
   if (call != nullptr) call->Cancel();
+  IncomingCall::OnCancel();
 }
 
 void ForwardedCall::OnDone() {
-  std::shared_ptr<ForwardedCall> self = std::move(self_);
-  absl::MutexLock lock(&mutex_);
-  upstream_ = nullptr;
+  {
+    absl::MutexLock lock(&mutex_);
+    upstream_ = nullptr;
+  }
+  IncomingCall::OnDone();
 }
 
 void ForwardedCall::FanOut() {
@@ -121,12 +130,12 @@ void ForwardedCall::FanOut() {
   for (std::size_t i = 0; i < route_.targets.size(); ++i) {
     UpstreamCall::Request request = RequestTo(route_.targets[i]);
     if (i > 0) request.deadline = std::min(request.deadline, std::chrono::system_clock::now() + kFanOutTimeout);
-    const auto keep = [self = shared_from_this(), i](const grpc::ByteBuffer& message) {
+    const auto keep = [self = self(), i](const grpc::ByteBuffer& message) {
       absl::MutexLock lock(&self->mutex_);
       self->responses_[i] = message;
       return true;
     };
-    const auto done = [self = shared_from_this(), i](const grpc::Status& status) { self->OnFanOutDone(i, status); };
+    const auto done = [self = self(), i](const grpc::Status& status) { self->OnFanOutDone(i, status); };
     UpstreamCall::Make(std::move(request), {.message = keep, .done = done})->Start(*route_.targets[i].stub);
   }
 }
@@ -145,9 +154,9 @@ void ForwardedCall::OnFanOutDone(std::size_t index, const grpc::Status& status) 
     if (any_ok_ && local_status.error_code() == grpc::StatusCode::UNAUTHENTICATED) local_status = grpc::Status::OK;
     responses.swap(responses_);
   }
-  if (!local_status.ok()) return Finish(local_status);
-  outgoing_ = MergeResponses(method_, request_, responses, router_.page_tokens());
-  StartWriteAndFinish(&outgoing_, {}, grpc::Status::OK);
+  if (!local_status.ok()) return FinishOnce(local_status);
+  outgoing_ = MergeResponses(method_, request(), responses, router_.page_tokens());
+  FinishOnce(outgoing_, grpc::Status::OK);
 }
 
 }  // namespace phrenic::service

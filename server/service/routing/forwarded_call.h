@@ -2,7 +2,6 @@
 #ifndef PHRENIC_SERVER_SERVICE_ROUTING_FORWARDED_CALL_H_
 #define PHRENIC_SERVER_SERVICE_ROUTING_FORWARDED_CALL_H_
 
-#include <grpcpp/generic/async_generic_service.h>
 #include <grpcpp/support/byte_buffer.h>
 
 #include <memory>
@@ -11,6 +10,7 @@
 
 #include "absl/base/thread_annotations.h"
 #include "absl/synchronization/mutex.h"
+#include "server/service/calls/incoming_call.h"
 #include "server/service/routing/session_router.h"
 #include "server/service/routing/upstream_call.h"
 
@@ -21,18 +21,24 @@ namespace phrenic::service {
 //
 // Errors: INVALID_ARGUMENT without a request; UNAVAILABLE if the session's server does not answer; else the status of
 // the target. gRPC's threads call it; it deletes itself after OnDone.
-class ForwardedCall final : public grpc::ServerGenericBidiReactor, public std::enable_shared_from_this<ForwardedCall> {
+class ForwardedCall final : public IncomingCall {
  public:
-  static ForwardedCall* Make(SessionRouter& router, grpc::GenericCallbackServerContext& context);
+  // `rule` as in IncomingCall::Begin.
+  static ForwardedCall* Make(SessionRouter& router, AccessGuard& guard, CallLimits& limits, const access::Rule* rule,
+                             grpc::GenericCallbackServerContext& context);
 
-  void OnReadDone(bool ok) override;
   void OnWriteDone(bool ok) override;
   void OnCancel() override ABSL_LOCKS_EXCLUDED(mutex_);
   void OnDone() override;
 
  private:
-  ForwardedCall(SessionRouter& router, grpc::GenericCallbackServerContext& context);
-  UpstreamCall::Request RequestTo(const SessionRouter::Target& target) const;
+  ForwardedCall(SessionRouter& router, AccessGuard& guard, CallLimits& limits,
+                grpc::GenericCallbackServerContext& context);
+  void OnRequest() override;
+  // Finds the call's targets, on a thread of the limits, since Redis may have to be asked.
+  void FindRoute();
+  std::shared_ptr<ForwardedCall> self() { return std::static_pointer_cast<ForwardedCall>(shared_from_this()); }
+  UpstreamCall::Request RequestTo(const SessionRouter::Target& target);
   std::shared_ptr<UpstreamCall> upstream() const ABSL_LOCKS_EXCLUDED(mutex_);
 
   // Calls the target with index target_.
@@ -46,11 +52,9 @@ class ForwardedCall final : public grpc::ServerGenericBidiReactor, public std::e
   void OnFanOutDone(std::size_t index, const grpc::Status& status) ABSL_LOCKS_EXCLUDED(mutex_);
 
   SessionRouter& router_;
-  grpc::GenericCallbackServerContext& context_;
   const std::string method_, peer_;
   const SessionRouter::Metadata metadata_;
-  std::shared_ptr<ForwardedCall> self_;  // keeps the reactor alive until OnDone
-  grpc::ByteBuffer request_, outgoing_;
+  grpc::ByteBuffer outgoing_;
   SessionRouter::Route route_;
   std::size_t target_ = 0;     // index of the route's current target
   bool responded_ = false;     // a response was forwarded to the client

@@ -1,26 +1,31 @@
-// The gRPC service that a cluster's server listens with: it accepts every method and forwards the serialized messages
-// to the server that handles the call, possibly this one.
+// The gRPC service that a cluster's server listens with: it accepts every method of a table and forwards the serialized
+// messages to the server that handles the call, possibly this one.
 #ifndef PHRENIC_SERVER_SERVICE_ROUTING_FORWARDING_SERVICE_H_
 #define PHRENIC_SERVER_SERVICE_ROUTING_FORWARDING_SERVICE_H_
 
 #include <grpcpp/generic/async_generic_service.h>
 
+#include "server/service/calls/call_table.h"
 #include "server/service/routing/forwarded_call.h"
 #include "server/service/routing/session_router.h"
 
 namespace phrenic::service {
 
-// Thread-safe. The router outlives it.
+// Thread-safe. The references outlive it.
 class ForwardingService final : public grpc::CallbackGenericService {
  public:
-  explicit ForwardingService(SessionRouter& router) : router_(router) {}
+  ForwardingService(SessionRouter& router, const CallTable& calls, AccessGuard& guard, CallLimits& limits)
+      : router_(router), calls_(calls), guard_(guard), limits_(limits) {}
 
   grpc::ServerGenericBidiReactor* CreateReactor(grpc::GenericCallbackServerContext* context) override {
-    return ForwardedCall::Make(router_, *context);
+    return ForwardedCall::Make(router_, guard_, limits_, calls_.RuleOf(context->method()), *context);
   }
 
  private:
   SessionRouter& router_;
+  const CallTable& calls_;
+  AccessGuard& guard_;
+  CallLimits& limits_;
 };
 
 }  // namespace phrenic::service

@@ -18,6 +18,7 @@ Exports::Exports(const Limits& limits, std::string spool_folder, const Clock& cl
       queue_({.noun = {"export", "exports", "an"},
               .threads = limits.exports,
               .kept = limits.kept_exports,
+              .share = limits.share,
               .lifetime = absl::Minutes(limits.export_minutes)},
              clock, jobs::Records(kExportRecord, store)) {}
 

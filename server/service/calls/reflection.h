@@ -1,0 +1,22 @@
+// gRPC's server reflection: tells clients such as grpcurl and buf the services and their messages.
+#ifndef PHRENIC_SERVER_SERVICE_CALLS_REFLECTION_H_
+#define PHRENIC_SERVER_SERVICE_CALLS_REFLECTION_H_
+
+#include <string>
+#include <vector>
+
+#include "server/service/calls/call_table.h"
+
+namespace phrenic::service {
+
+// Adds ServerReflectionInfo of grpc.reflection.v1 and v1alpha. gRPC's own plug-in holds a thread for each stream and
+// asks for no account; this one is a conversation of the table, for callers with an account or a link.
+void AddReflection(CallTable& calls);
+
+// Returns the serialized ServerReflectionResponse to a serialized ServerReflectionRequest: the services, or the files
+// that declare a symbol or have a name, with those that they import. Pure function, thread-safe.
+std::string Reflect(const std::string& request, const std::vector<std::string>& services);
+
+}  // namespace phrenic::service
+
+#endif  // PHRENIC_SERVER_SERVICE_CALLS_REFLECTION_H_

@@ -1,0 +1,101 @@
+#include "server/service/calls/served_call.h"
+
+#include <utility>
+
+#include "server/service/calls/status.h"
+
+namespace phrenic::service {
+namespace {
+
+constexpr absl::Duration kStall = absl::Minutes(1);              // for which a client may read nothing
+constexpr std::chrono::milliseconds kConversationPause(60'000);  // between two requests of a conversation
+
+constexpr std::size_t kLargeReply = 64 << 10;  // [bytes]
+
+}  // namespace
+
+ServedCall* ServedCall::Make(const Method* method, AccessGuard& guard, CallLimits& limits,
+                             grpc::GenericCallbackServerContext& context) {
+  const std::shared_ptr<ServedCall> call(new ServedCall(method, guard, limits, context));
+  call->Begin(method == nullptr ? nullptr : method->rule);
+  return call.get();
+}
+
+void ServedCall::OnRequest() {
+  const auto self = std::static_pointer_cast<ServedCall>(shared_from_this());
+  Await(limits().lane(method_->lane), [self](FairShare::Hold hold) {
+    self->limits().threads().Post([self, hold = std::move(hold)] { self->Run(); });
+  });
+}
+
+void ServedCall::OnNoRequest() { answered_ ? FinishOnce(grpc::Status::OK) : IncomingCall::OnNoRequest(); }
+
+void ServedCall::Run() {
+  if (context().IsCancelled()) return FinishOnce(grpc::Status::CANCELLED);
+  const std::optional<grpc::Status> status = method_->handler(*this);
+  answered_ = true;
+  if (status.has_value()) return FinishOnce(*status);
+  if (method_->conversation) Read(limits().conversations(), kConversationPause);
+}
+
+bool ServedCall::Write(const grpc::ByteBuffer& message) {
+  {
+    absl::MutexLock lock(&mutex_);
+    if (context().IsCancelled()) return false;
+    writing_ = true;
+  }
+  outgoing_ = message;
+  StartWrite(&outgoing_);
+  const auto done = [this] {
+    mutex_.AssertHeld();
+    return !writing_;
+  };
+  absl::MutexLock lock(&mutex_);
+  if (mutex_.AwaitWithTimeout(absl::Condition(&done), kStall)) return written_;
+  context().TryCancel();  // the write then fails
+  mutex_.Await(absl::Condition(&done));
+  return false;
+}
+
+void ServedCall::Reply(const grpc::ByteBuffer& message) {
+  if (message.Length() > kLargeReply) {
+    auto place = limits().replies().Take(caller());
+    if (!place.ok()) return FinishOnce(ToGrpc(place.status()));
+    reply_ = *std::move(place);
+  }
+  outgoing_ = message;
+  FinishOnce(outgoing_, grpc::Status::OK);
+}
+
+std::shared_ptr<StreamEvents> ServedCall::events() {
+  absl::MutexLock lock(&mutex_);
+  return events_;
+}
+
+void ServedCall::Continue(std::shared_ptr<StreamEvents> events) {
+  {
+    absl::MutexLock lock(&mutex_);
+    events_ = events;
+  }
+  if (context().IsCancelled()) events->OnCancel();
+}
+
+void ServedCall::OnWriteDone(bool ok) {
+  if (const auto stream = events(); stream != nullptr) return stream->OnWriteDone(ok);
+  absl::MutexLock lock(&mutex_);
+  writing_ = false;
+  written_ = ok;
+}
+
+void ServedCall::OnCancel() {
+  if (const auto stream = events(); stream != nullptr) return stream->OnCancel();
+  IncomingCall::OnCancel();
+}
+
+void ServedCall::OnDone() {
+  reply_ = nullptr;
+  if (const auto stream = events(); stream != nullptr) stream->OnDone();
+  IncomingCall::OnDone();
+}
+
+}  // namespace phrenic::service
